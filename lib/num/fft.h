@@ -1,0 +1,29 @@
+/* fft.h - Fourier transforms whose bits depend on nothing but the data
+ *
+ * Thin wrapper of FFTW plans made with FFTW_ESTIMATE (measured planning picks other
+ * algorithms from run to run).  Planning is serialised inside.  Transforms are not
+ * normalised: forward then inverse multiplies by the number of points.
+ */
+#ifndef NUM_FFT_H
+#define NUM_FFT_H
+
+#include <complex.h>
+#include <stddef.h>
+
+/* Aligned memory, zeroed; NULL when out of memory. */
+double *fft_alloc(size_t count);
+double complex *fft_alloc_complex(size_t count);
+void fft_free(void *p);
+
+/* Smallest size >= n whose prime factors are 2, 3, 5 and 7 only. */
+size_t fft_good_size(size_t n);
+
+/* Real transform of ny rows of nx points (ny = 1: one-dimensional) to and from
+ * ny rows of nx / 2 + 1 coefficients.  The inverse destroys its input. */
+struct fft;
+struct fft *fft_new(size_t nx, size_t ny);
+void fft_forward(const struct fft *fft, double *x, double complex *spectrum);
+void fft_inverse(const struct fft *fft, double complex *spectrum, double *x);
+void fft_done(struct fft *fft);
+
+#endif

@@ -1,0 +1,27 @@
+/* pool.h - a pool of threads whose results do not depend on how many there are
+ *
+ * Work is cut into jobs beforehand, by the size of the problem alone; each job writes
+ * its own place.  Sums are made per chunk and then added in order of the chunks.
+ */
+#ifndef NUM_POOL_H
+#define NUM_POOL_H
+
+#include <stddef.h>
+
+struct pool;
+
+/* threads >= 1; NULL when threads cannot be had.  A pool of 1 starts none. */
+struct pool *pool_new(int threads);
+void pool_free(struct pool *pool);
+int pool_threads(const struct pool *pool); /* 1 for NULL */
+
+/* Calls job(context, i, worker) for i in [0, njobs), in any order, and returns when
+ * all are done.  worker in [0, threads) picks scratch memory.  pool NULL: in place. */
+void pool_run(struct pool *pool, size_t njobs,
+	void (*job)(void *context, size_t i, int worker), void *context);
+
+/* Sum over i in [0, n) of term(context, i), by chunks of fixed size in fixed order. */
+double pool_sum(struct pool *pool, size_t n,
+	double (*chunk)(void *context, size_t begin, size_t end), void *context);
+
+#endif

@@ -1,0 +1,40 @@
+/* msg.h - messages, exit statuses and checked allocation
+ *
+ * The one way a program fails: die() prints a single line "program: what" and
+ * leaves.  A format that ends in ':' gets the reason from errno appended, as in
+ * die(EXIT_RUN, "%s:", path)  ->  "bemcontact: surf.nrrd: No such file".
+ * Only lib/shell and src may call these; the numerics return statuses.
+ */
+#ifndef SHELL_MSG_H
+#define SHELL_MSG_H
+
+#include <stddef.h>
+
+enum {
+	EXIT_RUN = 1,      /* the run failed: bad input, no memory, disk full */
+	EXIT_USAGE = 2,    /* the command line is wrong */
+	EXIT_NOCONV = 3    /* did not converge; the best result was written */
+};
+
+/* Name put before every message; opt_parse() sets it. */
+void msg_name(const char *program);
+const char *msg_program(void);
+
+/* Level of -v: 0 silent, 1 a line per record, 2 more. */
+extern int verbose;
+
+_Noreturn void die(int status, const char *format, ...)
+	__attribute__((format(printf, 2, 3)));
+/* Prints one line and goes on; for what the user must know but can live with. */
+void warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* Prints one line when -v was given. */
+void note(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* Memory or death.  count * size is checked for overflow; memory is zeroed. */
+void *xcalloc(size_t count, size_t size);
+void *xrealloc(void *p, size_t count, size_t size);
+char *xstrdup(const char *s);
+/* printf into fresh memory. */
+char *xprintf(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+#endif

@@ -1,0 +1,93 @@
+/* opt.h - one table of options per program
+ *
+ * The table drives parsing (getopt_long), units and ranges, --help with defaults,
+ * the check of the man page, shell completion and the recorded command line.
+ * Defaults are the initial values of the variables the rows point at.
+ *
+ *	static struct opt_list band = { 2, { 70, 130 } };
+ *	static long order = 200;
+ *	static const struct opt opts[] = {
+ *		{ 'b', "band", OPT_LIST, UNIT_FREQUENCY, &band, 0, 1e12, "LO:HI", "pass band" },
+ *		{ 'n', "order", OPT_INT, UNIT_COUNT, &order, 2, 1e6, "N", "filter order" },
+ *		OPT_END
+ *	};
+ *
+ * Every program also has -h --help, -V --version, -v --verbose and -S --stats FILE.
+ * A number that was not given stays at its initial value; use NAN for "not given".
+ */
+#ifndef SHELL_OPT_H
+#define SHELL_OPT_H
+
+#include "shell/unit.h"
+
+enum opt_kind {
+	OPT_FLAG,    /* int: set to 1 */
+	OPT_INT,     /* long; unit UNIT_COUNT */
+	OPT_NUM,     /* double */
+	OPT_LIST,    /* struct opt_list: numbers parted by the separator shown in arg
+	              * (one of ':' 'x' ',') */
+	OPT_TEXT,    /* const char *: a file or free text */
+	OPT_TEXTS,   /* struct opt_texts: may be repeated */
+	OPT_WORD,    /* int: index into words */
+	OPT_CHOICE   /* struct opt_choice: one of words, or a number */
+};
+
+enum { OPT_LIST_MAX = 64, OPT_TEXTS_MAX = 64 };
+
+struct opt_list {
+	int n; /* values present */
+	double v[OPT_LIST_MAX];
+};
+
+struct opt_texts {
+	int n;
+	const char *v[OPT_TEXTS_MAX];
+};
+
+struct opt_choice {
+	int word; /* index into words, or -1: see value */
+	double value;
+};
+
+struct opt {
+	int letter;
+	const char *word;
+	enum opt_kind kind;
+	enum unit unit;
+	void *var;
+	double min, max;           /* inclusive range of numbers, or of each list member */
+	const char *arg;           /* placeholder: "N[xM]", "FILE", "gauss|exp" */
+	const char *help;          /* a phrase without a full stop */
+	const char *const *words;  /* OPT_WORD, OPT_CHOICE: NULL-ended */
+	int unrecorded;            /* 1: cannot change the output, keep out of cmd */
+};
+
+#define OPT_END { 0, 0, OPT_FLAG, UNIT_NONE, 0, 0, 0, 0, 0, 0, 0 }
+
+struct prog {
+	const char *name;
+	const char *gist;      /* one sentence, with full stop */
+	const char *operands;  /* "[file]", "[file ...]" or "" */
+	const char *reads;     /* "fields: height" */
+	const char *writes;    /* "table: one row per wear particle" */
+	const struct opt *opts;
+};
+
+/* Parses and checks; leaves with status 2 on misuse, 0 after --help and --version.
+ * Returns the index of the first operand; dies if there are more operands than
+ * the program takes. */
+int opt_parse(const struct prog *prog, int argc, char **argv);
+
+/* 1 if the option with this letter was on the command line. */
+int opt_given(int letter);
+
+/* The recorded command line, fresh memory: upstream, " | ", program, the options
+ * given in long form and shell-quoted, then extra (may be NULL).  The operands are
+ * recorded only where upstream is NULL, since otherwise upstream rebuilds the input. */
+char *opt_cmd(const char *upstream, const char *extra);
+
+/* Last call of main: writes --stats, checks that standard output was written
+ * whole, and returns status (or leaves with EXIT_RUN). */
+int shell_done(int status);
+
+#endif

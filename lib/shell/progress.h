@@ -1,0 +1,10 @@
+/* progress.h - a progress bar, on a terminal only and for work over a second */
+#ifndef SHELL_PROGRESS_H
+#define SHELL_PROGRESS_H
+
+/* Draws done / total (total <= 0: unknown, shows done alone); cheap to call often. */
+void progress(const char *what, double done, double total);
+/* Erases the bar; messages call it themselves. */
+void progress_clear(void);
+
+#endif

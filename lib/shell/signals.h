@@ -1,0 +1,46 @@
+/* signals.h - streams of multi-channel signals: Sun AU
+ *
+ * Writes 64-bit float big-endian of unknown length, so that it streams; reads 8, 16,
+ * 24, 32-bit PCM (scaled to +-1), float and double, and headerless little-endian
+ * float64 when a raw layout is given.  Frames are interleaved: x[frame * channels + c].
+ */
+#ifndef SHELL_SIGNALS_H
+#define SHELL_SIGNALS_H
+
+#include <stddef.h>
+
+struct signal_format {
+	long rate;      /* frames per second, Hz */
+	int channels;
+	int single;     /* writer: 32-bit float */
+	char *cmd;      /* pipeline that made it; NULL if unknown */
+	char *units;    /* one per channel, "V V"; NULL if unknown */
+	char *seed;     /* NULL if none */
+};
+
+struct signal_raw {
+	long rate;
+	int channels;
+};
+
+struct signal_in;
+struct signal_out;
+
+struct signal_in *signal_open(const char *path, const struct signal_raw *raw);
+const struct signal_format *signal_format(const struct signal_in *in);
+const char *signal_name(const struct signal_in *in);
+/* Reads up to nframes frames; blocks until that many or the end came.  Returns the
+ * frames read, 0 at the end.  Dies where the stream ends inside a frame or before
+ * its declared length.  Samples may be nan: the caller decides. */
+size_t signal_read(struct signal_in *in, double *x, size_t nframes);
+/* The same, but returns as soon as at least one frame is there. */
+size_t signal_read_some(struct signal_in *in, double *x, size_t nframes);
+void signal_close(struct signal_in *in);
+
+/* path NULL is standard output, which must not be a terminal. */
+struct signal_out *signal_create(const char *path, const struct signal_format *format);
+void signal_write(struct signal_out *out, const double *x, size_t nframes);
+void signal_flush(struct signal_out *out);
+void signal_done(struct signal_out *out);
+
+#endif

@@ -1,0 +1,54 @@
+/* tables.h - tab-separated tables with '#' comment lines and a bare header line
+ *
+ * Columns are found by name.  A table that follows another in one stream (cat a b)
+ * continues it: its own comments and header are taken in stride.
+ *
+ *	struct table_in *t = table_open(path);
+ *	int cd = table_need(t, "diameter"), cr = table_find(t, "realisation");
+ *	while (table_next(t)) {
+ *		double d = table_number(t, cd);
+ *		...
+ */
+#ifndef SHELL_TABLES_H
+#define SHELL_TABLES_H
+
+#include <stddef.h>
+
+struct table_in;
+struct table_out;
+
+struct table_in *table_open(const char *path); /* NULL or "-": standard input */
+const char *table_name(const struct table_in *t);
+/* Value of a "# key: value" line read so far (the latest), NULL if none. */
+const char *table_key(const struct table_in *t, const char *key);
+int table_columns(const struct table_in *t);
+const char *table_column_name(const struct table_in *t, int column);
+int table_find(const struct table_in *t, const char *column); /* -1 where absent */
+int table_need(const struct table_in *t, const char *column); /* dies naming it */
+/* Moves to the next row; 0 at the end.  A row with too few or too many cells, or a
+ * last line without its newline, kills the program naming file and line. */
+int table_next(struct table_in *t);
+long table_line(const struct table_in *t); /* of the present row, from 1 */
+/* Cell as a number; nan, NaN, NA and an empty cell are NAN; anything else that is
+ * not a number dies.  A column below 0 gives NAN. */
+double table_number(const struct table_in *t, int column);
+/* Cell as text, valid until the next row. */
+const char *table_text(const struct table_in *t, int column);
+void table_close(struct table_in *t);
+
+/* columns: names parted by blanks, "t y state".  cmd and units may be NULL. */
+struct table_out *table_create(const char *path, const char *cmd, const char *units,
+	const char *columns);
+/* One more "# key: value" line; before the first row it stands above the header. */
+void table_comment(struct table_out *t, const char *key, const char *format, ...)
+	__attribute__((format(printf, 3, 4)));
+/* A further "# cmd:" line where the pipeline that made the rows changes; nothing is
+ * written when cmd is the same as before. */
+void table_cmd(struct table_out *t, const char *cmd);
+void table_put(struct table_out *t, double value); /* %.17g, nan for missing */
+void table_put_text(struct table_out *t, const char *text);
+void table_end_row(struct table_out *t); /* checks the number of cells */
+void table_flush(struct table_out *t);
+void table_done(struct table_out *t); /* checks that all was written; frees */
+
+#endif

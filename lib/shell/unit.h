@@ -1,0 +1,43 @@
+/* unit.h - numbers with units: "7.8um", "21MPa", "60L/min", "1186h"
+ *
+ * A bare number is SI.  A suffix is an optional prefix (f p n u m c k M G T; also
+ * the micro sign) and a unit that must suit the quantity; a prefix on its own is
+ * refused, so that metre and milli never meet.  Powers carry the prefix along:
+ * mm3 is (1e-3 m)^3.  nan, inf and trailing junk are refused.
+ */
+#ifndef SHELL_UNIT_H
+#define SHELL_UNIT_H
+
+enum unit {
+	UNIT_NONE,          /* a plain number */
+	UNIT_COUNT,         /* a whole number */
+	UNIT_LENGTH,        /* m */
+	UNIT_AREA,          /* m2 */
+	UNIT_VOLUME,        /* m3, L */
+	UNIT_PRESSURE,      /* Pa, bar */
+	UNIT_FORCE,         /* N */
+	UNIT_FREQUENCY,     /* Hz, rpm */
+	UNIT_TIME,          /* s, min, h, d */
+	UNIT_VOLTAGE,       /* V */
+	UNIT_CURRENT,       /* A */
+	UNIT_FLOW,          /* m3/s, L/min, L/s, L/h */
+	UNIT_SPEED,         /* m/s */
+	UNIT_VISCOSITY,     /* Pa.s */
+	UNIT_ANGLE,         /* rad, deg */
+	UNIT_FRACTION,      /* a plain number or % */
+	UNIT_DECIBEL,       /* dB */
+	UNIT_CONCENTRATION, /* kg/m3, mg/L, g/L */
+	UNIT_DENSITY,       /* kg/m3, g/cm3 */
+	UNIT_ANY            /* any unit above, converted to SI */
+};
+
+/* Name of the SI unit for messages and --help: "m", "Pa", ""; never NULL. */
+const char *unit_name(enum unit unit);
+
+/* Reads one number from text up to (not including) a character of stop or the
+ * end.  Returns NULL and sets *value (SI) and *end, or returns what was wrong,
+ * as a phrase to print after the option's name. */
+const char *unit_parse(const char *text, enum unit unit, const char *stop, double *value,
+	const char **end);
+
+#endif

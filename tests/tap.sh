@@ -1,0 +1,104 @@
+# tap.sh - what a shell test needs; read it with: . "$(dirname "$0")/tap.sh"
+#
+#	is NAME GOT WANT           equal strings
+#	near NAME GOT WANT TOL     |got - want| <= tol
+#	ok NAME COMMAND...         command succeeds
+#	fails NAME STATUS PATTERN COMMAND...
+#	                           exits with STATUS, one line on stderr matching PATTERN
+#	same NAME FILE FILE        equal bytes
+#	skip NAME WHY
+#	done_testing
+#
+# The working directory is a fresh one, removed at the end; $top is the project,
+# bin/ is on PATH.
+set -u
+LC_ALL=C
+export LC_ALL
+case $0 in
+/*) test_file=$0 ;;
+*) test_file=$PWD/$0 ;;
+esac
+top=${test_file%/tests/*}
+PATH=${BIN:-$top/bin}:$PATH
+export PATH
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+trap 'exit 130' HUP INT TERM
+cd "$work" || exit 1
+tests=0
+bad=0
+
+pass() {
+	tests=$((tests + 1))
+	echo "ok $tests - $1"
+}
+
+fail() {
+	tests=$((tests + 1))
+	bad=$((bad + 1))
+	echo "not ok $tests - $1"
+	shift
+	for line in "$@"; do
+		printf '%s\n' "$line" | sed 's/^/# /'
+	done
+}
+
+skip() {
+	tests=$((tests + 1))
+	echo "ok $tests - $1 # SKIP $2"
+}
+
+is() {
+	if [ "$2" = "$3" ]; then pass "$1"; else fail "$1" "got:  $2" "want: $3"; fi
+}
+
+near() {
+	if awk -v g="$2" -v w="$3" -v t="$4" 'BEGIN {
+		if (g !~ /^[-+]?[0-9.]/) exit 1
+		d = g - w; if (d < 0) d = -d; exit !(d <= t) }'; then
+		pass "$1"
+	else
+		fail "$1" "got:  $2" "want: $3 +- $4"
+	fi
+}
+
+ok() {
+	name=$1
+	shift
+	if "$@" >out 2>err; then pass "$name"; else fail "$name" "$*: exit status $?" "$(head -5 err)"; fi
+}
+
+fails() {
+	name=$1
+	want=$2
+	pattern=$3
+	shift 3
+	"$@" >out 2>err </dev/null
+	got=$?
+	if [ "$got" != "$want" ]; then
+		fail "$name" "$*: exit status $got, want $want" "$(head -5 err)"
+	elif [ "$(wc -l <err)" != 1 ]; then
+		fail "$name" "$*: want one line, got:" "$(head -5 err)"
+	elif ! grep -q -e "$pattern" err; then
+		fail "$name" "message: $(cat err)" "want:    $pattern"
+	else
+		pass "$name"
+	fi
+}
+
+same() {
+	if cmp "$2" "$3" >err 2>&1; then pass "$1"; else fail "$1" "$(cat err)"; fi
+}
+
+# column NAME FILE: the values of one column of a table
+column() {
+	awk -F '\t' -v c="$1" '/^#/ { next }
+	!seen { for (i = 1; i <= NF; i++) if ($i == c) k = i; seen = 1; next }
+	k { print $k }' "$2"
+}
+
+done_testing() {
+	echo "1..$tests"
+	[ "$bad" = 0 ]
+	exit
+}

@@ -1,0 +1,44 @@
+/* tap.h - what a unit test in C needs */
+#ifndef TAP_H
+#define TAP_H
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+static int tap_tests, tap_bad;
+
+/* One result; the description is a printf format. */
+__attribute__((format(printf, 2, 3))) static inline int ok(int good, const char *format, ...)
+{
+	va_list ap;
+
+	tap_bad += !good;
+	printf("%sok %d - ", good ? "" : "not ", ++tap_tests);
+	va_start(ap, format);
+	vprintf(format, ap);
+	va_end(ap);
+	putchar('\n');
+	return good;
+}
+
+/* |got - want| <= tolerance, absolute. */
+static inline int near(double got, double want, double tolerance, const char *what)
+{
+	int good = fabs(got - want) <= tolerance;
+
+	ok(good, "%s", what);
+	if (!good)
+		printf("# got %.17g, want %.17g, difference %.3g > %.3g\n", got, want,
+			got - want, tolerance);
+	return good;
+}
+
+/* Last call of main: return tap_done(); */
+static inline int tap_done(void)
+{
+	printf("1..%d\n", tap_tests);
+	return tap_bad > 0;
+}
+
+#endif
