@@ -1,0 +1,117 @@
+/* metrics - scores of predictions against closed forms */
+#include "life/metrics.h"
+#include "tap.h"
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_math.h>
+#include <gsl/gsl_randist.h>
+#include <stdlib.h>
+
+enum { N = 2000 };
+
+/* CRPS by the energy form E|X - y| - E|X - X'| / 2, independent of the code's way. */
+static double crps_energy(const double *x, const double *w, size_t n, double y)
+{
+	double total = 0, near_y = 0, apart = 0;
+
+	for (size_t i = 0; i < n; i++)
+		total += w[i];
+	for (size_t i = 0; i < n; i++) {
+		near_y += w[i] / total * fabs(x[i] - y);
+		for (size_t j = 0; j < n; j++)
+			apart += w[i] * w[j] / total / total * fabs(x[i] - x[j]);
+	}
+	return near_y - apart / 2;
+}
+
+static void check_crps(void)
+{
+	static double x[N];
+	double w[5] = {1, 3, 0.5, 2, 0.25}, s[5] = {-2, 1, 1, 4, 9};
+	double truth[] = {-5, 1, 3.3, 9, 20};
+	double never[3] = {1, 2, INFINITY};
+
+	near(metric_crps(&(double){7}, NULL, 1, 10, INFINITY), 3, 1e-15,
+		"CRPS of one sample is its absolute error");
+	for (int i = 0; i < 5; i++)
+		near(metric_crps(s, w, 5, truth[i], INFINITY),
+			crps_energy(s, w, 5, truth[i]), 1e-13,
+			"CRPS of weighted samples equals its energy form");
+	for (int i = 0; i < N; i++)
+		x[i] = (i + 0.5) / N;
+	/* Midpoint samples of U(0, 1): the step function differs by 1 / (12 N^2). */
+	near(metric_crps(x, NULL, N, 0.3, INFINITY), (0.027 + 0.343) / 3, 1e-6,
+		"CRPS of a uniform forecast");
+	for (int i = 0; i < N; i++)
+		x[i] = 5 + 2 * gsl_cdf_ugaussian_Pinv((i + 0.5) / N);
+	near(metric_crps(x, NULL, N, 6, INFINITY),
+		2 * (0.5 * (2 * gsl_cdf_ugaussian_P(0.5) - 1) +
+			    2 * gsl_ran_ugaussian_pdf(0.5) - 1 / sqrt(M_PI)),
+		1e-4, "CRPS of a normal forecast");
+	/* 1 to 2: (1/3 - 0)^2, 2 to 5: (2/3)^2 before the truth, 5 to 10: (1/3)^2 after.
+	 */
+	near(metric_crps(never, NULL, 3, 5, 10), 1 / 9. + 3 * 4 / 9. + 5 / 9., 1e-14,
+		"CRPS with mass that never fails, up to the limit");
+	ok(isinf(metric_crps(never, NULL, 3, 5, INFINITY)),
+		"CRPS with mass that never fails is infinite without a limit");
+	near(metric_crps(&(double){1e300}, NULL, 1, -1e300, INFINITY), 2e300, 1e285,
+		"CRPS at 1e300");
+}
+
+static void check_quantile(void)
+{
+	double x[5] = {1, 2, 4, 8, INFINITY};
+	double mean = 0;
+
+	near(metric_quantile(x, 5, 0.5), 4, 0, "median of an odd number");
+	near(metric_quantile(x, 4, 0.5), 3, 0, "median of an even number");
+	near(metric_quantile(x, 5, 0.75), 8, 0, "a level that meets a sample");
+	ok(isinf(metric_quantile(x, 5, 0.8)), "a quantile among those that never fail");
+	near(metric_quantile(x, 1, 0.95), 1, 0, "quantile of one sample");
+	for (int i = 0; i < N; i++)
+		mean += 2 * metric_pinball((i + 0.5) / N, (i + 0.5) / N, 0.3) / N;
+	near(mean, (0.027 + 0.343) / 3, 1e-6, "twice the mean pinball loss is the CRPS");
+}
+
+/* Point predictions of life 100: late by 30 at t = 0, by 15 at 20, by 3 at 90. */
+static void check_sums(void)
+{
+	struct metrics_par par = {.eol = 100, .alpha = 0.2, .beta = 0.5};
+	struct metrics *m = metrics_new(&par);
+	struct metrics_row row;
+	struct metrics_sum s;
+	double pair[2] = {12, 8};
+
+	ok(metrics_add(m, 0, 130, 90, 140, NULL, NULL, 0, &row) == 1 && !row.inside &&
+			row.covered,
+		"30 %% late is outside the cone of 20 %%");
+	near(row.accuracy, 0.7, 1e-15, "relative accuracy");
+	ok(metrics_add(m, 20, 95, 85, 99, NULL, NULL, 0, &row) == 1 && row.inside &&
+			!row.covered,
+		"15 of 80 late is inside");
+	ok(metrics_add(m, 90, 10, 8, 12, pair, NULL, 2, &row) == 1, "samples are taken");
+	near(row.crps, 0.25 * 4, 1e-15, "their order does not matter");
+	near(row.mass, 1, 0, "both are within 20 %% of 10");
+	ok(metrics_add(m, 100, 1, 0, 1, NULL, NULL, 0, NULL) == 0 &&
+			metrics_add(m, 95, NAN, 0, 1, NULL, NULL, 0, NULL) == 0,
+		"what comes after the end, or is no prediction, is not counted");
+	s = metrics_get(m);
+	ok(s.n == 3, "three were counted");
+	near(s.bias, 15, 1e-14, "bias");
+	near(s.rmse, sqrt((900 + 225) / 3.), 1e-14, "root mean square error");
+	near(s.accuracy, (0.7 + 0.8125 + 1) / 3, 1e-15, "cumulative relative accuracy");
+	near(s.alpha_lambda, 2 / 3., 1e-15, "alpha-lambda share");
+	near(s.coverage, 2 / 3., 1e-15, "coverage");
+	near(s.crps, (30 + 15 + 1) / 3., 1e-14, "mean CRPS");
+	near(s.horizon, 80, 0, "prognostic horizon starts where the band is kept");
+	metrics_free(m);
+	par.alpha = 0;
+	ok(metrics_new(&par) == NULL, "alpha of zero is refused");
+}
+
+int main(void)
+{
+	check_crps();
+	check_quantile();
+	check_sums();
+	return tap_done();
+}
