@@ -1,0 +1,107 @@
+/* solver.h - frictionless contact of a rough surface with a flat on a half-space
+ *
+ * Two elastic half-spaces with combined height h meet; per cell, with pressure p,
+ * elastic displacement u = K p and gap g,
+ *
+ *	g = u - h - approach;   g >= 0, p >= 0, p g = 0      (2-5)
+ *
+ * With a hardness H the pressure stops at p = H, where g <= 0 is the depth of plastic
+ * flow.  K is the half-space of Love's uniformly loaded cells on an otherwise free
+ * surface, or the exact periodic kernel 2 / (E* |q|) with mean displacement zero.
+ *
+ * Units are SI.  Fields are row-major, field[iy * nx + ix]; heights grow towards the
+ * other body; pressure is positive in compression; displacement is positive where
+ * the surface is pushed in; approach is how far the flat has moved past the plane
+ * height = 0 (from first touch it is approach + max h).
+ *
+ * The result is a function of the arguments alone: the same bytes for any number of
+ * threads and whatever was solved before with the same struct contact.  Plans,
+ * kernels and memory are kept over calls, so use one struct for an ensemble.
+ *
+ *	struct contact_par par = { .nx = 512, .ny = 512, .dx = 1e-6, .dy = 1e-6,
+ *		.estar = 115e9, .tolerance = 1e-8, .max_iterations = 1000 };
+ *	struct contact *c = contact_new(&par);
+ *	memset(p, 0, n * sizeof(*p));
+ *	if (contact_solve(c, h, CONTACT_PRESSURE, 21e6, p, NULL) == CONTACT_OK)
+ *		printf("%g\n", contact_result(c)->area);
+ *	contact_free(c);
+ *
+ * Polonsky, Keer, Wear 231 (1999) 206-219; Vollebregt, JOTA 2014 (bound-constrained
+ * conjugate gradients); Stanley, Kato, J. Tribol. 119 (1997) 481-485 (periodic).
+ */
+#ifndef CONTACT_SOLVER_H
+#define CONTACT_SOLVER_H
+
+#include "num/pool.h"
+
+struct contact;
+
+enum contact_boundary { CONTACT_FREE, CONTACT_PERIODIC };
+
+enum contact_solver {
+	CONTACT_BCCG, /* preconditioned bound-constrained conjugate gradients */
+	CONTACT_PK    /* Polonsky and Keer's single loop */
+};
+
+enum contact_control {
+	CONTACT_PRESSURE, /* target is the mean pressure over the grid, Pa */
+	CONTACT_APPROACH  /* target is the approach, m */
+};
+
+struct contact_par {
+	int nx, ny;         /* cells, >= 1 each */
+	double dx, dy;      /* cell size, m */
+	double estar;       /* contact modulus E*, Pa; see contact_modulus() */
+	double hardness;    /* largest pressure, Pa; 0: none */
+	enum contact_boundary boundary;
+	enum contact_solver solver;
+	double tolerance;   /* certificate to reach */
+	long max_iterations;
+	struct pool *pool;  /* borrowed; NULL: one thread */
+};
+
+enum contact_status {
+	CONTACT_OK,
+	CONTACT_NOCONV,     /* the fields hold the best found, and its certificate */
+	CONTACT_OVERLOAD,   /* mean pressure not below the hardness: nothing done */
+	CONTACT_TOO_DEEP,   /* periodic: approach beyond full contact: nothing done */
+	CONTACT_NUMBERS     /* input not finite or over the range of doubles */
+};
+
+/* About the last solution. */
+struct contact_result {
+	double pressure;    /* mean, Pa */
+	double load;        /* N */
+	double approach;    /* m */
+	double area;        /* cells with p > 0 over all cells */
+	double plastic;     /* cells at the hardness over all cells */
+	double energy;      /* elastic, J */
+	/* sum p (g - min g) / (sum p * rms h): bounds the relative error in energy
+	 * whatever the method, and needs no reference.  With a hardness it is the
+	 * duality gap of the capped problem in the same units; for a given approach,
+	 * g itself takes the place of g - min g. */
+	double certificate;
+	long iterations;    /* on the given grid */
+	long transforms;    /* Fourier transforms of the given grid (padded: 4 x) */
+	double work;        /* the same with those of coarser grids, by size */
+};
+
+/* 1 / E* = (1 - nu1^2) / E1 + (1 - nu2^2) / E2, (2-4); E2 = INFINITY is rigid. */
+double contact_modulus(double e1, double nu1, double e2, double nu2);
+
+/* NULL if a parameter is out of range (errno EDOM) or memory is short (ENOMEM). */
+struct contact *contact_new(const struct contact_par *par);
+void contact_free(struct contact *c);
+
+/* Solves for pressure and gap (may be NULL), nx * ny each.  On entry pressure is
+ * the first guess, of any scale; all zeros for none.  A good guess saves time and
+ * changes the result within the tolerance only. */
+enum contact_status contact_solve(struct contact *c, const double *height,
+	enum contact_control control, double target, double *pressure, double *gap);
+
+/* Elastic displacement under a pressure. */
+void contact_displacement(struct contact *c, const double *pressure, double *displacement);
+
+const struct contact_result *contact_result(const struct contact *c);
+
+#endif
