@@ -6,7 +6,7 @@ static const double pi = 3.14159265358979323846;
 static const double vacuum_permeability = 1.25663706212e-6; /* V s/(A m), CODATA 2018 */
 
 /* Samples between fresh starts of a recurrence, so that rounding does not build up. */
-enum { RESTART = 16 };
+enum { RESTART = 8 };
 
 double pulse_reach(enum pulse_shape shape)
 {
