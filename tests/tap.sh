@@ -1,3 +1,4 @@
+# shellcheck shell=sh
 # tap.sh - what a shell test needs; read it with: . "$(dirname "$0")/tap.sh"
 #
 #	is NAME GOT WANT           equal strings

@@ -45,7 +45,7 @@ void table_comment(struct table_out *t, const char *key, const char *format, ...
 /* A further "# cmd:" line where the pipeline that made the rows changes; nothing is
  * written when cmd is the same as before. */
 void table_cmd(struct table_out *t, const char *cmd);
-void table_put(struct table_out *t, double value); /* %.17g, nan for missing */
+void table_put(struct table_out *t, double value); /* shortest that reads back; nan */
 void table_put_text(struct table_out *t, const char *text);
 void table_end_row(struct table_out *t); /* checks the number of cells */
 void table_flush(struct table_out *t);

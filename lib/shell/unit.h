@@ -40,4 +40,8 @@ const char *unit_name(enum unit unit);
 const char *unit_parse(const char *text, enum unit unit, const char *stop, double *value,
 	const char **end);
 
+/* Shortest decimal of 15 to 17 digits that reads back as the same number, or "nan". */
+enum { NUMBER_TEXT = 32 };
+const char *number_text(double value, char text[NUMBER_TEXT]);
+
 #endif

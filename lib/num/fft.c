@@ -1,0 +1,87 @@
+#include "num/fft.h"
+#include <fftw3.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* FFTW's planner is the one part of it that is not safe among threads. */
+static pthread_mutex_t planner = PTHREAD_MUTEX_INITIALIZER;
+
+struct fft {
+	fftw_plan forward, inverse;
+};
+
+double *fft_alloc(size_t count)
+{
+	double *p = fftw_malloc((count ? count : 1) * sizeof *p);
+
+	return p ? memset(p, 0, count * sizeof *p) : NULL;
+}
+
+double complex *fft_alloc_complex(size_t count)
+{
+	return (double complex *)fft_alloc(2 * count);
+}
+
+void fft_free(void *p)
+{
+	fftw_free(p);
+}
+
+size_t fft_good_size(size_t n)
+{
+	static const size_t primes[] = { 2, 3, 5, 7 };
+
+	for (;; n++) {
+		size_t rest = n;
+
+		for (size_t i = 0; i < 4; i++)
+			while (rest && rest % primes[i] == 0)
+				rest /= primes[i];
+		if (rest == 1)
+			return n;
+	}
+}
+
+struct fft *fft_new(size_t nx, size_t ny)
+{
+	struct fft *fft = calloc(1, sizeof *fft);
+	double *x = fft_alloc(nx * ny);
+	double complex *spectrum = fft_alloc_complex((nx / 2 + 1) * ny);
+
+	if (fft && x && spectrum) {
+		pthread_mutex_lock(&planner);
+		fft->forward = fftw_plan_dft_r2c_2d((int)ny, (int)nx, x, spectrum, FFTW_ESTIMATE);
+		fft->inverse = fftw_plan_dft_c2r_2d((int)ny, (int)nx, spectrum, x, FFTW_ESTIMATE);
+		pthread_mutex_unlock(&planner);
+	}
+	fft_free(x);
+	fft_free(spectrum);
+	if (fft && fft->forward && fft->inverse)
+		return fft;
+	fft_done(fft);
+	return NULL;
+}
+
+void fft_forward(const struct fft *fft, double *x, double complex *spectrum)
+{
+	fftw_execute_dft_r2c(fft->forward, x, spectrum);
+}
+
+void fft_inverse(const struct fft *fft, double complex *spectrum, double *x)
+{
+	fftw_execute_dft_c2r(fft->inverse, spectrum, x);
+}
+
+void fft_done(struct fft *fft)
+{
+	if (!fft)
+		return;
+	pthread_mutex_lock(&planner);
+	if (fft->forward)
+		fftw_destroy_plan(fft->forward);
+	if (fft->inverse)
+		fftw_destroy_plan(fft->inverse);
+	pthread_mutex_unlock(&planner);
+	free(fft);
+}

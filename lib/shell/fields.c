@@ -1,0 +1,366 @@
+#include "shell/fields.h"
+#include "shell/bytes.h"
+#include "shell/formats.h"
+#include "shell/msg.h"
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { HEADER_MAX = 1 << 20 };
+
+struct fields_in {
+	struct place at;
+	struct raw_layout raw;
+	int is_raw;
+};
+
+struct fields_out {
+	FILE *f;
+	const char *name;
+};
+
+/* Records */
+
+void record_free(struct record *r)
+{
+	for (int i = 0; i < r->nfields; i++) {
+		free(r->name[i]);
+		free(r->unit[i]);
+		free(r->data[i]);
+	}
+	for (int i = 0; i < r->nkeys; i++) {
+		free(r->key[i]);
+		free(r->value[i]);
+	}
+	free(r->key);
+	free(r->value);
+	free(r->cmd);
+	*r = (struct record){ 0 };
+}
+
+void record_init(struct record *r, int nx, int ny, double dx, double dy)
+{
+	record_free(r);
+	r->nx = nx;
+	r->ny = ny;
+	r->nz = 1;
+	r->dx = dx;
+	r->dy = dy;
+}
+
+int record_find(const struct record *r, const char *name)
+{
+	for (int i = 0; i < r->nfields; i++)
+		if (strcmp(r->name[i], name) == 0)
+			return i;
+	return -1;
+}
+
+static size_t points(const struct record *r)
+{
+	return (size_t)r->nx * (size_t)r->ny * (size_t)r->nz;
+}
+
+void record_new_field(struct record *r, const char *name, const char *unit)
+{
+	if (r->nfields == RECORD_FIELDS_MAX)
+		die(EXIT_RUN, "more than %d fields in a record", RECORD_FIELDS_MAX);
+	r->name[r->nfields] = xstrdup(name);
+	r->unit[r->nfields] = xstrdup(unit);
+	r->data[r->nfields++] = xcalloc(points(r), sizeof(double));
+}
+
+double *record_add(struct record *r, const char *name, const char *unit)
+{
+	int i = record_find(r, name);
+
+	if (i < 0) {
+		record_new_field(r, name, unit);
+		i = r->nfields - 1;
+	}
+	return r->data[i];
+}
+
+void record_drop(struct record *r, const char *name)
+{
+	int i = record_find(r, name);
+
+	if (i < 0)
+		return;
+	free(r->name[i]);
+	free(r->unit[i]);
+	free(r->data[i]);
+	for (r->nfields--; i < r->nfields; i++) {
+		r->name[i] = r->name[i + 1];
+		r->unit[i] = r->unit[i + 1];
+		r->data[i] = r->data[i + 1];
+	}
+}
+
+double *record_need(
+	const struct record *r, const char *name, int finite, const struct fields_in *in)
+{
+	int k = record_find(r, name);
+	size_t n = points(r);
+
+	if (k < 0)
+		die(EXIT_RUN, "%s: record %ld: no field '%s'", in->at.name, in->at.record, name);
+	for (size_t i = 0; finite && i < n; i++)
+		if (!isfinite(r->data[k][i]))
+			die(EXIT_RUN, "%s: record %ld: %s is %g at x %zu, y %zu; want finite samples",
+				in->at.name, in->at.record, name, r->data[k][i],
+				i % (size_t)r->nx, i / (size_t)r->nx % (size_t)r->ny);
+	return r->data[k];
+}
+
+void record_set_text(struct record *r, const char *key, const char *value)
+{
+	for (int i = 0; i < r->nkeys; i++) {
+		if (strcmp(r->key[i], key) != 0)
+			continue;
+		free(r->value[i]);
+		r->value[i] = xstrdup(value);
+		return;
+	}
+	r->key = xrealloc(r->key, (size_t)r->nkeys + 1, sizeof *r->key);
+	r->value = xrealloc(r->value, (size_t)r->nkeys + 1, sizeof *r->value);
+	r->key[r->nkeys] = xstrdup(key);
+	r->value[r->nkeys++] = xstrdup(value);
+}
+
+void record_set(struct record *r, const char *key, const char *format, ...)
+{
+	char value[4096];
+	va_list ap;
+	int n;
+
+	va_start(ap, format);
+	n = vsnprintf(value, sizeof value, format, ap);
+	va_end(ap);
+	if (n < 0 || (size_t)n >= sizeof value)
+		die(EXIT_RUN, "value of key %s is longer than %zu bytes", key, sizeof value);
+	record_set_text(r, key, value);
+}
+
+const char *record_get(const struct record *r, const char *key)
+{
+	for (int i = 0; i < r->nkeys; i++)
+		if (strcmp(r->key[i], key) == 0)
+			return r->value[i];
+	return NULL;
+}
+
+double record_get_number(const struct record *r, const char *key)
+{
+	const char *text = record_get(r, key);
+	char *end;
+	double v;
+
+	if (!text)
+		return NAN;
+	v = strtod(text, &end);
+	return end == text || *end ? NAN : v;
+}
+
+/* What the formats share */
+
+char *header_line(const struct place *at, size_t *header_size)
+{
+	char *line = NULL;
+	size_t n = 0, room = 0;
+	int c;
+
+	while ((c = getc(at->f)) != EOF && c != '\n') {
+		if (*header_size + n >= HEADER_MAX)
+			die(EXIT_RUN, "%s: record %ld: header longer than %d bytes", at->name,
+				at->record, HEADER_MAX);
+		if (n + 1 >= room)
+			line = xrealloc(line, room = 2 * room + 80, 1);
+		line[n++] = (char)c;
+	}
+	if (c == EOF) {
+		free(line);
+		return NULL;
+	}
+	if (!line)
+		line = xcalloc(1, 1);
+	if (n && line[n - 1] == '\r')
+		n--;
+	line[n] = '\0';
+	*header_size += n + 1;
+	return line;
+}
+
+void check_sizes(const struct place *at, const double *sizes, int n)
+{
+	double all = 8;
+
+	for (int i = 0; i < n; i++) {
+		if (!(sizes[i] >= 1 && sizes[i] <= 1e9) || sizes[i] != floor(sizes[i]))
+			die(EXIT_RUN, "%s: record %ld: size %g, want a whole number from 1 to 1e9",
+				at->name, at->record, sizes[i]);
+		all *= sizes[i];
+	}
+	if (all > 1e15)
+		die(EXIT_RUN, "%s: record %ld: %g bytes of samples are too many", at->name,
+			at->record, all);
+}
+
+/* A regular file must hold what its header declares: said before memory is taken. */
+static void check_length(const struct place *at, uint64_t want)
+{
+	struct stat s;
+	off_t here = ftello(at->f);
+
+	if (here < 0 || fstat(fileno(at->f), &s) || !S_ISREG(s.st_mode))
+		return;
+	if (s.st_size < here || (uint64_t)(s.st_size - here) < want)
+		die(EXIT_RUN, "%s: record %ld: want %llu bytes, got %lld", at->name, at->record,
+			(unsigned long long)want, (long long)(s.st_size - here));
+}
+
+static double sample(const unsigned char *b, struct samples layout)
+{
+	if (layout.single)
+		return (double)bytes_float(
+			layout.big_endian ? bytes_u32_big(b) : bytes_u32_little(b));
+	return layout.big_endian ? bytes_double_big(b) : bytes_double_little(b);
+}
+
+void samples_read(const struct place *at, struct record *r, struct samples layout)
+{
+	size_t width = layout.single ? 4 : 8, nf = (size_t)r->nfields, nx = (size_t)r->nx;
+	size_t row_size = nx * nf * width, rows = (size_t)r->ny * (size_t)r->nz;
+	unsigned char *row = xcalloc(row_size, 1);
+
+	check_length(at, (uint64_t)row_size * rows);
+	for (size_t iy = 0; iy < rows; iy++) {
+		size_t got = fread(row, 1, row_size, at->f);
+
+		if (got < row_size && ferror(at->f))
+			die(EXIT_RUN, "%s: record %ld:", at->name, at->record);
+		if (got < row_size)
+			die(EXIT_RUN, "%s: record %ld: want %zu bytes, got %zu", at->name,
+				at->record, row_size * rows, row_size * iy + got);
+		for (size_t k = 0; k < nf; k++)
+			for (size_t ix = 0; ix < nx; ix++)
+				r->data[k][iy * nx + ix] =
+					sample(row + (ix * nf + k) * width, layout);
+	}
+	free(row);
+}
+
+/* Streams of records */
+
+struct fields_in *fields_open(const char *path, const struct raw_layout *raw)
+{
+	struct fields_in *in = xcalloc(1, sizeof *in);
+
+	if (path && strcmp(path, "-") != 0) {
+		in->at.name = path;
+		in->at.f = fopen(path, "rb");
+		if (!in->at.f)
+			die(EXIT_RUN, "%s:", path);
+	} else {
+		in->at.name = "standard input";
+		in->at.f = stdin;
+	}
+	if (raw) {
+		in->raw = *raw;
+		in->is_raw = 1;
+	}
+	return in;
+}
+
+static void read_raw(struct fields_in *in, struct record *r)
+{
+	r->nx = in->raw.nx;
+	r->ny = in->raw.ny;
+	r->nz = 1;
+	r->dx = in->raw.dx;
+	r->dy = in->raw.dy;
+	record_new_field(r, "height", "m");
+	samples_read(&in->at, r, (struct samples){ 0, 0 });
+}
+
+static void read_formatted(struct fields_in *in, struct record *r)
+{
+	size_t size = 0;
+	char *magic = header_line(&in->at, &size);
+
+	if (magic && strncmp(magic, "NRRD000", 7) == 0 && strlen(magic) == 8)
+		nrrd_read(&in->at, r);
+	else if (magic && strcmp(magic, "Gwyddion Simple Field 1.0") == 0)
+		gsf_read(&in->at, r);
+	else
+		die(EXIT_RUN, "%s: record %ld: want NRRD or GSF, got '%.8s'", in->at.name,
+			in->at.record, magic ? magic : "");
+	free(magic);
+}
+
+int fields_read(struct fields_in *in, struct record *r)
+{
+	int c = getc(in->at.f);
+
+	record_free(r);
+	if (c == EOF) {
+		if (ferror(in->at.f))
+			die(EXIT_RUN, "%s:", in->at.name);
+		return 0;
+	}
+	ungetc(c, in->at.f);
+	r->realisation = in->at.record++;
+	if (in->is_raw)
+		read_raw(in, r);
+	else
+		read_formatted(in, r);
+	return 1;
+}
+
+const char *fields_name(const struct fields_in *in)
+{
+	return in->at.name;
+}
+
+long fields_count(const struct fields_in *in)
+{
+	return in->at.record;
+}
+
+void fields_close(struct fields_in *in)
+{
+	if (in->at.f != stdin)
+		fclose(in->at.f);
+	free(in);
+}
+
+struct fields_out *fields_create(const char *path)
+{
+	struct fields_out *out = xcalloc(1, sizeof *out);
+
+	out->name = path ? path : "standard output";
+	out->f = path ? fopen(path, "wb") : stdout;
+	if (!out->f)
+		die(EXIT_RUN, "%s:", path);
+	if (isatty(fileno(out->f)))
+		die(EXIT_USAGE, "not writing binary data to a terminal");
+	return out;
+}
+
+void fields_write(struct fields_out *out, const struct record *r)
+{
+	nrrd_write(out->f, r);
+	if (fflush(out->f) || ferror(out->f))
+		die(EXIT_RUN, "%s:", out->name);
+}
+
+void fields_done(struct fields_out *out)
+{
+	if (out->f != stdout && fclose(out->f))
+		die(EXIT_RUN, "%s:", out->name);
+	free(out);
+}

@@ -1,0 +1,124 @@
+/* gsf.c - Gwyddion Simple Field 1.0: one float32 field, text header padded with NULs */
+#include "shell/bytes.h"
+#include "shell/formats.h"
+#include "shell/msg.h"
+#include "shell/unit.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char magic[] = "Gwyddion Simple Field 1.0\n";
+
+static double number(const struct place *at, const char *key, const char *text)
+{
+	char *end;
+	double v = strtod(text, &end);
+
+	if (end == text || *end || !(v > 0) || !isfinite(v))
+		die(EXIT_RUN, "%s: record %ld: %s = %.30s: want a number above 0", at->name,
+			at->record, key, text);
+	return v;
+}
+
+static double unit_scale(const struct place *at, const char *unit)
+{
+	char text[32];
+	double scale;
+	const char *end;
+
+	snprintf(text, sizeof text, "1%s", unit);
+	if (unit_parse(text, UNIT_LENGTH, "", &scale, &end))
+		die(EXIT_RUN, "%s: record %ld: unit '%.20s' is not a length", at->name,
+			at->record, unit);
+	return scale;
+}
+
+/* Splits "Key = value" in place. */
+static char *split(char *line)
+{
+	char *value = strchr(line, '=');
+
+	if (!value)
+		return NULL;
+	for (char *p = value; p > line && (p[-1] == ' ' || p[-1] == '\t'); p--)
+		p[-1] = '\0';
+	*value++ = '\0';
+	return value + strspn(value, " \t");
+}
+
+/* The header ends with one to four NULs, up to a multiple of four bytes. */
+static void skip_padding(const struct place *at, size_t header_size)
+{
+	size_t n = 4 - header_size % 4;
+
+	for (size_t i = 0; i < n; i++)
+		if (getc(at->f) != 0)
+			die(EXIT_RUN, "%s: record %ld: GSF header is not padded with NUL bytes",
+				at->name, at->record);
+}
+
+void gsf_read(const struct place *at, struct record *r)
+{
+	double sizes[2] = { 0 }, real[2] = { 0 }, xy = 1, z = 1;
+	size_t size = sizeof magic - 1;
+	int c;
+
+	while ((c = getc(at->f)) > 0) {
+		char *line, *value;
+
+		ungetc(c, at->f);
+		line = header_line(at, &size);
+		value = split(line);
+		if (!value)
+			die(EXIT_RUN, "%s: record %ld: GSF header line '%.40s'", at->name,
+				at->record, line);
+		if (!strcmp(line, "XRes"))
+			sizes[0] = number(at, line, value);
+		else if (!strcmp(line, "YRes"))
+			sizes[1] = number(at, line, value);
+		else if (!strcmp(line, "XReal"))
+			real[0] = number(at, line, value);
+		else if (!strcmp(line, "YReal"))
+			real[1] = number(at, line, value);
+		else if (!strcmp(line, "XYUnits"))
+			xy = unit_scale(at, value);
+		else if (!strcmp(line, "ZUnits"))
+			z = unit_scale(at, value);
+		free(line);
+	}
+	if (c == 0)
+		ungetc(c, at->f);
+	if (!(sizes[0] > 0 && sizes[1] > 0 && real[0] > 0 && real[1] > 0))
+		die(EXIT_RUN, "%s: record %ld: GSF header without XRes, YRes, XReal and YReal",
+			at->name, at->record);
+	skip_padding(at, size);
+	check_sizes(at, sizes, 2);
+	r->nx = (int)sizes[0];
+	r->ny = (int)sizes[1];
+	r->nz = 1;
+	r->dx = real[0] * xy / sizes[0];
+	r->dy = real[1] * xy / sizes[1];
+	record_new_field(r, "height", "m");
+	samples_read(at, r, (struct samples){ 1, 0 });
+	for (size_t i = 0; z != 1 && i < (size_t)r->nx * (size_t)r->ny; i++)
+		r->data[0][i] *= z;
+}
+
+void fields_write_gsf(FILE *f, const struct record *r, int field)
+{
+	size_t n = (size_t)r->nx * (size_t)r->ny;
+	char *header = xprintf("%sXRes = %d\nYRes = %d\nXReal = %.17g\nYReal = %.17g\n"
+			       "XYUnits = m\nZUnits = %s\nTitle = %s\n",
+		magic, r->nx, r->ny, r->nx * r->dx, r->ny * r->dy, r->unit[field],
+		r->name[field]);
+	size_t size = strlen(header);
+	unsigned char b[4] = { 0 };
+
+	fwrite(header, 1, size, f);
+	fwrite(b, 1, 4 - size % 4, f);
+	free(header);
+	for (size_t i = 0; i < n; i++) {
+		bytes_put_float_little(b, (float)r->data[field][i]);
+		fwrite(b, 1, 4, f);
+	}
+}

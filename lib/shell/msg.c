@@ -1,0 +1,110 @@
+#include "shell/msg.h"
+#include "shell/progress.h"
+#include <errno.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+int verbose;
+
+static const char *program = "wearpipe";
+
+void msg_name(const char *name)
+{
+	program = name;
+}
+
+const char *msg_program(void)
+{
+	return program;
+}
+
+static void say(const char *format, va_list ap)
+{
+	int reason = errno;
+	size_t length = strlen(format);
+
+	progress_clear();
+	fflush(stdout);
+	fprintf(stderr, "%s: ", program);
+	vfprintf(stderr, format, ap);
+	if (length && format[length - 1] == ':')
+		fprintf(stderr, " %s", strerror(reason));
+	fputc('\n', stderr);
+}
+
+void die(int status, const char *format, ...)
+{
+	va_list ap;
+
+	va_start(ap, format);
+	say(format, ap);
+	va_end(ap);
+	exit(status);
+}
+
+void warn(const char *format, ...)
+{
+	va_list ap;
+
+	va_start(ap, format);
+	say(format, ap);
+	va_end(ap);
+}
+
+void note(const char *format, ...)
+{
+	va_list ap;
+
+	if (!verbose)
+		return;
+	va_start(ap, format);
+	say(format, ap);
+	va_end(ap);
+}
+
+void *xrealloc(void *p, size_t count, size_t size)
+{
+	if (size && count > SIZE_MAX / size)
+		die(EXIT_RUN, "%zu values of %zu bytes do not fit in memory", count, size);
+	p = realloc(p, count && size ? count * size : 1);
+	if (!p)
+		die(EXIT_RUN, "out of memory: wanted %zu bytes", count * size);
+	return p;
+}
+
+void *xcalloc(size_t count, size_t size)
+{
+	void *p = calloc(count ? count : 1, size ? size : 1);
+
+	if (!p)
+		die(EXIT_RUN, "out of memory: wanted %zu values of %zu bytes", count, size);
+	return p;
+}
+
+char *xstrdup(const char *s)
+{
+	size_t size = strlen(s) + 1;
+
+	return memcpy(xcalloc(size, 1), s, size);
+}
+
+char *xprintf(const char *format, ...)
+{
+	va_list ap;
+	char *s;
+	int n;
+
+	va_start(ap, format);
+	n = vsnprintf(NULL, 0, format, ap);
+	va_end(ap);
+	if (n < 0)
+		die(EXIT_RUN, "cannot format a message");
+	s = xcalloc((size_t)n + 1, 1);
+	va_start(ap, format);
+	vsnprintf(s, (size_t)n + 1, format, ap);
+	va_end(ap);
+	return s;
+}

@@ -1,0 +1,383 @@
+#include "shell/opt.h"
+#include "shell/msg.h"
+#include "shell/stats.h"
+#include <ctype.h>
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { ROWS_MAX = 64 };
+
+static int verbose_flag;
+static const char *stats_path;
+
+static const struct opt common[] = {
+	{ 'S', "stats", OPT_TEXT, UNIT_NONE, &stats_path, 0, 0, "FILE",
+		"write one row of work counters to FILE", 0, 1 },
+	{ 'v', "verbose", OPT_FLAG, UNIT_NONE, &verbose_flag, 0, 0, 0,
+		"report on standard error", 0, 1 },
+	{ 'h', "help", OPT_FLAG, UNIT_NONE, 0, 0, 0, 0, "print this help and exit", 0, 1 },
+	{ 'V', "version", OPT_FLAG, UNIT_NONE, 0, 0, 0, 0, "print the version and exit", 0, 1 },
+	OPT_END
+};
+
+/* The command line that was parsed: what opt_cmd() and shell_done() need. */
+static const struct prog *prog;
+static char *recorded;        /* " --word value ..." */
+static char **operand;        /* NULL-ended */
+static unsigned char given[128];
+
+/* Shell quoting.  A blank after a colon is put outside of the quoted piece before
+ * it, since ParaView's NRRD reader stumbles over ": ". */
+static char *quote(const char *s)
+{
+	const char *safe = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+			   "%+,-./:=@_";
+	char *quoted = xcalloc(strlen(s) + 1, 5), *q = quoted;
+
+	if (*s && strspn(s, safe) == strlen(s))
+		return strcpy(quoted, s);
+	*q++ = '\'';
+	for (; *s; s++) {
+		if (*s == '\'')
+			q = strcpy(q, "'\\''") + 4;
+		else if (*s == ':' && s[1] == ' ')
+			q = strcpy(q, ":''") + 3;
+		else
+			*q++ = *s;
+	}
+	*q = '\'';
+	return quoted;
+}
+
+static void append(char **text, const char *more)
+{
+	size_t old = *text ? strlen(*text) : 0;
+
+	*text = xrealloc(*text, old + strlen(more) + 1, 1);
+	strcpy(*text + old, more);
+}
+
+static void append_word(char **text, const char *word)
+{
+	char *q = quote(word);
+
+	append(text, " ");
+	append(text, q);
+	free(q);
+}
+
+static void print_default(const struct opt *o)
+{
+	const char *unit = unit_name(o->unit);
+	const char *blank = *unit && o->unit != UNIT_FRACTION ? " " : "";
+
+	switch (o->kind) {
+	case OPT_INT:
+		printf(" (default %ld)", *(long *)o->var);
+		break;
+	case OPT_NUM:
+		if (!isnan(*(double *)o->var))
+			printf(" (default %.6g%s%s)", *(double *)o->var, blank,
+				*blank ? unit : "");
+		break;
+	case OPT_WORD:
+		printf(" (default %s)", o->words[*(int *)o->var]);
+		break;
+	case OPT_TEXT:
+		if (*(const char **)o->var)
+			printf(" (default %s)", *(const char **)o->var);
+		break;
+	case OPT_CHOICE: {
+		const struct opt_choice *c = o->var;
+
+		if (c->word >= 0)
+			printf(" (default %s)", o->words[c->word]);
+		else if (!isnan(c->value))
+			printf(" (default %.6g%s%s)", c->value, blank, *blank ? unit : "");
+		break;
+	}
+	case OPT_LIST: {
+		const struct opt_list *l = o->var;
+
+		for (int i = 0; i < l->n; i++)
+			printf("%s%.6g", i ? " " : " (default ", l->v[i]);
+		if (l->n)
+			printf("%s%s)", blank, *blank ? unit : "");
+		break;
+	}
+	case OPT_FLAG:
+	case OPT_TEXTS:
+		break;
+	}
+}
+
+static void print_rows(const struct opt *rows)
+{
+	for (const struct opt *o = rows; o->word; o++) {
+		int column = printf("  -%c, --%s%s%s", o->letter, o->word, o->arg ? " " : "",
+			o->arg ? o->arg : "");
+
+		printf(column < 30 ? "%*s" : "\n%*s", column < 30 ? 32 - column : 32, "");
+		printf("%s", o->help);
+		if (o->var)
+			print_default(o);
+		putchar('\n');
+	}
+}
+
+static _Noreturn void help(void)
+{
+	printf("usage: %s [option ...]%s%s\n%s\n", prog->name, *prog->operands ? " " : "",
+		prog->operands, prog->gist);
+	printf("reads: %s\nwrites: %s\n\n", prog->reads, prog->writes);
+	print_rows(prog->opts);
+	print_rows(common);
+	exit(shell_done(EXIT_SUCCESS));
+}
+
+static void check_range(const struct opt *o, const char *text, double value)
+{
+	if (value < o->min || value > o->max)
+		die(EXIT_USAGE, "--%s %s: want %g to %g%s%s", o->word, text, o->min, o->max,
+			*unit_name(o->unit) ? " " : "", unit_name(o->unit));
+}
+
+static double parse_number(const struct opt *o, const char *text)
+{
+	const char *end, *wrong;
+	double value;
+
+	wrong = unit_parse(text, o->unit, "", &value, &end);
+	if (wrong)
+		die(EXIT_USAGE, "--%s %s: '%s' %s%s%s", o->word, text, text, wrong,
+			*unit_name(o->unit) ? ", want " : "", unit_name(o->unit));
+	check_range(o, text, value);
+	return value;
+}
+
+static void parse_list(const struct opt *o, const char *text)
+{
+	struct opt_list *l = o->var;
+	const char *separators = ":x,", *s = text, *wrong;
+	char separator[2] = { 0 };
+
+	for (const char *p = separators; *p && !*separator; p++)
+		if (strchr(o->arg, *p))
+			*separator = *p;
+	l->n = 0;
+	for (;;) {
+		if (l->n == OPT_LIST_MAX)
+			die(EXIT_USAGE, "--%s %s: more than %d numbers", o->word, text,
+				OPT_LIST_MAX);
+		wrong = unit_parse(s, o->unit, separator, &l->v[l->n], &s);
+		if (wrong)
+			die(EXIT_USAGE, "--%s %s: '%s' %s, want %s%s%s", o->word, text, s, wrong,
+				o->arg, *unit_name(o->unit) ? " in " : "", unit_name(o->unit));
+		check_range(o, text, l->v[l->n++]);
+		if (!*s)
+			break;
+		s++;
+	}
+	if (!strstr(o->arg, "...")) {
+		int most = 1;
+
+		for (const char *p = o->arg; *p; p++)
+			most += *p == *separator;
+		if (l->n > most)
+			die(EXIT_USAGE, "--%s %s: want %s", o->word, text, o->arg);
+	}
+}
+
+static int find_word(const struct opt *o, const char *text)
+{
+	for (int i = 0; o->words[i]; i++)
+		if (strcmp(o->words[i], text) == 0)
+			return i;
+	return -1;
+}
+
+static void store(const struct opt *o, const char *text)
+{
+	for (const char *p = text; p && *p; p++)
+		if (iscntrl((unsigned char)*p))
+			die(EXIT_USAGE, "--%s: control character in the argument", o->word);
+	switch (o->kind) {
+	case OPT_FLAG:
+		*(int *)o->var = 1;
+		break;
+	case OPT_INT:
+		*(long *)o->var = (long)parse_number(o, text);
+		break;
+	case OPT_NUM:
+		*(double *)o->var = parse_number(o, text);
+		break;
+	case OPT_LIST:
+		parse_list(o, text);
+		break;
+	case OPT_TEXT:
+		if (!*text)
+			die(EXIT_USAGE, "--%s: empty argument, want %s", o->word, o->arg);
+		*(const char **)o->var = text;
+		break;
+	case OPT_TEXTS: {
+		struct opt_texts *t = o->var;
+
+		if (t->n == OPT_TEXTS_MAX)
+			die(EXIT_USAGE, "--%s: given more than %d times", o->word, OPT_TEXTS_MAX);
+		t->v[t->n++] = text;
+		break;
+	}
+	case OPT_WORD:
+		*(int *)o->var = find_word(o, text);
+		if (*(int *)o->var < 0)
+			die(EXIT_USAGE, "--%s %s: want %s", o->word, text, o->arg);
+		break;
+	case OPT_CHOICE: {
+		struct opt_choice *c = o->var;
+
+		c->word = find_word(o, text);
+		if (c->word < 0 && isalpha((unsigned char)*text))
+			die(EXIT_USAGE, "--%s %s: want %s", o->word, text, o->arg);
+		if (c->word < 0)
+			c->value = parse_number(o, text);
+		break;
+	}
+	}
+}
+
+static void record(const struct opt *o, const char *text)
+{
+	if (o->unrecorded)
+		return;
+	append(&recorded, " --");
+	append(&recorded, o->word);
+	if (o->kind != OPT_FLAG)
+		append_word(&recorded, text);
+}
+
+/* All rows of the program, then the common ones. */
+static int gather(const struct opt **rows)
+{
+	int n = 0;
+
+	for (const struct opt *o = prog->opts; o->word; o++)
+		rows[n++] = o;
+	for (const struct opt *o = common; o->word; o++)
+		rows[n++] = o;
+	return n;
+}
+
+static void getopt_tables(
+	const struct opt *const *rows, int n, char *letters, struct option *words)
+{
+	*letters++ = ':';
+	for (int i = 0; i < n; i++) {
+		int takes = rows[i]->kind != OPT_FLAG;
+
+		*letters++ = (char)rows[i]->letter;
+		if (takes)
+			*letters++ = ':';
+		words[i] = (struct option){ rows[i]->word,
+			takes ? required_argument : no_argument, NULL, rows[i]->letter };
+	}
+	*letters = '\0';
+}
+
+static _Noreturn void misuse(int problem, char **argv)
+{
+	char *shown = optopt && !strncmp(argv[optind - 1], "--", 2) ? xstrdup(argv[optind - 1])
+		: optopt                                            ? xprintf("-%c", optopt)
+						 : xstrdup(argv[optind - 1]);
+
+	if (problem == ':')
+		die(EXIT_USAGE, "%s: needs an argument; see %s --help", shown, prog->name);
+	die(EXIT_USAGE, "%s: no such option; see %s --help", shown, prog->name);
+}
+
+static void check_operands(int argc, char **argv)
+{
+	int most = strstr(prog->operands, "...") ? argc : *prog->operands != '\0';
+
+	if (argc - optind > most)
+		die(EXIT_USAGE, "%s: %s", argv[optind + most],
+			most ? "one file at most" : "takes no file");
+	/* Someone typed the bare name: say what it is rather than wait in silence. */
+	if (argc == 1 && *prog->operands && isatty(STDIN_FILENO))
+		die(EXIT_USAGE, "nothing to read: usage: %s [option ...] %s; see %s --help",
+			prog->name, prog->operands, prog->name);
+}
+
+int opt_parse(const struct prog *program, int argc, char **argv)
+{
+	const struct opt *rows[ROWS_MAX];
+	struct option words[ROWS_MAX + 1] = { { 0 } };
+	char letters[2 * ROWS_MAX + 2];
+	int c, n;
+
+	prog = program;
+	msg_name(program->name);
+	stats_start();
+	n = gather(rows);
+	getopt_tables(rows, n, letters, words);
+	opterr = 0;
+	while ((c = getopt_long(argc, argv, letters, words, NULL)) != -1) {
+		if (c == 'h')
+			help();
+		if (c == 'V') {
+			printf("%s (wearpipe) %s\n", program->name, WEARPIPE_VERSION);
+			exit(shell_done(EXIT_SUCCESS));
+		}
+		if (c == '?' || c == ':')
+			misuse(c, argv);
+		for (int i = 0; i < n; i++) {
+			if (rows[i]->letter != c)
+				continue;
+			store(rows[i], optarg);
+			record(rows[i], optarg);
+			given[c & 127] = 1;
+		}
+	}
+	verbose = verbose_flag;
+	check_operands(argc, argv);
+	operand = argv + optind;
+	return optind;
+}
+
+int opt_given(int letter)
+{
+	return given[letter & 127];
+}
+
+char *opt_cmd(const char *upstream, const char *extra)
+{
+	char *cmd = NULL;
+
+	if (upstream) {
+		append(&cmd, upstream);
+		append(&cmd, " | ");
+	}
+	append(&cmd, prog->name);
+	append(&cmd, recorded ? recorded : "");
+	if (extra) {
+		append(&cmd, " ");
+		append(&cmd, extra);
+	}
+	for (char **p = operand; !upstream && *p; p++)
+		if (strcmp(*p, "-") != 0)
+			append_word(&cmd, *p);
+	return cmd;
+}
+
+int shell_done(int status)
+{
+	errno = 0;
+	if (ferror(stdout) || fflush(stdout) || fclose(stdout))
+		die(EXIT_RUN, errno ? "standard output:" : "standard output: write error");
+	stats_write(stats_path, prog->name);
+	return status;
+}

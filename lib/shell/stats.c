@@ -1,0 +1,84 @@
+#include "shell/stats.h"
+#include "shell/msg.h"
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+
+enum { STATS_MAX = 64 };
+
+static struct {
+	const char *name;
+	double value;
+} counters[STATS_MAX];
+static int ncounters;
+static struct timespec begin;
+
+static double *counter(const char *name)
+{
+	for (int i = 0; i < ncounters; i++)
+		if (strcmp(counters[i].name, name) == 0)
+			return &counters[i].value;
+	if (ncounters == STATS_MAX)
+		die(EXIT_RUN, "more than %d counters", STATS_MAX);
+	counters[ncounters].name = xstrdup(name);
+	return &counters[ncounters++].value;
+}
+
+void stats_add(const char *name, double amount)
+{
+	*counter(name) += amount;
+}
+
+void stats_set(const char *name, double value)
+{
+	*counter(name) = value;
+}
+
+void stats_max(const char *name, double value)
+{
+	double *c = counter(name);
+
+	if (value > *c)
+		*c = value;
+}
+
+void stats_start(void)
+{
+	clock_gettime(CLOCK_MONOTONIC, &begin);
+}
+
+static double seconds(struct timeval t)
+{
+	return (double)t.tv_sec + 1e-6 * (double)t.tv_usec;
+}
+
+void stats_write(const char *path, const char *program)
+{
+	struct timespec end;
+	struct rusage use;
+	double wall, cpu;
+	FILE *f;
+
+	clock_gettime(CLOCK_MONOTONIC, &end);
+	getrusage(RUSAGE_SELF, &use);
+	wall = (double)(end.tv_sec - begin.tv_sec) + 1e-9 * (double)(end.tv_nsec - begin.tv_nsec);
+	cpu = seconds(use.ru_utime) + seconds(use.ru_stime);
+	for (int i = 0; i < ncounters; i++)
+		note("%s %.10g", counters[i].name, counters[i].value);
+	note("seconds %.3f, cpu %.3f, memory %ld kB", wall, cpu, use.ru_maxrss);
+	if (!path)
+		return;
+	f = fopen(path, "w");
+	if (!f)
+		die(EXIT_RUN, "%s:", path);
+	fputs("program\tseconds\tcpu_seconds\tmemory_kb", f);
+	for (int i = 0; i < ncounters; i++)
+		fprintf(f, "\t%s", counters[i].name);
+	fprintf(f, "\n%s\t%.6f\t%.6f\t%ld", program, wall, cpu, use.ru_maxrss);
+	for (int i = 0; i < ncounters; i++)
+		fprintf(f, "\t%.17g", counters[i].value);
+	fputc('\n', f);
+	if (fflush(f) || ferror(f) || fclose(f))
+		die(EXIT_RUN, "%s: cannot write:", path);
+}

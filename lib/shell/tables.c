@@ -1,0 +1,414 @@
+#include "shell/tables.h"
+#include "shell/msg.h"
+#include "shell/unit.h"
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+struct table_in {
+	FILE *f;
+	const char *name;
+	char *line;          /* the present row, cut into cells */
+	size_t room;
+	long number;         /* of that line, from 1 */
+	int ncolumns;
+	char **column;       /* names */
+	char **cell;
+	const char *blanks;  /* what parts the cells */
+	int pending;         /* the row read ahead by table_open() is still to come */
+	int nkeys;
+	char **key, **value;
+};
+
+struct table_out {
+	FILE *f;
+	const char *name;
+	char *head;          /* comment lines not yet written */
+	char *columns;       /* header line, NULL once written */
+	char *cmd;
+	int ncolumns, ncells;
+};
+
+/* Reader */
+
+static char *trim(char *s)
+{
+	char *end = s + strlen(s);
+
+	while (end > s && (end[-1] == ' ' || end[-1] == '\t'))
+		*--end = '\0';
+	return s + strspn(s, " \t");
+}
+
+static void keep_key(struct table_in *t, char *comment)
+{
+	char *colon = strchr(comment, ':'), *key, *value;
+
+	if (!colon)
+		return;
+	*colon = '\0';
+	key = trim(comment);
+	value = trim(colon + 1);
+	for (int i = 0; i < t->nkeys; i++) {
+		if (strcmp(t->key[i], key) != 0)
+			continue;
+		free(t->value[i]);
+		t->value[i] = xstrdup(value);
+		return;
+	}
+	t->key = xrealloc(t->key, (size_t)t->nkeys + 1, sizeof *t->key);
+	t->value = xrealloc(t->value, (size_t)t->nkeys + 1, sizeof *t->value);
+	t->key[t->nkeys] = xstrdup(key);
+	t->value[t->nkeys++] = xstrdup(value);
+}
+
+/* The next line that is neither empty nor a comment; 0 at the end. */
+static int next_line(struct table_in *t)
+{
+	ssize_t n;
+
+	while ((n = getline(&t->line, &t->room, t->f)) > 0) {
+		t->number++;
+		if (t->line[n - 1] != '\n')
+			die(EXIT_RUN, "%s: line %ld: no newline at the end: the table is cut off",
+				t->name, t->number);
+		t->line[--n] = '\0';
+		if (n && t->line[n - 1] == '\r')
+			t->line[--n] = '\0';
+		if ((size_t)n != strlen(t->line))
+			die(EXIT_RUN, "%s: line %ld: NUL byte in a table", t->name, t->number);
+		if (*t->line == '#')
+			keep_key(t, t->line + 1);
+		else if (n)
+			return 1;
+	}
+	if (ferror(t->f))
+		die(EXIT_RUN, "%s:", t->name);
+	return 0;
+}
+
+/* Cuts the line into at most max cells; returns how many there are. */
+static int cut(struct table_in *t, char *line, char **cells, int max)
+{
+	int n = 0;
+	char *s = line;
+
+	if (*t->blanks == ' ')
+		s = trim(s);
+	for (;;) {
+		size_t length = strcspn(s, t->blanks);
+		int last = !s[length];
+
+		if (n < max)
+			cells[n] = s;
+		n++;
+		if (last)
+			return n;
+		s[length] = '\0';
+		s += length + 1;
+		if (*t->blanks == ' ')
+			s += strspn(s, t->blanks);
+	}
+}
+
+static int is_missing(const char *s)
+{
+	return !*s || !strcmp(s, "nan") || !strcmp(s, "NaN") || !strcmp(s, "NA") ||
+		!strcmp(s, "-nan");
+}
+
+static int to_number(const char *s, double *v)
+{
+	char *end;
+
+	if (is_missing(s)) {
+		*v = NAN;
+		return 1;
+	}
+	*v = strtod(s, &end);
+	return end != s && !*end && !isnan(*v);
+}
+
+/* A table whose first row is all numbers has no header: its names come from a
+ * "# columns:" line, or are 1, 2, ... */
+static void name_columns(struct table_in *t)
+{
+	const char *declared = table_key(t, "columns");
+	int all = 1;
+	double v;
+
+	for (int i = 0; i < t->ncolumns; i++)
+		all &= to_number(t->cell[i], &v) && *t->cell[i];
+	t->pending = all;
+	for (int i = 0; i < t->ncolumns; i++)
+		t->column[i] = all ? xprintf("%d", i + 1) : xstrdup(t->cell[i]);
+	if (all && declared) {
+		char *copy = xstrdup(declared), **names;
+
+		names = xcalloc((size_t)t->ncolumns, sizeof *names);
+		if (cut(t, copy, names, t->ncolumns) == t->ncolumns)
+			for (int i = 0; i < t->ncolumns; i++) {
+				free(t->column[i]);
+				t->column[i] = xstrdup(names[i]);
+			}
+		free(names);
+		free(copy);
+	}
+}
+
+struct table_in *table_open(const char *path)
+{
+	struct table_in *t = xcalloc(1, sizeof *t);
+	char *copy;
+
+	t->name = path && strcmp(path, "-") != 0 ? path : "standard input";
+	t->f = t->name == path ? fopen(path, "r") : stdin;
+	if (!t->f)
+		die(EXIT_RUN, "%s:", path);
+	if (!next_line(t))
+		return t;
+	t->blanks = strchr(t->line, '\t') ? "\t" : " ";
+	copy = xstrdup(t->line);
+	t->ncolumns = cut(t, copy, NULL, 0);
+	free(copy);
+	t->column = xcalloc((size_t)t->ncolumns, sizeof *t->column);
+	t->cell = xcalloc((size_t)t->ncolumns, sizeof *t->cell);
+	cut(t, t->line, t->cell, t->ncolumns);
+	name_columns(t);
+	return t;
+}
+
+const char *table_name(const struct table_in *t)
+{
+	return t->name;
+}
+
+const char *table_key(const struct table_in *t, const char *key)
+{
+	for (int i = 0; i < t->nkeys; i++)
+		if (strcmp(t->key[i], key) == 0)
+			return t->value[i];
+	return NULL;
+}
+
+int table_columns(const struct table_in *t)
+{
+	return t->ncolumns;
+}
+
+const char *table_column_name(const struct table_in *t, int column)
+{
+	return t->column[column];
+}
+
+int table_find(const struct table_in *t, const char *column)
+{
+	for (int i = 0; i < t->ncolumns; i++)
+		if (strcmp(t->column[i], column) == 0)
+			return i;
+	return -1;
+}
+
+int table_need(const struct table_in *t, const char *column)
+{
+	int i = table_find(t, column);
+
+	if (i < 0)
+		die(EXIT_RUN, "%s: no column '%s'", t->name, column);
+	return i;
+}
+
+/* The header of a table appended by cat. */
+static int is_header(const struct table_in *t)
+{
+	for (int i = 0; i < t->ncolumns; i++)
+		if (strcmp(t->cell[i], t->column[i]) != 0)
+			return 0;
+	return 1;
+}
+
+int table_next(struct table_in *t)
+{
+	if (t->pending) {
+		t->pending = 0;
+		return 1;
+	}
+	do {
+		int n;
+
+		if (!next_line(t))
+			return 0;
+		n = cut(t, t->line, t->cell, t->ncolumns);
+		if (n != t->ncolumns)
+			die(EXIT_RUN, "%s: line %ld: want %d cells, got %d", t->name, t->number,
+				t->ncolumns, n);
+	} while (is_header(t));
+	return 1;
+}
+
+long table_line(const struct table_in *t)
+{
+	return t->number;
+}
+
+double table_number(const struct table_in *t, int column)
+{
+	double v;
+
+	if (column < 0)
+		return NAN;
+	if (!to_number(t->cell[column], &v))
+		die(EXIT_RUN, "%s: line %ld: %s: '%.40s' is not a number", t->name, t->number,
+			t->column[column], t->cell[column]);
+	return v;
+}
+
+const char *table_text(const struct table_in *t, int column)
+{
+	return t->cell[column];
+}
+
+void table_close(struct table_in *t)
+{
+	if (t->f != stdin)
+		fclose(t->f);
+	for (int i = 0; i < t->ncolumns; i++)
+		free(t->column[i]);
+	for (int i = 0; i < t->nkeys; i++) {
+		free(t->key[i]);
+		free(t->value[i]);
+	}
+	free(t->column);
+	free(t->cell);
+	free(t->key);
+	free(t->value);
+	free(t->line);
+	free(t);
+}
+
+/* Writer */
+
+struct table_out *table_create(
+	const char *path, const char *cmd, const char *units, const char *columns)
+{
+	struct table_out *t = xcalloc(1, sizeof *t);
+
+	t->name = path ? path : "standard output";
+	t->f = path ? fopen(path, "w") : stdout;
+	if (!t->f)
+		die(EXIT_RUN, "%s:", path);
+	t->head = xstrdup("");
+	if (cmd)
+		table_cmd(t, cmd);
+	if (units)
+		table_comment(t, "units", "%s", units);
+	t->columns = xstrdup(columns);
+	t->ncolumns = 1;
+	for (char *s = t->columns; *s; s++) {
+		if (*s == ' ') {
+			*s = '\t';
+			t->ncolumns++;
+		}
+	}
+	return t;
+}
+
+static void check(const struct table_out *t)
+{
+	if (ferror(t->f))
+		die(EXIT_RUN, "%s:", t->name);
+}
+
+static void write_head(struct table_out *t)
+{
+	if (!t->columns)
+		return;
+	fprintf(t->f, "%s%s\n", t->head, t->columns);
+	free(t->columns);
+	t->columns = NULL;
+}
+
+void table_comment(struct table_out *t, const char *key, const char *format, ...)
+{
+	char *value, *longer;
+	va_list ap;
+	int n;
+
+	va_start(ap, format);
+	n = vsnprintf(NULL, 0, format, ap);
+	va_end(ap);
+	value = xcalloc((size_t)n + 1, 1);
+	va_start(ap, format);
+	vsnprintf(value, (size_t)n + 1, format, ap);
+	va_end(ap);
+	if (t->columns || !t->ncolumns) {
+		longer = xprintf("%s# %s: %s\n", t->head, key, value);
+		free(t->head);
+		t->head = longer;
+	} else {
+		fprintf(t->f, "# %s: %s\n", key, value);
+	}
+	free(value);
+}
+
+void table_cmd(struct table_out *t, const char *cmd)
+{
+	if (!cmd || (t->cmd && strcmp(t->cmd, cmd) == 0))
+		return;
+	free(t->cmd);
+	t->cmd = xstrdup(cmd);
+	table_comment(t, "cmd", "%s", cmd);
+}
+
+static void begin_cell(struct table_out *t)
+{
+	write_head(t);
+	if (t->ncells++)
+		putc('\t', t->f);
+}
+
+void table_put(struct table_out *t, double value)
+{
+	char text[NUMBER_TEXT];
+
+	begin_cell(t);
+	fputs(number_text(value, text), t->f);
+}
+
+void table_put_text(struct table_out *t, const char *text)
+{
+	begin_cell(t);
+	fputs(text, t->f);
+}
+
+void table_end_row(struct table_out *t)
+{
+	if (t->ncells != t->ncolumns)
+		die(EXIT_RUN, "%s: wrote %d cells to a row of %d", t->name, t->ncells,
+			t->ncolumns);
+	t->ncells = 0;
+	putc('\n', t->f);
+	check(t);
+}
+
+void table_flush(struct table_out *t)
+{
+	write_head(t);
+	if (fflush(t->f))
+		die(EXIT_RUN, "%s:", t->name);
+}
+
+void table_done(struct table_out *t)
+{
+	table_flush(t);
+	check(t);
+	if (t->f != stdout && fclose(t->f))
+		die(EXIT_RUN, "%s:", t->name);
+	free(t->head);
+	free(t->cmd);
+	free(t);
+}

@@ -1,0 +1,135 @@
+#include "shell/unit.h"
+#include <ctype.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* Spellings of every unit.  power: the exponent a prefix is raised to; 0 where no
+ * prefix may stand before the unit. */
+static const struct spelling {
+	enum unit unit;
+	const char *text;
+	double scale;
+	int power;
+} spellings[] = {
+	{ UNIT_LENGTH, "m", 1, 1 },
+	{ UNIT_AREA, "m2", 1, 2 },
+	{ UNIT_VOLUME, "m3", 1, 3 },
+	{ UNIT_VOLUME, "L", 1e-3, 1 },
+	{ UNIT_PRESSURE, "Pa", 1, 1 },
+	{ UNIT_PRESSURE, "bar", 1e5, 0 },
+	{ UNIT_FORCE, "N", 1, 1 },
+	{ UNIT_FREQUENCY, "Hz", 1, 1 },
+	{ UNIT_FREQUENCY, "rpm", 1.0 / 60, 0 },
+	{ UNIT_TIME, "s", 1, 1 },
+	{ UNIT_TIME, "min", 60, 0 },
+	{ UNIT_TIME, "h", 3600, 0 },
+	{ UNIT_TIME, "d", 86400, 0 },
+	{ UNIT_VOLTAGE, "V", 1, 1 },
+	{ UNIT_CURRENT, "A", 1, 1 },
+	{ UNIT_FLOW, "m3/s", 1, 3 },
+	{ UNIT_FLOW, "L/min", 1e-3 / 60, 1 },
+	{ UNIT_FLOW, "L/s", 1e-3, 1 },
+	{ UNIT_FLOW, "L/h", 1e-3 / 3600, 1 },
+	{ UNIT_SPEED, "m/s", 1, 1 },
+	{ UNIT_VISCOSITY, "Pa.s", 1, 1 },
+	{ UNIT_ANGLE, "rad", 1, 1 },
+	{ UNIT_ANGLE, "deg", 0, 0 }, /* scale: see scale_of() */
+	{ UNIT_FRACTION, "%", 1e-2, 0 },
+	{ UNIT_DECIBEL, "dB", 1, 0 },
+	{ UNIT_CONCENTRATION, "kg/m3", 1, 0 },
+	{ UNIT_CONCENTRATION, "g/L", 1, 1 },
+	{ UNIT_DENSITY, "kg/m3", 1, 0 },
+	{ UNIT_DENSITY, "g/cm3", 1000, 0 },
+};
+
+static const struct {
+	const char *text;
+	double scale;
+} prefixes[] = {
+	{ "f", 1e-15 }, { "p", 1e-12 }, { "n", 1e-9 }, { "u", 1e-6 },
+	{ "\xc2\xb5", 1e-6 }, { "\xce\xbc", 1e-6 }, /* micro sign, Greek mu */
+	{ "m", 1e-3 }, { "c", 1e-2 }, { "k", 1e3 }, { "M", 1e6 }, { "G", 1e9 },
+	{ "T", 1e12 },
+};
+
+enum { NSPELLINGS = sizeof spellings / sizeof *spellings };
+enum { NPREFIXES = sizeof prefixes / sizeof *prefixes };
+
+const char *unit_name(enum unit unit)
+{
+	for (size_t i = 0; i < NSPELLINGS; i++)
+		if (spellings[i].unit == unit)
+			return spellings[i].text;
+	return "";
+}
+
+static double scale_of(const struct spelling *s)
+{
+	return s->scale > 0 ? s->scale : pi / 180;
+}
+
+/* Scale of a suffix of the given length, or 0 where it does not suit the unit. */
+static double suffix_scale(const char *text, size_t length, enum unit unit)
+{
+	for (size_t i = 0; i < NSPELLINGS; i++) {
+		const struct spelling *s = &spellings[i];
+		size_t n = strlen(s->text);
+
+		if ((s->unit != unit && unit != UNIT_ANY) || n > length ||
+			memcmp(text + length - n, s->text, n) != 0)
+			continue;
+		if (n == length)
+			return scale_of(s);
+		for (size_t k = 0; s->power && k < NPREFIXES; k++)
+			if (strlen(prefixes[k].text) == length - n &&
+				memcmp(text, prefixes[k].text, length - n) == 0)
+				return scale_of(s) * pow(prefixes[k].scale, s->power);
+	}
+	return 0;
+}
+
+const char *unit_parse(
+	const char *text, enum unit unit, const char *stop, double *value, const char **end)
+{
+	char *rest;
+	size_t length;
+	double scale = 1;
+
+	/* strtod also takes blanks, nan, inf and hexadecimal; we do not. */
+	if (!isdigit((unsigned char)text[strspn(text, "+-.")]) ||
+		strspn(text, "+-") > 1 || strncmp(text + strspn(text, "+-"), "0x", 2) == 0 ||
+		strncmp(text + strspn(text, "+-"), "0X", 2) == 0)
+		return "is not a number";
+	*value = strtod(text, &rest);
+	length = strcspn(rest, stop);
+	if (length > 0) {
+		scale = suffix_scale(rest, length, unit);
+		if (scale <= 0)
+			return unit == UNIT_COUNT || unit == UNIT_NONE ? "takes no unit"
+								       : "has the wrong unit";
+	}
+	*value *= scale;
+	if (!isfinite(*value))
+		return "is out of range";
+	if (unit == UNIT_COUNT && *value != floor(*value))
+		return "is not a whole number";
+	*end = rest + length;
+	return NULL;
+}
+
+const char *number_text(double value, char text[NUMBER_TEXT])
+{
+	if (isnan(value))
+		return strcpy(text, "nan");
+	for (int digits = 15; digits <= 17; digits++) {
+		snprintf(text, NUMBER_TEXT, "%.*g", digits, value);
+		if (strtod(text, NULL) == value)
+			break;
+	}
+	return text;
+}

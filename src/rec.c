@@ -1,0 +1,206 @@
+/* rec - list, pick, count and convert the records of a field stream */
+#include "shell/fields.h"
+#include "shell/msg.h"
+#include "shell/opt.h"
+#include "shell/stats.h"
+#include "shell/tables.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum format { LIST, COUNT, NRRD, GSF, TEXT, TABLE };
+static const char *const formats[] = { "list", "count", "nrrd", "gsf", "text", "table", NULL };
+
+static int format = LIST;
+static struct opt_list pick;
+static const char *field;
+static struct opt_list raw_size;
+static double pixel = NAN;
+
+static const struct opt opts[] = {
+	{ 'o', "output", OPT_WORD, UNIT_NONE, &format, 0, 0, "list|count|nrrd|gsf|text|table",
+		"what to write", formats, 0 },
+	{ 'n', "pick", OPT_LIST, UNIT_COUNT, &pick, 1, 1e9, "K,...",
+		"only the K-th records, from 1", NULL, 1 },
+	{ 'k', "field", OPT_TEXT, UNIT_NONE, &field, 0, 0, "NAME", "only this field", NULL, 0 },
+	{ 'x', "raw", OPT_LIST, UNIT_COUNT, &raw_size, 1, 1e9, "NXxNY",
+		"read headerless little-endian float64 heights", NULL, 0 },
+	{ 'X', "pixel", OPT_NUM, UNIT_LENGTH, &pixel, 1e-15, 1e6, "D", "spacing of --raw",
+		NULL, 0 },
+	OPT_END
+};
+
+static const struct prog prog = { "rec",
+	"List, pick, count and convert the records of a field stream.", "[file]",
+	"fields: any", "table or fields", opts };
+
+static int picked(long number)
+{
+	for (int i = 0; i < pick.n; i++)
+		if ((long)pick.v[i] == number)
+			return 1;
+	return pick.n == 0;
+}
+
+static void keep_field(struct record *r, const struct fields_in *in)
+{
+	char *cmd = opt_cmd(r->cmd, NULL);
+
+	record_need(r, field, 0, in);
+	for (int i = r->nfields - 1; i >= 0; i--)
+		if (strcmp(r->name[i], field) != 0)
+			record_drop(r, r->name[i]);
+	free(r->cmd);
+	r->cmd = cmd;
+}
+
+/* One row per field: its size and range. */
+static void list_record(struct table_out *t, const struct record *r, long number)
+{
+	size_t n = (size_t)r->nx * (size_t)r->ny * (size_t)r->nz;
+
+	for (int k = 0; k < r->nfields; k++) {
+		double low = INFINITY, high = -INFINITY, sum = 0;
+
+		for (size_t i = 0; i < n; i++) {
+			low = fmin(low, r->data[k][i]);
+			high = fmax(high, r->data[k][i]);
+			sum += r->data[k][i];
+		}
+		table_put(t, (double)number);
+		table_put(t, (double)r->realisation);
+		table_put_text(t, r->name[k]);
+		table_put_text(t, *r->unit[k] ? r->unit[k] : "1");
+		table_put(t, r->nx);
+		table_put(t, r->ny);
+		table_put(t, r->nz);
+		table_put(t, r->dx);
+		table_put(t, r->dy);
+		table_put(t, low);
+		table_put(t, sum / (double)n);
+		table_put(t, high);
+		table_end_row(t);
+	}
+}
+
+/* Rows of samples and an empty line after each field: gnuplot's matrix layout. */
+static void print_text(const struct record *r)
+{
+	for (int k = 0; k < r->nfields; k++) {
+		const double *x = r->data[k];
+
+		printf("# %s %s\n", r->name[k], r->unit[k]);
+		for (long iy = 0; iy < (long)r->ny * r->nz; iy++)
+			for (int ix = 0; ix < r->nx; ix++)
+				printf("%.9g%c", *x++, ix + 1 < r->nx ? '\t' : '\n');
+		putchar('\n');
+	}
+}
+
+static struct table_out *create_table(const struct record *r)
+{
+	struct table_out *t;
+	char *columns = xstrdup("realisation x y z");
+
+	for (int k = 0; k < r->nfields; k++) {
+		char *longer = xprintf("%s %s", columns, r->name[k]);
+
+		free(columns);
+		columns = longer;
+	}
+	t = table_create(NULL, r->cmd, NULL, columns);
+	free(columns);
+	return t;
+}
+
+/* One row per point, at the centre of its cell; layers lie at the depth z = iz dz. */
+static void print_table(struct table_out *t, const struct record *r)
+{
+	size_t i = 0;
+
+	for (int iz = 0; iz < r->nz; iz++) {
+		for (int iy = 0; iy < r->ny; iy++) {
+			for (int ix = 0; ix < r->nx; ix++, i++) {
+				table_put(t, (double)r->realisation);
+				table_put(t, (ix + 0.5) * r->dx);
+				table_put(t, (iy + 0.5) * r->dy);
+				table_put(t, iz * r->dz);
+				for (int k = 0; k < r->nfields; k++)
+					table_put(t, r->data[k][i]);
+				table_end_row(t);
+			}
+		}
+	}
+}
+
+static void check_picked(const struct fields_in *in)
+{
+	for (int i = 0; i < pick.n; i++)
+		if ((long)pick.v[i] > fields_count(in))
+			die(EXIT_RUN, "%s: no record %ld: there are %ld", fields_name(in),
+				(long)pick.v[i], fields_count(in));
+}
+
+int main(int argc, char **argv)
+{
+	int first = opt_parse(&prog, argc, argv);
+	struct raw_layout raw = { 0 };
+	struct record r = { 0 };
+	struct fields_in *in;
+	struct fields_out *out = NULL;
+	struct table_out *table = NULL;
+	long count = 0;
+
+	if (raw_size.n && (raw_size.n != 2 || isnan(pixel)))
+		die(EXIT_USAGE, "--raw wants NXxNY and --pixel");
+	if (raw_size.n)
+		raw = (struct raw_layout){ (int)raw_size.v[0], (int)raw_size.v[1], pixel, pixel };
+	in = fields_open(argv[first], raw_size.n ? &raw : NULL);
+	if (format == NRRD)
+		out = fields_create(NULL);
+	if (format == LIST)
+		table = table_create(NULL, NULL, NULL,
+			"record realisation field unit nx ny nz dx dy min mean max");
+	while (fields_read(in, &r)) {
+		if (!picked(fields_count(in)))
+			continue;
+		count++;
+		if (field)
+			keep_field(&r, in);
+		switch (format) {
+		case LIST:
+			list_record(table, &r, fields_count(in));
+			break;
+		case NRRD:
+			fields_write(out, &r);
+			break;
+		case GSF:
+			if (count > 1 || r.nfields != 1 || r.nz > 1)
+				die(EXIT_USAGE,
+					"GSF holds one plane field: use --pick and --field");
+			fields_write_gsf(stdout, &r, 0);
+			break;
+		case TEXT:
+			print_text(&r);
+			break;
+		case TABLE:
+			if (!table)
+				table = create_table(&r);
+			print_table(table, &r);
+			break;
+		default:
+			break;
+		}
+	}
+	check_picked(in);
+	if (format == COUNT)
+		printf("%ld\n", count);
+	if (out)
+		fields_done(out);
+	if (table)
+		table_done(table);
+	record_free(&r);
+	fields_close(in);
+	stats_set("records", (double)count);
+	return shell_done(EXIT_SUCCESS);
+}
