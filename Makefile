@@ -15,7 +15,7 @@ PKG_CONFIG ?= pkg-config
 CFLAGS ?= -O2 -g
 
 # -ffp-contract=off: the same bytes from every build of one compiler.
-STD = -std=c11 -D_POSIX_C_SOURCE=200809L -ffp-contract=off
+STD = -std=c11 -D_XOPEN_SOURCE=700 -ffp-contract=off
 WARN = -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes
 B = build
 BIN = bin

@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* Spellings of every unit.  power: the exponent a prefix is raised to; 0 where no
  * prefix may stand before the unit. */
 static const struct spelling {
@@ -38,7 +36,7 @@ static const struct spelling {
 	{ UNIT_SPEED, "m/s", 1, 1 },
 	{ UNIT_VISCOSITY, "Pa.s", 1, 1 },
 	{ UNIT_ANGLE, "rad", 1, 1 },
-	{ UNIT_ANGLE, "deg", 0, 0 }, /* scale: see scale_of() */
+	{ UNIT_ANGLE, "deg", M_PI / 180, 0 },
 	{ UNIT_FRACTION, "%", 1e-2, 0 },
 	{ UNIT_DECIBEL, "dB", 1, 0 },
 	{ UNIT_CONCENTRATION, "kg/m3", 1, 0 },
@@ -68,11 +66,6 @@ const char *unit_name(enum unit unit)
 	return "";
 }
 
-static double scale_of(const struct spelling *s)
-{
-	return s->scale > 0 ? s->scale : pi / 180;
-}
-
 /* Scale of a suffix of the given length, or 0 where it does not suit the unit. */
 static double suffix_scale(const char *text, size_t length, enum unit unit)
 {
@@ -84,11 +77,11 @@ static double suffix_scale(const char *text, size_t length, enum unit unit)
 			memcmp(text + length - n, s->text, n) != 0)
 			continue;
 		if (n == length)
-			return scale_of(s);
+			return s->scale;
 		for (size_t k = 0; s->power && k < NPREFIXES; k++)
 			if (strlen(prefixes[k].text) == length - n &&
 				memcmp(text, prefixes[k].text, length - n) == 0)
-				return scale_of(s) * pow(prefixes[k].scale, s->power);
+				return s->scale * pow(prefixes[k].scale, s->power);
 	}
 	return 0;
 }

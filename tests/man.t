@@ -1,0 +1,53 @@
+#!/bin/sh
+# Manual pages: they agree with --help, lint clean, and their examples run
+. "$(dirname "$0")/tap.sh"
+
+programs=$(sed -n 's/^PROGRAMS = //p' "$top/Makefile")
+
+# Examples of a page: .Dl lines and literal displays of the EXAMPLES section.
+examples() {
+	awk '/^\.Sh / { on = $2 == "EXAMPLES" }
+	!on { next }
+	/^\.Dl / { sub(/^\.Dl /, ""); print; next }
+	/^\.Bd -literal/ { show = 1; next }
+	/^\.Ed/ { show = 0; next }
+	show { print }' "$1" | sed -e 's/\\e/\\/g' -e 's/\\&//g' -e 's/\\(aq/'\''/g' -e 's/\\-/-/g' -e 's/\\(ha/^/g' -e 's/\\(ti/~/g'
+}
+
+# Options of a page: ".It Fl n , Fl -points Ar ..." as "n points".
+page_options() {
+	sed -n 's/^\.It Fl \(.\) , Fl -\([a-z0-9-]*\).*/\1 \2/p' "$1" | sort
+}
+
+help_options() {
+	sed -n 's/^  -\(.\), --\([a-z0-9-]*\).*/\1 \2/p' | sort
+}
+
+for p in $programs; do
+	page=$top/man/$p.1
+	if [ ! -e "$page" ]; then
+		fail "$p has a manual page"
+		continue
+	fi
+	page_options "$page" >page.options
+	"$p" --help | help_options >help.options
+	is "$p: options of the page and of --help" "$(diff page.options help.options)" ""
+done
+for page in "$top"/man/*.[1-9]; do
+	name=${page##*/}
+	if command -v mandoc >/dev/null; then
+		is "$name: mandoc finds no fault" "$(mandoc -T lint -W warning "$page" 2>&1)" ""
+	else
+		skip "$name: mandoc finds no fault" "no mandoc"
+	fi
+	examples "$page" >examples.sh
+	[ -s examples.sh ] || continue
+	dir=$work/${name%.*}
+	mkdir "$dir"
+	if (cd "$dir" && { echo 'set -e'; cat ../examples.sh; } | sh >../out 2>../err); then
+		pass "$name: the examples run"
+	else
+		fail "$name: the examples run" "exit status $?" "$(tail -5 err)"
+	fi
+done
+done_testing

@@ -1,0 +1,37 @@
+#!/bin/sh
+# What every program of the suite promises of its options, streams and exit statuses
+. "$(dirname "$0")/tap.sh"
+
+programs=$(sed -n 's/^PROGRAMS = //p' "$top/Makefile")
+for p in $programs; do
+	command -v "$p" >/dev/null || {
+		fail "$p is built"
+		continue
+	}
+	ok "$p --help" "$p" --help
+	cp out "$p.help"
+	ok "$p --version" "$p" -V
+	is "$p says its name and version" "$(awk '{ print $1, $2 }' out)" "$p (wearpipe)"
+	fails "$p refuses an unknown option" 2 "^$p: --no-such-option" "$p" --no-such-option
+	fails "$p names a missing file" 1 "^$p: .*no-such-file" "$p" $(case $p in
+		roughgen) echo --measure ;;
+		debrisgen) echo --yield 355MPa ;;
+		aopf) echo --threshold 1 ;;
+		rwl) echo --wear no-such-file --threshold-gap 1um ;;
+		delaynet) echo apply --weights no-such-file ;;
+		esac) no-such-file
+done
+
+# The same word has the same letter everywhere, and reserved letters keep their meaning.
+for p in $programs; do
+	[ -e "$p.help" ] && sed -n "s/^  -\(.\), --\([a-z0-9-]*\).*/\2 \1 $p/p" "$p.help"
+done >letters
+is "one letter per word in the whole suite" \
+	"$(sort -u -k1,2 letters | awk '$1 == w && $2 != l { print w, l, $2, $3 } { w = $1; l = $2 }')" ""
+is "reserved letters mean the same everywhere" \
+	"$(awk 'BEGIN { split("s seed c count f first j threads v verbose h help V version S stats", a)
+		for (i = 1; i < 16; i += 2) want[a[i]] = a[i + 1] }
+		$2 in want && want[$2] != $1 { print $3, $2, $1 }' letters)" ""
+is "every option has a phrase of help" \
+	"$(cat ./*.help | awk '/^  -/ && NF < 3 { getline more; if (more !~ /^   /) print }')" ""
+done_testing

@@ -1,0 +1,169 @@
+/* Random bits, the thread pool and Fourier transforms */
+#include "num/fft.h"
+#include "num/philox.h"
+#include "num/pool.h"
+#include "num/rng.h"
+#include "tap.h"
+#include <gsl/gsl_randist.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The three known answers published with Random123 (kat_vectors). */
+static void test_philox(void)
+{
+	static const struct {
+		uint32_t counter[4], key[2], want[4];
+	} known[] = {
+		{ { 0, 0, 0, 0 }, { 0, 0 },
+			{ 0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8 } },
+		{ { 0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff }, { 0xffffffff, 0xffffffff },
+			{ 0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd } },
+		{ { 0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344 }, { 0xa4093822, 0x299f31d0 },
+			{ 0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1 } },
+	};
+	uint32_t out[4];
+
+	for (int i = 0; i < 3; i++) {
+		philox4x32(known[i].counter, known[i].key, out);
+		ok(!memcmp(out, known[i].want, sizeof out), "Philox4x32-10 known answer %d", i + 1);
+	}
+}
+
+static void test_rng(void)
+{
+	gsl_rng *a = rng_new(1, 2, RNG_NOISE), *b = rng_new(1, 2, RNG_NOISE);
+	gsl_rng *c = rng_new(1, 3, RNG_NOISE), *d = rng_new(1, 2, RNG_FILTER);
+	gsl_rng *e = rng_new(1ULL << 32 | 1, 2, RNG_NOISE);
+	uint32_t counter[4] = { 1, 0, 2, RNG_NOISE }, key[2] = { 1, 0 }, block[4];
+	unsigned long x[5], y[5];
+	int same = 1, differs = 1;
+	double sum = 0, square = 0;
+	enum { N = 200000 };
+
+	for (int i = 0; i < 5; i++) {
+		x[i] = gsl_rng_get(a);
+		y[i] = gsl_rng_get(b);
+		same &= x[i] == y[i];
+		differs &= x[i] != gsl_rng_get(c) && x[i] != gsl_rng_get(d) &&
+			x[i] != gsl_rng_get(e);
+	}
+	ok(same, "equal streams give equal numbers");
+	ok(differs, "realisation, purpose and the high half of the seed each change the stream");
+	philox4x32(counter, key, block);
+	ok(x[4] == block[0], "the fifth number is the first of the second block");
+	for (int i = 0; i < N; i++) {
+		double z = gsl_ran_gaussian_ziggurat(a, 1);
+
+		sum += z;
+		square += z * z;
+	}
+	/* Four standard errors: 4 / sqrt(N) and 4 sqrt(2 / N). */
+	near(sum / N, 0, 0.009, "mean of GSL's normal deviates");
+	near(square / N, 1, 0.0127, "variance of GSL's normal deviates");
+	gsl_rng_free(a);
+	gsl_rng_free(b);
+	gsl_rng_free(c);
+	gsl_rng_free(d);
+	gsl_rng_free(e);
+}
+
+static void test_addressed(void)
+{
+	enum { N = 100000 };
+	double sum = 0, square = 0, cross = 0, uniform = 0, z[2];
+
+	for (uint64_t i = 0; i < N; i++) {
+		philox_normal2(7, 0, RNG_SURFACE, i, z);
+		sum += z[0] + z[1];
+		square += z[0] * z[0] + z[1] * z[1];
+		cross += z[0] * z[1];
+		uniform += philox_uniform(7, 0, RNG_SURFACE, i);
+	}
+	near(sum / (2 * N), 0, 0.009, "mean of addressed normal deviates");
+	near(square / (2 * N), 1, 0.0127, "variance of addressed normal deviates");
+	near(cross / N, 0, 0.0127, "the two of a pair are uncorrelated");
+	near(uniform / N, 0.5, 0.00366, "mean of addressed uniform deviates");
+}
+
+static double chunk(void *context, size_t begin, size_t end)
+{
+	const double *x = context;
+	double s = 0;
+
+	for (size_t i = begin; i < end; i++)
+		s += x[i];
+	return s;
+}
+
+static void mark(void *context, size_t i, int worker)
+{
+	(void)worker;
+	((unsigned char *)context)[i]++;
+}
+
+static void test_pool(void)
+{
+	enum { N = 300007 };
+	struct pool *one = pool_new(1), *three = pool_new(3);
+	double *x = malloc(N * sizeof *x);
+	unsigned char *marks = calloc(N, 1);
+	int once = 1;
+
+	for (int i = 0; i < N; i++)
+		x[i] = sin(i) * pow(10, i % 17);
+	ok(pool_sum(one, N, chunk, x) == pool_sum(three, N, chunk, x) &&
+			pool_sum(NULL, N, chunk, x) == pool_sum(three, N, chunk, x),
+		"sums have the same bits for one, three and no threads");
+	for (int round = 0; round < 20; round++)
+		pool_run(three, N / 100, mark, marks);
+	for (int i = 0; i < N / 100; i++)
+		once &= marks[i] == 20;
+	ok(once, "every job runs exactly once a round");
+	pool_run(three, 0, mark, marks);
+	free(marks);
+	free(x);
+	pool_free(one);
+	pool_free(three);
+}
+
+static void test_fft(size_t nx, size_t ny)
+{
+	struct fft *fft = fft_new(nx, ny);
+	size_t n = nx * ny, modes = (nx / 2 + 1) * ny;
+	double *x = fft_alloc(n), *y = fft_alloc(n), worst = 0;
+	double complex *s = fft_alloc_complex(modes), direct = 0;
+	size_t kx = nx > 2 ? 1 : 0, ky = ny > 2 ? 2 : 0;
+
+	for (size_t i = 0; i < n; i++)
+		x[i] = philox_uniform(3, 0, RNG_NOISE, i);
+	memcpy(y, x, n * sizeof *x);
+	fft_forward(fft, y, s);
+	for (size_t i = 0; i < n; i++)
+		direct += x[i] * cexp(-2 * M_PI * I *
+					((double)(kx * (i % nx)) / (double)nx +
+						(double)(ky * (i / nx)) / (double)ny));
+	near(cabs(s[ky * (nx / 2 + 1) + kx] - direct), 0, 1e-11, "a coefficient by its definition");
+	fft_inverse(fft, s, y);
+	for (size_t i = 0; i < n; i++)
+		worst = fmax(worst, fabs(y[i] / (double)n - x[i]));
+	near(worst, 0, 1e-14, "forward and inverse give the data back");
+	fft_free(x);
+	fft_free(y);
+	fft_free(s);
+	fft_done(fft);
+}
+
+int main(void)
+{
+	test_philox();
+	test_rng();
+	test_addressed();
+	test_pool();
+	test_fft(16, 1);
+	test_fft(15, 7);
+	test_fft(1, 9);
+	ok(fft_good_size(1) == 1 && fft_good_size(11) == 12 && fft_good_size(121) == 125 &&
+			fft_good_size(2047) == 2048,
+		"good sizes have the factors 2, 3, 5 and 7 only");
+	return tap_done();
+}

@@ -1,0 +1,82 @@
+/* Units, quoting of command lines and shortest numbers */
+#include "shell/unit.h"
+#include "tap.h"
+#include <stdlib.h>
+#include <string.h>
+
+static void test_units(void)
+{
+	static const struct {
+		const char *text;
+		enum unit unit;
+		double want;
+	} good[] = {
+		{ "7.8um", UNIT_LENGTH, 7.8e-6 },
+		{ "7.8\xc2\xb5m", UNIT_LENGTH, 7.8e-6 },
+		{ "3m", UNIT_LENGTH, 3 },
+		{ "3mm", UNIT_LENGTH, 3e-3 },
+		{ "21MPa", UNIT_PRESSURE, 21e6 },
+		{ "210bar", UNIT_PRESSURE, 21e6 },
+		{ "50", UNIT_FORCE, 50 },
+		{ "10kHz", UNIT_FREQUENCY, 1e4 },
+		{ "4000rpm", UNIT_FREQUENCY, 4000.0 / 60 },
+		{ "60L/min", UNIT_FLOW, 1e-3 },
+		{ "1186h", UNIT_TIME, 1186 * 3600.0 },
+		{ "5min", UNIT_TIME, 300 },
+		{ "2mm3", UNIT_VOLUME, 2e-9 },
+		{ "1mm2", UNIT_AREA, 1e-6 },
+		{ "80%", UNIT_FRACTION, 0.8 },
+		{ "180deg", UNIT_ANGLE, M_PI },
+		{ "250mg/L", UNIT_CONCENTRATION, 0.25 },
+		{ "-1.5e-3", UNIT_NONE, -1.5e-3 },
+		{ "12", UNIT_COUNT, 12 },
+		{ ".5um", UNIT_ANY, 5e-7 },
+	};
+	static const struct {
+		const char *text;
+		enum unit unit;
+	} wrong[] = {
+		{ "5m", UNIT_VOLTAGE }, { "5k", UNIT_PRESSURE }, { "5Pa", UNIT_LENGTH },
+		{ "5 m", UNIT_LENGTH }, { "nan", UNIT_LENGTH }, { "inf", UNIT_LENGTH },
+		{ "", UNIT_LENGTH }, { "0x10", UNIT_COUNT }, { "1.5", UNIT_COUNT },
+		{ "1e999", UNIT_LENGTH }, { "--5", UNIT_NONE }, { "5mmin", UNIT_TIME },
+		{ "5umx", UNIT_LENGTH }, { "1,5", UNIT_LENGTH }, { "m", UNIT_LENGTH },
+		{ "5kbar", UNIT_PRESSURE },
+	};
+	const char *end;
+	double v;
+
+	for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+		const char *message = unit_parse(good[i].text, good[i].unit, "", &v, &end);
+
+		ok(!message && fabs(v - good[i].want) <= 1e-15 * fabs(good[i].want) && !*end,
+			"%s is %g %s", good[i].text, good[i].want, unit_name(good[i].unit));
+	}
+	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+		ok(unit_parse(wrong[i].text, wrong[i].unit, "", &v, &end) != NULL,
+			"'%s' is refused where %s is wanted", wrong[i].text,
+			*unit_name(wrong[i].unit) ? unit_name(wrong[i].unit) : "a number");
+	ok(!unit_parse("70:130", UNIT_FREQUENCY, ":", &v, &end) && v == 70 && *end == ':',
+		"reading stops at the separator");
+}
+
+static void test_number_text(void)
+{
+	static const double values[] = { 0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308, -0.0, 123,
+		6.02214076e23 };
+	char text[NUMBER_TEXT];
+	int same = 1;
+
+	for (size_t i = 0; i < sizeof values / sizeof *values; i++)
+		same &= strtod(number_text(values[i], text), NULL) == values[i];
+	ok(same, "numbers read back as they were");
+	ok(!strcmp(number_text(0.1, text), "0.1"), "and are as short as can be");
+	ok(!strcmp(number_text(NAN, text), "nan"), "a missing value is nan");
+}
+
+int main(void)
+{
+	test_units();
+	test_number_text();
+	return tap_done();
+}
