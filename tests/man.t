@@ -44,7 +44,7 @@ for page in "$top"/man/*.[1-9]; do
 	[ -s examples.sh ] || continue
 	dir=$work/${name%.*}
 	mkdir "$dir"
-	if (cd "$dir" && { echo 'set -e'; cat ../examples.sh; } | sh >../out 2>../err); then
+	if (cd "$dir" && sh -e ../examples.sh </dev/null >../out 2>../err); then
 		pass "$name: the examples run"
 	else
 		fail "$name: the examples run" "exit status $?" "$(tail -5 err)"

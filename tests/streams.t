@@ -1,0 +1,129 @@
+#!/bin/sh
+# Field streams: what is read, what is refused and in which words; other tools read ours
+. "$(dirname "$0")/tap.sh"
+
+# header LINE...: an NRRD header for 4 x 3 points, lines replaced or added by argument
+header() {
+	{
+		printf '%s\n' NRRD0004 'type: double' 'dimension: 2' 'sizes: 4 3' \
+			'spacings: 1e-6 2e-6' 'endian: little' 'encoding: raw'
+		printf '%s\n' "$@"
+	} | awk -F ': ' '{ k = /^NRRD/ || /^#/ ? $0 : $1; if (!(k in seen)) order[++n] = k
+		seen[k] = $0 } END { for (i = 1; i <= n; i++) if (seen[order[i]] != "") print seen[order[i]]; print "" }'
+}
+# ramp: 12 little-endian doubles 0 1 2 ... 11
+ramp() {
+	for bytes in '000\000' '360\077' '000\100' '010\100' '020\100' '024\100' '030\100' \
+		'034\100' '040\100' '042\100' '044\100' '046\100'; do
+		printf "\\000\\000\\000\\000\\000\\000\\$bytes"
+	done
+}
+big_endian_ramp() {
+	for bytes in '000\000' '077\360' '100\000' '100\010' '100\020' '100\024' '100\030' \
+		'100\034' '100\040' '100\042' '100\044' '100\046'; do
+		printf "\\$bytes\\000\\000\\000\\000\\000\\000"
+	done
+}
+cell() {
+	column "$1" out | head -n 1
+}
+
+{ header ''; ramp; } >plain.nrrd
+ok 'a plain two-dimensional NRRD is read' rec plain.nrrd
+is 'its size and spacing' "$(cell nx) $(cell ny) $(cell dx) $(cell dy)" '4 3 1e-06 2e-06'
+is 'its samples' "$(cell min) $(cell mean) $(cell max)" '0 5.5 11'
+{ header 'endian: big'; big_endian_ramp; } >big.nrrd
+ok 'a big-endian NRRD is read' rec big.nrrd
+is 'its samples' "$(cell min) $(cell mean) $(cell max)" '0 5.5 11'
+{ header 'units: "um" "um"' 'spacings: 1 2'; ramp; } >um.nrrd
+ok 'units of length are honoured' rec um.nrrd
+is 'and turned into metres' "$(cell dx) $(cell dy)" '1e-06 2e-06'
+rec -o nrrd plain.nrrd >ours.nrrd
+rec -o nrrd ours.nrrd >again.nrrd
+same 'a record written, read and written has the same bytes' ours.nrrd again.nrrd
+is 'the header fills whole kibibytes' "$(($(wc -c <ours.nrrd) % 1024))" 96
+rec -o gsf plain.nrrd >plain.gsf 2>err || true
+is 'GSF keeps the spacing' "$(rec plain.gsf | tail -n 1 | cut -f 8,9,12)" "$(printf '1e-06\t2e-06\t11')"
+ramp >plain.raw
+ok 'headerless samples are read' rec --raw 4x3 --pixel 2um plain.raw
+is 'with the pixel given' "$(cell dx) $(cell max)" '2e-06 11'
+cat plain.nrrd big.nrrd plain.gsf >three
+is 'records of three formats follow each other' "$(rec -o count three)" 3
+ok 'an empty stream has no records' sh -c 'rec -o count </dev/null'
+is 'and that is no error' "$(cat out)" 0
+is 'a record keeps keys, escapes included' \
+	"$({ header 'key:=a \\ b'; ramp; } | rec -o nrrd | grep -a '^key')" 'key:=a \\ b'
+ok 'the second record alone' sh -c 'rec -n 2 -o nrrd three | rec -o count'
+is 'is one record' "$(cat out)" 1
+fails 'picking what is not there' 1 'three: no record 4: there are 3' rec -n 4 three
+
+# Refusals: one line each, naming the record and what was wanted.
+refuse() {
+	name=$1
+	pattern=$2
+	shift 2
+	{ header "$@"; ramp; } >bad.nrrd
+	fails "$name" 1 "$pattern" rec bad.nrrd
+}
+{ header ''; ramp | head -c 50; } >short.nrrd
+fails 'a truncated record' 1 'short.nrrd: record 1: want 96 bytes, got 50' rec short.nrrd
+fails 'a truncated record in a pipe' 1 'standard input: record 1: want 96 bytes, got 50' \
+	sh -c 'cat short.nrrd | rec'
+cat plain.nrrd short.nrrd >second.nrrd
+fails 'truncation names the record' 1 'record 2: want 96 bytes, got 50' rec second.nrrd
+printf 'NRRD0004\ntype: double\n' >cut.nrrd
+fails 'a header cut off' 1 'record 1: the stream ends inside the header' rec cut.nrrd
+printf 'GIF89a\n' >gif
+fails 'another format' 1 "want NRRD or GSF, got 'GIF89a'" rec gif
+{ printf 'NRRD0004\n# '; head -c 2000000 /dev/zero | tr '\0' x; } >endless
+fails 'an endless header' 1 'header longer than 1048576 bytes' rec endless
+refuse 'a negative size' 'size -4, want a whole number' 'sizes: -4 3'
+refuse 'a fractional size' 'size 4.5, want a whole number' 'sizes: 4.5 3'
+refuse 'an enormous size' 'bytes of samples are too many' 'sizes: 1000000000 1000000000'
+refuse 'a large size without the samples' 'want 32000000 bytes, got 96' 'sizes: 4000 1000'
+refuse 'a spacing of zero' 'spacing of axis 0 is 0, want above 0' 'spacings: 0 1'
+refuse 'a spacing that is nan' 'spacing of axis 1 is nan' 'spacings: 1 nan'
+refuse 'no spacing' "NRRD header without 'spacings'" 'spacings: '
+refuse 'a type we do not read' 'type short: want double or float' 'type: short'
+refuse 'compressed samples' 'encoding gzip: want raw' 'encoding: gzip'
+refuse 'an unknown byte order' "endian: 'pdp' is not understood" 'endian: pdp'
+refuse 'a detached header' "NRRD field 'data file' is not supported" 'data file: x.raw'
+refuse 'too few sizes' 'want 2 sizes and spacings, got 1 and 2' 'sizes: 4'
+refuse 'five dimensions' 'dimension 5: want 2, 3 or 4' 'dimension: 5'
+refuse 'a unit that is no length' "unit 's' of axis 0 is not a length" 'units: "s" "s"'
+refuse 'more names than fields' 'want the names of 1 fields' 'fields:=height m, pressure Pa'
+fails 'no room left on the device' 1 'standard output: No space left' \
+	sh -c 'rec -o nrrd plain.nrrd >/dev/full'
+
+# Other tools, where they are installed
+if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
+	is 'numpy reads a record' "$(/usr/bin/python3 -c "
+import numpy as np
+h, = np.fromfile('ours.nrrd', '<f8', offset=1024).reshape(3, 4, 1).transpose(2, 0, 1)
+print(h[2, 3], h[1, 0])")" '11.0 4.0'
+	cat ours.nrrd ours.nrrd >two.nrrd
+	is 'numpy reads an ensemble' "$(/usr/bin/python3 -c "
+import numpy as np
+a = np.fromfile('two.nrrd', [('hdr', 'S1024'), ('a', '<f8', (3, 4, 1))])['a']
+print(a.shape, a[1, 2, 3, 0])")" '(2, 3, 4, 1) 11.0'
+else
+	skip 'numpy reads a record' 'no numpy'
+	skip 'numpy reads an ensemble' 'no numpy'
+fi
+if command -v gnuplot >/dev/null; then
+	gnuplot -e "set table 'gp.txt'; plot 'ours.nrrd' binary skip=1024 array=(4,3) format='%double' endian=little using 1 with image" 2>err
+	is 'gnuplot reads a record' "$(awk '!/^#/ && NF >= 3 { m = $3 > m ? $3 : m; n++ } END { print n, m }' gp.txt)" '12 11'
+else
+	skip 'gnuplot reads a record' 'no gnuplot'
+fi
+if command -v octave >/dev/null; then
+	is 'Octave reads a record' "$(octave --no-gui --norc --eval "f=fopen('ours.nrrd');fseek(f,1024,0);e=reshape(fread(f,inf,'double'),1,4,3);printf('%g %g',e(1,4,3),e(1,1,2))" 2>/dev/null)" '11 4'
+else
+	skip 'Octave reads a record' 'no octave'
+fi
+if command -v teem-unu >/dev/null; then
+	is 'teem reads a record' "$(teem-unu minmax ours.nrrd | awk '{ print $2 }' | tr '\n' ' ')" '0 11 '
+else
+	skip 'teem reads a record' 'no teem-unu'
+fi
+done_testing
