@@ -310,7 +310,7 @@ struct signal_out *signal_create(const char *path, const struct signal_format *f
 
 void signal_write(struct signal_out *out, const double *x, size_t nframes)
 {
-	enum { CHUNK = 1024 };
+	enum { CHUNK = 8192 }; /* 64 KiB, what a pipe holds */
 	size_t n = nframes * (size_t)out->channels, width = out->single ? 4 : 8;
 	unsigned char bytes[8 * CHUNK];
 

@@ -1,0 +1,67 @@
+/* fir.h - band-pass filters by the window method, and their use on streams
+ *
+ * The taps are those of the ideal band-pass cut by a window, equal to what scipy's
+ * firwin gives to 1e-14:
+ *
+ *	h[k] = w[k] (sin(2 pi hi m) - sin(2 pi lo m)) / (pi m),   m = k - order / 2
+ *
+ * with w the symmetric window of order + 1 points.  They are symmetric, so the filter
+ * delays every frequency by order / 2 samples.
+ *
+ *	struct fir_band band = { 200, 0.007, 0.013, FIR_HAMMING, 0, 1 };
+ *	double h[201];
+ *	fir_design(&band, h);
+ *	struct fir *fir = fir_new(h, 201, channels, 0);
+ *	while ((n = read_frames(x, fir_block(fir))) > 0)
+ *		fir_run(fir, x, n);
+ *	fir_free(fir);
+ */
+#ifndef SIGNAL_FIR_H
+#define SIGNAL_FIR_H
+
+#include <stddef.h>
+
+/* Hamming 0.54 0.46; Hann 0.5 0.5; Blackman 0.42 0.5 0.08; Kaiser by beta. */
+enum fir_window { FIR_HAMMING, FIR_HANN, FIR_BLACKMAN, FIR_KAISER };
+
+struct fir_band {
+	int order;        /* taps less one, >= 1 */
+	double low, high; /* band edges over the rate, 0 <= low < high <= 0.5 */
+	enum fir_window window;
+	double beta; /* of the Kaiser window */
+	int scale;   /* 1: gain 1 at the middle of the band (at 0 where low = 0, at
+		      * half the rate where high = 0.5); 0: as the window leaves it */
+};
+
+/* Fills h[order + 1].  Returns 0, or -1 where the band cannot be scaled: an odd order
+ * has a zero at half the rate, whatever the taps. */
+int fir_design(const struct fir_band *band, double *h);
+
+/* Kaiser's beta for an attenuation in the stop band, dB (Kaiser 1974). */
+double fir_kaiser_beta(double attenuation);
+
+/* Response of n taps at frequency f over the rate: sum h[k] exp(-2 pi i f (k - shift)).
+ * shift = 0 for the filter as it runs, (n - 1) / 2 once its delay is taken out. */
+void fir_response(const double *h, size_t n, double f, double shift, double *real,
+	double *imaginary);
+
+/* A filter at work on interleaved frames, x[frame * channels + c], with zeros before the
+ * first.  Long filters run by overlap-save with Fourier transforms, short ones directly,
+ * by an estimate of the cost.  Memory and time per frame do not depend on the length of
+ * the stream. */
+struct fir;
+
+/* block: the most frames per call, 0 to let the filter choose what is fastest.  NULL when
+ * out of memory. */
+struct fir *fir_new(const double *h, size_t n, int channels, size_t block);
+void fir_free(struct fir *fir);
+
+size_t fir_block(const struct fir *fir);
+/* Points of its transform; 0 where it works directly. */
+size_t fir_transform(const struct fir *fir);
+
+/* Filters nframes <= fir_block() frames in place.  The split of a stream into calls
+ * changes rounding errors (1e-16 of the largest sample) and nothing else. */
+void fir_run(struct fir *fir, double *x, size_t nframes);
+
+#endif

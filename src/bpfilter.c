@@ -1,0 +1,184 @@
+/* bpfilter - band-pass every channel of a signal */
+#include "shell/msg.h"
+#include "shell/opt.h"
+#include "shell/signals.h"
+#include "shell/stats.h"
+#include "shell/tables.h"
+#include "signal/fir.h"
+#include <math.h>
+#include <string.h>
+
+static struct opt_list edges = {2, {70, 130}};
+static long order = 200, grid = 501;
+static int window, no_scale, zero_phase, response, taps_only, single;
+static double attenuation = 60, latency = INFINITY, rate = 10e3;
+static const char *const windows[] = {"hamming", "hann", "blackman", "kaiser", NULL};
+
+static const struct opt opts[] = {
+	{'b', "band", OPT_LIST, UNIT_FREQUENCY, &edges, 0, 1e12, "LO:HI",
+		"pass band; LO 0 makes a low-pass, HI half the rate a high-pass", 0, 0},
+	{'n', "order", OPT_INT, UNIT_COUNT, &order, 1, 1e6, "N", "taps less one", 0, 0},
+	{'w', "window", OPT_WORD, UNIT_NONE, &window, 0, 0,
+		"hamming|hann|blackman|kaiser", "window that cuts the ideal response",
+		windows, 0},
+	{'A', "attenuation", OPT_NUM, UNIT_DECIBEL, &attenuation, 0, 300, "A",
+		"stop-band attenuation the Kaiser window is made for", 0, 0},
+	{'k', "no-scale", OPT_FLAG, UNIT_NONE, &no_scale, 0, 0, 0,
+		"leave the gain in the middle of the band as the window makes it", 0, 0},
+	{'z', "zero-phase", OPT_FLAG, UNIT_NONE, &zero_phase, 0, 0, 0,
+		"take the delay of half the order out", 0, 0},
+	{'L', "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
+		"hold back no more than T of signal for speed", 0, 0},
+	{'F', "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
+		0},
+	{'R', "response", OPT_FLAG, UNIT_NONE, &response, 0, 0, 0,
+		"print the frequency response as a table and read nothing", 0, 0},
+	{'p', "taps", OPT_FLAG, UNIT_NONE, &taps_only, 0, 0, 0,
+		"print the taps as a table and read nothing", 0, 0},
+	{'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 1e12, "F",
+		"sampling rate for --response and --taps", 0, 0},
+	{'G', "grid", OPT_INT, UNIT_COUNT, &grid, 2, 1e7, "N",
+		"points of the response from 0 to half the rate", 0, 0},
+	OPT_END};
+
+static const struct prog prog = {"bpfilter", "Band-pass each channel of a signal.",
+	"[file]", "signal", "signal, or a table with --response or --taps", opts};
+
+/* Taps for this sampling rate; name is where the rate came from. */
+static double *make_taps(double fs, const char *name)
+{
+	struct fir_band band = {(int)order, edges.v[0] / fs, edges.v[1] / fs,
+		(enum fir_window)window, fir_kaiser_beta(attenuation), !no_scale};
+	double *h = xcalloc((size_t)order + 1, sizeof *h);
+
+	if (edges.v[0] >= edges.v[1])
+		die(EXIT_USAGE, "--band %g:%g: the first edge must be the lower one",
+			edges.v[0], edges.v[1]);
+	if (band.high > 0.5)
+		die(EXIT_RUN, "%s: --band ends at %g Hz, above half the rate of %g Hz",
+			name, edges.v[1], fs);
+	if (zero_phase && order % 2)
+		die(EXIT_USAGE,
+			"--zero-phase needs an even --order: half of %ld is no whole "
+			"number of samples",
+			order);
+	if (fir_design(&band, h) < 0)
+		die(EXIT_USAGE,
+			"a high-pass of odd --order %ld has no gain at half the rate: "
+			"use an even order or --no-scale",
+			order);
+	return h;
+}
+
+static void print_response(const double *h)
+{
+	struct table_out *t = table_create(
+		NULL, opt_cmd(NULL, NULL), "Hz 1 dB rad", "frequency gain level phase");
+	double shift = zero_phase ? 0.5 * (double)order : 0;
+
+	for (long i = 0; i < grid; i++) {
+		double f = 0.5 * (double)i / (double)(grid - 1), re, im, gain;
+
+		fir_response(h, (size_t)order + 1, f, shift, &re, &im);
+		gain = hypot(re, im);
+		table_put(t, f * rate);
+		table_put(t, gain);
+		table_put(t, 20 * log10(gain));
+		table_put(t, atan2(im, re));
+		table_end_row(t);
+	}
+	table_done(t);
+}
+
+static void print_taps(const double *h)
+{
+	struct table_out *t = table_create(NULL, opt_cmd(NULL, NULL), "s 1", "t tap");
+
+	for (long k = 0; k <= order; k++) {
+		table_put(t, ((double)k - (zero_phase ? 0.5 * (double)order : 0)) / rate);
+		table_put(t, h[k]);
+		table_end_row(t);
+	}
+	table_done(t);
+}
+
+static void check_finite(
+	const double *x, size_t nframes, int channels, double frame, const char *name)
+{
+	size_t n = nframes * (size_t)channels, i;
+	double bad = 0;
+
+	for (i = 0; i < n; i++)
+		bad += x[i] - x[i]; /* 0, or nan where x is not finite */
+	if (bad == 0)
+		return;
+	for (i = 0; isfinite(x[i]); i++)
+		;
+	die(EXIT_RUN, "%s: frame %.0f, channel %zu: sample is not a finite number", name,
+		frame + (double)(i / (size_t)channels), i % (size_t)channels + 1);
+}
+
+/* Writes the filtered frames, less those still to be skipped. */
+static void put(struct signal_out *out, struct fir *fir, double *x, size_t n,
+	size_t *skip, int channels)
+{
+	size_t drop = n < *skip ? n : *skip;
+
+	fir_run(fir, x, n);
+	*skip -= drop;
+	signal_write(out, x + drop * (size_t)channels, n - drop);
+}
+
+static void run(const char *path)
+{
+	struct signal_in *in = signal_open(path, NULL);
+	struct signal_format f = *signal_format(in);
+	double *h = make_taps((double)f.rate, signal_name(in)), frames = 0;
+	size_t hold =
+		latency * (double)f.rate < 1e6 ? (size_t)(latency * (double)f.rate) : 0;
+	size_t skip = zero_phase ? (size_t)order / 2 : 0, tail = skip, n;
+	struct fir *fir = fir_new(
+		h, (size_t)order + 1, f.channels, isfinite(latency) && !hold ? 1 : hold);
+	struct signal_out *out;
+	double *x;
+
+	if (!fir)
+		die(EXIT_RUN, "no memory for order %ld", order);
+	f.cmd = opt_cmd(f.cmd, NULL);
+	f.single = single;
+	out = signal_create(NULL, &f);
+	x = xcalloc(fir_block(fir) * (size_t)f.channels, sizeof *x);
+	while ((n = signal_read(in, x, fir_block(fir))) > 0) {
+		check_finite(x, n, f.channels, frames, signal_name(in));
+		frames += (double)n;
+		put(out, fir, x, n, &skip, f.channels);
+	}
+	for (; tail > 0 && frames > 0; tail -= n) {
+		n = tail < fir_block(fir) ? tail : fir_block(fir);
+		memset(x, 0, n * (size_t)f.channels * sizeof *x);
+		put(out, fir, x, n, &skip, f.channels);
+	}
+	signal_done(out);
+	signal_close(in);
+	stats_add("frames", frames);
+	stats_add("channels", f.channels);
+	stats_add("points", (double)fir_transform(fir));
+	fir_free(fir);
+}
+
+int main(int argc, char **argv)
+{
+	int i = opt_parse(&prog, argc, argv);
+
+	if (response || taps_only) {
+		double *h = make_taps(rate, "--rate");
+
+		if (response)
+			print_response(h);
+		else
+			print_taps(h);
+	} else {
+		run(argv[i]);
+	}
+	return shell_done(0);
+}

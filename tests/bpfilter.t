@@ -1,0 +1,141 @@
+#!/bin/sh
+# bpfilter: taps, response, streaming, delay, bad input
+. "${0%/*}/tap.sh"
+
+# au RATE CHANNELS <values: an AU stream of big-endian doubles, by awk and printf
+au() {
+	awk -v rate="$1" -v channels="$2" '
+	function byte(b) { printf "\\%03o", b }
+	function word(w) {
+		byte(int(w / 16777216)); byte(int(w / 65536) % 256)
+		byte(int(w / 256) % 256); byte(w % 256)
+	}
+	function put(x,   s, e, m, hi, lo) {
+		if (x == "nan") { word(2146959360); word(0); return }
+		if (x == "inf") { word(2146435072); word(0); return }
+		if (x == 0) { word(0); word(0); return }
+		s = x < 0; x = s ? -x : x; e = 1023
+		while (x >= 2) { x /= 2; e++ }
+		while (x < 1) { x *= 2; e-- }
+		m = x - 1; hi = int(m * 1048576); lo = (m * 1048576 - hi) * 4294967296
+		word(s * 2147483648 + e * 1048576 + hi); word(int(lo))
+	}
+	BEGIN { printf ".snd"; word(24); word(4294967295); word(7); word(rate); word(channels) }
+	{ for (i = 1; i <= NF; i++) put($i) }' >au.txt
+	# shellcheck disable=SC2059
+	printf "$(cat au.txt)"
+}
+
+# samples FILE: the doubles of an AU stream, one a line
+samples() {
+	header=$(od -An -tu1 -j4 -N4 "$1" | awk '{ print (($1 * 256 + $2) * 256 + $3) * 256 + $4 }')
+	tail -c +$((header + 1)) "$1" | od -An -v -tu1 -w8 | awk '{
+		s = $1 >= 128; e = ($1 % 128) * 16 + int($2 / 16); m = $2 % 16
+		for (i = 3; i <= 8; i++) m = m * 256 + $i
+		if (e == 0 && m == 0) { print 0; next }
+		printf "%s%.17g\n", s ? "-" : "", (1 + m / 4503599627370496) * 2 ^ (e - 1023) }'
+}
+
+impulse() {
+	awk -v n="$1" -v at="$2" 'BEGIN { for (i = 0; i < n; i++) print i == at ? 1 : 0 }'
+}
+
+# response: the filter of the thesis at 10 kHz
+bpfilter -R >response.tsv
+for want in 0:-24.5 20:-17.4 50:-6.3 70:-2.2 100:0 130:-2.1 150:-6.2 200:-30.5 2000:-61.9; do
+	got=$(awk -F '\t' -v f="${want%:*}" '$1 == f { print $3 }' response.tsv)
+	near "level at ${want%:*} Hz" "$got" "${want#*:}" 0.05
+done
+got=$(bpfilter -R -k | awk -F '\t' '$1 == 100 { print $3 }')
+near "without scaling the middle is at -4.57 dB" "$got" -4.57 0.005
+got=$(bpfilter -R -n 800 | awk -F '\t' '$1 == 50 { print $3 }')
+near "order 800 reaches -48 dB at 50 Hz" "$got" -48 0.5
+got=$(bpfilter -R -z | awk -F '\t' '$1 == 80 || $1 == 120 { s += ($4 < 0 ? -$4 : $4) } END { print s }')
+near "no phase in the band without the delay" "$got" 0 1e-9
+
+# an impulse gives the taps, causal and with the delay taken out
+bpfilter -p | column tap /dev/stdin >taps
+impulse 500 50 | au 10000 1 >impulse.au
+bpfilter impulse.au >h.au
+samples h.au | sed -n 51,251p | paste taps - | awk '
+	{ d = $1 - $2; if (d < 0) d = -d; if (d > m) m = d } END { print m + 0 }' >worst
+near "an impulse gives the taps" "$(cat worst)" 0 1e-16
+is "as many frames out as in" "$(samples h.au | wc -l)" 500
+bpfilter -z impulse.au >z.au
+is "--zero-phase: as many frames out as in" "$(samples z.au | wc -l)" 500
+samples z.au | sed -n 1,151p >left
+samples h.au | sed -n 101,251p | paste left - | awk '
+	{ d = $1 - $2; if (d < 0) d = -d; if (d > m) m = d } END { print m + 0 }' >worst
+near "--zero-phase shifts by half the order" "$(cat worst)" 0 1e-16
+impulse 60 10 | au 10000 1 | bpfilter -z >short.au
+is "--zero-phase on a record shorter than the filter" "$(samples short.au | wc -l)" 60
+
+# channels do not mix; the pipe's block size does not matter
+awk 'BEGIN { for (i = 0; i < 5000; i++) print sin(i * i / 900), i % 37 / 37 - 0.5, 0 }' >three
+au 10000 3 <three >three.au
+bpfilter three.au >three.out
+awk '{ print $2 }' three | au 10000 1 | bpfilter >one.out
+samples three.out | awk 'NR % 3 == 2' >a
+samples one.out >b
+same "a channel among three is as alone" a b
+is "a silent channel stays silent" "$(samples three.out | awk 'NR % 3 == 0 && $1 != 0' | wc -l)" 0
+(
+	head -c 1000 three.au
+	sleep 0.05
+	tail -c +1001 three.au | dd bs=777 2>/dev/null
+) | bpfilter >dripped
+cat three.au | bpfilter >poured
+same "a dripping pipe gives the same bytes" dripped poured
+bpfilter --latency 1ms three.au >prompt.au
+paste a b >/dev/null
+samples three.out >a
+samples prompt.au | paste a - | awk '
+	{ d = $1 - $2; if (d < 0) d = -d; if (d > m) m = d } END { print m + 0 }' >worst
+near "--latency changes nothing but rounding" "$(cat worst)" 0 2e-15
+
+# numpy and scipy, where they are; bands much narrower than 10 Hz magnify the last bits of
+# sin() when scaled, on both sides
+if python3 -c 'import scipy.signal' 2>/dev/null; then py=python3; else py=/usr/bin/python3; fi
+if $py -c 'import scipy.signal' 2>/dev/null; then
+	cat >compare.py <<'END'
+import subprocess, sys
+import numpy as np
+from scipy.signal import firwin, kaiser_beta
+worst = 0
+for n in (2, 3, 31, 200, 1001, 20000):
+    for lo, hi in ((70, 130), (0.1, 4999.9), (1000, 1010), (0, 60), (4000, 5000)):
+        for w in ("hamming", "hann", "blackman", "kaiser"):
+            for scale in (True, False):
+                if hi == 5000 and n % 2:
+                    continue
+                args = ["bpfilter", "-p", "-n", str(n), "-b", "%g:%g" % (lo, hi), "-w", w]
+                out = subprocess.run(args + ([] if scale else ["-k"]), check=True,
+                                     capture_output=True, text=True).stdout
+                h = np.array([float(l.split("\t")[1]) for l in out.split("\n")
+                              if l and l[0] in "-0123456789"])
+                window = ("kaiser", kaiser_beta(60)) if w == "kaiser" else w
+                cut = hi if lo == 0 else lo if hi == 5000 else [lo, hi]
+                g = firwin(n + 1, cut, window=window, pass_zero=lo == 0, scale=scale, fs=1e4)
+                worst = max(worst, abs(h - g).max())
+print(worst)
+END
+	near "scipy.signal.firwin gives the same taps" "$($py compare.py)" 0 1e-14
+else
+	skip "scipy.signal.firwin gives the same taps" "no scipy"
+fi
+
+# what it refuses
+fails "no such file" 1 'none.au' bpfilter none.au
+fails "edges the wrong way round" 2 'first edge' bpfilter -b 130:70 impulse.au
+fails "edge above half the rate" 1 'impulse.au.*above half the rate' bpfilter -b 70:5001 impulse.au
+fails "odd order with --zero-phase" 2 'even --order' bpfilter -z -n 201 impulse.au
+fails "odd order for a high-pass" 2 'odd --order' bpfilter -n 201 -b 100:5000 impulse.au
+awk 'NR == 4001 { $2 = "nan" } 1' three | au 10000 3 >nan.au
+fails "a nan is named" 1 'nan.au: frame 4000, channel 2' bpfilter nan.au
+awk 'NR == 1 { $3 = "inf" } 1' three | au 10000 3 >inf.au
+fails "an infinity is named" 1 'inf.au: frame 0, channel 3' bpfilter inf.au
+head -c 1001 three.au >cut.au
+fails "a stream cut inside a frame" 1 'cut.au' bpfilter cut.au
+fails "a full disk" 1 'o space' sh -c 'bpfilter three.au >/dev/full'
+
+done_testing
