@@ -5,7 +5,12 @@
 #	make check        build and run the tests
 #	make install      PREFIX and DESTDIR as usual
 #
-# The other targets are listed by "make help".
+#	make bin/duet     one program alone, with the libraries it needs and no others
+#	make check-long   the longer checks; make check-all: both
+#	make bench        error against run time; one domain: make bench-contact
+#	make extremes-contact  the table of extreme scenes of a domain
+#	make lint asan fuzz    linters, sanitizers, fuzzers
+#	make uninstall dist clean
 
 VERSION = 0.1.0
 PREFIX ?= /usr/local
@@ -62,7 +67,7 @@ UNITS := $(patsubst tests/unit/%.c,$(B)/unit/%,$(wildcard tests/unit/*.c))
 LONG_UNITS := $(patsubst tests/long/%.c,$(B)/long/%,$(wildcard tests/long/*.c))
 BENCH_BINS := $(patsubst tests/bench/%.c,$(B)/bench/%,$(wildcard tests/bench/*.c))
 
-.PHONY: all check check-long bench lint asan fuzz demo install uninstall dist clean help
+.PHONY: all check check-long check-all bench lint asan fuzz demo install uninstall dist clean help
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -99,11 +104,17 @@ $(B)/$(1)/%: $(B)/tests/$(1)/%.o $(B)/libwearpipe.a $(B)/libshell.a
 endef
 $(foreach d,unit long bench,$(eval $(call single,$(d))))
 
+TESTS = tests/*.t tests/extremes/*.t $(UNITS)
+LONG_TESTS = tests/long/*.t $(LONG_UNITS)
+
 check: all $(UNITS)
-	@BIN=$(abspath $(BIN)) tests/run tests/*.t tests/extremes/*.t $(UNITS)
+	@BIN=$(abspath $(BIN)) tests/run $(TESTS)
 
 check-long: all $(LONG_UNITS)
-	@BIN=$(abspath $(BIN)) tests/run tests/long/*.t $(LONG_UNITS)
+	@BIN=$(abspath $(BIN)) tests/run $(LONG_TESTS)
+
+check-all: all $(UNITS) $(LONG_UNITS)
+	@BIN=$(abspath $(BIN)) tests/run $(TESTS) $(LONG_TESTS)
 
 # make bench, or one domain: make bench-contact
 bench: $(patsubst tests/bench/%.sh,bench-%,$(wildcard tests/bench/*.sh))
@@ -118,18 +129,57 @@ lint: all
 	@scripts/lint
 
 asan:
-	ASAN_OPTIONS=detect_leaks=0 $(MAKE) B=build/asan BIN=build/asan/bin check \
-		CFLAGS='-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer'
+	ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 \
+		$(MAKE) B=build/asan BIN=build/asan/bin check \
+		CFLAGS='-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all'
 
+# Needs clang; SECONDS for each target.
+SECONDS = 30
 fuzz:
-	@scripts/fuzz
+	@scripts/fuzz $(SECONDS)
 
+# A measured surface instead of a generated one: make demo SURFACE=file
 demo:
 	@scripts/deps
-	@$(MAKE) all
-	@$(MAKE) -C examples/demo SURFACE=$(SURFACE)
+	@$(MAKE) --no-print-directory all
+	@$(MAKE) --no-print-directory -C examples/demo BIN=$(abspath $(BIN)) SURFACE="$(SURFACE)"
+
+$(B)/wearpipe.bash: $(BUILT:%=$(BIN)/%) scripts/completion
+	@scripts/completion $(BUILT:%=$(BIN)/%) >$@
+
+PUBLIC = num contact signal life
+MAN1 = $(wildcard man/*.1)
+D = $(DESTDIR)$(PREFIX)
+
+install: all $(B)/libwearpipe.a $(B)/wearpipe.bash
+	install -d $(D)/bin $(D)/lib/pkgconfig $(D)/share/man/man1 $(D)/share/man/man5 \
+		$(D)/share/man/man7 $(D)/share/bash-completion/completions \
+		$(PUBLIC:%=$(D)/include/wearpipe/%)
+	install $(BUILT:%=$(BIN)/%) $(D)/bin
+	install -m 644 $(B)/libwearpipe.a $(D)/lib
+	for d in $(PUBLIC); do install -m 644 lib/$$d/*.h $(D)/include/wearpipe/$$d || exit; done
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' wearpipe.pc.in \
+		>$(D)/lib/pkgconfig/wearpipe.pc
+	install -m 644 $(MAN1) $(D)/share/man/man1
+	install -m 644 man/wearpipe-streams.5 $(D)/share/man/man5
+	install -m 644 man/wearpipe.7 $(D)/share/man/man7
+	install -m 644 $(B)/wearpipe.bash $(D)/share/bash-completion/completions/wearpipe
+	for p in $(BUILT); do ln -sf wearpipe $(D)/share/bash-completion/completions/$$p || exit; done
+
+uninstall:
+	rm -f $(BUILT:%=$(D)/bin/%) $(D)/lib/libwearpipe.a $(D)/lib/pkgconfig/wearpipe.pc \
+		$(MAN1:man/%=$(D)/share/man/man1/%) $(D)/share/man/man5/wearpipe-streams.5 \
+		$(D)/share/man/man7/wearpipe.7 $(D)/share/bash-completion/completions/wearpipe \
+		$(BUILT:%=$(D)/share/bash-completion/completions/%)
+	rm -rf $(D)/include/wearpipe
+
+dist:
+	git archive --prefix=wearpipe-$(VERSION)/ -o wearpipe-$(VERSION).tar.gz HEAD
+
+help:
+	@sed -n 's/^#\t/  /p; /^PROGRAMS/q' Makefile
 
 clean:
-	rm -rf bin build
+	rm -rf build bin
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

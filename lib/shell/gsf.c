@@ -68,6 +68,9 @@ void gsf_read(const struct place *at, struct record *r)
 
 		ungetc(c, at->f);
 		line = header_line(at, &size);
+		if (!line)
+			die(EXIT_RUN, "%s: record %ld: the stream ends inside the header",
+				at->name, at->record);
 		value = split(line);
 		if (!value)
 			die(EXIT_RUN, "%s: record %ld: GSF header line '%.40s'", at->name,
