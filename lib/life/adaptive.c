@@ -1,0 +1,327 @@
+/* adaptive.c - see adaptive.h */
+#include "life/adaptive.h"
+#include "life/grey.h"
+#include "life/noise.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MONITOR = 20 };                 /* rows of the innovation monitor */
+static const double MONITOR_LIMIT = 4; /* of the mean squared innovation */
+static const double MONITOR_CLIP = 16; /* so that one outlier is not a drift */
+static const double MEMORY = 0.05;     /* weight of the newest innovation */
+
+/* Sums of the grey fits of all particles, as struct grey has them for one. */
+struct fits {
+	double *tail, *mean_u, *mean_x, *suu, *sux;
+	uint32_t *index;
+};
+
+struct adaptive {
+	struct adaptive_par par;
+	struct draw *draw;
+	struct filter *filter;
+	struct order *order;
+	struct noise *noise;
+	struct fits fits;
+	double *mean; /* [N] prior means */
+	double scale; /* power of two that values are divided by */
+	long rows;
+	double time, observed_time;
+	double mean_gap;
+	double *past, *gap; /* rings of the last rows: values and gaps before */
+	double *line_up;    /* past in order */
+	int newest, filled;
+	double process;             /* sigma_u */
+	double innovation, carried; /* running mean squares */
+	double z2[MONITOR];
+	int nz;
+	unsigned long restarts;
+};
+
+static double *column(struct adaptive *a)
+{
+	return calloc(a->par.filter.particles, sizeof(double));
+}
+
+struct adaptive *adaptive_new(const struct adaptive_par *par)
+{
+	struct adaptive *a = calloc(1, sizeof *a);
+	size_t depth = (size_t)par->order.largest;
+
+	if (!a)
+		return NULL;
+	a->par = *par;
+	a->par.filter.depth = par->order.largest;
+	a->draw = draw_new(par->seed, par->realisation, RNG_FILTER);
+	a->filter = a->draw ? filter_new(&a->par.filter, a->draw) : NULL;
+	a->order = order_new(&par->order);
+	a->noise = noise_new();
+	a->fits = (struct fits){column(a), column(a), column(a), column(a), column(a),
+		calloc(par->filter.particles, sizeof(uint32_t))};
+	a->mean = column(a);
+	a->past = calloc(depth, sizeof *a->past);
+	a->gap = calloc(depth, sizeof *a->gap);
+	a->line_up = calloc(depth, sizeof *a->line_up);
+	if (!a->filter || !a->order || !a->noise || !a->fits.tail || !a->fits.mean_u ||
+		!a->fits.mean_x || !a->fits.suu || !a->fits.sux || !a->fits.index ||
+		!a->mean || !a->past || !a->gap || !a->line_up) {
+		adaptive_free(a);
+		return NULL;
+	}
+	return a;
+}
+
+void adaptive_free(struct adaptive *a)
+{
+	if (!a)
+		return;
+	draw_free(a->draw);
+	filter_free(a->filter);
+	order_free(a->order);
+	noise_free(a->noise);
+	free(a->fits.tail);
+	free(a->fits.mean_u);
+	free(a->fits.mean_x);
+	free(a->fits.suu);
+	free(a->fits.sux);
+	free(a->fits.index);
+	free(a->mean);
+	free(a->past);
+	free(a->gap);
+	free(a->line_up);
+	free(a);
+}
+
+const struct order *adaptive_order(const struct adaptive *a)
+{
+	return a->order;
+}
+
+const struct filter *adaptive_filter(const struct adaptive *a)
+{
+	return a->filter;
+}
+
+unsigned long adaptive_restarts(const struct adaptive *a)
+{
+	return a->restarts;
+}
+
+/* One older point into the fit of every particle: grey_add() side by side. */
+static void add_lag(struct fits *f, size_t n, const double *x, double gap, int rows)
+{
+	double share = 1.0 / rows, rest = 1 - share;
+
+	for (size_t i = 0; i < n; i++) {
+		double v = x[f->index[i]], part = v * gap;
+		double du = f->tail[i] + 0.5 * part - f->mean_u[i];
+		double dx = v - f->mean_x[i];
+
+		f->mean_u[i] += share * du;
+		f->mean_x[i] += share * dx;
+		f->suu[i] += rest * du * du;
+		f->sux[i] += rest * du * dx;
+		f->tail[i] += part;
+	}
+}
+
+/* Prior mean of every particle: the grey forecast of its own last p states.  The oldest
+ * of the window only opens the first interval (see grey.h). */
+static void forecast_particles(struct adaptive *a, int p, double h)
+{
+	struct fits *f = &a->fits;
+	size_t n = a->par.filter.particles, bytes = n * sizeof(double);
+	int depth = a->par.filter.depth, changed;
+	double span = 0;
+
+	memset(f->tail, 0, bytes);
+	memset(f->mean_u, 0, bytes);
+	memset(f->mean_x, 0, bytes);
+	memset(f->suu, 0, bytes);
+	memset(f->sux, 0, bytes);
+	for (int lag = 0; lag < p - 1; lag++) {
+		double gap = a->gap[(a->newest - lag + depth) % depth];
+
+		add_lag(f, n, filter_lag(a->filter, lag, f->index, &changed), gap,
+			lag + 1);
+		span += gap;
+	}
+	for (size_t i = 0; i < n; i++) {
+		double rate = f->suu[i] > 0 ? f->sux[i] / f->suu[i] : 0;
+		double level = f->mean_x[i] + rate * (f->tail[i] - f->mean_u[i]);
+
+		a->mean[i] = grey_curve(level, rate, span + h, h);
+	}
+}
+
+static void hold_particles(struct adaptive *a)
+{
+	int changed;
+	const double *x = filter_lag(a->filter, 0, a->fits.index, &changed);
+
+	for (size_t i = 0; i < a->par.filter.particles; i++)
+		a->mean[i] = x[a->fits.index[i]];
+}
+
+/* Remembers a value for a restart and the gap before it. */
+static void push_past(struct adaptive *a, double y, double gap)
+{
+	int depth = a->par.filter.depth;
+
+	a->newest = (a->newest + 1) % depth;
+	a->filled += a->filled < depth;
+	a->past[a->newest] = y;
+	a->gap[a->newest] = gap;
+}
+
+static void start_particles(struct adaptive *a, double noise)
+{
+	int depth = a->par.filter.depth;
+
+	for (int k = 0; k < a->filled; k++)
+		a->line_up[k] = a->past[(a->newest - a->filled + 1 + k + depth) % depth];
+	filter_start(a->filter, a->line_up, a->filled, sqrt(3) * noise);
+	a->nz = 0;
+}
+
+/* sigma_v in scaled units; never 0, which no weight could bear. */
+static double observation_noise(const struct adaptive *a)
+{
+	double least = 1e-9 * (1 + fabs(a->past[a->newest]));
+	double s = isnan(a->par.noise) ? noise_scale(a->noise) : a->par.noise / a->scale;
+
+	return s > least ? s : least;
+}
+
+/* Process noise below which a filter of that order follows itself away from the data:
+ * half of sigma_v up to order 40, rising to sigma_v at 60. */
+static double process_floor(int order, double noise)
+{
+	return noise * (order <= 40 ? 0.5 : order >= 60 ? 1 : 0.5 + (order - 40) / 40.0);
+}
+
+static double process_noise(const struct adaptive *a, int order, double noise, double gap)
+{
+	double floor = process_floor(order, noise);
+	double s = isnan(a->par.process) ? a->process : a->par.process / a->scale;
+	double steps = a->mean_gap > 0 ? gap / a->mean_gap : 1;
+
+	if (isnan(a->par.process) && s < floor)
+		s = floor;
+	return s * sqrt(fmin(16, fmax(1, steps)));
+}
+
+/* Excess of the mean squared innovation over what noise and the spread of the particles
+ * account for. */
+static void learn_process(
+	struct adaptive *a, double e, double variance, double process, double noise)
+{
+	double expected = variance + noise * noise, excess;
+	double e2 = fmin(e * e, MONITOR_CLIP * expected);
+
+	if (!(a->innovation > 0)) {
+		a->innovation = expected;
+		a->carried = expected - process * process;
+	}
+	a->innovation += MEMORY * (e2 - a->innovation);
+	a->carried += MEMORY * (expected - process * process - a->carried);
+	excess = a->innovation - a->carried;
+	a->process = excess > 0 ? sqrt(excess) : 0;
+}
+
+/* 1 when the particles have lost the observations. */
+static int monitor(struct adaptive *a, double e, double variance)
+{
+	double sum = 0;
+
+	a->z2[a->nz++ % MONITOR] = fmin(e * e / variance, MONITOR_CLIP);
+	if (a->nz < MONITOR)
+		return 0;
+	for (int i = 0; i < MONITOR; i++)
+		sum += a->z2[i];
+	if (a->nz == 2 * MONITOR)
+		a->nz = MONITOR;
+	return sum > MONITOR * MONITOR_LIMIT;
+}
+
+static void observe(struct adaptive *a, double y, double gap, double process,
+	struct adaptive_row *row)
+{
+	double noise = observation_noise(a), variance = filter_variance(a->filter);
+	double e = y - row->prediction;
+
+	filter_update(a->filter, y, noise);
+	row->state = filter_mean(a->filter);
+	row->ess = filter_ess(a->filter);
+	learn_process(a, e, variance, process, noise);
+	push_past(a, y, gap);
+	if (monitor(a, e, variance + noise * noise)) {
+		start_particles(a, noise);
+		row->state = filter_mean(a->filter);
+		a->restarts++;
+	}
+}
+
+/* The first row with a value. */
+static void begin(struct adaptive *a, double t, double y, struct adaptive_row *row)
+{
+	int exponent = 0;
+
+	frexp(y, &exponent);
+	a->scale = y != 0 ? ldexp(1, exponent < -1000 ? -1000 : exponent) : 1;
+	y /= a->scale;
+	order_add(a->order, y, 0);
+	noise_add(a->noise, y, 0);
+	push_past(a, y, 0);
+	start_particles(a, observation_noise(a));
+	a->observed_time = t;
+	row->state = filter_mean(a->filter);
+	row->ess = filter_ess(a->filter);
+}
+
+static void advance(struct adaptive *a, double t, double y, struct adaptive_row *row)
+{
+	double gap = t - a->time, noise = observation_noise(a), process;
+	int order = order_chosen(a->order);
+
+	if (order > filter_depth(a->filter))
+		order = filter_depth(a->filter);
+	row->order = order;
+	row->grey = order_forecast(a->order, t - a->observed_time);
+	process = process_noise(a, order, noise, gap);
+	if (order >= GREY_ORDER_MIN)
+		forecast_particles(a, order, gap);
+	else
+		hold_particles(a);
+	filter_predict(a->filter, a->mean, process);
+	row->prediction = row->state = filter_mean(a->filter);
+	row->ess = filter_ess(a->filter);
+	a->mean_gap += (gap - a->mean_gap) / fmin((double)a->rows, 50);
+	if (isnan(y)) {
+		push_past(a, row->prediction, gap);
+		return;
+	}
+	y /= a->scale;
+	order_add(a->order, y, t - a->observed_time);
+	noise_add(a->noise, y, t - a->observed_time);
+	a->observed_time = t;
+	observe(a, y, gap, process, row);
+}
+
+void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *row)
+{
+	*row = (struct adaptive_row){NAN, NAN, NAN, NAN, NAN, 0};
+	if (a->rows > 0)
+		advance(a, t, y, row);
+	else if (!isnan(y))
+		begin(a, t, y, row);
+	else
+		return;
+	a->time = t;
+	a->rows++;
+	row->noise = observation_noise(a) * a->scale;
+	row->grey *= a->scale;
+	row->prediction *= a->scale;
+	row->state *= a->scale;
+}

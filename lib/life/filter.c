@@ -1,0 +1,222 @@
+/* filter.c - see filter.h */
+#include "life/filter.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One remembered step. */
+struct step {
+	double *x;
+	uint32_t *ancestor; /* of the particles after it, where it was resampled */
+	int resampled;
+};
+
+struct filter {
+	struct filter_par par;
+	struct draw *draw;
+	struct step *ring;
+	int newest, filled;
+	double *log_weight, *weight;
+	double sum; /* of weight */
+	double mean, ess;
+	unsigned long resamplings;
+};
+
+struct filter *filter_new(const struct filter_par *par, struct draw *draw)
+{
+	struct filter *f = calloc(1, sizeof *f);
+	size_t n = par->particles;
+	int good;
+
+	if (!f)
+		return NULL;
+	f->par = *par;
+	f->draw = draw;
+	f->ring = calloc((size_t)par->depth, sizeof *f->ring);
+	f->log_weight = calloc(n, sizeof *f->log_weight);
+	f->weight = calloc(n, sizeof *f->weight);
+	good = f->ring && f->log_weight && f->weight;
+	for (int k = 0; good && k < par->depth; k++) {
+		f->ring[k].x = calloc(n, sizeof *f->ring[k].x);
+		f->ring[k].ancestor = calloc(n, sizeof *f->ring[k].ancestor);
+		good = f->ring[k].x && f->ring[k].ancestor;
+	}
+	if (!good) {
+		filter_free(f);
+		return NULL;
+	}
+	return f;
+}
+
+void filter_free(struct filter *f)
+{
+	if (!f)
+		return;
+	for (int k = 0; f->ring && k < f->par.depth; k++) {
+		free(f->ring[k].x);
+		free(f->ring[k].ancestor);
+	}
+	free(f->ring);
+	free(f->log_weight);
+	free(f->weight);
+	free(f);
+}
+
+size_t filter_size(const struct filter *f)
+{
+	return f->par.particles;
+}
+
+int filter_depth(const struct filter *f)
+{
+	return f->filled;
+}
+
+static struct step *push_step(struct filter *f)
+{
+	f->newest = (f->newest + 1) % f->par.depth;
+	if (f->filled < f->par.depth)
+		f->filled++;
+	f->ring[f->newest].resampled = 0;
+	return &f->ring[f->newest];
+}
+
+static void weigh_equally(struct filter *f)
+{
+	for (size_t i = 0; i < f->par.particles; i++) {
+		f->log_weight[i] = 0;
+		f->weight[i] = 1;
+	}
+	f->sum = f->ess = (double)f->par.particles;
+}
+
+static double weighted_mean(const struct filter *f)
+{
+	const double *x = f->ring[f->newest].x;
+	double sum = 0;
+
+	for (size_t i = 0; i < f->par.particles; i++)
+		sum += f->weight[i] * x[i];
+	return sum / f->sum;
+}
+
+void filter_start(struct filter *f, const double *past, int count, double spread)
+{
+	f->filled = 0;
+	for (int k = 0; k < count; k++) {
+		struct step *s = push_step(f);
+
+		for (size_t i = 0; i < f->par.particles; i++)
+			s->x[i] = past[k] + spread * (2 * draw_uniform(f->draw) - 1);
+	}
+	weigh_equally(f);
+	f->mean = weighted_mean(f);
+}
+
+const double *filter_lag(const struct filter *f, int lag, uint32_t *index, int *changed)
+{
+	const struct step *s = &f->ring[(f->newest - lag + f->par.depth) % f->par.depth];
+	size_t n = f->par.particles;
+	int first = lag == 0;
+
+	if (s->resampled && first)
+		memcpy(index, s->ancestor, n * sizeof *index);
+	else if (s->resampled)
+		for (size_t i = 0; i < n; i++)
+			index[i] = s->ancestor[index[i]];
+	else if (first)
+		for (size_t i = 0; i < n; i++)
+			index[i] = (uint32_t)i;
+	*changed = first || s->resampled;
+	return s->x;
+}
+
+void filter_predict(struct filter *f, const double *mean, double sigma)
+{
+	struct step *s;
+	double *x;
+
+	if (f->ring[f->newest].resampled)
+		weigh_equally(f);
+	s = push_step(f);
+	x = s->x;
+	draw_normals(f->draw, x, f->par.particles);
+	for (size_t i = 0; i < f->par.particles; i++)
+		x[i] = mean[i] + sigma * x[i];
+	f->mean = weighted_mean(f);
+}
+
+double filter_mean(const struct filter *f)
+{
+	return f->mean;
+}
+
+double filter_variance(const struct filter *f)
+{
+	const double *x = f->ring[f->newest].x;
+	double sum = 0;
+
+	for (size_t i = 0; i < f->par.particles; i++)
+		sum += f->weight[i] * (x[i] - f->mean) * (x[i] - f->mean);
+	return sum / f->sum;
+}
+
+double filter_ess(const struct filter *f)
+{
+	return f->ess;
+}
+
+unsigned long filter_resamplings(const struct filter *f)
+{
+	return f->resamplings;
+}
+
+/* Adds the log-likelihood of y; returns the largest log-weight. */
+static double weigh(struct filter *f, double y, double noise)
+{
+	const double *x = f->ring[f->newest].x;
+	double *lw = f->log_weight, top = -INFINITY, nu = f->par.freedom;
+
+	for (size_t i = 0; i < f->par.particles; i++) {
+		double z = (y - x[i]) / noise;
+
+		lw[i] -= nu > 0 ? 0.5 * (nu + 1) * log1p(z * z / nu) : 0.5 * z * z;
+		if (lw[i] > top)
+			top = lw[i];
+	}
+	return top;
+}
+
+/* log of the constant of the likelihood */
+static double log_constant(const struct filter *f, double noise)
+{
+	double nu = f->par.freedom, pi = acos(-1);
+
+	if (nu > 0)
+		return lgamma(0.5 * (nu + 1)) - lgamma(0.5 * nu) - 0.5 * log(nu * pi) -
+		       log(noise);
+	return -0.5 * log(2 * pi) - log(noise);
+}
+
+double filter_update(struct filter *f, double y, double noise)
+{
+	struct step *s = &f->ring[f->newest];
+	double before = f->sum, top = weigh(f, y, noise), squares = 0;
+	size_t n = f->par.particles;
+
+	f->sum = 0;
+	for (size_t i = 0; i < n; i++) {
+		f->log_weight[i] -= top;
+		f->weight[i] = exp(f->log_weight[i]);
+		f->sum += f->weight[i];
+		squares += f->weight[i] * f->weight[i];
+	}
+	f->ess = f->sum * f->sum / squares;
+	f->mean = weighted_mean(f);
+	if (f->par.share >= 1 || f->ess < f->par.share * (double)n) {
+		resample(f->par.scheme, f->draw, f->weight, f->sum, n, s->ancestor);
+		s->resampled = 1;
+		f->resamplings++;
+	}
+	return log_constant(f, noise) + top + log(f->sum / before);
+}

@@ -1,0 +1,59 @@
+/* grey.h - the grey model GM(1,1), fitted backward from the newest point
+ *
+ * With x1 the running integral of a positive series x, dx1/dt + a x1 = b is fitted by
+ * least squares, x_k = -a z_k + b with z_k the mean of x1 over the last interval (Deng
+ * 1982; Li's thesis, eq. 4-23 to 4-25 with x^(0) on the right-hand side).  Points are
+ * taken newest first: with T the integral of all newer points, z = W - T - x dt / 2, so
+ * x regresses on u = T + x dt / 2 with slope a, and the total W drops out.  Adding one
+ * older point is one update of centred (Welford) sums, so every order up to P costs
+ * O(P) in all, no prefix sum grows with the stream, and nothing is divided by a.
+ *
+ * Time is in steps (any unit); unequal gaps weigh the integral.  The oldest point of a
+ * window opens its first interval, and its own value has no say.
+ *
+ *	struct grey g = { 0 };
+ *	for (int k = n; k-- > 0;)
+ *		grey_add(&g, x[k], 1);
+ *	next = grey_forecast(&g, 1, 1);
+ */
+#ifndef LIFE_GREY_H
+#define LIFE_GREY_H
+
+enum { GREY_ORDER_MIN = 4 }; /* fewest points of a fit */
+
+/* Zero it to start. */
+struct grey {
+	int n;                 /* points taken */
+	double oldest;         /* the last one taken */
+	double span;           /* steps from it to the newest */
+	double tail;           /* integral of the points newer than it */
+	double mean_u, mean_x; /* over the n - 1 intervals */
+	double suu, sux, sxx;  /* centred sums */
+};
+
+/* Takes the next older point, gap steps before the one taken last (the gap of the
+ * newest point is not used). */
+void grey_add(struct grey *g, double x, double gap);
+
+/* Development coefficient a, 1/step (negative: growing), and the level c = b - a x1 at
+ * the time of the oldest point, so that x(t) = c exp(-a t).  a = 0 below three points,
+ * for a zero series, and where values over 1e150 (scale them) make squares overflow. */
+double grey_rate(const struct grey *g);
+double grey_level(const struct grey *g);
+/* The textbook's b, with x1 starting at the oldest value. */
+double grey_control(const struct grey *g);
+/* Mean squared residual of the fit; 0 below four points. */
+double grey_residual(const struct grey *g);
+/* Standard error of a, and of c for a given a (they are uncorrelated at that
+ * representation: c = mean + a (tail - mean_u)). */
+double grey_rate_error(const struct grey *g);
+double grey_level_error(const struct grey *g);
+
+/* Forecast of the point h steps after the newest, the last gap steps of which are its
+ * own interval (h = gap = 1: the next of an even series); finite for finite input. */
+double grey_forecast(const struct grey *g, double h, double gap);
+/* The mean of level exp(-rate t) over the gap that ends at t: what grey_forecast() makes
+ * of the fitted level and rate at t = span + h. */
+double grey_curve(double level, double rate, double t, double gap);
+
+#endif

@@ -1,0 +1,45 @@
+/* order.h - which order of the grey model forecasts the observations best
+ *
+ * Every order from 4 to the largest forecasts each observation from the ones before it
+ * (one backward pass, O(1) per order), so the choice depends on the observations alone
+ * and not on random numbers.  Rules:
+ *   window    smallest mean squared error over the last rows, all orders over the same
+ *             rows; the order changes only when that falls by the hysteresis
+ *   all       the same over all rows so far (the thesis' accumulated error)
+ *   insample  smallest mean squared residual of the fit itself
+ *   fixed     always the largest order
+ * While the trend goes on (the mean of the last ten rows lies farther from the first
+ * observation than that of the ten before) the search may be kept to a range, the thesis'
+ * shortcut; what that leaves out is counted.
+ */
+#ifndef LIFE_ORDER_H
+#define LIFE_ORDER_H
+
+enum order_rule { ORDER_WINDOW, ORDER_INSAMPLE, ORDER_ALL, ORDER_FIXED };
+
+struct order_par {
+	enum order_rule rule;
+	int largest;       /* P >= 4, or the fixed order */
+	int window;        /* rows of the error, >= 1 */
+	double hysteresis; /* relative fall of the error that is worth a change */
+	int range_low,
+		range_high; /* searched while the trend goes on; 0, 0: no shortcut */
+};
+
+struct order;
+
+struct order *order_new(const struct order_par *par); /* NULL when out of memory */
+void order_free(struct order *o);
+
+/* Takes the observation made gap steps after the last one: scores the forecasts made
+ * for it, then makes those for the next and chooses an order. */
+void order_add(struct order *o, double y, double gap);
+int order_chosen(const struct order *o); /* 0 below four observations */
+/* The chosen order's forecast h steps ahead from the observations alone; the last one
+ * itself below four of them. */
+double order_forecast(const struct order *o, double h);
+unsigned long order_tried(const struct order *o);   /* orders fitted so far */
+unsigned long order_skipped(const struct order *o); /* left out by the range */
+unsigned long order_changes(const struct order *o);
+
+#endif

@@ -1,0 +1,114 @@
+/* predict.c - see predict.h */
+#include "life/predict.h"
+#include "life/draw.h"
+#include "life/grey.h"
+#include "life/history.h"
+#include "life/metrics.h"
+#include <math.h>
+#include <stdlib.h>
+
+struct predict {
+	struct predict_par par;
+	struct history *history;
+	double first, last; /* times */
+	double *z;          /* [2 draws] normal deviates */
+	double *life;       /* [draws] */
+};
+
+struct predict *predict_new(const struct predict_par *par)
+{
+	struct predict *p = calloc(1, sizeof *p);
+	struct draw *draw = draw_new(par->seed, par->realisation, RNG_PREDICT);
+
+	if (p) {
+		p->par = *par;
+		p->history = history_new();
+		p->z = calloc((size_t)par->draws, 2 * sizeof *p->z);
+		p->life = calloc((size_t)par->draws, sizeof *p->life);
+	}
+	if (!draw || !p || !p->history || !p->z || !p->life) {
+		draw_free(draw);
+		predict_free(p);
+		return NULL;
+	}
+	draw_normals(draw, p->z, 2 * (size_t)par->draws);
+	draw_free(draw);
+	return p;
+}
+
+void predict_free(struct predict *p)
+{
+	if (!p)
+		return;
+	history_free(p->history);
+	free(p->z);
+	free(p->life);
+	free(p);
+}
+
+void predict_add(struct predict *p, double t, double x)
+{
+	if (history_rows(p->history) == 0)
+		p->first = t;
+	p->last = t;
+	history_add(p->history, t, x);
+}
+
+/* Time from now on until level exp(-rate (span + time)) reaches the threshold. */
+static double grey_crossing(
+	const struct predict *p, double level, double rate, double span)
+{
+	double now = level * exp(fmin(600, -rate * span)), limit = p->par.threshold;
+	double time;
+
+	if (p->par.direction * (now - limit) >= 0)
+		return 0;
+	time = -log(limit / now) / rate;
+	return time >= 0 ? time : INFINITY; /* also NAN: a sign that never changes */
+}
+
+static void draw_grey(struct predict *p, const double *t, const double *x, int n)
+{
+	struct grey g = {0};
+
+	for (int k = n; k-- > 0;)
+		grey_add(&g, x[k], k + 1 < n ? t[k + 1] - t[k] : 0);
+	for (int i = 0; i < p->par.draws; i++) {
+		double rate = grey_rate(&g) + grey_rate_error(&g) * p->z[2 * i];
+		double level = g.mean_x + grey_level_error(&g) * p->z[2 * i + 1] +
+			       rate * (g.tail - g.mean_u);
+
+		p->life[i] = grey_crossing(p, level, rate, g.span + p->last - t[n - 1]);
+	}
+}
+
+static int compare(const void *a, const void *b)
+{
+	double x = *(const double *)a, y = *(const double *)b;
+
+	return (x > y) - (x < y);
+}
+
+void predict_life(struct predict *p, const double *level, double *quantile, int n,
+	double *no_crossing)
+{
+	const double *t, *x;
+	int rows = history_get(p->history, &t, &x), draws = p->par.draws, never = 0;
+	double horizon = p->par.horizon > 0 ? p->par.horizon : 10 * (p->last - p->first);
+
+	*no_crossing = NAN;
+	for (int k = 0; k < n; k++)
+		quantile[k] = NAN;
+	if (rows < GREY_ORDER_MIN)
+		return;
+	draw_grey(p, t, x, rows);
+	for (int i = 0; i < draws; i++)
+		if (!(p->life[i] <= horizon)) {
+			p->life[i] = INFINITY;
+			never++;
+		}
+	qsort(p->life, (size_t)draws, sizeof *p->life, compare);
+	for (int k = 0; k < n; k++)
+		quantile[k] = metric_quantile(p->life, (size_t)draws, level[k]);
+	*no_crossing = (double)never / draws;
+}

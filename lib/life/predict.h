@@ -1,0 +1,40 @@
+/* predict.h - when a degradation series will first reach its threshold
+ *
+ * A long-term model is fitted to the states so far and carried on to the threshold; the
+ * distribution of the time left comes from draws of its parameters (the same normal
+ * deviates at every row, so that successive rows differ by their data alone).  Mass that
+ * does not get there before the horizon is reported as such.
+ *
+ *	struct predict *p = predict_new(&par);
+ *	predict_add(p, t, state);
+ *	predict_life(p, level, quantile, 3, &never);
+ */
+#ifndef LIFE_PREDICT_H
+#define LIFE_PREDICT_H
+
+#include <stdint.h>
+
+enum predict_model { PREDICT_GREY };
+
+struct predict_par {
+	enum predict_model model;
+	double threshold;
+	int direction;  /* +1: failed at or above the threshold, -1: at or below */
+	double horizon; /* longest time ahead; 0: ten times the time elapsed */
+	int draws;      /* >= 1 */
+	uint64_t seed;
+	uint32_t realisation;
+};
+
+struct predict;
+
+struct predict *predict_new(const struct predict_par *par); /* NULL: no memory */
+void predict_free(struct predict *p);
+void predict_add(struct predict *p, double t, double x);
+/* Quantiles of the time left from the last row at n ascending levels, INFINITY where
+ * that much mass does not cross; NAN below four rows.  The threshold counts as reached
+ * once the model stands beyond it: 0 left. */
+void predict_life(struct predict *p, const double *level, double *quantile, int n,
+	double *no_crossing);
+
+#endif

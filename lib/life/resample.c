@@ -1,0 +1,107 @@
+/* resample.c - see resample.h */
+#include "life/resample.h"
+#include <math.h>
+
+/* Ancestors first .. n - 1 by a comb of teeth, one in each of the n - first strata of
+ * [0, sum), against the weights less the copies already kept: weight - kept * unit. */
+struct comb {
+	const double *weight;
+	double unit; /* weight of one kept copy; 0 keeps none */
+	double sum;
+};
+
+static double rest(const struct comb *c, size_t i)
+{
+	return c->unit > 0 ? c->weight[i] - c->unit * floor(c->weight[i] / c->unit)
+			   : c->weight[i];
+}
+
+static void comb_even(const struct comb *c, size_t n, size_t first, uint32_t *ancestor,
+	double offset, struct draw *stratified)
+{
+	double step = c->sum / (double)(n - first), reached = rest(c, 0);
+	size_t i = 0;
+
+	for (size_t k = first; k < n; k++) {
+		double u = stratified ? draw_uniform(stratified) : offset;
+		double tooth = step * ((double)(k - first) + u);
+
+		while (reached <= tooth && i + 1 < n)
+			reached += rest(c, ++i);
+		ancestor[k] = (uint32_t)i;
+	}
+}
+
+/* Sorted uniforms from the top down: U_(k) = U_(k+1) V^(1/k). */
+static void comb_multinomial(
+	const struct comb *c, size_t n, uint32_t *ancestor, struct draw *draw)
+{
+	double top = 1, reached = c->sum;
+	size_t i = n - 1;
+
+	for (size_t k = n; k > 0; k--) {
+		top *= exp(log(draw_uniform(draw)) / (double)k);
+		while (reached - c->weight[i] > top * c->sum && i > 0)
+			reached -= c->weight[i--];
+		ancestor[k - 1] = (uint32_t)i;
+	}
+}
+
+/* Merges the rising list of kept copies, counted anew, with the rising list of drawn
+ * ones in ancestor[kept .. n - 1], from the front: the read place stays ahead. */
+static void merge_kept(const struct comb *c, size_t n, size_t kept, uint32_t *ancestor)
+{
+	size_t put = 0, drawn = kept;
+
+	for (size_t i = 0; i < n; i++) {
+		size_t copies = (size_t)floor(c->weight[i] / c->unit);
+
+		while (drawn < n && ancestor[drawn] == i) {
+			copies++;
+			drawn++;
+		}
+		while (copies-- > 0 && put < n)
+			ancestor[put++] = (uint32_t)i;
+	}
+}
+
+static void resample_residual(
+	struct draw *draw, struct comb *c, size_t n, uint32_t *ancestor)
+{
+	size_t kept = 0;
+	double left = 0;
+
+	c->unit = c->sum / (double)n;
+	for (size_t i = 0; i < n; i++) {
+		kept += (size_t)floor(c->weight[i] / c->unit);
+		left += rest(c, i);
+	}
+	if (kept < n) {
+		c->sum = left;
+		comb_even(c, n, kept, ancestor, draw_uniform(draw), NULL);
+	} else {
+		kept = n;
+	}
+	merge_kept(c, n, kept, ancestor);
+}
+
+void resample(enum resampling scheme, struct draw *draw, const double *weight, double sum,
+	size_t n, uint32_t *ancestor)
+{
+	struct comb c = {weight, 0, sum};
+
+	switch (scheme) {
+	case RESAMPLE_SYSTEMATIC:
+		comb_even(&c, n, 0, ancestor, draw_uniform(draw), NULL);
+		break;
+	case RESAMPLE_STRATIFIED:
+		comb_even(&c, n, 0, ancestor, 0, draw);
+		break;
+	case RESAMPLE_RESIDUAL:
+		resample_residual(draw, &c, n, ancestor);
+		break;
+	case RESAMPLE_MULTINOMIAL:
+		comb_multinomial(&c, n, ancestor, draw);
+		break;
+	}
+}

@@ -1,0 +1,304 @@
+/* aopf - adaptive-order particle filter of a degradation series, and the time it has left
+ */
+#include "life/adaptive.h"
+#include "life/predict.h"
+#include "shell/msg.h"
+#include "shell/opt.h"
+#include "shell/stats.h"
+#include "shell/tables.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const directions[] = {"up", "down", "auto", NULL};
+static const char *const orders[] = {"window", "insample", "all", NULL};
+static const char *const schemes[] = {
+	"systematic", "stratified", "residual", "multinomial", NULL};
+static const char *const models[] = {"grey", NULL};
+static const char *const time_units[] = {"s", "min", "h", "d", NULL};
+static const double seconds[] = {1, 60, 3600, 86400};
+
+static double threshold = NAN, zero, skip, horizon, share = 0.5, freedom, process = NAN,
+	      noise = NAN, hysteresis = 0.03;
+static int direction = 2, scheme, model, time_unit;
+static long persist = 1, particles = 300, largest = 60, window = 50, seed = 1;
+static struct opt_choice order;
+static struct opt_list levels = {3, {0.05, 0.5, 0.95}}, range;
+static const char *unit_column;
+
+static const struct opt opts[] = {
+	{'y', "threshold", OPT_NUM, UNIT_NONE, &threshold, -1e300, 1e300, "Y",
+		"value that ends the life, in units of y; none: no prediction of life",
+		NULL, 0},
+	{'d', "direction", OPT_WORD, UNIT_NONE, &direction, 0, 0, "up|down|auto",
+		"side the threshold is reached from; auto: from the first value",
+		directions, 0},
+	{'k', "persist", OPT_INT, UNIT_COUNT, &persist, 1, 1e6, "K",
+		"successive values beyond the threshold that end the life", NULL, 0},
+	{'z', "zero", OPT_NUM, UNIT_NONE, &zero, -1e300, 1e300, "Y",
+		"value of y without any degradation, the zero of the grey model", NULL,
+		0},
+	{'T', "skip", OPT_NUM, UNIT_TIME, &skip, 0, 1e300, "T",
+		"run-in left out of long-term models, from the first row", NULL, 0},
+	{'n', "order", OPT_CHOICE, UNIT_COUNT, &order, 4, 1000, "N|window|insample|all",
+		"order of the grey model, or how it is chosen", orders, 0},
+	{'P', "max-order", OPT_INT, UNIT_COUNT, &largest, 4, 1000, "N",
+		"largest order that may be chosen", NULL, 0},
+	{'w', "order-window", OPT_INT, UNIT_COUNT, &window, 1, 10000, "N",
+		"rows whose forecast errors choose the order", NULL, 0},
+	{'g', "hysteresis", OPT_NUM, UNIT_FRACTION, &hysteresis, 0, 1, "X",
+		"relative fall of the error that changes the order", NULL, 0},
+	{'R', "order-range", OPT_LIST, UNIT_COUNT, &range, 0, 1000, "LO:HI",
+		"orders searched while the trend goes on", NULL, 0},
+	{'N', "particles", OPT_INT, UNIT_COUNT, &particles, 1, 1e7, "N", "particles",
+		NULL, 0},
+	{'r', "resampling", OPT_WORD, UNIT_NONE, &scheme, 0, 0,
+		"systematic|stratified|residual|multinomial", "resampling scheme",
+		schemes, 0},
+	{'e', "ess", OPT_NUM, UNIT_FRACTION, &share, 0, 1, "X",
+		"resample below this effective share of the particles; 1: always", NULL,
+		0},
+	{'l', "freedom", OPT_NUM, UNIT_NONE, &freedom, 0, 1e6, "NU",
+		"degrees of freedom of Student-t observation noise; 0: Gaussian", NULL,
+		0},
+	{'a', "process", OPT_NUM, UNIT_NONE, &process, 0, 1e300, "SD",
+		"process noise per row, in units of y (default from the innovations)",
+		NULL, 0},
+	{'b', "noise", OPT_NUM, UNIT_NONE, &noise, 0, 1e300, "SD",
+		"observation noise, in units of y (default from second differences)",
+		NULL, 0},
+	{'m', "model", OPT_WORD, UNIT_NONE, &model, 0, 0, "grey", "long-term model",
+		models, 0},
+	{'H', "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, 1e300, "T",
+		"longest life ahead; 0: ten times the time so far", NULL, 0},
+	{'q', "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "Q,Q,...",
+		"levels of the quantiles of remaining life", NULL, 0},
+	{'u', "unit", OPT_TEXT, UNIT_NONE, &unit_column, 0, 0, "COLUMN",
+		"column that tells units apart", NULL, 0},
+	{'t', "time-unit", OPT_WORD, UNIT_NONE, &time_unit, 0, 0, "s|min|h|d",
+		"unit of the time column", time_units, 0},
+	{'s', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e18, "N",
+		"seed of the random numbers", NULL, 0},
+	OPT_END};
+
+static const struct prog prog = {"aopf",
+	"Filter a degradation series and predict the life it has left.", "[file]",
+	"table: t y (or y alone: t is the row, from 0)",
+	"table: one row per row read, flushed at once", opts};
+
+/* What is kept of one unit between its rows. */
+struct unit_state {
+	char *name;
+	struct adaptive *adaptive;
+	struct predict
+		*predict;   /* NULL without a threshold, and before the first value */
+	double first, last; /* times */
+	long rows, beyond;  /* the latter: successive values past the threshold */
+	int failed;
+};
+
+struct units {
+	struct unit_state *unit;
+	uint32_t n;
+};
+
+static struct unit_state *find_unit(struct units *units, const char *name)
+{
+	struct adaptive_par par = {
+		.filter = {(size_t)particles, 0, (enum resampling)scheme, share, freedom},
+		.order = {order.word < 0 ? ORDER_FIXED : (enum order_rule)order.word,
+			order.word < 0 ? (int)order.value : (int)largest, (int)window,
+			hysteresis, (int)range.v[0], (int)range.v[1]},
+		.process = process,
+		.noise = noise,
+		.seed = (uint64_t)seed,
+		.realisation = units->n,
+	};
+	struct unit_state *u;
+
+	for (uint32_t i = 0; i < units->n; i++)
+		if (strcmp(units->unit[i].name, name) == 0)
+			return &units->unit[i];
+	units->unit = xrealloc(units->unit, units->n + 1, sizeof *units->unit);
+	u = &units->unit[units->n++];
+	*u = (struct unit_state){.name = xstrdup(name), .adaptive = adaptive_new(&par)};
+	if (!u->adaptive)
+		die(EXIT_RUN, "no memory for %ld particles", particles);
+	return u;
+}
+
+/* Long-term prediction begins with the first value, which may tell the direction. */
+static struct predict *start_predict(double y, uint32_t realisation)
+{
+	struct predict_par par = {
+		.model = (enum predict_model)model,
+		.threshold = threshold - zero,
+		.direction =
+			direction == 2 ? (y <= threshold ? 1 : -1) : 1 - 2 * direction,
+		.horizon = horizon / seconds[time_unit],
+		.draws = 1000,
+		.seed = (uint64_t)seed,
+		.realisation = realisation,
+	};
+	struct predict *p = predict_new(&par);
+
+	if (!p)
+		die(EXIT_RUN, "no memory for the prediction");
+	return p;
+}
+
+static void check_row(
+	const struct unit_state *u, const struct table_in *in, double t, double y)
+{
+	const char *named = unit_column ? u->name : "", *blank = unit_column ? ": " : "";
+
+	if (!isfinite(t))
+		die(EXIT_RUN, "%s: line %ld: %s%stime is missing or not finite",
+			table_name(in), table_line(in), named, blank);
+	if (isinf(y))
+		die(EXIT_RUN, "%s: line %ld: %s%sy is infinite", table_name(in),
+			table_line(in), named, blank);
+	if (u->rows > 0 && t <= u->last)
+		die(EXIT_RUN,
+			"%s: line %ld: %s%stime %.17g %s %.17g: sort by time, once each",
+			table_name(in), table_line(in), named, blank, t,
+			t < u->last ? "comes after" : "comes twice, after", u->last);
+}
+
+static void put_life(struct unit_state *u, struct table_out *out, double y, int up)
+{
+	double q[OPT_LIST_MAX], never = NAN;
+
+	if (!isnan(y))
+		u->beyond = up * (y - threshold) >= 0 ? u->beyond + 1 : 0;
+	u->failed |= u->beyond >= persist;
+	for (int i = 0; i < levels.n; i++)
+		q[i] = u->failed ? 0 : NAN;
+	if (u->failed)
+		never = 0;
+	else if (u->predict)
+		predict_life(u->predict, levels.v, q, levels.n, &never);
+	for (int i = 0; i < levels.n; i++)
+		table_put(out, q[i]);
+	table_put(out, never);
+}
+
+static void step(
+	struct unit_state *u, uint32_t number, double t, double y, struct table_out *out)
+{
+	struct adaptive_row row;
+
+	if (u->rows++ == 0)
+		u->first = t;
+	u->last = t;
+	adaptive_step(u->adaptive, t, y - zero, &row);
+	if (unit_column)
+		table_put_text(out, u->name);
+	table_put(out, t);
+	table_put(out, y);
+	table_put(out, row.grey + zero);
+	table_put(out, row.prediction + zero);
+	table_put(out, row.state + zero);
+	table_put(out, row.order);
+	table_put(out, row.ess);
+	if (!isnan(threshold)) {
+		if (!u->predict && !isnan(y))
+			u->predict = start_predict(y, number);
+		if (u->predict && !isnan(row.state) &&
+			t - u->first >= skip / seconds[time_unit])
+			predict_add(u->predict, t, row.state);
+		put_life(u, out, y, direction == 1 ? -1 : 1);
+	}
+	table_end_row(out);
+	table_flush(out);
+}
+
+static char *column_names(void)
+{
+	char *names = xprintf(
+		"%st y grey prediction state order ess", unit_column ? "unit " : "");
+
+	if (isnan(threshold))
+		return names;
+	for (int i = 0; i < levels.n; i++) {
+		char digits[32], *longer;
+		const char *decimals;
+
+		/* 0.05, 0.5 and 0.975 are called 05, 50 and 975. */
+		snprintf(digits, sizeof digits, "%g", levels.v[i]);
+		decimals = strncmp(digits, "0.", 2) ? digits : digits + 2;
+		longer = xprintf("%s rul_q%s%s", names, decimals, decimals[1] ? "" : "0");
+		free(names);
+		names = longer;
+	}
+	return xprintf("%s p_no_crossing", names);
+}
+
+static void finish(struct units *units)
+{
+	for (uint32_t i = 0; i < units->n; i++) {
+		struct unit_state *u = &units->unit[i];
+		const struct order *o = adaptive_order(u->adaptive);
+
+		stats_add("rows", (double)u->rows);
+		stats_add("resamplings",
+			(double)filter_resamplings(adaptive_filter(u->adaptive)));
+		stats_add("restarts", (double)adaptive_restarts(u->adaptive));
+		stats_add("orders", (double)order_tried(o));
+		stats_add("orders_skipped", (double)order_skipped(o));
+		stats_add("order_changes", (double)order_changes(o));
+		adaptive_free(u->adaptive);
+		predict_free(u->predict);
+		free(u->name);
+	}
+	free(units->unit);
+}
+
+int main(int argc, char **argv)
+{
+	int i, ct, cy, cu;
+	struct table_in *in;
+	struct table_out *out;
+	struct units units = {0};
+	char *cmd, *names;
+	long rows = 0;
+
+	order.word = ORDER_WINDOW;
+	i = opt_parse(&prog, argc, argv);
+	if (range.n == 1 || (range.n == 2 && range.v[0] > range.v[1]))
+		die(EXIT_USAGE, "--order-range: want LO:HI");
+	for (int k = 1; k < levels.n; k++)
+		if (levels.v[k] <= levels.v[k - 1])
+			die(EXIT_USAGE, "--levels: want rising levels");
+	in = table_open(argv[i]);
+	ct = table_find(in, "t");
+	cy = table_find(in, "y");
+	if (ct < 0 && cy < 0 && table_find(in, "1") == 0) {
+		ct = table_columns(in) > 1 ? 0 : -1;
+		cy = table_columns(in) > 1 ? 1 : 0;
+	}
+	if (cy < 0)
+		cy = table_need(in, "y");
+	cu = unit_column ? table_need(in, unit_column) : -1;
+	cmd = opt_cmd(table_key(in, "cmd"), NULL);
+	names = column_names();
+	out = table_create(NULL, cmd, table_key(in, "units"), names);
+	table_comment(out, "seed", "%ld", seed);
+	while (table_next(in)) {
+		struct unit_state *u =
+			find_unit(&units, cu < 0 ? "" : table_text(in, cu));
+		double t = ct < 0 ? (double)rows : table_number(in, ct);
+		double y = table_number(in, cy);
+
+		rows++;
+		check_row(u, in, t, y);
+		step(u, (uint32_t)(u - units.unit), t, y, out);
+	}
+	finish(&units);
+	table_done(out);
+	table_close(in);
+	free(cmd);
+	free(names);
+	return shell_done(0);
+}

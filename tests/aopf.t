@@ -1,0 +1,127 @@
+#!/bin/sh
+# aopf: contracts of the stream, the filter on known series, refusals
+. "$(dirname "$0")/tap.sh"
+
+# Noisy linear rise of 1.5 to 2.8 at t = 1186 (noise 0.06), n rows from seed s.
+rise() {
+	awk -v n="$1" -v s="$2" 'BEGIN { srand(s); print "t\ty"
+		for (t = 0; t < n; t++) {
+			z = 0
+			for (k = 0; k < 12; k++) z += rand()
+			printf "%d\t%.6f\n", t, 1.5 + 1.3 * t / 1186 + 0.06 * (z - 6)
+		} }'
+}
+
+rise 300 1 >rise.tsv
+aopf --threshold 2.8 --time-unit h rise.tsv >out.tsv
+is "columns" "$(grep -v '^#' out.tsv | head -1 | tr '\t' ' ')" \
+	"t y grey prediction state order ess rul_q05 rul_q50 rul_q95 p_no_crossing"
+is "a row for every row" "$(column t out.tsv | wc -l | tr -d ' ')" 300
+aopf --threshold 2.8 --time-unit h <rise.tsv >again.tsv
+column state out.tsv >a
+column state again.tsv >b
+same "a pipe gives the same states" a b
+aopf --threshold 2.8 --seed 2 rise.tsv >seed2.tsv
+column state seed2.tsv >b
+ok "another seed gives others" sh -c '! cmp -s a b'
+is "no life is predicted without a threshold" \
+	"$(aopf rise.tsv | grep -v '^#' | head -1 | tr '\t' ' ')" "t y grey prediction state order ess"
+aopf rise.tsv >bare.tsv
+column state bare.tsv >b
+same "which changes no state" a b
+
+# The filter must be better than the observations: their noise is 0.06.
+paste a "$work/rise.tsv" >/dev/null
+column state out.tsv | awk 'NR > 60 { e = $1 - (1.5 + 1.3 * (NR - 1) / 1186); s += e * e; n++ }
+	END { print sqrt(s / n) }' >rms
+near "states are nearer the truth than observations" "$(cat rms)" 0.03 0.02
+column ess out.tsv | awk '$1 < 1 - 1e-9 || $1 > 300 + 1e-9 { bad = 1 } END { print bad + 0 }' >bad
+is "1 <= ess <= N" "$(cat bad)" 0
+
+# Rows come out as rows go in.
+rise 40 2 >short.tsv
+ok "one row out per row in" sh -c '
+	mkfifo in
+	aopf in >live.tsv & p=$!
+	exec 3>in
+	head -21 short.tsv >&3
+	for k in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+		[ "$(grep -c "^[0-9]" live.tsv)" = 20 ] && break
+		sleep 0.1
+	done
+	n=$(grep -c "^[0-9]" live.tsv)
+	exec 3>&-
+	wait $p
+	[ "$n" = 20 ]'
+
+# Missing values: predicted, not weighed.
+awk 'NR > 30 && NR % 5 == 0 { print $1 "\tnan"; next } { print }' rise.tsv >gaps.tsv
+aopf --threshold 2.8 gaps.tsv >gaps.out
+is "nan in y comes out as nan" "$(column y gaps.out | grep -c nan)" 54
+is "and nowhere else" "$(awk -F '\t' '/^[0-9]/ && $1 > 5 && $5 == "nan"' gaps.out | wc -l | tr -d ' ')" 0
+awk -F '\t' '/^[0-9]/ && $2 == "nan" && $4 != $5' gaps.out >bad
+is "the state of a missing row is its prediction" "$(wc -l <bad | tr -d ' ')" 0
+
+# Units in one stream: as if each came alone, but for the random stream.
+awk 'NR == 1 { print "unit\t" $0; next } { print "a\t" $0; print "b\t" $0 }' short.tsv >two.tsv
+aopf --unit unit two.tsv >two.out
+aopf short.tsv >one.out
+awk -F '\t' '$1 == "a"' two.out | cut -f 2- >a
+grep '^[0-9]' one.out >b
+same "the first of two units is filtered as if alone" a b
+awk -F '\t' '$1 == "b"' two.out | cut -f 4 >a
+column grey one.out >b
+same "the grey forecasts of the second are the same" a b
+sed 's/^b/a/' two.tsv >twice.tsv
+fails "a time that repeats" 1 "twice.tsv: line 3: a: time 0 comes twice" \
+	aopf --unit unit twice.tsv
+
+# Time unit and scale
+awk 'NR == 1 { print; next } { print $1 * 3600 "\t" $2 }' short.tsv >seconds.tsv
+aopf -y 2.8 seconds.tsv | grep -v '^#' >a
+aopf -y 2.8 -t h short.tsv | grep -v '^#' >b
+paste a b | awk -F '\t' 'NR > 10 { d = $9 / 3600 - $20; if (d < 0) d = -d; if (d > m) m = d }
+	END { exit !(m < 1e-6) }'
+is "hours or seconds: the same life" $? 0
+awk 'NR == 1 { print; next } { printf "%s\t%.17g\n", $1, $2 * 1048576 }' short.tsv >big.tsv
+aopf big.tsv | grep '^[0-9]' | awk -F '\t' '{ printf "%.9g\n", $5 / 1048576 }' >a
+aopf short.tsv | grep '^[0-9]' | awk -F '\t' '{ printf "%.9g\n", $5 }' >b
+same "the filter does not mind the unit of y" a b
+
+# Order rules
+aopf --order 7 rise.tsv | column order /dev/stdin | tail -1 >o
+is "fixed order" "$(cat o)" 7
+for rule in insample all; do
+	ok "--order $rule" aopf --order $rule rise.tsv
+done
+aopf --stats all.stats rise.tsv >/dev/null
+aopf --order-range 4:40 --stats range.stats rise.tsv >/dev/null
+near "the range leaves orders out and counts them" \
+	"$(($(column orders range.stats) + $(column orders_skipped range.stats)))" \
+	"$(column orders all.stats)" 0
+ok "some" test "$(column orders_skipped range.stats)" -gt 100
+
+# Life: noise-free exponential 1.5 exp(0.01 t) reaches 2.8 at ln(2.8 / 1.5) / 0.01
+awk 'BEGIN { print "t\ty"; for (t = 0; t < 40; t++) printf "%d\t%.15g\n", t, 1.5 * exp(0.01 * t) }' >exp.tsv
+aopf -y 2.8 exp.tsv | column rul_q50 /dev/stdin | tail -1 >r
+near "life of an exponential" "$(cat r)" "$(awk 'BEGIN { print log(2.8 / 1.5) / 0.01 - 39 }')" 0.5
+aopf -y 1.6 exp.tsv | column rul_q95 /dev/stdin | tail -1 >r
+is "0 once the threshold is passed" "$(cat r)" 0
+aopf -y 1 -d down exp.tsv | column p_no_crossing /dev/stdin | tail -1 >r
+is "mass that never crosses is reported" "$(cat r)" 1
+
+# Refusals
+printf 't\ty\n0\t1\n2\t1\n1\t1\n' >fall.tsv
+fails "a time that falls" 1 "fall.tsv: line 4: time 1 comes after 2" aopf fall.tsv
+printf 't\tx\n0\t1\n' >noy.tsv
+fails "no y" 1 "no column 'y'" aopf noy.tsv
+printf 't\ty\n0\tinf\n' >inf.tsv
+fails "an infinite y" 1 "line 2: y is infinite" aopf inf.tsv
+printf 't\ty\nnan\t1\n' >nant.tsv
+fails "a missing time" 1 "line 2: time is missing" aopf nant.tsv
+fails "order below four" 2 "order" aopf --order 3 exp.tsv
+fails "levels that fall" 2 "levels" aopf --levels 0.5,0.1 exp.tsv
+fails "half a range" 2 "order-range" aopf --order-range 4 exp.tsv
+fails "a unit that is not there" 1 "no column 'unit'" aopf --unit unit exp.tsv
+
+done_testing
