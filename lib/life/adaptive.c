@@ -57,8 +57,8 @@ struct adaptive *adaptive_new(const struct adaptive_par *par)
 	a->filter = a->draw ? filter_new(&a->par.filter, a->draw) : NULL;
 	a->order = order_new(&par->order);
 	a->noise = noise_new();
-	a->fits = (struct fits){column(a), column(a), column(a), column(a), column(a),
-		calloc(par->filter.particles, sizeof(uint32_t))};
+	a->fits = (struct fits){ column(a), column(a), column(a), column(a), column(a),
+		calloc(par->filter.particles, sizeof(uint32_t)) };
 	a->mean = column(a);
 	a->past = calloc(depth, sizeof *a->past);
 	a->gap = calloc(depth, sizeof *a->gap);
@@ -254,8 +254,13 @@ static void observe(struct adaptive *a, double y, double gap, double process,
 	filter_update(a->filter, y, noise);
 	row->state = filter_mean(a->filter);
 	row->ess = filter_ess(a->filter);
-	learn_process(a, e, variance, process, noise);
 	push_past(a, y, gap);
+	if (row->order == 0) { /* too few points for a model: begin from all of them */
+		start_particles(a, noise);
+		row->state = filter_mean(a->filter);
+		return;
+	}
+	learn_process(a, e, variance, process, noise);
 	if (monitor(a, e, variance + noise * noise)) {
 		start_particles(a, noise);
 		row->state = filter_mean(a->filter);
@@ -287,10 +292,12 @@ static void advance(struct adaptive *a, double t, double y, struct adaptive_row 
 
 	if (order > filter_depth(a->filter))
 		order = filter_depth(a->filter);
+	if (order < GREY_ORDER_MIN)
+		order = 0;
 	row->order = order;
 	row->grey = order_forecast(a->order, t - a->observed_time);
 	process = process_noise(a, order, noise, gap);
-	if (order >= GREY_ORDER_MIN)
+	if (order > 0)
 		forecast_particles(a, order, gap);
 	else
 		hold_particles(a);
@@ -311,7 +318,7 @@ static void advance(struct adaptive *a, double t, double y, struct adaptive_row 
 
 void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *row)
 {
-	*row = (struct adaptive_row){NAN, NAN, NAN, NAN, NAN, 0};
+	*row = (struct adaptive_row){ NAN, NAN, NAN, NAN, NAN, 0 };
 	if (a->rows > 0)
 		advance(a, t, y, row);
 	else if (!isnan(y))

@@ -69,7 +69,7 @@ static double grey_crossing(
 
 static void draw_grey(struct predict *p, const double *t, const double *x, int n)
 {
-	struct grey g = {0};
+	struct grey g = { 0 };
 
 	for (int k = n; k-- > 0;)
 		grey_add(&g, x[k], k + 1 < n ? t[k + 1] - t[k] : 0);
@@ -78,7 +78,8 @@ static void draw_grey(struct predict *p, const double *t, const double *x, int n
 		double level = g.mean_x + grey_level_error(&g) * p->z[2 * i + 1] +
 			       rate * (g.tail - g.mean_u);
 
-		p->life[i] = grey_crossing(p, level, rate, g.span + p->last - t[n - 1]);
+		p->life[i] =
+			grey_crossing(p, level, rate, g.span + p->last - t[n - 1], gap);
 	}
 }
 
