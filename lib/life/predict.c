@@ -54,11 +54,11 @@ void predict_add(struct predict *p, double t, double x)
 	history_add(p->history, t, x);
 }
 
-/* Time from now on until level exp(-rate (span + time)) reaches the threshold. */
+/* Time from span on until the curve of means over a gap reaches the threshold. */
 static double grey_crossing(
-	const struct predict *p, double level, double rate, double span)
+	const struct predict *p, double level, double rate, double span, double gap)
 {
-	double now = level * exp(fmin(600, -rate * span)), limit = p->par.threshold;
+	double now = grey_curve(level, rate, span, gap), limit = p->par.threshold;
 	double time;
 
 	if (p->par.direction * (now - limit) >= 0)
@@ -70,6 +70,7 @@ static double grey_crossing(
 static void draw_grey(struct predict *p, const double *t, const double *x, int n)
 {
 	struct grey g = { 0 };
+	double gap = (t[n - 1] - t[0]) / (n - 1);
 
 	for (int k = n; k-- > 0;)
 		grey_add(&g, x[k], k + 1 < n ? t[k + 1] - t[k] : 0);
