@@ -30,7 +30,7 @@ PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet aopf
 
 roughgen_MODULES = num/philox num/fft
 roughgen_LIBS = fftw
-bemcontact_MODULES = num/pool num/fft
+bemcontact_MODULES = contact/kernel contact/solver contact/solver_pk num/convolve num/fft num/pool num/sweep
 bemcontact_LIBS = fftw
 debrisgen_MODULES = num/pool num/fft
 debrisgen_LIBS = fftw

@@ -49,23 +49,23 @@ enum contact_control {
 };
 
 struct contact_par {
-	int nx, ny;         /* cells, >= 1 each */
-	double dx, dy;      /* cell size, m */
-	double estar;       /* contact modulus E*, Pa; see contact_modulus() */
-	double hardness;    /* largest pressure, Pa; 0: none */
+	int nx, ny;      /* cells, >= 1 each */
+	double dx, dy;   /* cell size, m */
+	double estar;    /* contact modulus E*, Pa; see kernel_modulus() */
+	double hardness; /* largest pressure, Pa; 0: none */
 	enum contact_boundary boundary;
 	enum contact_solver solver;
-	double tolerance;   /* certificate to reach */
+	double tolerance; /* certificate to reach */
 	long max_iterations;
-	struct pool *pool;  /* borrowed; NULL: one thread */
+	struct pool *pool; /* borrowed; NULL: one thread */
 };
 
 enum contact_status {
 	CONTACT_OK,
-	CONTACT_NOCONV,     /* the fields hold the best found, and its certificate */
-	CONTACT_OVERLOAD,   /* mean pressure not below the hardness: nothing done */
-	CONTACT_TOO_DEEP,   /* periodic: approach beyond full contact: nothing done */
-	CONTACT_NUMBERS     /* input not finite or over the range of doubles */
+	CONTACT_NOCONV,   /* the fields hold the best found, and its certificate */
+	CONTACT_OVERLOAD, /* mean pressure not below the hardness: nothing done */
+	CONTACT_TOO_DEEP, /* periodic: approach beyond full contact: nothing done */
+	CONTACT_NUMBERS   /* input not finite or over the range of doubles */
 };
 
 /* About the last solution. */
@@ -73,6 +73,7 @@ struct contact_result {
 	double pressure;    /* mean, Pa */
 	double load;        /* N */
 	double approach;    /* m */
+	double indentation; /* approach from first touch, m */
 	double area;        /* cells with p > 0 over all cells */
 	double plastic;     /* cells at the hardness over all cells */
 	double energy;      /* elastic, J */
@@ -81,13 +82,10 @@ struct contact_result {
 	 * duality gap of the capped problem in the same units; for a given approach,
 	 * g itself takes the place of g - min g. */
 	double certificate;
-	long iterations;    /* on the given grid */
-	long transforms;    /* Fourier transforms of the given grid (padded: 4 x) */
-	double work;        /* the same with those of coarser grids, by size */
+	long iterations; /* on the given grid */
+	long transforms; /* Fourier transforms of the given grid (padded: 4 x) */
+	double work;     /* the same with those of coarser grids, by size */
 };
-
-/* 1 / E* = (1 - nu1^2) / E1 + (1 - nu2^2) / E2, (2-4); E2 = INFINITY is rigid. */
-double contact_modulus(double e1, double nu1, double e2, double nu2);
 
 /* NULL if a parameter is out of range (errno EDOM) or memory is short (ENOMEM). */
 struct contact *contact_new(const struct contact_par *par);
@@ -100,7 +98,8 @@ enum contact_status contact_solve(struct contact *c, const double *height,
 	enum contact_control control, double target, double *pressure, double *gap);
 
 /* Elastic displacement under a pressure. */
-void contact_displacement(struct contact *c, const double *pressure, double *displacement);
+void contact_displacement(
+	struct contact *c, const double *pressure, double *displacement);
 
 const struct contact_result *contact_result(const struct contact *c);
 

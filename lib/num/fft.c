@@ -30,7 +30,7 @@ void fft_free(void *p)
 
 size_t fft_good_size(size_t n)
 {
-	static const size_t primes[] = { 2, 3, 5, 7 };
+	static const size_t primes[] = {2, 3, 5, 7};
 
 	for (;; n++) {
 		size_t rest = n;
@@ -51,8 +51,10 @@ struct fft *fft_new(size_t nx, size_t ny)
 
 	if (fft && x && spectrum) {
 		pthread_mutex_lock(&planner);
-		fft->forward = fftw_plan_dft_r2c_2d((int)ny, (int)nx, x, spectrum, FFTW_ESTIMATE);
-		fft->inverse = fftw_plan_dft_c2r_2d((int)ny, (int)nx, spectrum, x, FFTW_ESTIMATE);
+		fft->forward = fftw_plan_dft_r2c_2d(
+			(int)ny, (int)nx, x, spectrum, FFTW_ESTIMATE);
+		fft->inverse = fftw_plan_dft_c2r_2d(
+			(int)ny, (int)nx, spectrum, x, FFTW_ESTIMATE);
 		pthread_mutex_unlock(&planner);
 	}
 	fft_free(x);
@@ -84,4 +86,54 @@ void fft_done(struct fft *fft)
 		fftw_destroy_plan(fft->inverse);
 	pthread_mutex_unlock(&planner);
 	free(fft);
+}
+
+struct fft_line {
+	fftw_plan forward, inverse;
+};
+
+struct fft_line *fft_line_new(size_t n)
+{
+	struct fft_line *line = calloc(1, sizeof *line);
+	double complex *a = fft_alloc_complex(n), *b = fft_alloc_complex(n);
+
+	if (line && a && b) {
+		pthread_mutex_lock(&planner);
+		line->forward =
+			fftw_plan_dft_1d((int)n, a, b, FFTW_FORWARD, FFTW_ESTIMATE);
+		line->inverse =
+			fftw_plan_dft_1d((int)n, a, b, FFTW_BACKWARD, FFTW_ESTIMATE);
+		pthread_mutex_unlock(&planner);
+	}
+	fft_free(a);
+	fft_free(b);
+	if (line && line->forward && line->inverse)
+		return line;
+	fft_line_done(line);
+	return NULL;
+}
+
+void fft_line_forward(
+	const struct fft_line *line, double complex *in, double complex *out)
+{
+	fftw_execute_dft(line->forward, in, out);
+}
+
+void fft_line_inverse(
+	const struct fft_line *line, double complex *in, double complex *out)
+{
+	fftw_execute_dft(line->inverse, in, out);
+}
+
+void fft_line_done(struct fft_line *line)
+{
+	if (!line)
+		return;
+	pthread_mutex_lock(&planner);
+	if (line->forward)
+		fftw_destroy_plan(line->forward);
+	if (line->inverse)
+		fftw_destroy_plan(line->inverse);
+	pthread_mutex_unlock(&planner);
+	free(line);
 }

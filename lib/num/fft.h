@@ -26,4 +26,14 @@ void fft_forward(const struct fft *fft, double *x, double complex *spectrum);
 void fft_inverse(const struct fft *fft, double complex *spectrum, double *x);
 void fft_done(struct fft *fft);
 
+/* Complex transform of one line of n points, from one array to another, each from
+ * fft_alloc_complex() or a multiple of four points into such memory. */
+struct fft_line;
+struct fft_line *fft_line_new(size_t n);
+void fft_line_forward(
+	const struct fft_line *line, double complex *in, double complex *out);
+void fft_line_inverse(
+	const struct fft_line *line, double complex *in, double complex *out);
+void fft_line_done(struct fft_line *line);
+
 #endif

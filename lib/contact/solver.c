@@ -1,0 +1,400 @@
+#include "contact/kernel.h"
+#include "contact/state.h"
+#include "num/fft.h"
+#include <errno.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+static double free_kernel(const void *context, size_t ix, size_t iy)
+{
+	const struct contact_par *par = context;
+	double patch = kernel_patch(
+		par->dx, par->dy, (double)ix * par->dx, (double)iy * par->dy);
+
+	return patch / (pi * par->estar);
+}
+
+static double periodic_kernel(const void *context, size_t kx, size_t ky)
+{
+	const struct contact_par *par = context;
+	double qx = 2 * pi * (double)kx / (par->nx * par->dx);
+	double qy = 2 * pi * (double)ky / (par->ny * par->dy);
+
+	return kernel_periodic(par->estar, qx, qy);
+}
+
+static int positive(double x)
+{
+	return x > 0 && x <= DBL_MAX;
+}
+
+static int valid(const struct contact_par *par)
+{
+	return par->nx > 0 && par->ny > 0 && positive(par->dx) && positive(par->dy) &&
+	       positive(par->estar) && par->hardness >= 0 && par->tolerance > 0 &&
+	       par->max_iterations > 0;
+}
+
+static int make_kernel(struct contact *c)
+{
+	int is_free = c->par.boundary == CONTACT_FREE;
+
+	c->plane = convolve_new((size_t)c->par.nx, (size_t)c->par.ny,
+		is_free ? CONVOLVE_PADDED : CONVOLVE_PERIODIC, c->par.pool);
+	if (!c->plane)
+		return -1;
+	c->kernel = convolve_alloc(c->plane);
+	if (!c->kernel)
+		return -1;
+	if (is_free)
+		return convolve_kernel(c->plane, c->kernel, free_kernel, &c->par);
+	convolve_spectrum(c->plane, c->kernel, periodic_kernel, &c->par);
+	return 0;
+}
+
+struct contact *contact_new(const struct contact_par *par)
+{
+	struct contact *c;
+
+	if (!valid(par)) {
+		errno = EDOM;
+		return NULL;
+	}
+	c = calloc(1, sizeof(*c));
+	if (!c)
+		return NULL;
+	c->par = *par;
+	c->n = (size_t)par->nx * (size_t)par->ny;
+	c->cap = par->hardness > 0 ? par->hardness : INFINITY;
+	c->gap = fft_alloc(c->n);
+	c->step = fft_alloc(c->n);
+	c->image = fft_alloc(c->n);
+	if (!c->gap || !c->step || !c->image || make_kernel(c) != 0) {
+		contact_free(c);
+		errno = ENOMEM;
+		return NULL;
+	}
+	return c;
+}
+
+void contact_free(struct contact *c)
+{
+	if (!c)
+		return;
+	convolve_free(c->plane);
+	fft_free(c->kernel);
+	fft_free(c->gap);
+	fft_free(c->step);
+	fft_free(c->image);
+	free(c);
+}
+
+const struct contact_result *contact_result(const struct contact *c)
+{
+	return &c->result;
+}
+
+struct sweep contact_sweep(struct contact *c,
+	void (*pass)(void *context, size_t begin, size_t end, struct sweep *s))
+{
+	return sweep_run(c->par.pool, c->n, pass, c);
+}
+
+void contact_multiply(struct contact *c, const double *x, double *y)
+{
+	convolve_apply(c->plane, c->kernel, x, y);
+	c->result.transforms += 2;
+	c->result.work += 2;
+}
+
+void contact_displacement(struct contact *c, const double *pressure, double *displacement)
+{
+	convolve_apply(c->plane, c->kernel, pressure, displacement);
+}
+
+static void subtract_height(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+
+	(void)s;
+	for (size_t i = begin; i < end; i++)
+		c->gap[i] -= c->h[i];
+}
+
+void contact_gap(struct contact *c)
+{
+	contact_multiply(c, c->p, c->gap);
+	contact_sweep(c, subtract_height);
+}
+
+/* Sum of the gap and count over free cells; least gap of the cells without contact
+ * (as a maximum of -g), for when nothing is free. */
+static void sum_free(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+
+	for (size_t i = begin; i < end; i++) {
+		if (is_free(c, c->p[i])) {
+			s->sum[0] += c->gap[i];
+			s->sum[1] += 1;
+		} else if (c->p[i] <= 0 && -c->gap[i] > s->max) {
+			s->max = -c->gap[i];
+		}
+	}
+}
+
+/* Takes the shift off; gathers sum p g+, sum p, sum g^2 over free cells, what lies
+ * below zero at the hardness, and the deepest overlap. */
+static void shift_gap(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+
+	for (size_t i = begin; i < end; i++) {
+		double g = c->gap[i] -= c->shift, p = c->p[i];
+
+		s->sum[0] += p * g;
+		s->sum[1] += p;
+		if (is_free(c, p))
+			s->sum[2] += g * g;
+		s->sum[3] += g > 0 ? p * g : 0;
+		if (c->cap < INFINITY && g < 0)
+			s->sum[4] -= (c->cap - p) * g;
+		if (-g > s->max)
+			s->max = -g;
+	}
+}
+
+double contact_certify(struct contact *c, double *moment)
+{
+	struct sweep s;
+	double excess;
+
+	c->shift = c->target;
+	if (c->control == CONTACT_PRESSURE) {
+		s = contact_sweep(c, sum_free);
+		c->shift = s.sum[1] > 0 ? s.sum[0] / s.sum[1] : -s.max;
+	}
+	s = contact_sweep(c, shift_gap);
+	if (moment)
+		*moment = s.sum[2];
+	c->result.approach = c->shift;
+	c->result.pressure = s.sum[1] / (double)c->n;
+	if (s.sum[1] <= 0)
+		return s.max > 0 ? INFINITY : 0;
+	if (c->cap < INFINITY)
+		excess = s.sum[3] + s.sum[4];
+	else if (c->control == CONTACT_PRESSURE)
+		excess = s.sum[0] + s.sum[1] * s.max;
+	else
+		excess = s.sum[3] + s.sum[1] * fmax(s.max, 0);
+	return fmax(excess, 0) / (s.sum[1] * c->scale);
+}
+
+static void sum_load(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+
+	for (size_t i = begin; i < end; i++) {
+		if (c->p[i] >= c->cap)
+			s->sum[0] += c->p[i];
+		else
+			s->sum[1] += c->p[i];
+		s->sum[2] += c->p[i] <= 0;
+	}
+}
+
+static void scale_free(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+
+	(void)s;
+	for (size_t i = begin; i < end; i++)
+		if (c->p[i] < c->cap)
+			c->p[i] = fmin(c->p[i] * c->beta, c->cap);
+}
+
+static void scale_all(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+
+	(void)s;
+	for (size_t i = begin; i < end; i++)
+		c->p[i] *= c->beta;
+}
+
+static void fill_empty(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+
+	(void)s;
+	for (size_t i = begin; i < end; i++)
+		if (c->p[i] <= 0)
+			c->p[i] = c->beta;
+}
+
+void contact_scale_load(struct contact *c)
+{
+	double load = c->target * (double)c->n;
+
+	/* Cells that reach the hardness on the way leave the rest to the others. */
+	for (int k = 0; k < 100; k++) {
+		struct sweep s = contact_sweep(c, sum_load);
+		double fixed = s.sum[0], rest = s.sum[1];
+
+		if (fabs(fixed + rest - load) <= 4 * DBL_EPSILON * load)
+			return;
+		if (fixed >= load) {
+			c->beta = load / (fixed + rest);
+			contact_sweep(c, scale_all);
+		} else if (rest > 0) {
+			c->beta = (load - fixed) / rest;
+			contact_sweep(c, scale_free);
+		} else {
+			c->beta = (load - fixed) / s.sum[2];
+			contact_sweep(c, fill_empty);
+		}
+	}
+}
+
+static void survey(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+
+	for (size_t i = begin; i < end; i++) {
+		double p = c->p[i];
+
+		s->sum[0] += c->h[i];
+		if (!(p > 0))
+			p = 0;
+		if (p > c->cap)
+			p = c->cap;
+		c->p[i] = p;
+		s->sum[1] += p;
+		if (c->h[i] > s->max)
+			s->max = c->h[i];
+	}
+}
+
+static void spread(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+
+	for (size_t i = begin; i < end; i++) {
+		double d = c->h[i] - c->shift;
+
+		s->sum[0] += d * d;
+	}
+}
+
+static void final_sums(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+
+	for (size_t i = begin; i < end; i++) {
+		double p = c->p[i];
+
+		s->sum[0] += p > 0;
+		s->sum[1] += p >= c->cap;
+		s->sum[2] += p;
+		s->sum[3] += p * (c->gap[i] + c->h[i] + c->result.approach);
+		if (c->h[i] > s->max)
+			s->max = c->h[i];
+	}
+}
+
+/* A pressure that is about right for bodies that come together by depth. */
+static double guess_pressure(const struct contact *c, double depth)
+{
+	double size = fmax(c->par.nx * c->par.dx, c->par.ny * c->par.dy);
+
+	return fmin(c->par.estar * depth / size, c->cap / 2);
+}
+
+static enum contact_status prepare(struct contact *c)
+{
+	struct sweep s = contact_sweep(c, survey);
+	double mean = s.sum[0] / (double)c->n, highest = s.max, guess = s.sum[1];
+	double touch = -highest;
+
+	if (!isfinite(s.sum[0]) || !isfinite(guess) || !isfinite(c->target))
+		return CONTACT_NUMBERS;
+	c->shift = mean;
+	s = contact_sweep(c, spread);
+	c->scale = sqrt(s.sum[0] / (double)c->n);
+	if (!isfinite(c->scale))
+		return CONTACT_NUMBERS;
+	if (c->control == CONTACT_PRESSURE) {
+		if (c->target < 0)
+			return CONTACT_NUMBERS;
+		if (c->target >= c->cap)
+			return CONTACT_OVERLOAD;
+		c->beta = c->target;
+	} else {
+		if (c->par.boundary == CONTACT_PERIODIC && c->target >= -mean &&
+			c->target > touch)
+			return CONTACT_TOO_DEEP;
+		c->beta = guess_pressure(c, c->target - touch);
+	}
+	if (c->scale <= 16 * DBL_EPSILON * fabs(mean)) /* flat: take a displacement */
+		c->scale = fmax(c->par.nx * c->par.dx, c->par.ny * c->par.dy) *
+			   (c->control == CONTACT_PRESSURE ? c->target : c->beta) /
+			   c->par.estar;
+	if (guess <= 0)
+		contact_sweep(c, fill_empty);
+	if (c->control == CONTACT_PRESSURE)
+		contact_scale_load(c);
+	return CONTACT_OK;
+}
+
+/* Nothing to solve: no load, or an approach that does not reach the surface. */
+static int is_apart(struct contact *c)
+{
+	struct sweep s;
+
+	if (c->control == CONTACT_PRESSURE && c->target != 0)
+		return 0;
+	s = contact_sweep(c, survey);
+	if (c->control == CONTACT_APPROACH && c->target > -s.max)
+		return 0;
+	memset(c->p, 0, c->n * sizeof(*c->p));
+	c->result.approach = c->control == CONTACT_APPROACH ? c->target : -s.max;
+	for (size_t i = 0; i < c->n; i++)
+		c->gap[i] = -c->h[i] - c->result.approach;
+	return 1;
+}
+
+enum contact_status contact_solve(struct contact *c, const double *height,
+	enum contact_control control, double target, double *pressure, double *gap)
+{
+	enum contact_status status;
+	struct sweep s;
+
+	memset(&c->result, 0, sizeof(c->result));
+	c->h = height;
+	c->p = pressure;
+	c->control = control;
+	c->target = target;
+	if (is_apart(c)) {
+		status = CONTACT_OK;
+	} else {
+		status = prepare(c);
+		if (status == CONTACT_OK)
+			status = contact_solve_pk(c);
+	}
+	if (status != CONTACT_OK && status != CONTACT_NOCONV)
+		return status;
+	s = contact_sweep(c, final_sums);
+	c->result.area = s.sum[0] / (double)c->n;
+	c->result.plastic = s.sum[1] / (double)c->n;
+	c->result.pressure = s.sum[2] / (double)c->n;
+	c->result.load = s.sum[2] * c->par.dx * c->par.dy;
+	c->result.energy = s.sum[3] / 2 * c->par.dx * c->par.dy;
+	c->result.indentation = c->result.approach + s.max;
+	if (gap)
+		memcpy(gap, c->gap, c->n * sizeof(*gap));
+	return status;
+}

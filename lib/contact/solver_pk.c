@@ -1,0 +1,94 @@
+/* Polonsky and Keer, Wear 231 (1999) 206-219: conjugate gradients on the cells in
+ * contact, which come and go as their pressure or gap says; two applications of the
+ * half-space per iteration.  A cell at the hardness is out of the iteration until its
+ * gap opens. */
+#include "contact/state.h"
+#include "num/fft.h"
+#include <math.h>
+
+/* t = g + beta t on the free cells, 0 elsewhere. */
+static void turn_step(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+
+	(void)s;
+	for (size_t i = begin; i < end; i++)
+		c->step[i] = is_free(c, c->p[i]) ? c->gap[i] + c->beta * c->step[i] : 0;
+}
+
+/* Sums for the step length tau = g t / (r t), r = K t less its mean over the free
+ * cells; the mean is taken off the sums instead of off r. */
+static void sum_step(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+
+	for (size_t i = begin; i < end; i++) {
+		if (!is_free(c, c->p[i]))
+			continue;
+		s->sum[0] += c->gap[i] * c->step[i];
+		s->sum[1] += c->image[i] * c->step[i];
+		s->sum[2] += c->image[i];
+		s->sum[3] += c->step[i];
+		s->sum[4] += 1;
+	}
+}
+
+/* Moves the free cells, keeps them within the bounds, and frees the bounded cells whose
+ * gap has the wrong sign; counts those. */
+static void move_pressure(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+
+	for (size_t i = begin; i < end; i++) {
+		double p = c->p[i], g = c->gap[i];
+
+		if (is_free(c, p)) {
+			p -= c->tau * c->step[i];
+		} else if ((p <= 0 && g < 0) || (p > 0 && g > 0)) {
+			p -= c->tau * g;
+			s->sum[0] += 1;
+		}
+		c->p[i] = fmin(fmax(p, 0), c->cap);
+	}
+}
+
+/* Step length along the direction.  With one free cell the gap less its mean is zero
+ * and the quotient 0/0; the last length is as good as any then, since the cells that
+ * overlap decide. */
+static double step_length(struct contact *c, double last)
+{
+	struct sweep s = contact_sweep(c, sum_step);
+	double curvature = s.sum[1];
+
+	if (c->control == CONTACT_PRESSURE && s.sum[4] > 0)
+		curvature -= s.sum[2] * s.sum[3] / s.sum[4];
+	return curvature > 0 && s.sum[0] > 0 ? s.sum[0] / curvature : last;
+}
+
+enum contact_status contact_solve_pk(struct contact *c)
+{
+	double moment, last_moment = 1;
+	int conjugate = 0;
+
+	c->tau = c->par.estar / sqrt(c->par.dx * c->par.dy);
+	for (long k = 0;; k++) {
+		struct sweep s;
+
+		contact_gap(c);
+		c->result.certificate = contact_certify(c, &moment);
+		if (c->result.certificate <= c->par.tolerance)
+			return CONTACT_OK;
+		if (k == c->par.max_iterations)
+			return CONTACT_NOCONV;
+		c->result.iterations++;
+		c->beta = conjugate && last_moment > 0 ? moment / last_moment : 0;
+		last_moment = moment;
+		contact_sweep(c, turn_step);
+		contact_multiply(c, c->step, c->image);
+		c->tau = step_length(c, c->tau);
+		s = contact_sweep(c, move_pressure);
+		conjugate = s.sum[0] == 0;
+		if (c->control == CONTACT_PRESSURE)
+			contact_scale_load(c);
+	}
+}

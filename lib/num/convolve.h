@@ -1,0 +1,52 @@
+/* convolve.h - convolution of plane fields with even kernels, by fast Fourier transform
+ *
+ * y = k * x for nx * ny real fields and a kernel even in both directions, whose
+ * spectrum is then real and even: only its quarter is stored.  Periodic, or linear
+ * (CONVOLVE_PADDED: as if x were surrounded by zeros) at any grid size.
+ *
+ * The rows are transformed first; then a few columns at a time are copied out,
+ * transformed, multiplied and transformed back while they sit in cache; then the rows
+ * again.  A padded column is never formed: with half of its 2 n points zero, its even
+ * and odd coefficients are two transforms of n points (the odd ones after a twist by
+ * exp(-i pi j / n)), and only the n wanted points are transformed back.
+ *
+ *	struct convolve *c = convolve_new(nx, ny, CONVOLVE_PADDED, pool);
+ *	double *k = convolve_alloc(c);
+ *	convolve_kernel(c, k, value, context);   or convolve_spectrum() in Fourier space
+ *	convolve_apply(c, k, x, y);
+ *
+ * The same bytes for any number of threads.
+ */
+#ifndef NUM_CONVOLVE_H
+#define NUM_CONVOLVE_H
+
+#include "num/pool.h"
+#include <stddef.h>
+
+enum convolve_kind { CONVOLVE_PERIODIC, CONVOLVE_PADDED };
+
+struct convolve;
+
+/* Plans and scratch memory (about nx * ny doubles, padded 2 nx * ny); NULL when out
+ * of memory.  pool is borrowed, NULL for one thread. */
+struct convolve *convolve_new(
+	size_t nx, size_t ny, enum convolve_kind kind, struct pool *pool);
+void convolve_free(struct convolve *c);
+
+/* Room for one kernel, to be freed with fft_free(); NULL when out of memory. */
+double *convolve_alloc(const struct convolve *c);
+
+/* A kernel by its values at offset (ix, iy), 0 <= ix, iy; periodic: up to half the
+ * grid, beyond it follows by symmetry.  Returns 0, or -1 when out of memory. */
+int convolve_kernel(const struct convolve *c, double *kernel,
+	double (*value)(const void *context, size_t ix, size_t iy), const void *context);
+
+/* A kernel by its factors in Fourier space at wavenumber (kx, ky), 0 <= kx <= mx / 2,
+ * in cycles per mx points, where mx = nx, or the padded size. */
+void convolve_spectrum(const struct convolve *c, double *kernel,
+	double (*factor)(const void *context, size_t kx, size_t ky), const void *context);
+
+/* y = kernel * x; y may be x. */
+void convolve_apply(struct convolve *c, const double *kernel, const double *x, double *y);
+
+#endif

@@ -1,0 +1,112 @@
+/* Love's coefficients against 50-digit values and the closed form in long double. */
+#include "contact/kernel.h"
+#include "tap.h"
+
+/* I of a cell ax * ay at (m ax, n ay), from 50-digit evaluation of the corner sum. */
+static const struct {
+	double ax, ay, m, n, i;
+} golden[] = {
+	{1, 1, 0, 0, 3.5254943480781721},
+	{1, 1, 1, 0, 1.0380497359047561},
+	{1, 1, 0, 1, 1.0380497359047561},
+	{1, 1, 1, 1, 0.724697438134329947},
+	{1, 1, 2, 0, 0.505091983075117499},
+	{1, 1, 2, 1, 0.451088988349219848},
+	{1, 1, 3, 2, 0.278258815588361196},
+	{1, 1, 5, 0, 0.200332161527130118},
+	{1, 1, 8, 8, 0.0884171986772396224},
+	{1, 1, 16, 5, 0.0596638459796261958},
+	{1, 1, 64, 0, 0.015625158942323859},
+	{1, 1, 64, 64, 0.0110485996542388136},
+	{1, 1, 127, 0, 0.00787403608916917536},
+	{1, 1, 127, 127, 0.00556777712239797758},
+	{1, 1, 255, 255, 0.00277296865779141801},
+	{1, 1, 511, 0, 0.00195694747469348608},
+	{1, 1, 511, 511, 0.00138377071937875337},
+	{1, 1, 1023, 1, 0.000977516678440458556},
+	{1, 1, 2047, 2047, 0.000345435654471039316},
+	{1, 0.5, 0, 0, 2.40605912529801724},
+	{1, 0.5, 1, 0, 0.540574014481350876},
+	{1, 0.5, 0, 1, 0.929451330513725717},
+	{1, 0.5, 1, 1, 0.468016890151470322},
+	{1, 0.5, 2, 0, 0.254678292514663191},
+	{1, 0.5, 2, 1, 0.246471482751609783},
+	{1, 0.5, 3, 2, 0.159127756969314032},
+	{1, 0.5, 5, 0, 0.100292884271677893},
+	{1, 0.5, 8, 8, 0.0559395855818772938},
+	{1, 0.5, 16, 5, 0.0308837008743902993},
+	{1, 0.5, 64, 0, 0.00781263908103641912},
+	{1, 0.5, 64, 64, 0.00698778635677780125},
+	{1, 0.5, 127, 0, 0.00393702567272256151},
+	{1, 0.5, 127, 127, 0.00352137635449407781},
+	{1, 0.5, 255, 255, 0.00175377997461963685},
+	{1, 0.5, 511, 0, 0.000978473854447020288},
+	{1, 0.5, 511, 511, 0.000875173521948318942},
+	{1, 0.5, 1023, 1, 0.000488758528950288164},
+	{1, 0.5, 2047, 2047, 0.000218472691805006366},
+};
+
+static long double corner(long double x, long double y)
+{
+	return (x == 0 ? 0 : x * asinhl(y / fabsl(x))) +
+	       (y == 0 ? 0 : y * asinhl(x / fabsl(y)));
+}
+
+static double closed_form(double ax, double ay, double x, double y)
+{
+	long double x1 = x - (long double)ax / 2, x2 = x + (long double)ax / 2;
+	long double y1 = y - (long double)ay / 2, y2 = y + (long double)ay / 2;
+
+	return (double)(corner(x2, y2) - corner(x2, y1) - corner(x1, y2) +
+			corner(x1, y1));
+}
+
+/* Largest relative error along a ray of cells out to distance r (in the long side);
+ * the reference itself is good to 5e-20 r^2 ax / ay. */
+static double worst_along(double ax, double ay, int sx, int sy, int cells)
+{
+	double worst = 0;
+
+	for (int i = 0; i < cells; i++) {
+		double x = i * sx * ax, y = i * sy * ay, want = closed_form(ax, ay, x, y);
+
+		worst = fmax(worst, fabs(kernel_patch(ax, ay, x, y) / want - 1));
+	}
+	return worst;
+}
+
+int main(void)
+{
+	static const double aspects[] = {1, 1.5, 3, 100};
+	double worst = 0;
+
+	for (size_t k = 0; k < sizeof(golden) / sizeof(golden[0]); k++) {
+		double got = kernel_patch(golden[k].ax, golden[k].ay,
+			golden[k].m * golden[k].ax, golden[k].n * golden[k].ay);
+
+		worst = fmax(worst, fabs(got / golden[k].i - 1));
+	}
+	ok(worst < 2e-15, "Love coefficients of reference: relative error %.1e", worst);
+	for (size_t k = 0; k < sizeof(aspects) / sizeof(aspects[0]); k++) {
+		double a = aspects[k], e = worst_along(a, 1, 1, 0, 50);
+
+		e = fmax(e, worst_along(a, 1, 0, 1, 500));
+		e = fmax(e, worst_along(a, 1, 1, 1, 50));
+		e = fmax(e, worst_along(1, a, 1, 0, 500));
+		ok(e < 4e-15,
+			"cells 1:%g: relative error %.1e along rows, columns, diagonal",
+			a, e);
+	}
+	near(kernel_patch(1, 1, 0, 0), 4 * asinh(1), 1e-15,
+		"under its own square cell: 4 asinh 1");
+	near(kernel_patch(2, 1, -6, 3) / kernel_patch(2, 1, 6, 3), 1, 1e-15, "even");
+	near(kernel_modulus(210e9, 0.3, 210e9, 0.3) / (210e9 / 1.82), 1, 1e-15,
+		"two like steels: E / 1.82");
+	near(kernel_modulus(210e9, 0.3, INFINITY, 0.3) / (210e9 / 0.91), 1, 1e-15,
+		"against a rigid body: E / 0.91");
+	near(kernel_modulus(1, 0, 1e6, 0), 1 / (1 + 1e-6), 1e-15,
+		"a million times stiffer");
+	near(kernel_periodic(4, 3, 4), 0.1, 1e-17, "periodic: 2 / (E* |q|)");
+	near(kernel_periodic(4, 0, 0), 0, 0, "periodic: mean displacement zero");
+	return tap_done();
+}
