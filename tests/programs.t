@@ -15,6 +15,7 @@ for p in $programs; do
 	fails "$p refuses an unknown option" 2 "^$p: --no-such-option" "$p" --no-such-option
 	fails "$p names a missing file" 1 "^$p: .*no-such-file" "$p" $(case $p in
 		roughgen) echo --measure ;;
+		bemcontact) echo --estar 1GPa --pressure 1MPa ;;
 		debrisgen) echo --yield 355MPa ;;
 		aopf) echo --threshold 1 ;;
 		rwl) echo --wear no-such-file --threshold-gap 1um ;;
