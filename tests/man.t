@@ -11,7 +11,7 @@ examples() {
 	/^\.Dl / { sub(/^\.Dl /, ""); print; next }
 	/^\.Bd -literal/ { show = 1; next }
 	/^\.Ed/ { show = 0; next }
-	show { print }' "$1" | sed -e 's/\\e/\\/g' -e 's/\\&//g' -e 's/\\(aq/'\''/g' -e 's/\\-/-/g' -e 's/\\(ha/^/g' -e 's/\\(ti/~/g'
+	show { print }' "$1" | sed -e 's/\\e/\\/g' -e 's/\\&//g' -e 's/\\(dq/"/g' -e 's/\\(aq/'\''/g' -e 's/\\-/-/g' -e 's/\\(ha/^/g' -e 's/\\(ti/~/g'
 }
 
 # Options of a page: ".It Fl n , Fl -points Ar ..." as "n points".
