@@ -8,47 +8,48 @@
 #include <math.h>
 #include <string.h>
 
-static struct opt_list edges = {2, {70, 130}};
+static struct opt_list edges = { 2, { 70, 130 } };
 static long order = 200, grid = 501;
 static int window, no_scale, zero_phase, response, taps_only, single;
 static double attenuation = 60, latency = INFINITY, rate = 10e3;
-static const char *const windows[] = {"hamming", "hann", "blackman", "kaiser", NULL};
+static const char *const windows[] = { "hamming", "hann", "blackman", "kaiser", NULL };
 
 static const struct opt opts[] = {
-	{'b', "band", OPT_LIST, UNIT_FREQUENCY, &edges, 0, 1e12, "LO:HI",
-		"pass band; LO 0 makes a low-pass, HI half the rate a high-pass", 0, 0},
-	{'n', "order", OPT_INT, UNIT_COUNT, &order, 1, 1e6, "N", "taps less one", 0, 0},
-	{'w', "window", OPT_WORD, UNIT_NONE, &window, 0, 0,
+	{ 'b', "band", OPT_LIST, UNIT_FREQUENCY, &edges, 0, 1e12, "LO:HI",
+		"pass band; LO 0 makes a low-pass, HI half the rate a high-pass", 0, 0 },
+	{ 'n', "order", OPT_INT, UNIT_COUNT, &order, 1, 1e6, "N", "taps less one", 0, 0 },
+	{ 'w', "window", OPT_WORD, UNIT_NONE, &window, 0, 0,
 		"hamming|hann|blackman|kaiser", "window that cuts the ideal response",
-		windows, 0},
-	{'A', "attenuation", OPT_NUM, UNIT_DECIBEL, &attenuation, 0, 300, "A",
-		"stop-band attenuation the Kaiser window is made for", 0, 0},
-	{'k', "no-scale", OPT_FLAG, UNIT_NONE, &no_scale, 0, 0, 0,
-		"leave the gain in the middle of the band as the window makes it", 0, 0},
-	{'z', "zero-phase", OPT_FLAG, UNIT_NONE, &zero_phase, 0, 0, 0,
-		"take the delay of half the order out", 0, 0},
-	{'L', "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
-		"hold back no more than T of signal for speed", 0, 0},
-	{'F', "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
-		0},
-	{'R', "response", OPT_FLAG, UNIT_NONE, &response, 0, 0, 0,
-		"print the frequency response as a table and read nothing", 0, 0},
-	{'p', "taps", OPT_FLAG, UNIT_NONE, &taps_only, 0, 0, 0,
-		"print the taps as a table and read nothing", 0, 0},
-	{'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 1e12, "F",
-		"sampling rate for --response and --taps", 0, 0},
-	{'G', "grid", OPT_INT, UNIT_COUNT, &grid, 2, 1e7, "N",
-		"points of the response from 0 to half the rate", 0, 0},
-	OPT_END};
+		windows, 0 },
+	{ 'A', "attenuation", OPT_NUM, UNIT_DECIBEL, &attenuation, 0, 300, "A",
+		"stop-band attenuation the Kaiser window is made for", 0, 0 },
+	{ 'k', "no-scale", OPT_FLAG, UNIT_NONE, &no_scale, 0, 0, 0,
+		"leave the gain in the middle of the band as the window makes it", 0, 0 },
+	{ 'z', "zero-phase", OPT_FLAG, UNIT_NONE, &zero_phase, 0, 0, 0,
+		"take the delay of half the order out", 0, 0 },
+	{ 'L', "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
+		"hold back no more than T of signal for speed", 0, 0 },
+	{ 'F', "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
+		0 },
+	{ 'R', "response", OPT_FLAG, UNIT_NONE, &response, 0, 0, 0,
+		"print the frequency response as a table and read nothing", 0, 0 },
+	{ 'p', "taps", OPT_FLAG, UNIT_NONE, &taps_only, 0, 0, 0,
+		"print the taps as a table and read nothing", 0, 0 },
+	{ 'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 1e12, "F",
+		"sampling rate for --response and --taps", 0, 0 },
+	{ 'G', "grid", OPT_INT, UNIT_COUNT, &grid, 2, 1e7, "N",
+		"points of the response from 0 to half the rate", 0, 0 },
+	OPT_END
+};
 
-static const struct prog prog = {"bpfilter", "Band-pass each channel of a signal.",
-	"[file]", "signal", "signal, or a table with --response or --taps", opts};
+static const struct prog prog = { "bpfilter", "Band-pass each channel of a signal.",
+	"[file]", "signal", "signal, or a table with --response or --taps", opts };
 
 /* Taps for this sampling rate; name is where the rate came from. */
 static double *make_taps(double fs, const char *name)
 {
-	struct fir_band band = {(int)order, edges.v[0] / fs, edges.v[1] / fs,
-		(enum fir_window)window, fir_kaiser_beta(attenuation), !no_scale};
+	struct fir_band band = { (int)order, edges.v[0] / fs, edges.v[1] / fs,
+		(enum fir_window)window, fir_kaiser_beta(attenuation), !no_scale };
 	double *h = xcalloc((size_t)order + 1, sizeof *h);
 
 	if (edges.v[0] >= edges.v[1])

@@ -9,7 +9,8 @@
 #include <string.h>
 
 enum format { LIST, COUNT, NRRD, GSF, TEXT, TABLE };
-static const char *const formats[] = { "list", "count", "nrrd", "gsf", "text", "table", NULL };
+static const char *const formats[] = { "list", "count", "nrrd", "gsf", "text", "table",
+	NULL };
 
 static int format = LIST;
 static struct opt_list pick;
@@ -17,18 +18,18 @@ static const char *field;
 static struct opt_list raw_size;
 static double pixel = NAN;
 
-static const struct opt opts[] = {
-	{ 'o', "output", OPT_WORD, UNIT_NONE, &format, 0, 0, "list|count|nrrd|gsf|text|table",
-		"what to write", formats, 0 },
+static const struct opt opts[] = { { 'o', "output", OPT_WORD, UNIT_NONE, &format, 0, 0,
+					   "list|count|nrrd|gsf|text|table",
+					   "what to write", formats, 0 },
 	{ 'n', "pick", OPT_LIST, UNIT_COUNT, &pick, 1, 1e9, "K,...",
 		"only the K-th records, from 1", NULL, 1 },
-	{ 'k', "field", OPT_TEXT, UNIT_NONE, &field, 0, 0, "NAME", "only this field", NULL, 0 },
+	{ 'k', "field", OPT_TEXT, UNIT_NONE, &field, 0, 0, "NAME", "only this field",
+		NULL, 0 },
 	{ 'x', "raw", OPT_LIST, UNIT_COUNT, &raw_size, 1, 1e9, "NXxNY",
 		"read headerless little-endian float64 heights", NULL, 0 },
 	{ 'X', "pixel", OPT_NUM, UNIT_LENGTH, &pixel, 1e-15, 1e6, "D", "spacing of --raw",
 		NULL, 0 },
-	OPT_END
-};
+	OPT_END };
 
 static const struct prog prog = { "rec",
 	"List, pick, count and convert the records of a field stream.", "[file]",
@@ -154,7 +155,8 @@ int main(int argc, char **argv)
 	if (raw_size.n && (raw_size.n != 2 || isnan(pixel)))
 		die(EXIT_USAGE, "--raw wants NXxNY and --pixel");
 	if (raw_size.n)
-		raw = (struct raw_layout){ (int)raw_size.v[0], (int)raw_size.v[1], pixel, pixel };
+		raw = (struct raw_layout){ (int)raw_size.v[0], (int)raw_size.v[1], pixel,
+			pixel };
 	in = fields_open(argv[first], raw_size.n ? &raw : NULL);
 	if (format == NRRD)
 		out = fields_create(NULL);

@@ -13,22 +13,22 @@ void philox4x32(const uint32_t counter[4], const uint32_t key[2], uint32_t out[4
 /* What a stream is drawn for; part of the counter, so that adding a purpose leaves
  * all others as they were.  Never renumber. */
 enum rng_purpose {
-	RNG_SURFACE = 1,    /* phases and amplitudes of a surface */
-	RNG_SURFACE_2 = 2,  /* second surface of a pair */
-	RNG_ROUGHNESS = 3,  /* drawn Sq or Sa */
-	RNG_PARTICLE = 4,   /* drawn particles of the sensor */
-	RNG_NOISE = 5,      /* sensor noise */
-	RNG_FILTER = 6,     /* particle filter */
-	RNG_LIFE = 7,       /* wear-life ensemble */
-	RNG_BOOTSTRAP = 8,  /* resampling for intervals */
-	RNG_NETWORK = 9,    /* initial weights, shuffling, training scenes */
-	RNG_PREDICT = 10    /* long-term prediction paths */
+	RNG_SURFACE = 1,   /* phases and amplitudes of a surface */
+	RNG_SURFACE_2 = 2, /* second surface of a pair */
+	RNG_ROUGHNESS = 3, /* drawn Sq or Sa */
+	RNG_PARTICLE = 4,  /* drawn particles of the sensor */
+	RNG_NOISE = 5,     /* sensor noise */
+	RNG_FILTER = 6,    /* particle filter */
+	RNG_LIFE = 7,      /* wear-life ensemble */
+	RNG_BOOTSTRAP = 8, /* resampling for intervals */
+	RNG_NETWORK = 9,   /* initial weights, shuffling, training scenes */
+	RNG_PREDICT = 10   /* long-term prediction paths */
 };
 
 /* Uniform in (0, 1) and standard normal (Box-Muller) by address: for index i of
  * stream (seed, realisation, purpose), in any order. */
-double philox_uniform(uint64_t seed, uint32_t realisation, enum rng_purpose purpose,
-	uint64_t index);
+double philox_uniform(
+	uint64_t seed, uint32_t realisation, enum rng_purpose purpose, uint64_t index);
 void philox_normal2(uint64_t seed, uint32_t realisation, enum rng_purpose purpose,
 	uint64_t index, double normal[2]);
 

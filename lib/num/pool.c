@@ -13,7 +13,7 @@ struct pool {
 	struct worker *workers; /* threads - 1 of them */
 	pthread_mutex_t lock;
 	pthread_cond_t start, finish;
-	unsigned long round;    /* counts calls of pool_run() */
+	unsigned long round; /* counts calls of pool_run() */
 	int running, quit;
 	void (*job)(void *context, size_t i, int worker);
 	void *context;
@@ -102,8 +102,8 @@ int pool_threads(const struct pool *p)
 	return p ? p->threads : 1;
 }
 
-void pool_run(struct pool *p, size_t njobs, void (*job)(void *context, size_t i, int worker),
-	void *context)
+void pool_run(struct pool *p, size_t njobs,
+	void (*job)(void *context, size_t i, int worker), void *context)
 {
 	if (pool_threads(p) == 1 || njobs < 2) {
 		for (size_t i = 0; i < njobs; i++)
@@ -148,7 +148,8 @@ double pool_sum(struct pool *p, size_t n,
 {
 	size_t parts = (n + CHUNK - 1) / CHUNK;
 	double few[64], total = 0;
-	struct sum s = { chunk, context, n, parts <= 64 ? few : malloc(parts * sizeof(double)) };
+	struct sum s = { chunk, context, n,
+		parts <= 64 ? few : malloc(parts * sizeof(double)) };
 
 	if (!s.part) {
 		/* Without memory for the parts: the same parts, one after another. */

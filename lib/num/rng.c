@@ -44,8 +44,8 @@ static double get_double(void *state)
 	return (double)((high << 32 | low) >> 11) * 0x1p-53;
 }
 
-static const gsl_rng_type type = { "philox4x32-10", 0xffffffffUL, 0, sizeof(struct state), set,
-	get, get_double };
+static const gsl_rng_type type = { "philox4x32-10", 0xffffffffUL, 0, sizeof(struct state),
+	set, get, get_double };
 const gsl_rng_type *const rng_philox = &type;
 
 gsl_rng *rng_new(uint64_t seed, uint32_t realisation, enum rng_purpose purpose)
@@ -57,7 +57,8 @@ gsl_rng *rng_new(uint64_t seed, uint32_t realisation, enum rng_purpose purpose)
 	return rng;
 }
 
-void rng_reset(gsl_rng *rng, uint64_t seed, uint32_t realisation, enum rng_purpose purpose)
+void rng_reset(
+	gsl_rng *rng, uint64_t seed, uint32_t realisation, enum rng_purpose purpose)
 {
 	set_stream(gsl_rng_state(rng), seed, realisation, purpose);
 }

@@ -38,7 +38,8 @@ static inline double bytes_double_big(const unsigned char *b)
 
 static inline double bytes_double_little(const unsigned char *b)
 {
-	return bytes_double((uint64_t)bytes_u32_little(b + 4) << 32 | bytes_u32_little(b));
+	return bytes_double(
+		(uint64_t)bytes_u32_little(b + 4) << 32 | bytes_u32_little(b));
 }
 
 static inline void bytes_put_u32_big(unsigned char *b, uint32_t v)

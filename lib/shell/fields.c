@@ -108,10 +108,12 @@ double *record_need(
 	size_t n = points(r);
 
 	if (k < 0)
-		die(EXIT_RUN, "%s: record %ld: no field '%s'", in->at.name, in->at.record, name);
+		die(EXIT_RUN, "%s: record %ld: no field '%s'", in->at.name, in->at.record,
+			name);
 	for (size_t i = 0; finite && i < n; i++)
 		if (!isfinite(r->data[k][i]))
-			die(EXIT_RUN, "%s: record %ld: %s is %g at x %zu, y %zu; want finite samples",
+			die(EXIT_RUN,
+				"%s: record %ld: %s is %g at x %zu, y %zu; want finite samples",
 				in->at.name, in->at.record, name, r->data[k][i],
 				i % (size_t)r->nx, i / (size_t)r->nx % (size_t)r->ny);
 	return r->data[k];
@@ -142,7 +144,8 @@ void record_set(struct record *r, const char *key, const char *format, ...)
 	n = vsnprintf(value, sizeof value, format, ap);
 	va_end(ap);
 	if (n < 0 || (size_t)n >= sizeof value)
-		die(EXIT_RUN, "value of key %s is longer than %zu bytes", key, sizeof value);
+		die(EXIT_RUN, "value of key %s is longer than %zu bytes", key,
+			sizeof value);
 	record_set_text(r, key, value);
 }
 
@@ -176,8 +179,8 @@ char *header_line(const struct place *at, size_t *header_size)
 
 	while ((c = getc(at->f)) != EOF && c != '\n') {
 		if (*header_size + n >= HEADER_MAX)
-			die(EXIT_RUN, "%s: record %ld: header longer than %d bytes", at->name,
-				at->record, HEADER_MAX);
+			die(EXIT_RUN, "%s: record %ld: header longer than %d bytes",
+				at->name, at->record, HEADER_MAX);
 		if (n + 1 >= room)
 			line = xrealloc(line, room = 2 * room + 80, 1);
 		line[n++] = (char)c;
@@ -201,13 +204,14 @@ void check_sizes(const struct place *at, const double *sizes, int n)
 
 	for (int i = 0; i < n; i++) {
 		if (!(sizes[i] >= 1 && sizes[i] <= 1e9) || sizes[i] != floor(sizes[i]))
-			die(EXIT_RUN, "%s: record %ld: size %g, want a whole number from 1 to 1e9",
+			die(EXIT_RUN,
+				"%s: record %ld: size %g, want a whole number from 1 to 1e9",
 				at->name, at->record, sizes[i]);
 		all *= sizes[i];
 	}
 	if (all > 1e15)
-		die(EXIT_RUN, "%s: record %ld: %g bytes of samples are too many", at->name,
-			at->record, all);
+		die(EXIT_RUN, "%s: record %ld: %g bytes of samples are too many",
+			at->name, at->record, all);
 }
 
 /* A regular file must hold what its header declares: said before memory is taken. */
@@ -219,8 +223,9 @@ static void check_length(const struct place *at, uint64_t want)
 	if (here < 0 || fstat(fileno(at->f), &s) || !S_ISREG(s.st_mode))
 		return;
 	if (s.st_size < here || (uint64_t)(s.st_size - here) < want)
-		die(EXIT_RUN, "%s: record %ld: want %llu bytes, got %lld", at->name, at->record,
-			(unsigned long long)want, (long long)(s.st_size - here));
+		die(EXIT_RUN, "%s: record %ld: want %llu bytes, got %lld", at->name,
+			at->record, (unsigned long long)want,
+			(long long)(s.st_size - here));
 }
 
 static double sample(const unsigned char *b, struct samples layout)

@@ -25,15 +25,15 @@
 enum { RECORD_FIELDS_MAX = 32 };
 
 struct record {
-	int nx, ny, nz;         /* points; nz = 1 for plane fields */
-	double dx, dy, dz;      /* spacing, m */
+	int nx, ny, nz;    /* points; nz = 1 for plane fields */
+	double dx, dy, dz; /* spacing, m */
 	int nfields;
 	char *name[RECORD_FIELDS_MAX];   /* "height" */
 	char *unit[RECORD_FIELDS_MAX];   /* "m" */
 	double *data[RECORD_FIELDS_MAX]; /* planar: data[k][(iz * ny + iy) * nx + ix] */
-	long realisation;       /* from the key, else the place in the stream from 0 */
-	char *cmd;              /* pipeline that rebuilds this record; NULL if unknown */
-	int nkeys;              /* other key:=value pairs, carried through */
+	long realisation; /* from the key, else the place in the stream from 0 */
+	char *cmd;        /* pipeline that rebuilds this record; NULL if unknown */
+	int nkeys;        /* other key:=value pairs, carried through */
 	char **key, **value;
 };
 
@@ -70,8 +70,8 @@ void record_free(struct record *r);
 int record_find(const struct record *r, const char *name);
 /* The samples of a field; dies naming file, record and field where it is absent or,
  * with finite != 0, where a sample is not finite. */
-double *record_need(const struct record *r, const char *name, int finite,
-	const struct fields_in *in);
+double *record_need(
+	const struct record *r, const char *name, int finite, const struct fields_in *in);
 /* A zeroed new field, or the existing one of that name. */
 double *record_add(struct record *r, const char *name, const char *unit);
 /* Drops a field. */

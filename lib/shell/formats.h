@@ -19,7 +19,7 @@ void nrrd_write(FILE *f, const struct record *r);
 
 /* Layout of raw samples in a stream: points of nfields values, x fastest. */
 struct samples {
-	int single;     /* 4-byte float instead of 8-byte */
+	int single; /* 4-byte float instead of 8-byte */
 	int big_endian;
 };
 

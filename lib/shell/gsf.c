@@ -15,8 +15,8 @@ static double number(const struct place *at, const char *key, const char *text)
 	double v = strtod(text, &end);
 
 	if (end == text || *end || !(v > 0) || !isfinite(v))
-		die(EXIT_RUN, "%s: record %ld: %s = %.30s: want a number above 0", at->name,
-			at->record, key, text);
+		die(EXIT_RUN, "%s: record %ld: %s = %.30s: want a number above 0",
+			at->name, at->record, key, text);
 	return v;
 }
 
@@ -53,7 +53,8 @@ static void skip_padding(const struct place *at, size_t header_size)
 
 	for (size_t i = 0; i < n; i++)
 		if (getc(at->f) != 0)
-			die(EXIT_RUN, "%s: record %ld: GSF header is not padded with NUL bytes",
+			die(EXIT_RUN,
+				"%s: record %ld: GSF header is not padded with NUL bytes",
 				at->name, at->record);
 }
 
@@ -92,7 +93,8 @@ void gsf_read(const struct place *at, struct record *r)
 	if (c == 0)
 		ungetc(c, at->f);
 	if (!(sizes[0] > 0 && sizes[1] > 0 && real[0] > 0 && real[1] > 0))
-		die(EXIT_RUN, "%s: record %ld: GSF header without XRes, YRes, XReal and YReal",
+		die(EXIT_RUN,
+			"%s: record %ld: GSF header without XRes, YRes, XReal and YReal",
 			at->name, at->record);
 	skip_padding(at, size);
 	check_sizes(at, sizes, 2);

@@ -68,7 +68,8 @@ void note(const char *format, ...)
 void *xrealloc(void *p, size_t count, size_t size)
 {
 	if (size && count > SIZE_MAX / size)
-		die(EXIT_RUN, "%zu values of %zu bytes do not fit in memory", count, size);
+		die(EXIT_RUN, "%zu values of %zu bytes do not fit in memory", count,
+			size);
 	p = realloc(p, count && size ? count * size : 1);
 	if (!p)
 		die(EXIT_RUN, "out of memory: wanted %zu bytes", count * size);
@@ -80,7 +81,8 @@ void *xcalloc(size_t count, size_t size)
 	void *p = calloc(count ? count : 1, size ? size : 1);
 
 	if (!p)
-		die(EXIT_RUN, "out of memory: wanted %zu values of %zu bytes", count, size);
+		die(EXIT_RUN, "out of memory: wanted %zu values of %zu bytes", count,
+			size);
 	return p;
 }
 

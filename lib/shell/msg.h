@@ -11,9 +11,9 @@
 #include <stddef.h>
 
 enum {
-	EXIT_RUN = 1,      /* the run failed: bad input, no memory, disk full */
-	EXIT_USAGE = 2,    /* the command line is wrong */
-	EXIT_NOCONV = 3    /* did not converge; the best result was written */
+	EXIT_RUN = 1,   /* the run failed: bad input, no memory, disk full */
+	EXIT_USAGE = 2, /* the command line is wrong */
+	EXIT_NOCONV = 3 /* did not converge; the best result was written */
 };
 
 /* Name put before every message; opt_parse() sets it. */

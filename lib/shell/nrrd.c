@@ -23,18 +23,19 @@ struct header {
 	char units[AXES][16];
 	int list_first; /* kinds say that axis 0 is a list */
 	int raw;
-	int endian;     /* 0 not said, 1 little, 2 big */
-	int type;       /* 0 not said, 4 float, 8 double */
+	int endian; /* 0 not said, 1 little, 2 big */
+	int type;   /* 0 not said, 4 float, 8 double */
 	char *fields;
 };
 
 static _Noreturn void bad(const struct place *at, const char *what, const char *value)
 {
-	die(EXIT_RUN, "%s: record %ld: %s: '%.60s' is not understood", at->name, at->record, what,
-		value);
+	die(EXIT_RUN, "%s: record %ld: %s: '%.60s' is not understood", at->name,
+		at->record, what, value);
 }
 
-static int parse_numbers(const struct place *at, const char *what, const char *text, double *v)
+static int parse_numbers(
+	const struct place *at, const char *what, const char *text, double *v)
 {
 	int n = 0;
 	const char *s = text;
@@ -87,26 +88,27 @@ static int word_in(const char *word, const char *const *list)
 	return 0;
 }
 
-static void read_field(const struct place *at, struct header *h, const char *key, const char *v)
+static void read_field(
+	const struct place *at, struct header *h, const char *key, const char *v)
 {
-	static const char *const ignored[] = { "content", "labels", "min", "max", "old min",
-		"old max", "oldmin", "oldmax", "centers", "centerings", "thicknesses",
-		"axis mins", "axismins", "axis maxs", "axismaxs", "block size", "blocksize",
-		"sample units", "sampleunits", "number", "space units", "measurement frame",
-		NULL };
+	static const char *const ignored[] = { "content", "labels", "min", "max",
+		"old min", "old max", "oldmin", "oldmax", "centers", "centerings",
+		"thicknesses", "axis mins", "axismins", "axis maxs", "axismaxs",
+		"block size", "blocksize", "sample units", "sampleunits", "number",
+		"space units", "measurement frame", NULL };
 	char words[AXES][16];
 	double number[AXES];
 
 	if (strcasecmp(key, "type") == 0) {
 		h->type = !strcasecmp(v, "double") ? 8 : !strcasecmp(v, "float") ? 4 : 0;
 		if (!h->type)
-			die(EXIT_RUN, "%s: record %ld: type %.30s: want double or float", at->name,
-				at->record, v);
+			die(EXIT_RUN, "%s: record %ld: type %.30s: want double or float",
+				at->name, at->record, v);
 	} else if (strcasecmp(key, "dimension") == 0) {
 		if (parse_numbers(at, key, v, number) != 1 ||
 			(number[0] != 2 && number[0] != 3 && number[0] != 4))
-			die(EXIT_RUN, "%s: record %ld: dimension %.30s: want 2, 3 or 4", at->name,
-				at->record, v);
+			die(EXIT_RUN, "%s: record %ld: dimension %.30s: want 2, 3 or 4",
+				at->name, at->record, v);
 		h->dimension = (int)number[0];
 	} else if (strcasecmp(key, "sizes") == 0) {
 		h->nsizes = parse_numbers(at, key, v, h->sizes);
@@ -117,7 +119,7 @@ static void read_field(const struct place *at, struct header *h, const char *key
 	} else if (strcasecmp(key, "kinds") == 0) {
 		h->nkinds = parse_words(at, v, words);
 		h->list_first = h->nkinds > 0 && strcasecmp(words[0], "domain") != 0 &&
-			strcasecmp(words[0], "space") != 0;
+				strcasecmp(words[0], "space") != 0;
 	} else if (strcasecmp(key, "endian") == 0) {
 		h->endian = !strcasecmp(v, "little") ? 1 : !strcasecmp(v, "big") ? 2 : 0;
 		if (!h->endian)
@@ -125,11 +127,11 @@ static void read_field(const struct place *at, struct header *h, const char *key
 	} else if (strcasecmp(key, "encoding") == 0) {
 		h->raw = !strcasecmp(v, "raw");
 		if (!h->raw)
-			die(EXIT_RUN, "%s: record %ld: encoding %.30s: want raw", at->name,
-				at->record, v);
+			die(EXIT_RUN, "%s: record %ld: encoding %.30s: want raw",
+				at->name, at->record, v);
 	} else if (!word_in(key, ignored)) {
-		die(EXIT_RUN, "%s: record %ld: NRRD field '%.30s' is not supported", at->name,
-			at->record, key);
+		die(EXIT_RUN, "%s: record %ld: NRRD field '%.30s' is not supported",
+			at->name, at->record, key);
 	}
 }
 
@@ -194,24 +196,24 @@ static void read_header(const struct place *at, struct header *h, struct record 
 		free(line);
 	}
 	if (!line)
-		die(EXIT_RUN, "%s: record %ld: the stream ends inside the header", at->name,
-			at->record);
+		die(EXIT_RUN, "%s: record %ld: the stream ends inside the header",
+			at->name, at->record);
 	free(line);
 }
 
 static void check_header(const struct place *at, struct header *h)
 {
-	const char *missing = !h->type ? "type"
-		: !h->dimension        ? "dimension"
-		: !h->nsizes           ? "sizes"
-		: !h->raw              ? "encoding"
-		: !h->nspacings        ? "spacings"
-		: !h->endian           ? "endian"
-				       : NULL;
+	const char *missing = !h->type        ? "type"
+			      : !h->dimension ? "dimension"
+			      : !h->nsizes    ? "sizes"
+			      : !h->raw       ? "encoding"
+			      : !h->nspacings ? "spacings"
+			      : !h->endian    ? "endian"
+					      : NULL;
 
 	if (missing)
-		die(EXIT_RUN, "%s: record %ld: NRRD header without '%s'", at->name, at->record,
-			missing);
+		die(EXIT_RUN, "%s: record %ld: NRRD header without '%s'", at->name,
+			at->record, missing);
 	if (h->nsizes != h->dimension || h->nspacings != h->dimension)
 		die(EXIT_RUN, "%s: record %ld: want %d sizes and spacings, got %d and %d",
 			at->name, at->record, h->dimension, h->nsizes, h->nspacings);
@@ -231,18 +233,20 @@ static double spacing(const struct place *at, const struct header *h, int axis)
 	if (h->nunits > axis && *h->units[axis]) {
 		snprintf(text, sizeof text, "1%s", h->units[axis]);
 		if (unit_parse(text, UNIT_LENGTH, "", &scale, &end))
-			die(EXIT_RUN, "%s: record %ld: unit '%s' of axis %d is not a length",
+			die(EXIT_RUN,
+				"%s: record %ld: unit '%s' of axis %d is not a length",
 				at->name, at->record, h->units[axis], axis);
 	}
 	if (!(s > 0) || !isfinite(s))
-		die(EXIT_RUN, "%s: record %ld: spacing of axis %d is %g, want above 0", at->name,
-			at->record, axis, s);
+		die(EXIT_RUN, "%s: record %ld: spacing of axis %d is %g, want above 0",
+			at->name, at->record, axis, s);
 	return s * scale;
 }
 
 /* Names and units, "height m, pressure Pa"; a single field without a name is taken
  * for a height in metres. */
-static void name_fields(const struct place *at, const struct header *h, struct record *r, int n)
+static void name_fields(
+	const struct place *at, const struct header *h, struct record *r, int n)
 {
 	char *text = xstrdup(h->fields ? h->fields : n == 1 ? "height m" : ""), *s = text;
 
@@ -258,14 +262,15 @@ static void name_fields(const struct place *at, const struct header *h, struct r
 			*blank = '\0';
 		snprintf(numbered, sizeof numbered, "field%d", i + 1);
 		if (h->fields && (!*s || record_find(r, s) >= 0))
-			die(EXIT_RUN, "%s: record %ld: want the names of %d fields, got '%s'",
+			die(EXIT_RUN,
+				"%s: record %ld: want the names of %d fields, got '%s'",
 				at->name, at->record, n, h->fields);
 		record_new_field(r, *s ? s : numbered, blank ? blank + 1 : "");
 		s = comma ? comma + 1 : s + strlen(s);
 	}
 	if (*s && h->fields)
-		die(EXIT_RUN, "%s: record %ld: want the names of %d fields, got '%s'", at->name,
-			at->record, n, h->fields);
+		die(EXIT_RUN, "%s: record %ld: want the names of %d fields, got '%s'",
+			at->name, at->record, n, h->fields);
 	free(text);
 }
 
@@ -278,8 +283,8 @@ void nrrd_read(const struct place *at, struct record *r)
 	check_header(at, &h);
 	list = h.dimension > 2;
 	if (list && h.sizes[0] > RECORD_FIELDS_MAX)
-		die(EXIT_RUN, "%s: record %ld: %g fields, want at most %d", at->name, at->record,
-			h.sizes[0], RECORD_FIELDS_MAX);
+		die(EXIT_RUN, "%s: record %ld: %g fields, want at most %d", at->name,
+			at->record, h.sizes[0], RECORD_FIELDS_MAX);
 	r->nx = (int)h.sizes[list];
 	r->ny = (int)h.sizes[list + 1];
 	r->nz = h.dimension == 4 ? (int)h.sizes[3] : 1;
@@ -365,7 +370,8 @@ void nrrd_write(FILE *f, const struct record *r)
 
 		for (size_t ix = 0; ix < (size_t)r->nx; ix++)
 			for (int k = 0; k < r->nfields; k++, b += 8)
-				bytes_put_double_little(b, r->data[k][iy * (size_t)r->nx + ix]);
+				bytes_put_double_little(
+					b, r->data[k][iy * (size_t)r->nx + ix]);
 		fwrite(row, 1, n, f);
 	}
 	free(row);

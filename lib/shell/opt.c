@@ -20,23 +20,26 @@ static const struct opt common[] = {
 		"write one row of work counters to FILE", 0, 1 },
 	{ 'v', "verbose", OPT_FLAG, UNIT_NONE, &verbose_flag, 0, 0, 0,
 		"report on standard error", 0, 1 },
-	{ 'h', "help", OPT_FLAG, UNIT_NONE, 0, 0, 0, 0, "print this help and exit", 0, 1 },
-	{ 'V', "version", OPT_FLAG, UNIT_NONE, 0, 0, 0, 0, "print the version and exit", 0, 1 },
+	{ 'h', "help", OPT_FLAG, UNIT_NONE, 0, 0, 0, 0, "print this help and exit", 0,
+		1 },
+	{ 'V', "version", OPT_FLAG, UNIT_NONE, 0, 0, 0, 0, "print the version and exit",
+		0, 1 },
 	OPT_END
 };
 
 /* The command line that was parsed: what opt_cmd() and shell_done() need. */
 static const struct prog *prog;
-static char *recorded;        /* " --word value ..." */
-static char **operand;        /* NULL-ended */
+static char *recorded; /* " --word value ..." */
+static char **operand; /* NULL-ended */
 static unsigned char given[128];
 
 /* Shell quoting.  A blank after a colon is put outside of the quoted piece before
  * it, since ParaView's NRRD reader stumbles over ": ". */
 static char *quote(const char *s)
 {
-	const char *safe = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-			   "%+,-./:=@_";
+	const char *safe =
+		"abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+		"%+,-./:=@_";
 	char *quoted = xcalloc(strlen(s) + 1, 5), *q = quoted;
 
 	if (*s && strspn(s, safe) == strlen(s))
@@ -98,7 +101,8 @@ static void print_default(const struct opt *o)
 		if (c->word >= 0)
 			printf(" (default %s)", o->words[c->word]);
 		else if (!isnan(c->value))
-			printf(" (default %.6g%s%s)", c->value, blank, *blank ? unit : "");
+			printf(" (default %.6g%s%s)", c->value, blank,
+				*blank ? unit : "");
 		break;
 	}
 	case OPT_LIST: {
@@ -119,8 +123,8 @@ static void print_default(const struct opt *o)
 static void print_rows(const struct opt *rows)
 {
 	for (const struct opt *o = rows; o->word; o++) {
-		int column = printf("  -%c, --%s%s%s", o->letter, o->word, o->arg ? " " : "",
-			o->arg ? o->arg : "");
+		int column = printf("  -%c, --%s%s%s", o->letter, o->word,
+			o->arg ? " " : "", o->arg ? o->arg : "");
 
 		printf(column < 30 ? "%*s" : "\n%*s", column < 30 ? 32 - column : 32, "");
 		printf("%s", o->help);
@@ -143,8 +147,8 @@ static _Noreturn void help(void)
 static void check_range(const struct opt *o, const char *text, double value)
 {
 	if (value < o->min || value > o->max)
-		die(EXIT_USAGE, "--%s %s: want %g to %g%s%s", o->word, text, o->min, o->max,
-			*unit_name(o->unit) ? " " : "", unit_name(o->unit));
+		die(EXIT_USAGE, "--%s %s: want %g to %g%s%s", o->word, text, o->min,
+			o->max, *unit_name(o->unit) ? " " : "", unit_name(o->unit));
 }
 
 static double parse_number(const struct opt *o, const char *text)
@@ -176,8 +180,9 @@ static void parse_list(const struct opt *o, const char *text)
 				OPT_LIST_MAX);
 		wrong = unit_parse(s, o->unit, separator, &l->v[l->n], &s);
 		if (wrong)
-			die(EXIT_USAGE, "--%s %s: '%s' %s, want %s%s%s", o->word, text, s, wrong,
-				o->arg, *unit_name(o->unit) ? " in " : "", unit_name(o->unit));
+			die(EXIT_USAGE, "--%s %s: '%s' %s, want %s%s%s", o->word, text, s,
+				wrong, o->arg, *unit_name(o->unit) ? " in " : "",
+				unit_name(o->unit));
 		check_range(o, text, l->v[l->n++]);
 		if (!*s)
 			break;
@@ -205,7 +210,8 @@ static void store(const struct opt *o, const char *text)
 {
 	for (const char *p = text; p && *p; p++)
 		if (iscntrl((unsigned char)*p))
-			die(EXIT_USAGE, "--%s: control character in the argument", o->word);
+			die(EXIT_USAGE, "--%s: control character in the argument",
+				o->word);
 	switch (o->kind) {
 	case OPT_FLAG:
 		*(int *)o->var = 1;
@@ -228,7 +234,8 @@ static void store(const struct opt *o, const char *text)
 		struct opt_texts *t = o->var;
 
 		if (t->n == OPT_TEXTS_MAX)
-			die(EXIT_USAGE, "--%s: given more than %d times", o->word, OPT_TEXTS_MAX);
+			die(EXIT_USAGE, "--%s: given more than %d times", o->word,
+				OPT_TEXTS_MAX);
 		t->v[t->n++] = text;
 		break;
 	}
@@ -290,12 +297,14 @@ static void getopt_tables(
 
 static _Noreturn void misuse(int problem, char **argv)
 {
-	char *shown = optopt && !strncmp(argv[optind - 1], "--", 2) ? xstrdup(argv[optind - 1])
-		: optopt                                            ? xprintf("-%c", optopt)
-						 : xstrdup(argv[optind - 1]);
+	char *shown = optopt && !strncmp(argv[optind - 1], "--", 2)
+			      ? xstrdup(argv[optind - 1])
+		      : optopt ? xprintf("-%c", optopt)
+			       : xstrdup(argv[optind - 1]);
 
 	if (problem == ':')
-		die(EXIT_USAGE, "%s: needs an argument; see %s --help", shown, prog->name);
+		die(EXIT_USAGE, "%s: needs an argument; see %s --help", shown,
+			prog->name);
 	die(EXIT_USAGE, "%s: no such option; see %s --help", shown, prog->name);
 }
 
@@ -308,7 +317,8 @@ static void check_operands(int argc, char **argv)
 			most ? "one file at most" : "takes no file");
 	/* Someone typed the bare name: say what it is rather than wait in silence. */
 	if (argc == 1 && *prog->operands && isatty(STDIN_FILENO))
-		die(EXIT_USAGE, "nothing to read: usage: %s [option ...] %s; see %s --help",
+		die(EXIT_USAGE,
+			"nothing to read: usage: %s [option ...] %s; see %s --help",
 			prog->name, prog->operands, prog->name);
 }
 
@@ -377,7 +387,8 @@ int shell_done(int status)
 {
 	errno = 0;
 	if (ferror(stdout) || fflush(stdout) || fclose(stdout))
-		die(EXIT_RUN, errno ? "standard output:" : "standard output: write error");
+		die(EXIT_RUN,
+			errno ? "standard output:" : "standard output: write error");
 	stats_write(stats_path, prog->name);
 	return status;
 }

@@ -7,8 +7,8 @@
  *	static struct opt_list band = { 2, { 70, 130 } };
  *	static long order = 200;
  *	static const struct opt opts[] = {
- *		{ 'b', "band", OPT_LIST, UNIT_FREQUENCY, &band, 0, 1e12, "LO:HI", "pass band" },
- *		{ 'n', "order", OPT_INT, UNIT_COUNT, &order, 2, 1e6, "N", "filter order" },
+ *		{ 'b', "band", OPT_LIST, UNIT_FREQUENCY, &band, 0, 1e12, "LO:HI", "pass
+ *band" }, { 'n', "order", OPT_INT, UNIT_COUNT, &order, 2, 1e6, "N", "filter order" },
  *		OPT_END
  *	};
  *
@@ -21,15 +21,15 @@
 #include "shell/unit.h"
 
 enum opt_kind {
-	OPT_FLAG,    /* int: set to 1 */
-	OPT_INT,     /* long; unit UNIT_COUNT */
-	OPT_NUM,     /* double */
-	OPT_LIST,    /* struct opt_list: numbers parted by the separator shown in arg
-	              * (one of ':' 'x' ',') */
-	OPT_TEXT,    /* const char *: a file or free text */
-	OPT_TEXTS,   /* struct opt_texts: may be repeated */
-	OPT_WORD,    /* int: index into words */
-	OPT_CHOICE   /* struct opt_choice: one of words, or a number */
+	OPT_FLAG,  /* int: set to 1 */
+	OPT_INT,   /* long; unit UNIT_COUNT */
+	OPT_NUM,   /* double */
+	OPT_LIST,  /* struct opt_list: numbers parted by the separator shown in arg
+		    * (one of ':' 'x' ',') */
+	OPT_TEXT,  /* const char *: a file or free text */
+	OPT_TEXTS, /* struct opt_texts: may be repeated */
+	OPT_WORD,  /* int: index into words */
+	OPT_CHOICE /* struct opt_choice: one of words, or a number */
 };
 
 enum { OPT_LIST_MAX = 64, OPT_TEXTS_MAX = 64 };
@@ -55,21 +55,24 @@ struct opt {
 	enum opt_kind kind;
 	enum unit unit;
 	void *var;
-	double min, max;           /* inclusive range of numbers, or of each list member */
-	const char *arg;           /* placeholder: "N[xM]", "FILE", "gauss|exp" */
-	const char *help;          /* a phrase without a full stop */
-	const char *const *words;  /* OPT_WORD, OPT_CHOICE: NULL-ended */
-	int unrecorded;            /* 1: cannot change the output, keep out of cmd */
+	double min, max;          /* inclusive range of numbers, or of each list member */
+	const char *arg;          /* placeholder: "N[xM]", "FILE", "gauss|exp" */
+	const char *help;         /* a phrase without a full stop */
+	const char *const *words; /* OPT_WORD, OPT_CHOICE: NULL-ended */
+	int unrecorded;           /* 1: cannot change the output, keep out of cmd */
 };
 
-#define OPT_END { 0, 0, OPT_FLAG, UNIT_NONE, 0, 0, 0, 0, 0, 0, 0 }
+#define OPT_END                                                \
+	{                                                      \
+		0, 0, OPT_FLAG, UNIT_NONE, 0, 0, 0, 0, 0, 0, 0 \
+	}
 
 struct prog {
 	const char *name;
-	const char *gist;      /* one sentence, with full stop */
-	const char *operands;  /* "[file]", "[file ...]" or "" */
-	const char *reads;     /* "fields: height" */
-	const char *writes;    /* "table: one row per wear particle" */
+	const char *gist;     /* one sentence, with full stop */
+	const char *operands; /* "[file]", "[file ...]" or "" */
+	const char *reads;    /* "fields: height" */
+	const char *writes;   /* "table: one row per wear particle" */
 	const struct opt *opts;
 };
 

@@ -18,7 +18,12 @@ enum {
 	HEADER_MAX = 1 << 20,
 	BUFFER = 1 << 16,
 	CHANNELS_MAX = 64,
-	PCM8 = 2, PCM16 = 3, PCM24 = 4, PCM32 = 5, FLOAT32 = 6, FLOAT64 = 7
+	PCM8 = 2,
+	PCM16 = 3,
+	PCM24 = 4,
+	PCM32 = 5,
+	FLOAT32 = 6,
+	FLOAT64 = 7
 };
 
 static const uint32_t unknown = 0xffffffff;
@@ -27,11 +32,11 @@ struct signal_in {
 	struct signal_format format;
 	const char *name;
 	int fd;
-	int encoding;           /* 0: raw little-endian float64 */
-	size_t width;           /* bytes per sample */
-	uint64_t left, total;   /* bytes of data still declared; UINT64_MAX: unknown */
+	int encoding;         /* 0: raw little-endian float64 */
+	size_t width;         /* bytes per sample */
+	uint64_t left, total; /* bytes of data still declared; UINT64_MAX: unknown */
 	unsigned char buffer[BUFFER];
-	size_t begin, end;      /* unread bytes of buffer */
+	size_t begin, end; /* unread bytes of buffer */
 	int at_end;
 };
 
@@ -101,18 +106,23 @@ static char *annotated(const char *text, const char *key)
 
 static void read_header(struct signal_in *in)
 {
-	static const size_t widths[] = { [PCM8] = 1, [PCM16] = 2, [PCM24] = 3, [PCM32] = 4,
-		[FLOAT32] = 4, [FLOAT64] = 8 };
+	static const size_t widths[] = { [PCM8] = 1,
+		[PCM16] = 2,
+		[PCM24] = 3,
+		[PCM32] = 4,
+		[FLOAT32] = 4,
+		[FLOAT64] = 8 };
 	uint32_t header, size, encoding, rate, channels;
 	const unsigned char *b;
 	char *text;
 
 	if (!have(in, HEADER_MIN))
-		die(EXIT_RUN, "%s: want an AU header of at least %d bytes, got %zu", in->name,
-			HEADER_MIN, in->end - in->begin);
+		die(EXIT_RUN, "%s: want an AU header of at least %d bytes, got %zu",
+			in->name, HEADER_MIN, in->end - in->begin);
 	b = in->buffer + in->begin;
 	if (memcmp(b, ".snd", 4) != 0)
-		die(EXIT_RUN, "%s: want AU ('.snd'), got '%.4s'", in->name, (const char *)b);
+		die(EXIT_RUN, "%s: want AU ('.snd'), got '%.4s'", in->name,
+			(const char *)b);
 	header = bytes_u32_big(b + 4);
 	size = bytes_u32_big(b + 8);
 	encoding = bytes_u32_big(b + 12);
@@ -122,13 +132,14 @@ static void read_header(struct signal_in *in)
 		die(EXIT_RUN, "%s: AU header of %lu bytes, want %d to %d", in->name,
 			(unsigned long)header, HEADER_MIN, HEADER_MAX);
 	if (encoding < PCM8 || encoding > FLOAT64)
-		die(EXIT_RUN, "%s: AU encoding %lu, want 2 to 7 (linear PCM or float)", in->name,
-			(unsigned long)encoding);
+		die(EXIT_RUN, "%s: AU encoding %lu, want 2 to 7 (linear PCM or float)",
+			in->name, (unsigned long)encoding);
 	if (rate < 1 || rate > 2000000000)
-		die(EXIT_RUN, "%s: rate %lu Hz, want 1 to 2e9", in->name, (unsigned long)rate);
+		die(EXIT_RUN, "%s: rate %lu Hz, want 1 to 2e9", in->name,
+			(unsigned long)rate);
 	if (channels < 1 || channels > CHANNELS_MAX)
-		die(EXIT_RUN, "%s: %lu channels, want 1 to %d", in->name, (unsigned long)channels,
-			CHANNELS_MAX);
+		die(EXIT_RUN, "%s: %lu channels, want 1 to %d", in->name,
+			(unsigned long)channels, CHANNELS_MAX);
 	in->begin += HEADER_MIN;
 	in->encoding = (int)encoding;
 	in->width = widths[encoding];
@@ -181,7 +192,8 @@ static int32_t pcm(const unsigned char *b, size_t width)
 	return (int32_t)v;
 }
 
-static void decode(const struct signal_in *in, const unsigned char *b, double *x, size_t n)
+static void decode(
+	const struct signal_in *in, const unsigned char *b, double *x, size_t n)
 {
 	switch (in->encoding) {
 	case 0:
@@ -209,7 +221,8 @@ static void check_end(const struct signal_in *in, size_t frame)
 			(unsigned long long)in->total,
 			(unsigned long long)(in->total - in->left + in->end - in->begin));
 	if (in->end - in->begin > 0 && in->left > 0)
-		die(EXIT_RUN, "%s: the stream ends inside a frame: want %zu bytes, got %zu",
+		die(EXIT_RUN,
+			"%s: the stream ends inside a frame: want %zu bytes, got %zu",
 			in->name, frame, in->end - in->begin);
 }
 
@@ -240,7 +253,8 @@ size_t signal_read_some(struct signal_in *in, double *x, size_t nframes)
 		if (in->left == 0)
 			return 0;
 		if (in->left < frame)
-			die(EXIT_RUN, "%s: %llu bytes of samples are no whole frames of %zu",
+			die(EXIT_RUN,
+				"%s: %llu bytes of samples are no whole frames of %zu",
 				in->name, (unsigned long long)in->total, frame);
 		if (in->at_end || !fill(in)) {
 			check_end(in, frame);
@@ -254,8 +268,8 @@ size_t signal_read(struct signal_in *in, double *x, size_t nframes)
 {
 	size_t n = 0, got;
 
-	while (n < nframes &&
-		(got = signal_read_some(in, x + n * (size_t)in->format.channels, nframes - n)))
+	while (n < nframes && (got = signal_read_some(in,
+				       x + n * (size_t)in->format.channels, nframes - n)))
 		n += got;
 	return n;
 }

@@ -62,7 +62,8 @@ void stats_write(const char *path, const char *program)
 
 	clock_gettime(CLOCK_MONOTONIC, &end);
 	getrusage(RUSAGE_SELF, &use);
-	wall = (double)(end.tv_sec - begin.tv_sec) + 1e-9 * (double)(end.tv_nsec - begin.tv_nsec);
+	wall = (double)(end.tv_sec - begin.tv_sec) +
+	       1e-9 * (double)(end.tv_nsec - begin.tv_nsec);
 	cpu = seconds(use.ru_utime) + seconds(use.ru_stime);
 	for (int i = 0; i < ncounters; i++)
 		note("%s %.10g", counters[i].name, counters[i].value);

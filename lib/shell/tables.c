@@ -12,14 +12,14 @@
 struct table_in {
 	FILE *f;
 	const char *name;
-	char *line;          /* the present row, cut into cells */
+	char *line; /* the present row, cut into cells */
 	size_t room;
-	long number;         /* of that line, from 1 */
+	long number; /* of that line, from 1 */
 	int ncolumns;
-	char **column;       /* names */
+	char **column; /* names */
 	char **cell;
-	const char *blanks;  /* what parts the cells */
-	int pending;         /* the row read ahead by table_open() is still to come */
+	const char *blanks; /* what parts the cells */
+	int pending;        /* the row read ahead by table_open() is still to come */
 	int nkeys;
 	char **key, **value;
 };
@@ -27,8 +27,8 @@ struct table_in {
 struct table_out {
 	FILE *f;
 	const char *name;
-	char *head;          /* comment lines not yet written */
-	char *columns;       /* header line, NULL once written */
+	char *head;    /* comment lines not yet written */
+	char *columns; /* header line, NULL once written */
 	char *cmd;
 	int ncolumns, ncells;
 };
@@ -74,13 +74,15 @@ static int next_line(struct table_in *t)
 	while ((n = getline(&t->line, &t->room, t->f)) > 0) {
 		t->number++;
 		if (t->line[n - 1] != '\n')
-			die(EXIT_RUN, "%s: line %ld: no newline at the end: the table is cut off",
+			die(EXIT_RUN,
+				"%s: line %ld: no newline at the end: the table is cut off",
 				t->name, t->number);
 		t->line[--n] = '\0';
 		if (n && t->line[n - 1] == '\r')
 			t->line[--n] = '\0';
 		if ((size_t)n != strlen(t->line))
-			die(EXIT_RUN, "%s: line %ld: NUL byte in a table", t->name, t->number);
+			die(EXIT_RUN, "%s: line %ld: NUL byte in a table", t->name,
+				t->number);
 		if (*t->line == '#')
 			keep_key(t, t->line + 1);
 		else if (n)
@@ -118,7 +120,7 @@ static int cut(struct table_in *t, char *line, char **cells, int max)
 static int is_missing(const char *s)
 {
 	return !*s || !strcmp(s, "nan") || !strcmp(s, "NaN") || !strcmp(s, "NA") ||
-		!strcmp(s, "-nan");
+	       !strcmp(s, "-nan");
 }
 
 static int to_number(const char *s, double *v)
@@ -244,8 +246,8 @@ int table_next(struct table_in *t)
 			return 0;
 		n = cut(t, t->line, t->cell, t->ncolumns);
 		if (n != t->ncolumns)
-			die(EXIT_RUN, "%s: line %ld: want %d cells, got %d", t->name, t->number,
-				t->ncolumns, n);
+			die(EXIT_RUN, "%s: line %ld: want %d cells, got %d", t->name,
+				t->number, t->ncolumns, n);
 	} while (is_header(t));
 	return 1;
 }
@@ -262,8 +264,8 @@ double table_number(const struct table_in *t, int column)
 	if (column < 0)
 		return NAN;
 	if (!to_number(t->cell[column], &v))
-		die(EXIT_RUN, "%s: line %ld: %s: '%.40s' is not a number", t->name, t->number,
-			t->column[column], t->cell[column]);
+		die(EXIT_RUN, "%s: line %ld: %s: '%.40s' is not a number", t->name,
+			t->number, t->column[column], t->cell[column]);
 	return v;
 }
 

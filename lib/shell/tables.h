@@ -37,8 +37,8 @@ const char *table_text(const struct table_in *t, int column);
 void table_close(struct table_in *t);
 
 /* columns: names parted by blanks, "t y state".  cmd and units may be NULL. */
-struct table_out *table_create(const char *path, const char *cmd, const char *units,
-	const char *columns);
+struct table_out *table_create(
+	const char *path, const char *cmd, const char *units, const char *columns);
 /* One more "# key: value" line; before the first row it stands above the header. */
 void table_comment(struct table_out *t, const char *key, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));

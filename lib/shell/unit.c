@@ -49,9 +49,17 @@ static const struct {
 	const char *text;
 	double scale;
 } prefixes[] = {
-	{ "f", 1e-15 }, { "p", 1e-12 }, { "n", 1e-9 }, { "u", 1e-6 },
-	{ "\xc2\xb5", 1e-6 }, { "\xce\xbc", 1e-6 }, /* micro sign, Greek mu */
-	{ "m", 1e-3 }, { "c", 1e-2 }, { "k", 1e3 }, { "M", 1e6 }, { "G", 1e9 },
+	{ "f", 1e-15 },
+	{ "p", 1e-12 },
+	{ "n", 1e-9 },
+	{ "u", 1e-6 },
+	{ "\xc2\xb5", 1e-6 },
+	{ "\xce\xbc", 1e-6 }, /* micro sign, Greek mu */
+	{ "m", 1e-3 },
+	{ "c", 1e-2 },
+	{ "k", 1e3 },
+	{ "M", 1e6 },
+	{ "G", 1e9 },
 	{ "T", 1e12 },
 };
 
@@ -86,8 +94,8 @@ static double suffix_scale(const char *text, size_t length, enum unit unit)
 	return 0;
 }
 
-const char *unit_parse(
-	const char *text, enum unit unit, const char *stop, double *value, const char **end)
+const char *unit_parse(const char *text, enum unit unit, const char *stop, double *value,
+	const char **end)
 {
 	char *rest;
 	size_t length;
@@ -95,7 +103,8 @@ const char *unit_parse(
 
 	/* strtod also takes blanks, nan, inf and hexadecimal; we do not. */
 	if (!isdigit((unsigned char)text[strspn(text, "+-.")]) ||
-		strspn(text, "+-") > 1 || strncmp(text + strspn(text, "+-"), "0x", 2) == 0 ||
+		strspn(text, "+-") > 1 ||
+		strncmp(text + strspn(text, "+-"), "0x", 2) == 0 ||
 		strncmp(text + strspn(text, "+-"), "0X", 2) == 0)
 		return "is not a number";
 	*value = strtod(text, &rest);
@@ -103,8 +112,9 @@ const char *unit_parse(
 	if (length > 0) {
 		scale = suffix_scale(rest, length, unit);
 		if (scale <= 0)
-			return unit == UNIT_COUNT || unit == UNIT_NONE ? "takes no unit"
-								       : "has the wrong unit";
+			return unit == UNIT_COUNT || unit == UNIT_NONE
+				       ? "takes no unit"
+				       : "has the wrong unit";
 	}
 	*value *= scale;
 	if (!isfinite(*value))

@@ -40,7 +40,9 @@ void note(const char *format, ...)
 
 void *xcalloc(size_t count, size_t size)
 {
-	void *p = size && count > ((size_t)1 << 28) / size ? NULL : calloc(count + !count, size + !size);
+	void *p = size && count > ((size_t)1 << 28) / size
+			  ? NULL
+			  : calloc(count + !count, size + !size);
 
 	if (!p)
 		die(EXIT_RUN, "out of memory");

@@ -1,4 +1,5 @@
-/* survive.h - what the fuzz targets share; each begins with if (setjmp(refused)) return 0; */
+/* survive.h - what the fuzz targets share; each begins with if (setjmp(refused)) return
+ * 0; */
 #ifndef SURVIVE_H
 #define SURVIVE_H
 

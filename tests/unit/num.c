@@ -16,16 +16,19 @@ static void test_philox(void)
 	} known[] = {
 		{ { 0, 0, 0, 0 }, { 0, 0 },
 			{ 0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8 } },
-		{ { 0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff }, { 0xffffffff, 0xffffffff },
+		{ { 0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff },
+			{ 0xffffffff, 0xffffffff },
 			{ 0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd } },
-		{ { 0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344 }, { 0xa4093822, 0x299f31d0 },
+		{ { 0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344 },
+			{ 0xa4093822, 0x299f31d0 },
 			{ 0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1 } },
 	};
 	uint32_t out[4];
 
 	for (int i = 0; i < 3; i++) {
 		philox4x32(known[i].counter, known[i].key, out);
-		ok(!memcmp(out, known[i].want, sizeof out), "Philox4x32-10 known answer %d", i + 1);
+		ok(!memcmp(out, known[i].want, sizeof out),
+			"Philox4x32-10 known answer %d", i + 1);
 	}
 }
 
@@ -45,10 +48,11 @@ static void test_rng(void)
 		y[i] = gsl_rng_get(b);
 		same &= x[i] == y[i];
 		differs &= x[i] != gsl_rng_get(c) && x[i] != gsl_rng_get(d) &&
-			x[i] != gsl_rng_get(e);
+			   x[i] != gsl_rng_get(e);
 	}
 	ok(same, "equal streams give equal numbers");
-	ok(differs, "realisation, purpose and the high half of the seed each change the stream");
+	ok(differs,
+		"realisation, purpose and the high half of the seed each change the stream");
 	philox4x32(counter, key, block);
 	ok(x[4] == block[0], "the fifth number is the first of the second block");
 	for (int i = 0; i < N; i++) {
@@ -140,9 +144,10 @@ static void test_fft(size_t nx, size_t ny)
 	fft_forward(fft, y, s);
 	for (size_t i = 0; i < n; i++)
 		direct += x[i] * cexp(-2 * M_PI * I *
-					((double)(kx * (i % nx)) / (double)nx +
-						(double)(ky * (i / nx)) / (double)ny));
-	near(cabs(s[ky * (nx / 2 + 1) + kx] - direct), 0, 1e-11, "a coefficient by its definition");
+					 ((double)(kx * (i % nx)) / (double)nx +
+						 (double)(ky * (i / nx)) / (double)ny));
+	near(cabs(s[ky * (nx / 2 + 1) + kx] - direct), 0, 1e-11,
+		"a coefficient by its definition");
 	fft_inverse(fft, s, y);
 	for (size_t i = 0; i < n; i++)
 		worst = fmax(worst, fabs(y[i] / (double)n - x[i]));
@@ -162,8 +167,8 @@ int main(void)
 	test_fft(16, 1);
 	test_fft(15, 7);
 	test_fft(1, 9);
-	ok(fft_good_size(1) == 1 && fft_good_size(11) == 12 && fft_good_size(121) == 125 &&
-			fft_good_size(2047) == 2048,
+	ok(fft_good_size(1) == 1 && fft_good_size(11) == 12 &&
+			fft_good_size(121) == 125 && fft_good_size(2047) == 2048,
 		"good sizes have the factors 2, 3, 5 and 7 only");
 	return tap_done();
 }

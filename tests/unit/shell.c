@@ -36,34 +36,48 @@ static void test_units(void)
 		const char *text;
 		enum unit unit;
 	} wrong[] = {
-		{ "5m", UNIT_VOLTAGE }, { "5k", UNIT_PRESSURE }, { "5Pa", UNIT_LENGTH },
-		{ "5 m", UNIT_LENGTH }, { "nan", UNIT_LENGTH }, { "inf", UNIT_LENGTH },
-		{ "", UNIT_LENGTH }, { "0x10", UNIT_COUNT }, { "1.5", UNIT_COUNT },
-		{ "1e999", UNIT_LENGTH }, { "--5", UNIT_NONE }, { "5mmin", UNIT_TIME },
-		{ "5umx", UNIT_LENGTH }, { "1,5", UNIT_LENGTH }, { "m", UNIT_LENGTH },
+		{ "5m", UNIT_VOLTAGE },
+		{ "5k", UNIT_PRESSURE },
+		{ "5Pa", UNIT_LENGTH },
+		{ "5 m", UNIT_LENGTH },
+		{ "nan", UNIT_LENGTH },
+		{ "inf", UNIT_LENGTH },
+		{ "", UNIT_LENGTH },
+		{ "0x10", UNIT_COUNT },
+		{ "1.5", UNIT_COUNT },
+		{ "1e999", UNIT_LENGTH },
+		{ "--5", UNIT_NONE },
+		{ "5mmin", UNIT_TIME },
+		{ "5umx", UNIT_LENGTH },
+		{ "1,5", UNIT_LENGTH },
+		{ "m", UNIT_LENGTH },
 		{ "5kbar", UNIT_PRESSURE },
 	};
 	const char *end;
 	double v;
 
 	for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
-		const char *message = unit_parse(good[i].text, good[i].unit, "", &v, &end);
+		const char *message =
+			unit_parse(good[i].text, good[i].unit, "", &v, &end);
 
-		ok(!message && fabs(v - good[i].want) <= 1e-15 * fabs(good[i].want) && !*end,
-			"%s is %g %s", good[i].text, good[i].want, unit_name(good[i].unit));
+		ok(!message && fabs(v - good[i].want) <= 1e-15 * fabs(good[i].want) &&
+				!*end,
+			"%s is %g %s", good[i].text, good[i].want,
+			unit_name(good[i].unit));
 	}
 	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
 		ok(unit_parse(wrong[i].text, wrong[i].unit, "", &v, &end) != NULL,
 			"'%s' is refused where %s is wanted", wrong[i].text,
-			*unit_name(wrong[i].unit) ? unit_name(wrong[i].unit) : "a number");
+			*unit_name(wrong[i].unit) ? unit_name(wrong[i].unit)
+						  : "a number");
 	ok(!unit_parse("70:130", UNIT_FREQUENCY, ":", &v, &end) && v == 70 && *end == ':',
 		"reading stops at the separator");
 }
 
 static void test_number_text(void)
 {
-	static const double values[] = { 0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308, -0.0, 123,
-		6.02214076e23 };
+	static const double values[] = { 0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308,
+		-0.0, 123, 6.02214076e23 };
 	char text[NUMBER_TEXT];
 	int same = 1;
 

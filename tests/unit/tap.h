@@ -9,7 +9,8 @@
 static int tap_tests, tap_bad;
 
 /* One result; the description is a printf format. */
-__attribute__((format(printf, 2, 3))) static inline int ok(int good, const char *format, ...)
+__attribute__((format(printf, 2, 3))) static inline int ok(
+	int good, const char *format, ...)
 {
 	va_list ap;
 
