@@ -10,6 +10,17 @@
 #include <complex.h>
 #include <stddef.h>
 
+/* re + i im; what CMPLX() of C11 should do, which clang does not have from glibc. */
+static inline double complex fft_complex(double re, double im)
+{
+	union {
+		double part[2];
+		double complex z;
+	} u = { { re, im } };
+
+	return u.z;
+}
+
 /* Aligned memory, zeroed; NULL when out of memory. */
 double *fft_alloc(size_t count);
 double complex *fft_alloc_complex(size_t count);

@@ -209,7 +209,7 @@ static const double *convolve(struct fir *fir, double *past)
 	for (size_t k = 0; k <= fir->points / 2; k++) {
 		double a = creal(s[k]), b = cimag(s[k]), c = creal(h[k]), d = cimag(h[k]);
 
-		s[k] = CMPLX(a * c - b * d, a * d + b * c);
+		s[k] = fft_complex(a * c - b * d, a * d + b * c);
 	}
 	fft_inverse(fir->fft, s, fir->out);
 	return fir->out + fir->taps - 1;
