@@ -1,0 +1,497 @@
+/* roughgen - rough surfaces, generated or measured, and their areal parameters */
+#include "contact/heights.h"
+#include "contact/spectrum.h"
+#include "contact/surface.h"
+#include "shell/fields.h"
+#include "shell/msg.h"
+#include "shell/opt.h"
+#include "shell/progress.h"
+#include "shell/stats.h"
+#include "shell/tables.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { POINTS_MAX = 65536 };
+
+static const char *const acf_words[] = { "gauss", "exp", NULL };
+static const char *const crown_words[] = { "none", "auto", NULL };
+
+static struct opt_list points = { 1, { 256 } };
+static struct opt_list length = { 1, { 1e-3 } };
+static struct opt_list sq = { 1, { 1e-6 } };
+static struct opt_list sa, slope, pair, corr, crop, resample, raw_size, pixel;
+static int acf, measure, level, fill;
+static double hurst = NAN, rolloff, longest, cutoff, skewness, kurtosis = NAN;
+static struct opt_choice crown = { 0, NAN };
+static long seed = 1, count = 1, first, threads = 1;
+
+static const struct opt opts[] = {
+	{ 'n', "points", OPT_LIST, UNIT_COUNT, &points, 1, POINTS_MAX, "N[xM]",
+		"points along x and y", NULL, 0 },
+	{ 'L', "length", OPT_LIST, UNIT_LENGTH, &length, 1e-12, 1e12, "L[xL]",
+		"sides of the area; one: square pixels", NULL, 0 },
+	{ 'q', "sq", OPT_LIST, UNIT_LENGTH, &sq, 0, 1e9, "Q[:Q2]",
+		"root mean square height, exact or drawn", NULL, 0 },
+	{ 'a', "sa", OPT_LIST, UNIT_LENGTH, &sa, 0, 1e9, "Q[:Q2]",
+		"mean absolute height instead", NULL, 0 },
+	{ 'g', "slope", OPT_LIST, UNIT_NONE, &slope, 0, 1e6, "G[:G2]",
+		"root mean square slope instead", NULL, 0 },
+	{ 'A', "acf", OPT_WORD, UNIT_NONE, &acf, 0, 0, "gauss|exp",
+		"autocorrelation function", acf_words, 0 },
+	{ 'l', "corr", OPT_LIST, UNIT_LENGTH, &corr, 1e-18, 1e12, "L[xL]",
+		"1/e correlation lengths (default a tenth of the length)", NULL, 0 },
+	{ 'H', "hurst", OPT_NUM, UNIT_NONE, &hurst, 0, 2, "H",
+		"self-affine spectrum instead of --acf", NULL, 0 },
+	{ 'R', "rolloff", OPT_NUM, UNIT_LENGTH, &rolloff, 1e-15, 1e12, "L",
+		"longest self-affine wavelength; longer waves alike", NULL, 0 },
+	{ 'W', "longest", OPT_NUM, UNIT_LENGTH, &longest, 1e-15, 1e12, "L",
+		"leave out longer waves", NULL, 0 },
+	{ 'k', "cutoff", OPT_NUM, UNIT_LENGTH, &cutoff, 1e-15, 1e12, "L",
+		"leave out shorter waves", NULL, 0 },
+	{ 'K', "skewness", OPT_NUM, UNIT_NONE, &skewness, -30, 30, "S",
+		"Ssk of the heights", NULL, 0 },
+	{ 'Q', "kurtosis", OPT_NUM, UNIT_NONE, &kurtosis, 1, 1000, "K",
+		"Sku of the heights (default 3 + 1.5 S^2)", NULL, 0 },
+	{ 'p', "pair", OPT_LIST, UNIT_LENGTH, &pair, 0, 1e9, "Q[:Q2]",
+		"add a second, independent surface of this roughness", NULL, 0 },
+	{ 'C', "crown", OPT_CHOICE, UNIT_LENGTH, &crown, 0, 1e9, "none|auto|DROP",
+		"put on a paraboloid, DROP lower at the corners; auto is 4 Sq",
+		crown_words, 0 },
+	{ 'x', "raw", OPT_LIST, UNIT_COUNT, &raw_size, 1, POINTS_MAX, "NXxNY",
+		"file is headerless little-endian float64", NULL, 0 },
+	{ 'X', "pixel", OPT_LIST, UNIT_LENGTH, &pixel, 1e-15, 1e6, "D[xD]",
+		"spacing of --raw", NULL, 0 },
+	{ 'w', "crop", OPT_LIST, UNIT_COUNT, &crop, 0, POINTS_MAX, "X:Y:NX:NY",
+		"cut NX by NY samples of file from X, Y on", NULL, 0 },
+	{ 'i', "fill", OPT_FLAG, UNIT_NONE, &fill, 0, 0, NULL,
+		"fill missing samples of file by Laplace's equation", NULL, 0 },
+	{ 'e', "level", OPT_FLAG, UNIT_NONE, &level, 0, 0, NULL,
+		"subtract the least-squares plane of file", NULL, 0 },
+	{ 'r', "resample", OPT_LIST, UNIT_COUNT, &resample, 1, POINTS_MAX, "N[xM]",
+		"bring file to this many points", NULL, 0 },
+	{ 'm', "measure", OPT_FLAG, UNIT_NONE, &measure, 0, 0, NULL,
+		"print areal parameters instead of heights", NULL, 0 },
+	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e18, "N", "random seed", NULL, 0 },
+	{ 'f', "first", OPT_INT, UNIT_COUNT, &first, 0, 4294967295.0, "K",
+		"number of the first realisation", NULL, 1 },
+	{ 'c', "count", OPT_INT, UNIT_COUNT, &count, 1, 4294967295.0, "N",
+		"number of realisations", NULL, 1 },
+	{ 'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N", "threads", NULL,
+		1 },
+	OPT_END };
+
+static const struct prog prog = { "roughgen",
+	"Generate rough surfaces, or prepare measured ones, and measure them.", "[file]",
+	"nothing, or fields: height", "fields: height; or table: areal parameters",
+	opts };
+
+static const char generating[] = "nLgAlHRWkKQpsfc"; /* options no file goes with */
+static const char preparing[] = "xXwier";           /* options that need a file */
+
+static const char columns[] = "realisation sa sq ssk sku sp sv sz sdq sdq_cell sdq_2x2 "
+			      "sdq_central sdq_iso7 sdr sal str corr_x corr_y";
+static const char units[] = "1 m m 1 1 m m m 1 1 1 1 1 1 m 1 m m";
+
+static struct fields_out *out;
+static struct table_out *table;
+
+/* ---- options ---- */
+
+static void refuse(const char *letters, const char *why)
+{
+	for (const struct opt *o = opts; o->word; o++)
+		if (strchr(letters, o->letter) && opt_given(o->letter))
+			die(EXIT_USAGE, "--%s: %s", o->word, why);
+}
+
+static void check_range(const char *word, const struct opt_list *l)
+{
+	if (l->n == 2 && l->v[0] > l->v[1])
+		die(EXIT_USAGE, "--%s %g:%g: the range runs backwards", word, l->v[0],
+			l->v[1]);
+}
+
+static void check_options(int from_file)
+{
+	if (from_file)
+		refuse(generating, "is for generated surfaces, not for a file");
+	else
+		refuse(preparing,
+			"is for a measured surface: name a file, or - for standard "
+			"input");
+	if (opt_given('q') + opt_given('a') + opt_given('g') > 1)
+		die(EXIT_USAGE, "--sq, --sa and --slope exclude each other");
+	if (opt_given('g') && opt_given('p'))
+		die(EXIT_USAGE, "--pair is a height and does not go with --slope");
+	if (opt_given('H') && (opt_given('A') || opt_given('l')))
+		die(EXIT_USAGE, "--hurst excludes --acf and --corr");
+	if (!opt_given('H') && (opt_given('R') || opt_given('W')))
+		die(EXIT_USAGE, "--rolloff and --longest need --hurst");
+	if (rolloff > 0 && longest > 0 && longest < rolloff)
+		die(EXIT_USAGE, "--longest %g m is shorter than --rolloff %g m", longest,
+			rolloff);
+	if (rolloff > 0 && cutoff > rolloff)
+		die(EXIT_USAGE, "--cutoff %g m is longer than --rolloff %g m", cutoff,
+			rolloff);
+	if (raw_size.n != pixel.n && (raw_size.n == 0 || pixel.n == 0))
+		die(EXIT_USAGE, "--raw and --pixel go together");
+	if (raw_size.n == 1)
+		die(EXIT_USAGE, "--raw: want NXxNY");
+	if (crop.n && crop.n != 4)
+		die(EXIT_USAGE, "--crop: want X:Y:NX:NY");
+	if (first + count > 4294967296)
+		die(EXIT_USAGE, "--first %ld --count %ld: realisations end at 4294967295",
+			first, count);
+	check_range("sq", &sq);
+	check_range("sa", &sa);
+	check_range("slope", &slope);
+	check_range("pair", &pair);
+}
+
+/* ---- roughness ---- */
+
+/* The value of "Q" or a uniform draw from "Q:Q2". */
+static double draw_target(const struct opt_list *l, uint32_t realisation, uint64_t index)
+{
+	return l->n < 2 ? l->v[0]
+			: l->v[0] + (l->v[1] - l->v[0]) * philox_uniform((uint64_t)seed,
+								  realisation,
+								  RNG_ROUGHNESS, index);
+}
+
+static void scale(size_t n, double *z, double have, double want)
+{
+	double factor = have > 0 ? want / have : 0;
+
+	for (size_t i = 0; i < n; i++)
+		z[i] *= factor;
+}
+
+/* Brings heights to the wanted Sq or Sa; 1 if there was something to scale. */
+static int scale_heights(const struct record *r, double *z, double want)
+{
+	double have = sa.n ? surface_sa(r->nx, r->ny, z) : surface_sq(r->nx, r->ny, z);
+
+	scale((size_t)r->nx * (size_t)r->ny, z, have, want);
+	return have > 0;
+}
+
+/* ---- output ---- */
+
+static void print_parameters(const struct record *r, const double *z)
+{
+	struct surface_parameters p;
+
+	if (!surface_measure(r->nx, r->ny, r->dx, r->dy, z, &p))
+		die(EXIT_RUN, "out of memory measuring %d x %d points", r->nx, r->ny);
+	const double row[] = { (double)r->realisation, p.sa, p.sq, p.ssk, p.sku, p.sp,
+		p.sv, p.sz, p.sdq, p.sdq_cell, p.sdq_2x2, p.sdq_central, p.sdq_iso7,
+		p.sdr, p.sal, p.str, p.corr_x, p.corr_y };
+	if (!table)
+		table = table_create(NULL, r->cmd, units, columns);
+	table_cmd(table, r->cmd);
+	for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+		table_put(table, row[i]);
+	table_end_row(table);
+	stats_add("measured", 1);
+}
+
+/* Crowns a surface and writes it out. */
+static void finish(struct record *r)
+{
+	double *z = record_need(r, "height", 0, NULL), rms = surface_sq(r->nx, r->ny, z);
+	double drop = crown.word == 0 ? 0 : crown.word == 1 ? 4 * rms : crown.value;
+
+	if (drop > 0)
+		surface_crown(r->nx, r->ny, r->dx, r->dy, drop, z);
+	record_set(r, "sq", "%.17g", rms);
+	record_set(r, "crown", "%.17g", drop);
+	note("realisation %ld: Sq %g m, crown %g m", r->realisation, rms, drop);
+	stats_add("records", 1);
+	if (measure) {
+		print_parameters(r, z);
+		return;
+	}
+	if (!out)
+		out = fields_create(NULL);
+	fields_write(out, r);
+}
+
+/* ---- generated surfaces ---- */
+
+static struct spectrum *new_spectrum(double lx, double ly)
+{
+	struct spectrum_par par = { .nx = (int)points.v[0],
+		.ny = (int)points.v[points.n - 1],
+		.lx = lx,
+		.ly = ly,
+		.cutoff = cutoff };
+	enum spectrum_status status;
+	struct spectrum *s;
+
+	if (!isnan(hurst)) {
+		par.kind = SPECTRUM_AFFINE;
+		par.hurst = hurst;
+		par.rolloff = rolloff;
+		par.longest = longest;
+	} else {
+		par.kind = acf == 0 ? SPECTRUM_GAUSS : SPECTRUM_EXP;
+		par.corr_x = corr.n ? corr.v[0] : 0.1 * lx;
+		par.corr_y = corr.n ? corr.v[corr.n - 1] : 0.1 * lx;
+	}
+	s = spectrum_new(&par, &status);
+	switch (status) {
+	case SPECTRUM_OK:
+		stats_set("waves", (double)spectrum_waves(s));
+		stats_set("waves_skipped", (double)spectrum_waves_skipped(s));
+		return s;
+	case SPECTRUM_TOO_LONG:
+		die(EXIT_RUN, "--corr %g m x %g m: longer than the area, %g m x %g m",
+			par.corr_x, par.corr_y, lx, ly);
+	case SPECTRUM_EMPTY:
+		die(EXIT_RUN,
+			"no wave of the grid, %g m to %g m long, is within the bounds",
+			2 * fmin(lx / par.nx, ly / par.ny), fmax(lx, ly));
+	case SPECTRUM_DOMAIN:
+		die(EXIT_RUN, "the parameters of the spectrum are out of range");
+	case SPECTRUM_MEMORY:
+		break;
+	}
+	die(EXIT_RUN, "out of memory for %d x %d points", par.nx, par.ny);
+}
+
+/* Heights of the wanted skewness and kurtosis; NULL where these are the normal ones. */
+static double *new_sorted(size_t n)
+{
+	double *sorted;
+
+	if (isnan(kurtosis))
+		kurtosis = 3 + 1.5 * skewness * skewness;
+	if (skewness == 0 && kurtosis == 3)
+		return NULL;
+	sorted = xcalloc(n, sizeof *sorted);
+	switch (heights_sorted(n, skewness, kurtosis, sorted)) {
+	case HEIGHTS_OK:
+		return sorted;
+	case HEIGHTS_IMPOSSIBLE:
+		die(EXIT_USAGE,
+			"--skewness %g --kurtosis %g: no heights have these; kurtosis "
+			"must "
+			"exceed skewness^2 + 1 = %g",
+			skewness, kurtosis, skewness * skewness + 1);
+	case HEIGHTS_TOO_FEW:
+		die(EXIT_RUN, "--skewness %g --kurtosis %g: out of reach of %zu points",
+			skewness, kurtosis, n);
+	case HEIGHTS_MEMORY:
+		break;
+	}
+	die(EXIT_RUN, "out of memory for %zu heights", n);
+}
+
+struct generator {
+	struct spectrum *spectrum; /* NULL: flat */
+	struct pool *pool;
+	double *sorted; /* NULL: normal heights */
+	double error;   /* largest error of the spectrum, from the imposed heights */
+};
+
+/* One surface of the wanted roughness into z. */
+static void make_surface(struct generator *g, const struct record *r,
+	enum rng_purpose purpose, double want, double *z)
+{
+	double have = 0;
+	int turns = 0;
+
+	if (want == 0)
+		return;
+	spectrum_surface(g->spectrum, g->pool, (uint64_t)seed, (uint32_t)r->realisation,
+		purpose, z, slope.n ? &have : NULL);
+	stats_add("transforms", 1);
+	if (g->sorted) {
+		double error = spectrum_impose(g->spectrum, g->sorted, z, &turns);
+
+		if (error < 0)
+			die(EXIT_RUN, "out of memory for %d x %d points", r->nx, r->ny);
+		g->error = fmax(g->error, error);
+		stats_add("iterations", turns);
+		stats_add("transforms", 2 + 2 * turns);
+		if (slope.n)
+			have = spectrum_slope(g->spectrum, z);
+	}
+	if (slope.n)
+		scale((size_t)r->nx * (size_t)r->ny, z, have, want);
+	else
+		scale_heights(r, z, want);
+}
+
+static void generate_one(struct generator *g, struct record *r)
+{
+	const struct opt_list *target = sa.n ? &sa : slope.n ? &slope : &sq;
+	uint32_t realisation = (uint32_t)r->realisation;
+	double *z = record_add(r, "height", "m");
+	size_t n = (size_t)r->nx * (size_t)r->ny;
+	char *extra = xprintf("--first %ld", r->realisation);
+
+	g->error = 0;
+	make_surface(g, r, RNG_SURFACE, draw_target(target, realisation, 0), z);
+	if (pair.n) {
+		double *second = xcalloc(n, sizeof *second);
+
+		make_surface(
+			g, r, RNG_SURFACE_2, draw_target(&pair, realisation, 1), second);
+		for (size_t i = 0; i < n; i++)
+			z[i] += second[i];
+		free(second);
+	}
+	r->cmd = opt_cmd(NULL, extra);
+	record_set(r, "seed", "%ld", seed);
+	if (g->sorted)
+		record_set(r, "spectrum_error", "%.3g", g->error);
+	free(extra);
+}
+
+static void generate(void)
+{
+	int nx = (int)points.v[0], ny = (int)points.v[points.n - 1];
+	double lx = length.v[0], ly = length.n == 2 ? length.v[1] : lx / nx * ny;
+	const struct opt_list *target = sa.n ? &sa : slope.n ? &slope : &sq;
+	struct generator g = { NULL, NULL, NULL, 0 };
+	struct record r = { 0 };
+
+	if (target->v[target->n - 1] > 0 || (pair.n && pair.v[pair.n - 1] > 0)) {
+		g.spectrum = new_spectrum(lx, ly);
+		g.sorted = new_sorted((size_t)nx * (size_t)ny);
+		g.pool = pool_new((int)threads);
+	}
+	for (long k = 0; k < count; k++) {
+		progress("surfaces", (double)k, (double)count);
+		record_init(&r, nx, ny, lx / nx, ly / ny);
+		r.realisation = first + k;
+		generate_one(&g, &r);
+		finish(&r);
+	}
+	record_free(&r);
+	spectrum_free(g.spectrum);
+	pool_free(g.pool);
+	free(g.sorted);
+}
+
+/* ---- measured surfaces ---- */
+
+static void no_memory(int done)
+{
+	if (!done)
+		die(EXIT_RUN, "out of memory preparing a measured surface");
+}
+
+/* Takes the heights of r, cropped, into a record that holds nothing else. */
+static void take_heights(
+	const struct fields_in *in, const struct record *r, struct record *s)
+{
+	const double *z = record_need(r, "height", 0, in);
+	int x = 0, y = 0, nx = r->nx, ny = r->ny;
+
+	if (r->nz != 1)
+		die(EXIT_RUN, "%s: record %ld: %d layers, want a plane field",
+			fields_name(in), fields_count(in), r->nz);
+	if (crop.n) {
+		x = (int)crop.v[0];
+		y = (int)crop.v[1];
+		nx = (int)crop.v[2];
+		ny = (int)crop.v[3];
+		if (nx < 1 || ny < 1 || x + nx > r->nx || y + ny > r->ny)
+			die(EXIT_RUN,
+				"%s: record %ld: --crop %d:%d:%d:%d is not within %d x "
+				"%d "
+				"samples",
+				fields_name(in), fields_count(in), x, y, nx, ny, r->nx,
+				r->ny);
+		stats_add("samples_cropped", (double)r->nx * r->ny - (double)nx * ny);
+	}
+	record_init(s, nx, ny, r->dx, r->dy);
+	s->realisation = r->realisation;
+	for (int i = 0; i < r->nkeys; i++)
+		record_set(s, r->key[i], "%s", r->value[i]);
+	surface_crop(r->nx, r->ny, z, x, y, nx, ny, record_add(s, "height", "m"));
+}
+
+static void fill_holes(const struct fields_in *in, struct record *s)
+{
+	double *z = record_need(s, "height", !fill, in);
+	size_t n = (size_t)s->nx * (size_t)s->ny, missing;
+	int steps;
+
+	if (!fill)
+		return;
+	missing = surface_missing(s->nx, s->ny, z);
+	if (missing == n)
+		die(EXIT_RUN, "%s: record %ld: every height is missing", fields_name(in),
+			fields_count(in));
+	no_memory(surface_fill(s->nx, s->ny, z, &steps));
+	record_need(s, "height", 1, in);
+	stats_add("samples_filled", (double)missing);
+	stats_add("iterations", steps);
+}
+
+static void resample_heights(struct record *s)
+{
+	int nx = (int)resample.v[0], ny = (int)resample.v[resample.n - 1];
+	struct record t = { 0 };
+
+	record_init(&t, nx, ny, s->dx * s->nx / nx, s->dy * s->ny / ny);
+	t.realisation = s->realisation;
+	for (int i = 0; i < s->nkeys; i++)
+		record_set(&t, s->key[i], "%s", s->value[i]);
+	no_memory(surface_resample(
+		s->nx, s->ny, s->data[0], nx, ny, record_add(&t, "height", "m")));
+	record_free(s);
+	*s = t;
+}
+
+static void prepare(const char *path)
+{
+	struct raw_layout raw = { (int)raw_size.v[0], (int)raw_size.v[1], pixel.v[0],
+		pixel.v[pixel.n ? pixel.n - 1 : 0] };
+	struct fields_in *in = fields_open(path, raw_size.n ? &raw : NULL);
+	const struct opt_list *target = sa.n ? &sa : &sq;
+	struct record r = { 0 }, s = { 0 };
+
+	while (fields_read(in, &r)) {
+		take_heights(in, &r, &s);
+		fill_holes(in, &s);
+		if (level)
+			surface_level(s.nx, s.ny, s.data[0]);
+		if (resample.n)
+			resample_heights(&s);
+		if ((opt_given('q') || opt_given('a')) &&
+			!scale_heights(&s, s.data[0],
+				draw_target(target, (uint32_t)s.realisation, 0)))
+			die(EXIT_RUN,
+				"%s: record %ld: a flat surface cannot be scaled to --%s",
+				fields_name(in), fields_count(in), sa.n ? "sa" : "sq");
+		s.cmd = opt_cmd(r.cmd, NULL);
+		finish(&s);
+	}
+	if (fields_count(in) == 0)
+		die(EXIT_RUN, "%s: no records", fields_name(in));
+	record_free(&r);
+	record_free(&s);
+	fields_close(in);
+}
+
+int main(int argc, char **argv)
+{
+	int operand = opt_parse(&prog, argc, argv);
+
+	check_options(operand < argc);
+	if (operand < argc)
+		prepare(argv[operand]);
+	else
+		generate();
+	if (out)
+		fields_done(out);
+	if (table)
+		table_done(table);
+	return shell_done(EXIT_SUCCESS);
+}

@@ -1,0 +1,174 @@
+#!/bin/sh
+# roughgen: streams, roughness, provenance, measured surfaces, refusals
+. "$(dirname "$0")/tap.sh"
+data=$top/../shared/data/surfaces
+
+# value COLUMN FILE: first value of a table column
+value() { column "$1" "$2" | head -1; }
+
+# Realisations are functions of their number: one process, many, any thread count.
+roughgen -n 60x45 -q 0.5um:2um -c 8 -j 1 >one
+for k in 0 1 2 3 4 5 6 7; do
+	roughgen -n 60x45 -q 0.5um:2um -f $k -c 1
+done >many
+same "eight realisations in one process and in eight" one many
+roughgen -n 60x45 -q 0.5um:2um -c 8 -j 2 >two
+same "one thread and two" one two
+roughgen -n 60x45 -K -1 -Q 5 -c 3 -j 1 >one
+(roughgen -n 60x45 -K -1 -Q 5 -f 0 -c 2 -j 3 && roughgen -n 60x45 -K -1 -Q 5 -f 2) >two
+same "the same with imposed heights" one two
+
+# The header rebuilds the record.
+roughgen -n 32 -q 1um:3um -p 0.5um -C auto -s 7 -c 3 >three
+rec -n 2 -o nrrd three >second
+cmd=$(sed -n 's/^cmd:=//p' second | head -1)
+sh -c "$cmd" >again
+rec -n 2 -o nrrd three | tail -c 8192 >a
+tail -c 8192 again >b
+same "cmd rebuilds one record of an ensemble" a b
+is "keys of a record" "$(sed -n '/^#/q; s/:=.*//p' again | tr '\n' ' ')" \
+	"fields realisation seed sq crown cmd "
+
+# Roughness is met exactly, without the crown.
+roughgen -n 64 -q 3um -m >t
+near "--sq" "$(value sq t)" 3e-6 1e-20
+roughgen -n 64 -a 3um -m >t
+near "--sa" "$(value sa t)" 3e-6 1e-20
+roughgen -n 64 -L 1mm -l 200um -g 0.1 -m >t
+# Wavelengths of 60 points and more: seven-point differences are exact to 1e-3 or so;
+# the area is periodic but the differences are not taken across its rim.
+near "--slope" "$(value sdq_iso7 t)" 0.1 0.004
+roughgen -n 64 -q 1um -c 50 -m >t
+is "one row per realisation" "$(column sq t | wc -l)" 50
+roughgen -n 64 -q 78um:82um -c 50 -m >t
+column sq t | sort -g >sorted
+ok "--sq A:B: within the range and spread over it" awk '
+	NR == 1 { low = $1 } { high = $1 }
+	END { exit !(low >= 78e-6 && low < 78.5e-6 && high <= 82e-6 && high > 81.5e-6) }' sorted
+# Greenwood and Tripp: variances add; the two samples correlate by about a tenth.
+roughgen -n 128 -l 40um -q 0.8um -p 1.6um -c 20 -m >t
+near "--pair: variances add" "$(column sq t | awk '{ s += $1 * $1 } END { print s / NR }')" \
+	3.2e-12 0.1e-12
+roughgen -n 64 -q 1um >a
+roughgen -n 64 -q 0 -p 1um >b
+ok "--pair: the second surface is another one" sh -c '! cmp -s a b'
+roughgen -n 64 -q 1um -C auto >a
+is "--crown auto is 4 Sq" "$(sed -n 's/^crown:=//p' a | awk '{ printf "%.12g", $1 }')" 4e-06
+roughgen -n 3 -q 0 -L 3mm -C 8um >a
+# Centre 0; edge centres (1 mm)^2 / 4.5 mm^2, corner centres 2 / 4.5.
+is "--crown on a flat" "$(rec -o text a | awk '!/^#/ && NF { printf "%.5g %.5g %.5g ", $1, $2, $3 }')" \
+	"-3.5556e-06 -1.7778e-06 -3.5556e-06 -1.7778e-06 0 -1.7778e-06 -3.5556e-06 -1.7778e-06 -3.5556e-06 "
+
+# Heights of given moments.
+roughgen -n 128 -l 50um -K -1.2 -Q 4.3 -m >t
+near "--skewness" "$(value ssk t)" -1.2 1e-6
+near "--kurtosis" "$(value sku t)" 4.3 1e-6
+roughgen -n 128 -l 50um -K -1.2 -Q 4.3 >a
+ok "the error of the spectrum is stated and small" awk -F = '
+	/^spectrum_error/ { e = $2 } END { exit !(e > 0 && e < 0.05) }' a
+roughgen -n 64 -K 1 -m >t
+near "kurtosis unless given: 3 + 1.5 S^2" "$(value sku t)" 4.5 1e-6
+
+# Measured surfaces against published parameters.
+check_measured() {
+	name=$1
+	size=$2
+	pixel=$3
+	suffix=$4
+	shift 4
+	roughgen --raw "$size" --pixel "$pixel" "$@" -m "$data/$name.f64" >t
+	worst=$(while read -r key want; do
+		case $key in
+		numpy_S[apqv] | numpy_Ssk | numpy_Sku) c=$(echo "${key#numpy_}" | tr S s) ;;
+		numpy_Sdq_fwd) c=sdq ;;
+		numpy_Sdq_cen) c=sdq_central ;;
+		numpy_Sdq_*) c=sdq_${key#numpy_Sdq_} ;;
+		*) continue ;;
+		esac
+		echo "$want $(value "$c" t)"
+	done <"$data/$name$suffix.txt" | awk '
+		{ d = $2 / $1 - 1; if (d < 0) d = -d; if (d > w) w = d; n++ }
+		END { if (n == 11) print w; else print "only " n " values" }')
+	# Ssk near 0 (1e-3) loses three digits of the printed twelve.
+	near "$name$suffix: eleven parameters, relative error" "${worst:-none}" 0 1e-9
+}
+if [ -d "$data" ]; then
+	set -- nanovea2 101x101 5.0000000000000004e-06 \
+		ground_plu1 768x576 1.6600000858306884e-06 \
+		film_wyko_opd1 640x480 1.9673303177114576e-07
+	while [ $# -gt 0 ]; do
+		check_measured "$1" "$2" "$3" ""
+		check_measured "$1" "$2" "$3" .lev --level
+		shift 3
+	done
+	roughgen -x 640x480 -X 1.9673303177114576e-07 -i "$data/film_wyko_opd1.nan.f64" |
+		tail -c 2457600 | od -An -v -w8 -t f8 >filled
+	od -An -v -w8 -t f8 "$data/film_wyko_opd1.f64" | paste filled - >both
+	near "116 missing samples filled as by Gwyddion, m" "$(awk '
+		{ d = $1 - $2; if (d < 0) d = -d; if (d > w) w = d } END { print w + 0 }' both)" \
+		0 1e-18
+else
+	skip "measured surfaces" "no reference data here"
+fi
+
+# Preparing: crop, level, resample, raw, streams with several records.
+roughgen -n 40x30 -c 2 >s
+roughgen -w 5:6:20:10 s >c
+is "--crop: size and spacing" "$(rec c | awk -F '\t' '$1 == 1 { print $5, $6, $8 }')" \
+	"20 10 2.5e-05"
+is "--crop: the samples" "$(rec -o text -n 1 c | sed -n 2p | cut -f 1-3)" \
+	"$(rec -o text -n 1 s | sed -n 8p | cut -f 6-8)"
+is "every record of a stream is prepared" "$(rec -o count c)" "2"
+roughgen -r 20x15 s >c
+is "--resample: size and spacing" "$(rec c | awk -F '\t' '$1 == 1 { print $5, $6, $8, $9 }')" \
+	"20 15 5e-05 5e-05"
+tail -c 9600 s >raw.f64
+roughgen -x 40x30 -X 25um raw.f64 | tail -c 9600 >c
+same "--raw: the samples pass unchanged" raw.f64 c
+cat s | roughgen - >c
+roughgen s >d
+is "standard input by name: -" "$(tail -c 9600 c | cksum)" "$(tail -c 9600 d | cksum)"
+rec -n 1 -o gsf s >s.gsf
+roughgen -m s.gsf >t
+roughgen -n 40x30 -m >u
+near "a GSF file is measured (float32)" "$(value sq t)" "$(value sq u)" 1e-12
+roughgen -q 2um s | roughgen -m - >t
+near "a measured surface is scaled on request" "$(value sq t)" 2e-6 1e-20
+
+# Refusals.
+fails "no heights of kurtosis below skewness^2 + 1" 2 'must exceed' \
+	roughgen -K 1 -Q 1.9
+fails "kurtosis out of reach of few points" 1 'out of reach of 16 points' \
+	roughgen -n 4 -L 1mm -l 0.1mm -K 0 -Q 60
+fails "correlation length above the side" 1 'longer than the area' roughgen -l 2mm
+fails "no waves" 1 'no wave' roughgen -n 1
+fails "a range that runs backwards" 2 'runs backwards' roughgen -q 2um:1um
+fails "a bare prefix" 2 'q' roughgen -q 2u
+fails "Sq and Sa" 2 'exclude' roughgen -q 1um -a 1um
+fails "roll-off without Hurst" 2 'need --hurst' roughgen -R 1um
+fails "level without file" 2 '--level: is for a measured' roughgen -e
+fails "points with file" 2 '--points: is for generated' roughgen -n 4 s
+fails "a crop outside" 1 'record 1: --crop 30:0:11:5 is not within 40 x 30' \
+	roughgen -w 30:0:11:5 s
+fails "raw without pixel" 2 'go together' roughgen -x 3x3 s
+fails "a file that is not there" 1 'nowhere: No such file' roughgen nowhere
+fails "an empty file" 1 'no records' roughgen /dev/null
+printf '\0\0\0\0\0\0\370\177\0\0\0\0\0\0\0\0' >nan.f64
+fails "a missing sample" 1 'record 1: height is .*nan' roughgen -x 2x1 -X 1um nan.f64
+is "nothing is written before a refusal" "$(wc -c <out)" 0
+printf '\0\0\0\0\0\0\370\177\0\0\0\0\0\0\360\177' >inf.f64
+fails "an infinite sample is not filled" 1 'inf' roughgen -i -x 2x1 -X 1um inf.f64
+printf '\0\0\0\0\0\0\370\177' >all.f64
+fails "all samples missing" 1 'every height is missing' roughgen -i -x 1x1 -X 1um all.f64
+fails "a truncated file" 1 'want 24 bytes, got 16' roughgen -x 3x1 -X 1um nan.f64
+fails "a flat surface cannot be scaled" 1 'flat' sh -c \
+	'roughgen -n 4 -q 0 | roughgen -q 1um -'
+
+# Counters say what was done and what was left out.
+roughgen -n 64 -H 0.8 -R 0.25mm -W 0.25mm -k 0.1mm -S st >/dev/null
+near "waves drawn and left out" "$(awk -F '\t' '{ print $0 }' st | awk -F '\t' '
+	NR == 1 { for (i = 1; i <= NF; i++) c[$i] = i }
+	NR == 2 { print $(c["waves"]) + $(c["waves_skipped"]) }')" 4095 0
+roughgen -n 64 -q 0 -S st >/dev/null
+is "a flat surface needs no transform" "$(grep -c transforms st)" 0
+done_testing
