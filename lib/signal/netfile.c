@@ -1,0 +1,292 @@
+/* netfile.c - networks as text: the layers in one line, the weights in one file */
+#include "signal/netfile.h"
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const activations[] = { "linear", "tanh", "sigmoid", "relu" };
+
+/* Reads a whole number 1 ... 2^20 at *s and moves on; 0 if there is none. */
+static int take_number(const char **s)
+{
+	char *end;
+	long n;
+
+	if (**s < '0' || **s > '9')
+		return 0;
+	errno = 0;
+	n = strtol(*s, &end, 10);
+	if (errno || n < 1 || n > 1 << 20)
+		return 0;
+	*s = end;
+	return n;
+}
+
+static int take_window(const char **s, struct network_layer *l)
+{
+	l->width = take_number(s);
+	if (!l->width || (**s != 'x' && **s != '*'))
+		return 0;
+	++*s;
+	l->height = take_number(s);
+	return l->height > 0;
+}
+
+static int take_activation(const char *s, enum network_activation *activation)
+{
+	for (int i = 0; i < 4; i++)
+		if (strcmp(s, activations[i]) == 0) {
+			*activation = i;
+			return 1;
+		}
+	return 0;
+}
+
+static int parse_layer(const char *s, struct network_layer *l)
+{
+	if (strncmp(s, "pool", 4) == 0) {
+		s += 4;
+		l->kind = NETWORK_POOL;
+		return take_window(&s, l) && !*s;
+	}
+	l->units = take_number(&s);
+	if (!l->units)
+		return 0;
+	l->kind = NETWORK_DENSE;
+	if (strncmp(s, "conv", 4) == 0) {
+		s += 4;
+		l->kind = NETWORK_CONV;
+		l->stride = 1;
+		if (!take_window(&s, l))
+			return 0;
+		if (*s == '/') {
+			s++;
+			l->stride = take_number(&s);
+		}
+		if (!l->stride)
+			return 0;
+	} else if (*s == '+') {
+		s++;
+		l->kind = NETWORK_CASCADE;
+	}
+	return !*s || (*s == ':' && take_activation(s + 1, &l->activation));
+}
+
+int netfile_parse_layers(const char *text, enum network_activation activation,
+	struct network_layer *layer, char why[NETFILE_TEXT])
+{
+	char word[48];
+	size_t n;
+	int count = 0;
+
+	for (text += strspn(text, " \t\n"); *text; text += n + strspn(text + n, " \t\n")) {
+		n = strcspn(text, " \t\n");
+		snprintf(word, sizeof word, "%.*s", (int)n, text);
+		if (count == NETWORK_LAYERS_MAX) {
+			snprintf(why, NETFILE_TEXT, "more than %d layers", NETWORK_LAYERS_MAX);
+			return 0;
+		}
+		layer[count] = (struct network_layer){ .activation = activation };
+		if (n >= sizeof word || !parse_layer(word, &layer[count++])) {
+			snprintf(why, NETFILE_TEXT,
+				"'%s' is no layer: want like 50, 50+, 10conv30x2 or pool2x2",
+				word);
+			return 0;
+		}
+	}
+	if (count == 0)
+		snprintf(why, NETFILE_TEXT, "no layers");
+	return count;
+}
+
+static void write_layer(FILE *f, const struct network_layer *l)
+{
+	if (l->kind == NETWORK_POOL) {
+		fprintf(f, " pool%dx%d", l->width, l->height);
+		return;
+	}
+	fprintf(f, " %d", l->units);
+	if (l->kind == NETWORK_CASCADE)
+		putc('+', f);
+	if (l->kind == NETWORK_CONV)
+		fprintf(f, "conv%dx%d", l->width, l->height);
+	if (l->kind == NETWORK_CONV && l->stride != 1)
+		fprintf(f, "/%d", l->stride);
+	fprintf(f, ":%s", activations[l->activation]);
+}
+
+int netfile_write(FILE *f, struct network *net, const char *purpose, const char *cmd)
+{
+	struct network_shape in = network_input(net);
+	const network_real *w = network_weights(net);
+	size_t n = network_weight_count(net);
+
+	fprintf(f, "wearpipe-network 1\n");
+	if (cmd)
+		fprintf(f, "# cmd: %s\n", cmd);
+	fprintf(f, "purpose %s\ninput %d %d %d\nlayers", purpose, in.channels, in.height,
+		in.width);
+	for (int i = 0; i < network_layers(net); i++)
+		write_layer(f, network_layer(net, i));
+	fprintf(f, "\nweights %zu\n", n);
+	for (size_t i = 0; i < n; i++)
+		fprintf(f, "%.9g%c", w[i], i % 8 == 7 || i == n - 1 ? '\n' : ' ');
+	fprintf(f, "end\n");
+	return ferror(f) ? -1 : 0;
+}
+
+struct reader {
+	FILE *f;
+	char *text;
+	size_t size;
+	long line;
+	char *why;
+};
+
+/* The next line that is no comment, without its newline; NULL with why at the end. */
+static char *next_line(struct reader *r, const char *want)
+{
+	ssize_t n;
+
+	do {
+		n = getline(&r->text, &r->size, r->f);
+		r->line++;
+		if (n <= 0 || r->text[n - 1] != '\n') {
+			snprintf(r->why, NETFILE_TEXT, "ends early: want %s", want);
+			return NULL;
+		}
+		if (strlen(r->text) != (size_t)n) {
+			snprintf(r->why, NETFILE_TEXT, "not text: want %s", want);
+			return NULL;
+		}
+	} while (r->text[0] == '#');
+	r->text[n - 1] = '\0';
+	return r->text;
+}
+
+/* What follows the word that the next line must begin with. */
+static char *next_value(struct reader *r, const char *word)
+{
+	char *s = next_line(r, word);
+	size_t n = strlen(word);
+
+	if (!s)
+		return NULL;
+	if (strncmp(s, word, n) != 0 || s[n] != ' ' || s[n + 1] == '\0') {
+		snprintf(r->why, NETFILE_TEXT, "want '%s ...', got '%.40s'", word, s);
+		return NULL;
+	}
+	return s + n + 1;
+}
+
+static int read_weights(struct reader *r, struct network *net)
+{
+	network_real *w = network_weights(net);
+	size_t n = network_weight_count(net), i = 0;
+	char *s = next_value(r, "weights"), *end;
+
+	if (!s)
+		return 0;
+	if (strtoull(s, &end, 10) != n || *end) {
+		snprintf(r->why, NETFILE_TEXT, "the layers have %zu weights, got '%.20s'", n, s);
+		return 0;
+	}
+	while (i < n) {
+		s = next_line(r, "weights");
+		if (!s)
+			return 0;
+		for (; i < n && *(s += strspn(s, " \t")); s = end) {
+			double x = strtod(s, &end);
+
+			w[i++] = x;
+			if (end == s || (*end && *end != ' ' && *end != '\t') ||
+				!isfinite(w[i - 1])) {
+				snprintf(r->why, NETFILE_TEXT,
+					"weight %zu: want a finite number, got '%.20s'", i, s);
+				return 0;
+			}
+		}
+	}
+	if (s[strspn(s, " \t")]) {
+		snprintf(r->why, NETFILE_TEXT, "more than %zu weights", n);
+		return 0;
+	}
+	s = next_line(r, "'end'");
+	if (s && strcmp(s, "end") != 0) {
+		snprintf(r->why, NETFILE_TEXT, "want 'end' after the weights, got '%.40s'", s);
+		return 0;
+	}
+	return s != NULL;
+}
+
+static int read_input(const char *s, struct network_shape *shape)
+{
+	shape->channels = take_number(&s);
+	if (!shape->channels || *s++ != ' ')
+		return 0;
+	shape->height = take_number(&s);
+	if (!shape->height || *s++ != ' ')
+		return 0;
+	shape->width = take_number(&s);
+	return shape->width && !*s;
+}
+
+static struct network *read_network(struct reader *r, int batch, char purpose[NETFILE_TEXT])
+{
+	struct network_layer layer[NETWORK_LAYERS_MAX];
+	struct network_shape input;
+	struct network *net;
+	char *s = next_line(r, "'wearpipe-network 1'");
+	int layers;
+
+	if (!s)
+		return NULL;
+	if (strcmp(s, "wearpipe-network 1") != 0) {
+		snprintf(r->why, NETFILE_TEXT, "want 'wearpipe-network 1', got '%.40s'", s);
+		return NULL;
+	}
+	s = next_value(r, "purpose");
+	if (!s)
+		return NULL;
+	snprintf(purpose, NETFILE_TEXT, "%s", s);
+	s = next_value(r, "input");
+	if (!s)
+		return NULL;
+	if (!read_input(s, &input)) {
+		snprintf(r->why, NETFILE_TEXT, "want 'input CHANNELS ROWS COLUMNS', got '%.40s'",
+			s);
+		return NULL;
+	}
+	s = next_value(r, "layers");
+	layers = s ? netfile_parse_layers(s, NETWORK_LINEAR, layer, r->why) : 0;
+	if (!layers)
+		return NULL;
+	net = network_new(input, layer, layers, batch);
+	if (!net) {
+		snprintf(r->why, NETFILE_TEXT, "cannot build the layers: %s",
+			errno == EDOM ? "too large" : "out of memory");
+		return NULL;
+	}
+	if (!read_weights(r, net)) {
+		network_free(net);
+		return NULL;
+	}
+	return net;
+}
+
+struct network *netfile_read(FILE *f, int batch, char purpose[NETFILE_TEXT],
+	char why[NETFILE_TEXT], long *line)
+{
+	struct reader r = { .f = f, .why = why };
+	struct network *net = read_network(&r, batch, purpose);
+
+	if (net && getc(f) != EOF) {
+		snprintf(why, NETFILE_TEXT, "something follows 'end'");
+		network_free(net);
+		net = NULL;
+	}
+	*line = r.line;
+	free(r.text);
+	return net;
+}

@@ -1,0 +1,744 @@
+/* network.c - small feed-forward networks trained by back-propagation */
+#include "signal/network.h"
+#include "num/philox.h"
+#include <errno.h>
+#include <gsl/gsl_cblas.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef NETWORK_DOUBLE
+#define gemm cblas_dgemm
+#else
+#define gemm cblas_sgemm
+#endif
+
+typedef network_real real;
+
+#define PI 3.14159265358979323846
+
+/* Places in the stream of random numbers: weights from 0, shuffling from here on. */
+#define SHUFFLE ((uint64_t)1 << 40)
+
+struct layer {
+	struct network_layer par;
+	struct network_shape in, out;
+	int inputs, outputs; /* values per sample */
+	int fan;             /* values that one unit sees */
+	size_t weight, bias; /* where they begin in the vector of weights */
+	real *value;         /* batch rows of outputs */
+	real *slope;         /* loss by output, same shape */
+	int *choice;         /* pool: index of the largest input */
+};
+
+struct network {
+	int layers, batch;
+	struct layer layer[NETWORK_LAYERS_MAX];
+	size_t count;
+	real *weights;
+	real *columns; /* unfolded input of a convolution, one sample */
+	real *unit;    /* slope by the sums before the activation, batch rows */
+	const real *input;
+};
+
+static int volume(struct network_shape s)
+{
+	return s.channels * s.height * s.width;
+}
+
+static int divide_up(int a, int b)
+{
+	return (a + b - 1) / b;
+}
+
+/* Shape, fan and number of weights of one layer; 0 if it is out of range. */
+static int size_layer(struct layer *l, size_t *weights)
+{
+	struct network_layer *p = &l->par;
+	int kernel = p->kind == NETWORK_CONV || p->kind == NETWORK_POOL;
+
+	*weights = 0;
+	if (kernel && (p->width < 1 || p->height < 1 || p->width > 4096 || p->height > 4096))
+		return 0;
+	if (p->kind != NETWORK_POOL && (p->units < 1 || p->units > 1 << 20))
+		return 0;
+	l->inputs = volume(l->in);
+	switch (p->kind) {
+	case NETWORK_DENSE:
+	case NETWORK_CASCADE:
+		l->out = (struct network_shape){ 1, 1, p->units };
+		if (p->kind == NETWORK_CASCADE)
+			l->out.width += l->inputs;
+		l->fan = l->inputs;
+		break;
+	case NETWORK_CONV:
+		if (p->stride == 0)
+			p->stride = 1;
+		if (p->stride < 0 || p->stride > 4096)
+			return 0;
+		l->out = (struct network_shape){ p->units, l->in.height,
+			divide_up(l->in.width, p->stride) };
+		l->fan = l->in.channels * p->width * p->height;
+		break;
+	case NETWORK_POOL:
+		l->out = (struct network_shape){ l->in.channels,
+			divide_up(l->in.height, p->height), divide_up(l->in.width, p->width) };
+		break;
+	default:
+		return 0;
+	}
+	if ((double)l->out.channels * l->out.height * l->out.width > 1 << 24)
+		return 0;
+	l->outputs = volume(l->out);
+	if (p->kind != NETWORK_POOL)
+		*weights = ((size_t)l->fan + 1) * p->units;
+	return *weights <= NETWORK_WEIGHTS_MAX;
+}
+
+static int allocate(struct network *net)
+{
+	size_t columns = 1, unit = 1;
+
+	for (int i = 0; i < net->layers; i++) {
+		struct layer *l = &net->layer[i];
+		size_t n = (size_t)net->batch * l->outputs;
+
+		l->value = malloc(n * sizeof(real));
+		l->slope = malloc(n * sizeof(real));
+		if (l->par.kind == NETWORK_POOL)
+			l->choice = malloc(n * sizeof(int));
+		if (!l->value || !l->slope || (l->par.kind == NETWORK_POOL && !l->choice))
+			return 0;
+		if (l->par.kind == NETWORK_CONV) {
+			size_t c = (size_t)l->fan * l->out.height * l->out.width;
+			if (c > columns)
+				columns = c;
+		}
+		if (n > unit)
+			unit = n;
+	}
+	net->columns = malloc(columns * sizeof(real));
+	net->unit = malloc(unit * sizeof(real));
+	net->weights = calloc(net->count, sizeof(real));
+	return net->columns && net->unit && net->weights;
+}
+
+struct network *network_new(struct network_shape input, const struct network_layer *layer,
+	int layers, int batch)
+{
+	struct network *net;
+	size_t n;
+
+	if (layers < 1 || layers > NETWORK_LAYERS_MAX || batch < 1 || batch > 1 << 20 ||
+		input.channels < 1 || input.height < 1 || input.width < 1 ||
+		(double)input.channels * input.height * input.width > 1 << 24) {
+		errno = EDOM;
+		return NULL;
+	}
+	net = calloc(1, sizeof *net);
+	if (!net)
+		return NULL;
+	net->layers = layers;
+	net->batch = batch;
+	for (int i = 0; i < layers; i++) {
+		struct layer *l = &net->layer[i];
+
+		l->par = layer[i];
+		l->in = i ? net->layer[i - 1].out : input;
+		if (!size_layer(l, &n) || (net->count += n) > NETWORK_WEIGHTS_MAX ||
+			(double)batch * (l->inputs + l->outputs) > 1 << 30) {
+			errno = EDOM;
+			network_free(net);
+			return NULL;
+		}
+		l->weight = net->count - n;
+		l->bias = l->par.kind == NETWORK_POOL ? l->weight : net->count - l->par.units;
+	}
+	if (!allocate(net)) {
+		network_free(net);
+		errno = ENOMEM;
+		return NULL;
+	}
+	return net;
+}
+
+void network_free(struct network *net)
+{
+	if (!net)
+		return;
+	for (int i = 0; i < net->layers; i++) {
+		free(net->layer[i].value);
+		free(net->layer[i].slope);
+		free(net->layer[i].choice);
+	}
+	free(net->columns);
+	free(net->unit);
+	free(net->weights);
+	free(net);
+}
+
+struct network_shape network_input(const struct network *net)
+{
+	return net->layer[0].in;
+}
+
+int network_inputs(const struct network *net)
+{
+	return net->layer[0].inputs;
+}
+
+int network_outputs(const struct network *net)
+{
+	return net->layer[net->layers - 1].outputs;
+}
+
+int network_layers(const struct network *net)
+{
+	return net->layers;
+}
+
+const struct network_layer *network_layer(const struct network *net, int i)
+{
+	return &net->layer[i].par;
+}
+
+struct network_shape network_layer_output(const struct network *net, int i)
+{
+	return net->layer[i].out;
+}
+
+real *network_weights(struct network *net)
+{
+	return net->weights;
+}
+
+size_t network_weight_count(const struct network *net)
+{
+	return net->count;
+}
+
+const real *network_activations(const struct network *net, int i)
+{
+	return net->layer[i].value;
+}
+
+void network_start(struct network *net, uint64_t seed, uint32_t repetition)
+{
+	for (int i = 0; i < net->layers; i++) {
+		struct layer *l = &net->layer[i];
+		double fan = l->fan, width;
+		size_t w;
+
+		if (l->par.kind == NETWORK_POOL)
+			continue;
+		/* A unit of a convolution feeds width * height sums of the next layer. */
+		if (l->par.activation != NETWORK_RELU)
+			fan += (double)l->par.units *
+				(l->par.kind == NETWORK_CONV ? l->par.width * l->par.height : 1);
+		width = sqrt(6 / fan);
+		for (w = l->weight; w < l->bias; w++)
+			net->weights[w] = width *
+				(2 * philox_uniform(seed, repetition, RNG_NETWORK, w) - 1);
+		for (int u = 0; u < l->par.units; u++)
+			net->weights[w++] = 0;
+	}
+}
+
+static real activate(enum network_activation kind, real x)
+{
+	switch (kind) {
+	case NETWORK_TANH:
+		return tanh(x);
+	case NETWORK_SIGMOID:
+		return 1 / (1 + exp(-(double)x));
+	case NETWORK_RELU:
+		return x > 0 ? x : 0;
+	default:
+		return x;
+	}
+}
+
+/* Derivative of the activation from its value. */
+static real incline(enum network_activation kind, real y)
+{
+	switch (kind) {
+	case NETWORK_TANH:
+		return 1 - y * y;
+	case NETWORK_SIGMOID:
+		return y * (1 - y);
+	case NETWORK_RELU:
+		return y > 0;
+	default:
+		return 1;
+	}
+}
+
+/* Where the units of a dense or cascade layer begin in a row of its output. */
+static int first_unit(const struct layer *l)
+{
+	return l->par.kind == NETWORK_CASCADE ? l->inputs : 0;
+}
+
+static void dense_forward(const struct network *net, struct layer *l, const real *x, int n)
+{
+	int units = l->par.units, skip = first_unit(l);
+	const real *bias = net->weights + l->bias;
+
+	for (int s = 0; s < n; s++) {
+		real *row = l->value + (size_t)s * l->outputs;
+
+		memcpy(row, x + (size_t)s * l->inputs, skip * sizeof(real));
+		memcpy(row + skip, bias, units * sizeof(real));
+	}
+	gemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, units, l->inputs, 1, x, l->inputs,
+		net->weights + l->weight, units, 1, l->value + skip, l->outputs);
+	for (int s = 0; s < n; s++) {
+		real *row = l->value + (size_t)s * l->outputs + skip;
+
+		for (int u = 0; u < units; u++)
+			row[u] = activate(l->par.activation, row[u]);
+	}
+}
+
+/* Range [*begin, *end) of output columns whose input column o * stride + shift exists. */
+static void overlap(int outputs, int inputs, int stride, int shift, int *begin, int *end)
+{
+	*begin = shift < 0 ? divide_up(-shift, stride) : 0;
+	*end = inputs > shift ? divide_up(inputs - shift, stride) : 0;
+	if (*end > outputs)
+		*end = outputs;
+	if (*begin > *end)
+		*begin = *end;
+}
+
+/* Unfolds one sample x: row (channel, kernel row, kernel column), column = output place.
+ * Unless back is NULL the rows are instead added to back where they came from. */
+static void unfold(const struct layer *l, const real *x, real *columns, real *back)
+{
+	int kx = l->par.width, ky = l->par.height, step = l->par.stride;
+	int left = (kx - 1) / 2, top = (ky - 1) / 2;
+	int iw = l->in.width, ih = l->in.height, ow = l->out.width;
+
+	for (int c = 0; c < l->in.channels; c++)
+		for (int j = 0; j < ky; j++)
+			for (int i = 0; i < kx; i++)
+				for (int y = 0; y < ih; y++, columns += ow) {
+					int row = y + j - top, begin = 0, end = 0;
+					int at = (c * ih + row) * iw + i - left;
+
+					if (row >= 0 && row < ih)
+						overlap(ow, iw, step, i - left, &begin, &end);
+					if (back) {
+						for (int o = begin; o < end; o++)
+							back[at + o * step] += columns[o];
+						continue;
+					}
+					memset(columns, 0, begin * sizeof(real));
+					for (int o = begin; o < end; o++)
+						columns[o] = x[at + o * step];
+					memset(columns + end, 0, (ow - end) * sizeof(real));
+				}
+}
+
+static void conv_forward(const struct network *net, struct layer *l, const real *x, int n)
+{
+	int places = l->out.height * l->out.width, units = l->par.units;
+	const real *bias = net->weights + l->bias;
+
+	for (int s = 0; s < n; s++) {
+		real *y = l->value + (size_t)s * l->outputs;
+
+		unfold(l, x + (size_t)s * l->inputs, net->columns, NULL);
+		for (int u = 0; u < units; u++)
+			for (int p = 0; p < places; p++)
+				y[u * places + p] = bias[u];
+		gemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, units, places, l->fan, 1,
+			net->weights + l->weight, l->fan, net->columns, places, 1, y, places);
+		if (l->par.activation == NETWORK_LINEAR)
+			continue;
+		for (int i = 0; i < l->outputs; i++)
+			y[i] = activate(l->par.activation, y[i]);
+	}
+}
+
+static void pool_forward(struct layer *l, const real *x, int n)
+{
+	int kx = l->par.width, ky = l->par.height;
+	size_t o = 0;
+
+	for (int plane = 0; plane < n * l->in.channels; plane++) {
+		int base = plane * l->in.height * l->in.width;
+
+		for (int y = 0; y < l->in.height; y += ky)
+			for (int i = 0; i < l->in.width; i += kx, o++) {
+				int best = base + y * l->in.width + i;
+
+				for (int r = y; r < y + ky && r < l->in.height; r++)
+					for (int c = i; c < i + kx && c < l->in.width; c++) {
+						int at = base + r * l->in.width + c;
+						if (x[at] > x[best])
+							best = at;
+					}
+				l->value[o] = x[best];
+				l->choice[o] = best;
+			}
+	}
+}
+
+const real *network_forward(struct network *net, const real *x, int n)
+{
+	net->input = x;
+	for (int i = 0; i < net->layers; i++) {
+		struct layer *l = &net->layer[i];
+
+		if (l->par.kind == NETWORK_CONV)
+			conv_forward(net, l, x, n);
+		else if (l->par.kind == NETWORK_POOL)
+			pool_forward(l, x, n);
+		else
+			dense_forward(net, l, x, n);
+		x = l->value;
+	}
+	return x;
+}
+
+/* Gradient by the weights of layer l, and by its input into back unless NULL. */
+static void dense_backward(const struct network *net, const struct layer *l, const real *x,
+	int n, real *gradient, real *back)
+{
+	int units = l->par.units, skip = first_unit(l);
+	real *unit = net->unit, *bias = gradient + l->bias;
+
+	memset(bias, 0, units * sizeof(real));
+	for (int s = 0; s < n; s++) {
+		const real *y = l->value + (size_t)s * l->outputs + skip;
+		const real *dy = l->slope + (size_t)s * l->outputs + skip;
+
+		for (int u = 0; u < units; u++) {
+			unit[s * units + u] = dy[u] * incline(l->par.activation, y[u]);
+			bias[u] += unit[s * units + u];
+		}
+	}
+	gemm(CblasRowMajor, CblasTrans, CblasNoTrans, l->inputs, units, n, 1, x, l->inputs,
+		unit, units, 0, gradient + l->weight, units);
+	if (!back)
+		return;
+	for (int s = 0; s < n && skip; s++)
+		memcpy(back + (size_t)s * l->inputs, l->slope + (size_t)s * l->outputs,
+			skip * sizeof(real));
+	gemm(CblasRowMajor, CblasNoTrans, CblasTrans, n, l->inputs, units, 1, unit, units,
+		net->weights + l->weight, units, skip ? 1 : 0, back, l->inputs);
+}
+
+static void conv_backward(const struct network *net, const struct layer *l, const real *x,
+	int n, real *gradient, real *back)
+{
+	int places = l->out.height * l->out.width, units = l->par.units;
+	real *unit = net->unit, *bias = gradient + l->bias;
+
+	memset(gradient + l->weight, 0, (l->bias - l->weight + units) * sizeof(real));
+	if (back)
+		memset(back, 0, (size_t)n * l->inputs * sizeof(real));
+	for (int s = 0; s < n; s++) {
+		const real *y = l->value + (size_t)s * l->outputs;
+		const real *dy = l->slope + (size_t)s * l->outputs;
+
+		for (int u = 0; u < units; u++)
+			for (int p = u * places; p < (u + 1) * places; p++) {
+				unit[p] = dy[p] * incline(l->par.activation, y[p]);
+				bias[u] += unit[p];
+			}
+		unfold(l, x + (size_t)s * l->inputs, net->columns, NULL);
+		gemm(CblasRowMajor, CblasNoTrans, CblasTrans, units, l->fan, places, 1, unit,
+			places, net->columns, places, 1, gradient + l->weight, l->fan);
+		if (!back)
+			continue;
+		gemm(CblasRowMajor, CblasTrans, CblasNoTrans, l->fan, places, units, 1,
+			net->weights + l->weight, l->fan, unit, places, 0, net->columns,
+			places);
+		unfold(l, NULL, net->columns, back + (size_t)s * l->inputs);
+	}
+}
+
+static void pool_backward(const struct layer *l, int n, real *back)
+{
+	if (!back)
+		return;
+	memset(back, 0, (size_t)n * l->inputs * sizeof(real));
+	for (size_t o = 0; o < (size_t)n * l->outputs; o++)
+		back[l->choice[o]] += l->slope[o];
+}
+
+double network_mse(const void *context, int n, int width, const real *output,
+	const real *target, real *gradient)
+{
+	double sum = 0, scale = 1.0 / ((double)n * width);
+
+	(void)context;
+	for (size_t i = 0; i < (size_t)n * width; i++) {
+		double d = (double)output[i] - target[i];
+
+		sum += d * d;
+		gradient[i] = 2 * scale * d;
+	}
+	return sum * scale;
+}
+
+/* Adds the Kullback-Leibler penalty of a layer and its slope. */
+static double add_sparsity(struct layer *l, int n, double weight, double level)
+{
+	int skip = first_unit(l);
+	double sum = 0;
+
+	for (int u = skip; u < skip + l->par.units; u++) {
+		double mean = 0, slope;
+
+		for (int s = 0; s < n; s++)
+			mean += l->value[(size_t)s * l->outputs + u];
+		mean /= n;
+		mean = fmin(fmax(mean, 1e-6), 1 - 1e-6);
+		sum += level * log(level / mean) + (1 - level) * log((1 - level) / (1 - mean));
+		slope = weight / n * ((1 - level) / (1 - mean) - level / mean);
+		for (int s = 0; s < n; s++)
+			l->slope[(size_t)s * l->outputs + u] += slope;
+	}
+	return weight * sum;
+}
+
+static double add_decay(const struct network *net, double decay, real *gradient)
+{
+	double sum = 0;
+
+	for (int i = 0; i < net->layers; i++)
+		for (size_t w = net->layer[i].weight; w < net->layer[i].bias; w++) {
+			sum += (double)net->weights[w] * net->weights[w];
+			gradient[w] += decay * net->weights[w];
+		}
+	return decay / 2 * sum;
+}
+
+double network_gradient(struct network *net, const real *x, const real *target, int n,
+	network_loss *loss, const void *context, const struct network_penalty *penalty,
+	real *gradient)
+{
+	int last = net->layers - 1;
+	double value;
+
+	network_forward(net, x, n);
+	value = loss(context, n, net->layer[last].outputs, net->layer[last].value, target,
+		net->layer[last].slope);
+	for (int i = last; i >= 0; i--) {
+		struct layer *l = &net->layer[i];
+		const real *in = i ? l[-1].value : x;
+		real *back = i ? l[-1].slope : NULL;
+
+		if (penalty && penalty->sparse_weight > 0 && penalty->sparse_layer == i)
+			value += add_sparsity(l, n, penalty->sparse_weight,
+				penalty->sparse_level);
+		if (l->par.kind == NETWORK_CONV)
+			conv_backward(net, l, in, n, gradient, back);
+		else if (l->par.kind == NETWORK_POOL)
+			pool_backward(l, n, back);
+		else
+			dense_backward(net, l, in, n, gradient, back);
+	}
+	if (penalty && penalty->decay > 0)
+		value += add_decay(net, penalty->decay, gradient);
+	return value;
+}
+
+/* Running means of Adam, and what a step needs. */
+struct descent {
+	real *gradient, *mean, *square;
+	real *x, *target;
+	long *order;
+	long steps, total;
+};
+
+static void free_descent(struct descent *d)
+{
+	free(d->gradient);
+	free(d->mean);
+	free(d->square);
+	free(d->x);
+	free(d->target);
+	free(d->order);
+}
+
+static int allocate_descent(struct descent *d, const struct network *net,
+	const struct network_training *par)
+{
+	long per_epoch = (par->samples + par->batch - 1) / par->batch;
+
+	*d = (struct descent){ .total = per_epoch * par->epochs };
+	d->gradient = malloc(net->count * sizeof(real));
+	d->mean = calloc(net->count, sizeof(real));
+	d->square = calloc(net->count, sizeof(real));
+	d->x = malloc((size_t)par->batch * network_inputs(net) * sizeof(real));
+	d->target = malloc((size_t)par->batch * network_outputs(net) * sizeof(real));
+	d->order = malloc(par->samples * sizeof *d->order);
+	return d->gradient && d->mean && d->square && d->x && d->target && d->order;
+}
+
+static double step_length(const struct network_training *par, const struct descent *d)
+{
+	double done = (double)d->steps / d->total;
+
+	if (par->rate_end <= 0)
+		return par->rate;
+	return par->rate_end + (par->rate - par->rate_end) * 0.5 * (1 + cos(PI * done));
+}
+
+static void update(struct network *net, const struct network_training *par,
+	struct descent *d)
+{
+	double rate = step_length(par, d);
+	const real keep = 0.9, keep_square = 0.999;
+	real step, guard;
+
+	d->steps++;
+	if (par->optimiser == NETWORK_DESCENT) {
+		for (size_t w = 0; w < net->count; w++)
+			net->weights[w] -= rate * d->gradient[w];
+		return;
+	}
+	/* The two corrections of the start are taken into the step and the guard. */
+	guard = sqrt(1 - pow(keep_square, d->steps));
+	step = rate * guard / (1 - pow(keep, d->steps));
+	guard *= 1e-8;
+	for (size_t w = 0; w < net->count; w++) {
+		real g = d->gradient[w];
+
+		d->mean[w] += (1 - keep) * (g - d->mean[w]);
+		d->square[w] += (1 - keep_square) * (g * g - d->square[w]);
+		net->weights[w] -= step * d->mean[w] / (real)(sqrtf(d->square[w]) + guard);
+	}
+}
+
+/* Fisher-Yates, a different order in each epoch. */
+static void shuffle(const struct network_training *par, long epoch, long *order)
+{
+	for (long i = 0; i < par->samples; i++)
+		order[i] = i;
+	for (long i = par->samples - 1; i > 0; i--) {
+		uint64_t place = SHUFFLE + (uint64_t)epoch * par->samples + i;
+		long k = (i + 1) *
+			philox_uniform(par->seed, par->repetition, RNG_NETWORK, place);
+		long keep = order[i];
+
+		order[i] = order[k];
+		order[k] = keep;
+	}
+}
+
+static double run_epoch(struct network *net, const struct network_training *par,
+	struct descent *d, long epoch, network_sample *sample, void *context)
+{
+	int inputs = network_inputs(net), outputs = network_outputs(net);
+	double sum = 0;
+
+	if (!par->fresh)
+		shuffle(par, epoch, d->order);
+	for (long begin = 0; begin < par->samples; begin += par->batch) {
+		long n = par->samples - begin;
+
+		if (n > par->batch)
+			n = par->batch;
+		for (long i = 0; i < n; i++)
+			sample(context, par->fresh ? epoch * par->samples + begin + i :
+						    d->order[begin + i],
+				d->x + i * inputs, d->target + i * outputs);
+		sum += n * network_gradient(net, d->x, d->target, n, par->loss,
+				   par->loss_context, &par->penalty, d->gradient);
+		update(net, par, d);
+	}
+	return sum / par->samples;
+}
+
+enum network_status network_train(struct network *net, const struct network_training *par,
+	network_sample *sample, void *context)
+{
+	enum network_status status = NETWORK_OK;
+	struct descent d;
+
+	if (par->batch > net->batch || !allocate_descent(&d, net, par)) {
+		if (par->batch <= net->batch)
+			free_descent(&d);
+		return NETWORK_MEMORY;
+	}
+	for (long epoch = 0; epoch < par->epochs && status == NETWORK_OK; epoch++) {
+		double loss = run_epoch(net, par, &d, epoch, sample, context);
+
+		if (par->report)
+			par->report(context, epoch, loss);
+		if (!isfinite(loss))
+			status = NETWORK_DIVERGED;
+	}
+	for (size_t w = 0; w < net->count; w++)
+		if (!isfinite(net->weights[w]))
+			status = NETWORK_DIVERGED;
+	free_descent(&d);
+	return status;
+}
+
+/* Samples of an auto-encoder: what the layers before it give, as input and target. */
+struct encoder {
+	struct network *net;
+	int layer;
+	network_sample *sample;
+	void *context;
+	const struct network_training *par;
+	real *x, *target;
+};
+
+static void encoder_sample(void *context, long i, real *x, real *target)
+{
+	struct encoder *e = context;
+	const struct layer *l = &e->net->layer[e->layer];
+	const real *in = e->x;
+
+	e->sample(e->context, i, e->x, e->target);
+	if (e->layer) {
+		network_forward(e->net, e->x, 1);
+		in = l[-1].value;
+	}
+	memcpy(x, in, l->inputs * sizeof(real));
+	memcpy(target, in, l->inputs * sizeof(real));
+}
+
+static void encoder_report(void *context, long epoch, double loss)
+{
+	struct encoder *e = context;
+
+	if (e->par->report)
+		e->par->report(e->context, epoch, loss);
+}
+
+enum network_status network_pretrain(struct network *net, int i,
+	const struct network_training *par, network_sample *sample, void *context)
+{
+	struct layer *l = &net->layer[i];
+	struct network_layer pair[2] = { l->par,
+		{ NETWORK_DENSE, NETWORK_LINEAR, .units = l->inputs } };
+	struct encoder e = { net, i, sample, context, par, NULL, NULL };
+	struct network_training inner = *par;
+	enum network_status status = NETWORK_MEMORY;
+	struct network *both;
+
+	inner.loss = network_mse;
+	inner.penalty.sparse_layer = 0;
+	inner.report = encoder_report;
+	both = network_new(l->in, pair, 2, par->batch);
+	e.x = malloc(network_inputs(net) * sizeof(real));
+	e.target = malloc(network_outputs(net) * sizeof(real));
+	if (both && e.x && e.target) {
+		network_start(both, par->seed, par->repetition);
+		status = network_train(both, &inner, encoder_sample, &e);
+		memcpy(net->weights + l->weight, both->weights,
+			(l->bias - l->weight + l->par.units) * sizeof(real));
+	}
+	network_free(both);
+	free(e.x);
+	free(e.target);
+	return status;
+}

@@ -1,0 +1,148 @@
+/* network.h - small feed-forward networks trained by back-propagation
+ *
+ * A network is a chain of layers: dense, cascade (a dense layer that hands on its
+ * input beside its output, so that a chain of them followed by a dense layer is the
+ * cascade-forward network), two-dimensional convolution with zero padding to the same
+ * size, and max pooling.  Matrix products go through CBLAS; everything else is here.
+ * Rumelhart, Hinton, Williams, Nature 323 (1986) 533; Kingma, Ba, ICLR 2015 (Adam).
+ *
+ * A sample is laid out x[channel][row][column]; samples follow one another.  Arithmetic
+ * is in single precision, losses are summed in double.  Results depend on the arguments
+ * and on the CBLAS library alone.
+ *
+ *	struct network_layer layer[] = {
+ *		{ NETWORK_DENSE, NETWORK_TANH, .units = 10 },
+ *		{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } };
+ *	struct network *net = network_new((struct network_shape){ 1, 2, 500 }, layer, 2, 64);
+ *	network_start(net, seed, 0);
+ *	network_train(net, &(struct network_training){ .epochs = 100, .samples = 1000,
+ *		.batch = 64, .rate = 1e-3, .loss = network_mse }, sample, context);
+ *	const network_real *y = network_forward(net, x, 1);
+ *	network_free(net);
+ */
+#ifndef SIGNAL_NETWORK_H
+#define SIGNAL_NETWORK_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Single precision, but for the test of the derivatives. */
+#ifdef NETWORK_DOUBLE
+typedef double network_real;
+#else
+typedef float network_real;
+#endif
+
+struct network; /* layers, weights and scratch */
+
+enum network_kind { NETWORK_DENSE, NETWORK_CASCADE, NETWORK_CONV, NETWORK_POOL };
+enum network_activation { NETWORK_LINEAR, NETWORK_TANH, NETWORK_SIGMOID, NETWORK_RELU };
+
+struct network_layer {
+	enum network_kind kind;
+	enum network_activation activation; /* not of pools */
+	int units;         /* outputs of dense and cascade layers, filters of convolutions */
+	int width, height; /* columns and rows of the kernel or of the pooling window */
+	int stride;        /* columns a convolution moves on; 0 means 1 */
+};
+
+struct network_shape {
+	int channels, height, width;
+};
+
+enum {
+	NETWORK_LAYERS_MAX = 16,
+	NETWORK_WEIGHTS_MAX = 1 << 24
+};
+
+/* batch: most samples to be handled at a time.  NULL when a size is out of range, the
+ * network is larger than NETWORK_WEIGHTS_MAX (errno EDOM) or memory is short. */
+struct network *network_new(struct network_shape input, const struct network_layer *layer,
+	int layers, int batch);
+void network_free(struct network *net);
+
+struct network_shape network_input(const struct network *net);
+int network_inputs(const struct network *net); /* values per sample */
+int network_outputs(const struct network *net);
+int network_layers(const struct network *net);
+const struct network_layer *network_layer(const struct network *net, int i);
+struct network_shape network_layer_output(const struct network *net, int i);
+
+/* All weights as one vector, layer after layer: of a dense or cascade layer
+ * weight[input][output] then bias[output]; of a convolution
+ * weight[filter][channel][row][column] then bias[filter]. */
+network_real *network_weights(struct network *net);
+size_t network_weight_count(const struct network *net);
+
+/* Draws weights uniformly, +-sqrt(6 / (inputs + outputs)) (Glorot, Bengio 2010), for
+ * ReLU +-sqrt(6 / inputs) (He et al. 2015); biases 0.  Stream (seed, repetition,
+ * RNG_NETWORK). */
+void network_start(struct network *net, uint64_t seed, uint32_t repetition);
+
+/* Outputs of n <= batch samples, n rows of network_outputs(); valid until the next call. */
+const network_real *network_forward(struct network *net, const network_real *x, int n);
+/* Output of layer i in the last forward call. */
+const network_real *network_activations(const struct network *net, int i);
+
+/* A loss: returns the mean over n samples of width outputs and fills its gradient. */
+typedef double network_loss(const void *context, int n, int width,
+	const network_real *output, const network_real *target, network_real *gradient);
+
+/* Mean over samples and outputs of the squared difference. */
+network_loss network_mse;
+
+/* What is added to the loss: decay / 2 |weights|^2 (not biases), and for the layer
+ * sparse_layer (sigmoid) sparse_weight * sum over its units of the Kullback-Leibler
+ * distance of its mean activation in the batch from sparse_level (Ng, Sparse
+ * autoencoder, 2011). */
+struct network_penalty {
+	double decay;
+	int sparse_layer;
+	double sparse_weight, sparse_level;
+};
+
+/* Loss of n <= batch samples, and its gradient by weight (network_weight_count). */
+double network_gradient(struct network *net, const network_real *x,
+	const network_real *target, int n, network_loss *loss, const void *context,
+	const struct network_penalty *penalty, network_real *gradient);
+
+enum network_optimiser { NETWORK_ADAM, NETWORK_DESCENT };
+
+struct network_training {
+	enum network_optimiser optimiser;
+	double rate;      /* step length */
+	double rate_end;  /* at the end, reached along a half cosine; 0: rate throughout */
+	long epochs;
+	long samples;     /* per epoch */
+	int batch;        /* samples per step */
+	int fresh;        /* each epoch takes new samples instead of the same, shuffled */
+	uint64_t seed;    /* of the shuffling, with repetition */
+	uint32_t repetition;
+	network_loss *loss;
+	const void *loss_context;
+	struct network_penalty penalty;
+	/* Called after each epoch with its mean loss, unless NULL. */
+	void (*report)(void *context, long epoch, double loss);
+};
+
+enum network_status {
+	NETWORK_OK,
+	NETWORK_MEMORY,
+	NETWORK_DIVERGED /* loss or weights no longer finite */
+};
+
+/* Fills sample i (i < samples, or counted on through all epochs if fresh). */
+typedef void network_sample(void *context, long i, network_real *x, network_real *target);
+
+enum network_status network_train(struct network *net, const struct network_training *par,
+	network_sample *sample, void *context);
+
+/* Trains layer i (dense, sigmoid) as the encoder of an auto-encoder on what the layers
+ * before it give for the samples, with a linear decoder that is then thrown away.
+ * The loss is the mean squared error of the reconstruction; par->loss is not used,
+ * and par->penalty.sparse_layer is taken as the encoder.  Hinton, Salakhutdinov,
+ * Science 313 (2006) 504. */
+enum network_status network_pretrain(struct network *net, int i,
+	const struct network_training *par, network_sample *sample, void *context);
+
+#endif
