@@ -26,7 +26,7 @@ B = build
 BIN = bin
 
 # What each program is made of besides lib/shell: modules of lib/ and libraries.
-PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet aopf rwl rec
+PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl rec
 
 roughgen_MODULES = num/philox num/fft num/pool contact/heights contact/spectrum contact/surface
 roughgen_LIBS = fftw
@@ -42,6 +42,8 @@ bpfilter_MODULES = num/fft signal/fir
 bpfilter_LIBS = fftw
 duet_MODULES = num/fft
 duet_LIBS = fftw gsl
+delaynet_MODULES = num/philox signal/network signal/netfile signal/delaydata signal/delayloss
+delaynet_LIBS = cblas gsl
 aopf_MODULES = num/philox life/draw life/resample life/filter life/grey life/order life/noise life/adaptive life/history life/predict life/metrics
 aopf_LIBS =
 rwl_MODULES = num/philox num/rng
@@ -53,6 +55,9 @@ FFTW_CFLAGS ?= $(shell $(PKG_CONFIG) --cflags fftw3 2>/dev/null)
 FFTW_LIBS ?= $(shell $(PKG_CONFIG) --libs fftw3 2>/dev/null || echo -lfftw3)
 GSL_CFLAGS ?= $(shell $(PKG_CONFIG) --cflags gsl 2>/dev/null)
 GSL_LIBS ?= $(shell $(PKG_CONFIG) --libs gsl 2>/dev/null || echo -lgsl -lgslcblas)
+# OpenBLAS where its development files are, else GSL's own (ten times slower).
+CBLAS_LIBS ?= $(shell $(PKG_CONFIG) --libs openblas 2>/dev/null || echo -lgslcblas)
+cblas_LINK = $(CBLAS_LIBS)
 fftw_LINK = $(FFTW_LIBS)
 gsl_LINK = $(GSL_LIBS)
 

@@ -23,9 +23,9 @@ struct delaydata_par delaydata_default(void)
 		.sources = 3,
 		.span = 4 * PI,
 		.section = DELAYDATA_LENGTH,
-		.length = { PI / 2, 3 * PI / 2 },
-		.amplitude = { 0, 1 },
-		.gain = { 0.909, 0.909 },
+		.length = {PI / 2, 3 * PI / 2},
+		.amplitude = {0, 1},
+		.gain = {0.909, 0.909},
 		.unit = 1,
 		.order = DELAYDATA_DRAWN,
 		.seed = 1,
@@ -37,14 +37,16 @@ static double between(const double range[2], double u)
 	return range[0] + (range[1] - range[0]) * u;
 }
 
-static void draw_source(const struct delaydata_par *par, uint32_t i, int k, struct source *s)
+static void draw_source(
+	const struct delaydata_par *par, uint32_t i, int k, struct source *s)
 {
 	double u[DRAWS_EACH];
 
 	for (int j = 0; j < DRAWS_EACH; j++)
-		u[j] = philox_uniform(par->seed, i, RNG_NETWORK, DRAWS + k * DRAWS_EACH + j);
-	s->length = par->section == DELAYDATA_RANGE ? par->length[1] - par->length[0] :
-						      between(par->length, u[0]);
+		u[j] = philox_uniform(
+			par->seed, i, RNG_NETWORK, DRAWS + k * DRAWS_EACH + j);
+	s->length = par->section == DELAYDATA_RANGE ? par->length[1] - par->length[0]
+						    : between(par->length, u[0]);
 	s->amplitude = between(par->amplitude, u[1]);
 	s->gain = between(par->gain, u[2]);
 	s->delay = u[3];
@@ -53,8 +55,8 @@ static void draw_source(const struct delaydata_par *par, uint32_t i, int k, stru
 }
 
 /* Whether a comes before b in the order of the labels. */
-static int precedes(enum delaydata_order order, const struct source *a,
-	const struct source *b)
+static int precedes(
+	enum delaydata_order order, const struct source *a, const struct source *b)
 {
 	if (order == DELAYDATA_ARRIVAL)
 		return a->begin < b->begin;
@@ -76,8 +78,18 @@ static void add_source(const struct delaydata_par *par, const struct source *s,
 	}
 }
 
-void delaydata_sample(const struct delaydata_par *par, uint32_t i, network_real *x,
-	network_real *delay)
+static void scale_channels(const struct delaydata_par *par, network_real *x)
+{
+	double peak = 0;
+
+	for (int p = 0; p < par->points; p++)
+		peak = fmax(peak, fabs((double)x[p]));
+	for (int p = 0; p < 2 * par->points && peak > 0; p++)
+		x[p] /= peak;
+}
+
+void delaydata_sample(
+	const struct delaydata_par *par, uint32_t i, network_real *x, network_real *delay)
 {
 	struct source source[DELAYS_MAX];
 
@@ -100,6 +112,8 @@ void delaydata_sample(const struct delaydata_par *par, uint32_t i, network_real 
 			x + par->points);
 		delay[k] = s->delay;
 	}
+	if (par->scaled)
+		scale_channels(par, x);
 	for (int p = 0; p < 2 * par->points && par->noise > 0; p += 2) {
 		double normal[2];
 

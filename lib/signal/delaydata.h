@@ -29,17 +29,18 @@ enum delaydata_order {
 };
 
 struct delaydata_par {
-	int points;               /* per channel */
-	int sources;              /* at most DELAYS_MAX */
-	double span;              /* of x, rad */
+	int points;  /* per channel */
+	int sources; /* at most DELAYS_MAX */
+	double span; /* of x, rad */
 	enum delaydata_section section;
-	double length[2];         /* rad */
-	int endless;              /* 1: the sine goes on outside its section */
-	double amplitude[2];      /* A, uniform */
-	double gain[2];           /* g, uniform, per source */
-	double unit;              /* of the delays, rad */
+	double length[2];    /* rad */
+	int endless;         /* 1: the sine goes on outside its section */
+	double amplitude[2]; /* A, uniform */
+	double gain[2];      /* g, uniform, per source */
+	double unit;         /* of the delays, rad */
 	enum delaydata_order order;
-	double noise;             /* standard deviation of white noise on both channels */
+	int scaled;   /* 1: both channels over the largest |x| of the first */
+	double noise; /* standard deviation of white noise on both channels */
 	uint64_t seed;
 };
 

@@ -34,18 +34,20 @@ static double variance_of(const network_real *x, int n, double mean)
 }
 
 /* (3-20) of one sample; its gradient unless NULL. */
-static double sums_loss(const struct delayloss_par *par, int n, const network_real *output,
-	const network_real *label, network_real *gradient)
+static double sums_loss(const struct delayloss_par *par, int n,
+	const network_real *output, const network_real *label, network_real *gradient)
 {
 	double mean = mean_of(output, n), want = mean_of(label, n);
 	double sum = n * (mean - want);
 	double spread = variance_of(output, n, mean) - variance_of(label, n, want);
 	double phi = par->penalty == DELAYLOSS_SQUARED ? spread * spread : fabs(spread);
-	double by_spread = par->penalty == DELAYLOSS_SQUARED ? 2 * spread :
-							       (spread > 0) - (spread < 0);
+	double by_spread = par->penalty == DELAYLOSS_SQUARED
+				   ? 2 * spread
+				   : (spread > 0) - (spread < 0);
 
 	for (int i = 0; i < n && gradient; i++)
-		gradient[i] = 2 * sum + par->lambda * by_spread * 2 * (output[i] - mean) / n;
+		gradient[i] =
+			2 * sum + par->lambda * by_spread * 2 * (output[i] - mean) / n;
 	return sum * sum + par->lambda * phi;
 }
 
@@ -129,7 +131,7 @@ void delayscore_finish(struct delayscore *score)
  * m (1 - m) / (n + 2); against an unsorted one, 1/12 + (m - 1/2)^2. */
 struct delaylevels delaylevels(int width)
 {
-	struct delaylevels l = { 1.0 / 12, 0, 0, 1.0 / 6 };
+	struct delaylevels l = {1.0 / 12, 0, 0, 1.0 / 6};
 
 	for (int k = 1; k <= width; k++) {
 		double m = k / (width + 1.0);

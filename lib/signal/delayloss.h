@@ -13,8 +13,8 @@
 enum { DELAYS_MAX = 16 }; /* most outputs */
 
 enum delayloss_penalty {
-	DELAYLOSS_SQUARED,  /* phi = (var output - var label)^2 */
-	DELAYLOSS_ABSOLUTE  /* phi = |var output - var label| */
+	DELAYLOSS_SQUARED, /* phi = (var output - var label)^2 */
+	DELAYLOSS_ABSOLUTE /* phi = |var output - var label| */
 };
 
 struct delayloss_par {
@@ -49,7 +49,8 @@ void delayscore_finish(struct delayscore *score);
  * (0, 1): levels every result must be held against. */
 struct delaylevels {
 	double constant;        /* output 1/2: 1/12 */
-	double constant_sorted; /* means of the sorted labels, against sorted: 1/24 for 3 */
+	double constant_sorted; /* means of the sorted labels, against sorted: 1/24 for 3
+				 */
 	double sorted_ordered;  /* the same outputs against unsorted labels: 1/8 for 3 */
 	double draw;            /* independent uniform outputs: 1/6 */
 };

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const activations[] = { "linear", "tanh", "sigmoid", "relu" };
+static const char *const activations[] = {"linear", "tanh", "sigmoid", "relu"};
 
 /* Reads a whole number 1 ... 2^20 at *s and moves on; 0 if there is none. */
 static int take_number(const char **s)
@@ -80,17 +80,20 @@ int netfile_parse_layers(const char *text, enum network_activation activation,
 	size_t n;
 	int count = 0;
 
-	for (text += strspn(text, " \t\n"); *text; text += n + strspn(text + n, " \t\n")) {
+	for (text += strspn(text, " \t\n"); *text;
+		text += n + strspn(text + n, " \t\n")) {
 		n = strcspn(text, " \t\n");
 		snprintf(word, sizeof word, "%.*s", (int)n, text);
 		if (count == NETWORK_LAYERS_MAX) {
-			snprintf(why, NETFILE_TEXT, "more than %d layers", NETWORK_LAYERS_MAX);
+			snprintf(why, NETFILE_TEXT, "more than %d layers",
+				NETWORK_LAYERS_MAX);
 			return 0;
 		}
-		layer[count] = (struct network_layer){ .activation = activation };
+		layer[count] = (struct network_layer){.activation = activation};
 		if (n >= sizeof word || !parse_layer(word, &layer[count++])) {
 			snprintf(why, NETFILE_TEXT,
-				"'%s' is no layer: want like 50, 50+, 10conv30x2 or pool2x2",
+				"'%s' is no layer: want like 50, 50+, 10conv30x2 or "
+				"pool2x2",
 				word);
 			return 0;
 		}
@@ -140,7 +143,7 @@ struct reader {
 	FILE *f;
 	char *text;
 	size_t size;
-	long line;
+	struct netfile *file;
 	char *why;
 };
 
@@ -151,7 +154,7 @@ static char *next_line(struct reader *r, const char *want)
 
 	do {
 		n = getline(&r->text, &r->size, r->f);
-		r->line++;
+		r->file->line++;
 		if (n <= 0 || r->text[n - 1] != '\n') {
 			snprintf(r->why, NETFILE_TEXT, "ends early: want %s", want);
 			return NULL;
@@ -160,8 +163,12 @@ static char *next_line(struct reader *r, const char *want)
 			snprintf(r->why, NETFILE_TEXT, "not text: want %s", want);
 			return NULL;
 		}
+		r->text[n - 1] = '\0';
+		if (strncmp(r->text, "# cmd: ", 7) == 0) {
+			free(r->file->cmd);
+			r->file->cmd = strdup(r->text + 7);
+		}
 	} while (r->text[0] == '#');
-	r->text[n - 1] = '\0';
 	return r->text;
 }
 
@@ -189,7 +196,8 @@ static int read_weights(struct reader *r, struct network *net)
 	if (!s)
 		return 0;
 	if (strtoull(s, &end, 10) != n || *end) {
-		snprintf(r->why, NETFILE_TEXT, "the layers have %zu weights, got '%.20s'", n, s);
+		snprintf(r->why, NETFILE_TEXT, "the layers have %zu weights, got '%.20s'",
+			n, s);
 		return 0;
 	}
 	while (i < n) {
@@ -203,7 +211,8 @@ static int read_weights(struct reader *r, struct network *net)
 			if (end == s || (*end && *end != ' ' && *end != '\t') ||
 				!isfinite(w[i - 1])) {
 				snprintf(r->why, NETFILE_TEXT,
-					"weight %zu: want a finite number, got '%.20s'", i, s);
+					"weight %zu: want a finite number, got '%.20s'",
+					i, s);
 				return 0;
 			}
 		}
@@ -214,7 +223,8 @@ static int read_weights(struct reader *r, struct network *net)
 	}
 	s = next_line(r, "'end'");
 	if (s && strcmp(s, "end") != 0) {
-		snprintf(r->why, NETFILE_TEXT, "want 'end' after the weights, got '%.40s'", s);
+		snprintf(r->why, NETFILE_TEXT,
+			"want 'end' after the weights, got '%.40s'", s);
 		return 0;
 	}
 	return s != NULL;
@@ -232,7 +242,7 @@ static int read_input(const char *s, struct network_shape *shape)
 	return shape->width && !*s;
 }
 
-static struct network *read_network(struct reader *r, int batch, char purpose[NETFILE_TEXT])
+static struct network *read_network(struct reader *r, int batch)
 {
 	struct network_layer layer[NETWORK_LAYERS_MAX];
 	struct network_shape input;
@@ -243,19 +253,20 @@ static struct network *read_network(struct reader *r, int batch, char purpose[NE
 	if (!s)
 		return NULL;
 	if (strcmp(s, "wearpipe-network 1") != 0) {
-		snprintf(r->why, NETFILE_TEXT, "want 'wearpipe-network 1', got '%.40s'", s);
+		snprintf(r->why, NETFILE_TEXT, "want 'wearpipe-network 1', got '%.40s'",
+			s);
 		return NULL;
 	}
 	s = next_value(r, "purpose");
 	if (!s)
 		return NULL;
-	snprintf(purpose, NETFILE_TEXT, "%s", s);
+	snprintf(r->file->purpose, NETFILE_TEXT, "%s", s);
 	s = next_value(r, "input");
 	if (!s)
 		return NULL;
 	if (!read_input(s, &input)) {
-		snprintf(r->why, NETFILE_TEXT, "want 'input CHANNELS ROWS COLUMNS', got '%.40s'",
-			s);
+		snprintf(r->why, NETFILE_TEXT,
+			"want 'input CHANNELS ROWS COLUMNS', got '%.40s'", s);
 		return NULL;
 	}
 	s = next_value(r, "layers");
@@ -275,18 +286,22 @@ static struct network *read_network(struct reader *r, int batch, char purpose[NE
 	return net;
 }
 
-struct network *netfile_read(FILE *f, int batch, char purpose[NETFILE_TEXT],
-	char why[NETFILE_TEXT], long *line)
+struct network *netfile_read(FILE *f, int batch, struct netfile *file)
 {
-	struct reader r = { .f = f, .why = why };
-	struct network *net = read_network(&r, batch, purpose);
+	struct reader r = {.f = f, .file = file, .why = file->why};
+	struct network *net;
 
+	*file = (struct netfile){.line = 0};
+	net = read_network(&r, batch);
 	if (net && getc(f) != EOF) {
-		snprintf(why, NETFILE_TEXT, "something follows 'end'");
+		snprintf(file->why, NETFILE_TEXT, "something follows 'end'");
 		network_free(net);
 		net = NULL;
 	}
-	*line = r.line;
+	if (!net) {
+		free(file->cmd);
+		file->cmd = NULL;
+	}
 	free(r.text);
 	return net;
 }

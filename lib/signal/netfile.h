@@ -38,9 +38,16 @@ int netfile_parse_layers(const char *text, enum network_activation activation,
 /* Returns 0, or -1 with errno where writing failed. */
 int netfile_write(FILE *f, struct network *net, const char *purpose, const char *cmd);
 
-/* Reads to the end of f.  NULL with the reason, as a phrase, in why.  The number of the
- * line at fault goes to *line. */
-struct network *netfile_read(FILE *f, int batch, char purpose[NETFILE_TEXT],
-	char why[NETFILE_TEXT], long *line);
+/* What is in a file beside the network, or why it could not be read. */
+struct netfile {
+	char purpose[NETFILE_TEXT];
+	char *cmd; /* of the last "# cmd: ..." line, malloc()ed; NULL if none */
+	char why[NETFILE_TEXT]; /* a phrase */
+	long line;              /* line at fault */
+};
+
+/* Reads to the end of f.  NULL with file->why and file->line set where that fails; then
+ * file->cmd is NULL. */
+struct network *netfile_read(FILE *f, int batch, struct netfile *file);
 
 #endif

@@ -58,7 +58,8 @@ static int size_layer(struct layer *l, size_t *weights)
 	int kernel = p->kind == NETWORK_CONV || p->kind == NETWORK_POOL;
 
 	*weights = 0;
-	if (kernel && (p->width < 1 || p->height < 1 || p->width > 4096 || p->height > 4096))
+	if (kernel &&
+		(p->width < 1 || p->height < 1 || p->width > 4096 || p->height > 4096))
 		return 0;
 	if (p->kind != NETWORK_POOL && (p->units < 1 || p->units > 1 << 20))
 		return 0;
@@ -66,7 +67,7 @@ static int size_layer(struct layer *l, size_t *weights)
 	switch (p->kind) {
 	case NETWORK_DENSE:
 	case NETWORK_CASCADE:
-		l->out = (struct network_shape){ 1, 1, p->units };
+		l->out = (struct network_shape){1, 1, p->units};
 		if (p->kind == NETWORK_CASCADE)
 			l->out.width += l->inputs;
 		l->fan = l->inputs;
@@ -76,13 +77,14 @@ static int size_layer(struct layer *l, size_t *weights)
 			p->stride = 1;
 		if (p->stride < 0 || p->stride > 4096)
 			return 0;
-		l->out = (struct network_shape){ p->units, l->in.height,
-			divide_up(l->in.width, p->stride) };
+		l->out = (struct network_shape){
+			p->units, l->in.height, divide_up(l->in.width, p->stride)};
 		l->fan = l->in.channels * p->width * p->height;
 		break;
 	case NETWORK_POOL:
-		l->out = (struct network_shape){ l->in.channels,
-			divide_up(l->in.height, p->height), divide_up(l->in.width, p->width) };
+		l->out = (struct network_shape){l->in.channels,
+			divide_up(l->in.height, p->height),
+			divide_up(l->in.width, p->width)};
 		break;
 	default:
 		return 0;
@@ -152,7 +154,8 @@ struct network *network_new(struct network_shape input, const struct network_lay
 			return NULL;
 		}
 		l->weight = net->count - n;
-		l->bias = l->par.kind == NETWORK_POOL ? l->weight : net->count - l->par.units;
+		l->bias = l->par.kind == NETWORK_POOL ? l->weight
+						      : net->count - l->par.units;
 	}
 	if (!allocate(net)) {
 		network_free(net);
@@ -234,11 +237,13 @@ void network_start(struct network *net, uint64_t seed, uint32_t repetition)
 		/* A unit of a convolution feeds width * height sums of the next layer. */
 		if (l->par.activation != NETWORK_RELU)
 			fan += (double)l->par.units *
-				(l->par.kind == NETWORK_CONV ? l->par.width * l->par.height : 1);
+			       (l->par.kind == NETWORK_CONV ? l->par.width * l->par.height
+							    : 1);
 		width = sqrt(6 / fan);
 		for (w = l->weight; w < l->bias; w++)
-			net->weights[w] = width *
-				(2 * philox_uniform(seed, repetition, RNG_NETWORK, w) - 1);
+			net->weights[w] = width * (2 * philox_uniform(seed, repetition,
+							       RNG_NETWORK, w) -
+							  1);
 		for (int u = 0; u < l->par.units; u++)
 			net->weights[w++] = 0;
 	}
@@ -279,7 +284,8 @@ static int first_unit(const struct layer *l)
 	return l->par.kind == NETWORK_CASCADE ? l->inputs : 0;
 }
 
-static void dense_forward(const struct network *net, struct layer *l, const real *x, int n)
+static void dense_forward(
+	const struct network *net, struct layer *l, const real *x, int n)
 {
 	int units = l->par.units, skip = first_unit(l);
 	const real *bias = net->weights + l->bias;
@@ -290,8 +296,9 @@ static void dense_forward(const struct network *net, struct layer *l, const real
 		memcpy(row, x + (size_t)s * l->inputs, skip * sizeof(real));
 		memcpy(row + skip, bias, units * sizeof(real));
 	}
-	gemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, units, l->inputs, 1, x, l->inputs,
-		net->weights + l->weight, units, 1, l->value + skip, l->outputs);
+	gemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, units, l->inputs, 1, x,
+		l->inputs, net->weights + l->weight, units, 1, l->value + skip,
+		l->outputs);
 	for (int s = 0; s < n; s++) {
 		real *row = l->value + (size_t)s * l->outputs + skip;
 
@@ -327,7 +334,8 @@ static void unfold(const struct layer *l, const real *x, real *columns, real *ba
 					int at = (c * ih + row) * iw + i - left;
 
 					if (row >= 0 && row < ih)
-						overlap(ow, iw, step, i - left, &begin, &end);
+						overlap(ow, iw, step, i - left, &begin,
+							&end);
 					if (back) {
 						for (int o = begin; o < end; o++)
 							back[at + o * step] += columns[o];
@@ -336,7 +344,8 @@ static void unfold(const struct layer *l, const real *x, real *columns, real *ba
 					memset(columns, 0, begin * sizeof(real));
 					for (int o = begin; o < end; o++)
 						columns[o] = x[at + o * step];
-					memset(columns + end, 0, (ow - end) * sizeof(real));
+					memset(columns + end, 0,
+						(ow - end) * sizeof(real));
 				}
 }
 
@@ -353,7 +362,8 @@ static void conv_forward(const struct network *net, struct layer *l, const real 
 			for (int p = 0; p < places; p++)
 				y[u * places + p] = bias[u];
 		gemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, units, places, l->fan, 1,
-			net->weights + l->weight, l->fan, net->columns, places, 1, y, places);
+			net->weights + l->weight, l->fan, net->columns, places, 1, y,
+			places);
 		if (l->par.activation == NETWORK_LINEAR)
 			continue;
 		for (int i = 0; i < l->outputs; i++)
@@ -374,7 +384,8 @@ static void pool_forward(struct layer *l, const real *x, int n)
 				int best = base + y * l->in.width + i;
 
 				for (int r = y; r < y + ky && r < l->in.height; r++)
-					for (int c = i; c < i + kx && c < l->in.width; c++) {
+					for (int c = i; c < i + kx && c < l->in.width;
+						c++) {
 						int at = base + r * l->in.width + c;
 						if (x[at] > x[best])
 							best = at;
@@ -403,8 +414,8 @@ const real *network_forward(struct network *net, const real *x, int n)
 }
 
 /* Gradient by the weights of layer l, and by its input into back unless NULL. */
-static void dense_backward(const struct network *net, const struct layer *l, const real *x,
-	int n, real *gradient, real *back)
+static void dense_backward(const struct network *net, const struct layer *l,
+	const real *x, int n, real *gradient, real *back)
 {
 	int units = l->par.units, skip = first_unit(l);
 	real *unit = net->unit, *bias = gradient + l->bias;
@@ -419,8 +430,8 @@ static void dense_backward(const struct network *net, const struct layer *l, con
 			bias[u] += unit[s * units + u];
 		}
 	}
-	gemm(CblasRowMajor, CblasTrans, CblasNoTrans, l->inputs, units, n, 1, x, l->inputs,
-		unit, units, 0, gradient + l->weight, units);
+	gemm(CblasRowMajor, CblasTrans, CblasNoTrans, l->inputs, units, n, 1, x,
+		l->inputs, unit, units, 0, gradient + l->weight, units);
 	if (!back)
 		return;
 	for (int s = 0; s < n && skip; s++)
@@ -449,8 +460,9 @@ static void conv_backward(const struct network *net, const struct layer *l, cons
 				bias[u] += unit[p];
 			}
 		unfold(l, x + (size_t)s * l->inputs, net->columns, NULL);
-		gemm(CblasRowMajor, CblasNoTrans, CblasTrans, units, l->fan, places, 1, unit,
-			places, net->columns, places, 1, gradient + l->weight, l->fan);
+		gemm(CblasRowMajor, CblasNoTrans, CblasTrans, units, l->fan, places, 1,
+			unit, places, net->columns, places, 1, gradient + l->weight,
+			l->fan);
 		if (!back)
 			continue;
 		gemm(CblasRowMajor, CblasTrans, CblasNoTrans, l->fan, places, units, 1,
@@ -497,7 +509,8 @@ static double add_sparsity(struct layer *l, int n, double weight, double level)
 			mean += l->value[(size_t)s * l->outputs + u];
 		mean /= n;
 		mean = fmin(fmax(mean, 1e-6), 1 - 1e-6);
-		sum += level * log(level / mean) + (1 - level) * log((1 - level) / (1 - mean));
+		sum += level * log(level / mean) +
+		       (1 - level) * log((1 - level) / (1 - mean));
 		slope = weight / n * ((1 - level) / (1 - mean) - level / mean);
 		for (int s = 0; s < n; s++)
 			l->slope[(size_t)s * l->outputs + u] += slope;
@@ -533,8 +546,8 @@ double network_gradient(struct network *net, const real *x, const real *target, 
 		real *back = i ? l[-1].slope : NULL;
 
 		if (penalty && penalty->sparse_weight > 0 && penalty->sparse_layer == i)
-			value += add_sparsity(l, n, penalty->sparse_weight,
-				penalty->sparse_level);
+			value += add_sparsity(
+				l, n, penalty->sparse_weight, penalty->sparse_level);
 		if (l->par.kind == NETWORK_CONV)
 			conv_backward(net, l, in, n, gradient, back);
 		else if (l->par.kind == NETWORK_POOL)
@@ -565,12 +578,12 @@ static void free_descent(struct descent *d)
 	free(d->order);
 }
 
-static int allocate_descent(struct descent *d, const struct network *net,
-	const struct network_training *par)
+static int allocate_descent(
+	struct descent *d, const struct network *net, const struct network_training *par)
 {
 	long per_epoch = (par->samples + par->batch - 1) / par->batch;
 
-	*d = (struct descent){ .total = per_epoch * par->epochs };
+	*d = (struct descent){.total = per_epoch * par->epochs};
 	d->gradient = malloc(net->count * sizeof(real));
 	d->mean = calloc(net->count, sizeof(real));
 	d->square = calloc(net->count, sizeof(real));
@@ -589,8 +602,8 @@ static double step_length(const struct network_training *par, const struct desce
 	return par->rate_end + (par->rate - par->rate_end) * 0.5 * (1 + cos(PI * done));
 }
 
-static void update(struct network *net, const struct network_training *par,
-	struct descent *d)
+static void update(
+	struct network *net, const struct network_training *par, struct descent *d)
 {
 	double rate = step_length(par, d);
 	const real keep = 0.9, keep_square = 0.999;
@@ -611,7 +624,8 @@ static void update(struct network *net, const struct network_training *par,
 
 		d->mean[w] += (1 - keep) * (g - d->mean[w]);
 		d->square[w] += (1 - keep_square) * (g * g - d->square[w]);
-		net->weights[w] -= step * d->mean[w] / (real)(sqrtf(d->square[w]) + guard);
+		net->weights[w] -=
+			step * d->mean[w] / (real)(sqrtf(d->square[w]) + guard);
 	}
 }
 
@@ -623,7 +637,7 @@ static void shuffle(const struct network_training *par, long epoch, long *order)
 	for (long i = par->samples - 1; i > 0; i--) {
 		uint64_t place = SHUFFLE + (uint64_t)epoch * par->samples + i;
 		long k = (i + 1) *
-			philox_uniform(par->seed, par->repetition, RNG_NETWORK, place);
+			 philox_uniform(par->seed, par->repetition, RNG_NETWORK, place);
 		long keep = order[i];
 
 		order[i] = order[k];
@@ -645,8 +659,9 @@ static double run_epoch(struct network *net, const struct network_training *par,
 		if (n > par->batch)
 			n = par->batch;
 		for (long i = 0; i < n; i++)
-			sample(context, par->fresh ? epoch * par->samples + begin + i :
-						    d->order[begin + i],
+			sample(context,
+				par->fresh ? epoch * par->samples + begin + i
+					   : d->order[begin + i],
 				d->x + i * inputs, d->target + i * outputs);
 		sum += n * network_gradient(net, d->x, d->target, n, par->loss,
 				   par->loss_context, &par->penalty, d->gradient);
@@ -718,9 +733,9 @@ enum network_status network_pretrain(struct network *net, int i,
 	const struct network_training *par, network_sample *sample, void *context)
 {
 	struct layer *l = &net->layer[i];
-	struct network_layer pair[2] = { l->par,
-		{ NETWORK_DENSE, NETWORK_LINEAR, .units = l->inputs } };
-	struct encoder e = { net, i, sample, context, par, NULL, NULL };
+	struct network_layer pair[2] = {
+		l->par, {NETWORK_DENSE, NETWORK_LINEAR, .units = l->inputs}};
+	struct encoder e = {net, i, sample, context, par, NULL, NULL};
 	struct network_training inner = *par;
 	enum network_status status = NETWORK_MEMORY;
 	struct network *both;

@@ -13,12 +13,10 @@
  *	struct network_layer layer[] = {
  *		{ NETWORK_DENSE, NETWORK_TANH, .units = 10 },
  *		{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } };
- *	struct network *net = network_new((struct network_shape){ 1, 2, 500 }, layer, 2, 64);
- *	network_start(net, seed, 0);
- *	network_train(net, &(struct network_training){ .epochs = 100, .samples = 1000,
- *		.batch = 64, .rate = 1e-3, .loss = network_mse }, sample, context);
- *	const network_real *y = network_forward(net, x, 1);
- *	network_free(net);
+ *	struct network *net = network_new((struct network_shape){ 1, 2, 500 }, layer, 2,
+ *64); network_start(net, seed, 0); network_train(net, &(struct network_training){ .epochs
+ *= 100, .samples = 1000, .batch = 64, .rate = 1e-3, .loss = network_mse }, sample,
+ *context); const network_real *y = network_forward(net, x, 1); network_free(net);
  */
 #ifndef SIGNAL_NETWORK_H
 #define SIGNAL_NETWORK_H
@@ -41,7 +39,7 @@ enum network_activation { NETWORK_LINEAR, NETWORK_TANH, NETWORK_SIGMOID, NETWORK
 struct network_layer {
 	enum network_kind kind;
 	enum network_activation activation; /* not of pools */
-	int units;         /* outputs of dense and cascade layers, filters of convolutions */
+	int units; /* outputs of dense and cascade layers, filters of convolutions */
 	int width, height; /* columns and rows of the kernel or of the pooling window */
 	int stride;        /* columns a convolution moves on; 0 means 1 */
 };
@@ -50,10 +48,7 @@ struct network_shape {
 	int channels, height, width;
 };
 
-enum {
-	NETWORK_LAYERS_MAX = 16,
-	NETWORK_WEIGHTS_MAX = 1 << 24
-};
+enum { NETWORK_LAYERS_MAX = 16, NETWORK_WEIGHTS_MAX = 1 << 24 };
 
 /* batch: most samples to be handled at a time.  NULL when a size is out of range, the
  * network is larger than NETWORK_WEIGHTS_MAX (errno EDOM) or memory is short. */
@@ -79,7 +74,8 @@ size_t network_weight_count(const struct network *net);
  * RNG_NETWORK). */
 void network_start(struct network *net, uint64_t seed, uint32_t repetition);
 
-/* Outputs of n <= batch samples, n rows of network_outputs(); valid until the next call. */
+/* Outputs of n <= batch samples, n rows of network_outputs(); valid until the next call.
+ */
 const network_real *network_forward(struct network *net, const network_real *x, int n);
 /* Output of layer i in the last forward call. */
 const network_real *network_activations(const struct network *net, int i);
@@ -110,13 +106,13 @@ enum network_optimiser { NETWORK_ADAM, NETWORK_DESCENT };
 
 struct network_training {
 	enum network_optimiser optimiser;
-	double rate;      /* step length */
-	double rate_end;  /* at the end, reached along a half cosine; 0: rate throughout */
+	double rate;     /* step length */
+	double rate_end; /* at the end, reached along a half cosine; 0: rate throughout */
 	long epochs;
-	long samples;     /* per epoch */
-	int batch;        /* samples per step */
-	int fresh;        /* each epoch takes new samples instead of the same, shuffled */
-	uint64_t seed;    /* of the shuffling, with repetition */
+	long samples;  /* per epoch */
+	int batch;     /* samples per step */
+	int fresh;     /* each epoch takes new samples instead of the same, shuffled */
+	uint64_t seed; /* of the shuffling, with repetition */
 	uint32_t repetition;
 	network_loss *loss;
 	const void *loss_context;

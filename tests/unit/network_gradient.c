@@ -4,8 +4,8 @@
  * 1e-5 a difference is right to about 1e-9 relative: a wrong sign, factor or index shows.
  */
 #define NETWORK_DOUBLE
-#include "signal/network.c"
 #include "signal/delayloss.c"
+#include "signal/network.c"
 #include "tap.h"
 
 enum { BATCH = 5 };
@@ -33,18 +33,20 @@ struct scene {
 static double value(struct network *net, const struct scene *s, const real *x,
 	const real *target, const void *context, real *scratch)
 {
-	return network_gradient(net, x, target, BATCH, s->loss, context, &s->penalty, scratch);
+	return network_gradient(
+		net, x, target, BATCH, s->loss, context, &s->penalty, scratch);
 }
 
 /* Every weight of a layer moved alone; the largest error over the largest slope. */
 static void check(const struct scene *s)
 {
 	struct network *net = network_new(s->input, s->layer, s->layers, BATCH);
-	struct delayloss_par par = { .lambda = 0.7 };
+	struct delayloss_par par = {.lambda = 0.7};
 	size_t count = network_weight_count(net);
 	real *x = malloc(BATCH * network_inputs(net) * sizeof(real));
 	real *target = malloc(BATCH * network_outputs(net) * sizeof(real));
-	real *slope = malloc(count * sizeof(real)), *scratch = malloc(count * sizeof(real));
+	real *slope = malloc(count * sizeof(real)),
+	     *scratch = malloc(count * sizeof(real));
 	real *weight = network_weights(net);
 	double worst = 0, largest = 0, h = 1e-5;
 
@@ -67,8 +69,8 @@ static void check(const struct scene *s)
 		largest = fmax(largest, fabs(slope[w]));
 	}
 	ok(largest > 1e-4 && worst < 2e-8 * fmax(largest, 1),
-		"%s: %zu derivatives, largest %.2g, worst error %.1g", s->name, count, largest,
-		worst);
+		"%s: %zu derivatives, largest %.2g, worst error %.1g", s->name, count,
+		largest, worst);
 	free(x);
 	free(target);
 	free(slope);
@@ -79,57 +81,57 @@ static void check(const struct scene *s)
 int main(void)
 {
 	static const struct scene scenes[] = {
-		{ "dense tanh, linear", { 1, 1, 7 }, 2,
-			{ { NETWORK_DENSE, NETWORK_TANH, .units = 4 },
-				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } },
-			.loss = network_mse },
-		{ "dense relu, sigmoid with decay of the weights", { 1, 2, 5 }, 2,
-			{ { NETWORK_DENSE, NETWORK_RELU, .units = 6 },
-				{ NETWORK_DENSE, NETWORK_SIGMOID, .units = 3 } },
-			.loss = network_mse, .penalty = { .decay = 0.3 } },
-		{ "two cascade layers", { 1, 1, 6 }, 3,
-			{ { NETWORK_CASCADE, NETWORK_TANH, .units = 4 },
-				{ NETWORK_CASCADE, NETWORK_SIGMOID, .units = 3 },
-				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } },
-			.loss = network_mse },
-		{ "sparse encoder, first layer", { 1, 1, 9 }, 2,
-			{ { NETWORK_DENSE, NETWORK_SIGMOID, .units = 5 },
-				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 9 } },
-			.loss = network_mse, .penalty = { 0.01, 0, 4, 0.05 } },
-		{ "sparse layer behind another", { 1, 1, 9 }, 3,
-			{ { NETWORK_DENSE, NETWORK_TANH, .units = 6 },
-				{ NETWORK_CASCADE, NETWORK_SIGMOID, .units = 5 },
-				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } },
-			.loss = network_mse, .penalty = { 0, 1, 4, 0.05 } },
-		{ "convolution 4x2 of two rows, even kernel", { 1, 2, 11 }, 2,
-			{ { NETWORK_CONV, NETWORK_TANH, 3, 4, 2, 1 },
-				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } },
-			.loss = network_mse },
-		{ "two convolutions with stride, two channels", { 2, 3, 10 }, 3,
-			{ { NETWORK_CONV, NETWORK_TANH, 3, 5, 3, 3 },
-				{ NETWORK_CONV, NETWORK_SIGMOID, 4, 3, 2, 2 },
-				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } },
-			.loss = network_mse },
-		{ "kernel wider than the row", { 1, 1, 3 }, 2,
-			{ { NETWORK_CONV, NETWORK_TANH, 2, 9, 4, 2 },
-				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } },
-			.loss = network_mse },
-		{ "convolution, pool, convolution, pool, dense", { 1, 2, 13 }, 6,
-			{ { NETWORK_CONV, NETWORK_RELU, 3, 4, 2, 1 },
-				{ NETWORK_POOL, .width = 2, .height = 2 },
-				{ NETWORK_CONV, NETWORK_TANH, 2, 3, 1, 1 },
-				{ NETWORK_POOL, .width = 2, .height = 1 },
-				{ NETWORK_DENSE, NETWORK_RELU, .units = 8 },
-				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } },
-			.loss = network_mse },
-		{ "loss of sums and variances, (3-20)", { 1, 1, 7 }, 2,
-			{ { NETWORK_DENSE, NETWORK_TANH, .units = 5 },
-				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } },
-			.loss = delayloss_sums },
-		{ "loss over the best order", { 1, 1, 7 }, 2,
-			{ { NETWORK_DENSE, NETWORK_TANH, .units = 5 },
-				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 4 } },
-			.loss = delayloss_unordered },
+		{"dense tanh, linear", {1, 1, 7}, 2,
+			{{NETWORK_DENSE, NETWORK_TANH, .units = 4},
+				{NETWORK_DENSE, NETWORK_LINEAR, .units = 3}},
+			.loss = network_mse},
+		{"dense relu, sigmoid with decay of the weights", {1, 2, 5}, 2,
+			{{NETWORK_DENSE, NETWORK_RELU, .units = 6},
+				{NETWORK_DENSE, NETWORK_SIGMOID, .units = 3}},
+			.loss = network_mse, .penalty = {.decay = 0.3}},
+		{"two cascade layers", {1, 1, 6}, 3,
+			{{NETWORK_CASCADE, NETWORK_TANH, .units = 4},
+				{NETWORK_CASCADE, NETWORK_SIGMOID, .units = 3},
+				{NETWORK_DENSE, NETWORK_LINEAR, .units = 3}},
+			.loss = network_mse},
+		{"sparse encoder, first layer", {1, 1, 9}, 2,
+			{{NETWORK_DENSE, NETWORK_SIGMOID, .units = 5},
+				{NETWORK_DENSE, NETWORK_LINEAR, .units = 9}},
+			.loss = network_mse, .penalty = {0.01, 0, 4, 0.05}},
+		{"sparse layer behind another", {1, 1, 9}, 3,
+			{{NETWORK_DENSE, NETWORK_TANH, .units = 6},
+				{NETWORK_CASCADE, NETWORK_SIGMOID, .units = 5},
+				{NETWORK_DENSE, NETWORK_LINEAR, .units = 3}},
+			.loss = network_mse, .penalty = {0, 1, 4, 0.05}},
+		{"convolution 4x2 of two rows, even kernel", {1, 2, 11}, 2,
+			{{NETWORK_CONV, NETWORK_TANH, 3, 4, 2, 1},
+				{NETWORK_DENSE, NETWORK_LINEAR, .units = 3}},
+			.loss = network_mse},
+		{"two convolutions with stride, two channels", {2, 3, 10}, 3,
+			{{NETWORK_CONV, NETWORK_TANH, 3, 5, 3, 3},
+				{NETWORK_CONV, NETWORK_SIGMOID, 4, 3, 2, 2},
+				{NETWORK_DENSE, NETWORK_LINEAR, .units = 3}},
+			.loss = network_mse},
+		{"kernel wider than the row", {1, 1, 3}, 2,
+			{{NETWORK_CONV, NETWORK_TANH, 2, 9, 4, 2},
+				{NETWORK_DENSE, NETWORK_LINEAR, .units = 3}},
+			.loss = network_mse},
+		{"convolution, pool, convolution, pool, dense", {1, 2, 13}, 6,
+			{{NETWORK_CONV, NETWORK_RELU, 3, 4, 2, 1},
+				{NETWORK_POOL, .width = 2, .height = 2},
+				{NETWORK_CONV, NETWORK_TANH, 2, 3, 1, 1},
+				{NETWORK_POOL, .width = 2, .height = 1},
+				{NETWORK_DENSE, NETWORK_RELU, .units = 8},
+				{NETWORK_DENSE, NETWORK_LINEAR, .units = 3}},
+			.loss = network_mse},
+		{"loss of sums and variances, (3-20)", {1, 1, 7}, 2,
+			{{NETWORK_DENSE, NETWORK_TANH, .units = 5},
+				{NETWORK_DENSE, NETWORK_LINEAR, .units = 3}},
+			.loss = delayloss_sums},
+		{"loss over the best order", {1, 1, 7}, 2,
+			{{NETWORK_DENSE, NETWORK_TANH, .units = 5},
+				{NETWORK_DENSE, NETWORK_LINEAR, .units = 4}},
+			.loss = delayloss_unordered},
 	};
 
 	for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++)

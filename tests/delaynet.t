@@ -1,0 +1,86 @@
+#!/bin/sh
+# delaynet: training by seed, scores beside the levels, files, errors
+. "$(dirname "$0")/tap.sh"
+
+small="--points 40 --layers 6 --count 200 --batch 20"
+
+# shellcheck disable=SC2086
+{
+	delaynet $small --epochs 30 >a.net
+	delaynet $small --epochs 30 >b.net
+	same "the same options give the same bytes" a.net b.net
+	delaynet $small --epochs 30 --repetition 1 >b.net
+	ok "another repetition gives others" sh -c '! cmp -s a.net b.net'
+	is "the file says what it is" "$(sed -n '1p;3,5p' a.net | tr '\n' ';')" \
+		"wearpipe-network 1;purpose delays;input 1 2 40;layers 6:tanh 3:linear;"
+	is "weights as declared" "$(sed '/^weights/,/^end/!d;/^[we]/d' a.net | wc -w)" \
+		"$(sed -n 's/^weights //p' a.net)"
+
+	# Zero epochs with weights that are drawn score worse than the constant; trained ones
+	# on arrival order with fresh data beat it clearly, since one source has one label.
+	delaynet $small --sources 1 --fresh --epochs 300 --order arrival --rate 3e-3 >one.net
+	delaynet --task score --points 40 --sources 1 one.net >one.tsv
+	got=$(column ordered one.tsv | head -n 1)
+	ok "one source is learnt: $got far below 1/12" \
+		awk -v g="$got" 'BEGIN { exit !(g < 0.4 / 12) }'
+	is "a clean row and a noisy one" "$(column noise one.tsv | tr '\n' ' ')" \
+		"0 0.31622776601683794 "
+	is "one source: the orders agree" "$(column ordered one.tsv)" "$(column unordered one.tsv)"
+}
+delaynet --task score --points 40 a.net >a.tsv
+is "score reads standard input" "$(delaynet --task score --points 40 <a.net)" "$(cat a.tsv)"
+is "score keeps the pipeline" "$(sed -n 's/^# cmd: //p' a.tsv)" \
+	"delaynet --points 40 --layers 6 --count 200 --batch 20 --epochs 30 | delaynet --task score --points 40"
+is "best order is never worse" "$(awk '!/^#/ && NR > 2 { print ($5 <= $3) }' a.tsv | sort -u)" 1
+
+# A linear network without hidden worth: gradient descent on the constant stays the mean.
+delaynet --points 4 --layers 2:relu --optimiser descent --rate 0.5 --epochs 400 --batch 0 \
+	--amplitude 0:0 >flat.net
+delaynet --task score --points 4 --amplitude 0:0 flat.net --count 10000 >flat.tsv
+near "without a signal the constant predictor is left: 1/12" \
+	"$(column ordered flat.tsv | head -n 1)" 0.083333 0.0015
+
+# Exported data and the application of a network to them.
+delaynet --task data --points 40 --count 50 --first 1000 --truth truth.tsv >x.snd
+delaynet --task apply --network a.net x.snd >out.tsv
+is "one row per section" "$(column section out.tsv | wc -l)" 50
+got=$(awk -F '\t' '/^#/ || /^section/ { next } FNR == NR { for (i = 2; i < 5; i++) t[$1 - 1000, i] = $i; next }
+	{ for (i = 2; i < 5; i++) s += ($i - t[$1, i]) ^ 2 } END { printf "%.6g", s / 150 }' truth.tsv out.tsv)
+delaynet --task score --points 40 --count 50 a.net >b.tsv
+near "the same score by way of data and apply" "$got" "$(column ordered b.tsv | head -n 1)" 1e-6
+delaynet --task apply --network a.net <x.snd >in.tsv
+same "apply reads a pipe" in.tsv out.tsv
+is "data by parts" "$(for f in 0 3; do delaynet -k data -x 40 -f "$f" -c 3 | tail -c 1920; done | cksum)" \
+	"$(delaynet -k data -x 40 -c 6 | tail -c 3840 | cksum)"
+
+# Auto-encoders.
+delaynet --points 40 --layers "8 6" --activation sigmoid --pretrain 20 --sparsity 4 --epochs 5 \
+	--count 100 --stats stats.tsv >ae.net
+is "pre-training is counted: two layers and the rest" "$(column epochs stats.tsv)" 45
+
+delaynet --points 30 --layers "4conv6x2 pool2x2 3conv3x1 pool2x1 16" --activation relu --count 100 \
+	--epochs 3 --loss sums >cnn.net
+delaynet --task score --points 30 cnn.net >cnn.tsv
+ok "two convolutions are scored" grep -q '^0	300	0\.' cnn.tsv
+
+fails "layers that are none" 2 "--layers: '5x' is no layer" delaynet --layers 5x
+fails "too many operands" 2 "reads nothing" delaynet a.net
+fails "apply without a network" 2 "wants --network" delaynet --task apply x.snd
+fails "a network that is not there" 1 "no.net: No such file" delaynet --task score no.net
+fails "a signal for a network" 1 "x.snd: line 1:" delaynet --task score x.snd
+head -c 3000 a.net >cut.net
+fails "a network cut short" 1 "cut.net: line [0-9]*: ends early" delaynet --task score cut.net
+sed 's/^input 1 2 40/input 1 2 41/' a.net >bad.net
+fails "weights that do not suit" 1 "bad.net: line 6: the layers have" delaynet -k score bad.net
+sed '8s/^[^ ]*/nan/' a.net >bad.net
+fails "a weight that is none" 1 "bad.net: line 8: weight" delaynet -k score bad.net
+fails "other points" 1 "40 points and 3 delays, but" delaynet --task score a.net
+head -c 4000 x.snd >cut.snd
+fails "half a section" 1 "cut.snd: section 6: want 40 frames" \
+	delaynet --task apply --network a.net cut.snd
+fails "a step too long" 1 "the training diverged" \
+	delaynet --points 40 --optimiser descent --rate 900 --activation linear
+fails "sparsity without sigmoid" 2 "--sparsity wants" delaynet --pretrain 1 --sparsity 4
+fails "convolutions are no auto-encoders" 2 "only dense" delaynet --layers 2conv3x1 --pretrain 1
+fails "an empty range" 2 "--gain: want A:B" delaynet --gain 1:0.5
+done_testing
