@@ -36,8 +36,7 @@ static const char *layers = "10";
 static int activation = NETWORK_TANH, optimiser = NETWORK_ADAM, loss = ORDERED;
 static int penalty = DELAYLOSS_SQUARED, fresh;
 static double rate = 1e-3, rate_end, lambda = 1, decay, sparsity, sparsity_level = 0.05;
-static long epochs = 100, batch = 50, pretrain, repetition, seed = 1, first = -1,
-	    count = -1;
+static long epochs = 100, batch = 50, pretrain, repetition, seed = 1, first, count = 1000;
 
 static long points = 500, sources = 3;
 static double span = 4 * 3.14159265358979323846, unit = 1, noise = NAN;
@@ -89,9 +88,9 @@ static const struct opt opts[] = {
 	{'i', "repetition", OPT_INT, UNIT_COUNT, &repetition, 0, 1e9, "K",
 		"which initial weights and order of the samples", NULL, 0},
 	{'f', "first", OPT_INT, UNIT_COUNT, &first, 0, 4e9, "K",
-		"first sample of the set (default 0; score: 1000)", NULL, 0},
+		"first sample of the set; score: 1000 if not given", NULL, 0},
 	{'c', "count", OPT_INT, UNIT_COUNT, &count, 1, 1e7, "N",
-		"samples (default 1000; score: 300)", NULL, 0},
+		"samples; score: 300 if not given", NULL, 0},
 	{'F', "fresh", OPT_FLAG, UNIT_NONE, &fresh, 0, 0, NULL,
 		"new samples in every epoch", NULL, 0},
 	{'x', "points", OPT_INT, UNIT_COUNT, &points, 2, 1e5, "N", "points per channel",
@@ -112,12 +111,13 @@ static const struct opt opts[] = {
 		"of the second channel, uniform", NULL, 0},
 	{'d', "delay", OPT_NUM, UNIT_ANGLE, &unit, 0, 1e6, "X", "shift of a delay of 1",
 		NULL, 0},
-	{'O', "order", OPT_WORD, UNIT_NONE, &order, 0, 0, "drawn|arrival|sorted",
-		"of the delays", orders, 0},
+	{'O', "labels", OPT_WORD, UNIT_NONE, &order, 0, 0, "drawn|arrival|sorted",
+		"order of the delays", orders, 0},
 	{'C', "scaled", OPT_FLAG, UNIT_NONE, &scaled, 0, 0, NULL,
 		"divide both channels by the peak of the first", NULL, 0},
 	{'u', "noise", OPT_NUM, UNIT_NONE, &noise, 0, 1e6, "SD",
-		"white noise on the samples (default 0; score: 0.316 in its second row)",
+		"white noise on the samples (score: of its second row, 0.316 if not "
+		"given)",
 		NULL, 0},
 	OPT_END};
 
@@ -157,10 +157,10 @@ static void check_options(void)
 		die(EXIT_USAGE, "--task apply wants --network FILE");
 	if (task != APPLY && network_file)
 		die(EXIT_USAGE, "--network is for --task apply");
-	if (first < 0)
-		first = task == SCORE ? 1000 : 0;
-	if (count < 0)
-		count = task == SCORE ? 300 : 1000;
+	if (task == SCORE && !opt_given('f'))
+		first = 1000;
+	if (task == SCORE && !opt_given('c'))
+		count = 300;
 	if (batch == 0 || batch > count)
 		batch = count;
 	if ((double)count * 2 * points > 1 << 28)

@@ -18,7 +18,7 @@ small="--points 40 --layers 6 --count 200 --batch 20"
 
 	# Zero epochs with weights that are drawn score worse than the constant; trained ones
 	# on arrival order with fresh data beat it clearly, since one source has one label.
-	delaynet $small --sources 1 --fresh --epochs 300 --order arrival --rate 3e-3 >one.net
+	delaynet $small --sources 1 --fresh --epochs 300 --labels arrival --rate 3e-3 >one.net
 	delaynet --task score --points 40 --sources 1 one.net >one.tsv
 	got=$(column ordered one.tsv | head -n 1)
 	ok "one source is learnt: $got far below 1/12" \

@@ -19,7 +19,7 @@ for p in $programs; do
 		debrisgen) echo --yield 355MPa ;;
 		aopf) echo --threshold 1 ;;
 		rwl) echo --wear no-such-file --threshold-gap 1um ;;
-		delaynet) echo apply --weights no-such-file ;;
+		delaynet) echo --task score ;;
 		esac) no-such-file
 done
 
