@@ -1,0 +1,59 @@
+/* scene.h - the signal of two sensors, made piece by piece
+ *
+ * Adds the pulses of particles, white or coloured noise, slow drift and the lines of
+ * mains and pump.  Each pulse touches its own samples only, and memory holds no more
+ * than the particles now between the sensors; a stream may go on for days.
+ *
+ *	struct scene *scene = scene_new(&par);
+ *	while (...) {
+ *		scene_pass(scene, &passage);     // all that begin before the piece ends
+ *		scene_next(scene, x, nframes);   // x[2 * frame + sensor], V
+ *	}
+ *	scene_free(scene);
+ */
+#ifndef SIGNAL_SCENE_H
+#define SIGNAL_SCENE_H
+
+#include "signal/passage.h"
+#include <stdint.h>
+
+enum { SCENE_LINES_MAX = 16 };
+
+struct scene_par {
+	double rate; /* frames per second, Hz */
+	enum pulse_shape shape;
+	double length; /* of the sensing zone, m: a pulse lasts length / velocity */
+	double kappa;  /* V s/m4, see sensor.h */
+	double gain;   /* of sensor 2 over sensor 1 */
+
+	uint64_t seed;
+	uint32_t realisation;
+	double noise;      /* rms, V */
+	double corner;     /* of the noise's one-pole low-pass, Hz; 0: white */
+	double common;     /* correlation of the noise of both sensors, -1 .. 1 */
+	double drift;      /* rms of the slow drift of each base line, V */
+	double drift_time; /* its correlation time, s */
+	int nlines;
+	double line[SCENE_LINES_MAX];       /* frequencies, Hz; phases are drawn */
+	double line_level[SCENE_LINES_MAX]; /* amplitudes, V */
+};
+
+struct scene;
+
+/* NULL when out of memory. */
+struct scene *scene_new(const struct scene_par *par);
+void scene_free(struct scene *scene);
+
+/* Notes a particle; 0 when out of memory, else 1.  Parts of its pulses that lie before
+ * the present frame are lost. */
+int scene_pass(struct scene *scene, const struct passage *p);
+/* The next frames of both sensors. */
+void scene_next(struct scene *scene, double *x, size_t nframes);
+
+/* Moment after which the particles noted so far leave no trace, s. */
+double scene_end(const struct scene *scene);
+/* Samples that were touched by pulses so far, both sensors. */
+double scene_touched(const struct scene *scene);
+size_t scene_pending(const struct scene *scene); /* particles in memory */
+
+#endif
