@@ -13,14 +13,15 @@ for p in $programs; do
 	ok "$p --version" "$p" -V
 	is "$p says its name and version" "$(awk '{ print $1, $2 }' out)" "$p (wearpipe)"
 	fails "$p refuses an unknown option" 2 "^$p: --no-such-option" "$p" --no-such-option
-	fails "$p names a missing file" 1 "^$p: .*no-such-file" "$p" $(case $p in
-		roughgen) echo --measure ;;
-		bemcontact) echo --estar 1GPa --pressure 1MPa ;;
-		debrisgen) echo --yield 355MPa ;;
-		aopf) echo --threshold 1 ;;
-		rwl) echo --wear no-such-file --threshold-gap 1um ;;
-		delaynet) echo --task score ;;
-		esac) no-such-file
+	case $p in
+	roughgen) needed='--measure' ;;
+	bemcontact) needed='--load 1N --estar 1GPa' ;;
+	debrisgen) needed='--yield 355MPa' ;;
+	rwl) needed='--wear no-such-file --threshold-gap 1um' ;;
+	delaynet) needed='apply --weights no-such-file' ;;
+	*) needed= ;;
+	esac
+	fails "$p names a missing file" 1 "^$p: .*no-such-file" "$p" $needed no-such-file
 done
 
 # The same word has the same letter everywhere, and reserved letters keep their meaning.

@@ -1,0 +1,36 @@
+#!/bin/sh
+# Tables: what is read, what is refused and in which words
+. "$(dirname "$0")/tap.sh"
+
+# read_series: what aopf takes from a series, its columns t and y
+read_series() {
+	aopf "$@" >out 2>err && column t out | tr '\n' ' ' && column y out | tr '\n' ' '
+}
+printf 't\ty\n0\t1\n1\t2\n2\t4\n' >plain
+is 'a table' "$(read_series plain)" '0 1 2 1 2 4 '
+printf '# key: value\n# more\nextra\ty\tt\nx\t1\t0\n\nx\t2\t1\nx\t4\t2\n' >shuffled
+is 'columns by name, others and empty lines passed over' "$(read_series shuffled)" '0 1 2 1 2 4 '
+printf 't y\n0  1\n1 2 \n2 4\n' >blanks
+is 'cells parted by blanks' "$(read_series blanks)" '0 1 2 1 2 4 '
+printf '# columns: t\ty\n0\t1\n1\t2\n2\t4\n' >bare
+is 'names from a comment where there is no header' "$(read_series bare)" '0 1 2 1 2 4 '
+printf 't\ty\r\n0\t1\r\n1\t2\r\n2\t4\r\n' >dos
+is 'lines that end as on DOS' "$(read_series dos)" '0 1 2 1 2 4 '
+{ cat plain; printf '# cmd: other\nt\ty\n3\t5\n'; } >two
+is 'a table behind a table' "$(read_series two)" '0 1 2 3 1 2 4 5 '
+printf 't\ty\n0\t1\n1\tnan\n2\tNA\n3\t\n4\t4\n' >missing
+is 'three spellings of a missing value' "$(read_series missing)" '0 1 2 3 4 1 nan nan nan 4 '
+
+refuse() {
+	# shellcheck disable=SC2059 # the escapes are the table
+	printf "$3" >bad
+	fails "$1" 1 "$2" aopf bad
+}
+refuse 'a missing column' "bad: no column 'y'" 't\tx\n0\t1\n'
+refuse 'a cell that is no number' "bad: line 3: y: 'two' is not a number" 't\ty\n0\t1\n1\ttwo\n'
+refuse 'a number with a unit' "bad: line 3: y: '2um' is not a number" 't\ty\n0\t1\n1\t2um\n'
+refuse 'too few cells' 'bad: line 3: want 2 cells, got 1' 't\ty\n0\t1\n1\n'
+refuse 'too many cells' 'bad: line 3: want 2 cells, got 3' 't\ty\n0\t1\n1\t2\t3\n'
+refuse 'a last line cut off' 'bad: line 3: no newline at the end: the table is cut off' 't\ty\n0\t1\n1\t2'
+refuse 'a NUL byte' 'bad: line 3: NUL byte' 't\ty\n0\t1\n1\t\0002\n'
+done_testing
