@@ -18,7 +18,7 @@ for p in $programs; do
 	bemcontact) needed='--load 1N --estar 1GPa' ;;
 	debrisgen) needed='--yield 355MPa' ;;
 	rwl) needed='--wear no-such-file --threshold-gap 1um' ;;
-	delaynet) needed='apply --weights no-such-file' ;;
+	delaynet) needed='--task score' ;;
 	*) needed= ;;
 	esac
 	fails "$p names a missing file" 1 "^$p: .*no-such-file" "$p" $needed no-such-file
