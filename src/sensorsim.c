@@ -16,7 +16,7 @@ static const double pi = 3.14159265358979323846;
 
 static long seed = 1, first, number = -1, burst;
 static double rate = 10e3, flow = 1e-3, bore = 0.01, exponent = 7, spacing = 0.25;
-static double length = 0.4 / 3.14159265358979323846;     /* 10 ms at 60 L/min in 1 cm */
+static double zone = 0.4 / 3.14159265358979323846;     /* 10 ms at 60 L/min in 1 cm */
 static double kappa = 3.14159265358979323846 / 4 * 1e11; /* 1 V for 100 um there */
 static double gain = 1, noise, snr = NAN, corner, common, drift, drift_time = 10;
 static double mains_frequency = 50, pump_frequency = 2e3;
@@ -45,7 +45,7 @@ static const struct opt opts[] = {
 		0},
 	{'o', "start", OPT_NUM, UNIT_TIME, &start, -1e9, 1e9, "T",
 		"when particles begin to arrive", 0, 0},
-	{'x', "span", OPT_NUM, UNIT_TIME, &span, 0, 1e9, "T",
+	{'X', "span", OPT_NUM, UNIT_TIME, &span, 0, 1e9, "T",
 		"time within which the particles of a burst arrive", 0, 0},
 	{'i', "gap", OPT_NUM, UNIT_TIME, &gap, 0, 1e9, "T", "least time between arrivals",
 		0, 0},
@@ -67,7 +67,7 @@ static const struct opt opts[] = {
 		"transit takes longer than that of the oil by A to B", 0, 0},
 	{'w', "pulse", OPT_WORD, UNIT_NONE, &shape, 0, 0, "sine|gauss|lorentz",
 		"pulse shape", shapes, 0},
-	{'l', "length", OPT_NUM, UNIT_LENGTH, &length, 1e-9, 1e3, "L",
+	{'l', "zone", OPT_NUM, UNIT_LENGTH, &zone, 1e-9, 1e3, "L",
 		"of the sensing zone: a pulse lasts L over the velocity", 0, 0},
 	{'K', "calibration", OPT_NUM, UNIT_NONE, &kappa, 1e-30, 1e30, "K",
 		"peak voltage over velocity and diameter cubed, V s/m4", 0, 0},
@@ -83,7 +83,7 @@ static const struct opt opts[] = {
 		"noise by the peak of a 100 um particle over its rms", 0, 0},
 	{'k', "corner", OPT_NUM, UNIT_FREQUENCY, &corner, 0, 1e12, "F",
 		"low-pass of the noise; 0: white", 0, 0},
-	{'c', "common", OPT_NUM, UNIT_NONE, &common, -1, 1, "R",
+	{'q', "common", OPT_NUM, UNIT_NONE, &common, -1, 1, "R",
 		"correlation of the noise of both sensors", 0, 0},
 	{'z', "drift", OPT_NUM, UNIT_VOLTAGE, &drift, 0, 1e9, "V",
 		"rms drift of the base line", 0, 0},
@@ -169,7 +169,7 @@ static void check_options(int operands)
 static double calibration(void)
 {
 	struct sensor_coil c = {
-		coil.v[0], coil.v[1], coil.v[2], coil.v[3], coil.v[4], coil.v[5], length};
+		coil.v[0], coil.v[1], coil.v[2], coil.v[3], coil.v[4], coil.v[5], zone};
 
 	return coil.n ? coil.v[6] * sensor_kappa(&c, (enum pulse_shape)shape) : kappa;
 }
@@ -189,7 +189,7 @@ static double particle_rate(void)
 /* When and how many: the window leaves room for whole pulses at both sensors. */
 static void make_arrivals(struct source *s, uint64_t n)
 {
-	double half = pulse_reach((enum pulse_shape)shape) * length /
+	double half = pulse_reach((enum pulse_shape)shape) * zone /
 		      pipe_mean_velocity(&s->stream.pipe);
 	double room =
 		half + spacing / pipe_mean_velocity(&s->stream.pipe) + s->stream.lag[1];
@@ -357,7 +357,7 @@ static struct scene *make_scene(void)
 	double peak = sensor_voltage(k, pipe_mean_velocity(&pipe), 100e-6);
 	struct scene_par par = {.rate = rate,
 		.shape = (enum pulse_shape)shape,
-		.length = length,
+		.length = zone,
 		.kappa = k,
 		.gain = gain,
 		.seed = (uint64_t)seed,
@@ -399,7 +399,7 @@ static struct table_out *create_truth(const char *cmd)
 /* The next particle whose pulse at sensor 1 begins before the record ends. */
 static int next_seen(struct source *s, struct passage *p)
 {
-	double half = pulse_reach((enum pulse_shape)shape) * length;
+	double half = pulse_reach((enum pulse_shape)shape) * zone;
 
 	while (next_particle(s, p)) {
 		if (isnan(duration) || p->time[0] - half / p->velocity < duration)
@@ -413,7 +413,7 @@ static int next_seen(struct source *s, struct passage *p)
 static void run(struct source *source, struct table_out *t, struct signal_out *out)
 {
 	static double x[2 * BLOCK];
-	double half = pulse_reach((enum pulse_shape)shape) * length / source->slowest;
+	double half = pulse_reach((enum pulse_shape)shape) * zone / source->slowest;
 	double frames = 0, k = calibration(), particles = 0;
 	struct scene *scene = make_scene();
 	struct passage p = {{0}, 0, 0, 0};
