@@ -28,7 +28,7 @@ BIN = bin
 # What each program is made of besides lib/shell: modules of lib/ and libraries.
 PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl rec
 
-roughgen_MODULES = num/philox num/fft num/pool contact/heights contact/spectrum contact/surface
+roughgen_MODULES = num/philox num/fft num/pool contact/heights contact/rough contact/spectrum contact/surface
 roughgen_LIBS = fftw
 bemcontact_MODULES = contact/kernel contact/solver contact/solver_pk num/convolve num/fft num/pool num/sweep
 bemcontact_LIBS = fftw

@@ -1,6 +1,5 @@
 /* roughgen - rough surfaces, generated or measured, and their areal parameters */
-#include "contact/heights.h"
-#include "contact/spectrum.h"
+#include "contact/rough.h"
 #include "contact/surface.h"
 #include "shell/fields.h"
 #include "shell/msg.h"
@@ -107,9 +106,15 @@ static void refuse(const char *letters, const char *why)
 
 static void check_range(const char *word, const struct opt_list *l)
 {
+	const double least = 1e-30; /* smaller ones would underflow when squared */
+
 	if (l->n == 2 && l->v[0] > l->v[1])
 		die(EXIT_USAGE, "--%s %g:%g: the range runs backwards", word, l->v[0],
 			l->v[1]);
+	for (int i = 0; i < l->n; i++)
+		if (l->v[i] > 0 && l->v[i] < least)
+			die(EXIT_USAGE, "--%s %g: want 0, or %g or more", word, l->v[i],
+				least);
 }
 
 static void check_options(int from_file)
@@ -151,30 +156,20 @@ static void check_options(int from_file)
 
 /* ---- roughness ---- */
 
-/* The value of "Q" or a uniform draw from "Q:Q2". */
-static double draw_target(const struct opt_list *l, uint32_t realisation, uint64_t index)
+static enum rough_kind kind(void)
 {
-	return l->n < 2 ? l->v[0]
-			: l->v[0] + (l->v[1] - l->v[0]) * philox_uniform((uint64_t)seed,
-								  realisation,
-								  RNG_ROUGHNESS, index);
+	return slope.n ? ROUGH_SLOPE : sa.n ? ROUGH_SA : ROUGH_SQ;
 }
 
-static void scale(size_t n, double *z, double have, double want)
+static struct rough_range range(const struct opt_list *l)
 {
-	double factor = have > 0 ? want / have : 0;
-
-	for (size_t i = 0; i < n; i++)
-		z[i] *= factor;
+	return l->n ? (struct rough_range){ l->v[0], l->v[l->n - 1] }
+		    : (struct rough_range){ 0, 0 };
 }
 
-/* Brings heights to the wanted Sq or Sa; 1 if there was something to scale. */
-static int scale_heights(const struct record *r, double *z, double want)
+static struct rough_range target(void)
 {
-	double have = sa.n ? surface_sa(r->nx, r->ny, z) : surface_sq(r->nx, r->ny, z);
-
-	scale((size_t)r->nx * (size_t)r->ny, z, have, want);
-	return have > 0;
+	return range(slope.n ? &slope : sa.n ? &sa : &sq);
 }
 
 /* ---- output ---- */
@@ -220,161 +215,94 @@ static void finish(struct record *r)
 
 /* ---- generated surfaces ---- */
 
-static struct spectrum *new_spectrum(double lx, double ly)
-{
-	struct spectrum_par par = { .nx = (int)points.v[0],
-		.ny = (int)points.v[points.n - 1],
-		.lx = lx,
-		.ly = ly,
-		.cutoff = cutoff };
-	enum spectrum_status status;
-	struct spectrum *s;
+static const char *const problem[] = { [ROUGH_MEMORY] =
+					       "out of memory: fewer --points would do",
+	[ROUGH_DOMAIN] = "the parameters of the spectrum are out of range",
+	[ROUGH_TOO_LONG] = "--corr is longer than a side of the area",
+	[ROUGH_EMPTY] = "no wave of the grid is within the bounds on wavelength",
+	[ROUGH_IMPOSSIBLE] =
+		"--kurtosis must exceed --skewness^2 + 1: no heights have these",
+	[ROUGH_TOO_FEW] = "--skewness and --kurtosis are out of reach of so few points" };
 
-	if (!isnan(hurst)) {
-		par.kind = SPECTRUM_AFFINE;
-		par.hurst = hurst;
-		par.rolloff = rolloff;
-		par.longest = longest;
-	} else {
-		par.kind = acf == 0 ? SPECTRUM_GAUSS : SPECTRUM_EXP;
-		par.corr_x = corr.n ? corr.v[0] : 0.1 * lx;
-		par.corr_y = corr.n ? corr.v[corr.n - 1] : 0.1 * lx;
-	}
-	s = spectrum_new(&par, &status);
-	switch (status) {
-	case SPECTRUM_OK:
-		stats_set("waves", (double)spectrum_waves(s));
-		stats_set("waves_skipped", (double)spectrum_waves_skipped(s));
-		return s;
-	case SPECTRUM_TOO_LONG:
-		die(EXIT_RUN, "--corr %g m x %g m: longer than the area, %g m x %g m",
-			par.corr_x, par.corr_y, lx, ly);
-	case SPECTRUM_EMPTY:
-		die(EXIT_RUN,
-			"no wave of the grid, %g m to %g m long, is within the bounds",
-			2 * fmin(lx / par.nx, ly / par.ny), fmax(lx, ly));
-	case SPECTRUM_DOMAIN:
-		die(EXIT_RUN, "the parameters of the spectrum are out of range");
-	case SPECTRUM_MEMORY:
-		break;
-	}
-	die(EXIT_RUN, "out of memory for %d x %d points", par.nx, par.ny);
+static struct spectrum_par spectrum(void)
+{
+	struct spectrum_par p = { .nx = (int)points.v[0],
+		.ny = (int)points.v[points.n - 1] };
+
+	p.lx = length.v[0];
+	p.ly = length.n == 2 ? length.v[1] : p.lx / p.nx * p.ny;
+	p.kind = !isnan(hurst) ? SPECTRUM_AFFINE
+		 : acf == 0    ? SPECTRUM_GAUSS
+			       : SPECTRUM_EXP;
+	p.corr_x = corr.n ? corr.v[0] : 0.1 * p.lx;
+	p.corr_y = corr.n ? corr.v[corr.n - 1] : 0.1 * p.lx;
+	p.hurst = hurst;
+	p.rolloff = rolloff;
+	p.longest = longest;
+	p.cutoff = cutoff;
+	return p;
 }
 
-/* Heights of the wanted skewness and kurtosis; NULL where these are the normal ones. */
-static double *new_sorted(size_t n)
+static struct rough *new_ensemble(struct rough_par *par)
 {
-	double *sorted;
+	enum rough_status status;
+	struct rough *rough;
 
-	if (isnan(kurtosis))
-		kurtosis = 3 + 1.5 * skewness * skewness;
-	if (skewness == 0 && kurtosis == 3)
-		return NULL;
-	sorted = xcalloc(n, sizeof *sorted);
-	switch (heights_sorted(n, skewness, kurtosis, sorted)) {
-	case HEIGHTS_OK:
-		return sorted;
-	case HEIGHTS_IMPOSSIBLE:
-		die(EXIT_USAGE,
-			"--skewness %g --kurtosis %g: no heights have these; kurtosis "
-			"must "
-			"exceed skewness^2 + 1 = %g",
-			skewness, kurtosis, skewness * skewness + 1);
-	case HEIGHTS_TOO_FEW:
-		die(EXIT_RUN, "--skewness %g --kurtosis %g: out of reach of %zu points",
-			skewness, kurtosis, n);
-	case HEIGHTS_MEMORY:
-		break;
+	par->spectrum = spectrum();
+	par->kind = kind();
+	par->target = target();
+	par->pair = range(&pair);
+	par->skewness = skewness;
+	par->kurtosis = isnan(kurtosis) ? 3 + 1.5 * skewness * skewness : kurtosis;
+	par->seed = (uint64_t)seed;
+	par->pool = pool_new((int)threads);
+	rough = rough_new(par, &status);
+	if (!rough)
+		die(status == ROUGH_IMPOSSIBLE ? EXIT_USAGE : EXIT_RUN, "%s",
+			problem[status]);
+	if (rough_spectrum(rough)) {
+		stats_set("waves", (double)spectrum_waves(rough_spectrum(rough)));
+		stats_set("waves_skipped",
+			(double)spectrum_waves_skipped(rough_spectrum(rough)));
 	}
-	die(EXIT_RUN, "out of memory for %zu heights", n);
+	return rough;
 }
 
-struct generator {
-	struct spectrum *spectrum; /* NULL: flat */
-	struct pool *pool;
-	double *sorted; /* NULL: normal heights */
-	double error;   /* largest error of the spectrum, from the imposed heights */
-};
-
-/* One surface of the wanted roughness into z. */
-static void make_surface(struct generator *g, const struct record *r,
-	enum rng_purpose purpose, double want, double *z)
+static void generate_one(struct rough *rough, struct record *r)
 {
-	double have = 0;
-	int turns = 0;
-
-	if (want == 0)
-		return;
-	spectrum_surface(g->spectrum, g->pool, (uint64_t)seed, (uint32_t)r->realisation,
-		purpose, z, slope.n ? &have : NULL);
-	stats_add("transforms", 1);
-	if (g->sorted) {
-		double error = spectrum_impose(g->spectrum, g->sorted, z, &turns);
-
-		if (error < 0)
-			die(EXIT_RUN, "out of memory for %d x %d points", r->nx, r->ny);
-		g->error = fmax(g->error, error);
-		stats_add("iterations", turns);
-		stats_add("transforms", 2 + 2 * turns);
-		if (slope.n)
-			have = spectrum_slope(g->spectrum, z);
-	}
-	if (slope.n)
-		scale((size_t)r->nx * (size_t)r->ny, z, have, want);
-	else
-		scale_heights(r, z, want);
-}
-
-static void generate_one(struct generator *g, struct record *r)
-{
-	const struct opt_list *target = sa.n ? &sa : slope.n ? &slope : &sq;
-	uint32_t realisation = (uint32_t)r->realisation;
-	double *z = record_add(r, "height", "m");
-	size_t n = (size_t)r->nx * (size_t)r->ny;
+	struct rough_work work = { 0, 0, 0 };
 	char *extra = xprintf("--first %ld", r->realisation);
+	enum rough_status status = rough_surface(
+		rough, (uint32_t)r->realisation, record_add(r, "height", "m"), &work);
 
-	g->error = 0;
-	make_surface(g, r, RNG_SURFACE, draw_target(target, realisation, 0), z);
-	if (pair.n) {
-		double *second = xcalloc(n, sizeof *second);
-
-		make_surface(
-			g, r, RNG_SURFACE_2, draw_target(&pair, realisation, 1), second);
-		for (size_t i = 0; i < n; i++)
-			z[i] += second[i];
-		free(second);
-	}
+	if (status != ROUGH_OK)
+		die(EXIT_RUN, "%s", problem[status]);
 	r->cmd = opt_cmd(NULL, extra);
 	record_set(r, "seed", "%ld", seed);
-	if (g->sorted)
-		record_set(r, "spectrum_error", "%.3g", g->error);
+	if (work.spectrum_error > 0)
+		record_set(r, "spectrum_error", "%.3g", work.spectrum_error);
+	stats_add("transforms", (double)work.transforms);
+	stats_add("iterations", (double)work.iterations);
 	free(extra);
 }
 
 static void generate(void)
 {
-	int nx = (int)points.v[0], ny = (int)points.v[points.n - 1];
-	double lx = length.v[0], ly = length.n == 2 ? length.v[1] : lx / nx * ny;
-	const struct opt_list *target = sa.n ? &sa : slope.n ? &slope : &sq;
-	struct generator g = { NULL, NULL, NULL, 0 };
+	struct rough_par par = { .seed = 1 };
+	struct rough *rough = new_ensemble(&par);
+	const struct spectrum_par *p = &par.spectrum;
 	struct record r = { 0 };
 
-	if (target->v[target->n - 1] > 0 || (pair.n && pair.v[pair.n - 1] > 0)) {
-		g.spectrum = new_spectrum(lx, ly);
-		g.sorted = new_sorted((size_t)nx * (size_t)ny);
-		g.pool = pool_new((int)threads);
-	}
 	for (long k = 0; k < count; k++) {
 		progress("surfaces", (double)k, (double)count);
-		record_init(&r, nx, ny, lx / nx, ly / ny);
+		record_init(&r, p->nx, p->ny, p->lx / p->nx, p->ly / p->ny);
 		r.realisation = first + k;
-		generate_one(&g, &r);
+		generate_one(rough, &r);
 		finish(&r);
 	}
 	record_free(&r);
-	spectrum_free(g.spectrum);
-	pool_free(g.pool);
-	free(g.sorted);
+	rough_free(rough);
+	pool_free(par.pool);
 }
 
 /* ---- measured surfaces ---- */
@@ -383,6 +311,17 @@ static void no_memory(int done)
 {
 	if (!done)
 		die(EXIT_RUN, "out of memory preparing a measured surface");
+}
+
+/* A record with an empty height field and what else r knows of itself. */
+static void new_record(
+	struct record *s, const struct record *r, int nx, int ny, double dx, double dy)
+{
+	record_init(s, nx, ny, dx, dy);
+	record_add(s, "height", "m");
+	s->realisation = r->realisation;
+	for (int i = 0; i < r->nkeys; i++)
+		record_set(s, r->key[i], "%s", r->value[i]);
 }
 
 /* Takes the heights of r, cropped, into a record that holds nothing else. */
@@ -402,18 +341,14 @@ static void take_heights(
 		ny = (int)crop.v[3];
 		if (nx < 1 || ny < 1 || x + nx > r->nx || y + ny > r->ny)
 			die(EXIT_RUN,
-				"%s: record %ld: --crop %d:%d:%d:%d is not within %d x "
-				"%d "
+				"%s: record %ld: --crop %d:%d:%d:%d is not within %d x %d "
 				"samples",
 				fields_name(in), fields_count(in), x, y, nx, ny, r->nx,
 				r->ny);
 		stats_add("samples_cropped", (double)r->nx * r->ny - (double)nx * ny);
 	}
-	record_init(s, nx, ny, r->dx, r->dy);
-	s->realisation = r->realisation;
-	for (int i = 0; i < r->nkeys; i++)
-		record_set(s, r->key[i], "%s", r->value[i]);
-	surface_crop(r->nx, r->ny, z, x, y, nx, ny, record_add(s, "height", "m"));
+	new_record(s, r, nx, ny, r->dx, r->dy);
+	surface_crop(r->nx, r->ny, z, x, y, nx, ny, s->data[0]);
 }
 
 static void fill_holes(const struct fields_in *in, struct record *s)
@@ -439,14 +374,22 @@ static void resample_heights(struct record *s)
 	int nx = (int)resample.v[0], ny = (int)resample.v[resample.n - 1];
 	struct record t = { 0 };
 
-	record_init(&t, nx, ny, s->dx * s->nx / nx, s->dy * s->ny / ny);
-	t.realisation = s->realisation;
-	for (int i = 0; i < s->nkeys; i++)
-		record_set(&t, s->key[i], "%s", s->value[i]);
-	no_memory(surface_resample(
-		s->nx, s->ny, s->data[0], nx, ny, record_add(&t, "height", "m")));
+	new_record(&t, s, nx, ny, s->dx * s->nx / nx, s->dy * s->ny / ny);
+	no_memory(surface_resample(s->nx, s->ny, s->data[0], nx, ny, t.data[0]));
 	record_free(s);
 	*s = t;
+}
+
+static void scale_heights(const struct fields_in *in, struct record *s)
+{
+	struct rough_range wanted = target();
+	double *z = s->data[0];
+	double want = rough_draw(&wanted, (uint64_t)seed, (uint32_t)s->realisation, 0);
+	double have = sa.n ? surface_sa(s->nx, s->ny, z) : surface_sq(s->nx, s->ny, z);
+
+	if (!rough_scale(s->nx, s->ny, z, have, want))
+		die(EXIT_RUN, "%s: record %ld: a flat surface cannot be scaled to %g m",
+			fields_name(in), fields_count(in), want);
 }
 
 static void prepare(const char *path)
@@ -454,7 +397,6 @@ static void prepare(const char *path)
 	struct raw_layout raw = { (int)raw_size.v[0], (int)raw_size.v[1], pixel.v[0],
 		pixel.v[pixel.n ? pixel.n - 1 : 0] };
 	struct fields_in *in = fields_open(path, raw_size.n ? &raw : NULL);
-	const struct opt_list *target = sa.n ? &sa : &sq;
 	struct record r = { 0 }, s = { 0 };
 
 	while (fields_read(in, &r)) {
@@ -464,12 +406,8 @@ static void prepare(const char *path)
 			surface_level(s.nx, s.ny, s.data[0]);
 		if (resample.n)
 			resample_heights(&s);
-		if ((opt_given('q') || opt_given('a')) &&
-			!scale_heights(&s, s.data[0],
-				draw_target(target, (uint32_t)s.realisation, 0)))
-			die(EXIT_RUN,
-				"%s: record %ld: a flat surface cannot be scaled to --%s",
-				fields_name(in), fields_count(in), sa.n ? "sa" : "sq");
+		if (opt_given('q') || opt_given('a'))
+			scale_heights(in, &s);
 		s.cmd = opt_cmd(r.cmd, NULL);
 		finish(&s);
 	}

@@ -119,35 +119,47 @@ static int multiplicity(const struct spectrum *s, int kx, int ky)
 	return x * y;
 }
 
-/* Applies the bounds on wavelength and makes the power sum to 1. */
-static int finish_power(struct spectrum *s)
+/* Whether the bounds on wavelength let a wave pass. */
+static int within_bounds(const struct spectrum *s, int kx, int ky)
 {
 	const double slack =
 		1e-12; /* a bound that is a wavelength of the grid keeps it */
-	const struct spectrum_par *p = &s->par;
-	double sum = 0, varying = 0;
+	double q = wave_number(s, kx, ky);
 
+	return (s->par.longest == 0 || q * s->par.longest >= 1 - slack) &&
+	       (s->par.cutoff == 0 || q * s->par.cutoff <= 1 + slack);
+}
+
+/* Applies the bounds, makes the power sum to 1 and takes its root.  Waves so weak that
+ * they cannot change a digit of the heights are left out. */
+static int finish_power(struct spectrum *s)
+{
+	const double negligible = 1e-40; /* of the strongest wave: 1e-20 of its height */
+	double sum = s->amplitude[0], strongest = 0;
+
+	s->amplitude[0] = 0;
 	for (int ky = 0; ky < s->my; ky++)
 		for (int kx = 0; kx < s->mx; kx++) {
-			double q = wave_number(s, kx, ky);
 			double *power = &s->amplitude[(size_t)ky * s->mx + kx];
-			int many = multiplicity(s, kx, ky);
 
-			if (kx == 0 && ky == 0) {
-				sum += *power;
-				continue;
-			}
-			if ((p->longest > 0 && q * p->longest < 1 - slack) ||
-				(p->cutoff > 0 && q * p->cutoff > 1 + slack))
+			if (!within_bounds(s, kx, ky))
 				*power = 0;
-			*(*power > 0 ? &s->waves : &s->skipped) += many;
-			varying += many * *power;
+			strongest = fmax(strongest, *power);
+			sum += multiplicity(s, kx, ky) * *power;
 		}
-	sum += varying;
-	if (!(varying > 0))
+	if (!(strongest > 0))
 		return 0;
-	for (size_t i = 0; i < (size_t)s->mx * s->my; i++)
-		s->amplitude[i] = sqrt(s->amplitude[i] / sum);
+	for (int ky = 0; ky < s->my; ky++)
+		for (int kx = 0; kx < s->mx; kx++) {
+			double *power = &s->amplitude[(size_t)ky * s->mx + kx];
+
+			if (*power < negligible * strongest)
+				*power = 0;
+			*(*power > 0 ? &s->waves : &s->skipped) +=
+				multiplicity(s, kx, ky);
+			*power = sqrt(*power / sum);
+		}
+	s->skipped--; /* the mean is no wave */
 	return 1;
 }
 
@@ -283,7 +295,7 @@ static double complex draw_mode(const struct draw *d, int kx, int ky)
 	int real_x = kx == 0 || 2 * kx == s->par.nx,
 	    real_y = ay == 0 || 2 * ay == s->par.ny;
 
-	if (a == 0 || (kx == 0 && ky == 0))
+	if (a == 0)
 		return 0;
 	philox_normal2(d->seed, d->realisation, d->purpose,
 		(uint64_t)(uint32_t)kx << 32 | (uint32_t)ky, z);

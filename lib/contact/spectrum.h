@@ -68,8 +68,8 @@ void spectrum_surface(struct spectrum *s, struct pool *pool, uint64_t seed,
 /* The same rms slope of any heights on the grid (one transform). */
 double spectrum_slope(struct spectrum *s, const double *z);
 
-/* Expected power of the wave (kx, ky), |kx| <= nx / 2, |ky| <= ny / 2; all of them,
- * the mean (0, 0) included, sum to 1. */
+/* Expected power of the wave (kx, ky), |kx| <= nx / 2, |ky| <= ny / 2; all of them and
+ * the power of the mean, which is not drawn and 0 here, sum to 1. */
 double spectrum_power(const struct spectrum *s, int kx, int ky);
 
 /* Waves that are drawn, and waves the bounds leave out. */

@@ -367,6 +367,8 @@ static double mean_of(const struct mean_square *m)
 /* A profile has one direction: the absent derivative counts as 0. */
 static double gradient(double x, double y, int nx, int ny)
 {
+	if (nx == 1 && ny == 1)
+		return NAN;
 	return sqrt((nx > 1 ? x : 0) + (ny > 1 ? y : 0));
 }
 
@@ -606,7 +608,7 @@ static int measure_correlation(int nx, int ny, double dx, double dy, const doubl
 	c.r = fft_alloc((2 * (size_t)c.hx + 1) * (2 * (size_t)c.hy + 1));
 	done = correlate(&c, nx, ny, z) && measure_lobe(&c, 0.2, &p->sal, &longest);
 	if (done) {
-		p->str = p->sal / longest;
+		p->str = nx > 1 && ny > 1 ? p->sal / longest : NAN;
 		p->corr_x = first_fall(&c, 0, exp(-1));
 		p->corr_y = first_fall(&c, 1, exp(-1));
 	}

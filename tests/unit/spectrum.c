@@ -24,21 +24,23 @@ static struct spectrum *make(
 	return spectrum_new(&par, &status);
 }
 
-/* Correlation at lag (jx, jy) as the sum over all waves of their power. */
+/* Correlation at lag (jx, jy) as the sum over all waves of their power; what is missing
+ * from 1 is the power of the mean. */
 static double correlation(const struct spectrum *s, int nx, int ny, int jx, int jy)
 {
-	double sum = 0;
+	double sum = 0, all = 0;
 
 	for (int iy = 0; iy < ny; iy++)
 		for (int ix = 0; ix < nx; ix++) {
 			int kx = 2 * ix <= nx ? ix : ix - nx,
 			    ky = 2 * iy <= ny ? iy : iy - ny;
 
+			all += spectrum_power(s, kx, ky);
 			sum += spectrum_power(s, kx, ky) *
 			       cos(2 * PI *
 				       ((double)kx * jx / nx + (double)ky * jy / ny));
 		}
-	return sum;
+	return sum + 1 - all;
 }
 
 /* The periodic sum of the wanted function. */
@@ -82,7 +84,11 @@ static void check_variance(void)
 {
 	enum { N = 16, MANY = 4000 };
 	struct spectrum *s = make(N, N, SPECTRUM_EXP, 0.1, 0.1);
-	double z[N * N], sum = 0, want = 1 - spectrum_power(s, 0, 0);
+	double z[N * N], sum = 0, want = 0;
+
+	for (int ky = 1 - N / 2; ky <= N / 2; ky++)
+		for (int kx = 1 - N / 2; kx <= N / 2; kx++)
+			want += spectrum_power(s, kx, ky);
 
 	for (uint32_t k = 0; k < MANY; k++) {
 		spectrum_surface(s, NULL, 3, k, RNG_SURFACE, z, NULL);

@@ -1,0 +1,78 @@
+/* rough.h - an ensemble of rough surfaces of given roughness
+ *
+ * Realisation k is a function of the parameters and k alone.  Its heights come from
+ * the spectrum, are given other moments than normal ones where wanted, and are scaled
+ * to a roughness that is exact or drawn; a second, independent surface may be added,
+ * which makes the equivalent surface of a pair (Greenwood and Tripp, Proc. Inst. Mech.
+ * Eng. 185, 1970).
+ *
+ *	struct rough_par par = { .spectrum = { ... }, .kind = ROUGH_SQ,
+ *		.target = { 78e-6, 82e-6 }, .kurtosis = 3, .seed = 1 };
+ *	struct rough *r = rough_new(&par, &status);
+ *	for (uint32_t k = 0; k < 100; k++)
+ *		rough_surface(r, k, z, NULL);
+ *	rough_free(r);
+ */
+#ifndef CONTACT_ROUGH_H
+#define CONTACT_ROUGH_H
+
+#include "contact/spectrum.h"
+
+enum rough_kind {
+	ROUGH_SQ,   /* root mean square height, m */
+	ROUGH_SA,   /* mean absolute height, m */
+	ROUGH_SLOPE /* root mean square slope of the waves */
+};
+
+/* Drawn uniformly; low = high: exact. */
+struct rough_range {
+	double low, high;
+};
+
+struct rough_par {
+	struct spectrum_par spectrum;
+	enum rough_kind kind;
+	struct rough_range target; /* of the surface */
+	struct rough_range pair;   /* of the second surface; { 0, 0 }: there is none */
+	double skewness, kurtosis; /* of each; 0 and 3: normal heights */
+	uint64_t seed;
+	struct pool *pool; /* borrowed; may be NULL */
+};
+
+enum rough_status {
+	ROUGH_OK,
+	ROUGH_MEMORY,
+	ROUGH_DOMAIN,     /* the spectrum's parameters are out of range */
+	ROUGH_TOO_LONG,   /* a correlation length exceeds the side */
+	ROUGH_EMPTY,      /* no wave of the grid is within the bounds */
+	ROUGH_IMPOSSIBLE, /* kurtosis <= skewness^2 + 1 */
+	ROUGH_TOO_FEW     /* so few points cannot have this skewness and kurtosis */
+};
+
+/* Work done for one surface, added to what the struct holds. */
+struct rough_work {
+	long transforms, iterations;
+	double spectrum_error; /* largest, of spectrum_impose() */
+};
+
+struct rough;
+
+/* NULL and *status where that fails. */
+struct rough *rough_new(const struct rough_par *par, enum rough_status *status);
+void rough_free(struct rough *r);
+
+/* Fills z (nx * ny), mean 0.  work may be NULL. */
+enum rough_status rough_surface(
+	struct rough *r, uint32_t realisation, double *z, struct rough_work *work);
+
+/* The spectrum behind it, NULL where all surfaces are flat. */
+const struct spectrum *rough_spectrum(const struct rough *r);
+
+/* The roughness number index of a realisation: 0 the surface, 1 the second. */
+double rough_draw(const struct rough_range *range, uint64_t seed, uint32_t realisation,
+	uint64_t index);
+
+/* Scales heights from roughness have to want; 0 where have is 0 but want is not. */
+int rough_scale(int nx, int ny, double *z, double have, double want);
+
+#endif
