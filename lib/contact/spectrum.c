@@ -68,11 +68,13 @@ static int add_gauss(struct spectrum *s, double weight, double cx, double cy)
  * far below the spacing are white noise and need one number only. */
 static int add_exponential(struct spectrum *s, double cx, double cy)
 {
-	const double step = 1.0 / 8, longest = 12.5, negligible = 1e-17, white = 0.12;
+	enum { PER_UNIT = 8, FIRST = -40 * PER_UNIT, LAST = 5 * PER_UNIT / 2 };
+	const double white = 0.12; /* exp(-1 / white^2) is nothing */
 	double noise = 0, c = cx > cy ? cx : cy;
 
-	for (double u = log(longest); exp(u) > negligible; u -= step) {
-		double t = exp(u), weight = step * t * exp(-t * t / 4) / sqrt(PI);
+	for (int i = FIRST; i <= LAST; i++) {
+		double t = exp((double)i / PER_UNIT);
+		double weight = t * exp(-t * t / 4) / (PER_UNIT * sqrt(PI));
 
 		if (t * c < white)
 			noise += weight;

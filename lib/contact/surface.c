@@ -109,7 +109,7 @@ int surface_fill(int nx, int ny, double *z, int *iterations)
 	*iterations = 0;
 	if (missing == 0)
 		return 1;
-	h.place = malloc(missing * sizeof *h.place);
+	h.place = calloc(missing, sizeof *h.place);
 	h.index = malloc(n * sizeof *h.index);
 	h.x = malloc(4 * missing * sizeof *h.x);
 	if (h.place && h.index && h.x) {
