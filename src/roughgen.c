@@ -26,6 +26,7 @@ static struct opt_choice crown = { 0, NAN };
 static long seed = 1, count = 1, first, threads = 1;
 
 static const struct opt opts[] = {
+	/* generated surfaces */
 	{ 'n', "points", OPT_LIST, UNIT_COUNT, &points, 1, POINTS_MAX, "N[xM]",
 		"points along x and y", NULL, 0 },
 	{ 'L', "length", OPT_LIST, UNIT_LENGTH, &length, 1e-12, 1e12, "L[xL]",
@@ -54,9 +55,14 @@ static const struct opt opts[] = {
 		"Sku of the heights (default 3 + 1.5 S^2)", NULL, 0 },
 	{ 'p', "pair", OPT_LIST, UNIT_LENGTH, &pair, 0, 1e9, "Q[:Q2]",
 		"add a second, independent surface of this roughness", NULL, 0 },
-	{ 'C', "crown", OPT_CHOICE, UNIT_LENGTH, &crown, 0, 1e9, "none|auto|DROP",
-		"put on a paraboloid, DROP lower at the corners; auto is 4 Sq",
-		crown_words, 0 },
+	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e18, "N", "random seed", NULL, 0 },
+	{ 'f', "first", OPT_INT, UNIT_COUNT, &first, 0, 4294967295.0, "K",
+		"number of the first realisation", NULL, 1 },
+	{ 'c', "count", OPT_INT, UNIT_COUNT, &count, 1, 4294967295.0, "N",
+		"number of realisations", NULL, 1 },
+	{ 'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N", "threads", NULL,
+		1 },
+	/* measured surfaces */
 	{ 'x', "raw", OPT_LIST, UNIT_COUNT, &raw_size, 1, POINTS_MAX, "NXxNY",
 		"file is headerless little-endian float64", NULL, 0 },
 	{ 'X', "pixel", OPT_LIST, UNIT_LENGTH, &pixel, 1e-15, 1e6, "D[xD]",
@@ -69,16 +75,14 @@ static const struct opt opts[] = {
 		"subtract the least-squares plane of file", NULL, 0 },
 	{ 'r', "resample", OPT_LIST, UNIT_COUNT, &resample, 1, POINTS_MAX, "N[xM]",
 		"bring file to this many points", NULL, 0 },
+	/* both */
+	{ 'C', "crown", OPT_CHOICE, UNIT_LENGTH, &crown, 0, 1e9, "none|auto|DROP",
+		"put on a paraboloid, DROP lower at the corners; auto is 4 Sq",
+		crown_words, 0 },
 	{ 'm', "measure", OPT_FLAG, UNIT_NONE, &measure, 0, 0, NULL,
 		"print areal parameters instead of heights", NULL, 0 },
-	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e18, "N", "random seed", NULL, 0 },
-	{ 'f', "first", OPT_INT, UNIT_COUNT, &first, 0, 4294967295.0, "K",
-		"number of the first realisation", NULL, 1 },
-	{ 'c', "count", OPT_INT, UNIT_COUNT, &count, 1, 4294967295.0, "N",
-		"number of realisations", NULL, 1 },
-	{ 'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N", "threads", NULL,
-		1 },
-	OPT_END };
+	OPT_END
+};
 
 static const struct prog prog = { "roughgen",
 	"Generate rough surfaces, or prepare measured ones, and measure them.", "[file]",
@@ -260,11 +264,6 @@ static struct rough *new_ensemble(struct rough_par *par)
 	if (!rough)
 		die(status == ROUGH_IMPOSSIBLE ? EXIT_USAGE : EXIT_RUN, "%s",
 			problem[status]);
-	if (rough_spectrum(rough)) {
-		stats_set("waves", (double)spectrum_waves(rough_spectrum(rough)));
-		stats_set("waves_skipped",
-			(double)spectrum_waves_skipped(rough_spectrum(rough)));
-	}
 	return rough;
 }
 
@@ -291,8 +290,11 @@ static void generate(void)
 	struct rough_par par = { .seed = 1 };
 	struct rough *rough = new_ensemble(&par);
 	const struct spectrum_par *p = &par.spectrum;
+	const struct spectrum *waves = rough_spectrum(rough);
 	struct record r = { 0 };
 
+	stats_set("waves", waves ? (double)spectrum_waves(waves) : 0);
+	stats_set("waves_skipped", waves ? (double)spectrum_waves_skipped(waves) : 0);
 	for (long k = 0; k < count; k++) {
 		progress("surfaces", (double)k, (double)count);
 		record_init(&r, p->nx, p->ny, p->lx / p->nx, p->ly / p->ny);
