@@ -11,81 +11,84 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const directions[] = {"up", "down", "auto", NULL};
-static const char *const orders[] = {"window", "insample", "all", NULL};
-static const char *const schemes[] = {
-	"systematic", "stratified", "residual", "multinomial", NULL};
-static const char *const models[] = {"grey", NULL};
-static const char *const time_units[] = {"s", "min", "h", "d", NULL};
-static const double seconds[] = {1, 60, 3600, 86400};
+static const char *const directions[] = { "up", "down", "auto", NULL };
+static const char *const orders[] = { "window", "insample", "all", NULL };
+static const char *const schemes[] = { "systematic", "stratified", "residual",
+	"multinomial", NULL };
+static const char *const models[] = { "average", "linear", "exponential", "power", "rate",
+	"grey", NULL };
+static const char *const time_units[] = { "s", "min", "h", "d", NULL };
+static const double seconds[] = { 1, 60, 3600, 86400 };
 
 static double threshold = NAN, zero, skip, horizon, share = 0.5, freedom, process = NAN,
 	      noise = NAN, hysteresis = 0.03;
 static int direction = 2, scheme, model, time_unit;
 static long persist = 1, particles = 300, largest = 60, window = 50, seed = 1;
 static struct opt_choice order;
-static struct opt_list levels = {3, {0.05, 0.5, 0.95}}, range;
+static struct opt_list levels = { 3, { 0.05, 0.5, 0.95 } }, range;
 static const char *unit_column;
 
 static const struct opt opts[] = {
-	{'y', "threshold", OPT_NUM, UNIT_NONE, &threshold, -1e300, 1e300, "Y",
+	{ 'y', "threshold", OPT_NUM, UNIT_NONE, &threshold, -1e300, 1e300, "Y",
 		"value that ends the life, in units of y; none: no prediction of life",
-		NULL, 0},
-	{'d', "direction", OPT_WORD, UNIT_NONE, &direction, 0, 0, "up|down|auto",
+		NULL, 0 },
+	{ 'd', "direction", OPT_WORD, UNIT_NONE, &direction, 0, 0, "up|down|auto",
 		"side the threshold is reached from; auto: from the first value",
-		directions, 0},
-	{'k', "persist", OPT_INT, UNIT_COUNT, &persist, 1, 1e6, "K",
-		"successive values beyond the threshold that end the life", NULL, 0},
-	{'z', "zero", OPT_NUM, UNIT_NONE, &zero, -1e300, 1e300, "Y",
+		directions, 0 },
+	{ 'k', "persist", OPT_INT, UNIT_COUNT, &persist, 1, 1e6, "K",
+		"successive values beyond the threshold that end the life", NULL, 0 },
+	{ 'z', "zero", OPT_NUM, UNIT_NONE, &zero, -1e300, 1e300, "Y",
 		"value of y without any degradation, the zero of the grey model", NULL,
-		0},
-	{'T', "skip", OPT_NUM, UNIT_TIME, &skip, 0, 1e300, "T",
-		"run-in left out of long-term models, from the first row", NULL, 0},
-	{'n', "order", OPT_CHOICE, UNIT_COUNT, &order, 4, 1000, "N|window|insample|all",
-		"order of the grey model, or how it is chosen", orders, 0},
-	{'P', "max-order", OPT_INT, UNIT_COUNT, &largest, 4, 1000, "N",
-		"largest order that may be chosen", NULL, 0},
-	{'w', "order-window", OPT_INT, UNIT_COUNT, &window, 1, 10000, "N",
-		"rows whose forecast errors choose the order", NULL, 0},
-	{'g', "hysteresis", OPT_NUM, UNIT_FRACTION, &hysteresis, 0, 1, "X",
-		"relative fall of the error that changes the order", NULL, 0},
-	{'R', "order-range", OPT_LIST, UNIT_COUNT, &range, 0, 1000, "LO:HI",
-		"orders searched while the trend goes on", NULL, 0},
-	{'N', "particles", OPT_INT, UNIT_COUNT, &particles, 1, 1e7, "N", "particles",
-		NULL, 0},
-	{'r', "resampling", OPT_WORD, UNIT_NONE, &scheme, 0, 0,
+		0 },
+	{ 'T', "skip", OPT_NUM, UNIT_TIME, &skip, 0, 1e300, "T",
+		"run-in left out of long-term models, from the first row", NULL, 0 },
+	{ 'n', "order", OPT_CHOICE, UNIT_COUNT, &order, 4, 1000, "N|window|insample|all",
+		"order of the grey model, or how it is chosen", orders, 0 },
+	{ 'P', "max-order", OPT_INT, UNIT_COUNT, &largest, 4, 1000, "N",
+		"largest order that may be chosen", NULL, 0 },
+	{ 'w', "order-window", OPT_INT, UNIT_COUNT, &window, 1, 10000, "N",
+		"rows whose forecast errors choose the order", NULL, 0 },
+	{ 'g', "hysteresis", OPT_NUM, UNIT_FRACTION, &hysteresis, 0, 1, "X",
+		"relative fall of the error that changes the order", NULL, 0 },
+	{ 'R', "order-range", OPT_LIST, UNIT_COUNT, &range, 0, 1000, "LO:HI",
+		"orders searched while the trend goes on", NULL, 0 },
+	{ 'N', "particles", OPT_INT, UNIT_COUNT, &particles, 1, 1e7, "N", "particles",
+		NULL, 0 },
+	{ 'r', "resampling", OPT_WORD, UNIT_NONE, &scheme, 0, 0,
 		"systematic|stratified|residual|multinomial", "resampling scheme",
-		schemes, 0},
-	{'e', "ess", OPT_NUM, UNIT_FRACTION, &share, 0, 1, "X",
+		schemes, 0 },
+	{ 'e', "ess", OPT_NUM, UNIT_FRACTION, &share, 0, 1, "X",
 		"resample below this effective share of the particles; 1: always", NULL,
-		0},
-	{'l', "freedom", OPT_NUM, UNIT_NONE, &freedom, 0, 1e6, "NU",
+		0 },
+	{ 'l', "freedom", OPT_NUM, UNIT_NONE, &freedom, 0, 1e6, "NU",
 		"degrees of freedom of Student-t observation noise; 0: Gaussian", NULL,
-		0},
-	{'a', "process", OPT_NUM, UNIT_NONE, &process, 0, 1e300, "SD",
+		0 },
+	{ 'a', "process", OPT_NUM, UNIT_NONE, &process, 0, 1e300, "SD",
 		"process noise per row, in units of y (default from the innovations)",
-		NULL, 0},
-	{'b', "noise", OPT_NUM, UNIT_NONE, &noise, 0, 1e300, "SD",
+		NULL, 0 },
+	{ 'b', "noise", OPT_NUM, UNIT_NONE, &noise, 0, 1e300, "SD",
 		"observation noise, in units of y (default from second differences)",
-		NULL, 0},
-	{'m', "model", OPT_WORD, UNIT_NONE, &model, 0, 0, "grey", "long-term model",
-		models, 0},
-	{'H', "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, 1e300, "T",
-		"longest life ahead; 0: ten times the time so far", NULL, 0},
-	{'q', "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "Q,Q,...",
-		"levels of the quantiles of remaining life", NULL, 0},
-	{'u', "unit", OPT_TEXT, UNIT_NONE, &unit_column, 0, 0, "COLUMN",
-		"column that tells units apart", NULL, 0},
-	{'t', "time-unit", OPT_WORD, UNIT_NONE, &time_unit, 0, 0, "s|min|h|d",
-		"unit of the time column", time_units, 0},
-	{'s', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e18, "N",
-		"seed of the random numbers", NULL, 0},
-	OPT_END};
+		NULL, 0 },
+	{ 'm', "model", OPT_WORD, UNIT_NONE, &model, 0, 0,
+		"average|linear|exponential|power|rate|grey", "long-term model", models,
+		0 },
+	{ 'H', "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, 1e300, "T",
+		"longest life ahead; 0: ten times the time so far", NULL, 0 },
+	{ 'q', "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "Q,Q,...",
+		"levels of the quantiles of remaining life", NULL, 0 },
+	{ 'u', "unit", OPT_TEXT, UNIT_NONE, &unit_column, 0, 0, "COLUMN",
+		"column that tells units apart", NULL, 0 },
+	{ 't', "time-unit", OPT_WORD, UNIT_NONE, &time_unit, 0, 0, "s|min|h|d",
+		"unit of the time column", time_units, 0 },
+	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e18, "N",
+		"seed of the random numbers", NULL, 0 },
+	OPT_END
+};
 
-static const struct prog prog = {"aopf",
+static const struct prog prog = { "aopf",
 	"Filter a degradation series and predict the life it has left.", "[file]",
 	"table: t y (or y alone: t is the row, from 0)",
-	"table: one row per row read, flushed at once", opts};
+	"table: one row per row read, flushed at once", opts };
 
 /* What is kept of one unit between its rows. */
 struct unit_state {
@@ -106,10 +109,11 @@ struct units {
 static struct unit_state *find_unit(struct units *units, const char *name)
 {
 	struct adaptive_par par = {
-		.filter = {(size_t)particles, 0, (enum resampling)scheme, share, freedom},
-		.order = {order.word < 0 ? ORDER_FIXED : (enum order_rule)order.word,
+		.filter = { (size_t)particles, 0, (enum resampling)scheme, share,
+			freedom },
+		.order = { order.word < 0 ? ORDER_FIXED : (enum order_rule)order.word,
 			order.word < 0 ? (int)order.value : (int)largest, (int)window,
-			hysteresis, (int)range.v[0], (int)range.v[1]},
+			hysteresis, (int)range.v[0], (int)range.v[1] },
 		.process = process,
 		.noise = noise,
 		.seed = (uint64_t)seed,
@@ -122,7 +126,7 @@ static struct unit_state *find_unit(struct units *units, const char *name)
 			return &units->unit[i];
 	units->unit = xrealloc(units->unit, units->n + 1, sizeof *units->unit);
 	u = &units->unit[units->n++];
-	*u = (struct unit_state){.name = xstrdup(name), .adaptive = adaptive_new(&par)};
+	*u = (struct unit_state){ .name = xstrdup(name), .adaptive = adaptive_new(&par) };
 	if (!u->adaptive)
 		die(EXIT_RUN, "no memory for %ld particles", particles);
 	return u;
@@ -133,7 +137,8 @@ static struct predict *start_predict(double y, uint32_t realisation)
 {
 	struct predict_par par = {
 		.model = (enum predict_model)model,
-		.threshold = threshold - zero,
+		.threshold = threshold,
+		.zero = zero,
 		.direction =
 			direction == 2 ? (y <= threshold ? 1 : -1) : 1 - 2 * direction,
 		.horizon = horizon / seconds[time_unit],
@@ -207,7 +212,7 @@ static void step(
 			u->predict = start_predict(y, number);
 		if (u->predict && !isnan(row.state) &&
 			t - u->first >= skip / seconds[time_unit])
-			predict_add(u->predict, t, row.state);
+			predict_add(u->predict, t, y, row.state + zero);
 		put_life(u, out, y, direction == 1 ? -1 : 1);
 	}
 	table_end_row(out);
@@ -260,7 +265,7 @@ int main(int argc, char **argv)
 	int i, ct, cy, cu;
 	struct table_in *in;
 	struct table_out *out;
-	struct units units = {0};
+	struct units units = { 0 };
 	char *cmd, *names;
 	long rows = 0;
 

@@ -1,5 +1,6 @@
 /* predict.c - see predict.h */
 #include "life/predict.h"
+#include "life/damage.h"
 #include "life/draw.h"
 #include "life/grey.h"
 #include "life/history.h"
@@ -7,31 +8,46 @@
 #include <math.h>
 #include <stdlib.h>
 
+enum { DEVIATES = 5 }; /* normal deviates kept for each draw */
+
 struct predict {
 	struct predict_par par;
-	struct history *history;
+	struct history *history; /* of states, for the grey model */
+	struct damage *damage;   /* for the others */
+	long rows;
 	double first, last; /* times */
-	double *z;          /* [2 draws] normal deviates */
+	double *z;          /* [DEVIATES draws] normal deviates */
 	double *life;       /* [draws] */
 };
+
+static unsigned families(enum predict_model model)
+{
+	static const unsigned of[] = { DAMAGE_ALL, DAMAGE_LINEAR, DAMAGE_EXPONENTIAL,
+		DAMAGE_POWER, DAMAGE_RATE, 0 };
+
+	return of[model];
+}
 
 struct predict *predict_new(const struct predict_par *par)
 {
 	struct predict *p = calloc(1, sizeof *p);
 	struct draw *draw = draw_new(par->seed, par->realisation, RNG_PREDICT);
+	size_t n = (size_t)par->draws;
 
 	if (p) {
 		p->par = *par;
 		p->history = history_new();
-		p->z = calloc((size_t)par->draws, 2 * sizeof *p->z);
-		p->life = calloc((size_t)par->draws, sizeof *p->life);
+		p->damage =
+			damage_new(families(par->model), par->threshold, par->direction);
+		p->z = calloc(n, DEVIATES * sizeof *p->z);
+		p->life = calloc(n, sizeof *p->life);
 	}
-	if (!draw || !p || !p->history || !p->z || !p->life) {
+	if (!draw || !p || !p->history || !p->damage || !p->z || !p->life) {
 		draw_free(draw);
 		predict_free(p);
 		return NULL;
 	}
-	draw_normals(draw, p->z, 2 * (size_t)par->draws);
+	draw_normals(draw, p->z, DEVIATES * n);
 	draw_free(draw);
 	return p;
 }
@@ -41,24 +57,29 @@ void predict_free(struct predict *p)
 	if (!p)
 		return;
 	history_free(p->history);
+	damage_free(p->damage);
 	free(p->z);
 	free(p->life);
 	free(p);
 }
 
-void predict_add(struct predict *p, double t, double x)
+void predict_add(struct predict *p, double t, double y, double state)
 {
-	if (history_rows(p->history) == 0)
+	if (p->rows++ == 0)
 		p->first = t;
 	p->last = t;
-	history_add(p->history, t, x);
+	if (p->par.model == PREDICT_GREY)
+		history_add(p->history, t, state - p->par.zero);
+	else if (!isnan(y))
+		damage_add(p->damage, t, y);
 }
 
 /* Time from span on until the curve of means over a gap reaches the threshold. */
 static double grey_crossing(
 	const struct predict *p, double level, double rate, double span, double gap)
 {
-	double now = grey_curve(level, rate, span, gap), limit = p->par.threshold;
+	double now = grey_curve(level, rate, span, gap),
+	       limit = p->par.threshold - p->par.zero;
 	double time;
 
 	if (p->par.direction * (now - limit) >= 0)
@@ -91,19 +112,36 @@ static int compare(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
+/* Fills life[]; 0 while there are too few rows. */
+static int draw_lives(struct predict *p)
+{
+	const double *t, *x;
+	int rows;
+
+	if (p->par.model != PREDICT_GREY) {
+		if (damage_rows(p->damage) < GREY_ORDER_MIN)
+			return 0;
+		damage_draw(p->damage, p->last, p->z, DEVIATES * p->par.draws, p->life,
+			p->par.draws);
+		return 1;
+	}
+	rows = history_get(p->history, &t, &x);
+	if (rows >= GREY_ORDER_MIN)
+		draw_grey(p, t, x, rows);
+	return rows >= GREY_ORDER_MIN;
+}
+
 void predict_life(struct predict *p, const double *level, double *quantile, int n,
 	double *no_crossing)
 {
-	const double *t, *x;
-	int rows = history_get(p->history, &t, &x), draws = p->par.draws, never = 0;
 	double horizon = p->par.horizon > 0 ? p->par.horizon : 10 * (p->last - p->first);
+	int draws = p->par.draws, never = 0;
 
 	*no_crossing = NAN;
 	for (int k = 0; k < n; k++)
 		quantile[k] = NAN;
-	if (rows < GREY_ORDER_MIN)
+	if (!draw_lives(p))
 		return;
-	draw_grey(p, t, x, rows);
 	for (int i = 0; i < draws; i++)
 		if (!(p->life[i] <= horizon)) {
 			p->life[i] = INFINITY;
