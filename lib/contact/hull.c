@@ -1,0 +1,234 @@
+/* Incremental hull: a point outside removes the faces it sees and is joined to their
+ * rim.  "Sees" is strict and exact, so a face in whose plane the point lies stays, and no
+ * face of zero area arises. */
+#include "contact/hull.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct face {
+	int v[3];       /* counter-clockwise from outside */
+	int64_t n[3];   /* outward normal */
+	int64_t level;  /* n . x on the plane */
+};
+
+struct edge {
+	int from, to;
+};
+
+struct hull {
+	const struct hull_point *point;
+	struct face *face;
+	size_t nfaces, room;
+	struct edge *rim;
+	size_t nrim, rim_room;
+};
+
+static int64_t dot(const int64_t n[3], const struct hull_point *p)
+{
+	return n[0] * p->v[0] + n[1] * p->v[1] + n[2] * p->v[2];
+}
+
+static void normal(const struct hull_point *a, const struct hull_point *b,
+	const struct hull_point *c, int64_t n[3])
+{
+	int64_t u[3], w[3];
+
+	for (int k = 0; k < 3; k++) {
+		u[k] = b->v[k] - a->v[k];
+		w[k] = c->v[k] - a->v[k];
+	}
+	n[0] = u[1] * w[2] - u[2] * w[1];
+	n[1] = u[2] * w[0] - u[0] * w[2];
+	n[2] = u[0] * w[1] - u[1] * w[0];
+}
+
+static void *grown(void *p, size_t *room, size_t size)
+{
+	size_t more = *room ? 2 * *room : 64;
+	void *q = realloc(p, more * size);
+
+	if (q)
+		*room = more;
+	return q;
+}
+
+static int add_face(struct hull *h, int a, int b, int c)
+{
+	struct face *f;
+
+	if (h->nfaces == h->room) {
+		f = grown(h->face, &h->room, sizeof(*f));
+		if (!f)
+			return -1;
+		h->face = f;
+	}
+	f = &h->face[h->nfaces++];
+	f->v[0] = a, f->v[1] = b, f->v[2] = c;
+	normal(&h->point[a], &h->point[b], &h->point[c], f->n);
+	f->level = dot(f->n, &h->point[a]);
+	return 0;
+}
+
+/* Adds an edge of a removed face to the rim, or cancels it against its twin. */
+static int toggle_edge(struct hull *h, int from, int to)
+{
+	struct edge *e;
+
+	for (size_t i = 0; i < h->nrim; i++)
+		if (h->rim[i].from == to && h->rim[i].to == from) {
+			h->rim[i] = h->rim[--h->nrim];
+			return 0;
+		}
+	if (h->nrim == h->rim_room) {
+		e = grown(h->rim, &h->rim_room, sizeof(*e));
+		if (!e)
+			return -1;
+		h->rim = e;
+	}
+	h->rim[h->nrim++] = (struct edge){ from, to };
+	return 0;
+}
+
+static int add_point(struct hull *h, int p)
+{
+	const struct hull_point *at = &h->point[p];
+	size_t kept = 0;
+
+	h->nrim = 0;
+	for (size_t i = 0; i < h->nfaces; i++) {
+		struct face f = h->face[i];
+
+		if (dot(f.n, at) <= f.level) {
+			h->face[kept++] = f;
+			continue;
+		}
+		for (int k = 0; k < 3; k++)
+			if (toggle_edge(h, f.v[k], f.v[(k + 1) % 3]))
+				return -1;
+	}
+	h->nfaces = kept;
+	for (size_t i = 0; i < h->nrim; i++)
+		if (add_face(h, h->rim[i].from, h->rim[i].to, p))
+			return -1;
+	return 0;
+}
+
+static int compare(const void *a, const void *b)
+{
+	const struct hull_point *p = a, *q = b;
+
+	for (int k = 2; k > 0; k--)
+		if (p->v[k] != q->v[k])
+			return p->v[k] < q->v[k] ? -1 : 1;
+	return (p->v[0] > q->v[0]) - (p->v[0] < q->v[0]);
+}
+
+/* Sorts, drops repeated points and those inside a row, which cannot be corners. */
+static size_t drop_rows(struct hull_point *point, size_t count)
+{
+	size_t kept = 0, row = 0;
+
+	qsort(point, count, sizeof(*point), compare);
+	for (size_t i = 0; i < count; i++) {
+		if (kept && !compare(&point[kept - 1], &point[i]))
+			continue;
+		if (kept && (point[kept - 1].v[1] != point[i].v[1] ||
+			point[kept - 1].v[2] != point[i].v[2]))
+			row = kept;
+		if (kept > row + 1)
+			kept = row + 1;
+		point[kept++] = point[i];
+	}
+	return kept;
+}
+
+/* Four points that span space as the first faces; 0 if there are none. */
+static int start(struct hull *h, size_t count, int corner[4])
+{
+	int64_t n[3];
+	size_t i = 2;
+
+	corner[0] = 0, corner[1] = 1;
+	for (; i < count; i++) {
+		normal(&h->point[0], &h->point[1], &h->point[i], n);
+		if (n[0] || n[1] || n[2])
+			break;
+	}
+	if (i >= count)
+		return 0;
+	corner[2] = (int)i;
+	for (i++; i < count; i++) {
+		int64_t side = dot(n, &h->point[i]) - dot(n, &h->point[0]);
+
+		if (side == 0)
+			continue;
+		corner[3] = (int)i;
+		if (side > 0) {
+			corner[1] = corner[2];
+			corner[2] = 1;
+		}
+		return 1;
+	}
+	return 0;
+}
+
+static double volume6(const struct hull *h)
+{
+	const struct hull_point *o = &h->point[h->face[0].v[0]];
+	double sum = 0;
+
+	for (size_t i = 0; i < h->nfaces; i++)
+		sum += (double)(h->face[i].level - dot(h->face[i].n, o));
+	return sum;
+}
+
+/* Corners of the faces to the front. */
+static size_t collect(struct hull *h, struct hull_point *point, size_t count)
+{
+	unsigned char *used = calloc(count, 1);
+	size_t kept = 0;
+
+	if (!used)
+		return 0;
+	for (size_t i = 0; i < h->nfaces; i++)
+		for (int k = 0; k < 3; k++)
+			used[h->face[i].v[k]] = 1;
+	for (size_t i = 0; i < count; i++)
+		if (used[i])
+			point[kept++] = point[i];
+	free(used);
+	return kept;
+}
+
+static size_t build(struct hull *h, struct hull_point *point, size_t count, double *volume)
+{
+	int c[4];
+
+	*volume = 0;
+	if (count < 4 || !start(h, count, c))
+		return count;
+	*volume = -1;
+	if (add_face(h, c[0], c[1], c[2]) || add_face(h, c[0], c[3], c[1]) ||
+		add_face(h, c[1], c[3], c[2]) || add_face(h, c[2], c[3], c[0]))
+		return 0;
+	for (size_t i = 1; i < count; i++)
+		if (add_point(h, (int)i))
+			return 0;
+	*volume = volume6(h);
+	count = collect(h, point, count);
+	if (!count)
+		*volume = -1;
+	return count;
+}
+
+size_t hull_reduce(struct hull_point *point, size_t count, double *volume)
+{
+	struct hull h = { .point = point };
+
+	count = drop_rows(point, count);
+	count = build(&h, point, count, volume);
+	free(h.face);
+	free(h.rim);
+	return count;
+}

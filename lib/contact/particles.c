@@ -1,0 +1,623 @@
+/* Union-find over runs of cells.  Every run starts a body of its own; bodies that touch
+ * are united, the smaller one taken into the frame of the larger (on a periodic grid
+ * frames differ by whole periods).  A body no run of the newest layer belongs to is
+ * complete: it is measured and its place used again. */
+#include "contact/particles.h"
+#include "contact/hull.h"
+#include "contact/sym3.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { X, Y, Z, NONE = -1, REDUCE_FROM = 4096 };
+
+struct body {
+	int parent;            /* itself for a root */
+	int period[2];         /* of this frame in the parent's */
+	int layer;             /* of the newest run; NONE: the place is free */
+	double nodes, sum[3];
+	double square[6];      /* sums of xx yy zz xy xz yz */
+	double faces[3];       /* exposed, across x, y, z */
+	int low[3], high[3];   /* cells, inclusive, in this frame */
+	int first[3];          /* address on the grid */
+	int corner, last;      /* list of corners */
+	int corners, reduced;  /* their number now and when last reduced */
+};
+
+struct run {
+	int begin, end;
+	int body, period[2];   /* the grid's frame in the body's */
+};
+
+struct sheet {
+	struct run *run;
+	size_t count, room;
+	size_t *row;           /* of ny + 1: where the runs of a row start */
+};
+
+struct corner {
+	struct hull_point at;
+	int next;
+};
+
+struct particles {
+	struct particles_par par;
+	int layer;
+	struct sheet now, before;
+	struct body *body;
+	size_t bodies, body_room;
+	int *idle;             /* free places of body[] */
+	size_t nidle, idle_room;
+	int *taken;            /* bodies taken up by others in this layer */
+	size_t ntaken, taken_room;
+	struct corner *corner;
+	size_t corners, corner_room;
+	int free_corner;
+	struct hull_point *scratch;
+	size_t scratch_room;
+	struct particle *done;
+	size_t ndone, done_room;
+};
+
+/* Makes room for want elements in the array whose pointer stands at *array. */
+static int need(void *array, size_t *room, size_t want, size_t size)
+{
+	size_t more = *room ? *room : 64;
+	void *p;
+
+	if (want <= *room)
+		return 0;
+	while (more < want)
+		more *= 2;
+	memcpy(&p, array, sizeof(p));
+	p = realloc(p, more * size);
+	if (!p)
+		return -1;
+	memcpy(array, &p, sizeof(p));
+	*room = more;
+	return 0;
+}
+
+struct particles *particles_new(const struct particles_par *par)
+{
+	struct particles *ps;
+	int limit = 1 << 19; /* leaves room for one period either way */
+
+	if (par->nx < 1 || par->ny < 1 || par->nx > limit || par->ny > limit ||
+		!(par->ax > 0) || !(par->ay > 0) || !(par->az > 0)) {
+		errno = EDOM;
+		return NULL;
+	}
+	ps = calloc(1, sizeof(*ps));
+	if (!ps)
+		return NULL;
+	ps->par = *par;
+	ps->now.row = calloc((size_t)par->ny + 1, sizeof(*ps->now.row));
+	ps->before.row = calloc((size_t)par->ny + 1, sizeof(*ps->before.row));
+	if (!ps->now.row || !ps->before.row) {
+		particles_free(ps);
+		errno = ENOMEM;
+		return NULL;
+	}
+	particles_begin(ps);
+	return ps;
+}
+
+void particles_free(struct particles *ps)
+{
+	if (!ps)
+		return;
+	free(ps->now.run);
+	free(ps->now.row);
+	free(ps->before.run);
+	free(ps->before.row);
+	free(ps->body);
+	free(ps->idle);
+	free(ps->taken);
+	free(ps->corner);
+	free(ps->scratch);
+	free(ps->done);
+	free(ps);
+}
+
+void particles_begin(struct particles *ps)
+{
+	ps->layer = 0;
+	ps->now.count = ps->before.count = 0;
+	memset(ps->now.row, 0, ((size_t)ps->par.ny + 1) * sizeof(*ps->now.row));
+	ps->bodies = ps->nidle = ps->ntaken = ps->corners = ps->ndone = 0;
+	ps->free_corner = NONE;
+}
+
+/* Corners */
+
+static int put_corner(struct particles *ps, struct body *b, int x, int y, int z)
+{
+	int at = ps->free_corner;
+
+	if (at != NONE) {
+		ps->free_corner = ps->corner[at].next;
+	} else {
+		if (need(&ps->corner, &ps->corner_room, ps->corners + 1,
+				sizeof(*ps->corner)))
+			return -1;
+		at = (int)ps->corners++;
+	}
+	ps->corner[at].at = (struct hull_point){ { x, y, z } };
+	ps->corner[at].next = b->corner;
+	if (b->corner == NONE)
+		b->last = at;
+	b->corner = at;
+	b->corners++;
+	return 0;
+}
+
+static void drop_corners(struct particles *ps, struct body *b)
+{
+	if (b->corner == NONE)
+		return;
+	ps->corner[b->last].next = ps->free_corner;
+	ps->free_corner = b->corner;
+	b->corner = NONE;
+	b->corners = 0;
+}
+
+/* Corners of the convex hull, in ps->scratch. */
+static size_t hull_of(struct particles *ps, const struct body *b, double *volume6)
+{
+	size_t n = 0;
+
+	if (need(&ps->scratch, &ps->scratch_room, b->corners, sizeof(*ps->scratch)))
+		return 0;
+	for (int at = b->corner; at != NONE; at = ps->corner[at].next)
+		ps->scratch[n++] = ps->corner[at].at;
+	return hull_reduce(ps->scratch, n, volume6);
+}
+
+static int reduce(struct particles *ps, struct body *b)
+{
+	double volume6;
+	size_t n;
+
+	if (b->corners < REDUCE_FROM || b->corners < 2 * b->reduced)
+		return 0;
+	n = hull_of(ps, b, &volume6);
+	if (n == 0)
+		return -1;
+	drop_corners(ps, b);
+	for (size_t i = 0; i < n; i++) {
+		const int32_t *v = ps->scratch[i].v;
+
+		if (put_corner(ps, b, v[X], v[Y], v[Z]))
+			return -1;
+	}
+	b->reduced = (int)n;
+	return 0;
+}
+
+/* Bodies */
+
+static int body_new(struct particles *ps)
+{
+	if (ps->nidle > 0)
+		return ps->idle[--ps->nidle];
+	if (need(&ps->body, &ps->body_room, ps->bodies + 1, sizeof(*ps->body)))
+		return NONE;
+	return (int)ps->bodies++;
+}
+
+static int set_idle(struct particles *ps, int body)
+{
+	if (need(&ps->idle, &ps->idle_room, ps->nidle + 1, sizeof(*ps->idle)))
+		return -1;
+	ps->body[body].layer = NONE;
+	ps->idle[ps->nidle++] = body;
+	return 0;
+}
+
+/* A body of the cells [begin, end) of row y in the present layer. */
+static int body_of_run(struct particles *ps, int y, int begin, int end)
+{
+	int id = body_new(ps), z = ps->layer;
+	double n = end - begin, last = end - 1, first = begin;
+	struct body *b;
+
+	if (id == NONE)
+		return NONE;
+	b = &ps->body[id];
+	memset(b, 0, sizeof(*b));
+	b->parent = id;
+	b->layer = z;
+	b->nodes = n;
+	b->sum[X] = n * (first + last) / 2;
+	b->sum[Y] = n * y;
+	b->sum[Z] = n * z;
+	/* n mean^2 + n (n^2 - 1) / 12 */
+	b->square[0] = n * ((first + last) * (first + last) / 4 + (n * n - 1) / 12);
+	b->square[1] = n * y * y;
+	b->square[2] = n * z * z;
+	b->square[3] = b->sum[X] * y;
+	b->square[4] = b->sum[X] * z;
+	b->square[5] = n * y * z;
+	b->faces[X] = 2;
+	b->faces[Y] = b->faces[Z] = 2 * n;
+	b->low[X] = b->first[X] = begin;
+	b->high[X] = end - 1;
+	b->low[Y] = b->high[Y] = b->first[Y] = y;
+	b->low[Z] = b->high[Z] = b->first[Z] = z;
+	b->corner = NONE;
+	for (int k = 0; k < 8; k++)
+		if (put_corner(ps, b, k & 1 ? end : begin, y + (k >> 1 & 1), z + (k >> 2)))
+			return NONE;
+	return id;
+}
+
+/* Root of a body and, added to period, where its frame lies in the root's. */
+static int find(struct particles *ps, int id, int period[2])
+{
+	int root = id, total[2] = { 0, 0 };
+
+	while (ps->body[root].parent != root) {
+		total[X] += ps->body[root].period[X];
+		total[Y] += ps->body[root].period[Y];
+		root = ps->body[root].parent;
+	}
+	period[X] += total[X];
+	period[Y] += total[Y];
+	while (ps->body[id].parent != root && id != root) {
+		struct body *b = &ps->body[id];
+		int next = b->parent, step[2] = { b->period[X], b->period[Y] };
+
+		b->parent = root;
+		b->period[X] = total[X];
+		b->period[Y] = total[Y];
+		total[X] -= step[X];
+		total[Y] -= step[Y];
+		id = next;
+	}
+	return root;
+}
+
+/* Moves a body by (dx, dy) cells. */
+static void shift(struct particles *ps, struct body *b, int dx, int dy)
+{
+	if (dx == 0 && dy == 0)
+		return;
+	b->square[0] += 2 * dx * b->sum[X] + b->nodes * dx * dx;
+	b->square[1] += 2 * dy * b->sum[Y] + b->nodes * dy * dy;
+	b->square[3] += dy * b->sum[X] + dx * b->sum[Y] + b->nodes * dx * dy;
+	b->square[4] += dx * b->sum[Z];
+	b->square[5] += dy * b->sum[Z];
+	b->sum[X] += b->nodes * dx;
+	b->sum[Y] += b->nodes * dy;
+	b->low[X] += dx, b->high[X] += dx;
+	b->low[Y] += dy, b->high[Y] += dy;
+	for (int at = b->corner; at != NONE; at = ps->corner[at].next) {
+		ps->corner[at].at.v[X] += dx;
+		ps->corner[at].at.v[Y] += dy;
+	}
+}
+
+static int precedes(const int a[3], const int b[3])
+{
+	for (int k = Z; k > X; k--)
+		if (a[k] != b[k])
+			return a[k] < b[k];
+	return a[X] < b[X];
+}
+
+/* Adds b, already in a's frame, to a. */
+static void absorb(struct particles *ps, struct body *a, struct body *b)
+{
+	a->layer = a->layer > b->layer ? a->layer : b->layer;
+	a->nodes += b->nodes;
+	for (int k = 0; k < 6; k++)
+		a->square[k] += b->square[k];
+	if (precedes(b->first, a->first))
+		memcpy(a->first, b->first, sizeof(a->first));
+	for (int k = X; k <= Z; k++) {
+		a->sum[k] += b->sum[k];
+		a->faces[k] += b->faces[k];
+		a->low[k] = a->low[k] < b->low[k] ? a->low[k] : b->low[k];
+		a->high[k] = a->high[k] > b->high[k] ? a->high[k] : b->high[k];
+	}
+	if (b->corner == NONE)
+		return;
+	ps->corner[b->last].next = a->corner;
+	if (a->corner == NONE)
+		a->last = b->last;
+	a->corner = b->corner;
+	a->corners += b->corners;
+	a->reduced = a->reduced > b->reduced ? a->reduced : b->reduced;
+	b->corner = NONE;
+}
+
+/* Cells of run p touch cells of run q, seen (px, py) periods further; across the faces
+ * along axis they share so many. */
+static int unite(struct particles *ps, const struct run *p, const struct run *q, int px, int py,
+	int axis, int shared)
+{
+	int in_a[2] = { p->period[X], p->period[Y] }, in_b[2] = { q->period[X], q->period[Y] };
+	int a = find(ps, p->body, in_a), b = find(ps, q->body, in_b);
+	int move[2] = { in_a[X] + px - in_b[X], in_a[Y] + py - in_b[Y] };
+
+	ps->body[a].faces[axis] -= 2 * shared;
+	if (a == b)
+		return 0;
+	if (ps->body[a].corners < ps->body[b].corners) {
+		int t = a;
+
+		a = b;
+		b = t;
+		move[X] = -move[X];
+		move[Y] = -move[Y];
+	}
+	shift(ps, &ps->body[b], move[X] * ps->par.nx, move[Y] * ps->par.ny);
+	absorb(ps, &ps->body[a], &ps->body[b]);
+	ps->body[b].parent = a;
+	ps->body[b].period[X] = move[X];
+	ps->body[b].period[Y] = move[Y];
+	if (need(&ps->taken, &ps->taken_room, ps->ntaken + 1, sizeof(*ps->taken)))
+		return -1;
+	ps->taken[ps->ntaken++] = b;
+	return reduce(ps, &ps->body[a]);
+}
+
+/* Layers */
+
+static int scan_row(struct particles *ps, const unsigned char *mask, int y)
+{
+	struct sheet *s = &ps->now;
+	int nx = ps->par.nx, x = 0;
+
+	for (;;) {
+		struct run r = { 0 };
+
+		while (x < nx && !mask[x])
+			x++;
+		if (x == nx)
+			return 0;
+		r.begin = x;
+		while (x < nx && mask[x])
+			x++;
+		r.end = x;
+		r.body = body_of_run(ps, y, r.begin, r.end);
+		if (r.body == NONE ||
+			need(&s->run, &s->room, s->count + 1, sizeof(*s->run)))
+			return -1;
+		s->run[s->count++] = r;
+	}
+}
+
+/* Unites touching runs of two rows; b's row is seen (px, py) periods further and its
+ * runs reach corner cells beyond their ends. */
+static int join_rows(struct particles *ps, const struct sheet *sa, size_t ya,
+	const struct sheet *sb, size_t yb, int px, int py, int axis, int corner)
+{
+	size_t i = sa->row[ya], iend = sa->row[ya + 1];
+	size_t j = sb->row[yb], jend = sb->row[yb + 1];
+	int far = px * ps->par.nx;
+
+	while (i < iend && j < jend) {
+		const struct run *a = &sa->run[i], *b = &sb->run[j];
+		int begin = a->begin > b->begin + far ? a->begin : b->begin + far;
+		int end = a->end < b->end + far ? a->end : b->end + far;
+
+		if (end + corner > begin &&
+			unite(ps, a, b, px, py, axis, end > begin ? end - begin : 0))
+			return -1;
+		if (a->end < b->end + far)
+			i++;
+		else
+			j++;
+	}
+	return 0;
+}
+
+/* Row y of the new layer with row other of the same layer, next to it. */
+static int join_neighbour(struct particles *ps, int y, int other, int py)
+{
+	const struct sheet *s = &ps->now;
+	int wrap = ps->par.periodic && ps->par.corners;
+
+	if (join_rows(ps, s, y, s, other, 0, py, Y, ps->par.corners))
+		return -1;
+	return wrap && (join_rows(ps, s, y, s, other, 1, py, Y, 1) ||
+			       join_rows(ps, s, y, s, other, -1, py, Y, 1)) ?
+		-1 :
+		0;
+}
+
+static int join_layer(struct particles *ps)
+{
+	const struct sheet *s = &ps->now;
+	int ny = ps->par.ny, nx = ps->par.nx;
+
+	for (int y = 0; y < ny; y++) {
+		size_t a = s->row[y], b = s->row[y + 1];
+
+		if (y > 0 && join_neighbour(ps, y, y - 1, 0))
+			return -1;
+		if (join_rows(ps, s, y, &ps->before, y, 0, 0, Z, 0))
+			return -1;
+		if (ps->par.periodic && b > a && s->run[a].begin == 0 && s->run[b - 1].end == nx &&
+			unite(ps, &s->run[b - 1], &s->run[a], 1, 0, X, 1))
+			return -1;
+	}
+	return ps->par.periodic ? join_neighbour(ps, 0, ny - 1, -1) : 0;
+}
+
+/* Measures */
+
+/* Largest distance between n points, with what lies along a unit direction taken off
+ * (NULL: nothing); *end the points where it is reached. */
+static double largest(const struct hull_point *c, size_t n, const double step[3],
+	const double *along, size_t end[2])
+{
+	double most = -1;
+
+	for (size_t i = 0; i < n; i++)
+		for (size_t j = 0; j < i; j++) {
+			double square = 0, part = 0;
+
+			for (int k = X; k <= Z; k++) {
+				double u = (c[i].v[k] - c[j].v[k]) * step[k];
+
+				square += u * u;
+				part += along ? u * along[k] : 0;
+			}
+			square -= part * part;
+			if (square > most) {
+				most = square;
+				end[0] = i;
+				end[1] = j;
+			}
+		}
+	return sqrt(most);
+}
+
+static int measure_hull(struct particles *ps, const struct body *b, struct particle *p)
+{
+	double step[3] = { ps->par.ax, ps->par.ay, ps->par.az }, volume6, along[3];
+	size_t n = hull_of(ps, b, &volume6), end[2];
+	const struct hull_point *c = ps->scratch;
+
+	if (n == 0)
+		return -1;
+	p->length = largest(c, n, step, NULL, end);
+	for (int k = X; k <= Z; k++)
+		along[k] = (c[end[0]].v[k] - c[end[1]].v[k]) * step[k] / p->length;
+	p->width = largest(c, n, step, along, end);
+	p->aspect = p->length / p->width;
+	p->convexity = 6 * b->nodes / volume6;
+	return 0;
+}
+
+static void measure_moments(const struct particles *ps, const struct body *b, struct particle *p)
+{
+	static const int first[6] = { X, Y, Z, X, X, Y }, second[6] = { X, Y, Z, Y, Z, Z };
+	double step[3] = { ps->par.ax, ps->par.ay, ps->par.az };
+	double m[6], value[3], axis[3][3];
+
+	for (int k = 0; k < 6; k++) {
+		int i = first[k], j = second[k];
+		/* A cell's own moment is that of a box: 1/12. */
+		double own = i == j ? 1. / 12 : 0;
+
+		m[k] = step[i] * step[j] *
+			(b->square[k] / b->nodes -
+				b->sum[i] / b->nodes * (b->sum[j] / b->nodes) + own);
+	}
+	sym3_eigen(m, value, axis);
+	p->elongation = 1 - sqrt(value[1] / value[0]);
+	p->azimuth = p->dip = NAN;
+	if (value[0] - value[1] < 1e-9 * value[0])
+		return;
+	if (axis[0][X] < 0 || (axis[0][X] == 0 && axis[0][Y] < 0))
+		for (int k = X; k <= Z; k++)
+			axis[0][k] = -axis[0][k];
+	p->azimuth = atan2(axis[0][Y], axis[0][X]);
+	p->dip = atan2(fabs(axis[0][Z]), hypot(axis[0][X], axis[0][Y]));
+}
+
+/* Whole periods that bring the centroid back onto the grid. */
+static double home(const struct particles *ps, double centroid, int n)
+{
+	return ps->par.periodic ? n * floor(centroid / n) : 0;
+}
+
+static int measure(struct particles *ps, const struct body *b)
+{
+	double ax = ps->par.ax, ay = ps->par.ay, az = ps->par.az;
+	double step[3] = { ax, ay, az }, at[3], back[3];
+	struct particle *p;
+
+	if (need(&ps->done, &ps->done_room, ps->ndone + 1, sizeof(*ps->done)))
+		return -1;
+	p = &ps->done[ps->ndone];
+	p->nodes = b->nodes;
+	p->volume = b->nodes * (ax * ay * az);
+	p->diameter = cbrt(6 * p->volume / 3.14159265358979323846);
+	p->area = b->faces[X] * ay * az + b->faces[Y] * ax * az + b->faces[Z] * ax * ay;
+	for (int k = X; k <= Z; k++) {
+		at[k] = b->sum[k] / b->nodes + 0.5;
+		back[k] = k == Z ? 0 : home(ps, at[k], k == X ? ps->par.nx : ps->par.ny);
+		p->low[k] = (b->low[k] - back[k]) * step[k];
+		p->high[k] = (b->high[k] + 1 - back[k]) * step[k];
+		p->first[k] = b->first[k];
+	}
+	p->x = (at[X] - back[X]) * ax;
+	p->y = (at[Y] - back[Y]) * ay;
+	p->z = at[Z] * az;
+	measure_moments(ps, b, p);
+	if (measure_hull(ps, b, p))
+		return -1;
+	ps->ndone++;
+	return 0;
+}
+
+/* Points the runs of the new layer at their roots, closes the bodies of the layer before
+ * that did not reach the new one, and frees the places of those taken up by others. */
+static int settle(struct particles *ps)
+{
+	for (size_t i = 0; i < ps->now.count; i++) {
+		struct run *r = &ps->now.run[i];
+
+		r->body = find(ps, r->body, r->period);
+	}
+	for (size_t i = 0; i < ps->before.count; i++) {
+		int period[2], root = find(ps, ps->before.run[i].body, period);
+		struct body *b = &ps->body[root];
+
+		if (b->layer == NONE || b->layer == ps->layer)
+			continue;
+		if (measure(ps, b) || set_idle(ps, root))
+			return -1;
+		drop_corners(ps, b);
+	}
+	while (ps->ntaken > 0)
+		if (set_idle(ps, ps->taken[--ps->ntaken]))
+			return -1;
+	return 0;
+}
+
+int particles_layer(struct particles *ps, const unsigned char *mask)
+{
+	struct sheet t = ps->before;
+
+	ps->before = ps->now;
+	ps->now = t;
+	ps->now.count = 0;
+	for (int y = 0; y < ps->par.ny; y++) {
+		ps->now.row[y] = ps->now.count;
+		if (mask && scan_row(ps, mask + (size_t)y * ps->par.nx, y))
+			return -1;
+	}
+	ps->now.row[ps->par.ny] = ps->now.count;
+	if (join_layer(ps) || settle(ps))
+		return -1;
+	ps->layer++;
+	return 0;
+}
+
+/* Largest first, equal ones in order of their first cell. */
+static int in_order(const void *a, const void *b)
+{
+	const struct particle *p = a, *q = b;
+
+	if (p->nodes != q->nodes)
+		return p->nodes > q->nodes ? -1 : 1;
+	return precedes(p->first, q->first) ? -1 : 1;
+}
+
+size_t particles_end(struct particles *ps, const struct particle **list)
+{
+	/* An empty layer closes whatever is open. */
+	if (particles_layer(ps, NULL))
+		return (size_t)-1;
+	qsort(ps->done, ps->ndone, sizeof(*ps->done), in_order);
+	*list = ps->done;
+	return ps->ndone;
+}

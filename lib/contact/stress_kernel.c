@@ -1,0 +1,238 @@
+#include "contact/stress_kernel.h"
+#include "contact/sym3.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { N = STRESS_COMPONENTS };
+
+static const double TWO_PI = 6.283185307179586476925286766559;
+
+/* From here on (in cells) the point load is integrated over the cell: the difference of
+ * four corners would lose (distance)^2 digits. */
+static const double FAR = 64;
+
+/* What the closed forms are made of at a corner (x, y), for the roles of x and y as
+ * given: nothing here cancels where y < 0 and R + y is small. */
+struct half {
+	double q; /* x z / (R (R + y)) */
+	double w; /* z^2 / (R (R + y)) */
+	double t; /* 2 atan(x / (R + y + z)) */
+	double log; /* ln(R + y) */
+};
+
+static struct half half_terms(double x, double y, double z, double r, int logs)
+{
+	double rho2 = x * x + z * z;
+	double sum = y < 0 ? rho2 / (r - y) : r + y; /* R + y */
+	double below = y < 0 ? (x * x + 2 * z * (r + z)) / (r + z - y) : r + y + z;
+	struct half h = { 0, 0, 0, 0 };
+
+	if (z != 0) {
+		h.w = z * z / (r * sum);
+		h.q = x * z / (r * sum);
+	}
+	h.t = 2 * atan2(x, below);
+	if (logs)
+		h.log = log(sum);
+	return h;
+}
+
+/* The potentials T of (2-8) and (2-9) at one corner. */
+static void corner(double x, double y, double z, double nu, double *normal, double *shear)
+{
+	double r = sqrt(x * x + y * y + z * z), k = 1 - 2 * nu;
+	struct half h = half_terms(x, y, z, r, shear != NULL);
+	struct half v = half_terms(y, x, z, r, shear != NULL);
+	double a = atan2(x * y, r * z);
+
+	normal[STRESS_XX] = -2 * nu * a + k * h.t - h.q;
+	normal[STRESS_YY] = -2 * nu * a + k * v.t - v.q;
+	normal[STRESS_ZZ] = -a + h.q + v.q;
+	normal[STRESS_XY] = -k * log(r + z) - z / r;
+	normal[STRESS_XZ] = -h.w;
+	normal[STRESS_YZ] = -v.w;
+	if (shear) {
+		double g = z / (r * (r + z));
+
+		shear[STRESS_XX] = 2 * h.log + k * y * g + h.w + 2 * nu * y / r;
+		shear[STRESS_YY] = 2 * nu * h.log - k * y * g - 2 * nu * y / r;
+		shear[STRESS_ZZ] = -h.w;
+		shear[STRESS_XY] = v.log - k * x * g - 2 * nu * x / r;
+		shear[STRESS_XZ] = -h.q - a;
+		shear[STRESS_YZ] = -z / r;
+	}
+}
+
+/* (2-7), differences in y first. */
+static void difference(const double *pp, const double *pm, const double *mp, const double *mm,
+	double *out)
+{
+	for (int c = 0; c < N; c++)
+		out[c] = ((pp[c] - pm[c]) - (mp[c] - mm[c])) / TWO_PI;
+}
+
+void stress_patch(double a, double b, double nu, double x, double y, double z,
+	double normal[STRESS_COMPONENTS], double shear[STRESS_COMPONENTS])
+{
+	double n[4][N], s[4][N];
+
+	/* Logarithms of dimensionless lengths. */
+	x /= a, y /= a, z /= a, b /= a;
+	for (int i = 0; i < 4; i++)
+		corner(x + (i < 2 ? 1 : -1), y + (i % 2 ? -b : b), z, nu, n[i],
+			shear ? s[i] : NULL);
+	difference(n[0], n[1], n[2], n[3], normal);
+	if (shear)
+		difference(s[0], s[1], s[2], s[3], shear);
+}
+
+/* Boussinesq and Cerruti (along x), per unit load, in the form without 0/0 on the axis. */
+static void point_load(double x, double y, double z, double nu, double *normal, double *shear)
+{
+	double r2 = x * x + y * y + z * z, r = sqrt(r2), r3 = r2 * r, r5 = r3 * r2;
+	double k = 1 - 2 * nu, d = r + z, f = 3 * z / r5;
+	double g = (2 * r + z) / (r3 * d * d), l = z / r3 - 1 / (r * d);
+
+	normal[STRESS_XX] = (-f * x * x + k * (l + x * x * g)) / TWO_PI;
+	normal[STRESS_YY] = (-f * y * y + k * (l + y * y * g)) / TWO_PI;
+	normal[STRESS_ZZ] = -f * z * z / TWO_PI;
+	normal[STRESS_XY] = (-f * x * y + k * x * y * g) / TWO_PI;
+	normal[STRESS_XZ] = -f * x * z / TWO_PI;
+	normal[STRESS_YZ] = -f * y * z / TWO_PI;
+	if (shear) {
+		double e = (3 * r + z) / (r3 * d * d * d), h = 1 / (r * d * d);
+
+		f = 3 * x / r5;
+		shear[STRESS_XX] =
+			(-f * x * x + k * (x / r3 - 3 * x * h + x * x * x * e)) / TWO_PI;
+		shear[STRESS_YY] =
+			(-f * y * y + k * (x / r3 - x * h + x * y * y * e)) / TWO_PI;
+		shear[STRESS_ZZ] = -f * z * z / TWO_PI;
+		shear[STRESS_XY] = (-f * x * y + k * (-y * h + x * x * y * e)) / TWO_PI;
+		shear[STRESS_XZ] = -f * x * z / TWO_PI;
+		shear[STRESS_YZ] = -f * y * z / TWO_PI;
+	}
+}
+
+void stress_point(double nu, double mu, double x, double y, double z,
+	double stress[STRESS_COMPONENTS])
+{
+	double shear[N];
+
+	point_load(x, y, z, nu, stress, shear);
+	for (int c = 0; c < N; c++)
+		stress[c] += mu * shear[c];
+}
+
+/* Point load over a cell by 3 x 3 Gauss-Legendre points. */
+static void far_cell(double x, double y, double z, double ax, double ay, double nu,
+	double *normal, double *shear)
+{
+	static const double node[3] = { -0.77459666924148337704, 0, 0.77459666924148337704 };
+	static const double weight[3] = { 5. / 18, 8. / 18, 5. / 18 };
+	double n[N], s[N];
+
+	memset(normal, 0, N * sizeof(*normal));
+	if (shear)
+		memset(shear, 0, N * sizeof(*shear));
+	for (int j = 0; j < 3; j++)
+		for (int i = 0; i < 3; i++) {
+			double area = ax * ay * weight[i] * weight[j];
+
+			point_load(x - 0.5 * ax * node[i], y - 0.5 * ay * node[j], z, nu, n,
+				shear ? s : NULL);
+			for (int c = 0; c < N; c++) {
+				normal[c] += area * n[c];
+				if (shear)
+					shear[c] += area * s[c];
+			}
+		}
+}
+
+/* Corner values of a row of cells: x = (i - 1/2) ax for 0 <= i <= count. */
+static void corner_row(double *row, int count, double ax, double y, double z, double nu,
+	int shear)
+{
+	for (int i = 0; i <= count; i++) {
+		double *at = row + (size_t)i * 2 * N;
+
+		corner((i - 0.5) * ax, y, z, nu, at, shear ? at + N : NULL);
+	}
+}
+
+int stress_cells(double ax, double ay, double nu, double z, int wx, int wy, double *normal,
+	double *shear)
+{
+	double unit = ax > ay ? ax : ay, *low, *high, *swap;
+
+	ax /= unit, ay /= unit, z /= unit;
+	low = malloc(2 * ((size_t)wx + 1) * 2 * N * sizeof(*low));
+	if (!low) {
+		errno = ENOMEM;
+		return -1;
+	}
+	high = low + ((size_t)wx + 1) * 2 * N;
+	swap = low;
+	for (int j = 0; j < wy; j++) {
+		double y = j * ay, rest = FAR * FAR - y * y - z * z;
+		/* Cells of this row that are near enough for corners. */
+		int near = rest <= 0 ? 0 : (int)fmin(wx, ceil(sqrt(rest) / ax));
+
+		if (near > 0) {
+			if (j == 0)
+				corner_row(low, near, ax, y - 0.5 * ay, z, nu, shear != NULL);
+			corner_row(high, near, ax, y + 0.5 * ay, z, nu, shear != NULL);
+		}
+		for (int i = 0; i < wx; i++) {
+			size_t at = ((size_t)j * wx + i) * N;
+			const double *l = low + (size_t)i * 2 * N, *h = high + (size_t)i * 2 * N;
+
+			if (i >= near) {
+				far_cell(i * ax, y, z, ax, ay, nu, normal + at,
+					shear ? shear + at : NULL);
+				continue;
+			}
+			difference(h + 2 * N, l + 2 * N, h, l, normal + at);
+			if (shear)
+				difference(h + 3 * N, l + 3 * N, h + N, l + N, shear + at);
+		}
+		double *t = low;
+
+		low = high;
+		high = t;
+	}
+	free(swap);
+	return 0;
+}
+
+int stress_odd(enum stress_component component, int axis)
+{
+	switch (component) {
+	case STRESS_XY:
+		return 1;
+	case STRESS_XZ:
+		return axis == 0;
+	case STRESS_YZ:
+		return axis == 1;
+	default:
+		return 0;
+	}
+}
+
+double stress_von_mises(const double s[STRESS_COMPONENTS])
+{
+	double a = s[STRESS_XX] - s[STRESS_YY], b = s[STRESS_YY] - s[STRESS_ZZ];
+	double c = s[STRESS_ZZ] - s[STRESS_XX];
+	double t = s[STRESS_XY] * s[STRESS_XY] + s[STRESS_XZ] * s[STRESS_XZ] +
+		s[STRESS_YZ] * s[STRESS_YZ];
+
+	return sqrt(0.5 * (a * a + b * b + c * c) + 3 * t);
+}
+
+void stress_principal(const double stress[STRESS_COMPONENTS], double principal[3])
+{
+	sym3_eigen(stress, principal, NULL);
+}
