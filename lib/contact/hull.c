@@ -12,17 +12,33 @@ struct face {
 	int64_t level;  /* n . x on the plane */
 };
 
-struct edge {
-	int from, to;
+struct hull {
+	struct hull_point *point; /* all while building, then the corners */
+	size_t points, point_room;
+	struct face *face;
+	size_t nfaces, face_room;
+	struct hull_edge *edge;   /* the rim while building, then the edges */
+	size_t edges, edge_room;
+	int *place;               /* of the points among the corners */
+	size_t place_room;
+	double volume6;
 };
 
-struct hull {
-	const struct hull_point *point;
-	struct face *face;
-	size_t nfaces, room;
-	struct edge *rim;
-	size_t nrim, rim_room;
-};
+struct hull *hull_new(void)
+{
+	return calloc(1, sizeof(struct hull));
+}
+
+void hull_free(struct hull *h)
+{
+	if (!h)
+		return;
+	free(h->point);
+	free(h->face);
+	free(h->edge);
+	free(h->place);
+	free(h);
+}
 
 static int64_t dot(const int64_t n[3], const struct hull_point *p)
 {
@@ -43,11 +59,17 @@ static void normal(const struct hull_point *a, const struct hull_point *b,
 	n[2] = u[0] * w[1] - u[1] * w[0];
 }
 
-static void *grown(void *p, size_t *room, size_t size)
+/* Room for want elements; the array as it is now, NULL when out of memory. */
+static void *grown(void *p, size_t *room, size_t want, size_t size)
 {
-	size_t more = *room ? 2 * *room : 64;
-	void *q = realloc(p, more * size);
+	size_t more = *room ? *room : 64;
+	void *q;
 
+	if (want <= *room)
+		return p;
+	while (more < want)
+		more *= 2;
+	q = realloc(p, more * size);
 	if (q)
 		*room = more;
 	return q;
@@ -55,39 +77,38 @@ static void *grown(void *p, size_t *room, size_t size)
 
 static int add_face(struct hull *h, int a, int b, int c)
 {
-	struct face *f;
+	struct face *f = grown(h->face, &h->face_room, h->nfaces + 1, sizeof(*f));
 
-	if (h->nfaces == h->room) {
-		f = grown(h->face, &h->room, sizeof(*f));
-		if (!f)
-			return -1;
-		h->face = f;
-	}
-	f = &h->face[h->nfaces++];
+	if (!f)
+		return -1;
+	h->face = f;
+	f += h->nfaces++;
 	f->v[0] = a, f->v[1] = b, f->v[2] = c;
 	normal(&h->point[a], &h->point[b], &h->point[c], f->n);
 	f->level = dot(f->n, &h->point[a]);
 	return 0;
 }
 
+static int add_edge(struct hull *h, int from, int to)
+{
+	struct hull_edge *e = grown(h->edge, &h->edge_room, h->edges + 1, sizeof(*e));
+
+	if (!e)
+		return -1;
+	h->edge = e;
+	h->edge[h->edges++] = (struct hull_edge){ from, to };
+	return 0;
+}
+
 /* Adds an edge of a removed face to the rim, or cancels it against its twin. */
 static int toggle_edge(struct hull *h, int from, int to)
 {
-	struct edge *e;
-
-	for (size_t i = 0; i < h->nrim; i++)
-		if (h->rim[i].from == to && h->rim[i].to == from) {
-			h->rim[i] = h->rim[--h->nrim];
+	for (size_t i = 0; i < h->edges; i++)
+		if (h->edge[i].from == to && h->edge[i].to == from) {
+			h->edge[i] = h->edge[--h->edges];
 			return 0;
 		}
-	if (h->nrim == h->rim_room) {
-		e = grown(h->rim, &h->rim_room, sizeof(*e));
-		if (!e)
-			return -1;
-		h->rim = e;
-	}
-	h->rim[h->nrim++] = (struct edge){ from, to };
-	return 0;
+	return add_edge(h, from, to);
 }
 
 static int add_point(struct hull *h, int p)
@@ -95,7 +116,7 @@ static int add_point(struct hull *h, int p)
 	const struct hull_point *at = &h->point[p];
 	size_t kept = 0;
 
-	h->nrim = 0;
+	h->edges = 0;
 	for (size_t i = 0; i < h->nfaces; i++) {
 		struct face f = h->face[i];
 
@@ -108,8 +129,8 @@ static int add_point(struct hull *h, int p)
 				return -1;
 	}
 	h->nfaces = kept;
-	for (size_t i = 0; i < h->nrim; i++)
-		if (add_face(h, h->rim[i].from, h->rim[i].to, p))
+	for (size_t i = 0; i < h->edges; i++)
+		if (add_face(h, h->edge[i].from, h->edge[i].to, p))
 			return -1;
 	return 0;
 }
@@ -183,52 +204,73 @@ static double volume6(const struct hull *h)
 	return sum;
 }
 
-/* Corners of the faces to the front. */
-static size_t collect(struct hull *h, struct hull_point *point, size_t count)
+/* Keeps the points that are corners of a face, and lists the edges. */
+static int collect(struct hull *h)
 {
-	unsigned char *used = calloc(count, 1);
+	int *place = grown(h->place, &h->place_room, h->points, sizeof(*place));
 	size_t kept = 0;
 
-	if (!used)
-		return 0;
+	if (!place)
+		return -1;
+	h->place = place;
+	memset(place, 0, h->points * sizeof(*place));
 	for (size_t i = 0; i < h->nfaces; i++)
 		for (int k = 0; k < 3; k++)
-			used[h->face[i].v[k]] = 1;
-	for (size_t i = 0; i < count; i++)
-		if (used[i])
-			point[kept++] = point[i];
-	free(used);
-	return kept;
+			place[h->face[i].v[k]] = 1;
+	for (size_t i = 0; i < h->points; i++)
+		if (place[i]) {
+			place[i] = (int)kept;
+			h->point[kept++] = h->point[i];
+		}
+	h->points = kept;
+	h->edges = 0;
+	for (size_t i = 0; i < h->nfaces; i++)
+		for (int k = 0; k < 3; k++) {
+			int a = h->face[i].v[k], b = h->face[i].v[(k + 1) % 3];
+
+			/* Every edge is met once from either side. */
+			if (a < b && add_edge(h, place[a], place[b]))
+				return -1;
+		}
+	return 0;
 }
 
-static size_t build(struct hull *h, struct hull_point *point, size_t count, double *volume)
+int hull_build(struct hull *h, struct hull_point *point, size_t count)
 {
+	struct hull_point *p = grown(h->point, &h->point_room, count, sizeof(*p));
 	int c[4];
 
-	*volume = 0;
-	if (count < 4 || !start(h, count, c))
-		return count;
-	*volume = -1;
+	if (!p)
+		return -1;
+	h->point = p;
+	h->points = drop_rows(point, count);
+	memcpy(p, point, h->points * sizeof(*p));
+	h->nfaces = 0;
+	if (h->points < 4 || !start(h, h->points, c))
+		return -1;
 	if (add_face(h, c[0], c[1], c[2]) || add_face(h, c[0], c[3], c[1]) ||
 		add_face(h, c[1], c[3], c[2]) || add_face(h, c[2], c[3], c[0]))
-		return 0;
-	for (size_t i = 1; i < count; i++)
+		return -1;
+	for (size_t i = 1; i < h->points; i++)
 		if (add_point(h, (int)i))
-			return 0;
-	*volume = volume6(h);
-	count = collect(h, point, count);
-	if (!count)
-		*volume = -1;
-	return count;
+			return -1;
+	h->volume6 = volume6(h);
+	return collect(h);
 }
 
-size_t hull_reduce(struct hull_point *point, size_t count, double *volume)
+const struct hull_point *hull_points(const struct hull *h, size_t *count)
 {
-	struct hull h = { .point = point };
+	*count = h->points;
+	return h->point;
+}
 
-	count = drop_rows(point, count);
-	count = build(&h, point, count, volume);
-	free(h.face);
-	free(h.rim);
-	return count;
+const struct hull_edge *hull_edges(const struct hull *h, size_t *count)
+{
+	*count = h->edges;
+	return h->edge;
+}
+
+double hull_volume6(const struct hull *h)
+{
+	return h->volume6;
 }

@@ -2,6 +2,11 @@
  *
  * Because an affine map takes hulls to hulls, cells of any shape may be counted in
  * whole steps and scaled afterwards.  Coordinates within +-2^20 cannot overflow.
+ *
+ *	struct hull *h = hull_new();
+ *	if (hull_build(h, point, count) == 0)
+ *		volume = hull_volume6(h) / 6;
+ *	hull_free(h);
  */
 #ifndef CONTACT_HULL_H
 #define CONTACT_HULL_H
@@ -9,14 +14,27 @@
 #include <stddef.h>
 #include <stdint.h>
 
+struct hull;
+
 struct hull_point {
 	int32_t v[3];
 };
 
-/* Moves the corners of the hull to the front of point[] and returns their number; in
- * *volume6 six times the volume in lattice cells (0 where all points lie in a plane:
- * then no point is dropped but repeated ones).  0 with *volume6 < 0 when out of
- * memory. */
-size_t hull_reduce(struct hull_point *point, size_t count, double *volume6);
+struct hull_edge {
+	int from, to; /* places in hull_points() */
+};
+
+struct hull *hull_new(void); /* NULL when out of memory */
+void hull_free(struct hull *h);
+
+/* Builds the hull of the points, which are sorted on the way.  -1 when out of memory or
+ * where all points lie in one plane. */
+int hull_build(struct hull *h, struct hull_point *point, size_t count);
+
+/* Of the last hull: its corners, the edges between them (with some diagonals of flat
+ * faces), and six times its volume in lattice cells. */
+const struct hull_point *hull_points(const struct hull *h, size_t *count);
+const struct hull_edge *hull_edges(const struct hull *h, size_t *count);
+double hull_volume6(const struct hull *h);
 
 #endif

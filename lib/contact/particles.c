@@ -55,8 +55,13 @@ struct particles {
 	struct corner *corner;
 	size_t corners, corner_room;
 	int free_corner;
+	struct hull *hull;
 	struct hull_point *scratch;
 	size_t scratch_room;
+	double *height;        /* of the hull's corners along the longest diameter */
+	size_t height_room;
+	double (*cut)[3];      /* corners of a section of the hull */
+	size_t cut_room;
 	struct particle *done;
 	size_t ndone, done_room;
 };
@@ -95,8 +100,9 @@ struct particles *particles_new(const struct particles_par *par)
 		return NULL;
 	ps->par = *par;
 	ps->now.row = calloc((size_t)par->ny + 1, sizeof(*ps->now.row));
+	ps->hull = hull_new();
 	ps->before.row = calloc((size_t)par->ny + 1, sizeof(*ps->before.row));
-	if (!ps->now.row || !ps->before.row) {
+	if (!ps->now.row || !ps->before.row || !ps->hull) {
 		particles_free(ps);
 		errno = ENOMEM;
 		return NULL;
@@ -117,7 +123,10 @@ void particles_free(struct particles *ps)
 	free(ps->idle);
 	free(ps->taken);
 	free(ps->corner);
+	hull_free(ps->hull);
 	free(ps->scratch);
+	free(ps->height);
+	free(ps->cut);
 	free(ps->done);
 	free(ps);
 }
@@ -164,35 +173,32 @@ static void drop_corners(struct particles *ps, struct body *b)
 	b->corners = 0;
 }
 
-/* Corners of the convex hull, in ps->scratch. */
-static size_t hull_of(struct particles *ps, const struct body *b, double *volume6)
+static int build_hull(struct particles *ps, const struct body *b)
 {
 	size_t n = 0;
 
 	if (need(&ps->scratch, &ps->scratch_room, b->corners, sizeof(*ps->scratch)))
-		return 0;
+		return -1;
 	for (int at = b->corner; at != NONE; at = ps->corner[at].next)
 		ps->scratch[n++] = ps->corner[at].at;
-	return hull_reduce(ps->scratch, n, volume6);
+	return hull_build(ps->hull, ps->scratch, n);
 }
 
+/* Leaves a body with many corners those of its convex hull. */
 static int reduce(struct particles *ps, struct body *b)
 {
-	double volume6;
+	const struct hull_point *p;
 	size_t n;
 
 	if (b->corners < REDUCE_FROM || b->corners < 2 * b->reduced)
 		return 0;
-	n = hull_of(ps, b, &volume6);
-	if (n == 0)
+	if (build_hull(ps, b))
 		return -1;
+	p = hull_points(ps->hull, &n);
 	drop_corners(ps, b);
-	for (size_t i = 0; i < n; i++) {
-		const int32_t *v = ps->scratch[i].v;
-
-		if (put_corner(ps, b, v[X], v[Y], v[Z]))
+	for (size_t i = 0; i < n; i++)
+		if (put_corner(ps, b, p[i].v[X], p[i].v[Y], p[i].v[Z]))
 			return -1;
-	}
 	b->reduced = (int)n;
 	return 0;
 }
@@ -451,47 +457,112 @@ static int join_layer(struct particles *ps)
 
 /* Measures */
 
-/* Largest distance between n points, with what lies along a unit direction taken off
- * (NULL: nothing); *end the points where it is reached. */
-static double largest(const struct hull_point *c, size_t n, const double step[3],
-	const double *along, size_t end[2])
+static void scaled(const struct particles *ps, const struct hull_point *p, double out[3])
 {
-	double most = -1;
+	out[X] = p->v[X] * ps->par.ax;
+	out[Y] = p->v[Y] * ps->par.ay;
+	out[Z] = p->v[Z] * ps->par.az;
+}
 
-	for (size_t i = 0; i < n; i++)
+static double distance2(const double a[3], const double b[3])
+{
+	double u = a[X] - b[X], v = a[Y] - b[Y], w = a[Z] - b[Z];
+
+	return u * u + v * v + w * w;
+}
+
+/* Largest distance between two corners of the hull; along: the unit vector there. */
+static double longest_diameter(struct particles *ps, double along[3])
+{
+	double most = -1, p[3], q[3];
+	size_t n, a = 0, b = 0;
+	const struct hull_point *c = hull_points(ps->hull, &n);
+
+	for (size_t i = 0; i < n; i++) {
+		scaled(ps, &c[i], p);
 		for (size_t j = 0; j < i; j++) {
-			double square = 0, part = 0;
+			double d;
 
-			for (int k = X; k <= Z; k++) {
-				double u = (c[i].v[k] - c[j].v[k]) * step[k];
-
-				square += u * u;
-				part += along ? u * along[k] : 0;
-			}
-			square -= part * part;
-			if (square > most) {
-				most = square;
-				end[0] = i;
-				end[1] = j;
+			scaled(ps, &c[j], q);
+			d = distance2(p, q);
+			if (d > most) {
+				most = d;
+				a = i, b = j;
 			}
 		}
+	}
+	scaled(ps, &c[a], p);
+	scaled(ps, &c[b], q);
+	most = sqrt(most);
+	for (int k = X; k <= Z; k++)
+		along[k] = (p[k] - q[k]) / most;
+	return most;
+}
+
+/* Corners, in ps->cut, of the hull's section at a height along the longest diameter. */
+static size_t section(struct particles *ps, double level)
+{
+	size_t n, edges, count = 0;
+	const struct hull_point *c = hull_points(ps->hull, &n);
+	const struct hull_edge *e = hull_edges(ps->hull, &edges);
+
+	for (size_t i = 0; i < n; i++)
+		if (ps->height[i] == level)
+			scaled(ps, &c[i], ps->cut[count++]);
+	for (size_t i = 0; i < edges; i++) {
+		double a = ps->height[e[i].from] - level, b = ps->height[e[i].to] - level;
+		double p[3], q[3];
+
+		if (!((a < 0 && b > 0) || (a > 0 && b < 0)))
+			continue;
+		scaled(ps, &c[e[i].from], p);
+		scaled(ps, &c[e[i].to], q);
+		for (int k = X; k <= Z; k++)
+			ps->cut[count][k] = p[k] + (q[k] - p[k]) * (a / (a - b));
+		count++;
+	}
+	return count;
+}
+
+/* Longest chord of the hull at right angles to the longest diameter.  Between two
+ * corners the section's corners move evenly, so that its diameter is a convex function
+ * of height: the largest is found at the height of a corner. */
+static double widest_chord(struct particles *ps, const double along[3])
+{
+	double most = 0, p[3];
+	size_t n, edges;
+	const struct hull_point *c = hull_points(ps->hull, &n);
+
+	hull_edges(ps->hull, &edges);
+	if (need(&ps->height, &ps->height_room, n, sizeof(*ps->height)) ||
+		need(&ps->cut, &ps->cut_room, n + edges, sizeof(*ps->cut)))
+		return -1;
+	for (size_t i = 0; i < n; i++) {
+		scaled(ps, &c[i], p);
+		ps->height[i] = p[X] * along[X] + p[Y] * along[Y] + p[Z] * along[Z];
+	}
+	for (size_t k = 0; k < n; k++) {
+		size_t count = section(ps, ps->height[k]);
+
+		for (size_t i = 0; i < count; i++)
+			for (size_t j = 0; j < i; j++)
+				most = fmax(most, distance2(ps->cut[i], ps->cut[j]));
+	}
 	return sqrt(most);
 }
 
 static int measure_hull(struct particles *ps, const struct body *b, struct particle *p)
 {
-	double step[3] = { ps->par.ax, ps->par.ay, ps->par.az }, volume6, along[3];
-	size_t n = hull_of(ps, b, &volume6), end[2];
-	const struct hull_point *c = ps->scratch;
+	double along[3];
 
-	if (n == 0)
+	if (build_hull(ps, b))
 		return -1;
-	p->length = largest(c, n, step, NULL, end);
-	for (int k = X; k <= Z; k++)
-		along[k] = (c[end[0]].v[k] - c[end[1]].v[k]) * step[k] / p->length;
-	p->width = largest(c, n, step, along, end);
+	p->length = longest_diameter(ps, along);
+	p->width = widest_chord(ps, along);
+	if (!(p->width > 0))
+		return -1;
 	p->aspect = p->length / p->width;
-	p->convexity = 6 * b->nodes / volume6;
+	p->convexity = 6 * b->nodes / hull_volume6(ps->hull);
 	return 0;
 }
 

@@ -34,7 +34,7 @@ struct particle {
 	double volume;      /* N ax ay az, m3 */
 	double diameter;    /* of the sphere of this volume, m (2-14) */
 	double length;      /* largest diameter: between the farthest two points, m */
-	double width;       /* largest diameter of the projection along it, m */
+	double width;       /* largest chord of the convex hull at right angles to it, m */
 	double aspect;      /* length / width */
 	double elongation;  /* 1 - sqrt(second / first principal moment): 0 round, 1 needle */
 	double convexity;   /* volume / volume of the convex hull */

@@ -1,0 +1,339 @@
+/* Particles of known shape: measures, connectivity, memory of two layers, periodic grids. */
+#include "contact/particles.h"
+#include "tap.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double PI = 3.14159265358979323846;
+
+typedef int (*shape)(double x, double y, double z);
+
+/* Particles of the cells whose centres are in the shape. */
+static size_t scan(struct particles *ps, int nx, int ny, int nz, shape in,
+	const struct particle **list)
+{
+	unsigned char *mask = malloc((size_t)nx * ny);
+
+	particles_begin(ps);
+	for (int z = 0; z < nz; z++) {
+		for (int y = 0; y < ny; y++)
+			for (int x = 0; x < nx; x++)
+				mask[y * nx + x] = (unsigned char)in(x + 0.5, y + 0.5, z + 0.5);
+		particles_layer(ps, mask);
+	}
+	free(mask);
+	return particles_end(ps, list);
+}
+
+static int box(double x, double y, double z)
+{
+	return x > 3 && x < 10 && y > 2 && y < 5 && z > 1 && z < 3;
+}
+
+static void test_box(void)
+{
+	struct particles_par par = { .nx = 16, .ny = 12, .ax = 2, .ay = 1, .az = 0.5 };
+	struct particles *ps = particles_new(&par);
+	const struct particle *p;
+
+	/* 7 x 3 x 2 cells: 14 x 3 x 1 in length. */
+	ok(scan(ps, 16, 12, 6, box, &p) == 1, "a box is one particle");
+	near(p->nodes, 42, 0, "box: cells");
+	near(p->volume, 42, 0, "box: volume");
+	near(p->diameter, cbrt(6 * 42 / PI), 1e-14, "box: equivalent diameter");
+	near(p->area, 2 * (14 * 3 + 14 + 3), 1e-12, "box: surface");
+	near(p->length, sqrt(14 * 14 + 9 + 1), 1e-12, "box: largest diameter");
+	near(p->width, sqrt(3 * 3 + 1), 0.2, "box: perpendicular diameter, its slant aside");
+	near(p->convexity, 1, 1e-14, "box: convexity");
+	near(p->elongation, 1 - 3. / 14, 1e-12, "box: elongation from its two longest sides");
+	near(p->azimuth, 0, 1e-12, "box: azimuth");
+	near(p->dip, 0, 1e-12, "box: dip");
+	near(p->x, 13, 1e-12, "box: centroid x");
+	near(p->y, 3.5, 1e-12, "box: centroid y");
+	near(p->z, 1, 1e-12, "box: centroid z");
+	ok(p->low[0] == 6 && p->high[0] == 20 && p->low[1] == 2 && p->high[1] == 5 &&
+			p->low[2] == 0.5 && p->high[2] == 1.5,
+		"box: bounding box");
+	ok(p->first[0] == 3 && p->first[1] == 2 && p->first[2] == 1, "box: address");
+	particles_free(ps);
+}
+
+static int cube(double x, double y, double z)
+{
+	return (int)x == 2 && (int)y == 2 && (int)z == 0;
+}
+
+static void test_cube(void)
+{
+	struct particles_par par = { .nx = 5, .ny = 5, .ax = 1, .ay = 1, .az = 1 };
+	struct particles *ps = particles_new(&par);
+	const struct particle *p;
+
+	scan(ps, 5, 5, 1, cube, &p);
+	near(p->length, sqrt(3), 1e-15, "cube: largest diameter is the space diagonal");
+	/* Half-way along its diagonal its section is a regular hexagon of side 1/sqrt(2); the
+	 * corners lie at a third and two thirds, with triangles of side sqrt(2). */
+	near(p->width, sqrt(2), 1e-15, "cube: largest perpendicular diameter");
+	near(p->aspect, sqrt(1.5), 1e-15, "cube: aspect ratio");
+	near(p->elongation, 0, 1e-12, "cube: elongation");
+	ok(isnan(p->azimuth) && isnan(p->dip), "cube: no direction");
+	particles_free(ps);
+}
+
+enum { R = 20 };
+
+static int ball(double x, double y, double z)
+{
+	x -= R + 1, y -= R + 1, z -= R + 1;
+	return x * x + y * y + z * z < R * R;
+}
+
+static void test_ball(void)
+{
+	int n = 2 * R + 2;
+	struct particles_par par = { .nx = n, .ny = n, .ax = 1, .ay = 1, .az = 1 };
+	struct particles *ps = particles_new(&par);
+	const struct particle *p;
+
+	ok(scan(ps, n, n, n, ball, &p) == 1, "a ball is one particle");
+	/* Cells stand out by up to half a diagonal: 0.87 of the radius 20. */
+	near(p->diameter, 2 * R, 0.1, "ball: equivalent diameter");
+	near(p->length, 2 * R, 1.8, "ball: largest diameter");
+	near(p->aspect, 1, 0.02, "ball: aspect ratio");
+	near(p->elongation, 0, 1e-9, "ball: elongation");
+	near(p->area / (4 * PI * R * R), 1.5, 0.03, "ball: exposed faces are 3/2 of the sphere");
+	ok(p->convexity < 1 && p->convexity > 0.9, "ball: convexity %g, below 1", p->convexity);
+	near(p->x, R + 1, 1e-9, "ball: centroid");
+	particles_free(ps);
+}
+
+/* A rod along (1, 1, 0) that dips: cells around a line. */
+static int rod(double x, double y, double z)
+{
+	double d[3] = { cos(0.6) * cos(0.4), sin(0.6) * cos(0.4), sin(0.4) };
+	double u[3] = { x - 30, y - 30, z - 20 };
+	double t = u[0] * d[0] + u[1] * d[1] + u[2] * d[2];
+	double r = u[0] * u[0] + u[1] * u[1] + u[2] * u[2] - t * t;
+
+	return fabs(t) < 24 && r < 9;
+}
+
+static void test_rod(void)
+{
+	struct particles_par par = { .nx = 60, .ny = 60, .ax = 1, .ay = 1, .az = 1 };
+	struct particles *ps = particles_new(&par);
+	const struct particle *p;
+
+	ok(scan(ps, 60, 60, 40, rod, &p) == 1, "a slanted rod is one particle");
+	near(p->azimuth, 0.6, 0.01, "rod: azimuth");
+	near(p->dip, 0.4, 0.01, "rod: dip");
+	/* Length 48, width 6: the diagonal and a cell more. */
+	near(p->length, 48.4, 1.5, "rod: largest diameter");
+	ok(p->aspect > 6.5 && p->aspect < 8, "rod: aspect ratio %g", p->aspect);
+	/* Moments 48^2/12 and 3^2/4. */
+	near(p->elongation, 1 - sqrt(9. / 4 / 192), 0.01, "rod: elongation");
+	particles_free(ps);
+}
+
+/* Two arms that meet only at the bottom, and a third that does not. */
+static int fork(double x, double y, double z)
+{
+	if (y < 3 || y > 4)
+		return 0;
+	if (z > 7)
+		return x > 1 && x < 8;
+	return (x > 1 && x < 2) || (x > 7 && x < 8) || (x > 9 && x < 10);
+}
+
+static void test_fork(void)
+{
+	struct particles_par par = { .nx = 12, .ny = 8, .ax = 1, .ay = 1, .az = 1 };
+	struct particles *ps = particles_new(&par);
+	const struct particle *p;
+
+	ok(scan(ps, 12, 8, 8, fork, &p) == 2, "arms that meet below are one particle");
+	near(p[0].nodes, 7 + 7 + 7, 0, "fork: cells");
+	near(p[1].nodes, 7, 0, "free arm: cells");
+	near(p[0].convexity, 21. / 56, 1e-14, "fork: convexity");
+	near(p[0].area, 2 * (7 * 8 - 5 * 7) + 2 * 8 + 4 * 7 - 2 * 7 + 5 * 2 + 2 * 2 + 2 * 7 - 14, 0,
+		"fork: surface");
+	particles_free(ps);
+}
+
+static int checker(double x, double y, double z)
+{
+	return ((int)x + (int)y + (int)z) % 2;
+}
+
+/* Corner neighbours of a layer are parted or joined as asked. */
+static void test_corners(void)
+{
+	struct particles_par par = { .nx = 31, .ny = 17, .ax = 1, .ay = 1, .az = 1 };
+	struct particles *ps = particles_new(&par);
+	const struct particle *p;
+	size_t n = scan(ps, 31, 17, 9, checker, &p);
+
+	ok(n == 31 * 17 * 9 / 2, "a checkerboard falls into single cells");
+	ok(p[n - 1].nodes == 1, "each of one cell");
+	particles_free(ps);
+	par.corners = 1;
+	ps = particles_new(&par);
+	ok(scan(ps, 31, 17, 1, checker, &p) == 1, "joined over corners it is one");
+	particles_free(ps);
+}
+
+static int wrapped(double x, double y, double z)
+{
+	(void)z;
+	return (x < 2 || x > 7) && (y < 1 || y > 5);
+}
+
+static void test_periodic(void)
+{
+	struct particles_par par = { .nx = 10, .ny = 8, .ax = 1, .ay = 1, .az = 1, .periodic = 1 };
+	struct particles *ps = particles_new(&par);
+	const struct particle *p;
+
+	/* 5 x 4 cells around the corner of the grid: from 7 to 12 and from 5 to 9. */
+	ok(scan(ps, 10, 8, 2, wrapped, &p) == 1, "periodic: one particle over the corner");
+	near(p->nodes, 40, 0, "periodic: cells");
+	near(p->length, sqrt(25 + 16 + 4), 1e-12, "periodic: largest diameter");
+	near(p->area, 2 * (20 + 8 + 10), 1e-12, "periodic: surface");
+	near(p->convexity, 1, 1e-12, "periodic: convexity");
+	near(p->x, 9.5, 1e-12, "periodic: centroid x");
+	near(p->y, 7, 1e-12, "periodic: centroid y");
+	near(p->low[0], 7, 1e-12, "periodic: bounding box");
+	particles_free(ps);
+}
+
+/* Against a flood fill on random sets, all connectivities. */
+static size_t flood(unsigned char *c, int nx, int ny, int nz, int corners, int periodic)
+{
+	int *stack = malloc(sizeof(*stack) * nx * ny * nz);
+	size_t count = 0;
+
+	for (int i = 0; i < nx * ny * nz; i++) {
+		int top = 0;
+
+		if (!c[i])
+			continue;
+		count++;
+		c[i] = 0;
+		stack[top++] = i;
+		while (top) {
+			int at = stack[--top], x = at % nx, y = at / nx % ny, z = at / nx / ny;
+
+			for (int d = 0; d < 27; d++) {
+				int dx = d % 3 - 1, dy = d / 3 % 3 - 1, dz = d / 9 - 1;
+				int u = x + dx, v = y + dy, w = z + dz;
+
+				if (abs(dx) + abs(dy) + abs(dz) != 1 &&
+					!(corners && dz == 0 && dx && dy))
+					continue;
+				if (periodic) {
+					u = (u + nx) % nx;
+					v = (v + ny) % ny;
+				}
+				if (u < 0 || u >= nx || v < 0 || v >= ny || w < 0 || w >= nz)
+					continue;
+				if (c[(w * ny + v) * nx + u]) {
+					c[(w * ny + v) * nx + u] = 0;
+					stack[top++] = (w * ny + v) * nx + u;
+				}
+			}
+		}
+	}
+	free(stack);
+	return count;
+}
+
+static void test_random(void)
+{
+	int bad = 0, cells = 0;
+	unsigned state = 1;
+
+	for (int trial = 0; trial < 200; trial++) {
+		int nx = 1 + trial % 13, ny = 1 + trial % 7, nz = 1 + trial % 5;
+		struct particles_par par = { .nx = nx, .ny = ny, .ax = 1, .ay = 1, .az = 1,
+			.corners = trial % 2, .periodic = trial / 2 % 2 };
+		struct particles *ps = particles_new(&par);
+		const struct particle *p;
+		unsigned char *c = malloc(nx * ny * nz);
+		size_t n, nodes = 0, sum = 0;
+
+		for (int i = 0; i < nx * ny * nz; i++) {
+			state = state * 1664525 + 1013904223;
+			c[i] = (state >> 16) % 10 < 3u + trial % 4;
+			nodes += c[i];
+		}
+		particles_begin(ps);
+		for (int z = 0; z < nz; z++)
+			particles_layer(ps, c + z * nx * ny);
+		n = particles_end(ps, &p);
+		for (size_t i = 0; i < n; i++) {
+			sum += (size_t)p[i].nodes;
+			bad += !(p[i].length > 0 && p[i].convexity <= 1 + 1e-12);
+		}
+		bad += sum != nodes || n != flood(c, nx, ny, nz, trial % 2, trial / 2 % 2);
+		cells += (int)nodes;
+		free(c);
+		particles_free(ps);
+	}
+	ok(bad == 0 && cells > 1000, "200 random sets agree with a flood fill (%d wrong)", bad);
+}
+
+/* A measured contact map with a count known from elsewhere. */
+static void test_map(void)
+{
+	static const char path[] = "../shared/data/map/contact_map_256x256.u8";
+	struct particles_par par = { .nx = 256, .ny = 256, .ax = 1, .ay = 1, .az = 1, .corners = 1,
+		.periodic = 1 };
+	static unsigned char map[256 * 256];
+	FILE *f = fopen(path, "rb");
+	struct particles *ps;
+	const struct particle *p;
+	static const double largest[5] = { 6526, 2977, 403, 370, 210 };
+	double cells = 0;
+	size_t n;
+
+	if (!f || fread(map, 1, sizeof(map), f) != sizeof(map)) {
+		ok(1, "contact map of 123 patches # SKIP %s is not there", path);
+		if (f)
+			fclose(f);
+		return;
+	}
+	fclose(f);
+	ps = particles_new(&par);
+	particles_begin(ps);
+	particles_layer(ps, map);
+	n = particles_end(ps, &p);
+	ok(n == 123, "contact map: 123 patches over corners and borders (got %zu)", n);
+	for (size_t i = 0; i < n; i++)
+		cells += p[i].nodes;
+	ok(cells == 11412, "contact map: 11412 cells");
+	for (int i = 0; i < 5; i++)
+		ok(p[i].nodes == largest[i], "contact map: patch %d has %g cells", i + 1, largest[i]);
+	particles_free(ps);
+	par.periodic = 0;
+	par.corners = 0;
+	ps = particles_new(&par);
+	particles_begin(ps);
+	particles_layer(ps, map);
+	ok(particles_end(ps, &p) == 235, "contact map: 235 patches over sides alone");
+	particles_free(ps);
+}
+
+int main(void)
+{
+	test_box();
+	test_cube();
+	test_ball();
+	test_rod();
+	test_fork();
+	test_corners();
+	test_periodic();
+	test_random();
+	test_map();
+	return tap_done();
+}
