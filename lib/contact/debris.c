@@ -1,0 +1,132 @@
+#include "contact/debris.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double DEEPEST = 10; /* sides of the grid */
+
+struct debris {
+	struct debris_par par;
+	struct stress *stress;
+	struct particles *particles;
+	int *removed;
+};
+
+struct debris *debris_new(const struct debris_par *par)
+{
+	const struct stress_par *s = &par->stress;
+	struct particles_par p = { .nx = s->nx, .ny = s->ny, .ax = s->ax, .ay = s->ay,
+		.az = s->dz, .periodic = s->periodic };
+	struct debris *d;
+
+	if (!(par->yield > 0)) {
+		errno = EDOM;
+		return NULL;
+	}
+	d = calloc(1, sizeof(*d));
+	if (!d)
+		return NULL;
+	d->par = *par;
+	d->stress = stress_new(s);
+	d->particles = d->stress ? particles_new(&p) : NULL;
+	d->removed = d->particles ? calloc((size_t)s->nx * s->ny, sizeof(*d->removed)) : NULL;
+	if (!d->removed) {
+		int reason = errno;
+
+		debris_free(d);
+		errno = reason;
+		return NULL;
+	}
+	return d;
+}
+
+void debris_free(struct debris *d)
+{
+	if (!d)
+		return;
+	stress_free(d->stress);
+	particles_free(d->particles);
+	free(d->removed);
+	free(d);
+}
+
+struct stress *debris_stress(struct debris *d)
+{
+	return d->stress;
+}
+
+void debris_contact(const struct debris *d, const double *pressure, struct debris_step *step)
+{
+	const struct stress_par *s = &d->par.stress;
+	double sum = 0, edge = 0, cells = 0;
+
+	memset(step, 0, sizeof(*step));
+	for (int y = 0; y < s->ny; y++)
+		for (int x = 0; x < s->nx; x++) {
+			double p = pressure[(size_t)y * s->nx + x];
+
+			sum += p;
+			cells += p > 0;
+			step->max_pressure = fmax(step->max_pressure, p);
+			if (x == 0 || y == 0 || x == s->nx - 1 || y == s->ny - 1)
+				edge += p;
+		}
+	step->load = sum * s->ax * s->ay;
+	step->contact = cells / ((double)s->nx * s->ny);
+	step->edge_load = sum > 0 && !s->periodic ? edge / sum : 0;
+}
+
+enum debris_status debris_step(struct debris *d, double *height, const double *pressure,
+	struct debris_step *step)
+{
+	const struct stress_par *s = &d->par.stress;
+	size_t n = (size_t)s->nx * s->ny;
+	double side = fmax(s->nx * s->ax, s->ny * s->ay);
+	struct wear_par wear = { .yield = d->par.yield, .rule = d->par.rule,
+		.max_layers = (long)fmin(1e9, ceil(DEEPEST * side / s->dz)) };
+	enum wear_status status;
+
+	debris_contact(d, pressure, step);
+	for (size_t i = 0; i < n; i++)
+		if (pressure[i] < 0)
+			return DEBRIS_PULL;
+	if (stress_load(d->stress, pressure))
+		return DEBRIS_MEMORY;
+	particles_begin(d->particles);
+	status = wear_remove(d->stress, &wear, s->nx, s->ny, d->particles, d->removed,
+		&step->wear);
+	if (status != WEAR_OK)
+		return status == WEAR_DEEP ? DEBRIS_DEEP : DEBRIS_MEMORY;
+	step->count = particles_end(d->particles, &step->particle);
+	if (step->count == (size_t)-1)
+		return DEBRIS_MEMORY;
+	step->volume = step->wear.cells * (s->ax * s->ay * s->dz);
+	for (size_t i = 0; i < step->count; i++)
+		step->depth = fmax(step->depth, step->particle[i].high[2]);
+	for (size_t i = 0; i < n; i++)
+		height[i] -= d->removed[i] * s->dz;
+	return DEBRIS_OK;
+}
+
+double debris_roughness(int nx, int ny, double dx, double dy, const double *height,
+	double crown)
+{
+	double lx = nx * dx, ly = ny * dy, corner = 0.25 * (lx * lx + ly * ly);
+	double mean = 0, square = 0;
+
+	for (int pass = 0; pass < 2; pass++)
+		for (int iy = 0; iy < ny; iy++)
+			for (int ix = 0; ix < nx; ix++) {
+				double x = (ix + 0.5) * dx - 0.5 * lx, y = (iy + 0.5) * dy - 0.5 * ly;
+				double z = height[(size_t)iy * nx + ix] +
+					crown * ((x * x + y * y) / corner);
+
+				if (pass == 0)
+					mean += z / ((double)nx * ny);
+				else
+					square += (z - mean) * (z - mean);
+			}
+	return sqrt(square / ((double)nx * ny));
+}

@@ -1,0 +1,70 @@
+/* debris.h - one step of wear: stress below a contact, removal, particles, worn surface
+ *
+ * Joins stress.h, wear.h and particles.h.  Memory, transforms and influence kernels are
+ * kept over calls, so use one struct for all steps of all surfaces of one grid; results
+ * do not depend on what was computed before, nor on threads.
+ *
+ *	struct debris_par par = { .stress = { .nx = 128, .ny = 128, .ax = 8e-6, .ay = 8e-6,
+ *		.dz = 8e-6, .nu = 0.3, .mu = 0.3, .memory = 1 << 28 }, .yield = 355e6 };
+ *	struct debris *d = debris_new(&par);
+ *	if (debris_step(d, height, pressure, &step) == DEBRIS_OK)
+ *		for (i = 0; i < step.count; i++)
+ *			printf("%g\n", step.particle[i].diameter);
+ *	debris_free(d);
+ */
+#ifndef CONTACT_DEBRIS_H
+#define CONTACT_DEBRIS_H
+
+#include "contact/particles.h"
+#include "contact/stress.h"
+#include "contact/wear.h"
+
+struct debris;
+
+struct debris_par {
+	struct stress_par stress; /* its periodic flag goes for particles and edges too */
+	double yield;             /* Pa, > 0 */
+	enum wear_rule rule;
+};
+
+struct debris_step {
+	double load;        /* N */
+	double contact;     /* loaded cells over all cells */
+	double edge_load;   /* share of the load on the outermost cells; 0 if periodic */
+	double max_pressure;
+	double volume;      /* worn off, m3 (2-15) */
+	double depth;       /* of the deepest cell worn off, m */
+	struct wear_result wear;
+	size_t count;
+	const struct particle *particle; /* valid until the next call */
+};
+
+enum debris_status {
+	DEBRIS_OK,
+	DEBRIS_PULL, /* a pressure below zero: nothing done */
+	DEBRIS_DEEP, /* material fails deeper than ten times the grid is long; height
+	              * is as it was */
+	DEBRIS_MEMORY
+};
+
+/* NULL with errno EDOM (a parameter out of range) or ENOMEM. */
+struct debris *debris_new(const struct debris_par *par);
+void debris_free(struct debris *d);
+
+/* The contact of a step before its wear: load, contact, edge_load and max_pressure. */
+void debris_contact(const struct debris *d, const double *pressure, struct debris_step *step);
+
+/* Wears the surface under a pressure (Pa, >= 0): lowers height (m, towards the other
+ * body) by the depth step times the cells lost in each column. */
+enum debris_status debris_step(struct debris *d, double *height, const double *pressure,
+	struct debris_step *step);
+
+/* Stress under the pressure of the last step. */
+struct stress *debris_stress(struct debris *d);
+
+/* Root mean square height about the mean, after a paraboloid that falls by crown from
+ * the middle to the corners has been put back. */
+double debris_roughness(int nx, int ny, double dx, double dy, const double *height,
+	double crown);
+
+#endif
