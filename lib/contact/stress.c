@@ -630,6 +630,21 @@ static int sum_fourier(struct stress *s, const double complex *spectrum, int cou
 	return 0;
 }
 
+double stress_deep(const struct stress *s, long layer)
+{
+	double point[STRESS_COMPONENTS], z = depth(s, layer), v[MISES];
+	double complex mean[TENSOR];
+
+	if (!s->par.periodic) {
+		stress_point(s->par.nu, s->par.mu, 0, 0, 1, point);
+		return stress_von_mises(point) * s->total / (z * z);
+	}
+	harmonic(&s->par, 0, 0, z, mean);
+	for (int c = 0; c < MISES; c++)
+		v[c] = creal(mean[c]);
+	return mises_of(v) * s->total / (s->par.nx * s->par.ax * s->par.ny * s->par.ay);
+}
+
 static double complex *spectra_new(struct stress *s, long layer, int count)
 {
 	double complex *out = fft_alloc_complex(count * s->half);

@@ -72,6 +72,10 @@ long stress_contacts(const struct stress *s);
 size_t stress_reach(const struct stress *s, long layer, double limit, struct stress_span *span);
 size_t stress_spans_max(const struct stress *s);
 
+/* von Mises stress in the middle below the load as it would be at a layer many times
+ * deeper than the grid is long: of a point load, or of the mean load if periodic. */
+double stress_deep(const struct stress *s, long layer);
+
 /* von Mises stress at the nodes of the spans (at least there); -1 when out of memory. */
 int stress_mises(struct stress *s, long layer, const struct stress_span *span, size_t count,
 	double *mises);

@@ -70,6 +70,8 @@ static enum wear_status remove_layers(struct wear *w)
 {
 	double yield = w->par->yield;
 
+	if (w->par->max_layers && stress_deep(w->stress, w->par->max_layers) > yield)
+		return WEAR_DEEP;
 	w->nspans = stress_reach(w->stress, 0, yield, w->span);
 	for (long m = 0; w->nspans > 0; m++) {
 		double cells;

@@ -21,7 +21,8 @@ enum wear_rule { WEAR_COLUMN, WEAR_POTENTIAL };
 struct wear_par {
 	double yield;    /* Pa, > 0 */
 	enum wear_rule rule;
-	long max_layers; /* give up below this many; 0: never */
+	long max_layers; /* give up below this many, which should lie far below the
+	                  * load; 0: never */
 };
 
 struct wear_result {

@@ -1,0 +1,467 @@
+/* debrisgen - wear particles that a contact tears off a rough surface */
+#include "contact/debris.h"
+#include "contact/kernel.h"
+#include "contact/solver.h"
+#include "contact/stress_kernel.h"
+#include "shell/fields.h"
+#include "shell/msg.h"
+#include "shell/opt.h"
+#include "shell/progress.h"
+#include "shell/stats.h"
+#include "shell/tables.h"
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const axes[] = { "x", "y", NULL };
+static const char *const layers[] = { "top", "mid", NULL };
+static const char *const rules[] = { "column", "potential", NULL };
+static const char *const boundaries[] = { "free", "periodic", NULL };
+
+static double yield = NAN, friction, depth_step = NAN, stop_area = 0.8, amplification = 1;
+static double load = NAN, mean_pressure = NAN, approach = NAN, estar = NAN;
+static double hardness, tolerance = 1e-8;
+static struct opt_list young, poisson = { 1, { 0.3 } };
+static int shear, layer, removal, boundary;
+static long steps = 1, stress_layers, max_iterations = 10000, memory = 512, threads = 1;
+static const char *surface_path, *summary_path, *stress_path, *stress_fields = "von_mises";
+
+static const struct opt opts[] = {
+	{ 'Y', "yield", OPT_NUM, UNIT_PRESSURE, &yield, 1e-30, 1e30, "Y",
+		"yield stress: material under more von Mises stress is lost", NULL, 0 },
+	{ 'u', "friction", OPT_NUM, UNIT_NONE, &friction, 0, 1e6, "MU",
+		"friction coefficient: shear over pressure", NULL, 0 },
+	{ 'N', "poisson", OPT_LIST, UNIT_NONE, &poisson, 0, 0.5, "N1[,N2]",
+		"Poisson's ratios; the first is that of the worn body", NULL, 0 },
+	{ 'z', "depth-step", OPT_NUM, UNIT_LENGTH, &depth_step, 1e-30, 1e30, "H",
+		"height of a cell; by default the spacing along x", NULL, 0 },
+	{ 'd', "shear", OPT_WORD, UNIT_NONE, &shear, 0, 0, "x|y",
+		"direction in which friction drags the worn body", axes, 0 },
+	{ 'l', "layer", OPT_WORD, UNIT_NONE, &layer, 0, 0, "top|mid",
+		"where in a cell the stress is taken", layers, 0 },
+	{ 'r', "removal", OPT_WORD, UNIT_NONE, &removal, 0, 0, "column|potential",
+		"what is lost: columns of failed cells from the surface, or every failed cell",
+		rules, 0 },
+	{ 'T', "steps", OPT_INT, UNIT_COUNT, &steps, 1, 1e6, "N",
+		"wear steps; the contact is solved anew from the second on", NULL, 0 },
+	{ 'A', "stop-area", OPT_NUM, UNIT_FRACTION, &stop_area, 0, 1, "A",
+		"stop where this share of the cells is in contact", NULL, 0 },
+	{ 'Z', "amplification", OPT_NUM, UNIT_NONE, &amplification, 0, 1e12, "K",
+		"sliding distance of a step over the length of the grid", NULL, 0 },
+	{ 'O', "surface", OPT_TEXT, UNIT_NONE, &surface_path, 0, 0, "FILE",
+		"write the worn surface of every step", NULL, 1 },
+	{ 'U', "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
+		"write a table with a row per step", NULL, 1 },
+	{ 'G', "stress", OPT_TEXT, UNIT_NONE, &stress_path, 0, 0, "FILE",
+		"write the stress below every contact", NULL, 1 },
+	{ 'o', "fields", OPT_TEXT, UNIT_NONE, &stress_fields, 0, 0, "NAME,...",
+		"what to write of von_mises, hydrostatic, principal, tensor", NULL, 1 },
+	{ 'y', "stress-layers", OPT_INT, UNIT_COUNT, &stress_layers, 0, 1e6, "N",
+		"layers of --stress; 0: as many as were searched for failure", NULL, 1 },
+	{ 'F', "load", OPT_NUM, UNIT_FORCE, &load, 0, 1e30, "F",
+		"normal load of the steps to come; by default that of the input", NULL, 0 },
+	{ 'P', "pressure", OPT_NUM, UNIT_PRESSURE, &mean_pressure, 0, 1e30, "P",
+		"mean pressure, in place of a load", NULL, 0 },
+	{ 'D', "approach", OPT_NUM, UNIT_LENGTH, &approach, -1e12, 1e12, "D",
+		"how far the flat goes past height 0, in place of a load", NULL, 0 },
+	{ 'E', "young", OPT_LIST, UNIT_PRESSURE, &young, 1e-6, 1e30, "E1[,E2]",
+		"Young's moduli of the bodies; one for both", NULL, 0 },
+	{ 'e', "estar", OPT_NUM, UNIT_PRESSURE, &estar, 1e-6, 1e30, "E",
+		"contact modulus, in place of --young", NULL, 0 },
+	{ 'b', "boundary", OPT_WORD, UNIT_NONE, &boundary, 0, 0, "free|periodic",
+		"surface around the grid: free of load, or the grid repeated", boundaries, 0 },
+	{ 'K', "hardness", OPT_NUM, UNIT_PRESSURE, &hardness, 0, 1e30, "H",
+		"largest pressure; 0: none", NULL, 0 },
+	{ 't', "tolerance", OPT_NUM, UNIT_NONE, &tolerance, 1e-16, 1, "T",
+		"certificate the contact is solved to", NULL, 0 },
+	{ 'i', "max-iterations", OPT_INT, UNIT_COUNT, &max_iterations, 1, 1e9, "N",
+		"iterations after which to give up", NULL, 0 },
+	{ 'k', "memory", OPT_INT, UNIT_COUNT, &memory, 0, 1e7, "MB",
+		"megabytes for influence coefficients kept; the result is the same", NULL, 1 },
+	{ 'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N",
+		"threads; the result is the same", NULL, 1 },
+	OPT_END
+};
+
+static const struct prog prog = { "debrisgen",
+	"Find the wear particles that a rough contact tears off, step by step.", "[file]",
+	"fields: height, pressure", "table: one row per wear particle", opts };
+
+static const char particle_columns[] =
+	"realisation step particle nodes volume diameter aspect x y z length width elongation "
+	"convexity area azimuth dip x_low x_high y_low y_high z_low z_high";
+static const char particle_units[] =
+	"1 1 1 1 m3 m 1 m m m m m 1 1 m2 rad rad m m m m m m";
+static const char summary_columns[] =
+	"realisation step distance load contact_fraction max_pressure edge_load volume "
+	"particles mean_diameter max_diameter depth relative_roughness max_von_mises";
+static const char summary_units[] = "1 1 m N 1 Pa 1 m3 1 m m m 1 Pa";
+
+/* Fields of --stress: one word gives one or several. */
+enum { MISES = 1, HYDROSTATIC = 2, PRINCIPAL = 4, TENSOR = 8 };
+static const char *const stress_words[] = { "von_mises", "hydrostatic", "principal", "tensor",
+	NULL };
+static int stress_wanted;
+
+/* Where everything goes, and what is kept from record to record. */
+struct run {
+	struct fields_in *in;
+	struct table_out *particles, *summary;
+	struct fields_out *surface, *stress;
+	struct pool *pool;
+	struct debris *debris;
+	struct contact *contact;
+	struct debris_par par;
+	struct stress_work seen;
+	int status;
+};
+
+static void choose_stress(const char *list)
+{
+	while (*list) {
+		size_t n = strcspn(list, ",");
+		int k = 0;
+
+		while (stress_words[k] && (strlen(stress_words[k]) != n ||
+			strncmp(list, stress_words[k], n) != 0))
+			k++;
+		if (!stress_words[k])
+			die(EXIT_USAGE,
+				"--fields '%.*s': want von_mises, hydrostatic, principal or tensor",
+				(int)n, list);
+		stress_wanted |= 1 << k;
+		list += n + (list[n] == ',');
+	}
+}
+
+static void check_options(void)
+{
+	if (isnan(yield))
+		die(EXIT_USAGE, "want --yield");
+	if (!isnan(load) + !isnan(mean_pressure) + !isnan(approach) > 1)
+		die(EXIT_USAGE, "want only one of --load, --pressure and --approach");
+	if (!isnan(estar) && young.n)
+		die(EXIT_USAGE, "want only one of --estar and --young");
+	if (young.n > 2 || poisson.n > 2 || poisson.n < 1)
+		die(EXIT_USAGE, "--young and --poisson take one or two values");
+	if (steps > 1 && isnan(estar) && !young.n)
+		die(EXIT_USAGE, "--steps %ld solves contacts: want --young or --estar", steps);
+	if (young.n)
+		estar = kernel_modulus(young.v[0], poisson.v[0], young.v[young.n - 1],
+			poisson.v[poisson.n - 1]);
+	choose_stress(stress_fields);
+}
+
+/* Makes the machinery for grids like that of r, unless it is there already. */
+static void prepare(struct run *run, const struct record *r)
+{
+	const struct stress_par *old = &run->par.stress;
+	struct contact_par contact = { .nx = r->nx, .ny = r->ny, .dx = r->dx, .dy = r->dy,
+		.estar = estar, .hardness = hardness, .boundary = (enum contact_boundary)boundary,
+		.solver = CONTACT_PK, .tolerance = tolerance,
+		.max_iterations = max_iterations, .pool = run->pool };
+
+	if (run->debris && r->nx == old->nx && r->ny == old->ny && r->dx == old->ax &&
+		r->dy == old->ay)
+		return;
+	debris_free(run->debris);
+	contact_free(run->contact);
+	run->contact = NULL;
+	run->par = (struct debris_par){ .yield = yield, .rule = (enum wear_rule)removal };
+	run->par.stress = (struct stress_par){ .nx = r->nx, .ny = r->ny, .ax = r->dx,
+		.ay = r->dy, .dz = isnan(depth_step) ? r->dx : depth_step,
+		.offset = layer ? 0.5 : 0, .nu = poisson.v[0], .mu = friction, .axis = shear,
+		.periodic = boundary == CONTACT_PERIODIC, .memory = (size_t)memory << 20,
+		.pool = run->pool };
+	memset(&run->seen, 0, sizeof(run->seen));
+	run->debris = debris_new(&run->par);
+	if (run->debris && steps > 1)
+		run->contact = contact_new(&contact);
+	if (!run->debris || (steps > 1 && !run->contact))
+		die(EXIT_RUN, "%s: record %ld: %dx%d cells:", fields_name(run->in),
+			fields_count(run->in), r->nx, r->ny);
+}
+
+/* Presses the worn surface again, from the last pressure. */
+static void press(struct run *run, const struct record *r, double target, double *h, double *p,
+	long step)
+{
+	enum contact_control control = isnan(approach) ? CONTACT_PRESSURE : CONTACT_APPROACH;
+	enum contact_status status = contact_solve(run->contact, h, control, target, p, NULL);
+	const struct contact_result *c = contact_result(run->contact);
+
+	if (status != CONTACT_OK && status != CONTACT_NOCONV)
+		die(EXIT_RUN, "%s: record %ld, step %ld: no contact at %g %s: %s",
+			fields_name(run->in), fields_count(run->in), step, target,
+			isnan(approach) ? "Pa" : "m",
+			status == CONTACT_OVERLOAD ? "the hardness cannot carry it" :
+			status == CONTACT_TOO_DEEP ? "beyond full contact" :
+						     "numbers beyond double precision");
+	if (status == CONTACT_NOCONV) {
+		warn("%s: realisation %ld, step %ld: contact not solved to %g, only to %.2g",
+			fields_name(run->in), r->realisation, step, tolerance, c->certificate);
+		run->status = EXIT_NOCONV;
+	}
+	stats_add("contact_iterations", (double)c->iterations);
+	stats_add("contact_transforms", (double)c->transforms);
+}
+
+static void put_particles(struct run *run, long realisation, long step,
+	const struct debris_step *s)
+{
+	struct table_out *t = run->particles;
+
+	for (size_t i = 0; i < s->count; i++) {
+		const struct particle *p = &s->particle[i];
+		double row[] = { (double)realisation, (double)step, (double)(i + 1), p->nodes,
+			p->volume, p->diameter, p->aspect, p->x, p->y, p->z, p->length, p->width,
+			p->elongation, p->convexity, p->area, p->azimuth, p->dip, p->low[0],
+			p->high[0], p->low[1], p->high[1], p->low[2], p->high[2] };
+
+		for (size_t k = 0; k < sizeof(row) / sizeof(*row); k++)
+			table_put(t, row[k]);
+		table_end_row(t);
+	}
+	table_flush(t);
+}
+
+static void put_summary(struct run *run, const struct record *r, long step,
+	const struct debris_step *s, double roughness)
+{
+	double mean = 0, most = 0, length = shear ? r->ny * r->dy : r->nx * r->dx;
+
+	for (size_t i = 0; i < s->count; i++) {
+		mean += s->particle[i].diameter / (double)s->count;
+		most = fmax(most, s->particle[i].diameter);
+	}
+	double row[] = { (double)r->realisation, (double)step, (double)step * amplification * length,
+		s->load, s->contact, s->max_pressure, s->edge_load, s->volume, (double)s->count,
+		s->count ? mean : NAN, s->count ? most : NAN, s->depth, roughness,
+		s->wear.mises };
+
+	for (size_t k = 0; k < sizeof(row) / sizeof(*row); k++)
+		table_put(run->summary, row[k]);
+	table_end_row(run->summary);
+	table_flush(run->summary);
+}
+
+/* A record like r without its fields, with the keys that stay true of worn surfaces. */
+static void bare_record(struct record *out, const struct record *r, const char *cmd, long step)
+{
+	static const char *const kept[] = { "seed", "sq", "crown", NULL };
+
+	record_init(out, r->nx, r->ny, r->dx, r->dy);
+	out->realisation = r->realisation;
+	out->cmd = xstrdup(cmd);
+	for (int i = 0; kept[i]; i++)
+		if (record_get(r, kept[i]))
+			record_set(out, kept[i], "%s", record_get(r, kept[i]));
+	record_set(out, "step", "%ld", step);
+}
+
+static void put_surface(struct run *run, const struct record *r, const char *cmd, long step,
+	const double *h, const double *p)
+{
+	size_t bytes = (size_t)r->nx * r->ny * sizeof(*h);
+	struct record out = { 0 };
+
+	bare_record(&out, r, cmd, step);
+	memcpy(record_add(&out, "height", "m"), h, bytes);
+	/* The next solution starts from it, here as in a pipeline. */
+	memcpy(record_add(&out, "pressure", "Pa"), p, bytes);
+	fields_write(run->surface, &out);
+	record_free(&out);
+}
+
+/* The fields wanted at one point, in the order of their names in put_stress(). */
+static int derive(const double t[STRESS_COMPONENTS], double *out)
+{
+	int n = 0;
+
+	if (stress_wanted & MISES)
+		out[n++] = stress_von_mises(t);
+	if (stress_wanted & HYDROSTATIC)
+		out[n++] = (t[STRESS_XX] + t[STRESS_YY] + t[STRESS_ZZ]) / 3;
+	if (stress_wanted & PRINCIPAL) {
+		stress_principal(t, out + n);
+		n += 3;
+	}
+	if (stress_wanted & TENSOR) {
+		memcpy(out + n, t, STRESS_COMPONENTS * sizeof(*t));
+		n += STRESS_COMPONENTS;
+	}
+	return n;
+}
+
+static void put_stress(struct run *run, const struct record *r, const char *cmd, long step,
+	const struct debris_step *s)
+{
+	static const char *const names[] = { "von_mises", "hydrostatic", "principal_1",
+		"principal_2", "principal_3", "xx", "yy", "zz", "xy", "xz", "yz" };
+	static const int part[] = { MISES, HYDROSTATIC, PRINCIPAL, PRINCIPAL, PRINCIPAL, TENSOR,
+		TENSOR, TENSOR, TENSOR, TENSOR, TENSOR };
+	size_t n = (size_t)r->nx * r->ny;
+	long count = stress_layers ? stress_layers : s->wear.layers > 0 ? s->wear.layers : 1;
+	double *tensor = xcalloc(n, STRESS_COMPONENTS * sizeof(*tensor));
+	struct record out = { 0 };
+
+	bare_record(&out, r, cmd, step);
+	out.nz = (int)count;
+	out.dz = run->par.stress.dz;
+	record_set(&out, "first_depth", "%.17g", run->par.stress.offset * out.dz);
+	for (size_t k = 0; k < sizeof(part) / sizeof(*part); k++)
+		if (stress_wanted & part[k])
+			record_add(&out, names[k], "Pa");
+	for (long m = 0; m < count; m++) {
+		if (stress_tensor(debris_stress(run->debris), m, tensor))
+			die(EXIT_RUN, "no memory for the stress of %ld layers", count);
+		for (size_t i = 0; i < n; i++) {
+			double t[STRESS_COMPONENTS], v[RECORD_FIELDS_MAX];
+
+			for (int c = 0; c < STRESS_COMPONENTS; c++)
+				t[c] = tensor[c * n + i];
+			derive(t, v);
+			for (int k = 0; k < out.nfields; k++)
+				out.data[k][m * n + i] = v[k];
+		}
+	}
+	fields_write(run->stress, &out);
+	record_free(&out);
+	free(tensor);
+}
+
+static void count_work(struct run *run, const struct debris_step *s)
+{
+	struct stress_work w = stress_work(debris_stress(run->debris));
+
+	stats_add("steps", 1);
+	stats_add("particles", (double)s->count);
+	stats_add("layers", (double)s->wear.layers);
+	stats_add("nodes", s->wear.nodes);
+	stats_add("nodes_skipped", s->wear.nodes_skipped);
+	stats_add("stress_transforms", w.transforms - run->seen.transforms);
+	stats_add("kernel_cells", w.kernel_cells - run->seen.kernel_cells);
+	stats_add("layers_direct", w.direct_layers - run->seen.direct_layers);
+	stats_add("layers_fourier", w.fourier_layers - run->seen.fourier_layers);
+	run->seen = w;
+}
+
+static void refuse(const struct run *run, enum debris_status status, long step)
+{
+	if (status == DEBRIS_OK)
+		return;
+	die(EXIT_RUN, "%s: record %ld, step %ld: %s", fields_name(run->in), fields_count(run->in),
+		step,
+		status == DEBRIS_PULL ? "pressure below zero" :
+		status == DEBRIS_DEEP ? "material fails deeper than ten times the grid is long" :
+					"out of memory");
+}
+
+/* Wears one surface step by step. */
+static void wear_record(struct run *run, struct record *r)
+{
+	double *h = record_need(r, "height", 1, run->in);
+	double *p = record_need(r, "pressure", 1, run->in);
+	double crown = record_get_number(r, "crown"), sq = record_get_number(r, "sq");
+	double before = record_get_number(r, "step");
+	long done = isnan(before) ? 0 : (long)before;
+	char *cmd = opt_cmd(r->cmd, NULL);
+	struct debris_step s;
+	double target;
+
+	if (r->nz != 1)
+		die(EXIT_RUN, "%s: record %ld: want plane fields, got %d layers",
+			fields_name(run->in), fields_count(run->in), r->nz);
+	prepare(run, r);
+	crown = isnan(crown) ? 0 : crown;
+	if (isnan(sq) || sq <= 0) {
+		sq = debris_roughness(r->nx, r->ny, r->dx, r->dy, h, crown);
+		record_set(r, "sq", "%.17g", sq);
+	}
+	debris_contact(run->debris, p, &s);
+	target = !isnan(approach)      ? approach :
+		!isnan(mean_pressure) ? mean_pressure :
+		!isnan(load)          ? load / (r->nx * r->dx * r->ny * r->dy) :
+		!isnan(record_get_number(r, "mean_pressure")) ?
+					record_get_number(r, "mean_pressure") :
+					s.load / (r->nx * r->dx * r->ny * r->dy);
+	table_cmd(run->particles, cmd);
+	if (run->summary)
+		table_cmd(run->summary, cmd);
+	for (long k = 1; k <= steps; k++) {
+		progress("steps", (double)(k - 1), (double)steps);
+		if (k > 1)
+			press(run, r, target, h, p, done + k);
+		debris_contact(run->debris, p, &s);
+		if (s.edge_load > 0.05)
+			warn("%s: realisation %ld, step %ld: %.0f %% of the load lies on the "
+			     "outermost cells",
+				fields_name(run->in), r->realisation, done + k, 100 * s.edge_load);
+		if (s.contact >= stop_area) {
+			note("%s: realisation %ld, step %ld: %.3g of the cells in contact: "
+			     "stopped",
+				fields_name(run->in), r->realisation, done + k, s.contact);
+			stats_add("steps_skipped", (double)(steps - k + 1));
+			break;
+		}
+		refuse(run, debris_step(run->debris, h, p, &s), done + k);
+		count_work(run, &s);
+		put_particles(run, r->realisation, done + k, &s);
+		if (run->summary)
+			put_summary(run, r, done + k, &s,
+				debris_roughness(r->nx, r->ny, r->dx, r->dy, h, crown) / sq);
+		if (run->stress)
+			put_stress(run, r, cmd, done + k, &s);
+		if (run->surface)
+			put_surface(run, r, cmd, done + k, h, p);
+		note("%s: realisation %ld, step %ld: %zu particles, %.6g m3, %ld layers",
+			fields_name(run->in), r->realisation, done + k, s.count, s.volume,
+			s.wear.layers);
+	}
+	free(cmd);
+}
+
+int main(int argc, char **argv)
+{
+	int first = opt_parse(&prog, argc, argv);
+	struct record r = { 0 };
+	struct run run = { 0 };
+
+	check_options();
+	run.pool = pool_new((int)threads);
+	if (!run.pool)
+		die(EXIT_RUN, "cannot start %ld threads:", threads);
+	run.in = fields_open(argv[first], NULL);
+	while (fields_read(run.in, &r)) {
+		if (!run.particles) {
+			char *cmd = opt_cmd(r.cmd, NULL);
+
+			run.particles = table_create(NULL, cmd, particle_units, particle_columns);
+			if (summary_path)
+				run.summary = table_create(summary_path, cmd, summary_units,
+					summary_columns);
+			if (surface_path)
+				run.surface = fields_create(surface_path);
+			if (stress_path)
+				run.stress = fields_create(stress_path);
+			free(cmd);
+		}
+		wear_record(&run, &r);
+	}
+	progress_clear();
+	if (run.particles)
+		table_done(run.particles);
+	if (run.summary)
+		table_done(run.summary);
+	if (run.surface)
+		fields_done(run.surface);
+	if (run.stress)
+		fields_done(run.stress);
+	debris_free(run.debris);
+	contact_free(run.contact);
+	fields_close(run.in);
+	record_free(&r);
+	pool_free(run.pool);
+	return shell_done(run.status);
+}

@@ -1,0 +1,125 @@
+#!/bin/sh
+# debrisgen: removal sets, steps, worn surfaces, stress fields, refusals
+. "$(dirname "$0")/tap.sh"
+
+# rows FILE: a table without its comments and header
+rows() {
+	awk '!/^#/ && !/^realisation/' "$1"
+}
+
+summary() {
+	column "$1" summary.tsv
+}
+
+# A paraboloid of radius 5 mm on 1 mm x 1 mm: smooth, so the counts hang on nothing but
+# pressure, stress and rule.  Values found with independent code.
+roughgen -n 128 -L 1mm --sq 0 --crown 50um | bemcontact -F 50N -E 210GPa >ball.nrrd
+wear="debrisgen -Y 355MPa -u 0.3"
+near "ball: largest pressure" "$(rec ball.nrrd | awk '$3 == "pressure" { print $12 }')" 1725.5455e6 1e3
+$wear -U summary.tsv -S stats.tsv ball.nrrd >ball.tsv
+is "ball: cells lost by column" "$(column nodes ball.tsv)" 21884
+near "ball: volume" "$(summary volume)" 1.0435104370117188e-11 1e-24
+near "ball: 31 layers deep" "$(summary depth)" 242.1875e-6 1e-12
+is "ball: layers searched" "$(column layers stats.tsv)" 32
+near "ball: diameter" "$(column diameter ball.tsv)" 271.1228108e-6 1e-13
+near "ball: friction moves the particle to its front" "$(column x ball.tsv)" 503.367186e-6 1e-11
+near "ball: and leaves it in the middle across" "$(column y ball.tsv)" 500e-6 1e-12
+$wear -r potential ball.nrrd >t.tsv
+is "ball: all failed cells" "$(column nodes t.tsv)" 30074
+$wear -l mid ball.nrrd >t.tsv
+is "ball: stress at mid height" "$(column nodes t.tsv)" 21986
+# One part in a thousand of yield: no more than the outermost cells.
+debrisgen -Y 355.355MPa -u 0.3 ball.nrrd >t.tsv
+is "ball: yield 0.1 % higher" "$(column nodes t.tsv)" 21868
+debrisgen -Y 354.645MPa -u 0.3 ball.nrrd >t.tsv
+is "ball: yield 0.1 % lower" "$(column nodes t.tsv)" 21910
+# Without friction the surface hardly fails: the rim alone, 36 pieces.
+debrisgen -Y 355MPa -U summary.tsv ball.nrrd >t.tsv
+near "ball without friction: cells lost" "$(summary volume)" 3.814697265625e-14 1e-26
+is "ball without friction: pieces" "$(summary particles)" 36
+debrisgen -Y 355MPa -l mid -r potential ball.nrrd >t.tsv
+is "ball without friction: all failed cells at mid height" "$(column nodes t.tsv)" 27400
+
+# Shear along y is shear along x, turned.
+$wear -d y ball.nrrd >t.tsv
+is "shear along y turns the particle" "$(awk '/^0/ { print $4, $9 }' t.tsv)" \
+	"$(awk '/^0/ { print $4, $8 }' ball.tsv)"
+
+# Steps inside and one after another.
+roughgen -n 64 -L 0.5mm -q 8um -l 50um -C 32um -c 2 >rough.nrrd
+contact="bemcontact -F 20N -E 210GPa"
+$contact rough.nrrd >start.nrrd
+$wear -T 3 -F 20N -E 210GPa -U all.tsv -O all.nrrd start.nrrd >inside.tsv 2>warning
+$wear -O worn1.nrrd -U s1.tsv start.nrrd >1.tsv
+$contact worn1.nrrd | $wear -O worn2.nrrd -U s2.tsv >2.tsv
+$contact worn2.nrrd | $wear -O worn3.nrrd -U s3.tsv >3.tsv 2>warning
+cat 1.tsv 2.tsv 3.tsv >loop.tsv
+rows inside.tsv | sort -s -n -k1,2 >a
+rows loop.tsv | sort -s -n -k1,2 >b
+ok "particles of three steps" test "$(wc -l <a)" -gt 6
+same "a loop of bemcontact and debrisgen: the same particles" a b
+cat s1.tsv s2.tsv s3.tsv >s.tsv
+rows all.tsv | sort -s -n -k1,2 >a
+rows s.tsv | sort -s -n -k1,2 >b
+same "and the same summary" a b
+rec -n 3 -o text all.nrrd >a
+rec -n 1 -o text worn3.nrrd >b
+same "and the same worn surface" a b
+rec -o nrrd start.nrrd >again.nrrd
+$wear -T 3 -E 210GPa again.nrrd >t.tsv 2>warning
+rows t.tsv >a
+rows inside.tsv >b
+same "the load is that of the input" a b
+$wear -T 3 -F 20N -E 210GPa -j 2 -k 0 start.nrrd >t.tsv 2>warning
+same "threads and kept memory change nothing" t.tsv inside.tsv
+rec -n 2 -o nrrd start.nrrd | $wear -T 3 -F 20N -E 210GPa >t.tsv 2>warning
+rows inside.tsv | awk '$1 == 1' >a
+rows t.tsv >b
+same "what came before changes nothing" a b
+
+# The worn surface is the old one less the removed volume.
+mean() { rec "$1" | awk '$2 == 0 && $3 == "height" { print $11; exit }'; }
+near "volume is what the surface lost" \
+	"$(echo "$(mean start.nrrd) $(mean worn1.nrrd)" | awk '{ print ($1 - $2) * 0.25e-6 * 1e12 }')" \
+	"$(column volume s1.tsv | awk '{ print $1 * 1e12; exit }')" 1e-9
+is "distance counts amplified steps" \
+	"$(debrisgen -Y 355MPa -Z 0.72 -U /dev/fd/3 start.nrrd 3>&1 >t.tsv | awk '!/^[#r]/ { print $3; exit }')" \
+	"0.00035999999999999997"
+
+# Steps that touch everywhere stop.
+roughgen -n 32 -L 1mm --sq 1nm -l 200um | bemcontact -P 100MPa -E 210GPa >flat.nrrd
+debrisgen -Y 1MPa -T 5 -E 210GPa -S stats.tsv flat.nrrd 2>err >t.tsv
+is "contact over 80 % stops the wear" "$(column steps_skipped stats.tsv)" 5
+is "and gives no particles" "$(rows t.tsv)" ""
+
+# Stress fields.
+debrisgen -Y 355MPa -u 0.3 -G stress.nrrd -o von_mises,principal,hydrostatic,tensor -y 8 \
+	ball.nrrd >t.tsv
+is "stress: fields and layers" "$(rec stress.nrrd | awk 'NR > 1 { printf "%s %s;", $3, $7 }')" \
+	"von_mises 8;hydrostatic 8;principal_1 8;principal_2 8;principal_3 8;xx 8;yy 8;zz 8;xy 8;xz 8;yz 8;"
+rec -o table stress.nrrd | awk '!/^[#r]/ {
+	i = $6 - ($10 + $11 + $12) / 3; if (i < 0) i = -i
+	j = $7 + $8 + $9 - 3 * $6; if (j < 0) j = -j
+	v = sqrt((($7 - $8) ^ 2 + ($8 - $9) ^ 2 + ($9 - $7) ^ 2) / 2) - $5; if (v < 0) v = -v
+	if (i > bad) bad = i; if (j > bad) bad = j; if (v > bad) bad = v }
+	END { print bad }' >bad
+near "stress: invariants agree" "$(cat bad)" 0 1
+near "stress: under the surface szz is the pressure" "$(rec stress.nrrd | awk '$3 == "zz" { print $10 }')" \
+	-1725.5455e6 1e3
+
+# Edge load is told.
+roughgen -n 32 -L 1mm --sq 1um -l 100um -s 3 | bemcontact -F 1N -E 210GPa |
+	debrisgen -Y 355MPa -U summary.tsv 2>warning >t.tsv
+near "much load on the rim" "$(summary edge_load)" 0.5 0.45
+ok "is warned of" grep -q "outermost cells" warning
+
+fails "no yield stress" 2 "want --yield" debrisgen
+fails "steps without a modulus" 2 "want --young or --estar" debrisgen -Y 1GPa -T 2
+fails "two loads" 2 "only one of" debrisgen -Y 1GPa -F 1N -P 1MPa
+fails "an unknown stress field" 2 "principal or tensor" debrisgen -Y 1GPa -o foo
+fails "no pressure" 1 "pressure" debrisgen -Y 1GPa rough.nrrd
+fails "a stress field as input" 1 "height" debrisgen -Y 1GPa stress.nrrd
+head -c 20000 start.nrrd >cut.nrrd
+fails "a truncated record" 1 "cut.nrrd: record 1: want" debrisgen -Y 1GPa cut.nrrd
+fails "material without strength" 1 "step 1: material fails deeper" debrisgen -Y 1e-6 start.nrrd
+done_testing
