@@ -25,7 +25,8 @@ static double hardness, tolerance = 1e-8;
 static struct opt_list young, poisson = { 1, { 0.3 } };
 static int shear, layer, removal, boundary;
 static long steps = 1, stress_layers, max_iterations = 10000, memory = 512, threads = 1;
-static const char *surface_path, *summary_path, *stress_path, *stress_fields = "von_mises";
+static const char *surface_path, *summary_path, *stress_path,
+	*stress_fields = "von_mises";
 
 static const struct opt opts[] = {
 	{ 'Y', "yield", OPT_NUM, UNIT_PRESSURE, &yield, 1e-30, 1e30, "Y",
@@ -60,7 +61,8 @@ static const struct opt opts[] = {
 	{ 'y', "stress-layers", OPT_INT, UNIT_COUNT, &stress_layers, 0, 1e6, "N",
 		"layers of --stress; 0: as many as were searched for failure", NULL, 1 },
 	{ 'F', "load", OPT_NUM, UNIT_FORCE, &load, 0, 1e30, "F",
-		"normal load of the steps to come; by default that of the input", NULL, 0 },
+		"normal load of the steps to come; by default that of the input", NULL,
+		0 },
 	{ 'P', "pressure", OPT_NUM, UNIT_PRESSURE, &mean_pressure, 0, 1e30, "P",
 		"mean pressure, in place of a load", NULL, 0 },
 	{ 'D', "approach", OPT_NUM, UNIT_LENGTH, &approach, -1e12, 1e12, "D",
@@ -70,7 +72,8 @@ static const struct opt opts[] = {
 	{ 'e', "estar", OPT_NUM, UNIT_PRESSURE, &estar, 1e-6, 1e30, "E",
 		"contact modulus, in place of --young", NULL, 0 },
 	{ 'b', "boundary", OPT_WORD, UNIT_NONE, &boundary, 0, 0, "free|periodic",
-		"surface around the grid: free of load, or the grid repeated", boundaries, 0 },
+		"surface around the grid: free of load, or the grid repeated", boundaries,
+		0 },
 	{ 'K', "hardness", OPT_NUM, UNIT_PRESSURE, &hardness, 0, 1e30, "H",
 		"largest pressure; 0: none", NULL, 0 },
 	{ 't', "tolerance", OPT_NUM, UNIT_NONE, &tolerance, 1e-16, 1, "T",
@@ -78,7 +81,8 @@ static const struct opt opts[] = {
 	{ 'i', "max-iterations", OPT_INT, UNIT_COUNT, &max_iterations, 1, 1e9, "N",
 		"iterations after which to give up", NULL, 0 },
 	{ 'k', "memory", OPT_INT, UNIT_COUNT, &memory, 0, 1e7, "MB",
-		"megabytes for influence coefficients kept; the result is the same", NULL, 1 },
+		"megabytes for influence coefficients kept; the result is the same", NULL,
+		1 },
 	{ 'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N",
 		"threads; the result is the same", NULL, 1 },
 	OPT_END
@@ -100,8 +104,8 @@ static const char summary_units[] = "1 1 m N 1 Pa 1 m3 1 m m m 1 Pa";
 
 /* Fields of --stress: one word gives one or several. */
 enum { MISES = 1, HYDROSTATIC = 2, PRINCIPAL = 4, TENSOR = 8 };
-static const char *const stress_words[] = { "von_mises", "hydrostatic", "principal", "tensor",
-	NULL };
+static const char *const stress_words[] = { "von_mises", "hydrostatic", "principal",
+	"tensor", NULL };
 static int stress_wanted;
 
 /* Where everything goes, and what is kept from record to record. */
@@ -124,7 +128,7 @@ static void choose_stress(const char *list)
 		int k = 0;
 
 		while (stress_words[k] && (strlen(stress_words[k]) != n ||
-			strncmp(list, stress_words[k], n) != 0))
+						  strncmp(list, stress_words[k], n) != 0))
 			k++;
 		if (!stress_words[k])
 			die(EXIT_USAGE,
@@ -146,7 +150,8 @@ static void check_options(void)
 	if (young.n > 2 || poisson.n > 2 || poisson.n < 1)
 		die(EXIT_USAGE, "--young and --poisson take one or two values");
 	if (steps > 1 && isnan(estar) && !young.n)
-		die(EXIT_USAGE, "--steps %ld solves contacts: want --young or --estar", steps);
+		die(EXIT_USAGE, "--steps %ld solves contacts: want --young or --estar",
+			steps);
 	if (young.n)
 		estar = kernel_modulus(young.v[0], poisson.v[0], young.v[young.n - 1],
 			poisson.v[poisson.n - 1]);
@@ -157,10 +162,17 @@ static void check_options(void)
 static void prepare(struct run *run, const struct record *r)
 {
 	const struct stress_par *old = &run->par.stress;
-	struct contact_par contact = { .nx = r->nx, .ny = r->ny, .dx = r->dx, .dy = r->dy,
-		.estar = estar, .hardness = hardness, .boundary = (enum contact_boundary)boundary,
-		.solver = CONTACT_PK, .tolerance = tolerance,
-		.max_iterations = max_iterations, .pool = run->pool };
+	struct contact_par contact = { .nx = r->nx,
+		.ny = r->ny,
+		.dx = r->dx,
+		.dy = r->dy,
+		.estar = estar,
+		.hardness = hardness,
+		.boundary = (enum contact_boundary)boundary,
+		.solver = CONTACT_PK,
+		.tolerance = tolerance,
+		.max_iterations = max_iterations,
+		.pool = run->pool };
 
 	if (run->debris && r->nx == old->nx && r->ny == old->ny && r->dx == old->ax &&
 		r->dy == old->ay)
@@ -169,10 +181,17 @@ static void prepare(struct run *run, const struct record *r)
 	contact_free(run->contact);
 	run->contact = NULL;
 	run->par = (struct debris_par){ .yield = yield, .rule = (enum wear_rule)removal };
-	run->par.stress = (struct stress_par){ .nx = r->nx, .ny = r->ny, .ax = r->dx,
-		.ay = r->dy, .dz = isnan(depth_step) ? r->dx : depth_step,
-		.offset = layer ? 0.5 : 0, .nu = poisson.v[0], .mu = friction, .axis = shear,
-		.periodic = boundary == CONTACT_PERIODIC, .memory = (size_t)memory << 20,
+	run->par.stress = (struct stress_par){ .nx = r->nx,
+		.ny = r->ny,
+		.ax = r->dx,
+		.ay = r->dy,
+		.dz = isnan(depth_step) ? r->dx : depth_step,
+		.offset = layer ? 0.5 : 0,
+		.nu = poisson.v[0],
+		.mu = friction,
+		.axis = shear,
+		.periodic = boundary == CONTACT_PERIODIC,
+		.memory = (size_t)memory << 20,
 		.pool = run->pool };
 	memset(&run->seen, 0, sizeof(run->seen));
 	run->debris = debris_new(&run->par);
@@ -184,40 +203,44 @@ static void prepare(struct run *run, const struct record *r)
 }
 
 /* Presses the worn surface again, from the last pressure. */
-static void press(struct run *run, const struct record *r, double target, double *h, double *p,
-	long step)
+static void press(struct run *run, const struct record *r, double target, double *h,
+	double *p, long step)
 {
-	enum contact_control control = isnan(approach) ? CONTACT_PRESSURE : CONTACT_APPROACH;
-	enum contact_status status = contact_solve(run->contact, h, control, target, p, NULL);
+	enum contact_control control =
+		isnan(approach) ? CONTACT_PRESSURE : CONTACT_APPROACH;
+	enum contact_status status =
+		contact_solve(run->contact, h, control, target, p, NULL);
 	const struct contact_result *c = contact_result(run->contact);
 
 	if (status != CONTACT_OK && status != CONTACT_NOCONV)
 		die(EXIT_RUN, "%s: record %ld, step %ld: no contact at %g %s: %s",
 			fields_name(run->in), fields_count(run->in), step, target,
 			isnan(approach) ? "Pa" : "m",
-			status == CONTACT_OVERLOAD ? "the hardness cannot carry it" :
-			status == CONTACT_TOO_DEEP ? "beyond full contact" :
-						     "numbers beyond double precision");
+			status == CONTACT_OVERLOAD   ? "the hardness cannot carry it"
+			: status == CONTACT_TOO_DEEP ? "beyond full contact"
+						     : "numbers beyond double precision");
 	if (status == CONTACT_NOCONV) {
 		warn("%s: realisation %ld, step %ld: contact not solved to %g, only to %.2g",
-			fields_name(run->in), r->realisation, step, tolerance, c->certificate);
+			fields_name(run->in), r->realisation, step, tolerance,
+			c->certificate);
 		run->status = EXIT_NOCONV;
 	}
 	stats_add("contact_iterations", (double)c->iterations);
 	stats_add("contact_transforms", (double)c->transforms);
 }
 
-static void put_particles(struct run *run, long realisation, long step,
-	const struct debris_step *s)
+static void put_particles(
+	struct run *run, long realisation, long step, const struct debris_step *s)
 {
 	struct table_out *t = run->particles;
 
 	for (size_t i = 0; i < s->count; i++) {
 		const struct particle *p = &s->particle[i];
-		double row[] = { (double)realisation, (double)step, (double)(i + 1), p->nodes,
-			p->volume, p->diameter, p->aspect, p->x, p->y, p->z, p->length, p->width,
-			p->elongation, p->convexity, p->area, p->azimuth, p->dip, p->low[0],
-			p->high[0], p->low[1], p->high[1], p->low[2], p->high[2] };
+		double row[] = { (double)realisation, (double)step, (double)(i + 1),
+			p->nodes, p->volume, p->diameter, p->aspect, p->x, p->y, p->z,
+			p->length, p->width, p->elongation, p->convexity, p->area,
+			p->azimuth, p->dip, p->low[0], p->high[0], p->low[1], p->high[1],
+			p->low[2], p->high[2] };
 
 		for (size_t k = 0; k < sizeof(row) / sizeof(*row); k++)
 			table_put(t, row[k]);
@@ -235,8 +258,9 @@ static void put_summary(struct run *run, const struct record *r, long step,
 		mean += s->particle[i].diameter / (double)s->count;
 		most = fmax(most, s->particle[i].diameter);
 	}
-	double row[] = { (double)r->realisation, (double)step, (double)step * amplification * length,
-		s->load, s->contact, s->max_pressure, s->edge_load, s->volume, (double)s->count,
+	double row[] = { (double)r->realisation, (double)step,
+		(double)step * amplification * length, s->load, s->contact,
+		s->max_pressure, s->edge_load, s->volume, (double)s->count,
 		s->count ? mean : NAN, s->count ? most : NAN, s->depth, roughness,
 		s->wear.mises };
 
@@ -247,7 +271,8 @@ static void put_summary(struct run *run, const struct record *r, long step,
 }
 
 /* A record like r without its fields, with the keys that stay true of worn surfaces. */
-static void bare_record(struct record *out, const struct record *r, const char *cmd, long step)
+static void bare_record(
+	struct record *out, const struct record *r, const char *cmd, long step)
 {
 	static const char *const kept[] = { "seed", "sq", "crown", NULL };
 
@@ -260,8 +285,8 @@ static void bare_record(struct record *out, const struct record *r, const char *
 	record_set(out, "step", "%ld", step);
 }
 
-static void put_surface(struct run *run, const struct record *r, const char *cmd, long step,
-	const double *h, const double *p)
+static void put_surface(struct run *run, const struct record *r, const char *cmd,
+	long step, const double *h, const double *p)
 {
 	size_t bytes = (size_t)r->nx * r->ny * sizeof(*h);
 	struct record out = { 0 };
@@ -294,15 +319,17 @@ static int derive(const double t[STRESS_COMPONENTS], double *out)
 	return n;
 }
 
-static void put_stress(struct run *run, const struct record *r, const char *cmd, long step,
-	const struct debris_step *s)
+static void put_stress(struct run *run, const struct record *r, const char *cmd,
+	long step, const struct debris_step *s)
 {
 	static const char *const names[] = { "von_mises", "hydrostatic", "principal_1",
 		"principal_2", "principal_3", "xx", "yy", "zz", "xy", "xz", "yz" };
-	static const int part[] = { MISES, HYDROSTATIC, PRINCIPAL, PRINCIPAL, PRINCIPAL, TENSOR,
-		TENSOR, TENSOR, TENSOR, TENSOR, TENSOR };
+	static const int part[] = { MISES, HYDROSTATIC, PRINCIPAL, PRINCIPAL, PRINCIPAL,
+		TENSOR, TENSOR, TENSOR, TENSOR, TENSOR, TENSOR };
 	size_t n = (size_t)r->nx * r->ny;
-	long count = stress_layers ? stress_layers : s->wear.layers > 0 ? s->wear.layers : 1;
+	long count = stress_layers        ? stress_layers
+		     : s->wear.layers > 0 ? s->wear.layers
+					  : 1;
 	double *tensor = xcalloc(n, STRESS_COMPONENTS * sizeof(*tensor));
 	struct record out = { 0 };
 
@@ -351,11 +378,12 @@ static void refuse(const struct run *run, enum debris_status status, long step)
 {
 	if (status == DEBRIS_OK)
 		return;
-	die(EXIT_RUN, "%s: record %ld, step %ld: %s", fields_name(run->in), fields_count(run->in),
-		step,
-		status == DEBRIS_PULL ? "pressure below zero" :
-		status == DEBRIS_DEEP ? "material fails deeper than ten times the grid is long" :
-					"out of memory");
+	die(EXIT_RUN, "%s: record %ld, step %ld: %s", fields_name(run->in),
+		fields_count(run->in), step,
+		status == DEBRIS_PULL ? "pressure below zero"
+		: status == DEBRIS_DEEP
+			? "material fails deeper than ten times the grid is long"
+			: "out of memory");
 }
 
 /* Wears one surface step by step. */
@@ -380,12 +408,12 @@ static void wear_record(struct run *run, struct record *r)
 		record_set(r, "sq", "%.17g", sq);
 	}
 	debris_contact(run->debris, p, &s);
-	target = !isnan(approach)      ? approach :
-		!isnan(mean_pressure) ? mean_pressure :
-		!isnan(load)          ? load / (r->nx * r->dx * r->ny * r->dy) :
-		!isnan(record_get_number(r, "mean_pressure")) ?
-					record_get_number(r, "mean_pressure") :
-					s.load / (r->nx * r->dx * r->ny * r->dy);
+	target = !isnan(approach)        ? approach
+		 : !isnan(mean_pressure) ? mean_pressure
+		 : !isnan(load)          ? load / (r->nx * r->dx * r->ny * r->dy)
+		 : !isnan(record_get_number(r, "mean_pressure"))
+			 ? record_get_number(r, "mean_pressure")
+			 : s.load / (r->nx * r->dx * r->ny * r->dy);
 	table_cmd(run->particles, cmd);
 	if (run->summary)
 		table_cmd(run->summary, cmd);
@@ -397,11 +425,13 @@ static void wear_record(struct run *run, struct record *r)
 		if (s.edge_load > 0.05)
 			warn("%s: realisation %ld, step %ld: %.0f %% of the load lies on the "
 			     "outermost cells",
-				fields_name(run->in), r->realisation, done + k, 100 * s.edge_load);
+				fields_name(run->in), r->realisation, done + k,
+				100 * s.edge_load);
 		if (s.contact >= stop_area) {
 			note("%s: realisation %ld, step %ld: %.3g of the cells in contact: "
 			     "stopped",
-				fields_name(run->in), r->realisation, done + k, s.contact);
+				fields_name(run->in), r->realisation, done + k,
+				s.contact);
 			stats_add("steps_skipped", (double)(steps - k + 1));
 			break;
 		}
@@ -410,7 +440,8 @@ static void wear_record(struct run *run, struct record *r)
 		put_particles(run, r->realisation, done + k, &s);
 		if (run->summary)
 			put_summary(run, r, done + k, &s,
-				debris_roughness(r->nx, r->ny, r->dx, r->dy, h, crown) / sq);
+				debris_roughness(r->nx, r->ny, r->dx, r->dy, h, crown) /
+					sq);
 		if (run->stress)
 			put_stress(run, r, cmd, done + k, &s);
 		if (run->surface)
@@ -437,10 +468,11 @@ int main(int argc, char **argv)
 		if (!run.particles) {
 			char *cmd = opt_cmd(r.cmd, NULL);
 
-			run.particles = table_create(NULL, cmd, particle_units, particle_columns);
+			run.particles =
+				table_create(NULL, cmd, particle_units, particle_columns);
 			if (summary_path)
-				run.summary = table_create(summary_path, cmd, summary_units,
-					summary_columns);
+				run.summary = table_create(summary_path, cmd,
+					summary_units, summary_columns);
 			if (surface_path)
 				run.surface = fields_create(surface_path);
 			if (stress_path)

@@ -17,8 +17,12 @@ struct debris {
 struct debris *debris_new(const struct debris_par *par)
 {
 	const struct stress_par *s = &par->stress;
-	struct particles_par p = { .nx = s->nx, .ny = s->ny, .ax = s->ax, .ay = s->ay,
-		.az = s->dz, .periodic = s->periodic };
+	struct particles_par p = { .nx = s->nx,
+		.ny = s->ny,
+		.ax = s->ax,
+		.ay = s->ay,
+		.az = s->dz,
+		.periodic = s->periodic };
 	struct debris *d;
 
 	if (!(par->yield > 0)) {
@@ -31,7 +35,8 @@ struct debris *debris_new(const struct debris_par *par)
 	d->par = *par;
 	d->stress = stress_new(s);
 	d->particles = d->stress ? particles_new(&p) : NULL;
-	d->removed = d->particles ? calloc((size_t)s->nx * s->ny, sizeof(*d->removed)) : NULL;
+	d->removed =
+		d->particles ? calloc((size_t)s->nx * s->ny, sizeof(*d->removed)) : NULL;
 	if (!d->removed) {
 		int reason = errno;
 
@@ -57,7 +62,8 @@ struct stress *debris_stress(struct debris *d)
 	return d->stress;
 }
 
-void debris_contact(const struct debris *d, const double *pressure, struct debris_step *step)
+void debris_contact(
+	const struct debris *d, const double *pressure, struct debris_step *step)
 {
 	const struct stress_par *s = &d->par.stress;
 	double sum = 0, edge = 0, cells = 0;
@@ -84,7 +90,8 @@ enum debris_status debris_step(struct debris *d, double *height, const double *p
 	const struct stress_par *s = &d->par.stress;
 	size_t n = (size_t)s->nx * s->ny;
 	double side = fmax(s->nx * s->ax, s->ny * s->ay);
-	struct wear_par wear = { .yield = d->par.yield, .rule = d->par.rule,
+	struct wear_par wear = { .yield = d->par.yield,
+		.rule = d->par.rule,
 		.max_layers = (long)fmin(1e9, ceil(DEEPEST * side / s->dz)) };
 	enum wear_status status;
 
@@ -95,8 +102,8 @@ enum debris_status debris_step(struct debris *d, double *height, const double *p
 	if (stress_load(d->stress, pressure))
 		return DEBRIS_MEMORY;
 	particles_begin(d->particles);
-	status = wear_remove(d->stress, &wear, s->nx, s->ny, d->particles, d->removed,
-		&step->wear);
+	status = wear_remove(
+		d->stress, &wear, s->nx, s->ny, d->particles, d->removed, &step->wear);
 	if (status != WEAR_OK)
 		return status == WEAR_DEEP ? DEBRIS_DEEP : DEBRIS_MEMORY;
 	step->count = particles_end(d->particles, &step->particle);
@@ -110,8 +117,8 @@ enum debris_status debris_step(struct debris *d, double *height, const double *p
 	return DEBRIS_OK;
 }
 
-double debris_roughness(int nx, int ny, double dx, double dy, const double *height,
-	double crown)
+double debris_roughness(
+	int nx, int ny, double dx, double dy, const double *height, double crown)
 {
 	double lx = nx * dx, ly = ny * dy, corner = 0.25 * (lx * lx + ly * ly);
 	double mean = 0, square = 0;
@@ -119,9 +126,10 @@ double debris_roughness(int nx, int ny, double dx, double dy, const double *heig
 	for (int pass = 0; pass < 2; pass++)
 		for (int iy = 0; iy < ny; iy++)
 			for (int ix = 0; ix < nx; ix++) {
-				double x = (ix + 0.5) * dx - 0.5 * lx, y = (iy + 0.5) * dy - 0.5 * ly;
+				double x = (ix + 0.5) * dx - 0.5 * lx,
+				       y = (iy + 0.5) * dy - 0.5 * ly;
 				double z = height[(size_t)iy * nx + ix] +
-					crown * ((x * x + y * y) / corner);
+					   crown * ((x * x + y * y) / corner);
 
 				if (pass == 0)
 					mean += z / ((double)nx * ny);

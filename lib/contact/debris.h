@@ -4,10 +4,9 @@
  * kept over calls, so use one struct for all steps of all surfaces of one grid; results
  * do not depend on what was computed before, nor on threads.
  *
- *	struct debris_par par = { .stress = { .nx = 128, .ny = 128, .ax = 8e-6, .ay = 8e-6,
- *		.dz = 8e-6, .nu = 0.3, .mu = 0.3, .memory = 1 << 28 }, .yield = 355e6 };
- *	struct debris *d = debris_new(&par);
- *	if (debris_step(d, height, pressure, &step) == DEBRIS_OK)
+ *	struct debris_par par = { .stress = { .nx = 128, .ny = 128, .ax = 8e-6, .ay =
+ *8e-6, .dz = 8e-6, .nu = 0.3, .mu = 0.3, .memory = 1 << 28 }, .yield = 355e6 }; struct
+ *debris *d = debris_new(&par); if (debris_step(d, height, pressure, &step) == DEBRIS_OK)
  *		for (i = 0; i < step.count; i++)
  *			printf("%g\n", step.particle[i].diameter);
  *	debris_free(d);
@@ -28,12 +27,12 @@ struct debris_par {
 };
 
 struct debris_step {
-	double load;        /* N */
-	double contact;     /* loaded cells over all cells */
-	double edge_load;   /* share of the load on the outermost cells; 0 if periodic */
+	double load;      /* N */
+	double contact;   /* loaded cells over all cells */
+	double edge_load; /* share of the load on the outermost cells; 0 if periodic */
 	double max_pressure;
-	double volume;      /* worn off, m3 (2-15) */
-	double depth;       /* of the deepest cell worn off, m */
+	double volume; /* worn off, m3 (2-15) */
+	double depth;  /* of the deepest cell worn off, m */
 	struct wear_result wear;
 	size_t count;
 	const struct particle *particle; /* valid until the next call */
@@ -43,7 +42,7 @@ enum debris_status {
 	DEBRIS_OK,
 	DEBRIS_PULL, /* a pressure below zero: nothing done */
 	DEBRIS_DEEP, /* material fails deeper than ten times the grid is long; height
-	              * is as it was */
+		      * is as it was */
 	DEBRIS_MEMORY
 };
 
@@ -52,7 +51,8 @@ struct debris *debris_new(const struct debris_par *par);
 void debris_free(struct debris *d);
 
 /* The contact of a step before its wear: load, contact, edge_load and max_pressure. */
-void debris_contact(const struct debris *d, const double *pressure, struct debris_step *step);
+void debris_contact(
+	const struct debris *d, const double *pressure, struct debris_step *step);
 
 /* Wears the surface under a pressure (Pa, >= 0): lowers height (m, towards the other
  * body) by the depth step times the cells lost in each column. */
@@ -64,7 +64,7 @@ struct stress *debris_stress(struct debris *d);
 
 /* Root mean square height about the mean, after a paraboloid that falls by crown from
  * the middle to the corners has been put back. */
-double debris_roughness(int nx, int ny, double dx, double dy, const double *height,
-	double crown);
+double debris_roughness(
+	int nx, int ny, double dx, double dy, const double *height, double crown);
 
 #endif

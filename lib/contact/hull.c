@@ -7,9 +7,9 @@
 #include <string.h>
 
 struct face {
-	int v[3];       /* counter-clockwise from outside */
-	int64_t n[3];   /* outward normal */
-	int64_t level;  /* n . x on the plane */
+	int v[3];      /* counter-clockwise from outside */
+	int64_t n[3];  /* outward normal */
+	int64_t level; /* n . x on the plane */
 };
 
 struct hull {
@@ -17,9 +17,9 @@ struct hull {
 	size_t points, point_room;
 	struct face *face;
 	size_t nfaces, face_room;
-	struct hull_edge *edge;   /* the rim while building, then the edges */
+	struct hull_edge *edge; /* the rim while building, then the edges */
 	size_t edges, edge_room;
-	int *place;               /* of the points among the corners */
+	int *place; /* of the points among the corners */
 	size_t place_room;
 	double volume6;
 };
@@ -155,7 +155,7 @@ static size_t drop_rows(struct hull_point *point, size_t count)
 		if (kept && !compare(&point[kept - 1], &point[i]))
 			continue;
 		if (kept && (point[kept - 1].v[1] != point[i].v[1] ||
-			point[kept - 1].v[2] != point[i].v[2]))
+				    point[kept - 1].v[2] != point[i].v[2]))
 			row = kept;
 		if (kept > row + 1)
 			kept = row + 1;

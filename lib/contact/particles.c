@@ -14,27 +14,27 @@
 enum { X, Y, Z, NONE = -1, REDUCE_FROM = 4096 };
 
 struct body {
-	int parent;            /* itself for a root */
-	int period[2];         /* of this frame in the parent's */
-	int layer;             /* of the newest run; NONE: the place is free */
+	int parent;    /* itself for a root */
+	int period[2]; /* of this frame in the parent's */
+	int layer;     /* of the newest run; NONE: the place is free */
 	double nodes, sum[3];
-	double square[6];      /* sums of xx yy zz xy xz yz */
-	double faces[3];       /* exposed, across x, y, z */
-	int low[3], high[3];   /* cells, inclusive, in this frame */
-	int first[3];          /* address on the grid */
-	int corner, last;      /* list of corners */
-	int corners, reduced;  /* their number now and when last reduced */
+	double square[6];     /* sums of xx yy zz xy xz yz */
+	double faces[3];      /* exposed, across x, y, z */
+	int low[3], high[3];  /* cells, inclusive, in this frame */
+	int first[3];         /* address on the grid */
+	int corner, last;     /* list of corners */
+	int corners, reduced; /* their number now and when last reduced */
 };
 
 struct run {
 	int begin, end;
-	int body, period[2];   /* the grid's frame in the body's */
+	int body, period[2]; /* the grid's frame in the body's */
 };
 
 struct sheet {
 	struct run *run;
 	size_t count, room;
-	size_t *row;           /* of ny + 1: where the runs of a row start */
+	size_t *row; /* of ny + 1: where the runs of a row start */
 };
 
 struct corner {
@@ -48,9 +48,9 @@ struct particles {
 	struct sheet now, before;
 	struct body *body;
 	size_t bodies, body_room;
-	int *idle;             /* free places of body[] */
+	int *idle; /* free places of body[] */
 	size_t nidle, idle_room;
-	int *taken;            /* bodies taken up by others in this layer */
+	int *taken; /* bodies taken up by others in this layer */
 	size_t ntaken, taken_room;
 	struct corner *corner;
 	size_t corners, corner_room;
@@ -58,9 +58,9 @@ struct particles {
 	struct hull *hull;
 	struct hull_point *scratch;
 	size_t scratch_room;
-	double *height;        /* of the hull's corners along the longest diameter */
+	double *height; /* of the hull's corners along the longest diameter */
 	size_t height_room;
-	double (*cut)[3];      /* corners of a section of the hull */
+	double (*cut)[3]; /* corners of a section of the hull */
 	size_t cut_room;
 	struct particle *done;
 	size_t ndone, done_room;
@@ -150,7 +150,7 @@ static int put_corner(struct particles *ps, struct body *b, int x, int y, int z)
 		ps->free_corner = ps->corner[at].next;
 	} else {
 		if (need(&ps->corner, &ps->corner_room, ps->corners + 1,
-				sizeof(*ps->corner)))
+			    sizeof(*ps->corner)))
 			return -1;
 		at = (int)ps->corners++;
 	}
@@ -255,7 +255,8 @@ static int body_of_run(struct particles *ps, int y, int begin, int end)
 	b->low[Z] = b->high[Z] = b->first[Z] = z;
 	b->corner = NONE;
 	for (int k = 0; k < 8; k++)
-		if (put_corner(ps, b, k & 1 ? end : begin, y + (k >> 1 & 1), z + (k >> 2)))
+		if (put_corner(
+			    ps, b, k & 1 ? end : begin, y + (k >> 1 & 1), z + (k >> 2)))
 			return NONE;
 	return id;
 }
@@ -342,10 +343,11 @@ static void absorb(struct particles *ps, struct body *a, struct body *b)
 
 /* Cells of run p touch cells of run q, seen (px, py) periods further; across the faces
  * along axis they share so many. */
-static int unite(struct particles *ps, const struct run *p, const struct run *q, int px, int py,
-	int axis, int shared)
+static int unite(struct particles *ps, const struct run *p, const struct run *q, int px,
+	int py, int axis, int shared)
 {
-	int in_a[2] = { p->period[X], p->period[Y] }, in_b[2] = { q->period[X], q->period[Y] };
+	int in_a[2] = { p->period[X], p->period[Y] },
+	    in_b[2] = { q->period[X], q->period[Y] };
 	int a = find(ps, p->body, in_a), b = find(ps, q->body, in_b);
 	int move[2] = { in_a[X] + px - in_b[X], in_a[Y] + py - in_b[Y] };
 
@@ -431,9 +433,9 @@ static int join_neighbour(struct particles *ps, int y, int other, int py)
 	if (join_rows(ps, s, y, s, other, 0, py, Y, ps->par.corners))
 		return -1;
 	return wrap && (join_rows(ps, s, y, s, other, 1, py, Y, 1) ||
-			       join_rows(ps, s, y, s, other, -1, py, Y, 1)) ?
-		-1 :
-		0;
+			       join_rows(ps, s, y, s, other, -1, py, Y, 1))
+		       ? -1
+		       : 0;
 }
 
 static int join_layer(struct particles *ps)
@@ -448,7 +450,8 @@ static int join_layer(struct particles *ps)
 			return -1;
 		if (join_rows(ps, s, y, &ps->before, y, 0, 0, Z, 0))
 			return -1;
-		if (ps->par.periodic && b > a && s->run[a].begin == 0 && s->run[b - 1].end == nx &&
+		if (ps->par.periodic && b > a && s->run[a].begin == 0 &&
+			s->run[b - 1].end == nx &&
 			unite(ps, &s->run[b - 1], &s->run[a], 1, 0, X, 1))
 			return -1;
 	}
@@ -566,9 +569,11 @@ static int measure_hull(struct particles *ps, const struct body *b, struct parti
 	return 0;
 }
 
-static void measure_moments(const struct particles *ps, const struct body *b, struct particle *p)
+static void measure_moments(
+	const struct particles *ps, const struct body *b, struct particle *p)
 {
-	static const int first[6] = { X, Y, Z, X, X, Y }, second[6] = { X, Y, Z, Y, Z, Z };
+	static const int first[6] = { X, Y, Z, X, X, Y },
+			 second[6] = { X, Y, Z, Y, Z, Z };
 	double step[3] = { ps->par.ax, ps->par.ay, ps->par.az };
 	double m[6], value[3], axis[3][3];
 
@@ -578,8 +583,8 @@ static void measure_moments(const struct particles *ps, const struct body *b, st
 		double own = i == j ? 1. / 12 : 0;
 
 		m[k] = step[i] * step[j] *
-			(b->square[k] / b->nodes -
-				b->sum[i] / b->nodes * (b->sum[j] / b->nodes) + own);
+		       (b->square[k] / b->nodes -
+			       b->sum[i] / b->nodes * (b->sum[j] / b->nodes) + own);
 	}
 	sym3_eigen(m, value, axis);
 	p->elongation = 1 - sqrt(value[1] / value[0]);

@@ -30,19 +30,20 @@ struct particles_par {
 };
 
 struct particle {
-	double nodes;       /* cells, N */
-	double volume;      /* N ax ay az, m3 */
-	double diameter;    /* of the sphere of this volume, m (2-14) */
-	double length;      /* largest diameter: between the farthest two points, m */
-	double width;       /* largest chord of the convex hull at right angles to it, m */
-	double aspect;      /* length / width */
-	double elongation;  /* 1 - sqrt(second / first principal moment): 0 round, 1 needle */
-	double convexity;   /* volume / volume of the convex hull */
-	double area;        /* of the exposed faces, m2 (1.5 x that of a smooth sphere) */
-	/* Longest principal axis: from +x towards +y, (-pi/2, pi/2], and up from the plane
-	 * of the layers, [0, pi/2]; nan where the two first moments are equal. */
+	double nodes;      /* cells, N */
+	double volume;     /* N ax ay az, m3 */
+	double diameter;   /* of the sphere of this volume, m (2-14) */
+	double length;     /* largest diameter: between the farthest two points, m */
+	double width;      /* largest chord of the convex hull at right angles to it, m */
+	double aspect;     /* length / width */
+	double elongation; /* 1 - sqrt(second / first principal moment): 0 round, 1 needle
+			    */
+	double convexity;  /* volume / volume of the convex hull */
+	double area;       /* of the exposed faces, m2 (1.5 x that of a smooth sphere) */
+	/* Longest principal axis: from +x towards +y, (-pi/2, pi/2], and up from the
+	 * plane of the layers, [0, pi/2]; nan where the two first moments are equal. */
 	double azimuth, dip;
-	double x, y, z;     /* centroid, m; z down from the surface */
+	double x, y, z;         /* centroid, m; z down from the surface */
 	double low[3], high[3]; /* bounding box, m */
 	/* First cell in order of layer, y, x: the address. */
 	int first[3];

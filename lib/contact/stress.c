@@ -15,9 +15,9 @@ enum { BLOCK = 8, BLOCKS_SIDE = 64, TABLE_STEP = 16, LAYERS_KEPT = 4096 };
 
 /* Kernel of one layer, as far as it was needed. */
 struct layer {
-	int wx, wy;                /* offsets below these are in the table */
-	double *table;             /* [(wy-1 + j)(2 wx - 1) + wx-1 + i][MISES] */
-	double complex *spectrum;  /* MISES spectra of the padded grid */
+	int wx, wy;               /* offsets below these are in the table */
+	double *table;            /* [(wy-1 + j)(2 wx - 1) + wx-1 + i][MISES] */
+	double complex *spectrum; /* MISES spectra of the padded grid */
 };
 
 struct load {
@@ -35,20 +35,20 @@ struct stress {
 	size_t px, py, points, half; /* transform, its points and coefficients */
 	struct fft *fft;
 	double *pressure;
-	double complex *image;       /* of the pressure; valid if imaged */
+	double complex *image; /* of the pressure; valid if imaged */
 	int imaged;
 	struct load *loads;
 	size_t nloads;
-	int x0, x1, y0, y1;          /* of the loads, inclusive */
+	int x0, x1, y0, y1; /* of the loads, inclusive */
 	double total;
-	int side, bx, by;            /* cells to a block's side, blocks */
+	int side, bx, by; /* cells to a block's side, blocks */
 	struct block *blocks;
-	double point;                /* largest von Mises stress times distance^2 */
-	struct layer *layers;        /* LAYERS_KEPT, some filled */
-	struct layer spare;          /* for those that are not kept */
-	size_t used;                 /* bytes of kept kernels */
-	double *sums;                /* TENSOR fields of nx * ny, for the transform */
-	double *plane;               /* padded grid */
+	double point;         /* largest von Mises stress times distance^2 */
+	struct layer *layers; /* LAYERS_KEPT, some filled */
+	struct layer spare;   /* for those that are not kept */
+	size_t used;          /* bytes of kept kernels */
+	double *sums;         /* TENSOR fields of nx * ny, for the transform */
+	double *plane;        /* padded grid */
 	double complex *product;
 	struct stress_work work;
 };
@@ -61,10 +61,12 @@ static double largest_point_stress(double nu, double mu)
 
 	for (int i = 0; i <= 90; i++)
 		for (int j = 0; j < 360; j += 2) {
-			double up = i * 0.017453292519943295, turn = j * 0.017453292519943295;
+			double up = i * 0.017453292519943295,
+			       turn = j * 0.017453292519943295;
 			double s[STRESS_COMPONENTS];
 
-			stress_point(nu, mu, cos(up) * cos(turn), cos(up) * sin(turn), sin(up), s);
+			stress_point(nu, mu, cos(up) * cos(turn), cos(up) * sin(turn),
+				sin(up), s);
 			most = fmax(most, stress_von_mises(s));
 		}
 	return 1.02 * most;
@@ -72,9 +74,10 @@ static double largest_point_stress(double nu, double mu)
 
 static int par_ok(const struct stress_par *p)
 {
-	return p->nx > 0 && p->ny > 0 && p->nx <= 1 << 20 && p->ny <= 1 << 20 && p->ax > 0 &&
-		p->ay > 0 && p->dz > 0 && p->offset >= 0 && p->nu >= 0 && p->nu <= 0.5 &&
-		p->mu >= 0 && isfinite(p->ax + p->ay + p->dz + p->offset + p->mu);
+	return p->nx > 0 && p->ny > 0 && p->nx <= 1 << 20 && p->ny <= 1 << 20 &&
+	       p->ax > 0 && p->ay > 0 && p->dz > 0 && p->offset >= 0 && p->nu >= 0 &&
+	       p->nu <= 0.5 && p->mu >= 0 &&
+	       isfinite(p->ax + p->ay + p->dz + p->offset + p->mu);
 }
 
 struct stress *stress_new(const struct stress_par *par)
@@ -240,7 +243,8 @@ size_t stress_spans_max(const struct stress *s)
 	return (size_t)s->bx * s->par.ny;
 }
 
-size_t stress_reach(const struct stress *s, long layer, double limit, struct stress_span *span)
+size_t stress_reach(
+	const struct stress *s, long layer, double limit, struct stress_span *span)
 {
 	double z = depth(s, layer);
 	size_t count = 0;
@@ -249,7 +253,8 @@ size_t stress_reach(const struct stress *s, long layer, double limit, struct str
 		return 0;
 	for (int by = 0; by < s->by; by++) {
 		size_t first = count;
-		int y0 = by * s->side, y1 = y0 + s->side < s->par.ny ? y0 + s->side : s->par.ny;
+		int y0 = by * s->side,
+		    y1 = y0 + s->side < s->par.ny ? y0 + s->side : s->par.ny;
 
 		for (int bx = 0; bx < s->bx; bx++) {
 			int x0 = bx * s->side;
@@ -275,8 +280,8 @@ size_t stress_reach(const struct stress *s, long layer, double limit, struct str
 
 /* Kernels */
 
-static void combine(const struct stress *s, const double *normal, const double *shear, int flipx,
-	int flipy, double out[TENSOR])
+static void combine(const struct stress *s, const double *normal, const double *shear,
+	int flipx, int flipy, double out[TENSOR])
 {
 	double t[STRESS_COMPONENTS];
 
@@ -285,7 +290,8 @@ static void combine(const struct stress *s, const double *normal, const double *
 
 		t[c] = odd ? -normal[c] : normal[c];
 		if (shear)
-			t[c] += (odd ^ (s->par.axis ? flipy : flipx) ? -s->par.mu : s->par.mu) *
+			t[c] += (odd ^ (s->par.axis ? flipy : flipx) ? -s->par.mu
+								     : s->par.mu) *
 				shear[c];
 	}
 	out[DEV_X] = t[STRESS_XX] - t[STRESS_ZZ];
@@ -327,8 +333,9 @@ static int quarter_new(struct stress *s, double z, int wx, int wy, struct quarte
 	if (p->mu > 0)
 		q->shear = q->normal + n;
 	s->work.kernel_cells += (double)wx * wy;
-	if (q->turned ? stress_cells(p->ay, p->ax, p->nu, z, wy, wx, q->normal, q->shear) :
-			stress_cells(p->ax, p->ay, p->nu, z, wx, wy, q->normal, q->shear)) {
+	if (q->turned ? stress_cells(p->ay, p->ax, p->nu, z, wy, wx, q->normal, q->shear)
+		      : stress_cells(
+				p->ax, p->ay, p->nu, z, wx, wy, q->normal, q->shear)) {
 		free(q->normal);
 		return -1;
 	}
@@ -339,12 +346,12 @@ static int quarter_new(struct stress *s, double z, int wx, int wy, struct quarte
 	return 0;
 }
 
-static void quarter_at(const struct stress *s, const struct quarter *q, int i, int j,
-	double out[TENSOR])
+static void quarter_at(
+	const struct stress *s, const struct quarter *q, int i, int j, double out[TENSOR])
 {
 	int ai = abs(i), aj = abs(j);
 	size_t at = (q->turned ? (size_t)ai * q->wy + aj : (size_t)aj * q->wx + ai) *
-		STRESS_COMPONENTS;
+		    STRESS_COMPONENTS;
 
 	combine(s, q->normal + at, q->shear ? q->shear + at : NULL, i < 0, j < 0, out);
 }
@@ -400,8 +407,8 @@ static void sum_span(void *context, size_t job, int worker)
 
 	(void)worker;
 	for (int x = r->begin; x < r->end; x++) {
-		const double *node = d->table +
-			((r->y + d->wy - 1) * stride + x + d->wx - 1) * MISES;
+		const double *node =
+			d->table + ((r->y + d->wy - 1) * stride + x + d->wx - 1) * MISES;
 		double v[MISES] = { 0 };
 
 		for (size_t i = 0; i < s->nloads; i++) {
@@ -421,8 +428,8 @@ static int larger(int a, int b)
 }
 
 /* Offsets a table must hold: between all nodes of the spans and all loads. */
-static void table_extent(const struct stress *s, const struct stress_span *span, size_t count,
-	int *wx, int *wy)
+static void table_extent(const struct stress *s, const struct stress_span *span,
+	size_t count, int *wx, int *wy)
 {
 	int x = 0, y = 0;
 
@@ -488,7 +495,8 @@ static int mises_direct(struct stress *s, long layer, const struct stress_span *
 		return -1;
 	}
 	for (size_t i = 0; i < s->nloads; i++)
-		place[i] = (s->loads[i].y * (2 * (ptrdiff_t)l->wx - 1) + s->loads[i].x) * MISES;
+		place[i] = (s->loads[i].y * (2 * (ptrdiff_t)l->wx - 1) + s->loads[i].x) *
+			   MISES;
 	d.table = l->table;
 	d.wx = l->wx;
 	d.wy = l->wy;
@@ -546,7 +554,7 @@ static int free_spectra(struct stress *s, double z, int count, double complex *o
 
 				quarter_at(s, &q, i, j, v);
 				s->plane[(j < 0 ? j + s->py : (size_t)j) * s->px +
-					(i < 0 ? i + s->px : (size_t)i)] = v[c];
+					 (i < 0 ? i + s->px : (size_t)i)] = v[c];
 			}
 		fft_forward(s->fft, s->plane, out + c * s->half);
 		s->work.transforms++;
@@ -601,7 +609,8 @@ static void periodic_spectra(struct stress *s, double z, int count, double compl
 	for (int j = 0; j < ny; j++)
 		for (int i = 0; i <= nx / 2; i++) {
 			size_t at = (size_t)j * (nx / 2 + 1) + i;
-			int edge = (nx % 2 == 0 && i == nx / 2) || (ny % 2 == 0 && j == ny / 2);
+			int edge = (nx % 2 == 0 && i == nx / 2) ||
+				   (ny % 2 == 0 && j == ny / 2);
 			double complex v[TENSOR];
 
 			harmonic(&s->par, i * ux, (2 * j > ny ? j - ny : j) * uy, z, v);
@@ -624,8 +633,8 @@ static int sum_fourier(struct stress *s, const double complex *spectrum, int cou
 		fft_inverse(s->fft, s->product, s->plane);
 		s->work.transforms++;
 		for (int y = 0; y < s->par.ny; y++)
-			memcpy(s->sums + c * n + (size_t)y * s->par.nx, s->plane + y * s->px,
-				s->par.nx * sizeof(*s->sums));
+			memcpy(s->sums + c * n + (size_t)y * s->par.nx,
+				s->plane + y * s->px, s->par.nx * sizeof(*s->sums));
 	}
 	return 0;
 }
@@ -695,11 +704,11 @@ static int prefer_direct(const struct stress *s, double nodes)
 	static const double CROSSOVER = 1;
 
 	return !s->par.periodic &&
-		nodes * s->nloads < CROSSOVER * s->points * log2((double)s->points + 1);
+	       nodes * s->nloads < CROSSOVER * s->points * log2((double)s->points + 1);
 }
 
-int stress_mises(struct stress *s, long layer, const struct stress_span *span, size_t count,
-	double *mises)
+int stress_mises(struct stress *s, long layer, const struct stress_span *span,
+	size_t count, double *mises)
 {
 	double nodes = 0;
 

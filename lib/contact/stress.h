@@ -31,14 +31,14 @@
 struct stress;
 
 struct stress_par {
-	int nx, ny;         /* cells */
-	double ax, ay;      /* cell size, m */
-	double dz, offset;  /* depth of a layer is (layer + offset) dz, m */
-	double nu, mu;      /* Poisson's ratio, friction coefficient */
-	int axis;           /* shear along x (0) or y (1) */
+	int nx, ny;        /* cells */
+	double ax, ay;     /* cell size, m */
+	double dz, offset; /* depth of a layer is (layer + offset) dz, m */
+	double nu, mu;     /* Poisson's ratio, friction coefficient */
+	int axis;          /* shear along x (0) or y (1) */
 	int periodic;
-	size_t memory;      /* bytes that kept kernels may take; 0: none is kept */
-	struct pool *pool;  /* borrowed; NULL: one thread */
+	size_t memory;     /* bytes that kept kernels may take; 0: none is kept */
+	struct pool *pool; /* borrowed; NULL: one thread */
 };
 
 /* Nodes [begin, end) of row y. */
@@ -69,7 +69,8 @@ long stress_contacts(const struct stress *s);
  * below it for certain, and remain so at every deeper layer.  span has room for
  * stress_spans_max().  The bound adds up the von Mises stress of loads block by block
  * (a norm, so the triangle inequality holds). */
-size_t stress_reach(const struct stress *s, long layer, double limit, struct stress_span *span);
+size_t stress_reach(
+	const struct stress *s, long layer, double limit, struct stress_span *span);
 size_t stress_spans_max(const struct stress *s);
 
 /* von Mises stress in the middle below the load as it would be at a layer many times
@@ -77,8 +78,8 @@ size_t stress_spans_max(const struct stress *s);
 double stress_deep(const struct stress *s, long layer);
 
 /* von Mises stress at the nodes of the spans (at least there); -1 when out of memory. */
-int stress_mises(struct stress *s, long layer, const struct stress_span *span, size_t count,
-	double *mises);
+int stress_mises(struct stress *s, long layer, const struct stress_span *span,
+	size_t count, double *mises);
 
 /* The whole tensor on the whole grid: six fields xx yy zz xy xz yz of nx * ny each, one
  * after another. */

@@ -17,9 +17,9 @@ static const double FAR = 64;
 /* What the closed forms are made of at a corner (x, y), for the roles of x and y as
  * given: nothing here cancels where y < 0 and R + y is small. */
 struct half {
-	double q; /* x z / (R (R + y)) */
-	double w; /* z^2 / (R (R + y)) */
-	double t; /* 2 atan(x / (R + y + z)) */
+	double q;   /* x z / (R (R + y)) */
+	double w;   /* z^2 / (R (R + y)) */
+	double t;   /* 2 atan(x / (R + y + z)) */
 	double log; /* ln(R + y) */
 };
 
@@ -67,8 +67,8 @@ static void corner(double x, double y, double z, double nu, double *normal, doub
 }
 
 /* (2-7), differences in y first. */
-static void difference(const double *pp, const double *pm, const double *mp, const double *mm,
-	double *out)
+static void difference(const double *pp, const double *pm, const double *mp,
+	const double *mm, double *out)
 {
 	for (int c = 0; c < N; c++)
 		out[c] = ((pp[c] - pm[c]) - (mp[c] - mm[c])) / TWO_PI;
@@ -89,8 +89,10 @@ void stress_patch(double a, double b, double nu, double x, double y, double z,
 		difference(s[0], s[1], s[2], s[3], shear);
 }
 
-/* Boussinesq and Cerruti (along x), per unit load, in the form without 0/0 on the axis. */
-static void point_load(double x, double y, double z, double nu, double *normal, double *shear)
+/* Boussinesq and Cerruti (along x), per unit load, in the form without 0/0 on the axis.
+ */
+static void point_load(
+	double x, double y, double z, double nu, double *normal, double *shear)
 {
 	double r2 = x * x + y * y + z * z, r = sqrt(r2), r3 = r2 * r, r5 = r3 * r2;
 	double k = 1 - 2 * nu, d = r + z, f = 3 * z / r5;
@@ -131,7 +133,8 @@ void stress_point(double nu, double mu, double x, double y, double z,
 static void far_cell(double x, double y, double z, double ax, double ay, double nu,
 	double *normal, double *shear)
 {
-	static const double node[3] = { -0.77459666924148337704, 0, 0.77459666924148337704 };
+	static const double node[3] = { -0.77459666924148337704, 0,
+		0.77459666924148337704 };
 	static const double weight[3] = { 5. / 18, 8. / 18, 5. / 18 };
 	double n[N], s[N];
 
@@ -142,8 +145,8 @@ static void far_cell(double x, double y, double z, double ax, double ay, double 
 		for (int i = 0; i < 3; i++) {
 			double area = ax * ay * weight[i] * weight[j];
 
-			point_load(x - 0.5 * ax * node[i], y - 0.5 * ay * node[j], z, nu, n,
-				shear ? s : NULL);
+			point_load(x - 0.5 * ax * node[i], y - 0.5 * ay * node[j], z, nu,
+				n, shear ? s : NULL);
 			for (int c = 0; c < N; c++) {
 				normal[c] += area * n[c];
 				if (shear)
@@ -153,8 +156,8 @@ static void far_cell(double x, double y, double z, double ax, double ay, double 
 }
 
 /* Corner values of a row of cells: x = (i - 1/2) ax for 0 <= i <= count. */
-static void corner_row(double *row, int count, double ax, double y, double z, double nu,
-	int shear)
+static void corner_row(
+	double *row, int count, double ax, double y, double z, double nu, int shear)
 {
 	for (int i = 0; i <= count; i++) {
 		double *at = row + (size_t)i * 2 * N;
@@ -163,8 +166,8 @@ static void corner_row(double *row, int count, double ax, double y, double z, do
 	}
 }
 
-int stress_cells(double ax, double ay, double nu, double z, int wx, int wy, double *normal,
-	double *shear)
+int stress_cells(double ax, double ay, double nu, double z, int wx, int wy,
+	double *normal, double *shear)
 {
 	double unit = ax > ay ? ax : ay, *low, *high, *swap;
 
@@ -183,12 +186,14 @@ int stress_cells(double ax, double ay, double nu, double z, int wx, int wy, doub
 
 		if (near > 0) {
 			if (j == 0)
-				corner_row(low, near, ax, y - 0.5 * ay, z, nu, shear != NULL);
+				corner_row(low, near, ax, y - 0.5 * ay, z, nu,
+					shear != NULL);
 			corner_row(high, near, ax, y + 0.5 * ay, z, nu, shear != NULL);
 		}
 		for (int i = 0; i < wx; i++) {
 			size_t at = ((size_t)j * wx + i) * N;
-			const double *l = low + (size_t)i * 2 * N, *h = high + (size_t)i * 2 * N;
+			const double *l = low + (size_t)i * 2 * N,
+				     *h = high + (size_t)i * 2 * N;
 
 			if (i >= near) {
 				far_cell(i * ax, y, z, ax, ay, nu, normal + at,
@@ -197,7 +202,8 @@ int stress_cells(double ax, double ay, double nu, double z, int wx, int wy, doub
 			}
 			difference(h + 2 * N, l + 2 * N, h, l, normal + at);
 			if (shear)
-				difference(h + 3 * N, l + 3 * N, h + N, l + N, shear + at);
+				difference(
+					h + 3 * N, l + 3 * N, h + N, l + N, shear + at);
 		}
 		double *t = low;
 
@@ -227,7 +233,7 @@ double stress_von_mises(const double s[STRESS_COMPONENTS])
 	double a = s[STRESS_XX] - s[STRESS_YY], b = s[STRESS_YY] - s[STRESS_ZZ];
 	double c = s[STRESS_ZZ] - s[STRESS_XX];
 	double t = s[STRESS_XY] * s[STRESS_XY] + s[STRESS_XZ] * s[STRESS_XZ] +
-		s[STRESS_YZ] * s[STRESS_YZ];
+		   s[STRESS_YZ] * s[STRESS_YZ];
 
 	return sqrt(0.5 * (a * a + b * b + c * c) + 3 * t);
 }

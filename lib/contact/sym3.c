@@ -44,7 +44,8 @@ static void orient(double vector[3])
 
 void sym3_eigen(const double m[6], double value[3], double vector[3][3])
 {
-	double a[3][3] = { { m[0], m[3], m[4] }, { m[3], m[1], m[5] }, { m[4], m[5], m[2] } };
+	double a[3][3] = { { m[0], m[3], m[4] }, { m[3], m[1], m[5] },
+		{ m[4], m[5], m[2] } };
 	double v[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
 	int order[3] = { 0, 1, 2 };
 

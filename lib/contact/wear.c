@@ -93,11 +93,16 @@ static enum wear_status remove_layers(struct wear *w)
 	return WEAR_OK;
 }
 
-enum wear_status wear_remove(struct stress *stress, const struct wear_par *par, int nx, int ny,
-	struct particles *particles, int *removed, struct wear_result *result)
+enum wear_status wear_remove(struct stress *stress, const struct wear_par *par, int nx,
+	int ny, struct particles *particles, int *removed, struct wear_result *result)
 {
-	struct wear w = { .stress = stress, .par = par, .nx = nx, .ny = ny,
-		.particles = particles, .removed = removed, .result = result };
+	struct wear w = { .stress = stress,
+		.par = par,
+		.nx = nx,
+		.ny = ny,
+		.particles = particles,
+		.removed = removed,
+		.result = result };
 	size_t n = (size_t)nx * ny, spans = stress_spans_max(stress);
 	enum wear_status status = WEAR_MEMORY;
 

@@ -19,30 +19,30 @@
 enum wear_rule { WEAR_COLUMN, WEAR_POTENTIAL };
 
 struct wear_par {
-	double yield;    /* Pa, > 0 */
+	double yield; /* Pa, > 0 */
 	enum wear_rule rule;
 	long max_layers; /* give up below this many, which should lie far below the
-	                  * load; 0: never */
+			  * load; 0: never */
 };
 
 struct wear_result {
-	long layers;         /* evaluated */
-	double cells;        /* removed */
-	long columns;        /* that lost cells */
-	double mises;        /* largest von Mises stress met, Pa */
-	double nodes;        /* at which the stress was needed */
+	long layers;          /* evaluated */
+	double cells;         /* removed */
+	long columns;         /* that lost cells */
+	double mises;         /* largest von Mises stress met, Pa */
+	double nodes;         /* at which the stress was needed */
 	double nodes_skipped; /* of the layers evaluated */
 };
 
 enum wear_status {
 	WEAR_OK,
-	WEAR_DEEP,   /* cells still fail at max_layers */
+	WEAR_DEEP, /* cells still fail at max_layers */
 	WEAR_MEMORY
 };
 
 /* Removes under the load that stress holds.  removed[nx * ny] receives the number of
  * cells lost per column; particles (may be NULL) each layer's set. */
-enum wear_status wear_remove(struct stress *stress, const struct wear_par *par, int nx, int ny,
-	struct particles *particles, int *removed, struct wear_result *result);
+enum wear_status wear_remove(struct stress *stress, const struct wear_par *par, int nx,
+	int ny, struct particles *particles, int *removed, struct wear_result *result);
 
 #endif

@@ -1,4 +1,5 @@
-/* Particles of known shape: measures, connectivity, memory of two layers, periodic grids. */
+/* Particles of known shape: measures, connectivity, memory of two layers, periodic grids.
+ */
 #include "contact/particles.h"
 #include "tap.h"
 
@@ -19,7 +20,8 @@ static size_t scan(struct particles *ps, int nx, int ny, int nz, shape in,
 	for (int z = 0; z < nz; z++) {
 		for (int y = 0; y < ny; y++)
 			for (int x = 0; x < nx; x++)
-				mask[y * nx + x] = (unsigned char)in(x + 0.5, y + 0.5, z + 0.5);
+				mask[y * nx + x] =
+					(unsigned char)in(x + 0.5, y + 0.5, z + 0.5);
 		particles_layer(ps, mask);
 	}
 	free(mask);
@@ -44,9 +46,11 @@ static void test_box(void)
 	near(p->diameter, cbrt(6 * 42 / PI), 1e-14, "box: equivalent diameter");
 	near(p->area, 2 * (14 * 3 + 14 + 3), 1e-12, "box: surface");
 	near(p->length, sqrt(14 * 14 + 9 + 1), 1e-12, "box: largest diameter");
-	near(p->width, sqrt(3 * 3 + 1), 0.2, "box: perpendicular diameter, its slant aside");
+	near(p->width, sqrt(3 * 3 + 1), 0.2,
+		"box: perpendicular diameter, its slant aside");
 	near(p->convexity, 1, 1e-14, "box: convexity");
-	near(p->elongation, 1 - 3. / 14, 1e-12, "box: elongation from its two longest sides");
+	near(p->elongation, 1 - 3. / 14, 1e-12,
+		"box: elongation from its two longest sides");
 	near(p->azimuth, 0, 1e-12, "box: azimuth");
 	near(p->dip, 0, 1e-12, "box: dip");
 	near(p->x, 13, 1e-12, "box: centroid x");
@@ -72,8 +76,8 @@ static void test_cube(void)
 
 	scan(ps, 5, 5, 1, cube, &p);
 	near(p->length, sqrt(3), 1e-15, "cube: largest diameter is the space diagonal");
-	/* Half-way along its diagonal its section is a regular hexagon of side 1/sqrt(2); the
-	 * corners lie at a third and two thirds, with triangles of side sqrt(2). */
+	/* Half-way along its diagonal its section is a regular hexagon of side 1/sqrt(2);
+	 * the corners lie at a third and two thirds, with triangles of side sqrt(2). */
 	near(p->width, sqrt(2), 1e-15, "cube: largest perpendicular diameter");
 	near(p->aspect, sqrt(1.5), 1e-15, "cube: aspect ratio");
 	near(p->elongation, 0, 1e-12, "cube: elongation");
@@ -102,8 +106,10 @@ static void test_ball(void)
 	near(p->length, 2 * R, 1.8, "ball: largest diameter");
 	near(p->aspect, 1, 0.02, "ball: aspect ratio");
 	near(p->elongation, 0, 1e-9, "ball: elongation");
-	near(p->area / (4 * PI * R * R), 1.5, 0.03, "ball: exposed faces are 3/2 of the sphere");
-	ok(p->convexity < 1 && p->convexity > 0.9, "ball: convexity %g, below 1", p->convexity);
+	near(p->area / (4 * PI * R * R), 1.5, 0.03,
+		"ball: exposed faces are 3/2 of the sphere");
+	ok(p->convexity < 1 && p->convexity > 0.9, "ball: convexity %g, below 1",
+		p->convexity);
 	near(p->x, R + 1, 1e-9, "ball: centroid");
 	particles_free(ps);
 }
@@ -156,8 +162,9 @@ static void test_fork(void)
 	near(p[0].nodes, 7 + 7 + 7, 0, "fork: cells");
 	near(p[1].nodes, 7, 0, "free arm: cells");
 	near(p[0].convexity, 21. / 56, 1e-14, "fork: convexity");
-	near(p[0].area, 2 * (7 * 8 - 5 * 7) + 2 * 8 + 4 * 7 - 2 * 7 + 5 * 2 + 2 * 2 + 2 * 7 - 14, 0,
-		"fork: surface");
+	near(p[0].area,
+		2 * (7 * 8 - 5 * 7) + 2 * 8 + 4 * 7 - 2 * 7 + 5 * 2 + 2 * 2 + 2 * 7 - 14,
+		0, "fork: surface");
 	particles_free(ps);
 }
 
@@ -191,12 +198,15 @@ static int wrapped(double x, double y, double z)
 
 static void test_periodic(void)
 {
-	struct particles_par par = { .nx = 10, .ny = 8, .ax = 1, .ay = 1, .az = 1, .periodic = 1 };
+	struct particles_par par = {
+		.nx = 10, .ny = 8, .ax = 1, .ay = 1, .az = 1, .periodic = 1
+	};
 	struct particles *ps = particles_new(&par);
 	const struct particle *p;
 
 	/* 5 x 4 cells around the corner of the grid: from 7 to 12 and from 5 to 9. */
-	ok(scan(ps, 10, 8, 2, wrapped, &p) == 1, "periodic: one particle over the corner");
+	ok(scan(ps, 10, 8, 2, wrapped, &p) == 1,
+		"periodic: one particle over the corner");
 	near(p->nodes, 40, 0, "periodic: cells");
 	near(p->length, sqrt(25 + 16 + 4), 1e-12, "periodic: largest diameter");
 	near(p->area, 2 * (20 + 8 + 10), 1e-12, "periodic: surface");
@@ -222,7 +232,8 @@ static size_t flood(unsigned char *c, int nx, int ny, int nz, int corners, int p
 		c[i] = 0;
 		stack[top++] = i;
 		while (top) {
-			int at = stack[--top], x = at % nx, y = at / nx % ny, z = at / nx / ny;
+			int at = stack[--top], x = at % nx, y = at / nx % ny,
+			    z = at / nx / ny;
 
 			for (int d = 0; d < 27; d++) {
 				int dx = d % 3 - 1, dy = d / 3 % 3 - 1, dz = d / 9 - 1;
@@ -235,7 +246,8 @@ static size_t flood(unsigned char *c, int nx, int ny, int nz, int corners, int p
 					u = (u + nx) % nx;
 					v = (v + ny) % ny;
 				}
-				if (u < 0 || u >= nx || v < 0 || v >= ny || w < 0 || w >= nz)
+				if (u < 0 || u >= nx || v < 0 || v >= ny || w < 0 ||
+					w >= nz)
 					continue;
 				if (c[(w * ny + v) * nx + u]) {
 					c[(w * ny + v) * nx + u] = 0;
@@ -255,8 +267,13 @@ static void test_random(void)
 
 	for (int trial = 0; trial < 200; trial++) {
 		int nx = 1 + trial % 13, ny = 1 + trial % 7, nz = 1 + trial % 5;
-		struct particles_par par = { .nx = nx, .ny = ny, .ax = 1, .ay = 1, .az = 1,
-			.corners = trial % 2, .periodic = trial / 2 % 2 };
+		struct particles_par par = { .nx = nx,
+			.ny = ny,
+			.ax = 1,
+			.ay = 1,
+			.az = 1,
+			.corners = trial % 2,
+			.periodic = trial / 2 % 2 };
 		struct particles *ps = particles_new(&par);
 		const struct particle *p;
 		unsigned char *c = malloc(nx * ny * nz);
@@ -275,19 +292,26 @@ static void test_random(void)
 			sum += (size_t)p[i].nodes;
 			bad += !(p[i].length > 0 && p[i].convexity <= 1 + 1e-12);
 		}
-		bad += sum != nodes || n != flood(c, nx, ny, nz, trial % 2, trial / 2 % 2);
+		bad += sum != nodes ||
+		       n != flood(c, nx, ny, nz, trial % 2, trial / 2 % 2);
 		cells += (int)nodes;
 		free(c);
 		particles_free(ps);
 	}
-	ok(bad == 0 && cells > 1000, "200 random sets agree with a flood fill (%d wrong)", bad);
+	ok(bad == 0 && cells > 1000, "200 random sets agree with a flood fill (%d wrong)",
+		bad);
 }
 
 /* A measured contact map with a count known from elsewhere. */
 static void test_map(void)
 {
 	static const char path[] = "../shared/data/map/contact_map_256x256.u8";
-	struct particles_par par = { .nx = 256, .ny = 256, .ax = 1, .ay = 1, .az = 1, .corners = 1,
+	struct particles_par par = { .nx = 256,
+		.ny = 256,
+		.ax = 1,
+		.ay = 1,
+		.az = 1,
+		.corners = 1,
 		.periodic = 1 };
 	static unsigned char map[256 * 256];
 	FILE *f = fopen(path, "rb");
@@ -313,7 +337,8 @@ static void test_map(void)
 		cells += p[i].nodes;
 	ok(cells == 11412, "contact map: 11412 cells");
 	for (int i = 0; i < 5; i++)
-		ok(p[i].nodes == largest[i], "contact map: patch %d has %g cells", i + 1, largest[i]);
+		ok(p[i].nodes == largest[i], "contact map: patch %d has %g cells", i + 1,
+			largest[i]);
 	particles_free(ps);
 	par.periodic = 0;
 	par.corners = 0;

@@ -51,7 +51,8 @@ static void check_table(const char *path, int sheared)
 static double divergence(int row, double x, double y, double z, int sheared)
 {
 	static const int pick[3][3] = { { STRESS_XX, STRESS_XY, STRESS_XZ },
-		{ STRESS_XY, STRESS_YY, STRESS_YZ }, { STRESS_XZ, STRESS_YZ, STRESS_ZZ } };
+		{ STRESS_XY, STRESS_YY, STRESS_YZ },
+		{ STRESS_XZ, STRESS_YZ, STRESS_ZZ } };
 	double h = 1e-3, sum = 0, n[N], s[N];
 
 	for (int axis = 0; axis < 3; axis++)
@@ -72,8 +73,9 @@ static void check_equilibrium(void)
 	for (int row = 0; row < 3; row++)
 		for (int sheared = 0; sheared < 2; sheared++)
 			for (int k = 0; k < 20; k++)
-				most = fmax(most, fabs(divergence(row, 1.1 * cos(k), 0.9 * sin(3 * k),
-						0.2 + 0.05 * k, sheared)));
+				most = fmax(most, fabs(divergence(row, 1.1 * cos(k),
+							  0.9 * sin(3 * k),
+							  0.2 + 0.05 * k, sheared)));
 	near(most, 0, 1e-8, "stress is in equilibrium (divergence by differences)");
 }
 
@@ -90,12 +92,13 @@ static void check_cells(double ax, double ay, double z, double tolerance)
 
 			stress_patch(ax / 2, ay / 2, 0.3, i * ax, j * ay, z, pn, ps);
 			/* Stress falls like the area over the distance squared. */
-			size = ax * ay / (ax * ay + i * ax * i * ax + j * ay * j * ay + z * z);
+			size = ax * ay /
+			       (ax * ay + i * ax * i * ax + j * ay * j * ay + z * z);
 			error = fmax(error, worst(n + (j * W + i) * N, pn) / size);
 			error = fmax(error, worst(s + (j * W + i) * N, ps) / size);
 		}
-	ok(error < tolerance, "cells %g x %g at z = %g: error %.1e of the local size", ax, ay, z,
-		error);
+	ok(error < tolerance, "cells %g x %g at z = %g: error %.1e of the local size", ax,
+		ay, z, error);
 	free(n);
 }
 
@@ -106,9 +109,10 @@ static void check_principal(void)
 
 	stress_principal(s, p);
 	i1 = s[0] + s[1] + s[2];
-	i2 = s[0] * s[1] + s[1] * s[2] + s[2] * s[0] - s[3] * s[3] - s[4] * s[4] - s[5] * s[5];
+	i2 = s[0] * s[1] + s[1] * s[2] + s[2] * s[0] - s[3] * s[3] - s[4] * s[4] -
+	     s[5] * s[5];
 	i3 = s[0] * s[1] * s[2] + 2 * s[3] * s[4] * s[5] - s[0] * s[5] * s[5] -
-		s[1] * s[4] * s[4] - s[2] * s[3] * s[3];
+	     s[1] * s[4] * s[4] - s[2] * s[3] * s[3];
 	near(p[0] + p[1] + p[2], i1, 1e-14, "principal stresses: first invariant");
 	near(p[0] * p[1] + p[1] * p[2] + p[2] * p[0], i2, 1e-13, "second invariant");
 	near(p[0] * p[1] * p[2], i3, 1e-13, "third invariant");
@@ -130,7 +134,8 @@ static void check_point(void)
 	stress_point(0.3, 0.25, x, y, z, p);
 	for (int c = 0; c < N; c++)
 		sum[c] = r * r * (n[c] + 0.25 * s[c]);
-	/* The patch differs from a point by (size / distance)^2 ~ 1e-6 and rounding 1e-9. */
+	/* The patch differs from a point by (size / distance)^2 ~ 1e-6 and rounding 1e-9.
+	 */
 	near(worst(sum, p), 0, 1e-6, "point load is the limit of the patch");
 }
 
