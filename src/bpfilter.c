@@ -45,6 +45,18 @@ static const struct opt opts[] = {
 static const struct prog prog = { "bpfilter", "Band-pass each channel of a signal.",
 	"[file]", "signal", "signal, or a table with --response or --taps", opts };
 
+static void check_options(void)
+{
+	if (edges.v[0] >= edges.v[1])
+		die(EXIT_USAGE, "--band %g:%g: the first edge must be the lower one",
+			edges.v[0], edges.v[1]);
+	if (zero_phase && order % 2)
+		die(EXIT_USAGE,
+			"--zero-phase needs an even --order: half of %ld is no whole "
+			"number of samples",
+			order);
+}
+
 /* Taps for this sampling rate; name is where the rate came from. */
 static double *make_taps(double fs, const char *name)
 {
@@ -52,17 +64,9 @@ static double *make_taps(double fs, const char *name)
 		(enum fir_window)window, fir_kaiser_beta(attenuation), !no_scale };
 	double *h = xcalloc((size_t)order + 1, sizeof *h);
 
-	if (edges.v[0] >= edges.v[1])
-		die(EXIT_USAGE, "--band %g:%g: the first edge must be the lower one",
-			edges.v[0], edges.v[1]);
 	if (band.high > 0.5)
 		die(EXIT_RUN, "%s: --band ends at %g Hz, above half the rate of %g Hz",
 			name, edges.v[1], fs);
-	if (zero_phase && order % 2)
-		die(EXIT_USAGE,
-			"--zero-phase needs an even --order: half of %ld is no whole "
-			"number of samples",
-			order);
 	if (fir_design(&band, h) < 0)
 		die(EXIT_USAGE,
 			"a high-pass of odd --order %ld has no gain at half the rate: "
@@ -103,20 +107,23 @@ static void print_taps(const double *h)
 	table_done(t);
 }
 
+/* Refuses nan, infinity and what would overflow in sums over a block. */
 static void check_finite(
 	const double *x, size_t nframes, int channels, double frame, const char *name)
 {
 	size_t n = nframes * (size_t)channels, i;
+	const double headroom = 1e20;
 	double bad = 0;
 
 	for (i = 0; i < n; i++)
-		bad += x[i] - x[i]; /* 0, or nan where x is not finite */
+		bad += x[i] * headroom - x[i] * headroom; /* 0, or nan */
 	if (bad == 0)
 		return;
-	for (i = 0; isfinite(x[i]); i++)
+	for (i = 0; isfinite(x[i] * headroom); i++)
 		;
-	die(EXIT_RUN, "%s: frame %.0f, channel %zu: sample is not a finite number", name,
-		frame + (double)(i / (size_t)channels), i % (size_t)channels + 1);
+	die(EXIT_RUN, "%s: frame %.0f, channel %zu: sample %g is not a usable number",
+		name, frame + (double)(i / (size_t)channels), i % (size_t)channels + 1,
+		x[i]);
 }
 
 /* Writes the filtered frames, less those still to be skipped. */
@@ -171,6 +178,7 @@ int main(int argc, char **argv)
 {
 	int i = opt_parse(&prog, argc, argv);
 
+	check_options();
 	if (response || taps_only) {
 		double *h = make_taps(rate, "--rate");
 

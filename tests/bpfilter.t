@@ -1,40 +1,7 @@
 #!/bin/sh
 # bpfilter: taps, response, streaming, delay, bad input
 . "${0%/*}/tap.sh"
-
-# au RATE CHANNELS <values: an AU stream of big-endian doubles, by awk and printf
-au() {
-	awk -v rate="$1" -v channels="$2" '
-	function byte(b) { printf "\\%03o", b }
-	function word(w) {
-		byte(int(w / 16777216)); byte(int(w / 65536) % 256)
-		byte(int(w / 256) % 256); byte(w % 256)
-	}
-	function put(x,   s, e, m, hi, lo) {
-		if (x == "nan") { word(2146959360); word(0); return }
-		if (x == "inf") { word(2146435072); word(0); return }
-		if (x == 0) { word(0); word(0); return }
-		s = x < 0; x = s ? -x : x; e = 1023
-		while (x >= 2) { x /= 2; e++ }
-		while (x < 1) { x *= 2; e-- }
-		m = x - 1; hi = int(m * 1048576); lo = (m * 1048576 - hi) * 4294967296
-		word(s * 2147483648 + e * 1048576 + hi); word(int(lo))
-	}
-	BEGIN { printf ".snd"; word(24); word(4294967295); word(7); word(rate); word(channels) }
-	{ for (i = 1; i <= NF; i++) put($i) }' >au.txt
-	# shellcheck disable=SC2059
-	printf "$(cat au.txt)"
-}
-
-# samples FILE: the doubles of an AU stream, one a line
-samples() {
-	header=$(od -An -tu1 -j4 -N4 "$1" | awk '{ print (($1 * 256 + $2) * 256 + $3) * 256 + $4 }')
-	tail -c +$((header + 1)) "$1" | od -An -v -tu1 -w8 | awk '{
-		s = $1 >= 128; e = ($1 % 128) * 16 + int($2 / 16); m = $2 % 16
-		for (i = 3; i <= 8; i++) m = m * 256 + $i
-		if (e == 0 && m == 0) { print 0; next }
-		printf "%s%.17g\n", s ? "-" : "", (1 + m / 4503599627370496) * 2 ^ (e - 1023) }'
-}
+. "$top/tests/au.sh"
 
 impulse() {
 	awk -v n="$1" -v at="$2" 'BEGIN { for (i = 0; i < n; i++) print i == at ? 1 : 0 }'
@@ -57,28 +24,26 @@ near "no phase in the band without the delay" "$got" 0 1e-9
 bpfilter -p | column tap /dev/stdin >taps
 impulse 500 50 | au 10000 1 >impulse.au
 bpfilter impulse.au >h.au
-samples h.au | sed -n 51,251p | paste taps - | awk '
-	{ d = $1 - $2; if (d < 0) d = -d; if (d > m) m = d } END { print m + 0 }' >worst
-near "an impulse gives the taps" "$(cat worst)" 0 1e-16
-is "as many frames out as in" "$(samples h.au | wc -l)" 500
+frames h.au | sed -n 51,251p >got
+near "an impulse gives the taps" "$(worst taps got)" 0 1e-16
+is "as many frames out as in" "$(frames h.au | wc -l)" 500
 bpfilter -z impulse.au >z.au
-is "--zero-phase: as many frames out as in" "$(samples z.au | wc -l)" 500
-samples z.au | sed -n 1,151p >left
-samples h.au | sed -n 101,251p | paste left - | awk '
-	{ d = $1 - $2; if (d < 0) d = -d; if (d > m) m = d } END { print m + 0 }' >worst
-near "--zero-phase shifts by half the order" "$(cat worst)" 0 1e-16
+is "--zero-phase: as many frames out as in" "$(frames z.au | wc -l)" 500
+frames z.au | sed -n 1,151p >left
+frames h.au | sed -n 101,251p >right
+near "--zero-phase shifts by half the order" "$(worst left right)" 0 1e-16
 impulse 60 10 | au 10000 1 | bpfilter -z >short.au
-is "--zero-phase on a record shorter than the filter" "$(samples short.au | wc -l)" 60
+is "--zero-phase on a record shorter than the filter" "$(frames short.au | wc -l)" 60
 
 # channels do not mix; the pipe's block size does not matter
 awk 'BEGIN { for (i = 0; i < 5000; i++) print sin(i * i / 900), i % 37 / 37 - 0.5, 0 }' >three
 au 10000 3 <three >three.au
 bpfilter three.au >three.out
 awk '{ print $2 }' three | au 10000 1 | bpfilter >one.out
-samples three.out | awk 'NR % 3 == 2' >a
-samples one.out >b
+frames three.out | awk 'NR % 3 == 2' >a
+frames one.out >b
 same "a channel among three is as alone" a b
-is "a silent channel stays silent" "$(samples three.out | awk 'NR % 3 == 0 && $1 != 0' | wc -l)" 0
+is "a silent channel stays silent" "$(frames three.out | awk 'NR % 3 == 0 && $1 != 0' | wc -l)" 0
 (
 	head -c 1000 three.au
 	sleep 0.05
@@ -87,11 +52,9 @@ is "a silent channel stays silent" "$(samples three.out | awk 'NR % 3 == 0 && $1
 cat three.au | bpfilter >poured
 same "a dripping pipe gives the same bytes" dripped poured
 bpfilter --latency 1ms three.au >prompt.au
-paste a b >/dev/null
-samples three.out >a
-samples prompt.au | paste a - | awk '
-	{ d = $1 - $2; if (d < 0) d = -d; if (d > m) m = d } END { print m + 0 }' >worst
-near "--latency changes nothing but rounding" "$(cat worst)" 0 2e-15
+frames three.out >a
+frames prompt.au >b
+near "--latency changes nothing but rounding" "$(worst a b)" 0 2e-15
 
 # numpy and scipy, where they are; bands much narrower than 10 Hz magnify the last bits of
 # sin() when scaled, on both sides

@@ -1,16 +1,7 @@
 #!/bin/sh
 # sensorsim: pulses, pipe, scenes, noise, lines, tables, bad input
 . "${0%/*}/tap.sh"
-
-# samples FILE: the doubles of an AU stream, one frame a line
-samples() {
-	header=$(od -An -tu1 -j4 -N4 "$1" | awk '{ print (($1 * 256 + $2) * 256 + $3) * 256 + $4 }')
-	tail -c +$((header + 1)) "$1" | od -An -v -tu1 -w8 | awk '{
-		s = $1 >= 128; e = ($1 % 128) * 16 + int($2 / 16); m = $2 % 16
-		for (i = 3; i <= 8; i++) m = m * 256 + $i
-		x = e ? (1 + m / 4503599627370496) * 2 ^ (e - 1023) : 0
-		printf "%.17g%s", s ? -x : x, NR % 2 ? "\t" : "\n" }'
-}
+. "$top/tests/au.sh"
 
 # level FILE FREQUENCY COLUMN: amplitude of a line over whole periods
 level() {
@@ -22,7 +13,7 @@ level() {
 # one particle of 100 um: u = sin(2 pi (t0 - t) / 10 ms), 1 V, then 0.909 V 19.635 ms later
 printf 'time\tdiameter\n0.01234\t1e-4\n' >one.tsv
 sensorsim --gain 0.909 --duration 60ms --truth truth.tsv one.tsv >one.au
-samples one.au >one.txt
+frames one.au 2 >one.txt
 is "frames of the record" "$(wc -l <one.txt)" 600
 worst=$(awk 'function p(t) { return t > -0.005 && t < 0.005 ? -sin(628.3185307179587 * t) : 0 }
 	{ t = (NR - 1) / 10000; d = $1 - p(t - 0.01234)
@@ -66,8 +57,8 @@ near "concentration gives the number" "$(column time1 mass.tsv | wc -l)" 154436 
 
 # a truth table is a scene; realisations and seeds differ
 sensorsim --gain 0.909 --snr 30dB --duration 19.95s pairs.tsv >again.au
-samples pairs.au | head -20000 >a
-samples again.au | head -20000 >b
+frames pairs.au 2 | head -20000 >a
+frames again.au 2 | head -20000 >b
 same "a truth table rebuilds its signal" a b
 sensorsim -u 50um:150um -N 20 -d 1s -T a >/dev/null
 sensorsim -u 50um:150um -N 20 -d 1s -T b -f 1 >/dev/null
@@ -91,7 +82,7 @@ near "turbulent: mean velocity of the particles" "$(awk '{ s += $1 } END { print
 
 # disturbances
 sensorsim -u 1um:1um -N 0 -d 10 --noise 0.1 --common 0.5 | cat >noise.au
-samples noise.au >noise.txt
+frames noise.au 2 >noise.txt
 awk '{ a += $1; b += $2; aa += $1 * $1; bb += $2 * $2; ab += $1 * $2; if (NR > 1) lag += $1 * old; old = $1 }
 	END { print sqrt(aa / NR), sqrt(bb / NR), ab / sqrt(aa * bb), lag / aa, a / NR }' noise.txt >moments
 near "noise: rms of sensor 1" "$(cut -d' ' -f1 moments)" 0.1 0.001
@@ -100,17 +91,17 @@ near "noise: correlation of the sensors" "$(cut -d' ' -f3 moments)" 0.5 0.012
 near "noise: white" "$(cut -d' ' -f4 moments)" 0 0.015
 near "noise: no offset" "$(cut -d' ' -f5 moments)" 0 0.0015
 sensorsim -u 1um:1um -N 0 -d 10 --noise 0.1 --corner 500Hz | cat >color.au
-samples color.au | awk '{ aa += $1 * $1; if (NR > 1) lag += $1 * old; old = $1 }
+frames color.au 2 | awk '{ aa += $1 * $1; if (NR > 1) lag += $1 * old; old = $1 }
 	END { print sqrt(aa / NR), lag / aa }' >moments
 near "coloured noise: rms" "$(cut -d' ' -f1 moments)" 0.1 0.003
 near "coloured noise: exp(-2 pi corner / rate)" "$(cut -d' ' -f2 moments)" 0.7304 0.01
 sensorsim -u 1um:1um -N 0 -d 2 --mains 0.5,0.3,0.05 --pump 0.2,0.1 >lines.au
-samples lines.au >lines.txt
+frames lines.au 2 >lines.txt
 for line in 50:0.5 150:0.3 250:0.05 2000:0.2 4000:0.1; do
 	near "line at ${line%:*} Hz" "$(level lines.txt "${line%:*}" 2)" "${line#*:}" 1e-10
 done
 sensorsim -u 1um:1um -N 0 -d 200 -r 100 --drift 1 --drift-time 1s >drift.au
-samples drift.au | awk '{ aa += $1 * $1; h[NR] = $1; if (NR > 100) lag += $1 * h[NR - 100] }
+frames drift.au 2 | awk '{ aa += $1 * $1; h[NR] = $1; if (NR > 100) lag += $1 * h[NR - 100] }
 	END { print sqrt(aa / NR), lag / aa }' >moments
 # 200 correlation times: the standard error of both is about 0.1
 near "drift: rms" "$(cut -d' ' -f1 moments)" 1 0.25
