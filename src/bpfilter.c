@@ -121,9 +121,9 @@ static void check_finite(
 		return;
 	for (i = 0; isfinite(x[i] * headroom); i++)
 		;
-	die(EXIT_RUN, "%s: frame %.0f, channel %zu: sample %g is not a usable number",
-		name, frame + (double)(i / (size_t)channels), i % (size_t)channels + 1,
-		x[i]);
+	die(EXIT_RUN, "%s: frame %.0f, channel %zu: sample is %s", name,
+		frame + (double)(i / (size_t)channels), i % (size_t)channels + 1,
+		isfinite(x[i]) ? "too large to filter" : "not a finite number");
 }
 
 /* Writes the filtered frames, less those still to be skipped. */
