@@ -1,0 +1,40 @@
+#!/bin/sh
+# From a rough surface to the distribution of remaining wear life, in one pipeline.
+#
+# usage: pipeline.sh [roughgen options and a measured surface]
+#
+# A square millimetre of steel is pressed and slid against another, again and again.  One
+# wear step stands for an hour of running, and one second of the record of the debris
+# sensors for the debris of that hour.  The pair is worn out when it has lost a quarter
+# of a cubic millimetre.  A measured surface takes the place of the twelve generated
+# ones; area, sensor and threshold are then scaled to its size.
+#
+# Leaves its streams in the working directory for the pictures.
+set -eu
+scripts=$(dirname "$0")/../../scripts
+
+if [ $# -gt 0 ]; then
+	surface() { roughgen --level --resample 128 --crown auto "$@"; }
+	steps=40
+else
+	surface() { roughgen --points 128 --length 1mm --sq 0.8um --corr 50um --crown auto --count 12; }
+	steps=4
+fi
+
+# Sides of the area, and what follows from them: the nominal area, the volume lost at
+# failure, and the calibration of a sensor that sees particles of a tenth of the side.
+surface "$@" >surface.nrrd
+eval "$(rec surface.nrrd | awk -F '\t' '$1 == 1 { x = $6 * $8; y = $7 * $9; a = x * y
+	printf "area=%g volume=%g sensor=%g\n", a, 0.25 * a ^ 1.5, 78.54 / a ^ 1.5 }')"
+
+<surface.nrrd bemcontact --pressure 50MPa --young 210GPa | tee contact.nrrd |
+	debrisgen --yield 355MPa --friction 0.3 --young 210GPa --steps $steps \
+		--surface worn.nrrd --summary steps.tsv | tee particles.tsv |
+	sensorsim --duration 48s --calibration $sensor --noise 5mV --mains 20mV --pump 50mV \
+		--truth truth.tsv | tee raw.au |
+	bpfilter --band 20:250 --zero-phase | tee band.au |
+	duet --calibration $sensor --separated pulses.au | tee found.tsv |
+	"$scripts"/wear-volume -k 3600 |
+	aopf | tee state.tsv |
+	rwl --wear particles.tsv --fragment-area $area --area $area --quantity volume \
+		--threshold-volume $volume >life.tsv

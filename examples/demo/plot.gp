@@ -1,0 +1,60 @@
+# Pictures of the demo; side is the length of the area in um
+set terminal pngcairo size 900,600 font "sans,14"
+set style line 1 lc rgb "#1f77b4" lw 2
+set style line 2 lc rgb "#d62728" lw 2
+set style line 3 lc rgb "#7f7f7f" lw 1
+set style line 4 lc rgb "#2ca02c" lw 2
+set border 3; set tics nomirror; set key noautotitle
+
+set output "surface.png"
+stats "height.txt" matrix nooutput
+n = STATS_size_x
+unset border; unset tics
+set xlabel "x"; set ylabel "y"; set colorbox; set cblabel "height, um"
+set palette defined (0 "#2b3a67", 0.5 "#e8e1d3", 1 "#b23a48")
+set view 60, 35; set hidden3d
+set pm3d; set ztics
+splot "height.txt" matrix using ($1/n*side):($2/n*side):($3*1e6) with pm3d
+
+set output "pressure.png"
+unset pm3d; unset hidden3d
+set border; set tics out
+set size ratio -1
+set xlabel "x, um"; set ylabel "y, um"; set cblabel "pressure, GPa"
+set xrange [0:side]; set yrange [0:*]
+set palette defined (0 "#ffffff", 0.05 "#fee0d2", 0.5 "#ef3b2c", 1 "#67000d")
+plot "pressure.txt" matrix using (($1+0.5)/n*side):(($2+0.5)/n*side):($3/1e9) with image
+set size noratio; unset colorbox; set xrange [*:*]; set yrange [*:*]
+
+set border 3
+set output "particles.png"
+set logscale xy; set xlabel "diameter, um"; set ylabel "particles at least that large"
+set key top right
+plot "made.txt" using 1:2 with lines ls 1 title "torn off", \
+     "found.txt" using 1:2 with lines ls 2 title "found by the sensors"
+unset logscale
+
+# A piece of the record of 0.12 s; the arguments tell where it lies in each stream.
+set output "signal.png"
+set xlabel "time, s"; set ylabel "voltage of sensor 1, V"
+set multiplot layout 3,1
+frames = 1200
+rate = 1e4
+piece(file, at, channels) = sprintf("'%s' binary skip=%d record=%d format='%s' endian=big using (begin+$0/rate):", \
+	file, at, frames, channels)
+eval "plot " . piece("raw.au", raw_at, "%double%double") . "1 with lines ls 3 title 'measured'"
+eval "plot " . piece("band.au", band_at, "%double%double") . "1 with lines ls 1 title 'band-passed'"
+eval "plot " . piece("raw.au", raw_at, "%double%double") . "1 with lines ls 3 title 'measured', 'pulses.txt' using 1:2 with lines ls 2 title 'pulses'"
+unset multiplot
+
+set output "state.png"
+set xlabel "time, h"; set ylabel "volume worn off, 10^6 um^3"
+set key bottom right
+plot "state.tsv" using (column("t")/3600):(column("y")*1e12) with points pt 7 ps 0.7 lc rgb "#7f7f7f" title "observed", \
+     "" using (column("t")/3600):(column("state")*1e12) with lines ls 1 title "filtered"
+
+set output "life.png"
+set ylabel "remaining wear life, h"
+set key top right
+plot "life.tsv" using (column("t")/3600):(column("q05")/3600):(column("q95")/3600) with filledcurves lc rgb "#c6dbef" title "90 % band", \
+     "" using (column("t")/3600):(column("q50")/3600) with lines ls 1 title "median"
