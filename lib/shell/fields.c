@@ -32,12 +32,7 @@ void record_free(struct record *r)
 		free(r->unit[i]);
 		free(r->data[i]);
 	}
-	for (int i = 0; i < r->nkeys; i++) {
-		free(r->key[i]);
-		free(r->value[i]);
-	}
-	free(r->key);
-	free(r->value);
+	keys_free(&r->keys);
 	free(r->cmd);
 	*r = (struct record){ 0 };
 }
@@ -119,21 +114,6 @@ double *record_need(
 	return r->data[k];
 }
 
-void record_set_text(struct record *r, const char *key, const char *value)
-{
-	for (int i = 0; i < r->nkeys; i++) {
-		if (strcmp(r->key[i], key) != 0)
-			continue;
-		free(r->value[i]);
-		r->value[i] = xstrdup(value);
-		return;
-	}
-	r->key = xrealloc(r->key, (size_t)r->nkeys + 1, sizeof *r->key);
-	r->value = xrealloc(r->value, (size_t)r->nkeys + 1, sizeof *r->value);
-	r->key[r->nkeys] = xstrdup(key);
-	r->value[r->nkeys++] = xstrdup(value);
-}
-
 void record_set(struct record *r, const char *key, const char *format, ...)
 {
 	char value[4096];
@@ -146,15 +126,12 @@ void record_set(struct record *r, const char *key, const char *format, ...)
 	if (n < 0 || (size_t)n >= sizeof value)
 		die(EXIT_RUN, "value of key %s is longer than %zu bytes", key,
 			sizeof value);
-	record_set_text(r, key, value);
+	keys_set(&r->keys, key, value);
 }
 
 const char *record_get(const struct record *r, const char *key)
 {
-	for (int i = 0; i < r->nkeys; i++)
-		if (strcmp(r->key[i], key) == 0)
-			return r->value[i];
-	return NULL;
+	return keys_get(&r->keys, key);
 }
 
 double record_get_number(const struct record *r, const char *key)

@@ -19,6 +19,7 @@
 #ifndef SHELL_FIELDS_H
 #define SHELL_FIELDS_H
 
+#include "shell/keys.h"
 #include <stdint.h>
 #include <stdio.h>
 
@@ -33,8 +34,7 @@ struct record {
 	double *data[RECORD_FIELDS_MAX]; /* planar: data[k][(iz * ny + iy) * nx + ix] */
 	long realisation; /* from the key, else the place in the stream from 0 */
 	char *cmd;        /* pipeline that rebuilds this record; NULL if unknown */
-	int nkeys;        /* other key:=value pairs, carried through */
-	char **key, **value;
+	struct keys keys; /* other key:=value pairs, carried through */
 };
 
 /* Headerless input: sizes must be known beforehand. */

@@ -36,6 +36,5 @@ void check_sizes(const struct place *at, const double *sizes, int n);
 
 /* Adds a field that must not exist yet; memory is not touched. */
 void record_new_field(struct record *r, const char *name, const char *unit);
-void record_set_text(struct record *r, const char *key, const char *value);
 
 #endif

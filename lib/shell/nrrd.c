@@ -170,7 +170,7 @@ static void read_key(const struct place *at, struct header *h, struct record *r,
 		if (end == value || *end || r->realisation < 0)
 			bad(at, key, value);
 	} else {
-		record_set_text(r, key, value);
+		keys_set(&r->keys, key, value);
 	}
 }
 
@@ -345,8 +345,8 @@ static char *make_header(const struct record *r, size_t *size)
 		fprintf(f, "%s%s%s%s", i ? ", " : "", r->name[i], *r->unit[i] ? " " : "",
 			r->unit[i]);
 	fprintf(f, "\nrealisation:=%ld\n", r->realisation);
-	for (int i = 0; i < r->nkeys; i++)
-		write_key(f, r->key[i], r->value[i]);
+	for (int i = 0; i < r->keys.n; i++)
+		write_key(f, r->keys.key[i], r->keys.value[i]);
 	if (r->cmd)
 		write_key(f, "cmd", r->cmd);
 	fflush(f);

@@ -1,4 +1,5 @@
 #include "shell/tables.h"
+#include "shell/keys.h"
 #include "shell/msg.h"
 #include "shell/unit.h"
 #include <math.h>
@@ -20,8 +21,7 @@ struct table_in {
 	char **cell;
 	const char *blanks; /* what parts the cells */
 	int pending;        /* the row read ahead by table_open() is still to come */
-	int nkeys;
-	char **key, **value;
+	struct keys keys; /* of comment lines */
 };
 
 struct table_out {
@@ -46,24 +46,12 @@ static char *trim(char *s)
 
 static void keep_key(struct table_in *t, char *comment)
 {
-	char *colon = strchr(comment, ':'), *key, *value;
+	char *colon = strchr(comment, ':');
 
 	if (!colon)
 		return;
 	*colon = '\0';
-	key = trim(comment);
-	value = trim(colon + 1);
-	for (int i = 0; i < t->nkeys; i++) {
-		if (strcmp(t->key[i], key) != 0)
-			continue;
-		free(t->value[i]);
-		t->value[i] = xstrdup(value);
-		return;
-	}
-	t->key = xrealloc(t->key, (size_t)t->nkeys + 1, sizeof *t->key);
-	t->value = xrealloc(t->value, (size_t)t->nkeys + 1, sizeof *t->value);
-	t->key[t->nkeys] = xstrdup(key);
-	t->value[t->nkeys++] = xstrdup(value);
+	keys_set(&t->keys, trim(comment), trim(colon + 1));
 }
 
 /* The next line that is neither empty nor a comment; 0 at the end. */
@@ -191,10 +179,7 @@ const char *table_name(const struct table_in *t)
 
 const char *table_key(const struct table_in *t, const char *key)
 {
-	for (int i = 0; i < t->nkeys; i++)
-		if (strcmp(t->key[i], key) == 0)
-			return t->value[i];
-	return NULL;
+	return keys_get(&t->keys, key);
 }
 
 int table_columns(const struct table_in *t)
@@ -280,14 +265,9 @@ void table_close(struct table_in *t)
 		fclose(t->f);
 	for (int i = 0; i < t->ncolumns; i++)
 		free(t->column[i]);
-	for (int i = 0; i < t->nkeys; i++) {
-		free(t->key[i]);
-		free(t->value[i]);
-	}
 	free(t->column);
 	free(t->cell);
-	free(t->key);
-	free(t->value);
+	keys_free(&t->keys);
 	free(t->line);
 	free(t);
 }

@@ -1,0 +1,15 @@
+/* keys.h - a short list of key and value texts, in order of first appearance */
+#ifndef SHELL_KEYS_H
+#define SHELL_KEYS_H
+
+struct keys {
+	int n;
+	char **key, **value;
+};
+
+/* Copies both; a key that is there gets the new value. */
+void keys_set(struct keys *keys, const char *key, const char *value);
+const char *keys_get(const struct keys *keys, const char *key); /* NULL where absent */
+void keys_free(struct keys *keys);
+
+#endif
