@@ -321,9 +321,7 @@ static void new_record(
 {
 	record_init(s, nx, ny, dx, dy);
 	record_add(s, "height", "m");
-	s->realisation = r->realisation;
-	for (int i = 0; i < r->nkeys; i++)
-		record_set(s, r->key[i], "%s", r->value[i]);
+	record_copy_keys(s, r);
 }
 
 /* Takes the heights of r, cropped, into a record that holds nothing else. */

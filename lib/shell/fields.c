@@ -134,6 +134,13 @@ const char *record_get(const struct record *r, const char *key)
 	return keys_get(&r->keys, key);
 }
 
+void record_copy_keys(struct record *to, const struct record *from)
+{
+	to->realisation = from->realisation;
+	for (int i = 0; i < from->keys.n; i++)
+		keys_set(&to->keys, from->keys.key[i], from->keys.value[i]);
+}
+
 double record_get_number(const struct record *r, const char *key)
 {
 	const char *text = record_get(r, key);

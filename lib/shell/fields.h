@@ -80,6 +80,8 @@ void record_drop(struct record *r, const char *name);
 void record_set(struct record *r, const char *key, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));
 const char *record_get(const struct record *r, const char *key);
+/* Copies the realisation and all keys but cmd. */
+void record_copy_keys(struct record *to, const struct record *from);
 double record_get_number(const struct record *r, const char *key); /* NAN where absent */
 
 #endif
