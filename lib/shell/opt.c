@@ -316,7 +316,8 @@ static void check_operands(int argc, char **argv)
 		die(EXIT_USAGE, "%s: %s", argv[optind + most],
 			most ? "one file at most" : "takes no file");
 	/* Someone typed the bare name: say what it is rather than wait in silence. */
-	if (argc == 1 && *prog->operands && isatty(STDIN_FILENO))
+	if (argc == 1 && *prog->operands && strncmp(prog->reads, "nothing", 7) != 0 &&
+		isatty(STDIN_FILENO))
 		die(EXIT_USAGE,
 			"nothing to read: usage: %s [option ...] %s; see %s --help",
 			prog->name, prog->operands, prog->name);
