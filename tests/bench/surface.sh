@@ -1,0 +1,68 @@
+#!/bin/sh
+# Rough surfaces: error against run time, as a table and, where gnuplot is there, as
+# build/bench/surface.png.
+#
+# scene     what the error is
+# acf       autocorrelation: measured 1/e length, mean over realisations, over the wanted
+#           one, less 1: falls as 1 / sqrt(realisations), down to the 0.001 that taking
+#           off the mean of each realisation costs
+# slope     root mean square gradient by differences (sdq_iso7) over the exact one of the
+#           waves, less 1: what is left is sampling and the rim
+# heights   magnitudes of the waves after skewness -1.2 and kurtosis 4.3 were imposed
+# affine    Sq over the wanted one, less 1, all waves drawn: what a surface costs
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+PATH=$top/bin:$PATH
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+# column NAME FILE
+column() {
+	awk -F '\t' -v c="$1" '/^#/ { next }
+	!seen { for (i = 1; i <= NF; i++) if ($i == c) k = i; seen = 1; next }
+	k { print $k }' "$2"
+}
+
+# row SCENE N COUNT ERROR
+row() {
+	printf '%s\t%s\t%s\t%s\t%s\t%s\n' "$1" "$2" "$3" "$4" \
+		"$(column seconds stats)" "$(column memory_kb stats)"
+}
+
+all() {
+	printf 'scene\tpoints\trealisations\terror\tseconds\tmemory_kb\n'
+	for count in 4 16 64 256 1024; do
+		roughgen -n 128 -l 40um -c $count -m -S stats >table
+		row acf 128 $count "$(column corr_x table | awk '{ s += $1 }
+			END { e = s / NR / 40e-6 - 1; print e < 0 ? -e : e }')"
+	done
+	for n in 32 64 128 256 512 1024; do
+		roughgen -n $n -l 100um -g 0.1 -m -S stats >table
+		row slope $n 1 "$(column sdq_iso7 table | awk '{ e = $1 / 0.1 - 1; print e < 0 ? -e : e }')"
+	done
+	for n in 64 128 256 512 1024; do
+		roughgen -n $n -l 40um -K -1.2 -Q 4.3 -S stats >out
+		row heights $n 1 "$(sed -n 's/^spectrum_error:=//p' out)"
+	done
+	for n in 128 256 512 1024 2048; do
+		roughgen -n $n -H 0.8 -S stats >out
+		row affine $n 1 "$(sed -n 's/^sq:=//p' out | awk '{ e = $1 / 1e-6 - 1; print e < 0 ? -e : e }')"
+	done
+}
+
+all | tee bench.tsv
+command -v gnuplot >/dev/null || exit 0
+mkdir -p "$top/build/bench"
+gnuplot <<EOF
+set terminal pngcairo size 900, 600
+set output "$top/build/bench/surface.png"
+set logscale xy
+set format y "%.0e"
+set xlabel "seconds"
+set ylabel "error"
+set key outside
+scenes = "acf slope heights affine"
+row(s) = sprintf("< awk '\$1 == \"%s\"' bench.tsv", s)
+plot for [s in scenes] row(s) using 5:(\$4 > 1e-17 ? \$4 : 1e-17) with linespoints title s
+EOF
