@@ -408,7 +408,7 @@ static void prepare(const char *path)
 			resample_heights(&s);
 		if (opt_given('q') || opt_given('a'))
 			scale_heights(in, &s);
-		s.cmd = opt_cmd(r.cmd, NULL);
+		s.cmd = opt_cmd(r.cmd, r.cmd ? "-" : NULL); /* an operand asks for input */
 		finish(&s);
 	}
 	if (fields_count(in) == 0)

@@ -1,0 +1,45 @@
+#!/bin/sh
+# Whole pipelines: any split of an ensemble and any number of threads give the same bytes,
+# and the command recorded in a stream rebuilds it
+. "$(dirname "$0")/tap.sh"
+
+surfaces='roughgen -n 32 -L 1mm -q 0.8um -l 100um -C auto'
+contact='bemcontact -P 50MPa -E 210GPa'
+debris='debrisgen -Y 355MPa -u 0.3 -E 210GPa -T 2'
+
+$surfaces -c 4 >whole.nrrd
+for k in 0 1 2 3; do
+	$surfaces -f $k -c 1
+done >split.nrrd
+same 'surfaces: one process and four' whole.nrrd split.nrrd
+$contact <whole.nrrd | $debris >whole.tsv
+$contact -j 2 <split.nrrd | $debris -j 2 >split.tsv
+same 'particles: one thread and two, joined surfaces' whole.tsv split.tsv
+"$top"/scripts/ensemble -j 2 4 "$surfaces -f \$K -c 1 | $contact | $debris" >ensemble.tsv
+same 'particles: four pipelines joined in order' whole.tsv ensemble.tsv
+
+# The pipeline of each realisation stands in the table; they rebuild it together.
+is 'a line of provenance for each realisation' "$(grep -c '^# cmd: ' whole.tsv)" 4
+sed -n 's/^# cmd: //p' whole.tsv >commands
+sh -e commands | awk '/^realisation/ && n++ { next } /^# units/ && u++ { next } { print }' >replayed.tsv
+same 'the recorded commands rebuild the table' whole.tsv replayed.tsv
+
+# key FILE: the recorded command of a signal
+key() {
+	strings -n 4 "$1" | sed -n 's/^cmd //p;/^cmd /q'
+}
+sensorsim -u 80um:150um -N 20 -d 0.5s -n 5mV -s 3 |
+	bpfilter --order 100 --zero-phase >signal.au
+sh -c "$(key signal.au)" >again.au
+same 'a signal is rebuilt by its own header' signal.au again.au
+duet signal.au >found.tsv
+is 'and the table made from it says so' "$(sed -n 's/^# cmd: //p' found.tsv)" "$(key signal.au) | duet"
+
+# Quoting: an argument that needs it comes back as it was.
+$surfaces -c 1 >'it'\''s a name: here.nrrd'
+roughgen -e "it's a name: here.nrrd" >measured.nrrd
+(eval "$(head -c 1024 measured.nrrd | sed -n 's/^cmd:=//p')") >again.nrrd
+same 'a file name with quotes, blanks and a colon survives' measured.nrrd again.nrrd
+is 'and no colon with a blank stands in a value' \
+	"$(head -c 1024 measured.nrrd | grep -a ':=' | grep -c ': ')" 0
+done_testing
