@@ -1,0 +1,104 @@
+/* partition.h - wear of a whole component from fragments under several pressures
+ *
+ * The contact face is cut into classes of equal nominal pressure and a zone in which
+ * the pressure runs linearly from the lowest to the highest class.  Each class has an
+ * ensemble of simulated fragments: volume worn, particles and large particles for
+ * every realisation and step (Li's thesis, 4.2.1: partition and integration).
+ *
+ * Wear per unit time of the component, one step of the fragments being the unit:
+ *
+ *	mean = sum_c A_c / a m_c + A_t / a <m(p)>,  a the area of a fragment,
+ *
+ * with m(p) a power of p between neighbouring classes.  The mean is uncertain because
+ * the ensembles are finite: a replicate resamples the realisations of each class with
+ * replacement (Efron's bootstrap; whole realisations, since steps of one surface are
+ * not independent).  A step of the component, and one unit against the next, scatter
+ * about the mean because a component is a sum of parts that wear independently: as
+ * many as fragments fit, unless told fewer.
+ *
+ *	struct partition *p = partition_new(1e-8, 2346.3e-6);
+ *	int c = partition_class(p, 0, 21e6, -1);
+ *	partition_fragment(p, c, realisation, step, volume, count, large);
+ *	...
+ *	if (partition_close(p, 0.1, 1) == PARTITION_OK)
+ *		partition_estimate(p, &wear);
+ *	partition_free(p);
+ */
+#ifndef LIFE_PARTITION_H
+#define LIFE_PARTITION_H
+
+#include <gsl/gsl_rng.h>
+#include <stddef.h>
+
+enum { PARTITION_CLASSES_MAX = 64 };
+
+struct partition;
+
+enum partition_status {
+	PARTITION_OK,
+	PARTITION_MEMORY,
+	PARTITION_EMPTY,    /* a class without fragments */
+	PARTITION_AREA,     /* classes cover more than the component */
+	PARTITION_PRESSURE, /* several classes need different pressures above 0 */
+	PARTITION_TWICE     /* a realisation gave the same step twice */
+};
+
+/* Areas in m2, both > 0; NULL when out of memory. */
+struct partition *partition_new(double fragment_area, double area);
+void partition_free(struct partition *p);
+
+/* A class; returns its index, or -1 beyond the last place.  sparse: steps and
+ * realisations that are not told of, up to the largest told of, shed nothing (particle
+ * tables); otherwise they were not simulated.  pressure: nominal, Pa, NAN for "the one
+ * there is".  area: m2, < 0 for "as the default has it": when no class has an area, the
+ * lowest and the highest share what the zone leaves; otherwise a class without one only
+ * guides the zone. */
+int partition_class(struct partition *p, int sparse, double pressure, double area);
+
+/* What one realisation did in one step (from 1): volume worn (m3), particles, and those
+ * of at least the critical size.  Calls for the same realisation and step add up when
+ * they follow one another (particle tables) and are PARTITION_TWICE otherwise. */
+enum partition_status partition_fragment(struct partition *p, int class, long realisation,
+	long step, double volume, double count, double large);
+
+/* Once, after the last fragment.  transition: share of the area in the linear zone when
+ * no class has an area.  first_step: earlier ones (running-in) count for the large
+ * particles but not for the rate. */
+enum partition_status partition_close(
+	struct partition *p, double transition, long first_step);
+/* Of the class a status of partition_close() or partition_fragment() is about. */
+int partition_culprit(const struct partition *p);
+
+/* Wear of the component per step. */
+struct partition_wear {
+	double mean;          /* m3 */
+	double step_variance; /* of one step about the mean, m6 */
+	double life_variance; /* of the mean over all steps from unit to unit, m6 */
+};
+
+/* From all fragments.  parts: independently wearing parts per class and zone, 0 for as
+ * many as fragments fit; 1 lets every class wear as one fragment. */
+void partition_estimate(struct partition *p, double parts, struct partition_wear *wear);
+/* From a bootstrap replicate drawn by rng, kept for partition_large(). */
+void partition_replicate(
+	struct partition *p, double parts, gsl_rng *rng, struct partition_wear *wear);
+
+/* First step whose share of large particles, by number, reaches probability in the
+ * replicate drawn last (or in all, after partition_estimate()): of the particles shed
+ * in that step, or with cumulative != 0 of all shed so far.  0 if none does, -1 when out
+ * of memory. */
+long partition_large(struct partition *p, double probability, int cumulative);
+
+/* Of the ensembles, for reports. */
+long partition_steps(const struct partition *p);
+size_t partition_realisations(const struct partition *p, int class);
+double partition_share(const struct partition *p, int class); /* own area, m2 */
+double partition_zone(const struct partition *p);             /* linear zone, m2 */
+double partition_load(
+	const struct partition *p); /* integral of pressure, N; NAN without */
+
+/* Mean of y over p uniform in [p0, p1], y a power of p through (p0, y0), (p1, y1);
+ * linear where one of y0, y1 is 0. */
+double partition_power_mean(double p0, double y0, double p1, double y1);
+
+#endif
