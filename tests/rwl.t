@@ -1,0 +1,171 @@
+#!/bin/sh
+# rwl - remaining wear life: closed forms, criteria, rates, streams, refusals
+. "$(dirname "$0")/tap.sh"
+
+rows() { grep -v '^#' "$1" | sed 1d; }
+# calc EXPRESSION: its value by awk, all digits
+calc() { awk "BEGIN { printf \"%.15g\", $1 }"; }
+# cell FILE ROW COLUMN: a cell by the name of its column
+cell() { column "$3" "$1" | sed -n "$2p"; }
+
+# One class of equal fragments: 1e-15 m3 per step on 1e-8 m2 is 1e-7 m of gap per step.
+printf 'realisation\tstep\tvolume\n0\t1\t1e-15\n0\t2\t1e-15\n1\t1\t1e-15\n' >even.tsv
+printf 't\tgap\n0\t10e-6\n3600\t11e-6\n7200\tnan\n10800\t13e-6\n14400\t20e-6\n' >gap.tsv
+
+ok "equal fragments" rwl --wear even.tsv --step-time 1h --threshold-gap 15um gap.tsv
+cp out even.out
+# (15 - 10) um at 0.1 um per hour
+near "life is what is left over the rate" "$(cell even.out 1 mean)" 180000 1e-5
+near "all quantiles agree" "$(cell even.out 1 q05)" "$(cell even.out 1 q95)" 0
+near "without an observation the last one ages" "$(cell even.out 3 mean)" \
+	"$(calc "39 * 3600")" 1e-5
+is "beyond the threshold nothing is left" "$(cell even.out 5 mean) $(cell even.out 5 p_no_failure)" "0 0"
+ok "volume threshold" rwl -w even.tsv -T 1h --threshold-volume 2.3463e-9m3 gap.tsv
+near "one um over the whole area" "$(cell out 1 mean)" 36000 1e-5
+
+# Without fragments: (4-29) over all, (4-28) over the last interval.
+ok "rate of the observations, mean" rwl --threshold-gap 15um gap.tsv
+near "2 um left at 1 um/h" "$(cell out 4 mean)" 7200 1e-6
+is "nothing is said of one observation" "$(cell out 1 mean)" nan
+ok "rate of the observations, last" rwl --wear-rate last --threshold-gap 21um gap.tsv
+near "1 um left at 7 um/h" "$(cell out 5 mean)" "$(calc 3600/7)" 1e-6
+
+# The scale of the steps from the state: the mean wears what was observed.
+ok "steps scaled by the state" rwl -w even.tsv -g 15um gap.tsv
+near "2 um left at 1 um/h again" "$(cell out 4 mean)" 7200 1e-6
+ok "steps scaled by an earlier unit" rwl -w even.tsv -g 15um --calibrate gap.tsv
+# least-squares slope of 10 11 13 20 um at 0 1 3 4 h: 2.2 um/h, new at 1.5 L/min
+near "its whole life" "$(cell out 1 mean)" "$(calc "(15 - 16.7899943 * (1.5 / 2.8)^(1/3)) / 2.2 * 3600")" 0.1
+
+# Leakage: 2.8 L/min is the default threshold, 16.79 um.
+printf 't\tstate\n0\t1.5\n100\t2.0\n200\t2.9\n' >flow.tsv
+ok "leakage in L/min, hours" rwl -w even.tsv -T 1h -u L/min -t h flow.tsv
+near "cube root of the leakage" "$(cell out 2 mean)" \
+	"$(calc "16.7899943 * (1 - (2 / 2.8)^(1/3)) / 0.1 * 3600")" 0.05
+is "time in seconds" "$(cell out 2 t)" 360000
+is "beyond 2.8 L/min is failure" "$(cell out 3 mean)" 0
+sed 's/state/leakage/' flow.tsv >flow2.tsv
+rwl -w even.tsv -T 1h -u L/min -t h flow2.tsv | grep -v '^#' >a
+grep -v '^#' out >b
+same "a state is leakage unless said otherwise" a b
+
+# Debris caught: spheres add up.
+printf 'time1\tdiameter\n1\t1e-3\n1\t1e-3\n2\t2e-3\n' >debris.tsv
+ok "particles as state" rwl --threshold-volume 1e-8m3 debris.tsv
+# 10 spheres of 1 mm, 0.5236e-9 m3 each, in two seconds (4-29)
+near "life from caught particles" "$(cell out 3 mean)" \
+	"$(calc "(1e-8 - 10 * 0.523598775598e-9) / (5 * 0.523598775598e-9)")" 1e-9
+ok "the last of them" rwl --threshold-volume 1e-8m3 -R last debris.tsv
+near "8 of them in one second (4-28)" "$(cell out 3 mean)" \
+	"$(calc "(1e-8 - 10 * 0.523598775598e-9) / (8 * 0.523598775598e-9)")" 1e-9
+
+# Large particles: 1 of 4 in step 1, 3 of 5 in step 2.
+{
+	printf 'realisation\tstep\tparticle\tvolume\tdiameter\n'
+	printf '%s\n' "0 1 1 1e-16 1e-6" "0 1 2 1e-16 9e-6" "1 1 1 1e-16 1e-6" "1 1 2 1e-16 1e-6" \
+		"0 2 1 1e-16 9e-6" "0 2 2 1e-16 9e-6" "1 2 1 1e-16 9e-6" "1 2 2 1e-16 1e-6" "1 2 3 1e-16 1e-6" | tr ' ' '\t'
+} >size.tsv
+ok "large particles" rwl -w size.tsv -T 1h -d 5um -P 40% --rates rates.tsv -c 2000 -q 0.5 gap.tsv
+# all: 4 of 9 at the end of step 2
+near "critical share at the end of step 2" "$(cell out 1 q50)" 7200 1e-9
+near "less the time that passed" "$(cell out 2 q50)" 3600 1e-9
+# 1 of 2 in step 1; 4 of 9 after step 2; 1 of 5 at last; by 1/4, 1/2, 1/4 of replicates
+is "surface 0 twice fails in step 1, both in step 2, surface 1 twice never" \
+	"$(column large_step rates.tsv | sort -u | tr '\n' ' ')" "0 1 2 "
+near "one replicate in four never fails" "$(cell out 1 p_no_failure)" 0.25 0.04
+ok "share in one step" rwl -w size.tsv -T 1h -d 5um -P 60% -b step -q 0.5 gap.tsv
+near "3 of 5 in step 2" "$(cell out 1 q50)" 7200 1e-9
+ok "the earlier of both criteria" rwl -w size.tsv -T 1h -d 5um -P 40% -g 10.02um -q 0.5 gap.tsv
+near "the gap comes first" "$(cell out 1 q50 | awk '{ print ($1 < 7200) }')" 1 0
+
+# Monte-Carlo: the spread of 16 fragments' mean, by the bootstrap.
+awk 'BEGIN { print "volume"; for (i = 0; i < 16; i++) print (1 + i / 10) "e-15" }' >spread.tsv
+ok "spread of an ensemble" rwl -w spread.tsv -T 1h -g 15um -i 10um -c 4000 -R mean -W rates.tsv
+cp out spread.out
+near "standard deviation of the mean" "$(column mean rates.tsv |
+	awk '{ n++; d = $1 - m; m += d / n; s += d * ($1 - m) } END { print sqrt(s / n) / m }')" \
+	"$(calc "sqrt((256 - 1) / 12) / 10 / 4 / 1.75")" 0.003
+ok "one part wears like one fragment" rwl -w spread.tsv -T 1h -g 15um -i 10um -c 4000 --parts 1
+near "which is wider" "$(cell out 1 q95 | awk -v w="$(cell spread.out 1 q95)" '{ print ($1 > 1.3 * w) }')" 1 0
+ok "new rate in every step" rwl -w spread.tsv -T 1h -g 15um -i 10um -c 4000 --parts 1 -R last
+near "has the same mean" "$(cell out 1 mean)" "$(cell spread.out 1 mean)" 3000
+
+# Any split of an ensemble is the same bytes.
+rwl -w spread.tsv -T 1h -g 15um -O -c 20 --parts 1 -R last | grep -v '^#' >whole
+rwl -w spread.tsv -T 1h -g 15um -O -c 12 --parts 1 -R last | grep -v '^#' >cut
+rwl -w spread.tsv -T 1h -g 15um -O -f 12 -c 8 --parts 1 -R last | rows /dev/stdin >>cut
+same "paths 0-19, and 0-11 with 12-19" whole cut
+
+# Classes: the zone of linear pressure is in by default, between the extremes.
+sed 's/e-15/e-18/' even.tsv >low.tsv
+ok "two classes" rwl -w even.tsv:21MPa -w low.tsv:0.15MPa -T 1h -W rates.tsv
+zone=$(awk 'BEGIN { p = log(1e3) / log(140) + 1; r = log(140)
+	m = 1e-18 * 0.15 * (exp(p * r) - 1) / p / 20.85
+	printf "%.15g", 2346.3e-6 / 1e-8 * (0.45 * 1e-15 + 0.45 * 1e-18 + 0.1 * m) }')
+near "wear of the valve plate" "$(cell rates.tsv 1 mean)" "$zone" 1e-22
+ok "areas of their own" rwl -w even.tsv:21MPa:1173.15mm2 -w low.tsv:0.15MPa:1173.15mm2 -T 1h -W rates.tsv
+near "the thesis' halves" "$(cell rates.tsv 1 mean)" \
+	"$(calc "117315 * 1.001e-15")" 1e-22
+ok "dry sliding" rwl -w even.tsv:21MPa -w low.tsv:0.15MPa -T 1h --archard 1e-9 -g 15um -i 10um
+# V = 5 um 2346.3 mm2; F = 0.45 A 21 MPa + 0.45 A 0.15 MPa + 0.1 A 10.575 MPa
+near "Archard's law" "$(cell out 1 archard)" \
+	"$(calc "5e-6 / (1e-9 * 20.94 / 1.065e9 * (0.45 * 21.15e6 + 0.1 * 10.575e6))")" 1e-6
+
+# Comparators and scores on an exponential leakage, which a grey model foretells.
+awk 'BEGIN { print "t\tleakage"; for (t = 0; t <= 600; t += 50) printf "%d\t%.12g\n", t, 1.5 * exp(t / 1186 * log(2.8 / 1.5)) }' >exp.tsv
+ok "grey model and scores" rwl -w even.tsv -u L/min -t h --grey --eol 1186h exp.tsv
+# the model's a of an exponential of ratio q per step is -2 (q - 1) / (q + 1): 1e-4 here
+near "grey life of an exponential, h" "$(cell out 13 grey | awk '{ print $1 / 3600 }')" 586 0.2
+near "truth is what is left" "$(cell out 13 truth)" 2109600 0
+is "summary of the scores" "$(sed -n 's/^# \([a-z_]*\):.*/\1/p' out | tr '\n' ' ')" \
+	"cmd predictions bias mean_absolute_error root_mean_square_error relative_accuracy alpha_lambda prognostic_horizon coverage crps "
+near "error is median less truth" "$(cell out 5 error)" \
+	"$(calc "$(cell out 5 q50) - $(cell out 5 truth)")" 1e-6
+
+# Filters.
+ok "filters" rwl -R filter -u L/min -t h exp.tsv
+is "no prediction before the fourth observation" "$(cell out 3 mean) $(cell out 4 mean | sed 's/[0-9.e+]*/number/')" "nan number"
+ok "filters with the fragments' rate" rwl -w spread.tsv -T 1h -R filter -u L/min -t h exp.tsv
+
+# Provenance: the command line rebuilds the bytes.
+rwl -w even.tsv -T 1h -g 15um --state gap.tsv >a
+eval "$(sed -n 's/^# cmd: //p' a)" >b
+same "the recorded command rebuilds a table" a b
+{ echo "# cmd: cat gap.tsv"; cat gap.tsv; } >upstream.tsv
+rwl -w even.tsv -T 1h -g 15um upstream.tsv >a
+eval "$(sed -n 's/^# cmd: //p' a)" >b 2>err
+is "so it does behind a pipe" "$(rows a)" "$(rows b)"
+
+# Work left out.
+rwl -w even.tsv -T 1h -g 15um --stats stats.tsv gap.tsv >/dev/null
+is "no sizes are counted unless asked" "$(column sizes_skipped stats.tsv)" 1000
+is "no paths once the threshold is passed" "$(column paths_skipped stats.tsv)" 1000
+
+# Refusals.
+printf 't\tgap\n0\t1e-5\n0\t2e-5\n' >twice.tsv
+printf 't\tgap\n0\t-1e-5\n' >minus.tsv
+printf 't\tgap\n0\tx\n' >text.tsv
+printf 't\tfoo\n0\t1\n' >column.tsv
+printf 'realisation\tstep\tvolume\n0\t1\t1\n0\t1\t1\n' >again.tsv
+printf 'realisation\tstep\tvolume\n' >none.tsv
+printf 'realisation\tstep\tvolume\n0\t1\t-1\n' >negative.tsv
+printf 'realisation\tstep\tvolume\n0\t1.5\t1\n' >half.tsv
+fails "times that stand still" 1 'twice.tsv: line 3: time 0 s does not grow' rwl twice.tsv
+fails "a negative gap" 1 'minus.tsv: line 2: -1e-05 is not a gap' rwl minus.tsv
+fails "text for a number" 1 'text.tsv' rwl text.tsv
+fails "no column of the state" 1 'column.tsv.*leakage' rwl column.tsv
+fails "a step twice" 1 'again.tsv: line 3: realisation 0 has step 1 twice' rwl -w again.tsv -T 1h
+fails "no fragment" 1 'none.tsv: no fragment' rwl -w none.tsv -T 1h
+fails "negative wear" 1 'negative.tsv: line 2: volume' rwl -w negative.tsv -T 1h
+fails "half a step" 1 'half.tsv: line 2: step' rwl -w half.tsv -T 1h
+fails "no step time" 2 'step-time' rwl -w even.tsv
+fails "classes without pressures" 2 'pressure of its own' rwl -w even.tsv -w low.tsv -T 1h
+fails "a pressure that is none" 2 '--wear even.tsv:21um: the pressure has the wrong unit' rwl -w even.tsv:21um -T 1h
+fails "too much area" 2 'more than --area' rwl -w even.tsv:21MPa:9e3mm2 -T 1h
+fails "size without diameters" 1 'even.tsv.*diameter' rwl -w even.tsv -T 1h -d 5um
+fails "a unit that does not suit" 2 '--unit foo' rwl -u foo gap.tsv
+fails "levels that fall" 2 '--levels must grow' rwl -q 0.9,0.1 gap.tsv
+fails "outlet below inlet" 2 'outlet pressure' rwl -D 21MPa:1MPa gap.tsv
+fails "a unit that does not wear" 1 'minus2.tsv.*does not wear' sh -c \
+	'printf "t\tgap\n0\t2e-5\n1\t1e-5\n" >minus2.tsv; rwl -w even.tsv -C minus2.tsv'
+done_testing
