@@ -108,16 +108,23 @@ static void print_taps(const double *h)
 }
 
 /* Refuses nan, infinity and what would overflow in sums over a block. */
-static void check_finite(
+static void check_samples(
 	const double *x, size_t nframes, int channels, double frame, const char *name)
 {
-	size_t n = nframes * (size_t)channels, i;
+	enum { LANES = 8 };
 	const double headroom = 1e20;
-	double bad = 0;
+	size_t n = nframes * (size_t)channels, i;
+	double bad[LANES] = {0}, sum = 0;
 
-	for (i = 0; i < n; i++)
-		bad += x[i] * headroom - x[i] * headroom; /* 0, or nan */
-	if (bad == 0)
+	/* x - x is 0, or nan where x is not finite */
+	for (i = 0; i + LANES <= n; i += LANES)
+		for (size_t k = 0; k < LANES; k++)
+			bad[k] += x[i + k] * headroom - x[i + k] * headroom;
+	for (; i < n; i++)
+		sum += x[i] * headroom - x[i] * headroom;
+	for (size_t k = 0; k < LANES; k++)
+		sum += bad[k];
+	if (sum == 0)
 		return;
 	for (i = 0; isfinite(x[i] * headroom); i++)
 		;
@@ -157,7 +164,7 @@ static void run(const char *path)
 	out = signal_create(NULL, &f);
 	x = xcalloc(fir_block(fir) * (size_t)f.channels, sizeof *x);
 	while ((n = signal_read(in, x, fir_block(fir))) > 0) {
-		check_finite(x, n, f.channels, frames, signal_name(in));
+		check_samples(x, n, f.channels, frames, signal_name(in));
 		frames += (double)n;
 		put(out, fir, x, n, &skip, f.channels);
 	}
