@@ -27,7 +27,7 @@ static const struct opt opts[] = {
 		"leave the gain in the middle of the band as the window makes it", 0, 0 },
 	{ 'z', "zero-phase", OPT_FLAG, UNIT_NONE, &zero_phase, 0, 0, 0,
 		"take the delay of half the order out", 0, 0 },
-	{ 'L', "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
+	{ 'y', "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
 		"hold back no more than T of signal for speed", 0, 0 },
 	{ 'F', "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
 		0 },
