@@ -14,8 +14,19 @@ awk -F '\t' '/^#/ { next } !k { for (i = 1; i <= NF; i++) if ($i == "diameter") 
 	{ print $k * 1e6 }' particles.tsv | sort -gr | awk '{ print $1, NR }' >made.txt
 awk -F '\t' '/^#/ { next } !k { for (i = 1; i <= NF; i++) if ($i == "diameter") k = i; next }
 	{ print $k * 1e6 }' found.tsv | sort -gr | awk '{ print $1, NR }' >found.txt
-side=$(rec -n 1 contact.nrrd | awk -F '\t' '$1 == 1 { print $6 * $8 * 1e6; exit }')
-gnuplot -e "side=$side" "$here/plot.gp"
+side=$(rec -n 1 contact.nrrd | awk -F '\t' '$1 == 1 { print $5 * $8 * 1e6; exit }')
+
+# Where the piece of 1200 frames begins: shortly before the section with the most overlap.
+begin=$(awk -F '\t' '/^#/ { next } !t { for (i = 1; i <= NF; i++) { if ($i == "time1") t = i
+		if ($i == "sources") n = i }; next }
+	$n <= 6 && $n > most { most = $n; at = $t } END { printf "%.4f", at > 0.01 ? at - 0.01 : 0 }' found.tsv)
+# at FILE CHANNELS: the byte of an AU file where that frame begins
+at() {
+	od -An -v -tu1 -j4 -N4 "$1" | awk -v c="$2" -v t="$begin" '{
+		print (($1 * 256 + $2) * 256 + $3) * 256 + $4 + 8 * c * int(t * 10000 + 0.5) }'
+}
+gnuplot -e "side=$side; begin=$begin; rate=10e3; raw_at=$(at raw.au 2)" \
+	-e "band_at=$(at band.au 2); pulses_at=$(at pulses.au 8)" "$here/plot.gp"
 
 # A figure of the last row of the life table, and of the work done.
 row() {

@@ -1,5 +1,5 @@
 #!/bin/sh
-# From a rough surface to the distribution of remaining wear life, in one pipeline.
+# From a rough surface to the distribution of remaining wear life, in two pipelines.
 #
 # usage: pipeline.sh [roughgen options and a measured surface]
 #
@@ -24,17 +24,20 @@ fi
 # Sides of the area, and what follows from them: the nominal area, the volume lost at
 # failure, and the calibration of a sensor that sees particles of a tenth of the side.
 surface "$@" >surface.nrrd
-eval "$(rec surface.nrrd | awk -F '\t' '$1 == 1 { x = $6 * $8; y = $7 * $9; a = x * y
+eval "$(rec surface.nrrd | awk -F '\t' '$1 == 1 { x = $5 * $8; y = $6 * $9; a = x * y
 	printf "area=%g volume=%g sensor=%g\n", a, 0.25 * a ^ 1.5, 78.54 / a ^ 1.5 }')"
 
+# What wears off ...
 <surface.nrrd bemcontact --pressure 50MPa --young 210GPa | tee contact.nrrd |
 	debrisgen --yield 355MPa --friction 0.3 --young 210GPa --steps $steps \
-		--surface worn.nrrd --summary steps.tsv | tee particles.tsv |
-	sensorsim --duration 48s --calibration $sensor --noise 5mV --mains 20mV --pump 50mV \
-		--truth truth.tsv | tee raw.au |
+		--surface worn.nrrd --summary steps.tsv >particles.tsv
+
+# ... and what the sensors tell of it.
+sensorsim --duration 48s --calibration $sensor --noise 5mV --mains 20mV --pump 50mV \
+	--truth truth.tsv particles.tsv | tee raw.au |
 	bpfilter --band 20:250 --zero-phase | tee band.au |
 	duet --calibration $sensor --separated pulses.au | tee found.tsv |
 	"$scripts"/wear-volume -k 3600 |
 	aopf | tee state.tsv |
 	rwl --wear particles.tsv --fragment-area $area --area $area --quantity volume \
-		--threshold-volume $volume >life.tsv
+		--threshold-volume $volume - >life.tsv

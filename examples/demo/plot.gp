@@ -34,18 +34,21 @@ plot "made.txt" using 1:2 with lines ls 1 title "torn off", \
      "found.txt" using 1:2 with lines ls 2 title "found by the sensors"
 unset logscale
 
-# A piece of the record of 0.12 s; the arguments tell where it lies in each stream.
+# A piece of the record of 0.12 s from begin on; the *_at are where it lies in the streams.
 set output "signal.png"
-set xlabel "time, s"; set ylabel "voltage of sensor 1, V"
+set xlabel "time, s"; set ylabel "V"
+set xrange [begin:begin+0.12]; set key top right
 set multiplot layout 3,1
 frames = 1200
-rate = 1e4
-piece(file, at, channels) = sprintf("'%s' binary skip=%d record=%d format='%s' endian=big using (begin+$0/rate):", \
-	file, at, frames, channels)
-eval "plot " . piece("raw.au", raw_at, "%double%double") . "1 with lines ls 3 title 'measured'"
-eval "plot " . piece("band.au", band_at, "%double%double") . "1 with lines ls 1 title 'band-passed'"
-eval "plot " . piece("raw.au", raw_at, "%double%double") . "1 with lines ls 3 title 'measured', 'pulses.txt' using 1:2 with lines ls 2 title 'pulses'"
+plot "raw.au" binary skip=raw_at record=frames format="%double%double" endian=big \
+	using (begin + $0/rate):1 with lines ls 3 title "as measured"
+plot "band.au" binary skip=band_at record=frames format="%double%double" endian=big \
+	using (begin + $0/rate):1 with lines ls 1 title "band-passed"
+plot for [k=1:8] "pulses.au" binary skip=pulses_at record=frames \
+	format="%double%double%double%double%double%double%double%double" endian=big \
+	using (begin + $0/rate):k with lines lw 2 lc k title k == 1 ? "separated" : ""
 unset multiplot
+set xrange [*:*]
 
 set output "state.png"
 set xlabel "time, h"; set ylabel "volume worn off, 10^6 um^3"
