@@ -26,7 +26,7 @@ B = build
 BIN = bin
 
 # What each program is made of besides lib/shell: modules of lib/ and libraries.
-PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl rec
+PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records
 
 roughgen_MODULES = num/philox num/fft num/pool contact/heights contact/rough contact/spectrum contact/surface
 roughgen_LIBS = fftw
@@ -49,8 +49,8 @@ aopf_MODULES = num/philox life/draw life/resample life/filter life/grey life/ord
 aopf_LIBS =
 rwl_MODULES = num/philox num/rng life/grey life/leakage life/metrics life/noise life/partition life/rate life/remaining
 rwl_LIBS = gsl
-rec_MODULES =
-rec_LIBS =
+records_MODULES =
+records_LIBS =
 
 FFTW_CFLAGS ?= $(shell $(PKG_CONFIG) --cflags fftw3 2>/dev/null)
 FFTW_LIBS ?= $(shell $(PKG_CONFIG) --libs fftw3 2>/dev/null || echo -lfftw3)

@@ -32,11 +32,11 @@ $solve -P 200MPa -b periodic h.f64 >periodic.nrrd
 near "a periodic surface under the same load" "$(key load periodic.nrrd)" 0.6144 1e-13
 ok "is another solution" [ "$(key energy periodic.nrrd)" != "$(key energy free.nrrd)" ]
 $solve -P 200MPa -K 300MPa h.f64 >capped.nrrd
-is "no pressure above the hardness" "$(rec -o list -k pressure capped.nrrd | tail -1 | cut -f 12)" 300000000
+is "no pressure above the hardness" "$(records -o list -k pressure capped.nrrd | tail -1 | cut -f 12)" 300000000
 
 $solve -P 200MPa -o gap,pressure h.f64 >some.nrrd
 is "the fields asked for" "$(key fields some.nrrd)" "pressure Pa, gap m"
-$solve -P 200MPa -t 1e-13 -o height,pressure,displacement,gap h.f64 | rec -o table |
+$solve -P 200MPa -t 1e-13 -o height,pressure,displacement,gap h.f64 | records -o table |
 	awk '!/^#/ && ++n > 1 { r = $7 - ($5 + $8); d = n == 2 ? r : d
 	if (r - d > 1e-17 || d - r > 1e-17) bad = 1; if ($8 < -1e-12 || $6 < 0) bad = 1
 	if ($6 > 0 && $8 > 1e-12) bad = 1 } END { print bad + 0, n - 1 }' >check
@@ -44,7 +44,7 @@ is "g = u - h - approach, p >= 0, g >= 0, p g = 0 in every cell" "$(cat check)" 
 
 cat free.nrrd load.nrrd periodic.nrrd >three.nrrd
 bemcontact --estar 100GPa -P 200MPa -S stats three.nrrd >again.nrrd
-is "three records in, three out" "$(rec -o count again.nrrd)" 3
+is "three records in, three out" "$(records -o count again.nrrd)" 3
 is "started from their pressures" "$(column warm_starts stats)" 3
 is "nothing was left to do for two of them" "$(key iterations again.nrrd 1),$(key iterations again.nrrd 2)" 0,0
 bemcontact --estar 100GPa -P 200MPa -j 2 three.nrrd >threads.nrrd

@@ -15,7 +15,7 @@ summary() {
 # pressure, stress and rule.  Values found with independent code.
 roughgen -n 128 -L 1mm --sq 0 --crown 50um | bemcontact -F 50N -E 210GPa >ball.nrrd
 wear="debrisgen -Y 355MPa -u 0.3"
-near "ball: largest pressure" "$(rec ball.nrrd | awk '$3 == "pressure" { print $12 }')" 1725.5455e6 1e3
+near "ball: largest pressure" "$(records ball.nrrd | awk '$3 == "pressure" { print $12 }')" 1725.5455e6 1e3
 $wear -U summary.tsv -S stats.tsv ball.nrrd >ball.tsv
 is "ball: cells lost by column" "$(column nodes ball.tsv)" 21884
 near "ball: volume" "$(summary volume)" 1.0435104370117188e-11 1e-24
@@ -62,23 +62,23 @@ cat s1.tsv s2.tsv s3.tsv >s.tsv
 rows all.tsv | sort -s -n -k1,2 >a
 rows s.tsv | sort -s -n -k1,2 >b
 same "and the same summary" a b
-rec -n 3 -o text all.nrrd >a
-rec -n 1 -o text worn3.nrrd >b
+records -n 3 -o text all.nrrd >a
+records -n 1 -o text worn3.nrrd >b
 same "and the same worn surface" a b
-rec -o nrrd start.nrrd >again.nrrd
+records -o nrrd start.nrrd >again.nrrd
 $wear -T 3 -E 210GPa again.nrrd >t.tsv 2>warning
 rows t.tsv >a
 rows inside.tsv >b
 same "the load is that of the input" a b
 $wear -T 3 -F 20N -E 210GPa -j 2 -k 0 start.nrrd >t.tsv 2>warning
 same "threads and kept memory change nothing" t.tsv inside.tsv
-rec -n 2 -o nrrd start.nrrd | $wear -T 3 -F 20N -E 210GPa >t.tsv 2>warning
+records -n 2 -o nrrd start.nrrd | $wear -T 3 -F 20N -E 210GPa >t.tsv 2>warning
 rows inside.tsv | awk '$1 == 1' >a
 rows t.tsv >b
 same "what came before changes nothing" a b
 
 # The worn surface is the old one less the removed volume.
-mean() { rec "$1" | awk '$2 == 0 && $3 == "height" { print $11; exit }'; }
+mean() { records "$1" | awk '$2 == 0 && $3 == "height" { print $11; exit }'; }
 near "volume is what the surface lost" \
 	"$(echo "$(mean start.nrrd) $(mean worn1.nrrd)" | awk '{ print ($1 - $2) * 0.25e-6 * 1e12 }')" \
 	"$(column volume s1.tsv | awk '{ print $1 * 1e12; exit }')" 1e-9
@@ -95,16 +95,16 @@ is "and gives no particles" "$(rows t.tsv)" ""
 # Stress fields.
 debrisgen -Y 355MPa -u 0.3 -G stress.nrrd -o von_mises,principal,hydrostatic,tensor -y 8 \
 	ball.nrrd >t.tsv
-is "stress: fields and layers" "$(rec stress.nrrd | awk 'NR > 1 { printf "%s %s;", $3, $7 }')" \
+is "stress: fields and layers" "$(records stress.nrrd | awk 'NR > 1 { printf "%s %s;", $3, $7 }')" \
 	"von_mises 8;hydrostatic 8;principal_1 8;principal_2 8;principal_3 8;xx 8;yy 8;zz 8;xy 8;xz 8;yz 8;"
-rec -o table stress.nrrd | awk '!/^[#r]/ {
+records -o table stress.nrrd | awk '!/^[#r]/ {
 	i = $6 - ($10 + $11 + $12) / 3; if (i < 0) i = -i
 	j = $7 + $8 + $9 - 3 * $6; if (j < 0) j = -j
 	v = sqrt((($7 - $8) ^ 2 + ($8 - $9) ^ 2 + ($9 - $7) ^ 2) / 2) - $5; if (v < 0) v = -v
 	if (i > bad) bad = i; if (j > bad) bad = j; if (v > bad) bad = v }
 	END { print bad }' >bad
 near "stress: invariants agree" "$(cat bad)" 0 1
-near "stress: under the surface szz is the pressure" "$(rec stress.nrrd | awk '$3 == "zz" { print $10 }')" \
+near "stress: under the surface szz is the pressure" "$(records stress.nrrd | awk '$3 == "zz" { print $10 }')" \
 	-1725.5455e6 1e3
 
 # Edge load is told.

@@ -20,10 +20,10 @@ same "the same with imposed heights" one two
 
 # The header rebuilds the record.
 roughgen -n 32 -q 1um:3um -p 0.5um -C auto -s 7 -c 3 >three
-rec -n 2 -o nrrd three >second
+records -n 2 -o nrrd three >second
 cmd=$(sed -n 's/^cmd:=//p' second | head -1)
 sh -c "$cmd" >again
-rec -n 2 -o nrrd three | tail -c 8192 >a
+records -n 2 -o nrrd three | tail -c 8192 >a
 tail -c 8192 again >b
 same "cmd rebuilds one record of an ensemble" a b
 is "keys of a record" "$(sed -n '/^#/q; s/:=.*//p' again | tr '\n' ' ')" \
@@ -56,7 +56,7 @@ roughgen -n 64 -q 1um -C auto >a
 is "--crown auto is 4 Sq" "$(sed -n 's/^crown:=//p' a | awk '{ printf "%.12g", $1 }')" 4e-06
 roughgen -n 3 -q 0 -L 3mm -C 8um >a
 # Centre 0; edge centres (1 mm)^2 / 4.5 mm^2, corner centres 2 / 4.5.
-is "--crown on a flat" "$(rec -o text a | awk '!/^#/ && NF { printf "%.5g %.5g %.5g ", $1, $2, $3 }')" \
+is "--crown on a flat" "$(records -o text a | awk '!/^#/ && NF { printf "%.5g %.5g %.5g ", $1, $2, $3 }')" \
 	"-3.5556e-06 -1.7778e-06 -3.5556e-06 -1.7778e-06 0 -1.7778e-06 -3.5556e-06 -1.7778e-06 -3.5556e-06 "
 
 # Heights of given moments.
@@ -114,13 +114,13 @@ fi
 # Preparing: crop, level, resample, raw, streams with several records.
 roughgen -n 40x30 -c 2 >s
 roughgen -w 5:6:20:10 s >c
-is "--crop: size and spacing" "$(rec c | awk -F '\t' '$1 == 1 { print $5, $6, $8 }')" \
+is "--crop: size and spacing" "$(records c | awk -F '\t' '$1 == 1 { print $5, $6, $8 }')" \
 	"20 10 2.5e-05"
-is "--crop: the samples" "$(rec -o text -n 1 c | sed -n 2p | cut -f 1-3)" \
-	"$(rec -o text -n 1 s | sed -n 8p | cut -f 6-8)"
-is "every record of a stream is prepared" "$(rec -o count c)" "2"
+is "--crop: the samples" "$(records -o text -n 1 c | sed -n 2p | cut -f 1-3)" \
+	"$(records -o text -n 1 s | sed -n 8p | cut -f 6-8)"
+is "every record of a stream is prepared" "$(records -o count c)" "2"
 roughgen -r 20x15 s >c
-is "--resample: size and spacing" "$(rec c | awk -F '\t' '$1 == 1 { print $5, $6, $8, $9 }')" \
+is "--resample: size and spacing" "$(records c | awk -F '\t' '$1 == 1 { print $5, $6, $8, $9 }')" \
 	"20 15 5e-05 5e-05"
 tail -c 9600 s >raw.f64
 roughgen -x 40x30 -X 25um raw.f64 | tail -c 9600 >c
@@ -128,7 +128,7 @@ same "--raw: the samples pass unchanged" raw.f64 c
 cat s | roughgen - >c
 roughgen s >d
 is "standard input by name: -" "$(tail -c 9600 c | cksum)" "$(tail -c 9600 d | cksum)"
-rec -n 1 -o gsf s >s.gsf
+records -n 1 -o gsf s >s.gsf
 roughgen -m s.gsf >t
 roughgen -n 40x30 -m >u
 near "a GSF file is measured (float32)" "$(value sq t)" "$(value sq u)" 1e-12

@@ -29,33 +29,33 @@ cell() {
 }
 
 { header ''; ramp; } >plain.nrrd
-ok 'a plain two-dimensional NRRD is read' rec plain.nrrd
+ok 'a plain two-dimensional NRRD is read' records plain.nrrd
 is 'its size and spacing' "$(cell nx) $(cell ny) $(cell dx) $(cell dy)" '4 3 1e-06 2e-06'
 is 'its samples' "$(cell min) $(cell mean) $(cell max)" '0 5.5 11'
 { header 'endian: big'; big_endian_ramp; } >big.nrrd
-ok 'a big-endian NRRD is read' rec big.nrrd
+ok 'a big-endian NRRD is read' records big.nrrd
 is 'its samples' "$(cell min) $(cell mean) $(cell max)" '0 5.5 11'
 { header 'units: "um" "um"' 'spacings: 1 2'; ramp; } >um.nrrd
-ok 'units of length are honoured' rec um.nrrd
+ok 'units of length are honoured' records um.nrrd
 is 'and turned into metres' "$(cell dx) $(cell dy)" '1e-06 2e-06'
-rec -o nrrd plain.nrrd >ours.nrrd
-rec -o nrrd ours.nrrd >again.nrrd
+records -o nrrd plain.nrrd >ours.nrrd
+records -o nrrd ours.nrrd >again.nrrd
 same 'a record written, read and written has the same bytes' ours.nrrd again.nrrd
 is 'the header fills whole kibibytes' "$(($(wc -c <ours.nrrd) % 1024))" 96
-rec -o gsf plain.nrrd >plain.gsf 2>err || true
-is 'GSF keeps the spacing' "$(rec plain.gsf | tail -n 1 | cut -f 8,9,12)" "$(printf '1e-06\t2e-06\t11')"
+records -o gsf plain.nrrd >plain.gsf 2>err || true
+is 'GSF keeps the spacing' "$(records plain.gsf | tail -n 1 | cut -f 8,9,12)" "$(printf '1e-06\t2e-06\t11')"
 ramp >plain.raw
-ok 'headerless samples are read' rec --raw 4x3 --pixel 2um plain.raw
+ok 'headerless samples are read' records --raw 4x3 --pixel 2um plain.raw
 is 'with the pixel given' "$(cell dx) $(cell max)" '2e-06 11'
 cat plain.nrrd big.nrrd plain.gsf >three
-is 'records of three formats follow each other' "$(rec -o count three)" 3
-ok 'an empty stream has no records' sh -c 'rec -o count </dev/null'
+is 'records of three formats follow each other' "$(records -o count three)" 3
+ok 'an empty stream has no records' sh -c 'records -o count </dev/null'
 is 'and that is no error' "$(cat out)" 0
 is 'a record keeps keys, escapes included' \
-	"$({ header 'key:=a \\ b'; ramp; } | rec -o nrrd | grep -a '^key')" 'key:=a \\ b'
-ok 'the second record alone' sh -c 'rec -n 2 -o nrrd three | rec -o count'
+	"$({ header 'key:=a \\ b'; ramp; } | records -o nrrd | grep -a '^key')" 'key:=a \\ b'
+ok 'the second record alone' sh -c 'records -n 2 -o nrrd three | records -o count'
 is 'is one record' "$(cat out)" 1
-fails 'picking what is not there' 1 'three: no record 4: there are 3' rec -n 4 three
+fails 'picking what is not there' 1 'three: no record 4: there are 3' records -n 4 three
 
 # Refusals: one line each, naming the record and what was wanted.
 refuse() {
@@ -63,20 +63,20 @@ refuse() {
 	pattern=$2
 	shift 2
 	{ header "$@"; ramp; } >bad.nrrd
-	fails "$name" 1 "$pattern" rec bad.nrrd
+	fails "$name" 1 "$pattern" records bad.nrrd
 }
 { header ''; ramp | head -c 50; } >short.nrrd
-fails 'a truncated record' 1 'short.nrrd: record 1: want 96 bytes, got 50' rec short.nrrd
+fails 'a truncated record' 1 'short.nrrd: record 1: want 96 bytes, got 50' records short.nrrd
 fails 'a truncated record in a pipe' 1 'standard input: record 1: want 96 bytes, got 50' \
-	sh -c 'cat short.nrrd | rec'
+	sh -c 'cat short.nrrd | records'
 cat plain.nrrd short.nrrd >second.nrrd
-fails 'truncation names the record' 1 'record 2: want 96 bytes, got 50' rec second.nrrd
+fails 'truncation names the record' 1 'record 2: want 96 bytes, got 50' records second.nrrd
 printf 'NRRD0004\ntype: double\n' >cut.nrrd
-fails 'a header cut off' 1 'record 1: the stream ends inside the header' rec cut.nrrd
+fails 'a header cut off' 1 'record 1: the stream ends inside the header' records cut.nrrd
 printf 'GIF89a\n' >gif
-fails 'another format' 1 "want NRRD or GSF, got 'GIF89a'" rec gif
+fails 'another format' 1 "want NRRD or GSF, got 'GIF89a'" records gif
 { printf 'NRRD0004\n# '; head -c 2000000 /dev/zero | tr '\0' x; } >endless
-fails 'an endless header' 1 'header longer than 1048576 bytes' rec endless
+fails 'an endless header' 1 'header longer than 1048576 bytes' records endless
 refuse 'a negative size' 'size -4, want a whole number' 'sizes: -4 3'
 refuse 'a fractional size' 'size 4.5, want a whole number' 'sizes: 4.5 3'
 refuse 'an enormous size' 'bytes of samples are too many' 'sizes: 1000000000 1000000000'
@@ -93,7 +93,7 @@ refuse 'five dimensions' 'dimension 5: want 2, 3 or 4' 'dimension: 5'
 refuse 'a unit that is no length' "unit 's' of axis 0 is not a length" 'units: "s" "s"'
 refuse 'more names than fields' 'want the names of 1 fields' 'fields:=height m, pressure Pa'
 fails 'no room left on the device' 1 'standard output: No space left' \
-	sh -c 'rec -o nrrd plain.nrrd >/dev/full'
+	sh -c 'records -o nrrd plain.nrrd >/dev/full'
 
 # Other tools, where they are installed
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then

@@ -24,7 +24,7 @@ fi
 # Sides of the area, and what follows from them: the nominal area, the volume lost at
 # failure, and the calibration of a sensor that sees particles of a tenth of the side.
 surface "$@" >surface.nrrd
-eval "$(rec surface.nrrd | awk -F '\t' '$1 == 1 { x = $5 * $8; y = $6 * $9; a = x * y
+eval "$(records surface.nrrd | awk -F '\t' '$1 == 1 { x = $5 * $8; y = $6 * $9; a = x * y
 	printf "area=%g volume=%g sensor=%g\n", a, 0.25 * a ^ 1.5, 78.54 / a ^ 1.5 }')"
 
 # What wears off ...

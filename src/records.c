@@ -1,4 +1,4 @@
-/* rec - list, pick, count and convert the records of a field stream */
+/* records - list, pick, count and convert the records of a field stream */
 #include "shell/fields.h"
 #include "shell/msg.h"
 #include "shell/opt.h"
@@ -31,7 +31,7 @@ static const struct opt opts[] = { { 'o', "output", OPT_WORD, UNIT_NONE, &format
 		NULL, 0 },
 	OPT_END };
 
-static const struct prog prog = { "rec",
+static const struct prog prog = { "records",
 	"List, pick, count and convert the records of a field stream.", "[file]",
 	"fields: any", "table or fields", opts };
 
