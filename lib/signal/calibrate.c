@@ -1,0 +1,482 @@
+/* calibrate.c - see calibrate.h */
+#include "signal/calibrate.h"
+#include "signal/align.h"
+#include "signal/joint.h"
+#include "signal/robust.h"
+#include "signal/sections.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { EXAMPLES_MAX = 16, EXAMPLE_PULSES = 8 };
+
+/* A section used to learn the pulse: samples of noise 1 and the pulses found in it. */
+struct example {
+	const double *y1, *y2;
+	size_t n;
+	struct joint_pulse pulse[EXAMPLE_PULSES];
+	int m;
+};
+
+struct learning {
+	struct joint *joint;
+	struct joint_scene scene;
+	struct example example[EXAMPLES_MAX];
+	int count;
+	double misfit; /* of joint.h, at the end */
+	long dof;      /* of the last examples_fit() */
+};
+
+double calibrate_drop(double rate, const struct shape *shape, double duration,
+	double gain, double width)
+{
+	double lambda =
+		shape_slope_energy(shape) / shape_energy(shape) / (duration * duration);
+	double area = width * lambda * gain / (1 + gain * gain) / pow(2 * acos(-1), 1.5);
+	double edge = sqrt(lambda) / (2 * acos(-1)), lo = 1, hi = 40;
+
+	while (hi - lo > 1e-6) {
+		double u = (lo + hi) / 2;
+
+		if ((area * u + edge) * exp(-u * u / 2) > rate)
+			lo = u;
+		else
+			hi = u;
+	}
+	return hi * hi;
+}
+
+int calibrate_clean(const struct calibration *c, double *x, size_t n)
+{
+	double before[2 * TONES_MAX + 1], after[2 * TONES_MAX + 1], at = 0;
+	size_t hop = c->tone_hop < n ? c->tone_hop : n;
+
+	for (size_t middle = hop / 2, done = 0; done < n; middle += hop) {
+		size_t from = middle > hop ? middle - hop : 0;
+		size_t to = middle + hop < n ? middle + hop : n, until;
+
+		if (from + hop > n) /* the last stretch keeps its length */
+			from = n - hop;
+		if (!tones_fit(x + (from > done ? from : done),
+			    to - (from > done ? from : done),
+			    (double)(from > done ? from : done), c->tones, c->omega,
+			    after, NULL, NULL))
+			return n < 16;
+		if (done == 0)
+			memcpy(before, after, sizeof before);
+		until = middle < n ? middle : n;
+		if (middle + hop / 2 >= n)
+			until = n;
+		tones_remove(x + done, until - done, (double)done, c->tones, c->omega, at,
+			before, (double)middle, after);
+		memcpy(before, after, sizeof before);
+		at = (double)middle;
+		done = until;
+	}
+	return 1;
+}
+
+static int is_constant(const double *x, size_t n)
+{
+	for (size_t i = 1; i < n; i++)
+		if (x[i] != x[0])
+			return 0;
+	return 1;
+}
+
+static double variance(const double *x, size_t n)
+{
+	double mean = 0, sum = 0;
+
+	for (size_t i = 0; i < n; i++)
+		mean += x[i] / (double)n;
+	for (size_t i = 0; i < n; i++)
+		sum += (x[i] - mean) * (x[i] - mean);
+	return sum / (double)n;
+}
+
+/* First minimum of the autocorrelation after its smallest value has been passed by a
+ * clear rise; lag in samples, 0 where there is none. */
+static double lowest_lag(const double *r, size_t max_lag)
+{
+	size_t low = 1;
+
+	for (size_t k = 2; k <= max_lag; k++) {
+		if (r[k] < r[low])
+			low = k;
+		else if (r[low] < 0 && r[k] > 0.5 * r[low])
+			break;
+	}
+	return r[low] < 0 && low < max_lag ? (double)low : 0;
+}
+
+/* The same of one pulse, as a share of its duration. */
+static double shape_lowest_lag(const struct shape *shape)
+{
+	enum { T = 100, LAGS = 100 };
+	size_t n = (size_t)(2 * shape_reach(shape) * T) + 2;
+	double *p = calloc(n + LAGS, sizeof *p), r[LAGS + 1] = { 0 }, low = 0.5;
+
+	if (p) {
+		shape_sample(shape, shape_reach(shape) * T, T, 0, n, p, NULL, NULL);
+		for (int k = 0; k <= LAGS; k++)
+			for (size_t i = 0; i < n; i++)
+				r[k] += p[i] * p[i + (size_t)k];
+		low = lowest_lag(r, LAGS) / T;
+	}
+	free(p);
+	return low;
+}
+
+/* Chi-square of all examples with their pulses refined under the present scene; the
+ * pulses themselves stay unless keep. */
+static double examples_chi2(struct learning *l, int keep)
+{
+	double sum = 0;
+
+	for (int i = 0; i < l->count; i++) {
+		struct example *e = &l->example[i];
+		struct joint_pulse pulse[EXAMPLE_PULSES];
+		struct joint_result result;
+
+		memcpy(pulse, e->pulse, sizeof pulse);
+		if (joint_refine(l->joint, &l->scene, e->y1, e->y2, e->n, pulse, e->m,
+			    &result) != JOINT_OK)
+			return INFINITY;
+		if (keep)
+			memcpy(e->pulse, pulse, sizeof pulse);
+		sum += result.chi2;
+	}
+	return sum;
+}
+
+/* Finds the pulses of all examples anew; chi-square with a price for each pulse. */
+static double examples_fit(struct learning *l, double misfit)
+{
+	double sum = 0;
+
+	l->scene.misfit = misfit > l->misfit ? misfit : l->misfit;
+	l->dof = 0;
+	for (int i = 0; i < l->count; i++) {
+		struct example *e = &l->example[i];
+		struct joint_result result;
+
+		e->m = 0;
+		if (joint_fit(l->joint, &l->scene, e->y1, e->y2, e->n, e->pulse, &e->m,
+			    &result) != JOINT_OK)
+			return INFINITY;
+		sum += result.chi2 + l->scene.drop_near * e->m;
+		l->dof += result.dof;
+	}
+	return sum;
+}
+
+/* Moves *parameter by a factor to the least chi-square: parabolas through three points
+ * on the logarithm, the step shrinking. */
+static void minimise(struct learning *l, double *parameter, double step, int rounds)
+{
+	double middle = examples_chi2(l, 1);
+
+	for (int round = 0; round < rounds; round++, step /= 3) {
+		double x = *parameter, below, above, bend, move;
+
+		*parameter = x * exp(-step);
+		below = examples_chi2(l, 0);
+		*parameter = x * exp(step);
+		above = examples_chi2(l, 0);
+		bend = below - 2 * middle + above;
+		move = bend > 0 ? 0.5 * (below - above) / bend : below < above ? -1 : 1;
+		if (move > 2)
+			move = 2;
+		if (move < -2)
+			move = -2;
+		*parameter = x * exp(step * move);
+		above = examples_chi2(l, 0);
+		if (above < middle)
+			middle = examples_chi2(l, 1);
+		else
+			*parameter = x;
+	}
+}
+
+/* The clearest short sections of the record. */
+static void pick_examples(struct learning *l, const double *y1, const double *y2,
+	size_t n, const struct calibration *c)
+{
+	double T = c->duration, reach = shape_reach(c->shape), loud[EXAMPLES_MAX] = { 0 };
+	long margin = (long)(1.6 * reach * T + fmax(c->delta_max, -c->delta_min));
+	struct sections *s = sections_new(c->shape, T, 5, margin);
+	struct section section;
+
+	l->count = 0;
+	if (!s)
+		return;
+	sections_scan(s, y1, y2, 0, n, (long long)n);
+	sections_end(s);
+	while (sections_first(s, &section)) {
+		long long from = section.begin > 0 ? section.begin : 0;
+		long long to = section.end < (long long)n ? section.end : (long long)n;
+		double energy = 0, merit;
+		int at;
+
+		sections_take(s, section.end);
+		for (long long i = from; i < to; i++)
+			energy += y1[i] * y1[i] + y2[i] * y2[i] - 2;
+		/* Few pulses are worth more than loud ones. */
+		merit = (double)(to - from) < 4.5 * (double)margin
+				? energy
+				: energy * 1e-3 * (double)margin / (double)(to - from);
+		if ((double)(to - from) > 12 * (double)margin)
+			to = from + (long long)(12 * (double)margin);
+		for (at = l->count; at > 0 && loud[at - 1] < merit; at--)
+			if (at < EXAMPLES_MAX) {
+				loud[at] = loud[at - 1];
+				l->example[at] = l->example[at - 1];
+			}
+		if (at < EXAMPLES_MAX) {
+			loud[at] = merit;
+			l->example[at].y1 = y1 + from;
+			l->example[at].y2 = y2 + from;
+			l->example[at].n = (size_t)(to - from);
+			l->count += l->count < EXAMPLES_MAX;
+		}
+	}
+	sections_free(s);
+}
+
+static void scene_of(const struct calibration *c, struct joint_scene *scene)
+{
+	memset(scene, 0, sizeof *scene);
+	scene->shape = c->shape;
+	scene->duration = c->duration;
+	scene->transit = c->transit;
+	scene->gain = c->gain * c->noise[0] / c->noise[1];
+	scene->delta_min = c->delta_min;
+	scene->delta_max = c->delta_max;
+	scene->drop = c->drop;
+	scene->drop_near = c->drop_near;
+	scene->max_pulses = EXAMPLE_PULSES;
+	scene->offset = 1;
+}
+
+/* Shape, duration and gain by joint fits. */
+static enum calibrate_status learn_pulse(const struct calibrate_par *par,
+	const double *y1, const double *y2, size_t n, double lag, struct calibration *c)
+{
+	struct learning l = { .joint = joint_new() };
+	double best = INFINITY, noise_ratio = c->noise[0] / c->noise[1];
+	double duration = c->duration, gain = c->gain;
+	int pulse = c->pulse;
+
+	if (!l.joint)
+		return CALIBRATE_MEMORY;
+	for (int p = PULSE_SINE; p <= PULSE_LORENTZ; p++) {
+		double chi2;
+
+		if (par->pulse != CALIBRATE_ANY_PULSE && p != par->pulse)
+			continue;
+		shape_free(c->shape);
+		c->shape = shape_new((enum pulse_shape)p);
+		if (!c->shape) {
+			joint_free(l.joint);
+			return CALIBRATE_MEMORY;
+		}
+		c->duration = isnan(par->duration) ? lag / shape_lowest_lag(c->shape)
+						   : par->duration;
+		pick_examples(&l, y1, y2, n, c);
+		if (l.count == 0)
+			continue;
+		scene_of(c, &l.scene);
+		examples_fit(&l, 0.05);
+		if (isnan(par->duration))
+			minimise(&l, &l.scene.duration, 0.1, 3);
+		if (isnan(par->gain))
+			minimise(&l, &l.scene.gain, 0.1, 2);
+		examples_fit(&l, 0.01);
+		if (isnan(par->duration))
+			minimise(&l, &l.scene.duration, 0.01, 2);
+		if (isnan(par->gain))
+			minimise(&l, &l.scene.gain, 0.01, 2);
+		chi2 = examples_fit(&l, 0.01);
+		if (chi2 < best) {
+			best = chi2;
+			pulse = p;
+			duration = l.scene.duration;
+			gain = l.scene.gain / noise_ratio;
+			c->chi2 = chi2 / (double)l.dof;
+			c->events = 0;
+			for (int i = 0; i < l.count; i++)
+				c->events += l.example[i].m;
+		}
+	}
+	joint_free(l.joint);
+	shape_free(c->shape);
+	c->pulse = pulse;
+	c->duration = duration;
+	c->gain = gain;
+	c->shape = shape_new((enum pulse_shape)pulse);
+	return c->shape ? CALIBRATE_OK : CALIBRATE_MEMORY;
+}
+
+/* Range of delays and thresholds for the present duration and gain. */
+static void set_limits(const struct calibrate_par *par, struct calibration *c)
+{
+	double spread = par->spread * (double)c->shift,
+	       gain = c->gain * c->noise[0] / c->noise[1];
+
+	if (spread < 0.05 * c->duration)
+		spread = 0.05 * c->duration;
+	c->delta_min = -spread;
+	c->delta_max = spread;
+	c->drop =
+		calibrate_drop(par->false_alarm, c->shape, c->duration, gain, 2 * spread);
+	/* Next to a pulse the search is over some 40 cells: 25 means 1e-3 false ones. */
+	c->drop_near = c->drop < 25 ? c->drop : 25;
+}
+
+/* Standard deviation of white noise that would have the same effect on the matched
+ * filter as the noise there is; for records that have been filtered before. */
+static double filtered_noise(
+	const struct calibration *c, const double *y, size_t n, double *work)
+{
+	double energy = c->duration * shape_energy(c->shape), T = c->duration;
+	size_t len, count = 0, stride = (size_t)(T / 8);
+	long first = shape_support(c->shape, 0, T, &len);
+	double *p = malloc(len * sizeof *p);
+
+	if (!p || n < len + 1) {
+		free(p);
+		return c->noise[0];
+	}
+	shape_sample(c->shape, 0, T, first, len, p, NULL, NULL);
+	for (size_t at = 0; at + len <= n; at += stride) {
+		double sum = 0;
+
+		for (size_t i = 0; i < len; i++)
+			sum += p[i] * y[at + i];
+		work[count++] = fabs(sum);
+	}
+	free(p);
+	return 1.482602218505602 * robust_median(work, count) / sqrt(energy);
+}
+
+static void normalise(const struct calibration *c, double *y1, double *y2, size_t n)
+{
+	for (size_t i = 0; i < n; i++) {
+		y1[i] /= c->noise[0];
+		y2[i] /= c->noise[1];
+	}
+}
+
+static enum calibrate_status measure(const struct calibrate_par *par, double *y1,
+	double *y2, size_t n, struct calibration *c, double *r)
+{
+	size_t max_lag = n / 2, rest;
+	double lag = par->lag, low;
+
+	if (par->tones == CALIBRATE_FIND_TONES) {
+		c->tones = tones_find(y1, y2, n, TONES_MAX, c->omega);
+		if (c->tones < 0)
+			return CALIBRATE_MEMORY;
+		rest = n < 16384 ? n : 16384;
+		c->tones = tones_confirm(y1 + (n - rest) / 2, y2 + (n - rest) / 2, rest,
+			c->tones, c->omega);
+	} else {
+		c->tones = par->tones;
+		memcpy(c->omega, par->omega, sizeof c->omega);
+	}
+	c->tone_hop = n < 8192 ? n : 4096;
+	if (!calibrate_clean(c, y1, n) || !calibrate_clean(c, y2, n))
+		return CALIBRATE_MEMORY;
+	for (int k = 0; k < 2; k++) {
+		const double *y = k ? y2 : y1;
+		double least = 1e-6 * sqrt(variance(y, n));
+
+		c->noise[k] = robust_noise(y, n, 4, r);
+		if (c->noise[k] < least)
+			c->noise[k] = least;
+	}
+	if (isnan(lag))
+		lag = align_lag(y1, y2, n, max_lag, &c->correlation);
+	if (lag < 0)
+		return lag == -1 ? CALIBRATE_MEMORY : CALIBRATE_NO_LAG;
+	c->shift = (long)floor(lag + 0.5);
+	if (c->shift >= (long)n - 16)
+		return CALIBRATE_NO_LAG;
+	c->transit = c->shift > 0 ? (double)c->shift : INFINITY;
+	rest = n - (size_t)c->shift;
+	y2 += c->shift;
+	if (!align_autocorrelation(y1, y2, rest, rest / 4, r))
+		return CALIBRATE_MEMORY;
+	low = lowest_lag(r, rest / 4);
+	c->pulse = par->pulse == CALIBRATE_ANY_PULSE ? PULSE_SINE : par->pulse;
+	c->shape = shape_new((enum pulse_shape)c->pulse);
+	if (!c->shape)
+		return CALIBRATE_MEMORY;
+	c->duration =
+		isnan(par->duration) ? low / shape_lowest_lag(c->shape) : par->duration;
+	if (!(c->duration >= 8))
+		return CALIBRATE_FAST;
+	if (8 * c->duration > (double)n && c->duration > 0.5 * (double)n)
+		return CALIBRATE_SLOW;
+	c->gain = par->gain;
+	if (isnan(c->gain)) {
+		double v1 = variance(y1, rest) - c->noise[0] * c->noise[0];
+		double v2 = variance(y2, rest) - c->noise[1] * c->noise[1];
+
+		c->gain = v1 > 0 && v2 > 0 ? sqrt(v2 / v1) : 1;
+	}
+	normalise(c, y1, y2, rest);
+	set_limits(par, c);
+	c->misfit = 0.002;
+	if (learn_pulse(par, y1, y2, rest, low, c) != CALIBRATE_OK)
+		return CALIBRATE_MEMORY;
+	if (c->chi2 > 4) {
+		/* Neither the shape nor white noise will do: the record was filtered.
+		 * What counts then is the noise that passes the matched filter. */
+		double n1 = filtered_noise(c, y1, rest, r),
+		       n2 = filtered_noise(c, y2, rest, r);
+
+		c->noise[0] *= n1;
+		c->noise[1] *= n2;
+		for (size_t i = 0; i < rest; i++) {
+			y1[i] /= n1;
+			y2[i] /= n2;
+		}
+		c->misfit = 0.15;
+		set_limits(par, c);
+		if (learn_pulse(par, y1, y2, rest, low, c) != CALIBRATE_OK)
+			return CALIBRATE_MEMORY;
+	}
+	set_limits(par, c);
+	return CALIBRATE_OK;
+}
+
+enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
+	const double *x2, size_t n, struct calibration *c)
+{
+	double *work;
+	enum calibrate_status status;
+
+	memset(c, 0, sizeof *c);
+	if (is_constant(x1, n))
+		return CALIBRATE_SILENT_1;
+	if (is_constant(x2, n))
+		return CALIBRATE_SILENT_2;
+	work = malloc(3 * n * sizeof *work);
+	if (!work)
+		return CALIBRATE_MEMORY;
+	memcpy(work, x1, n * sizeof *work);
+	memcpy(work + n, x2, n * sizeof *work);
+	status = measure(par, work, work + n, n, c, work + 2 * n);
+	free(work);
+	if (status != CALIBRATE_OK)
+		calibration_clear(c);
+	return status;
+}
+
+void calibration_clear(struct calibration *c)
+{
+	shape_free(c->shape);
+	c->shape = NULL;
+}

@@ -1,0 +1,78 @@
+/* calibrate.h - what a two-sensor record says about the instrument
+ *
+ * From the beginning of a record: lag of the second sensor, interfering tones, noise of
+ * either channel, shape and duration of the pulses, ratio of the gains, range of the
+ * velocities.  Whatever the caller knows is taken as given.
+ *
+ * The order is: tones from the periodogram; noise from the fourth difference; lag from
+ * the cross-correlation; duration from the lag at which the autocorrelation is lowest
+ * (which superposition does not change); then joint fits of the clearest sections under
+ * each shape, with duration and gain chosen by least chi-square.
+ */
+#ifndef SIGNAL_CALIBRATE_H
+#define SIGNAL_CALIBRATE_H
+
+#include "signal/sensor.h"
+#include "signal/shape.h"
+#include "signal/tones.h"
+#include <stddef.h>
+
+enum { CALIBRATE_ANY_PULSE = -1, CALIBRATE_FIND_TONES = -1 };
+
+/* What is known; NAN, -1 where it is to be found. */
+struct calibrate_par {
+	double lag;              /* samples */
+	double duration;         /* of a pulse of the mean velocity, samples */
+	double gain;             /* sensor 2 over sensor 1 */
+	int pulse;               /* enum pulse_shape or CALIBRATE_ANY_PULSE */
+	double spread;           /* delays within lag (1 +- spread) */
+	double false_alarm;      /* expected false particles per sample of noise */
+	int tones;               /* number in omega, or CALIBRATE_FIND_TONES */
+	double omega[TONES_MAX]; /* rad per sample */
+};
+
+struct calibration {
+	long shift;         /* samples channel 2 is moved back by */
+	double correlation; /* of the channels at that lag */
+	int tones;
+	double omega[TONES_MAX];
+	size_t tone_hop; /* samples between two fits of the tones */
+	double noise[2]; /* standard deviations */
+	struct shape *shape;
+	int pulse;             /* which of enum pulse_shape */
+	double duration, gain; /* as above */
+	double transit;        /* samples between the sensors; INFINITY if unknown */
+	double delta_min, delta_max; /* samples around shift */
+	double drop, drop_near;      /* thresholds of joint.h */
+	double misfit;               /* of joint.h: how far the shape can be trusted */
+	int events;                  /* pulses the shape was fitted to */
+	double chi2;                 /* of these, per degree of freedom */
+};
+
+enum calibrate_status {
+	CALIBRATE_OK,
+	CALIBRATE_MEMORY,
+	CALIBRATE_SILENT_1, /* channel 1 is constant */
+	CALIBRATE_SILENT_2,
+	CALIBRATE_NO_LAG, /* the channels have nothing in common */
+	CALIBRATE_FAST,   /* pulses of fewer than 8 samples */
+	CALIBRATE_SLOW    /* pulses longer than an eighth of the record */
+};
+
+/* x1, x2: n >= 64 finite samples.  On CALIBRATE_OK *c is filled; free it with
+ * calibration_clear(). */
+enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
+	const double *x2, size_t n, struct calibration *c);
+void calibration_clear(struct calibration *c);
+
+/* Chi-square a lone pulse must take away so that noise gives at most rate false ones
+ * per sample: the expected number of maxima above u of the matched-filter field over
+ * arrival and delay (Rice's formula in two dimensions; Adler, The Geometry of Random
+ * Fields, 1981), u^2 being the threshold.  width: range of delays in samples. */
+double calibrate_drop(double rate, const struct shape *shape, double duration,
+	double gain, double width);
+
+/* Takes tones (and the mean) from a whole record. */
+int calibrate_clean(const struct calibration *c, double *x, size_t n);
+
+#endif

@@ -1,0 +1,25 @@
+/* count.h - plain counting of pulses by their peaks, one channel at a time
+ *
+ * A peak is the highest sample between two crossings of half its height, and at least
+ * level high.  Overlapping pulses count as one: that is what the other methods are for.
+ */
+#ifndef SIGNAL_COUNT_H
+#define SIGNAL_COUNT_H
+
+#include <stddef.h>
+
+struct peak {
+	double t, height; /* samples from the first; by the parabola through three samples
+			   */
+};
+
+struct count;
+struct count *count_new(double level); /* NULL: level <= 0 or no memory */
+void count_free(struct count *count);
+
+/* One more sample; 1 where a peak is now known for sure. */
+int count_sample(struct count *count, double x, struct peak *peak);
+/* The end of the record: 1 where a last peak was still open. */
+int count_end(struct count *count, struct peak *peak);
+
+#endif

@@ -1,0 +1,15 @@
+/* robust.h - order statistics that outliers do not move */
+#ifndef SIGNAL_ROBUST_H
+#define SIGNAL_ROBUST_H
+
+#include <stddef.h>
+
+/* Median (upper of the two middle values); 0 for n = 0.  Reorders x. */
+double robust_median(double *x, size_t n);
+
+/* Standard deviation of the white noise under slow signals: the median of the difference
+ * of the given order (1 to 16), which takes out what varies over many samples; work holds
+ * n values.  0 where n < 16 + order.  White noise gives the same for every order. */
+double robust_noise(const double *x, size_t n, int order, double *work);
+
+#endif

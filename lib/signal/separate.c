@@ -1,0 +1,574 @@
+/* separate.c - see separate.h */
+#include "signal/separate.h"
+#include "signal/sections.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SHORTEST = 64 };
+
+/* Samples of one channel from index begin on; those before clean are worked up. */
+struct tape {
+	double *x;
+	size_t n, capacity;
+	long long begin, clean;
+	double at; /* where the coefficients hold */
+	double coefficient[2 * TONES_MAX + 1];
+	int started;
+};
+
+struct separate {
+	struct separate_par par;
+	struct calibration cal;
+	int calibrated, ended;
+	struct tape tape[2];
+	struct sections *sections;
+	struct joint *joint;
+	struct masks *masks;
+	struct joint_scene scene;
+	struct joint_pulse pulse[JOINT_PULSES_MAX];
+	int carried;    /* pulses of the last window that the next one starts from */
+	int continuing; /* the next window belongs to the same section */
+	long number;
+	long long done; /* samples before this one are worked off */
+	struct particle *queue;
+	size_t count, given, capacity;
+	double *source;
+	struct separate_counters counters;
+	long long bad_frame;
+	int bad_channel;
+};
+
+struct separate *separate_new(const struct separate_par *par)
+{
+	struct separate *s = calloc(1, sizeof *s);
+
+	if (!s)
+		return NULL;
+	s->par = *par;
+	if (s->par.learn < SHORTEST)
+		s->par.learn = SHORTEST;
+	return s;
+}
+
+void separate_free(struct separate *s)
+{
+	if (!s)
+		return;
+	calibration_clear(&s->cal);
+	sections_free(s->sections);
+	joint_free(s->joint);
+	masks_free(s->masks);
+	free(s->tape[0].x);
+	free(s->tape[1].x);
+	free(s->queue);
+	free(s->source);
+	free(s);
+}
+
+const struct calibration *separate_calibration(const struct separate *s)
+{
+	return s->calibrated ? &s->cal : NULL;
+}
+
+const struct separate_counters *separate_counters(const struct separate *s)
+{
+	return &s->counters;
+}
+
+long long separate_bad_sample(const struct separate *s, int *channel)
+{
+	*channel = s->bad_channel;
+	return s->bad_frame;
+}
+
+int separate_next(struct separate *s, struct particle *p)
+{
+	if (s->given == s->count) {
+		s->given = s->count = 0;
+		return 0;
+	}
+	*p = s->queue[s->given++];
+	return 1;
+}
+
+static struct particle *queue_particle(struct separate *s)
+{
+	if (s->count == s->capacity) {
+		size_t capacity = s->capacity ? 2 * s->capacity : 64;
+		struct particle *more = realloc(s->queue, capacity * sizeof *more);
+
+		if (!more)
+			return NULL;
+		s->queue = more;
+		s->capacity = capacity;
+	}
+	memset(&s->queue[s->count], 0, sizeof *s->queue);
+	return &s->queue[s->count++];
+}
+
+static int append(struct tape *t, const double *x, size_t n)
+{
+	if (t->n + n > t->capacity) {
+		size_t capacity = 2 * t->capacity > t->n + n ? 2 * t->capacity : t->n + n;
+		double *more = realloc(t->x, capacity * sizeof *more);
+
+		if (!more)
+			return 0;
+		t->x = more;
+		t->capacity = capacity;
+	}
+	for (size_t i = 0; i < n; i++)
+		t->x[t->n + i] = x[2 * i];
+	t->n += n;
+	return 1;
+}
+
+/* Forgets what lies before sample keep, now and then. */
+static void forget(struct tape *t, long long keep)
+{
+	size_t old = keep > t->begin ? (size_t)(keep - t->begin) : 0;
+
+	if (old < t->n / 2 || old < 4096)
+		return;
+	if (old > t->n)
+		old = t->n;
+	memmove(t->x, t->x + old, (t->n - old) * sizeof *t->x);
+	t->n -= old;
+	t->begin += (long long)old;
+}
+
+static void scale(struct tape *t, long long from, long long to, double noise)
+{
+	for (long long i = from - t->begin; i < to - t->begin; i++)
+		t->x[i] /= noise;
+}
+
+/* Takes tones from what has come in and divides by the noise.  Tones are fitted around
+ * the middle of every hop, over two hops, and run linearly in between; they depend on
+ * the record alone, not on how it came in. */
+static int clean(struct separate *s, struct tape *t, double noise)
+{
+	const struct calibration *c = &s->cal;
+	long long end = t->begin + (long long)t->n, hop = (long long)c->tone_hop;
+
+	if (c->tones == 0) {
+		scale(t, t->clean, end, noise);
+		t->clean = end;
+		return 1;
+	}
+	for (;;) {
+		long long middle = t->started ? (long long)t->at + hop : hop / 2;
+		long long from = middle - hop > t->clean ? middle - hop : t->clean,
+			  until = middle;
+		double after[2 * TONES_MAX + 1];
+
+		if (t->clean == end || (middle + hop > end && !s->ended))
+			return 1;
+		if (middle + hop > end) { /* the last one reaches to the end */
+			until = end;
+			middle = end - hop / 2 > t->clean ? end - hop / 2 : end;
+			from = t->clean;
+		}
+		if (!tones_fit(t->x + (from - t->begin),
+			    (size_t)((middle + hop < end ? middle + hop : end) - from),
+			    (double)from, c->tones, c->omega, after, NULL, NULL)) {
+			if (!t->started)
+				return 0;
+			memcpy(after, t->coefficient, sizeof after); /* a short rest */
+		}
+		if (!t->started)
+			memcpy(t->coefficient, after, sizeof after);
+		tones_remove(t->x + (t->clean - t->begin), (size_t)(until - t->clean),
+			(double)t->clean, c->tones, c->omega, t->at, t->coefficient,
+			(double)middle, after);
+		scale(t, t->clean, until, noise);
+		memcpy(t->coefficient, after, sizeof after);
+		t->at = (double)middle;
+		t->started = 1;
+		t->clean = until;
+	}
+}
+
+static enum separate_status calibrate_now(struct separate *s)
+{
+	static const enum separate_status of[] = { SEPARATE_OK, SEPARATE_MEMORY,
+		SEPARATE_SILENT_1, SEPARATE_SILENT_2, SEPARATE_NO_LAG, SEPARATE_FAST,
+		SEPARATE_SLOW };
+	const struct calibration *c = &s->cal;
+	enum calibrate_status status;
+	double reach;
+	size_t n;
+
+	if (s->tape[0].n < SHORTEST)
+		return SEPARATE_SHORT;
+	/* Not more than asked for, however much has come in at once. */
+	n = s->tape[0].n < s->par.learn ? s->tape[0].n : s->par.learn;
+	status = calibrate(&s->par.known, s->tape[0].x, s->tape[1].x, n, &s->cal);
+	if (status != CALIBRATE_OK)
+		return of[status];
+	s->calibrated = 1;
+	s->scene = (struct joint_scene){ .shape = c->shape,
+		.duration = c->duration,
+		.transit = c->transit,
+		.gain = c->gain * c->noise[0] / c->noise[1],
+		.delta_min = c->delta_min,
+		.delta_max = c->delta_max,
+		.drop = c->drop,
+		.drop_near = c->drop_near,
+		.misfit = c->misfit,
+		.max_pulses = JOINT_PULSES_MAX,
+		.offset = 1,
+		.tones = c->tones };
+	memcpy(s->scene.omega, c->omega, (size_t)c->tones * sizeof(double));
+	reach = 2 * shape_reach(c->shape) * c->duration;
+	if (s->par.window < (size_t)(6 * reach))
+		s->par.window =
+			s->par.window ? (size_t)(6 * reach) : (size_t)(24 * reach);
+	/* Equal pulses on both channels reach the threshold of a pair at 1 / sqrt 2 of
+	 * it. */
+	s->sections = sections_new(c->shape, c->duration, 0.65 * sqrt(c->drop),
+		(long)(0.6 * reach + fmax(c->delta_max, -c->delta_min)));
+	s->joint = joint_new();
+	if (s->par.method == SEPARATE_MASKS) {
+		struct masks_par mp = { .window = s->par.mask_window,
+			.hop = s->par.mask_hop,
+			.duration = c->duration,
+			.delta_min = c->delta_min,
+			.delta_max = c->delta_max,
+			.gain_max = 2 * s->scene.gain,
+			.peak_share = 0.3,
+			.sources = s->par.sources,
+			.shape = c->shape };
+
+		s->masks = masks_new(&mp);
+		if (!s->masks)
+			return SEPARATE_MEMORY;
+	}
+	return s->sections && s->joint ? SEPARATE_OK : SEPARATE_MEMORY;
+}
+
+static double *channel_1(struct separate *s, long long at)
+{
+	return s->tape[0].x + (at - s->tape[0].begin);
+}
+
+static double *channel_2(struct separate *s, long long at)
+{
+	return s->tape[1].x + (at + s->cal.shift - s->tape[1].begin);
+}
+
+/* Aligned samples before this one are ready on both channels. */
+static long long ready(const struct separate *s)
+{
+	long long second = s->tape[1].clean - s->cal.shift;
+
+	return s->tape[0].clean < second ? s->tape[0].clean : second;
+}
+
+static int emit_pulse(struct separate *s, const struct joint_pulse *p, long long from,
+	int sources, double chi2, enum separate_verdict verdict)
+{
+	struct particle *out = queue_particle(s);
+	double delay_var = p->cov[0] - 2 * p->cov[1] + p->cov[2], noise = s->cal.noise[0];
+
+	if (!out)
+		return 0;
+	out->section = s->number;
+	out->sources = sources;
+	out->t1 = (double)from + p->t;
+	out->t2 = out->t1 + (double)s->cal.shift + p->delta;
+	out->amplitude = p->a * noise;
+	out->t1_se = sqrt(p->cov[0]);
+	out->t2_se = sqrt(p->cov[2]);
+	out->delay_se = sqrt(delay_var);
+	out->amplitude_se = sqrt(p->cov[5]) * noise;
+	out->correlation = (p->cov[4] - p->cov[3]) / sqrt(delay_var * p->cov[5]);
+	out->chi2 = chi2;
+	out->verdict = verdict;
+	return 1;
+}
+
+static int report_section(struct separate *s, long long from, long long to, int sources,
+	double chi2, enum separate_verdict verdict, const double *source)
+{
+	struct separate_section out = { .number = s->number,
+		.begin = from,
+		.end = to,
+		.sources = sources,
+		.chi2 = chi2,
+		.verdict = verdict,
+		.source = source,
+		.masks = s->masks };
+
+	if (s->par.on_section)
+		s->par.on_section(s->par.context, &out);
+	return 1;
+}
+
+static int reserve_sources(struct separate *s, size_t count)
+{
+	free(s->source);
+	s->source = calloc(count ? count : 1, sizeof *s->source);
+	return s->source != NULL;
+}
+
+/* Each fitted pulse alone, as sensor 1 would see it. */
+static int draw_pulses(struct separate *s, int m, size_t n)
+{
+	if (!reserve_sources(s, (size_t)m * n))
+		return 0;
+	for (int i = 0; i < m; i++) {
+		double *x = s->source + (size_t)i * n;
+
+		joint_add(&s->scene, &s->pulse[i], 1, x, NULL, n);
+		for (size_t k = 0; k < n; k++)
+			x[k] *= s->cal.noise[0];
+	}
+	return 1;
+}
+
+/* Where to cut a window of n samples: the widest gap between arrivals in its later
+ * half that leaves room for the pulses behind it. */
+static double choose_cut(const struct separate *s, int m, size_t n)
+{
+	double lo = 0.4 * (double)n, widest = -1, cut = 0;
+	double hi = (double)n - 2.2 * shape_reach(s->cal.shape) * s->cal.duration;
+
+	for (int i = 0; i <= m; i++) {
+		double from = i ? s->pulse[i - 1].t : 0,
+		       to = i < m ? s->pulse[i].t : (double)n;
+
+		if (from < lo)
+			from = lo;
+		if (to > hi)
+			to = hi;
+		if (to - from > widest) {
+			widest = to - from;
+			cut = (from + to) / 2;
+		}
+	}
+	return cut;
+}
+
+static enum separate_verdict judge(const struct joint_result *r, int sources)
+{
+	double chi2 = r->chi2 / (double)r->dof, sd = sqrt(2 / (double)r->dof);
+
+	if (r->full)
+		return SEPARATE_UNRESOLVED;
+	if (chi2 > 1.1 + 5 * sd)
+		return SEPARATE_MISFIT;
+	return sources > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
+}
+
+/* Works off [from, to) by a joint fit.  With cut, the section goes on: pulses behind
+ * the cut are carried into the next window, whose first sample is *next. */
+static enum separate_status fit_section(
+	struct separate *s, long long from, long long to, int cut, long long *next)
+{
+	struct joint_result r;
+	size_t n = (size_t)(to - from);
+	double boundary, chi2;
+	enum separate_verdict verdict;
+	int m = s->carried, done = 0, kept = 0;
+
+	s->scene.max_pulses = s->par.sources ? s->par.sources : JOINT_PULSES_MAX;
+	if (joint_fit(s->joint, &s->scene, channel_1(s, from), channel_2(s, from), n,
+		    s->pulse, &m, &r) != JOINT_OK)
+		return SEPARATE_MEMORY;
+	s->counters.fits++;
+	s->counters.steps += (double)r.steps;
+	s->counters.searches += (double)r.searches;
+	boundary = cut ? choose_cut(s, m, n) : INFINITY;
+	while (done < m && s->pulse[done].t < boundary)
+		done++;
+	verdict = judge(&r, m);
+	chi2 = r.chi2 / (double)r.dof;
+	s->counters.unresolved += verdict == SEPARATE_UNRESOLVED;
+	for (int i = 0; i < done; i++)
+		if (!emit_pulse(s, &s->pulse[i], from, m, chi2, verdict))
+			return SEPARATE_MEMORY;
+	if (s->par.on_section) {
+		if (s->par.want_sources && !draw_pulses(s, done, n))
+			return SEPARATE_MEMORY;
+		report_section(s, from, to, done, chi2, verdict,
+			s->par.want_sources ? s->source : NULL);
+	}
+	if (cut) {
+		/* What has been given out is taken from the record. */
+		size_t rest = (size_t)(ready(s) - from);
+		long long start = from + (long long)floor(boundary -
+							  shape_reach(s->cal.shape) *
+								  s->cal.duration +
+							  s->cal.delta_min);
+
+		for (int i = 0; i < done; i++)
+			joint_add(&s->scene, &s->pulse[i], -1, channel_1(s, from),
+				channel_2(s, from), rest);
+		if (start <= from)
+			start = from + 1;
+		for (int i = done; i < m; i++) {
+			s->pulse[kept] = s->pulse[i];
+			s->pulse[kept++].t -= (double)(start - from);
+		}
+		*next = start;
+	} else {
+		s->counters.singles += m == 1 && !s->continuing;
+		*next = to;
+	}
+	s->carried = kept;
+	return SEPARATE_OK;
+}
+
+/* Arrival (zero crossing between the lobes) and amplitude of the one pulse in x. */
+static void measure_pulse(const double *x, size_t n, double *t, double *a)
+{
+	size_t high = 0, low = 0;
+
+	for (size_t i = 1; i < n; i++) {
+		if (x[i] > x[high])
+			high = i;
+		if (x[i] < x[low])
+			low = i;
+	}
+	*t = ((double)high + (double)low) / 2;
+	*a = (x[high] - x[low]) / 2;
+}
+
+/* Works off [from, to) by masks. */
+static enum separate_status mask_section(struct separate *s, long long from, long long to)
+{
+	struct masks_source source[MASKS_SOURCES_MAX];
+	size_t n = (size_t)(to - from);
+	const double *y1 = channel_1(s, from);
+	int m = masks_find(s->masks, y1, channel_2(s, from), n, source);
+
+	if (m < 0 || !reserve_sources(s, (size_t)m * n))
+		return SEPARATE_MEMORY;
+	/* A single source needs no demixing. */
+	if (m == 1)
+		memcpy(s->source, y1, n * sizeof *y1);
+	for (int k = 0; k < m && m > 1; k++)
+		masks_separate(s->masks, k, s->source + (size_t)k * n);
+	s->counters.singles += m == 1;
+	s->counters.masks += m > 1;
+	s->counters.masks_skipped += m == 1;
+	for (int k = 0; k < m; k++) {
+		struct particle *p = queue_particle(s);
+		double *x = s->source + (size_t)k * n, t, a;
+
+		if (!p)
+			return SEPARATE_MEMORY;
+		for (size_t i = 0; i < n; i++)
+			x[i] *= s->cal.noise[0];
+		measure_pulse(x, n, &t, &a);
+		p->section = s->number;
+		p->sources = m;
+		p->t1 = (double)from + t;
+		p->t2 = p->t1 + (double)s->cal.shift + source[k].delta;
+		p->amplitude = a;
+		p->t1_se = p->t2_se = p->delay_se = p->amplitude_se = p->chi2 = NAN;
+		p->correlation = NAN;
+		p->verdict = m > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
+	}
+	report_section(s, from, to, m, NAN, m > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE,
+		s->source);
+	return SEPARATE_OK;
+}
+
+/* Works off all sections that are whole. */
+static enum separate_status work(struct separate *s)
+{
+	long long limit, window = (long long)s->par.window;
+	struct section section;
+
+	for (int c = 0; c < 2; c++)
+		if (!clean(s, &s->tape[c], s->cal.noise[c]))
+			return SEPARATE_MEMORY;
+	limit = ready(s);
+	if (limit <= s->done)
+		return SEPARATE_OK;
+	sections_scan(s->sections, channel_1(s, s->done), channel_2(s, s->done), s->done,
+		(size_t)(limit - s->done),
+		s->ended ? limit : limit - sections_reach(s->sections));
+	if (s->ended)
+		sections_end(s->sections);
+	while (sections_first(s->sections, &section)) {
+		long long from = section.begin > 0 ? section.begin : 0, to = section.end,
+			  next;
+		int cut = section.end - from > window;
+		enum separate_status status;
+
+		if (cut)
+			to = from + window;
+		if (!s->ended && (to > limit || sections_scanned(s->sections) < to))
+			break;
+		if (!cut && section.open)
+			break;
+		if (to > limit)
+			to = limit;
+		if (to - from < 2) {
+			sections_take(s->sections, section.end);
+			continue;
+		}
+		if (!s->continuing) {
+			s->number++;
+			s->counters.sections++;
+		}
+		next = to;
+		if (s->par.method == SEPARATE_FIT)
+			status = fit_section(s, from, to, cut, &next);
+		else
+			status = mask_section(s, from, to);
+		if (status != SEPARATE_OK)
+			return status;
+		s->counters.active += (double)(next - from);
+		s->continuing = cut;
+		sections_take(s->sections, cut ? next : section.end);
+	}
+	s->done = sections_scanned(s->sections) - sections_reach(s->sections);
+	if (sections_first(s->sections, &section) && section.begin < s->done)
+		s->done = section.begin;
+	if (s->done < 0)
+		s->done = 0;
+	for (int c = 0; c < 2; c++)
+		forget(&s->tape[c], s->done);
+	return SEPARATE_OK;
+}
+
+enum separate_status separate_push(struct separate *s, const double *x, size_t n)
+{
+	for (size_t i = 0; i < 2 * n; i++)
+		if (!isfinite(x[i])) {
+			s->bad_frame =
+				(long long)s->counters.samples + (long long)(i / 2);
+			s->bad_channel = (int)(i % 2);
+			return SEPARATE_NOT_FINITE;
+		}
+	if (!append(&s->tape[0], x, n) || !append(&s->tape[1], x + 1, n))
+		return SEPARATE_MEMORY;
+	s->counters.samples += (double)n;
+	if (!s->calibrated) {
+		enum separate_status status;
+
+		if (s->tape[0].n < s->par.learn)
+			return SEPARATE_OK;
+		status = calibrate_now(s);
+		if (status != SEPARATE_OK)
+			return status;
+	}
+	return work(s);
+}
+
+enum separate_status separate_end(struct separate *s)
+{
+	s->ended = 1;
+	if (!s->calibrated) {
+		enum separate_status status = calibrate_now(s);
+
+		if (status != SEPARATE_OK)
+			return status;
+	}
+	return work(s);
+}

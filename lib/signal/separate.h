@@ -1,0 +1,109 @@
+/* separate.h - a two-sensor record in, particles out, as the record comes
+ *
+ * The first learn samples are held back to calibrate (calibrate.h).  From then on the
+ * record is cleaned, aligned and cut into sections (sections.h); each section is given
+ * to one of the methods: joint fit (joint.h) or masks (masks.h).  Sections longer than
+ * window are worked off in windows, pulses near the end of one being the first guesses
+ * of the next.  Where to cut depends on the record alone, so that the particles are the
+ * same however the record is handed in; memory is bounded by learn and window.
+ *
+ *	struct separate *s = separate_new(&par);
+ *	while ((n = read(x)) > 0 && separate_push(s, x, n) == SEPARATE_OK)
+ *		while (separate_next(s, &p))
+ *			print(&p);
+ *	if (separate_end(s) == SEPARATE_OK)
+ *		while (separate_next(s, &p))
+ *			print(&p);
+ *	separate_free(s);
+ */
+#ifndef SIGNAL_SEPARATE_H
+#define SIGNAL_SEPARATE_H
+
+#include "signal/calibrate.h"
+#include "signal/joint.h"
+#include "signal/masks.h"
+#include <stddef.h>
+
+enum separate_method { SEPARATE_FIT, SEPARATE_MASKS };
+
+/* How far a row may be trusted. */
+enum separate_verdict {
+	SEPARATE_ALONE,     /* one pulse in its section */
+	SEPARATE_OVERLAP,   /* several, told apart */
+	SEPARATE_MISFIT,    /* chi-square too large: the model does not describe it */
+	SEPARATE_UNRESOLVED /* too dense: the row stands for sources particles */
+};
+
+struct particle {
+	long section;     /* from 1 */
+	int sources;      /* particles in this section (or window of it) */
+	double t1, t2;    /* arrival at either sensor, samples from the start */
+	double amplitude; /* at sensor 1, units of the record */
+	double t1_se, t2_se, delay_se, amplitude_se;
+	double correlation; /* between the errors of delay and amplitude */
+	double chi2;        /* of the section per degree of freedom */
+	enum separate_verdict verdict;
+};
+
+/* What is known about a section when it is done. */
+struct separate_section {
+	long number;
+	long long begin, end; /* samples of channel 1 */
+	int sources;
+	double chi2;
+	enum separate_verdict verdict;
+	const double *source; /* sources * (end - begin): each on sensor 1; NULL unless
+				 wanted */
+	const struct masks *masks; /* for its histogram; NULL for a fit */
+};
+
+struct separate_par {
+	enum separate_method method;
+	struct calibrate_par known;
+	size_t learn;  /* samples held back to calibrate, at least 64 */
+	size_t window; /* longest section worked off at once; 0: 24 durations */
+	int sources;   /* exactly so many in each section; 0: find out */
+	size_t mask_window, mask_hop; /* of the masks, samples */
+	int want_sources;             /* fill separate_section.source */
+	void (*on_section)(void *context, const struct separate_section *section);
+	void *context;
+};
+
+enum separate_status {
+	SEPARATE_OK,
+	SEPARATE_MEMORY,
+	SEPARATE_SHORT,      /* fewer than 64 samples */
+	SEPARATE_NOT_FINITE, /* see separate_bad_sample() */
+	SEPARATE_SILENT_1,
+	SEPARATE_SILENT_2,
+	SEPARATE_NO_LAG,
+	SEPARATE_FAST,
+	SEPARATE_SLOW
+};
+
+/* Work done and left out so far. */
+struct separate_counters {
+	double samples, active;   /* frames in all, and in sections */
+	double sections, singles; /* sections, and those with one pulse */
+	double fits, steps, searches;
+	double masks, masks_skipped; /* sections demixed, and those that need not be */
+	double unresolved;
+};
+
+struct separate;
+struct separate *separate_new(const struct separate_par *par); /* NULL: no memory */
+void separate_free(struct separate *s);
+
+/* n frames of two channels, interleaved. */
+enum separate_status separate_push(struct separate *s, const double *x, size_t n);
+enum separate_status separate_end(struct separate *s);
+/* The next particle in order of section and arrival; 0 where none is ready. */
+int separate_next(struct separate *s, struct particle *p);
+
+const struct calibration *separate_calibration(
+	const struct separate *s); /* NULL: not yet */
+const struct separate_counters *separate_counters(const struct separate *s);
+/* Frame and channel (0, 1) that made it fail with NOT_FINITE. */
+long long separate_bad_sample(const struct separate *s, int *channel);
+
+#endif

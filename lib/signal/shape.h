@@ -1,0 +1,37 @@
+/* shape.h - a pulse shape as a table, for fits that sample it millions of times
+ *
+ * The pulse p(s) of duration 1 is stored with its slope on a fine grid and read with
+ * cubic Hermite polynomials (error below 1e-8 for the smooth pulses of sensor.h).
+ * A pulse at t0 that lasts T is p((t - t0) / T); all times are in samples here.
+ */
+#ifndef SIGNAL_SHAPE_H
+#define SIGNAL_SHAPE_H
+
+#include "signal/sensor.h"
+#include <stddef.h>
+
+struct shape;
+
+/* One of the pulses of sensor.h, cut where |p| stays below 1e-4.  NULL: no memory. */
+struct shape *shape_new(enum pulse_shape pulse);
+
+/* Any other pulse: value[0 .. 2 half] at s = -reach .. reach in equal steps, smooth
+ * between them (slopes by central differences); it is scaled to max |p| = 1.  NULL
+ * where half < 2, reach <= 0, a value is not finite, all are zero or memory is short. */
+struct shape *shape_from_values(const double *value, int half, double reach);
+void shape_free(struct shape *shape);
+
+double shape_reach(const struct shape *shape); /* p(s) = 0 for |s| >= reach */
+/* Integral of p^2 ds and of p'^2 ds. */
+double shape_energy(const struct shape *shape);
+double shape_slope_energy(const struct shape *shape);
+
+/* The whole t inside the support: returns the first, their number in *n. */
+long shape_support(const struct shape *shape, double t0, double T, size_t *n);
+
+/* p((t - t0) / T) at t = first .. first + n - 1, and where not NULL its derivatives by
+ * t0 and T.  Zero outside the support. */
+void shape_sample(const struct shape *shape, double t0, double T, long first, size_t n,
+	double *p, double *by_t0, double *by_T);
+
+#endif

@@ -1,0 +1,40 @@
+/* tones.h - steady interference: mains, their harmonics, the pump
+ *
+ * A tone is a frequency; its amplitude and phase are found by least squares over a
+ * stretch of record, together with the others and a constant.
+ */
+#ifndef SIGNAL_TONES_H
+#define SIGNAL_TONES_H
+
+#include <stddef.h>
+
+enum { TONES_MAX = 16 };
+
+/* Frequencies, rad per sample and rising, that stand out of the summed periodogram of
+ * both channels (n samples each, n >= 1024, Hann window): lines at least 40 times the
+ * median of the 64 bins on either side, which white noise exceeds with probability
+ * 2^-40 per bin.  At most max are returned, the strongest.  Returns their number, or
+ * -1 when out of memory. */
+int tones_find(const double *y1, const double *y2, size_t n, int max, double *omega);
+
+/* Least squares of a constant and tones over x[0..n), whose first sample has index
+ * start: coefficient[0] the constant, [1 + 2 k] of cos(omega k t), [2 + 2 k] of sin,
+ * with t the index counted from the same origin for all stretches.  Stretches in which
+ * the rest is livelier than usual are left out of further passes, so that pulses do not
+ * bend it.  *deviation (may be NULL) is the usual root mean square of the rest,
+ * variance[k] (may be NULL) that of coefficient k in units of its square.  Returns 0 when
+ * out of memory or for too short a stretch. */
+int tones_fit(const double *x, size_t n, double start, int tones, const double *omega,
+	double *coefficient, double *deviation, double *variance);
+
+/* Drops tones that a robust fit does not see: a regular train of pulses has lines too,
+ * but they vanish with the pulses.  Kept are those whose power exceeds what noise gives
+ * with probability 2e-9.  Returns their number. */
+int tones_confirm(const double *y1, const double *y2, size_t n, int tones, double *omega);
+
+/* Takes tones from x[0..n): coefficients run linearly from those at index start_a
+ * (from) to those at index start_b (to). */
+void tones_remove(double *x, size_t n, double start, int tones, const double *omega,
+	double at_a, const double *from, double at_b, const double *to);
+
+#endif

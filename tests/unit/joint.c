@@ -1,0 +1,187 @@
+/* Joint fit of pulses: exact on clean scenes, at the Cramer-Rao bound on noisy ones */
+#include "signal/joint.h"
+#include "num/philox.h"
+#include "tap.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { N = 700, SCENES = 120 };
+
+static struct joint_scene make_scene(const struct shape *shape)
+{
+	return (struct joint_scene){ .shape = shape,
+		.duration = 100,
+		.transit = 196.35,
+		.gain = 0.909,
+		.delta_min = 0,
+		.delta_max = 7,
+		.drop = 33,
+		.drop_near = 25,
+		.max_pulses = 20 };
+}
+
+static void add_noise(double *y, unsigned scene, unsigned channel)
+{
+	double z[2];
+
+	for (unsigned i = 0; i < N; i++) {
+		philox_normal2(7, scene * 2 + channel, RNG_NOISE, i, z);
+		y[i] += z[0];
+	}
+}
+
+/* Three pulses, two of them a fifth of their duration apart, nearly without noise. */
+static void test_clean(struct joint *j, const struct joint_scene *s)
+{
+	static double y[2][N];
+	struct joint_pulse truth[3] = { { .t = 180.3, .delta = 2.121, .a = 900 },
+		{ .t = 200.7, .delta = 4.545, .a = 1300 },
+		{ .t = 420.25, .delta = 3.3, .a = 500 } };
+	struct joint_pulse found[20];
+	struct joint_result r;
+	double worst_t = 0, worst_delta = 0, worst_a = 0;
+	int m = 0;
+
+	memset(y, 0, sizeof y);
+	for (int i = 0; i < 3; i++)
+		joint_add(s, &truth[i], 1, y[0], y[1], N);
+	ok(joint_fit(j, s, y[0], y[1], N, found, &m, &r) == JOINT_OK, "clean scene fits");
+	if (!ok(m == 3, "three pulses found"))
+		return;
+	for (int i = 0; i < 3; i++) {
+		worst_t = fmax(worst_t, fabs(found[i].t - truth[i].t));
+		worst_delta = fmax(worst_delta, fabs(found[i].delta - truth[i].delta));
+		worst_a = fmax(worst_a, fabs(found[i].a / truth[i].a - 1));
+	}
+	/* Chi-square stops falling at 1e-4 of sigma^2: a hundredth of the bounds. */
+	near(worst_t, 0, 1e-4, "arrivals are exact");
+	near(worst_delta, 0, 1e-4, "delays are exact");
+	near(worst_a, 0, 1e-5, "amplitudes are exact");
+	ok(r.chi2 < 1e-3, "nothing is left");
+	for (int i = 0; i < 3; i++)
+		joint_add(s, &truth[i], -1, y[0], y[1], N);
+	worst_t = 0;
+	for (int i = 0; i < N; i++)
+		worst_t = fmax(worst_t, fabs(y[0][i]) + fabs(y[1][i]));
+	near(worst_t, 0, 1e-12 * 1300, "joint_add takes away what it added");
+}
+
+/* The inverse of the normal matrix of one pulse against the closed form for the sine:
+ * sd(t2 - t1) = sqrt(T / 2) / pi / a sqrt(1 + 1 / g^2) where T is not tied. */
+static void test_bound(struct joint *j, const struct joint_scene *tied)
+{
+	static double y[2][N];
+	struct joint_scene s = *tied;
+	struct joint_pulse p = { .t = 300.4, .delta = 3, .a = 31.62 }, found = p;
+	struct joint_result r;
+	double var;
+
+	s.transit = INFINITY;
+	memset(y, 0, sizeof y);
+	joint_add(&s, &p, 1, y[0], y[1], N);
+	joint_refine(j, &s, y[0], y[1], N, &found, 1, &r);
+	var = found.cov[0] - 2 * found.cov[1] + found.cov[2];
+	near(sqrt(var), sqrt(50.0) / acos(-1) / p.a * sqrt(1 + 1 / (0.909 * 0.909)),
+		2e-3 * 0.1, "standard error of the delay is the Cramer-Rao bound");
+	near(sqrt(found.cov[5]) / p.a, sqrt(2.0 / 100 / (1 + 0.909 * 0.909)) / p.a, 1e-6,
+		"standard error of the amplitude too");
+}
+
+/* Random scenes of m pulses at 30 dB, at least 10 samples apart. */
+static void test_noisy(struct joint *j, const struct joint_scene *s, int m, int tones)
+{
+	static double y[2][N];
+	struct joint_scene scene = *s;
+	double squares = 0, bound = 0, size = 0;
+	int right = 0, inside = 0, all = 0;
+
+	scene.tones = tones;
+	scene.offset = tones > 0;
+	for (int k = 0; k < tones; k++)
+		scene.omega[k] = 2 * acos(-1) * (k ? 0.015 : 0.005);
+	for (unsigned k = 0; k < SCENES; k++) {
+		struct joint_pulse truth[6], found[20];
+		struct joint_result r;
+		int n = 0;
+		uint64_t at = 0;
+
+		memset(y, 0, sizeof y);
+		for (int i = 0; i < m; i++) {
+			double u = philox_uniform(3, k, RNG_PARTICLE, at++);
+
+			truth[i].t = (i ? truth[i - 1].t + 10 : 150) + u * 300 / m;
+			truth[i].delta = 2 + 3 * philox_uniform(3, k, RNG_PARTICLE, at++);
+			truth[i].a =
+				(0.5 + philox_uniform(3, k, RNG_PARTICLE, at++)) * 31.62;
+			joint_add(&scene, &truth[i], 1, y[0], y[1], N);
+		}
+		for (int c = 0; c < 2; c++) {
+			for (int i = 0; i < N; i++)
+				for (int l = 0; l < tones; l++)
+					y[c][i] += 15 * cos(scene.omega[l] * i + c + l);
+			add_noise(y[c], k, (unsigned)c);
+		}
+		joint_fit(j, &scene, y[0], y[1], N, found, &n, &r);
+		right += n == m;
+		for (int i = 0; n == m && i < m; i++) {
+			double e = found[i].delta - truth[i].delta;
+			double var =
+				found[i].cov[0] - 2 * found[i].cov[1] + found[i].cov[2];
+			double z = cbrt(found[i].a / truth[i].a) - 1;
+
+			squares += e * e;
+			bound += var;
+			size += z * z;
+			inside += e * e < var;
+			all++;
+		}
+	}
+	ok(right >= SCENES - 2, "%d pulses, %d tones: count right in %d of %d", m, tones,
+		right, SCENES);
+	/* The ratio of m * SCENES errors scatters by 1 / sqrt(2 m SCENES). */
+	ok(squares < bound * pow(1.1 + 2.5 / sqrt(2.0 * all), 2),
+		"delay error over the bound: %.3f", sqrt(squares / bound));
+	ok(inside > 0.6 * all && inside < 0.76 * all, "%.0f %% within one standard error",
+		100.0 * inside / all);
+	ok(sqrt(size / all) < 0.006, "size error %.2f %%", 100 * sqrt(size / all));
+}
+
+static void test_misuse(struct joint *j, const struct joint_scene *good)
+{
+	static double y[N];
+	struct joint_scene s = *good;
+	struct joint_pulse p[20] = { { 0 } };
+	struct joint_result r;
+	int m = 0;
+
+	s.gain = -1;
+	ok(joint_fit(j, &s, y, y, N, p, &m, &r) == JOINT_DOMAIN,
+		"negative gain is refused");
+	s = *good;
+	s.delta_min = -300;
+	ok(joint_fit(j, &s, y, y, N, p, &m, &r) == JOINT_DOMAIN,
+		"delays before the particle came are refused");
+	s = *good;
+	ok(joint_fit(j, &s, y, y, 0, p, &m, &r) == JOINT_DOMAIN,
+		"no samples are refused");
+	ok(joint_fit(j, &s, y, y, N, p, &m, &r) == JOINT_OK && m == 0 && r.chi2 == 0,
+		"silence has no pulses");
+}
+
+int main(void)
+{
+	struct shape *shape = shape_new(PULSE_SINE);
+	struct joint_scene s = make_scene(shape);
+	struct joint *j = joint_new();
+
+	test_clean(j, &s);
+	test_bound(j, &s);
+	test_noisy(j, &s, 1, 0);
+	test_noisy(j, &s, 2, 0);
+	test_noisy(j, &s, 6, 0);
+	test_noisy(j, &s, 2, 2);
+	test_misuse(j, &s);
+	joint_free(j);
+	shape_free(shape);
+	return tap_done();
+}

@@ -1,0 +1,212 @@
+/* Parts of the separation: table of the pulse, STFT, masks, tones, lag, peaks, noise */
+#include "num/philox.h"
+#include "signal/align.h"
+#include "signal/calibrate.h"
+#include "signal/count.h"
+#include "signal/masks.h"
+#include "signal/robust.h"
+#include "signal/sections.h"
+#include "signal/stft.h"
+#include "signal/tones.h"
+#include "tap.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { N = 4096 };
+
+static double normal(uint64_t i)
+{
+	double z[2];
+
+	philox_normal2(11, 0, RNG_NOISE, i, z);
+	return z[0];
+}
+
+static void test_shape(enum pulse_shape pulse, const char *name)
+{
+	struct shape *s = shape_new(pulse);
+	double p[300], by_t[300], by_T[300], up[300], worst = 0, worst_t = 0, worst_T = 0;
+	double t0 = 150.3, T = 60, h = 1e-5;
+	double end = shape_reach(s) * T - 1;
+
+	shape_sample(s, t0, T, 0, 300, p, by_t, by_T);
+	for (int i = 0; i < 300; i++)
+		if (fabs(i - t0) < end)
+			worst = fmax(
+				worst, fabs(p[i] - pulse_value(pulse, (i - t0) / T)));
+	near(worst, 0, 2e-7, name);
+	shape_sample(s, t0 + h, T, 0, 300, up, NULL, NULL);
+	for (int i = 0; i < 300; i++)
+		if (fabs(i - t0) < end)
+			worst_t = fmax(worst_t, fabs((up[i] - p[i]) / h - by_t[i]));
+	shape_sample(s, t0, T + h, 0, 300, up, NULL, NULL);
+	for (int i = 0; i < 300; i++)
+		if (fabs(i - t0) < end)
+			worst_T = fmax(worst_T, fabs((up[i] - p[i]) / h - by_T[i]));
+	/* Difference quotients: curvature h / 2 (2 pi / T)^2 and rounding 1e-16 / h. */
+	near(worst_t, 0, 2e-6, "its derivative by arrival");
+	near(worst_T, 0, 2e-6, "its derivative by duration");
+	shape_free(s);
+}
+
+static void test_stft(void)
+{
+	struct stft *s = stft_new(64, 24);
+	size_t n = 1000, count = stft_frames(s, n) * stft_bins(s);
+	double complex *y = malloc(count * sizeof *y);
+	double x[1000], back[1000], worst = 0;
+
+	for (size_t i = 0; i < n; i++)
+		x[i] = normal(i);
+	stft_forward(s, x, n, y);
+	stft_inverse(s, y, n, back);
+	for (size_t i = 0; i < n; i++)
+		worst = fmax(worst, fabs(back[i] - x[i]));
+	near(worst, 0, 1e-13, "STFT and back");
+	ok(!stft_new(63, 32) && !stft_new(64, 65), "odd windows and gaps are refused");
+	free(y);
+	stft_free(s);
+}
+
+/* Two pulses apart, delays 2.121 and 4.545 as in section a1: two sources, masks that
+ * part them, delays that are not those of the bin's middle (1.2 and 2.6). */
+static void test_masks(void)
+{
+	struct shape *shape = shape_new(PULSE_SINE);
+	struct masks_par par = { .window = 64,
+		.hop = 32,
+		.duration = 100,
+		.delta_min = -10,
+		.delta_max = 10,
+		.gain_max = 2,
+		.peak_share = 0.3,
+		.shape = shape };
+	struct masks *m = masks_new(&par);
+	struct masks_source source[MASKS_SOURCES_MAX];
+	double y1[600], y2[600], p[600], x[600], left = 0, energy = 0;
+	int first;
+
+	memset(y1, 0, sizeof y1);
+	memset(y2, 0, sizeof y2);
+	for (int k = 0; k < 2; k++) {
+		double t0 = k ? 420 : 160, delta = k ? 4.545 : 2.121;
+
+		shape_sample(shape, t0, 100, 0, 600, p, NULL, NULL);
+		for (int i = 0; i < 600; i++)
+			y1[i] += p[i];
+		shape_sample(shape, t0 + delta, 100, 0, 600, p, NULL, NULL);
+		for (int i = 0; i < 600; i++)
+			y2[i] += 0.909 * p[i];
+	}
+	ok(masks_find(m, y1, y2, 600, source) == 2, "two peaks in the histogram");
+	first = source[0].delta < source[1].delta ? 0 : 1;
+	near(source[first].delta, 2.121, 0.35, "delay of the first");
+	near(source[1 - first].delta, 4.545, 0.35, "delay of the second");
+	near(source[0].attenuation, 0.909, 0.03, "attenuation");
+	masks_separate(m, first, x);
+	for (int i = 0; i < 600; i++) {
+		left += i < 290 ? (x[i] - y1[i]) * (x[i] - y1[i]) : x[i] * x[i];
+		energy += i < 290 ? y1[i] * y1[i] : 0;
+	}
+	ok(left < 0.1 * energy,
+		"its mask keeps the first pulse and drops the second (%.1f dB)",
+		10 * log10(energy / left));
+	masks_free(m);
+	shape_free(shape);
+}
+
+static void test_tones(void)
+{
+	static double y1[N], y2[N], x[N];
+	double omega[TONES_MAX], c[2 * TONES_MAX + 1], worst = 0;
+	double w[2] = { 2 * acos(-1) * 0.00503, 2 * acos(-1) * 0.2 };
+
+	for (int i = 0; i < N; i++) {
+		y1[i] = 0.3 + 0.5 * cos(w[0] * i + 1) + 0.2 * sin(w[1] * i) +
+			0.05 * normal((uint64_t)i);
+		y2[i] = 0.1 * sin(w[0] * i) + 0.05 * normal(N + (uint64_t)i);
+	}
+	ok(tones_find(y1, y2, N, TONES_MAX, omega) == 2, "two tones found");
+	/* Resolution 1 / N; a tenth of it is easily reached at this level. */
+	near(omega[0], w[0], 0.1 * 2 * acos(-1) / N, "first frequency");
+	near(omega[1], w[1], 0.1 * 2 * acos(-1) / N, "second frequency");
+	for (int i = 0; i < N; i++)
+		x[i] = y1[i] = 0.3 + 0.5 * cos(w[0] * i + 1) + 0.2 * sin(w[1] * i);
+	for (int i = 1000; i < 1400; i++) /* a tenth of the record is something else */
+		x[i] += 3;
+	ok(tones_fit(x, N, 0, 2, w, c, NULL, NULL), "tones fitted");
+	tones_remove(x, N, 0, 2, w, 0, c, N, c);
+	for (int i = 0; i < N; i++)
+		worst = fmax(worst, fabs(x[i] - (i >= 1000 && i < 1400 ? 3 : 0)));
+	near(worst, 0, 1e-9, "a robust fit does not see outliers");
+	for (int i = 0; i < N; i++) /* a pulse every 250 samples: lines without a tone */
+		y1[i] = (i % 250 < 50 ? sin(2 * acos(-1) * (i % 250) / 50) : 0) +
+			0.05 * normal((uint64_t)i);
+	ok(tones_find(y1, y1, N, TONES_MAX, omega) > 2, "a train of pulses has lines");
+	ok(tones_confirm(y1, y1, N, 3, omega) == 0, "but no tones");
+}
+
+static void test_small(void)
+{
+	static double x[N], work[N], r[101];
+	struct peak peak;
+	struct count *count = count_new(0.5);
+	struct sections *s;
+	struct section section;
+	struct shape *shape = shape_new(PULSE_SINE);
+	double lag;
+	int peaks = 0;
+
+	for (int i = 0; i < N; i++)
+		x[i] = 2 * normal((uint64_t)i) + 50 * sin(0.01 * i);
+	/* N normal numbers: the median scatters by 1.2 / sqrt N. */
+	near(robust_noise(x, N, 4, work), 2, 0.15, "noise under a slow signal");
+	for (int i = 0; i < 7; i++)
+		work[i] = "4361725"[i];
+	near(robust_median(work, 7), '4', 0, "median");
+	memset(x, 0, sizeof x);
+	shape_sample(shape, 1000.25, 100, 900, 200, x + 900, NULL, NULL);
+	shape_sample(shape, 1037.5, 100, 900, 250, work, NULL, NULL);
+	memset(work + 250, 0, sizeof work - 250 * sizeof *work);
+	lag = align_lag(x + 900, work, 3000, 500, r);
+	near(lag, 37.25, 0.01, "lag by cross-correlation, between samples");
+	align_autocorrelation(x, x, N, 100, r);
+	ok(r[50] < r[48] && r[50] < r[52],
+		"a sine pulse is least like itself half its length on");
+	for (int i = 0; i < N; i++)
+		if (count_sample(count, 2 * x[i], &peak))
+			peaks++;
+	ok(peaks == 1 && count_end(count, &peak) == 0, "one pulse, one peak");
+	near(peak.t, 975.25, 0.01, "its place");
+	near(peak.height, 2, 1e-4, "its height");
+	s = sections_new(shape, 100, 3, 60);
+	sections_scan(s, x, x, 0, N, N);
+	sections_end(s);
+	ok(sections_first(s, &section) && section.begin < 950 && section.end > 1050 &&
+			section.end < 1300,
+		"one section around it");
+	sections_take(s, section.end);
+	ok(!sections_first(s, &section), "and no other");
+	/* Gaussian field: at 1e-9 per sample the threshold is near 33, and falls with
+	 * rate. */
+	near(calibrate_drop(1e-9, shape, 100, 1, 20), 33, 3,
+		"threshold of a false alarm");
+	ok(calibrate_drop(1e-6, shape, 100, 1, 20) <
+			calibrate_drop(1e-9, shape, 100, 1, 20),
+		"more false alarms, lower threshold");
+	sections_free(s);
+	count_free(count);
+	shape_free(shape);
+}
+
+int main(void)
+{
+	test_shape(PULSE_SINE, "sine pulse from its table");
+	test_shape(PULSE_GAUSS, "Gaussian pulse from its table");
+	test_shape(PULSE_LORENTZ, "Lorentzian pulse from its table");
+	test_stft();
+	test_masks();
+	test_tones();
+	test_small();
+	return tap_done();
+}
