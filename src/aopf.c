@@ -142,7 +142,7 @@ static struct predict *start_predict(double y, uint32_t realisation)
 		.direction =
 			direction == 2 ? (y <= threshold ? 1 : -1) : 1 - 2 * direction,
 		.horizon = horizon / seconds[time_unit],
-		.draws = 1000,
+		.draws = 500,
 		.seed = (uint64_t)seed,
 		.realisation = realisation,
 	};

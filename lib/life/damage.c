@@ -21,7 +21,7 @@ struct shape {
 };
 
 #define SCALE 0.3
-#define STRAIGHT 2.5 /* log of what the straight line is given over the others */
+#define STRAIGHT 3 /* log of what the straight line is given over the others */
 #define RATE(m)                                                     \
 	{                                                           \
 		DAMAGE_RATE, 0, m, -0.5 * ((m)-0.5) * ((m)-0.5) / 4 \
@@ -38,7 +38,7 @@ static const struct shape shapes[SHAPES] = { { DAMAGE_LINEAR, 0, 0, STRAIGHT },
 	POWER(DAMAGE_POWER, 1.5), POWER(DAMAGE_POWER, 2.0) };
 
 static const double memories[MEMORIES] = { 0, 1, 3 }; /* exponent of (j / k) */
-static const double FADING = 2;                       /* the same for scores */
+static const double FADING = 1;                       /* the same for scores */
 static const double SCORED = 20;   /* rows that scores count for at most */
 static const double CUT = 3;       /* standard deviations of an innovation */
 static const double LEAST = 1e-3;  /* prior noise, share of the way to the threshold */

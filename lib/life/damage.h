@@ -21,8 +21,8 @@
  * and innovations beyond three standard deviations are cut to that.
  *
  * The models are averaged by the logarithm of their one-step predictive densities, which
- * fades with the age j / k squared and counts for at most twenty rows: rows are not
- * independent given a wrong model (Raftery, Karny, Ettler, Technometrics 52 (2010) 52;
+ * fades with age as j / k and counts for at most twenty rows: rows are not independent
+ * given a wrong model (Raftery, Karny, Ettler, Technometrics 52 (2010) 52;
  * Grunwald, van Ommen, Bayesian Analysis 12 (2017) 1069).
  */
 #ifndef LIFE_DAMAGE_H

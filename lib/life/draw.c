@@ -11,7 +11,7 @@ static const double AREA = 9.91256303526217e-3;
 
 struct draw {
 	uint32_t counter[4], key[2];
-	uint64_t word[2];
+	uint32_t word[4];
 	int left;                /* words not yet used */
 	double edge[LAYERS + 1]; /* abscissa where each layer ends */
 	double share[LAYERS];    /* of a layer that lies under the curve all along */
@@ -44,24 +44,22 @@ void draw_free(struct draw *draw)
 	free(draw);
 }
 
-static uint64_t next_word(struct draw *d)
+static inline uint32_t next_word(struct draw *d)
 {
-	uint32_t out[4];
-
 	if (d->left == 0) {
-		philox4x32(d->counter, d->key, out);
-		d->word[0] = (uint64_t)out[1] << 32 | out[0];
-		d->word[1] = (uint64_t)out[3] << 32 | out[2];
-		d->left = 2;
+		philox4x32(d->counter, d->key, d->word);
+		d->left = 4;
 		if (++d->counter[0] == 0)
 			d->counter[1]++;
 	}
-	return d->word[2 - d->left--];
+	return d->word[4 - d->left--];
 }
 
 double draw_uniform(struct draw *d)
 {
-	return ((double)(next_word(d) >> 12) + 0.5) * 0x1p-52;
+	uint64_t high = next_word(d);
+
+	return ((double)((high << 32 | next_word(d)) >> 12) + 0.5) * 0x1p-52;
 }
 
 /* Beyond the base layer: Marsaglia's exponential wedge. */
@@ -76,27 +74,36 @@ static double draw_tail(struct draw *d)
 	return TAIL + x;
 }
 
+/* Where the first word does not settle it. */
+static double draw_rest(struct draw *d, unsigned i, double x)
+{
+	double f0 = exp(-0.5 * (d->edge[i] * d->edge[i] - x * x));
+	double f1 = exp(-0.5 * (d->edge[i + 1] * d->edge[i + 1] - x * x));
+
+	if (i == 0)
+		return copysign(draw_tail(d), x);
+	return f1 + draw_uniform(d) * (f0 - f1) < 1 ? x : draw_normal(d);
+}
+
+/* Seven bits choose the layer, the others are the signed place in it. */
+static inline double normal(struct draw *d)
+{
+	uint32_t w = next_word(d);
+	unsigned i = w & (LAYERS - 1);
+	double u =
+		((double)(int32_t)(w & ~(uint32_t)(LAYERS - 1)) + LAYERS / 2) * 0x1p-31;
+	double x = u * d->edge[i];
+
+	return fabs(u) < d->share[i] ? x : draw_rest(d, i, x);
+}
+
 double draw_normal(struct draw *d)
 {
-	for (;;) {
-		uint64_t w = next_word(d);
-		unsigned i = w & (LAYERS - 1);
-		double u = (double)(int64_t)(w & ~UINT64_C(0x7ff)) * 0x1p-63;
-		double x = u * d->edge[i], f0, f1;
-
-		if (fabs(u) < d->share[i])
-			return x;
-		if (i == 0)
-			return copysign(draw_tail(d), u);
-		f0 = exp(-0.5 * (d->edge[i] * d->edge[i] - x * x));
-		f1 = exp(-0.5 * (d->edge[i + 1] * d->edge[i + 1] - x * x));
-		if (f1 + draw_uniform(d) * (f0 - f1) < 1)
-			return x;
-	}
+	return normal(d);
 }
 
 void draw_normals(struct draw *d, double *z, size_t n)
 {
 	for (size_t i = 0; i < n; i++)
-		z[i] = draw_normal(d);
+		z[i] = normal(d);
 }

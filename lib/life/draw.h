@@ -1,8 +1,8 @@
 /* draw.h - many normal deviates at a time from one Philox stream
  *
- * Stream (seed, realisation, purpose) as in num/rng.h; each block of 128 bits makes two
- * candidates of the ziggurat with rejection-free layer choice and 53-bit abscissas
- * (Marsaglia & Tsang 2000 in the form of Doornik 2005).
+ * Stream (seed, realisation, purpose) as in num/rng.h, by the ziggurat of 128 layers
+ * (Marsaglia, Tsang, Journal of Statistical Software 5 (2000) 8), one 32-bit word each
+ * with seven bits for the layer and the rest for the place in it.
  */
 #ifndef LIFE_DRAW_H
 #define LIFE_DRAW_H

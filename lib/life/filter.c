@@ -133,17 +133,17 @@ const double *filter_lag(const struct filter *f, int lag, uint32_t *index, int *
 
 void filter_predict(struct filter *f, const double *mean, double sigma)
 {
-	struct step *s;
-	double *x;
+	double *x, moment = 0;
 
 	if (f->ring[f->newest].resampled)
 		weigh_equally(f);
-	s = push_step(f);
-	x = s->x;
+	x = push_step(f)->x;
 	draw_normals(f->draw, x, f->par.particles);
-	for (size_t i = 0; i < f->par.particles; i++)
+	for (size_t i = 0; i < f->par.particles; i++) {
 		x[i] = mean[i] + sigma * x[i];
-	f->mean = weighted_mean(f);
+		moment += f->weight[i] * x[i];
+	}
+	f->mean = moment / f->sum;
 }
 
 double filter_mean(const struct filter *f)
@@ -175,14 +175,15 @@ unsigned long filter_resamplings(const struct filter *f)
 static double weigh(struct filter *f, double y, double noise)
 {
 	const double *x = f->ring[f->newest].x;
-	double *lw = f->log_weight, top = -INFINITY, nu = f->par.freedom;
+	double *lw = f->log_weight, top = -INFINITY, nu = f->par.freedom,
+	       scale = 1 / noise;
+	size_t n = f->par.particles;
 
-	for (size_t i = 0; i < f->par.particles; i++) {
-		double z = (y - x[i]) / noise;
+	for (size_t i = 0; i < n; i++) {
+		double z = (y - x[i]) * scale;
 
 		lw[i] -= nu > 0 ? 0.5 * (nu + 1) * log1p(z * z / nu) : 0.5 * z * z;
-		if (lw[i] > top)
-			top = lw[i];
+		top = lw[i] > top ? lw[i] : top;
 	}
 	return top;
 }
@@ -201,18 +202,23 @@ static double log_constant(const struct filter *f, double noise)
 double filter_update(struct filter *f, double y, double noise)
 {
 	struct step *s = &f->ring[f->newest];
-	double before = f->sum, top = weigh(f, y, noise), squares = 0;
+	double before = f->sum, top = weigh(f, y, noise), sum = 0, squares = 0,
+	       moment = 0;
 	size_t n = f->par.particles;
 
-	f->sum = 0;
 	for (size_t i = 0; i < n; i++) {
+		double w;
+
 		f->log_weight[i] -= top;
-		f->weight[i] = exp(f->log_weight[i]);
-		f->sum += f->weight[i];
-		squares += f->weight[i] * f->weight[i];
+		w = exp(f->log_weight[i]);
+		f->weight[i] = w;
+		sum += w;
+		squares += w * w;
+		moment += w * s->x[i];
 	}
-	f->ess = f->sum * f->sum / squares;
-	f->mean = weighted_mean(f);
+	f->sum = sum;
+	f->ess = sum * sum / squares;
+	f->mean = moment / sum;
 	if (f->par.share >= 1 || f->ess < f->par.share * (double)n) {
 		resample(f->par.scheme, f->draw, f->weight, f->sum, n, s->ancestor);
 		s->resampled = 1;

@@ -10,25 +10,51 @@ struct comb {
 	double sum;
 };
 
-static double rest(const struct comb *c, size_t i)
+static inline double rest(const struct comb *c, size_t i)
 {
 	return c->unit > 0 ? c->weight[i] - c->unit * floor(c->weight[i] / c->unit)
 			   : c->weight[i];
 }
 
-static void comb_even(const struct comb *c, size_t n, size_t first, uint32_t *ancestor,
-	double offset, struct draw *stratified)
+static void comb_stratified(const struct comb *c, size_t n, size_t first,
+	uint32_t *ancestor, struct draw *draw)
 {
 	double step = c->sum / (double)(n - first), reached = rest(c, 0);
 	size_t i = 0;
 
 	for (size_t k = first; k < n; k++) {
-		double u = stratified ? draw_uniform(stratified) : offset;
-		double tooth = step * ((double)(k - first) + u);
+		double tooth = step * ((double)(k - first) + draw_uniform(draw));
 
 		while (reached <= tooth && i + 1 < n)
 			reached += rest(c, ++i);
 		ancestor[k] = (uint32_t)i;
+	}
+}
+
+/* The same with one offset for all teeth: particle i ends at tooth number
+ * reached / step - offset, rounded up.  It is written once ahead of knowing, since most
+ * particles have one copy. */
+static void comb_systematic(
+	const struct comb *c, size_t n, size_t first, uint32_t *ancestor, double offset)
+{
+	double scale = (double)(n - first) / c->sum, reached = 0;
+	size_t k = first;
+
+	for (size_t i = 0; i < n && k < n; i++) {
+		size_t end;
+
+		reached += rest(c, i);
+		end = first + (size_t)(reached * scale + (1 - offset));
+		ancestor[k] = (uint32_t)i;
+		if (end > n)
+			end = n;
+		for (size_t copy = k + 1; copy < end; copy++)
+			ancestor[copy] = (uint32_t)i;
+		k = end > k ? end : k;
+	}
+	while (k < n) { /* rounding of the sum */
+		ancestor[k] = (uint32_t)(n - 1);
+		k++;
 	}
 }
 
@@ -78,7 +104,7 @@ static void resample_residual(
 	}
 	if (kept < n) {
 		c->sum = left;
-		comb_even(c, n, kept, ancestor, draw_uniform(draw), NULL);
+		comb_systematic(c, n, kept, ancestor, draw_uniform(draw));
 	} else {
 		kept = n;
 	}
@@ -88,14 +114,14 @@ static void resample_residual(
 void resample(enum resampling scheme, struct draw *draw, const double *weight, double sum,
 	size_t n, uint32_t *ancestor)
 {
-	struct comb c = {weight, 0, sum};
+	struct comb c = { weight, 0, sum };
 
 	switch (scheme) {
 	case RESAMPLE_SYSTEMATIC:
-		comb_even(&c, n, 0, ancestor, draw_uniform(draw), NULL);
+		comb_systematic(&c, n, 0, ancestor, draw_uniform(draw));
 		break;
 	case RESAMPLE_STRATIFIED:
-		comb_even(&c, n, 0, ancestor, 0, draw);
+		comb_stratified(&c, n, 0, ancestor, draw);
 		break;
 	case RESAMPLE_RESIDUAL:
 		resample_residual(draw, &c, n, ancestor);

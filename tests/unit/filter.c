@@ -1,0 +1,245 @@
+/* The particle filter against the Kalman filter, and resampling against its definition.
+ */
+#include "life/filter.h"
+#include "tap.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { STEPS = 400 };
+static const double DRIFT = 0.02, PROCESS = 0.1, NOISE = 0.2;
+
+/* A drifting random walk seen with noise. */
+struct walk {
+	double x[STEPS], y[STEPS];
+};
+
+static void make_walk(struct walk *w, uint64_t seed)
+{
+	struct draw *d = draw_new(seed, 0, RNG_NOISE);
+	double x = 0;
+
+	for (int k = 0; k < STEPS; k++) {
+		x += DRIFT + PROCESS * draw_normal(d);
+		w->x[k] = x;
+		w->y[k] = x + NOISE * draw_normal(d);
+	}
+	draw_free(d);
+}
+
+/* Root mean square error of the Kalman filter, and its log evidence. */
+static double kalman(const struct walk *w, double *evidence)
+{
+	double x = 0, p = NOISE * NOISE, sum = 0;
+
+	*evidence = 0;
+	for (int k = 0; k < STEPS; k++) {
+		double e, s, gain;
+
+		x += DRIFT;
+		p += PROCESS * PROCESS;
+		e = w->y[k] - x;
+		s = p + NOISE * NOISE;
+		gain = p / s;
+		*evidence -= 0.5 * (log(2 * acos(-1) * s) + e * e / s);
+		x += gain * e;
+		p *= 1 - gain;
+		sum += (x - w->x[k]) * (x - w->x[k]);
+	}
+	return sqrt(sum / STEPS);
+}
+
+/* The same of the particle filter. */
+static double particles(const struct walk *w, const struct filter_par *par,
+	double missing, double *evidence)
+{
+	struct draw *d = draw_new(5, 0, RNG_FILTER);
+	struct filter *f = filter_new(par, d);
+	uint32_t *index = malloc(par->particles * sizeof *index);
+	double *mean = malloc(par->particles * sizeof *mean), past = 0, sum = 0;
+	int changed;
+
+	*evidence = 0;
+	filter_start(f, &past, 1, sqrt(3) * NOISE);
+	for (int k = 0; k < STEPS; k++) {
+		const double *x = filter_lag(f, 0, index, &changed);
+
+		for (size_t i = 0; i < par->particles; i++)
+			mean[i] = x[index[i]] + DRIFT;
+		filter_predict(f, mean, PROCESS);
+		if (!(missing > 0) || fmod(k * missing, 1) >= missing)
+			*evidence += filter_update(f, w->y[k], NOISE);
+		sum += (filter_mean(f) - w->x[k]) * (filter_mean(f) - w->x[k]);
+	}
+	free(index);
+	free(mean);
+	filter_free(f);
+	draw_free(d);
+	return sqrt(sum / STEPS);
+}
+
+/* Over twenty series, N = 2000: the theory says 1 + O(1/N); 2 % is the claim. */
+static void test_kalman(enum resampling scheme, double share, const char *name)
+{
+	struct filter_par par = { 2000, 2, scheme, share, 0 };
+	double best = 0, got = 0, log_best, log_got, worst = 0;
+
+	for (int s = 0; s < 20; s++) {
+		struct walk w;
+		double a, b;
+
+		make_walk(&w, (uint64_t)s);
+		a = kalman(&w, &log_best);
+		b = particles(&w, &par, 0, &log_got);
+		best += a * a;
+		got += b * b;
+		worst = fmax(worst, fabs(log_got - log_best));
+	}
+	ok(fabs(sqrt(got / best) - 1) < 0.02, "%s: error %.4f of the Kalman filter's",
+		name, sqrt(got / best));
+	/* The standard deviation of the log evidence is about sqrt(STEPS / N) = 0.45. */
+	ok(worst < 2.5, "%s: log evidence within %.2f", name, worst);
+}
+
+/* Ancestors rise, and over many draws particle i is taken n w_i times on the mean. */
+static void test_resampling(enum resampling scheme, const char *name)
+{
+	enum { N = 16, DRAWS = 20000 };
+	struct draw *d = draw_new(3, 0, RNG_FILTER);
+	double weight[N], sum = 0, count[N] = { 0 }, worst = 0;
+	uint32_t ancestor[N];
+	int rising = 1, most = 0;
+
+	for (int i = 0; i < N; i++)
+		sum += weight[i] = i == 7 ? 0 : 1 + (i * 5) % 7;
+	for (int k = 0; k < DRAWS; k++) {
+		int copies[N] = { 0 };
+
+		resample(scheme, d, weight, sum, N, ancestor);
+		for (int i = 0; i < N; i++) {
+			rising &= i == 0 || ancestor[i] >= ancestor[i - 1];
+			count[ancestor[i]]++;
+			copies[ancestor[i]]++;
+		}
+		for (int i = 0; i < N; i++) {
+			int off = abs(copies[i] - (int)(N * weight[i] / sum));
+
+			most = off > most ? off : most;
+		}
+	}
+	for (int i = 0; i < N; i++) {
+		double want = N * weight[i] / sum;
+
+		worst = fmax(worst, fabs(count[i] / DRAWS - want));
+	}
+	draw_free(d);
+	ok(rising, "%s: ancestors rise", name);
+	ok(count[7] == 0, "%s: no weight, no copies", name);
+	/* Five standard errors of a multinomial count, sqrt(N w (1 - w) / DRAWS). */
+	ok(worst < 0.05, "%s: unbiased, worst %.3f", name, worst);
+	if (scheme == RESAMPLE_SYSTEMATIC)
+		ok(most <= 1, "%s: copies within one of n w", name);
+}
+
+static void test_weights(void)
+{
+	struct filter_par par = { 500, 3, RESAMPLE_SYSTEMATIC, 0.5, 0 };
+	struct draw *d = draw_new(1, 0, RNG_FILTER);
+	struct filter *f = filter_new(&par, d);
+	double *mean = calloc(500, sizeof *mean), past = 0, evidence;
+
+	filter_start(f, &past, 1, 1);
+	near(filter_ess(f), 500, 1e-9, "equal weights at the start");
+	filter_predict(f, mean, 1);
+	/* 1e6 standard deviations away: exp() of every weight is 0 */
+	evidence = filter_update(f, 1e3, 1e-3);
+	ok(isfinite(evidence) && isfinite(filter_mean(f)),
+		"weights that underflow stay finite");
+	ok(filter_ess(f) >= 1 && filter_mean(f) > 1.5, "the nearest particle survives");
+	filter_predict(f, mean, 1);
+	near(filter_ess(f), 500, 1e-9, "resampled after it");
+	filter_free(f);
+	free(mean);
+	draw_free(d);
+}
+
+/* Histories: the states of lag 1 seen through the ancestors are those the particles came
+ * from, here marked by their values. */
+static void test_genealogy(void)
+{
+	struct filter_par par = { 64, 4, RESAMPLE_SYSTEMATIC, 1, 0 };
+	struct draw *d = draw_new(2, 0, RNG_FILTER);
+	struct filter *f = filter_new(&par, d);
+	uint32_t index[64];
+	double mean[64], past = 0, carried[64];
+	const double *x;
+	int changed, good = 1;
+
+	filter_start(f, &past, 1, 1);
+	for (int k = 0; k < 6; k++) {
+		x = filter_lag(f, 0, index, &changed);
+		for (int i = 0; i < 64; i++)
+			mean[i] = carried[i] = x[index[i]];
+		filter_predict(f, mean, 0);
+		filter_update(f, 0.3, 0.2);
+		x = filter_lag(f, 0, index, &changed);
+		for (int i = 0; i < 64; i++)
+			mean[i] = x[index[i]];
+		x = filter_lag(f, 1, index, &changed);
+		for (int i = 0; i < 64; i++)
+			good &= x[index[i]] == mean[i];
+	}
+	ok(good, "without noise every particle equals its ancestor");
+	filter_free(f);
+	draw_free(d);
+}
+
+static void test_normals(void)
+{
+	enum { N = 1000000 };
+	struct draw *d = draw_new(9, 0, RNG_FILTER);
+	double *z = malloc(N * sizeof *z), m1 = 0, m2 = 0, m4 = 0, beyond = 0, tail = 0;
+
+	draw_normals(d, z, N);
+	for (int i = 0; i < N; i++) {
+		m1 += z[i] / N;
+		m2 += z[i] * z[i] / N;
+		m4 += pow(z[i], 4) / N;
+		beyond += z[i] > 1;
+		tail += fabs(z[i]) > 3.5;
+	}
+	/* Each within five standard errors. */
+	near(m1, 0, 5e-3, "mean of normals");
+	near(m2, 1, 5 * sqrt(2) * 1e-3, "variance");
+	near(m4, 3, 5 * sqrt(96) * 1e-3, "fourth moment");
+	near(beyond / N, 0.15865525393, 5 * 3.7e-4, "share above one");
+	near(tail / N, 4.6525816e-4, 5 * 2.2e-5, "share beyond the base layer");
+	free(z);
+	draw_free(d);
+}
+
+int main(void)
+{
+	static const char *const names[] = { "systematic", "stratified", "residual",
+		"multinomial" };
+	struct filter_par par = { 2000, 2, RESAMPLE_SYSTEMATIC, 0.5, 0 };
+	struct walk w;
+	double a, b, evidence;
+
+	for (int s = 0; s < 4; s++) {
+		test_kalman((enum resampling)s, 0.5, names[s]);
+		test_resampling((enum resampling)s, names[s]);
+	}
+	test_kalman(RESAMPLE_SYSTEMATIC, 1, "at every step");
+	make_walk(&w, 1);
+	b = particles(&w, &par, 0, &evidence);
+	par.freedom = 1e5;
+	ok(fabs(particles(&w, &par, 0, &evidence) / b - 1) < 0.01,
+		"Student-t of many degrees is the Gaussian");
+	par.freedom = 0;
+	a = particles(&w, &par, 0.2, &evidence);
+	ok(a > b && a < 2 * b, "a fifth missing: error %.3f, with all %.3f", a, b);
+	test_weights();
+	test_genealogy();
+	test_normals();
+	return tap_done();
+}
