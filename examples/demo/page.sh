@@ -19,7 +19,7 @@ side=$(records -n 1 contact.nrrd | awk -F '\t' '$1 == 1 { print $5 * $8 * 1e6; e
 # Where the piece of 1200 frames begins: shortly before the section with the most overlap.
 begin=$(awk -F '\t' '/^#/ { next } !t { for (i = 1; i <= NF; i++) { if ($i == "time1") t = i
 		if ($i == "sources") n = i }; next }
-	$n <= 6 && $n > most { most = $n; at = $t } END { printf "%.4f", at > 0.01 ? at - 0.01 : 0 }' found.tsv)
+	$n <= 6 && $n > most { most = $n; at = $t } END { printf "%.4f", (at > 0.01 ? at - 0.01 : 0) }' found.tsv)
 # at FILE CHANNELS: the byte of an AU file where that frame begins
 at() {
 	od -An -v -tu1 -j4 -N4 "$1" | awk -v c="$2" -v t="$begin" '{

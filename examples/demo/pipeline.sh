@@ -5,27 +5,28 @@
 #
 # A square millimetre of steel is pressed and slid against another, again and again.  One
 # wear step stands for an hour of running, and one second of the record of the debris
-# sensors for the debris of that hour.  The pair is worn out when it has lost a quarter
-# of a cubic millimetre.  A measured surface takes the place of the twelve generated
+# sensors for the debris of that hour.  The pair is worn out when it has lost 0.06
+# cubic millimetres.  A measured surface takes the place of the twelve generated
 # ones; area, sensor and threshold are then scaled to its size.
 #
 # Leaves its streams in the working directory for the pictures.
 set -eu
 scripts=$(dirname "$0")/../../scripts
 
+# A measured surface is put on a crown, so that its middle carries the load.
 if [ $# -gt 0 ]; then
-	surface() { roughgen --level --resample 128 --crown auto "$@"; }
-	steps=40
+	steps=48
+	crown=$(roughgen --level "$@" | records | awk -F '\t' '$1 == 1 { print 0.01 * $5 * $8 }')
+	roughgen --level --resample 128 --crown "$crown" "$@" >surface.nrrd
 else
-	surface() { roughgen --points 128 --length 1mm --sq 0.8um --corr 50um --crown auto --count 12; }
 	steps=4
+	roughgen --points 128 --length 1mm --sq 0.8um --corr 50um --crown auto --count 12 >surface.nrrd
 fi
 
-# Sides of the area, and what follows from them: the nominal area, the volume lost at
-# failure, and the calibration of a sensor that sees particles of a tenth of the side.
-surface "$@" >surface.nrrd
-eval "$(records surface.nrrd | awk -F '\t' '$1 == 1 { x = $5 * $8; y = $6 * $9; a = x * y
-	printf "area=%g volume=%g sensor=%g\n", a, 0.25 * a ^ 1.5, 78.54 / a ^ 1.5 }')"
+# What follows from the nominal area: the volume lost at failure, and the calibration of a
+# sensor that gives 1 V for a particle of a tenth of the side.
+eval "$(records surface.nrrd | awk -F '\t' '$1 == 1 { a = $5 * $8 * $6 * $9
+	printf "area=%g volume=%g sensor=%g\n", a, 0.06 * a ^ 1.5, 78.54 / a ^ 1.5 }')"
 
 # What wears off ...
 <surface.nrrd bemcontact --pressure 50MPa --young 210GPa | tee contact.nrrd |

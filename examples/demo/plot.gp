@@ -18,7 +18,7 @@ splot "height.txt" matrix using ($1/n*side):($2/n*side):($3*1e6) with pm3d
 
 set output "pressure.png"
 unset pm3d; unset hidden3d
-set border; set tics out
+set border; set tics out nomirror
 set size ratio -1
 set xlabel "x, um"; set ylabel "y, um"; set cblabel "pressure, GPa"
 set xrange [0:side]; set yrange [0:*]
@@ -36,19 +36,26 @@ unset logscale
 
 # A piece of the record of 0.12 s from begin on; the *_at are where it lies in the streams.
 set output "signal.png"
+last = 1199
 set xlabel "time, s"; set ylabel "V"
 set xrange [begin:begin+0.12]; set key top right
-set multiplot layout 3,1
-frames = 1200
-plot "raw.au" binary skip=raw_at record=frames format="%double%double" endian=big \
+stats "raw.au" binary skip=raw_at format="%double%double" endian=big every ::0::last \
+	using 1 nooutput
+peak = abs(STATS_min) > STATS_max ? -STATS_min : STATS_max
+set yrange [-1.1*peak:1.1*peak]
+set ytics (sprintf("%.2g", -peak) -peak, "0" 0, sprintf("%.2g", peak) peak)
+set multiplot layout 3,1 margins 0.1,0.97,0.1,0.97 spacing 0.09
+unset xlabel
+plot "raw.au" binary skip=raw_at format="%double%double" endian=big every ::0::last \
 	using (begin + $0/rate):1 with lines ls 3 title "as measured"
-plot "band.au" binary skip=band_at record=frames format="%double%double" endian=big \
+plot "band.au" binary skip=band_at format="%double%double" endian=big every ::0::last \
 	using (begin + $0/rate):1 with lines ls 1 title "band-passed"
-plot for [k=1:8] "pulses.au" binary skip=pulses_at record=frames \
-	format="%double%double%double%double%double%double%double%double" endian=big \
+set xlabel "time, s"
+plot for [k=1:8] "pulses.au" binary skip=pulses_at \
+	format="%double%double%double%double%double%double%double%double" endian=big every ::0::last \
 	using (begin + $0/rate):k with lines lw 2 lc k title k == 1 ? "separated" : ""
 unset multiplot
-set xrange [*:*]
+set xrange [*:*]; set yrange [*:*]; unset ytics; set ytics nomirror
 
 set output "state.png"
 set xlabel "time, h"; set ylabel "volume worn off, 10^6 um^3"
