@@ -35,7 +35,7 @@ bemcontact_LIBS = fftw
 debrisgen_MODULES = $(bemcontact_MODULES) contact/debris contact/hull contact/particles contact/stress \
 	contact/stress_kernel contact/sym3 contact/wear
 debrisgen_LIBS = fftw
-debrisstat_MODULES = num/philox num/rng
+debrisstat_MODULES = num/philox contact/statistics
 debrisstat_LIBS = gsl
 sensorsim_MODULES = num/philox signal/sensor signal/passage signal/scene
 sensorsim_LIBS =

@@ -1,0 +1,432 @@
+#include "contact/statistics.h"
+
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Weibull */
+
+struct sample {
+	const double *x; /* over the unit */
+	size_t n;
+	double low, high, mean_log;
+};
+
+/* F(high) - F(low), computed so that a small tail is not lost. */
+static double window(double low, double high, double k, double s)
+{
+	double a = pow(low / s, k), b = pow(high / s, k);
+
+	return a > 0 ? exp(-a) * -expm1(a - b) : -expm1(-b);
+}
+
+/* Negative log likelihood over n in the logarithms of shape and scale. */
+static double minus_log(const struct sample *m, double log_k, double log_s)
+{
+	double k = exp(log_k), s = exp(log_s), sum = 0;
+
+	for (size_t i = 0; i < m->n; i++)
+		sum += pow(m->x[i] / s, k);
+	return -(log_k - log_s + (k - 1) * (m->mean_log - log_s) - sum / (double)m->n -
+		 log(window(m->low, m->high, k, s)));
+}
+
+/* Derivative by the shape with the scale at its best: falls to zero from above at the
+ * maximum of the likelihood of a whole distribution. */
+static double shape_equation(const struct sample *m, double k)
+{
+	double sum = 0, logs = 0;
+
+	for (size_t i = 0; i < m->n; i++) {
+		double p = pow(m->x[i], k);
+
+		sum += p;
+		logs += p * log(m->x[i]);
+	}
+	return 1 / k + m->mean_log - logs / sum;
+}
+
+static double whole_shape(const struct sample *m)
+{
+	double a = 1e-3, b = 1;
+
+	while (shape_equation(m, b) > 0 && b < 1e6) {
+		a = b;
+		b *= 2;
+	}
+	for (int i = 0; i < 200 && b - a > 1e-15 * b; i++) {
+		double c = 0.5 * (a + b);
+
+		if (shape_equation(m, c) > 0)
+			a = c;
+		else
+			b = c;
+	}
+	return 0.5 * (a + b);
+}
+
+/* t exp(-t) with t = (x / s)^k, and the same times ln t; 0 at x = 0 and infinity. */
+static double edge(double x, double k, double s, double *with_log)
+{
+	double t = pow(x / s, k), e = t > 0 && t < 700 ? t * exp(-t) : 0;
+
+	*with_log = e > 0 ? e * k * log(x / s) : 0;
+	return e;
+}
+
+/* Gradient of minus_log() in closed form. */
+static void slope(const struct sample *m, const double p[2], double g[2])
+{
+	double k = exp(p[0]), s = exp(p[1]), sum = 0, logs = 0, la, lb, n = (double)m->n;
+	double w = window(m->low, m->high, k, s);
+	double a = edge(m->low, k, s, &la), b = edge(m->high, k, s, &lb);
+
+	for (size_t i = 0; i < m->n; i++) {
+		double u = pow(m->x[i] / s, k);
+
+		sum += u;
+		logs += u * log(m->x[i] / s);
+	}
+	g[0] = -(1 + k * (m->mean_log - p[1]) - k * logs / n - (lb - la) / w);
+	g[1] = -(-k + k * sum / n - k * (a - b) / w);
+}
+
+/* Curvature (11, 12, 22) by central differences of the gradient. */
+static void curvature(const struct sample *m, const double p[2], double h[3])
+{
+	static const double d = 1e-5;
+	double up[2], down[2], q[2];
+
+	for (int i = 0; i < 2; i++) {
+		q[0] = p[0] + (i == 0 ? d : 0), q[1] = p[1] + (i == 1 ? d : 0);
+		slope(m, q, up);
+		q[0] = p[0] - (i == 0 ? d : 0), q[1] = p[1] - (i == 1 ? d : 0);
+		slope(m, q, down);
+		if (i == 0)
+			h[0] = (up[0] - down[0]) / (2 * d);
+		else
+			h[2] = (up[1] - down[1]) / (2 * d);
+		h[1] = (up[1 - i] - down[1 - i]) / (2 * d);
+	}
+}
+
+/* Newton's step; where the curvature is not that of a minimum, or hardly so, the missing
+ * is added in all directions. */
+static void newton_step(const double g[2], const double h[3], double step[2])
+{
+	double middle = 0.5 * (h[0] + h[2]), radius = hypot(0.5 * (h[0] - h[2]), h[1]);
+	double least = middle - radius, wanted = 1e-3 * (fabs(middle) + radius);
+	double add = least < wanted ? wanted - least : 0;
+	double a = h[0] + add, c = h[2] + add, det = a * c - h[1] * h[1];
+
+	step[0] = (h[1] * g[1] - c * g[0]) / det;
+	step[1] = (h[1] * g[0] - a * g[1]) / det;
+}
+
+/* Minimum from p on, with steps of at most a half that never lead up. */
+static int descend(const struct sample *m, double p[2], double h[3])
+{
+	double here = minus_log(m, p[0], p[1]), g[2], step[2];
+
+	for (int i = 0; i < 500 && fabs(p[0]) < 20 && fabs(p[1]) < 20; i++) {
+		double size, there, steep;
+
+		slope(m, p, g);
+		curvature(m, p, h);
+		steep = hypot(g[0], g[1]);
+		newton_step(g, h, step);
+		/* Nearer the value of the function shows no difference: the last step. */
+		if (steep < 1e-7) {
+			p[0] += step[0];
+			p[1] += step[1];
+			return h[0] > 0 && h[0] * h[2] > h[1] * h[1] ? 0 : -1;
+		}
+		size = fmin(1, 0.5 / hypot(step[0], step[1]));
+		there = minus_log(m, p[0] + size * step[0], p[1] + size * step[1]);
+		while (!(there <= here) && size > 1e-12) {
+			size /= 2;
+			there = minus_log(
+				m, p[0] + size * step[0], p[1] + size * step[1]);
+		}
+		if (!(there <= here))
+			return -1;
+		p[0] += size * step[0];
+		p[1] += size * step[1];
+		here = there;
+	}
+	return -1;
+}
+
+static double distribution(const struct weibull *w, double x)
+{
+	double k = w->shape.value, s = w->scale.value;
+
+	return window(w->low, x, k, s) / window(w->low, w->high, k, s);
+}
+
+double weibull_density(const struct weibull *w, double x)
+{
+	double k = w->shape.value, s = w->scale.value, t = pow(x / s, k);
+
+	if (x < w->low || x > w->high || x < 0)
+		return 0;
+	return k / s * pow(x / s, k - 1) * exp(-t) / window(w->low, w->high, k, s);
+}
+
+static int ascending(const void *a, const void *b)
+{
+	double p = *(const double *)a, q = *(const double *)b;
+
+	return (p > q) - (p < q);
+}
+
+static double ks_distance(const struct weibull *w, const double *sorted, size_t n)
+{
+	double most = 0;
+
+	for (size_t i = 0; i < n; i++) {
+		double f = distribution(w, sorted[i]);
+
+		most = fmax(most,
+			fmax(f - (double)i / (double)n, (double)(i + 1) / (double)n - f));
+	}
+	return most;
+}
+
+static struct estimate log_interval(
+	double log_value, double deviation, double unit, double z)
+{
+	struct estimate e = { unit * exp(log_value),
+		unit * exp(log_value - z * deviation),
+		unit * exp(log_value + z * deviation) };
+
+	return e;
+}
+
+/* On values over their mean, sorted. */
+static int fit_scaled(
+	const struct sample *m, double unit, double confidence, struct weibull *w)
+{
+	double p[2], h[3], det, z = gsl_cdf_ugaussian_Pinv(0.5 + 0.5 * confidence),
+				sum = 0;
+	double k = whole_shape(m), n = (double)m->n;
+
+	for (size_t i = 0; i < m->n; i++)
+		sum += pow(m->x[i], k);
+	p[0] = log(k);
+	p[1] = log(sum / n) / k;
+	if (m->low > 0 || isfinite(m->high)) {
+		if (descend(m, p, h))
+			return -1;
+	} else {
+		curvature(m, p, h);
+	}
+	det = h[0] * h[2] - h[1] * h[1];
+	w->shape = log_interval(p[0], sqrt(h[2] / det / n), 1, z);
+	w->scale = log_interval(p[1], sqrt(h[0] / det / n), unit, z);
+	w->low = m->low * unit;
+	w->high = m->high * unit;
+	w->mean = w->scale.value * tgamma(1 + 1 / w->shape.value);
+	return 0;
+}
+
+int weibull_fit(const double *x, size_t n, double low, double high, double confidence,
+	struct weibull *w)
+{
+	double *y, unit = 0;
+	struct sample m = { 0 };
+	int status = -1;
+
+	for (size_t i = 0; i < n; i++) {
+		if (!(x[i] > 0) || x[i] < low || x[i] > high)
+			return -1;
+		unit += x[i] / (double)n;
+	}
+	y = malloc((n + 1) * sizeof(*y));
+	if (!y)
+		return -1;
+	for (size_t i = 0; i < n; i++) {
+		y[i] = x[i] / unit;
+		m.mean_log += log(y[i]) / (double)n;
+	}
+	qsort(y, n, sizeof(*y), ascending);
+	m.x = y;
+	m.n = n;
+	m.low = low / unit;
+	m.high = high / unit;
+	if (n > 1 && y[0] < y[n - 1] * (1 - 1e-12))
+		status = fit_scaled(&m, unit, confidence, w);
+	for (size_t i = 0; i < n; i++)
+		y[i] *= unit;
+	if (status == 0)
+		w->distance = ks_distance(w, y, n);
+	free(y);
+	return status;
+}
+
+/* Power law */
+
+/* Best factor and offset for an exponent; sum of squared residuals. */
+static double linear_fit(const double *x, const double *y, size_t n, double exponent,
+	double unit, double *factor, double *offset)
+{
+	double mx = 0, my = 0, xx = 0, xy = 0, rest = 0;
+
+	for (size_t i = 0; i < n; i++) {
+		mx += pow(x[i] / unit, exponent) / (double)n;
+		my += y[i] / (double)n;
+	}
+	for (size_t i = 0; i < n; i++) {
+		double u = pow(x[i] / unit, exponent) - mx;
+
+		xx += u * u;
+		xy += u * (y[i] - my);
+	}
+	*factor = xy / xx;
+	*offset = my - *factor * mx;
+	for (size_t i = 0; i < n; i++) {
+		double r = y[i] - *factor * pow(x[i] / unit, exponent) - *offset;
+
+		rest += r * r;
+	}
+	return rest;
+}
+
+/* Inverse of the symmetric 3 x 3 matrix a (xx xy xz yy yz zz): its diagonal. */
+static void inverse_diagonal(const double a[6], double out[3])
+{
+	double c0 = a[3] * a[5] - a[4] * a[4], c1 = a[1] * a[5] - a[2] * a[4];
+	double c2 = a[1] * a[4] - a[2] * a[3], det = a[0] * c0 - a[1] * c1 + a[2] * c2;
+
+	out[0] = c0 / det;
+	out[1] = (a[0] * a[5] - a[2] * a[2]) / det;
+	out[2] = (a[0] * a[3] - a[1] * a[1]) / det;
+}
+
+static struct estimate t_interval(
+	double value, double deviation, double dof, double confidence)
+{
+	struct estimate e = { value, NAN, NAN };
+
+	if (dof >= 1) {
+		double t = gsl_cdf_tdist_Pinv(0.5 + 0.5 * confidence, dof);
+
+		e.low = value - t * deviation;
+		e.high = value + t * deviation;
+	}
+	return e;
+}
+
+/* Golden section around the best of a grid of exponents; -1 if that is at the rim. */
+static double best_exponent(const double *x, const double *y, size_t n, double unit)
+{
+	static const double golden = 0.6180339887498949;
+	double best = INFINITY, a, b, c, d, fc, fd, factor, offset;
+	int at = 0, count = 120;
+
+	for (int i = 0; i <= count; i++) {
+		double f = linear_fit(x, y, n, 0.01 * pow(2000, (double)i / count), unit,
+			&factor, &offset);
+
+		if (f < best) {
+			best = f;
+			at = i;
+		}
+	}
+	if (at == 0 || at == count)
+		return -1;
+	a = 0.01 * pow(2000, (double)(at - 1) / count);
+	b = 0.01 * pow(2000, (double)(at + 1) / count);
+	c = b - golden * (b - a);
+	d = a + golden * (b - a);
+	fc = linear_fit(x, y, n, c, unit, &factor, &offset);
+	fd = linear_fit(x, y, n, d, unit, &factor, &offset);
+	while (b - a > 1e-10 * b) {
+		if (fc < fd) {
+			b = d, d = c, fd = fc;
+			c = b - golden * (b - a);
+			fc = linear_fit(x, y, n, c, unit, &factor, &offset);
+		} else {
+			a = c, c = d, fc = fd;
+			d = a + golden * (b - a);
+			fd = linear_fit(x, y, n, d, unit, &factor, &offset);
+		}
+	}
+	return 0.5 * (a + b);
+}
+
+static int distinct(const double *x, size_t n)
+{
+	int count = 0;
+
+	for (size_t i = 0; i < n && count < 3; i++) {
+		size_t j = 0;
+
+		while (j < i && x[j] != x[i])
+			j++;
+		count += j == i;
+	}
+	return count;
+}
+
+int power_fit(
+	const double *x, const double *y, size_t n, double confidence, struct power *p)
+{
+	double unit = 0, b, factor, offset, rest, jj[6] = { 0 }, var[3], s2,
+	       dof = (double)n - 3;
+
+	for (size_t i = 0; i < n; i++) {
+		if (!(x[i] > 0))
+			return -1;
+		unit = fmax(unit, x[i]);
+	}
+	if (distinct(x, n) < 3)
+		return -1;
+	b = best_exponent(x, y, n, unit);
+	if (b < 0)
+		return -1;
+	rest = linear_fit(x, y, n, b, unit, &factor, &offset);
+	for (size_t i = 0; i < n; i++) {
+		double u = pow(x[i] / unit, b), v = factor * u * log(x[i]);
+
+		jj[0] += u * u, jj[1] += u * v, jj[2] += u;
+		jj[3] += v * v, jj[4] += v, jj[5] += 1;
+	}
+	inverse_diagonal(jj, var);
+	s2 = dof > 0 ? rest / dof : 0;
+	/* The factor of x itself; its deviation with the exponent's is that of the model
+	 * in x, for which the derivative by the exponent above holds. */
+	p->factor = t_interval(factor * pow(unit, -b), sqrt(s2 * var[0]) * pow(unit, -b),
+		dof, confidence);
+	p->exponent = t_interval(b, sqrt(s2 * var[1]), dof, confidence);
+	p->offset = t_interval(offset, sqrt(s2 * var[2]), dof, confidence);
+	p->rms = sqrt(rest / (double)n);
+	return 0;
+}
+
+/* Samples */
+
+struct estimate sample_mean(
+	const double *x, size_t n, double confidence, double *deviation)
+{
+	double mean = 0, square = 0;
+
+	for (size_t i = 0; i < n; i++)
+		mean += x[i] / (double)n;
+	for (size_t i = 0; i < n; i++)
+		square += (x[i] - mean) * (x[i] - mean);
+	*deviation = n > 1 ? sqrt(square / (double)(n - 1)) : NAN;
+	return t_interval(
+		n ? mean : NAN, *deviation / sqrt((double)n), (double)n - 1, confidence);
+}
+
+double sample_quantile(double *x, size_t n, double level)
+{
+	double at = level * (double)(n - 1);
+	size_t i = (size_t)at;
+
+	if (n == 0)
+		return NAN;
+	qsort(x, n, sizeof(*x), ascending);
+	return i + 1 < n ? x[i] + (at - (double)i) * (x[i + 1] - x[i]) : x[n - 1];
+}

@@ -1,0 +1,54 @@
+/* statistics.h - distributions of wear particles: Weibull and power-law fits
+ *
+ *	struct weibull w;
+ *	if (weibull_fit(diameter, n, 0, INFINITY, 0.95, &w) == 0)
+ *		printf("%g (%g .. %g)\n", w.shape.value, w.shape.low, w.shape.high);
+ */
+#ifndef CONTACT_STATISTICS_H
+#define CONTACT_STATISTICS_H
+
+#include <stddef.h>
+
+/* A value and its confidence interval; nan where there is none. */
+struct estimate {
+	double value, low, high;
+};
+
+/* f(x) = (k / s) (x / s)^(k - 1) exp(-(x / s)^k), k the shape and s the scale (2-17). */
+struct weibull {
+	struct estimate shape, scale;
+	double mean;      /* of the distribution: s Gamma(1 + 1/k) */
+	double distance;  /* Kolmogorov-Smirnov: largest |empirical - fitted| */
+	double low, high; /* where it is cut off */
+};
+
+/* Maximum likelihood for n values x > 0.  Where values below low or above high could not
+ * be seen, the density is that of the distribution cut off there; 0 and INFINITY for a
+ * whole one.  Intervals from the curvature of the likelihood in the logarithms of the
+ * parameters.  -1 with fewer than two different values, values outside [low, high], no
+ * maximum (a cut-off sample that looks like no Weibull distribution), or without
+ * memory. */
+int weibull_fit(const double *x, size_t n, double low, double high, double confidence,
+	struct weibull *w);
+double weibull_density(const struct weibull *w, double x); /* cut off as fitted */
+
+/* y = factor x^exponent + offset (2-16). */
+struct power {
+	struct estimate factor, exponent, offset;
+	double rms; /* of the residuals */
+};
+
+/* Least squares for n points with x > 0.  Intervals from the Jacobian and Student's t,
+ * nan with three points.  -1 with fewer than three different x or without a minimum for
+ * an exponent in [0.01, 20]. */
+int power_fit(
+	const double *x, const double *y, size_t n, double confidence, struct power *p);
+
+/* Mean with its interval by Student's t, and standard deviation (n - 1). */
+struct estimate sample_mean(
+	const double *x, size_t n, double confidence, double *deviation);
+
+/* Quantile of n values, which are sorted: linear between order statistics. */
+double sample_quantile(double *x, size_t n, double level);
+
+#endif

@@ -1,0 +1,107 @@
+#!/bin/sh
+# debrisstat: fits, steps, classes, what is counted, refusals
+. "$(dirname "$0")/tap.sh"
+
+# table: rows "realisation step diameter(um) aspect" become a particle table.
+table() {
+	printf '# cmd: drawn\n'
+	printf 'realisation\tstep\tparticle\tvolume\tdiameter\taspect\n'
+	awk '{ d = $3 * 1e-6
+		printf "%d\t%d\t1\t%.17g\t%.17g\t%g\n", $1, $2, 3.14159265358979 / 6 * d ^ 3, d, $4 }'
+}
+
+fit() {
+	awk -v q="$1" '$1 == q { print $'"$2"' }' fits.tsv
+}
+
+# Quantiles of the Weibull distribution (2-17), in three realisations.
+awk 'BEGIN { for (i = 0; i < 3000; i++) { p = (i + 0.5) / 3000
+	print i % 3, 1 + int(i / 3) % 10, 200.698 * (-log(1 - p)) ^ (1 / 2.718), 1.2 } }' |
+	table >weibull.tsv
+debrisstat weibull.tsv >fits.tsv
+# Quantiles instead of draws: shape and scale within 1/n or so.
+near "Weibull shape" "$(fit weibull_shape 2)" 2.718 0.005
+near "Weibull scale" "$(fit weibull_scale 2)" 200.698e-6 0.05e-6
+near "Weibull mean, 178.5 um in the thesis" "$(fit weibull_mean 2)" 178.52e-6 0.05e-6
+ok "the interval holds the shape" awk '$1 == "weibull_shape" { exit !($3 < 2.718 && 2.718 < $4) }' fits.tsv
+near "its width: 1.53 shape / sqrt(n)" \
+	"$(awk '$1 == "weibull_shape" { print ($4 - $3) / 2 / $2 }' fits.tsv)" 0.0279 0.0005
+near "fit and data part little" "$(fit ks_distance 2)" 0 0.001
+is "realisations" "$(fit realisations 2)" 3
+is "particles" "$(fit particles 2)" 3000
+debrisstat -d 0:200um weibull.tsv >fits.tsv
+ok "leaving out the large ones bends the fit" awk '$1 == "weibull_shape" { exit !($2 > 2.9) }' fits.tsv
+debrisstat -d 0:200um -t weibull.tsv >fits.tsv
+near "unless the distribution is cut off too: shape" "$(fit weibull_shape 2)" 2.718 0.02
+near "and scale" "$(fit weibull_scale 2)" 200.698e-6 1e-6
+
+# Counts 3 x^2 + 2 in all up to step x, over two realisations.
+awk 'BEGIN { for (x = 1; x <= 6; x++) { n = x == 1 ? 5 : 3 * (2 * x - 1)
+	for (i = 0; i < n; i++) print i % 2, x, 100, 1 + i % 4 } }' | table >growth.tsv
+debrisstat growth.tsv >fits.tsv
+near "power law of the cumulative count: factor" "$(fit power_factor 2)" 3 1e-6
+near "exponent" "$(fit power_exponent 2)" 2 1e-7
+near "offset" "$(fit power_offset 2)" 2 1e-5
+debrisstat -g step -p 2:6 growth.tsv >fits.tsv
+near "of the count per step: exponent" "$(fit power_exponent 2)" 1 1e-7
+near "factor" "$(fit power_factor 2)" 6 1e-5
+near "offset" "$(fit power_offset 2)" -3 1e-5
+
+debrisstat -o steps growth.tsv >steps.tsv
+is "steps: mean number of particles" "$(column particles steps.tsv | tr '\n' ' ')" \
+	"2.5 4.5 7.5 10.5 13.5 16.5 "
+is "steps: standard deviation over realisations" \
+	"$(column particles_sd steps.tsv | awk '{ printf "%.6f ", $1 }')" \
+	"0.707107 0.707107 0.707107 0.707107 0.707107 0.707107 "
+is "steps: cumulative particles" "$(column cumulative_particles steps.tsv | tr '\n' ' ')" \
+	"5 14 29 50 77 110 "
+near "steps: volume" "$(column volume steps.tsv | head -n 1)" 1.3089969389957e-12 1e-24
+near "steps: cumulative volume" "$(column cumulative_volume steps.tsv | tail -n 1)" 2.87979326579e-11 1e-22
+debrisstat -o steps -n 5 growth.tsv >steps.tsv
+is "realisations without particles count as zero" "$(column particles steps.tsv | head -n 1)" 1
+printf 'realisation\tstep\n0\t1\n0\t2\n1\t1\n2\t1\n' >summary.tsv
+debrisstat -o steps -p 1:2 -U summary.tsv growth.tsv >steps.tsv
+is "the summary tells which steps took place" "$(column realisations steps.tsv | tr '\n' ' ')" "3 2 "
+
+debrisstat -o aspects -a 1,2,3,4 growth.tsv >aspects.tsv
+is "aspects: counts" "$(column count aspects.tsv | tr '\n' ' ')" "31 27 27 25 "
+near "aspects: shares add up" "$(column share aspects.tsv | awk '{ s += $1 } END { print s }')" 1 1e-6
+debrisstat -o sizes -b 20um weibull.tsv >sizes.tsv
+is "sizes: all counted" "$(column count sizes.tsv | awk '{ s += $1 } END { print s }')" 3000
+near "sizes: density adds up" "$(column density sizes.tsv | awk '{ s += $1 * 20e-6 } END { print s }')" 1 1e-6
+near "sizes: the fit follows the classes" "$(awk '!/^[#l]/ { d = $4 - $5; s += (d < 0 ? -d : d) * 20e-6 }
+	END { print s }' sizes.tsv)" 0 0.03
+
+# Realisations that differ: the bootstrap sees it, the likelihood cannot.
+awk 'BEGIN { for (r = 0; r < 12; r++) for (i = 0; i < 50; i++)
+	print r, 1 + i % 5, (60 + 15 * r) * (-log(1 - (i + 0.5) / 50)) ^ 0.5, 1 }' | table >groups.tsv
+debrisstat groups.tsv >fits.tsv
+plain=$(awk '$1 == "weibull_scale" { print $4 - $3 }' fits.tsv)
+debrisstat -B 200 groups.tsv >fits.tsv
+cp fits.tsv again
+near "bootstrap over realisations: wider by far" \
+	"$(awk -v p="$plain" '$1 == "weibull_scale" { print ($4 - $3) / p }' fits.tsv)" 4 1.5
+debrisstat -B 200 groups.tsv >fits.tsv
+same "and the same every time" fits.tsv again
+
+roughgen -n 32 -L 0.25mm -q 4um -l 30um -C 16um -c 3 | bemcontact -F 5N -E 210GPa |
+	debrisgen -Y 355MPa -u 0.3 -T 3 -E 210GPa -U s.tsv 2>warning >p.tsv
+debrisstat -o steps -U s.tsv p.tsv >steps.tsv
+near "volume as in the summary of debrisgen" \
+	"$(column volume steps.tsv | awk '{ s += 1e12 * $1 } END { print s * 3 }')" \
+	"$(column volume s.tsv | awk '{ s += 1e12 * $1 } END { print s }')" 1e-9
+
+head -n 2 growth.tsv | debrisstat >fits.tsv
+is "a table without rows has no fit" "$(fit weibull_shape 2) $(fit particles 2)" "nan 0"
+fails "an empty stream" 1 "no table" debrisstat
+printf 'realisation\tstep\tdiameter\tvolume\n' >t
+fails "a missing column" 1 "aspect" debrisstat t
+printf 'realisation\tstep\tdiameter\tvolume\taspect\n0\t1\tnan\t1\t1\n' >t
+fails "a missing diameter" 1 "line 2: diameter is nan" debrisstat t
+printf 'realisation\tstep\tdiameter\tvolume\taspect\n0\t1.5\t1\t1\t1\n' >t
+fails "half a step" 1 "line 2: step is 1.5" debrisstat t
+fails "diameters turned round" 2 "LO below HI" debrisstat -d 2um:1um t
+fails "more realisations than said" 1 "has 2" debrisstat -n 1 growth.tsv
+awk '/^[#r]/ || $1 == 0' growth.tsv >s1.tsv
+fails "a bootstrap of one realisation" 1 "two realisations" debrisstat -B 10 s1.tsv
+done_testing
