@@ -2,7 +2,7 @@
 # delaynet: training by seed, scores beside the levels, files, errors
 . "$(dirname "$0")/tap.sh"
 
-small="--points 40 --layers 6 --count 200 --batch 20"
+small="--columns 40 --layers 6 --count 200 --batch 20"
 
 # shellcheck disable=SC2086
 {
@@ -19,7 +19,7 @@ small="--points 40 --layers 6 --count 200 --batch 20"
 	# Zero epochs with weights that are drawn score worse than the constant; trained ones
 	# on arrival order with fresh data beat it clearly, since one source has one label.
 	delaynet $small --sources 1 --fresh --epochs 300 --labels arrival --rate 3e-3 >one.net
-	delaynet --task score --points 40 --sources 1 one.net >one.tsv
+	delaynet --task score --columns 40 --sources 1 one.net >one.tsv
 	got=$(column ordered one.tsv | head -n 1)
 	ok "one source is learnt: $got far below 1/12" \
 		awk -v g="$got" 'BEGIN { exit !(g < 0.4 / 12) }'
@@ -27,26 +27,26 @@ small="--points 40 --layers 6 --count 200 --batch 20"
 		"0 0.31622776601683794 "
 	is "one source: the orders agree" "$(column ordered one.tsv)" "$(column unordered one.tsv)"
 }
-delaynet --task score --points 40 a.net >a.tsv
-is "score reads standard input" "$(delaynet --task score --points 40 <a.net)" "$(cat a.tsv)"
+delaynet --task score --columns 40 a.net >a.tsv
+is "score reads standard input" "$(delaynet --task score --columns 40 <a.net)" "$(cat a.tsv)"
 is "score keeps the pipeline" "$(sed -n 's/^# cmd: //p' a.tsv)" \
-	"delaynet --points 40 --layers 6 --count 200 --batch 20 --epochs 30 | delaynet --task score --points 40"
+	"delaynet --columns 40 --layers 6 --count 200 --batch 20 --epochs 30 | delaynet --task score --columns 40"
 is "best order is never worse" "$(awk '!/^#/ && NR > 2 { print ($5 <= $3) }' a.tsv | sort -u)" 1
 
 # A linear network without hidden worth: gradient descent on the constant stays the mean.
-delaynet --points 4 --layers 2:relu --optimiser descent --rate 0.5 --epochs 400 --batch 0 \
+delaynet --columns 4 --layers 2:relu --optimiser descent --rate 0.5 --epochs 400 --batch 0 \
 	--amplitude 0:0 >flat.net
-delaynet --task score --points 4 --amplitude 0:0 flat.net --count 10000 >flat.tsv
+delaynet --task score --columns 4 --amplitude 0:0 flat.net --count 10000 >flat.tsv
 near "without a signal the constant predictor is left: 1/12" \
 	"$(column ordered flat.tsv | head -n 1)" 0.083333 0.0015
 
 # Exported data and the application of a network to them.
-delaynet --task data --points 40 --count 50 --first 1000 --truth truth.tsv >x.snd
+delaynet --task data --columns 40 --count 50 --first 1000 --truth truth.tsv >x.snd
 delaynet --task apply --network a.net x.snd >out.tsv
 is "one row per section" "$(column section out.tsv | wc -l)" 50
 got=$(awk -F '\t' '/^#/ || /^section/ { next } FNR == NR { for (i = 2; i < 5; i++) t[$1 - 1000, i] = $i; next }
 	{ for (i = 2; i < 5; i++) s += ($i - t[$1, i]) ^ 2 } END { printf "%.6g", s / 150 }' truth.tsv out.tsv)
-delaynet --task score --points 40 --count 50 a.net >b.tsv
+delaynet --task score --columns 40 --count 50 a.net >b.tsv
 near "the same score by way of data and apply" "$got" "$(column ordered b.tsv | head -n 1)" 1e-6
 delaynet --task apply --network a.net <x.snd >in.tsv
 same "apply reads a pipe" in.tsv out.tsv
@@ -54,14 +54,36 @@ is "data by parts" "$(for f in 0 3; do delaynet -k data -x 40 -f "$f" -c 3 | tai
 	"$(delaynet -k data -x 40 -c 6 | tail -c 3840 | cksum)"
 
 # Auto-encoders.
-delaynet --points 40 --layers "8 6" --activation sigmoid --pretrain 20 --sparsity 4 --epochs 5 \
+delaynet --columns 40 --layers "8 6" --activation sigmoid --pretrain 20 --sparsity 4 --epochs 5 \
 	--count 100 --stats stats.tsv >ae.net
 is "pre-training is counted: two layers and the rest" "$(column epochs stats.tsv)" 45
 
-delaynet --points 30 --layers "4conv6x2 pool2x2 3conv3x1 pool2x1 16" --activation relu --count 100 \
+delaynet --columns 30 --layers "4conv6x2 pool2x2 3conv3x1 pool2x1 16" --activation relu --count 100 \
 	--epochs 3 --loss sums >cnn.net
-delaynet --task score --points 30 cnn.net >cnn.tsv
+delaynet --task score --columns 30 cnn.net >cnn.tsv
 ok "two convolutions are scored" grep -q '^0	300	0\.' cnn.tsv
+
+# A tiny network for arrivals of one or two pulses: it must say far more than the prior,
+# delays within +-3 % of the duration, whose standard deviation is 0.0173.
+arrivals="--model pulses --reach 0.03:0.03 --snr 30:30"
+# shellcheck disable=SC2086
+{
+	delaynet $arrivals --fresh --layers "8conv13x1/4 12conv5x1/2 32" --activation relu \
+		--count 1000 --epochs 20 --rate 4e-3 --rate-end 1e-4 >tiny.net
+	delaynet --task score $arrivals tiny.net >tiny.tsv
+}
+is "counts of one to four are scored" "$(column sources tiny.tsv | tr '\n' ' ')" "1 2 3 4 "
+got=$(column delay_rmse tiny.tsv | head -n 1)
+ok "a tiny network retrained: delay of one pulse to $got durations, prior 0.0173" \
+	awk -v g="$got" 'BEGIN { exit !(g < 0.008) }'
+got=$(column size_rmse tiny.tsv | head -n 1)
+ok "its size to $got" awk -v g="$got" 'BEGIN { exit !(g < 0.1) }'
+fails "arrivals for delays" 1 "want a network for delays, got one for arrivals" \
+	delaynet --task score tiny.net
+fails "delays for arrivals" 1 "want a network for arrivals, got one for delays" \
+	delaynet --task score --model pulses a.net
+fails "five pulses" 2 "at most 4" delaynet --model pulses --sources 5
+fails "apply of arrivals" 2 "see duet" delaynet --task apply --model pulses --network tiny.net
 
 fails "layers that are none" 2 "--layers: '5x' is no layer" delaynet --layers 5x
 fails "too many operands" 2 "reads nothing" delaynet a.net
@@ -79,7 +101,7 @@ head -c 4000 x.snd >cut.snd
 fails "half a section" 1 "cut.snd: section 6: want 40 frames" \
 	delaynet --task apply --network a.net cut.snd
 fails "a step too long" 1 "the training diverged" \
-	delaynet --points 40 --optimiser descent --rate 900 --activation linear
+	delaynet --columns 40 --optimiser descent --rate 900 --activation linear
 fails "sparsity without sigmoid" 2 "--sparsity wants" delaynet --pretrain 1 --sparsity 4
 fails "convolutions are no auto-encoders" 2 "only dense" delaynet --layers 2conv3x1 --pretrain 1
 fails "an empty range" 2 "--gain: want A:B" delaynet --gain 1:0.5

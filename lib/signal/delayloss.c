@@ -131,7 +131,7 @@ void delayscore_finish(struct delayscore *score)
  * m (1 - m) / (n + 2); against an unsorted one, 1/12 + (m - 1/2)^2. */
 struct delaylevels delaylevels(int width)
 {
-	struct delaylevels l = {1.0 / 12, 0, 0, 1.0 / 6};
+	struct delaylevels l = { 1.0 / 12, 0, 0, 1.0 / 6 };
 
 	for (int k = 1; k <= width; k++) {
 		double m = k / (width + 1.0);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const activations[] = {"linear", "tanh", "sigmoid", "relu"};
+static const char *const activations[] = { "linear", "tanh", "sigmoid", "relu" };
 
 /* Reads a whole number 1 ... 2^20 at *s and moves on; 0 if there is none. */
 static int take_number(const char **s)
@@ -89,7 +89,7 @@ int netfile_parse_layers(const char *text, enum network_activation activation,
 				NETWORK_LAYERS_MAX);
 			return 0;
 		}
-		layer[count] = (struct network_layer){.activation = activation};
+		layer[count] = (struct network_layer){ .activation = activation };
 		if (n >= sizeof word || !parse_layer(word, &layer[count++])) {
 			snprintf(why, NETFILE_TEXT,
 				"'%s' is no layer: want like 50, 50+, 10conv30x2 or "
@@ -288,10 +288,10 @@ static struct network *read_network(struct reader *r, int batch)
 
 struct network *netfile_read(FILE *f, int batch, struct netfile *file)
 {
-	struct reader r = {.f = f, .file = file, .why = file->why};
+	struct reader r = { .f = f, .file = file, .why = file->why };
 	struct network *net;
 
-	*file = (struct netfile){.line = 0};
+	*file = (struct netfile){ .line = 0 };
 	net = read_network(&r, batch);
 	if (net && getc(f) != EOF) {
 		snprintf(file->why, NETFILE_TEXT, "something follows 'end'");

@@ -67,7 +67,7 @@ static int size_layer(struct layer *l, size_t *weights)
 	switch (p->kind) {
 	case NETWORK_DENSE:
 	case NETWORK_CASCADE:
-		l->out = (struct network_shape){1, 1, p->units};
+		l->out = (struct network_shape){ 1, 1, p->units };
 		if (p->kind == NETWORK_CASCADE)
 			l->out.width += l->inputs;
 		l->fan = l->inputs;
@@ -77,14 +77,14 @@ static int size_layer(struct layer *l, size_t *weights)
 			p->stride = 1;
 		if (p->stride < 0 || p->stride > 4096)
 			return 0;
-		l->out = (struct network_shape){
-			p->units, l->in.height, divide_up(l->in.width, p->stride)};
+		l->out = (struct network_shape){ p->units, l->in.height,
+			divide_up(l->in.width, p->stride) };
 		l->fan = l->in.channels * p->width * p->height;
 		break;
 	case NETWORK_POOL:
-		l->out = (struct network_shape){l->in.channels,
+		l->out = (struct network_shape){ l->in.channels,
 			divide_up(l->in.height, p->height),
-			divide_up(l->in.width, p->width)};
+			divide_up(l->in.width, p->width) };
 		break;
 	default:
 		return 0;
@@ -565,6 +565,7 @@ struct descent {
 	real *gradient, *mean, *square;
 	real *x, *target;
 	long *order;
+	int targets;
 	long steps, total;
 };
 
@@ -583,12 +584,13 @@ static int allocate_descent(
 {
 	long per_epoch = (par->samples + par->batch - 1) / par->batch;
 
-	*d = (struct descent){.total = per_epoch * par->epochs};
+	*d = (struct descent){ .total = per_epoch * par->epochs };
 	d->gradient = malloc(net->count * sizeof(real));
 	d->mean = calloc(net->count, sizeof(real));
 	d->square = calloc(net->count, sizeof(real));
 	d->x = malloc((size_t)par->batch * network_inputs(net) * sizeof(real));
-	d->target = malloc((size_t)par->batch * network_outputs(net) * sizeof(real));
+	d->targets = par->targets ? par->targets : network_outputs(net);
+	d->target = malloc((size_t)par->batch * d->targets * sizeof(real));
 	d->order = malloc(par->samples * sizeof *d->order);
 	return d->gradient && d->mean && d->square && d->x && d->target && d->order;
 }
@@ -648,7 +650,7 @@ static void shuffle(const struct network_training *par, long epoch, long *order)
 static double run_epoch(struct network *net, const struct network_training *par,
 	struct descent *d, long epoch, network_sample *sample, void *context)
 {
-	int inputs = network_inputs(net), outputs = network_outputs(net);
+	int inputs = network_inputs(net);
 	double sum = 0;
 
 	if (!par->fresh)
@@ -662,7 +664,7 @@ static double run_epoch(struct network *net, const struct network_training *par,
 			sample(context,
 				par->fresh ? epoch * par->samples + begin + i
 					   : d->order[begin + i],
-				d->x + i * inputs, d->target + i * outputs);
+				d->x + i * inputs, d->target + i * d->targets);
 		sum += n * network_gradient(net, d->x, d->target, n, par->loss,
 				   par->loss_context, &par->penalty, d->gradient);
 		update(net, par, d);
@@ -733,9 +735,9 @@ enum network_status network_pretrain(struct network *net, int i,
 	const struct network_training *par, network_sample *sample, void *context)
 {
 	struct layer *l = &net->layer[i];
-	struct network_layer pair[2] = {
-		l->par, {NETWORK_DENSE, NETWORK_LINEAR, .units = l->inputs}};
-	struct encoder e = {net, i, sample, context, par, NULL, NULL};
+	struct network_layer pair[2] = { l->par,
+		{ NETWORK_DENSE, NETWORK_LINEAR, .units = l->inputs } };
+	struct encoder e = { net, i, sample, context, par, NULL, NULL };
 	struct network_training inner = *par;
 	enum network_status status = NETWORK_MEMORY;
 	struct network *both;
@@ -745,7 +747,9 @@ enum network_status network_pretrain(struct network *net, int i,
 	inner.report = encoder_report;
 	both = network_new(l->in, pair, 2, par->batch);
 	e.x = malloc(network_inputs(net) * sizeof(real));
-	e.target = malloc(network_outputs(net) * sizeof(real));
+	inner.targets = 0;
+	e.target = malloc(
+		(par->targets ? par->targets : network_outputs(net)) * sizeof(real));
 	if (both && e.x && e.target) {
 		network_start(both, par->seed, par->repetition);
 		status = network_train(both, &inner, encoder_sample, &e);

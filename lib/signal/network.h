@@ -80,7 +80,8 @@ const network_real *network_forward(struct network *net, const network_real *x, 
 /* Output of layer i in the last forward call. */
 const network_real *network_activations(const struct network *net, int i);
 
-/* A loss: returns the mean over n samples of width outputs and fills its gradient. */
+/* A loss: returns the mean over n samples of width outputs and fills its gradient.  The
+ * targets of a sample are as many as the outputs, or what the loss states. */
 typedef double network_loss(const void *context, int n, int width,
 	const network_real *output, const network_real *target, network_real *gradient);
 
@@ -114,6 +115,7 @@ struct network_training {
 	int fresh;     /* each epoch takes new samples instead of the same, shuffled */
 	uint64_t seed; /* of the shuffling, with repetition */
 	uint32_t repetition;
+	int targets; /* values per target; 0: as many as outputs */
 	network_loss *loss;
 	const void *loss_context;
 	struct network_penalty penalty;

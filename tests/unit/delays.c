@@ -16,7 +16,7 @@ static double try_orders(const network_real *a, const network_real *b)
 	double best = INFINITY;
 
 	for (int k = 0; k < 256; k++) {
-		int p[4] = {k & 3, k >> 2 & 3, k >> 4 & 3, k >> 6 & 3};
+		int p[4] = { k & 3, k >> 2 & 3, k >> 4 & 3, k >> 6 & 3 };
 		double sum = 0;
 
 		if ((1 << p[0] | 1 << p[1] | 1 << p[2] | 1 << p[3]) != 15)
@@ -30,12 +30,12 @@ static double try_orders(const network_real *a, const network_real *b)
 
 static void check_orders(void)
 {
-	struct delayloss_par par = {1, DELAYLOSS_SQUARED};
+	struct delayloss_par par = { 1, DELAYLOSS_SQUARED };
 	double worst = 0;
 
 	for (int s = 0; s < 200; s++) {
 		network_real a[4], b[4], slope[4];
-		struct delayscore score = {0};
+		struct delayscore score = { 0 };
 
 		for (int i = 0; i < 4; i++) {
 			a[i] = s % 5 ? uniform(8 * s + i) : 0.5;
@@ -54,8 +54,8 @@ static void check_orders(void)
 /* By hand: outputs 1 2 3, labels 1 1 4: sums 6 and 6, variances 2/3 and 2. */
 static void check_sums(void)
 {
-	network_real a[6] = {1, 2, 3, 1, 2, 4}, b[6] = {1, 1, 4, 1, 1, 4}, slope[6];
-	struct delayloss_par par = {3, DELAYLOSS_SQUARED};
+	network_real a[6] = { 1, 2, 3, 1, 2, 4 }, b[6] = { 1, 1, 4, 1, 1, 4 }, slope[6];
+	struct delayloss_par par = { 3, DELAYLOSS_SQUARED };
 
 	near(delayloss_sums(&par, 1, 3, a, b, slope), 3 * 16.0 / 9, 1e-12,
 		"(3-20), squared");
@@ -73,8 +73,8 @@ static void check_levels(void)
 {
 	enum { N = 100000 };
 	struct delaylevels l = delaylevels(3);
-	struct delayloss_par par = {1, DELAYLOSS_SQUARED};
-	struct delayscore half = {0}, sorted = {0}, draw = {0};
+	struct delayloss_par par = { 1, DELAYLOSS_SQUARED };
+	struct delayscore half = { 0 }, sorted = { 0 }, draw = { 0 };
 
 	near(l.constant, 1 / 12.0, 1e-15, "1/12");
 	near(l.constant_sorted, 1 / 24.0, 1e-15, "1/24");
@@ -82,8 +82,8 @@ static void check_levels(void)
 	near(l.draw, 1 / 6.0, 1e-15, "1/6");
 	near(delaylevels(1).constant_sorted, 1 / 12.0, 1e-15, "one source has one order");
 	for (int i = 0; i < N; i++) {
-		network_real label[3], any[3], mean[3] = {0.25, 0.5, 0.75},
-					       same[3] = {0.5, 0.5, 0.5};
+		network_real label[3], any[3], mean[3] = { 0.25, 0.5, 0.75 },
+					       same[3] = { 0.5, 0.5, 0.5 };
 
 		for (int k = 0; k < 3; k++) {
 			label[k] = uniform(1000 + 6 * i + k);
@@ -118,7 +118,7 @@ static void check_shift(void)
 	par.length[0] = par.length[1] = 3.14159265358979;
 	par.unit = par.span / 10;
 	for (uint32_t i = 0; i < 20; i++) {
-		double c[2] = {0}, m[2] = {0};
+		double c[2] = { 0 }, m[2] = { 0 };
 
 		delaydata_sample(&par, i, x, delay);
 		/* A half wave without jumps: its centre of mass moves with it. */

@@ -15,8 +15,9 @@ static double uniform(uint64_t i)
 static void check_convolution(void)
 {
 	enum { C = 2, H = 3, W = 11, F = 3, KX = 4, KY = 2, STEP = 3, OW = 4 };
-	struct network_layer layer = {NETWORK_CONV, NETWORK_LINEAR, F, KX, KY, STEP};
-	struct network *net = network_new((struct network_shape){C, H, W}, &layer, 1, 2);
+	struct network_layer layer = { NETWORK_CONV, NETWORK_LINEAR, F, KX, KY, STEP };
+	struct network *net =
+		network_new((struct network_shape){ C, H, W }, &layer, 1, 2);
 	network_real x[2 * C * H * W], *w = network_weights(net);
 	const network_real *y;
 	double worst = 0;
@@ -49,9 +50,10 @@ static void check_convolution(void)
 
 static void check_pool(void)
 {
-	struct network_layer layer = {NETWORK_POOL, .width = 2, .height = 2};
-	struct network *net = network_new((struct network_shape){1, 2, 5}, &layer, 1, 1);
-	const network_real x[10] = {1, 5, -3, -4, -7, 2, 0, -1, -9, -8};
+	struct network_layer layer = { NETWORK_POOL, .width = 2, .height = 2 };
+	struct network *net =
+		network_new((struct network_shape){ 1, 2, 5 }, &layer, 1, 1);
+	const network_real x[10] = { 1, 5, -3, -4, -7, 2, 0, -1, -9, -8 };
 	const network_real *y = network_forward(net, x, 1);
 
 	ok(network_outputs(net) == 3 && y[0] == 5 && y[1] == -1 && y[2] == -7,
@@ -62,11 +64,11 @@ static void check_pool(void)
 /* Two cascade layers and the formula of the cascade-forward network. */
 static void check_cascade(void)
 {
-	struct network_layer layer[] = {{NETWORK_CASCADE, NETWORK_TANH, .units = 2},
-		{NETWORK_CASCADE, NETWORK_TANH, .units = 1},
-		{NETWORK_DENSE, NETWORK_LINEAR, .units = 1}};
-	struct network *net = network_new((struct network_shape){1, 1, 2}, layer, 3, 1);
-	network_real *w = network_weights(net), x[2] = {0.3, -0.8};
+	struct network_layer layer[] = { { NETWORK_CASCADE, NETWORK_TANH, .units = 2 },
+		{ NETWORK_CASCADE, NETWORK_TANH, .units = 1 },
+		{ NETWORK_DENSE, NETWORK_LINEAR, .units = 1 } };
+	struct network *net = network_new((struct network_shape){ 1, 1, 2 }, layer, 3, 1);
+	network_real *w = network_weights(net), x[2] = { 0.3, -0.8 };
 	double a, b, c, want;
 
 	for (size_t i = 0; i < network_weight_count(net); i++)
@@ -90,18 +92,16 @@ static void take_line(void *context, long i, network_real *x, network_real *targ
 
 static void check_training(void)
 {
-	static const char *const name[] = {"Adam", "gradient descent"};
-	struct network_layer layer = {NETWORK_DENSE, NETWORK_LINEAR, .units = 1};
-	struct network_training par = {.epochs = 200,
-		.samples = 64,
-		.batch = 16,
-		.loss = network_mse,
-		.seed = 5};
+	static const char *const name[] = { "Adam", "gradient descent" };
+	struct network_layer layer = { NETWORK_DENSE, NETWORK_LINEAR, .units = 1 };
+	struct network_training par = {
+		.epochs = 200, .samples = 64, .batch = 16, .loss = network_mse, .seed = 5
+	};
 	network_real again[3];
 
 	for (int k = 0; k < 2; k++) {
 		struct network *net =
-			network_new((struct network_shape){1, 1, 2}, &layer, 1, 16);
+			network_new((struct network_shape){ 1, 1, 2 }, &layer, 1, 16);
 		network_real *w = network_weights(net);
 		double error;
 
@@ -129,10 +129,12 @@ static void check_training(void)
 /* The first step of Adam is rate * sign(gradient), whatever the gradient's size. */
 static void check_adam_step(void)
 {
-	struct network_layer layer = {NETWORK_DENSE, NETWORK_LINEAR, .units = 1};
+	struct network_layer layer = { NETWORK_DENSE, NETWORK_LINEAR, .units = 1 };
 	struct network_training par = {
-		.epochs = 1, .samples = 8, .batch = 8, .loss = network_mse, .rate = 1e-3};
-	struct network *net = network_new((struct network_shape){1, 1, 2}, &layer, 1, 8);
+		.epochs = 1, .samples = 8, .batch = 8, .loss = network_mse, .rate = 1e-3
+	};
+	struct network *net =
+		network_new((struct network_shape){ 1, 1, 2 }, &layer, 1, 8);
 	network_real *w = network_weights(net);
 
 	network_train(net, &par, take_line, NULL);
@@ -143,14 +145,15 @@ static void check_adam_step(void)
 
 static void check_divergence(void)
 {
-	struct network_layer layer = {NETWORK_DENSE, NETWORK_LINEAR, .units = 1};
-	struct network_training par = {.optimiser = NETWORK_DESCENT,
+	struct network_layer layer = { NETWORK_DENSE, NETWORK_LINEAR, .units = 1 };
+	struct network_training par = { .optimiser = NETWORK_DESCENT,
 		.epochs = 2000,
 		.samples = 8,
 		.batch = 8,
 		.loss = network_mse,
-		.rate = 50};
-	struct network *net = network_new((struct network_shape){1, 1, 2}, &layer, 1, 8);
+		.rate = 50 };
+	struct network *net =
+		network_new((struct network_shape){ 1, 1, 2 }, &layer, 1, 8);
 
 	ok(network_train(net, &par, take_line, NULL) == NETWORK_DIVERGED,
 		"too long a step is told as divergence");
@@ -170,20 +173,21 @@ static void take_plane(void *context, long i, network_real *x, network_real *tar
  * the decoder alone) cannot show, the activations do: their mean, and that they vary. */
 static void check_pretraining(void)
 {
-	struct network_layer layer[] = {{NETWORK_DENSE, NETWORK_SIGMOID, .units = 6},
-		{NETWORK_DENSE, NETWORK_LINEAR, .units = 1}};
-	struct network *net = network_new((struct network_shape){1, 1, 8}, layer, 2, 100);
-	struct network_training par = {.epochs = 600,
+	struct network_layer layer[] = { { NETWORK_DENSE, NETWORK_SIGMOID, .units = 6 },
+		{ NETWORK_DENSE, NETWORK_LINEAR, .units = 1 } };
+	struct network *net =
+		network_new((struct network_shape){ 1, 1, 8 }, layer, 2, 100);
+	struct network_training par = { .epochs = 600,
 		.samples = 100,
 		.batch = 100,
 		.rate = 0.02,
-		.loss = network_mse};
+		.loss = network_mse };
 	network_real *w = network_weights(net), x[8], t[1], last = w[6 * 9];
 
 	for (int sparse = 0; sparse < 2; sparse++) {
 		double mean = 0, square = 0;
 
-		par.penalty = (struct network_penalty){0, 0, sparse ? 4 : 0, 0.05};
+		par.penalty = (struct network_penalty){ 0, 0, sparse ? 4 : 0, 0.05 };
 		ok(network_pretrain(net, 0, &par, take_plane, NULL) == NETWORK_OK,
 			"pre-training done");
 		for (long i = 0; i < 100; i++) {
@@ -227,7 +231,7 @@ static void check_file(void)
 	struct network_layer layer[NETWORK_LAYERS_MAX];
 	char why[NETFILE_TEXT], text[8192] = "", copy[8192] = "";
 	int n = netfile_parse_layers(layers, NETWORK_LINEAR, layer, why);
-	struct network *net = network_new((struct network_shape){1, 2, 9}, layer, n, 1),
+	struct network *net = network_new((struct network_shape){ 1, 2, 9 }, layer, n, 1),
 		       *back;
 	struct netfile file;
 	size_t bytes = network_weight_count(net) * sizeof(network_real);
@@ -265,10 +269,10 @@ static void check_file(void)
 
 static void check_refusals(void)
 {
-	static const char *const bad[] = {"", "x", "0", "10conv", "10conv3", "10conv3x",
+	static const char *const bad[] = { "", "x", "0", "10conv", "10conv3", "10conv3x",
 		"pool2", "5:cosh", "-3", "5conv2x2/0", "2000000", "3 4 pool2x0",
-		"1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1"};
-	struct network_layer layer[NETWORK_LAYERS_MAX], huge = {.units = 1 << 20};
+		"1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1" };
+	struct network_layer layer[NETWORK_LAYERS_MAX], huge = { .units = 1 << 20 };
 	char why[NETFILE_TEXT];
 
 	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -276,9 +280,9 @@ static void check_refusals(void)
 		ok(netfile_parse_layers(bad[i], NETWORK_TANH, layer, why) == 0 && *why,
 			"layers '%.20s' refused: %s", bad[i], why);
 	}
-	ok(!network_new((struct network_shape){1, 2, 500}, &huge, 1, 1),
+	ok(!network_new((struct network_shape){ 1, 2, 500 }, &huge, 1, 1),
 		"too many weights");
-	ok(!network_new((struct network_shape){1, 0, 500}, &huge, 1, 1), "no rows");
+	ok(!network_new((struct network_shape){ 1, 0, 500 }, &huge, 1, 1), "no rows");
 }
 
 int main(void)

@@ -1,9 +1,11 @@
 /* The derivatives of every kind of layer and loss against central differences.
  *
- * network.c and delayloss.c are compiled here in double precision, so that with steps of
+ * network.c and the losses are compiled here in double precision, so that with steps of
  * 1e-5 a difference is right to about 1e-9 relative: a wrong sign, factor or index shows.
  */
 #define NETWORK_DOUBLE
+#include "signal/cnn.c"
+#include "signal/cnndata.c"
 #include "signal/delayloss.c"
 #include "signal/network.c"
 #include "tap.h"
@@ -41,7 +43,7 @@ static double value(struct network *net, const struct scene *s, const real *x,
 static void check(const struct scene *s)
 {
 	struct network *net = network_new(s->input, s->layer, s->layers, BATCH);
-	struct delayloss_par par = {.lambda = 0.7};
+	struct delayloss_par par = { .lambda = 0.7 };
 	size_t count = network_weight_count(net);
 	real *x = malloc(BATCH * network_inputs(net) * sizeof(real));
 	real *target = malloc(BATCH * network_outputs(net) * sizeof(real));
@@ -78,63 +80,93 @@ static void check(const struct scene *s)
 	network_free(net);
 }
 
+/* The loss of arrivals by its outputs, for every count. */
+static void check_arrivals(void)
+{
+	enum { ALL = CNN_SOURCES * CNN_OUTPUTS };
+	real output[ALL], slope[ALL], scratch[ALL], target[CNN_SOURCES * CNNDATA_TARGETS];
+	double worst = 0, h = 1e-6;
+
+	fill(output, ALL, 300000);
+	fill(target, CNN_SOURCES * CNNDATA_TARGETS, 400000);
+	for (int s = 0; s < CNN_SOURCES; s++)
+		target[s * CNNDATA_TARGETS] = s + 1;
+	cnndata_loss(NULL, CNN_SOURCES, CNN_OUTPUTS, output, target, slope);
+	for (int i = 0; i < ALL; i++) {
+		double keep = output[i], up, down;
+
+		output[i] = keep + h;
+		up = cnndata_loss(
+			NULL, CNN_SOURCES, CNN_OUTPUTS, output, target, scratch);
+		output[i] = keep - h;
+		down = cnndata_loss(
+			NULL, CNN_SOURCES, CNN_OUTPUTS, output, target, scratch);
+		output[i] = keep;
+		worst = fmax(worst,
+			fabs((up - down) / (2 * h) - slope[i]) / fmax(fabs(slope[i]), 1));
+	}
+	ok(worst < 1e-7, "loss of arrivals: %d derivatives, worst error %.1g", ALL,
+		worst);
+}
+
 int main(void)
 {
 	static const struct scene scenes[] = {
-		{"dense tanh, linear", {1, 1, 7}, 2,
-			{{NETWORK_DENSE, NETWORK_TANH, .units = 4},
-				{NETWORK_DENSE, NETWORK_LINEAR, .units = 3}},
-			.loss = network_mse},
-		{"dense relu, sigmoid with decay of the weights", {1, 2, 5}, 2,
-			{{NETWORK_DENSE, NETWORK_RELU, .units = 6},
-				{NETWORK_DENSE, NETWORK_SIGMOID, .units = 3}},
-			.loss = network_mse, .penalty = {.decay = 0.3}},
-		{"two cascade layers", {1, 1, 6}, 3,
-			{{NETWORK_CASCADE, NETWORK_TANH, .units = 4},
-				{NETWORK_CASCADE, NETWORK_SIGMOID, .units = 3},
-				{NETWORK_DENSE, NETWORK_LINEAR, .units = 3}},
-			.loss = network_mse},
-		{"sparse encoder, first layer", {1, 1, 9}, 2,
-			{{NETWORK_DENSE, NETWORK_SIGMOID, .units = 5},
-				{NETWORK_DENSE, NETWORK_LINEAR, .units = 9}},
-			.loss = network_mse, .penalty = {0.01, 0, 4, 0.05}},
-		{"sparse layer behind another", {1, 1, 9}, 3,
-			{{NETWORK_DENSE, NETWORK_TANH, .units = 6},
-				{NETWORK_CASCADE, NETWORK_SIGMOID, .units = 5},
-				{NETWORK_DENSE, NETWORK_LINEAR, .units = 3}},
-			.loss = network_mse, .penalty = {0, 1, 4, 0.05}},
-		{"convolution 4x2 of two rows, even kernel", {1, 2, 11}, 2,
-			{{NETWORK_CONV, NETWORK_TANH, 3, 4, 2, 1},
-				{NETWORK_DENSE, NETWORK_LINEAR, .units = 3}},
-			.loss = network_mse},
-		{"two convolutions with stride, two channels", {2, 3, 10}, 3,
-			{{NETWORK_CONV, NETWORK_TANH, 3, 5, 3, 3},
-				{NETWORK_CONV, NETWORK_SIGMOID, 4, 3, 2, 2},
-				{NETWORK_DENSE, NETWORK_LINEAR, .units = 3}},
-			.loss = network_mse},
-		{"kernel wider than the row", {1, 1, 3}, 2,
-			{{NETWORK_CONV, NETWORK_TANH, 2, 9, 4, 2},
-				{NETWORK_DENSE, NETWORK_LINEAR, .units = 3}},
-			.loss = network_mse},
-		{"convolution, pool, convolution, pool, dense", {1, 2, 13}, 6,
-			{{NETWORK_CONV, NETWORK_RELU, 3, 4, 2, 1},
-				{NETWORK_POOL, .width = 2, .height = 2},
-				{NETWORK_CONV, NETWORK_TANH, 2, 3, 1, 1},
-				{NETWORK_POOL, .width = 2, .height = 1},
-				{NETWORK_DENSE, NETWORK_RELU, .units = 8},
-				{NETWORK_DENSE, NETWORK_LINEAR, .units = 3}},
-			.loss = network_mse},
-		{"loss of sums and variances, (3-20)", {1, 1, 7}, 2,
-			{{NETWORK_DENSE, NETWORK_TANH, .units = 5},
-				{NETWORK_DENSE, NETWORK_LINEAR, .units = 3}},
-			.loss = delayloss_sums},
-		{"loss over the best order", {1, 1, 7}, 2,
-			{{NETWORK_DENSE, NETWORK_TANH, .units = 5},
-				{NETWORK_DENSE, NETWORK_LINEAR, .units = 4}},
-			.loss = delayloss_unordered},
+		{ "dense tanh, linear", { 1, 1, 7 }, 2,
+			{ { NETWORK_DENSE, NETWORK_TANH, .units = 4 },
+				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } },
+			.loss = network_mse },
+		{ "dense relu, sigmoid with decay of the weights", { 1, 2, 5 }, 2,
+			{ { NETWORK_DENSE, NETWORK_RELU, .units = 6 },
+				{ NETWORK_DENSE, NETWORK_SIGMOID, .units = 3 } },
+			.loss = network_mse, .penalty = { .decay = 0.3 } },
+		{ "two cascade layers", { 1, 1, 6 }, 3,
+			{ { NETWORK_CASCADE, NETWORK_TANH, .units = 4 },
+				{ NETWORK_CASCADE, NETWORK_SIGMOID, .units = 3 },
+				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } },
+			.loss = network_mse },
+		{ "sparse encoder, first layer", { 1, 1, 9 }, 2,
+			{ { NETWORK_DENSE, NETWORK_SIGMOID, .units = 5 },
+				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 9 } },
+			.loss = network_mse, .penalty = { 0.01, 0, 4, 0.05 } },
+		{ "sparse layer behind another", { 1, 1, 9 }, 3,
+			{ { NETWORK_DENSE, NETWORK_TANH, .units = 6 },
+				{ NETWORK_CASCADE, NETWORK_SIGMOID, .units = 5 },
+				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } },
+			.loss = network_mse, .penalty = { 0, 1, 4, 0.05 } },
+		{ "convolution 4x2 of two rows, even kernel", { 1, 2, 11 }, 2,
+			{ { NETWORK_CONV, NETWORK_TANH, 3, 4, 2, 1 },
+				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } },
+			.loss = network_mse },
+		{ "two convolutions with stride, two channels", { 2, 3, 10 }, 3,
+			{ { NETWORK_CONV, NETWORK_TANH, 3, 5, 3, 3 },
+				{ NETWORK_CONV, NETWORK_SIGMOID, 4, 3, 2, 2 },
+				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } },
+			.loss = network_mse },
+		{ "kernel wider than the row", { 1, 1, 3 }, 2,
+			{ { NETWORK_CONV, NETWORK_TANH, 2, 9, 4, 2 },
+				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } },
+			.loss = network_mse },
+		{ "convolution, pool, convolution, pool, dense", { 1, 2, 13 }, 6,
+			{ { NETWORK_CONV, NETWORK_RELU, 3, 4, 2, 1 },
+				{ NETWORK_POOL, .width = 2, .height = 2 },
+				{ NETWORK_CONV, NETWORK_TANH, 2, 3, 1, 1 },
+				{ NETWORK_POOL, .width = 2, .height = 1 },
+				{ NETWORK_DENSE, NETWORK_RELU, .units = 8 },
+				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } },
+			.loss = network_mse },
+		{ "loss of sums and variances, (3-20)", { 1, 1, 7 }, 2,
+			{ { NETWORK_DENSE, NETWORK_TANH, .units = 5 },
+				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } },
+			.loss = delayloss_sums },
+		{ "loss over the best order", { 1, 1, 7 }, 2,
+			{ { NETWORK_DENSE, NETWORK_TANH, .units = 5 },
+				{ NETWORK_DENSE, NETWORK_LINEAR, .units = 4 } },
+			.loss = delayloss_unordered },
 	};
 
 	for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++)
 		check(&scenes[i]);
+	check_arrivals();
 	return tap_done();
 }

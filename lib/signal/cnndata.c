@@ -1,0 +1,181 @@
+/* cnndata.c - simulated sections to train and score the networks of cnn.h */
+#include "signal/cnndata.h"
+#include "num/philox.h"
+#include <math.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+/* Places in the stream of one section; network.h and delaydata.h draw elsewhere. */
+#define DRAWS ((uint64_t)4 << 40)
+#define NOISE ((uint64_t)5 << 40)
+
+enum { ARRIVALS = 16, OF_PULSES = 8 }; /* draws of the scene as a whole come first */
+
+struct cnndata_par cnndata_default(void)
+{
+	return (struct cnndata_par){
+		.sources = { 1, CNN_SOURCES },
+		.snr = { 12, 45 },
+		.spacing = 0.1,
+		.reach = { CNN_REACH_MIN, CNN_REACH_MAX },
+		.transit = 1.9635,
+		.gain = { 0.8, 1.25 },
+		.size = { 0.5, 1.5 },
+		.shape = PULSE_SINE,
+		.seed = 1,
+	};
+}
+
+static double draw(
+	const struct cnndata_par *par, uint32_t i, int k, double low, double high)
+{
+	return low + (high - low) * philox_uniform(par->seed, i, RNG_NETWORK, DRAWS + k);
+}
+
+/* Rising arrivals with the spacing kept: that much is taken from the span beforehand and
+ * put back between sorted uniform numbers, which leaves them uniform. */
+static void draw_arrivals(const struct cnndata_par *par, uint32_t i, int n, double *t)
+{
+	double space = par->spacing * CNNDATA_DURATION;
+	double span = fmax(0.5 * n * CNNDATA_DURATION - (n - 1) * space, 0);
+
+	for (int k = 0; k < n; k++) {
+		double u = draw(par, i, ARRIVALS + k * OF_PULSES, 0, span);
+		int at = k;
+
+		for (; at > 0 && t[at - 1] > u; at--)
+			t[at] = t[at - 1];
+		t[at] = u;
+	}
+	for (int k = 0; k < n; k++)
+		t[k] += k * space;
+}
+
+static void add_pulse(
+	enum pulse_shape shape, double t, double duration, double a, double *y)
+{
+	double p[CNNDATA_SAMPLES];
+	size_t n;
+	long first = pulse_support(shape, t, duration, &n), skip = first < 0 ? -first : 0;
+
+	if (first + (long)n > CNNDATA_SAMPLES)
+		n = CNNDATA_SAMPLES - first;
+	pulse_sample(shape, t, duration, first + skip, n - skip, p, NULL, NULL);
+	for (size_t i = 0; i + skip < n; i++)
+		y[first + skip + i] += a * p[i];
+}
+
+void cnndata_section(
+	const struct cnndata_par *par, uint32_t i, struct cnndata_section *out)
+{
+	int least = par->sources[0], n = draw(par, i, 0, least, par->sources[1] + 1);
+	double reach = CNNDATA_DURATION *
+		       exp(draw(par, i, 1, log(par->reach[0]), log(par->reach[1])));
+	double gain = draw(par, i, 2, par->gain[0], par->gain[1]);
+	double margin = 0.1 * CNNDATA_DURATION + reach, t[CNN_SOURCES], begin, end;
+	size_t first;
+
+	memset(out, 0, sizeof *out);
+	out->sources = n;
+	out->noise = pow(10, -draw(par, i, 3, par->snr[0], par->snr[1]) / 20);
+	draw_arrivals(par, i, n, t);
+	/* Where the samples fall between the arrivals is left to chance. */
+	begin = margin + CNNDATA_DURATION / 2 + draw(par, i, 4, 0, 1);
+	for (int k = 0; k < n; k++) {
+		int at = ARRIVALS + k * OF_PULSES;
+		struct cnn_pulse *p = &out->pulse[k];
+		double duration;
+
+		p->t = begin + t[k];
+		p->delta = draw(par, i, at + 1, -reach, reach);
+		p->a = pow(draw(par, i, at + 2, par->size[0], par->size[1]), 3);
+		duration = CNNDATA_DURATION + p->delta / par->transit;
+		add_pulse(par->shape, p->t, duration, p->a, out->y1);
+		add_pulse(par->shape, p->t + p->delta, duration, p->a * gain, out->y2);
+	}
+	end = out->pulse[n - 1].t + CNNDATA_DURATION / 2 + margin;
+	first = draw(par, i, 5, 0, 0.1 * CNNDATA_DURATION);
+	for (size_t k = 0; k < CNNDATA_SAMPLES; k++) {
+		double normal[2];
+
+		philox_normal2(par->seed, i, RNG_NETWORK, NOISE + k, normal);
+		out->y1[k] += out->noise * normal[0];
+		out->y2[k] += out->noise * normal[1];
+	}
+	for (int k = 0; k < n; k++)
+		out->pulse[k].t -= (double)first;
+	out->section = (struct cnn_section){ out->y1 + first, out->y2 + first,
+		(size_t)fmin(end, CNNDATA_SAMPLES) - first, CNNDATA_DURATION, gain, 0,
+		reach };
+}
+
+void cnndata_target(
+	const struct cnndata_section *s, network_real *x, network_real *target)
+{
+	network_real *value = target + 1, *variance = target + 1 + 3 * CNN_SOURCES;
+	struct cnn_frame f;
+
+	memset(target, 0, CNNDATA_TARGETS * sizeof *target);
+	target[0] = s->sources;
+	if (!cnn_lay(&s->section, x, &f))
+		return;
+	for (int k = 0; k < s->sources; k++, value += 3, variance += 3) {
+		const struct cnn_pulse *p = &s->pulse[k];
+		double noise = s->noise / p->a, samples = f.duration;
+		/* Variances of a sine pulse alone in two channels of equal noise. */
+		double t = noise * noise / (2 * PI * PI) / samples;
+		double delta = 2 * t * pow(f.duration / f.reach, 2);
+		double size = noise * noise / samples / 9;
+
+		value[0] = (p->t - f.centre) / f.duration;
+		value[1] = (p->delta - f.middle) / f.reach;
+		value[2] = cbrt(p->a / f.scale);
+		/* With a floor under what a network of this size can tell. */
+		variance[0] = t + 5e-3 * 5e-3;
+		variance[1] = 1 / (1 / delta + 3) + 0.02 * 0.02;
+		variance[2] = value[2] * value[2] * (size + 0.01 * 0.01);
+	}
+}
+
+/* Cross-entropy of the count: outputs are logarithms of odds. */
+static double count_loss(
+	int count, const network_real *output, double scale, network_real *gradient)
+{
+	double top = output[0], sum = 0;
+
+	for (int k = 1; k < CNN_SOURCES; k++)
+		top = fmax(top, output[k]);
+	for (int k = 0; k < CNN_SOURCES; k++)
+		sum += exp(output[k] - top);
+	for (int k = 0; k < CNN_SOURCES; k++)
+		gradient[k] = scale * (exp(output[k] - top) / sum - (k == count - 1));
+	return log(sum) - (output[count - 1] - top);
+}
+
+double cnndata_loss(const void *context, int n, int width, const network_real *output,
+	const network_real *target, network_real *gradient)
+{
+	double sum = 0;
+
+	(void)context;
+	memset(gradient, 0, (size_t)n * width * sizeof *gradient);
+	for (int s = 0; s < n; s++) {
+		int count = target[0], head = cnn_head(count);
+		double each = 1.0 / (3 * count);
+
+		sum += CNNDATA_COUNT *
+		       count_loss(count, output, CNNDATA_COUNT / n, gradient);
+		for (int k = 0; k < 3 * count; k++) {
+			double error = output[head + k] - target[1 + k];
+			double variance = target[1 + 3 * CNN_SOURCES + k];
+
+			sum += each * error * error / variance;
+			gradient[head + k] = 2 * each * error / variance / n;
+		}
+		output += width;
+		gradient += width;
+		target += CNNDATA_TARGETS;
+	}
+	return sum / n;
+}
