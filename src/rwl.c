@@ -1,14 +1,13 @@
 /* rwl - remaining wear life from fragments' wear and the state observed */
-#include "life/grey.h"
 #include "life/leakage.h"
 #include "life/metrics.h"
+#include "life/observed.h"
 #include "life/partition.h"
+#include "life/paths.h"
 #include "life/rate.h"
 #include "life/remaining.h"
-#include "num/rng.h"
 #include "shell/msg.h"
 #include "shell/opt.h"
-#include "shell/progress.h"
 #include "shell/stats.h"
 #include "shell/tables.h"
 #include <math.h>
@@ -18,7 +17,6 @@
 enum quantity { AUTO, LEAKAGE, GAP, VOLUME, DEBRIS };
 static const char *const quantities[] = { "auto", "leakage", "gap", "volume", "debris",
 	NULL };
-enum rule { MEAN, LAST, FILTER };
 static const char *const rules[] = { "mean", "last", "filter", NULL };
 static const char *const size_sets[] = { "all", "step", NULL };
 static const char *const time_units[] = { "s", "min", "h", "d", NULL };
@@ -37,7 +35,7 @@ static double initial_gap = NAN, transition = 0.1, step_time = NAN;
 static double eol = NAN, cone = 0.2, horizon = NAN;
 static double archard = NAN, hardness = 1.065e9, speed = 20.94;
 static long seed = 1, first_path, count = 1000, first_step = 1, parts;
-static int quantity = AUTO, rule = MEAN, size_set, time_unit, samples, grey;
+static int quantity = AUTO, rule = RATE_MEAN, size_set, time_unit, samples, grey, new;
 
 static const struct opt opts[] = {
 	{ 'w', "wear", OPT_TEXTS, UNIT_NONE, &wear_files, 0, 0, "FILE[:PRESSURE[:AREA]]",
@@ -46,6 +44,8 @@ static const struct opt opts[] = {
 	{ 'x', "state", OPT_TEXT, UNIT_NONE, &state_file, 0, 0, "FILE",
 		"observed leakage, gap, volume or debris; the operand says the same", 0,
 		1 },
+	{ 'N', "new", OPT_FLAG, UNIT_NONE, &new, 0, 0, 0,
+		"read no state: the life of a new pair", 0, 0 },
 	{ 'y', "quantity", OPT_WORD, UNIT_NONE, &quantity, 0, 0,
 		"auto|leakage|gap|volume|debris", "what the state is", quantities, 0 },
 	{ 'u', "unit", OPT_TEXT, UNIT_NONE, &unit_text, 0, 0, "UNIT",
@@ -129,34 +129,20 @@ static const struct prog prog = { "rwl",
 	"tables: particles or volumes of fragments (--wear); state",
 	"table: one row per observation time", opts };
 
-/* What a path of the ensemble is worn by. */
-struct path {
-	struct partition_wear
-		wear;     /* of the component per step; mean drawn for this unit */
-	double step_time; /* NAN: from the state so far */
-	long large_step;  /* 0: large particles never become too many */
-};
-
 /* The state as it is read: everything is turned into a gap. */
 struct state {
 	struct table_in *table;
 	int time_column, value_column;
 	int quantity;
+	int filtered;         /* read from the column state */
 	double scale;         /* of the value to SI */
 	double debris;        /* volume of the particles so far */
 	long rows, n;         /* rows, and those with a value */
 	double t, gap, value; /* latest row; gap and value NAN where missing */
 };
 
-/* What predictions start from: the first, the last but one and the last gap known. */
-struct observed {
-	double first_t, first, before_t, before, t, gap;
-	long n;
-	double *value, *time; /* all of them, for --grey */
-	size_t room;
-};
-
-static double gap_new = NAN; /* NAN: the first one observed */
+static double gap_new = NAN;  /* NAN: the first one observed */
+static double dry_rate = NAN; /* of --archard, m3/s */
 
 static double part_of(
 	const char *option, const char **rest, enum unit unit, const char *what)
@@ -269,7 +255,8 @@ static void open_state(struct state *s, const char *file)
 			s->quantity = q;
 	if (s->quantity == AUTO)
 		s->quantity = LEAKAGE;
-	if (s->value_column < 0 || s->quantity == DEBRIS)
+	s->filtered = s->value_column >= 0 && s->quantity != DEBRIS;
+	if (!s->filtered)
 		s->value_column = table_find(t, columns[s->quantity]);
 	if (s->value_column < 0)
 		s->value_column = table_find(t, "y");
@@ -293,7 +280,7 @@ static double to_gap(const struct state *s, double value)
 		return value;
 	case VOLUME:
 	case DEBRIS:
-		return gap_new + value / area;
+		return (isnan(gap_new) ? 0 : gap_new) + value / area;
 	default:
 		return leakage_gap(&pump, value);
 	}
@@ -317,6 +304,8 @@ static int next_state(struct state *s)
 	if (s->rows++ > 0 && (s->quantity == DEBRIS ? time < s->t : time <= s->t))
 		die(EXIT_RUN, "%s: line %ld: time %g s does not grow", table_name(t),
 			table_line(t), time);
+	if (value < 0 && s->filtered)
+		value = 0; /* a filter's idea of nothing worn */
 	if (value < 0 || isinf(value))
 		die(EXIT_RUN, "%s: line %ld: %g is not a %s", table_name(t),
 			table_line(t), value, quantities[s->quantity]);
@@ -355,52 +344,48 @@ static double slope_of(const char *file)
 	return slope;
 }
 
-/* One path after the other: replicate of the fragments, this unit, step time. */
-static struct path *draw_paths(struct partition *p)
+static struct paths *draw_paths(struct partition *p)
 {
-	struct path *paths = xcalloc((size_t)count, sizeof *paths);
 	double slope[OPT_TEXTS_MAX];
-	gsl_rng *rng = rng_new((uint64_t)seed, 0, RNG_BOOTSTRAP);
-	struct partition_wear all;
+	struct paths_par par = { .seed = (uint64_t)seed,
+		.first = (uint32_t)first_path,
+		.count = count,
+		.rule = rule,
+		.area = area,
+		.parts = (double)parts,
+		.critical = isnan(critical_size) ? NAN : critical_probability,
+		.cumulative = !size_set,
+		.step_time = step_time,
+		.slope = slope,
+		.nslopes = calibrations.n };
+	struct paths *e;
 
 	for (int i = 0; i < calibrations.n; i++)
 		slope[i] = slope_of(calibrations.v[i]);
-	partition_estimate(p, (double)parts, &all);
-	for (long i = 0; i < count; i++) {
-		struct path *path = &paths[i];
-
-		rng_reset(rng, (uint64_t)seed, (uint32_t)(first_path + i), RNG_BOOTSTRAP);
-		partition_replicate(p, (double)parts, rng, &path->wear);
-		if (!isnan(critical_size))
-			path->large_step =
-				partition_large(p, critical_probability, !size_set);
-		if (rule != LAST)
-			path->wear.mean = remaining_draw_rate(
-				path->wear.mean, path->wear.life_variance, rng);
-		path->step_time = step_time;
-		if (calibrations.n)
-			path->step_time = all.mean / area /
-					  slope[gsl_rng_uniform_int(
-						  rng, (unsigned long)calibrations.n)];
-		progress("replicates", (double)(i + 1), (double)count);
+	e = paths_new(&par, p);
+	if (!e)
+		die(EXIT_RUN, "out of memory");
+	if (p) {
+		stats_add("replicates", (double)count);
+		stats_add(
+			isnan(critical_size) ? "sizes_skipped" : "sizes", (double)count);
 	}
-	stats_add("replicates", (double)count);
-	stats_add(isnan(critical_size) ? "sizes_skipped" : "sizes", (double)count);
-	gsl_rng_free(rng);
-	return paths;
+	return e;
 }
 
-static void write_rates(const struct path *paths, const char *cmd)
+static void write_rates(const struct paths *e, const char *cmd)
 {
 	struct table_out *out = table_create(
 		rates_file, cmd, "1 m3 m3 s 1", "path mean step_sd step_time large_step");
 
 	for (long i = 0; i < count; i++) {
+		const struct path *path = paths_get(e, i);
+
 		table_put(out, (double)(first_path + i));
-		table_put(out, paths[i].wear.mean);
-		table_put(out, sqrt(paths[i].wear.step_variance));
-		table_put(out, paths[i].step_time);
-		table_put(out, (double)paths[i].large_step);
+		table_put(out, path->wear.mean);
+		table_put(out, sqrt(path->wear.step_variance));
+		table_put(out, path->step_time);
+		table_put(out, (double)path->large_step);
 		table_end_row(out);
 	}
 	table_done(out);
@@ -420,127 +405,14 @@ static double gap_limit(void)
 	return limit;
 }
 
-static void take(struct observed *o, const struct state *s)
+/* The same in what is observed. */
+static double value_limit(const struct state *s)
 {
-	if (o->n++ == 0) {
-		if (isnan(gap_new))
-			gap_new = s->gap;
-		/* volume worn starts from none at time 0 */
-		o->first_t = s->quantity >= VOLUME ? 0 : s->t;
-		o->first = s->quantity >= VOLUME ? gap_new : s->gap;
-		o->t = o->first_t;
-		o->gap = o->first;
-	}
-	if (s->t > o->t) {
-		o->before_t = o->t;
-		o->before = o->gap;
-	}
-	o->t = s->t;
-	o->gap = s->gap;
-	if (!grey)
-		return;
-	if ((size_t)o->n > o->room) {
-		o->room = 2 * o->room + 64;
-		o->value = xrealloc(o->value, o->room, sizeof *o->value);
-		o->time = xrealloc(o->time, o->room, sizeof *o->time);
-	}
-	o->value[o->n - 1] = s->value;
-	o->time[o->n - 1] = s->t;
-}
+	double limit = gap_limit();
 
-/* Rate of the gap told by the observations alone; NAN while there are too few. */
-static double observed_rate(const struct observed *o)
-{
-	if (!(o->t > o->first_t))
-		return NAN;
-	if (rule == LAST)
-		return (o->gap - o->before) / (o->t - o->before_t);
-	return (o->gap - o->first) / (o->t - o->first_t);
-}
-
-/* Life left at the latest observation on every path; 0 where nothing can be said. */
-static long predict(const struct observed *o, const struct path *paths,
-	const struct partition_wear *all, const struct rate *filter, gsl_rng *rng,
-	double *life)
-{
-	double limit = gap_limit(), left = area * (limit - o->gap),
-	       rate = observed_rate(o);
-
-	if (left <= 0) {
-		life[0] = 0;
-		return 1;
-	}
-	if (rule == FILTER ? !rate_ready(filter) : !paths && isnan(rate))
-		return 0;
-	if (rule != FILTER && !paths) {
-		life[0] = remaining_constant(limit - o->gap, rate);
-		return 1;
-	}
-	for (long i = 0; i < count; i++) {
-		uint32_t k = (uint32_t)(first_path + i);
-		double z[2], tau = paths ? paths[i].step_time : NAN;
-
-		if (paths && isnan(tau)) {
-			/* the mean of all fragments wears what was seen worn */
-			if (isnan(rate) && rule != FILTER)
-				return 0;
-			tau = rate > 0 ? all->mean / (area * rate) : INFINITY;
-		}
-		if (rule == FILTER) {
-			philox_normal2((uint64_t)seed, k, RNG_PREDICT, 0, z);
-			life[i] = rate_passage(filter, limit,
-				philox_uniform((uint64_t)seed, k, RNG_LIFE, 0), z[0]);
-		} else if (rule == LAST) {
-			rng_reset(rng, (uint64_t)seed, k, RNG_LIFE);
-			life[i] = tau * remaining_gamma(left, paths[i].wear.mean,
-						paths[i].wear.step_variance, rng);
-		} else {
-			life[i] = tau * remaining_constant(left, paths[i].wear.mean);
-		}
-		if (paths && !isnan(critical_size))
-			life[i] = fmin(
-				life[i], remaining_large(paths[i].large_step, tau, o->t));
-	}
-	return count;
-}
-
-/* Life left by the grey model of all values observed; NAN with fewer than four. */
-static double grey_life(const struct state *s, const struct observed *o)
-{
-	struct grey g = { 0 };
-	double spacing = (o->t - o->first_t) / (double)(o->n - 1), limit = gap_limit();
-	double threshold = limit, now, rate;
-
-	if (o->n < GREY_ORDER_MIN)
-		return NAN;
 	if (s->quantity == LEAKAGE)
-		threshold = leakage_flow(&pump, limit);
-	else if (s->quantity != GAP)
-		threshold = (limit - gap_new) * area;
-	for (long i = o->n; i-- > 0;)
-		grey_add(&g, o->value[i],
-			i + 1 < o->n ? (o->time[i + 1] - o->time[i]) / spacing : 1);
-	stats_add("grey_points", (double)o->n);
-	now = grey_forecast(&g, 0, 1);
-	rate = -grey_rate(&g);
-	if (now >= threshold)
-		return 0;
-	return now > 0 && rate > 0 ? log(threshold / now) / rate * spacing : INFINITY;
-}
-
-static struct rate *new_filter(const struct path *paths)
-{
-	double mean = 0, square = 0;
-
-	if (!paths || isnan(paths[0].step_time))
-		return rate_new(0, INFINITY);
-	for (long i = 0; i < count; i++) {
-		double r = paths[i].wear.mean / (area * paths[i].step_time), d = r - mean;
-
-		mean += d / (double)(i + 1);
-		square += d * (r - mean);
-	}
-	return rate_new(mean, sqrt(square / (double)count));
+		return leakage_flow(&pump, limit);
+	return s->quantity == GAP ? limit : (limit - gap_new) * area;
 }
 
 static char *columns(void)
@@ -587,16 +459,18 @@ static void put_scores(
 
 /* One observation time: life holds n samples of the life left, 0 for no prediction. */
 static void write_row(struct table_out *out, struct metrics *m, double t, double *life,
-	long n, double dry, double by_grey)
+	long n, double limit, double dry, double by_grey)
 {
 	struct remaining_summary sum = { NAN, NAN };
-	double limit = isnan(horizon) ? INFINITY : horizon;
 
 	if (samples) {
-		for (long i = 0; i < n; i++) {
+		/* one sample may stand for all */
+		for (long i = 0; i < (n == 1 && wear_files.n ? count : n); i++) {
+			double left = life[n == 1 ? 0 : i];
+
 			table_put(out, t);
 			table_put(out, (double)(first_path + i));
-			table_put(out, life[i] <= limit ? life[i] : INFINITY);
+			table_put(out, left <= limit ? left : INFINITY);
 			table_end_row(out);
 		}
 		table_flush(out);
@@ -639,68 +513,70 @@ static double later_life(double life, double gone)
 	return life < gone ? 0 : life - gone;
 }
 
-/* Every observation time, with the life that is left at the latest known state less
- * the time gone since. */
-static void follow(struct state *s, struct table_out *out, struct metrics *m,
-	const struct path *paths, const struct partition_wear *all, double dry_rate)
+/* The row at t: what was said at the latest known state, n samples in life, less the
+ * time gone since. */
+static void put_row(struct table_out *out, struct metrics *m, const struct observed *o,
+	double t, double *life, long n, double by_grey)
 {
-	struct observed o = { 0 };
-	struct rate *filter = rule == FILTER ? new_filter(paths) : NULL;
-	gsl_rng *rng = rng_new((uint64_t)seed, 0, RNG_LIFE);
-	double *life = xcalloc((size_t)count, sizeof *life);
+	double gone = t - observed_time(o), limit = horizon, dry = NAN;
+	double left = area * (gap_limit() - observed_gap(o));
+
+	for (long i = 0; i < n; i++)
+		life[i] = later_life(life[i], gone);
+	if (isnan(limit))
+		limit = rule == RATE_FILTER ? 10 * (t - observed_first(o)) : INFINITY;
+	if (!isnan(dry_rate))
+		dry = later_life(remaining_constant(left, dry_rate), gone);
+	write_row(out, m, t, life, n, limit, dry, later_life(by_grey, gone));
+}
+
+static void follow(
+	struct state *s, struct table_out *out, struct metrics *m, struct paths *e)
+{
+	struct observed *o = observed_new(rule, grey);
+	struct rate *filter = rule == RATE_FILTER ? paths_filter(e) : NULL;
+	double *life = xcalloc((size_t)count, sizeof *life), by_grey = NAN;
 	double *later = xcalloc((size_t)count, sizeof *later);
 	long n = 0;
-	double by_grey = NAN;
 
+	/* volume worn is counted from the new pair at time 0 */
+	if (s->quantity >= VOLUME)
+		observed_begin(o, 0, gap_new);
 	while (next_state(s)) {
-		if (filter)
+		if (filter && (s->rows == 1 || s->t > observed_time(o)))
 			rate_add(filter, s->t, s->gap);
 		if (!isnan(s->gap)) {
-			take(&o, s);
-			n = predict(&o, paths, all, filter, rng, life);
-			if (grey)
-				by_grey = grey_life(s, &o);
+			if (isnan(gap_new))
+				gap_new = s->gap;
+			if (!observed_add(o, s->t, s->value, s->gap))
+				die(EXIT_RUN, "out of memory");
+			n = paths_predict(e, o, filter, gap_limit(), life);
+			if (grey) {
+				by_grey = observed_grey(o, value_limit(s));
+				stats_add("grey_points", (double)observed_count(o));
+			}
 			stats_add("paths", n > 1 ? (double)n : 0);
 			stats_add("paths_skipped", n > 1 ? 0 : (double)count);
 		}
-		for (long i = 0; i < n; i++)
-			later[i] = later_life(life[i], s->t - o.t);
-		if (rule == FILTER && !opt_given('H'))
-			horizon = 10 * (s->t - o.first_t);
-		write_row(out, m, s->t, later, n,
-			remaining_constant(
-				area * (gap_limit() - o.gap) - dry_rate * (s->t - o.t),
-				dry_rate),
-			later_life(by_grey, s->t - o.t));
+		memcpy(later, life, (size_t)n * sizeof *later);
+		put_row(out, m, o, s->t, later, n, by_grey);
 		stats_add("rows", 1);
 	}
 	rate_free(filter);
-	gsl_rng_free(rng);
-	free(o.value);
-	free(o.time);
+	observed_free(o);
 	free(life);
 	free(later);
 }
 
-/* A new unit: nothing observed yet. */
-static void foresee(struct table_out *out, struct metrics *m, const struct path *paths,
-	const struct partition_wear *all, double dry_rate)
+/* A new pair: nothing is observed yet. */
+static void foresee(struct table_out *out, struct metrics *m, struct paths *e)
 {
-	struct observed o = { .n = 1, .gap = gap_new };
-	gsl_rng *rng = rng_new((uint64_t)seed, 0, RNG_LIFE);
+	struct observed *o = observed_new(rule, 0);
 	double *life = xcalloc((size_t)count, sizeof *life);
-	long n;
 
-	if (rule == FILTER || isnan(paths[0].step_time))
-		die(EXIT_USAGE,
-			rule == FILTER
-				? "--wear-rate filter needs a state"
-				: "without a state, --step-time or --calibrate must be given");
-	n = predict(&o, paths, all, NULL, rng, life);
-
-	write_row(out, m, 0, life, n,
-		remaining_constant(area * (gap_limit() - gap_new), dry_rate), NAN);
-	gsl_rng_free(rng);
+	observed_begin(o, 0, gap_new);
+	put_row(out, m, o, 0, life, paths_predict(e, o, NULL, gap_limit(), life), NAN);
+	observed_free(o);
 	free(life);
 }
 
@@ -711,10 +587,8 @@ static char *record_cmd(const struct state *s, int operand)
 	const char *upstream = s->table ? table_key(s->table, "cmd") : NULL;
 	char *extra = NULL, *cmd;
 
-	if (upstream)
-		extra = xstrdup("--state -");
-	else if (s->table && !operand)
-		extra = xprintf("--state '%s'", state_file ? state_file : "-");
+	if (!upstream && state_file && !operand)
+		extra = xprintf("--state '%s'", state_file);
 	cmd = opt_cmd(upstream, extra);
 	free(extra);
 	return cmd;
@@ -741,6 +615,10 @@ static void settle(void)
 		die(EXIT_USAGE, "--critical-size needs --wear");
 	if ((calibrations.n || rates_file || !isnan(archard)) && wear_files.n == 0)
 		die(EXIT_USAGE, "--calibrate, --rates and --archard need --wear");
+	if (new && (wear_files.n == 0 || rule == RATE_FILTER))
+		die(EXIT_USAGE, "--new needs --wear and the rates of its fragments");
+	if (new && !calibrations.n && isnan(step_time))
+		die(EXIT_USAGE, "--new needs --step-time or --calibrate");
 	if (calibrations.n && !isnan(step_time))
 		die(EXIT_USAGE, "--calibrate and --step-time exclude each other");
 	if (isnan(threshold_gap) && isnan(threshold_leakage) && isnan(threshold_volume) &&
@@ -748,61 +626,66 @@ static void settle(void)
 		threshold_leakage = 2.8e-3 / 60;
 }
 
+static struct metrics *new_metrics(void)
+{
+	struct metrics_par par = {
+		.eol = eol, .alpha = cone, .beta = 0.5, .limit = horizon
+	};
+	struct metrics *m;
+
+	if (isnan(eol))
+		return NULL;
+	if (isnan(horizon))
+		par.limit = 10 * eol;
+	m = metrics_new(&par);
+	if (!m)
+		die(EXIT_RUN, "out of memory");
+	return m;
+}
+
 int main(int argc, char **argv)
 {
 	int i;
-	struct partition *p = NULL;
-	struct path *paths = NULL;
-	struct partition_wear all = { 0 };
-	struct metrics *m = NULL;
+	struct partition *p;
+	struct paths *e;
+	struct metrics *m;
 	struct table_out *out;
 	struct state s = { 0 };
-	double dry_rate = NAN;
 	char *cmd, *names;
 
 	pump = leakage_thesis();
 	memcpy(radii.v, pump.radius, sizeof pump.radius);
 	i = opt_parse(&prog, argc, argv);
-	settle();
 	if (argv[i])
 		state_file = argv[i];
+	settle();
+	p = wear_files.n ? read_partition() : NULL;
 	gap_new = initial_gap;
-	if (wear_files.n)
-		p = read_partition();
-	if (state_file || !p)
+	if (!new)
 		open_state(&s, state_file);
-	if (isnan(gap_new) && (!s.table || s.quantity >= VOLUME))
+	if (isnan(gap_new) && (new || s.quantity >= VOLUME))
 		gap_new = leakage_gap(&pump, 1.5e-3 / 60);
-	if (p) {
-		paths = draw_paths(p);
-		partition_estimate(p, (double)parts, &all);
+	e = draw_paths(p);
+	if (!isnan(archard))
 		dry_rate = remaining_archard(archard, partition_load(p), speed, hardness);
-		if (!isnan(archard) && isnan(dry_rate))
-			die(EXIT_USAGE, "--archard needs the pressures of --wear");
-	}
+	if (!isnan(archard) && isnan(dry_rate))
+		die(EXIT_USAGE, "--archard needs the pressures of --wear");
 	cmd = record_cmd(&s, argv[i] != NULL);
 	if (rates_file)
-		write_rates(paths, cmd);
-	if (!isnan(eol)) {
-		struct metrics_par par = { .eol = eol,
-			.alpha = cone,
-			.beta = 0.5,
-			.limit = isnan(horizon) ? 10 * eol : horizon };
-
-		m = metrics_new(&par);
-	}
+		write_rates(e, cmd);
+	m = new_metrics();
 	names = columns();
 	out = table_create(NULL, cmd, samples ? "s 1 s" : NULL, names);
-	if (s.table)
-		follow(&s, out, m, paths, &all, dry_rate);
+	if (new)
+		foresee(out, m, e);
 	else
-		foresee(out, m, paths, &all, dry_rate);
+		follow(&s, out, m, e);
 	if (m)
 		write_scores(out, m);
 	table_done(out);
 	metrics_free(m);
 	partition_free(p);
-	free(paths);
+	paths_free(e);
 	free(names);
 	free(cmd);
 	return shell_done(0);

@@ -33,7 +33,7 @@ near "1 um left at 7 um/h" "$(cell out 5 mean)" "$(calc 3600/7)" 1e-6
 # The scale of the steps from the state: the mean wears what was observed.
 ok "steps scaled by the state" rwl -w even.tsv -g 15um gap.tsv
 near "2 um left at 1 um/h again" "$(cell out 4 mean)" 7200 1e-6
-ok "steps scaled by an earlier unit" rwl -w even.tsv -g 15um --calibrate gap.tsv
+ok "steps scaled by an earlier unit" rwl --new -w even.tsv -g 15um --calibrate gap.tsv
 # least-squares slope of 10 11 13 20 um at 0 1 3 4 h: 2.2 um/h, new at 1.5 L/min
 near "its whole life" "$(cell out 1 mean)" "$(calc "(15 - 16.7899943 * (1.5 / 2.8)^(1/3)) / 2.2 * 3600")" 0.1
 
@@ -80,33 +80,33 @@ near "the gap comes first" "$(cell out 1 q50 | awk '{ print ($1 < 7200) }')" 1 0
 
 # Monte-Carlo: the spread of 16 fragments' mean, by the bootstrap.
 awk 'BEGIN { print "volume"; for (i = 0; i < 16; i++) print (1 + i / 10) "e-15" }' >spread.tsv
-ok "spread of an ensemble" rwl -w spread.tsv -T 1h -g 15um -i 10um -c 4000 -R mean -W rates.tsv
+ok "spread of an ensemble" rwl --new -w spread.tsv -T 1h -g 15um -i 10um -c 4000 -R mean -W rates.tsv
 cp out spread.out
 near "standard deviation of the mean" "$(column mean rates.tsv |
 	awk '{ n++; d = $1 - m; m += d / n; s += d * ($1 - m) } END { print sqrt(s / n) / m }')" \
 	"$(calc "sqrt((256 - 1) / 12) / 10 / 4 / 1.75")" 0.003
-ok "one part wears like one fragment" rwl -w spread.tsv -T 1h -g 15um -i 10um -c 4000 --parts 1
+ok "one part wears like one fragment" rwl --new -w spread.tsv -T 1h -g 15um -i 10um -c 4000 --parts 1
 near "which is wider" "$(cell out 1 q95 | awk -v w="$(cell spread.out 1 q95)" '{ print ($1 > 1.3 * w) }')" 1 0
-ok "new rate in every step" rwl -w spread.tsv -T 1h -g 15um -i 10um -c 4000 --parts 1 -R last
+ok "new rate in every step" rwl --new -w spread.tsv -T 1h -g 15um -i 10um -c 4000 --parts 1 -R last
 near "has the same mean" "$(cell out 1 mean)" "$(cell spread.out 1 mean)" 3000
 
 # Any split of an ensemble is the same bytes.
-rwl -w spread.tsv -T 1h -g 15um -O -c 20 --parts 1 -R last | grep -v '^#' >whole
-rwl -w spread.tsv -T 1h -g 15um -O -c 12 --parts 1 -R last | grep -v '^#' >cut
-rwl -w spread.tsv -T 1h -g 15um -O -f 12 -c 8 --parts 1 -R last | rows /dev/stdin >>cut
+rwl --new -w spread.tsv -T 1h -g 15um -O -c 20 --parts 1 -R last | grep -v '^#' >whole
+rwl --new -w spread.tsv -T 1h -g 15um -O -c 12 --parts 1 -R last | grep -v '^#' >cut
+rwl --new -w spread.tsv -T 1h -g 15um -O -f 12 -c 8 --parts 1 -R last | rows /dev/stdin >>cut
 same "paths 0-19, and 0-11 with 12-19" whole cut
 
 # Classes: the zone of linear pressure is in by default, between the extremes.
 sed 's/e-15/e-18/' even.tsv >low.tsv
-ok "two classes" rwl -w even.tsv:21MPa -w low.tsv:0.15MPa -T 1h -W rates.tsv
+ok "two classes" rwl --new -w even.tsv:21MPa -w low.tsv:0.15MPa -T 1h -W rates.tsv
 zone=$(awk 'BEGIN { p = log(1e3) / log(140) + 1; r = log(140)
 	m = 1e-18 * 0.15 * (exp(p * r) - 1) / p / 20.85
 	printf "%.15g", 2346.3e-6 / 1e-8 * (0.45 * 1e-15 + 0.45 * 1e-18 + 0.1 * m) }')
 near "wear of the valve plate" "$(cell rates.tsv 1 mean)" "$zone" 1e-22
-ok "areas of their own" rwl -w even.tsv:21MPa:1173.15mm2 -w low.tsv:0.15MPa:1173.15mm2 -T 1h -W rates.tsv
+ok "areas of their own" rwl --new -w even.tsv:21MPa:1173.15mm2 -w low.tsv:0.15MPa:1173.15mm2 -T 1h -W rates.tsv
 near "the thesis' halves" "$(cell rates.tsv 1 mean)" \
 	"$(calc "117315 * 1.001e-15")" 1e-22
-ok "dry sliding" rwl -w even.tsv:21MPa -w low.tsv:0.15MPa -T 1h --archard 1e-9 -g 15um -i 10um
+ok "dry sliding" rwl --new -w even.tsv:21MPa -w low.tsv:0.15MPa -T 1h --archard 1e-9 -g 15um -i 10um
 # V = 5 um 2346.3 mm2; F = 0.45 A 21 MPa + 0.45 A 0.15 MPa + 0.1 A 10.575 MPa
 near "Archard's law" "$(cell out 1 archard)" \
 	"$(calc "5e-6 / (1e-9 * 20.94 / 1.065e9 * (0.45 * 21.15e6 + 0.1 * 10.575e6))")" 1e-6
@@ -154,18 +154,18 @@ fails "times that stand still" 1 'twice.tsv: line 3: time 0 s does not grow' rwl
 fails "a negative gap" 1 'minus.tsv: line 2: -1e-05 is not a gap' rwl minus.tsv
 fails "text for a number" 1 'text.tsv' rwl text.tsv
 fails "no column of the state" 1 'column.tsv.*leakage' rwl column.tsv
-fails "a step twice" 1 'again.tsv: line 3: realisation 0 has step 1 twice' rwl -w again.tsv -T 1h
-fails "no fragment" 1 'none.tsv: no fragment' rwl -w none.tsv -T 1h
-fails "negative wear" 1 'negative.tsv: line 2: volume' rwl -w negative.tsv -T 1h
-fails "half a step" 1 'half.tsv: line 2: step' rwl -w half.tsv -T 1h
-fails "no step time" 2 'step-time' rwl -w even.tsv
-fails "classes without pressures" 2 'pressure of its own' rwl -w even.tsv -w low.tsv -T 1h
-fails "a pressure that is none" 2 '--wear even.tsv:21um: the pressure has the wrong unit' rwl -w even.tsv:21um -T 1h
-fails "too much area" 2 'more than --area' rwl -w even.tsv:21MPa:9e3mm2 -T 1h
-fails "size without diameters" 1 'even.tsv.*diameter' rwl -w even.tsv -T 1h -d 5um
+fails "a step twice" 1 'again.tsv: line 3: realisation 0 has step 1 twice' rwl --new -w again.tsv -T 1h
+fails "no fragment" 1 'none.tsv: no fragment' rwl --new -w none.tsv -T 1h
+fails "negative wear" 1 'negative.tsv: line 2: volume' rwl --new -w negative.tsv -T 1h
+fails "half a step" 1 'half.tsv: line 2: step' rwl --new -w half.tsv -T 1h
+fails "no step time" 2 '--new needs --step-time' rwl --new -w even.tsv
+fails "classes without pressures" 2 'pressure of its own' rwl --new -w even.tsv -w low.tsv -T 1h
+fails "a pressure that is none" 2 '--wear even.tsv:21um: the pressure has the wrong unit' rwl --new -w even.tsv:21um -T 1h
+fails "too much area" 2 'more than --area' rwl --new -w even.tsv:21MPa:9e3mm2 -T 1h
+fails "size without diameters" 1 'even.tsv.*diameter' rwl --new -w even.tsv -T 1h -d 5um
 fails "a unit that does not suit" 2 '--unit foo' rwl -u foo gap.tsv
 fails "levels that fall" 2 '--levels must grow' rwl -q 0.9,0.1 gap.tsv
 fails "outlet below inlet" 2 'outlet pressure' rwl -D 21MPa:1MPa gap.tsv
 fails "a unit that does not wear" 1 'minus2.tsv.*does not wear' sh -c \
-	'printf "t\tgap\n0\t2e-5\n1\t1e-5\n" >minus2.tsv; rwl -w even.tsv -C minus2.tsv'
+	'printf "t\tgap\n0\t2e-5\n1\t1e-5\n" >minus2.tsv; rwl --new -w even.tsv -C minus2.tsv'
 done_testing

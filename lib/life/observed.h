@@ -1,0 +1,46 @@
+/* observed.h - the gap of one unit as it was seen so far, and what that alone foretells
+ *
+ * Any units of time, gap and value, the same ones throughout.
+ *
+ *	struct observed *o = observed_new(RATE_MEAN, 1);
+ *	observed_add(o, t, leakage, gap);
+ *	rate = observed_rate(o);
+ *	observed_free(o);
+ */
+#ifndef LIFE_OBSERVED_H
+#define LIFE_OBSERVED_H
+
+/* How the wear rate is found (Li's thesis, 4.2). */
+enum rate_rule {
+	RATE_MEAN,  /* all that was worn over the time it took (4-29) */
+	RATE_LAST,  /* the last wear over the last interval (4-28) */
+	RATE_FILTER /* followed by filters (rate.h) */
+};
+
+struct observed;
+
+/* keep: store all values, for observed_grey().  NULL when out of memory. */
+struct observed *observed_new(enum rate_rule rule, int keep);
+void observed_free(struct observed *o);
+
+/* Where the rates start from, if that is known before the first observation. */
+void observed_begin(struct observed *o, double t, double gap);
+/* value: as read; gap: what it tells.  Times must not fall; what comes at the same time
+ * replaces what came before.  Returns 0 when out of memory. */
+int observed_add(struct observed *o, double t, double value, double gap);
+
+long observed_count(const struct observed *o);
+double observed_first(const struct observed *o); /* time of the beginning */
+double observed_time(const struct observed *o);  /* of the latest observation */
+double observed_gap(const struct observed *o);   /* latest */
+
+/* Rate of the gap by the rule (RATE_FILTER: as RATE_MEAN); NAN while there is no time
+ * between observations. */
+double observed_rate(const struct observed *o);
+
+/* Time from the latest observation until the grey model GM(1,1) of all values reaches
+ * the threshold; INFINITY: never; NAN below four values.  Takes time in proportion to
+ * the number of values. */
+double observed_grey(const struct observed *o, double threshold);
+
+#endif

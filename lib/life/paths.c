@@ -1,0 +1,154 @@
+/* paths.c - see paths.h */
+#include "life/paths.h"
+#include "life/remaining.h"
+#include "num/rng.h"
+#include <math.h>
+#include <stdlib.h>
+
+struct paths {
+	struct paths_par par;
+	struct path *path; /* NULL without fragments */
+	double mean;       /* of the component per step, by all fragments */
+	gsl_rng *rng;
+};
+
+/* The draws of path i, in this order. */
+static void draw_path(struct paths *e, struct partition *partition, long i)
+{
+	const struct paths_par *par = &e->par;
+	struct path *path = &e->path[i];
+
+	rng_reset(e->rng, par->seed, par->first + (uint32_t)i, RNG_BOOTSTRAP);
+	partition_replicate(partition, par->parts, e->rng, &path->wear);
+	if (!isnan(par->critical))
+		path->large_step =
+			partition_large(partition, par->critical, par->cumulative);
+	/* By (4-28) the scatter is in every step instead. */
+	if (par->rule != RATE_LAST)
+		path->wear.mean = remaining_draw_rate(
+			path->wear.mean, path->wear.life_variance, e->rng);
+	path->step_time = par->step_time;
+	if (par->nslopes) {
+		unsigned long unit =
+			gsl_rng_uniform_int(e->rng, (unsigned long)par->nslopes);
+
+		path->step_time = e->mean / par->area / par->slope[unit];
+	}
+}
+
+struct paths *paths_new(const struct paths_par *par, struct partition *partition)
+{
+	struct paths *e = calloc(1, sizeof *e);
+	struct partition_wear all;
+
+	if (!e)
+		return NULL;
+	e->par = *par;
+	e->rng = rng_new(par->seed, 0, RNG_BOOTSTRAP);
+	if (partition)
+		e->path = calloc((size_t)par->count, sizeof *e->path);
+	if (!e->rng || (partition && !e->path)) {
+		paths_free(e);
+		return NULL;
+	}
+	if (!partition)
+		return e;
+	partition_estimate(partition, par->parts, &all);
+	e->mean = all.mean;
+	for (long i = 0; i < par->count; i++) {
+		draw_path(e, partition, i);
+		if (e->path[i].large_step < 0) {
+			paths_free(e);
+			return NULL;
+		}
+	}
+	return e;
+}
+
+void paths_free(struct paths *e)
+{
+	if (!e)
+		return;
+	if (e->rng)
+		gsl_rng_free(e->rng);
+	free(e->path);
+	free(e);
+}
+
+const struct path *paths_get(const struct paths *e, long i)
+{
+	return e->path ? &e->path[i] : NULL;
+}
+
+struct rate *paths_filter(const struct paths *e)
+{
+	double mean = 0, square = 0;
+
+	if (!e->path || isnan(e->path[0].step_time))
+		return rate_new(0, INFINITY);
+	for (long i = 0; i < e->par.count; i++) {
+		double r = e->path[i].wear.mean / (e->par.area * e->path[i].step_time);
+		double d = r - mean;
+
+		mean += d / (double)(i + 1);
+		square += d * (r - mean);
+	}
+	return rate_new(mean, sqrt(square / (double)e->par.count));
+}
+
+/* Time for path i to wear left, in steps of tau. */
+static double wear_out(struct paths *e, long i, double left, double tau)
+{
+	const struct partition_wear *w = &e->path[i].wear;
+
+	if (e->par.rule == RATE_MEAN)
+		return tau * remaining_constant(left, w->mean);
+	rng_reset(e->rng, e->par.seed, e->par.first + (uint32_t)i, RNG_LIFE);
+	return tau * remaining_gamma(left, w->mean, w->step_variance, e->rng);
+}
+
+static double follow_rate(
+	struct paths *e, long i, const struct rate *filter, double limit)
+{
+	uint32_t k = e->par.first + (uint32_t)i;
+	double z[2];
+
+	philox_normal2(e->par.seed, k, RNG_PREDICT, 0, z);
+	return rate_passage(
+		filter, limit, philox_uniform(e->par.seed, k, RNG_LIFE, 0), z[0]);
+}
+
+long paths_predict(struct paths *e, const struct observed *o, const struct rate *filter,
+	double limit, double *life)
+{
+	double left = limit - observed_gap(o), rate = observed_rate(o);
+	int filtered = e->par.rule == RATE_FILTER;
+	double scaled = INFINITY; /* step time by which the mean wears as observed */
+
+	if (left <= 0) {
+		life[0] = 0;
+		return 1;
+	}
+	if (filtered && !rate_ready(filter))
+		return 0;
+	if (!filtered && isnan(rate) && (!e->path || isnan(e->path[0].step_time)))
+		return 0;
+	if (!filtered && !e->path) {
+		life[0] = remaining_constant(left, rate);
+		return 1;
+	}
+	if (rate > 0)
+		scaled = e->mean / (e->par.area * rate);
+	for (long i = 0; i < e->par.count; i++) {
+		double tau = scaled;
+
+		if (e->path && !isnan(e->path[i].step_time))
+			tau = e->path[i].step_time;
+		life[i] = filtered ? follow_rate(e, i, filter, limit)
+				   : wear_out(e, i, e->par.area * left, tau);
+		if (e->path && !isnan(e->par.critical))
+			life[i] = fmin(life[i], remaining_large(e->path[i].large_step,
+							tau, observed_time(o)));
+	}
+	return e->par.count;
+}

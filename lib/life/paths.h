@@ -1,0 +1,61 @@
+/* paths.h - the Monte-Carlo ensemble of units: what each is worn by, how long it lasts
+ *
+ * Path i draws its own replicate of the fragments, its own unit and its own step time
+ * from streams (seed, first + i), so that any split of an ensemble is the same numbers.
+ *
+ *	struct paths_par par = { .seed = 1, .count = 1000, .step_time = 3600,
+ *		.area = 2346.3e-6, .critical = NAN };
+ *	struct paths *e = paths_new(&par, partition);
+ *	n = paths_predict(e, observed, NULL, limit, life);
+ *	paths_free(e);
+ */
+#ifndef LIFE_PATHS_H
+#define LIFE_PATHS_H
+
+#include "life/observed.h"
+#include "life/partition.h"
+#include "life/rate.h"
+#include <stdint.h>
+
+struct paths_par {
+	uint64_t seed;
+	uint32_t first;
+	long count;
+	enum rate_rule rule;
+	double area;      /* of the component, m2 */
+	double parts;     /* see partition_estimate() */
+	double critical;  /* share of large particles at failure; NAN: no criterion */
+	int cumulative;   /* of all particles so far, not of one step */
+	double step_time; /* s that a step stands for; NAN: from slopes or the state */
+	const double
+		*slope; /* gap per s of earlier units, of which each path draws one */
+	int nslopes;
+};
+
+struct path {
+	struct partition_wear
+		wear;     /* of the component per step; its mean is this unit's */
+	double step_time; /* NAN: from the state so far */
+	long large_step;  /* first with too many large particles; 0: none */
+};
+
+struct paths;
+
+/* partition is closed, or NULL where nothing is known but observations.  NULL when out
+ * of memory.  par is copied, partition only read by this call. */
+struct paths *paths_new(const struct paths_par *par, struct partition *partition);
+void paths_free(struct paths *e);
+
+const struct path *paths_get(const struct paths *e, long i); /* NULL without partition */
+
+/* Filters that start from the rate of the paths where their step time is known. */
+struct rate *paths_filter(const struct paths *e);
+
+/* Life left at the latest observation, until the gap is limit or large particles are
+ * too many, as samples in life, which has room for count.  filter is needed for
+ * RATE_FILTER.  Returns how many samples there are: count, 1 where all are the same,
+ * 0 where nothing can be said yet. */
+long paths_predict(struct paths *e, const struct observed *o, const struct rate *filter,
+	double limit, double *life);
+
+#endif
