@@ -5,13 +5,16 @@
 #include "shell/stats.h"
 #include "shell/tables.h"
 #include "signal/fir.h"
+#include "signal/lines.h"
+#include "signal/tones.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-static struct opt_list edges = { 2, { 70, 130 } };
+static struct opt_list edges = { 2, { 70, 130 } }, removed;
 static long order = 200, grid = 501;
 static int window, no_scale, zero_phase, response, taps_only, single;
-static double attenuation = 60, latency = INFINITY, rate = 10e3;
+static double attenuation = 60, latency = INFINITY, memory = NAN, rate = 10e3;
 static const char *const windows[] = { "hamming", "hann", "blackman", "kaiser", NULL };
 
 static const struct opt opts[] = {
@@ -27,6 +30,11 @@ static const struct opt opts[] = {
 		"leave the gain in the middle of the band as the window makes it", 0, 0 },
 	{ 'z', "zero-phase", OPT_FLAG, UNIT_NONE, &zero_phase, 0, 0, 0,
 		"take the delay of half the order out", 0, 0 },
+	{ 'l', "lines", OPT_LIST, UNIT_FREQUENCY, &removed, 0, 1e12, "F,F,...",
+		"take narrow lines out before the filter, by least squares", 0, 0 },
+	{ 'm', "memory", OPT_NUM, UNIT_TIME, &memory, 0, 1e9, "T",
+		"window of the least squares (default 2 s, at most 131072 frames)", 0,
+		0 },
 	{ 'y', "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
 		"hold back no more than T of signal for speed", 0, 0 },
 	{ 'F', "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
@@ -114,7 +122,7 @@ static void check_samples(
 	enum { LANES = 8 };
 	const double headroom = 1e20;
 	size_t n = nframes * (size_t)channels, i;
-	double bad[LANES] = {0}, sum = 0;
+	double bad[LANES] = { 0 }, sum = 0;
 
 	/* x - x is 0, or nan where x is not finite */
 	for (i = 0; i + LANES <= n; i += LANES)
@@ -133,52 +141,128 @@ static void check_samples(
 		isfinite(x[i]) ? "too large to filter" : "not a finite number");
 }
 
-/* Writes the filtered frames, less those still to be skipped. */
-static void put(struct signal_out *out, struct fir *fir, double *x, size_t n,
-	size_t *skip, int channels)
-{
-	size_t drop = n < *skip ? n : *skip;
+/* From the input to the output: lines out, filter, first frames dropped. */
+struct chain {
+	struct lines *lines; /* NULL: none */
+	struct fir *fir;
+	size_t step; /* frames to read at a time */
+	size_t skip; /* frames still to be dropped */
+	size_t channels;
+	double *piece; /* what the filter works on, a block of it */
+	struct signal_out *out;
+};
 
-	fir_run(fir, x, n);
-	*skip -= drop;
-	signal_write(out, x + drop * (size_t)channels, n - drop);
+/* A window tells lines apart that differ by a period in it. */
+static void check_lines(double fs, double frames)
+{
+	double before = 0;
+
+	if (removed.n > TONES_MAX)
+		die(EXIT_USAGE, "--lines: %d at most", TONES_MAX);
+	for (int i = 0; i < removed.n; i++) {
+		double f = removed.v[i];
+
+		if (!(f - before >= fs / frames))
+			die(EXIT_USAGE,
+				"--lines: %g Hz after %g Hz: a window of %g s needs them "
+				"in order and %g Hz apart",
+				f, before, frames / fs, fs / frames);
+		if (f > fs / 2 - fs / frames)
+			die(EXIT_RUN,
+				"--lines: %g Hz is not well below half the rate of %g Hz",
+				f, fs);
+		before = f;
+	}
+}
+
+static struct lines *make_lines(double fs, int channels, size_t *hop)
+{
+	double frames = isnan(memory) ? fmin(2 * fs, 131072) : memory * fs;
+	double omega[TONES_MAX];
+	struct lines *lines;
+
+	check_lines(fs, frames);
+	for (int i = 0; i < removed.n; i++)
+		omega[i] = 2 * acos(-1) * removed.v[i] / fs;
+	*hop = (size_t)(frames / 2);
+	lines = lines_new(removed.n, omega, channels, *hop);
+	if (!lines)
+		die(EXIT_RUN, "no memory for a window of %g frames", frames);
+	return lines;
+}
+
+static struct chain make_chain(struct signal_format f, const char *name)
+{
+	struct chain c = { .skip = zero_phase ? (size_t)order / 2 : 0,
+		.channels = (size_t)f.channels };
+	double fs = (double)f.rate, hold = latency * fs, *h = make_taps(fs, name);
+
+	c.fir = fir_new(h, (size_t)order + 1, f.channels,
+		hold < 1     ? 1
+		: hold < 1e6 ? (size_t)hold
+			     : 0);
+	if (!c.fir)
+		die(EXIT_RUN, "no memory for order %ld", order);
+	free(h);
+	c.step = fir_block(c.fir);
+	if (removed.n)
+		c.lines = make_lines(fs, f.channels, &c.step);
+	c.piece = xcalloc(fir_block(c.fir) * c.channels, sizeof *c.piece);
+	f.cmd = opt_cmd(f.cmd, NULL);
+	f.single = single;
+	c.out = signal_create(NULL, &f);
+	free(f.cmd);
+	return c;
+}
+
+/* Filters and writes n frames, less those still to be dropped; x NULL: silence. */
+static void put(struct chain *c, const double *x, size_t n)
+{
+	size_t block = fir_block(c->fir), m, drop;
+
+	for (; n > 0; n -= m) {
+		m = n < block ? n : block;
+		if (x)
+			memcpy(c->piece, x, m * c->channels * sizeof *x);
+		else
+			memset(c->piece, 0, m * c->channels * sizeof *x);
+		fir_run(c->fir, c->piece, m);
+		drop = m < c->skip ? m : c->skip;
+		c->skip -= drop;
+		signal_write(c->out, c->piece + drop * c->channels, m - drop);
+		if (x)
+			x += m * c->channels;
+	}
 }
 
 static void run(const char *path)
 {
 	struct signal_in *in = signal_open(path, NULL);
-	struct signal_format f = *signal_format(in);
-	double *h = make_taps((double)f.rate, signal_name(in)), frames = 0;
-	size_t hold =
-		latency * (double)f.rate < 1e6 ? (size_t)(latency * (double)f.rate) : 0;
-	size_t skip = zero_phase ? (size_t)order / 2 : 0, tail = skip, n;
-	struct fir *fir = fir_new(
-		h, (size_t)order + 1, f.channels, isfinite(latency) && !hold ? 1 : hold);
-	struct signal_out *out;
-	double *x;
+	struct chain c = make_chain(*signal_format(in), signal_name(in));
+	double *x = xcalloc(c.step * c.channels, sizeof *x), frames = 0;
+	size_t n, clean, tail = c.skip;
 
-	if (!fir)
-		die(EXIT_RUN, "no memory for order %ld", order);
-	f.cmd = opt_cmd(f.cmd, NULL);
-	f.single = single;
-	out = signal_create(NULL, &f);
-	x = xcalloc(fir_block(fir) * (size_t)f.channels, sizeof *x);
-	while ((n = signal_read(in, x, fir_block(fir))) > 0) {
-		check_samples(x, n, f.channels, frames, signal_name(in));
+	do {
+		const double *y = x;
+
+		n = clean = signal_read(in, x, c.step);
+		check_samples(x, n, (int)c.channels, frames, signal_name(in));
+		if (c.lines)
+			y = lines_run(c.lines, x, n, &clean);
+		put(&c, y, clean);
 		frames += (double)n;
-		put(out, fir, x, n, &skip, f.channels);
-	}
-	for (; tail > 0 && frames > 0; tail -= n) {
-		n = tail < fir_block(fir) ? tail : fir_block(fir);
-		memset(x, 0, n * (size_t)f.channels * sizeof *x);
-		put(out, fir, x, n, &skip, f.channels);
-	}
-	signal_done(out);
-	signal_close(in);
+	} while (n == c.step);
+	if (frames > 0)
+		put(&c, NULL, tail);
+	signal_done(c.out);
 	stats_add("frames", frames);
-	stats_add("channels", f.channels);
-	stats_add("points", (double)fir_transform(fir));
-	fir_free(fir);
+	stats_add("channels", (double)c.channels);
+	stats_add("points", (double)fir_transform(c.fir));
+	lines_free(c.lines);
+	fir_free(c.fir);
+	free(c.piece);
+	free(x);
+	signal_close(in);
 }
 
 int main(int argc, char **argv)

@@ -56,6 +56,36 @@ frames three.out >a
 frames prompt.au >b
 near "--latency changes nothing but rounding" "$(worst a b)" 0 2e-15
 
+# lines: gone to the last digits where they keep their amplitude, hardly any harm to pulses
+sensorsim -u 50um:50um -N 0 -d 9.7 --mains 0.5,0.3,0.05 >lines.au
+bpfilter -b 0:5000 -z -l 50,150,250 lines.au >clean.au
+is "--lines: as many frames out as in" "$(frames clean.au 2 | wc -l)" 97000
+near "--lines takes steady lines out" "$(frames clean.au | awk '{ d = $1 < 0 ? -$1 : $1
+	if (d > m) m = d } END { print m }')" 0 1e-10
+pulses="-u 50um:150um -N 200 -d 10 --noise 10mV"
+sensorsim $pulses >without.au
+sensorsim $pulses --mains 0.5,0.3,0.05 | bpfilter -b 0:5000 -z -l 50,150,250 >clean.au
+frames without.au >a
+frames clean.au >b
+near "--lines spares pulses: rms of what is left" \
+	"$(paste a b | awk '{ s += ($1 - $2) ^ 2 } END { print sqrt(s / NR) }')" 0 2e-3
+# an offset stays; a line of 10 Hz that grows by half in 10 s is followed
+awk 'BEGIN { for (i = 0; i < 10000; i++) { a = 1 + i / 20000
+	print 7 + a * sin(6.283185307179586 * i / 100) } }' | au 1000 1 |
+	bpfilter -b 0:500 -z -l 10 -m 0.5 >grow.au
+near "--lines follows a changing amplitude and leaves the offset" "$(frames grow.au |
+	awk 'NR > 500 && NR < 9500 { d = $1 - 7; if (d < 0) d = -d; if (d > m) m = d } END { print m }')" 0 2e-3
+for n in 0 1 10 999 1000 1001 2500; do
+	awk -v n="$n" 'BEGIN { for (i = 0; i < n; i++) print sin(i / 5) }' | au 1000 1 |
+		bpfilter -b 0:500 -z -l 31.830988618 -m 1 >part.au
+	frames part.au | awk '{ d = $1 < 0 ? -$1 : $1; if (d > m) m = d } END { print NR, (m < 1e-6) }'
+done >parts
+is "--lines on records of any length" "$(tr '\n' ' ' <parts)" \
+	"0 1 1 1 10 0 999 1 1000 1 1001 1 2500 1 "
+fails "lines too near for the window" 2 'window of 0.1 s' bpfilter -l 50,55 -m 0.1 lines.au
+fails "lines out of order" 2 'in order' bpfilter -l 150,50 lines.au
+fails "a line at half the rate" 1 'half the rate' bpfilter -l 5000 lines.au
+
 # numpy and scipy, where they are; bands much narrower than 10 Hz magnify the last bits of
 # sin() when scaled, on both sides
 if python3 -c 'import scipy.signal' 2>/dev/null; then py=python3; else py=/usr/bin/python3; fi

@@ -1,0 +1,35 @@
+/* lines.h - takes narrow lines (mains, pump) out of a stream
+ *
+ * Amplitude and phase of every line are found by least squares over a window of two hops
+ * that moves on by one, and run linearly from the middle of one window to that of the
+ * next; so they may change slowly, and pulses that are short against the window hardly
+ * touch them (see tones.h, which also leaves outliers out).  A line that keeps its
+ * amplitude goes to the last digits.  The output lags the input by at most two hops.
+ *
+ *	struct lines *lines = lines_new(2, omega, channels, 10000);
+ *	do {
+ *		n = read_frames(x, 10000);
+ *		y = lines_run(lines, x, n, &clean);
+ *		write_frames(y, clean);
+ *	} while (n == 10000);
+ *	lines_free(lines);
+ */
+#ifndef SIGNAL_LINES_H
+#define SIGNAL_LINES_H
+
+#include <stddef.h>
+
+struct lines;
+
+/* count frequencies omega, rad per sample, each and all differences at least pi / hop, so
+ * that a window can tell them apart.  NULL when out of memory. */
+struct lines *lines_new(int count, const double *omega, int channels, size_t hop);
+void lines_free(struct lines *lines);
+
+/* Takes the next n frames, x[frame * channels + c]: hop of them, fewer (or none) at the
+ * end of the stream and only there.  Returns the frames that are now clean and their
+ * number, two hops at most, valid until the next call.  A whole
+ * stream too short for a fit (16 samples per line) comes back as it went in. */
+const double *lines_run(struct lines *lines, const double *x, size_t n, size_t *clean);
+
+#endif
