@@ -377,26 +377,22 @@ static int unite(struct particles *ps, const struct run *p, const struct run *q,
 
 static int scan_row(struct particles *ps, const unsigned char *mask, int y)
 {
+	const unsigned char *end = mask + ps->par.nx, *at = mask;
 	struct sheet *s = &ps->now;
-	int nx = ps->par.nx, x = 0;
 
-	for (;;) {
-		struct run r = { 0 };
+	while ((at = memchr(at, 1, end - at))) {
+		const unsigned char *stop = memchr(at, 0, end - at);
+		struct run r = { .begin = (int)(at - mask) };
 
-		while (x < nx && !mask[x])
-			x++;
-		if (x == nx)
-			return 0;
-		r.begin = x;
-		while (x < nx && mask[x])
-			x++;
-		r.end = x;
+		at = stop ? stop : end;
+		r.end = (int)(at - mask);
 		r.body = body_of_run(ps, y, r.begin, r.end);
 		if (r.body == NONE ||
 			need(&s->run, &s->room, s->count + 1, sizeof(*s->run)))
 			return -1;
 		s->run[s->count++] = r;
 	}
+	return 0;
 }
 
 /* Unites touching runs of two rows; b's row is seen (px, py) periods further and its
@@ -548,8 +544,11 @@ static double widest_chord(struct particles *ps, const double along[3])
 		size_t count = section(ps, ps->height[k]);
 
 		for (size_t i = 0; i < count; i++)
-			for (size_t j = 0; j < i; j++)
-				most = fmax(most, distance2(ps->cut[i], ps->cut[j]));
+			for (size_t j = 0; j < i; j++) {
+				double d = distance2(ps->cut[i], ps->cut[j]);
+
+				most = d > most ? d : most;
+			}
 	}
 	return sqrt(most);
 }

@@ -54,8 +54,8 @@ struct particles *particles_new(const struct particles_par *par);
 void particles_free(struct particles *ps);
 
 void particles_begin(struct particles *ps);
-/* The next layer: mask[y * nx + x] != 0 where a cell belongs to the set.  -1 when out
- * of memory. */
+/* The next layer: mask[y * nx + x] is 1 where a cell belongs to the set, else 0.  -1 when
+ * out of memory. */
 int particles_layer(struct particles *ps, const unsigned char *mask);
 /* Closes all; *list is valid until the next particles_begin().  Largest first, equal
  * ones by address.  Returns their number, (size_t)-1 when out of memory. */

@@ -1,6 +1,5 @@
 #include "contact/wear.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,7 +30,8 @@ static double mark(struct wear *w)
 		for (int x = s->begin; x < s->end; x++) {
 			size_t at = (size_t)s->y * w->nx + x;
 
-			r->mises = fmax(r->mises, w->mises[at]);
+			if (w->mises[at] > r->mises)
+				r->mises = w->mises[at];
 			if (!(w->mises[at] > w->par->yield))
 				continue;
 			w->mask[at] = 1;
