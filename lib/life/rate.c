@@ -13,11 +13,15 @@ static const double wander_of[WANDERS] = { 0, 0.01, 0.1 };
 /* Beyond so many standard deviations an observation loses weight. */
 static const double gate = 3;
 
+/* So many of them running are not outliers: the level has jumped. */
+enum { JUMP = 5 };
+
 struct kalman {
 	double level, rate;
 	double pll, plr, prr;           /* covariance */
 	double level_drift, rate_drift; /* variances gained per time */
 	double log_weight;
+	int outliers; /* running */
 };
 
 struct rate {
@@ -95,6 +99,12 @@ static void update(const struct rate *r, struct kalman *f, double y)
 {
 	double error = y - f->level, s = f->pll + r->noise, score, kl, kr;
 
+	f->outliers = error * error > gate * gate * s ? f->outliers + 1 : 0;
+	if (f->outliers == JUMP) {
+		f->outliers = 0;
+		f->pll += error * error;
+		s += error * error;
+	}
 	score = error * error / s;
 	if (score > gate * gate) {
 		/* as though the observation were so much noisier that it is at the gate

@@ -4,7 +4,8 @@
  * walk, by Kalman filters that differ in memory and in wander of the level, each
  * weighted by how well it predicted (Magill, IEEE Trans. Autom. Control 10, 1965).
  * The noise of the observations comes from their second differences (noise.h); those
- * more than three standard deviations off are weighed down (Huber).
+ * more than three standard deviations off are weighed down (Huber), and five such running
+ * are taken for a jump of the level.
  *
  *	struct rate *r = rate_new(0, INFINITY);
  *	rate_add(r, t, gap);
