@@ -92,9 +92,9 @@ near "has the same mean" "$(cell out 1 mean)" "$(cell spread.out 1 mean)" 3000
 
 # Any split of an ensemble is the same bytes.
 rwl --new -w spread.tsv -T 1h -g 15um -O -c 20 --parts 1 -R last | grep -v '^#' >whole
-rwl --new -w spread.tsv -T 1h -g 15um -O -c 12 --parts 1 -R last | grep -v '^#' >cut
-rwl --new -w spread.tsv -T 1h -g 15um -O -f 12 -c 8 --parts 1 -R last | rows /dev/stdin >>cut
-same "paths 0-19, and 0-11 with 12-19" whole cut
+rwl --new -w spread.tsv -T 1h -g 15um -O -c 12 --parts 1 -R last | grep -v '^#' >split
+rwl --new -w spread.tsv -T 1h -g 15um -O -f 12 -c 8 --parts 1 -R last | rows /dev/stdin >>split
+same "paths 0-19, and 0-11 with 12-19" whole split
 
 # Classes: the zone of linear pressure is in by default, between the extremes.
 sed 's/e-15/e-18/' even.tsv >low.tsv

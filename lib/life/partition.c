@@ -91,7 +91,7 @@ enum partition_status partition_fragment(struct partition *p, int class, long re
 		last->large += large;
 		return PARTITION_OK;
 	}
-	if (c->ncells == c->cell_room) {
+	if (!c->cell || c->ncells == c->cell_room) {
 		size_t room = c->cell_room ? 2 * c->cell_room : 256;
 		struct cell *more = realloc(c->cell, room * sizeof *more);
 
@@ -389,12 +389,13 @@ static double whole(const struct partition *p, const double *per_class, long ste
 long partition_large(struct partition *p, double probability, int cumulative)
 {
 	size_t n = (size_t)p->nclasses * (size_t)p->steps;
-	double *count = calloc(2 * n, sizeof *count), *large = count + n;
+	double *count = calloc(2 * n, sizeof *count), *large;
 	double all = 0, all_large = 0;
 	long found = 0;
 
 	if (!count)
 		return -1;
+	large = count + n;
 	for (int c = 0; c < p->nclasses; c++)
 		shed(&p->class[c], count + c * p->steps, large + c * p->steps);
 	for (long s = 0; s < p->steps && !found; s++) {

@@ -53,8 +53,9 @@ struct rate *rate_new(double prior_mean, double prior_sd)
 
 void rate_free(struct rate *r)
 {
-	if (r)
-		noise_free(r->scale);
+	if (!r)
+		return;
+	noise_free(r->scale);
 	free(r);
 }
 
@@ -228,15 +229,16 @@ static double path(const struct kalman *f, double x, double z)
 double rate_passage(const struct rate *r, double threshold, double u, double z)
 {
 	const struct kalman *f = &r->filter[pick(r, u)];
-	double unit = spacing(r), low = 0, high;
+	double unit = spacing(r), low = 0, high = 0.01 * unit;
 
 	if (path(f, 0, z) >= threshold)
 		return 0;
 	/* The first root, from a hundredth of the spacing to far beyond any use. */
-	for (high = 0.01 * unit; path(f, high, z) < threshold; high *= 1.25) {
+	while (path(f, high, z) < threshold) {
 		if (high > 1e9 * unit)
 			return INFINITY;
 		low = high;
+		high *= 1.25;
 	}
 	while (high - low > 1e-9 * high) {
 		double middle = (low + high) / 2;
