@@ -48,7 +48,7 @@ static const struct opt opts[] = {
 		"read no state: the life of a new pair", 0, 0 },
 	{ 'y', "quantity", OPT_WORD, UNIT_NONE, &quantity, 0, 0,
 		"auto|leakage|gap|volume|debris", "what the state is", quantities, 0 },
-	{ 'u', "unit", OPT_TEXT, UNIT_NONE, &unit_text, 0, 0, "UNIT",
+	{ 'u', "state-unit", OPT_TEXT, UNIT_NONE, &unit_text, 0, 0, "UNIT",
 		"unit of the state, where not SI: L/min", 0, 0 },
 	{ 't', "time-unit", OPT_WORD, UNIT_NONE, &time_unit, 0, 0, "s|min|h|d",
 		"unit of the times read", time_units, 0 },
@@ -267,7 +267,7 @@ static void open_state(struct state *s, const char *file)
 
 		wrong = unit_parse(one, UNIT_ANY, "", &s->scale, &end);
 		if (wrong)
-			die(EXIT_USAGE, "--unit %s: %s", unit_text, wrong);
+			die(EXIT_USAGE, "--state-unit %s: %s", unit_text, wrong);
 		free(one);
 	}
 }

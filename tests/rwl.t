@@ -92,9 +92,9 @@ near "has the same mean" "$(cell out 1 mean)" "$(cell spread.out 1 mean)" 3000
 
 # Any split of an ensemble is the same bytes.
 rwl --new -w spread.tsv -T 1h -g 15um -O -c 20 --parts 1 -R last | grep -v '^#' >whole
-rwl --new -w spread.tsv -T 1h -g 15um -O -c 12 --parts 1 -R last | grep -v '^#' >split
-rwl --new -w spread.tsv -T 1h -g 15um -O -f 12 -c 8 --parts 1 -R last | rows /dev/stdin >>split
-same "paths 0-19, and 0-11 with 12-19" whole split
+rwl --new -w spread.tsv -T 1h -g 15um -O -c 12 --parts 1 -R last | grep -v '^#' >part.tsv
+rwl --new -w spread.tsv -T 1h -g 15um -O -f 12 -c 8 --parts 1 -R last | rows /dev/stdin >>part.tsv
+same "paths 0-19, and 0-11 with 12-19" whole part.tsv
 
 # Classes: the zone of linear pressure is in by default, between the extremes.
 sed 's/e-15/e-18/' even.tsv >low.tsv
@@ -163,7 +163,7 @@ fails "classes without pressures" 2 'pressure of its own' rwl --new -w even.tsv 
 fails "a pressure that is none" 2 '--wear even.tsv:21um: the pressure has the wrong unit' rwl --new -w even.tsv:21um -T 1h
 fails "too much area" 2 'more than --area' rwl --new -w even.tsv:21MPa:9e3mm2 -T 1h
 fails "size without diameters" 1 'even.tsv.*diameter' rwl --new -w even.tsv -T 1h -d 5um
-fails "a unit that does not suit" 2 '--unit foo' rwl -u foo gap.tsv
+fails "a unit that does not suit" 2 '--state-unit foo' rwl -u foo gap.tsv
 fails "levels that fall" 2 '--levels must grow' rwl -q 0.9,0.1 gap.tsv
 fails "outlet below inlet" 2 'outlet pressure' rwl -D 21MPa:1MPa gap.tsv
 fails "a unit that does not wear" 1 'minus2.tsv.*does not wear' sh -c \
