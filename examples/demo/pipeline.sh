@@ -25,8 +25,10 @@ fi
 
 # What follows from the nominal area: the volume lost at failure, and the calibration of a
 # sensor that gives 1 V for a particle of a tenth of the side.
-eval "$(records surface.nrrd | awk -F '\t' '$1 == 1 { a = $5 * $8 * $6 * $9
-	printf "area=%g volume=%g sensor=%g\n", a, 0.06 * a ^ 1.5, 78.54 / a ^ 1.5 }')"
+read -r area volume sensor <<EOF
+$(records surface.nrrd | awk -F '\t' '$1 == 1 { a = $5 * $8 * $6 * $9
+	print a, 0.06 * a ^ 1.5, 78.54 / a ^ 1.5 }')
+EOF
 
 # What wears off ...
 <surface.nrrd bemcontact --pressure 50MPa --young 210GPa | tee contact.nrrd |

@@ -93,7 +93,7 @@ static int cut(struct table_in *t, char *line, char **cells, int max)
 		size_t length = strcspn(s, t->blanks);
 		int last = !s[length];
 
-		if (n < max)
+		if (cells && n < max)
 			cells[n] = s;
 		n++;
 		if (last)
