@@ -47,7 +47,7 @@ static const struct opt opts[] = {
 		"iterations after which to give up", NULL, 0},
 	{'o', "fields", OPT_TEXT, UNIT_NONE, &fields, 0, 0, "NAME,...",
 		"what to write of height, pressure, displacement, gap", NULL, 0},
-	{'m', "solver", OPT_WORD, UNIT_NONE, &solver, 0, 0, "pk", "pk: Polonsky and Keer",
+	{'m', "solver", OPT_WORD, UNIT_NONE, &solver, 0, 0, "pk", "preconditioned on nested grids, or Polonsky and Keer's",
 		solvers, 0},
 	{'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N",
 		"threads; the result is the same", NULL, 1},
@@ -115,7 +115,7 @@ static struct contact *solver_for(
 		.estar = estar,
 		.hardness = hardness,
 		.boundary = (enum contact_boundary)boundary,
-		.solver = CONTACT_PK,
+		.solver = (enum contact_solver)solver,
 		.tolerance = tolerance,
 		.max_iterations = max_iterations,
 		.pool = pool};

@@ -169,7 +169,7 @@ static void prepare(struct run *run, const struct record *r)
 		.estar = estar,
 		.hardness = hardness,
 		.boundary = (enum contact_boundary)boundary,
-		.solver = CONTACT_PK,
+		.solver = CONTACT_BCCG,
 		.tolerance = tolerance,
 		.max_iterations = max_iterations,
 		.pool = run->pool };

@@ -56,7 +56,21 @@ static int make_kernel(struct contact *c)
 	return 0;
 }
 
-struct contact *contact_new(const struct contact_par *par)
+/* Arrays of one grid; each starts on a cache line. */
+static size_t arrays(const struct contact_par *par)
+{
+	return par->solver == CONTACT_BCCG ? 4 : 3;
+}
+
+static size_t padded(size_t n)
+{
+	return (n + 7) / 8 * 8;
+}
+
+static int make_coarse(struct contact *c);
+
+/* memory: room for the arrays, NULL to have them allocated. */
+static struct contact *new_grid(const struct contact_par *par, double *memory)
 {
 	struct contact *c;
 
@@ -70,10 +84,17 @@ struct contact *contact_new(const struct contact_par *par)
 	c->par = *par;
 	c->n = (size_t)par->nx * (size_t)par->ny;
 	c->cap = par->hardness > 0 ? par->hardness : INFINITY;
-	c->gap = fft_alloc(c->n);
-	c->step = fft_alloc(c->n);
-	c->image = fft_alloc(c->n);
-	if (!c->gap || !c->step || !c->image || make_kernel(c) != 0) {
+	c->tolerance = par->tolerance;
+	c->memory = memory ? NULL : fft_alloc(arrays(par) * padded(c->n));
+	c->gap = memory ? memory : c->memory;
+	if (c->gap) {
+		c->step = c->gap + padded(c->n);
+		c->image = c->step + padded(c->n);
+		c->residual = c->image + padded(c->n);
+	}
+	if (!c->gap || make_kernel(c) != 0 ||
+		(par->solver == CONTACT_BCCG &&
+			(contact_make_preconditioner(c) != 0 || make_coarse(c) != 0))) {
 		contact_free(c);
 		errno = ENOMEM;
 		return NULL;
@@ -81,15 +102,46 @@ struct contact *contact_new(const struct contact_par *par)
 	return c;
 }
 
+/* While the coarser grid is at work this one needs none of its own arrays, and lends
+ * them: a quarter of the cells fits four arrays into one. */
+static int make_coarse(struct contact *c)
+{
+	struct contact_par par = c->par;
+
+	if (!contact_can_halve(&par))
+		return 0;
+	if (par.nx > 1) {
+		par.nx /= 2;
+		par.dx *= 2;
+	}
+	if (par.ny > 1) {
+		par.ny /= 2;
+		par.dy *= 2;
+	}
+	c->coarse = new_grid(&par, c->gap);
+	if (!c->coarse)
+		return -1;
+	c->coarse_height = c->image;
+	c->coarse_pressure = c->image + padded(c->coarse->n);
+	return 0;
+}
+
+struct contact *contact_new(const struct contact_par *par)
+{
+	return new_grid(par, NULL);
+}
+
 void contact_free(struct contact *c)
 {
 	if (!c)
 		return;
+	contact_free(c->coarse);
+	if (c->periodic != c->plane)
+		convolve_free(c->periodic);
 	convolve_free(c->plane);
 	fft_free(c->kernel);
-	fft_free(c->gap);
-	fft_free(c->step);
-	fft_free(c->image);
+	fft_free(c->inverse);
+	fft_free(c->memory);
 	free(c);
 }
 
@@ -125,12 +177,6 @@ static void subtract_height(void *context, size_t begin, size_t end, struct swee
 		c->gap[i] -= c->h[i];
 }
 
-void contact_gap(struct contact *c)
-{
-	contact_multiply(c, c->p, c->gap);
-	contact_sweep(c, subtract_height);
-}
-
 /* Sum of the gap and count over free cells; least gap of the cells without contact
  * (as a maximum of -g), for when nothing is free. */
 static void sum_free(void *context, size_t begin, size_t end, struct sweep *s)
@@ -138,60 +184,70 @@ static void sum_free(void *context, size_t begin, size_t end, struct sweep *s)
 	struct contact *c = context;
 
 	for (size_t i = begin; i < end; i++) {
-		if (is_free(c, c->p[i])) {
-			s->sum[0] += c->gap[i];
-			s->sum[1] += 1;
-		} else if (c->p[i] <= 0 && -c->gap[i] > s->max) {
+		int is = is_free(c, c->p[i]);
+
+		s->sum[0] += is ? c->gap[i] : 0;
+		s->sum[1] += is;
+		if (c->p[i] <= 0 && -c->gap[i] > s->max)
 			s->max = -c->gap[i];
-		}
 	}
 }
 
-/* Takes the shift off; gathers sum p g+, sum p, sum g^2 over free cells, what lies
- * below zero at the hardness, and the deepest overlap. */
-static void shift_gap(void *context, size_t begin, size_t end, struct sweep *s)
+void contact_approach(struct contact *c)
+{
+	struct sweep s;
+
+	c->result.approach = c->target;
+	if (c->control == CONTACT_APPROACH)
+		return;
+	s = contact_sweep(c, sum_free);
+	c->result.approach = s.sum[1] > 0 ? s.sum[0] / s.sum[1] : -s.max;
+}
+
+void contact_gap(struct contact *c)
+{
+	contact_multiply(c, c->p, c->gap);
+	contact_sweep(c, subtract_height);
+	contact_approach(c);
+}
+
+static void certify(void *context, size_t begin, size_t end, struct sweep *s)
 {
 	struct contact *c = context;
 
-	for (size_t i = begin; i < end; i++) {
-		double g = c->gap[i] -= c->shift, p = c->p[i];
-
-		s->sum[0] += p * g;
-		s->sum[1] += p;
-		if (is_free(c, p))
-			s->sum[2] += g * g;
-		s->sum[3] += g > 0 ? p * g : 0;
-		if (c->cap < INFINITY && g < 0)
-			s->sum[4] -= (c->cap - p) * g;
-		if (-g > s->max)
-			s->max = -g;
-	}
+	for (size_t i = begin; i < end; i++)
+		certify_cell(c, c->p[i], gap_at(c, i), s);
 }
 
-double contact_certify(struct contact *c, double *moment)
+struct sweep contact_certify(struct contact *c)
 {
-	struct sweep s;
-	double excess;
+	return contact_sweep(c, certify);
+}
 
-	c->shift = c->target;
-	if (c->control == CONTACT_PRESSURE) {
-		s = contact_sweep(c, sum_free);
-		c->shift = s.sum[1] > 0 ? s.sum[0] / s.sum[1] : -s.max;
-	}
-	s = contact_sweep(c, shift_gap);
-	if (moment)
-		*moment = s.sum[2];
-	c->result.approach = c->shift;
-	c->result.pressure = s.sum[1] / (double)c->n;
-	if (s.sum[1] <= 0)
-		return s.max > 0 ? INFINITY : 0;
+double contact_certificate(struct contact *c, const struct sweep *s)
+{
+	double sum = s->sum[1], excess;
+
+	if (sum <= 0)
+		return s->max > 0 ? INFINITY : 0;
 	if (c->cap < INFINITY)
-		excess = s.sum[3] + s.sum[4];
+		excess = s->sum[3] + s->sum[4];
 	else if (c->control == CONTACT_PRESSURE)
-		excess = s.sum[0] + s.sum[1] * s.max;
+		excess = s->sum[0] + sum * s->max;
 	else
-		excess = s.sum[3] + s.sum[1] * fmax(s.max, 0);
-	return fmax(excess, 0) / (s.sum[1] * c->scale);
+		excess = s->sum[3] + sum * fmax(s->max, 0);
+	return fmax(excess, 0) / (sum * c->scale);
+}
+
+int contact_stalls(struct contact *c, double certificate)
+{
+	const long patience = c->par.solver == CONTACT_PK ? 500 : 100;
+
+	if (certificate < 0.9 * c->best) {
+		c->best = certificate;
+		c->since = 0;
+	}
+	return c->since++ >= patience;
 }
 
 static void sum_load(void *context, size_t begin, size_t end, struct sweep *s)
@@ -300,7 +356,7 @@ static void final_sums(void *context, size_t begin, size_t end, struct sweep *s)
 		s->sum[0] += p > 0;
 		s->sum[1] += p >= c->cap;
 		s->sum[2] += p;
-		s->sum[3] += p * (c->gap[i] + c->h[i] + c->result.approach);
+		s->sum[3] += p * (c->gap[i] + c->h[i]);
 		if (c->h[i] > s->max)
 			s->max = c->h[i];
 	}
@@ -343,7 +399,7 @@ static enum contact_status prepare(struct contact *c)
 		c->scale = fmax(c->par.nx * c->par.dx, c->par.ny * c->par.dy) *
 			   (c->control == CONTACT_PRESSURE ? c->target : c->beta) /
 			   c->par.estar;
-	if (guess <= 0)
+	if (guess <= 0 && !contact_guess(c))
 		contact_sweep(c, fill_empty);
 	if (c->control == CONTACT_PRESSURE)
 		contact_scale_load(c);
@@ -363,7 +419,7 @@ static int is_apart(struct contact *c)
 	memset(c->p, 0, c->n * sizeof(*c->p));
 	c->result.approach = c->control == CONTACT_APPROACH ? c->target : -s.max;
 	for (size_t i = 0; i < c->n; i++)
-		c->gap[i] = -c->h[i] - c->result.approach;
+		c->gap[i] = -c->h[i];
 	return 1;
 }
 
@@ -378,12 +434,15 @@ enum contact_status contact_solve(struct contact *c, const double *height,
 	c->p = pressure;
 	c->control = control;
 	c->target = target;
+	c->best = INFINITY;
+	c->since = 0;
 	if (is_apart(c)) {
 		status = CONTACT_OK;
 	} else {
 		status = prepare(c);
 		if (status == CONTACT_OK)
-			status = contact_solve_pk(c);
+			status = c->par.solver == CONTACT_PK ? contact_solve_pk(c)
+							     : contact_solve_bccg(c);
 	}
 	if (status != CONTACT_OK && status != CONTACT_NOCONV)
 		return status;
@@ -394,7 +453,7 @@ enum contact_status contact_solve(struct contact *c, const double *height,
 	c->result.load = s.sum[2] * c->par.dx * c->par.dy;
 	c->result.energy = s.sum[3] / 2 * c->par.dx * c->par.dy;
 	c->result.indentation = c->result.approach + s.max;
-	if (gap)
-		memcpy(gap, c->gap, c->n * sizeof(*gap));
+	for (size_t i = 0; gap && i < c->n; i++)
+		gap[i] = gap_at(c, i);
 	return status;
 }

@@ -5,6 +5,7 @@
 #include "contact/solver.h"
 #include "num/convolve.h"
 #include "num/sweep.h"
+#include <math.h>
 
 struct contact {
 	struct contact_par par;
@@ -12,38 +13,99 @@ struct contact {
 	double cap;             /* hardness or INFINITY */
 	struct convolve *plane; /* transforms of displacement = kernel * pressure */
 	double *kernel;
-	double *gap, *step, *image; /* gap g, direction t and its displacement K t */
+	double *memory;       /* holds the arrays below, unless borrowed */
+	double *gap;          /* g */
+	double *step, *image; /* step of the pressure, and its displacement */
 	struct contact_result result;
+
+	/* preconditioned solver only */
+	struct convolve *periodic;      /* transforms of the preconditioner */
+	double *inverse;                /* its kernel */
+	double *residual;               /* g on the contact, then preconditioned */
+	double near_x, near_y, near_xy; /* see make_extension() */
+	struct contact *coarse;         /* grid of half as many cells each way, or NULL */
+	double *coarse_height, *coarse_pressure; /* parts of image */
 
 	/* the problem being solved */
 	const double *h;
 	double *p;
 	enum contact_control control;
 	double target; /* mean pressure or approach */
-	double scale;  /* length that makes the certificate a number */
+	double tolerance;
+	double scale; /* length that makes the certificate a number */
 
 	/* of the iteration in progress, for the passes over the cells */
-	double shift, beta, tau;
+	double shift, beta, tau, stretch;
+	double best; /* certificate so far, and the iterations since */
+	long since;
 };
 
 /* A cell is free where its pressure is strictly between the bounds. */
 static inline int is_free(const struct contact *c, double p)
 {
-	return p > 0 && p < c->cap;
+	return (p > 0) & (p < c->cap);
+}
+
+/* ... and active where it is free or its gap says that it should be. */
+static inline int is_active(const struct contact *c, double p, double g)
+{
+	return is_free(c, p) | ((p <= 0) & (g < 0)) | ((p >= c->cap) & (g > 0));
+}
+
+static inline double within(const struct contact *c, double p)
+{
+	return p < 0 ? 0 : p > c->cap ? c->cap : p;
+}
+
+/* Gap of cell i; the array holds it for approach 0. */
+static inline double gap_at(const struct contact *c, size_t i)
+{
+	return c->gap[i] - c->result.approach;
+}
+
+/* What the certificate is made of: sum p g, sum p, sum of g^2 over free cells, p g+,
+ * depth of what overlaps below the hardness; the deepest overlap. */
+static inline void certify_cell(
+	const struct contact *c, double p, double g, struct sweep *s)
+{
+	double below = g < 0 ? g : 0;
+
+	s->sum[0] += p * g;
+	s->sum[1] += p;
+	s->sum[2] += is_free(c, p) ? g * g : 0;
+	s->sum[3] += p * (g - below);
+	if (c->cap < INFINITY)
+		s->sum[4] -= (c->cap - p) * below;
+	s->max = -g > s->max ? -g : s->max;
 }
 
 struct sweep contact_sweep(struct contact *c,
 	void (*pass)(void *context, size_t begin, size_t end, struct sweep *s));
 /* y = K x, counted. */
 void contact_multiply(struct contact *c, const double *x, double *y);
-/* Gap of the pressure from scratch, up to the approach. */
+/* Gap of the pressure from scratch, and the approach. */
 void contact_gap(struct contact *c);
-/* With the gap up to the approach: sets the approach, takes it off the gap and
- * returns the certificate.  moments, unless NULL: sum of g^2 over the free cells. */
-double contact_certify(struct contact *c, double *moment);
+/* The approach that suits the gap: given, or the mean gap of the free cells. */
+void contact_approach(struct contact *c);
+/* The certificate from the sums of certify_cell() over all cells. */
+double contact_certificate(struct contact *c, const struct sweep *s);
+/* Makes those sums. */
+struct sweep contact_certify(struct contact *c);
 /* Scales the free pressures so that the load is the wanted one. */
 void contact_scale_load(struct contact *c);
+/* 1 where the certificate has long stopped falling: rounding is all that is left, or
+ * the method fails.  Keeps count of calls. */
+int contact_stalls(struct contact *c, double certificate);
 
 enum contact_status contact_solve_pk(struct contact *c);
+
+/* bccg.c */
+int contact_make_preconditioner(struct contact *c);
+enum contact_status contact_solve_bccg(struct contact *c);
+
+/* grids.c: halves the grid down to some 32 cells a side; 1 if this one can be halved */
+int contact_can_halve(const struct contact_par *par);
+/* A first guess from the coarser grids; 0 where they found none. */
+int contact_guess(struct contact *c);
 
 #endif

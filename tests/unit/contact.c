@@ -9,12 +9,12 @@
 #include <string.h>
 
 static const double pi = 3.14159265358979323846;
-static const char *const solver_name[] = {"bccg", "pk"};
+static const char *const solver_name[] = { "bccg", "pk" };
 
 static struct contact_par parameters(
 	int nx, int ny, double dx, enum contact_boundary b, enum contact_solver s)
 {
-	return (struct contact_par){.nx = nx,
+	return (struct contact_par){ .nx = nx,
 		.ny = ny,
 		.dx = dx,
 		.dy = dx,
@@ -22,7 +22,7 @@ static struct contact_par parameters(
 		.boundary = b,
 		.solver = s,
 		.tolerance = 1e-10,
-		.max_iterations = 5000};
+		.max_iterations = 5000 };
 }
 
 /* Paraboloid of radius 10 mm under 50 N on a square of side 4 a: errors in the largest
@@ -82,7 +82,7 @@ static void hertz(int n, enum contact_solver solver, double e_peak, double e_app
 static void westergaard(enum contact_solver solver)
 {
 	enum { N = 2048 };
-	static const double loads[] = {0.02, 0.1, 0.3, 0.5, 0.8, 0.95};
+	static const double loads[] = { 0.02, 0.1, 0.3, 0.5, 0.8, 0.95 };
 	double *h = fft_alloc(N), *p = fft_alloc(N);
 	struct contact_par par = parameters(N, 1, 1.0 / N, CONTACT_PERIODIC, solver);
 	struct contact *c = contact_new(&par);
@@ -125,8 +125,8 @@ static void westergaard(enum contact_solver solver)
 static void wavy(enum contact_solver solver)
 {
 	enum { N = 128 };
-	static const double reference[][2] = {{0.02, 0.059143}, {0.1, 0.191193},
-		{0.3, 0.514893}, {0.6, 0.776917}, {0.9, 0.950928}};
+	static const double reference[][2] = { { 0.02, 0.059143 }, { 0.1, 0.191193 },
+		{ 0.3, 0.514893 }, { 0.6, 0.776917 }, { 0.9, 0.950928 } };
 	double *h = fft_alloc((size_t)N * N), *p = fft_alloc((size_t)N * N), worst = 0;
 	struct contact_par par = parameters(N, N, 1.0 / N, CONTACT_PERIODIC, solver);
 	struct contact *c = contact_new(&par);
@@ -154,7 +154,7 @@ static void by_hand(enum contact_solver solver)
 	struct contact_par par = parameters(1, 1, 2, CONTACT_FREE, solver);
 	double k0 = kernel_patch(2, 2, 0, 0) / (pi * 4),
 	       k1 = kernel_patch(2, 2, 2, 0) / (pi * 4);
-	double h[3] = {0.5, 0.5, 0.5}, p[3] = {0}, g[3];
+	double h[3] = { 0.5, 0.5, 0.5 }, p[3] = { 0 }, g[3];
 	struct contact *c;
 
 	par.estar = 4;
@@ -242,7 +242,7 @@ static void controls(enum contact_solver solver, enum contact_boundary boundary)
 
 int main(void)
 {
-	static const enum contact_solver solvers[] = {CONTACT_PK};
+	static const enum contact_solver solvers[] = { CONTACT_PK, CONTACT_BCCG };
 
 	for (size_t i = 0; i < sizeof(solvers) / sizeof(solvers[0]); i++) {
 		hertz(128, solvers[i], 2.2e-4, 5.0e-5, 8.5e-4);

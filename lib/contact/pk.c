@@ -13,7 +13,8 @@ static void turn_step(void *context, size_t begin, size_t end, struct sweep *s)
 
 	(void)s;
 	for (size_t i = begin; i < end; i++)
-		c->step[i] = is_free(c, c->p[i]) ? c->gap[i] + c->beta * c->step[i] : 0;
+		c->step[i] =
+			is_free(c, c->p[i]) ? gap_at(c, i) + c->beta * c->step[i] : 0;
 }
 
 /* Sums for the step length tau = g t / (r t), r = K t less its mean over the free
@@ -25,7 +26,7 @@ static void sum_step(void *context, size_t begin, size_t end, struct sweep *s)
 	for (size_t i = begin; i < end; i++) {
 		if (!is_free(c, c->p[i]))
 			continue;
-		s->sum[0] += c->gap[i] * c->step[i];
+		s->sum[0] += gap_at(c, i) * c->step[i];
 		s->sum[1] += c->image[i] * c->step[i];
 		s->sum[2] += c->image[i];
 		s->sum[3] += c->step[i];
@@ -40,7 +41,7 @@ static void move_pressure(void *context, size_t begin, size_t end, struct sweep 
 	struct contact *c = context;
 
 	for (size_t i = begin; i < end; i++) {
-		double p = c->p[i], g = c->gap[i];
+		double p = c->p[i], g = gap_at(c, i);
 
 		if (is_free(c, p)) {
 			p -= c->tau * c->step[i];
@@ -67,18 +68,22 @@ static double step_length(struct contact *c, double last)
 
 enum contact_status contact_solve_pk(struct contact *c)
 {
-	double moment, last_moment = 1;
+	double last_moment = 1;
 	int conjugate = 0;
 
 	c->tau = c->par.estar / sqrt(c->par.dx * c->par.dy);
 	for (long k = 0;; k++) {
 		struct sweep s;
+		double moment;
 
 		contact_gap(c);
-		c->result.certificate = contact_certify(c, &moment);
-		if (c->result.certificate <= c->par.tolerance)
+		s = contact_certify(c);
+		moment = s.sum[2];
+		c->result.certificate = contact_certificate(c, &s);
+		if (c->result.certificate <= c->tolerance)
 			return CONTACT_OK;
-		if (k == c->par.max_iterations)
+		if (k == c->par.max_iterations ||
+			contact_stalls(c, c->result.certificate))
 			return CONTACT_NOCONV;
 		c->result.iterations++;
 		c->beta = conjugate && last_moment > 0 ? moment / last_moment : 0;
