@@ -73,15 +73,16 @@ void cnndata_section(
 	double reach = CNNDATA_DURATION *
 		       exp(draw(par, i, 1, log(par->reach[0]), log(par->reach[1])));
 	double gain = draw(par, i, 2, par->gain[0], par->gain[1]);
-	double margin = 0.1 * CNNDATA_DURATION + reach, t[CNN_SOURCES], begin, end;
-	size_t first;
+	double t[CNN_SOURCES], edge = CNNDATA_DURATION / 2.0 + reach;
+	/* What surrounds the pulses, and where samples fall between, is left to chance.
+	 */
+	double begin = edge + draw(par, i, 4, 0, CNNDATA_DURATION / 2.0);
+	double end = edge + draw(par, i, 5, 0, CNNDATA_DURATION / 2.0);
 
 	memset(out, 0, sizeof *out);
 	out->sources = n;
 	out->noise = pow(10, -draw(par, i, 3, par->snr[0], par->snr[1]) / 20);
 	draw_arrivals(par, i, n, t);
-	/* Where the samples fall between the arrivals is left to chance. */
-	begin = margin + CNNDATA_DURATION / 2 + draw(par, i, 4, 0, 1);
 	for (int k = 0; k < n; k++) {
 		int at = ARRIVALS + k * OF_PULSES;
 		struct cnn_pulse *p = &out->pulse[k];
@@ -94,8 +95,6 @@ void cnndata_section(
 		add_pulse(par->shape, p->t, duration, p->a, out->y1);
 		add_pulse(par->shape, p->t + p->delta, duration, p->a * gain, out->y2);
 	}
-	end = out->pulse[n - 1].t + CNNDATA_DURATION / 2 + margin;
-	first = draw(par, i, 5, 0, 0.1 * CNNDATA_DURATION);
 	for (size_t k = 0; k < CNNDATA_SAMPLES; k++) {
 		double normal[2];
 
@@ -103,11 +102,9 @@ void cnndata_section(
 		out->y1[k] += out->noise * normal[0];
 		out->y2[k] += out->noise * normal[1];
 	}
-	for (int k = 0; k < n; k++)
-		out->pulse[k].t -= (double)first;
-	out->section = (struct cnn_section){ out->y1 + first, out->y2 + first,
-		(size_t)fmin(end, CNNDATA_SAMPLES) - first, CNNDATA_DURATION, gain, 0,
-		reach };
+	end += out->pulse[n - 1].t;
+	out->section = (struct cnn_section){ out->y1, out->y2,
+		(size_t)fmin(end, CNNDATA_SAMPLES), CNNDATA_DURATION, gain, 0, reach };
 }
 
 void cnndata_target(

@@ -37,8 +37,8 @@ struct cnndata_par cnndata_default(void);
 /* A section with its truth. */
 struct cnndata_section {
 	double y1[CNNDATA_SAMPLES], y2[CNNDATA_SAMPLES];
-	struct cnn_section
-		section; /* pointing into it, cut 0.1 durations outside the pulses */
+	struct cnn_section section; /* pointing into it, up to half a duration wider than
+				       its pulses */
 	int sources;
 	double noise; /* standard deviation */
 	struct cnn_pulse pulse[CNN_SOURCES];

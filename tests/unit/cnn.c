@@ -102,11 +102,8 @@ static void check_sections(void)
 	int ordered = 1, counts[CNN_SOURCES + 1] = { 0 };
 
 	for (uint32_t i = 0; i < 200; i++) {
-		long at;
-
 		par.snr[0] = par.snr[1] = i % 2 ? 300 : 20;
 		cnndata_section(&par, i, s);
-		at = s->section.y1 - s->y1;
 		counts[s->sources]++;
 		for (int k = 1; k < s->sources; k++)
 			ordered = ordered && s->pulse[k].t - s->pulse[k - 1].t >= 9.999;
@@ -115,8 +112,7 @@ static void check_sections(void)
 
 			for (int k = 0; k < s->sources; k++) {
 				const struct cnn_pulse *p = &s->pulse[k];
-				double T = 100 + p->delta / 1.9635,
-				       t = (double)n - at - p->t;
+				double T = 100 + p->delta / 1.9635, t = (double)n - p->t;
 
 				y1 += p->a * pulse_value(PULSE_SINE, t / T);
 				y2 += s->section.gain * p->a *
