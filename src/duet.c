@@ -4,7 +4,9 @@
 #include "shell/signals.h"
 #include "shell/stats.h"
 #include "shell/tables.h"
+#include "signal/cnn.h"
 #include "signal/count.h"
+#include "signal/netfile.h"
 #include "signal/robust.h"
 #include "signal/separate.h"
 #include <math.h>
@@ -12,7 +14,7 @@
 #include <string.h>
 
 enum { BLOCK = 4096, LEARN = 65536, SOURCES_SHOWN = 8 };
-enum { METHOD_FIT, METHOD_DUET, METHOD_COUNT };
+enum { METHOD_FIT, METHOD_DUET, METHOD_CNN, METHOD_COUNT };
 
 static int method = METHOD_FIT;
 static long window = 64, hop, sensor = 1;
@@ -24,14 +26,14 @@ static double spacing = 0.25, false_alarm = 1e-9, spread = 0.1, learn = NAN,
 static double level = NAN;
 static int pulse;
 static struct opt_list lines;
-static const char *separated, *histogram, *sections;
-static const char *const methods[] = { "fit", "duet", "count", NULL };
+static const char *separated, *histogram, *sections, *network_file;
+static const char *const methods[] = { "fit", "duet", "cnn", "count", NULL };
 static const char *const pulses[] = { "auto", "sine", "gauss", "lorentz", NULL };
 static const char *const automatic[] = { "auto", NULL };
 
 static const struct opt opts[] = {
-	{ 'm', "method", OPT_WORD, UNIT_NONE, &method, 0, 0, "fit|duet|count",
-		"joint fit of all pulses, time-frequency masks, or counted peaks",
+	{ 'm', "method", OPT_WORD, UNIT_NONE, &method, 0, 0, "fit|duet|cnn|count",
+		"joint fit of all pulses, time-frequency masks, a network, or counted peaks",
 		methods, 0 },
 	{ 'a', "align", OPT_CHOICE, UNIT_TIME, &align, 0, 1e9, "auto|T",
 		"time from sensor 1 to sensor 2 of the mean particle", automatic, 0 },
@@ -71,6 +73,8 @@ static const struct opt opts[] = {
 		"write the weighted histograms as a table (duet)", 0, 0 },
 	{ 'Z', "sections", OPT_TEXT, UNIT_NONE, &sections, 0, 0, "FILE",
 		"write one row per section", 0, 0 },
+	{ 'N', "network", OPT_TEXT, UNIT_NONE, &network_file, 0, 0, "FILE",
+		"network of delaynet, for cnn or the first guesses of fit", 0, 0 },
 	OPT_END
 };
 
@@ -99,6 +103,10 @@ static void check_options(void)
 		die(EXIT_USAGE, "--sensor and --level need --method count");
 	if (method == METHOD_COUNT && (separated || sections))
 		die(EXIT_USAGE, "--method count knows no sections and separates nothing");
+	if (method == METHOD_CNN && !network_file)
+		die(EXIT_USAGE, "--method cnn wants --network FILE");
+	if (network_file && method != METHOD_CNN && method != METHOD_FIT)
+		die(EXIT_USAGE, "--network is for --method cnn and fit");
 	if (window % 2)
 		die(EXIT_USAGE, "--window %ld: want an even number of samples", window);
 	if (!opt_given('H'))
@@ -198,11 +206,32 @@ static size_t to_samples(double time, double rate)
 	return n < 1e15 ? (size_t)n : (size_t)1e15;
 }
 
+static struct network *read_network(void)
+{
+	FILE *f = fopen(network_file, "r");
+	struct netfile file;
+	struct network *net;
+
+	if (!f)
+		die(EXIT_RUN, "%s:", network_file);
+	net = netfile_read(f, 1, &file);
+	if (!net)
+		die(EXIT_RUN, "%s: line %ld: %s", network_file, file.line, file.why);
+	if (strcmp(file.purpose, "arrivals") != 0 || !cnn_suits(net))
+		die(EXIT_RUN, "%s: want a network for arrivals, got one for %s",
+			network_file, file.purpose);
+	free(file.cmd);
+	fclose(f);
+	return net;
+}
+
 static struct separate_par make_par(struct output *out)
 {
+	static const enum separate_method of[] = { SEPARATE_FIT, SEPARATE_MASKS,
+		SEPARATE_NETWORK };
 	double rate = (double)out->rate;
-	struct separate_par par = { .method = method == METHOD_FIT ? SEPARATE_FIT
-								   : SEPARATE_MASKS,
+	struct separate_par par = { .method = of[method],
+		.network = network_file ? read_network() : NULL,
 		.learn = isnan(learn) ? LEARN : to_samples(learn, rate),
 		.sources = sources.word < 0 ? (int)sources.value : 0,
 		.mask_window = (size_t)window,
@@ -287,6 +316,8 @@ static void report(const struct separate *s, double rate)
 	stats_set("fits", c->fits);
 	stats_set("fit_steps", c->steps);
 	stats_set("searches", c->searches);
+	stats_set("guesses", c->guesses);
+	stats_set("guesses_refused", c->refused);
 	stats_set("demixings", c->masks);
 	stats_set("demixings_skipped", c->masks_skipped);
 	if (!cal)
@@ -326,6 +357,7 @@ static void separate_all(struct signal_in *in, struct output *out)
 	check_status(status, s, signal_name(in));
 	report(s, (double)out->rate);
 	separate_free(s);
+	network_free(par.network);
 }
 
 static void put_peak(struct output *out, const struct peak *p)

@@ -94,7 +94,7 @@ int cnn_pulses(const network_real *output, const struct cnn_frame *frame, int so
 	o = output + cnn_head(sources);
 	for (int k = 0; k < sources; k++, o += 3) {
 		pulse[k].t = frame->centre + o[0] * frame->duration;
-		pulse[k].delta = frame->middle + o[1] * frame->reach;
+		pulse[k].delta = frame->middle + fmin(fmax(o[1], -1), 1) * frame->reach;
 		pulse[k].a = frame->scale * pow(fmax(o[2], 0), 3);
 	}
 	return sources;

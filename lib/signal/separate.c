@@ -362,6 +362,30 @@ static enum separate_verdict judge(const struct joint_result *r, int sources)
 	return sources > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
 }
 
+/* Puts the network's guess at the pulses of n samples into s->pulse; 0 where it does not
+ * suit.  It was trained on the sine pulse. */
+static int guess_pulses(struct separate *s, long long from, size_t n)
+{
+	const struct joint_scene *c = &s->scene;
+	struct cnn_section section = { channel_1(s, from), channel_2(s, from), n,
+		c->duration, c->gain, (c->delta_min + c->delta_max) / 2,
+		(c->delta_max - c->delta_min) / 2 };
+	struct cnn_pulse guess[CNN_SOURCES];
+	int m = 0;
+
+	if (s->cal.pulse == PULSE_SINE)
+		m = cnn_apply(s->par.network, &section, s->par.sources, guess);
+	for (int i = 0; i < m; i++) {
+		s->pulse[i] =
+			(struct joint_pulse){ .t = fmin(fmax(guess[i].t, 0), (double)n),
+				.delta = guess[i].delta,
+				.a = guess[i].a };
+	}
+	s->counters.guesses += m > 0;
+	s->counters.refused += m == 0;
+	return m;
+}
+
 /* Works off [from, to) by a joint fit.  With cut, the section goes on: pulses behind
  * the cut are carried into the next window, whose first sample is *next. */
 static enum separate_status fit_section(
@@ -373,6 +397,8 @@ static enum separate_status fit_section(
 	enum separate_verdict verdict;
 	int m = s->carried, done = 0, kept = 0;
 
+	if (s->par.method == SEPARATE_FIT && s->par.network && m == 0 && !cut)
+		m = guess_pulses(s, from, n);
 	s->scene.max_pulses = s->par.sources ? s->par.sources : JOINT_PULSES_MAX;
 	if (joint_fit(s->joint, &s->scene, channel_1(s, from), channel_2(s, from), n,
 		    s->pulse, &m, &r) != JOINT_OK)
@@ -419,6 +445,31 @@ static enum separate_status fit_section(
 	}
 	s->carried = kept;
 	return SEPARATE_OK;
+}
+
+/* Works off [from, to) by the network alone; 1 where that was possible. */
+static int network_section(
+	struct separate *s, long long from, long long to, enum separate_status *status)
+{
+	size_t n = (size_t)(to - from);
+	int m = guess_pulses(s, from, n);
+	enum separate_verdict verdict = m > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
+
+	*status = SEPARATE_MEMORY;
+	for (int i = 0; i < m; i++) {
+		for (int k = 0; k < 6; k++)
+			s->pulse[i].cov[k] = NAN;
+		if (!emit_pulse(s, &s->pulse[i], from, m, NAN, verdict))
+			return 1;
+	}
+	if (m && s->par.want_sources && !draw_pulses(s, m, n))
+		return 1;
+	if (m)
+		report_section(s, from, to, m, NAN, verdict,
+			s->par.want_sources ? s->source : NULL);
+	s->counters.singles += m == 1;
+	*status = SEPARATE_OK;
+	return m > 0;
 }
 
 /* Arrival (zero crossing between the lobes) and amplitude of the one pulse in x. */
@@ -517,10 +568,11 @@ static enum separate_status work(struct separate *s)
 			s->counters.sections++;
 		}
 		next = to;
-		if (s->par.method == SEPARATE_FIT)
-			status = fit_section(s, from, to, cut, &next);
-		else
+		if (s->par.method == SEPARATE_MASKS)
 			status = mask_section(s, from, to);
+		else if (s->par.method == SEPARATE_FIT || s->continuing || cut ||
+			 !network_section(s, from, to, &status))
+			status = fit_section(s, from, to, cut, &next);
 		if (status != SEPARATE_OK)
 			return status;
 		s->counters.active += (double)(next - from);
