@@ -30,6 +30,7 @@ struct separate {
 	int carried;    /* pulses of the last window that the next one starts from */
 	int continuing; /* the next window belongs to the same section */
 	long number;
+	long margin; /* that a section keeps before its first trigger */
 	long long done; /* samples before this one are worked off */
 	struct particle *queue;
 	size_t count, given, capacity;
@@ -227,8 +228,9 @@ static enum separate_status calibrate_now(struct separate *s)
 			s->par.window ? (size_t)(6 * reach) : (size_t)(24 * reach);
 	/* Equal pulses on both channels reach the threshold of a pair at 1 / sqrt 2 of
 	 * it. */
-	s->sections = sections_new(c->shape, c->duration, 0.65 * sqrt(c->drop),
-		(long)(0.6 * reach + fmax(c->delta_max, -c->delta_min)));
+	s->margin = (long)(0.6 * reach + fmax(c->delta_max, -c->delta_min));
+	s->sections = sections_new(
+		c->shape, c->duration, 0.65 * sqrt(c->drop), s->margin);
 	s->joint = joint_new();
 	if (s->par.method == SEPARATE_MASKS) {
 		struct masks_par mp = { .window = s->par.mask_window,
@@ -579,7 +581,7 @@ static enum separate_status work(struct separate *s)
 		s->continuing = cut;
 		sections_take(s->sections, cut ? next : section.end);
 	}
-	s->done = sections_scanned(s->sections) - sections_reach(s->sections);
+	s->done = sections_scanned(s->sections) - sections_reach(s->sections) - s->margin;
 	if (sections_first(s->sections, &section) && section.begin < s->done)
 		s->done = section.begin;
 	if (s->done < 0)
