@@ -19,11 +19,10 @@ enum { METHOD_FIT, METHOD_DUET, METHOD_CNN, METHOD_COUNT };
 static int method = METHOD_FIT;
 static long window = 64, hop, sensor = 1;
 static struct opt_choice align = { 0, 0 }, sources = { 0, 0 }, gain = { 0, 0 };
-static struct opt_choice pulse_duration = { 0, 0 };
+static struct opt_choice pulse_duration = { 0, 0 }, spread = { 0, 0 };
 static double kappa = 3.14159265358979323846 / 4 * 1e11; /* as sensorsim(1) */
-static double spacing = 0.25, false_alarm = 1e-9, spread = 0.1, learn = NAN,
-	      latency = NAN;
-static double level = NAN;
+static double spacing = 0.25, false_alarm = 1e-9, learn = NAN, latency = NAN;
+static double floor_height = NAN;
 static int pulse;
 static struct opt_list lines;
 static const char *separated, *histogram, *sections, *network_file;
@@ -53,8 +52,8 @@ static const struct opt opts[] = {
 		"interfering lines to fit (0: none) instead of those found", 0, 0 },
 	{ 'A', "false-alarm", OPT_NUM, UNIT_NONE, &false_alarm, 1e-15, 0.01, "P",
 		"false particles per sample of noise", 0, 0 },
-	{ 'x', "spread", OPT_NUM, UNIT_FRACTION, &spread, 0, 0.9, "S",
-		"transit times within this share of --align", 0, 0 },
+	{ 'x', "spread", OPT_CHOICE, UNIT_FRACTION, &spread, 0, 0.9, "auto|S",
+		"transit times within this share of --align", automatic, 0 },
 	{ 'e', "learn", OPT_NUM, UNIT_TIME, &learn, 0, 1e9, "T",
 		"start of the record that the instrument is learned from", 0, 0 },
 	{ 'y', "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
@@ -65,7 +64,7 @@ static const struct opt opts[] = {
 		"samples from window to window (duet; half the window)", 0, 0 },
 	{ 'k', "sensor", OPT_INT, UNIT_COUNT, &sensor, 1, 2, "N",
 		"channel to count on (count)", 0, 0 },
-	{ 'z', "level", OPT_NUM, UNIT_VOLTAGE, &level, 1e-30, 1e30, "V",
+	{ 'z', "floor", OPT_NUM, UNIT_VOLTAGE, &floor_height, 1e-30, 1e30, "V",
 		"lowest peak (count; five deviations of the record)", 0, 0 },
 	{ 'O', "separated", OPT_TEXT, UNIT_NONE, &separated, 0, 0, "FILE",
 		"write each source of a section as a channel of its own", 0, 0 },
@@ -100,7 +99,7 @@ static void check_options(void)
 	if (method != METHOD_DUET && (opt_given('w') || opt_given('H') || histogram))
 		die(EXIT_USAGE, "--window, --hop and --histogram need --method duet");
 	if (method != METHOD_COUNT && (opt_given('k') || opt_given('z')))
-		die(EXIT_USAGE, "--sensor and --level need --method count");
+		die(EXIT_USAGE, "--sensor and --floor need --method count");
 	if (method == METHOD_COUNT && (separated || sections))
 		die(EXIT_USAGE, "--method count knows no sections and separates nothing");
 	if (method == METHOD_CNN && !network_file)
@@ -244,7 +243,7 @@ static struct separate_par make_par(struct output *out)
 		.duration = pulse_duration.word < 0 ? pulse_duration.value * rate : NAN,
 		.gain = gain.word < 0 ? gain.value : NAN,
 		.pulse = pulse - 1,
-		.spread = spread,
+		.spread = spread.word < 0 ? spread.value : NAN,
 		.false_alarm = false_alarm,
 		.tones = CALIBRATE_FIND_TONES };
 	if (separated || histogram || sections)
@@ -411,11 +410,12 @@ static void count_all(struct signal_in *in, struct output *out)
 					"%s: channel %ld, frame %lld: not a finite number",
 					signal_name(in), sensor, frame);
 			if (i == 0 && !c) {
-				c = count_new(isnan(level) ? choose_level(x, n, channels)
-							   : level);
+				c = count_new(isnan(floor_height)
+						      ? choose_level(x, n, channels)
+						      : floor_height);
 				if (!c)
 					die(EXIT_RUN,
-						"%s: channel %ld is constant: give --level",
+						"%s: channel %ld is constant: give --floor",
 						signal_name(in), sensor);
 			}
 			if (count_sample(c, y, &p))

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { EXAMPLES_MAX = 16, EXAMPLE_PULSES = 8 };
+enum { EXAMPLES_MAX = 16, EXAMPLE_PULSES = 16, RANGE_EVENTS = 12 };
 
 /* A section used to learn the pulse: samples of noise 1 and the pulses found in it. */
 struct example {
@@ -24,7 +24,6 @@ struct learning {
 	struct example example[EXAMPLES_MAX];
 	int count;
 	double misfit; /* of joint.h, at the end */
-	long dof;      /* of the last examples_fit() */
 };
 
 double calibrate_drop(double rate, const struct shape *shape, double duration,
@@ -150,13 +149,13 @@ static double examples_chi2(struct learning *l, int keep)
 	return sum;
 }
 
-/* Finds the pulses of all examples anew; chi-square with a price for each pulse. */
+/* Finds the pulses of all examples anew.  Returns the median of their chi-square per
+ * degree of freedom, which a few examples with hidden pulses do not spoil. */
 static double examples_fit(struct learning *l, double misfit)
 {
-	double sum = 0;
+	double each[EXAMPLES_MAX];
 
 	l->scene.misfit = misfit > l->misfit ? misfit : l->misfit;
-	l->dof = 0;
 	for (int i = 0; i < l->count; i++) {
 		struct example *e = &l->example[i];
 		struct joint_result result;
@@ -165,10 +164,9 @@ static double examples_fit(struct learning *l, double misfit)
 		if (joint_fit(l->joint, &l->scene, e->y1, e->y2, e->n, e->pulse, &e->m,
 			    &result) != JOINT_OK)
 			return INFINITY;
-		sum += result.chi2 + l->scene.drop_near * e->m;
-		l->dof += result.dof;
+		each[i] = result.chi2 / (double)result.dof;
 	}
-	return sum;
+	return robust_median(each, (size_t)l->count);
 }
 
 /* Moves *parameter by a factor to the least chi-square: parabolas through three points
@@ -199,12 +197,41 @@ static void minimise(struct learning *l, double *parameter, double step, int rou
 	}
 }
 
-/* The clearest short sections of the record. */
+/* Keeps y1, y2[from, to) if it is among the most clearest.  loud: merits of those kept.
+ */
+static void offer_example(struct learning *l, const double *y1, const double *y2,
+	long long from, long long to, int most, double shortest, double *loud)
+{
+	double energy = 0, merit, length = (double)(to - from);
+	int at;
+
+	if (length < 1.5 * shortest / 2)
+		return;
+	for (long long i = from; i < to; i++)
+		energy += y1[i] * y1[i] + y2[i] * y2[i] - 2;
+	/* Loud is good, few pulses are better. */
+	merit = energy * pow(shortest / length, 4);
+	for (at = l->count; at > 0 && loud[at - 1] < merit; at--)
+		if (at < most) {
+			loud[at] = loud[at - 1];
+			l->example[at] = l->example[at - 1];
+		}
+	if (at == most)
+		return;
+	loud[at] = merit;
+	l->example[at].y1 = y1 + from;
+	l->example[at].y2 = y2 + from;
+	l->example[at].n = (size_t)(to - from);
+	l->example[at].m = 0;
+	l->count += l->count < most;
+}
+
+/* The clearest short sections of the record; of long ones, pieces. */
 static void pick_examples(struct learning *l, const double *y1, const double *y2,
-	size_t n, const struct calibration *c)
+	size_t n, int most, const struct calibration *c)
 {
 	double T = c->duration, reach = shape_reach(c->shape), loud[EXAMPLES_MAX] = { 0 };
-	long margin = (long)(1.6 * reach * T + fmax(c->delta_max, -c->delta_min));
+	long margin = (long)(1.2 * reach * T + fmax(c->delta_max, -c->delta_min));
 	struct sections *s = sections_new(c->shape, T, 5, margin);
 	struct section section;
 
@@ -214,32 +241,15 @@ static void pick_examples(struct learning *l, const double *y1, const double *y2
 	sections_scan(s, y1, y2, 0, n, (long long)n);
 	sections_end(s);
 	while (sections_first(s, &section)) {
-		long long from = section.begin > 0 ? section.begin : 0;
-		long long to = section.end < (long long)n ? section.end : (long long)n;
-		double energy = 0, merit;
-		int at;
+		long long begin = section.begin > 0 ? section.begin : 0;
+		long long end = section.end < (long long)n ? section.end : (long long)n;
+		long long pieces = 1 + (end - begin) / (6 * margin);
 
+		for (long long k = 0; k < pieces; k++)
+			offer_example(l, y1, y2, begin + (end - begin) * k / pieces,
+				begin + (end - begin) * (k + 1) / pieces, most,
+				2 * (double)margin, loud);
 		sections_take(s, section.end);
-		for (long long i = from; i < to; i++)
-			energy += y1[i] * y1[i] + y2[i] * y2[i] - 2;
-		/* Few pulses are worth more than loud ones. */
-		merit = (double)(to - from) < 4.5 * (double)margin
-				? energy
-				: energy * 1e-3 * (double)margin / (double)(to - from);
-		if ((double)(to - from) > 12 * (double)margin)
-			to = from + (long long)(12 * (double)margin);
-		for (at = l->count; at > 0 && loud[at - 1] < merit; at--)
-			if (at < EXAMPLES_MAX) {
-				loud[at] = loud[at - 1];
-				l->example[at] = l->example[at - 1];
-			}
-		if (at < EXAMPLES_MAX) {
-			loud[at] = merit;
-			l->example[at].y1 = y1 + from;
-			l->example[at].y2 = y2 + from;
-			l->example[at].n = (size_t)(to - from);
-			l->count += l->count < EXAMPLES_MAX;
-		}
 	}
 	sections_free(s);
 }
@@ -259,77 +269,130 @@ static void scene_of(const struct calibration *c, struct joint_scene *scene)
 	scene->offset = 1;
 }
 
-/* Shape, duration and gain by joint fits. */
-static enum calibrate_status learn_pulse(const struct calibrate_par *par,
-	const double *y1, const double *y2, size_t n, double lag, struct calibration *c)
+/* Duration and gain to least chi-square, unless they are known. */
+static void tune(
+	const struct calibrate_par *par, struct learning *l, double step, int rounds)
 {
-	struct learning l = { .joint = joint_new() };
-	double best = INFINITY, noise_ratio = c->noise[0] / c->noise[1];
-	double duration = c->duration, gain = c->gain;
+	if (isnan(par->duration))
+		minimise(l, &l->scene.duration, step, rounds);
+	if (isnan(par->gain))
+		minimise(l, &l->scene.gain, step, rounds);
+}
+
+static int set_shape(struct calibration *c, int pulse)
+{
+	shape_free(c->shape);
+	c->pulse = pulse;
+	c->shape = shape_new((enum pulse_shape)pulse);
+	return c->shape != NULL;
+}
+
+/* Which shape describes some clear examples best, and its rough duration; low: lag of
+ * the lowest autocorrelation. */
+static enum calibrate_status learn_shape(const struct calibrate_par *par,
+	struct learning *l, const double *y1, const double *y2, size_t n, double low,
+	struct calibration *c)
+{
+	double best = INFINITY, duration = c->duration, gain = c->gain;
 	int pulse = c->pulse;
 
-	if (!l.joint)
-		return CALIBRATE_MEMORY;
 	for (int p = PULSE_SINE; p <= PULSE_LORENTZ; p++) {
 		double chi2;
 
 		if (par->pulse != CALIBRATE_ANY_PULSE && p != par->pulse)
 			continue;
-		shape_free(c->shape);
-		c->shape = shape_new((enum pulse_shape)p);
-		if (!c->shape) {
-			joint_free(l.joint);
+		if (!set_shape(c, p))
 			return CALIBRATE_MEMORY;
-		}
-		c->duration = isnan(par->duration) ? lag / shape_lowest_lag(c->shape)
+		c->duration = isnan(par->duration) ? low / shape_lowest_lag(c->shape)
 						   : par->duration;
-		pick_examples(&l, y1, y2, n, c);
-		if (l.count == 0)
+		pick_examples(l, y1, y2, n, EXAMPLES_MAX / 2, c);
+		if (l->count == 0)
 			continue;
-		scene_of(c, &l.scene);
-		examples_fit(&l, 0.05);
-		if (isnan(par->duration))
-			minimise(&l, &l.scene.duration, 0.1, 3);
-		if (isnan(par->gain))
-			minimise(&l, &l.scene.gain, 0.1, 2);
-		examples_fit(&l, 0.01);
-		if (isnan(par->duration))
-			minimise(&l, &l.scene.duration, 0.01, 2);
-		if (isnan(par->gain))
-			minimise(&l, &l.scene.gain, 0.01, 2);
-		chi2 = examples_fit(&l, 0.01);
+		scene_of(c, &l->scene);
+		examples_fit(l, 0.05);
+		tune(par, l, 0.1, 3);
+		chi2 = examples_fit(l, 0.01);
 		if (chi2 < best) {
 			best = chi2;
 			pulse = p;
-			duration = l.scene.duration;
-			gain = l.scene.gain / noise_ratio;
-			c->chi2 = chi2 / (double)l.dof;
-			c->events = 0;
-			for (int i = 0; i < l.count; i++)
-				c->events += l.example[i].m;
+			duration = l->scene.duration;
+			gain = l->scene.gain * c->noise[1] / c->noise[0];
 		}
 	}
-	joint_free(l.joint);
-	shape_free(c->shape);
-	c->pulse = pulse;
 	c->duration = duration;
 	c->gain = gain;
-	c->shape = shape_new((enum pulse_shape)pulse);
-	return c->shape ? CALIBRATE_OK : CALIBRATE_MEMORY;
+	return set_shape(c, pulse) ? CALIBRATE_OK : CALIBRATE_MEMORY;
 }
 
-/* Range of delays and thresholds for the present duration and gain. */
-static void set_limits(const struct calibrate_par *par, struct calibration *c)
+/* Range of the delays seen, widened by half on either side. */
+static void learn_range(
+	const struct calibrate_par *par, const struct learning *l, struct calibration *c)
 {
-	double spread = par->spread * (double)c->shift,
-	       gain = c->gain * c->noise[0] / c->noise[1];
+	double lo = INFINITY, hi = -INFINITY, margin;
 
-	if (spread < 0.05 * c->duration)
-		spread = 0.05 * c->duration;
+	for (int i = 0; i < l->count; i++)
+		for (int k = 0; k < l->example[i].m; k++) {
+			const struct joint_pulse *p = &l->example[i].pulse[k];
+
+			lo = fmin(lo, p->delta);
+			hi = fmax(hi, p->delta);
+		}
+	margin = fmax(0.5 * (hi - lo), 0.02 * c->duration);
+	if (isnan(par->spread) && c->events >= RANGE_EVENTS) {
+		c->delta_min = fmax(c->delta_min, lo - margin);
+		c->delta_max = fmin(c->delta_max, hi + margin);
+	}
+}
+
+/* Shape, duration, gain and range of delays by joint fits. */
+static enum calibrate_status learn_pulse(const struct calibrate_par *par,
+	const double *y1, const double *y2, size_t n, double low, struct calibration *c)
+{
+	enum { ROUNDS = 8 };
+	struct learning l = { .joint = joint_new(), .misfit = c->misfit };
+	enum calibrate_status status =
+		l.joint ? learn_shape(par, &l, y1, y2, n, low, c) : CALIBRATE_MEMORY;
+
+	if (status == CALIBRATE_OK) {
+		pick_examples(&l, y1, y2, n, EXAMPLES_MAX, c);
+		scene_of(c, &l.scene);
+	}
+	/* The closer duration and gain come, the smaller a pulse may be that is not just a
+	 * misfit of its neighbour. */
+	for (int k = 0; status == CALIBRATE_OK && l.count && k < ROUNDS; k++) {
+		double before = c->chi2;
+
+		c->chi2 = examples_fit(&l, fmax(0.01 * pow(0.3, k), 3e-4));
+		if (k > 2 && (c->chi2 < 1.2 || c->chi2 > 0.95 * before))
+			break;
+		tune(par, &l, 0.01 / (1 + k), 2);
+		c->duration = l.scene.duration;
+		c->gain = l.scene.gain * c->noise[1] / c->noise[0];
+	}
+	c->events = 0;
+	for (int i = 0; i < l.count; i++)
+		c->events += l.example[i].m;
+	learn_range(par, &l, c);
+	joint_free(l.joint);
+	return status;
+}
+
+/* Range of the delays as far as it is known. */
+static void set_range(const struct calibrate_par *par, struct calibration *c)
+{
+	double share = isnan(par->spread) ? 0.1 : par->spread;
+	double spread = fmax(share * (double)c->shift, 0.05 * c->duration);
+
 	c->delta_min = -spread;
 	c->delta_max = spread;
-	c->drop =
-		calibrate_drop(par->false_alarm, c->shape, c->duration, gain, 2 * spread);
+}
+
+static void set_thresholds(const struct calibrate_par *par, struct calibration *c)
+{
+	double gain = c->gain * c->noise[0] / c->noise[1];
+
+	c->drop = calibrate_drop(par->false_alarm, c->shape, c->duration, gain,
+		c->delta_max - c->delta_min);
 	/* Next to a pulse the search is over some 40 cells: 25 means 1e-3 false ones. */
 	c->drop_near = c->drop < 25 ? c->drop : 25;
 }
@@ -427,8 +490,9 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 		c->gain = v1 > 0 && v2 > 0 ? sqrt(v2 / v1) : 1;
 	}
 	normalise(c, y1, y2, rest);
-	set_limits(par, c);
-	c->misfit = 0.002;
+	set_range(par, c);
+	set_thresholds(par, c);
+	c->misfit = 3e-4;
 	if (learn_pulse(par, y1, y2, rest, low, c) != CALIBRATE_OK)
 		return CALIBRATE_MEMORY;
 	if (c->chi2 > 4) {
@@ -444,11 +508,12 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 			y2[i] /= n2;
 		}
 		c->misfit = 0.15;
-		set_limits(par, c);
+		set_range(par, c);
+		set_thresholds(par, c);
 		if (learn_pulse(par, y1, y2, rest, low, c) != CALIBRATE_OK)
 			return CALIBRATE_MEMORY;
 	}
-	set_limits(par, c);
+	set_thresholds(par, c);
 	return CALIBRATE_OK;
 }
 

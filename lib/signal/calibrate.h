@@ -21,11 +21,11 @@ enum { CALIBRATE_ANY_PULSE = -1, CALIBRATE_FIND_TONES = -1 };
 
 /* What is known; NAN, -1 where it is to be found. */
 struct calibrate_par {
-	double lag;              /* samples */
-	double duration;         /* of a pulse of the mean velocity, samples */
-	double gain;             /* sensor 2 over sensor 1 */
-	int pulse;               /* enum pulse_shape or CALIBRATE_ANY_PULSE */
-	double spread;           /* delays within lag (1 +- spread) */
+	double lag;      /* samples */
+	double duration; /* of a pulse of the mean velocity, samples */
+	double gain;     /* sensor 2 over sensor 1 */
+	int pulse;       /* enum pulse_shape or CALIBRATE_ANY_PULSE */
+	double spread;   /* delays within lag (1 +- spread); NAN: learned, within 0.1 */
 	double false_alarm;      /* expected false particles per sample of noise */
 	int tones;               /* number in omega, or CALIBRATE_FIND_TONES */
 	double omega[TONES_MAX]; /* rad per sample */

@@ -370,10 +370,11 @@ static struct joint_pulse moved(const struct joint_scene *s,
 	const struct joint_pulse *old, const double *move, size_t n)
 {
 	struct joint_pulse p = *old;
-	double reach = 0.25 * s->duration, span = s->delta_max - s->delta_min;
-	double t2 = old->t + old->delta + clamp(move[1], -reach, reach);
+	double step = 0.25 * s->duration, span = s->delta_max - s->delta_min;
+	double reach = 0.9 * shape_reach(s->shape) * s->duration;
+	double t2 = old->t + old->delta + clamp(move[1], -step, step);
 
-	p.t = clamp(old->t + clamp(move[0], -reach, reach), -reach, (double)n + reach);
+	p.t = clamp(old->t + clamp(move[0], -step, step), -reach, (double)n + reach);
 	p.delta = clamp(t2 - p.t, s->delta_min - 0.1 * span, s->delta_max + 0.1 * span);
 	p.a = clamp(old->a + move[2], 0.1 * old->a, 10 * old->a);
 	return p;

@@ -56,7 +56,7 @@ void sections_free(struct sections *s)
 
 long sections_reach(const struct sections *s)
 {
-	return -s->first + 1;
+	return (-s->first > s->margin ? -s->first : s->margin) + 1;
 }
 
 static double filter_at(const struct sections *s, const double *y, size_t n, long long at)

@@ -23,7 +23,7 @@ struct sections *sections_new(
 	const struct shape *shape, double duration, double threshold, long margin);
 void sections_free(struct sections *s);
 
-/* Samples a scan needs on either side of a point. */
+/* Samples a scan needs on either side of a point, and may yet put into a section. */
 long sections_reach(const struct sections *s);
 
 /* Scans the record, held as y1, y2[0 .. n) from sample base on, up to sample limit (not
