@@ -45,10 +45,11 @@ double calibrate_drop(double rate, const struct shape *shape, double duration,
 	return hi * hi;
 }
 
-int calibrate_clean(const struct calibration *c, double *x, size_t n)
+int calibrate_clean(const struct calibration *c, double *x, size_t n, double *change)
 {
 	double before[2 * TONES_MAX + 1], after[2 * TONES_MAX + 1], at = 0;
 	size_t hop = c->tone_hop < n ? c->tone_hop : n;
+	double squares = 0, count = 0;
 
 	for (size_t middle = hop / 2, done = 0; done < n; middle += hop) {
 		size_t from = middle > hop ? middle - hop : 0;
@@ -60,9 +61,11 @@ int calibrate_clean(const struct calibration *c, double *x, size_t n)
 			    to - (from > done ? from : done),
 			    (double)(from > done ? from : done), c->tones, c->omega,
 			    after, NULL, NULL))
-			return n < 16;
+			return 0;
 		if (done == 0)
 			memcpy(before, after, sizeof before);
+		for (int k = 1; done > 0 && k <= 2 * c->tones; k++, count++)
+			squares += (after[k] - before[k]) * (after[k] - before[k]);
 		until = middle < n ? middle : n;
 		if (middle + hop / 2 >= n)
 			until = n;
@@ -72,6 +75,7 @@ int calibrate_clean(const struct calibration *c, double *x, size_t n)
 		at = (double)middle;
 		done = until;
 	}
+	*change = count > 0 ? squares / count : INFINITY;
 	return 1;
 }
 
@@ -357,8 +361,8 @@ static enum calibrate_status learn_pulse(const struct calibrate_par *par,
 		pick_examples(&l, y1, y2, n, EXAMPLES_MAX, c);
 		scene_of(c, &l.scene);
 	}
-	/* The closer duration and gain come, the smaller a pulse may be that is not just a
-	 * misfit of its neighbour. */
+	/* The closer duration and gain come, the smaller a pulse may be that is not just
+	 * a misfit of its neighbour. */
 	for (int k = 0; status == CALIBRATE_OK && l.count && k < ROUNDS; k++) {
 		double before = c->chi2;
 
@@ -435,7 +439,7 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 	double *y2, size_t n, struct calibration *c, double *r)
 {
 	size_t max_lag = n / 2, rest;
-	double lag = par->lag, low;
+	double lag = par->lag, low, change[2];
 
 	if (par->tones == CALIBRATE_FIND_TONES) {
 		c->tones = tones_find(y1, y2, n, TONES_MAX, c->omega);
@@ -449,7 +453,8 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 		memcpy(c->omega, par->omega, sizeof c->omega);
 	}
 	c->tone_hop = n < 8192 ? n : 4096;
-	if (!calibrate_clean(c, y1, n) || !calibrate_clean(c, y2, n))
+	if (!calibrate_clean(c, y1, n, &change[0]) ||
+		!calibrate_clean(c, y2, n, &change[1]))
 		return CALIBRATE_MEMORY;
 	for (int k = 0; k < 2; k++) {
 		const double *y = k ? y2 : y1;
@@ -489,6 +494,8 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 
 		c->gain = v1 > 0 && v2 > 0 ? sqrt(v2 / v1) : 1;
 	}
+	c->tone_variance = fmax(change[0] / (c->noise[0] * c->noise[0]),
+		change[1] / (c->noise[1] * c->noise[1]));
 	normalise(c, y1, y2, rest);
 	set_range(par, c);
 	set_thresholds(par, c);

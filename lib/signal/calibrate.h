@@ -36,8 +36,10 @@ struct calibration {
 	double correlation; /* of the channels at that lag */
 	int tones;
 	double omega[TONES_MAX];
-	size_t tone_hop; /* samples between two fits of the tones */
-	double noise[2]; /* standard deviations */
+	size_t tone_hop;      /* samples between two fits of the tones */
+	double tone_variance; /* of a coefficient from one hop to the next, units of
+				 noise^2 */
+	double noise[2];      /* standard deviations */
 	struct shape *shape;
 	int pulse;             /* which of enum pulse_shape */
 	double duration, gain; /* as above */
@@ -72,7 +74,8 @@ void calibration_clear(struct calibration *c);
 double calibrate_drop(double rate, const struct shape *shape, double duration,
 	double gain, double width);
 
-/* Takes tones (and the mean) from a whole record. */
-int calibrate_clean(const struct calibration *c, double *x, size_t n);
+/* Takes tones (and the mean) from a whole record; *change receives the mean square change
+ * of their coefficients from hop to hop, INFINITY where there is but one. */
+int calibrate_clean(const struct calibration *c, double *x, size_t n, double *change);
 
 #endif

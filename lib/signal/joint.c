@@ -17,13 +17,15 @@ struct joint {
 	size_t capacity; /* samples */
 	size_t support;  /* samples one pulse may touch */
 	size_t n;
-	double *e[2];      /* record less pulses, tones still in it */
-	double *r[2];      /* e without tones and offset */
-	int basis;         /* orthonormal vectors spanning tones and offset */
-	double *q;         /* basis * n */
-	double *memory;    /* columns of all pulses */
-	double *scratch;   /* three of support */
-	double *filter[2]; /* matched filter on the coarse grid */
+	double *e[2];            /* record less pulses, tones still in it */
+	double *r[2];            /* e without tones and offset */
+	int basis;               /* orthonormal vectors spanning tones and offset */
+	double *q;               /* basis * n */
+	double share[BASIS_MAX]; /* of each that is projected out: 1 if nothing is known
+				  */
+	double *memory;          /* columns of all pulses */
+	double *scratch;         /* three of support */
+	double *filter[2];       /* matched filter on the coarse grid */
 	struct column col[JOINT_PULSES_MAX + 1][2];
 	double *h; /* NPAR * NPAR: normal matrix or its Cholesky factor */
 	double *factor;
@@ -165,23 +167,28 @@ static void make_basis(struct joint *j, const struct joint_scene *s)
 		w = 1 / sqrt(w);
 		for (size_t i = 0; i < n; i++)
 			v[i] *= w;
-		j->basis++;
+		w = 0.5 * (double)n * s->tone_variance;
+		j->share[j->basis++] = k < 0 || isinf(w) ? 1 : w / (1 + w);
 	}
 }
 
-/* r = e without its tones; returns chi-square. */
+/* r = e without its tones; returns chi-square.  With s^2 the variance of a coefficient
+ * known beforehand, the covariance of the record is 1 + s^2 q q^T, its inverse
+ * 1 - share q q^T with share = s^2 / (1 + s^2), and chi-square e^T r. */
 static double project(struct joint *j)
 {
 	double chi2 = 0;
 
 	for (int c = 0; c < 2; c++) {
 		memcpy(j->r[c], j->e[c], j->n * sizeof(double));
+		chi2 += dot(j->e[c], j->e[c], j->n);
 		for (int b = 0; b < j->basis; b++) {
 			const double *q = j->q + (size_t)b * j->n;
+			double part = dot(q, j->r[c], j->n);
 
-			add_scaled(j->r[c], -dot(q, j->r[c], j->n), q, j->n);
+			add_scaled(j->r[c], -j->share[b] * part, q, j->n);
+			chi2 -= j->share[b] * part * part;
 		}
-		chi2 += dot(j->r[c], j->r[c], j->n);
 	}
 	return chi2;
 }
@@ -288,6 +295,7 @@ static void make_normal(struct joint *j, const int *set, int m)
 				g += dot(col->d[u], j->r[c] + col->first, col->n);
 				for (int b = 0; b < j->basis; b++)
 					j->bq[(PAR * x + u) * nb + c * j->basis + b] =
+						sqrt(j->share[b]) *
 						dot(col->d[u],
 							j->q + (size_t)b * j->n +
 								col->first,
@@ -762,9 +770,9 @@ static int scene_is_sane(
 {
 	if (!s->shape || !(s->duration >= 4) || !(s->transit > 0) || !(s->gain > 0) ||
 		!(s->delta_min <= s->delta_max) || !(s->drop >= 0) ||
-		!(s->drop_near >= 0) || s->tones < 0 || s->tones > JOINT_TONES_MAX ||
-		s->max_pulses < 0 || s->max_pulses > JOINT_PULSES_MAX || m < 0 ||
-		m > s->max_pulses)
+		!(s->drop_near >= 0) || !(s->tone_variance >= 0) || s->tones < 0 ||
+		s->tones > JOINT_TONES_MAX || s->max_pulses < 0 ||
+		s->max_pulses > JOINT_PULSES_MAX || m < 0 || m > s->max_pulses)
 		return 0;
 	/* The slack of moved() must keep T positive. */
 	if (s->delta_min - 0.1 * (s->delta_max - s->delta_min) <= -s->transit)
@@ -806,10 +814,14 @@ static void finish(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int m, double chi2, int full,
 	struct joint_result *result)
 {
+	double taken = 0;
+
 	qsort(pulses, (size_t)m, sizeof *pulses, by_time);
 	fill_covariance(j, s, pulses, m);
 	result->chi2 = chi2;
-	result->dof = 2 * (long)j->n - 2 * j->basis - PAR * m;
+	for (int b = 0; b < j->basis; b++)
+		taken += 2 * j->share[b];
+	result->dof = 2 * (long)j->n - (long)(taken + 0.5) - PAR * m;
 	if (result->dof < 1)
 		result->dof = 1;
 	result->full = full;

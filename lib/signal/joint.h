@@ -11,7 +11,7 @@
  * exact derivatives (orthogonal matching pursuit with Newton steps: Mamandipoor,
  * Ramasamy, Madhow, IEEE Trans. Signal Process. 64, 2016), until no further pulse takes
  * away enough chi-square; then all are fitted together.  Tones and offset are linear
- * and are projected out exactly.
+ * and are projected out exactly, as far as they are not known beforehand.
  *
  *	struct joint *j = joint_new();
  *	int m = 0;
@@ -40,6 +40,10 @@ struct joint_scene {
 	int offset;       /* 1: a constant is fitted too */
 	int tones;
 	double omega[JOINT_TONES_MAX]; /* rad per sample */
+	/* Variance of each tone's cosine and sine about zero, known beforehand (tones
+	 * that were taken from the record leave little); INFINITY: they may be anything.
+	 */
+	double tone_variance;
 };
 
 struct joint_pulse {

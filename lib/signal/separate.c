@@ -220,7 +220,8 @@ static enum separate_status calibrate_now(struct separate *s)
 		.misfit = c->misfit,
 		.max_pulses = JOINT_PULSES_MAX,
 		.offset = 1,
-		.tones = c->tones };
+		.tones = c->tones,
+		.tone_variance = c->tone_variance };
 	memcpy(s->scene.omega, c->omega, (size_t)c->tones * sizeof(double));
 	reach = 2 * shape_reach(c->shape) * c->duration;
 	if (s->par.window < (size_t)(6 * reach))

@@ -17,7 +17,8 @@ static struct joint_scene make_scene(const struct shape *shape)
 		.delta_max = 7,
 		.drop = 33,
 		.drop_near = 25,
-		.max_pulses = 20 };
+		.max_pulses = 20,
+		.tone_variance = INFINITY };
 }
 
 static void add_noise(double *y, unsigned scene, unsigned channel)
