@@ -32,7 +32,7 @@ static const struct opt opts[] = {
 		"take the delay of half the order out", 0, 0 },
 	{ 'l', "lines", OPT_LIST, UNIT_FREQUENCY, &removed, 0, 1e12, "F,F,...",
 		"take narrow lines out before the filter, by least squares", 0, 0 },
-	{ 'm', "memory", OPT_NUM, UNIT_TIME, &memory, 0, 1e9, "T",
+	{ 'm', "line-window", OPT_NUM, UNIT_TIME, &memory, 0, 1e9, "T",
 		"window of the least squares (default 2 s, at most 131072 frames)", 0,
 		0 },
 	{ 'y', "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",

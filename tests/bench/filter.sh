@@ -9,7 +9,7 @@
 #                    rms of the output; the filter chooses its transform
 # block     frames   the same for order 200 by the block --latency asks for
 # lines     seconds  rms of what --lines leaves of 50, 150 and 250 Hz, over what it was,
-#                    among 30 particles a second and noise, by --memory
+#                    among 30 particles a second and noise, by --line-window
 # single    order    rounding of 32-bit output, order 200
 # peer      order    the same filter and record in another program: sox, scipy (lfilter,
 #                    oaconvolve), largest difference to bpfilter over the rms
@@ -110,10 +110,16 @@ all() {
 			bpfilter -p | column tap /dev/stdin >taps
 			sensorsim -u 50um:150um -N 3000 -d 100 --noise 10mV -K 2e9 >x.au # within +-1
 			filter
-			seconds=$(for _ in 1 2 3 4 5; do
-				{ time -p sox -t au x.au -t au sox.au fir taps 2>/dev/null; } 2>&1 |
-					awk '/user|sys/ { s += $2 } END { print s }'
-			done | sort -g | sed -n 3p)
+			seconds=$($py - <<-END
+				import os, subprocess
+				def run():
+				    before = os.times()
+				    subprocess.run("sox -t au x.au -t au sox.au fir taps", shell=True)
+				    after = os.times()
+				    return sum(after[2:4]) - sum(before[2:4])
+				print("%.4g" % sorted(run() for _ in range(5))[2])
+			END
+			)
 			# sox takes the delay out
 			filter -z
 			row peer 200 "$(difference y.au sox.au)" "$seconds"
