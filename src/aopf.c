@@ -2,10 +2,11 @@
  */
 #include "life/adaptive.h"
 #include "life/predict.h"
+#include "life/runin.h"
 #include "shell/msg.h"
 #include "shell/opt.h"
+#include "shell/series.h"
 #include "shell/stats.h"
-#include "shell/tables.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,17 +17,18 @@ static const char *const orders[] = { "window", "insample", "all", NULL };
 static const char *const schemes[] = { "systematic", "stratified", "residual",
 	"multinomial", NULL };
 static const char *const models[] = { "average", "linear", "exponential", "power", "rate",
-	"grey", NULL };
+	"grey", "literal", NULL };
 static const char *const time_units[] = { "s", "min", "h", "d", NULL };
 static const double seconds[] = { 1, 60, 3600, 86400 };
 
-static double threshold = NAN, zero, skip, horizon, share = 0.5, freedom, process = NAN,
+static double threshold = NAN, zero, horizon, share = 0.5, freedom, process = NAN,
 	      noise = NAN, hysteresis = 0.03;
 static int direction = 2, scheme, model, time_unit;
 static long persist = 1, particles = 300, largest = 60, window = 50, seed = 1;
-static struct opt_choice order;
+static const char *const skips[] = { "auto", NULL };
+static struct opt_choice order, skip = { -1, 0 };
 static struct opt_list levels = { 3, { 0.05, 0.5, 0.95 } }, range;
-static const char *unit_column;
+static const char *unit_column, *fleet_file;
 
 static const struct opt opts[] = {
 	{ 'y', "threshold", OPT_NUM, UNIT_NONE, &threshold, -1e300, 1e300, "Y",
@@ -40,8 +42,8 @@ static const struct opt opts[] = {
 	{ 'z', "zero", OPT_NUM, UNIT_NONE, &zero, -1e300, 1e300, "Y",
 		"value of y without any degradation, the zero of the grey model", NULL,
 		0 },
-	{ 'T', "skip", OPT_NUM, UNIT_TIME, &skip, 0, 1e300, "T",
-		"run-in left out of long-term models, from the first row", NULL, 0 },
+	{ 'T', "skip", OPT_CHOICE, UNIT_TIME, &skip, 0, 1e300, "T|auto",
+		"run-in left out of long-term models, from the first row", skips, 0 },
 	{ 'n', "order", OPT_CHOICE, UNIT_COUNT, &order, 4, 1000, "N|window|insample|all",
 		"order of the grey model, or how it is chosen", orders, 0 },
 	{ 'P', "max-order", OPT_INT, UNIT_COUNT, &largest, 4, 1000, "N",
@@ -70,12 +72,14 @@ static const struct opt opts[] = {
 		"observation noise, in units of y (default from second differences)",
 		NULL, 0 },
 	{ 'm', "model", OPT_WORD, UNIT_NONE, &model, 0, 0,
-		"average|linear|exponential|power|rate|grey", "long-term model", models,
-		0 },
+		"average|linear|exponential|power|rate|grey|literal", "long-term model",
+		models, 0 },
 	{ 'H', "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, 1e300, "T",
 		"longest life ahead; 0: ten times the time so far", NULL, 0 },
 	{ 'q', "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "Q,Q,...",
 		"levels of the quantiles of remaining life", NULL, 0 },
+	{ 'F', "fleet", OPT_TEXT, UNIT_NONE, &fleet_file, 0, 0, "FILE",
+		"table of earlier units that reached the threshold: unit t y", NULL, 0 },
 	{ 'u', "unit", OPT_TEXT, UNIT_NONE, &unit_column, 0, 0, "COLUMN",
 		"column that tells units apart", NULL, 0 },
 	{ 't', "time-unit", OPT_WORD, UNIT_NONE, &time_unit, 0, 0, "s|min|h|d",
@@ -90,23 +94,26 @@ static const struct prog prog = { "aopf",
 	"table: t y (or y alone: t is the row, from 0)",
 	"table: one row per row read, flushed at once", opts };
 
+static struct fleet *fleet; /* NULL without --fleet */
+
 /* What is kept of one unit between its rows. */
 struct unit_state {
-	char *name;
 	struct adaptive *adaptive;
 	struct predict
-		*predict;   /* NULL without a threshold, and before the first value */
-	double first, last; /* times */
-	long rows, beyond;  /* the latter: successive values past the threshold */
+		*predict; /* NULL without a threshold, and before the first value */
+	struct runin runin;
+	double first; /* time */
+	long rows;
+	long beyond; /* successive values past the threshold */
 	int failed;
 };
 
 struct units {
 	struct unit_state *unit;
-	uint32_t n;
+	int n;
 };
 
-static struct unit_state *find_unit(struct units *units, const char *name)
+static struct unit_state *find_unit(struct units *units, int number)
 {
 	struct adaptive_par par = {
 		.filter = { (size_t)particles, 0, (enum resampling)scheme, share,
@@ -117,67 +124,87 @@ static struct unit_state *find_unit(struct units *units, const char *name)
 		.process = process,
 		.noise = noise,
 		.seed = (uint64_t)seed,
-		.realisation = units->n,
+		.realisation = (uint32_t)number,
 	};
 	struct unit_state *u;
 
-	for (uint32_t i = 0; i < units->n; i++)
-		if (strcmp(units->unit[i].name, name) == 0)
-			return &units->unit[i];
-	units->unit = xrealloc(units->unit, units->n + 1, sizeof *units->unit);
+	if (number < units->n)
+		return &units->unit[number];
+	units->unit = xrealloc(units->unit, (size_t)number + 1, sizeof *units->unit);
 	u = &units->unit[units->n++];
-	*u = (struct unit_state){ .name = xstrdup(name), .adaptive = adaptive_new(&par) };
+	*u = (struct unit_state){ .adaptive = adaptive_new(&par) };
 	if (!u->adaptive)
 		die(EXIT_RUN, "no memory for %ld particles", particles);
 	return u;
 }
 
+static struct fleet *read_fleet(void)
+{
+	struct series *in = series_open(fleet_file, unit_column ? unit_column : "unit");
+	struct fleet *f = fleet_new(threshold, 1 - 2 * direction);
+	int failed = f != NULL, n;
+
+	while (failed && series_next(in))
+		if (!isnan(series_value(in)))
+			failed = fleet_add(
+				f, series_unit(in), series_time(in), series_value(in));
+	n = series_units(in);
+	failed = failed ? fleet_build(f) : -1;
+	if (failed < 0)
+		die(EXIT_RUN, "no memory for the fleet");
+	if (failed < FLEET_MIN)
+		die(EXIT_RUN, "%s: %d of %d units reach the threshold; want %d or more",
+			fleet_file, failed, n, (int)FLEET_MIN);
+	stats_set("fleet_units", failed);
+	stats_set("fleet_units_left_out", n - failed);
+	series_close(in);
+	return f;
+}
+
 /* Long-term prediction begins with the first value, which may tell the direction. */
-static struct predict *start_predict(double y, uint32_t realisation)
+static void start_predict(struct unit_state *u, double y, int number)
 {
 	struct predict_par par = {
 		.model = (enum predict_model)model,
 		.threshold = threshold,
-		.zero = zero,
 		.direction =
 			direction == 2 ? (y <= threshold ? 1 : -1) : 1 - 2 * direction,
+		.zero = zero,
 		.horizon = horizon / seconds[time_unit],
-		.draws = 500,
+		.fleet = fleet,
+		.adaptive = u->adaptive,
+		.draws = model == PREDICT_LITERAL ? (int)particles : 500,
 		.seed = (uint64_t)seed,
-		.realisation = realisation,
+		.realisation = (uint32_t)number,
 	};
-	struct predict *p = predict_new(&par);
 
-	if (!p)
+	u->predict = predict_new(&par);
+	if (!u->predict)
 		die(EXIT_RUN, "no memory for the prediction");
-	return p;
+	u->runin.direction = par.direction;
 }
 
-static void check_row(
-	const struct unit_state *u, const struct table_in *in, double t, double y)
+/* What the long-term model is told of a row. */
+static void learn(
+	struct unit_state *u, double t, double y, const struct adaptive_row *row)
 {
-	const char *named = unit_column ? u->name : "", *blank = unit_column ? ": " : "";
-
-	if (!isfinite(t))
-		die(EXIT_RUN, "%s: line %ld: %s%stime is missing or not finite",
-			table_name(in), table_line(in), named, blank);
-	if (isinf(y))
-		die(EXIT_RUN, "%s: line %ld: %s%sy is infinite", table_name(in),
-			table_line(in), named, blank);
-	if (u->rows > 0 && t <= u->last)
-		die(EXIT_RUN,
-			"%s: line %ld: %s%stime %.17g %s %.17g: sort by time, once each",
-			table_name(in), table_line(in), named, blank, t,
-			t < u->last ? "comes after" : "comes twice, after", u->last);
+	if (skip.word == 0 && !isnan(y) && runin_add(&u->runin, y, row->noise)) {
+		predict_restart(u->predict);
+		stats_add("run_ins", 1);
+	}
+	if (skip.word == 0 || t - u->first >= skip.value / seconds[time_unit])
+		predict_add(u->predict, t, y, row->state + zero);
+	else
+		stats_add("rows_skipped", 1);
 }
 
-static void put_life(struct unit_state *u, struct table_out *out, double y, int up)
+static void put_life(struct unit_state *u, struct table_out *out, double y)
 {
 	double q[OPT_LIST_MAX], never = NAN;
 
 	if (!isnan(y))
-		u->beyond = up * (y - threshold) >= 0 ? u->beyond + 1 : 0;
-	u->failed |= u->beyond >= persist;
+		u->beyond = u->runin.direction * (y - threshold) >= 0 ? u->beyond + 1 : 0;
+	u->failed |= u->predict && u->beyond >= persist;
 	for (int i = 0; i < levels.n; i++)
 		q[i] = u->failed ? 0 : NAN;
 	if (u->failed)
@@ -189,17 +216,16 @@ static void put_life(struct unit_state *u, struct table_out *out, double y, int 
 	table_put(out, never);
 }
 
-static void step(
-	struct unit_state *u, uint32_t number, double t, double y, struct table_out *out)
+static void step(struct unit_state *u, const struct series *in, struct table_out *out)
 {
+	double t = series_time(in), y = series_value(in);
 	struct adaptive_row row;
 
 	if (u->rows++ == 0)
 		u->first = t;
-	u->last = t;
 	adaptive_step(u->adaptive, t, y - zero, &row);
 	if (unit_column)
-		table_put_text(out, u->name);
+		table_put_text(out, series_unit_name(in));
 	table_put(out, t);
 	table_put(out, y);
 	table_put(out, row.grey + zero);
@@ -209,11 +235,10 @@ static void step(
 	table_put(out, row.ess);
 	if (!isnan(threshold)) {
 		if (!u->predict && !isnan(y))
-			u->predict = start_predict(y, number);
-		if (u->predict && !isnan(row.state) &&
-			t - u->first >= skip / seconds[time_unit])
-			predict_add(u->predict, t, y, row.state + zero);
-		put_life(u, out, y, direction == 1 ? -1 : 1);
+			start_predict(u, y, series_unit(in));
+		if (u->predict)
+			learn(u, t, y, &row);
+		put_life(u, out, y);
 	}
 	table_end_row(out);
 	table_flush(out);
@@ -242,7 +267,7 @@ static char *column_names(void)
 
 static void finish(struct units *units)
 {
-	for (uint32_t i = 0; i < units->n; i++) {
+	for (int i = 0; i < units->n; i++) {
 		struct unit_state *u = &units->unit[i];
 		const struct order *o = adaptive_order(u->adaptive);
 
@@ -255,54 +280,45 @@ static void finish(struct units *units)
 		stats_add("order_changes", (double)order_changes(o));
 		adaptive_free(u->adaptive);
 		predict_free(u->predict);
-		free(u->name);
 	}
 	free(units->unit);
 }
 
-int main(int argc, char **argv)
+static void check_options(void)
 {
-	int i, ct, cy, cu;
-	struct table_in *in;
-	struct table_out *out;
-	struct units units = { 0 };
-	char *cmd, *names;
-	long rows = 0;
-
-	order.word = ORDER_WINDOW;
-	i = opt_parse(&prog, argc, argv);
 	if (range.n == 1 || (range.n == 2 && range.v[0] > range.v[1]))
 		die(EXIT_USAGE, "--order-range: want LO:HI");
 	for (int k = 1; k < levels.n; k++)
 		if (levels.v[k] <= levels.v[k - 1])
 			die(EXIT_USAGE, "--levels: want rising levels");
-	in = table_open(argv[i]);
-	ct = table_find(in, "t");
-	cy = table_find(in, "y");
-	if (ct < 0 && cy < 0 && table_find(in, "1") == 0) {
-		ct = table_columns(in) > 1 ? 0 : -1;
-		cy = table_columns(in) > 1 ? 1 : 0;
-	}
-	if (cy < 0)
-		cy = table_need(in, "y");
-	cu = unit_column ? table_need(in, unit_column) : -1;
-	cmd = opt_cmd(table_key(in, "cmd"), NULL);
-	names = column_names();
-	out = table_create(NULL, cmd, table_key(in, "units"), names);
-	table_comment(out, "seed", "%ld", seed);
-	while (table_next(in)) {
-		struct unit_state *u =
-			find_unit(&units, cu < 0 ? "" : table_text(in, cu));
-		double t = ct < 0 ? (double)rows : table_number(in, ct);
-		double y = table_number(in, cy);
+	if (fleet_file && (isnan(threshold) || direction == 2))
+		die(EXIT_USAGE, "--fleet wants --threshold and --direction up or down");
+}
 
-		rows++;
-		check_row(u, in, t, y);
-		step(u, (uint32_t)(u - units.unit), t, y, out);
-	}
+int main(int argc, char **argv)
+{
+	struct series *in;
+	struct table_out *out;
+	struct units units = { 0 };
+	char *cmd, *names;
+	int i;
+
+	order.word = ORDER_WINDOW;
+	i = opt_parse(&prog, argc, argv);
+	check_options();
+	if (fleet_file)
+		fleet = read_fleet();
+	in = series_open(argv[i], unit_column);
+	cmd = opt_cmd(table_key(series_table(in), "cmd"), NULL);
+	names = column_names();
+	out = table_create(NULL, cmd, table_key(series_table(in), "units"), names);
+	table_comment(out, "seed", "%ld", seed);
+	while (series_next(in))
+		step(find_unit(&units, series_unit(in)), in, out);
 	finish(&units);
+	fleet_free(fleet);
 	table_done(out);
-	table_close(in);
+	series_close(in);
 	free(cmd);
 	free(names);
 	return shell_done(0);

@@ -110,6 +110,50 @@ is "0 once the threshold is passed" "$(cat r)" 0
 aopf -y 1 -d down exp.tsv | column p_no_crossing /dev/stdin | tail -1 >r
 is "mass that never crosses is reported" "$(cat r)" 1
 
+ok "literal recursion" aopf -y 2.8 -m literal -N 50 exp.tsv
+column rul_q50 out | tail -1 >r
+near "which carries an exponential on" "$(cat r)" "$(awk 'BEGIN { print log(2.8 / 1.5) / 0.01 - 39 }')" 1
+
+# Each model on the series it is made for, without noise: the end is at t = 100.
+for shape in 'linear t / 100' 'exponential 0.3 * (exp(log(1 + 1 / 0.3) * t / 100) - 1)' \
+	'power 0.3 * ((1 - (1 - (1 + 1 / 0.3) ^ -0.5) * t / 100) ^ -2 - 1)' \
+	'rate -log(1 - (1 - exp(-3)) * t / 100) / 3' 'average t / 100'; do
+	model=${shape%% *}
+	awk "BEGIN { print \"t\\ty\"; for (t = 0; t < 51; t++) printf \"%d\\t%.15g\\n\", t, ${shape#* } }" >one.tsv
+	aopf -y 1 -d up -m "$model" one.tsv | column rul_q50 /dev/stdin | tail -1 >r
+	near "$model series, $model model" "$(cat r)" 50 0.6
+	aopf -y -1 -d down -m "$model" one.tsv >/dev/null
+	awk -F '\t' 'NR == 1 { print; next } { printf "%s\t%.15g\n", $1, -$2 }' one.tsv |
+		aopf -y -1 -d down -m "$model" | column rul_q50 /dev/stdin | tail -1 >down
+	is "$model downwards: the same" "$(cat down)" "$(cat r)"
+done
+
+# Run-in: a bump of a third of the way that dies out by t = 60
+awk 'BEGIN { print "t\ty"; for (t = 0; t < 400; t++)
+	printf "%d\t%.9g\n", t, t / 1000 + 0.3 * exp(-(t - 20) ^ 2 / 200) + 0.01 * sin(t * t) }' >bump.tsv
+aopf -y 1 -d up -T auto -S auto.stats bump.tsv >auto.tsv
+ok "the run-in is noticed" test "$(column run_ins auto.stats)" -ge 1
+near "and left out" "$(column rul_q50 auto.tsv | tail -1)" 601 30
+aopf -y 1 -d up -T 60 -S skip.stats bump.tsv >skip.tsv
+is "given, it is skipped" "$(column rows_skipped skip.stats)" 60
+near "with the same end" "$(column rul_q50 skip.tsv | tail -1)" 601 30
+aopf -y 2.8 -T auto -S exp.stats exp.tsv >/dev/null
+ok "a rising series has none" sh -c '! grep -q run_ins exp.stats'
+
+# Fleet: units of one shape and different speed have a fixed ratio of life left to age.
+awk 'BEGIN { print "unit\tt\ty"; for (u = 4; u <= 8; u++)
+	for (t = 1; t <= 10 * u; t++) printf "u%d\t%d\t%.15g\n", u, t, (t / u / 10) ^ 2 }' >fleet.tsv
+awk 'BEGIN { print "t\ty"; for (t = 1; t <= 30; t++) printf "%d\t%.15g\n", t, (t / 100) ^ 2 }' >unit.tsv
+aopf -y 1 -d up --fleet fleet.tsv unit.tsv >unit.out
+near "life by comparison with a fleet" "$(column rul_q50 unit.out | tail -1)" 70 1
+near "with a narrow interval, for they are alike" "$(column rul_q95 unit.out | tail -1)" 70 4
+ok "the whole lives before any age" test \
+	"$(column rul_q50 unit.out | head -1 | cut -d. -f1)" -ge 45
+grep -v '^u[5678]' fleet.tsv >two.tsv
+fails "too few earlier units" 1 "two.tsv: 1 of 1 units reach the threshold; want 3" \
+	aopf -y 1 -d up --fleet two.tsv unit.tsv
+fails "a fleet without a direction" 2 "fleet wants" aopf -y 1 --fleet fleet.tsv unit.tsv
+
 # Refusals
 printf 't\ty\n0\t1\n2\t1\n1\t1\n' >fall.tsv
 fails "a time that falls" 1 "fall.tsv: line 4: time 1 comes after 2" aopf fall.tsv

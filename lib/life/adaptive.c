@@ -19,7 +19,7 @@ struct fits {
 
 struct adaptive {
 	struct adaptive_par par;
-	struct draw *draw;
+	struct draw *draw, *draw_paths;
 	struct filter *filter;
 	struct order *order;
 	struct noise *noise;
@@ -54,6 +54,7 @@ struct adaptive *adaptive_new(const struct adaptive_par *par)
 	a->par = *par;
 	a->par.filter.depth = par->order.largest;
 	a->draw = draw_new(par->seed, par->realisation, RNG_FILTER);
+	a->draw_paths = draw_new(par->seed, par->realisation, RNG_PREDICT);
 	a->filter = a->draw ? filter_new(&a->par.filter, a->draw) : NULL;
 	a->order = order_new(&par->order);
 	a->noise = noise_new();
@@ -63,9 +64,9 @@ struct adaptive *adaptive_new(const struct adaptive_par *par)
 	a->past = calloc(depth, sizeof *a->past);
 	a->gap = calloc(depth, sizeof *a->gap);
 	a->line_up = calloc(depth, sizeof *a->line_up);
-	if (!a->filter || !a->order || !a->noise || !a->fits.tail || !a->fits.mean_u ||
-		!a->fits.mean_x || !a->fits.suu || !a->fits.sux || !a->fits.index ||
-		!a->mean || !a->past || !a->gap || !a->line_up) {
+	if (!a->draw_paths || !a->filter || !a->order || !a->noise || !a->fits.tail ||
+		!a->fits.mean_u || !a->fits.mean_x || !a->fits.suu || !a->fits.sux ||
+		!a->fits.index || !a->mean || !a->past || !a->gap || !a->line_up) {
 		adaptive_free(a);
 		return NULL;
 	}
@@ -77,6 +78,7 @@ void adaptive_free(struct adaptive *a)
 	if (!a)
 		return;
 	draw_free(a->draw);
+	draw_free(a->draw_paths);
 	filter_free(a->filter);
 	order_free(a->order);
 	noise_free(a->noise);
@@ -109,12 +111,13 @@ unsigned long adaptive_restarts(const struct adaptive *a)
 }
 
 /* One older point into the fit of every particle: grey_add() side by side. */
-static void add_lag(struct fits *f, size_t n, const double *x, double gap, int rows)
+static void add_lag(struct fits *f, size_t n, const double *x, const uint32_t *index,
+	double gap, int rows)
 {
 	double share = 1.0 / rows, rest = 1 - share;
 
 	for (size_t i = 0; i < n; i++) {
-		double v = x[f->index[i]], part = v * gap;
+		double v = x[index[i]], part = v * gap;
 		double du = f->tail[i] + 0.5 * part - f->mean_u[i];
 		double dx = v - f->mean_x[i];
 
@@ -126,33 +129,43 @@ static void add_lag(struct fits *f, size_t n, const double *x, double gap, int r
 	}
 }
 
-/* Prior mean of every particle: the grey forecast of its own last p states.  The oldest
- * of the window only opens the first interval (see grey.h). */
-static void forecast_particles(struct adaptive *a, int p, double h)
+static void clear_fits(struct fits *f, size_t n)
 {
-	struct fits *f = &a->fits;
-	size_t n = a->par.filter.particles, bytes = n * sizeof(double);
-	int depth = a->par.filter.depth, changed;
-	double span = 0;
+	memset(f->tail, 0, n * sizeof(double));
+	memset(f->mean_u, 0, n * sizeof(double));
+	memset(f->mean_x, 0, n * sizeof(double));
+	memset(f->suu, 0, n * sizeof(double));
+	memset(f->sux, 0, n * sizeof(double));
+}
 
-	memset(f->tail, 0, bytes);
-	memset(f->mean_u, 0, bytes);
-	memset(f->mean_x, 0, bytes);
-	memset(f->suu, 0, bytes);
-	memset(f->sux, 0, bytes);
-	for (int lag = 0; lag < p - 1; lag++) {
-		double gap = a->gap[(a->newest - lag + depth) % depth];
-
-		add_lag(f, n, filter_lag(a->filter, lag, f->index, &changed), gap,
-			lag + 1);
-		span += gap;
-	}
+/* What the fitted curves make of the interval h after the newest point. */
+static void forecast(const struct fits *f, size_t n, double span, double h, double *mean)
+{
 	for (size_t i = 0; i < n; i++) {
 		double rate = f->suu[i] > 0 ? f->sux[i] / f->suu[i] : 0;
 		double level = f->mean_x[i] + rate * (f->tail[i] - f->mean_u[i]);
 
-		a->mean[i] = grey_curve(level, rate, span + h, h);
+		mean[i] = grey_curve(level, rate, span + h, h);
 	}
+}
+
+/* Prior mean of every particle: the grey forecast of its own last p states.  The oldest
+ * of the window only opens the first interval (see grey.h). */
+static void forecast_particles(struct adaptive *a, int p, double h)
+{
+	size_t n = a->par.filter.particles;
+	int depth = a->par.filter.depth, changed;
+	double span = 0;
+
+	clear_fits(&a->fits, n);
+	for (int lag = 0; lag < p - 1; lag++) {
+		double gap = a->gap[(a->newest - lag + depth) % depth];
+		const double *x = filter_lag(a->filter, lag, a->fits.index, &changed);
+
+		add_lag(&a->fits, n, x, a->fits.index, gap, lag + 1);
+		span += gap;
+	}
+	forecast(&a->fits, n, span, h, a->mean);
 }
 
 static void hold_particles(struct adaptive *a)
@@ -331,4 +344,88 @@ void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *
 	row->grey *= a->scale;
 	row->prediction *= a->scale;
 	row->state *= a->scale;
+}
+
+/* Histories of the particles laid side by side, newest state at place 0 of the ring. */
+struct paths {
+	int p, newest;
+	double *x;       /* [p][N] */
+	uint32_t *index; /* 0 .. N - 1 */
+};
+
+static double *path_lag(const struct paths *s, size_t n, int lag)
+{
+	return s->x + (size_t)((s->newest - lag + s->p) % s->p) * n;
+}
+
+static int start_paths(struct adaptive *a, struct paths *s)
+{
+	size_t n = a->par.filter.particles;
+	int changed;
+
+	s->x = malloc((size_t)s->p * n * sizeof *s->x);
+	s->index = malloc(n * sizeof *s->index);
+	if (!s->x || !s->index)
+		return 0;
+	s->newest = s->p - 1;
+	for (int lag = 0; lag < s->p; lag++) {
+		const double *x = filter_lag(a->filter, lag, a->fits.index, &changed);
+
+		for (size_t i = 0; i < n; i++)
+			path_lag(s, n, lag)[i] = x[a->fits.index[i]];
+	}
+	for (size_t i = 0; i < n; i++)
+		s->index[i] = (uint32_t)i;
+	return 1;
+}
+
+/* One step of all paths; returns how many have still to cross. */
+static size_t step_paths(struct adaptive *a, struct paths *s, double process,
+	double limit, int direction, double time, double *life)
+{
+	size_t n = a->par.filter.particles, left = 0;
+	double gap = a->mean_gap, *old = path_lag(s, n, 0), *x;
+
+	clear_fits(&a->fits, n);
+	for (int lag = 0; lag < s->p - 1; lag++)
+		add_lag(&a->fits, n, path_lag(s, n, lag), s->index, gap, lag + 1);
+	forecast(&a->fits, n, gap * (s->p - 1), gap, a->mean);
+	s->newest = (s->newest + 1) % s->p;
+	x = path_lag(s, n, 0);
+	draw_normals(a->draw_paths, x, n);
+	for (size_t i = 0; i < n; i++) {
+		x[i] = a->mean[i] + process * x[i];
+		if (life[i] < INFINITY)
+			continue;
+		if (direction * (x[i] - limit) >= 0)
+			life[i] =
+				time + gap * fmax(0, (limit - old[i]) / (x[i] - old[i]));
+		else
+			left++;
+	}
+	return left;
+}
+
+int adaptive_lives(
+	struct adaptive *a, double threshold, int direction, int steps, double *life)
+{
+	struct paths s = { .p = order_chosen(a->order) };
+	double noise = observation_noise(a), process, limit = threshold / a->scale;
+	size_t n = a->par.filter.particles, left = n;
+	int good;
+
+	if (s.p > filter_depth(a->filter))
+		s.p = filter_depth(a->filter);
+	if (s.p < GREY_ORDER_MIN)
+		return 0;
+	process = process_noise(a, s.p, noise, a->mean_gap);
+	good = start_paths(a, &s);
+	for (size_t i = 0; good && i < n; i++)
+		life[i] = direction * (path_lag(&s, n, 0)[i] - limit) >= 0 ? 0 : INFINITY;
+	for (int k = 0; good && k < steps && left > 0; k++)
+		left = step_paths(
+			a, &s, process, limit, direction, k * a->mean_gap, life);
+	free(s.x);
+	free(s.index);
+	return good;
 }

@@ -45,6 +45,12 @@ struct adaptive *adaptive_new(const struct adaptive_par *par); /* NULL: no memor
 void adaptive_free(struct adaptive *a);
 /* Takes the next row; t must rise.  Any finite y will do. */
 void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *row);
+/* The literal recursion (4-21): every particle goes on step by step by its own model,
+ * refitted to its last states, with process noise, at the mean gap of the rows.  Fills
+ * life[N] with the time from the last row to its first passage of the threshold (linear
+ * within a step), INFINITY beyond steps.  0: no memory, or no model yet. */
+int adaptive_lives(
+	struct adaptive *a, double threshold, int direction, int steps, double *life);
 const struct order *adaptive_order(const struct adaptive *a);
 const struct filter *adaptive_filter(const struct adaptive *a);
 unsigned long adaptive_restarts(const struct adaptive *a); /* by the monitor */

@@ -1,5 +1,6 @@
 /* damage.c - see damage.h */
 #include "life/damage.h"
+#include "life/draw.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -86,6 +87,12 @@ struct damage *damage_new(unsigned families, double threshold, int direction)
 void damage_free(struct damage *d)
 {
 	free(d);
+}
+
+void damage_clear(struct damage *d)
+{
+	d->rows = 0;
+	d->gap = d->scored = 0;
 }
 
 long damage_rows(const struct damage *d)
@@ -321,12 +328,9 @@ static double inverse_gaussian(double mean, double variance, double z, double u)
 
 static double draw_life(const struct passage *p, struct table *t)
 {
-	double third = 2 / (9 * p->freedom), chi, sd, v, h, time, z;
+	double sd, v, h, time, z;
 
-	/* Wilson and Hilferty's chi^2 over its freedom */
-	chi = 1 - third + sqrt(third) * take(t);
-	chi = fmax(chi, 0.1);
-	sd = sqrt(p->variance / (chi * chi * chi));
+	sd = sqrt(p->variance * p->freedom / chi2_from_normal(p->freedom, take(t)));
 	v = -1;
 	for (int tries = 0; tries < 32 && !(v > 0); tries++) {
 		z = take(t);

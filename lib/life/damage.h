@@ -10,7 +10,6 @@
  *	exponential   (1 + D / d), d = 0.3: D itself grows exponentially
  *	power         (1 + D / d)^k, k = -1, -1/2, 1/2, 3/2, 2
  *	rate          e^{m D}, m = -3 .. 5: the log of the rate follows the damage
- * and, given a fleet, the mean path of its units (see damage_fleet()).
  *
  * In the coordinate h(D) = int_0^D dD' / g(D') each is a straight line, h = h_0 + v t, so
  * that (h, v) is followed by a Kalman filter that takes gaps of any length.  Each shape
@@ -42,6 +41,7 @@ struct damage;
  * the above.  NULL when out of memory. */
 struct damage *damage_new(unsigned families, double threshold, int direction);
 void damage_free(struct damage *d);
+void damage_clear(struct damage *d); /* forgets all rows */
 
 /* Takes an observation; t rises.  Those before the first on the good side of the
  * threshold are passed over. */

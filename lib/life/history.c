@@ -12,11 +12,16 @@ struct history {
 
 struct history *history_new(void)
 {
-	struct history *h = calloc(1, sizeof *h);
+	struct history *h = malloc(sizeof *h);
 
 	if (h)
-		h->width = 1;
+		history_clear(h);
 	return h;
+}
+
+void history_clear(struct history *h)
+{
+	*h = (struct history){ .width = 1 };
 }
 
 void history_free(struct history *h)

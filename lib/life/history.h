@@ -12,6 +12,7 @@ struct history;
 
 struct history *history_new(void); /* NULL when out of memory */
 void history_free(struct history *h);
+void history_clear(struct history *h);
 void history_add(struct history *h, double t, double x);
 /* The whole groups, oldest first, and after them the rows of the last, unfinished one
  * as a group of its own.  Returns their number; the arrays stay valid until the next

@@ -8,12 +8,16 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { DEVIATES = 5 }; /* normal deviates kept for each draw */
+enum {
+	DEVIATES = 5,        /* normal deviates kept for each draw */
+	LITERAL_STEPS = 1000 /* of the literal model: beyond them nothing crosses */
+};
 
 struct predict {
 	struct predict_par par;
 	struct history *history; /* of states, for the grey model */
 	struct damage *damage;   /* for the others */
+	struct climb climb;      /* what is compared with the fleet */
 	long rows;
 	double first, last; /* times */
 	double *z;          /* [DEVIATES draws] normal deviates */
@@ -23,7 +27,7 @@ struct predict {
 static unsigned families(enum predict_model model)
 {
 	static const unsigned of[] = { DAMAGE_ALL, DAMAGE_LINEAR, DAMAGE_EXPONENTIAL,
-		DAMAGE_POWER, DAMAGE_RATE, 0 };
+		DAMAGE_POWER, DAMAGE_RATE, 0, 0 };
 
 	return of[model];
 }
@@ -36,6 +40,7 @@ struct predict *predict_new(const struct predict_par *par)
 
 	if (p) {
 		p->par = *par;
+		p->climb.direction = par->direction;
 		p->history = history_new();
 		p->damage =
 			damage_new(families(par->model), par->threshold, par->direction);
@@ -68,10 +73,19 @@ void predict_add(struct predict *p, double t, double y, double state)
 	if (p->rows++ == 0)
 		p->first = t;
 	p->last = t;
+	if (p->par.fleet && !isnan(y))
+		climb_add(&p->climb, t, y);
 	if (p->par.model == PREDICT_GREY)
 		history_add(p->history, t, state - p->par.zero);
-	else if (!isnan(y))
+	else if (p->par.model != PREDICT_LITERAL && !isnan(y))
 		damage_add(p->damage, t, y);
+}
+
+void predict_restart(struct predict *p)
+{
+	history_clear(p->history);
+	damage_clear(p->damage);
+	p->climb = (struct climb){ .direction = p->par.direction };
 }
 
 /* Time from span on until the curve of means over a gap reaches the threshold. */
@@ -122,12 +136,36 @@ static void sort(double *v, int n)
 		}
 }
 
+/* Lives by comparison with the fleet, given that the unit still lives: draws that have
+ * run out already are replaced by others that have not.  0 where there are none. */
+static int draw_from_fleet(struct predict *p)
+{
+	double since = p->last - p->climb.first - p->climb.age;
+	int n = p->par.draws, alive = 0;
+
+	if (!p->par.fleet || p->climb.rows == 0 ||
+		!fleet_life(p->par.fleet, p->climb.level, p->climb.age, p->z, p->life, n))
+		return 0;
+	for (int i = 0; i < n; i++)
+		if (p->life[i] > since)
+			p->life[alive++] = p->life[i] - since;
+	for (int i = alive; alive > 0 && i < n; i++)
+		p->life[i] = p->life[i - alive];
+	return alive > 0;
+}
+
 /* Fills life[]; 0 while there are too few rows. */
 static int draw_lives(struct predict *p)
 {
 	const double *t, *x;
 	int rows;
 
+	if (draw_from_fleet(p))
+		return 1;
+
+	if (p->par.model == PREDICT_LITERAL)
+		return adaptive_lives(p->par.adaptive, p->par.threshold - p->par.zero,
+			p->par.direction, LITERAL_STEPS, p->life);
 	if (p->par.model != PREDICT_GREY) {
 		if (damage_rows(p->damage) < GREY_ORDER_MIN)
 			return 0;
@@ -144,16 +182,18 @@ static int draw_lives(struct predict *p)
 void predict_life(struct predict *p, const double *level, double *quantile, int n,
 	double *no_crossing)
 {
-	double horizon = p->par.horizon > 0 ? p->par.horizon : 10 * (p->last - p->first);
+	double horizon = p->par.horizon;
 	int draws = p->par.draws, never = 0;
 
+	if (!(horizon > 0))
+		horizon = p->par.fleet ? INFINITY : 10 * (p->last - p->first);
 	*no_crossing = NAN;
 	for (int k = 0; k < n; k++)
 		quantile[k] = NAN;
 	if (!draw_lives(p))
 		return;
 	for (int i = 0; i < draws; i++)
-		if (!(p->life[i] <= horizon)) {
+		if (!(p->life[i] <= horizon && p->life[i] < INFINITY)) {
 			p->life[i] = INFINITY;
 			never++;
 		}

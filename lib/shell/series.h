@@ -1,0 +1,28 @@
+/* series.h - time series of one or more units, row by row
+ *
+ * A table with the columns t and y; y alone has the row number of its unit, from 0, as
+ * time, and a table without a header goes by position.  With a unit column the rows of
+ * several units may alternate.  Times must be finite and rise for each unit; y may be
+ * missing (nan) but not infinite: anything else ends the program with one line that
+ * names file, line, unit and what was wrong.
+ */
+#ifndef SHELL_SERIES_H
+#define SHELL_SERIES_H
+
+#include "shell/tables.h"
+
+struct series;
+
+/* unit: name of the column that tells units apart, or NULL. */
+struct series *series_open(const char *path, const char *unit);
+/* Moves to the next row; 0 at the end. */
+int series_next(struct series *s);
+double series_time(const struct series *s);
+double series_value(const struct series *s); /* NAN: missing */
+int series_unit(const struct series *s);     /* 0, 1, ... in order of appearance */
+const char *series_unit_name(const struct series *s); /* "" without a unit column */
+int series_units(const struct series *s);             /* units so far */
+const struct table_in *series_table(const struct series *s);
+void series_close(struct series *s);
+
+#endif
