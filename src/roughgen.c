@@ -71,7 +71,7 @@ static const struct opt opts[] = {
 		"cut NX by NY samples of file from X, Y on", NULL, 0 },
 	{ 'i', "fill", OPT_FLAG, UNIT_NONE, &fill, 0, 0, NULL,
 		"fill missing samples of file by Laplace's equation", NULL, 0 },
-	{ 'e', "level", OPT_FLAG, UNIT_NONE, &level, 0, 0, NULL,
+	{ 'z', "level", OPT_FLAG, UNIT_NONE, &level, 0, 0, NULL,
 		"subtract the least-squares plane of file", NULL, 0 },
 	{ 'r', "resample", OPT_LIST, UNIT_COUNT, &resample, 1, POINTS_MAX, "N[xM]",
 		"bring file to this many points", NULL, 0 },
@@ -90,7 +90,7 @@ static const struct prog prog = { "roughgen",
 	opts };
 
 static const char generating[] = "nLgAlHRWkKQpsfc"; /* options no file goes with */
-static const char preparing[] = "xXwier";           /* options that need a file */
+static const char preparing[] = "xXwizr";           /* options that need a file */
 
 static const char columns[] = "realisation sa sq ssk sku sp sv sz sdq sdq_cell sdq_2x2 "
 			      "sdq_central sdq_iso7 sdr sal str corr_x corr_y";

@@ -37,7 +37,7 @@ is 'and the table made from it says so' "$(sed -n 's/^# cmd: //p' found.tsv)" "$
 
 # Quoting: an argument that needs it comes back as it was.
 $surfaces -c 1 >'it'\''s a name: here.nrrd'
-roughgen -e "it's a name: here.nrrd" >measured.nrrd
+roughgen -z "it's a name: here.nrrd" >measured.nrrd
 (eval "$(head -c 1024 measured.nrrd | sed -n 's/^cmd:=//p')") >again.nrrd
 same 'a file name with quotes, blanks and a colon survives' measured.nrrd again.nrrd
 is 'and no colon with a blank stands in a value' \

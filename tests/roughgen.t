@@ -128,6 +128,10 @@ same "--raw: the samples pass unchanged" raw.f64 c
 cat s | roughgen - >c
 roughgen s >d
 is "standard input by name: -" "$(tail -c 9600 c | cksum)" "$(tail -c 9600 d | cksum)"
+roughgen -w 5:6:20:10 -z -r 15 -C 1um s >c
+records -n 2 -o nrrd c >second
+sh -c "$(sed -n 's/^cmd:=//p' second | head -1)" >again
+same "cmd rebuilds a prepared record through the pipe" second again
 records -n 1 -o gsf s >s.gsf
 roughgen -m s.gsf >t
 roughgen -n 40x30 -m >u
@@ -146,7 +150,7 @@ fails "a range that runs backwards" 2 'runs backwards' roughgen -q 2um:1um
 fails "a bare prefix" 2 'q' roughgen -q 2u
 fails "Sq and Sa" 2 'exclude' roughgen -q 1um -a 1um
 fails "roll-off without Hurst" 2 'need --hurst' roughgen -R 1um
-fails "level without file" 2 '--level: is for a measured' roughgen -e
+fails "level without file" 2 '--level: is for a measured' roughgen -z
 fails "points with file" 2 '--points: is for generated' roughgen -n 4 s
 fails "a crop outside" 1 'record 1: --crop 30:0:11:5 is not within 40 x 30' \
 	roughgen -w 30:0:11:5 s
