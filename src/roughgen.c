@@ -196,12 +196,16 @@ static void print_parameters(const struct record *r, const double *z)
 	stats_add("measured", 1);
 }
 
-/* Crowns a surface and writes it out. */
-static void finish(struct record *r)
+/* Crowns a surface, on top of the crown it had, and writes it out. */
+static void finish(struct record *r, double had)
 {
 	double *z = record_need(r, "height", 0, NULL), rms = surface_sq(r->nx, r->ny, z);
-	double drop = crown.word == 0 ? 0 : crown.word == 1 ? 4 * rms : crown.value;
+	double drop = had;
 
+	if (crown.word < 0)
+		drop += crown.value;
+	else if (crown.word == 1)
+		drop += 4 * rms;
 	if (drop > 0)
 		surface_crown(r->nx, r->ny, r->dx, r->dy, drop, z);
 	record_set(r, "sq", "%.17g", rms);
@@ -219,14 +223,16 @@ static void finish(struct record *r)
 
 /* ---- generated surfaces ---- */
 
-static const char *const problem[] = { [ROUGH_MEMORY] =
-					       "out of memory: fewer --points would do",
+static const char *const problem[] = {
+	/* of enum rough_status */
+	[ROUGH_MEMORY] = "out of memory: fewer --points would do",
 	[ROUGH_DOMAIN] = "the parameters of the spectrum are out of range",
 	[ROUGH_TOO_LONG] = "--corr is longer than a side of the area",
 	[ROUGH_EMPTY] = "no wave of the grid is within the bounds on wavelength",
 	[ROUGH_IMPOSSIBLE] =
 		"--kurtosis must exceed --skewness^2 + 1: no heights have these",
-	[ROUGH_TOO_FEW] = "--skewness and --kurtosis are out of reach of so few points" };
+	[ROUGH_TOO_FEW] = "--skewness and --kurtosis are out of reach of so few points"
+};
 
 static struct spectrum_par spectrum(void)
 {
@@ -300,7 +306,7 @@ static void generate(void)
 		record_init(&r, p->nx, p->ny, p->lx / p->nx, p->ly / p->ny);
 		r.realisation = first + k;
 		generate_one(rough, &r);
-		finish(&r);
+		finish(&r, 0);
 	}
 	record_free(&r);
 	rough_free(rough);
@@ -309,7 +315,7 @@ static void generate(void)
 
 /* ---- measured surfaces ---- */
 
-static void no_memory(int done)
+static void need_memory(int done)
 {
 	if (!done)
 		die(EXIT_RUN, "out of memory preparing a measured surface");
@@ -348,7 +354,7 @@ static void take_heights(
 		stats_add("samples_cropped", (double)r->nx * r->ny - (double)nx * ny);
 	}
 	new_record(s, r, nx, ny, r->dx, r->dy);
-	surface_crop(r->nx, r->ny, z, x, y, nx, ny, s->data[0]);
+	surface_crop(r->nx, z, x, y, nx, ny, s->data[0]);
 }
 
 static void fill_holes(const struct fields_in *in, struct record *s)
@@ -363,10 +369,22 @@ static void fill_holes(const struct fields_in *in, struct record *s)
 	if (missing == n)
 		die(EXIT_RUN, "%s: record %ld: every height is missing", fields_name(in),
 			fields_count(in));
-	no_memory(surface_fill(s->nx, s->ny, z, &steps));
+	need_memory(surface_fill(s->nx, s->ny, z, &steps));
 	record_need(s, "height", 1, in);
 	stats_add("samples_filled", (double)missing);
 	stats_add("iterations", steps);
+}
+
+/* Puts the crown of a whole surface aside and returns its drop; that of a piece cut
+ * out of one stays, as part of its heights. */
+static double take_crown(struct record *s)
+{
+	double drop = record_get_number(s, "crown");
+
+	if (crop.n || !(drop > 0) || !isfinite(drop))
+		return 0;
+	surface_crown(s->nx, s->ny, s->dx, s->dy, -drop, s->data[0]);
+	return drop;
 }
 
 static void resample_heights(struct record *s)
@@ -375,7 +393,7 @@ static void resample_heights(struct record *s)
 	struct record t = { 0 };
 
 	new_record(&t, s, nx, ny, s->dx * s->nx / nx, s->dy * s->ny / ny);
-	no_memory(surface_resample(s->nx, s->ny, s->data[0], nx, ny, t.data[0]));
+	need_memory(surface_resample(s->nx, s->ny, s->data[0], nx, ny, t.data[0]));
 	record_free(s);
 	*s = t;
 }
@@ -400,16 +418,20 @@ static void prepare(const char *path)
 	struct record r = { 0 }, s = { 0 };
 
 	while (fields_read(in, &r)) {
+		double had;
+
 		take_heights(in, &r, &s);
 		fill_holes(in, &s);
+		had = take_crown(&s);
 		if (level)
 			surface_level(s.nx, s.ny, s.data[0]);
 		if (resample.n)
 			resample_heights(&s);
 		if (opt_given('q') || opt_given('a'))
 			scale_heights(in, &s);
-		s.cmd = opt_cmd(r.cmd, r.cmd ? "-" : NULL); /* an operand asks for input */
-		finish(&s);
+		/* What comes through a pipe has to be asked for. */
+		s.cmd = opt_cmd(r.cmd, r.cmd || strcmp(path, "-") == 0 ? "-" : NULL);
+		finish(&s, had);
 	}
 	if (fields_count(in) == 0)
 		die(EXIT_RUN, "%s: no records", fields_name(in));

@@ -59,6 +59,16 @@ roughgen -n 3 -q 0 -L 3mm -C 8um >a
 is "--crown on a flat" "$(records -o text a | awk '!/^#/ && NF { printf "%.5g %.5g %.5g ", $1, $2, $3 }')" \
 	"-3.5556e-06 -1.7778e-06 -3.5556e-06 -1.7778e-06 0 -1.7778e-06 -3.5556e-06 -1.7778e-06 -3.5556e-06 "
 
+# A crown stays out of what is done to the roughness.
+roughgen -n 64 -q 1um -C 4um | roughgen -q 3um -C 2um - >a
+is "a crown goes through: sq and crown" \
+	"$(sed -n 's/^sq:=//p; s/^crown:=//p' a | awk '{ printf "%.12g ", $1 }')" "3e-06 6e-06 "
+roughgen -n 64 -q 3um -C 6um >b
+records -o text a >a.txt
+records -o text b >b.txt
+near "a crown goes through: heights" "$(paste a.txt b.txt | awk '!/^#/ { for (i = 1; i <= NF / 2; i++) {
+	d = $i - $(i + NF / 2); if (d < 0) d = -d; if (d > w) w = d } } END { print w + 0 }')" 0 1e-14
+
 # Heights of given moments.
 roughgen -n 128 -l 50um -K -1.2 -Q 4.3 -m >t
 near "--skewness" "$(value ssk t)" -1.2 1e-6

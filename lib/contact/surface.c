@@ -165,12 +165,10 @@ void surface_level(int nx, int ny, double *z)
 						   sy * (iy - 0.5 * (ny - 1));
 }
 
-void surface_crop(
-	int nx, int ny, const double *z, int x0, int y0, int mx, int my, double *out)
+void surface_crop(int nx, const double *z, int x0, int y0, int mx, int my, double *out)
 {
-	(void)ny;
 	for (int iy = 0; iy < my; iy++)
-		memmove(out + (size_t)iy * mx, z + (size_t)(y0 + iy) * nx + x0,
+		memcpy(out + (size_t)iy * mx, z + (size_t)(y0 + iy) * nx + x0,
 			(size_t)mx * sizeof *out);
 }
 

@@ -26,9 +26,8 @@ int surface_fill(int nx, int ny, double *z, int *iterations);
 /* Subtracts the least-squares plane. */
 void surface_level(int nx, int ny, double *z);
 
-/* Cuts out mx by my samples from (x0, y0) on. */
-void surface_crop(
-	int nx, int ny, const double *z, int x0, int y0, int mx, int my, double *out);
+/* Cuts mx by my samples, from (x0, y0) on, out of rows of nx. */
+void surface_crop(int nx, const double *z, int x0, int y0, int mx, int my, double *out);
 
 /* Brings heights to mx by my samples of the same area: the mean over the new cell
  * where it is larger than the old one, cubic convolution (Keys, IEEE Trans. ASSP 29,
