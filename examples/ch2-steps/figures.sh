@@ -1,5 +1,5 @@
 #!/bin/sh
-# figures - the fields of the steps as matrices of text, for plot.gp
+# figures.sh - the fields of the steps as matrices of text, for plot.gp
 set -eu
 records --pick 1 --field height --output text contact.nrrd >before.txt
 records --pick 1 --field pressure --output text contact.nrrd >pressure.txt

@@ -1,5 +1,5 @@
 #!/bin/sh
-# numbers - what the thesis says of this scene beside what came out
+# numbers.sh - what the thesis says of this scene beside what came out
 #
 # Reads column-steps.tsv, potential-steps.tsv and column-work.tsv; writes a table.
 set -eu
