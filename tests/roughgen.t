@@ -101,6 +101,10 @@ check_measured() {
 		END { if (n == 11) print w; else print "only " n " values" }')
 	# Ssk near 0 (1e-3) loses three digits of the printed twelve.
 	near "$name$suffix: eleven parameters, relative error" "${worst:-none}" 0 1e-9
+	# Another program's shortest lag, found pixel by pixel.
+	near "$name$suffix: Sal in um, within 1 %" "$(value sal t | awk '{ print $1 * 1e6 }')" \
+		"$(sed -n 's/^surfalize_um_Sal //p' "$data/$name$suffix.txt")" \
+		"$(sed -n 's/^surfalize_um_Sal //p' "$data/$name$suffix.txt" | awk '{ print $1 / 100 }')"
 }
 if [ -d "$data" ]; then
 	set -- nanovea2 101x101 5.0000000000000004e-06 \
