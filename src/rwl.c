@@ -32,7 +32,7 @@ static struct opt_list radii = { .n = 4 };
 static struct opt_list ports = { 2, { 0.15e6, 21e6 } };
 static struct opt_list levels = { 3, { 0.05, 0.5, 0.95 } };
 static double initial_gap = NAN, transition = 0.1, step_time = NAN;
-static double eol = NAN, cone = 0.2, horizon = NAN;
+static double skip, eol = NAN, cone = 0.2, horizon = NAN;
 static double archard = NAN, hardness = 1.065e9, speed = 20.94;
 static long seed = 1, first_path, count = 1000, first_step = 1, parts;
 static int quantity = AUTO, rule = RATE_MEAN, size_set, time_unit, samples, grey, new;
@@ -68,13 +68,15 @@ static const struct opt opts[] = {
 		"share among all particles so far or those of a step", size_sets, 0 },
 	{ 'R', "wear-rate", OPT_WORD, UNIT_NONE, &rule, 0, 0, "mean|last|filter",
 		"rate by (4-29), by (4-28), or followed by filters", rules, 0 },
-	{ 'T', "step-time", OPT_NUM, UNIT_TIME, &step_time, 1e-15, 1e15, "T",
+	{ 'p', "step-time", OPT_NUM, UNIT_TIME, &step_time, 1e-15, 1e15, "T",
 		"time that one step of the fragments stands for [from the state so far]",
 		0, 0 },
 	{ 'C', "calibrate", OPT_TEXTS, UNIT_NONE, &calibrations, 0, 0, "FILE",
 		"take the step time from the whole life of an earlier unit", 0, 0 },
 	{ 'k', "first-step", OPT_INT, UNIT_COUNT, &first_step, 1, 1e6, "K",
 		"steps before are running-in and count not for the rate", 0, 0 },
+	{ 'T', "skip", OPT_NUM, UNIT_TIME, &skip, 0, 1e300, "T",
+		"run-in left out of all rates observed, from the first row", 0, 0 },
 	{ 'n', "parts", OPT_INT, UNIT_COUNT, &parts, 0, 1e9, "N",
 		"parts of a class that wear independently; 0: as many as fit", 0, 0 },
 	{ 'A', "area", OPT_NUM, UNIT_AREA, &area, 1e-18, 1e6, "A", "nominal contact area",
@@ -110,8 +112,8 @@ static const struct opt opts[] = {
 	{ 'W', "rates", OPT_TEXT, UNIT_NONE, &rates_file, 0, 0, "FILE",
 		"write the component's wear per step, one row per path", 0, 1 },
 	{ 'H', "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, 1e18, "T",
-		"what lives longer counts as no failure [none; 10 x age with filters]", 0,
-		0 },
+		"what lives longer counts as no failure [none; 10 x age for filters on their own]",
+		0, 0 },
 	{ 'e', "eol", OPT_NUM, UNIT_TIME, &eol, 1e-18, 1e18, "T",
 		"true end of life: add scores of the predictions", 0, 0 },
 	{ 'l', "cone", OPT_NUM, UNIT_FRACTION, &cone, 1e-6, 10, "ALPHA",
@@ -138,6 +140,7 @@ struct state {
 	double scale;         /* of the value to SI */
 	double debris;        /* volume of the particles so far */
 	long rows, n;         /* rows, and those with a value */
+	double first_t;       /* of the first row */
 	double t, gap, value; /* latest row; gap and value NAN where missing */
 };
 
@@ -309,6 +312,8 @@ static int next_state(struct state *s)
 	if (value < 0 || isinf(value))
 		die(EXIT_RUN, "%s: line %ld: %g is not a %s", table_name(t),
 			table_line(t), value, quantities[s->quantity]);
+	if (s->rows == 1)
+		s->first_t = time;
 	s->t = time;
 	if (s->quantity == DEBRIS && !isnan(value))
 		value = s->debris += sphere * value * value * value;
@@ -329,7 +334,7 @@ static double slope_of(const char *file)
 	while (next_state(&s)) {
 		double dt = s.t - mean_t, dh = s.gap - mean_h;
 
-		if (isnan(s.gap))
+		if (isnan(s.gap) || s.t - s.first_t < skip)
 			continue;
 		n++;
 		mean_t += dt / (double)n;
@@ -520,11 +525,14 @@ static void put_row(struct table_out *out, struct metrics *m, const struct obser
 {
 	double gone = t - observed_time(o), limit = horizon, dry = NAN;
 	double left = area * (gap_limit() - observed_gap(o));
+	int scaled = wear_files.n && (calibrations.n || !isnan(step_time));
 
 	for (long i = 0; i < n; i++)
 		life[i] = later_life(life[i], gone);
 	if (isnan(limit))
-		limit = rule == RATE_FILTER ? 10 * (t - observed_first(o)) : INFINITY;
+		limit = rule == RATE_FILTER && !scaled
+				? 10 * (t - observed_first(o) + skip)
+				: INFINITY;
 	if (!isnan(dry_rate))
 		dry = later_life(remaining_constant(left, dry_rate), gone);
 	write_row(out, m, t, life, n, limit, dry, later_life(by_grey, gone));
@@ -543,12 +551,16 @@ static void follow(
 	if (s->quantity >= VOLUME)
 		observed_begin(o, 0, gap_new);
 	while (next_state(s)) {
-		if (filter && (s->rows == 1 || s->t > observed_time(o)))
+		int run_in = s->t - s->first_t < skip;
+
+		if (filter && !run_in && (s->rows == 1 || s->t > observed_time(o)))
 			rate_add(filter, s->t, s->gap);
 		if (!isnan(s->gap)) {
 			if (isnan(gap_new))
 				gap_new = s->gap;
-			if (!observed_add(o, s->t, s->value, s->gap))
+			if (run_in || (skip > 0 && observed_count(o) == 0))
+				observed_begin(o, s->t, s->gap);
+			if (!run_in && !observed_add(o, s->t, s->value, s->gap))
 				die(EXIT_RUN, "out of memory");
 			n = paths_predict(e, o, filter, gap_limit(), life);
 			if (grey) {

@@ -20,7 +20,7 @@ near "all quantiles agree" "$(cell even.out 1 q05)" "$(cell even.out 1 q95)" 0
 near "without an observation the last one ages" "$(cell even.out 3 mean)" \
 	"$(calc "39 * 3600")" 1e-5
 is "beyond the threshold nothing is left" "$(cell even.out 5 mean) $(cell even.out 5 p_no_failure)" "0 0"
-ok "volume threshold" rwl -w even.tsv -T 1h --threshold-volume 2.3463e-9m3 gap.tsv
+ok "volume threshold" rwl -w even.tsv -p 1h --threshold-volume 2.3463e-9m3 gap.tsv
 near "one um over the whole area" "$(cell out 1 mean)" 36000 1e-5
 
 # Without fragments: (4-29) over all, (4-28) over the last interval.
@@ -39,13 +39,13 @@ near "its whole life" "$(cell out 1 mean)" "$(calc "(15 - 16.7899943 * (1.5 / 2.
 
 # Leakage: 2.8 L/min is the default threshold, 16.79 um.
 printf 't\tstate\n0\t1.5\n100\t2.0\n200\t2.9\n' >flow.tsv
-ok "leakage in L/min, hours" rwl -w even.tsv -T 1h -u L/min -t h flow.tsv
+ok "leakage in L/min, hours" rwl -w even.tsv -p 1h -u L/min -t h flow.tsv
 near "cube root of the leakage" "$(cell out 2 mean)" \
 	"$(calc "16.7899943 * (1 - (2 / 2.8)^(1/3)) / 0.1 * 3600")" 0.05
 is "time in seconds" "$(cell out 2 t)" 360000
 is "beyond 2.8 L/min is failure" "$(cell out 3 mean)" 0
 sed 's/state/leakage/' flow.tsv >flow2.tsv
-rwl -w even.tsv -T 1h -u L/min -t h flow2.tsv | grep -v '^#' >a
+rwl -w even.tsv -p 1h -u L/min -t h flow2.tsv | grep -v '^#' >a
 grep -v '^#' out >b
 same "a state is leakage unless said otherwise" a b
 
@@ -65,7 +65,7 @@ near "8 of them in one second (4-28)" "$(cell out 3 mean)" \
 	printf '%s\n' "0 1 1 1e-16 1e-6" "0 1 2 1e-16 9e-6" "1 1 1 1e-16 1e-6" "1 1 2 1e-16 1e-6" \
 		"0 2 1 1e-16 9e-6" "0 2 2 1e-16 9e-6" "1 2 1 1e-16 9e-6" "1 2 2 1e-16 1e-6" "1 2 3 1e-16 1e-6" | tr ' ' '\t'
 } >size.tsv
-ok "large particles" rwl -w size.tsv -T 1h -d 5um -P 40% --rates rates.tsv -c 2000 -q 0.5 gap.tsv
+ok "large particles" rwl -w size.tsv -p 1h -d 5um -P 40% --rates rates.tsv -c 2000 -q 0.5 gap.tsv
 # all: 4 of 9 at the end of step 2
 near "critical share at the end of step 2" "$(cell out 1 q50)" 7200 1e-9
 near "less the time that passed" "$(cell out 2 q50)" 3600 1e-9
@@ -73,40 +73,40 @@ near "less the time that passed" "$(cell out 2 q50)" 3600 1e-9
 is "surface 0 twice fails in step 1, both in step 2, surface 1 twice never" \
 	"$(column large_step rates.tsv | sort -u | tr '\n' ' ')" "0 1 2 "
 near "one replicate in four never fails" "$(cell out 1 p_no_failure)" 0.25 0.04
-ok "share in one step" rwl -w size.tsv -T 1h -d 5um -P 60% -b step -q 0.5 gap.tsv
+ok "share in one step" rwl -w size.tsv -p 1h -d 5um -P 60% -b step -q 0.5 gap.tsv
 near "3 of 5 in step 2" "$(cell out 1 q50)" 7200 1e-9
-ok "the earlier of both criteria" rwl -w size.tsv -T 1h -d 5um -P 40% -g 10.02um -q 0.5 gap.tsv
+ok "the earlier of both criteria" rwl -w size.tsv -p 1h -d 5um -P 40% -g 10.02um -q 0.5 gap.tsv
 near "the gap comes first" "$(cell out 1 q50 | awk '{ print ($1 < 7200) }')" 1 0
 
 # Monte-Carlo: the spread of 16 fragments' mean, by the bootstrap.
 awk 'BEGIN { print "volume"; for (i = 0; i < 16; i++) print (1 + i / 10) "e-15" }' >spread.tsv
-ok "spread of an ensemble" rwl --new -w spread.tsv -T 1h -g 15um -i 10um -c 4000 -R mean -W rates.tsv
+ok "spread of an ensemble" rwl --new -w spread.tsv -p 1h -g 15um -i 10um -c 4000 -R mean -W rates.tsv
 cp out spread.out
 near "standard deviation of the mean" "$(column mean rates.tsv |
 	awk '{ n++; d = $1 - m; m += d / n; s += d * ($1 - m) } END { print sqrt(s / n) / m }')" \
 	"$(calc "sqrt((256 - 1) / 12) / 10 / 4 / 1.75")" 0.003
-ok "one part wears like one fragment" rwl --new -w spread.tsv -T 1h -g 15um -i 10um -c 4000 --parts 1
+ok "one part wears like one fragment" rwl --new -w spread.tsv -p 1h -g 15um -i 10um -c 4000 --parts 1
 near "which is wider" "$(cell out 1 q95 | awk -v w="$(cell spread.out 1 q95)" '{ print ($1 > 1.3 * w) }')" 1 0
-ok "new rate in every step" rwl --new -w spread.tsv -T 1h -g 15um -i 10um -c 4000 --parts 1 -R last
+ok "new rate in every step" rwl --new -w spread.tsv -p 1h -g 15um -i 10um -c 4000 --parts 1 -R last
 near "has the same mean" "$(cell out 1 mean)" "$(cell spread.out 1 mean)" 3000
 
 # Any split of an ensemble is the same bytes.
-rwl --new -w spread.tsv -T 1h -g 15um -O -c 20 --parts 1 -R last | grep -v '^#' >whole
-rwl --new -w spread.tsv -T 1h -g 15um -O -c 12 --parts 1 -R last | grep -v '^#' >part.tsv
-rwl --new -w spread.tsv -T 1h -g 15um -O -f 12 -c 8 --parts 1 -R last | rows /dev/stdin >>part.tsv
+rwl --new -w spread.tsv -p 1h -g 15um -O -c 20 --parts 1 -R last | grep -v '^#' >whole
+rwl --new -w spread.tsv -p 1h -g 15um -O -c 12 --parts 1 -R last | grep -v '^#' >part.tsv
+rwl --new -w spread.tsv -p 1h -g 15um -O -f 12 -c 8 --parts 1 -R last | rows /dev/stdin >>part.tsv
 same "paths 0-19, and 0-11 with 12-19" whole part.tsv
 
 # Classes: the zone of linear pressure is in by default, between the extremes.
 sed 's/e-15/e-18/' even.tsv >low.tsv
-ok "two classes" rwl --new -w even.tsv:21MPa -w low.tsv:0.15MPa -T 1h -W rates.tsv
+ok "two classes" rwl --new -w even.tsv:21MPa -w low.tsv:0.15MPa -p 1h -W rates.tsv
 zone=$(awk 'BEGIN { p = log(1e3) / log(140) + 1; r = log(140)
 	m = 1e-18 * 0.15 * (exp(p * r) - 1) / p / 20.85
 	printf "%.15g", 2346.3e-6 / 1e-8 * (0.45 * 1e-15 + 0.45 * 1e-18 + 0.1 * m) }')
 near "wear of the valve plate" "$(cell rates.tsv 1 mean)" "$zone" 1e-22
-ok "areas of their own" rwl --new -w even.tsv:21MPa:1173.15mm2 -w low.tsv:0.15MPa:1173.15mm2 -T 1h -W rates.tsv
+ok "areas of their own" rwl --new -w even.tsv:21MPa:1173.15mm2 -w low.tsv:0.15MPa:1173.15mm2 -p 1h -W rates.tsv
 near "the thesis' halves" "$(cell rates.tsv 1 mean)" \
 	"$(calc "117315 * 1.001e-15")" 1e-22
-ok "dry sliding" rwl --new -w even.tsv:21MPa -w low.tsv:0.15MPa -T 1h --archard 1e-9 -g 15um -i 10um
+ok "dry sliding" rwl --new -w even.tsv:21MPa -w low.tsv:0.15MPa -p 1h --archard 1e-9 -g 15um -i 10um
 # V = 5 um 2346.3 mm2; F = 0.45 A 21 MPa + 0.45 A 0.15 MPa + 0.1 A 10.575 MPa
 near "Archard's law" "$(cell out 1 archard)" \
 	"$(calc "5e-6 / (1e-9 * 20.94 / 1.065e9 * (0.45 * 21.15e6 + 0.1 * 10.575e6))")" 1e-6
@@ -125,19 +125,27 @@ near "error is median less truth" "$(cell out 5 error)" \
 # Filters.
 ok "filters" rwl -R filter -u L/min -t h exp.tsv
 is "no prediction before the fourth observation" "$(cell out 3 mean) $(cell out 4 mean | sed 's/[0-9.e+]*/number/')" "nan number"
-ok "filters with the fragments' rate" rwl -w spread.tsv -T 1h -R filter -u L/min -t h exp.tsv
+ok "filters with the fragments' rate" rwl -w spread.tsv -p 1h -R filter -u L/min -t h exp.tsv
+
+# Run-in: the rates start after it, the state is known all the time.
+printf 't\tgap\n0\t9e-6\n3600\t10e-6\n7200\t10.5e-6\n10800\t11e-6\n' >run-in.tsv
+ok "run-in is skipped" rwl --threshold-gap 15um --skip 1h run-in.tsv
+near "4 um at 0.5 um/h" "$(cell out 4 mean)" 28800 1e-6
+is "no rate before" "$(cell out 2 mean)" nan
+ok "and in the calibration" rwl --new -w even.tsv -g 15um -i 10um --skip 1h --calibrate run-in.tsv
+near "5 um at 0.5 um/h" "$(cell out 1 mean)" 36000 1e-6
 
 # Provenance: the command line rebuilds the bytes.
-rwl -w even.tsv -T 1h -g 15um --state gap.tsv >a
+rwl -w even.tsv -p 1h -g 15um --state gap.tsv >a
 eval "$(sed -n 's/^# cmd: //p' a)" >b
 same "the recorded command rebuilds a table" a b
 { echo "# cmd: cat gap.tsv"; cat gap.tsv; } >upstream.tsv
-rwl -w even.tsv -T 1h -g 15um upstream.tsv >a
+rwl -w even.tsv -p 1h -g 15um upstream.tsv >a
 eval "$(sed -n 's/^# cmd: //p' a)" >b 2>err
 is "so it does behind a pipe" "$(rows a)" "$(rows b)"
 
 # Work left out.
-rwl -w even.tsv -T 1h -g 15um --stats stats.tsv gap.tsv >/dev/null
+rwl -w even.tsv -p 1h -g 15um --stats stats.tsv gap.tsv >/dev/null
 is "no sizes are counted unless asked" "$(column sizes_skipped stats.tsv)" 1000
 is "no paths once the threshold is passed" "$(column paths_skipped stats.tsv)" 1000
 
@@ -154,15 +162,15 @@ fails "times that stand still" 1 'twice.tsv: line 3: time 0 s does not grow' rwl
 fails "a negative gap" 1 'minus.tsv: line 2: -1e-05 is not a gap' rwl minus.tsv
 fails "text for a number" 1 'text.tsv' rwl text.tsv
 fails "no column of the state" 1 'column.tsv.*leakage' rwl column.tsv
-fails "a step twice" 1 'again.tsv: line 3: realisation 0 has step 1 twice' rwl --new -w again.tsv -T 1h
-fails "no fragment" 1 'none.tsv: no fragment' rwl --new -w none.tsv -T 1h
-fails "negative wear" 1 'negative.tsv: line 2: volume' rwl --new -w negative.tsv -T 1h
-fails "half a step" 1 'half.tsv: line 2: step' rwl --new -w half.tsv -T 1h
+fails "a step twice" 1 'again.tsv: line 3: realisation 0 has step 1 twice' rwl --new -w again.tsv -p 1h
+fails "no fragment" 1 'none.tsv: no fragment' rwl --new -w none.tsv -p 1h
+fails "negative wear" 1 'negative.tsv: line 2: volume' rwl --new -w negative.tsv -p 1h
+fails "half a step" 1 'half.tsv: line 2: step' rwl --new -w half.tsv -p 1h
 fails "no step time" 2 '--new needs --step-time' rwl --new -w even.tsv
-fails "classes without pressures" 2 'pressure of its own' rwl --new -w even.tsv -w low.tsv -T 1h
-fails "a pressure that is none" 2 '--wear even.tsv:21um: the pressure has the wrong unit' rwl --new -w even.tsv:21um -T 1h
-fails "too much area" 2 'more than --area' rwl --new -w even.tsv:21MPa:9e3mm2 -T 1h
-fails "size without diameters" 1 'even.tsv.*diameter' rwl --new -w even.tsv -T 1h -d 5um
+fails "classes without pressures" 2 'pressure of its own' rwl --new -w even.tsv -w low.tsv -p 1h
+fails "a pressure that is none" 2 '--wear even.tsv:21um: the pressure has the wrong unit' rwl --new -w even.tsv:21um -p 1h
+fails "too much area" 2 'more than --area' rwl --new -w even.tsv:21MPa:9e3mm2 -p 1h
+fails "size without diameters" 1 'even.tsv.*diameter' rwl --new -w even.tsv -p 1h -d 5um
 fails "a unit that does not suit" 2 '--state-unit foo' rwl -u foo gap.tsv
 fails "levels that fall" 2 '--levels must grow' rwl -q 0.9,0.1 gap.tsv
 fails "outlet below inlet" 2 'outlet pressure' rwl -D 21MPa:1MPa gap.tsv

@@ -23,7 +23,8 @@ struct observed;
 struct observed *observed_new(enum rate_rule rule, int keep);
 void observed_free(struct observed *o);
 
-/* Where the rates start from, if that is known before the first observation. */
+/* Where the rates start from, if that is not the first observation; again: they start
+ * anew. */
 void observed_begin(struct observed *o, double t, double gap);
 /* value: as read; gap: what it tells.  Times must not fall; what comes at the same time
  * replaces what came before.  Returns 0 when out of memory. */

@@ -5,10 +5,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Memories in observations and wanders as shares of the noise per observation. */
-enum { MEMORIES = 5, WANDERS = 3, FILTERS = MEMORIES * WANDERS };
-static const double memory_of[MEMORIES] = { INFINITY, 300, 100, 30, 10 };
-static const double wander_of[WANDERS] = { 0, 0.01, 0.1 };
+/* Memories, in observations, and wanders: size, as a share of the noise, and correlation
+ * time, in observations. */
+enum { MEMORIES = 5, WANDERS = 5, FILTERS = MEMORIES * WANDERS };
+static const double memory_of[MEMORIES] = { INFINITY, 1000, 300, 100, 30 };
+static const struct {
+	double size, time;
+} wander_of[WANDERS] = { { 0, 1 }, { 0.5, 10 }, { 0.5, 50 }, { 1, 10 }, { 1, 50 } };
 
 /* Beyond so many standard deviations an observation loses weight. */
 static const double gate = 3;
@@ -16,10 +19,13 @@ static const double gate = 3;
 /* So many of them running are not outliers: the level has jumped. */
 enum { JUMP = 5 };
 
+/* State: level and rate, which is a random walk, and a wander that only the observations
+ * show. */
 struct kalman {
-	double level, rate;
-	double pll, plr, prr;           /* covariance */
-	double level_drift, rate_drift; /* variances gained per time */
+	double level, rate, wander;
+	double pll, plr, prr, plw, prw, pww; /* covariance */
+	double drift;                        /* variance that the rate gains per time */
+	double reversion; /* rate of its return to the prior's mean, 1/time */
 	double log_weight;
 	int outliers; /* running */
 };
@@ -75,30 +81,53 @@ static double spacing(const struct rate *r)
 	return r->n > 1 ? (r->t[RATE_START - 1] - r->start) / (r->n - 1) : 1;
 }
 
-/* Sets what level and rate of filter k gain in variance.  A rate that walks with
- * noise / (spacing^3 memory^4) lets the filter forget after some memory observations
- * (steady state of the local linear trend). */
-static void set_drift(struct rate *r, int k)
+/* What is left after dt of a rate's distance from its mean, that distance's integral, and
+ * the integral of the square of the latter over the age of the shocks. */
+static void decay(
+	double rate, double dt, double *left, double *integral, double *square_of)
 {
-	double dt = spacing(r), memory = memory_of[k % MEMORIES];
+	double x = rate * dt;
 
-	r->filter[k].level_drift = wander_of[k / MEMORIES] * r->noise / dt;
-	r->filter[k].rate_drift =
-		isinf(memory) ? 0 : r->noise / (dt * dt * dt) / pow(memory, 4);
+	*left = exp(-x);
+	if (x < 1e-2) {
+		*integral = dt * (1 - x / 2 + x * x / 6 - x * x * x / 24);
+		*square_of = dt * dt * dt * (1. / 3 - x / 4 + 7 * x * x / 60);
+		return;
+	}
+	*integral = -expm1(-x) / rate;
+	*square_of = (dt - 2 * *integral - expm1(-2 * x) / (2 * rate)) / (rate * rate);
 }
 
-static void advance(struct kalman *f, double dt)
+/* A rate that walks with noise / (spacing^3 memory^4) lets the filter forget after some
+ * memory observations (steady state of the local linear trend).  What is known beforehand
+ * holds it: it returns to the prior's mean, as fast as leaves it the prior's variance. */
+static void advance(const struct rate *r, int k, struct kalman *f, double dt)
 {
-	f->level += f->rate * dt;
-	f->pll += dt * (2 * f->plr + dt * f->prr) + f->level_drift * dt +
-		  f->rate_drift * dt * dt * dt / 3;
-	f->plr += dt * f->prr + f->rate_drift * dt * dt / 2;
-	f->prr += f->rate_drift * dt;
+	double unit = spacing(r), memory = memory_of[k % MEMORIES];
+	double size = wander_of[k / MEMORIES].size, time = wander_of[k / MEMORIES].time;
+	double keep = exp(-dt / (time * unit)), left, g, square_of;
+
+	f->drift = isinf(memory) ? 0 : r->noise / (unit * unit * unit) / pow(memory, 4);
+	f->reversion = f->drift / (2 * r->prior_sd * r->prior_sd);
+	if (!isfinite(f->reversion))
+		f->reversion = f->drift = 0; /* the prior is certain */
+	decay(f->reversion, dt, &left, &g, &square_of);
+	f->level += r->prior_mean * (dt - g) + f->rate * g;
+	f->rate = r->prior_mean + (f->rate - r->prior_mean) * left;
+	f->wander *= keep;
+	f->pll += g * (2 * f->plr + g * f->prr) + f->drift * square_of;
+	f->plr = left * (f->plr + g * f->prr) + f->drift * g * g / 2;
+	f->prr = left * left * f->prr + f->drift * (g - f->reversion * g * g / 2);
+	f->plw = keep * (f->plw + g * f->prw);
+	f->prw *= keep * left;
+	f->pww = keep * keep * f->pww + size * size * r->noise * (1 - keep * keep);
 }
 
 static void update(const struct rate *r, struct kalman *f, double y)
 {
-	double error = y - f->level, s = f->pll + r->noise, score, kl, kr;
+	double error = y - f->level - f->wander;
+	double s = f->pll + 2 * f->plw + f->pww + r->noise;
+	double score, kl, kr, kw;
 
 	f->outliers = error * error > gate * gate * s ? f->outliers + 1 : 0;
 	if (f->outliers == JUMP) {
@@ -107,22 +136,27 @@ static void update(const struct rate *r, struct kalman *f, double y)
 		s += error * error;
 	}
 	score = error * error / s;
+	f->log_weight -= log(s) / 2;
 	if (score > gate * gate) {
 		/* as though the observation were so much noisier that it is at the gate
 		 */
 		s *= score / (gate * gate);
-		f->log_weight -=
-			gate * (sqrt(score) - gate / 2) + log(f->pll + r->noise) / 2;
+		f->log_weight -= gate * (sqrt(score) - gate / 2);
 	} else {
-		f->log_weight -= (score + log(s)) / 2;
+		f->log_weight -= score / 2;
 	}
-	kl = f->pll / s;
-	kr = f->plr / s;
+	kl = (f->pll + f->plw) / s;
+	kr = (f->plr + f->prw) / s;
+	kw = (f->plw + f->pww) / s;
 	f->level += kl * error;
 	f->rate += kr * error;
-	f->prr -= kr * f->plr;
-	f->plr -= kl * f->plr;
-	f->pll -= kl * f->pll;
+	f->wander += kw * error;
+	f->pll -= s * kl * kl;
+	f->plr -= s * kl * kr;
+	f->prr -= s * kr * kr;
+	f->plw -= s * kl * kw;
+	f->prw -= s * kr * kw;
+	f->pww -= s * kw * kw;
 }
 
 /* Keeps the largest weight at 1, so that none overflows. */
@@ -141,19 +175,22 @@ static void start(struct rate *r)
 {
 	for (int k = 0; k < FILTERS; k++) {
 		struct kalman *f = &r->filter[k];
-		double sd = r->prior_sd;
+		double sd = r->prior_sd, w;
 
 		if (isinf(sd))
 			sd = 1e3 *
 			     (fabs(r->y[RATE_START - 1] - r->y[0]) + sqrt(r->noise)) /
 			     (r->t[RATE_START - 1] - r->t[0]);
+		/* level = observation - wander - noise */
+		w = square(wander_of[k / MEMORIES].size) * r->noise;
 		*f = (struct kalman){ .level = r->y[0],
 			.rate = r->prior_mean,
-			.pll = r->noise,
+			.pll = r->noise + w,
+			.plw = -w,
+			.pww = w,
 			.prr = sd * sd };
-		set_drift(r, k);
 		for (int i = 1; i < RATE_START; i++) {
-			advance(f, r->t[i] - r->t[i - 1]);
+			advance(r, k, f, r->t[i] - r->t[i - 1]);
 			update(r, f, r->y[i]);
 		}
 	}
@@ -163,7 +200,7 @@ void rate_add(struct rate *r, double t, double value)
 {
 	if (isnan(value)) {
 		for (int k = 0; k < FILTERS && rate_ready(r); k++)
-			advance(&r->filter[k], t - r->now);
+			advance(r, k, &r->filter[k], t - r->now);
 		r->now = t;
 		return;
 	}
@@ -180,8 +217,7 @@ void rate_add(struct rate *r, double t, double value)
 	if (r->n == RATE_START)
 		start(r);
 	for (int k = 0; k < FILTERS && r->n > RATE_START; k++) {
-		set_drift(r, k);
-		advance(&r->filter[k], t - r->now);
+		advance(r, k, &r->filter[k], t - r->now);
 		update(r, &r->filter[k], value);
 	}
 	r->now = t;
@@ -218,12 +254,14 @@ static int pick(const struct rate *r, double u)
 }
 
 /* Level after x on path z. */
-static double path(const struct kalman *f, double x, double z)
+static double path(const struct rate *r, const struct kalman *f, double x, double z)
 {
-	double variance = f->pll + x * (2 * f->plr + x * f->prr) + f->level_drift * x +
-			  f->rate_drift * x * x * x / 3;
+	double left, g, square_of, variance;
 
-	return f->level + f->rate * x + z * sqrt(fmax(variance, 0));
+	decay(f->reversion, x, &left, &g, &square_of);
+	variance = f->pll + g * (2 * f->plr + g * f->prr) + f->drift * square_of;
+	return f->level + r->prior_mean * (x - g) + f->rate * g +
+	       z * sqrt(fmax(variance, 0));
 }
 
 double rate_passage(const struct rate *r, double threshold, double u, double z)
@@ -231,10 +269,10 @@ double rate_passage(const struct rate *r, double threshold, double u, double z)
 	const struct kalman *f = &r->filter[pick(r, u)];
 	double unit = spacing(r), low = 0, high = 0.01 * unit;
 
-	if (path(f, 0, z) >= threshold)
+	if (path(r, f, 0, z) >= threshold)
 		return 0;
 	/* The first root, from a hundredth of the spacing to far beyond any use. */
-	while (path(f, high, z) < threshold) {
+	while (path(r, f, high, z) < threshold) {
 		if (high > 1e9 * unit)
 			return INFINITY;
 		low = high;
@@ -243,7 +281,7 @@ double rate_passage(const struct rate *r, double threshold, double u, double z)
 	while (high - low > 1e-9 * high) {
 		double middle = (low + high) / 2;
 
-		if (path(f, middle, z) < threshold)
+		if (path(r, f, middle, z) < threshold)
 			low = middle;
 		else
 			high = middle;

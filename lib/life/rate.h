@@ -1,11 +1,11 @@
 /* rate.h - wear rate followed through noisy observations
  *
  * Level and rate of a slowly growing quantity (gap, worn volume), the rate a random
- * walk, by Kalman filters that differ in memory and in wander of the level, each
- * weighted by how well it predicted (Magill, IEEE Trans. Autom. Control 10, 1965).
- * The noise of the observations comes from their second differences (noise.h); those
- * more than three standard deviations off are weighed down (Huber), and five such running
- * are taken for a jump of the level.
+ * walk, by Kalman filters that differ in memory and in a wander (AR(1)) that the
+ * observations show beside the level, each weighted by how well it predicted (Magill,
+ *IEEE Trans. Autom. Control 10, 1965). The noise of the observations comes from their
+ *second differences (noise.h); those more than three standard deviations off are weighed
+ *down (Huber), and five such running are taken for a jump of the level.
  *
  *	struct rate *r = rate_new(0, INFINITY);
  *	rate_add(r, t, gap);
@@ -20,8 +20,8 @@ enum { RATE_START = 4 }; /* observations before there is a prediction */
 
 struct rate;
 
-/* prior_mean, prior_sd: what is known of the rate beforehand; prior_sd INFINITY:
- * nothing.  NULL when out of memory. */
+/* prior_mean, prior_sd: what is known of the rate beforehand, at any time; prior_sd
+ * INFINITY: nothing.  NULL when out of memory. */
 struct rate *rate_new(double prior_mean, double prior_sd);
 void rate_free(struct rate *r);
 

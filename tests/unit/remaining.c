@@ -119,6 +119,22 @@ static void check_rate(void)
 	/* four noisy points alone would leave a standard error of six slopes */
 	near(rate / slope, 1, 0.5, "a certain prior holds against few data");
 	rate_free(r);
+	r = rate_new(slope, 0);
+	for (int i = 0; i < 100; i++)
+		rate_add(r, 3600. * i, slope * 3600 * i + noise * gsl_ran_ugaussian(rng));
+	rate_state(r, &gap, &rate);
+	near(rate / slope, 1, 1e-12, "a prior without spread stays");
+	near(rate_passage(r, gap + 1e-6, 0.5, 0) * slope, 1e-6, noise / 2,
+		"and tells the passage");
+	rate_free(r);
+	/* Five times the prior's mean, forty of its standard deviations off. */
+	r = rate_new(slope, slope / 10);
+	for (int i = 0; i < 400; i++)
+		rate_add(r, 3600. * i,
+			5 * slope * 3600 * i + noise * gsl_ran_ugaussian(rng));
+	rate_state(r, &gap, &rate);
+	ok(rate > 2 * slope, "data outdo the prior: %.2f slopes", rate / slope);
+	rate_free(r);
 	gsl_rng_free(rng);
 }
 
