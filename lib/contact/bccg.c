@@ -23,6 +23,7 @@
 static const double pi = 3.14159265358979323846;
 
 static const double drift_limit = 0.02; /* of the step, in the sum of pressures */
+static const double load_slack = 0.03;  /* of the step, in the same */
 static const double relaxation = 1.5;   /* of the sweep beyond the contact */
 
 static double stiffness(const void *context, size_t kx, size_t ky)
@@ -108,11 +109,9 @@ static double extended_gap(const struct contact *c, size_t x, const size_t row[3
 	size_t nx = (size_t)c->par.nx;
 	int periodic = c->par.boundary == CONTACT_PERIODIC;
 	size_t column[3] = { before(x, nx, periodic), x, after(x, nx, periodic) };
-	double pressure = 0;
+	double pressure = c->p[row[1] + column[0]] + c->p[row[1] + column[2]] +
+			  c->p[row[0] + x] + c->p[row[2] + x];
 
-	for (int k = 0; k < 3; k++)
-		for (int j = 0; j < 3; j++)
-			pressure += c->p[row[k] + column[j]];
 	if (pressure <= 0)
 		return 0;
 	return c->near_x * (active_gap(c, row[1] + column[0]) +
@@ -163,9 +162,20 @@ static void sum_residual(void *context, size_t begin, size_t end, struct sweep *
 	}
 }
 
-/* New direction on the active cells, and what the bounds leave of a step along it;
- * sums that step times the gap. */
-static void turn_direction(void *context, size_t begin, size_t end, struct sweep *s)
+/* Sums over a bounded step: with the gap, itself, its size, the cells it leaves free
+ * and those it takes to a bound. */
+static void sum_bounded(
+	const struct contact *c, size_t i, double g, double step, struct sweep *s)
+{
+	s->sum[0] += step * g;
+	s->sum[1] += step;
+	s->sum[2] += fabs(step);
+	s->sum[3] += is_free(c, c->p[i] + step);
+	s->sum[4] += (step != 0) & !is_free(c, c->p[i] + step);
+}
+
+/* New direction on the active cells, of which the step keeps what the bounds leave. */
+static void turn_step(void *context, size_t begin, size_t end, struct sweep *s)
 {
 	struct contact *c = context;
 
@@ -173,11 +183,25 @@ static void turn_direction(void *context, size_t begin, size_t end, struct sweep
 		double p = c->p[i], g = gap_at(c, i), d, step;
 
 		d = c->shift - c->residual[i] + c->beta * c->step[i];
-		d = is_active(c, p, g) ? d : 0;
 		step = within(c, p + c->tau * d) - p;
-		c->step[i] = d;
-		c->image[i] = step;
-		s->sum[0] += step * g;
+		step = is_active(c, p, g) ? step : 0;
+		c->step[i] = step;
+		sum_bounded(c, i, g, step, s);
+	}
+}
+
+/* Shares out among the free cells what the bounds took of the load. */
+static void share_step(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+
+	for (size_t i = begin; i < end; i++) {
+		double p = c->p[i], g = gap_at(c, i), step = c->step[i];
+
+		if (is_free(c, p + step) && is_active(c, p, g))
+			step = within(c, p + step + c->shift) - p;
+		c->step[i] = step;
+		sum_bounded(c, i, g, step, s);
 	}
 }
 
@@ -185,32 +209,29 @@ static void sum_image(void *context, size_t begin, size_t end, struct sweep *s)
 {
 	struct contact *c = context;
 
-	for (size_t i = begin; i < end; i++) {
-		double p = c->p[i];
-
-		s->sum[0] += (within(c, p + c->tau * c->step[i]) - p) * c->image[i];
-	}
+	for (size_t i = begin; i < end; i++)
+		s->sum[0] += c->step[i] * c->image[i];
 }
 
-/* Takes the stretched step; sums what the bounds changed against it, the step, the
- * pressure, and the gap over free cells. */
+/* Takes the stretched step, but cells that had come to a bound stay there; sums what
+ * that and the bounds changed, the step, the pressure, and the gap over free cells. */
 static void take_step(void *context, size_t begin, size_t end, struct sweep *s)
 {
 	struct contact *c = context;
 	double a = c->stretch;
 
 	for (size_t i = begin; i < end; i++) {
-		double p = c->p[i], step = within(c, p + c->tau * c->step[i]) - p;
-		double next = within(c, p + a * c->tau * c->step[i]);
+		double step = c->step[i], bound = c->p[i] + step;
+		double wanted = c->p[i] + a * step, next = within(c, wanted);
 		double gap = c->gap[i] + a * c->image[i];
 
-		s->sum[0] += fabs(next - (p + a * step));
+		next = is_free(c, bound) ? next : bound;
+		s->sum[0] += fabs(next - wanted);
 		s->sum[1] += fabs(a * step);
 		s->sum[2] += next;
 		s->sum[3] += is_free(c, next) ? gap : 0;
 		s->sum[4] += is_free(c, next);
 		c->gap[i] = gap;
-		c->step[i] = step;
 		c->p[i] = next;
 	}
 }
@@ -221,16 +242,20 @@ struct state {
 	double curvature; /* step times image; 0: nothing to be conjugate to */
 	double drift;     /* how far gap and pressure are apart, as a sum of pressures */
 	double moved;     /* sum of the last step; 0: it led nowhere */
-	int exact;        /* the gap has just been computed from the pressure */
+	double bounded;   /* cells that the step takes to a bound */
+	double rest;      /* what the step leaves missing */
+	int crowded;      /* ... because the active cells cannot bear more, or less */
+	int exact;        /* gap and load have just been computed */
 };
 
 /* Direction and bounded step from the residual.  The direction is made conjugate to
- * the last step; with a given load its sum makes up for what is missing.  Returns the
- * slope of the energy along the step. */
-static double find_step(struct contact *c, const struct state *state)
+ * the last step.  With a given load the step makes up for what is missing, to a few
+ * parts in a hundred of itself; the rest is left to the next.  Returns the slope of the
+ * energy along the step. */
+static double find_step(struct contact *c, struct state *state)
 {
 	int load_given = c->control == CONTACT_PRESSURE;
-	double count, mean, sum;
+	double count, mean, missing = c->target * (double)c->n - state->sum;
 	struct sweep s;
 
 	convolve_apply(c->periodic, c->inverse, c->residual, c->residual);
@@ -241,11 +266,59 @@ static double find_step(struct contact *c, const struct state *state)
 	mean = load_given ? s.sum[0] / count : 0;
 	c->beta = state->curvature > 0 ? (s.sum[2] - mean * s.sum[1]) / state->curvature
 				       : 0;
-	sum = c->beta * s.sum[3] - s.sum[0];
-	c->shift = load_given ? ((c->target * (double)c->n - state->sum) / c->tau - sum) /
-					count
+	c->shift = load_given ? (missing / c->tau + s.sum[0] - c->beta * s.sum[3]) / count
 			      : 0;
-	return contact_sweep(c, turn_direction).sum[0];
+	s = contact_sweep(c, turn_step);
+	for (int k = 0; load_given && k < 8; k++) {
+		double rest = missing - s.sum[1];
+
+		if (fabs(rest) <= load_slack * s.sum[2] || s.sum[3] <= 0)
+			break;
+		c->shift = rest / s.sum[3];
+		s = contact_sweep(c, share_step);
+	}
+	state->bounded = s.sum[4];
+	state->rest = load_given ? missing - s.sum[1] : 0;
+	state->crowded = c->cap < INFINITY &&
+			 fabs(state->rest) > fmax(load_slack * s.sum[2],
+						     1e-12 * c->target * (double)c->n);
+	return s.sum[0];
+}
+
+/* Cells within reach, cells at the hardness that would open; range of the gap. */
+static void count_reached(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+
+	for (size_t i = begin; i < end; i++) {
+		double p = c->p[i], g = gap_at(c, i);
+
+		s->sum[0] += (p > 0) | (g < 0);
+		s->sum[1] += (p >= c->cap) & (g > 0);
+		s->max = fabs(g) > s->max ? fabs(g) : s->max;
+	}
+}
+
+/* Where all cells within reach are at the hardness and yet short of the load, or
+ * beyond it, the approach must grow until there are enough, or fall until some open. */
+static void make_room(struct contact *c, double missing)
+{
+	double need = fmin(1.05 * c->target / c->cap, 1) * (double)c->n;
+	double open = fmin(fmax(-2 * missing / c->cap, 1), (double)c->n);
+	double all = c->result.approach, some = all, reach;
+
+	reach = contact_sweep(c, count_reached).max * (1 + 1e-9);
+	all += missing > 0 ? reach : -reach;
+	for (int k = 0; k < 50; k++) {
+		struct sweep s;
+		int enough;
+
+		c->result.approach = (all + some) / 2;
+		s = contact_sweep(c, count_reached);
+		enough = missing > 0 ? s.sum[0] >= need : s.sum[1] >= open;
+		*(enough ? &all : &some) = c->result.approach;
+	}
+	c->result.approach = all;
 }
 
 /* Applies the half-space to the step, finds how far to go along it, and goes. */
@@ -253,16 +326,19 @@ static void follow_step(struct contact *c, struct state *state, double slope)
 {
 	struct sweep s;
 
-	contact_multiply(c, c->image, c->image);
+	contact_multiply(c, c->step, c->image);
 	state->curvature = contact_sweep(c, sum_image).sum[0];
 	state->moved = 0;
-	if (!(state->curvature > 0) || !(slope < 0)) {
+	if (!(state->curvature > 0) || !(slope < 0 || state->crowded)) {
 		state->curvature = 0;
 		return;
 	}
-	c->stretch = fmin(fmax(-slope / state->curvature, 0.5), 2);
+	/* Far beyond a bounded step lies something else than what it was made for. */
+	c->stretch = fmin(-slope / state->curvature, state->bounded > 0 ? 2 : 10);
+	if (state->crowded) /* the load comes before the energy */
+		c->stretch = 1;
 	s = contact_sweep(c, take_step);
-	c->tau *= sqrt(c->stretch);
+	c->tau = fmin(fmax(c->tau * sqrt(c->stretch), 0.05), 5);
 	state->drift += s.sum[0];
 	state->moved = s.sum[1];
 	state->sum = s.sum[2];
@@ -271,14 +347,18 @@ static void follow_step(struct contact *c, struct state *state, double slope)
 		c->result.approach = s.sum[3] / s.sum[4];
 }
 
+/* The gap from the pressure, once what the load is short of has been put right. */
 static void renew_gap(struct contact *c, struct state *state)
 {
-	if (c->control == CONTACT_PRESSURE)
-		contact_scale_load(c);
-	contact_gap(c);
-	state->sum = c->target * (double)c->n;
-	state->drift = 0;
+	double load = c->target * (double)c->n;
+
 	state->exact = 1;
+	if (c->control == CONTACT_PRESSURE) {
+		state->sum = contact_scale_load(c, c->cap < INFINITY);
+		state->exact = fabs(state->sum - load) <= 1e-14 * load;
+	}
+	contact_gap(c);
+	state->drift = 0;
 }
 
 static double certify(struct contact *c)
@@ -295,23 +375,31 @@ enum contact_status contact_solve_bccg(struct contact *c)
 	c->tau = 0.5;
 	renew_gap(c, &state);
 	for (long k = 0;; k++) {
-		double certificate = certify(c);
+		double certificate = certify(c), slope;
 
 		if (certificate <= c->tolerance && !state.exact) {
 			renew_gap(c, &state);
 			certificate = certify(c);
 		}
-		if (certificate <= c->tolerance)
+		if (certificate <= c->tolerance && state.exact)
 			return CONTACT_OK;
 		if (k == c->par.max_iterations || contact_stalls(c, certificate))
 			break;
 		c->result.iterations++;
-		follow_step(c, &state, find_step(c, &state));
+		slope = find_step(c, &state);
+		if (state.crowded) {
+			make_room(c, state.rest);
+			certify(c);
+			state.curvature = 0;
+			slope = find_step(c, &state);
+			state.crowded = 1;
+		}
+		follow_step(c, &state, slope);
 		if (state.moved <= 0)
 			c->tau = fmax(c->tau / 2, 1e-3);
 		if (state.moved <= 0 || state.drift > drift_limit * state.moved)
 			renew_gap(c, &state);
 	}
 	renew_gap(c, &state);
-	return certify(c) <= c->tolerance ? CONTACT_OK : CONTACT_NOCONV;
+	return certify(c) <= c->tolerance && state.exact ? CONTACT_OK : CONTACT_NOCONV;
 }

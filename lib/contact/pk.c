@@ -94,6 +94,6 @@ enum contact_status contact_solve_pk(struct contact *c)
 		s = contact_sweep(c, move_pressure);
 		conjugate = s.sum[0] == 0;
 		if (c->control == CONTACT_PRESSURE)
-			contact_scale_load(c);
+			contact_scale_load(c, 0);
 	}
 }

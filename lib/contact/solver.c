@@ -292,28 +292,32 @@ static void fill_empty(void *context, size_t begin, size_t end, struct sweep *s)
 			c->p[i] = c->beta;
 }
 
-void contact_scale_load(struct contact *c)
+double contact_scale_load(struct contact *c, int gently)
 {
-	double load = c->target * (double)c->n;
+	double load = c->target * (double)c->n, fixed = 0, rest = 0;
 
 	/* Cells that reach the hardness on the way leave the rest to the others. */
 	for (int k = 0; k < 100; k++) {
 		struct sweep s = contact_sweep(c, sum_load);
-		double fixed = s.sum[0], rest = s.sum[1];
 
+		fixed = s.sum[0];
+		rest = s.sum[1];
+		c->beta = (load - fixed) / rest;
 		if (fabs(fixed + rest - load) <= 4 * DBL_EPSILON * load)
-			return;
+			break;
+		if (gently && !(c->beta > 0.5 && c->beta < 2))
+			break;
 		if (fixed >= load) {
 			c->beta = load / (fixed + rest);
 			contact_sweep(c, scale_all);
 		} else if (rest > 0) {
-			c->beta = (load - fixed) / rest;
 			contact_sweep(c, scale_free);
 		} else {
 			c->beta = (load - fixed) / s.sum[2];
 			contact_sweep(c, fill_empty);
 		}
 	}
+	return fixed + rest;
 }
 
 static void survey(void *context, size_t begin, size_t end, struct sweep *s)
@@ -343,6 +347,7 @@ static void spread(void *context, size_t begin, size_t end, struct sweep *s)
 		double d = c->h[i] - c->shift;
 
 		s->sum[0] += d * d;
+		s->sum[1] += d;
 	}
 }
 
@@ -380,7 +385,8 @@ static enum contact_status prepare(struct contact *c)
 		return CONTACT_NUMBERS;
 	c->shift = mean;
 	s = contact_sweep(c, spread);
-	c->scale = sqrt(s.sum[0] / (double)c->n);
+	/* The second term is the rounding of the mean. */
+	c->scale = sqrt(s.sum[0] / (double)c->n - pow(s.sum[1] / (double)c->n, 2));
 	if (!isfinite(c->scale))
 		return CONTACT_NUMBERS;
 	if (c->control == CONTACT_PRESSURE) {
@@ -402,7 +408,7 @@ static enum contact_status prepare(struct contact *c)
 	if (guess <= 0 && !contact_guess(c))
 		contact_sweep(c, fill_empty);
 	if (c->control == CONTACT_PRESSURE)
-		contact_scale_load(c);
+		contact_scale_load(c, 0);
 	return CONTACT_OK;
 }
 

@@ -91,8 +91,9 @@ void contact_approach(struct contact *c);
 double contact_certificate(struct contact *c, const struct sweep *s);
 /* Makes those sums. */
 struct sweep contact_certify(struct contact *c);
-/* Scales the free pressures so that the load is the wanted one. */
-void contact_scale_load(struct contact *c);
+/* Scales the free pressures so that the load is the wanted one, or leaves them where
+ * gently and that is more than a matter of scale.  Returns the sum of the pressures. */
+double contact_scale_load(struct contact *c, int gently);
 /* 1 where the certificate has long stopped falling: rounding is all that is left, or
  * the method fails.  Keeps count of calls. */
 int contact_stalls(struct contact *c, double certificate);
