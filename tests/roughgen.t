@@ -59,6 +59,8 @@ roughgen -n 3 -q 0 -L 3mm -C 8um >a
 is "--crown on a flat" "$(records -o text a | awk '!/^#/ && NF { printf "%.5g %.5g %.5g ", $1, $2, $3 }')" \
 	"-3.5556e-06 -1.7778e-06 -3.5556e-06 -1.7778e-06 0 -1.7778e-06 -3.5556e-06 -1.7778e-06 -3.5556e-06 "
 
+roughgen -n 3 -q 0 -L 3mm -C 8um -m >t
+near "--measure: the crown belongs to the heights" "$(value sq t)" 1.18519e-6 1e-11
 # A crown stays out of what is done to the roughness.
 roughgen -n 64 -q 1um -C 4um | roughgen -q 3um -C 2um - >a
 is "a crown goes through: sq and crown" \
