@@ -26,7 +26,8 @@ struct joint {
 	double *memory;          /* columns of all pulses */
 	double *scratch;         /* three of support */
 	double *filter[2];       /* matched filter on the coarse grid */
-	struct column col[JOINT_PULSES_MAX + 1][2];
+	struct column col[JOINT_PULSES_MAX + 1][2];   /* as the pulses are */
+	struct column trial[JOINT_PULSES_MAX + 1][2]; /* as they were before a step */
 	double *h; /* NPAR * NPAR: normal matrix or its Cholesky factor */
 	double *factor;
 	int begin[NPAR]; /* first nonzero of each row */
@@ -106,7 +107,7 @@ static int reserve_columns(struct joint *j, size_t support)
 	free(j->memory);
 	free(j->scratch);
 	j->support = 0;
-	j->memory = malloc(support * sizeof(double) * (JOINT_PULSES_MAX + 1) * 2 * PAR);
+	j->memory = malloc(support * sizeof(double) * (JOINT_PULSES_MAX + 1) * 4 * PAR);
 	j->scratch = malloc(support * sizeof(double) * PAR);
 	if (!j->memory || !j->scratch)
 		return 0;
@@ -114,8 +115,10 @@ static int reserve_columns(struct joint *j, size_t support)
 	at = j->memory;
 	for (int i = 0; i <= JOINT_PULSES_MAX; i++)
 		for (int c = 0; c < 2; c++)
-			for (int k = 0; k < PAR; k++, at += support)
+			for (int k = 0; k < PAR; k++, at += 2 * support) {
 				j->col[i][c].d[k] = at;
+				j->trial[i][c].d[k] = at + support;
+			}
 	return 1;
 }
 
@@ -388,6 +391,52 @@ static struct joint_pulse moved(const struct joint_scene *s,
 	return p;
 }
 
+/* Adds what the columns of pulse i say it puts on the record. */
+static void add_column(struct joint *j, int i, double factor)
+{
+	for (int c = 0; c < 2; c++) {
+		const struct column *col = &j->col[i][c];
+
+		add_scaled(j->e[c] + col->first, factor, col->d[2], col->n);
+	}
+}
+
+static void swap_columns(struct joint *j, int i)
+{
+	struct column keep[2];
+
+	memcpy(keep, j->col[i], sizeof keep);
+	memcpy(j->col[i], j->trial[i], sizeof keep);
+	memcpy(j->trial[i], keep, sizeof keep);
+}
+
+/* Moves the pulses in set along j->move; their columns before the step go to trial. */
+static void step_forth(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, const int *set, int m, struct joint_pulse *old)
+{
+	for (int x = 0; x < m; x++) {
+		struct joint_pulse *p = &pulses[set[x]];
+
+		old[x] = *p;
+		add_column(j, set[x], p->a);
+		*p = moved(s, &old[x], j->move + PAR * x, j->n);
+		swap_columns(j, set[x]);
+		make_columns(j, s, set[x], p);
+		add_column(j, set[x], -p->a);
+	}
+}
+
+static void step_back(struct joint *j, struct joint_pulse *pulses, const int *set, int m,
+	const struct joint_pulse *old)
+{
+	for (int x = 0; x < m; x++) {
+		add_column(j, set[x], pulses[set[x]].a);
+		swap_columns(j, set[x]);
+		pulses[set[x]] = old[x];
+		add_column(j, set[x], -old[x].a);
+	}
+}
+
 /* Levenberg-Marquardt on the pulses in set, the others held; returns chi-square. */
 static double fit_set(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, const int *set, int m, int max_steps,
@@ -395,16 +444,16 @@ static double fit_set(struct joint *j, const struct joint_scene *s,
 {
 	double lambda = 1e-4, chi2 = project(j);
 	struct joint_pulse old[JOINT_PULSES_MAX];
+	int fresh = 0;
 
-	for (int step = 0, fresh = 0; step < max_steps && m > 0; step++) {
+	for (int x = 0; x < m; x++)
+		make_columns(j, s, set[x], &pulses[set[x]]);
+	for (int step = 0; step < max_steps && m > 0; step++) {
 		double after;
 
-		if (!fresh) {
-			for (int x = 0; x < m; x++)
-				make_columns(j, s, set[x], &pulses[set[x]]);
+		if (!fresh)
 			make_normal(j, set, m);
-			fresh = 1;
-		}
+		fresh = 1;
 		j->steps++;
 		if (!factorise(j, PAR * m, lambda)) {
 			lambda = lambda * 10 + 1e-3;
@@ -412,12 +461,7 @@ static double fit_set(struct joint *j, const struct joint_scene *s,
 		}
 		memcpy(j->move, j->gradient, sizeof(double) * (size_t)(PAR * m));
 		solve(j, PAR * m, 0, j->move);
-		for (int x = 0; x < m; x++) {
-			old[x] = pulses[set[x]];
-			subtract(j, s, &old[x], -1);
-			pulses[set[x]] = moved(s, &old[x], j->move + PAR * x, j->n);
-			subtract(j, s, &pulses[set[x]], 1);
-		}
+		step_forth(j, s, pulses, set, m, old);
 		after = project(j);
 		if (after < chi2) {
 			double gain = chi2 - after;
@@ -429,16 +473,11 @@ static double fit_set(struct joint *j, const struct joint_scene *s,
 				break;
 			continue;
 		}
-		for (int x = 0; x < m; x++) {
-			subtract(j, s, &pulses[set[x]], -1);
-			pulses[set[x]] = old[x];
-			subtract(j, s, &old[x], 1);
-		}
-		if (after - chi2 < tolerance || lambda > 1e6) {
-			chi2 = project(j);
-			break;
-		}
+		step_back(j, pulses, set, m, old);
+		after -= chi2;
 		chi2 = project(j);
+		if (after < tolerance || lambda > 1e6)
+			break;
 		lambda = lambda * 10;
 	}
 	return chi2;

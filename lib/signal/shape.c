@@ -7,8 +7,8 @@ enum { STEPS = 256 }; /* grid steps per duration for the pulses of sensor.h */
 
 struct shape {
 	double reach, step;
-	int cells;    /* grid cells; cells + 1 nodes */
-	double *node; /* value and slope times step, alternating */
+	int cells;
+	double *cubic; /* four coefficients per cell, of powers of its unit coordinate */
 	double energy, slope_energy;
 };
 
@@ -21,25 +21,40 @@ static struct shape *shape_alloc(double reach, int cells)
 	shape->reach = reach;
 	shape->cells = cells;
 	shape->step = 2 * reach / cells;
-	shape->node = calloc(2 * (size_t)(cells + 1), sizeof *shape->node);
-	if (!shape->node) {
+	shape->cubic = calloc(4 * (size_t)cells, sizeof *shape->cubic);
+	if (!shape->cubic) {
 		free(shape);
 		return NULL;
 	}
 	return shape;
 }
 
+/* The cubic of one cell from values and slopes (per cell) at its ends. */
+static void set_cell(
+	struct shape *shape, int cell, double v0, double m0, double v1, double m1)
+{
+	double *c = shape->cubic + 4 * cell;
+
+	c[0] = v0;
+	c[1] = m0;
+	c[2] = 3 * (v1 - v0) - 2 * m0 - m1;
+	c[3] = 2 * (v0 - v1) + m0 + m1;
+}
+
 /* Integrals of p^2 and p'^2 over each cell by Simpson's rule. */
 static void shape_integrate(struct shape *shape)
 {
-	const double *v = shape->node;
+	for (int i = 0; i < shape->cells; i++) {
+		const double *c = shape->cubic + 4 * i;
 
-	for (int i = 0; i < shape->cells; i++, v += 2) {
-		double mid = (v[0] + v[2]) / 2 + (v[1] - v[3]) / 8;
-		double slope = 1.5 * (v[2] - v[0]) - (v[1] + v[3]) / 4;
+		for (int k = 0; k < 3; k++) {
+			double u = 0.5 * k, weight = k == 1 ? 4 : 1;
+			double v = c[0] + u * (c[1] + u * (c[2] + u * c[3]));
+			double d = c[1] + u * (2 * c[2] + u * 3 * c[3]);
 
-		shape->energy += v[0] * v[0] + 4 * mid * mid + v[2] * v[2];
-		shape->slope_energy += v[1] * v[1] + 4 * slope * slope + v[3] * v[3];
+			shape->energy += weight * v * v;
+			shape->slope_energy += weight * d * d;
+		}
 	}
 	shape->energy *= shape->step / 6;
 	shape->slope_energy /= 6 * shape->step;
@@ -58,13 +73,15 @@ struct shape *shape_new(enum pulse_shape pulse)
 	shape = shape_alloc(reach, cells);
 	if (!shape)
 		return NULL;
-	for (int i = 0; i <= cells; i++) {
+	for (int i = 0; i < cells; i++) {
 		/* The ends lie on the support's edge: take them from just inside. */
-		double s = (i - cells / 2) / (double)STEPS;
-		double inside = i == 0 ? s + 1e-12 : i == cells ? s - 1e-12 : s;
+		double s0 = (i - cells / 2) / (double)STEPS + (i == 0 ? 1e-12 : 0);
+		double s1 = (i + 1 - cells / 2) / (double)STEPS -
+			    (i == cells - 1 ? 1e-12 : 0);
 
-		shape->node[2 * i] = pulse_value(pulse, inside);
-		shape->node[2 * i + 1] = pulse_slope(pulse, inside) * shape->step;
+		set_cell(shape, i, pulse_value(pulse, s0),
+			pulse_slope(pulse, s0) * shape->step, pulse_value(pulse, s1),
+			pulse_slope(pulse, s1) * shape->step);
 	}
 	shape_integrate(shape);
 	return shape;
@@ -86,12 +103,12 @@ struct shape *shape_from_values(const double *value, int half, double reach)
 	}
 	if (peak == 0 || !(shape = shape_alloc(reach, cells)))
 		return NULL;
-	for (int i = 0; i <= cells; i++) {
+	for (int i = 0; i < cells; i++) {
 		double before = i > 0 ? value[i - 1] : 0,
-		       after = i < cells ? value[i + 1] : 0;
+		       after = i + 2 <= cells ? value[i + 2] : 0;
 
-		shape->node[2 * i] = value[i] / peak;
-		shape->node[2 * i + 1] = (after - before) / (2 * peak);
+		set_cell(shape, i, value[i] / peak, (value[i + 1] - before) / (2 * peak),
+			value[i + 1] / peak, (after - value[i]) / (2 * peak));
 	}
 	shape_integrate(shape);
 	return shape;
@@ -101,7 +118,7 @@ void shape_free(struct shape *shape)
 {
 	if (!shape)
 		return;
-	free(shape->node);
+	free(shape->cubic);
 	free(shape);
 }
 
@@ -129,39 +146,44 @@ long shape_support(const struct shape *shape, double t0, double T, size_t *n)
 	return first;
 }
 
+static void clear_outside(double *x, size_t begin, size_t end, size_t n)
+{
+	if (!x)
+		return;
+	for (size_t i = 0; i < begin; i++)
+		x[i] = 0;
+	for (size_t i = end; i < n; i++)
+		x[i] = 0;
+}
+
 void shape_sample(const struct shape *shape, double t0, double T, long first, size_t n,
 	double *p, double *by_t0, double *by_T)
 {
-	double rate = 1 / (T * shape->step), slope = -rate, start = (double)first - t0;
+	double rate = 1 / (T * shape->step), start = (double)first - t0;
+	double x0 = (start + shape->reach * T) * rate;
+	size_t begin = 0, end = n;
 
-	for (size_t i = 0; i < n; i++) {
-		double t = start + (double)i, x = (t + shape->reach * T) * rate, u, d;
-		const double *v;
-		int cell;
+	while (begin < end && !(x0 + rate * (double)begin >= 0))
+		begin++;
+	while (end > begin && !(x0 + rate * (double)(end - 1) < shape->cells))
+		end--;
+	clear_outside(p, begin, end, n);
+	clear_outside(by_t0, begin, end, n);
+	clear_outside(by_T, begin, end, n);
+	for (size_t i = begin; i < end; i++) {
+		double x = x0 + rate * (double)i, u = x - (double)(int)x;
+		const double *c = shape->cubic + 4 * (int)x;
 
-		if (!(x >= 0 && x <= shape->cells)) {
-			p[i] = 0;
-			if (by_t0)
-				by_t0[i] = 0;
-			if (by_T)
-				by_T[i] = 0;
-			continue;
-		}
-		cell = x < shape->cells ? (int)x : shape->cells - 1;
-		v = shape->node + 2 * cell;
-		u = x - cell;
-		d = v[2] - v[0];
-		/* Hermite: v0 + u (m0 + u (3d - 2m0 - m1 + u (m0 + m1 - 2d))) */
-		p[i] = v[0] + u * (v[1] + u * (3 * d - 2 * v[1] - v[3] +
-						      u * (v[1] + v[3] - 2 * d)));
-		if (by_t0 || by_T) {
-			double dp = v[1] + u * (2 * (3 * d - 2 * v[1] - v[3]) +
-						       3 * u * (v[1] + v[3] - 2 * d));
-
-			if (by_t0)
-				by_t0[i] = slope * dp;
-			if (by_T)
-				by_T[i] = slope * dp * t / T;
-		}
+		p[i] = c[0] + u * (c[1] + u * (c[2] + u * c[3]));
+		if (by_t0)
+			by_t0[i] = -rate * (c[1] + u * (2 * c[2] + u * 3 * c[3]));
 	}
+	if (by_T)
+		for (size_t i = begin; i < end; i++) {
+			double x = x0 + rate * (double)i, u = x - (double)(int)x;
+			const double *c = shape->cubic + 4 * (int)x;
+
+			by_T[i] = -rate * (c[1] + u * (2 * c[2] + u * 3 * c[3])) *
+				  (start + (double)i) / T;
+		}
 }
