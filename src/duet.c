@@ -123,10 +123,11 @@ static void put_particle(struct output *out, const struct particle *p)
 	double ra = p->amplitude_se / p->amplitude, rt = delay_se / delay;
 	/* d = (A delay / (kappa D))^(1/3) */
 	double d_se = d / 3 * sqrt(ra * ra + rt * rt + 2 * p->correlation * ra * rt);
-	const double row[] = { (double)out->count++, p->t1 / rate, p->t2 / rate, d,
-		p->amplitude, delay, velocity, p->t1_se / rate, p->t2_se / rate, d_se,
-		p->amplitude_se, delay_se, velocity * rt, (double)p->section,
-		(double)p->sources, p->chi2 };
+	int one = p->verdict != SEPARATE_UNRESOLVED;
+	const double row[] = { one ? (double)out->count++ : NAN, p->t1 / rate,
+		p->t2 / rate, d, p->amplitude, delay, velocity, p->t1_se / rate,
+		p->t2_se / rate, d_se, p->amplitude_se, delay_se, velocity * rt,
+		(double)p->section, (double)p->sources, p->chi2 };
 
 	for (size_t i = 0; i < sizeof row / sizeof *row; i++)
 		table_put(out->particles, row[i]);
@@ -172,17 +173,26 @@ static void draw_sources(struct output *out, const struct separate_section *s)
 static void put_section(void *context, const struct separate_section *s)
 {
 	struct output *out = context;
+	double rate = (double)out->rate;
 
 	if (out->sections) {
 		table_put(out->sections, (double)s->number);
 		table_put(out->sections, (double)s->begin / (double)out->rate);
 		table_put(out->sections, (double)s->end / (double)out->rate);
 		table_put(out->sections, s->sources);
+		table_put(out->sections,
+			s->dense ? s->dense->rate_se * (double)(s->end - s->begin) : 0);
+		table_put(out->sections, s->dense ? s->dense->amplitude : NAN);
+		table_put(out->sections, s->dense ? s->dense->amplitude_se : NAN);
+		table_put(out->sections, s->dense ? s->dense->square * rate : NAN);
+		table_put(out->sections, s->dense ? s->dense->square_se * rate : NAN);
+		table_put(out->sections, s->dense ? s->dense->fourth * rate : NAN);
+		table_put(out->sections, s->dense ? s->dense->fourth_se * rate : NAN);
 		table_put(out->sections, s->chi2);
 		table_put_text(out->sections, verdicts[s->verdict]);
 		table_end_row(out->sections);
 	}
-	if (out->separated)
+	if (out->separated && s->source)
 		draw_sources(out, s);
 	if (!out->histogram || !s->masks)
 		return;
@@ -442,8 +452,9 @@ static void open_outputs(
 	if (format->seed)
 		table_comment(out->particles, "seed", "%s", format->seed);
 	if (sections)
-		out->sections = table_create(
-			sections, cmd, NULL, "section begin end sources chi2 verdict");
+		out->sections = table_create(sections, cmd, NULL,
+			"section begin end sources sources_se amplitude amplitude_se square square_se "
+			"fourth fourth_se chi2 verdict");
 	if (histogram)
 		out->histogram = table_create(
 			histogram, cmd, NULL, "section attenuation delay weight");

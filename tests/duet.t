@@ -79,6 +79,13 @@ is "counting: lone pulses" "$(column particle c.tsv | wc -l)" 60
 duet --stats stats.tsv -m duet s.au >/dev/null
 at_most "masks: lone pulses are not demixed" "$(column_of demixings <stats.tsv)" 2
 
+# Too dense: said so, and the sum of squares is right (1000 per second, A = 1: 1000 V2/s).
+sensorsim --uniform 100um:100um --number 8000 --duration 8s --snr 30dB --truth t.tsv >dense.au
+duet -Z sections.tsv dense.au >dense.tsv
+is "dense: no invented particle" "$(column verdict dense.tsv | sort -u)" unresolved
+near "dense: the sum of squares" "$(column square sections.tsv |
+	awk "{ s += \$1 } END { print s / NR }")" 1000 200
+
 # Silence and bad input.
 sensorsim --uniform 80um:120um --number 0 --duration 10s --noise 1V >noise.au
 duet --align 19.6ms --pulse-duration 10ms noise.au >none.tsv

@@ -300,7 +300,7 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 	double best = INFINITY, duration = c->duration, gain = c->gain;
 	int pulse = c->pulse;
 
-	for (int p = PULSE_SINE; p <= PULSE_LORENTZ; p++) {
+	for (int p = PULSE_SINE; p <= PULSE_LORENTZ && best > 1.3; p++) {
 		double chi2;
 
 		if (par->pulse != CALIBRATE_ANY_PULSE && p != par->pulse)
@@ -315,7 +315,7 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 		scene_of(c, &l->scene);
 		examples_fit(l, 0.05);
 		tune(par, l, 0.1, 3);
-		chi2 = examples_fit(l, 0.01);
+		chi2 = examples_fit(l, 0.003);
 		if (chi2 < best) {
 			best = chi2;
 			pulse = p;
@@ -401,30 +401,75 @@ static void set_thresholds(const struct calibrate_par *par, struct calibration *
 	c->drop_near = c->drop < 25 ? c->drop : 25;
 }
 
+/* Matched filter of y[0 .. n) at every eighth of a duration; returns the number of
+ * points, 0 when out of memory. */
+static size_t filter_points(
+	const struct calibration *c, const double *y, size_t n, double *out)
+{
+	double T = c->duration;
+	size_t len, count = 0, stride = (size_t)(T / 8);
+	long first = shape_support(c->shape, 0, T, &len);
+	double *p = malloc(len * sizeof *p);
+
+	if (p && n > len) {
+		shape_sample(c->shape, 0, T, first, len, p, NULL, NULL);
+		for (size_t at = 0; at + len <= n; at += stride, count++) {
+			out[count] = 0;
+			for (size_t i = 0; i < len; i++)
+				out[count] += p[i] * y[at + i];
+		}
+	}
+	free(p);
+	return count;
+}
+
+/* Correlation of the filtered channels over the quietest tenth of the record: noise has
+ * none, pulses that are always there have much.  r holds n. */
+static double quiet_coherence(const struct calibration *c, const double *y1,
+	const double *y2, size_t n, double *r)
+{
+	enum { BLOCK = 16 }; /* points: two durations */
+	double *z = malloc((n + 2) * sizeof *z), xy = 0, xx = 0, yy = 0, limit;
+	size_t points, blocks;
+
+	if (!z)
+		return 0;
+	points = filter_points(c, y1, n, z);
+	/* A point per eighth of a duration of at least 8 samples: two channels fit in n.
+	 */
+	points = points < n / 2 && filter_points(c, y2, n, z + n / 2) == points ? points
+										: 0;
+	blocks = points / BLOCK;
+	for (size_t b = 0; b < blocks; b++) {
+		r[b] = 0;
+		for (size_t i = b * BLOCK; i < (b + 1) * BLOCK; i++)
+			r[b] += z[i] * z[i] + z[n / 2 + i] * z[n / 2 + i];
+		r[blocks + b] = r[b];
+	}
+	limit = robust_quantile(r, blocks, 0.1);
+	for (size_t b = 0; b < blocks; b++)
+		for (size_t i = b * BLOCK; r[blocks + b] <= limit && i < (b + 1) * BLOCK;
+			i++) {
+			xy += z[i] * z[n / 2 + i];
+			xx += z[i] * z[i];
+			yy += z[n / 2 + i] * z[n / 2 + i];
+		}
+	free(z);
+	return xx > 0 && yy > 0 ? xy / sqrt(xx * yy) : 0;
+}
+
 /* Standard deviation of white noise that would have the same effect on the matched
  * filter as the noise there is; for records that have been filtered before. */
 static double filtered_noise(
 	const struct calibration *c, const double *y, size_t n, double *work)
 {
-	double energy = c->duration * shape_energy(c->shape), T = c->duration;
-	size_t len, count = 0, stride = (size_t)(T / 8);
-	long first = shape_support(c->shape, 0, T, &len);
-	double *p = malloc(len * sizeof *p);
+	size_t count = filter_points(c, y, n, work);
 
-	if (!p || n < len + 1) {
-		free(p);
-		return c->noise[0];
-	}
-	shape_sample(c->shape, 0, T, first, len, p, NULL, NULL);
-	for (size_t at = 0; at + len <= n; at += stride) {
-		double sum = 0;
-
-		for (size_t i = 0; i < len; i++)
-			sum += p[i] * y[at + i];
-		work[count++] = fabs(sum);
-	}
-	free(p);
-	return 1.482602218505602 * robust_median(work, count) / sqrt(energy);
+	for (size_t i = 0; i < count; i++)
+		work[i] = fabs(work[i]);
+	return count ? 1.482602218505602 * robust_median(work, count) /
+			       sqrt(c->duration * shape_energy(c->shape))
+		     : 1;
 }
 
 static void normalise(const struct calibration *c, double *y1, double *y2, size_t n)
@@ -502,7 +547,13 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 	c->misfit = 3e-4;
 	if (learn_pulse(par, y1, y2, rest, low, c) != CALIBRATE_OK)
 		return CALIBRATE_MEMORY;
-	if (c->chi2 > 4) {
+	if (c->chi2 > 4 && quiet_coherence(c, y1, y2, rest, r) > 0.6) {
+		/* Even where it is most quiet, both sensors see the same: too many
+		 * pulses. */
+		c->dense = 1;
+		c->misfit = 0.01;
+		set_range(par, c);
+	} else if (c->chi2 > 4) {
 		/* Neither the shape nor white noise will do: the record was filtered.
 		 * What counts then is the noise that passes the matched filter. */
 		double n1 = filtered_noise(c, y1, rest, r),

@@ -48,6 +48,7 @@ struct calibration {
 	double drop, drop_near;      /* thresholds of joint.h */
 	double misfit;               /* of joint.h: how far the shape can be trusted */
 	int events;                  /* pulses the shape was fitted to */
+	int dense;                   /* 1: pulses throughout, hardly any of them clear */
 	double chi2;                 /* of these, per degree of freedom */
 };
 

@@ -3,12 +3,14 @@
 #include <math.h>
 
 /* Hoare's selection. */
-double robust_median(double *x, size_t n)
+double robust_quantile(double *x, size_t n, double share)
 {
-	size_t lo = 0, hi = n ? n - 1 : 0, middle = n / 2;
+	size_t lo = 0, hi = n ? n - 1 : 0, middle = (size_t)(share * (double)n);
 
 	if (n == 0)
 		return 0;
+	if (middle > hi)
+		middle = hi;
 	while (lo < hi) {
 		double pivot = x[lo + (hi - lo) / 2];
 		size_t i = lo, k = hi;
@@ -33,6 +35,11 @@ double robust_median(double *x, size_t n)
 			lo = k + 1;
 	}
 	return x[middle];
+}
+
+double robust_median(double *x, size_t n)
+{
+	return robust_quantile(x, n, 0.5);
 }
 
 double robust_noise(const double *x, size_t n, int order, double *work)

@@ -6,6 +6,8 @@
 
 /* Median (upper of the two middle values); 0 for n = 0.  Reorders x. */
 double robust_median(double *x, size_t n);
+/* The value that a share of x lies below. */
+double robust_quantile(double *x, size_t n, double share);
 
 /* Standard deviation of the white noise under slow signals: the median of the difference
  * of the given order (1 to 16), which takes out what varies over many samples; work holds

@@ -28,9 +28,10 @@ struct separate {
 	struct joint_scene scene;
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
 	int carried;    /* pulses of the last window that the next one starts from */
+	int dense;      /* the rest of this section is not taken apart */
 	int continuing; /* the next window belongs to the same section */
 	long number;
-	long margin; /* that a section keeps before its first trigger */
+	long margin;    /* that a section keeps before its first trigger */
 	long long done; /* samples before this one are worked off */
 	struct particle *queue;
 	size_t count, given, capacity;
@@ -230,8 +231,8 @@ static enum separate_status calibrate_now(struct separate *s)
 	/* Equal pulses on both channels reach the threshold of a pair at 1 / sqrt 2 of
 	 * it. */
 	s->margin = (long)(0.6 * reach + fmax(c->delta_max, -c->delta_min));
-	s->sections = sections_new(
-		c->shape, c->duration, 0.65 * sqrt(c->drop), s->margin);
+	s->sections =
+		sections_new(c->shape, c->duration, 0.65 * sqrt(c->drop), s->margin);
 	s->joint = joint_new();
 	if (s->par.method == SEPARATE_MASKS) {
 		struct masks_par mp = { .window = s->par.mask_window,
@@ -354,15 +355,65 @@ static double choose_cut(const struct separate *s, int m, size_t n)
 	return cut;
 }
 
-static enum separate_verdict judge(const struct joint_result *r, int sources)
+/* What hides several pulses in one shows as a chi-square that the model, which holds for
+ * the record as a whole, cannot explain. */
+static enum separate_verdict judge(
+	const struct separate *s, const struct joint_result *r, int sources)
 {
 	double chi2 = r->chi2 / (double)r->dof, sd = sqrt(2 / (double)r->dof);
+	int model_holds = s->cal.chi2 < 4 || s->cal.dense;
 
-	if (r->full)
+	if (r->full || (chi2 > fmax(1.25, 1.1 + 5 * sd) && sources >= 4 && model_holds))
 		return SEPARATE_UNRESOLVED;
 	if (chi2 > 1.1 + 5 * sd)
 		return SEPARATE_MISFIT;
 	return sources > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
+}
+
+/* More pulses than this in n samples are not looked for. */
+static int most_pulses(const struct separate *s, size_t n)
+{
+	double most = 4 + 3 * (double)n / s->cal.duration;
+
+	if (s->par.sources)
+		return s->par.sources;
+	return most < JOINT_PULSES_MAX ? (int)most : JOINT_PULSES_MAX;
+}
+
+/* Shot noise of [from, to): one row. */
+static enum separate_status dense_section(
+	struct separate *s, long long from, long long to)
+{
+	struct particle *p = queue_particle(s);
+	struct separate_section out = { .number = s->number,
+		.begin = from,
+		.end = to,
+		.chi2 = NAN,
+		.verdict = SEPARATE_UNRESOLVED };
+	double noise = s->cal.noise[0], length = (double)(to - from);
+	struct campbell c;
+
+	if (!p)
+		return SEPARATE_MEMORY;
+	campbell_estimate(channel_1(s, from), channel_2(s, from), (size_t)(to - from),
+		s->cal.shape, s->cal.duration, s->scene.gain, &c);
+	campbell_scale(&c, noise);
+	p->section = s->number;
+	p->sources =
+		isnan(c.rate) || c.rate * length > 1e9 ? 0 : (int)(c.rate * length + 0.5);
+	p->t1 = (double)from + length / 2;
+	p->t2 = p->t1 + (double)s->cal.shift;
+	p->amplitude = c.amplitude;
+	p->amplitude_se = c.amplitude_se;
+	p->t1_se = p->t2_se = length / sqrt(12);
+	p->delay_se = p->correlation = p->chi2 = NAN;
+	p->verdict = SEPARATE_UNRESOLVED;
+	s->counters.unresolved++;
+	out.sources = p->sources;
+	out.dense = &c;
+	if (s->par.on_section)
+		s->par.on_section(s->par.context, &out);
+	return SEPARATE_OK;
 }
 
 /* Puts the network's guess at the pulses of n samples into s->pulse; 0 where it does not
@@ -402,19 +453,26 @@ static enum separate_status fit_section(
 
 	if (s->par.method == SEPARATE_FIT && s->par.network && m == 0 && !cut)
 		m = guess_pulses(s, from, n);
-	s->scene.max_pulses = s->par.sources ? s->par.sources : JOINT_PULSES_MAX;
+	s->scene.max_pulses = most_pulses(s, n);
+	if (m > s->scene.max_pulses)
+		m = s->scene.max_pulses;
 	if (joint_fit(s->joint, &s->scene, channel_1(s, from), channel_2(s, from), n,
 		    s->pulse, &m, &r) != JOINT_OK)
 		return SEPARATE_MEMORY;
 	s->counters.fits++;
 	s->counters.steps += (double)r.steps;
 	s->counters.searches += (double)r.searches;
+	verdict = judge(s, &r, m);
+	if (verdict == SEPARATE_UNRESOLVED && !s->par.sources) {
+		s->dense = 1;
+		s->carried = 0;
+		*next = from;
+		return SEPARATE_OK;
+	}
 	boundary = cut ? choose_cut(s, m, n) : INFINITY;
 	while (done < m && s->pulse[done].t < boundary)
 		done++;
-	verdict = judge(&r, m);
 	chi2 = r.chi2 / (double)r.dof;
-	s->counters.unresolved += verdict == SEPARATE_UNRESOLVED;
 	for (int i = 0; i < done; i++)
 		if (!emit_pulse(s, &s->pulse[i], from, m, chi2, verdict))
 			return SEPARATE_MEMORY;
@@ -534,7 +592,7 @@ static enum separate_status mask_section(struct separate *s, long long from, lon
 /* Works off all sections that are whole. */
 static enum separate_status work(struct separate *s)
 {
-	long long limit, window = (long long)s->par.window;
+	long long limit, longest;
 	struct section section;
 
 	for (int c = 0; c < 2; c++)
@@ -551,11 +609,13 @@ static enum separate_status work(struct separate *s)
 	while (sections_first(s->sections, &section)) {
 		long long from = section.begin > 0 ? section.begin : 0, to = section.end,
 			  next;
-		int cut = section.end - from > window;
+		int cut;
 		enum separate_status status;
 
+		longest = (long long)(s->dense ? s->par.learn : s->par.window);
+		cut = to - from > longest;
 		if (cut)
-			to = from + window;
+			to = from + longest;
 		if (!s->ended && (to > limit || sections_scanned(s->sections) < to))
 			break;
 		if (!cut && section.open)
@@ -571,7 +631,9 @@ static enum separate_status work(struct separate *s)
 			s->counters.sections++;
 		}
 		next = to;
-		if (s->par.method == SEPARATE_MASKS)
+		if (s->dense)
+			status = dense_section(s, from, to);
+		else if (s->par.method == SEPARATE_MASKS)
 			status = mask_section(s, from, to);
 		else if (s->par.method == SEPARATE_FIT || s->continuing || cut ||
 			 !network_section(s, from, to, &status))
@@ -579,7 +641,12 @@ static enum separate_status work(struct separate *s)
 		if (status != SEPARATE_OK)
 			return status;
 		s->counters.active += (double)(next - from);
+		if (s->dense && next == from) { /* the same again, as shot noise */
+			s->continuing = 1;
+			continue;
+		}
 		s->continuing = cut;
+		s->dense = s->dense && cut;
 		sections_take(s->sections, cut ? next : section.end);
 	}
 	s->done = sections_scanned(s->sections) - sections_reach(s->sections) - s->margin;

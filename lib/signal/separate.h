@@ -21,6 +21,7 @@
 #define SIGNAL_SEPARATE_H
 
 #include "signal/calibrate.h"
+#include "signal/campbell.h"
 #include "signal/cnn.h"
 #include "signal/joint.h"
 #include "signal/masks.h"
@@ -33,7 +34,7 @@ enum separate_verdict {
 	SEPARATE_ALONE,     /* one pulse in its section */
 	SEPARATE_OVERLAP,   /* several, told apart */
 	SEPARATE_MISFIT,    /* chi-square too large: the model does not describe it */
-	SEPARATE_UNRESOLVED /* too dense: the row stands for sources particles */
+	SEPARATE_UNRESOLVED /* too dense: a row stands for sources particles or more */
 };
 
 struct particle {
@@ -56,7 +57,9 @@ struct separate_section {
 	enum separate_verdict verdict;
 	const double *source; /* sources * (end - begin): each on sensor 1; NULL unless
 				 wanted */
-	const struct masks *masks; /* for its histogram; NULL for a fit */
+	const struct masks *masks;    /* for its histogram; NULL for a fit */
+	const struct campbell *dense; /* of an unresolved section, else NULL; per sample
+				       * and in units of the record */
 };
 
 struct separate_par {

@@ -9,7 +9,7 @@ struct shape {
 	double reach, step;
 	int cells;
 	double *cubic; /* four coefficients per cell, of powers of its unit coordinate */
-	double energy, slope_energy;
+	double energy, slope_energy, fourth;
 };
 
 static struct shape *shape_alloc(double reach, int cells)
@@ -53,10 +53,12 @@ static void shape_integrate(struct shape *shape)
 			double d = c[1] + u * (2 * c[2] + u * 3 * c[3]);
 
 			shape->energy += weight * v * v;
+			shape->fourth += weight * v * v * v * v;
 			shape->slope_energy += weight * d * d;
 		}
 	}
 	shape->energy *= shape->step / 6;
+	shape->fourth *= shape->step / 6;
 	shape->slope_energy /= 6 * shape->step;
 }
 
@@ -130,6 +132,11 @@ double shape_reach(const struct shape *shape)
 double shape_energy(const struct shape *shape)
 {
 	return shape->energy;
+}
+
+double shape_fourth(const struct shape *shape)
+{
+	return shape->fourth;
 }
 
 double shape_slope_energy(const struct shape *shape)

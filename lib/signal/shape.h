@@ -22,8 +22,9 @@ struct shape *shape_from_values(const double *value, int half, double reach);
 void shape_free(struct shape *shape);
 
 double shape_reach(const struct shape *shape); /* p(s) = 0 for |s| >= reach */
-/* Integral of p^2 ds and of p'^2 ds. */
+/* Integrals of p^2, p^4 and p'^2 over s. */
 double shape_energy(const struct shape *shape);
+double shape_fourth(const struct shape *shape);
 double shape_slope_energy(const struct shape *shape);
 
 /* The whole t inside the support: returns the first, their number in *n. */
