@@ -43,7 +43,7 @@ bpfilter_MODULES = num/fft signal/fir signal/lines signal/tones signal/robust
 bpfilter_LIBS = fftw
 duet_MODULES = num/fft signal/sensor signal/shape signal/joint signal/align signal/robust signal/tones signal/sections signal/calibrate signal/stft signal/masks signal/count signal/separate signal/campbell signal/cnn signal/network signal/netfile num/philox
 duet_LIBS = fftw cblas
-delaynet_MODULES = num/philox signal/network signal/netfile signal/delaydata signal/delayloss signal/cnn signal/cnndata signal/sensor
+delaynet_MODULES = num/philox signal/lesson signal/network signal/netfile signal/delaydata signal/delayloss signal/cnn signal/cnndata signal/sensor
 delaynet_LIBS = cblas gsl
 aopf_MODULES = num/philox life/draw life/resample life/filter life/grey life/order life/noise life/adaptive life/history life/damage life/fleet life/runin life/predict life/metrics
 aopf_LIBS =
@@ -56,8 +56,12 @@ FFTW_CFLAGS ?= $(shell $(PKG_CONFIG) --cflags fftw3 2>/dev/null)
 FFTW_LIBS ?= $(shell $(PKG_CONFIG) --libs fftw3 2>/dev/null || echo -lfftw3)
 GSL_CFLAGS ?= $(shell $(PKG_CONFIG) --cflags gsl 2>/dev/null)
 GSL_LIBS ?= $(shell $(PKG_CONFIG) --libs gsl 2>/dev/null || echo -lgsl -lgslcblas)
-# OpenBLAS where its development files are, else GSL's own (ten times slower).
-CBLAS_LIBS ?= $(shell $(PKG_CONFIG) --libs openblas 2>/dev/null || echo -lgslcblas)
+# OpenBLAS where its development files are, else GSL's own CBLAS.
+ifeq ($(shell $(PKG_CONFIG) --exists openblas 2>/dev/null && echo yes),yes)
+CBLAS_LIBS ?= $(shell $(PKG_CONFIG) --libs openblas)
+CPPFLAGS += -DWITH_OPENBLAS
+endif
+CBLAS_LIBS ?= -lgslcblas
 cblas_LINK = $(CBLAS_LIBS)
 fftw_LINK = $(FFTW_LIBS)
 gsl_LINK = $(GSL_LIBS)

@@ -6,15 +6,16 @@
 #include "shell/signals.h"
 #include "shell/stats.h"
 #include "shell/tables.h"
-#include "signal/cnndata.h"
-#include "signal/delaydata.h"
-#include "signal/delayloss.h"
+#include "signal/lesson.h"
 #include "signal/netfile.h"
-#include "signal/network.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#ifdef WITH_OPENBLAS
+void openblas_set_num_threads(int threads);
+#endif
 
 #define PI 3.14159265358979323846
 
@@ -53,9 +54,9 @@ static double separation = 0.1;
 static struct opt_list snr = { 2, { 12, 45 } };
 static struct opt_list reach = { 2, { CNN_REACH_MIN, CNN_REACH_MAX } };
 
-static const struct opt opts[] = { { 'k', "task", OPT_WORD, UNIT_NONE, &task, 0, 0,
-					   "train|score|apply|data", "what to do", tasks,
-					   0 },
+static const struct opt opts[] = {
+	{ 'k', "task", OPT_WORD, UNIT_NONE, &task, 0, 0, "train|score|apply|data",
+		"what to do", tasks, 0 },
 	{ 'm', "model", OPT_WORD, UNIT_NONE, &model, 0, 0, "sines|pulses",
 		"samples: the sines of the thesis or the pulses of two sensors", models,
 		0 },
@@ -138,7 +139,8 @@ static const struct opt opts[] = { { 'k', "task", OPT_WORD, UNIT_NONE, &task, 0,
 		"pulses: largest delay, pulse durations", NULL, 0 },
 	{ 'w', "pulse", OPT_WORD, UNIT_NONE, &shape, 0, 0, "sine|gauss|lorentz",
 		"pulses: their shape", shapes, 0 },
-	OPT_END };
+	OPT_END,
+};
 
 static const struct prog prog = { "delaynet",
 	"Train, score and apply networks that tell the delays of overlapping pulses.",
@@ -214,57 +216,15 @@ static void check_options(void)
 		die(EXIT_USAGE, "--count: the samples run beyond number 2^32");
 }
 
-/* What a network is trained with.  The samples are kept, or made on the way where every
- * epoch takes new ones. */
-struct lesson {
-	const char *purpose;
-	struct network_shape input;
-	int inputs, outputs, targets;
-	network_loss *loss;
-	struct delayloss_par loss_par;
-	struct delaydata_par sines;
-	struct cnndata_par pulses;
-	network_real *x, *target;
-	const char *what;
-	long epochs;
-};
-
-static void make_sample(
-	const struct lesson *l, long i, network_real *x, network_real *target)
-{
-	struct cnndata_section s;
-
-	if (model == SINES) {
-		delaydata_sample(&l->sines, first + i, x, target);
-		return;
-	}
-	cnndata_section(&l->pulses, first + i, &s);
-	cnndata_target(&s, x, target);
-}
-
 static struct lesson new_lesson(void)
 {
 	static network_loss *const loss_of[] = { network_mse, delayloss_sums,
 		delayloss_unordered };
-	struct lesson l = { .purpose = "delays",
-		.input = { 1, 2, points },
-		.inputs = 2 * points,
-		.outputs = sources,
-		.targets = sources,
-		.loss = loss_of[loss],
-		.loss_par = { lambda, penalty },
-		.sines = sine_par() };
+	struct delaydata_par sines = sine_par();
+	struct cnndata_par pulses = pulse_par();
 
-	if (model == PULSES) {
-		l.purpose = "arrivals";
-		l.input = (struct network_shape){ 2, 1, CNN_POINTS };
-		l.inputs = 2 * CNN_POINTS;
-		l.outputs = CNN_OUTPUTS;
-		l.targets = CNNDATA_TARGETS;
-		l.loss = cnndata_loss;
-		l.pulses = pulse_par();
-	}
-	return l;
+	return model == PULSES ? lesson_of_pulses(&pulses, first)
+			       : lesson_of_sines(&sines, loss_of[loss], first);
 }
 
 static void keep_samples(struct lesson *l)
@@ -272,37 +232,20 @@ static void keep_samples(struct lesson *l)
 	if ((double)count * l->inputs > 1 << 28)
 		die(EXIT_USAGE, "--count %ld of %d numbers each: more than 2^28", count,
 			l->inputs);
-	l->x = xcalloc(count * l->inputs, sizeof *l->x);
-	l->target = xcalloc(count * l->targets, sizeof *l->target);
-	for (long i = 0; i < count; i++)
-		make_sample(l, i, l->x + i * l->inputs, l->target + i * l->targets);
+	if (!lesson_keep(l, count))
+		die(EXIT_RUN, "out of memory");
 }
 
-static void drop_samples(struct lesson *l)
-{
-	free(l->x);
-	free(l->target);
-}
-
-static void take_sample(void *context, long i, network_real *x, network_real *target)
-{
-	const struct lesson *l = context;
-
-	if (!l->x) {
-		make_sample(l, i, x, target);
-		return;
-	}
-	memcpy(x, l->x + i * l->inputs, l->inputs * sizeof *x);
-	memcpy(target, l->target + i * l->targets, l->targets * sizeof *target);
-}
+/* For the report: what is going on, and for how long. */
+static const char *phase;
+static long phase_epochs;
 
 static void report_epoch(void *context, long epoch, double value)
 {
-	const struct lesson *l = context;
-
-	progress(l->what, epoch + 1, l->epochs);
-	if ((epoch + 1) % ((l->epochs + 9) / 10) == 0)
-		note("%s: epoch %ld: loss %g", l->what, epoch + 1, value);
+	(void)context;
+	progress(phase, epoch + 1, phase_epochs);
+	if ((epoch + 1) % ((phase_epochs + 9) / 10) == 0)
+		note("%s: epoch %ld: loss %g", phase, epoch + 1, value);
 	stats_add("epochs", 1);
 	stats_set("loss", value);
 }
@@ -325,7 +268,7 @@ static struct network *new_network(const struct lesson *l)
 
 	if (n == 0)
 		die(EXIT_USAGE, "--layers: %s", why);
-	if (n == NETWORK_LAYERS_MAX)
+	if (n >= NETWORK_LAYERS_MAX)
 		die(EXIT_USAGE, "--layers: want at most %d", NETWORK_LAYERS_MAX - 1);
 	layer[n++] = (struct network_layer){ NETWORK_DENSE, NETWORK_LINEAR,
 		.units = l->outputs };
@@ -338,6 +281,7 @@ static struct network *new_network(const struct lesson *l)
 
 static void train(void)
 {
+	struct delayloss_par loss_par = { lambda, penalty };
 	struct lesson l = new_lesson();
 	struct network *net = new_network(&l);
 	struct network_training par = { .optimiser = optimiser,
@@ -352,14 +296,14 @@ static void train(void)
 		.penalty = { decay, 0, sparsity, sparsity_level },
 		.targets = l.targets,
 		.loss = l.loss,
-		.loss_context = &l.loss_par,
+		.loss_context = &loss_par,
 		.report = report_epoch };
 	char *cmd = opt_cmd(NULL, NULL);
 
 	if (!fresh)
 		keep_samples(&l);
-	l.what = "pre-training";
-	l.epochs = pretrain;
+	phase = "pre-training";
+	phase_epochs = pretrain;
 	for (int i = 0; i < network_layers(net) - 1 && pretrain > 0; i++) {
 		const struct network_layer *layer = network_layer(net, i);
 
@@ -368,18 +312,18 @@ static void train(void)
 				"--pretrain: only dense layers can be auto-encoders");
 		if (sparsity > 0 && layer->activation != NETWORK_SIGMOID)
 			die(EXIT_USAGE, "--sparsity wants --activation sigmoid");
-		check_trained(network_pretrain(net, i, &par, take_sample, &l));
+		check_trained(network_pretrain(net, i, &par, lesson_sample, &l));
 	}
-	l.what = "training";
-	l.epochs = par.epochs = epochs;
+	phase = "training";
+	phase_epochs = par.epochs = epochs;
 	par.penalty.sparse_weight = 0;
-	check_trained(network_train(net, &par, take_sample, &l));
+	check_trained(network_train(net, &par, lesson_sample, &l));
 	stats_set("weights", network_weight_count(net));
 	stats_set("samples", fresh ? count * epochs : count);
 	if (netfile_write(stdout, net, l.purpose, cmd))
 		die(EXIT_RUN, "standard output:");
 	free(cmd);
-	drop_samples(&l);
+	lesson_drop(&l);
 	network_free(net);
 }
 
@@ -387,8 +331,8 @@ static struct network *read_network(const char *path, struct netfile *file)
 {
 	int standard = !path || strcmp(path, "-") == 0;
 	const char *name = standard ? "standard input" : path;
-	const char *want = model == SINES ? "delays" : "arrivals";
 	FILE *f = standard ? stdin : fopen(path, "r");
+	struct lesson l = new_lesson();
 	struct network *net;
 
 	if (!f)
@@ -398,12 +342,9 @@ static struct network *read_network(const char *path, struct netfile *file)
 		die(EXIT_RUN, "%s: line %ld: %s", name, file->line, file->why);
 	if (!standard)
 		fclose(f);
-	if (strcmp(file->purpose, want) != 0 ||
-		(model == SINES ? network_inputs(net) != 2 * network_input(net).width ||
-					  network_outputs(net) > DELAYS_MAX
-				: !cnn_suits(net)))
-		die(EXIT_RUN, "%s: want a network for %s, got one for %s", name, want,
-			file->purpose);
+	if (!lesson_suits(&l, net, file->purpose))
+		die(EXIT_RUN, "%s: want a network for %s, got one for %s", name,
+			l.purpose, file->purpose);
 	return net;
 }
 
@@ -411,6 +352,7 @@ static struct network *read_network(const char *path, struct netfile *file)
 static void score_sines(struct table_out *t, struct network *net, double sd)
 {
 	struct delaylevels level = delaylevels(sources);
+	struct delayloss_par loss_par = { lambda, penalty };
 	struct delayscore score = { 0 };
 	struct lesson l;
 
@@ -420,7 +362,7 @@ static void score_sines(struct table_out *t, struct network *net, double sd)
 	for (long i = 0; i < count; i += FORWARD) {
 		long n = count - i < FORWARD ? count - i : FORWARD;
 
-		delayscore_add(&score, &l.loss_par, n, sources,
+		delayscore_add(&score, &loss_par, n, sources,
 			network_forward(net, l.x + i * l.inputs, n),
 			l.target + i * l.targets);
 	}
@@ -439,46 +381,29 @@ static void score_sines(struct table_out *t, struct network *net, double sd)
 	table_put(t, level.draw);
 	table_end_row(t);
 	stats_add("samples", count);
-	drop_samples(&l);
+	lesson_drop(&l);
 }
 
-/* One row: sections of n pulses, errors with their number given. */
+/* One row: sections of n pulses. */
 static void score_pulses(struct table_out *t, struct network *net, int n)
 {
 	struct cnndata_par par = pulse_par();
-	double right = 0, time = 0, delay = 0, size = 0, alone = 0,
-	       total = (double)n * count;
+	struct cnndata_score score;
 
 	par.sources[0] = par.sources[1] = n;
-	for (long i = 0; i < count; i++) {
-		struct cnndata_section s;
-		struct cnn_pulse p[CNN_SOURCES];
-
-		cnndata_section(&par, first + i, &s);
-		right += cnn_apply(net, &s.section, 0, p) == n;
-		cnn_apply(net, &s.section, n, p);
-		for (int k = 0; k < n; k++) {
-			double g = 1 / s.section.gain;
-
-			time += pow(p[k].t - s.pulse[k].t, 2) / total;
-			delay += pow(p[k].delta - s.pulse[k].delta, 2) / total;
-			size += pow(cbrt(p[k].a / s.pulse[k].a) - 1, 2) / total;
-			alone += pow(s.noise / s.pulse[k].a, 2) * (1 + g * g) / total;
-		}
-	}
+	score = cnndata_score(net, &par, first, count);
 	table_put(t, n);
 	table_put(t, count);
-	table_put(t, right / count);
-	table_put(t, sqrt(time) / CNNDATA_DURATION);
-	table_put(t, sqrt(delay) / CNNDATA_DURATION);
-	/* Cramer-Rao bound of a sine pulse alone, either sensor: sigma^2 T / (2 pi^2). */
-	table_put(t, sqrt(alone / 2 / CNNDATA_DURATION) / PI);
-	table_put(t, sqrt(size));
+	table_put(t, score.count_right);
+	table_put(t, score.arrival);
+	table_put(t, score.delay);
+	table_put(t, score.alone);
+	table_put(t, score.size);
 	table_end_row(t);
 	stats_add("samples", count);
 }
 
-static void score(const char *path)
+static void score_network(const char *path)
 {
 	struct netfile file;
 	struct network *net = read_network(path, &file);
@@ -535,7 +460,7 @@ static void put_delays(struct table_out *t, long i, const network_real *delay, i
 }
 
 /* Sections of the width of the network, one after another. */
-static void apply(const char *path)
+static void apply_network(const char *path)
 {
 	struct netfile file;
 	struct network *net = read_network(network_file, &file);
@@ -606,6 +531,10 @@ int main(int argc, char **argv)
 {
 	int i = opt_parse(&prog, argc, argv);
 
+#ifdef WITH_OPENBLAS
+	/* Its threads share out sums in another order. */
+	openblas_set_num_threads(1);
+#endif
 	check_options();
 	if (i < argc && (task == TRAIN || task == DATA))
 		die(EXIT_USAGE, "--task %s reads nothing, got %s", tasks[task], argv[i]);
@@ -614,10 +543,10 @@ int main(int argc, char **argv)
 		train();
 		break;
 	case SCORE:
-		score(argv[i]);
+		score_network(argv[i]);
 		break;
 	case APPLY:
-		apply(argv[i]);
+		apply_network(argv[i]);
 		break;
 	default:
 		write_data();

@@ -176,3 +176,43 @@ double cnndata_loss(const void *context, int n, int width, const network_real *o
 	}
 	return sum / n;
 }
+
+static void add_errors(struct cnndata_score *score, const struct cnndata_section *s,
+	const struct cnn_pulse *pulse)
+{
+	for (int k = 0; k < s->sources; k++) {
+		const struct cnn_pulse *want = &s->pulse[k];
+		double noise = s->noise / want->a, g = s->section.gain;
+
+		score->arrival += pow(pulse[k].t - want->t, 2);
+		score->delay += pow(pulse[k].delta - want->delta, 2);
+		score->size += pow(cbrt(pulse[k].a / want->a) - 1, 2);
+		/* sigma^2 T / (2 pi^2) at either sensor, in samples. */
+		score->alone += noise * noise * (1 + 1 / (g * g)) * CNNDATA_DURATION /
+				(2 * PI * PI);
+	}
+}
+
+struct cnndata_score cnndata_score(
+	struct network *net, const struct cnndata_par *par, uint32_t first, long sections)
+{
+	struct cnndata_score score = { 0 };
+	struct cnndata_section s;
+	double pulses = 0;
+
+	for (long i = 0; i < sections; i++) {
+		struct cnn_pulse pulse[CNN_SOURCES];
+
+		cnndata_section(par, first + i, &s);
+		score.count_right += cnn_apply(net, &s.section, 0, pulse) == s.sources;
+		cnn_apply(net, &s.section, s.sources, pulse);
+		add_errors(&score, &s, pulse);
+		pulses += s.sources;
+	}
+	score.count_right /= sections;
+	score.arrival = sqrt(score.arrival / pulses) / CNNDATA_DURATION;
+	score.delay = sqrt(score.delay / pulses) / CNNDATA_DURATION;
+	score.alone = sqrt(score.alone / pulses) / CNNDATA_DURATION;
+	score.size = sqrt(score.size / pulses);
+	return score;
+}

@@ -59,4 +59,15 @@ void cnndata_target(
 #define CNNDATA_COUNT 3.0
 network_loss cnndata_loss;
 
+/* What a network makes of sections first, first + 1, ...: share of them whose count it
+ * finds, and with the count given root mean square errors of arrival and delay, in
+ * durations, and of the diameter, relative; alone is the Cramer-Rao bound of the delay
+ * for sine pulses that stand alone. */
+struct cnndata_score {
+	double count_right, arrival, delay, alone, size;
+};
+
+struct cnndata_score cnndata_score(struct network *net, const struct cnndata_par *par,
+	uint32_t first, long sections);
+
 #endif

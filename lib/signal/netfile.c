@@ -150,10 +150,8 @@ struct reader {
 /* The next line that is no comment, without its newline; NULL with why at the end. */
 static char *next_line(struct reader *r, const char *want)
 {
-	ssize_t n;
-
 	do {
-		n = getline(&r->text, &r->size, r->f);
+		ssize_t n = getline(&r->text, &r->size, r->f);
 		r->file->line++;
 		if (n <= 0 || r->text[n - 1] != '\n') {
 			snprintf(r->why, NETFILE_TEXT, "ends early: want %s", want);

@@ -585,12 +585,12 @@ static int allocate_descent(
 	long per_epoch = (par->samples + par->batch - 1) / par->batch;
 
 	*d = (struct descent){ .total = per_epoch * par->epochs };
-	d->gradient = malloc(net->count * sizeof(real));
+	d->gradient = calloc(net->count, sizeof(real));
 	d->mean = calloc(net->count, sizeof(real));
 	d->square = calloc(net->count, sizeof(real));
-	d->x = malloc((size_t)par->batch * network_inputs(net) * sizeof(real));
+	d->x = calloc((size_t)par->batch * network_inputs(net), sizeof(real));
 	d->targets = par->targets ? par->targets : network_outputs(net);
-	d->target = malloc((size_t)par->batch * d->targets * sizeof(real));
+	d->target = calloc((size_t)par->batch * d->targets, sizeof(real));
 	d->order = malloc(par->samples * sizeof *d->order);
 	return d->gradient && d->mean && d->square && d->x && d->target && d->order;
 }

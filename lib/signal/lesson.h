@@ -1,0 +1,43 @@
+/* lesson.h - what a network is trained with: samples of one kind, with their loss
+ *
+ * A lesson gives network_train() its samples, counted from first; those of a set that is
+ * gone through many times can be kept in memory.
+ */
+#ifndef SIGNAL_LESSON_H
+#define SIGNAL_LESSON_H
+
+#include "signal/cnndata.h"
+#include "signal/delaydata.h"
+#include "signal/delayloss.h"
+
+struct lesson {
+	const char *purpose; /* for the file of weights */
+	struct network_shape input;
+	int inputs, outputs, targets;
+	network_loss *loss;
+	uint32_t first;
+	int of_pulses;
+	struct delaydata_par sines;
+	struct cnndata_par pulses;
+	network_real *x, *target; /* samples kept, one after another; else NULL */
+};
+
+/* Sections of sines (delaydata.h), labels of delays, loss of the caller's choice. */
+struct lesson lesson_of_sines(
+	const struct delaydata_par *par, network_loss *loss, uint32_t first);
+/* Sections of pulses (cnndata.h), for the networks of cnn.h. */
+struct lesson lesson_of_pulses(const struct cnndata_par *par, uint32_t first);
+
+/* Makes count samples and keeps them; 0 where memory is short.  They are given back
+ * with lesson_drop(). */
+int lesson_keep(struct lesson *lesson, long count);
+void lesson_drop(struct lesson *lesson);
+
+/* For network_train(); the context is the lesson. */
+network_sample lesson_sample;
+
+/* 1 where the network has the lesson's purpose, inputs and outputs, of any width. */
+int lesson_suits(
+	const struct lesson *lesson, const struct network *net, const char *purpose);
+
+#endif
