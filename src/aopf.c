@@ -7,6 +7,7 @@
 #include "shell/opt.h"
 #include "shell/series.h"
 #include "shell/stats.h"
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,14 +25,14 @@ static const double seconds[] = { 1, 60, 3600, 86400 };
 static double threshold = NAN, zero, horizon, share = 0.5, freedom, process = NAN,
 	      noise = NAN, hysteresis = 0.03;
 static int direction = 2, scheme, model, time_unit;
-static long persist = 1, particles = 300, largest = 60, window = 50, seed = 1;
+static long persist = 3, particles = 300, largest = 60, window = 50, seed = 1;
 static const char *const skips[] = { "auto", NULL };
 static struct opt_choice order, skip = { -1, 0 };
 static struct opt_list levels = { 3, { 0.05, 0.5, 0.95 } }, range;
 static const char *unit_column, *fleet_file;
 
 static const struct opt opts[] = {
-	{ 'y', "threshold", OPT_NUM, UNIT_NONE, &threshold, -1e300, 1e300, "Y",
+	{ 'y', "threshold", OPT_NUM, UNIT_NONE, &threshold, -DBL_MAX, DBL_MAX, "Y",
 		"value that ends the life, in units of y; none: no prediction of life",
 		NULL, 0 },
 	{ 'd', "direction", OPT_WORD, UNIT_NONE, &direction, 0, 0, "up|down|auto",
@@ -39,10 +40,10 @@ static const struct opt opts[] = {
 		directions, 0 },
 	{ 'k', "persist", OPT_INT, UNIT_COUNT, &persist, 1, 1e6, "K",
 		"successive values beyond the threshold that end the life", NULL, 0 },
-	{ 'z', "zero", OPT_NUM, UNIT_NONE, &zero, -1e300, 1e300, "Y",
+	{ 'z', "zero", OPT_NUM, UNIT_NONE, &zero, -DBL_MAX, DBL_MAX, "Y",
 		"value of y without any degradation, the zero of the grey model", NULL,
 		0 },
-	{ 'T', "skip", OPT_CHOICE, UNIT_TIME, &skip, 0, 1e300, "T|auto",
+	{ 'T', "skip", OPT_CHOICE, UNIT_TIME, &skip, 0, DBL_MAX, "T|auto",
 		"run-in left out of long-term models, from the first row", skips, 0 },
 	{ 'n', "order", OPT_CHOICE, UNIT_COUNT, &order, 4, 1000, "N|window|insample|all",
 		"order of the grey model, or how it is chosen", orders, 0 },
@@ -65,16 +66,16 @@ static const struct opt opts[] = {
 	{ 'l', "freedom", OPT_NUM, UNIT_NONE, &freedom, 0, 1e6, "NU",
 		"degrees of freedom of Student-t observation noise; 0: Gaussian", NULL,
 		0 },
-	{ 'a', "process", OPT_NUM, UNIT_NONE, &process, 0, 1e300, "SD",
+	{ 'a', "process", OPT_NUM, UNIT_NONE, &process, 0, DBL_MAX, "SD",
 		"process noise per row, in units of y (default from the innovations)",
 		NULL, 0 },
-	{ 'b', "noise", OPT_NUM, UNIT_NONE, &noise, 0, 1e300, "SD",
+	{ 'b', "noise", OPT_NUM, UNIT_NONE, &noise, 0, DBL_MAX, "SD",
 		"observation noise, in units of y (default from second differences)",
 		NULL, 0 },
 	{ 'm', "model", OPT_WORD, UNIT_NONE, &model, 0, 0,
 		"average|linear|exponential|power|rate|grey|literal", "long-term model",
 		models, 0 },
-	{ 'H', "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, 1e300, "T",
+	{ 'H', "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, DBL_MAX, "T",
 		"longest life ahead; 0: ten times the time so far", NULL, 0 },
 	{ 'q', "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "Q,Q,...",
 		"levels of the quantiles of remaining life", NULL, 0 },

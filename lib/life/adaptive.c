@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { RECENT = 4 };
 enum { MONITOR = 20 };                 /* rows of the innovation monitor */
 static const double MONITOR_LIMIT = 4; /* of the mean squared innovation */
 static const double MONITOR_CLIP = 16; /* so that one outlier is not a drift */
@@ -32,6 +33,8 @@ struct adaptive {
 	double *past, *gap; /* rings of the last rows: values and gaps before */
 	double *line_up;    /* past in order */
 	int newest, filled;
+	double missed[RECENT]; /* last squared errors of the grey model, a ring */
+	long misses;
 	double process;             /* sigma_u */
 	double innovation, carried; /* running mean squares */
 	double z2[MONITOR];
@@ -138,20 +141,24 @@ static void clear_fits(struct fits *f, size_t n)
 	memset(f->sux, 0, n * sizeof(double));
 }
 
-/* What the fitted curves make of the interval h after the newest point. */
-static void forecast(const struct fits *f, size_t n, double span, double h, double *mean)
+/* What the fitted curves make of the interval h after the newest point.  An exponential
+ * through states that cannot be told from 0 means nothing: these stay at their mean. */
+static void forecast(
+	const struct fits *f, size_t n, double span, double h, double noise, double *mean)
 {
 	for (size_t i = 0; i < n; i++) {
 		double rate = f->suu[i] > 0 ? f->sux[i] / f->suu[i] : 0;
 		double level = f->mean_x[i] + rate * (f->tail[i] - f->mean_u[i]);
 
-		mean[i] = grey_curve(level, rate, span + h, h);
+		mean[i] = fabs(f->mean_x[i]) > 3 * noise
+				  ? grey_curve(level, rate, span + h, h)
+				  : f->mean_x[i];
 	}
 }
 
 /* Prior mean of every particle: the grey forecast of its own last p states.  The oldest
  * of the window only opens the first interval (see grey.h). */
-static void forecast_particles(struct adaptive *a, int p, double h)
+static void forecast_particles(struct adaptive *a, int p, double h, double noise)
 {
 	size_t n = a->par.filter.particles;
 	int depth = a->par.filter.depth, changed;
@@ -165,7 +172,7 @@ static void forecast_particles(struct adaptive *a, int p, double h)
 		add_lag(&a->fits, n, x, a->fits.index, gap, lag + 1);
 		span += gap;
 	}
-	forecast(&a->fits, n, span, h, a->mean);
+	forecast(&a->fits, n, span, h, noise, a->mean);
 }
 
 static void hold_particles(struct adaptive *a)
@@ -214,14 +221,34 @@ static double process_floor(int order, double noise)
 	return noise * (order <= 40 ? 0.5 : order >= 60 ? 1 : 0.5 + (order - 40) / 40.0);
 }
 
+/* What the grey model of the observations has lately missed by, beyond three standard
+ * deviations of noise: the second largest of the last
+ * four squared errors, so that one outlier has no say. */
+static double model_error(const struct adaptive *a, double noise)
+{
+	double largest = 0, second = 0;
+
+	for (int k = 0; k < RECENT; k++) {
+		double e = a->missed[k];
+
+		if (e > largest) {
+			second = largest;
+			largest = e;
+		} else if (e > second) {
+			second = e;
+		}
+	}
+	return sqrt(fmax(0, second - 9 * noise * noise));
+}
+
 static double process_noise(const struct adaptive *a, int order, double noise, double gap)
 {
-	double floor = process_floor(order, noise);
-	double s = isnan(a->par.process) ? a->process : a->par.process / a->scale;
-	double steps = a->mean_gap > 0 ? gap / a->mean_gap : 1;
+	double steps = a->mean_gap > 0 ? gap / a->mean_gap : 1,
+	       s = a->par.process / a->scale;
 
-	if (isnan(a->par.process) && s < floor)
-		s = floor;
+	if (isnan(a->par.process))
+		s = fmax(a->process,
+			fmax(process_floor(order, noise), model_error(a, noise)));
 	return s * sqrt(fmin(16, fmax(1, steps)));
 }
 
@@ -262,7 +289,7 @@ static void observe(struct adaptive *a, double y, double gap, double process,
 	struct adaptive_row *row)
 {
 	double noise = observation_noise(a), variance = filter_variance(a->filter);
-	double e = y - row->prediction;
+	double e = y - row->prediction, own;
 
 	filter_update(a->filter, y, noise);
 	row->state = filter_mean(a->filter);
@@ -274,7 +301,9 @@ static void observe(struct adaptive *a, double y, double gap, double process,
 		return;
 	}
 	learn_process(a, e, variance, process, noise);
-	if (monitor(a, e, variance + noise * noise)) {
+	/* Particles that have scattered must not excuse themselves. */
+	own = noise * noise + process * process;
+	if (monitor(a, e, noise * noise + fmin(variance, 4 * own))) {
 		start_particles(a, noise);
 		row->state = filter_mean(a->filter);
 		a->restarts++;
@@ -311,7 +340,7 @@ static void advance(struct adaptive *a, double t, double y, struct adaptive_row 
 	row->grey = order_forecast(a->order, t - a->observed_time);
 	process = process_noise(a, order, noise, gap);
 	if (order > 0)
-		forecast_particles(a, order, gap);
+		forecast_particles(a, order, gap, noise);
 	else
 		hold_particles(a);
 	filter_predict(a->filter, a->mean, process);
@@ -323,6 +352,7 @@ static void advance(struct adaptive *a, double t, double y, struct adaptive_row 
 		return;
 	}
 	y /= a->scale;
+	a->missed[a->misses++ % RECENT] = (y - row->grey) * (y - row->grey);
 	order_add(a->order, y, t - a->observed_time);
 	noise_add(a->noise, y, t - a->observed_time);
 	a->observed_time = t;
@@ -349,6 +379,7 @@ void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *
 /* Histories of the particles laid side by side, newest state at place 0 of the ring. */
 struct paths {
 	int p, newest;
+	double noise;
 	double *x;       /* [p][N] */
 	uint32_t *index; /* 0 .. N - 1 */
 };
@@ -389,7 +420,7 @@ static size_t step_paths(struct adaptive *a, struct paths *s, double process,
 	clear_fits(&a->fits, n);
 	for (int lag = 0; lag < s->p - 1; lag++)
 		add_lag(&a->fits, n, path_lag(s, n, lag), s->index, gap, lag + 1);
-	forecast(&a->fits, n, gap * (s->p - 1), gap, a->mean);
+	forecast(&a->fits, n, gap * (s->p - 1), gap, s->noise, a->mean);
 	s->newest = (s->newest + 1) % s->p;
 	x = path_lag(s, n, 0);
 	draw_normals(a->draw_paths, x, n);
@@ -418,6 +449,7 @@ int adaptive_lives(
 		s.p = filter_depth(a->filter);
 	if (s.p < GREY_ORDER_MIN)
 		return 0;
+	s.noise = noise;
 	process = process_noise(a, s.p, noise, a->mean_gap);
 	good = start_paths(a, &s);
 	for (size_t i = 0; good && i < n; i++)

@@ -10,7 +10,7 @@ enum {
 	KINDS = 6, /* memories times noises */
 	MEMORIES = 3,
 	ROWS_MIN = 4, /* before anything is drawn */
-	ROBUST = 7    /* rows before large innovations are cut */
+	ROBUST = 12   /* rows before large innovations are cut */
 };
 
 /* g(D) = e^{par D} where scale is 0, else (1 + D / scale)^par.  The prior is Gaussian in
@@ -100,21 +100,22 @@ long damage_rows(const struct damage *d)
 	return d->rows;
 }
 
-/* h(D), and the log of its slope, -log g(D); below 0 it goes on as a straight line. */
+/* h(D), and the log of its slope, -log g(D).  Below 0 and above 1 it goes on straight: no
+ * shape is known there, and an outlier must not look exact where a shape has levelled. */
 static double coordinate(const struct shape *s, double level, double *log_slope)
 {
-	double up = fmax(level, 0), u, h;
+	double inside = fmax(0, fmin(1, level)), u, h;
 
 	if (s->scale > 0) {
-		u = log1p(up / s->scale);
+		u = log1p(inside / s->scale);
 		*log_slope = -s->par * u;
 		h = s->par == 1 ? s->scale * u
 				: s->scale * expm1((1 - s->par) * u) / (1 - s->par);
 	} else {
-		*log_slope = -s->par * up;
-		h = s->par == 0 ? up : -expm1(-s->par * up) / s->par;
+		*log_slope = -s->par * inside;
+		h = s->par == 0 ? inside : -expm1(-s->par * inside) / s->par;
 	}
-	return level < 0 ? level : h;
+	return h + (level - inside) * exp(*log_slope);
 }
 
 static void start_lines(struct damage *d)
@@ -166,15 +167,15 @@ static void follow(struct line *l, const struct news *n)
 	f = l->phh + n->slope2;
 	e = n->h - l->h;
 	z = e / sqrt(f);
-	if (n->scored)
-		l->score +=
-			n->log_constant + n->log_slope - 0.5 * log(variance * f) -
-			0.5 * (n->freedom + 1) * log1p(z * z / (n->freedom * variance));
 	limit = CUT * sqrt(variance);
 	if (n->robust && fabs(z) > limit) {
 		z = copysign(limit, z);
 		e = z * sqrt(f);
 	}
+	if (n->scored)
+		l->score +=
+			n->log_constant + n->log_slope - 0.5 * log(variance * f) -
+			0.5 * (n->freedom + 1) * log1p(z * z / (n->freedom * variance));
 	l->h += l->phh / f * e;
 	l->v += l->phv / f * e;
 	l->pvv -= l->phv / f * l->phv;

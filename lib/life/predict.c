@@ -17,6 +17,7 @@ struct predict {
 	struct predict_par par;
 	struct history *history; /* of states, for the grey model */
 	struct damage *damage;   /* for the others */
+	double scale;            /* power of two near the threshold, for the grey model */
 	struct climb climb;      /* what is compared with the fleet */
 	long rows;
 	double first, last; /* times */
@@ -37,8 +38,11 @@ struct predict *predict_new(const struct predict_par *par)
 	struct predict *p = calloc(1, sizeof *p);
 	struct draw *draw = draw_new(par->seed, par->realisation, RNG_PREDICT);
 	size_t n = (size_t)par->draws;
+	int exponent = 0;
 
 	if (p) {
+		frexp(par->threshold - par->zero, &exponent);
+		p->scale = ldexp(1, exponent);
 		p->par = *par;
 		p->climb.direction = par->direction;
 		p->history = history_new();
@@ -76,7 +80,7 @@ void predict_add(struct predict *p, double t, double y, double state)
 	if (p->par.fleet && !isnan(y))
 		climb_add(&p->climb, t, y);
 	if (p->par.model == PREDICT_GREY)
-		history_add(p->history, t, state - p->par.zero);
+		history_add(p->history, t, (state - p->par.zero) / p->scale);
 	else if (p->par.model != PREDICT_LITERAL && !isnan(y))
 		damage_add(p->damage, t, y);
 }
@@ -93,7 +97,7 @@ static double grey_crossing(
 	const struct predict *p, double level, double rate, double span, double gap)
 {
 	double now = grey_curve(level, rate, span, gap),
-	       limit = p->par.threshold - p->par.zero;
+	       limit = (p->par.threshold - p->par.zero) / p->scale;
 	double time;
 
 	if (p->par.direction * (now - limit) >= 0)

@@ -1,0 +1,146 @@
+#!/bin/sh
+# Prognosis at the edge: each scene is accurate or refused in one line.
+# Descriptions read "scene | expectation | outcome | error".
+. "$(dirname "$0")/../tap.sh"
+
+# accurate SCENE EXPECTATION GOT WANT TOLERANCE (relative; to 1 where WANT is 0)
+accurate() {
+	if row=$(awk -v g="$3" -v w="$4" -v t="$5" 'BEGIN {
+		if (g !~ /^[-+]?[0-9.]/) exit 1
+		d = w == 0 ? g : g / w - 1
+		if (d < 0) d = -d
+		printf "%.7g | %.1e", g, d
+		exit !(d <= t) }'); then
+		pass "$1 | $2 | $row"
+	else
+		fail "$1 | $2 | $3 | want $4 within $5"
+	fi
+}
+
+# says SCENE EXPECTATION GOT WANT: a word, such as inf or nan
+says() {
+	if [ "$3" = "$4" ]; then pass "$1 | $2 | $3 | 0"; else fail "$1 | $2 | $3 | want $4"; fi
+}
+
+# refused SCENE EXPECTATION PATTERN COMMAND...
+refused() {
+	scene="$1 | $2"
+	pattern=$3
+	shift 3
+	"$@" >out 2>err </dev/null
+	status=$?
+	if [ $status = 1 ] && [ "$(wc -l <err)" = 1 ] && grep -q -e "$pattern" err; then
+		pass "$scene | $(cat err) | 0"
+	else
+		fail "$scene | exit status $status | $(cat err)"
+	fi
+}
+
+# series N EXPRESSION: t = 0 .. N - 1 (times T), y by awk
+series() {
+	awk "BEGIN { print \"t\\ty\"; pi = atan2(0, -1)
+		for (t = 0; t < $1; t++) printf \"%.17g\\t%.17g\\n\", t * ${3:-1}, $2 }"
+}
+
+# last COLUMN ARG...: that column of the last row of aopf
+last() {
+	name=$1
+	shift
+	aopf "$@" >out 2>err || { head -1 err; return; }
+	column "$name" out | tail -1
+}
+
+# finite FILE: cells that are not finite where they should be (from the fifth row on)
+odd_cells() {
+	awk -F '\t' '/^[0-9]/ && ++n > 4 { for (i = 3; i <= 7; i++) if ($i ~ /nan|inf/) bad++ }
+		END { print bad + 0 }' out
+}
+
+series 50 2 >s
+accurate "constant series" "forecast as it is" "$(last prediction s)" 2 1e-6
+says "constant series, threshold 3" "no crossing" "$(last p_no_crossing -y 3 s)" 1
+says "constant series, grey model" "no crossing" "$(last p_no_crossing -y 3 -m grey s)" 1
+series 50 '2 + 1e-12 * (t % 3)' >s
+accurate "nearly constant series (1e-12)" "forecast as it is" "$(last prediction s)" 2 1e-9
+series 50 0 >s
+accurate "zero series" "forecast 0" "$(last prediction s)" 0 1e-6
+
+series 1 1 >s
+accurate "one point" "state is the point" "$(last state s)" 1 1e-6
+series 2 1+t >s
+accurate "two points" "state is the point" "$(last state s)" 2 1e-6
+says "two points, threshold 5" "no life predicted yet" "$(last rul_q50 -y 5 s)" nan
+series 4 1+t >s
+accurate "four points on a line, threshold 10" "6 left" "$(last rul_q50 -y 10 s)" 6 0.02
+: >empty
+refused "empty input" "refused" "no column 'y'" aopf empty
+printf 't\ty\n0\tnan\n1\tnan\n2\tnan\n' >s
+says "nothing but missing values" "state nan" "$(last state -y 1 s)" nan
+
+series 200 't < 100 ? 1 : 2' >s
+accurate "step by 1" "state follows within 100 rows" "$(last state s)" 2 0.01
+series 200 't == 100 ? 1000 : 1 + t / 1000 + 0.01 * sin(t * t)' >s
+accurate "one outlier of 1e5 sigma" "state returns" "$(last state s)" 1.199 0.02
+accurate "one outlier of 1e5 sigma, threshold 1.4" "201 left" "$(last rul_q50 -y 1.4 s)" 201 0.15
+series 60 'exp(t)' >s
+accurate "exploding series, e per row" "grey forecast" "$(last grey s)" \
+	"$(awk 'BEGIN { print exp(59) }')" 0.3
+says "exploding series" "all finite" "$(odd_cells)" 0
+accurate "exploding series" "state follows, at most a row behind" "$(last state s)" \
+	"$(awk 'BEGIN { print exp(59) }')" 0.64
+series 60 'exp(-t)' >s
+aopf s >out
+says "vanishing series, 1/e per row" "all finite" "$(odd_cells)" 0
+
+series 100 '1 + t / 100' >s
+accurate "threshold already passed" "0 left" "$(last rul_q95 -y 1.5 s)" 0 0
+accurate "threshold at the first value" "0 left" "$(last rul_q50 -y 1 -d up s)" 0 0
+says "threshold on the other side" "never" "$(last rul_q05 -y 0.5 -d down s)" inf
+accurate "threshold 1e300" "no crossing" "$(last p_no_crossing -y 1e300 s)" 1 0.01
+accurate "threshold at twice the life" "100 left" "$(last rul_q50 -y 2.99 s)" 100 0.01
+
+series 100 '1 + 0.001 * t' >s
+accurate "noise 1e-12 of what the model errs" "ess >= 1" \
+	"$(last ess -b 1e-15 s | awk '{ print ($1 >= 1) }')" 1 0
+accurate "noise 1e12 of the series" "ess of the order of N" "$(last ess -b 1e12 s)" 300 0.5
+accurate "one particle" "state near the data" "$(last state -N 1 s)" 1.099 0.05
+accurate "order 1000 of 100 points" "state" "$(last state -n 1000 s)" 1.099 0.01
+
+for scale in 1e-300 1e-12 1e12 1e300; do
+	series 100 "(1 + 0.001 * t) * $scale" >s
+	accurate "values of $scale" "state scales" \
+		"$(last state s | awk -v s=$scale '{ print $1 / s }')" 1.099 1e-3
+	accurate "values of $scale, threshold 1.2" "101 left" \
+		"$(last rul_q50 -y "$(awk "BEGIN { printf \"%.17g\", 1.2 * $scale }")" s)" 101 0.01
+	accurate "values of $scale, grey model" "101 left" \
+		"$(last rul_q50 -m grey -y "$(awk "BEGIN { printf \"%.17g\", 1.2 * $scale }")" s)" \
+		101 0.15
+	series 100 "1 + 0.001 * t" "$scale" >s
+	case $scale in *300) continue ;; esac
+	accurate "times of $scale" "state does not mind" "$(last state s)" 1.099 1e-3
+	accurate "times of $scale, threshold 1.2" "101 left" \
+		"$(last rul_q50 -y 1.2 s | awk -v s=$scale '{ print $1 / s }')" 101 0.01
+done
+series 100 '-(1 + 0.001 * t)' >s
+accurate "negative values" "state" "$(last state s)" -1.099 1e-3
+accurate "negative values falling to -1.2" "101 left" "$(last rul_q50 -y -1.2 -d down s)" 101 0.01
+awk 'BEGIN { print "t\ty"; for (k = 0; k < 60; k++) { t += 10 ^ (k % 7 - 3); printf "%.17g\t%.17g\n", t, 1 + t / 1e4 } }' >s
+accurate "gaps of 1e-3 to 1e3" "state" "$(last state s)" \
+	"$(tail -1 s | cut -f 2)" 0.01
+accurate "gaps of 1e-3 to 1e3, threshold 3" "life" "$(last rul_q50 -y 3 s)" \
+	"$(tail -1 s | awk '{ print 2e4 - $1 }')" 0.05
+
+series 8 '1 + 0.1 * t' >s
+accurate "1e7 particles" "state" "$(last state -N 1e7 -P 4 s)" 1.7 0.01
+refused "times that repeat" "refused by name" "line 3: time 0 comes twice" \
+	sh -c 'printf "t\ty\n0\t1\n0\t1\n" | aopf'
+refused "time 1e400" "refused" "not" sh -c 'printf "t\ty\n1e400\t1\n" | aopf'
+refused "value 1e400" "refused" "infinite" sh -c 'printf "t\ty\n0\t1e400\n" | aopf'
+
+awk 'BEGIN { print "t\ty"; for (t = 0; t < 1000000; t++) {
+	s = (s * 16807 + 1) % 2147483647; printf "%d\t%.6f\n", t, 1 + t / 1e6 + 0.05 * s / 2147483647 } }' |
+	aopf -n 4 -N 10 -S stats >out
+accurate "a million rows" "state" "$(tail -1 out | cut -f 5)" 2.025 0.02
+says "a million rows" "under 10 MB" "$(column memory_kb stats | awk '{ print ($1 < 10000) }')" 1
+
+done_testing
