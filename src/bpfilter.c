@@ -121,7 +121,7 @@ static void check_samples(
 {
 	enum { LANES = 8 };
 	const double headroom = 1e20;
-	size_t n = nframes * (size_t)channels, i;
+	size_t n = nframes * (size_t)channels, i, place;
 	double bad[LANES] = { 0 }, sum = 0;
 
 	/* x - x is 0, or nan where x is not finite */
@@ -136,8 +136,9 @@ static void check_samples(
 		return;
 	for (i = 0; isfinite(x[i] * headroom); i++)
 		;
+	place = i / (size_t)channels;
 	die(EXIT_RUN, "%s: frame %.0f, channel %zu: sample is %s", name,
-		frame + (double)(i / (size_t)channels), i % (size_t)channels + 1,
+		frame + (double)place, i % (size_t)channels + 1,
 		isfinite(x[i]) ? "too large to filter" : "not a finite number");
 }
 

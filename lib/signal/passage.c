@@ -51,16 +51,16 @@ static int next_poisson(struct arrivals *a, double u, double *time)
  * on [0, 1] the smallest is 1 - u^(1/m). */
 static int next_ordered(struct arrivals *a, double u, double *time)
 {
-	uint64_t i = a->done % a->par.burst, n = a->par.burst;
+	uint64_t i = a->done % a->par.burst, n = a->par.burst, burst = a->done / n;
 	double slack = a->par.span - (double)(n - 1) * a->par.gap;
-	double burst = (double)(a->done / a->par.burst);
 
 	if (n > a->par.number - (a->done - i))
 		n = a->par.number - (a->done - i);
 	if (i == 0)
 		a->at = 0;
 	a->at += (fmax(slack, 0) - a->at) * -expm1(log(u) / (double)(n - i));
-	*time = a->par.start + burst * a->par.period + (double)i * a->par.gap + a->at;
+	*time = a->par.start + (double)burst * a->par.period + (double)i * a->par.gap +
+		a->at;
 	return 1;
 }
 

@@ -1,0 +1,38 @@
+#!/bin/sh
+# A day through sensorsim and bpfilter: memory, and no drift in time or phase.
+. "$(dirname "$0")/../tap.sh"
+. "$top/tests/au.sh"
+
+# last RATE: the last ten seconds as text, from a stream on standard input
+last() {
+	printf '.snd\000\000\000\030' >end.au
+	head -c 16 /dev/zero >>end.au
+	tail -c $(($1 * 160)) >>end.au
+	frames end.au 2
+}
+
+small() {
+	near "$1: less than 40 MB" "$(column memory_kb "$1" | awk '{ print ($1 < 40000) }')" 1 0
+}
+
+# one particle every 10 s, its centre a quarter sample after a frame
+awk 'BEGIN { print "time\tdiameter"
+	for (t = 5; t < 86400; t += 10) printf "%.6f\t1e-4\n", t + 0.000025 }' >day.tsv
+sensorsim -d 1d -S sim.stats day.tsv |
+	bpfilter -b 0:5000 -z -n 20 -S filter.stats | last 10000 >end
+near "all frames of a day at 10 kHz" "$(column frames filter.stats)" 864000000 0
+near "each pulse touched its own samples" "$(column pulse_samples sim.stats)" 1728000 20
+small sim.stats
+small filter.stats
+# the last 10 s begin at 86390 s, the last pulse is at 86395.000025 s; seconds of a day in
+# a double are good to 1.5e-11
+near "the last pulse is where it was put" "$(awk '{
+	p = NR - 1 - 50000.25; d = $1 - (p > -50 && p < 50 ? -sin(6.283185307179586 * p / 100) : 0)
+	if (d < 0) d = -d; if (d > m) m = d } END { print m }' end)" 0 1e-7
+
+sensorsim -r 200 -d 1d --mains 0.5 -u 1um:1um -N 0 |
+	bpfilter -b 0:100 -z -n 20 -l 50 -S filter.stats | last 200 >end
+near "the mains line is gone to the end" "$(awk '{ d = $1 < 0 ? -$1 : $1
+	if (d > m) m = d } END { print m }' end)" 0 1e-7
+small filter.stats
+done_testing
