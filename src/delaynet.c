@@ -478,7 +478,7 @@ static void apply_network(const char *path)
 	for (; (got = signal_read(in, frame, n)) == (size_t)n; k++) {
 		for (int i = 0; i < 2 * n; i++) {
 			x[i % 2 * n + i / 2] = frame[i];
-			if (!isfinite(frame[i]))
+			if (!isfinite(x[i % 2 * n + i / 2]))
 				die(EXIT_RUN, "%s: frame %ld: want finite samples",
 					signal_name(in), k * n + i / 2);
 		}

@@ -148,7 +148,7 @@ struct network *network_new(struct network_shape input, const struct network_lay
 		l->par = layer[i];
 		l->in = i ? net->layer[i - 1].out : input;
 		if (!size_layer(l, &n) || (net->count += n) > NETWORK_WEIGHTS_MAX ||
-			(double)batch * (l->inputs + l->outputs) > 1 << 30) {
+			(double)batch * (l->inputs + l->outputs) > 1 << 28) {
 			errno = EDOM;
 			network_free(net);
 			return NULL;

@@ -253,7 +253,6 @@ static void check_file(void)
 		free(file.cmd);
 		network_free(back);
 	}
-	/* Cut anywhere, or with any one byte lost, it is refused or still a network. */
 	n = 0;
 	for (size_t cut = 1; cut < strlen(text); cut++) {
 		FILE *f = fmemopen(text, cut, "r");
@@ -264,6 +263,21 @@ static void check_file(void)
 		fclose(f);
 	}
 	ok(n == 0, "every beginning of it is refused");
+	/* Any byte changed: refused, or read as another network, but never worse. */
+	for (size_t i = 0; i < strlen(text); i++)
+		for (const char *c = "9-x \n#\177"; *c; c++) {
+			FILE *f;
+
+			strcpy(copy, text);
+			copy[i] = *c;
+			f = fmemopen(copy, strlen(copy), "r");
+			back = netfile_read(f, 1, &file);
+			n += back == NULL;
+			free(file.cmd);
+			network_free(back);
+			fclose(f);
+		}
+	ok(n > 100, "a changed byte is refused or read, %d refused", n);
 	network_free(net);
 }
 
