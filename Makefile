@@ -30,7 +30,7 @@ PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet dela
 
 roughgen_MODULES = num/philox num/fft num/pool contact/heights contact/rough contact/spectrum contact/surface
 roughgen_LIBS = fftw
-bemcontact_MODULES = contact/kernel contact/solver contact/bccg contact/grids contact/pk num/convolve num/fft num/pool num/sweep
+bemcontact_MODULES = contact/kernel contact/solver contact/bccg contact/grids contact/mlms contact/pk num/convolve num/fft num/pool num/sweep
 bemcontact_LIBS = fftw
 debrisgen_MODULES = $(bemcontact_MODULES) contact/debris contact/hull contact/particles contact/stress \
 	contact/stress_kernel contact/sym3 contact/wear

@@ -10,57 +10,61 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const boundaries[] = {"free", "periodic", NULL};
-static const char *const solvers[] = {"pk", NULL};
-static const char *const field_names[] = {
-	"height", "pressure", "displacement", "gap", NULL};
+static const char *const boundaries[] = { "free", "periodic", NULL };
+static const char *const multipliers[] = { "fft", "mlms", NULL };
+static const char *const solvers[] = { "pk", NULL };
+static const char *const field_names[] = { "height", "pressure", "displacement", "gap",
+	NULL };
 enum field { HEIGHT, PRESSURE, DISPLACEMENT, GAP, FIELDS };
 
 static double load = NAN, pressure = NAN, approach = NAN, estar = NAN;
 static double hardness, tolerance = 1e-8, pixel = NAN;
-static struct opt_list young, poisson = {1, {0.3}}, raw_size;
-static int boundary, solver;
+static struct opt_list young, poisson = { 1, { 0.3 } }, raw_size;
+static int boundary, solver, multiply;
 static long max_iterations = 10000, threads = 1;
 static const char *fields = "height,pressure";
 static int wanted[FIELDS];
 
-static const struct opt opts[] = {
-	{'F', "load", OPT_NUM, UNIT_FORCE, &load, 0, 1e30, "F", "normal load", NULL, 0},
-	{'P', "pressure", OPT_NUM, UNIT_PRESSURE, &pressure, 0, 1e30, "P",
-		"mean pressure, in place of a load", NULL, 0},
-	{'D', "approach", OPT_NUM, UNIT_LENGTH, &approach, -1e12, 1e12, "D",
-		"how far the flat goes past height 0, in place of a load", NULL, 0},
-	{'E', "young", OPT_LIST, UNIT_PRESSURE, &young, 1e-6, 1e30, "E1[,E2]",
-		"Young's moduli of the bodies; one for both", NULL, 0},
-	{'N', "poisson", OPT_LIST, UNIT_NONE, &poisson, -0.999, 0.5, "N1[,N2]",
-		"Poisson's ratios of the bodies; one for both", NULL, 0},
-	{'e', "estar", OPT_NUM, UNIT_PRESSURE, &estar, 1e-6, 1e30, "E",
-		"contact modulus, in place of --young and --poisson", NULL, 0},
-	{'b', "boundary", OPT_WORD, UNIT_NONE, &boundary, 0, 0, "free|periodic",
+static const struct opt opts[] = { { 'F', "load", OPT_NUM, UNIT_FORCE, &load, 0, 1e30,
+					   "F", "normal load", NULL, 0 },
+	{ 'P', "pressure", OPT_NUM, UNIT_PRESSURE, &pressure, 0, 1e30, "P",
+		"mean pressure, in place of a load", NULL, 0 },
+	{ 'D', "approach", OPT_NUM, UNIT_LENGTH, &approach, -1e12, 1e12, "D",
+		"how far the flat goes past height 0, in place of a load", NULL, 0 },
+	{ 'E', "young", OPT_LIST, UNIT_PRESSURE, &young, 1e-6, 1e30, "E1[,E2]",
+		"Young's moduli of the bodies; one for both", NULL, 0 },
+	{ 'N', "poisson", OPT_LIST, UNIT_NONE, &poisson, -0.999, 0.5, "N1[,N2]",
+		"Poisson's ratios of the bodies; one for both", NULL, 0 },
+	{ 'e', "estar", OPT_NUM, UNIT_PRESSURE, &estar, 1e-6, 1e30, "E",
+		"contact modulus, in place of --young and --poisson", NULL, 0 },
+	{ 'b', "boundary", OPT_WORD, UNIT_NONE, &boundary, 0, 0, "free|periodic",
 		"surface around the grid: free of load, or the grid repeated", boundaries,
-		0},
-	{'K', "hardness", OPT_NUM, UNIT_PRESSURE, &hardness, 0, 1e30, "H",
-		"largest pressure; 0: none", NULL, 0},
-	{'t', "tolerance", OPT_NUM, UNIT_NONE, &tolerance, 1e-16, 1, "T",
-		"certificate to reach", NULL, 0},
-	{'i', "max-iterations", OPT_INT, UNIT_COUNT, &max_iterations, 1, 1e9, "N",
-		"iterations after which to give up", NULL, 0},
-	{'o', "fields", OPT_TEXT, UNIT_NONE, &fields, 0, 0, "NAME,...",
-		"what to write of height, pressure, displacement, gap", NULL, 0},
-	{'m', "solver", OPT_WORD, UNIT_NONE, &solver, 0, 0, "pk", "preconditioned on nested grids, or Polonsky and Keer's",
-		solvers, 0},
-	{'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N",
-		"threads; the result is the same", NULL, 1},
-	{'x', "raw", OPT_LIST, UNIT_COUNT, &raw_size, 1, 1e9, "NXxNY",
-		"read headerless little-endian float64 heights", NULL, 0},
-	{'X', "pixel", OPT_NUM, UNIT_LENGTH, &pixel, 1e-15, 1e12, "D", "spacing of --raw",
-		NULL, 0},
-	OPT_END};
+		0 },
+	{ 'K', "hardness", OPT_NUM, UNIT_PRESSURE, &hardness, 0, 1e30, "H",
+		"largest pressure; 0: none", NULL, 0 },
+	{ 't', "tolerance", OPT_NUM, UNIT_NONE, &tolerance, 1e-16, 1, "T",
+		"certificate to reach", NULL, 0 },
+	{ 'i', "max-iterations", OPT_INT, UNIT_COUNT, &max_iterations, 1, 1e9, "N",
+		"iterations after which to give up", NULL, 0 },
+	{ 'o', "fields", OPT_TEXT, UNIT_NONE, &fields, 0, 0, "NAME,...",
+		"what to write of height, pressure, displacement, gap", NULL, 0 },
+	{ 'm', "solver", OPT_WORD, UNIT_NONE, &solver, 0, 0, "bccg|pk",
+		"preconditioned on nested grids, or Polonsky and Keer's", solvers, 0 },
+	{ 'M', "multiply", OPT_WORD, UNIT_NONE, &multiply, 0, 0, "fft|mlms",
+		"how the half-space is applied: Fourier, or multi-level summation",
+		multipliers, 0 },
+	{ 'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N",
+		"threads; the result is the same", NULL, 1 },
+	{ 'x', "raw", OPT_LIST, UNIT_COUNT, &raw_size, 1, 1e9, "NXxNY",
+		"read headerless little-endian float64 heights", NULL, 0 },
+	{ 'X', "pixel", OPT_NUM, UNIT_LENGTH, &pixel, 1e-15, 1e12, "D",
+		"spacing of --raw", NULL, 0 },
+	OPT_END };
 
-static const struct prog prog = {"bemcontact",
+static const struct prog prog = { "bemcontact",
 	"Press a rough surface against a flat: pressure, contact and gap of elastic "
 	"bodies.",
-	"[file]", "fields: height", "fields: height, pressure", opts};
+	"[file]", "fields: height", "fields: height, pressure", opts };
 
 static void choose_fields(const char *list)
 {
@@ -89,6 +93,9 @@ static void check_options(void)
 		die(EXIT_USAGE, "want either --estar or --young and --poisson");
 	if (young.n > 2 || poisson.n > 2)
 		die(EXIT_USAGE, "--young and --poisson take one or two values");
+	if (multiply && boundary)
+		die(EXIT_USAGE,
+			"--multiply mlms sums over a free surface: no --boundary periodic");
 	if (raw_size.n && (raw_size.n != 2 || isnan(pixel)))
 		die(EXIT_USAGE, "--raw wants NXxNY and --pixel");
 	if (young.n)
@@ -108,7 +115,7 @@ static struct contact *solver_for(
 		r->dy == par.dy)
 		return contact;
 	contact_free(contact);
-	par = (struct contact_par){.nx = r->nx,
+	par = (struct contact_par){ .nx = r->nx,
 		.ny = r->ny,
 		.dx = r->dx,
 		.dy = r->dy,
@@ -116,9 +123,10 @@ static struct contact *solver_for(
 		.hardness = hardness,
 		.boundary = (enum contact_boundary)boundary,
 		.solver = (enum contact_solver)solver,
+		.multiply = (enum contact_multiply)multiply,
 		.tolerance = tolerance,
 		.max_iterations = max_iterations,
-		.pool = pool};
+		.pool = pool };
 	contact = contact_new(&par);
 	if (!contact)
 		die(EXIT_RUN, "%s: record %ld: %dx%d cells:", name, number, r->nx, r->ny);
@@ -211,16 +219,16 @@ static void drop_fields(struct record *r)
 int main(int argc, char **argv)
 {
 	int first = opt_parse(&prog, argc, argv), status = EXIT_SUCCESS;
-	struct raw_layout raw = {0};
-	struct record r = {0};
+	struct raw_layout raw = { 0 };
+	struct record r = { 0 };
 	struct fields_in *in;
 	struct fields_out *out;
 	struct pool *pool;
 
 	check_options();
 	if (raw_size.n)
-		raw = (struct raw_layout){
-			(int)raw_size.v[0], (int)raw_size.v[1], pixel, pixel};
+		raw = (struct raw_layout){ (int)raw_size.v[0], (int)raw_size.v[1], pixel,
+			pixel };
 	pool = pool_new((int)threads);
 	if (!pool)
 		die(EXIT_RUN, "cannot start %ld threads:", threads);

@@ -28,6 +28,12 @@ is "two bodies of 200 GPa are E* 100 GPa" "$(key approach two.nrrd)" "$(key appr
 bemcontact --raw 32x24 --pixel 2um -E 150GPa,300GPa -N 0,0 -P 200MPa h.f64 >two.nrrd
 near "150 and 300 GPa as well" "$(key approach two.nrrd)" "$(key approach free.nrrd)" 1e-17
 
+for m in "-m pk" "-M mlms" "-M mlms -m pk"; do
+	# shellcheck disable=SC2086 # several words
+	$solve -P 200MPa -t 1e-10 $m h.f64 >other.nrrd
+	near "the same by $m" "$(awk "BEGIN { print $(key energy other.nrrd) / $(key energy free.nrrd) - 1 }")" 0 2e-7
+done
+
 $solve -P 200MPa -b periodic h.f64 >periodic.nrrd
 near "a periodic surface under the same load" "$(key load periodic.nrrd)" 0.6144 1e-13
 ok "is another solution" [ "$(key energy periodic.nrrd)" != "$(key energy free.nrrd)" ]
@@ -61,6 +67,8 @@ fails "no load given" 2 'want one of --load' bemcontact --estar 1GPa
 fails "two loads given" 2 'want one of --load' bemcontact --estar 1GPa -P 1Pa -F 1N
 fails "no material" 2 'either --estar or --young' bemcontact -P 1Pa
 fails "both materials" 2 'either --estar or --young' bemcontact -P 1Pa -e 1GPa -E 2GPa
+fails "multi-level sums over a period" 2 'no --boundary periodic' \
+	bemcontact -P 1Pa -e 1GPa -M mlms -b periodic
 fails "unknown field" 2 "--fields 'sigma'" bemcontact -P 1Pa -e 1GPa -o gap,sigma
 fails "unit of another quantity" 2 '--load' bemcontact -F 1MPa -e 1GPa
 fails "load above the hardness" 1 'h.f64: record 1: mean pressure 2e+08 Pa is not below' \

@@ -43,6 +43,12 @@ enum contact_solver {
 	CONTACT_PK    /* Polonsky and Keer's single loop */
 };
 
+/* How the half-space is applied. */
+enum contact_multiply {
+	CONTACT_FFT, /* Fourier transforms: exact to rounding */
+	CONTACT_MLMS /* multi-level multi-summation, free boundary: to some 5e-8 */
+};
+
 enum contact_control {
 	CONTACT_PRESSURE, /* target is the mean pressure over the grid, Pa */
 	CONTACT_APPROACH  /* target is the approach, m */
@@ -55,6 +61,7 @@ struct contact_par {
 	double hardness; /* largest pressure, Pa; 0: none */
 	enum contact_boundary boundary;
 	enum contact_solver solver;
+	enum contact_multiply multiply;
 	double tolerance; /* certificate to reach */
 	long max_iterations;
 	struct pool *pool; /* borrowed; NULL: one thread */

@@ -2,6 +2,7 @@
 #ifndef CONTACT_STATE_H
 #define CONTACT_STATE_H
 
+#include "contact/mlms.h"
 #include "contact/solver.h"
 #include "num/convolve.h"
 #include "num/sweep.h"
@@ -13,6 +14,7 @@ struct contact {
 	double cap;             /* hardness or INFINITY */
 	struct convolve *plane; /* transforms of displacement = kernel * pressure */
 	double *kernel;
+	struct mlms *mlms;    /* in place of those two */
 	double *memory;       /* holds the arrays below, unless borrowed */
 	double *gap;          /* g */
 	double *step, *image; /* step of the pressure, and its displacement */
