@@ -100,7 +100,8 @@ static const struct opt opts[] = {
 	{ 'i', "repetition", OPT_INT, UNIT_COUNT, &repetition, 0, 1e9, "K",
 		"which initial weights and order of the samples", NULL, 0 },
 	{ 'f', "first", OPT_INT, UNIT_COUNT, &first, 0, 4e9, "K",
-		"first sample of the set; score: 1000 if not given", NULL, 0 },
+		"first sample of the set; score: 1000, or 4e9 of pulses, if not given",
+		NULL, 0 },
 	{ 'c', "count", OPT_INT, UNIT_COUNT, &count, 1, 1e7, "N",
 		"samples; score: 300 if not given", NULL, 0 },
 	{ 'F', "fresh", OPT_FLAG, UNIT_NONE, &fresh, 0, 0, NULL,
@@ -207,7 +208,7 @@ static void check_options(void)
 	if (task != APPLY && network_file)
 		die(EXIT_USAGE, "--network is for --task apply");
 	if (task == SCORE && !opt_given('f'))
-		first = 1000;
+		first = model == PULSES ? 4000000000 : 1000;
 	if (task == SCORE && !opt_given('c'))
 		count = 300;
 	if (batch == 0 || batch > count)

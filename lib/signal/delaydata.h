@@ -4,8 +4,8 @@
  * The sine sections with random amplitude and phase are superimposed to be the first
  * aliasing signal.  Modify the amplitude and phase of each sine sections and add them
  * together to get the second" (3.3.1), 500 points each, three sources.  That leaves
- * much open; each choice is a member here and its default, delaydata_default(), is the
- * reading that suits the figures of tables 2 to 6 best.
+ * much open; each choice is a member here, with delaydata_default() as one reading.  Only
+ * that the delays are uniform in (0, 1) follows from the levels of the printed scores.
  *
  * A source is s(x) = A w((x - x0)), with x running over [0, span); the second channel is
  * g s(x - unit * delay), delay uniform in (0, 1).  The labels are the delays.
