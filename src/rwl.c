@@ -541,7 +541,7 @@ static void put_row(struct table_out *out, struct metrics *m, const struct obser
 static void follow(
 	struct state *s, struct table_out *out, struct metrics *m, struct paths *e)
 {
-	struct observed *o = observed_new(rule, grey);
+	struct observed *o = observed_new(rule);
 	struct rate *filter = rule == RATE_FILTER ? paths_filter(e) : NULL;
 	double *life = xcalloc((size_t)count, sizeof *life), by_grey = NAN;
 	double *later = xcalloc((size_t)count, sizeof *later);
@@ -560,13 +560,11 @@ static void follow(
 				gap_new = s->gap;
 			if (run_in || (skip > 0 && observed_count(o) == 0))
 				observed_begin(o, s->t, s->gap);
-			if (!run_in && !observed_add(o, s->t, s->value, s->gap))
-				die(EXIT_RUN, "out of memory");
+			if (!run_in)
+				observed_add(o, s->t, s->value, s->gap);
 			n = paths_predict(e, o, filter, gap_limit(), life);
-			if (grey) {
+			if (grey)
 				by_grey = observed_grey(o, value_limit(s));
-				stats_add("grey_points", (double)observed_count(o));
-			}
 			stats_add("paths", n > 1 ? (double)n : 0);
 			stats_add("paths_skipped", n > 1 ? 0 : (double)count);
 		}
@@ -583,7 +581,7 @@ static void follow(
 /* A new pair: nothing is observed yet. */
 static void foresee(struct table_out *out, struct metrics *m, struct paths *e)
 {
-	struct observed *o = observed_new(rule, 0);
+	struct observed *o = observed_new(rule);
 	double *life = xcalloc((size_t)count, sizeof *life);
 
 	observed_begin(o, 0, gap_new);

@@ -1,6 +1,7 @@
 /* observed.c - see observed.h */
 #include "life/observed.h"
 #include "life/grey.h"
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -8,32 +9,32 @@ struct moment {
 	double t, gap;
 };
 
-struct observed {
-	enum rate_rule rule;
-	int keep, begun;
-	long n;
-	struct moment first, before, last;
-	double *value, *time; /* n of each */
-	long room;
+/* Regression of the values on z, the integral up to the middle of their intervals. */
+struct sums {
+	double scale, unit; /* of values and times: the first value, the first interval */
+	double oldest, span, integral;
+	double mean_z, mean_x, szz, szx, sxx;
 };
 
-struct observed *observed_new(enum rate_rule rule, int keep)
+struct observed {
+	enum rate_rule rule;
+	int begun;
+	long n, points; /* observations, and those at times of their own */
+	struct moment first, before, last;
+	struct sums sums;
+};
+
+struct observed *observed_new(enum rate_rule rule)
 {
 	struct observed *o = calloc(1, sizeof *o);
 
-	if (o) {
+	if (o)
 		o->rule = rule;
-		o->keep = keep;
-	}
 	return o;
 }
 
 void observed_free(struct observed *o)
 {
-	if (!o)
-		return;
-	free(o->value);
-	free(o->time);
 	free(o);
 }
 
@@ -43,35 +44,45 @@ void observed_begin(struct observed *o, double t, double gap)
 	o->begun = 1;
 }
 
-static int store(struct observed *o, double t, double value)
+static void add_sums(struct observed *o, double dt, double value)
 {
-	if (o->n > o->room) {
-		long room = 2 * o->n + 64;
-		double *more = realloc(o->value, (size_t)room * sizeof *more);
+	struct sums *s = &o->sums;
+	double gap, x, z, dz, dx, rows = (double)o->points;
 
-		if (!more)
-			return 0;
-		o->value = more;
-		more = realloc(o->time, (size_t)room * sizeof *more);
-		if (!more)
-			return 0;
-		o->time = more;
-		o->room = room;
+	if (o->points++ == 0) {
+		*s = (struct sums){ .scale = value != 0 ? fabs(value) : 1 };
+		s->oldest = value / s->scale;
+		return;
 	}
-	o->value[o->n - 1] = value;
-	o->time[o->n - 1] = t;
-	return 1;
+	if (o->points == 2)
+		s->unit = dt;
+	gap = dt / s->unit;
+	x = value / s->scale;
+	z = s->integral + x * gap / 2;
+	dz = z - s->mean_z;
+	dx = x - s->mean_x;
+	s->mean_z += dz / rows;
+	s->mean_x += dx / rows;
+	s->szz += dz * (z - s->mean_z);
+	s->szx += dz * (x - s->mean_x);
+	s->sxx += dx * (x - s->mean_x);
+	s->integral += x * gap;
+	s->span += gap;
 }
 
-int observed_add(struct observed *o, double t, double value, double gap)
+void observed_add(struct observed *o, double t, double value, double gap)
 {
+	double dt;
+
 	if (!o->begun)
 		observed_begin(o, t, gap);
-	if (t > o->last.t)
+	dt = t - o->last.t;
+	if (dt > 0)
 		o->before = o->last;
 	o->last = (struct moment){ t, gap };
+	if (o->points == 0 || dt > 0)
+		add_sums(o, dt, value);
 	o->n++;
-	return o->keep ? store(o, t, value) : 1;
 }
 
 long observed_count(const struct observed *o)
@@ -105,18 +116,25 @@ double observed_rate(const struct observed *o)
 
 double observed_grey(const struct observed *o, double threshold)
 {
-	struct grey g = { 0 };
-	double spacing, now, rate;
+	const struct sums *s = &o->sums;
+	struct grey g = { .n = (int)fmin((double)o->points, INT_MAX),
+		.oldest = s->oldest,
+		.span = s->span,
+		.tail = s->integral,
+		.mean_u = s->integral - s->mean_z,
+		.mean_x = s->mean_x,
+		.suu = s->szz,
+		.sux = -s->szx,
+		.sxx = s->sxx };
+	double now, rate;
 
-	if (o->n < GREY_ORDER_MIN)
+	if (o->points < GREY_ORDER_MIN)
 		return NAN;
-	spacing = (o->time[o->n - 1] - o->time[0]) / (double)(o->n - 1);
-	for (long i = o->n; i-- > 0;)
-		grey_add(&g, o->value[i],
-			i + 1 < o->n ? (o->time[i + 1] - o->time[i]) / spacing : 1);
-	now = grey_forecast(&g, 0, 1);
+	now = grey_forecast(&g, 0, s->span / (double)(o->points - 1));
 	rate = -grey_rate(&g);
-	if (now >= threshold)
+	if (now >= threshold / s->scale)
 		return 0;
-	return now > 0 && rate > 0 ? log(threshold / now) / rate * spacing : INFINITY;
+	if (!(now > 0 && rate > 0))
+		return INFINITY;
+	return log(threshold / s->scale / now) / rate * s->unit;
 }

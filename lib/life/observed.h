@@ -2,7 +2,7 @@
  *
  * Any units of time, gap and value, the same ones throughout.
  *
- *	struct observed *o = observed_new(RATE_MEAN, 1);
+ *	struct observed *o = observed_new(RATE_MEAN);
  *	observed_add(o, t, leakage, gap);
  *	rate = observed_rate(o);
  *	observed_free(o);
@@ -19,16 +19,15 @@ enum rate_rule {
 
 struct observed;
 
-/* keep: store all values, for observed_grey().  NULL when out of memory. */
-struct observed *observed_new(enum rate_rule rule, int keep);
+struct observed *observed_new(enum rate_rule rule); /* NULL when out of memory */
 void observed_free(struct observed *o);
 
 /* Where the rates start from, if that is not the first observation; again: they start
  * anew. */
 void observed_begin(struct observed *o, double t, double gap);
 /* value: as read; gap: what it tells.  Times must not fall; what comes at the same time
- * replaces what came before.  Returns 0 when out of memory. */
-int observed_add(struct observed *o, double t, double value, double gap);
+ * replaces what came before. */
+void observed_add(struct observed *o, double t, double value, double gap);
 
 long observed_count(const struct observed *o);
 double observed_first(const struct observed *o); /* time of the beginning */
@@ -39,9 +38,10 @@ double observed_gap(const struct observed *o);   /* latest */
  * between observations. */
 double observed_rate(const struct observed *o);
 
-/* Time from the latest observation until the grey model GM(1,1) of all values reaches
- * the threshold; INFINITY: never; NAN below four values.  Takes time in proportion to
- * the number of values. */
+/* Time from the latest observation until the grey model GM(1,1) of all values since the
+ * beginning reaches the threshold; INFINITY: never; NAN below four values.  The sums of
+ * grey.h are kept from the oldest value on, centred, so that a row costs the same however
+ * many there were. */
 double observed_grey(const struct observed *o, double threshold);
 
 #endif

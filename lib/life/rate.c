@@ -88,7 +88,7 @@ static void decay(
 {
 	double x = rate * dt;
 
-	*left = exp(-x);
+	*left = rate > 0 ? exp(-x) : 1;
 	if (x < 1e-2) {
 		*integral = dt * (1 - x / 2 + x * x / 6 - x * x * x / 24);
 		*square_of = dt * dt * dt * (1. / 3 - x / 4 + 7 * x * x / 60);

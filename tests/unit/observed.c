@@ -1,0 +1,83 @@
+/* observed - rates of the observations, and the grey model of all of them */
+#include "life/observed.h"
+#include "life/grey.h"
+#include "tap.h"
+
+enum { N = 20000 };
+
+static void check_rates(void)
+{
+	struct observed *mean = observed_new(RATE_MEAN), *last = observed_new(RATE_LAST);
+	double t[] = { 10, 11, 13, 13, 17 }, h[] = { 1, 2, 3, 4, 6 };
+
+	ok(isnan(observed_rate(mean)), "no rate of nothing");
+	for (int i = 0; i < 5; i++) {
+		observed_add(mean, t[i], h[i], h[i]);
+		observed_add(last, t[i], h[i], h[i]);
+		if (i == 0)
+			ok(isnan(observed_rate(mean)), "nor of one observation");
+		if (i == 3)
+			near(observed_rate(last), 1, 0,
+				"the same time: from the time before");
+	}
+	near(observed_rate(mean), 5 / 7., 1e-15, "all over its time");
+	near(observed_rate(last), 0.5, 0, "the last over its time");
+	ok(observed_count(last) == 5 && observed_gap(last) == 6 &&
+			observed_time(last) == 17,
+		"the latest is known");
+	observed_begin(mean, 20, 7);
+	observed_add(mean, 22, 8, 8);
+	near(observed_rate(mean), 0.5, 0, "a new beginning");
+	observed_free(mean);
+	observed_free(last);
+}
+
+/* Backward sums of all values at each check, as grey.h makes them. */
+static void check_grey(const char *what, double level, double unit)
+{
+	static double t[N], x[N];
+	struct observed *o = observed_new(RATE_MEAN);
+	double worst = 0;
+
+	for (int i = 0; i < N; i++) {
+		t[i] = (1e6 + i + 0.3 * sin(i * i)) * unit;
+		x[i] = level * exp(2e-5 * i) * (1 + 0.03 * sin(3. * i * i));
+		observed_add(o, t[i], x[i], 1);
+		if (i >= 3 && (i < 60 || i % 1000 == 0 || i == N - 1)) {
+			struct grey g = { 0 };
+			double spacing = (t[i] - t[0]) / i, now, rate, want;
+
+			for (int k = i; k >= 0; k--)
+				grey_add(&g, x[k] / level,
+					k < i ? (t[k + 1] - t[k]) / spacing : 1);
+			now = grey_forecast(&g, 0, 1);
+			rate = -grey_rate(&g);
+			want = now >= 3   ? 0
+			       : rate > 0 ? log(3 / now) / rate * spacing
+					  : INFINITY;
+			if (want != observed_grey(o, 3 * level))
+				worst = fmax(worst,
+					fabs(observed_grey(o, 3 * level) / want - 1));
+		}
+	}
+	ok(worst < 1e-9, "%s: forward and backward sums agree: %.1e", what, worst);
+	observed_free(o);
+}
+
+int main(void)
+{
+	struct observed *o = observed_new(RATE_MEAN);
+
+	check_rates();
+	check_grey("values of 2, hours", 2, 1);
+	check_grey("values of 1e-200, 1e-9", 1e-200, 1e-9);
+	check_grey("values of 1e200, 1e9", 1e200, 1e9);
+	for (int i = 0; i < 10; i++) {
+		ok(i >= 4 || isnan(observed_grey(o, 3)), "a model needs four values");
+		observed_add(o, i, 2, 2);
+	}
+	ok(isinf(observed_grey(o, 3)) && observed_grey(o, 2) == 0,
+		"a constant stays where it is");
+	observed_free(o);
+	return tap_done();
+}
