@@ -154,11 +154,13 @@ static double examples_chi2(struct learning *l, int keep)
 }
 
 /* Finds the pulses of all examples anew.  Returns the median of their chi-square per
- * degree of freedom, which a few examples with hidden pulses do not spoil. */
-static double examples_fit(struct learning *l, double misfit)
+ * degree of freedom, which a few examples with hidden pulses do not spoil; *price is
+ * the sum of chi-square and of twice the threshold for each pulse. */
+static double examples_fit(struct learning *l, double misfit, double *price)
 {
 	double each[EXAMPLES_MAX];
 
+	*price = 0;
 	l->scene.misfit = misfit > l->misfit ? misfit : l->misfit;
 	for (int i = 0; i < l->count; i++) {
 		struct example *e = &l->example[i];
@@ -169,6 +171,7 @@ static double examples_fit(struct learning *l, double misfit)
 			    &result) != JOINT_OK)
 			return INFINITY;
 		each[i] = result.chi2 / (double)result.dof;
+		*price += result.chi2 + 2 * l->scene.drop_near * e->m;
 	}
 	return robust_median(each, (size_t)l->count);
 }
@@ -292,16 +295,18 @@ static int set_shape(struct calibration *c, int pulse)
 }
 
 /* Which shape describes some clear examples best, and its rough duration; low: lag of
- * the lowest autocorrelation. */
+ * the lowest autocorrelation.  A wrong shape needs more pulses for the same record, so
+ * that each costs what it must take away. */
 static enum calibrate_status learn_shape(const struct calibrate_par *par,
 	struct learning *l, const double *y1, const double *y2, size_t n, double low,
 	struct calibration *c)
 {
-	double best = INFINITY, duration = c->duration, gain = c->gain;
+	double best = INFINITY, duration = c->duration, gain = c->gain, fit = INFINITY;
 	int pulse = c->pulse;
 
-	for (int p = PULSE_SINE; p <= PULSE_LORENTZ && best > 1.3; p++) {
-		double chi2;
+	pick_examples(l, y1, y2, n, EXAMPLES_MAX / 2, c);
+	for (int p = PULSE_SINE; p <= PULSE_LORENTZ && l->count && fit > 1.1; p++) {
+		double price;
 
 		if (par->pulse != CALIBRATE_ANY_PULSE && p != par->pulse)
 			continue;
@@ -309,15 +314,12 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 			return CALIBRATE_MEMORY;
 		c->duration = isnan(par->duration) ? low / shape_lowest_lag(c->shape)
 						   : par->duration;
-		pick_examples(l, y1, y2, n, EXAMPLES_MAX / 2, c);
-		if (l->count == 0)
-			continue;
 		scene_of(c, &l->scene);
-		examples_fit(l, 0.05);
+		examples_fit(l, 0.05, &price);
 		tune(par, l, 0.1, 3);
-		chi2 = examples_fit(l, 0.003);
-		if (chi2 < best) {
-			best = chi2;
+		fit = examples_fit(l, 0.003, &price);
+		if (price < best) {
+			best = price;
 			pulse = p;
 			duration = l->scene.duration;
 			gain = l->scene.gain * c->noise[1] / c->noise[0];
@@ -352,7 +354,8 @@ static void learn_range(
 static enum calibrate_status learn_pulse(const struct calibrate_par *par,
 	const double *y1, const double *y2, size_t n, double low, struct calibration *c)
 {
-	enum { ROUNDS = 8 };
+	enum { ROUNDS = 16 };
+	double step = 0.01, moved, price;
 	struct learning l = { .joint = joint_new(), .misfit = c->misfit };
 	enum calibrate_status status =
 		l.joint ? learn_shape(par, &l, y1, y2, n, low, c) : CALIBRATE_MEMORY;
@@ -366,12 +369,14 @@ static enum calibrate_status learn_pulse(const struct calibrate_par *par,
 	for (int k = 0; status == CALIBRATE_OK && l.count && k < ROUNDS; k++) {
 		double before = c->chi2;
 
-		c->chi2 = examples_fit(&l, fmax(0.01 * pow(0.3, k), 3e-4));
-		if (k > 2 && (c->chi2 < 1.2 || c->chi2 > 0.95 * before))
-			break;
-		tune(par, &l, 0.01 / (1 + k), 2);
+		c->chi2 = examples_fit(&l, fmax(0.01 * pow(0.3, k), 3e-4), &price);
+		tune(par, &l, step, 2);
+		moved = fabs(log(l.scene.duration / c->duration));
+		step = fmin(fmax(3 * moved, 0.002), 0.02);
 		c->duration = l.scene.duration;
 		c->gain = l.scene.gain * c->noise[1] / c->noise[0];
+		if (k > 2 && moved < 5e-4 && (c->chi2 < 1.2 || c->chi2 > 0.95 * before))
+			break;
 	}
 	c->events = 0;
 	for (int i = 0; i < l.count; i++)
@@ -397,8 +402,8 @@ static void set_thresholds(const struct calibrate_par *par, struct calibration *
 
 	c->drop = calibrate_drop(par->false_alarm, c->shape, c->duration, gain,
 		c->delta_max - c->delta_min);
-	/* Next to a pulse the search is over some 40 cells: 25 means 1e-3 false ones. */
-	c->drop_near = c->drop < 25 ? c->drop : 25;
+	/* Next to a pulse the search is over some 40 cells: 23 means 2e-3 false ones. */
+	c->drop_near = c->drop < 23 ? c->drop : 23;
 }
 
 /* Matched filter of y[0 .. n) at every eighth of a duration; returns the number of

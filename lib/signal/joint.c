@@ -705,7 +705,7 @@ static int split_pulses(struct joint *j, const struct joint_scene *s,
 	int split = 0;
 
 	for (int i = 0; i < *m && *m < s->max_pulses; i++) {
-		double best = 3, shift = 0;
+		double best = 2, shift = 0;
 
 		for (int k = 1; k <= 3; k++) {
 			double score = split_score(
@@ -757,42 +757,112 @@ static void fill_covariance(
 		}
 }
 
+/* How far the amplitude of a pulse is from zero, squared, in standard errors; where the
+ * matrix is singular, as it is with pulses too many, in those of a lone pulse. */
+static double significance(const struct joint_scene *s, const struct joint_pulse *p)
+{
+	double energy = s->duration * shape_energy(s->shape) * (1 + s->gain * s->gain);
+
+	return isfinite(p->cov[5]) ? p->a * p->a / p->cov[5] : p->a * p->a * energy;
+}
+
+/* Takes pulse i out if the others can do without it. */
+static int try_without(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int *m, int i, double *chi2)
+{
+	struct joint_pulse before[JOINT_PULSES_MAX], weak = pulses[i];
+	int set[JOINT_PULSES_MAX], count, old = *m;
+	double after;
+
+	memcpy(before, pulses, sizeof(*pulses) * (size_t)old);
+	subtract(j, s, &weak, -1);
+	--*m;
+	for (int k = i; k < *m; k++)
+		pulses[k] = pulses[k + 1];
+	pulses[*m] = weak; /* for neighbours() only */
+	count = neighbours(s, pulses, *m + 1, *m, 0.8, set) - 1;
+	after = fit_set(j, s, pulses, set, count, 30, 0.1);
+	pulses[*m] = weak;
+	if (worth(s, pulses, *m + 1, *m, after, *chi2)) {
+		restore(j, s, pulses, m, before, old);
+		return 0;
+	}
+	*chi2 = after;
+	return 1;
+}
+
+/* Puts one pulse in the place of pulses i and k if that will do. */
+static int try_merge(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int *m, int i, int k, double *chi2)
+{
+	struct joint_pulse before[JOINT_PULSES_MAX], gone = pulses[k];
+	int set[JOINT_PULSES_MAX], old = *m, count;
+	double part = pulses[k].a / (pulses[i].a + pulses[k].a), after;
+
+	memcpy(before, pulses, sizeof(*pulses) * (size_t)old);
+	subtract(j, s, &pulses[i], -1);
+	subtract(j, s, &pulses[k], -1);
+	pulses[i].a += pulses[k].a;
+	pulses[i].t += part * (pulses[k].t - pulses[i].t);
+	pulses[i].delta += part * (pulses[k].delta - pulses[i].delta);
+	subtract(j, s, &pulses[i], 1);
+	--*m;
+	for (int l = k; l < *m; l++)
+		pulses[l] = pulses[l + 1];
+	pulses[*m] = gone; /* for neighbours() only */
+	count = neighbours(s, pulses, *m + 1, *m, 0.8, set) - 1;
+	after = fit_set(j, s, pulses, set, count, 30, 0.1);
+	pulses[*m] = gone;
+	if (worth(s, pulses, *m + 1, *m, after, *chi2)) {
+		restore(j, s, pulses, m, before, old);
+		return 0;
+	}
+	*chi2 = after;
+	return 1;
+}
+
+/* Merges pulses so close that they may be one that was split in vain. */
+static double merge_pulses(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int *m, double chi2)
+{
+	double near = 0.12 * s->duration;
+
+	for (int i = 0; i < *m; i++)
+		for (int k = i + 1; k < *m; k++)
+			if (fabs(pulses[k].t - pulses[i].t) < near &&
+				try_merge(j, s, pulses, m, i, k, &chi2))
+				k = i;
+	return chi2;
+}
+
 /* Takes out pulses that the others can do without, least significant first. */
 static double prune(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int *m, double chi2)
 {
-	while (*m > 1) {
-		struct joint_pulse before[JOINT_PULSES_MAX], weak;
-		double least = INFINITY, after;
-		int set[JOINT_PULSES_MAX], count, old = *m, worst = 0;
+	enum { TRIES = 4 };
+	int needed[TRIES], tries = 0;
+
+	while (*m > 1 && tries < TRIES) {
+		double least = 6 * s->drop;
+		int worst = -1;
 
 		fill_covariance(j, s, pulses, *m);
 		for (int i = 0; i < *m; i++) {
-			double significance =
-				pulses[i].a * pulses[i].a / pulses[i].cov[5];
+			int tried = 0;
 
-			if (!(significance >= least)) {
-				least = significance;
+			for (int k = 0; k < tries; k++)
+				tried |= needed[k] == i;
+			if (!tried && significance(s, &pulses[i]) < least) {
+				least = significance(s, &pulses[i]);
 				worst = i;
 			}
 		}
-		if (least > 6 * s->drop)
+		if (worst < 0)
 			break;
-		memcpy(before, pulses, sizeof(*pulses) * (size_t)old);
-		weak = pulses[worst];
-		subtract(j, s, &weak, -1);
-		--*m;
-		for (int i = worst; i < *m; i++)
-			pulses[i] = pulses[i + 1];
-		pulses[*m] = weak; /* for neighbours() only */
-		count = neighbours(s, pulses, *m + 1, *m, 0.8, set) - 1;
-		after = fit_set(j, s, pulses, set, count, 30, 0.1);
-		pulses[*m] = weak;
-		if (worth(s, pulses, *m + 1, *m, after, chi2)) {
-			restore(j, s, pulses, m, before, old);
-			break;
-		}
-		chi2 = after;
+		if (try_without(j, s, pulses, m, worst, &chi2))
+			tries = 0;
+		else
+			needed[tries++] = worst;
 	}
 	return chi2;
 }
@@ -885,7 +955,7 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 		while (failed < TRIES && *m < s->max_pulses) {
 			struct candidate c = search(j, s, tried, failed);
 
-			if (c.z2 < 0.4 * s->drop_near)
+			if (c.z2 < 0.3 * s->drop_near)
 				break;
 			if (try_pulse(j, s, pulses, m, &c, &chi2))
 				failed = 0;
@@ -894,6 +964,7 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 		}
 		chi2 = fit_all(j, s, pulses, *m);
 	} while (split_pulses(j, s, pulses, m, &chi2));
+	chi2 = merge_pulses(j, s, pulses, m, chi2);
 	chi2 = prune(j, s, pulses, m, chi2);
 	chi2 = fit_all(j, s, pulses, *m);
 	finish(j, s, pulses, *m, chi2,

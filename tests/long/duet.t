@@ -1,0 +1,60 @@
+#!/bin/sh
+# duet: a thousand scenes each; delay, size and count against the Cramer-Rao bound with
+# nothing known of the instrument; ten million samples of noise
+#
+# SCENES sets the number of scenes.
+. "$(dirname "$0")/../tap.sh"
+
+SCENES=${SCENES:-1000}
+
+check() { # NAME VALUE OP LIMIT
+	if awk -v x="$2" -v y="$4" "BEGIN { exit !(x != \"nan\" && x + 0 $3 y) }"; then
+		pass "$1: $2 $3 $4"
+	else
+		fail "$1" "got:  $2" "want: $3 $4"
+	fi
+}
+
+value() {
+	awk -F '\t' -v c="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == c) k = i; next }
+	{ print $k }' score.tsv
+}
+
+# M particles of amplitude 0.5 to 1.5 V, at least 1 ms (a tenth of the pulse) apart.
+scenes() { # M SNR COUNT RATIO SIZE sensorsim-options
+	m=$1
+	snr=$2
+	count=$3
+	limit=$4
+	size=$5
+	shift 5
+	period=$(awk -v m="$m" 'BEGIN { print (50 * m + 400) / 1e4 }')
+	span=$(awk -v m="$m" 'BEGIN { print 50 * m / 1e4 }')
+	sensorsim --by volume --uniform 79.370um:114.471um --number $((m * SCENES)) \
+		--burst "$m" --span "${span}s" --gap 1ms --period "${period}s" --start 20ms \
+		--snr "${snr}dB" --lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv "$@" >s.au
+	duet s.au >found.tsv
+	"$top/scripts/score" -p "$period" -o 0.01 truth.tsv found.tsv >score.tsv
+	name="$m particles at $snr dB $*"
+	check "$name: count right" \
+		"$(awk -v r="$(value right)" -v n="$(value scenes)" 'BEGIN { print r / n }')" '>=' "$count"
+	check "$name: delay error over the bound" "$(value delay_ratio)" '<=' "$limit"
+	check "$name: size error" "$(value size_rms)" '<=' "$size"
+	check "$name: inside one standard error" "$(value delay_cover)" '>=' 0.64
+	check "$name: inside one standard error" "$(value delay_cover)" '<=' 0.74
+}
+
+for m in 1 2 3 4 5 6; do
+	scenes $m 20 0.97 1.1 0.02
+	scenes $m 30 0.99 1.1 0.005
+done
+scenes 4 40 0.99 1.1 0.005
+# Shape, and lines on top: the bound is that of the fit with the lines known.
+scenes 3 30 0.95 1.3 0.03 --pulse gauss
+scenes 3 30 0.95 1.3 0.005 --mains 0.5,0.3 --pump 0.4,0.2
+
+# No invented particle in 1e7 samples at 1e-9 per sample (0.01 expected).
+sensorsim --uniform 100um:100um --number 0 --duration 1000s --noise 1V >noise.au
+duet --align 19.6ms --pulse-duration 10ms noise.au >none.tsv
+is "noise: no particle in 1e7 samples" "$(column particle none.tsv | wc -l)" 0
+done_testing
