@@ -470,31 +470,51 @@ static double distance2(const double a[3], const double b[3])
 	return u * u + v * v + w * w;
 }
 
-/* Largest distance between two corners of the hull; along: the unit vector there. */
-static double longest_diameter(struct particles *ps, double along[3])
+/* The farthest two of count points, if farther than least (squared); the square of their
+ * distance.  Points too near the middle to be one of them are passed over. */
+static double farthest(double (*p)[3], size_t count, double least, size_t end[2])
 {
-	double most = -1, p[3], q[3];
-	size_t n, a = 0, b = 0;
-	const struct hull_point *c = hull_points(ps->hull, &n);
+	double middle[3] = { 0, 0, 0 }, reach = 0;
 
-	for (size_t i = 0; i < n; i++) {
-		scaled(ps, &c[i], p);
+	for (size_t i = 0; i < count; i++)
+		for (int k = X; k <= Z; k++)
+			middle[k] += p[i][k] / (double)count;
+	for (size_t i = 0; i < count; i++) {
+		double d = distance2(p[i], middle);
+
+		reach = d > reach ? d : reach;
+	}
+	reach = sqrt(reach) * (1 + 1e-12);
+	for (size_t i = 0; i < count; i++) {
+		double most = sqrt(distance2(p[i], middle)) + reach;
+
+		if (most * most < least)
+			continue;
 		for (size_t j = 0; j < i; j++) {
-			double d;
+			double d = distance2(p[i], p[j]);
 
-			scaled(ps, &c[j], q);
-			d = distance2(p, q);
-			if (d > most) {
-				most = d;
-				a = i, b = j;
+			if (d > least) {
+				least = d;
+				end[0] = i;
+				end[1] = j;
 			}
 		}
 	}
-	scaled(ps, &c[a], p);
-	scaled(ps, &c[b], q);
-	most = sqrt(most);
+	return least;
+}
+
+/* Largest distance between two corners of the hull; along: the unit vector there. */
+static double longest_diameter(struct particles *ps, double along[3])
+{
+	size_t n, end[2] = { 0, 0 };
+	const struct hull_point *c = hull_points(ps->hull, &n);
+	double most;
+
+	for (size_t i = 0; i < n; i++)
+		scaled(ps, &c[i], ps->cut[i]);
+	most = sqrt(farthest(ps->cut, n, 0, end));
 	for (int k = X; k <= Z; k++)
-		along[k] = (p[k] - q[k]) / most;
+		along[k] = (ps->cut[end[0]][k] - ps->cut[end[1]][k]) / most;
 	return most;
 }
 
@@ -529,40 +549,32 @@ static size_t section(struct particles *ps, double level)
 static double widest_chord(struct particles *ps, const double along[3])
 {
 	double most = 0, p[3];
-	size_t n, edges;
+	size_t n, end[2];
 	const struct hull_point *c = hull_points(ps->hull, &n);
 
-	hull_edges(ps->hull, &edges);
-	if (need(&ps->height, &ps->height_room, n, sizeof(*ps->height)) ||
-		need(&ps->cut, &ps->cut_room, n + edges, sizeof(*ps->cut)))
-		return -1;
 	for (size_t i = 0; i < n; i++) {
 		scaled(ps, &c[i], p);
 		ps->height[i] = p[X] * along[X] + p[Y] * along[Y] + p[Z] * along[Z];
 	}
-	for (size_t k = 0; k < n; k++) {
-		size_t count = section(ps, ps->height[k]);
-
-		for (size_t i = 0; i < count; i++)
-			for (size_t j = 0; j < i; j++) {
-				double d = distance2(ps->cut[i], ps->cut[j]);
-
-				most = d > most ? d : most;
-			}
-	}
+	for (size_t i = 0; i < n; i++)
+		most = farthest(ps->cut, section(ps, ps->height[i]), most, end);
 	return sqrt(most);
 }
 
 static int measure_hull(struct particles *ps, const struct body *b, struct particle *p)
 {
+	size_t corners, edges;
 	double along[3];
 
 	if (build_hull(ps, b))
 		return -1;
+	hull_points(ps->hull, &corners);
+	hull_edges(ps->hull, &edges);
+	if (need(&ps->height, &ps->height_room, corners, sizeof(*ps->height)) ||
+		need(&ps->cut, &ps->cut_room, corners + edges, sizeof(*ps->cut)))
+		return -1;
 	p->length = longest_diameter(ps, along);
 	p->width = widest_chord(ps, along);
-	if (!(p->width > 0))
-		return -1;
 	p->aspect = p->length / p->width;
 	p->convexity = 6 * b->nodes / hull_volume6(ps->hull);
 	return 0;
