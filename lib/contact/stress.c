@@ -280,26 +280,18 @@ size_t stress_reach(
 
 /* Kernels */
 
-static void combine(const struct stress *s, const double *normal, const double *shear,
-	int flipx, int flipy, double out[TENSOR])
+/* One stress component of pressure and shear together, at an offset with the signs of
+ * flipx and flipy, from the coefficients of the quarter plane. */
+static double combine(const struct stress *s, const double *normal, const double *shear,
+	int flipx, int flipy, enum stress_component c)
 {
-	double t[STRESS_COMPONENTS];
+	int odd = (flipx && stress_odd(c, 0)) ^ (flipy && stress_odd(c, 1));
+	int shear_odd = odd ^ (s->par.axis ? flipy : flipx);
+	double value = odd ? -normal[c] : normal[c];
 
-	for (int c = 0; c < STRESS_COMPONENTS; c++) {
-		int odd = (flipx && stress_odd(c, 0)) ^ (flipy && stress_odd(c, 1));
-
-		t[c] = odd ? -normal[c] : normal[c];
-		if (shear)
-			t[c] += (odd ^ (s->par.axis ? flipy : flipx) ? -s->par.mu
-								     : s->par.mu) *
-				shear[c];
-	}
-	out[DEV_X] = t[STRESS_XX] - t[STRESS_ZZ];
-	out[DEV_Y] = t[STRESS_YY] - t[STRESS_ZZ];
-	out[DEV_XY] = t[STRESS_XY];
-	out[DEV_XZ] = t[STRESS_XZ];
-	out[DEV_YZ] = t[STRESS_YZ];
-	out[ZZ] = t[STRESS_ZZ];
+	if (shear)
+		value += (shear_odd ? -s->par.mu : s->par.mu) * shear[c];
+	return value;
 }
 
 /* Quarter-plane coefficients of a layer; for shear along y the axes change places. */
@@ -346,14 +338,25 @@ static int quarter_new(struct stress *s, double z, int wx, int wy, struct quarte
 	return 0;
 }
 
-static void quarter_at(
-	const struct stress *s, const struct quarter *q, int i, int j, double out[TENSOR])
+/* Number c (DEV_X ...) of the kernel at an offset. */
+static double quarter_at(
+	const struct stress *s, const struct quarter *q, int i, int j, int c)
 {
+	static const enum stress_component first[TENSOR] = { [DEV_X] = STRESS_XX,
+		[DEV_Y] = STRESS_YY,
+		[DEV_XY] = STRESS_XY,
+		[DEV_XZ] = STRESS_XZ,
+		[DEV_YZ] = STRESS_YZ,
+		[ZZ] = STRESS_ZZ };
 	int ai = abs(i), aj = abs(j);
 	size_t at = (q->turned ? (size_t)ai * q->wy + aj : (size_t)aj * q->wx + ai) *
 		    STRESS_COMPONENTS;
+	const double *normal = q->normal + at, *shear = q->shear ? q->shear + at : NULL;
+	double value = combine(s, normal, shear, i < 0, j < 0, first[c]);
 
-	combine(s, q->normal + at, q->shear ? q->shear + at : NULL, i < 0, j < 0, out);
+	if (c == DEV_X || c == DEV_Y)
+		value -= combine(s, normal, shear, i < 0, j < 0, STRESS_ZZ);
+	return value;
 }
 
 /* Table of all offsets |i| < wx, |j| < wy with count numbers each. */
@@ -369,10 +372,8 @@ static double *table_new(struct stress *s, double z, int wx, int wy, int count)
 	}
 	for (int j = 1 - wy; j < wy; j++)
 		for (int i = 1 - wx; i < wx; i++, at += count) {
-			double v[TENSOR];
-
-			quarter_at(s, &q, i, j, v);
-			memcpy(at, v, count * sizeof(*at));
+			for (int c = 0; c < count; c++)
+				at[c] = quarter_at(s, &q, i, j, c);
 		}
 	free(q.normal);
 	return table;
@@ -550,11 +551,10 @@ static int free_spectra(struct stress *s, double z, int count, double complex *o
 		memset(s->plane, 0, s->points * sizeof(*s->plane));
 		for (int j = 1 - ny; j < ny; j++)
 			for (int i = 1 - nx; i < nx; i++) {
-				double v[TENSOR];
+				size_t x = i < 0 ? i + s->px : (size_t)i;
+				size_t y = j < 0 ? j + s->py : (size_t)j;
 
-				quarter_at(s, &q, i, j, v);
-				s->plane[(j < 0 ? j + s->py : (size_t)j) * s->px +
-					 (i < 0 ? i + s->px : (size_t)i)] = v[c];
+				s->plane[y * s->px + x] = quarter_at(s, &q, i, j, c);
 			}
 		fft_forward(s->fft, s->plane, out + c * s->half);
 		s->work.transforms++;
@@ -701,9 +701,11 @@ static int mises_fourier(struct stress *s, long layer, double *mises)
  * doubling; the factor is where both take the same time (tests/bench/stress.sh). */
 static int prefer_direct(const struct stress *s, double nodes)
 {
-	static const double CROSSOVER = 1;
+	static const double CROSSOVER = 0.35;
 
-	return !s->par.periodic &&
+	if (s->par.periodic || s->par.method == STRESS_FOURIER)
+		return 0;
+	return s->par.method == STRESS_DIRECT ||
 	       nodes * s->nloads < CROSSOVER * s->points * log2((double)s->points + 1);
 }
 

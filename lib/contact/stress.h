@@ -30,13 +30,17 @@
 
 struct stress;
 
+/* How a layer is summed; the faster way is chosen from the numbers of loads and nodes. */
+enum stress_method { STRESS_FASTER, STRESS_DIRECT, STRESS_FOURIER };
+
 struct stress_par {
 	int nx, ny;        /* cells */
 	double ax, ay;     /* cell size, m */
 	double dz, offset; /* depth of a layer is (layer + offset) dz, m */
 	double nu, mu;     /* Poisson's ratio, friction coefficient */
 	int axis;          /* shear along x (0) or y (1) */
-	int periodic;
+	int periodic;      /* then always by transform */
+	enum stress_method method;
 	size_t memory;     /* bytes that kept kernels may take; 0: none is kept */
 	struct pool *pool; /* borrowed; NULL: one thread */
 };

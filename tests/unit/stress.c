@@ -148,6 +148,7 @@ static void test_direct(int nx, int ny, double mu, int axis)
 	struct stress *s;
 
 	par.ax = 1.5e-6, par.ay = 1e-6, par.dz = 0.7e-6, par.axis = axis;
+	par.method = STRESS_DIRECT;
 	s = stress_new(&par);
 	for (int k = 0; k < 6; k++)
 		p[(size_t)(n * philox_uniform(3, nx, RNG_NOISE, k))] = 1e9 * (k + 1);
