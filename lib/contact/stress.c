@@ -13,6 +13,8 @@ enum { DEV_X, DEV_Y, DEV_XY, DEV_XZ, DEV_YZ, MISES, ZZ = MISES, TENSOR };
 
 enum { BLOCK = 8, BLOCKS_SIDE = 64, TABLE_STEP = 16, LAYERS_KEPT = 4096 };
 
+static const double TWO_PI = 6.283185307179586476925286766559;
+
 /* Kernel of one layer, as far as it was needed. */
 struct layer {
 	int wx, wy;               /* offsets below these are in the table */
@@ -27,21 +29,24 @@ struct load {
 
 struct block {
 	int x0, x1, y0, y1; /* loaded cells within, inclusive */
-	double load;        /* N; 0: none */
+	double load;        /* in units times m2; 0: none */
 };
 
 struct stress {
 	struct stress_par par;
 	size_t px, py, points, half; /* transform, its points and coefficients */
 	struct fft *fft;
+	/* Pressures are held in this unit, a power of two near the largest, so that
+	 * squares neither overflow nor vanish. */
+	double unit;
 	double *pressure;
 	double complex *image; /* of the pressure; valid if imaged */
 	int imaged;
 	struct load *loads;
 	size_t nloads;
 	int x0, x1, y0, y1; /* of the loads, inclusive */
-	double total;
-	int side, bx, by; /* cells to a block's side, blocks */
+	double total;       /* N */
+	int side, bx, by;   /* cells to a block's side, blocks */
 	struct block *blocks;
 	double point;         /* largest von Mises stress times distance^2 */
 	struct layer *layers; /* LAYERS_KEPT, some filled */
@@ -155,25 +160,41 @@ static void add_to_block(struct stress *s, int x, int y, double load)
 	b->load += load;
 }
 
+/* Power of two at or below the largest magnitude; 0 where a value is not finite. */
+static double unit_of(const double *pressure, size_t n)
+{
+	double most = 0;
+	int exponent;
+
+	for (size_t i = 0; i < n; i++) {
+		if (!isfinite(pressure[i]))
+			return 0;
+		most = fmax(most, fabs(pressure[i]));
+	}
+	frexp(most, &exponent);
+	return most > 0 ? ldexp(0.5, exponent) : 1;
+}
+
 int stress_load(struct stress *s, const double *pressure)
 {
 	int nx = s->par.nx, ny = s->par.ny;
-	double area = s->par.ax * s->par.ay;
+	double area = s->par.ax * s->par.ay, unit = unit_of(pressure, (size_t)nx * ny);
 
+	if (unit == 0) {
+		errno = EDOM;
+		return -1;
+	}
+	s->unit = unit;
 	s->imaged = 0;
 	s->nloads = 0;
 	s->total = 0;
 	memset(s->blocks, 0, (size_t)s->bx * s->by * sizeof(*s->blocks));
-	memcpy(s->pressure, pressure, (size_t)nx * ny * sizeof(*pressure));
 	s->x0 = nx, s->x1 = -1, s->y0 = ny, s->y1 = -1;
 	for (int y = 0; y < ny; y++)
 		for (int x = 0; x < nx; x++) {
-			double p = pressure[(size_t)y * nx + x];
+			double p = pressure[(size_t)y * nx + x] / unit;
 
-			if (!isfinite(p)) {
-				errno = EDOM;
-				return -1;
-			}
+			s->pressure[(size_t)y * nx + x] = p;
 			if (p == 0)
 				continue;
 			s->loads[s->nloads++] = (struct load){ x, y, p };
@@ -181,20 +202,10 @@ int stress_load(struct stress *s, const double *pressure)
 			s->x1 = x > s->x1 ? x : s->x1;
 			s->y0 = y < s->y0 ? y : s->y0;
 			s->y1 = y;
-			s->total += p * area;
+			s->total += p * area * unit;
 			add_to_block(s, x, y, fabs(p) * area);
 		}
 	return 0;
-}
-
-double stress_total(const struct stress *s)
-{
-	return s->total;
-}
-
-long stress_contacts(const struct stress *s)
-{
-	return (long)s->nloads;
 }
 
 struct stress_work stress_work(const struct stress *s)
@@ -241,41 +252,6 @@ static int block_may_fail(const struct stress *s, int bx, int by, double z, doub
 size_t stress_spans_max(const struct stress *s)
 {
 	return (size_t)s->bx * s->par.ny;
-}
-
-size_t stress_reach(
-	const struct stress *s, long layer, double limit, struct stress_span *span)
-{
-	double z = depth(s, layer);
-	size_t count = 0;
-
-	if (s->nloads == 0)
-		return 0;
-	for (int by = 0; by < s->by; by++) {
-		size_t first = count;
-		int y0 = by * s->side,
-		    y1 = y0 + s->side < s->par.ny ? y0 + s->side : s->par.ny;
-
-		for (int bx = 0; bx < s->bx; bx++) {
-			int x0 = bx * s->side;
-			int x1 = x0 + s->side < s->par.nx ? x0 + s->side : s->par.nx;
-
-			if (!s->par.periodic && !block_may_fail(s, bx, by, z, limit))
-				continue;
-			if (count > first && span[count - 1].end == x0)
-				span[count - 1].end = x1;
-			else
-				span[count++] = (struct stress_span){ y0, x0, x1 };
-		}
-		size_t width = count - first;
-
-		for (int y = y0 + 1; y < y1; y++)
-			for (size_t k = 0; k < width; k++) {
-				span[count] = span[first + k];
-				span[count++].y = y;
-			}
-	}
-	return count;
 }
 
 /* Kernels */
@@ -419,7 +395,7 @@ static void sum_span(void *context, size_t job, int worker)
 			for (int c = 0; c < MISES; c++)
 				v[c] += p * k[c];
 		}
-		d->mises[(size_t)r->y * s->par.nx + x] = mises_of(v);
+		d->mises[(size_t)r->y * s->par.nx + x] = s->unit * mises_of(v);
 	}
 }
 
@@ -603,8 +579,7 @@ static void harmonic(const struct stress_par *p, double kx, double ky, double z,
 static void periodic_spectra(struct stress *s, double z, int count, double complex *out)
 {
 	int nx = s->par.nx, ny = s->par.ny;
-	double ux = 6.283185307179586476925 / (nx * s->par.ax);
-	double uy = 6.283185307179586476925 / (ny * s->par.ay);
+	double ux = TWO_PI / (nx * s->par.ax), uy = TWO_PI / (ny * s->par.ay);
 
 	for (int j = 0; j < ny; j++)
 		for (int i = 0; i <= nx / 2; i++) {
@@ -624,7 +599,7 @@ static void periodic_spectra(struct stress *s, double z, int count, double compl
 static int sum_fourier(struct stress *s, const double complex *spectrum, int count)
 {
 	size_t n = (size_t)s->par.nx * s->par.ny;
-	double scale = 1. / s->points;
+	double scale = 1. / (double)s->points;
 
 	image_pressure(s);
 	for (int c = 0; c < count; c++) {
@@ -637,6 +612,78 @@ static int sum_fourier(struct stress *s, const double complex *spectrum, int cou
 				s->plane + y * s->px, s->par.nx * sizeof(*s->sums));
 	}
 	return 0;
+}
+
+/* Largest von Mises stress of a wave at its depth x = q z, by the norm of its tensor:
+ * falls with x for all nu and mu. */
+static double wave_bound(const struct stress_par *p, double x)
+{
+	double normal = 2 + 4 * p->nu * p->nu + 4 * x * x;
+	double shear = 10 - 8 * x + 4 * x * x + 4 * p->nu * p->nu;
+
+	return sqrt(1.5) * exp(-x) * (sqrt(normal) + p->mu * sqrt(shear));
+}
+
+/* Could the sum over all waves of the pressure exceed the limit? */
+static int waves_may_fail(struct stress *s, double z, double limit)
+{
+	int nx = s->par.nx, ny = s->par.ny, half = nx / 2 + 1;
+	double ux = TWO_PI / (nx * s->par.ax), uy = TWO_PI / (ny * s->par.ay), sum;
+	double complex mean[TENSOR];
+	double v[MISES];
+
+	if (fourier_start(s))
+		return 1; /* the layer itself will tell */
+	image_pressure(s);
+	harmonic(&s->par, 0, 0, z, mean);
+	for (int c = 0; c < MISES; c++)
+		v[c] = creal(mean[c] * s->image[0]);
+	sum = mises_of(v);
+	limit *= (double)s->points;
+	for (int j = 0; j < ny && sum <= limit; j++)
+		for (int i = j == 0; i < half; i++) {
+			double q = hypot(i * ux, (2 * j > ny ? j - ny : j) * uy);
+			int twice = i > 0 && 2 * i < nx;
+
+			sum += (twice + 1) * cabs(s->image[(size_t)j * half + i]) *
+			       wave_bound(&s->par, q * z);
+		}
+	return sum > limit;
+}
+
+size_t stress_reach(struct stress *s, long layer, double limit, struct stress_span *span)
+{
+	double z = depth(s, layer);
+	size_t count = 0;
+
+	limit /= s->unit;
+	if (s->nloads == 0 || (s->par.periodic && !waves_may_fail(s, z, limit)))
+		return 0;
+	for (int by = 0; by < s->by; by++) {
+		size_t first = count;
+		int y0 = by * s->side,
+		    y1 = y0 + s->side < s->par.ny ? y0 + s->side : s->par.ny;
+
+		for (int bx = 0; bx < s->bx; bx++) {
+			int x0 = bx * s->side;
+			int x1 = x0 + s->side < s->par.nx ? x0 + s->side : s->par.nx;
+
+			if (!s->par.periodic && !block_may_fail(s, bx, by, z, limit))
+				continue;
+			if (count > first && span[count - 1].end == x0)
+				span[count - 1].end = x1;
+			else
+				span[count++] = (struct stress_span){ y0, x0, x1 };
+		}
+		size_t width = count - first;
+
+		for (int y = y0 + 1; y < y1; y++)
+			for (size_t k = 0; k < width; k++) {
+				span[count] = span[first + k];
+				span[count++].y = y;
+			}
+	}
+	return count;
 }
 
 double stress_deep(const struct stress *s, long layer)
@@ -691,7 +738,7 @@ static int mises_fourier(struct stress *s, long layer, double *mises)
 
 		for (int c = 0; c < MISES; c++)
 			v[c] = s->sums[c * n + i];
-		mises[i] = mises_of(v);
+		mises[i] = s->unit * mises_of(v);
 	}
 	s->work.fourier_layers++;
 	return 0;
@@ -739,12 +786,12 @@ int stress_tensor(struct stress *s, long layer, double *tensor)
 	for (size_t i = 0; i < n; i++) {
 		double zz = s->sums[ZZ * n + i];
 
-		tensor[STRESS_XX * n + i] = s->sums[DEV_X * n + i] + zz;
-		tensor[STRESS_YY * n + i] = s->sums[DEV_Y * n + i] + zz;
-		tensor[STRESS_ZZ * n + i] = zz;
-		tensor[STRESS_XY * n + i] = s->sums[DEV_XY * n + i];
-		tensor[STRESS_XZ * n + i] = s->sums[DEV_XZ * n + i];
-		tensor[STRESS_YZ * n + i] = s->sums[DEV_YZ * n + i];
+		tensor[STRESS_XX * n + i] = s->unit * (s->sums[DEV_X * n + i] + zz);
+		tensor[STRESS_YY * n + i] = s->unit * (s->sums[DEV_Y * n + i] + zz);
+		tensor[STRESS_ZZ * n + i] = s->unit * zz;
+		tensor[STRESS_XY * n + i] = s->unit * s->sums[DEV_XY * n + i];
+		tensor[STRESS_XZ * n + i] = s->unit * s->sums[DEV_XZ * n + i];
+		tensor[STRESS_YZ * n + i] = s->unit * s->sums[DEV_YZ * n + i];
 	}
 	s->work.fourier_layers++;
 	s->work.nodes += n;

@@ -65,16 +65,12 @@ void stress_free(struct stress *s);
 
 /* Takes a pressure (nx * ny, finite; kept until the next call). */
 int stress_load(struct stress *s, const double *pressure);
-/* Total load, N, and number of loaded cells. */
-double stress_total(const struct stress *s);
-long stress_contacts(const struct stress *s);
 
 /* Spans of nodes whose von Mises stress at this layer may exceed limit; all others are
  * below it for certain, and remain so at every deeper layer.  span has room for
- * stress_spans_max().  The bound adds up the von Mises stress of loads block by block
- * (a norm, so the triangle inequality holds). */
-size_t stress_reach(
-	const struct stress *s, long layer, double limit, struct stress_span *span);
+ * stress_spans_max().  The bound adds up the von Mises stress of loads block by block, or
+ * of waves (a norm, so the triangle inequality holds). */
+size_t stress_reach(struct stress *s, long layer, double limit, struct stress_span *span);
 size_t stress_spans_max(const struct stress *s);
 
 /* von Mises stress in the middle below the load as it would be at a layer many times
