@@ -47,7 +47,7 @@ static const struct opt opts[] = {
 	{ 'T', "steps", OPT_INT, UNIT_COUNT, &steps, 1, 1e6, "N",
 		"wear steps; the contact is solved anew from the second on", NULL, 0 },
 	{ 'A', "stop-area", OPT_NUM, UNIT_FRACTION, &stop_area, 0, 1, "A",
-		"stop where this share of the cells is in contact", NULL, 0 },
+		"stop where this share of the cells is in contact; 1: never", NULL, 0 },
 	{ 'Z', "amplification", OPT_NUM, UNIT_NONE, &amplification, 0, 1e12, "K",
 		"sliding distance of a step over the length of the grid", NULL, 0 },
 	{ 'O', "surface", OPT_TEXT, UNIT_NONE, &surface_path, 0, 0, "FILE",
@@ -427,7 +427,7 @@ static void wear_record(struct run *run, struct record *r)
 			     "outermost cells",
 				fields_name(run->in), r->realisation, done + k,
 				100 * s.edge_load);
-		if (s.contact >= stop_area) {
+		if (s.contact >= stop_area && stop_area < 1) {
 			note("%s: realisation %ld, step %ld: %.3g of the cells in contact: "
 			     "stopped",
 				fields_name(run->in), r->realisation, done + k,

@@ -135,30 +135,51 @@ static int add_point(struct hull *h, int p)
 	return 0;
 }
 
-static int compare(const void *a, const void *b)
+/* Order along lines parallel to an axis: first by the two others. */
+static int compare(const struct hull_point *p, const struct hull_point *q, int axis)
 {
-	const struct hull_point *p = a, *q = b;
+	for (int k = 2; k >= 0; k--) {
+		int at = (axis + k) % 3;
 
-	for (int k = 2; k > 0; k--)
-		if (p->v[k] != q->v[k])
-			return p->v[k] < q->v[k] ? -1 : 1;
-	return (p->v[0] > q->v[0]) - (p->v[0] < q->v[0]);
+		if (p->v[at] != q->v[at])
+			return p->v[at] < q->v[at] ? -1 : 1;
+	}
+	return 0;
 }
 
-/* Sorts, drops repeated points and those inside a row, which cannot be corners. */
-static size_t drop_rows(struct hull_point *point, size_t count)
+static int compare_x(const void *a, const void *b)
 {
-	size_t kept = 0, row = 0;
+	return compare(a, b, 0);
+}
 
-	qsort(point, count, sizeof(*point), compare);
+static int compare_y(const void *a, const void *b)
+{
+	return compare(a, b, 1);
+}
+
+static int compare_z(const void *a, const void *b)
+{
+	return compare(a, b, 2);
+}
+
+/* Drops repeated points and those between two others on a line parallel to an axis,
+ * which cannot be corners.  Bodies made of cells have many. */
+static size_t drop_lines(struct hull_point *point, size_t count, int axis)
+{
+	static int (*const order[])(
+		const void *, const void *) = { compare_x, compare_y, compare_z };
+	int u = (axis + 1) % 3, w = (axis + 2) % 3;
+	size_t kept = 0, line = 0;
+
+	qsort(point, count, sizeof(*point), order[axis]);
 	for (size_t i = 0; i < count; i++) {
-		if (kept && !compare(&point[kept - 1], &point[i]))
+		if (kept && !compare(&point[kept - 1], &point[i], axis))
 			continue;
-		if (kept && (point[kept - 1].v[1] != point[i].v[1] ||
-				    point[kept - 1].v[2] != point[i].v[2]))
-			row = kept;
-		if (kept > row + 1)
-			kept = row + 1;
+		if (kept && (point[kept - 1].v[u] != point[i].v[u] ||
+				    point[kept - 1].v[w] != point[i].v[w]))
+			line = kept;
+		if (kept > line + 1)
+			kept = line + 1;
 		point[kept++] = point[i];
 	}
 	return kept;
@@ -243,7 +264,9 @@ int hull_build(struct hull *h, struct hull_point *point, size_t count)
 	if (!p)
 		return -1;
 	h->point = p;
-	h->points = drop_rows(point, count);
+	for (int axis = 0; axis < 3; axis++)
+		count = drop_lines(point, count, axis);
+	h->points = count;
 	memcpy(p, point, h->points * sizeof(*p));
 	h->nfaces = 0;
 	if (h->points < 4 || !start(h, h->points, c))
