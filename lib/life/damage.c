@@ -104,10 +104,11 @@ long damage_rows(const struct damage *d)
  * shape is known there, and an outlier must not look exact where a shape has levelled. */
 static double coordinate(const struct shape *s, double level, double *log_slope)
 {
-	double inside = fmax(0, fmin(1, level)), u, h;
+	double inside = fmax(0, fmin(1, level)), h;
 
 	if (s->scale > 0) {
-		u = log1p(inside / s->scale);
+		double u = log1p(inside / s->scale);
+
 		*log_slope = -s->par * u;
 		h = s->par == 1 ? s->scale * u
 				: s->scale * expm1((1 - s->par) * u) / (1 - s->par);

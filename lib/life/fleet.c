@@ -198,13 +198,14 @@ int fleet_life(const struct fleet *f, double level, double age, const double *z,
 	double *life, int n)
 {
 	struct sums s = compare_units(f, level, age);
-	double ratio, slope = 0, away = 0, centre, variance, freedom;
+	double slope = 0, away = 0, centre, variance, freedom;
 
 	if (s.n < FLEET_MIN)
 		return 0;
 	if (age > 0) {
 		/* About a slope of 1, with the variance of the ratio as ridge. */
-		ratio = fmax(0, s.yy - 2 * s.xy + s.xx) / (s.n - 1);
+		double ratio = fmax(0, s.yy - 2 * s.xy + s.xx) / (s.n - 1);
+
 		slope = s.xx + ratio > 0 ? 1 + (s.xy - s.xx) / (s.xx + ratio) : 1;
 		away = log(age) - s.x;
 	}

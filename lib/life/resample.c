@@ -2,8 +2,8 @@
 #include "life/resample.h"
 #include <math.h>
 
-/* Ancestors first .. n - 1 by a comb of teeth, one in each of the n - first strata of
- * [0, sum), against the weights less the copies already kept: weight - kept * unit. */
+/* Teeth in [0, sum) against the running sum of the weights, less the copies that were
+ * kept already: weight - kept * unit. */
 struct comb {
 	const double *weight;
 	double unit; /* weight of one kept copy; 0 keeps none */
@@ -16,35 +16,35 @@ static inline double rest(const struct comb *c, size_t i)
 			   : c->weight[i];
 }
 
-static void comb_stratified(const struct comb *c, size_t n, size_t first,
-	uint32_t *ancestor, struct draw *draw)
+static void comb_stratified(
+	const struct comb *c, size_t n, uint32_t *ancestor, struct draw *draw)
 {
-	double step = c->sum / (double)(n - first), reached = rest(c, 0);
+	double step = c->sum / (double)n, reached = c->weight[0];
 	size_t i = 0;
 
-	for (size_t k = first; k < n; k++) {
-		double tooth = step * ((double)(k - first) + draw_uniform(draw));
+	for (size_t k = 0; k < n; k++) {
+		double tooth = step * ((double)k + draw_uniform(draw));
 
 		while (reached <= tooth && i + 1 < n)
-			reached += rest(c, ++i);
+			reached += c->weight[++i];
 		ancestor[k] = (uint32_t)i;
 	}
 }
 
-/* The same with one offset for all teeth: particle i ends at tooth number
- * reached / step - offset, rounded up.  It is written once ahead of knowing, since most
- * particles have one copy. */
+/* One offset for all teeth: particle i ends at tooth number reached / step - offset,
+ * rounded up.  It is written once ahead of knowing, since most particles have one copy.
+ */
 static void comb_systematic(
-	const struct comb *c, size_t n, size_t first, uint32_t *ancestor, double offset)
+	const struct comb *c, size_t n, uint32_t *ancestor, double offset)
 {
-	double scale = (double)(n - first) / c->sum, reached = 0;
-	size_t k = first;
+	double scale = (double)n / c->sum, reached = 0;
+	size_t k = 0;
 
 	for (size_t i = 0; i < n && k < n; i++) {
 		size_t end;
 
-		reached += rest(c, i);
-		end = first + (size_t)(reached * scale + (1 - offset));
+		reached += c->weight[i];
+		end = (size_t)(reached * scale + (1 - offset));
 		ancestor[k] = (uint32_t)i;
 		if (end > n)
 			end = n;
@@ -52,24 +52,23 @@ static void comb_systematic(
 			ancestor[copy] = (uint32_t)i;
 		k = end > k ? end : k;
 	}
-	while (k < n) { /* rounding of the sum */
-		ancestor[k] = (uint32_t)(n - 1);
-		k++;
-	}
+	while (k < n) /* rounding of the sum */
+		ancestor[k++] = (uint32_t)(n - 1);
 }
 
-/* Sorted uniforms from the top down: U_(k) = U_(k+1) V^(1/k). */
-static void comb_multinomial(
-	const struct comb *c, size_t n, uint32_t *ancestor, struct draw *draw)
+/* Ancestors first .. n - 1 by independent uniforms, sorted as they come: from the top
+ * down, U_(k) = U_(k+1) V^(1/k). */
+static void comb_multinomial(const struct comb *c, size_t n, size_t first,
+	uint32_t *ancestor, struct draw *draw)
 {
 	double top = 1, reached = c->sum;
 	size_t i = n - 1;
 
-	for (size_t k = n; k > 0; k--) {
+	for (size_t k = n - first; k > 0; k--) {
 		top *= exp(log(draw_uniform(draw)) / (double)k);
-		while (reached - c->weight[i] > top * c->sum && i > 0)
-			reached -= c->weight[i--];
-		ancestor[k - 1] = (uint32_t)i;
+		while (reached - rest(c, i) > top * c->sum && i > 0)
+			reached -= rest(c, i--);
+		ancestor[first + k - 1] = (uint32_t)i;
 	}
 }
 
@@ -104,7 +103,7 @@ static void resample_residual(
 	}
 	if (kept < n) {
 		c->sum = left;
-		comb_systematic(c, n, kept, ancestor, draw_uniform(draw));
+		comb_multinomial(c, n, kept, ancestor, draw);
 	} else {
 		kept = n;
 	}
@@ -118,16 +117,16 @@ void resample(enum resampling scheme, struct draw *draw, const double *weight, d
 
 	switch (scheme) {
 	case RESAMPLE_SYSTEMATIC:
-		comb_systematic(&c, n, 0, ancestor, draw_uniform(draw));
+		comb_systematic(&c, n, ancestor, draw_uniform(draw));
 		break;
 	case RESAMPLE_STRATIFIED:
-		comb_stratified(&c, n, 0, ancestor, draw);
+		comb_stratified(&c, n, ancestor, draw);
 		break;
 	case RESAMPLE_RESIDUAL:
 		resample_residual(draw, &c, n, ancestor);
 		break;
 	case RESAMPLE_MULTINOMIAL:
-		comb_multinomial(&c, n, ancestor, draw);
+		comb_multinomial(&c, n, 0, ancestor, draw);
 		break;
 	}
 }

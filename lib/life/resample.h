@@ -2,8 +2,8 @@
  *
  * All schemes are unbiased: particle i is expected n w[i] times.  Ancestors come out in
  * rising order.  Systematic uses one uniform number, stratified one per particle,
- * residual keeps floor(n w) copies and draws the rest systematically from what is left,
- * multinomial draws n independent ones (sorted uniforms by exponential spacings).
+ * residual keeps floor(n w) copies and draws the rest independently from what is left,
+ * multinomial draws all of them so.
  * Douc, Cappe, Moulines, "Comparison of resampling schemes for particle filtering",
  * ISPA 2005.
  */

@@ -137,10 +137,15 @@ refused "times that repeat" "refused by name" "line 3: time 0 comes twice" \
 refused "time 1e400" "refused" "not" sh -c 'printf "t\ty\n1e400\t1\n" | aopf'
 refused "value 1e400" "refused" "infinite" sh -c 'printf "t\ty\n0\t1e400\n" | aopf'
 
-awk 'BEGIN { print "t\ty"; for (t = 0; t < 1000000; t++) {
-	s = (s * 16807 + 1) % 2147483647; printf "%d\t%.6f\n", t, 1 + t / 1e6 + 0.05 * s / 2147483647 } }' |
-	aopf -n 4 -N 10 -S stats >out
+long() {
+	awk -v n="$1" 'BEGIN { print "t\ty"; for (t = 0; t < n; t++) {
+		s = (s * 16807 + 1) % 2147483647
+		printf "%d\t%.6f\n", t, 1 + t / n + 0.05 * s / 2147483647 } }'
+}
+long 20000 | aopf -n 4 -N 10 -S few -y 3 >/dev/null
+long 1000000 | aopf -n 4 -N 10 -S stats >out
 accurate "a million rows" "state" "$(tail -1 out | cut -f 5)" 2.025 0.02
-says "a million rows" "under 10 MB" "$(column memory_kb stats | awk '{ print ($1 < 10000) }')" 1
+accurate "a million rows" "the memory of 20000" "$(column memory_kb stats)" \
+	"$(column memory_kb few)" 0.2
 
 done_testing

@@ -1,0 +1,105 @@
+#!/bin/sh
+# Prognosis: error against run time, as a table and, where gnuplot is there, as
+# build/bench/life.png.
+#
+# scene               knob   error, coverage, seconds (processor time)
+# filter-SCHEME       N      rms difference of the particle filter's mean from the Kalman
+#                            filter's, over the posterior standard deviation; a drifting
+#                            random walk; seconds for 1e6 particle-steps
+# grey-RULE           N      mean |error| of the end of life over 1186 h, and coverage of
+# average-RULE        N      the 5 to 95 % interval: twenty synthetic pumps (see
+#                            scripts/synthetic-pump), 600 rows each, by the rule that
+#                            chooses the order; seconds for one series
+# rows                N      seconds for a row without and (rows-life) with prediction of
+#                            life, 1200 rows
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+PATH=$top/bin:$PATH
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export LC_ALL=C
+pumps=${PUMPS:-20}
+
+column() {
+	awk -F '\t' -v c="$1" '/^#/ { next }
+	!seen { for (i = 1; i <= NF; i++) if ($i == c) k = i; seen = 1; next }
+	k { print $k }' "$2"
+}
+
+# life SCENE KNOB ARG...: errors over the pumps
+life() {
+	scene=$1
+	knob=$2
+	shift 2
+	: >"$work/lives"
+	k=1
+	while [ $k -le "$pumps" ]; do
+		aopf -t h -y 2.8 -d up -S "$work/stats" "$@" "$work/pump$k.tsv" >"$work/out"
+		printf '%s\t%s\n' "$(tail -1 "$work/out")" "$(column cpu_seconds "$work/stats")" \
+			>>"$work/lives"
+		k=$((k + 1))
+	done
+	awk -F '\t' -v scene="$scene" -v knob="$knob" '{
+		left = $9 == "inf" ? 10 * $1 : $9
+		e = ($1 + left) / 1186 - 1
+		sum += e < 0 ? -e : e
+		inside += $1 + $8 <= 1186 && ($10 == "inf" || $1 + $10 >= 1186)
+		seconds += $NF
+	} END { printf "%s\t%s\t%.4f\t%.2f\t%.4f\n", scene, knob, sum / NR, inside / NR,
+		seconds / NR }' "$work/lives"
+}
+
+all() {
+	printf 'scene\tknob\terror\tcoverage\tseconds\n'
+	i=0
+	for scheme in systematic stratified residual multinomial; do
+		for n in 100 1000 10000 100000 1000000; do
+			steps=$((20 + (n < 20000 ? 2000 : 40000000 / n)))
+			"$top/build/bench/filter_core" $n $steps $i 0.5 |
+				awk -v s="filter-$scheme" '{
+				printf "%s\t%s\t%s\tnan\t%.5f\n", s, $1, $6, 1e6 / $4 }'
+		done
+		i=$((i + 1))
+	done
+	k=1
+	while [ $k -le "$pumps" ]; do
+		"$top/scripts/synthetic-pump" $k 600 >"$work/pump$k.tsv"
+		k=$((k + 1))
+	done
+	for n in 100 300 1000 3000; do
+		for rule in 7 20 window insample all; do
+			life "grey-$rule" $n -m grey -n $rule -N $n
+		done
+		life average-window $n -N $n
+	done
+	"$top/scripts/synthetic-pump" 1 1200 >"$work/pump.tsv"
+	for n in 100 300 1000 3000; do
+		aopf -t h -N $n -S "$work/stats" "$work/pump.tsv" >/dev/null
+		printf 'rows\t%s\tnan\tnan\t%s\n' $n \
+			"$(column cpu_seconds "$work/stats" | awk '{ print $1 / 1200 }')"
+		aopf -t h -y 2.8 -N $n -S "$work/stats" "$work/pump.tsv" >/dev/null
+		printf 'rows-life\t%s\tnan\tnan\t%s\n' $n \
+			"$(column cpu_seconds "$work/stats" | awk '{ print $1 / 1200 }')"
+	done
+}
+
+all | tee "$work/table"
+command -v gnuplot >/dev/null || exit 0
+mkdir -p "$top/build/bench"
+gnuplot <<END
+set terminal pngcairo size 1000,450
+set output "$top/build/bench/life.png"
+set datafile separator "\t"
+set logscale xy
+set multiplot layout 1,2
+set key bottom left
+set xlabel "particles"
+set ylabel "difference from Kalman / standard deviation"
+plot for [s in "systematic stratified residual multinomial"] \
+	"< grep '^filter-".s."' $work/table" using 2:3 with linespoints title s
+set xlabel "seconds for a series of 600 rows"
+set ylabel "error of the end of life / life"
+plot for [s in "grey-7 grey-20 grey-window grey-insample grey-all average-window"] \
+	"< grep '^".s."\t' $work/table" using 5:3 with linespoints title s
+END
+echo "plot: $top/build/bench/life.png" >&2
