@@ -4,9 +4,9 @@
 # usage: pipeline.sh [roughgen options and a measured surface]
 #
 # A square millimetre of steel is pressed and slid against another, again and again.  One
-# wear step stands for an hour of running, and one second of the record of the debris
-# sensors for the debris of that hour.  The pair is worn out when it has lost 0.06
-# cubic millimetres.  A measured surface takes the place of the twelve generated
+# wear step stands for an hour of running, and two seconds of the record of the debris
+# sensors for the debris of that hour.  The pair is worn out when it has lost 0.15
+# cubic millimetres.  A measured surface takes the place of the twenty-four generated
 # ones; area, sensor and threshold are then scaled to its size.
 #
 # Leaves its streams in the working directory for the pictures.
@@ -19,15 +19,15 @@ if [ $# -gt 0 ]; then
 	crown=$(roughgen --level "$@" | records | awk -F '\t' '$1 == 1 { print 0.01 * $5 * $8 }')
 	roughgen --level --resample 128 --crown "$crown" "$@" >surface.nrrd
 else
-	steps=4
-	roughgen --points 128 --length 1mm --sq 0.8um --corr 50um --crown auto --count 12 >surface.nrrd
+	steps=2
+	roughgen --points 128 --length 1mm --sq 0.8um --corr 50um --crown auto --count 24 >surface.nrrd
 fi
 
 # What follows from the nominal area: the volume lost at failure, and the calibration of a
 # sensor that gives 1 V for a particle of a tenth of the side.
 read -r area volume sensor <<EOF
 $(records surface.nrrd | awk -F '\t' '$1 == 1 { a = $5 * $8 * $6 * $9
-	print a, 0.06 * a ^ 1.5, 78.54 / a ^ 1.5 }')
+	print a, 0.15 * a ^ 1.5, 78.54 / a ^ 1.5 }')
 EOF
 
 # What wears off ...
@@ -36,11 +36,11 @@ EOF
 		--surface worn.nrrd --summary steps.tsv >particles.tsv
 
 # ... and what the sensors tell of it.
-sensorsim --duration 48s --calibration $sensor --noise 5mV --mains 20mV --pump 50mV \
+sensorsim --duration 96s --calibration $sensor --noise 5mV --mains 20mV --pump 50mV \
 	--truth truth.tsv particles.tsv | tee raw.au |
-	bpfilter --band 20:250 --zero-phase | tee band.au |
+	bpfilter --band 0:1500 --lines 50 --zero-phase | tee band.au |
 	duet --calibration $sensor --separated pulses.au | tee found.tsv |
-	"$scripts"/wear-volume -k 3600 |
+	"$scripts"/wear-volume -w 2 -k 1800 |
 	aopf | tee state.tsv |
 	rwl --wear particles.tsv --fragment-area $area --area $area --quantity volume \
 		--threshold-volume $volume - >life.tsv
