@@ -32,7 +32,7 @@ static struct opt_list radii = { .n = 4 };
 static struct opt_list ports = { 2, { 0.15e6, 21e6 } };
 static struct opt_list levels = { 3, { 0.05, 0.5, 0.95 } };
 static double initial_gap = NAN, transition = 0.1, step_time = NAN;
-static double skip, eol = NAN, cone = 0.2, horizon = NAN;
+static double state_error, skip, eol = NAN, cone = 0.2, horizon = NAN;
 static double archard = NAN, hardness = 1.065e9, speed = 20.94;
 static long seed = 1, first_path, count = 1000, first_step = 1, parts;
 static int quantity = AUTO, rule = RATE_MEAN, size_set, time_unit, samples, grey, new;
@@ -50,6 +50,8 @@ static const struct opt opts[] = {
 		"auto|leakage|gap|volume|debris", "what the state is", quantities, 0 },
 	{ 'u', "state-unit", OPT_TEXT, UNIT_NONE, &unit_text, 0, 0, "UNIT",
 		"unit of the state, where not SI: L/min", 0, 0 },
+	{ 'X', "state-error", OPT_NUM, UNIT_NONE, &state_error, 0, 1e300, "SD",
+		"standard error of the state, in its unit", 0, 0 },
 	{ 't', "time-unit", OPT_WORD, UNIT_NONE, &time_unit, 0, 0, "s|min|h|d",
 		"unit of the times read", time_units, 0 },
 	{ 'g', "threshold-gap", OPT_NUM, UNIT_LENGTH, &threshold_gap, 1e-12, 1, "H",
@@ -136,12 +138,13 @@ struct state {
 	struct table_in *table;
 	int time_column, value_column;
 	int quantity;
-	int filtered;         /* read from the column state */
-	double scale;         /* of the value to SI */
-	double debris;        /* volume of the particles so far */
-	long rows, n;         /* rows, and those with a value */
+	int filtered;  /* read from the column state */
+	double scale;  /* of the value to SI */
+	double debris; /* volume of the particles so far */
+	long rows;
 	double first_t;       /* of the first row */
 	double t, gap, value; /* latest row; gap and value NAN where missing */
+	double gap_error;     /* standard error of the gap */
 };
 
 static double gap_new = NAN;  /* NAN: the first one observed */
@@ -168,6 +171,7 @@ static void read_wear(struct partition *p, const char *option)
 	double pressure = NAN, share = -1;
 	struct table_in *t;
 	int class, realisation, step, volume, diameter, sparse;
+	enum partition_status status;
 
 	if (rest)
 		file[colon - option] = '\0';
@@ -198,8 +202,11 @@ static void read_wear(struct partition *p, const char *option)
 			die(EXIT_RUN,
 				"%s: line %ld: volume must lie within 0 and 1000 m3",
 				file, table_line(t));
-		if (partition_fragment(p, class, (long)r, (long)k, v, 1,
-			    table_number(t, diameter) >= critical_size) != PARTITION_OK)
+		status = partition_fragment(p, class, (long)r, (long)k, v, 1,
+			table_number(t, diameter) >= critical_size);
+		if (status == PARTITION_MEMORY)
+			die(EXIT_RUN, "out of memory");
+		if (status == PARTITION_TWICE)
 			die(EXIT_RUN, "%s: line %ld: realisation %g has step %g twice",
 				file, table_line(t), r, k);
 		stats_add("fragments_read", 1);
@@ -213,6 +220,8 @@ static struct partition *read_partition(void)
 	struct partition *p = partition_new(fragment_area, area);
 	enum partition_status status;
 
+	if (!p)
+		die(EXIT_RUN, "out of memory");
 	for (int i = 0; i < wear_files.n; i++)
 		read_wear(p, wear_files.v[i]);
 	status = partition_close(p, transition, first_step);
@@ -295,7 +304,7 @@ static const double sphere = 0.52359877559829887; /* pi / 6 */
 static int next_state(struct state *s)
 {
 	struct table_in *t = s->table;
-	double time, value;
+	double time, value, error = state_error * s->scale;
 
 	if (!table_next(t))
 		return 0;
@@ -319,7 +328,7 @@ static int next_state(struct state *s)
 		value = s->debris += sphere * value * value * value;
 	s->value = value;
 	s->gap = to_gap(s, value);
-	s->n += !isnan(value);
+	s->gap_error = (to_gap(s, value + error) - to_gap(s, value - error)) / 2;
 	return 1;
 }
 
@@ -533,7 +542,7 @@ static void put_row(struct table_out *out, struct metrics *m, const struct obser
 		limit = rule == RATE_FILTER && !scaled
 				? 10 * (t - observed_first(o) + skip)
 				: INFINITY;
-	if (!isnan(dry_rate))
+	if (!isnan(dry_rate) && !isnan(left))
 		dry = later_life(remaining_constant(left, dry_rate), gone);
 	write_row(out, m, t, life, n, limit, dry, later_life(by_grey, gone));
 }
@@ -547,6 +556,8 @@ static void follow(
 	double *later = xcalloc((size_t)count, sizeof *later);
 	long n = 0;
 
+	if (!o || (rule == RATE_FILTER && !filter))
+		die(EXIT_RUN, "out of memory");
 	/* volume worn is counted from the new pair at time 0 */
 	if (s->quantity >= VOLUME)
 		observed_begin(o, 0, gap_new);
@@ -562,7 +573,7 @@ static void follow(
 				observed_begin(o, s->t, s->gap);
 			if (!run_in)
 				observed_add(o, s->t, s->value, s->gap);
-			n = paths_predict(e, o, filter, gap_limit(), life);
+			n = paths_predict(e, o, filter, gap_limit(), s->gap_error, life);
 			if (grey)
 				by_grey = observed_grey(o, value_limit(s));
 			stats_add("paths", n > 1 ? (double)n : 0);
@@ -584,8 +595,10 @@ static void foresee(struct table_out *out, struct metrics *m, struct paths *e)
 	struct observed *o = observed_new(rule);
 	double *life = xcalloc((size_t)count, sizeof *life);
 
+	if (!o)
+		die(EXIT_RUN, "out of memory");
 	observed_begin(o, 0, gap_new);
-	put_row(out, m, o, 0, life, paths_predict(e, o, NULL, gap_limit(), life), NAN);
+	put_row(out, m, o, 0, life, paths_predict(e, o, NULL, gap_limit(), 0, life), NAN);
 	observed_free(o);
 	free(life);
 }
@@ -629,6 +642,8 @@ static void settle(void)
 		die(EXIT_USAGE, "--new needs --wear and the rates of its fragments");
 	if (new && !calibrations.n && isnan(step_time))
 		die(EXIT_USAGE, "--new needs --step-time or --calibrate");
+	if (samples && !isnan(eol))
+		die(EXIT_USAGE, "--eol scores the summary, not --samples");
 	if (calibrations.n && !isnan(step_time))
 		die(EXIT_USAGE, "--calibrate and --step-time exclude each other");
 	if (isnan(threshold_gap) && isnan(threshold_leakage) && isnan(threshold_volume) &&

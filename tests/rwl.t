@@ -127,6 +127,14 @@ ok "filters" rwl -R filter -u L/min -t h exp.tsv
 is "no prediction before the fourth observation" "$(cell out 3 mean) $(cell out 4 mean | sed 's/[0-9.e+]*/number/')" "nan number"
 ok "filters with the fragments' rate" rwl -w spread.tsv -p 1h -R filter -u L/min -t h exp.tsv
 
+# A state of standard error 0.5 um: normal with 0.5 um over the rate of 0.1 um/h.
+ok "uncertain state" rwl -w even.tsv -p 1h -g 15um --state-error 0.5e-6 -c 20000 gap.tsv
+near "5 h of standard deviation" "$(calc "($(cell out 1 q95) - $(cell out 1 q05)) / 2 / 1.644854")" 18000 400
+near "about the same median" "$(cell out 1 q50)" 180000 600
+near "beyond the threshold by ten of them" "$(cell out 5 q95)" 0 0
+ok "without fragments too" rwl -g 15um --state-error 0.5e-6 -c 20000 gap.tsv
+near "1 um/h" "$(calc "($(cell out 4 q95) - $(cell out 4 q05)) / 2 / 1.644854")" 1800 40
+
 # Run-in: the rates start after it, the state is known all the time.
 printf 't\tgap\n0\t9e-6\n3600\t10e-6\n7200\t10.5e-6\n10800\t11e-6\n' >run-in.tsv
 ok "run-in is skipped" rwl --threshold-gap 15um --skip 1h run-in.tsv
@@ -173,6 +181,7 @@ fails "too much area" 2 'more than --area' rwl --new -w even.tsv:21MPa:9e3mm2 -p
 fails "size without diameters" 1 'even.tsv.*diameter' rwl --new -w even.tsv -p 1h -d 5um
 fails "a unit that does not suit" 2 '--state-unit foo' rwl -u foo gap.tsv
 fails "levels that fall" 2 '--levels must grow' rwl -q 0.9,0.1 gap.tsv
+fails "scores of samples" 2 '--eol scores the summary' rwl -O --eol 10h gap.tsv
 fails "outlet below inlet" 2 'outlet pressure' rwl -D 21MPa:1MPa gap.tsv
 fails "a unit that does not wear" 1 'minus2.tsv.*does not wear' sh -c \
 	'printf "t\tgap\n0\t2e-5\n1\t1e-5\n" >minus2.tsv; rwl --new -w even.tsv -C minus2.tsv'

@@ -102,7 +102,7 @@ double observed_time(const struct observed *o)
 
 double observed_gap(const struct observed *o)
 {
-	return o->last.gap;
+	return o->begun ? o->last.gap : NAN;
 }
 
 double observed_rate(const struct observed *o)

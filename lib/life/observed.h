@@ -32,7 +32,7 @@ void observed_add(struct observed *o, double t, double value, double gap);
 long observed_count(const struct observed *o);
 double observed_first(const struct observed *o); /* time of the beginning */
 double observed_time(const struct observed *o);  /* of the latest observation */
-double observed_gap(const struct observed *o);   /* latest */
+double observed_gap(const struct observed *o);   /* latest; NAN before any */
 
 /* Rate of the gap by the rule (RATE_FILTER: as RATE_MEAN); NAN while there is no time
  * between observations. */

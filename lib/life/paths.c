@@ -96,15 +96,27 @@ struct rate *paths_filter(const struct paths *e)
 	return rate_new(mean, sqrt(square / (double)e->par.count));
 }
 
-/* Time for path i to wear left, in steps of tau. */
+/* Time for path i to open the gap by left, in steps of tau. */
 static double wear_out(struct paths *e, long i, double left, double tau)
 {
 	const struct partition_wear *w = &e->path[i].wear;
 
+	if (left <= 0)
+		return 0;
+	left *= e->par.area;
 	if (e->par.rule == RATE_MEAN)
 		return tau * remaining_constant(left, w->mean);
 	rng_reset(e->rng, e->par.seed, e->par.first + (uint32_t)i, RNG_LIFE);
 	return tau * remaining_gamma(left, w->mean, w->step_variance, e->rng);
+}
+
+/* Error of the state on path i, in standard errors. */
+static double draw_error(const struct paths *e, long i)
+{
+	double z[2];
+
+	philox_normal2(e->par.seed, e->par.first + (uint32_t)i, RNG_PREDICT, 1, z);
+	return z[0];
 }
 
 static double follow_rate(
@@ -119,33 +131,38 @@ static double follow_rate(
 }
 
 long paths_predict(struct paths *e, const struct observed *o, const struct rate *filter,
-	double limit, double *life)
+	double limit, double gap_error, double *life)
 {
 	double left = limit - observed_gap(o), rate = observed_rate(o);
 	int filtered = e->par.rule == RATE_FILTER;
 	double scaled = INFINITY; /* step time by which the mean wears as observed */
 
-	if (left <= 0) {
+	if (left <= 0 && !(gap_error > 0)) {
 		life[0] = 0;
 		return 1;
 	}
-	if (filtered && !rate_ready(filter))
+	if (filtered ? !rate_ready(filter)
+		     : isnan(rate) && (!e->path || isnan(e->path[0].step_time)))
 		return 0;
-	if (!filtered && isnan(rate) && (!e->path || isnan(e->path[0].step_time)))
-		return 0;
-	if (!filtered && !e->path) {
+	if (!filtered && !e->path && !(gap_error > 0)) {
 		life[0] = remaining_constant(left, rate);
 		return 1;
 	}
 	if (rate > 0)
 		scaled = e->mean / (e->par.area * rate);
 	for (long i = 0; i < e->par.count; i++) {
-		double tau = scaled;
+		double here = left, tau = scaled;
 
+		if (gap_error > 0)
+			here -= gap_error * draw_error(e, i);
 		if (e->path && !isnan(e->path[i].step_time))
 			tau = e->path[i].step_time;
-		life[i] = filtered ? follow_rate(e, i, filter, limit)
-				   : wear_out(e, i, e->par.area * left, tau);
+		if (filtered)
+			life[i] = follow_rate(e, i, filter, limit);
+		else if (e->path)
+			life[i] = wear_out(e, i, here, tau);
+		else
+			life[i] = remaining_constant(here, rate);
 		if (e->path && !isnan(e->par.critical))
 			life[i] = fmin(life[i], remaining_large(e->path[i].large_step,
 							tau, observed_time(o)));

@@ -6,7 +6,7 @@
  *	struct paths_par par = { .seed = 1, .count = 1000, .step_time = 3600,
  *		.area = 2346.3e-6, .critical = NAN };
  *	struct paths *e = paths_new(&par, partition);
- *	n = paths_predict(e, observed, NULL, limit, life);
+ *	n = paths_predict(e, observed, NULL, limit, 0, life);
  *	paths_free(e);
  */
 #ifndef LIFE_PATHS_H
@@ -52,10 +52,11 @@ const struct path *paths_get(const struct paths *e, long i); /* NULL without par
 struct rate *paths_filter(const struct paths *e);
 
 /* Life left at the latest observation, until the gap is limit or large particles are
- * too many, as samples in life, which has room for count.  filter is needed for
- * RATE_FILTER.  Returns how many samples there are: count, 1 where all are the same,
- * 0 where nothing can be said yet. */
+ * too many, as samples in life, which has room for count.  gap_error: standard error of
+ * the gap observed.  filter is needed for RATE_FILTER, and knows the error itself.
+ * Returns how many samples there are: count, 1 where all are the same, 0 where nothing
+ * can be said yet. */
 long paths_predict(struct paths *e, const struct observed *o, const struct rate *filter,
-	double limit, double *life);
+	double limit, double gap_error, double *life);
 
 #endif
