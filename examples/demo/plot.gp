@@ -55,7 +55,7 @@ plot for [k=1:8] "pulses.au" binary skip=pulses_at \
 	format="%double%double%double%double%double%double%double%double" endian=big every ::0::last \
 	using (begin + $0/rate):k with lines lw 2 lc k title k == 1 ? "separated" : ""
 unset multiplot
-set xrange [*:*]; set yrange [*:*]; unset ytics; set ytics nomirror
+set xrange [*:*]; set yrange [*:*]; unset tics; set tics nomirror
 
 set output "state.png"
 set xlabel "time, h"; set ylabel "volume worn off, 10^6 um^3"
