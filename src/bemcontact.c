@@ -12,7 +12,7 @@
 
 static const char *const boundaries[] = { "free", "periodic", NULL };
 static const char *const multipliers[] = { "fft", "mlms", NULL };
-static const char *const solvers[] = { "pk", NULL };
+static const char *const solvers[] = { "bccg", "pk", NULL };
 static const char *const field_names[] = { "height", "pressure", "displacement", "gap",
 	NULL };
 enum field { HEIGHT, PRESSURE, DISPLACEMENT, GAP, FIELDS };
