@@ -18,12 +18,14 @@ static const char *const axes[] = { "x", "y", NULL };
 static const char *const layers[] = { "top", "mid", NULL };
 static const char *const rules[] = { "column", "potential", NULL };
 static const char *const boundaries[] = { "free", "periodic", NULL };
+static const char *const solvers[] = { "bccg", "pk", NULL };
+static const char *const multipliers[] = { "fft", "mlms", NULL };
 
 static double yield = NAN, friction, depth_step = NAN, stop_area = 0.8, amplification = 1;
 static double load = NAN, mean_pressure = NAN, approach = NAN, estar = NAN;
 static double hardness, tolerance = 1e-8;
 static struct opt_list young, poisson = { 1, { 0.3 } };
-static int shear, layer, removal, boundary;
+static int shear, layer, removal, boundary, solver, multiply;
 static long steps = 1, stress_layers, max_iterations = 10000, memory = 512, threads = 1;
 static const char *surface_path, *summary_path, *stress_path,
 	*stress_fields = "von_mises";
@@ -80,6 +82,11 @@ static const struct opt opts[] = {
 		"certificate the contact is solved to", NULL, 0 },
 	{ 'i', "max-iterations", OPT_INT, UNIT_COUNT, &max_iterations, 1, 1e9, "N",
 		"iterations after which to give up", NULL, 0 },
+	{ 'm', "solver", OPT_WORD, UNIT_NONE, &solver, 0, 0, "bccg|pk",
+		"contact solver: preconditioned on nested grids, or Polonsky and Keer's",
+		solvers, 0 },
+	{ 'M', "multiply", OPT_WORD, UNIT_NONE, &multiply, 0, 0, "fft|mlms",
+		"how the contact's half-space is applied", multipliers, 0 },
 	{ 'k', "memory", OPT_INT, UNIT_COUNT, &memory, 0, 1e7, "MB",
 		"megabytes for influence coefficients kept; the result is the same", NULL,
 		1 },
@@ -152,6 +159,9 @@ static void check_options(void)
 	if (steps > 1 && isnan(estar) && !young.n)
 		die(EXIT_USAGE, "--steps %ld solves contacts: want --young or --estar",
 			steps);
+	if (multiply && boundary)
+		die(EXIT_USAGE,
+			"--multiply mlms sums over a free surface: no --boundary periodic");
 	if (young.n)
 		estar = kernel_modulus(young.v[0], poisson.v[0], young.v[young.n - 1],
 			poisson.v[poisson.n - 1]);
@@ -169,7 +179,8 @@ static void prepare(struct run *run, const struct record *r)
 		.estar = estar,
 		.hardness = hardness,
 		.boundary = (enum contact_boundary)boundary,
-		.solver = CONTACT_BCCG,
+		.solver = (enum contact_solver)solver,
+		.multiply = (enum contact_multiply)multiply,
 		.tolerance = tolerance,
 		.max_iterations = max_iterations,
 		.pool = run->pool };

@@ -72,6 +72,11 @@ rows inside.tsv >b
 same "the load is that of the input" a b
 $wear -T 3 -F 20N -E 210GPa -j 2 -k 0 start.nrrd >t.tsv 2>warning
 same "threads and kept memory change nothing" t.tsv inside.tsv
+$wear -T 3 -F 20N -E 210GPa -m pk -t 1e-12 -U pk.tsv start.nrrd >t.tsv 2>warning
+$wear -T 3 -F 20N -E 210GPa -t 1e-12 -U bccg.tsv start.nrrd >t.tsv 2>warning
+near "both contact solvers wear off the same volume" \
+	"$(column volume pk.tsv | awk '{ s += 1e12 * $1 } END { print s }')" \
+	"$(column volume bccg.tsv | awk '{ s += 1e12 * $1 } END { print s }')" 1e-9
 records -n 2 -o nrrd start.nrrd | $wear -T 3 -F 20N -E 210GPa >t.tsv 2>warning
 rows inside.tsv | awk '$1 == 1' >a
 rows t.tsv >b
