@@ -163,7 +163,7 @@ D = $(DESTDIR)$(PREFIX)
 
 install: all $(B)/libwearpipe.a $(B)/wearpipe.bash
 	install -d $(D)/bin $(D)/lib/pkgconfig $(D)/share/man/man1 $(D)/share/man/man5 \
-		$(D)/share/man/man7 $(D)/share/bash-completion/completions \
+		$(D)/share/man/man7 $(D)/share/bash-completion/completions $(D)/share/wearpipe \
 		$(PUBLIC:%=$(D)/include/wearpipe/%)
 	install $(BUILT:%=$(BIN)/%) $(D)/bin
 	install -m 644 $(B)/libwearpipe.a $(D)/lib
@@ -173,6 +173,7 @@ install: all $(B)/libwearpipe.a $(B)/wearpipe.bash
 	install -m 644 $(MAN1) $(D)/share/man/man1
 	install -m 644 man/wearpipe-streams.5 $(D)/share/man/man5
 	install -m 644 man/wearpipe.7 $(D)/share/man/man7
+	install -m 644 share/arrivals.net $(D)/share/wearpipe
 	install -m 644 $(B)/wearpipe.bash $(D)/share/bash-completion/completions/wearpipe
 	for p in $(BUILT); do ln -sf wearpipe $(D)/share/bash-completion/completions/$$p || exit; done
 
@@ -181,7 +182,7 @@ uninstall:
 		$(MAN1:man/%=$(D)/share/man/man1/%) $(D)/share/man/man5/wearpipe-streams.5 \
 		$(D)/share/man/man7/wearpipe.7 $(D)/share/bash-completion/completions/wearpipe \
 		$(BUILT:%=$(D)/share/bash-completion/completions/%)
-	rm -rf $(D)/include/wearpipe
+	rm -rf $(D)/include/wearpipe $(D)/share/wearpipe
 
 dist:
 	git archive --prefix=wearpipe-$(VERSION)/ -o wearpipe-$(VERSION).tar.gz HEAD
