@@ -83,7 +83,7 @@ int contact_make_preconditioner(struct contact *c)
 }
 
 /* The gap of an active cell, 0 of others. */
-static double active_gap(const struct contact *c, size_t i)
+static inline double active_gap(const struct contact *c, size_t i)
 {
 	double g = gap_at(c, i);
 
@@ -92,12 +92,12 @@ static double active_gap(const struct contact *c, size_t i)
 
 /* Rows or columns on either side; beyond a free rim there is nothing, which the
  * inactive cell itself stands for. */
-static size_t before(size_t x, size_t n, int periodic)
+static inline size_t before(size_t x, size_t n, int periodic)
 {
 	return x > 0 ? x - 1 : periodic ? n - 1 : x;
 }
 
-static size_t after(size_t x, size_t n, int periodic)
+static inline size_t after(size_t x, size_t n, int periodic)
 {
 	return x + 1 < n ? x + 1 : periodic ? 0 : x;
 }
@@ -126,7 +126,8 @@ static double extended_gap(const struct contact *c, size_t x, const size_t row[3
 /* The residual, and the sums of the certificate. */
 static void set_residual(void *context, size_t begin, size_t end, struct sweep *s)
 {
-	struct contact *c = context;
+	const struct contact copy = *(struct contact *)context, *c = &copy;
+	struct sweep t = *s;
 	size_t nx = (size_t)c->par.nx, ny = (size_t)c->par.ny;
 	int periodic = c->par.boundary == CONTACT_PERIODIC;
 
@@ -139,61 +140,66 @@ static void set_residual(void *context, size_t begin, size_t end, struct sweep *
 		for (size_t i = first; i < last; i++) {
 			double p = c->p[i], g = gap_at(c, i);
 
-			certify_cell(c, p, g, s);
+			certify_cell(c, p, g, &t);
 			c->residual[i] =
 				is_active(c, p, g) ? g : extended_gap(c, i - row[1], row);
 		}
 	}
+	*s = t;
 }
 
 /* Sums over the active cells for beta and the means. */
 static void sum_residual(void *context, size_t begin, size_t end, struct sweep *s)
 {
-	struct contact *c = context;
+	const struct contact copy = *(struct contact *)context, *c = &copy;
+	struct sweep t = *s;
 
 	for (size_t i = begin; i < end; i++) {
-		if (!is_active(c, c->p[i], gap_at(c, i)))
-			continue;
-		s->sum[0] += c->residual[i];
-		s->sum[1] += c->image[i];
-		s->sum[2] += c->residual[i] * c->image[i];
-		s->sum[3] += c->step[i];
-		s->sum[4] += 1;
+		double active = is_active(c, c->p[i], gap_at(c, i));
+		double z = active * c->residual[i];
+
+		t.sum[0] += z;
+		t.sum[1] += active * c->image[i];
+		t.sum[2] += z * c->image[i];
+		t.sum[3] += active * c->step[i];
+		t.sum[4] += active;
 	}
+	*s = t;
 }
 
-/* Sums over a bounded step: with the gap, itself, its size, the cells it leaves free
- * and those it takes to a bound. */
-static void sum_bounded(
+/* Sums over a bounded step: with the gap, itself, its size, the cells it leaves free. */
+static inline void sum_bounded(
 	const struct contact *c, size_t i, double g, double step, struct sweep *s)
 {
 	s->sum[0] += step * g;
 	s->sum[1] += step;
 	s->sum[2] += fabs(step);
 	s->sum[3] += is_free(c, c->p[i] + step);
-	s->sum[4] += (step != 0) & !is_free(c, c->p[i] + step);
 }
 
 /* New direction on the active cells, of which the step keeps what the bounds leave. */
 static void turn_step(void *context, size_t begin, size_t end, struct sweep *s)
 {
-	struct contact *c = context;
+	const struct contact copy = *(struct contact *)context, *c = &copy;
+	struct sweep t = *s;
 
 	for (size_t i = begin; i < end; i++) {
 		double p = c->p[i], g = gap_at(c, i), d, step;
 
 		d = c->shift - c->residual[i] + c->beta * c->step[i];
 		step = within(c, p + c->tau * d) - p;
-		step = is_active(c, p, g) ? step : 0;
+		step *= is_active(c, p, g);
 		c->step[i] = step;
-		sum_bounded(c, i, g, step, s);
+		sum_bounded(c, i, g, step, &t);
 	}
+	*s = t;
 }
 
 /* Shares out among the free cells what the bounds took of the load. */
 static void share_step(void *context, size_t begin, size_t end, struct sweep *s)
 {
-	struct contact *c = context;
+	const struct contact copy = *(struct contact *)context, *c = &copy;
+	struct sweep t = *s;
 
 	for (size_t i = begin; i < end; i++) {
 		double p = c->p[i], g = gap_at(c, i), step = c->step[i];
@@ -201,23 +207,27 @@ static void share_step(void *context, size_t begin, size_t end, struct sweep *s)
 		if (is_free(c, p + step) && is_active(c, p, g))
 			step = within(c, p + step + c->shift) - p;
 		c->step[i] = step;
-		sum_bounded(c, i, g, step, s);
+		sum_bounded(c, i, g, step, &t);
 	}
+	*s = t;
 }
 
 static void sum_image(void *context, size_t begin, size_t end, struct sweep *s)
 {
-	struct contact *c = context;
+	const struct contact copy = *(struct contact *)context, *c = &copy;
+	struct sweep t = *s;
 
 	for (size_t i = begin; i < end; i++)
-		s->sum[0] += c->step[i] * c->image[i];
+		t.sum[0] += c->step[i] * c->image[i];
+	*s = t;
 }
 
 /* Takes the stretched step, but cells that had come to a bound stay there; sums what
  * that and the bounds changed, the step, the pressure, and the gap over free cells. */
 static void take_step(void *context, size_t begin, size_t end, struct sweep *s)
 {
-	struct contact *c = context;
+	const struct contact copy = *(struct contact *)context, *c = &copy;
+	struct sweep t = *s;
 	double a = c->stretch;
 
 	for (size_t i = begin; i < end; i++) {
@@ -226,14 +236,15 @@ static void take_step(void *context, size_t begin, size_t end, struct sweep *s)
 		double gap = c->gap[i] + a * c->image[i];
 
 		next = is_free(c, bound) ? next : bound;
-		s->sum[0] += fabs(next - wanted);
-		s->sum[1] += fabs(a * step);
-		s->sum[2] += next;
-		s->sum[3] += is_free(c, next) ? gap : 0;
-		s->sum[4] += is_free(c, next);
+		t.sum[0] += fabs(next - wanted);
+		t.sum[1] += fabs(a * step);
+		t.sum[2] += next;
+		t.sum[3] += is_free(c, next) * gap;
+		t.sum[4] += is_free(c, next);
 		c->gap[i] = gap;
 		c->p[i] = next;
 	}
+	*s = t;
 }
 
 /* What an iteration hands to the next. */
@@ -277,7 +288,7 @@ static double find_step(struct contact *c, struct state *state)
 		c->shift = rest / s.sum[3];
 		s = contact_sweep(c, share_step);
 	}
-	state->bounded = s.sum[4];
+	state->bounded = count - s.sum[3];
 	state->rest = load_given ? missing - s.sum[1] : 0;
 	state->crowded = c->cap < INFINITY &&
 			 fabs(state->rest) > fmax(load_slack * s.sum[2],

@@ -21,24 +21,27 @@ static void turn_step(void *context, size_t begin, size_t end, struct sweep *s)
  * cells; the mean is taken off the sums instead of off r. */
 static void sum_step(void *context, size_t begin, size_t end, struct sweep *s)
 {
-	struct contact *c = context;
+	const struct contact copy = *(struct contact *)context, *c = &copy;
+	struct sweep t = *s;
 
 	for (size_t i = begin; i < end; i++) {
 		if (!is_free(c, c->p[i]))
 			continue;
-		s->sum[0] += gap_at(c, i) * c->step[i];
-		s->sum[1] += c->image[i] * c->step[i];
-		s->sum[2] += c->image[i];
-		s->sum[3] += c->step[i];
-		s->sum[4] += 1;
+		t.sum[0] += gap_at(c, i) * c->step[i];
+		t.sum[1] += c->image[i] * c->step[i];
+		t.sum[2] += c->image[i];
+		t.sum[3] += c->step[i];
+		t.sum[4] += 1;
 	}
+	*s = t;
 }
 
 /* Moves the free cells, keeps them within the bounds, and frees the bounded cells whose
  * gap has the wrong sign; counts those. */
 static void move_pressure(void *context, size_t begin, size_t end, struct sweep *s)
 {
-	struct contact *c = context;
+	const struct contact copy = *(struct contact *)context, *c = &copy;
+	struct sweep t = *s;
 
 	for (size_t i = begin; i < end; i++) {
 		double p = c->p[i], g = gap_at(c, i);
@@ -47,10 +50,11 @@ static void move_pressure(void *context, size_t begin, size_t end, struct sweep 
 			p -= c->tau * c->step[i];
 		} else if ((p <= 0 && g < 0) || (p > 0 && g > 0)) {
 			p -= c->tau * g;
-			s->sum[0] += 1;
+			t.sum[0] += 1;
 		}
 		c->p[i] = fmin(fmax(p, 0), c->cap);
 	}
+	*s = t;
 }
 
 /* Step length along the direction.  With one free cell the gap less its mean is zero

@@ -197,16 +197,18 @@ static void subtract_height(void *context, size_t begin, size_t end, struct swee
  * (as a maximum of -g), for when nothing is free. */
 static void sum_free(void *context, size_t begin, size_t end, struct sweep *s)
 {
-	struct contact *c = context;
+	const struct contact copy = *(struct contact *)context, *c = &copy;
+	struct sweep t = *s;
 
 	for (size_t i = begin; i < end; i++) {
 		int is = is_free(c, c->p[i]);
 
-		s->sum[0] += is ? c->gap[i] : 0;
-		s->sum[1] += is;
-		if (c->p[i] <= 0 && -c->gap[i] > s->max)
-			s->max = -c->gap[i];
+		t.sum[0] += is ? c->gap[i] : 0;
+		t.sum[1] += is;
+		if (c->p[i] <= 0 && -c->gap[i] > t.max)
+			t.max = -c->gap[i];
 	}
+	*s = t;
 }
 
 void contact_approach(struct contact *c)
@@ -229,10 +231,12 @@ void contact_gap(struct contact *c)
 
 static void certify(void *context, size_t begin, size_t end, struct sweep *s)
 {
-	struct contact *c = context;
+	const struct contact copy = *(struct contact *)context, *c = &copy;
+	struct sweep t = *s;
 
 	for (size_t i = begin; i < end; i++)
-		certify_cell(c, c->p[i], gap_at(c, i), s);
+		certify_cell(c, c->p[i], gap_at(c, i), &t);
+	*s = t;
 }
 
 struct sweep contact_certify(struct contact *c)
@@ -268,15 +272,17 @@ int contact_stalls(struct contact *c, double certificate)
 
 static void sum_load(void *context, size_t begin, size_t end, struct sweep *s)
 {
-	struct contact *c = context;
+	const struct contact copy = *(struct contact *)context, *c = &copy;
+	struct sweep t = *s;
 
 	for (size_t i = begin; i < end; i++) {
 		if (c->p[i] >= c->cap)
-			s->sum[0] += c->p[i];
+			t.sum[0] += c->p[i];
 		else
-			s->sum[1] += c->p[i];
-		s->sum[2] += c->p[i] <= 0;
+			t.sum[1] += c->p[i];
+		t.sum[2] += c->p[i] <= 0;
 	}
+	*s = t;
 }
 
 static void scale_free(void *context, size_t begin, size_t end, struct sweep *s)

@@ -47,11 +47,14 @@ all() {
 			[ "$n" -gt 1024 ] && [ $p != 0.01 ] && continue
 			curves per "$n" $p bccg pk
 		done
-		[ "$n" -gt 256 ] && [ -z "${FULL:-}" ] || curves free "$n" 0.0208333333333 bccg pk mlms
+		[ "$n" -gt 256 ] && [ -z "${FULL:-}" ] && continue
+		curves free "$n" 0.0208333333333 bccg pk mlms
 	done
 	for n in 32 64 $grids; do
 		"$run" hertz "$n" 0.0208333333333 bccg 1e-9
-		"$run" wave $((n * 8)) 0.1 bccg 1e-9
+	done
+	for n in 256 512 1024 2048 4096; do
+		"$run" wave $n 0.1 bccg 1e-9
 	done
 }
 

@@ -1,6 +1,6 @@
 #!/bin/sh
 # bemcontact at the edge: every scene is accurate, its error stated, or refused in a line
-. "$(dirname "$0")/../tap.sh" 2>/dev/null || . "${0%/*}/../tap.sh"
+. "$(dirname "$0")/../tap.sh"
 
 pi=3.141592653589793
 
@@ -47,7 +47,7 @@ refused() {
 }
 
 # Values of a field as text
-values() { rec -o text -k "$1" out.nrrd | tr '\t' '\n' | grep '^[-0-9]'; }
+values() { records -o text -k "$1" out.nrrd | tr '\t' '\n' | grep '^[-0-9]'; }
 
 rough='1e-6 * (cos($x * 0.2) * sin($y * 0.3 + 1) + 0.3 * sin($x * 0.9 + $y * 0.7) + 0.2 * noise())'
 
@@ -181,7 +181,7 @@ for b in free periodic; do
 	line="tolerance 1e-16, $b | reached, or exit 3 within 400 iterations"
 	line="$line | exit $status, $(key iterations) iterations | $(key certificate)"
 	case $status$(key converged) in
-	0yes | 3no) [ "$(key iterations)" -lt 400 ] && pass "$line" || fail "$line" ;;
+	0yes | 3no) if [ "$(key iterations)" -lt 400 ]; then pass "$line"; else fail "$line"; fi ;;
 	*) fail "$line" "$(cat err)" ;;
 	esac
 done
@@ -192,8 +192,7 @@ solve --pixel 1um --estar 1GPa -P 1MPa
 refused "a height that is not a number" "refused" 1 'height'
 heights 8 8 '$x + $y ? 0 : 1e308 * ($x ? -1 : 1)'
 solve --pixel 1um --estar 1GPa -P 1MPa
-[ "$status" = 0 ] && accurate "a height of 1e308 m" "solved or refused" 0 0 ||
-	refused "a height of 1e308 m" "solved or refused" 1 'precision'
+refused "a height of 1e308 m" "refused" 1 'precision'
 heights 8 8 '$x & 1 ? 1e200 : -1e200'
 solve --pixel 1um --estar 1GPa -P 1MPa
 refused "heights whose square overflows" "refused" 1 'precision'
