@@ -92,4 +92,12 @@ print(x.shape, x[1, 1])")" '(2, 2) -0.25'
 else
 	skip 'numpy reads ours' 'no numpy'
 fi
+if command -v octave >/dev/null; then
+	unfiltered pcm16.au 4000 >out.au
+	is 'Octave reads ours' "$(octave --no-gui --norc --eval \
+		"[x, rate] = audioread('out.au'); printf('%g %g %g', rate, x(1, 1), x(2, 2))" 2>/dev/null)" \
+		'8000 0.5 -0.25'
+else
+	skip 'Octave reads ours' 'no octave'
+fi
 done_testing

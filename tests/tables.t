@@ -33,4 +33,29 @@ refuse 'too few cells' 'bad: line 3: want 2 cells, got 1' 't\ty\n0\t1\n1\n'
 refuse 'too many cells' 'bad: line 3: want 2 cells, got 3' 't\ty\n0\t1\n1\t2\t3\n'
 refuse 'a last line cut off' 'bad: line 3: no newline at the end: the table is cut off' 't\ty\n0\t1\n1\t2'
 refuse 'a NUL byte' 'bad: line 3: NUL byte' 't\ty\n0\t1\n1\t\0002\n'
+
+# Other tools, as the manual of the streams has them, where they are installed: the mean of
+# a column of a table of two realisations, whose provenance stands in its middle.
+printf '# cmd: a\n# units: 1 m3\nstep\tvolume\n1\t2\n# cmd: b\n2\t4\n' >ours
+by() {
+	tool=$1
+	want=$2
+	shift 2
+	if command -v "$tool" >/dev/null; then
+		is "$tool reads a table" "$("$@" 2>/dev/null | tail -n 1 | tr -d '\r')" "$want"
+	else
+		skip "$tool reads a table" "no $tool"
+	fi
+}
+by datamash 3 sh -c 'datamash -C -H mean volume <ours'
+by mlr 'volume_mean=3' mlr --itsv --odkvp --pass-comments-with '#' stats1 -a mean -f volume ours
+by Rscript '[1] 3' Rscript -e "d <- read.delim('ours', comment.char = '#'); print(mean(d\$volume))"
+by gnuplot ' 2  4  i' sh -c "gnuplot -e \"set table; plot 'ours' using 'step':'volume'\" | grep ' i' "
+if /usr/bin/python3 -c 'import pandas' 2>/dev/null; then
+	is 'pandas reads a table' "$(/usr/bin/python3 -c "
+import pandas
+print(pandas.read_csv('ours', sep='\t', comment='#')['volume'].mean())")" 3.0
+else
+	skip 'pandas reads a table' 'no pandas'
+fi
 done_testing
