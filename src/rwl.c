@@ -120,7 +120,7 @@ static const struct opt opts[] = {
 		"true end of life: add scores of the predictions", 0, 0 },
 	{ 'l', "cone", OPT_NUM, UNIT_FRACTION, &cone, 1e-6, 10, "ALPHA",
 		"half-width of the alpha-lambda test", 0, 0 },
-	{ 'c', "count", OPT_INT, UNIT_COUNT, &count, 1, 1e8, "N", "Monte-Carlo paths", 0,
+	{ 'c', "count", OPT_INT, UNIT_COUNT, &count, 1, 1e7, "N", "Monte-Carlo paths", 0,
 		0 },
 	{ 'f', "first", OPT_INT, UNIT_COUNT, &first_path, 0, 4e9, "K",
 		"number of the first one", 0, 0 },
@@ -313,6 +313,9 @@ static int next_state(struct state *s)
 	if (!isfinite(time))
 		die(EXIT_RUN, "%s: line %ld: the time is missing", table_name(t),
 			table_line(t));
+	if (time < 0 && s->quantity >= VOLUME)
+		die(EXIT_RUN, "%s: line %ld: time %g s is before the pair was new",
+			table_name(t), table_line(t), time);
 	if (s->rows++ > 0 && (s->quantity == DEBRIS ? time < s->t : time <= s->t))
 		die(EXIT_RUN, "%s: line %ld: time %g s does not grow", table_name(t),
 			table_line(t), time);
@@ -638,6 +641,10 @@ static void settle(void)
 		die(EXIT_USAGE, "--critical-size needs --wear");
 	if ((calibrations.n || rates_file || !isnan(archard)) && wear_files.n == 0)
 		die(EXIT_USAGE, "--calibrate, --rates and --archard need --wear");
+	for (int i = 0; i < wear_files.n; i++)
+		if (!new && (!state_file || !strcmp(state_file, "-")) &&
+			!strncmp(wear_files.v[i], "-", strcspn(wear_files.v[i], ":")))
+			die(EXIT_USAGE, "standard input cannot be both --wear and state");
 	if (new && (wear_files.n == 0 || rule == RATE_FILTER))
 		die(EXIT_USAGE, "--new needs --wear and the rates of its fragments");
 	if (new && !calibrations.n && isnan(step_time))

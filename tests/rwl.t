@@ -181,6 +181,9 @@ fails "too much area" 2 'more than --area' rwl --new -w even.tsv:21MPa:9e3mm2 -p
 fails "size without diameters" 1 'even.tsv.*diameter' rwl --new -w even.tsv -p 1h -d 5um
 fails "a unit that does not suit" 2 '--state-unit foo' rwl -u foo gap.tsv
 fails "levels that fall" 2 '--levels must grow' rwl -q 0.9,0.1 gap.tsv
+printf 't\tvolume\n-1\t1e-9\n' >before.tsv
+fails "volume before the beginning" 1 'before.tsv: line 2: time -1 s is before' rwl before.tsv
+fails "one stream for two inputs" 2 'standard input cannot be both' rwl -w -:21MPa
 fails "scores of samples" 2 '--eol scores the summary' rwl -O --eol 10h gap.tsv
 fails "outlet below inlet" 2 'outlet pressure' rwl -D 21MPa:1MPa gap.tsv
 fails "a unit that does not wear" 1 'minus2.tsv.*does not wear' sh -c \
