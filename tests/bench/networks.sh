@@ -79,6 +79,7 @@ set datafile separator "\t"
 set logscale xy
 set multiplot layout 1, 2
 set key bottom left font ",8"
+set format x "%.0e"
 set xlabel "seconds of training"
 set ylabel "mean squared error of three delays, output by output"
 set yrange [0.03:0.3]
@@ -92,7 +93,7 @@ plot for [i = 1:words(names)] sprintf("< awk -F '\t' -v n='%s' '\$2 == n' bench.
 	using 6:4 with linespoints title text(i) noenhanced
 unset arrow
 unset label
-set yrange [*:*]
+set yrange [0.5:20]
 set xlabel "seconds per section"
 set ylabel "error of the delay over the Cramer-Rao bound"
 set arrow from graph 0, first 1 to graph 1, first 1 nohead dashtype 2
