@@ -119,6 +119,8 @@ fi
 
 # what it refuses
 fails "no such file" 1 'none.au' bpfilter none.au
+seq 100 >text
+fails "text for a signal" 1 "text: want AU ('.snd'), got '1'" bpfilter text
 fails "edges the wrong way round" 2 'first edge' bpfilter -b 130:70 impulse.au
 fails "edge above half the rate" 1 'impulse.au.*above half the rate' bpfilter -b 70:5001 impulse.au
 fails "odd order with --zero-phase" 2 'even --order' bpfilter -z -n 201 impulse.au

@@ -6,6 +6,7 @@
 #include "shell/signals.h"
 #include "shell/bytes.h"
 #include "shell/msg.h"
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -120,9 +121,14 @@ static void read_header(struct signal_in *in)
 		die(EXIT_RUN, "%s: want an AU header of at least %d bytes, got %zu",
 			in->name, HEADER_MIN, in->end - in->begin);
 	b = in->buffer + in->begin;
-	if (memcmp(b, ".snd", 4) != 0)
-		die(EXIT_RUN, "%s: want AU ('.snd'), got '%.4s'", in->name,
+	if (memcmp(b, ".snd", 4) != 0) {
+		int shown = 0;
+
+		while (shown < 4 && isprint(b[shown]))
+			shown++;
+		die(EXIT_RUN, "%s: want AU ('.snd'), got '%.*s'", in->name, shown,
 			(const char *)b);
+	}
 	header = bytes_u32_big(b + 4);
 	size = bytes_u32_big(b + 8);
 	encoding = bytes_u32_big(b + 12);

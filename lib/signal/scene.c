@@ -1,6 +1,6 @@
 /* scene.c - pulses, noise, drift and lines of two sensors */
 #include "signal/scene.h"
-#include "num/philox.h"
+#include "num/normals.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +13,7 @@ enum {
 };
 
 /* Places in the noise stream: frame n of the noise is at n. */
-static const uint64_t drift_place = (uint64_t)1 << 62, line_place = (uint64_t)1 << 63;
+static const uint64_t drift_place = (uint64_t)1 << 47, line_place = (uint64_t)1 << 63;
 
 struct line {
 	double frequency, level, phase[2];
@@ -21,7 +21,8 @@ struct line {
 
 struct scene {
 	struct scene_par par;
-	uint64_t frame;       /* the next one */
+	uint64_t frame; /* the next one */
+	struct normals *normals;
 	struct passage *list; /* particles whose pulses are not over */
 	size_t count, room;
 	double end, touched;
@@ -36,17 +37,12 @@ static double uniform(const struct scene *s, uint64_t place)
 	return philox_uniform(s->par.seed, s->par.realisation, RNG_NOISE, place);
 }
 
-static void normal2(const struct scene *s, uint64_t place, double n[2])
-{
-	philox_normal2(s->par.seed, s->par.realisation, RNG_NOISE, place, n);
-}
-
 /* The drift is an Ornstein-Uhlenbeck process at its knots, straight between them. */
 static void next_knot(struct scene *s)
 {
 	double keep = exp(-1.0 / KNOTS), n[2];
 
-	normal2(s, drift_place + s->knot + 2, n);
+	normals_pair(s->normals, drift_place + s->knot + 2, n);
 	for (int c = 0; c < 2; c++) {
 		s->drift[0][c] = s->drift[1][c];
 		s->drift[1][c] = keep * s->drift[0][c] +
@@ -62,14 +58,19 @@ struct scene *scene_new(const struct scene_par *par)
 
 	if (!s)
 		return NULL;
+	s->normals = normals_new(par->seed, par->realisation, RNG_NOISE);
+	if (!s->normals) {
+		free(s);
+		return NULL;
+	}
 	s->par = *par;
 	for (int i = 0; i < par->nlines; i++) {
-		s->line[i] = (struct line){par->line[i], par->line_level[i], {0}};
+		s->line[i] = (struct line){ par->line[i], par->line_level[i], { 0 } };
 		for (int c = 0; c < 2; c++)
 			s->line[i].phase[c] =
 				uniform(s, line_place + 2 * (uint64_t)i + (uint64_t)c);
 	}
-	normal2(s, drift_place, n);
+	normals_pair(s->normals, drift_place, n);
 	s->drift[1][0] = par->drift * n[0];
 	s->drift[1][1] = par->drift * n[1];
 	s->knot = UINT64_MAX; /* one before knot 0 */
@@ -81,6 +82,7 @@ void scene_free(struct scene *scene)
 {
 	if (!scene)
 		return;
+	normals_free(scene->normals);
 	free(scene->list);
 	free(scene);
 }
@@ -148,21 +150,26 @@ static void add_pulses(struct scene *s, double *x, size_t n)
 static void add_noise(struct scene *s, double *x, size_t n)
 {
 	double keep = s->par.corner > 0 ? exp(-2 * pi * s->par.corner / s->par.rate) : 0;
-	double fresh = sqrt(1 - keep * keep),
-	       own = sqrt(1 - s->par.common * s->par.common);
+	double fresh = sqrt(1 - keep * keep), rms = s->par.noise, common = s->par.common;
+	double own = sqrt(1 - common * common), a = s->color[0], b = s->color[1];
 
 	for (size_t i = 0; i < n; i++) {
 		double z[2];
 
-		normal2(s, s->frame + i, z);
-		z[1] = s->par.common * z[0] + own * z[1];
-		for (int c = 0; c < 2; c++) {
-			/* the first sample already has the lasting variance */
-			s->color[c] =
-				s->frame + i ? keep * s->color[c] + fresh * z[c] : z[c];
-			x[2 * i + (size_t)c] += s->par.noise * s->color[c];
+		normals_pair(s->normals, s->frame + i, z);
+		z[1] = common * z[0] + own * z[1];
+		if (s->frame + i == 0) { /* the first one has the lasting variance */
+			a = z[0];
+			b = z[1];
+		} else {
+			a = keep * a + fresh * z[0];
+			b = keep * b + fresh * z[1];
 		}
+		x[2 * i] += rms * a;
+		x[2 * i + 1] += rms * b;
 	}
+	s->color[0] = a;
+	s->color[1] = b;
 }
 
 static void add_drift(struct scene *s, double *x, size_t n)

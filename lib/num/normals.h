@@ -1,0 +1,22 @@
+/* normals.h - standard normal numbers by address, in half the time of philox_normal2()
+ *
+ * The ziggurat of Marsaglia and Tsang (J. Stat. Softw. 5(8), 2000) as repaired by Doornik
+ * (2005): layer and place within it come from different bits of a Philox word.
+ */
+#ifndef NUM_NORMALS_H
+#define NUM_NORMALS_H
+
+#include "num/philox.h"
+
+struct normals;
+
+/* The numbers of stream (seed, realisation, purpose); NULL when out of memory. */
+struct normals *normals_new(
+	uint64_t seed, uint32_t realisation, enum rng_purpose purpose);
+void normals_free(struct normals *normals);
+
+/* Two independent numbers for index < 2^48.  One time in fifty more random words are
+ * needed: they are taken from indices of 2^48 to 2^61 of the same stream. */
+void normals_pair(const struct normals *normals, uint64_t index, double pair[2]);
+
+#endif
