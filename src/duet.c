@@ -299,8 +299,10 @@ static void check_status(
 		die(EXIT_RUN, "%s: channel %d is constant: a dead sensor", name,
 			status == SEPARATE_SILENT_1 ? 1 : 2);
 	case SEPARATE_NO_LAG:
-		die(EXIT_RUN, "%s: the channels have no lag in common: give --align",
+		warn("%s: nothing in common of both channels to learn from: no particle, or "
+		     "give --align and --pulse-duration",
 			name);
+		return;
 	case SEPARATE_FAST:
 		die(EXIT_RUN,
 			"%s: no pulse of at least 8 samples found: give --pulse-duration "
@@ -318,6 +320,7 @@ static void report(const struct separate *s, double rate)
 	const struct calibration *cal = separate_calibration(s);
 
 	stats_set("samples", c->samples);
+	stats_set("samples_passed_over", c->passed_over);
 	stats_set("samples_active", c->active);
 	stats_set("sections", c->sections);
 	stats_set("sections_single", c->singles);

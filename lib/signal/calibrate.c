@@ -485,6 +485,32 @@ static void normalise(const struct calibration *c, double *y1, double *y2, size_
 	}
 }
 
+/* Correlation coefficient of y1 with y2 lag samples later. */
+static double correlation_at(const double *y1, const double *y2, size_t n, size_t lag)
+{
+	double xy = 0, xx = 0, yy = 0;
+
+	for (size_t i = 0; i + lag < n; i++) {
+		xy += y1[i] * y2[i + lag];
+		xx += y1[i] * y1[i];
+		yy += y2[i + lag] * y2[i + lag];
+	}
+	return xx > 0 && yy > 0 ? xy / sqrt(xx * yy) : 0;
+}
+
+/* A correlation that channels with nothing in common do not reach: six of its standard
+ * deviations, by Bartlett's formula from the autocorrelation r at n / 4 lags; half where
+ * the record is too short to tell. */
+static double chance_correlation(const double *r, size_t n)
+{
+	double sum = 1;
+	size_t lags = n / 4 < 4096 ? n / 4 : 4096;
+
+	for (size_t k = 1; k <= lags; k++)
+		sum += 2 * (r[k] / r[0]) * (r[k] / r[0]);
+	return fmin(6 * sqrt(sum / (double)n), 0.5);
+}
+
 static enum calibrate_status measure(const struct calibrate_par *par, double *y1,
 	double *y2, size_t n, struct calibration *c, double *r)
 {
@@ -516,11 +542,21 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 	}
 	if (isnan(lag))
 		lag = align_lag(y1, y2, n, max_lag, &c->correlation);
+	else if (lag < (double)n - 16)
+		c->correlation = correlation_at(y1, y2, n, (size_t)(lag + 0.5));
 	if (lag < 0)
 		return lag == -1 ? CALIBRATE_MEMORY : CALIBRATE_NO_LAG;
 	c->shift = (long)floor(lag + 0.5);
 	if (c->shift >= (long)n - 16)
 		return CALIBRATE_NO_LAG;
+	if (isnan(par->duration) || isnan(par->lag)) {
+		if (n > 4096 && c->correlation < 6 / sqrt((double)n))
+			return CALIBRATE_NO_LAG; /* whatever the autocorrelation */
+		if (!align_autocorrelation(y1, y2, n, n / 4, r))
+			return CALIBRATE_MEMORY;
+		if (c->correlation < chance_correlation(r, n))
+			return CALIBRATE_NO_LAG;
+	}
 	c->transit = c->shift > 0 ? (double)c->shift : INFINITY;
 	rest = n - (size_t)c->shift;
 	y2 += c->shift;
@@ -552,6 +588,8 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 	c->misfit = 3e-4;
 	if (learn_pulse(par, y1, y2, rest, low, c) != CALIBRATE_OK)
 		return CALIBRATE_MEMORY;
+	if (c->events == 0 && isnan(par->duration))
+		return CALIBRATE_NO_LAG;
 	if (c->chi2 > 4 && quiet_coherence(c, y1, y2, rest, r) > 0.6) {
 		/* Even where it is most quiet, both sensors see the same: too many
 		 * pulses. */

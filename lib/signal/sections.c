@@ -54,6 +54,11 @@ void sections_free(struct sections *s)
 	free(s);
 }
 
+void sections_skip(struct sections *s, long long upto)
+{
+	s->next = upto;
+}
+
 long sections_reach(const struct sections *s)
 {
 	return (-s->first > s->margin ? -s->first : s->margin) + 1;

@@ -23,6 +23,9 @@ struct sections *sections_new(
 	const struct shape *shape, double duration, double threshold, long margin);
 void sections_free(struct sections *s);
 
+/* Leaves out the samples before this one. */
+void sections_skip(struct sections *s, long long upto);
+
 /* Samples a scan needs on either side of a point, and may yet put into a section. */
 long sections_reach(const struct sections *s);
 

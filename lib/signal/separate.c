@@ -37,6 +37,7 @@ struct separate {
 	size_t count, given, capacity;
 	double *source;
 	struct separate_counters counters;
+	enum separate_status reason; /* why nothing could be learned */
 	long long bad_frame;
 	int bad_channel;
 };
@@ -126,6 +127,15 @@ static int append(struct tape *t, const double *x, size_t n)
 	return 1;
 }
 
+static void drop(struct tape *t, size_t old)
+{
+	memmove(t->x, t->x + old, (t->n - old) * sizeof *t->x);
+	t->n -= old;
+	t->begin += (long long)old;
+	if (t->clean < t->begin)
+		t->clean = t->begin;
+}
+
 /* Forgets what lies before sample keep, now and then. */
 static void forget(struct tape *t, long long keep)
 {
@@ -133,11 +143,7 @@ static void forget(struct tape *t, long long keep)
 
 	if (old < t->n / 2 || old < 4096)
 		return;
-	if (old > t->n)
-		old = t->n;
-	memmove(t->x, t->x + old, (t->n - old) * sizeof *t->x);
-	t->n -= old;
-	t->begin += (long long)old;
+	drop(t, old > t->n ? t->n : old);
 }
 
 static void scale(struct tape *t, long long from, long long to, double noise)
@@ -160,7 +166,8 @@ static int clean(struct separate *s, struct tape *t, double noise)
 		return 1;
 	}
 	for (;;) {
-		long long middle = t->started ? (long long)t->at + hop : hop / 2;
+		long long middle =
+			t->started ? (long long)t->at + hop : t->clean + hop / 2;
 		long long from = middle - hop > t->clean ? middle - hop : t->clean,
 			  until = middle;
 		double after[2 * TONES_MAX + 1];
@@ -203,13 +210,14 @@ static enum separate_status calibrate_now(struct separate *s)
 	size_t n;
 
 	if (s->tape[0].n < SHORTEST)
-		return SEPARATE_SHORT;
+		return SEPARATE_NO_LAG;
 	/* Not more than asked for, however much has come in at once. */
 	n = s->tape[0].n < s->par.learn ? s->tape[0].n : s->par.learn;
 	status = calibrate(&s->par.known, s->tape[0].x, s->tape[1].x, n, &s->cal);
 	if (status != CALIBRATE_OK)
 		return of[status];
 	s->calibrated = 1;
+	s->done = s->tape[0].begin;
 	s->scene = (struct joint_scene){ .shape = c->shape,
 		.duration = c->duration,
 		.transit = c->transit,
@@ -233,6 +241,8 @@ static enum separate_status calibrate_now(struct separate *s)
 	s->margin = (long)(0.6 * reach + fmax(c->delta_max, -c->delta_min));
 	s->sections =
 		sections_new(c->shape, c->duration, 0.65 * sqrt(c->drop), s->margin);
+	if (s->sections)
+		sections_skip(s->sections, s->done);
 	s->joint = joint_new();
 	if (s->par.method == SEPARATE_MASKS) {
 		struct masks_par mp = { .window = s->par.mask_window,
@@ -659,8 +669,36 @@ static enum separate_status work(struct separate *s)
 	return SEPARATE_OK;
 }
 
+/* Learns from the oldest samples held; where they hold no particle, half of them are
+ * passed over and the next are tried. */
+static enum separate_status learn(struct separate *s)
+{
+	size_t half = s->par.learn / 2;
+	int first = 1;
+
+	while (!s->calibrated && s->tape[0].n >= (s->ended && first ? 1 : s->par.learn)) {
+		enum separate_status status = calibrate_now(s);
+
+		first = 0;
+		if (status != SEPARATE_OK && status != SEPARATE_NO_LAG &&
+			status != SEPARATE_FAST)
+			return status;
+		if (s->calibrated)
+			break;
+		s->reason = status;
+		if (s->tape[0].n < s->par.learn)
+			break;
+		for (int c = 0; c < 2; c++)
+			drop(&s->tape[c], half);
+		s->counters.passed_over += (double)half;
+	}
+	return SEPARATE_OK;
+}
+
 enum separate_status separate_push(struct separate *s, const double *x, size_t n)
 {
+	enum separate_status status = SEPARATE_OK;
+
 	for (size_t i = 0; i < 2 * n; i++)
 		if (!isfinite(x[i])) {
 			s->bad_frame =
@@ -671,26 +709,19 @@ enum separate_status separate_push(struct separate *s, const double *x, size_t n
 	if (!append(&s->tape[0], x, n) || !append(&s->tape[1], x + 1, n))
 		return SEPARATE_MEMORY;
 	s->counters.samples += (double)n;
-	if (!s->calibrated) {
-		enum separate_status status;
-
-		if (s->tape[0].n < s->par.learn)
-			return SEPARATE_OK;
-		status = calibrate_now(s);
-		if (status != SEPARATE_OK)
-			return status;
-	}
-	return work(s);
+	if (!s->calibrated)
+		status = learn(s);
+	return s->calibrated ? work(s) : status;
 }
 
 enum separate_status separate_end(struct separate *s)
 {
-	s->ended = 1;
-	if (!s->calibrated) {
-		enum separate_status status = calibrate_now(s);
+	enum separate_status status = SEPARATE_OK;
 
-		if (status != SEPARATE_OK)
-			return status;
-	}
-	return work(s);
+	s->ended = 1;
+	if (!s->calibrated)
+		status = s->counters.samples < SHORTEST ? SEPARATE_SHORT : learn(s);
+	if (status != SEPARATE_OK)
+		return status;
+	return s->calibrated ? work(s) : s->reason;
 }

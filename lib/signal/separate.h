@@ -1,6 +1,7 @@
 /* separate.h - a two-sensor record in, particles out, as the record comes
  *
- * The first learn samples are held back to calibrate (calibrate.h).  From then on the
+ * The first learn samples are held back to calibrate (calibrate.h); where they hold no
+ * particle half of them are passed over, and so on until there is one.  From then on the
  * record is cleaned, aligned and cut into sections (sections.h); each section is given
  * to one of the methods: joint fit (joint.h), masks (masks.h) or a network (cnn.h); what
  * a network does not suit is fitted.  Sections longer than
@@ -91,6 +92,7 @@ enum separate_status {
 
 /* Work done and left out so far. */
 struct separate_counters {
+	double passed_over;       /* before there was anything to learn from */
 	double samples, active;   /* frames in all, and in sections */
 	double sections, singles; /* sections, and those with one pulse */
 	double fits, steps, searches;
@@ -105,6 +107,7 @@ void separate_free(struct separate *s);
 
 /* n frames of two channels, interleaved. */
 enum separate_status separate_push(struct separate *s, const double *x, size_t n);
+/* NO_LAG and FAST from separate_end() only: there was nothing to learn from. */
 enum separate_status separate_end(struct separate *s);
 /* The next particle in order of section and arrival; 0 where none is ready. */
 int separate_next(struct separate *s, struct particle *p);
