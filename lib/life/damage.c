@@ -25,11 +25,11 @@ struct shape {
 #define STRAIGHT 3 /* log of what the straight line is given over the others */
 #define RATE(m)                                                     \
 	{                                                           \
-		DAMAGE_RATE, 0, m, -0.5 * ((m)-0.5) * ((m)-0.5) / 4 \
+		DAMAGE_RATE, 0, m, -0.5 * ((m)-1) * ((m)-1) / 4 \
 	}
 #define POWER(f, k)                                                \
 	{                                                          \
-		f, SCALE, k, -0.5 * ((k)-0.25) * ((k)-0.25) / 2.25 \
+		f, SCALE, k, -0.5 * ((k)-0.5) * ((k)-0.5) / 2.25 \
 	}
 
 static const struct shape shapes[SHAPES] = { { DAMAGE_LINEAR, 0, 0, STRAIGHT },

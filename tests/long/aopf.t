@@ -1,0 +1,43 @@
+#!/bin/sh
+# aopf over many synthetic pumps: no run strays, ends of life, robustness
+. "$(dirname "$0")/../tap.sh"
+
+# The thousand: largest distance of the state from the truth after hour 100.  Noise is
+# 0.062 and the wander 0.03, so that 0.3 is ten times what a filter should err by.
+for s in $(seq 1 1000); do
+	"$top/scripts/synthetic-pump" "$s" 600 >pump.tsv
+	if [ "$s" -le 100 ]; then cp pump.tsv "pump$s.tsv"; fi
+	aopf -t h -s "$s" pump.tsv | awk -F '\t' -v s="$s" '/^[0-9]/ && $1 >= 100 {
+		d = $5 - (1.5 + 1.3 * $1 / 1186 + 0.35 * exp((20 - $1) / 18))
+		if (d < 0) d = -d
+		if (d > m) m = d } END { print s, m }'
+done >strays
+sort -k 2 -g strays | tail -1 | sed 's/^/# worst seed, error: /'
+is "none of 1000 runs strays" "$(awk '$2 > 0.3' strays | wc -l | tr -d ' ')" 0
+for n in 20 40 60; do
+	for s in $(seq 1 100); do
+		aopf -t h -s "$s" -n $n "pump$s.tsv" | awk -F '\t' '/^[0-9]/ && $1 >= 100 {
+			d = $5 - (1.5 + 1.3 * $1 / 1186 + 0.35 * exp((20 - $1) / 18))
+			if (d < 0) d = -d
+			if (d > m) m = d } END { print m }'
+	done >strays
+	is "nor of 100 at order $n" "$(awk '$1 > 0.3' strays | wc -l | tr -d ' ')" 0
+done
+
+# Ends of life at 600 h, true 1186
+for model in average grey; do
+	for s in $(seq 1 100); do
+		aopf -t h -y 2.8 -d up -m $model "pump$s.tsv" | tail -1
+	done >$model.last
+	awk -F '\t' '{ left = $9 == "inf" ? 10 * $1 : $9
+		e = $1 + left - 1186; print e < 0 ? -e : e }' $model.last >$model.error
+	awk '{ s += $1 } END { print s / NR }' $model.error >$model.mean
+	echo "# $model: mean absolute error $(cat $model.mean) h"
+done
+near "mean error of 100 pumps within 60 h" "$(cat average.mean)" 30 30
+paste average.error grey.error | awk '$1 <= $2' | wc -l >better
+ok "not worse than the grey model for 60 of 100 or more" test "$(cat better)" -ge 60
+awk -F '\t' '$1 + $8 <= 1186 && ($10 == "inf" || $1 + $10 >= 1186)' average.last | wc -l >inside
+ok "the 90 % interval holds 85 or more" test "$(cat inside)" -ge 85
+
+done_testing
