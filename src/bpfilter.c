@@ -251,6 +251,8 @@ static void run(const char *path)
 		if (c.lines)
 			y = lines_run(c.lines, x, n, &clean);
 		put(&c, y, clean);
+		if (isfinite(latency))
+			signal_flush(c.out);
 		frames += (double)n;
 	} while (n == c.step);
 	if (frames > 0)
@@ -259,6 +261,8 @@ static void run(const char *path)
 	stats_add("frames", frames);
 	stats_add("channels", (double)c.channels);
 	stats_add("points", (double)fir_transform(c.fir));
+	stats_add("blocks", fir_blocks(c.fir));
+	stats_add("blocks_left_out", fir_blocks_left_out(c.fir));
 	lines_free(c.lines);
 	fir_free(c.fir);
 	free(c.piece);

@@ -51,10 +51,22 @@ is "a silent channel stays silent" "$(frames three.out | awk 'NR % 3 == 0 && $1 
 ) | bpfilter >dripped
 cat three.au | bpfilter >poured
 same "a dripping pipe gives the same bytes" dripped poured
+bpfilter -S stats three.au >/dev/null
+is "silent blocks are left out, a third of all here" \
+	"$(column blocks stats)/$(column blocks_left_out stats)" 6/3
 bpfilter --latency 1ms three.au >prompt.au
 frames three.out >a
 frames prompt.au >b
 near "--latency changes nothing but rounding" "$(worst a b)" 0 2e-15
+
+# what is done is written at once where a latency is wanted
+mkfifo live
+(
+	head -c 24000 three.au
+	sleep 2
+) | bpfilter --latency 5ms >live &
+is "--latency: output before the input ends" "$(timeout 1 head -c 20000 live | wc -c)" 20000
+wait
 
 # lines: gone to the last digits where they keep their amplitude, hardly any harm to pulses
 sensorsim -u 50um:50um -N 0 -d 9.7 --mains 0.5,0.3,0.05 >lines.au

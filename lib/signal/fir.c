@@ -19,6 +19,7 @@ struct fir {
 	double *past; /* channels x [taps - 1 old samples | block new ones] */
 	double *out;
 	double complex *spectrum;
+	double blocks, left_out;
 };
 
 /* Modified Bessel function I0 by its series, whose terms are all positive. */
@@ -199,6 +200,16 @@ size_t fir_transform(const struct fir *fir)
 	return fir->points;
 }
 
+double fir_blocks(const struct fir *fir)
+{
+	return fir->blocks;
+}
+
+double fir_blocks_left_out(const struct fir *fir)
+{
+	return fir->left_out;
+}
+
 /* Overlap-save: the circular convolution is right from sample taps - 1 on. */
 static const double *convolve(struct fir *fir, double *past)
 {
@@ -218,7 +229,7 @@ static const double *convolve(struct fir *fir, double *past)
 static const double *multiply(struct fir *fir, const double *past, size_t n)
 {
 	for (size_t i = 0; i < n; i += LANES) {
-		double sum[LANES] = {0};
+		double sum[LANES] = { 0 };
 
 		for (size_t k = 0; k < fir->taps; k++)
 			for (size_t j = 0; j < LANES; j++)
@@ -226,6 +237,26 @@ static const double *multiply(struct fir *fir, const double *past, size_t n)
 		memcpy(fir->out + i, sum, sizeof sum);
 	}
 	return fir->out;
+}
+
+static int is_silent(const double *x, size_t n)
+{
+	size_t i = 0;
+
+	while (i < n && x[i] == 0)
+		i++;
+	return i == n;
+}
+
+/* Filters what follows the old samples; the result is valid until the next call. */
+static const double *filter(struct fir *fir, double *past, size_t n)
+{
+	if (is_silent(past, fir->taps - 1 + n)) {
+		fir->left_out++;
+		return past;
+	}
+	fir->blocks++;
+	return fir->points ? convolve(fir, past) : multiply(fir, past, n);
 }
 
 void fir_run(struct fir *fir, double *x, size_t nframes)
@@ -240,7 +271,7 @@ void fir_run(struct fir *fir, double *x, size_t nframes)
 		for (size_t i = 0; i < nframes; i++)
 			past[old + i] = x[i * nc + c];
 		memset(past + old + nframes, 0, (length - old - nframes) * sizeof *past);
-		y = fir->points ? convolve(fir, past) : multiply(fir, past, nframes);
+		y = filter(fir, past, nframes);
 		for (size_t i = 0; i < nframes; i++)
 			x[i * nc + c] = y[i];
 		memmove(past, past + nframes, old * sizeof *past);

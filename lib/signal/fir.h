@@ -59,6 +59,10 @@ void fir_free(struct fir *fir);
 size_t fir_block(const struct fir *fir);
 /* Points of its transform; 0 where it works directly. */
 size_t fir_transform(const struct fir *fir);
+/* Blocks of one channel filtered so far, and those left out because all samples that
+ * reach into them are zero, and so is what comes out. */
+double fir_blocks(const struct fir *fir);
+double fir_blocks_left_out(const struct fir *fir);
 
 /* Filters nframes <= fir_block() frames in place.  The split of a stream into calls
  * changes rounding errors (1e-16 of the largest sample) and nothing else. */
