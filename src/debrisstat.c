@@ -164,11 +164,20 @@ static void sort_ids(struct data *d)
 	d->ids = kept;
 }
 
+/* Place of a realisation that has been noted. */
 static size_t place_of(const struct data *d, long id)
 {
-	const long *at = bsearch(&id, d->id, d->ids, sizeof(*d->id), ascending);
+	size_t low = 0, high = d->ids;
 
-	return (size_t)(at - d->id);
+	while (high - low > 1) {
+		size_t middle = low + (high - low) / 2;
+
+		if (d->id[middle] <= id)
+			low = middle;
+		else
+			high = middle;
+	}
+	return low;
 }
 
 /* Reads the summary twice: for its size, then for the steps that took place. */

@@ -70,17 +70,17 @@ struct particles {
 static int need(void *array, size_t *room, size_t want, size_t size)
 {
 	size_t more = *room ? *room : 64;
-	void *p;
+	void *p, *q;
 
 	if (want <= *room)
 		return 0;
 	while (more < want)
 		more *= 2;
 	memcpy(&p, array, sizeof(p));
-	p = realloc(p, more * size);
-	if (!p)
+	q = realloc(p, more * size);
+	if (!q)
 		return -1;
-	memcpy(array, &p, sizeof(p));
+	memcpy(array, &q, sizeof(q));
 	*room = more;
 	return 0;
 }
@@ -655,7 +655,7 @@ static int settle(struct particles *ps)
 		r->body = find(ps, r->body, r->period);
 	}
 	for (size_t i = 0; i < ps->before.count; i++) {
-		int period[2], root = find(ps, ps->before.run[i].body, period);
+		int period[2] = { 0, 0 }, root = find(ps, ps->before.run[i].body, period);
 		struct body *b = &ps->body[root];
 
 		if (b->layer == NONE || b->layer == ps->layer)
@@ -704,7 +704,8 @@ size_t particles_end(struct particles *ps, const struct particle **list)
 	/* An empty layer closes whatever is open. */
 	if (particles_layer(ps, NULL))
 		return (size_t)-1;
-	qsort(ps->done, ps->ndone, sizeof(*ps->done), in_order);
+	if (ps->ndone > 0)
+		qsort(ps->done, ps->ndone, sizeof(*ps->done), in_order);
 	*list = ps->done;
 	return ps->ndone;
 }

@@ -307,7 +307,7 @@ static int quarter_new(struct stress *s, double z, int wx, int wy, struct quarte
 		free(q->normal);
 		return -1;
 	}
-	for (size_t i = 0; q->turned && i < n; i += STRESS_COMPONENTS) {
+	for (size_t i = 0; q->turned && q->shear && i < n; i += STRESS_COMPONENTS) {
 		turn(q->normal + i);
 		turn(q->shear + i);
 	}

@@ -77,7 +77,7 @@ static void difference(const double *pp, const double *pm, const double *mp,
 void stress_patch(double a, double b, double nu, double x, double y, double z,
 	double normal[STRESS_COMPONENTS], double shear[STRESS_COMPONENTS])
 {
-	double n[4][N], s[4][N];
+	double n[4][N], s[4][N] = { { 0 } };
 
 	/* Logarithms of dimensionless lengths. */
 	x /= a, y /= a, z /= a, b /= a;
@@ -136,7 +136,7 @@ static void far_cell(double x, double y, double z, double ax, double ay, double 
 	static const double node[3] = { -0.77459666924148337704, 0,
 		0.77459666924148337704 };
 	static const double weight[3] = { 5. / 18, 8. / 18, 5. / 18 };
-	double n[N], s[N];
+	double n[N], s[N] = { 0 };
 
 	memset(normal, 0, N * sizeof(*normal));
 	if (shear)
