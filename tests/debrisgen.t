@@ -40,6 +40,16 @@ is "ball without friction: pieces" "$(summary particles)" 36
 debrisgen -Y 355MPa -l mid -r potential ball.nrrd >t.tsv
 is "ball without friction: all failed cells at mid height" "$(column nodes t.tsv)" 27400
 
+# A point load F fails the volume c (F / yield)^1.5, c = 0.26692 without friction and
+# 0.28665 with 0.3 (by quadrature of Boussinesq's and Cerruti's solutions); cells of 1/77 of
+# (F / yield)^0.5 see it to 1e-3.
+roughgen -n 129 -L 129um --sq 0 --crown 1mm | bemcontact -F 1mN -e 1000TPa >point.nrrd
+for c in 0:0.26692 0.3:0.28665; do
+	debrisgen -Y 169.5kPa -u ${c%:*} -l mid -r potential -U summary.tsv point.nrrd >t.tsv
+	near "point load, friction ${c%:*}: volume failed" \
+		"$(summary volume | awk '{ print $1 / (1e-3 / 169.5e3) ^ 1.5 }')" ${c#*:} 3e-4
+done
+
 # Shear along y is shear along x, turned.
 $wear -d y ball.nrrd >t.tsv
 is "shear along y turns the particle" "$(awk '/^0/ { print $4, $9 }' t.tsv)" \
