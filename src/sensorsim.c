@@ -16,7 +16,7 @@ static const double pi = 3.14159265358979323846;
 
 static long seed = 1, first, number = -1, burst;
 static double rate = 10e3, flow = 1e-3, bore = 0.01, exponent = 7, spacing = 0.25;
-static double zone = 0.4 / 3.14159265358979323846;     /* 10 ms at 60 L/min in 1 cm */
+static double zone = 0.4 / 3.14159265358979323846;       /* 10 ms at 60 L/min in 1 cm */
 static double kappa = 3.14159265358979323846 / 4 * 1e11; /* 1 V for 100 um there */
 static double gain = 1, noise, snr = NAN, corner, common, drift, drift_time = 10;
 static double mains_frequency = 50, pump_frequency = 2e3;
@@ -25,92 +25,98 @@ static double span = NAN, gap, period = NAN;
 static int profile = PIPE_PLUG, shape, by_volume, single;
 static struct opt_list lag, mains, pump, uniform, coil;
 static const char *truth;
-static const char *const profiles[] = {"plug", "laminar", "turbulent", NULL};
-static const char *const shapes[] = {"sine", "gauss", "lorentz", NULL};
-static const char *const measures[] = {"diameter", "volume", NULL};
+static const char *const profiles[] = { "plug", "laminar", "turbulent", NULL };
+static const char *const shapes[] = { "sine", "gauss", "lorentz", NULL };
+static const char *const measures[] = { "diameter", "volume", NULL };
 
 static const struct opt opts[] = {
-	{'u', "uniform", OPT_LIST, UNIT_LENGTH, &uniform, 1e-9, 1, "A:B",
+	/* particles */
+	{ 'u', "uniform", OPT_LIST, UNIT_LENGTH, &uniform, 1e-9, 1, "A:B",
 		"draw particles with diameters from A to B instead of reading a table", 0,
-		0},
-	{'y', "by", OPT_WORD, UNIT_NONE, &by_volume, 0, 0, "diameter|volume",
-		"what --uniform makes uniform", measures, 0},
-	{'N', "number", OPT_INT, UNIT_COUNT, &number, 0, 1e15, "N", "particles to draw",
-		0, 0},
-	{'C', "concentration", OPT_NUM, UNIT_CONCENTRATION, &concentration, 0, 1e4, "C",
-		"draw a Poisson number of particles, C of mass in the oil", 0, 0},
-	{'D', "density", OPT_NUM, UNIT_DENSITY, &density, 1, 1e5, "RHO",
-		"of the particles", 0, 0},
-	{'d', "duration", OPT_NUM, UNIT_TIME, &duration, 0, 1e9, "T", "of the record", 0,
-		0},
-	{'o', "start", OPT_NUM, UNIT_TIME, &start, -1e9, 1e9, "T",
-		"when particles begin to arrive", 0, 0},
-	{'X', "span", OPT_NUM, UNIT_TIME, &span, 0, 1e9, "T",
-		"time within which the particles of a burst arrive", 0, 0},
-	{'i', "gap", OPT_NUM, UNIT_TIME, &gap, 0, 1e9, "T", "least time between arrivals",
-		0, 0},
-	{'b', "burst", OPT_INT, UNIT_COUNT, &burst, 1, 1e9, "M", "particles of a burst",
-		0, 0},
-	{'t', "period", OPT_NUM, UNIT_TIME, &period, 0, 1e9, "T", "from burst to burst",
-		0, 0},
-	{'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 2e9, "F", "sampling rate", 0, 0},
-	{'Q', "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-12, 1e3, "Q", "of the oil", 0, 0},
-	{'B', "bore", OPT_NUM, UNIT_LENGTH, &bore, 1e-6, 10, "D", "diameter of the pipe",
-		0, 0},
-	{'p', "profile", OPT_WORD, UNIT_NONE, &profile, 0, 0, "plug|laminar|turbulent",
-		"velocity profile", profiles, 0},
-	{'e', "exponent", OPT_NUM, UNIT_NONE, &exponent, 1, 100, "N",
-		"of the turbulent profile (1 - r/R)^(1/N)", 0, 0},
-	{'L', "spacing", OPT_NUM, UNIT_LENGTH, &spacing, 1e-6, 1e3, "D",
-		"between the two sensors", 0, 0},
-	{'a', "lag", OPT_LIST, UNIT_TIME, &lag, 0, 1e6, "A:B",
-		"transit takes longer than that of the oil by A to B", 0, 0},
-	{'w', "pulse", OPT_WORD, UNIT_NONE, &shape, 0, 0, "sine|gauss|lorentz",
-		"pulse shape", shapes, 0},
-	{'l', "zone", OPT_NUM, UNIT_LENGTH, &zone, 1e-9, 1e3, "L",
-		"of the sensing zone: a pulse lasts L over the velocity", 0, 0},
-	{'K', "calibration", OPT_NUM, UNIT_NONE, &kappa, 1e-30, 1e30, "K",
-		"peak voltage over velocity and diameter cubed, V s/m4", 0, 0},
-	{'I', "coil", OPT_LIST, UNIT_ANY, &coil, 0, 1e30, "N,ND,I,MUR,L0,LF,AMP",
-		"calibration by turns, exciting turns, current, permeability, paths, "
-		"gain",
-		0, 0},
-	{'g', "gain", OPT_NUM, UNIT_NONE, &gain, 0, 1e9, "G", "of sensor 2 over sensor 1",
-		0, 0},
-	{'n', "noise", OPT_NUM, UNIT_VOLTAGE, &noise, 0, 1e9, "V",
-		"rms noise of a sample", 0, 0},
-	{'R', "snr", OPT_NUM, UNIT_DECIBEL, &snr, -100, 400, "S",
-		"noise by the peak of a 100 um particle over its rms", 0, 0},
-	{'k', "corner", OPT_NUM, UNIT_FREQUENCY, &corner, 0, 1e12, "F",
-		"low-pass of the noise; 0: white", 0, 0},
-	{'q', "common", OPT_NUM, UNIT_NONE, &common, -1, 1, "R",
-		"correlation of the noise of both sensors", 0, 0},
-	{'z', "drift", OPT_NUM, UNIT_VOLTAGE, &drift, 0, 1e9, "V",
-		"rms drift of the base line", 0, 0},
-	{'Z', "drift-time", OPT_NUM, UNIT_TIME, &drift_time, 1e-9, 1e9, "T",
-		"correlation time of the drift", 0, 0},
-	{'m', "mains", OPT_LIST, UNIT_VOLTAGE, &mains, 0, 1e9, "V,V3,V5",
-		"amplitudes of the mains and its odd harmonics", 0, 0},
-	{'M', "mains-frequency", OPT_NUM, UNIT_FREQUENCY, &mains_frequency, 0, 1e9, "F",
-		"of the mains", 0, 0},
-	{'P', "pump", OPT_LIST, UNIT_VOLTAGE, &pump, 0, 1e9, "V,V2",
-		"amplitudes of the pump line and its harmonics", 0, 0},
-	{'U', "pump-frequency", OPT_NUM, UNIT_FREQUENCY, &pump_frequency, 0, 1e9, "F",
-		"of the pump line", 0, 0},
-	{'T', "truth", OPT_TEXT, UNIT_NONE, &truth, 0, 0, "FILE",
-		"write a table of the particles", 0, 0},
-	{'s', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "of the random numbers",
-		0, 0},
-	{'f', "first", OPT_INT, UNIT_COUNT, &first, 0, 4e9, "K", "realisation to make", 0,
-		0},
-	{'F', "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
-		0},
-	OPT_END};
+		0 },
+	{ 'y', "by", OPT_WORD, UNIT_NONE, &by_volume, 0, 0, "diameter|volume",
+		"what --uniform makes uniform", measures, 0 },
+	{ 'N', "number", OPT_INT, UNIT_COUNT, &number, 0, 1e15, "N", "particles to draw",
+		0, 0 },
+	{ 'C', "concentration", OPT_NUM, UNIT_CONCENTRATION, &concentration, 0, 1e4, "C",
+		"draw a Poisson number of particles, C of mass in the oil", 0, 0 },
+	{ 'D', "density", OPT_NUM, UNIT_DENSITY, &density, 1, 1e5, "RHO",
+		"of the particles", 0, 0 },
+	/* arrivals */
+	{ 'd', "duration", OPT_NUM, UNIT_TIME, &duration, 0, 1e9, "T", "of the record", 0,
+		0 },
+	{ 'o', "start", OPT_NUM, UNIT_TIME, &start, -1e9, 1e9, "T",
+		"when particles begin to arrive", 0, 0 },
+	{ 'X', "span", OPT_NUM, UNIT_TIME, &span, 0, 1e9, "T",
+		"time within which the particles of a burst arrive", 0, 0 },
+	{ 'i', "gap", OPT_NUM, UNIT_TIME, &gap, 0, 1e9, "T",
+		"least time between arrivals", 0, 0 },
+	{ 'b', "burst", OPT_INT, UNIT_COUNT, &burst, 1, 1e9, "M", "particles of a burst",
+		0, 0 },
+	{ 't', "period", OPT_NUM, UNIT_TIME, &period, 0, 1e9, "T", "from burst to burst",
+		0, 0 },
+	/* pipe and sensors */
+	{ 'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 2e9, "F", "sampling rate", 0,
+		0 },
+	{ 'Q', "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-12, 1e3, "Q", "of the oil", 0, 0 },
+	{ 'B', "bore", OPT_NUM, UNIT_LENGTH, &bore, 1e-6, 10, "D", "diameter of the pipe",
+		0, 0 },
+	{ 'p', "profile", OPT_WORD, UNIT_NONE, &profile, 0, 0, "plug|laminar|turbulent",
+		"velocity profile", profiles, 0 },
+	{ 'e', "exponent", OPT_NUM, UNIT_NONE, &exponent, 1, 100, "N",
+		"of the turbulent profile (1 - r/R)^(1/N)", 0, 0 },
+	{ 'L', "spacing", OPT_NUM, UNIT_LENGTH, &spacing, 1e-6, 1e3, "D",
+		"between the two sensors", 0, 0 },
+	{ 'a', "lag", OPT_LIST, UNIT_TIME, &lag, 0, 1e6, "A:B",
+		"transit takes longer than that of the oil by A to B", 0, 0 },
+	{ 'w', "pulse", OPT_WORD, UNIT_NONE, &shape, 0, 0, "sine|gauss|lorentz",
+		"pulse shape", shapes, 0 },
+	{ 'l', "zone", OPT_NUM, UNIT_LENGTH, &zone, 1e-9, 1e3, "L",
+		"of the sensing zone: a pulse lasts L over the velocity", 0, 0 },
+	{ 'K', "calibration", OPT_NUM, UNIT_NONE, &kappa, 1e-30, 1e30, "K",
+		"peak voltage over velocity and diameter cubed, V s/m4", 0, 0 },
+	{ 'I', "coil", OPT_LIST, UNIT_ANY, &coil, 0, 1e30, "N,ND,I,MUR,L0,LF,AMP",
+		"calibration by turns, exciting turns, current, permeability, paths, gain",
+		0, 0 },
+	{ 'g', "gain", OPT_NUM, UNIT_NONE, &gain, 0, 1e9, "G",
+		"of sensor 2 over sensor 1", 0, 0 },
+	/* disturbances */
+	{ 'n', "noise", OPT_NUM, UNIT_VOLTAGE, &noise, 0, 1e9, "V",
+		"rms noise of a sample", 0, 0 },
+	{ 'R', "snr", OPT_NUM, UNIT_DECIBEL, &snr, -100, 400, "S",
+		"noise by the peak of a 100 um particle over its rms", 0, 0 },
+	{ 'k', "corner", OPT_NUM, UNIT_FREQUENCY, &corner, 0, 1e12, "F",
+		"low-pass of the noise; 0: white", 0, 0 },
+	{ 'q', "common", OPT_NUM, UNIT_NONE, &common, -1, 1, "R",
+		"correlation of the noise of both sensors", 0, 0 },
+	{ 'z', "drift", OPT_NUM, UNIT_VOLTAGE, &drift, 0, 1e9, "V",
+		"rms drift of the base line", 0, 0 },
+	{ 'Z', "drift-time", OPT_NUM, UNIT_TIME, &drift_time, 1e-9, 1e9, "T",
+		"correlation time of the drift", 0, 0 },
+	{ 'm', "mains", OPT_LIST, UNIT_VOLTAGE, &mains, 0, 1e9, "V,V3,V5",
+		"amplitudes of the mains and its odd harmonics", 0, 0 },
+	{ 'M', "mains-frequency", OPT_NUM, UNIT_FREQUENCY, &mains_frequency, 0, 1e9, "F",
+		"of the mains", 0, 0 },
+	{ 'P', "pump", OPT_LIST, UNIT_VOLTAGE, &pump, 0, 1e9, "V,V2",
+		"amplitudes of the pump line and its harmonics", 0, 0 },
+	{ 'U', "pump-frequency", OPT_NUM, UNIT_FREQUENCY, &pump_frequency, 0, 1e9, "F",
+		"of the pump line", 0, 0 },
+	/* output */
+	{ 'T', "truth", OPT_TEXT, UNIT_NONE, &truth, 0, 0, "FILE",
+		"write a table of the particles", 0, 0 },
+	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "of the random numbers",
+		0, 0 },
+	{ 'f', "first", OPT_INT, UNIT_COUNT, &first, 0, 4e9, "K", "realisation to make",
+		0, 0 },
+	{ 'F', "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
+		0 },
+	OPT_END
+};
 
-static const struct prog prog = {"sensorsim",
+static const struct prog prog = { "sensorsim",
 	"Make the signal of wear particles that pass two inductive sensors.", "[file]",
 	"table: diameter [time] [velocity], unless --uniform", "signal: two channels, V",
-	opts};
+	opts };
 
 /* Where particles come from: a table, or random numbers. */
 struct source {
@@ -126,10 +132,10 @@ struct source {
 
 static struct pipe make_pipe(void)
 {
-	return (struct pipe){bore, flow, (enum pipe_profile)profile, exponent};
+	return (struct pipe){ bore, flow, (enum pipe_profile)profile, exponent };
 }
 
-static void check_options(int operands)
+static void check_particles(int operands)
 {
 	if (uniform.n && (uniform.n != 2 || uniform.v[0] > uniform.v[1]))
 		die(EXIT_USAGE, "--uniform needs two diameters A:B with A not above B");
@@ -143,39 +149,48 @@ static void check_options(int operands)
 		die(EXIT_USAGE, "--uniform needs --number or --concentration");
 	if (!uniform.n && (number >= 0 || !isnan(concentration)))
 		die(EXIT_USAGE, "--number and --concentration need --uniform");
-	if (lag.n && (lag.n != 2 || lag.v[0] > lag.v[1]))
-		die(EXIT_USAGE, "--lag needs two times A:B with A not above B");
-	if (!isnan(snr) && noise > 0)
-		die(EXIT_USAGE, "--noise and --snr exclude each other");
 	if (burst > 0 && (isnan(span) || isnan(period)))
 		die(EXIT_USAGE, "--burst needs --span and --period");
 	if (burst > 0 && !isnan(concentration))
 		die(EXIT_USAGE, "--burst and --concentration exclude each other");
 	if (burst > 0 && period < span + gap)
 		die(EXIT_USAGE, "--period %g s is shorter than --span and --gap", period);
-	if (corner > rate / 2)
-		die(EXIT_USAGE, "--corner %g Hz is above half the rate", corner);
+	if (lag.n && (lag.n != 2 || lag.v[0] > lag.v[1]))
+		die(EXIT_USAGE, "--lag needs two times A:B with A not above B");
+}
+
+static void check_sensors(void)
+{
+	if (rate != floor(rate))
+		die(EXIT_USAGE, "--rate: AU wants whole hertz, not %g", rate);
 	if (coil.n && coil.n != COIL_VALUES)
 		die(EXIT_USAGE, "--coil needs %d values", COIL_VALUES);
 	if (coil.n && opt_given('K'))
 		die(EXIT_USAGE, "--coil and --calibration exclude each other");
 	if (coil.n && !(coil.v[3] >= 1 && coil.v[4] > 0 && coil.v[5] > coil.v[4]))
-		die(EXIT_USAGE, "--coil: want a permeability of at least 1 and paths 0 < "
-				"L0 < LF");
-	if (rate != floor(rate))
-		die(EXIT_USAGE, "--rate: AU wants whole hertz, not %g", rate);
+		die(EXIT_USAGE,
+			"--coil: want a permeability of at least 1 and paths 0 < L0 < LF");
+	if (opt_given('R') && opt_given('n'))
+		die(EXIT_USAGE, "--noise and --snr exclude each other");
+	if (corner > rate / 2)
+		die(EXIT_USAGE, "--corner %g Hz is above half the rate", corner);
+}
+
+/* Time from the first trace of a pulse to its centre. */
+static double half_pulse(double velocity)
+{
+	return pulse_reach((enum pulse_shape)shape) * zone / velocity;
 }
 
 static double calibration(void)
 {
-	struct sensor_coil c = {
-		coil.v[0], coil.v[1], coil.v[2], coil.v[3], coil.v[4], coil.v[5], zone};
+	struct sensor_coil c = { coil.v[0], coil.v[1], coil.v[2], coil.v[3], coil.v[4],
+		coil.v[5], zone };
 
 	return coil.n ? coil.v[6] * sensor_kappa(&c, (enum pulse_shape)shape) : kappa;
 }
 
-/* Particles per second of a mass concentration: flow times concentration over mean mass.
- */
+/* Particles per second: flow times concentration over mean mass. */
 static double particle_rate(void)
 {
 	double a = uniform.v[0], b = uniform.v[1];
@@ -189,19 +204,17 @@ static double particle_rate(void)
 /* When and how many: the window leaves room for whole pulses at both sensors. */
 static void make_arrivals(struct source *s, uint64_t n)
 {
-	double half = pulse_reach((enum pulse_shape)shape) * zone /
-		      pipe_mean_velocity(&s->stream.pipe);
-	double room =
-		half + spacing / pipe_mean_velocity(&s->stream.pipe) + s->stream.lag[1];
+	double mean = pipe_mean_velocity(&s->stream.pipe), half = half_pulse(mean);
+	double room = half + spacing / mean + s->stream.lag[1];
 	double begin = isnan(start) ? half : start;
 	double window = isnan(span) ? duration - begin - room : span;
-	struct arrivals_par par = {(uint64_t)seed, (uint32_t)first, particle_rate(), n,
-		(uint64_t)burst, begin, burst ? period : 0, window, gap};
+	struct arrivals_par par = { (uint64_t)seed, (uint32_t)first, particle_rate(), n,
+		(uint64_t)burst, begin, burst ? period : 0, window, gap };
+	double most = burst ? (double)burst : (double)n;
 
 	if (isnan(window))
 		die(EXIT_USAGE, "particles without times need --duration or --span");
-	if (window < 0 || (n != UINT64_MAX && (burst ? (double)burst : (double)n) * gap >
-						      window + gap * (1 + 1e-9)))
+	if (window < 0 || (par.rate == 0 && most * gap > window + gap * (1 + 1e-9)))
 		die(EXIT_USAGE, "%s leaves no room for the particles",
 			isnan(span) ? "--duration" : "--span");
 	if (par.rate * gap > 1)
@@ -244,9 +257,10 @@ static void read_diameters(struct source *s)
 
 static void open_source(struct source *s, const char *path)
 {
-	*s = (struct source){0};
-	s->stream = (struct stream){(uint64_t)seed, (uint32_t)first, make_pipe(), spacing,
-		{lag.v[0], lag.v[1]}, {uniform.v[0], uniform.v[1]}, by_volume};
+	*s = (struct source){ 0 };
+	s->stream = (struct stream){ (uint64_t)seed, (uint32_t)first, make_pipe(),
+		spacing, { lag.v[0], lag.v[1] }, { uniform.v[0], uniform.v[1] },
+		by_volume };
 	s->slowest = passage_slowest(&s->stream);
 	if (s->slowest < 0.01 * pipe_mean_velocity(&s->stream.pipe))
 		die(EXIT_USAGE, "--lag makes particles slower than 1 %% of the oil");
@@ -323,9 +337,10 @@ static void close_source(struct source *s)
 static void put_truth(
 	struct table_out *t, uint64_t particle, const struct passage *p, double k)
 {
-	const double row[] = {(double)particle, p->time[0], p->time[1], p->diameter,
+	const double row[] = { (double)particle, p->time[0], p->time[1], p->diameter,
 		sensor_voltage(k, p->velocity, p->diameter), p->time[1] - p->time[0],
-		p->velocity, pi / 6 * p->diameter * p->diameter * p->diameter, p->radius};
+		p->velocity, pi / 6 * p->diameter * p->diameter * p->diameter,
+		p->radius };
 
 	for (size_t i = 0; i < sizeof row / sizeof *row; i++)
 		table_put(t, row[i]);
@@ -355,7 +370,7 @@ static struct scene *make_scene(void)
 	struct pipe pipe = make_pipe();
 	double k = calibration();
 	double peak = sensor_voltage(k, pipe_mean_velocity(&pipe), 100e-6);
-	struct scene_par par = {.rate = rate,
+	struct scene_par par = { .rate = rate,
 		.shape = (enum pulse_shape)shape,
 		.length = zone,
 		.kappa = k,
@@ -366,7 +381,7 @@ static struct scene *make_scene(void)
 		.corner = corner,
 		.common = common,
 		.drift = drift,
-		.drift_time = drift_time};
+		.drift_time = drift_time };
 	struct scene *scene;
 
 	add_lines(&par, &mains, mains_frequency, 2);
@@ -383,9 +398,9 @@ static size_t piece(const struct scene *scene, double frames, int more)
 	double left = (isnan(duration) ? scene_end(scene) : duration) * rate;
 
 	left = (isnan(duration) ? ceil(left) : round(left)) - frames;
-	return left <= 0                                   ? 0
-	       : (isnan(duration) && more) || left > BLOCK ? BLOCK
-							   : (size_t)left;
+	if ((isnan(duration) && more) || left > BLOCK)
+		return BLOCK;
+	return left > 0 ? (size_t)left : 0;
 }
 
 static struct table_out *create_truth(const char *cmd)
@@ -399,12 +414,10 @@ static struct table_out *create_truth(const char *cmd)
 /* The next particle whose pulse at sensor 1 begins before the record ends. */
 static int next_seen(struct source *s, struct passage *p)
 {
-	double half = pulse_reach((enum pulse_shape)shape) * zone;
-
 	while (next_particle(s, p)) {
-		if (isnan(duration) || p->time[0] - half / p->velocity < duration)
+		if (isnan(duration) || p->time[0] - half_pulse(p->velocity) < duration)
 			return 1;
-		if (p->time[0] - half / s->slowest >= duration)
+		if (p->time[0] - half_pulse(s->slowest) >= duration)
 			return 0;
 	}
 	return 0;
@@ -413,10 +426,10 @@ static int next_seen(struct source *s, struct passage *p)
 static void run(struct source *source, struct table_out *t, struct signal_out *out)
 {
 	static double x[2 * BLOCK];
-	double half = pulse_reach((enum pulse_shape)shape) * zone / source->slowest;
-	double frames = 0, k = calibration(), particles = 0;
+	double half = half_pulse(source->slowest), frames = 0, k = calibration(),
+	       particles = 0;
 	struct scene *scene = make_scene();
-	struct passage p = {{0}, 0, 0, 0};
+	struct passage p = { { 0 }, 0, 0, 0 };
 	int more = next_seen(source, &p);
 	size_t n;
 
@@ -446,15 +459,16 @@ static void run(struct source *source, struct table_out *t, struct signal_out *o
 int main(int argc, char **argv)
 {
 	int i = opt_parse(&prog, argc, argv);
-	struct signal_format format = {.rate = (long)rate,
+	struct signal_format format = { .rate = (long)rate,
 		.channels = 2,
 		.single = single,
-		.units = (char[]){"V V"}};
-	struct passage p = {{0}, 0, 0, 0};
+		.units = (char[]){ "V V" } };
+	struct passage p = { { 0 }, 0, 0, 0 };
 	struct source source;
 	struct table_out *table = NULL;
 
-	check_options(argc - i);
+	check_particles(argc - i);
+	check_sensors();
 	open_source(&source, argv[i]);
 	if (truth)
 		table = create_truth(source.cmd);
