@@ -253,13 +253,17 @@ static int pick(const struct rate *r, double u)
 	return k;
 }
 
-/* Level after x on path z. */
+/* Level after x on path z.  Shocks to come die away within the time observed so far: a
+ * walk for ever would leave half of the paths without an end. */
 static double path(const struct rate *r, const struct kalman *f, double x, double z)
 {
+	double fade = fmax(f->reversion, 1 / (r->now - r->start));
 	double left, g, square_of, variance;
 
+	decay(fade, x, &left, &g, &square_of);
+	variance = f->drift * square_of;
 	decay(f->reversion, x, &left, &g, &square_of);
-	variance = f->pll + g * (2 * f->plr + g * f->prr) + f->drift * square_of;
+	variance += f->pll + g * (2 * f->plr + g * f->prr);
 	return f->level + r->prior_mean * (x - g) + f->rate * g +
 	       z * sqrt(fmax(variance, 0));
 }
