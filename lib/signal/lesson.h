@@ -9,6 +9,7 @@
 #include "signal/cnndata.h"
 #include "signal/delaydata.h"
 #include "signal/delayloss.h"
+#include "signal/training.h"
 
 struct lesson {
 	const char *purpose; /* for the file of weights */

@@ -1,4 +1,4 @@
-/* network.c - small feed-forward networks trained by back-propagation */
+/* network.c - small feed-forward networks and their derivatives by back-propagation */
 #include "signal/network.h"
 #include "num/philox.h"
 #include <errno.h>
@@ -14,11 +14,6 @@
 #endif
 
 typedef network_real real;
-
-#define PI 3.14159265358979323846
-
-/* Places in the stream of random numbers: weights from 0, shuffling from here on. */
-#define SHUFFLE ((uint64_t)1 << 40)
 
 struct layer {
 	struct network_layer par;
@@ -38,7 +33,6 @@ struct network {
 	real *weights;
 	real *columns; /* unfolded input of a convolution, one sample */
 	real *unit;    /* slope by the sums before the activation, batch rows */
-	const real *input;
 };
 
 static int volume(struct network_shape s)
@@ -220,6 +214,19 @@ size_t network_weight_count(const struct network *net)
 	return net->count;
 }
 
+real *network_layer_weights(struct network *net, int i, size_t *count)
+{
+	const struct layer *l = &net->layer[i];
+
+	*count = l->par.kind == NETWORK_POOL ? 0 : l->bias - l->weight + l->par.units;
+	return net->weights + l->weight;
+}
+
+int network_batch(const struct network *net)
+{
+	return net->batch;
+}
+
 const real *network_activations(const struct network *net, int i)
 {
 	return net->layer[i].value;
@@ -326,27 +333,25 @@ static void unfold(const struct layer *l, const real *x, real *columns, real *ba
 	int left = (kx - 1) / 2, top = (ky - 1) / 2;
 	int iw = l->in.width, ih = l->in.height, ow = l->out.width;
 
-	for (int c = 0; c < l->in.channels; c++)
-		for (int j = 0; j < ky; j++)
-			for (int i = 0; i < kx; i++)
-				for (int y = 0; y < ih; y++, columns += ow) {
-					int row = y + j - top, begin = 0, end = 0;
-					int at = (c * ih + row) * iw + i - left;
+	for (int k = 0; k < l->fan * ih; k++, columns += ow) {
+		/* From the innermost: row of places, column and row of the kernel,
+		 * channel. */
+		int y = k % ih, i = k / ih % kx - left, j = k / ih / kx % ky - top;
+		int row = y + j, begin = 0, end = 0;
+		int at = (k / ih / kx / ky * ih + row) * iw + i;
 
-					if (row >= 0 && row < ih)
-						overlap(ow, iw, step, i - left, &begin,
-							&end);
-					if (back) {
-						for (int o = begin; o < end; o++)
-							back[at + o * step] += columns[o];
-						continue;
-					}
-					memset(columns, 0, begin * sizeof(real));
-					for (int o = begin; o < end; o++)
-						columns[o] = x[at + o * step];
-					memset(columns + end, 0,
-						(ow - end) * sizeof(real));
-				}
+		if (row >= 0 && row < ih)
+			overlap(ow, iw, step, i, &begin, &end);
+		if (back) {
+			for (int o = begin; o < end; o++)
+				back[at + o * step] += columns[o];
+			continue;
+		}
+		memset(columns, 0, begin * sizeof(real));
+		for (int o = begin; o < end; o++)
+			columns[o] = x[at + o * step];
+		memset(columns + end, 0, (ow - end) * sizeof(real));
+	}
 }
 
 static void conv_forward(const struct network *net, struct layer *l, const real *x, int n)
@@ -398,7 +403,6 @@ static void pool_forward(struct layer *l, const real *x, int n)
 
 const real *network_forward(struct network *net, const real *x, int n)
 {
-	net->input = x;
 	for (int i = 0; i < net->layers; i++) {
 		struct layer *l = &net->layer[i];
 
@@ -558,206 +562,4 @@ double network_gradient(struct network *net, const real *x, const real *target, 
 	if (penalty && penalty->decay > 0)
 		value += add_decay(net, penalty->decay, gradient);
 	return value;
-}
-
-/* Running means of Adam, and what a step needs. */
-struct descent {
-	real *gradient, *mean, *square;
-	real *x, *target;
-	long *order;
-	int targets;
-	long steps, total;
-};
-
-static void free_descent(struct descent *d)
-{
-	free(d->gradient);
-	free(d->mean);
-	free(d->square);
-	free(d->x);
-	free(d->target);
-	free(d->order);
-}
-
-static int allocate_descent(
-	struct descent *d, const struct network *net, const struct network_training *par)
-{
-	long per_epoch = (par->samples + par->batch - 1) / par->batch;
-
-	*d = (struct descent){ .total = per_epoch * par->epochs };
-	d->gradient = calloc(net->count, sizeof(real));
-	d->mean = calloc(net->count, sizeof(real));
-	d->square = calloc(net->count, sizeof(real));
-	d->x = calloc((size_t)par->batch * network_inputs(net), sizeof(real));
-	d->targets = par->targets ? par->targets : network_outputs(net);
-	d->target = calloc((size_t)par->batch * d->targets, sizeof(real));
-	d->order = malloc(par->samples * sizeof *d->order);
-	return d->gradient && d->mean && d->square && d->x && d->target && d->order;
-}
-
-static double step_length(const struct network_training *par, const struct descent *d)
-{
-	double done = (double)d->steps / d->total;
-
-	if (par->rate_end <= 0)
-		return par->rate;
-	return par->rate_end + (par->rate - par->rate_end) * 0.5 * (1 + cos(PI * done));
-}
-
-static void update(
-	struct network *net, const struct network_training *par, struct descent *d)
-{
-	double rate = step_length(par, d);
-	const real keep = 0.9, keep_square = 0.999;
-	real step, guard;
-
-	d->steps++;
-	if (par->optimiser == NETWORK_DESCENT) {
-		for (size_t w = 0; w < net->count; w++)
-			net->weights[w] -= rate * d->gradient[w];
-		return;
-	}
-	/* The two corrections of the start are taken into the step and the guard. */
-	guard = sqrt(1 - pow(keep_square, d->steps));
-	step = rate * guard / (1 - pow(keep, d->steps));
-	guard *= 1e-8;
-	for (size_t w = 0; w < net->count; w++) {
-		real g = d->gradient[w];
-
-		d->mean[w] += (1 - keep) * (g - d->mean[w]);
-		d->square[w] += (1 - keep_square) * (g * g - d->square[w]);
-		net->weights[w] -=
-			step * d->mean[w] / (real)(sqrtf(d->square[w]) + guard);
-	}
-}
-
-/* Fisher-Yates, a different order in each epoch. */
-static void shuffle(const struct network_training *par, long epoch, long *order)
-{
-	for (long i = 0; i < par->samples; i++)
-		order[i] = i;
-	for (long i = par->samples - 1; i > 0; i--) {
-		uint64_t place = SHUFFLE + (uint64_t)epoch * par->samples + i;
-		long k = (i + 1) *
-			 philox_uniform(par->seed, par->repetition, RNG_NETWORK, place);
-		long keep = order[i];
-
-		order[i] = order[k];
-		order[k] = keep;
-	}
-}
-
-static double run_epoch(struct network *net, const struct network_training *par,
-	struct descent *d, long epoch, network_sample *sample, void *context)
-{
-	int inputs = network_inputs(net);
-	double sum = 0;
-
-	if (!par->fresh)
-		shuffle(par, epoch, d->order);
-	for (long begin = 0; begin < par->samples; begin += par->batch) {
-		long n = par->samples - begin;
-
-		if (n > par->batch)
-			n = par->batch;
-		for (long i = 0; i < n; i++)
-			sample(context,
-				par->fresh ? epoch * par->samples + begin + i
-					   : d->order[begin + i],
-				d->x + i * inputs, d->target + i * d->targets);
-		sum += n * network_gradient(net, d->x, d->target, n, par->loss,
-				   par->loss_context, &par->penalty, d->gradient);
-		update(net, par, d);
-	}
-	return sum / par->samples;
-}
-
-enum network_status network_train(struct network *net, const struct network_training *par,
-	network_sample *sample, void *context)
-{
-	enum network_status status = NETWORK_OK;
-	struct descent d;
-
-	if (par->batch > net->batch || !allocate_descent(&d, net, par)) {
-		if (par->batch <= net->batch)
-			free_descent(&d);
-		return NETWORK_MEMORY;
-	}
-	for (long epoch = 0; epoch < par->epochs && status == NETWORK_OK; epoch++) {
-		double loss = run_epoch(net, par, &d, epoch, sample, context);
-
-		if (par->report)
-			par->report(context, epoch, loss);
-		if (!isfinite(loss))
-			status = NETWORK_DIVERGED;
-	}
-	for (size_t w = 0; w < net->count; w++)
-		if (!isfinite(net->weights[w]))
-			status = NETWORK_DIVERGED;
-	free_descent(&d);
-	return status;
-}
-
-/* Samples of an auto-encoder: what the layers before it give, as input and target. */
-struct encoder {
-	struct network *net;
-	int layer;
-	network_sample *sample;
-	void *context;
-	const struct network_training *par;
-	real *x, *target;
-};
-
-static void encoder_sample(void *context, long i, real *x, real *target)
-{
-	struct encoder *e = context;
-	const struct layer *l = &e->net->layer[e->layer];
-	const real *in = e->x;
-
-	e->sample(e->context, i, e->x, e->target);
-	if (e->layer) {
-		network_forward(e->net, e->x, 1);
-		in = l[-1].value;
-	}
-	memcpy(x, in, l->inputs * sizeof(real));
-	memcpy(target, in, l->inputs * sizeof(real));
-}
-
-static void encoder_report(void *context, long epoch, double loss)
-{
-	struct encoder *e = context;
-
-	if (e->par->report)
-		e->par->report(e->context, epoch, loss);
-}
-
-enum network_status network_pretrain(struct network *net, int i,
-	const struct network_training *par, network_sample *sample, void *context)
-{
-	struct layer *l = &net->layer[i];
-	struct network_layer pair[2] = { l->par,
-		{ NETWORK_DENSE, NETWORK_LINEAR, .units = l->inputs } };
-	struct encoder e = { net, i, sample, context, par, NULL, NULL };
-	struct network_training inner = *par;
-	enum network_status status = NETWORK_MEMORY;
-	struct network *both;
-
-	inner.loss = network_mse;
-	inner.penalty.sparse_layer = 0;
-	inner.report = encoder_report;
-	both = network_new(l->in, pair, 2, par->batch);
-	e.x = malloc(network_inputs(net) * sizeof(real));
-	inner.targets = 0;
-	e.target = malloc(
-		(par->targets ? par->targets : network_outputs(net)) * sizeof(real));
-	if (both && e.x && e.target) {
-		network_start(both, par->seed, par->repetition);
-		status = network_train(both, &inner, encoder_sample, &e);
-		memcpy(net->weights + l->weight, both->weights,
-			(l->bias - l->weight + l->par.units) * sizeof(real));
-	}
-	network_free(both);
-	free(e.x);
-	free(e.target);
-	return status;
 }

@@ -1,10 +1,10 @@
-/* network.h - small feed-forward networks trained by back-propagation
+/* network.h - small feed-forward networks and their derivatives by back-propagation
  *
  * A network is a chain of layers: dense, cascade (a dense layer that hands on its
  * input beside its output, so that a chain of them followed by a dense layer is the
  * cascade-forward network), two-dimensional convolution with zero padding to the same
  * size, and max pooling.  Matrix products go through CBLAS; everything else is here.
- * Rumelhart, Hinton, Williams, Nature 323 (1986) 533; Kingma, Ba, ICLR 2015 (Adam).
+ * Rumelhart, Hinton, Williams, Nature 323 (1986) 533.
  *
  * A sample is laid out x[channel][row][column]; samples follow one another.  Arithmetic
  * is in single precision, losses are summed in double.  Results depend on the arguments
@@ -14,9 +14,10 @@
  *		{ NETWORK_DENSE, NETWORK_TANH, .units = 10 },
  *		{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } };
  *	struct network *net = network_new((struct network_shape){ 1, 2, 500 }, layer, 2,
- *64); network_start(net, seed, 0); network_train(net, &(struct network_training){ .epochs
- *= 100, .samples = 1000, .batch = 64, .rate = 1e-3, .loss = network_mse }, sample,
- *context); const network_real *y = network_forward(net, x, 1); network_free(net);
+ *64); network_start(net, seed, 0);
+ *	... training.h ...
+ *	const network_real *y = network_forward(net, x, 1);
+ *	network_free(net);
  */
 #ifndef SIGNAL_NETWORK_H
 #define SIGNAL_NETWORK_H
@@ -60,6 +61,7 @@ struct network_shape network_input(const struct network *net);
 int network_inputs(const struct network *net); /* values per sample */
 int network_outputs(const struct network *net);
 int network_layers(const struct network *net);
+int network_batch(const struct network *net); /* as given to network_new() */
 const struct network_layer *network_layer(const struct network *net, int i);
 struct network_shape network_layer_output(const struct network *net, int i);
 
@@ -68,6 +70,8 @@ struct network_shape network_layer_output(const struct network *net, int i);
  * weight[filter][channel][row][column] then bias[filter]. */
 network_real *network_weights(struct network *net);
 size_t network_weight_count(const struct network *net);
+/* Those of layer i, and how many. */
+network_real *network_layer_weights(struct network *net, int i, size_t *count);
 
 /* Draws weights uniformly, +-sqrt(6 / (inputs + outputs)) (Glorot, Bengio 2010), for
  * ReLU +-sqrt(6 / inputs) (He et al. 2015); biases 0.  Stream (seed, repetition,
@@ -102,45 +106,5 @@ struct network_penalty {
 double network_gradient(struct network *net, const network_real *x,
 	const network_real *target, int n, network_loss *loss, const void *context,
 	const struct network_penalty *penalty, network_real *gradient);
-
-enum network_optimiser { NETWORK_ADAM, NETWORK_DESCENT };
-
-struct network_training {
-	enum network_optimiser optimiser;
-	double rate;     /* step length */
-	double rate_end; /* at the end, reached along a half cosine; 0: rate throughout */
-	long epochs;
-	long samples;  /* per epoch */
-	int batch;     /* samples per step */
-	int fresh;     /* each epoch takes new samples instead of the same, shuffled */
-	uint64_t seed; /* of the shuffling, with repetition */
-	uint32_t repetition;
-	int targets; /* values per target; 0: as many as outputs */
-	network_loss *loss;
-	const void *loss_context;
-	struct network_penalty penalty;
-	/* Called after each epoch with its mean loss, unless NULL. */
-	void (*report)(void *context, long epoch, double loss);
-};
-
-enum network_status {
-	NETWORK_OK,
-	NETWORK_MEMORY,
-	NETWORK_DIVERGED /* loss or weights no longer finite */
-};
-
-/* Fills sample i (i < samples, or counted on through all epochs if fresh). */
-typedef void network_sample(void *context, long i, network_real *x, network_real *target);
-
-enum network_status network_train(struct network *net, const struct network_training *par,
-	network_sample *sample, void *context);
-
-/* Trains layer i (dense, sigmoid) as the encoder of an auto-encoder on what the layers
- * before it give for the samples, with a linear decoder that is then thrown away.
- * The loss is the mean squared error of the reconstruction; par->loss is not used,
- * and par->penalty.sparse_layer is taken as the encoder.  Hinton, Salakhutdinov,
- * Science 313 (2006) 504. */
-enum network_status network_pretrain(struct network *net, int i,
-	const struct network_training *par, network_sample *sample, void *context);
 
 #endif

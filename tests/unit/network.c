@@ -1,7 +1,7 @@
 /* Networks: what each layer computes, training towards known answers, files of weights */
-#include "signal/network.h"
 #include "num/philox.h"
 #include "signal/netfile.h"
+#include "signal/training.h"
 #include "tap.h"
 #include <stdlib.h>
 #include <string.h>
