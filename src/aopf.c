@@ -247,13 +247,14 @@ static void step(struct unit_state *u, const struct series *in, struct table_out
 
 static char *column_names(void)
 {
+	char *longer;
 	char *names = xprintf(
 		"%st y grey prediction state order ess", unit_column ? "unit " : "");
 
 	if (isnan(threshold))
 		return names;
 	for (int i = 0; i < levels.n; i++) {
-		char digits[32], *longer;
+		char digits[32];
 		const char *decimals;
 
 		/* 0.05, 0.5 and 0.975 are called 05, 50 and 975. */
@@ -263,7 +264,25 @@ static char *column_names(void)
 		free(names);
 		names = longer;
 	}
-	return xprintf("%s p_no_crossing", names);
+	longer = xprintf("%s p_no_crossing", names);
+	free(names);
+	return longer;
+}
+
+/* Units of the columns written, when the input says "T Y"; NULL otherwise. */
+static char *column_units(const char *read)
+{
+	char t[32], y[32], more, *units, *longer;
+
+	if (!read || strchr(read, ':') || sscanf(read, "%31s %31s %c", t, y, &more) != 2)
+		return NULL;
+	units = xprintf("%s%s %s %s %s %s 1 1", unit_column ? "1 " : "", t, y, y, y, y);
+	for (int i = 0; i <= levels.n && !isnan(threshold); i++) {
+		longer = xprintf("%s %s", units, i < levels.n ? t : "1");
+		free(units);
+		units = longer;
+	}
+	return units;
 }
 
 static void finish(struct units *units)
@@ -301,7 +320,7 @@ int main(int argc, char **argv)
 	struct series *in;
 	struct table_out *out;
 	struct units units = { 0 };
-	char *cmd, *names;
+	char *cmd, *names, *units_line;
 	int i;
 
 	order.word = ORDER_WINDOW;
@@ -312,7 +331,8 @@ int main(int argc, char **argv)
 	in = series_open(argv[i], unit_column);
 	cmd = opt_cmd(table_key(series_table(in), "cmd"), NULL);
 	names = column_names();
-	out = table_create(NULL, cmd, table_key(series_table(in), "units"), names);
+	units_line = column_units(table_key(series_table(in), "units"));
+	out = table_create(NULL, cmd, units_line, names);
 	table_comment(out, "seed", "%ld", seed);
 	while (series_next(in))
 		step(find_unit(&units, series_unit(in)), in, out);
@@ -322,5 +342,6 @@ int main(int argc, char **argv)
 	series_close(in);
 	free(cmd);
 	free(names);
+	free(units_line);
 	return shell_done(0);
 }

@@ -38,6 +38,10 @@ near "states are nearer the truth than observations" "$(cat rms)" 0.03 0.02
 column ess out.tsv | awk '$1 < 1 - 1e-9 || $1 > 300 + 1e-9 { bad = 1 } END { print bad + 0 }' >bad
 is "1 <= ess <= N" "$(cat bad)" 0
 
+printf '# units: h L/min\nt\ty\n0\t1\n' >unit.tsv
+is "units of every column" "$(aopf -y 2 unit.tsv | sed -n 's/^# units: //p')" \
+	"h L/min L/min L/min L/min 1 1 h h h 1"
+
 # Rows come out as rows go in.
 rise 40 2 >short.tsv
 ok "one row out per row in" sh -c '

@@ -23,12 +23,12 @@ struct shape {
 
 #define SCALE 0.3
 #define STRAIGHT 3 /* log of what the straight line is given over the others */
-#define RATE(m)                                                     \
-	{                                                           \
+#define RATE(m)                                                 \
+	{                                                       \
 		DAMAGE_RATE, 0, m, -0.5 * ((m)-1) * ((m)-1) / 4 \
 	}
-#define POWER(f, k)                                                \
-	{                                                          \
+#define POWER(f, k)                                              \
+	{                                                        \
 		f, SCALE, k, -0.5 * ((k)-0.5) * ((k)-0.5) / 2.25 \
 	}
 
@@ -330,7 +330,7 @@ static double inverse_gaussian(double mean, double variance, double z, double u)
 
 static double draw_life(const struct passage *p, struct table *t)
 {
-	double sd, v, h, time, z;
+	double sd, v, h, time, z = 0;
 
 	sd = sqrt(p->variance * p->freedom / chi2_from_normal(p->freedom, take(t)));
 	v = -1;

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { LAYERS = 128 };
+enum { LAYERS = 128, HALF = LAYERS / 2 };
 
 /* Right end of the base layer and the common area of the layers. */
 static const double TAIL = 3.442619855899;
@@ -90,8 +90,7 @@ static inline double normal(struct draw *d)
 {
 	uint32_t w = next_word(d);
 	unsigned i = w & (LAYERS - 1);
-	double u =
-		((double)(int32_t)(w & ~(uint32_t)(LAYERS - 1)) + LAYERS / 2) * 0x1p-31;
+	double u = ((double)(int32_t)(w & ~(uint32_t)(LAYERS - 1)) + HALF) * 0x1p-31;
 	double x = u * d->edge[i];
 
 	return fabs(u) < d->share[i] ? x : draw_rest(d, i, x);

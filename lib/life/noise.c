@@ -1,5 +1,6 @@
 /* noise.c - see noise.h */
 #include "life/noise.h"
+#include "life/sort.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,13 +27,6 @@ void noise_free(struct noise *n)
 	free(n);
 }
 
-static int compare(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
 /* The median says nothing where most residuals vanish, as with rounded values: then the
  * root mean square does. */
 static double spread(struct noise *n, int count)
@@ -40,7 +34,7 @@ static double spread(struct noise *n, int count)
 	double median, sum = 0;
 
 	memcpy(n->sorted, n->residual, (size_t)count * sizeof *n->sorted);
-	qsort(n->sorted, (size_t)count, sizeof *n->sorted, compare);
+	sort_ascending(n->sorted, count);
 	median = 0.5 * (n->sorted[(count - 1) / 2] + n->sorted[count / 2]);
 	for (int i = 0; i < count; i++)
 		sum += n->residual[i] * n->residual[i];

@@ -5,6 +5,7 @@
 #include "life/grey.h"
 #include "life/history.h"
 #include "life/metrics.h"
+#include "life/sort.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -123,23 +124,6 @@ static void draw_grey(struct predict *p, const double *t, const double *x, int n
 	}
 }
 
-/* Shell's sort with Ciura's gaps: for some hundred values at every row, where the calls
- * that qsort() makes would take most of the time. */
-static void sort(double *v, int n)
-{
-	static const int gaps[] = { 1750, 701, 301, 132, 57, 23, 10, 4, 1 };
-
-	for (size_t g = 0; g < sizeof gaps / sizeof *gaps; g++)
-		for (int i = gaps[g]; i < n; i++) {
-			double x = v[i];
-			int k = i;
-
-			for (; k >= gaps[g] && v[k - gaps[g]] > x; k -= gaps[g])
-				v[k] = v[k - gaps[g]];
-			v[k] = x;
-		}
-}
-
 /* Lives by comparison with the fleet, given that the unit still lives: draws that have
  * run out already are replaced by others that have not.  0 where there are none. */
 static int draw_from_fleet(struct predict *p)
@@ -201,7 +185,7 @@ void predict_life(struct predict *p, const double *level, double *quantile, int 
 			p->life[i] = INFINITY;
 			never++;
 		}
-	sort(p->life, draws);
+	sort_ascending(p->life, draws);
 	for (int k = 0; k < n; k++)
 		quantile[k] = metric_quantile(p->life, (size_t)draws, level[k]);
 	*no_crossing = (double)never / draws;
