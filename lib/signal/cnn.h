@@ -7,9 +7,9 @@
  *
  * with 1 to CNN_SOURCES pulses and delta_i within reach of middle; output is how many
  * pulses there are and t_i, delta_i, a_i of each in order of arrival.  The section is
- *laid on a grid of CNN_PER_PULSE points per duration about its centre of energy, so that
- *one network serves any sampling rate, amplitude and gain.  The two channels of the grid
- *are
+ * laid on a grid of CNN_PER_PULSE points per duration about its centre of energy, so
+ * that one network serves any sampling rate, amplitude and gain.  The two channels of
+ * the grid are
  *
  *	y1 / scale   and   (y2(n + middle) / g - y1) / scale / (2 pi reach / T),
  *
@@ -18,8 +18,8 @@
  * much the section says beside what was known before.
  *
  * The outputs are one number per count (the largest names it), then for a count of one,
- * two, ... in turn the pulses' (t - centre) / T, (delta - middle) / reach, cbrt(a /
- *scale).
+ * two, ... in turn the pulses' (t - centre) / T, (delta - middle) / reach and
+ * cbrt(a / scale).
  *
  *	struct cnn_section s = { y1, y2, n, .duration = 100, .gain = 0.9, .reach = 1.5 };
  *	struct cnn_pulse p[CNN_SOURCES];

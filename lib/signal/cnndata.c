@@ -74,8 +74,7 @@ void cnndata_section(
 		       exp(draw(par, i, 1, log(par->reach[0]), log(par->reach[1])));
 	double gain = draw(par, i, 2, par->gain[0], par->gain[1]);
 	double t[CNN_SOURCES], edge = CNNDATA_DURATION / 2.0 + reach;
-	/* What surrounds the pulses, and where samples fall between, is left to chance.
-	 */
+	/* What surrounds the pulses, and where samples fall, is left to chance. */
 	double begin = edge + draw(par, i, 4, 0, CNNDATA_DURATION / 2.0);
 	double end = edge + draw(par, i, 5, 0, CNNDATA_DURATION / 2.0);
 

@@ -13,8 +13,9 @@
  *	struct network_layer layer[] = {
  *		{ NETWORK_DENSE, NETWORK_TANH, .units = 10 },
  *		{ NETWORK_DENSE, NETWORK_LINEAR, .units = 3 } };
- *	struct network *net = network_new((struct network_shape){ 1, 2, 500 }, layer, 2,
- *64); network_start(net, seed, 0);
+ *	struct network *net = network_new(
+ *		(struct network_shape){ 1, 2, 500 }, layer, 2, 64);
+ *	network_start(net, seed, 0);
  *	... training.h ...
  *	const network_real *y = network_forward(net, x, 1);
  *	network_free(net);
