@@ -1,5 +1,6 @@
 #include "contact/stress.h"
-#include "contact/stress_kernel.h"
+#include "contact/influence.h"
+#include "contact/window.h"
 #include "num/fft.h"
 
 #include <errno.h>
@@ -7,19 +8,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is summed: the five numbers the von Mises stress needs, and the sixth that makes
- * them the tensor. */
-enum { DEV_X, DEV_Y, DEV_XY, DEV_XZ, DEV_YZ, MISES, ZZ = MISES, TENSOR };
-
-enum { BLOCK = 8, BLOCKS_SIDE = 64, TABLE_STEP = 16, LAYERS_KEPT = 4096 };
-
-static const double TWO_PI = 6.283185307179586476925286766559;
+enum { BLOCK = 8, BLOCKS_SIDE = 64, TABLE_STEP = 16, LAYERS_KEPT = 4096, WINDOWS = 8 };
 
 /* Kernel of one layer, as far as it was needed. */
 struct layer {
-	int wx, wy;               /* offsets below these are in the table */
-	double *table;            /* [(wy-1 + j)(2 wx - 1) + wx-1 + i][MISES] */
-	double complex *spectrum; /* MISES spectra of the padded grid */
+	int wx, wy;              /* offsets below these are in the table */
+	double *table;           /* influence_table() */
+	int sx, sy;              /* the window of the spectra */
+	size_t bytes;            /* of the spectra */
+	double complex *spectra; /* window_spectra() */
+};
+
+/* A part of the grid and its transform. */
+struct part {
+	int x0, y0, wx, wy;
+	struct window *window; /* NULL: the place is free */
+	int loaded;            /* with the present pressure, from (x0, y0) on */
+	long used;             /* when last */
 };
 
 struct load {
@@ -34,14 +39,10 @@ struct block {
 
 struct stress {
 	struct stress_par par;
-	size_t px, py, points, half; /* transform, its points and coefficients */
-	struct fft *fft;
 	/* Pressures are held in this unit, a power of two near the largest, so that
 	 * squares neither overflow nor vanish. */
 	double unit;
 	double *pressure;
-	double complex *image; /* of the pressure; valid if imaged */
-	int imaged;
 	struct load *loads;
 	size_t nloads;
 	int x0, x1, y0, y1; /* of the loads, inclusive */
@@ -52,9 +53,9 @@ struct stress {
 	struct layer *layers; /* LAYERS_KEPT, some filled */
 	struct layer spare;   /* for those that are not kept */
 	size_t used;          /* bytes of kept kernels */
-	double *sums;         /* TENSOR fields of nx * ny, for the transform */
-	double *plane;        /* padded grid */
-	double complex *product;
+	struct part part[WINDOWS];
+	long clock;
+	double *sums; /* TENSOR_NUMBERS fields of nx * ny, for the transform */
 	struct stress_work work;
 };
 
@@ -98,10 +99,6 @@ struct stress *stress_new(const struct stress_par *par)
 	if (!s)
 		return NULL;
 	s->par = *par;
-	s->px = par->periodic ? (size_t)par->nx : fft_good_size(2 * (size_t)par->nx - 1);
-	s->py = par->periodic ? (size_t)par->ny : fft_good_size(2 * (size_t)par->ny - 1);
-	s->points = s->px * s->py;
-	s->half = (s->px / 2 + 1) * s->py;
 	s->side = (par->nx > par->ny ? par->nx : par->ny) / BLOCKS_SIDE;
 	s->side = s->side < BLOCK ? BLOCK : s->side;
 	s->bx = (par->nx + s->side - 1) / s->side;
@@ -122,7 +119,7 @@ struct stress *stress_new(const struct stress_par *par)
 static void layer_free(struct layer *l)
 {
 	free(l->table);
-	fft_free(l->spectrum);
+	fft_free(l->spectra);
 	memset(l, 0, sizeof(*l));
 }
 
@@ -133,11 +130,8 @@ void stress_free(struct stress *s)
 	for (int i = 0; s->layers && i < LAYERS_KEPT; i++)
 		layer_free(&s->layers[i]);
 	layer_free(&s->spare);
-	if (s->fft)
-		fft_done(s->fft);
-	fft_free(s->image);
-	fft_free(s->plane);
-	fft_free(s->product);
+	for (int i = 0; i < WINDOWS; i++)
+		window_free(s->part[i].window);
 	free(s->sums);
 	free(s->layers);
 	free(s->blocks);
@@ -185,7 +179,8 @@ int stress_load(struct stress *s, const double *pressure)
 		return -1;
 	}
 	s->unit = unit;
-	s->imaged = 0;
+	for (int i = 0; i < WINDOWS; i++)
+		s->part[i].loaded = 0;
 	s->nloads = 0;
 	s->total = 0;
 	memset(s->blocks, 0, (size_t)s->bx * s->by * sizeof(*s->blocks));
@@ -254,107 +249,6 @@ size_t stress_spans_max(const struct stress *s)
 	return (size_t)s->bx * s->par.ny;
 }
 
-/* Kernels */
-
-/* One stress component of pressure and shear together, at an offset with the signs of
- * flipx and flipy, from the coefficients of the quarter plane. */
-static double combine(const struct stress *s, const double *normal, const double *shear,
-	int flipx, int flipy, enum stress_component c)
-{
-	int odd = (flipx && stress_odd(c, 0)) ^ (flipy && stress_odd(c, 1));
-	int shear_odd = odd ^ (s->par.axis ? flipy : flipx);
-	double value = odd ? -normal[c] : normal[c];
-
-	if (shear)
-		value += (shear_odd ? -s->par.mu : s->par.mu) * shear[c];
-	return value;
-}
-
-/* Quarter-plane coefficients of a layer; for shear along y the axes change places. */
-struct quarter {
-	int wx, wy, turned;
-	double *normal, *shear;
-};
-
-static void turn(double *t)
-{
-	double xx = t[STRESS_XX], xz = t[STRESS_XZ];
-
-	t[STRESS_XX] = t[STRESS_YY];
-	t[STRESS_YY] = xx;
-	t[STRESS_XZ] = t[STRESS_YZ];
-	t[STRESS_YZ] = xz;
-}
-
-static int quarter_new(struct stress *s, double z, int wx, int wy, struct quarter *q)
-{
-	const struct stress_par *p = &s->par;
-	size_t n = (size_t)wx * wy * STRESS_COMPONENTS;
-
-	q->wx = wx;
-	q->wy = wy;
-	q->turned = p->mu > 0 && p->axis == 1;
-	q->shear = NULL;
-	q->normal = malloc(n * (p->mu > 0 ? 2 : 1) * sizeof(*q->normal));
-	if (!q->normal)
-		return -1;
-	if (p->mu > 0)
-		q->shear = q->normal + n;
-	s->work.kernel_cells += (double)wx * wy;
-	if (q->turned ? stress_cells(p->ay, p->ax, p->nu, z, wy, wx, q->normal, q->shear)
-		      : stress_cells(
-				p->ax, p->ay, p->nu, z, wx, wy, q->normal, q->shear)) {
-		free(q->normal);
-		return -1;
-	}
-	for (size_t i = 0; q->turned && q->shear && i < n; i += STRESS_COMPONENTS) {
-		turn(q->normal + i);
-		turn(q->shear + i);
-	}
-	return 0;
-}
-
-/* Number c (DEV_X ...) of the kernel at an offset. */
-static double quarter_at(
-	const struct stress *s, const struct quarter *q, int i, int j, int c)
-{
-	static const enum stress_component first[TENSOR] = { [DEV_X] = STRESS_XX,
-		[DEV_Y] = STRESS_YY,
-		[DEV_XY] = STRESS_XY,
-		[DEV_XZ] = STRESS_XZ,
-		[DEV_YZ] = STRESS_YZ,
-		[ZZ] = STRESS_ZZ };
-	int ai = abs(i), aj = abs(j);
-	size_t at = (q->turned ? (size_t)ai * q->wy + aj : (size_t)aj * q->wx + ai) *
-		    STRESS_COMPONENTS;
-	const double *normal = q->normal + at, *shear = q->shear ? q->shear + at : NULL;
-	double value = combine(s, normal, shear, i < 0, j < 0, first[c]);
-
-	if (c == DEV_X || c == DEV_Y)
-		value -= combine(s, normal, shear, i < 0, j < 0, STRESS_ZZ);
-	return value;
-}
-
-/* Table of all offsets |i| < wx, |j| < wy with count numbers each. */
-static double *table_new(struct stress *s, double z, int wx, int wy, int count)
-{
-	struct quarter q;
-	size_t rows = 2 * (size_t)wy - 1, cols = 2 * (size_t)wx - 1;
-	double *table = malloc(rows * cols * count * sizeof(*table)), *at = table;
-
-	if (!table || quarter_new(s, z, wx, wy, &q)) {
-		free(table);
-		return NULL;
-	}
-	for (int j = 1 - wy; j < wy; j++)
-		for (int i = 1 - wx; i < wx; i++, at += count) {
-			for (int c = 0; c < count; c++)
-				at[c] = quarter_at(s, &q, i, j, c);
-		}
-	free(q.normal);
-	return table;
-}
-
 /* Direct sums */
 
 struct direct {
@@ -367,14 +261,6 @@ struct direct {
 	double *mises;
 };
 
-static double mises_of(const double v[MISES])
-{
-	double t = v[DEV_XY] * v[DEV_XY] + v[DEV_XZ] * v[DEV_XZ] + v[DEV_YZ] * v[DEV_YZ];
-	double d = v[DEV_X] * v[DEV_X] + v[DEV_Y] * v[DEV_Y] - v[DEV_X] * v[DEV_Y];
-
-	return sqrt(d + 3 * t);
-}
-
 static void sum_span(void *context, size_t job, int worker)
 {
 	const struct direct *d = context;
@@ -385,17 +271,18 @@ static void sum_span(void *context, size_t job, int worker)
 	(void)worker;
 	for (int x = r->begin; x < r->end; x++) {
 		const double *node =
-			d->table + ((r->y + d->wy - 1) * stride + x + d->wx - 1) * MISES;
-		double v[MISES] = { 0 };
+			d->table +
+			((r->y + d->wy - 1) * stride + x + d->wx - 1) * MISES_NUMBERS;
+		double v[MISES_NUMBERS] = { 0 };
 
 		for (size_t i = 0; i < s->nloads; i++) {
 			const double *k = node - d->place[i];
 			double p = s->loads[i].pressure;
 
-			for (int c = 0; c < MISES; c++)
+			for (int c = 0; c < MISES_NUMBERS; c++)
 				v[c] += p * k[c];
 		}
-		d->mises[(size_t)r->y * s->par.nx + x] = s->unit * mises_of(v);
+		d->mises[(size_t)r->y * s->par.nx + x] = s->unit * influence_mises(v);
 	}
 }
 
@@ -420,17 +307,33 @@ static void table_extent(const struct stress *s, const struct stress_span *span,
 	*wy = y < s->par.ny ? y : s->par.ny;
 }
 
+static size_t table_bytes(int wx, int wy)
+{
+	return (2 * (size_t)wx - 1) * (2 * (size_t)wy - 1) * MISES_NUMBERS *
+	       sizeof(double);
+}
+
+static double *table_new(struct stress *s, double z, int wx, int wy)
+{
+	double *table = malloc(table_bytes(wx, wy));
+	struct influence f;
+
+	if (!table || influence_new(&f, &s->par, z, wx, wy)) {
+		free(table);
+		return NULL;
+	}
+	influence_table(&f, table);
+	influence_free(&f);
+	s->work.kernel_cells += (double)wx * wy;
+	return table;
+}
+
 static int claim(struct stress *s, size_t bytes)
 {
 	if (s->used + bytes > s->par.memory)
 		return 0;
 	s->used += bytes;
 	return 1;
-}
-
-static size_t table_bytes(int wx, int wy)
-{
-	return (2 * (size_t)wx - 1) * (2 * (size_t)wy - 1) * MISES * sizeof(double);
 }
 
 /* The layer's kernel for direct sums, kept if there is room. */
@@ -451,7 +354,7 @@ static struct layer *layer_table(struct stress *s, long layer, int wx, int wy)
 		l = &s->spare;
 		layer_free(l);
 	}
-	l->table = table_new(s, depth(s, layer), wx, wy, MISES);
+	l->table = table_new(s, depth(s, layer), wx, wy);
 	l->wx = wx;
 	l->wy = wy;
 	return l->table ? l : NULL;
@@ -473,7 +376,7 @@ static int mises_direct(struct stress *s, long layer, const struct stress_span *
 	}
 	for (size_t i = 0; i < s->nloads; i++)
 		place[i] = (s->loads[i].y * (2 * (ptrdiff_t)l->wx - 1) + s->loads[i].x) *
-			   MISES;
+			   MISES_NUMBERS;
 	d.table = l->table;
 	d.wx = l->wx;
 	d.wy = l->wy;
@@ -488,167 +391,155 @@ static int mises_direct(struct stress *s, long layer, const struct stress_span *
 
 /* Fourier sums */
 
-static int fourier_start(struct stress *s)
+static int round_up(int n, int step, int most)
 {
-	if (s->fft)
-		return 0;
-	s->plane = fft_alloc(s->points);
-	s->image = fft_alloc_complex(s->half);
-	s->product = fft_alloc_complex(s->half);
-	s->sums = malloc((size_t)s->par.nx * s->par.ny * TENSOR * sizeof(*s->sums));
-	if (!s->plane || !s->image || !s->product || !s->sums)
-		return -1;
-	s->fft = fft_new(s->px, s->py);
-	return s->fft ? 0 : -1;
+	n = (n + step - 1) / step * step;
+	return n < most ? n : most;
 }
 
-static void image_pressure(struct stress *s)
-{
-	if (s->imaged)
-		return;
-	memset(s->plane, 0, s->points * sizeof(*s->plane));
-	for (int y = 0; y < s->par.ny; y++)
-		memcpy(s->plane + y * s->px, s->pressure + (size_t)y * s->par.nx,
-			s->par.nx * sizeof(*s->plane));
-	fft_forward(s->fft, s->plane, s->image);
-	s->work.transforms++;
-	s->imaged = 1;
-}
-
-/* Spectra of the cells' influence, wrapped around. */
-static int free_spectra(struct stress *s, double z, int count, double complex *out)
+/* The smallest window of the few sizes there are that holds all loads and spans. */
+static struct part part_for(
+	const struct stress *s, const struct stress_span *span, size_t count)
 {
 	int nx = s->par.nx, ny = s->par.ny;
-	struct quarter q;
+	int x0 = s->x0, x1 = s->x1, y0 = s->y0, y1 = s->y1;
+	struct part p = { 0 };
 
-	if (quarter_new(s, z, nx, ny, &q))
-		return -1;
-	for (int c = 0; c < count; c++) {
-		memset(s->plane, 0, s->points * sizeof(*s->plane));
-		for (int j = 1 - ny; j < ny; j++)
-			for (int i = 1 - nx; i < nx; i++) {
-				size_t x = i < 0 ? i + s->px : (size_t)i;
-				size_t y = j < 0 ? j + s->py : (size_t)j;
-
-				s->plane[y * s->px + x] = quarter_at(s, &q, i, j, c);
-			}
-		fft_forward(s->fft, s->plane, out + c * s->half);
-		s->work.transforms++;
+	for (size_t i = 0; i < count; i++) {
+		x0 = span[i].begin < x0 ? span[i].begin : x0;
+		x1 = larger(x1, span[i].end - 1);
+		y0 = span[i].y < y0 ? span[i].y : y0;
+		y1 = larger(y1, span[i].y);
 	}
-	free(q.normal);
-	return 0;
+	p.wx = s->par.periodic ? nx : round_up(x1 - x0 + 1, larger(nx / 8, 8), nx);
+	p.wy = s->par.periodic ? ny : round_up(y1 - y0 + 1, larger(ny / 8, 8), ny);
+	p.x0 = x0 + p.wx < nx ? x0 : nx - p.wx;
+	p.y0 = y0 + p.wy < ny ? y0 : ny - p.wy;
+	return p;
 }
 
-/* Westergaard's harmonic loads.  A wave of pressure gives plane strain along its wave
- * vector (a, b); a wave of shear is split along it (plane strain) and across it
- * (antiplane).  The mean load meets a laterally confined half-space. */
-static void harmonic(const struct stress_par *p, double kx, double ky, double z,
-	double complex out[TENSOR])
+static struct part whole_grid(const struct stress *s)
 {
-	double q = hypot(kx, ky), e = exp(-q * z), nu = p->nu, a, b, along, across;
-	double complex ll, tt, zz, lt, lz, tz, xx, yy;
-
-	if (q == 0) {
-		out[DEV_X] = out[DEV_Y] = (1 - 2 * nu) / (1 - nu);
-		out[DEV_XY] = 0;
-		out[DEV_XZ] = p->axis == 0 ? -p->mu : 0;
-		out[DEV_YZ] = p->axis == 1 ? -p->mu : 0;
-		out[ZZ] = -1;
-		return;
-	}
-	a = kx / q, b = ky / q;
-	along = p->mu * (p->axis == 0 ? a : b);
-	across = p->mu * (p->axis == 0 ? -b : a);
-	q *= z;
-	ll = e * (q - 1 + I * along * (2 - q));
-	tt = 2 * nu * e * (I * along - 1);
-	zz = e * (-1 - q + I * along * q);
-	lt = e * I * across;
-	lz = e * (I * q - along * (1 - q));
-	tz = -e * across;
-	xx = a * a * ll + b * b * tt - 2 * a * b * lt;
-	yy = b * b * ll + a * a * tt + 2 * a * b * lt;
-	out[DEV_X] = xx - zz;
-	out[DEV_Y] = yy - zz;
-	out[DEV_XY] = a * b * (ll - tt) + (a * a - b * b) * lt;
-	out[DEV_XZ] = a * lz - b * tz;
-	out[DEV_YZ] = b * lz + a * tz;
-	out[ZZ] = zz;
+	return (struct part){ .wx = s->par.nx, .wy = s->par.ny };
 }
 
-static void periodic_spectra(struct stress *s, double z, int count, double complex *out)
+/* The window of this size, from those kept or in place of the one not used for longest,
+ * with the pressure loaded; NULL when out of memory. */
+static struct part *open_part(struct stress *s, struct part want)
 {
-	int nx = s->par.nx, ny = s->par.ny;
-	double ux = TWO_PI / (nx * s->par.ax), uy = TWO_PI / (ny * s->par.ay);
+	struct part *p = &s->part[0];
 
-	for (int j = 0; j < ny; j++)
-		for (int i = 0; i <= nx / 2; i++) {
-			size_t at = (size_t)j * (nx / 2 + 1) + i;
-			int edge = (nx % 2 == 0 && i == nx / 2) ||
-				   (ny % 2 == 0 && j == ny / 2);
-			double complex v[TENSOR];
+	if (!s->sums)
+		s->sums = malloc((size_t)s->par.nx * s->par.ny * TENSOR_NUMBERS *
+				 sizeof(*s->sums));
+	if (!s->sums)
+		return NULL;
+	for (int i = 0; i < WINDOWS; i++) {
+		struct part *q = &s->part[i];
 
-			harmonic(&s->par, i * ux, (2 * j > ny ? j - ny : j) * uy, z, v);
-			/* The shortest wave has no sense of direction. */
-			for (int c = 0; c < count; c++)
-				out[c * s->half + at] = edge ? creal(v[c]) : v[c];
+		if (q->window && q->wx == want.wx && q->wy == want.wy) {
+			p = q;
+			break;
 		}
+		if (q->used < p->used)
+			p = q;
+	}
+	if (!p->window || p->wx != want.wx || p->wy != want.wy) {
+		window_free(p->window);
+		*p = want;
+		p->window = window_new(&s->par, p->wx, p->wy);
+	}
+	if (p->window && !(p->loaded && p->x0 == want.x0 && p->y0 == want.y0)) {
+		window_load(p->window, s->pressure, want.x0, want.y0);
+		p->x0 = want.x0;
+		p->y0 = want.y0;
+		p->loaded = 1;
+		s->work.transforms++;
+	}
+	p->used = ++s->clock;
+	return p->window ? p : NULL;
 }
 
-/* Sums of the first count numbers, in s->sums. */
-static int sum_fourier(struct stress *s, const double complex *spectrum, int count)
+static double complex *spectra_new(
+	struct stress *s, const struct part *p, long layer, int count)
 {
-	size_t n = (size_t)s->par.nx * s->par.ny;
-	double scale = 1. / (double)s->points;
+	double complex *out = fft_alloc_complex(count * window_size(p->window));
 
-	image_pressure(s);
-	for (int c = 0; c < count; c++) {
-		for (size_t i = 0; i < s->half; i++)
-			s->product[i] = s->image[i] * spectrum[c * s->half + i] * scale;
-		fft_inverse(s->fft, s->product, s->plane);
-		s->work.transforms++;
-		for (int y = 0; y < s->par.ny; y++)
-			memcpy(s->sums + c * n + (size_t)y * s->par.nx,
-				s->plane + y * s->px, s->par.nx * sizeof(*s->sums));
+	if (out && window_spectra(p->window, depth(s, layer), count, out)) {
+		fft_free(out);
+		return NULL;
+	}
+	if (!s->par.periodic) {
+		s->work.transforms += count;
+		s->work.kernel_cells += (double)p->wx * p->wy;
+	}
+	return out;
+}
+
+/* Spectra of a layer for this window, kept if there is room. */
+static struct layer *layer_spectra(struct stress *s, const struct part *p, long layer)
+{
+	struct layer *l = layer < LAYERS_KEPT ? &s->layers[layer] : &s->spare;
+	size_t bytes = MISES_NUMBERS * window_size(p->window) * sizeof(*l->spectra);
+
+	if (l->spectra && l->sx == p->wx && l->sy == p->wy)
+		return l;
+	if (l->spectra) {
+		s->used -= l->bytes;
+		fft_free(l->spectra);
+		l->spectra = NULL;
+	}
+	if (l == &s->spare || !claim(s, bytes)) {
+		l = &s->spare;
+		layer_free(l);
+	}
+	l->spectra = spectra_new(s, p, layer, MISES_NUMBERS);
+	l->sx = p->wx;
+	l->sy = p->wy;
+	l->bytes = bytes;
+	return l->spectra ? l : NULL;
+}
+
+static void sum_numbers(
+	struct stress *s, const struct part *p, const double complex *spectra, int count)
+{
+	size_t n = (size_t)p->wx * p->wy;
+
+	for (int c = 0; c < count; c++)
+		window_sum(p->window, spectra, c, s->sums + c * n);
+	s->work.transforms += count;
+	s->work.fourier_layers++;
+}
+
+static int mises_fourier(struct stress *s, long layer, struct part want, double *mises)
+{
+	struct part *p = open_part(s, want);
+	struct layer *l = p ? layer_spectra(s, p, layer) : NULL;
+	size_t n = (size_t)want.wx * want.wy;
+
+	if (!l)
+		return -1;
+	sum_numbers(s, p, l->spectra, MISES_NUMBERS);
+	if (l == &s->spare)
+		layer_free(l);
+	for (size_t i = 0; i < n; i++) {
+		size_t x = p->x0 + i % p->wx, y = p->y0 + i / p->wx;
+		double v[MISES_NUMBERS];
+
+		for (int c = 0; c < MISES_NUMBERS; c++)
+			v[c] = s->sums[c * n + i];
+		mises[y * s->par.nx + x] = s->unit * influence_mises(v);
 	}
 	return 0;
 }
 
-/* Largest von Mises stress of a wave at its depth x = q z, by the norm of its tensor:
- * falls with x for all nu and mu. */
-static double wave_bound(const struct stress_par *p, double x)
-{
-	double normal = 2 + 4 * p->nu * p->nu + 4 * x * x;
-	double shear = 10 - 8 * x + 4 * x * x + 4 * p->nu * p->nu;
-
-	return sqrt(1.5) * exp(-x) * (sqrt(normal) + p->mu * sqrt(shear));
-}
-
-/* Could the sum over all waves of the pressure exceed the limit? */
+/* Could the waves of the pressure exceed the limit, in units? */
 static int waves_may_fail(struct stress *s, double z, double limit)
 {
-	int nx = s->par.nx, ny = s->par.ny, half = nx / 2 + 1;
-	double ux = TWO_PI / (nx * s->par.ax), uy = TWO_PI / (ny * s->par.ay), sum;
-	double complex mean[TENSOR];
-	double v[MISES];
+	struct part *p = open_part(s, whole_grid(s));
 
-	if (fourier_start(s))
-		return 1; /* the layer itself will tell */
-	image_pressure(s);
-	harmonic(&s->par, 0, 0, z, mean);
-	for (int c = 0; c < MISES; c++)
-		v[c] = creal(mean[c] * s->image[0]);
-	sum = mises_of(v);
-	limit *= (double)s->points;
-	for (int j = 0; j < ny && sum <= limit; j++)
-		for (int i = j == 0; i < half; i++) {
-			double q = hypot(i * ux, (2 * j > ny ? j - ny : j) * uy);
-			int twice = i > 0 && 2 * i < nx;
-
-			sum += (twice + 1) * cabs(s->image[(size_t)j * half + i]) *
-			       wave_bound(&s->par, q * z);
-		}
-	return sum > limit;
+	/* Out of memory: the layer itself will tell. */
+	return !p || window_bound(p->window, z) > limit;
 }
 
 size_t stress_reach(struct stress *s, long layer, double limit, struct stress_span *span)
@@ -688,77 +579,37 @@ size_t stress_reach(struct stress *s, long layer, double limit, struct stress_sp
 
 double stress_deep(const struct stress *s, long layer)
 {
-	double point[STRESS_COMPONENTS], z = depth(s, layer), v[MISES];
-	double complex mean[TENSOR];
+	double point[STRESS_COMPONENTS], z = depth(s, layer), v[MISES_NUMBERS];
+	double complex mean[TENSOR_NUMBERS];
 
 	if (!s->par.periodic) {
 		stress_point(s->par.nu, s->par.mu, 0, 0, 1, point);
 		return stress_von_mises(point) * s->total / (z * z);
 	}
-	harmonic(&s->par, 0, 0, z, mean);
-	for (int c = 0; c < MISES; c++)
+	influence_wave(&s->par, 0, 0, z, mean);
+	for (int c = 0; c < MISES_NUMBERS; c++)
 		v[c] = creal(mean[c]);
-	return mises_of(v) * s->total / (s->par.nx * s->par.ax * s->par.ny * s->par.ay);
-}
-
-static double complex *spectra_new(struct stress *s, long layer, int count)
-{
-	double complex *out = fft_alloc_complex(count * s->half);
-
-	if (!out)
-		return NULL;
-	if (s->par.periodic) {
-		periodic_spectra(s, depth(s, layer), count, out);
-	} else if (free_spectra(s, depth(s, layer), count, out)) {
-		fft_free(out);
-		return NULL;
-	}
-	return out;
-}
-
-static int mises_fourier(struct stress *s, long layer, double *mises)
-{
-	struct layer *l = layer < LAYERS_KEPT ? &s->layers[layer] : &s->spare;
-	size_t n = (size_t)s->par.nx * s->par.ny;
-
-	if (fourier_start(s))
-		return -1;
-	if (!l->spectrum) {
-		if (l == &s->spare || !claim(s, MISES * s->half * sizeof(*l->spectrum)))
-			l = &s->spare;
-		l->spectrum = spectra_new(s, layer, MISES);
-	}
-	if (!l->spectrum)
-		return -1;
-	sum_fourier(s, l->spectrum, MISES);
-	if (l == &s->spare)
-		layer_free(l);
-	for (size_t i = 0; i < n; i++) {
-		double v[MISES];
-
-		for (int c = 0; c < MISES; c++)
-			v[c] = s->sums[c * n + i];
-		mises[i] = s->unit * mises_of(v);
-	}
-	s->work.fourier_layers++;
-	return 0;
+	return influence_mises(v) * s->total /
+	       (s->par.nx * s->par.ax * s->par.ny * s->par.ay);
 }
 
 /* Direct sums cost a multiplication per load and node, transforms some per point and
  * doubling; the factor is where both take the same time (tests/bench/stress.sh). */
-static int prefer_direct(const struct stress *s, double nodes)
+static int prefer_direct(const struct stress *s, double nodes, const struct part *p)
 {
 	static const double CROSSOVER = 0.35;
+	double points = 4. * p->wx * p->wy;
 
 	if (s->par.periodic || s->par.method == STRESS_FOURIER)
 		return 0;
 	return s->par.method == STRESS_DIRECT ||
-	       nodes * s->nloads < CROSSOVER * s->points * log2((double)s->points + 1);
+	       nodes * s->nloads < CROSSOVER * points * log2(points);
 }
 
 int stress_mises(struct stress *s, long layer, const struct stress_span *span,
 	size_t count, double *mises)
 {
+	struct part want;
 	double nodes = 0;
 
 	for (size_t i = 0; i < count; i++)
@@ -766,34 +617,35 @@ int stress_mises(struct stress *s, long layer, const struct stress_span *span,
 	if (nodes == 0)
 		return 0;
 	s->work.nodes += nodes;
-	if (prefer_direct(s, nodes))
+	want = s->nloads ? part_for(s, span, count) : whole_grid(s);
+	if (prefer_direct(s, nodes, &want))
 		return mises_direct(s, layer, span, count, mises);
-	return mises_fourier(s, layer, mises);
+	return mises_fourier(s, layer, want, mises);
 }
 
 int stress_tensor(struct stress *s, long layer, double *tensor)
 {
+	static const enum stress_component place[TENSOR_NUMBERS] = { [DEV_X] = STRESS_XX,
+		[DEV_Y] = STRESS_YY,
+		[DEV_XY] = STRESS_XY,
+		[DEV_XZ] = STRESS_XZ,
+		[DEV_YZ] = STRESS_YZ,
+		[DEV_ZZ] = STRESS_ZZ };
 	size_t n = (size_t)s->par.nx * s->par.ny;
-	double complex *spectrum;
+	struct part *p = open_part(s, whole_grid(s));
+	double complex *spectra = p ? spectra_new(s, p, layer, TENSOR_NUMBERS) : NULL;
 
-	if (fourier_start(s))
+	if (!spectra)
 		return -1;
-	spectrum = spectra_new(s, layer, TENSOR);
-	if (!spectrum)
-		return -1;
-	sum_fourier(s, spectrum, TENSOR);
-	fft_free(spectrum);
-	for (size_t i = 0; i < n; i++) {
-		double zz = s->sums[ZZ * n + i];
+	sum_numbers(s, p, spectra, TENSOR_NUMBERS);
+	fft_free(spectra);
+	for (int c = 0; c < TENSOR_NUMBERS; c++)
+		for (size_t i = 0; i < n; i++) {
+			double zz =
+				c == DEV_X || c == DEV_Y ? s->sums[DEV_ZZ * n + i] : 0;
 
-		tensor[STRESS_XX * n + i] = s->unit * (s->sums[DEV_X * n + i] + zz);
-		tensor[STRESS_YY * n + i] = s->unit * (s->sums[DEV_Y * n + i] + zz);
-		tensor[STRESS_ZZ * n + i] = s->unit * zz;
-		tensor[STRESS_XY * n + i] = s->unit * s->sums[DEV_XY * n + i];
-		tensor[STRESS_XZ * n + i] = s->unit * s->sums[DEV_XZ * n + i];
-		tensor[STRESS_YZ * n + i] = s->unit * s->sums[DEV_YZ * n + i];
-	}
-	s->work.fourier_layers++;
-	s->work.nodes += n;
+			tensor[place[c] * n + i] = s->unit * (s->sums[c * n + i] + zz);
+		}
+	s->work.nodes += (double)n;
 	return 0;
 }

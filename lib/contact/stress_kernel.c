@@ -71,7 +71,7 @@ static void difference(const double *pp, const double *pm, const double *mp,
 	const double *mm, double *out)
 {
 	for (int c = 0; c < N; c++)
-		out[c] = ((pp[c] - pm[c]) - (mp[c] - mm[c])) / TWO_PI;
+		out[c] = ((pp[c] - pm[c]) - (mp[c] - mm[c])) * (1 / TWO_PI);
 }
 
 void stress_patch(double a, double b, double nu, double x, double y, double z,
@@ -89,33 +89,33 @@ void stress_patch(double a, double b, double nu, double x, double y, double z,
 		difference(s[0], s[1], s[2], s[3], shear);
 }
 
-/* Boussinesq and Cerruti (along x), per unit load, in the form without 0/0 on the axis.
- */
+/* Boussinesq and Cerruti (along x), per unit load and times 2 pi, in the form without 0/0
+ * on the axis.  shear may be NULL. */
 static void point_load(
 	double x, double y, double z, double nu, double *normal, double *shear)
 {
-	double r2 = x * x + y * y + z * z, r = sqrt(r2), r3 = r2 * r, r5 = r3 * r2;
-	double k = 1 - 2 * nu, d = r + z, f = 3 * z / r5;
-	double g = (2 * r + z) / (r3 * d * d), l = z / r3 - 1 / (r * d);
+	double r = sqrt(x * x + y * y + z * z), k = 1 - 2 * nu, d = r + z;
+	double ir = 1 / r, id = 1 / d, ir3 = ir * ir * ir, f = 3 * z * ir3 * ir * ir;
+	double m = k * (2 * r + z) * ir3 * id * id - f; /* of x^2, y^2 and x y */
+	double l = k * (z * ir3 - ir * id);
 
-	normal[STRESS_XX] = (-f * x * x + k * (l + x * x * g)) / TWO_PI;
-	normal[STRESS_YY] = (-f * y * y + k * (l + y * y * g)) / TWO_PI;
-	normal[STRESS_ZZ] = -f * z * z / TWO_PI;
-	normal[STRESS_XY] = (-f * x * y + k * x * y * g) / TWO_PI;
-	normal[STRESS_XZ] = -f * x * z / TWO_PI;
-	normal[STRESS_YZ] = -f * y * z / TWO_PI;
+	normal[STRESS_XX] = m * x * x + l;
+	normal[STRESS_YY] = m * y * y + l;
+	normal[STRESS_ZZ] = -f * z * z;
+	normal[STRESS_XY] = m * x * y;
+	normal[STRESS_XZ] = -f * x * z;
+	normal[STRESS_YZ] = -f * y * z;
 	if (shear) {
-		double e = (3 * r + z) / (r3 * d * d * d), h = 1 / (r * d * d);
+		double h = k * ir * id * id;
 
-		f = 3 * x / r5;
-		shear[STRESS_XX] =
-			(-f * x * x + k * (x / r3 - 3 * x * h + x * x * x * e)) / TWO_PI;
-		shear[STRESS_YY] =
-			(-f * y * y + k * (x / r3 - x * h + x * y * y * e)) / TWO_PI;
-		shear[STRESS_ZZ] = -f * z * z / TWO_PI;
-		shear[STRESS_XY] = (-f * x * y + k * (-y * h + x * x * y * e)) / TWO_PI;
-		shear[STRESS_XZ] = -f * x * z / TWO_PI;
-		shear[STRESS_YZ] = -f * y * z / TWO_PI;
+		f = 3 * ir3 * ir * ir;
+		m = k * (3 * r + z) * ir3 * id * id * id - f;
+		shear[STRESS_XX] = x * (m * x * x + k * ir3 - 3 * h);
+		shear[STRESS_YY] = x * (m * y * y + k * ir3 - h);
+		shear[STRESS_ZZ] = -f * x * z * z;
+		shear[STRESS_XY] = y * (m * x * x - h);
+		shear[STRESS_XZ] = -f * x * x * z;
+		shear[STRESS_YZ] = -f * x * y * z;
 	}
 }
 
@@ -126,7 +126,7 @@ void stress_point(double nu, double mu, double x, double y, double z,
 
 	point_load(x, y, z, nu, stress, shear);
 	for (int c = 0; c < N; c++)
-		stress[c] += mu * shear[c];
+		stress[c] = (stress[c] + mu * shear[c]) / TWO_PI;
 }
 
 /* Point load over a cell by 3 x 3 Gauss-Legendre points. */
@@ -143,7 +143,7 @@ static void far_cell(double x, double y, double z, double ax, double ay, double 
 		memset(shear, 0, N * sizeof(*shear));
 	for (int j = 0; j < 3; j++)
 		for (int i = 0; i < 3; i++) {
-			double area = ax * ay * weight[i] * weight[j];
+			double area = ax * ay * weight[i] * weight[j] / TWO_PI;
 
 			point_load(x - 0.5 * ax * node[i], y - 0.5 * ay * node[j], z, nu,
 				n, shear ? s : NULL);
