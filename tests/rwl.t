@@ -111,6 +111,15 @@ ok "dry sliding" rwl --new -w even.tsv:21MPa -w low.tsv:0.15MPa -p 1h --archard 
 near "Archard's law" "$(cell out 1 archard)" \
 	"$(calc "5e-6 / (1e-9 * 20.94 / 1.065e9 * (0.45 * 21.15e6 + 0.1 * 10.575e6))")" 1e-6
 
+# What debrisgen writes: the particles and their summary tell the same.
+roughgen --points 32 --length 25um --sq 0.8um --corr 5um --count 4 |
+	bemcontact --pressure 21MPa --young 210GPa |
+	debrisgen --yield 355MPa --friction 0.3 --steps 3 --young 210GPa --summary steps.tsv >particles.tsv 2>err
+for f in particles.tsv steps.tsv; do
+	rwl --new -w $f -p 1h -B 625um2 -g 15um -i 10um -c 50 | grep -v '^#' >$f.life
+done
+same "a particle table and its summary" particles.tsv.life steps.tsv.life
+
 # Comparators and scores on an exponential leakage, which a grey model foretells.
 awk 'BEGIN { print "t\tleakage"; for (t = 0; t <= 600; t += 50) printf "%d\t%.12g\n", t, 1.5 * exp(t / 1186 * log(2.8 / 1.5)) }' >exp.tsv
 ok "grey model and scores" rwl -w even.tsv -u L/min -t h --grey --eol 1186h exp.tsv
