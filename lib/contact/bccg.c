@@ -19,6 +19,7 @@
 #include "contact/state.h"
 #include "num/fft.h"
 #include <math.h>
+#include <stdlib.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -75,7 +76,8 @@ int contact_make_preconditioner(struct contact *c)
 	if (!c->periodic)
 		return -1;
 	c->inverse = convolve_alloc(c->periodic);
-	if (!c->inverse)
+	c->active = malloc(c->n);
+	if (!c->inverse || !c->active)
 		return -1;
 	convolve_spectrum(c->periodic, c->inverse, stiffness, &c->par);
 	make_extension(c);
@@ -141,8 +143,9 @@ static void set_residual(void *context, size_t begin, size_t end, struct sweep *
 			double p = c->p[i], g = gap_at(c, i);
 
 			certify_cell(c, p, g, &t);
+			c->active[i] = (unsigned char)is_active(c, p, g);
 			c->residual[i] =
-				is_active(c, p, g) ? g : extended_gap(c, i - row[1], row);
+				c->active[i] ? g : extended_gap(c, i - row[1], row);
 		}
 	}
 	*s = t;
@@ -155,7 +158,7 @@ static void sum_residual(void *context, size_t begin, size_t end, struct sweep *
 	struct sweep t = *s;
 
 	for (size_t i = begin; i < end; i++) {
-		double active = is_active(c, c->p[i], gap_at(c, i));
+		double active = c->active[i];
 		double z = active * c->residual[i];
 
 		t.sum[0] += z;
@@ -188,7 +191,7 @@ static void turn_step(void *context, size_t begin, size_t end, struct sweep *s)
 
 		d = c->shift - c->residual[i] + c->beta * c->step[i];
 		step = within(c, p + c->tau * d) - p;
-		step *= is_active(c, p, g);
+		step *= c->active[i];
 		c->step[i] = step;
 		sum_bounded(c, i, g, step, &t);
 	}
@@ -204,21 +207,11 @@ static void share_step(void *context, size_t begin, size_t end, struct sweep *s)
 	for (size_t i = begin; i < end; i++) {
 		double p = c->p[i], g = gap_at(c, i), step = c->step[i];
 
-		if (is_free(c, p + step) && is_active(c, p, g))
+		if (is_free(c, p + step) && c->active[i])
 			step = within(c, p + step + c->shift) - p;
 		c->step[i] = step;
 		sum_bounded(c, i, g, step, &t);
 	}
-	*s = t;
-}
-
-static void sum_image(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	const struct contact copy = *(struct contact *)context, *c = &copy;
-	struct sweep t = *s;
-
-	for (size_t i = begin; i < end; i++)
-		t.sum[0] += c->step[i] * c->image[i];
 	*s = t;
 }
 
@@ -337,8 +330,7 @@ static void follow_step(struct contact *c, struct state *state, double slope)
 {
 	struct sweep s;
 
-	contact_multiply(c, c->step, c->image);
-	state->curvature = contact_sweep(c, sum_image).sum[0];
+	state->curvature = contact_multiply(c, c->step, c->image);
 	state->moved = 0;
 	if (!(state->curvature > 0) || !(slope < 0 || state->crowded)) {
 		state->curvature = 0;

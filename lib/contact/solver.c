@@ -151,6 +151,7 @@ void contact_free(struct contact *c)
 	fft_free(c->kernel);
 	fft_free(c->inverse);
 	fft_free(c->memory);
+	free(c->active);
 	free(c);
 }
 
@@ -165,15 +166,25 @@ struct sweep contact_sweep(struct contact *c,
 	return sweep_run(c->par.pool, c->n, pass, c);
 }
 
-void contact_multiply(struct contact *c, const double *x, double *y)
+static void multiply_pairs(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	const double *const *pair = context;
+
+	for (size_t i = begin; i < end; i++)
+		s->sum[0] += pair[0][i] * pair[1][i];
+}
+
+double contact_multiply(struct contact *c, const double *x, double *y)
 {
 	if (c->mlms) {
+		const double *pair[2] = { x, y };
+
 		mlms_apply(c->mlms, x, y);
-		return;
+		return sweep_run(c->par.pool, c->n, multiply_pairs, pair).sum[0];
 	}
-	convolve_apply(c->plane, c->kernel, x, y);
 	c->result.transforms += 2;
 	c->result.work += 2;
+	return convolve_product(c->plane, c->kernel, x, y);
 }
 
 void contact_displacement(struct contact *c, const double *pressure, double *displacement)

@@ -24,6 +24,7 @@ struct contact {
 	struct convolve *periodic;      /* transforms of the preconditioner */
 	double *inverse;                /* its kernel */
 	double *residual;               /* g on the contact, then preconditioned */
+	unsigned char *active;          /* 1 for the cells the residual was taken of */
 	double near_x, near_y, near_xy; /* see make_extension() */
 	struct contact *coarse;         /* grid of half as many cells each way, or NULL */
 	double *coarse_height, *coarse_pressure; /* parts of image */
@@ -85,8 +86,8 @@ static inline void certify_cell(
 
 struct sweep contact_sweep(struct contact *c,
 	void (*pass)(void *context, size_t begin, size_t end, struct sweep *s));
-/* y = K x, counted. */
-void contact_multiply(struct contact *c, const double *x, double *y);
+/* y = K x, counted; y is not x.  Returns the sum of x y. */
+double contact_multiply(struct contact *c, const double *x, double *y);
 /* Gap of the pressure from scratch, and the approach. */
 void contact_gap(struct contact *c);
 /* The approach that suits the gap: given, or the mean gap of the free cells. */

@@ -29,6 +29,7 @@ struct convolve {
 	const double *kernel;  /* of the call in progress */
 	const double *x;
 	double *y;
+	double *products; /* x y of each job of rows; wanted only for x other than y */
 };
 
 /* Rounds up to whole cache lines of complex numbers, and off large powers of two,
@@ -64,9 +65,11 @@ struct convolve *convolve_new(
 	c->buffers = fft_alloc((size_t)pool_threads(pool) * c->scratch);
 	if (padded)
 		c->twist = fft_alloc_complex(c->ly);
+	c->products = fft_alloc((ny + ROWS - 1) / ROWS);
 	c->row = fft_new(c->mx, 1);
 	c->line = fft_line_new(c->ly);
-	if (!c->work || !c->buffers || (padded && !c->twist) || !c->row || !c->line) {
+	if (!c->work || !c->buffers || !c->products || (padded && !c->twist) || !c->row ||
+		!c->line) {
 		convolve_free(c);
 		return NULL;
 	}
@@ -84,6 +87,7 @@ void convolve_free(struct convolve *c)
 	fft_free(c->work);
 	fft_free(c->buffers);
 	fft_free(c->twist);
+	fft_free(c->products);
 	free(c);
 }
 
@@ -162,7 +166,7 @@ int convolve_kernel(const struct convolve *c, double *kernel,
 				quarter[ky * c->lx + kx] = creal(out[ky]);
 		}
 		convolve_spectrum(
-			c, kernel, quarter_factor, &(struct quarter){quarter, c->lx});
+			c, kernel, quarter_factor, &(struct quarter){ quarter, c->lx });
 		status = 0;
 	}
 	fft_done(rows);
@@ -195,13 +199,18 @@ static void forward_rows(void *context, size_t job, int worker)
 static void inverse_rows(void *context, size_t job, int worker)
 {
 	struct convolve *c = context;
-	double *row = c->buffers + (size_t)worker * c->scratch;
+	double *row = c->buffers + (size_t)worker * c->scratch, sum = 0;
 	size_t end = smaller((job + 1) * ROWS, c->ny);
 
 	for (size_t iy = job * ROWS; iy < end; iy++) {
+		const double *x = c->x + iy * c->nx;
+
 		fft_inverse(c->row, c->work + iy * c->stride, row);
 		memcpy(c->y + iy * c->nx, row, c->nx * sizeof(*row));
+		for (size_t ix = 0; c->x != c->y && ix < c->nx; ix++)
+			sum += x[ix] * row[ix];
 	}
+	c->products[job] = sum;
 }
 
 /* Spectrum times a kernel that is even about 0: k[i] serves i and n - i. */
@@ -264,14 +273,28 @@ static void convolve_columns(void *context, size_t job, int worker)
 			c->work[iy * c->stride + kx + j] = a[j * c->column + iy];
 }
 
+static size_t row_jobs(const struct convolve *c)
+{
+	return (c->ny + ROWS - 1) / ROWS;
+}
+
 void convolve_apply(struct convolve *c, const double *kernel, const double *x, double *y)
 {
-	size_t row_jobs = (c->ny + ROWS - 1) / ROWS;
-
 	c->kernel = kernel;
 	c->x = x;
 	c->y = y;
-	pool_run(c->pool, row_jobs, forward_rows, c);
+	pool_run(c->pool, row_jobs(c), forward_rows, c);
 	pool_run(c->pool, (c->lx + COLUMNS - 1) / COLUMNS, convolve_columns, c);
-	pool_run(c->pool, row_jobs, inverse_rows, c);
+	pool_run(c->pool, row_jobs(c), inverse_rows, c);
+}
+
+double convolve_product(
+	struct convolve *c, const double *kernel, const double *x, double *y)
+{
+	double sum = 0;
+
+	convolve_apply(c, kernel, x, y);
+	for (size_t job = 0; job < row_jobs(c); job++)
+		sum += c->products[job];
+	return sum;
 }

@@ -48,5 +48,8 @@ void convolve_spectrum(const struct convolve *c, double *kernel,
 
 /* y = kernel * x; y may be x. */
 void convolve_apply(struct convolve *c, const double *kernel, const double *x, double *y);
+/* The same for y other than x; returns the sum of x y, which costs nothing extra. */
+double convolve_product(
+	struct convolve *c, const double *kernel, const double *x, double *y);
 
 #endif
