@@ -67,12 +67,14 @@ static void make_extension(struct contact *c)
 	}
 }
 
-int contact_make_preconditioner(struct contact *c)
+int contact_make_preconditioner(struct contact *c, const struct contact *lender)
 {
+	const struct convolve *scratch = lender ? lender->periodic : c->plane;
+
 	c->periodic = c->plane;
 	if (c->par.boundary == CONTACT_FREE)
-		c->periodic = convolve_new((size_t)c->par.nx, (size_t)c->par.ny,
-			CONVOLVE_PERIODIC, c->par.pool);
+		c->periodic = convolve_borrow((size_t)c->par.nx, (size_t)c->par.ny,
+			CONVOLVE_PERIODIC, c->par.pool, scratch);
 	if (!c->periodic)
 		return -1;
 	c->inverse = convolve_alloc(c->periodic);

@@ -39,10 +39,11 @@ static int valid(const struct contact_par *par)
 {
 	return par->nx > 0 && par->ny > 0 && positive(par->dx) && positive(par->dy) &&
 	       positive(par->estar) && par->hardness >= 0 && par->tolerance > 0 &&
-	       par->max_iterations > 0;
+	       par->max_iterations > 0 &&
+	       (par->multiply == CONTACT_FFT || par->boundary == CONTACT_FREE);
 }
 
-static int make_kernel(struct contact *c)
+static int make_kernel(struct contact *c, const struct contact *lender)
 {
 	int is_free = c->par.boundary == CONTACT_FREE;
 
@@ -51,8 +52,9 @@ static int make_kernel(struct contact *c)
 			mlms_reach, free_kernel, &c->par, c->par.pool);
 		return c->mlms ? 0 : -1;
 	}
-	c->plane = convolve_new((size_t)c->par.nx, (size_t)c->par.ny,
-		is_free ? CONVOLVE_PADDED : CONVOLVE_PERIODIC, c->par.pool);
+	c->plane = convolve_borrow((size_t)c->par.nx, (size_t)c->par.ny,
+		is_free ? CONVOLVE_PADDED : CONVOLVE_PERIODIC, c->par.pool,
+		lender ? lender->plane : NULL);
 	if (!c->plane)
 		return -1;
 	c->kernel = convolve_alloc(c->plane);
@@ -64,12 +66,7 @@ static int make_kernel(struct contact *c)
 	return 0;
 }
 
-/* Arrays of one grid; each starts on a cache line. */
-static size_t arrays(const struct contact_par *par)
-{
-	return par->solver == CONTACT_BCCG ? 4 : 3;
-}
-
+/* Each array starts on a cache line. */
 static size_t padded(size_t n)
 {
 	return (n + 7) / 8 * 8;
@@ -77,8 +74,15 @@ static size_t padded(size_t n)
 
 static int make_coarse(struct contact *c);
 
-/* memory: room for the arrays, NULL to have them allocated. */
-static struct contact *new_grid(const struct contact_par *par, double *memory)
+/* Room for all arrays, and for what padding adds to two halves of the last. */
+static size_t room(const struct contact_par *par, size_t n)
+{
+	return (par->solver == CONTACT_BCCG ? 4 : 3) * padded(n) + 16;
+}
+
+/* lender: a finer grid whose memory is free to use, or NULL. */
+static struct contact *new_grid(
+	const struct contact_par *par, const struct contact *lender)
 {
 	struct contact *c;
 
@@ -93,16 +97,17 @@ static struct contact *new_grid(const struct contact_par *par, double *memory)
 	c->n = (size_t)par->nx * (size_t)par->ny;
 	c->cap = par->hardness > 0 ? par->hardness : INFINITY;
 	c->tolerance = par->tolerance;
-	c->memory = memory ? NULL : fft_alloc(arrays(par) * padded(c->n));
-	c->gap = memory ? memory : c->memory;
+	c->memory = lender ? NULL : fft_alloc(room(par, c->n));
+	c->gap = lender ? lender->gap : c->memory;
 	if (c->gap) {
 		c->step = c->gap + padded(c->n);
 		c->image = c->step + padded(c->n);
 		c->residual = c->image + padded(c->n);
 	}
-	if (!c->gap || make_kernel(c) != 0 ||
+	if (!c->gap || make_kernel(c, lender) != 0 ||
 		(par->solver == CONTACT_BCCG &&
-			(contact_make_preconditioner(c) != 0 || make_coarse(c) != 0))) {
+			(contact_make_preconditioner(c, lender) != 0 ||
+				make_coarse(c) != 0))) {
 		contact_free(c);
 		errno = ENOMEM;
 		return NULL;
@@ -111,7 +116,7 @@ static struct contact *new_grid(const struct contact_par *par, double *memory)
 }
 
 /* While the coarser grid is at work this one needs none of its own arrays, and lends
- * them: a quarter of the cells fits four arrays into one. */
+ * them: four of its arrays fit into one, or on a strip into two and a bit. */
 static int make_coarse(struct contact *c)
 {
 	struct contact_par par = c->par;
@@ -126,11 +131,11 @@ static int make_coarse(struct contact *c)
 		par.ny /= 2;
 		par.dy *= 2;
 	}
-	c->coarse = new_grid(&par, c->gap);
+	c->coarse = new_grid(&par, c);
 	if (!c->coarse)
 		return -1;
-	c->coarse_height = c->image;
-	c->coarse_pressure = c->image + padded(c->coarse->n);
+	c->coarse_height = c->residual;
+	c->coarse_pressure = c->residual + padded(c->coarse->n);
 	return 0;
 }
 

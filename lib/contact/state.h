@@ -27,7 +27,7 @@ struct contact {
 	unsigned char *active;          /* 1 for the cells the residual was taken of */
 	double near_x, near_y, near_xy; /* see make_extension() */
 	struct contact *coarse;         /* grid of half as many cells each way, or NULL */
-	double *coarse_height, *coarse_pressure; /* parts of image */
+	double *coarse_height, *coarse_pressure; /* parts of residual */
 
 	/* the problem being solved */
 	const double *h;
@@ -106,7 +106,7 @@ int contact_stalls(struct contact *c, double certificate);
 enum contact_status contact_solve_pk(struct contact *c);
 
 /* bccg.c */
-int contact_make_preconditioner(struct contact *c);
+int contact_make_preconditioner(struct contact *c, const struct contact *lender);
 enum contact_status contact_solve_bccg(struct contact *c);
 
 /* grids.c: halves the grid down to some 32 cells a side; 1 if this one can be halved */

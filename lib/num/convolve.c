@@ -23,6 +23,8 @@ struct convolve {
 	struct pool *pool;
 	struct fft *row;       /* real, mx points */
 	struct fft_line *line; /* complex, ly points */
+	size_t room;           /* coefficients that fit in work */
+	int borrowed;          /* work belongs to a lender */
 	double complex *work;  /* ny rows of lx coefficients */
 	double complex *twist; /* exp(-i pi j / ly), padded only */
 	double *buffers;       /* scratch of all threads */
@@ -43,6 +45,12 @@ static size_t pad_stride(size_t n)
 struct convolve *convolve_new(
 	size_t nx, size_t ny, enum convolve_kind kind, struct pool *pool)
 {
+	return convolve_borrow(nx, ny, kind, pool, NULL);
+}
+
+struct convolve *convolve_borrow(size_t nx, size_t ny, enum convolve_kind kind,
+	struct pool *pool, const struct convolve *lender)
+{
 	struct convolve *c = calloc(1, sizeof(*c));
 	int padded = kind == CONVOLVE_PADDED;
 	size_t columns;
@@ -61,7 +69,9 @@ struct convolve *convolve_new(
 	columns = 2 * (COLUMNS + 2) * c->column;
 	c->scratch = columns > c->mx ? columns : (c->mx + 7) / 8 * 8;
 	c->pool = pool;
-	c->work = fft_alloc_complex(ny * c->stride);
+	c->room = ny * c->stride;
+	c->borrowed = lender && lender->room >= c->room;
+	c->work = c->borrowed ? lender->work : fft_alloc_complex(c->room);
 	c->buffers = fft_alloc((size_t)pool_threads(pool) * c->scratch);
 	if (padded)
 		c->twist = fft_alloc_complex(c->ly);
@@ -84,7 +94,8 @@ void convolve_free(struct convolve *c)
 		return;
 	fft_done(c->row);
 	fft_line_done(c->line);
-	fft_free(c->work);
+	if (!c->borrowed)
+		fft_free(c->work);
 	fft_free(c->buffers);
 	fft_free(c->twist);
 	fft_free(c->products);

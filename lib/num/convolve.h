@@ -31,6 +31,10 @@ struct convolve;
  * of memory.  pool is borrowed, NULL for one thread. */
 struct convolve *convolve_new(
 	size_t nx, size_t ny, enum convolve_kind kind, struct pool *pool);
+/* The same with most of the scratch memory of another, if that is large enough; the
+ * lender must stay, and not be at work at the same time.  NULL lends nothing. */
+struct convolve *convolve_borrow(size_t nx, size_t ny, enum convolve_kind kind,
+	struct pool *pool, const struct convolve *lender);
 void convolve_free(struct convolve *c);
 
 /* Room for one kernel, to be freed with fft_free(); NULL when out of memory. */

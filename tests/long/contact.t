@@ -1,0 +1,57 @@
+#!/bin/sh
+# bemcontact against others' results, and what it promises of its work and memory
+. "$(dirname "$0")/../tap.sh"
+bench=${BIN:-$top/bin}
+bench=${bench%/bin}/build/bench/contact
+
+key() { strings -n 3 "$2" | sed -n "s/^$1:=//p"; }
+
+mean() { awk '{ s += $1 } END { print s / NR }'; }
+
+# at_most NAME VALUE LIMIT
+at_most() {
+	if awk -v v="$2" -v l="$3" 'BEGIN { exit !(v + 0 == v && v <= l) }'; then
+		pass "$1: $2, at most $3"
+	else
+		fail "$1: $2, want at most $3"
+	fi
+}
+
+# Area against load by Green's function molecular dynamics (Campana and Mueser): Hurst 0.8,
+# rms gradient 0.2766, two decades of wavelengths.  Realisations differ by some per cent.
+roughgen -n 512 -L 1m -H 0.8 -R 1m -k 10mm -g 0.2766 -c 4 -s 5 >rough.nrrd
+for row in "0.001 0.00827 0.1" "0.01 0.0779 0.05" "0.04 0.2846 0.05" "0.113 0.6571 0.05" \
+	"0.24 0.9406 0.05"; do
+	# shellcheck disable=SC2086 # three words
+	set -- $row
+	bemcontact -e 1Pa -b periodic -P "$1Pa" -t 1e-5 rough.nrrd >pressed.nrrd
+	near "area at p/E* $1, to $3" "$(key area pressed.nrrd | mean | awk -v w="$2" '{ print $1 / w }')" \
+		1 "$3"
+done
+
+# A ball on a half-space, both of G 200, nu 0.42, R 50, F 9.1954: a 1, p0 4.3905, approach 0.02
+# (worked in the units of the CONTACT manual)
+perl -e 'for $y (0 .. 255) { for $x (0 .. 255) {
+	print pack "d<", -((($x - 127.5) / 64) ** 2 + (($y - 127.5) / 64) ** 2) / 100 } }' >ball.f64
+bemcontact --raw 256x256 --pixel 0.015625m -E 568Pa -N 0.42 -F 9.1954N ball.f64 >ball.nrrd
+near "a ball: approach" "$(key approach ball.nrrd)" 0.02 2e-6
+near "a ball: largest pressure" "$(records -o list -k pressure ball.nrrd | tail -1 | cut -f 12)" 4.3905 5e-4
+
+# Work: transforms to certificate 1e-8 on defined surfaces (tests/bench/contact.c), those of
+# coarser grids counted by size; memory in doubles per cell less what any program needs.
+if [ -x "$bench" ]; then
+	none=$("$bench" per 16 0.01 bccg 1e-2 | cut -f 16)
+	for row in "per 1024 0.0025 150 8" "per 1024 0.01 180 8" "per 1024 0.036 200 8" \
+		"free 512 0.0208333333333 120 16"; do
+		# shellcheck disable=SC2086 # five words
+		set -- $row
+		"$bench" "$1" "$2" "$3" bccg 1e-8 >row
+		at_most "$1 $2 under $3: certificate" "$(cut -f 6 row)" 1e-8
+		at_most "$1 $2 under $3: transforms" "$(cut -f 15 row)" "$4"
+		at_most "$1 $2 under $3: doubles per cell" \
+			"$(awk -F '\t' -v z="$none" '{ printf "%.2f", ($16 - z) * 131072 / $2 ^ 2 }' row)" "$5"
+	done
+else
+	skip "work and memory" "build/bench/contact is not built: make bench-contact builds it"
+fi
+done_testing
