@@ -147,8 +147,9 @@ struct state {
 	double gap_error;     /* standard error of the gap */
 };
 
-static double gap_new = NAN;  /* NAN: the first one observed */
-static double dry_rate = NAN; /* of --archard, m3/s */
+static char *made_by[OPT_TEXTS_MAX]; /* what each --wear says of how it was made */
+static double gap_new = NAN;         /* NAN: the first one observed */
+static double dry_rate = NAN;        /* of --archard, m3/s */
 
 static double part_of(
 	const char *option, const char **rest, enum unit unit, const char *what)
@@ -164,7 +165,7 @@ static double part_of(
 }
 
 /* Reads one --wear FILE[:PRESSURE[:AREA]] into a class of its own. */
-static void read_wear(struct partition *p, const char *option)
+static void read_wear(struct partition *p, const char *option, char **cmd)
 {
 	const char *colon = strchr(option, ':'), *rest = colon ? colon + 1 : NULL;
 	char *file = xstrdup(option);
@@ -211,6 +212,8 @@ static void read_wear(struct partition *p, const char *option)
 				file, table_line(t), r, k);
 		stats_add("fragments_read", 1);
 	}
+	if (table_key(t, "cmd"))
+		*cmd = xstrdup(table_key(t, "cmd"));
 	table_close(t);
 	free(file);
 }
@@ -223,7 +226,7 @@ static struct partition *read_partition(void)
 	if (!p)
 		die(EXIT_RUN, "out of memory");
 	for (int i = 0; i < wear_files.n; i++)
-		read_wear(p, wear_files.v[i]);
+		read_wear(p, wear_files.v[i], &made_by[i]);
 	status = partition_close(p, transition, first_step);
 	switch (status) {
 	case PARTITION_OK:
@@ -708,6 +711,10 @@ int main(int argc, char **argv)
 	m = new_metrics();
 	names = columns();
 	out = table_create(NULL, cmd, samples ? "s 1 s" : NULL, names);
+	for (int k = 0; k < wear_files.n; k++)
+		if (made_by[k])
+			table_comment(out, "wear", "%s made by %s", wear_files.v[k],
+				made_by[k]);
 	if (new)
 		foresee(out, m, e);
 	else
@@ -718,6 +725,8 @@ int main(int argc, char **argv)
 	metrics_free(m);
 	partition_free(p);
 	paths_free(e);
+	for (int k = 0; k < wear_files.n; k++)
+		free(made_by[k]);
 	free(names);
 	free(cmd);
 	return shell_done(0);

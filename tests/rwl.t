@@ -119,6 +119,9 @@ for f in particles.tsv steps.tsv; do
 	rwl --new -w $f -p 1h -B 625um2 -g 15um -i 10um -c 50 | grep -v '^#' >$f.life
 done
 same "a particle table and its summary" particles.tsv.life steps.tsv.life
+rwl --new -w steps.tsv -p 1h -c 2 >out
+is "how the fragments were made is passed on" "$(sed -n 's/^# wear: steps.tsv made by //p' out)" \
+	"$(sed -n '/^# cmd: /{s///;h;};${g;p;}' steps.tsv)"
 
 # Comparators and scores on an exponential leakage, which a grey model foretells.
 awk 'BEGIN { print "t\tleakage"; for (t = 0; t <= 600; t += 50) printf "%d\t%.12g\n", t, 1.5 * exp(t / 1186 * log(2.8 / 1.5)) }' >exp.tsv
