@@ -15,7 +15,7 @@ below() {
 "$top/scripts/arrivals-network" --epochs 20 >short.net
 is "the same layers as the shipped network" "$(grep -a '^layers' short.net)" \
 	"$(grep '^layers' "$top/share/arrivals.net")"
-known="--task score --model pulses --snr 30:30 --reach 0.015:0.015 --first 100000000 --count 500"
+known="--task score --model pulses --snr 30:30 --reach 0.015:0.015 --amplitude 0.5:1.5 --gain 0.909:0.909 --count 500"
 # shellcheck disable=SC2086
 for net in short.net "$top/share/arrivals.net"; do
 	delaynet $known "$net" >"$(basename "$net").tsv"
