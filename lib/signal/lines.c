@@ -15,12 +15,13 @@ struct lines {
 	int count, channels;
 	double omega[TONES_MAX];
 	size_t hop;
-	size_t held;      /* frames of the hop before, 0 or hop */
+	size_t older;     /* frames kept that are already clean, 0 or hop */
+	size_t held;      /* frames that wait for the next hop, 0 or hop */
 	double start;     /* index of the first frame held */
 	int windows;      /* so far */
 	struct fit *last; /* of each channel */
 	double *channel;  /* one channel of two hops */
-	double *frames;   /* held and new frames */
+	double *frames;   /* older, held and new ones */
 	double *clean;
 };
 
@@ -37,7 +38,7 @@ struct lines *lines_new(int count, const double *omega, int channels, size_t hop
 	memcpy(l->omega, omega, (size_t)count * sizeof *omega);
 	l->last = calloc((size_t)channels, sizeof *l->last);
 	l->channel = calloc(2 * hop, sizeof *l->channel);
-	l->frames = calloc(samples, sizeof *l->frames);
+	l->frames = calloc(samples + samples / 2, sizeof *l->frames);
 	l->clean = calloc(samples, sizeof *l->clean);
 	if (l->last && l->channel && l->frames && l->clean)
 		return l;
@@ -56,22 +57,31 @@ void lines_free(struct lines *l)
 	free(l);
 }
 
-/* Fits the window of total frames held and cleans the first of them. */
-static void clean_channel(struct lines *l, size_t c, size_t total, size_t cleaned)
+/* One channel of n kept frames from index begin on. */
+static void take_channel(struct lines *l, size_t c, size_t begin, size_t n)
 {
 	size_t nc = (size_t)l->channels;
-	struct fit next = { l->start + 0.5 * (double)total, { 0 } };
 
-	for (size_t i = 0; i < total; i++)
-		l->channel[i] = l->frames[i * nc + c];
-	if (!tones_fit(l->channel, total, l->start, l->count, l->omega, next.coefficient,
-		    NULL, NULL)) {
-		/* too short a rest: what was found before goes on */
+	for (size_t i = 0; i < n; i++)
+		l->channel[i] = l->frames[(begin + i) * nc + c];
+}
+
+/* Fits the last frames of total kept, a window if there are so many, and cleans the first
+ * of those held. */
+static void clean_channel(struct lines *l, size_t c, size_t total, size_t cleaned)
+{
+	size_t nc = (size_t)l->channels, window = total < 2 * l->hop ? total : 2 * l->hop;
+	double start = l->start - (double)l->older + (double)(total - window);
+	struct fit next = { start + 0.5 * (double)window, { 0 } };
+
+	take_channel(l, c, total - window, window);
+	if (!tones_fit(l->channel, window, start, l->count, l->omega, next.coefficient,
+		    NULL, NULL))
 		memcpy(next.coefficient, l->last[c].coefficient, sizeof next.coefficient);
-	}
 	next.coefficient[0] = 0; /* the offset stays */
 	if (l->windows == 0)
 		l->last[c] = next;
+	take_channel(l, c, l->older, cleaned);
 	tones_remove(l->channel, cleaned, l->start, l->count, l->omega, l->last[c].at,
 		l->last[c].coefficient, next.at, next.coefficient);
 	l->last[c] = next;
@@ -81,17 +91,21 @@ static void clean_channel(struct lines *l, size_t c, size_t total, size_t cleane
 
 const double *lines_run(struct lines *l, const double *x, size_t n, size_t *clean)
 {
-	size_t nc = (size_t)l->channels, total = l->held + n;
-	size_t cleaned = n < l->hop ? total : l->held;
+	size_t nc = (size_t)l->channels, waiting = l->held + n;
+	size_t cleaned = n < l->hop ? waiting : l->held, total = l->older + waiting;
 
 	if (n > 0)
-		memcpy(l->frames + l->held * nc, x, n * nc * sizeof *x);
+		memcpy(l->frames + (l->older + l->held) * nc, x, n * nc * sizeof *x);
 	for (size_t c = 0; cleaned > 0 && c < nc; c++)
 		clean_channel(l, c, total, cleaned);
-	l->windows += cleaned > 0;
+	if (cleaned > 0) {
+		/* what was just cleaned is the older hop now */
+		memmove(l->frames, l->frames + l->older * nc, waiting * nc * sizeof *x);
+		l->older = cleaned;
+		l->windows++;
+	}
 	l->start += (double)cleaned;
-	l->held = total - cleaned;
-	memmove(l->frames, l->frames + cleaned * nc, l->held * nc * sizeof *x);
+	l->held = waiting - cleaned;
 	*clean = cleaned;
 	return l->clean;
 }
