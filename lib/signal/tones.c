@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 64, TERMS_MAX = 2 * TONES_MAX + 1 };
+enum { SIDE = 64, CLIP = 3, TERMS_MAX = 2 * TONES_MAX + 1 };
 
 struct line {
 	double power, omega;
@@ -26,15 +26,22 @@ static int by_omega(const void *x, const void *y)
 	return p->omega < q->omega ? -1 : p->omega > q->omega;
 }
 
+/* Pulses are clipped to a few times the usual sample, lines and all: unclipped their
+ * spectrum would bury a line that is as strong as they are rare. */
 static void add_periodogram(const struct fft *fft, const double *y, size_t n,
 	double *work, double complex *spectrum, double *power)
 {
-	double mean = 0;
+	double mean = 0, limit;
 
 	for (size_t i = 0; i < n; i++)
 		mean += y[i] / (double)n;
 	for (size_t i = 0; i < n; i++)
-		work[i] = (y[i] - mean) *
+		work[i] = fabs(y[i] - mean);
+	limit = CLIP * robust_median(work, n);
+	if (limit <= 0)
+		limit = INFINITY; /* silence but for pulses */
+	for (size_t i = 0; i < n; i++)
+		work[i] = fmax(fmin(y[i] - mean, limit), -limit) *
 			  (0.5 - 0.5 * cos(2 * acos(-1) * (double)i / (double)n));
 	fft_forward(fft, work, spectrum);
 	for (size_t k = 0; k <= n / 2; k++)
