@@ -33,7 +33,7 @@ roughgen_LIBS = fftw
 bemcontact_MODULES = contact/kernel contact/solver contact/bccg contact/grids contact/mlms contact/pk num/convolve num/fft num/pool num/sweep
 bemcontact_LIBS = fftw
 debrisgen_MODULES = $(bemcontact_MODULES) contact/debris contact/hull contact/influence contact/particles contact/stress \
-	contact/stress_kernel contact/sym3 contact/wear contact/window
+	contact/stress_kernel contact/surface contact/sym3 contact/wear contact/window
 debrisgen_LIBS = fftw
 debrisstat_MODULES = num/philox contact/statistics
 debrisstat_LIBS = gsl

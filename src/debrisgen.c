@@ -3,6 +3,7 @@
 #include "contact/kernel.h"
 #include "contact/solver.h"
 #include "contact/stress_kernel.h"
+#include "contact/surface.h"
 #include "shell/fields.h"
 #include "shell/msg.h"
 #include "shell/opt.h"
@@ -385,6 +386,19 @@ static void count_work(struct run *run, const struct debris_step *s)
 	run->seen = w;
 }
 
+/* Root mean square height, the crown taken off. */
+static double roughness(const struct record *r, const double *h, double crown)
+{
+	size_t n = (size_t)r->nx * r->ny;
+	double *z = xcalloc(n, sizeof(*z)), sq;
+
+	memcpy(z, h, n * sizeof(*z));
+	surface_crown(r->nx, r->ny, r->dx, r->dy, -crown, z);
+	sq = surface_sq(r->nx, r->ny, z);
+	free(z);
+	return sq;
+}
+
 static void refuse(const struct run *run, enum debris_status status, long step)
 {
 	if (status == DEBRIS_OK)
@@ -415,7 +429,7 @@ static void wear_record(struct run *run, struct record *r)
 	prepare(run, r);
 	crown = isnan(crown) ? 0 : crown;
 	if (isnan(sq) || sq <= 0) {
-		sq = debris_roughness(r->nx, r->ny, r->dx, r->dy, h, crown);
+		sq = roughness(r, h, crown);
 		record_set(r, "sq", "%.17g", sq);
 	}
 	debris_contact(run->debris, p, &s);
@@ -450,9 +464,7 @@ static void wear_record(struct run *run, struct record *r)
 		count_work(run, &s);
 		put_particles(run, r->realisation, done + k, &s);
 		if (run->summary)
-			put_summary(run, r, done + k, &s,
-				debris_roughness(r->nx, r->ny, r->dx, r->dy, h, crown) /
-					sq);
+			put_summary(run, r, done + k, &s, roughness(r, h, crown) / sq);
 		if (run->stress)
 			put_stress(run, r, cmd, done + k, &s);
 		if (run->surface)
@@ -461,6 +473,21 @@ static void wear_record(struct run *run, struct record *r)
 			fields_name(run->in), r->realisation, done + k, s.count, s.volume,
 			s.wear.layers);
 	}
+	free(cmd);
+}
+
+static void create_outputs(struct run *run, const char *upstream)
+{
+	char *cmd = opt_cmd(upstream, NULL);
+
+	run->particles = table_create(NULL, cmd, particle_units, particle_columns);
+	if (summary_path)
+		run->summary =
+			table_create(summary_path, cmd, summary_units, summary_columns);
+	if (surface_path)
+		run->surface = fields_create(surface_path);
+	if (stress_path)
+		run->stress = fields_create(stress_path);
 	free(cmd);
 }
 
@@ -476,25 +503,14 @@ int main(int argc, char **argv)
 		die(EXIT_RUN, "cannot start %ld threads:", threads);
 	run.in = fields_open(argv[first], NULL);
 	while (fields_read(run.in, &r)) {
-		if (!run.particles) {
-			char *cmd = opt_cmd(r.cmd, NULL);
-
-			run.particles =
-				table_create(NULL, cmd, particle_units, particle_columns);
-			if (summary_path)
-				run.summary = table_create(summary_path, cmd,
-					summary_units, summary_columns);
-			if (surface_path)
-				run.surface = fields_create(surface_path);
-			if (stress_path)
-				run.stress = fields_create(stress_path);
-			free(cmd);
-		}
+		if (!run.particles)
+			create_outputs(&run, r.cmd);
 		wear_record(&run, &r);
 	}
 	progress_clear();
-	if (run.particles)
-		table_done(run.particles);
+	if (!run.particles)
+		create_outputs(&run, NULL);
+	table_done(run.particles);
 	if (run.summary)
 		table_done(run.summary);
 	if (run.surface)

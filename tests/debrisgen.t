@@ -122,6 +122,20 @@ near "stress: invariants agree" "$(cat bad)" 0 1
 near "stress: under the surface szz is the pressure" "$(records stress.nrrd | awk '$3 == "zz" { print $10 }')" \
 	-1725.5455e6 1e3
 
+# The whole way from a smooth ball to the stress: radius R = 1 m pressed to the contact radius
+# a = 1 mm, F = 4/3 E* a^3 / R, p0 = 2 E* a / (pi R); 129 points over 4 a.  Von Mises on the
+# axis from a/2 to 3a/2 in closed form.
+roughgen -n 129 -L 4mm --sq 0 --crown 4um |
+	bemcontact -e 1GPa -F "$(awk 'BEGIN { printf "%.17gN", 4 / 3 }')" 2>err >c.nrrd || cat err
+debrisgen -Y 1e30 -u 0.3 -z 0.05mm -G s.nrrd -y 31 c.nrrd >t.tsv
+records -o table s.nrrd | awk '!/^[#r]/ && $2 > 1.99e-3 && $2 < 2.01e-3 && $3 > 1.99e-3 && $3 < 2.01e-3 && $4 > 0.49e-3 {
+	Z = $4 / 1e-3; t = atan2(1, Z); p0 = 2e6 / 3.14159265358979
+	zz = -1 / (1 + Z * Z); rr = -1.3 * (1 - Z * t) + 1 / (2 * (1 + Z * Z))
+	xz = -0.3 * (1 - 1.5 * Z * t + Z * Z / (2 * (1 + Z * Z)))
+	d = $5 / p0 - sqrt((zz - rr) ^ 2 + 3 * xz ^ 2); if (d < 0) d = -d; if (d > m) m = d; n++ }
+	END { print n == 21 ? m : "rows: " n }' >error
+near "Hertz contact to stress: von Mises within 1e-4 p0" "$(cat error)" 0 1e-4
+
 # Edge load is told.
 roughgen -n 32 -L 1mm --sq 1um -l 100um -s 3 | bemcontact -F 1N -E 210GPa |
 	debrisgen -Y 355MPa -U summary.tsv 2>warning >t.tsv

@@ -116,25 +116,3 @@ enum debris_status debris_step(struct debris *d, double *height, const double *p
 		height[i] -= d->removed[i] * s->dz;
 	return DEBRIS_OK;
 }
-
-double debris_roughness(
-	int nx, int ny, double dx, double dy, const double *height, double crown)
-{
-	double lx = nx * dx, ly = ny * dy, corner = 0.25 * (lx * lx + ly * ly);
-	double mean = 0, square = 0;
-
-	for (int pass = 0; pass < 2; pass++)
-		for (int iy = 0; iy < ny; iy++)
-			for (int ix = 0; ix < nx; ix++) {
-				double x = (ix + 0.5) * dx - 0.5 * lx,
-				       y = (iy + 0.5) * dy - 0.5 * ly;
-				double z = height[(size_t)iy * nx + ix] +
-					   crown * ((x * x + y * y) / corner);
-
-				if (pass == 0)
-					mean += z / ((double)nx * ny);
-				else
-					square += (z - mean) * (z - mean);
-			}
-	return sqrt(square / ((double)nx * ny));
-}

@@ -62,9 +62,4 @@ enum debris_status debris_step(struct debris *d, double *height, const double *p
 /* Stress under the pressure of the last step. */
 struct stress *debris_stress(struct debris *d);
 
-/* Root mean square height about the mean, after a paraboloid that falls by crown from
- * the middle to the corners has been put back. */
-double debris_roughness(
-	int nx, int ny, double dx, double dy, const double *height, double crown);
-
 #endif
