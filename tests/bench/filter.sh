@@ -79,6 +79,7 @@ all() {
 		row single 200 "$(filter --single; difference double.au y.au)" "$(median filter --single)"
 		sensorsim -u 50um:150um -N 3000 -d 100 --noise 10mV --mains 0.5,0.3,0.05 >lined.au
 		for memory in 0.1 0.2 0.5 1 2 5 10; do
+			# shellcheck disable=SC2317 # median calls it
 			left() {
 				bpfilter -b 0:5000 -z -n 2 -l 50,150,250 -m $memory -S stats lined.au >y.au
 			}

@@ -35,4 +35,13 @@ sensorsim -r 200 -d 1d --mains 0.5 -u 1um:1um -N 0 |
 near "the mains line is gone to the end" "$(awk '{ d = $1 < 0 ? -$1 : $1
 	if (d > m) m = d } END { print m }' end)" 0 1e-7
 small filter.stats
+
+# Table 8: counted peaks follow the time the powder takes, whatever passes
+for g in 2 7 3; do
+	"$top"/examples/ch3-signals/scene $g
+	"$top"/examples/ch3-signals/count $g
+done | cut -f 1,7 >counts
+is "no peaks without debris" "$(awk '$1 == 2 { print $2 }' counts)" 0
+near "group 7: peaks as the thesis counted" "$(awk '$1 == 7 { print $2 }' counts)" 436 40
+near "group 3: peaks as the thesis counted" "$(awk '$1 == 3 { print $2 }' counts)" 5893 400
 done_testing

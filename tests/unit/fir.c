@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const windows[] = {"hamming", "hann", "blackman", "kaiser"};
+static const char *const windows[] = { "hamming", "hann", "blackman", "kaiser" };
 
 static enum fir_window window_of(const char *name)
 {
@@ -32,8 +32,8 @@ static void test_taps(void)
 			    name, &beta, &scale, &k, &tap) != 8)
 			continue;
 		h = malloc(((size_t)order + 1) * sizeof *h);
-		fir_design(&(struct fir_band){order, low / 1e4, high / 1e4,
-				   window_of(name), beta, scale},
+		fir_design(&(struct fir_band){ order, low / 1e4, high / 1e4,
+				   window_of(name), beta, scale },
 			h);
 		worst = fmax(worst, fabs(h[k] - tap));
 		if (fabs(h[k] - tap) > 1e-14)
@@ -48,8 +48,8 @@ static void test_taps(void)
 
 static void test_edges(void)
 {
-	struct fir_band all = {40, 0, 0.5, FIR_HAMMING, 0, 0};
-	struct fir_band odd = {41, 0.3, 0.5, FIR_HAMMING, 0, 1};
+	struct fir_band all = { 40, 0, 0.5, FIR_HAMMING, 0, 0 };
+	struct fir_band odd = { 41, 0.3, 0.5, FIR_HAMMING, 0, 1 };
 	double h[42], sum = 0;
 
 	fir_design(&all, h);
@@ -75,10 +75,10 @@ static double level(const double *h, double f)
 /* Li's filter: 200 taps at 10 kHz are too few for 70-130 Hz. */
 static void test_response(void)
 {
-	static const double want[][2] = {{0, -24.5}, {20, -17.4}, {50, -6.3}, {70, -2.2},
-		{100, 0}, {130, -2.1}, {150, -6.2}, {200, -30.5}, {250, -50.6},
-		{2000, -61.9}, {4000, -61.8}};
-	struct fir_band band = {200, 0.007, 0.013, FIR_HAMMING, 0, 1};
+	static const double want[][2] = { { 0, -24.5 }, { 20, -17.4 }, { 50, -6.3 },
+		{ 70, -2.2 }, { 100, 0 }, { 130, -2.1 }, { 150, -6.2 }, { 200, -30.5 },
+		{ 250, -50.6 }, { 2000, -61.9 }, { 4000, -61.8 } };
+	struct fir_band band = { 200, 0.007, 0.013, FIR_HAMMING, 0, 1 };
 	double h[201], re, im, worst = 0;
 
 	fir_design(&band, h);
@@ -101,7 +101,7 @@ static void test_response(void)
  * grows with the logarithm of the transform. */
 static void test_stream(int order, size_t block, size_t nframes)
 {
-	struct fir_band band = {order, 0.05, 0.2, FIR_HAMMING, 0, 1};
+	struct fir_band band = { order, 0.05, 0.2, FIR_HAMMING, 0, 1 };
 	size_t taps = (size_t)order + 1;
 	double *h = malloc(taps * sizeof *h), *x = malloc(2 * nframes * sizeof *x);
 	double *y = malloc(2 * nframes * sizeof *y), worst = 0;

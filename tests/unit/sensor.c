@@ -4,7 +4,7 @@
 #include "tap.h"
 
 static const double pi = 3.14159265358979323846;
-static const char *const name[] = {"sine", "gauss", "lorentz"};
+static const char *const name[] = { "sine", "gauss", "lorentz" };
 
 /* l(x) as the header states it, to hold (3-1) itself against the pulses. */
 static double path(enum pulse_shape shape, double x, const struct sensor_coil *c)
@@ -70,7 +70,7 @@ static void test_sample(enum pulse_shape shape, double t0, double T)
 
 static void test_equation(enum pulse_shape shape)
 {
-	struct sensor_coil c = {200, 150, 0.3, 2000, 5e-3, 9e-3, 0.1273};
+	struct sensor_coil c = { 200, 150, 0.3, 2000, 5e-3, 9e-3, 0.1273 };
 	double v = 12.7324, d = 80e-6, h = 1e-6, worst = 0;
 	double volume = pi * d * d * d / 6, mu0 = 1.25663706212e-6;
 	double gain = -2 * c.turns * c.field_turns * c.current * volume * mu0 *
@@ -93,7 +93,7 @@ static void test_equation(enum pulse_shape shape)
 
 static void test_pipe(enum pipe_profile profile, double top)
 {
-	struct pipe pipe = {0.01, 1e-3, profile, 7};
+	struct pipe pipe = { 0.01, 1e-3, profile, 7 };
 	double mean = pipe_mean_velocity(&pipe), sum = 0, worst = 0;
 	int n = 200000;
 
