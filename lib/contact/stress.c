@@ -597,7 +597,7 @@ double stress_deep(const struct stress *s, long layer)
  * doubling; the factor is where both take the same time (tests/bench/stress.sh). */
 static int prefer_direct(const struct stress *s, double nodes, const struct part *p)
 {
-	static const double CROSSOVER = 0.35;
+	static const double CROSSOVER = 0.3;
 	double points = 4. * p->wx * p->wy;
 
 	if (s->par.periodic || s->par.method == STRESS_FOURIER)
