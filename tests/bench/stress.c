@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
 
 static double seconds(void)
@@ -21,7 +22,11 @@ static double seconds(void)
 static void row(
 	const char *scene, const char *way, double knob, double error, double time)
 {
-	printf("%s\t%s\t%g\t%.3g\t%.4g\n", scene, way, knob, error, time);
+	struct rusage u;
+
+	getrusage(RUSAGE_SELF, &u);
+	printf("%s\t%s\t%g\t%.3g\t%.4g\t%.1f\n", scene, way, knob, error, time,
+		(double)u.ru_maxrss / 1024);
 	fflush(stdout);
 }
 
@@ -222,7 +227,7 @@ static void bench_layers(void)
 
 int main(void)
 {
-	puts("scene\tway\tknob\terror\tseconds");
+	puts("scene\tway\tknob\terror\tseconds\tmemory");
 	for (int n = 17; n <= 513; n = 2 * n - 1)
 		bench_grid(n);
 	for (double f = 1; f <= 16; f *= 2)

@@ -2,7 +2,8 @@
 # debrisgen's stress: error against run time, as a table and, where gnuplot is there, as
 # build/bench/stress.png.
 #
-# scene     way       knob    what the error is; seconds of processor time
+# scene     way       knob    what the error is; seconds of processor time; the most memory
+#                             held so far, MB
 # hertz     free      points  von Mises below a Hertz contact, friction 0.3, grid of side
 #                             4 a: largest difference to the closed form on the axis from
 #                             a/2 to 3a/2, in p0; seconds per layer, influence
@@ -21,10 +22,11 @@ cd "$top"
 build/bench/stress | tee build/bench/stress.tsv
 command -v gnuplot >/dev/null || exit 0
 gnuplot <<'END'
-set terminal pngcairo size 1200,500
+set terminal pngcairo size 1200,700
 set output "build/bench/stress.png"
 set logscale xy
 set format "%.0e"
+set key outside bottom center horizontal
 set multiplot layout 1, 2
 set xlabel "seconds"
 set ylabel "error"
