@@ -4,9 +4,10 @@
  * each particle carries its own past, a grey model of the chosen order is fitted to the
  * past of each and moves it on, and the observation weighs them.  Departures, so that
  * the filter does not follow itself away from the data: histories are genealogies, the
- * process noise has a floor that grows with the order, and an innovation monitor starts
- * the particles anew from the observations when their mean squared standardised
- * innovation over twenty rows exceeds four.
+ * process noise has a floor that grows with the order and is no less than what the grey
+ * model itself has lately missed by, and an innovation monitor starts the particles anew
+ * from the observations when their mean squared standardised innovation over twenty rows
+ * exceeds four.
  *
  *	struct adaptive *a = adaptive_new(&par);
  *	while (read(&t, &y)) {       (y may be NAN: predict only)

@@ -32,10 +32,11 @@ void noise_free(struct noise *n)
 static double spread(struct noise *n, int count)
 {
 	double median, sum = 0;
+	int middle[2] = { (count - 1) / 2, count / 2 };
 
 	memcpy(n->sorted, n->residual, (size_t)count * sizeof *n->sorted);
-	sort_ascending(n->sorted, count);
-	median = 0.5 * (n->sorted[(count - 1) / 2] + n->sorted[count / 2]);
+	sort_at(n->sorted, count, middle, 2);
+	median = 0.5 * (n->sorted[middle[0]] + n->sorted[middle[1]]);
 	for (int i = 0; i < count; i++)
 		sum += n->residual[i] * n->residual[i];
 	return median > 0 ? 1.4826 * median : sqrt(sum / count);

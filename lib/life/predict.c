@@ -167,6 +167,17 @@ static int draw_lives(struct predict *p)
 	return rows >= GREY_ORDER_MIN;
 }
 
+/* Sorts what metric_quantile() will look at: the two values about each level. */
+static void sort_levels(double *life, int draws, const double *level, int n)
+{
+	for (int k = 0; k < n; k++) {
+		int i = (int)(level[k] * (draws - 1));
+		int pair[2] = { i, i + 1 };
+
+		sort_at(life, draws, pair, i + 1 < draws ? 2 : 1);
+	}
+}
+
 void predict_life(struct predict *p, const double *level, double *quantile, int n,
 	double *no_crossing)
 {
@@ -185,7 +196,7 @@ void predict_life(struct predict *p, const double *level, double *quantile, int 
 			p->life[i] = INFINITY;
 			never++;
 		}
-	sort_ascending(p->life, draws);
+	sort_levels(p->life, draws, level, n);
 	for (int k = 0; k < n; k++)
 		quantile[k] = metric_quantile(p->life, (size_t)draws, level[k]);
 	*no_crossing = (double)never / draws;

@@ -1,11 +1,10 @@
-/* sort.h - sorting some hundred numbers at every row
- *
- * Shell's sort with Ciura's gaps: no memory, and none of the calls that take most of the
- * time of qsort() at such sizes.
- */
+/* sort.h - as much sorting as a few quantiles need */
 #ifndef LIFE_SORT_H
 #define LIFE_SORT_H
 
-void sort_ascending(double *v, int n);
+/* Reorders v[n] so that v[rank[k]] is what it were if v were sorted, for count ascending
+ * ranks; smaller values come before each of them and larger ones after.  Expected work
+ * n log(count).  No NAN. */
+void sort_at(double *v, int n, const int *rank, int count);
 
 #endif
