@@ -1,7 +1,8 @@
 # shellcheck shell=sh
 # au.sh - make and read AU streams in tests; read it after tap.sh
 #
-#	au RATE CHANNELS <VALUES >FILE    one frame of doubles a line; nan and inf are written
+#	au RATE CHANNELS <VALUES >FILE    one frame of doubles a line; nan, inf and tiny
+#	                                  (2e-320) are words
 #	frames FILE [CHANNELS]            the doubles of a stream, one frame a line
 #	worst FILE FILE                   largest difference between two lists of numbers
 
@@ -15,6 +16,7 @@ au() {
 	function put(x,   s, e, m, hi, lo) {
 		if (x == "nan") { word(2146959360); word(0); return }
 		if (x == "inf") { word(2146435072); word(0); return }
+		if (x == "tiny") { word(0); word(4096); return }
 		x += 0
 		if (x == 0) { word(0); word(0); return }
 		s = x < 0; x = s ? -x : x; e = 1023
