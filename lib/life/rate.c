@@ -33,8 +33,9 @@ struct kalman {
 struct rate {
 	double prior_mean, prior_sd;
 	struct kalman filter[FILTERS];
-	int n;             /* observations */
-	double start, now; /* times of the first observation and the latest row */
+	double up_to[FILTERS]; /* sum of the weights of the filters to this one */
+	int n;                 /* observations */
+	double start, now;     /* times of the first observation and the latest row */
 	double t[RATE_START],
 		y[RATE_START]; /* newest last; all of them up to RATE_START */
 	struct noise *scale;
@@ -159,15 +160,17 @@ static void update(const struct rate *r, struct kalman *f, double y)
 	f->pww -= s * kw * kw;
 }
 
-/* Keeps the largest weight at 1, so that none overflows. */
+/* Keeps the largest weight at 1, so that none overflows, and adds them up. */
 static void normalise(struct rate *r)
 {
-	double most = -INFINITY;
+	double most = -INFINITY, sum = 0;
 
 	for (int k = 0; k < FILTERS; k++)
 		most = fmax(most, r->filter[k].log_weight);
-	for (int k = 0; k < FILTERS; k++)
+	for (int k = 0; k < FILTERS; k++) {
 		r->filter[k].log_weight -= most;
+		r->up_to[k] = sum += exp(r->filter[k].log_weight);
+	}
 }
 
 /* The first observations: a filter each from scratch, now that the noise is known. */
@@ -242,13 +245,9 @@ void rate_state(const struct rate *r, double *level, double *rate)
 
 static int pick(const struct rate *r, double u)
 {
-	double total = 0;
 	int k = 0;
 
-	for (int i = 0; i < FILTERS; i++)
-		total += exp(r->filter[i].log_weight);
-	u *= total;
-	while (k < FILTERS - 1 && (u -= exp(r->filter[k].log_weight)) > 0)
+	while (k < FILTERS - 1 && r->up_to[k] < u * r->up_to[FILTERS - 1])
 		k++;
 	return k;
 }
@@ -271,24 +270,37 @@ static double path(const struct rate *r, const struct kalman *f, double x, doubl
 double rate_passage(const struct rate *r, double threshold, double u, double z)
 {
 	const struct kalman *f = &r->filter[pick(r, u)];
-	double unit = spacing(r), low = 0, high = 0.01 * unit;
+	double unit = spacing(r), low = 0, high = 0.1 * unit;
+	double below = path(r, f, 0, z) - threshold, above;
 
-	if (path(r, f, 0, z) >= threshold)
+	if (below >= 0)
 		return 0;
-	/* The first root, from a hundredth of the spacing to far beyond any use. */
-	while (path(r, f, high, z) < threshold) {
+	/* The first root, from a tenth of the spacing to far beyond any use. */
+	while ((above = path(r, f, high, z) - threshold) < 0) {
 		if (high > 1e9 * unit)
 			return INFINITY;
 		low = high;
-		high *= 1.25;
+		below = above;
+		high *= 1.3;
 	}
-	while (high - low > 1e-9 * high) {
-		double middle = (low + high) / 2;
+	/* Illinois: false position, an end that stays put counting half. */
+	for (int side = 0; high - low > 1e-9 * high && above > 0;) {
+		double x = (low * above - high * below) / (above - below);
+		double y = path(r, f, x, z) - threshold;
 
-		if (path(r, f, middle, z) < threshold)
-			low = middle;
-		else
-			high = middle;
+		if (fabs(y) <= 1e-12 * (fabs(threshold) + fabs(f->level)))
+			return x;
+		if (y < 0) {
+			low = x;
+			below = y;
+			above /= side == -1 ? 2 : 1;
+			side = -1;
+		} else {
+			high = x;
+			above = y;
+			below /= side == 1 ? 2 : 1;
+			side = 1;
+		}
 	}
 	return high;
 }
