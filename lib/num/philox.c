@@ -43,12 +43,13 @@ static void block(uint64_t seed, uint32_t realisation, enum rng_purpose purpose,
 	philox4x32(counter, key, out);
 }
 
-/* 53 bits, moved off 0 by half a step. */
+/* 53 bits, moved off 0 by half a step; the last step would round to 1. */
 static double uniform(uint32_t high, uint32_t low)
 {
 	uint64_t bits = ((uint64_t)high << 32 | low) >> 11;
+	double u = ((double)bits + 0.5) * 0x1p-53;
 
-	return ((double)bits + 0.5) * 0x1p-53;
+	return u < 1 ? u : 1 - 0x1p-53;
 }
 
 double philox_uniform(
