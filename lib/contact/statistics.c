@@ -412,7 +412,8 @@ struct estimate sample_mean(
 	double mean = 0, square = 0;
 
 	for (size_t i = 0; i < n; i++)
-		mean += x[i] / (double)n;
+		mean += x[i];
+	mean /= (double)n;
 	for (size_t i = 0; i < n; i++)
 		square += (x[i] - mean) * (x[i] - mean);
 	*deviation = n > 1 ? sqrt(square / (double)(n - 1)) : NAN;

@@ -1,0 +1,179 @@
+/* One step of wear: what is lost is what the particles and the surface say, by both
+ * rules, whatever was computed before. */
+#include "contact/debris.h"
+#include "num/philox.h"
+#include "tap.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { NX = 40, NY = 28, CELLS = NX * NY };
+
+static struct debris_par plain(enum wear_rule rule)
+{
+	struct debris_par par = { .yield = 1e8,
+		.rule = rule,
+		.stress = { .nx = NX,
+			.ny = NY,
+			.ax = 2e-6,
+			.ay = 1e-6,
+			.dz = 0.5e-6,
+			.nu = 0.3,
+			.mu = 0.3,
+			.memory = 1 << 26 } };
+
+	return par;
+}
+
+/* Some loaded cells, away from the rim. */
+static void press(double *p, int seed)
+{
+	memset(p, 0, CELLS * sizeof(*p));
+	for (int k = 0; k < 25; k++) {
+		int x = 6 + (int)(28 * philox_uniform(seed, 0, RNG_NOISE, 3 * k));
+		int y = 6 + (int)(16 * philox_uniform(seed, 0, RNG_NOISE, 3 * k + 1));
+
+		p[y * NX + x] = 1e9 * philox_uniform(seed, 0, RNG_NOISE, 3 * k + 2);
+	}
+}
+
+static void test_balance(enum wear_rule rule, const char *name)
+{
+	struct debris_par par = plain(rule);
+	struct debris *d = debris_new(&par);
+	double p[CELLS], h[CELLS] = { 0 }, lost = 0, particles = 0;
+	struct debris_step step;
+
+	press(p, 1);
+	enum debris_status status = debris_step(d, h, p, &step);
+
+	ok(status == DEBRIS_OK && step.count > 1, "%s: %zu particles", name, step.count);
+	for (int i = 0; i < CELLS; i++)
+		lost -= h[i] * 2e-12;
+	for (size_t i = 0; i < step.count; i++)
+		particles += step.particle[i].volume;
+	near(lost / step.volume, 1, 1e-12, "the surface has lost the volume worn off");
+	near(particles / step.volume, 1, 1e-12, "the particles have it");
+	debris_free(d);
+}
+
+/* The actual set lies within the potential one. */
+static void test_rules(void)
+{
+	double p[CELLS], h[2][CELLS] = { { 0 } };
+	int outside = 0, fewer = 0;
+
+	press(p, 2);
+	for (int rule = 0; rule < 2; rule++) {
+		struct debris_par par = plain((enum wear_rule)rule);
+		struct debris *d = debris_new(&par);
+		struct debris_step step;
+
+		debris_step(d, h[rule], p, &step);
+		debris_free(d);
+	}
+	for (int i = 0; i < CELLS; i++) {
+		outside += h[WEAR_COLUMN][i] < h[WEAR_POTENTIAL][i];
+		fewer += h[WEAR_COLUMN][i] > h[WEAR_POTENTIAL][i];
+	}
+	ok(outside == 0 && fewer > 0, "columns lose no more than what fails, some less");
+}
+
+/* Turned by a quarter with its shear, or mirrored across it, the scene stays the same. */
+static void test_symmetry(void)
+{
+	struct debris_par par = plain(WEAR_COLUMN), turned = par;
+	struct debris *d = debris_new(&par), *e;
+	double p[CELLS], q[CELLS], h[CELLS] = { 0 }, g[CELLS] = { 0 };
+	struct debris_step step;
+	int bad = 0;
+
+	turned.stress.nx = NY, turned.stress.ny = NX;
+	turned.stress.ax = par.stress.ay, turned.stress.ay = par.stress.ax;
+	turned.stress.axis = 1;
+	press(p, 3);
+	for (int i = 0; i < CELLS; i++)
+		q[i % NX * NY + i / NX] = p[i];
+	e = debris_new(&turned);
+	debris_step(d, h, p, &step);
+	debris_step(e, g, q, &step);
+	for (int i = 0; i < CELLS; i++)
+		bad += h[i] != g[i % NX * NY + i / NX];
+	ok(bad == 0 && step.count > 0, "x and y change places: the same wear");
+	memset(g, 0, sizeof(g));
+	for (int i = 0; i < CELLS; i++)
+		q[(NY - 1 - i / NX) * NX + i % NX] = p[i];
+	debris_step(d, g, q, &step);
+	for (int i = 0; i < CELLS; i++)
+		bad += h[i] != g[(NY - 1 - i / NX) * NX + i % NX];
+	ok(bad == 0, "mirrored across the shear: the same wear");
+	memset(g, 0, sizeof(g));
+	for (int i = 0; i < CELLS; i++)
+		q[i / NX * NX + NX - 1 - i % NX] = p[i];
+	debris_step(d, g, q, &step);
+	for (int i = 0; i < CELLS; i++)
+		bad += h[i] != g[i / NX * NX + NX - 1 - i % NX];
+	ok(bad > 0, "mirrored along the shear: another");
+	debris_free(d);
+	debris_free(e);
+}
+
+/* Kept kernels, windows and the past leave no trace in the bits. */
+static void test_history(void)
+{
+	struct debris_par kept = plain(WEAR_POTENTIAL), none = kept;
+	struct debris *d = debris_new(&kept);
+	double p[CELLS], h[CELLS], g[CELLS];
+	struct debris_step step;
+	int bad = 0;
+
+	none.stress.memory = 0;
+	for (int seed = 4; seed < 10; seed++) {
+		struct debris *e = debris_new(&none);
+
+		memset(h, 0, sizeof(h));
+		memset(g, 0, sizeof(g));
+		press(p, seed);
+		debris_step(d, h, p, &step);
+		bad += step.count == 0;
+		debris_step(e, g, p, &step);
+		bad += memcmp(h, g, sizeof(h)) != 0;
+		debris_free(e);
+	}
+	ok(bad == 0, "six surfaces in a row and each alone: the same bits");
+	debris_free(d);
+}
+
+static void test_refusals(void)
+{
+	struct debris_par par = plain(WEAR_COLUMN);
+	struct debris *d = debris_new(&par);
+	double p[CELLS] = { 0 }, h[CELLS] = { 0 };
+	struct debris_step step;
+	int changed = 0;
+
+	p[300] = -1;
+	ok(debris_step(d, h, p, &step) == DEBRIS_PULL, "a pressure below zero");
+	p[300] = 1e30;
+	ok(debris_step(d, h, p, &step) == DEBRIS_DEEP, "material without strength");
+	for (int i = 0; i < CELLS; i++)
+		changed += h[i] != 0;
+	ok(changed == 0, "leave the surface as it was");
+	p[300] = 1e9;
+	ok(debris_step(d, h, p, &step) == DEBRIS_OK && step.count == 1,
+		"and the next step sound");
+	debris_free(d);
+	par.yield = 0;
+	ok(!debris_new(&par), "no yield stress");
+}
+
+int main(void)
+{
+	test_balance(WEAR_COLUMN, "columns");
+	test_balance(WEAR_POTENTIAL, "all that fails");
+	test_rules();
+	test_symmetry();
+	test_history();
+	test_refusals();
+	return tap_done();
+}
