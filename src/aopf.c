@@ -22,8 +22,8 @@ static const char *const models[] = { "average", "linear", "exponential", "power
 static const char *const time_units[] = { "s", "min", "h", "d", NULL };
 static const double seconds[] = { 1, 60, 3600, 86400 };
 
-static double threshold = NAN, zero, horizon, share = 0.5, freedom, process = NAN,
-	      noise = NAN, hysteresis = 0.03;
+static double threshold = NAN, after = -INFINITY, zero, horizon, share = 0.5, freedom,
+	      process = NAN, noise = NAN, hysteresis = 0.03;
 static int direction = 2, scheme, model, time_unit;
 static long persist = 3, particles = 300, largest = 60, window = 50, seed = 1;
 static const char *const skips[] = { "auto", NULL };
@@ -77,6 +77,8 @@ static const struct opt opts[] = {
 		models, 0 },
 	{ 'H', "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, DBL_MAX, "T",
 		"longest life ahead; 0: ten times the time so far", NULL, 0 },
+	{ 'A', "after", OPT_NUM, UNIT_TIME, &after, -DBL_MAX, DBL_MAX, "T",
+		"time from which on life is predicted (default all the time)", NULL, 0 },
 	{ 'q', "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "Q,Q,...",
 		"levels of the quantiles of remaining life", NULL, 0 },
 	{ 'F', "fleet", OPT_TEXT, UNIT_NONE, &fleet_file, 0, 0, "FILE",
@@ -199,9 +201,10 @@ static void learn(
 		stats_add("rows_skipped", 1);
 }
 
-static void put_life(struct unit_state *u, struct table_out *out, double y)
+static void put_life(struct unit_state *u, struct table_out *out, double t, double y)
 {
 	double q[OPT_LIST_MAX], never = NAN;
+	int wanted = t >= after / seconds[time_unit];
 
 	if (!isnan(y))
 		u->beyond = u->runin.direction * (y - threshold) >= 0 ? u->beyond + 1 : 0;
@@ -210,8 +213,10 @@ static void put_life(struct unit_state *u, struct table_out *out, double y)
 		q[i] = u->failed ? 0 : NAN;
 	if (u->failed)
 		never = 0;
-	else if (u->predict)
+	else if (u->predict && wanted)
 		predict_life(u->predict, levels.v, q, levels.n, &never);
+	stats_add("lives", u->predict && !u->failed && wanted);
+	stats_add("lives_left_out", u->failed || !wanted);
 	for (int i = 0; i < levels.n; i++)
 		table_put(out, q[i]);
 	table_put(out, never);
@@ -239,7 +244,7 @@ static void step(struct unit_state *u, const struct series *in, struct table_out
 			start_predict(u, y, series_unit(in));
 		if (u->predict)
 			learn(u, t, y, &row);
-		put_life(u, out, y);
+		put_life(u, out, t, y);
 	}
 	table_end_row(out);
 	table_flush(out);

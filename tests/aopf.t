@@ -142,6 +142,15 @@ for shape in 'linear t / 100' 'exponential 0.3 * (exp(log(1 + 1 / 0.3) * t / 100
 	is "$model downwards: the same" "$(cat down)" "$(cat r)"
 done
 
+# Work left out
+aopf -y 2.8 -t h -A 250h -S after.stats rise.tsv | grep '^[0-9]' >after.tsv
+grep '^[0-9]' out.tsv | tail -50 >a
+tail -50 after.tsv >b
+same "--after: the same lives from then on" a b
+is "none before" "$(head -250 after.tsv | cut -f 8 | sort -u)" nan
+is "and what was left out is counted" \
+	"$(column lives after.stats) $(column lives_left_out after.stats)" "50 250"
+
 # Run-in: a bump of a third of the way that dies out by t = 60
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 400; t++)
 	printf "%d\t%.9g\n", t, t / 1000 + 0.3 * exp(-(t - 20) ^ 2 / 200) + 0.01 * sin(t * t) }' >bump.tsv
