@@ -115,7 +115,7 @@ static int allocate(struct network *net)
 	}
 	net->columns = malloc(columns * sizeof(real));
 	net->unit = malloc(unit * sizeof(real));
-	net->weights = calloc(net->count, sizeof(real));
+	net->weights = calloc(net->count + 1, sizeof(real)); /* pools have none */
 	return net->columns && net->unit && net->weights;
 }
 
