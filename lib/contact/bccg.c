@@ -61,9 +61,9 @@ static void make_extension(struct contact *c)
 		}
 	}
 	if (sum > 0) {
-		c->near_x = nx > 1 ? -relaxation * x / sum : 0;
-		c->near_y = ny > 1 ? -relaxation * y / sum : 0;
-		c->near_xy = nx > 1 && ny > 1 ? -relaxation * xy / sum : 0;
+		c->near_x = c->par.nx > 3 ? -relaxation * x / sum : 0;
+		c->near_y = c->par.ny > 3 ? -relaxation * y / sum : 0;
+		c->near_xy = c->par.nx > 3 && c->par.ny > 3 ? -relaxation * xy / sum : 0;
 	}
 }
 
@@ -116,7 +116,7 @@ static double extended_gap(const struct contact *c, size_t x, const size_t row[3
 	double pressure = c->p[row[1] + column[0]] + c->p[row[1] + column[2]] +
 			  c->p[row[0] + x] + c->p[row[2] + x];
 
-	if (pressure <= 0)
+	if (pressure <= 0 || !c->extend)
 		return 0;
 	return c->near_x * (active_gap(c, row[1] + column[0]) +
 				   active_gap(c, row[1] + column[2])) +
@@ -182,37 +182,43 @@ static inline void sum_bounded(
 	s->sum[3] += is_free(c, c->p[i] + step);
 }
 
-/* New direction on the active cells, of which the step keeps what the bounds leave. */
+/* The step of an active cell along its direction, shifted, as far as the bounds let it.
+ */
+static inline double bounded_step(const struct contact *c, size_t i, double d)
+{
+	double p = c->p[i];
+
+	return c->active[i] * (within(c, p + c->tau * (d + c->shift)) - p);
+}
+
+/* New direction, left in image, and its bounded step. */
 static void turn_step(void *context, size_t begin, size_t end, struct sweep *s)
 {
 	const struct contact copy = *(struct contact *)context, *c = &copy;
 	struct sweep t = *s;
 
 	for (size_t i = begin; i < end; i++) {
-		double p = c->p[i], g = gap_at(c, i), d, step;
+		double d = c->beta * c->step[i] - c->residual[i];
+		double step = bounded_step(c, i, d);
 
-		d = c->shift - c->residual[i] + c->beta * c->step[i];
-		step = within(c, p + c->tau * d) - p;
-		step *= c->active[i];
+		c->image[i] = d;
 		c->step[i] = step;
-		sum_bounded(c, i, g, step, &t);
+		sum_bounded(c, i, gap_at(c, i), step, &t);
 	}
 	*s = t;
 }
 
-/* Shares out among the free cells what the bounds took of the load. */
-static void share_step(void *context, size_t begin, size_t end, struct sweep *s)
+/* The same step for another shift. */
+static void shift_step(void *context, size_t begin, size_t end, struct sweep *s)
 {
 	const struct contact copy = *(struct contact *)context, *c = &copy;
 	struct sweep t = *s;
 
 	for (size_t i = begin; i < end; i++) {
-		double p = c->p[i], g = gap_at(c, i), step = c->step[i];
+		double step = bounded_step(c, i, c->image[i]);
 
-		if (is_free(c, p + step) && c->active[i])
-			step = within(c, p + step + c->shift) - p;
 		c->step[i] = step;
-		sum_bounded(c, i, g, step, &t);
+		sum_bounded(c, i, gap_at(c, i), step, &t);
 	}
 	*s = t;
 }
@@ -250,23 +256,71 @@ struct state {
 	double moved;     /* sum of the last step; 0: it led nowhere */
 	double bounded;   /* cells that the step takes to a bound */
 	double rest;      /* what the step leaves missing */
-	int crowded;      /* ... because the active cells cannot bear more, or less */
-	int exact;        /* gap and load have just been computed */
+	int plain, retreat; /* iterations to go without the preconditioner; last time */
+	int forced;         /* the step is to restore the load, whatever the energy */
+	int crowded;        /* ... because the active cells cannot bear more, or less */
+	int exact;          /* gap and load have just been computed */
 };
 
-/* Direction and bounded step from the residual.  The direction is made conjugate to
- * the last step.  With a given load the step makes up for what is missing, to a few
- * parts in a hundred of itself; the rest is left to the next.  Returns the slope of the
- * energy along the step. */
-static double find_step(struct contact *c, struct state *state)
+static void precondition(struct contact *c)
 {
-	int load_given = c->control == CONTACT_PRESSURE;
-	double count, mean, missing = c->target * (double)c->n - state->sum;
-	struct sweep s;
-
 	convolve_apply(c->periodic, c->inverse, c->residual, c->residual);
 	c->result.transforms += 2;
 	c->result.work += c->par.boundary == CONTACT_FREE ? 0.5 : 2;
+}
+
+/* In place of the preconditioner, the stiffness of a single cell. */
+static void stiffen_residual(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+	double stiffness_of_cell = c->par.estar / sqrt(c->par.dx * c->par.dy);
+
+	(void)s;
+	for (size_t i = begin; i < end; i++)
+		c->residual[i] *= stiffness_of_cell;
+}
+
+/* Finds the shift of the direction that makes the step carry what is missing of the load,
+ * to a few parts in a hundred of itself: Newton's method, kept within what is known to
+ * be too little and too much.  s: sums of the first step. */
+static struct sweep share_load(
+	struct contact *c, double missing, double count, struct sweep s)
+{
+	double low = -INFINITY, high = INFINITY, wide = 0;
+
+	for (int k = 0; k < 60; k++) {
+		double rest = missing - s.sum[1], next = NAN;
+
+		if (fabs(rest) <= load_slack * s.sum[2])
+			break;
+		*(rest > 0 ? &low : &high) = c->shift;
+		if (s.sum[3] > 0)
+			next = c->shift + rest / (c->tau * s.sum[3]);
+		if (!(next > low && next < high))
+			next = (low + high) / 2;
+		if (!isfinite(next)) {
+			wide = 2 * wide + (s.sum[2] + fabs(rest)) / (c->tau * count);
+			next = c->shift + (rest > 0 ? wide : -wide);
+		}
+		c->shift = next;
+		s = contact_sweep(c, shift_step);
+	}
+	return s;
+}
+
+/* Direction and bounded step from the residual.  The direction is made conjugate to
+ * the last step; with a given load the step makes up for what is missing.  Returns the
+ * slope of the energy along the step. */
+static double find_step(struct contact *c, struct state *state)
+{
+	int load_given = c->control == CONTACT_PRESSURE;
+	double count, mean, limit, missing = c->target * (double)c->n - state->sum;
+	struct sweep s;
+
+	if (state->plain > 0)
+		contact_sweep(c, stiffen_residual);
+	else
+		precondition(c);
 	s = contact_sweep(c, sum_residual);
 	count = fmax(s.sum[4], 1);
 	mean = load_given ? s.sum[0] / count : 0;
@@ -275,19 +329,13 @@ static double find_step(struct contact *c, struct state *state)
 	c->shift = load_given ? (missing / c->tau + s.sum[0] - c->beta * s.sum[3]) / count
 			      : 0;
 	s = contact_sweep(c, turn_step);
-	for (int k = 0; load_given && k < 8; k++) {
-		double rest = missing - s.sum[1];
-
-		if (fabs(rest) <= load_slack * s.sum[2] || s.sum[3] <= 0)
-			break;
-		c->shift = rest / s.sum[3];
-		s = contact_sweep(c, share_step);
-	}
+	if (load_given)
+		s = share_load(c, missing, count, s);
 	state->bounded = count - s.sum[3];
 	state->rest = load_given ? missing - s.sum[1] : 0;
-	state->crowded = c->cap < INFINITY &&
-			 fabs(state->rest) > fmax(load_slack * s.sum[2],
-						     1e-12 * c->target * (double)c->n);
+	limit = fmax(load_slack * s.sum[2], 1e-12 * c->target * (double)c->n);
+	state->crowded = c->cap < INFINITY && fabs(state->rest) > limit;
+	state->forced = load_given && fabs(missing) > s.sum[2] / 2;
 	return s.sum[0];
 }
 
@@ -309,8 +357,7 @@ static void count_reached(void *context, size_t begin, size_t end, struct sweep 
  * beyond it, the approach must grow until there are enough, or fall until some open. */
 static void make_room(struct contact *c, double missing)
 {
-	double need = fmin(1.05 * c->target / c->cap, 1) * (double)c->n;
-	double open = fmin(fmax(-2 * missing / c->cap, 1), (double)c->n);
+	double need = c->target / c->cap * (double)c->n, open = -missing / c->cap;
 	double all = c->result.approach, some = all, reach;
 
 	reach = contact_sweep(c, count_reached).max * (1 + 1e-9);
@@ -334,13 +381,13 @@ static void follow_step(struct contact *c, struct state *state, double slope)
 
 	state->curvature = contact_multiply(c, c->step, c->image);
 	state->moved = 0;
-	if (!(state->curvature > 0) || !(slope < 0 || state->crowded)) {
+	if (!(state->curvature > 0) || !(slope < 0 || state->forced)) {
 		state->curvature = 0;
 		return;
 	}
 	/* Far beyond a bounded step lies something else than what it was made for. */
 	c->stretch = fmin(-slope / state->curvature, state->bounded > 0 ? 2 : 10);
-	if (state->crowded) /* the load comes before the energy */
+	if (state->forced)
 		c->stretch = 1;
 	s = contact_sweep(c, take_step);
 	c->tau = fmin(fmax(c->tau * sqrt(c->stretch), 0.05), 5);
@@ -378,6 +425,7 @@ enum contact_status contact_solve_bccg(struct contact *c)
 	struct state state = { 0 };
 
 	c->tau = 0.5;
+	c->extend = 1;
 	renew_gap(c, &state);
 	for (long k = 0;; k++) {
 		double certificate = certify(c), slope;
@@ -397,11 +445,18 @@ enum contact_status contact_solve_bccg(struct contact *c)
 			certify(c);
 			state.curvature = 0;
 			slope = find_step(c, &state);
-			state.crowded = 1;
+			state.forced = 1;
 		}
 		follow_step(c, &state, slope);
-		if (state.moved <= 0)
-			c->tau = fmax(c->tau / 2, 1e-3);
+		state.plain -= state.plain > 0;
+		if (state.moved <= 0) {
+			/* A step bounded in one metric and preconditioned in another
+			 * may lead uphill; a plain one does not. */
+			state.retreat = state.retreat < 32 ? 2 * state.retreat + 1 : 63;
+			state.plain = state.retreat;
+			c->tau = 0.5;
+			c->extend = 0;
+		}
 		if (state.moved <= 0 || state.drift > drift_limit * state.moved)
 			renew_gap(c, &state);
 	}

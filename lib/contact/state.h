@@ -39,6 +39,7 @@ struct contact {
 
 	/* of the iteration in progress, for the passes over the cells */
 	double shift, beta, tau, stretch;
+	int extend;  /* continue the residual beyond the contact */
 	double best; /* certificate so far, and the iterations since */
 	long since;
 };
