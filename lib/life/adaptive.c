@@ -26,7 +26,8 @@ struct adaptive {
 	struct noise *noise;
 	struct fits fits;
 	double *mean; /* [N] prior means */
-	double scale; /* power of two that values are divided by */
+	double scale; /* power of two that values are divided by: of the first but 0 */
+	int scaled;
 	long rows;
 	double time, observed_time;
 	double mean_gap;
@@ -55,6 +56,7 @@ struct adaptive *adaptive_new(const struct adaptive_par *par)
 	if (!a)
 		return NULL;
 	a->par = *par;
+	a->scale = 1;
 	a->par.filter.depth = par->order.largest;
 	a->draw = draw_new(par->seed, par->realisation, RNG_FILTER);
 	a->draw_paths = draw_new(par->seed, par->realisation, RNG_PREDICT);
@@ -222,8 +224,8 @@ static double process_floor(int order, double noise)
 }
 
 /* What the grey model of the observations has lately missed by, beyond three standard
- * deviations of noise: the second largest of the last
- * four squared errors, so that one outlier has no say. */
+ * deviations of noise: the second largest of the last four squared errors, so that one
+ * outlier has no say. */
 static double model_error(const struct adaptive *a, double noise)
 {
 	double largest = 0, second = 0;
@@ -310,13 +312,21 @@ static void observe(struct adaptive *a, double y, double gap, double process,
 	}
 }
 
+/* Zeros do not mind the scale, so it may be learned after them. */
+static void learn_scale(struct adaptive *a, double y)
+{
+	int exponent;
+
+	if (a->scaled || isnan(y) || y == 0)
+		return;
+	frexp(y, &exponent);
+	a->scale = ldexp(1, exponent < -1000 ? -1000 : exponent);
+	a->scaled = 1;
+}
+
 /* The first row with a value. */
 static void begin(struct adaptive *a, double t, double y, struct adaptive_row *row)
 {
-	int exponent = 0;
-
-	frexp(y, &exponent);
-	a->scale = y != 0 ? ldexp(1, exponent < -1000 ? -1000 : exponent) : 1;
 	y /= a->scale;
 	order_add(a->order, y, 0);
 	noise_add(a->noise, y, 0);
@@ -362,6 +372,7 @@ static void advance(struct adaptive *a, double t, double y, struct adaptive_row 
 void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *row)
 {
 	*row = (struct adaptive_row){ NAN, NAN, NAN, NAN, NAN, 0 };
+	learn_scale(a, y);
 	if (a->rows > 0)
 		advance(a, t, y, row);
 	else if (!isnan(y))

@@ -121,6 +121,13 @@ for scale in 1e-300 1e-12 1e12 1e300; do
 	accurate "times of $scale, threshold 1.2" "101 left" \
 		"$(last rul_q50 -y 1.2 s | awk -v s=$scale '{ print $1 / s }')" 101 0.01
 done
+for scale in 1e-300 1e-12 1e12 1e300; do
+	series 100 "0.01 * t * $scale" >s
+	accurate "from 0 in steps of 1e-2 of $scale" "state scales" \
+		"$(last state s | awk -v s=$scale '{ print $1 / s }')" 0.99 1e-3
+	accurate "from 0 in steps of 1e-2 of $scale, threshold 1.5" "51 left" \
+		"$(last rul_q50 -y "$(awk "BEGIN { printf \"%.17g\", 1.5 * $scale }")" s)" 51 0.01
+done
 series 100 '-(1 + 0.001 * t)' >s
 accurate "negative values" "state" "$(last state s)" -1.099 1e-3
 accurate "negative values falling to -1.2" "101 left" "$(last rul_q50 -y -1.2 -d down s)" 101 0.01
