@@ -108,10 +108,10 @@ static int make_near(
 	struct mlms *m, struct level *l, kernel_value value, const void *context)
 {
 	int reach = m->reach, side = 2 * reach + 1;
-	size_t width = (size_t)(reach + 2 * m->order), out = 0;
+	size_t width = (size_t)reach + 2 * (size_t)m->order, out = 0;
 	double *table = fft_alloc(width * width);
 
-	l->near = fft_alloc((size_t)(4 * side * side));
+	l->near = fft_alloc(4 * (size_t)side * (size_t)side);
 	if (!table || !l->near) {
 		fft_free(table);
 		return -1;
@@ -380,14 +380,15 @@ static void sum_directly(void *context, size_t job, int worker)
 		double *image = (m->now ? l->image : m->y) + y * nx;
 
 		memset(image, 0, nx * sizeof(*image));
-		for (size_t i = 0; i < nx * l->ny; i++) {
-			size_t xs = i % nx, ys = i / nx;
+		for (size_t ys = 0; ys < l->ny; ys++) {
 			const double *k = l->near + (y > ys ? y - ys : ys - y) * nx;
 
-			if (source[i] == 0)
-				continue;
-			for (size_t x = 0; x < nx; x++)
-				image[x] += source[i] * k[x > xs ? x - xs : xs - x];
+			for (size_t xs = 0; xs < nx; xs++) {
+				double x = source[ys * nx + xs];
+
+				for (size_t i = 0; x != 0 && i < nx; i++)
+					image[i] += x * k[i > xs ? i - xs : xs - i];
+			}
 		}
 	}
 }

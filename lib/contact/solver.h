@@ -69,7 +69,7 @@ struct contact_par {
 
 enum contact_status {
 	CONTACT_OK,
-	CONTACT_NOCONV,   /* the fields hold the best found, and its certificate */
+	CONTACT_NOCONV,   /* the fields hold the last iterate, of its certificate */
 	CONTACT_OVERLOAD, /* mean pressure not below the hardness: nothing done */
 	CONTACT_TOO_DEEP, /* periodic: approach beyond full contact: nothing done */
 	CONTACT_NUMBERS   /* input not finite or over the range of doubles */
@@ -90,8 +90,9 @@ struct contact_result {
 	 * g itself takes the place of g - min g. */
 	double certificate;
 	long iterations; /* on the given grid */
-	long transforms; /* Fourier transforms of the given grid (padded: 4 x) */
-	double work;     /* the same with those of coarser grids, by size */
+	long transforms; /* Fourier transforms on the given grid, padded or not */
+	double work;     /* the same with those of coarser grids, by size: in units of
+			  * the half-space's, which on a free boundary are padded */
 };
 
 /* NULL if a parameter is out of range (errno EDOM) or memory is short (ENOMEM). */

@@ -38,9 +38,12 @@ struct contact {
 	double scale; /* length that makes the certificate a number */
 
 	/* of the iteration in progress, for the passes over the cells */
-	double shift, beta, tau, stretch;
-	int extend;  /* continue the residual beyond the contact */
-	double best; /* certificate so far, and the iterations since */
+	double shift;   /* of the direction, that the load is kept */
+	double beta;    /* share of the last step; also a factor of pressures */
+	double tau;     /* step length that is guessed */
+	double stretch; /* ... and what the line search makes of it */
+	int extend;     /* continue the residual beyond the contact */
+	double best;    /* certificate so far, and the iterations since */
 	long since;
 };
 
