@@ -263,17 +263,9 @@ static void pick_examples(struct learning *l, const double *y1, const double *y2
 
 static void scene_of(const struct calibration *c, struct joint_scene *scene)
 {
-	memset(scene, 0, sizeof *scene);
-	scene->shape = c->shape;
-	scene->duration = c->duration;
-	scene->transit = c->transit;
-	scene->gain = c->gain * c->noise[0] / c->noise[1];
-	scene->delta_min = c->delta_min;
-	scene->delta_max = c->delta_max;
-	scene->drop = c->drop;
-	scene->drop_near = c->drop_near;
+	calibration_scene(c, scene);
+	scene->tones = 0; /* the examples were cleaned */
 	scene->max_pulses = EXAMPLE_PULSES;
-	scene->offset = 1;
 }
 
 /* Duration and gain to least chi-square, unless they are known. */
@@ -429,12 +421,13 @@ static size_t filter_points(
 }
 
 /* Correlation of the filtered channels over the quietest tenth of the record: noise has
- * none, pulses that are always there have much.  r holds n. */
+ * none, pulses that are always there have much.  *level is the root mean square there, 1
+ * for white noise.  r holds n. */
 static double quiet_coherence(const struct calibration *c, const double *y1,
-	const double *y2, size_t n, double *r)
+	const double *y2, size_t n, double *r, double *level)
 {
 	enum { BLOCK = 16 }; /* points: two durations */
-	double *z = malloc((n + 2) * sizeof *z), xy = 0, xx = 0, yy = 0, limit;
+	double *z = malloc((n + 2) * sizeof *z), xy = 0, xx = 0, yy = 0, limit, count = 0;
 	size_t points, blocks;
 
 	if (!z)
@@ -458,7 +451,12 @@ static double quiet_coherence(const struct calibration *c, const double *y1,
 			xy += z[i] * z[n / 2 + i];
 			xx += z[i] * z[i];
 			yy += z[n / 2 + i] * z[n / 2 + i];
+			count += 2;
 		}
+	*level =
+		count > 0
+			? sqrt((xx + yy) / count / (c->duration * shape_energy(c->shape)))
+			: 0;
 	free(z);
 	return xx > 0 && yy > 0 ? xy / sqrt(xx * yy) : 0;
 }
@@ -515,7 +513,7 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 	double *y2, size_t n, struct calibration *c, double *r)
 {
 	size_t max_lag = n / 2, rest;
-	double lag = par->lag, low, change[2];
+	double lag = par->lag, low, change[2], coherence, level = 0;
 
 	if (par->tones == CALIBRATE_FIND_TONES) {
 		c->tones = tones_find(y1, y2, n, TONES_MAX, c->omega);
@@ -590,9 +588,10 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 		return CALIBRATE_MEMORY;
 	if (c->events == 0 && isnan(par->duration))
 		return CALIBRATE_NO_LAG;
-	if (c->chi2 > 4 && quiet_coherence(c, y1, y2, rest, r) > 0.6) {
-		/* Even where it is most quiet, both sensors see the same: too many
-		 * pulses. */
+	coherence = c->chi2 > 4 ? quiet_coherence(c, y1, y2, rest, r, &level) : 0;
+	if (c->chi2 > 4 && (coherence > 0.6 || level < 1.5)) {
+		/* Even where it is most quiet, both sensors see the same, or the noise is
+		 * what it should be there: too many pulses. */
 		c->dense = 1;
 		c->misfit = 0.01;
 		set_range(par, c);
@@ -645,4 +644,22 @@ void calibration_clear(struct calibration *c)
 {
 	shape_free(c->shape);
 	c->shape = NULL;
+}
+
+void calibration_scene(const struct calibration *c, struct joint_scene *scene)
+{
+	*scene = (struct joint_scene){ .shape = c->shape,
+		.duration = c->duration,
+		.transit = c->transit,
+		.gain = c->gain * c->noise[0] / c->noise[1],
+		.delta_min = c->delta_min,
+		.delta_max = c->delta_max,
+		.drop = c->drop,
+		.drop_near = c->drop_near,
+		.misfit = c->misfit,
+		.offset = 1,
+		.tone_variance = c->tone_variance };
+	for (int k = 0; k < c->tones; k++)
+		if (c->omega[k] * c->duration < 8 * acos(-1) || isinf(c->tone_variance))
+			scene->omega[scene->tones++] = c->omega[k];
 }

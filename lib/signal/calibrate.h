@@ -12,6 +12,7 @@
 #ifndef SIGNAL_CALIBRATE_H
 #define SIGNAL_CALIBRATE_H
 
+#include "signal/joint.h"
 #include "signal/sensor.h"
 #include "signal/shape.h"
 #include "signal/tones.h"
@@ -67,6 +68,10 @@ enum calibrate_status {
 enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct calibration *c);
 void calibration_clear(struct calibration *c);
+
+/* The scene of joint.h with all that was learned: max_pulses is left to the caller. Tones
+ * where the pulse has no power are left out, once they are known to be steady. */
+void calibration_scene(const struct calibration *c, struct joint_scene *scene);
 
 /* Chi-square a lone pulse must take away so that noise gives at most rate false ones
  * per sample: the expected number of maxima above u of the matched-filter field over

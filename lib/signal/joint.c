@@ -30,8 +30,10 @@ struct joint {
 	struct column trial[JOINT_PULSES_MAX + 1][2]; /* as they were before a step */
 	double *h; /* NPAR * NPAR: normal matrix or its Cholesky factor */
 	double *factor;
-	int begin[NPAR]; /* first nonzero of each row */
-	double *bq;      /* NPAR * basis: Q^T J */
+	int begin[NPAR];         /* first nonzero of each row */
+	double energy;           /* e^T e of both channels, ... */
+	double qe[2][BASIS_MAX]; /* ... and Q^T e: kept up to date by add_column() */
+	double *bq;              /* NPAR * basis: Q^T J */
 	double gradient[NPAR], diagonal[NPAR], move[NPAR];
 	long steps, searches;
 };
@@ -175,25 +177,39 @@ static void make_basis(struct joint *j, const struct joint_scene *s)
 	}
 }
 
-/* r = e without its tones; returns chi-square.  With s^2 the variance of a coefficient
- * known beforehand, the covariance of the record is 1 + s^2 q q^T, its inverse
- * 1 - share q q^T with share = s^2 / (1 + s^2), and chi-square e^T r. */
-static double project(struct joint *j)
+/* Energy of e and its part along the basis, from scratch. */
+static void measure(struct joint *j)
 {
-	double chi2 = 0;
+	j->energy = 0;
+	for (int c = 0; c < 2; c++) {
+		j->energy += dot(j->e[c], j->e[c], j->n);
+		for (int b = 0; b < j->basis; b++)
+			j->qe[c][b] = dot(j->q + (size_t)b * j->n, j->e[c], j->n);
+	}
+}
 
+/* Chi-square.  With s^2 the variance of a coefficient known beforehand, the covariance of
+ * the record is 1 + s^2 q q^T, its inverse 1 - share q q^T, share = s^2 / (1 + s^2). */
+static double chi_square(const struct joint *j)
+{
+	double chi2 = j->energy;
+
+	for (int c = 0; c < 2; c++)
+		for (int b = 0; b < j->basis; b++)
+			chi2 -= j->share[b] * j->qe[c][b] * j->qe[c][b];
+	return chi2;
+}
+
+/* r = e without its tones, as far as they are not known beforehand. */
+static void project(struct joint *j)
+{
+	measure(j);
 	for (int c = 0; c < 2; c++) {
 		memcpy(j->r[c], j->e[c], j->n * sizeof(double));
-		chi2 += dot(j->e[c], j->e[c], j->n);
-		for (int b = 0; b < j->basis; b++) {
-			const double *q = j->q + (size_t)b * j->n;
-			double part = dot(q, j->r[c], j->n);
-
-			add_scaled(j->r[c], -j->share[b] * part, q, j->n);
-			chi2 -= j->share[b] * part * part;
-		}
+		for (int b = 0; b < j->basis; b++)
+			add_scaled(j->r[c], -j->share[b] * j->qe[c][b],
+				j->q + (size_t)b * j->n, j->n);
 	}
-	return chi2;
 }
 
 static double pulse_duration(const struct joint_scene *s, double delta)
@@ -295,14 +311,16 @@ static void make_normal(struct joint *j, const int *set, int m)
 			for (int c = 0; c < 2; c++) {
 				const struct column *col = &j->col[i][c];
 
-				g += dot(col->d[u], j->r[c] + col->first, col->n);
-				for (int b = 0; b < j->basis; b++)
+				g += dot(col->d[u], j->e[c] + col->first, col->n);
+				for (int b = 0; b < j->basis; b++) {
+					double part = dot(col->d[u],
+						j->q + (size_t)b * j->n + col->first,
+						col->n);
+
+					g -= j->share[b] * part * j->qe[c][b];
 					j->bq[(PAR * x + u) * nb + c * j->basis + b] =
-						sqrt(j->share[b]) *
-						dot(col->d[u],
-							j->q + (size_t)b * j->n +
-								col->first,
-							col->n);
+						sqrt(j->share[b]) * part;
+				}
 			}
 			j->gradient[PAR * x + u] = g;
 			j->begin[PAR * x + u] = nb ? 0 : PAR * x;
@@ -396,8 +414,14 @@ static void add_column(struct joint *j, int i, double factor)
 {
 	for (int c = 0; c < 2; c++) {
 		const struct column *col = &j->col[i][c];
+		double *e = j->e[c] + col->first;
 
-		add_scaled(j->e[c] + col->first, factor, col->d[2], col->n);
+		j->energy -= dot(e, e, col->n);
+		add_scaled(e, factor, col->d[2], col->n);
+		j->energy += dot(e, e, col->n);
+		for (int b = 0; b < j->basis; b++)
+			j->qe[c][b] += factor * dot(j->q + (size_t)b * j->n + col->first,
+							col->d[2], col->n);
 	}
 }
 
@@ -442,10 +466,12 @@ static double fit_set(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, const int *set, int m, int max_steps,
 	double tolerance)
 {
-	double lambda = 1e-4, chi2 = project(j);
+	double lambda = 1e-4, chi2;
 	struct joint_pulse old[JOINT_PULSES_MAX];
 	int fresh = 0;
 
+	measure(j);
+	chi2 = chi_square(j);
 	for (int x = 0; x < m; x++)
 		make_columns(j, s, set[x], &pulses[set[x]]);
 	for (int step = 0; step < max_steps && m > 0; step++) {
@@ -462,7 +488,7 @@ static double fit_set(struct joint *j, const struct joint_scene *s,
 		memcpy(j->move, j->gradient, sizeof(double) * (size_t)(PAR * m));
 		solve(j, PAR * m, 0, j->move);
 		step_forth(j, s, pulses, set, m, old);
-		after = project(j);
+		after = chi_square(j);
 		if (after < chi2) {
 			double gain = chi2 - after;
 
@@ -475,7 +501,7 @@ static double fit_set(struct joint *j, const struct joint_scene *s,
 		}
 		step_back(j, pulses, set, m, old);
 		after -= chi2;
-		chi2 = project(j);
+		chi2 = chi_square(j);
 		if (after < tolerance || lambda > 1e6)
 			break;
 		lambda = lambda * 10;
@@ -531,13 +557,15 @@ static struct candidate search(struct joint *j, const struct joint_scene *s,
 	const struct candidate *tried, int ntried)
 {
 	size_t stride = s->duration >= 48 ? (size_t)(s->duration / 24) : 1;
-	size_t points = filter_residual(j, s, stride);
+	size_t points;
 	double energy = s->duration * shape_energy(s->shape), z = 0, g = s->gain;
 	double norm = 1 / sqrt(energy * (1 + g * g));
 	long lo = (long)floor(s->delta_min / (double)stride);
 	long hi = (long)ceil(s->delta_max / (double)stride);
 	struct candidate best = { 0 };
 
+	project(j);
+	points = filter_residual(j, s, stride);
 	j->searches++;
 	for (long k = 0; k < (long)points; k++) {
 		for (long l = k + lo < 0 ? -k : lo; l <= hi && k + l < (long)points;
@@ -590,7 +618,6 @@ static void restore(struct joint *j, const struct joint_scene *s,
 	*m = old;
 	for (int k = 0; k < *m; k++)
 		subtract(j, s, &pulses[k], 1);
-	project(j);
 }
 
 /* Is pulse i, the last one put in, worth a drop of chi-square from before to after? */
@@ -704,6 +731,7 @@ static int split_pulses(struct joint *j, const struct joint_scene *s,
 {
 	int split = 0;
 
+	project(j);
 	for (int i = 0; i < *m && *m < s->max_pulses; i++) {
 		double best = 2, shift = 0;
 
@@ -716,8 +744,10 @@ static int split_pulses(struct joint *j, const struct joint_scene *s,
 				shift = floor(0.06 * k * s->duration);
 			}
 		}
-		if (shift > 0)
+		if (shift > 0) {
 			split += try_split(j, s, pulses, m, i, shift, chi2);
+			project(j);
+		}
 	}
 	return split;
 }
@@ -927,6 +957,7 @@ static void finish(struct joint *j, const struct joint_scene *s,
 
 	qsort(pulses, (size_t)m, sizeof *pulses, by_time);
 	fill_covariance(j, s, pulses, m);
+	project(j);
 	result->chi2 = chi2;
 	for (int b = 0; b < j->basis; b++)
 		taken += 2 * j->share[b];
@@ -950,7 +981,7 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 
 	if (status != JOINT_OK)
 		return status;
-	chi2 = *m > 0 ? fit_all(j, s, pulses, *m) : project(j);
+	chi2 = fit_all(j, s, pulses, *m);
 	do {
 		while (failed < TRIES && *m < s->max_pulses) {
 			struct candidate c = search(j, s, tried, failed);

@@ -218,20 +218,8 @@ static enum separate_status calibrate_now(struct separate *s)
 		return of[status];
 	s->calibrated = 1;
 	s->done = s->tape[0].begin;
-	s->scene = (struct joint_scene){ .shape = c->shape,
-		.duration = c->duration,
-		.transit = c->transit,
-		.gain = c->gain * c->noise[0] / c->noise[1],
-		.delta_min = c->delta_min,
-		.delta_max = c->delta_max,
-		.drop = c->drop,
-		.drop_near = c->drop_near,
-		.misfit = c->misfit,
-		.max_pulses = JOINT_PULSES_MAX,
-		.offset = 1,
-		.tones = c->tones,
-		.tone_variance = c->tone_variance };
-	memcpy(s->scene.omega, c->omega, (size_t)c->tones * sizeof(double));
+	calibration_scene(c, &s->scene);
+	s->scene.max_pulses = JOINT_PULSES_MAX;
 	reach = 2 * shape_reach(c->shape) * c->duration;
 	if (s->par.window < (size_t)(6 * reach))
 		s->par.window =
