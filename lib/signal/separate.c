@@ -368,6 +368,21 @@ static enum separate_verdict judge(
 	return sources > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
 }
 
+/* Chi-square of the samples before boundary alone: behind it pulses may come in whose
+ * middle lies outside the window. */
+static void judge_part(
+	const struct separate *s, double boundary, int done, struct joint_result *r)
+{
+	size_t n = (size_t)boundary;
+
+	r->chi2 = 0;
+	for (int c = 0; c < 2; c++)
+		for (size_t i = 0; i < n; i++)
+			r->chi2 += joint_residual(s->joint, c)[i] *
+				   joint_residual(s->joint, c)[i];
+	r->dof = 2 * (long)n - 3 * done > 1 ? 2 * (long)n - 3 * done : 1;
+}
+
 /* More pulses than this in n samples are not looked for. */
 static int most_pulses(const struct separate *s, size_t n)
 {
@@ -460,6 +475,11 @@ static enum separate_status fit_section(
 	s->counters.fits++;
 	s->counters.steps += (double)r.steps;
 	s->counters.searches += (double)r.searches;
+	boundary = cut ? choose_cut(s, m, n) : INFINITY;
+	while (done < m && s->pulse[done].t < boundary)
+		done++;
+	if (cut)
+		judge_part(s, boundary, done, &r);
 	verdict = judge(s, &r, m);
 	if (verdict == SEPARATE_UNRESOLVED && !s->par.sources) {
 		s->dense = 1;
@@ -467,9 +487,6 @@ static enum separate_status fit_section(
 		*next = from;
 		return SEPARATE_OK;
 	}
-	boundary = cut ? choose_cut(s, m, n) : INFINITY;
-	while (done < m && s->pulse[done].t < boundary)
-		done++;
 	chi2 = r.chi2 / (double)r.dof;
 	for (int i = 0; i < done; i++)
 		if (!emit_pulse(s, &s->pulse[i], from, m, chi2, verdict))

@@ -1,0 +1,164 @@
+#!/bin/sh
+# Stiff and extreme scenes of duet: accurate, or refused in one line.
+# A description reads: scene | expectation | outcome | error
+. "$(dirname "$0")/../tap.sh"
+. "$top/tests/au.sh"
+
+# within NAME EXPECTATION WANT TOLERANCE GOT
+within() {
+	error=$(awk -v g="$5" -v w="$3" 'BEGIN { if (g !~ /^[-+]?[0-9.]/) print "none"
+		else { d = g - w; printf "%.2g", d < 0 ? -d : d } }')
+	near "$1 | $2 | $5 | $error" "$error" 0 "$4"
+}
+
+refused() {
+	name=$1
+	shift
+	fails "$name | refused in one line | status $1: $2 | none" "$@"
+}
+
+# score COLUMN: of truth.tsv and found.tsv
+score() {
+	"$top/scripts/score" ${limit:+-t "$limit"} truth.tsv found.tsv |
+		awk -F '\t' -v c="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == c) k = i; next }
+		{ print $k }'
+}
+
+# Twenty clear particles; noise at 40 dB.
+scene() {
+	sensorsim --uniform 80um:120um --number 20 --duration 2s --gap 30ms --snr 40dB \
+		--lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv "$@" >s.au
+}
+
+constant() { # VALUE1 VALUE2
+	awk -v a="$1" -v b="$2" 'BEGIN { for (i = 0; i < 4000; i++) print a, b }' | au 10000 2
+}
+
+# --- dead and broken records
+constant 0 0 >silence.au
+refused "silence" 1 'channel 1 is constant: a dead sensor' duet silence.au
+constant 2.5 -1 >dc.au
+refused "DC" 1 'channel 1 is constant' duet dc.au
+scene
+frames s.au 2 >frames.txt
+awk '{ print $1, 0 }' frames.txt | au 10000 2 >dead.au
+refused "sensor 2 dead" 1 'channel 2 is constant' duet dead.au
+awk 'NR == 777 { $2 = "nan" } { print $1, $2 }' frames.txt | au 10000 2 >nan.au
+refused "a sample is not a number" 1 'channel 2, frame 776: not a finite' duet nan.au
+awk 'NR == 99 { $1 = "inf" } { print $1, $2 }' frames.txt | au 10000 2 >inf.au
+refused "a sample is infinite" 1 'channel 1, frame 98: not a finite' duet inf.au
+head -n 63 frames.txt | au 10000 2 >short.au
+refused "63 frames" 1 'at least 64 frames' duet short.au
+sensorsim --uniform 100um:100um --number 0 --duration 10s --noise 1V >noise.au
+duet noise.au >found.tsv 2>said
+within "noise alone" "no particle, one warning" 1 0 \
+	"$(($(column particle found.tsv | wc -l) + $(wc -l <said)))"
+awk '{ print $1, $1 }' frames.txt | au 10000 2 >twice.au
+duet twice.au >found.tsv
+within "the same channel twice (lag 0)" "20 particles" 20 0 "$(column particle found.tsv | wc -l)"
+awk '{ for (i = 1; i <= 2; i++) if ($i > 0.5) $i = 0.5; else if ($i < -0.5) $i = -0.5
+	print $1, $2 }' frames.txt | au 10000 2 >clipped.au
+duet clipped.au >found.tsv
+within "clipped at half the height" "not believed: no row alone or overlap" 0 0 \
+	"$(column verdict found.tsv | grep -c 'alone\|overlap')"
+
+# --- scale and rate
+for unit in 1e-12 1e12; do
+	awk -v u=$unit '{ print $1 * u, $2 * u }' frames.txt | au 10000 2 >scaled.au
+	duet -K "$(awk -v u=$unit 'BEGIN { print 7.853981633974483e10 * u }')" scaled.au >found.tsv
+	within "volts times $unit" "the same 20 particles" 20 0 "$(score matched)"
+	within "volts times $unit" "sizes to 0.2 %" 0 0.002 "$(score size_rms)"
+done
+# The same scene at other rates: all times shorter or longer, lengths to match.
+for rate in 10 1000 1000000 100000000; do
+	t=$(awk -v r=$rate 'BEGIN { print 1e4 / r }')
+	scale() { awk -v x="$1" -v t="$t" 'BEGIN { printf "%.12g", x * t }'; }
+	sensorsim --rate $rate --uniform 80um:120um --number 20 --duration "$(scale 2)s" \
+		--gap "$(scale 0.03)s" --snr 40dB --gain 0.909 --truth truth.tsv \
+		--zone "$(scale 0.1273239544735163)" --spacing "$(scale 0.25)" \
+		--lag "$(scale 0.0002)s:$(scale 0.0005)s" >s.au
+	duet --spacing "$(scale 0.25)" s.au >found.tsv
+	limit=$(scale 0.002)
+	within "rate $rate Hz" "20 particles" 20 0 "$(score matched)"
+	within "rate $rate Hz" "delays to 0.06 samples" 0 0.06 \
+		"$(awk -v x="$(score delay_rms)" -v r=$rate 'BEGIN { print x * r }')"
+	limit=
+done
+scene --zone 6mm
+refused "pulses of 5 samples" 1 'no pulse of at least 8 samples' duet s.au
+scene --zone 15mm --span 1.5s
+duet s.au >found.tsv
+within "pulses of 12 samples" "20 particles" 20 0 "$(score matched)"
+
+# --- close, equal, far apart
+put() { # rows: time diameter velocity
+	{ printf 'time\tdiameter\tvelocity\n'; printf '%s\t%s\t%s\n' "$@"; } >p.tsv
+}
+v=12.5
+put 0.1 1e-4 $v 0.2 9e-5 $v 0.3 1.1e-4 $v 0.4 1e-4 $v 0.402 1e-4 $v 0.6 1e-4 $v
+sensorsim --noise 10mV --gain 0.909 --truth truth.tsv p.tsv >s.au
+duet s.au >found.tsv
+within "equal delays, 2 ms apart" "6 particles" 6 0 "$(score matched)"
+within "equal delays, 2 ms apart" "sizes to 0.3 %" 0 0.003 "$(score size_rms)"
+put 0.1 1e-4 $v 0.2 9e-5 $v 0.3 1.1e-4 $v 0.4 1e-4 $v 0.4 1e-4 $v 0.6 1e-4 $v
+sensorsim --noise 10mV --gain 0.909 p.tsv >s.au
+duet s.au >found.tsv
+within "two particles side by side" "5 rows: nothing tells them apart" 5 0 \
+	"$(column particle found.tsv | wc -l)"
+within "two particles side by side" "one of twice the volume" 1.259921e-4 2e-7 \
+	"$(column diameter found.tsv | sed -n 4p)"
+# Transit a third longer: 6.6 ms, more than half a period of 100 Hz, (3-10).
+put 0.1 1e-4 $v 0.2 9e-5 $v 0.3 1.1e-4 $v 0.4 1e-4 9.4 0.5 1e-4 $v 0.6 1e-4 $v 0.7 1e-4 $v
+sensorsim --noise 10mV --gain 0.909 --truth truth.tsv p.tsv >s.au
+duet --spread 0.5 s.au >found.tsv
+within "a delay beyond the phase limit" "7 particles" 7 0 "$(score matched)"
+within "a delay beyond the phase limit" "delays to 0.1 samples" 0 1e-5 "$(score delay_rms)"
+# 80 dB apart in voltage: 100 um and 4.64 um.
+put 0.1 1e-4 $v 0.2 9e-5 $v 0.3 1.1e-4 $v 0.4 4.641589e-6 $v 0.5 1e-4 $v 0.6 1e-4 $v
+sensorsim --noise 5uV --gain 0.909 --truth truth.tsv p.tsv >s.au
+duet s.au >found.tsv
+within "80 dB apart, one after the other" "6 particles" 6 0 "$(score matched)"
+within "80 dB apart, one after the other" "the small one to 1 %" 4.641589e-6 5e-8 \
+	"$(column diameter found.tsv | sort -g | head -n 1)"
+put 0.1 1e-4 $v 0.2 9e-5 $v 0.3 1.1e-4 $v 0.4 1e-4 $v 0.405 4.641589e-6 $v 0.6 1e-4 $v
+sensorsim --noise 5uV --gain 0.909 --truth truth.tsv p.tsv >s.au
+duet s.au >found.tsv
+within "80 dB apart, overlapping" "the five large ones; no other" 5 0 \
+	"$(column particle found.tsv | wc -l)"
+within "80 dB apart, overlapping" "sizes of the large ones to 0.1 %" 0 0.001 "$(score size_rms)"
+
+# --- many
+
+sensorsim --uniform 80um:120um --number 100 --gap 6ms --span 0.8s --duration 1.2s --snr 40dB \
+	--lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv >s.au
+duet s.au >found.tsv
+within "100 particles in one section, 8 ms apart" "at least 98" 100 2 "$(score matched)"
+within "100 particles in one section, 8 ms apart" "no other" 0 2 "$(score false)"
+sensorsim --uniform 80um:120um --number 4000 --duration 2s --snr 40dB --truth truth.tsv >s.au
+duet s.au >found.tsv
+within "2000 particles a second, 20 at once" "unresolved, none invented" 0 0 "$(score found)"
+
+# --- masks
+scene
+duet -m duet -w 4 -H 1 s.au >found.tsv
+ok "masks of 4 samples | particles or none, no fault | $(score matched) of 20 | none" true
+duet -m duet -w 100000 s.au >found.tsv
+ok "masks longer than the record | particles or none, no fault | $(score matched) of 20 | none" true
+
+# --- long: memory does not grow, time does not drift
+memory() { # SECONDS
+	sensorsim --uniform 80um:120um --number $(($1 * 2)) --duration "$1s" --gap 30ms \
+		--snr 40dB --lag 0.2ms:0.5ms --truth truth.tsv | duet -S stats >found.tsv
+	column_of memory <stats
+}
+column_of() {
+	awk -F '\t' -v c="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i ~ c) k = i; next }
+	{ print $k }'
+}
+m1=$(memory 20)
+m2=$(memory 200)
+within "200 s instead of 20 s" "memory grows by less than a tenth" 1 0.1 \
+	"$(awk -v a="$m1" -v b="$m2" 'BEGIN { print b / a }')"
+within "200 s" "400 particles" 400 0 "$(score matched)"
+within "200 s" "arrivals to 0.05 samples" 0 5e-6 "$(score time1_rms)"
+done_testing
