@@ -367,6 +367,8 @@ static enum calibrate_status learn_pulse(const struct calibrate_par *par,
 		step = fmin(fmax(3 * moved, 0.002), 0.02);
 		c->duration = l.scene.duration;
 		c->gain = l.scene.gain * c->noise[1] / c->noise[0];
+		if (k > 1 && c->chi2 > 10)
+			break; /* too dense, or not such pulses: no use */
 		if (k > 2 && moved < 5e-4 && (c->chi2 < 1.2 || c->chi2 > 0.95 * before))
 			break;
 	}
