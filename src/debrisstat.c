@@ -24,7 +24,7 @@ static const struct opt opts[] = { { 'o', "output", OPT_WORD, UNIT_NONE, &output
 					   "fits|steps|sizes|aspects", "what to print",
 					   outputs, 0 },
 	{ 'd', "diameter", OPT_LIST, UNIT_LENGTH, &diameters, 0, 1e30, "LO:HI",
-		"only particles of this equivalent diameter; default all", NULL, 0 },
+		"only particles of this equivalent diameter", NULL, 0 },
 	{ 't', "truncated", OPT_FLAG, UNIT_NONE, &truncated, 0, 0, NULL,
 		"fit the Weibull distribution as cut off at --diameter", NULL, 0 },
 	{ 'p', "step", OPT_LIST, UNIT_COUNT, &range, 1, 1e9, "A[:B]",
@@ -351,8 +351,9 @@ static void estimate_volume(const struct data *d, const size_t *pick, size_t pic
 	free(v);
 }
 
+/* The distance is left out of draws: it has no interval. */
 static void estimate_all(const struct data *d, const size_t *pick, size_t picks,
-	struct estimate out[QUANTITIES])
+	int distance, struct estimate out[QUANTITIES])
 {
 	struct weibull w;
 	double deviation, *x;
@@ -367,7 +368,8 @@ static void estimate_all(const struct data *d, const size_t *pick, size_t picks,
 		out[SHAPE] = w.shape;
 		out[SCALE] = w.scale;
 		out[WEIBULL_MEAN].value = w.mean;
-		out[KS].value = w.distance;
+		if (distance)
+			out[KS].value = weibull_distance(&w, x, n);
 	}
 	free(x);
 	if (d->last >= d->first)
@@ -388,7 +390,7 @@ static void resample(const struct data *d, struct estimate out[QUANTITIES])
 			pick[i] = (size_t)(philox_uniform((uint64_t)seed, (uint32_t)b,
 						   RNG_BOOTSTRAP, i) *
 					   (double)d->all);
-		estimate_all(d, pick, d->all, e);
+		estimate_all(d, pick, d->all, 0, e);
 		for (int q = 0; q < QUANTITIES; q++)
 			draw[q * bootstrap + b] = e[q].value;
 	}
@@ -432,7 +434,7 @@ static void print_fits(const struct data *d, const char *cmd)
 	double *x = pick_diameters(d, pick, d->all, &n);
 	struct estimate e[QUANTITIES], plain = { NAN, NAN, NAN };
 
-	estimate_all(d, pick, d->all, e);
+	estimate_all(d, pick, d->all, 1, e);
 	if (bootstrap)
 		resample(d, e);
 	plain.value = (double)d->all;

@@ -136,6 +136,15 @@ records -o table s.nrrd | awk '!/^[#r]/ && $2 > 1.99e-3 && $2 < 2.01e-3 && $3 > 
 	END { print n == 21 ? m : "rows: " n }' >error
 near "Hertz contact to stress: von Mises within 1e-4 p0" "$(cat error)" 0 1e-4
 
+# A reader of the format's own makers.
+unu=$(command -v unu || command -v teem-unu)
+if [ -n "$unu" ]; then
+	is "stress: teem reads the layers" "$("$unu" slice -i stress.nrrd -a 0 -p 0 | "$unu" head - |
+		awk '/^sizes/ { print $2, $3, $4 }')" "128 128 8"
+else
+	skip "stress: teem reads the layers" "no unu"
+fi
+
 # Edge load is told.
 roughgen -n 32 -L 1mm --sq 1um -l 100um -s 3 | bemcontact -F 1N -E 210GPa |
 	debrisgen -Y 355MPa -U summary.tsv 2>warning >t.tsv

@@ -7,7 +7,8 @@
 /* Weibull */
 
 struct sample {
-	const double *x; /* over the unit */
+	const double *x;   /* over the unit */
+	const double *log; /* of them */
 	size_t n;
 	double low, high, mean_log;
 };
@@ -26,43 +27,48 @@ static double minus_log(const struct sample *m, double log_k, double log_s)
 	double k = exp(log_k), s = exp(log_s), sum = 0;
 
 	for (size_t i = 0; i < m->n; i++)
-		sum += pow(m->x[i] / s, k);
+		sum += exp(k * (m->log[i] - log_s));
 	return -(log_k - log_s + (k - 1) * (m->mean_log - log_s) - sum / (double)m->n -
 		 log(window(m->low, m->high, k, s)));
 }
 
-/* Derivative by the shape with the scale at its best: falls to zero from above at the
- * maximum of the likelihood of a whole distribution. */
-static double shape_equation(const struct sample *m, double k)
+/* Derivative of the likelihood of a whole distribution by the shape, with the scale at
+ * its best, and its own derivative: it falls through zero at the maximum. */
+static double shape_equation(const struct sample *m, double k, double *derivative)
 {
-	double sum = 0, logs = 0;
+	double sum = 0, logs = 0, squares = 0;
 
 	for (size_t i = 0; i < m->n; i++) {
-		double p = pow(m->x[i], k);
+		double l = m->log[i], p = exp(k * l);
 
 		sum += p;
-		logs += p * log(m->x[i]);
+		logs += p * l;
+		squares += p * l * l;
 	}
-	return 1 / k + m->mean_log - logs / sum;
+	logs /= sum;
+	*derivative = -1 / (k * k) - (squares / sum - logs * logs);
+	return 1 / k + m->mean_log - logs;
 }
 
+/* Newton's method within a bracket. */
 static double whole_shape(const struct sample *m)
 {
-	double a = 1e-3, b = 1;
+	double low = 1e-3, high = INFINITY, k = 1, slope;
 
-	while (shape_equation(m, b) > 0 && b < 1e6) {
-		a = b;
-		b *= 2;
-	}
-	for (int i = 0; i < 200 && b - a > 1e-15 * b; i++) {
-		double c = 0.5 * (a + b);
+	for (int i = 0; i < 200; i++) {
+		double f = shape_equation(m, k, &slope), next = k - f / slope;
 
-		if (shape_equation(m, c) > 0)
-			a = c;
+		if (f > 0)
+			low = k;
 		else
-			b = c;
+			high = k;
+		if (!(next > low && next < high))
+			next = isfinite(high) ? 0.5 * (low + high) : 2 * k;
+		if (fabs(next - k) < 1e-15 * k || next > 1e6)
+			break;
+		k = next;
 	}
-	return 0.5 * (a + b);
+	return k;
 }
 
 /* t exp(-t) with t = (x / s)^k, and the same times ln t; 0 at x = 0 and infinity. */
@@ -82,10 +88,10 @@ static void slope(const struct sample *m, const double p[2], double g[2])
 	double a = edge(m->low, k, s, &la), b = edge(m->high, k, s, &lb);
 
 	for (size_t i = 0; i < m->n; i++) {
-		double u = pow(m->x[i] / s, k);
+		double l = m->log[i] - p[1], u = exp(k * l);
 
 		sum += u;
-		logs += u * log(m->x[i] / s);
+		logs += u * l;
 	}
 	g[0] = -(1 + k * (m->mean_log - p[1]) - k * logs / n - (lb - la) / w);
 	g[1] = -(-k + k * sum / n - k * (a - b) / w);
@@ -180,12 +186,14 @@ static int ascending(const void *a, const void *b)
 	return (p > q) - (p < q);
 }
 
-static double ks_distance(const struct weibull *w, const double *sorted, size_t n)
+double weibull_distance(const struct weibull *w, double *x, size_t n)
 {
 	double most = 0;
 
+	if (n > 0)
+		qsort(x, n, sizeof(*x), ascending);
 	for (size_t i = 0; i < n; i++) {
-		double f = distribution(w, sorted[i]);
+		double f = distribution(w, x[i]);
 
 		most = fmax(most,
 			fmax(f - (double)i / (double)n, (double)(i + 1) / (double)n - f));
@@ -203,7 +211,7 @@ static struct estimate log_interval(
 	return e;
 }
 
-/* On values over their mean, sorted. */
+/* On values over their mean. */
 static int fit_scaled(
 	const struct sample *m, double unit, double confidence, struct weibull *w)
 {
@@ -233,7 +241,7 @@ static int fit_scaled(
 int weibull_fit(const double *x, size_t n, double low, double high, double confidence,
 	struct weibull *w)
 {
-	double *y, unit = 0;
+	double *y, unit = 0, least = INFINITY, most = 0;
 	struct sample m = { 0 };
 	int status = -1;
 
@@ -241,25 +249,24 @@ int weibull_fit(const double *x, size_t n, double low, double high, double confi
 		if (!(x[i] > 0) || x[i] < low || x[i] > high)
 			return -1;
 		unit += x[i] / (double)n;
+		least = fmin(least, x[i]);
+		most = fmax(most, x[i]);
 	}
-	y = malloc((n + 1) * sizeof(*y));
+	y = malloc((2 * n + 1) * sizeof(*y));
 	if (!y)
 		return -1;
 	for (size_t i = 0; i < n; i++) {
 		y[i] = x[i] / unit;
-		m.mean_log += log(y[i]) / (double)n;
+		y[n + i] = log(y[i]);
+		m.mean_log += y[n + i] / (double)n;
 	}
-	qsort(y, n, sizeof(*y), ascending);
+	m.log = y + n;
 	m.x = y;
 	m.n = n;
 	m.low = low / unit;
 	m.high = high / unit;
-	if (n > 1 && y[0] < y[n - 1] * (1 - 1e-12))
+	if (n > 1 && least < most * (1 - 1e-12))
 		status = fit_scaled(&m, unit, confidence, w);
-	for (size_t i = 0; i < n; i++)
-		y[i] *= unit;
-	if (status == 0)
-		w->distance = ks_distance(w, y, n);
 	free(y);
 	return status;
 }

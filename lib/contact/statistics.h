@@ -18,7 +18,6 @@ struct estimate {
 struct weibull {
 	struct estimate shape, scale;
 	double mean;      /* of the distribution: s Gamma(1 + 1/k) */
-	double distance;  /* Kolmogorov-Smirnov: largest |empirical - fitted| */
 	double low, high; /* where it is cut off */
 };
 
@@ -31,6 +30,9 @@ struct weibull {
 int weibull_fit(const double *x, size_t n, double low, double high, double confidence,
 	struct weibull *w);
 double weibull_density(const struct weibull *w, double x); /* cut off as fitted */
+/* Kolmogorov-Smirnov: largest |empirical - fitted| distribution of n values, which are
+ * sorted. */
+double weibull_distance(const struct weibull *w, double *x, size_t n);
 
 /* y = factor x^exponent + offset (2-16). */
 struct power {
