@@ -1,0 +1,106 @@
+#!/bin/sh
+# duet: error against run time, as a table and, where gnuplot is there, as
+# build/bench/signal.png.
+#
+# method    fit, duet (masks) with their window in samples, count
+# snr       dB, peak of a 1 V pulse over the noise of a sample
+# m gap     particles per scene, amplitudes 0.5 to 1.5 V, and the least time between
+#           them in tenths of a millisecond (samples); the pulse lasts 100
+# delay     root mean square error of the matched, samples; bound: what the Cramer-Rao
+#           bound allows (the standard errors of fit, where every scene is right)
+# size      root mean square error of the diameter, per cent
+# right     share of the scenes with the right count
+# seconds   processor time per scene, learning included
+#
+# SCENES sets the number of scenes (100).
+set -eu
+top=$(cd "$(dirname "$0")/../.." && pwd)
+PATH=$top/bin:$PATH
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+out=$top/build/bench
+mkdir -p "$out"
+cd "$work"
+export LC_ALL=C
+SCENES=${SCENES:-100}
+
+column() {
+	awk -F '\t' -v c="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == c) k = i; next }
+	{ print $k }' "$2"
+}
+
+# scenes SNR M GAP: s.au and truth.tsv, one scene per period
+scenes() {
+	period=$(awk -v m="$2" 'BEGIN { print (50 * m + 400) / 1e4 }')
+	sensorsim --by volume --uniform 79.370um:114.471um --number $(($2 * SCENES)) \
+		--burst "$2" --span "$(awk -v m="$2" 'BEGIN { print m * 5e-3 }')s" \
+		--gap "$(awk -v g="$3" 'BEGIN { print g * 1e-4 }')s" --period "${period}s" \
+		--start 20ms --snr "$1dB" --lag 0.2ms:0.5ms --gain 0.909 \
+		--truth truth.tsv >s.au
+}
+
+# row NAME SNR M GAP OPTION...
+bound=nan
+row() {
+	name=$1
+	snr=$2
+	m=$3
+	gap=$4
+	shift 4
+	duet -S stats.tsv "$@" s.au >found.tsv 2>/dev/null
+	"$top/scripts/score" -p "$period" -o 0.01 truth.tsv found.tsv >score.tsv
+	[ "$name" = fit ] && bound=$(awk -v d="$(column delay_rms score.tsv)" \
+		-v r="$(column delay_ratio score.tsv)" 'BEGIN { print (r > 0 ? d / r * 1e4 : "nan") }')
+	awk -v name="$name" -v snr="$snr" -v m="$m" -v gap="$gap" -v bound="$bound" \
+		-v delay="$(column delay_rms score.tsv)" -v size="$(column size_rms score.tsv)" \
+		-v right="$(column right score.tsv)" -v n="$(column scenes score.tsv)" \
+		-v cpu="$(column cpu_seconds stats.tsv)" 'BEGIN {
+			OFS = "\t"
+			print name, snr, m, gap, delay == "nan" ? delay : delay * 1e4, bound,
+				size == "nan" ? size : size * 100, right / n, cpu / n }' |
+		tee -a all.tsv
+}
+
+printf 'method\tsnr\tm\tgap\tdelay\tbound\tsize\tright\tseconds\n' | tee all.tsv
+for snr in 10 20 30 40; do
+	for m in 1 2 4 6; do
+		scenes $snr $m 10
+		row fit $snr $m 10
+		row duet64 $snr $m 10 -m duet -w 64
+	done
+done
+for w in 128 256; do
+	for m in 1 2; do
+		scenes 30 $m 10
+		row duet$w 30 $m 10 -m duet -w $w
+	done
+done
+for gap in 2 5 20 40; do
+	scenes 30 2 $gap
+	row fit 30 2 $gap
+	row duet64 30 2 $gap -m duet -w 64
+done
+
+cp all.tsv "$out/signal.tsv"
+command -v gnuplot >/dev/null || exit 0
+gnuplot <<END
+set terminal pngcairo size 900,600
+set output "$out/signal.png"
+set datafile separator "\t"
+set datafile missing "nan"
+set logscale y
+set xlabel "signal to noise, dB"
+set ylabel "error of the delay, samples"
+set key outside
+set style data linespoints
+pick(name, n, k) = strcol(1) eq name && column(3) == n && column(4) == 10 ? column(k) : 1/0
+plot for [n in "1 2 4 6"] "all.tsv" skip 1 using 2:(pick("fit", n + 0, 5)) title "fit, M = ".n, \
+	for [n in "1 2 4 6"] "all.tsv" skip 1 using 2:(pick("fit", n + 0, 6)) with lines dashtype 2 \
+		title "bound, M = ".n, \
+	for [n in "1 2"] "all.tsv" skip 1 using 2:(pick("duet64", n + 0, 5)) title "masks, M = ".n
+set output "$out/signal-time.png"
+set logscale xy
+set xlabel "processor time per scene, s"
+plot "all.tsv" skip 1 using 9:(strcol(1) eq "fit" ? column(5) : 1/0) with points pt 7 title "fit", \
+	"all.tsv" skip 1 using 9:(strcol(1) ne "fit" ? column(5) : 1/0) with points pt 6 title "masks"
+END
