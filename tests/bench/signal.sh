@@ -83,6 +83,12 @@ done
 
 cp all.tsv "$out/signal.tsv"
 command -v gnuplot >/dev/null || exit 0
+for m in 1 2 4 6; do
+	awk -F '\t' -v m=$m '$1 == "fit" && $3 == m && $4 == 10' all.tsv >fit-$m
+	awk -F '\t' -v m=$m '$1 == "duet64" && $3 == m && $4 == 10' all.tsv >masks-$m
+done
+awk '$1 == "fit"' all.tsv >fit
+awk '$1 ~ /^duet/' all.tsv >masks
 gnuplot <<END
 set terminal pngcairo size 900,600
 set output "$out/signal.png"
@@ -93,14 +99,11 @@ set xlabel "signal to noise, dB"
 set ylabel "error of the delay, samples"
 set key outside
 set style data linespoints
-pick(name, n, k) = strcol(1) eq name && column(3) == n && column(4) == 10 ? column(k) : 1/0
-plot for [n in "1 2 4 6"] "all.tsv" skip 1 using 2:(pick("fit", n + 0, 5)) title "fit, M = ".n, \
-	for [n in "1 2 4 6"] "all.tsv" skip 1 using 2:(pick("fit", n + 0, 6)) with lines dashtype 2 \
-		title "bound, M = ".n, \
-	for [n in "1 2"] "all.tsv" skip 1 using 2:(pick("duet64", n + 0, 5)) title "masks, M = ".n
+plot for [n in "1 2 4 6"] "fit-".n using 2:5 title "fit, M = ".n, \
+	for [n in "1 2 4 6"] "fit-".n using 2:6 with lines dashtype 2 title "bound, M = ".n, \
+	for [n in "1 2"] "masks-".n using 2:5 title "masks, M = ".n
 set output "$out/signal-time.png"
 set logscale xy
 set xlabel "processor time per scene, s"
-plot "all.tsv" skip 1 using 9:(strcol(1) eq "fit" ? column(5) : 1/0) with points pt 7 title "fit", \
-	"all.tsv" skip 1 using 9:(strcol(1) ne "fit" ? column(5) : 1/0) with points pt 6 title "masks"
+plot "fit" using 9:5 with points pt 7 title "fit", "masks" using 9:5 with points pt 6 title "masks"
 END
