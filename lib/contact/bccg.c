@@ -86,12 +86,21 @@ int contact_make_preconditioner(struct contact *c, const struct contact *lender)
 	return 0;
 }
 
-/* The gap of an active cell, 0 of others. */
-static inline double active_gap(const struct contact *c, size_t i)
+/* The residual of the active cells, and the sums of the certificate. */
+static void set_residual(void *context, size_t begin, size_t end, struct sweep *s)
 {
-	double g = gap_at(c, i);
+	const struct contact copy = *(struct contact *)context, *c = &copy;
+	struct sweep t = *s;
 
-	return is_active(c, c->p[i], g) ? g : 0;
+	for (size_t i = begin; i < end; i++) {
+		double p = c->p[i], g = gap_at(c, i);
+		int active = is_active(c, p, g);
+
+		certify_cell(c, p, g, &t);
+		c->active[i] = (unsigned char)active;
+		c->residual[i] = active * g;
+	}
+	*s = t;
 }
 
 /* Rows or columns on either side; beyond a free rim there is nothing, which the
@@ -106,51 +115,49 @@ static inline size_t after(size_t x, size_t n, int periodic)
 	return x + 1 < n ? x + 1 : periodic ? 0 : x;
 }
 
-/* The residual of an inactive cell: a mean of its active neighbours.  Cells without
- * neighbours under pressure, which is most, are passed over. */
-static double extended_gap(const struct contact *c, size_t x, const size_t row[3])
+/* The residual of an inactive cell: a mean of its active neighbours. */
+static double extended_gap(
+	const struct contact *c, const size_t row[3], const size_t column[3])
 {
-	size_t nx = (size_t)c->par.nx;
-	int periodic = c->par.boundary == CONTACT_PERIODIC;
-	size_t column[3] = { before(x, nx, periodic), x, after(x, nx, periodic) };
-	double pressure = c->p[row[1] + column[0]] + c->p[row[1] + column[2]] +
-			  c->p[row[0] + x] + c->p[row[2] + x];
+	const double weight[3][3] = { { c->near_xy, c->near_y, c->near_xy },
+		{ c->near_x, 0, c->near_x }, { c->near_xy, c->near_y, c->near_xy } };
+	double sum = 0;
 
-	if (pressure <= 0 || !c->extend)
-		return 0;
-	return c->near_x * (active_gap(c, row[1] + column[0]) +
-				   active_gap(c, row[1] + column[2])) +
-	       c->near_y * (active_gap(c, row[0] + x) + active_gap(c, row[2] + x)) +
-	       c->near_xy * (active_gap(c, row[0] + column[0]) +
-				    active_gap(c, row[0] + column[2]) +
-				    active_gap(c, row[2] + column[0]) +
-				    active_gap(c, row[2] + column[2]));
+	for (int k = 0; k < 3; k++)
+		for (int j = 0; j < 3; j++) {
+			size_t i = row[k] + column[j];
+
+			if (c->active[i])
+				sum += weight[k][j] * c->residual[i];
+		}
+	return sum;
 }
 
-/* The residual, and the sums of the certificate. */
-static void set_residual(void *context, size_t begin, size_t end, struct sweep *s)
+/* ... where one of the four nearest is active; reads active cells and writes others. */
+static void extend_residual(void *context, size_t begin, size_t end, struct sweep *s)
 {
 	const struct contact copy = *(struct contact *)context, *c = &copy;
-	struct sweep t = *s;
 	size_t nx = (size_t)c->par.nx, ny = (size_t)c->par.ny;
 	int periodic = c->par.boundary == CONTACT_PERIODIC;
 
+	(void)s;
 	for (size_t y = begin / nx; y * nx < end; y++) {
-		size_t row[3] = { before(y, ny, periodic) * nx, y * nx,
+		const size_t row[3] = { before(y, ny, periodic) * nx, y * nx,
 			after(y, ny, periodic) * nx };
-		size_t first = row[1] > begin ? row[1] : begin;
-		size_t last = row[1] + nx < end ? row[1] + nx : end;
+		size_t first = row[1] > begin ? 0 : begin - row[1];
+		size_t last = row[1] + nx < end ? nx : end - row[1];
 
-		for (size_t i = first; i < last; i++) {
-			double p = c->p[i], g = gap_at(c, i);
+		for (size_t x = first; x < last; x++) {
+			const size_t column[3] = { before(x, nx, periodic), x,
+				after(x, nx, periodic) };
 
-			certify_cell(c, p, g, &t);
-			c->active[i] = (unsigned char)is_active(c, p, g);
-			c->residual[i] =
-				c->active[i] ? g : extended_gap(c, i - row[1], row);
+			if (!c->active[row[1] + x] &&
+				(c->active[row[1] + column[0]] |
+					c->active[row[1] + column[2]] |
+					c->active[row[0] + x] | c->active[row[2] + x]))
+				c->residual[row[1] + x] = extended_gap(c, row, column);
 		}
 	}
-	*s = t;
 }
 
 /* Sums over the active cells for beta and the means. */
@@ -317,10 +324,13 @@ static double find_step(struct contact *c, struct state *state)
 	double count, mean, limit, missing = c->target * (double)c->n - state->sum;
 	struct sweep s;
 
-	if (state->plain > 0)
+	if (state->plain > 0) {
 		contact_sweep(c, stiffen_residual);
-	else
+	} else {
+		if (c->extend)
+			contact_sweep(c, extend_residual);
 		precondition(c);
+	}
 	s = contact_sweep(c, sum_residual);
 	count = fmax(s.sum[4], 1);
 	mean = load_given ? s.sum[0] / count : 0;
