@@ -54,7 +54,7 @@ PKG_CONFIG_SYSROOT_DIR=$work/root
 export PKG_CONFIG_PATH PKG_CONFIG_SYSROOT_DIR
 if [ -n "${ASAN_OPTIONS:-}" ]; then
 	skip 'a program is built against the installed library' 'it was built for the sanitizers'
-elif ${CC:-cc} -std=c11 x.c $(pkg-config --cflags --libs wearpipe) -lfftw3 -lgsl -lgslcblas \
+elif flags=$(pkg-config --cflags --libs wearpipe) && ${CC:-cc} -std=c11 x.c $flags -lfftw3 -lgsl -lgslcblas \
 	-lm -pthread -o x 2>err && ./x >out; then
 	is 'a program is built against the installed library' "$(cat out)" 1.000
 else
