@@ -241,6 +241,31 @@ static void press(struct run *run, const struct record *r, double target, double
 	stats_add("contact_transforms", (double)c->transforms);
 }
 
+/* The pipeline that prints what went to the file of an option, on standard output; of the
+ * particles with option NULL.  Fresh memory. */
+static char *cmd_of(const char *upstream, const char *option)
+{
+	static const char turn[] = "/dev/fd/3 3>&1 >/dev/null";
+	char *extra = NULL, *cmd;
+
+	if (option && strcmp(option, "--stress") == 0)
+		extra = xprintf("--fields %s --stress-layers %ld %s %s", stress_fields,
+			stress_layers, option, turn);
+	else if (option)
+		extra = xprintf("%s %s", option, turn);
+	cmd = opt_cmd(upstream, extra);
+	free(extra);
+	return cmd;
+}
+
+static void table_cmd_for(struct table_out *t, const struct record *r, const char *option)
+{
+	char *cmd = cmd_of(r->cmd, option);
+
+	table_cmd(t, cmd);
+	free(cmd);
+}
+
 static void put_particles(
 	struct run *run, long realisation, long step, const struct debris_step *s)
 {
@@ -284,26 +309,26 @@ static void put_summary(struct run *run, const struct record *r, long step,
 
 /* A record like r without its fields, with the keys that stay true of worn surfaces. */
 static void bare_record(
-	struct record *out, const struct record *r, const char *cmd, long step)
+	struct record *out, const struct record *r, const char *option, long step)
 {
 	static const char *const kept[] = { "seed", "sq", "crown", NULL };
 
 	record_init(out, r->nx, r->ny, r->dx, r->dy);
 	out->realisation = r->realisation;
-	out->cmd = xstrdup(cmd);
+	out->cmd = cmd_of(r->cmd, option);
 	for (int i = 0; kept[i]; i++)
 		if (record_get(r, kept[i]))
 			record_set(out, kept[i], "%s", record_get(r, kept[i]));
 	record_set(out, "step", "%ld", step);
 }
 
-static void put_surface(struct run *run, const struct record *r, const char *cmd,
-	long step, const double *h, const double *p)
+static void put_surface(struct run *run, const struct record *r, long step,
+	const double *h, const double *p)
 {
 	size_t bytes = (size_t)r->nx * r->ny * sizeof(*h);
 	struct record out = { 0 };
 
-	bare_record(&out, r, cmd, step);
+	bare_record(&out, r, "--surface", step);
 	memcpy(record_add(&out, "height", "m"), h, bytes);
 	/* The next solution starts from it, here as in a pipeline. */
 	memcpy(record_add(&out, "pressure", "Pa"), p, bytes);
@@ -331,8 +356,8 @@ static int derive(const double t[STRESS_COMPONENTS], double *out)
 	return n;
 }
 
-static void put_stress(struct run *run, const struct record *r, const char *cmd,
-	long step, const struct debris_step *s)
+static void put_stress(
+	struct run *run, const struct record *r, long step, const struct debris_step *s)
 {
 	static const char *const names[] = { "von_mises", "hydrostatic", "principal_1",
 		"principal_2", "principal_3", "xx", "yy", "zz", "xy", "xz", "yz" };
@@ -345,7 +370,7 @@ static void put_stress(struct run *run, const struct record *r, const char *cmd,
 	double *tensor = xcalloc(n, STRESS_COMPONENTS * sizeof(*tensor));
 	struct record out = { 0 };
 
-	bare_record(&out, r, cmd, step);
+	bare_record(&out, r, "--stress", step);
 	out.nz = (int)count;
 	out.dz = run->par.stress.dz;
 	record_set(&out, "first_depth", "%.17g", run->par.stress.offset * out.dz);
@@ -411,84 +436,125 @@ static void refuse(const struct run *run, enum debris_status status, long step)
 			: "out of memory");
 }
 
-/* Wears one surface step by step. */
-static void wear_record(struct run *run, struct record *r)
+/* What a step of one surface needs. */
+struct scene {
+	struct record *r;
+	double *h, *p;
+	double crown, sq;
+	double target; /* mean pressure, or approach */
+	long done;     /* steps before the first of this run */
+};
+
+static double choose_target(const struct scene *c, double contact_load)
 {
-	double *h = record_need(r, "height", 1, run->in);
-	double *p = record_need(r, "pressure", 1, run->in);
-	double crown = record_get_number(r, "crown"), sq = record_get_number(r, "sq");
+	const struct record *r = c->r;
+	double area = r->nx * r->dx * r->ny * r->dy;
+	double given = record_get_number(r, "mean_pressure");
+
+	if (!isnan(approach))
+		return approach;
+	if (!isnan(mean_pressure))
+		return mean_pressure;
+	if (!isnan(load))
+		return load / area;
+	return isnan(given) ? contact_load / area : given;
+}
+
+static void open_scene(struct run *run, struct record *r, struct scene *c)
+{
 	double before = record_get_number(r, "step");
-	long done = isnan(before) ? 0 : (long)before;
-	char *cmd = opt_cmd(r->cmd, NULL);
 	struct debris_step s;
-	double target;
 
 	if (r->nz != 1)
 		die(EXIT_RUN, "%s: record %ld: want plane fields, got %d layers",
 			fields_name(run->in), fields_count(run->in), r->nz);
-	prepare(run, r);
-	crown = isnan(crown) ? 0 : crown;
-	if (isnan(sq) || sq <= 0) {
-		sq = roughness(r, h, crown);
-		record_set(r, "sq", "%.17g", sq);
+	c->r = r;
+	c->h = record_need(r, "height", 1, run->in);
+	c->p = record_need(r, "pressure", 1, run->in);
+	c->crown = record_get_number(r, "crown");
+	c->crown = isnan(c->crown) ? 0 : c->crown;
+	c->sq = record_get_number(r, "sq");
+	c->done = isnan(before) ? 0 : (long)before;
+	if (isnan(c->sq) || c->sq <= 0) {
+		c->sq = roughness(r, c->h, c->crown);
+		record_set(r, "sq", "%.17g", c->sq);
 	}
-	debris_contact(run->debris, p, &s);
-	target = !isnan(approach)        ? approach
-		 : !isnan(mean_pressure) ? mean_pressure
-		 : !isnan(load)          ? load / (r->nx * r->dx * r->ny * r->dy)
-		 : !isnan(record_get_number(r, "mean_pressure"))
-			 ? record_get_number(r, "mean_pressure")
-			 : s.load / (r->nx * r->dx * r->ny * r->dy);
-	table_cmd(run->particles, cmd);
+	prepare(run, r);
+	debris_contact(run->debris, c->p, &s);
+	c->target = choose_target(c, s.load);
+}
+
+/* 1 where the contact is too large for a further step. */
+static int check_contact(struct run *run, const struct scene *c, long step)
+{
+	const char *name = fields_name(run->in);
+	struct debris_step s;
+
+	debris_contact(run->debris, c->p, &s);
+	if (s.edge_load > 0.05)
+		warn("%s: realisation %ld, step %ld: %.0f %% of the load lies on the "
+		     "outermost cells",
+			name, c->r->realisation, step, 100 * s.edge_load);
+	if (s.contact < stop_area || stop_area == 1)
+		return 0;
+	note("%s: realisation %ld, step %ld: %.3g of the cells in contact: stopped", name,
+		c->r->realisation, step, s.contact);
+	return 1;
+}
+
+static void wear_step(struct run *run, const struct scene *c, long step)
+{
+	struct debris_step s;
+
+	refuse(run, debris_step(run->debris, c->h, c->p, &s), step);
+	count_work(run, &s);
+	put_particles(run, c->r->realisation, step, &s);
 	if (run->summary)
-		table_cmd(run->summary, cmd);
+		put_summary(run, c->r, step, &s, roughness(c->r, c->h, c->crown) / c->sq);
+	if (run->stress)
+		put_stress(run, c->r, step, &s);
+	if (run->surface)
+		put_surface(run, c->r, step, c->h, c->p);
+	note("%s: realisation %ld, step %ld: %zu particles, %.6g m3, %ld layers",
+		fields_name(run->in), c->r->realisation, step, s.count, s.volume,
+		s.wear.layers);
+}
+
+/* Wears one surface step by step. */
+static void wear_record(struct run *run, struct record *r)
+{
+	struct scene c = { 0 };
+
+	open_scene(run, r, &c);
+	table_cmd_for(run->particles, r, NULL);
+	if (run->summary)
+		table_cmd_for(run->summary, r, "--summary");
 	for (long k = 1; k <= steps; k++) {
 		progress("steps", (double)(k - 1), (double)steps);
 		if (k > 1)
-			press(run, r, target, h, p, done + k);
-		debris_contact(run->debris, p, &s);
-		if (s.edge_load > 0.05)
-			warn("%s: realisation %ld, step %ld: %.0f %% of the load lies on the "
-			     "outermost cells",
-				fields_name(run->in), r->realisation, done + k,
-				100 * s.edge_load);
-		if (s.contact >= stop_area && stop_area < 1) {
-			note("%s: realisation %ld, step %ld: %.3g of the cells in contact: "
-			     "stopped",
-				fields_name(run->in), r->realisation, done + k,
-				s.contact);
+			press(run, r, c.target, c.h, c.p, c.done + k);
+		if (check_contact(run, &c, c.done + k)) {
 			stats_add("steps_skipped", (double)(steps - k + 1));
 			break;
 		}
-		refuse(run, debris_step(run->debris, h, p, &s), done + k);
-		count_work(run, &s);
-		put_particles(run, r->realisation, done + k, &s);
-		if (run->summary)
-			put_summary(run, r, done + k, &s, roughness(r, h, crown) / sq);
-		if (run->stress)
-			put_stress(run, r, cmd, done + k, &s);
-		if (run->surface)
-			put_surface(run, r, cmd, done + k, h, p);
-		note("%s: realisation %ld, step %ld: %zu particles, %.6g m3, %ld layers",
-			fields_name(run->in), r->realisation, done + k, s.count, s.volume,
-			s.wear.layers);
+		wear_step(run, &c, c.done + k);
 	}
-	free(cmd);
 }
 
 static void create_outputs(struct run *run, const char *upstream)
 {
-	char *cmd = opt_cmd(upstream, NULL);
+	char *cmd = cmd_of(upstream, NULL), *summary = cmd_of(upstream, "--summary");
 
 	run->particles = table_create(NULL, cmd, particle_units, particle_columns);
 	if (summary_path)
-		run->summary =
-			table_create(summary_path, cmd, summary_units, summary_columns);
+		run->summary = table_create(
+			summary_path, summary, summary_units, summary_columns);
 	if (surface_path)
 		run->surface = fields_create(surface_path);
 	if (stress_path)
 		run->stress = fields_create(stress_path);
 	free(cmd);
+	free(summary);
 }
 
 int main(int argc, char **argv)

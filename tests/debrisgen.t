@@ -92,6 +92,25 @@ rows inside.tsv | awk '$1 == 1' >a
 rows t.tsv >b
 same "what came before changes nothing" a b
 
+# The commands in the headers, one for each surface, rebuild what they stand in.
+replay() {
+	grep -a "^$2" "$1" | sed "s/^$2//" >cmds
+	while read -r line; do
+		# through a pipe: /dev/fd/3 would open a file anew
+		sh -c "$line" 2>warning </dev/null | cat
+	done <cmds
+}
+replay worn2.nrrd cmd:= >a
+same "the commands of worn surfaces rebuild them" a worn2.nrrd
+replay s3.tsv "# cmd: " >t.tsv
+rows t.tsv >a
+rows s3.tsv >b
+same "and those of a summary" a b
+replay 3.tsv "# cmd: " >t.tsv
+rows t.tsv >a
+rows 3.tsv >b
+same "and those of the particles behind them" a b
+
 # The worn surface is the old one less the removed volume.
 mean() { records "$1" | awk '$2 == 0 && $3 == "height" { print $11; exit }'; }
 near "volume is what the surface lost" \
@@ -151,12 +170,15 @@ roughgen -n 32 -L 1mm --sq 1um -l 100um -s 3 | bemcontact -F 1N -E 210GPa |
 near "much load on the rim" "$(summary edge_load)" 0.5 0.45
 ok "is warned of" grep -q "outermost cells" warning
 
+replay s.nrrd cmd:= >a
+same "the command of a stress field rebuilds it" a s.nrrd
+
 fails "no yield stress" 2 "want --yield" debrisgen
 fails "steps without a modulus" 2 "want --young or --estar" debrisgen -Y 1GPa -T 2
 fails "two loads" 2 "only one of" debrisgen -Y 1GPa -F 1N -P 1MPa
 fails "an unknown stress field" 2 "principal or tensor" debrisgen -Y 1GPa -o foo
 fails "no pressure" 1 "pressure" debrisgen -Y 1GPa rough.nrrd
-fails "a stress field as input" 1 "height" debrisgen -Y 1GPa stress.nrrd
+fails "a stress field as input" 1 "plane fields" debrisgen -Y 1GPa stress.nrrd
 head -c 20000 start.nrrd >cut.nrrd
 fails "a truncated record" 1 "cut.nrrd: record 1: want" debrisgen -Y 1GPa cut.nrrd
 fails "material without strength" 1 "step 1: material fails deeper" debrisgen -Y 1e-6 start.nrrd
