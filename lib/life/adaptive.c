@@ -392,7 +392,7 @@ struct paths {
 	int p, newest;
 	double noise;
 	double *x;       /* [p][N] */
-	uint32_t *index; /* 0 .. N - 1 */
+	uint32_t *index; /* of those that have not crossed */
 };
 
 static double *path_lag(const struct paths *s, size_t n, int lag)
@@ -416,34 +416,32 @@ static int start_paths(struct adaptive *a, struct paths *s)
 		for (size_t i = 0; i < n; i++)
 			path_lag(s, n, lag)[i] = x[a->fits.index[i]];
 	}
-	for (size_t i = 0; i < n; i++)
-		s->index[i] = (uint32_t)i;
 	return 1;
 }
 
-/* One step of all paths; returns how many have still to cross. */
-static size_t step_paths(struct adaptive *a, struct paths *s, double process,
+/* One step of the first live paths of index; those that cross leave the list.  Returns
+ * how many are left. */
+static size_t step_paths(struct adaptive *a, struct paths *s, size_t live, double process,
 	double limit, int direction, double time, double *life)
 {
 	size_t n = a->par.filter.particles, left = 0;
 	double gap = a->mean_gap, *old = path_lag(s, n, 0), *x;
 
-	clear_fits(&a->fits, n);
+	clear_fits(&a->fits, live);
 	for (int lag = 0; lag < s->p - 1; lag++)
-		add_lag(&a->fits, n, path_lag(s, n, lag), s->index, gap, lag + 1);
-	forecast(&a->fits, n, gap * (s->p - 1), gap, s->noise, a->mean);
+		add_lag(&a->fits, live, path_lag(s, n, lag), s->index, gap, lag + 1);
+	forecast(&a->fits, live, gap * (s->p - 1), gap, s->noise, a->mean);
 	s->newest = (s->newest + 1) % s->p;
 	x = path_lag(s, n, 0);
-	draw_normals(a->draw_paths, x, n);
-	for (size_t i = 0; i < n; i++) {
-		x[i] = a->mean[i] + process * x[i];
-		if (life[i] < INFINITY)
-			continue;
+	for (size_t k = 0; k < live; k++) {
+		uint32_t i = s->index[k];
+
+		x[i] = a->mean[k] + process * draw_normal(a->draw_paths);
 		if (direction * (x[i] - limit) >= 0)
 			life[i] =
 				time + gap * fmax(0, (limit - old[i]) / (x[i] - old[i]));
 		else
-			left++;
+			s->index[left++] = i;
 	}
 	return left;
 }
@@ -453,7 +451,7 @@ int adaptive_lives(
 {
 	struct paths s = { .p = order_chosen(a->order) };
 	double noise = observation_noise(a), process, limit = threshold / a->scale;
-	size_t n = a->par.filter.particles, left = n;
+	size_t n = a->par.filter.particles, left = 0;
 	int good;
 
 	if (s.p > filter_depth(a->filter))
@@ -463,11 +461,16 @@ int adaptive_lives(
 	s.noise = noise;
 	process = process_noise(a, s.p, noise, a->mean_gap);
 	good = start_paths(a, &s);
-	for (size_t i = 0; good && i < n; i++)
-		life[i] = direction * (path_lag(&s, n, 0)[i] - limit) >= 0 ? 0 : INFINITY;
+	for (size_t i = 0; good && i < n; i++) {
+		int crossed = direction * (path_lag(&s, n, 0)[i] - limit) >= 0;
+
+		life[i] = crossed ? 0 : INFINITY;
+		if (!crossed)
+			s.index[left++] = (uint32_t)i;
+	}
 	for (int k = 0; good && k < steps && left > 0; k++)
 		left = step_paths(
-			a, &s, process, limit, direction, k * a->mean_gap, life);
+			a, &s, left, process, limit, direction, k * a->mean_gap, life);
 	free(s.x);
 	free(s.index);
 	return good;
