@@ -299,6 +299,7 @@ static void finish(struct units *units)
 		stats_add("rows", (double)u->rows);
 		stats_add("resamplings",
 			(double)filter_resamplings(adaptive_filter(u->adaptive)));
+		stats_add("outliers", (double)adaptive_outliers(u->adaptive));
 		stats_add("restarts", (double)adaptive_restarts(u->adaptive));
 		stats_add("orders", (double)order_tried(o));
 		stats_add("orders_skipped", (double)order_skipped(o));

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { RECENT = 4 };
+enum { RECENT = 4, SETTLED = 8 };
 enum { MONITOR = 20 };                 /* rows of the innovation monitor */
 static const double MONITOR_LIMIT = 4; /* of the mean squared innovation */
 static const double MONITOR_CLIP = 16; /* so that one outlier is not a drift */
@@ -29,7 +29,8 @@ struct adaptive {
 	double scale; /* power of two that values are divided by: of the first but 0 */
 	int scaled;
 	long rows;
-	double time, observed_time;
+	double time;
+	double observed, observed_time, observed_gap; /* the last observation */
 	double mean_gap;
 	double *past, *gap; /* rings of the last rows: values and gaps before */
 	double *line_up;    /* past in order */
@@ -40,7 +41,8 @@ struct adaptive {
 	double innovation, carried; /* running mean squares */
 	double z2[MONITOR];
 	int nz;
-	unsigned long restarts;
+	int outlier; /* the last observation was taken for one */
+	unsigned long restarts, outliers;
 };
 
 static double *column(struct adaptive *a)
@@ -113,6 +115,11 @@ const struct filter *adaptive_filter(const struct adaptive *a)
 unsigned long adaptive_restarts(const struct adaptive *a)
 {
 	return a->restarts;
+}
+
+unsigned long adaptive_outliers(const struct adaptive *a)
+{
+	return a->outliers;
 }
 
 /* One older point into the fit of every particle: grey_add() side by side. */
@@ -223,10 +230,9 @@ static double process_floor(int order, double noise)
 	return noise * (order <= 40 ? 0.5 : order >= 60 ? 1 : 0.5 + (order - 40) / 40.0);
 }
 
-/* What the grey model of the observations has lately missed by, beyond three standard
- * deviations of noise: the second largest of the last four squared errors, so that one
- * outlier has no say. */
-static double model_error(const struct adaptive *a, double noise)
+/* The second largest of the last squared errors of the grey model of the observations:
+ * one outlier has no say in it. */
+static double missed_lately(const struct adaptive *a)
 {
 	double largest = 0, second = 0;
 
@@ -240,7 +246,28 @@ static double model_error(const struct adaptive *a, double noise)
 			second = e;
 		}
 	}
-	return sqrt(fmax(0, second - 9 * noise * noise));
+	return second;
+}
+
+/* What that model has lately missed by, beyond three standard deviations of noise. */
+static double model_error(const struct adaptive *a, double noise)
+{
+	return sqrt(fmax(0, missed_lately(a) - 9 * noise * noise));
+}
+
+/* An observation that is eight times farther from the forecast, and from the observation
+ * before it, than noise and model have lately been is taken for an outlier; not so after
+ * a longer gap, nor twice running: then it is the series that has moved. */
+static int is_outlier(
+	struct adaptive *a, double y, double gap, double forecast, double noise)
+{
+	double usual = fmax(noise * noise, missed_lately(a));
+	double miss = fmin(fabs(y - forecast), fabs(y - a->observed));
+
+	a->outlier = !a->outlier && a->misses >= SETTLED && gap <= 2 * a->observed_gap &&
+		     miss * miss > 64 * usual;
+	a->outliers += (unsigned long)a->outlier;
+	return a->outlier;
 }
 
 static double process_noise(const struct adaptive *a, int order, double noise, double gap)
@@ -362,10 +389,16 @@ static void advance(struct adaptive *a, double t, double y, struct adaptive_row 
 		return;
 	}
 	y /= a->scale;
+	if (is_outlier(a, y, t - a->observed_time, row->grey, noise)) {
+		push_past(a, row->prediction, gap);
+		return;
+	}
 	a->missed[a->misses++ % RECENT] = (y - row->grey) * (y - row->grey);
 	order_add(a->order, y, t - a->observed_time);
 	noise_add(a->noise, y, t - a->observed_time);
+	a->observed_gap = t - a->observed_time;
 	a->observed_time = t;
+	a->observed = y;
 	observe(a, y, gap, process, row);
 }
 

@@ -7,7 +7,7 @@
  * process noise has a floor that grows with the order and is no less than what the grey
  * model itself has lately missed by, and an innovation monitor starts the particles anew
  * from the observations when their mean squared standardised innovation over twenty rows
- * exceeds four.
+ * exceeds four.  An observation eight times farther off than usual is passed over once.
  *
  *	struct adaptive *a = adaptive_new(&par);
  *	while (read(&t, &y)) {       (y may be NAN: predict only)
@@ -54,6 +54,7 @@ int adaptive_lives(
 	struct adaptive *a, double threshold, int direction, int steps, double *life);
 const struct order *adaptive_order(const struct adaptive *a);
 const struct filter *adaptive_filter(const struct adaptive *a);
+unsigned long adaptive_outliers(const struct adaptive *a); /* passed over */
 unsigned long adaptive_restarts(const struct adaptive *a); /* by the monitor */
 
 #endif
