@@ -64,8 +64,10 @@ int calibrate_clean(const struct calibration *c, double *x, size_t n, double *ch
 			return 0;
 		if (done == 0)
 			memcpy(before, after, sizeof before);
-		for (int k = 1; done > 0 && k <= 2 * c->tones; k++, count++)
+		for (int k = 1; done > 0 && k <= 2 * c->tones; k++) {
 			squares += (after[k] - before[k]) * (after[k] - before[k]);
+			count++;
+		}
 		until = middle < n ? middle : n;
 		if (middle + hop / 2 >= n)
 			until = n;
@@ -110,7 +112,7 @@ static double lowest_lag(const double *r, size_t max_lag)
 		else if (r[low] < 0 && r[k] > 0.5 * r[low])
 			break;
 	}
-	return r[low] < 0 && low < max_lag ? (double)low : 0;
+	return low < max_lag && r[low] < 0 ? (double)low : 0;
 }
 
 /* The same of one pulse, as a share of its duration. */
@@ -182,7 +184,7 @@ static void minimise(struct learning *l, double *parameter, double step, int rou
 {
 	double middle = examples_chi2(l, 1);
 
-	for (int round = 0; round < rounds; round++, step /= 3) {
+	for (int round = 0; round < rounds; round++) {
 		double x = *parameter, below, above, bend, move;
 
 		*parameter = x * exp(-step);
@@ -201,6 +203,7 @@ static void minimise(struct learning *l, double *parameter, double step, int rou
 			middle = examples_chi2(l, 1);
 		else
 			*parameter = x;
+		step /= 3;
 	}
 }
 

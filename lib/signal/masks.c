@@ -207,7 +207,7 @@ static void locate(const struct masks *m, int peak, struct masks_source *source)
 /* Peaks by height; the cells below each are its own. */
 static int find_peaks(struct masks *m, struct masks_source *source)
 {
-	int peak[MASKS_SOURCES_MAX], most, count = 0;
+	int peak[MASKS_SOURCES_MAX] = { 0 }, most, count = 0;
 	double floor_height = 0, total = 0;
 
 	most = m->par.sources ? m->par.sources : MASKS_SOURCES_MAX;

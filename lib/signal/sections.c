@@ -30,10 +30,8 @@ struct sections *sections_new(
 	s->stride = duration >= 48 ? (long)(duration / 24) : 1;
 	s->margin = margin;
 	s->threshold = threshold;
-	s->capacity = 16;
-	s->queue = malloc((size_t)s->capacity * sizeof *s->queue);
 	s->filter = malloc(s->len * sizeof *s->filter);
-	if (!s->queue || !s->filter) {
+	if (!s->filter) {
 		sections_free(s);
 		return NULL;
 	}
@@ -94,17 +92,19 @@ static void add_trigger(struct sections *s, long long at)
 	}
 	if (last)
 		last->open = 0;
-	if (s->count == s->capacity) {
-		struct section *more =
-			realloc(s->queue, 2 * (size_t)s->capacity * sizeof *more);
+	if (!s->queue || s->count >= s->capacity) {
+		int capacity = 2 * s->count + 16;
+		struct section *more = realloc(s->queue, (size_t)capacity * sizeof *more);
 
 		if (!more) { /* out of memory: one long section instead of two */
-			last->end = at + s->margin;
-			last->open = 1;
+			if (last) {
+				last->end = at + s->margin;
+				last->open = 1;
+			}
 			return;
 		}
 		s->queue = more;
-		s->capacity *= 2;
+		s->capacity = capacity;
 	}
 	s->queue[s->count++] = (struct section){ at - s->margin, at + s->margin, 1 };
 }

@@ -14,7 +14,7 @@ struct shape {
 
 static struct shape *shape_alloc(double reach, int cells)
 {
-	struct shape *shape = calloc(1, sizeof *shape);
+	struct shape *shape = cells > 0 ? calloc(1, sizeof *shape) : NULL;
 
 	if (!shape)
 		return NULL;
@@ -66,20 +66,20 @@ struct shape *shape_new(enum pulse_shape pulse)
 {
 	double reach = pulse_reach(pulse);
 	struct shape *shape;
-	int cells;
+	int cells, half;
 
 	while (reach > 0.5 && fabs(pulse_value(pulse, reach - 1.0 / STEPS)) < 1e-4)
 		reach -= 1.0 / STEPS;
 	cells = 2 * (int)ceil(reach * STEPS - 1e-9);
+	half = cells / 2;
 	reach = cells / (2.0 * STEPS);
 	shape = shape_alloc(reach, cells);
 	if (!shape)
 		return NULL;
 	for (int i = 0; i < cells; i++) {
 		/* The ends lie on the support's edge: take them from just inside. */
-		double s0 = (i - cells / 2) / (double)STEPS + (i == 0 ? 1e-12 : 0);
-		double s1 = (i + 1 - cells / 2) / (double)STEPS -
-			    (i == cells - 1 ? 1e-12 : 0);
+		double s0 = (i - half) / (double)STEPS + (i == 0 ? 1e-12 : 0);
+		double s1 = (i + 1 - half) / (double)STEPS - (i == cells - 1 ? 1e-12 : 0);
 
 		set_cell(shape, i, pulse_value(pulse, s0),
 			pulse_slope(pulse, s0) * shape->step, pulse_value(pulse, s1),

@@ -51,7 +51,7 @@ static void add_periodogram(const struct fft *fft, const double *y, size_t n,
 static int pick_lines(const double *power, size_t n, int max, double *omega)
 {
 	enum { KEEP = 256 };
-	struct line line[KEEP];
+	struct line line[KEEP] = { { 0, 0 } };
 	double around[2 * SIDE];
 	int count = 0;
 
@@ -290,7 +290,7 @@ int tones_confirm(const double *y1, const double *y2, size_t n, int tones, doubl
 void tones_remove(double *x, size_t n, double start, int tones, const double *omega,
 	double at_a, const double *from, double at_b, const double *to)
 {
-	double term[TERMS_MAX];
+	double term[TERMS_MAX] = { 0 };
 
 	for (size_t i = 0; i < n; i++) {
 		double t = start + (double)i,
