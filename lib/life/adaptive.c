@@ -255,7 +255,7 @@ static double model_error(const struct adaptive *a, double noise)
 	return sqrt(fmax(0, missed_lately(a) - 9 * noise * noise));
 }
 
-/* An observation that is eight times farther from the forecast, and from the observation
+/* An observation that is twenty times farther from the forecast, and from the observation
  * before it, than noise and model have lately been is taken for an outlier; not so after
  * a longer gap, nor twice running: then it is the series that has moved. */
 static int is_outlier(
@@ -265,7 +265,7 @@ static int is_outlier(
 	double miss = fmin(fabs(y - forecast), fabs(y - a->observed));
 
 	a->outlier = !a->outlier && a->misses >= SETTLED && gap <= 2 * a->observed_gap &&
-		     miss * miss > 64 * usual;
+		     miss * miss > 400 * usual;
 	a->outliers += (unsigned long)a->outlier;
 	return a->outlier;
 }

@@ -7,7 +7,7 @@
  * process noise has a floor that grows with the order and is no less than what the grey
  * model itself has lately missed by, and an innovation monitor starts the particles anew
  * from the observations when their mean squared standardised innovation over twenty rows
- * exceeds four.  An observation eight times farther off than usual is passed over once.
+ * exceeds four.  An observation twenty times farther off than usual is passed over once.
  *
  *	struct adaptive *a = adaptive_new(&par);
  *	while (read(&t, &y)) {       (y may be NAN: predict only)
