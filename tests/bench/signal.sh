@@ -12,6 +12,8 @@
 # right     share of the scenes with the right count
 # seconds   processor time per scene, learning included
 #
+# A second table tells what is left of the other pulse when two are parted (demix.c).
+#
 # SCENES sets the number of scenes (100).
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
@@ -82,6 +84,9 @@ for gap in 2 5 20 40; do
 done
 
 cp all.tsv "$out/signal.tsv"
+if [ -x "$out/demix" ]; then
+	"$out/demix" | tee "$out/demix.tsv"
+fi
 command -v gnuplot >/dev/null || exit 0
 for m in 1 2 4 6; do
 	awk -F '\t' -v m=$m '$1 == "fit" && $3 == m && $4 == 10' all.tsv >fit-$m

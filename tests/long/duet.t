@@ -57,4 +57,16 @@ scenes 3 30 0.95 1.3 0.005 --mains 0.5,0.3 --pump 0.4,0.2
 sensorsim --uniform 100um:100um --number 0 --duration 1000s --noise 1V >noise.au
 duet --align 19.6ms --pulse-duration 10ms noise.au >none.tsv
 is "noise: no particle in 1e7 samples" "$(column particle none.tsv | wc -l)" 0
+
+# A day of record: constant memory, no drift (a particle every two minutes).
+HOURS=${HOURS:-24}
+sensorsim --uniform 80um:120um --number $((HOURS * 30)) --duration $((HOURS * 3600))s \
+	--start 1s --gap 1s --noise 10mV --lag 0.2ms:0.5ms --truth truth.tsv |
+	duet --stats stats.tsv >found.tsv
+"$top/scripts/score" truth.tsv found.tsv >score.tsv
+is "$HOURS hours: all particles" "$(value matched)" $((HOURS * 30))
+is "$HOURS hours: no other" "$(value false)" 0
+check "$HOURS hours: arrivals, s" "$(value time1_rms)" '<=' 5e-6
+check "$HOURS hours: memory, kB" "$(awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++)
+	if ($i ~ /memory/) k = i; next } { print $k }' stats.tsv)" '<=' 20000
 done_testing
