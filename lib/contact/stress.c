@@ -15,7 +15,8 @@ struct layer {
 	int wx, wy;              /* offsets below these are in the table */
 	double *table;           /* influence_table() */
 	int sx, sy;              /* the window of the spectra */
-	size_t bytes;            /* of the spectra */
+	int count;               /* of them */
+	size_t bytes;            /* they take */
 	double complex *spectra; /* window_spectra() */
 };
 
@@ -476,13 +477,15 @@ static double complex *spectra_new(
 	return out;
 }
 
-/* Spectra of a layer for this window, kept if there is room. */
-static struct layer *layer_spectra(struct stress *s, const struct part *p, long layer)
+/* Spectra of the first count numbers of a layer for this window, kept if there is room.
+ */
+static struct layer *layer_spectra(
+	struct stress *s, const struct part *p, long layer, int count)
 {
 	struct layer *l = layer < LAYERS_KEPT ? &s->layers[layer] : &s->spare;
-	size_t bytes = MISES_NUMBERS * window_size(p->window) * sizeof(*l->spectra);
+	size_t bytes = count * window_size(p->window) * sizeof(*l->spectra);
 
-	if (l->spectra && l->sx == p->wx && l->sy == p->wy)
+	if (l->spectra && l->sx == p->wx && l->sy == p->wy && l->count >= count)
 		return l;
 	if (l->spectra) {
 		s->used -= l->bytes;
@@ -493,9 +496,10 @@ static struct layer *layer_spectra(struct stress *s, const struct part *p, long 
 		l = &s->spare;
 		layer_free(l);
 	}
-	l->spectra = spectra_new(s, p, layer, MISES_NUMBERS);
+	l->spectra = spectra_new(s, p, layer, count);
 	l->sx = p->wx;
 	l->sy = p->wy;
+	l->count = count;
 	l->bytes = bytes;
 	return l->spectra ? l : NULL;
 }
@@ -514,7 +518,7 @@ static void sum_numbers(
 static int mises_fourier(struct stress *s, long layer, struct part want, double *mises)
 {
 	struct part *p = open_part(s, want);
-	struct layer *l = p ? layer_spectra(s, p, layer) : NULL;
+	struct layer *l = p ? layer_spectra(s, p, layer, MISES_NUMBERS) : NULL;
 	size_t n = (size_t)want.wx * want.wy;
 
 	if (!l)
@@ -633,12 +637,13 @@ int stress_tensor(struct stress *s, long layer, double *tensor)
 		[DEV_ZZ] = STRESS_ZZ };
 	size_t n = (size_t)s->par.nx * s->par.ny;
 	struct part *p = open_part(s, whole_grid(s));
-	double complex *spectra = p ? spectra_new(s, p, layer, TENSOR_NUMBERS) : NULL;
+	struct layer *l = p ? layer_spectra(s, p, layer, TENSOR_NUMBERS) : NULL;
 
-	if (!spectra)
+	if (!l)
 		return -1;
-	sum_numbers(s, p, spectra, TENSOR_NUMBERS);
-	fft_free(spectra);
+	sum_numbers(s, p, l->spectra, TENSOR_NUMBERS);
+	if (l == &s->spare)
+		layer_free(l);
 	for (int c = 0; c < TENSOR_NUMBERS; c++)
 		for (size_t i = 0; i < n; i++) {
 			double zz =
