@@ -25,13 +25,16 @@ WARN = -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototype
 B = build
 BIN = bin
 
-# What each program is made of besides lib/shell: modules of lib/ and libraries.
+# What each program is made of besides lib/shell: parts of src/ that programs share,
+# modules of lib/ and libraries.
 PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records
 
 roughgen_MODULES = num/philox num/fft num/pool contact/heights contact/rough contact/spectrum contact/surface
 roughgen_LIBS = fftw
+bemcontact_PARTS = press
 bemcontact_MODULES = contact/kernel contact/solver contact/bccg contact/grids contact/mlms contact/pk num/convolve num/fft num/pool num/sweep
 bemcontact_LIBS = fftw
+debrisgen_PARTS = press
 debrisgen_MODULES = $(bemcontact_MODULES) contact/debris contact/hull contact/influence contact/particles contact/stress \
 	contact/stress_kernel contact/surface contact/sym3 contact/wear contact/window
 debrisgen_LIBS = fftw
@@ -88,7 +91,7 @@ libraries:
 	@PKG_CONFIG="$(PKG_CONFIG)" scripts/deps --check
 
 define program
-$(BIN)/$(1): $(B)/src/$(1).o $(SHELL_OBJS) $($(1)_MODULES:%=$(B)/lib/%.o)
+$(BIN)/$(1): $(B)/src/$(1).o $($(1)_PARTS:%=$(B)/src/%.o) $(SHELL_OBJS) $($(1)_MODULES:%=$(B)/lib/%.o)
 	@mkdir -p $(BIN)
 	$$(CC) $$(ALL_CFLAGS) $$(LDFLAGS) -o $$@ $$^ $$(foreach l,$($(1)_LIBS),$$($$(l)_LINK)) -lm
 endef

@@ -1,9 +1,9 @@
 /* debrisgen - wear particles that a contact tears off a rough surface */
 #include "contact/debris.h"
-#include "contact/kernel.h"
 #include "contact/solver.h"
 #include "contact/stress_kernel.h"
 #include "contact/surface.h"
+#include "press.h"
 #include "shell/fields.h"
 #include "shell/msg.h"
 #include "shell/opt.h"
@@ -18,26 +18,22 @@
 static const char *const axes[] = { "x", "y", NULL };
 static const char *const layers[] = { "top", "mid", NULL };
 static const char *const rules[] = { "column", "potential", NULL };
-static const char *const boundaries[] = { "free", "periodic", NULL };
-static const char *const solvers[] = { "bccg", "pk", NULL };
-static const char *const multipliers[] = { "fft", "mlms", NULL };
+
+/* Fields of --stress: one word gives one or several. */
+enum { MISES = 1, HYDROSTATIC = 2, PRINCIPAL = 4, TENSOR = 8 };
+static const char *const stress_words[] = { "von_mises", "hydrostatic", "principal",
+	"tensor", NULL };
 
 static double yield = NAN, friction, depth_step = NAN, stop_area = 0.8, amplification = 1;
-static double load = NAN, mean_pressure = NAN, approach = NAN, estar = NAN;
-static double hardness, tolerance = 1e-8;
-static struct opt_list young, poisson = { 1, { 0.3 } };
-static int shear, layer, removal, boundary, solver, multiply;
-static long steps = 1, stress_layers, max_iterations = 10000, memory = 512, threads = 1;
-static const char *surface_path, *summary_path, *stress_path,
-	*stress_fields = "von_mises";
+static int shear, layer, removal, stress_wanted = MISES;
+static long steps = 1, stress_layers, memory = 512;
+static const char *surface_path, *summary_path, *stress_path;
 
 static const struct opt opts[] = {
 	{ 'Y', "yield", OPT_NUM, UNIT_PRESSURE, &yield, 1e-30, 1e30, "Y",
 		"yield stress: material under more von Mises stress is lost", NULL, 0 },
 	{ 'u', "friction", OPT_NUM, UNIT_NONE, &friction, 0, 1e6, "MU",
 		"friction coefficient: shear over pressure", NULL, 0 },
-	{ 'N', "poisson", OPT_LIST, UNIT_NONE, &poisson, 0, 0.5, "N1[,N2]",
-		"Poisson's ratios; the first is that of the worn body", NULL, 0 },
 	{ 'z', "depth-step", OPT_NUM, UNIT_LENGTH, &depth_step, 1e-30, 1e30, "H",
 		"height of a cell; by default the spacing along x", NULL, 0 },
 	{ 'd', "shear", OPT_WORD, UNIT_NONE, &shear, 0, 0, "x|y",
@@ -59,41 +55,15 @@ static const struct opt opts[] = {
 		"write a table with a row per step", NULL, 1 },
 	{ 'G', "stress", OPT_TEXT, UNIT_NONE, &stress_path, 0, 0, "FILE",
 		"write the stress below every contact", NULL, 1 },
-	{ 'o', "fields", OPT_TEXT, UNIT_NONE, &stress_fields, 0, 0, "NAME,...",
-		"what to write of von_mises, hydrostatic, principal, tensor", NULL, 1 },
+	{ 'o', "fields", OPT_WORDS, UNIT_NONE, &stress_wanted, 0, 0, "NAME,...",
+		"what to write of von_mises, hydrostatic, principal, tensor",
+		stress_words, 1 },
 	{ 'y', "stress-layers", OPT_INT, UNIT_COUNT, &stress_layers, 0, 1e6, "N",
 		"layers of --stress; 0: as many as were searched for failure", NULL, 1 },
-	{ 'F', "load", OPT_NUM, UNIT_FORCE, &load, 0, 1e30, "F",
-		"normal load of the steps to come; by default that of the input", NULL,
-		0 },
-	{ 'P', "pressure", OPT_NUM, UNIT_PRESSURE, &mean_pressure, 0, 1e30, "P",
-		"mean pressure, in place of a load", NULL, 0 },
-	{ 'D', "approach", OPT_NUM, UNIT_LENGTH, &approach, -1e12, 1e12, "D",
-		"how far the flat goes past height 0, in place of a load", NULL, 0 },
-	{ 'E', "young", OPT_LIST, UNIT_PRESSURE, &young, 1e-6, 1e30, "E1[,E2]",
-		"Young's moduli of the bodies; one for both", NULL, 0 },
-	{ 'e', "estar", OPT_NUM, UNIT_PRESSURE, &estar, 1e-6, 1e30, "E",
-		"contact modulus, in place of --young", NULL, 0 },
-	{ 'b', "boundary", OPT_WORD, UNIT_NONE, &boundary, 0, 0, "free|periodic",
-		"surface around the grid: free of load, or the grid repeated", boundaries,
-		0 },
-	{ 'K', "hardness", OPT_NUM, UNIT_PRESSURE, &hardness, 0, 1e30, "H",
-		"largest pressure; 0: none", NULL, 0 },
-	{ 't', "tolerance", OPT_NUM, UNIT_NONE, &tolerance, 1e-16, 1, "T",
-		"certificate the contact is solved to", NULL, 0 },
-	{ 'i', "max-iterations", OPT_INT, UNIT_COUNT, &max_iterations, 1, 1e9, "N",
-		"iterations after which to give up", NULL, 0 },
-	{ 'm', "solver", OPT_WORD, UNIT_NONE, &solver, 0, 0, "bccg|pk",
-		"contact solver: preconditioned on nested grids, or Polonsky and Keer's",
-		solvers, 0 },
-	{ 'M', "multiply", OPT_WORD, UNIT_NONE, &multiply, 0, 0, "fft|mlms",
-		"how the contact's half-space is applied", multipliers, 0 },
 	{ 'k', "memory", OPT_INT, UNIT_COUNT, &memory, 0, 1e7, "MB",
 		"megabytes for influence coefficients kept; the result is the same", NULL,
 		1 },
-	{ 'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N",
-		"threads; the result is the same", NULL, 1 },
-	OPT_END
+	OPT_TABLE(press_rows), OPT_END
 };
 
 static const struct prog prog = { "debrisgen",
@@ -110,12 +80,6 @@ static const char summary_columns[] =
 	"particles mean_diameter max_diameter depth relative_roughness max_von_mises";
 static const char summary_units[] = "1 1 m N 1 Pa 1 m3 1 m m m 1 Pa";
 
-/* Fields of --stress: one word gives one or several. */
-enum { MISES = 1, HYDROSTATIC = 2, PRINCIPAL = 4, TENSOR = 8 };
-static const char *const stress_words[] = { "von_mises", "hydrostatic", "principal",
-	"tensor", NULL };
-static int stress_wanted;
-
 /* Where everything goes, and what is kept from record to record. */
 struct run {
 	struct fields_in *in;
@@ -129,62 +93,24 @@ struct run {
 	int status;
 };
 
-static void choose_stress(const char *list)
-{
-	while (*list) {
-		size_t n = strcspn(list, ",");
-		int k = 0;
-
-		while (stress_words[k] && (strlen(stress_words[k]) != n ||
-						  strncmp(list, stress_words[k], n) != 0))
-			k++;
-		if (!stress_words[k])
-			die(EXIT_USAGE,
-				"--fields '%.*s': want von_mises, hydrostatic, principal or tensor",
-				(int)n, list);
-		stress_wanted |= 1 << k;
-		list += n + (list[n] == ',');
-	}
-}
-
 static void check_options(void)
 {
+	press_check();
 	if (isnan(yield))
 		die(EXIT_USAGE, "want --yield");
-	if (!isnan(load) + !isnan(mean_pressure) + !isnan(approach) > 1)
-		die(EXIT_USAGE, "want only one of --load, --pressure and --approach");
-	if (!isnan(estar) && young.n)
-		die(EXIT_USAGE, "want only one of --estar and --young");
-	if (young.n > 2 || poisson.n > 2 || poisson.n < 1)
-		die(EXIT_USAGE, "--young and --poisson take one or two values");
-	if (steps > 1 && isnan(estar) && !young.n)
+	if (press.poisson.v[0] < 0)
+		die(EXIT_USAGE, "--poisson %g: want 0 to 0.5 for the worn body",
+			press.poisson.v[0]);
+	if (steps > 1 && isnan(press.estar))
 		die(EXIT_USAGE, "--steps %ld solves contacts: want --young or --estar",
 			steps);
-	if (multiply && boundary)
-		die(EXIT_USAGE,
-			"--multiply mlms sums over a free surface: no --boundary periodic");
-	if (young.n)
-		estar = kernel_modulus(young.v[0], poisson.v[0], young.v[young.n - 1],
-			poisson.v[poisson.n - 1]);
-	choose_stress(stress_fields);
 }
 
 /* Makes the machinery for grids like that of r, unless it is there already. */
 static void prepare(struct run *run, const struct record *r)
 {
 	const struct stress_par *old = &run->par.stress;
-	struct contact_par contact = { .nx = r->nx,
-		.ny = r->ny,
-		.dx = r->dx,
-		.dy = r->dy,
-		.estar = estar,
-		.hardness = hardness,
-		.boundary = (enum contact_boundary)boundary,
-		.solver = (enum contact_solver)solver,
-		.multiply = (enum contact_multiply)multiply,
-		.tolerance = tolerance,
-		.max_iterations = max_iterations,
-		.pool = run->pool };
+	struct contact_par contact = press_par(r, run->pool);
 
 	if (run->debris && r->nx == old->nx && r->ny == old->ny && r->dx == old->ax &&
 		r->dy == old->ay)
@@ -199,10 +125,10 @@ static void prepare(struct run *run, const struct record *r)
 		.ay = r->dy,
 		.dz = isnan(depth_step) ? r->dx : depth_step,
 		.offset = layer ? 0.5 : 0,
-		.nu = poisson.v[0],
+		.nu = press.poisson.v[0],
 		.mu = friction,
 		.axis = shear,
-		.periodic = boundary == CONTACT_PERIODIC,
+		.periodic = press.boundary == CONTACT_PERIODIC,
 		.memory = (size_t)memory << 20,
 		.pool = run->pool };
 	memset(&run->seen, 0, sizeof(run->seen));
@@ -215,25 +141,23 @@ static void prepare(struct run *run, const struct record *r)
 }
 
 /* Presses the worn surface again, from the last pressure. */
-static void press(struct run *run, const struct record *r, double target, double *h,
+static void press_again(struct run *run, const struct record *r, double target, double *h,
 	double *p, long step)
 {
-	enum contact_control control =
-		isnan(approach) ? CONTACT_PRESSURE : CONTACT_APPROACH;
 	enum contact_status status =
-		contact_solve(run->contact, h, control, target, p, NULL);
+		contact_solve(run->contact, h, press_control(), target, p, NULL);
 	const struct contact_result *c = contact_result(run->contact);
 
 	if (status != CONTACT_OK && status != CONTACT_NOCONV)
 		die(EXIT_RUN, "%s: record %ld, step %ld: no contact at %g %s: %s",
 			fields_name(run->in), fields_count(run->in), step, target,
-			isnan(approach) ? "Pa" : "m",
+			isnan(press.approach) ? "Pa" : "m",
 			status == CONTACT_OVERLOAD   ? "the hardness cannot carry it"
 			: status == CONTACT_TOO_DEEP ? "beyond full contact"
 						     : "numbers beyond double precision");
 	if (status == CONTACT_NOCONV) {
 		warn("%s: realisation %ld, step %ld: contact not solved to %g, only to %.2g",
-			fields_name(run->in), r->realisation, step, tolerance,
+			fields_name(run->in), r->realisation, step, press.tolerance,
 			c->certificate);
 		run->status = EXIT_NOCONV;
 	}
@@ -246,10 +170,13 @@ static void press(struct run *run, const struct record *r, double target, double
 static char *cmd_of(const char *upstream, const char *option)
 {
 	static const char turn[] = "/dev/fd/3 3>&1 >/dev/null";
-	char *extra = NULL, *cmd;
+	char words[64] = "", *extra = NULL, *cmd;
 
+	for (int k = 0; stress_words[k]; k++)
+		if (stress_wanted & 1 << k)
+			strcat(strcat(words, *words ? "," : ""), stress_words[k]);
 	if (option && strcmp(option, "--stress") == 0)
-		extra = xprintf("--fields %s --stress-layers %ld %s %s", stress_fields,
+		extra = xprintf("--fields %s --stress-layers %ld %s %s", words,
 			stress_layers, option, turn);
 	else if (option)
 		extra = xprintf("%s %s", option, turn);
@@ -448,16 +375,11 @@ struct scene {
 static double choose_target(const struct scene *c, double contact_load)
 {
 	const struct record *r = c->r;
-	double area = r->nx * r->dx * r->ny * r->dy;
-	double given = record_get_number(r, "mean_pressure");
+	double asked = press_target(r), given = record_get_number(r, "mean_pressure");
 
-	if (!isnan(approach))
-		return approach;
-	if (!isnan(mean_pressure))
-		return mean_pressure;
-	if (!isnan(load))
-		return load / area;
-	return isnan(given) ? contact_load / area : given;
+	if (!isnan(asked))
+		return asked;
+	return isnan(given) ? contact_load / (r->nx * r->dx * r->ny * r->dy) : given;
 }
 
 static void open_scene(struct run *run, struct record *r, struct scene *c)
@@ -532,7 +454,7 @@ static void wear_record(struct run *run, struct record *r)
 	for (long k = 1; k <= steps; k++) {
 		progress("steps", (double)(k - 1), (double)steps);
 		if (k > 1)
-			press(run, r, c.target, c.h, c.p, c.done + k);
+			press_again(run, r, c.target, c.h, c.p, c.done + k);
 		if (check_contact(run, &c, c.done + k)) {
 			stats_add("steps_skipped", (double)(steps - k + 1));
 			break;
@@ -564,9 +486,9 @@ int main(int argc, char **argv)
 	struct run run = { 0 };
 
 	check_options();
-	run.pool = pool_new((int)threads);
+	run.pool = pool_new((int)press.threads);
 	if (!run.pool)
-		die(EXIT_RUN, "cannot start %ld threads:", threads);
+		die(EXIT_RUN, "cannot start %ld threads:", press.threads);
 	run.in = fields_open(argv[first], NULL);
 	while (fields_read(run.in, &r)) {
 		if (!run.particles)

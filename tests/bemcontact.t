@@ -69,7 +69,7 @@ fails "no material" 2 'either --estar or --young' bemcontact -P 1Pa
 fails "both materials" 2 'either --estar or --young' bemcontact -P 1Pa -e 1GPa -E 2GPa
 fails "multi-level sums over a period" 2 'no --boundary periodic' \
 	bemcontact -P 1Pa -e 1GPa -M mlms -b periodic
-fails "unknown field" 2 "--fields 'sigma'" bemcontact -P 1Pa -e 1GPa -o gap,sigma
+fails "unknown field" 2 "--fields sigma: want height|pressure" bemcontact -P 1Pa -e 1GPa -o gap,sigma
 fails "unit of another quantity" 2 '--load' bemcontact -F 1MPa -e 1GPa
 fails "load above the hardness" 1 'h.f64: record 1: mean pressure 2e+08 Pa is not below' \
 	$solve -P 200MPa -K 200MPa h.f64

@@ -91,6 +91,13 @@ static void print_default(const struct opt *o)
 	case OPT_WORD:
 		printf(" (default %s)", o->words[*(int *)o->var]);
 		break;
+	case OPT_WORDS:
+		for (int i = 0, n = 0; o->words[i]; i++)
+			if (*(int *)o->var & 1 << i)
+				printf("%s%s", n++ ? "," : " (default ", o->words[i]);
+		if (*(int *)o->var)
+			putchar(')');
+		break;
 	case OPT_TEXT:
 		if (*(const char **)o->var)
 			printf(" (default %s)", *(const char **)o->var);
@@ -116,13 +123,15 @@ static void print_default(const struct opt *o)
 	}
 	case OPT_FLAG:
 	case OPT_TEXTS:
+	case OPT_ROWS:
 		break;
 	}
 }
 
-static void print_rows(const struct opt *rows)
+static void print_rows(const struct opt *const *rows, int n)
 {
-	for (const struct opt *o = rows; o->word; o++) {
+	for (int i = 0; i < n; i++) {
+		const struct opt *o = rows[i];
 		int column = printf("  -%c, --%s%s%s", o->letter, o->word,
 			o->arg ? " " : "", o->arg ? o->arg : "");
 
@@ -134,13 +143,12 @@ static void print_rows(const struct opt *rows)
 	}
 }
 
-static _Noreturn void help(void)
+static _Noreturn void help(const struct opt *const *rows, int n)
 {
 	printf("usage: %s [option ...]%s%s\n%s\n", prog->name, *prog->operands ? " " : "",
 		prog->operands, prog->gist);
 	printf("reads: %s\nwrites: %s\n\n", prog->reads, prog->writes);
-	print_rows(prog->opts);
-	print_rows(common);
+	print_rows(rows, n);
 	exit(shell_done(EXIT_SUCCESS));
 }
 
@@ -198,12 +206,41 @@ static void parse_list(const struct opt *o, const char *text)
 	}
 }
 
-static int find_word(const struct opt *o, const char *text)
+static int find_word(const struct opt *o, const char *text, size_t length)
 {
 	for (int i = 0; o->words[i]; i++)
-		if (strcmp(o->words[i], text) == 0)
+		if (strlen(o->words[i]) == length &&
+			strncmp(o->words[i], text, length) == 0)
 			return i;
 	return -1;
+}
+
+static int parse_word(const struct opt *o, const char *text, size_t length)
+{
+	int i = find_word(o, text, length);
+	char *choices = NULL;
+
+	if (i >= 0)
+		return i;
+	for (i = 0; o->words[i]; i++) {
+		append(&choices, i ? "|" : "");
+		append(&choices, o->words[i]);
+	}
+	die(EXIT_USAGE, "--%s %.*s: want %s", o->word, (int)length, text, choices);
+}
+
+static int parse_words(const struct opt *o, const char *text)
+{
+	int bits = 0;
+
+	for (const char *s = text;; s++) {
+		size_t length = strcspn(s, ",");
+
+		bits |= 1 << parse_word(o, s, length);
+		s += length;
+		if (!*s)
+			return bits;
+	}
 }
 
 static void store(const struct opt *o, const char *text)
@@ -240,20 +277,23 @@ static void store(const struct opt *o, const char *text)
 		break;
 	}
 	case OPT_WORD:
-		*(int *)o->var = find_word(o, text);
-		if (*(int *)o->var < 0)
-			die(EXIT_USAGE, "--%s %s: want %s", o->word, text, o->arg);
+		*(int *)o->var = parse_word(o, text, strlen(text));
+		break;
+	case OPT_WORDS:
+		*(int *)o->var = parse_words(o, text);
 		break;
 	case OPT_CHOICE: {
 		struct opt_choice *c = o->var;
 
-		c->word = find_word(o, text);
+		c->word = find_word(o, text, strlen(text));
 		if (c->word < 0 && isalpha((unsigned char)*text))
 			die(EXIT_USAGE, "--%s %s: want %s", o->word, text, o->arg);
 		if (c->word < 0)
 			c->value = parse_number(o, text);
 		break;
 	}
+	case OPT_ROWS:
+		break;
 	}
 }
 
@@ -267,15 +307,15 @@ static void record(const struct opt *o, const char *text)
 		append_word(&recorded, text);
 }
 
-/* All rows of the program, then the common ones. */
-static int gather(const struct opt **rows)
+/* The rows of a table and of those it contains, behind the n that are there. */
+static int gather(const struct opt *table, const struct opt **rows, int n)
 {
-	int n = 0;
-
-	for (const struct opt *o = prog->opts; o->word; o++)
-		rows[n++] = o;
-	for (const struct opt *o = common; o->word; o++)
-		rows[n++] = o;
+	for (const struct opt *o = table; o->word; o++) {
+		if (o->kind == OPT_ROWS)
+			n = gather(o->var, rows, n);
+		else if (n < ROWS_MAX)
+			rows[n++] = o;
+	}
 	return n;
 }
 
@@ -333,12 +373,13 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 	prog = program;
 	msg_name(program->name);
 	stats_start();
-	n = gather(rows);
+	n = gather(program->opts, rows, 0);
+	n = gather(common, rows, n);
 	getopt_tables(rows, n, letters, words);
 	opterr = 0;
 	while ((c = getopt_long(argc, argv, letters, words, NULL)) != -1) {
 		if (c == 'h')
-			help();
+			help(rows, n);
 		if (c == 'V') {
 			printf("%s (wearpipe) %s\n", program->name, WEARPIPE_VERSION);
 			exit(shell_done(EXIT_SUCCESS));

@@ -21,15 +21,17 @@
 #include "shell/unit.h"
 
 enum opt_kind {
-	OPT_FLAG,  /* int: set to 1 */
-	OPT_INT,   /* long; unit UNIT_COUNT */
-	OPT_NUM,   /* double */
-	OPT_LIST,  /* struct opt_list: numbers parted by the separator shown in arg
-		    * (one of ':' 'x' ',') */
-	OPT_TEXT,  /* const char *: a file or free text */
-	OPT_TEXTS, /* struct opt_texts: may be repeated */
-	OPT_WORD,  /* int: index into words */
-	OPT_CHOICE /* struct opt_choice: one of words, or a number */
+	OPT_FLAG,   /* int: set to 1 */
+	OPT_INT,    /* long; unit UNIT_COUNT */
+	OPT_NUM,    /* double */
+	OPT_LIST,   /* struct opt_list: numbers parted by the separator shown in arg
+		     * (one of ':' 'x' ',') */
+	OPT_TEXT,   /* const char *: a file or free text */
+	OPT_TEXTS,  /* struct opt_texts: may be repeated */
+	OPT_WORD,   /* int: index into words */
+	OPT_WORDS,  /* int: words parted by commas, bit k for words[k] */
+	OPT_CHOICE, /* struct opt_choice: one of words, or a number */
+	OPT_ROWS    /* struct opt []: a further table in this place; letter 0, word "" */
 };
 
 enum { OPT_LIST_MAX = 64, OPT_TEXTS_MAX = 64 };
@@ -58,13 +60,18 @@ struct opt {
 	double min, max;          /* inclusive range of numbers, or of each list member */
 	const char *arg;          /* placeholder: "N[xM]", "FILE", "gauss|exp" */
 	const char *help;         /* a phrase without a full stop */
-	const char *const *words; /* OPT_WORD, OPT_CHOICE: NULL-ended */
+	const char *const *words; /* OPT_WORD, OPT_WORDS, OPT_CHOICE: NULL-ended */
 	int unrecorded;           /* 1: cannot change the output, keep out of cmd */
 };
 
 #define OPT_END                                                \
 	{                                                      \
 		0, 0, OPT_FLAG, UNIT_NONE, 0, 0, 0, 0, 0, 0, 0 \
+	}
+/* The rows of a table that several programs share. */
+#define OPT_TABLE(rows)                                            \
+	{                                                          \
+		0, "", OPT_ROWS, UNIT_NONE, rows, 0, 0, 0, 0, 0, 0 \
 	}
 
 struct prog {

@@ -1,0 +1,31 @@
+/* press.h - how bodies are pressed together: options that bemcontact and debrisgen share
+ */
+#ifndef PRESS_H
+#define PRESS_H
+
+#include "contact/solver.h"
+#include "shell/fields.h"
+#include "shell/opt.h"
+
+/* Values of the options; nan where not given.  estar follows from young and poisson
+ * once press_check() was called. */
+extern struct press {
+	double load, pressure, approach, estar, hardness, tolerance;
+	struct opt_list young, poisson;
+	int boundary, solver, multiply;
+	long max_iterations, threads;
+} press;
+
+extern struct opt press_rows[]; /* for OPT_TABLE */
+
+/* Dies where options contradict one another. */
+void press_check(void);
+
+/* The problem on the grid of a record. */
+struct contact_par press_par(const struct record *r, struct pool *pool);
+
+enum contact_control press_control(void);
+/* Mean pressure or approach asked for; nan where neither they nor a load were given. */
+double press_target(const struct record *r);
+
+#endif
