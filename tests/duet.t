@@ -46,6 +46,12 @@ sed 1d fit.tsv >a
 sed 1d blocks.tsv >b
 same "the same rows from a pipe of 777-byte blocks" a b
 
+# Sections longer than a window, some of them unresolved.
+sensorsim --uniform 50um:150um --number 1200 --duration 10s --snr 30dB --lag 0.2ms:0.5ms >long.au
+duet long.au | sed 1d >a
+(dd bs=5003 2>/dev/null; :) <long.au | duet | sed 1d >b
+same "the same where sections are cut into windows" a b
+
 # Twins 2 ms apart: one peak to the eye.
 sensorsim --uniform 90um:110um --number 40 --burst 2 --span 3ms --gap 1.5ms --period 0.1s \
 	--duration 2.2s --snr 30dB --lag 0.2ms:0.5ms --truth twins.tsv >twins.au

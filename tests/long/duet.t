@@ -45,7 +45,7 @@ scenes() { # M SNR COUNT RATIO SIZE sensorsim-options
 }
 
 for m in 1 2 3 4 5 6; do
-	scenes $m 20 0.97 1.1 0.02
+	scenes $m 20 0.99 1.1 0.02
 	scenes $m 30 0.99 1.1 0.005
 done
 scenes 4 40 0.99 1.1 0.005
