@@ -43,32 +43,33 @@ static void check_options(void)
 		die(EXIT_USAGE, "--raw wants NXxNY and --pixel");
 }
 
-/* The solver for grids like that of r; the last one is kept while the grid stays. */
-static struct contact *solver_for(
-	const struct record *r, const char *name, long number, struct pool *pool)
+/* The solver for a record; the last one is kept while grid and material stay. */
+static struct contact *solver_for(const struct record *r, const struct contact_par *par,
+	const char *name, long number)
 {
 	static struct contact *contact;
-	static struct contact_par par;
+	static struct contact_par old;
 
-	if (contact && r->nx == par.nx && r->ny == par.ny && r->dx == par.dx &&
-		r->dy == par.dy)
+	if (contact && press_same(par, &old))
 		return contact;
 	contact_free(contact);
-	par = press_par(r, pool);
-	contact = contact_new(&par);
+	old = *par;
+	contact = contact_new(par);
 	if (!contact)
 		die(EXIT_RUN, "%s: record %ld: %dx%d cells:", name, number, r->nx, r->ny);
 	return contact;
 }
 
-static void put_results(struct record *r, const struct contact_result *s, int converged)
+static void put_results(struct record *r, const struct contact_par *par,
+	const struct contact_result *s, int converged)
 {
+	press_record(r, par);
 	record_set(r, "load", "%.17g", s->load);
 	record_set(r, "mean_pressure", "%.17g", s->pressure);
 	record_set(r, "approach", "%.17g", s->approach);
 	record_set(r, "indentation", "%.17g", s->indentation);
 	record_set(r, "area", "%.17g", s->area);
-	if (press.hardness > 0)
+	if (par->hardness > 0)
 		record_set(r, "plastic_area", "%.17g", s->plastic);
 	record_set(r, "energy", "%.17g", s->energy);
 	record_set(r, "certificate", "%.3g", s->certificate);
@@ -91,7 +92,8 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 {
 	const char *name = fields_name(in);
 	long number = fields_count(in);
-	struct contact *c = solver_for(r, name, number, pool);
+	struct contact_par par = press_par(r, pool);
+	struct contact *c = solver_for(r, &par, name, number);
 	double *h = record_need(r, "height", 1, in), *p, *u = NULL, *g = NULL;
 	int warm = record_find(r, "pressure") >= 0;
 	double target = press_target(r);
@@ -118,7 +120,7 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 			name, number);
 	if (u)
 		contact_displacement(c, p, u);
-	put_results(r, contact_result(c), status == CONTACT_OK);
+	put_results(r, &par, contact_result(c), status == CONTACT_OK);
 	count_work(contact_result(c), warm);
 	note("%s: record %ld: area %.4g, approach %.6g m, certificate %.2g, %ld "
 	     "iterations",

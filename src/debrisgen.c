@@ -89,6 +89,7 @@ struct run {
 	struct debris *debris;
 	struct contact *contact;
 	struct debris_par par;
+	struct contact_par pressing; /* the contact's problem */
 	struct stress_work seen;
 	int status;
 };
@@ -101,20 +102,20 @@ static void check_options(void)
 	if (press.poisson.v[0] < 0)
 		die(EXIT_USAGE, "--poisson %g: want 0 to 0.5 for the worn body",
 			press.poisson.v[0]);
-	if (steps > 1 && isnan(press.estar))
-		die(EXIT_USAGE, "--steps %ld solves contacts: want --young or --estar",
-			steps);
 }
 
 /* Makes the machinery for grids like that of r, unless it is there already. */
 static void prepare(struct run *run, const struct record *r)
 {
-	const struct stress_par *old = &run->par.stress;
-	struct contact_par contact = press_par(r, run->pool);
+	struct contact_par pressing = press_par(r, run->pool);
 
-	if (run->debris && r->nx == old->nx && r->ny == old->ny && r->dx == old->ax &&
-		r->dy == old->ay)
+	if (run->debris && press_same(&pressing, &run->pressing))
 		return;
+	if (steps > 1 && isnan(pressing.estar))
+		die(EXIT_USAGE,
+			"--steps %ld solves contacts: want --young or --estar, which %s does not tell",
+			steps, fields_name(run->in));
+	run->pressing = pressing;
 	debris_free(run->debris);
 	contact_free(run->contact);
 	run->contact = NULL;
@@ -128,13 +129,13 @@ static void prepare(struct run *run, const struct record *r)
 		.nu = press.poisson.v[0],
 		.mu = friction,
 		.axis = shear,
-		.periodic = press.boundary == CONTACT_PERIODIC,
+		.periodic = pressing.boundary == CONTACT_PERIODIC,
 		.memory = (size_t)memory << 20,
 		.pool = run->pool };
 	memset(&run->seen, 0, sizeof(run->seen));
 	run->debris = debris_new(&run->par);
 	if (run->debris && steps > 1)
-		run->contact = contact_new(&contact);
+		run->contact = contact_new(&pressing);
 	if (!run->debris || (steps > 1 && !run->contact))
 		die(EXIT_RUN, "%s: record %ld: %dx%d cells:", fields_name(run->in),
 			fields_count(run->in), r->nx, r->ny);

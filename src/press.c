@@ -2,6 +2,7 @@
 #include "contact/kernel.h"
 #include "shell/msg.h"
 #include <math.h>
+#include <string.h>
 
 struct press press = { .load = NAN,
 	.pressure = NAN,
@@ -62,20 +63,47 @@ void press_check(void)
 			e->v[0], nu->v[0], e->v[e->n - 1], nu->v[nu->n - 1]);
 }
 
+/* Number of a key that bemcontact wrote, for an option that was not given. */
+static double inherited(const struct record *r, const char *key, int letter, double value)
+{
+	double v = record_get_number(r, key);
+
+	return opt_given(letter) || isnan(v) ? value : v;
+}
+
 struct contact_par press_par(const struct record *r, struct pool *pool)
 {
+	const char *around = record_get(r, "boundary");
+	int periodic = opt_given('b') || !around ? press.boundary
+						 : strcmp(around, "periodic") == 0;
+
 	return (struct contact_par){ .nx = r->nx,
 		.ny = r->ny,
 		.dx = r->dx,
 		.dy = r->dy,
-		.estar = press.estar,
-		.hardness = press.hardness,
-		.boundary = (enum contact_boundary)press.boundary,
+		.estar = isnan(press.estar) ? record_get_number(r, "estar") : press.estar,
+		.hardness = inherited(r, "hardness", 'K', press.hardness),
+		.boundary = periodic ? CONTACT_PERIODIC : CONTACT_FREE,
 		.solver = (enum contact_solver)press.solver,
 		.multiply = (enum contact_multiply)press.multiply,
 		.tolerance = press.tolerance,
 		.max_iterations = press.max_iterations,
 		.pool = pool };
+}
+
+void press_record(struct record *r, const struct contact_par *par)
+{
+	record_set(r, "estar", "%.17g", par->estar);
+	record_set(r, "boundary", "%s", boundaries[par->boundary]);
+	if (par->hardness > 0)
+		record_set(r, "hardness", "%.17g", par->hardness);
+}
+
+int press_same(const struct contact_par *a, const struct contact_par *b)
+{
+	return a->nx == b->nx && a->ny == b->ny && a->dx == b->dx && a->dy == b->dy &&
+	       a->hardness == b->hardness && a->boundary == b->boundary &&
+	       (a->estar == b->estar || (isnan(a->estar) && isnan(b->estar)));
 }
 
 enum contact_control press_control(void)

@@ -63,7 +63,7 @@ fails "not converged: status 3" 3 '' sh -c "$solve -P 200MPa -i 2 h.f64 >poor.nr
 is "and the record says so" "$(key converged poor.nrrd)" no
 is "no load, no pressure, no work" "$($solve -P 0Pa -S stats h.f64 >none.nrrd
 	column transforms stats),$(key area none.nrrd)" 0,0
-fails "no load given" 2 'want only one of --load' bemcontact --estar 1GPa
+fails "no load given" 2 'want one of --load' bemcontact --estar 1GPa
 fails "two loads given" 2 'want only one of --load' bemcontact --estar 1GPa -P 1Pa -F 1N
 fails "no material" 2 'either --estar or --young' bemcontact -P 1Pa
 fails "both materials" 2 'either --estar or --young' bemcontact -P 1Pa -e 1GPa -E 2GPa

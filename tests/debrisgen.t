@@ -174,7 +174,11 @@ replay s.nrrd cmd:= >a
 same "the command of a stress field rebuilds it" a s.nrrd
 
 fails "no yield stress" 2 "want --yield" debrisgen
-fails "steps without a modulus" 2 "want --young or --estar" debrisgen -Y 1GPa -T 2
+LC_ALL=C sed 's/^estar:=/other:=/' ball.nrrd >stripped.nrrd
+fails "steps without a modulus" 2 "want --young or --estar" debrisgen -Y 1GPa -T 2 stripped.nrrd
+$wear -E 210GPa -T 2 ball.nrrd | grep -v '^#' >given.tsv
+$wear -T 2 ball.nrrd | grep -v '^#' >inherited.tsv
+same "the modulus is that of the input unless given" given.tsv inherited.tsv
 fails "two loads" 2 "only one of" debrisgen -Y 1GPa -F 1N -P 1MPa
 fails "an unknown stress field" 2 "principal|tensor" debrisgen -Y 1GPa -o foo
 fails "no pressure" 1 "pressure" debrisgen -Y 1GPa rough.nrrd

@@ -32,7 +32,7 @@ EOF
 
 # What wears off ...
 <surface.nrrd bemcontact --pressure 50MPa --young 210GPa | tee contact.nrrd |
-	debrisgen --yield 355MPa --friction 0.3 --young 210GPa --steps $steps \
+	debrisgen --yield 355MPa --friction 0.3 --steps $steps \
 		--surface worn.nrrd --summary steps.tsv >particles.tsv
 
 # ... and what the sensors tell of it.
