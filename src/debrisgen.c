@@ -371,6 +371,7 @@ struct scene {
 	double crown, sq;
 	double target; /* mean pressure, or approach */
 	long done;     /* steps before the first of this run */
+	int warned;    /* of load on the rim, once a surface */
 };
 
 static double choose_target(const struct scene *c, double contact_load)
@@ -414,7 +415,7 @@ static int check_contact(struct run *run, const struct scene *c, long step)
 	struct debris_step s;
 
 	debris_contact(run->debris, c->p, &s);
-	if (s.edge_load > 0.05)
+	if (s.edge_load > 0.05 && !c->warned++)
 		warn("%s: realisation %ld, step %ld: %.0f %% of the load lies on the "
 		     "outermost cells",
 			name, c->r->realisation, step, 100 * s.edge_load);
