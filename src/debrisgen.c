@@ -409,7 +409,7 @@ static void open_scene(struct run *run, struct record *r, struct scene *c)
 }
 
 /* 1 where the contact is too large for a further step. */
-static int check_contact(struct run *run, const struct scene *c, long step)
+static int check_contact(struct run *run, struct scene *c, long step)
 {
 	const char *name = fields_name(run->in);
 	struct debris_step s;

@@ -132,7 +132,7 @@ static double crps_unsorted(struct metrics *m, const double *sample, const doubl
 		m->capacity = n;
 	}
 	for (size_t i = 0; i < n; i++)
-		m->scratch[i] = (struct weighted){sample[i], weight ? weight[i] : 1};
+		m->scratch[i] = (struct weighted){ sample[i], weight ? weight[i] : 1 };
 	qsort(m->scratch, n, sizeof *m->scratch, compare_weighted);
 	x = (double *)(m->scratch + n);
 	for (size_t i = 0; i < n; i++) {
@@ -146,7 +146,7 @@ int metrics_add(struct metrics *m, double t, double point, double lower, double 
 	const double *sample, const double *weight, size_t n, struct metrics_row *row)
 {
 	double truth = m->par.eol - t, wide = m->par.alpha * fabs(m->par.eol);
-	struct metrics_row r = {.truth = truth};
+	struct metrics_row r = { .truth = truth };
 	double mass_horizon;
 
 	if (!(truth > 0) || isnan(point))

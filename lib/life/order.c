@@ -109,7 +109,7 @@ static int goes_on(const struct order *o)
 
 static void fit_orders(struct order *o, int low, int high)
 {
-	struct grey g = {0};
+	struct grey g = { 0 };
 	double gap = 0;
 
 	for (int lag = 0; lag < high; lag++) {

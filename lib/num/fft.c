@@ -30,7 +30,7 @@ void fft_free(void *p)
 
 size_t fft_good_size(size_t n)
 {
-	static const size_t primes[] = {2, 3, 5, 7};
+	static const size_t primes[] = { 2, 3, 5, 7 };
 
 	for (;; n++) {
 		size_t rest = n;

@@ -16,7 +16,7 @@ static void run_chunk(void *context, size_t i, int worker)
 	size_t begin = i * t->chunk, end = begin + t->chunk;
 
 	(void)worker;
-	t->part[i] = (struct sweep){.max = -INFINITY};
+	t->part[i] = (struct sweep){ .max = -INFINITY };
 	t->pass(t->context, begin, end < t->n ? end : t->n, &t->part[i]);
 }
 
@@ -24,8 +24,8 @@ struct sweep sweep_run(struct pool *pool, size_t n,
 	void (*pass)(void *context, size_t begin, size_t end, struct sweep *s),
 	void *context)
 {
-	struct task t = {.n = n, .pass = pass, .context = context};
-	struct sweep all = {.max = -INFINITY};
+	struct task t = { .n = n, .pass = pass, .context = context };
+	struct sweep all = { .max = -INFINITY };
 	size_t chunks;
 
 	t.chunk = (n + SWEEP_CHUNKS - 1) / SWEEP_CHUNKS;

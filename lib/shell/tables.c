@@ -21,7 +21,7 @@ struct table_in {
 	char **cell;
 	const char *blanks; /* what parts the cells */
 	int pending;        /* the row read ahead by table_open() is still to come */
-	struct keys keys; /* of comment lines */
+	struct keys keys;   /* of comment lines */
 };
 
 struct table_out {

@@ -84,8 +84,8 @@ static void same_bytes(struct pool *two)
 
 int main(void)
 {
-	static const size_t sizes[][2] = {
-		{16, 16}, {17, 23}, {1, 1}, {1, 40}, {40, 1}, {2, 3}, {30, 11}, {13, 64}};
+	static const size_t sizes[][2] = { { 16, 16 }, { 17, 23 }, { 1, 1 }, { 1, 40 },
+		{ 40, 1 }, { 2, 3 }, { 30, 11 }, { 13, 64 } };
 	struct pool *two = pool_new(2);
 
 	for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {

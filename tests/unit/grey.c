@@ -7,7 +7,7 @@
 
 static struct grey fit(const double *x, int n)
 {
-	struct grey g = {0};
+	struct grey g = { 0 };
 
 	for (int k = n; k-- > 0;)
 		grey_add(&g, x[k], 1);
@@ -62,7 +62,7 @@ static double *make_series(int n)
 static void test_long(void)
 {
 	FILE *f = fopen("tests/data/gm11_long.tsv", "r");
-	double *x = make_series(1000000), worst[2] = {0, 0}, worst_b = 0;
+	double *x = make_series(1000000), worst[2] = { 0, 0 }, worst_b = 0;
 	char line[400];
 	int rows = 0;
 
@@ -138,9 +138,9 @@ static void test_plain_series(void)
  * (a gap)^2 / 12, 1e-4 of the rate here. */
 static void test_gaps(void)
 {
-	static const double gap[12] = {0, 1, 2, 0.5, 1, 1.5, 3, 1, 0.25, 1, 2, 1};
+	static const double gap[12] = { 0, 1, 2, 0.5, 1, 1.5, 3, 1, 0.25, 1, 2, 1 };
 	double rate = 0.01, t = 0, x[12];
-	struct grey g = {0};
+	struct grey g = { 0 };
 
 	for (int k = 1; k < 12; k++) {
 		x[k] = (exp(rate * (t + gap[k])) - exp(rate * t)) / (rate * gap[k]);

@@ -26,11 +26,11 @@ static double crps_energy(const double *x, const double *w, size_t n, double y)
 static void check_crps(void)
 {
 	static double x[N];
-	double w[5] = {1, 3, 0.5, 2, 0.25}, s[5] = {-2, 1, 1, 4, 9};
-	double truth[] = {-5, 1, 3.3, 9, 20};
-	double never[3] = {1, 2, INFINITY};
+	double w[5] = { 1, 3, 0.5, 2, 0.25 }, s[5] = { -2, 1, 1, 4, 9 };
+	double truth[] = { -5, 1, 3.3, 9, 20 };
+	double never[3] = { 1, 2, INFINITY };
 
-	near(metric_crps(&(double){7}, NULL, 1, 10, INFINITY), 3, 1e-15,
+	near(metric_crps(&(double){ 7 }, NULL, 1, 10, INFINITY), 3, 1e-15,
 		"CRPS of one sample is its absolute error");
 	for (int i = 0; i < 5; i++)
 		near(metric_crps(s, w, 5, truth[i], INFINITY),
@@ -53,13 +53,13 @@ static void check_crps(void)
 		"CRPS with mass that never fails, up to the limit");
 	ok(isinf(metric_crps(never, NULL, 3, 5, INFINITY)),
 		"CRPS with mass that never fails is infinite without a limit");
-	near(metric_crps(&(double){1e300}, NULL, 1, -1e300, INFINITY), 2e300, 1e285,
+	near(metric_crps(&(double){ 1e300 }, NULL, 1, -1e300, INFINITY), 2e300, 1e285,
 		"CRPS at 1e300");
 }
 
 static void check_quantile(void)
 {
-	double x[5] = {1, 2, 4, 8, INFINITY};
+	double x[5] = { 1, 2, 4, 8, INFINITY };
 	double mean = 0;
 
 	near(metric_quantile(x, 5, 0.5), 4, 0, "median of an odd number");
@@ -75,11 +75,11 @@ static void check_quantile(void)
 /* Point predictions of life 100: late by 30 at t = 0, by 15 at 20, by 3 at 90. */
 static void check_sums(void)
 {
-	struct metrics_par par = {.eol = 100, .alpha = 0.2, .beta = 0.5};
+	struct metrics_par par = { .eol = 100, .alpha = 0.2, .beta = 0.5 };
 	struct metrics *m = metrics_new(&par);
 	struct metrics_row row;
 	struct metrics_sum s;
-	double pair[2] = {12, 8};
+	double pair[2] = { 12, 8 };
 
 	ok(metrics_add(m, 0, 130, 90, 140, NULL, NULL, 0, &row) == 1 && !row.inside &&
 			row.covered,
