@@ -38,7 +38,7 @@ debrisgen_PARTS = press
 debrisgen_MODULES = $(bemcontact_MODULES) contact/debris contact/hull contact/influence contact/particles contact/stress \
 	contact/stress_kernel contact/surface contact/sym3 contact/wear contact/window
 debrisgen_LIBS = fftw
-debrisstat_MODULES = num/philox contact/statistics
+debrisstat_MODULES = num/philox contact/ensemble contact/estimates contact/statistics
 debrisstat_LIBS = gsl
 sensorsim_MODULES = num/philox num/normals signal/sensor signal/passage signal/scene
 sensorsim_LIBS =

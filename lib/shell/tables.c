@@ -254,6 +254,27 @@ double table_number(const struct table_in *t, int column)
 	return v;
 }
 
+double table_positive(const struct table_in *t, int column)
+{
+	double v = table_number(t, column);
+
+	if (!(v > 0) || !isfinite(v))
+		die(EXIT_RUN, "%s: line %ld: %s is %g, want a positive number",
+			table_name(t), table_line(t), table_column_name(t, column), v);
+	return v;
+}
+
+long table_whole(const struct table_in *t, int column, double least)
+{
+	double v = table_number(t, column);
+
+	if (!(v >= least) || v > 1e9 || v != floor(v))
+		die(EXIT_RUN, "%s: line %ld: %s is %g, want a whole number from %g on",
+			table_name(t), table_line(t), table_column_name(t, column), v,
+			least);
+	return (long)v;
+}
+
 const char *table_text(const struct table_in *t, int column)
 {
 	return t->cell[column];
@@ -375,6 +396,13 @@ void table_end_row(struct table_out *t)
 	t->ncells = 0;
 	putc('\n', t->f);
 	check(t);
+}
+
+void table_put_row(struct table_out *t, const double *value, int n)
+{
+	for (int k = 0; k < n; k++)
+		table_put(t, value[k]);
+	table_end_row(t);
 }
 
 void table_flush(struct table_out *t)

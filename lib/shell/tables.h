@@ -32,6 +32,10 @@ long table_line(const struct table_in *t); /* of the present row, from 1 */
 /* Cell as a number; nan, NaN, NA and an empty cell are NAN; anything else that is
  * not a number dies.  A column below 0 gives NAN. */
 double table_number(const struct table_in *t, int column);
+/* The same, but only numbers above 0, or whole numbers from least to 1e9: anything else
+ * dies. */
+double table_positive(const struct table_in *t, int column);
+long table_whole(const struct table_in *t, int column, double least);
 /* Cell as text, valid until the next row. */
 const char *table_text(const struct table_in *t, int column);
 void table_close(struct table_in *t);
@@ -48,6 +52,8 @@ void table_cmd(struct table_out *t, const char *cmd);
 void table_put(struct table_out *t, double value); /* shortest that reads back; nan */
 void table_put_text(struct table_out *t, const char *text);
 void table_end_row(struct table_out *t); /* checks the number of cells */
+/* The last n cells of a row, and its end. */
+void table_put_row(struct table_out *t, const double *value, int n);
 void table_flush(struct table_out *t);
 void table_done(struct table_out *t); /* checks that all was written; frees */
 
