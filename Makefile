@@ -44,6 +44,7 @@ sensorsim_MODULES = num/philox num/normals signal/sensor signal/passage signal/s
 sensorsim_LIBS =
 bpfilter_MODULES = num/fft signal/fir signal/lines signal/tones signal/robust
 bpfilter_LIBS = fftw
+duet_PARTS = found instrument methods
 duet_MODULES = num/fft signal/sensor signal/shape signal/joint signal/joint_model signal/joint_step signal/joint_moves signal/align signal/robust signal/tones signal/sections signal/calibrate signal/stft signal/masks signal/count signal/separate signal/campbell signal/cnn signal/network signal/netfile num/philox
 duet_LIBS = fftw cblas
 delaynet_MODULES = num/philox signal/lesson signal/training signal/network signal/netfile signal/delaydata signal/delayloss signal/cnn signal/cnndata signal/sensor

@@ -1,5 +1,7 @@
 /* count.c - see count.h */
 #include "signal/count.h"
+#include "signal/robust.h"
+#include <math.h>
 #include <stdlib.h>
 
 struct count {
@@ -10,6 +12,18 @@ struct count {
 	double top, top_at, top_before, top_after; /* highest sample and its neighbours */
 	double valley; /* lowest since the last peak was given out */
 };
+
+double count_level(const double *x, size_t n, size_t stride, double *work)
+{
+	double median;
+
+	for (size_t i = 0; i < n; i++)
+		work[i] = x[i * stride];
+	median = robust_median(work, n);
+	for (size_t i = 0; i < n; i++)
+		work[i] = fabs(work[i] - median);
+	return 5 * 1.4826 * robust_median(work, n);
+}
 
 struct count *count_new(double level)
 {

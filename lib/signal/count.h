@@ -13,6 +13,10 @@ struct peak {
 			   */
 };
 
+/* A level noise hardly reaches: five robust deviations of every stride-th sample of x, n
+ * of them, from their median; work holds n values. */
+double count_level(const double *x, size_t n, size_t stride, double *work);
+
 struct count;
 struct count *count_new(double level); /* NULL: level <= 0 or no memory */
 void count_free(struct count *count);

@@ -157,6 +157,14 @@ double sensor_diameter(double kappa, double velocity, double voltage)
 	return cbrt(voltage / (kappa * velocity));
 }
 
+double sensor_diameter_error(
+	double d, double voltage_error, double time_error, double correlation)
+{
+	double ra = voltage_error, rt = time_error;
+
+	return d / 3 * sqrt(ra * ra + rt * rt + 2 * correlation * ra * rt);
+}
+
 double sensor_kappa_of(double voltage, double diameter, double velocity)
 {
 	return voltage / (velocity * diameter * diameter * diameter);

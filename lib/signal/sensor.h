@@ -53,6 +53,10 @@ void pulse_sample(enum pulse_shape shape, double t0, double T, long first, size_
 /* Peak voltage A = kappa v d^3 and its inverse, the corrected (3-3). */
 double sensor_voltage(double kappa, double velocity, double diameter);
 double sensor_diameter(double kappa, double velocity, double voltage);
+/* Standard error of a diameter d from the relative errors of the voltage and of the
+ * transit time and their correlation: d = (voltage time / (kappa spacing))^(1/3). */
+double sensor_diameter_error(
+	double d, double voltage_error, double time_error, double correlation);
 /* kappa of a sensor that gives voltage for this diameter and velocity, V s/m4. */
 double sensor_kappa_of(double voltage, double diameter, double velocity);
 
