@@ -198,6 +198,14 @@ void check_sizes(const struct place *at, const double *sizes, int n)
 			at->name, at->record, all);
 }
 
+void check_spacing(const struct place *at, int axis, double spacing)
+{
+	if (!(spacing >= 1e-30 && spacing <= 1e30))
+		die(EXIT_RUN,
+			"%s: record %ld: spacing of axis %d is %g m, want 1e-30 to 1e30",
+			at->name, at->record, axis, spacing);
+}
+
 /* A regular file must hold what its header declares: said before memory is taken. */
 static void check_length(const struct place *at, uint64_t want)
 {

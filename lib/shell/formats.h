@@ -34,6 +34,9 @@ char *header_line(const struct place *at, size_t *header_size);
 /* Dies unless nx * ny * nz * nfields points make sense. */
 void check_sizes(const struct place *at, const double *sizes, int n);
 
+/* Dies unless the spacing of an axis, in metres, is one that a surface can have. */
+void check_spacing(const struct place *at, int axis, double spacing);
+
 /* Adds a field that must not exist yet; memory is not touched. */
 void record_new_field(struct record *r, const char *name, const char *unit);
 

@@ -103,6 +103,8 @@ void gsf_read(const struct place *at, struct record *r)
 	r->nz = 1;
 	r->dx = real[0] * xy / sizes[0];
 	r->dy = real[1] * xy / sizes[1];
+	check_spacing(at, 0, r->dx);
+	check_spacing(at, 1, r->dy);
 	record_new_field(r, "height", "m");
 	samples_read(at, r, (struct samples){ 1, 0 });
 	for (size_t i = 0; z != 1 && i < (size_t)r->nx * (size_t)r->ny; i++)

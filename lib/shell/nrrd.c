@@ -16,6 +16,8 @@
 
 enum { AXES = 4, HEADER_UNIT = 1024 };
 
+static const long REALISATION_MAX = 1000000000000000; /* exact in a table of doubles */
+
 struct header {
 	int dimension;
 	int nsizes, nspacings, nunits, nkinds;
@@ -167,7 +169,8 @@ static void read_key(const struct place *at, struct header *h, struct record *r,
 		char *end;
 
 		r->realisation = strtol(value, &end, 10);
-		if (end == value || *end || r->realisation < 0)
+		if (end == value || *end || r->realisation < 0 ||
+			r->realisation > REALISATION_MAX)
 			bad(at, key, value);
 	} else {
 		keys_set(&r->keys, key, value);
@@ -237,9 +240,7 @@ static double spacing(const struct place *at, const struct header *h, int axis)
 				"%s: record %ld: unit '%s' of axis %d is not a length",
 				at->name, at->record, h->units[axis], axis);
 	}
-	if (!(s > 0) || !isfinite(s))
-		die(EXIT_RUN, "%s: record %ld: spacing of axis %d is %g, want above 0",
-			at->name, at->record, axis, s);
+	check_spacing(at, axis, s * scale);
 	return s * scale;
 }
 
@@ -299,13 +300,15 @@ void nrrd_read(const struct place *at, struct record *r)
 /* Value of a key: escaped, and without the ": " that ParaView's reader trips over. */
 static void write_key(FILE *f, const char *key, const char *value)
 {
+	char before = '=';
+
 	fprintf(f, "%s:=", key);
-	for (; *value; value++) {
+	for (; *value; before = *value++) {
 		if (*value == '\\')
 			fputs("\\\\", f);
 		else if (*value == '\n')
 			fputs("\\n", f);
-		else if (!(*value == ' ' && value[-1] == ':'))
+		else if (!(*value == ' ' && before == ':'))
 			putc(*value, f);
 	}
 	putc('\n', f);
