@@ -27,6 +27,7 @@ refuse() {
 	fails "$1" 1 "$2" aopf bad
 }
 refuse 'a missing column' "bad: no column 'y'" 't\tx\n0\t1\n'
+refuse 'a column twice' "bad: two columns 'y'" 't\ty\ty\n0\t1\t2\n'
 refuse 'a cell that is no number' "bad: line 3: y: 'two' is not a number" 't\ty\n0\t1\n1\ttwo\n'
 refuse 'a number with a unit' "bad: line 3: y: '2um' is not a number" 't\ty\n0\t1\n1\t2um\n'
 refuse 'too few cells' 'bad: line 3: want 2 cells, got 1' 't\ty\n0\t1\n1\n'

@@ -194,10 +194,16 @@ const char *table_column_name(const struct table_in *t, int column)
 
 int table_find(const struct table_in *t, const char *column)
 {
-	for (int i = 0; i < t->ncolumns; i++)
-		if (strcmp(t->column[i], column) == 0)
-			return i;
-	return -1;
+	int found = -1;
+
+	for (int i = 0; i < t->ncolumns; i++) {
+		if (strcmp(t->column[i], column) != 0)
+			continue;
+		if (found >= 0)
+			die(EXIT_RUN, "%s: two columns '%s'", t->name, column);
+		found = i;
+	}
+	return found;
 }
 
 int table_need(const struct table_in *t, const char *column)
