@@ -21,6 +21,8 @@ for p in $programs; do
 	delaynet) needed='--task score' ;;
 	*) needed= ;;
 	esac
+	fails "$p opens --stats before any work" 1 "^$p: /nonexistent/x: " \
+		"$p" $needed --stats /nonexistent/x no-such-file
 	fails "$p names a missing file" 1 "^$p: .*no-such-file" "$p" $needed no-such-file
 done
 

@@ -396,6 +396,8 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 	}
 	verbose = verbose_flag;
 	check_operands(argc, argv);
+	if (stats_path)
+		stats_open(stats_path);
 	operand = argv + optind;
 	return optind;
 }
@@ -431,6 +433,6 @@ int shell_done(int status)
 	if (ferror(stdout) || fflush(stdout) || fclose(stdout))
 		die(EXIT_RUN,
 			errno ? "standard output:" : "standard output: write error");
-	stats_write(stats_path, prog->name);
+	stats_write(prog->name);
 	return status;
 }

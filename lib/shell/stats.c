@@ -13,6 +13,8 @@ static struct {
 } counters[STATS_MAX];
 static int ncounters;
 static struct timespec begin;
+static FILE *file;
+static const char *file_name;
 
 static double *counter(const char *name)
 {
@@ -53,12 +55,19 @@ static double seconds(struct timeval t)
 	return (double)t.tv_sec + 1e-6 * (double)t.tv_usec;
 }
 
-void stats_write(const char *path, const char *program)
+void stats_open(const char *path)
+{
+	file_name = path;
+	file = fopen(path, "w");
+	if (!file)
+		die(EXIT_RUN, "%s:", path);
+}
+
+void stats_write(const char *program)
 {
 	struct timespec end;
 	struct rusage use;
 	double wall, cpu;
-	FILE *f;
 
 	clock_gettime(CLOCK_MONOTONIC, &end);
 	getrusage(RUSAGE_SELF, &use);
@@ -68,18 +77,15 @@ void stats_write(const char *path, const char *program)
 	for (int i = 0; i < ncounters; i++)
 		note("%s %.10g", counters[i].name, counters[i].value);
 	note("seconds %.3f, cpu %.3f, memory %ld kB", wall, cpu, use.ru_maxrss);
-	if (!path)
+	if (!file)
 		return;
-	f = fopen(path, "w");
-	if (!f)
-		die(EXIT_RUN, "%s:", path);
-	fputs("program\tseconds\tcpu_seconds\tmemory_kb", f);
+	fputs("program\tseconds\tcpu_seconds\tmemory_kb", file);
 	for (int i = 0; i < ncounters; i++)
-		fprintf(f, "\t%s", counters[i].name);
-	fprintf(f, "\n%s\t%.6f\t%.6f\t%ld", program, wall, cpu, use.ru_maxrss);
+		fprintf(file, "\t%s", counters[i].name);
+	fprintf(file, "\n%s\t%.6f\t%.6f\t%ld", program, wall, cpu, use.ru_maxrss);
 	for (int i = 0; i < ncounters; i++)
-		fprintf(f, "\t%.17g", counters[i].value);
-	fputc('\n', f);
-	if (fflush(f) || ferror(f) || fclose(f))
-		die(EXIT_RUN, "%s: cannot write:", path);
+		fprintf(file, "\t%.17g", counters[i].value);
+	fputc('\n', file);
+	if (fflush(file) || ferror(file) || fclose(file))
+		die(EXIT_RUN, "%s: cannot write:", file_name);
 }

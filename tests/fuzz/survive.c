@@ -75,9 +75,13 @@ char *xprintf(const char *format, ...)
 
 void stats_start(void) {}
 
-void stats_write(const char *path, const char *program)
+void stats_open(const char *path)
 {
 	(void)path;
+}
+
+void stats_write(const char *program)
+{
 	(void)program;
 }
 
