@@ -191,4 +191,7 @@ fails "levels that fall" 2 "levels" aopf --levels 0.5,0.1 exp.tsv
 fails "half a range" 2 "order-range" aopf --order-range 4 exp.tsv
 fails "a unit that is not there" 1 "no column 'unit'" aopf --unit unit exp.tsv
 
+awk 'BEGIN { print "t\ty"; for (i = 0; i < 30; i++) print i "\t" (i % 2 ? "" : "-") "1.7e308" }' >enormous.tsv
+ok 'no family of curves holds values that overflow' aopf -y 5 enormous.tsv
+is 'and no crossing is foretold' "$(awk '$1 == 29 { print $NF }' out)" 1
 done_testing

@@ -372,7 +372,8 @@ void damage_draw(
 			life[drawn++] = d->unit * draw_life(&p, &table);
 	}
 	while (drawn < n) {
-		life[drawn] = life[drawn - 1];
+		/* No shape has a weight where the data overflow. */
+		life[drawn] = drawn ? life[drawn - 1] : INFINITY;
 		drawn++;
 	}
 }
