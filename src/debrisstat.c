@@ -70,7 +70,7 @@ static void read_particles(struct ensemble *e, const char *path, char **cmd)
 	cv = table_need(t, "volume");
 	ca = table_need(t, "aspect");
 	for (; more; more = table_next(t)) {
-		struct shed s = { table_whole(t, cr, 0), table_whole(t, cs, 1),
+		struct shed s = { table_whole(t, cr, 0, 1e15), table_whole(t, cs, 1, 1e6),
 			table_positive(t, cd), table_positive(t, cv),
 			table_positive(t, ca) };
 
@@ -87,7 +87,8 @@ static void read_summary(struct ensemble *e)
 	int cs = table_need(t, "step");
 
 	for (; more; more = table_next(t))
-		if (ensemble_took_place(e, table_whole(t, cr, 0), table_whole(t, cs, 1)))
+		if (ensemble_took_place(
+			    e, table_whole(t, cr, 0, 1e15), table_whole(t, cs, 1, 1e6)))
 			no_memory();
 	table_close(t);
 }

@@ -270,14 +270,14 @@ double table_positive(const struct table_in *t, int column)
 	return v;
 }
 
-long table_whole(const struct table_in *t, int column, double least)
+long table_whole(const struct table_in *t, int column, double least, double most)
 {
 	double v = table_number(t, column);
 
-	if (!(v >= least) || v > 1e9 || v != floor(v))
-		die(EXIT_RUN, "%s: line %ld: %s is %g, want a whole number from %g on",
+	if (!(v >= least) || v > most || v != floor(v))
+		die(EXIT_RUN, "%s: line %ld: %s is %g, want a whole number, %g to %g",
 			table_name(t), table_line(t), table_column_name(t, column), v,
-			least);
+			least, most);
 	return (long)v;
 }
 

@@ -32,10 +32,10 @@ long table_line(const struct table_in *t); /* of the present row, from 1 */
 /* Cell as a number; nan, NaN, NA and an empty cell are NAN; anything else that is
  * not a number dies.  A column below 0 gives NAN. */
 double table_number(const struct table_in *t, int column);
-/* The same, but only numbers above 0, or whole numbers from least to 1e9: anything else
+/* The same, but only numbers above 0, or whole numbers from least to most: anything else
  * dies. */
 double table_positive(const struct table_in *t, int column);
-long table_whole(const struct table_in *t, int column, double least);
+long table_whole(const struct table_in *t, int column, double least, double most);
 /* Cell as text, valid until the next row. */
 const char *table_text(const struct table_in *t, int column);
 void table_close(struct table_in *t);
