@@ -114,6 +114,26 @@ static struct table_out *create_table(const struct record *r)
 	return t;
 }
 
+/* The records of one table have the same fields. */
+static void check_fields(char **first, const struct record *r, const struct fields_in *in)
+{
+	char *names = xstrdup("");
+
+	for (int k = 0; k < r->nfields; k++) {
+		char *longer = xprintf("%s%s%s", names, k ? ", " : "", r->name[k]);
+
+		free(names);
+		names = longer;
+	}
+	if (*first && strcmp(*first, names) != 0)
+		die(EXIT_RUN,
+			"%s: record %ld has fields %s, the first one %s: use "
+			"--field or --pick",
+			fields_name(in), fields_count(in), names, *first);
+	free(*first);
+	*first = names;
+}
+
 /* One row per point, at the centre of its cell; layers lie at the depth z = iz dz. */
 static void print_table(struct table_out *t, const struct record *r)
 {
@@ -150,6 +170,7 @@ int main(int argc, char **argv)
 	struct fields_in *in;
 	struct fields_out *out = NULL;
 	struct table_out *table = NULL;
+	char *names = NULL;
 	long count = 0;
 
 	if (raw_size.n && (raw_size.n != 2 || isnan(pixel)))
@@ -186,6 +207,7 @@ int main(int argc, char **argv)
 			print_text(&r);
 			break;
 		case TABLE:
+			check_fields(&names, &r, in);
 			if (!table)
 				table = create_table(&r);
 			print_table(table, &r);
@@ -201,6 +223,7 @@ int main(int argc, char **argv)
 		fields_done(out);
 	if (table)
 		table_done(table);
+	free(names);
 	record_free(&r);
 	fields_close(in);
 	stats_set("records", (double)count);

@@ -410,6 +410,17 @@ static void scale_heights(const struct fields_in *in, struct record *s)
 			fields_name(in), fields_count(in), want);
 }
 
+/* Fourth powers of heights and gradients must not overflow. */
+static void check_heights(const struct fields_in *in, const struct record *s)
+{
+	double limit = 1e60 * fmin(1, fmin(s->dx, s->dy));
+
+	for (size_t i = 0; i < (size_t)s->nx * (size_t)s->ny; i++)
+		if (!(fabs(s->data[0][i]) <= limit))
+			die(EXIT_RUN, "%s: record %ld: height %g m is too large",
+				fields_name(in), fields_count(in), s->data[0][i]);
+}
+
 static void prepare(const char *path)
 {
 	struct raw_layout raw = { (int)raw_size.v[0], (int)raw_size.v[1], pixel.v[0],
@@ -431,6 +442,7 @@ static void prepare(const char *path)
 			scale_heights(in, &s);
 		/* What comes through a pipe has to be asked for. */
 		s.cmd = opt_cmd(r.cmd, r.cmd || strcmp(path, "-") == 0 ? "-" : NULL);
+		check_heights(in, &s);
 		finish(&s, had);
 	}
 	if (fields_count(in) == 0)

@@ -53,6 +53,9 @@ ok 'an empty stream has no records' sh -c 'records -o count </dev/null'
 is 'and that is no error' "$(cat out)" 0
 is 'a record keeps keys, escapes included' \
 	"$({ header 'key:=a \\ b'; ramp; } | records -o nrrd | grep -a '^key')" 'key:=a \\ b'
+is 'and one that begins with a blank' \
+	"$({ header 'key:= b: c' 'empty:='; ramp; } | records -o nrrd | grep -a -e ^key -e ^empty)" \
+	"$(printf 'key:= b:c\nempty:=')"
 ok 'the second record alone' sh -c 'records -n 2 -o nrrd three | records -o count'
 is 'is one record' "$(cat out)" 1
 fails 'picking what is not there' 1 'three: no record 4: there are 3' records -n 4 three
@@ -81,8 +84,11 @@ refuse 'a negative size' 'size -4, want a whole number' 'sizes: -4 3'
 refuse 'a fractional size' 'size 4.5, want a whole number' 'sizes: 4.5 3'
 refuse 'an enormous size' 'bytes of samples are too many' 'sizes: 1000000000 1000000000'
 refuse 'a large size without the samples' 'want 32000000 bytes, got 96' 'sizes: 4000 1000'
-refuse 'a spacing of zero' 'spacing of axis 0 is 0, want above 0' 'spacings: 0 1'
+refuse 'a spacing of zero' 'spacing of axis 0 is 0 m, want 1e-30 to 1e30' 'spacings: 0 1'
 refuse 'a spacing that is nan' 'spacing of axis 1 is nan' 'spacings: 1 nan'
+refuse 'a spacing beyond all surfaces' 'spacing of axis 1 is 1e+300 m' 'spacings: 1 1e300'
+refuse 'a realisation beyond counting' "realisation: '99999999999999999999' is not" \
+	'realisation:=99999999999999999999'
 refuse 'no spacing' "NRRD header without 'spacings'" 'spacings: '
 refuse 'a type we do not read' 'type short: want double or float' 'type: short'
 refuse 'compressed samples' 'encoding gzip: want raw' 'encoding: gzip'
@@ -92,6 +98,11 @@ refuse 'too few sizes' 'want 2 sizes and spacings, got 1 and 2' 'sizes: 4'
 refuse 'five dimensions' 'dimension 5: want 2, 3 or 4' 'dimension: 5'
 refuse 'a unit that is no length' "unit 's' of axis 0 is not a length" 'units: "s" "s"'
 refuse 'more names than fields' 'want the names of 1 fields' 'fields:=height m, pressure Pa'
+{ cat plain.nrrd; header 'fields:=gap m'; ramp; } >gap.nrrd
+fails 'one table of records with different fields' 1 \
+	'gap.nrrd: record 2 has fields gap, the first one height' records -o table gap.nrrd
+{ header ''; ramp | head -c 88; printf '\234\165\000\210\074\344\067\176'; } >huge.nrrd # 1e300
+fails 'heights that overflow' 1 'record 1: height 1e+300 m is too large' roughgen -m huge.nrrd
 fails 'no room left on the device' 1 'standard output: No space left' \
 	sh -c 'records -o nrrd plain.nrrd >/dev/full'
 
