@@ -47,6 +47,7 @@ bpfilter_LIBS = fftw
 duet_PARTS = found instrument methods
 duet_MODULES = num/fft signal/sensor signal/shape signal/joint signal/joint_model signal/joint_step signal/joint_moves signal/align signal/robust signal/tones signal/sections signal/calibrate signal/stft signal/masks signal/count signal/separate signal/campbell signal/cnn signal/network signal/netfile num/philox
 duet_LIBS = fftw cblas
+delaynet_PARTS = learning lessons scores
 delaynet_MODULES = num/philox signal/lesson signal/training signal/network signal/netfile signal/delaydata signal/delayloss signal/cnn signal/cnndata signal/sensor
 delaynet_LIBS = cblas gsl
 aopf_MODULES = num/philox life/draw life/resample life/filter life/grey life/order life/noise life/adaptive life/history life/damage life/fleet life/runin life/sort life/predict life/metrics

@@ -31,13 +31,12 @@ void found_open(struct found *out, const struct signal_format *format, const cha
 		out->sources = signal_create(out->separated, &many);
 }
 
-/* A row of n numbers and perhaps a word. */
+/* A row of n numbers and a verdict. */
 static void put_row(struct table_out *t, const double *row, int n, const char *word)
 {
 	for (int i = 0; i < n; i++)
 		table_put(t, row[i]);
-	if (word)
-		table_put_text(t, word);
+	table_put_text(t, word);
 	table_end_row(t);
 }
 
@@ -131,7 +130,7 @@ static void put_histogram(struct found *out, const struct separate_section *s)
 		const double row[4] = { (double)s->number, a, delta / (double)out->rate,
 			masks_histogram(s->masks)[i] };
 
-		put_row(out->weights, row, 4, NULL);
+		table_put_row(out->weights, row, 4);
 	}
 }
 
