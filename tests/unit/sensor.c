@@ -91,6 +91,19 @@ static void test_equation(enum pulse_shape shape)
 		"diameter from voltage");
 }
 
+static void test_diameter_error(void)
+{
+	double d = sensor_diameter(1e11, 12, 0.7), ra = 3e-6, rt = 5e-6;
+
+	/* Errors that always come together move d as the formula moves it. */
+	near(sensor_diameter_error(d, ra, rt, 1),
+		sensor_diameter(1e11, 12 / (1 + rt), 0.7 * (1 + ra)) - d, 1e-5 * d * rt,
+		"error of the diameter where voltage and time err together");
+	near(sensor_diameter_error(d, ra, rt, -1),
+		sensor_diameter(1e11, 12 / (1 + rt), 0.7 * (1 - ra)) - d, 1e-5 * d * rt,
+		"and where they err against each other");
+}
+
 static void test_pipe(enum pipe_profile profile, double top)
 {
 	struct pipe pipe = { 0.01, 1e-3, profile, 7 };
@@ -136,6 +149,7 @@ int main(void)
 		test_sample(shape, 5.4, 0.01);
 		test_equation(shape);
 	}
+	test_diameter_error();
 	near(sensor_kappa_of(1, 100e-6, 12.5), 8e10, 1e-4, "calibration by one particle");
 	test_pipe(PIPE_PLUG, 1);
 	test_pipe(PIPE_LAMINAR, 2);

@@ -161,6 +161,10 @@ static void test_small(void)
 		x[i] = 2 * normal((uint64_t)i) + 50 * sin(0.01 * i);
 	/* N normal numbers: the median scatters by 1.2 / sqrt N. */
 	near(robust_noise(x, N, 4, work), 2, 0.15, "noise under a slow signal");
+	for (int i = 0; i < N; i++)
+		x[i] = i % 2 ? 3 + 0.1 * normal((uint64_t)i) : 1e3;
+	near(count_level(x + 1, N / 2, 2, work), 0.5, 0.05,
+		"level to count from: five deviations of one channel, whatever its mean");
 	for (int i = 0; i < 7; i++)
 		work[i] = "4361725"[i];
 	near(robust_median(work, 7), '4', 0, "median");
