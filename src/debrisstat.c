@@ -142,7 +142,7 @@ static void print_fits(const struct ensemble *e, const char *cmd)
 	static const char *const counts[] = { "realisations", "steps", "particles" };
 	const struct ensemble_par *par = ensemble_par(e);
 	struct table_out *t = table_create(NULL, cmd, NULL, "quantity value low high");
-	struct estimate out[QUANTITIES];
+	struct estimate out[ESTIMATES];
 	size_t n;
 
 	free(diameters_of(e, &n));
@@ -155,7 +155,7 @@ static void print_fits(const struct ensemble *e, const char *cmd)
 		(double)(par->last - par->first + 1), (double)n };
 	for (int k = 0; k < 3; k++)
 		put_quantity(t, counts[k], (struct estimate){ count[k], NAN, NAN });
-	for (int q = 0; q < QUANTITIES; q++)
+	for (int q = 0; q < ESTIMATES; q++)
 		put_quantity(t, names[q], out[q]);
 	table_done(t);
 }

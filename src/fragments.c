@@ -20,57 +20,65 @@ static double part_of(
 	return value;
 }
 
+struct wear {
+	struct table_in *table;
+	const char *file;                        /* as given */
+	int realisation, step, volume, diameter; /* columns */
+	int class;
+};
+
+static void read_row(struct partition *p, const struct wear *w, long row)
+{
+	struct table_in *t = w->table;
+	double r = w->realisation < 0 ? (double)row : table_number(t, w->realisation);
+	double k = w->step < 0 ? 1 : table_number(t, w->step);
+	double v = table_number(t, w->volume);
+	enum partition_status status;
+
+	if (!(r >= 0 && r <= 4294967295. && r == floor(r)))
+		die(EXIT_RUN, "%s: line %ld: realisation must be a whole number", w->file,
+			table_line(t));
+	if (!(k >= 1 && k <= 1e6 && k == floor(k)))
+		die(EXIT_RUN, "%s: line %ld: step must be a whole number from 1 to 1e6",
+			w->file, table_line(t));
+	if (!(v >= 0 && v <= 1e3))
+		die(EXIT_RUN, "%s: line %ld: volume must lie within 0 and 1000 m3",
+			w->file, table_line(t));
+	status = partition_fragment(p, w->class, (long)r, (long)k, v, 1,
+		table_number(t, w->diameter) >= pump.critical_size);
+	if (status == PARTITION_MEMORY)
+		die(EXIT_RUN, "out of memory");
+	if (status == PARTITION_TWICE)
+		die(EXIT_RUN, "%s: line %ld: realisation %g has step %g twice", w->file,
+			table_line(t), r, k);
+	stats_add("fragments_read", 1);
+}
+
 /* Reads one --wear FILE[:PRESSURE[:AREA]] into a class of its own. */
 static void read_wear(struct partition *p, const char *option, char **cmd)
 {
 	const char *colon = strchr(option, ':'), *rest = colon ? colon + 1 : NULL;
 	char *file = xstrdup(option);
-	double pressure = NAN, share = -1;
-	struct table_in *t;
-	int class, realisation, step, volume, diameter, sparse;
-	enum partition_status status;
+	double pressure = NAN, area = -1;
+	struct wear w = { .file = file };
 
-	if (rest)
-		file[colon - option] = '\0';
+	file[strcspn(file, ":")] = '\0';
 	if (rest)
 		pressure = part_of(option, &rest, UNIT_PRESSURE, "the pressure");
 	if (rest)
-		share = part_of(option, &rest, UNIT_AREA, "the area");
-	t = table_open(file);
-	realisation = table_find(t, "realisation");
-	step = table_find(t, "step");
-	volume = table_need(t, "volume");
-	sparse = table_find(t, "particle") >= 0;
-	diameter = isnan(pump.critical_size) ? -1 : table_need(t, "diameter");
-	class = partition_class(p, sparse, pressure, share);
-	for (long row = 0; table_next(t); row++) {
-		double r = realisation < 0 ? (double)row : table_number(t, realisation);
-		double k = step < 0 ? 1 : table_number(t, step),
-		       v = table_number(t, volume);
-
-		if (!(r >= 0 && r <= 4294967295. && r == floor(r)))
-			die(EXIT_RUN, "%s: line %ld: realisation must be a whole number",
-				file, table_line(t));
-		if (!(k >= 1 && k <= 1e6 && k == floor(k)))
-			die(EXIT_RUN,
-				"%s: line %ld: step must be a whole number from 1 to 1e6",
-				file, table_line(t));
-		if (!(v >= 0 && v <= 1e3))
-			die(EXIT_RUN,
-				"%s: line %ld: volume must lie within 0 and 1000 m3",
-				file, table_line(t));
-		status = partition_fragment(p, class, (long)r, (long)k, v, 1,
-			table_number(t, diameter) >= pump.critical_size);
-		if (status == PARTITION_MEMORY)
-			die(EXIT_RUN, "out of memory");
-		if (status == PARTITION_TWICE)
-			die(EXIT_RUN, "%s: line %ld: realisation %g has step %g twice",
-				file, table_line(t), r, k);
-		stats_add("fragments_read", 1);
-	}
-	if (table_key(t, "cmd"))
-		*cmd = xstrdup(table_key(t, "cmd"));
-	table_close(t);
+		area = part_of(option, &rest, UNIT_AREA, "the area");
+	w.table = table_open(file);
+	w.realisation = table_find(w.table, "realisation");
+	w.step = table_find(w.table, "step");
+	w.volume = table_need(w.table, "volume");
+	w.diameter = isnan(pump.critical_size) ? -1 : table_need(w.table, "diameter");
+	w.class =
+		partition_class(p, table_find(w.table, "particle") >= 0, pressure, area);
+	for (long row = 0; table_next(w.table); row++)
+		read_row(p, &w, row);
+	if (table_key(w.table, "cmd"))
+		*cmd = xstrdup(table_key(w.table, "cmd"));
+	table_close(w.table);
 	free(file);
 }
 

@@ -13,7 +13,7 @@ int estimate_weibull(
 }
 
 static int estimate_diameters(
-	const struct ensemble *e, const size_t *pick, struct estimate out[QUANTITIES])
+	const struct ensemble *e, const size_t *pick, struct estimate out[ESTIMATES])
 {
 	const struct ensemble_par *par = ensemble_par(e);
 	struct weibull w;
@@ -24,20 +24,21 @@ static int estimate_diameters(
 	if (!x)
 		return -1;
 	if (n > 0)
-		out[MEAN_DIAMETER] = sample_mean(x, n, par->confidence, &deviation);
+		out[ESTIMATE_MEAN_DIAMETER] =
+			sample_mean(x, n, par->confidence, &deviation);
 	if (estimate_weibull(e, x, n, &w) == 0) {
-		out[SHAPE] = w.shape;
-		out[SCALE] = w.scale;
-		out[WEIBULL_MEAN].value = w.mean;
+		out[ESTIMATE_SHAPE] = w.shape;
+		out[ESTIMATE_SCALE] = w.scale;
+		out[ESTIMATE_WEIBULL_MEAN].value = w.mean;
 		if (!pick)
-			out[KS].value = weibull_distance(&w, x, n);
+			out[ESTIMATE_KS].value = weibull_distance(&w, x, n);
 	}
 	free(x);
 	return 0;
 }
 
 static int estimate_growth(
-	const struct ensemble *e, const size_t *pick, struct estimate out[QUANTITIES])
+	const struct ensemble *e, const size_t *pick, struct estimate out[ESTIMATES])
 {
 	const struct ensemble_par *par = ensemble_par(e);
 	size_t n = par->last < par->first ? 0 : (size_t)(par->last - par->first + 1);
@@ -57,16 +58,16 @@ static int estimate_growth(
 		}
 	}
 	if (n > 0 && power_fit(x, y, n, par->confidence, &p) == 0) {
-		out[FACTOR] = p.factor;
-		out[EXPONENT] = p.exponent;
-		out[OFFSET] = p.offset;
+		out[ESTIMATE_FACTOR] = p.factor;
+		out[ESTIMATE_EXPONENT] = p.exponent;
+		out[ESTIMATE_OFFSET] = p.offset;
 	}
 	free(x);
 	return 0;
 }
 
 static int estimate_volume(
-	const struct ensemble *e, const size_t *pick, struct estimate out[QUANTITIES])
+	const struct ensemble *e, const size_t *pick, struct estimate out[ESTIMATES])
 {
 	const struct ensemble_par *par = ensemble_par(e);
 	double *v = calloc(par->realisations + 1, sizeof *v), deviation;
@@ -87,15 +88,15 @@ static int estimate_volume(
 		if (steps > 0)
 			v[n++] = sum / steps;
 	}
-	out[VOLUME_STEP] = sample_mean(v, n, par->confidence, &deviation);
+	out[ESTIMATE_VOLUME_STEP] = sample_mean(v, n, par->confidence, &deviation);
 	free(v);
 	return 0;
 }
 
 int estimate_all(
-	const struct ensemble *e, const size_t *pick, struct estimate out[QUANTITIES])
+	const struct ensemble *e, const size_t *pick, struct estimate out[ESTIMATES])
 {
-	for (int q = 0; q < QUANTITIES; q++)
+	for (int q = 0; q < ESTIMATES; q++)
 		out[q] = (struct estimate){ NAN, NAN, NAN };
 	if (estimate_diameters(e, pick, out) || estimate_growth(e, pick, out) ||
 		estimate_volume(e, pick, out))
@@ -116,25 +117,25 @@ static void put_interval(double *x, long draws, double confidence, struct estima
 }
 
 int estimate_bootstrap(const struct ensemble *e, uint64_t seed, long draws,
-	struct estimate out[QUANTITIES])
+	struct estimate out[ESTIMATES])
 {
 	const struct ensemble_par *par = ensemble_par(e);
-	double *draw = calloc((size_t)draws * QUANTITIES, sizeof *draw);
+	double *draw = calloc((size_t)draws * ESTIMATES, sizeof *draw);
 	size_t *pick = calloc(par->realisations + 1, sizeof *pick);
 	int status = draw && pick ? 0 : -1;
 
 	for (long b = 0; status == 0 && b < draws; b++) {
-		struct estimate one[QUANTITIES];
+		struct estimate one[ESTIMATES];
 
 		for (size_t i = 0; i < par->realisations; i++)
 			pick[i] = (size_t)(philox_uniform(
 						   seed, (uint32_t)b, RNG_BOOTSTRAP, i) *
 					   (double)par->realisations);
 		status = estimate_all(e, pick, one);
-		for (int q = 0; status == 0 && q < QUANTITIES; q++)
+		for (int q = 0; status == 0 && q < ESTIMATES; q++)
 			draw[q * draws + b] = one[q].value;
 	}
-	for (int q = 0; status == 0 && q < QUANTITIES; q++)
+	for (int q = 0; status == 0 && q < ESTIMATES; q++)
 		put_interval(draw + q * draws, draws, par->confidence, &out[q]);
 	free(draw);
 	free(pick);

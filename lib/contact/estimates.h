@@ -1,8 +1,8 @@
 /* estimates.h - what an ensemble of wear particles tells: fits, their intervals, steps
  *
- *	struct estimate out[QUANTITIES];
+ *	struct estimate out[ESTIMATES];
  *	if (estimate_all(e, NULL, out) == 0)
- *		printf("%g\n", out[SHAPE].value);
+ *		printf("%g\n", out[ESTIMATE_SHAPE].value);
  *
  * Functions return 0, or -1 when out of memory.  nan: there is no such value.
  */
@@ -13,28 +13,28 @@
 #include "contact/statistics.h"
 #include <stdint.h>
 
-enum quantity {
-	SHAPE, /* of the Weibull distribution of diameters (2-17) */
-	SCALE,
-	WEIBULL_MEAN,
-	KS, /* Kolmogorov-Smirnov distance of the fit */
-	MEAN_DIAMETER,
-	FACTOR, /* of the power law of particles over steps (2-16) */
-	EXPONENT,
-	OFFSET,
-	VOLUME_STEP, /* mean over realisations of the mean over their steps */
-	QUANTITIES
+enum estimate_quantity {
+	ESTIMATE_SHAPE, /* of the Weibull distribution of diameters (2-17) */
+	ESTIMATE_SCALE,
+	ESTIMATE_WEIBULL_MEAN,
+	ESTIMATE_KS, /* Kolmogorov-Smirnov distance of the fit */
+	ESTIMATE_MEAN_DIAMETER,
+	ESTIMATE_FACTOR, /* of the power law of particles over steps (2-16) */
+	ESTIMATE_EXPONENT,
+	ESTIMATE_OFFSET,
+	ESTIMATE_VOLUME_STEP, /* mean over realisations of the mean over their steps */
+	ESTIMATES
 };
 
 /* pick: the realisations, as many as there are, as a bootstrap has drawn them; NULL: each
  * one.  The distance, which sorts and has no interval, only of the latter. */
 int estimate_all(
-	const struct ensemble *e, const size_t *pick, struct estimate out[QUANTITIES]);
+	const struct ensemble *e, const size_t *pick, struct estimate out[ESTIMATES]);
 
 /* Puts intervals from draws of whole realisations with replacement (Efron's bootstrap)
  * into out: particles of one surface hang together. */
 int estimate_bootstrap(const struct ensemble *e, uint64_t seed, long draws,
-	struct estimate out[QUANTITIES]);
+	struct estimate out[ESTIMATES]);
 
 /* The Weibull distribution of n diameters, cut off as the ensemble has it; -1 where there
  * is none (weibull_fit()). */
