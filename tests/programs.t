@@ -36,6 +36,9 @@ is "reserved letters mean the same everywhere" \
 	"$(awk 'BEGIN { split("s seed c count f first j threads v verbose h help V version S stats", a)
 		for (i = 1; i < 16; i += 2) want[a[i]] = a[i + 1] }
 		$2 in want && want[$2] != $1 { print $3, $2, $1 }' letters)" ""
+is "no default is shown that could not be given" "$(grep -hE 'default (-1|-?inf|-?nan)\b' ./*.help)" ""
+is "the members of a default are parted as on the command line" \
+	"$(grep -o 'default 70:130 Hz' bpfilter.help)" 'default 70:130 Hz'
 is "every option has a phrase of help" \
 	"$(cat ./*.help | awk '/^  -/ && NF < 3 { getline more; if (more !~ /^   /) print }')" ""
 done_testing

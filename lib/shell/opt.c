@@ -74,6 +74,16 @@ static void append_word(char **text, const char *word)
 	free(q);
 }
 
+/* What parts the members of a list; NUL where there is but one. */
+static char separator_of(const struct opt *o)
+{
+	for (const char *p = ":x,"; *p; p++)
+		if (strchr(o->arg, *p))
+			return *p;
+	return '\0';
+}
+
+/* A value that could not be given says that there is none, and is not shown. */
 static void print_default(const struct opt *o)
 {
 	const char *unit = unit_name(o->unit);
@@ -81,10 +91,11 @@ static void print_default(const struct opt *o)
 
 	switch (o->kind) {
 	case OPT_INT:
-		printf(" (default %ld)", *(long *)o->var);
+		if (*(long *)o->var >= o->min && *(long *)o->var <= o->max)
+			printf(" (default %ld)", *(long *)o->var);
 		break;
 	case OPT_NUM:
-		if (!isnan(*(double *)o->var))
+		if (isfinite(*(double *)o->var))
 			printf(" (default %.6g%s%s)", *(double *)o->var, blank,
 				*blank ? unit : "");
 		break;
@@ -114,9 +125,11 @@ static void print_default(const struct opt *o)
 	}
 	case OPT_LIST: {
 		const struct opt_list *l = o->var;
+		const char separator[2] = { separator_of(o) };
 
 		for (int i = 0; i < l->n; i++)
-			printf("%s%.6g", i ? " " : " (default ", l->v[i]);
+			printf("%s%.*s%.6g", i ? "" : " (default ", i > 0, separator,
+				l->v[i]);
 		if (l->n)
 			printf("%s%s)", blank, *blank ? unit : "");
 		break;
@@ -175,12 +188,8 @@ static double parse_number(const struct opt *o, const char *text)
 static void parse_list(const struct opt *o, const char *text)
 {
 	struct opt_list *l = o->var;
-	const char *separators = ":x,", *s = text, *wrong;
-	char separator[2] = { 0 };
+	const char separator[2] = { separator_of(o) }, *s = text, *wrong;
 
-	for (const char *p = separators; *p && !*separator; p++)
-		if (strchr(o->arg, *p))
-			*separator = *p;
 	l->n = 0;
 	for (;;) {
 		if (l->n == OPT_LIST_MAX)
