@@ -40,6 +40,9 @@ for page in "$top"/man/*.[1-9]; do
 	else
 		skip "$name: mandoc finds no fault" "no mandoc"
 	fi
+	# The reader of the page must see what the test runs: mdoc eats a bare backslash.
+	is "$name: the examples are printed as they run" \
+		"$(awk '/^\.Sh / { on = $2 == "EXAMPLES" } on' "$page" | grep '\\[^e&(-]')" ""
 	examples "$page" >examples.sh
 	[ -s examples.sh ] || continue
 	dir=$work/${name%.*}
