@@ -158,7 +158,7 @@ fuzz:
 demo:
 	@scripts/deps
 	@$(MAKE) --no-print-directory all
-	@$(MAKE) --no-print-directory -C examples/demo BIN=$(abspath $(BIN)) SURFACE="$(SURFACE)"
+	@$(MAKE) --no-print-directory -C examples/demo BIN=$(abspath $(BIN)) SURFACE="$(abspath $(SURFACE))"
 
 $(B)/wearpipe.bash: $(BUILT:%=$(BIN)/%) scripts/completion
 	@scripts/completion $(BUILT:%=$(BIN)/%) >$@
