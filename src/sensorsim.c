@@ -290,9 +290,9 @@ static int next_row(struct source *s, struct passage *p)
 		return 0;
 	p->diameter = read_diameter(s);
 	p->time[0] = table_number(t, s->c_time);
-	if (!isfinite(p->time[0]) || (s->count && p->time[0] < before))
+	if (!(fabs(p->time[0]) <= 1e9) || (s->count && p->time[0] < before))
 		die(EXIT_RUN,
-			"%s: line %ld: time %g s, want times in order (before: %g s)",
+			"%s: line %ld: time %g s, want times in order, up to 1e9 s (before: %g s)",
 			table_name(t), table_line(t), p->time[0], before);
 	passage_carry(&s->stream, s->count, p);
 	if (s->c_velocity < 0)

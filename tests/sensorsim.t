@@ -138,4 +138,7 @@ fails "a window too short" 2 'no room' sensorsim -u 1um:2um -N 300 -i 10ms -d 1
 fails "a line above half the rate" 2 '4000 Hz' sensorsim -r 5000 -P 0.1,0.1 -u 1um:1um -N 1 -d 1
 fails "a full disk" 1 'o space' sh -c 'sensorsim -u 1um:1um -N 1 -d 1 >/dev/full'
 
+printf 'time\tdiameter\n1e300\t1e-4\n' >never.tsv
+fails "a particle after the end of days" 1 'line 2: time 1e+300 s, want times in order, up to 1e9 s' \
+	sensorsim never.tsv
 done_testing
