@@ -105,6 +105,6 @@ fails "more realisations than said" 1 "has 2" debrisstat -n 1 growth.tsv
 awk '/^[#r]/ || $1 == 0' growth.tsv >s1.tsv
 fails "a bootstrap of one realisation" 1 "two realisations" debrisstat -B 10 s1.tsv
 printf 'realisation\tstep\tvolume\tdiameter\taspect\n4000000000\t2000000\t1\t1\t1\n' >late.tsv
-fails 'a step beyond those of debrisgen' 1 'line 2: step is 2e+06, want a whole number, 1 to 1e+06' \
+fails 'a step beyond those of debrisgen' 1 'line 2: step is 2000000, want a whole number, 1 to 1e+06' \
 	debrisstat late.tsv
 done_testing

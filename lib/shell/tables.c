@@ -275,7 +275,7 @@ long table_whole(const struct table_in *t, int column, double least, double most
 	double v = table_number(t, column);
 
 	if (!(v >= least) || v > most || v != floor(v))
-		die(EXIT_RUN, "%s: line %ld: %s is %g, want a whole number, %g to %g",
+		die(EXIT_RUN, "%s: line %ld: %s is %.17g, want a whole number, %g to %g",
 			table_name(t), table_line(t), table_column_name(t, column), v,
 			least, most);
 	return (long)v;
