@@ -100,4 +100,12 @@ if command -v octave >/dev/null; then
 else
 	skip 'Octave reads ours' 'no octave'
 fi
+if command -v gnuplot >/dev/null; then
+	unfiltered pcm16.au 4000 >out.au
+	skip=$(od -An -tu1 -j4 -N4 out.au | awk '{ print ((($1 * 256) + $2) * 256 + $3) * 256 + $4 }')
+	is 'gnuplot reads ours' "$(gnuplot -e "set table; plot 'out.au' binary skip=$skip format='%double%double' endian=big using 0:1 with lines" |
+		awk '/^ *[0-9]/ { printf "%g %g ", $1, $2 }')" '0 0.5 1 0.25 '
+else
+	skip 'gnuplot reads ours' 'no gnuplot'
+fi
 done_testing
