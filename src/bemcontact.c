@@ -126,6 +126,10 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 	     "iterations",
 		name, number, contact_result(c)->area, contact_result(c)->approach,
 		contact_result(c)->certificate, contact_result(c)->iterations);
+	if (status == CONTACT_NOCONV)
+		warn("%s: record %ld: not converged: certificate %.2g after %ld iterations",
+			name, number, contact_result(c)->certificate,
+			contact_result(c)->iterations);
 	return status == CONTACT_OK;
 }
 
