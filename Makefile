@@ -126,10 +126,10 @@ LONG_TESTS = tests/long/*.t $(LONG_UNITS)
 check: all $(UNITS)
 	@BIN=$(abspath $(BIN)) tests/run $(TESTS)
 
-check-long: all $(LONG_UNITS)
+check-long: all $(LONG_UNITS) $(BENCH_BINS)
 	@BIN=$(abspath $(BIN)) tests/run $(LONG_TESTS)
 
-check-all: all $(UNITS) $(LONG_UNITS)
+check-all: all $(UNITS) $(LONG_UNITS) $(BENCH_BINS)
 	@BIN=$(abspath $(BIN)) tests/run $(TESTS) $(LONG_TESTS)
 
 # make bench, or one domain: make bench-contact

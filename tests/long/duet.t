@@ -65,7 +65,8 @@ sensorsim --uniform 80um:120um --number $((HOURS * 30)) --duration $((HOURS * 36
 	duet --stats stats.tsv >found.tsv
 "$top/scripts/score" truth.tsv found.tsv >score.tsv
 is "$HOURS hours: all particles" "$(value matched)" $((HOURS * 30))
-is "$HOURS hours: no other" "$(value false)" 0
+# At 1e-9 a sample 0.9 false ones are due in a day; more than 5 with probability 3e-4.
+check "$HOURS hours: no more others than the stated rate gives" "$(value false)" '<=' 5
 check "$HOURS hours: arrivals, s" "$(value time1_rms)" '<=' 5e-6
 check "$HOURS hours: memory, kB" "$(awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++)
 	if ($i ~ /memory/) k = i; next } { print $k }' stats.tsv)" '<=' 20000
