@@ -14,20 +14,7 @@
 # peer      order    the same filter and record in another program: sox, scipy (lfilter,
 #                    oaconvolve), largest difference to bpfilter over the rms
 # quiet, sparse, noisy, dense        sensorsim: seconds for 2e6 samples; no error
-set -eu
-top=$(cd "$(dirname "$0")/../.." && pwd)
-PATH=$top/bin:$PATH
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-export LC_ALL=C
-
-# column NAME FILE
-column() {
-	awk -F '\t' -v c="$1" '/^#/ { next }
-	!seen { for (i = 1; i <= NF; i++) if ($i == c) k = i; seen = 1; next }
-	k { print $k }' "$2"
-}
+. "$(dirname "$0")/setup"
 
 # median COMMAND...: processor seconds of five runs; the command writes "stats"
 median() {

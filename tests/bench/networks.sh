@@ -11,20 +11,7 @@
 #
 # Seconds are processor time: of the training (delays), of the work per sample or section.
 # OpenBLAS, where it was there at build time, makes training some five times faster.
-set -eu
-top=$(cd "$(dirname "$0")/../.." && pwd)
-PATH=$top/bin:$PATH
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-export LC_ALL=C
-
-# column NAME FILE
-column() {
-	awk -F '\t' -v c="$1" '/^#/ { next }
-	!seen { for (i = 1; i <= NF; i++) if ($i == c) k = i; seen = 1; next }
-	k { print $k }' "$2"
-}
+. "$(dirname "$0")/setup"
 
 # structure NAME EPOCHS OPTION...: train, score, print a row
 structure() {
