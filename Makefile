@@ -29,6 +29,7 @@ BIN = bin
 # modules of lib/ and libraries.
 PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records
 
+roughgen_PARTS = generated measured roughness
 roughgen_MODULES = num/philox num/fft num/pool contact/heights contact/rough contact/spectrum contact/surface
 roughgen_LIBS = fftw
 bemcontact_PARTS = press

@@ -168,6 +168,7 @@ fails "Sq and Sa" 2 'exclude' roughgen -q 1um -a 1um
 fails "roll-off without Hurst" 2 'need --hurst' roughgen -R 1um
 fails "level without file" 2 '--level: is for a measured' roughgen -z
 fails "points with file" 2 '--points: is for generated' roughgen -n 4 s
+fails "a spectrum with file" 2 '--corr: is for generated' roughgen -l 1um s
 fails "a crop outside" 1 'record 1: --crop 30:0:11:5 is not within 40 x 30' \
 	roughgen -w 30:0:11:5 s
 fails "raw without pixel" 2 'go together' roughgen -x 3x3 s

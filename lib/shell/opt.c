@@ -416,6 +416,18 @@ int opt_given(int letter)
 	return given[letter & 127];
 }
 
+const char *opt_any_given(const struct opt *rows)
+{
+	const char *word = NULL;
+
+	for (const struct opt *o = rows; o->word && !word; o++)
+		if (o->kind == OPT_ROWS)
+			word = opt_any_given(o->var);
+		else if (opt_given(o->letter))
+			word = o->word;
+	return word;
+}
+
 char *opt_cmd(const char *upstream, const char *extra)
 {
 	char *cmd = NULL;

@@ -90,6 +90,8 @@ int opt_parse(const struct prog *prog, int argc, char **argv);
 
 /* 1 if the option with this letter was on the command line. */
 int opt_given(int letter);
+/* The word of the first of these rows that was, or NULL. */
+const char *opt_any_given(const struct opt *rows);
 
 /* The recorded command line, fresh memory: upstream, " | ", program, the options
  * given in long form and shell-quoted, then extra (may be NULL).  The operands are

@@ -1,0 +1,28 @@
+/* generated.h - rough surfaces drawn from a spectrum: options of roughgen
+ *
+ *	struct generated *g = generated_open(threads);
+ *	while (generated_next(g, &r))
+ *		...
+ *	generated_close(g);
+ */
+#ifndef GENERATED_H
+#define GENERATED_H
+
+#include "shell/fields.h"
+#include "shell/opt.h"
+
+/* For OPT_TABLE; what no measured surface goes with. */
+extern struct opt generated_grid_rows[], generated_rows[];
+
+/* Dies where options contradict one another. */
+void generated_check(void);
+
+struct generated;
+
+/* The ensemble that was asked for; dies where there is none such. */
+struct generated *generated_open(int threads);
+/* The next realisation; 0 after the last. */
+int generated_next(struct generated *g, struct record *r);
+void generated_close(struct generated *g);
+
+#endif

@@ -1,0 +1,28 @@
+/* measured.h - measured surfaces made ready for use: options of roughgen
+ *
+ *	struct measured *m = measured_open(path);
+ *	while (measured_next(m, &r, &crown))
+ *		...
+ *	measured_close(m);
+ */
+#ifndef MEASURED_H
+#define MEASURED_H
+
+#include "shell/fields.h"
+#include "shell/opt.h"
+
+extern struct opt measured_rows[]; /* for OPT_TABLE; what needs a file */
+
+/* Dies where options contradict one another. */
+void measured_check(void);
+
+struct measured;
+
+struct measured *measured_open(const char *path);
+/* The heights of the next record, cropped, filled, levelled, resampled and scaled as
+ * the options want.  A crown that it had is taken off and its drop told.  0 at the
+ * end; dies where there was no record at all. */
+int measured_next(struct measured *m, struct record *r, double *crown);
+void measured_close(struct measured *m);
+
+#endif
