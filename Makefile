@@ -29,10 +29,10 @@ BIN = bin
 # modules of lib/ and libraries.
 PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records
 
-roughgen_PARTS = generated measured roughness
+roughgen_PARTS = generated measured raw roughness
 roughgen_MODULES = num/philox num/fft num/pool contact/heights contact/rough contact/spectrum contact/surface
 roughgen_LIBS = fftw
-bemcontact_PARTS = press
+bemcontact_PARTS = press raw
 bemcontact_MODULES = contact/kernel contact/solver contact/bccg contact/grids contact/mlms contact/pk num/convolve num/fft num/pool num/sweep
 bemcontact_LIBS = fftw
 debrisgen_PARTS = press
@@ -56,6 +56,7 @@ aopf_LIBS =
 rwl_PARTS = fragments lifetable pump state
 rwl_MODULES = num/philox num/rng life/forecast life/grey life/leakage life/metrics life/noise life/sort life/observed life/pair life/partition life/paths life/rate life/remaining life/slope
 rwl_LIBS = gsl
+records_PARTS = raw
 records_MODULES =
 records_LIBS =
 

@@ -1,6 +1,7 @@
 /* bemcontact - pressure between rough elastic bodies pressed together */
 #include "contact/solver.h"
 #include "press.h"
+#include "raw.h"
 #include "shell/fields.h"
 #include "shell/msg.h"
 #include "shell/opt.h"
@@ -15,17 +16,11 @@ static const char *const field_names[] = { "height", "pressure", "displacement",
 	NULL };
 
 static int fields = 1 << HEIGHT | 1 << PRESSURE;
-static struct opt_list raw_size;
-static double pixel = NAN;
 
 static const struct opt opts[] = { OPT_TABLE(press_rows),
 	{ 'o', "fields", OPT_WORDS, UNIT_NONE, &fields, 0, 0, "NAME,...",
 		"what to write of height, pressure, displacement, gap", field_names, 0 },
-	{ 'x', "raw", OPT_LIST, UNIT_COUNT, &raw_size, 1, 1e9, "NXxNY",
-		"read headerless little-endian float64 heights", NULL, 0 },
-	{ 'X', "pixel", OPT_NUM, UNIT_LENGTH, &pixel, 1e-15, 1e12, "D",
-		"spacing of --raw", NULL, 0 },
-	OPT_END };
+	OPT_TABLE(raw_rows), OPT_END };
 
 static const struct prog prog = { "bemcontact",
 	"Press a rough surface against a flat: pressure, contact and gap of elastic "
@@ -39,8 +34,6 @@ static void check_options(void)
 		die(EXIT_USAGE, "want one of --load, --pressure and --approach");
 	if (isnan(press.estar))
 		die(EXIT_USAGE, "want either --estar or --young and --poisson");
-	if (raw_size.n && (raw_size.n != 2 || isnan(pixel)))
-		die(EXIT_USAGE, "--raw wants NXxNY and --pixel");
 }
 
 /* The solver for a record; the last one is kept while grid and material stay. */
@@ -150,20 +143,16 @@ static void drop_fields(struct record *r)
 int main(int argc, char **argv)
 {
 	int first = opt_parse(&prog, argc, argv), status = EXIT_SUCCESS;
-	struct raw_layout raw = { 0 };
 	struct record r = { 0 };
 	struct fields_in *in;
 	struct fields_out *out;
 	struct pool *pool;
 
 	check_options();
-	if (raw_size.n)
-		raw = (struct raw_layout){ (int)raw_size.v[0], (int)raw_size.v[1], pixel,
-			pixel };
 	pool = pool_new((int)press.threads);
 	if (!pool)
 		die(EXIT_RUN, "cannot start %ld threads:", press.threads);
-	in = fields_open(argv[first], raw_size.n ? &raw : NULL);
+	in = fields_open(argv[first], raw_given());
 	out = fields_create(NULL);
 	while (fields_read(in, &r)) {
 		char *cmd = opt_cmd(r.cmd, NULL);

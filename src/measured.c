@@ -1,5 +1,6 @@
 #include "measured.h"
 #include "contact/surface.h"
+#include "raw.h"
 #include "roughness.h"
 #include "shell/msg.h"
 #include "shell/stats.h"
@@ -10,14 +11,10 @@
 enum { POINTS_MAX = 65536 };
 enum { SEED = 1 }; /* of a roughness drawn: --seed is for generated surfaces */
 
-static struct opt_list crop, resample, raw_size, pixel;
+static struct opt_list crop, resample;
 static int level, fill;
 
-struct opt measured_rows[] = {
-	{ 'x', "raw", OPT_LIST, UNIT_COUNT, &raw_size, 1, POINTS_MAX, "NXxNY",
-		"file is headerless little-endian float64", NULL, 0 },
-	{ 'X', "pixel", OPT_LIST, UNIT_LENGTH, &pixel, 1e-15, 1e6, "D[xD]",
-		"spacing of --raw", NULL, 0 },
+struct opt measured_rows[] = { OPT_TABLE(raw_rows),
 	{ 'w', "crop", OPT_LIST, UNIT_COUNT, &crop, 0, POINTS_MAX, "X:Y:NX:NY",
 		"cut NX by NY samples of file from X, Y on", NULL, 0 },
 	{ 'i', "fill", OPT_FLAG, UNIT_NONE, &fill, 0, 0, NULL,
@@ -26,15 +23,10 @@ struct opt measured_rows[] = {
 		"subtract the least-squares plane of file", NULL, 0 },
 	{ 'r', "resample", OPT_LIST, UNIT_COUNT, &resample, 1, POINTS_MAX, "N[xM]",
 		"bring file to this many points", NULL, 0 },
-	OPT_END
-};
+	OPT_END };
 
 void measured_check(void)
 {
-	if (raw_size.n != pixel.n && (raw_size.n == 0 || pixel.n == 0))
-		die(EXIT_USAGE, "--raw and --pixel go together");
-	if (raw_size.n == 1)
-		die(EXIT_USAGE, "--raw: want NXxNY");
 	if (crop.n && crop.n != 4)
 		die(EXIT_USAGE, "--crop: want X:Y:NX:NY");
 }
@@ -48,10 +40,8 @@ struct measured {
 struct measured *measured_open(const char *path)
 {
 	struct measured *m = xcalloc(1, sizeof *m);
-	struct raw_layout raw = { (int)raw_size.v[0], (int)raw_size.v[1], pixel.v[0],
-		pixel.v[pixel.n ? pixel.n - 1 : 0] };
 
-	m->in = fields_open(path, raw_size.n ? &raw : NULL);
+	m->in = fields_open(path, raw_given());
 	m->piped = strcmp(path, "-") == 0;
 	return m;
 }

@@ -1,4 +1,5 @@
 /* records - list, pick, count and convert the records of a field stream */
+#include "raw.h"
 #include "shell/fields.h"
 #include "shell/msg.h"
 #include "shell/opt.h"
@@ -15,8 +16,6 @@ static const char *const formats[] = { "list", "count", "nrrd", "gsf", "text", "
 static int format = LIST;
 static struct opt_list pick;
 static const char *field;
-static struct opt_list raw_size;
-static double pixel = NAN;
 
 static const struct opt opts[] = { { 'o', "output", OPT_WORD, UNIT_NONE, &format, 0, 0,
 					   "list|count|nrrd|gsf|text|table",
@@ -25,11 +24,7 @@ static const struct opt opts[] = { { 'o', "output", OPT_WORD, UNIT_NONE, &format
 		"only the K-th records, from 1", NULL, 1 },
 	{ 'k', "field", OPT_TEXT, UNIT_NONE, &field, 0, 0, "NAME", "only this field",
 		NULL, 0 },
-	{ 'x', "raw", OPT_LIST, UNIT_COUNT, &raw_size, 1, 1e9, "NXxNY",
-		"read headerless little-endian float64 heights", NULL, 0 },
-	{ 'X', "pixel", OPT_NUM, UNIT_LENGTH, &pixel, 1e-15, 1e6, "D", "spacing of --raw",
-		NULL, 0 },
-	OPT_END };
+	OPT_TABLE(raw_rows), OPT_END };
 
 static const struct prog prog = { "records",
 	"List, pick, count and convert the records of a field stream.", "[file]",
@@ -165,7 +160,6 @@ static void check_picked(const struct fields_in *in)
 int main(int argc, char **argv)
 {
 	int first = opt_parse(&prog, argc, argv);
-	struct raw_layout raw = { 0 };
 	struct record r = { 0 };
 	struct fields_in *in;
 	struct fields_out *out = NULL;
@@ -173,12 +167,7 @@ int main(int argc, char **argv)
 	char *names = NULL;
 	long count = 0;
 
-	if (raw_size.n && (raw_size.n != 2 || isnan(pixel)))
-		die(EXIT_USAGE, "--raw wants NXxNY and --pixel");
-	if (raw_size.n)
-		raw = (struct raw_layout){ (int)raw_size.v[0], (int)raw_size.v[1], pixel,
-			pixel };
-	in = fields_open(argv[first], raw_size.n ? &raw : NULL);
+	in = fields_open(argv[first], raw_given());
 	if (format == NRRD)
 		out = fields_create(NULL);
 	if (format == LIST)

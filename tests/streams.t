@@ -47,6 +47,9 @@ is 'GSF keeps the spacing' "$(records plain.gsf | tail -n 1 | cut -f 8,9,12)" "$
 ramp >plain.raw
 ok 'headerless samples are read' records --raw 4x3 --pixel 2um plain.raw
 is 'with the pixel given' "$(cell dx) $(cell max)" '2e-06 11'
+ok 'and with an oblong one' records --raw 4x3 --pixel 2umx3um plain.raw
+is 'that is so long' "$(cell dx) $(cell dy)" '2e-06 3e-06'
+fails 'a pixel of no samples' 2 '--raw and --pixel go together' records --pixel 2um plain.raw
 cat plain.nrrd big.nrrd plain.gsf >three
 is 'records of three formats follow each other' "$(records -o count three)" 3
 ok 'an empty stream has no records' sh -c 'records -o count </dev/null'
