@@ -98,16 +98,42 @@ static double settle(
 	}
 }
 
+/* The number that a random word stands for; which = 0, 1 of the pair. */
+static inline double number(
+	const struct normals *n, uint64_t word, uint64_t index, uint64_t which)
+{
+	size_t layer = word % LAYERS;
+	double u = (double)((int64_t)word >> 11) * 0x1p-52;
+
+	return fabs(u) < n->inner[layer] ? u * n->edge[layer]
+					 : settle(n, word, index, which);
+}
+
 void normals_pair(const struct normals *n, uint64_t index, double pair[2])
 {
 	uint64_t word[2];
 
 	draw(n, index, word);
-	for (uint64_t c = 0; c < 2; c++) {
-		size_t layer = word[c] % LAYERS;
-		double u = (double)((int64_t)word[c] >> 11) * 0x1p-52;
+	pair[0] = number(n, word[0], index, 0);
+	pair[1] = number(n, word[1], index, 1);
+}
 
-		pair[c] = fabs(u) < n->inner[layer] ? u * n->edge[layer]
-						    : settle(n, word[c], index, c);
+void normals_pairs(const struct normals *n, uint64_t index, size_t count, double *pairs)
+{
+	for (size_t i = 0; i < count; i += PHILOX_ROW) {
+		size_t m = count - i < PHILOX_ROW ? count - i : PHILOX_ROW;
+		uint32_t counter[4] = { (uint32_t)(index + i),
+			(uint32_t)((index + i) >> 32), n->realisation, n->purpose };
+		uint32_t out[4][PHILOX_ROW];
+
+		philox4x32_row(counter, n->key, out);
+		for (size_t k = 0; k < m; k++) {
+			uint64_t word0 = (uint64_t)out[0][k] << 32 | out[1][k];
+			uint64_t word1 = (uint64_t)out[2][k] << 32 | out[3][k];
+			double *pair = pairs + 2 * (i + k);
+
+			pair[0] = number(n, word0, index + i + k, 0);
+			pair[1] = number(n, word1, index + i + k, 1);
+		}
 	}
 }

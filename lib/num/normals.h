@@ -7,6 +7,7 @@
 #define NUM_NORMALS_H
 
 #include "num/philox.h"
+#include <stddef.h>
 
 struct normals;
 
@@ -18,5 +19,8 @@ void normals_free(struct normals *normals);
 /* Two independent numbers for index < 2^48.  One time in fifty more random words are
  * needed: they are taken from indices of 2^48 to 2^61 of the same stream. */
 void normals_pair(const struct normals *normals, uint64_t index, double pair[2]);
+/* The same numbers for index, index + 1, ..., faster: pairs[2 * count]. */
+void normals_pairs(
+	const struct normals *normals, uint64_t index, size_t count, double *pairs);
 
 #endif

@@ -1,36 +1,54 @@
 #include "num/philox.h"
 #include <math.h>
+#include <string.h>
 
-static void multiply(uint32_t a, uint32_t b, uint32_t *high, uint32_t *low)
+enum { ROUNDS = 10 };
+static const uint32_t STEP_0 = 0x9E3779B9, STEP_1 = 0xBB67AE85;
+
+/* One of the ten rounds. */
+static inline void turn(
+	uint32_t *c0, uint32_t *c1, uint32_t *c2, uint32_t *c3, uint32_t k0, uint32_t k1)
 {
-	uint64_t p = (uint64_t)a * b;
+	uint64_t p = (uint64_t)0xD2511F53 * *c0, q = (uint64_t)0xCD9E8D57 * *c2;
 
-	*high = (uint32_t)(p >> 32);
-	*low = (uint32_t)p;
+	*c0 = (uint32_t)(q >> 32) ^ *c1 ^ k0;
+	*c1 = (uint32_t)q;
+	*c2 = (uint32_t)(p >> 32) ^ *c3 ^ k1;
+	*c3 = (uint32_t)p;
 }
 
 void philox4x32(const uint32_t counter[4], const uint32_t key[2], uint32_t out[4])
 {
-	enum { ROUNDS = 10 };
 	uint32_t c0 = counter[0], c1 = counter[1], c2 = counter[2], c3 = counter[3];
-	uint32_t k0 = key[0], k1 = key[1];
 
-	for (int i = 0; i < ROUNDS; i++) {
-		uint32_t high0, low0, high1, low1;
-
-		multiply(0xD2511F53, c0, &high0, &low0);
-		multiply(0xCD9E8D57, c2, &high1, &low1);
-		c0 = high1 ^ c1 ^ k0;
-		c1 = low1;
-		c2 = high0 ^ c3 ^ k1;
-		c3 = low0;
-		k0 += 0x9E3779B9;
-		k1 += 0xBB67AE85;
-	}
+	for (uint32_t i = 0; i < ROUNDS; i++)
+		turn(&c0, &c1, &c2, &c3, key[0] + i * STEP_0, key[1] + i * STEP_1);
 	out[0] = c0;
 	out[1] = c1;
 	out[2] = c2;
 	out[3] = c3;
+}
+
+/* Local arrays, so that compilers see that nothing overlaps and work on many at once. */
+void philox4x32_row(
+	const uint32_t counter[4], const uint32_t key[2], uint32_t out[4][PHILOX_ROW])
+{
+	uint32_t c0[PHILOX_ROW], c1[PHILOX_ROW], c2[PHILOX_ROW], c3[PHILOX_ROW];
+
+	for (uint32_t k = 0; k < PHILOX_ROW; k++) {
+		c0[k] = counter[0] + k;
+		c1[k] = counter[1] + (c0[k] < k);
+		c2[k] = counter[2];
+		c3[k] = counter[3];
+	}
+	for (uint32_t i = 0; i < ROUNDS; i++)
+		for (int k = 0; k < PHILOX_ROW; k++)
+			turn(&c0[k], &c1[k], &c2[k], &c3[k], key[0] + i * STEP_0,
+				key[1] + i * STEP_1);
+	memcpy(out[0], c0, sizeof c0);
+	memcpy(out[1], c1, sizeof c1);
+	memcpy(out[2], c2, sizeof c2);
+	memcpy(out[3], c3, sizeof c3);
 }
 
 static void block(uint64_t seed, uint32_t realisation, enum rng_purpose purpose,

@@ -10,6 +10,12 @@
 
 void philox4x32(const uint32_t counter[4], const uint32_t key[2], uint32_t out[4]);
 
+/* The same for counter, counter + 1, ... in half the time: out[word][k].  The counter's
+ * two low words count as one number. */
+enum { PHILOX_ROW = 16 };
+void philox4x32_row(
+	const uint32_t counter[4], const uint32_t key[2], uint32_t out[4][PHILOX_ROW]);
+
 /* What a stream is drawn for; part of the counter, so that adding a purpose leaves
  * all others as they were.  Never renumber. */
 enum rng_purpose {

@@ -8,7 +8,7 @@
 static const double pi = 3.14159265358979323846;
 
 enum {
-	PIECE = 256, /* samples of a pulse computed at a time */
+	PIECE = 256, /* samples computed at a time */
 	KNOTS = 32   /* straight pieces of the drift per correlation time */
 };
 
@@ -147,29 +147,50 @@ static void add_pulses(struct scene *s, double *x, size_t n)
 	s->count = kept;
 }
 
-static void add_noise(struct scene *s, double *x, size_t n)
+/* Gives the noise of both sensors its correlation. */
+static void correlate(double common, double *z, size_t n)
 {
-	double keep = s->par.corner > 0 ? exp(-2 * pi * s->par.corner / s->par.rate) : 0;
-	double fresh = sqrt(1 - keep * keep), rms = s->par.noise, common = s->par.common;
-	double own = sqrt(1 - common * common), a = s->color[0], b = s->color[1];
+	double own = sqrt(1 - common * common);
 
-	for (size_t i = 0; i < n; i++) {
-		double z[2];
+	for (size_t i = 0; i < n; i++)
+		z[2 * i + 1] = common * z[2 * i] + own * z[2 * i + 1];
+}
 
-		normals_pair(s->normals, s->frame + i, z);
-		z[1] = common * z[0] + own * z[1];
-		if (s->frame + i == 0) { /* the first one has the lasting variance */
-			a = z[0];
-			b = z[1];
-		} else {
-			a = keep * a + fresh * z[0];
-			b = keep * b + fresh * z[1];
-		}
-		x[2 * i] += rms * a;
-		x[2 * i + 1] += rms * b;
+/* One-pole low-pass of frames from the given one on, to the same variance. */
+static void low_pass(struct scene *s, uint64_t frame, double *z, size_t n)
+{
+	double keep = exp(-2 * pi * s->par.corner / s->par.rate);
+	double fresh = sqrt(1 - keep * keep), a = s->color[0], b = s->color[1];
+	size_t i = 0;
+
+	if (frame == 0) { /* the first one has the lasting variance */
+		a = z[0];
+		b = z[1];
+		i = 1;
+	}
+	for (; i < n; i++) {
+		z[2 * i] = a = keep * a + fresh * z[2 * i];
+		z[2 * i + 1] = b = keep * b + fresh * z[2 * i + 1];
 	}
 	s->color[0] = a;
 	s->color[1] = b;
+}
+
+static void add_noise(struct scene *s, double *x, size_t n)
+{
+	double z[2 * PIECE];
+	size_t m;
+
+	for (size_t i = 0; i < n; i += m) {
+		m = n - i < PIECE ? n - i : PIECE;
+		normals_pairs(s->normals, s->frame + i, m, z);
+		if (s->par.common != 0)
+			correlate(s->par.common, z, m);
+		if (s->par.corner > 0)
+			low_pass(s, s->frame + i, z, m);
+		for (size_t k = 0; k < 2 * m; k++)
+			x[2 * i + k] += s->par.noise * z[k];
+	}
 }
 
 static void add_drift(struct scene *s, double *x, size_t n)

@@ -11,6 +11,24 @@ static double sigmas(double count, double n, double p)
 	return (count - n * p) / sqrt(n * p * (1 - p));
 }
 
+/* Many at once: enough for every layer and the tail, and over a carry of the index. */
+static void test_many(const struct normals *n)
+{
+	enum { MANY = 100003 };
+	static double pairs[2 * MANY];
+	const uint64_t first = ((uint64_t)1 << 32) - 5000;
+	int differ = 0;
+
+	normals_pairs(n, first, MANY, pairs);
+	for (uint64_t i = 0; i < MANY; i++) {
+		double z[2];
+
+		normals_pair(n, first + i, z);
+		differ += z[0] != pairs[2 * i] || z[1] != pairs[2 * i + 1];
+	}
+	ok(differ == 0, "many at once are those one by one");
+}
+
 int main(void)
 {
 	struct normals *n = normals_new(11, 3, RNG_NOISE);
@@ -57,6 +75,7 @@ int main(void)
 	normals_pair(n, 5, b);
 	normals_pair(n, 123456789, b);
 	ok(a[0] == b[0] && a[1] == b[1], "a pair depends on its index alone");
+	test_many(n);
 	normals_free(n);
 	n = normals_new(11, 4, RNG_NOISE);
 	normals_pair(n, 123456789, b);

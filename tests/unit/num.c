@@ -32,6 +32,27 @@ static void test_philox(void)
 	}
 }
 
+/* A row is the blocks of successive counters, also where the low word turns over. */
+static void test_philox_row(void)
+{
+	static const uint32_t low[] = { 0, 0xfffffff8, 0x12345678 }, key[2] = { 3, 9 };
+	int differ = 0;
+
+	for (int i = 0; i < 3; i++) {
+		uint32_t counter[4] = { low[i], 0xffffffff, 5, 6 };
+		uint32_t row[4][PHILOX_ROW], out[4];
+
+		philox4x32_row(counter, key, row);
+		for (int k = 0; k < PHILOX_ROW; k++) {
+			philox4x32(counter, key, out);
+			for (int w = 0; w < 4; w++)
+				differ += out[w] != row[w][k];
+			counter[1] += ++counter[0] == 0;
+		}
+	}
+	ok(differ == 0, "a row of blocks is the blocks one by one");
+}
+
 static void test_rng(void)
 {
 	gsl_rng *a = rng_new(1, 2, RNG_NOISE), *b = rng_new(1, 2, RNG_NOISE);
@@ -161,6 +182,7 @@ static void test_fft(size_t nx, size_t ny)
 int main(void)
 {
 	test_philox();
+	test_philox_row();
 	test_rng();
 	test_addressed();
 	test_pool();
