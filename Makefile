@@ -51,6 +51,7 @@ duet_LIBS = fftw cblas
 delaynet_PARTS = learning lessons scores
 delaynet_MODULES = num/philox signal/lesson signal/training signal/network signal/netfile signal/delaydata signal/delayloss signal/cnn signal/cnndata signal/sensor
 delaynet_LIBS = cblas gsl
+aopf_PARTS = filtering outlook
 aopf_MODULES = num/philox life/draw life/resample life/filter life/grey life/order life/noise life/adaptive life/history life/damage life/fleet life/runin life/sort life/predict life/metrics
 aopf_LIBS =
 rwl_PARTS = fragments lifetable pump state
