@@ -6,7 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 64, CLIP = 3, TERMS_MAX = 2 * TONES_MAX + 1 };
+enum {
+	SIDE = 64,
+	CLIP = 3,
+	TERMS_MAX = 2 * TONES_MAX + 1,
+	RUN = 64 /* samples for each sine and cosine that is computed */
+};
 
 struct line {
 	double power, omega;
@@ -115,14 +120,82 @@ int tones_find(const double *y1, const double *y2, size_t n, int max, double *om
 	return count;
 }
 
-/* Constant, then cosine and sine of each tone, at index t. */
-static void terms_at(double t, int tones, const double *omega, double *term)
+/* Terms (a constant, then cosine and sine of each tone) of a run of samples from index 0
+ * on, and their products summed over it.  Those of any other run are the same, each tone
+ * turned by its phase where the run begins. */
+struct basis {
+	int tones, terms;
+	double omega[TONES_MAX];
+	double term[TERMS_MAX][RUN], gram[TERMS_MAX][TERMS_MAX];
+};
+
+static double dot(const double *x, const double *y)
 {
-	term[0] = 1;
-	for (int k = 0; k < tones; k++) {
-		term[1 + 2 * k] = cos(omega[k] * t);
-		term[2 + 2 * k] = sin(omega[k] * t);
+	double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+
+	for (int i = 0; i < RUN; i += 4) {
+		s0 += x[i] * y[i];
+		s1 += x[i + 1] * y[i + 1];
+		s2 += x[i + 2] * y[i + 2];
+		s3 += x[i + 3] * y[i + 3];
 	}
+	return (s0 + s1) + (s2 + s3);
+}
+
+/* Cosine and sine of omega t.  The product is taken to twice the digits, since its last
+ * one is worth much where t is large. */
+static void cosine_sine(double omega, double t, double *c, double *s)
+{
+	double phase = omega * t, rest = fma(omega, t, -phase);
+	double cp = cos(phase), sp = sin(phase);
+
+	*c = cp - rest * (sp + 0.5 * rest * cp);
+	*s = sp + rest * (cp - 0.5 * rest * sp);
+}
+
+static void make_basis(struct basis *b, int tones, const double *omega)
+{
+	b->tones = tones;
+	b->terms = 1 + 2 * tones;
+	memcpy(b->omega, omega, sizeof(double) * (size_t)tones);
+	for (int i = 0; i < RUN; i++) {
+		b->term[0][i] = 1;
+		for (int k = 0; k < tones; k++)
+			cosine_sine(omega[k], i, &b->term[1 + 2 * k][i],
+				&b->term[2 + 2 * k][i]);
+	}
+	for (int k = 0; k < b->terms; k++)
+		for (int l = 0; l < b->terms; l++)
+			b->gram[k][l] = dot(b->term[k], b->term[l]);
+}
+
+/* Terms of the run from index t on, by the addition theorem. */
+static void make_terms(const struct basis *b, double t, double term[][RUN])
+{
+	memcpy(term[0], b->term[0], sizeof term[0]);
+	for (int k = 0; k < b->tones; k++) {
+		const double *c0 = b->term[1 + 2 * k], *s0 = b->term[2 + 2 * k];
+		double *c = term[1 + 2 * k], *s = term[2 + 2 * k];
+		double ct, st;
+
+		cosine_sine(b->omega[k], t, &ct, &st);
+		for (int i = 0; i < RUN; i++) {
+			c[i] = ct * c0[i] - st * s0[i];
+			s[i] = st * c0[i] + ct * s0[i];
+		}
+	}
+}
+
+/* Sum of the terms of a run times their coefficients. */
+static void sum_terms(
+	double term[][RUN], int terms, const double *coefficient, double *sum)
+{
+	double part[RUN] = { 0 };
+
+	for (int k = 0; k < terms; k++)
+		for (int i = 0; i < RUN; i++)
+			part[i] += coefficient[k] * term[k][i];
+	memcpy(sum, part, sizeof part);
 }
 
 /* Cholesky factor of the symmetric matrix a (lower triangle, rows of TERMS_MAX) in
@@ -160,33 +233,83 @@ static void substitute(const double *a, double *b, int n)
 	}
 }
 
-/* Least squares over the samples whose mask is set; on request the variance of each
- * coefficient in units of that of a sample. */
-static int fit_masked(const double *x, const unsigned char *mask, size_t n, int terms,
-	const double *basis, double *coefficient, double *variance)
+/* Turns every tone's pair of rows by its phase at the first sample of term. */
+static void turn_rows(const struct basis *b, double term[][RUN], double from[][TERMS_MAX],
+	double to[][TERMS_MAX])
 {
-	double a[TERMS_MAX * TERMS_MAX] = { 0 }, b[TERMS_MAX] = { 0 };
+	memcpy(to[0], from[0], sizeof to[0]);
+	for (int k = 1; k < b->terms; k += 2) {
+		double c = term[k][0], s = term[k + 1][0];
 
-	for (size_t i = 0; i < n; i++) {
-		const double *term = basis + i * (size_t)terms;
-
-		if (!mask[i])
-			continue;
-		for (int k = 0; k < terms; k++) {
-			b[k] += term[k] * x[i];
-			for (int l = 0; l <= k; l++)
-				a[k * TERMS_MAX + l] += term[k] * term[l];
+		for (int l = 0; l < b->terms; l++) {
+			to[k][l] = c * from[k][l] - s * from[k + 1][l];
+			to[k + 1][l] = s * from[k][l] + c * from[k + 1][l];
 		}
 	}
-	if (!factorise(a, terms))
+}
+
+/* Least squares as it grows: products of terms with each other and with the samples. */
+struct normal {
+	double a[TERMS_MAX * TERMS_MAX], b[TERMS_MAX];
+};
+
+/* Adds a run all of whose samples count. */
+static void add_whole(
+	struct normal *s, struct basis *b, double term[][RUN], const double *x)
+{
+	double once[TERMS_MAX][TERMS_MAX], turned[TERMS_MAX][TERMS_MAX],
+		twice[TERMS_MAX][TERMS_MAX];
+
+	turn_rows(b, term, b->gram, once);
+	for (int k = 0; k < b->terms; k++)
+		for (int l = 0; l < b->terms; l++)
+			turned[k][l] = once[l][k];
+	turn_rows(b, term, turned, twice);
+	for (int k = 0; k < b->terms; k++) {
+		s->b[k] += dot(term[k], x);
+		for (int l = 0; l <= k; l++)
+			s->a[k * TERMS_MAX + l] += twice[k][l];
+	}
+}
+
+/* Adds the samples of a run whose mask is set. */
+static void add_part(struct normal *s, const struct basis *b, double term[][RUN],
+	const double *x, const unsigned char *mask)
+{
+	double part[TERMS_MAX][RUN], y[RUN];
+
+	for (int i = 0; i < RUN; i++)
+		y[i] = mask[i] ? x[i] : 0;
+	for (int k = 0; k < b->terms; k++) {
+		for (int i = 0; i < RUN; i++)
+			part[k][i] = mask[i] ? term[k][i] : 0;
+		s->b[k] += dot(term[k], y);
+		for (int l = 0; l <= k; l++)
+			s->a[k * TERMS_MAX + l] += dot(part[k], term[l]);
+	}
+}
+
+/* Least squares over the samples whose mask is set; on request the variance of each
+ * coefficient in units of that of a sample. */
+static int fit_masked(struct basis *b, double term[][RUN], const double *x,
+	const unsigned char *mask, size_t runs, double *coefficient, double *variance)
+{
+	struct normal s = { { 0 }, { 0 } };
+
+	for (size_t r = 0; r < runs; r++, term += b->terms, x += RUN, mask += RUN)
+		if (!memchr(mask, 0, RUN))
+			add_whole(&s, b, term, x);
+		else if (memchr(mask, 1, RUN))
+			add_part(&s, b, term, x, mask);
+	if (!factorise(s.a, b->terms))
 		return 0;
-	substitute(a, b, terms);
-	memcpy(coefficient, b, sizeof(double) * (size_t)terms);
-	for (int k = 0; variance && k < terms; k++) {
+	substitute(s.a, s.b, b->terms);
+	memcpy(coefficient, s.b, sizeof(double) * (size_t)b->terms);
+	for (int k = 0; variance && k < b->terms; k++) {
 		double unit[TERMS_MAX] = { 0 };
 
 		unit[k] = 1;
-		substitute(a, unit, terms);
+		substitute(s.a, unit, b->terms);
 		variance[k] = unit[k];
 	}
 	return 1;
@@ -223,39 +346,43 @@ int tones_fit(const double *x, size_t n, double start, int tones, const double *
 	double *coefficient, double *deviation, double *variance)
 {
 	enum { PASSES = 4 };
-	int terms = 1 + 2 * tones, good;
-	double *basis = malloc((size_t)terms * n * sizeof *basis);
-	double *rest = malloc(3 * n * sizeof *rest), level = 0;
-	unsigned char *mask = malloc(n);
+	size_t terms = 1 + 2 * (size_t)tones, runs = (n + RUN - 1) / RUN,
+	       room = runs * RUN;
+	struct basis basis;
+	double(*term)[RUN] = malloc(terms * runs * sizeof *term);
+	double *y = calloc(room, sizeof *y); /* x, filled up with zeros */
+	double *rest = malloc(3 * room * sizeof *rest), level = 0;
+	unsigned char *mask = calloc(room, 1);
+	int good = term && y && rest && mask && n > 4 * terms;
 
-	good = basis && rest && mask && n > 4 * (size_t)terms;
-	for (size_t i = 0; good && i < n; i++)
-		terms_at(start + (double)i, tones, omega, basis + i * (size_t)terms);
-	memset(coefficient, 0, sizeof(double) * (size_t)terms);
+	memset(coefficient, 0, sizeof(double) * terms);
 	if (good) {
+		make_basis(&basis, tones, omega);
+		for (size_t r = 0; r < runs; r++)
+			make_terms(&basis, start + (double)(r * RUN), term + r * terms);
 		memcpy(rest, x, n * sizeof *x);
 		coefficient[0] = robust_median(rest, n);
+		memcpy(y, x, n * sizeof *x);
 	}
 	/* At first the rest is the record itself: where tones prevail it is quiet all
 	 * along, where they do not it is quiet between the pulses. */
 	for (int pass = 0; good && pass < PASSES; pass++) {
-		for (size_t i = 0; i < n; i++) {
-			const double *term = basis + i * (size_t)terms;
-
-			rest[i] = x[i];
-			for (int k = 0; k < terms; k++)
-				rest[i] -= coefficient[k] * term[k];
-		}
-		level = mark_quiet(rest, n, rest + n, rest + 2 * n, mask);
-		if (!fit_masked(x, mask, n, terms, basis, coefficient, variance)) {
+		for (size_t r = 0; r < runs; r++)
+			sum_terms(term + r * terms, basis.terms, coefficient,
+				rest + r * RUN);
+		for (size_t i = 0; i < n; i++)
+			rest[i] = x[i] - rest[i];
+		level = mark_quiet(rest, n, rest + room, rest + 2 * room, mask);
+		if (!fit_masked(&basis, term, y, mask, runs, coefficient, variance)) {
 			memset(mask, 1, n);
 			good = fit_masked(
-				x, mask, n, terms, basis, coefficient, variance);
+				&basis, term, y, mask, runs, coefficient, variance);
 		}
 	}
 	if (deviation)
 		*deviation = sqrt(level);
-	free(basis);
+	free(term);
+	free(y);
 	free(rest);
 	free(mask);
 	return good;
@@ -290,15 +417,25 @@ int tones_confirm(const double *y1, const double *y2, size_t n, int tones, doubl
 void tones_remove(double *x, size_t n, double start, int tones, const double *omega,
 	double at_a, const double *from, double at_b, const double *to)
 {
-	double term[TERMS_MAX] = { 0 };
+	struct basis basis;
+	double term[TERMS_MAX][RUN], change[TERMS_MAX];
 
-	for (size_t i = 0; i < n; i++) {
-		double t = start + (double)i,
-		       part = at_b > at_a ? (t - at_a) / (at_b - at_a) : 0;
+	make_basis(&basis, tones, omega);
+	for (int k = 0; k < basis.terms; k++)
+		change[k] = to[k] - from[k];
+	for (size_t i = 0; i < n; i += RUN) {
+		size_t m = n - i < RUN ? n - i : RUN;
+		double first[RUN], more[RUN];
 
-		part = part < 0 ? 0 : part > 1 ? 1 : part;
-		terms_at(t, tones, omega, term);
-		for (int k = 0; k < 1 + 2 * tones; k++)
-			x[i] -= term[k] * (from[k] + part * (to[k] - from[k]));
+		make_terms(&basis, start + (double)i, term);
+		sum_terms(term, basis.terms, from, first);
+		sum_terms(term, basis.terms, change, more);
+		for (size_t k = 0; k < m; k++) {
+			double t = start + (double)(i + k),
+			       part = at_b > at_a ? (t - at_a) / (at_b - at_a) : 0;
+
+			part = part < 0 ? 0 : part > 1 ? 1 : part;
+			x[i + k] -= first[k] + part * more[k];
+		}
 	}
 }
