@@ -13,13 +13,8 @@
 # seconds         processor time of setting up (kernel, plans) and of solving
 # transforms      Fourier transforms on the grid; work: with those of coarser grids, in
 #                 transforms of this grid (free: padded ones, others a quarter)
-set -eu
-top=$(cd "$(dirname "$0")/../.." && pwd)
+. "$(dirname "$0")/setup"
 run=$top/build/bench/contact
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-export LC_ALL=C
 grids="128 256 512"
 tolerances="1e-2 1e-4 1e-6 1e-8 1e-10"
 [ -z "${FULL:-}" ] || grids="128 256 512 1024 2048"

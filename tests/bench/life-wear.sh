@@ -13,16 +13,13 @@
 # far        steps      the median life in steps of a gamma process (4-28) against the law
 #            left       of large numbers; the cost does not grow with the steps
 # rows       rows       filters with 10 paths; seconds and memory alone
-set -eu
-top=$(cd "$(dirname "$0")/../.." && pwd)
-PATH=$top/bin:$PATH
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-export LC_ALL=C
+. "$(dirname "$0")/setup"
 
-stat() { awk -F '\t' -v c="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == c) k = i; next } { print $k }' stats; }
-row() { printf '%s\t%s\t%s\t%s\t%s\n' "$1" "$2" "$3" "$(stat cpu_seconds)" "$(stat memory_kb)"; }
+# row SCENE KNOB ERROR
+row() {
+	printf '%s\t%s\t%s\t%s\t%s\n' "$1" "$2" "$3" \
+		"$(column cpu_seconds stats)" "$(column memory_kb stats)"
+}
 
 # ensemble SEED NUMBER: volumes of fragments
 ensemble() {

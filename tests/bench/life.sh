@@ -12,31 +12,19 @@
 #                            chooses the order; seconds for one series
 # rows                N      seconds for a row without and (rows-life) with prediction of
 #                            life, 1200 rows
-set -eu
-top=$(cd "$(dirname "$0")/../.." && pwd)
-PATH=$top/bin:$PATH
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-export LC_ALL=C
+. "$(dirname "$0")/setup"
 pumps=${PUMPS:-20}
-
-column() {
-	awk -F '\t' -v c="$1" '/^#/ { next }
-	!seen { for (i = 1; i <= NF; i++) if ($i == c) k = i; seen = 1; next }
-	k { print $k }' "$2"
-}
 
 # life SCENE KNOB ARG...: errors over the pumps
 life() {
 	scene=$1
 	knob=$2
 	shift 2
-	: >"$work/lives"
+	: >lives
 	k=1
 	while [ $k -le "$pumps" ]; do
-		aopf -t h -y 2.8 -d up -S "$work/stats" "$@" "$work/pump$k.tsv" >"$work/out"
-		printf '%s\t%s\n' "$(tail -1 "$work/out")" "$(column cpu_seconds "$work/stats")" \
-			>>"$work/lives"
+		aopf -t h -y 2.8 -d up -S stats "$@" "pump$k.tsv" >out
+		printf '%s\t%s\n' "$(tail -1 out)" "$(column cpu_seconds stats)" >>lives
 		k=$((k + 1))
 	done
 	awk -F '\t' -v scene="$scene" -v knob="$knob" '{
@@ -46,7 +34,7 @@ life() {
 		inside += $1 + $8 <= 1186 && ($10 == "inf" || $1 + $10 >= 1186)
 		seconds += $NF
 	} END { printf "%s\t%s\t%.4f\t%.2f\t%.4f\n", scene, knob, sum / NR, inside / NR,
-		seconds / NR }' "$work/lives"
+		seconds / NR }' lives
 }
 
 all() {
@@ -63,7 +51,7 @@ all() {
 	done
 	k=1
 	while [ $k -le "$pumps" ]; do
-		"$top/scripts/synthetic-pump" $k 600 >"$work/pump$k.tsv"
+		"$top/scripts/synthetic-pump" $k 600 >"pump$k.tsv"
 		k=$((k + 1))
 	done
 	for n in 100 300 1000 3000; do
@@ -72,18 +60,18 @@ all() {
 		done
 		life average-window $n -N $n
 	done
-	"$top/scripts/synthetic-pump" 1 1200 >"$work/pump.tsv"
+	"$top/scripts/synthetic-pump" 1 1200 >pump.tsv
 	for n in 100 300 1000 3000; do
-		aopf -t h -N $n -S "$work/stats" "$work/pump.tsv" >/dev/null
+		aopf -t h -N $n -S stats pump.tsv >/dev/null
 		printf 'rows\t%s\tnan\tnan\t%s\n' $n \
-			"$(column cpu_seconds "$work/stats" | awk '{ print $1 / 1200 }')"
-		aopf -t h -y 2.8 -N $n -S "$work/stats" "$work/pump.tsv" >/dev/null
+			"$(column cpu_seconds stats | awk '{ print $1 / 1200 }')"
+		aopf -t h -y 2.8 -N $n -S stats pump.tsv >/dev/null
 		printf 'rows-life\t%s\tnan\tnan\t%s\n' $n \
-			"$(column cpu_seconds "$work/stats" | awk '{ print $1 / 1200 }')"
+			"$(column cpu_seconds stats | awk '{ print $1 / 1200 }')"
 	done
 }
 
-all | tee "$work/table"
+all | tee table
 command -v gnuplot >/dev/null || exit 0
 mkdir -p "$top/build/bench"
 gnuplot <<END
@@ -96,10 +84,10 @@ set key bottom left
 set xlabel "particles"
 set ylabel "difference from Kalman / standard deviation"
 plot for [s in "systematic stratified residual multinomial"] \
-	"< grep '^filter-".s."' $work/table" using 2:3 with linespoints title s
+	"< grep '^filter-".s."' table" using 2:3 with linespoints title s
 set xlabel "seconds for a series of 600 rows"
 set ylabel "error of the end of life / life"
 plot for [s in "grey-7 grey-20 grey-window grey-insample grey-all average-window"] \
-	"< grep '^".s."\t' $work/table" using 5:3 with linespoints title s
+	"< grep '^".s."\t' table" using 5:3 with linespoints title s
 END
 echo "plot: $top/build/bench/life.png" >&2

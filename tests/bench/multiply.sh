@@ -2,12 +2,7 @@
 # One application of the half-space on a free surface: error against run time of
 # multi-level multi-summation beside the Fourier convolution, as a table and, where
 # gnuplot is there, as build/bench/multiply.png.  FULL=1 takes grids to 2048.
-set -eu
-top=$(cd "$(dirname "$0")/../.." && pwd)
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-export LC_ALL=C
+. "$(dirname "$0")/setup"
 grids="256 512"
 [ -z "${FULL:-}" ] || grids="256 512 1024 2048"
 

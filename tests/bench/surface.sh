@@ -10,19 +10,7 @@
 #           waves, less 1: what is left is sampling and the rim
 # heights   magnitudes of the waves after skewness -1.2 and kurtosis 4.3 were imposed
 # affine    Sq over the wanted one, less 1, all waves drawn: what a surface costs
-set -eu
-top=$(cd "$(dirname "$0")/../.." && pwd)
-PATH=$top/bin:$PATH
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-
-# column NAME FILE
-column() {
-	awk -F '\t' -v c="$1" '/^#/ { next }
-	!seen { for (i = 1; i <= NF; i++) if ($i == c) k = i; seen = 1; next }
-	k { print $k }' "$2"
-}
+. "$(dirname "$0")/setup"
 
 # row SCENE N COUNT ERROR
 row() {
