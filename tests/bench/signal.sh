@@ -12,7 +12,8 @@
 # right     share of the scenes with the right count
 # seconds   processor time per scene, learning included
 #
-# A second table tells what is left of the other pulse when two are parted (demix.c).
+# A second table tells what is left of the other pulse when two are parted (demix.c), a
+# third how long the solver of the joint fit takes, and those of GSL (solvers.c).
 #
 # SCENES sets the number of scenes (100).
 set -eu
@@ -86,6 +87,9 @@ done
 cp all.tsv "$out/signal.tsv"
 if [ -x "$out/demix" ]; then
 	"$out/demix" | tee "$out/demix.tsv"
+fi
+if [ -x "$out/solvers" ]; then
+	"$out/solvers" | tee "$out/solvers.tsv"
 fi
 command -v gnuplot >/dev/null || exit 0
 for m in 1 2 4 6; do
