@@ -41,6 +41,7 @@ debrisgen_MODULES = $(bemcontact_MODULES) contact/debris contact/hull contact/in
 debrisgen_LIBS = fftw
 debrisstat_MODULES = num/philox contact/ensemble contact/estimates contact/statistics
 debrisstat_LIBS = gsl
+sensorsim_PARTS = sensors source
 sensorsim_MODULES = num/philox num/normals signal/sensor signal/passage signal/scene
 sensorsim_LIBS =
 bpfilter_MODULES = num/fft signal/fir signal/lines signal/tones signal/robust
