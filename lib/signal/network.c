@@ -67,6 +67,8 @@ static int size_layer(struct layer *l, size_t *weights)
 		l->fan = l->inputs;
 		break;
 	case NETWORK_CONV:
+		if ((double)l->in.channels * p->width * p->height > NETWORK_WEIGHTS_MAX)
+			return 0;
 		if (p->stride == 0)
 			p->stride = 1;
 		if (p->stride < 0 || p->stride > 4096)
@@ -86,6 +88,9 @@ static int size_layer(struct layer *l, size_t *weights)
 	if ((double)l->out.channels * l->out.height * l->out.width > 1 << 24)
 		return 0;
 	l->outputs = volume(l->out);
+	if (p->kind == NETWORK_CONV &&
+		(double)l->fan * l->out.height * l->out.width > NETWORK_UNFOLDED_MAX)
+		return 0;
 	if (p->kind != NETWORK_POOL)
 		*weights = ((size_t)l->fan + 1) * p->units;
 	return *weights <= NETWORK_WEIGHTS_MAX;

@@ -50,10 +50,14 @@ struct network_shape {
 	int channels, height, width;
 };
 
-enum { NETWORK_LAYERS_MAX = 16, NETWORK_WEIGHTS_MAX = 1 << 24 };
+enum {
+	NETWORK_LAYERS_MAX = 16,
+	NETWORK_WEIGHTS_MAX = 1 << 24,
+	NETWORK_UNFOLDED_MAX = 1 << 28 /* inputs of all windows of a convolution */
+};
 
 /* batch: most samples to be handled at a time.  NULL when a size is out of range, the
- * network is larger than NETWORK_WEIGHTS_MAX (errno EDOM) or memory is short. */
+ * network is larger than NETWORK_*_MAX (errno EDOM) or memory is short. */
 struct network *network_new(struct network_shape input, const struct network_layer *layer,
 	int layers, int batch);
 void network_free(struct network *net);

@@ -299,6 +299,9 @@ static void check_refusals(void)
 		"pool2", "5:cosh", "-3", "5conv2x2/0", "2000000", "3 4 pool2x0",
 		"1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1" };
 	struct network_layer layer[NETWORK_LAYERS_MAX], huge = { .units = 1 << 20 };
+	struct network_layer wide = {
+		.kind = NETWORK_CONV, .units = 1, .width = 4096, .height = 4096
+	};
 	char why[NETFILE_TEXT];
 
 	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -309,6 +312,11 @@ static void check_refusals(void)
 	ok(!network_new((struct network_shape){ 1, 2, 500 }, &huge, 1, 1),
 		"too many weights");
 	ok(!network_new((struct network_shape){ 1, 0, 500 }, &huge, 1, 1), "no rows");
+	ok(!network_new((struct network_shape){ 1 << 20, 1, 1 }, &wide, 1, 1),
+		"a window of more values than an int counts");
+	wide.width = wide.height = 1000;
+	ok(!network_new((struct network_shape){ 1, 4000, 4000 }, &wide, 1, 1),
+		"windows that together are too much");
 }
 
 int main(void)
