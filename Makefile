@@ -36,7 +36,7 @@ bemcontact_PARTS = press raw
 bemcontact_MODULES = contact/kernel contact/solver contact/bccg contact/grids contact/mlms contact/pk num/convolve num/fft num/pool num/sweep
 bemcontact_LIBS = fftw
 debrisgen_PARTS = press wearing worn
-debrisgen_MODULES = $(bemcontact_MODULES) contact/debris contact/hull contact/influence contact/particles contact/stress \
+debrisgen_MODULES = $(bemcontact_MODULES) contact/chords contact/debris contact/hull contact/influence contact/particles contact/stress \
 	contact/stress_kernel contact/surface contact/sym3 contact/wear contact/window
 debrisgen_LIBS = fftw
 debrisstat_MODULES = num/philox contact/ensemble contact/estimates contact/statistics

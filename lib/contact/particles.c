@@ -3,6 +3,7 @@
  * frames differ by whole periods).  A body no run of the newest layer belongs to is
  * complete: it is measured and its place used again. */
 #include "contact/particles.h"
+#include "contact/chords.h"
 #include "contact/hull.h"
 #include "contact/sym3.h"
 
@@ -56,12 +57,9 @@ struct particles {
 	size_t corners, corner_room;
 	int free_corner;
 	struct hull *hull;
+	struct chords *chords;
 	struct hull_point *scratch;
 	size_t scratch_room;
-	double *height; /* of the hull's corners along the longest diameter */
-	size_t height_room;
-	double (*cut)[3]; /* corners of a section of the hull */
-	size_t cut_room;
 	struct particle *done;
 	size_t ndone, done_room;
 };
@@ -100,9 +98,10 @@ struct particles *particles_new(const struct particles_par *par)
 		return NULL;
 	ps->par = *par;
 	ps->now.row = calloc((size_t)par->ny + 1, sizeof(*ps->now.row));
-	ps->hull = hull_new();
 	ps->before.row = calloc((size_t)par->ny + 1, sizeof(*ps->before.row));
-	if (!ps->now.row || !ps->before.row || !ps->hull) {
+	ps->hull = hull_new();
+	ps->chords = chords_new();
+	if (!ps->now.row || !ps->before.row || !ps->hull || !ps->chords) {
 		particles_free(ps);
 		errno = ENOMEM;
 		return NULL;
@@ -124,9 +123,8 @@ void particles_free(struct particles *ps)
 	free(ps->taken);
 	free(ps->corner);
 	hull_free(ps->hull);
+	chords_free(ps->chords);
 	free(ps->scratch);
-	free(ps->height);
-	free(ps->cut);
 	free(ps->done);
 	free(ps);
 }
@@ -456,125 +454,13 @@ static int join_layer(struct particles *ps)
 
 /* Measures */
 
-static void scaled(const struct particles *ps, const struct hull_point *p, double out[3])
-{
-	out[X] = p->v[X] * ps->par.ax;
-	out[Y] = p->v[Y] * ps->par.ay;
-	out[Z] = p->v[Z] * ps->par.az;
-}
-
-static double distance2(const double a[3], const double b[3])
-{
-	double u = a[X] - b[X], v = a[Y] - b[Y], w = a[Z] - b[Z];
-
-	return u * u + v * v + w * w;
-}
-
-/* The farthest two of count points, if farther than least (squared); the square of their
- * distance.  Points too near the middle to be one of them are passed over. */
-static double farthest(double (*p)[3], size_t count, double least, size_t end[2])
-{
-	double middle[3] = { 0, 0, 0 }, reach = 0;
-
-	for (size_t i = 0; i < count; i++)
-		for (int k = X; k <= Z; k++)
-			middle[k] += p[i][k] / (double)count;
-	for (size_t i = 0; i < count; i++) {
-		double d = distance2(p[i], middle);
-
-		reach = d > reach ? d : reach;
-	}
-	reach = sqrt(reach) * (1 + 1e-12);
-	for (size_t i = 0; i < count; i++) {
-		double most = sqrt(distance2(p[i], middle)) + reach;
-
-		if (most * most < least)
-			continue;
-		for (size_t j = 0; j < i; j++) {
-			double d = distance2(p[i], p[j]);
-
-			if (d > least) {
-				least = d;
-				end[0] = i;
-				end[1] = j;
-			}
-		}
-	}
-	return least;
-}
-
-/* Largest distance between two corners of the hull; along: the unit vector there. */
-static double longest_diameter(struct particles *ps, double along[3])
-{
-	size_t n, end[2] = { 0, 0 };
-	const struct hull_point *c = hull_points(ps->hull, &n);
-	double most;
-
-	for (size_t i = 0; i < n; i++)
-		scaled(ps, &c[i], ps->cut[i]);
-	most = sqrt(farthest(ps->cut, n, 0, end));
-	for (int k = X; k <= Z; k++)
-		along[k] = (ps->cut[end[0]][k] - ps->cut[end[1]][k]) / most;
-	return most;
-}
-
-/* Corners, in ps->cut, of the hull's section at a height along the longest diameter. */
-static size_t section(struct particles *ps, double level)
-{
-	size_t n, edges, count = 0;
-	const struct hull_point *c = hull_points(ps->hull, &n);
-	const struct hull_edge *e = hull_edges(ps->hull, &edges);
-
-	for (size_t i = 0; i < n; i++)
-		if (ps->height[i] == level)
-			scaled(ps, &c[i], ps->cut[count++]);
-	for (size_t i = 0; i < edges; i++) {
-		double a = ps->height[e[i].from] - level, b = ps->height[e[i].to] - level;
-		double p[3], q[3];
-
-		if (!((a < 0 && b > 0) || (a > 0 && b < 0)))
-			continue;
-		scaled(ps, &c[e[i].from], p);
-		scaled(ps, &c[e[i].to], q);
-		for (int k = X; k <= Z; k++)
-			ps->cut[count][k] = p[k] + (q[k] - p[k]) * (a / (a - b));
-		count++;
-	}
-	return count;
-}
-
-/* Longest chord of the hull at right angles to the longest diameter.  Between two
- * corners the section's corners move evenly, so that its diameter is a convex function
- * of height: the largest is found at the height of a corner. */
-static double widest_chord(struct particles *ps, const double along[3])
-{
-	double most = 0, p[3];
-	size_t n, end[2];
-	const struct hull_point *c = hull_points(ps->hull, &n);
-
-	for (size_t i = 0; i < n; i++) {
-		scaled(ps, &c[i], p);
-		ps->height[i] = p[X] * along[X] + p[Y] * along[Y] + p[Z] * along[Z];
-	}
-	for (size_t i = 0; i < n; i++)
-		most = farthest(ps->cut, section(ps, ps->height[i]), most, end);
-	return sqrt(most);
-}
-
 static int measure_hull(struct particles *ps, const struct body *b, struct particle *p)
 {
-	size_t corners, edges;
-	double along[3];
+	const double step[3] = { ps->par.ax, ps->par.ay, ps->par.az };
 
-	if (build_hull(ps, b))
+	if (build_hull(ps, b) ||
+		chords_measure(ps->chords, ps->hull, step, &p->length, &p->width))
 		return -1;
-	hull_points(ps->hull, &corners);
-	hull_edges(ps->hull, &edges);
-	if (need(&ps->height, &ps->height_room, corners, sizeof(*ps->height)) ||
-		need(&ps->cut, &ps->cut_room, corners + edges, sizeof(*ps->cut)))
-		return -1;
-	p->length = longest_diameter(ps, along);
-	p->width = widest_chord(ps, along);
 	p->aspect = p->length / p->width;
 	p->convexity = 6 * b->nodes / hull_volume6(ps->hull);
 	return 0;

@@ -1,0 +1,133 @@
+/* Length and width of convex hulls: known bodies, and random ones by brute force. */
+#include "contact/chords.h"
+#include "tap.h"
+
+enum { POINTS = 12, LEVELS = 2000 };
+
+static void measure(const struct hull_point *point, size_t n, const double step[3],
+	double *length, double *width)
+{
+	struct hull *h = hull_new();
+	struct chords *c = chords_new();
+	struct hull_point copy[POINTS];
+
+	for (size_t i = 0; i < n; i++)
+		copy[i] = point[i];
+	ok(hull_build(h, copy, n) == 0 && chords_measure(c, h, step, length, width) == 0,
+		"measured");
+	chords_free(c);
+	hull_free(h);
+}
+
+static void test_known(void)
+{
+	static const struct hull_point cube[] = { { { 0, 0, 0 } }, { { 1, 0, 0 } },
+		{ { 0, 1, 0 } }, { { 1, 1, 0 } }, { { 0, 0, 1 } }, { { 1, 0, 1 } },
+		{ { 0, 1, 1 } }, { { 1, 1, 1 } } };
+	static const struct hull_point tetrahedron[] = { { { 0, 0, 0 } }, { { 1, 1, 0 } },
+		{ { 1, 0, 1 } }, { { 0, 1, 1 } } };
+	const double one[3] = { 1, 1, 1 }, box[3] = { 3, 4, 12 };
+	double length, width;
+
+	measure(cube, 8, one, &length, &width);
+	near(length, sqrt(3), 1e-15, "cube: the space diagonal");
+	/* The sections through three corners are triangles of that side; the hexagon half
+	 * way is no wider. */
+	near(width, sqrt(2), 1e-15, "cube: the diagonal of a face");
+	measure(cube, 8, box, &length, &width);
+	near(length, 13, 1e-14, "a box of 3 by 4 by 12");
+	measure(tetrahedron, 4, one, &length, &width);
+	near(length, sqrt(2), 1e-15, "tetrahedron: an edge");
+	near(width, sqrt(2), 1e-15, "tetrahedron: the edge across");
+}
+
+static double dot(const double a[3], const double b[3])
+{
+	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static double distance(const double a[3], const double b[3])
+{
+	double d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+
+	return sqrt(dot(d, d));
+}
+
+/* Widest section among many, cut through the lines between all points. */
+static double brute_width(double (*p)[3], size_t n, const double along[3])
+{
+	static double cut[POINTS * POINTS][3];
+	double low = INFINITY, high = -INFINITY, most = 0;
+
+	for (size_t i = 0; i < n; i++) {
+		low = fmin(low, dot(p[i], along));
+		high = fmax(high, dot(p[i], along));
+	}
+	for (int l = 1; l < LEVELS; l++) {
+		double level = low + (high - low) * l / LEVELS;
+		size_t count = 0;
+
+		for (size_t i = 0; i < n; i++)
+			for (size_t j = 0; j < n; j++) {
+				double a = dot(p[i], along) - level;
+				double b = dot(p[j], along) - level;
+
+				if (!(a < 0 && b > 0))
+					continue;
+				for (int k = 0; k < 3; k++)
+					cut[count][k] = p[i][k] +
+							(p[j][k] - p[i][k]) * a / (a - b);
+				count++;
+			}
+		for (size_t i = 0; i < count; i++)
+			for (size_t j = 0; j < i; j++)
+				most = fmax(most, distance(cut[i], cut[j]));
+	}
+	return most;
+}
+
+/* 0 to 99, the same everywhere. */
+static int number(void)
+{
+	static uint32_t state = 1;
+
+	state = state * 1664525 + 1013904223;
+	return (int)((state >> 16) % 100);
+}
+
+static void test_random(void)
+{
+	const double step[3] = { 1.5, 1, 0.25 };
+
+	for (int trial = 0; trial < 10; trial++) {
+		struct hull_point point[POINTS];
+		double p[POINTS][3], along[3] = { 0 }, most = 0, length, width, brute;
+
+		for (size_t i = 0; i < POINTS; i++)
+			for (int k = 0; k < 3; k++) {
+				point[i].v[k] = number();
+				p[i][k] = point[i].v[k] * step[k];
+			}
+		measure(point, POINTS, step, &length, &width);
+		for (size_t i = 0; i < POINTS; i++)
+			for (size_t j = 0; j < i; j++)
+				if (distance(p[i], p[j]) > most) {
+					most = distance(p[i], p[j]);
+					for (int k = 0; k < 3; k++)
+						along[k] = (p[i][k] - p[j][k]) / most;
+				}
+		brute = brute_width(p, POINTS, along);
+		near(length, most, 1e-12 * most, "random points: length");
+		/* The levels miss the height of the corner by half a step at the most, on
+		 * which the width changes by no more than some of them. */
+		ok(brute <= width * (1 + 1e-12) && brute > width * (1 - 10. / LEVELS),
+			"random points: width %g, by brute force %g", width, brute);
+	}
+}
+
+int main(void)
+{
+	test_known();
+	test_random();
+	return tap_done();
+}
