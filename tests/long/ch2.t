@@ -10,7 +10,7 @@ cell() {
 }
 
 ok "ch2-steps runs" make -s -C "$top/examples/ch2-steps" BIN="$bin" OUT="$work" SEED=2 STEPS=3 \
-	numbers
+	table
 # The cells that a point load of 50 N fails have the volume of a ball of 307.0 um; a
 # single spot of contact comes near it, several stay below: 320 um with the grid's grain.
 ok "whole set, step 1: a particle of 250 to 320 um" awk -v d="$(cell 'fig 12 a largest particle, step 1' 6)" \
@@ -20,7 +20,7 @@ ok "columns lose less than the whole set" awk -v c="$(cell 'fig 13 mean volume o
 
 rm -f ./*
 ok "ch2-pairs runs" make -s -C "$top/examples/ch2-pairs" BIN="$bin" OUT="$work" PAIRS=4 BLOCK=2 \
-	STEPS=9 numbers
+	STEPS=9 table
 v50=$(cell 'fig 13 mean volume of a step' 5)
 v100=$(cell 'fig 13 mean volume of a step' 6)
 # 1.515e-11 m3 at 50 N, 2^1.5 times that at 100 N; more contacts only make it less.
