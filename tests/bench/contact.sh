@@ -54,11 +54,7 @@ all() {
 }
 
 all | tee bench.tsv
-command -v gnuplot >/dev/null || exit 0
-mkdir -p "$top/build/bench"
-gnuplot <<END
-set terminal pngcairo size 1400, 600
-set output "$top/build/bench/contact.png"
+plot contact 1400,600 <<END
 set logscale xy
 set format y "%.0e"
 set xlabel "seconds"

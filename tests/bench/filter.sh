@@ -122,11 +122,7 @@ all() {
 }
 
 all | tee bench.tsv
-command -v gnuplot >/dev/null || exit 0
-mkdir -p "$top/build/bench"
-gnuplot <<EOF
-set terminal pngcairo size 900, 600
-set output "$top/build/bench/filter.png"
+plot filter 900,600 <<EOF
 set logscale xy
 set format y "%.0e"
 set xlabel "seconds for 2e6 samples"

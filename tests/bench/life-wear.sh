@@ -87,11 +87,7 @@ printf 'scene\tknob\terror\tseconds\tmemory_kb\n'
 		row rows $n nan
 	done
 } | tee bench.tsv
-command -v gnuplot >/dev/null || exit 0
-mkdir -p "$top/build/bench"
-gnuplot <<END
-set terminal pngcairo size 900, 600
-set output "$top/build/bench/life-wear.png"
+plot life-wear 900,600 <<END
 set logscale xy
 set xlabel "seconds"
 set ylabel "error"

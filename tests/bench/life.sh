@@ -72,11 +72,7 @@ all() {
 }
 
 all | tee table
-command -v gnuplot >/dev/null || exit 0
-mkdir -p "$top/build/bench"
-gnuplot <<END
-set terminal pngcairo size 1000,450
-set output "$top/build/bench/life.png"
+plot life 1000,450 <<END
 set datafile separator "\t"
 set logscale xy
 set multiplot layout 1,2
@@ -90,4 +86,3 @@ set ylabel "error of the end of life / life"
 plot for [s in "grey-7 grey-20 grey-window grey-insample grey-all average-window"] \
 	"< grep '^".s."\t' table" using 5:3 with linespoints title s
 END
-echo "plot: $top/build/bench/life.png" >&2

@@ -16,11 +16,7 @@ all() {
 }
 
 all | tee bench.tsv
-command -v gnuplot >/dev/null || exit 0
-mkdir -p "$top/build/bench"
-gnuplot <<END
-set terminal pngcairo size 900, 600
-set output "$top/build/bench/multiply.png"
+plot multiply 900,600 <<END
 set logscale xy
 set format y "%.0e"
 set xlabel "seconds"

@@ -57,11 +57,7 @@ delays() {
 		printf "arrivals\t%s M=%d %d dB\t%s\t%.3g\t%s\t%s\t%s\tnan\n", c[1], c[2], c[3],
 			c[5], c[7] / b[c[2], c[3]], "nan", "nan", c[9] } }' arrivals.tsv
 } | tee bench.tsv
-command -v gnuplot >/dev/null || exit 0
-mkdir -p "$top/build/bench"
-gnuplot <<EOF
-set terminal pngcairo size 1200, 600
-set output "$top/build/bench/networks.png"
+plot networks 1200,600 <<EOF
 set datafile separator "\t"
 set logscale xy
 set multiplot layout 1, 2
@@ -88,4 +84,3 @@ plot for [m in "network network+fit fit"] \
 	sprintf("< awk -F '\t' -v n='%s' '\$1 == \"arrivals\" && index(\$2, n \" \") == 1' bench.tsv", m) \
 	using 7:4 with points pointsize 1.5 title m
 EOF
-echo "# plot: build/bench/networks.png"

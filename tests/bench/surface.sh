@@ -40,11 +40,7 @@ all() {
 }
 
 all | tee bench.tsv
-command -v gnuplot >/dev/null || exit 0
-mkdir -p "$top/build/bench"
-gnuplot <<EOF
-set terminal pngcairo size 900, 600
-set output "$top/build/bench/surface.png"
+plot surface 900,600 <<EOF
 set logscale xy
 set format y "%.0e"
 set xlabel "seconds"
