@@ -2,21 +2,8 @@
 # Stiff and extreme scenes of sensorsim and bpfilter: accurate, or refused in one line.
 # A description reads: scene | expectation | outcome | error
 . "$(dirname "$0")/../tap.sh"
+. "$top/tests/extremes/scenes.sh"
 . "$top/tests/au.sh"
-
-# scene NAME EXPECTATION WANT TOLERANCE GOT: a number within its tolerance
-scene() {
-	error=$(awk -v g="$5" -v w="$3" 'BEGIN { if (g !~ /^[-+]?[0-9.]/) print "none"
-		else { d = g - w; printf "%.1e", d < 0 ? -d : d } }')
-	near "$1 | $2 | $5 | $error" "$error" 0 "$4"
-}
-
-# refused NAME STATUS PATTERN COMMAND...
-refused() {
-	name=$1
-	shift
-	fails "$name | refused in one line | status $1: $2 | none" "$@"
-}
 
 # level FREQUENCY OPTION...: gain in dB, by the nearest row of the response
 level() {

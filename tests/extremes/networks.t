@@ -2,26 +2,13 @@
 # Stiff and extreme scenes of delaynet: accurate, or refused in one line.
 # A description reads: scene | expectation | outcome | error
 . "$(dirname "$0")/../tap.sh"
-
-# scene NAME EXPECTATION WANT TOLERANCE GOT: a number within its tolerance
-scene() {
-	error=$(awk -v g="$5" -v w="$3" 'BEGIN { if (g !~ /^[-+]?[0-9.]/) print "none"
-		else { d = g - w; printf "%.1e", d < 0 ? -d : d } }')
-	near "$1 | $2 | $5 | $error" "$error" 0 "$4"
-}
+. "$top/tests/extremes/scenes.sh"
 
 # alike NAME EXPECTATION FILE FILE: the same weights
 alike() {
 	sed '/^#/d' "$3" >one
 	sed '/^#/d' "$4" >two
 	same "$1 | $2 | the same | 0" one two
-}
-
-# refused NAME STATUS PATTERN COMMAND...
-refused() {
-	name=$1
-	shift
-	fails "$name | refused in one line | status $1: $2 | none" "$@"
 }
 
 # error COLUMN OPTION...: of the net on standard input, clean samples
