@@ -5,6 +5,7 @@
 #include "shell/msg.h"
 #include "shell/series.h"
 #include "shell/stats.h"
+#include "timeunit.h"
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -15,13 +16,11 @@ static const char *const directions[] = { "up", "down", "auto", NULL };
 static const char *const models[] = { "average", "linear", "exponential", "power", "rate",
 	"grey", "literal", NULL };
 static const char *const skips[] = { "auto", NULL };
-static const char *const time_units[] = { "s", "min", "h", "d", NULL };
-static const double seconds[] = { 1, 60, 3600, 86400 };
 
 struct outlook_options outlook_options = { .threshold = NAN };
 
 static double after = -INFINITY, horizon;
-static int direction = 2, model, time_unit;
+static int direction = 2, model;
 static long persist = 3;
 static struct opt_choice skip = { -1, 0 };
 static struct opt_list levels = { 3, { 0.05, 0.5, 0.95 } };
@@ -57,9 +56,7 @@ struct opt outlook_model_rows[] = {
 		"levels of the quantiles of remaining life", NULL, 0 },
 	{ 'F', "fleet", OPT_TEXT, UNIT_NONE, &fleet_file, 0, 0, "FILE",
 		"table of earlier units that reached the threshold: unit t y", NULL, 0 },
-	{ 't', "time-unit", OPT_WORD, UNIT_NONE, &time_unit, 0, 0, "s|min|h|d",
-		"unit of the time column", time_units, 0 },
-	OPT_END
+	OPT_TABLE(timeunit_rows), OPT_END
 };
 
 static struct fleet *fleet; /* NULL without --fleet */
@@ -140,7 +137,7 @@ static void start(struct outlook *o, double y)
 		.direction = direction == 2 ? (y <= outlook_options.threshold ? 1 : -1)
 					    : 1 - 2 * direction,
 		.zero = outlook_options.zero,
-		.horizon = horizon / seconds[time_unit],
+		.horizon = horizon / timeunit(),
 		.fleet = fleet,
 		.adaptive = o->filter,
 		.draws = model == PREDICT_LITERAL ? (int)filtering.particles : 500,
@@ -161,7 +158,7 @@ static void learn(struct outlook *o, double t, double y, const struct adaptive_r
 		predict_restart(o->predict);
 		stats_add("run_ins", 1);
 	}
-	if (skip.word == 0 || t - o->first >= skip.value / seconds[time_unit])
+	if (skip.word == 0 || t - o->first >= skip.value / timeunit())
 		predict_add(o->predict, t, y, row->state + outlook_options.zero);
 	else
 		stats_add("rows_skipped", 1);
@@ -170,7 +167,7 @@ static void learn(struct outlook *o, double t, double y, const struct adaptive_r
 static void put_life(struct outlook *o, struct table_out *out, double t, double y)
 {
 	double q[OPT_LIST_MAX], never = NAN;
-	int wanted = t >= after / seconds[time_unit];
+	int wanted = t >= after / timeunit();
 
 	if (!isnan(y))
 		o->beyond = o->runin.direction * (y - outlook_options.threshold) >= 0

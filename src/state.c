@@ -1,13 +1,12 @@
 #include "state.h"
 #include "life/slope.h"
 #include "shell/msg.h"
+#include "timeunit.h"
 #include <math.h>
 #include <stdlib.h>
 
 static const char *const quantities[] = { "auto", "leakage", "gap", "volume", "debris",
 	NULL };
-static const char *const time_units[] = { "s", "min", "h", "d", NULL };
-static const double time_scale[] = { 1, 60, 3600, 86400 };
 static const double sphere = 0.52359877559829887; /* pi / 6 */
 
 struct state_options state_options;
@@ -19,9 +18,7 @@ struct opt state_rows[] = {
 		"unit of the state, where not SI: L/min", 0, 0 },
 	{ 'X', "state-error", OPT_NUM, UNIT_NONE, &state_options.error, 0, 1e300, "SD",
 		"standard error of the state, in its unit", 0, 0 },
-	{ 't', "time-unit", OPT_WORD, UNIT_NONE, &state_options.time_unit, 0, 0,
-		"s|min|h|d", "unit of the times read", time_units, 0 },
-	OPT_END
+	OPT_TABLE(timeunit_rows), OPT_END
 };
 
 void state_open(struct state *s, const char *file, const struct pair *pair)
@@ -70,7 +67,7 @@ int state_next(struct state *s)
 
 	if (!table_next(t))
 		return 0;
-	time = table_number(t, s->time_column) * time_scale[state_options.time_unit];
+	time = table_number(t, s->time_column) * timeunit();
 	value = table_number(t, s->value_column) * s->scale;
 	if (!isfinite(time))
 		die(EXIT_RUN, "%s: line %ld: the time is missing", table_name(t),

@@ -18,7 +18,7 @@
 
 /* Values of the options. */
 extern struct state_options {
-	int quantity, time_unit;
+	int quantity;
 	const char *unit;
 	double error; /* in that unit */
 } state_options;
