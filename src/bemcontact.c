@@ -6,7 +6,6 @@
 #include "shell/msg.h"
 #include "shell/opt.h"
 #include "shell/stats.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -10,7 +10,6 @@
 #include "shell/tables.h"
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #ifdef WITH_OPENBLAS
 void openblas_set_num_threads(int threads);

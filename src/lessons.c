@@ -1,7 +1,6 @@
 #include "lessons.h"
 #include "shell/msg.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846

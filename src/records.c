@@ -157,64 +157,83 @@ static void check_picked(const struct fields_in *in)
 				(long)pick.v[i], fields_count(in));
 }
 
+/* What is written, and what has been. */
+struct output {
+	struct fields_out *fields;
+	struct table_out *table;
+	char *names; /* of the fields of a table */
+	long records;
+};
+
+static void open_output(struct output *o)
+{
+	if (format == NRRD)
+		o->fields = fields_create(NULL);
+	if (format == LIST)
+		o->table = table_create(NULL, NULL, NULL,
+			"record realisation field unit nx ny nz dx dy min mean max");
+}
+
+static void put_record(struct output *o, struct record *r, const struct fields_in *in)
+{
+	o->records++;
+	switch (format) {
+	case LIST:
+		list_record(o->table, r, fields_count(in));
+		break;
+	case NRRD:
+		fields_write(o->fields, r);
+		break;
+	case GSF:
+		if (o->records > 1 || r->nfields != 1 || r->nz > 1)
+			die(EXIT_USAGE,
+				"GSF holds one plane field: use --pick and --field");
+		fields_write_gsf(stdout, r, 0);
+		break;
+	case TEXT:
+		print_text(r);
+		break;
+	case TABLE:
+		check_fields(&o->names, r, in);
+		if (!o->table)
+			o->table = create_table(r);
+		print_table(o->table, r);
+		break;
+	default:
+		break;
+	}
+}
+
+static void close_output(struct output *o)
+{
+	if (format == COUNT)
+		printf("%ld\n", o->records);
+	if (o->fields)
+		fields_done(o->fields);
+	if (o->table)
+		table_done(o->table);
+	free(o->names);
+}
+
 int main(int argc, char **argv)
 {
 	int first = opt_parse(&prog, argc, argv);
+	struct fields_in *in = fields_open(argv[first], raw_given());
+	struct output out = { 0 };
 	struct record r = { 0 };
-	struct fields_in *in;
-	struct fields_out *out = NULL;
-	struct table_out *table = NULL;
-	char *names = NULL;
-	long count = 0;
 
-	in = fields_open(argv[first], raw_given());
-	if (format == NRRD)
-		out = fields_create(NULL);
-	if (format == LIST)
-		table = table_create(NULL, NULL, NULL,
-			"record realisation field unit nx ny nz dx dy min mean max");
+	open_output(&out);
 	while (fields_read(in, &r)) {
 		if (!picked(fields_count(in)))
 			continue;
-		count++;
 		if (field)
 			keep_field(&r, in);
-		switch (format) {
-		case LIST:
-			list_record(table, &r, fields_count(in));
-			break;
-		case NRRD:
-			fields_write(out, &r);
-			break;
-		case GSF:
-			if (count > 1 || r.nfields != 1 || r.nz > 1)
-				die(EXIT_USAGE,
-					"GSF holds one plane field: use --pick and --field");
-			fields_write_gsf(stdout, &r, 0);
-			break;
-		case TEXT:
-			print_text(&r);
-			break;
-		case TABLE:
-			check_fields(&names, &r, in);
-			if (!table)
-				table = create_table(&r);
-			print_table(table, &r);
-			break;
-		default:
-			break;
-		}
+		put_record(&out, &r, in);
 	}
 	check_picked(in);
-	if (format == COUNT)
-		printf("%ld\n", count);
-	if (out)
-		fields_done(out);
-	if (table)
-		table_done(table);
-	free(names);
+	close_output(&out);
 	record_free(&r);
 	fields_close(in);
-	stats_set("records", (double)count);
+	stats_set("records", (double)out.records);
 	return shell_done(EXIT_SUCCESS);
 }

@@ -3,7 +3,6 @@
 #include "press.h"
 #include "shell/msg.h"
 #include "shell/stats.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 

@@ -2,7 +2,6 @@
 #include "shell/bytes.h"
 #include "shell/formats.h"
 #include "shell/msg.h"
-#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>

@@ -9,7 +9,6 @@
 #include "shell/msg.h"
 #include "shell/unit.h"
 #include <ctype.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
