@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { UP, DOWN, AUTO };
 static const char *const directions[] = { "up", "down", "auto", NULL };
 static const char *const models[] = { "average", "linear", "exponential", "power", "rate",
 	"grey", "literal", NULL };
@@ -20,7 +21,7 @@ static const char *const skips[] = { "auto", NULL };
 struct outlook_options outlook_options = { .threshold = NAN };
 
 static double after = -INFINITY, horizon;
-static int direction = 2, model;
+static int direction = AUTO, model;
 static long persist = 3;
 static struct opt_choice skip = { -1, 0 };
 static struct opt_list levels = { 3, { 0.05, 0.5, 0.95 } };
@@ -77,7 +78,7 @@ void outlook_check(void)
 	for (int k = 1; k < levels.n; k++)
 		if (levels.v[k] <= levels.v[k - 1])
 			die(EXIT_USAGE, "--levels: want rising levels");
-	if (fleet_file && (isnan(outlook_options.threshold) || direction == 2))
+	if (fleet_file && (isnan(outlook_options.threshold) || direction == AUTO))
 		die(EXIT_USAGE, "--fleet wants --threshold and --direction up or down");
 }
 
@@ -89,7 +90,7 @@ void outlook_open(const char *unit_column)
 	if (!fleet_file)
 		return;
 	in = series_open(fleet_file, unit_column ? unit_column : "unit");
-	fleet = fleet_new(outlook_options.threshold, 1 - 2 * direction);
+	fleet = fleet_new(outlook_options.threshold, direction == UP ? 1 : -1);
 	added = fleet != NULL;
 	while (added && series_next(in))
 		if (!isnan(series_value(in)))
@@ -131,11 +132,11 @@ void outlook_free(struct outlook *o)
 /* Prediction begins with the first value, which may tell the direction. */
 static void start(struct outlook *o, double y)
 {
+	int up = direction == AUTO ? y <= outlook_options.threshold : direction == UP;
 	struct predict_par par = {
 		.model = (enum predict_model)model,
 		.threshold = outlook_options.threshold,
-		.direction = direction == 2 ? (y <= outlook_options.threshold ? 1 : -1)
-					    : 1 - 2 * direction,
+		.direction = up ? 1 : -1,
 		.zero = outlook_options.zero,
 		.horizon = horizon / timeunit(),
 		.fleet = fleet,
