@@ -1,4 +1,5 @@
 #include "contact/chords.h"
+#include "num/room.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,10 +10,10 @@ enum { X, Y, Z };
 struct chords {
 	const struct hull_edge *edge; /* the hull's */
 	size_t edges, corners;
-	size_t room;         /* of each of these: */
 	double (*corner)[3]; /* of the hull, m */
 	double *height;      /* of the corners along the longest chord */
 	double (*cut)[3];    /* corners of a section */
+	size_t corner_room, height_room, cut_room;
 };
 
 struct chords *chords_new(void)
@@ -28,24 +29,6 @@ void chords_free(struct chords *c)
 	free(c->height);
 	free(c->cut);
 	free(c);
-}
-
-/* Whatever was there is lost. */
-static int make_room(struct chords *c, size_t want)
-{
-	if (want <= c->room)
-		return 0;
-	free(c->corner);
-	free(c->height);
-	free(c->cut);
-	c->room = 2 * want;
-	c->corner = malloc(c->room * sizeof(*c->corner));
-	c->height = malloc(c->room * sizeof(*c->height));
-	c->cut = malloc(c->room * sizeof(*c->cut));
-	if (c->corner && c->height && c->cut)
-		return 0;
-	c->room = 0;
-	return -1;
 }
 
 static double distance2(const double a[3], const double b[3])
@@ -146,7 +129,9 @@ int chords_measure(struct chords *c, const struct hull *h, const double step[3],
 	double along[3];
 
 	c->edge = hull_edges(h, &c->edges);
-	if (make_room(c, c->corners + c->edges))
+	if (room_for(&c->corner, &c->corner_room, c->corners, sizeof(*c->corner)) ||
+		room_for(&c->height, &c->height_room, c->corners, sizeof(*c->height)) ||
+		room_for(&c->cut, &c->cut_room, c->corners + c->edges, sizeof(*c->cut)))
 		return -1;
 	for (size_t i = 0; i < c->corners; i++)
 		for (int k = X; k <= Z; k++)

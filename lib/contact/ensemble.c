@@ -1,4 +1,5 @@
 #include "contact/ensemble.h"
+#include "num/room.h"
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -34,20 +35,6 @@ void ensemble_free(struct ensemble *e)
 	free(e);
 }
 
-/* The array with room for one more than n, NULL when out of memory. */
-static void *grow(void *array, size_t n, size_t *room, size_t size)
-{
-	size_t more = *room ? 2 * *room : 1024;
-	void *p;
-
-	if (n < *room)
-		return array;
-	p = more <= SIZE_MAX / size ? realloc(array, more * size) : NULL;
-	if (p)
-		*room = more;
-	return p;
-}
-
 static void note_step(struct ensemble *e, long step)
 {
 	e->steps = step > e->steps ? step : e->steps;
@@ -55,11 +42,8 @@ static void note_step(struct ensemble *e, long step)
 
 int ensemble_add(struct ensemble *e, const struct shed *particle)
 {
-	struct shed *row = grow(e->row, e->rows, &e->row_room, sizeof *row);
-
-	if (!row)
+	if (room_for(&e->row, &e->row_room, e->rows + 1, sizeof *e->row))
 		return -1;
-	e->row = row;
 	e->row[e->rows++] = *particle;
 	note_step(e, particle->step);
 	return 0;
@@ -67,11 +51,8 @@ int ensemble_add(struct ensemble *e, const struct shed *particle)
 
 int ensemble_took_place(struct ensemble *e, long realisation, long step)
 {
-	struct mark *mark = grow(e->mark, e->marks, &e->mark_room, sizeof *mark);
-
-	if (!mark)
+	if (room_for(&e->mark, &e->mark_room, e->marks + 1, sizeof *e->mark))
 		return -1;
-	e->mark = mark;
 	e->mark[e->marks++] = (struct mark){ realisation, step };
 	note_step(e, step);
 	return 0;

@@ -2,6 +2,7 @@
  * rim.  "Sees" is strict and exact, so a face in whose plane the point lies stays, and no
  * face of zero area arises. */
 #include "contact/hull.h"
+#include "num/room.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -59,30 +60,13 @@ static void normal(const struct hull_point *a, const struct hull_point *b,
 	n[2] = u[0] * w[1] - u[1] * w[0];
 }
 
-/* Room for want elements; the array as it is now, NULL when out of memory. */
-static void *grown(void *p, size_t *room, size_t want, size_t size)
-{
-	size_t more = *room ? *room : 64;
-	void *q;
-
-	if (want <= *room)
-		return p;
-	while (more < want)
-		more *= 2;
-	q = realloc(p, more * size);
-	if (q)
-		*room = more;
-	return q;
-}
-
 static int add_face(struct hull *h, int a, int b, int c)
 {
-	struct face *f = grown(h->face, &h->face_room, h->nfaces + 1, sizeof(*f));
+	struct face *f;
 
-	if (!f)
+	if (room_for(&h->face, &h->face_room, h->nfaces + 1, sizeof(*f)))
 		return -1;
-	h->face = f;
-	f += h->nfaces++;
+	f = &h->face[h->nfaces++];
 	f->v[0] = a, f->v[1] = b, f->v[2] = c;
 	normal(&h->point[a], &h->point[b], &h->point[c], f->n);
 	f->level = dot(f->n, &h->point[a]);
@@ -91,11 +75,8 @@ static int add_face(struct hull *h, int a, int b, int c)
 
 static int add_edge(struct hull *h, int from, int to)
 {
-	struct hull_edge *e = grown(h->edge, &h->edge_room, h->edges + 1, sizeof(*e));
-
-	if (!e)
+	if (room_for(&h->edge, &h->edge_room, h->edges + 1, sizeof(*h->edge)))
 		return -1;
-	h->edge = e;
 	h->edge[h->edges++] = (struct hull_edge){ from, to };
 	return 0;
 }
@@ -228,12 +209,12 @@ static double volume6(const struct hull *h)
 /* Keeps the points that are corners of a face, and lists the edges. */
 static int collect(struct hull *h)
 {
-	int *place = grown(h->place, &h->place_room, h->points, sizeof(*place));
+	int *place;
 	size_t kept = 0;
 
-	if (!place)
+	if (room_for(&h->place, &h->place_room, h->points, sizeof(*place)))
 		return -1;
-	h->place = place;
+	place = h->place;
 	memset(place, 0, h->points * sizeof(*place));
 	for (size_t i = 0; i < h->nfaces; i++)
 		for (int k = 0; k < 3; k++)
@@ -258,12 +239,12 @@ static int collect(struct hull *h)
 
 int hull_build(struct hull *h, struct hull_point *point, size_t count)
 {
-	struct hull_point *p = grown(h->point, &h->point_room, count, sizeof(*p));
+	struct hull_point *p;
 	int c[4];
 
-	if (!p)
+	if (room_for(&h->point, &h->point_room, count, sizeof(*p)))
 		return -1;
-	h->point = p;
+	p = h->point;
 	for (int axis = 0; axis < 3; axis++)
 		count = drop_lines(point, count, axis);
 	h->points = count;

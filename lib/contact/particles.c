@@ -6,6 +6,7 @@
 #include "contact/chords.h"
 #include "contact/hull.h"
 #include "contact/sym3.h"
+#include "num/room.h"
 
 #include <errno.h>
 #include <math.h>
@@ -63,25 +64,6 @@ struct particles {
 	struct particle *done;
 	size_t ndone, done_room;
 };
-
-/* Makes room for want elements in the array whose pointer stands at *array. */
-static int need(void *array, size_t *room, size_t want, size_t size)
-{
-	size_t more = *room ? *room : 64;
-	void *p, *q;
-
-	if (want <= *room)
-		return 0;
-	while (more < want)
-		more *= 2;
-	memcpy(&p, array, sizeof(p));
-	q = realloc(p, more * size);
-	if (!q)
-		return -1;
-	memcpy(array, &q, sizeof(q));
-	*room = more;
-	return 0;
-}
 
 struct particles *particles_new(const struct particles_par *par)
 {
@@ -147,7 +129,7 @@ static int put_corner(struct particles *ps, struct body *b, int x, int y, int z)
 	if (at != NONE) {
 		ps->free_corner = ps->corner[at].next;
 	} else {
-		if (need(&ps->corner, &ps->corner_room, ps->corners + 1,
+		if (room_for(&ps->corner, &ps->corner_room, ps->corners + 1,
 			    sizeof(*ps->corner)))
 			return -1;
 		at = (int)ps->corners++;
@@ -175,7 +157,7 @@ static int build_hull(struct particles *ps, const struct body *b)
 {
 	size_t n = 0;
 
-	if (need(&ps->scratch, &ps->scratch_room, b->corners, sizeof(*ps->scratch)))
+	if (room_for(&ps->scratch, &ps->scratch_room, b->corners, sizeof(*ps->scratch)))
 		return -1;
 	for (int at = b->corner; at != NONE; at = ps->corner[at].next)
 		ps->scratch[n++] = ps->corner[at].at;
@@ -207,14 +189,14 @@ static int body_new(struct particles *ps)
 {
 	if (ps->nidle > 0)
 		return ps->idle[--ps->nidle];
-	if (need(&ps->body, &ps->body_room, ps->bodies + 1, sizeof(*ps->body)))
+	if (room_for(&ps->body, &ps->body_room, ps->bodies + 1, sizeof(*ps->body)))
 		return NONE;
 	return (int)ps->bodies++;
 }
 
 static int set_idle(struct particles *ps, int body)
 {
-	if (need(&ps->idle, &ps->idle_room, ps->nidle + 1, sizeof(*ps->idle)))
+	if (room_for(&ps->idle, &ps->idle_room, ps->nidle + 1, sizeof(*ps->idle)))
 		return -1;
 	ps->body[body].layer = NONE;
 	ps->idle[ps->nidle++] = body;
@@ -365,7 +347,7 @@ static int unite(struct particles *ps, const struct run *p, const struct run *q,
 	ps->body[b].parent = a;
 	ps->body[b].period[X] = move[X];
 	ps->body[b].period[Y] = move[Y];
-	if (need(&ps->taken, &ps->taken_room, ps->ntaken + 1, sizeof(*ps->taken)))
+	if (room_for(&ps->taken, &ps->taken_room, ps->ntaken + 1, sizeof(*ps->taken)))
 		return -1;
 	ps->taken[ps->ntaken++] = b;
 	return reduce(ps, &ps->body[a]);
@@ -386,7 +368,7 @@ static int scan_row(struct particles *ps, const unsigned char *mask, int y)
 		r.end = (int)(at - mask);
 		r.body = body_of_run(ps, y, r.begin, r.end);
 		if (r.body == NONE ||
-			need(&s->run, &s->room, s->count + 1, sizeof(*s->run)))
+			room_for(&s->run, &s->room, s->count + 1, sizeof(*s->run)))
 			return -1;
 		s->run[s->count++] = r;
 	}
@@ -507,7 +489,7 @@ static int measure(struct particles *ps, const struct body *b)
 	double step[3] = { ax, ay, az }, at[3], back[3];
 	struct particle *p;
 
-	if (need(&ps->done, &ps->done_room, ps->ndone + 1, sizeof(*ps->done)))
+	if (room_for(&ps->done, &ps->done_room, ps->ndone + 1, sizeof(*ps->done)))
 		return -1;
 	p = &ps->done[ps->ndone];
 	p->nodes = b->nodes;

@@ -1,5 +1,6 @@
 /* partition.c - see partition.h */
 #include "life/partition.h"
+#include "num/room.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -91,15 +92,8 @@ enum partition_status partition_fragment(struct partition *p, int class, long re
 		last->large += large;
 		return PARTITION_OK;
 	}
-	if (!c->cell || c->ncells == c->cell_room) {
-		size_t room = c->cell_room ? 2 * c->cell_room : 256;
-		struct cell *more = realloc(c->cell, room * sizeof *more);
-
-		if (!more)
-			return PARTITION_MEMORY;
-		c->cell = more;
-		c->cell_room = room;
-	}
+	if (room_for(&c->cell, &c->cell_room, c->ncells + 1, sizeof *c->cell))
+		return PARTITION_MEMORY;
 	c->cell[c->ncells++] = (struct cell){ realisation, step, volume, count, large };
 	return PARTITION_OK;
 }

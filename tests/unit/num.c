@@ -3,8 +3,10 @@
 #include "num/philox.h"
 #include "num/pool.h"
 #include "num/rng.h"
+#include "num/room.h"
 #include "tap.h"
 #include <gsl/gsl_randist.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -179,8 +181,28 @@ static void test_fft(size_t nx, size_t ny)
 	fft_done(fft);
 }
 
+static void test_room(void)
+{
+	int *x = NULL, kept = 1, *before;
+	size_t room = 0, had;
+
+	for (int i = 0; i < 1000; i++)
+		if (room_for(&x, &room, (size_t)i + 1, sizeof *x) == 0)
+			x[i] = i;
+	for (int i = 0; i < 1000; i++)
+		kept &= x[i] == i;
+	ok(kept && room >= 1000, "an array grows and keeps what is in it");
+	before = x;
+	had = room;
+	ok(room_for(&x, &room, SIZE_MAX / 4, sizeof *x) == -1 && x == before &&
+			room == had,
+		"more than there can be is refused, the array stays");
+	free(x);
+}
+
 int main(void)
 {
+	test_room();
 	test_philox();
 	test_philox_row();
 	test_rng();
