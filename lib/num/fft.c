@@ -43,6 +43,16 @@ size_t fft_good_size(size_t n)
 	}
 }
 
+static void destroy(fftw_plan forward, fftw_plan inverse)
+{
+	pthread_mutex_lock(&planner);
+	if (forward)
+		fftw_destroy_plan(forward);
+	if (inverse)
+		fftw_destroy_plan(inverse);
+	pthread_mutex_unlock(&planner);
+}
+
 struct fft *fft_new(size_t nx, size_t ny)
 {
 	struct fft *fft = calloc(1, sizeof *fft);
@@ -79,12 +89,7 @@ void fft_done(struct fft *fft)
 {
 	if (!fft)
 		return;
-	pthread_mutex_lock(&planner);
-	if (fft->forward)
-		fftw_destroy_plan(fft->forward);
-	if (fft->inverse)
-		fftw_destroy_plan(fft->inverse);
-	pthread_mutex_unlock(&planner);
+	destroy(fft->forward, fft->inverse);
 	free(fft);
 }
 
@@ -129,11 +134,6 @@ void fft_line_done(struct fft_line *line)
 {
 	if (!line)
 		return;
-	pthread_mutex_lock(&planner);
-	if (line->forward)
-		fftw_destroy_plan(line->forward);
-	if (line->inverse)
-		fftw_destroy_plan(line->inverse);
-	pthread_mutex_unlock(&planner);
+	destroy(line->forward, line->inverse);
 	free(line);
 }
