@@ -49,7 +49,7 @@ struct source {
 	struct stream stream;
 	struct arrivals *arrivals; /* NULL: times stand in the table */
 	struct table_in *table;    /* NULL: all is drawn, or was read into diameters */
-	int c_time, c_diameter, c_velocity;
+	int time_column, diameter_column, velocity_column;
 	double *diameters; /* of a table without times */
 	uint64_t count;    /* particles handed out */
 	char *cmd;         /* pipeline that made the table; NULL: none */
@@ -120,7 +120,7 @@ static void make_arrivals(struct source *s, uint64_t n)
 
 static double read_diameter(const struct source *s)
 {
-	double d = table_number(s->table, s->c_diameter), bore = s->stream.pipe.bore;
+	double d = table_number(s->table, s->diameter_column), bore = s->stream.pipe.bore;
 
 	if (!(d > 0 && d < bore))
 		die(EXIT_RUN,
@@ -164,14 +164,14 @@ struct source *source_open(const char *path, uint64_t seed, uint32_t realisation
 	}
 	s->table = table_open(path);
 	s->cmd = table_key(s->table, "cmd") ? xstrdup(table_key(s->table, "cmd")) : NULL;
-	s->c_diameter = table_need(s->table, "diameter");
-	s->c_velocity = table_find(s->table, "velocity");
-	s->c_time = table_find(s->table, "time");
-	if (s->c_time < 0)
-		s->c_time = table_find(s->table, "time1");
-	if (s->c_velocity >= 0)
+	s->diameter_column = table_need(s->table, "diameter");
+	s->velocity_column = table_find(s->table, "velocity");
+	s->time_column = table_find(s->table, "time");
+	if (s->time_column < 0)
+		s->time_column = table_find(s->table, "time1");
+	if (s->velocity_column >= 0)
 		s->slowest = 0.01 * pipe_mean_velocity(&s->stream.pipe);
-	if (s->c_time < 0)
+	if (s->time_column < 0)
 		read_diameters(s);
 	return s;
 }
@@ -184,15 +184,15 @@ static int next_row(struct source *s, struct passage *p)
 	if (!table_next(t))
 		return 0;
 	p->diameter = read_diameter(s);
-	p->time[0] = table_number(t, s->c_time);
+	p->time[0] = table_number(t, s->time_column);
 	if (!(fabs(p->time[0]) <= 1e9) || (s->count && p->time[0] < before))
 		die(EXIT_RUN,
 			"%s: line %ld: time %g s, want times in order, up to 1e9 s (before: %g s)",
 			table_name(t), table_line(t), p->time[0], before);
 	passage_carry(&s->stream, s->count, p);
-	if (s->c_velocity < 0)
+	if (s->velocity_column < 0)
 		return 1;
-	p->velocity = table_number(t, s->c_velocity);
+	p->velocity = table_number(t, s->velocity_column);
 	if (!(p->velocity >= s->slowest && isfinite(p->velocity)))
 		die(EXIT_RUN,
 			"%s: line %ld: velocity %g m/s, want at least 1 %% of the oil's, "

@@ -24,7 +24,7 @@ void wearing_contact(
  * not converge. */
 int wearing_press(
 	struct wearing *w, const struct worn_surface *c, double target, long step);
-/* Wears c; what was lost is valid until the next call. */
+/* Wears c; what was lost is valid until the next call.  The distance is the caller's. */
 struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c, long step);
 
 /* Of the grid, in the direction in which the bodies slide. */

@@ -11,16 +11,17 @@ extern struct opt worn_rows[]; /* for OPT_TABLE: the files besides the particles
 /* A surface and what is kept of it from step to step. */
 struct worn_surface {
 	struct record *r; /* holds h and p */
-	double *h, *p;    /* height and pressure */
-	double crown;     /* its drop, part of h */
-	double sq;        /* when new, the crown taken off */
+	double *h, *p;    /* height, m, and pressure, Pa */
+	double crown;     /* its drop, part of h, m */
+	double sq;        /* rms height when new, the crown taken off, m */
 };
 
 /* Root mean square height, the crown taken off. */
 double worn_roughness(const struct worn_surface *c);
 
+/* A step of wear and what it took off. */
 struct worn_step {
-	long number;
+	long number;     /* from 1, over all programs of a pipeline */
 	double distance; /* slid so far, m */
 	const struct debris_step *lost;
 	struct stress *stress; /* below the contact */
