@@ -65,11 +65,17 @@ static void check_options(void)
 			order);
 }
 
+static struct fir_band make_band(double fs)
+{
+	return (struct fir_band){ (int)order, edges.v[0] / fs, edges.v[1] / fs,
+		(enum fir_window)window,
+		window == FIR_KAISER ? fir_kaiser_beta(attenuation) : 0, !no_scale };
+}
+
 /* Taps for this sampling rate; name is where the rate came from. */
 static double *make_taps(double fs, const char *name)
 {
-	struct fir_band band = { (int)order, edges.v[0] / fs, edges.v[1] / fs,
-		(enum fir_window)window, fir_kaiser_beta(attenuation), !no_scale };
+	struct fir_band band = make_band(fs);
 	double *h = xcalloc((size_t)order + 1, sizeof *h);
 
 	if (band.high > 0.5)
@@ -192,6 +198,16 @@ static struct lines *make_lines(double fs, int channels, size_t *hop)
 	return lines;
 }
 
+/* The filters passed so far, and this one. */
+static char *filters_passed(const char *before, double fs)
+{
+	struct fir_band band = make_band(fs);
+	char text[FIR_TEXT];
+
+	fir_print(&band, fs, text);
+	return before ? xprintf("%s | %s", before, text) : xprintf("%s", text);
+}
+
 static struct chain make_chain(struct signal_format f, const char *name)
 {
 	struct chain c = { .skip = zero_phase ? (size_t)order / 2 : 0,
@@ -211,8 +227,10 @@ static struct chain make_chain(struct signal_format f, const char *name)
 	c.piece = xcalloc(fir_block(c.fir) * c.channels, sizeof *c.piece);
 	f.cmd = opt_cmd(f.cmd, NULL);
 	f.single = single;
+	f.filter = filters_passed(f.filter, fs);
 	c.out = signal_create(NULL, &f);
 	free(f.cmd);
+	free(f.filter);
 	return c;
 }
 

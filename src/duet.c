@@ -126,7 +126,7 @@ static void separate_all(struct signal_in *in, struct found *out)
 		.want_sources = separated != NULL,
 		.context = out };
 
-	par.known = instrument_par(rate);
+	par.known = instrument_par(rate, signal_format(in)->filter);
 	if (separated || histogram || sections)
 		par.on_section = found_section;
 	if (!isnan(latency)) {
@@ -136,6 +136,7 @@ static void separate_all(struct signal_in *in, struct found *out)
 	}
 	separate_record(in, out, &par);
 	network_free(par.network);
+	free(par.known.filter);
 }
 
 static void count_all(struct signal_in *in, struct found *out)

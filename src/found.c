@@ -12,7 +12,7 @@ static const char *const verdicts[] = { "alone", "overlap", "misfit", "unresolve
 void found_open(struct found *out, const struct signal_format *format, const char *cmd)
 {
 	struct signal_format many = { format->rate, SOURCES_SHOWN, 0, (char *)cmd, NULL,
-		NULL };
+		NULL, NULL };
 
 	out->rate = format->rate;
 	out->particles = table_create(NULL, cmd, "1 s s m V s m/s s s m V s m/s 1 1 1 1",

@@ -1,6 +1,10 @@
 #include "instrument.h"
 #include "shell/msg.h"
+#include "shell/tables.h"
+#include "signal/fir.h"
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 struct instrument instrument = { .false_alarm = 1e-9 };
 
@@ -20,6 +24,9 @@ struct opt instrument_rows[] = { { 'p', "shape", OPT_WORD, UNIT_NONE, &instrumen
 		"P", "false particles per sample of noise", 0, 0 },
 	{ 'x', "spread", OPT_CHOICE, UNIT_FRACTION, &instrument.spread, 0, 0.9, "auto|S",
 		"transit times within this share of --align", automatic, 0 },
+	{ 'u', "undo", OPT_TEXT, UNIT_NONE, &instrument.undo, 0, 0, "auto|none|FILE",
+		"taps of the filter the record has passed (auto: as it says itself)", 0,
+		0 },
 	OPT_END };
 
 static double number(const struct opt_choice *c)
@@ -32,7 +39,88 @@ double instrument_align(void)
 	return number(&instrument.align);
 }
 
-struct calibrate_par instrument_par(double rate)
+/* Convolves a[0..*n) with b[0..m) of another filter; a NULL is nothing. */
+static double *cascade(double *a, size_t *n, double *b, size_t m)
+{
+	double *both;
+
+	if (!a) {
+		*n = m;
+		return b;
+	}
+	both = xcalloc(*n + m - 1, sizeof *both);
+	for (size_t i = 0; i < *n; i++)
+		for (size_t k = 0; k < m; k++)
+			both[i + k] += a[i] * b[k];
+	free(a);
+	free(b);
+	*n += m - 1;
+	return both;
+}
+
+/* Taps of the filters named in the header of the record. */
+static double *filter_passed(const char *text, double rate, size_t *n)
+{
+	double *taps = NULL;
+
+	while (*text) {
+		struct fir_band band;
+		const char *rest = fir_parse(text, rate, &band);
+		double *one;
+
+		if (!rest) {
+			warn("a filter that is not known: '%s'", text);
+			free(taps);
+			return NULL;
+		}
+		one = xcalloc((size_t)band.order + 1, sizeof *one);
+		fir_design(&band, one);
+		taps = cascade(taps, n, one, (size_t)band.order + 1);
+		text = rest;
+	}
+	return taps;
+}
+
+/* Column tap of a table, as bpfilter --taps writes it. */
+static double *read_taps(const char *path, size_t *n)
+{
+	struct table_in *t = table_open(path);
+	int column = table_need(t, "tap");
+	double *taps = NULL;
+
+	*n = 0;
+	while (table_next(t)) {
+		taps = xrealloc(taps, *n + 1, sizeof *taps);
+		taps[(*n)++] = table_number(t, column);
+		if (!isfinite(taps[*n - 1]))
+			die(EXIT_RUN, "%s: line %ld: tap is not a finite number", path,
+				table_line(t));
+	}
+	for (size_t i = 0; i < *n / 2; i++)
+		if (fabs(taps[i] - taps[*n - 1 - i]) > 1e-6 * fabs(taps[*n / 2]))
+			die(EXIT_RUN,
+				"%s: tap %zu is not equal to tap %zu from the end: want a "
+				"filter of linear phase",
+				path, i + 1, i + 1);
+	if (*n == 0)
+		die(EXIT_RUN, "%s: no taps", path);
+	table_close(t);
+	return taps;
+}
+
+static double *known_filter(const char *passed, double rate, size_t *n)
+{
+	const char *given = instrument.undo;
+
+	*n = 0;
+	if (given && strcmp(given, "none") == 0)
+		return NULL;
+	if (given && strcmp(given, "auto") != 0)
+		return read_taps(given, n);
+	return passed ? filter_passed(passed, rate, n) : NULL;
+}
+
+struct calibrate_par instrument_par(double rate, const char *passed)
 {
 	const struct opt_list *lines = &instrument.lines;
 	struct calibrate_par par = { .lag = instrument_align() * rate,
@@ -43,6 +131,7 @@ struct calibrate_par instrument_par(double rate)
 		.false_alarm = instrument.false_alarm,
 		.tones = CALIBRATE_FIND_TONES };
 
+	par.filter = known_filter(passed, rate, &par.filter_taps);
 	if (lines->n > TONES_MAX)
 		die(EXIT_USAGE, "--lines: at most %d", TONES_MAX);
 	if (lines->n)

@@ -157,6 +157,7 @@ static void read_header(struct signal_in *in)
 	in->format.cmd = annotated(text, "cmd");
 	in->format.units = annotated(text, "units");
 	in->format.seed = annotated(text, "seed");
+	in->format.filter = annotated(text, "filter");
 	free(text);
 }
 
@@ -287,17 +288,33 @@ void signal_close(struct signal_in *in)
 	free(in->format.cmd);
 	free(in->format.units);
 	free(in->format.seed);
+	free(in->format.filter);
 	free(in);
+}
+
+/* A line for each thing that is known. */
+static char *annotation(const struct signal_format *format)
+{
+	const char *line[][2] = { { "cmd", format->cmd }, { "units", format->units },
+		{ "seed", format->seed }, { "filter", format->filter } };
+	char *text = xprintf("%s", "");
+
+	for (size_t i = 0; i < sizeof line / sizeof *line; i++) {
+		char *longer;
+
+		if (!line[i][1])
+			continue;
+		longer = xprintf("%s%s %s\n", text, line[i][0], line[i][1]);
+		free(text);
+		text = longer;
+	}
+	return text;
 }
 
 static void write_header(struct signal_out *out, const struct signal_format *format)
 {
 	unsigned char b[HEADER_MIN] = ".snd";
-	char *text = xprintf("%s%s%s%s%s%s%s%s%s", format->cmd ? "cmd " : "",
-		format->cmd ? format->cmd : "", format->cmd ? "\n" : "",
-		format->units ? "units " : "", format->units ? format->units : "",
-		format->units ? "\n" : "", format->seed ? "seed " : "",
-		format->seed ? format->seed : "", format->seed ? "\n" : "");
+	char *text = annotation(format);
 	size_t length = strlen(text), padded = (length + 1 + 7) / 8 * 8;
 
 	bytes_put_u32_big(b + 4, (uint32_t)(HEADER_MIN + padded));

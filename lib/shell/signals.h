@@ -12,10 +12,12 @@
 struct signal_format {
 	long rate; /* frames per second, Hz */
 	int channels;
-	int single;  /* writer: 32-bit float */
-	char *cmd;   /* pipeline that made it; NULL if unknown */
-	char *units; /* one per channel, "V V"; NULL if unknown */
-	char *seed;  /* NULL if none */
+	int single;   /* writer: 32-bit float */
+	char *cmd;    /* pipeline that made it; NULL if unknown */
+	char *units;  /* one per channel, "V V"; NULL if unknown */
+	char *seed;   /* NULL if none */
+	char *filter; /* linear-phase filters it passed, as fir_print() has them, with " |
+			 " between; NULL if none */
 };
 
 struct signal_raw {

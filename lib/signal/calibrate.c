@@ -1,30 +1,12 @@
 /* calibrate.c - see calibrate.h */
 #include "signal/calibrate.h"
 #include "signal/align.h"
-#include "signal/joint.h"
+#include "signal/colour.h"
+#include "signal/learn.h"
 #include "signal/robust.h"
-#include "signal/sections.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { EXAMPLES_MAX = 16, EXAMPLE_PULSES = 16, RANGE_EVENTS = 12 };
-
-/* A section used to learn the pulse: samples of noise 1 and the pulses found in it. */
-struct example {
-	const double *y1, *y2;
-	size_t n;
-	struct joint_pulse pulse[EXAMPLE_PULSES];
-	int m;
-};
-
-struct learning {
-	struct joint *joint;
-	struct joint_scene scene;
-	struct example example[EXAMPLES_MAX];
-	int count;
-	double misfit; /* of joint.h, at the end */
-};
 
 double calibrate_drop(double rate, const struct shape *shape, double duration,
 	double gain, double width)
@@ -89,298 +71,22 @@ static int is_constant(const double *x, size_t n)
 	return 1;
 }
 
-static double variance(const double *x, size_t n)
-{
-	double mean = 0, sum = 0;
-
-	for (size_t i = 0; i < n; i++)
-		mean += x[i] / (double)n;
-	for (size_t i = 0; i < n; i++)
-		sum += (x[i] - mean) * (x[i] - mean);
-	return sum / (double)n;
-}
-
-/* First minimum of the autocorrelation after its smallest value has been passed by a
- * clear rise; lag in samples, 0 where there is none. */
-static double lowest_lag(const double *r, size_t max_lag)
-{
-	size_t low = 1;
-
-	for (size_t k = 2; k <= max_lag; k++) {
-		if (r[k] < r[low])
-			low = k;
-		else if (r[low] < 0 && r[k] > 0.5 * r[low])
-			break;
-	}
-	return low < max_lag && r[low] < 0 ? (double)low : 0;
-}
-
-/* The same of one pulse, as a share of its duration. */
-static double shape_lowest_lag(const struct shape *shape)
-{
-	enum { T = 100, LAGS = 100 };
-	size_t n = (size_t)(2 * shape_reach(shape) * T) + 2;
-	double *p = calloc(n + LAGS, sizeof *p), r[LAGS + 1] = { 0 }, low = 0.5;
-
-	if (p) {
-		shape_sample(shape, shape_reach(shape) * T, T, 0, n, p, NULL, NULL);
-		for (int k = 0; k <= LAGS; k++)
-			for (size_t i = 0; i < n; i++)
-				r[k] += p[i] * p[i + (size_t)k];
-		low = lowest_lag(r, LAGS) / T;
-	}
-	free(p);
-	return low;
-}
-
-/* Chi-square of all examples with their pulses refined under the present scene; the
- * pulses themselves stay unless keep. */
-static double examples_chi2(struct learning *l, int keep)
+static double mean(const double *x, size_t n)
 {
 	double sum = 0;
 
-	for (int i = 0; i < l->count; i++) {
-		struct example *e = &l->example[i];
-		struct joint_pulse pulse[EXAMPLE_PULSES];
-		struct joint_result result;
-
-		memcpy(pulse, e->pulse, sizeof pulse);
-		if (joint_refine(l->joint, &l->scene, e->y1, e->y2, e->n, pulse, e->m,
-			    &result) != JOINT_OK)
-			return INFINITY;
-		if (keep)
-			memcpy(e->pulse, pulse, sizeof pulse);
-		sum += result.chi2;
-	}
+	for (size_t i = 0; i < n; i++)
+		sum += x[i] / (double)n;
 	return sum;
 }
 
-/* Finds the pulses of all examples anew.  Returns the median of their chi-square per
- * degree of freedom, which a few examples with hidden pulses do not spoil; *price is
- * the sum of chi-square and of twice the threshold for each pulse. */
-static double examples_fit(struct learning *l, double misfit, double *price)
+static double variance(const double *x, size_t n)
 {
-	double each[EXAMPLES_MAX];
+	double middle = mean(x, n), sum = 0;
 
-	*price = 0;
-	l->scene.misfit = misfit > l->misfit ? misfit : l->misfit;
-	for (int i = 0; i < l->count; i++) {
-		struct example *e = &l->example[i];
-		struct joint_result result;
-
-		e->m = 0;
-		if (joint_fit(l->joint, &l->scene, e->y1, e->y2, e->n, e->pulse, &e->m,
-			    &result) != JOINT_OK)
-			return INFINITY;
-		each[i] = result.chi2 / (double)result.dof;
-		*price += result.chi2 + 2 * l->scene.drop_near * e->m;
-	}
-	return robust_median(each, (size_t)l->count);
-}
-
-/* Moves *parameter by a factor to the least chi-square: parabolas through three points
- * on the logarithm, the step shrinking. */
-static void minimise(struct learning *l, double *parameter, double step, int rounds)
-{
-	double middle = examples_chi2(l, 1);
-
-	for (int round = 0; round < rounds; round++) {
-		double x = *parameter, below, above, bend, move;
-
-		*parameter = x * exp(-step);
-		below = examples_chi2(l, 0);
-		*parameter = x * exp(step);
-		above = examples_chi2(l, 0);
-		bend = below - 2 * middle + above;
-		move = bend > 0 ? 0.5 * (below - above) / bend : below < above ? -1 : 1;
-		if (move > 2)
-			move = 2;
-		if (move < -2)
-			move = -2;
-		*parameter = x * exp(step * move);
-		above = examples_chi2(l, 0);
-		if (above < middle)
-			middle = examples_chi2(l, 1);
-		else
-			*parameter = x;
-		step /= 3;
-	}
-}
-
-/* Keeps y1, y2[from, to) if it is among the most clearest.  loud: merits of those kept.
- */
-static void offer_example(struct learning *l, const double *y1, const double *y2,
-	long long from, long long to, int most, double shortest, double *loud)
-{
-	double energy = 0, merit, length = (double)(to - from);
-	int at;
-
-	if (length < 1.5 * shortest / 2)
-		return;
-	for (long long i = from; i < to; i++)
-		energy += y1[i] * y1[i] + y2[i] * y2[i] - 2;
-	/* Loud is good, few pulses are better. */
-	merit = energy * pow(shortest / length, 4);
-	for (at = l->count; at > 0 && loud[at - 1] < merit; at--)
-		if (at < most) {
-			loud[at] = loud[at - 1];
-			l->example[at] = l->example[at - 1];
-		}
-	if (at == most)
-		return;
-	loud[at] = merit;
-	l->example[at].y1 = y1 + from;
-	l->example[at].y2 = y2 + from;
-	l->example[at].n = (size_t)(to - from);
-	l->example[at].m = 0;
-	l->count += l->count < most;
-}
-
-/* The clearest short sections of the record; of long ones, pieces. */
-static void pick_examples(struct learning *l, const double *y1, const double *y2,
-	size_t n, int most, const struct calibration *c)
-{
-	double T = c->duration, reach = shape_reach(c->shape), loud[EXAMPLES_MAX] = { 0 };
-	long margin = (long)(1.2 * reach * T + fmax(c->delta_max, -c->delta_min));
-	struct sections *s = sections_new(c->shape, T, 5, margin);
-	struct section section;
-
-	l->count = 0;
-	if (!s)
-		return;
-	sections_scan(s, y1, y2, 0, n, (long long)n);
-	sections_end(s);
-	while (sections_first(s, &section)) {
-		long long begin = section.begin > 0 ? section.begin : 0;
-		long long end = section.end < (long long)n ? section.end : (long long)n;
-		long long pieces = 1 + (end - begin) / (6 * margin);
-
-		for (long long k = 0; k < pieces; k++)
-			offer_example(l, y1, y2, begin + (end - begin) * k / pieces,
-				begin + (end - begin) * (k + 1) / pieces, most,
-				2 * (double)margin, loud);
-		sections_take(s, section.end);
-	}
-	sections_free(s);
-}
-
-static void scene_of(const struct calibration *c, struct joint_scene *scene)
-{
-	calibration_scene(c, scene);
-	scene->tones = 0; /* the examples were cleaned */
-	scene->max_pulses = EXAMPLE_PULSES;
-}
-
-/* Duration and gain to least chi-square, unless they are known. */
-static void tune(
-	const struct calibrate_par *par, struct learning *l, double step, int rounds)
-{
-	if (isnan(par->duration))
-		minimise(l, &l->scene.duration, step, rounds);
-	if (isnan(par->gain))
-		minimise(l, &l->scene.gain, step, rounds);
-}
-
-static int set_shape(struct calibration *c, int pulse)
-{
-	shape_free(c->shape);
-	c->pulse = pulse;
-	c->shape = shape_new((enum pulse_shape)pulse);
-	return c->shape != NULL;
-}
-
-/* Which shape describes some clear examples best, and its rough duration; low: lag of
- * the lowest autocorrelation.  A wrong shape needs more pulses for the same record, so
- * that each costs what it must take away. */
-static enum calibrate_status learn_shape(const struct calibrate_par *par,
-	struct learning *l, const double *y1, const double *y2, size_t n, double low,
-	struct calibration *c)
-{
-	double best = INFINITY, duration = c->duration, gain = c->gain, fit = INFINITY;
-	int pulse = c->pulse;
-
-	pick_examples(l, y1, y2, n, EXAMPLES_MAX / 2, c);
-	for (int p = PULSE_SINE; p <= PULSE_LORENTZ && l->count && fit > 1.1; p++) {
-		double price;
-
-		if (par->pulse != CALIBRATE_ANY_PULSE && p != par->pulse)
-			continue;
-		if (!set_shape(c, p))
-			return CALIBRATE_MEMORY;
-		c->duration = isnan(par->duration) ? low / shape_lowest_lag(c->shape)
-						   : par->duration;
-		scene_of(c, &l->scene);
-		examples_fit(l, 0.05, &price);
-		tune(par, l, 0.1, 3);
-		fit = examples_fit(l, 0.003, &price);
-		if (price < best) {
-			best = price;
-			pulse = p;
-			duration = l->scene.duration;
-			gain = l->scene.gain * c->noise[1] / c->noise[0];
-		}
-	}
-	c->duration = duration;
-	c->gain = gain;
-	return set_shape(c, pulse) ? CALIBRATE_OK : CALIBRATE_MEMORY;
-}
-
-/* Range of the delays seen, widened by half on either side. */
-static void learn_range(
-	const struct calibrate_par *par, const struct learning *l, struct calibration *c)
-{
-	double lo = INFINITY, hi = -INFINITY, margin;
-
-	for (int i = 0; i < l->count; i++)
-		for (int k = 0; k < l->example[i].m; k++) {
-			const struct joint_pulse *p = &l->example[i].pulse[k];
-
-			lo = fmin(lo, p->delta);
-			hi = fmax(hi, p->delta);
-		}
-	margin = fmax(0.5 * (hi - lo), 0.02 * c->duration);
-	if (isnan(par->spread) && c->events >= RANGE_EVENTS) {
-		c->delta_min = fmax(c->delta_min, lo - margin);
-		c->delta_max = fmin(c->delta_max, hi + margin);
-	}
-}
-
-/* Shape, duration, gain and range of delays by joint fits. */
-static enum calibrate_status learn_pulse(const struct calibrate_par *par,
-	const double *y1, const double *y2, size_t n, double low, struct calibration *c)
-{
-	enum { ROUNDS = 16 };
-	double step = 0.01, moved, price;
-	struct learning l = { .joint = joint_new(), .misfit = c->misfit };
-	enum calibrate_status status =
-		l.joint ? learn_shape(par, &l, y1, y2, n, low, c) : CALIBRATE_MEMORY;
-
-	if (status == CALIBRATE_OK) {
-		pick_examples(&l, y1, y2, n, EXAMPLES_MAX, c);
-		scene_of(c, &l.scene);
-	}
-	/* The closer duration and gain come, the smaller a pulse may be that is not just
-	 * a misfit of its neighbour. */
-	for (int k = 0; status == CALIBRATE_OK && l.count && k < ROUNDS; k++) {
-		double before = c->chi2;
-
-		c->chi2 = examples_fit(&l, fmax(0.01 * pow(0.3, k), 3e-4), &price);
-		tune(par, &l, step, 2);
-		moved = fabs(log(l.scene.duration / c->duration));
-		step = fmin(fmax(3 * moved, 0.002), 0.02);
-		c->duration = l.scene.duration;
-		c->gain = l.scene.gain * c->noise[1] / c->noise[0];
-		if (k > 1 && c->chi2 > 10)
-			break; /* too dense, or not such pulses: no use */
-		if (k > 2 && moved < 5e-4 && (c->chi2 < 1.2 || c->chi2 > 0.95 * before))
-			break;
-	}
-	c->events = 0;
-	for (int i = 0; i < l.count; i++)
-		c->events += l.example[i].m;
-	learn_range(par, &l, c);
-	joint_free(l.joint);
-	return status;
+	for (size_t i = 0; i < n; i++)
+		sum += (x[i] - middle) * (x[i] - middle);
+	return sum / (double)n;
 }
 
 /* Range of the delays as far as it is known. */
@@ -514,8 +220,67 @@ static double chance_correlation(const double *r, size_t n)
 	return fmin(6 * sqrt(sum / (double)n), 0.5);
 }
 
+/* Too much noise was assumed where the pulses leave less than that. */
+static int scale_noise(struct calibration *c, double *y1, double *y2, size_t n)
+{
+	int wrong = c->events > 0 && (c->rest[0] < 0.75 || c->rest[1] < 0.75);
+
+	for (int k = 0; wrong && k < 2; k++) {
+		double *y = k ? y2 : y1, scale = sqrt(c->rest[k]);
+
+		c->noise[k] *= scale;
+		for (size_t i = 0; i < n; i++)
+			y[i] /= scale;
+	}
+	return wrong;
+}
+
+/* Share of the noise that filter and whitening have taken. */
+static double lost(const struct calibration *c)
+{
+	return c->whitening.tap ? 1 - fmin(c->whitening.band, 1) : 0;
+}
+
+static int measure_noise(
+	struct calibration *c, const double *y1, const double *y2, size_t n, double *work)
+{
+	size_t shift = (size_t)c->shift;
+
+	if (c->whitening.tap &&
+		!colour_level(y1, y2 + shift, n - shift, &c->whitening, c->noise))
+		return 0;
+	for (int k = 0; k < 2; k++) {
+		const double *y = k ? y2 : y1;
+		double least = 1e-6 * sqrt(variance(y, n));
+
+		if (!c->whitening.tap)
+			c->noise[k] = robust_noise(y, n, 4, work);
+		if (!(c->noise[k] > least))
+			c->noise[k] = least;
+	}
+	return 1;
+}
+
+/* What a first look at the record tells about its noise. */
+struct look {
+	int coloured;
+	enum whiten_kind kind; /* tried now */
+	int settled;           /* 1: for the last time */
+	double low;            /* lag of the lowest autocorrelation */
+	double power[COLOUR_BINS];
+};
+
+static int has_colour(const double *y1, const double *y2, size_t n, struct look *look)
+{
+	static const double one[2] = { 1, 1 };
+
+	look->coloured = colour_power(y1, y2, n, one, look->power) == 1 &&
+			 !colour_is_white(look->power);
+	return look->coloured;
+}
+
 static enum calibrate_status measure(const struct calibrate_par *par, double *y1,
-	double *y2, size_t n, struct calibration *c, double *r)
+	double *y2, size_t n, struct calibration *c, double *r, struct look *look)
 {
 	size_t max_lag = n / 2, rest;
 	double lag = par->lag, low, change[2], coherence, level = 0;
@@ -526,7 +291,7 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 			return CALIBRATE_MEMORY;
 		rest = n < 16384 ? n : 16384;
 		c->tones = tones_confirm(y1 + (n - rest) / 2, y2 + (n - rest) / 2, rest,
-			c->tones, c->omega);
+			1 - lost(c), c->tones, c->omega);
 	} else {
 		c->tones = par->tones;
 		memcpy(c->omega, par->omega, sizeof c->omega);
@@ -535,14 +300,6 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 	if (!calibrate_clean(c, y1, n, &change[0]) ||
 		!calibrate_clean(c, y2, n, &change[1]))
 		return CALIBRATE_MEMORY;
-	for (int k = 0; k < 2; k++) {
-		const double *y = k ? y2 : y1;
-		double least = 1e-6 * sqrt(variance(y, n));
-
-		c->noise[k] = robust_noise(y, n, 4, r);
-		if (c->noise[k] < least)
-			c->noise[k] = least;
-	}
 	if (isnan(lag))
 		lag = align_lag(y1, y2, n, max_lag, &c->correlation);
 	else if (lag < (double)n - 16)
@@ -552,6 +309,8 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 	c->shift = (long)floor(lag + 0.5);
 	if (c->shift >= (long)n - 16)
 		return CALIBRATE_NO_LAG;
+	if (!measure_noise(c, y1, y2, n, r))
+		return CALIBRATE_MEMORY;
 	if (isnan(par->duration) || isnan(par->lag)) {
 		if (n > 4096 && c->correlation < 6 / sqrt((double)n))
 			return CALIBRATE_NO_LAG; /* whatever the autocorrelation */
@@ -565,13 +324,16 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 	y2 += c->shift;
 	if (!align_autocorrelation(y1, y2, rest, rest / 4, r))
 		return CALIBRATE_MEMORY;
-	low = lowest_lag(r, rest / 4);
+	low = learn_lowest_lag(r, rest / 4);
+	if (!c->whitening.tap)
+		look->low = low;
+	else if (look->coloured && look->kind == WHITEN_COLOURED)
+		low = look->low; /* whitening has changed the pulses */
 	c->pulse = par->pulse == CALIBRATE_ANY_PULSE ? PULSE_SINE : par->pulse;
-	c->shape = shape_new((enum pulse_shape)c->pulse);
-	if (!c->shape)
-		return CALIBRATE_MEMORY;
 	c->duration =
-		isnan(par->duration) ? low / shape_lowest_lag(c->shape) : par->duration;
+		isnan(par->duration) ? learn_duration(c->pulse, low) : par->duration;
+	if (!learn_set_shape(c, c->pulse))
+		return CALIBRATE_MEMORY;
 	if (!(c->duration >= 8))
 		return CALIBRATE_FAST;
 	if (8 * c->duration > (double)n && c->duration > 0.5 * (double)n)
@@ -589,18 +351,29 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 	set_range(par, c);
 	set_thresholds(par, c);
 	c->misfit = 3e-4;
+	if (!c->whitening.tap)
+		c->suspect = has_colour(y1, y2, rest, look);
 	if (learn_pulse(par, y1, y2, rest, low, c) != CALIBRATE_OK)
 		return CALIBRATE_MEMORY;
+	for (int k = 0; c->whitening.tap && k < 4 && scale_noise(c, y1, y2, rest); k++) {
+		set_range(par, c);
+		set_thresholds(par, c);
+		if (learn_pulse(par, y1, y2, rest, low, c) != CALIBRATE_OK)
+			return CALIBRATE_MEMORY;
+	}
 	if (c->events == 0 && isnan(par->duration))
 		return CALIBRATE_NO_LAG;
 	coherence = c->chi2 > 4 ? quiet_coherence(c, y1, y2, rest, r, &level) : 0;
-	if (c->chi2 > 4 && (coherence > 0.6 || level < 1.5)) {
+
+	if (c->chi2 > 4 && (coherence > 0.6 || (level < 1.5 && !c->whitening.tap))) {
 		/* Even where it is most quiet, both sensors see the same, or the noise is
 		 * what it should be there: too many pulses. */
 		c->dense = 1;
 		c->misfit = 0.01;
 		set_range(par, c);
-	} else if (c->chi2 > 4) {
+	} else if (c->suspect) {
+		return CALIBRATE_OK; /* to be looked at again */
+	} else if (c->chi2 > 4 && !c->whitening.tap) {
 		/* Neither the shape nor white noise will do: the record was filtered.
 		 * What counts then is the noise that passes the matched filter. */
 		double n1 = filtered_noise(c, y1, rest, r),
@@ -622,26 +395,99 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 	return CALIBRATE_OK;
 }
 
+/* One attempt, on a record made white if w has taps, which it gives to *c. */
+static enum calibrate_status attempt(const struct calibrate_par *par, const double *x1,
+	const double *x2, size_t n, const struct whitening *w, struct calibration *c,
+	struct look *look)
+{
+	double *work = malloc(3 * n * sizeof *work);
+	enum calibrate_status status = work ? CALIBRATE_OK : CALIBRATE_MEMORY;
+	size_t edge = n > 8 * (size_t)w->edge ? (size_t)w->edge : 0;
+
+	memset(c, 0, sizeof *c);
+	c->whitening = *w;
+	c->guessed = look->settled;
+	c->suspect = look->coloured && !look->settled;
+	for (int k = 0; work && k < 2; k++) {
+		double *y = work + (size_t)k * n;
+
+		memcpy(y, k ? x2 : x1, n * sizeof *work);
+		if (!w->tap)
+			continue;
+		c->mean[k] = mean(y, n);
+		for (size_t i = 0; i < n; i++)
+			y[i] -= c->mean[k];
+		if (!whitening_apply(w, y, n))
+			status = CALIBRATE_MEMORY;
+	}
+	if (status == CALIBRATE_OK)
+		status = measure(par, work + edge, work + n + edge, n - 2 * edge, c,
+			work + 2 * n, look);
+	free(work);
+	if (status != CALIBRATE_OK)
+		calibration_clear(c);
+	return status;
+}
+
+static enum calibrate_status attempt_kind(const struct calibrate_par *par,
+	const double *x1, const double *x2, size_t n, enum whiten_kind kind,
+	struct look *look, struct calibration *c)
+{
+	struct whitening w;
+
+	look->kind = kind;
+	if (!whitening_of_noise(&w, look->power, COLOUR_BINS, kind))
+		return CALIBRATE_MEMORY;
+	return attempt(par, x1, x2, n, &w, c, look);
+}
+
+/* Looks again at a record whose noise is not white: filtered, or coloured from the start?
+ * What fits best by itself is done once more, with its pulse corrected. */
+static enum calibrate_status look_again(const struct calibrate_par *par, const double *x1,
+	const double *x2, size_t n, struct look *look, struct calibration *c)
+{
+	double best = c->price;
+	int found = -1;
+
+	for (int kind = WHITEN_FILTERED; kind <= WHITEN_COLOURED; kind++) {
+		struct calibration other;
+		enum calibrate_status status =
+			attempt_kind(par, x1, x2, n, kind, look, &other);
+
+		if (status == CALIBRATE_MEMORY)
+			return status;
+		if (status != CALIBRATE_OK)
+			continue;
+		if (other.price < best) {
+			best = other.price;
+			found = kind;
+		}
+		calibration_clear(&other);
+	}
+	if (found < 0)
+		return CALIBRATE_OK;
+	look->settled = 1;
+	calibration_clear(c);
+	return attempt_kind(par, x1, x2, n, found, look, c);
+}
+
 enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct calibration *c)
 {
-	double *work;
 	enum calibrate_status status;
+	struct whitening w = { .tap = NULL };
+	struct look look = { 0 };
 
 	memset(c, 0, sizeof *c);
 	if (is_constant(x1, n))
 		return CALIBRATE_SILENT_1;
 	if (is_constant(x2, n))
 		return CALIBRATE_SILENT_2;
-	work = malloc(3 * n * sizeof *work);
-	if (!work)
+	if (par->filter && !whitening_of_filter(&w, par->filter, par->filter_taps))
 		return CALIBRATE_MEMORY;
-	memcpy(work, x1, n * sizeof *work);
-	memcpy(work + n, x2, n * sizeof *work);
-	status = measure(par, work, work + n, n, c, work + 2 * n);
-	free(work);
-	if (status != CALIBRATE_OK)
-		calibration_clear(c);
+	status = attempt(par, x1, x2, n, &w, c, &look);
+	if (status == CALIBRATE_OK && look.coloured && !c->dense)
+		status = look_again(par, x1, x2, n, &look, c);
 	return status;
 }
 
@@ -649,6 +495,7 @@ void calibration_clear(struct calibration *c)
 {
 	shape_free(c->shape);
 	c->shape = NULL;
+	whitening_clear(&c->whitening);
 }
 
 void calibration_scene(const struct calibration *c, struct joint_scene *scene)
@@ -663,7 +510,9 @@ void calibration_scene(const struct calibration *c, struct joint_scene *scene)
 		.drop_near = c->drop_near,
 		.misfit = c->misfit,
 		.offset = 1,
-		.tone_variance = c->tone_variance };
+		.tone_variance = c->tone_variance,
+		.low = c->whitening.low,
+		.lost = lost(c) };
 	for (int k = 0; k < c->tones; k++)
 		if (c->omega[k] * c->duration < 8 * acos(-1) || isinf(c->tone_variance))
 			scene->omega[scene->tones++] = c->omega[k];

@@ -16,6 +16,7 @@
 #include "signal/sensor.h"
 #include "signal/shape.h"
 #include "signal/tones.h"
+#include "signal/whiten.h"
 #include <stddef.h>
 
 enum { CALIBRATE_ANY_PULSE = -1, CALIBRATE_FIND_TONES = -1 };
@@ -30,6 +31,8 @@ struct calibrate_par {
 	double false_alarm;      /* expected false particles per sample of noise */
 	int tones;               /* number in omega, or CALIBRATE_FIND_TONES */
 	double omega[TONES_MAX]; /* rad per sample */
+	double *filter;          /* symmetric taps the record has been through, or NULL */
+	size_t filter_taps;
 };
 
 struct calibration {
@@ -37,20 +40,27 @@ struct calibration {
 	double correlation; /* of the channels at that lag */
 	int tones;
 	double omega[TONES_MAX];
-	size_t tone_hop;      /* samples between two fits of the tones */
-	double tone_variance; /* of a coefficient from one hop to the next, units of
-				 noise^2 */
-	double noise[2];      /* standard deviations */
+	size_t tone_hop;            /* samples between two fits of the tones */
+	double tone_variance;       /* of a coefficient from one hop to the next, units of
+				       noise^2 */
+	struct whitening whitening; /* of filtered records; else without taps */
+	double mean[2];             /* of the channels, taken off before that */
+	double noise[2];            /* standard deviations, before any filter */
+	double rest[2]; /* of these, power left by the pulses the shape was fitted to */
 	struct shape *shape;
 	int pulse;             /* which of enum pulse_shape */
+	double reach;          /* of it before any filter, durations */
 	double duration, gain; /* as above */
 	double transit;        /* samples between the sensors; INFINITY if unknown */
 	double delta_min, delta_max; /* samples around shift */
 	double drop, drop_near;      /* thresholds of joint.h */
 	double misfit;               /* of joint.h: how far the shape can be trusted */
 	int events;                  /* pulses the shape was fitted to */
+	int suspect;                 /* 1: taken for white, which its noise is not */
+	int guessed;                 /* 1: whitened by what its own noise tells */
 	int dense;                   /* 1: pulses throughout, hardly any of them clear */
 	double chi2;                 /* of these, per degree of freedom */
+	double price; /* the same with so much for each pulse, to choose by */
 };
 
 enum calibrate_status {

@@ -3,6 +3,7 @@
 #include "num/fft.h"
 #include <complex.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -81,6 +82,44 @@ int fir_design(const struct fir_band *band, double *h)
 	for (int k = 0; k <= band->order; k++)
 		h[k] /= sum;
 	return 0;
+}
+
+static const char *const window_names[] = { [FIR_HAMMING] = "hamming",
+	[FIR_HANN] = "hann",
+	[FIR_BLACKMAN] = "blackman",
+	[FIR_KAISER] = "kaiser" };
+
+void fir_print(const struct fir_band *band, double rate, char text[FIR_TEXT])
+{
+	snprintf(text, FIR_TEXT, "%.17g:%.17g %d %s %.17g %s", band->low * rate,
+		band->high * rate, band->order, window_names[band->window], band->beta,
+		band->scale ? "scaled" : "plain");
+}
+
+const char *fir_parse(const char *text, double rate, struct fir_band *band)
+{
+	char window[16], scale[16];
+	int used = 0, known = -1;
+
+	if (sscanf(text, "%lf:%lf %d %15s %lf %15s%n", &band->low, &band->high,
+		    &band->order, window, &band->beta, scale, &used) != 6)
+		return NULL;
+	band->low /= rate;
+	band->high /= rate;
+	band->scale = strcmp(scale, "scaled") == 0;
+	for (int k = FIR_HAMMING; k <= FIR_KAISER; k++)
+		if (strcmp(window, window_names[k]) == 0)
+			known = k;
+	if (known < 0 || !(band->low >= 0) || !(band->low < band->high) ||
+		!(band->high <= 0.5 * (1 + 1e-12)) || band->order < 1 ||
+		band->order > 1000000 || !(fabs(band->beta) < 1e3))
+		return NULL;
+	band->window = (enum fir_window)known;
+	if (band->high > 0.5)
+		band->high = 0.5;
+	if (strncmp(text + used, " | ", 3) == 0)
+		used += 3;
+	return text + used;
 }
 
 double fir_kaiser_beta(double attenuation)

@@ -37,6 +37,14 @@ struct fir_band {
  * has a zero at half the rate, whatever the taps. */
 int fir_design(const struct fir_band *band, double *h);
 
+/* The band in words, edges in the unit of rate, and back from them: "70:130 200 hamming 0
+ * scaled".  What follows behind " | ", a filter passed before or after, stays: a chain
+ * is undone one by one.  fir_parse() returns where it stopped, NULL where the text is
+ * none of these. */
+enum { FIR_TEXT = 128 };
+void fir_print(const struct fir_band *band, double rate, char text[FIR_TEXT]);
+const char *fir_parse(const char *text, double rate, struct fir_band *band);
+
 /* Kaiser's beta for an attenuation in the stop band, dB (Kaiser 1974). */
 double fir_kaiser_beta(double attenuation);
 

@@ -77,15 +77,15 @@ static void finish(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int m, double chi2, int full,
 	struct joint_result *result)
 {
-	double taken = 0;
+	double taken = 0; /* the baseline had no noise to take */
 
 	qsort(pulses, (size_t)m, sizeof *pulses, by_time);
 	joint_fill_covariance(j, s, pulses, m);
 	joint_project(j);
 	result->chi2 = chi2;
-	for (int b = 0; b < j->basis; b++)
+	for (int b = j->slow; b < j->basis; b++)
 		taken += 2 * j->share[b];
-	result->dof = 2 * (long)j->n - (long)(taken + 0.5) - PAR * m;
+	result->dof = (long)((1 - s->lost) * 2 * (double)j->n - taken + 0.5) - PAR * m;
 	if (result->dof < 1)
 		result->dof = 1;
 	result->full = full;

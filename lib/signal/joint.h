@@ -30,7 +30,7 @@
 #include "signal/shape.h"
 #include <stddef.h>
 
-enum { JOINT_TONES_MAX = 32, JOINT_PULSES_MAX = 64 };
+enum { JOINT_TONES_MAX = 32, JOINT_BASELINE_MAX = 32, JOINT_PULSES_MAX = 64 };
 
 struct joint_scene {
 	const struct shape *shape;
@@ -49,6 +49,10 @@ struct joint_scene {
 	 * that were taken from the record leave little); INFINITY: they may be anything.
 	 */
 	double tone_variance;
+	/* Of a record that was filtered (whiten.h): frequencies below low, in cycles per
+	 * sample, are a baseline to be projected out (up to JOINT_BASELINE_MAX in the
+	 * length of the record); share of the noise's variance that is gone. */
+	double low, lost;
 };
 
 struct joint_pulse {

@@ -89,33 +89,49 @@ static int reserve_columns(struct joint *j, size_t support)
 	return 1;
 }
 
-/* Orthonormal basis of offset and tones over n samples (modified Gram-Schmidt, twice);
- * a vector that adds nothing, such as a tone at half the rate twice, is dropped. */
-static void make_basis(struct joint *j, const struct joint_scene *s)
+/* Adds cos or sin of w (i - n / 2) to the basis unless it adds nothing, as a tone at half
+ * the rate does twice: modified Gram-Schmidt, done twice. */
+static void add_to_basis(struct joint *j, double (*wave)(double), double w, double share)
 {
 	size_t n = j->n;
+	double *v = j->q + (size_t)j->basis * n, norm, left;
+
+	for (size_t i = 0; i < n; i++)
+		v[i] = wave(w * ((double)i - (double)n / 2));
+	norm = dot(v, v, n);
+	for (int pass = 0; pass < 2; pass++)
+		for (int b = 0; b < j->basis; b++)
+			add_scaled(v, -dot(v, j->q + (size_t)b * n, n),
+				j->q + (size_t)b * n, n);
+	left = dot(v, v, n);
+	if (left <= 1e-8 * norm || left == 0)
+		return;
+	left = 1 / sqrt(left);
+	for (size_t i = 0; i < n; i++)
+		v[i] *= left;
+	j->share[j->basis++] = share;
+}
+
+/* Orthonormal basis of offset, baseline and tones over n samples.  A baseline may be
+ * anything slower than low: waves of up to that frequency that are periodic in 2 n, so
+ * that its ends need not meet. */
+static void make_basis(struct joint *j, const struct joint_scene *s)
+{
+	double n = (double)j->n, w = 0.5 * n * s->tone_variance;
+	double share = isinf(w) ? 1 : w / (1 + w);
+	int slow = (int)fmin(ceil(2 * n * s->low), JOINT_BASELINE_MAX);
 
 	j->basis = 0;
-	for (int k = s->offset ? -1 : 0; k < 2 * s->tones; k++) {
-		double *v = j->q + (size_t)j->basis * n, norm, w;
-
-		for (size_t i = 0; i < n; i++) {
-			w = k < 0 ? 0 : s->omega[k / 2] * ((double)i - (double)n / 2);
-			v[i] = k % 2 ? (k < 0 ? 1 : sin(w)) : cos(w);
-		}
-		norm = dot(v, v, n);
-		for (int pass = 0; pass < 2; pass++)
-			for (int b = 0; b < j->basis; b++)
-				add_scaled(v, -dot(v, j->q + (size_t)b * n, n),
-					j->q + (size_t)b * n, n);
-		w = dot(v, v, n);
-		if (w <= 1e-8 * norm || w == 0)
-			continue;
-		w = 1 / sqrt(w);
-		for (size_t i = 0; i < n; i++)
-			v[i] *= w;
-		w = 0.5 * (double)n * s->tone_variance;
-		j->share[j->basis++] = k < 0 || isinf(w) ? 1 : w / (1 + w);
+	for (int k = 1; k <= slow; k++) {
+		add_to_basis(j, cos, acos(-1) * k / n, 1);
+		add_to_basis(j, sin, acos(-1) * k / n, 1);
+	}
+	j->slow = j->basis;
+	if (s->offset)
+		add_to_basis(j, cos, 0, 1);
+	for (int k = 0; k < s->tones; k++) {
+		add_to_basis(j, cos, s->omega[k], share);
+		add_to_basis(j, sin, s->omega[k], share);
 	}
 }
 
@@ -215,6 +231,7 @@ static int scene_is_sane(
 	if (!s->shape || !(s->duration >= 4) || !(s->transit > 0) || !(s->gain > 0) ||
 		!(s->delta_min <= s->delta_max) || !(s->drop >= 0) ||
 		!(s->drop_near >= 0) || !(s->tone_variance >= 0) || s->tones < 0 ||
+		!(s->low >= 0) || !(s->lost >= 0) || !(s->lost < 1) ||
 		s->tones > JOINT_TONES_MAX || s->max_pulses < 0 ||
 		s->max_pulses > JOINT_PULSES_MAX || m < 0 || m > s->max_pulses)
 		return 0;

@@ -5,7 +5,11 @@
 #include "signal/joint.h"
 #include <math.h>
 
-enum { PAR = 3, NPAR = PAR * JOINT_PULSES_MAX, BASIS_MAX = 2 * JOINT_TONES_MAX + 1 };
+enum {
+	PAR = 3,
+	NPAR = PAR * JOINT_PULSES_MAX,
+	BASIS_MAX = 2 * (JOINT_TONES_MAX + JOINT_BASELINE_MAX) + 1
+};
 
 /* What one pulse puts on one channel, and its derivatives by (t, t + delta, a). */
 struct column {
@@ -20,7 +24,8 @@ struct joint {
 	size_t n;
 	double *e[2];            /* record less pulses, tones still in it */
 	double *r[2];            /* e without tones and offset */
-	int basis;               /* orthonormal vectors spanning tones and offset */
+	int basis;               /* orthonormal vectors spanning tones and offset, ... */
+	int slow;                /* ... the first of them the baseline */
 	double *q;               /* basis * n */
 	double share[BASIS_MAX]; /* of each that is projected out: 1 if nothing is known
 				  */

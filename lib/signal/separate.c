@@ -1,5 +1,6 @@
 /* separate.c - see separate.h */
 #include "signal/separate.h"
+#include "signal/fir.h"
 #include "signal/sections.h"
 #include <math.h>
 #include <stdlib.h>
@@ -7,12 +8,16 @@
 
 enum { SHORTEST = 64 };
 
-/* Samples of one channel from index begin on; those before clean are worked up. */
+/* Samples of one channel from index begin on: those before white have their filter
+ * undone, those before clean are free of tones, too, and in units of the noise. */
 struct tape {
 	double *x;
 	size_t n, capacity;
-	long long begin, clean;
-	double at; /* where the coefficients hold */
+	long long begin, white, clean;
+	struct fir *whiten; /* NULL where there is nothing to undo; has taken in ... */
+	long long fed;      /* ... the samples before this one */
+	double *piece;      /* a block of it */
+	double at;          /* where the coefficients hold */
 	double coefficient[2 * TONES_MAX + 1];
 	int started;
 };
@@ -62,8 +67,11 @@ void separate_free(struct separate *s)
 	sections_free(s->sections);
 	joint_free(s->joint);
 	masks_free(s->masks);
-	free(s->tape[0].x);
-	free(s->tape[1].x);
+	for (int c = 0; c < 2; c++) {
+		free(s->tape[c].x);
+		free(s->tape[c].piece);
+		fir_free(s->tape[c].whiten);
+	}
 	free(s->queue);
 	free(s->source);
 	free(s);
@@ -158,7 +166,7 @@ static void scale(struct tape *t, long long from, long long to, double noise)
 static int clean(struct separate *s, struct tape *t, double noise)
 {
 	const struct calibration *c = &s->cal;
-	long long end = t->begin + (long long)t->n, hop = (long long)c->tone_hop;
+	long long end = t->white, hop = (long long)c->tone_hop;
 
 	if (c->tones == 0) {
 		scale(t, t->clean, end, noise);
@@ -199,6 +207,48 @@ static int clean(struct separate *s, struct tape *t, double noise)
 	}
 }
 
+/* Undoes the filter in whole blocks, so that the bits do not depend on how the record
+ * came in; what is written lags behind what is read. */
+static void whiten(struct separate *s, struct tape *t, double mean)
+{
+	const struct whitening *w = &s->cal.whitening;
+	long long end = t->begin + (long long)t->n, last = end - w->edge, block;
+
+	if (!t->whiten) {
+		t->white = end;
+		return;
+	}
+	block = (long long)fir_block(t->whiten);
+	while (s->ended ? t->white < last : t->fed + block <= end) {
+		for (long long i = 0; i < block; i++)
+			t->piece[i] =
+				t->fed + i < end ? t->x[t->fed + i - t->begin] - mean : 0;
+		fir_run(t->whiten, t->piece, (size_t)block);
+		for (long long i = 0; i < block; i++) {
+			long long at = t->fed + i - w->half;
+
+			if (at >= t->white && at < last)
+				t->x[at - t->begin] = t->piece[i];
+		}
+		t->fed += block;
+		if (t->fed - w->half > t->white)
+			t->white = t->fed - w->half < last ? t->fed - w->half : last;
+	}
+}
+
+static int start_whitening(struct separate *s, struct tape *t)
+{
+	const struct whitening *w = &s->cal.whitening;
+	size_t taps = 2 * (size_t)w->half + 1;
+
+	t->fed = t->white = t->clean;
+	if (!w->tap)
+		return 1;
+	t->whiten = fir_new(w->tap, taps, 1, taps > 1024 ? taps : 1024);
+	t->piece = t->whiten ? malloc(fir_block(t->whiten) * sizeof *t->piece) : NULL;
+	return t->piece != NULL;
+}
+
 static enum separate_status calibrate_now(struct separate *s)
 {
 	static const enum separate_status of[] = { SEPARATE_OK, SEPARATE_MEMORY,
@@ -217,16 +267,23 @@ static enum separate_status calibrate_now(struct separate *s)
 	if (status != CALIBRATE_OK)
 		return of[status];
 	s->calibrated = 1;
-	s->done = s->tape[0].begin;
+	s->done = s->tape[0].begin + c->whitening.edge;
 	calibration_scene(c, &s->scene);
 	s->scene.max_pulses = JOINT_PULSES_MAX;
 	reach = 2 * shape_reach(c->shape) * c->duration;
 	if (s->par.window < (size_t)(6 * reach))
-		s->par.window =
-			s->par.window ? (size_t)(6 * reach) : (size_t)(24 * reach);
+		s->par.window = s->par.window
+					? (size_t)(6 * reach)
+					: (size_t)(reach + 46 * c->reach * c->duration);
 	/* Equal pulses on both channels reach the threshold of a pair at 1 / sqrt 2 of
 	 * it. */
 	s->margin = (long)(0.6 * reach + fmax(c->delta_max, -c->delta_min));
+	/* What a baseline has to follow in a window must not be too much. */
+	if (c->whitening.low * 2 * (double)s->par.window > JOINT_BASELINE_MAX)
+		s->par.window = (size_t)fmax(
+			3 * reach, JOINT_BASELINE_MAX / (2 * c->whitening.low));
+	if (!start_whitening(s, &s->tape[0]) || !start_whitening(s, &s->tape[1]))
+		return SEPARATE_MEMORY;
 	s->sections =
 		sections_new(c->shape, c->duration, 0.65 * sqrt(c->drop), s->margin);
 	if (s->sections)
@@ -380,7 +437,9 @@ static void judge_part(
 		for (size_t i = 0; i < n; i++)
 			r->chi2 += joint_residual(s->joint, c)[i] *
 				   joint_residual(s->joint, c)[i];
-	r->dof = 2 * (long)n - 3 * done > 1 ? 2 * (long)n - 3 * done : 1;
+	r->dof = (long)((1 - s->scene.lost) * 2 * (double)n) - 3 * done;
+	if (r->dof < 1)
+		r->dof = 1;
 }
 
 /* More pulses than this in n samples are not looked for. */
@@ -610,9 +669,11 @@ static enum separate_status work(struct separate *s)
 	long long limit, longest;
 	struct section section;
 
-	for (int c = 0; c < 2; c++)
+	for (int c = 0; c < 2; c++) {
+		whiten(s, &s->tape[c], s->cal.mean[c]);
 		if (!clean(s, &s->tape[c], s->cal.noise[c]))
 			return SEPARATE_MEMORY;
+	}
 	limit = ready(s);
 	if (limit <= s->done)
 		return SEPARATE_OK;

@@ -399,7 +399,8 @@ static double significance(
 	return sum / (deviation * deviation);
 }
 
-int tones_confirm(const double *y1, const double *y2, size_t n, int tones, double *omega)
+int tones_confirm(const double *y1, const double *y2, size_t n, double band, int tones,
+	double *omega)
 {
 	double c[2][TERMS_MAX], v[2][TERMS_MAX], d[2];
 	int kept = 0;
@@ -408,8 +409,8 @@ int tones_confirm(const double *y1, const double *y2, size_t n, int tones, doubl
 		!tones_fit(y2, n, 0, tones, omega, c[1], &d[1], v[1]))
 		return tones;
 	for (int k = 0; k < tones; k++)
-		if (significance(c[0], v[0], d[0], k) > 40 ||
-			significance(c[1], v[1], d[1], k) > 40)
+		if (significance(c[0], v[0], d[0], k) * band > 40 ||
+			significance(c[1], v[1], d[1], k) * band > 40)
 			omega[kept++] = omega[k];
 	return kept;
 }

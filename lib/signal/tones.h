@@ -31,8 +31,10 @@ int tones_fit(const double *x, size_t n, double start, int tones, const double *
 
 /* Drops tones that a robust fit does not see: a regular train of pulses has lines too,
  * but they vanish with the pulses.  Kept are those whose power exceeds what noise gives
- * with probability 2e-9.  Returns their number. */
-int tones_confirm(const double *y1, const double *y2, size_t n, int tones, double *omega);
+ * with probability 2e-9, if it has this share of all frequencies.  Returns their number.
+ */
+int tones_confirm(const double *y1, const double *y2, size_t n, double band, int tones,
+	double *omega);
 
 /* Takes tones from x[0..n): coefficients run linearly from those at index at_a
  * (from) to those at index at_b (to). */

@@ -143,7 +143,7 @@ static void test_tones(void)
 		y1[i] = (i % 250 < 50 ? sin(2 * acos(-1) * (i % 250) / 50) : 0) +
 			0.05 * normal((uint64_t)i);
 	ok(tones_find(y1, y1, N, TONES_MAX, omega) > 2, "a train of pulses has lines");
-	ok(tones_confirm(y1, y1, N, 3, omega) == 0, "but no tones");
+	ok(tones_confirm(y1, y1, N, 1, 3, omega) == 0, "but no tones");
 }
 
 /* A tone of cosine c and sine s taken from silence, against direct evaluation.  The

@@ -1,0 +1,27 @@
+/* learn.h - the pulse of a record, learned from the clearest stretches of it
+ *
+ * What calibrate.h does once lag, tones and noise are known: the clearest short sections
+ * are fitted jointly under each shape, duration and gain are chosen by least chi-square,
+ * and where the record was whitened by guess the shape is given what the residuals of
+ * all pulses have in common.
+ */
+#ifndef SIGNAL_LEARN_H
+#define SIGNAL_LEARN_H
+
+#include "signal/calibrate.h"
+#include <stddef.h>
+
+/* Lag at which an autocorrelation is lowest, before it rises clearly; 0 where there is
+ * none up to max_lag. */
+double learn_lowest_lag(const double *r, size_t max_lag);
+/* Duration of a pulse whose autocorrelation is lowest at this lag. */
+double learn_duration(int pulse, double low);
+/* Gives c this pulse, as the whitened record has it at the present duration.  Returns 0
+ * when out of memory. */
+int learn_set_shape(struct calibration *c, int pulse);
+/* Fills shape, duration, gain, range of delays, chi2, price, rest and events of c from
+ * y1, y2[0 .. n), aligned and in units of the noise; low: lag as above, of these. */
+enum calibrate_status learn_pulse(const struct calibrate_par *par, const double *y1,
+	const double *y2, size_t n, double low, struct calibration *c);
+
+#endif
