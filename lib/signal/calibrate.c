@@ -275,7 +275,7 @@ static int has_colour(const double *y1, const double *y2, size_t n, struct look 
 	static const double one[2] = { 1, 1 };
 
 	look->coloured = colour_power(y1, y2, n, one, look->power) == 1 &&
-			 !colour_is_white(look->power);
+			 !colour_is_white(look->power, 0);
 	return look->coloured;
 }
 
@@ -471,6 +471,16 @@ static enum calibrate_status look_again(const struct calibrate_par *par, const d
 	return attempt_kind(par, x1, x2, n, found, look, c);
 }
 
+/* Durations of a pulse times the frequency above which it has hardly any power. */
+static const double PULSE_BAND = 4;
+
+/* Is the noise white after all?  Where hardly anything is quiet, pulses stand for colour in
+ * their own band; then they fit, and noise is white above it. */
+static int is_white(const struct calibration *c, const struct look *look)
+{
+	return c->chi2 < 4 && colour_is_white(look->power, PULSE_BAND / c->duration);
+}
+
 enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct calibration *c)
 {
@@ -486,7 +496,7 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 	if (par->filter && !whitening_of_filter(&w, par->filter, par->filter_taps))
 		return CALIBRATE_MEMORY;
 	status = attempt(par, x1, x2, n, &w, c, &look);
-	if (status == CALIBRATE_OK && look.coloured && !c->dense)
+	if (status == CALIBRATE_OK && look.coloured && !c->dense && !is_white(c, &look))
 		status = look_again(par, x1, x2, n, &look, c);
 	return status;
 }

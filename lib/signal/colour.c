@@ -79,8 +79,7 @@ static int sharpen(double *power, size_t bins)
 		for (size_t k = 0; k < bins; k++)
 			power[k] = fmax(creal(spectrum[k]), 0);
 	}
-	if (fft)
-		fft_done(fft);
+	fft_done(fft);
 	fft_free(spectrum);
 	fft_free(r);
 	return ok;
@@ -102,12 +101,13 @@ int colour_power(const double *y1, const double *y2, size_t n, const double nois
 	return quiets >= QUIETS;
 }
 
-int colour_is_white(const double power[COLOUR_BINS])
+int colour_is_white(const double power[COLOUR_BINS], double from)
 {
 	enum { GROUP = 32 };
 	double least = INFINITY, most = 0;
+	int first = (int)fmin(from * LONGEST, LONGEST) + 1;
 
-	for (int k = 1; k + GROUP <= COLOUR_BINS; k += GROUP) {
+	for (int k = first; k + GROUP <= COLOUR_BINS; k += GROUP) {
 		double sum = 0;
 
 		for (int i = k; i < k + GROUP; i++)

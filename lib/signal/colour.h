@@ -19,7 +19,7 @@ int colour_level(const double *y1, const double *y2, size_t n, const struct whit
  * quiet, -1 when out of memory. */
 int colour_power(const double *y1, const double *y2, size_t n, const double noise[2],
 	double power[COLOUR_BINS]);
-/* Does it differ from white noise by more than its own scatter? */
-int colour_is_white(const double power[COLOUR_BINS]);
+/* Is it that of white noise but for its scatter, from this frequency (per sample) on? */
+int colour_is_white(const double power[COLOUR_BINS], double from);
 
 #endif

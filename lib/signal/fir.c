@@ -101,7 +101,8 @@ const char *fir_parse(const char *text, double rate, struct fir_band *band)
 	char window[16], scale[16];
 	int used = 0, known = -1;
 
-	if (sscanf(text, "%lf:%lf %d %15s %lf %15s%n", &band->low, &band->high,
+	/* Seven digits hold any order, and no more are read: they might overflow. */
+	if (sscanf(text, "%lf:%lf %7d %15s %lf %15s%n", &band->low, &band->high,
 		    &band->order, window, &band->beta, scale, &used) != 6)
 		return NULL;
 	band->low /= rate;
@@ -112,14 +113,16 @@ const char *fir_parse(const char *text, double rate, struct fir_band *band)
 			known = k;
 	if (known < 0 || !(band->low >= 0) || !(band->low < band->high) ||
 		!(band->high <= 0.5 * (1 + 1e-12)) || band->order < 1 ||
-		band->order > 1000000 || !(fabs(band->beta) < 1e3))
+		band->order > 1000000 || !(fabs(band->beta) < 1e3) ||
+		(!band->scale && strcmp(scale, "plain") != 0))
 		return NULL;
 	band->window = (enum fir_window)known;
 	if (band->high > 0.5)
 		band->high = 0.5;
-	if (strncmp(text + used, " | ", 3) == 0)
-		used += 3;
-	return text + used;
+	text += used;
+	if (!*text)
+		return text;
+	return strncmp(text, " | ", 3) == 0 && text[3] ? text + 3 : NULL;
 }
 
 double fir_kaiser_beta(double attenuation)

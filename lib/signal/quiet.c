@@ -34,8 +34,7 @@ static int transform(const double *y, size_t segment, size_t count, double *powe
 			power[i * bins + k - 1] = scale * (re * re + im * im);
 		}
 	}
-	if (fft)
-		fft_done(fft);
+	fft_done(fft);
 	fft_free(spectrum);
 	fft_free(x);
 	return ok;

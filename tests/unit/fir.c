@@ -136,11 +136,77 @@ static void test_stream(int order, size_t block, size_t nframes)
 	free(y);
 }
 
+static int same_band(const struct fir_band *a, const struct fir_band *b)
+{
+	/* Edges pass a multiplication by the rate and a division: two roundings each. */
+	return a->order == b->order && a->window == b->window && a->beta == b->beta &&
+	       a->scale == b->scale && fabs(a->low / b->low - 1) < 3e-16 &&
+	       fabs(a->high / b->high - 1) < 3e-16;
+}
+
+/* Bands in words and back. */
+static void test_words(void)
+{
+	char text[FIR_TEXT], chain[2 * FIR_TEXT + 3] = "";
+	struct fir_band got, all = { 1000000, 0, 0.5, FIR_KAISER, 7.857259999999999, 1 };
+	const char *rest;
+
+	for (int w = 0; w < 4; w++) {
+		struct fir_band band = { 200 + w, 0.1 / 3, 0.2 + 0.07 * w,
+			window_of(windows[w]), w == 3 ? 100 / 7.0 : 0, w % 2 };
+
+		fir_print(&band, 44100.0 / 7, text);
+		rest = fir_parse(text, 44100.0 / 7, &got);
+		ok(rest && !*rest && same_band(&got, &band), "%s", text);
+		if (w >= 2)
+			strcat(strcat(chain, w == 3 ? " | " : ""), text);
+	}
+	rest = fir_parse(chain, 44100.0 / 7, &got);
+	ok(rest && strcmp(rest, text) == 0 && got.window == FIR_BLACKMAN,
+		"a chain: the first");
+	rest = rest ? fir_parse(rest, 44100.0 / 7, &got) : NULL;
+	ok(rest && !*rest && got.window == FIR_KAISER, "and the second");
+	fir_print(&all, 48000, text);
+	rest = fir_parse(text, 48000, &got);
+	ok(rest && !*rest && got.low == 0 && got.high == 0.5 && got.order == 1000000,
+		"the widest band and the longest: %s", text);
+	fir_print(&(struct fir_band){ 1000000, 1.0 / 3e9, 0.4 / 3, FIR_BLACKMAN,
+			  -1.0 / 3e-290, 0 },
+		1.0 / 3, text);
+	ok(strlen(text) + 1 < FIR_TEXT && strstr(text, " plain"), "room for any: %s",
+		text);
+}
+
+static void test_nonsense(void)
+{
+	static const char *const bad[] = { "", "hamming", "70:130 200 hamming 0",
+		"70:130 200 welch 0 scaled", "70:130 200 Hamming 0 scaled",
+		"130:70 200 hamming 0 scaled", "70:70 200 hamming 0 scaled",
+		"-1:130 200 hamming 0 scaled", "70:5001 200 hamming 0 scaled",
+		"nan:130 200 hamming 0 scaled", "70:nan 200 hamming 0 scaled",
+		"70:inf 200 hamming 0 scaled", "70:130 0 hamming 0 scaled",
+		"70:130 -2 hamming 0 scaled", "70:130 1000001 hamming 0 scaled",
+		"70:130 4294967496 hamming 0 scaled",           /* 2^32 + 200 */
+		"70:130 18446744073709551816 hamming 0 scaled", /* 2^64 + 200 */
+		"70:130 200.5 hamming 0 scaled", "70:130 200 kaiser nan scaled",
+		"70:130 200 kaiser 1e9 scaled", "70:130 200 hamming 0 scale",
+		"70:130 200 hamming 0 scaledandmore", "70:130 200 hamming 0 scaled more",
+		"70:130 200 hamming 0 scaled|80:90 200 hamming 0 scaled",
+		"70:130 200 hamming 0 scaled 80:90 200 hamming 0 scaled",
+		"70:130 200 hamming 0 scaled | " };
+	struct fir_band band;
+
+	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+		ok(!fir_parse(bad[i], 1e4, &band), "refused: '%s'", bad[i]);
+}
+
 int main(void)
 {
 	test_taps();
 	test_edges();
 	test_response();
+	test_words();
+	test_nonsense();
 	test_stream(2, 0, 1000);
 	test_stream(7, 0, 9000);
 	test_stream(200, 0, 6000);
