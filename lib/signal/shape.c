@@ -143,11 +143,13 @@ struct shape *shape_filter(
 	size_t points = 2 * (size_t)reach + 1,
 	       support = (size_t)(2 * shape->reach * T) + 2;
 	double *value = malloc((2 * points + 2 * support) * sizeof *value);
-	double *slope = value + points, *work = slope + points, peak = 0;
+	double *slope, *work, peak = 0;
 	struct shape *out = NULL;
 
 	if (!value)
 		return NULL;
+	slope = value + points;
+	work = slope + points;
 	for (size_t i = 0; i < points; i++) {
 		filter_at(shape, T, tap, half, ((double)i - reach) / STEPS, work,
 			&value[i], &slope[i]);
