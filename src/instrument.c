@@ -86,7 +86,7 @@ static double *read_taps(const char *path, size_t *n)
 {
 	struct table_in *t = table_open(path);
 	int column = table_need(t, "tap");
-	double *taps = NULL;
+	double *taps = NULL, most = 0;
 
 	*n = 0;
 	while (table_next(t)) {
@@ -95,6 +95,7 @@ static double *read_taps(const char *path, size_t *n)
 		if (!isfinite(taps[*n - 1]))
 			die(EXIT_RUN, "%s: line %ld: tap is not a finite number", path,
 				table_line(t));
+		most = fmax(most, fabs(taps[*n - 1]));
 	}
 	for (size_t i = 0; i < *n / 2; i++)
 		if (fabs(taps[i] - taps[*n - 1 - i]) > 1e-6 * fabs(taps[*n / 2]))
@@ -104,6 +105,8 @@ static double *read_taps(const char *path, size_t *n)
 				path, i + 1, i + 1);
 	if (*n == 0)
 		die(EXIT_RUN, "%s: no taps", path);
+	if (!(most > 1e-100 && most < 1e100)) /* its square must be a number, too */
+		die(EXIT_RUN, "%s: the largest tap is %g: nothing to undo", path, most);
 	table_close(t);
 	return taps;
 }
