@@ -36,6 +36,7 @@ static void check_status(
 static void report(const struct separate *s, double rate)
 {
 	const struct separate_counters *c = separate_counters(s);
+	const struct calibration *known = separate_calibration(s);
 
 	stats_set("samples", c->samples);
 	stats_set("samples_passed_over", c->passed_over);
@@ -50,8 +51,9 @@ static void report(const struct separate *s, double rate)
 	stats_set("guesses_refused", c->refused);
 	stats_set("demixings", c->masks);
 	stats_set("demixings_skipped", c->masks_skipped);
-	if (separate_calibration(s))
-		instrument_note(separate_calibration(s), rate);
+	stats_set("calibrations", known ? known->attempts : 0);
+	if (known)
+		instrument_note(known, rate);
 }
 
 static int put_ready(struct separate *s, struct found *out)

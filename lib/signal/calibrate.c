@@ -263,6 +263,7 @@ static int measure_noise(
 
 /* What a first look at the record tells about its noise. */
 struct look {
+	int attempts;
 	int coloured;
 	enum whiten_kind kind; /* tried now */
 	int settled;           /* 1: for the last time */
@@ -405,6 +406,7 @@ static enum calibrate_status attempt(const struct calibrate_par *par, const doub
 	size_t edge = n > 8 * (size_t)w->edge ? (size_t)w->edge : 0;
 
 	memset(c, 0, sizeof *c);
+	look->attempts++;
 	c->whitening = *w;
 	c->guessed = look->settled;
 	c->suspect = look->coloured && !look->settled;
@@ -498,6 +500,7 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 	status = attempt(par, x1, x2, n, &w, c, &look);
 	if (status == CALIBRATE_OK && look.coloured && !c->dense && !is_white(c, &look))
 		status = look_again(par, x1, x2, n, &look, c);
+	c->attempts = look.attempts;
 	return status;
 }
 

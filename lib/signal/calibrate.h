@@ -58,6 +58,7 @@ struct calibration {
 	int events;                  /* pulses the shape was fitted to */
 	int suspect;                 /* 1: taken for white, which its noise is not */
 	int guessed;                 /* 1: whitened by what its own noise tells */
+	int attempts;                /* times all this was learned until it was settled */
 	int dense;                   /* 1: pulses throughout, hardly any of them clear */
 	double chi2;                 /* of these, per degree of freedom */
 	double price; /* the same with so much for each pulse, to choose by */
