@@ -476,11 +476,13 @@ static enum calibrate_status look_again(const struct calibrate_par *par, const d
 /* Durations of a pulse times the frequency above which it has hardly any power. */
 static const double PULSE_BAND = 4;
 
-/* Is the noise white after all?  Where hardly anything is quiet, pulses stand for colour
- * in their own band; then they fit, and noise is white above it. */
+/* Is the noise white after all?  Where hardly anything is quiet, pulses stand for colour.
+ * Then they fit as well as in white noise, or tolerably, and noise is white above their
+ * band. */
 static int is_white(const struct calibration *c, const struct look *look)
 {
-	return c->chi2 < 4 && colour_is_white(look->power, PULSE_BAND / c->duration);
+	return c->chi2 < 1.2 ||
+	       (c->chi2 < 4 && colour_is_white(look->power, PULSE_BAND / c->duration));
 }
 
 enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
