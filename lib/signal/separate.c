@@ -1,26 +1,12 @@
 /* separate.c - see separate.h */
 #include "signal/separate.h"
-#include "signal/fir.h"
 #include "signal/sections.h"
+#include "signal/tape.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { SHORTEST = 64 };
-
-/* Samples of one channel from index begin on: those before white have their filter
- * undone, those before clean are free of tones, too, and in units of the noise. */
-struct tape {
-	double *x;
-	size_t n, capacity;
-	long long begin, white, clean;
-	struct fir *whiten; /* NULL where there is nothing to undo; has taken in ... */
-	long long fed;      /* ... the samples before this one */
-	double *piece;      /* a block of it */
-	double at;          /* where the coefficients hold */
-	double coefficient[2 * TONES_MAX + 1];
-	int started;
-};
 
 struct separate {
 	struct separate_par par;
@@ -67,11 +53,8 @@ void separate_free(struct separate *s)
 	sections_free(s->sections);
 	joint_free(s->joint);
 	masks_free(s->masks);
-	for (int c = 0; c < 2; c++) {
-		free(s->tape[c].x);
-		free(s->tape[c].piece);
-		fir_free(s->tape[c].whiten);
-	}
+	for (int c = 0; c < 2; c++)
+		tape_clear(&s->tape[c]);
 	free(s->queue);
 	free(s->source);
 	free(s);
@@ -118,137 +101,6 @@ static struct particle *queue_particle(struct separate *s)
 	return &s->queue[s->count++];
 }
 
-static int append(struct tape *t, const double *x, size_t n)
-{
-	if (t->n + n > t->capacity) {
-		size_t capacity = 2 * t->capacity > t->n + n ? 2 * t->capacity : t->n + n;
-		double *more = realloc(t->x, capacity * sizeof *more);
-
-		if (!more)
-			return 0;
-		t->x = more;
-		t->capacity = capacity;
-	}
-	for (size_t i = 0; i < n; i++)
-		t->x[t->n + i] = x[2 * i];
-	t->n += n;
-	return 1;
-}
-
-static void drop(struct tape *t, size_t old)
-{
-	memmove(t->x, t->x + old, (t->n - old) * sizeof *t->x);
-	t->n -= old;
-	t->begin += (long long)old;
-	if (t->clean < t->begin)
-		t->clean = t->begin;
-}
-
-/* Forgets what lies before sample keep, now and then. */
-static void forget(struct tape *t, long long keep)
-{
-	size_t old = keep > t->begin ? (size_t)(keep - t->begin) : 0;
-
-	if (old < t->n / 2 || old < 4096)
-		return;
-	drop(t, old > t->n ? t->n : old);
-}
-
-static void scale(struct tape *t, long long from, long long to, double noise)
-{
-	for (long long i = from - t->begin; i < to - t->begin; i++)
-		t->x[i] /= noise;
-}
-
-/* Takes tones from what has come in and divides by the noise.  Tones are fitted around
- * the middle of every hop, over two hops, and run linearly in between; they depend on
- * the record alone, not on how it came in. */
-static int clean(struct separate *s, struct tape *t, double noise)
-{
-	const struct calibration *c = &s->cal;
-	long long end = t->white, hop = (long long)c->tone_hop;
-
-	if (c->tones == 0) {
-		scale(t, t->clean, end, noise);
-		t->clean = end;
-		return 1;
-	}
-	for (;;) {
-		long long middle =
-			t->started ? (long long)t->at + hop : t->clean + hop / 2;
-		long long from = middle - hop > t->clean ? middle - hop : t->clean,
-			  until = middle;
-		double after[2 * TONES_MAX + 1];
-
-		if (t->clean == end || (middle + hop > end && !s->ended))
-			return 1;
-		if (middle + hop > end) { /* the last one reaches to the end */
-			until = end;
-			middle = end - hop / 2 > t->clean ? end - hop / 2 : end;
-			from = t->clean;
-		}
-		if (!tones_fit(t->x + (from - t->begin),
-			    (size_t)((middle + hop < end ? middle + hop : end) - from),
-			    (double)from, c->tones, c->omega, after, NULL, NULL)) {
-			if (!t->started)
-				return 0;
-			memcpy(after, t->coefficient, sizeof after); /* a short rest */
-		}
-		if (!t->started)
-			memcpy(t->coefficient, after, sizeof after);
-		tones_remove(t->x + (t->clean - t->begin), (size_t)(until - t->clean),
-			(double)t->clean, c->tones, c->omega, t->at, t->coefficient,
-			(double)middle, after);
-		scale(t, t->clean, until, noise);
-		memcpy(t->coefficient, after, sizeof after);
-		t->at = (double)middle;
-		t->started = 1;
-		t->clean = until;
-	}
-}
-
-/* Undoes the filter in whole blocks, so that the bits do not depend on how the record
- * came in; what is written lags behind what is read. */
-static void whiten(struct separate *s, struct tape *t, double mean)
-{
-	const struct whitening *w = &s->cal.whitening;
-	long long end = t->begin + (long long)t->n, last = end - w->edge, block;
-
-	if (!t->whiten) {
-		t->white = end;
-		return;
-	}
-	block = (long long)fir_block(t->whiten);
-	while (s->ended ? t->white < last : t->fed + block <= end) {
-		for (long long i = 0; i < block; i++)
-			t->piece[i] =
-				t->fed + i < end ? t->x[t->fed + i - t->begin] - mean : 0;
-		fir_run(t->whiten, t->piece, (size_t)block);
-		for (long long i = 0; i < block; i++) {
-			long long at = t->fed + i - w->half;
-
-			if (at >= t->white && at < last)
-				t->x[at - t->begin] = t->piece[i];
-		}
-		t->fed += block;
-		if (t->fed - w->half > t->white)
-			t->white = t->fed - w->half < last ? t->fed - w->half : last;
-	}
-}
-
-static int start_whitening(struct separate *s, struct tape *t)
-{
-	const struct whitening *w = &s->cal.whitening;
-	size_t taps = 2 * (size_t)w->half + 1;
-
-	t->fed = t->white = t->clean;
-	if (!w->tap)
-		return 1;
-	t->whiten = fir_new(w->tap, taps, 1, taps > 1024 ? taps : 1024);
-	t->piece = t->whiten ? malloc(fir_block(t->whiten) * sizeof *t->piece) : NULL;
-	return t->piece != NULL;
-}
-
 static enum separate_status calibrate_now(struct separate *s)
 {
 	static const enum separate_status of[] = { SEPARATE_OK, SEPARATE_MEMORY,
@@ -282,7 +134,7 @@ static enum separate_status calibrate_now(struct separate *s)
 	if (c->whitening.low * 2 * (double)s->par.window > JOINT_BASELINE_MAX)
 		s->par.window = (size_t)fmax(
 			3 * reach, JOINT_BASELINE_MAX / (2 * c->whitening.low));
-	if (!start_whitening(s, &s->tape[0]) || !start_whitening(s, &s->tape[1]))
+	if (!tape_start(&s->tape[0], c) || !tape_start(&s->tape[1], c))
 		return SEPARATE_MEMORY;
 	s->sections =
 		sections_new(c->shape, c->duration, 0.65 * sqrt(c->drop), s->margin);
@@ -669,11 +521,9 @@ static enum separate_status work(struct separate *s)
 	long long limit, longest;
 	struct section section;
 
-	for (int c = 0; c < 2; c++) {
-		whiten(s, &s->tape[c], s->cal.mean[c]);
-		if (!clean(s, &s->tape[c], s->cal.noise[c]))
+	for (int c = 0; c < 2; c++)
+		if (!tape_prepare(&s->tape[c], &s->cal, c, s->ended))
 			return SEPARATE_MEMORY;
-	}
 	limit = ready(s);
 	if (limit <= s->done)
 		return SEPARATE_OK;
@@ -731,7 +581,7 @@ static enum separate_status work(struct separate *s)
 	if (s->done < 0)
 		s->done = 0;
 	for (int c = 0; c < 2; c++)
-		forget(&s->tape[c], s->done);
+		tape_forget(&s->tape[c], s->done);
 	return SEPARATE_OK;
 }
 
@@ -755,7 +605,7 @@ static enum separate_status learn(struct separate *s)
 		if (s->tape[0].n < s->par.learn)
 			break;
 		for (int c = 0; c < 2; c++)
-			drop(&s->tape[c], half);
+			tape_drop(&s->tape[c], half);
 		s->counters.passed_over += (double)half;
 	}
 	return SEPARATE_OK;
@@ -772,7 +622,7 @@ enum separate_status separate_push(struct separate *s, const double *x, size_t n
 			s->bad_channel = (int)(i % 2);
 			return SEPARATE_NOT_FINITE;
 		}
-	if (!append(&s->tape[0], x, n) || !append(&s->tape[1], x + 1, n))
+	if (!tape_append(&s->tape[0], x, n) || !tape_append(&s->tape[1], x + 1, n))
 		return SEPARATE_MEMORY;
 	s->counters.samples += (double)n;
 	if (!s->calibrated)
