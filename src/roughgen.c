@@ -107,14 +107,26 @@ static void finish(struct record *r, double had)
 	fields_write(out, r);
 }
 
+/* The file to prepare, NULL where surfaces are generated: without an operand, unless what
+ * is measured is not told how to be made. */
+static const char *file_of(int argc, char **argv, int operand)
+{
+	if (operand < argc)
+		return argv[operand];
+	return measure && !opt_any_given(generated_grid_rows) &&
+			       !opt_any_given(generated_rows)
+		       ? "-"
+		       : NULL;
+}
+
 int main(int argc, char **argv)
 {
-	int operand = opt_parse(&prog, argc, argv), from_file = operand < argc;
+	const char *file = file_of(argc, argv, opt_parse(&prog, argc, argv));
 	struct record r = { 0 };
 
-	check_options(from_file);
-	if (from_file) {
-		struct measured *surfaces = measured_open(argv[operand]);
+	check_options(file != NULL);
+	if (file) {
+		struct measured *surfaces = measured_open(file);
 		double had;
 
 		while (measured_next(surfaces, &r, &had))

@@ -154,6 +154,11 @@ roughgen -n 40x30 -m >u
 near "a GSF file is measured (float32)" "$(value sq t)" "$(value sq u)" 1e-12
 roughgen -q 2um s | roughgen -m - >t
 near "a measured surface is scaled on request" "$(value sq t)" 2e-6 1e-20
+roughgen -n 64 -K 5 | roughgen -m >t
+near "--measure alone reads standard input" "$(value ssk t)" 5 1e-6
+roughgen -n 64 -K 5 | roughgen -q 2um -z -m >u
+near "also what it is to prepare" "$(value sq u)" 2e-6 1e-20
+is "and says so in its header" "$(sed -n 's/^# cmd: .*| //p' t)" "roughgen --measure -"
 
 # Refusals.
 fails "no heights of kurtosis below skewness^2 + 1" 2 'must exceed' \
@@ -173,6 +178,7 @@ fails "a crop outside" 1 'record 1: --crop 30:0:11:5 is not within 40 x 30' \
 	roughgen -w 30:0:11:5 s
 fails "raw without pixel" 2 'go together' roughgen -x 3x3 s
 fails "a file that is not there" 1 'nowhere: No such file' roughgen nowhere
+fails "nothing to measure" 1 'no records' roughgen -m
 fails "an empty file" 1 'no records' roughgen /dev/null
 printf '\0\0\0\0\0\0\370\177\0\0\0\0\0\0\0\0' >nan.f64
 fails "a missing sample" 1 'record 1: height is .*nan' roughgen -x 2x1 -X 1um nan.f64
