@@ -120,6 +120,21 @@ is "distance counts amplified steps" \
 	"$(debrisgen -Y 355MPa -Z 0.72 -U /dev/fd/3 start.nrrd 3>&1 >t.tsv | awk '!/^[#r]/ { print $3; exit }')" \
 	"0.00035999999999999997"
 
+# A step slides by the side along the shear.
+roughgen -n 32x64 -L 0.2mmx0.6mm -q 8um -l 50um | bemcontact -F 5N -E 210GPa >oblong.nrrd
+for side in x:0.0002 y:0.0006; do
+	$wear -d ${side%:*} -U summary.tsv oblong.nrrd >t.tsv 2>warning
+	near "shear along ${side%:*}: distance" "$(summary distance)" ${side#*:} 1e-18
+done
+
+# What the summary says of particles and of the surface they left.
+near "mean diameter of several particles" "$(column mean_diameter s1.tsv | head -1)" \
+	"$(awk '$1 == "0" { s += $6; n++ } END { printf "%.17g", (n > 1 ? s / n : 0) }' 1.tsv)" 1e-17
+roughgen worn1.nrrd | sed -n 's/^sq:=//p' >sq # without the crown; it was 8 um
+rough=$(column relative_roughness s1.tsv | head -1)
+near "relative roughness" "$rough" "$(awk 'NR == 1 { printf "%.17g", $1 / 8e-6 }' sq)" 1e-12
+ok "which the wear has changed" awk -v r="$rough" 'BEGIN { exit !(r < 0.999 || r > 1.001) }'
+
 # Steps that touch everywhere stop.
 roughgen -n 32 -L 1mm --sq 1nm -l 200um | bemcontact -P 100MPa -E 210GPa >flat.nrrd
 debrisgen -Y 1MPa -T 5 -E 210GPa -S stats.tsv flat.nrrd 2>err >t.tsv
@@ -164,11 +179,25 @@ else
 	skip "stress: teem reads the layers" "no unu"
 fi
 
-# Edge load is told.
-roughgen -n 32 -L 1mm --sq 1um -l 100um -s 3 | bemcontact -F 1N -E 210GPa |
-	debrisgen -Y 355MPa -U summary.tsv 2>warning >t.tsv
-near "much load on the rim" "$(summary edge_load)" 0.5 0.45
-ok "is warned of" grep -q "outermost cells" warning
+# Edge load is told: of 0.5 MPa and INNER MPa on one cell each, the first on the rim.
+loaded() {
+	perl -e 'my ($column, $row, $inner) = @ARGV; binmode STDOUT;
+		print "NRRD0004\ntype: double\nendian: little\nencoding: raw\ndimension: 3\n",
+			"sizes: 2 5 5\nspacings: 1e-5 1e-5 1e-5\n",
+			"fields:=height m, pressure Pa\n\n";
+		for my $y (0 .. 4) { for my $x (0 .. 4) { print pack "d<2", 0,
+			$x == $column && $y == $row ? 5e5 : $x == 2 && $y == 2 ? $inner * 1e6 : 0 } }' "$@"
+}
+for cell in '0 2' '4 2' '2 0' '2 4'; do
+	loaded $cell 2 | debrisgen -Y 1GPa -U summary.tsv 2>warning >t.tsv
+	near "load on the rim at $cell" "$(summary edge_load)" 0.2 1e-15
+	ok "is warned of" grep -q "20 % of the load lies on the outermost cells" warning
+done
+loaded 2 0 10 | debrisgen -Y 1GPa -U summary.tsv 2>warning >t.tsv
+near "less load on the rim" "$(summary edge_load)" 0.047619047619047616 1e-15
+is "goes without a warning below 5 %" "$(cat warning)" ""
+loaded 2 0 2 | debrisgen -Y 1GPa -b periodic -U summary.tsv 2>warning >t.tsv
+is "a periodic surface has no rim" "$(summary edge_load) $(cat warning)" "0 "
 
 replay s.nrrd cmd:= >a
 same "the command of a stress field rebuilds it" a s.nrrd
