@@ -1,0 +1,51 @@
+/* A measured contact map with counts known from elsewhere. */
+#include "../unit/tap.h"
+#include "contact/particles.h"
+#include <stdio.h>
+
+int main(void)
+{
+	static const char path[] = "../shared/data/map/contact_map_256x256.u8";
+	struct particles_par par = { .nx = 256,
+		.ny = 256,
+		.ax = 1,
+		.ay = 1,
+		.az = 1,
+		.corners = 1,
+		.periodic = 1 };
+	static unsigned char map[256 * 256];
+	FILE *f = fopen(path, "rb");
+	struct particles *ps;
+	const struct particle *p;
+	static const double largest[5] = { 6526, 2977, 403, 370, 210 };
+	double cells = 0;
+	size_t n;
+
+	if (!f || fread(map, 1, sizeof(map), f) != sizeof(map)) {
+		ok(1, "contact map of 123 patches # SKIP %s is not there", path);
+		if (f)
+			fclose(f);
+		return tap_done();
+	}
+	fclose(f);
+	ps = particles_new(&par);
+	particles_begin(ps);
+	particles_layer(ps, map);
+	n = particles_end(ps, &p);
+	ok(n == 123, "contact map: 123 patches over corners and borders (got %zu)", n);
+	for (size_t i = 0; i < n; i++)
+		cells += p[i].nodes;
+	ok(cells == 11412, "contact map: 11412 cells");
+	for (int i = 0; i < 5; i++)
+		ok(p[i].nodes == largest[i], "contact map: patch %d has %g cells", i + 1,
+			largest[i]);
+	particles_free(ps);
+	par.periodic = 0;
+	par.corners = 0;
+	ps = particles_new(&par);
+	particles_begin(ps);
+	particles_layer(ps, map);
+	ok(particles_end(ps, &p) == 235, "contact map: 235 patches over sides alone");
+	particles_free(ps);
+	return tap_done();
+}
