@@ -1,9 +1,11 @@
 #include "state.h"
 #include "life/slope.h"
 #include "shell/msg.h"
+#include "shell/stats.h"
 #include "timeunit.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const char *const quantities[] = { "auto", "leakage", "gap", "volume", "debris",
 	NULL };
@@ -50,6 +52,8 @@ void state_open(struct state *s, const char *file, const struct pair *pair)
 		s->value_column = table_find(t, "y");
 	if (s->value_column < 0)
 		s->value_column = table_need(t, columns[s->quantity]);
+	s->sources_column = table_find(t, "sources");
+	s->verdict_column = table_find(t, "verdict");
 	if (state_options.unit) {
 		char *one = xprintf("1%s", state_options.unit);
 
@@ -60,13 +64,29 @@ void state_open(struct state *s, const char *file, const struct pair *pair)
 	}
 }
 
+/* Volume of all particles so far, with those of the present row. */
+static double add_debris(struct state *s, double diameter)
+{
+	struct table_in *t = s->table;
+	double many = 1;
+
+	if (s->verdict_column >= 0 && s->sources_column >= 0 &&
+		!strcmp(table_text(t, s->verdict_column), "unresolved"))
+		many = table_positive(t, s->sources_column);
+	return s->debris += many * sphere * diameter * diameter * diameter;
+}
+
 int state_next(struct state *s)
 {
 	struct table_in *t = s->table;
 	double time, value, error = state_options.error * s->scale;
 
-	if (!table_next(t))
+	if (!table_next(t)) {
+		if (s->passed)
+			warn("%s: rows passed over for want of a diameter: %ld",
+				table_name(t), s->passed);
 		return 0;
+	}
 	time = table_number(t, s->time_column) * timeunit();
 	value = table_number(t, s->value_column) * s->scale;
 	if (!isfinite(time))
@@ -86,8 +106,12 @@ int state_next(struct state *s)
 	if (s->rows == 1)
 		s->first_t = time;
 	s->t = time;
-	if (s->quantity == PAIR_DEBRIS && !isnan(value))
-		value = s->debris += sphere * value * value * value;
+	if (s->quantity == PAIR_DEBRIS) {
+		s->passed += isnan(value);
+		stats_add("particles_without_diameter", isnan(value));
+		if (!isnan(value))
+			value = add_debris(s, value);
+	}
 	s->value = value;
 	s->gap = pair_gap(s->pair, s->quantity, value);
 	s->gap_error = (pair_gap(s->pair, s->quantity, value + error) -

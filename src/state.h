@@ -29,18 +29,21 @@ struct state {
 	struct table_in *table;
 	const struct pair *pair;
 	int time_column, value_column;
-	int quantity;  /* enum pair_quantity, found in the columns */
-	int filtered;  /* read from the column state */
-	double scale;  /* of the value to SI */
-	double debris; /* volume of the particles so far */
+	int sources_column, verdict_column; /* of particles; -1 where absent */
+	int quantity;                       /* enum pair_quantity, found in the columns */
+	int filtered;                       /* read from the column state */
+	double scale;                       /* of the value to SI */
+	double debris;                      /* volume of the particles so far */
 	long rows;
+	long passed;          /* particles without a diameter */
 	double first_t;       /* of the first row */
 	double t, gap, value; /* latest row, SI; gap and value NAN where missing */
 	double gap_error;     /* standard error of the gap */
 };
 
 void state_open(struct state *s, const char *file, const struct pair *pair);
-/* The next row; 0 at the end.  Times must grow, but particles may come together. */
+/* The next row; 0 at the end.  Times must grow, but particles may come together.  A
+ * particle that duet calls unresolved counts as its sources. */
 int state_next(struct state *s);
 
 /* Slope of the gap over the whole life of an earlier unit from the time skip on, m/s. */

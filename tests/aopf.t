@@ -35,7 +35,7 @@ paste a "$work/rise.tsv" >/dev/null
 column state out.tsv | awk 'NR > 60 { e = $1 - (1.5 + 1.3 * (NR - 1) / 1186); s += e * e; n++ }
 	END { print sqrt(s / n) }' >rms
 near "states are nearer the truth than observations" "$(cat rms)" 0.03 0.02
-column ess out.tsv | awk '$1 < 1 - 1e-9 || $1 > 300 + 1e-9 { bad = 1 } END { print bad + 0 }' >bad
+column ess out.tsv | awk '$1 !~ /^[0-9]/ || $1 + 0 < 1 - 1e-9 || $1 + 0 > 300 + 1e-9 { bad = 1 } END { print bad + 0 }' >bad
 is "1 <= ess <= N" "$(cat bad)" 0
 
 printf '# units: h L/min\nt\ty\n0\t1\n' >unit.tsv
@@ -84,8 +84,8 @@ fails "a time that repeats" 1 "twice.tsv: line 3: a: time 0 comes twice" \
 awk 'NR == 1 { print; next } { print $1 * 3600 "\t" $2 }' short.tsv >seconds.tsv
 aopf -y 2.8 seconds.tsv | grep -v '^#' >a
 aopf -y 2.8 -t h short.tsv | grep -v '^#' >b
-paste a b | awk -F '\t' 'NR > 10 { d = $9 / 3600 - $20; if (d < 0) d = -d; if (d > m) m = d }
-	END { exit !(m < 1e-6) }'
+paste a b | awk -F '\t' 'NR > 10 { d = $9 == $20 ? 0 : $9 / 3600 - $20; if (d < 0) d = -d; if (d > m || d ~ /nan/) m = d }
+	END { exit !(NR > 20 && m !~ /nan/ && m < 1e-6) }'
 is "hours or seconds: the same life" $? 0
 awk 'NR == 1 { print; next } { printf "%s\t%.17g\n", $1, $2 * 1048576 }' short.tsv >big.tsv
 aopf big.tsv | grep '^[0-9]' | awk -F '\t' '{ printf "%.9g\n", $5 / 1048576 }' >a
@@ -98,7 +98,7 @@ same "the filter does not mind the unit of y" a b
 	aopf --time-unit h --order 60 --sigma-u 0.005 --stats stray.stats >stray.tsv
 awk -F '\t' '/^[0-9]/ && $1 >= 100 { d = $5 - (1.5 + 1.3 * $1 / 1186)
 	if (d < 0) d = -d
-	if (d > m) m = d } END { print m }' stray.tsv >worst
+	if (d > m || d ~ /nan/) m = d } END { print m }' stray.tsv >worst
 near "a filter that strays is brought back" "$(cat worst)" 0 0.3
 ok "by starting anew" test "$(column restarts stray.stats)" -ge 1
 

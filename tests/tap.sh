@@ -3,6 +3,7 @@
 #
 #	is NAME GOT WANT           equal strings
 #	near NAME GOT WANT TOL     |got - want| <= tol
+#	rising NAME NUMBER...      numbers, none below the one before (nan is no number)
 #	ok NAME COMMAND...         command succeeds
 #	fails NAME STATUS PATTERN COMMAND...
 #	                           exits with STATUS, one line on stderr matching PATTERN
@@ -60,6 +61,17 @@ near() {
 		pass "$1"
 	else
 		fail "$1" "got:  $2" "want: $3 +- $4"
+	fi
+}
+
+rising() {
+	name=$1
+	shift
+	if echo "$@" | awk '{ for (i = 1; i <= NF; i++)
+		if ($i !~ /^[-+]?[0-9.]/ || i > 1 && $i + 0 < $(i - 1) + 0) exit 1 }'; then
+		pass "$name"
+	else
+		fail "$name" "got: $*"
 	fi
 }
 

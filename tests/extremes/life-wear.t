@@ -55,10 +55,10 @@ awk 'BEGIN { print "volume"; for (i = 0; i < 999; i++) print 0; print 1e-12 }' >
 relative "one fragment in 1000 holds all wear" "a third of replicates have none: 0.999^1000" 0.3677 0.05 \
 	"$(last p_no_failure $new -w rare.tsv -c 4000)"
 relative "the same, new rate in every step" "mean of those that fail is finite" 1 0 \
-	"$(last mean $new -w rare.tsv -R last --parts 1 | awk '{ print ($1 > 0 && $1 < 1e9) }')"
+	"$(last mean $new -w rare.tsv -R last --parts 1 | awk '{ print ($1 + 0 > 0 && $1 + 0 < 1e9) }')"
 fragments 1e-9 1e-33 >wide.tsv
 relative "volumes 24 decades apart, new rate in every step" "finite" 1 0 \
-	"$(last q05 $new -w wide.tsv -R last --parts 1 | awk '{ print ($1 >= 0 && $1 < 1e9) }')"
+	"$(last q05 $new -w wide.tsv -R last --parts 1 | awk '{ print ($1 ~ /^[0-9]/ && $1 + 0 < 1e9) }')"
 
 # --- pressures
 fragments 1e-15 >high.tsv
@@ -116,7 +116,7 @@ awk 'BEGIN { print "t\tgap"; for (i = 0; i < 60; i++) printf "%.17g\t%.17g\n", 3
 relative "times 1 s apart at 3.6e9 s, filter" "41 s" 41 1e-3 "$(last q50 -g 11um -R filter late.tsv)"
 printf 't\tleakage\n0\t1e-300\n1\t2e-300\n2\t3e-300\n' >small.tsv
 relative "leakage 1e-300 m3/s" "gap 1e-98, rate as small: a finite or infinite life" 1 0 \
-	"$(last q50 -g 20um small.tsv | awk '{ print ($1 == "inf" || $1 > 0) }')"
+	"$(last q50 -g 20um small.tsv | awk '{ print ($1 == "inf" || $1 + 0 > 0) }')"
 printf 't\tleakage\n0\t1e300\n' >large.tsv
 relative "leakage 1e300 m3/s" "nothing left" 0 0 "$(last q95 large.tsv)"
 printf 't\tgap\n0\tinf\n' >infinite.tsv
@@ -137,7 +137,7 @@ refused "a table cut off in a number" 1 'cut off' rwl $new -w cut.tsv
 relative "end of life before the first observation" "no score" nan 0 \
 	"$(rwl -g 20um --eol 1e-9s two.tsv | sed -n 's/^# coverage: //p' | sed 's/^-//')"
 relative "levels 0 and 1" "least and largest path" 1 0 "$(rwl $new -w three.tsv -q 0,0.5,1 >out
-	awk -F '\t' '/^[0-9]/ { print ($3 > 0 && $3 < $4 && $5 > $4) }' out)"
+	awk -F '\t' '/^[0-9]/ { print ($3 + 0 > 0 && $3 + 0 < $4 + 0 && $5 + 0 > $4 + 0) }' out)"
 
 # --- size
 awk 'BEGIN { print "t\tgap"; for (i = 0; i < 100000; i++) print i "\t" 1e-5 + i * 1e-11 }' >long.tsv

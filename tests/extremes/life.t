@@ -101,7 +101,7 @@ accurate "threshold at twice the life" "100 left" "$(last rul_q50 -y 2.99 s)" 10
 
 series 100 '1 + 0.001 * t' >s
 accurate "noise 1e-12 of what the model errs" "ess >= 1" \
-	"$(last ess -b 1e-15 s | awk '{ print ($1 >= 1) }')" 1 0
+	"$(last ess -b 1e-15 s | awk '{ print ($1 ~ /^[0-9]/ && $1 + 0 >= 1) }')" 1 0
 accurate "noise 1e12 of the series" "ess of the order of N" "$(last ess -b 1e12 s)" 300 0.5
 accurate "one particle" "state near the data" "$(last state -N 1 s)" 1.099 0.05
 accurate "order 1000 of 100 points" "state" "$(last state -n 1000 s)" 1.099 0.01
