@@ -18,6 +18,11 @@ printf 't\ty\r\n0\t1\r\n1\t2\r\n2\t4\r\n' >dos
 is 'lines that end as on DOS' "$(read_series dos)" '0 1 2 1 2 4 '
 { cat plain; printf '# cmd: other\nt\ty\n3\t5\n'; } >two
 is 'a table behind a table' "$(read_series two)" '0 1 2 3 1 2 4 5 '
+printf '1\n2\n1\n3\n1\n' | aopf >out
+is 'rows equal to the first where there is no header' "$(column y out | tr '\n' ' ')" '1 2 1 3 1 '
+is 'at their times' "$(column t out | tr '\n' ' ')" '0 1 2 3 4 '
+printf '\357\273\277y\tt\n1\t0\n2\t1\n4\t2\n' >marked
+is 'a byte order mark is passed over' "$(read_series marked)" '0 1 2 1 2 4 '
 printf 't\ty\n0\t1\n1\tnan\n2\tNA\n3\t\n4\t4\n' >missing
 is 'three spellings of a missing value' "$(read_series missing)" '0 1 2 3 4 1 nan nan nan 4 '
 
@@ -32,6 +37,9 @@ refuse 'a cell that is no number' "bad: line 3: y: 'two' is not a number" 't\ty\
 refuse 'a number with a unit' "bad: line 3: y: '2um' is not a number" 't\ty\n0\t1\n1\t2um\n'
 refuse 'too few cells' 'bad: line 3: want 2 cells, got 1' 't\ty\n0\t1\n1\n'
 refuse 'too many cells' 'bad: line 3: want 2 cells, got 3' 't\ty\n0\t1\n1\t2\t3\n'
+refuse 'a cell too many behind one column' 'bad: line 3: want 1 cells, got 2' 'y\n1\n2\t3\n'
+refuse 'commas' "bad: no column 'y': a TAB parts columns, not a comma" 't,y\n0,1\n1,2\n'
+refuse 'commas and blanks' "bad: no column 'y': a TAB parts" 't, y, z\n0, 1, 2\n'
 refuse 'a last line cut off' 'bad: line 3: no newline at the end: the table is cut off' 't\ty\n0\t1\n1\t2'
 refuse 'a NUL byte' 'bad: line 3: NUL byte' 't\ty\n0\t1\n1\t\0002\n'
 

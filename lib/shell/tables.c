@@ -20,6 +20,7 @@ struct table_in {
 	char **column; /* names */
 	char **cell;
 	const char *blanks; /* what parts the cells */
+	int headed;         /* the names stand in the table */
 	int pending;        /* the row read ahead by table_open() is still to come */
 	struct keys keys;   /* of comment lines */
 };
@@ -54,6 +55,9 @@ static void keep_key(struct table_in *t, char *comment)
 	keys_set(&t->keys, trim(comment), trim(colon + 1));
 }
 
+/* UTF-8 has none, but spreadsheets begin a file with it. */
+static const char byte_order_mark[] = "\xef\xbb\xbf";
+
 /* The next line that is neither empty nor a comment; 0 at the end. */
 static int next_line(struct table_in *t)
 {
@@ -71,6 +75,8 @@ static int next_line(struct table_in *t)
 		if ((size_t)n != strlen(t->line))
 			die(EXIT_RUN, "%s: line %ld: NUL byte in a table", t->name,
 				t->number);
+		if (t->number == 1 && strncmp(t->line, byte_order_mark, 3) == 0)
+			memmove(t->line, t->line + 3, (size_t)(n -= 3) + 1);
 		if (*t->line == '#')
 			keep_key(t, t->line + 1);
 		else if (n)
@@ -134,6 +140,7 @@ static void name_columns(struct table_in *t)
 	for (int i = 0; i < t->ncolumns; i++)
 		all &= to_number(t->cell[i], &v) && *t->cell[i];
 	t->pending = all;
+	t->headed = !all;
 	for (int i = 0; i < t->ncolumns; i++)
 		t->column[i] = all ? xprintf("%d", i + 1) : xstrdup(t->cell[i]);
 	if (all && declared) {
@@ -161,7 +168,7 @@ struct table_in *table_open(const char *path)
 		die(EXIT_RUN, "%s:", path);
 	if (!next_line(t))
 		return t;
-	t->blanks = strchr(t->line, '\t') ? "\t" : " ";
+	t->blanks = strchr(t->line, '\t') ? "\t" : " \t";
 	copy = xstrdup(t->line);
 	t->ncolumns = cut(t, copy, NULL, 0);
 	free(copy);
@@ -206,18 +213,30 @@ int table_find(const struct table_in *t, const char *column)
 	return found;
 }
 
+/* 1 where the header looks like that of a table parted by commas. */
+static int has_commas(const struct table_in *t)
+{
+	for (int i = 0; i < t->ncolumns; i++)
+		if (*t->blanks == ' ' && strchr(t->column[i], ','))
+			return 1;
+	return 0;
+}
+
 int table_need(const struct table_in *t, const char *column)
 {
 	int i = table_find(t, column);
 
 	if (i < 0)
-		die(EXIT_RUN, "%s: no column '%s'", t->name, column);
+		die(EXIT_RUN, "%s: no column '%s'%s", t->name, column,
+			has_commas(t) ? ": a TAB parts columns, not a comma" : "");
 	return i;
 }
 
 /* The header of a table appended by cat. */
 static int is_header(const struct table_in *t)
 {
+	if (!t->headed)
+		return 0;
 	for (int i = 0; i < t->ncolumns; i++)
 		if (strcmp(t->cell[i], t->column[i]) != 0)
 			return 0;
