@@ -1,4 +1,5 @@
 #include "lessons.h"
+#include "shell/files.h"
 #include "shell/msg.h"
 #include <math.h>
 #include <string.h>
@@ -143,18 +144,14 @@ void lessons_keep(struct lesson *l)
 
 struct network *lessons_network(const char *path, struct netfile *file)
 {
-	int standard = !path || strcmp(path, "-") == 0;
-	const char *name = standard ? "standard input" : path;
-	FILE *f = standard ? stdin : fopen(path, "r");
+	const char *name;
+	FILE *f = file_open(path, &name);
 	struct lesson l = lessons_make();
-	struct network *net;
+	struct network *net = netfile_read(f, FORWARD, file);
 
-	if (!f)
-		die(EXIT_RUN, "%s:", name);
-	net = netfile_read(f, FORWARD, file);
 	if (!net)
 		die(EXIT_RUN, "%s: line %ld: %s", name, file->line, file->why);
-	if (!standard)
+	if (f != stdin)
 		fclose(f);
 	if (!lesson_suits(&l, net, file->purpose))
 		die(EXIT_RUN, "%s: want a network for %s, got one for %s", name,

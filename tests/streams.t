@@ -106,6 +106,35 @@ fails 'one table of records with different fields' 1 \
 	'gap.nrrd: record 2 has fields gap, the first one height' records -o table gap.nrrd
 { header ''; ramp | head -c 88; printf '\234\165\000\210\074\344\067\176'; } >huge.nrrd # 1e300
 fails 'heights that overflow' 1 'record 1: height 1e+300 m is too large' roughgen -m huge.nrrd
+
+# What is read is not written, and nothing is written twice.
+roughgen -n 16 -q 1nm -L 1um | bemcontact -F 1uN -E 1GPa >contact.nrrd
+cp contact.nrrd kept.nrrd
+wear='debrisgen -Y 1GPa'
+fails 'an output that is the input' 2 'contact.nrrd: the same file is read and written' \
+	$wear -O contact.nrrd contact.nrrd
+fails 'or standard input' 2 'contact.nrrd: the same file is read and written' \
+	sh -c "$wear -U ./contact.nrrd <contact.nrrd"
+fails 'or the counters' 2 'contact.nrrd: the same file is read and written' \
+	$wear -S contact.nrrd contact.nrrd
+ln -s contact.nrrd link
+fails 'by another name' 2 'link: the same file is read and written' $wear -G link contact.nrrd
+same 'leaves the input as it was' contact.nrrd kept.nrrd
+fails 'two outputs that are one file' 2 'x: the same file is written twice' \
+	$wear -O x -U x contact.nrrd
+fails 'an output that is standard output' 2 'x: the same file is written twice' \
+	sh -c "$wear -U x contact.nrrd >x"
+fails 'an output without a name' 2 '^debrisgen: -: an output wants the name of a file' \
+	$wear -O - contact.nrrd
+fails 'counters without a name' 2 '^debrisgen: -: an output wants' $wear -S - contact.nrrd
+ok 'what goes nowhere may go there twice' $wear -O /dev/null -U /dev/null contact.nrrd
+seq 1000 >old
+ok 'an old file' $wear -U old -S old.stats contact.nrrd
+is 'is overwritten' "$(grep -c '^[0-9]' old)" 1
+cp old old.stats
+ok 'old counters' $wear -S old.stats contact.nrrd
+is 'are overwritten' "$(wc -l <old.stats)" 2
+
 fails 'no room left on the device' 1 'standard output: No space left' \
 	sh -c 'records -o nrrd plain.nrrd >/dev/full'
 

@@ -1,5 +1,6 @@
 #include "shell/fields.h"
 #include "shell/bytes.h"
+#include "shell/files.h"
 #include "shell/formats.h"
 #include "shell/msg.h"
 #include <math.h>
@@ -209,14 +210,14 @@ void check_spacing(const struct place *at, int axis, double spacing)
 static void check_length(const struct place *at, uint64_t want)
 {
 	struct stat s;
-	off_t here = ftello(at->f);
+	off_t here = ftello(at->f), left;
 
 	if (here < 0 || fstat(fileno(at->f), &s) || !S_ISREG(s.st_mode))
 		return;
-	if (s.st_size < here || (uint64_t)(s.st_size - here) < want)
+	left = s.st_size > here ? s.st_size - here : 0;
+	if ((uint64_t)left < want)
 		die(EXIT_RUN, "%s: record %ld: want %llu bytes, got %lld", at->name,
-			at->record, (unsigned long long)want,
-			(long long)(s.st_size - here));
+			at->record, (unsigned long long)want, (long long)left);
 }
 
 static double sample(const unsigned char *b, struct samples layout)
@@ -256,15 +257,7 @@ struct fields_in *fields_open(const char *path, const struct raw_layout *raw)
 {
 	struct fields_in *in = xcalloc(1, sizeof *in);
 
-	if (path && strcmp(path, "-") != 0) {
-		in->at.name = path;
-		in->at.f = fopen(path, "rb");
-		if (!in->at.f)
-			die(EXIT_RUN, "%s:", path);
-	} else {
-		in->at.name = "standard input";
-		in->at.f = stdin;
-	}
+	in->at.f = file_open(path, &in->at.name);
 	if (raw) {
 		in->raw = *raw;
 		in->is_raw = 1;
@@ -338,10 +331,7 @@ struct fields_out *fields_create(const char *path)
 {
 	struct fields_out *out = xcalloc(1, sizeof *out);
 
-	out->name = path ? path : "standard output";
-	out->f = path ? fopen(path, "wb") : stdout;
-	if (!out->f)
-		die(EXIT_RUN, "%s:", path);
+	out->f = file_create(path, &out->name);
 	if (isatty(fileno(out->f)))
 		die(EXIT_USAGE, "not writing binary data to a terminal");
 	return out;

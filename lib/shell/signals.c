@@ -5,10 +5,10 @@
  */
 #include "shell/signals.h"
 #include "shell/bytes.h"
+#include "shell/files.h"
 #include "shell/msg.h"
 #include <ctype.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,7 +32,8 @@ static const uint32_t unknown = 0xffffffff;
 struct signal_in {
 	struct signal_format format;
 	const char *name;
-	int fd;
+	FILE *f;
+	int fd;               /* of f: what is there is read, however little */
 	int encoding;         /* 0: raw little-endian float64 */
 	size_t width;         /* bytes per sample */
 	uint64_t left, total; /* bytes of data still declared; UINT64_MAX: unknown */
@@ -165,10 +166,8 @@ struct signal_in *signal_open(const char *path, const struct signal_raw *raw)
 {
 	struct signal_in *in = xcalloc(1, sizeof *in);
 
-	in->name = path && strcmp(path, "-") != 0 ? path : "standard input";
-	in->fd = in->name == path ? open(path, O_RDONLY) : STDIN_FILENO;
-	if (in->fd < 0)
-		die(EXIT_RUN, "%s:", path);
+	in->f = file_open(path, &in->name);
+	in->fd = fileno(in->f);
 	if (raw) {
 		in->format.rate = raw->rate;
 		in->format.channels = raw->channels;
@@ -283,8 +282,8 @@ size_t signal_read(struct signal_in *in, double *x, size_t nframes)
 
 void signal_close(struct signal_in *in)
 {
-	if (in->fd != STDIN_FILENO)
-		close(in->fd);
+	if (in->f != stdin)
+		fclose(in->f);
 	free(in->format.cmd);
 	free(in->format.units);
 	free(in->format.seed);
@@ -333,12 +332,9 @@ struct signal_out *signal_create(const char *path, const struct signal_format *f
 {
 	struct signal_out *out = xcalloc(1, sizeof *out);
 
-	out->name = path ? path : "standard output";
-	out->f = path ? fopen(path, "wb") : stdout;
+	out->f = file_create(path, &out->name);
 	out->channels = format->channels;
 	out->single = format->single;
-	if (!out->f)
-		die(EXIT_RUN, "%s:", path);
 	if (isatty(fileno(out->f)))
 		die(EXIT_USAGE, "not writing binary data to a terminal");
 	write_header(out, format);

@@ -1,4 +1,5 @@
 #include "shell/stats.h"
+#include "shell/files.h"
 #include "shell/msg.h"
 #include <stdio.h>
 #include <string.h>
@@ -57,10 +58,7 @@ static double seconds(struct timeval t)
 
 void stats_open(const char *path)
 {
-	file_name = path;
-	file = fopen(path, "w");
-	if (!file)
-		die(EXIT_RUN, "%s:", path);
+	file = file_reserve(path, &file_name);
 }
 
 void stats_write(const char *program)
@@ -79,6 +77,7 @@ void stats_write(const char *program)
 	note("seconds %.3f, cpu %.3f, memory %ld kB", wall, cpu, use.ru_maxrss);
 	if (!file)
 		return;
+	file_empty(file);
 	fputs("program\tseconds\tcpu_seconds\tmemory_kb", file);
 	for (int i = 0; i < ncounters; i++)
 		fprintf(file, "\t%s", counters[i].name);

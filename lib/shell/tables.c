@@ -1,4 +1,5 @@
 #include "shell/tables.h"
+#include "shell/files.h"
 #include "shell/keys.h"
 #include "shell/msg.h"
 #include "shell/unit.h"
@@ -162,10 +163,7 @@ struct table_in *table_open(const char *path)
 	struct table_in *t = xcalloc(1, sizeof *t);
 	char *copy;
 
-	t->name = path && strcmp(path, "-") != 0 ? path : "standard input";
-	t->f = t->name == path ? fopen(path, "r") : stdin;
-	if (!t->f)
-		die(EXIT_RUN, "%s:", path);
+	t->f = file_open(path, &t->name);
 	if (!next_line(t))
 		return t;
 	t->blanks = strchr(t->line, '\t') ? "\t" : " \t";
@@ -325,10 +323,7 @@ struct table_out *table_create(
 {
 	struct table_out *t = xcalloc(1, sizeof *t);
 
-	t->name = path ? path : "standard output";
-	t->f = path ? fopen(path, "w") : stdout;
-	if (!t->f)
-		die(EXIT_RUN, "%s:", path);
+	t->f = file_create(path, &t->name);
 	t->head = xstrdup("");
 	if (cmd)
 		table_cmd(t, cmd);

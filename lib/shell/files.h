@@ -1,0 +1,21 @@
+/* files.h - files that are read and written, none of them for two purposes
+ *
+ * Every stream is opened here.  A regular file that a program reads, or writes as another
+ * output, must not be written: its data would be lost or mixed.  All functions die where
+ * a file cannot be opened, and tell its name for messages.
+ */
+#ifndef SHELL_FILES_H
+#define SHELL_FILES_H
+
+#include <stdio.h>
+
+/* To read; path NULL or "-" is standard input. */
+FILE *file_open(const char *path, const char **name);
+/* To write, emptied; path NULL is standard output, and "-" is misuse. */
+FILE *file_create(const char *path, const char **name);
+/* The same for what is written last: the file keeps its old contents until
+ * file_empty(), so that a file to read may yet be found to be the same. */
+FILE *file_reserve(const char *path, const char **name);
+void file_empty(FILE *f);
+
+#endif
