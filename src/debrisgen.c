@@ -140,8 +140,6 @@ int main(int argc, char **argv)
 		wear_record(&run, &r);
 	}
 	progress_clear();
-	if (!run.out)
-		run.out = worn_open(NULL);
 	worn_close(run.out);
 	wearing_close(run.wearing);
 	fields_close(run.in);

@@ -164,11 +164,8 @@ int measured_next(struct measured *m, struct record *r, double *crown)
 {
 	const char *upstream;
 
-	if (!fields_read(m->in, &m->read)) {
-		if (fields_count(m->in) == 0)
-			die(EXIT_RUN, "%s: no records", fields_name(m->in));
+	if (!fields_read(m->in, &m->read))
 		return 0;
-	}
 	take_heights(m->in, &m->read, r);
 	fill_holes(m->in, r);
 	*crown = take_crown(r);

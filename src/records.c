@@ -174,7 +174,15 @@ static void open_output(struct output *o)
 			"record realisation field unit nx ny nz dx dy min mean max");
 }
 
-static void put_record(struct output *o, struct record *r, const struct fields_in *in)
+/* Seen before anything is written: half an output would look whole. */
+static void check_plane(const struct record *r, struct fields_in *in)
+{
+	if (r->nfields != 1 || r->nz > 1 || pick.n > 1 ||
+		(pick.n == 0 && fields_more(in)))
+		die(EXIT_USAGE, "GSF holds one plane field: use --pick and --field");
+}
+
+static void put_record(struct output *o, struct record *r, struct fields_in *in)
 {
 	o->records++;
 	switch (format) {
@@ -185,9 +193,7 @@ static void put_record(struct output *o, struct record *r, const struct fields_i
 		fields_write(o->fields, r);
 		break;
 	case GSF:
-		if (o->records > 1 || r->nfields != 1 || r->nz > 1)
-			die(EXIT_USAGE,
-				"GSF holds one plane field: use --pick and --field");
+		check_plane(r, in);
 		fields_write_gsf(stdout, r, 0);
 		break;
 	case TEXT:
@@ -215,6 +221,14 @@ static void close_output(struct output *o)
 	free(o->names);
 }
 
+/* There may be nothing to list or count, but not to convert. */
+static int next_record(struct fields_in *in, struct record *r)
+{
+	int may_be_empty = format == LIST || format == COUNT;
+
+	return (!may_be_empty || fields_more(in)) && fields_read(in, r);
+}
+
 int main(int argc, char **argv)
 {
 	int first = opt_parse(&prog, argc, argv);
@@ -223,7 +237,7 @@ int main(int argc, char **argv)
 	struct record r = { 0 };
 
 	open_output(&out);
-	while (fields_read(in, &r)) {
+	while (next_record(in, &r)) {
 		if (!picked(fields_count(in)))
 			continue;
 		if (field)

@@ -154,8 +154,8 @@ fails "a crop outside" 1 'record 1: --crop 30:0:11:5 is not within 40 x 30' \
 	roughgen -w 30:0:11:5 s
 fails "raw without pixel" 2 'go together' roughgen -x 3x3 s
 fails "a file that is not there" 1 'nowhere: No such file' roughgen nowhere
-fails "nothing to measure" 1 'no records' roughgen -m
-fails "an empty file" 1 'no records' roughgen /dev/null
+fails "nothing to measure" 1 'standard input: no record$' roughgen -m
+fails "an empty file" 1 '/dev/null: no record$' roughgen /dev/null
 printf '\0\0\0\0\0\0\370\177\0\0\0\0\0\0\0\0' >nan.f64
 fails "a missing sample" 1 'record 1: height is .*nan' roughgen -x 2x1 -X 1um nan.f64
 is "nothing is written before a refusal" "$(wc -c <out)" 0

@@ -54,6 +54,12 @@ cat plain.nrrd big.nrrd plain.gsf >three
 is 'records of three formats follow each other' "$(records -o count three)" 3
 ok 'an empty stream has no records' sh -c 'records -o count </dev/null'
 is 'and that is no error' "$(cat out)" 0
+for p in 'bemcontact -F 1N -e 1GPa' 'debrisgen -Y 1GPa' 'records -o nrrd' 'roughgen -'; do
+	fails "${p%% *} needs a record" 1 "^${p%% *}: standard input: no record$" $p
+	is 'and writes nothing' "$(wc -c <out)" 0
+done
+fails 'two records for GSF' 2 'GSF holds one plane field' sh -c 'cat plain.nrrd big.nrrd | records -o gsf'
+is 'of which none is written' "$(wc -c <out)" 0
 is 'a record keeps keys, escapes included' \
 	"$({ header 'key:=a \\ b'; ramp; } | records -o nrrd | grep -a '^key')" 'key:=a \\ b'
 is 'and one that begins with a blank' \

@@ -291,17 +291,25 @@ static void read_formatted(struct fields_in *in, struct record *r)
 	free(magic);
 }
 
-int fields_read(struct fields_in *in, struct record *r)
+int fields_more(struct fields_in *in)
 {
 	int c = getc(in->at.f);
 
+	if (ferror(in->at.f))
+		die(EXIT_RUN, "%s:", in->at.name);
+	if (c != EOF)
+		ungetc(c, in->at.f);
+	return c != EOF;
+}
+
+int fields_read(struct fields_in *in, struct record *r)
+{
 	record_free(r);
-	if (c == EOF) {
-		if (ferror(in->at.f))
-			die(EXIT_RUN, "%s:", in->at.name);
+	if (!fields_more(in)) {
+		if (in->at.record == 0)
+			die(EXIT_RUN, "%s: no record", in->at.name);
 		return 0;
 	}
-	ungetc(c, in->at.f);
 	r->realisation = in->at.record++;
 	if (in->is_raw)
 		read_raw(in, r);

@@ -48,7 +48,10 @@ struct fields_out;
 
 /* path NULL or "-" is standard input; raw NULL unless the data are headerless. */
 struct fields_in *fields_open(const char *path, const struct raw_layout *raw);
-/* Fills r, whose old contents are freed or reused; 0 at the end of the stream. */
+/* 1 where a record follows. */
+int fields_more(struct fields_in *in);
+/* Fills r, whose old contents are freed or reused; 0 at the end of the stream.  A stream
+ * without any record dies: what should have written it failed. */
 int fields_read(struct fields_in *in, struct record *r);
 const char *fields_name(const struct fields_in *in); /* for messages: "surf.nrrd" */
 long fields_count(const struct fields_in *in);       /* records read so far */
