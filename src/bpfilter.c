@@ -53,8 +53,12 @@ static const struct opt opts[] = {
 static const struct prog prog = { "bpfilter", "Band-pass each channel of a signal.",
 	"[file]", "signal", "signal, or a table with --response or --taps", opts };
 
-static void check_options(void)
+static void check_options(int operands)
 {
+	if (response && taps_only)
+		die(EXIT_USAGE, "--response and --taps exclude each other");
+	if ((response || taps_only) && operands)
+		die(EXIT_USAGE, "--response and --taps read nothing: name no file");
 	if (edges.v[0] >= edges.v[1])
 		die(EXIT_USAGE, "--band %g:%g: the first edge must be the lower one",
 			edges.v[0], edges.v[1]);
@@ -292,7 +296,7 @@ int main(int argc, char **argv)
 {
 	int i = opt_parse(&prog, argc, argv);
 
-	check_options();
+	check_options(argc - i);
 	if (response || taps_only) {
 		double *h = make_taps(rate, "--rate");
 

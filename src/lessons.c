@@ -107,7 +107,7 @@ void lessons_check(void)
 		"reach" };
 
 	for (int i = 0; i < 5; i++)
-		if (range[i]->n != 2 || range[i]->v[0] > range[i]->v[1])
+		if (range[i]->v[0] > range[i]->v[1])
 			die(EXIT_USAGE, "--%s: want A:B with A <= B", name[i]);
 	if (lessons.section != DELAYDATA_RANGE && lessons.length.v[0] <= 0)
 		die(EXIT_USAGE, "--section-range: want a length above 0");

@@ -25,12 +25,6 @@ struct opt measured_rows[] = { OPT_TABLE(raw_rows),
 		"bring file to this many points", NULL, 0 },
 	OPT_END };
 
-void measured_check(void)
-{
-	if (crop.n && crop.n != 4)
-		die(EXIT_USAGE, "--crop: want X:Y:NX:NY");
-}
-
 struct measured {
 	struct fields_in *in;
 	struct record read; /* as it came */

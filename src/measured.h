@@ -13,9 +13,6 @@
 
 extern struct opt measured_rows[]; /* for OPT_TABLE; what needs a file */
 
-/* Dies where options contradict one another. */
-void measured_check(void);
-
 struct measured;
 
 struct measured *measured_open(const char *path);

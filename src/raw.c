@@ -17,8 +17,6 @@ const struct raw_layout *raw_given(void)
 		return NULL;
 	if (!size.n || !pixel.n)
 		die(EXIT_USAGE, "--raw and --pixel go together");
-	if (size.n == 1)
-		die(EXIT_USAGE, "--raw: want NXxNY");
 	raw = (struct raw_layout){ (int)size.v[0], (int)size.v[1], pixel.v[0],
 		pixel.v[pixel.n - 1] };
 	return &raw;

@@ -63,7 +63,6 @@ static void check_options(int from_file)
 		die(EXIT_USAGE, "--sq, --sa and --slope exclude each other");
 	roughness_check();
 	generated_check();
-	measured_check();
 }
 
 static void print_parameters(const struct record *r, const double *z)

@@ -2,8 +2,6 @@
 #include "shell/msg.h"
 #include <math.h>
 
-enum { COIL_VALUES = 7 };
-
 static double rate = 10e3, flow = 1e-3, bore = 0.01, exponent = 7, spacing = 0.25;
 static double zone = 0.4 / 3.14159265358979323846;       /* 10 ms at 60 L/min in 1 cm */
 static double kappa = 3.14159265358979323846 / 4 * 1e11; /* 1 V for 100 um there */
@@ -51,11 +49,11 @@ struct opt sensors_rows[] = { { 'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 
 		"rms drift of the base line", 0, 0 },
 	{ 'Z', "drift-time", OPT_NUM, UNIT_TIME, &drift_time, 1e-9, 1e9, "T",
 		"correlation time of the drift", 0, 0 },
-	{ 'm', "mains", OPT_LIST, UNIT_VOLTAGE, &mains, 0, 1e9, "V,V3,V5",
+	{ 'm', "mains", OPT_LIST, UNIT_VOLTAGE, &mains, 0, 1e9, "V[,V3[,V5]]",
 		"amplitudes of the mains and its odd harmonics", 0, 0 },
 	{ 'M', "mains-frequency", OPT_NUM, UNIT_FREQUENCY, &mains_frequency, 0, 1e9, "F",
 		"of the mains", 0, 0 },
-	{ 'P', "pump", OPT_LIST, UNIT_VOLTAGE, &pump, 0, 1e9, "V,V2",
+	{ 'P', "pump", OPT_LIST, UNIT_VOLTAGE, &pump, 0, 1e9, "V[,V2]",
 		"amplitudes of the pump line and its harmonics", 0, 0 },
 	{ 'U', "pump-frequency", OPT_NUM, UNIT_FREQUENCY, &pump_frequency, 0, 1e9, "F",
 		"of the pump line", 0, 0 },
@@ -66,14 +64,26 @@ struct pipe sensors_pipe(void)
 	return (struct pipe){ bore, flow, (enum pipe_profile)profile, exponent };
 }
 
+/* Lines at a frequency and its multiples, step apart. */
+static void check_lines(
+	const char *word, const struct opt_list *level, double frequency, int step)
+{
+	for (int i = 0; i < level->n; i++) {
+		double f = frequency * (1 + step * i);
+
+		if (level->v[i] > 0 && f > rate / 2)
+			die(EXIT_USAGE,
+				"--%s: a line at %g Hz is above half the rate, %g Hz",
+				word, f, rate / 2);
+	}
+}
+
 void sensors_check(void)
 {
-	if (lag.n && (lag.n != 2 || lag.v[0] > lag.v[1]))
-		die(EXIT_USAGE, "--lag needs two times A:B with A not above B");
+	if (lag.n && lag.v[0] > lag.v[1])
+		die(EXIT_USAGE, "--lag: want A:B with A not above B");
 	if (rate != floor(rate))
 		die(EXIT_USAGE, "--rate: AU wants whole hertz, not %g", rate);
-	if (coil.n && coil.n != COIL_VALUES)
-		die(EXIT_USAGE, "--coil needs %d values", COIL_VALUES);
 	if (coil.n && opt_given('K'))
 		die(EXIT_USAGE, "--coil and --calibration exclude each other");
 	if (coil.n && !(coil.v[3] >= 1 && coil.v[4] > 0 && coil.v[5] > coil.v[4]))
@@ -82,7 +92,10 @@ void sensors_check(void)
 	if (opt_given('R') && opt_given('n'))
 		die(EXIT_USAGE, "--noise and --snr exclude each other");
 	if (corner > rate / 2)
-		die(EXIT_USAGE, "--corner %g Hz is above half the rate", corner);
+		die(EXIT_USAGE, "--corner %g Hz is above half the rate, %g Hz", corner,
+			rate / 2);
+	check_lines("mains", &mains, mains_frequency, 2);
+	check_lines("pump", &pump, pump_frequency, 1);
 }
 
 long sensors_rate(void)
@@ -116,16 +129,9 @@ static void add_lines(
 	struct scene_par *par, const struct opt_list *level, double frequency, int step)
 {
 	for (int i = 0; i < level->n; i++) {
-		double f = frequency * (1 + step * i);
-
 		if (level->v[i] == 0)
 			continue;
-		if (f > rate / 2)
-			die(EXIT_USAGE, "a line at %g Hz is above half the rate, %g Hz",
-				f, rate);
-		if (par->nlines == SCENE_LINES_MAX)
-			die(EXIT_USAGE, "more than %d lines", SCENE_LINES_MAX);
-		par->line[par->nlines] = f;
+		par->line[par->nlines] = frequency * (1 + step * i);
 		par->line_level[par->nlines++] = level->v[i];
 	}
 }

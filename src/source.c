@@ -60,8 +60,8 @@ void source_check(int operands)
 {
 	double bore = sensors_pipe().bore;
 
-	if (uniform.n && (uniform.n != 2 || uniform.v[0] > uniform.v[1]))
-		die(EXIT_USAGE, "--uniform needs two diameters A:B with A not above B");
+	if (uniform.n && uniform.v[0] > uniform.v[1])
+		die(EXIT_USAGE, "--uniform: want A:B with A not above B");
 	if (uniform.n && uniform.v[1] >= bore)
 		die(EXIT_USAGE,
 			"--uniform: a particle of %g m does not fit a bore of %g m",
@@ -69,7 +69,7 @@ void source_check(int operands)
 	if (uniform.n && operands)
 		die(EXIT_USAGE, "--uniform draws the particles: no file to read");
 	if (uniform.n && (number >= 0) + !isnan(concentration) != 1)
-		die(EXIT_USAGE, "--uniform needs --number or --concentration");
+		die(EXIT_USAGE, "--uniform needs one of --number and --concentration");
 	if (!uniform.n && (number >= 0 || !isnan(concentration)))
 		die(EXIT_USAGE, "--number and --concentration need --uniform");
 	if (burst > 0 && (isnan(span) || isnan(period)))

@@ -134,6 +134,10 @@ fails "no such file" 1 'none.au' bpfilter none.au
 seq 100 >text
 fails "text for a signal" 1 "text: want AU ('.snd'), got '1'" bpfilter text
 fails "edges the wrong way round" 2 'first edge' bpfilter -b 130:70 impulse.au
+fails "one edge" 2 'band 70: want LO:HI' bpfilter -b 70 impulse.au
+fails "a file that the response does not read" 2 'read nothing' bpfilter -R impulse.au
+fails "or the taps" 2 'read nothing' bpfilter -p impulse.au
+fails "taps and response at once" 2 'exclude each other' bpfilter -R -p
 fails "edge above half the rate" 1 'impulse.au.*above half the rate' bpfilter -b 70:5001 impulse.au
 fails "odd order with --zero-phase" 2 'even --order' bpfilter -z -n 201 impulse.au
 fails "odd order for a high-pass" 2 'odd --order' bpfilter -n 201 -b 100:5000 impulse.au

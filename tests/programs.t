@@ -26,6 +26,27 @@ for p in $programs; do
 	fails "$p names a missing file" 1 "^$p: .*no-such-file" "$p" $needed no-such-file
 done
 
+# A list has as many members as its placeholder shows: one less or more is refused.
+ones() {
+	awk -v n="$1" -v by="$2" 'BEGIN { for (i = 0; i < n; i++) printf "%s1", i ? by : "" }'
+}
+for p in $programs; do
+	[ -e "$p.help" ] && sed -n "s/^  -., --\([a-z0-9-]*\) \([^ ]*[:,x][^ ]*\).*/\1 \2/p" "$p.help" |
+		grep -v -e '\.\.\.' -e '|' -e FILE >lists
+	while read -r word shape; do
+		case $shape in *:*) by=: ;; *,*) by=, ;; *) by=x ;; esac
+		most=$(echo "$shape" | awk -F "$by" '{ print NF }')
+		least=$(echo "${shape%%\[*}" | awk -F "$by" '{ print NF }')
+		message="^$p: --$word .*: want $(echo "$shape" | sed 's/\[/\\[/g')$"
+		fails "$p --$word of too many" 2 "$message" "$p" "--$word" "$(ones $((most + 1)) $by)"
+		[ "$least" = 1 ] ||
+			fails "$p --$word of too few" 2 "$message" "$p" "--$word" "$(ones $((least - 1)) $by)"
+	done <lists
+done
+fails "bounds of a fraction are no percentage" 2 '^debrisstat: --confidence 95: want 0.01 to 0.9999$' \
+	debrisstat --confidence 95
+fails "other bounds have a unit" 2 '^sensorsim: --bore 20: want 1e-06 to 10 m$' sensorsim --bore 20
+
 # The same word has the same letter everywhere, and reserved letters keep their meaning.
 for p in $programs; do
 	[ -e "$p.help" ] && sed -n "s/^  -\(.\), --\([a-z0-9-]*\).*/\2 \1 $p/p" "$p.help"

@@ -135,7 +135,11 @@ fails "a particle as wide as the pipe" 2 'bore' sensorsim -u 1cm:2cm -N 1 -d 1
 fails "neither number nor concentration" 2 'number' sensorsim -u 1um:2um -d 1
 fails "no window" 2 'duration' sensorsim -u 1um:2um -N 3
 fails "a window too short" 2 'no room' sensorsim -u 1um:2um -N 300 -i 10ms -d 1
-fails "a line above half the rate" 2 '4000 Hz' sensorsim -r 5000 -P 0.1,0.1 -u 1um:1um -N 1 -d 1
+fails "a line above half the rate" 2 '^sensorsim: --pump: a line at 4000 Hz is above half the rate, 2500 Hz$' \
+	sensorsim -r 5000 -P 0.1,0.1 -u 1um:1um -N 1 -d 1
+is "leaves no stream that looks whole" "$(wc -c <out)" 0
+fails "one of two ways to say how many" 2 'needs one of --number and --concentration' \
+	sensorsim -u 1um:1um -N 1 -C 1 -d 1
 fails "a full disk" 1 'o space' sh -c 'sensorsim -u 1um:1um -N 1 -d 1 >/dev/full'
 
 printf 'time\tdiameter\n1e300\t1e-4\n' >never.tsv

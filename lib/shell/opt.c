@@ -83,11 +83,16 @@ static char separator_of(const struct opt *o)
 	return '\0';
 }
 
+/* Numbers are in this unit; fractions are not in per cent. */
+static const char *unit_shown(enum unit unit)
+{
+	return unit == UNIT_FRACTION ? "" : unit_name(unit);
+}
+
 /* A value that could not be given says that there is none, and is not shown. */
 static void print_default(const struct opt *o)
 {
-	const char *unit = unit_name(o->unit);
-	const char *blank = *unit && o->unit != UNIT_FRACTION ? " " : "";
+	const char *unit = unit_shown(o->unit), *blank = *unit ? " " : "";
 
 	switch (o->kind) {
 	case OPT_INT:
@@ -96,8 +101,7 @@ static void print_default(const struct opt *o)
 		break;
 	case OPT_NUM:
 		if (isfinite(*(double *)o->var))
-			printf(" (default %.6g%s%s)", *(double *)o->var, blank,
-				*blank ? unit : "");
+			printf(" (default %.6g%s%s)", *(double *)o->var, blank, unit);
 		break;
 	case OPT_WORD:
 		printf(" (default %s)", o->words[*(int *)o->var]);
@@ -119,8 +123,7 @@ static void print_default(const struct opt *o)
 		if (c->word >= 0)
 			printf(" (default %s)", o->words[c->word]);
 		else if (!isnan(c->value))
-			printf(" (default %.6g%s%s)", c->value, blank,
-				*blank ? unit : "");
+			printf(" (default %.6g%s%s)", c->value, blank, unit);
 		break;
 	}
 	case OPT_LIST: {
@@ -131,7 +134,7 @@ static void print_default(const struct opt *o)
 			printf("%s%.*s%.6g", i ? "" : " (default ", i > 0, separator,
 				l->v[i]);
 		if (l->n)
-			printf("%s%s)", blank, *blank ? unit : "");
+			printf("%s%s)", blank, unit);
 		break;
 	}
 	case OPT_FLAG:
@@ -169,7 +172,7 @@ static void check_range(const struct opt *o, const char *text, double value)
 {
 	if (value < o->min || value > o->max)
 		die(EXIT_USAGE, "--%s %s: want %g to %g%s%s", o->word, text, o->min,
-			o->max, *unit_name(o->unit) ? " " : "", unit_name(o->unit));
+			o->max, *unit_shown(o->unit) ? " " : "", unit_shown(o->unit));
 }
 
 static double parse_number(const struct opt *o, const char *text)
@@ -180,9 +183,32 @@ static double parse_number(const struct opt *o, const char *text)
 	wrong = unit_parse(text, o->unit, "", &value, &end);
 	if (wrong)
 		die(EXIT_USAGE, "--%s %s: '%s' %s%s%s", o->word, text, text, wrong,
-			*unit_name(o->unit) ? ", want " : "", unit_name(o->unit));
+			*unit_shown(o->unit) ? ", want " : "", unit_shown(o->unit));
 	check_range(o, text, value);
 	return value;
+}
+
+static int count(const char *text, const char *end, char c)
+{
+	int n = 0;
+
+	for (; text < end; text++)
+		n += *text == c;
+	return n;
+}
+
+/* A list has the members that its placeholder shows; those in brackets may be left out,
+ * and "..." stands for any number. */
+static void check_members(const struct opt *o, const char *text)
+{
+	const char *end = o->arg + strlen(o->arg), *optional = strchr(o->arg, '[');
+	char c = separator_of(o);
+	int n = count(text, text + strlen(text), c);
+
+	if (strstr(o->arg, "..."))
+		return;
+	if (n > count(o->arg, end, c) || n < count(o->arg, optional ? optional : end, c))
+		die(EXIT_USAGE, "--%s %s: want %s", o->word, text, o->arg);
 }
 
 static void parse_list(const struct opt *o, const char *text)
@@ -190,6 +216,7 @@ static void parse_list(const struct opt *o, const char *text)
 	struct opt_list *l = o->var;
 	const char separator[2] = { separator_of(o) }, *s = text, *wrong;
 
+	check_members(o, text);
 	l->n = 0;
 	for (;;) {
 		if (l->n == OPT_LIST_MAX)
@@ -198,20 +225,12 @@ static void parse_list(const struct opt *o, const char *text)
 		wrong = unit_parse(s, o->unit, separator, &l->v[l->n], &s);
 		if (wrong)
 			die(EXIT_USAGE, "--%s %s: '%s' %s, want %s%s%s", o->word, text, s,
-				wrong, o->arg, *unit_name(o->unit) ? " in " : "",
-				unit_name(o->unit));
+				wrong, o->arg, *unit_shown(o->unit) ? " in " : "",
+				unit_shown(o->unit));
 		check_range(o, text, l->v[l->n++]);
 		if (!*s)
 			break;
 		s++;
-	}
-	if (!strstr(o->arg, "...")) {
-		int most = 1;
-
-		for (const char *p = o->arg; *p; p++)
-			most += *p == *separator;
-		if (l->n > most)
-			die(EXIT_USAGE, "--%s %s: want %s", o->word, text, o->arg);
 	}
 }
 

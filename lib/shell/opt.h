@@ -7,8 +7,9 @@
  *	static struct opt_list band = { 2, { 70, 130 } };
  *	static long order = 200;
  *	static const struct opt opts[] = {
- *		{ 'b', "band", OPT_LIST, UNIT_FREQUENCY, &band, 0, 1e12, "LO:HI", "pass
- *band" }, { 'n', "order", OPT_INT, UNIT_COUNT, &order, 2, 1e6, "N", "filter order" },
+ *		{ 'b', "band", OPT_LIST, UNIT_FREQUENCY, &band, 0, 1e12, "LO:HI",
+ *			"pass band" },
+ *		{ 'n', "order", OPT_INT, UNIT_COUNT, &order, 2, 1e6, "N", "taps" },
  *		OPT_END
  *	};
  *
@@ -24,8 +25,8 @@ enum opt_kind {
 	OPT_FLAG,   /* int: set to 1 */
 	OPT_INT,    /* long; unit UNIT_COUNT */
 	OPT_NUM,    /* double */
-	OPT_LIST,   /* struct opt_list: numbers parted by the separator shown in arg
-		     * (one of ':' 'x' ',') */
+	OPT_LIST,   /* struct opt_list: as many numbers as arg shows, parted by one of
+		     * ':' 'x' ','; "A:B" two, "A[:B]" one or two, "A,A,..." any */
 	OPT_TEXT,   /* const char *: a file or free text */
 	OPT_TEXTS,  /* struct opt_texts: may be repeated */
 	OPT_WORD,   /* int: index into words */
