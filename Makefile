@@ -167,17 +167,20 @@ demo:
 $(B)/wearpipe.bash: $(BUILT:%=$(BIN)/%) scripts/completion
 	@scripts/completion $(BUILT:%=$(BIN)/%) >$@
 
-PUBLIC = num contact signal life
+# The library's interface is what the programs call: the headers they include, and what
+# those include.
+DOMAINS = num contact signal life
+HEADERS = $(sort $(filter $(DOMAINS:%=lib/%/%.h),$(shell $(CC) $(CPPFLAGS) -MM src/*.c)))
 MAN1 = $(wildcard man/*.1)
 D = $(DESTDIR)$(PREFIX)
 
 install: all $(B)/libwearpipe.a $(B)/wearpipe.bash
 	install -d $(D)/bin $(D)/lib/pkgconfig $(D)/share/man/man1 $(D)/share/man/man5 \
 		$(D)/share/man/man7 $(D)/share/bash-completion/completions $(D)/share/wearpipe \
-		$(PUBLIC:%=$(D)/include/wearpipe/%)
+		$(DOMAINS:%=$(D)/include/wearpipe/%)
 	install $(BUILT:%=$(BIN)/%) $(D)/bin
 	install -m 644 $(B)/libwearpipe.a $(D)/lib
-	for d in $(PUBLIC); do install -m 644 lib/$$d/*.h $(D)/include/wearpipe/$$d || exit; done
+	for h in $(HEADERS:lib/%=%); do install -m 644 lib/$$h $(D)/include/wearpipe/$$h || exit; done
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' wearpipe.pc.in \
 		>$(D)/lib/pkgconfig/wearpipe.pc
 	install -m 644 $(MAN1) $(D)/share/man/man1

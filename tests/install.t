@@ -29,6 +29,17 @@ else
 	skip 'and the words of the options' 'no bash'
 fi
 
+# Headers: the interface, each of use alone, without what the modules share among themselves.
+cd root/usr/include/wearpipe || exit
+broken=
+for h in */*.h; do
+	echo "#include <$h>" | ${CC:-cc} -std=c11 -D_XOPEN_SOURCE=700 -I. -fsyntax-only -x c - || broken="$broken $h"
+done 2>err
+is 'every header compiles by itself' "$broken" ''
+is 'those of contact and filter among them' "$(ls contact/solver.h signal/fir.h)" "$(printf 'contact/solver.h\nsignal/fir.h')"
+is 'but none that is for its own modules only' "$(grep -l 'for lib/.* only' -r .)" ''
+cd "$work" || exit
+
 # The example of contact/solver.h, more or less, against the installed library.
 cat >x.c <<'E2'
 #include <contact/solver.h>

@@ -42,4 +42,9 @@ roughgen -z "it's a name: here.nrrd" >measured.nrrd
 same 'a file name with quotes, blanks and a colon survives' measured.nrrd again.nrrd
 is 'and no colon with a blank stands in a value' \
 	"$(head -c 1024 measured.nrrd | grep -a ':=' | grep -c ': ')" 0
+
+mkdir demo && cd demo || exit
+fails 'the demo names a surface that is not there' 1 '^roughgen: nowhere: No such file' \
+	sh "$top/examples/demo/pipeline.sh" nowhere
+cd "$work" || exit
 done_testing

@@ -16,8 +16,9 @@ scripts=$(dirname "$0")/../../scripts
 # A measured surface is put on a crown, so that its middle carries the load.
 if [ $# -gt 0 ]; then
 	steps=48
-	crown=$(roughgen --level "$@" | records | awk -F '\t' '$1 == 1 { print 0.01 * $5 * $8 }')
-	roughgen --level --resample 128 --crown "$crown" "$@" >surface.nrrd
+	roughgen --level --resample 128 "$@" >flat.nrrd
+	crown=$(records flat.nrrd | awk -F '\t' '$1 == 1 { print 0.01 * $5 * $8 }')
+	roughgen --crown "$crown" flat.nrrd >surface.nrrd
 else
 	steps=2
 	roughgen --points 128 --length 1mm --sq 0.8um --corr 50um --crown auto --count 24 >surface.nrrd
