@@ -16,10 +16,13 @@ static const char *const field_names[] = { "height", "pressure", "displacement",
 
 static int fields = 1 << HEIGHT | 1 << PRESSURE;
 
-static const struct opt opts[] = { OPT_TABLE(press_rows),
+static const struct opt opts[] = {
+	OPT_TABLE(press_rows),
 	{ 'o', "fields", OPT_WORDS, UNIT_NONE, &fields, 0, 0, "NAME,...",
 		"what to write of height, pressure, displacement, gap", field_names, 0 },
-	OPT_TABLE(raw_rows), OPT_END };
+	OPT_TABLE(raw_rows),
+	OPT_END,
+};
 
 static const struct prog prog = { "bemcontact",
 	"Press a rough surface against a flat: pressure, contact and gap of elastic "

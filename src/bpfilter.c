@@ -47,7 +47,7 @@ static const struct opt opts[] = {
 		"sampling rate for --response and --taps", 0, 0 },
 	{ 'G', "grid", OPT_INT, UNIT_COUNT, &grid, 2, 1e7, "N",
 		"points of the response from 0 to half the rate", 0, 0 },
-	OPT_END
+	OPT_END,
 };
 
 static const struct prog prog = { "bpfilter", "Band-pass each channel of a signal.",

@@ -18,16 +18,17 @@ static int acf;
 static double hurst = NAN, rolloff, longest, cutoff, skewness, kurtosis = NAN;
 static long seed = 1, count = 1, first;
 
-struct opt generated_grid_rows[] = { { 'n', "points", OPT_LIST, UNIT_COUNT, &points, 1,
-					     POINTS_MAX, "N[xM]", "points along x and y",
-					     NULL, 0 },
+struct opt generated_grid_rows[] = {
+	{ 'n', "points", OPT_LIST, UNIT_COUNT, &points, 1, POINTS_MAX, "N[xM]",
+		"points along x and y", NULL, 0 },
 	{ 'L', "length", OPT_LIST, UNIT_LENGTH, &length, 1e-12, 1e12, "L[xL]",
 		"sides of the area; one: square pixels", NULL, 0 },
-	OPT_END };
+	OPT_END,
+};
 
-struct opt generated_rows[] = { { 'g', "slope", OPT_LIST, UNIT_NONE, &slope, 0, 1e6,
-					"G[:G2]", "root mean square slope instead", NULL,
-					0 },
+struct opt generated_rows[] = {
+	{ 'g', "slope", OPT_LIST, UNIT_NONE, &slope, 0, 1e6, "G[:G2]",
+		"root mean square slope instead", NULL, 0 },
 	{ 'A', "acf", OPT_WORD, UNIT_NONE, &acf, 0, 0, "gauss|exp",
 		"autocorrelation function", acf_words, 0 },
 	{ 'l', "corr", OPT_LIST, UNIT_LENGTH, &corr, 1e-18, 1e12, "L[xL]",
@@ -51,7 +52,8 @@ struct opt generated_rows[] = { { 'g', "slope", OPT_LIST, UNIT_NONE, &slope, 0, 
 		"number of the first realisation", NULL, 1 },
 	{ 'c', "count", OPT_INT, UNIT_COUNT, &count, 1, 4294967295.0, "N",
 		"number of realisations", NULL, 1 },
-	OPT_END };
+	OPT_END,
+};
 
 void generated_check(void)
 {

@@ -25,8 +25,9 @@ static const char *const sections[] = { "length", "period", "range", NULL };
 static const char *const orders[] = { "drawn", "arrival", "sorted", NULL };
 static const char *const shapes[] = { "sine", "gauss", "lorentz", NULL };
 
-struct opt lessons_rows[] = { { 'x', "columns", OPT_INT, UNIT_COUNT, &lessons.points, 2,
-				      1e5, "N", "points per channel", NULL, 0 },
+struct opt lessons_rows[] = {
+	{ 'x', "columns", OPT_INT, UNIT_COUNT, &lessons.points, 2, 1e5, "N",
+		"points per channel", NULL, 0 },
 	{ 'n', "sources", OPT_INT, UNIT_COUNT, &lessons.sources, 1, DELAYS_MAX, "N",
 		"overlapping sources", NULL, 0 },
 	{ 'X', "span", OPT_NUM, UNIT_ANGLE, &lessons.span, 1e-3, 1e6, "X",
@@ -60,7 +61,8 @@ struct opt lessons_rows[] = { { 'x', "columns", OPT_INT, UNIT_COUNT, &lessons.po
 		"A:B", "pulses: largest delay, pulse durations", NULL, 0 },
 	{ 'w', "pulse", OPT_WORD, UNIT_NONE, &lessons.shape, 0, 0, "sine|gauss|lorentz",
 		"pulses: their shape", shapes, 0 },
-	OPT_END };
+	OPT_END,
+};
 
 struct delaydata_par lessons_sines(void)
 {

@@ -14,7 +14,8 @@ enum { SEED = 1 }; /* of a roughness drawn: --seed is for generated surfaces */
 static struct opt_list crop, resample;
 static int level, fill;
 
-struct opt measured_rows[] = { OPT_TABLE(raw_rows),
+struct opt measured_rows[] = {
+	OPT_TABLE(raw_rows),
 	{ 'w', "crop", OPT_LIST, UNIT_COUNT, &crop, 0, POINTS_MAX, "X:Y:NX:NY",
 		"cut NX by NY samples of file from X, Y on", NULL, 0 },
 	{ 'i', "fill", OPT_FLAG, UNIT_NONE, &fill, 0, 0, NULL,
@@ -23,7 +24,8 @@ struct opt measured_rows[] = { OPT_TABLE(raw_rows),
 		"subtract the least-squares plane of file", NULL, 0 },
 	{ 'r', "resample", OPT_LIST, UNIT_COUNT, &resample, 1, POINTS_MAX, "N[xM]",
 		"bring file to this many points", NULL, 0 },
-	OPT_END };
+	OPT_END,
+};
 
 struct measured {
 	struct fields_in *in;

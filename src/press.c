@@ -17,8 +17,9 @@ static const char *const boundaries[] = { "free", "periodic", NULL };
 static const char *const multipliers[] = { "fft", "mlms", NULL };
 static const char *const solvers[] = { "bccg", "pk", NULL };
 
-struct opt press_rows[] = { { 'F', "load", OPT_NUM, UNIT_FORCE, &press.load, 0, 1e30, "F",
-				    "normal load", 0, 0 },
+struct opt press_rows[] = {
+	{ 'F', "load", OPT_NUM, UNIT_FORCE, &press.load, 0, 1e30, "F", "normal load", 0,
+		0 },
 	{ 'P', "pressure", OPT_NUM, UNIT_PRESSURE, &press.pressure, 0, 1e30, "P",
 		"mean pressure, in place of a load", 0, 0 },
 	{ 'D', "approach", OPT_NUM, UNIT_LENGTH, &press.approach, -1e12, 1e12, "D",
@@ -45,7 +46,8 @@ struct opt press_rows[] = { { 'F', "load", OPT_NUM, UNIT_FORCE, &press.load, 0, 
 		multipliers, 0 },
 	{ 'j', "threads", OPT_INT, UNIT_COUNT, &press.threads, 1, 1024, "N",
 		"threads; the result is the same", 0, 1 },
-	OPT_END };
+	OPT_END,
+};
 
 void press_check(void)
 {

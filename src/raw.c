@@ -3,11 +3,13 @@
 
 static struct opt_list size, pixel;
 
-struct opt raw_rows[] = { { 'x', "raw", OPT_LIST, UNIT_COUNT, &size, 1, 1e9, "NXxNY",
-				  "read headerless little-endian float64 heights", 0, 0 },
+struct opt raw_rows[] = {
+	{ 'x', "raw", OPT_LIST, UNIT_COUNT, &size, 1, 1e9, "NXxNY",
+		"read headerless little-endian float64 heights", 0, 0 },
 	{ 'X', "pixel", OPT_LIST, UNIT_LENGTH, &pixel, 1e-15, 1e12, "D[xD]",
 		"spacing of --raw along x and y", 0, 0 },
-	OPT_END };
+	OPT_END,
+};
 
 const struct raw_layout *raw_given(void)
 {

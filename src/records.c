@@ -17,14 +17,16 @@ static int format = LIST;
 static struct opt_list pick;
 static const char *field;
 
-static const struct opt opts[] = { { 'o', "output", OPT_WORD, UNIT_NONE, &format, 0, 0,
-					   "list|count|nrrd|gsf|text|table",
-					   "what to write", formats, 0 },
+static const struct opt opts[] = {
+	{ 'o', "output", OPT_WORD, UNIT_NONE, &format, 0, 0,
+		"list|count|nrrd|gsf|text|table", "what to write", formats, 0 },
 	{ 'n', "pick", OPT_LIST, UNIT_COUNT, &pick, 1, 1e9, "K,...",
 		"only the K-th records, from 1", NULL, 1 },
 	{ 'k', "field", OPT_TEXT, UNIT_NONE, &field, 0, 0, "NAME", "only this field",
 		NULL, 0 },
-	OPT_TABLE(raw_rows), OPT_END };
+	OPT_TABLE(raw_rows),
+	OPT_END,
+};
 
 static const struct prog prog = { "records",
 	"List, pick, count and convert the records of a field stream.", "[file]",

@@ -16,8 +16,10 @@ static int measure;
 static struct opt_choice crown = { 0, 0 };
 static long threads = 1;
 
-static const struct opt opts[] = { OPT_TABLE(generated_grid_rows),
-	OPT_TABLE(roughness_rows), OPT_TABLE(generated_rows),
+static const struct opt opts[] = {
+	OPT_TABLE(generated_grid_rows),
+	OPT_TABLE(roughness_rows),
+	OPT_TABLE(generated_rows),
 	{ 'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N", "threads", NULL,
 		1 },
 	OPT_TABLE(measured_rows),
@@ -26,7 +28,8 @@ static const struct opt opts[] = { OPT_TABLE(generated_grid_rows),
 		crown_words, 0 },
 	{ 'm', "measure", OPT_FLAG, UNIT_NONE, &measure, 0, 0, NULL,
 		"print areal parameters instead of heights", NULL, 0 },
-	OPT_END };
+	OPT_END,
+};
 
 static const struct prog prog = { "roughgen",
 	"Generate rough surfaces, or prepare measured ones, and measure them.", "[file]",

@@ -12,8 +12,9 @@ static struct opt_list lag, mains, pump, coil;
 static const char *const profiles[] = { "plug", "laminar", "turbulent", NULL };
 static const char *const shapes[] = { "sine", "gauss", "lorentz", NULL };
 
-struct opt sensors_rows[] = { { 'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 2e9, "F",
-				      "sampling rate", 0, 0 },
+struct opt sensors_rows[] = {
+	{ 'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 2e9, "F", "sampling rate", 0,
+		0 },
 	{ 'Q', "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-12, 1e3, "Q", "of the oil", 0, 0 },
 	{ 'B', "bore", OPT_NUM, UNIT_LENGTH, &bore, 1e-6, 10, "D", "diameter of the pipe",
 		0, 0 },
@@ -57,7 +58,8 @@ struct opt sensors_rows[] = { { 'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 
 		"amplitudes of the pump line and its harmonics", 0, 0 },
 	{ 'U', "pump-frequency", OPT_NUM, UNIT_FREQUENCY, &pump_frequency, 0, 1e9, "F",
 		"of the pump line", 0, 0 },
-	OPT_END };
+	OPT_END,
+};
 
 struct pipe sensors_pipe(void)
 {

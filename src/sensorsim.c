@@ -18,7 +18,9 @@ static long seed = 1, first;
 static int single;
 static const char *truth;
 
-static const struct opt opts[] = { OPT_TABLE(source_rows), OPT_TABLE(sensors_rows),
+static const struct opt opts[] = {
+	OPT_TABLE(source_rows),
+	OPT_TABLE(sensors_rows),
 	{ 'T', "truth", OPT_TEXT, UNIT_NONE, &truth, 0, 0, "FILE",
 		"write a table of the particles", 0, 0 },
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "of the random numbers",
@@ -27,7 +29,8 @@ static const struct opt opts[] = { OPT_TABLE(source_rows), OPT_TABLE(sensors_row
 		0, 0 },
 	{ 'F', "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
 		0 },
-	OPT_END };
+	OPT_END,
+};
 
 static const struct prog prog = { "sensorsim",
 	"Make the signal of wear particles that pass two inductive sensors.", "[file]",

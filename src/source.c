@@ -41,7 +41,7 @@ struct opt source_rows[] = {
 		0, 0 },
 	{ 't', "period", OPT_NUM, UNIT_TIME, &period, 0, 1e9, "T", "from burst to burst",
 		0, 0 },
-	OPT_END
+	OPT_END,
 };
 
 /* Where particles come from: a table, or random numbers. */

@@ -31,7 +31,7 @@ struct opt wearing_rows[] = {
 	{ 'k', "memory", OPT_INT, UNIT_COUNT, &memory, 0, 1e7, "MB",
 		"megabytes for influence coefficients kept; the result is the same", NULL,
 		1 },
-	OPT_END
+	OPT_END,
 };
 
 void wearing_check(void)

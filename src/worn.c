@@ -16,9 +16,9 @@ static int stress_wanted = MISES;
 static long stress_layers;
 static const char *surface_path, *summary_path, *stress_path;
 
-struct opt worn_rows[] = { { 'O', "surface", OPT_TEXT, UNIT_NONE, &surface_path, 0, 0,
-				   "FILE", "write the worn surface of every step", NULL,
-				   1 },
+struct opt worn_rows[] = {
+	{ 'O', "surface", OPT_TEXT, UNIT_NONE, &surface_path, 0, 0, "FILE",
+		"write the worn surface of every step", NULL, 1 },
 	{ 'U', "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
 		"write a table with a row per step", NULL, 1 },
 	{ 'G', "stress", OPT_TEXT, UNIT_NONE, &stress_path, 0, 0, "FILE",
@@ -28,7 +28,8 @@ struct opt worn_rows[] = { { 'O', "surface", OPT_TEXT, UNIT_NONE, &surface_path,
 		stress_words, 1 },
 	{ 'y', "stress-layers", OPT_INT, UNIT_COUNT, &stress_layers, 0, 1e6, "N",
 		"layers of --stress; 0: as many as were searched for failure", NULL, 1 },
-	OPT_END };
+	OPT_END,
+};
 
 static const char particle_columns[] =
 	"realisation step particle nodes volume diameter aspect x y z length width elongation "

@@ -24,7 +24,7 @@ static const struct opt common[] = {
 		1 },
 	{ 'V', "version", OPT_FLAG, UNIT_NONE, 0, 0, 0, 0, "print the version and exit",
 		0, 1 },
-	OPT_END
+	OPT_END,
 };
 
 /* The command line that was parsed: what opt_cmd() and shell_done() need. */

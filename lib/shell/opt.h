@@ -10,7 +10,7 @@
  *		{ 'b', "band", OPT_LIST, UNIT_FREQUENCY, &band, 0, 1e12, "LO:HI",
  *			"pass band" },
  *		{ 'n', "order", OPT_INT, UNIT_COUNT, &order, 2, 1e6, "N", "taps" },
- *		OPT_END
+ *		OPT_END,
  *	};
  *
  * Every program also has -h --help, -V --version, -v --verbose and -S --stats FILE.
