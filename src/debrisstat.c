@@ -61,7 +61,6 @@ static void read_particles(struct ensemble *e, const char *path, char **cmd)
 	int more = table_next(t);
 	int cr, cs, cd, cv, ca;
 
-	*cmd = opt_cmd(table_key(t, "cmd"), NULL);
 	if (table_columns(t) == 0)
 		die(EXIT_RUN, "%s: no table", table_name(t));
 	cr = table_need(t, "realisation");
@@ -72,11 +71,12 @@ static void read_particles(struct ensemble *e, const char *path, char **cmd)
 	for (; more; more = table_next(t)) {
 		struct shed s = { table_whole(t, cr, 0, 1e15), table_whole(t, cs, 1, 1e6),
 			table_positive(t, cd), table_positive(t, cv),
-			table_positive(t, ca) };
+			table_positive(t, ca), table_part(t) };
 
 		if (ensemble_add(e, &s))
 			no_memory();
 	}
+	*cmd = opt_cmd(table_upstream(t), NULL);
 	table_close(t);
 }
 
@@ -107,6 +107,11 @@ static void close_ensemble(struct ensemble *e)
 
 	if (ensemble_sort(e))
 		no_memory();
+	if (ensemble_clash(e) >= 0)
+		die(EXIT_RUN,
+			"realisation %ld stands in two parts of the table; "
+			"ensembles to be joined want numbers of their own",
+			ensemble_clash(e));
 	if (realisations && par.realisations < ensemble_told(e))
 		die(EXIT_RUN, "--realisations %ld, but the table has %zu", realisations,
 			ensemble_told(e));

@@ -60,13 +60,21 @@ static void read_wear(struct partition *p, const char *option, char **cmd)
 	const char *colon = strchr(option, ':'), *rest = colon ? colon + 1 : NULL;
 	char *file = xstrdup(option);
 	double pressure = NAN, area = -1;
+	int with_area;
 	struct wear w = { .file = file };
 
 	file[strcspn(file, ":")] = '\0';
 	if (rest)
 		pressure = part_of(option, &rest, UNIT_PRESSURE, "the pressure");
+	with_area = rest != NULL;
 	if (rest)
 		area = part_of(option, &rest, UNIT_AREA, "the area");
+	if (rest)
+		die(EXIT_USAGE, "--wear %s: want FILE[:PRESSURE[:AREA]]", option);
+	if (colon && !(pressure > 0 && isfinite(pressure)))
+		die(EXIT_USAGE, "--wear %s: want a pressure above 0", option);
+	if (with_area && !(area > 0 && isfinite(area)))
+		die(EXIT_USAGE, "--wear %s: want an area above 0", option);
 	w.table = table_open(file);
 	w.realisation = table_find(w.table, "realisation");
 	w.step = table_find(w.table, "step");
@@ -76,8 +84,8 @@ static void read_wear(struct partition *p, const char *option, char **cmd)
 		partition_class(p, table_find(w.table, "particle") >= 0, pressure, area);
 	for (long row = 0; table_next(w.table); row++)
 		read_row(p, &w, row);
-	if (table_key(w.table, "cmd"))
-		*cmd = xstrdup(table_key(w.table, "cmd"));
+	if (table_upstream(w.table))
+		*cmd = xstrdup(table_upstream(w.table));
 	table_close(w.table);
 	free(file);
 }

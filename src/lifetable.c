@@ -1,4 +1,5 @@
 #include "lifetable.h"
+#include "levels.h"
 #include "life/metrics.h"
 #include "life/remaining.h"
 #include "shell/msg.h"
@@ -14,16 +15,11 @@ struct lifetable {
 
 static char *column_names(const struct lifetable_par *par)
 {
-	char *names = xstrdup(par->samples ? "t path rwl" : "t mean"), *more;
+	char *names, *more;
 
-	for (int i = 0; i < par->levels->n && !par->samples; i++, names = more) {
-		more = xprintf("%s q%s%g", names,
-			par->levels->v[i] < 0.0999999 ? "0" : "",
-			100 * par->levels->v[i]);
-		free(names);
-	}
 	if (par->samples)
-		return names;
+		return xstrdup("t path rwl");
+	names = levels_columns("t mean", "q", par->levels);
 	more = xprintf("%s p_no_failure%s%s%s", names, par->dry ? " archard" : "",
 		par->grey ? " grey" : "",
 		isnan(par->eol) ? "" : " truth error accuracy mass inside covered crps");

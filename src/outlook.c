@@ -1,5 +1,6 @@
 #include "outlook.h"
 #include "filtering.h"
+#include "levels.h"
 #include "life/predict.h"
 #include "life/runin.h"
 #include "shell/msg.h"
@@ -8,7 +9,6 @@
 #include "timeunit.h"
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -202,20 +202,9 @@ void outlook_put(struct outlook *o, double t, double y, const struct adaptive_ro
 
 char *outlook_columns(const char *before)
 {
-	char *names = xstrdup(before), *longer;
+	char *names = levels_columns(before, "rul_q", &levels);
+	char *longer = xprintf("%s p_no_crossing", names);
 
-	for (int i = 0; i < levels.n; i++) {
-		char digits[32];
-		const char *decimals;
-
-		/* 0.05, 0.5 and 0.975 are called 05, 50 and 975. */
-		snprintf(digits, sizeof digits, "%g", levels.v[i]);
-		decimals = strncmp(digits, "0.", 2) ? digits : digits + 2;
-		longer = xprintf("%s rul_q%s%s", names, decimals, decimals[1] ? "" : "0");
-		free(names);
-		names = longer;
-	}
-	longer = xprintf("%s p_no_crossing", names);
 	free(names);
 	return longer;
 }

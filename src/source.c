@@ -142,6 +142,8 @@ static void read_diameters(struct source *s)
 		}
 		s->diameters[n++] = read_diameter(s);
 	}
+	if (table_upstream(s->table))
+		s->cmd = xstrdup(table_upstream(s->table));
 	table_close(s->table);
 	s->table = NULL;
 	make_arrivals(s, n);
@@ -163,7 +165,6 @@ struct source *source_open(const char *path, uint64_t seed, uint32_t realisation
 		return s;
 	}
 	s->table = table_open(path);
-	s->cmd = table_key(s->table, "cmd") ? xstrdup(table_key(s->table, "cmd")) : NULL;
 	s->diameter_column = table_need(s->table, "diameter");
 	s->velocity_column = table_find(s->table, "velocity");
 	s->time_column = table_find(s->table, "time");
@@ -173,6 +174,8 @@ struct source *source_open(const char *path, uint64_t seed, uint32_t realisation
 		s->slowest = 0.01 * pipe_mean_velocity(&s->stream.pipe);
 	if (s->time_column < 0)
 		read_diameters(s);
+	else if (table_key(s->table, "cmd"))
+		s->cmd = xstrdup(table_key(s->table, "cmd"));
 	return s;
 }
 

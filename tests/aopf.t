@@ -92,6 +92,10 @@ aopf big.tsv | grep '^[0-9]' | awk -F '\t' '{ printf "%.9g\n", $5 / 1048576 }' >
 aopf short.tsv | grep '^[0-9]' | awk -F '\t' '{ printf "%.9g\n", $5 }' >b
 same "the filter does not mind the unit of y" a b
 
+# Levels are named by per cent, each by its own name.
+is "columns of levels" "$(aopf -y 2.8 -q 0,0.05,0.1,0.5,0.975,1 short.tsv | grep -v '^#' | head -1 | cut -f 8-13 | tr '\t' ' ')" \
+	"rul_q00 rul_q05 rul_q10 rul_q50 rul_q97.5 rul_q100"
+
 # The monitor: with process noise far below the floor a filter of order 60 follows itself
 # away from the data, were it not started anew from them.
 "$top/scripts/synthetic-pump" 1 600 |

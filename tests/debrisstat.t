@@ -91,6 +91,13 @@ near "volume as in the summary of debrisgen" \
 	"$(column volume steps.tsv | awk '{ s += 1e12 * $1 } END { print s * 3 }')" \
 	"$(column volume s.tsv | awk '{ s += 1e12 * $1 } END { print s }')" 1e-9
 
+# Two ensembles in one table must not be added up realisation by realisation.
+fails "the same realisations twice" 1 'realisation 0 stands in two parts' sh -c 'cat growth.tsv growth.tsv | debrisstat'
+grep -v '^#' growth.tsv >bare.tsv
+fails "so without comments" 1 'realisation 0 stands in two parts' sh -c 'cat bare.tsv bare.tsv | debrisstat'
+awk -F '\t' -v OFS='\t' 'NR > 1 { $1 += 2 } 1' bare.tsv | cat bare.tsv - >both.tsv
+is "others are a larger ensemble" "$(debrisstat both.tsv | sed -n 's/^realisations.\([0-9]*\).*/\1/p')" 4
+
 head -n 2 growth.tsv | debrisstat >fits.tsv
 is "a table without rows has no fit" "$(fit weibull_shape 2) $(fit particles 2)" "nan 0"
 fails "an empty stream" 1 "no table" debrisstat

@@ -24,6 +24,31 @@ sed -n 's/^# cmd: //p' whole.tsv >commands
 sh -e commands | awk '/^realisation/ && n++ { next } /^# units/ && u++ { next } { print }' >replayed.tsv
 same 'the recorded commands rebuild the table' whole.tsv replayed.tsv
 
+# What is made of the whole ensemble says how the whole is made.
+rebuilt() {
+	sh -e -c "$(sed -n 's/^# cmd: //p' "$1")" >again.tsv
+	same "$1 is rebuilt by its own header" "$1" again.tsv
+}
+debrisstat whole.tsv >fits.tsv
+is 'an ensemble is counted' "$(sed -n 's/^# cmd: //p' fits.tsv | grep -o -e '--first.* | b')" \
+	'--first 0 --count 4 | b'
+rebuilt fits.tsv
+sensorsim -d 5s -n 5mV -T truth.tsv whole.tsv >heard.au
+mv truth.tsv told.tsv
+duet heard.au >heard.tsv
+rebuilt heard.tsv
+same 'and writes the truth again' told.tsv truth.tsv
+$surfaces -f 7 -c 2 | $contact | $debris | cat whole.tsv - >gap.tsv
+debrisstat -o steps gap.tsv >steps.tsv
+is 'ensembles that do not follow each other stand in a group' \
+	"$(sed -n 's/^# cmd: //p' steps.tsv | grep -o -e '--first [^|]*| b' -e '^{ ' -e '; }.*')" \
+	"$(printf '%s\n' '{ ' '--first 0 --count 4 | b' '--first 7 --count 2 | b' '; } | debrisstat --output steps')"
+rebuilt steps.tsv
+printf '# cmd: sensorsim --first 0\nrealisation\tstep\tdiameter\tvolume\taspect\n0\t1\t1\t1\t1\n' >r0
+is 'only realisations of surfaces are counted' \
+	"$(sed 's/^0/1/; s/first 0/first 1/' r0 | cat r0 - | debrisstat | sed -n 's/^# cmd: //p')" \
+	'{ sensorsim --first 0; sensorsim --first 1; } | debrisstat'
+
 # key FILE: the recorded command of a signal
 key() {
 	strings -n 4 "$1" | sed -n 's/^cmd //p;/^cmd /q'

@@ -23,4 +23,6 @@ is 'quantiles of remaining life are positive numbers in order' \
 left=$(awk -v w="$worn" 'BEGIN { print 216000 * 2e-10 / w - 212400 }')
 rising 'the last interval holds the life that is left' "$(column q05 life.tsv | tail -1)" \
 	"$left" "$(column q95 life.tsv | tail -1)"
+PATH=$PWD/scripts:$PATH sh -e -c "$(sed -n 's/^# cmd: //p' life.tsv)" >again.tsv 2>err
+same 'the pipeline in the table rebuilds it' life.tsv again.tsv
 done_testing

@@ -140,7 +140,12 @@ done
 same "a particle table and its summary" particles.tsv.life steps.tsv.life
 rwl --new -w steps.tsv -p 1h -c 2 >out
 is "how the fragments were made is passed on" "$(sed -n 's/^# wear: steps.tsv made by //p' out)" \
-	"$(sed -n '/^# cmd: /{s///;h;};${g;p;}' steps.tsv)"
+	"$(sed -n '/^# cmd: /{s///;s/--first 0/& --count 4/;p;q;}' steps.tsv)"
+(eval "$(sed -n 's/^# wear: steps.tsv made by //p' out)") >again.tsv
+for f in steps.tsv again.tsv; do
+	grep -v '^#' $f >$f.rows
+done
+same "and makes them all" steps.tsv.rows again.tsv.rows
 
 # Comparators and scores on an exponential leakage, which a grey model foretells.
 awk 'BEGIN { print "t\tleakage"; for (t = 0; t <= 600; t += 50) printf "%d\t%.12g\n", t, 1.5 * exp(t / 1186 * log(2.8 / 1.5)) }' >exp.tsv
@@ -208,6 +213,11 @@ fails "half a step" 1 'half.tsv: line 2: step' rwl --new -w half.tsv -p 1h
 fails "no step time" 2 '--new needs --step-time' rwl --new -w even.tsv
 fails "classes without pressures" 2 'pressure of its own' rwl --new -w even.tsv -w low.tsv -p 1h
 fails "a pressure that is none" 2 '--wear even.tsv:21um: the pressure has the wrong unit' rwl --new -w even.tsv:21um -p 1h
+fails "no pressure" 2 'even.tsv:0Pa: want a pressure above 0' rwl --new -w even.tsv:0Pa -p 1h
+fails "a negative one" 2 'even.tsv:-1MPa: want a pressure above 0' rwl --new -w even.tsv:-1MPa -p 1h
+fails "no area" 2 ':0: want an area above 0' rwl --new -w even.tsv:21MPa:0 -p 1h
+fails "a negative one" 2 'mm2: want an area above 0' rwl --new -w even.tsv:21MPa:-1mm2 -p 1h
+fails "more than that" 2 'want FILE' rwl --new -w even.tsv:21MPa:1mm2:3 -p 1h
 fails "too much area" 2 'more than --area' rwl --new -w even.tsv:21MPa:9e3mm2 -p 1h
 fails "size without diameters" 1 'even.tsv.*diameter' rwl --new -w even.tsv -p 1h -d 5um
 fails "a unit that does not suit" 2 '--state-unit foo' rwl -u foo gap.tsv

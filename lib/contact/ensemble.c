@@ -101,6 +101,15 @@ int ensemble_sort(struct ensemble *e)
 	return 0;
 }
 
+long ensemble_clash(const struct ensemble *e)
+{
+	for (size_t i = 1; i < e->rows; i++)
+		if (e->row[i].realisation == e->row[i - 1].realisation &&
+			e->row[i].part != e->row[i - 1].part)
+			return e->row[i].realisation;
+	return -1;
+}
+
 size_t ensemble_told(const struct ensemble *e)
 {
 	return e->ids;

@@ -21,6 +21,7 @@ struct ensemble;
 struct shed {
 	long realisation, step; /* from 0; from 1 */
 	double diameter, volume, aspect;
+	long part; /* of the table; a realisation stands in one */
 };
 
 struct ensemble_par {
@@ -49,6 +50,8 @@ int ensemble_add(struct ensemble *e, const struct shed *particle);
 int ensemble_took_place(struct ensemble *e, long realisation, long step);
 /* Puts the realisations in order; afterwards ensemble_told() knows how many there are. */
 int ensemble_sort(struct ensemble *e);
+/* A realisation that stands in two parts, -1 without. */
+long ensemble_clash(const struct ensemble *e);
 size_t ensemble_told(const struct ensemble *e);
 /* Once, after ensemble_sort(); the functions below are for closed ensembles.  par is
  * copied; par->realisations is 0 or at least ensemble_told(). */

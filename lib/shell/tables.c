@@ -3,6 +3,7 @@
 #include "shell/keys.h"
 #include "shell/msg.h"
 #include "shell/unit.h"
+#include "shell/upstream.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -24,6 +25,8 @@ struct table_in {
 	int headed;         /* the names stand in the table */
 	int pending;        /* the row read ahead by table_open() is still to come */
 	struct keys keys;   /* of comment lines */
+	struct upstream upstream;
+	long part;
 };
 
 struct table_out {
@@ -53,7 +56,12 @@ static void keep_key(struct table_in *t, char *comment)
 	if (!colon)
 		return;
 	*colon = '\0';
-	keys_set(&t->keys, trim(comment), trim(colon + 1));
+	comment = trim(comment);
+	keys_set(&t->keys, comment, trim(colon + 1));
+	if (!strcmp(comment, "cmd")) {
+		upstream_add(&t->upstream, table_key(t, "cmd"));
+		t->part++;
+	}
 }
 
 /* UTF-8 has none, but spreadsheets begin a file with it. */
@@ -187,6 +195,16 @@ const char *table_key(const struct table_in *t, const char *key)
 	return keys_get(&t->keys, key);
 }
 
+const char *table_upstream(struct table_in *t)
+{
+	return upstream_cmd(&t->upstream);
+}
+
+long table_part(const struct table_in *t)
+{
+	return t->part;
+}
+
 int table_columns(const struct table_in *t)
 {
 	return t->ncolumns;
@@ -247,7 +265,7 @@ int table_next(struct table_in *t)
 		t->pending = 0;
 		return 1;
 	}
-	do {
+	for (;;) {
 		int n;
 
 		if (!next_line(t))
@@ -256,8 +274,10 @@ int table_next(struct table_in *t)
 		if (n != t->ncolumns)
 			die(EXIT_RUN, "%s: line %ld: want %d cells, got %d", t->name,
 				t->number, t->ncolumns, n);
-	} while (is_header(t));
-	return 1;
+		if (!is_header(t))
+			return 1;
+		t->part++;
+	}
 }
 
 long table_line(const struct table_in *t)
@@ -312,6 +332,7 @@ void table_close(struct table_in *t)
 	free(t->column);
 	free(t->cell);
 	keys_free(&t->keys);
+	upstream_free(&t->upstream);
 	free(t->line);
 	free(t);
 }

@@ -21,6 +21,11 @@ struct table_in *table_open(const char *path); /* NULL or "-": standard input */
 const char *table_name(const struct table_in *t);
 /* Value of a "# key: value" line read so far (the latest), NULL if none. */
 const char *table_key(const struct table_in *t, const char *key);
+/* The pipeline that rebuilds all that was read so far, NULL if none is known; valid until
+ * the next call.  What is made of a whole table inherits this one. */
+const char *table_upstream(struct table_in *t);
+/* Grows where another record or table begins: at a "# cmd:" line, at a further header. */
+long table_part(const struct table_in *t);
 int table_columns(const struct table_in *t);
 const char *table_column_name(const struct table_in *t, int column);
 int table_find(const struct table_in *t, const char *column); /* -1 where absent */

@@ -69,7 +69,7 @@ relative "classes 1 Pa and 1 TPa, wear 12 decades apart: m(p) = p" "zone at 1/2 
 relative "pressures that differ in the last digit" "the mean of both classes" 200 1e-9 \
 	"$(last mean $new -w even.tsv:21000000.000000004Pa -w zero.tsv:21MPa)"
 refused "two classes of one pressure" 2 'pressure of its own' rwl $new -w even.tsv:1Pa -w zero.tsv:1Pa
-refused "a class at no pressure beside another" 2 'pressure of its own' rwl $new -w even.tsv:0Pa -w zero.tsv:1Pa
+refused "a class at no pressure beside another" 2 'a pressure above 0' rwl $new -w even.tsv:0Pa -w zero.tsv:1Pa
 relative "64 classes" "all wear alike: 100 s" 100 1e-9 "$(last mean $new $(
 	awk 'BEGIN { for (i = 1; i <= 64; i++) print "-w even.tsv:" i "MPa" }'))"
 
