@@ -194,7 +194,7 @@ static struct lines *make_lines(double fs, int channels, size_t *hop)
 
 	check_lines(fs, frames);
 	for (int i = 0; i < removed.n; i++)
-		omega[i] = 2 * acos(-1) * removed.v[i] / fs;
+		omega[i] = 2 * M_PI * removed.v[i] / fs;
 	*hop = (size_t)(frames / 2);
 	lines = lines_new(removed.n, omega, channels, *hop);
 	if (!lines)

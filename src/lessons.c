@@ -4,17 +4,15 @@
 #include <math.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
-
 struct lessons lessons = { .lambda = 1,
 	.seed = 1,
 	.count = 1000,
 	.points = 500,
 	.sources = 3,
-	.span = 4 * PI,
+	.span = 4 * M_PI,
 	.unit = 1,
 	.noise = NAN,
-	.length = { 2, { PI / 2, 3 * PI / 2 } },
+	.length = { 2, { M_PI / 2, 3 * M_PI / 2 } },
 	.amplitude = { 2, { 0, 1 } },
 	.gain = { 2, { 0.909, 0.909 } },
 	.separation = 0.1,

@@ -3,8 +3,8 @@
 #include <math.h>
 
 static double rate = 10e3, flow = 1e-3, bore = 0.01, exponent = 7, spacing = 0.25;
-static double zone = 0.4 / 3.14159265358979323846;       /* 10 ms at 60 L/min in 1 cm */
-static double kappa = 3.14159265358979323846 / 4 * 1e11; /* 1 V for 100 um there */
+static double zone = 0.4 / M_PI;       /* 10 ms at 60 L/min in 1 cm */
+static double kappa = M_PI / 4 * 1e11; /* 1 V for 100 um there */
 static double gain = 1, noise, snr = NAN, corner, common, drift, drift_time = 10;
 static double mains_frequency = 50, pump_frequency = 2e3;
 static int profile = PIPE_PLUG, shape;

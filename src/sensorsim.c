@@ -12,8 +12,6 @@
 
 enum { BLOCK = 8192 };
 
-static const double pi = 3.14159265358979323846;
-
 static long seed = 1, first;
 static int single;
 static const char *truth;
@@ -42,7 +40,7 @@ static void put_truth(
 {
 	const double row[] = { (double)particle, p->time[0], p->time[1], p->diameter,
 		sensor_voltage(k, p->velocity, p->diameter), p->time[1] - p->time[0],
-		p->velocity, pi / 6 * p->diameter * p->diameter * p->diameter,
+		p->velocity, M_PI / 6 * p->diameter * p->diameter * p->diameter,
 		p->radius };
 
 	table_put_row(t, row, (int)(sizeof row / sizeof *row));

@@ -5,8 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double pi = 3.14159265358979323846;
-
 double source_duration = NAN;
 
 static long number = -1, burst;
@@ -88,7 +86,7 @@ static double particle_rate(double flow)
 		by_volume ? (a * a * a + b * b * b) / 2 : (a + b) * (a * a + b * b) / 4;
 
 	return isnan(concentration) ? 0
-				    : flow * concentration / (density * pi / 6 * cube);
+				    : flow * concentration / (density * M_PI / 6 * cube);
 }
 
 /* When and how many: the window leaves room for whole pulses at both sensors. */

@@ -21,8 +21,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double pi = 3.14159265358979323846;
-
 static const double drift_limit = 0.02; /* of the step, in the sum of pressures */
 static const double load_slack = 0.03;  /* of the step, in the same */
 static const double relaxation = 1.5;   /* of the sweep beyond the contact */
@@ -37,7 +35,7 @@ static double stiffness(const void *context, size_t kx, size_t ky)
 	 * wave number is right for it. */
 	if (kx == 0 && ky == 0)
 		q = 0.5 / fmax(lx, ly);
-	return par->estar * pi * q;
+	return par->estar * M_PI * q;
 }
 
 /* Weights of the nearest neighbours in the inverse of the half-space, over that of
@@ -50,8 +48,8 @@ static void make_extension(struct contact *c)
 
 	for (int j = 0; j < ny; j++) {
 		for (int i = 0; i < nx; i++) {
-			double ax = nx > 1 ? pi * (i + 0.5) / M : 0;
-			double ay = ny > 1 ? pi * (j + 0.5) / M : 0;
+			double ax = nx > 1 ? M_PI * (i + 0.5) / M : 0;
+			double ay = ny > 1 ? M_PI * (j + 0.5) / M : 0;
 			double q = hypot(ax / c->par.dx, ay / c->par.dy);
 
 			sum += q;

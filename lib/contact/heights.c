@@ -16,7 +16,7 @@ double normal_quantile(double p)
 			(1 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
 	for (int i = 0; i < 3; i++) {
 		double error = 0.5 * erfc(x / sqrt(2)) - tail;
-		double u = -error * sqrt(2 * 3.14159265358979323846) * exp(x * x / 2);
+		double u = -error * sqrt(2 * M_PI) * exp(x * x / 2);
 
 		x -= u / (1 + x * u / 2);
 	}

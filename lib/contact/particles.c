@@ -494,7 +494,7 @@ static int measure(struct particles *ps, const struct body *b)
 	p = &ps->done[ps->ndone];
 	p->nodes = b->nodes;
 	p->volume = b->nodes * (ax * ay * az);
-	p->diameter = cbrt(6 * p->volume / 3.14159265358979323846);
+	p->diameter = cbrt(6 * p->volume / M_PI);
 	p->area = b->faces[X] * ay * az + b->faces[Y] * ax * az + b->faces[Z] * ax * ay;
 	for (int k = X; k <= Z; k++) {
 		at[k] = b->sum[k] / b->nodes + 0.5;

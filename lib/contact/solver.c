@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* Displacements to about 5e-8 of the largest: see tests/bench/contact.sh. */
 enum { mlms_order = 8, mlms_reach = 18 };
 
@@ -18,14 +16,14 @@ static double free_kernel(const void *context, size_t ix, size_t iy)
 	double patch = kernel_patch(
 		par->dx, par->dy, (double)ix * par->dx, (double)iy * par->dy);
 
-	return patch / (pi * par->estar);
+	return patch / (M_PI * par->estar);
 }
 
 static double periodic_kernel(const void *context, size_t kx, size_t ky)
 {
 	const struct contact_par *par = context;
-	double qx = 2 * pi * (double)kx / (par->nx * par->dx);
-	double qy = 2 * pi * (double)ky / (par->ny * par->dy);
+	double qx = 2 * M_PI * (double)kx / (par->nx * par->dx);
+	double qy = 2 * M_PI * (double)ky / (par->ny * par->dy);
 
 	return kernel_periodic(par->estar, qx, qy);
 }

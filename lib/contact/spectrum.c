@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
-
 struct spectrum {
 	struct spectrum_par par;
 	int mx, my;                        /* non-negative wave numbers along x and y */
@@ -30,16 +28,16 @@ static double gauss_power(double c, int n, int k)
 
 	if (n == 1)
 		return 1; /* a profile: the other direction has no say */
-	if (c * c * PI >= 1) {
+	if (c * c * M_PI >= 1) {
 		for (int m = -TERMS; m <= TERMS; m++) {
-			double u = PI * c * (m + (double)k / n);
+			double u = M_PI * c * (m + (double)k / n);
 
 			sum += exp(-u * u);
 		}
-		return sum * c * sqrt(PI) / n;
+		return sum * c * sqrt(M_PI) / n;
 	}
 	for (int j = 1; j <= TERMS; j++)
-		sum += exp(-(j / c) * (j / c)) * cos(2 * PI * k * j / n);
+		sum += exp(-(j / c) * (j / c)) * cos(2 * M_PI * k * j / n);
 	return (1 + 2 * sum) / n;
 }
 
@@ -74,7 +72,7 @@ static int add_exponential(struct spectrum *s, double cx, double cy)
 
 	for (int i = FIRST; i <= LAST; i++) {
 		double t = exp((double)i / PER_UNIT);
-		double weight = t * exp(-t * t / 4) / (PER_UNIT * sqrt(PI));
+		double weight = t * exp(-t * t / 4) / (PER_UNIT * sqrt(M_PI));
 
 		if (t * c < white)
 			noise += weight;
@@ -197,7 +195,7 @@ static double complex *centre_shift(int n, int count)
 	double complex *shift = fft_alloc_complex((size_t)count);
 
 	for (int k = 0; shift && k < count; k++)
-		shift[k] = cos(PI * k / n) + sin(PI * k / n) * I;
+		shift[k] = cos(M_PI * k / n) + sin(M_PI * k / n) * I;
 	return shift;
 }
 
@@ -337,7 +335,7 @@ static double modes_slope(const struct spectrum *s)
 		double part = 0;
 
 		for (int kx = 0; kx < s->mx; kx++) {
-			double q = 2 * PI * wave_number(s, kx, ky);
+			double q = 2 * M_PI * wave_number(s, kx, ky);
 			double re = creal(row[kx]), im = cimag(row[kx]);
 
 			part += (kx == 0 || 2 * kx == s->par.nx ? 1 : 2) * q * q *

@@ -8,8 +8,6 @@
 
 enum { N = STRESS_COMPONENTS };
 
-static const double TWO_PI = 6.283185307179586476925286766559;
-
 /* From here on (in cells) the point load is integrated over the cell: the difference of
  * four corners would lose (distance)^2 digits. */
 static const double FAR = 64;
@@ -71,7 +69,7 @@ static void difference(const double *pp, const double *pm, const double *mp,
 	const double *mm, double *out)
 {
 	for (int c = 0; c < N; c++)
-		out[c] = ((pp[c] - pm[c]) - (mp[c] - mm[c])) * (1 / TWO_PI);
+		out[c] = ((pp[c] - pm[c]) - (mp[c] - mm[c])) * (1 / (2 * M_PI));
 }
 
 void stress_patch(double a, double b, double nu, double x, double y, double z,
@@ -126,7 +124,7 @@ void stress_point(double nu, double mu, double x, double y, double z,
 
 	point_load(x, y, z, nu, stress, shear);
 	for (int c = 0; c < N; c++)
-		stress[c] = (stress[c] + mu * shear[c]) / TWO_PI;
+		stress[c] = (stress[c] + mu * shear[c]) / (2 * M_PI);
 }
 
 /* Point load over a cell by 3 x 3 Gauss-Legendre points. */
@@ -143,7 +141,7 @@ static void far_cell(double x, double y, double z, double ax, double ay, double 
 		memset(shear, 0, N * sizeof(*shear));
 	for (int j = 0; j < 3; j++)
 		for (int i = 0; i < 3; i++) {
-			double area = ax * ay * weight[i] * weight[j] / TWO_PI;
+			double area = ax * ay * weight[i] * weight[j] / (2 * M_PI);
 
 			point_load(x - 0.5 * ax * node[i], y - 0.5 * ay * node[j], z, nu,
 				n, shear ? s : NULL);

@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double TWO_PI = 6.283185307179586476925286766559;
-
 struct window {
 	const struct stress_par *par;
 	int wx, wy;
@@ -61,7 +59,7 @@ size_t window_size(const struct window *w)
 static void periodic_spectra(
 	const struct window *w, double z, int count, double complex *spectra)
 {
-	double ux = TWO_PI / (w->wx * w->par->ax), uy = TWO_PI / (w->wy * w->par->ay);
+	double ux = 2 * M_PI / (w->wx * w->par->ax), uy = 2 * M_PI / (w->wy * w->par->ay);
 
 	for (size_t j = 0; j < w->rows; j++)
 		for (size_t i = 0; i < w->columns; i++) {
@@ -145,7 +143,7 @@ static double wave_bound(const struct stress_par *p, double x)
 
 double window_bound(const struct window *w, double z)
 {
-	double ux = TWO_PI / (w->wx * w->par->ax), uy = TWO_PI / (w->wy * w->par->ay);
+	double ux = 2 * M_PI / (w->wx * w->par->ax), uy = 2 * M_PI / (w->wy * w->par->ay);
 	double complex mean[TENSOR_NUMBERS];
 	double v[MISES_NUMBERS], sum;
 

@@ -191,7 +191,7 @@ static void follow(struct line *l, const struct news *n)
 static double log_constant(double freedom)
 {
 	return lgamma(0.5 * (freedom + 1)) - lgamma(0.5 * freedom) -
-	       0.5 * log(freedom * acos(-1));
+	       0.5 * log(freedom * M_PI);
 }
 
 /* All lines of one shape take the damage level, step after the last row. */

@@ -191,12 +191,12 @@ static double weigh(struct filter *f, double y, double noise)
 /* log of the constant of the likelihood */
 static double log_constant(const struct filter *f, double noise)
 {
-	double nu = f->par.freedom, pi = acos(-1);
+	double nu = f->par.freedom;
 
 	if (nu > 0)
-		return lgamma(0.5 * (nu + 1)) - lgamma(0.5 * nu) - 0.5 * log(nu * pi) -
+		return lgamma(0.5 * (nu + 1)) - lgamma(0.5 * nu) - 0.5 * log(nu * M_PI) -
 		       log(noise);
-	return -0.5 * log(2 * pi) - log(noise);
+	return -0.5 * log(2 * M_PI) - log(noise);
 }
 
 double filter_update(struct filter *f, double y, double noise)

@@ -1,10 +1,9 @@
 #include "num/convolve.h"
 #include "num/fft.h"
 #include <complex.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double pi = 3.14159265358979323846;
 
 enum {
 	ROWS = 16,  /* rows in one job */
@@ -84,7 +83,7 @@ struct convolve *convolve_borrow(size_t nx, size_t ny, enum convolve_kind kind,
 		return NULL;
 	}
 	for (size_t j = 0; padded && j < c->ly; j++)
-		c->twist[j] = cexp(-I * pi * (double)j / (double)c->ly);
+		c->twist[j] = cexp(-I * M_PI * (double)j / (double)c->ly);
 	return c;
 }
 

@@ -82,13 +82,12 @@ double philox_uniform(
 void philox_normal2(uint64_t seed, uint32_t realisation, enum rng_purpose purpose,
 	uint64_t index, double normal[2])
 {
-	static const double two_pi = 6.28318530717958647693;
 	uint32_t out[4];
 	double r, angle;
 
 	block(seed, realisation, purpose, index, out);
 	r = sqrt(-2 * log(uniform(out[0], out[1])));
-	angle = two_pi * uniform(out[2], out[3]);
+	angle = 2 * M_PI * uniform(out[2], out[3]);
 	normal[0] = r * cos(angle);
 	normal[1] = r * sin(angle);
 }

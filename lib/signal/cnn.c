@@ -2,8 +2,6 @@
 #include "signal/cnn.h"
 #include <math.h>
 
-#define PI 3.14159265358979323846
-
 int cnn_suits(const struct network *net)
 {
 	struct network_shape in = network_input(net);
@@ -72,7 +70,7 @@ int cnn_lay(const struct cnn_section *s, network_real *x, struct cnn_frame *fram
 		frame->scale = fmax(frame->scale, fabs(y1[k]));
 	if (!(frame->scale > 0))
 		return 0;
-	slope = 2 * PI * frame->reach / s->duration;
+	slope = 2 * M_PI * frame->reach / s->duration;
 	for (int k = 0; k < CNN_POINTS; k++) {
 		x[k] = y1[k] / frame->scale;
 		x[CNN_POINTS + k] = (y2[k] / s->gain - y1[k]) / frame->scale / slope;

@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
-
 /* Places in the stream of one section; network.h and delaydata.h draw elsewhere. */
 #define DRAWS ((uint64_t)4 << 40)
 #define NOISE ((uint64_t)5 << 40)
@@ -120,7 +118,7 @@ void cnndata_target(
 		const struct cnn_pulse *p = &s->pulse[k];
 		double noise = s->noise / p->a, samples = f.duration;
 		/* Variances of a sine pulse alone in two channels of equal noise. */
-		double t = noise * noise / (2 * PI * PI) / samples;
+		double t = noise * noise / (2 * M_PI * M_PI) / samples;
 		double delta = 2 * t * pow(f.duration / f.reach, 2);
 		double size = noise * noise / samples / 9;
 
@@ -188,7 +186,7 @@ static void add_errors(struct cnndata_score *score, const struct cnndata_section
 		score->size += pow(cbrt(pulse[k].a / want->a) - 1, 2);
 		/* sigma^2 T / (2 pi^2) at either sensor, in samples. */
 		score->alone += noise * noise * (1 + 1 / (g * g)) * CNNDATA_DURATION /
-				(2 * PI * PI);
+				(2 * M_PI * M_PI);
 	}
 }
 

@@ -42,7 +42,7 @@ int colour_level(const double *y1, const double *y2, size_t n, const struct whit
 /* Autocorrelation of a Hann window of n points at this lag, 1 at lag 0. */
 static double window_autocorrelation(size_t n, size_t lag)
 {
-	double sum = 0, all = 0, turn = 2 * acos(-1) / (double)n;
+	double sum = 0, all = 0, turn = 2 * M_PI / (double)n;
 
 	for (size_t i = 0; i < n; i++) {
 		double here = 0.5 - 0.5 * cos(turn * ((double)i + 0.5));
@@ -70,7 +70,7 @@ static int sharpen(double *power, size_t bins)
 		fft_inverse(fft, spectrum, r);
 		for (size_t k = 0; k <= last; k++) {
 			double u = 2 * (double)k / (double)last - 1;
-			double keep = u <= 0 ? 1 : 0.5 + 0.5 * cos(acos(-1) * u);
+			double keep = u <= 0 ? 1 : 0.5 + 0.5 * cos(M_PI * u);
 
 			r[k] *= keep / window_autocorrelation(points, k);
 			r[k ? points - k : 0] = r[k];

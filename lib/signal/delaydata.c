@@ -4,8 +4,6 @@
 #include "signal/delayloss.h"
 #include <math.h>
 
-#define PI 3.14159265358979323846
-
 /* Places in the stream of one sample; network.h draws at lower ones. */
 #define DRAWS ((uint64_t)2 << 40)
 #define NOISE ((uint64_t)3 << 40)
@@ -21,9 +19,9 @@ struct delaydata_par delaydata_default(void)
 	return (struct delaydata_par){
 		.points = 500,
 		.sources = 3,
-		.span = 4 * PI,
+		.span = 4 * M_PI,
 		.section = DELAYDATA_LENGTH,
-		.length = { PI / 2, 3 * PI / 2 },
+		.length = { M_PI / 2, 3 * M_PI / 2 },
 		.amplitude = { 0, 1 },
 		.gain = { 0.909, 0.909 },
 		.unit = 1,
@@ -66,7 +64,7 @@ static int precedes(
 static void add_source(const struct delaydata_par *par, const struct source *s,
 	double amplitude, double shift, network_real *x)
 {
-	double frequency = par->section == DELAYDATA_PERIOD ? 2 * PI / s->length : 1;
+	double frequency = par->section == DELAYDATA_PERIOD ? 2 * M_PI / s->length : 1;
 	double phase = par->section == DELAYDATA_RANGE ? par->length[0] : 0;
 	double step = par->span / par->points;
 

@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 enum { LANES = 8 }; /* outputs the direct form computes side by side */
 
 struct fir {
@@ -38,7 +36,7 @@ static double bessel_i0(double x)
 static double window_at(const struct fir_band *band, int k)
 {
 	double z = 2.0 * k / band->order - 1; /* -1 .. 1 */
-	double c = cos(pi * z);
+	double c = cos(M_PI * z);
 
 	switch (band->window) {
 	case FIR_HAMMING:
@@ -46,7 +44,7 @@ static double window_at(const struct fir_band *band, int k)
 	case FIR_HANN:
 		return 0.5 + 0.5 * c;
 	case FIR_BLACKMAN:
-		return 0.42 + 0.5 * c + 0.08 * cos(2 * pi * z);
+		return 0.42 + 0.5 * c + 0.08 * cos(2 * M_PI * z);
 	default:
 		return bessel_i0(band->beta * sqrt(fmax(0, 1 - z * z))) /
 		       bessel_i0(band->beta);
@@ -56,7 +54,7 @@ static double window_at(const struct fir_band *band, int k)
 /* Ideal low-pass with edge f, at m samples from the middle. */
 static double ideal(double f, double m)
 {
-	double x = pi * (2 * f * m);
+	double x = M_PI * (2 * f * m);
 
 	return x == 0 ? 2 * f : 2 * f * (sin(x) / x);
 }
@@ -73,7 +71,7 @@ int fir_design(const struct fir_band *band, double *h)
 		double m = k - 0.5 * band->order;
 
 		h[k] = (ideal(band->high, m) - ideal(band->low, m)) * window_at(band, k);
-		sum += h[k] * cos(2 * pi * middle * m);
+		sum += h[k] * cos(2 * M_PI * middle * m);
 	}
 	if (!band->scale)
 		return 0;
@@ -141,7 +139,7 @@ void fir_response(const double *h, size_t n, double f, double shift, double *rea
 {
 	*real = *imaginary = 0;
 	for (size_t k = 0; k < n; k++) {
-		double phase = 2 * pi * fmod(f * ((double)k - shift), 1);
+		double phase = 2 * M_PI * fmod(f * ((double)k - shift), 1);
 
 		*real += h[k] * cos(phase);
 		*imaginary -= h[k] * sin(phase);

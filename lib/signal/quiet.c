@@ -23,7 +23,7 @@ static int transform(const double *y, size_t segment, size_t count, double *powe
 
 	for (size_t i = 0; ok && i < count; i++) {
 		for (size_t k = 0; k < segment; k++) {
-			double angle = 2 * acos(-1) * ((double)k + 0.5) / (double)segment;
+			double angle = 2 * M_PI * ((double)k + 0.5) / (double)segment;
 
 			x[k] = y[i * bins + k] * (0.5 - 0.5 * cos(angle));
 		}

@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 enum {
 	PIECE = 256, /* samples computed at a time */
 	KNOTS = 32   /* straight pieces of the drift per correlation time */
@@ -159,7 +157,7 @@ static void correlate(double common, double *z, size_t n)
 /* One-pole low-pass of frames from the given one on, to the same variance. */
 static void low_pass(struct scene *s, uint64_t frame, double *z, size_t n)
 {
-	double keep = exp(-2 * pi * s->par.corner / s->par.rate);
+	double keep = exp(-2 * M_PI * s->par.corner / s->par.rate);
 	double fresh = sqrt(1 - keep * keep), a = s->color[0], b = s->color[1];
 	size_t i = 0;
 
@@ -221,11 +219,12 @@ static double turns(double frequency, double rate, double frame)
 
 static void add_line(const struct scene *s, const struct line *l, double *x, size_t n)
 {
-	double step = 2 * pi * l->frequency / s->par.rate, dc = cos(step), ds = sin(step);
+	double step = 2 * M_PI * l->frequency / s->par.rate, dc = cos(step),
+	       ds = sin(step);
 
 	for (int c = 0; c < 2; c++)
 		for (size_t i = 0; i < n; i += PIECE) {
-			double a = 2 * pi *
+			double a = 2 * M_PI *
 				   (turns(l->frequency, s->par.rate,
 					    (double)(s->frame + i)) +
 					   l->phase[c]);

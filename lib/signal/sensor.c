@@ -2,7 +2,6 @@
 #include "signal/sensor.h"
 #include <math.h>
 
-static const double pi = 3.14159265358979323846;
 static const double vacuum_permeability = 1.25663706212e-6; /* V s/(A m), CODATA 2018 */
 
 /* Samples between fresh starts of a recurrence, so that rounding does not build up. */
@@ -40,7 +39,7 @@ static double lorentz_at(double xi, double *slope)
 
 static double pulse_at(enum pulse_shape shape, double s, double *slope)
 {
-	double xi = 2 * pi * s, p;
+	double xi = 2 * M_PI * s, p;
 
 	*slope = 0;
 	if (!(fabs(s) < pulse_reach(shape)))
@@ -56,7 +55,7 @@ static double pulse_at(enum pulse_shape shape, double s, double *slope)
 	default:
 		p = lorentz_at(xi, slope);
 	}
-	*slope *= 2 * pi;
+	*slope *= 2 * M_PI;
 	return p;
 }
 
@@ -89,7 +88,7 @@ long pulse_support(enum pulse_shape shape, double t0, double T, size_t *n)
 static void fill_run(enum pulse_shape shape, double s, double ds, size_t n, double *value,
 	double *slope)
 {
-	double xi = 2 * pi * s, dxi = 2 * pi * ds;
+	double xi = 2 * M_PI * s, dxi = 2 * M_PI * ds;
 
 	if (shape == PULSE_SINE) {
 		double c = cos(xi), z = sin(xi), dc = cos(dxi), dz = sin(dxi);
@@ -98,7 +97,7 @@ static void fill_run(enum pulse_shape shape, double s, double ds, size_t n, doub
 			double next = c * dc - z * dz;
 
 			value[i] = -z;
-			slope[i] = -2 * pi * c;
+			slope[i] = -2 * M_PI * c;
 			z = z * dc + c * dz;
 			c = next;
 		}
@@ -111,14 +110,14 @@ static void fill_run(enum pulse_shape shape, double s, double ds, size_t n, doub
 			double x = xi + (double)i * dxi;
 
 			value[i] = -x * e;
-			slope[i] = 2 * pi * (x * x - 1) * e;
+			slope[i] = 2 * M_PI * (x * x - 1) * e;
 			e *= ratio;
 			ratio *= change;
 		}
 	} else {
 		for (size_t i = 0; i < n; i++) {
 			value[i] = lorentz_at(xi + (double)i * dxi, &slope[i]);
-			slope[i] *= 2 * pi;
+			slope[i] *= 2 * M_PI;
 		}
 	}
 }
@@ -175,11 +174,11 @@ static double peak_of_path(enum pulse_shape shape)
 {
 	switch (shape) {
 	case PULSE_SINE:
-		return pi / 2;
+		return M_PI / 2;
 	case PULSE_GAUSS:
-		return pi * exp(-0.5);
+		return M_PI * exp(-0.5);
 	default:
-		return 2 * pi * 3 * sqrt(3) / 16;
+		return 2 * M_PI * 3 * sqrt(3) / 16;
 	}
 }
 
@@ -190,13 +189,13 @@ double sensor_kappa(const struct sensor_coil *coil, enum pulse_shape shape)
 	double mu = vacuum_permeability * (coil->permeability - 1) / coil->permeability;
 
 	/* (3-1) at the peak, over v d^3; volume = pi d^3 / 6 */
-	return 2 * coil->turns * coil->field_turns * coil->current * mu * (pi / 6) *
+	return 2 * coil->turns * coil->field_turns * coil->current * mu * (M_PI / 6) *
 	       peak_of_path(shape) * path / coil->length;
 }
 
 double pipe_mean_velocity(const struct pipe *pipe)
 {
-	return 4 * pipe->flow / (pi * pipe->bore * pipe->bore);
+	return 4 * pipe->flow / (M_PI * pipe->bore * pipe->bore);
 }
 
 double pipe_velocity(const struct pipe *pipe, double r)

@@ -32,8 +32,8 @@ struct stft *stft_new(size_t window, size_t hop)
 		return NULL;
 	}
 	for (size_t i = 0; i < window; i++)
-		s->shape[i] = 0.54 -
-			      0.46 * cos(2 * acos(-1) * (double)i / (double)(window - 1));
+		s->shape[i] =
+			0.54 - 0.46 * cos(2 * M_PI * (double)i / (double)(window - 1));
 	return s;
 }
 

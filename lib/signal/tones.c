@@ -47,7 +47,7 @@ static void add_periodogram(const struct fft *fft, const double *y, size_t n,
 		limit = INFINITY; /* silence but for pulses */
 	for (size_t i = 0; i < n; i++)
 		work[i] = fmax(fmin(y[i] - mean, limit), -limit) *
-			  (0.5 - 0.5 * cos(2 * acos(-1) * (double)i / (double)n));
+			  (0.5 - 0.5 * cos(2 * M_PI * (double)i / (double)n));
 	fft_forward(fft, work, spectrum);
 	for (size_t k = 0; k <= n / 2; k++)
 		power[k] += creal(spectrum[k] * conj(spectrum[k]));
@@ -80,7 +80,7 @@ static int pick_lines(const double *power, size_t n, int max, double *omega)
 		c = log(power[k + 1]);
 		bend = a - 2 * b + c;
 		line[count].power = power[k];
-		line[count++].omega = 2 * acos(-1) / (double)n *
+		line[count++].omega = 2 * M_PI / (double)n *
 				      ((double)k + (bend < 0 ? 0.5 * (a - c) / bend : 0));
 	}
 	qsort(line, (size_t)count, sizeof *line, by_power);

@@ -7,8 +7,6 @@
 
 typedef network_real real;
 
-#define PI 3.14159265358979323846
-
 /* Where the shuffling begins in the stream of random numbers; network_start() draws at
  * lower places. */
 #define SHUFFLE ((uint64_t)1 << 40)
@@ -57,7 +55,7 @@ static double step_length(const struct network_training *par, const struct desce
 
 	if (par->rate_end <= 0)
 		return par->rate;
-	return par->rate_end + (par->rate - par->rate_end) * 0.5 * (1 + cos(PI * done));
+	return par->rate_end + (par->rate - par->rate_end) * 0.5 * (1 + cos(M_PI * done));
 }
 
 static void update(const struct network_training *par, struct descent *d)

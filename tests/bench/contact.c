@@ -19,8 +19,6 @@
 #include <sys/resource.h>
 #include <time.h>
 
-static const double pi = 3.14159265358979323846;
-
 static double uniform(uint64_t *state)
 {
 	uint64_t z = *state += 0x9E3779B97F4A7C15u;
@@ -35,7 +33,7 @@ static void fill_noise(double *x, size_t n, uint64_t seed)
 {
 	for (size_t i = 0; i + 1 < n; i += 2) {
 		double r = sqrt(-2 * log1p(-uniform(&seed))),
-		       angle = 2 * pi * uniform(&seed);
+		       angle = 2 * M_PI * uniform(&seed);
 
 		x[i] = r * cos(angle);
 		x[i + 1] = r * sin(angle);
@@ -61,7 +59,7 @@ static double fill_rough(
 
 		s[i] *= a / (double)cells;
 		slope += (i % half == 0 || i % half == half - 1 ? 1 : 2) *
-			 pow(cabs(s[i]), 2) * pow(2 * pi * k, 2);
+			 pow(cabs(s[i]), 2) * pow(2 * M_PI * k, 2);
 	}
 	fft_inverse(fft, s, h);
 	fft_free(s);
@@ -98,7 +96,7 @@ static void make_surface(const char *scene, double *h, int nx, int ny)
 		if (is_round)
 			h[i] -= (x * x + y * y) / 2;
 		if (strcmp(scene, "wave") == 0)
-			h[i] = 0.1 * cos(2 * pi * x);
+			h[i] = 0.1 * cos(2 * M_PI * x);
 	}
 }
 
@@ -106,14 +104,14 @@ static void make_surface(const char *scene, double *h, int nx, int ny)
 static double exact_pressure(const char *scene, double mean, double x, double y)
 {
 	if (strcmp(scene, "hertz") == 0) {
-		double a2 = pow(0.75 * mean, 2.0 / 3), p0 = 2 * sqrt(a2) / pi;
+		double a2 = pow(0.75 * mean, 2.0 / 3), p0 = 2 * sqrt(a2) / M_PI;
 
 		return p0 * sqrt(fmax(1 - (x * x + y * y) / a2, 0));
 	}
 	if (strcmp(scene, "wave") == 0) {
-		double s2 = mean / (0.1 * pi), sx = sin(pi * x);
+		double s2 = mean / (0.1 * M_PI), sx = sin(M_PI * x);
 
-		return 2 * mean * cos(pi * x) / s2 * sqrt(fmax(s2 - sx * sx, 0));
+		return 2 * mean * cos(M_PI * x) / s2 * sqrt(fmax(s2 - sx * sx, 0));
 	}
 	return NAN;
 }

@@ -29,7 +29,7 @@ static double now(void)
 
 static void fill_disc(double *x, int n, double fill)
 {
-	double radius2 = fill * n * n / 3.14159265358979323846;
+	double radius2 = fill * n * n / M_PI;
 
 	for (int i = 0; i < n * n; i++) {
 		double dx = i % n - n / 2, dy = (double)(i / n) - (double)(n / 2);

@@ -60,8 +60,8 @@ static void check_correlation(enum spectrum_kind kind, const char *name)
 		for (int ky = 1 - N / 2; ky <= N / 2; ky++)
 			for (int kx = 1 - N / 2; kx <= N / 2; kx++)
 				want += spectrum_power(s, kx, ky) *
-					cos(2 * acos(-1) *
-						(kx * lag[l][0] + ky * lag[l][1]) / N);
+					cos(2 * M_PI * (kx * lag[l][0] + ky * lag[l][1]) /
+						N);
 		ok(fabs(sum[l] - want) < 4.5 * se,
 			"%s: covariance at lag (%d, %d): %.5f, want %.5f, %.1f standard errors",
 			name, lag[l][0], lag[l][1], sum[l], want, (sum[l] - want) / se);

@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
 static const char *const solver_name[] = { "bccg", "pk" };
 
 static struct contact_par parameters(
@@ -33,7 +32,7 @@ static void hertz(int n, enum contact_solver solver, double e_peak, double e_app
 {
 	double radius = 10e-3, estar = 115.4e9, load = 50;
 	double a = cbrt(3 * load * radius / (4 * estar)),
-	       p0 = 3 * load / (2 * pi * a * a);
+	       p0 = 3 * load / (2 * M_PI * a * a);
 	double side = 4 * a, peak = 0, sum = 0;
 	size_t cells = (size_t)n * (size_t)n, inside = 0;
 	double *h = fft_alloc(cells), *p = fft_alloc(cells);
@@ -89,9 +88,9 @@ static void westergaard(enum contact_solver solver)
 	double worst_area = 0, worst_peak = 0;
 
 	for (int i = 0; i < N; i++)
-		h[i] = cos(2 * pi * (i + 0.5) / N);
+		h[i] = cos(2 * M_PI * (i + 0.5) / N);
 	for (size_t k = 0; k < sizeof(loads) / sizeof(loads[0]); k++) {
-		double mean = loads[k] * pi, peak = 0;
+		double mean = loads[k] * M_PI, peak = 0;
 		double half = asin(sqrt(loads[k])); /* pi a / lambda */
 
 		memset(p, 0, N * sizeof(*p));
@@ -99,7 +98,7 @@ static void westergaard(enum contact_solver solver)
 		for (int i = 0; i < N; i++)
 			peak = fmax(peak, p[i]);
 		worst_area =
-			fmax(worst_area, fabs(contact_result(c)->area - 2 / pi * half));
+			fmax(worst_area, fabs(contact_result(c)->area - 2 / M_PI * half));
 		worst_peak = fmax(worst_peak, fabs(peak * sin(half) / (2 * mean) - 1));
 	}
 	/* Half a cell at each end of the contact, and one for the staircase. */
@@ -109,10 +108,10 @@ static void westergaard(enum contact_solver solver)
 		worst_peak);
 	/* Above p* the contact is full and p = mean + p* cos exactly. */
 	memset(p, 0, N * sizeof(*p));
-	contact_solve(c, h, CONTACT_PRESSURE, 1.5 * pi, p, NULL);
+	contact_solve(c, h, CONTACT_PRESSURE, 1.5 * M_PI, p, NULL);
 	worst_peak = 0;
 	for (int i = 0; i < N; i++)
-		worst_peak = fmax(worst_peak, fabs(p[i] / pi - 1.5 - h[i]));
+		worst_peak = fmax(worst_peak, fabs(p[i] / M_PI - 1.5 - h[i]));
 	ok(worst_peak < 1e-4 && contact_result(c)->area == 1,
 		"full contact %s: pressure off by %.1e p*", solver_name[solver],
 		worst_peak);
@@ -132,9 +131,9 @@ static void wavy(enum contact_solver solver)
 	struct contact *c = contact_new(&par);
 
 	for (int i = 0; i < N * N; i++)
-		h[i] = cos(2 * pi * (i % N) / N) * cos(2 * pi * (i / N) / N);
+		h[i] = cos(2 * M_PI * (i % N) / N) * cos(2 * M_PI * (i / N) / N);
 	for (size_t k = 0; k < sizeof(reference) / sizeof(reference[0]); k++) {
-		double mean = reference[k][0] * sqrt(2) * pi;
+		double mean = reference[k][0] * sqrt(2) * M_PI;
 
 		memset(p, 0, sizeof(*p) * N * N);
 		contact_solve(c, h, CONTACT_PRESSURE, mean, p, NULL);
@@ -152,8 +151,8 @@ static void wavy(enum contact_solver solver)
 static void by_hand(enum contact_solver solver)
 {
 	struct contact_par par = parameters(1, 1, 2, CONTACT_FREE, solver);
-	double k0 = kernel_patch(2, 2, 0, 0) / (pi * 4),
-	       k1 = kernel_patch(2, 2, 2, 0) / (pi * 4);
+	double k0 = kernel_patch(2, 2, 0, 0) / (M_PI * 4),
+	       k1 = kernel_patch(2, 2, 2, 0) / (M_PI * 4);
 	double h[3] = { 0.5, 0.5, 0.5 }, p[3] = { 0 }, g[3];
 	struct contact *c;
 
@@ -197,8 +196,9 @@ static void controls(enum contact_solver solver, enum contact_boundary boundary)
 	enum contact_status status;
 
 	for (int i = 0; i < CELLS; i++)
-		h[i] = 0.02 * cos(4 * pi * (i % N) / N) * sin(2 * pi * (i / N) / N + 1) +
-		       0.003 * sin(20 * pi * (i % N) / N + i / N);
+		h[i] = 0.02 * cos(4 * M_PI * (i % N) / N) *
+			       sin(2 * M_PI * (i / N) / N + 1) +
+		       0.003 * sin(20 * M_PI * (i % N) / N + i / N);
 	contact_solve(c, h, CONTACT_PRESSURE, 0.02, p, g);
 	approach = contact_result(c)->approach;
 	for (int i = 0; i < CELLS; i++)

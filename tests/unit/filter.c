@@ -40,7 +40,7 @@ static double kalman(const struct walk *w, double *evidence)
 		e = w->y[k] - x;
 		s = p + NOISE * NOISE;
 		gain = p / s;
-		*evidence -= 0.5 * (log(2 * acos(-1) * s) + e * e / s);
+		*evidence -= 0.5 * (log(2 * M_PI * s) + e * e / s);
 		x += gain * e;
 		p *= 1 - gain;
 		sum += (x - w->x[k]) * (x - w->x[k]);

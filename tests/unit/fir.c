@@ -89,9 +89,8 @@ static void test_response(void)
 	fir_response(h, 201, 0.01, 100, &re, &im);
 	ok(fabs(re - 1) < 1e-13 && fabs(im) < 1e-13, "gain 1 and phase 0 in the middle");
 	fir_response(h, 201, 0.0123, 0, &re, &im);
-	near(remainder(atan2(im, re) + 2 * 3.14159265358979323846 * 1.23,
-		     2 * 3.14159265358979323846),
-		0, 1e-12, "the delay is half the order");
+	near(remainder(atan2(im, re) + 2 * M_PI * 1.23, 2 * M_PI), 0, 1e-12,
+		"the delay is half the order");
 	band.scale = 0;
 	fir_design(&band, h);
 	near(level(h, 100), -4.57, 0.005, "unscaled: -4.57 dB in the middle");

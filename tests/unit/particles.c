@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
-
 typedef int (*shape)(double x, double y, double z);
 
 /* Particles of the cells whose centres are in the shape. */
@@ -43,7 +41,7 @@ static void test_box(void)
 	ok(scan(ps, 16, 12, 6, box, &p) == 1, "a box is one particle");
 	near(p->nodes, 42, 0, "box: cells");
 	near(p->volume, 42, 0, "box: volume");
-	near(p->diameter, cbrt(6 * 42 / PI), 1e-14, "box: equivalent diameter");
+	near(p->diameter, cbrt(6 * 42 / M_PI), 1e-14, "box: equivalent diameter");
 	near(p->area, 2 * (14 * 3 + 14 + 3), 1e-12, "box: surface");
 	near(p->length, sqrt(14 * 14 + 9 + 1), 1e-12, "box: largest diameter");
 	near(p->width, sqrt(3 * 3 + 1), 0.2,
@@ -106,7 +104,7 @@ static void test_ball(void)
 	near(p->length, 2 * R, 1.8, "ball: largest diameter");
 	near(p->aspect, 1, 0.02, "ball: aspect ratio");
 	near(p->elongation, 0, 1e-9, "ball: elongation");
-	near(p->area / (4 * PI * R * R), 1.5, 0.03,
+	near(p->area / (4 * M_PI * R * R), 1.5, 0.03,
 		"ball: exposed faces are 3/2 of the sphere");
 	ok(p->convexity < 1 && p->convexity > 0.9, "ball: convexity %g, below 1",
 		p->convexity);
@@ -311,7 +309,7 @@ static void test_map(void)
 	double cells = 0;
 
 	for (int i = 0; i < NX * NY; i++) {
-		double x = 2 * PI * (i % NX) / NX, y = 2 * PI * (i / NX) / NY;
+		double x = 2 * M_PI * (i % NX) / NX, y = 2 * M_PI * (i / NX) / NY;
 		double z = cos(3 * x + 5 * y) + cos(11 * x - 7 * y + 1) +
 			   cos(19 * x + 2 * y + 2) + cos(6 * x - 23 * y + 3) +
 			   cos(41 * x + 37 * y + 4);

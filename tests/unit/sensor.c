@@ -3,17 +3,16 @@
 #include "signal/sensor.h"
 #include "tap.h"
 
-static const double pi = 3.14159265358979323846;
 static const char *const name[] = { "sine", "gauss", "lorentz" };
 
 /* l(x) as the header states it, to hold (3-1) itself against the pulses. */
 static double path(enum pulse_shape shape, double x, const struct sensor_coil *c)
 {
-	double far = 1 / (c->far_path * c->far_path), xi = 2 * pi * x / c->length;
+	double far = 1 / (c->far_path * c->far_path), xi = 2 * M_PI * x / c->length;
 	double b = 1 / (c->near_path * c->near_path) - far, y = 0;
 
 	if (shape == PULSE_SINE)
-		y = fabs(xi) < pi ? (1 + cos(xi)) / 2 : 0;
+		y = fabs(xi) < M_PI ? (1 + cos(xi)) / 2 : 0;
 	else if (shape == PULSE_GAUSS)
 		y = exp(-xi * xi / 2);
 	else
@@ -72,7 +71,7 @@ static void test_equation(enum pulse_shape shape)
 {
 	struct sensor_coil c = { 200, 150, 0.3, 2000, 5e-3, 9e-3, 0.1273 };
 	double v = 12.7324, d = 80e-6, h = 1e-6, worst = 0;
-	double volume = pi * d * d * d / 6, mu0 = 1.25663706212e-6;
+	double volume = M_PI * d * d * d / 6, mu0 = 1.25663706212e-6;
 	double gain = -2 * c.turns * c.field_turns * c.current * volume * mu0 *
 		      (c.permeability - 1) / c.permeability * v;
 	double peak = sensor_voltage(sensor_kappa(&c, shape), v, d);
@@ -117,7 +116,7 @@ static void test_pipe(enum pipe_profile profile, double top)
 	for (int i = 0; i < n; i++) {
 		double y = pow((i + 0.5) / n, 3), r = 0.005 * (1 - y);
 
-		sum += pipe_velocity(&pipe, r) * 2 * pi * r * 0.005 * 3 *
+		sum += pipe_velocity(&pipe, r) * 2 * M_PI * r * 0.005 * 3 *
 		       pow((i + 0.5) / n, 2) / n;
 	}
 	near(sum / 1e-3, 1, 1e-8, "the profile carries the flow");
@@ -133,7 +132,8 @@ static void test_pipe(enum pipe_profile profile, double top)
 			fabs(pipe_flow_share(&pipe, r) / pipe_flow_share(&pipe, 0.00495) -
 				u));
 		worst = fmax(worst,
-			fabs(slope * 1e-3 / (2 * pi * r * pipe_velocity(&pipe, r)) - 1) *
+			fabs(slope * 1e-3 / (2 * M_PI * r * pipe_velocity(&pipe, r)) -
+				1) *
 				1e-6);
 	}
 	ok(worst < 1e-12, "positions follow the flow (%.1g)", worst);

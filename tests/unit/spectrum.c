@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
-
 static struct spectrum *make(
 	int nx, int ny, enum spectrum_kind kind, double cx, double cy)
 {
@@ -37,7 +35,7 @@ static double correlation(const struct spectrum *s, int nx, int ny, int jx, int 
 
 			all += spectrum_power(s, kx, ky);
 			sum += spectrum_power(s, kx, ky) *
-			       cos(2 * PI *
+			       cos(2 * M_PI *
 				       ((double)kx * jx / nx + (double)ky * jy / ny));
 		}
 	return sum + 1 - all;
@@ -106,7 +104,7 @@ static double complex coefficient(const double *z, int n, int kx, int ky)
 
 	for (int iy = 0; iy < n; iy++)
 		for (int ix = 0; ix < n; ix++) {
-			double phase = 2 * PI * (kx * (ix + 0.5) + ky * (iy + 0.5)) / n;
+			double phase = 2 * M_PI * (kx * (ix + 0.5) + ky * (iy + 0.5)) / n;
 
 			sum += z[iy * n + ix] * (cos(phase) - sin(phase) * I);
 		}

@@ -8,8 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
-
 static struct stress_par plain(int nx, int ny, double mu)
 {
 	struct stress_par par = { .nx = nx,
@@ -255,7 +253,7 @@ static void test_periodic(void)
 {
 	enum { SIDE = 32 };
 	struct stress_par par = plain(SIDE, SIDE, 0);
-	double p[SIDE * SIDE], t[6 * SIDE * SIDE], q = 2 * PI * 3 / SIDE, z = 2,
+	double p[SIDE * SIDE], t[6 * SIDE * SIDE], q = 2 * M_PI * 3 / SIDE, z = 2,
 						   error = 0;
 	struct stress *s;
 

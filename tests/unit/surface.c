@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
-
 /* rms of cos(q (i + 1/2)) over the inner samples. */
 static double rms_cosine(int n, int margin, double q)
 {
@@ -22,7 +20,7 @@ static double rms_cosine(int n, int margin, double q)
 static void check_sine(void)
 {
 	enum { NX = 64, NY = 48 };
-	const double a = 2e-6, d = 1e-6, q = 2 * PI / 16;
+	const double a = 2e-6, d = 1e-6, q = 2 * M_PI / 16;
 	struct surface_parameters p;
 	double z[NX * NY], k;
 
