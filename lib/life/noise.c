@@ -1,6 +1,6 @@
 /* noise.c - see noise.h */
 #include "life/noise.h"
-#include "life/sort.h"
+#include "num/select.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,10 +32,10 @@ void noise_free(struct noise *n)
 static double spread(struct noise *n, int count)
 {
 	double median, sum = 0;
-	int middle[2] = { (count - 1) / 2, count / 2 };
+	size_t middle[2] = { (size_t)(count - 1) / 2, (size_t)count / 2 };
 
 	memcpy(n->sorted, n->residual, (size_t)count * sizeof *n->sorted);
-	sort_at(n->sorted, count, middle, 2);
+	select_ranks(n->sorted, (size_t)count, middle, 2);
 	median = 0.5 * (n->sorted[middle[0]] + n->sorted[middle[1]]);
 	for (int i = 0; i < count; i++)
 		sum += n->residual[i] * n->residual[i];

@@ -5,7 +5,7 @@
 #include "life/grey.h"
 #include "life/history.h"
 #include "life/metrics.h"
-#include "life/sort.h"
+#include "num/select.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -171,10 +171,10 @@ static int draw_lives(struct predict *p)
 static void sort_levels(double *life, int draws, const double *level, int n)
 {
 	for (int k = 0; k < n; k++) {
-		int i = (int)(level[k] * (draws - 1));
-		int pair[2] = { i, i + 1 };
+		size_t n_draws = (size_t)draws, i = (size_t)(level[k] * (draws - 1));
+		size_t pair[2] = { i, i + 1 };
 
-		sort_at(life, draws, pair, i + 1 < draws ? 2 : 1);
+		select_ranks(life, n_draws, pair, i + 1 < n_draws ? 2 : 1);
 	}
 }
 

@@ -1,40 +1,18 @@
 /* robust.c - see robust.h */
 #include "signal/robust.h"
+#include "num/select.h"
 #include <math.h>
 
-/* Hoare's selection. */
 double robust_quantile(double *x, size_t n, double share)
 {
-	size_t lo = 0, hi = n ? n - 1 : 0, middle = (size_t)(share * (double)n);
+	size_t rank = (size_t)(share * (double)n);
 
 	if (n == 0)
 		return 0;
-	if (middle > hi)
-		middle = hi;
-	while (lo < hi) {
-		double pivot = x[lo + (hi - lo) / 2];
-		size_t i = lo, k = hi;
-
-		for (;;) {
-			double swap;
-
-			while (x[i] < pivot)
-				i++;
-			while (x[k] > pivot)
-				k--;
-			if (i >= k)
-				break;
-			swap = x[i];
-			x[i++] = x[k];
-			x[k--] = swap;
-		}
-		/* x[lo .. k] <= pivot <= x[k + 1 .. hi] */
-		if (middle <= k)
-			hi = k;
-		else
-			lo = k + 1;
-	}
-	return x[middle];
+	if (rank > n - 1)
+		rank = n - 1;
+	select_ranks(x, n, &rank, 1);
+	return x[rank];
 }
 
 double robust_median(double *x, size_t n)

@@ -6,7 +6,6 @@
 #include "life/history.h"
 #include "life/noise.h"
 #include "life/runin.h"
-#include "life/sort.h"
 #include "tap.h"
 #include <stdlib.h>
 
@@ -111,44 +110,6 @@ static void test_runin(void)
 	ok(risen == 0, "what only rises has no run-in");
 	ok(bumped > 0 && last > 55 && last < 100, "a bump about row 40 ends by row %d",
 		last);
-}
-
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
-/* Against qsort(), with ties and infinities. */
-static void test_sort(void)
-{
-	struct draw *d = draw_new(8, 0, RNG_NOISE);
-	int good = 1;
-
-	for (int run = 0; run < 2000; run++) {
-		int n = 1 + (int)(200 * draw_uniform(d)), rank[3];
-		double v[201], sorted[201];
-
-		for (int i = 0; i < n; i++) {
-			v[i] = run % 3 ? draw_normal(d) : floor(5 * draw_uniform(d));
-			if (run % 5 == 0 && draw_uniform(d) < 0.3)
-				v[i] = INFINITY;
-			sorted[i] = v[i];
-		}
-		qsort(sorted, (size_t)n, sizeof *sorted, ascending);
-		rank[0] = n / 20;
-		rank[1] = n / 2;
-		rank[2] = n - 1;
-		sort_at(v, n, rank, 3);
-		for (int k = 0; k < 3; k++)
-			good &= v[rank[k]] == sorted[rank[k]];
-		qsort(v, (size_t)n, sizeof *v, ascending);
-		for (int i = 0; i < n; i++)
-			good &= v[i] == sorted[i];
-	}
-	ok(good, "ranks as in a sorted list, and nothing lost");
-	draw_free(d);
 }
 
 enum { DRAWS = 2000 };
@@ -273,7 +234,6 @@ int main(void)
 	test_history();
 	test_orders();
 	test_runin();
-	test_sort();
 	test_damage();
 	test_fleet();
 	test_adaptive();

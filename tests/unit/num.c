@@ -4,6 +4,7 @@
 #include "num/pool.h"
 #include "num/rng.h"
 #include "num/room.h"
+#include "num/select.h"
 #include "tap.h"
 #include <gsl/gsl_randist.h>
 #include <stdint.h>
@@ -200,6 +201,43 @@ static void test_room(void)
 	free(x);
 }
 
+static int ascending(const void *a, const void *b)
+{
+	double x = *(const double *)a, y = *(const double *)b;
+
+	return (x > y) - (x < y);
+}
+
+/* Against qsort(), with ties and infinities. */
+static void test_select(void)
+{
+	gsl_rng *rng = rng_new(8, 0, RNG_NOISE);
+	int good = 1;
+
+	for (int run = 0; run < 2000; run++) {
+		int n = 1 + (int)(200 * gsl_rng_uniform(rng));
+		size_t rank[3] = { (size_t)n / 20, (size_t)n / 2, (size_t)n - 1 };
+		double v[201], sorted[201];
+
+		for (int i = 0; i < n; i++) {
+			v[i] = run % 3 ? gsl_ran_ugaussian(rng)
+				       : floor(5 * gsl_rng_uniform(rng));
+			if (run % 5 == 0 && gsl_rng_uniform(rng) < 0.3)
+				v[i] = INFINITY;
+			sorted[i] = v[i];
+		}
+		qsort(sorted, (size_t)n, sizeof *sorted, ascending);
+		select_ranks(v, (size_t)n, rank, 3);
+		for (int k = 0; k < 3; k++)
+			good &= v[rank[k]] == sorted[rank[k]];
+		qsort(v, (size_t)n, sizeof *v, ascending);
+		for (int i = 0; i < n; i++)
+			good &= v[i] == sorted[i];
+	}
+	ok(good, "ranks as in a sorted list, and nothing lost");
+	gsl_rng_free(rng);
+}
+
 int main(void)
 {
 	test_room();
@@ -214,5 +252,6 @@ int main(void)
 	ok(fft_good_size(1) == 1 && fft_good_size(11) == 12 &&
 			fft_good_size(121) == 125 && fft_good_size(2047) == 2048,
 		"good sizes have the factors 2, 3, 5 and 7 only");
+	test_select();
 	return tap_done();
 }
