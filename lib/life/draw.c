@@ -1,26 +1,19 @@
 /* draw.c - see draw.h */
 #include "life/draw.h"
+#include "num/ziggurat.h"
 #include <math.h>
 #include <stdlib.h>
-
-enum { LAYERS = 128, HALF = LAYERS / 2 };
-
-/* Right end of the base layer and the common area of the layers. */
-static const double TAIL = 3.442619855899;
-static const double AREA = 9.91256303526217e-3;
 
 struct draw {
 	uint32_t counter[4], key[2];
 	uint32_t word[4];
-	int left;                /* words not yet used */
-	double edge[LAYERS + 1]; /* abscissa where each layer ends */
-	double share[LAYERS];    /* of a layer that lies under the curve all along */
+	int left; /* words not yet used */
+	struct ziggurat layers;
 };
 
 struct draw *draw_new(uint64_t seed, uint32_t realisation, enum rng_purpose purpose)
 {
 	struct draw *d = calloc(1, sizeof *d);
-	double f = exp(-0.5 * TAIL * TAIL);
 
 	if (!d)
 		return NULL;
@@ -28,14 +21,7 @@ struct draw *draw_new(uint64_t seed, uint32_t realisation, enum rng_purpose purp
 	d->key[1] = (uint32_t)(seed >> 32);
 	d->counter[2] = realisation;
 	d->counter[3] = purpose;
-	d->edge[0] = AREA / f;
-	d->edge[1] = TAIL;
-	for (int i = 2; i < LAYERS; i++) {
-		d->edge[i] = sqrt(-2 * log(AREA / d->edge[i - 1] + f));
-		f = exp(-0.5 * d->edge[i] * d->edge[i]);
-	}
-	for (int i = 0; i < LAYERS; i++)
-		d->share[i] = d->edge[i + 1] / d->edge[i];
+	ziggurat_make(&d->layers);
 	return d;
 }
 
@@ -62,38 +48,34 @@ double draw_uniform(struct draw *d)
 	return ((double)((high << 32 | next_word(d)) >> 12) + 0.5) * 0x1p-52;
 }
 
-/* Beyond the base layer: Marsaglia's exponential wedge. */
 static double draw_tail(struct draw *d)
 {
-	double x, y;
+	double x;
 
 	do {
-		x = -log(draw_uniform(d)) / TAIL;
-		y = -log(draw_uniform(d));
-	} while (2 * y < x * x);
-	return TAIL + x;
+		double u = draw_uniform(d);
+
+		x = ziggurat_tail(u, draw_uniform(d));
+	} while (x == 0);
+	return x;
 }
 
 /* Where the first word does not settle it. */
-static double draw_rest(struct draw *d, unsigned i, double x)
+static double draw_rest(struct draw *d, unsigned layer, double x)
 {
-	double f0 = exp(-0.5 * (d->edge[i] * d->edge[i] - x * x));
-	double f1 = exp(-0.5 * (d->edge[i + 1] * d->edge[i + 1] - x * x));
-
-	if (i == 0)
+	if (layer == 0)
 		return copysign(draw_tail(d), x);
-	return f1 + draw_uniform(d) * (f0 - f1) < 1 ? x : draw_normal(d);
+	return ziggurat_under(&d->layers, layer, x, draw_uniform(d)) ? x : draw_normal(d);
 }
 
 /* Seven bits choose the layer, the others are the signed place in it. */
 static inline double normal(struct draw *d)
 {
-	uint32_t w = next_word(d);
-	unsigned i = w & (LAYERS - 1);
-	double u = ((double)(int32_t)(w & ~(uint32_t)(LAYERS - 1)) + HALF) * 0x1p-31;
-	double x = u * d->edge[i];
+	uint32_t w = next_word(d), layer = w % ZIGGURAT_LAYERS;
+	double u = ((double)(int32_t)(w - layer) + 0.5 * ZIGGURAT_LAYERS) * 0x1p-31;
+	double x = u * d->layers.edge[layer];
 
-	return fabs(u) < d->share[i] ? x : draw_rest(d, i, x);
+	return fabs(u) < d->layers.inner[layer] ? x : draw_rest(d, layer, x);
 }
 
 double draw_normal(struct draw *d)

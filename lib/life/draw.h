@@ -1,8 +1,9 @@
 /* draw.h - many normal deviates at a time from one Philox stream
  *
- * Stream (seed, realisation, purpose) as in num/rng.h, by the ziggurat of 128 layers
- * (Marsaglia, Tsang, Journal of Statistical Software 5 (2000) 8), one 32-bit word each
- * with seven bits for the layer and the rest for the place in it.
+ * Stream (seed, realisation, purpose) as in num/rng.h, by the ziggurat (num/ziggurat.h),
+ * one 32-bit word each with seven bits for the layer and the rest for the place in it.
+ * Numbers come one after another, as a filter draws them; num/normals.h has them by
+ * address.
  */
 #ifndef LIFE_DRAW_H
 #define LIFE_DRAW_H

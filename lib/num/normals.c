@@ -1,21 +1,18 @@
 #include "num/normals.h"
+#include "num/ziggurat.h"
 #include <math.h>
 #include <stdlib.h>
 
-/* Layers of equal area; the lowest holds the tail beyond TAIL. */
-enum { LAYERS = 128, EXTRA_SHIFT = 48 };
-static const double tail_start = 3.442619855899, layer_area = 9.91256303526217e-3;
+enum { EXTRA_SHIFT = 48 };
 
 struct normals {
-	double edge[LAYERS + 1]; /* right edges, falling to 0 */
-	double inner[LAYERS];    /* edge above over edge */
+	struct ziggurat layers;
 	uint32_t key[2], realisation, purpose;
 };
 
 struct normals *normals_new(uint64_t seed, uint32_t realisation, enum rng_purpose purpose)
 {
 	struct normals *n = malloc(sizeof *n);
-	double f = exp(-0.5 * tail_start * tail_start);
 
 	if (!n)
 		return NULL;
@@ -23,15 +20,7 @@ struct normals *normals_new(uint64_t seed, uint32_t realisation, enum rng_purpos
 	n->key[1] = (uint32_t)(seed >> 32);
 	n->realisation = realisation;
 	n->purpose = (uint32_t)purpose;
-	n->edge[0] = layer_area / f;
-	n->edge[1] = tail_start;
-	for (int i = 2; i < LAYERS; i++) {
-		n->edge[i] = sqrt(-2 * log(layer_area / n->edge[i - 1] + f));
-		f = exp(-0.5 * n->edge[i] * n->edge[i]);
-	}
-	n->edge[LAYERS] = 0;
-	for (int i = 0; i < LAYERS; i++)
-		n->inner[i] = n->edge[i + 1] / n->edge[i];
+	ziggurat_make(&n->layers);
 	return n;
 }
 
@@ -57,19 +46,17 @@ static double uniform(uint64_t word)
 	return ((double)(word >> 12) + 0.5) * 0x1p-52;
 }
 
-/* Beyond the start of the tail; Marsaglia's exponential rejection. */
 static double draw_tail(const struct normals *n, uint64_t place)
 {
 	uint64_t word[2];
-	double x, y;
+	double x;
 
 	do {
 		draw(n, place, word);
-		x = -log(uniform(word[0])) / tail_start;
-		y = -log(uniform(word[1]));
+		x = ziggurat_tail(uniform(word[0]), uniform(word[1]));
 		place += (uint64_t)2 << EXTRA_SHIFT;
-	} while (2 * y < x * x);
-	return tail_start + x;
+	} while (x == 0);
+	return x;
 }
 
 /* Goes on where the first word fell outside the inner box of its layer; which = 0, 1. */
@@ -79,19 +66,16 @@ static double settle(
 	uint64_t place = index + ((1 + which) << EXTRA_SHIFT), next[2];
 
 	for (;;) {
-		size_t layer = word % LAYERS;
+		size_t layer = word % ZIGGURAT_LAYERS;
 		double u = (double)((int64_t)word >> 11) * 0x1p-52,
-		       x = u * n->edge[layer];
-		double outer, inner;
+		       x = u * n->layers.edge[layer];
 
-		if (fabs(u) < n->inner[layer])
+		if (fabs(u) < n->layers.inner[layer])
 			return x;
 		if (layer == 0)
 			return copysign(draw_tail(n, place), u);
 		draw(n, place, next);
-		outer = exp(-0.5 * (n->edge[layer] * n->edge[layer] - x * x));
-		inner = exp(-0.5 * (n->edge[layer + 1] * n->edge[layer + 1] - x * x));
-		if (inner + uniform(next[1]) * (outer - inner) < 1)
+		if (ziggurat_under(&n->layers, layer, x, uniform(next[1])))
 			return x;
 		word = next[0];
 		place += (uint64_t)2 << EXTRA_SHIFT;
@@ -102,11 +86,11 @@ static double settle(
 static inline double number(
 	const struct normals *n, uint64_t word, uint64_t index, uint64_t which)
 {
-	size_t layer = word % LAYERS;
+	size_t layer = word % ZIGGURAT_LAYERS;
 	double u = (double)((int64_t)word >> 11) * 0x1p-52;
 
-	return fabs(u) < n->inner[layer] ? u * n->edge[layer]
-					 : settle(n, word, index, which);
+	return fabs(u) < n->layers.inner[layer] ? u * n->layers.edge[layer]
+						: settle(n, word, index, which);
 }
 
 void normals_pair(const struct normals *n, uint64_t index, double pair[2])

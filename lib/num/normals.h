@@ -1,7 +1,5 @@
-/* normals.h - standard normal numbers by address, in half the time of philox_normal2()
- *
- * The ziggurat of Marsaglia and Tsang (J. Stat. Softw. 5(8), 2000) as repaired by Doornik
- * (2005): layer and place within it come from different bits of a Philox word.
+/* normals.h - standard normal numbers by address, in half the time of philox_normal2():
+ * the ziggurat (ziggurat.h), layer and place from different bits of 64-bit Philox words
  */
 #ifndef NUM_NORMALS_H
 #define NUM_NORMALS_H

@@ -31,8 +31,9 @@ enum rng_purpose {
 	RNG_PREDICT = 10   /* long-term prediction paths */
 };
 
-/* Uniform in (0, 1) and standard normal (Box-Muller) by address: for index i of
- * stream (seed, realisation, purpose), in any order. */
+/* Uniform in (0, 1) and standard normal by address: for index i of stream (seed,
+ * realisation, purpose), in any order.  Box-Muller, since single numbers of many streams
+ * would each need the tables of normals.h. */
 double philox_uniform(
 	uint64_t seed, uint32_t realisation, enum rng_purpose purpose, uint64_t index);
 void philox_normal2(uint64_t seed, uint32_t realisation, enum rng_purpose purpose,
