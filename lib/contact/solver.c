@@ -225,7 +225,7 @@ static void sum_free(void *context, size_t begin, size_t end, struct sweep *s)
 	*s = t;
 }
 
-void contact_approach(struct contact *c)
+static void find_approach(struct contact *c)
 {
 	struct sweep s;
 
@@ -240,7 +240,7 @@ void contact_gap(struct contact *c)
 {
 	contact_multiply(c, c->p, c->gap);
 	contact_sweep(c, subtract_height);
-	contact_approach(c);
+	find_approach(c);
 }
 
 static void certify(void *context, size_t begin, size_t end, struct sweep *s)

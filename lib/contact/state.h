@@ -92,10 +92,9 @@ struct sweep contact_sweep(struct contact *c,
 	void (*pass)(void *context, size_t begin, size_t end, struct sweep *s));
 /* y = K x, counted; y is not x.  Returns the sum of x y. */
 double contact_multiply(struct contact *c, const double *x, double *y);
-/* Gap of the pressure from scratch, and the approach. */
+/* Gap of the pressure from scratch, and the approach: given, or the mean gap of the free
+ * cells. */
 void contact_gap(struct contact *c);
-/* The approach that suits the gap: given, or the mean gap of the free cells. */
-void contact_approach(struct contact *c);
 /* The certificate from the sums of certify_cell() over all cells. */
 double contact_certificate(struct contact *c, const struct sweep *s);
 /* Makes those sums. */

@@ -62,11 +62,6 @@ void filter_free(struct filter *f)
 	free(f);
 }
 
-size_t filter_size(const struct filter *f)
-{
-	return f->par.particles;
-}
-
 int filter_depth(const struct filter *f)
 {
 	return f->filled;

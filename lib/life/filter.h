@@ -41,7 +41,6 @@ void filter_free(struct filter *f);
  * within +- spread of them, and equal weights. */
 void filter_start(struct filter *f, const double *past, int count, double spread);
 
-size_t filter_size(const struct filter *f);
 /* States remembered so far, <= depth. */
 int filter_depth(const struct filter *f);
 

@@ -65,13 +65,3 @@ int history_get(struct history *h, const double **t, const double **x)
 	h->x[h->n] = h->sum_x / (double)h->held;
 	return h->n + 1;
 }
-
-long history_rows(const struct history *h)
-{
-	return h->rows;
-}
-
-long history_width(const struct history *h)
-{
-	return h->width;
-}

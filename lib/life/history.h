@@ -18,8 +18,5 @@ void history_add(struct history *h, double t, double x);
  * as a group of its own.  Returns their number; the arrays stay valid until the next
  * row. */
 int history_get(struct history *h, const double **t, const double **x);
-long history_rows(const struct history *h);
-/* Rows in each whole group. */
-long history_width(const struct history *h);
 
 #endif

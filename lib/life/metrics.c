@@ -61,7 +61,8 @@ double metric_crps(
 	return score;
 }
 
-double metric_mass(
+/* Share of the weight on samples within [lower, upper], in any order. */
+static double mass_within(
 	const double *sample, const double *weight, size_t n, double lower, double upper)
 {
 	double total = 0, inside = 0;
@@ -74,13 +75,6 @@ double metric_mass(
 			inside += w;
 	}
 	return inside / total;
-}
-
-double metric_pinball(double level, double quantile, double truth)
-{
-	double d = truth - quantile;
-
-	return d >= 0 ? level * d : (level - 1) * d;
 }
 
 struct metrics *metrics_new(const struct metrics_par *par)
@@ -158,14 +152,14 @@ int metrics_add(struct metrics *m, double t, double point, double lower, double 
 	}
 	r.error = point - truth;
 	r.accuracy = 1 - fabs(r.error) / truth;
-	r.mass = metric_mass(sample, weight, n, truth * (1 - m->par.alpha),
+	r.mass = mass_within(sample, weight, n, truth * (1 - m->par.alpha),
 		truth * (1 + m->par.alpha));
 	r.inside = r.mass >= m->par.beta;
 	r.covered = lower <= truth && truth <= upper;
 	r.crps = crps_unsorted(m, sample, weight, n, truth);
 	if (isnan(r.crps))
 		return -1;
-	mass_horizon = metric_mass(sample, weight, n, truth - wide, truth + wide);
+	mass_horizon = mass_within(sample, weight, n, truth - wide, truth + wide);
 	if (mass_horizon < m->par.beta)
 		m->since = NAN;
 	else if (isnan(m->since))

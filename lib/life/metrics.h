@@ -31,14 +31,6 @@ double metric_quantile(const double *sorted, size_t n, double level);
 double metric_crps(
 	const double *sorted, const double *weight, size_t n, double truth, double limit);
 
-/* Share of the weight on samples within [lower, upper], in any order. */
-double metric_mass(
-	const double *sample, const double *weight, size_t n, double lower, double upper);
-
-/* Quantile (pinball) loss of one quantile; twice its mean over levels tends to the CRPS.
- */
-double metric_pinball(double level, double quantile, double truth);
-
 struct metrics_par {
 	double eol;   /* true end of life, on the axis of t */
 	double alpha; /* half-width of the accuracy cone, share: 0.2 */

@@ -402,36 +402,6 @@ long partition_large(struct partition *p, double probability, int cumulative)
 	return found;
 }
 
-long partition_steps(const struct partition *p)
-{
-	return p->steps;
-}
-
-/* The caller's class. */
-static const struct class *find_class(const struct partition *p, int class)
-{
-	int place = 0;
-
-	while (p->order[place] != class)
-		place++;
-	return &p->class[place];
-}
-
-size_t partition_realisations(const struct partition *p, int class)
-{
-	return find_class(p, class)->nrealisations;
-}
-
-double partition_share(const struct partition *p, int class)
-{
-	return find_class(p, class)->area;
-}
-
-double partition_zone(const struct partition *p)
-{
-	return p->zone;
-}
-
 double partition_load(const struct partition *p)
 {
 	double load =

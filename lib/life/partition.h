@@ -89,13 +89,8 @@ void partition_replicate(
  * of memory. */
 long partition_large(struct partition *p, double probability, int cumulative);
 
-/* Of the ensembles, for reports. */
-long partition_steps(const struct partition *p);
-size_t partition_realisations(const struct partition *p, int class);
-double partition_share(const struct partition *p, int class); /* own area, m2 */
-double partition_zone(const struct partition *p);             /* linear zone, m2 */
-double partition_load(
-	const struct partition *p); /* integral of pressure, N; NAN without */
+/* Integral of the pressure over the component, N; NAN without pressures. */
+double partition_load(const struct partition *p);
 
 /* Mean of y over p uniform in [p0, p1], y a power of p through (p0, y0), (p1, y1);
  * linear where one of y0, y1 is 0. */

@@ -20,8 +20,4 @@ int pool_threads(const struct pool *pool); /* 1 for NULL */
 void pool_run(struct pool *pool, size_t njobs,
 	void (*job)(void *context, size_t i, int worker), void *context);
 
-/* Sum over i in [0, n) of term(context, i), by chunks of fixed size in fixed order. */
-double pool_sum(struct pool *pool, size_t n,
-	double (*chunk)(void *context, size_t begin, size_t end), void *context);
-
 #endif

@@ -14,22 +14,6 @@ struct source {
 	double begin, length, amplitude, gain, delay;
 };
 
-struct delaydata_par delaydata_default(void)
-{
-	return (struct delaydata_par){
-		.points = 500,
-		.sources = 3,
-		.span = 4 * M_PI,
-		.section = DELAYDATA_LENGTH,
-		.length = { M_PI / 2, 3 * M_PI / 2 },
-		.amplitude = { 0, 1 },
-		.gain = { 0.909, 0.909 },
-		.unit = 1,
-		.order = DELAYDATA_DRAWN,
-		.seed = 1,
-	};
-}
-
 static double between(const double range[2], double u)
 {
 	return range[0] + (range[1] - range[0]) * u;

@@ -4,8 +4,9 @@
  * The sine sections with random amplitude and phase are superimposed to be the first
  * aliasing signal.  Modify the amplitude and phase of each sine sections and add them
  * together to get the second" (3.3.1), 500 points each, three sources.  That leaves
- * much open; each choice is a member here, with delaydata_default() as one reading.  Only
- * that the delays are uniform in (0, 1) follows from the levels of the printed scores.
+ * much open; each choice is a member here, and the defaults of delaynet(1) are one
+ * reading. Only that the delays are uniform in (0, 1) follows from the levels of the
+ * printed scores.
  *
  * A source is s(x) = A w((x - x0)), with x running over [0, span); the second channel is
  * g s(x - unit * delay), delay uniform in (0, 1).  The labels are the delays.
@@ -43,8 +44,6 @@ struct delaydata_par {
 	double noise; /* standard deviation of white noise on both channels */
 	uint64_t seed;
 };
-
-struct delaydata_par delaydata_default(void);
 
 /* Sample i of the set: x[2 * points] (first channel, then second) and delay[sources].
  * Stream (seed, i, RNG_NETWORK); the noise has draws of its own, so that a noisy set is

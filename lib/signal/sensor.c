@@ -164,11 +164,6 @@ double sensor_diameter_error(
 	return d / 3 * sqrt(ra * ra + rt * rt + 2 * correlation * ra * rt);
 }
 
-double sensor_kappa_of(double voltage, double diameter, double velocity)
-{
-	return voltage / (velocity * diameter * diameter * diameter);
-}
-
 /* max |l'/l^3| = max |d(1/l^2)/dx| / 2, times length over (1/l0^2 - 1/lf^2). */
 static double peak_of_path(enum pulse_shape shape)
 {

@@ -18,7 +18,7 @@
  *
  * Times of the pulse functions are in any one unit; everything else is SI.
  *
- *	double k = sensor_kappa_of(1.0, 100e-6, 12.73);   // 1 V for 100 um at 12.73 m/s
+ *	double k = 1.0 / (12.73 * pow(100e-6, 3));   // 1 V for 100 um at 12.73 m/s
  *	size_t n;
  *	long first = pulse_support(PULSE_SINE, 512.3, 100.0, &n);
  *	pulse_sample(PULSE_SINE, 512.3, 100.0, first, n, p, NULL, NULL);
@@ -57,8 +57,6 @@ double sensor_diameter(double kappa, double velocity, double voltage);
  * transit time and their correlation: d = (voltage time / (kappa spacing))^(1/3). */
 double sensor_diameter_error(
 	double d, double voltage_error, double time_error, double correlation);
-/* kappa of a sensor that gives voltage for this diameter and velocity, V s/m4. */
-double sensor_kappa_of(double voltage, double diameter, double velocity);
 
 /* A sensor by its coils.  The factor (mu_r - 1) / mu_r of (3-1) is that of a flat
  * particle across the field. */

@@ -105,17 +105,34 @@ static void check_levels(void)
 	near(draw.ordered, l.draw, 4 * draw.ordered_se, "random, drawn");
 }
 
+/* The scene of section 3.3. */
+static struct delaydata_par plain(void)
+{
+	return (struct delaydata_par){
+		.points = 500,
+		.sources = 3,
+		.span = 4 * M_PI,
+		.section = DELAYDATA_LENGTH,
+		.length = { M_PI / 2, 3 * M_PI / 2 },
+		.amplitude = { 0, 1 },
+		.gain = { 0.909, 0.909 },
+		.unit = 1,
+		.order = DELAYDATA_DRAWN,
+		.seed = 1,
+	};
+}
+
 /* One source seen whole: its second channel is the first, moved by the delay. */
 static void check_shift(void)
 {
-	struct delaydata_par par = delaydata_default();
+	struct delaydata_par par = plain();
 	network_real x[2 * 1000], delay[1];
 	double worst = 0;
 	int moved = 0;
 
 	par.points = 1000;
 	par.sources = 1;
-	par.length[0] = par.length[1] = 3.14159265358979;
+	par.length[0] = par.length[1] = M_PI;
 	par.unit = par.span / 10;
 	for (uint32_t i = 0; i < 20; i++) {
 		double c[2] = { 0 }, m[2] = { 0 };
@@ -140,7 +157,7 @@ static void check_shift(void)
 
 static void check_orders_of_labels(void)
 {
-	struct delaydata_par par = delaydata_default();
+	struct delaydata_par par = plain();
 	network_real x[1000], y[1000], drawn[3], sorted[3], arrival[3];
 	int same = 1, rising = 1, differs = 0;
 
@@ -166,7 +183,7 @@ static void check_orders_of_labels(void)
 
 static void check_noise(void)
 {
-	struct delaydata_par par = delaydata_default();
+	struct delaydata_par par = plain();
 	network_real x[1000], y[1000], delay[3];
 	double sum = 0, n = 0;
 

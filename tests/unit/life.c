@@ -52,7 +52,7 @@ static void test_history(void)
 	ok(n <= HISTORY_MAX && n >= HISTORY_MAX / 4, "a long one in %d groups", n);
 	for (int k = 0; k < n; k++)
 		sum += fabs(x[k] - 2 * t[k]);
-	ok(sum < 1e-6 && t[0] == 0.5 * (double)(history_width(h) - 1), "of equal means");
+	ok(sum < 1e-6 && t[0] == 0.5 * (t[1] - t[0] - 1), "of equal means");
 	history_free(h);
 }
 

@@ -150,7 +150,6 @@ int main(void)
 		test_equation(shape);
 	}
 	test_diameter_error();
-	near(sensor_kappa_of(1, 100e-6, 12.5), 8e10, 1e-4, "calibration by one particle");
 	test_pipe(PIPE_PLUG, 1);
 	test_pipe(PIPE_LAMINAR, 2);
 	test_pipe(PIPE_TURBULENT, 60.0 / 49);
