@@ -119,6 +119,28 @@ near "the range leaves orders out and counts them" \
 	"$(column orders all.stats)" 0
 ok "some" test "$(column orders_skipped range.stats)" -gt 100
 
+# The error of the best order can never fall by all of itself.
+for g in 0 0.3 1; do
+	aopf --hysteresis $g --stats changes.stats rise.tsv >/dev/null
+	column order_changes changes.stats
+done >changes
+is "a hysteresis of 1 keeps the first order" "$(sed -n 3p changes)" 0
+rising "one of 0.3 halves the changes at least" 1 "$(sed -n 2p changes)" $(($(sed -n 1p changes) / 2))
+
+# A peak at 8 and a step at 12: life ends with the K-th value in a row beyond the threshold,
+# and is predicted for the rows before.
+awk 'BEGIN { print "t\ty"; for (t = 0; t < 20; t++) print t "\t" (t == 8 || t >= 12 ? 3 : 1) }' >step.tsv
+for k in 1 2 3 4; do
+	aopf -y 2 -d up --persist $k --stats step.stats step.tsv >/dev/null
+	column lives step.stats
+done >lives
+is "lives foretold until 1, 2, 3, 4 values persist" "$(tr '\n' ' ' <lives)" "8 13 14 15 "
+
+# Ten times the 20 steps so far: a line that ends 199 ahead is foretold, one at 201 is not.
+awk 'BEGIN { print "t\ty"; for (t = 0; t <= 20; t++) print t "\t" t / 100 }' >line.tsv
+near "an end within the horizon" "$(aopf -y 2.19 -d up line.tsv | column rul_q50 /dev/stdin | tail -1)" 199 0.5
+is "an end beyond" "$(aopf -y 2.21 -d up line.tsv | column rul_q50 /dev/stdin | tail -1)" inf
+
 # Life: noise-free exponential 1.5 exp(0.01 t) reaches 2.8 at ln(2.8 / 1.5) / 0.01
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 40; t++) printf "%d\t%.15g\n", t, 1.5 * exp(0.01 * t) }' >exp.tsv
 aopf -y 2.8 exp.tsv | column rul_q50 /dev/stdin | tail -1 >r

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 
 /* Realisations 7 and 2, out of order; diameter, volume and aspect as easy numbers. */
-static const struct shed particles[] = { { 7, 1, 10, 1, 1.5 }, { 2, 3, 20, 2, 2.5 },
-	{ 7, 3, 30, 4, 0.5 }, { 7, 3, 40, 8, 3.5 }, { 2, 1, 50, 16, 1.5 } };
+static const struct shed particles[] = { { 7, 1, 10, 1, 1.5, 0 }, { 2, 3, 20, 2, 2.5, 0 },
+	{ 7, 3, 30, 4, 0.5, 0 }, { 7, 3, 40, 8, 3.5, 0 }, { 2, 1, 50, 16, 1.5, 0 } };
 
 static struct ensemble *make(const struct ensemble_par *par, long mark)
 {
