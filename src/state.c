@@ -72,7 +72,7 @@ static double add_debris(struct state *s, double diameter)
 
 	if (s->verdict_column >= 0 && s->sources_column >= 0 &&
 		!strcmp(table_text(t, s->verdict_column), "unresolved"))
-		many = table_positive(t, s->sources_column);
+		many = (double)table_whole(t, s->sources_column, 0, 1e15);
 	return s->debris += many * sphere * diameter * diameter * diameter;
 }
 
