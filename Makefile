@@ -30,7 +30,7 @@ BIN = bin
 PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records
 
 roughgen_PARTS = generated measured raw roughness
-roughgen_MODULES = num/philox num/fft num/pool contact/heights contact/rough contact/spectrum contact/surface
+roughgen_MODULES = num/philox num/fft num/pool contact/areal contact/heights contact/rough contact/spectrum contact/surface
 roughgen_LIBS = fftw
 bemcontact_PARTS = press raw
 bemcontact_MODULES = contact/kernel contact/solver contact/bccg contact/grids contact/mlms contact/pk num/convolve num/fft num/pool num/sweep

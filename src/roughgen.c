@@ -1,4 +1,5 @@
 /* roughgen - rough surfaces, generated or measured, and their areal parameters */
+#include "contact/areal.h"
 #include "contact/surface.h"
 #include "generated.h"
 #include "measured.h"

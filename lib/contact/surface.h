@@ -1,12 +1,11 @@
-/* surface.h - heights on a grid: preparing measured ones, shape, areal parameters
+/* surface.h - heights on a grid: preparing measured ones, crowns, mean heights
  *
  * Heights z[iy * nx + ix], in metres, stand for cells of dx by dy; nothing is assumed
  * to be periodic.  Missing samples are nan.  Functions that need memory return 0
  * when there is none, else 1.
  *
  *	surface_level(nx, ny, z);
- *	surface_measure(nx, ny, dx, dy, z, &par);
- *	printf("%g %g\n", par.sq, par.sdq);
+ *	printf("%g\n", surface_sq(nx, ny, z));
  */
 #ifndef CONTACT_SURFACE_H
 #define CONTACT_SURFACE_H
@@ -43,23 +42,5 @@ void surface_crown(int nx, int ny, double dx, double dy, double drop, double *z)
 double surface_mean(int nx, int ny, const double *z);
 double surface_sa(int nx, int ny, const double *z); /* mean |z - mean| */
 double surface_sq(int nx, int ny, const double *z); /* rms of z - mean */
-
-/* Parameters of ISO 25178-2, heights taken from their mean; nan where a surface has
- * too few points for one. */
-struct surface_parameters {
-	double sa, sq, ssk, sku, sp, sv, sz;
-	/* Root mean square gradient; what stands for the derivatives differs: */
-	double sdq;         /* differences of neighbours, mean square over all of them */
-	double sdq_cell;    /* the same over the corners that have both differences */
-	double sdq_2x2;     /* differences of two-point means over 2 by 2 samples */
-	double sdq_central; /* (z[i+1] - z[i-1]) / 2 dx, inner samples */
-	double sdq_iso7;    /* seven-point formula, inner samples */
-	double sdr; /* area of the triangulated surface over projected area, less 1 */
-	double sal, str; /* autocorrelation down to 0.2: shortest lag, m; over longest */
-	double corr_x, corr_y; /* lag along x and y where it falls to 1/e, m */
-};
-
-int surface_measure(int nx, int ny, double dx, double dy, const double *z,
-	struct surface_parameters *par);
 
 #endif

@@ -1,5 +1,6 @@
 /* Preparing and measuring heights against surfaces whose parameters are known. */
 #include "contact/surface.h"
+#include "contact/areal.h"
 #include "contact/heights.h"
 #include "contact/spectrum.h"
 #include "tap.h"
