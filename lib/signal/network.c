@@ -1,39 +1,10 @@
-/* network.c - small feed-forward networks and their derivatives by back-propagation */
-#include "signal/network.h"
+/* network.c - small feed-forward networks: their layers, weights and output */
 #include "num/philox.h"
+#include "signal/network_state.h"
 #include <errno.h>
-#include <gsl/gsl_cblas.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#ifdef NETWORK_DOUBLE
-#define gemm cblas_dgemm
-#else
-#define gemm cblas_sgemm
-#endif
-
-typedef network_real real;
-
-struct layer {
-	struct network_layer par;
-	struct network_shape in, out;
-	int inputs, outputs; /* values per sample */
-	int fan;             /* values that one unit sees */
-	size_t weight, bias; /* where they begin in the vector of weights */
-	real *value;         /* batch rows of outputs */
-	real *slope;         /* loss by output, same shape */
-	int *choice;         /* pool: index of the largest input */
-};
-
-struct network {
-	int layers, batch;
-	struct layer layer[NETWORK_LAYERS_MAX];
-	size_t count;
-	real *weights;
-	real *columns; /* unfolded input of a convolution, one sample */
-	real *unit;    /* slope by the sums before the activation, batch rows */
-};
 
 static int volume(struct network_shape s)
 {
@@ -275,31 +246,10 @@ static real activate(enum network_activation kind, real x)
 	}
 }
 
-/* Derivative of the activation from its value. */
-static real incline(enum network_activation kind, real y)
-{
-	switch (kind) {
-	case NETWORK_TANH:
-		return 1 - y * y;
-	case NETWORK_SIGMOID:
-		return y * (1 - y);
-	case NETWORK_RELU:
-		return y > 0;
-	default:
-		return 1;
-	}
-}
-
-/* Where the units of a dense or cascade layer begin in a row of its output. */
-static int first_unit(const struct layer *l)
-{
-	return l->par.kind == NETWORK_CASCADE ? l->inputs : 0;
-}
-
 static void dense_forward(
 	const struct network *net, struct layer *l, const real *x, int n)
 {
-	int units = l->par.units, skip = first_unit(l);
+	int units = l->par.units, skip = network_first_unit(l);
 	const real *bias = net->weights + l->bias;
 
 	for (int s = 0; s < n; s++) {
@@ -330,9 +280,7 @@ static void overlap(int outputs, int inputs, int stride, int shift, int *begin, 
 		*begin = *end;
 }
 
-/* Unfolds one sample x: row (channel, kernel row, kernel column), column = output place.
- * Unless back is NULL the rows are instead added to back where they came from. */
-static void unfold(const struct layer *l, const real *x, real *columns, real *back)
+void network_unfold(const struct layer *l, const real *x, real *columns, real *back)
 {
 	int kx = l->par.width, ky = l->par.height, step = l->par.stride;
 	int left = (kx - 1) / 2, top = (ky - 1) / 2;
@@ -367,7 +315,7 @@ static void conv_forward(const struct network *net, struct layer *l, const real 
 	for (int s = 0; s < n; s++) {
 		real *y = l->value + (size_t)s * l->outputs;
 
-		unfold(l, x + (size_t)s * l->inputs, net->columns, NULL);
+		network_unfold(l, x + (size_t)s * l->inputs, net->columns, NULL);
 		for (int u = 0; u < units; u++)
 			for (int p = 0; p < places; p++)
 				y[u * places + p] = bias[u];
@@ -420,151 +368,4 @@ const real *network_forward(struct network *net, const real *x, int n)
 		x = l->value;
 	}
 	return x;
-}
-
-/* Gradient by the weights of layer l, and by its input into back unless NULL. */
-static void dense_backward(const struct network *net, const struct layer *l,
-	const real *x, int n, real *gradient, real *back)
-{
-	int units = l->par.units, skip = first_unit(l);
-	real *unit = net->unit, *bias = gradient + l->bias;
-
-	memset(bias, 0, units * sizeof(real));
-	for (int s = 0; s < n; s++) {
-		const real *y = l->value + (size_t)s * l->outputs + skip;
-		const real *dy = l->slope + (size_t)s * l->outputs + skip;
-
-		for (int u = 0; u < units; u++) {
-			unit[s * units + u] = dy[u] * incline(l->par.activation, y[u]);
-			bias[u] += unit[s * units + u];
-		}
-	}
-	gemm(CblasRowMajor, CblasTrans, CblasNoTrans, l->inputs, units, n, 1, x,
-		l->inputs, unit, units, 0, gradient + l->weight, units);
-	if (!back)
-		return;
-	for (int s = 0; s < n && skip; s++)
-		memcpy(back + (size_t)s * l->inputs, l->slope + (size_t)s * l->outputs,
-			skip * sizeof(real));
-	gemm(CblasRowMajor, CblasNoTrans, CblasTrans, n, l->inputs, units, 1, unit, units,
-		net->weights + l->weight, units, skip ? 1 : 0, back, l->inputs);
-}
-
-static void conv_backward(const struct network *net, const struct layer *l, const real *x,
-	int n, real *gradient, real *back)
-{
-	int places = l->out.height * l->out.width, units = l->par.units;
-	real *unit = net->unit, *bias = gradient + l->bias;
-
-	memset(gradient + l->weight, 0, (l->bias - l->weight + units) * sizeof(real));
-	if (back)
-		memset(back, 0, (size_t)n * l->inputs * sizeof(real));
-	for (int s = 0; s < n; s++) {
-		const real *y = l->value + (size_t)s * l->outputs;
-		const real *dy = l->slope + (size_t)s * l->outputs;
-
-		for (int u = 0; u < units; u++)
-			for (int p = u * places; p < (u + 1) * places; p++) {
-				unit[p] = dy[p] * incline(l->par.activation, y[p]);
-				bias[u] += unit[p];
-			}
-		unfold(l, x + (size_t)s * l->inputs, net->columns, NULL);
-		gemm(CblasRowMajor, CblasNoTrans, CblasTrans, units, l->fan, places, 1,
-			unit, places, net->columns, places, 1, gradient + l->weight,
-			l->fan);
-		if (!back)
-			continue;
-		gemm(CblasRowMajor, CblasTrans, CblasNoTrans, l->fan, places, units, 1,
-			net->weights + l->weight, l->fan, unit, places, 0, net->columns,
-			places);
-		unfold(l, NULL, net->columns, back + (size_t)s * l->inputs);
-	}
-}
-
-static void pool_backward(const struct layer *l, int n, real *back)
-{
-	if (!back)
-		return;
-	memset(back, 0, (size_t)n * l->inputs * sizeof(real));
-	for (size_t o = 0; o < (size_t)n * l->outputs; o++)
-		back[l->choice[o]] += l->slope[o];
-}
-
-double network_mse(const void *context, int n, int width, const real *output,
-	const real *target, real *gradient)
-{
-	double sum = 0, scale = 1.0 / ((double)n * width);
-
-	(void)context;
-	for (size_t i = 0; i < (size_t)n * width; i++) {
-		double d = (double)output[i] - target[i];
-
-		sum += d * d;
-		gradient[i] = 2 * scale * d;
-	}
-	return sum * scale;
-}
-
-/* Adds the Kullback-Leibler penalty of a layer and its slope. */
-static double add_sparsity(struct layer *l, int n, double weight, double level)
-{
-	int skip = first_unit(l);
-	double sum = 0;
-
-	for (int u = skip; u < skip + l->par.units; u++) {
-		double mean = 0, slope;
-
-		for (int s = 0; s < n; s++)
-			mean += l->value[(size_t)s * l->outputs + u];
-		mean /= n;
-		mean = fmin(fmax(mean, 1e-6), 1 - 1e-6);
-		sum += level * log(level / mean) +
-		       (1 - level) * log((1 - level) / (1 - mean));
-		slope = weight / n * ((1 - level) / (1 - mean) - level / mean);
-		for (int s = 0; s < n; s++)
-			l->slope[(size_t)s * l->outputs + u] += slope;
-	}
-	return weight * sum;
-}
-
-static double add_decay(const struct network *net, double decay, real *gradient)
-{
-	double sum = 0;
-
-	for (int i = 0; i < net->layers; i++)
-		for (size_t w = net->layer[i].weight; w < net->layer[i].bias; w++) {
-			sum += (double)net->weights[w] * net->weights[w];
-			gradient[w] += decay * net->weights[w];
-		}
-	return decay / 2 * sum;
-}
-
-double network_gradient(struct network *net, const real *x, const real *target, int n,
-	network_loss *loss, const void *context, const struct network_penalty *penalty,
-	real *gradient)
-{
-	int last = net->layers - 1;
-	double value;
-
-	network_forward(net, x, n);
-	value = loss(context, n, net->layer[last].outputs, net->layer[last].value, target,
-		net->layer[last].slope);
-	for (int i = last; i >= 0; i--) {
-		struct layer *l = &net->layer[i];
-		const real *in = i ? l[-1].value : x;
-		real *back = i ? l[-1].slope : NULL;
-
-		if (penalty && penalty->sparse_weight > 0 && penalty->sparse_layer == i)
-			value += add_sparsity(
-				l, n, penalty->sparse_weight, penalty->sparse_level);
-		if (l->par.kind == NETWORK_CONV)
-			conv_backward(net, l, in, n, gradient, back);
-		else if (l->par.kind == NETWORK_POOL)
-			pool_backward(l, n, back);
-		else
-			dense_backward(net, l, in, n, gradient, back);
-	}
-	if (penalty && penalty->decay > 0)
-		value += add_decay(net, penalty->decay, gradient);
-	return value;
 }

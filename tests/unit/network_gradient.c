@@ -1,9 +1,10 @@
 /* The derivatives of every kind of layer and loss against central differences.
  *
- * network.c and the losses are compiled here in double precision, so that with steps of
+ * Networks and losses are compiled here in double precision, so that with steps of
  * 1e-5 a difference is right to about 1e-9 relative: a wrong sign, factor or index shows.
  */
 #define NETWORK_DOUBLE
+#include "signal/network_gradient.c"
 #include "signal/cnn.c"
 #include "signal/cnndata.c"
 #include "signal/delayloss.c"
