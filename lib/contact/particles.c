@@ -5,7 +5,7 @@
 #include "contact/particles.h"
 #include "contact/chords.h"
 #include "contact/hull.h"
-#include "contact/sym3.h"
+#include "contact/tally.h"
 #include "num/room.h"
 
 #include <errno.h>
@@ -19,11 +19,7 @@ struct body {
 	int parent;    /* itself for a root */
 	int period[2]; /* of this frame in the parent's */
 	int layer;     /* of the newest run; NONE: the place is free */
-	double nodes, sum[3];
-	double square[6];     /* sums of xx yy zz xy xz yz */
-	double faces[3];      /* exposed, across x, y, z */
-	int low[3], high[3];  /* cells, inclusive, in this frame */
-	int first[3];         /* address on the grid */
+	struct tally cells;
 	int corner, last;     /* list of corners */
 	int corners, reduced; /* their number now and when last reduced */
 };
@@ -207,7 +203,6 @@ static int set_idle(struct particles *ps, int body)
 static int body_of_run(struct particles *ps, int y, int begin, int end)
 {
 	int id = body_new(ps), z = ps->layer;
-	double n = end - begin, last = end - 1, first = begin;
 	struct body *b;
 
 	if (id == NONE)
@@ -216,23 +211,7 @@ static int body_of_run(struct particles *ps, int y, int begin, int end)
 	memset(b, 0, sizeof(*b));
 	b->parent = id;
 	b->layer = z;
-	b->nodes = n;
-	b->sum[X] = n * (first + last) / 2;
-	b->sum[Y] = n * y;
-	b->sum[Z] = n * z;
-	/* n mean^2 + n (n^2 - 1) / 12 */
-	b->square[0] = n * ((first + last) * (first + last) / 4 + (n * n - 1) / 12);
-	b->square[1] = n * y * y;
-	b->square[2] = n * z * z;
-	b->square[3] = b->sum[X] * y;
-	b->square[4] = b->sum[X] * z;
-	b->square[5] = n * y * z;
-	b->faces[X] = 2;
-	b->faces[Y] = b->faces[Z] = 2 * n;
-	b->low[X] = b->first[X] = begin;
-	b->high[X] = end - 1;
-	b->low[Y] = b->high[Y] = b->first[Y] = y;
-	b->low[Z] = b->high[Z] = b->first[Z] = z;
+	b->cells = tally_run(begin, end, y, z);
 	b->corner = NONE;
 	for (int k = 0; k < 8; k++)
 		if (put_corner(
@@ -272,44 +251,18 @@ static void shift(struct particles *ps, struct body *b, int dx, int dy)
 {
 	if (dx == 0 && dy == 0)
 		return;
-	b->square[0] += 2 * dx * b->sum[X] + b->nodes * dx * dx;
-	b->square[1] += 2 * dy * b->sum[Y] + b->nodes * dy * dy;
-	b->square[3] += dy * b->sum[X] + dx * b->sum[Y] + b->nodes * dx * dy;
-	b->square[4] += dx * b->sum[Z];
-	b->square[5] += dy * b->sum[Z];
-	b->sum[X] += b->nodes * dx;
-	b->sum[Y] += b->nodes * dy;
-	b->low[X] += dx, b->high[X] += dx;
-	b->low[Y] += dy, b->high[Y] += dy;
+	tally_shift(&b->cells, dx, dy);
 	for (int at = b->corner; at != NONE; at = ps->corner[at].next) {
 		ps->corner[at].at.v[X] += dx;
 		ps->corner[at].at.v[Y] += dy;
 	}
 }
 
-static int precedes(const int a[3], const int b[3])
-{
-	for (int k = Z; k > X; k--)
-		if (a[k] != b[k])
-			return a[k] < b[k];
-	return a[X] < b[X];
-}
-
 /* Adds b, already in a's frame, to a. */
 static void absorb(struct particles *ps, struct body *a, struct body *b)
 {
 	a->layer = a->layer > b->layer ? a->layer : b->layer;
-	a->nodes += b->nodes;
-	for (int k = 0; k < 6; k++)
-		a->square[k] += b->square[k];
-	if (precedes(b->first, a->first))
-		memcpy(a->first, b->first, sizeof(a->first));
-	for (int k = X; k <= Z; k++) {
-		a->sum[k] += b->sum[k];
-		a->faces[k] += b->faces[k];
-		a->low[k] = a->low[k] < b->low[k] ? a->low[k] : b->low[k];
-		a->high[k] = a->high[k] > b->high[k] ? a->high[k] : b->high[k];
-	}
+	tally_add(&a->cells, &b->cells);
 	if (b->corner == NONE)
 		return;
 	ps->corner[b->last].next = a->corner;
@@ -331,7 +284,7 @@ static int unite(struct particles *ps, const struct run *p, const struct run *q,
 	int a = find(ps, p->body, in_a), b = find(ps, q->body, in_b);
 	int move[2] = { in_a[X] + px - in_b[X], in_a[Y] + py - in_b[Y] };
 
-	ps->body[a].faces[axis] -= 2 * shared;
+	ps->body[a].cells.faces[axis] -= 2 * shared;
 	if (a == b)
 		return 0;
 	if (ps->body[a].corners < ps->body[b].corners) {
@@ -444,69 +397,18 @@ static int measure_hull(struct particles *ps, const struct body *b, struct parti
 		chords_measure(ps->chords, ps->hull, step, &p->length, &p->width))
 		return -1;
 	p->aspect = p->length / p->width;
-	p->convexity = 6 * b->nodes / hull_volume6(ps->hull);
+	p->convexity = 6 * b->cells.nodes / hull_volume6(ps->hull);
 	return 0;
-}
-
-static void measure_moments(
-	const struct particles *ps, const struct body *b, struct particle *p)
-{
-	static const int first[6] = { X, Y, Z, X, X, Y },
-			 second[6] = { X, Y, Z, Y, Z, Z };
-	double step[3] = { ps->par.ax, ps->par.ay, ps->par.az };
-	double m[6], value[3], axis[3][3];
-
-	for (int k = 0; k < 6; k++) {
-		int i = first[k], j = second[k];
-		/* A cell's own moment is that of a box: 1/12. */
-		double own = i == j ? 1. / 12 : 0;
-
-		m[k] = step[i] * step[j] *
-		       (b->square[k] / b->nodes -
-			       b->sum[i] / b->nodes * (b->sum[j] / b->nodes) + own);
-	}
-	sym3_eigen(m, value, axis);
-	p->elongation = 1 - sqrt(value[1] / value[0]);
-	p->azimuth = p->dip = NAN;
-	if (value[0] - value[1] < 1e-9 * value[0])
-		return;
-	if (axis[0][X] < 0 || (axis[0][X] == 0 && axis[0][Y] < 0))
-		for (int k = X; k <= Z; k++)
-			axis[0][k] = -axis[0][k];
-	p->azimuth = atan2(axis[0][Y], axis[0][X]);
-	p->dip = atan2(fabs(axis[0][Z]), hypot(axis[0][X], axis[0][Y]));
-}
-
-/* Whole periods that bring the centroid back onto the grid. */
-static double home(const struct particles *ps, double centroid, int n)
-{
-	return ps->par.periodic ? n * floor(centroid / n) : 0;
 }
 
 static int measure(struct particles *ps, const struct body *b)
 {
-	double ax = ps->par.ax, ay = ps->par.ay, az = ps->par.az;
-	double step[3] = { ax, ay, az }, at[3], back[3];
 	struct particle *p;
 
 	if (room_for(&ps->done, &ps->done_room, ps->ndone + 1, sizeof(*ps->done)))
 		return -1;
 	p = &ps->done[ps->ndone];
-	p->nodes = b->nodes;
-	p->volume = b->nodes * (ax * ay * az);
-	p->diameter = cbrt(6 * p->volume / M_PI);
-	p->area = b->faces[X] * ay * az + b->faces[Y] * ax * az + b->faces[Z] * ax * ay;
-	for (int k = X; k <= Z; k++) {
-		at[k] = b->sum[k] / b->nodes + 0.5;
-		back[k] = k == Z ? 0 : home(ps, at[k], k == X ? ps->par.nx : ps->par.ny);
-		p->low[k] = (b->low[k] - back[k]) * step[k];
-		p->high[k] = (b->high[k] + 1 - back[k]) * step[k];
-		p->first[k] = b->first[k];
-	}
-	p->x = (at[X] - back[X]) * ax;
-	p->y = (at[Y] - back[Y]) * ay;
-	p->z = at[Z] * az;
-	measure_moments(ps, b, p);
+	tally_measure(&b->cells, &ps->par, p);
 	if (measure_hull(ps, b, p))
 		return -1;
 	ps->ndone++;
@@ -564,7 +466,7 @@ static int in_order(const void *a, const void *b)
 
 	if (p->nodes != q->nodes)
 		return p->nodes > q->nodes ? -1 : 1;
-	return precedes(p->first, q->first) ? -1 : 1;
+	return tally_precedes(p->first, q->first) ? -1 : 1;
 }
 
 size_t particles_end(struct particles *ps, const struct particle **list)
