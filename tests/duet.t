@@ -81,6 +81,29 @@ ok "masks: separated signals" sh -c "test \$(wc -c <sources.au) -gt 1000000"
 ok "counting, sensor 1" sh -c "duet -m count s.au >c.tsv"
 is "counting: lone pulses" "$(column particle c.tsv | wc -l)" 60
 
+# Standard errors: 68 % inside one, give or take 3.5 deviations of 200 draws.
+sensorsim --uniform 80um:120um --number 200 --duration 30s --gap 50ms --snr 30dB \
+	--lag 0.2ms:0.5ms --truth t.tsv >lone.au
+duet lone.au >f.tsv
+for c in time1 time2 delay velocity diameter amplitude; do
+	for f in t f; do
+		column "$c" $f.tsv >$f.col
+	done
+	column "${c}_se" f.tsv | paste t.col f.col - | awk -v c="$c" '
+	{ n++; inside += ($1 - $2) ^ 2 < $3 ^ 2 }
+	END { if (inside / n < 0.565 || inside / n > 0.795) print c, inside / n }'
+done >off.txt
+is "standard errors: 68 % inside" "$(cat off.txt)" ""
+
+# Counted on either sensor: that one has an arrival.
+duet -m count -k 2 --align 20ms lone.au >c.tsv
+is "counting, sensor 2: no arrival at sensor 1" "$(column time1 c.tsv | sort -u)" nan
+column time2 t.tsv >t.col
+at_most "counting, sensor 2: peaks a quarter of a pulse (2.5 ms) from the arrivals there" \
+	"$(column time2 c.tsv | paste t.col - | awk '{ d = sqrt(($1 - $2) ^ 2) - 2.5e-3
+		d = d < 0 ? -d : d; most = d > most ? d : most } END { print most }')" 1e-3
+is "counting, sensor 2: all of them" "$(column time2 c.tsv | wc -l)" 200
+
 # Work left out.
 duet --stats stats.tsv -m duet s.au >/dev/null
 at_most "masks: lone pulses are not demixed" "$(column_of demixings <stats.tsv)" 2

@@ -3,50 +3,91 @@
 #include "num/philox.h"
 #include "tap.h"
 #include <stdlib.h>
+#include <string.h>
 
 enum { N = 400000 };
+
+static const double rate = 0.1; /* pulses per sample */
+
+/* Ten pulses overlap everywhere; amplitudes uniform in 5 .. 15, noise 1.  sums: of a^2
+ * and a^4, per sample. */
+static void make_record(uint32_t realisation, int n, const struct shape *shape,
+	double *y1, double *y2, double sums[2])
+{
+	double p[200], z[2];
+
+	sums[0] = sums[1] = 0;
+	for (uint64_t k = 0; k < (uint64_t)(rate * n); k++) {
+		double t = n * philox_uniform(5, realisation, RNG_PARTICLE, 2 * k);
+		double a =
+			5 + 10 * philox_uniform(5, realisation, RNG_PARTICLE, 2 * k + 1);
+		size_t len;
+		long first = shape_support(shape, t, 100, &len);
+
+		shape_sample(shape, t, 100, first, len, p, NULL, NULL);
+		for (size_t i = 0; i < len; i++)
+			if (first + (long)i >= 0 && first + (long)i < n) {
+				y1[first + (long)i] += a * p[i];
+				y2[first + (long)i] += 0.9 * a * p[i];
+			}
+		sums[0] += a * a / n;
+		sums[1] += a * a * a * a / n;
+	}
+	for (int i = 0; i < n; i++) {
+		philox_normal2(5, realisation, RNG_NOISE, (uint64_t)i, z);
+		y1[i] += z[0];
+		y2[i] += z[1];
+	}
+}
+
+/* Standard errors are those of the scatter from record to record. */
+static void test_errors(const struct shape *shape)
+{
+	enum { TIMES = 60, SHORT = 40000 };
+	static double y[2][SHORT];
+	double sum[2] = { 0 }, squares[2] = { 0 }, errors[2] = { 0 }, sums[2];
+
+	for (uint32_t k = 0; k < TIMES; k++) {
+		struct campbell c;
+
+		memset(y, 0, sizeof y);
+		make_record(k, SHORT, shape, y[0], y[1], sums);
+		campbell_estimate(y[0], y[1], SHORT, shape, 100, 0.9, &c);
+		for (int i = 0; i < 2; i++) {
+			double x = i ? c.fourth : c.square;
+
+			sum[i] += x / TIMES;
+			squares[i] += x * x / TIMES;
+			errors[i] += (i ? c.fourth_se : c.square_se) / TIMES;
+		}
+	}
+	/* The scatter is known to 1 / sqrt(2 TIMES) = 9 %. */
+	for (int i = 0; i < 2; i++)
+		near(errors[i] / sqrt(squares[i] - sum[i] * sum[i]), 1, 0.3,
+			i ? "fourth powers" : "squares scatter by their standard error");
+}
 
 int main(void)
 {
 	struct shape *shape = shape_new(PULSE_SINE);
-	double *y1 = calloc(N, sizeof *y1), *y2 = calloc(N, sizeof *y2), p[200], z[2];
-	double rate = 0.1, square = 0, fourth = 0;
+	double *y1 = calloc(N, sizeof *y1), *y2 = calloc(N, sizeof *y2), sums[2];
 	struct campbell c, d;
 
-	/* Ten pulses overlap everywhere; amplitudes uniform in 5 .. 15, noise 1. */
-	for (uint64_t k = 0; k < (uint64_t)(rate * N); k++) {
-		double t = philox_uniform(5, 0, RNG_PARTICLE, 2 * k) * N;
-		double a = 5 + 10 * philox_uniform(5, 0, RNG_PARTICLE, 2 * k + 1);
-		size_t n;
-		long first = shape_support(shape, t, 100, &n);
-
-		shape_sample(shape, t, 100, first, n, p, NULL, NULL);
-		for (size_t i = 0; i < n; i++)
-			if (first + (long)i >= 0 && first + (long)i < N) {
-				y1[first + (long)i] += a * p[i];
-				y2[first + (long)i] += 0.9 * a * p[i];
-			}
-		square += a * a / N;
-		fourth += a * a * a * a / N;
-	}
-	for (uint64_t i = 0; i < N; i++) {
-		philox_normal2(5, 0, RNG_NOISE, i, z);
-		y1[i] += z[0];
-		y2[i] += z[1];
-	}
+	make_record(0, N, shape, y1, y2, sums);
 	campbell_estimate(y1, y2, N, shape, 100, 0.9, &c);
-	near(c.square, square, 3 * c.square_se,
+	near(c.square, sums[0], 3 * c.square_se,
 		"sum of squares within three standard errors");
-	near(c.fourth, fourth, 3 * c.fourth_se, "sum of fourth powers too");
-	ok(c.square_se < 0.03 * square, "squares to 3 %%");
+	near(c.fourth, sums[1], 3 * c.fourth_se, "sum of fourth powers too");
+	ok(c.square_se < 0.03 * sums[0], "squares to 3 %%");
 	ok(c.rate - 3 * c.rate_se < rate, "the equal number is no upper bound");
-	near(c.rate, square * square / fourth, 3 * c.rate_se, "equal number");
-	near(c.amplitude, sqrt(fourth / square), 3 * c.amplitude_se, "equal amplitude");
+	near(c.rate, sums[0] * sums[0] / sums[1], 3 * c.rate_se, "equal number");
+	near(c.amplitude, sqrt(sums[1] / sums[0]), 3 * c.amplitude_se, "equal amplitude");
 	campbell_estimate(y1, y2, 3000, shape, 100, 0.9, &d);
 	ok(isinf(d.rate_se), "a short stretch says nothing");
 	d = c;
 	campbell_scale(&d, 2);
 	near(d.square, 4 * c.square, 1e-12 * d.square, "other units");
+	test_errors(shape);
 	free(y1);
 	free(y2);
 	shape_free(shape);
