@@ -109,7 +109,12 @@ static struct network *read_network(void)
 
 static size_t learned_samples(double rate)
 {
-	return isnan(learn) ? LEARN : to_samples(learn, rate);
+	size_t n = isnan(learn) ? LEARN : to_samples(learn, rate);
+
+	if (n < SEPARATE_SHORTEST)
+		die(EXIT_RUN, "--learn %g s: %zu samples at %g Hz, want at least %d",
+			learn, n, rate, SEPARATE_SHORTEST);
+	return n;
 }
 
 static void separate_all(struct signal_in *in, struct found *out)

@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SHORTEST = 64 };
-
 struct separate {
 	struct separate_par par;
 	struct calibration cal;
@@ -40,8 +38,8 @@ struct separate *separate_new(const struct separate_par *par)
 	if (!s)
 		return NULL;
 	s->par = *par;
-	if (s->par.learn < SHORTEST)
-		s->par.learn = SHORTEST;
+	if (s->par.learn < SEPARATE_SHORTEST)
+		s->par.learn = SEPARATE_SHORTEST;
 	return s;
 }
 
@@ -111,7 +109,7 @@ static enum separate_status calibrate_now(struct separate *s)
 	double reach;
 	size_t n;
 
-	if (s->tape[0].n < SHORTEST)
+	if (s->tape[0].n < SEPARATE_SHORTEST)
 		return SEPARATE_NO_LAG;
 	/* Not more than asked for, however much has come in at once. */
 	n = s->tape[0].n < s->par.learn ? s->tape[0].n : s->par.learn;
@@ -636,7 +634,8 @@ enum separate_status separate_end(struct separate *s)
 
 	s->ended = 1;
 	if (!s->calibrated)
-		status = s->counters.samples < SHORTEST ? SEPARATE_SHORT : learn(s);
+		status = s->counters.samples < SEPARATE_SHORTEST ? SEPARATE_SHORT
+								 : learn(s);
 	if (status != SEPARATE_OK)
 		return status;
 	return s->calibrated ? work(s) : s->reason;

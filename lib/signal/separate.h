@@ -28,6 +28,9 @@
 #include "signal/masks.h"
 #include <stddef.h>
 
+/* Samples that nothing can be learned from fewer of. */
+enum { SEPARATE_SHORTEST = 64 };
+
 enum separate_method { SEPARATE_FIT, SEPARATE_MASKS, SEPARATE_NETWORK };
 
 /* How far a row may be trusted. */
@@ -66,7 +69,7 @@ struct separate_section {
 struct separate_par {
 	enum separate_method method;
 	struct calibrate_par known;
-	size_t learn;  /* samples held back to calibrate, at least 64 */
+	size_t learn;  /* samples held back to calibrate, at least SEPARATE_SHORTEST */
 	size_t window; /* longest section worked off at once; 0: 24 durations */
 	int sources;   /* exactly so many in each section; 0: find out */
 	size_t mask_window, mask_hop; /* of the masks, samples */
@@ -81,7 +84,7 @@ struct separate_par {
 enum separate_status {
 	SEPARATE_OK,
 	SEPARATE_MEMORY,
-	SEPARATE_SHORT,      /* fewer than 64 samples */
+	SEPARATE_SHORT,      /* fewer samples than that */
 	SEPARATE_NOT_FINITE, /* see separate_bad_sample() */
 	SEPARATE_SILENT_1,
 	SEPARATE_SILENT_2,
