@@ -127,6 +127,24 @@ within "80 dB apart, overlapping" "the five large ones; no other" 5 0 \
 	"$(column particle found.tsv | wc -l)"
 within "80 dB apart, overlapping" "sizes of the large ones to 0.1 %" 0 0.001 "$(score size_rms)"
 
+# --- filtered
+scene
+bpfilter -z -b 20:1000 -n 4000 s.au >filtered.au
+duet filtered.au >found.tsv
+within "a filter of 4001 taps, its inverse longer than the record" "18 to 20 particles" 20 2 \
+	"$(score matched)"
+within "a filter of 4001 taps, its inverse longer than the record" "no other" 0 0 "$(score false)"
+within "a filter of 4001 taps, its inverse longer than the record" "delays to 0.06 samples" 0 6e-6 \
+	"$(score delay_rms)"
+# A low-pass of one pole delays low frequencies more than high ones: no filter that is undone.
+for share in 0.5 0.1 0.03; do
+	frames s.au 2 | awk -v a=$share '{ x += a * ($1 - x); y += a * ($2 - y)
+		printf "%.17g %.17g\n", x, y }' | au 10000 2 >pole.au
+	duet pole.au >found.tsv
+	within "one-pole low-pass, a = $share, not told" "not believed: no row alone or overlap" 0 0 \
+		"$(column verdict found.tsv | grep -c 'alone\|overlap')"
+done
+
 # --- many
 
 sensorsim --uniform 80um:120um --number 100 --gap 6ms --span 0.8s --duration 1.2s --snr 40dB \
