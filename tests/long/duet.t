@@ -81,7 +81,7 @@ filtered() { # M SNR UNDO COUNT RATIO SIZE bpfilter-options
 for m in 1 3 6; do
 	for band in '20:1000 -n 1000' 0:3000; do
 		for snr in 20 30; do
-			size=$(awk -v s=$snr 'BEGIN { print s > 25 ? 0.01 : 0.03 }')
+			size=$(awk -v s=$snr 'BEGIN { print (s > 25 ? 0.01 : 0.03) }')
 			# shellcheck disable=SC2086 # options are words
 			filtered $m $snr auto 0.98 1.1 "$size" -b $band
 			judge "$m particles at $snr dB through $band"
@@ -107,7 +107,7 @@ guessed() { # M SNR COUNT RATIO SIZE bpfilter-options
 	check "$name: size error" "$(value size_rms)" '<=' "$size"
 }
 for snr in 20 30; do
-	size=$(awk -v s=$snr 'BEGIN { print s > 25 ? 0.01 : 0.03 }')
+	size=$(awk -v s=$snr 'BEGIN { print (s > 25 ? 0.01 : 0.03) }')
 	guessed 1 $snr 0.95 1.3 "$size" -b 0:3000
 	guessed 3 $snr 0.95 1.3 "$size" -b 0:3000
 done
