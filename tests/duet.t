@@ -61,6 +61,18 @@ is "twins: no third" "$(score false twins.tsv found.tsv)" 0
 duet -m count twins.au >counted.tsv
 at_most "twins: counted peaks see one of two" "$(column particle counted.tsv | wc -l)" 25
 
+# Pulses with long tails, in a regular train: neither cut short, nor taken for lines, nor
+# paired the wrong way round.  The bound at 30 dB: 3.3 sigma / A samples of delay as above.
+sensorsim --uniform 90um:110um --number 180 --burst 3 --span 15ms --gap 1ms --period 55ms \
+	--start 20ms --snr 30dB --lag 0.2ms:0.5ms --gain 0.909 --pulse lorentz \
+	--truth tails.tsv >tails.au
+duet -v tails.au >found.tsv 2>log
+ok "tails: shape learned" grep -q 'pulse lorentz' log
+ok "tails: no lines" grep -q ' 0 lines' log
+is "tails: all particles" "$(score matched tails.tsv found.tsv)" 180
+is "tails: no other" "$(score false tails.tsv found.tsv)" 0
+at_most "tails: delays at the bound" "$(score delay_ratio tails.tsv found.tsv)" 1.3
+
 # Mains and pump, found and fitted.
 sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 20ms --snr 30dB \
 	--lag 0.2ms:0.5ms --mains 0.5,0.3 --pump 0.4,0.2 --truth lines.tsv >lines.au

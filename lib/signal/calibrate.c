@@ -27,12 +27,14 @@ double calibrate_drop(double rate, const struct shape *shape, double duration,
 	return hi * hi;
 }
 
-int calibrate_clean(const struct calibration *c, double *x, size_t n, double *change)
+int calibrate_clean(const struct calibration *c, double *x, size_t n, double *change,
+	double power[TONES_MAX])
 {
 	double before[2 * TONES_MAX + 1], after[2 * TONES_MAX + 1], at = 0;
 	size_t hop = c->tone_hop < n ? c->tone_hop : n;
-	double squares = 0, count = 0;
+	double squares = 0, count = 0, hops = 0;
 
+	memset(power, 0, sizeof(double) * TONES_MAX);
 	for (size_t middle = hop / 2, done = 0; done < n; middle += hop) {
 		size_t from = middle > hop ? middle - hop : 0;
 		size_t to = middle + hop < n ? middle + hop : n, until;
@@ -46,6 +48,9 @@ int calibrate_clean(const struct calibration *c, double *x, size_t n, double *ch
 			return 0;
 		if (done == 0)
 			memcpy(before, after, sizeof before);
+		for (int k = 1; k <= 2 * c->tones; k++)
+			power[(k - 1) / 2] += after[k] * after[k] / 2;
+		hops++;
 		for (int k = 1; done > 0 && k <= 2 * c->tones; k++) {
 			squares += (after[k] - before[k]) * (after[k] - before[k]);
 			count++;
@@ -60,6 +65,8 @@ int calibrate_clean(const struct calibration *c, double *x, size_t n, double *ch
 		done = until;
 	}
 	*change = count > 0 ? squares / count : INFINITY;
+	for (int k = 0; k < c->tones; k++)
+		power[k] /= hops;
 	return 1;
 }
 
@@ -284,7 +291,7 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 	double *y2, size_t n, struct calibration *c, double *r, struct look *look)
 {
 	size_t max_lag = n / 2, rest;
-	double lag = par->lag, low, change[2], coherence, level = 0;
+	double lag = par->lag, low, change[2], power[2][TONES_MAX], coherence, level = 0;
 
 	if (par->tones == CALIBRATE_FIND_TONES) {
 		c->tones = tones_find(y1, y2, n, TONES_MAX, c->omega);
@@ -298,8 +305,8 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 		memcpy(c->omega, par->omega, sizeof c->omega);
 	}
 	c->tone_hop = n < 8192 ? n : 4096;
-	if (!calibrate_clean(c, y1, n, &change[0]) ||
-		!calibrate_clean(c, y2, n, &change[1]))
+	if (!calibrate_clean(c, y1, n, &change[0], power[0]) ||
+		!calibrate_clean(c, y2, n, &change[1], power[1]))
 		return CALIBRATE_MEMORY;
 	if (isnan(lag))
 		lag = align_lag(y1, y2, n, max_lag, &c->correlation);
@@ -346,6 +353,8 @@ static enum calibrate_status measure(const struct calibrate_par *par, double *y1
 
 		c->gain = v1 > 0 && v2 > 0 ? sqrt(v2 / v1) : 1;
 	}
+	for (int k = 0; k < c->tones; k++)
+		c->tone_power[k] = power[0][k] / (c->noise[0] * c->noise[0]);
 	c->tone_variance = fmax(change[0] / (c->noise[0] * c->noise[0]),
 		change[1] / (c->noise[1] * c->noise[1]));
 	normalise(c, y1, y2, rest);
@@ -485,6 +494,41 @@ static int is_white(const struct calibration *c, const struct look *look)
 	       (c->chi2 < 4 && colour_is_white(look->power, PULSE_BAND / c->duration));
 }
 
+/* Power of a tone, in units of noise^2, that tails of pulses may be taken for. */
+static const double TAILS = 4;
+
+/* The tails of a regular train of pulses have lines, too, which a robust fit may see.  Is
+ * the record better described without the weak ones that were found? */
+static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
+	const double *x1, const double *x2, size_t n, struct look *look,
+	struct calibration *c)
+{
+	struct calibrate_par fewer = *par;
+	struct whitening w = { .tap = NULL };
+	struct look other_look = { .attempts = look->attempts };
+	struct calibration other;
+	enum calibrate_status status;
+
+	fewer.tones = 0;
+	for (int k = 0; k < c->tones; k++)
+		if (c->tone_power[k] > TAILS)
+			fewer.omega[fewer.tones++] = c->omega[k];
+	if (fewer.tones == c->tones)
+		return CALIBRATE_OK;
+	status = attempt(&fewer, x1, x2, n, &w, &other, &other_look);
+	look->attempts = other_look.attempts;
+	if (status != CALIBRATE_OK)
+		return status == CALIBRATE_MEMORY ? status : CALIBRATE_OK;
+	if (other.price < c->price) {
+		calibration_clear(c);
+		*c = other;
+		*look = other_look;
+	} else {
+		calibration_clear(&other);
+	}
+	return CALIBRATE_OK;
+}
+
 enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct calibration *c)
 {
@@ -500,6 +544,9 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 	if (par->filter && !whitening_of_filter(&w, par->filter, par->filter_taps))
 		return CALIBRATE_MEMORY;
 	status = attempt(par, x1, x2, n, &w, c, &look);
+	if (status == CALIBRATE_OK && par->tones == CALIBRATE_FIND_TONES && !w.tap &&
+		!c->dense)
+		status = try_fewer_tones(par, x1, x2, n, &look, c);
 	if (status == CALIBRATE_OK && look.coloured && !c->dense && !is_white(c, &look))
 		status = look_again(par, x1, x2, n, &look, c);
 	c->attempts = look.attempts;

@@ -40,7 +40,8 @@ struct calibration {
 	double correlation; /* of the channels at that lag */
 	int tones;
 	double omega[TONES_MAX];
-	size_t tone_hop;            /* samples between two fits of the tones */
+	size_t tone_hop;              /* samples between two fits of the tones */
+	double tone_power[TONES_MAX]; /* on channel 1, units of noise^2 */
 	double tone_variance;       /* of a coefficient from one hop to the next, units of
 				       noise^2 */
 	struct whitening whitening; /* of filtered records; else without taps */
@@ -49,7 +50,6 @@ struct calibration {
 	double rest[2]; /* of these, power left by the pulses the shape was fitted to */
 	struct shape *shape;
 	int pulse;             /* which of enum pulse_shape */
-	double reach;          /* of it before any filter, durations */
 	double duration, gain; /* as above */
 	double transit;        /* samples between the sensors; INFINITY if unknown */
 	double delta_min, delta_max; /* samples around shift */
@@ -92,7 +92,9 @@ double calibrate_drop(double rate, const struct shape *shape, double duration,
 	double gain, double width);
 
 /* Takes tones (and the mean) from a whole record; *change receives the mean square change
- * of their coefficients from hop to hop, INFINITY where there is but one. */
-int calibrate_clean(const struct calibration *c, double *x, size_t n, double *change);
+ * of their coefficients from hop to hop, INFINITY where there is but one, power[k] that
+ * of tone k.  Returns 0 when out of memory. */
+int calibrate_clean(const struct calibration *c, double *x, size_t n, double *change,
+	double power[TONES_MAX]);
 
 #endif

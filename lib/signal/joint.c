@@ -119,6 +119,7 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 		}
 		chi2 = joint_fit_all(j, s, pulses, *m);
 	} while (joint_split_pulses(j, s, pulses, m, &chi2));
+	joint_swap_pulses(j, s, pulses, *m, &chi2);
 	joint_merge_pulses(j, s, pulses, m, &chi2);
 	joint_prune(j, s, pulses, m, &chi2);
 	chi2 = joint_fit_all(j, s, pulses, *m);

@@ -234,6 +234,43 @@ static int try_merge(struct joint *j, const struct joint_scene *s,
 	return accept_fewer(j, s, pulses, m, k, before, chi2);
 }
 
+/* Could pulses p and q be paired the other way round?  Fills their delays then. */
+static int can_swap(const struct joint_scene *s, const struct joint_pulse *p,
+	const struct joint_pulse *q, double delta[2])
+{
+	delta[0] = q->t + q->delta - p->t;
+	delta[1] = p->t + p->delta - q->t;
+	return fmin(delta[0], delta[1]) >= s->delta_min &&
+	       fmax(delta[0], delta[1]) <= s->delta_max;
+}
+
+void joint_swap_pulses(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int m, double *chi2)
+{
+	struct joint_pulse before[JOINT_PULSES_MAX];
+	double delta[2], after;
+	int set[JOINT_PULSES_MAX];
+
+	for (int i = 0; i < m; i++)
+		for (int k = i + 1; k < m; k++) {
+			if (!can_swap(s, &pulses[i], &pulses[k], delta))
+				continue;
+			memcpy(before, pulses, sizeof(*pulses) * (size_t)m);
+			joint_subtract(j, s, &pulses[i], -1);
+			joint_subtract(j, s, &pulses[k], -1);
+			pulses[i].delta = delta[0];
+			pulses[k].delta = delta[1];
+			joint_subtract(j, s, &pulses[i], 1);
+			joint_subtract(j, s, &pulses[k], 1);
+			after = joint_fit_set(j, s, pulses, set,
+				neighbours(s, pulses, m, i, 0.8, set), 30, 0.1);
+			if (after < *chi2)
+				*chi2 = after;
+			else
+				restore(j, s, pulses, &m, before, m);
+		}
+}
+
 void joint_merge_pulses(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int *m, double *chi2)
 {

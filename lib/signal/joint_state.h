@@ -126,6 +126,9 @@ int joint_try_pulse(struct joint *j, const struct joint_scene *s,
 /* Splits pulses that look like two; returns how many were split. */
 int joint_split_pulses(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int *m, double *chi2);
+/* Lets pulses exchange their arrivals at the second sensor where that is better. */
+void joint_swap_pulses(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int m, double *chi2);
 /* Merges pulses so close that they may be one that was split in vain. */
 void joint_merge_pulses(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int *m, double *chi2);

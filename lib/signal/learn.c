@@ -187,9 +187,10 @@ static void offer_example(struct learning *l, const double *y1, const double *y2
 static void pick_examples(struct learning *l, const double *y1, const double *y2,
 	size_t n, int most, const struct calibration *c)
 {
-	double T = c->duration, reach = shape_reach(c->shape), loud[EXAMPLES_MAX] = { 0 };
-	long margin = (long)(1.2 * reach * T + fmax(c->delta_max, -c->delta_min));
-	struct sections *s = sections_new(c->shape, T, 5, margin);
+	double T = c->duration, loud[EXAMPLES_MAX] = { 0 };
+	double slack = fmax(c->delta_max, -c->delta_min);
+	long margin = (long)(1.2 * shape_reach_above(c->shape, 0.01) * T + slack);
+	struct sections *s = sections_new(c->shape, T, 5, slack);
 	struct section section;
 
 	l->count = 0;
@@ -236,7 +237,6 @@ int learn_set_shape(struct calibration *c, int pulse)
 	shape_free(c->shape);
 	c->pulse = pulse;
 	c->shape = plain;
-	c->reach = plain ? shape_reach(plain) : 0;
 	if (plain && c->whitening.tap) {
 		c->shape = shape_filter(plain, fmax(c->duration, 8), c->whitening.seen,
 			c->whitening.seen_half);
@@ -265,8 +265,7 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 	double best = INFINITY, duration = c->duration, gain = c->gain, fit = INFINITY;
 	int pulse = c->pulse;
 
-	pick_examples(l, y1, y2, n, EXAMPLES_MAX / 2, c);
-	for (int p = PULSE_SINE; p <= PULSE_LORENTZ && l->count && fit > 1.1; p++) {
+	for (int p = PULSE_SINE; p <= PULSE_LORENTZ && fit > 1.1; p++) {
 		double price;
 
 		if (par->pulse != CALIBRATE_ANY_PULSE && p != par->pulse)
@@ -275,10 +274,13 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 			isnan(par->duration) ? learn_duration(p, low) : par->duration;
 		if (!learn_set_shape(c, p))
 			return CALIBRATE_MEMORY;
+		pick_examples(l, y1, y2, n, EXAMPLES_MAX / 2, c);
+		if (l->count == 0)
+			continue;
 		scene_of(c, &l->scene);
 		fit = examples_fit(l, 0.05, &price);
-		if (c->suspect && fit > HOPELESS)
-			break;
+		if (price > 3 * best)
+			continue; /* far off: not worth tuning */
 		tune(par, l, 0.1, 3);
 		fit = examples_fit(l, 0.003, &price);
 		if (price < best) {

@@ -4,19 +4,41 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A trigger is less than 2^OCTAVES standard deviations, or its margin is the largest. */
+enum { OCTAVES = 24 };
+
+/* Standard deviations of the noise that the rest of a pulse stays below. */
+static const double hidden = 0.2;
+
 struct sections {
 	double *filter; /* the pulse, scaled to unit energy */
 	size_t len;
 	long first; /* place of filter[0] relative to the pulse */
-	long stride, margin;
+	long stride;
+	long margin[OCTAVES + 1]; /* of a trigger below 2^k standard deviations */
 	double threshold;
-	long long next; /* point to scan next */
+	long long next;  /* point to scan next */
+	long long taken; /* samples before this one are in no section */
 	struct section *queue;
 	int count, capacity;
 };
 
+/* A pulse whose trigger is z has the amplitude z / sqrt(its energy at amplitude 1).  A
+ * weak trigger may be the flank of a strong pulse: a hundredth always counts. */
+static void set_margins(
+	struct sections *s, const struct shape *shape, double duration, double slack)
+{
+	double least = hidden * sqrt(duration * shape_energy(shape));
+
+	for (int k = 0; k <= OCTAVES; k++) {
+		double reach = shape_reach_above(shape, fmin(ldexp(least, -k), 0.01));
+
+		s->margin[k] = (long)(1.2 * reach * duration + slack);
+	}
+}
+
 struct sections *sections_new(
-	const struct shape *shape, double duration, double threshold, long margin)
+	const struct shape *shape, double duration, double threshold, double slack)
 {
 	struct sections *s;
 	double energy = 0;
@@ -28,7 +50,7 @@ struct sections *sections_new(
 		return NULL;
 	s->first = shape_support(shape, 0, duration, &s->len);
 	s->stride = duration >= 48 ? (long)(duration / 24) : 1;
-	s->margin = margin;
+	set_margins(s, shape, duration, slack);
 	s->threshold = threshold;
 	s->filter = malloc(s->len * sizeof *s->filter);
 	if (!s->filter) {
@@ -54,12 +76,14 @@ void sections_free(struct sections *s)
 
 void sections_skip(struct sections *s, long long upto)
 {
-	s->next = upto;
+	s->next = s->taken = upto;
 }
 
 long sections_reach(const struct sections *s)
 {
-	return (-s->first > s->margin ? -s->first : s->margin) + 1;
+	long margin = s->margin[OCTAVES];
+
+	return (-s->first > margin ? -s->first : margin) + 1;
 }
 
 static double filter_at(const struct sections *s, const double *y, size_t n, long long at)
@@ -81,43 +105,57 @@ static double filter_at(const struct sections *s, const double *y, size_t n, lon
 	return (s0 + s1) + (s2 + s3);
 }
 
-/* A trigger at sample at, which is later than all before it. */
-static void add_trigger(struct sections *s, long long at)
+static int reserve(struct sections *s)
 {
-	struct section *last = s->count ? &s->queue[s->count - 1] : NULL;
+	int capacity = 2 * s->count + 16;
+	struct section *more;
 
-	if (last && last->open && at - s->margin <= last->end) {
-		last->end = at + s->margin;
-		return;
+	if (s->queue && s->count < s->capacity)
+		return 1;
+	more = realloc(s->queue, (size_t)capacity * sizeof *more);
+	if (!more)
+		return 0;
+	s->queue = more;
+	s->capacity = capacity;
+	return 1;
+}
+
+/* A trigger of z standard deviations at sample at, which is later than all before it.
+ * What it reaches becomes one section with it. */
+static void add_trigger(struct sections *s, long long at, double z)
+{
+	int octave = z < ldexp(1, OCTAVES) ? ilogb(fmax(z, 1)) + 1 : OCTAVES;
+	long long begin = at - s->margin[octave], end = at + s->margin[octave];
+
+	while (s->count && s->queue[s->count - 1].end >= begin) {
+		struct section *last = &s->queue[--s->count];
+
+		begin = last->begin < begin ? last->begin : begin;
+		end = last->end > end ? last->end : end;
 	}
-	if (last)
-		last->open = 0;
-	if (!s->queue || s->count >= s->capacity) {
-		int capacity = 2 * s->count + 16;
-		struct section *more = realloc(s->queue, (size_t)capacity * sizeof *more);
-
-		if (!more) { /* out of memory: one long section instead of two */
-			if (last) {
-				last->end = at + s->margin;
-				last->open = 1;
-			}
+	if (!reserve(s)) { /* out of memory: one long section instead of two */
+		if (s->count)
+			begin = s->queue[--s->count].begin;
+		else
 			return;
-		}
-		s->queue = more;
-		s->capacity = capacity;
 	}
-	s->queue[s->count++] = (struct section){ at - s->margin, at + s->margin, 1 };
+	begin = begin < s->taken ? s->taken : begin;
+	s->queue[s->count++] = (struct section){ begin, end, 1 };
 }
 
 void sections_scan(struct sections *s, const double *y1, const double *y2, long long base,
 	size_t n, long long limit)
 {
-	for (; s->next < limit; s->next += s->stride)
-		if (filter_at(s, y1, n, s->next - base) > s->threshold ||
-			filter_at(s, y2, n, s->next - base) > s->threshold)
-			add_trigger(s, s->next);
-	if (s->count && s->queue[s->count - 1].end + s->margin < s->next)
-		s->queue[s->count - 1].open = 0;
+	for (; s->next < limit; s->next += s->stride) {
+		double z = fmax(filter_at(s, y1, n, s->next - base),
+			filter_at(s, y2, n, s->next - base));
+
+		if (z > s->threshold)
+			add_trigger(s, s->next, z);
+	}
+	for (int i = 0; i < s->count; i++)
+		if (s->queue[i].end + s->margin[OCTAVES] < s->next)
+			s->queue[i].open = 0;
 }
 
 int sections_first(const struct sections *s, struct section *section)
@@ -132,6 +170,7 @@ void sections_take(struct sections *s, long long upto)
 {
 	if (s->count == 0)
 		return;
+	s->taken = upto;
 	if (upto < s->queue[0].end || s->queue[0].open) {
 		s->queue[0].begin = upto;
 		return;
@@ -141,8 +180,8 @@ void sections_take(struct sections *s, long long upto)
 
 void sections_end(struct sections *s)
 {
-	if (s->count)
-		s->queue[s->count - 1].open = 0;
+	for (int i = 0; i < s->count; i++)
+		s->queue[i].open = 0;
 }
 
 long long sections_scanned(const struct sections *s)

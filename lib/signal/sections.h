@@ -1,8 +1,9 @@
 /* sections.h - stretches of a two-sensor record where pulses are
  *
  * One pass of a matched filter, on a grid of 1/24 of the pulse duration, over either
- * channel (noise of variance 1).  Wherever it exceeds the threshold a pulse may be;
- * stretches whose pulses could overlap are one section.
+ * channel (noise of variance 1).  Wherever it exceeds the threshold a pulse may be, which
+ * reaches as far as it can be told from the noise; stretches whose pulses could overlap
+ * are one section.
  */
 #ifndef SIGNAL_SECTIONS_H
 #define SIGNAL_SECTIONS_H
@@ -17,10 +18,10 @@ struct section {
 
 struct sections;
 
-/* threshold in standard deviations of the matched filter; margin in samples is kept on
- * either side of the outermost trigger.  NULL: duration < 4 or no memory. */
+/* threshold in standard deviations of the matched filter; slack in samples is kept on
+ * either side besides what the pulses need.  NULL: duration < 4 or no memory. */
 struct sections *sections_new(
-	const struct shape *shape, double duration, double threshold, long margin);
+	const struct shape *shape, double duration, double threshold, double slack);
 void sections_free(struct sections *s);
 
 /* Leaves out the samples before this one. */

@@ -20,7 +20,6 @@ struct separate {
 	int dense;      /* the rest of this section is not taken apart */
 	int continuing; /* the next window belongs to the same section */
 	long number;
-	long margin;    /* that a section keeps before its first trigger */
 	long long done; /* samples before this one are worked off */
 	struct particle *queue;
 	size_t count, given, capacity;
@@ -122,20 +121,18 @@ static enum separate_status calibrate_now(struct separate *s)
 	s->scene.max_pulses = JOINT_PULSES_MAX;
 	reach = 2 * shape_reach(c->shape) * c->duration;
 	if (s->par.window < (size_t)(6 * reach))
-		s->par.window = s->par.window
-					? (size_t)(6 * reach)
-					: (size_t)(reach + 46 * c->reach * c->duration);
-	/* Equal pulses on both channels reach the threshold of a pair at 1 / sqrt 2 of
-	 * it. */
-	s->margin = (long)(0.6 * reach + fmax(c->delta_max, -c->delta_min));
+		s->par.window = s->par.window ? (size_t)(6 * reach)
+					      : (size_t)(reach + 23 * c->duration);
 	/* What a baseline has to follow in a window must not be too much. */
 	if (c->whitening.low * 2 * (double)s->par.window > JOINT_BASELINE_MAX)
 		s->par.window = (size_t)fmax(
 			3 * reach, JOINT_BASELINE_MAX / (2 * c->whitening.low));
 	if (!tape_start(&s->tape[0], c) || !tape_start(&s->tape[1], c))
 		return SEPARATE_MEMORY;
-	s->sections =
-		sections_new(c->shape, c->duration, 0.65 * sqrt(c->drop), s->margin);
+	/* Equal pulses on both channels reach the threshold of a pair at 1 / sqrt 2 of
+	 * it. */
+	s->sections = sections_new(c->shape, c->duration, 0.65 * sqrt(c->drop),
+		fmax(c->delta_max, -c->delta_min));
 	if (s->sections)
 		sections_skip(s->sections, s->done);
 	s->joint = joint_new();
@@ -573,7 +570,7 @@ static enum separate_status work(struct separate *s)
 		s->dense = s->dense && cut;
 		sections_take(s->sections, cut ? next : section.end);
 	}
-	s->done = sections_scanned(s->sections) - sections_reach(s->sections) - s->margin;
+	s->done = sections_scanned(s->sections) - sections_reach(s->sections);
 	if (sections_first(s->sections, &section) && section.begin < s->done)
 		s->done = section.begin;
 	if (s->done < 0)

@@ -226,6 +226,19 @@ double shape_reach(const struct shape *shape)
 	return shape->reach;
 }
 
+double shape_reach_above(const struct shape *shape, double level)
+{
+	int left = 0, right = shape->cells;
+
+	/* A cell begins with its first coefficient. */
+	while (left < right && fabs(shape->cubic[4 * left]) < level)
+		left++;
+	while (right > left && fabs(shape->cubic[4 * (right - 1)]) < level)
+		right--;
+	return fmax(
+		shape->reach - left * shape->step, right * shape->step - shape->reach);
+}
+
 double shape_energy(const struct shape *shape)
 {
 	return shape->energy;

@@ -30,6 +30,8 @@ struct shape *shape_correct(
 void shape_free(struct shape *shape);
 
 double shape_reach(const struct shape *shape); /* p(s) = 0 for |s| >= reach */
+/* Least grid point from which on |p| stays below level. */
+double shape_reach_above(const struct shape *shape, double level);
 /* Integrals of p^2, p^4 and p'^2 over s. */
 double shape_energy(const struct shape *shape);
 double shape_fourth(const struct shape *shape);

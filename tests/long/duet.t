@@ -56,6 +56,10 @@ scenes 4 40 0.99 1.1 0.005
 # Shape, and lines on top: the bound is that of the fit with the lines known.
 scenes 3 30 0.95 1.3 0.03 --pulse gauss
 scenes 3 30 0.95 1.3 0.005 --mains 0.5,0.3 --pump 0.4,0.2
+for m in 1 2 3 6; do
+	scenes $m 30 0.95 1.3 0.005 --pulse lorentz
+done
+scenes 3 30 0.95 1.3 0.005 --pulse lorentz --mains 0.5,0.3 --pump 0.4,0.2
 
 # The same, 0.1 s between scenes, through a filter; the bound is that of the white noise
 # before it.  Scenes begin and end 1 s inside the record, since what lies nearer to its edges

@@ -219,7 +219,7 @@ static void test_small(void)
 	ok(peaks == 1 && count_end(count, &peak) == 0, "one pulse, one peak");
 	near(peak.t, 975.25, 0.01, "its place");
 	near(peak.height, 2, 1e-4, "its height");
-	s = sections_new(shape, 100, 3, 60);
+	s = sections_new(shape, 100, 3, 0);
 	sections_scan(s, x, x, 0, N, N);
 	sections_end(s);
 	ok(sections_first(s, &section) && section.begin < 950 && section.end > 1050 &&
@@ -239,6 +239,48 @@ static void test_small(void)
 	shape_free(shape);
 }
 
+/* A pulse with tails reaches as far as it stands out of the noise; a strong one takes a
+ * weak one before it into its section. */
+static void test_sections(void)
+{
+	static double x[N];
+	struct shape *shape = shape_new(PULSE_LORENTZ);
+	struct sections *s = sections_new(shape, 100, 5, 0);
+	struct section first, second;
+	const double strong[2] = { 10, 2000 };
+
+	near(shape_reach_above(shape, 0.01), 1.07, 0.01, "where a tail is a hundredth");
+	near(shape_reach_above(shape, 0), shape_reach(shape), 1e-9, "and where it ends");
+	for (int k = 0; k < 2; k++) {
+		struct joint_scene scene = {
+			.shape = shape, .duration = 100, .transit = 200, .gain = 1
+		};
+		struct joint_pulse weak = { .t = 1000, .a = 5 },
+				   other = { .t = 1450, .a = strong[k] };
+
+		memset(x, 0, sizeof x);
+		joint_add(&scene, &weak, 1, x, NULL, N);
+		joint_add(&scene, &other, 1, x, NULL, N);
+		sections_free(s);
+		s = sections_new(shape, 100, 5, 0);
+		for (long long upto = 0; upto < N; upto += 100)
+			sections_scan(s, x, x, 0, N, upto);
+		sections_end(s);
+		ok(sections_first(s, &first) && first.begin < 900 && !first.open,
+			"a section from the weak pulse on");
+		sections_take(s, first.end);
+		if (k == 0)
+			ok(first.end < 1200 && sections_first(s, &second) &&
+					second.begin > first.end && second.end > 1550,
+				"and one of another weak one");
+		else
+			ok(first.end > 1900 && !sections_first(s, &second),
+				"with the strong one in it");
+	}
+	sections_free(s);
+	shape_free(shape);
+}
+
 int main(void)
 {
 	test_shape(PULSE_SINE, "sine pulse from its table");
@@ -249,5 +291,6 @@ int main(void)
 	test_tones();
 	test_tone_values();
 	test_small();
+	test_sections();
 	return tap_done();
 }
