@@ -483,7 +483,7 @@ static enum calibrate_status look_again(const struct calibrate_par *par, const d
 }
 
 /* Durations of a pulse times the frequency above which it has hardly any power. */
-static const double PULSE_BAND = 4;
+static const double PULSE_BAND = 10;
 
 /* Is the noise white after all?  Where hardly anything is quiet, pulses stand for colour.
  * Then they fit as well as in white noise, or tolerably, and noise is white above their
@@ -491,7 +491,8 @@ static const double PULSE_BAND = 4;
 static int is_white(const struct calibration *c, const struct look *look)
 {
 	return c->chi2 < 1.2 ||
-	       (c->chi2 < 4 && colour_is_white(look->power, PULSE_BAND / c->duration));
+	       (c->chi2 < 4 && colour_is_white(look->power,
+				       fmin(PULSE_BAND / c->duration, 0.25)));
 }
 
 /* Power of a tone, in units of noise^2, that tails of pulses may be taken for. */
