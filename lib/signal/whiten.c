@@ -9,6 +9,13 @@
 static const double pi = 3.14159265358979323846;
 static const double least_power = 2.5e-5; /* (1/200)^2 */
 
+/* The same for measured power, where leakage from other frequencies sets an end. */
+static const double least_measured = 5e-3;
+
+/* Rise of measured power over two of its frequencies, from the first on, that is too
+ * steep to be known: of what is below nothing can be made good. */
+static const double steep = 0.18;
+
 /* Share that is kept of frequencies from 0 at edge lost to 1 at edge whole. */
 static double taper(double f, double lost, double whole)
 {
@@ -181,7 +188,7 @@ int whitening_of_noise(
 	struct whitening *w, const double *power, size_t n, enum whiten_kind kind)
 {
 	enum { FINER = 8 };
-	size_t fine = FINER * (n - 1) + 1;
+	size_t fine = FINER * (n - 1) + 1, first = 0;
 	double *between = malloc(fine * sizeof *between), most = 0;
 	int ok;
 
@@ -190,13 +197,18 @@ int whitening_of_noise(
 		return 0;
 	for (size_t k = 0; k < n; k++)
 		most = fmax(most, power[k]);
+	if (n > 3 && power[1] < steep * power[3])
+		first = 2;
 	for (size_t k = 0; k < fine; k++) {
 		size_t from = k / FINER, to = from + 1 < n ? from + 1 : from;
 		double part = (double)(k % FINER) / FINER;
 		double least = 1e-12 * most;
 
-		between[k] = pow(fmax(power[from], least), 1 - part) *
-			     pow(fmax(power[to], least), part);
+		if (from < first || power[from] < least_measured * most)
+			between[k] = 0;
+		else
+			between[k] = pow(power[from], 1 - part) *
+				     pow(fmax(power[to], least), part);
 	}
 	ok = whitening_make(w, between, fine, most, (int)(2 * n), kind);
 	free(between);
