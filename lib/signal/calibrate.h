@@ -70,6 +70,7 @@ enum calibrate_status {
 	CALIBRATE_SILENT_1, /* channel 1 is constant */
 	CALIBRATE_SILENT_2,
 	CALIBRATE_NO_LAG, /* the channels have nothing in common */
+	CALIBRATE_FAR,    /* the lag given is as long as the record */
 	CALIBRATE_FAST,   /* pulses of fewer than 8 samples */
 	CALIBRATE_SLOW    /* pulses longer than an eighth of the record */
 };
@@ -90,11 +91,5 @@ void calibration_scene(const struct calibration *c, struct joint_scene *scene);
  * Fields, 1981), u^2 being the threshold.  width: range of delays in samples. */
 double calibrate_drop(double rate, const struct shape *shape, double duration,
 	double gain, double width);
-
-/* Takes tones (and the mean) from a whole record; *change receives the mean square change
- * of their coefficients from hop to hop, INFINITY where there is but one, power[k] that
- * of tone k.  Returns 0 when out of memory. */
-int calibrate_clean(const struct calibration *c, double *x, size_t n, double *change,
-	double power[TONES_MAX]);
 
 #endif

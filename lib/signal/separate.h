@@ -89,6 +89,7 @@ enum separate_status {
 	SEPARATE_SILENT_1,
 	SEPARATE_SILENT_2,
 	SEPARATE_NO_LAG,
+	SEPARATE_FAR, /* the lag given is as long as what is learned from */
 	SEPARATE_FAST,
 	SEPARATE_SLOW
 };

@@ -1,0 +1,22 @@
+/* matched.h - what the matched filter of the pulse tells about a record as a whole
+ *
+ * y1, y2 hold n aligned samples in units of the noise, work n more.
+ */
+#ifndef SIGNAL_MATCHED_H
+#define SIGNAL_MATCHED_H
+
+#include "signal/calibrate.h"
+#include <stddef.h>
+
+/* Correlation of the filtered channels over the quietest tenth of the record: noise has
+ * none, pulses that are always there have much.  *level is the root mean square there, 1
+ * for white noise. */
+double matched_coherence(const struct calibration *c, const double *y1, const double *y2,
+	size_t n, double *work, double *level);
+
+/* Standard deviation of white noise that would have the same effect on the matched
+ * filter as the noise there is; for records that have been filtered before. */
+double matched_noise(
+	const struct calibration *c, const double *y, size_t n, double *work);
+
+#endif
