@@ -18,9 +18,9 @@ static double bin = 10e-6, confidence = 0.95;
 static long realisations, bootstrap, seed = 1;
 static const char *summary_path;
 
-static const struct opt opts[] = { { 'o', "output", OPT_WORD, UNIT_NONE, &output, 0, 0,
-					   "fits|steps|sizes|aspects", "what to print",
-					   outputs, 0 },
+static const struct opt opts[] = {
+	{ 'o', "output", OPT_WORD, UNIT_NONE, &output, 0, 0, "fits|steps|sizes|aspects",
+		"what to print", outputs, 0 },
 	{ 'd', "diameter", OPT_LIST, UNIT_LENGTH, &diameters, 0, 1e30, "LO:HI",
 		"only particles of this equivalent diameter", NULL, 0 },
 	{ 't', "truncated", OPT_FLAG, UNIT_NONE, &truncated, 0, 0, NULL,
@@ -44,7 +44,8 @@ static const struct opt opts[] = { { 'o', "output", OPT_WORD, UNIT_NONE, &output
 		"realisations there were, with those that gave no particle", NULL, 0 },
 	{ 'U', "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
 		"summary of debrisgen, to know of steps without particles", NULL, 0 },
-	OPT_END };
+	OPT_END,
+};
 
 static const struct prog prog = { "debrisstat",
 	"Fit and count the wear particles of an ensemble.", "[file]",
@@ -237,9 +238,9 @@ static void print_aspects(const struct ensemble *e, const char *cmd)
 
 static void check_options(void)
 {
-	if (diameters.n != 2 || diameters.v[0] >= diameters.v[1])
+	if (diameters.v[0] >= diameters.v[1])
 		die(EXIT_USAGE, "--diameter wants LO:HI with LO below HI");
-	if (range.n > 2 || (range.n == 2 && range.v[0] > range.v[1]))
+	if (range.n == 2 && range.v[0] > range.v[1])
 		die(EXIT_USAGE, "--step wants A or A:B with A not above B");
 	for (int k = 1; k < edges.n; k++)
 		if (edges.v[k] <= edges.v[k - 1])

@@ -1,6 +1,7 @@
 /* duet - wear particles from the record of two inductive sensors */
 #include "instrument.h"
 #include "methods.h"
+#include "shell/files.h"
 #include "shell/msg.h"
 #include "shell/opt.h"
 #include "shell/signals.h"
@@ -15,7 +16,7 @@ enum { METHOD_FIT, METHOD_DUET, METHOD_CNN, METHOD_COUNT };
 static int method = METHOD_FIT;
 static long window = 64, hop, sensor = 1;
 static struct opt_choice sources = { 0, 0 };
-static double kappa = 3.14159265358979323846 / 4 * 1e11; /* as sensorsim(1) */
+static double kappa = M_PI / 4 * 1e11; /* as sensorsim(1) */
 static double spacing = 0.25, learn = NAN, latency = NAN, floor_height = NAN;
 static const char *separated, *histogram, *sections, *network_file;
 static const char *const methods[] = { "fit", "duet", "cnn", "count", NULL };
@@ -90,18 +91,16 @@ static size_t to_samples(double time, double rate)
 
 static struct network *read_network(void)
 {
-	FILE *f = fopen(network_file, "r");
+	const char *name;
+	FILE *f = file_open(network_file, &name);
 	struct netfile file;
-	struct network *net;
+	struct network *net = netfile_read(f, 1, &file);
 
-	if (!f)
-		die(EXIT_RUN, "%s:", network_file);
-	net = netfile_read(f, 1, &file);
 	if (!net)
-		die(EXIT_RUN, "%s: line %ld: %s", network_file, file.line, file.why);
+		die(EXIT_RUN, "%s: line %ld: %s", name, file.line, file.why);
 	if (strcmp(file.purpose, "arrivals") != 0 || !cnn_suits(net))
-		die(EXIT_RUN, "%s: want a network for arrivals, got one for %s",
-			network_file, file.purpose);
+		die(EXIT_RUN, "%s: want a network for arrivals, got one for %s", name,
+			file.purpose);
 	free(file.cmd);
 	fclose(f);
 	return net;

@@ -49,8 +49,8 @@ struct opt filtering_rows[] = {
 
 void filtering_check(void)
 {
-	if (range.n == 1 || (range.n == 2 && range.v[0] > range.v[1]))
-		die(EXIT_USAGE, "--order-range: want LO:HI");
+	if (range.n == 2 && range.v[0] > range.v[1])
+		die(EXIT_USAGE, "--order-range wants LO:HI with LO not above HI");
 }
 
 struct adaptive *filtering_new(int unit)

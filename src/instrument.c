@@ -11,9 +11,9 @@ struct instrument instrument = { .false_alarm = 1e-9 };
 static const char *const pulses[] = { "auto", "sine", "gauss", "lorentz", NULL };
 static const char *const automatic[] = { "auto", NULL };
 
-struct opt instrument_rows[] = { { 'p', "shape", OPT_WORD, UNIT_NONE, &instrument.pulse,
-					 0, 0, "auto|sine|gauss|lorentz",
-					 "shape of a pulse", pulses, 0 },
+struct opt instrument_rows[] = {
+	{ 'p', "shape", OPT_WORD, UNIT_NONE, &instrument.pulse, 0, 0,
+		"auto|sine|gauss|lorentz", "shape of a pulse", pulses, 0 },
 	{ 't', "pulse-duration", OPT_CHOICE, UNIT_TIME, &instrument.duration, 1e-12, 1e9,
 		"auto|T", "duration of a pulse of the mean particle", automatic, 0 },
 	{ 'g', "gain", OPT_CHOICE, UNIT_NONE, &instrument.gain, 1e-6, 1e6, "auto|G",
@@ -27,7 +27,8 @@ struct opt instrument_rows[] = { { 'p', "shape", OPT_WORD, UNIT_NONE, &instrumen
 	{ 'u', "undo", OPT_TEXT, UNIT_NONE, &instrument.undo, 0, 0, "auto|none|FILE",
 		"taps of the filter the record has passed (auto: as it says itself)", 0,
 		0 },
-	OPT_END };
+	OPT_END,
+};
 
 static double number(const struct opt_choice *c)
 {
@@ -144,7 +145,7 @@ struct calibrate_par instrument_par(double rate, const char *passed)
 			die(EXIT_RUN, "--lines: %g Hz is above half the rate, %g Hz",
 				lines->v[i], rate / 2);
 		if (lines->v[i] > 0)
-			par.omega[par.tones++] = 2 * acos(-1) * lines->v[i] / rate;
+			par.omega[par.tones++] = 2 * M_PI * lines->v[i] / rate;
 	}
 	return par;
 }

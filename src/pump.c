@@ -17,9 +17,9 @@ struct pump pump = { .pair = { .area = 2346.3e-6,
 	.radii = { .n = 4 },
 	.ports = { 2, { 0.15e6, 21e6 } } };
 
-struct opt pump_threshold_rows[] = { { 'g', "threshold-gap", OPT_NUM, UNIT_LENGTH,
-					     &pump.pair.threshold_gap, 1e-12, 1, "H",
-					     "failure at this gap", 0, 0 },
+struct opt pump_threshold_rows[] = {
+	{ 'g', "threshold-gap", OPT_NUM, UNIT_LENGTH, &pump.pair.threshold_gap, 1e-12, 1,
+		"H", "failure at this gap", 0, 0 },
 	{ 'Q', "threshold-leakage", OPT_NUM, UNIT_FLOW, &pump.pair.threshold_leakage,
 		1e-15, 1e3, "Q",
 		"failure at this leakage of the pump [2.8 L/min if no threshold is given]",
@@ -32,10 +32,12 @@ struct opt pump_threshold_rows[] = { { 'g', "threshold-gap", OPT_NUM, UNIT_LENGT
 		1e-12, 1, "P", "their share, by number, at failure", 0, 0 },
 	{ 'b', "sizes", OPT_WORD, UNIT_NONE, &pump.per_step, 0, 0, "all|step",
 		"share among all particles so far or those of a step", size_sets, 0 },
-	OPT_END };
+	OPT_END,
+};
 
-struct opt pump_face_rows[] = { { 'A', "area", OPT_NUM, UNIT_AREA, &pump.pair.area, 1e-18,
-					1e6, "A", "nominal contact area", 0, 0 },
+struct opt pump_face_rows[] = {
+	{ 'A', "area", OPT_NUM, UNIT_AREA, &pump.pair.area, 1e-18, 1e6, "A",
+		"nominal contact area", 0, 0 },
 	{ 'B', "fragment-area", OPT_NUM, UNIT_AREA, &pump.fragment_area, 1e-24, 1e6, "A",
 		"area of a fragment", 0, 0 },
 	{ 'Z', "transition", OPT_NUM, UNIT_FRACTION, &pump.transition, 0, 1, "SHARE",
@@ -52,7 +54,8 @@ struct opt pump_face_rows[] = { { 'A', "area", OPT_NUM, UNIT_AREA, &pump.pair.ar
 		"inlet and outlet pressure", 0, 0 },
 	{ 'm', "viscosity", OPT_NUM, UNIT_VISCOSITY, &pump.pair.leakage.viscosity, 1e-12,
 		1e6, "MU", "dynamic viscosity", 0, 0 },
-	OPT_END };
+	OPT_END,
+};
 
 void pump_init(void)
 {
@@ -65,11 +68,7 @@ void pump_check(void)
 	struct pair *p = &pump.pair;
 	const char *wrong;
 
-	if (pump.radii.n != 4)
-		die(EXIT_USAGE, "--radii: want R1,R2,R3,R4");
 	memcpy(p->leakage.radius, pump.radii.v, sizeof p->leakage.radius);
-	if (pump.ports.n != 2)
-		die(EXIT_USAGE, "--ports: want PIN:POUT");
 	p->leakage.drop = pump.ports.v[1] - pump.ports.v[0];
 	wrong = leakage_check(&p->leakage);
 	if (wrong)

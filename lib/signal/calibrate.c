@@ -10,8 +10,8 @@ double calibrate_drop(double rate, const struct shape *shape, double duration,
 {
 	double lambda =
 		shape_slope_energy(shape) / shape_energy(shape) / (duration * duration);
-	double area = width * lambda * gain / (1 + gain * gain) / pow(2 * acos(-1), 1.5);
-	double edge = sqrt(lambda) / (2 * acos(-1)), lo = 1, hi = 40;
+	double area = width * lambda * gain / (1 + gain * gain) / pow(2 * M_PI, 1.5);
+	double edge = sqrt(lambda) / (2 * M_PI), lo = 1, hi = 40;
 
 	while (hi - lo > 1e-6) {
 		double u = (lo + hi) / 2;
@@ -213,6 +213,6 @@ void calibration_scene(const struct calibration *c, struct joint_scene *scene)
 		.low = c->whitening.low,
 		.lost = measure_lost(c) };
 	for (int k = 0; k < c->tones; k++)
-		if (c->omega[k] * c->duration < 8 * acos(-1) || isinf(c->tone_variance))
+		if (c->omega[k] * c->duration < 8 * M_PI || isinf(c->tone_variance))
 			scene->omega[scene->tones++] = c->omega[k];
 }

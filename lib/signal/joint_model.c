@@ -123,8 +123,8 @@ static void make_basis(struct joint *j, const struct joint_scene *s)
 
 	j->basis = 0;
 	for (int k = 1; k <= slow; k++) {
-		add_to_basis(j, cos, acos(-1) * k / n, 1);
-		add_to_basis(j, sin, acos(-1) * k / n, 1);
+		add_to_basis(j, cos, M_PI * k / n, 1);
+		add_to_basis(j, sin, M_PI * k / n, 1);
 	}
 	j->slow = j->basis;
 	if (s->offset)

@@ -323,8 +323,7 @@ static void smooth(double *x, double *work, int n, int reach)
 		x[i] = 0;
 		for (int k = -reach; k <= reach; k++)
 			if (i + k >= 0 && i + k < n)
-				x[i] += work[i + k] *
-					(1 + cos(acos(-1) * k / (reach + 1))) /
+				x[i] += work[i + k] * (1 + cos(M_PI * k / (reach + 1))) /
 					(2 * reach + 2);
 	}
 }

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
 static const double least_power = 2.5e-5; /* (1/200)^2 */
 
 /* The same for measured power, where leakage from other frequencies sets an end. */
@@ -21,7 +20,7 @@ static double taper(double f, double lost, double whole)
 {
 	double u = (f - lost) / (whole - lost);
 
-	return u <= 0 ? 0 : u >= 1 ? 1 : 0.5 - 0.5 * cos(pi * u);
+	return u <= 0 ? 0 : u >= 1 ? 1 : 0.5 - 0.5 * cos(M_PI * u);
 }
 
 /* Bins around the strongest where the power does not fall below the least. */
