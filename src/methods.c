@@ -17,6 +17,8 @@ static void check_status(
 		[SEPARATE_SILENT_2] = "channel 2 is constant: a dead sensor",
 		[SEPARATE_FAR] = "--align is as long as what is learned from: --learn "
 				 "from more of the record",
+		[SEPARATE_NARROW] = "the filter it has passed leaves too narrow a band "
+				    "to tell pulses",
 		[SEPARATE_FAST] = "no pulse of at least 8 samples found: give "
 				  "--pulse-duration or sample faster",
 		[SEPARATE_SLOW] = "pulses as long as the record: --learn from more of it",

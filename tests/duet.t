@@ -262,6 +262,8 @@ head -c 32000 s.au >cut.au
 fails "a record cut inside a frame" 1 'cut' duet "$work/cut.au"
 fails "empty input" 1 . duet /dev/null
 fails "too little to learn from" 1 "10 samples at 10000 Hz, want at least 64" duet --learn 1ms s.au
+bpfilter -b 95:105 -n 800 s.au >tight.au
+fails "a filter that leaves too little of the pulses" 1 "too narrow a band" duet tight.au
 fails "a lag as long as the record" 1 "align is as long as what is learned from" duet --align 10s s.au
 fails "method" 2 'method' duet -m best s.au
 fails "odd window" 2 'even' duet -m duet -w 63 s.au

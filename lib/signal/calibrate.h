@@ -71,8 +71,9 @@ enum calibrate_status {
 	CALIBRATE_SILENT_2,
 	CALIBRATE_NO_LAG, /* the channels have nothing in common */
 	CALIBRATE_FAR,    /* the lag given is as long as the record */
+	CALIBRATE_NARROW, /* the filter has left a band narrower than half the pulse's */
 	CALIBRATE_FAST,   /* pulses of fewer than 8 samples */
-	CALIBRATE_SLOW    /* pulses longer than an eighth of the record */
+	CALIBRATE_SLOW    /* pulses longer than half the record */
 };
 
 /* x1, x2: n >= 64 finite samples.  On CALIBRATE_OK *c is filled; free it with

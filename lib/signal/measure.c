@@ -14,6 +14,10 @@ static const double MISFIT = 3e-4, DENSE_MISFIT = 0.01, FILTERED_MISFIT = 0.15;
 /* Chi-square per degree of freedom of pulses that are not understood. */
 static const double BAD_FIT = 4;
 
+/* Band of a filter, over one cycle per duration of a pulse, that tells too little of it:
+ * what it leaves rings on, and others fit into that. */
+static const double NARROW = 0.5;
+
 /* The record while it is measured: aligned from some point on, then in units of the
  * noise. */
 struct record {
@@ -239,6 +243,9 @@ static enum calibrate_status find_duration(const struct calibrate_par *par,
 		isnan(par->duration) ? learn_duration(c->pulse, rec->low) : par->duration;
 	if (!learn_set_shape(c, c->pulse))
 		return CALIBRATE_MEMORY;
+	if (c->whitening.tap &&
+		(c->whitening.high - c->whitening.low) * c->duration < NARROW)
+		return CALIBRATE_NARROW;
 	if (!(c->duration >= 8))
 		return CALIBRATE_FAST;
 	return c->duration > 0.5 * length ? CALIBRATE_SLOW : CALIBRATE_OK;

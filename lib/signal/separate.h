@@ -89,7 +89,8 @@ enum separate_status {
 	SEPARATE_SILENT_1,
 	SEPARATE_SILENT_2,
 	SEPARATE_NO_LAG,
-	SEPARATE_FAR, /* the lag given is as long as what is learned from */
+	SEPARATE_FAR,    /* the lag given is as long as what is learned from */
+	SEPARATE_NARROW, /* a filter has left too little of the pulses */
 	SEPARATE_FAST,
 	SEPARATE_SLOW
 };
