@@ -17,7 +17,8 @@
 #
 # Another table is of records that passed a filter, and of coloured noise, beside the
 # raw record (build/bench/signal-filter.tsv): 100 particles in 16 s at 30 dB; found and false,
-# delay error over the bound, bias of the size in per cent, median seconds of three runs.
+# delay error over the bound, bias of the size in per cent (its amount), seconds; each the
+# median of five records.
 #
 # SCENES sets the number of scenes (100).
 set -eu
@@ -90,36 +91,44 @@ done
 
 cp all.tsv "$out/signal.tsv"
 
-# filtered NAME UNDO: one row for s.au
+# filtered NAME UNDO [ORDER [sensorsim-options]]: one row; ORDER is of bpfilter or empty
 filtered() {
-	for _ in 1 2 3; do
-		duet -S stats.tsv -u "$2" s.au >found.tsv
+	name=$1
+	undo=$2
+	order=${3-}
+	[ $# -gt 3 ] && shift 3 || shift $#
+	for seed in 1 2 3 4 5; do
+		sensorsim --seed $seed --uniform 80um:120um --number 100 --start 1s --span 14s \
+			--duration 16s --gap 20ms --snr 30dB --lag 0.2ms:0.5ms --gain 0.909 \
+			--truth truth.tsv "$@" >s.au
+		if [ -n "$order" ]; then
+			# shellcheck disable=SC2086 # options are words
+			bpfilter -z -b $order s.au >passed.au
+			mv passed.au s.au
+		fi
+		duet -S stats.tsv -u "$undo" s.au >found.tsv
+		"$top/scripts/score" truth.tsv found.tsv >score.tsv
+		for c in matched false delay_ratio size_bias; do
+			printf '%s\t' "$(column $c score.tsv)"
+		done
 		column cpu_seconds stats.tsv
-	done | sort -g >seconds
-	"$top/scripts/score" truth.tsv found.tsv >score.tsv
-	awk -v name="$1" -v undo="$2" -v found="$(column matched score.tsv)" \
-		-v false="$(column false score.tsv)" -v ratio="$(column delay_ratio score.tsv)" \
-		-v bias="$(column size_bias score.tsv)" -v s="$(sed -n 2p seconds)" 'BEGIN {
-			OFS = "\t"
-			print name, undo, found, false, ratio, bias == "nan" ? bias : bias * 100, s }'
-}
-record() { # sensorsim-options
-	sensorsim --uniform 80um:120um --number 100 --start 1s --span 14s --duration 16s --gap 20ms \
-		--snr 30dB --lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv "$@"
+	done >rows
+	printf '%s\t%s' "$name" "$undo"
+	for k in 1 2 3 4 5; do
+		cut -f $k rows | sed 's/^-//' | sort -g | sed -n 3p |
+			awk -v k=$k '{ printf "\t%s", k == 4 && $1 != "nan" ? $1 * 100 : $1 }'
+	done
+	echo
 }
 {
 	printf 'record\tundo\tfound\tfalse\tratio\tbias\tseconds\n'
-	record >s.au
 	filtered raw auto
 	for order in '70:130 -n 200' '20:1000 -n 1000' '0:3000 -n 200'; do
-		# shellcheck disable=SC2086 # options are words
-		record | bpfilter -z -b $order >s.au
-		filtered "${order%% *}" auto
-		filtered "${order%% *}" none
+		filtered "${order%% *}" auto "$order"
+		filtered "${order%% *}" none "$order"
 	done
 	for corner in 500 1000 3000; do
-		record --corner "$corner" >s.au
-		filtered "corner $corner" auto
+		filtered "corner $corner" auto '' --corner "$corner"
 	done
 } | tee "$out/signal-filter.tsv"
 if [ -x "$out/demix" ]; then
