@@ -136,6 +136,8 @@ within "a filter of 4001 taps, its inverse longer than the record" "18 to 20 par
 within "a filter of 4001 taps, its inverse longer than the record" "no other" 0 0 "$(score false)"
 within "a filter of 4001 taps, its inverse longer than the record" "delays to 0.06 samples" 0 6e-6 \
 	"$(score delay_rms)"
+bpfilter -z -b 95:105 -n 800 s.au >filtered.au
+refused "a tenth of the band of the pulses left" 1 "too narrow a band" duet filtered.au
 # A low-pass of one pole delays low frequencies more than high ones: no filter that is undone.
 for share in 0.5 0.1 0.03; do
 	frames s.au 2 | awk -v a=$share '{ x += a * ($1 - x); y += a * ($2 - y)
