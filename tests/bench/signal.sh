@@ -96,7 +96,7 @@ filtered() {
 	name=$1
 	undo=$2
 	order=${3-}
-	[ $# -gt 3 ] && shift 3 || shift $#
+	shift $(($# < 3 ? $# : 3))
 	for seed in 1 2 3 4 5; do
 		sensorsim --seed $seed --uniform 80um:120um --number 100 --start 1s --span 14s \
 			--duration 16s --gap 20ms --snr 30dB --lag 0.2ms:0.5ms --gain 0.909 \
