@@ -152,8 +152,9 @@ struct calibrate_par instrument_par(double rate, const char *passed)
 
 void instrument_note(const struct calibration *c, double rate)
 {
-	note("align %g s, pulse %s of %g s, gain %g, noise %g and %g V, %d lines, learned from "
+	note("align %g s, pulse %s of %g s%s, gain %g, noise %g and %g V, %d lines, learned from "
 	     "%d pulses",
 		(double)c->shift / rate, pulses[c->pulse + 1], c->duration / rate,
-		c->gain, c->noise[0], c->noise[1], c->tones, c->events);
+		c->corrected ? ", corrected" : "", c->gain, c->noise[0], c->noise[1],
+		c->tones, c->events);
 }

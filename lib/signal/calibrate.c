@@ -118,6 +118,9 @@ static enum calibrate_status look_again(const struct calibrate_par *par, const d
 	return attempt_kind(par, x1, x2, n, found, look, c);
 }
 
+/* Chi-square per degree of freedom of clear pulses that asks for a second look. */
+static const double DOUBTFUL = 1.2;
+
 /* Durations of a pulse times the frequency above which it has hardly any power. */
 static const double PULSE_BAND = 10;
 
@@ -126,16 +129,17 @@ static const double PULSE_BAND = 10;
  * band. */
 static int is_white(const struct calibration *c, const struct look *look)
 {
-	return c->chi2 < 1.2 ||
+	return c->chi2 < DOUBTFUL ||
 	       (c->chi2 < 4 && colour_is_white(look->power,
 				       fmin(PULSE_BAND / c->duration, 0.25)));
 }
 
-/* Power of a tone, in units of noise^2, that tails of pulses may be taken for. */
-static const double TAILS = 4;
+/* Power of a tone, in units of noise^2, that tails of pulses may be taken for, and the
+ * share of its power that a line changes by from hop to hop. */
+static const double TAILS = 4, STEADY = 0.3;
 
-/* The tails of a regular train of pulses have lines, too, which a robust fit may see.  Is
- * the record better described without the weak ones that were found? */
+/* A regular train of pulses has lines, too, which a robust fit may see: by the tails weak
+ * ones, or for as long as it lasts.  Is the record better described without? */
 static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct look *look,
 	struct calibration *c)
@@ -148,7 +152,7 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 
 	fewer.tones = 0;
 	for (int k = 0; k < c->tones; k++)
-		if (c->tone_power[k] > TAILS)
+		if (c->tone_power[k] > fmax(TAILS, c->tone_variance / STEADY))
 			fewer.omega[fewer.tones++] = c->omega[k];
 	if (fewer.tones == c->tones)
 		return CALIBRATE_OK;
@@ -181,8 +185,7 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 	if (par->filter && !whitening_of_filter(&w, par->filter, par->filter_taps))
 		return CALIBRATE_MEMORY;
 	status = attempt(par, x1, x2, n, &w, c, &look);
-	if (status == CALIBRATE_OK && par->tones == CALIBRATE_FIND_TONES && !w.tap &&
-		!c->dense)
+	if (status == CALIBRATE_OK && par->tones == CALIBRATE_FIND_TONES && !w.tap)
 		status = try_fewer_tones(par, x1, x2, n, &look, c);
 	if (status == CALIBRATE_OK && look.coloured && !c->dense && !is_white(c, &look))
 		status = look_again(par, x1, x2, n, &look, c);

@@ -49,7 +49,8 @@ struct calibration {
 	double noise[2];            /* standard deviations, before any filter */
 	double rest[2]; /* of these, power left by the pulses the shape was fitted to */
 	struct shape *shape;
-	int pulse;             /* which of enum pulse_shape */
+	int pulse;             /* which of enum pulse_shape, ... */
+	int corrected;         /* ... 1: with what all pulses had besides */
 	double duration, gain; /* as above */
 	double transit;        /* samples between the sensors; INFINITY if unknown */
 	double delta_min, delta_max; /* samples around shift */

@@ -97,7 +97,7 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 	const double *y1, const double *y2, size_t n, struct joint_pulse *pulses, int *m,
 	struct joint_result *result)
 {
-	enum { TRIES = 3 };
+	enum { TRIES = 3 + JOINT_PULSES_MAX / 8 };
 	enum joint_status status = joint_start(j, s, y1, y2, n, pulses, *m);
 	struct candidate tried[TRIES];
 	int failed = 0;
@@ -107,7 +107,7 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 		return status;
 	chi2 = joint_fit_all(j, s, pulses, *m);
 	do {
-		while (failed < TRIES && *m < s->max_pulses) {
+		while (failed < 3 + *m / 8 && *m < s->max_pulses) {
 			struct candidate c = search(j, s, tried, failed);
 
 			if (c.z2 < 0.3 * s->drop_near)

@@ -7,12 +7,12 @@
 #include <math.h>
 #include <string.h>
 
-/* Share of a pulse's energy that its shape may leave, see joint.h: as found, where pulses
- * crowd, where the shape is that of before a filter. */
-static const double MISFIT = 3e-4, DENSE_MISFIT = 0.01, FILTERED_MISFIT = 0.15;
+/* Share of a pulse's energy that its shape may leave, see joint.h, where no lag tells how
+ * long a pulse is, and where the shape is that of before a filter. */
+static const double UNKNOWN_MISFIT = 3e-4, FILTERED_MISFIT = 0.15;
 
 /* Chi-square per degree of freedom of pulses that are not understood. */
-static const double BAD_FIT = 4;
+static const double BAD_FIT = 2;
 
 /* Band of a filter, over one cycle per duration of a pulse, that tells too little of it:
  * what it leaves rings on, and others fit into that. */
@@ -343,7 +343,6 @@ static enum calibrate_status judge(
 		return CALIBRATE_NO_LAG;
 	if (c->chi2 > BAD_FIT && is_dense(rec, c)) {
 		c->dense = 1;
-		c->misfit = DENSE_MISFIT;
 		set_range(par, c);
 	} else if (c->chi2 > BAD_FIT && !c->whitening.tap && !c->suspect) {
 		status = learn_filtered(par, rec, c);
@@ -371,7 +370,7 @@ enum calibrate_status measure(const struct calibrate_par *par, double *y1, doubl
 	if (status != CALIBRATE_OK)
 		return status;
 	c->gain = isnan(par->gain) ? first_gain(&rec, c) : par->gain;
-	c->misfit = MISFIT;
+	c->misfit = isinf(c->transit) ? UNKNOWN_MISFIT : 0;
 	normalise(&rec, c);
 	if (!c->whitening.tap)
 		c->suspect = has_colour(rec.y1, rec.y2, rec.n, look);

@@ -1,5 +1,6 @@
 /* separate.c - see separate.h */
 #include "signal/separate.h"
+#include "signal/judge.h"
 #include "signal/sections.h"
 #include "signal/tape.h"
 #include <math.h>
@@ -10,6 +11,7 @@ struct separate {
 	struct separate_par par;
 	struct calibration cal;
 	int calibrated, ended;
+	int looked, crowded; /* at the first stretch: too many pulses in long sections */
 	struct tape tape[2];
 	struct sections *sections;
 	struct joint *joint;
@@ -17,6 +19,8 @@ struct separate {
 	struct joint_scene scene;
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
 	int carried;    /* pulses of the last window that the next one starts from */
+	long long span; /* longest window in this section; 0: as given */
+	int failures;   /* windows unresolved, one after the other */
 	int dense;      /* the rest of this section is not taken apart */
 	int continuing; /* the next window belongs to the same section */
 	long number;
@@ -257,38 +261,6 @@ static double choose_cut(const struct separate *s, int m, size_t n)
 	return cut;
 }
 
-/* What hides several pulses in one shows as a chi-square that the model, which holds for
- * the record as a whole, cannot explain. */
-static enum separate_verdict judge(
-	const struct separate *s, const struct joint_result *r, int sources)
-{
-	double chi2 = r->chi2 / (double)r->dof, sd = sqrt(2 / (double)r->dof);
-	int model_holds = s->cal.chi2 < 4 || s->cal.dense;
-
-	if (r->full || (chi2 > fmax(1.25, 1.1 + 5 * sd) && sources >= 4 && model_holds))
-		return SEPARATE_UNRESOLVED;
-	if (chi2 > 1.1 + 5 * sd)
-		return SEPARATE_MISFIT;
-	return sources > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
-}
-
-/* Chi-square of the samples before boundary alone: behind it pulses may come in whose
- * middle lies outside the window. */
-static void judge_part(
-	const struct separate *s, double boundary, int done, struct joint_result *r)
-{
-	size_t n = (size_t)boundary;
-
-	r->chi2 = 0;
-	for (int c = 0; c < 2; c++)
-		for (size_t i = 0; i < n; i++)
-			r->chi2 += joint_residual(s->joint, c)[i] *
-				   joint_residual(s->joint, c)[i];
-	r->dof = (long)((1 - s->scene.lost) * 2 * (double)n) - 3 * done;
-	if (r->dof < 1)
-		r->dof = 1;
-}
-
 /* More pulses than this in n samples are not looked for. */
 static int most_pulses(const struct separate *s, size_t n)
 {
@@ -359,16 +331,61 @@ static int guess_pulses(struct separate *s, long long from, size_t n)
 	return m;
 }
 
+/* Gives out the first done of the m pulses fitted to [from, to). */
+static enum separate_status give_pulses(struct separate *s, long long from, long long to,
+	int m, int done, const struct judgement *j)
+{
+	for (int i = 0; i < done; i++)
+		if (!emit_pulse(s, &s->pulse[i], from, m, j->chi2, j->pulse[i]))
+			return SEPARATE_MEMORY;
+	if (!s->par.on_section)
+		return SEPARATE_OK;
+	if (s->par.want_sources && !draw_pulses(s, done, (size_t)(to - from)))
+		return SEPARATE_MEMORY;
+	report_section(s, from, to, done, j->chi2, j->stretch,
+		s->par.want_sources ? s->source : NULL);
+	return SEPARATE_OK;
+}
+
+/* Takes the first done of m pulses out of the record and carries the others into the
+ * next window; returns its first sample. */
+static long long cut_section(
+	struct separate *s, long long from, double boundary, int m, int done)
+{
+	size_t rest = (size_t)(ready(s) - from);
+	double reach = shape_reach(s->cal.shape) * s->cal.duration;
+	long long start = from + (long long)floor(boundary - reach + s->cal.delta_min);
+
+	for (int i = 0; i < done; i++)
+		joint_add(&s->scene, &s->pulse[i], -1, channel_1(s, from),
+			channel_2(s, from), rest);
+	if (start <= from)
+		start = from + 1;
+	s->carried = m - done;
+	for (int i = 0; i < s->carried; i++) {
+		s->pulse[i] = s->pulse[done + i];
+		s->pulse[i].t -= (double)(start - from);
+	}
+	return start;
+}
+
+/* Durations: in shorter windows the pulses cut by their ends would be most. */
+static const double SHORTEST_WINDOW = 10;
+
+/* Windows that stay unresolved one after the other until what is left is given up. */
+enum { PATIENCE = 3 };
+
 /* Works off [from, to) by a joint fit.  With cut, the section goes on: pulses behind
- * the cut are carried into the next window, whose first sample is *next. */
+ * the cut are carried into the next window, whose first sample is *next; from again if
+ * a shorter one, or shot noise, is to be tried. */
 static enum separate_status fit_section(
 	struct separate *s, long long from, long long to, int cut, long long *next)
 {
 	struct joint_result r;
 	size_t n = (size_t)(to - from);
-	double boundary, chi2;
-	enum separate_verdict verdict;
-	int m = s->carried, done = 0, kept = 0;
+	double boundary;
+	struct judgement judgement;
+	int m = s->carried, done = 0, unresolved;
 
 	if (s->par.method == SEPARATE_FIT && s->par.network && m == 0 && !cut)
 		m = guess_pulses(s, from, n);
@@ -384,48 +401,34 @@ static enum separate_status fit_section(
 	boundary = cut ? choose_cut(s, m, n) : INFINITY;
 	while (done < m && s->pulse[done].t < boundary)
 		done++;
-	if (cut)
-		judge_part(s, boundary, done, &r);
-	verdict = judge(s, &r, m);
-	if (verdict == SEPARATE_UNRESOLVED && !s->par.sources) {
+	judge(s->joint, &s->scene, n, s->pulse, m, done, boundary,
+		s->cal.chi2 < 4 || s->cal.dense, &r, &judgement);
+	unresolved = judgement.stretch == SEPARATE_UNRESOLVED && !s->par.sources;
+	if (unresolved && r.full && (double)n > 2 * SHORTEST_WINDOW * s->cal.duration) {
+		s->span = (to - from) / 2;
+		s->carried = 0;
+		*next = from;
+		return SEPARATE_OK;
+	}
+	s->failures = unresolved ? s->failures + 1 : 0;
+	if (unresolved && (!cut || s->failures == PATIENCE)) {
 		s->dense = 1;
 		s->carried = 0;
 		*next = from;
 		return SEPARATE_OK;
 	}
-	chi2 = r.chi2 / (double)r.dof;
-	for (int i = 0; i < done; i++)
-		if (!emit_pulse(s, &s->pulse[i], from, m, chi2, verdict))
+	if (unresolved) {
+		if (dense_section(s, from, from + (long long)boundary) != SEPARATE_OK)
 			return SEPARATE_MEMORY;
-	if (s->par.on_section) {
-		if (s->par.want_sources && !draw_pulses(s, done, n))
-			return SEPARATE_MEMORY;
-		report_section(s, from, to, done, chi2, verdict,
-			s->par.want_sources ? s->source : NULL);
+	} else if (give_pulses(s, from, to, m, done, &judgement) != SEPARATE_OK) {
+		return SEPARATE_MEMORY;
 	}
-	if (cut) {
-		/* What has been given out is taken from the record. */
-		size_t rest = (size_t)(ready(s) - from);
-		long long start = from + (long long)floor(boundary -
-							  shape_reach(s->cal.shape) *
-								  s->cal.duration +
-							  s->cal.delta_min);
-
-		for (int i = 0; i < done; i++)
-			joint_add(&s->scene, &s->pulse[i], -1, channel_1(s, from),
-				channel_2(s, from), rest);
-		if (start <= from)
-			start = from + 1;
-		for (int i = done; i < m; i++) {
-			s->pulse[kept] = s->pulse[i];
-			s->pulse[kept++].t -= (double)(start - from);
-		}
-		*next = start;
-	} else {
-		s->counters.singles += m == 1 && !s->continuing;
-		*next = to;
-	}
-	s->carried = kept;
+	s->counters.singles += !cut && m == 1 && !s->continuing;
+	*next = to;
+	if (cut)
+		*next = cut_section(s, from, boundary, m, done);
+	else
+		s->carried = 0;
 	return SEPARATE_OK;
 }
 
@@ -510,6 +513,20 @@ static enum separate_status mask_section(struct separate *s, long long from, lon
 	return SEPARATE_OK;
 }
 
+/* Pulses per duration that are not worth a try. */
+static const double CROWD = 2.5;
+
+/* Are there too many throughout, by what the voltage of the first stretch tells?  That is
+ * the least they can be. */
+static int is_crowded(struct separate *s, long long from, long long to)
+{
+	struct campbell c;
+
+	campbell_estimate(channel_1(s, from), channel_2(s, from), (size_t)(to - from),
+		s->cal.shape, s->cal.duration, s->scene.gain, &c);
+	return (c.rate - c.rate_se) * s->cal.duration > CROWD;
+}
+
 /* Works off all sections that are whole. */
 static enum separate_status work(struct separate *s)
 {
@@ -522,6 +539,9 @@ static enum separate_status work(struct separate *s)
 	limit = ready(s);
 	if (limit <= s->done)
 		return SEPARATE_OK;
+	if (!s->looked && !s->par.sources)
+		s->crowded = is_crowded(s, s->done, limit);
+	s->looked = 1;
 	sections_scan(s->sections, channel_1(s, s->done), channel_2(s, s->done), s->done,
 		(size_t)(limit - s->done),
 		s->ended ? limit : limit - sections_reach(s->sections));
@@ -533,7 +553,9 @@ static enum separate_status work(struct separate *s)
 		int cut;
 		enum separate_status status;
 
-		longest = (long long)(s->dense ? s->par.learn : s->par.window);
+		longest = s->dense  ? (long long)s->par.learn
+			  : s->span ? s->span
+				    : (long long)s->par.window;
 		cut = to - from > longest;
 		if (cut)
 			to = from + longest;
@@ -552,6 +574,7 @@ static enum separate_status work(struct separate *s)
 			s->counters.sections++;
 		}
 		next = to;
+		s->dense |= cut && s->crowded && s->par.method == SEPARATE_FIT;
 		if (s->dense)
 			status = dense_section(s, from, to);
 		else if (s->par.method == SEPARATE_MASKS)
@@ -562,12 +585,14 @@ static enum separate_status work(struct separate *s)
 		if (status != SEPARATE_OK)
 			return status;
 		s->counters.active += (double)(next - from);
-		if (s->dense && next == from) { /* the same again, as shot noise */
+		if (next == from) { /* the same again, shorter or as shot noise */
 			s->continuing = 1;
 			continue;
 		}
 		s->continuing = cut;
 		s->dense = s->dense && cut;
+		if (!cut)
+			s->span = s->failures = 0;
 		sections_take(s->sections, cut ? next : section.end);
 	}
 	s->done = sections_scanned(s->sections) - sections_reach(s->sections);
