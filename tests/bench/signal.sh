@@ -20,6 +20,10 @@
 # delay error over the bound, bias of the size in per cent (its amount), seconds; each the
 # median of five records.
 #
+# The last is of particles that arrive at random, so many a second (signal-dense.tsv): share
+# of them found, false ones as a share of them, median delay error in samples, bias of the
+# size in per cent, seconds of processor time for 20 s of record.
+#
 # SCENES sets the number of scenes (100).
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
@@ -131,6 +135,26 @@ filtered() {
 		filtered "corner $corner" auto '' --corner "$corner"
 	done
 } | tee "$out/signal-filter.tsv"
+
+{
+	printf 'snr\trate\tfound\tfalse\tdelay\tbias\tseconds\n'
+	for snr in 20 30 40; do
+		for rate in 50 100 150 200 300; do
+			sensorsim --uniform 80um:120um --number $((20 * rate)) --duration 20s \
+				--snr "${snr}dB" --lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv >s.au
+			duet -S stats.tsv s.au >found.tsv
+			"$top/scripts/score" truth.tsv found.tsv >score.tsv
+			awk -v snr=$snr -v rate=$rate -v n="$(column truth score.tsv)" \
+				-v found="$(column matched score.tsv)" \
+				-v false="$(column false score.tsv)" \
+				-v delay="$(column delay_median score.tsv)" \
+				-v bias="$(column size_bias score.tsv)" \
+				-v cpu="$(column cpu_seconds stats.tsv)" 'BEGIN {
+					OFS = "\t"
+					print snr, rate, found / n, false / n, delay * 1e4, bias * 100, cpu }'
+		done
+	done
+} | tee "$out/signal-dense.tsv"
 if [ -x "$out/demix" ]; then
 	"$out/demix" | tee "$out/demix.tsv"
 fi
