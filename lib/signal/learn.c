@@ -159,7 +159,7 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 	struct guess best = { c->pulse, c->duration, c->gain, INFINITY, INFINITY };
 	enum calibrate_status status = CALIBRATE_OK;
 
-	for (int k = 0; k < 3 && status == CALIBRATE_OK; k++)
+	for (int k = 0; k < (c->whitening.tap ? 1 : 3) && status == CALIBRATE_OK; k++)
 		for (int p = PULSE_SINE; p <= PULSE_LORENTZ; p++) {
 			double duration = isnan(par->duration)
 						  ? factor[k] * learn_duration(p, low)
@@ -211,7 +211,7 @@ static enum calibrate_status converge(
 		before = c->chi2;
 		c->chi2 = examples_fit(ex, fmax(0.01 * pow(0.3, k), ex->share));
 		c->price = ex->price;
-		if (k > 1 && c->suspect && c->chi2 > HOPELESS)
+		if ((k > 1 || c->whitening.tap) && c->suspect && c->chi2 > HOPELESS)
 			break;
 		tune(par, ex, step, 2);
 		moved = fabs(log(ex->scene.duration / c->duration));
