@@ -7,7 +7,8 @@
  * The order is: tones from the periodogram; noise from the fourth difference; lag from
  * the cross-correlation; duration from the lag at which the autocorrelation is lowest
  * (which superposition does not change); then joint fits of the clearest sections under
- * each shape, with duration and gain chosen by least chi-square.
+ * each shape, with duration and gain chosen by least chi-square, and a correction of the
+ * shape where all pulses ask for it.
  */
 #ifndef SIGNAL_CALIBRATE_H
 #define SIGNAL_CALIBRATE_H
