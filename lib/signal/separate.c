@@ -369,8 +369,11 @@ static long long cut_section(
 	return start;
 }
 
-/* Durations: in shorter windows the pulses cut by their ends would be most. */
-static const double SHORTEST_WINDOW = 10;
+/* Samples: in shorter windows the pulses cut by their ends would be most. */
+static double shortest_window(const struct separate *s)
+{
+	return fmax(10, 6 * shape_reach(s->cal.shape)) * s->cal.duration;
+}
 
 /* Windows that stay unresolved one after the other until what is left is given up. */
 enum { PATIENCE = 3 };
@@ -404,7 +407,7 @@ static enum separate_status fit_section(
 	judge(s->joint, &s->scene, n, s->pulse, m, done, boundary,
 		s->cal.chi2 < 4 || s->cal.dense, &r, &judgement);
 	unresolved = judgement.stretch == SEPARATE_UNRESOLVED && !s->par.sources;
-	if (unresolved && r.full && (double)n > 2 * SHORTEST_WINDOW * s->cal.duration) {
+	if (unresolved && r.full && (double)n > 2 * shortest_window(s)) {
 		s->span = (to - from) / 2;
 		s->carried = 0;
 		*next = from;
