@@ -388,7 +388,7 @@ static enum separate_status fit_section(
 	size_t n = (size_t)(to - from);
 	double boundary;
 	struct judgement judgement;
-	int m = s->carried, done = 0, unresolved;
+	int m = s->carried, done = 0, unresolved, shorter;
 
 	if (s->par.method == SEPARATE_FIT && s->par.network && m == 0 && !cut)
 		m = guess_pulses(s, from, n);
@@ -407,15 +407,13 @@ static enum separate_status fit_section(
 	judge(s->joint, &s->scene, n, s->pulse, m, done, boundary,
 		s->cal.chi2 < 4 || s->cal.dense, &r, &judgement);
 	unresolved = judgement.stretch == SEPARATE_UNRESOLVED && !s->par.sources;
-	if (unresolved && r.full && (double)n > 2 * shortest_window(s)) {
+	shorter = unresolved && r.full && (double)n > 2 * shortest_window(s);
+	if (shorter)
 		s->span = (to - from) / 2;
-		s->carried = 0;
-		*next = from;
-		return SEPARATE_OK;
-	}
-	s->failures = unresolved ? s->failures + 1 : 0;
-	if (unresolved && (!cut || s->failures == PATIENCE)) {
-		s->dense = 1;
+	else
+		s->failures = unresolved ? s->failures + 1 : 0;
+	s->dense = unresolved && !shorter && (!cut || s->failures == PATIENCE);
+	if (shorter || s->dense) {
 		s->carried = 0;
 		*next = from;
 		return SEPARATE_OK;
@@ -542,9 +540,16 @@ static enum separate_status work(struct separate *s)
 	limit = ready(s);
 	if (limit <= s->done)
 		return SEPARATE_OK;
-	if (!s->looked && !s->par.sources)
-		s->crowded = is_crowded(s, s->done, limit);
-	s->looked = 1;
+	if (!s->looked) {
+		/* Always the same stretch, however the record comes in. */
+		long long upto = s->done + (long long)s->par.learn / 2;
+
+		if (limit < upto && !s->ended)
+			return SEPARATE_OK;
+		s->crowded = !s->par.sources &&
+			     is_crowded(s, s->done, limit < upto ? limit : upto);
+		s->looked = 1;
+	}
 	sections_scan(s->sections, channel_1(s, s->done), channel_2(s, s->done), s->done,
 		(size_t)(limit - s->done),
 		s->ended ? limit : limit - sections_reach(s->sections));

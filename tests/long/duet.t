@@ -21,6 +21,11 @@ value() {
 	{ print $k }' score.tsv
 }
 
+# share FIELD OF: one number of the score over another
+share() {
+	awk -v a="$(value "$1")" -v b="$(value "$2")" 'BEGIN { print a / b }'
+}
+
 # found M SNR GAP sensorsim-options: M particles of amplitude 0.5 to 1.5 V, at least GAP apart
 found() {
 	m=$1
@@ -51,8 +56,7 @@ scenes() {
 
 judge() { # NAME
 	name=$1
-	check "$name: count right" \
-		"$(awk -v r="$(value right)" -v n="$(value scenes)" 'BEGIN { print r / n }')" '>=' "$count"
+	check "$name: count right" "$(share right scenes)" '>=' "$count"
 	check "$name: delay error over the bound" "$(value delay_ratio)" '<=' "$limit"
 	check "$name: size error" "$(value size_rms)" '<=' "$size"
 	check "$name: inside one standard error" "$(value delay_cover)" '>=' 0.64
@@ -80,10 +84,8 @@ scenes 3 30 0.95 1.3 0.005 --pulse lorentz --mains 0.5,0.3 --pump 0.4,0.2
 close_by() { # M SNR COUNT: and how many are false
 	found "$1" "$2" 0.2ms
 	name="$1 particles at $2 dB from 0.2 ms on"
-	check "$name: count right" \
-		"$(awk -v r="$(value right)" -v n="$(value scenes)" 'BEGIN { print r / n }')" '>=' "$3"
-	check "$name: false ones" \
-		"$(awk -v f="$(value false)" -v n="$(value truth)" 'BEGIN { print f / n }')" '<=' 0.002
+	check "$name: count right" "$(share right scenes)" '>=' "$3"
+	check "$name: false ones" "$(share false truth)" '<=' 0.002
 }
 close_by 2 20 0.88
 close_by 2 30 0.95
@@ -98,10 +100,8 @@ random() { # RATE SNR FOUND
 		--lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv >s.au
 	duet s.au >found.tsv
 	"$top/scripts/score" truth.tsv found.tsv >score.tsv
-	check "$1 a second at $2 dB: found" \
-		"$(awk -v f="$(value matched)" -v n="$(value truth)" 'BEGIN { print f / n }')" '>=' "$3"
-	check "$1 a second at $2 dB: false" \
-		"$(awk -v f="$(value false)" -v n="$(value truth)" 'BEGIN { print f / n }')" '<=' 0.005
+	check "$1 a second at $2 dB: found" "$(share matched truth)" '>=' "$3"
+	check "$1 a second at $2 dB: false" "$(share false truth)" '<=' 0.005
 }
 random 100 20 0.92
 random 100 30 0.95
@@ -160,8 +160,7 @@ guessed() { # M SNR PAUSE COUNT SIZE bpfilter-options
 	shift 5
 	filtered "$m" "$snr" "$pause" none "$count" 1.3 "$size" "$@"
 	name="$m particles every $period s at $snr dB through $* guessed"
-	check "$name: count right" \
-		"$(awk -v r="$(value right)" -v n="$(value scenes)" 'BEGIN { print r / n }')" '>=' "$count"
+	check "$name: count right" "$(share right scenes)" '>=' "$count"
 	check "$name: delay error over the bound" "$(value delay_ratio)" '<=' "$limit"
 	check "$name: size error" "$(value size_rms)" '<=' "$size"
 }
