@@ -2,10 +2,10 @@
  */
 #include "filtering.h"
 #include "outlook.h"
-#include "shell/msg.h"
-#include "shell/opt.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
 #include "shell/series.h"
-#include "shell/stats.h"
+#include "cli/stats.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,9 +3,9 @@
 #include "press.h"
 #include "raw.h"
 #include "shell/fields.h"
-#include "shell/msg.h"
-#include "shell/opt.h"
-#include "shell/stats.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
+#include "cli/stats.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* bpfilter - band-pass every channel of a signal */
-#include "shell/msg.h"
-#include "shell/opt.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
 #include "shell/signals.h"
-#include "shell/stats.h"
+#include "cli/stats.h"
 #include "shell/tables.h"
 #include "signal/fir.h"
 #include "signal/lines.h"

@@ -1,10 +1,10 @@
 /* debrisgen - wear particles that a contact tears off a rough surface */
 #include "press.h"
 #include "shell/fields.h"
-#include "shell/msg.h"
-#include "shell/opt.h"
-#include "shell/progress.h"
-#include "shell/stats.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
+#include "cli/progress.h"
+#include "cli/stats.h"
 #include "wearing.h"
 #include "worn.h"
 #include <math.h>

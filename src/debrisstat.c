@@ -1,8 +1,8 @@
 /* debrisstat - statistics of wear particles: fits, steps, sizes, shapes */
 #include "contact/estimates.h"
-#include "shell/msg.h"
-#include "shell/opt.h"
-#include "shell/stats.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
+#include "cli/stats.h"
 #include "shell/tables.h"
 #include <math.h>
 #include <stdlib.h>

@@ -3,10 +3,10 @@
 #include "learning.h"
 #include "lessons.h"
 #include "scores.h"
-#include "shell/msg.h"
-#include "shell/opt.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
 #include "shell/signals.h"
-#include "shell/stats.h"
+#include "cli/stats.h"
 #include "shell/tables.h"
 #include <math.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* duet - wear particles from the record of two inductive sensors */
 #include "instrument.h"
 #include "methods.h"
-#include "shell/files.h"
-#include "shell/msg.h"
-#include "shell/opt.h"
+#include "cli/files.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
 #include "shell/signals.h"
 #include "signal/netfile.h"
 #include <math.h>

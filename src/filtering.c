@@ -1,6 +1,6 @@
 #include "filtering.h"
-#include "shell/msg.h"
-#include "shell/stats.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
 #include <float.h>
 #include <math.h>
 

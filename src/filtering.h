@@ -3,7 +3,7 @@
 #define FILTERING_H
 
 #include "life/adaptive.h"
-#include "shell/opt.h"
+#include "cli/opt.h"
 
 /* Values of the options. */
 extern struct filtering {

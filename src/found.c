@@ -1,5 +1,5 @@
 #include "found.h"
-#include "shell/msg.h"
+#include "cli/msg.h"
 #include "signal/sensor.h"
 #include <math.h>
 #include <stdlib.h>

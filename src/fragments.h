@@ -3,7 +3,7 @@
 #define FRAGMENTS_H
 
 #include "life/partition.h"
-#include "shell/opt.h"
+#include "cli/opt.h"
 
 /* Every file is a class; see pump.h for the areas and for what counts as large.  Steps
  * before first_step are running-in.  made_by[k] becomes the pipeline that made file k,

@@ -1,9 +1,9 @@
 #include "generated.h"
 #include "contact/rough.h"
 #include "roughness.h"
-#include "shell/msg.h"
-#include "shell/progress.h"
-#include "shell/stats.h"
+#include "cli/msg.h"
+#include "cli/progress.h"
+#include "cli/stats.h"
 #include <math.h>
 #include <stdlib.h>
 

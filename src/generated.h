@@ -9,7 +9,7 @@
 #define GENERATED_H
 
 #include "shell/fields.h"
-#include "shell/opt.h"
+#include "cli/opt.h"
 
 /* For OPT_TABLE; what no measured surface goes with. */
 extern struct opt generated_grid_rows[], generated_rows[];

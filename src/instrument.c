@@ -1,5 +1,5 @@
 #include "instrument.h"
-#include "shell/msg.h"
+#include "cli/msg.h"
 #include "shell/tables.h"
 #include "signal/fir.h"
 #include <math.h>

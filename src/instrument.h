@@ -2,7 +2,7 @@
 #ifndef INSTRUMENT_H
 #define INSTRUMENT_H
 
-#include "shell/opt.h"
+#include "cli/opt.h"
 #include "signal/calibrate.h"
 
 /* Values of the options. */

@@ -1,8 +1,8 @@
 #include "learning.h"
 #include "lessons.h"
-#include "shell/msg.h"
-#include "shell/progress.h"
-#include "shell/stats.h"
+#include "cli/msg.h"
+#include "cli/progress.h"
+#include "cli/stats.h"
 #include <stdlib.h>
 
 struct learning learning = { .layers = "10",

@@ -2,7 +2,7 @@
 #ifndef LEARNING_H
 #define LEARNING_H
 
-#include "shell/opt.h"
+#include "cli/opt.h"
 
 /* Values of the options. */
 extern struct learning {

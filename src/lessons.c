@@ -1,6 +1,6 @@
 #include "lessons.h"
-#include "shell/files.h"
-#include "shell/msg.h"
+#include "cli/files.h"
+#include "cli/msg.h"
 #include <math.h>
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #ifndef LESSONS_H
 #define LESSONS_H
 
-#include "shell/opt.h"
+#include "cli/opt.h"
 #include "signal/lesson.h"
 #include "signal/netfile.h"
 

@@ -1,5 +1,5 @@
 #include "levels.h"
-#include "shell/msg.h"
+#include "cli/msg.h"
 #include <stdlib.h>
 
 char *levels_columns(

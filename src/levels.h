@@ -2,7 +2,7 @@
 #ifndef LEVELS_H
 #define LEVELS_H
 
-#include "shell/opt.h"
+#include "cli/opt.h"
 
 /* The names before and one for each level, parted by blanks; the caller frees. */
 char *levels_columns(

@@ -2,7 +2,7 @@
 #include "levels.h"
 #include "life/metrics.h"
 #include "life/remaining.h"
-#include "shell/msg.h"
+#include "cli/msg.h"
 #include "shell/tables.h"
 #include <math.h>
 #include <stdlib.h>

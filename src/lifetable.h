@@ -4,7 +4,7 @@
 #define LIFETABLE_H
 
 #include "life/forecast.h"
-#include "shell/opt.h"
+#include "cli/opt.h"
 
 struct lifetable_par {
 	const struct opt_list *levels; /* of the quantiles */

@@ -2,8 +2,8 @@
 #include "contact/surface.h"
 #include "raw.h"
 #include "roughness.h"
-#include "shell/msg.h"
-#include "shell/stats.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -9,7 +9,7 @@
 #define MEASURED_H
 
 #include "shell/fields.h"
-#include "shell/opt.h"
+#include "cli/opt.h"
 
 extern struct opt measured_rows[]; /* for OPT_TABLE; what needs a file */
 

@@ -1,7 +1,7 @@
 #include "methods.h"
 #include "instrument.h"
-#include "shell/msg.h"
-#include "shell/stats.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
 #include <math.h>
 #include <stdlib.h>
 

@@ -3,9 +3,9 @@
 #include "levels.h"
 #include "life/predict.h"
 #include "life/runin.h"
-#include "shell/msg.h"
+#include "cli/msg.h"
 #include "shell/series.h"
-#include "shell/stats.h"
+#include "cli/stats.h"
 #include "timeunit.h"
 #include <float.h>
 #include <math.h>

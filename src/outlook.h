@@ -11,7 +11,7 @@
 #define OUTLOOK_H
 
 #include "life/adaptive.h"
-#include "shell/opt.h"
+#include "cli/opt.h"
 #include "shell/tables.h"
 
 /* Values of the options. */

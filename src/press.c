@@ -1,6 +1,6 @@
 #include "press.h"
 #include "contact/kernel.h"
-#include "shell/msg.h"
+#include "cli/msg.h"
 #include <math.h>
 #include <string.h>
 

@@ -5,7 +5,7 @@
 
 #include "contact/solver.h"
 #include "shell/fields.h"
-#include "shell/opt.h"
+#include "cli/opt.h"
 
 /* Values of the options; nan where not given.  estar follows from young and poisson
  * once press_check() was called. */

@@ -1,5 +1,5 @@
 #include "pump.h"
-#include "shell/msg.h"
+#include "cli/msg.h"
 #include <math.h>
 #include <string.h>
 

@@ -4,7 +4,7 @@
 #define PUMP_H
 
 #include "life/pair.h"
-#include "shell/opt.h"
+#include "cli/opt.h"
 
 /* Values of the options; nan where not given. */
 extern struct pump {

@@ -1,5 +1,5 @@
 #include "raw.h"
-#include "shell/msg.h"
+#include "cli/msg.h"
 
 static struct opt_list size, pixel;
 

@@ -3,7 +3,7 @@
 #define RAW_H
 
 #include "shell/fields.h"
-#include "shell/opt.h"
+#include "cli/opt.h"
 
 extern struct opt raw_rows[]; /* for OPT_TABLE */
 

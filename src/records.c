@@ -1,9 +1,9 @@
 /* records - list, pick, count and convert the records of a field stream */
 #include "raw.h"
 #include "shell/fields.h"
-#include "shell/msg.h"
-#include "shell/opt.h"
-#include "shell/stats.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
+#include "cli/stats.h"
 #include "shell/tables.h"
 #include <math.h>
 #include <stdlib.h>

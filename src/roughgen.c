@@ -5,9 +5,9 @@
 #include "measured.h"
 #include "roughness.h"
 #include "shell/fields.h"
-#include "shell/msg.h"
-#include "shell/opt.h"
-#include "shell/stats.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
+#include "cli/stats.h"
 #include "shell/tables.h"
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 #include "roughness.h"
-#include "shell/msg.h"
+#include "cli/msg.h"
 
 static struct opt_list sq = { 1, { 1e-6 } }, sa;
 

@@ -4,7 +4,7 @@
 #define ROUGHNESS_H
 
 #include "contact/rough.h"
-#include "shell/opt.h"
+#include "cli/opt.h"
 
 extern struct opt roughness_rows[]; /* for OPT_TABLE */
 

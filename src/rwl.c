@@ -3,8 +3,8 @@
 #include "life/remaining.h"
 #include "lifetable.h"
 #include "pump.h"
-#include "shell/msg.h"
-#include "shell/stats.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
 #include "state.h"
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "scores.h"
 #include "lessons.h"
-#include "shell/msg.h"
-#include "shell/stats.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
 #include "shell/tables.h"
 #include <math.h>
 #include <stdlib.h>

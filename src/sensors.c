@@ -1,5 +1,5 @@
 #include "sensors.h"
-#include "shell/msg.h"
+#include "cli/msg.h"
 #include <math.h>
 
 static double rate = 10e3, flow = 1e-3, bore = 0.01, exponent = 7, spacing = 0.25;

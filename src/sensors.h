@@ -2,7 +2,7 @@
 #ifndef SENSORS_H
 #define SENSORS_H
 
-#include "shell/opt.h"
+#include "cli/opt.h"
 #include "signal/passage.h"
 #include "signal/scene.h"
 

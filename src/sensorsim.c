@@ -1,9 +1,9 @@
 /* sensorsim - the signal of wear particles in a pipe past two inductive sensors */
 #include "sensors.h"
-#include "shell/msg.h"
-#include "shell/opt.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
 #include "shell/signals.h"
-#include "shell/stats.h"
+#include "cli/stats.h"
 #include "shell/tables.h"
 #include "source.h"
 #include <math.h>

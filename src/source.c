@@ -1,6 +1,6 @@
 #include "source.h"
 #include "sensors.h"
-#include "shell/msg.h"
+#include "cli/msg.h"
 #include "shell/tables.h"
 #include <math.h>
 #include <stdlib.h>

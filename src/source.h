@@ -8,7 +8,7 @@
 #ifndef SOURCE_H
 #define SOURCE_H
 
-#include "shell/opt.h"
+#include "cli/opt.h"
 #include "signal/passage.h"
 
 /* Of the record, s; nan: until the last pulse is over. */

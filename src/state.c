@@ -1,7 +1,7 @@
 #include "state.h"
 #include "life/slope.h"
-#include "shell/msg.h"
-#include "shell/stats.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
 #include "timeunit.h"
 #include <math.h>
 #include <stdlib.h>

@@ -13,7 +13,7 @@
 #define STATE_H
 
 #include "life/pair.h"
-#include "shell/opt.h"
+#include "cli/opt.h"
 #include "shell/tables.h"
 
 /* Values of the options. */

@@ -2,7 +2,7 @@
 #ifndef TIMEUNIT_H
 #define TIMEUNIT_H
 
-#include "shell/opt.h"
+#include "cli/opt.h"
 
 extern struct opt timeunit_rows[]; /* for OPT_TABLE */
 

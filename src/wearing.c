@@ -1,8 +1,8 @@
 #include "wearing.h"
 #include "contact/solver.h"
 #include "press.h"
-#include "shell/msg.h"
-#include "shell/stats.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
 #include "worn.h"
 #include "contact/stress_kernel.h"
 #include "contact/surface.h"
-#include "shell/msg.h"
+#include "cli/msg.h"
 #include "shell/tables.h"
 #include <math.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 
 #include "contact/debris.h"
 #include "shell/fields.h"
-#include "shell/opt.h"
+#include "cli/opt.h"
 
 extern struct opt worn_rows[]; /* for OPT_TABLE: the files besides the particles */
 

@@ -1,8 +1,8 @@
 #include "shell/fields.h"
 #include "shell/bytes.h"
-#include "shell/files.h"
+#include "cli/files.h"
 #include "shell/formats.h"
-#include "shell/msg.h"
+#include "cli/msg.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>

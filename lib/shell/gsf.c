@@ -1,8 +1,8 @@
 /* gsf.c - Gwyddion Simple Field 1.0: one float32 field, text header padded with NULs */
 #include "shell/bytes.h"
 #include "shell/formats.h"
-#include "shell/msg.h"
-#include "shell/unit.h"
+#include "cli/msg.h"
+#include "cli/unit.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 #include "shell/keys.h"
-#include "shell/msg.h"
+#include "cli/msg.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -6,8 +6,8 @@
  */
 #include "shell/bytes.h"
 #include "shell/formats.h"
-#include "shell/msg.h"
-#include "shell/unit.h"
+#include "cli/msg.h"
+#include "cli/unit.h"
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 #include "shell/series.h"
-#include "shell/msg.h"
+#include "cli/msg.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

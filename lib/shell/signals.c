@@ -5,8 +5,8 @@
  */
 #include "shell/signals.h"
 #include "shell/bytes.h"
-#include "shell/files.h"
-#include "shell/msg.h"
+#include "cli/files.h"
+#include "cli/msg.h"
 #include <ctype.h>
 #include <errno.h>
 #include <stdio.h>

@@ -1,9 +1,9 @@
 #include "shell/tables.h"
-#include "shell/files.h"
+#include "cli/files.h"
 #include "shell/keys.h"
-#include "shell/msg.h"
-#include "shell/unit.h"
-#include "shell/upstream.h"
+#include "cli/msg.h"
+#include "cli/unit.h"
+#include "cli/upstream.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>

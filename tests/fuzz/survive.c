@@ -1,8 +1,8 @@
 /* survive.c - messages and allocation for fuzzing: die() goes back to the target
  * instead of ending the process.  What a refused stream had taken is not given back. */
 #include "survive.h"
-#include "shell/msg.h"
-#include "shell/stats.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>

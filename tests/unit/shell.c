@@ -1,5 +1,5 @@
 /* Units, quoting of command lines and shortest numbers */
-#include "shell/unit.h"
+#include "cli/unit.h"
 #include "tap.h"
 #include <stdlib.h>
 #include <string.h>

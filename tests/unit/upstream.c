@@ -1,5 +1,5 @@
 /* Pipelines of the parts of a table, joined. */
-#include "shell/upstream.h"
+#include "cli/upstream.h"
 #include "tap.h"
 #include <string.h>
 

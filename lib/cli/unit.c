@@ -1,4 +1,4 @@
-#include "shell/unit.h"
+#include "cli/unit.h"
 #include <ctype.h>
 #include <math.h>
 #include <stddef.h>

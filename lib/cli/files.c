@@ -1,5 +1,5 @@
-#include "shell/files.h"
-#include "shell/msg.h"
+#include "cli/files.h"
+#include "cli/msg.h"
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>

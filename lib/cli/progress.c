@@ -1,4 +1,4 @@
-#include "shell/progress.h"
+#include "cli/progress.h"
 #include <stdio.h>
 #include <time.h>
 #include <unistd.h>

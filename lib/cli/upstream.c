@@ -1,5 +1,5 @@
-#include "shell/upstream.h"
-#include "shell/msg.h"
+#include "cli/upstream.h"
+#include "cli/msg.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
-#include "shell/opt.h"
-#include "shell/msg.h"
-#include "shell/stats.h"
+#include "cli/opt.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
 #include <ctype.h>
 #include <errno.h>
 #include <getopt.h>

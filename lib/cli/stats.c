@@ -1,6 +1,6 @@
-#include "shell/stats.h"
-#include "shell/files.h"
-#include "shell/msg.h"
+#include "cli/stats.h"
+#include "cli/files.h"
+#include "cli/msg.h"
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>

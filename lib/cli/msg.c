@@ -1,5 +1,5 @@
-#include "shell/msg.h"
-#include "shell/progress.h"
+#include "cli/msg.h"
+#include "cli/progress.h"
 #include <errno.h>
 #include <stdarg.h>
 #include <stdint.h>

@@ -19,7 +19,7 @@
 #ifndef SHELL_OPT_H
 #define SHELL_OPT_H
 
-#include "shell/unit.h"
+#include "cli/unit.h"
 
 enum opt_kind {
 	OPT_FLAG,   /* int: set to 1 */
