@@ -4,7 +4,7 @@
 #include "outlook.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
-#include "shell/series.h"
+#include "io/series.h"
 #include "cli/stats.h"
 #include <math.h>
 #include <stdio.h>

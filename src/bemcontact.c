@@ -2,7 +2,7 @@
 #include "contact/solver.h"
 #include "press.h"
 #include "raw.h"
-#include "shell/fields.h"
+#include "io/fields.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"

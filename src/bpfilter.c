@@ -1,9 +1,9 @@
 /* bpfilter - band-pass every channel of a signal */
 #include "cli/msg.h"
 #include "cli/opt.h"
-#include "shell/signals.h"
+#include "io/signals.h"
 #include "cli/stats.h"
-#include "shell/tables.h"
+#include "io/tables.h"
 #include "signal/fir.h"
 #include "signal/lines.h"
 #include "signal/tones.h"

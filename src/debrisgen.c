@@ -1,6 +1,6 @@
 /* debrisgen - wear particles that a contact tears off a rough surface */
 #include "press.h"
-#include "shell/fields.h"
+#include "io/fields.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/progress.h"

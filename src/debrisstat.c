@@ -3,7 +3,7 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
-#include "shell/tables.h"
+#include "io/tables.h"
 #include <math.h>
 #include <stdlib.h>
 

@@ -5,9 +5,9 @@
 #include "scores.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
-#include "shell/signals.h"
+#include "io/signals.h"
 #include "cli/stats.h"
-#include "shell/tables.h"
+#include "io/tables.h"
 #include <math.h>
 #include <stdlib.h>
 

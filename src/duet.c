@@ -4,7 +4,7 @@
 #include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
-#include "shell/signals.h"
+#include "io/signals.h"
 #include "signal/netfile.h"
 #include <math.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 #ifndef FOUND_H
 #define FOUND_H
 
-#include "shell/signals.h"
-#include "shell/tables.h"
+#include "io/signals.h"
+#include "io/tables.h"
 #include "signal/count.h"
 #include "signal/separate.h"
 

@@ -2,7 +2,7 @@
 #include "pump.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
-#include "shell/tables.h"
+#include "io/tables.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -8,7 +8,7 @@
 #ifndef GENERATED_H
 #define GENERATED_H
 
-#include "shell/fields.h"
+#include "io/fields.h"
 #include "cli/opt.h"
 
 /* For OPT_TABLE; what no measured surface goes with. */

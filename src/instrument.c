@@ -1,6 +1,6 @@
 #include "instrument.h"
 #include "cli/msg.h"
-#include "shell/tables.h"
+#include "io/tables.h"
 #include "signal/fir.h"
 #include <math.h>
 #include <stdlib.h>

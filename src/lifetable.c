@@ -3,7 +3,7 @@
 #include "life/metrics.h"
 #include "life/remaining.h"
 #include "cli/msg.h"
-#include "shell/tables.h"
+#include "io/tables.h"
 #include <math.h>
 #include <stdlib.h>
 

@@ -8,7 +8,7 @@
 #ifndef MEASURED_H
 #define MEASURED_H
 
-#include "shell/fields.h"
+#include "io/fields.h"
 #include "cli/opt.h"
 
 extern struct opt measured_rows[]; /* for OPT_TABLE; what needs a file */

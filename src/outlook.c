@@ -4,7 +4,7 @@
 #include "life/predict.h"
 #include "life/runin.h"
 #include "cli/msg.h"
-#include "shell/series.h"
+#include "io/series.h"
 #include "cli/stats.h"
 #include "timeunit.h"
 #include <float.h>

@@ -12,7 +12,7 @@
 
 #include "life/adaptive.h"
 #include "cli/opt.h"
-#include "shell/tables.h"
+#include "io/tables.h"
 
 /* Values of the options. */
 extern struct outlook_options {

@@ -4,7 +4,7 @@
 #define PRESS_H
 
 #include "contact/solver.h"
-#include "shell/fields.h"
+#include "io/fields.h"
 #include "cli/opt.h"
 
 /* Values of the options; nan where not given.  estar follows from young and poisson

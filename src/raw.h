@@ -2,7 +2,7 @@
 #ifndef RAW_H
 #define RAW_H
 
-#include "shell/fields.h"
+#include "io/fields.h"
 #include "cli/opt.h"
 
 extern struct opt raw_rows[]; /* for OPT_TABLE */

@@ -1,10 +1,10 @@
 /* records - list, pick, count and convert the records of a field stream */
 #include "raw.h"
-#include "shell/fields.h"
+#include "io/fields.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
-#include "shell/tables.h"
+#include "io/tables.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -4,11 +4,11 @@
 #include "generated.h"
 #include "measured.h"
 #include "roughness.h"
-#include "shell/fields.h"
+#include "io/fields.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
-#include "shell/tables.h"
+#include "io/tables.h"
 #include <stdlib.h>
 
 static const char *const crown_words[] = { "none", "auto", NULL };

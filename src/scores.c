@@ -2,7 +2,7 @@
 #include "lessons.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
-#include "shell/tables.h"
+#include "io/tables.h"
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
 #include "source.h"
 #include "sensors.h"
 #include "cli/msg.h"
-#include "shell/tables.h"
+#include "io/tables.h"
 #include <math.h>
 #include <stdlib.h>
 

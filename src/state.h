@@ -14,7 +14,7 @@
 
 #include "life/pair.h"
 #include "cli/opt.h"
-#include "shell/tables.h"
+#include "io/tables.h"
 
 /* Values of the options. */
 extern struct state_options {

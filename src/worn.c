@@ -2,7 +2,7 @@
 #include "contact/stress_kernel.h"
 #include "contact/surface.h"
 #include "cli/msg.h"
-#include "shell/tables.h"
+#include "io/tables.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #define WORN_H
 
 #include "contact/debris.h"
-#include "shell/fields.h"
+#include "io/fields.h"
 #include "cli/opt.h"
 
 extern struct opt worn_rows[]; /* for OPT_TABLE: the files besides the particles */

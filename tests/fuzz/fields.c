@@ -1,5 +1,5 @@
 /* Field streams of any bytes are read or refused, and what was read can be written */
-#include "shell/fields.h"
+#include "io/fields.h"
 #include "survive.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

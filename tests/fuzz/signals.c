@@ -1,5 +1,5 @@
 /* Signals of any bytes are read or refused */
-#include "shell/signals.h"
+#include "io/signals.h"
 #include "survive.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -1,5 +1,5 @@
 /* Tables of any bytes are read or refused */
-#include "shell/tables.h"
+#include "io/tables.h"
 #include "survive.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -9,7 +9,7 @@
 #ifndef SHELL_SERIES_H
 #define SHELL_SERIES_H
 
-#include "shell/tables.h"
+#include "io/tables.h"
 
 struct series;
 

@@ -1,7 +1,7 @@
-#include "shell/fields.h"
-#include "shell/bytes.h"
+#include "io/fields.h"
+#include "io/bytes.h"
 #include "cli/files.h"
-#include "shell/formats.h"
+#include "io/formats.h"
 #include "cli/msg.h"
 #include <math.h>
 #include <stdarg.h>

@@ -4,8 +4,8 @@
  * multiple of 1024 bytes) is what teem, ParaView, Gwyddion, numpy, Octave and
  * gnuplot all read rightly.
  */
-#include "shell/bytes.h"
-#include "shell/formats.h"
+#include "io/bytes.h"
+#include "io/formats.h"
 #include "cli/msg.h"
 #include "cli/unit.h"
 #include <ctype.h>

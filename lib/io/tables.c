@@ -1,6 +1,6 @@
-#include "shell/tables.h"
+#include "io/tables.h"
 #include "cli/files.h"
-#include "shell/keys.h"
+#include "io/keys.h"
 #include "cli/msg.h"
 #include "cli/unit.h"
 #include "cli/upstream.h"

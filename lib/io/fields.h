@@ -19,7 +19,7 @@
 #ifndef SHELL_FIELDS_H
 #define SHELL_FIELDS_H
 
-#include "shell/keys.h"
+#include "io/keys.h"
 #include <stdint.h>
 #include <stdio.h>
 

@@ -3,8 +3,8 @@
  * Chosen because its length may be unknown (0xffffffff), so that it streams, and
  * because sox, libsndfile, Octave and numpy read it.
  */
-#include "shell/signals.h"
-#include "shell/bytes.h"
+#include "io/signals.h"
+#include "io/bytes.h"
 #include "cli/files.h"
 #include "cli/msg.h"
 #include <ctype.h>

@@ -2,7 +2,7 @@
 #ifndef SHELL_FORMATS_H
 #define SHELL_FORMATS_H
 
-#include "shell/fields.h"
+#include "io/fields.h"
 #include <stdio.h>
 
 /* Where a reader is, for its messages. */

@@ -1,4 +1,4 @@
-#include "shell/series.h"
+#include "io/series.h"
 #include "cli/msg.h"
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "shell/keys.h"
+#include "io/keys.h"
 #include "cli/msg.h"
 #include <stdlib.h>
 #include <string.h>

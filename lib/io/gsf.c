@@ -1,6 +1,6 @@
 /* gsf.c - Gwyddion Simple Field 1.0: one float32 field, text header padded with NULs */
-#include "shell/bytes.h"
-#include "shell/formats.h"
+#include "io/bytes.h"
+#include "io/formats.h"
 #include "cli/msg.h"
 #include "cli/unit.h"
 #include <math.h>
