@@ -36,8 +36,8 @@ bemcontact_PARTS = press raw
 bemcontact_MODULES = contact/kernel contact/solver contact/bccg contact/grids contact/mlms contact/pk num/convolve num/fft num/pool num/sweep
 bemcontact_LIBS = fftw
 debrisgen_PARTS = press wearing worn
-debrisgen_MODULES = $(bemcontact_MODULES) num/room contact/chords contact/debris contact/hull contact/influence contact/particles contact/stress \
-	contact/stress_direct contact/stress_fourier contact/stress_kernel contact/surface contact/sym3 contact/tally contact/wear contact/window
+debrisgen_MODULES = $(bemcontact_MODULES) num/room debris/chords debris/debris debris/hull contact/influence debris/particles contact/stress \
+	contact/stress_direct contact/stress_fourier contact/stress_kernel contact/surface contact/sym3 debris/tally debris/wear contact/window
 debrisgen_LIBS = fftw
 debrisstat_MODULES = num/philox num/room contact/ensemble contact/estimates contact/statistics
 debrisstat_LIBS = gsl

@@ -2,7 +2,7 @@
 #ifndef WORN_H
 #define WORN_H
 
-#include "contact/debris.h"
+#include "debris/debris.h"
 #include "io/fields.h"
 #include "cli/opt.h"
 

@@ -1,6 +1,6 @@
 /* Rows for stress.sh: see there. */
 #include "contact/stress.h"
-#include "contact/debris.h"
+#include "debris/debris.h"
 #include "contact/stress_kernel.h"
 #include "num/philox.h"
 

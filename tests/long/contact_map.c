@@ -1,6 +1,6 @@
 /* A measured contact map with counts known from elsewhere. */
 #include "../unit/tap.h"
-#include "contact/particles.h"
+#include "debris/particles.h"
 #include <stdio.h>
 
 int main(void)

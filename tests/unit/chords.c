@@ -1,5 +1,5 @@
 /* Length and width of convex hulls: known bodies, and random ones by brute force. */
-#include "contact/chords.h"
+#include "debris/chords.h"
 #include "tap.h"
 
 enum { POINTS = 12, LEVELS = 2000 };

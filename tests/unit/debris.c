@@ -1,6 +1,6 @@
 /* One step of wear: what is lost is what the particles and the surface say, by both
  * rules, whatever was computed before. */
-#include "contact/debris.h"
+#include "debris/debris.h"
 #include "num/philox.h"
 #include "tap.h"
 

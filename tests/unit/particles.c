@@ -1,6 +1,6 @@
 /* Particles of known shape: measures, connectivity, memory of two layers, periodic grids.
  */
-#include "contact/particles.h"
+#include "debris/particles.h"
 #include "tap.h"
 
 #include <stdlib.h>

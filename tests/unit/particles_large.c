@@ -1,5 +1,5 @@
 /* Large sets of cells; descriptions read: scene | expectation | outcome | error */
-#include "contact/particles.h"
+#include "debris/particles.h"
 #include "tap.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "contact/tally.h"
+#include "debris/tally.h"
 #include "contact/sym3.h"
 #include <math.h>
 #include <string.h>

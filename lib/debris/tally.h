@@ -6,7 +6,7 @@
 #ifndef CONTACT_TALLY_H
 #define CONTACT_TALLY_H
 
-#include "contact/particles.h"
+#include "debris/particles.h"
 
 struct tally {
 	double nodes, sum[3];

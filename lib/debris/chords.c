@@ -1,4 +1,4 @@
-#include "contact/chords.h"
+#include "debris/chords.h"
 #include "num/room.h"
 
 #include <math.h>

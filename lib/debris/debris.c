@@ -1,4 +1,4 @@
-#include "contact/debris.h"
+#include "debris/debris.h"
 
 #include <errno.h>
 #include <math.h>

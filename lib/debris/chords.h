@@ -9,7 +9,7 @@
 #ifndef CONTACT_CHORDS_H
 #define CONTACT_CHORDS_H
 
-#include "contact/hull.h"
+#include "debris/hull.h"
 
 struct chords; /* memory that is kept over calls */
 

@@ -14,9 +14,9 @@
 #ifndef CONTACT_DEBRIS_H
 #define CONTACT_DEBRIS_H
 
-#include "contact/particles.h"
+#include "debris/particles.h"
 #include "contact/stress.h"
-#include "contact/wear.h"
+#include "debris/wear.h"
 
 struct debris;
 

@@ -13,7 +13,7 @@
 #ifndef CONTACT_WEAR_H
 #define CONTACT_WEAR_H
 
-#include "contact/particles.h"
+#include "debris/particles.h"
 #include "contact/stress.h"
 
 enum wear_rule { WEAR_COLUMN, WEAR_POTENTIAL };

@@ -1,7 +1,7 @@
 /* Incremental hull: a point outside removes the faces it sees and is joined to their
  * rim.  "Sees" is strict and exact, so a face in whose plane the point lies stays, and no
  * face of zero area arises. */
-#include "contact/hull.h"
+#include "debris/hull.h"
 #include "num/room.h"
 
 #include <stdlib.h>

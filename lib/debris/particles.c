@@ -2,10 +2,10 @@
  * are united, the smaller one taken into the frame of the larger (on a periodic grid
  * frames differ by whole periods).  A body no run of the newest layer belongs to is
  * complete: it is measured and its place used again. */
-#include "contact/particles.h"
-#include "contact/chords.h"
-#include "contact/hull.h"
-#include "contact/tally.h"
+#include "debris/particles.h"
+#include "debris/chords.h"
+#include "debris/hull.h"
+#include "debris/tally.h"
 #include "num/room.h"
 
 #include <errno.h>

@@ -1,4 +1,4 @@
-#include "contact/wear.h"
+#include "debris/wear.h"
 
 #include <stdlib.h>
 #include <string.h>
