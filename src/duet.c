@@ -5,7 +5,7 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "io/signals.h"
-#include "signal/netfile.h"
+#include "net/netfile.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,8 +3,8 @@
 #define LESSONS_H
 
 #include "cli/opt.h"
-#include "signal/lesson.h"
-#include "signal/netfile.h"
+#include "net/lesson.h"
+#include "net/netfile.h"
 
 enum model { SINES, PULSES };
 enum loss { ORDERED, SUMS, UNORDERED };

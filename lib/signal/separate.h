@@ -23,7 +23,7 @@
 
 #include "signal/calibrate.h"
 #include "signal/campbell.h"
-#include "signal/cnn.h"
+#include "net/cnn.h"
 #include "signal/joint.h"
 #include "signal/masks.h"
 #include <stddef.h>

@@ -10,9 +10,9 @@
  * found.  The bound is the mean Fisher bound at the truth.  Seconds are of CPU, per
  * section.
  */
-#include "signal/cnndata.h"
+#include "net/cnndata.h"
 #include "signal/joint.h"
-#include "signal/netfile.h"
+#include "net/netfile.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

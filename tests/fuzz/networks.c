@@ -1,6 +1,6 @@
 /* Networks of any bytes are read or refused, and what was read is written so that it
  * reads back the same */
-#include "signal/netfile.h"
+#include "net/netfile.h"
 #include "survive.h"
 #include <stdlib.h>
 #include <string.h>

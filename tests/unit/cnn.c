@@ -1,5 +1,5 @@
 /* The network's first look: how sections are laid on the grid, and the way back */
-#include "signal/cnndata.h"
+#include "net/cnndata.h"
 #include "tap.h"
 #include <stdlib.h>
 #include <string.h>

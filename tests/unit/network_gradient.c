@@ -4,11 +4,11 @@
  * 1e-5 a difference is right to about 1e-9 relative: a wrong sign, factor or index shows.
  */
 #define NETWORK_DOUBLE
-#include "signal/network_gradient.c"
-#include "signal/cnn.c"
-#include "signal/cnndata.c"
-#include "signal/delayloss.c"
-#include "signal/network.c"
+#include "net/network_gradient.c"
+#include "net/cnn.c"
+#include "net/cnndata.c"
+#include "net/delayloss.c"
+#include "net/network.c"
 #include "tap.h"
 
 enum { BATCH = 5 };

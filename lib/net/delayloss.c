@@ -1,5 +1,5 @@
 /* delayloss.c - losses and scores of a set of delays whose order means nothing */
-#include "signal/delayloss.h"
+#include "net/delayloss.h"
 #include <math.h>
 
 /* Places of the values of x from the smallest to the largest; equal values keep their

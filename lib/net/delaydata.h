@@ -14,7 +14,7 @@
 #ifndef SIGNAL_DELAYDATA_H
 #define SIGNAL_DELAYDATA_H
 
-#include "signal/network.h"
+#include "net/network.h"
 
 /* The reading of "sine section with period from pi/2 to 3pi/2". */
 enum delaydata_section {

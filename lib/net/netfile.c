@@ -1,5 +1,5 @@
 /* netfile.c - networks as text: the layers in one line, the weights in one file */
-#include "signal/netfile.h"
+#include "net/netfile.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>

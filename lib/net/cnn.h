@@ -30,7 +30,7 @@
 #ifndef SIGNAL_CNN_H
 #define SIGNAL_CNN_H
 
-#include "signal/network.h"
+#include "net/network.h"
 #include <stddef.h>
 
 enum {

@@ -10,7 +10,7 @@
 #ifndef SIGNAL_CNNDATA_H
 #define SIGNAL_CNNDATA_H
 
-#include "signal/cnn.h"
+#include "net/cnn.h"
 #include "signal/sensor.h"
 
 enum {

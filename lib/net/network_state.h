@@ -2,7 +2,7 @@
 #ifndef SIGNAL_NETWORK_STATE_H
 #define SIGNAL_NETWORK_STATE_H
 
-#include "signal/network.h"
+#include "net/network.h"
 #include <gsl/gsl_cblas.h>
 
 #ifdef NETWORK_DOUBLE

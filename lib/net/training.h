@@ -10,7 +10,7 @@
 #ifndef SIGNAL_TRAINING_H
 #define SIGNAL_TRAINING_H
 
-#include "signal/network.h"
+#include "net/network.h"
 
 enum network_optimiser { NETWORK_ADAM, NETWORK_DESCENT };
 

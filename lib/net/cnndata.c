@@ -1,5 +1,5 @@
 /* cnndata.c - simulated sections to train and score the networks of cnn.h */
-#include "signal/cnndata.h"
+#include "net/cnndata.h"
 #include "num/philox.h"
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* network_gradient.c - derivatives of a network's loss by back-propagation */
-#include "signal/network_state.h"
+#include "net/network_state.h"
 #include <math.h>
 #include <string.h>
 

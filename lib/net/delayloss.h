@@ -8,7 +8,7 @@
 #ifndef SIGNAL_DELAYLOSS_H
 #define SIGNAL_DELAYLOSS_H
 
-#include "signal/network.h"
+#include "net/network.h"
 
 enum { DELAYS_MAX = 16 }; /* most outputs */
 

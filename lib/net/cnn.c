@@ -1,5 +1,5 @@
 /* cnn.c - a network's first look at a section of overlapping pulses */
-#include "signal/cnn.h"
+#include "net/cnn.h"
 #include <math.h>
 
 int cnn_suits(const struct network *net)

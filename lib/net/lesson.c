@@ -1,5 +1,5 @@
 /* lesson.c - what a network is trained with: samples of one kind, with their loss */
-#include "signal/lesson.h"
+#include "net/lesson.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -6,10 +6,10 @@
 #ifndef SIGNAL_LESSON_H
 #define SIGNAL_LESSON_H
 
-#include "signal/cnndata.h"
-#include "signal/delaydata.h"
-#include "signal/delayloss.h"
-#include "signal/training.h"
+#include "net/cnndata.h"
+#include "net/delaydata.h"
+#include "net/delayloss.h"
+#include "net/training.h"
 
 struct lesson {
 	const char *purpose; /* for the file of weights */

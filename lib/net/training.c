@@ -1,5 +1,5 @@
 /* training.c - networks trained by gradient descent or Adam */
-#include "signal/training.h"
+#include "net/training.h"
 #include "num/philox.h"
 #include <math.h>
 #include <stdlib.h>

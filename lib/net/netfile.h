@@ -26,7 +26,7 @@
 #ifndef SIGNAL_NETFILE_H
 #define SIGNAL_NETFILE_H
 
-#include "signal/network.h"
+#include "net/network.h"
 #include <stdio.h>
 
 enum { NETFILE_TEXT = 160 }; /* room for a message, a purpose or the layers in words */
