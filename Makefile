@@ -37,7 +37,7 @@ bemcontact_MODULES = contact/kernel contact/solver contact/bccg contact/grids co
 bemcontact_LIBS = fftw
 debrisgen_PARTS = press wearing worn
 debrisgen_MODULES = $(bemcontact_MODULES) num/room debris/chords debris/debris debris/hull contact/influence debris/particles contact/stress \
-	contact/stress_direct contact/stress_fourier contact/stress_kernel contact/surface contact/sym3 debris/tally debris/wear contact/window
+	contact/stress_direct contact/stress_fourier contact/stress_kernel contact/surface num/sym3 debris/tally debris/wear contact/window
 debrisgen_LIBS = fftw
 debrisstat_MODULES = num/philox num/room contact/ensemble contact/estimates contact/statistics
 debrisstat_LIBS = gsl

@@ -1,5 +1,5 @@
 #include "contact/stress_kernel.h"
-#include "contact/sym3.h"
+#include "num/sym3.h"
 
 #include <errno.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 #include "debris/tally.h"
-#include "contact/sym3.h"
+#include "num/sym3.h"
 #include <math.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "contact/sym3.h"
+#include "num/sym3.h"
 
 #include <math.h>
 #include <stddef.h>
