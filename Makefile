@@ -39,7 +39,7 @@ debrisgen_PARTS = press wearing worn
 debrisgen_MODULES = $(bemcontact_MODULES) num/room debris/chords debris/debris debris/hull contact/influence debris/particles contact/stress \
 	contact/stress_direct contact/stress_fourier contact/stress_kernel contact/surface num/sym3 debris/tally debris/wear contact/window
 debrisgen_LIBS = fftw
-debrisstat_MODULES = num/philox num/room contact/ensemble contact/estimates contact/statistics
+debrisstat_MODULES = num/philox num/room stats/ensemble stats/estimates stats/statistics
 debrisstat_LIBS = gsl
 sensorsim_PARTS = sensors source
 sensorsim_MODULES = num/philox num/normals num/ziggurat signal/sensor signal/passage signal/scene

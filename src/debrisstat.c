@@ -1,5 +1,5 @@
 /* debrisstat - statistics of wear particles: fits, steps, sizes, shapes */
-#include "contact/estimates.h"
+#include "stats/estimates.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"

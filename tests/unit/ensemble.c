@@ -1,5 +1,5 @@
 /* Ensembles of wear particles against counts by hand. */
-#include "contact/estimates.h"
+#include "stats/estimates.h"
 #include "tap.h"
 #include <stdlib.h>
 

@@ -1,5 +1,5 @@
 /* Weibull and power-law fits against values found with scipy, and against themselves. */
-#include "contact/statistics.h"
+#include "stats/statistics.h"
 #include "num/philox.h"
 #include "tap.h"
 

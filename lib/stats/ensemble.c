@@ -1,4 +1,4 @@
-#include "contact/ensemble.h"
+#include "stats/ensemble.h"
 #include "num/room.h"
 #include <stdint.h>
 #include <stdlib.h>

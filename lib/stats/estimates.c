@@ -1,4 +1,4 @@
-#include "contact/estimates.h"
+#include "stats/estimates.h"
 #include "num/philox.h"
 #include <math.h>
 #include <stdlib.h>

@@ -9,8 +9,8 @@
 #ifndef CONTACT_ESTIMATES_H
 #define CONTACT_ESTIMATES_H
 
-#include "contact/ensemble.h"
-#include "contact/statistics.h"
+#include "stats/ensemble.h"
+#include "stats/statistics.h"
 #include <stdint.h>
 
 enum estimate_quantity {

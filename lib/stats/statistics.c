@@ -1,4 +1,4 @@
-#include "contact/statistics.h"
+#include "stats/statistics.h"
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
