@@ -36,8 +36,8 @@ bemcontact_PARTS = press raw
 bemcontact_MODULES = contact/kernel contact/solver contact/bccg contact/grids contact/mlms contact/pk num/convolve num/fft num/pool num/sweep
 bemcontact_LIBS = fftw
 debrisgen_PARTS = press wearing worn
-debrisgen_MODULES = $(bemcontact_MODULES) num/room debris/chords debris/debris debris/hull contact/influence debris/particles contact/stress \
-	contact/stress_direct contact/stress_fourier contact/stress_kernel contact/surface num/sym3 debris/tally debris/wear contact/window
+debrisgen_MODULES = $(bemcontact_MODULES) num/room debris/chords debris/debris debris/hull stress/influence debris/particles stress/stress \
+	stress/stress_direct stress/stress_fourier stress/stress_kernel contact/surface num/sym3 debris/tally debris/wear stress/window
 debrisgen_LIBS = fftw
 debrisstat_MODULES = num/philox num/room stats/ensemble stats/estimates stats/statistics
 debrisstat_LIBS = gsl

@@ -1,5 +1,5 @@
 #include "worn.h"
-#include "contact/stress_kernel.h"
+#include "stress/stress_kernel.h"
 #include "contact/surface.h"
 #include "cli/msg.h"
 #include "io/tables.h"

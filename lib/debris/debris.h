@@ -15,7 +15,7 @@
 #define CONTACT_DEBRIS_H
 
 #include "debris/particles.h"
-#include "contact/stress.h"
+#include "stress/stress.h"
 #include "debris/wear.h"
 
 struct debris;

@@ -14,7 +14,7 @@
 #define CONTACT_WEAR_H
 
 #include "debris/particles.h"
-#include "contact/stress.h"
+#include "stress/stress.h"
 
 enum wear_rule { WEAR_COLUMN, WEAR_POTENTIAL };
 

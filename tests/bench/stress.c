@@ -1,7 +1,7 @@
 /* Rows for stress.sh: see there. */
-#include "contact/stress.h"
+#include "stress/stress.h"
 #include "debris/debris.h"
-#include "contact/stress_kernel.h"
+#include "stress/stress_kernel.h"
 #include "num/philox.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Stress below a surface: Hertz with friction in closed form, direct sums against
  * transforms, periodic waves, what may be left out. */
-#include "contact/stress.h"
-#include "contact/stress_kernel.h"
+#include "stress/stress.h"
+#include "stress/stress_kernel.h"
 #include "num/philox.h"
 #include "tap.h"
 

@@ -1,5 +1,5 @@
 /* Stress under a loaded rectangle against reference values, equilibrium and symmetry. */
-#include "contact/stress_kernel.h"
+#include "stress/stress_kernel.h"
 #include "tap.h"
 
 #include <stdlib.h>

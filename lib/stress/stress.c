@@ -1,6 +1,6 @@
-#include "contact/influence.h"
-#include "contact/stress_state.h"
-#include "contact/window.h"
+#include "stress/influence.h"
+#include "stress/stress_state.h"
+#include "stress/window.h"
 #include "num/fft.h"
 
 #include <errno.h>

@@ -1,4 +1,4 @@
-#include "contact/influence.h"
+#include "stress/influence.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -8,7 +8,7 @@
 #ifndef CONTACT_WINDOW_H
 #define CONTACT_WINDOW_H
 
-#include "contact/influence.h"
+#include "stress/influence.h"
 
 struct window;
 

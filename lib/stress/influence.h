@@ -6,8 +6,8 @@
 #ifndef CONTACT_INFLUENCE_H
 #define CONTACT_INFLUENCE_H
 
-#include "contact/stress.h"
-#include "contact/stress_kernel.h"
+#include "stress/stress.h"
+#include "stress/stress_kernel.h"
 
 #include <complex.h>
 

@@ -1,5 +1,5 @@
-#include "contact/influence.h"
-#include "contact/stress_state.h"
+#include "stress/influence.h"
+#include "stress/stress_state.h"
 #include <stdlib.h>
 
 enum { TABLE_STEP = 16 };

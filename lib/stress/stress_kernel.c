@@ -1,4 +1,4 @@
-#include "contact/stress_kernel.h"
+#include "stress/stress_kernel.h"
 #include "num/sym3.h"
 
 #include <errno.h>

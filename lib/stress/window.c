@@ -1,4 +1,4 @@
-#include "contact/window.h"
+#include "stress/window.h"
 #include "num/fft.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #ifndef CONTACT_STRESS_STATE_H
 #define CONTACT_STRESS_STATE_H
 
-#include "contact/stress.h"
+#include "stress/stress.h"
 #include <complex.h>
 
 enum { LAYERS_KEPT = 4096, WINDOWS = 8 };
