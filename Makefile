@@ -30,14 +30,14 @@ BIN = bin
 PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records
 
 roughgen_PARTS = generated measured raw roughness
-roughgen_MODULES = num/philox num/fft num/pool contact/areal contact/heights contact/rough contact/spectrum contact/surface
+roughgen_MODULES = num/philox num/fft num/pool surface/areal surface/heights surface/rough surface/spectrum surface/surface
 roughgen_LIBS = fftw
 bemcontact_PARTS = press raw
 bemcontact_MODULES = contact/kernel contact/solver contact/bccg contact/grids contact/mlms contact/pk num/convolve num/fft num/pool num/sweep
 bemcontact_LIBS = fftw
 debrisgen_PARTS = press wearing worn
 debrisgen_MODULES = $(bemcontact_MODULES) num/room debris/chords debris/debris debris/hull stress/influence debris/particles stress/stress \
-	stress/stress_direct stress/stress_fourier stress/stress_kernel contact/surface num/sym3 debris/tally debris/wear stress/window
+	stress/stress_direct stress/stress_fourier stress/stress_kernel surface/surface num/sym3 debris/tally debris/wear stress/window
 debrisgen_LIBS = fftw
 debrisstat_MODULES = num/philox num/room stats/ensemble stats/estimates stats/statistics
 debrisstat_LIBS = gsl

@@ -1,5 +1,5 @@
 #include "generated.h"
-#include "contact/rough.h"
+#include "surface/rough.h"
 #include "roughness.h"
 #include "cli/msg.h"
 #include "cli/progress.h"

@@ -1,5 +1,5 @@
 #include "measured.h"
-#include "contact/surface.h"
+#include "surface/surface.h"
 #include "raw.h"
 #include "roughness.h"
 #include "cli/msg.h"

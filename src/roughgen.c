@@ -1,6 +1,6 @@
 /* roughgen - rough surfaces, generated or measured, and their areal parameters */
-#include "contact/areal.h"
-#include "contact/surface.h"
+#include "surface/areal.h"
+#include "surface/surface.h"
 #include "generated.h"
 #include "measured.h"
 #include "roughness.h"

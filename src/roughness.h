@@ -3,7 +3,7 @@
 #ifndef ROUGHNESS_H
 #define ROUGHNESS_H
 
-#include "contact/rough.h"
+#include "surface/rough.h"
 #include "cli/opt.h"
 
 extern struct opt roughness_rows[]; /* for OPT_TABLE */

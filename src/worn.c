@@ -1,6 +1,6 @@
 #include "worn.h"
 #include "stress/stress_kernel.h"
-#include "contact/surface.h"
+#include "surface/surface.h"
 #include "cli/msg.h"
 #include "io/tables.h"
 #include <math.h>

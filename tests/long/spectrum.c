@@ -1,6 +1,6 @@
 /* Statistics of many realisations: correlation, distribution, independence. */
 #include "../unit/tap.h"
-#include "contact/rough.h"
+#include "surface/rough.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* The spectrum against the correlation functions it stands for, and what a wave's
  * address promises under refinement. */
-#include "contact/spectrum.h"
+#include "surface/spectrum.h"
 #include "num/fft.h"
 #include "tap.h"
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* Preparing and measuring heights against surfaces whose parameters are known. */
-#include "contact/surface.h"
-#include "contact/areal.h"
-#include "contact/heights.h"
-#include "contact/spectrum.h"
+#include "surface/surface.h"
+#include "surface/areal.h"
+#include "surface/heights.h"
+#include "surface/spectrum.h"
 #include "tap.h"
 #include <stdlib.h>
 #include <string.h>

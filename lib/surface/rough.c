@@ -1,7 +1,7 @@
 /* rough.c - an ensemble of rough surfaces of given roughness */
-#include "contact/rough.h"
-#include "contact/heights.h"
-#include "contact/surface.h"
+#include "surface/rough.h"
+#include "surface/heights.h"
+#include "surface/surface.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

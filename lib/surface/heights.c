@@ -1,5 +1,5 @@
 /* heights.c - heights of given skewness and kurtosis */
-#include "contact/heights.h"
+#include "surface/heights.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>

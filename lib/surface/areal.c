@@ -1,5 +1,5 @@
-#include "contact/areal.h"
-#include "contact/surface.h"
+#include "surface/areal.h"
+#include "surface/surface.h"
 #include "num/fft.h"
 #include <complex.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* spectrum.c - rough surfaces with a prescribed power spectrum */
-#include "contact/spectrum.h"
-#include "contact/heights.h"
+#include "surface/spectrum.h"
+#include "surface/heights.h"
 #include "num/fft.h"
 #include <math.h>
 #include <stdlib.h>

@@ -16,7 +16,7 @@
 #ifndef CONTACT_ROUGH_H
 #define CONTACT_ROUGH_H
 
-#include "contact/spectrum.h"
+#include "surface/spectrum.h"
 
 enum rough_kind {
 	ROUGH_SQ,   /* root mean square height, m */

@@ -1,5 +1,5 @@
 /* surface.c - see surface.h */
-#include "contact/surface.h"
+#include "surface/surface.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
