@@ -25,42 +25,16 @@ WARN = -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototype
 B = build
 BIN = bin
 
-# What each program is made of besides lib/shell: parts of src/ that programs share,
-# modules of lib/ and libraries.
+# The outer libraries of each program; what it uses of lib/ the linker takes from one archive.
 PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records
-
-roughgen_PARTS = generated measured raw roughness
-roughgen_MODULES = num/philox num/fft num/pool surface/areal surface/heights surface/rough surface/spectrum surface/surface
 roughgen_LIBS = fftw
-bemcontact_PARTS = press raw
-bemcontact_MODULES = contact/kernel contact/solver contact/bccg contact/grids contact/mlms contact/pk num/convolve num/fft num/pool num/sweep
 bemcontact_LIBS = fftw
-debrisgen_PARTS = press wearing worn
-debrisgen_MODULES = $(bemcontact_MODULES) num/room debris/chords debris/debris debris/hull stress/influence debris/particles stress/stress \
-	stress/stress_direct stress/stress_fourier stress/stress_kernel surface/surface num/sym3 debris/tally debris/wear stress/window
 debrisgen_LIBS = fftw
-debrisstat_MODULES = num/philox num/room stats/ensemble stats/estimates stats/statistics
 debrisstat_LIBS = gsl
-sensorsim_PARTS = sensors source
-sensorsim_MODULES = num/philox num/normals num/ziggurat signal/sensor signal/passage signal/scene
-sensorsim_LIBS =
-bpfilter_MODULES = num/fft num/select signal/fir signal/lines signal/tones signal/robust
 bpfilter_LIBS = fftw
-duet_PARTS = found instrument methods
-duet_MODULES = num/fft num/select signal/sensor signal/shape signal/joint signal/joint_model signal/joint_step signal/joint_moves signal/align signal/robust signal/tones signal/sections signal/calibrate signal/measure signal/matched signal/learn signal/examples signal/correct signal/whiten signal/colour signal/quiet signal/fir signal/stft signal/masks signal/count signal/separate signal/judge signal/tape signal/campbell net/cnn net/network net/netfile num/philox
 duet_LIBS = fftw cblas
-delaynet_PARTS = learning lessons scores
-delaynet_MODULES = num/philox net/lesson net/training net/network net/network_gradient net/netfile net/delaydata net/delayloss net/cnn net/cnndata signal/sensor
 delaynet_LIBS = cblas gsl
-aopf_PARTS = filtering levels outlook timeunit
-aopf_MODULES = num/philox num/select num/ziggurat life/draw life/resample life/filter life/grey life/order life/noise life/adaptive life/history life/damage life/fleet life/runin life/predict life/metrics
-aopf_LIBS =
-rwl_PARTS = fragments levels lifetable pump state timeunit
-rwl_MODULES = num/philox num/rng num/room num/select life/forecast life/grey life/leakage life/metrics life/noise life/observed life/pair life/partition life/paths life/rate life/remaining life/slope
 rwl_LIBS = gsl
-records_PARTS = raw
-records_MODULES =
-records_LIBS =
 
 FFTW_CFLAGS ?= $(shell $(PKG_CONFIG) --cflags fftw3 2>/dev/null)
 FFTW_LIBS ?= $(shell $(PKG_CONFIG) --libs fftw3 2>/dev/null || echo -lfftw3)
@@ -69,7 +43,7 @@ GSL_LIBS ?= $(shell $(PKG_CONFIG) --libs gsl 2>/dev/null || echo -lgsl -lgslcbla
 # OpenBLAS where its development files are, else GSL's own CBLAS.
 ifeq ($(shell $(PKG_CONFIG) --exists openblas 2>/dev/null && echo yes),yes)
 CBLAS_LIBS ?= $(shell $(PKG_CONFIG) --libs openblas)
-CPPFLAGS += -DWITH_OPENBLAS
+BLAS_FLAG = -DWITH_OPENBLAS
 endif
 CBLAS_LIBS ?= -lgslcblas
 cblas_LINK = $(CBLAS_LIBS)
@@ -77,12 +51,25 @@ fftw_LINK = $(FFTW_LIBS)
 gsl_LINK = $(GSL_LIBS)
 
 ALL_CFLAGS = $(STD) $(WARN) $(CFLAGS) -pthread
-CPPFLAGS += -Ilib -DWEARPIPE_VERSION='"$(VERSION)"' $(FFTW_CFLAGS) $(GSL_CFLAGS)
+ALL_CPPFLAGS = -Ilib -Isrc -DWEARPIPE_VERSION='"$(VERSION)"' $(BLAS_FLAG) $(FFTW_CFLAGS) $(GSL_CFLAGS) $(CPPFLAGS)
 
-# A program is listed from the moment its source is there.
-BUILT := $(foreach p,$(PROGRAMS),$(if $(wildcard src/$(p).c),$(p)))
-SHELL_OBJS := $(patsubst lib/%.c,$(B)/lib/%.o,$(wildcard lib/shell/*.c))
-LIB_OBJS := $(patsubst lib/%.c,$(B)/lib/%.o,$(sort $(wildcard lib/num/*.c lib/contact/*.c lib/signal/*.c lib/life/*.c)))
+# A program is listed from the moment its folder is there.
+BUILT := $(foreach p,$(PROGRAMS),$(if $(wildcard src/$(p)/main.c),$(p)))
+CLI_SRC := $(wildcard lib/cli/*.c lib/io/*.c)
+LIB_SRC := $(filter-out $(CLI_SRC),$(wildcard lib/*/*.c lib/*/*/*.c))
+COMMON_SRC := $(wildcard src/common/*.c)
+
+# Where a library is missing, the archive goes without the modules that include it, so
+# that programs which do not need it still build.
+missing = $(if $(shell echo '\#include <$(1)>' | $(CC) $(ALL_CPPFLAGS) -E - >/dev/null 2>&1 && echo yes),,$(1))
+MISSING := $(strip $(foreach h,fftw3.h gsl/gsl_cblas.h,$(call missing,$(h))))
+ifneq ($(MISSING),)
+lacks = $(shell $(CC) $(ALL_CPPFLAGS) -MM -MG $(1) | grep -q $(MISSING:%=-e %) && echo $(1))
+LIB_SRC := $(filter-out $(foreach f,$(LIB_SRC),$(call lacks,$(f))),$(LIB_SRC))
+COMMON_SRC := $(filter-out $(foreach f,$(COMMON_SRC),$(call lacks,$(f))),$(COMMON_SRC))
+endif
+objects = $(patsubst %.c,$(B)/%.o,$(1))
+
 UNITS := $(patsubst tests/unit/%.c,$(B)/unit/%,$(wildcard tests/unit/*.c))
 LONG_UNITS := $(patsubst tests/long/%.c,$(B)/long/%,$(wildcard tests/long/*.c))
 BENCH_BINS := $(patsubst tests/bench/%.c,$(B)/bench/%,$(wildcard tests/bench/*.c))
@@ -98,7 +85,7 @@ libraries:
 	@PKG_CONFIG="$(PKG_CONFIG)" scripts/deps --check
 
 define program
-$(BIN)/$(1): $(B)/src/$(1).o $($(1)_PARTS:%=$(B)/src/%.o) $(SHELL_OBJS) $($(1)_MODULES:%=$(B)/lib/%.o)
+$(BIN)/$(1): $(call objects,$(wildcard src/$(1)/*.c)) $(B)/libcommon.a $(B)/libshell.a $(B)/libwearpipe.a
 	@mkdir -p $(BIN)
 	$$(CC) $$(ALL_CFLAGS) $$(LDFLAGS) -o $$@ $$^ $$(foreach l,$($(1)_LIBS),$$($$(l)_LINK)) -lm
 endef
@@ -106,19 +93,20 @@ $(foreach p,$(PROGRAMS),$(eval $(call program,$(p))))
 
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
+	$(CC) $(ALL_CPPFLAGS) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
 
-$(B)/libwearpipe.a: $(LIB_OBJS)
-	@rm -f $@
-	$(AR) rcs $@ $^
-
-$(B)/libshell.a: $(SHELL_OBJS)
-	@rm -f $@
-	$(AR) rcs $@ $^
+define archive
+$(B)/$(1): $(call objects,$(2))
+	@rm -f $$@
+	$$(AR) rcs $$@ $$^
+endef
+$(eval $(call archive,libwearpipe.a,$(LIB_SRC)))
+$(eval $(call archive,libshell.a,$(CLI_SRC)))
+$(eval $(call archive,libcommon.a,$(COMMON_SRC)))
 
 # Unit tests, long tests and benchmarks in C: one file each, linked with everything.
 define single
-$(B)/$(1)/%: $(B)/tests/$(1)/%.o $(B)/libwearpipe.a $(B)/libshell.a
+$(B)/$(1)/%: $(B)/tests/$(1)/%.o $(B)/libshell.a $(B)/libwearpipe.a
 	@mkdir -p $$(@D)
 	$$(CC) $$(ALL_CFLAGS) $$(LDFLAGS) -o $$@ $$^ $$(FFTW_LIBS) $$(GSL_LIBS) -lm
 endef
@@ -169,8 +157,8 @@ $(B)/wearpipe.bash: $(BUILT:%=$(BIN)/%) scripts/completion
 
 # The library's interface is what the programs call: the headers they include, and what
 # those include.
-DOMAINS = num contact signal life
-HEADERS = $(sort $(filter $(DOMAINS:%=lib/%/%.h),$(shell $(CC) $(CPPFLAGS) -MM src/*.c)))
+DOMAINS = num surface contact stress debris stats signal net life
+HEADERS = $(sort $(filter $(DOMAINS:%=lib/%/%.h),$(shell $(CC) $(ALL_CPPFLAGS) -MM src/*/*.c)))
 MAN1 = $(wildcard man/*.1)
 D = $(DESTDIR)$(PREFIX)
 

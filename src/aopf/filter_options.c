@@ -1,0 +1,86 @@
+#include "filter_options.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
+#include <float.h>
+#include <math.h>
+
+static const char *const orders[] = { "window", "insample", "all", NULL };
+static const char *const schemes[] = { "systematic", "stratified", "residual",
+	"multinomial", NULL };
+
+struct filtering filtering = { .particles = 300, .seed = 1 };
+
+static struct opt_choice order = { ORDER_WINDOW, 0 };
+static struct opt_list range;
+static double hysteresis = 0.03, share = 0.5, freedom, process = NAN, noise = NAN;
+static long largest = 60, window = 50;
+static int scheme;
+
+struct opt filtering_rows[] = {
+	{ 'n', "order", OPT_CHOICE, UNIT_COUNT, &order, 4, 1000, "N|window|insample|all",
+		"order of the grey model, or how it is chosen", orders, 0 },
+	{ 'P', "max-order", OPT_INT, UNIT_COUNT, &largest, 4, 1000, "N",
+		"largest order that may be chosen", NULL, 0 },
+	{ 'w', "order-window", OPT_INT, UNIT_COUNT, &window, 1, 10000, "N",
+		"rows whose forecast errors choose the order", NULL, 0 },
+	{ 'g', "hysteresis", OPT_NUM, UNIT_FRACTION, &hysteresis, 0, 1, "X",
+		"relative fall of the error that changes the order", NULL, 0 },
+	{ 'R', "order-range", OPT_LIST, UNIT_COUNT, &range, 0, 1000, "LO:HI",
+		"orders searched while the trend goes on", NULL, 0 },
+	{ 'N', "particles", OPT_INT, UNIT_COUNT, &filtering.particles, 1, 1e7, "N",
+		"particles", NULL, 0 },
+	{ 'r', "resampling", OPT_WORD, UNIT_NONE, &scheme, 0, 0,
+		"systematic|stratified|residual|multinomial", "resampling scheme",
+		schemes, 0 },
+	{ 'e', "ess", OPT_NUM, UNIT_FRACTION, &share, 0, 1, "X",
+		"resample below this effective share of the particles; 1: always", NULL,
+		0 },
+	{ 'l', "freedom", OPT_NUM, UNIT_NONE, &freedom, 0, 1e6, "NU",
+		"degrees of freedom of Student-t observation noise; 0: Gaussian", NULL,
+		0 },
+	{ 'a', "sigma-u", OPT_NUM, UNIT_NONE, &process, 0, DBL_MAX, "SD",
+		"process noise per row, in units of y (default from the innovations)",
+		NULL, 0 },
+	{ 'b', "sigma-v", OPT_NUM, UNIT_NONE, &noise, 0, DBL_MAX, "SD",
+		"observation noise, in units of y (default from second differences)",
+		NULL, 0 },
+	OPT_END
+};
+
+void filtering_check(void)
+{
+	if (range.n == 2 && range.v[0] > range.v[1])
+		die(EXIT_USAGE, "--order-range wants LO:HI with LO not above HI");
+}
+
+struct adaptive *filtering_new(int unit)
+{
+	struct adaptive_par par = {
+		.filter = { (size_t)filtering.particles, 0, (enum resampling)scheme,
+			share, freedom },
+		.order = { order.word < 0 ? ORDER_FIXED : (enum order_rule)order.word,
+			order.word < 0 ? (int)order.value : (int)largest, (int)window,
+			hysteresis, (int)range.v[0], (int)range.v[1] },
+		.process = process,
+		.noise = noise,
+		.seed = (uint64_t)filtering.seed,
+		.realisation = (uint32_t)unit,
+	};
+	struct adaptive *a = adaptive_new(&par);
+
+	if (!a)
+		die(EXIT_RUN, "no memory for %ld particles", filtering.particles);
+	return a;
+}
+
+void filtering_count(const struct adaptive *a)
+{
+	const struct order *o = adaptive_order(a);
+
+	stats_add("resamplings", (double)filter_resamplings(adaptive_filter(a)));
+	stats_add("outliers", (double)adaptive_outliers(a));
+	stats_add("restarts", (double)adaptive_restarts(a));
+	stats_add("orders", (double)order_tried(o));
+	stats_add("orders_skipped", (double)order_skipped(o));
+	stats_add("order_changes", (double)order_changes(o));
+}

@@ -1,0 +1,23 @@
+/* filter_options.h - how a series is filtered: options of aopf */
+#ifndef FILTERING_H
+#define FILTERING_H
+
+#include "life/adaptive.h"
+#include "cli/opt.h"
+
+/* Values of the options. */
+extern struct filtering {
+	long particles, seed;
+} filtering;
+
+extern struct opt filtering_rows[]; /* for OPT_TABLE; not that of the seed */
+
+/* Dies where options make no sense. */
+void filtering_check(void);
+
+/* The filter of a unit. */
+struct adaptive *filtering_new(int unit);
+/* Counts the work it did. */
+void filtering_count(const struct adaptive *a);
+
+#endif

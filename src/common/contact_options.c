@@ -1,0 +1,123 @@
+#include "contact_options.h"
+#include "contact/kernel.h"
+#include "cli/msg.h"
+#include <math.h>
+#include <string.h>
+
+struct press press = { .load = NAN,
+	.pressure = NAN,
+	.approach = NAN,
+	.estar = NAN,
+	.tolerance = 1e-8,
+	.poisson = { 1, { 0.3 } },
+	.max_iterations = 10000,
+	.threads = 1 };
+
+static const char *const boundaries[] = { "free", "periodic", NULL };
+static const char *const multipliers[] = { "fft", "mlms", NULL };
+static const char *const solvers[] = { "bccg", "pk", NULL };
+
+struct opt press_rows[] = {
+	{ 'F', "load", OPT_NUM, UNIT_FORCE, &press.load, 0, 1e30, "F", "normal load", 0,
+		0 },
+	{ 'P', "pressure", OPT_NUM, UNIT_PRESSURE, &press.pressure, 0, 1e30, "P",
+		"mean pressure, in place of a load", 0, 0 },
+	{ 'D', "approach", OPT_NUM, UNIT_LENGTH, &press.approach, -1e12, 1e12, "D",
+		"how far the flat goes past height 0, in place of a load", 0, 0 },
+	{ 'E', "young", OPT_LIST, UNIT_PRESSURE, &press.young, 1e-6, 1e30, "E1[,E2]",
+		"Young's moduli of the bodies; one for both", 0, 0 },
+	{ 'N', "poisson", OPT_LIST, UNIT_NONE, &press.poisson, -0.999, 0.5, "N1[,N2]",
+		"Poisson's ratios of the bodies; one for both", 0, 0 },
+	{ 'e', "estar", OPT_NUM, UNIT_PRESSURE, &press.estar, 1e-6, 1e30, "E",
+		"contact modulus, in place of --young", 0, 0 },
+	{ 'b', "boundary", OPT_WORD, UNIT_NONE, &press.boundary, 0, 0, "free|periodic",
+		"surface around the grid: free of load, or the grid repeated", boundaries,
+		0 },
+	{ 'K', "hardness", OPT_NUM, UNIT_PRESSURE, &press.hardness, 0, 1e30, "H",
+		"largest pressure; 0: none", 0, 0 },
+	{ 't', "tolerance", OPT_NUM, UNIT_NONE, &press.tolerance, 1e-16, 1, "T",
+		"certificate to reach", 0, 0 },
+	{ 'i', "max-iterations", OPT_INT, UNIT_COUNT, &press.max_iterations, 1, 1e9, "N",
+		"iterations after which to give up", 0, 0 },
+	{ 'm', "solver", OPT_WORD, UNIT_NONE, &press.solver, 0, 0, "bccg|pk",
+		"preconditioned on nested grids, or Polonsky and Keer's", solvers, 0 },
+	{ 'M', "multiply", OPT_WORD, UNIT_NONE, &press.multiply, 0, 0, "fft|mlms",
+		"how the half-space is applied: Fourier, or multi-level summation",
+		multipliers, 0 },
+	{ 'j', "threads", OPT_INT, UNIT_COUNT, &press.threads, 1, 1024, "N",
+		"threads; the result is the same", 0, 1 },
+	OPT_END,
+};
+
+void press_check(void)
+{
+	const struct opt_list *e = &press.young, *nu = &press.poisson;
+
+	if (!isnan(press.load) + !isnan(press.pressure) + !isnan(press.approach) > 1)
+		die(EXIT_USAGE, "want only one of --load, --pressure and --approach");
+	if (!isnan(press.estar) && e->n)
+		die(EXIT_USAGE, "want either --estar or --young and --poisson");
+	if (press.multiply && press.boundary)
+		die(EXIT_USAGE,
+			"--multiply mlms sums over a free surface: no --boundary periodic");
+	if (e->n)
+		press.estar = kernel_modulus(
+			e->v[0], nu->v[0], e->v[e->n - 1], nu->v[nu->n - 1]);
+}
+
+/* Number of a key that bemcontact wrote, for an option that was not given. */
+static double inherited(const struct record *r, const char *key, int letter, double value)
+{
+	double v = record_get_number(r, key);
+
+	return opt_given(letter) || isnan(v) ? value : v;
+}
+
+struct contact_par press_par(const struct record *r, struct pool *pool)
+{
+	const char *around = record_get(r, "boundary");
+	int periodic = opt_given('b') || !around ? press.boundary
+						 : strcmp(around, "periodic") == 0;
+
+	return (struct contact_par){ .nx = r->nx,
+		.ny = r->ny,
+		.dx = r->dx,
+		.dy = r->dy,
+		.estar = isnan(press.estar) ? record_get_number(r, "estar") : press.estar,
+		.hardness = inherited(r, "hardness", 'K', press.hardness),
+		.boundary = periodic ? CONTACT_PERIODIC : CONTACT_FREE,
+		.solver = (enum contact_solver)press.solver,
+		.multiply = (enum contact_multiply)press.multiply,
+		.tolerance = press.tolerance,
+		.max_iterations = press.max_iterations,
+		.pool = pool };
+}
+
+void press_record(struct record *r, const struct contact_par *par)
+{
+	record_set(r, "estar", "%.17g", par->estar);
+	record_set(r, "boundary", "%s", boundaries[par->boundary]);
+	if (par->hardness > 0)
+		record_set(r, "hardness", "%.17g", par->hardness);
+}
+
+int press_same(const struct contact_par *a, const struct contact_par *b)
+{
+	return a->nx == b->nx && a->ny == b->ny && a->dx == b->dx && a->dy == b->dy &&
+	       a->hardness == b->hardness && a->boundary == b->boundary &&
+	       (a->estar == b->estar || (isnan(a->estar) && isnan(b->estar)));
+}
+
+enum contact_control press_control(void)
+{
+	return isnan(press.approach) ? CONTACT_PRESSURE : CONTACT_APPROACH;
+}
+
+double press_target(const struct record *r)
+{
+	if (!isnan(press.approach))
+		return press.approach;
+	if (!isnan(press.pressure))
+		return press.pressure;
+	return press.load / (r->nx * r->dx * r->ny * r->dy);
+}

@@ -1,0 +1,36 @@
+/* contact_options.h - how bodies are pressed together: options that bemcontact and debrisgen share
+ */
+#ifndef PRESS_H
+#define PRESS_H
+
+#include "contact/solver.h"
+#include "io/fields.h"
+#include "cli/opt.h"
+
+/* Values of the options; nan where not given.  estar follows from young and poisson
+ * once press_check() was called. */
+extern struct press {
+	double load, pressure, approach, estar, hardness, tolerance;
+	struct opt_list young, poisson;
+	int boundary, solver, multiply;
+	long max_iterations, threads;
+} press;
+
+extern struct opt press_rows[]; /* for OPT_TABLE */
+
+/* Dies where options contradict one another. */
+void press_check(void);
+
+/* The problem on the grid of a record.  Material and boundary that were not given are
+ * those of its keys estar, boundary and hardness; estar is nan where it is not known. */
+struct contact_par press_par(const struct record *r, struct pool *pool);
+/* Writes those keys. */
+void press_record(struct record *r, const struct contact_par *par);
+/* 1 if both are the same grid, material and boundary, so that a solver serves again. */
+int press_same(const struct contact_par *a, const struct contact_par *b);
+
+enum contact_control press_control(void);
+/* Mean pressure or approach asked for; nan where neither they nor a load were given. */
+double press_target(const struct record *r);
+
+#endif

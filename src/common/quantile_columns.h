@@ -1,0 +1,11 @@
+/* quantile_columns.h - columns of quantiles, named by per cent: q05, q50, q97.5, q100 */
+#ifndef LEVELS_H
+#define LEVELS_H
+
+#include "cli/opt.h"
+
+/* The names before and one for each level, parted by blanks; the caller frees. */
+char *levels_columns(
+	const char *before, const char *prefix, const struct opt_list *levels);
+
+#endif

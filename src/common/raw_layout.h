@@ -1,0 +1,14 @@
+/* raw_layout.h - samples without a header: options of every program that reads heights */
+#ifndef RAW_H
+#define RAW_H
+
+#include "io/fields.h"
+#include "cli/opt.h"
+
+extern struct opt raw_rows[]; /* for OPT_TABLE */
+
+/* Layout that was given, for fields_open(); NULL where the stream has headers.  Dies
+ * where one option lacks the other. */
+const struct raw_layout *raw_given(void);
+
+#endif

@@ -1,0 +1,152 @@
+/* debrisgen - wear particles that a contact tears off a rough surface */
+#include "common/contact_options.h"
+#include "io/fields.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
+#include "cli/progress.h"
+#include "cli/stats.h"
+#include "wear_steps.h"
+#include "outputs.h"
+#include <math.h>
+
+static long steps = 1;
+static double stop_area = 0.8, amplification = 1;
+
+static const struct opt opts[] = {
+	OPT_TABLE(wearing_rows),
+	{ 'T', "steps", OPT_INT, UNIT_COUNT, &steps, 1, 1e6, "N",
+		"wear steps; the contact is solved anew from the second on", NULL, 0 },
+	{ 'A', "stop-area", OPT_NUM, UNIT_FRACTION, &stop_area, 0, 1, "A",
+		"stop where this share of the cells is in contact; 1: never", NULL, 0 },
+	{ 'Z', "amplification", OPT_NUM, UNIT_NONE, &amplification, 0, 1e12, "K",
+		"sliding distance of a step over the length of the grid", NULL, 0 },
+	OPT_TABLE(worn_rows),
+	OPT_TABLE(press_rows),
+	OPT_END,
+};
+
+static const struct prog prog = { "debrisgen",
+	"Find the wear particles that a rough contact tears off, step by step.", "[file]",
+	"fields: height, pressure", "table: one row per wear particle", opts };
+
+/* What the program goes through its records with. */
+struct run {
+	struct fields_in *in;
+	struct wearing *wearing;
+	struct worn *out; /* NULL before the first record */
+	int status;
+};
+
+/* One surface on its way through the steps. */
+struct scene {
+	struct worn_surface now;
+	double target; /* mean pressure, or approach */
+	long done;     /* steps before the first of this run */
+	int warned;    /* of load on the rim, once a surface */
+};
+
+static double choose_target(const struct scene *c, double contact_load)
+{
+	const struct record *r = c->now.r;
+	double asked = press_target(r), given = record_get_number(r, "mean_pressure");
+
+	if (!isnan(asked))
+		return asked;
+	return isnan(given) ? contact_load / (r->nx * r->dx * r->ny * r->dy) : given;
+}
+
+static void open_scene(struct run *run, struct record *r, struct scene *c)
+{
+	double before = record_get_number(r, "step"), crown, sq;
+	struct debris_step s;
+
+	if (r->nz != 1)
+		die(EXIT_RUN, "%s: record %ld: want plane fields, got %d layers",
+			fields_name(run->in), fields_count(run->in), r->nz);
+	crown = record_get_number(r, "crown");
+	sq = record_get_number(r, "sq");
+	c->now = (struct worn_surface){ .r = r,
+		.h = record_need(r, "height", 1, run->in),
+		.p = record_need(r, "pressure", 1, run->in),
+		.crown = isnan(crown) ? 0 : crown,
+		.sq = sq };
+	c->done = isnan(before) ? 0 : (long)before;
+	if (isnan(sq) || sq <= 0) {
+		c->now.sq = worn_roughness(&c->now);
+		record_set(r, "sq", "%.17g", c->now.sq);
+	}
+	wearing_prepare(run->wearing, r);
+	wearing_contact(run->wearing, &c->now, &s);
+	c->target = choose_target(c, s.load);
+}
+
+/* 1 where the contact is too large for a further step. */
+static int check_contact(struct run *run, struct scene *c, long step)
+{
+	const char *name = fields_name(run->in);
+	struct debris_step s;
+
+	wearing_contact(run->wearing, &c->now, &s);
+	if (s.edge_load > 0.05 && !c->warned++)
+		warn("%s: realisation %ld, step %ld: %.0f %% of the load lies on the "
+		     "outermost cells",
+			name, c->now.r->realisation, step, 100 * s.edge_load);
+	if (s.contact < stop_area || stop_area == 1)
+		return 0;
+	note("%s: realisation %ld, step %ld: %.3g of the cells in contact: stopped", name,
+		c->now.r->realisation, step, s.contact);
+	return 1;
+}
+
+static void wear_step(struct run *run, const struct scene *c, long step)
+{
+	struct worn_step s = wearing_step(run->wearing, &c->now, step);
+
+	s.distance = (double)step * amplification * wearing_length(c->now.r);
+	worn_put(run->out, &c->now, &s);
+	note("%s: realisation %ld, step %ld: %zu particles, %.6g m3, %ld layers",
+		fields_name(run->in), c->now.r->realisation, step, s.lost->count,
+		s.lost->volume, s.lost->wear.layers);
+}
+
+/* Wears one surface step by step. */
+static void wear_record(struct run *run, struct record *r)
+{
+	struct scene c = { 0 };
+
+	open_scene(run, r, &c);
+	worn_begin(run->out, r);
+	for (long k = 1; k <= steps; k++) {
+		progress("steps", (double)(k - 1), (double)steps);
+		if (k > 1 && !wearing_press(run->wearing, &c.now, c.target, c.done + k))
+			run->status = EXIT_NOCONV;
+		if (check_contact(run, &c, c.done + k)) {
+			stats_add("steps_skipped", (double)(steps - k + 1));
+			break;
+		}
+		wear_step(run, &c, c.done + k);
+	}
+}
+
+int main(int argc, char **argv)
+{
+	int first = opt_parse(&prog, argc, argv);
+	struct record r = { 0 };
+	struct run run = { 0 };
+
+	press_check();
+	wearing_check();
+	run.in = fields_open(argv[first], NULL);
+	run.wearing = wearing_open(run.in, steps);
+	while (fields_read(run.in, &r)) {
+		if (!run.out)
+			run.out = worn_open(r.cmd);
+		wear_record(&run, &r);
+	}
+	progress_clear();
+	worn_close(run.out);
+	wearing_close(run.wearing);
+	fields_close(run.in);
+	record_free(&r);
+	return shell_done(run.status);
+}

@@ -1,0 +1,260 @@
+#include "outputs.h"
+#include "stress/stress_kernel.h"
+#include "surface/surface.h"
+#include "cli/msg.h"
+#include "io/tables.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Fields of --stress: one word gives one or several. */
+enum { MISES = 1, HYDROSTATIC = 2, PRINCIPAL = 4, TENSOR = 8 };
+static const char *const stress_words[] = { "von_mises", "hydrostatic", "principal",
+	"tensor", NULL };
+
+static int stress_wanted = MISES;
+static long stress_layers;
+static const char *surface_path, *summary_path, *stress_path;
+
+struct opt worn_rows[] = {
+	{ 'O', "surface", OPT_TEXT, UNIT_NONE, &surface_path, 0, 0, "FILE",
+		"write the worn surface of every step", NULL, 1 },
+	{ 'U', "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
+		"write a table with a row per step", NULL, 1 },
+	{ 'G', "stress", OPT_TEXT, UNIT_NONE, &stress_path, 0, 0, "FILE",
+		"write the stress below every contact", NULL, 1 },
+	{ 'o', "fields", OPT_WORDS, UNIT_NONE, &stress_wanted, 0, 0, "NAME,...",
+		"what to write of von_mises, hydrostatic, principal, tensor",
+		stress_words, 1 },
+	{ 'y', "stress-layers", OPT_INT, UNIT_COUNT, &stress_layers, 0, 1e6, "N",
+		"layers of --stress; 0: as many as were searched for failure", NULL, 1 },
+	OPT_END,
+};
+
+static const char particle_columns[] =
+	"realisation step particle nodes volume diameter aspect x y z length width elongation "
+	"convexity area azimuth dip x_low x_high y_low y_high z_low z_high";
+static const char particle_units[] =
+	"1 1 1 1 m3 m 1 m m m m m 1 1 m2 rad rad m m m m m m";
+static const char summary_columns[] =
+	"realisation step distance load contact_fraction max_pressure edge_load volume "
+	"particles mean_diameter max_diameter depth relative_roughness max_von_mises";
+static const char summary_units[] = "1 1 m N 1 Pa 1 m3 1 m m m 1 Pa";
+
+struct worn {
+	struct table_out *particles, *summary;
+	struct fields_out *surface, *stress;
+};
+
+/* The pipeline that prints what went to the file of an option, on standard output; of the
+ * particles with option NULL.  Fresh memory. */
+static char *cmd_of(const char *upstream, const char *option)
+{
+	static const char turn[] = "/dev/fd/3 3>&1 >/dev/null";
+	char words[64] = "", *extra = NULL, *cmd;
+
+	for (int k = 0; stress_words[k]; k++)
+		if (stress_wanted & 1 << k)
+			strcat(strcat(words, *words ? "," : ""), stress_words[k]);
+	if (option && strcmp(option, "--stress") == 0)
+		extra = xprintf("--fields %s --stress-layers %ld %s %s", words,
+			stress_layers, option, turn);
+	else if (option)
+		extra = xprintf("%s %s", option, turn);
+	cmd = opt_cmd(upstream, extra);
+	free(extra);
+	return cmd;
+}
+
+struct worn *worn_open(const char *upstream)
+{
+	struct worn *w = xcalloc(1, sizeof(*w));
+	char *cmd = cmd_of(upstream, NULL), *summary = cmd_of(upstream, "--summary");
+
+	w->particles = table_create(NULL, cmd, particle_units, particle_columns);
+	if (summary_path)
+		w->summary = table_create(
+			summary_path, summary, summary_units, summary_columns);
+	if (surface_path)
+		w->surface = fields_create(surface_path);
+	if (stress_path)
+		w->stress = fields_create(stress_path);
+	free(cmd);
+	free(summary);
+	return w;
+}
+
+static void table_cmd_for(struct table_out *t, const struct record *r, const char *option)
+{
+	char *cmd = cmd_of(r->cmd, option);
+
+	table_cmd(t, cmd);
+	free(cmd);
+}
+
+void worn_begin(struct worn *w, const struct record *r)
+{
+	table_cmd_for(w->particles, r, NULL);
+	if (w->summary)
+		table_cmd_for(w->summary, r, "--summary");
+}
+
+static void put_particles(
+	struct table_out *t, long realisation, const struct worn_step *s)
+{
+	for (size_t i = 0; i < s->lost->count; i++) {
+		const struct particle *p = &s->lost->particle[i];
+		double row[] = { (double)realisation, (double)s->number, (double)(i + 1),
+			p->nodes, p->volume, p->diameter, p->aspect, p->x, p->y, p->z,
+			p->length, p->width, p->elongation, p->convexity, p->area,
+			p->azimuth, p->dip, p->low[0], p->high[0], p->low[1], p->high[1],
+			p->low[2], p->high[2] };
+
+		table_put_row(t, row, sizeof(row) / sizeof(*row));
+	}
+	table_flush(t);
+}
+
+double worn_roughness(const struct worn_surface *c)
+{
+	const struct record *r = c->r;
+	size_t n = (size_t)r->nx * r->ny;
+	double *z = xcalloc(n, sizeof(*z)), sq;
+
+	memcpy(z, c->h, n * sizeof(*z));
+	surface_crown(r->nx, r->ny, r->dx, r->dy, -c->crown, z);
+	sq = surface_sq(r->nx, r->ny, z);
+	free(z);
+	return sq;
+}
+
+static void put_summary(
+	struct table_out *t, const struct worn_surface *c, const struct worn_step *s)
+{
+	const struct debris_step *lost = s->lost;
+	double mean = 0, most = 0;
+
+	for (size_t i = 0; i < lost->count; i++) {
+		mean += lost->particle[i].diameter / (double)lost->count;
+		most = fmax(most, lost->particle[i].diameter);
+	}
+	double row[] = { (double)c->r->realisation, (double)s->number, s->distance,
+		lost->load, lost->contact, lost->max_pressure, lost->edge_load,
+		lost->volume, (double)lost->count, lost->count ? mean : NAN,
+		lost->count ? most : NAN, lost->depth, worn_roughness(c) / c->sq,
+		lost->wear.mises };
+
+	table_put_row(t, row, sizeof(row) / sizeof(*row));
+	table_flush(t);
+}
+
+/* A record like r without its fields, with the keys that stay true of worn surfaces. */
+static void bare_record(
+	struct record *out, const struct record *r, const char *option, long step)
+{
+	static const char *const kept[] = { "seed", "sq", "crown", NULL };
+
+	record_init(out, r->nx, r->ny, r->dx, r->dy);
+	out->realisation = r->realisation;
+	out->cmd = cmd_of(r->cmd, option);
+	for (int i = 0; kept[i]; i++)
+		if (record_get(r, kept[i]))
+			record_set(out, kept[i], "%s", record_get(r, kept[i]));
+	record_set(out, "step", "%ld", step);
+}
+
+static void put_surface(
+	struct fields_out *f, const struct worn_surface *c, const struct worn_step *s)
+{
+	size_t bytes = (size_t)c->r->nx * c->r->ny * sizeof(*c->h);
+	struct record out = { 0 };
+
+	bare_record(&out, c->r, "--surface", s->number);
+	memcpy(record_add(&out, "height", "m"), c->h, bytes);
+	/* The next solution starts from it, here as in a pipeline. */
+	memcpy(record_add(&out, "pressure", "Pa"), c->p, bytes);
+	fields_write(f, &out);
+	record_free(&out);
+}
+
+/* The fields wanted at one point, in the order of their names in put_stress(). */
+static int derive(const double t[STRESS_COMPONENTS], double *out)
+{
+	int n = 0;
+
+	if (stress_wanted & MISES)
+		out[n++] = stress_von_mises(t);
+	if (stress_wanted & HYDROSTATIC)
+		out[n++] = (t[STRESS_XX] + t[STRESS_YY] + t[STRESS_ZZ]) / 3;
+	if (stress_wanted & PRINCIPAL) {
+		stress_principal(t, out + n);
+		n += 3;
+	}
+	if (stress_wanted & TENSOR) {
+		memcpy(out + n, t, STRESS_COMPONENTS * sizeof(*t));
+		n += STRESS_COMPONENTS;
+	}
+	return n;
+}
+
+static void put_stress(
+	struct fields_out *f, const struct record *r, const struct worn_step *s)
+{
+	static const char *const names[] = { "von_mises", "hydrostatic", "principal_1",
+		"principal_2", "principal_3", "xx", "yy", "zz", "xy", "xz", "yz" };
+	static const int part[] = { MISES, HYDROSTATIC, PRINCIPAL, PRINCIPAL, PRINCIPAL,
+		TENSOR, TENSOR, TENSOR, TENSOR, TENSOR, TENSOR };
+	size_t n = (size_t)r->nx * r->ny;
+	long count = stress_layers              ? stress_layers
+		     : s->lost->wear.layers > 0 ? s->lost->wear.layers
+						: 1;
+	double *tensor = xcalloc(n, STRESS_COMPONENTS * sizeof(*tensor));
+	struct record out = { 0 };
+
+	bare_record(&out, r, "--stress", s->number);
+	out.nz = (int)count;
+	out.dz = s->dz;
+	record_set(&out, "first_depth", "%.17g", s->offset * out.dz);
+	for (size_t k = 0; k < sizeof(part) / sizeof(*part); k++)
+		if (stress_wanted & part[k])
+			record_add(&out, names[k], "Pa");
+	for (long m = 0; m < count; m++) {
+		if (stress_tensor(s->stress, m, tensor))
+			die(EXIT_RUN, "no memory for the stress of %ld layers", count);
+		for (size_t i = 0; i < n; i++) {
+			double t[STRESS_COMPONENTS], v[RECORD_FIELDS_MAX];
+
+			for (int c = 0; c < STRESS_COMPONENTS; c++)
+				t[c] = tensor[c * n + i];
+			derive(t, v);
+			for (int k = 0; k < out.nfields; k++)
+				out.data[k][m * n + i] = v[k];
+		}
+	}
+	fields_write(f, &out);
+	record_free(&out);
+	free(tensor);
+}
+
+void worn_put(struct worn *w, const struct worn_surface *c, const struct worn_step *s)
+{
+	put_particles(w->particles, c->r->realisation, s);
+	if (w->summary)
+		put_summary(w->summary, c, s);
+	if (w->stress)
+		put_stress(w->stress, c->r, s);
+	if (w->surface)
+		put_surface(w->surface, c, s);
+}
+
+void worn_close(struct worn *w)
+{
+	table_done(w->particles);
+	if (w->summary)
+		table_done(w->summary);
+	if (w->surface)
+		fields_done(w->surface);
+	if (w->stress)
+		fields_done(w->stress);
+	free(w);
+}

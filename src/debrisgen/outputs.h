@@ -1,0 +1,40 @@
+/* outputs.h - what debrisgen writes: particles, summary, worn surfaces and stress */
+#ifndef WORN_H
+#define WORN_H
+
+#include "debris/debris.h"
+#include "io/fields.h"
+#include "cli/opt.h"
+
+extern struct opt worn_rows[]; /* for OPT_TABLE: the files besides the particles */
+
+/* A surface and what is kept of it from step to step. */
+struct worn_surface {
+	struct record *r; /* holds h and p */
+	double *h, *p;    /* height, m, and pressure, Pa */
+	double crown;     /* its drop, part of h, m */
+	double sq;        /* rms height when new, the crown taken off, m */
+};
+
+/* Root mean square height, the crown taken off. */
+double worn_roughness(const struct worn_surface *c);
+
+/* A step of wear and what it took off. */
+struct worn_step {
+	long number;     /* from 1, over all programs of a pipeline */
+	double distance; /* slid so far, m */
+	const struct debris_step *lost;
+	struct stress *stress; /* below the contact */
+	double dz, offset;     /* its layers, as in struct stress_par */
+};
+
+struct worn;
+
+/* upstream: the pipeline that made what is read, NULL if unknown. */
+struct worn *worn_open(const char *upstream);
+/* What follows is of this record. */
+void worn_begin(struct worn *w, const struct record *r);
+void worn_put(struct worn *w, const struct worn_surface *c, const struct worn_step *s);
+void worn_close(struct worn *w);
+
+#endif

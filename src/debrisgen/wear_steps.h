@@ -1,0 +1,33 @@
+/* wear_steps.h - the machinery of debrisgen: contact, stress below it, and what is lost */
+#ifndef WEARING_H
+#define WEARING_H
+
+#include "outputs.h"
+
+extern struct opt wearing_rows[]; /* for OPT_TABLE, beside press_rows */
+
+/* Dies where options are missing or out of range. */
+void wearing_check(void);
+
+struct wearing;
+
+/* For surfaces of in that are worn in so many steps each. */
+struct wearing *wearing_open(const struct fields_in *in, long steps);
+void wearing_close(struct wearing *w);
+
+/* Serves grids like that of r from now on. */
+void wearing_prepare(struct wearing *w, const struct record *r);
+/* Load and contact under the pressure of c. */
+void wearing_contact(
+	struct wearing *w, const struct worn_surface *c, struct debris_step *s);
+/* Presses c again, from its last pressure, to a mean pressure or approach; 0 if that did
+ * not converge. */
+int wearing_press(
+	struct wearing *w, const struct worn_surface *c, double target, long step);
+/* Wears c; what was lost is valid until the next call.  The distance is the caller's. */
+struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c, long step);
+
+/* Of the grid, in the direction in which the bodies slide. */
+double wearing_length(const struct record *r);
+
+#endif

@@ -1,0 +1,160 @@
+#include "example_options.h"
+#include "cli/files.h"
+#include "cli/msg.h"
+#include <math.h>
+#include <string.h>
+
+struct lessons lessons = { .lambda = 1,
+	.seed = 1,
+	.count = 1000,
+	.points = 500,
+	.sources = 3,
+	.span = 4 * M_PI,
+	.unit = 1,
+	.noise = NAN,
+	.length = { 2, { M_PI / 2, 3 * M_PI / 2 } },
+	.amplitude = { 2, { 0, 1 } },
+	.gain = { 2, { 0.909, 0.909 } },
+	.separation = 0.1,
+	.snr = { 2, { 12, 45 } },
+	.reach = { 2, { CNN_REACH_MIN, CNN_REACH_MAX } } };
+
+static const char *const sections[] = { "length", "period", "range", NULL };
+static const char *const orders[] = { "drawn", "arrival", "sorted", NULL };
+static const char *const shapes[] = { "sine", "gauss", "lorentz", NULL };
+
+struct opt lessons_rows[] = {
+	{ 'x', "columns", OPT_INT, UNIT_COUNT, &lessons.points, 2, 1e5, "N",
+		"points per channel", NULL, 0 },
+	{ 'n', "sources", OPT_INT, UNIT_COUNT, &lessons.sources, 1, DELAYS_MAX, "N",
+		"overlapping sources", NULL, 0 },
+	{ 'X', "span", OPT_NUM, UNIT_ANGLE, &lessons.span, 1e-3, 1e6, "X",
+		"range of the x axis", NULL, 0 },
+	{ 'B', "section", OPT_WORD, UNIT_NONE, &lessons.section, 0, 0,
+		"length|period|range", "what of the sine the range pi/2 to 3pi/2 is",
+		sections, 0 },
+	{ 'z', "section-range", OPT_LIST, UNIT_ANGLE, &lessons.length, 0, 1e6, "A:B",
+		"that range, pi/2 to 3pi/2 if not given", NULL, 0 },
+	{ 'E', "endless", OPT_FLAG, UNIT_NONE, &lessons.endless, 0, 0, NULL,
+		"the sine goes on outside its section", NULL, 0 },
+	{ 'A', "amplitude", OPT_LIST, UNIT_NONE, &lessons.amplitude, 0, 1e6, "A:B",
+		"amplitudes, uniform", NULL, 0 },
+	{ 'g', "gain", OPT_LIST, UNIT_NONE, &lessons.gain, 0, 1e6, "A:B",
+		"of the second channel, uniform", NULL, 0 },
+	{ 'd', "delay", OPT_NUM, UNIT_ANGLE, &lessons.unit, 0, 1e6, "X",
+		"shift of a delay of 1", NULL, 0 },
+	{ 'O', "labels", OPT_WORD, UNIT_NONE, &lessons.order, 0, 0,
+		"drawn|arrival|sorted", "order of the delays", orders, 0 },
+	{ 'C', "scaled", OPT_FLAG, UNIT_NONE, &lessons.scaled, 0, 0, NULL,
+		"divide both channels by the peak of the first", NULL, 0 },
+	{ 'u', "deviation", OPT_NUM, UNIT_NONE, &lessons.noise, 0, 1e6, "SD",
+		"of white noise on the samples (score: of its second row, 0.316 if not "
+		"given)",
+		NULL, 0 },
+	{ 'R', "snr", OPT_LIST, UNIT_DECIBEL, &lessons.snr, -20, 200, "A:B",
+		"pulses: peak of amplitude 1 over the noise", NULL, 0 },
+	{ 't', "separation", OPT_NUM, UNIT_NONE, &lessons.separation, 0, 0.5, "D",
+		"pulses: least distance of arrivals, pulse durations", NULL, 0 },
+	{ 'H', "reach", OPT_LIST, UNIT_NONE, &lessons.reach, CNN_REACH_MIN, CNN_REACH_MAX,
+		"A:B", "pulses: largest delay, pulse durations", NULL, 0 },
+	{ 'w', "pulse", OPT_WORD, UNIT_NONE, &lessons.shape, 0, 0, "sine|gauss|lorentz",
+		"pulses: their shape", shapes, 0 },
+	OPT_END,
+};
+
+struct delaydata_par lessons_sines(void)
+{
+	return (struct delaydata_par){ .points = lessons.points,
+		.sources = lessons.sources,
+		.span = lessons.span,
+		.section = lessons.section,
+		.length = { lessons.length.v[0], lessons.length.v[1] },
+		.endless = lessons.endless,
+		.amplitude = { lessons.amplitude.v[0], lessons.amplitude.v[1] },
+		.gain = { lessons.gain.v[0], lessons.gain.v[1] },
+		.unit = lessons.unit,
+		.order = lessons.order,
+		.scaled = lessons.scaled,
+		.noise = isnan(lessons.noise) ? 0 : lessons.noise,
+		.seed = lessons.seed };
+}
+
+struct cnndata_par lessons_pulses(void)
+{
+	struct cnndata_par par = cnndata_default();
+
+	if (opt_given('n'))
+		par.sources[0] = par.sources[1] = lessons.sources;
+	if (opt_given('g'))
+		memcpy(par.gain, lessons.gain.v, sizeof par.gain);
+	if (opt_given('A')) {
+		par.size[0] = cbrt(lessons.amplitude.v[0]);
+		par.size[1] = cbrt(lessons.amplitude.v[1]);
+	}
+	memcpy(par.snr, lessons.snr.v, sizeof par.snr);
+	memcpy(par.reach, lessons.reach.v, sizeof par.reach);
+	par.spacing = lessons.separation;
+	par.shape = lessons.shape;
+	par.seed = lessons.seed;
+	return par;
+}
+
+void lessons_check(void)
+{
+	const struct opt_list *range[] = { &lessons.length, &lessons.amplitude,
+		&lessons.gain, &lessons.snr, &lessons.reach };
+	static const char *const name[] = { "section-range", "amplitude", "gain", "snr",
+		"reach" };
+
+	for (int i = 0; i < 5; i++)
+		if (range[i]->v[0] > range[i]->v[1])
+			die(EXIT_USAGE, "--%s: want A:B with A <= B", name[i]);
+	if (lessons.section != DELAYDATA_RANGE && lessons.length.v[0] <= 0)
+		die(EXIT_USAGE, "--section-range: want a length above 0");
+	if (lessons.model == PULSES &&
+		(lessons.amplitude.v[1] <= 0 || lessons.gain.v[0] <= 0))
+		die(EXIT_USAGE, "--model pulses: want amplitudes and gains above 0");
+}
+
+struct delayloss_par lessons_loss(void)
+{
+	return (struct delayloss_par){ lessons.lambda, lessons.penalty };
+}
+
+struct lesson lessons_make(void)
+{
+	static network_loss *const loss_of[] = { network_mse, delayloss_sums,
+		delayloss_unordered };
+	struct delaydata_par sines = lessons_sines();
+	struct cnndata_par pulses = lessons_pulses();
+
+	return lessons.model == PULSES
+		       ? lesson_of_pulses(&pulses, lessons.first)
+		       : lesson_of_sines(&sines, loss_of[lessons.loss], lessons.first);
+}
+
+void lessons_keep(struct lesson *l)
+{
+	if ((double)lessons.count * l->inputs > 1 << 28)
+		die(EXIT_USAGE, "--count %ld of %d numbers each: more than 2^28",
+			lessons.count, l->inputs);
+	if (!lesson_keep(l, lessons.count))
+		die(EXIT_RUN, "out of memory");
+}
+
+struct network *lessons_network(const char *path, struct netfile *file)
+{
+	const char *name;
+	FILE *f = file_open(path, &name);
+	struct lesson l = lessons_make();
+	struct network *net = netfile_read(f, FORWARD, file);
+
+	if (!net)
+		die(EXIT_RUN, "%s: line %ld: %s", name, file->line, file->why);
+	if (f != stdin)
+		fclose(f);
+	if (!lesson_suits(&l, net, file->purpose))
+		die(EXIT_RUN, "%s: want a network for %s, got one for %s", name,
+			l.purpose, file->purpose);
+	return net;
+}

@@ -1,0 +1,200 @@
+/* delaynet - train, score and apply networks that tell the delays of overlapping pulses
+ */
+#include "training_options.h"
+#include "example_options.h"
+#include "scores.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
+#include "io/signals.h"
+#include "cli/stats.h"
+#include "io/tables.h"
+#include <math.h>
+#include <stdlib.h>
+
+#ifdef WITH_OPENBLAS
+void openblas_set_num_threads(int threads);
+#endif
+
+enum task { TRAIN, SCORE, APPLY, DATA };
+enum { RATE = 10000 }; /* frames per second of data */
+
+static const char *const tasks[] = { "train", "score", "apply", "data", NULL };
+static const char *const models[] = { "sines", "pulses", NULL };
+
+static int task = TRAIN;
+static const char *network_file, *truth_file;
+
+static const struct opt opts[] = {
+	{ 'k', "task", OPT_WORD, UNIT_NONE, &task, 0, 0, "train|score|apply|data",
+		"what to do", tasks, 0 },
+	{ 'm', "model", OPT_WORD, UNIT_NONE, &lessons.model, 0, 0, "sines|pulses",
+		"samples: the sines of the thesis or the pulses of two sensors", models,
+		0 },
+	{ 'N', "network", OPT_TEXT, UNIT_NONE, &network_file, 0, 0, "FILE",
+		"network to apply", NULL, 0 },
+	{ 'T', "truth", OPT_TEXT, UNIT_NONE, &truth_file, 0, 0, "FILE",
+		"with --task data: write the delays there", NULL, 1 },
+	OPT_TABLE(learning_rows),
+	{ 's', "seed", OPT_INT, UNIT_COUNT, &lessons.seed, 0, 9e15, "N",
+		"of the data and weights", NULL, 0 },
+	{ 'i', "repetition", OPT_INT, UNIT_COUNT, &learning.repetition, 0, 1e9, "K",
+		"which initial weights and order of the samples", NULL, 0 },
+	{ 'f', "first", OPT_INT, UNIT_COUNT, &lessons.first, 0, 4e9, "K",
+		"first sample of the set; score: 1000, or 4e9 of pulses, if not given",
+		NULL, 0 },
+	{ 'c', "count", OPT_INT, UNIT_COUNT, &lessons.count, 1, 1e7, "N",
+		"samples; score: 300 if not given", NULL, 0 },
+	{ 'F', "fresh", OPT_FLAG, UNIT_NONE, &learning.fresh, 0, 0, NULL,
+		"new samples in every epoch", NULL, 0 },
+	OPT_TABLE(lessons_rows),
+	OPT_END,
+};
+
+static const struct prog prog = { "delaynet",
+	"Train, score and apply networks that tell the delays of overlapping pulses.",
+	"[file]", "nothing; network; signal: two channels", "network; table; signal",
+	opts };
+
+static void check_options(void)
+{
+	lessons_check();
+	if (lessons.model == PULSES && (task == APPLY || task == DATA))
+		die(EXIT_USAGE, "--task %s is for --model sines; see duet and sensorsim",
+			tasks[task]);
+	if (lessons.model == PULSES && lessons.sources > CNN_SOURCES)
+		die(EXIT_USAGE, "--sources: want at most %d pulses", CNN_SOURCES);
+	if (task == APPLY && !network_file)
+		die(EXIT_USAGE, "--task apply wants --network FILE");
+	if (task != APPLY && network_file)
+		die(EXIT_USAGE, "--network is for --task apply");
+	if (task == SCORE && !opt_given('f'))
+		lessons.first = lessons.model == PULSES ? 4000000000 : 1000;
+	if (task == SCORE && !opt_given('c'))
+		lessons.count = 300;
+	if (learning.batch == 0 || learning.batch > lessons.count)
+		learning.batch = lessons.count;
+	if (lessons.first +
+			(double)lessons.count * (learning.fresh ? learning.epochs : 1) >
+		UINT32_MAX)
+		die(EXIT_USAGE, "--count: the samples run beyond number 2^32");
+}
+
+static struct table_out *create_delays(const char *path, const char *cmd, int n)
+{
+	struct table_out *t;
+	char *columns = xstrdup("section");
+
+	for (int i = 1; i <= n; i++) {
+		char *longer = xprintf("%s delay%d", columns, i);
+
+		free(columns);
+		columns = longer;
+	}
+	t = table_create(path, cmd, NULL, columns);
+	free(columns);
+	return t;
+}
+
+static void put_delays(struct table_out *t, long i, const network_real *delay, int n)
+{
+	table_put(t, i);
+	for (int k = 0; k < n; k++)
+		table_put(t, delay[k]);
+	table_end_row(t);
+}
+
+/* Sections of the width of the network, one after another. */
+static void apply_network(const char *path)
+{
+	struct netfile file;
+	struct network *net = lessons_network(network_file, &file);
+	struct signal_in *in = signal_open(path, NULL);
+	int n = network_input(net).width, channels = signal_format(in)->channels;
+	char *cmd = opt_cmd(signal_format(in)->cmd, NULL);
+	struct table_out *t = create_delays(NULL, cmd, network_outputs(net));
+	double *frame = xcalloc(n * 2, sizeof *frame);
+	network_real *x = xcalloc(n * 2, sizeof *x);
+	size_t got;
+	long k = 0;
+
+	if (channels != 2)
+		die(EXIT_RUN, "%s: want 2 channels, got %d", signal_name(in), channels);
+	for (; (got = signal_read(in, frame, n)) == (size_t)n; k++) {
+		for (int i = 0; i < 2 * n; i++) {
+			x[i % 2 * n + i / 2] = frame[i];
+			if (!isfinite(x[i % 2 * n + i / 2]))
+				die(EXIT_RUN, "%s: frame %ld: want finite samples",
+					signal_name(in), k * n + i / 2);
+		}
+		put_delays(t, k, network_forward(net, x, 1), network_outputs(net));
+	}
+	if (got > 0)
+		die(EXIT_RUN, "%s: section %ld: want %d frames, got %zu", signal_name(in),
+			k, n, got);
+	stats_add("sections", k);
+	table_done(t);
+	signal_close(in);
+	free(frame);
+	free(x);
+	free(cmd);
+	free(file.cmd);
+	network_free(net);
+}
+
+static void write_data(void)
+{
+	char *cmd = opt_cmd(NULL, NULL), *number = xprintf("%ld", lessons.seed);
+	struct signal_format format = {
+		.rate = RATE, .channels = 2, .cmd = cmd, .seed = number
+	};
+	struct signal_out *out = signal_create(NULL, &format);
+	struct table_out *t =
+		truth_file ? create_delays(truth_file, cmd, lessons.sources) : NULL;
+	struct delaydata_par par = lessons_sines();
+	network_real *x = xcalloc(2 * lessons.points, sizeof *x), delay[DELAYS_MAX];
+	double *frame = xcalloc(2 * lessons.points, sizeof *frame);
+
+	for (long i = 0; i < lessons.count; i++) {
+		delaydata_sample(&par, lessons.first + i, x, delay);
+		for (long k = 0; k < 2 * lessons.points; k++)
+			frame[k] = x[k % 2 * lessons.points + k / 2];
+		signal_write(out, frame, lessons.points);
+		if (t)
+			put_delays(t, lessons.first + i, delay, lessons.sources);
+	}
+	stats_add("samples", lessons.count);
+	signal_done(out);
+	if (t)
+		table_done(t);
+	free(x);
+	free(frame);
+	free(number);
+	free(cmd);
+}
+
+int main(int argc, char **argv)
+{
+	int i = opt_parse(&prog, argc, argv);
+
+#ifdef WITH_OPENBLAS
+	/* Its threads share out sums in another order. */
+	openblas_set_num_threads(1);
+#endif
+	check_options();
+	if (i < argc && (task == TRAIN || task == DATA))
+		die(EXIT_USAGE, "--task %s reads nothing, got %s", tasks[task], argv[i]);
+	switch (task) {
+	case TRAIN:
+		learning_train();
+		break;
+	case SCORE:
+		score_network(argv[i]);
+		break;
+	case APPLY:
+		apply_network(argv[i]);
+		break;
+	default:
+		write_data();
+	}
+	return shell_done(0);
+}

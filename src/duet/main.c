@@ -1,0 +1,184 @@
+/* duet - wear particles from the record of two inductive sensors */
+#include "instrument_options.h"
+#include "methods.h"
+#include "cli/files.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
+#include "io/signals.h"
+#include "net/netfile.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LEARN = 65536 };
+enum { METHOD_FIT, METHOD_DUET, METHOD_CNN, METHOD_COUNT };
+
+static int method = METHOD_FIT;
+static long window = 64, hop, sensor = 1;
+static struct opt_choice sources = { 0, 0 };
+static double kappa = M_PI / 4 * 1e11; /* as sensorsim(1) */
+static double spacing = 0.25, learn = NAN, latency = NAN, floor_height = NAN;
+static const char *separated, *histogram, *sections, *network_file;
+static const char *const methods[] = { "fit", "duet", "cnn", "count", NULL };
+static const char *const automatic[] = { "auto", NULL };
+
+static const struct opt opts[] = {
+	{ 'm', "method", OPT_WORD, UNIT_NONE, &method, 0, 0, "fit|duet|cnn|count",
+		"joint fit of all pulses, time-frequency masks, a network, or counted peaks",
+		methods, 0 },
+	{ 'a', "align", OPT_CHOICE, UNIT_TIME, &instrument.align, 0, 1e9, "auto|T",
+		"time from sensor 1 to sensor 2 of the mean particle", automatic, 0 },
+	{ 'L', "spacing", OPT_NUM, UNIT_LENGTH, &spacing, 1e-6, 1e3, "D",
+		"between the two sensors", 0, 0 },
+	{ 'K', "calibration", OPT_NUM, UNIT_NONE, &kappa, 1e-30, 1e30, "K",
+		"peak voltage over velocity and diameter cubed, V s/m4", 0, 0 },
+	{ 'n', "sources", OPT_CHOICE, UNIT_COUNT, &sources, 1, 16, "auto|N",
+		"particles in each section", automatic, 0 },
+	OPT_TABLE(instrument_rows),
+	{ 'e', "learn", OPT_NUM, UNIT_TIME, &learn, 0, 1e9, "T",
+		"start of the record that the instrument is learned from", 0, 0 },
+	{ 'y', "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
+		"hold back no more than T of signal", 0, 0 },
+	{ 'w', "window", OPT_INT, UNIT_COUNT, &window, 4, 1e6, "N",
+		"samples of a Hamming window (duet)", 0, 0 },
+	{ 'H', "hop", OPT_INT, UNIT_COUNT, &hop, 1, 1e6, "N",
+		"samples from window to window (duet; half the window)", 0, 0 },
+	{ 'k', "sensor", OPT_INT, UNIT_COUNT, &sensor, 1, 2, "N",
+		"channel to count on (count)", 0, 0 },
+	{ 'z', "floor", OPT_NUM, UNIT_VOLTAGE, &floor_height, 1e-30, 1e30, "V",
+		"lowest peak (count; five deviations of the record)", 0, 0 },
+	{ 'O', "separated", OPT_TEXT, UNIT_NONE, &separated, 0, 0, "FILE",
+		"write each source of a section as a channel of its own", 0, 0 },
+	{ 'G', "histogram", OPT_TEXT, UNIT_NONE, &histogram, 0, 0, "FILE",
+		"write the weighted histograms as a table (duet)", 0, 0 },
+	{ 'Z', "sections", OPT_TEXT, UNIT_NONE, &sections, 0, 0, "FILE",
+		"write one row per section", 0, 0 },
+	{ 'N', "network", OPT_TEXT, UNIT_NONE, &network_file, 0, 0, "FILE",
+		"network of delaynet, for cnn or the first guesses of fit", 0, 0 },
+	OPT_END
+};
+
+static const struct prog prog = { "duet",
+	"Find the wear particles in the record of two inductive sensors.", "[file]",
+	"signal: two channels, V", "table: one row per particle", opts };
+
+static void check_options(void)
+{
+	if (method != METHOD_DUET && (opt_given('w') || opt_given('H') || histogram))
+		die(EXIT_USAGE, "--window, --hop and --histogram need --method duet");
+	if (method != METHOD_COUNT && (opt_given('k') || opt_given('z')))
+		die(EXIT_USAGE, "--sensor and --floor need --method count");
+	if (method == METHOD_COUNT && (separated || sections))
+		die(EXIT_USAGE, "--method count knows no sections and separates nothing");
+	if (method == METHOD_CNN && !network_file)
+		die(EXIT_USAGE, "--method cnn wants --network FILE");
+	if (network_file && method != METHOD_CNN && method != METHOD_FIT)
+		die(EXIT_USAGE, "--network is for --method cnn and fit");
+	if (window % 2)
+		die(EXIT_USAGE, "--window %ld: want an even number of samples", window);
+	if (!opt_given('H'))
+		hop = window / 2;
+	if (hop > window)
+		die(EXIT_USAGE, "--hop %ld is longer than the window", hop);
+}
+
+static size_t to_samples(double time, double rate)
+{
+	double n = time * rate;
+
+	return n < 1e15 ? (size_t)n : (size_t)1e15;
+}
+
+static struct network *read_network(void)
+{
+	const char *name;
+	FILE *f = file_open(network_file, &name);
+	struct netfile file;
+	struct network *net = netfile_read(f, 1, &file);
+
+	if (!net)
+		die(EXIT_RUN, "%s: line %ld: %s", name, file.line, file.why);
+	if (strcmp(file.purpose, "arrivals") != 0 || !cnn_suits(net))
+		die(EXIT_RUN, "%s: want a network for arrivals, got one for %s", name,
+			file.purpose);
+	free(file.cmd);
+	fclose(f);
+	return net;
+}
+
+static size_t learned_samples(double rate)
+{
+	size_t n = isnan(learn) ? LEARN : to_samples(learn, rate);
+
+	if (n < SEPARATE_SHORTEST)
+		die(EXIT_RUN, "--learn %g s: %zu samples at %g Hz, want at least %d",
+			learn, n, rate, SEPARATE_SHORTEST);
+	return n;
+}
+
+static void separate_all(struct signal_in *in, struct found *out)
+{
+	static const enum separate_method of[] = { SEPARATE_FIT, SEPARATE_MASKS,
+		SEPARATE_NETWORK };
+	double rate = (double)out->rate;
+	struct separate_par par = { .method = of[method],
+		.network = network_file ? read_network() : NULL,
+		.learn = learned_samples(rate),
+		.sources = sources.word < 0 ? (int)sources.value : 0,
+		.mask_window = (size_t)window,
+		.mask_hop = (size_t)hop,
+		.want_sources = separated != NULL,
+		.context = out };
+
+	par.known = instrument_par(rate, signal_format(in)->filter);
+	if (separated || histogram || sections)
+		par.on_section = found_section;
+	if (!isnan(latency)) {
+		par.window = to_samples(latency / 2, rate);
+		if (isnan(learn) && par.window < par.learn)
+			par.learn = par.window;
+	}
+	separate_record(in, out, &par);
+	network_free(par.network);
+	free(par.known.filter);
+}
+
+static void count_all(struct signal_in *in, struct found *out)
+{
+	struct count_par par = { .sensor = (int)sensor,
+		.floor = floor_height,
+		.delay = instrument_align(),
+		.learn = learned_samples((double)out->rate) };
+
+	count_record(in, out, &par);
+}
+
+int main(int argc, char **argv)
+{
+	int i = opt_parse(&prog, argc, argv);
+	struct signal_in *in;
+	struct found out = { .separated = separated,
+		.histogram = histogram,
+		.sections = sections,
+		.spacing = spacing,
+		.kappa = kappa };
+	char *cmd;
+
+	check_options();
+	in = signal_open(argv[i], NULL);
+	if (signal_format(in)->channels != 2 && method != METHOD_COUNT)
+		die(EXIT_RUN, "%s: want 2 channels, got %d", signal_name(in),
+			signal_format(in)->channels);
+	if (sensor > signal_format(in)->channels)
+		die(EXIT_RUN, "%s: there is no channel %ld", signal_name(in), sensor);
+	cmd = opt_cmd(signal_format(in)->cmd, NULL);
+	found_open(&out, signal_format(in), cmd);
+	if (method == METHOD_COUNT)
+		count_all(in, &out);
+	else
+		separate_all(in, &out);
+	found_close(&out);
+	signal_close(in);
+	free(cmd);
+	return shell_done(0);
+}

@@ -1,0 +1,141 @@
+#include "methods.h"
+#include "instrument_options.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { BLOCK = 4096 };
+
+static void check_status(
+	enum separate_status status, const struct separate *s, const char *name)
+{
+	static const char *const why[] = {
+		[SEPARATE_MEMORY] = "no memory",
+		[SEPARATE_SHORT] = "want at least 64 frames to learn from",
+		[SEPARATE_SILENT_1] = "channel 1 is constant: a dead sensor",
+		[SEPARATE_SILENT_2] = "channel 2 is constant: a dead sensor",
+		[SEPARATE_FAR] = "--align is as long as what is learned from: --learn "
+				 "from more of the record",
+		[SEPARATE_NARROW] = "the filter it has passed leaves too narrow a band "
+				    "to tell pulses",
+		[SEPARATE_FAST] = "no pulse of at least 8 samples found: give "
+				  "--pulse-duration or sample faster",
+		[SEPARATE_SLOW] = "pulses as long as the record: --learn from more of it",
+	};
+	int channel;
+	long long frame = separate_bad_sample(s, &channel);
+
+	if (status == SEPARATE_NOT_FINITE)
+		die(EXIT_RUN, "%s: channel %d, frame %lld: not a finite number", name,
+			channel + 1, frame);
+	if (status == SEPARATE_NO_LAG)
+		warn("%s: nothing in common of both channels to learn from: no particle, or "
+		     "give --align and --pulse-duration",
+			name);
+	else if (status != SEPARATE_OK)
+		die(EXIT_RUN, "%s: %s", name, why[status]);
+}
+
+static void report(const struct separate *s, double rate)
+{
+	const struct separate_counters *c = separate_counters(s);
+	const struct calibration *known = separate_calibration(s);
+
+	stats_set("samples", c->samples);
+	stats_set("samples_passed_over", c->passed_over);
+	stats_set("samples_active", c->active);
+	stats_set("sections", c->sections);
+	stats_set("sections_single", c->singles);
+	stats_set("sections_unresolved", c->unresolved);
+	stats_set("fits", c->fits);
+	stats_set("fit_steps", c->steps);
+	stats_set("searches", c->searches);
+	stats_set("guesses", c->guesses);
+	stats_set("guesses_refused", c->refused);
+	stats_set("demixings", c->masks);
+	stats_set("demixings_skipped", c->masks_skipped);
+	stats_set("calibrations", known ? known->attempts : 0);
+	if (known)
+		instrument_note(known, rate);
+}
+
+static int put_ready(struct separate *s, struct found *out)
+{
+	struct particle p;
+	int any = 0;
+
+	for (; separate_next(s, &p); any = 1)
+		found_particle(out, &p);
+	return any;
+}
+
+void separate_record(
+	struct signal_in *in, struct found *out, const struct separate_par *par)
+{
+	static double x[2 * BLOCK];
+	struct separate *s = separate_new(par);
+	enum separate_status status;
+	size_t n;
+
+	if (!s)
+		die(EXIT_RUN, "no memory");
+	while ((n = signal_read_some(in, x, BLOCK)) > 0) {
+		int any;
+
+		status = separate_push(s, x, n);
+		any = put_ready(s, out);
+		check_status(status, s, signal_name(in));
+		if (any)
+			table_flush(out->particles);
+	}
+	status = separate_end(s);
+	put_ready(s, out);
+	check_status(status, s, signal_name(in));
+	report(s, (double)out->rate);
+	separate_free(s);
+}
+
+static struct count *start_count(
+	const struct count_par *par, const double *x, size_t n, int channels)
+{
+	double *work = xcalloc(n, sizeof *work);
+	double level = isnan(par->floor)
+			       ? count_level(x + par->sensor - 1, n, channels, work)
+			       : par->floor;
+
+	free(work);
+	return count_new(level);
+}
+
+void count_record(struct signal_in *in, struct found *out, const struct count_par *par)
+{
+	int channels = signal_format(in)->channels;
+	double *x = xcalloc(par->learn, sizeof *x * (size_t)channels);
+	struct count *c = NULL;
+	struct peak p;
+	long long frame = 0;
+	size_t n;
+
+	while ((n = signal_read(in, x, par->learn)) > 0) {
+		for (size_t i = 0; i < n; i++, frame++) {
+			double y = x[i * (size_t)channels + (size_t)par->sensor - 1];
+
+			if (!isfinite(y))
+				die(EXIT_RUN,
+					"%s: channel %d, frame %lld: not a finite number",
+					signal_name(in), par->sensor, frame);
+			if (!c && !(c = start_count(par, x, n, channels)))
+				die(EXIT_RUN, "%s: channel %d is constant: give --floor",
+					signal_name(in), par->sensor);
+			if (count_sample(c, y, &p))
+				found_peak(out, &p, par->sensor, par->delay);
+		}
+	}
+	if (c && count_end(c, &p))
+		found_peak(out, &p, par->sensor, par->delay);
+	stats_set("samples", (double)frame);
+	stats_set("peaks", (double)out->count);
+	count_free(c);
+	free(x);
+}

@@ -1,0 +1,161 @@
+#include "outputs.h"
+#include "cli/msg.h"
+#include "signal/sensor.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SOURCES_SHOWN = 8 };
+
+static const char *const verdicts[] = { "alone", "overlap", "misfit", "unresolved" };
+
+void found_open(struct found *out, const struct signal_format *format, const char *cmd)
+{
+	struct signal_format many = { format->rate, SOURCES_SHOWN, 0, (char *)cmd, NULL,
+		NULL, NULL };
+
+	out->rate = format->rate;
+	out->particles = table_create(NULL, cmd, "1 s s m V s m/s s s m V s m/s 1 1 1 1",
+		"particle time1 time2 diameter amplitude delay velocity time1_se time2_se "
+		"diameter_se amplitude_se delay_se velocity_se section sources chi2 verdict");
+	if (format->seed)
+		table_comment(out->particles, "seed", "%s", format->seed);
+	if (out->sections)
+		out->section_rows = table_create(out->sections, cmd, NULL,
+			"section begin end sources sources_se amplitude amplitude_se square square_se "
+			"fourth fourth_se chi2 verdict");
+	if (out->histogram)
+		out->weights = table_create(
+			out->histogram, cmd, NULL, "section attenuation delay weight");
+	if (out->separated)
+		out->sources = signal_create(out->separated, &many);
+}
+
+/* A row of n numbers and a verdict. */
+static void put_row(struct table_out *t, const double *row, int n, const char *word)
+{
+	for (int i = 0; i < n; i++)
+		table_put(t, row[i]);
+	table_put_text(t, word);
+	table_end_row(t);
+}
+
+void found_particle(struct found *out, const struct particle *p)
+{
+	double rate = (double)out->rate, delay = (p->t2 - p->t1) / rate;
+	double delay_se = p->delay_se / rate,
+	       velocity = delay > 0 ? out->spacing / delay : NAN;
+	double d = sensor_diameter(out->kappa, velocity, p->amplitude);
+	double ra = p->amplitude_se / p->amplitude, rt = delay_se / delay;
+	double d_se = sensor_diameter_error(d, ra, rt, p->correlation);
+	int one = p->verdict != SEPARATE_UNRESOLVED;
+	const double row[16] = { one ? (double)out->count++ : NAN, p->t1 / rate,
+		p->t2 / rate, d, p->amplitude, delay, velocity, p->t1_se / rate,
+		p->t2_se / rate, d_se, p->amplitude_se, delay_se, velocity * rt,
+		(double)p->section, (double)p->sources, p->chi2 };
+
+	put_row(out->particles, row, 16, verdicts[p->verdict]);
+}
+
+void found_peak(struct found *out, const struct peak *p, int sensor, double delay)
+{
+	double t = p->t / (double)out->rate, v = out->spacing / delay;
+	const double row[16] = { (double)out->count++, sensor == 1 ? t : NAN,
+		sensor == 2 ? t : NAN, sensor_diameter(out->kappa, v, p->height),
+		p->height, delay, v, NAN, NAN, NAN, NAN, NAN, NAN, NAN, 1, NAN };
+
+	put_row(out->particles, row, 16, "counted");
+}
+
+/* Writes silence up to sample upto, then what is held. */
+static void draw_until(struct found *out, long long upto)
+{
+	static const double silence[SOURCES_SHOWN];
+
+	if (out->held)
+		signal_write(out->sources, out->frames, out->held);
+	out->drawn += (long long)out->held;
+	out->held = 0;
+	for (; out->drawn < upto; out->drawn++)
+		signal_write(out->sources, silence, 1);
+}
+
+/* Adds the sources of a section; sections may overlap by the tails of pulses. */
+static void draw_sources(struct found *out, const struct separate_section *s)
+{
+	size_t n = (size_t)(s->end - s->begin), end, at;
+
+	if (s->begin > out->drawn + (long long)out->held)
+		draw_until(out, s->begin);
+	at = s->begin > out->drawn ? (size_t)(s->begin - out->drawn) : 0;
+	end = at + n;
+	if (end > out->held) {
+		out->frames = xrealloc(out->frames, end, SOURCES_SHOWN * sizeof(double));
+		memset(out->frames + out->held * SOURCES_SHOWN, 0,
+			(end - out->held) * SOURCES_SHOWN * sizeof(double));
+		out->held = end;
+	}
+	for (int k = 0; k < s->sources; k++)
+		for (size_t i = 0; i < n; i++)
+			out->frames[(at + i) * SOURCES_SHOWN +
+				    (size_t)(k % SOURCES_SHOWN)] +=
+				s->source[(size_t)k * n + i];
+}
+
+static void put_section(struct found *out, const struct separate_section *s)
+{
+	static const struct campbell none = { .amplitude = NAN,
+		.amplitude_se = NAN,
+		.square = NAN,
+		.square_se = NAN,
+		.fourth = NAN,
+		.fourth_se = NAN };
+	const struct campbell *c = s->dense ? s->dense : &none;
+	double rate = (double)out->rate;
+	const double row[12] = { (double)s->number, (double)s->begin / rate,
+		(double)s->end / rate, s->sources,
+		c->rate_se * (double)(s->end - s->begin), c->amplitude, c->amplitude_se,
+		c->square * rate, c->square_se * rate, c->fourth * rate,
+		c->fourth_se * rate, s->chi2 };
+
+	put_row(out->section_rows, row, 12, verdicts[s->verdict]);
+}
+
+static void put_histogram(struct found *out, const struct separate_section *s)
+{
+	for (int i = 0; i < MASKS_CELLS * MASKS_CELLS; i++) {
+		double a, delta;
+
+		masks_cell(s->masks, i / MASKS_CELLS, i % MASKS_CELLS, &a, &delta);
+		const double row[4] = { (double)s->number, a, delta / (double)out->rate,
+			masks_histogram(s->masks)[i] };
+
+		table_put_row(out->weights, row, 4);
+	}
+}
+
+void found_section(void *context, const struct separate_section *s)
+{
+	struct found *out = context;
+
+	if (out->section_rows)
+		put_section(out, s);
+	if (out->sources && s->source)
+		draw_sources(out, s);
+	if (out->weights && s->masks)
+		put_histogram(out, s);
+}
+
+void found_close(struct found *out)
+{
+	table_done(out->particles);
+	if (out->section_rows)
+		table_done(out->section_rows);
+	if (out->weights)
+		table_done(out->weights);
+	if (out->sources) {
+		draw_until(out, 0);
+		signal_done(out->sources);
+	}
+	free(out->frames);
+}

@@ -1,0 +1,31 @@
+/* outputs.h - what duet found, and the tables and signals it goes to */
+#ifndef FOUND_H
+#define FOUND_H
+
+#include "io/signals.h"
+#include "io/tables.h"
+#include "signal/count.h"
+#include "signal/separate.h"
+
+struct found {
+	const char *separated, *histogram, *sections; /* files, NULL: not wanted */
+	double spacing, kappa;                        /* m, V s/m4 */
+	long rate;
+	long count; /* particles so far */
+	struct table_out *particles, *section_rows, *weights;
+	struct signal_out *sources;
+	long long drawn; /* frames of separated signals written */
+	double *frames;  /* of the separated signals, from frame drawn on */
+	size_t held;
+};
+
+/* Opens what is wanted; the fields down to kappa are the caller's. */
+void found_open(struct found *out, const struct signal_format *format, const char *cmd);
+void found_particle(struct found *out, const struct particle *p);
+/* A peak of one sensor, 1 or 2; delay: of the mean particle, s, nan if unknown. */
+void found_peak(struct found *out, const struct peak *p, int sensor, double delay);
+/* separate_par.on_section, with a struct found for its context. */
+void found_section(void *context, const struct separate_section *s);
+void found_close(struct found *out);
+
+#endif

@@ -1,0 +1,255 @@
+/* records - list, pick, count and convert the records of a field stream */
+#include "common/raw_layout.h"
+#include "io/fields.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
+#include "cli/stats.h"
+#include "io/tables.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum format { LIST, COUNT, NRRD, GSF, TEXT, TABLE };
+static const char *const formats[] = { "list", "count", "nrrd", "gsf", "text", "table",
+	NULL };
+
+static int format = LIST;
+static struct opt_list pick;
+static const char *field;
+
+static const struct opt opts[] = {
+	{ 'o', "output", OPT_WORD, UNIT_NONE, &format, 0, 0,
+		"list|count|nrrd|gsf|text|table", "what to write", formats, 0 },
+	{ 'n', "pick", OPT_LIST, UNIT_COUNT, &pick, 1, 1e9, "K,...",
+		"only the K-th records, from 1", NULL, 1 },
+	{ 'k', "field", OPT_TEXT, UNIT_NONE, &field, 0, 0, "NAME", "only this field",
+		NULL, 0 },
+	OPT_TABLE(raw_rows),
+	OPT_END,
+};
+
+static const struct prog prog = { "records",
+	"List, pick, count and convert the records of a field stream.", "[file]",
+	"fields: any", "table or fields", opts };
+
+static int picked(long number)
+{
+	for (int i = 0; i < pick.n; i++)
+		if ((long)pick.v[i] == number)
+			return 1;
+	return pick.n == 0;
+}
+
+static void keep_field(struct record *r, const struct fields_in *in)
+{
+	char *cmd = opt_cmd(r->cmd, NULL);
+
+	record_need(r, field, 0, in);
+	for (int i = r->nfields - 1; i >= 0; i--)
+		if (strcmp(r->name[i], field) != 0)
+			record_drop(r, r->name[i]);
+	free(r->cmd);
+	r->cmd = cmd;
+}
+
+/* One row per field: its size and range. */
+static void list_record(struct table_out *t, const struct record *r, long number)
+{
+	size_t n = (size_t)r->nx * (size_t)r->ny * (size_t)r->nz;
+
+	for (int k = 0; k < r->nfields; k++) {
+		double low = INFINITY, high = -INFINITY, sum = 0;
+
+		for (size_t i = 0; i < n; i++) {
+			low = fmin(low, r->data[k][i]);
+			high = fmax(high, r->data[k][i]);
+			sum += r->data[k][i];
+		}
+		table_put(t, (double)number);
+		table_put(t, (double)r->realisation);
+		table_put_text(t, r->name[k]);
+		table_put_text(t, *r->unit[k] ? r->unit[k] : "1");
+		table_put(t, r->nx);
+		table_put(t, r->ny);
+		table_put(t, r->nz);
+		table_put(t, r->dx);
+		table_put(t, r->dy);
+		table_put(t, low);
+		table_put(t, sum / (double)n);
+		table_put(t, high);
+		table_end_row(t);
+	}
+}
+
+/* Rows of samples and an empty line after each field: gnuplot's matrix layout. */
+static void print_text(const struct record *r)
+{
+	for (int k = 0; k < r->nfields; k++) {
+		const double *x = r->data[k];
+
+		printf("# %s %s\n", r->name[k], r->unit[k]);
+		for (long iy = 0; iy < (long)r->ny * r->nz; iy++)
+			for (int ix = 0; ix < r->nx; ix++)
+				printf("%.9g%c", *x++, ix + 1 < r->nx ? '\t' : '\n');
+		putchar('\n');
+	}
+}
+
+static struct table_out *create_table(const struct record *r)
+{
+	struct table_out *t;
+	char *columns = xstrdup("realisation x y z");
+
+	for (int k = 0; k < r->nfields; k++) {
+		char *longer = xprintf("%s %s", columns, r->name[k]);
+
+		free(columns);
+		columns = longer;
+	}
+	t = table_create(NULL, r->cmd, NULL, columns);
+	free(columns);
+	return t;
+}
+
+/* The records of one table have the same fields. */
+static void check_fields(char **first, const struct record *r, const struct fields_in *in)
+{
+	char *names = xstrdup("");
+
+	for (int k = 0; k < r->nfields; k++) {
+		char *longer = xprintf("%s%s%s", names, k ? ", " : "", r->name[k]);
+
+		free(names);
+		names = longer;
+	}
+	if (*first && strcmp(*first, names) != 0)
+		die(EXIT_RUN,
+			"%s: record %ld has fields %s, the first one %s: use "
+			"--field or --pick",
+			fields_name(in), fields_count(in), names, *first);
+	free(*first);
+	*first = names;
+}
+
+/* One row per point, at the centre of its cell; layers lie at the depth z = iz dz. */
+static void print_table(struct table_out *t, const struct record *r)
+{
+	size_t i = 0;
+
+	for (int iz = 0; iz < r->nz; iz++) {
+		for (int iy = 0; iy < r->ny; iy++) {
+			for (int ix = 0; ix < r->nx; ix++, i++) {
+				table_put(t, (double)r->realisation);
+				table_put(t, (ix + 0.5) * r->dx);
+				table_put(t, (iy + 0.5) * r->dy);
+				table_put(t, iz * r->dz);
+				for (int k = 0; k < r->nfields; k++)
+					table_put(t, r->data[k][i]);
+				table_end_row(t);
+			}
+		}
+	}
+}
+
+static void check_picked(const struct fields_in *in)
+{
+	for (int i = 0; i < pick.n; i++)
+		if ((long)pick.v[i] > fields_count(in))
+			die(EXIT_RUN, "%s: no record %ld: there are %ld", fields_name(in),
+				(long)pick.v[i], fields_count(in));
+}
+
+/* What is written, and what has been. */
+struct output {
+	struct fields_out *fields;
+	struct table_out *table;
+	char *names; /* of the fields of a table */
+	long records;
+};
+
+static void open_output(struct output *o)
+{
+	if (format == NRRD)
+		o->fields = fields_create(NULL);
+	if (format == LIST)
+		o->table = table_create(NULL, NULL, NULL,
+			"record realisation field unit nx ny nz dx dy min mean max");
+}
+
+/* Seen before anything is written: half an output would look whole. */
+static void check_plane(const struct record *r, struct fields_in *in)
+{
+	if (r->nfields != 1 || r->nz > 1 || pick.n > 1 ||
+		(pick.n == 0 && fields_more(in)))
+		die(EXIT_USAGE, "GSF holds one plane field: use --pick and --field");
+}
+
+static void put_record(struct output *o, struct record *r, struct fields_in *in)
+{
+	o->records++;
+	switch (format) {
+	case LIST:
+		list_record(o->table, r, fields_count(in));
+		break;
+	case NRRD:
+		fields_write(o->fields, r);
+		break;
+	case GSF:
+		check_plane(r, in);
+		fields_write_gsf(stdout, r, 0);
+		break;
+	case TEXT:
+		print_text(r);
+		break;
+	case TABLE:
+		check_fields(&o->names, r, in);
+		if (!o->table)
+			o->table = create_table(r);
+		print_table(o->table, r);
+		break;
+	default:
+		break;
+	}
+}
+
+static void close_output(struct output *o)
+{
+	if (format == COUNT)
+		printf("%ld\n", o->records);
+	if (o->fields)
+		fields_done(o->fields);
+	if (o->table)
+		table_done(o->table);
+	free(o->names);
+}
+
+/* There may be nothing to list or count, but not to convert. */
+static int next_record(struct fields_in *in, struct record *r)
+{
+	int may_be_empty = format == LIST || format == COUNT;
+
+	return (!may_be_empty || fields_more(in)) && fields_read(in, r);
+}
+
+int main(int argc, char **argv)
+{
+	int first = opt_parse(&prog, argc, argv);
+	struct fields_in *in = fields_open(argv[first], raw_given());
+	struct output out = { 0 };
+	struct record r = { 0 };
+
+	open_output(&out);
+	while (next_record(in, &r)) {
+		if (!picked(fields_count(in)))
+			continue;
+		if (field)
+			keep_field(&r, in);
+		put_record(&out, &r, in);
+	}
+	check_picked(in);
+	close_output(&out);
+	record_free(&r);
+	fields_close(in);
+	stats_set("records", (double)out.records);
+	return shell_done(EXIT_SUCCESS);
+}

@@ -1,0 +1,151 @@
+/* roughgen - rough surfaces, generated or measured, and their areal parameters */
+#include "surface/areal.h"
+#include "surface/surface.h"
+#include "generated.h"
+#include "measured.h"
+#include "roughness_options.h"
+#include "io/fields.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
+#include "cli/stats.h"
+#include "io/tables.h"
+#include <stdlib.h>
+
+static const char *const crown_words[] = { "none", "auto", NULL };
+
+static int measure;
+static struct opt_choice crown = { 0, 0 };
+static long threads = 1;
+
+static const struct opt opts[] = {
+	OPT_TABLE(generated_grid_rows),
+	OPT_TABLE(roughness_rows),
+	OPT_TABLE(generated_rows),
+	{ 'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N", "threads", NULL,
+		1 },
+	OPT_TABLE(measured_rows),
+	{ 'C', "crown", OPT_CHOICE, UNIT_LENGTH, &crown, 0, 1e9, "none|auto|DROP",
+		"put on a paraboloid, DROP lower at the corners; auto is 4 Sq",
+		crown_words, 0 },
+	{ 'm', "measure", OPT_FLAG, UNIT_NONE, &measure, 0, 0, NULL,
+		"print areal parameters instead of heights", NULL, 0 },
+	OPT_END,
+};
+
+static const struct prog prog = { "roughgen",
+	"Generate rough surfaces, or prepare measured ones, and measure them.", "[file]",
+	"nothing, or fields: height", "fields: height; or table: areal parameters",
+	opts };
+
+static const char columns[] = "realisation sa sq ssk sku sp sv sz sdq sdq_cell sdq_2x2 "
+			      "sdq_central sdq_iso7 sdr sal str corr_x corr_y";
+static const char units[] = "1 m m 1 1 m m m 1 1 1 1 1 1 m 1 m m";
+
+static struct fields_out *out;
+static struct table_out *table;
+
+static void refuse(const struct opt *rows, const char *why)
+{
+	const char *word = opt_any_given(rows);
+
+	if (word)
+		die(EXIT_USAGE, "--%s: %s", word, why);
+}
+
+static void check_options(int from_file)
+{
+	static const char no_file[] = "is for generated surfaces, not for a file";
+
+	if (from_file) {
+		refuse(generated_grid_rows, no_file);
+		refuse(generated_rows, no_file);
+	} else {
+		refuse(measured_rows, "is for a measured surface: name a file, or - for "
+				      "standard input");
+	}
+	if (opt_given('q') + opt_given('a') + opt_given('g') > 1)
+		die(EXIT_USAGE, "--sq, --sa and --slope exclude each other");
+	roughness_check();
+	generated_check();
+}
+
+static void print_parameters(const struct record *r, const double *z)
+{
+	struct surface_parameters p;
+
+	if (!surface_measure(r->nx, r->ny, r->dx, r->dy, z, &p))
+		die(EXIT_RUN, "out of memory measuring %d x %d points", r->nx, r->ny);
+	const double row[] = { (double)r->realisation, p.sa, p.sq, p.ssk, p.sku, p.sp,
+		p.sv, p.sz, p.sdq, p.sdq_cell, p.sdq_2x2, p.sdq_central, p.sdq_iso7,
+		p.sdr, p.sal, p.str, p.corr_x, p.corr_y };
+	if (!table)
+		table = table_create(NULL, r->cmd, units, columns);
+	table_cmd(table, r->cmd);
+	table_put_row(table, row, (int)(sizeof row / sizeof *row));
+	stats_add("measured", 1);
+}
+
+/* Crowns a surface, on top of the crown it had, and writes it out. */
+static void finish(struct record *r, double had)
+{
+	double *z = record_need(r, "height", 0, NULL), rms = surface_sq(r->nx, r->ny, z);
+	double drop = had;
+
+	if (crown.word < 0)
+		drop += crown.value;
+	else if (crown.word == 1)
+		drop += 4 * rms;
+	if (drop > 0)
+		surface_crown(r->nx, r->ny, r->dx, r->dy, drop, z);
+	record_set(r, "sq", "%.17g", rms);
+	record_set(r, "crown", "%.17g", drop);
+	note("realisation %ld: Sq %g m, crown %g m", r->realisation, rms, drop);
+	stats_add("records", 1);
+	if (measure) {
+		print_parameters(r, z);
+		return;
+	}
+	if (!out)
+		out = fields_create(NULL);
+	fields_write(out, r);
+}
+
+/* The file to prepare, NULL where surfaces are generated: without an operand, unless what
+ * is measured is not told how to be made. */
+static const char *file_of(int argc, char **argv, int operand)
+{
+	if (operand < argc)
+		return argv[operand];
+	return measure && !opt_any_given(generated_grid_rows) &&
+			       !opt_any_given(generated_rows)
+		       ? "-"
+		       : NULL;
+}
+
+int main(int argc, char **argv)
+{
+	const char *file = file_of(argc, argv, opt_parse(&prog, argc, argv));
+	struct record r = { 0 };
+
+	check_options(file != NULL);
+	if (file) {
+		struct measured *surfaces = measured_open(file);
+		double had;
+
+		while (measured_next(surfaces, &r, &had))
+			finish(&r, had);
+		measured_close(surfaces);
+	} else {
+		struct generated *surfaces = generated_open((int)threads);
+
+		while (generated_next(surfaces, &r))
+			finish(&r, 0);
+		generated_close(surfaces);
+	}
+	record_free(&r);
+	if (out)
+		fields_done(out);
+	if (table)
+		table_done(table);
+	return shell_done(EXIT_SUCCESS);
+}

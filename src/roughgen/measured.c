@@ -1,0 +1,179 @@
+#include "measured.h"
+#include "surface/surface.h"
+#include "common/raw_layout.h"
+#include "roughness_options.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { POINTS_MAX = 65536 };
+enum { SEED = 1 }; /* of a roughness drawn: --seed is for generated surfaces */
+
+static struct opt_list crop, resample;
+static int level, fill;
+
+struct opt measured_rows[] = {
+	OPT_TABLE(raw_rows),
+	{ 'w', "crop", OPT_LIST, UNIT_COUNT, &crop, 0, POINTS_MAX, "X:Y:NX:NY",
+		"cut NX by NY samples of file from X, Y on", NULL, 0 },
+	{ 'i', "fill", OPT_FLAG, UNIT_NONE, &fill, 0, 0, NULL,
+		"fill missing samples of file by Laplace's equation", NULL, 0 },
+	{ 'z', "level", OPT_FLAG, UNIT_NONE, &level, 0, 0, NULL,
+		"subtract the least-squares plane of file", NULL, 0 },
+	{ 'r', "resample", OPT_LIST, UNIT_COUNT, &resample, 1, POINTS_MAX, "N[xM]",
+		"bring file to this many points", NULL, 0 },
+	OPT_END,
+};
+
+struct measured {
+	struct fields_in *in;
+	struct record read; /* as it came */
+	int piped;          /* no file that the command line could name again */
+};
+
+struct measured *measured_open(const char *path)
+{
+	struct measured *m = xcalloc(1, sizeof *m);
+
+	m->in = fields_open(path, raw_given());
+	m->piped = strcmp(path, "-") == 0;
+	return m;
+}
+
+void measured_close(struct measured *m)
+{
+	record_free(&m->read);
+	fields_close(m->in);
+	free(m);
+}
+
+static void need_memory(int done)
+{
+	if (!done)
+		die(EXIT_RUN, "out of memory preparing a measured surface");
+}
+
+/* A record with an empty height field and what else r knows of itself. */
+static void new_record(
+	struct record *s, const struct record *r, int nx, int ny, double dx, double dy)
+{
+	record_init(s, nx, ny, dx, dy);
+	record_add(s, "height", "m");
+	record_copy_keys(s, r);
+}
+
+/* Takes the heights of r, cropped, into a record that holds nothing else. */
+static void take_heights(
+	const struct fields_in *in, const struct record *r, struct record *s)
+{
+	const double *z = record_need(r, "height", 0, in);
+	int x = 0, y = 0, nx = r->nx, ny = r->ny;
+
+	if (r->nz != 1)
+		die(EXIT_RUN, "%s: record %ld: %d layers, want a plane field",
+			fields_name(in), fields_count(in), r->nz);
+	if (crop.n) {
+		x = (int)crop.v[0];
+		y = (int)crop.v[1];
+		nx = (int)crop.v[2];
+		ny = (int)crop.v[3];
+		if (nx < 1 || ny < 1 || x + nx > r->nx || y + ny > r->ny)
+			die(EXIT_RUN,
+				"%s: record %ld: --crop %d:%d:%d:%d is not within %d x %d "
+				"samples",
+				fields_name(in), fields_count(in), x, y, nx, ny, r->nx,
+				r->ny);
+		stats_add("samples_cropped", (double)r->nx * r->ny - (double)nx * ny);
+	}
+	new_record(s, r, nx, ny, r->dx, r->dy);
+	surface_crop(r->nx, z, x, y, nx, ny, s->data[0]);
+}
+
+static void fill_holes(const struct fields_in *in, struct record *s)
+{
+	double *z = record_need(s, "height", !fill, in);
+	size_t n = (size_t)s->nx * (size_t)s->ny, missing;
+	int steps;
+
+	if (!fill)
+		return;
+	missing = surface_missing(s->nx, s->ny, z);
+	if (missing == n)
+		die(EXIT_RUN, "%s: record %ld: every height is missing", fields_name(in),
+			fields_count(in));
+	need_memory(surface_fill(s->nx, s->ny, z, &steps));
+	record_need(s, "height", 1, in);
+	stats_add("samples_filled", (double)missing);
+	stats_add("iterations", steps);
+}
+
+/* Puts the crown of a whole surface aside and returns its drop; that of a piece cut
+ * out of one stays, as part of its heights. */
+static double take_crown(struct record *s)
+{
+	double drop = record_get_number(s, "crown");
+
+	if (crop.n || !(drop > 0) || !isfinite(drop))
+		return 0;
+	surface_crown(s->nx, s->ny, s->dx, s->dy, -drop, s->data[0]);
+	return drop;
+}
+
+static void resample_heights(struct record *s)
+{
+	int nx = (int)resample.v[0], ny = (int)resample.v[resample.n - 1];
+	struct record t = { 0 };
+
+	new_record(&t, s, nx, ny, s->dx * s->nx / nx, s->dy * s->ny / ny);
+	need_memory(surface_resample(s->nx, s->ny, s->data[0], nx, ny, t.data[0]));
+	record_free(s);
+	*s = t;
+}
+
+static void scale_heights(const struct fields_in *in, struct record *s)
+{
+	struct rough_range wanted = roughness_target();
+	double *z = s->data[0];
+	double want = rough_draw(&wanted, SEED, (uint32_t)s->realisation, 0);
+	double have = roughness_kind() == ROUGH_SA ? surface_sa(s->nx, s->ny, z)
+						   : surface_sq(s->nx, s->ny, z);
+
+	if (!rough_scale(s->nx, s->ny, z, have, want))
+		die(EXIT_RUN, "%s: record %ld: a flat surface cannot be scaled to %g m",
+			fields_name(in), fields_count(in), want);
+}
+
+/* Fourth powers of heights and gradients must not overflow. */
+static void check_heights(const struct fields_in *in, const struct record *s)
+{
+	double limit = 1e60 * fmin(1, fmin(s->dx, s->dy));
+
+	for (size_t i = 0; i < (size_t)s->nx * (size_t)s->ny; i++)
+		if (!(fabs(s->data[0][i]) <= limit))
+			die(EXIT_RUN, "%s: record %ld: height %g m is too large",
+				fields_name(in), fields_count(in), s->data[0][i]);
+}
+
+int measured_next(struct measured *m, struct record *r, double *crown)
+{
+	const char *upstream;
+
+	if (!fields_read(m->in, &m->read))
+		return 0;
+	take_heights(m->in, &m->read, r);
+	fill_holes(m->in, r);
+	*crown = take_crown(r);
+	if (level)
+		surface_level(r->nx, r->ny, r->data[0]);
+	if (resample.n)
+		resample_heights(r);
+	if (opt_given('q') || opt_given('a'))
+		scale_heights(m->in, r);
+	/* What comes through a pipe has to be asked for. */
+	upstream = m->read.cmd;
+	r->cmd = opt_cmd(upstream, upstream || m->piped ? "-" : NULL);
+	check_heights(m->in, r);
+	return 1;
+}

@@ -1,0 +1,124 @@
+#include "fragments.h"
+#include "pump_options.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
+#include "io/tables.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double part_of(
+	const char *option, const char **rest, enum unit unit, const char *what)
+{
+	const char *end, *wrong;
+	double value;
+
+	wrong = unit_parse(*rest, unit, ":", &value, &end);
+	if (wrong)
+		die(EXIT_USAGE, "--wear %s: %s %s", option, what, wrong);
+	*rest = *end ? end + 1 : NULL;
+	return value;
+}
+
+struct wear {
+	struct table_in *table;
+	const char *file;                        /* as given */
+	int realisation, step, volume, diameter; /* columns */
+	int class;
+};
+
+static void read_row(struct partition *p, const struct wear *w, long row)
+{
+	struct table_in *t = w->table;
+	double r = w->realisation < 0 ? (double)row : table_number(t, w->realisation);
+	double k = w->step < 0 ? 1 : table_number(t, w->step);
+	double v = table_number(t, w->volume);
+	enum partition_status status;
+
+	if (!(r >= 0 && r <= 4294967295. && r == floor(r)))
+		die(EXIT_RUN, "%s: line %ld: realisation must be a whole number", w->file,
+			table_line(t));
+	if (!(k >= 1 && k <= 1e6 && k == floor(k)))
+		die(EXIT_RUN, "%s: line %ld: step must be a whole number from 1 to 1e6",
+			w->file, table_line(t));
+	if (!(v >= 0 && v <= 1e3))
+		die(EXIT_RUN, "%s: line %ld: volume must lie within 0 and 1000 m3",
+			w->file, table_line(t));
+	status = partition_fragment(p, w->class, (long)r, (long)k, v, 1,
+		table_number(t, w->diameter) >= pump.critical_size);
+	if (status == PARTITION_MEMORY)
+		die(EXIT_RUN, "out of memory");
+	if (status == PARTITION_TWICE)
+		die(EXIT_RUN, "%s: line %ld: realisation %g has step %g twice", w->file,
+			table_line(t), r, k);
+	stats_add("fragments_read", 1);
+}
+
+/* Reads one --wear FILE[:PRESSURE[:AREA]] into a class of its own. */
+static void read_wear(struct partition *p, const char *option, char **cmd)
+{
+	const char *colon = strchr(option, ':'), *rest = colon ? colon + 1 : NULL;
+	char *file = xstrdup(option);
+	double pressure = NAN, area = -1;
+	int with_area;
+	struct wear w = { .file = file };
+
+	file[strcspn(file, ":")] = '\0';
+	if (rest)
+		pressure = part_of(option, &rest, UNIT_PRESSURE, "the pressure");
+	with_area = rest != NULL;
+	if (rest)
+		area = part_of(option, &rest, UNIT_AREA, "the area");
+	if (rest)
+		die(EXIT_USAGE, "--wear %s: want FILE[:PRESSURE[:AREA]]", option);
+	if (colon && !(pressure > 0 && isfinite(pressure)))
+		die(EXIT_USAGE, "--wear %s: want a pressure above 0", option);
+	if (with_area && !(area > 0 && isfinite(area)))
+		die(EXIT_USAGE, "--wear %s: want an area above 0", option);
+	w.table = table_open(file);
+	w.realisation = table_find(w.table, "realisation");
+	w.step = table_find(w.table, "step");
+	w.volume = table_need(w.table, "volume");
+	w.diameter = isnan(pump.critical_size) ? -1 : table_need(w.table, "diameter");
+	w.class =
+		partition_class(p, table_find(w.table, "particle") >= 0, pressure, area);
+	for (long row = 0; table_next(w.table); row++)
+		read_row(p, &w, row);
+	if (table_upstream(w.table))
+		*cmd = xstrdup(table_upstream(w.table));
+	table_close(w.table);
+	free(file);
+}
+
+struct partition *fragments_read(
+	const struct opt_texts *files, long first_step, char **made_by)
+{
+	struct partition *p = partition_new(pump.fragment_area, pump.pair.area);
+	enum partition_status status;
+
+	if (!p)
+		die(EXIT_RUN, "out of memory");
+	for (int i = 0; i < files->n; i++)
+		read_wear(p, files->v[i], &made_by[i]);
+	status = partition_close(p, pump.transition, first_step);
+	switch (status) {
+	case PARTITION_OK:
+		break;
+	case PARTITION_EMPTY:
+		die(EXIT_RUN, "%s: no fragment from step %ld on",
+			files->v[partition_culprit(p)], first_step);
+	case PARTITION_TWICE:
+		die(EXIT_RUN, "%s: a realisation has the same step twice",
+			files->v[partition_culprit(p)]);
+	case PARTITION_PRESSURE:
+		die(EXIT_USAGE,
+			"--wear %s: each of several tables needs a pressure of its own",
+			files->v[partition_culprit(p)]);
+	case PARTITION_AREA:
+		die(EXIT_USAGE, "--wear: the areas add up to more than --area %g m2",
+			pump.pair.area);
+	case PARTITION_MEMORY:
+		die(EXIT_RUN, "out of memory");
+	}
+	return p;
+}

@@ -1,0 +1,162 @@
+#include "life_table.h"
+#include "common/quantile_columns.h"
+#include "life/metrics.h"
+#include "life/remaining.h"
+#include "cli/msg.h"
+#include "io/tables.h"
+#include <math.h>
+#include <stdlib.h>
+
+struct lifetable {
+	struct lifetable_par par;
+	struct table_out *out;
+	struct metrics *metrics; /* NULL without scores */
+};
+
+static char *column_names(const struct lifetable_par *par)
+{
+	char *names, *more;
+
+	if (par->samples)
+		return xstrdup("t path rwl");
+	names = levels_columns("t mean", "q", par->levels);
+	more = xprintf("%s p_no_failure%s%s%s", names, par->dry ? " archard" : "",
+		par->grey ? " grey" : "",
+		isnan(par->eol) ? "" : " truth error accuracy mass inside covered crps");
+	free(names);
+	return more;
+}
+
+static struct metrics *new_metrics(const struct lifetable_par *par)
+{
+	struct metrics_par metrics = { .eol = par->eol,
+		.alpha = par->cone,
+		.beta = 0.5,
+		.limit = isnan(par->horizon) ? 10 * par->eol : par->horizon };
+	struct metrics *m;
+
+	if (isnan(par->eol))
+		return NULL;
+	m = metrics_new(&metrics);
+	if (!m)
+		die(EXIT_RUN, "out of memory");
+	return m;
+}
+
+struct lifetable *lifetable_open(const char *cmd, const struct lifetable_par *par)
+{
+	struct lifetable *t = xcalloc(1, sizeof *t);
+	char *names = column_names(par);
+
+	t->par = *par;
+	t->metrics = new_metrics(par);
+	t->out = table_create(NULL, cmd, par->samples ? "s 1 s" : NULL, names);
+	free(names);
+	return t;
+}
+
+struct table_out *lifetable_out(struct lifetable *t)
+{
+	return t->out;
+}
+
+static void put_samples(
+	const struct lifetable *t, double time, const struct forecast_row *row)
+{
+	long n = row->n == 1 && t->par.least > 1 ? t->par.least : row->n;
+
+	for (long i = 0; i < n; i++) {
+		double left = row->life[row->n == 1 ? 0 : i];
+
+		table_put(t->out, time);
+		table_put(t->out, (double)(t->par.first + i));
+		table_put(t->out, left <= row->limit ? left : INFINITY);
+		table_end_row(t->out);
+	}
+}
+
+static double quantile(const struct forecast_row *row, double level)
+{
+	return row->n ? metric_quantile(row->life, (size_t)row->n, level) : NAN;
+}
+
+static void put_scores(
+	const struct lifetable *t, double time, const struct forecast_row *row)
+{
+	const struct opt_list *levels = t->par.levels;
+	struct metrics_row r = { .truth = t->par.eol - time,
+		.error = NAN,
+		.accuracy = NAN,
+		.mass = NAN,
+		.crps = NAN };
+	int counted = 0;
+
+	if (row->n > 0)
+		counted = metrics_add(t->metrics, time, quantile(row, 0.5),
+			quantile(row, levels->v[0]),
+			quantile(row, levels->v[levels->n - 1]), row->life, NULL,
+			(size_t)row->n, &r);
+	if (counted < 0)
+		die(EXIT_RUN, "out of memory");
+	table_put(t->out, r.truth);
+	table_put(t->out, r.error);
+	table_put(t->out, r.accuracy);
+	table_put(t->out, r.mass);
+	table_put(t->out, counted ? r.inside : NAN);
+	table_put(t->out, counted ? r.covered : NAN);
+	table_put(t->out, r.crps);
+}
+
+static void put_summary(
+	const struct lifetable *t, double time, const struct forecast_row *row)
+{
+	struct remaining_summary sum = { NAN, NAN };
+
+	if (row->n > 0)
+		sum = remaining_sum_up(row->life, (size_t)row->n, row->limit);
+	table_put(t->out, time);
+	table_put(t->out, sum.mean);
+	for (int i = 0; i < t->par.levels->n; i++)
+		table_put(t->out, quantile(row, t->par.levels->v[i]));
+	table_put(t->out, sum.p_no_failure);
+	if (t->par.dry)
+		table_put(t->out, row->dry);
+	if (t->par.grey)
+		table_put(t->out, row->grey);
+	if (t->metrics)
+		put_scores(t, time, row);
+	table_end_row(t->out);
+}
+
+void lifetable_put(struct lifetable *t, double time, struct forecast_row row)
+{
+	if (t->par.samples)
+		put_samples(t, time, &row);
+	else
+		put_summary(t, time, &row);
+	table_flush(t->out);
+}
+
+static void write_scores(struct table_out *out, const struct metrics *m)
+{
+	struct metrics_sum s = metrics_get(m);
+
+	table_comment(out, "predictions", "%zu", s.n);
+	table_comment(out, "bias", "%.6g s", s.bias);
+	table_comment(out, "mean_absolute_error", "%.6g s", s.mae);
+	table_comment(out, "root_mean_square_error", "%.6g s", s.rmse);
+	table_comment(out, "relative_accuracy", "%.6g", s.accuracy);
+	table_comment(out, "alpha_lambda", "%.6g", s.alpha_lambda);
+	table_comment(out, "prognostic_horizon", "%.6g s", s.horizon);
+	table_comment(out, "coverage", "%.6g", s.coverage);
+	table_comment(out, "crps", "%.6g s", s.crps);
+}
+
+void lifetable_close(struct lifetable *t)
+{
+	if (t->metrics)
+		write_scores(t->out, t->metrics);
+	table_done(t->out);
+	metrics_free(t->metrics);
+	free(t);
+}

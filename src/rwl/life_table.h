@@ -1,0 +1,28 @@
+/* life_table.h - the table of lives left: quantiles or samples, with scores where the end
+ * of life is known */
+#ifndef LIFETABLE_H
+#define LIFETABLE_H
+
+#include "life/forecast.h"
+#include "cli/opt.h"
+
+struct lifetable_par {
+	const struct opt_list *levels; /* of the quantiles */
+	int samples;                   /* print every path instead */
+	int dry, grey;                 /* add these columns */
+	long first;                    /* number of the first path */
+	long least;                    /* samples to print where one stands for all */
+	double eol, cone, horizon;     /* eol not NAN: add scores */
+};
+
+struct lifetable;
+
+/* par is copied.  Before the first row, comments may be put on lifetable_out(). */
+struct lifetable *lifetable_open(const char *cmd, const struct lifetable_par *par);
+struct table_out *lifetable_out(struct lifetable *t);
+/* One observation time; sorts the samples of the row. */
+void lifetable_put(struct lifetable *t, double time, struct forecast_row row);
+/* Writes the scores and frees. */
+void lifetable_close(struct lifetable *t);
+
+#endif

@@ -1,0 +1,138 @@
+#include "observations.h"
+#include "life/slope.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
+#include "common/time_unit.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const quantities[] = { "auto", "leakage", "gap", "volume", "debris",
+	NULL };
+static const double sphere = 0.52359877559829887; /* pi / 6 */
+
+struct state_options state_options;
+
+struct opt state_rows[] = {
+	{ 'y', "quantity", OPT_WORD, UNIT_NONE, &state_options.quantity, 0, 0,
+		"auto|leakage|gap|volume|debris", "what the state is", quantities, 0 },
+	{ 'u', "state-unit", OPT_TEXT, UNIT_NONE, &state_options.unit, 0, 0, "UNIT",
+		"unit of the state, where not SI: L/min", 0, 0 },
+	{ 'X', "state-error", OPT_NUM, UNIT_NONE, &state_options.error, 0, 1e300, "SD",
+		"standard error of the state, in its unit", 0, 0 },
+	OPT_TABLE(timeunit_rows), OPT_END
+};
+
+void state_open(struct state *s, const char *file, const struct pair *pair)
+{
+	static const char *const columns[] = { "", "leakage", "gap", "volume",
+		"diameter" };
+	struct table_in *t = table_open(file);
+	const char *wrong, *end;
+
+	*s = (struct state){
+		.table = t, .quantity = state_options.quantity, .scale = 1, .pair = pair
+	};
+	s->time_column = table_find(t, "t");
+	if (s->time_column < 0)
+		s->time_column = table_find(t, "time1");
+	if (s->time_column < 0)
+		s->time_column = table_need(t, "t");
+	s->value_column = table_find(t, "state");
+	for (int q = PAIR_LEAKAGE;
+		q <= PAIR_DEBRIS && s->quantity == PAIR_AUTO && s->value_column < 0; q++)
+		if (table_find(t, columns[q]) >= 0)
+			s->quantity = q;
+	if (s->quantity == PAIR_AUTO)
+		s->quantity = PAIR_LEAKAGE;
+	s->filtered = s->value_column >= 0 && s->quantity != PAIR_DEBRIS;
+	if (!s->filtered)
+		s->value_column = table_find(t, columns[s->quantity]);
+	if (s->value_column < 0)
+		s->value_column = table_find(t, "y");
+	if (s->value_column < 0)
+		s->value_column = table_need(t, columns[s->quantity]);
+	s->sources_column = table_find(t, "sources");
+	s->verdict_column = table_find(t, "verdict");
+	if (state_options.unit) {
+		char *one = xprintf("1%s", state_options.unit);
+
+		wrong = unit_parse(one, UNIT_ANY, "", &s->scale, &end);
+		if (wrong)
+			die(EXIT_USAGE, "--state-unit %s: %s", state_options.unit, wrong);
+		free(one);
+	}
+}
+
+/* Volume of all particles so far, with those of the present row. */
+static double add_debris(struct state *s, double diameter)
+{
+	struct table_in *t = s->table;
+	double many = 1;
+
+	if (s->verdict_column >= 0 && s->sources_column >= 0 &&
+		!strcmp(table_text(t, s->verdict_column), "unresolved"))
+		many = (double)table_whole(t, s->sources_column, 0, 1e15);
+	return s->debris += many * sphere * diameter * diameter * diameter;
+}
+
+int state_next(struct state *s)
+{
+	struct table_in *t = s->table;
+	double time, value, error = state_options.error * s->scale;
+
+	if (!table_next(t)) {
+		if (s->passed)
+			warn("%s: rows passed over for want of a diameter: %ld",
+				table_name(t), s->passed);
+		return 0;
+	}
+	time = table_number(t, s->time_column) * timeunit();
+	value = table_number(t, s->value_column) * s->scale;
+	if (!isfinite(time))
+		die(EXIT_RUN, "%s: line %ld: the time is missing", table_name(t),
+			table_line(t));
+	if (time < 0 && s->quantity >= PAIR_VOLUME)
+		die(EXIT_RUN, "%s: line %ld: time %g s is before the pair was new",
+			table_name(t), table_line(t), time);
+	if (s->rows++ > 0 && (s->quantity == PAIR_DEBRIS ? time < s->t : time <= s->t))
+		die(EXIT_RUN, "%s: line %ld: time %g s does not grow", table_name(t),
+			table_line(t), time);
+	if (value < 0 && s->filtered)
+		value = 0; /* a filter's idea of nothing worn */
+	if (value < 0 || isinf(value))
+		die(EXIT_RUN, "%s: line %ld: %g is not a %s", table_name(t),
+			table_line(t), value, quantities[s->quantity]);
+	if (s->rows == 1)
+		s->first_t = time;
+	s->t = time;
+	if (s->quantity == PAIR_DEBRIS) {
+		s->passed += isnan(value);
+		stats_add("particles_without_diameter", isnan(value));
+		if (!isnan(value))
+			value = add_debris(s, value);
+	}
+	s->value = value;
+	s->gap = pair_gap(s->pair, s->quantity, value);
+	s->gap_error = (pair_gap(s->pair, s->quantity, value + error) -
+			       pair_gap(s->pair, s->quantity, value - error)) /
+		       2;
+	return 1;
+}
+
+double state_slope(const char *file, const struct pair *pair, double skip)
+{
+	struct slope line = { 0 };
+	struct state s;
+	double slope;
+
+	state_open(&s, file, pair);
+	while (state_next(&s))
+		if (!isnan(s.gap) && s.t - s.first_t >= skip)
+			slope_add(&line, s.t, s.gap);
+	slope = slope_get(&line);
+	if (!(slope > 0) || !isfinite(slope))
+		die(EXIT_RUN, "%s: the unit to calibrate with does not wear", file);
+	table_close(s.table);
+	return slope;
+}

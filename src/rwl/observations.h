@@ -1,0 +1,52 @@
+/* observations.h - the wear of a pair as it was observed: rows of a table turned into gaps
+ *
+ *	struct state s;
+ *	state_open(&s, path, &pair);
+ *	while (state_next(&s))
+ *		... s.t, s.gap ...
+ *	table_close(s.table);
+ *
+ * Anything that is not a state of growing time ends the program with one line that names
+ * file and line.
+ */
+#ifndef STATE_H
+#define STATE_H
+
+#include "life/pair.h"
+#include "cli/opt.h"
+#include "io/tables.h"
+
+/* Values of the options. */
+extern struct state_options {
+	int quantity;
+	const char *unit;
+	double error; /* in that unit */
+} state_options;
+
+extern struct opt state_rows[]; /* for OPT_TABLE */
+
+struct state {
+	struct table_in *table;
+	const struct pair *pair;
+	int time_column, value_column;
+	int sources_column, verdict_column; /* of particles; -1 where absent */
+	int quantity;                       /* enum pair_quantity, found in the columns */
+	int filtered;                       /* read from the column state */
+	double scale;                       /* of the value to SI */
+	double debris;                      /* volume of the particles so far */
+	long rows;
+	long passed;          /* particles without a diameter */
+	double first_t;       /* of the first row */
+	double t, gap, value; /* latest row, SI; gap and value NAN where missing */
+	double gap_error;     /* standard error of the gap */
+};
+
+void state_open(struct state *s, const char *file, const struct pair *pair);
+/* The next row; 0 at the end.  Times must grow, but particles may come together.  A
+ * particle that duet calls unresolved counts as its sources. */
+int state_next(struct state *s);
+
+/* Slope of the gap over the whole life of an earlier unit from the time skip on, m/s. */
+double state_slope(const char *file, const struct pair *pair, double skip);
+
+#endif

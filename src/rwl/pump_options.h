@@ -1,0 +1,25 @@
+/* pump_options.h - the sliding pair rwl is told of: options of its faces, leakage and thresholds
+ */
+#ifndef PUMP_H
+#define PUMP_H
+
+#include "life/pair.h"
+#include "cli/opt.h"
+
+/* Values of the options; nan where not given. */
+extern struct pump {
+	struct pair pair;
+	double fragment_area, transition;           /* see life/partition.h */
+	double critical_size, critical_probability; /* failure by large particles */
+	int per_step;                               /* their share in one step */
+	struct opt_list radii, ports;
+} pump;
+
+extern struct opt pump_threshold_rows[], pump_face_rows[]; /* for OPT_TABLE */
+
+/* Sets the defaults; before the options are parsed. */
+void pump_init(void);
+/* Dies where options make no pump; sets what follows from several of them. */
+void pump_check(void);
+
+#endif

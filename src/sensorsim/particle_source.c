@@ -1,0 +1,259 @@
+#include "particle_source.h"
+#include "sensor_options.h"
+#include "cli/msg.h"
+#include "io/tables.h"
+#include <math.h>
+#include <stdlib.h>
+
+double source_duration = NAN;
+
+static long number = -1, burst;
+static double concentration = NAN, density = 3e3, start = NAN;
+static double span = NAN, gap, period = NAN;
+static int by_volume;
+static struct opt_list uniform;
+static const char *const measures[] = { "diameter", "volume", NULL };
+
+struct opt source_rows[] = {
+	{ 'u', "uniform", OPT_LIST, UNIT_LENGTH, &uniform, 1e-9, 1, "A:B",
+		"draw particles with diameters from A to B instead of reading a table", 0,
+		0 },
+	{ 'y', "by", OPT_WORD, UNIT_NONE, &by_volume, 0, 0, "diameter|volume",
+		"what --uniform makes uniform", measures, 0 },
+	{ 'N', "number", OPT_INT, UNIT_COUNT, &number, 0, 1e15, "N", "particles to draw",
+		0, 0 },
+	{ 'C', "concentration", OPT_NUM, UNIT_CONCENTRATION, &concentration, 0, 1e4, "C",
+		"draw a Poisson number of particles, C of mass in the oil", 0, 0 },
+	{ 'D', "density", OPT_NUM, UNIT_DENSITY, &density, 1, 1e5, "RHO",
+		"of the particles", 0, 0 },
+	/* arrivals */
+	{ 'd', "duration", OPT_NUM, UNIT_TIME, &source_duration, 0, 1e9, "T",
+		"of the record", 0, 0 },
+	{ 'o', "start", OPT_NUM, UNIT_TIME, &start, -1e9, 1e9, "T",
+		"when particles begin to arrive", 0, 0 },
+	{ 'X', "span", OPT_NUM, UNIT_TIME, &span, 0, 1e9, "T",
+		"time within which the particles of a burst arrive", 0, 0 },
+	{ 'i', "gap", OPT_NUM, UNIT_TIME, &gap, 0, 1e9, "T",
+		"least time between arrivals", 0, 0 },
+	{ 'b', "burst", OPT_INT, UNIT_COUNT, &burst, 1, 1e9, "M", "particles of a burst",
+		0, 0 },
+	{ 't', "period", OPT_NUM, UNIT_TIME, &period, 0, 1e9, "T", "from burst to burst",
+		0, 0 },
+	OPT_END,
+};
+
+/* Where particles come from: a table, or random numbers. */
+struct source {
+	struct stream stream;
+	struct arrivals *arrivals; /* NULL: times stand in the table */
+	struct table_in *table;    /* NULL: all is drawn, or was read into diameters */
+	int time_column, diameter_column, velocity_column;
+	double *diameters; /* of a table without times */
+	uint64_t count;    /* particles handed out */
+	char *cmd;         /* pipeline that made the table; NULL: none */
+	double slowest;
+};
+
+void source_check(int operands)
+{
+	double bore = sensors_pipe().bore;
+
+	if (uniform.n && uniform.v[0] > uniform.v[1])
+		die(EXIT_USAGE, "--uniform: want A:B with A not above B");
+	if (uniform.n && uniform.v[1] >= bore)
+		die(EXIT_USAGE,
+			"--uniform: a particle of %g m does not fit a bore of %g m",
+			uniform.v[1], bore);
+	if (uniform.n && operands)
+		die(EXIT_USAGE, "--uniform draws the particles: no file to read");
+	if (uniform.n && (number >= 0) + !isnan(concentration) != 1)
+		die(EXIT_USAGE, "--uniform needs one of --number and --concentration");
+	if (!uniform.n && (number >= 0 || !isnan(concentration)))
+		die(EXIT_USAGE, "--number and --concentration need --uniform");
+	if (burst > 0 && (isnan(span) || isnan(period)))
+		die(EXIT_USAGE, "--burst needs --span and --period");
+	if (burst > 0 && !isnan(concentration))
+		die(EXIT_USAGE, "--burst and --concentration exclude each other");
+	if (burst > 0 && period < span + gap)
+		die(EXIT_USAGE, "--period %g s is shorter than --span and --gap", period);
+}
+
+/* Particles per second: flow times concentration over mean mass. */
+static double particle_rate(double flow)
+{
+	double a = uniform.v[0], b = uniform.v[1];
+	double cube =
+		by_volume ? (a * a * a + b * b * b) / 2 : (a + b) * (a * a + b * b) / 4;
+
+	return isnan(concentration) ? 0
+				    : flow * concentration / (density * M_PI / 6 * cube);
+}
+
+/* When and how many: the window leaves room for whole pulses at both sensors. */
+static void make_arrivals(struct source *s, uint64_t n)
+{
+	double mean = pipe_mean_velocity(&s->stream.pipe),
+	       half = sensors_half_pulse(mean);
+	double room = half + s->stream.spacing / mean + s->stream.lag[1];
+	double begin = isnan(start) ? half : start;
+	double window = isnan(span) ? source_duration - begin - room : span;
+	struct arrivals_par par = { s->stream.seed, s->stream.realisation,
+		particle_rate(s->stream.pipe.flow), n, (uint64_t)burst, begin,
+		burst ? period : 0, window, gap };
+	double most = burst ? (double)burst : (double)n;
+
+	if (isnan(window))
+		die(EXIT_USAGE, "particles without times need --duration or --span");
+	if (window < 0 || (par.rate == 0 && most * gap > window + gap * (1 + 1e-9)))
+		die(EXIT_USAGE, "%s leaves no room for the particles",
+			isnan(span) ? "--duration" : "--span");
+	if (par.rate * gap > 1)
+		die(EXIT_USAGE,
+			"--gap %g s is above the mean time between particles, %g s", gap,
+			1 / par.rate);
+	s->arrivals = arrivals_new(&par);
+	if (!s->arrivals)
+		die(EXIT_RUN, "no memory");
+}
+
+static double read_diameter(const struct source *s)
+{
+	double d = table_number(s->table, s->diameter_column), bore = s->stream.pipe.bore;
+
+	if (!(d > 0 && d < bore))
+		die(EXIT_RUN,
+			"%s: line %ld: diameter %g m, want above 0 and below the bore, "
+			"%g m",
+			table_name(s->table), table_line(s->table), d, bore);
+	return d;
+}
+
+/* A table without times is read whole; its particles arrive in the order of the rows. */
+static void read_diameters(struct source *s)
+{
+	uint64_t n = 0, room = 0;
+
+	while (table_next(s->table)) {
+		if (n == room) {
+			room = room ? 2 * room : 1024;
+			s->diameters = xrealloc(s->diameters, room, sizeof *s->diameters);
+		}
+		s->diameters[n++] = read_diameter(s);
+	}
+	if (table_upstream(s->table))
+		s->cmd = xstrdup(table_upstream(s->table));
+	table_close(s->table);
+	s->table = NULL;
+	make_arrivals(s, n);
+}
+
+struct source *source_open(const char *path, uint64_t seed, uint32_t realisation)
+{
+	struct source *s = xcalloc(1, sizeof *s);
+
+	s->stream = sensors_stream(seed, realisation);
+	s->stream.diameter[0] = uniform.v[0];
+	s->stream.diameter[1] = uniform.v[1];
+	s->stream.by_volume = by_volume;
+	s->slowest = passage_slowest(&s->stream);
+	if (s->slowest < 0.01 * pipe_mean_velocity(&s->stream.pipe))
+		die(EXIT_USAGE, "--lag makes particles slower than 1 %% of the oil");
+	if (uniform.n) {
+		make_arrivals(s, number >= 0 ? (uint64_t)number : UINT64_MAX);
+		return s;
+	}
+	s->table = table_open(path);
+	s->diameter_column = table_need(s->table, "diameter");
+	s->velocity_column = table_find(s->table, "velocity");
+	s->time_column = table_find(s->table, "time");
+	if (s->time_column < 0)
+		s->time_column = table_find(s->table, "time1");
+	if (s->velocity_column >= 0)
+		s->slowest = 0.01 * pipe_mean_velocity(&s->stream.pipe);
+	if (s->time_column < 0)
+		read_diameters(s);
+	else if (table_key(s->table, "cmd"))
+		s->cmd = xstrdup(table_key(s->table, "cmd"));
+	return s;
+}
+
+static int next_row(struct source *s, struct passage *p)
+{
+	struct table_in *t = s->table;
+	double before = p->time[0];
+
+	if (!table_next(t))
+		return 0;
+	p->diameter = read_diameter(s);
+	p->time[0] = table_number(t, s->time_column);
+	if (!(fabs(p->time[0]) <= 1e9) || (s->count && p->time[0] < before))
+		die(EXIT_RUN,
+			"%s: line %ld: time %g s, want times in order, up to 1e9 s (before: %g s)",
+			table_name(t), table_line(t), p->time[0], before);
+	passage_carry(&s->stream, s->count, p);
+	if (s->velocity_column < 0)
+		return 1;
+	p->velocity = table_number(t, s->velocity_column);
+	if (!(p->velocity >= s->slowest && isfinite(p->velocity)))
+		die(EXIT_RUN,
+			"%s: line %ld: velocity %g m/s, want at least 1 %% of the oil's, "
+			"%g m/s",
+			table_name(t), table_line(t), p->velocity, s->slowest);
+	p->time[1] = p->time[0] + s->stream.spacing / p->velocity;
+	p->radius = NAN;
+	return 1;
+}
+
+static int next_particle(struct source *s, struct passage *p)
+{
+	if (s->table) {
+		if (!next_row(s, p))
+			return 0;
+	} else if (!arrivals_next(s->arrivals, &p->time[0])) {
+		return 0;
+	} else if (s->diameters) {
+		p->diameter = s->diameters[s->count];
+		passage_carry(&s->stream, s->count, p);
+	} else {
+		passage_draw(&s->stream, s->count, p);
+	}
+	s->count++;
+	return 1;
+}
+
+int source_next(struct source *s, struct passage *p)
+{
+	while (next_particle(s, p)) {
+		if (isnan(source_duration) ||
+			p->time[0] - sensors_half_pulse(p->velocity) < source_duration)
+			return 1;
+		if (p->time[0] - sensors_half_pulse(s->slowest) >= source_duration)
+			return 0;
+	}
+	return 0;
+}
+
+uint64_t source_count(const struct source *s)
+{
+	return s->count;
+}
+
+double source_slowest(const struct source *s)
+{
+	return s->slowest;
+}
+
+const char *source_cmd(const struct source *s)
+{
+	return s->cmd;
+}
+
+void source_close(struct source *s)
+{
+	if (s->table)
+		table_close(s->table);
+	arrivals_free(s->arrivals);
+	free(s->diameters);
+	free(s->cmd);
+	free(s);
+}

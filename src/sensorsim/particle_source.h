@@ -1,0 +1,36 @@
+/* particle_source.h - the particles that come along: options of sensorsim
+ *
+ *	struct source *s = source_open(path, seed, realisation);
+ *	while (source_next(s, &passage))
+ *		...
+ *	source_close(s);
+ */
+#ifndef SOURCE_H
+#define SOURCE_H
+
+#include "cli/opt.h"
+#include "signal/passage.h"
+
+/* Of the record, s; nan: until the last pulse is over. */
+extern double source_duration;
+
+extern struct opt source_rows[]; /* for OPT_TABLE */
+
+/* Dies where options contradict one another, or a file was named (operands) but the
+ * particles are to be drawn. */
+void source_check(int operands);
+
+struct source;
+
+/* A table, NULL or "-": standard input; or random numbers. */
+struct source *source_open(const char *path, uint64_t seed, uint32_t realisation);
+/* The next particle in order of arrival whose pulse at sensor 1 begins before the record
+ * ends; 0 where there is none. */
+int source_next(struct source *s, struct passage *p);
+uint64_t source_count(const struct source *s); /* particles so far, unseen ones too */
+/* Velocity that none of them is below, m/s. */
+double source_slowest(const struct source *s);
+const char *source_cmd(const struct source *s); /* that made the table, or NULL */
+void source_close(struct source *s);
+
+#endif

@@ -1,0 +1,25 @@
+/* sensor_options.h - the pipe, its two sensors and what disturbs them: options of sensorsim */
+#ifndef SENSORS_H
+#define SENSORS_H
+
+#include "cli/opt.h"
+#include "signal/passage.h"
+#include "signal/scene.h"
+
+extern struct opt sensors_rows[]; /* for OPT_TABLE */
+
+/* Dies where options contradict one another. */
+void sensors_check(void);
+
+long sensors_rate(void); /* Hz */
+struct pipe sensors_pipe(void);
+/* What particles pass, but for their diameters. */
+struct stream sensors_stream(uint64_t seed, uint32_t realisation);
+/* Time from the first trace of a pulse to its centre. */
+double sensors_half_pulse(double velocity);
+/* Peak voltage over velocity and diameter cubed, V s/m4. */
+double sensors_calibration(void);
+/* The signal without its particles; dies where a line is above half the rate. */
+struct scene *sensors_scene(uint64_t seed, uint32_t realisation);
+
+#endif
