@@ -1,4 +1,5 @@
 #include "cli/opt.h"
+#include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
 #include <ctype.h>
@@ -398,6 +399,7 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 	char letters[2 * ROWS_MAX + 2];
 	int c, n;
 
+	files_start();
 	prog = program;
 	msg_name(program->name);
 	stats_start();
@@ -424,6 +426,7 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 	}
 	verbose = verbose_flag;
 	check_operands(argc, argv);
+	file_claim_output();
 	if (stats_path)
 		stats_open(stats_path);
 	operand = argv + optind;
@@ -470,7 +473,9 @@ char *opt_cmd(const char *upstream, const char *extra)
 int shell_done(int status)
 {
 	errno = 0;
-	if (ferror(stdout) || fflush(stdout) || fclose(stdout))
+	/* Some file systems report a failure only when a descriptor is closed; standard
+	 * output itself stays open, for messages flush it. */
+	if (ferror(stdout) || fflush(stdout) || close(dup(STDOUT_FILENO)))
 		die(EXIT_RUN,
 			errno ? "standard output:" : "standard output: write error");
 	stats_write(prog->name);

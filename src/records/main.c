@@ -184,6 +184,15 @@ static void check_plane(const struct record *r, struct fields_in *in)
 		die(EXIT_USAGE, "GSF holds one plane field: use --pick and --field");
 }
 
+/* 1 where another record is to be written. */
+static int picks_left(struct fields_in *in)
+{
+	for (int i = 0; i < pick.n; i++)
+		if ((long)pick.v[i] > fields_count(in))
+			return 1;
+	return pick.n == 0 && fields_more(in);
+}
+
 static void put_record(struct output *o, struct record *r, struct fields_in *in)
 {
 	o->records++;
@@ -192,7 +201,7 @@ static void put_record(struct output *o, struct record *r, struct fields_in *in)
 		list_record(o->table, r, fields_count(in));
 		break;
 	case NRRD:
-		fields_write(o->fields, r);
+		fields_write(o->fields, r, picks_left(in));
 		break;
 	case GSF:
 		check_plane(r, in);
