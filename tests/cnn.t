@@ -19,10 +19,10 @@ shipped=$top/share/arrivals.net
 # Twins of 80 to 120 um within 8 ms, 30 dB.
 sensorsim --uniform 80um:120um --number 200 --burst 2 --span 8ms --gap 2ms --period 0.1s \
 	--duration 10.2s --snr 30dB --lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv >s.au
-known="--align 19.98ms --spread 0.01 --shape sine --pulse-duration 10ms"
+known="--align 19.98ms --spread 0.01 --pulse sine --pulse-duration 10ms"
 
 delaynet --model pulses --fresh --layers "8conv13x1/4 12conv5x1/2 32" --activation relu \
-	--count 1000 --epochs 20 --rate 4e-3 --rate-end 1e-4 >small.net
+	--count 1000 --epochs 20 --learning-rate 4e-3 --learning-rate-end 1e-4 >small.net
 # shellcheck disable=SC2086
 duet $known --stats slow s.au >fit.tsv
 for net in small.net "$shipped"; do
@@ -51,7 +51,7 @@ less "shipped: no larger than a megabyte" "$(wc -c <"$shipped")" 1000000
 # What it was not trained for is fitted.
 sensorsim --uniform 80um:120um --number 20 --pulse gauss --gap 20ms --duration 2s --snr 30dB \
 	--lag 0.2ms:0.5ms >gauss.au
-duet --method cnn --network "$shipped" --shape gauss --stats st gauss.au >cnn.tsv
+duet --method cnn --network "$shipped" --pulse gauss --stats st gauss.au >cnn.tsv
 is "another shape of pulse: all fitted" "$(column guesses st)" 0
 is "another shape of pulse: found" "$(column particle cnn.tsv | wc -l)" 20
 

@@ -1,7 +1,7 @@
 #include "methods.h"
-#include "instrument_options.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "instrument_options.h"
 #include <math.h>
 #include <stdlib.h>
 

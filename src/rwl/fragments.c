@@ -1,8 +1,8 @@
 #include "fragments.h"
-#include "pump_options.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
 #include "io/tables.h"
+#include "pump_options.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

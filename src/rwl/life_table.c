@@ -1,9 +1,9 @@
 #include "life_table.h"
+#include "cli/msg.h"
 #include "common/quantile_columns.h"
+#include "io/tables.h"
 #include "life/metrics.h"
 #include "life/remaining.h"
-#include "cli/msg.h"
-#include "io/tables.h"
 #include <math.h>
 #include <stdlib.h>
 
