@@ -74,7 +74,7 @@ static void check_trained(enum network_status status)
 	if (status == NETWORK_MEMORY)
 		die(EXIT_RUN, "out of memory");
 	if (status == NETWORK_DIVERGED)
-		die(EXIT_RUN, "the training diverged: want a smaller --rate than %g",
+		die(EXIT_RUN, "the training diverged: want a smaller --learning-rate than %g",
 			learning.rate);
 }
 

@@ -51,8 +51,6 @@ static void report(const struct separate *s, double rate)
 	stats_set("fits", c->fits);
 	stats_set("fit_steps", c->steps);
 	stats_set("searches", c->searches);
-	stats_set("guesses", c->guesses);
-	stats_set("guesses_refused", c->refused);
 	stats_set("demixings", c->masks);
 	stats_set("demixings_skipped", c->masks_skipped);
 	stats_set("calibrations", known ? known->attempts : 0);
