@@ -73,7 +73,7 @@ relative "pressures that differ in the last digit" "the mean of both classes" 20
 refused "two classes of one pressure" 2 'pressure of its own' rwl $new --wear even.tsv:1Pa --wear zero.tsv:1Pa
 refused "a class at no pressure beside another" 2 'a pressure above 0' rwl $new --wear even.tsv:0Pa --wear zero.tsv:1Pa
 relative "64 classes" "all wear alike: 100 s" 100 1e-9 "$(last mean $new $(
-	awk 'BEGIN { for (i = 1; i <= 64; i++) print "-w even.tsv:" i "MPa" }'))"
+	awk 'BEGIN { for (i = 1; i <= 64; i++) print "--wear even.tsv:" i "MPa" }'))"
 
 # --- states
 fragments 1.0e-15 1.2e-15 0.9e-15 >three.tsv
