@@ -1,8 +1,8 @@
 #include "outputs.h"
-#include "stress/stress_kernel.h"
-#include "surface/surface.h"
 #include "cli/msg.h"
 #include "io/tables.h"
+#include "stress/stress_kernel.h"
+#include "surface/surface.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
