@@ -83,7 +83,7 @@ fails "arrivals for delays" 1 "want a network for delays, got one for arrivals" 
 fails "delays for arrivals" 1 "want a network for arrivals, got one for delays" \
 	delaynet --task score --model pulses a.net
 fails "five pulses" 2 "at most 4" delaynet --model pulses --sources 5
-fails "apply of arrivals" 2 "see duet" delaynet --task apply --model pulses --network tiny.net
+fails "apply of arrivals without sections" 2 "wants --sections" delaynet --task apply --model pulses --network tiny.net
 
 fails "layers that are none" 2 "--layers: '5x' is no layer" delaynet --layers 5x
 fails "too many operands" 2 "reads nothing" delaynet a.net

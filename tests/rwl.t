@@ -97,17 +97,31 @@ near "3 of 5 in step 2" "$(cell out 1 q50)" 7200 1e-9
 ok "the earlier of both criteria" rwl -w size.tsv -p 1h -d 5um -P 40% -g 10.02um -q 0.5 gap.tsv
 rising "the gap comes first" 1 "$(cell out 1 q50)" 7199
 
-# Monte-Carlo: the spread of 16 fragments' mean, by the bootstrap.
+# Monte-Carlo: the mean of 16 fragments by Student's t in its logarithm.
 awk 'BEGIN { print "volume"; for (i = 0; i < 16; i++) print (1 + i / 10) "e-15" }' >spread.tsv
-ok "spread of an ensemble" rwl --new -w spread.tsv -p 1h -g 15um -i 10um -c 4000 -R mean -W rates.tsv
+ok "spread of an ensemble" rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um \
+	--initial-gap 10um --count 4000 --wear-rate mean --rates rates.tsv
 cp out spread.out
-near "standard deviation of the mean" "$(column mean rates.tsv |
-	awk '{ n++; d = $1 - m; m += d / n; s += d * ($1 - m) } END { print sqrt(s / n) / m }')" \
-	"$(calc "sqrt((256 - 1) / 12) / 10 / 4 / 1.75")" 0.003
+# relative standard error sqrt((16^2 - 1) / 12 * 16 / 15) / 10 / 1.75 / 4; t of 15 degrees at 95 %: 1.75305
+error=$(calc "sqrt(255 / 12 * 16 / 15) / 70")
+mean=$(calc "1.75e-15 * 2346.3e-6 / 1e-8")
+near "5 % of the paths wear less than Student's t has it" \
+	"$(column mean rates.tsv | sort -g | sed -n 200p)" "$(calc "$mean * exp(-1.75305 * $error)")" \
+	"$(calc "0.01 * $mean")"
+near "5 % wear more, with the second-order term" "$(column mean rates.tsv | sort -g | sed -n 3800p)" \
+	"$(calc "$mean * exp(1.75305 * $error + (1.75305 * $error)^2 / 2)")" "$(calc "0.01 * $mean")"
 ok "one part wears like one fragment" rwl --new -w spread.tsv -p 1h -g 15um -i 10um -c 4000 --parts 1
 rising "which is wider" "$(calc "1.3 * $(cell spread.out 1 q95)")" "$(cell out 1 q95)"
 ok "new rate in every step" rwl --new -w spread.tsv -p 1h -g 15um -i 10um -c 4000 --parts 1 -R last
 near "has the same mean" "$(cell out 1 mean)" "$(cell spread.out 1 mean)" 3000
+
+# One realisation, and wear that was never seen.
+printf 'realisation\tstep\tvolume\n0\t1\t1e-15\n0\t2\t2e-15\n' >single.tsv
+fails "one realisation is doubtful" 3 'single.tsv: a single realisation' \
+	rwl --new --wear single.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um
+printf 'volume\n0\n0\n0\n' >nothing.tsv
+fails "wear that was never seen is doubtful" 3 'nothing.tsv: none of 3 realisations wore' \
+	rwl --new --wear nothing.tsv --step-time 1h
 
 # Any split of an ensemble is the same bytes.
 rwl --new -w spread.tsv -p 1h -g 15um -O -c 20 --parts 1 -R last | grep -v '^#' >whole
@@ -154,7 +168,7 @@ ok "grey model and scores" rwl -w even.tsv -u L/min -t h --grey --eol 1186h exp.
 near "grey life of an exponential, h" "$(cell out 13 grey | awk '{ print $1 / 3600 }')" 586 0.2
 near "truth is what is left" "$(cell out 13 truth)" 2109600 0
 is "summary of the scores" "$(sed -n 's/^# \([a-z_]*\):.*/\1/p' out | tr '\n' ' ')" \
-	"cmd predictions bias mean_absolute_error root_mean_square_error relative_accuracy alpha_lambda prognostic_horizon coverage crps "
+	"cmd predictions infinite_medians bias mean_absolute_error root_mean_square_error relative_accuracy alpha_lambda prognostic_horizon coverage crps "
 near "error is median less truth" "$(cell out 5 error)" \
 	"$(calc "$(cell out 5 q50) - $(cell out 5 truth)")" 1e-6
 

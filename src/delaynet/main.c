@@ -1,13 +1,14 @@
 /* delaynet - train, score and apply networks that tell the delays of overlapping pulses
  */
-#include "training_options.h"
-#include "example_options.h"
-#include "scores.h"
+#include "arrivals.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
-#include "io/signals.h"
 #include "cli/stats.h"
+#include "example_options.h"
+#include "io/signals.h"
 #include "io/tables.h"
+#include "scores.h"
+#include "training_options.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -47,6 +48,7 @@ static const struct opt opts[] = {
 	{ 'F', "fresh", OPT_FLAG, UNIT_NONE, &learning.fresh, 0, 0, NULL,
 		"new samples in every epoch", NULL, 0 },
 	OPT_TABLE(lessons_rows),
+	OPT_TABLE(arrivals_rows),
 	OPT_END,
 };
 
@@ -58,15 +60,19 @@ static const struct prog prog = { "delaynet",
 static void check_options(void)
 {
 	lessons_check();
-	if (lessons.model == PULSES && (task == APPLY || task == DATA))
-		die(EXIT_USAGE, "--task %s is for --model sines; see duet and sensorsim",
-			tasks[task]);
+	if (lessons.model == PULSES && task == DATA)
+		die(EXIT_USAGE, "--task data is for --model sines; see sensorsim");
 	if (lessons.model == PULSES && lessons.sources > CNN_SOURCES)
 		die(EXIT_USAGE, "--sources: want at most %d pulses", CNN_SOURCES);
 	if (task == APPLY && !network_file)
 		die(EXIT_USAGE, "--task apply wants --network FILE");
 	if (task != APPLY && network_file)
 		die(EXIT_USAGE, "--network is for --task apply");
+	if (task == APPLY && lessons.model == PULSES)
+		arrivals_check();
+	else if (opt_any_given(arrivals_rows))
+		die(EXIT_USAGE, "--%s is for --task apply --model pulses",
+			opt_any_given(arrivals_rows));
 	if (task == SCORE && !opt_given('f'))
 		lessons.first = lessons.model == PULSES ? 4000000000 : 1000;
 	if (task == SCORE && !opt_given('c'))
@@ -191,10 +197,13 @@ int main(int argc, char **argv)
 		score_network(argv[i]);
 		break;
 	case APPLY:
-		apply_network(argv[i]);
+		if (lessons.model == PULSES)
+			arrivals_apply(network_file, argv[i]);
+		else
+			apply_network(argv[i]);
 		break;
 	default:
 		write_data();
 	}
-	return shell_done(0);
+	return shell_done(arrivals_refused() ? EXIT_NOCONV : 0);
 }

@@ -1,7 +1,7 @@
 #include "scores.h"
-#include "example_options.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "example_options.h"
 #include "io/tables.h"
 #include <math.h>
 #include <stdlib.h>

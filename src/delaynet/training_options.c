@@ -1,8 +1,8 @@
 #include "training_options.h"
-#include "example_options.h"
 #include "cli/msg.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
+#include "example_options.h"
 #include <stdlib.h>
 
 struct learning learning = { .layers = "10",

@@ -1,11 +1,11 @@
 /* rwl - remaining wear life from fragments' wear and the state observed */
+#include "cli/msg.h"
+#include "cli/stats.h"
 #include "fragments.h"
 #include "life/remaining.h"
 #include "life_table.h"
-#include "pump_options.h"
-#include "cli/msg.h"
-#include "cli/stats.h"
 #include "observations.h"
+#include "pump_options.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -238,7 +238,7 @@ int main(int argc, char **argv)
 	struct forecast *f;
 	struct state s = { 0 };
 	double dry;
-	int i;
+	int i, doubtful = 0;
 
 	pump_init();
 	i = opt_parse(&prog, argc, argv);
@@ -246,7 +246,7 @@ int main(int argc, char **argv)
 		state_file = argv[i];
 	settle();
 	if (wear_files.n)
-		p = fragments_read(&wear_files, first_step, made_by);
+		p = fragments_read(&wear_files, first_step, made_by, &doubtful);
 	if (!new)
 		state_open(&s, state_file, &pump.pair);
 	if (isnan(pump.pair.gap_new) && (new || s.quantity >= PAIR_VOLUME))
@@ -271,5 +271,5 @@ int main(int argc, char **argv)
 	for (int k = 0; k < wear_files.n; k++)
 		free(made_by[k]);
 	free(cmd);
-	return shell_done(0);
+	return shell_done(doubtful ? EXIT_NOCONV : 0);
 }

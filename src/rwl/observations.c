@@ -1,8 +1,8 @@
 #include "observations.h"
-#include "life/slope.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
 #include "common/time_unit.h"
+#include "life/slope.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

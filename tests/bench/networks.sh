@@ -6,8 +6,8 @@
 # delays      a structure of tables    mean squared error of three delays of 1000 training
 #             2 to 6, by epochs        and 300 test samples: output by output, and in the
 #                                      best order (3-21); 1/12 and 1/24 need no data
-# arrivals    network, joint fit,      root mean square error of the delay over the
-#             both, by pulses and SNR  Cramer-Rao bound, of sections whose count is right
+# arrivals    network and joint fit,   root mean square error of the delay over the
+#             by pulses and SNR        Cramer-Rao bound, of sections whose count is right
 #
 # Seconds are processor time: of the training (delays), of the work per sample or section.
 # OpenBLAS, where it was there at build time, makes training some five times faster.
@@ -80,7 +80,7 @@ set yrange [0.5:20]
 set xlabel "seconds per section"
 set ylabel "error of the delay over the Cramer-Rao bound"
 set arrow from graph 0, first 1 to graph 1, first 1 nohead dashtype 2
-plot for [m in "network network+fit fit"] \
+plot for [m in "network fit"] \
 	sprintf("< awk -F '\t' -v n='%s' '\$1 == \"arrivals\" && index(\$2, n \" \") == 1' bench.tsv", m) \
 	using 7:4 with points pointsize 1.5 title m
 EOF

@@ -173,6 +173,35 @@ refused "hardness just below the mean pressure" "refused" 1 'not below the hardn
 solve --pixel 1um --estar 100GPa -b periodic -D 5um
 refused "periodic, approach past full contact" "refused" 1 'beyond full contact'
 
+for k in 16 1000 4000; do
+	for solver in bccg pk; do
+		solve --pixel 1um --estar 100GPa --pressure "$(calc "$k / 4096 * 2e9")Pa" --hardness 2GPa --solver $solver
+		accurate "load of $k cells at the hardness, $solver" "the energy at 1e-9 less load" \
+			"$(error "$(key energy)" "$(bemcontact --raw $size --pixel 1um --estar 100GPa --hardness 2GPa \
+				--pressure "$(calc "$k / 4096 * 2e9 * (1 - 1e-9)")Pa" --tolerance 1e-11 h.f64 >near.nrrd
+				key energy near.nrrd)")" 1e-7
+	done
+done
+
+# A pit that touches nothing changes nothing, however deep and wherever it is: the mean
+# difference of the pressures from those over a pit of 0.1 mm
+for at in "20 31" "40 10"; do
+	set -- $at
+	for b in free periodic; do
+		for depth in 1e-4 1 1e3; do
+			heights 64 64 "\$x == $1 && \$y == $2 ? -$depth : ($rough)"
+			if [ $depth = 1e-4 ]; then
+				solve --pixel 1um --estar 100GPa --pressure 1GPa --boundary $b --tolerance 1e-12
+				values pressure >shallow
+				continue
+			fi
+			solve --pixel 1um --estar 100GPa --pressure 1GPa --boundary $b
+			accurate "a pit of $depth m at $at, $b" "the pressure over a pit of 0.1 mm" "$(values pressure |
+				paste - shallow | awk '{ d = $1 - $2; s += d < 0 ? -d : d; t += $2 } END { print s / t }')" 2e-7
+		done
+	done
+done
+
 # Precision
 for b in free periodic; do
 	solve --pixel 1um --estar 100GPa -P 500MPa -t 1e-13 -b $b
