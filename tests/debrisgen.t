@@ -137,7 +137,9 @@ ok "which the wear has changed" awk -v r="$rough" 'BEGIN { exit !(r < 0.999 || r
 
 # Steps that touch everywhere stop.
 roughgen -n 32 -L 1mm --sq 1nm -l 200um | bemcontact --pressure 100MPa -E 210GPa >flat.nrrd
-debrisgen -Y 1MPa --steps 5 -E 210GPa -S stats.tsv flat.nrrd 2>err >t.tsv
+debrisgen --yield 1MPa --steps 5 --young 210GPa --stats stats.tsv flat.nrrd 2>err >t.tsv
+is "a surface that is not worn at all: exit status 3 and a line that says why" \
+	"$? $(grep -c 'stopped before step 1: .* in contact, --stop-area 0.8' err)" "3 1"
 is "contact over 80 % stops the wear" "$(column steps_skipped stats.tsv)" 5
 is "and gives no particles" "$(rows t.tsv)" ""
 
@@ -198,6 +200,16 @@ near "less load on the rim" "$(summary edge_load)" 0.047619047619047616 1e-15
 is "goes without a warning below 5 %" "$(cat warning)" ""
 loaded 2 0 2 | debrisgen -Y 1GPa --boundary periodic --summary summary.tsv 2>warning >t.tsv
 is "a periodic surface has no rim" "$(summary edge_load) $(cat warning)" "0 "
+
+# A ridge that goes round a periodic grid has no end, and so no length.
+perl -e 'binmode STDOUT; print "NRRD0004\ntype: double\nendian: little\nencoding: raw\ndimension: 3\n",
+	"sizes: 2 16 16\nspacings: 1e-5 1e-5 1e-5\nfields:=height m, pressure Pa\nboundary:=periodic\n\n";
+	for my $y (0 .. 15) { print pack("d<2", 0, $y == 8 ? 1e9 : 0) for 0 .. 15 }' >ridge.nrrd
+debrisgen --yield 355MPa --friction 0.3 ridge.nrrd >t.tsv 2>err
+is "a particle around a periodic grid: exit status 3, a line, no length" \
+	"$? $(grep -c '1 of 1 particles go round' err) $(column length t.tsv) $(column x t.tsv)" "3 1 nan nan"
+near "and its volume is that of one period" "$(column volume t.tsv)" \
+	"$(column nodes t.tsv | awk '{ printf "%.17g", $1 * 1e-15 }')" 1e-24
 
 replay s.nrrd cmd:= >a
 same "the command of a stress field rebuilds it" a s.nrrd

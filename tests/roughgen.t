@@ -142,7 +142,14 @@ fails "no heights of kurtosis below skewness^2 + 1" 2 'must exceed' \
 fails "kurtosis out of reach of few points" 1 'out of reach' \
 	roughgen -n 4 -L 1mm -l 0.1mm --skewness 0 --kurtosis 60
 fails "correlation length above the side" 1 'longer than a side' roughgen -l 2mm
-fails "no waves" 1 'no wave' roughgen -n 1
+fails "one point cannot be rough" 2 'single point' roughgen --points 1
+is "one flat point is a surface" "$(roughgen --points 1 --sq 0 | records | awk 'NR == 2 { print $5 * $6 }')" 1
+if command -v python3 >/dev/null; then
+	python3 -c 'import pty, sys; sys.exit(pty.spawn(["timeout", "5", "roughgen", "--measure"]) >> 8)' >tty </dev/null
+	is "--measure does not wait for a terminal" "$? $(grep -c 'nothing to measure' tty)" "2 1"
+else
+	skip "--measure does not wait for a terminal" "no python3"
+fi
 fails "a range that runs backwards" 2 'runs backwards' roughgen -q 2um:1um
 fails "a bare prefix" 2 'q' roughgen -q 2u
 fails "Sq and Sa" 2 'exclude' roughgen -q 1um --sa 1um

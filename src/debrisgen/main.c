@@ -93,15 +93,34 @@ static int check_contact(struct run *run, struct scene *c, long step)
 			name, c->now.r->realisation, step, 100 * s.edge_load);
 	if (s.contact < stop_area || stop_area == 1)
 		return 0;
-	note("%s: realisation %ld, step %ld: %.3g of the cells in contact: stopped", name,
-		c->now.r->realisation, step, s.contact);
+	warn("%s: realisation %ld: stopped before step %ld: %.3g of the cells in contact, "
+	     "--stop-area %g",
+		name, c->now.r->realisation, step, s.contact, stop_area);
 	return 1;
+}
+
+/* Particles without end on a periodic grid have no shape. */
+static void check_ends(struct run *run, const struct scene *c, const struct worn_step *s)
+{
+	size_t endless = 0;
+
+	for (size_t i = 0; i < s->lost->count; i++)
+		endless += s->lost->particle[i].endless != 0;
+	if (endless == 0)
+		return;
+	warn("%s: realisation %ld, step %ld: %zu of %zu particles go round the periodic "
+	     "grid and have no end: their shape is nan",
+		fields_name(run->in), c->now.r->realisation, s->number, endless,
+		s->lost->count);
+	run->status = EXIT_NOCONV;
+	stats_add("particles_endless", (double)endless);
 }
 
 static void wear_step(struct run *run, const struct scene *c, long step)
 {
 	struct worn_step s = wearing_step(run->wearing, &c->now, step);
 
+	check_ends(run, c, &s);
 	s.distance = (double)step * amplification * wearing_length(c->now.r);
 	worn_put(run->out, &c->now, &s);
 	note("%s: realisation %ld, step %ld: %zu particles, %.6g m3, %ld layers",
@@ -122,6 +141,8 @@ static void wear_record(struct run *run, struct record *r)
 			run->status = EXIT_NOCONV;
 		if (check_contact(run, &c, c.done + k)) {
 			stats_add("steps_skipped", (double)(steps - k + 1));
+			if (k == 1)
+				run->status = EXIT_NOCONV;
 			break;
 		}
 		wear_step(run, &c, c.done + k);

@@ -163,7 +163,8 @@ static void refuse(const struct wearing *w, enum debris_status status, long step
 		return;
 	die(EXIT_RUN, "%s: record %ld, step %ld: %s", fields_name(w->in),
 		fields_count(w->in), step,
-		status == DEBRIS_PULL ? "pressure below zero"
+		status == DEBRIS_PULL      ? "pressure below zero"
+		: status == DEBRIS_NUMBERS ? "pressure beyond the range of numbers"
 		: status == DEBRIS_DEEP
 			? "material fails deeper than ten times the grid is long"
 			: "out of memory");

@@ -127,6 +127,10 @@ struct generated *generated_open(int threads)
 		.seed = (uint64_t)seed,
 		.pool = pool_new(threads) };
 	g->rough = rough_new(&g->par, &status);
+	if (!g->rough && status == ROUGH_EMPTY && g->par.spectrum.nx == 1 &&
+		g->par.spectrum.ny == 1)
+		die(EXIT_USAGE,
+			"a single point has no roughness: want --sq 0 or more --points");
 	if (!g->rough)
 		die(status == ROUGH_IMPOSSIBLE ? EXIT_USAGE : EXIT_RUN, "%s",
 			problem[status]);

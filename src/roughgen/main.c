@@ -10,6 +10,7 @@
 #include "surface/areal.h"
 #include "surface/surface.h"
 #include <stdlib.h>
+#include <unistd.h>
 
 static const char *const crown_words[] = { "none", "auto", NULL };
 
@@ -116,10 +117,13 @@ static const char *file_of(int argc, char **argv, int operand)
 {
 	if (operand < argc)
 		return argv[operand];
-	return measure && !opt_any_given(generated_grid_rows) &&
-			       !opt_any_given(generated_rows)
-		       ? "-"
-		       : NULL;
+	if (!measure || opt_any_given(generated_grid_rows) ||
+		opt_any_given(generated_rows))
+		return NULL;
+	if (isatty(STDIN_FILENO))
+		die(EXIT_USAGE,
+			"nothing to measure: name a file, pipe surfaces in, or give --points");
+	return "-";
 }
 
 int main(int argc, char **argv)

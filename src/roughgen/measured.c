@@ -95,6 +95,7 @@ static void fill_holes(const struct fields_in *in, struct record *s)
 {
 	double *z = record_need(s, "height", !fill, in);
 	size_t n = (size_t)s->nx * (size_t)s->ny, missing;
+	double residual;
 	int steps;
 
 	if (!fill)
@@ -103,7 +104,11 @@ static void fill_holes(const struct fields_in *in, struct record *s)
 	if (missing == n)
 		die(EXIT_RUN, "%s: record %ld: every height is missing", fields_name(in),
 			fields_count(in));
-	need_memory(surface_fill(s->nx, s->ny, z, &steps));
+	need_memory(surface_fill(s->nx, s->ny, z, &steps, &residual));
+	if (!(residual <= SURFACE_FILLED))
+		die(EXIT_RUN,
+			"%s: record %ld: --fill stopped at a residual of %.2g after %d steps",
+			fields_name(in), fields_count(in), residual, steps);
 	record_need(s, "height", 1, in);
 	stats_add("samples_filled", (double)missing);
 	stats_add("iterations", steps);
