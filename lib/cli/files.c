@@ -40,6 +40,18 @@ static void claim(FILE *f, const char *name, int written)
 	used[nused++].written = written;
 }
 
+static int follow;
+
+void file_follow(void)
+{
+	follow = 1;
+}
+
+int file_followed(void)
+{
+	return follow;
+}
+
 static void open_closed(int fd, int flags)
 {
 	if (fcntl(fd, F_GETFD) >= 0 || errno != EBADF)
@@ -50,7 +62,7 @@ static void open_closed(int fd, int flags)
 
 void files_start(void)
 {
-	open_closed(STDIN_FILENO, O_WRONLY); /* cannot be read */
+	open_closed(STDIN_FILENO, O_WRONLY);  /* cannot be read */
 	open_closed(STDOUT_FILENO, O_RDONLY); /* cannot be written */
 	open_closed(STDERR_FILENO, O_WRONLY);
 }

@@ -14,6 +14,9 @@
 void files_start(void);
 /* Standard output is in use, by whatever is printed there. */
 void file_claim_output(void);
+/* Inputs that end without an end are still being written: --follow. */
+void file_follow(void);
+int file_followed(void);
 /* To read; path NULL or "-" is standard input. */
 FILE *file_open(const char *path, const char **name);
 /* To write, emptied; path NULL is standard output, and "-" is misuse. */

@@ -13,12 +13,14 @@
 
 enum { ROWS_MAX = 128, LETTERLESS = 256 };
 
-static int verbose_flag;
+static int verbose_flag, follow;
 static const char *stats_path;
 
 static const struct opt common[] = {
 	{ 'S', "stats", OPT_TEXT, UNIT_NONE, &stats_path, 0, 0, "FILE",
 		"write one row of work counters to FILE", 0, 1 },
+	{ 0, "follow", OPT_FLAG, UNIT_NONE, &follow, 0, 0, 0,
+		"wait for the end of an input that is still being written", 0, 1 },
 	{ 'v', "verbose", OPT_FLAG, UNIT_NONE, &verbose_flag, 0, 0, 0,
 		"report on standard error", 0, 1 },
 	{ 'h', "help", OPT_FLAG, UNIT_NONE, 0, 0, 0, 0, "print this help and exit", 0,
@@ -460,6 +462,8 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 		}
 	}
 	verbose = verbose_flag;
+	if (follow)
+		file_follow();
 	check_operands(argc, argv);
 	file_claim_output();
 	if (stats_path)

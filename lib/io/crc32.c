@@ -31,8 +31,7 @@ uint32_t crc32_add(uint32_t crc, const void *bytes, size_t n)
 		make_table();
 	crc = ~crc;
 	for (; n >= SLICES; n -= SLICES, b += SLICES) {
-		uint32_t low = crc ^ bytes_u32_little(b),
-			 high = bytes_u32_little(b + 4);
+		uint32_t low = crc ^ bytes_u32_little(b), high = bytes_u32_little(b + 4);
 
 		crc = table[7][low & 255] ^ table[6][low >> 8 & 255] ^
 		      table[5][low >> 16 & 255] ^ table[4][low >> 24] ^

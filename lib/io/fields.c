@@ -1,10 +1,10 @@
 #include "io/fields.h"
+#include "cli/files.h"
+#include "cli/msg.h"
 #include "io/bytes.h"
 #include "io/crc32.h"
 #include "io/ends.h"
-#include "cli/files.h"
 #include "io/formats.h"
-#include "cli/msg.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -349,6 +349,7 @@ static void read_record(struct fields_in *in, struct record *r)
 		read_formatted(in, r);
 	in->unmarked += in->at.mark.number == 0;
 	check_mark(in, before);
+	input_whole(in->at.in, in->at.mark.last);
 }
 
 int fields_read(struct fields_in *in, struct record *r)
@@ -360,7 +361,7 @@ int fields_read(struct fields_in *in, struct record *r)
 	}
 	if (in->at.record == 0)
 		die(EXIT_RUN, "%s: no record", in->at.name);
-	if (promised(in) && !input_followed())
+	if (promised(in) && !file_followed())
 		die(EXIT_RUN,
 			"%s: the stream ends after record %ld, which says that another "
 			"follows: what wrote it did not finish",

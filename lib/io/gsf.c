@@ -1,8 +1,8 @@
 /* gsf.c - Gwyddion Simple Field 1.0: one float32 field, text header padded with NULs */
-#include "io/bytes.h"
-#include "io/formats.h"
 #include "cli/msg.h"
 #include "cli/unit.h"
+#include "io/bytes.h"
+#include "io/formats.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -14,23 +14,11 @@ enum { BUFFER = 1 << 16 };
 struct input {
 	FILE *f; /* holds the descriptor; what is read goes past it */
 	int fd;
-	int regular;
+	int regular, whole;
 	const char *name;
 	size_t begin, end; /* unread bytes of buffer */
 	unsigned char buffer[BUFFER];
 };
-
-static int follow;
-
-void input_follow(void)
-{
-	follow = 1;
-}
-
-int input_followed(void)
-{
-	return follow;
-}
 
 struct input *input_open(const char *path)
 {
@@ -55,6 +43,16 @@ void input_close(struct input *in)
 	free(in);
 }
 
+void input_whole(struct input *in, int whole)
+{
+	in->whole = whole;
+}
+
+static int waits(const struct input *in)
+{
+	return file_followed() && in->regular && !in->whole;
+}
+
 static size_t read_some(const struct input *in, void *bytes, size_t n)
 {
 	static const struct timespec pause = { 0, 50000000 };
@@ -62,7 +60,7 @@ static size_t read_some(const struct input *in, void *bytes, size_t n)
 
 	for (;;) {
 		got = read(in->fd, bytes, n);
-		if (got > 0 || (got == 0 && !(follow && in->regular)))
+		if (got > 0 || (got == 0 && !waits(in)))
 			return (size_t)got;
 		if (got == 0)
 			nanosleep(&pause, NULL);
@@ -163,7 +161,7 @@ uint64_t input_left(const struct input *in)
 	struct stat s;
 	off_t here;
 
-	if (follow || !in->regular || fstat(in->fd, &s))
+	if (file_followed() || !in->regular || fstat(in->fd, &s))
 		return UINT64_MAX;
 	here = lseek(in->fd, 0, SEEK_CUR);
 	if (here < 0)

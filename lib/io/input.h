@@ -1,7 +1,7 @@
 /* input.h - the bytes of an input: a file, a pipe, or a file that is still being written
  *
- * Reads die where the system reports an error.  With input_follow() a regular file that
- * ends is waited for: another process is writing it.
+ * Reads die where the system reports an error.  With --follow (file_follow()) a regular
+ * file that ends is waited for: another process is writing it.
  */
 #ifndef SHELL_INPUT_H
 #define SHELL_INPUT_H
@@ -17,9 +17,9 @@ struct input *input_open(const char *path);
 const char *input_name(const struct input *in); /* for messages */
 void input_close(struct input *in);
 
-/* Wait at the end of regular files, in all inputs of this process. */
-void input_follow(void);
-int input_followed(void); /* 1 after input_follow() */
+/* With --follow: what was read so far is whole, or not, so that the end of a file is the
+ * end of the stream, or nobody's. */
+void input_whole(struct input *in, int whole);
 
 /* The next byte, which peek leaves; -1 at the end. */
 int input_get(struct input *in);

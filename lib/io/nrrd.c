@@ -4,12 +4,12 @@
  * multiple of 1024 bytes) is what teem, ParaView, Gwyddion, numpy, Octave and
  * gnuplot all read rightly.
  */
-#include "io/bytes.h"
-#include "io/crc32.h"
-#include "io/formats.h"
 #include "cli/msg.h"
 #include "cli/text.h"
 #include "cli/unit.h"
+#include "io/bytes.h"
+#include "io/crc32.h"
+#include "io/formats.h"
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -359,15 +359,13 @@ static struct text make_header(const struct record *r, long number, int last)
 		r->nfields, r->nx, r->ny);
 	if (volume)
 		text_add(&t, " %d", r->nz);
-	text_add(&t, "\nkinds: list domain domain%s\nspacings:",
-		volume ? " domain" : "");
+	text_add(&t, "\nkinds: list domain domain%s\nspacings:", volume ? " domain" : "");
 	write_number(&t, r->dx);
 	write_number(&t, r->dx);
 	write_number(&t, r->dy);
 	if (volume)
 		write_number(&t, r->dz);
-	text_add(&t, "\nunits: \"m\" \"m\" \"m\"%s\nlabels: \"",
-		volume ? " \"m\"" : "");
+	text_add(&t, "\nunits: \"m\" \"m\" \"m\"%s\nlabels: \"", volume ? " \"m\"" : "");
 	for (int i = 0; i < r->nfields; i++)
 		text_add(&t, "%s%s", i ? " " : "", r->name[i]);
 	text_add(&t, "\" \"x\" \"y\"%s\nendian: little\nencoding: raw\nfields:=",
@@ -392,8 +390,7 @@ static void make_row(const struct record *r, size_t iy, unsigned char *b)
 {
 	for (size_t ix = 0; ix < (size_t)r->nx; ix++)
 		for (int k = 0; k < r->nfields; k++, b += 8)
-			bytes_put_double_little(
-				b, r->data[k][iy * (size_t)r->nx + ix]);
+			bytes_put_double_little(b, r->data[k][iy * (size_t)r->nx + ix]);
 }
 
 void nrrd_write(FILE *f, const struct record *r, long number, int last)

@@ -4,13 +4,13 @@
  * because sox, libsndfile, Octave and numpy read it.
  */
 #include "io/signals.h"
+#include "cli/files.h"
+#include "cli/msg.h"
+#include "cli/text.h"
 #include "io/bytes.h"
 #include "io/crc32.h"
 #include "io/ends.h"
 #include "io/input.h"
-#include "cli/files.h"
-#include "cli/msg.h"
-#include "cli/text.h"
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -288,6 +288,16 @@ static int is_end(const struct signal_in *in, int *torn)
 	return same;
 }
 
+/* Reads on; what may be the end of a signal that is followed is taken for that. */
+static size_t fill_past(struct signal_in *in)
+{
+	int torn;
+
+	input_whole(in->in,
+		in->promised && in->end - in->begin == in->frame && is_end(in, &torn));
+	return fill(in);
+}
+
 /* At the end of the bytes of a signal that promised an end: what remains is that, or a
  * last frame of a signal that was cut off, which is handed out. */
 static size_t finish_promised(struct signal_in *in, double *x)
@@ -305,7 +315,7 @@ static size_t finish_promised(struct signal_in *in, double *x)
 		ends_miss("%s: the checksum of its end does not fit its %llu frames: "
 			  "damaged, or signals joined",
 			in->name, (unsigned long long)in->frames);
-	else if (!input_followed())
+	else if (!file_followed())
 		ends_miss("%s: the signal has no end after %llu frames: what wrote it "
 			  "did not finish",
 			in->name, (unsigned long long)in->frames);
@@ -320,7 +330,7 @@ static void check_end(const struct signal_in *in)
 		ends_miss("%s: want %llu bytes of samples, got %llu", in->name,
 			(unsigned long long)in->total,
 			(unsigned long long)(in->total - in->left + rest));
-	else if (rest > 0 && !input_followed())
+	else if (rest > 0 && !file_followed())
 		ends_miss("%s: the stream ends inside a frame: want %zu bytes, got %zu",
 			in->name, in->frame, rest);
 }
@@ -353,7 +363,7 @@ size_t signal_read_some(struct signal_in *in, double *x, size_t nframes)
 		in->done = 1;
 		if (in->left < in->frame)
 			check_declared(in);
-		else if (fill(in))
+		else if (fill_past(in))
 			in->done = 0;
 		else if (in->promised)
 			return finish_promised(in, x);
@@ -367,8 +377,9 @@ size_t signal_read(struct signal_in *in, double *x, size_t nframes)
 {
 	size_t n = 0, got;
 
-	while (n < nframes && (got = signal_read_some(in,
-				       x + n * (size_t)in->format.channels, nframes - n)))
+	while (n < nframes && !(in->done && n) &&
+		(got = signal_read_some(
+			 in, x + n * (size_t)in->format.channels, nframes - n)))
 		n += got;
 	return n;
 }
@@ -388,8 +399,9 @@ void signal_close(struct signal_in *in)
 /* A line for each thing that is known. */
 static char *annotation(const struct signal_format *format)
 {
-	const char *line[][2] = { { "stream", ENDS_PROMISE }, { "cmd", format->cmd }, { "units", format->units },
-		{ "seed", format->seed }, { "filter", format->filter } };
+	const char *line[][2] = { { "stream", ENDS_PROMISE }, { "cmd", format->cmd },
+		{ "units", format->units }, { "seed", format->seed },
+		{ "filter", format->filter } };
 	char *text = xprintf("%s", "");
 
 	for (size_t i = 0; i < sizeof line / sizeof *line; i++) {

@@ -1,13 +1,13 @@
 #include "io/tables.h"
 #include "cli/files.h"
-#include "io/crc32.h"
-#include "io/ends.h"
-#include "io/input.h"
-#include "io/keys.h"
 #include "cli/msg.h"
 #include "cli/text.h"
 #include "cli/unit.h"
 #include "cli/upstream.h"
+#include "io/crc32.h"
+#include "io/ends.h"
+#include "io/input.h"
+#include "io/keys.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -103,7 +103,7 @@ static size_t read_line(struct table_in *t)
 			t->most);
 	if (t->line[n - 1] == '\n')
 		return n;
-	if (input_followed())
+	if (file_followed())
 		return 0;
 	die(EXIT_RUN, "%s: line %ld: no newline at the end: the table is cut off",
 		t->name, t->number);
@@ -115,6 +115,7 @@ static void begin_promised(struct table_in *t)
 	if (t->promised)
 		die(EXIT_RUN, "%s: line %ld: the table before has no '# end' line",
 			t->name, t->number);
+	input_whole(t->in, 0);
 	t->promised = 1;
 	t->rows = 0;
 	t->checksum = 0;
@@ -124,8 +125,16 @@ static void check_end(struct table_in *t)
 {
 	long rows = -1;
 	unsigned checksum = 0;
+	int n = 0;
 
-	sscanf(t->line + sizeof end_line - 1, "%ld rows, crc32 %8x", &rows, &checksum);
+	sscanf(t->line + sizeof end_line - 1, "%ld rows, crc32 %8x\n%n", &rows, &checksum,
+		&n);
+	if (!t->promised && n > 0)
+		die(EXIT_RUN,
+			"%s: line %ld: the end of a table whose first line is missing",
+			t->name, t->number);
+	if (!t->promised)
+		return;
 	if (rows != t->rows || checksum != t->checksum)
 		die(EXIT_RUN,
 			"%s: line %ld: want %ld rows and crc32 %08x, got %ld and %08lx: "
@@ -133,6 +142,7 @@ static void check_end(struct table_in *t)
 			t->name, t->number, rows, checksum, t->rows,
 			(unsigned long)t->checksum);
 	t->promised = 0;
+	input_whole(t->in, 1);
 }
 
 /* Minds promise, checksum and end; 1 where the line is one for the reader. */
@@ -140,7 +150,7 @@ static int mind_end(struct table_in *t, size_t n)
 {
 	if (strcmp(t->line, promise) == 0)
 		begin_promised(t);
-	if (t->promised && strncmp(t->line, end_line, sizeof end_line - 1) == 0) {
+	if (strncmp(t->line, end_line, sizeof end_line - 1) == 0) {
 		check_end(t);
 		return 0;
 	}
@@ -172,7 +182,7 @@ static int next_line(struct table_in *t)
 			return 1;
 		}
 	}
-	if (t->promised && !input_followed())
+	if (t->promised && !file_followed())
 		die(EXIT_RUN,
 			"%s: the table ends after %ld rows without its '# end' line: "
 			"what wrote it did not finish",

@@ -69,6 +69,7 @@ int check_stream(const char *path)
 		n = count_rows(in, &marked);
 	}
 	printf("%s: %s %ld, %s\n", name, what, n,
-		marked ? "whole" : "no mark of an end: nobody can tell whether it is whole");
+		marked ? "whole"
+		       : "no mark of an end: nobody can tell whether it is whole");
 	return marked ? EXIT_SUCCESS : EXIT_NOCONV;
 }

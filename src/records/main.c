@@ -1,4 +1,5 @@
 /* records - list, pick, count and convert the records of a field stream */
+#include "check.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
@@ -16,6 +17,7 @@ static const char *const formats[] = { "list", "count", "nrrd", "gsf", "text", "
 static int format = LIST;
 static struct opt_list pick;
 static const char *field;
+static int check;
 
 static const struct opt opts[] = {
 	{ 'o', "output", OPT_WORD, UNIT_NONE, &format, 0, 0,
@@ -24,6 +26,8 @@ static const struct opt opts[] = {
 		"only the K-th records, from 1", NULL, 1 },
 	{ 0, "field", OPT_TEXT, UNIT_NONE, &field, 0, 0, "NAME", "only this field", NULL,
 		0 },
+	{ 0, "check", OPT_FLAG, UNIT_NONE, &check, 0, 0, NULL,
+		"say whether a stream of any format is whole", NULL, 1 },
 	OPT_TABLE(raw_rows),
 	OPT_END,
 };
@@ -240,10 +244,9 @@ static int next_record(struct fields_in *in, struct record *r)
 	return (!may_be_empty || fields_more(in)) && fields_read(in, r);
 }
 
-int main(int argc, char **argv)
+static void convert(const char *path)
 {
-	int first = opt_parse(&prog, argc, argv);
-	struct fields_in *in = fields_open(argv[first], raw_given());
+	struct fields_in *in = fields_open(path, raw_given());
 	struct output out = { 0 };
 	struct record r = { 0 };
 
@@ -260,5 +263,15 @@ int main(int argc, char **argv)
 	record_free(&r);
 	fields_close(in);
 	stats_set("records", (double)out.records);
-	return shell_done(EXIT_SUCCESS);
+}
+
+int main(int argc, char **argv)
+{
+	int first = opt_parse(&prog, argc, argv), status = EXIT_SUCCESS;
+
+	if (check)
+		status = check_stream(argv[first]);
+	else
+		convert(argv[first]);
+	return shell_done(status);
 }
