@@ -32,6 +32,8 @@ struct table_in {
 	int headed;         /* the names stand in the table */
 	int pending;        /* the row read ahead by table_open() is still to come */
 	struct keys keys;   /* of comment lines */
+	table_comment_taker *take;
+	void *context; /* of take */
 	struct upstream upstream;
 	long part;
 	int promised;      /* an end must come */
@@ -73,6 +75,8 @@ static void keep_key(struct table_in *t, char *comment)
 		return;
 	*colon = '\0';
 	comment = trim(comment);
+	if (t->take && strcmp(comment, "stream"))
+		t->take(t->context, comment, trim(colon + 1));
 	if (strcmp(comment, "cmd") && strcmp(comment, "units") &&
 		strcmp(comment, "columns"))
 		return;
@@ -267,10 +271,18 @@ struct table_in *table_open(const char *path)
 
 struct table_in *table_from(struct input *in)
 {
+	return table_with_comments(in, NULL, NULL);
+}
+
+struct table_in *table_with_comments(
+	struct input *in, table_comment_taker *take, void *context)
+{
 	struct table_in *t = xcalloc(1, sizeof *t);
 	char *copy;
 
 	t->in = in;
+	t->take = take;
+	t->context = context;
 	t->name = input_name(t->in);
 	t->most = input_limit("line", LINE_MOST);
 	if (!next_line(t))
@@ -520,6 +532,8 @@ void table_cmd(struct table_out *t, const char *cmd)
 {
 	if (!cmd || (t->cmd && strcmp(t->cmd, cmd) == 0))
 		return;
+	if (t->cmd)
+		write_head(t); /* with the first pipeline, even where it made no row */
 	free(t->cmd);
 	t->cmd = xstrdup(cmd);
 	table_comment(t, "cmd", "%s", cmd);

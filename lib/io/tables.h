@@ -20,6 +20,10 @@ struct table_out;
 
 struct table_in *table_open(const char *path); /* NULL or "-": standard input */
 struct table_in *table_from(struct input *in); /* takes an open input over */
+/* The same, handing every comment "# key: value" on but those of ends. */
+typedef void table_comment_taker(void *context, const char *key, const char *value);
+struct table_in *table_with_comments(
+	struct input *in, table_comment_taker *take, void *context);
 /* 1 where all rows read so far stand between the begin and the end of a table of ours. */
 int table_marked(const struct table_in *t);
 const char *table_name(const struct table_in *t);

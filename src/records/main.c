@@ -1,5 +1,6 @@
 /* records - list, pick, count and convert the records of a field stream */
 #include "check.h"
+#include "join.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
@@ -17,7 +18,7 @@ static const char *const formats[] = { "list", "count", "nrrd", "gsf", "text", "
 static int format = LIST;
 static struct opt_list pick;
 static const char *field;
-static int check;
+static int check, join;
 
 static const struct opt opts[] = {
 	{ 'o', "output", OPT_WORD, UNIT_NONE, &format, 0, 0,
@@ -28,12 +29,14 @@ static const struct opt opts[] = {
 		0 },
 	{ 0, "check", OPT_FLAG, UNIT_NONE, &check, 0, 0, NULL,
 		"say whether a stream of any format is whole", NULL, 1 },
+	{ 0, "join", OPT_FLAG, UNIT_NONE, &join, 0, 0, NULL,
+		"write streams of several processes as the stream of one", NULL, 1 },
 	OPT_TABLE(raw_rows),
 	OPT_END,
 };
 
 static const struct prog prog = { "records",
-	"List, pick, count and convert the records of a field stream.", "[file]",
+	"List, pick, count and convert the records of a field stream.", "[file ...]",
 	"fields: any", "table or fields", opts };
 
 static int picked(long number)
@@ -269,7 +272,11 @@ int main(int argc, char **argv)
 {
 	int first = opt_parse(&prog, argc, argv), status = EXIT_SUCCESS;
 
-	if (check)
+	if (!join && argc - first > 1)
+		die(EXIT_USAGE, "%s: one file at most, unless --join", argv[first + 1]);
+	if (join)
+		join_streams(argc - first, argv + first);
+	else if (check)
 		status = check_stream(argv[first]);
 	else
 		convert(argv[first]);
