@@ -32,7 +32,7 @@ known="--sections sections.tsv --transit 19.98ms --pulse-length 10ms --gain 0.90
 apply="delaynet --task apply --model pulses"
 
 delaynet --model pulses --fresh --layers "8conv13x1/4 12conv5x1/2 32" --activation relu \
-	--count 1000 --epochs 20 --rate 4e-3 --rate-end 1e-4 >small.net
+	--count 1000 --epochs 20 --learning-rate 4e-3 --learning-rate-end 1e-4 >small.net
 for net in small.net "$shipped"; do
 	which=${net##*/}
 	# shellcheck disable=SC2086
