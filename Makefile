@@ -9,6 +9,7 @@
 #	make check-long   the longer checks; make check-all: both
 #	make bench        error against run time; one domain: make bench-contact
 #	make extremes-contact  the table of extreme scenes of a domain
+#	make matrix       duet on a matrix of instruments: rows wrong, found, errors, time
 #	make lint asan fuzz    linters, sanitizers, fuzzers
 #	make uninstall dist clean
 #	make V=1          show every command
@@ -152,22 +153,34 @@ $(B)/$(1)/%: $(B)/tests/$(1)/%.o $(B)/libcli.a $(B)/libwearpipe.a
 endef
 $(foreach d,unit long bench,$(eval $(call single,$(d))))
 
+# The simulator of the matrix of instruments shares no code with the library.
+$(B)/matrix/%: tests/matrix/%.c
+	@mkdir -p $(@D)
+	$(CC) $(STD) $(WARN) $(CFLAGS) -o $@ $< -lm
+MATRIX = $(B)/matrix/simulate
+
 TESTS = tests/*.t tests/extremes/*.t $(UNITS)
 LONG_TESTS = tests/long/*.t $(LONG_UNITS)
 
-check: all $(UNITS)
+check: all $(UNITS) $(MATRIX)
 	@BIN="$(abspath $(BIN))" tests/run $(TESTS)
 
-check-long: all $(LONG_UNITS) $(BENCH_BINS)
+check-long: all $(LONG_UNITS) $(BENCH_BINS) $(MATRIX)
 	@BIN="$(abspath $(BIN))" tests/run $(LONG_TESTS)
 
-check-all: all $(UNITS) $(LONG_UNITS) $(BENCH_BINS)
+check-all: all $(UNITS) $(LONG_UNITS) $(BENCH_BINS) $(MATRIX)
 	@BIN="$(abspath $(BIN))" tests/run $(TESTS) $(LONG_TESTS)
 
 # make bench, or one domain: make bench-contact
 bench: $(patsubst tests/bench/%.sh,bench-%,$(wildcard tests/bench/*.sh))
 bench-%: all $(BENCH_BINS)
 	@sh tests/bench/$*.sh
+
+# What duet makes of every scene of the matrix of instruments: make matrix SCENE=hum
+SCENE = .
+.PHONY: matrix
+matrix: all $(MATRIX)
+	@PATH=$(abspath $(BIN)):$$PATH tests/matrix/run tests/matrix/scenes.tsv '$(SCENE)'
 
 # The table of extreme scenes of one domain: make extremes-contact
 extremes-%: all
