@@ -26,7 +26,7 @@ B = build
 BIN = bin
 
 # The outer libraries of each program; what it uses of lib/ the linker takes from one archive.
-PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout
+PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade
 roughgen_LIBS = fftw
 bemcontact_LIBS = fftw
 debrisgen_LIBS = fftw
@@ -157,7 +157,7 @@ $(B)/wearpipe.bash: $(BUILT:%=$(BIN)/%) scripts/completion
 
 # The library's interface is what the programs call: the headers they include, and what
 # those include.
-DOMAINS = num surface contact stress debris stats signal net life layout
+DOMAINS = num surface contact stress debris stats signal net life layout abrasion count
 HEADERS = $(sort $(filter $(DOMAINS:%=lib/%/%.h),$(shell $(CC) $(ALL_CPPFLAGS) -MM src/*/*.c)))
 MAN1 = $(wildcard man/*.1)
 D = $(DESTDIR)$(PREFIX)
