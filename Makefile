@@ -32,7 +32,7 @@ bemcontact_LIBS = fftw
 debrisgen_LIBS = fftw
 debrisstat_LIBS = gsl
 bpfilter_LIBS = fftw
-duet_LIBS = fftw cblas
+duet_LIBS = fftw
 delaynet_LIBS = cblas gsl
 rwl_LIBS = gsl
 

@@ -14,13 +14,15 @@ examples() {
 	show { print }' "$1" | sed -e 's/\\e/\\/g' -e 's/\\&//g' -e 's/\\(dq/"/g' -e 's/\\(aq/'\''/g' -e 's/\\-/-/g' -e 's/\\(ha/^/g' -e 's/\\(ti/~/g'
 }
 
-# Options of a page: ".It Fl n , Fl -points Ar ..." as "n points".
+# Options of a page: ".It Fl n , Fl -points Ar ..." as "n points", ".It Fl -sa" as "- sa".
 page_options() {
-	sed -n 's/^\.It Fl \(.\) , Fl -\([a-z0-9-]*\).*/\1 \2/p' "$1" | sort
+	sed -n -e 's/^\.It Fl \([^-]\) , Fl -\([a-z0-9-]*\).*/\1 \2/p' \
+		-e 's/^\.It Fl -\([a-z0-9-]*\).*/- \1/p' "$1" | sort
 }
 
 help_options() {
-	sed -n 's/^  -\(.\), --\([a-z0-9-]*\).*/\1 \2/p' | sort
+	sed -n -e 's/^  -\(.\), --\([a-z0-9-]*\).*/\1 \2/p' \
+		-e 's/^      --\([a-z0-9-]*\).*/- \1/p' | sort
 }
 
 for p in $programs; do

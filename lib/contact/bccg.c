@@ -229,7 +229,8 @@ static void shift_step(void *context, size_t begin, size_t end, struct sweep *s)
 }
 
 /* Takes the stretched step, but cells that had come to a bound stay there; sums what
- * that and the bounds changed, the step, the pressure, and the gap over free cells. */
+ * that and the bounds changed, the step, the pressure, the gap over free cells and their
+ * number, and the work of the old pressure along the step. */
 static void take_step(void *context, size_t begin, size_t end, struct sweep *s)
 {
 	const struct contact copy = *(struct contact *)context, *c = &copy;
@@ -241,12 +242,13 @@ static void take_step(void *context, size_t begin, size_t end, struct sweep *s)
 		double wanted = c->p[i] + a * step, next = within(c, wanted);
 		double gap = c->gap[i] + a * c->image[i];
 
-		next = is_free(c, bound) ? next : bound;
+		next = is_free(c, bound) ? next : within(c, bound);
 		t.sum[0] += fabs(next - wanted);
 		t.sum[1] += fabs(a * step);
 		t.sum[2] += next;
 		t.sum[3] += is_free(c, next) * gap;
 		t.sum[4] += is_free(c, next);
+		t.sum[5] += c->p[i] * c->image[i];
 		c->gap[i] = gap;
 		c->p[i] = next;
 	}
@@ -260,10 +262,9 @@ struct state {
 	double drift;     /* how far gap and pressure are apart, as a sum of pressures */
 	double moved;     /* sum of the last step; 0: it led nowhere */
 	double bounded;   /* cells that the step takes to a bound */
-	double rest;      /* what the step leaves missing */
-	int plain, retreat; /* iterations to go without the preconditioner; last time */
+	int plain, retreat; /* steps along the gradient to go; last time */
 	int forced;         /* the step is to restore the load, whatever the energy */
-	int crowded;        /* ... because the active cells cannot bear more, or less */
+	int crowded;        /* the active cells cannot bear more, or less */
 	int exact;          /* gap and load have just been computed */
 };
 
@@ -274,61 +275,19 @@ static void precondition(struct contact *c)
 	c->result.work += c->par.boundary == CONTACT_FREE ? 0.5 : 2;
 }
 
-/* In place of the preconditioner, the stiffness of a single cell. */
-static void stiffen_residual(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	struct contact *c = context;
-	double stiffness_of_cell = c->par.estar / sqrt(c->par.dx * c->par.dy);
-
-	(void)s;
-	for (size_t i = begin; i < end; i++)
-		c->residual[i] *= stiffness_of_cell;
-}
-
-/* Finds the shift of the direction that makes the step carry what is missing of the load,
- * to a few parts in a hundred of itself: Newton's method, kept within what is known to
- * be too little and too much.  s: sums of the first step. */
-static struct sweep share_load(
-	struct contact *c, double missing, double count, struct sweep s)
-{
-	double low = -INFINITY, high = INFINITY, wide = 0;
-
-	for (int k = 0; k < 60; k++) {
-		double rest = missing - s.sum[1], next = NAN;
-
-		if (fabs(rest) <= load_slack * s.sum[2])
-			break;
-		*(rest > 0 ? &low : &high) = c->shift;
-		if (s.sum[3] > 0)
-			next = c->shift + rest / (c->tau * s.sum[3]);
-		if (!(next > low && next < high))
-			next = (low + high) / 2;
-		if (!isfinite(next)) {
-			wide = 2 * wide + (s.sum[2] + fabs(rest)) / (c->tau * count);
-			next = c->shift + (rest > 0 ? wide : -wide);
-		}
-		c->shift = next;
-		s = contact_sweep(c, shift_step);
-	}
-	return s;
-}
-
 /* Direction and bounded step from the residual.  The direction is made conjugate to
  * the last step; with a given load the step makes up for what is missing.  Returns the
  * slope of the energy along the step. */
 static double find_step(struct contact *c, struct state *state)
 {
 	int load_given = c->control == CONTACT_PRESSURE;
-	double count, mean, limit, missing = c->target * (double)c->n - state->sum;
+	double missing = c->target * (double)c->n - state->sum;
+	double count, mean, limit, rest = 0;
 	struct sweep s;
 
-	if (state->plain > 0) {
-		contact_sweep(c, stiffen_residual);
-	} else {
-		if (c->extend)
-			contact_sweep(c, extend_residual);
-		precondition(c);
-	}
+	if (c->extend)
+		contact_sweep(c, extend_residual);
+	precondition(c);
 	s = contact_sweep(c, sum_residual);
 	count = fmax(s.sum[4], 1);
 	mean = load_given ? s.sum[0] / count : 0;
@@ -338,48 +297,12 @@ static double find_step(struct contact *c, struct state *state)
 			      : 0;
 	s = contact_sweep(c, turn_step);
 	if (load_given)
-		s = share_load(c, missing, count, s);
+		rest = contact_share_load(c, shift_step, missing, c->tau, load_slack, &s);
 	state->bounded = count - s.sum[3];
-	state->rest = load_given ? missing - s.sum[1] : 0;
 	limit = fmax(load_slack * s.sum[2], 1e-12 * c->target * (double)c->n);
-	state->crowded = c->cap < INFINITY && fabs(state->rest) > limit;
+	state->crowded = c->cap < INFINITY && fabs(rest) > limit;
 	state->forced = load_given && fabs(missing) > s.sum[2] / 2;
 	return s.sum[0];
-}
-
-/* Cells within reach, cells at the hardness that would open; range of the gap. */
-static void count_reached(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	struct contact *c = context;
-
-	for (size_t i = begin; i < end; i++) {
-		double p = c->p[i], g = gap_at(c, i);
-
-		s->sum[0] += (p > 0) | (g < 0);
-		s->sum[1] += (p >= c->cap) & (g > 0);
-		s->max = fabs(g) > s->max ? fabs(g) : s->max;
-	}
-}
-
-/* Where all cells within reach are at the hardness and yet short of the load, or
- * beyond it, the approach must grow until there are enough, or fall until some open. */
-static void make_room(struct contact *c, double missing)
-{
-	double need = c->target / c->cap * (double)c->n, open = -missing / c->cap;
-	double all = c->result.approach, some = all, reach;
-
-	reach = contact_sweep(c, count_reached).max * (1 + 1e-9);
-	all += missing > 0 ? reach : -reach;
-	for (int k = 0; k < 50; k++) {
-		struct sweep s;
-		int enough;
-
-		c->result.approach = (all + some) / 2;
-		s = contact_sweep(c, count_reached);
-		enough = missing > 0 ? s.sum[0] >= need : s.sum[1] >= open;
-		*(enough ? &all : &some) = c->result.approach;
-	}
-	c->result.approach = all;
 }
 
 /* Applies the half-space to the step, finds how far to go along it, and goes. */
@@ -403,19 +326,21 @@ static void follow_step(struct contact *c, struct state *state, double slope)
 	state->moved = s.sum[1];
 	state->sum = s.sum[2];
 	state->exact = 0;
+	c->work += c->stretch * (2 * s.sum[5] + c->stretch * state->curvature);
 	if (c->control == CONTACT_PRESSURE && s.sum[4] > 0)
 		c->result.approach = s.sum[3] / s.sum[4];
+	else
+		contact_find_approach(c);
 }
 
 /* The gap from the pressure, once what the load is short of has been put right. */
 static void renew_gap(struct contact *c, struct state *state)
 {
-	double load = c->target * (double)c->n;
-
 	state->exact = 1;
 	if (c->control == CONTACT_PRESSURE) {
 		state->sum = contact_scale_load(c, c->cap < INFINITY);
-		state->exact = fabs(state->sum - load) <= 1e-14 * load;
+		state->sum = contact_place_rest(c, state->sum);
+		state->exact = contact_carries(c, state->sum);
 	}
 	contact_gap(c);
 	state->drift = 0;
@@ -426,6 +351,16 @@ static double certify(struct contact *c)
 	struct sweep s = contact_sweep(c, set_residual);
 
 	return c->result.certificate = contact_certificate(c, &s);
+}
+
+/* A step along the gradient, and from then on as from the start. */
+static void step_plainly(struct contact *c, struct state *state)
+{
+	contact_gradient_step(c);
+	renew_gap(c, state);
+	state->curvature = 0;
+	c->tau = 0.5;
+	state->plain -= state->plain > 0;
 }
 
 enum contact_status contact_solve_bccg(struct contact *c)
@@ -447,22 +382,28 @@ enum contact_status contact_solve_bccg(struct contact *c)
 		if (k == c->par.max_iterations || contact_stalls(c, certificate))
 			break;
 		c->result.iterations++;
+		if (contact_lingers(c)) {
+			struct sweep s;
+
+			renew_gap(c, &state);
+			s = contact_sweep(c, set_residual);
+			state.plain = contact_gradient_due(c, &s);
+		}
+		if (state.plain > 0) {
+			step_plainly(c, &state);
+			continue;
+		}
 		slope = find_step(c, &state);
 		if (state.crowded) {
-			make_room(c, state.rest);
-			certify(c);
-			state.curvature = 0;
-			slope = find_step(c, &state);
-			state.forced = 1;
+			step_plainly(c, &state);
+			continue;
 		}
 		follow_step(c, &state, slope);
-		state.plain -= state.plain > 0;
 		if (state.moved <= 0) {
 			/* A step bounded in one metric and preconditioned in another
 			 * may lead uphill; a plain one does not. */
 			state.retreat = state.retreat < 32 ? 2 * state.retreat + 1 : 63;
 			state.plain = state.retreat;
-			c->tau = 0.5;
 			c->extend = 0;
 		}
 		if (state.moved <= 0 || state.drift > drift_limit * state.moved)

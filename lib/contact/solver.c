@@ -94,6 +94,7 @@ static struct contact *new_grid(
 	c->par = *par;
 	c->n = (size_t)par->nx * (size_t)par->ny;
 	c->cap = par->hardness > 0 ? par->hardness : INFINITY;
+	c->near_cap = c->cap * (1 - 4 * DBL_EPSILON);
 	c->tolerance = par->tolerance;
 	c->memory = lender ? NULL : fft_alloc(room(par, c->n));
 	c->gap = lender ? lender->gap : c->memory;
@@ -163,197 +164,12 @@ const struct contact_result *contact_result(const struct contact *c)
 	return &c->result;
 }
 
-struct sweep contact_sweep(struct contact *c,
-	void (*pass)(void *context, size_t begin, size_t end, struct sweep *s))
-{
-	return sweep_run(c->par.pool, c->n, pass, c);
-}
-
-static void multiply_pairs(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	const double *const *pair = context;
-
-	for (size_t i = begin; i < end; i++)
-		s->sum[0] += pair[0][i] * pair[1][i];
-}
-
-double contact_multiply(struct contact *c, const double *x, double *y)
-{
-	if (c->mlms) {
-		const double *pair[2] = { x, y };
-
-		mlms_apply(c->mlms, x, y);
-		return sweep_run(c->par.pool, c->n, multiply_pairs, pair).sum[0];
-	}
-	c->result.transforms += 2;
-	c->result.work += 2;
-	return convolve_product(c->plane, c->kernel, x, y);
-}
-
 void contact_displacement(struct contact *c, const double *pressure, double *displacement)
 {
 	if (c->mlms)
 		mlms_apply(c->mlms, pressure, displacement);
 	else
 		convolve_apply(c->plane, c->kernel, pressure, displacement);
-}
-
-static void subtract_height(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	struct contact *c = context;
-
-	(void)s;
-	for (size_t i = begin; i < end; i++)
-		c->gap[i] -= c->h[i];
-}
-
-/* Sum of the gap and count over free cells; least gap of the cells without contact
- * (as a maximum of -g), for when nothing is free. */
-static void sum_free(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	const struct contact copy = *(struct contact *)context, *c = &copy;
-	struct sweep t = *s;
-
-	for (size_t i = begin; i < end; i++) {
-		int is = is_free(c, c->p[i]);
-
-		t.sum[0] += is ? c->gap[i] : 0;
-		t.sum[1] += is;
-		if (c->p[i] <= 0 && -c->gap[i] > t.max)
-			t.max = -c->gap[i];
-	}
-	*s = t;
-}
-
-static void find_approach(struct contact *c)
-{
-	struct sweep s;
-
-	c->result.approach = c->target;
-	if (c->control == CONTACT_APPROACH)
-		return;
-	s = contact_sweep(c, sum_free);
-	c->result.approach = s.sum[1] > 0 ? s.sum[0] / s.sum[1] : -s.max;
-}
-
-void contact_gap(struct contact *c)
-{
-	contact_multiply(c, c->p, c->gap);
-	contact_sweep(c, subtract_height);
-	find_approach(c);
-}
-
-static void certify(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	const struct contact copy = *(struct contact *)context, *c = &copy;
-	struct sweep t = *s;
-
-	for (size_t i = begin; i < end; i++)
-		certify_cell(c, c->p[i], gap_at(c, i), &t);
-	*s = t;
-}
-
-struct sweep contact_certify(struct contact *c)
-{
-	return contact_sweep(c, certify);
-}
-
-double contact_certificate(struct contact *c, const struct sweep *s)
-{
-	double sum = s->sum[1], excess;
-
-	if (sum <= 0)
-		return s->max > 0 ? INFINITY : 0;
-	if (c->cap < INFINITY)
-		excess = s->sum[3] + s->sum[4];
-	else if (c->control == CONTACT_PRESSURE)
-		excess = s->sum[0] + sum * s->max;
-	else
-		excess = s->sum[3] + sum * fmax(s->max, 0);
-	return fmax(excess, 0) / (sum * c->scale);
-}
-
-int contact_stalls(struct contact *c, double certificate)
-{
-	const long patience = c->par.solver == CONTACT_PK ? 500 : 100;
-
-	if (certificate < 0.9 * c->best) {
-		c->best = certificate;
-		c->since = 0;
-	}
-	return c->since++ >= patience;
-}
-
-static void sum_load(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	const struct contact copy = *(struct contact *)context, *c = &copy;
-	struct sweep t = *s;
-
-	for (size_t i = begin; i < end; i++) {
-		if (c->p[i] >= c->cap)
-			t.sum[0] += c->p[i];
-		else
-			t.sum[1] += c->p[i];
-		t.sum[2] += c->p[i] <= 0;
-	}
-	*s = t;
-}
-
-static void scale_free(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	struct contact *c = context;
-
-	(void)s;
-	for (size_t i = begin; i < end; i++)
-		if (c->p[i] < c->cap)
-			c->p[i] = fmin(c->p[i] * c->beta, c->cap);
-}
-
-static void scale_all(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	struct contact *c = context;
-
-	(void)s;
-	for (size_t i = begin; i < end; i++)
-		c->p[i] *= c->beta;
-}
-
-static void fill_empty(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	struct contact *c = context;
-
-	(void)s;
-	for (size_t i = begin; i < end; i++)
-		if (c->p[i] <= 0)
-			c->p[i] = c->beta;
-}
-
-double contact_scale_load(struct contact *c, int gently)
-{
-	double load = c->target * (double)c->n, fixed = 0, rest = 0;
-
-	/* Cells that reach the hardness on the way leave the rest to the others. */
-	for (int k = 0; k < 100; k++) {
-		struct sweep s = contact_sweep(c, sum_load);
-
-		fixed = s.sum[0];
-		rest = s.sum[1];
-		c->beta = (load - fixed) / rest;
-		if (fabs(fixed + rest - load) <= 4 * DBL_EPSILON * load)
-			break;
-		if (gently && !(c->beta > 0.5 && c->beta < 2))
-			break;
-		if (fixed >= load) {
-			c->beta = load / (fixed + rest);
-			contact_sweep(c, scale_all);
-		} else if (rest > 0) {
-			contact_sweep(c, scale_free);
-		} else {
-			c->beta = (load - fixed) / s.sum[2];
-			contact_sweep(c, fill_empty);
-		}
-	}
-	return fixed + rest;
 }
 
 static void survey(void *context, size_t begin, size_t end, struct sweep *s)
@@ -370,20 +186,8 @@ static void survey(void *context, size_t begin, size_t end, struct sweep *s)
 			p = c->cap;
 		c->p[i] = p;
 		s->sum[1] += p;
-		if (c->h[i] > s->max)
-			s->max = c->h[i];
-	}
-}
-
-static void spread(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	struct contact *c = context;
-
-	for (size_t i = begin; i < end; i++) {
-		double d = c->h[i] - c->shift;
-
-		s->sum[0] += d * d;
-		s->sum[1] += d;
+		s->max = c->h[i] > s->max ? c->h[i] : s->max;
+		s->min = c->h[i] < s->min ? c->h[i] : s->min;
 	}
 }
 
@@ -398,51 +202,43 @@ static void final_sums(void *context, size_t begin, size_t end, struct sweep *s)
 		s->sum[1] += p >= c->cap;
 		s->sum[2] += p;
 		s->sum[3] += p * (c->gap[i] + c->h[i]);
-		if (c->h[i] > s->max)
-			s->max = c->h[i];
+		s->max = c->h[i] > s->max ? c->h[i] : s->max;
+		s->min = c->h[i] < s->min ? c->h[i] : s->min;
 	}
 }
 
-/* A pressure that is about right for bodies that come together by depth. */
-static double guess_pressure(const struct contact *c, double depth)
+/* Gaps of that size times pressures that make them must be within the numbers. */
+static int is_in_range(const struct contact *c, double size)
 {
-	double size = fmax(c->par.nx * c->par.dx, c->par.ny * c->par.dy);
+	double stiffest = c->par.estar / fmin(c->par.dx, c->par.dy);
 
-	return fmin(c->par.estar * depth / size, c->cap / 2);
+	return isfinite(size * size * stiffest * (double)c->n);
 }
 
 static enum contact_status prepare(struct contact *c)
 {
 	struct sweep s = contact_sweep(c, survey);
-	double mean = s.sum[0] / (double)c->n, highest = s.max, guess = s.sum[1];
-	double touch = -highest;
+	double mean = s.sum[0] / (double)c->n, guess = s.sum[1];
+	double touch = -s.max, first;
 
-	if (!isfinite(s.sum[0]) || !isfinite(guess) || !isfinite(c->target))
-		return CONTACT_NUMBERS;
-	c->shift = mean;
-	s = contact_sweep(c, spread);
-	/* The second term is the rounding of the mean. */
-	c->scale = sqrt(s.sum[0] / (double)c->n - pow(s.sum[1] / (double)c->n, 2));
-	if (!isfinite(c->scale))
+	if (!isfinite(s.sum[0]) || !isfinite(guess) || !isfinite(c->target) ||
+		!is_in_range(c, fmax(s.max, -s.min)))
 		return CONTACT_NUMBERS;
 	if (c->control == CONTACT_PRESSURE) {
 		if (c->target < 0)
 			return CONTACT_NUMBERS;
 		if (c->target >= c->cap)
 			return CONTACT_OVERLOAD;
-		c->beta = c->target;
+		first = c->target;
 	} else {
 		if (c->par.boundary == CONTACT_PERIODIC && c->target >= -mean &&
 			c->target > touch)
 			return CONTACT_TOO_DEEP;
-		c->beta = guess_pressure(c, c->target - touch);
+		/* The pressure that sinks the whole grid by depth. */
+		first = fmin((c->target - touch) / contact_sinking(c, 1), c->cap / 2);
 	}
-	if (c->scale <= 16 * DBL_EPSILON * fabs(mean)) /* flat: take a displacement */
-		c->scale = fmax(c->par.nx * c->par.dx, c->par.ny * c->par.dy) *
-			   (c->control == CONTACT_PRESSURE ? c->target : c->beta) /
-			   c->par.estar;
 	if (guess <= 0 && !contact_guess(c))
-		contact_sweep(c, fill_empty);
+		contact_fill_empty(c, first);
 	if (c->control == CONTACT_PRESSURE)
 		contact_scale_load(c, 0);
 	return CONTACT_OK;
@@ -477,6 +273,7 @@ enum contact_status contact_solve(struct contact *c, const double *height,
 	c->control = control;
 	c->target = target;
 	c->best = INFINITY;
+	c->energy = INFINITY;
 	c->since = 0;
 	if (is_apart(c)) {
 		status = CONTACT_OK;

@@ -12,6 +12,7 @@ struct contact {
 	struct contact_par par;
 	size_t n;               /* cells */
 	double cap;             /* hardness or INFINITY */
+	double near_cap;        /* the same less rounding */
 	struct convolve *plane; /* transforms of displacement = kernel * pressure */
 	double *kernel;
 	struct mlms *mlms;    /* in place of those two */
@@ -35,7 +36,8 @@ struct contact {
 	enum contact_control control;
 	double target; /* mean pressure or approach */
 	double tolerance;
-	double scale; /* length that makes the certificate a number */
+	double work;  /* sum p u, followed from the last contact_gap() on */
+	double least; /* least u then, or 0 */
 
 	/* of the iteration in progress, for the passes over the cells */
 	double shift;   /* of the direction, that the load is kept */
@@ -45,6 +47,7 @@ struct contact {
 	int extend;     /* continue the residual beyond the contact */
 	double best;    /* certificate so far, and the iterations since */
 	long since;
+	double energy; /* least when contact_gradient_due() looked */
 };
 
 /* A cell is free where its pressure is strictly between the bounds. */
@@ -63,7 +66,7 @@ static inline int is_active(const struct contact *c, double p, double g)
 static inline double within(const struct contact *c, double p)
 {
 	p = p > 0 ? p : 0;
-	return p < c->cap ? p : c->cap;
+	return p < c->near_cap ? p : c->cap;
 }
 
 /* Gap of cell i; the array holds it for approach 0. */
@@ -83,29 +86,60 @@ static inline void certify_cell(
 	s->sum[1] += p;
 	s->sum[2] += is_free(c, p) * (g * g);
 	s->sum[3] += p * (g - below);
-	if (c->cap < INFINITY)
-		s->sum[4] -= (c->cap - p) * below;
+	s->sum[4] -= below < 0 ? (c->cap - p) * below : 0;
 	s->max = -g > s->max ? -g : s->max;
 }
 
-struct sweep contact_sweep(struct contact *c,
-	void (*pass)(void *context, size_t begin, size_t end, struct sweep *s));
+typedef void contact_pass(void *context, size_t begin, size_t end, struct sweep *s);
+struct sweep contact_sweep(struct contact *c, contact_pass *pass);
 /* y = K x, counted; y is not x.  Returns the sum of x y. */
 double contact_multiply(struct contact *c, const double *x, double *y);
-/* Gap of the pressure from scratch, and the approach: given, or the mean gap of the free
- * cells. */
+/* Gap of the pressure from scratch, and the approach. */
 void contact_gap(struct contact *c);
+/* The approach that is given; or the mean gap of the free cells, or where there are none
+ * the one of least duality gap. */
+void contact_find_approach(struct contact *c);
 /* The certificate from the sums of certify_cell() over all cells. */
 double contact_certificate(struct contact *c, const struct sweep *s);
 /* Makes those sums. */
 struct sweep contact_certify(struct contact *c);
+/* What the solution makes least, sum p u / 2 - sum p h, from the same sums just after
+ * contact_gap(). */
+double contact_energy(const struct contact *c, const struct sweep *s);
+/* Displacement by a pressure all over the grid, roughly. */
+double contact_sinking(const struct contact *c, double pressure);
+/* Gives this pressure to the cells that have none. */
+void contact_fill_empty(struct contact *c, double pressure);
+/* 1 if this sum of the pressures is the wanted load. */
+int contact_carries(const struct contact *c, double sum);
 /* Scales the free pressures so that the load is the wanted one, or leaves them where
  * gently and that is more than a matter of scale.  Returns the sum of the pressures. */
 double contact_scale_load(struct contact *c, int gently);
+/* Where all cells are empty or at the hardness and the load falls short or beyond by less
+ * than a cell, the cell whose gap is next in rank takes the rest.  sum: of the pressures;
+ * returns the new one. */
+double contact_place_rest(struct contact *c, double sum);
+/* Finds the shift with which the step of a pass carries what is missing of the load, to
+ * slack times the size of the step: Newton's method, kept within what is known to be too
+ * little and too much.  The pass sums step * gap, the step, its size, and the cells that
+ * it leaves free, each of which moves by rate times the shift; s: those of the present
+ * shift, and on return those of the last.  Returns what is left missing. */
+double contact_share_load(struct contact *c, contact_pass *pass, double missing,
+	double rate, double slack, struct sweep *s);
 /* 1 where the certificate has long stopped falling: rounding is all that is left, or
  * the method fails.  Keeps count of calls. */
 int contact_stalls(struct contact *c, double certificate);
 
+/* gradient.c: one step of the projected gradient, which always lowers the energy and
+ * keeps the load, or restores it.  contact_gap() is to follow. */
+void contact_gradient_step(struct contact *c);
+/* How many such steps to take: now and then one, while the certificate does not fall, and
+ * more where the energy has not fallen either.  s: sums just after contact_gap(). */
+int contact_gradient_due(struct contact *c, const struct sweep *s);
+/* 1 when it is time to ask that. */
+int contact_lingers(const struct contact *c);
+
+/* pk.c */
 enum contact_status contact_solve_pk(struct contact *c);
 
 /* bccg.c */

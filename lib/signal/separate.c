@@ -307,30 +307,6 @@ static enum separate_status dense_section(
 	return SEPARATE_OK;
 }
 
-/* Puts the network's guess at the pulses of n samples into s->pulse; 0 where it does not
- * suit.  It was trained on the sine pulse. */
-static int guess_pulses(struct separate *s, long long from, size_t n)
-{
-	const struct joint_scene *c = &s->scene;
-	struct cnn_section section = { channel_1(s, from), channel_2(s, from), n,
-		c->duration, c->gain, (c->delta_min + c->delta_max) / 2,
-		(c->delta_max - c->delta_min) / 2 };
-	struct cnn_pulse guess[CNN_SOURCES];
-	int m = 0;
-
-	if (s->cal.pulse == PULSE_SINE)
-		m = cnn_apply(s->par.network, &section, s->par.sources, guess);
-	for (int i = 0; i < m; i++) {
-		s->pulse[i] =
-			(struct joint_pulse){ .t = fmin(fmax(guess[i].t, 0), (double)n),
-				.delta = guess[i].delta,
-				.a = guess[i].a };
-	}
-	s->counters.guesses += m > 0;
-	s->counters.refused += m == 0;
-	return m;
-}
-
 /* Gives out the first done of the m pulses fitted to [from, to). */
 static enum separate_status give_pulses(struct separate *s, long long from, long long to,
 	int m, int done, const struct judgement *j)
@@ -390,8 +366,6 @@ static enum separate_status fit_section(
 	struct judgement judgement;
 	int m = s->carried, done = 0, unresolved, shorter;
 
-	if (s->par.method == SEPARATE_FIT && s->par.network && m == 0 && !cut)
-		m = guess_pulses(s, from, n);
 	s->scene.max_pulses = most_pulses(s, n);
 	if (m > s->scene.max_pulses)
 		m = s->scene.max_pulses;
@@ -431,31 +405,6 @@ static enum separate_status fit_section(
 	else
 		s->carried = 0;
 	return SEPARATE_OK;
-}
-
-/* Works off [from, to) by the network alone; 1 where that was possible. */
-static int network_section(
-	struct separate *s, long long from, long long to, enum separate_status *status)
-{
-	size_t n = (size_t)(to - from);
-	int m = guess_pulses(s, from, n);
-	enum separate_verdict verdict = m > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
-
-	*status = SEPARATE_MEMORY;
-	for (int i = 0; i < m; i++) {
-		for (int k = 0; k < 6; k++)
-			s->pulse[i].cov[k] = NAN;
-		if (!emit_pulse(s, &s->pulse[i], from, m, NAN, verdict))
-			return 1;
-	}
-	if (m && s->par.want_sources && !draw_pulses(s, m, n))
-		return 1;
-	if (m)
-		report_section(s, from, to, m, NAN, verdict,
-			s->par.want_sources ? s->source : NULL);
-	s->counters.singles += m == 1;
-	*status = SEPARATE_OK;
-	return m > 0;
 }
 
 /* Arrival (zero crossing between the lobes) and amplitude of the one pulse in x. */
@@ -587,8 +536,7 @@ static enum separate_status work(struct separate *s)
 			status = dense_section(s, from, to);
 		else if (s->par.method == SEPARATE_MASKS)
 			status = mask_section(s, from, to);
-		else if (s->par.method == SEPARATE_FIT || s->continuing || cut ||
-			 !network_section(s, from, to, &status))
+		else
 			status = fit_section(s, from, to, cut, &next);
 		if (status != SEPARATE_OK)
 			return status;

@@ -3,8 +3,7 @@
  * The first learn samples are held back to calibrate (calibrate.h); where they hold no
  * particle half of them are passed over, and so on until there is one.  From then on the
  * record is cleaned, aligned and cut into sections (sections.h); each section is given
- * to one of the methods: joint fit (joint.h), masks (masks.h) or a network (cnn.h); what
- * a network does not suit is fitted.  Sections longer than
+ * to one of the methods: joint fit (joint.h) or masks (masks.h).  Sections longer than
  * window are worked off in windows, pulses near the end of one being the first guesses
  * of the next.  Where to cut depends on the record alone, so that the particles are the
  * same however the record is handed in; memory is bounded by learn and window.
@@ -23,7 +22,6 @@
 
 #include "signal/calibrate.h"
 #include "signal/campbell.h"
-#include "net/cnn.h"
 #include "signal/joint.h"
 #include "signal/masks.h"
 #include <stddef.h>
@@ -31,7 +29,7 @@
 /* Samples that nothing can be learned from fewer of. */
 enum { SEPARATE_SHORTEST = 64 };
 
-enum separate_method { SEPARATE_FIT, SEPARATE_MASKS, SEPARATE_NETWORK };
+enum separate_method { SEPARATE_FIT, SEPARATE_MASKS };
 
 /* How far a row may be trusted. */
 enum separate_verdict {
@@ -73,10 +71,7 @@ struct separate_par {
 	size_t window; /* longest section worked off at once; 0: 24 durations */
 	int sources;   /* exactly so many in each section; 0: find out */
 	size_t mask_window, mask_hop; /* of the masks, samples */
-	/* Of cnn_suits(), for SEPARATE_NETWORK; with SEPARATE_FIT, unless NULL, it gives
-	 * the first guesses.  It stays the caller's. */
-	struct network *network;
-	int want_sources; /* fill separate_section.source */
+	int want_sources;             /* fill separate_section.source */
 	void (*on_section)(void *context, const struct separate_section *section);
 	void *context;
 };
@@ -101,7 +96,6 @@ struct separate_counters {
 	double samples, active;   /* frames in all, and in sections */
 	double sections, singles; /* sections, and those with one pulse */
 	double fits, steps, searches;
-	double guesses, refused;     /* sections the network looked at, and could not */
 	double masks, masks_skipped; /* sections demixed, and those that need not be */
 	double unresolved;
 };

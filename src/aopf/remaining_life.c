@@ -1,12 +1,12 @@
 #include "remaining_life.h"
-#include "filter_options.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
 #include "common/quantile_columns.h"
+#include "common/time_unit.h"
+#include "filter_options.h"
+#include "io/series.h"
 #include "life/predict.h"
 #include "life/runin.h"
-#include "cli/msg.h"
-#include "io/series.h"
-#include "cli/stats.h"
-#include "common/time_unit.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -32,30 +32,30 @@ struct opt outlook_end_rows[] = {
 		DBL_MAX, "Y",
 		"value that ends the life, in units of y; none: no prediction of life",
 		NULL, 0 },
-	{ 'd', "direction", OPT_WORD, UNIT_NONE, &direction, 0, 0, "up|down|auto",
+	{ 0, "direction", OPT_WORD, UNIT_NONE, &direction, 0, 0, "up|down|auto",
 		"side the threshold is reached from; auto: from the first value",
 		directions, 0 },
-	{ 'k', "persist", OPT_INT, UNIT_COUNT, &persist, 1, 1e6, "K",
+	{ 0, "persist", OPT_INT, UNIT_COUNT, &persist, 1, 1e6, "K",
 		"successive values beyond the threshold that end the life", NULL, 0 },
-	{ 'z', "zero", OPT_NUM, UNIT_NONE, &outlook_options.zero, -DBL_MAX, DBL_MAX, "Y",
+	{ 0, "zero", OPT_NUM, UNIT_NONE, &outlook_options.zero, -DBL_MAX, DBL_MAX, "Y",
 		"value of y without any degradation, the zero of the grey model", NULL,
 		0 },
-	{ 'T', "skip", OPT_CHOICE, UNIT_TIME, &skip, 0, DBL_MAX, "T|auto",
+	{ 0, "skip", OPT_CHOICE, UNIT_TIME, &skip, 0, DBL_MAX, "T|auto",
 		"run-in left out of long-term models, from the first row", skips, 0 },
 	OPT_END
 };
 
 struct opt outlook_model_rows[] = {
-	{ 'm', "model", OPT_WORD, UNIT_NONE, &model, 0, 0,
+	{ 0, "model", OPT_WORD, UNIT_NONE, &model, 0, 0,
 		"average|linear|exponential|power|rate|grey|literal", "long-term model",
 		models, 0 },
-	{ 'H', "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, DBL_MAX, "T",
+	{ 0, "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, DBL_MAX, "T",
 		"longest life ahead; 0: ten times the time so far", NULL, 0 },
-	{ 'A', "after", OPT_NUM, UNIT_TIME, &after, -DBL_MAX, DBL_MAX, "T",
+	{ 0, "after", OPT_NUM, UNIT_TIME, &after, -DBL_MAX, DBL_MAX, "T",
 		"time from which on life is predicted (default all the time)", NULL, 0 },
-	{ 'q', "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "Q,Q,...",
+	{ 0, "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "Q,Q,...",
 		"levels of the quantiles of remaining life", NULL, 0 },
-	{ 'F', "fleet", OPT_TEXT, UNIT_NONE, &fleet_file, 0, 0, "FILE",
+	{ 0, "fleet", OPT_TEXT, UNIT_NONE, &fleet_file, 0, 0, "FILE",
 		"table of earlier units that reached the threshold: unit t y", NULL, 0 },
 	OPT_TABLE(timeunit_rows), OPT_END
 };

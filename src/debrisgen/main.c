@@ -1,12 +1,12 @@
 /* debrisgen - wear particles that a contact tears off a rough surface */
-#include "common/contact_options.h"
-#include "io/fields.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
-#include "wear_steps.h"
+#include "common/contact_options.h"
+#include "io/fields.h"
 #include "outputs.h"
+#include "wear_steps.h"
 #include <math.h>
 
 static long steps = 1;
@@ -14,11 +14,11 @@ static double stop_area = 0.8, amplification = 1;
 
 static const struct opt opts[] = {
 	OPT_TABLE(wearing_rows),
-	{ 'T', "steps", OPT_INT, UNIT_COUNT, &steps, 1, 1e6, "N",
+	{ 0, "steps", OPT_INT, UNIT_COUNT, &steps, 1, 1e6, "N",
 		"wear steps; the contact is solved anew from the second on", NULL, 0 },
-	{ 'A', "stop-area", OPT_NUM, UNIT_FRACTION, &stop_area, 0, 1, "A",
+	{ 0, "stop-area", OPT_NUM, UNIT_FRACTION, &stop_area, 0, 1, "A",
 		"stop where this share of the cells is in contact; 1: never", NULL, 0 },
-	{ 'Z', "amplification", OPT_NUM, UNIT_NONE, &amplification, 0, 1e12, "K",
+	{ 0, "amplification", OPT_NUM, UNIT_NONE, &amplification, 0, 1e12, "K",
 		"sliding distance of a step over the length of the grid", NULL, 0 },
 	OPT_TABLE(worn_rows),
 	OPT_TABLE(press_rows),
@@ -93,15 +93,34 @@ static int check_contact(struct run *run, struct scene *c, long step)
 			name, c->now.r->realisation, step, 100 * s.edge_load);
 	if (s.contact < stop_area || stop_area == 1)
 		return 0;
-	note("%s: realisation %ld, step %ld: %.3g of the cells in contact: stopped", name,
-		c->now.r->realisation, step, s.contact);
+	warn("%s: realisation %ld: stopped before step %ld: %.3g of the cells in contact, "
+	     "--stop-area %g",
+		name, c->now.r->realisation, step, s.contact, stop_area);
 	return 1;
+}
+
+/* Particles without end on a periodic grid have no shape. */
+static void check_ends(struct run *run, const struct scene *c, const struct worn_step *s)
+{
+	size_t endless = 0;
+
+	for (size_t i = 0; i < s->lost->count; i++)
+		endless += s->lost->particle[i].endless != 0;
+	if (endless == 0)
+		return;
+	warn("%s: realisation %ld, step %ld: %zu of %zu particles go round the periodic "
+	     "grid and have no end: their shape is nan",
+		fields_name(run->in), c->now.r->realisation, s->number, endless,
+		s->lost->count);
+	run->status = EXIT_NOCONV;
+	stats_add("particles_endless", (double)endless);
 }
 
 static void wear_step(struct run *run, const struct scene *c, long step)
 {
 	struct worn_step s = wearing_step(run->wearing, &c->now, step);
 
+	check_ends(run, c, &s);
 	s.distance = (double)step * amplification * wearing_length(c->now.r);
 	worn_put(run->out, &c->now, &s);
 	note("%s: realisation %ld, step %ld: %zu particles, %.6g m3, %ld layers",
@@ -122,6 +141,8 @@ static void wear_record(struct run *run, struct record *r)
 			run->status = EXIT_NOCONV;
 		if (check_contact(run, &c, c.done + k)) {
 			stats_add("steps_skipped", (double)(steps - k + 1));
+			if (k == 1)
+				run->status = EXIT_NOCONV;
 			break;
 		}
 		wear_step(run, &c, c.done + k);

@@ -1,9 +1,9 @@
 /* debrisstat - statistics of wear particles: fits, steps, sizes, shapes */
-#include "stats/estimates.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
 #include "io/tables.h"
+#include "stats/estimates.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -21,28 +21,28 @@ static const char *summary_path;
 static const struct opt opts[] = {
 	{ 'o', "output", OPT_WORD, UNIT_NONE, &output, 0, 0, "fits|steps|sizes|aspects",
 		"what to print", outputs, 0 },
-	{ 'd', "diameter", OPT_LIST, UNIT_LENGTH, &diameters, 0, 1e30, "LO:HI",
+	{ 0, "diameter", OPT_LIST, UNIT_LENGTH, &diameters, 0, 1e30, "LO:HI",
 		"only particles of this equivalent diameter", NULL, 0 },
-	{ 't', "truncated", OPT_FLAG, UNIT_NONE, &truncated, 0, 0, NULL,
+	{ 0, "truncated", OPT_FLAG, UNIT_NONE, &truncated, 0, 0, NULL,
 		"fit the Weibull distribution as cut off at --diameter", NULL, 0 },
-	{ 'p', "step", OPT_LIST, UNIT_COUNT, &range, 1, 1e9, "A[:B]",
+	{ 0, "step", OPT_LIST, UNIT_COUNT, &range, 1, 1e9, "A[:B]",
 		"only these steps; default all", NULL, 0 },
-	{ 'g', "growth", OPT_WORD, UNIT_NONE, &growth, 0, 0, "cumulative|step",
+	{ 0, "growth", OPT_WORD, UNIT_NONE, &growth, 0, 0, "cumulative|step",
 		"what the power law follows: all particles so far, or those of a step",
 		growths, 0 },
-	{ 'b', "bin", OPT_NUM, UNIT_LENGTH, &bin, 1e-30, 1e30, "W",
+	{ 0, "bin", OPT_NUM, UNIT_LENGTH, &bin, 1e-30, 1e30, "W",
 		"width of the classes of sizes", NULL, 0 },
-	{ 'a', "aspects", OPT_LIST, UNIT_NONE, &edges, 1, 1e9, "A,A,...",
+	{ 0, "aspects", OPT_LIST, UNIT_NONE, &edges, 1, 1e9, "A,A,...",
 		"edges of the classes of aspect ratio", NULL, 0 },
-	{ 'C', "confidence", OPT_NUM, UNIT_FRACTION, &confidence, 0.01, 0.9999, "C",
+	{ 0, "confidence", OPT_NUM, UNIT_FRACTION, &confidence, 0.01, 0.9999, "C",
 		"of the intervals", NULL, 0 },
-	{ 'B', "bootstrap", OPT_INT, UNIT_COUNT, &bootstrap, 0, 1e6, "N",
+	{ 0, "bootstrap", OPT_INT, UNIT_COUNT, &bootstrap, 0, 1e6, "N",
 		"intervals by drawing the realisations N times anew", NULL, 0 },
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "of --bootstrap", NULL,
 		0 },
-	{ 'n', "realisations", OPT_INT, UNIT_COUNT, &realisations, 0, 1e9, "N",
+	{ 0, "realisations", OPT_INT, UNIT_COUNT, &realisations, 0, 1e9, "N",
 		"realisations there were, with those that gave no particle", NULL, 0 },
-	{ 'U', "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
+	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
 		"summary of debrisgen, to know of steps without particles", NULL, 0 },
 	OPT_END,
 };

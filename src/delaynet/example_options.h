@@ -1,4 +1,5 @@
-/* example_options.h - what the networks of delaynet are trained and scored with: its options */
+/* example_options.h - what the networks of delaynet are trained and scored with: its
+ * options */
 #ifndef LESSONS_H
 #define LESSONS_H
 

@@ -1,60 +1,57 @@
 /* duet - wear particles from the record of two inductive sensors */
-#include "instrument_options.h"
-#include "methods.h"
 #include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
+#include "instrument_options.h"
 #include "io/signals.h"
-#include "net/netfile.h"
+#include "methods.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { LEARN = 65536 };
-enum { METHOD_FIT, METHOD_DUET, METHOD_CNN, METHOD_COUNT };
+enum { METHOD_FIT, METHOD_DUET, METHOD_COUNT };
 
 static int method = METHOD_FIT;
 static long window = 64, hop, sensor = 1;
 static struct opt_choice sources = { 0, 0 };
 static double kappa = M_PI / 4 * 1e11; /* as sensorsim(1) */
 static double spacing = 0.25, learn = NAN, latency = NAN, floor_height = NAN;
-static const char *separated, *histogram, *sections, *network_file;
-static const char *const methods[] = { "fit", "duet", "cnn", "count", NULL };
+static const char *separated, *histogram, *sections;
+static const char *const methods[] = { "fit", "duet", "count", NULL };
 static const char *const automatic[] = { "auto", NULL };
 
 static const struct opt opts[] = {
-	{ 'm', "method", OPT_WORD, UNIT_NONE, &method, 0, 0, "fit|duet|cnn|count",
-		"joint fit of all pulses, time-frequency masks, a network, or counted peaks",
+	{ 0, "method", OPT_WORD, UNIT_NONE, &method, 0, 0, "fit|duet|count",
+		"joint fit of all pulses, time-frequency masks, or counted peaks",
 		methods, 0 },
-	{ 'a', "align", OPT_CHOICE, UNIT_TIME, &instrument.align, 0, 1e9, "auto|T",
+	{ 0, "align", OPT_CHOICE, UNIT_TIME, &instrument.align, 0, 1e9, "auto|T",
 		"time from sensor 1 to sensor 2 of the mean particle", automatic, 0 },
-	{ 'L', "spacing", OPT_NUM, UNIT_LENGTH, &spacing, 1e-6, 1e3, "D",
+	{ 0, "spacing", OPT_NUM, UNIT_LENGTH, &spacing, 1e-6, 1e3, "D",
 		"between the two sensors", 0, 0 },
-	{ 'K', "calibration", OPT_NUM, UNIT_NONE, &kappa, 1e-30, 1e30, "K",
+	{ 0, "calibration", OPT_NUM, UNIT_NONE, &kappa, 1e-30, 1e30, "K",
 		"peak voltage over velocity and diameter cubed, V s/m4", 0, 0 },
-	{ 'n', "sources", OPT_CHOICE, UNIT_COUNT, &sources, 1, 16, "auto|N",
+	{ 0, "sources", OPT_CHOICE, UNIT_COUNT, &sources, 1, 16, "auto|N",
 		"particles in each section", automatic, 0 },
 	OPT_TABLE(instrument_rows),
-	{ 'e', "learn", OPT_NUM, UNIT_TIME, &learn, 0, 1e9, "T",
+	{ 0, "learn", OPT_NUM, UNIT_TIME, &learn, 0, 1e9, "T",
 		"start of the record that the instrument is learned from", 0, 0 },
-	{ 'y', "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
+	{ 0, "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
 		"hold back no more than T of signal", 0, 0 },
-	{ 'w', "window", OPT_INT, UNIT_COUNT, &window, 4, 1e6, "N",
+	{ 0, "window", OPT_INT, UNIT_COUNT, &window, 4, 1e6, "N",
 		"samples of a Hamming window (duet)", 0, 0 },
-	{ 'H', "hop", OPT_INT, UNIT_COUNT, &hop, 1, 1e6, "N",
+	{ 0, "hop", OPT_INT, UNIT_COUNT, &hop, 1, 1e6, "N",
 		"samples from window to window (duet; half the window)", 0, 0 },
-	{ 'k', "sensor", OPT_INT, UNIT_COUNT, &sensor, 1, 2, "N",
+	{ 0, "sensor", OPT_INT, UNIT_COUNT, &sensor, 1, 2, "N",
 		"channel to count on (count)", 0, 0 },
-	{ 'z', "floor", OPT_NUM, UNIT_VOLTAGE, &floor_height, 1e-30, 1e30, "V",
+	{ 0, "floor", OPT_NUM, UNIT_VOLTAGE, &floor_height, 1e-30, 1e30, "V",
 		"lowest peak (count; five deviations of the record)", 0, 0 },
-	{ 'O', "separated", OPT_TEXT, UNIT_NONE, &separated, 0, 0, "FILE",
+	{ 0, "separated", OPT_TEXT, UNIT_NONE, &separated, 0, 0, "FILE",
 		"write each source of a section as a channel of its own", 0, 0 },
-	{ 'G', "histogram", OPT_TEXT, UNIT_NONE, &histogram, 0, 0, "FILE",
+	{ 0, "histogram", OPT_TEXT, UNIT_NONE, &histogram, 0, 0, "FILE",
 		"write the weighted histograms as a table (duet)", 0, 0 },
-	{ 'Z', "sections", OPT_TEXT, UNIT_NONE, &sections, 0, 0, "FILE",
+	{ 0, "sections", OPT_TEXT, UNIT_NONE, &sections, 0, 0, "FILE",
 		"write one row per section", 0, 0 },
-	{ 'N', "network", OPT_TEXT, UNIT_NONE, &network_file, 0, 0, "FILE",
-		"network of delaynet, for cnn or the first guesses of fit", 0, 0 },
 	OPT_END
 };
 
@@ -64,19 +61,15 @@ static const struct prog prog = { "duet",
 
 static void check_options(void)
 {
-	if (method != METHOD_DUET && (opt_given('w') || opt_given('H') || histogram))
+	if (method != METHOD_DUET && (opt_given("window") || opt_given("hop") || histogram))
 		die(EXIT_USAGE, "--window, --hop and --histogram need --method duet");
-	if (method != METHOD_COUNT && (opt_given('k') || opt_given('z')))
+	if (method != METHOD_COUNT && (opt_given("sensor") || opt_given("floor")))
 		die(EXIT_USAGE, "--sensor and --floor need --method count");
 	if (method == METHOD_COUNT && (separated || sections))
 		die(EXIT_USAGE, "--method count knows no sections and separates nothing");
-	if (method == METHOD_CNN && !network_file)
-		die(EXIT_USAGE, "--method cnn wants --network FILE");
-	if (network_file && method != METHOD_CNN && method != METHOD_FIT)
-		die(EXIT_USAGE, "--network is for --method cnn and fit");
 	if (window % 2)
 		die(EXIT_USAGE, "--window %ld: want an even number of samples", window);
-	if (!opt_given('H'))
+	if (!opt_given("hop"))
 		hop = window / 2;
 	if (hop > window)
 		die(EXIT_USAGE, "--hop %ld is longer than the window", hop);
@@ -87,23 +80,6 @@ static size_t to_samples(double time, double rate)
 	double n = time * rate;
 
 	return n < 1e15 ? (size_t)n : (size_t)1e15;
-}
-
-static struct network *read_network(void)
-{
-	const char *name;
-	FILE *f = file_open(network_file, &name);
-	struct netfile file;
-	struct network *net = netfile_read(f, 1, &file);
-
-	if (!net)
-		die(EXIT_RUN, "%s: line %ld: %s", name, file.line, file.why);
-	if (strcmp(file.purpose, "arrivals") != 0 || !cnn_suits(net))
-		die(EXIT_RUN, "%s: want a network for arrivals, got one for %s", name,
-			file.purpose);
-	free(file.cmd);
-	fclose(f);
-	return net;
 }
 
 static size_t learned_samples(double rate)
@@ -118,11 +94,9 @@ static size_t learned_samples(double rate)
 
 static void separate_all(struct signal_in *in, struct found *out)
 {
-	static const enum separate_method of[] = { SEPARATE_FIT, SEPARATE_MASKS,
-		SEPARATE_NETWORK };
 	double rate = (double)out->rate;
-	struct separate_par par = { .method = of[method],
-		.network = network_file ? read_network() : NULL,
+	struct separate_par par = { .method = method == METHOD_FIT ? SEPARATE_FIT
+								   : SEPARATE_MASKS,
 		.learn = learned_samples(rate),
 		.sources = sources.word < 0 ? (int)sources.value : 0,
 		.mask_window = (size_t)window,
@@ -139,7 +113,6 @@ static void separate_all(struct signal_in *in, struct found *out)
 			par.learn = par.window;
 	}
 	separate_record(in, out, &par);
-	network_free(par.network);
 	free(par.known.filter);
 }
 

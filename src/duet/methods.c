@@ -1,7 +1,7 @@
 #include "methods.h"
-#include "instrument_options.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "instrument_options.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -51,8 +51,6 @@ static void report(const struct separate *s, double rate)
 	stats_set("fits", c->fits);
 	stats_set("fit_steps", c->steps);
 	stats_set("searches", c->searches);
-	stats_set("guesses", c->guesses);
-	stats_set("guesses_refused", c->refused);
 	stats_set("demixings", c->masks);
 	stats_set("demixings_skipped", c->masks_skipped);
 	stats_set("calibrations", known ? known->attempts : 0);

@@ -4,7 +4,7 @@
 
 #include "outputs.h"
 
-/* Sections, each taken apart by fit, masks or network. */
+/* Sections, each taken apart by fit or masks. */
 void separate_record(
 	struct signal_in *in, struct found *out, const struct separate_par *par);
 

@@ -1,15 +1,16 @@
 /* roughgen - rough surfaces, generated or measured, and their areal parameters */
-#include "surface/areal.h"
-#include "surface/surface.h"
-#include "generated.h"
-#include "measured.h"
-#include "roughness_options.h"
-#include "io/fields.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "generated.h"
+#include "io/fields.h"
 #include "io/tables.h"
+#include "measured.h"
+#include "roughness_options.h"
+#include "surface/areal.h"
+#include "surface/surface.h"
 #include <stdlib.h>
+#include <unistd.h>
 
 static const char *const crown_words[] = { "none", "auto", NULL };
 
@@ -24,10 +25,10 @@ static const struct opt opts[] = {
 	{ 'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N", "threads", NULL,
 		1 },
 	OPT_TABLE(measured_rows),
-	{ 'C', "crown", OPT_CHOICE, UNIT_LENGTH, &crown, 0, 1e9, "none|auto|DROP",
+	{ 0, "crown", OPT_CHOICE, UNIT_LENGTH, &crown, 0, 1e9, "none|auto|DROP",
 		"put on a paraboloid, DROP lower at the corners; auto is 4 Sq",
 		crown_words, 0 },
-	{ 'm', "measure", OPT_FLAG, UNIT_NONE, &measure, 0, 0, NULL,
+	{ 0, "measure", OPT_FLAG, UNIT_NONE, &measure, 0, 0, NULL,
 		"print areal parameters instead of heights", NULL, 0 },
 	OPT_END,
 };
@@ -63,7 +64,7 @@ static void check_options(int from_file)
 		refuse(measured_rows, "is for a measured surface: name a file, or - for "
 				      "standard input");
 	}
-	if (opt_given('q') + opt_given('a') + opt_given('g') > 1)
+	if (opt_given("sq") + opt_given("sa") + opt_given("slope") > 1)
 		die(EXIT_USAGE, "--sq, --sa and --slope exclude each other");
 	roughness_check();
 	generated_check();
@@ -116,10 +117,13 @@ static const char *file_of(int argc, char **argv, int operand)
 {
 	if (operand < argc)
 		return argv[operand];
-	return measure && !opt_any_given(generated_grid_rows) &&
-			       !opt_any_given(generated_rows)
-		       ? "-"
-		       : NULL;
+	if (!measure || opt_any_given(generated_grid_rows) ||
+		opt_any_given(generated_rows))
+		return NULL;
+	if (isatty(STDIN_FILENO))
+		die(EXIT_USAGE,
+			"nothing to measure: name a file, pipe surfaces in, or give --points");
+	return "-";
 }
 
 int main(int argc, char **argv)

@@ -1,8 +1,8 @@
 #include "fragments.h"
-#include "pump_options.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
 #include "io/tables.h"
+#include "pump_options.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,6 +27,14 @@ struct wear {
 	int class;
 };
 
+static _Noreturn void apart(const struct partition *p, const char *file)
+{
+	die(EXIT_RUN,
+		"%s: the rows of realisation %ld stand too far apart: sort the table by "
+		"realisation",
+		file, partition_realisation(p));
+}
+
 static void read_row(struct partition *p, const struct wear *w, long row)
 {
 	struct table_in *t = w->table;
@@ -35,9 +43,10 @@ static void read_row(struct partition *p, const struct wear *w, long row)
 	double v = table_number(t, w->volume);
 	enum partition_status status;
 
-	if (!(r >= 0 && r <= 4294967295. && r == floor(r)))
-		die(EXIT_RUN, "%s: line %ld: realisation must be a whole number", w->file,
-			table_line(t));
+	if (!(r >= 0 && r <= 1e15 && r == floor(r)))
+		die(EXIT_RUN,
+			"%s: line %ld: realisation must be a whole number from 0 to 1e15",
+			w->file, table_line(t));
 	if (!(k >= 1 && k <= 1e6 && k == floor(k)))
 		die(EXIT_RUN, "%s: line %ld: step must be a whole number from 1 to 1e6",
 			w->file, table_line(t));
@@ -51,6 +60,8 @@ static void read_row(struct partition *p, const struct wear *w, long row)
 	if (status == PARTITION_TWICE)
 		die(EXIT_RUN, "%s: line %ld: realisation %g has step %g twice", w->file,
 			table_line(t), r, k);
+	if (status == PARTITION_APART)
+		apart(p, w->file);
 	stats_add("fragments_read", 1);
 }
 
@@ -90,17 +101,34 @@ static void read_wear(struct partition *p, const char *option, char **cmd)
 	free(file);
 }
 
-struct partition *fragments_read(
-	const struct opt_texts *files, long first_step, char **made_by)
+/* 1 where the ensemble of a class cannot tell how uncertain its mean is. */
+static int is_doubtful(const struct partition *p, int class, const char *file)
 {
-	struct partition *p = partition_new(pump.fragment_area, pump.pair.area);
+	double mean, n = partition_count(p, class, &mean);
+
+	if (n < 2)
+		warn("%s: a single realisation: the uncertainty of its wear is unknown "
+		     "and left out",
+			file);
+	else if (!(mean > 0))
+		warn("%s: none of %.0f realisations wore: the wear is taken for none at "
+		     "all",
+			file, n);
+	return n < 2 || !(mean > 0);
+}
+
+struct partition *fragments_read(
+	const struct opt_texts *files, long first_step, char **made_by, int *doubtful)
+{
+	struct partition *p = partition_new(pump.fragment_area, pump.pair.area,
+		first_step, !isnan(pump.critical_size));
 	enum partition_status status;
 
 	if (!p)
 		die(EXIT_RUN, "out of memory");
 	for (int i = 0; i < files->n; i++)
 		read_wear(p, files->v[i], &made_by[i]);
-	status = partition_close(p, pump.transition, first_step);
+	status = partition_close(p, pump.transition);
 	switch (status) {
 	case PARTITION_OK:
 		break;
@@ -108,8 +136,10 @@ struct partition *fragments_read(
 		die(EXIT_RUN, "%s: no fragment from step %ld on",
 			files->v[partition_culprit(p)], first_step);
 	case PARTITION_TWICE:
-		die(EXIT_RUN, "%s: a realisation has the same step twice",
-			files->v[partition_culprit(p)]);
+		die(EXIT_RUN, "%s: realisation %ld has a step twice",
+			files->v[partition_culprit(p)], partition_realisation(p));
+	case PARTITION_APART:
+		apart(p, files->v[partition_culprit(p)]);
 	case PARTITION_PRESSURE:
 		die(EXIT_USAGE,
 			"--wear %s: each of several tables needs a pressure of its own",
@@ -120,5 +150,7 @@ struct partition *fragments_read(
 	case PARTITION_MEMORY:
 		die(EXIT_RUN, "out of memory");
 	}
+	for (int i = 0; i < files->n; i++)
+		*doubtful |= is_doubtful(p, i, files->v[i]);
 	return p;
 }

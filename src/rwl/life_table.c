@@ -1,9 +1,9 @@
 #include "life_table.h"
+#include "cli/msg.h"
 #include "common/quantile_columns.h"
+#include "io/tables.h"
 #include "life/metrics.h"
 #include "life/remaining.h"
-#include "cli/msg.h"
-#include "io/tables.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -142,6 +142,7 @@ static void write_scores(struct table_out *out, const struct metrics *m)
 	struct metrics_sum s = metrics_get(m);
 
 	table_comment(out, "predictions", "%zu", s.n);
+	table_comment(out, "infinite_medians", "%zu", s.infinite);
 	table_comment(out, "bias", "%.6g s", s.bias);
 	table_comment(out, "mean_absolute_error", "%.6g s", s.mae);
 	table_comment(out, "root_mean_square_error", "%.6g s", s.rmse);

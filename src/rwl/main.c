@@ -1,11 +1,11 @@
 /* rwl - remaining wear life from fragments' wear and the state observed */
+#include "cli/msg.h"
+#include "cli/stats.h"
 #include "fragments.h"
 #include "life/remaining.h"
 #include "life_table.h"
-#include "pump_options.h"
-#include "cli/msg.h"
-#include "cli/stats.h"
 #include "observations.h"
+#include "pump_options.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,49 +21,49 @@ static long seed = 1, first_path, count = 1000, first_step = 1, parts;
 static int rule = RATE_MEAN, samples, grey, new;
 
 static const struct opt opts[] = {
-	{ 'w', "wear", OPT_TEXTS, UNIT_NONE, &wear_files, 0, 0, "FILE[:PRESSURE[:AREA]]",
+	{ 0, "wear", OPT_TEXTS, UNIT_NONE, &wear_files, 0, 0, "FILE[:PRESSURE[:AREA]]",
 		"particles or volumes worn off fragments under a nominal pressure", 0,
 		0 },
-	{ 'x', "state", OPT_TEXT, UNIT_NONE, &state_file, 0, 0, "FILE",
+	{ 0, "state", OPT_TEXT, UNIT_NONE, &state_file, 0, 0, "FILE",
 		"observed leakage, gap, volume or debris; the operand says the same", 0,
 		1 },
-	{ 'N', "new", OPT_FLAG, UNIT_NONE, &new, 0, 0, 0,
+	{ 0, "new", OPT_FLAG, UNIT_NONE, &new, 0, 0, 0,
 		"read no state: the life of a new pair", 0, 0 },
 	OPT_TABLE(state_rows), OPT_TABLE(pump_threshold_rows),
-	{ 'R', "wear-rate", OPT_WORD, UNIT_NONE, &rule, 0, 0, "mean|last|filter",
+	{ 0, "wear-rate", OPT_WORD, UNIT_NONE, &rule, 0, 0, "mean|last|filter",
 		"rate by (4-29), by (4-28), or followed by filters", rules, 0 },
-	{ 'p', "step-time", OPT_NUM, UNIT_TIME, &step_time, 1e-15, 1e15, "T",
+	{ 0, "step-time", OPT_NUM, UNIT_TIME, &step_time, 1e-15, 1e15, "T",
 		"time that one step of the fragments stands for [from the state so far]",
 		0, 0 },
-	{ 'C', "calibrate", OPT_TEXTS, UNIT_NONE, &calibrations, 0, 0, "FILE",
+	{ 0, "calibrate", OPT_TEXTS, UNIT_NONE, &calibrations, 0, 0, "FILE",
 		"take the step time from the whole life of an earlier unit", 0, 0 },
-	{ 'k', "first-step", OPT_INT, UNIT_COUNT, &first_step, 1, 1e6, "K",
+	{ 0, "first-step", OPT_INT, UNIT_COUNT, &first_step, 1, 1e6, "K",
 		"steps before are running-in and count not for the rate", 0, 0 },
-	{ 'T', "skip", OPT_NUM, UNIT_TIME, &skip, 0, 1e300, "T",
+	{ 0, "skip", OPT_NUM, UNIT_TIME, &skip, 0, 1e300, "T",
 		"run-in left out of all rates observed, from the first row", 0, 0 },
-	{ 'n', "parts", OPT_INT, UNIT_COUNT, &parts, 0, 1e9, "N",
+	{ 0, "parts", OPT_INT, UNIT_COUNT, &parts, 0, 1e9, "N",
 		"parts of a class that wear independently; 0: as many as fit", 0, 0 },
 	OPT_TABLE(pump_face_rows),
-	{ 'E', "archard", OPT_NUM, UNIT_NONE, &archard, 1e-30, 1, "K",
+	{ 0, "archard", OPT_NUM, UNIT_NONE, &archard, 1e-30, 1, "K",
 		"add a column: dry sliding with this wear coefficient", 0, 0 },
-	{ 'K', "hardness", OPT_NUM, UNIT_PRESSURE, &hardness, 1, 1e15, "H",
+	{ 0, "hardness", OPT_NUM, UNIT_PRESSURE, &hardness, 1, 1e15, "H",
 		"hardness of --archard", 0, 0 },
-	{ 'U', "speed", OPT_NUM, UNIT_SPEED, &speed, 1e-12, 1e6, "V",
+	{ 0, "speed", OPT_NUM, UNIT_SPEED, &speed, 1e-12, 1e6, "V",
 		"sliding speed of --archard", 0, 0 },
-	{ 'G', "grey", OPT_FLAG, UNIT_NONE, &grey, 0, 0, 0,
+	{ 0, "grey", OPT_FLAG, UNIT_NONE, &grey, 0, 0, 0,
 		"add a column: grey model of the state observed", 0, 0 },
-	{ 'q', "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "P,...",
+	{ 0, "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "P,...",
 		"quantiles to print", 0, 0 },
-	{ 'O', "samples", OPT_FLAG, UNIT_NONE, &samples, 0, 0, 0,
+	{ 0, "samples", OPT_FLAG, UNIT_NONE, &samples, 0, 0, 0,
 		"print every path instead of the summary", 0, 0 },
-	{ 'W', "rates", OPT_TEXT, UNIT_NONE, &rates_file, 0, 0, "FILE",
+	{ 0, "rates", OPT_TEXT, UNIT_NONE, &rates_file, 0, 0, "FILE",
 		"write the component's wear per step, one row per path", 0, 1 },
-	{ 'H', "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, 1e18, "T",
+	{ 0, "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, 1e18, "T",
 		"what lives longer counts as no failure [none; 10 x age for filters on their own]",
 		0, 0 },
-	{ 'e', "eol", OPT_NUM, UNIT_TIME, &eol, 1e-18, 1e18, "T",
+	{ 0, "eol", OPT_NUM, UNIT_TIME, &eol, 1e-18, 1e18, "T",
 		"true end of life: add scores of the predictions", 0, 0 },
-	{ 'l', "cone", OPT_NUM, UNIT_FRACTION, &cone, 1e-6, 10, "ALPHA",
+	{ 0, "cone", OPT_NUM, UNIT_FRACTION, &cone, 1e-6, 10, "ALPHA",
 		"half-width of the alpha-lambda test", 0, 0 },
 	{ 'c', "count", OPT_INT, UNIT_COUNT, &count, 1, 1e7, "N", "Monte-Carlo paths", 0,
 		0 },
@@ -238,7 +238,7 @@ int main(int argc, char **argv)
 	struct forecast *f;
 	struct state s = { 0 };
 	double dry;
-	int i;
+	int i, doubtful = 0;
 
 	pump_init();
 	i = opt_parse(&prog, argc, argv);
@@ -246,7 +246,7 @@ int main(int argc, char **argv)
 		state_file = argv[i];
 	settle();
 	if (wear_files.n)
-		p = fragments_read(&wear_files, first_step, made_by);
+		p = fragments_read(&wear_files, first_step, made_by, &doubtful);
 	if (!new)
 		state_open(&s, state_file, &pump.pair);
 	if (isnan(pump.pair.gap_new) && (new || s.quantity >= PAIR_VOLUME))
@@ -271,5 +271,5 @@ int main(int argc, char **argv)
 	for (int k = 0; k < wear_files.n; k++)
 		free(made_by[k]);
 	free(cmd);
-	return shell_done(0);
+	return shell_done(doubtful ? EXIT_NOCONV : 0);
 }

@@ -1,5 +1,5 @@
-/* Arrivals of one to four overlapping pulses: a network, the joint fit, and the fit with
- * the network's first guesses, against the Cramer-Rao bound.
+/* Arrivals of one to four overlapping pulses: a network and the joint fit, against the
+ * Cramer-Rao bound.
  *
  * usage: arrivals NETWORK [SECTIONS]
  *
@@ -11,16 +11,16 @@
  * section.
  */
 #include "net/cnndata.h"
-#include "signal/joint.h"
 #include "net/netfile.h"
+#include "signal/joint.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
-enum method { NETWORK, NETWORK_FIT, FIT, BOUND, METHODS };
+enum method { NETWORK, FIT, BOUND, METHODS };
 
-static const char *const names[] = { "network", "network+fit", "fit", "bound" };
+static const char *const names[] = { "network", "fit", "bound" };
 
 struct tally {
 	double found, time, delay, size, pulses, seconds, searches;
@@ -97,9 +97,9 @@ static void work_section(struct network *net, struct joint *joint,
 	double begin = cpu_seconds();
 	int m = 0;
 
-	if (method == NETWORK || method == NETWORK_FIT)
+	if (method == NETWORK)
 		m = look(net, s, pulse);
-	if (method == NETWORK_FIT || method == FIT)
+	if (method == FIT)
 		joint_fit(joint, &scene, y1, y2, s->section.n, pulse, &m, &r);
 	if (method == BOUND) {
 		for (m = 0; m < s->sources; m++)

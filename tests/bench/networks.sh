@@ -6,8 +6,8 @@
 # delays      a structure of tables    mean squared error of three delays of 1000 training
 #             2 to 6, by epochs        and 300 test samples: output by output, and in the
 #                                      best order (3-21); 1/12 and 1/24 need no data
-# arrivals    network, joint fit,      root mean square error of the delay over the
-#             both, by pulses and SNR  Cramer-Rao bound, of sections whose count is right
+# arrivals    network and joint fit,   root mean square error of the delay over the
+#             by pulses and SNR        Cramer-Rao bound, of sections whose count is right
 #
 # Seconds are processor time: of the training (delays), of the work per sample or section.
 # OpenBLAS, where it was there at build time, makes training some five times faster.
@@ -28,21 +28,21 @@ structure() {
 
 delays() {
 	for e in 3 10 30 100 300; do
-		structure '[10] descent' $e -l 10 -o descent -r 0.05
-		structure '[10] adam' $e -l 10
-		structure 'cascade [10]' $e -l 10+
-		structure '[8 8] adam' $e -l '8 8'
+		structure '[10] descent' $e --layers 10 --optimiser descent --learning-rate 0.05
+		structure '[10] adam' $e --layers 10
+		structure 'cascade [10]' $e --layers 10+
+		structure '[8 8] adam' $e --layers '8 8'
 	done
 	for e in 3 10 30; do
-		structure 'auto-encoder [100 50]' $e -l '100 50' -a sigmoid -p $e
-		structure 'sparse [100 50]' $e -l '100 50' -a sigmoid -p $e -q 4
+		structure 'auto-encoder [100 50]' $e --layers '100 50' --activation sigmoid --pretrain $e
+		structure 'sparse [100 50]' $e --layers '100 50' --activation sigmoid --pretrain $e --sparsity 4
 	done
 	for e in 1 3 9; do
-		structure '10conv20*2' $e -l '10conv20x2 pool2x2 256' -a relu -b 20 -r 3e-4
+		structure '10conv20*2' $e --layers '10conv20x2 pool2x2 256' --activation relu --batch 20 --learning-rate 3e-4
 	done
 	for e in 1 3; do
-		structure '10conv30*2 10conv15*1' $e -b 20 -r 3e-4 -a relu \
-			-l '10conv30x2 pool2x2 10conv15x1 pool2x1 1024'
+		structure '10conv30*2 10conv15*1' $e --batch 20 --learning-rate 3e-4 --activation relu \
+			--layers '10conv30x2 pool2x2 10conv15x1 pool2x1 1024'
 	done
 }
 
@@ -80,7 +80,7 @@ set yrange [0.5:20]
 set xlabel "seconds per section"
 set ylabel "error of the delay over the Cramer-Rao bound"
 set arrow from graph 0, first 1 to graph 1, first 1 nohead dashtype 2
-plot for [m in "network network+fit fit"] \
+plot for [m in "network fit"] \
 	sprintf("< awk -F '\t' -v n='%s' '\$1 == \"arrivals\" && index(\$2, n \" \") == 1' bench.tsv", m) \
 	using 7:4 with points pointsize 1.5 title m
 EOF

@@ -1,0 +1,188 @@
+#include "arrivals.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
+#include "example_options.h"
+#include "io/signals.h"
+#include "io/tables.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *sections_file;
+static double duration = NAN, align = NAN;
+static long sections, refused;
+
+struct opt arrivals_rows[] = {
+	{ 0, "sections", OPT_TEXT, UNIT_NONE, &sections_file, 0, 0, "FILE",
+		"apply, pulses: table of the sections, as of duet --sections", NULL, 0 },
+	{ 0, "pulse-length", OPT_NUM, UNIT_TIME, &duration, 1e-12, 1e9, "T",
+		"apply, pulses: duration of a pulse of the mean particle", NULL, 0 },
+	{ 0, "transit", OPT_NUM, UNIT_TIME, &align, 0, 1e9, "T",
+		"apply, pulses: time from sensor 1 to sensor 2 of the mean particle",
+		NULL, 0 },
+	OPT_END,
+};
+
+/* The stretch of the record that is held: frames first to first + n, one array per
+ * channel. */
+struct stretch {
+	struct signal_in *in;
+	double *y[2];
+	long long first;
+	size_t n, room;
+	int ended;
+};
+
+void arrivals_check(void)
+{
+	if (!sections_file || isnan(duration) || isnan(align))
+		die(EXIT_USAGE, "--task apply --model pulses wants --sections, "
+				"--pulse-length and --transit");
+}
+
+int arrivals_refused(void)
+{
+	return refused > 0;
+}
+
+/* Forgets all before frame from and reads up to frame to. */
+static void move_stretch(struct stretch *s, long long from, long long to)
+{
+	enum { BLOCK = 4096 };
+	double x[2 * BLOCK];
+
+	while (!s->ended && s->first + (long long)s->n < to) {
+		size_t got = signal_read_some(s->in, x, BLOCK), drop = s->n;
+
+		if (from - s->first < (long long)drop)
+			drop = from > s->first ? (size_t)(from - s->first) : 0;
+		if (s->n - drop + got > s->room) {
+			s->room = 2 * (s->n + got);
+			for (int c = 0; c < 2; c++)
+				s->y[c] = xrealloc(s->y[c], s->room, sizeof *s->y[c]);
+		}
+		for (int c = 0; c < 2; c++) {
+			if (drop && s->n > drop)
+				memmove(s->y[c], s->y[c] + drop,
+					(s->n - drop) * sizeof *s->y[c]);
+			for (size_t i = 0; i < got; i++) {
+				if (!isfinite(x[2 * i + (size_t)c]))
+					die(EXIT_RUN,
+						"%s: channel %d, frame %lld: not a finite "
+						"number",
+						signal_name(s->in), c + 1,
+						s->first + (long long)(s->n + i));
+				s->y[c][s->n - drop + i] = x[2 * i + (size_t)c];
+			}
+		}
+		s->first += (long long)drop;
+		s->n += got - drop;
+		s->ended = got == 0;
+	}
+}
+
+/* The pulses of frames [from, to) of channel 1 and of as many of channel 2, shift frames
+ * later; 0 where they do not suit the network. */
+static int find_pulses(struct network *net, struct stretch *s, long long from,
+	long long to, long long shift, struct cnn_pulse *pulse)
+{
+	double rate = (double)signal_format(s->in)->rate;
+	struct cnn_section section = { .duration = duration * rate,
+		.gain = (lessons.gain.v[0] + lessons.gain.v[1]) / 2,
+		.middle = align * rate - (double)shift,
+		.reach = lessons.reach.v[1] * duration * rate };
+	long long end;
+
+	/* A section that is too long is not read in. */
+	if ((double)(to - from) * CNN_PER_PULSE > CNN_POINTS * section.duration)
+		return 0;
+	move_stretch(s, from, to + shift);
+	end = s->first + (long long)s->n - shift;
+	if (from < s->first || end <= from)
+		return 0;
+	section.n = (size_t)((to < end ? to : end) - from);
+	section.y1 = s->y[0] + (from - s->first);
+	section.y2 = s->y[1] + (from - s->first) + shift;
+	return cnn_apply(net, &section, opt_given("sources") ? (int)lessons.sources : 0, pulse);
+}
+
+/* Reads the table of sections, and the record up to the end of each. */
+static void work_sections(struct network *net, struct stretch *s, struct table_in *in,
+	struct table_out *out)
+{
+	int number = table_need(in, "section"), begin = table_need(in, "begin"),
+	    end = table_need(in, "end");
+	double rate = (double)signal_format(s->in)->rate, last = 0;
+	long long shift = llround(align * rate);
+	long particles = 0;
+
+	while (table_next(in)) {
+		double from = table_number(in, begin), to = table_number(in, end);
+		struct cnn_pulse pulse[CNN_SOURCES] = { 0 };
+		long long first;
+		int m;
+
+		if (!(from >= last) || !(to >= from) || !(to * rate < 1e15))
+			die(EXIT_RUN,
+				"%s: line %ld: want sections in order, begin before end",
+				table_name(in), table_line(in));
+		last = from;
+		first = llround(from * rate);
+		m = find_pulses(net, s, first, llround(to * rate), shift, pulse);
+		for (int k = 0; k < (m ? m : 1); k++) {
+			double t = (double)first + pulse[k].t,
+			       delay = (double)shift + pulse[k].delta;
+			const double row[] = { (double)particles, t / rate,
+				(t + delay) / rate, pulse[k].a, delay / rate };
+
+			for (int i = 0; i < 5; i++)
+				table_put(out, m ? row[i] : NAN);
+			table_put(out, table_number(in, number));
+			table_put(out, m);
+			table_put_text(out, m ? "guessed" : "refused");
+			table_end_row(out);
+			particles += m > 0;
+		}
+		table_flush(out);
+		refused += m == 0;
+		sections++;
+	}
+	stats_set("sections", (double)sections);
+	stats_set("sections_refused", (double)refused);
+}
+
+/* What is left of a pipe is read, lest its writer be cut off. */
+static void drain(struct stretch *s)
+{
+	double x[2];
+
+	while (!s->ended)
+		s->ended = signal_read_some(s->in, x, 1) == 0;
+}
+
+void arrivals_apply(const char *network, const char *record)
+{
+	struct netfile file;
+	struct network *net = lessons_network(network, &file);
+	struct stretch s = { .in = signal_open(record, NULL) };
+	struct table_in *in = table_open(sections_file);
+	char *cmd = opt_cmd(signal_format(s.in)->cmd, NULL);
+	struct table_out *out = table_create(NULL, cmd, "1 s s V s 1 1 1",
+		"particle time1 time2 amplitude delay section sources verdict");
+
+	if (signal_format(s.in)->channels != 2)
+		die(EXIT_RUN, "%s: want 2 channels, got %d", signal_name(s.in),
+			signal_format(s.in)->channels);
+	work_sections(net, &s, in, out);
+	drain(&s);
+	if (refused)
+		warn("%ld of %ld sections do not suit the network", refused, sections);
+	table_done(out);
+	table_close(in);
+	signal_close(s.in);
+	free(s.y[0]);
+	free(s.y[1]);
+	free(cmd);
+	free(file.cmd);
+	network_free(net);
+}
