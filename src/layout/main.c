@@ -51,7 +51,7 @@ static const struct opt opts[] = {
 	{ 0, "method", OPT_WORD, UNIT_NONE, &method, 0, 0, "auto|closed|sum",
 		"standard errors from integrals over time or sums over samples", methods,
 		0 },
-	{ 0, "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 2e9, "F", "sampling rate", NULL,
+	{ 'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 2e9, "F", "sampling rate", NULL,
 		0 },
 	{ 0, "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-12, 1e3, "Q", "of the oil", NULL, 0 },
 	{ 0, "bore", OPT_NUM, UNIT_LENGTH, &bore, 1e-6, 10, "D", "diameter of the pipe",
