@@ -19,14 +19,18 @@ static const char *stats_path;
 static const struct opt common[] = {
 	{ 'S', "stats", OPT_TEXT, UNIT_NONE, &stats_path, 0, 0, "FILE",
 		"write one row of work counters to FILE", 0, 1 },
-	{ 0, "follow", OPT_FLAG, UNIT_NONE, &follow, 0, 0, 0,
-		"wait for the end of an input that is still being written", 0, 1 },
 	{ 'v', "verbose", OPT_FLAG, UNIT_NONE, &verbose_flag, 0, 0, 0,
 		"report on standard error", 0, 1 },
 	{ 'h', "help", OPT_FLAG, UNIT_NONE, 0, 0, 0, 0, "print this help and exit", 0,
 		1 },
 	{ 'V', "version", OPT_FLAG, UNIT_NONE, 0, 0, 0, 0, "print the version and exit",
 		0, 1 },
+	OPT_END,
+};
+
+static const struct opt reading[] = {
+	{ 0, "follow", OPT_FLAG, UNIT_NONE, &follow, 0, 0, 0,
+		"wait for the end of an input that is still being written", 0, 1 },
 	OPT_END,
 };
 
@@ -441,6 +445,8 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 	msg_name(program->name);
 	stats_start();
 	gather(program->opts);
+	if (strcmp(program->reads, "nothing") != 0)
+		gather(reading);
 	gather(common);
 	getopt_tables(letters, words);
 	opterr = 0;
