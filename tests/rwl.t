@@ -168,7 +168,7 @@ ok "grey model and scores" rwl --wear even.tsv --state-unit L/min --time-unit h 
 near "grey life of an exponential, h" "$(cell out 13 grey | awk '{ print $1 / 3600 }')" 586 0.2
 near "truth is what is left" "$(cell out 13 truth)" 2109600 0
 is "summary of the scores" "$(sed -n 's/^# \([a-z_]*\):.*/\1/p' out | tr '\n' ' ')" \
-	"cmd predictions infinite_medians bias mean_absolute_error root_mean_square_error relative_accuracy alpha_lambda prognostic_horizon coverage crps "
+	"stream cmd predictions infinite_medians bias mean_absolute_error root_mean_square_error relative_accuracy alpha_lambda prognostic_horizon coverage crps end "
 near "error is median less truth" "$(cell out 5 error)" \
 	"$(calc "$(cell out 5 q50) - $(cell out 5 truth)")" 1e-6
 
