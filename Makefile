@@ -211,8 +211,10 @@ demo:
 	@$(MAKE) --no-print-directory -C examples/demo \
 		SURFACE="$(if $(filter /%,$(SURFACE)),,$(SURFACE:%=$(CURDIR)/))$(SURFACE)"
 
-$(B)/wearpipe.bash: $(BUILT:%=$(BIN)/%) scripts/completion
-	@scripts/completion $(BUILT:%=$(BIN)/%) >$@
+$(B)/install/wearpipe $(B)/install/_wearpipe $(B)/install/wearpipe.fish: $(BUILT:%=$(BIN)/%) scripts/completion
+	@mkdir -p $(@D)
+	@scripts/completion $(if $(findstring fish,$@),fish,$(if $(findstring _,$(@F)),zsh,bash)) \
+		$(BUILT:%=$(BIN)/%) >$@
 
 HEADERS = $(wildcard include/wearpipe/*.h)
 MAN1 = $(wildcard man/*.1)
@@ -230,20 +232,20 @@ $(MANDIR)/man5|$(MAN5)
 $(MANDIR)/man7|$(MAN7)
 $(DATADIR)/wearpipe|share/arrivals.net
 $(DATADIR)/bash-completion/completions|$(B)/install/wearpipe
+$(DATADIR)/zsh/site-functions|$(B)/install/_wearpipe
+$(DATADIR)/fish/vendor_completions.d|$(B)/install/wearpipe.fish
 $(DOCDIR)|README.md LICENSE CHANGELOG.md
 endef
 export installed
 
-$(B)/install/wearpipe: $(B)/wearpipe.bash
-	@mkdir -p $(@D)
-	@cp $< $@
 $(B)/install/wearpipe.pc: wearpipe.pc.in Makefile FORCE
 	@mkdir -p $(@D)
 	@sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@INCLUDEDIR@|$(INCLUDEDIR)|' \
 		-e 's|@VERSION@|$(VERSION)|' wearpipe.pc.in >$@
 FORCE:
 
-install: all $(LIBRARY) $(B)/install/wearpipe $(B)/install/wearpipe.pc
+COMPLETIONS = $(B)/install/wearpipe $(B)/install/_wearpipe $(B)/install/wearpipe.fish
+install: all $(LIBRARY) $(COMPLETIONS) $(B)/install/wearpipe.pc
 	@printf '%s\n' "$$installed" | while IFS='|' read -r folder files; do \
 		install -d "$(DESTDIR)$$folder" || exit; \
 		for f in $$files; do \
