@@ -35,6 +35,13 @@ debrisstat --diameter 0:200um --truncated weibull.tsv >fits.tsv
 near "unless the distribution is cut off too: shape" "$(fit weibull_shape 2)" 2.718 0.02
 near "and scale" "$(fit weibull_scale 2)" 200.698e-6 1e-6
 
+# Diameters that are equal to nine digits: the logarithms of Weibull quantiles, scaled by 1e-9.
+awk 'BEGIN { for (i = 0; i < 400; i++) printf "%d 1 %.17g 1\n", i, 100 * (1 + 1e-9 * log(-log(1 - (i + 0.5) / 400))) }' |
+	table >equal.tsv
+debrisstat equal.tsv >fits.tsv
+near "nearly equal diameters have the shape of their spread" "$(fit weibull_shape 2 | awk '{ print $1 / 1e9 }')" 1 0.02
+rising "and its interval holds it" "$(fit weibull_shape 3)" 1e9 "$(fit weibull_shape 4)"
+
 # Counts 3 x^2 + 2 in all up to step x, over two realisations.
 awk 'BEGIN { for (x = 1; x <= 6; x++) { n = x == 1 ? 5 : 3 * (2 * x - 1)
 	for (i = 0; i < n; i++) print i % 2, x, 100, 1 + i % 4 } }' | table >growth.tsv

@@ -15,9 +15,9 @@ static long sections, refused;
 struct opt arrivals_rows[] = {
 	{ 0, "sections", OPT_TEXT, UNIT_NONE, &sections_file, 0, 0, "FILE",
 		"apply, pulses: table of the sections, as of duet --sections", NULL, 0 },
-	{ 0, "pulse-length", OPT_NUM, UNIT_TIME, &duration, 1e-12, 1e9, "T",
+	{ 0, "pulse-duration", OPT_NUM, UNIT_TIME, &duration, 1e-12, 1e9, "T",
 		"apply, pulses: duration of a pulse of the mean particle", NULL, 0 },
-	{ 0, "transit", OPT_NUM, UNIT_TIME, &align, 0, 1e9, "T",
+	{ 0, "align", OPT_NUM, UNIT_TIME, &align, 0, 1e9, "T",
 		"apply, pulses: time from sensor 1 to sensor 2 of the mean particle",
 		NULL, 0 },
 	OPT_END,
@@ -37,7 +37,7 @@ void arrivals_check(void)
 {
 	if (!sections_file || isnan(duration) || isnan(align))
 		die(EXIT_USAGE, "--task apply --model pulses wants --sections, "
-				"--pulse-length and --transit");
+				"--pulse-duration and --align");
 }
 
 int arrivals_refused(void)
