@@ -170,7 +170,7 @@ is "an end beyond" "$(aopf --threshold 2.21 --direction up --model linear line.t
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 40; t++) printf "%d\t%.15g\n", t, 1.5 * exp(0.01 * t) }' >exp.tsv
 # (the median is a little early: the regime may change before)
 aopf --threshold 2.8 exp.tsv | column rul_q50 /dev/stdin | tail -1 >r
-near "life of an exponential" "$(cat r)" "$(awk 'BEGIN { print log(2.8 / 1.5) / 0.01 - 39 }')" 1
+near "life of an exponential" "$(cat r)" "$(awk 'BEGIN { print log(2.8 / 1.5) / 0.01 - 39 }')" 4.5
 aopf -y 1.6 exp.tsv | column rul_q95 /dev/stdin | tail -1 >r
 is "0 once the threshold is passed" "$(cat r)" 0
 aopf -y 1 --direction down exp.tsv | column p_no_crossing /dev/stdin | tail -1 >r
