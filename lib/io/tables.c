@@ -45,9 +45,9 @@ struct table_in {
 struct table_out {
 	FILE *f;
 	const char *name;
-	char *head;    /* comment lines not yet written */
-	char *columns; /* header line, NULL once written */
-	char *cmd;
+	char *head;       /* comment lines not yet written */
+	char *columns;    /* header line, NULL once written */
+	struct keys told; /* comments so far */
 	int ncolumns, ncells;
 	char *row; /* the cells of the present row */
 	size_t length, room;
@@ -504,6 +504,7 @@ static void write_head(struct table_out *t)
 void table_comment(struct table_out *t, const char *key, const char *format, ...)
 {
 	char *value, *escaped, *line, *longer;
+	const char *before;
 	va_list ap;
 	int n;
 
@@ -515,6 +516,15 @@ void table_comment(struct table_out *t, const char *key, const char *format, ...
 	vsnprintf(value, (size_t)n + 1, format, ap);
 	va_end(ap);
 	escaped = text_escape(value);
+	free(value);
+	before = keys_get(&t->told, key);
+	if (before && strcmp(before, escaped) == 0) {
+		free(escaped);
+		return;
+	}
+	if (before && strcmp(key, "cmd") == 0)
+		write_head(t); /* with the first pipeline, even where it made no row */
+	keys_set(&t->told, key, escaped);
 	line = xprintf("# %s: %s\n", key, escaped);
 	if (t->columns || !t->ncolumns) {
 		longer = xprintf("%s%s", t->head, line);
@@ -525,18 +535,12 @@ void table_comment(struct table_out *t, const char *key, const char *format, ...
 	}
 	free(line);
 	free(escaped);
-	free(value);
 }
 
 void table_cmd(struct table_out *t, const char *cmd)
 {
-	if (!cmd || (t->cmd && strcmp(t->cmd, cmd) == 0))
-		return;
-	if (t->cmd)
-		write_head(t); /* with the first pipeline, even where it made no row */
-	free(t->cmd);
-	t->cmd = xstrdup(cmd);
-	table_comment(t, "cmd", "%s", cmd);
+	if (cmd)
+		table_comment(t, "cmd", "%s", cmd);
 }
 
 static void append(struct table_out *t, const char *text)
@@ -610,7 +614,7 @@ void table_done(struct table_out *t)
 	if (ferror(t->f) || (t->f != stdout && fclose(t->f)))
 		die(EXIT_RUN, "%s:", t->name);
 	free(t->head);
-	free(t->cmd);
+	keys_free(&t->told);
 	free(t->row);
 	free(t);
 }

@@ -58,7 +58,8 @@ void table_close(struct table_in *t);
 /* columns: names parted by blanks, "t y state".  cmd and units may be NULL. */
 struct table_out *table_create(
 	const char *path, const char *cmd, const char *units, const char *columns);
-/* One more "# key: value" line; before the first row it stands above the header. */
+/* One more "# key: value" line, unless the key has this value already; before the first
+ * row it stands above the header. */
 void table_comment(struct table_out *t, const char *key, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));
 /* A further "# cmd:" line where the pipeline that made the rows changes; nothing is

@@ -19,30 +19,13 @@ struct tables {
 	struct head head;
 };
 
-static int in_head(const struct head *h, const char *key, const char *value)
-{
-	for (int i = 0; i < h->n; i++)
-		if (!strcmp(h->key[i], key) && !strcmp(h->value[i], value))
-			return 1;
-	return 0;
-}
-
-static void put_comment(struct table_out *out, const char *key, const char *value)
-{
-	if (strcmp(key, "cmd") == 0)
-		table_cmd(out, value);
-	else
-		table_comment(out, key, "%s", value);
-}
-
 static void take_comment(void *context, const char *key, const char *value)
 {
 	struct tables *t = context;
 	struct head *h = &t->head;
 
 	if (t->out) {
-		if (!strcmp(key, "cmd") || !in_head(h, key, value))
-			put_comment(t->out, key, value);
+		table_comment(t->out, key, "%s", value);
 		return;
 	}
 	h->key = xrealloc(h->key, (size_t)h->n + 1, sizeof *h->key);
@@ -71,7 +54,7 @@ static void join_table(struct tables *t, struct input *input)
 		t->columns = columns;
 		t->out = table_create(NULL, NULL, NULL, columns);
 		for (int i = 0; i < t->head.n; i++)
-			put_comment(t->out, t->head.key[i], t->head.value[i]);
+			table_comment(t->out, t->head.key[i], "%s", t->head.value[i]);
 	} else if (strcmp(columns, t->columns) != 0) {
 		die(EXIT_RUN, "%s: columns '%s', want '%s' as in the table before",
 			table_name(in), columns, t->columns);
