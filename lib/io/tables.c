@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINE_MOST = 1 << 24 }; /* bytes of a line */
+enum { LINE_MOST = 1 << 24, KEYS_MOST = 1000 }; /* bytes of a line, keys of a table */
 
 static const char promise[] = "# stream: " ENDS_PROMISE "\n";
 static const char end_line[] = "# end: ";
@@ -23,7 +23,7 @@ struct table_in {
 	struct input *in;
 	const char *name;
 	char *line; /* the present row, cut into cells */
-	size_t room, most;
+	size_t room, most, most_keys;
 	long number; /* of that line, from 1 */
 	int ncolumns;
 	char **column; /* names */
@@ -66,7 +66,7 @@ static char *trim(char *s)
 	return s + strspn(s, " \t");
 }
 
-/* Comments are free text: only the keys that somebody asks for are kept. */
+/* Comments are free text, but what begins with a single word and a colon is a key. */
 static void keep_key(struct table_in *t, char *comment)
 {
 	char *colon = strchr(comment, ':'), *value;
@@ -75,16 +75,18 @@ static void keep_key(struct table_in *t, char *comment)
 		return;
 	*colon = '\0';
 	comment = trim(comment);
-	if (t->take && strcmp(comment, "stream"))
-		t->take(t->context, comment, trim(colon + 1));
-	if (strcmp(comment, "cmd") && strcmp(comment, "units") &&
-		strcmp(comment, "columns"))
+	if (!*comment || comment[strcspn(comment, " \t")] || !strcmp(comment, "stream"))
 		return;
+	if (t->take)
+		t->take(t->context, comment, trim(colon + 1));
 	/* Names and units may be separated by TABs. */
 	value = strcmp(comment, "cmd") ? xstrdup(trim(colon + 1))
 				       : text_escape(trim(colon + 1));
 	keys_set(&t->keys, comment, value);
 	free(value);
+	if ((size_t)t->keys.n > t->most_keys)
+		die(EXIT_RUN, "%s: line %ld: more than %zu keys", t->name, t->number,
+			t->most_keys);
 	if (!strcmp(comment, "cmd")) {
 		upstream_add(&t->upstream, table_key(t, "cmd"));
 		t->part++;
@@ -285,6 +287,7 @@ struct table_in *table_with_comments(
 	t->context = context;
 	t->name = input_name(t->in);
 	t->most = input_limit("line", LINE_MOST);
+	t->most_keys = input_limit("keys", KEYS_MOST);
 	if (!next_line(t))
 		return t;
 	t->blanks = strchr(t->line, '\t') ? "\t" : " \t";
