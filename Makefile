@@ -238,6 +238,7 @@ $(DATADIR)/wearpipe|share/arrivals.net
 $(DATADIR)/bash-completion/completions|$(B)/install/wearpipe
 $(DATADIR)/zsh/site-functions|$(B)/install/_wearpipe
 $(DATADIR)/fish/vendor_completions.d|$(B)/install/wearpipe.fish
+$(DATADIR)/wearpipe/python|python/wearpipe.py
 $(DOCDIR)|README.md LICENSE CHANGELOG.md
 endef
 export installed
@@ -268,7 +269,7 @@ uninstall:
 	done
 	@rm -f "$(DESTDIR)$(LIBDIR)/libwearpipe.so"
 	@for p in $(BUILT); do rm -f "$(DESTDIR)$(DATADIR)/bash-completion/completions/$$p"; done
-	@for d in "$(INCLUDEDIR)/wearpipe" "$(DATADIR)/wearpipe" "$(DOCDIR)"; do \
+	@for d in "$(INCLUDEDIR)/wearpipe" "$(DATADIR)/wearpipe/python" "$(DATADIR)/wearpipe" "$(DOCDIR)"; do \
 		[ ! -d "$(DESTDIR)$$d" ] || rmdir "$(DESTDIR)$$d"; \
 	done
 
