@@ -64,8 +64,8 @@ cblas_LINK = $(CBLAS_LIBS)
 fftw_LINK = $(FFTW_LIBS)
 gsl_LINK = $(GSL_LIBS)
 
-# Scripts that users call, installed beside the programs.
-SCRIPTS_INSTALLED =
+# Scripts that users call, built and installed beside the programs.
+SCRIPTS = wearplot
 
 ALL_CFLAGS = $(STD) $(WARN) $(CFLAGS) -pthread
 ALL_CPPFLAGS = -Iinclude -Ilib -Isrc -DWEARPIPE_VERSION='"$(VERSION)"' $(BLAS_FLAG) $(FFTW_CFLAGS) $(GSL_CFLAGS) $(CPPFLAGS)
@@ -95,7 +95,7 @@ BENCH_BINS := $(patsubst tests/bench/%.c,$(B)/bench/%,$(wildcard tests/bench/*.c
 .SECONDARY:
 .DELETE_ON_ERROR:
 
-all: libraries $(BUILT:%=$(BIN)/%)
+all: libraries $(BUILT:%=$(BIN)/%) $(SCRIPTS:%=$(BIN)/%)
 
 .PHONY: libraries
 libraries:
@@ -108,6 +108,11 @@ $(BIN)/$(1): $(call objects,$(wildcard src/$(1)/*.c)) $(B)/libcommon.a $(B)/libc
 	$$(Q)$$(CC) $$(ALL_CFLAGS) $$(LDFLAGS) -o $$@ $$^ $$(foreach l,$($(1)_LIBS),$$($$(l)_LINK)) -lm
 endef
 $(foreach p,$(PROGRAMS),$(eval $(call program,$(p))))
+
+$(SCRIPTS:%=$(BIN)/%): $(BIN)/%: scripts/%
+	@mkdir -p $(BIN)
+	@sed 's/@VERSION@/$(VERSION)/' $< >$@
+	@chmod 755 $@
 
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
@@ -213,17 +218,18 @@ demo:
 	@$(MAKE) --no-print-directory -C examples/demo \
 		SURFACE="$(if $(filter /%,$(SURFACE)),,$(SURFACE:%=$(CURDIR)/))$(SURFACE)"
 
-$(B)/wearpipe.bash: $(BUILT:%=$(BIN)/%) scripts/completion
-	@scripts/completion $(BUILT:%=$(BIN)/%) >$@
+$(B)/install/wearpipe $(B)/install/_wearpipe $(B)/install/wearpipe.fish: $(BUILT:%=$(BIN)/%) scripts/completion
+	@mkdir -p $(@D)
+	@scripts/completion $(if $(findstring fish,$@),fish,$(if $(findstring _,$(@F)),zsh,bash)) \
+		$(BUILT:%=$(BIN)/%) >$@
 
 HEADERS = $(wildcard include/wearpipe/*.h)
 MAN1 = $(wildcard man/*.1)
 MAN5 = $(wildcard man/*.5)
 MAN7 = $(wildcard man/*.7)
-SCRIPTS = $(SCRIPTS_INSTALLED:%=scripts/%)
 # What is installed, as FOLDER|FILES; make uninstall removes the same.
 define installed
-$(BINDIR)|$(BUILT:%=$(BIN)/%) $(SCRIPTS)
+$(BINDIR)|$(BUILT:%=$(BIN)/%) $(SCRIPTS:%=$(BIN)/%)
 $(LIBDIR)|$(LIBRARY)
 $(LIBDIR)/pkgconfig|$(B)/install/wearpipe.pc
 $(INCLUDEDIR)/wearpipe|$(HEADERS)
@@ -232,20 +238,20 @@ $(MANDIR)/man5|$(MAN5)
 $(MANDIR)/man7|$(MAN7)
 $(DATADIR)/wearpipe|share/arrivals.net
 $(DATADIR)/bash-completion/completions|$(B)/install/wearpipe
+$(DATADIR)/zsh/site-functions|$(B)/install/_wearpipe
+$(DATADIR)/fish/vendor_completions.d|$(B)/install/wearpipe.fish
 $(DOCDIR)|README.md LICENSE CHANGELOG.md
 endef
 export installed
 
-$(B)/install/wearpipe: $(B)/wearpipe.bash
-	@mkdir -p $(@D)
-	@cp $< $@
 $(B)/install/wearpipe.pc: wearpipe.pc.in Makefile FORCE
 	@mkdir -p $(@D)
 	@sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@INCLUDEDIR@|$(INCLUDEDIR)|' \
 		-e 's|@VERSION@|$(VERSION)|' wearpipe.pc.in >$@
 FORCE:
 
-install: all $(LIBRARY) $(B)/install/wearpipe $(B)/install/wearpipe.pc
+COMPLETIONS = $(B)/install/wearpipe $(B)/install/_wearpipe $(B)/install/wearpipe.fish
+install: all $(LIBRARY) $(COMPLETIONS) $(B)/install/wearpipe.pc
 	@printf '%s\n' "$$installed" | while IFS='|' read -r folder files; do \
 		install -d "$(DESTDIR)$$folder" || exit; \
 		for f in $$files; do \

@@ -17,19 +17,30 @@ for p in $programs; do
 	[ -s "$usr/share/bash-completion/completions/$p" ] || missing="$missing completion of $p"
 done
 is 'every program has its manual and completion' "$missing" ''
+# complete WORD...: what bash offers for the last word of a command line.
+complete_words() {
+	bash -c '. "$0"/share/bash-completion/completions/wearpipe
+		COMP_WORDS=("$@") COMP_CWORD=$(($# - 1))
+		"_wearpipe_$1"; echo "${COMPREPLY[@]}"' "$usr" "$@"
+}
 if command -v bash >/dev/null; then
-	is 'completion knows the choices of an option' "$(bash -c '
-		. "$1"/share/bash-completion/completions/wearpipe
-		COMP_WORDS=(roughgen --acf g) COMP_CWORD=2
-		_wearpipe_roughgen; echo "${COMPREPLY[@]}"' sh "$usr")" gauss
-	is 'and the words of the options' "$(bash -c '
-		. "$1"/share/bash-completion/completions/wearpipe
-		COMP_WORDS=(bemcontact --pois) COMP_CWORD=1
-		_wearpipe_bemcontact; echo "${COMPREPLY[@]}"' sh "$usr")" --poisson
+	is 'completion offers all choices of an option' "$(complete_words roughgen --acf '')" 'gauss exp'
+	is 'and those that begin as typed' "$(complete_words roughgen --acf g)" gauss
+	is 'also behind an equals sign' "$(complete_words bemcontact --boundary = p)" periodic
+	is 'completion offers the words of the options' "$(complete_words duet --m)" --method
+	is 'and files elsewhere' "$(cd "$top" && complete_words bpfilter READ)" README.md
 else
-	skip 'completion knows the choices of an option' 'no bash'
-	skip 'and the words of the options' 'no bash'
+	skip 'completion' 'no bash'
 fi
+for s in zsh fish; do
+	file=$usr/share/zsh/site-functions/_wearpipe
+	[ $s = zsh ] || file=$usr/share/fish/vendor_completions.d/wearpipe.fish
+	if command -v $s >/dev/null; then
+		ok "the completion of $s is well formed" $s -n "$file"
+	else
+		skip "the completion of $s is well formed" "no $s"
+	fi
+done
 
 # Names: all that the library defines for others begins with wp_.
 names() {

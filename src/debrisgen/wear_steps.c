@@ -181,6 +181,11 @@ struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c, l
 		.offset = w->par.stress.offset };
 }
 
+double wearing_friction(void)
+{
+	return friction;
+}
+
 double wearing_length(const struct record *r)
 {
 	return shear ? r->ny * r->dy : r->nx * r->dx;
