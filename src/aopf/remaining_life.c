@@ -30,6 +30,7 @@ static struct opt_list levels = { 3, { 0.05, 0.5, 0.95 } };
 static const char *fleet_file;
 
 struct opt outlook_end_rows[] = {
+	OPT_HEADING("End of life"),
 	{ 'y', "threshold", OPT_NUM, UNIT_NONE, &outlook_options.threshold, -DBL_MAX,
 		DBL_MAX, "Y",
 		"value that ends the life, in units of y; none: no prediction of life",
@@ -48,6 +49,7 @@ struct opt outlook_end_rows[] = {
 };
 
 struct opt outlook_model_rows[] = {
+	OPT_HEADING("Prediction"),
 	{ 0, "model", OPT_WORD, UNIT_NONE, &model, 0, 0,
 		"average|linear|exponential|power|rate|grey|literal", "long-term model",
 		models, 0 },

@@ -14,6 +14,7 @@ static double stop_area = 0.8, amplification = 1;
 
 static const struct opt opts[] = {
 	OPT_TABLE(wearing_rows),
+	OPT_HEADING("Steps"),
 	{ 0, "steps", OPT_INT, UNIT_COUNT, &steps, 1, 1e6, "N",
 		"wear steps; the contact is solved anew from the second on", NULL, 0 },
 	{ 0, "stop-area", OPT_NUM, UNIT_FRACTION, &stop_area, 0, 1, "A",

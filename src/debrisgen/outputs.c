@@ -17,6 +17,7 @@ static long stress_layers;
 static const char *surface_path, *summary_path, *stress_path;
 
 struct opt worn_rows[] = {
+	OPT_HEADING("Further output"),
 	{ 0, "surface", OPT_TEXT, UNIT_NONE, &surface_path, 0, 0, "FILE",
 		"write the worn surface of every step", NULL, 1 },
 	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",

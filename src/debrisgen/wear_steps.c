@@ -15,6 +15,7 @@ static int shear, layer, removal;
 static long memory = 512;
 
 struct opt wearing_rows[] = {
+	OPT_HEADING("Wear"),
 	{ 'Y', "yield", OPT_NUM, UNIT_PRESSURE, &yield, 1e-30, 1e30, "Y",
 		"yield stress: material under more von Mises stress is lost", NULL, 0 },
 	{ 'u', "friction", OPT_NUM, UNIT_NONE, &friction, 0, 1e6, "MU",

@@ -20,6 +20,7 @@ static long seed = 1, first_path, count = 1000, first_step = 1, parts;
 static int rule = RATE_MEAN, samples, grey, new;
 
 static const struct opt opts[] = {
+	OPT_HEADING("Input"),
 	{ 0, "wear", OPT_TEXTS, UNIT_NONE, &wear_files, 0, 0, "FILE[:PRESSURE[:AREA]]",
 		"particles or volumes worn off fragments under a nominal pressure", 0,
 		0 },
@@ -29,6 +30,7 @@ static const struct opt opts[] = {
 	{ 0, "new", OPT_FLAG, UNIT_NONE, &new, 0, 0, 0,
 		"read no state: the life of a new pair", 0, 0 },
 	OPT_TABLE(state_rows), OPT_TABLE(pump_threshold_rows),
+	OPT_HEADING("Wear rate"),
 	{ 0, "wear-rate", OPT_WORD, UNIT_NONE, &rule, 0, 0, "mean|last|filter",
 		"rate by (4-29), by (4-28), or followed by filters", rules, 0 },
 	{ 0, "step-time", OPT_NUM, UNIT_TIME, &step_time, 1e-15, 1e15, "T",
@@ -46,6 +48,7 @@ static const struct opt opts[] = {
 	{ 0, "parts", OPT_INT, UNIT_COUNT, &parts, 0, 1e9, "N",
 		"parts of a class that wear independently; 0: as many as fit", 0, 0 },
 	OPT_TABLE(pump_face_rows),
+	OPT_HEADING("Output"),
 	{ 0, "grey", OPT_FLAG, UNIT_NONE, &grey, 0, 0, 0,
 		"add a column: grey model of the state observed", 0, 0 },
 	{ 0, "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "P,...",
@@ -61,6 +64,7 @@ static const struct opt opts[] = {
 		"true end of life: add scores of the predictions", 0, 0 },
 	{ 0, "cone", OPT_NUM, UNIT_FRACTION, &cone, 1e-6, 10, "ALPHA",
 		"half-width of the alpha-lambda test", 0, 0 },
+	OPT_HEADING("Monte Carlo"),
 	{ 'c', "count", OPT_INT, UNIT_COUNT, &count, 1, 1e7, "N", "Monte-Carlo paths", 0,
 		0 },
 	{ 'f', "first", OPT_INT, UNIT_COUNT, &first_path, 0, 4e9, "K",

@@ -19,6 +19,7 @@ struct pump pump = { .pair = { .area = 2346.3e-6,
 	.ports = { 2, { 0.15e6, 21e6 } } };
 
 struct opt pump_threshold_rows[] = {
+	OPT_HEADING("Failure"),
 	{ 0, "threshold-gap", OPT_NUM, UNIT_LENGTH, &pump.pair.threshold_gap, 1e-12, 1,
 		"H", "failure at this gap", 0, 0 },
 	{ 0, "threshold-leakage", OPT_NUM, UNIT_FLOW, &pump.pair.threshold_leakage, 1e-15,
@@ -37,6 +38,7 @@ struct opt pump_threshold_rows[] = {
 };
 
 struct opt pump_face_rows[] = {
+	OPT_HEADING("Sliding pair"),
 	{ 0, "area", OPT_NUM, UNIT_AREA, &pump.pair.area, 1e-18, 1e6, "A",
 		"nominal contact area", 0, 0 },
 	{ 0, "fragment-area", OPT_NUM, UNIT_AREA, &pump.fragment_area, 1e-24, 1e6, "A",
