@@ -38,7 +38,7 @@ Q = $(if $(V),,@)
 say = $(if $(V),@:,@printf '  %-4s %s\n' $(1) '$(2)')
 
 # The outer libraries of each program; what it uses of lib/ the linker takes from one archive.
-PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade
+PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal
 roughgen_LIBS = fftw
 bemcontact_LIBS = fftw
 debrisgen_LIBS = fftw
@@ -47,6 +47,8 @@ bpfilter_LIBS = fftw
 duet_LIBS = fftw
 delaynet_LIBS = cblas gsl
 rwl_LIBS = gsl
+debriscount_LIBS = gsl
+ballcal_LIBS = gsl
 
 FFTW_CFLAGS ?= $(shell $(PKG_CONFIG) --cflags fftw3 2>/dev/null)
 FFTW_LIBS ?= $(shell $(PKG_CONFIG) --libs fftw3 2>/dev/null || echo -lfftw3)
