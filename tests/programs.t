@@ -19,11 +19,16 @@ for p in $programs; do
 	debrisgen) needed='--yield 355MPa' ;;
 	rwl) needed='--wear no-such-file --threshold-gap 1um' ;;
 	delaynet) needed='--task score' ;;
+	abrade) needed='--gap 1um --hardness 1GPa --friction 0' ;;
+	ballcal) needed='--balls no-such-file:1mm' ;;
+	layout) needed='--coils 0 --snr 40dB --arrivals 1' ;;
 	*) needed= ;;
 	esac
+	file=no-such-file
+	grep -q '^usage: .*\[file' "$p.help" || file=
 	fails "$p opens --stats before any work" 1 "^$p: /nonexistent/x: " \
-		"$p" $needed --stats /nonexistent/x no-such-file
-	fails "$p names a missing file" 1 "^$p: .*no-such-file" "$p" $needed no-such-file
+		"$p" $needed --stats /nonexistent/x $file
+	[ -z "$file" ] || fails "$p names a missing file" 1 "^$p: .*no-such-file" "$p" $needed $file
 done
 
 # A list has as many members as its placeholder shows: one less or more is refused.

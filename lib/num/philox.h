@@ -19,18 +19,20 @@ void philox4x32_row(
 /* What a stream is drawn for; part of the counter, so that adding a purpose leaves
  * all others as they were.  Never renumber. */
 enum rng_purpose {
-	RNG_SURFACE = 1,     /* phases and amplitudes of a surface */
-	RNG_SURFACE_2 = 2,   /* second surface of a pair */
-	RNG_ROUGHNESS = 3,   /* drawn Sq or Sa */
-	RNG_PARTICLE = 4,    /* drawn particles of the sensor */
-	RNG_NOISE = 5,       /* sensor noise */
-	RNG_FILTER = 6,      /* particle filter */
-	RNG_LIFE = 7,        /* wear-life ensemble */
-	RNG_BOOTSTRAP = 8,   /* resampling for intervals */
-	RNG_NETWORK = 9,     /* initial weights, shuffling, training scenes */
-	RNG_PREDICT = 10,    /* long-term prediction paths */
-	RNG_MATERIAL = 11,   /* materials of the sensor's particles */
-	RNG_DISTURBANCE = 12 /* events at the sensors that are no particles */
+	RNG_SURFACE = 1,   /* phases and amplitudes of a surface */
+	RNG_SURFACE_2 = 2, /* second surface of a pair */
+	RNG_ROUGHNESS = 3, /* drawn Sq or Sa */
+	RNG_PARTICLE = 4,  /* drawn particles of the sensor */
+	RNG_NOISE = 5,     /* sensor noise */
+	RNG_FILTER = 6,    /* particle filter */
+	RNG_LIFE = 7,      /* wear-life ensemble */
+	RNG_BOOTSTRAP = 8, /* resampling for intervals */
+	RNG_NETWORK = 9,   /* initial weights, shuffling, training scenes */
+	RNG_PREDICT = 10,  /* long-term prediction paths */
+	RNG_ABRASION =
+		11, /* particles drawn from a cleanliness code, places of grooves */
+	RNG_MATERIAL = 12,   /* materials of the sensor's particles */
+	RNG_DISTURBANCE = 13 /* events at the sensors that are no particles */
 };
 
 /* Uniform in (0, 1) and standard normal by address: for index i of stream (seed,

@@ -17,6 +17,7 @@ static long largest = 60, window = 50;
 static int scheme;
 
 struct opt filtering_rows[] = {
+	OPT_HEADING("Particle filter"),
 	{ 0, "order", OPT_CHOICE, UNIT_COUNT, &order, 4, 1000, "N|window|insample|all",
 		"order of the grey model, or how it is chosen", orders, 0 },
 	{ 0, "max-order", OPT_INT, UNIT_COUNT, &largest, 4, 1000, "N",

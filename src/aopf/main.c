@@ -15,12 +15,13 @@ static const char *unit_column;
 
 static const struct opt opts[] = {
 	OPT_TABLE(outlook_end_rows),
-	OPT_TABLE(filtering_rows),
 	OPT_TABLE(outlook_model_rows),
+	OPT_HEADING("Input"),
 	{ 0, "unit", OPT_TEXT, UNIT_NONE, &unit_column, 0, 0, "COLUMN",
 		"column that tells units apart", NULL, 0 },
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &filtering.seed, 0, 9e18, "N",
 		"seed of the random numbers", NULL, 0 },
+	OPT_TABLE(filtering_rows),
 	OPT_END,
 };
 

@@ -17,6 +17,7 @@ static int parts;
 static struct material own = { "own", 1, 0 };
 
 struct opt material_rows[] = {
+	OPT_HEADING("Materials"),
 	{ 0, "material", OPT_TEXT, UNIT_NONE, &mixture, 0, 0, "NAME[=SHARE],...",
 		"of the particles; ferrous if not given", 0, 0 },
 	{ 0, "mur", OPT_NUM, UNIT_NONE, &mur, 1, 1e6, "MUR",

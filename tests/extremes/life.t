@@ -71,7 +71,7 @@ series 2 1+t >s
 accurate "two points" "state is the point" "$(last state s)" 2 1e-6
 says "two points, threshold 5" "no life predicted yet" "$(last rul_q50 -y 5 s)" nan
 series 4 1+t >s
-accurate "four points on a line, threshold 10" "6 left" "$(last rul_q50 -y 10 s)" 6 0.02
+accurate "four points on a line, threshold 10" "6 left by the straight line" "$(last rul_q50 --threshold 10 --model linear s)" 6 0.02
 : >empty
 refused "empty input" "refused" "no column 'y'" aopf empty
 printf 't\ty\n0\tnan\n1\tnan\n2\tnan\n' >s
