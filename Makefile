@@ -62,8 +62,8 @@ cblas_LINK = $(CBLAS_LIBS)
 fftw_LINK = $(FFTW_LIBS)
 gsl_LINK = $(GSL_LIBS)
 
-# Scripts that users call, installed beside the programs.
-SCRIPTS_INSTALLED =
+# Scripts that users call, built and installed beside the programs.
+SCRIPTS = wearplot
 
 ALL_CFLAGS = $(STD) $(WARN) $(CFLAGS) -pthread
 ALL_CPPFLAGS = -Iinclude -Ilib -Isrc -DWEARPIPE_VERSION='"$(VERSION)"' $(BLAS_FLAG) $(FFTW_CFLAGS) $(GSL_CFLAGS) $(CPPFLAGS)
@@ -93,7 +93,7 @@ BENCH_BINS := $(patsubst tests/bench/%.c,$(B)/bench/%,$(wildcard tests/bench/*.c
 .SECONDARY:
 .DELETE_ON_ERROR:
 
-all: libraries $(BUILT:%=$(BIN)/%)
+all: libraries $(BUILT:%=$(BIN)/%) $(SCRIPTS:%=$(BIN)/%)
 
 .PHONY: libraries
 libraries:
@@ -106,6 +106,11 @@ $(BIN)/$(1): $(call objects,$(wildcard src/$(1)/*.c)) $(B)/libcommon.a $(B)/libc
 	$$(Q)$$(CC) $$(ALL_CFLAGS) $$(LDFLAGS) -o $$@ $$^ $$(foreach l,$($(1)_LIBS),$$($$(l)_LINK)) -lm
 endef
 $(foreach p,$(PROGRAMS),$(eval $(call program,$(p))))
+
+$(SCRIPTS:%=$(BIN)/%): $(BIN)/%: scripts/%
+	@mkdir -p $(BIN)
+	@sed 's/@VERSION@/$(VERSION)/' $< >$@
+	@chmod 755 $@
 
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
@@ -220,10 +225,9 @@ HEADERS = $(wildcard include/wearpipe/*.h)
 MAN1 = $(wildcard man/*.1)
 MAN5 = $(wildcard man/*.5)
 MAN7 = $(wildcard man/*.7)
-SCRIPTS = $(SCRIPTS_INSTALLED:%=scripts/%)
 # What is installed, as FOLDER|FILES; make uninstall removes the same.
 define installed
-$(BINDIR)|$(BUILT:%=$(BIN)/%) $(SCRIPTS)
+$(BINDIR)|$(BUILT:%=$(BIN)/%) $(SCRIPTS:%=$(BIN)/%)
 $(LIBDIR)|$(LIBRARY)
 $(LIBDIR)/pkgconfig|$(B)/install/wearpipe.pc
 $(INCLUDEDIR)/wearpipe|$(HEADERS)

@@ -21,7 +21,7 @@ same 'particles: four pipelines joined in order' whole.tsv ensemble.tsv
 # The pipeline of each realisation stands in the table; they rebuild it together.
 is 'a line of provenance for each realisation' "$(grep -c '^# cmd: ' whole.tsv)" 4
 sed -n 's/^# cmd: //p' whole.tsv >commands
-sh -e commands | awk '/^realisation/ && n++ { next } /^# units/ && u++ { next } { print }' >replayed.tsv
+sh -e commands | awk '/^realisation/ && n++ { next } /^# / && !/^# cmd/ && seen[$0]++ { next } { print }' >replayed.tsv
 same 'the recorded commands rebuild the table' whole.tsv replayed.tsv
 
 # What is made of the whole ensemble says how the whole is made.

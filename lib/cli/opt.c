@@ -16,6 +16,7 @@ static int verbose_flag;
 static const char *stats_path;
 
 static const struct opt common[] = {
+	OPT_HEADING("All programs"),
 	{ 'S', "stats", OPT_TEXT, UNIT_NONE, &stats_path, 0, 0, "FILE",
 		"write one row of work counters to FILE", 0, 1 },
 	{ 'v', "verbose", OPT_FLAG, UNIT_NONE, &verbose_flag, 0, 0, 0,

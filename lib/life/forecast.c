@@ -89,8 +89,8 @@ static double later_life(double life, double gone)
 struct forecast_row forecast_at(struct forecast *f, double t)
 {
 	const struct forecast_par *par = &f->par;
-	double gone = t - observed_time(f->observed), left;
-	struct forecast_row row = { f->later, f->n, par->horizon, NAN,
+	double gone = t - observed_time(f->observed);
+	struct forecast_row row = { f->later, f->n, par->horizon,
 		later_life(f->grey, gone) };
 
 	memcpy(f->later, f->life, (size_t)f->n * sizeof *f->later);
@@ -100,8 +100,5 @@ struct forecast_row forecast_at(struct forecast *f, double t)
 		row.limit = par->rule == RATE_FILTER && !par->scaled
 				    ? 10 * (t - observed_first(f->observed) + par->skip)
 				    : INFINITY;
-	left = par->pair.area * (pair_limit(&par->pair) - observed_gap(f->observed));
-	if (!isnan(par->dry_rate) && !isnan(left))
-		row.dry = later_life(remaining_constant(left, par->dry_rate), gone);
 	return row;
 }

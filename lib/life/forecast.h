@@ -17,20 +17,19 @@ struct forecast_par {
 	int from_new;        /* wear counts from the new pair at time 0 */
 	enum rate_rule rule; /* as that of the paths, as is count */
 	long count;
-	int scaled;      /* the paths know how long a step takes */
-	double skip;     /* run-in left out of the rates, s from the first row */
-	double horizon;  /* what lives longer counts as no failure; NAN: none, or for
-			  * filters on their own ten times the age */
-	double dry_rate; /* volume per s; NAN: none */
-	int grey;        /* follow the grey model too */
+	int scaled;     /* the paths know how long a step takes */
+	double skip;    /* run-in left out of the rates, s from the first row */
+	double horizon; /* what lives longer counts as no failure; NAN: none, or for
+			 * filters on their own ten times the age */
+	int grey;       /* follow the grey model too */
 };
 
 /* What is known at a time; NAN: nothing. */
 struct forecast_row {
 	double *life; /* n samples, valid until the next call; may be reordered */
 	long n;
-	double limit;     /* what lives longer counts as no failure */
-	double dry, grey; /* life left by dry sliding, by the grey model */
+	double limit; /* what lives longer counts as no failure */
+	double grey;  /* life left by the grey model */
 };
 
 struct forecast;

@@ -33,7 +33,7 @@ static int weights;
 static double mission = NAN, cost_ratio = NAN;
 static struct opt_list alarms;
 
-struct opt outlook_end_rows[] = {
+struct opt outlook_end_rows[] = { OPT_HEADING("End of life"),
 	{ 'y', "threshold", OPT_NUM, UNIT_NONE, &outlook_options.threshold, -DBL_MAX,
 		DBL_MAX, "Y",
 		"value that ends the life, in units of y; none: no prediction of life",
@@ -48,10 +48,9 @@ struct opt outlook_end_rows[] = {
 		0 },
 	{ 0, "skip", OPT_CHOICE, UNIT_TIME, &skip, 0, DBL_MAX, "T|auto",
 		"run-in left out of long-term models, from the first row", skips, 0 },
-	OPT_END
-};
+	OPT_END };
 
-struct opt outlook_model_rows[] = {
+struct opt outlook_model_rows[] = { OPT_HEADING("Prediction"),
 	{ 0, "model", OPT_WORD, UNIT_NONE, &model, 0, 0,
 		"average|linear|exponential|power|rate|grey|literal", "long-term model",
 		models, 0 },
@@ -65,8 +64,7 @@ struct opt outlook_model_rows[] = {
 		"table of earlier units, failed or not: unit t y", NULL, 0 },
 	{ 0, "weights", OPT_FLAG, UNIT_NONE, &weights, 0, 0, NULL,
 		"add columns of the weight of each family of models", NULL, 0 },
-	OPT_TABLE(timeunit_rows), OPT_END
-};
+	OPT_TABLE(timeunit_rows), OPT_END };
 
 struct opt outlook_plant_rows[] = {
 	{ 0, "events", OPT_TEXT, UNIT_NONE, &events_file, 0, 0, "FILE",

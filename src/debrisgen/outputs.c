@@ -17,6 +17,7 @@ static long stress_layers;
 static const char *surface_path, *summary_path, *stress_path;
 
 struct opt worn_rows[] = {
+	OPT_HEADING("Further output"),
 	{ 0, "surface", OPT_TEXT, UNIT_NONE, &surface_path, 0, 0, "FILE",
 		"write the worn surface of every step", NULL, 1 },
 	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
@@ -44,6 +45,8 @@ static const char summary_units[] = "1 1 m N 1 Pa 1 m3 1 m m m 1 Pa";
 struct worn {
 	struct table_out *particles, *summary;
 	struct fields_out *surface, *stress;
+	struct worn_conditions told; /* to both tables */
+	int begun;
 };
 
 /* The pipeline that prints what went to the file of an option, on standard output; of the
@@ -92,11 +95,28 @@ static void table_cmd_for(struct table_out *t, const struct record *r, const cha
 	free(cmd);
 }
 
-void worn_begin(struct worn *w, const struct record *r)
+static void tell(struct table_out *t, const struct worn_conditions *c)
+{
+	if (!t)
+		return;
+	table_comment(t, "nominal_area", "%.12g m2", c->area);
+	table_comment(t, "nominal_pressure", "%.12g Pa", c->pressure);
+	table_comment(t, "friction", "%.12g", c->friction);
+	table_comment(t, "step_distance", "%.12g m", c->distance);
+}
+
+void worn_begin(
+	struct worn *w, const struct record *r, const struct worn_conditions *conditions)
 {
 	table_cmd_for(w->particles, r, NULL);
 	if (w->summary)
 		table_cmd_for(w->summary, r, "--summary");
+	if (w->begun && memcmp(&w->told, conditions, sizeof w->told) == 0)
+		return;
+	w->begun = 1;
+	w->told = *conditions;
+	tell(w->particles, conditions);
+	tell(w->summary, conditions);
 }
 
 static void put_particles(

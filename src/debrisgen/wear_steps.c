@@ -15,6 +15,7 @@ static int shear, layer, removal;
 static long memory = 512;
 
 struct opt wearing_rows[] = {
+	OPT_HEADING("Wear"),
 	{ 'Y', "yield", OPT_NUM, UNIT_PRESSURE, &yield, 1e-30, 1e30, "Y",
 		"yield stress: material under more von Mises stress is lost", NULL, 0 },
 	{ 'u', "friction", OPT_NUM, UNIT_NONE, &friction, 0, 1e6, "MU",
@@ -179,6 +180,11 @@ struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c, l
 		.stress = debris_stress(w->debris),
 		.dz = w->par.stress.dz,
 		.offset = w->par.stress.offset };
+}
+
+double wearing_friction(void)
+{
+	return friction;
 }
 
 double wearing_length(const struct record *r)

@@ -25,6 +25,7 @@ static const struct opt opts[] = {
 	{ 'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N", "threads", NULL,
 		1 },
 	OPT_TABLE(measured_rows),
+	OPT_HEADING("All surfaces"),
 	{ 0, "crown", OPT_CHOICE, UNIT_LENGTH, &crown, 0, 1e9, "none|auto|DROP",
 		"put on a paraboloid, DROP lower at the corners; auto is 4 Sq",
 		crown_words, 0 },

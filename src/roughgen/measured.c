@@ -15,6 +15,7 @@ static struct opt_list crop, resample;
 static int level, fill;
 
 struct opt measured_rows[] = {
+	OPT_HEADING("Measured surfaces"),
 	OPT_TABLE(raw_rows),
 	{ 0, "crop", OPT_LIST, UNIT_COUNT, &crop, 0, POINTS_MAX, "X:Y:NX:NY",
 		"cut NX by NY samples of file from X, Y on", NULL, 0 },

@@ -19,6 +19,7 @@ static const char *truth;
 static const struct opt opts[] = {
 	OPT_TABLE(source_rows),
 	OPT_TABLE(sensors_rows),
+	OPT_HEADING("Output"),
 	{ 0, "truth", OPT_TEXT, UNIT_NONE, &truth, 0, 0, "FILE",
 		"write a table of the particles", 0, 0 },
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "of the random numbers",

@@ -15,6 +15,7 @@ static struct opt_list uniform;
 static const char *const measures[] = { "diameter", "volume", NULL };
 
 struct opt source_rows[] = {
+	OPT_HEADING("Particles"),
 	{ 0, "uniform", OPT_LIST, UNIT_LENGTH, &uniform, 1e-9, 1, "A:B",
 		"draw particles with diameters from A to B instead of reading a table", 0,
 		0 },
@@ -27,6 +28,7 @@ struct opt source_rows[] = {
 	{ 0, "density", OPT_NUM, UNIT_DENSITY, &density, 1, 1e5, "RHO",
 		"of the particles", 0, 0 },
 	/* arrivals */
+	OPT_HEADING("Arrivals"),
 	{ 0, "duration", OPT_NUM, UNIT_TIME, &source_duration, 0, 1e9, "T",
 		"of the record", 0, 0 },
 	{ 0, "start", OPT_NUM, UNIT_TIME, &start, -1e9, 1e9, "T",

@@ -13,6 +13,7 @@ static const char *const profiles[] = { "plug", "laminar", "turbulent", NULL };
 static const char *const shapes[] = { "sine", "gauss", "lorentz", NULL };
 
 struct opt sensors_rows[] = {
+	OPT_HEADING("Pipe and sensors"),
 	{ 'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 2e9, "F", "sampling rate", 0,
 		0 },
 	{ 0, "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-12, 1e3, "Q", "of the oil", 0, 0 },
@@ -38,6 +39,7 @@ struct opt sensors_rows[] = {
 	{ 0, "gain", OPT_NUM, UNIT_NONE, &gain, 0, 1e9, "G", "of sensor 2 over sensor 1",
 		0, 0 },
 	/* disturbances */
+	OPT_HEADING("Noise and interference"),
 	{ 0, "noise", OPT_NUM, UNIT_VOLTAGE, &noise, 0, 1e9, "V", "rms noise of a sample",
 		0, 0 },
 	{ 0, "snr", OPT_NUM, UNIT_DECIBEL, &snr, -100, 400, "S",

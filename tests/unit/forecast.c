@@ -49,11 +49,9 @@ static void test_forecast(void)
 	struct paths_par paths = {
 		.seed = 1, .count = 8, .step_time = NAN, .area = 2e-3, .critical = NAN
 	};
-	struct forecast_par par = { .pair = make_pair(),
-		.quantity = PAIR_GAP,
-		.count = 8,
-		.horizon = NAN,
-		.dry_rate = 1e-12 };
+	struct forecast_par par = {
+		.pair = make_pair(), .quantity = PAIR_GAP, .count = 8, .horizon = NAN
+	};
 	struct paths *e = paths_new(&paths, NULL);
 	struct forecast_row row;
 	struct forecast *f;
@@ -65,7 +63,6 @@ static void test_forecast(void)
 	ok(forecast_add(f, 100, 11e-6, 11e-6, 0) == 1, "two do, the same for all paths");
 	row = forecast_at(f, 100);
 	near(row.life[0], 400, 1e-9, "4 um left at 1 um per 100 s");
-	near(row.dry, 8000, 1e-8, "8e-9 m3 left at 1e-12 m3/s");
 	ok(isinf(row.limit) && isnan(row.grey), "no horizon, no grey model");
 	ok(forecast_add(f, 150, NAN, NAN, 0) == -1, "a missing value tells nothing");
 	near(forecast_at(f, 150).life[0], 350, 1e-9, "but the time has gone");

@@ -63,8 +63,6 @@ static void check_passages(void)
 	near(remaining_large(3, 10, 12), 18, 0, "large particles at the end of step 3");
 	ok(remaining_large(3, 10, 31) == 0 && isinf(remaining_large(0, 10, 0)),
 		"passed, and never");
-	/* K F v / H */
-	near(remaining_archard(1e-6, 1000, 2, 1e9), 2e-12, 1e-27, "Archard's law");
 	s = remaining_sum_up(a, 4, 40);
 	ok(s.mean == 2 && s.p_no_failure == 0.5 && a[0] == 1 && isinf(a[2]) &&
 			isinf(a[3]),
