@@ -38,7 +38,7 @@ Q = $(if $(V),,@)
 say = $(if $(V),@:,@printf '  %-4s %s\n' $(1) '$(2)')
 
 # The outer libraries of each program; what it uses of lib/ the linker takes from one archive.
-PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade
+PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal
 roughgen_LIBS = fftw
 bemcontact_LIBS = fftw
 debrisgen_LIBS = fftw
@@ -47,6 +47,8 @@ bpfilter_LIBS = fftw
 duet_LIBS = fftw
 delaynet_LIBS = cblas gsl
 rwl_LIBS = gsl
+debriscount_LIBS = gsl
+ballcal_LIBS = gsl
 
 FFTW_CFLAGS ?= $(shell $(PKG_CONFIG) --cflags fftw3 2>/dev/null)
 FFTW_LIBS ?= $(shell $(PKG_CONFIG) --libs fftw3 2>/dev/null || echo -lfftw3)
@@ -238,6 +240,7 @@ $(DATADIR)/wearpipe|share/arrivals.net
 $(DATADIR)/bash-completion/completions|$(B)/install/wearpipe
 $(DATADIR)/zsh/site-functions|$(B)/install/_wearpipe
 $(DATADIR)/fish/vendor_completions.d|$(B)/install/wearpipe.fish
+$(DATADIR)/wearpipe/python|python/wearpipe.py
 $(DOCDIR)|README.md LICENSE CHANGELOG.md
 endef
 export installed
@@ -268,7 +271,7 @@ uninstall:
 	done
 	@rm -f "$(DESTDIR)$(LIBDIR)/libwearpipe.so"
 	@for p in $(BUILT); do rm -f "$(DESTDIR)$(DATADIR)/bash-completion/completions/$$p"; done
-	@for d in "$(INCLUDEDIR)/wearpipe" "$(DATADIR)/wearpipe" "$(DOCDIR)"; do \
+	@for d in "$(INCLUDEDIR)/wearpipe" "$(DATADIR)/wearpipe/python" "$(DATADIR)/wearpipe" "$(DOCDIR)"; do \
 		[ ! -d "$(DESTDIR)$$d" ] || rmdir "$(DESTDIR)$$d"; \
 	done
 
