@@ -336,8 +336,8 @@ static void put_draws(struct outlook *o, const double *life, int n, double *cell
 		*cell++ = predict_replacement(
 			life, n, o->now.clock - o->now.first, cost_ratio);
 	if (alarms.n > 0)
-		*cell = o->now.alarm =
-			raise_alarm(o->now.alarm, life[(int)(levels.v[0] * (n - 1))]);
+		*cell = o->now.alarm = raise_alarm(
+			o->now.alarm, metric_quantile(life, (size_t)n, levels.v[0]));
 }
 
 static void foresee(struct outlook *o, double *cell)
