@@ -97,6 +97,9 @@ enum debris_status debris_step(struct debris *d, double *height, const double *p
 
 	debris_contact(d, pressure, step);
 	for (size_t i = 0; i < n; i++)
+		if (!isfinite(pressure[i]))
+			return DEBRIS_NUMBERS;
+	for (size_t i = 0; i < n; i++)
 		if (pressure[i] < 0)
 			return DEBRIS_PULL;
 	if (stress_load(d->stress, pressure))

@@ -15,8 +15,8 @@
 #define CONTACT_DEBRIS_H
 
 #include "debris/particles.h"
-#include "stress/stress.h"
 #include "debris/wear.h"
+#include "stress/stress.h"
 
 struct debris;
 
@@ -40,9 +40,10 @@ struct debris_step {
 
 enum debris_status {
 	DEBRIS_OK,
-	DEBRIS_PULL, /* a pressure below zero: nothing done */
-	DEBRIS_DEEP, /* material fails deeper than ten times the grid is long; height
-		      * is as it was */
+	DEBRIS_PULL,    /* a pressure below zero: nothing done */
+	DEBRIS_NUMBERS, /* a pressure that is not finite: nothing done */
+	DEBRIS_DEEP,    /* material fails deeper than ten times the grid is long; height
+			 * is as it was */
 	DEBRIS_MEMORY
 };
 

@@ -64,7 +64,7 @@ struct particles {
 struct particles *particles_new(const struct particles_par *par)
 {
 	struct particles *ps;
-	int limit = 1 << 19; /* leaves room for one period either way */
+	int limit = HULL_SPAN;
 
 	if (par->nx < 1 || par->ny < 1 || par->nx > limit || par->ny > limit ||
 		!(par->ax > 0) || !(par->ay > 0) || !(par->az > 0)) {
@@ -149,12 +149,12 @@ static void drop_corners(struct particles *ps, struct body *b)
 	b->corners = 0;
 }
 
-static int build_hull(struct particles *ps, const struct body *b)
+static enum hull_status build_hull(struct particles *ps, const struct body *b)
 {
 	size_t n = 0;
 
 	if (room_for(&ps->scratch, &ps->scratch_room, b->corners, sizeof(*ps->scratch)))
-		return -1;
+		return HULL_MEMORY;
 	for (int at = b->corner; at != NONE; at = ps->corner[at].next)
 		ps->scratch[n++] = ps->corner[at].at;
 	return hull_build(ps->hull, ps->scratch, n);
@@ -168,8 +168,14 @@ static int reduce(struct particles *ps, struct body *b)
 
 	if (b->corners < REDUCE_FROM || b->corners < 2 * b->reduced)
 		return 0;
-	if (build_hull(ps, b))
+	switch (build_hull(ps, b)) {
+	case HULL_OK:
+		break;
+	case HULL_LARGE:
+		return 0;
+	default:
 		return -1;
+	}
 	p = hull_points(ps->hull, &n);
 	drop_corners(ps, b);
 	for (size_t i = 0; i < n; i++)
@@ -258,11 +264,28 @@ static void shift(struct particles *ps, struct body *b, int dx, int dy)
 	}
 }
 
+/* The body meets itself so many periods away: it has no end, and no hull. */
+static void wind(struct particles *ps, struct body *b, const int periods[2])
+{
+	for (int k = X; k <= Y; k++)
+		b->cells.winds[k] |= periods[k] != 0;
+	drop_corners(ps, b);
+}
+
+static int is_endless(const struct tally *t)
+{
+	return t->winds[X] || t->winds[Y];
+}
+
 /* Adds b, already in a's frame, to a. */
 static void absorb(struct particles *ps, struct body *a, struct body *b)
 {
 	a->layer = a->layer > b->layer ? a->layer : b->layer;
 	tally_add(&a->cells, &b->cells);
+	if (is_endless(&a->cells)) {
+		drop_corners(ps, a);
+		drop_corners(ps, b);
+	}
 	if (b->corner == NONE)
 		return;
 	ps->corner[b->last].next = a->corner;
@@ -285,8 +308,11 @@ static int unite(struct particles *ps, const struct run *p, const struct run *q,
 	int move[2] = { in_a[X] + px - in_b[X], in_a[Y] + py - in_b[Y] };
 
 	ps->body[a].cells.faces[axis] -= 2 * shared;
-	if (a == b)
+	if (a == b) {
+		if (move[X] || move[Y])
+			wind(ps, &ps->body[a], move);
 		return 0;
+	}
 	if (ps->body[a].corners < ps->body[b].corners) {
 		int t = a;
 
@@ -392,8 +418,12 @@ static int join_layer(struct particles *ps)
 static int measure_hull(struct particles *ps, const struct body *b, struct particle *p)
 {
 	const double step[3] = { ps->par.ax, ps->par.ay, ps->par.az };
+	enum hull_status status = is_endless(&b->cells) ? HULL_LARGE : build_hull(ps, b);
 
-	if (build_hull(ps, b) ||
+	p->length = p->width = p->aspect = p->convexity = NAN;
+	if (status == HULL_LARGE)
+		return 0;
+	if (status != HULL_OK ||
 		chords_measure(ps->chords, ps->hull, step, &p->length, &p->width))
 		return -1;
 	p->aspect = p->length / p->width;

@@ -47,6 +47,11 @@ struct particle {
 	double low[3], high[3]; /* bounding box, m */
 	/* First cell in order of layer, y, x: the address. */
 	int first[3];
+	/* On a periodic grid: goes round it and meets itself, a ridge without end. Cells,
+	 * volume, diameter and area are those of one period; what would need an end
+	 * (length to convexity, direction) is nan, as is the centroid along x or y where
+	 * it winds that way. */
+	int endless;
 };
 
 /* NULL with errno EDOM or ENOMEM. */

@@ -1,5 +1,6 @@
 #include "debris/tally.h"
 #include "num/sym3.h"
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -7,14 +8,11 @@ enum { X, Y, Z };
 
 struct tally tally_run(int begin, int end, int y, int z)
 {
-	double n = end - begin, last = end - 1, first = begin,
-	       sum = n * (first + last) / 2;
-	/* n mean^2 + n (n^2 - 1) / 12 */
-	double square = n * ((first + last) * (first + last) / 4 + (n * n - 1) / 12);
+	double n = end - begin;
 
 	return (struct tally){ .nodes = n,
-		.sum = { sum, n * y, n * z },
-		.square = { square, n * y * y, n * z * z, sum * y, sum * z, n * y * z },
+		.sum = { n * (n - 1) / 2, 0, 0 },
+		.square = { n * (n - 1) * (2 * n - 1) / 6, 0, 0, 0, 0, 0 },
 		.faces = { 2, 2 * n, 2 * n },
 		.low = { begin, y, z },
 		.high = { end - 1, y, z },
@@ -23,15 +21,26 @@ struct tally tally_run(int begin, int end, int y, int z)
 
 void tally_shift(struct tally *t, int dx, int dy)
 {
-	t->square[0] += 2 * dx * t->sum[X] + t->nodes * dx * dx;
-	t->square[1] += 2 * dy * t->sum[Y] + t->nodes * dy * dy;
-	t->square[3] += dy * t->sum[X] + dx * t->sum[Y] + t->nodes * dx * dy;
-	t->square[4] += dx * t->sum[Z];
-	t->square[5] += dy * t->sum[Z];
-	t->sum[X] += t->nodes * dx;
-	t->sum[Y] += t->nodes * dy;
 	t->low[X] += dx, t->high[X] += dx;
 	t->low[Y] += dy, t->high[Y] += dy;
+}
+
+/* Axes of the members of square[]. */
+static const int first_axis[6] = { X, Y, Z, X, X, Y },
+		 second_axis[6] = { X, Y, Z, Y, Z, Z };
+
+/* Sums of coordinates that are larger by d. */
+static void recount(
+	const struct tally *t, const double d[3], double sum[3], double square[6])
+{
+	for (int k = 0; k < 6; k++) {
+		int i = first_axis[k], j = second_axis[k];
+
+		square[k] = t->square[k] + d[i] * t->sum[j] + d[j] * t->sum[i] +
+			    t->nodes * d[i] * d[j];
+	}
+	for (int k = X; k <= Z; k++)
+		sum[k] = t->sum[k] + t->nodes * d[k];
 }
 
 int tally_precedes(const int a[3], const int b[3])
@@ -44,40 +53,55 @@ int tally_precedes(const int a[3], const int b[3])
 
 void tally_add(struct tally *t, const struct tally *other)
 {
+	double mine[3], theirs[3], sum[2][3], square[2][6];
+
+	for (int k = X; k <= Z; k++) {
+		int low = t->low[k] < other->low[k] ? t->low[k] : other->low[k];
+
+		mine[k] = (double)t->low[k] - low;
+		theirs[k] = (double)other->low[k] - low;
+		t->low[k] = low;
+		t->high[k] = t->high[k] > other->high[k] ? t->high[k] : other->high[k];
+		t->faces[k] += other->faces[k];
+	}
+	recount(t, mine, sum[0], square[0]);
+	recount(other, theirs, sum[1], square[1]);
 	t->nodes += other->nodes;
 	for (int k = 0; k < 6; k++)
-		t->square[k] += other->square[k];
+		t->square[k] = square[0][k] + square[1][k];
+	for (int k = X; k <= Z; k++)
+		t->sum[k] = sum[0][k] + sum[1][k];
+	for (int k = X; k <= Y; k++)
+		t->winds[k] |= other->winds[k];
 	if (tally_precedes(other->first, t->first))
 		memcpy(t->first, other->first, sizeof(t->first));
-	for (int k = X; k <= Z; k++) {
-		t->sum[k] += other->sum[k];
-		t->faces[k] += other->faces[k];
-		t->low[k] = t->low[k] < other->low[k] ? t->low[k] : other->low[k];
-		t->high[k] = t->high[k] > other->high[k] ? t->high[k] : other->high[k];
-	}
 }
 
 /* Elongation and direction, by the moments of inertia. */
 static void measure_moments(
 	const struct tally *t, const double step[3], struct particle *p)
 {
-	static const int first[6] = { X, Y, Z, X, X, Y },
-			 second[6] = { X, Y, Z, Y, Z, Z };
-	double m[6], value[3], axis[3][3];
+	double m[6], value[3], axis[3][3], centre[3], sum[3], square[6];
 
+	/* About the cell next to the centroid, in whole numbers still: nothing cancels
+	 * in the rest. */
+	for (int k = X; k <= Z; k++)
+		centre[k] = -floor(t->sum[k] / t->nodes + 0.5);
+	recount(t, centre, sum, square);
 	for (int k = 0; k < 6; k++) {
-		int i = first[k], j = second[k];
+		int i = first_axis[k], j = second_axis[k];
 		/* A cell's own moment is that of a box: 1/12. */
 		double own = i == j ? 1. / 12 : 0;
 
 		m[k] = step[i] * step[j] *
-		       (t->square[k] / t->nodes -
-			       t->sum[i] / t->nodes * (t->sum[j] / t->nodes) + own);
+		       (square[k] / t->nodes - sum[i] / t->nodes * (sum[j] / t->nodes) +
+			       own);
 	}
 	sym3_eigen(m, value, axis);
 	p->elongation = 1 - sqrt(value[1] / value[0]);
 	p->azimuth = p->dip = NAN;
-	if (value[0] - value[1] < 1e-9 * value[0])
+	/* Moments are right to some units of the last place. */
+	if (value[0] - value[1] < 64 * DBL_EPSILON * value[0])
 		return;
 	if (axis[0][X] < 0 || (axis[0][X] == 0 && axis[0][Y] < 0))
 		for (int k = X; k <= Z; k++)
@@ -103,7 +127,7 @@ void tally_measure(
 	p->diameter = cbrt(6 * p->volume / M_PI);
 	p->area = t->faces[X] * ay * az + t->faces[Y] * ax * az + t->faces[Z] * ax * ay;
 	for (int k = X; k <= Z; k++) {
-		at[k] = t->sum[k] / t->nodes + 0.5;
+		at[k] = t->low[k] + t->sum[k] / t->nodes + 0.5;
 		back[k] = k == Z ? 0 : home(grid, at[k], k == X ? grid->nx : grid->ny);
 		p->low[k] = (t->low[k] - back[k]) * step[k];
 		p->high[k] = (t->high[k] + 1 - back[k]) * step[k];
@@ -112,5 +136,17 @@ void tally_measure(
 	p->x = (at[X] - back[X]) * ax;
 	p->y = (at[Y] - back[Y]) * ay;
 	p->z = at[Z] * az;
-	measure_moments(t, step, p);
+	p->endless = t->winds[X] || t->winds[Y];
+	if (!t->winds[X] && !t->winds[Y])
+		measure_moments(t, step, p);
+	else
+		p->elongation = p->azimuth = p->dip = NAN;
+	if (t->winds[X]) {
+		p->x = NAN;
+		p->low[X] = 0, p->high[X] = grid->nx * ax;
+	}
+	if (t->winds[Y]) {
+		p->y = NAN;
+		p->low[Y] = 0, p->high[Y] = grid->ny * ay;
+	}
 }

@@ -8,12 +8,15 @@
 
 #include "debris/particles.h"
 
+/* The sums are of coordinates from the low corner, so that a body has the same ones
+ * wherever it lies; they are exact as long as they are below 2^53. */
 struct tally {
 	double nodes, sum[3];
 	double square[6];    /* sums of xx yy zz xy xz yz */
 	double faces[3];     /* exposed, across x, y, z */
 	int low[3], high[3]; /* cells, inclusive */
 	int first[3];        /* address on the grid */
+	int winds[2];        /* goes round the periodic grid along x, y: without end */
 };
 
 struct tally tally_run(int begin, int end, int y, int z);

@@ -56,21 +56,37 @@ size_t window_size(const struct window *w)
 	return w->columns * w->rows;
 }
 
+/* Influence of wave (i, j) of the grid.  The shortest wave along an axis of even size
+ * stands for both directions, so that the mean of the two is taken. */
+static void grid_wave(const struct window *w, size_t i, size_t j, double z,
+	double complex number[TENSOR_NUMBERS])
+{
+	double ux = 2 * M_PI / (w->wx * w->par->ax), uy = 2 * M_PI / (w->wy * w->par->ay);
+	int both_x = 2 * i == w->px, both_y = 2 * j == w->py, n = 0;
+	double complex v[TENSOR_NUMBERS];
+
+	memset(number, 0, TENSOR_NUMBERS * sizeof(*number));
+	for (int sx = 1; sx >= (both_x ? -1 : 1); sx -= 2)
+		for (int sy = 1; sy >= (both_y ? -1 : 1); sy -= 2, n++) {
+			influence_wave(
+				w->par, sx * (double)i * ux, sy * (double)j * uy, z, v);
+			for (int c = 0; c < TENSOR_NUMBERS; c++)
+				number[c] += v[c];
+		}
+	for (int c = 0; c < TENSOR_NUMBERS; c++)
+		number[c] /= n;
+}
+
 static void periodic_spectra(
 	const struct window *w, double z, int count, double complex *spectra)
 {
-	double ux = 2 * M_PI / (w->wx * w->par->ax), uy = 2 * M_PI / (w->wy * w->par->ay);
-
 	for (size_t j = 0; j < w->rows; j++)
 		for (size_t i = 0; i < w->columns; i++) {
-			int edge = 2 * i == w->px || 2 * j == w->py;
 			double complex v[TENSOR_NUMBERS];
 
-			influence_wave(w->par, i * ux, j * uy, z, v);
-			/* The shortest wave has no sense of direction. */
+			grid_wave(w, i, j, z, v);
 			for (int c = 0; c < count; c++)
-				spectra[c * window_size(w) + j * w->columns + i] =
-					edge ? creal(v[c]) : v[c];
+				spectra[c * window_size(w) + j * w->columns + i] = v[c];
 		}
 }
 

@@ -1,8 +1,8 @@
 #include "wear_steps.h"
-#include "contact/solver.h"
-#include "common/contact_options.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "common/contact_options.h"
+#include "contact/solver.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -15,20 +15,21 @@ static int shear, layer, removal;
 static long memory = 512;
 
 struct opt wearing_rows[] = {
+	OPT_HEADING("Wear"),
 	{ 'Y', "yield", OPT_NUM, UNIT_PRESSURE, &yield, 1e-30, 1e30, "Y",
 		"yield stress: material under more von Mises stress is lost", NULL, 0 },
 	{ 'u', "friction", OPT_NUM, UNIT_NONE, &friction, 0, 1e6, "MU",
 		"friction coefficient: shear over pressure", NULL, 0 },
-	{ 'z', "depth-step", OPT_NUM, UNIT_LENGTH, &depth_step, 1e-30, 1e30, "H",
+	{ 0, "depth-step", OPT_NUM, UNIT_LENGTH, &depth_step, 1e-30, 1e30, "H",
 		"height of a cell; by default the spacing along x", NULL, 0 },
-	{ 'd', "shear", OPT_WORD, UNIT_NONE, &shear, 0, 0, "x|y",
+	{ 0, "shear", OPT_WORD, UNIT_NONE, &shear, 0, 0, "x|y",
 		"direction in which friction drags the worn body", axes, 0 },
-	{ 'l', "layer", OPT_WORD, UNIT_NONE, &layer, 0, 0, "top|mid",
+	{ 0, "layer", OPT_WORD, UNIT_NONE, &layer, 0, 0, "top|mid",
 		"where in a cell the stress is taken", layers, 0 },
-	{ 'r', "removal", OPT_WORD, UNIT_NONE, &removal, 0, 0, "column|potential",
+	{ 0, "removal", OPT_WORD, UNIT_NONE, &removal, 0, 0, "column|potential",
 		"what is lost: columns of failed cells from the surface, or every failed cell",
 		rules, 0 },
-	{ 'k', "memory", OPT_INT, UNIT_COUNT, &memory, 0, 1e7, "MB",
+	{ 0, "memory", OPT_INT, UNIT_COUNT, &memory, 0, 1e7, "MB",
 		"megabytes for influence coefficients kept; the result is the same", NULL,
 		1 },
 	OPT_END,
@@ -163,7 +164,8 @@ static void refuse(const struct wearing *w, enum debris_status status, long step
 		return;
 	die(EXIT_RUN, "%s: record %ld, step %ld: %s", fields_name(w->in),
 		fields_count(w->in), step,
-		status == DEBRIS_PULL ? "pressure below zero"
+		status == DEBRIS_PULL      ? "pressure below zero"
+		: status == DEBRIS_NUMBERS ? "pressure beyond the range of numbers"
 		: status == DEBRIS_DEEP
 			? "material fails deeper than ten times the grid is long"
 			: "out of memory");
@@ -178,6 +180,11 @@ struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c, l
 		.stress = debris_stress(w->debris),
 		.dz = w->par.stress.dz,
 		.offset = w->par.stress.offset };
+}
+
+double wearing_friction(void)
+{
+	return friction;
 }
 
 double wearing_length(const struct record *r)

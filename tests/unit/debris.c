@@ -118,6 +118,63 @@ static void test_symmetry(void)
 	debris_free(e);
 }
 
+/* On a periodic grid of even size a scene that is mirrored across the shear, exchanged
+ * with it, or moved loses the mirrored, exchanged, moved cells; the pressure has waves up
+ * to the shortest. */
+static void test_periodic_symmetry(void)
+{
+	struct debris_par par = plain(WEAR_COLUMN), turned;
+	double p[CELLS], q[CELLS], h[CELLS] = { 0 }, g[CELLS] = { 0 };
+	struct debris *d, *e;
+	struct debris_step step;
+	int mirrored = 0, exchanged = 0, moved = 0, lost = 0;
+
+	par.stress.periodic = 1;
+	turned = par;
+	turned.stress.nx = NY, turned.stress.ny = NX;
+	turned.stress.ax = par.stress.ay, turned.stress.ay = par.stress.ax;
+	turned.stress.axis = 1;
+	d = debris_new(&par);
+	e = debris_new(&turned);
+	for (int i = 0; i < CELLS; i++) {
+		double u = philox_uniform(9, 0, RNG_NOISE, (uint64_t)i);
+
+		p[i] = u < 0.3 ? 1e9 * u : 0;
+	}
+	debris_step(d, h, p, &step);
+	for (int i = 0; i < CELLS; i++)
+		q[(NY - 1 - i / NX) * NX + i % NX] = p[i];
+	debris_step(d, g, q, &step);
+	for (int i = 0; i < CELLS; i++) {
+		lost += h[i] != 0;
+		mirrored += h[i] != g[(NY - 1 - i / NX) * NX + i % NX];
+	}
+	memset(g, 0, sizeof(g));
+	for (int i = 0; i < CELLS; i++)
+		q[i % NX * NY + i / NX] = p[i];
+	debris_step(e, g, q, &step);
+	for (int i = 0; i < CELLS; i++)
+		exchanged += h[i] != g[i % NX * NY + i / NX];
+	memset(g, 0, sizeof(g));
+	for (int i = 0; i < CELLS; i++)
+		q[(i / NX + 5) % NY * NX + (i % NX + 11) % NX] = p[i];
+	debris_step(d, g, q, &step);
+	for (int i = 0; i < CELLS; i++)
+		moved += h[i] != g[(i / NX + 5) % NY * NX + (i % NX + 11) % NX];
+	ok(lost > 20 && lost < CELLS, "periodic: %d of %d columns lose cells", lost,
+		CELLS);
+	ok(mirrored == 0,
+		"periodic: the mirrored scene loses the mirrored cells (%d differ)",
+		mirrored);
+	ok(exchanged == 0,
+		"periodic: x and y exchanged lose the exchanged cells (%d differ)",
+		exchanged);
+	ok(moved == 0, "periodic: a moved scene loses the moved cells (%d differ)",
+		moved);
+	debris_free(d);
+	debris_free(e);
+}
+
 /* Kept kernels, windows and the past leave no trace in the bits. */
 static void test_history(void)
 {
@@ -154,6 +211,8 @@ static void test_refusals(void)
 
 	p[300] = -1;
 	ok(debris_step(d, h, p, &step) == DEBRIS_PULL, "a pressure below zero");
+	p[300] = NAN;
+	ok(debris_step(d, h, p, &step) == DEBRIS_NUMBERS, "a pressure that is no number");
 	p[300] = 1e30;
 	ok(debris_step(d, h, p, &step) == DEBRIS_DEEP, "material without strength");
 	for (int i = 0; i < CELLS; i++)
@@ -173,6 +232,7 @@ int main(void)
 	test_balance(WEAR_POTENTIAL, "all that fails");
 	test_rules();
 	test_symmetry();
+	test_periodic_symmetry();
 	test_history();
 	test_refusals();
 	return tap_done();

@@ -140,6 +140,190 @@ static void test_rod(void)
 	particles_free(ps);
 }
 
+/* A flat bar with its own signs of direction and a place on the grid; periods of the grid
+ * are added so that it may lie across its border. */
+static struct pose {
+	double x, y, z, azimuth, dip;
+	int nx, ny; /* of a periodic grid, or 0 */
+	int cubes;  /* cells are cubes */
+} pose;
+
+static int bar_at(double x, double y, double z)
+{
+	double c = cos(pose.dip), s = sin(pose.dip);
+	double d[3] = { cos(pose.azimuth) * c, sin(pose.azimuth) * c, s };
+	double side[3] = { -sin(pose.azimuth), cos(pose.azimuth), 0 };
+	double u[3] = { x - pose.x, y - pose.y, z - pose.z };
+	double along = u[0] * d[0] + u[1] * d[1] + u[2] * d[2];
+	double across = u[0] * side[0] + u[1] * side[1];
+	double up =
+		u[0] * u[0] + u[1] * u[1] + u[2] * u[2] - along * along - across * across;
+
+	return fabs(along) < 15 && fabs(across) < 4 && up < 5;
+}
+
+static int bar(double x, double y, double z)
+{
+	for (int i = -1; i <= 1; i++)
+		for (int j = -1; j <= 1; j++)
+			if ((pose.nx || (!i && !j)) &&
+				bar_at(x + i * pose.nx, y + j * pose.ny, z))
+				return 1;
+	return 0;
+}
+
+/* The bar of a pose; everything about it that does not name its place is compared. */
+static struct particle measured_bar(int nx, int ny, struct pose p)
+{
+	struct particles_par par = { .nx = nx, .ny = ny, .ax = 1.5, .ay = 1, .az = 0.5 };
+	const struct particle *list;
+	struct particles *ps;
+	struct particle got = { .nodes = -1 };
+
+	par.periodic = p.nx > 0;
+	if (p.cubes)
+		par.ax = par.az = 1;
+	ps = particles_new(&par);
+	pose = p;
+	if (scan(ps, nx, ny, 40, bar, &list) == 1)
+		got = list[0];
+	particles_free(ps);
+	return got;
+}
+
+static int same(double a, double b)
+{
+	return fabs(a - b) <= 1e-13 * fabs(b);
+}
+
+static int same_shape(const struct particle *a, const struct particle *b)
+{
+	return a->nodes == b->nodes && a->volume == b->volume && a->area == b->area &&
+	       a->length == b->length && same(a->width, b->width) &&
+	       same(a->aspect, b->aspect) && same(a->elongation, b->elongation) &&
+	       same(a->convexity, b->convexity) && same(a->dip, b->dip);
+}
+
+static void test_pose(void)
+{
+	struct pose p = { .x = 20, .y = 20, .z = 20 }, q;
+	struct particle here, there;
+	int bad = 0, out = 0, mirrored = 0, far = 0, over = 0;
+	double off = 0;
+
+	for (int k = 0; k < 40; k++) {
+		p.azimuth = -1.5 + 0.075 * k;
+		p.dip = 1.3 * sin(3. * k);
+		here = measured_bar(40, 40, p);
+		bad += here.nodes < 100;
+		out += !(here.dip >= 0 && here.dip <= M_PI / 2);
+		q = p;
+		q.cubes = 1;
+		there = measured_bar(40, 40, q);
+		off = fmax(off, acos(cos(there.dip) * cos(p.dip) *
+						cos(there.azimuth - p.azimuth) +
+					sin(there.dip) * sin(fabs(p.dip))));
+		q = p;
+		q.azimuth = -p.azimuth;
+		there = measured_bar(40, 40, q);
+		mirrored +=
+			!same_shape(&here, &there) || !same(here.azimuth, -there.azimuth);
+		q.dip = -p.dip;
+		there = measured_bar(40, 40, q);
+		mirrored +=
+			!same_shape(&here, &there) || !same(here.azimuth, -there.azimuth);
+		q = p;
+		q.x += 4000;
+		there = measured_bar(4040, 40, q);
+		far += !same_shape(&here, &there) || !same(here.azimuth, there.azimuth);
+		q = p;
+		q.nx = q.ny = 40;
+		q.x = 39 - k, q.y = k;
+		there = measured_bar(40, 40, q);
+		over += !same_shape(&here, &there) ||
+			!same(here.azimuth, there.azimuth) ||
+			fabs(there.x - 1.5 * (19 - k < 0 ? 59 - k : 19 - k) -
+				(here.x - 30)) > 60 ||
+			!(there.x >= 0 && there.x < 60 && there.y >= 0 && there.y < 40);
+	}
+	ok(bad == 0, "bars of 40 directions are one particle each");
+	ok(out == 0, "their dips are from 0 to pi/2");
+	ok(off < 0.03, "and their directions those of the bars, in cubes to %.3f", off);
+	ok(mirrored == 0,
+		"mirrored bars have mirrored directions and the same shape (%d do not)",
+		mirrored);
+	ok(far == 0, "a bar has the same row 4000 cells further (%d have not)", far);
+	ok(over == 0,
+		"and across the border of a periodic grid, its centroid on the grid (%d have not)",
+		over);
+}
+
+/* Three equal cubes: in order of layer, y, x. */
+static int equals(double x, double y, double z)
+{
+	return ((int)x == 6 && (int)y == 1 && (int)z == 1) ||
+	       ((int)x == 1 && (int)y == 4 && (int)z == 0) ||
+	       ((int)x == 5 && (int)y == 4 && (int)z == 0) ||
+	       ((int)x == 7 && (int)y == 2 && (int)z == 0);
+}
+
+static void test_order(void)
+{
+	static const int want[4][3] = { { 7, 2, 0 }, { 1, 4, 0 }, { 5, 4, 0 },
+		{ 6, 1, 1 } };
+	struct particles_par par = { .nx = 9, .ny = 6, .ax = 1, .ay = 1, .az = 1 };
+	struct particles *ps = particles_new(&par);
+	const struct particle *p;
+	int bad = scan(ps, 9, 6, 2, equals, &p) != 4;
+
+	for (int i = 0; i < 4 && !bad; i++)
+		for (int k = 0; k < 3; k++)
+			bad += p[i].first[k] != want[i][k];
+	ok(bad == 0, "equal particles come in order of their first cells");
+	particles_free(ps);
+}
+
+/* Stripes that wind about a torus: slope 3 periods of x for one of y, then a ring. */
+static int stripe(double x, double y, double z)
+{
+	(void)z;
+	return ((int)x + 3 * (int)(y / 2)) % 24 < 4;
+}
+
+static int ring(double x, double y, double z)
+{
+	return (int)y == 3 && z < 2 && x >= 0;
+}
+
+static void test_endless(void)
+{
+	struct particles_par par = {
+		.nx = 24, .ny = 16, .ax = 1, .ay = 1, .az = 1, .periodic = 1
+	};
+	struct particles *ps = particles_new(&par);
+	const struct particle *p;
+
+	ok(scan(ps, 24, 16, 1, stripe, &p) == 1 && p->endless && p->nodes == 64,
+		"a stripe that winds about a periodic grid is endless");
+	ok(isnan(p->length) && isnan(p->width) && isnan(p->convexity) &&
+			isnan(p->azimuth) && isnan(p->elongation) && isnan(p->x) &&
+			isnan(p->y) && p->volume == 64,
+		"it has a volume for each period and no shape");
+	ok(p->low[0] == 0 && p->high[0] == 24 && p->low[1] == 0 && p->high[1] == 16,
+		"its bounding box is the grid");
+	ok(scan(ps, 24, 16, 2, ring, &p) == 1 && p->endless && isnan(p->x),
+		"a ring about the grid is endless");
+	near(p->y, 3.5, 1e-15, "across itself it has a centroid");
+	near(p->area, 2 * 24 * 3, 0, "and its surface is that of one period");
+	ok(p->low[1] == 3 && p->high[1] == 4, "and it has two sides");
+	particles_free(ps);
+	par.periodic = 0;
+	ps = particles_new(&par);
+	ok(scan(ps, 24, 16, 2, ring, &p) == 1 && !p->endless,
+		"on a free grid it is a bar");
+	particles_free(ps);
+}
+
 /* Two arms that meet only at the bottom, and a third that does not. */
 static int fork(double x, double y, double z)
 {
@@ -288,7 +472,9 @@ static void test_random(void)
 		n = particles_end(ps, &p);
 		for (size_t i = 0; i < n; i++) {
 			sum += (size_t)p[i].nodes;
-			bad += !(p[i].length > 0 && p[i].convexity <= 1 + 1e-12);
+			bad += !(p[i].endless ? isnan(p[i].length)
+					      : p[i].length > 0 &&
+							p[i].convexity <= 1 + 1e-12);
 		}
 		bad += sum != nodes ||
 		       n != flood(c, nx, ny, nz, trial % 2, trial / 2 % 2);
@@ -354,6 +540,9 @@ int main(void)
 	test_cube();
 	test_ball();
 	test_rod();
+	test_pose();
+	test_order();
+	test_endless();
 	test_fork();
 	test_corners();
 	test_periodic();
