@@ -3,6 +3,8 @@
 #include "cli/files.h"
 #include "io/formats.h"
 #include "cli/msg.h"
+#include "cli/opt.h"
+#include "io/kinds.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -103,8 +105,8 @@ double *record_need(
 	size_t n = points(r);
 
 	if (k < 0)
-		die(EXIT_RUN, "%s: record %ld: no field '%s'", in->at.name, in->at.record,
-			name);
+		die(EXIT_RUN, "%s: record %ld: no field '%s', want %s", in->at.name,
+			in->at.record, name, opt_reads());
 	for (size_t i = 0; finite && i < n; i++)
 		if (!isfinite(r->data[k][i]))
 			die(EXIT_RUN,
@@ -170,6 +172,8 @@ char *header_line(const struct place *at, size_t *header_size)
 		line[n++] = (char)c;
 	}
 	if (c == EOF) {
+		if (*header_size == 0 && at->record == 1)
+			kind_refuse(at->name, line, n, KIND_FIELD);
 		free(line);
 		return NULL;
 	}
@@ -285,9 +289,12 @@ static void read_formatted(struct fields_in *in, struct record *r)
 		nrrd_read(&in->at, r);
 	else if (magic && strcmp(magic, "Gwyddion Simple Field 1.0") == 0)
 		gsf_read(&in->at, r);
-	else
+	else {
+		if (magic && in->at.record == 1)
+			kind_refuse(in->at.name, magic, strlen(magic), KIND_FIELD);
 		die(EXIT_RUN, "%s: record %ld: want NRRD or GSF, got '%.8s'", in->at.name,
 			in->at.record, magic ? magic : "");
+	}
 	free(magic);
 }
 

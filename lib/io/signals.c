@@ -5,6 +5,7 @@
  */
 #include "io/signals.h"
 #include "io/bytes.h"
+#include "io/kinds.h"
 #include "cli/files.h"
 #include "cli/msg.h"
 #include <ctype.h>
@@ -118,6 +119,9 @@ static void read_header(struct signal_in *in)
 	const unsigned char *b;
 	char *text;
 
+	if (!have(in, HEADER_MIN) || memcmp(in->buffer + in->begin, ".snd", 4) != 0)
+		kind_refuse(in->name, in->buffer + in->begin, in->end - in->begin,
+			KIND_SIGNAL);
 	if (!have(in, HEADER_MIN))
 		die(EXIT_RUN, "%s: want an AU header of at least %d bytes, got %zu",
 			in->name, HEADER_MIN, in->end - in->begin);
