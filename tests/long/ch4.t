@@ -75,7 +75,7 @@ BEGIN {
 	}
 }' >ends
 within "intervals of the filters" "$(while read -r unit truth; do
-	rwl --wear-rate filter --threshold-gap 14um --count 400 "run$unit.tsv" | tail -1 |
+	rwl --wear-rate filter --threshold-gap 14um --count 400 "run$unit.tsv" | grep -v '^#' | tail -1 |
 		awk -F '\t' -v t="$truth" '{ print ($3 ~ /^[0-9]/ && t >= $3 + 0 && ($5 == "inf" || t <= $5 + 0)) }'
 done <ends | awk '{ s += $1; n++ } END { printf "%.3f", s / n }')" 0.85 1
 
