@@ -63,11 +63,10 @@ same "a truth table rebuilds its signal" a b
 sensorsim --uniform 50um:150um --number 20 --duration 1s --truth a >/dev/null
 sensorsim --uniform 50um:150um --number 20 --duration 1s --truth b -f 1 >/dev/null
 sensorsim --uniform 50um:150um --number 20 --duration 1s --truth c -s 2 >/dev/null
-ok "realisations and seeds differ" sh -c '! tail -1 a | cmp -s - b && ! tail -1 a | grep -qf - b &&
-	! tail -1 a | grep -qf - c'
+ok "realisations and seeds differ" sh -c 'grep "^19" a >last && ! grep -qf last b && ! grep -qf last c'
 sensorsim --truth - --uniform 50um:150um --number 20 --duration 1s >d
-tail -20 a >a20
-tail -20 d >d20
+grep -v '^#' a >a20
+grep -v '^#' d >d20
 same "--truth - gives the same particles" a20 d20
 
 # pipe profiles: the flow-weighted mean velocity of even mixing

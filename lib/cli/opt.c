@@ -1,4 +1,5 @@
 #include "cli/opt.h"
+#include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
 #include <ctype.h>
@@ -12,7 +13,7 @@
 
 enum { ROWS_MAX = 128, LETTERLESS = 256 };
 
-static int verbose_flag;
+static int verbose_flag, follow;
 static const char *stats_path;
 
 static const struct opt common[] = {
@@ -25,6 +26,12 @@ static const struct opt common[] = {
 		1 },
 	{ 'V', "version", OPT_FLAG, UNIT_NONE, 0, 0, 0, 0, "print the version and exit",
 		0, 1 },
+	OPT_END,
+};
+
+static const struct opt reading[] = {
+	{ 0, "follow", OPT_FLAG, UNIT_NONE, &follow, 0, 0, 0,
+		"wait for the end of an input that is still being written", 0, 1 },
 	OPT_END,
 };
 
@@ -197,11 +204,35 @@ static double parse_number(const struct opt *o, const char *text)
 	double value;
 
 	wrong = unit_parse(text, o->unit, "", &value, &end);
+	if (wrong && unit_meant(text, o->unit))
+		die(EXIT_USAGE, "--%s %s: did you mean %s?", o->word, text,
+			unit_meant(text, o->unit));
 	if (wrong)
 		die(EXIT_USAGE, "--%s %s: '%s' %s%s%s", o->word, text, text, wrong,
 			*unit_shown(o->unit) ? ", want " : "", unit_shown(o->unit));
 	check_range(o, text, value);
 	return value;
+}
+
+const char *opt_reads(void)
+{
+	return prog ? prog->reads : "another stream";
+}
+
+/* "mm" after "--length 1": a unit, not a file. */
+static void check_operand(const char *text)
+{
+	char *one = xprintf("1%s", text);
+	const char *end;
+	double value;
+
+	if (*text && unit_parse(one, UNIT_ANY, "", &value, &end) == NULL &&
+		access(text, F_OK) != 0)
+		die(EXIT_USAGE,
+			"'%s' is taken for a file, which is not there; a unit stands "
+			"behind its number without a blank",
+			text);
+	free(one);
 }
 
 static int count(const char *text, const char *end, char c)
@@ -239,6 +270,9 @@ static void parse_list(const struct opt *o, const char *text)
 			die(EXIT_USAGE, "--%s %s: more than %d numbers", o->word, text,
 				OPT_LIST_MAX);
 		wrong = unit_parse(s, o->unit, separator, &l->v[l->n], &s);
+		if (wrong && unit_meant(s, o->unit))
+			die(EXIT_USAGE, "--%s %s: did you mean %s?", o->word, text,
+				unit_meant(s, o->unit));
 		if (wrong)
 			die(EXIT_USAGE, "--%s %s: '%s' %s, want %s%s%s", o->word, text, s,
 				wrong, o->arg, *unit_shown(o->unit) ? " in " : "",
@@ -417,6 +451,8 @@ static void check_operands(int argc, char **argv)
 {
 	int most = strstr(prog->operands, "...") ? argc : *prog->operands != '\0';
 
+	for (int i = optind; i < argc; i++)
+		check_operand(argv[i]);
 	if (argc - optind > most)
 		die(EXIT_USAGE, "%s: %s", argv[optind + most],
 			most ? "one file at most" : "takes no file");
@@ -434,10 +470,13 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 	char letters[2 * ROWS_MAX + 2];
 	int c;
 
+	files_start();
 	prog = program;
 	msg_name(program->name);
 	stats_start();
 	gather(program->opts);
+	if (strcmp(program->reads, "nothing") != 0)
+		gather(reading);
 	gather(common);
 	getopt_tables(letters, words);
 	opterr = 0;
@@ -459,7 +498,10 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 		}
 	}
 	verbose = verbose_flag;
+	if (follow)
+		file_follow();
 	check_operands(argc, argv);
+	file_claim_output();
 	if (stats_path)
 		stats_open(stats_path);
 	operand = argv + optind;
@@ -509,7 +551,9 @@ char *opt_cmd(const char *upstream, const char *extra)
 int shell_done(int status)
 {
 	errno = 0;
-	if (ferror(stdout) || fflush(stdout) || fclose(stdout))
+	/* Some file systems report a failure only when a descriptor is closed; standard
+	 * output itself stays open, for messages flush it. */
+	if (ferror(stdout) || fflush(stdout) || close(dup(STDOUT_FILENO)))
 		die(EXIT_RUN,
 			errno ? "standard output:" : "standard output: write error");
 	stats_write(prog->name);

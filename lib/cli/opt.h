@@ -13,7 +13,8 @@
  *		OPT_END,
  *	};
  *
- * Every program also has -h --help, -V --version, -v --verbose and -S --stats FILE.
+ * Every program also has -h --help, -V --version, -v --verbose, -S --stats FILE and,
+ * unless it reads nothing, --follow.
  * A number that was not given stays at its initial value; use NAN for "not given".
  */
 #ifndef SHELL_OPT_H
@@ -100,6 +101,9 @@ int opt_parse(const struct prog *prog, int argc, char **argv);
 int opt_given(const char *word);
 /* The word of the first of these rows that was, or NULL. */
 const char *opt_any_given(const struct opt *table);
+
+/* What the program reads, for messages: "fields: height". */
+const char *opt_reads(void);
 
 /* The recorded command line, fresh memory: upstream, " | ", program, the options
  * given in long form and shell-quoted, then extra (may be NULL).  The operands are
