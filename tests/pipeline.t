@@ -3,9 +3,9 @@
 # and the command recorded in a stream rebuilds it
 . "$(dirname "$0")/tap.sh"
 
-surfaces='roughgen -n 32 -L 1mm -q 0.8um -l 100um -C auto'
-contact='bemcontact -P 50MPa -E 210GPa'
-debris='debrisgen -Y 355MPa -u 0.3 -E 210GPa -T 2'
+surfaces='roughgen -n 32 -L 1mm -q 0.8um -l 100um --crown auto'
+contact='bemcontact --pressure 50MPa -E 210GPa'
+debris='debrisgen -Y 355MPa -u 0.3 -E 210GPa --steps 2'
 
 $surfaces -c 4 >whole.nrrd
 for k in 0 1 2 3; do
@@ -33,7 +33,7 @@ debrisstat whole.tsv >fits.tsv
 is 'an ensemble is counted' "$(sed -n 's/^# cmd: //p' fits.tsv | grep -o -e '--first.* | b')" \
 	'--first 0 --count 4 | b'
 rebuilt fits.tsv
-sensorsim -d 5s -n 5mV -T truth.tsv whole.tsv >heard.au
+sensorsim --duration 5s --noise 5mV --truth truth.tsv whole.tsv >heard.au
 mv truth.tsv told.tsv
 duet heard.au >heard.tsv
 rebuilt heard.tsv
@@ -53,7 +53,7 @@ is 'only realisations of surfaces are counted' \
 key() {
 	strings -n 4 "$1" | sed -n 's/^cmd //p;/^cmd /q'
 }
-sensorsim -u 80um:150um -N 20 -d 0.5s -n 5mV -s 3 |
+sensorsim --uniform 80um:150um --number 20 --duration 0.5s --noise 5mV -s 3 |
 	bpfilter --order 100 --zero-phase >signal.au
 sh -c "$(key signal.au)" >again.au
 same 'a signal is rebuilt by its own header' signal.au again.au
@@ -62,7 +62,7 @@ is 'and the table made from it says so' "$(sed -n 's/^# cmd: //p' found.tsv)" "$
 
 # Quoting: an argument that needs it comes back as it was.
 $surfaces -c 1 >'it'\''s a name: here.nrrd'
-roughgen -z "it's a name: here.nrrd" >measured.nrrd
+roughgen --level "it's a name: here.nrrd" >measured.nrrd
 (eval "$(head -c 1024 measured.nrrd | sed -n 's/^cmd:=//p')") >again.nrrd
 same 'a file name with quotes, blanks and a colon survives' measured.nrrd again.nrrd
 is 'and no colon with a blank stands in a value' \

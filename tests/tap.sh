@@ -39,6 +39,8 @@ fail() {
 	tests=$((tests + 1))
 	bad=$((bad + 1))
 	echo "not ok $tests - $1"
+	line=$(grep -nF -m 1 -e "$1" "$test_file" | cut -d: -f1)
+	echo "# at ${test_file#"$top"/}${line:+:$line}"
 	shift
 	for line in "$@"; do
 		printf '%s\n' "$line" | sed 's/^/# /'

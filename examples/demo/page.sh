@@ -8,13 +8,13 @@ if ! command -v gnuplot >/dev/null 2>&1; then
 fi
 
 # What gnuplot reads: one record as text, particles by size, a piece of the signals.
-records -n 1 -k height -o text contact.nrrd >height.txt
-records -n 1 -k pressure -o text contact.nrrd >pressure.txt
+records --pick 1 --field height -o text contact.nrrd >height.txt
+records --pick 1 --field pressure -o text contact.nrrd >pressure.txt
 awk -F '\t' '/^#/ { next } !k { for (i = 1; i <= NF; i++) if ($i == "diameter") k = i; next }
 	{ print $k * 1e6 }' particles.tsv | sort -gr | awk '{ print $1, NR }' >made.txt
 awk -F '\t' '/^#/ { next } !k { for (i = 1; i <= NF; i++) if ($i == "diameter") k = i; next }
 	{ print $k * 1e6 }' found.tsv | sort -gr | awk '{ print $1, NR }' >found.txt
-side=$(records -n 1 contact.nrrd | awk -F '\t' '$1 == 1 { print $5 * $8 * 1e6; exit }')
+side=$(records --pick 1 contact.nrrd | awk -F '\t' '$1 == 1 { print $5 * $8 * 1e6; exit }')
 
 # Where the piece of 1200 frames begins: shortly before the section with the most overlap.
 begin=$(awk -F '\t' '/^#/ { next } !t { for (i = 1; i <= NF; i++) { if ($i == "time1") t = i

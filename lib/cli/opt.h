@@ -9,7 +9,7 @@
  *	static const struct opt opts[] = {
  *		{ 'b', "band", OPT_LIST, UNIT_FREQUENCY, &band, 0, 1e12, "LO:HI",
  *			"pass band" },
- *		{ 'n', "order", OPT_INT, UNIT_COUNT, &order, 2, 1e6, "N", "taps" },
+ *		{ 0, "order", OPT_INT, UNIT_COUNT, &order, 2, 1e6, "N", "taps" },
  *		OPT_END,
  *	};
  *
@@ -32,7 +32,8 @@ enum opt_kind {
 	OPT_WORD,   /* int: index into words */
 	OPT_WORDS,  /* int: words parted by commas, bit k for words[k] */
 	OPT_CHOICE, /* struct opt_choice: one of words, or a number */
-	OPT_ROWS    /* struct opt []: a further table in this place; letter 0, word "" */
+	OPT_ROWS,   /* struct opt []: a further table in this place; letter 0, word "" */
+	OPT_GROUP   /* no option: word is a heading of --help for the rows that follow */
 };
 
 enum { OPT_LIST_MAX = 64, OPT_TEXTS_MAX = 64 };
@@ -53,7 +54,7 @@ struct opt_choice {
 };
 
 struct opt {
-	int letter;
+	int letter; /* 0: none.  A letter means one word in the whole suite. */
 	const char *word;
 	enum opt_kind kind;
 	enum unit unit;
@@ -75,6 +76,12 @@ struct opt {
 		0, "", OPT_ROWS, UNIT_NONE, rows, 0, 0, 0, 0, 0, 0 \
 	}
 
+/* A heading of --help. */
+#define OPT_HEADING(text)                                          \
+	{                                                          \
+		0, text, OPT_GROUP, UNIT_NONE, 0, 0, 0, 0, 0, 0, 0 \
+	}
+
 struct prog {
 	const char *name;
 	const char *gist;     /* one sentence, with full stop */
@@ -89,10 +96,10 @@ struct prog {
  * the program takes. */
 int opt_parse(const struct prog *prog, int argc, char **argv);
 
-/* 1 if the option with this letter was on the command line. */
-int opt_given(int letter);
+/* 1 if the option with this word was on the command line. */
+int opt_given(const char *word);
 /* The word of the first of these rows that was, or NULL. */
-const char *opt_any_given(const struct opt *rows);
+const char *opt_any_given(const struct opt *table);
 
 /* The recorded command line, fresh memory: upstream, " | ", program, the options
  * given in long form and shell-quoted, then extra (may be NULL).  The operands are

@@ -44,4 +44,8 @@ const char *unit_parse(const char *text, enum unit unit, const char *stop, doubl
 enum { NUMBER_TEXT = 32 };
 const char *number_text(double value, char text[NUMBER_TEXT]);
 
+/* An SI value as a person writes it, with prefix and unit: "1mm", "210GPa", "10L/min".
+ * Six digits; unit_parse() reads it back.  A plain number has no unit. */
+const char *quantity_text(double value, enum unit unit, char text[NUMBER_TEXT]);
+
 #endif

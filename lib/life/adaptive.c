@@ -506,5 +506,5 @@ int adaptive_lives(
 			a, &s, left, process, limit, direction, k * a->mean_gap, life);
 	free(s.x);
 	free(s.index);
-	return good;
+	return good ? 1 : -1;
 }

@@ -2,6 +2,7 @@
 #include "life/partition.h"
 #include "num/realisations.h"
 #include "num/room.h"
+#include "num/running.h"
 #include <gsl/gsl_randist.h>
 #include <limits.h>
 #include <math.h>
@@ -19,11 +20,6 @@ struct group_cell {
 	double count, large;
 };
 
-/* Mean of n values and the sum of their squares about it. */
-struct tally {
-	double n, mean, square;
-};
-
 struct moments {
 	double mean, step_variance, life_variance;
 };
@@ -37,9 +33,9 @@ struct class
 	long last_realisation, last_step; /* of the row before; -1: none */
 	long lowest, highest;             /* realisations with rows */
 	/* Over realisations: volume and steps that count for the rate. */
-	struct tally volume, steps;
-	double product;    /* sum of their products about their means */
-	struct tally cell; /* over realisations and steps: volume */
+	struct running volume, steps;
+	double product;      /* sum of their products about their means */
+	struct running cell; /* over realisations and steps: volume */
 	struct group_cell *group_cell;
 	size_t ncells, cell_room, nhistories, per_group;
 	double ngroups, empty_groups; /* with and without particles */
@@ -86,31 +82,6 @@ void partition_free(struct partition *p)
 	}
 	free(p->shed);
 	free(p);
-}
-
-static void tally_add(struct tally *t, double x)
-{
-	double d = x - t->mean;
-
-	t->n++;
-	t->mean += d / t->n;
-	t->square += d * (x - t->mean);
-}
-
-static void tally_zeros(struct tally *t, double n)
-{
-	double all = t->n + n;
-
-	if (!(n > 0))
-		return;
-	t->square += t->mean * t->mean * t->n * n / all;
-	t->mean *= t->n / all;
-	t->n = all;
-}
-
-static double tally_variance(const struct tally *t)
-{
-	return t->n > 1 ? t->square / (t->n - 1) : 0;
 }
 
 static int compare_groups(const void *a, const void *b)
@@ -171,7 +142,7 @@ static int take_history(void *to, const struct realisation_cell *cell, size_t n)
 			return -1;
 		if (cell[i].step < c->owner->first_step)
 			continue;
-		tally_add(&c->cell, here);
+		running_add(&c->cell, here);
 		volume += here;
 		steps++;
 	}
@@ -180,8 +151,8 @@ static int take_history(void *to, const struct realisation_cell *cell, size_t n)
 	c->lowest = cell->realisation < c->lowest ? cell->realisation : c->lowest;
 	c->highest = cell->realisation > c->highest ? cell->realisation : c->highest;
 	d = steps - c->steps.mean;
-	tally_add(&c->steps, steps);
-	tally_add(&c->volume, volume);
+	running_add(&c->steps, steps);
+	running_add(&c->volume, volume);
 	c->product += d * (volume - c->volume.mean);
 	if (c->owner->sizes && group_sizes(c, cell, n))
 		return -1;
@@ -251,10 +222,10 @@ static enum partition_status sum_up(struct partition *p, struct class *c)
 
 		empty = (double)c->highest - (double)c->lowest + 1 -
 			(double)c->nhistories;
-		tally_zeros(&c->volume, empty);
-		c->steps = (struct tally){ c->volume.n, steps, 0 };
+		running_repeat(&c->volume, 0, empty);
+		c->steps = (struct running){ c->volume.n, steps, 0 };
 		c->product = 0;
-		tally_zeros(&c->cell, c->volume.n * steps - c->cell.n);
+		running_repeat(&c->cell, 0, c->volume.n * steps - c->cell.n);
 	}
 	if (!(c->steps.mean > 0))
 		return PARTITION_EMPTY;
@@ -266,7 +237,7 @@ static enum partition_status sum_up(struct partition *p, struct class *c)
 	if (c->realisations > 1)
 		c->all.life_variance = fmax(scatter, 0) / (c->realisations - 1) /
 				       (c->steps.mean * c->steps.mean);
-	c->all.step_variance = tally_variance(&c->cell);
+	c->all.step_variance = c->cell.n > 1 ? running_variance(&c->cell) : 0;
 	if (c->all.mean > 0)
 		c->error = sqrt(c->all.life_variance / c->realisations) / c->all.mean;
 	c->ngroups = ceil((double)c->nhistories / (double)c->per_group);

@@ -1,11 +1,11 @@
 /* aopf - adaptive-order particle filter of a degradation series, and the time it has left
  */
-#include "filter_options.h"
-#include "remaining_life.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
-#include "io/series.h"
 #include "cli/stats.h"
+#include "filter_options.h"
+#include "io/series.h"
+#include "remaining_life.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ static const struct opt opts[] = {
 	OPT_TABLE(outlook_end_rows),
 	OPT_TABLE(filtering_rows),
 	OPT_TABLE(outlook_model_rows),
-	{ 'u', "unit", OPT_TEXT, UNIT_NONE, &unit_column, 0, 0, "COLUMN",
+	{ 0, "unit", OPT_TEXT, UNIT_NONE, &unit_column, 0, 0, "COLUMN",
 		"column that tells units apart", NULL, 0 },
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &filtering.seed, 0, 9e18, "N",
 		"seed of the random numbers", NULL, 0 },

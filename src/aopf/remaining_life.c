@@ -1,12 +1,14 @@
 #include "remaining_life.h"
-#include "filter_options.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
 #include "common/quantile_columns.h"
+#include "common/time_unit.h"
+#include "filter_options.h"
+#include "io/series.h"
+#include "life/fleet.h"
+#include "life/metrics.h"
 #include "life/predict.h"
 #include "life/runin.h"
-#include "cli/msg.h"
-#include "io/series.h"
-#include "cli/stats.h"
-#include "common/time_unit.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -32,35 +34,39 @@ struct opt outlook_end_rows[] = {
 		DBL_MAX, "Y",
 		"value that ends the life, in units of y; none: no prediction of life",
 		NULL, 0 },
-	{ 'd', "direction", OPT_WORD, UNIT_NONE, &direction, 0, 0, "up|down|auto",
+	{ 0, "direction", OPT_WORD, UNIT_NONE, &direction, 0, 0, "up|down|auto",
 		"side the threshold is reached from; auto: from the first value",
 		directions, 0 },
-	{ 'k', "persist", OPT_INT, UNIT_COUNT, &persist, 1, 1e6, "K",
+	{ 0, "persist", OPT_INT, UNIT_COUNT, &persist, 1, 1e6, "K",
 		"successive values beyond the threshold that end the life", NULL, 0 },
-	{ 'z', "zero", OPT_NUM, UNIT_NONE, &outlook_options.zero, -DBL_MAX, DBL_MAX, "Y",
+	{ 0, "zero", OPT_NUM, UNIT_NONE, &outlook_options.zero, -DBL_MAX, DBL_MAX, "Y",
 		"value of y without any degradation, the zero of the grey model", NULL,
 		0 },
-	{ 'T', "skip", OPT_CHOICE, UNIT_TIME, &skip, 0, DBL_MAX, "T|auto",
+	{ 0, "skip", OPT_CHOICE, UNIT_TIME, &skip, 0, DBL_MAX, "T|auto",
 		"run-in left out of long-term models, from the first row", skips, 0 },
 	OPT_END
 };
 
 struct opt outlook_model_rows[] = {
-	{ 'm', "model", OPT_WORD, UNIT_NONE, &model, 0, 0,
+	{ 0, "model", OPT_WORD, UNIT_NONE, &model, 0, 0,
 		"average|linear|exponential|power|rate|grey|literal", "long-term model",
 		models, 0 },
-	{ 'H', "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, DBL_MAX, "T",
+	{ 0, "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, DBL_MAX, "T",
 		"longest life ahead; 0: ten times the time so far", NULL, 0 },
-	{ 'A', "after", OPT_NUM, UNIT_TIME, &after, -DBL_MAX, DBL_MAX, "T",
+	{ 0, "after", OPT_NUM, UNIT_TIME, &after, -DBL_MAX, DBL_MAX, "T",
 		"time from which on life is predicted (default all the time)", NULL, 0 },
-	{ 'q', "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "Q,Q,...",
+	{ 0, "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "Q,Q,...",
 		"levels of the quantiles of remaining life", NULL, 0 },
-	{ 'F', "fleet", OPT_TEXT, UNIT_NONE, &fleet_file, 0, 0, "FILE",
-		"table of earlier units that reached the threshold: unit t y", NULL, 0 },
+	{ 0, "fleet", OPT_TEXT, UNIT_NONE, &fleet_file, 0, 0, "FILE",
+		"table of earlier units, failed or not: unit t y", NULL, 0 },
 	OPT_TABLE(timeunit_rows), OPT_END
 };
 
+enum { DRAWS = 500 };
+
 static struct fleet *fleet; /* NULL without --fleet */
+static struct bank_chances *chances;
+static double *life; /* draws of one prediction */
 
 struct outlook {
 	int unit;
@@ -82,35 +88,48 @@ void outlook_check(void)
 		die(EXIT_USAGE, "--fleet wants --threshold and --direction up or down");
 }
 
+static void read_fleet(const char *unit_column)
+{
+	struct series *in = series_open(fleet_file, unit_column);
+	int good, failed, carried_on, n;
+
+	fleet = fleet_new(outlook_options.threshold, direction == UP ? 1 : -1);
+	good = fleet != NULL;
+	while (good && series_next(in))
+		if (!isnan(series_value(in)))
+			good = fleet_add(fleet, series_unit(in), series_time(in),
+				series_value(in));
+	n = good ? fleet_build(fleet, &failed, &carried_on) : -1;
+	if (n < 0)
+		die(EXIT_RUN, "no memory for the fleet");
+	if (n == 0)
+		die(EXIT_RUN, "%s: none of %d units shows any wear to compare with",
+			fleet_file, series_units(in));
+	stats_set("fleet_units", failed);
+	stats_set("fleet_units_carried_on", carried_on);
+	stats_set("fleet_units_left_out", series_units(in) - n);
+	series_close(in);
+}
+
 void outlook_open(const char *unit_column)
 {
-	struct series *in;
-	int added, reached, n;
+	size_t draws = model == PREDICT_LITERAL ? (size_t)filtering.particles : DRAWS;
 
-	if (!fleet_file)
+	if (isnan(outlook_options.threshold))
 		return;
-	in = series_open(fleet_file, unit_column ? unit_column : "unit");
-	fleet = fleet_new(outlook_options.threshold, direction == UP ? 1 : -1);
-	added = fleet != NULL;
-	while (added && series_next(in))
-		if (!isnan(series_value(in)))
-			added = fleet_add(fleet, series_unit(in), series_time(in),
-				series_value(in));
-	n = series_units(in);
-	reached = added ? fleet_build(fleet) : -1;
-	if (reached < 0)
-		die(EXIT_RUN, "no memory for the fleet");
-	if (reached < FLEET_MIN)
-		die(EXIT_RUN, "%s: %d of %d units reach the threshold; want %d or more",
-			fleet_file, reached, n, (int)FLEET_MIN);
-	stats_set("fleet_units", reached);
-	stats_set("fleet_units_left_out", n - reached);
-	series_close(in);
+	chances = bank_chances_new(DRAWS, (uint64_t)filtering.seed);
+	if (!chances)
+		die(EXIT_RUN, "no memory");
+	life = xcalloc(draws, sizeof *life);
+	if (fleet_file)
+		read_fleet(unit_column ? unit_column : "unit");
 }
 
 void outlook_close(void)
 {
 	fleet_free(fleet);
+	bank_chances_free(chances);
+	free(life);
 }
 
 struct outlook *outlook_new(int unit, struct adaptive *filter)
@@ -139,13 +158,13 @@ static void start(struct outlook *o, double y)
 		.direction = up ? 1 : -1,
 		.zero = outlook_options.zero,
 		.horizon = horizon / timeunit(),
-		.fleet = fleet,
 		.adaptive = o->filter,
-		.draws = model == PREDICT_LITERAL ? (int)filtering.particles : 500,
-		.seed = (uint64_t)filtering.seed,
-		.realisation = (uint32_t)o->unit,
+		.draws = (int)filtering.particles,
+		.chances = chances,
 	};
 
+	if (fleet)
+		par.paths = fleet_shapes(fleet, &par.n_paths);
 	o->predict = predict_new(&par);
 	if (!o->predict)
 		die(EXIT_RUN, "no memory for the prediction");
@@ -165,6 +184,25 @@ static void learn(struct outlook *o, double t, double y, const struct adaptive_r
 		stats_add("rows_skipped", 1);
 }
 
+/* Quantiles of the lives, and the share of them that has no end; 0 where there are none
+ * yet. */
+static int foresee(struct outlook *o, double *quantile, double *never)
+{
+	int n = predict_draws(o->predict), drawn = predict_life(o->predict, life),
+	    ends = n;
+
+	if (drawn < 0)
+		die(EXIT_RUN, "no memory for %d paths", n);
+	if (!drawn)
+		return 0;
+	for (int i = 0; i < levels.n; i++)
+		quantile[i] = metric_quantile(life, (size_t)n, levels.v[i]);
+	while (ends > 0 && isinf(life[ends - 1]))
+		ends--;
+	*never = (double)(n - ends) / n;
+	return 1;
+}
+
 static void put_life(struct outlook *o, struct table_out *out, double t, double y)
 {
 	double q[OPT_LIST_MAX], never = NAN;
@@ -180,7 +218,7 @@ static void put_life(struct outlook *o, struct table_out *out, double t, double 
 	if (o->failed)
 		never = 0;
 	else if (o->predict && wanted)
-		predict_life(o->predict, levels.v, q, levels.n, &never);
+		foresee(o, q, &never);
 	stats_add("lives", o->predict && !o->failed && wanted);
 	stats_add("lives_left_out", o->failed || !wanted);
 	for (int i = 0; i < levels.n; i++)

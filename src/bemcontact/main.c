@@ -1,11 +1,11 @@
 /* bemcontact - pressure between rough elastic bodies pressed together */
-#include "contact/solver.h"
-#include "common/contact_options.h"
-#include "common/raw_layout.h"
-#include "io/fields.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "common/contact_options.h"
+#include "common/raw_layout.h"
+#include "contact/solver.h"
+#include "io/fields.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +18,7 @@ static int fields = 1 << HEIGHT | 1 << PRESSURE;
 
 static const struct opt opts[] = {
 	OPT_TABLE(press_rows),
-	{ 'o', "fields", OPT_WORDS, UNIT_NONE, &fields, 0, 0, "NAME,...",
+	{ 0, "fields", OPT_WORDS, UNIT_NONE, &fields, 0, 0, "NAME,...",
 		"what to write of height, pressure, displacement, gap", field_names, 0 },
 	OPT_TABLE(raw_rows),
 	OPT_END,

@@ -14,11 +14,11 @@ static double stop_area = 0.8, amplification = 1;
 
 static const struct opt opts[] = {
 	OPT_TABLE(wearing_rows),
-	{ 'T', "steps", OPT_INT, UNIT_COUNT, &steps, 1, 1e6, "N",
+	{ 0, "steps", OPT_INT, UNIT_COUNT, &steps, 1, 1e6, "N",
 		"wear steps; the contact is solved anew from the second on", NULL, 0 },
-	{ 'A', "stop-area", OPT_NUM, UNIT_FRACTION, &stop_area, 0, 1, "A",
+	{ 0, "stop-area", OPT_NUM, UNIT_FRACTION, &stop_area, 0, 1, "A",
 		"stop where this share of the cells is in contact; 1: never", NULL, 0 },
-	{ 'Z', "amplification", OPT_NUM, UNIT_NONE, &amplification, 0, 1e12, "K",
+	{ 0, "amplification", OPT_NUM, UNIT_NONE, &amplification, 0, 1e12, "K",
 		"sliding distance of a step over the length of the grid", NULL, 0 },
 	OPT_TABLE(worn_rows),
 	OPT_TABLE(press_rows),

@@ -17,16 +17,16 @@ static long stress_layers;
 static const char *surface_path, *summary_path, *stress_path;
 
 struct opt worn_rows[] = {
-	{ 'O', "surface", OPT_TEXT, UNIT_NONE, &surface_path, 0, 0, "FILE",
+	{ 0, "surface", OPT_TEXT, UNIT_NONE, &surface_path, 0, 0, "FILE",
 		"write the worn surface of every step", NULL, 1 },
-	{ 'U', "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
+	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
 		"write a table with a row per step", NULL, 1 },
-	{ 'G', "stress", OPT_TEXT, UNIT_NONE, &stress_path, 0, 0, "FILE",
+	{ 0, "stress", OPT_TEXT, UNIT_NONE, &stress_path, 0, 0, "FILE",
 		"write the stress below every contact", NULL, 1 },
-	{ 'o', "fields", OPT_WORDS, UNIT_NONE, &stress_wanted, 0, 0, "NAME,...",
+	{ 0, "fields", OPT_WORDS, UNIT_NONE, &stress_wanted, 0, 0, "NAME,...",
 		"what to write of von_mises, hydrostatic, principal, tensor",
 		stress_words, 1 },
-	{ 'y', "stress-layers", OPT_INT, UNIT_COUNT, &stress_layers, 0, 1e6, "N",
+	{ 0, "stress-layers", OPT_INT, UNIT_COUNT, &stress_layers, 0, 1e6, "N",
 		"layers of --stress; 0: as many as were searched for failure", NULL, 1 },
 	OPT_END,
 };

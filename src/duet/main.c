@@ -22,35 +22,35 @@ static const char *const methods[] = { "fit", "duet", "count", NULL };
 static const char *const automatic[] = { "auto", NULL };
 
 static const struct opt opts[] = {
-	{ 'm', "method", OPT_WORD, UNIT_NONE, &method, 0, 0, "fit|duet|count",
+	{ 0, "method", OPT_WORD, UNIT_NONE, &method, 0, 0, "fit|duet|count",
 		"joint fit of all pulses, time-frequency masks, or counted peaks",
 		methods, 0 },
-	{ 'a', "align", OPT_CHOICE, UNIT_TIME, &instrument.align, 0, 1e9, "auto|T",
+	{ 0, "align", OPT_CHOICE, UNIT_TIME, &instrument.align, 0, 1e9, "auto|T",
 		"time from sensor 1 to sensor 2 of the mean particle", automatic, 0 },
-	{ 'L', "spacing", OPT_NUM, UNIT_LENGTH, &spacing, 1e-6, 1e3, "D",
+	{ 0, "spacing", OPT_NUM, UNIT_LENGTH, &spacing, 1e-6, 1e3, "D",
 		"between the two sensors", 0, 0 },
-	{ 'K', "calibration", OPT_NUM, UNIT_NONE, &kappa, 1e-30, 1e30, "K",
+	{ 0, "calibration", OPT_NUM, UNIT_NONE, &kappa, 1e-30, 1e30, "K",
 		"peak voltage over velocity and diameter cubed, V s/m4", 0, 0 },
-	{ 'n', "sources", OPT_CHOICE, UNIT_COUNT, &sources, 1, 16, "auto|N",
+	{ 0, "sources", OPT_CHOICE, UNIT_COUNT, &sources, 1, 16, "auto|N",
 		"particles in each section", automatic, 0 },
 	OPT_TABLE(instrument_rows),
-	{ 'e', "learn", OPT_NUM, UNIT_TIME, &learn, 0, 1e9, "T",
+	{ 0, "learn", OPT_NUM, UNIT_TIME, &learn, 0, 1e9, "T",
 		"start of the record that the instrument is learned from", 0, 0 },
-	{ 'y', "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
+	{ 0, "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
 		"hold back no more than T of signal", 0, 0 },
-	{ 'w', "window", OPT_INT, UNIT_COUNT, &window, 4, 1e6, "N",
+	{ 0, "window", OPT_INT, UNIT_COUNT, &window, 4, 1e6, "N",
 		"samples of a Hamming window (duet)", 0, 0 },
-	{ 'H', "hop", OPT_INT, UNIT_COUNT, &hop, 1, 1e6, "N",
+	{ 0, "hop", OPT_INT, UNIT_COUNT, &hop, 1, 1e6, "N",
 		"samples from window to window (duet; half the window)", 0, 0 },
-	{ 'k', "sensor", OPT_INT, UNIT_COUNT, &sensor, 1, 2, "N",
+	{ 0, "sensor", OPT_INT, UNIT_COUNT, &sensor, 1, 2, "N",
 		"channel to count on (count)", 0, 0 },
-	{ 'z', "floor", OPT_NUM, UNIT_VOLTAGE, &floor_height, 1e-30, 1e30, "V",
+	{ 0, "floor", OPT_NUM, UNIT_VOLTAGE, &floor_height, 1e-30, 1e30, "V",
 		"lowest peak (count; five deviations of the record)", 0, 0 },
-	{ 'O', "separated", OPT_TEXT, UNIT_NONE, &separated, 0, 0, "FILE",
+	{ 0, "separated", OPT_TEXT, UNIT_NONE, &separated, 0, 0, "FILE",
 		"write each source of a section as a channel of its own", 0, 0 },
-	{ 'G', "histogram", OPT_TEXT, UNIT_NONE, &histogram, 0, 0, "FILE",
+	{ 0, "histogram", OPT_TEXT, UNIT_NONE, &histogram, 0, 0, "FILE",
 		"write the weighted histograms as a table (duet)", 0, 0 },
-	{ 'Z', "sections", OPT_TEXT, UNIT_NONE, &sections, 0, 0, "FILE",
+	{ 0, "sections", OPT_TEXT, UNIT_NONE, &sections, 0, 0, "FILE",
 		"write one row per section", 0, 0 },
 	OPT_END
 };
@@ -61,15 +61,15 @@ static const struct prog prog = { "duet",
 
 static void check_options(void)
 {
-	if (method != METHOD_DUET && (opt_given('w') || opt_given('H') || histogram))
+	if (method != METHOD_DUET && (opt_given("window") || opt_given("hop") || histogram))
 		die(EXIT_USAGE, "--window, --hop and --histogram need --method duet");
-	if (method != METHOD_COUNT && (opt_given('k') || opt_given('z')))
+	if (method != METHOD_COUNT && (opt_given("sensor") || opt_given("floor")))
 		die(EXIT_USAGE, "--sensor and --floor need --method count");
 	if (method == METHOD_COUNT && (separated || sections))
 		die(EXIT_USAGE, "--method count knows no sections and separates nothing");
 	if (window % 2)
 		die(EXIT_USAGE, "--window %ld: want an even number of samples", window);
-	if (!opt_given('H'))
+	if (!opt_given("hop"))
 		hop = window / 2;
 	if (hop > window)
 		die(EXIT_USAGE, "--hop %ld is longer than the window", hop);

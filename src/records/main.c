@@ -1,9 +1,9 @@
 /* records - list, pick, count and convert the records of a field stream */
-#include "common/raw_layout.h"
-#include "io/fields.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "common/raw_layout.h"
+#include "io/fields.h"
 #include "io/tables.h"
 #include <math.h>
 #include <stdlib.h>
@@ -20,10 +20,10 @@ static const char *field;
 static const struct opt opts[] = {
 	{ 'o', "output", OPT_WORD, UNIT_NONE, &format, 0, 0,
 		"list|count|nrrd|gsf|text|table", "what to write", formats, 0 },
-	{ 'n', "pick", OPT_LIST, UNIT_COUNT, &pick, 1, 1e9, "K,...",
+	{ 0, "pick", OPT_LIST, UNIT_COUNT, &pick, 1, 1e9, "K,...",
 		"only the K-th records, from 1", NULL, 1 },
-	{ 'k', "field", OPT_TEXT, UNIT_NONE, &field, 0, 0, "NAME", "only this field",
-		NULL, 0 },
+	{ 0, "field", OPT_TEXT, UNIT_NONE, &field, 0, 0, "NAME", "only this field", NULL,
+		0 },
 	OPT_TABLE(raw_rows),
 	OPT_END,
 };

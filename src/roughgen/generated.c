@@ -27,25 +27,25 @@ struct opt generated_grid_rows[] = {
 };
 
 struct opt generated_rows[] = {
-	{ 'g', "slope", OPT_LIST, UNIT_NONE, &slope, 0, 1e6, "G[:G2]",
+	{ 0, "slope", OPT_LIST, UNIT_NONE, &slope, 0, 1e6, "G[:G2]",
 		"root mean square slope instead", NULL, 0 },
-	{ 'A', "acf", OPT_WORD, UNIT_NONE, &acf, 0, 0, "gauss|exp",
+	{ 0, "acf", OPT_WORD, UNIT_NONE, &acf, 0, 0, "gauss|exp",
 		"autocorrelation function", acf_words, 0 },
 	{ 'l', "corr", OPT_LIST, UNIT_LENGTH, &corr, 1e-18, 1e12, "L[xL]",
 		"1/e correlation lengths (default a tenth of the length)", NULL, 0 },
-	{ 'H', "hurst", OPT_NUM, UNIT_NONE, &hurst, 0, 2, "H",
+	{ 0, "hurst", OPT_NUM, UNIT_NONE, &hurst, 0, 2, "H",
 		"self-affine spectrum instead of --acf", NULL, 0 },
-	{ 'R', "rolloff", OPT_NUM, UNIT_LENGTH, &rolloff, 1e-15, 1e12, "L",
+	{ 0, "rolloff", OPT_NUM, UNIT_LENGTH, &rolloff, 1e-15, 1e12, "L",
 		"longest self-affine wavelength; longer waves alike", NULL, 0 },
-	{ 'W', "longest", OPT_NUM, UNIT_LENGTH, &longest, 1e-15, 1e12, "L",
+	{ 0, "longest", OPT_NUM, UNIT_LENGTH, &longest, 1e-15, 1e12, "L",
 		"leave out longer waves", NULL, 0 },
-	{ 'k', "cutoff", OPT_NUM, UNIT_LENGTH, &cutoff, 1e-15, 1e12, "L",
+	{ 0, "cutoff", OPT_NUM, UNIT_LENGTH, &cutoff, 1e-15, 1e12, "L",
 		"leave out shorter waves", NULL, 0 },
-	{ 'K', "skewness", OPT_NUM, UNIT_NONE, &skewness, -30, 30, "S",
+	{ 0, "skewness", OPT_NUM, UNIT_NONE, &skewness, -30, 30, "S",
 		"Ssk of the heights", NULL, 0 },
-	{ 'Q', "kurtosis", OPT_NUM, UNIT_NONE, &kurtosis, 1, 1000, "K",
+	{ 0, "kurtosis", OPT_NUM, UNIT_NONE, &kurtosis, 1, 1000, "K",
 		"Sku of the heights (default 3 + 1.5 S^2)", NULL, 0 },
-	{ 'p', "pair", OPT_LIST, UNIT_LENGTH, &pair, 0, 1e9, "Q[:Q2]",
+	{ 0, "pair", OPT_LIST, UNIT_LENGTH, &pair, 0, 1e9, "Q[:Q2]",
 		"add a second, independent surface of this roughness", NULL, 0 },
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e18, "N", "random seed", NULL, 0 },
 	{ 'f', "first", OPT_INT, UNIT_COUNT, &first, 0, 4294967295.0, "K",
@@ -57,11 +57,11 @@ struct opt generated_rows[] = {
 
 void generated_check(void)
 {
-	if (opt_given('g') && opt_given('p'))
+	if (opt_given("slope") && opt_given("pair"))
 		die(EXIT_USAGE, "--pair is a height and does not go with --slope");
-	if (opt_given('H') && (opt_given('A') || opt_given('l')))
+	if (opt_given("hurst") && (opt_given("acf") || opt_given("corr")))
 		die(EXIT_USAGE, "--hurst excludes --acf and --corr");
-	if (!opt_given('H') && (opt_given('R') || opt_given('W')))
+	if (!opt_given("hurst") && (opt_given("rolloff") || opt_given("longest")))
 		die(EXIT_USAGE, "--rolloff and --longest need --hurst");
 	if (rolloff > 0 && longest > 0 && longest < rolloff)
 		die(EXIT_USAGE, "--longest %g m is shorter than --rolloff %g m", longest,

@@ -25,10 +25,10 @@ static const struct opt opts[] = {
 	{ 'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N", "threads", NULL,
 		1 },
 	OPT_TABLE(measured_rows),
-	{ 'C', "crown", OPT_CHOICE, UNIT_LENGTH, &crown, 0, 1e9, "none|auto|DROP",
+	{ 0, "crown", OPT_CHOICE, UNIT_LENGTH, &crown, 0, 1e9, "none|auto|DROP",
 		"put on a paraboloid, DROP lower at the corners; auto is 4 Sq",
 		crown_words, 0 },
-	{ 'm', "measure", OPT_FLAG, UNIT_NONE, &measure, 0, 0, NULL,
+	{ 0, "measure", OPT_FLAG, UNIT_NONE, &measure, 0, 0, NULL,
 		"print areal parameters instead of heights", NULL, 0 },
 	OPT_END,
 };
@@ -64,7 +64,7 @@ static void check_options(int from_file)
 		refuse(measured_rows, "is for a measured surface: name a file, or - for "
 				      "standard input");
 	}
-	if (opt_given('q') + opt_given('a') + opt_given('g') > 1)
+	if (opt_given("sq") + opt_given("sa") + opt_given("slope") > 1)
 		die(EXIT_USAGE, "--sq, --sa and --slope exclude each other");
 	roughness_check();
 	generated_check();

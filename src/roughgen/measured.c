@@ -16,13 +16,13 @@ static int level, fill;
 
 struct opt measured_rows[] = {
 	OPT_TABLE(raw_rows),
-	{ 'w', "crop", OPT_LIST, UNIT_COUNT, &crop, 0, POINTS_MAX, "X:Y:NX:NY",
+	{ 0, "crop", OPT_LIST, UNIT_COUNT, &crop, 0, POINTS_MAX, "X:Y:NX:NY",
 		"cut NX by NY samples of file from X, Y on", NULL, 0 },
-	{ 'i', "fill", OPT_FLAG, UNIT_NONE, &fill, 0, 0, NULL,
+	{ 0, "fill", OPT_FLAG, UNIT_NONE, &fill, 0, 0, NULL,
 		"fill missing samples of file by Laplace's equation", NULL, 0 },
-	{ 'z', "level", OPT_FLAG, UNIT_NONE, &level, 0, 0, NULL,
+	{ 0, "level", OPT_FLAG, UNIT_NONE, &level, 0, 0, NULL,
 		"subtract the least-squares plane of file", NULL, 0 },
-	{ 'r', "resample", OPT_LIST, UNIT_COUNT, &resample, 1, POINTS_MAX, "N[xM]",
+	{ 0, "resample", OPT_LIST, UNIT_COUNT, &resample, 1, POINTS_MAX, "N[xM]",
 		"bring file to this many points", NULL, 0 },
 	OPT_END,
 };
@@ -174,7 +174,7 @@ int measured_next(struct measured *m, struct record *r, double *crown)
 		surface_level(r->nx, r->ny, r->data[0]);
 	if (resample.n)
 		resample_heights(r);
-	if (opt_given('q') || opt_given('a'))
+	if (opt_given("sq") || opt_given("sa"))
 		scale_heights(m->in, r);
 	/* What comes through a pipe has to be asked for. */
 	upstream = m->read.cmd;

@@ -13,15 +13,14 @@ static const double sphere = 0.52359877559829887; /* pi / 6 */
 
 struct state_options state_options;
 
-struct opt state_rows[] = {
-	{ 'y', "quantity", OPT_WORD, UNIT_NONE, &state_options.quantity, 0, 0,
-		"auto|leakage|gap|volume|debris", "what the state is", quantities, 0 },
-	{ 'u', "state-unit", OPT_TEXT, UNIT_NONE, &state_options.unit, 0, 0, "UNIT",
+struct opt state_rows[] = { { 0, "quantity", OPT_WORD, UNIT_NONE, &state_options.quantity,
+				    0, 0, "auto|leakage|gap|volume|debris",
+				    "what the state is", quantities, 0 },
+	{ 0, "state-unit", OPT_TEXT, UNIT_NONE, &state_options.unit, 0, 0, "UNIT",
 		"unit of the state, where not SI: L/min", 0, 0 },
-	{ 'X', "state-error", OPT_NUM, UNIT_NONE, &state_options.error, 0, 1e300, "SD",
+	{ 0, "state-error", OPT_NUM, UNIT_NONE, &state_options.error, 0, 1e300, "SD",
 		"standard error of the state, in its unit", 0, 0 },
-	OPT_TABLE(timeunit_rows), OPT_END
-};
+	OPT_TABLE(timeunit_rows), OPT_END };
 
 void state_open(struct state *s, const char *file, const struct pair *pair)
 {

@@ -1,11 +1,11 @@
 /* sensorsim - the signal of wear particles in a pipe past two inductive sensors */
-#include "sensor_options.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
-#include "io/signals.h"
 #include "cli/stats.h"
+#include "io/signals.h"
 #include "io/tables.h"
 #include "particle_source.h"
+#include "sensor_options.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,13 +19,13 @@ static const char *truth;
 static const struct opt opts[] = {
 	OPT_TABLE(source_rows),
 	OPT_TABLE(sensors_rows),
-	{ 'T', "truth", OPT_TEXT, UNIT_NONE, &truth, 0, 0, "FILE",
+	{ 0, "truth", OPT_TEXT, UNIT_NONE, &truth, 0, 0, "FILE",
 		"write a table of the particles", 0, 0 },
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "of the random numbers",
 		0, 0 },
 	{ 'f', "first", OPT_INT, UNIT_COUNT, &first, 0, 4e9, "K", "realisation to make",
 		0, 0 },
-	{ 'F', "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
+	{ 0, "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
 		0 },
 	OPT_END,
 };

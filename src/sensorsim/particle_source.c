@@ -1,7 +1,7 @@
 #include "particle_source.h"
-#include "sensor_options.h"
 #include "cli/msg.h"
 #include "io/tables.h"
+#include "sensor_options.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -15,30 +15,30 @@ static struct opt_list uniform;
 static const char *const measures[] = { "diameter", "volume", NULL };
 
 struct opt source_rows[] = {
-	{ 'u', "uniform", OPT_LIST, UNIT_LENGTH, &uniform, 1e-9, 1, "A:B",
+	{ 0, "uniform", OPT_LIST, UNIT_LENGTH, &uniform, 1e-9, 1, "A:B",
 		"draw particles with diameters from A to B instead of reading a table", 0,
 		0 },
-	{ 'y', "by", OPT_WORD, UNIT_NONE, &by_volume, 0, 0, "diameter|volume",
+	{ 0, "by", OPT_WORD, UNIT_NONE, &by_volume, 0, 0, "diameter|volume",
 		"what --uniform makes uniform", measures, 0 },
-	{ 'N', "number", OPT_INT, UNIT_COUNT, &number, 0, 1e15, "N", "particles to draw",
-		0, 0 },
-	{ 'C', "concentration", OPT_NUM, UNIT_CONCENTRATION, &concentration, 0, 1e4, "C",
+	{ 0, "number", OPT_INT, UNIT_COUNT, &number, 0, 1e15, "N", "particles to draw", 0,
+		0 },
+	{ 0, "concentration", OPT_NUM, UNIT_CONCENTRATION, &concentration, 0, 1e4, "C",
 		"draw a Poisson number of particles, C of mass in the oil", 0, 0 },
-	{ 'D', "density", OPT_NUM, UNIT_DENSITY, &density, 1, 1e5, "RHO",
+	{ 0, "density", OPT_NUM, UNIT_DENSITY, &density, 1, 1e5, "RHO",
 		"of the particles", 0, 0 },
 	/* arrivals */
-	{ 'd', "duration", OPT_NUM, UNIT_TIME, &source_duration, 0, 1e9, "T",
+	{ 0, "duration", OPT_NUM, UNIT_TIME, &source_duration, 0, 1e9, "T",
 		"of the record", 0, 0 },
-	{ 'o', "start", OPT_NUM, UNIT_TIME, &start, -1e9, 1e9, "T",
+	{ 0, "start", OPT_NUM, UNIT_TIME, &start, -1e9, 1e9, "T",
 		"when particles begin to arrive", 0, 0 },
-	{ 'X', "span", OPT_NUM, UNIT_TIME, &span, 0, 1e9, "T",
+	{ 0, "span", OPT_NUM, UNIT_TIME, &span, 0, 1e9, "T",
 		"time within which the particles of a burst arrive", 0, 0 },
-	{ 'i', "gap", OPT_NUM, UNIT_TIME, &gap, 0, 1e9, "T",
-		"least time between arrivals", 0, 0 },
-	{ 'b', "burst", OPT_INT, UNIT_COUNT, &burst, 1, 1e9, "M", "particles of a burst",
+	{ 0, "gap", OPT_NUM, UNIT_TIME, &gap, 0, 1e9, "T", "least time between arrivals",
 		0, 0 },
-	{ 't', "period", OPT_NUM, UNIT_TIME, &period, 0, 1e9, "T", "from burst to burst",
-		0, 0 },
+	{ 0, "burst", OPT_INT, UNIT_COUNT, &burst, 1, 1e9, "M", "particles of a burst", 0,
+		0 },
+	{ 0, "period", OPT_NUM, UNIT_TIME, &period, 0, 1e9, "T", "from burst to burst", 0,
+		0 },
 	OPT_END,
 };
 

@@ -15,48 +15,48 @@ static const char *const shapes[] = { "sine", "gauss", "lorentz", NULL };
 struct opt sensors_rows[] = {
 	{ 'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 2e9, "F", "sampling rate", 0,
 		0 },
-	{ 'Q', "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-12, 1e3, "Q", "of the oil", 0, 0 },
-	{ 'B', "bore", OPT_NUM, UNIT_LENGTH, &bore, 1e-6, 10, "D", "diameter of the pipe",
+	{ 0, "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-12, 1e3, "Q", "of the oil", 0, 0 },
+	{ 0, "bore", OPT_NUM, UNIT_LENGTH, &bore, 1e-6, 10, "D", "diameter of the pipe",
 		0, 0 },
-	{ 'p', "profile", OPT_WORD, UNIT_NONE, &profile, 0, 0, "plug|laminar|turbulent",
+	{ 0, "profile", OPT_WORD, UNIT_NONE, &profile, 0, 0, "plug|laminar|turbulent",
 		"velocity profile", profiles, 0 },
-	{ 'e', "exponent", OPT_NUM, UNIT_NONE, &exponent, 1, 100, "N",
+	{ 0, "exponent", OPT_NUM, UNIT_NONE, &exponent, 1, 100, "N",
 		"of the turbulent profile (1 - r/R)^(1/N)", 0, 0 },
-	{ 'L', "spacing", OPT_NUM, UNIT_LENGTH, &spacing, 1e-6, 1e3, "D",
+	{ 0, "spacing", OPT_NUM, UNIT_LENGTH, &spacing, 1e-6, 1e3, "D",
 		"between the two sensors", 0, 0 },
-	{ 'a', "lag", OPT_LIST, UNIT_TIME, &lag, 0, 1e6, "A:B",
+	{ 0, "lag", OPT_LIST, UNIT_TIME, &lag, 0, 1e6, "A:B",
 		"transit takes longer than that of the oil by A to B", 0, 0 },
-	{ 'w', "pulse", OPT_WORD, UNIT_NONE, &shape, 0, 0, "sine|gauss|lorentz",
+	{ 0, "pulse", OPT_WORD, UNIT_NONE, &shape, 0, 0, "sine|gauss|lorentz",
 		"pulse shape", shapes, 0 },
-	{ 'l', "zone", OPT_NUM, UNIT_LENGTH, &zone, 1e-9, 1e3, "L",
+	{ 0, "zone", OPT_NUM, UNIT_LENGTH, &zone, 1e-9, 1e3, "L",
 		"of the sensing zone: a pulse lasts L over the velocity", 0, 0 },
-	{ 'K', "calibration", OPT_NUM, UNIT_NONE, &kappa, 1e-30, 1e30, "K",
+	{ 0, "calibration", OPT_NUM, UNIT_NONE, &kappa, 1e-30, 1e30, "K",
 		"peak voltage over velocity and diameter cubed, V s/m4", 0, 0 },
-	{ 'I', "coil", OPT_LIST, UNIT_ANY, &coil, 0, 1e30, "N,ND,I,MUR,L0,LF,AMP",
+	{ 0, "coil", OPT_LIST, UNIT_ANY, &coil, 0, 1e30, "N,ND,I,MUR,L0,LF,AMP",
 		"calibration by turns, exciting turns, current, permeability, paths, gain",
 		0, 0 },
-	{ 'g', "gain", OPT_NUM, UNIT_NONE, &gain, 0, 1e9, "G",
-		"of sensor 2 over sensor 1", 0, 0 },
+	{ 0, "gain", OPT_NUM, UNIT_NONE, &gain, 0, 1e9, "G", "of sensor 2 over sensor 1",
+		0, 0 },
 	/* disturbances */
-	{ 'n', "noise", OPT_NUM, UNIT_VOLTAGE, &noise, 0, 1e9, "V",
-		"rms noise of a sample", 0, 0 },
-	{ 'R', "snr", OPT_NUM, UNIT_DECIBEL, &snr, -100, 400, "S",
+	{ 0, "noise", OPT_NUM, UNIT_VOLTAGE, &noise, 0, 1e9, "V", "rms noise of a sample",
+		0, 0 },
+	{ 0, "snr", OPT_NUM, UNIT_DECIBEL, &snr, -100, 400, "S",
 		"noise by the peak of a 100 um particle over its rms", 0, 0 },
-	{ 'k', "corner", OPT_NUM, UNIT_FREQUENCY, &corner, 0, 1e12, "F",
+	{ 0, "corner", OPT_NUM, UNIT_FREQUENCY, &corner, 0, 1e12, "F",
 		"low-pass of the noise; 0: white", 0, 0 },
-	{ 'q', "common", OPT_NUM, UNIT_NONE, &common, -1, 1, "R",
+	{ 0, "common", OPT_NUM, UNIT_NONE, &common, -1, 1, "R",
 		"correlation of the noise of both sensors", 0, 0 },
-	{ 'z', "drift", OPT_NUM, UNIT_VOLTAGE, &drift, 0, 1e9, "V",
+	{ 0, "drift", OPT_NUM, UNIT_VOLTAGE, &drift, 0, 1e9, "V",
 		"rms drift of the base line", 0, 0 },
-	{ 'Z', "drift-time", OPT_NUM, UNIT_TIME, &drift_time, 1e-9, 1e9, "T",
+	{ 0, "drift-time", OPT_NUM, UNIT_TIME, &drift_time, 1e-9, 1e9, "T",
 		"correlation time of the drift", 0, 0 },
-	{ 'm', "mains", OPT_LIST, UNIT_VOLTAGE, &mains, 0, 1e9, "V[,V3[,V5]]",
+	{ 0, "mains", OPT_LIST, UNIT_VOLTAGE, &mains, 0, 1e9, "V[,V3[,V5]]",
 		"amplitudes of the mains and its odd harmonics", 0, 0 },
-	{ 'M', "mains-frequency", OPT_NUM, UNIT_FREQUENCY, &mains_frequency, 0, 1e9, "F",
+	{ 0, "mains-frequency", OPT_NUM, UNIT_FREQUENCY, &mains_frequency, 0, 1e9, "F",
 		"of the mains", 0, 0 },
-	{ 'P', "pump", OPT_LIST, UNIT_VOLTAGE, &pump, 0, 1e9, "V[,V2]",
+	{ 0, "pump", OPT_LIST, UNIT_VOLTAGE, &pump, 0, 1e9, "V[,V2]",
 		"amplitudes of the pump line and its harmonics", 0, 0 },
-	{ 'U', "pump-frequency", OPT_NUM, UNIT_FREQUENCY, &pump_frequency, 0, 1e9, "F",
+	{ 0, "pump-frequency", OPT_NUM, UNIT_FREQUENCY, &pump_frequency, 0, 1e9, "F",
 		"of the pump line", 0, 0 },
 	OPT_END,
 };
@@ -86,12 +86,12 @@ void sensors_check(void)
 		die(EXIT_USAGE, "--lag: want A:B with A not above B");
 	if (rate != floor(rate))
 		die(EXIT_USAGE, "--rate: AU wants whole hertz, not %g", rate);
-	if (coil.n && opt_given('K'))
+	if (coil.n && opt_given("calibration"))
 		die(EXIT_USAGE, "--coil and --calibration exclude each other");
 	if (coil.n && !(coil.v[3] >= 1 && coil.v[4] > 0 && coil.v[5] > coil.v[4]))
 		die(EXIT_USAGE,
 			"--coil: want a permeability of at least 1 and paths 0 < L0 < LF");
-	if (opt_given('R') && opt_given('n'))
+	if (opt_given("snr") && opt_given("noise"))
 		die(EXIT_USAGE, "--noise and --snr exclude each other");
 	if (corner > rate / 2)
 		die(EXIT_USAGE, "--corner %g Hz is above half the rate, %g Hz", corner,

@@ -23,7 +23,7 @@ life() {
 	: >lives
 	k=1
 	while [ $k -le "$pumps" ]; do
-		aopf -t h -y 2.8 -d up -S stats "$@" "pump$k.tsv" >out
+		aopf --time-unit h -y 2.8 --direction up -S stats "$@" "pump$k.tsv" >out
 		printf '%s\t%s\n' "$(tail -1 out)" "$(column cpu_seconds stats)" >>lives
 		k=$((k + 1))
 	done
@@ -56,16 +56,16 @@ all() {
 	done
 	for n in 100 300 1000 3000; do
 		for rule in 7 20 window insample all; do
-			life "grey-$rule" $n -m grey -n $rule -N $n
+			life "grey-$rule" $n --model grey --order $rule --particles $n
 		done
-		life average-window $n -N $n
+		life average-window $n --particles $n
 	done
 	"$top/scripts/synthetic-pump" 1 1200 >pump.tsv
 	for n in 100 300 1000 3000; do
-		aopf -t h -N $n -S stats pump.tsv >/dev/null
+		aopf --time-unit h --particles $n -S stats pump.tsv >/dev/null
 		printf 'rows\t%s\tnan\tnan\t%s\n' $n \
 			"$(column cpu_seconds stats | awk '{ print $1 / 1200 }')"
-		aopf -t h -y 2.8 -N $n -S stats pump.tsv >/dev/null
+		aopf --time-unit h -y 2.8 --particles $n -S stats pump.tsv >/dev/null
 		printf 'rows-life\t%s\tnan\tnan\t%s\n' $n \
 			"$(column cpu_seconds stats | awk '{ print $1 / 1200 }')"
 	done

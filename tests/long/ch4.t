@@ -83,7 +83,7 @@ done <ends | awk '{ s += $1; n++ } END { printf "%.3f", s / n }')" 0.85 0.99
 # --- a million rows
 rows() { awk -v n="$1" 'BEGIN { print "t\tgap"; for (i = 0; i < n; i++) print i "\t" 1e-5 + i * 1e-12 }'; }
 for n in 10000 1000000; do
-	rows $n | rwl -g 20um -R filter -c 2 --grey --stats stats.$n >out.$n
+	rows $n | rwl --threshold-gap 20um --wear-rate filter -c 2 --grey --stats stats.$n >out.$n
 done
 is "a million rows out" "$(grep -c '^[0-9]' out.1000000)" 1000000
 within "memory of a million rows over that of ten thousand" \
