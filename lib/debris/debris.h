@@ -1,7 +1,7 @@
 /* debris.h - one step of wear: stress below a contact, removal, particles, worn surface
  *
- * Joins stress.h, wear.h and particles.h.  Memory is kept over calls, so use one struct for
- * all steps of all surfaces of one grid; results do not depend on what was computed
+ * Joins stress.h, wear.h and particles.h.  Memory is kept over calls, so use one struct
+ *for all steps of all surfaces of one grid; results do not depend on what was computed
  * before, nor on threads.
  *
  *	struct debris_par par = { .stress = { .nx = 128, .ny = 128, .ax = 8e-6,

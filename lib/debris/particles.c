@@ -24,8 +24,8 @@ enum { STEPS = 64 };
 /* A stretch on its way. */
 struct piece {
 	double top, bottom;
-	int x, y;        /* column, on the grid */
-	int period[2];   /* of the frame in which it was reached */
+	int x, y;      /* column, on the grid */
+	int period[2]; /* of the frame in which it was reached */
 	int reached;
 };
 
@@ -145,8 +145,8 @@ static int onto_grid(int *at, int n, int periodic, int *period)
 	return !over || periodic;
 }
 
-/* Reaches what overlaps a piece in the column at (dx, dy) from it; returns how much of its
- * height does. */
+/* Reaches what overlaps a piece in the column at (dx, dy) from it; returns how much of
+ * its height does. */
 static double reach_column(struct particles *ps, const struct piece *p, int dx, int dy)
 {
 	int x = p->x + dx, y = p->y + dy, period[2] = { p->period[X], p->period[Y] };
@@ -158,8 +158,8 @@ static double reach_column(struct particles *ps, const struct piece *p, int dx, 
 		return 0;
 	column = (size_t)y * (size_t)ps->par.nx + (size_t)x;
 	for (size_t i = ps->start[column]; i < ps->start[column + 1]; i++) {
-		double overlap = fmin(bottom, ps->piece[i].bottom) -
-				 fmax(top, ps->piece[i].top);
+		double overlap =
+			fmin(bottom, ps->piece[i].bottom) - fmax(top, ps->piece[i].top);
 
 		if (!(overlap > 0))
 			continue;
@@ -256,6 +256,7 @@ static void measure_moments(const struct particles *ps, const struct extent *e,
 	const double mean[3], double volume, struct particle *out)
 {
 	double m[6] = { 0 }, value[3], axis[3][3], ax = ps->par.ax, ay = ps->par.ay;
+	double rounding = 16 * sqrt((double)ps->members + 16) * DBL_EPSILON;
 
 	for (size_t i = 0; i < ps->members; i++) {
 		const struct piece *p = &ps->piece[ps->body[i]];
@@ -273,13 +274,18 @@ static void measure_moments(const struct particles *ps, const struct extent *e,
 		m[4] += share * x * z;
 		m[5] += share * y * z;
 	}
+	/* Sums of so many terms are right to their square root of units of the last
+	 * place, and the terms to some more; products less than that are none, so that
+	 * bodies along the axes have whole directions. */
+	for (int k = 3; k < 6; k++) {
+		double most = sqrt(m[k == 5] * m[k == 3 ? 1 : 2]);
+
+		m[k] = fabs(m[k]) < rounding * most ? 0 : m[k];
+	}
 	sym3_eigen(m, value, axis);
 	out->elongation = 1 - sqrt(value[1] / value[0]);
 	out->azimuth = out->dip = NAN;
-	/* Sums of so many terms are right to their square root of units of the last place;
-	 * a factor covers the terms themselves. */
-	if (value[0] - value[1] <
-		16 * sqrt((double)ps->members + 16) * DBL_EPSILON * value[0])
+	if (value[0] - value[1] < rounding * value[0])
 		return;
 	if (axis[0][X] < 0 || (axis[0][X] == 0 && axis[0][Y] < 0))
 		for (int k = X; k <= Z; k++)
@@ -315,7 +321,8 @@ static int put_corners(struct particles *ps, const struct extent *e, double unit
 
 static int measure_hull(struct particles *ps, const struct extent *e, struct particle *p)
 {
-	double range = e->bottom - e->top, unit = ps->par.az > 0 ? ps->par.az : range / STEPS;
+	double range = e->bottom - e->top,
+	       unit = ps->par.az > 0 ? ps->par.az : range / STEPS;
 	const double step[3] = { ps->par.ax, ps->par.ay, unit };
 	enum hull_status status = HULL_LARGE;
 

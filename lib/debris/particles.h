@@ -9,8 +9,8 @@
  *	struct particles *ps = particles_new(&par);
  *	n = particles_find(ps, stretch, count, &list);
  *
- * Lengths are taken over the bodies as they are, boxes with their corners: a single cube has
- * the largest diameter sqrt(3) times its side.
+ * Lengths are taken over the bodies as they are, boxes with their corners: a single cube
+ *has the largest diameter sqrt(3) times its side.
  */
 #ifndef DEBRIS_PARTICLES_H
 #define DEBRIS_PARTICLES_H
@@ -50,10 +50,10 @@ struct particle {
 	double x, y, z;         /* centroid, m; z down from the surface */
 	double low[3], high[3]; /* bounding box, m */
 	int first[2];           /* first column in order of y and x: the address */
-	/* On a periodic grid: goes round it and meets itself, a ridge without end.  Columns,
-	 * volume, diameter and area are those of one period; what would need an end (length
-	 * to convexity, direction) is nan, as is the centroid along x or y where it winds
-	 * that way. */
+	/* On a periodic grid: goes round it and meets itself, a ridge without end.
+	 * Columns, volume, diameter and area are those of one period; what would need an
+	 * end (length to convexity, direction) is nan, as is the centroid along x or y
+	 * where it winds that way. */
 	int endless;
 };
 

@@ -18,7 +18,7 @@ struct wear {
 	struct stress_span *span;
 	size_t nspans, span_room;
 	double *value[3]; /* equivalent stress at this depth and the two before */
-	double *top;      /* where the open stretch of a column begins; < 0: none is open */
+	double *top; /* where the open stretch of a column begins; < 0: none is open */
 	struct stretch *stretch;
 	size_t count, room;
 };
@@ -61,18 +61,25 @@ static double depth_of(const struct wear_par *p, long layer)
 	return layer ? p->spacing * FIRST * exp2(0.5 * (double)(layer - 1)) : 0;
 }
 
+/* Strength over stress, to the half: it grows in proportion to the depth below a load that
+ * is far away, so that little is left to interpolate.  Bounded where there is no stress. */
+static double reserve(const struct wear *w, int ago, size_t at)
+{
+	return sqrt(w->par->yield / fmax(w->value[ago][at], 1e-6 * w->par->yield));
+}
+
 /* Where the stress crosses the yield stress between the last two depths: on the parabola
  * through the last three, or the line through two. */
 static double crossing(const struct wear *w, size_t at, long layer)
 {
 	double z1 = depth_of(w->par, layer - 1), z2 = depth_of(w->par, layer);
-	double f1 = w->value[1][at], f2 = w->value[0][at], step = z2 - z1;
-	double slope = (f2 - f1) / step, bend = 0, b, c = f1 - w->par->yield, q, s;
+	double g1 = reserve(w, 1, at), g2 = reserve(w, 0, at), step = z2 - z1;
+	double slope = (g2 - g1) / step, bend = 0, b, c = g1 - 1, q, s;
 
 	if (layer > 1) {
-		double z0 = depth_of(w->par, layer - 2), f0 = w->value[2][at];
+		double z0 = depth_of(w->par, layer - 2), g0 = reserve(w, 2, at);
 
-		bend = (slope - (f1 - f0) / (z1 - z0)) / (z2 - z0);
+		bend = (slope - (g1 - g0) / (z1 - z0)) / (z2 - z0);
 	}
 	/* bend s^2 + b s + c = 0 has one root in [0, step]. */
 	b = slope - bend * step;
@@ -180,8 +187,9 @@ static enum wear_status remove_layers(struct wear *w)
 			take_layer(w, k))
 			return WEAR_MEMORY;
 		w->result->depth = z;
-		/* The potential set may go on anywhere that was in reach at this depth: the
-		 * next is evaluated there, so that both sides of a crossing are known. */
+		/* The potential set may go on anywhere that was in reach at this depth:
+		 * the next is evaluated there, so that both sides of a crossing are
+		 * known. */
 		if (p->rule == WEAR_POTENTIAL)
 			w->nspans = stress_reach(w->stress, z, p->yield, w->span);
 		else if (follow(w))

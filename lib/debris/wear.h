@@ -1,8 +1,8 @@
 /* wear.h - removal of the material whose equivalent stress exceeds the yield stress
  *
- * The potential set (2-11) is all that is over yield; the actual set (2-12) is what a column
- * loses from the surface down to where it first holds.  Depths are taken one by one until
- * none below can lose anything, and at each only the columns that still can.
+ * The potential set (2-11) is all that is over yield; the actual set (2-12) is what a
+ *column loses from the surface down to where it first holds.  Depths are taken one by one
+ *until none below can lose anything, and at each only the columns that still can.
  *
  * Without cells the depth at which the stress crosses the yield stress is interpolated
  * between depths that grow geometrically, from an eighth of the spacing on: most of the
@@ -29,18 +29,18 @@ struct wear_par {
 	double spacing; /* of the grid, m: the smaller one */
 	double cell;    /* height of a cell, m; 0: none, the depth is interpolated */
 	double offset;  /* of a cell's node from its upper side, in cells */
-	double deepest; /* give up below this depth, which should lie far below the load, m;
-			 * 0: never */
+	double deepest; /* give up below this depth, which should lie far below the load,
+			 * m; 0: never */
 };
 
 struct wear_result {
-	long layers;          /* depths evaluated */
-	double depth;         /* of the last one, m */
-	double height;        /* lost, added up over the columns, m */
-	long columns;         /* that lost something */
-	double stress;        /* largest equivalent stress met, Pa */
-	double nodes;         /* at which the stress was needed */
-	double nodes_skipped; /* of the depths evaluated */
+	long layers;                   /* depths evaluated */
+	double depth;                  /* of the last one, m */
+	double height;                 /* lost, added up over the columns, m */
+	long columns;                  /* that lost something */
+	double stress;                 /* largest equivalent stress met, Pa */
+	double nodes;                  /* at which the stress was needed */
+	double nodes_skipped;          /* of the depths evaluated */
 	const struct stretch *stretch; /* lost; valid until the next call */
 	size_t count;
 };

@@ -1,8 +1,8 @@
 /* criterion.h - equivalent stresses by which a material fails
  *
- * An equivalent stress is a seminorm of the stress: it grows in proportion to the load, and
- * that of a sum is at most the sum of those of its parts, so that bounds of parts add up
- * to a bound of the whole.  It depends on the deviator alone, which the five numbers
+ * An equivalent stress is a seminorm of the stress: it grows in proportion to the load,
+ * and that of a sum is at most the sum of those of its parts, so that bounds of parts add
+ * up to a bound of the whole.  It depends on the deviator alone, which the five numbers
  * of influence.h describe.
  *
  * A further criterion is one more row in criterion.c.

@@ -7,17 +7,20 @@
 #include <string.h>
 
 enum {
-	INNER = 8,              /* points to the radius of the window left to finer points */
-	OUTER = 2 * INNER,      /* to that of the next */
-	RADIUS = 2 * INNER,     /* cells to the radius of the innermost, on every other cell */
-	REACH = RADIUS + 1,     /* of what it leaves to the cells: the element adds one */
-	WIDTH = 2 * REACH + 2,  /* cells in a row of that; even */
-	SMALL = 32,             /* sides up to this are summed in full, which is no slower */
-	COARSEST = 6 * OUTER    /* points a side up to which no window is worth its while */
+	INNER = 8,         /* points to the radius of the window left to finer points */
+	OUTER = 2 * INNER, /* to that of the next */
+	RADIUS =
+		2 * INNER, /* cells to the radius of the innermost, on every other cell */
+	REACH = RADIUS + 1, /* of what it leaves to the cells: the element adds one */
+	RUN = 8,            /* loads side by side that are summed at once */
+	BLOCK = 8,          /* cells of a row that are summed at once */
+	WIDTH = (2 * REACH + RUN + BLOCK - 1) / BLOCK * BLOCK, /* cells a run reaches */
+	SMALL = 32,          /* sides up to this are summed in full, which is no slower */
+	COARSEST = 6 * OUTER /* points a side up to which no window is worth its while */
 };
 
-/* Depth over the distance of points: interpolation through eight of them leaves 2e-5 of the
- * largest pressure at 5, 2e-4 at 4 (tests/bench/stress.c). */
+/* Depth over the distance of points: interpolation through eight of them leaves 2e-5 of
+ * the largest pressure at 5, 2e-4 at 4 (tests/bench/stress.c). */
 static const double SMOOTH = 5;
 
 /* The elongation of cells up to which the window, round in cells, parts near from far. */
@@ -27,9 +30,10 @@ struct box {
 	int x0, y0, wx, wy;
 };
 
-struct near {
-	double p;
-	int x, y; /* from the corner of the box */
+/* Loads side by side. */
+struct run {
+	double p[RUN];
+	int count, x, y; /* of the first, from the corner of the box */
 };
 
 struct free_sum {
@@ -42,8 +46,8 @@ struct free_sum {
 	struct sum_work work;
 };
 
-struct free_sum *free_sum_new(const struct influence_par *par, int nx, int ny, int full,
-	struct pool *pool)
+struct free_sum *free_sum_new(
+	const struct influence_par *par, int nx, int ny, int full, struct pool *pool)
 {
 	struct free_sum *s = calloc(1, sizeof *s);
 
@@ -149,10 +153,10 @@ static struct influence kernel_value(const struct kernel *k, double x, double y)
 		break;
 	}
 	far = influence_outer_point(p, x, y, z, OUTER * k->dx, OUTER * k->dy);
-	return influence_less(k->source == POINT_INNER
-				      ? influence_point(p, x, y, z)
-				      : influence_outer_point(p, x, y, z, INNER * k->dx,
-						INNER * k->dy),
+	return influence_less(
+		k->source == POINT_INNER
+			? influence_point(p, x, y, z)
+			: influence_outer_point(p, x, y, z, INNER * k->dx, INNER * k->dy),
 		&far);
 }
 
@@ -166,8 +170,8 @@ static void kernel_row(void *context, size_t j, int worker)
 			kernel_value(k, i * k->dx, (double)j * k->dy);
 }
 
-static struct influence *kernel_new(struct free_sum *s, enum source source, double z,
-	double cells, int wx, int wy)
+static struct influence *kernel_new(
+	struct free_sum *s, enum source source, double z, double cells, int wx, int wy)
 {
 	struct kernel k = { &s->par, source, wx, cells * s->par.ax, cells * s->par.ay, z,
 		malloc((size_t)wx * (size_t)wy * sizeof(struct influence)) };
@@ -240,8 +244,8 @@ static void hand_span(void *context, size_t job, int worker)
 	h->want->put(h->want->context, span, number);
 }
 
-static int sum_full(struct free_sum *s, double z, const struct stress_want *want,
-	const struct box *b)
+static int sum_full(
+	struct free_sum *s, double z, const struct stress_want *want, const struct box *b)
 {
 	struct hand_over hand = { NULL, b, want };
 	double *field[STRESS_NUMBERS];
@@ -261,55 +265,80 @@ static int sum_full(struct free_sum *s, double z, const struct stress_want *want
 
 /* The part near the loads, on the cells of the box with REACH more on each side. */
 
+/* A row of the table: 2 REACH + 1 coefficients after RUN zeros, and zeros up to the width
+ * of a run. */
+enum { ROW = RUN + WIDTH, ROWS = 2 * REACH + 1 };
+
 struct scatter {
-	const struct near *load;
+	const struct run *run;
 	size_t count, stride;
 	int low, high;       /* rows of nodes wanted, from the corner of the box */
-	const double *table; /* for each number 2 REACH + 1 rows of WIDTH */
+	const double *table; /* ROWS for each number */
 	double *const *field;
 };
 
-/* Two at a time; a compiler leaves it at one where it does not know the alignment. */
+/* Two cells at a time; a compiler leaves it at one where it does not know the alignment.
+ */
 typedef double two __attribute__((vector_size(2 * sizeof(double))));
 
-static void add_row(double *f, const double *k, double p)
+static two load_two(const double *p)
 {
-	two pp = { p, p };
+	two v;
 
-	for (int x = 0; x < WIDTH; x += 2) {
-		two a, b;
+	memcpy(&v, p, sizeof v);
+	return v;
+}
 
-		memcpy(&a, f + x, sizeof a);
-		memcpy(&b, k + x, sizeof b);
-		a += pp * b;
-		memcpy(f + x, &a, sizeof a);
+static void store_two(double *p, two v)
+{
+	memcpy(p, &v, sizeof v);
+}
+
+/* The sums of a block are kept apart, since each waits for its last term. */
+static void add_run(double *f, const double *row, const struct run *r)
+{
+	for (int x = 0; x < 2 * REACH + r->count; x += BLOCK) {
+		const double *k = row + RUN + x;
+		two a = load_two(f + x), b = load_two(f + x + 2), c = load_two(f + x + 4),
+		    d = load_two(f + x + 6);
+
+		for (int m = 0; m < r->count; m++) {
+			two p = { r->p[m], r->p[m] };
+
+			a += p * load_two(k - m);
+			b += p * load_two(k - m + 2);
+			c += p * load_two(k - m + 4);
+			d += p * load_two(k - m + 6);
+		}
+		store_two(f + x, a);
+		store_two(f + x + 2, b);
+		store_two(f + x + 4, c);
+		store_two(f + x + 6, d);
 	}
 }
 
 static void scatter_number(void *context, size_t c, int worker)
 {
 	const struct scatter *s = context;
-	const double *table = s->table + c * (2 * REACH + 1) * WIDTH;
+	const double *table = s->table + c * ROWS * ROW;
 
 	(void)worker;
 	for (size_t i = 0; i < s->count; i++) {
-		const struct near *l = &s->load[i];
-		int from = larger(-REACH, s->low - l->y),
-		    to = smaller(REACH, s->high - l->y);
+		const struct run *r = &s->run[i];
+		int from = larger(-REACH, s->low - r->y),
+		    to = smaller(REACH, s->high - r->y);
 
-		for (int j = from; j <= to; j++) {
-			double *f = s->field[c] + (size_t)(l->y + REACH + j) * s->stride +
-				    (size_t)l->x;
-
-			add_row(f, table + (j + REACH) * WIDTH, l->p);
-		}
+		for (int j = from; j <= to; j++)
+			add_run(s->field[c] + (size_t)(r->y + REACH + j) * s->stride +
+					(size_t)r->x,
+				table + (j + REACH) * ROW, r);
 	}
 }
 
 static double *table_new(
 	const struct free_sum *s, const struct influence *kernel, int numbers)
 {
-	double *table = calloc((size_t)numbers * (2 * REACH + 1) * WIDTH, sizeof *table);
+	double *table = calloc((size_t)numbers * ROWS * ROW, sizeof *table);
 
 	for (int c = 0; table && c < numbers; c++)
 		for (int j = -REACH; j <= REACH; j++)
@@ -319,16 +348,18 @@ static double *table_new(
 				double v = influence_image(
 					&s->par, f, (enum stress_number)c, i < 0, j < 0);
 
-				/* On a line of symmetry what is odd across it vanishes. */
+				/* On a line of symmetry what is odd across it vanishes.
+				 */
 				if (!i)
 					v = 0.5 * (v + influence_image(&s->par, f,
-							       (enum stress_number)c, 1, j < 0));
+							       (enum stress_number)c, 1,
+							       j < 0));
 				if (!j)
 					v = 0.5 * (v + influence_image(&s->par, f,
-							       (enum stress_number)c, i < 0, 1));
-				table[((size_t)c * (2 * REACH + 1) + (size_t)(j + REACH)) *
-						WIDTH +
-					(size_t)(i + REACH)] = v;
+							       (enum stress_number)c,
+							       i < 0, 1));
+				table[((size_t)c * ROWS + (size_t)(j + REACH)) * ROW +
+					(size_t)(RUN + i + REACH)] = v;
 			}
 	return table;
 }
@@ -338,38 +369,47 @@ static int scatter_near(struct free_sum *s, double z, const struct stress_want *
 {
 	struct influence *kernel =
 		kernel_new(s, ELEMENT_INNER, z, 1, REACH + 1, REACH + 1);
-	struct near *load = malloc((size_t)s->loads * sizeof *load);
-	struct scatter sc = { load, 0, stride, b->wy, 0, NULL, field };
+	struct run *run = malloc((size_t)s->loads * sizeof *run);
+	struct scatter sc = { run, 0, stride, b->wy, 0, NULL, field };
 	double *table = kernel ? table_new(s, kernel, want->numbers) : NULL;
 
 	for (size_t i = 0; i < want->count; i++) {
 		sc.low = smaller(sc.low, want->span[i].y - b->y0);
 		sc.high = larger(sc.high, want->span[i].y - b->y0);
 	}
-	for (int y = 0; load && y < b->wy; y++)
+	for (int y = 0; run && y < b->wy; y++)
 		for (int x = 0; x < b->wx; x++) {
-			double p = corner(s, b)[(size_t)y * (size_t)s->nx + (size_t)x];
+			const double *p =
+				corner(s, b) + (size_t)y * (size_t)s->nx + (size_t)x;
+			struct run *r = &run[sc.count];
 
-			if (p != 0)
-				load[sc.count++] = (struct near){ p, x, y };
+			if (*p == 0)
+				continue;
+			*r = (struct run){ .x = x, .y = y };
+			while (r->count < RUN && x < b->wx && *p != 0) {
+				r->p[r->count++] = *p++;
+				x++;
+			}
+			x--;
+			sc.count++;
 		}
 	sc.table = table;
-	if (load && table)
+	if (run && table)
 		pool_run(s->pool, (size_t)want->numbers, scatter_number, &sc);
-	free(load);
+	free(run);
 	free(table);
 	free(kernel);
-	return load && table ? 0 : -1;
+	return run && table ? 0 : -1;
 }
 
-/* A load takes about 0.2 ns for each of its products, a transform 1.5 ns for each point and
+/* A load takes about 0.3 ns for each of its products, a transform 1 ns for each point and
  * doubling. */
 static int prefer_scatter(const struct free_sum *s, const struct box *b, int numbers)
 {
 	double points = ((double)b->wx + REACH) * ((double)b->wy + REACH);
 
-	return 0.2 * s->loads * numbers * (2 * REACH + 1) * WIDTH <
-	       1.5 * (1 + 2 * numbers) * points * log2(points);
+	return 0.3 * s->loads * numbers * ROWS * ROWS <
+	       1.0 * (1 + 2 * numbers) * points * log2(points);
 }
 
 /* The nodes of the box start REACH cells into the fields either way. */
@@ -452,15 +492,14 @@ static int sum_coarse(struct free_sum *s, double z, int cells,
 		return -1;
 	status = sum_level(s, z, cells, 0, &l);
 	if (!status)
-		status = lattice_gather(
-			l.lattice, l.field, NULL, 0, b->x0, b->y0, want);
+		status = lattice_gather(l.lattice, l.field, NULL, 0, b->x0, b->y0, want);
 	level_free(&l);
 	s->work.coarse_layers++;
 	return status;
 }
 
-static int sum_split(struct free_sum *s, double z, const struct stress_want *want,
-	const struct box *b)
+static int sum_split(
+	struct free_sum *s, double z, const struct stress_want *want, const struct box *b)
 {
 	size_t stride = (size_t)b->wx + WIDTH, n = stride * ((size_t)b->wy + 2 * REACH);
 	double *near[STRESS_NUMBERS], *inset[STRESS_NUMBERS];

@@ -1,10 +1,10 @@
 /* free_sum.h - stress below a loaded part of an otherwise free half-space
  *
- * Multilevel summation.  Stress at depth z is smooth over about z, so that it is summed on
- * points as far apart as the depth allows: loads are spread onto them, and the stress is
- * interpolated at the nodes.  The influence, in turn, is split by smooth windows of a
- * radius that doubles from level to level: what a window holds is summed at short range on
- * the points, the rest on points twice as far apart.  Near the surface the innermost
+ * Multilevel summation.  Stress at depth z is smooth over about z, so that it is summed
+ * on points as far apart as the depth allows: loads are spread onto them, and the stress
+ * is interpolated at the nodes.  The influence, in turn, is split by smooth windows of a
+ * radius that doubles from level to level: what a window holds is summed at short range
+ * on the points, the rest on points twice as far apart.  Near the surface the innermost
  * window is summed on the cells, load by load or, where many are loaded, by transform.
  * Work and memory grow with the number of cells.  The error is below 3e-4 of the largest
  * pressure, typically 3e-5 (tests/unit/stress.c).
@@ -30,8 +30,8 @@ struct sum_work {
 };
 
 /* full: the full sum at any size.  pool is borrowed.  NULL when out of memory. */
-struct free_sum *free_sum_new(const struct influence_par *par, int nx, int ny, int full,
-	struct pool *pool);
+struct free_sum *free_sum_new(
+	const struct influence_par *par, int nx, int ny, int full, struct pool *pool);
 void free_sum_free(struct free_sum *s);
 
 /* Takes a pressure, borrowed until the next one. */

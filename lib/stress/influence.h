@@ -3,10 +3,10 @@
  * Pressure 1 and shear mu together, as the numbers of criterion.h.  Conventions and units
  * are those of stress_kernel.h.
  *
- * The pressure between the cell centres is interpolated bilinearly: the element of a cell is
- * a pyramid of height 1 over the four cells' widths around its centre, whose load is that
- * of the cell.  Cells of constant pressure would drop their own gradient, which under
- * friction is an error of first order near the surface.
+ * The pressure between the cell centres is interpolated bilinearly: the element of a cell
+ * is a pyramid of height 1 over the four cells' widths around its centre, whose load is
+ * that of the cell.  Cells of constant pressure would drop their own gradient, which
+ * under friction is an error of first order near the surface.
  */
 #ifndef STRESS_INFLUENCE_H
 #define STRESS_INFLUENCE_H
@@ -32,10 +32,10 @@ struct influence influence_point(
 /* An element.  Right to 1e-6 of the load. */
 struct influence influence_element(
 	const struct influence_par *par, double x, double y, double z);
-/* The same two, averaged with 1 - w over the element; w(r) falls smoothly from 1 to 0 at an
- * ellipse of radii rx, ry about the point where the stress is taken. */
-struct influence influence_outer_point(const struct influence_par *par, double x, double y,
-	double z, double rx, double ry);
+/* The same two, averaged with 1 - w over the element; w(r) falls smoothly from 1 to 0 at
+ * an ellipse of radii rx, ry about the point where the stress is taken. */
+struct influence influence_outer_point(const struct influence_par *par, double x,
+	double y, double z, double rx, double ry);
 struct influence influence_outer_element(const struct influence_par *par, double x,
 	double y, double z, double rx, double ry);
 struct influence influence_less(struct influence a, const struct influence *b);

@@ -172,7 +172,8 @@ static void combine_rows(const struct lattice *l, const double *field, int y, in
 
 	memset(row, 0, (size_t)(to - from) * sizeof *row);
 	for (int j = 0; j < ORDER; j++) {
-		const double *f = field + (size_t)wrapped(&ly->axis, ly->start[y] + j) * points;
+		const double *f =
+			field + (size_t)wrapped(&ly->axis, ly->start[y] + j) * points;
 		double w = ly->gather[y][j];
 
 		if (lx->axis.wrap)
@@ -206,8 +207,7 @@ static void gather_span(void *context, size_t job, int worker)
 	int from = lx->start[begin], to = lx->start[end - 1] + ORDER;
 
 	for (int c = 0; c < g->want->numbers; c++) {
-		const double *more =
-			g->more ? g->more[c] + (size_t)y * g->stride : NULL;
+		const double *more = g->more ? g->more[c] + (size_t)y * g->stride : NULL;
 
 		number[c] = at;
 		combine_rows(g->l, g->field[c], y, from, to, row);

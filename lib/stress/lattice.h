@@ -32,8 +32,8 @@ struct lattice *lattice_new(
 	const struct lattice_axis *x, const struct lattice_axis *y, struct pool *pool);
 void lattice_done(struct lattice *l);
 
-/* Adds the loads of the cells, rows of stride, to load[points of y][points of x]; element:
- * they are those of elements. */
+/* Adds the loads of the cells, rows of stride, to load[points of y][points of x];
+ * element: they are those of elements. */
 void lattice_spread(const struct lattice *l, const double *cell, size_t stride,
 	int element, double *load);
 
@@ -42,8 +42,8 @@ void lattice_spread(const struct lattice *l, const double *cell, size_t stride,
 int lattice_refine(const struct lattice *l, const double *field, double *cell);
 
 /* Fields field[c][points of y][points of x] at the nodes wanted, whose coordinates count
- * from (x0, y0), plus more[c] (NULL: nothing) on the cells themselves, rows of stride from
- * cell (x0, y0) on. */
+ * from (x0, y0), plus more[c] (NULL: nothing) on the cells themselves, rows of stride
+ * from cell (x0, y0) on. */
 int lattice_gather(const struct lattice *l, double *const *field, double *const *more,
 	size_t stride, int x0, int y0, const struct stress_want *want);
 

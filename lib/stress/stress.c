@@ -66,9 +66,8 @@ static double largest_point_stress(const struct stress *s)
 			double up = i * 0.017453292519943295,
 			       turn = j * 0.017453292519943295;
 
-			most = fmax(most,
-				point_stress(s, cos(up) * cos(turn), cos(up) * sin(turn),
-					sin(up)));
+			most = fmax(most, point_stress(s, cos(up) * cos(turn),
+						  cos(up) * sin(turn), sin(up)));
 		}
 	return 1.02 * most;
 }
@@ -95,9 +94,8 @@ struct stress *stress_new(const struct stress_par *par)
 		return NULL;
 	s->par = *par;
 	s->criterion = par->criterion ? par->criterion : &stress_von_mises_criterion;
-	s->influence = (struct influence_par){
-		par->ax, par->ay, par->nu, par->mu, par->axis
-	};
+	s->influence =
+		(struct influence_par){ par->ax, par->ay, par->nu, par->mu, par->axis };
 	s->side = (par->nx > par->ny ? par->nx : par->ny) / BLOCKS_SIDE;
 	s->side = s->side < BLOCK ? BLOCK : s->side;
 	s->bx = (par->nx + s->side - 1) / s->side;
@@ -130,8 +128,8 @@ void stress_free(struct stress *s)
 
 static void add_to_block(struct stress *s, int x, int y, double load)
 {
-	struct block *b = &s->blocks[(size_t)(y / s->side) * (size_t)s->bx +
-				     (size_t)(x / s->side)];
+	struct block *b =
+		&s->blocks[(size_t)(y / s->side) * (size_t)s->bx + (size_t)(x / s->side)];
 
 	if (b->load == 0) {
 		b->x0 = b->x1 = x;

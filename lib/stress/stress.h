@@ -30,19 +30,19 @@
 
 struct stress;
 
-/* Sums on points as coarse as the depth allows (free_sum.h, wave_sum.h: within 3e-4 of the
- * largest pressure), or on all cells, which is to compare with. */
+/* Sums on points as coarse as the depth allows (free_sum.h, wave_sum.h: within 3e-4 of
+ * the largest pressure), or on all cells, which is to compare with. */
 enum stress_method { STRESS_COARSE, STRESS_FULL };
 
 struct stress_par {
-	int nx, ny;     /* cells */
-	double ax, ay;  /* cell size, m */
-	double nu, mu;  /* Poisson's ratio, shear over pressure (either sign) */
-	int axis;       /* shear along x (0) or y (1) */
+	int nx, ny;    /* cells */
+	double ax, ay; /* cell size, m */
+	double nu, mu; /* Poisson's ratio, shear over pressure (either sign) */
+	int axis;      /* shear along x (0) or y (1) */
 	int periodic;
 	enum stress_method method;
 	const struct stress_criterion *criterion; /* NULL: von Mises */
-	struct pool *pool; /* borrowed; NULL: one thread */
+	struct pool *pool;                        /* borrowed; NULL: one thread */
 };
 
 /* Work done since stress_new(). */
@@ -59,23 +59,23 @@ struct stress_work {
 struct stress *stress_new(const struct stress_par *par);
 void stress_free(struct stress *s);
 
-/* Takes a pressure (nx * ny, finite; kept until the next call); -1 if it is not finite. */
+/* Takes a pressure (nx * ny, finite; kept until the next call); -1 if it is not finite.
+ */
 int stress_load(struct stress *s, const double *pressure);
 
-/* Spans of nodes whose equivalent stress at depth z may exceed limit; all others are below
- * it for certain, and remain so at every greater depth.  span has room for
- * stress_spans_max().  The bound adds up the equivalent stress of loads block by block, or
- * of waves (criterion.h). */
-size_t stress_reach(
-	struct stress *s, double z, double limit, struct stress_span *span);
+/* Spans of nodes whose equivalent stress at depth z may exceed limit; all others are
+ * below it for certain, and remain so at every greater depth.  span has room for
+ * stress_spans_max().  The bound adds up the equivalent stress of loads block by block,
+ * or of waves (criterion.h). */
+size_t stress_reach(struct stress *s, double z, double limit, struct stress_span *span);
 size_t stress_spans_max(const struct stress *s);
 
-/* Equivalent stress in the middle below the load as it would be many times deeper than the
- * grid is long: of a point load, or of the mean load if periodic. */
+/* Equivalent stress in the middle below the load as it would be many times deeper than
+ * the grid is long: of a point load, or of the mean load if periodic. */
 double stress_deep(const struct stress *s, double z);
 
-/* Equivalent stress at depth z at the nodes of the spans: value[iy * nx + ix].  -1 when out
- * of memory. */
+/* Equivalent stress at depth z at the nodes of the spans: value[iy * nx + ix].  -1 when
+ * out of memory. */
 int stress_at(struct stress *s, double z, const struct stress_span *span, size_t count,
 	double *value);
 

@@ -22,14 +22,16 @@ struct wave_sum {
 	struct sum_work work;
 };
 
-struct wave_sum *wave_sum_new(const struct influence_par *par, int nx, int ny, int full,
-	struct pool *pool)
+struct wave_sum *wave_sum_new(
+	const struct influence_par *par, int nx, int ny, int full, struct pool *pool)
 {
 	struct wave_sum *s = calloc(1, sizeof *s);
 
 	if (!s)
 		return NULL;
-	*s = (struct wave_sum){ .par = *par, .nx = nx, .ny = ny, .full = full, .pool = pool };
+	*s = (struct wave_sum){
+		.par = *par, .nx = nx, .ny = ny, .full = full, .pool = pool
+	};
 	s->ux = 2 * M_PI / (nx * par->ax);
 	s->uy = 2 * M_PI / (ny * par->ay);
 	s->image = fft_alloc_complex(((size_t)nx / 2 + 1) * (size_t)ny);
@@ -60,7 +62,8 @@ struct sum_work wave_sum_work(const struct wave_sum *s)
 
 void wave_sum_load(struct wave_sum *s, const double *pressure)
 {
-	size_t n = (size_t)s->nx * (size_t)s->ny, k = ((size_t)s->nx / 2 + 1) * (size_t)s->ny;
+	size_t n = (size_t)s->nx * (size_t)s->ny,
+	       k = ((size_t)s->nx / 2 + 1) * (size_t)s->ny;
 
 	memcpy(s->plane, pressure, n * sizeof *s->plane);
 	fft_forward(s->fft, s->plane, s->image);
@@ -94,8 +97,7 @@ static void grid_wave(
 	memset(number, 0, STRESS_NUMBERS * sizeof *number);
 	for (int sx = 1; sx >= (both_x ? -1 : 1); sx -= 2)
 		for (int sy = 1; sy >= (both_y ? -1 : 1); sy -= 2, n++) {
-			influence_wave(
-				&s->par, sx * i * s->ux, sy * j * s->uy, g->z, v);
+			influence_wave(&s->par, sx * i * s->ux, sy * j * s->uy, g->z, v);
 			for (int c = 0; c < STRESS_NUMBERS; c++)
 				number[c] += v[c];
 		}
@@ -104,7 +106,8 @@ static void grid_wave(
 }
 
 /* Waves +-j along y.  The influence of -j follows from that of j: shear along x leaves
- * the parity in y, shear along y that in x, and the influence is that of a real function. */
+ * the parity in y, shear along y that in x, and the influence is that of a real function.
+ */
 static void carry_row(void *context, size_t row, int worker)
 {
 	const struct carry *g = context;
@@ -135,12 +138,11 @@ static void carry_row(void *context, size_t row, int worker)
 		x = cexp(I * (2 * M_PI * i * g->ox / s->nx));
 		y = cexp(I * (2 * M_PI * j * g->oy / s->ny));
 		for (int c = 0; c < g->numbers; c++) {
-			double sign = influence_odd((enum stress_number)c,
-					      s->par.axis ? 0 : 1)
-					      ? -1
-					      : 1;
-			double complex back =
-				sign * (s->par.axis ? conj(v[c]) : v[c]);
+			double sign =
+				influence_odd((enum stress_number)c, s->par.axis ? 0 : 1)
+					? -1
+					: 1;
+			double complex back = sign * (s->par.axis ? conj(v[c]) : v[c]);
 
 			g->spectrum[c][to] = s->image[from] * v[c] * x * y;
 			if (twin)
@@ -177,7 +179,8 @@ static void hand_span(void *context, size_t job, int worker)
 
 	(void)worker;
 	for (int c = 0; c < h->want->numbers; c++)
-		number[c] = h->field[c] + (size_t)span->y * (size_t)h->s->nx + span->begin;
+		number[c] =
+			h->field[c] + (size_t)span->y * (size_t)h->s->nx + span->begin;
 	h->want->put(h->want->context, span, number);
 }
 
@@ -256,10 +259,10 @@ double wave_sum_bound(
 			double ky = (2 * j <= s->ny ? j : s->ny - j) * s->uy;
 			int twice = i > 0 && 2 * i < s->nx;
 
-			sum += (twice + 1) * cabs(s->image[(size_t)j * (size_t)columns + (size_t)i]) *
+			sum += (twice + 1) *
+			       cabs(s->image[(size_t)j * (size_t)columns + (size_t)i]) *
 			       criterion->norm *
-			       influence_wave_bound(
-				       &s->par, hypot(i * s->ux, ky) * z);
+			       influence_wave_bound(&s->par, hypot(i * s->ux, ky) * z);
 		}
 	return sum;
 }

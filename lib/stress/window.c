@@ -20,7 +20,9 @@ struct window *window_new(int mx, int my, int reach_x, int reach_y)
 
 	if (!w)
 		return NULL;
-	*w = (struct window){ .mx = mx, .my = my, .reach_x = reach_x, .reach_y = reach_y };
+	*w = (struct window){
+		.mx = mx, .my = my, .reach_x = reach_x, .reach_y = reach_y
+	};
 	w->px = fft_good_size((size_t)mx + (size_t)reach_x);
 	w->py = fft_good_size((size_t)my + (size_t)reach_y);
 	spectrum = (w->px / 2 + 1) * w->py;

@@ -1,4 +1,5 @@
-/* wear_steps.h - the machinery of debrisgen: contact, stress below it, and what is lost */
+/* wear_steps.h - the machinery of debrisgen: contact, stress below it, and what is lost
+ */
 #ifndef WEARING_H
 #define WEARING_H
 
