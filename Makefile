@@ -38,7 +38,7 @@ Q = $(if $(V),,@)
 say = $(if $(V),@:,@printf '  %-4s %s\n' $(1) '$(2)')
 
 # The outer libraries of each program; what it uses of lib/ the linker takes from one archive.
-PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade
+PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal
 roughgen_LIBS = fftw
 bemcontact_LIBS = fftw
 debrisgen_LIBS = fftw
@@ -47,6 +47,8 @@ bpfilter_LIBS = fftw
 duet_LIBS = fftw
 delaynet_LIBS = cblas gsl
 rwl_LIBS = gsl
+debriscount_LIBS = gsl
+ballcal_LIBS = gsl
 
 FFTW_CFLAGS ?= $(shell $(PKG_CONFIG) --cflags fftw3 2>/dev/null)
 FFTW_LIBS ?= $(shell $(PKG_CONFIG) --libs fftw3 2>/dev/null || echo -lfftw3)
@@ -62,8 +64,8 @@ cblas_LINK = $(CBLAS_LIBS)
 fftw_LINK = $(FFTW_LIBS)
 gsl_LINK = $(GSL_LIBS)
 
-# Scripts that users call, installed beside the programs.
-SCRIPTS_INSTALLED =
+# Scripts that users call, built and installed beside the programs.
+SCRIPTS = wearplot
 
 ALL_CFLAGS = $(STD) $(WARN) $(CFLAGS) -pthread
 ALL_CPPFLAGS = -Iinclude -Ilib -Isrc -DWEARPIPE_VERSION='"$(VERSION)"' $(BLAS_FLAG) $(FFTW_CFLAGS) $(GSL_CFLAGS) $(CPPFLAGS)
@@ -93,7 +95,7 @@ BENCH_BINS := $(patsubst tests/bench/%.c,$(B)/bench/%,$(wildcard tests/bench/*.c
 .SECONDARY:
 .DELETE_ON_ERROR:
 
-all: libraries $(BUILT:%=$(BIN)/%)
+all: libraries $(BUILT:%=$(BIN)/%) $(SCRIPTS:%=$(BIN)/%)
 
 .PHONY: libraries
 libraries:
@@ -106,6 +108,11 @@ $(BIN)/$(1): $(call objects,$(wildcard src/$(1)/*.c)) $(B)/libcommon.a $(B)/libc
 	$$(Q)$$(CC) $$(ALL_CFLAGS) $$(LDFLAGS) -o $$@ $$^ $$(foreach l,$($(1)_LIBS),$$($$(l)_LINK)) -lm
 endef
 $(foreach p,$(PROGRAMS),$(eval $(call program,$(p))))
+
+$(SCRIPTS:%=$(BIN)/%): $(BIN)/%: scripts/%
+	@mkdir -p $(BIN)
+	@sed 's/@VERSION@/$(VERSION)/' $< >$@
+	@chmod 755 $@
 
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
@@ -220,10 +227,9 @@ HEADERS = $(wildcard include/wearpipe/*.h)
 MAN1 = $(wildcard man/*.1)
 MAN5 = $(wildcard man/*.5)
 MAN7 = $(wildcard man/*.7)
-SCRIPTS = $(SCRIPTS_INSTALLED:%=scripts/%)
 # What is installed, as FOLDER|FILES; make uninstall removes the same.
 define installed
-$(BINDIR)|$(BUILT:%=$(BIN)/%) $(SCRIPTS)
+$(BINDIR)|$(BUILT:%=$(BIN)/%) $(SCRIPTS:%=$(BIN)/%)
 $(LIBDIR)|$(LIBRARY)
 $(LIBDIR)/pkgconfig|$(B)/install/wearpipe.pc
 $(INCLUDEDIR)/wearpipe|$(HEADERS)
@@ -234,6 +240,7 @@ $(DATADIR)/wearpipe|share/arrivals.net
 $(DATADIR)/bash-completion/completions|$(B)/install/wearpipe
 $(DATADIR)/zsh/site-functions|$(B)/install/_wearpipe
 $(DATADIR)/fish/vendor_completions.d|$(B)/install/wearpipe.fish
+$(DATADIR)/wearpipe/python|python/wearpipe.py
 $(DOCDIR)|README.md LICENSE CHANGELOG.md
 endef
 export installed
@@ -264,7 +271,7 @@ uninstall:
 	done
 	@rm -f "$(DESTDIR)$(LIBDIR)/libwearpipe.so"
 	@for p in $(BUILT); do rm -f "$(DESTDIR)$(DATADIR)/bash-completion/completions/$$p"; done
-	@for d in "$(INCLUDEDIR)/wearpipe" "$(DATADIR)/wearpipe" "$(DOCDIR)"; do \
+	@for d in "$(INCLUDEDIR)/wearpipe" "$(DATADIR)/wearpipe/python" "$(DATADIR)/wearpipe" "$(DOCDIR)"; do \
 		[ ! -d "$(DESTDIR)$$d" ] || rmdir "$(DESTDIR)$$d"; \
 	done
 
@@ -277,4 +284,4 @@ help:
 clean:
 	rm -rf build bin
 
--include $(shell find $(B) -name '*.d' 2>/dev/null)
+-include $(shell find $(B) -path $(B)/deb -prune -o -type f -name '*.d' -print 2>/dev/null)

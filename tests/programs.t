@@ -20,6 +20,7 @@ for p in $programs; do
 	rwl) needed='--wear no-such-file --threshold-gap 1um' ;;
 	delaynet) needed='--task score' ;;
 	abrade) needed='--gap 1um --hardness 1GPa --friction 0' ;;
+	ballcal) needed='--balls no-such-file:1mm' ;;
 	layout) needed='--coils 0 --snr 40dB --arrivals 1' ;;
 	*) needed= ;;
 	esac

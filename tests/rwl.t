@@ -49,6 +49,19 @@ rwl --wear even.tsv --step-time 1h --state-unit L/min --time-unit h flow2.tsv | 
 grep -v '^#' out >b
 same "a state is leakage unless said otherwise" a b
 
+# Units: the table's own, or the option's; neither may be of another quantity.
+printf '# units: h L/min\nt\tleakage\n0\t1.5\n100\t2.0\n200\t2.9\n' >units.tsv
+rwl --wear even.tsv --step-time 1h units.tsv 2>err | grep -v '^#' >b
+same "the units of the table are read" a b
+fails "micrometres of a leakage" 2 '--state-unit um: is no unit of a leakage, want m3/s' \
+	rwl --wear even.tsv --step-time 1h --state-unit um --time-unit h flow2.tsv
+fails "litres per minute of a gap" 2 '--state-unit L/min: is no unit of a gap, want m' rwl --state-unit L/min gap.tsv
+fails "a unit that contradicts the table" 2 "--state-unit L/h contradicts '# units:' of units.tsv" \
+	rwl --state-unit L/h units.tsv
+fails "a time unit that does" 2 "--time-unit contradicts '# units:' of units.tsv" rwl --time-unit d units.tsv
+fails "a table in volts" 1 "volts.tsv: column 'gap' is in 'V', want m" sh -c \
+	"(echo '# units: s V'; cat gap.tsv) >volts.tsv; rwl volts.tsv"
+
 # Debris caught: spheres add up.
 printf 'time1\tdiameter\n1\t1e-3\n1\t1e-3\n2\t2e-3\n' >debris.tsv
 ok "particles as state" rwl --threshold-volume 1e-8m3 debris.tsv
@@ -118,10 +131,12 @@ near "has the same mean" "$(cell out 1 mean)" "$(cell spread.out 1 mean)" 3000
 # One realisation, and wear that was never seen.
 printf 'realisation\tstep\tvolume\n0\t1\t1e-15\n0\t2\t2e-15\n' >single.tsv
 fails "one realisation is doubtful" 3 'single.tsv: a single realisation' \
-	rwl --new --wear single.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um
+	rwl --new --wear single.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um \
+	--area 2346.3mm2 --fragment-area 1e-8m2
 printf 'volume\n0\n0\n0\n' >nothing.tsv
 fails "wear that was never seen is doubtful" 3 'nothing.tsv: none of 3 realisations wore' \
-	rwl --new --wear nothing.tsv --step-time 1h
+	rwl --new --wear nothing.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um \
+	--area 2346.3mm2 --fragment-area 1e-8m2
 
 # Any split of an ensemble is the same bytes.
 rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um --samples -c 20 --parts 1 --wear-rate last | grep -v '^#' >whole
@@ -139,18 +154,41 @@ near "wear of the valve plate" "$(cell rates.tsv 1 mean)" "$zone" 1e-22
 ok "areas of their own" rwl --new --wear even.tsv:21MPa:1173.15mm2 --wear low.tsv:0.15MPa:1173.15mm2 --step-time 1h --rates rates.tsv
 near "the thesis' halves" "$(cell rates.tsv 1 mean)" \
 	"$(calc "117315 * 1.001e-15")" 1e-22
-ok "dry sliding" rwl --new --wear even.tsv:21MPa --wear low.tsv:0.15MPa --step-time 1h --archard 1e-9 --threshold-gap 15um --initial-gap 10um
-# V = 5 um 2346.3 mm2; F = 0.45 A 21 MPa + 0.45 A 0.15 MPa + 0.1 A 10.575 MPa
-near "Archard's law" "$(cell out 1 archard)" \
-	"$(calc "5e-6 / (1e-9 * 20.94 / 1.065e9 * (0.45 * 21.15e6 + 0.1 * 10.575e6))")" 1e-6
-
-# What debrisgen writes: the particles and their summary tell the same.
+# What debrisgen writes: the particles and their summary tell the same, and under what
+# pressure, on what area and over what distance they came off.
 roughgen --points 32 --length 25um --sq 0.8um --corr 5um --count 4 |
-	bemcontact --pressure 21MPa --young 210GPa |
-	debrisgen --yield 355MPa --friction 0.3 --steps 3 --young 210GPa --summary steps.tsv >particles.tsv 2>err
+	bemcontact --pressure 21MPa --young 210GPa >contact.nrrd
+debrisgen --yield 355MPa --friction 0.3 --steps 3 --young 210GPa --summary steps.tsv contact.nrrd >particles.tsv 2>err
+is "the tables tell the scene" "$(sed -n '/^# stream/d; s/^# \([nfs][a-z_]*: .*\)/\1/p' steps.tsv | tr '\n' ' ')" \
+	"nominal_area: 6.25e-10 m2 nominal_pressure: 21000000 Pa friction: 0.3 step_distance: 2.5e-05 m "
+new="--new --threshold-gap 15um --initial-gap 10um --count 50"
 for f in particles.tsv steps.tsv; do
-	rwl --new --wear $f --step-time 1h --fragment-area 625um2 --threshold-gap 15um --initial-gap 10um -c 50 | grep -v '^#' >$f.life
+	rwl $new --wear $f --step-time 1h 2>err | grep -v '^#' >$f.life
 done
+rwl $new --wear steps.tsv:21MPa --fragment-area 625um2 --step-time 1h 2>err | grep -v '^#' >told.life
+same "the area of a fragment comes from the table" steps.tsv.life told.life
+# 25 um at 0.01 m/s: 2.5 ms
+rwl $new --wear steps.tsv --speed 10mm/s >speed.out 2>err
+near "the sliding speed makes the step time" "$(cell speed.out 1 q50)" \
+	"$(sed 1d steps.tsv.life | cut -f 4 | awk '{ printf "%.15g", $1 / 3600 * 2.5e-3 }')" 1e-6
+fails "a pressure that contradicts the table" 2 'steps.tsv:21Pa: the fragments were pressed with 2.1e+07 Pa' \
+	rwl $new --wear steps.tsv:21Pa --step-time 1h
+fails "an area that contradicts the table" 2 'fragments of 6.25e-10 m2, not of 1e-08 m2' \
+	rwl $new --wear steps.tsv --fragment-area 1e-8m2 --step-time 1h
+fails "a speed without a distance" 2 'tell no .# step_distance' rwl $new --wear even.tsv --speed 1m/s
+fails "two step times" 2 'exclude one another' rwl $new --wear steps.tsv --speed 1m/s --step-time 1h
+fails "several pressures in one table" 1 'nominal pressures of 2.1e+07 and of 1e+06 Pa in one table' sh -c \
+	"bemcontact --pressure 1MPa --young 210GPa contact.nrrd | debrisgen --yield 355MPa --friction 0.3 --steps 3 \
+	--young 210GPa 2>/dev/null | sed -e '/^# stream/d' -e '/^# end/d' -e 's/^[0-9]/1&/' | cat particles.tsv - | rwl $new --wear - --step-time 1h"
+sed -e '/^# stream/d' -e '/^# end/d' -e 's/^# nominal_area: .*/# nominal_area: 5 Pa/' steps.tsv >wrong.tsv
+fails "an area in Pa" 1 "wrong.tsv: nominal_area: '5 Pa' has the wrong unit, want m2" rwl $new --wear wrong.tsv --step-time 1h
+rwl --new --wear even.tsv --step-time 1h >out 2>err
+is "what is taken for granted is said" "$(cat err)" \
+	"rwl: $(sed -n 's/^# assumed: /taken for granted: /p' out)"
+is "all of it" "$(grep -o -e '--[a-z-]*' err | tr '\n' ' ')" \
+	"--fragment-area --area --threshold-leakage --radii --ports --viscosity "
+rwl --new --wear even.tsv --step-time 1000h --threshold-gap 11um --initial-gap 10.95um >out 2>err
+is "a life below one simulated step is said" "$(grep -c 'a life of .* s is below one simulated step' err)" 1
 same "a particle table and its summary" particles.tsv.life steps.tsv.life
 rwl --new --wear steps.tsv --step-time 1h -c 2 >out
 is "how the fragments were made is passed on" "$(sed -n 's/^# wear: steps.tsv made by //p' out)" \
@@ -168,7 +206,7 @@ ok "grey model and scores" rwl --wear even.tsv --state-unit L/min --time-unit h 
 near "grey life of an exponential, h" "$(cell out 13 grey | awk '{ print $1 / 3600 }')" 586 0.2
 near "truth is what is left" "$(cell out 13 truth)" 2109600 0
 is "summary of the scores" "$(sed -n 's/^# \([a-z_]*\):.*/\1/p' out | tr '\n' ' ')" \
-	"cmd predictions infinite_medians bias mean_absolute_error root_mean_square_error relative_accuracy alpha_lambda prognostic_horizon coverage crps "
+	"stream cmd units assumed predictions infinite_medians bias mean_absolute_error root_mean_square_error relative_accuracy alpha_lambda prognostic_horizon coverage crps end "
 near "error is median less truth" "$(cell out 5 error)" \
 	"$(calc "$(cell out 5 q50) - $(cell out 5 truth)")" 1e-6
 

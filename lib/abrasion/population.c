@@ -42,6 +42,8 @@ int population_draw(const struct population *p, double volume, double least,
 	*list = NULL;
 	*n = 0;
 	all = volume * population_larger(p, fmax(least, p->diameter[0]));
+	if (all > (double)most)
+		return -1;
 	for (;;) {
 		sum -= log(philox_uniform(seed, realisation, RNG_ABRASION, *n));
 		if (!(sum < all))

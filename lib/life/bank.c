@@ -2,6 +2,7 @@
 #include "life/bank.h"
 #include "num/philox.h"
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -99,7 +100,10 @@ struct bank {
 
 struct bank_chances {
 	int n;
-	double u[][CHANCES];
+	struct chance {
+		double u[CHANCES],
+			z[CHANCES]; /* uniform, and the normal deviates of it */
+	} draw[];
 };
 
 /* --- random numbers ---------------------------------------------------------------- */
@@ -138,7 +142,7 @@ static double normal_quantile(double p)
  * the draws of one model are. */
 struct bank_chances *bank_chances_new(int draws, uint64_t seed)
 {
-	struct bank_chances *c = malloc(sizeof *c + (size_t)draws * sizeof c->u[0]);
+	struct bank_chances *c = malloc(sizeof *c + (size_t)draws * sizeof c->draw[0]);
 	double root = 1, step = 1;
 
 	if (!c)
@@ -153,7 +157,9 @@ struct bank_chances *bank_chances_new(int draws, uint64_t seed)
 		for (int i = 0; i < draws; i++) {
 			double u = start + (i + 1) * step;
 
-			c->u[i][k] = fmin(1 - 1e-12, fmax(1e-12, u - floor(u)));
+			u = fmin(1 - 1e-12, fmax(1e-12, u - floor(u)));
+			c->draw[i].u[k] = u;
+			c->draw[i].z[k] = normal_quantile(u);
 		}
 	}
 	return c;
@@ -739,10 +745,10 @@ static double inverse_gaussian(double mean, double variance, double z, double u)
 
 /* Chi-square deviate (Wilson, Hilferty, PNAS 17 (1931) 684), kept above 0; within 2 % of
  * its quantiles from three degrees of freedom on. */
-static double chi2(double freedom, double u)
+static double chi2(double freedom, double z)
 {
-	double spread = 2 / (9 * freedom);
-	double root = fmax(0.1, 1 - spread + sqrt(spread) * normal_quantile(u));
+	double spread = 2 / (9 * freedom),
+	       root = fmax(0.1, 1 - spread + sqrt(spread) * z);
 
 	return freedom * root * root * root;
 }
@@ -760,42 +766,42 @@ static double normal_above(double m, double u)
 }
 
 /* Time to the passage if the regime changes once. */
-static double change(double time, double age, double hazard, const double *u)
+static double change(double time, double age, double hazard, const struct chance *c)
 {
-	double j = age * (pow(u[0], -1 / hazard) - 1), rest = time - j, g;
+	double j = age * (pow(c->u[5], -1 / hazard) - 1), rest = time - j, g;
 
 	if (!(rest > 0))
 		return time;
-	if (u[1] < future.other)
-		return j + rest * exp(-future.scale * log(u[2]));
-	g = future.growth / age * exp(future.sd * normal_quantile(u[2]));
+	if (c->u[6] < future.other)
+		return j + rest * exp(-future.scale * log(c->u[7]));
+	g = future.growth / age * exp(future.sd * c->z[7]);
 	return j + log1p(g * rest) / g;
 }
 
 static double draw_life(
-	const struct bank *b, const struct passage *p, double age, const double *u)
+	const struct bank *b, const struct passage *p, double age, const struct chance *c)
 {
-	double sd = sqrt(p->variance * p->freedom / chi2(p->freedom, u[0]));
-	double z = normal_above(p->v / (sd * sqrt(p->pvv)), u[1]), v, h, time;
+	double sd = sqrt(p->variance * p->freedom / chi2(p->freedom, c->z[0]));
+	double z = normal_above(p->v / (sd * sqrt(p->pvv)), c->u[1]), v, h, time;
 
 	v = p->v + sd * sqrt(p->pvv) * z;
 	if (!(v > 0)) /* damage does not heal */
 		return INFINITY;
 	h = p->h + sd * p->phv / sqrt(p->pvv) * z +
-	    sd * sqrt(fmax(0, p->phh - p->phv * p->phv / p->pvv)) * normal_quantile(u[2]);
+	    sd * sqrt(fmax(0, p->phh - p->phv * p->phv / p->pvv)) * c->z[2];
 	time = (p->limit - h) / v;
 	if (time <= 0)
 		return 0;
 	if (p->wiener > 0 && isfinite(time))
 		time = inverse_gaussian(
-			time, p->wiener * time / (v * v), normal_quantile(u[3]), u[4]);
+			time, p->wiener * time / (v * v), c->z[3], c->u[4]);
 	if (!isfinite(time) || b->par.steady)
 		return time;
 	if (time > NOTHING * age)
 		return INFINITY;
 	if (p->growth > 0)
 		return log1p(p->growth * time) / p->growth;
-	return change(time, age, p->hazard, u + 5);
+	return change(time, age, p->hazard, c);
 }
 
 void bank_draw(struct bank *b, const struct bank_chances *c, double now, double level,
@@ -813,8 +819,8 @@ void bank_draw(struct bank *b, const struct bank_chances *c, double now, double 
 			continue;
 		p = prepare(b, &b->line[i], ahead, target);
 		for (; drawn < c->n && reached * c->n > drawn + 0.5; drawn++)
-			life[drawn] =
-				b->unit * draw_life(b, &p, b->age + ahead, c->u[drawn]);
+			life[drawn] = b->unit *
+				      draw_life(b, &p, b->age + ahead, &c->draw[drawn]);
 	}
 	/* No line has a weight where the data overflow. */
 	for (; drawn < c->n; drawn++)
@@ -837,7 +843,7 @@ void bank_state(const struct bank *b, double *y, double *rate)
 
 double bank_chance_normal(const struct bank_chances *c, int draw, int k)
 {
-	return normal_quantile(c->u[draw][k]);
+	return c->draw[draw].z[k];
 }
 
 double bank_weight(const struct bank *b, enum bank_family family)
@@ -853,18 +859,11 @@ double bank_weight(const struct bank *b, enum bank_family family)
 	return sum;
 }
 
-int bank_save(const struct bank *b, FILE *f)
+/* All but the parameters, which are at the front. */
+void bank_pass(struct bank *b, struct state *s)
 {
-	return fwrite(b, sizeof *b + (size_t)b->capacity * sizeof b->line[0], 1, f) == 1;
-}
+	size_t from = offsetof(struct bank, rows);
 
-int bank_load(struct bank *b, FILE *f)
-{
-	struct bank_par par = b->par;
-	int capacity = b->capacity, shapes = b->shapes, good;
-
-	good = fread(b, sizeof *b + (size_t)capacity * sizeof b->line[0], 1, f) == 1;
-	b->par = par;
-	good = good && b->capacity == capacity && b->shapes == shapes;
-	return good;
+	state_move(s, (unsigned char *)b + from,
+		sizeof *b + (size_t)b->capacity * sizeof b->line[0] - from);
 }

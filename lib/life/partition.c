@@ -57,13 +57,11 @@ struct partition {
 	double *shed; /* particles, and large ones, [class][step] */
 };
 
-struct partition *partition_new(
-	double fragment_area, double area, long first_step, int sizes)
+struct partition *partition_new(double area, long first_step, int sizes)
 {
 	struct partition *p = calloc(1, sizeof *p);
 
 	if (p) {
-		p->fragment_area = fragment_area;
 		p->area = area;
 		p->first_step = first_step;
 		p->sizes = sizes;
@@ -294,10 +292,12 @@ static enum partition_status share_area(struct partition *p, double transition)
 	return PARTITION_OK;
 }
 
-enum partition_status partition_close(struct partition *p, double transition)
+enum partition_status partition_close(
+	struct partition *p, double fragment_area, double transition)
 {
 	enum partition_status status = PARTITION_OK;
 
+	p->fragment_area = fragment_area;
 	for (int c = 0; c < p->nclasses; c++) {
 		p->culprit = c;
 		status = reading(p, &p->class[c], realisations_end(p->class[c].reader));
@@ -515,14 +515,4 @@ long partition_large(struct partition *p, double probability, int cumulative)
 			return s + 1;
 	}
 	return 0;
-}
-
-double partition_load(const struct partition *p)
-{
-	double load =
-		p->zone * (p->class[0].pressure + p->class[p->nclasses - 1].pressure) / 2;
-
-	for (int c = 0; c < p->nclasses; c++)
-		load += p->class[c].area * p->class[c].pressure;
-	return load;
 }

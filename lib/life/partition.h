@@ -29,11 +29,11 @@
  * a component is a sum of parts that wear independently: as many as fragments fit,
  * unless told fewer.
  *
- *	struct partition *p = partition_new(1e-8, 2346.3e-6, 1, 0);
+ *	struct partition *p = partition_new(2346.3e-6, 1, 0);
  *	int c = partition_class(p, 0, 21e6, -1);
  *	partition_fragment(p, c, realisation, step, volume, count, large);
  *	...
- *	if (partition_close(p, 0.1) == PARTITION_OK)
+ *	if (partition_close(p, 1e-8, 0.1) == PARTITION_OK)
  *		partition_estimate(p, 0, &wear);
  *	partition_free(p);
  */
@@ -57,11 +57,10 @@ enum partition_status {
 	PARTITION_APART     /* a realisation's rows stand too far apart: sort the table */
 };
 
-/* Areas in m2, both > 0.  first_step: earlier ones (running-in) count for the large
- * particles but not for the rate.  sizes: partition_large() will be asked for.  NULL when
- * out of memory, which does not grow with the number of rows or of realisations. */
-struct partition *partition_new(
-	double fragment_area, double area, long first_step, int sizes);
+/* area: of the component, m2, > 0.  first_step: earlier ones (running-in) count for the
+ * large particles but not for the rate.  sizes: partition_large() will be asked for. NULL
+ * when out of memory, which does not grow with the number of rows or of realisations. */
+struct partition *partition_new(double area, long first_step, int sizes);
 void partition_free(struct partition *p);
 
 /* A class; returns its index, or -1 beyond the last place or when out of memory.  sparse:
@@ -78,9 +77,10 @@ int partition_class(struct partition *p, int sparse, double pressure, double are
 enum partition_status partition_fragment(struct partition *p, int class, long realisation,
 	long step, double volume, double count, double large);
 
-/* Once, after the last fragment.  transition: share of the area in the linear zone when
- * no class has an area. */
-enum partition_status partition_close(struct partition *p, double transition);
+/* Once, after the last fragment.  fragment_area: m2, > 0; transition: share of the area
+ * in the linear zone when no class has an area. */
+enum partition_status partition_close(
+	struct partition *p, double fragment_area, double transition);
 /* Of the class a status of partition_close() or partition_fragment() is about. */
 int partition_culprit(const struct partition *p);
 /* The realisation a PARTITION_TWICE or PARTITION_APART is about. */
@@ -109,9 +109,6 @@ void partition_replicate(
  * replicate drawn last (or in all, after partition_estimate()): of the particles shed
  * in that step, or with cumulative != 0 of all shed so far.  0 if none does. */
 long partition_large(struct partition *p, double probability, int cumulative);
-
-/* Integral of the pressure over the component, N; NAN without pressures. */
-double partition_load(const struct partition *p);
 
 /* Mean of y over p uniform in [p0, p1], y a power of p through (p0, y0), (p1, y1);
  * linear where one of y0, y1 is 0. */

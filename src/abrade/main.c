@@ -23,6 +23,7 @@ static long seed = 1, body = 1;
 static const char *summary_path, *particles_path, *surface_path;
 
 static const struct opt opts[] = {
+	OPT_HEADING("Gap and bodies"),
 	{ 0, "gap", OPT_NUM, UNIT_LENGTH, &gap, 1e-12, 1, "H", "between the surfaces",
 		NULL, 0 },
 	{ 'F', "load", OPT_NUM, UNIT_FORCE, &load, 1e-30, 1e12, "F",
@@ -33,6 +34,7 @@ static const struct opt opts[] = {
 		"of the particles (default rigid)", NULL, 0 },
 	{ 'u', "friction", OPT_NUM, UNIT_NONE, &friction, 0, 10, "MU",
 		"of particles on the bodies", NULL, 0 },
+	OPT_HEADING("Motion"),
 	{ 0, "inlet", OPT_NUM, UNIT_LENGTH, &inlet, 1e-9, 1e6, "R",
 		"radius of the ball whose gap to a flat it is; larger particles stay out",
 		NULL, 0 },
@@ -46,6 +48,7 @@ static const struct opt opts[] = {
 	{ 0, "area", OPT_NUM, UNIT_AREA, &area, 1e-18, 1e6, "A",
 		"of the contact: for rates, and for --iso", NULL, 0 },
 	OPT_TABLE(particles_rows),
+	OPT_HEADING("Output"),
 	{ 0, "surface", OPT_TEXT, UNIT_NONE, &surface_path, 0, 0, "FILE",
 		"cut the grooves into these heights and write them out", NULL, 0 },
 	{ 0, "body", OPT_INT, UNIT_COUNT, &body, 1, 2, "N", "that the surface is: 1 or 2",

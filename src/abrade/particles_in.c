@@ -14,6 +14,7 @@ static double largest = NAN;
 static long count = 1;
 
 struct opt particles_rows[] = {
+	OPT_HEADING("Particles"),
 	{ 0, "iso", OPT_LIST, UNIT_COUNT, &iso, 0, ISO4406_CODES - 1, "C:C:C",
 		"draw the particles of an oil of this ISO 4406 code, 18:16:13", NULL, 0 },
 	{ 0, "largest", OPT_NUM, UNIT_LENGTH, &largest, 1e-9, 1, "D",

@@ -18,6 +18,7 @@ static int fields = 1 << HEIGHT | 1 << PRESSURE;
 
 static const struct opt opts[] = {
 	OPT_TABLE(press_rows),
+	OPT_HEADING("Output"),
 	{ 0, "fields", OPT_WORDS, UNIT_NONE, &fields, 0, 0, "NAME,...",
 		"what to write of height, pressure, displacement, gap", field_names, 0 },
 	OPT_TABLE(raw_rows),
@@ -164,7 +165,7 @@ int main(int argc, char **argv)
 		drop_fields(&r);
 		free(r.cmd);
 		r.cmd = cmd;
-		fields_write(out, &r);
+		fields_write(out, &r, fields_more(in));
 	}
 	fields_done(out);
 	fields_close(in);

@@ -18,6 +18,7 @@ static double attenuation = 60, latency = INFINITY, memory = NAN, rate = 10e3;
 static const char *const windows[] = { "hamming", "hann", "blackman", "kaiser", NULL };
 
 static const struct opt opts[] = {
+	OPT_HEADING("Filter"),
 	{ 'b', "band", OPT_LIST, UNIT_FREQUENCY, &edges, 0, 1e12, "LO:HI",
 		"pass band; LO 0 makes a low-pass, HI half the rate a high-pass", 0, 0 },
 	{ 0, "order", OPT_INT, UNIT_COUNT, &order, 1, 1e6, "N", "taps less one", 0, 0 },
@@ -29,15 +30,18 @@ static const struct opt opts[] = {
 		"leave the gain in the middle of the band as the window makes it", 0, 0 },
 	{ 0, "zero-phase", OPT_FLAG, UNIT_NONE, &zero_phase, 0, 0, 0,
 		"take the delay of half the order out", 0, 0 },
+	OPT_HEADING("Interfering lines"),
 	{ 0, "lines", OPT_LIST, UNIT_FREQUENCY, &removed, 0, 1e12, "F,F,...",
 		"take narrow lines out before the filter, by least squares", 0, 0 },
 	{ 0, "line-window", OPT_NUM, UNIT_TIME, &memory, 0, 1e9, "T",
 		"window of the least squares (default 2 s, at most 131072 frames)", 0,
 		0 },
+	OPT_HEADING("Output"),
 	{ 0, "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
 		"hold back no more than T of signal for speed", 0, 0 },
 	{ 0, "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
 		0 },
+	OPT_HEADING("The filter itself, instead of a signal"),
 	{ 0, "response", OPT_FLAG, UNIT_NONE, &response, 0, 0, 0,
 		"print the frequency response as a table and read nothing", 0, 0 },
 	{ 0, "taps", OPT_FLAG, UNIT_NONE, &taps_only, 0, 0, 0,

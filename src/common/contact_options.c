@@ -18,6 +18,7 @@ static const char *const multipliers[] = { "fft", "mlms", NULL };
 static const char *const solvers[] = { "bccg", "pk", NULL };
 
 struct opt press_rows[] = {
+	OPT_HEADING("Contact"),
 	{ 'F', "load", OPT_NUM, UNIT_FORCE, &press.load, 0, 1e30, "F", "normal load", 0,
 		0 },
 	{ 0, "pressure", OPT_NUM, UNIT_PRESSURE, &press.pressure, 0, 1e30, "P",
@@ -35,6 +36,7 @@ struct opt press_rows[] = {
 		0 },
 	{ 0, "hardness", OPT_NUM, UNIT_PRESSURE, &press.hardness, 0, 1e30, "H",
 		"largest pressure; 0: none", 0, 0 },
+	OPT_HEADING("Contact: accuracy and method"),
 	{ 0, "tolerance", OPT_NUM, UNIT_NONE, &press.tolerance, 1e-16, 1, "T",
 		"certificate to reach", 0, 0 },
 	{ 0, "max-iterations", OPT_INT, UNIT_COUNT, &press.max_iterations, 1, 1e9, "N",

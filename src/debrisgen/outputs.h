@@ -32,8 +32,17 @@ struct worn;
 
 /* upstream: the pipeline that made what is read, NULL if unknown. */
 struct worn *worn_open(const char *upstream);
+/* Under what the particles were torn off, which rwl needs; NAN: not known. */
+struct worn_conditions {
+	double area;     /* of the grid, m2 */
+	double pressure; /* nominal, Pa */
+	double friction; /* shear over pressure */
+	double distance; /* slid in a step, m */
+};
+
 /* What follows is of this record. */
-void worn_begin(struct worn *w, const struct record *r);
+void worn_begin(
+	struct worn *w, const struct record *r, const struct worn_conditions *conditions);
 void worn_put(struct worn *w, const struct worn_surface *c, const struct worn_step *s);
 void worn_close(struct worn *w);
 

@@ -15,6 +15,7 @@ static double yield = NAN, friction, depth_step = NAN;
 static int shear, layer, removal, criterion, full_sum;
 
 struct opt wearing_rows[] = {
+	OPT_HEADING("Wear"),
 	{ 'Y', "yield", OPT_NUM, UNIT_PRESSURE, &yield, 1e-30, 1e30, "Y",
 		"yield stress: material under more equivalent stress is lost", NULL, 0 },
 	{ 0, "criterion", OPT_WORD, UNIT_NONE, &criterion, 0, 0, "von-mises|tresca",
@@ -188,6 +189,11 @@ struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c, l
 		.stress = debris_stress(w->debris),
 		.dz = w->par.cell > 0 ? w->par.cell : w->par.stress.ax,
 		.offset = w->par.offset };
+}
+
+double wearing_friction(void)
+{
+	return friction;
 }
 
 double wearing_length(const struct record *r)

@@ -23,10 +23,12 @@ static const char *summary_path;
 enum { GROUPS = 512 };
 
 static const struct opt opts[] = {
+	OPT_HEADING("Output"),
 	{ 'o', "output", OPT_WORD, UNIT_NONE, &output, 0, 0, "fits|steps|sizes|aspects",
 		"what to print", outputs, 0 },
 	{ 0, "diameter", OPT_LIST, UNIT_LENGTH, &diameters, 0, 1e30, "LO:HI",
 		"only particles of this equivalent diameter", NULL, 0 },
+	OPT_HEADING("Fits"),
 	{ 0, "truncated", OPT_FLAG, UNIT_NONE, &truncated, 0, 0, NULL,
 		"fit the Weibull distribution as cut off at --diameter", NULL, 0 },
 	{ 0, "step", OPT_LIST, UNIT_COUNT, &range, 1, 1e9, "A[:B]",
@@ -38,6 +40,7 @@ static const struct opt opts[] = {
 		"width of the classes of sizes", NULL, 0 },
 	{ 0, "aspects", OPT_LIST, UNIT_NONE, &edges, 1, 1e9, "A,A,...",
 		"edges of the classes of aspect ratio", NULL, 0 },
+	OPT_HEADING("Intervals"),
 	{ 0, "confidence", OPT_NUM, UNIT_FRACTION, &confidence, 0.01, 0.9999, "C",
 		"of the intervals", NULL, 0 },
 	{ 0, "bootstrap", OPT_INT, UNIT_COUNT, &bootstrap, 0, 1e6, "N",
@@ -46,6 +49,7 @@ static const struct opt opts[] = {
 		0 },
 	{ 0, "realisations", OPT_INT, UNIT_COUNT, &realisations, 0, 1e9, "N",
 		"realisations there were, with those that gave no particle", NULL, 0 },
+	OPT_HEADING("Further output"),
 	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
 		"summary of debrisgen, to know of steps without particles", NULL, 0 },
 	OPT_END,

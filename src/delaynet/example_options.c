@@ -24,6 +24,7 @@ static const char *const orders[] = { "drawn", "arrival", "sorted", NULL };
 static const char *const shapes[] = { "sine", "gauss", "lorentz", NULL };
 
 struct opt lessons_rows[] = {
+	OPT_HEADING("Examples"),
 	{ 0, "columns", OPT_INT, UNIT_COUNT, &lessons.points, 2, 1e5, "N",
 		"points per channel", NULL, 0 },
 	{ 0, "sources", OPT_INT, UNIT_COUNT, &lessons.sources, 1, DELAYS_MAX, "N",

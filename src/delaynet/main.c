@@ -26,6 +26,7 @@ static int task = TRAIN;
 static const char *network_file, *truth_file;
 
 static const struct opt opts[] = {
+	OPT_HEADING("Task"),
 	{ 0, "task", OPT_WORD, UNIT_NONE, &task, 0, 0, "train|score|apply|data",
 		"what to do", tasks, 0 },
 	{ 0, "model", OPT_WORD, UNIT_NONE, &lessons.model, 0, 0, "sines|pulses",

@@ -19,6 +19,7 @@ static const char *const losses[] = { "ordered", "sums", "unordered", NULL };
 static const char *const penalties[] = { "squared", "absolute", NULL };
 
 struct opt learning_rows[] = {
+	OPT_HEADING("Network and training"),
 	{ 0, "layers", OPT_TEXT, UNIT_NONE, &learning.layers, 0, 0, "WORDS",
 		"hidden layers: 50, 50+ (cascade), 10conv30x2, pool2x2, each with "
 		":ACTIVATION",

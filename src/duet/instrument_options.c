@@ -12,6 +12,7 @@ static const char *const pulses[] = { "auto", "sine", "gauss", "lorentz", NULL }
 static const char *const automatic[] = { "auto", NULL };
 
 struct opt instrument_rows[] = {
+	OPT_HEADING("Instrument, where it is known"),
 	{ 0, "pulse", OPT_WORD, UNIT_NONE, &instrument.pulse, 0, 0,
 		"auto|sine|gauss|lorentz", "shape of a pulse", pulses, 0 },
 	{ 0, "pulse-duration", OPT_CHOICE, UNIT_TIME, &instrument.duration, 1e-12, 1e9,

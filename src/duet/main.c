@@ -22,6 +22,7 @@ static const char *const methods[] = { "fit", "duet", "count", NULL };
 static const char *const automatic[] = { "auto", NULL };
 
 static const struct opt opts[] = {
+	OPT_HEADING("Method"),
 	{ 0, "method", OPT_WORD, UNIT_NONE, &method, 0, 0, "fit|duet|count",
 		"joint fit of all pulses, time-frequency masks, or counted peaks",
 		methods, 0 },
@@ -34,6 +35,7 @@ static const struct opt opts[] = {
 	{ 0, "sources", OPT_CHOICE, UNIT_COUNT, &sources, 1, 16, "auto|N",
 		"particles in each section", automatic, 0 },
 	OPT_TABLE(instrument_rows),
+	OPT_HEADING("Working on the record"),
 	{ 0, "learn", OPT_NUM, UNIT_TIME, &learn, 0, 1e9, "T",
 		"start of the record that the instrument is learned from", 0, 0 },
 	{ 0, "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
@@ -46,6 +48,7 @@ static const struct opt opts[] = {
 		"channel to count on (count)", 0, 0 },
 	{ 0, "floor", OPT_NUM, UNIT_VOLTAGE, &floor_height, 1e-30, 1e30, "V",
 		"lowest peak (count; five deviations of the record)", 0, 0 },
+	OPT_HEADING("Further output"),
 	{ 0, "separated", OPT_TEXT, UNIT_NONE, &separated, 0, 0, "FILE",
 		"write each source of a section as a channel of its own", 0, 0 },
 	{ 0, "histogram", OPT_TEXT, UNIT_NONE, &histogram, 0, 0, "FILE",

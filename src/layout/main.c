@@ -26,6 +26,7 @@ static int doubtful;
 static int shape, profile, method;
 
 static const struct opt opts[] = {
+	OPT_HEADING("Layouts"),
 	{ 0, "coils", OPT_TEXTS, UNIT_NONE, &coils, 0, 0, "X,X,...",
 		"positions of the coils along the pipe; may be repeated", NULL, 0 },
 	{ 0, "best", OPT_INT, UNIT_COUNT, &best, 2, LAYOUT_COILS, "N",
@@ -37,6 +38,7 @@ static const struct opt opts[] = {
 	{ 0, "steps", OPT_INT, UNIT_COUNT, &steps, 2, 4096, "N",
 		"of --best: grid to begin with (default by the number of coils)", NULL,
 		0 },
+	OPT_HEADING("Particles"),
 	{ 0, "snr", OPT_NUM, UNIT_DECIBEL, &snr, -100, 400, "S",
 		"peak of the pulse of a 100 um particle over the rms noise", NULL, 0 },
 	{ 0, "diameter", OPT_NUM, UNIT_LENGTH, &diameter, 1e-9, 0.1, "D",
@@ -48,9 +50,11 @@ static const struct opt opts[] = {
 	{ 0, "spread", OPT_NUM, UNIT_FRACTION, &spread, 0, 0.9999, "S",
 		"transit times differ by up to this share from those of the oil", NULL,
 		0 },
+	OPT_HEADING("Method"),
 	{ 0, "method", OPT_WORD, UNIT_NONE, &method, 0, 0, "auto|closed|sum",
 		"standard errors from integrals over time or sums over samples", methods,
 		0 },
+	OPT_HEADING("Instrument"),
 	{ 'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 2e9, "F", "sampling rate", NULL,
 		0 },
 	{ 0, "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-12, 1e3, "Q", "of the oil", NULL, 0 },

@@ -19,6 +19,7 @@ static double hurst = NAN, rolloff, longest, cutoff, skewness, kurtosis = NAN;
 static long seed = 1, count = 1, first;
 
 struct opt generated_grid_rows[] = {
+	OPT_HEADING("Generated surfaces"),
 	{ 'n', "points", OPT_LIST, UNIT_COUNT, &points, 1, POINTS_MAX, "N[xM]",
 		"points along x and y", NULL, 0 },
 	{ 'L', "length", OPT_LIST, UNIT_LENGTH, &length, 1e-12, 1e12, "L[xL]",
@@ -47,6 +48,7 @@ struct opt generated_rows[] = {
 		"Sku of the heights (default 3 + 1.5 S^2)", NULL, 0 },
 	{ 0, "pair", OPT_LIST, UNIT_LENGTH, &pair, 0, 1e9, "Q[:Q2]",
 		"add a second, independent surface of this roughness", NULL, 0 },
+	OPT_HEADING("Realisations"),
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e18, "N", "random seed", NULL, 0 },
 	{ 'f', "first", OPT_INT, UNIT_COUNT, &first, 0, 4294967295.0, "K",
 		"number of the first realisation", NULL, 1 },
@@ -165,6 +167,11 @@ int generated_next(struct generated *g, struct record *r)
 	stats_add("transforms", (double)work.transforms);
 	stats_add("iterations", (double)work.iterations);
 	return 1;
+}
+
+int generated_more(const struct generated *g)
+{
+	return g->done < count;
 }
 
 void generated_close(struct generated *g)

@@ -25,6 +25,7 @@ static const struct opt opts[] = {
 	{ 'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N", "threads", NULL,
 		1 },
 	OPT_TABLE(measured_rows),
+	OPT_HEADING("All surfaces"),
 	{ 0, "crown", OPT_CHOICE, UNIT_LENGTH, &crown, 0, 1e9, "none|auto|DROP",
 		"put on a paraboloid, DROP lower at the corners; auto is 4 Sq",
 		crown_words, 0 },
@@ -86,8 +87,9 @@ static void print_parameters(const struct record *r, const double *z)
 	stats_add("measured", 1);
 }
 
-/* Crowns a surface, on top of the crown it had, and writes it out. */
-static void finish(struct record *r, double had)
+/* Crowns a surface, on top of the crown it had, and writes it out; more: another one
+ * follows. */
+static void finish(struct record *r, double had, int more)
 {
 	double *z = record_need(r, "height", 0, NULL), rms = surface_sq(r->nx, r->ny, z);
 	double drop = had;
@@ -108,7 +110,7 @@ static void finish(struct record *r, double had)
 	}
 	if (!out)
 		out = fields_create(NULL);
-	fields_write(out, r);
+	fields_write(out, r, more);
 }
 
 /* The file to prepare, NULL where surfaces are generated: without an operand, unless what
@@ -137,13 +139,13 @@ int main(int argc, char **argv)
 		double had;
 
 		while (measured_next(surfaces, &r, &had))
-			finish(&r, had);
+			finish(&r, had, measured_more(surfaces));
 		measured_close(surfaces);
 	} else {
 		struct generated *surfaces = generated_open((int)threads);
 
 		while (generated_next(surfaces, &r))
-			finish(&r, 0);
+			finish(&r, 0, generated_more(surfaces));
 		generated_close(surfaces);
 	}
 	record_free(&r);

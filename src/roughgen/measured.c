@@ -15,6 +15,7 @@ static struct opt_list crop, resample;
 static int level, fill;
 
 struct opt measured_rows[] = {
+	OPT_HEADING("Measured surfaces"),
 	OPT_TABLE(raw_rows),
 	{ 0, "crop", OPT_LIST, UNIT_COUNT, &crop, 0, POINTS_MAX, "X:Y:NX:NY",
 		"cut NX by NY samples of file from X, Y on", NULL, 0 },
@@ -40,6 +41,11 @@ struct measured *measured_open(const char *path)
 	m->in = fields_open(path, raw_given());
 	m->piped = strcmp(path, "-") == 0;
 	return m;
+}
+
+int measured_more(struct measured *m)
+{
+	return fields_more(m->in);
 }
 
 void measured_close(struct measured *m)

@@ -1,7 +1,7 @@
 #include "fragments.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
-#include "io/tables.h"
+#include "io/quantities.h"
 #include "pump_options.h"
 #include <math.h>
 #include <stdlib.h>
@@ -65,14 +65,72 @@ static void read_row(struct partition *p, const struct wear *w, long row)
 	stats_add("fragments_read", 1);
 }
 
+/* What a table tells of its fragments; NAN: nothing. */
+struct physics {
+	double area, pressure, distance;
+};
+
+static struct physics physics_of(const struct table_in *t)
+{
+	return (struct physics){ table_quantity(t, "nominal_area", UNIT_AREA),
+		table_quantity(t, "nominal_pressure", UNIT_PRESSURE),
+		table_quantity(t, "step_distance", UNIT_LENGTH) };
+}
+
+/* Digits may be lost on the way. */
+static int differ(double a, double b)
+{
+	return fabs(a - b) > 1e-3 * fmax(fabs(a), fabs(b));
+}
+
+/* All parts of a table must be of the same fragments. */
+static void check_part(const struct table_in *t, const struct physics *first)
+{
+	struct physics now = physics_of(t);
+
+	if (differ(now.area, first->area))
+		die(EXIT_RUN, "%s: line %ld: fragments of %g and of %g m2 in one table",
+			table_name(t), table_line(t), first->area, now.area);
+	if (differ(now.pressure, first->pressure))
+		die(EXIT_RUN,
+			"%s: line %ld: nominal pressures of %g and of %g Pa in one table: "
+			"give each its own --wear",
+			table_name(t), table_line(t), first->pressure, now.pressure);
+	if (differ(now.distance, first->distance))
+		die(EXIT_RUN, "%s: line %ld: steps of %g and of %g m in one table",
+			table_name(t), table_line(t), first->distance, now.distance);
+}
+
+/* The options must not contradict what the table tells. */
+static void check_options(
+	const char *option, const struct physics *told, double pressure, double *distance)
+{
+	if (differ(pressure, told->pressure))
+		die(EXIT_USAGE, "--wear %s: the fragments were pressed with %g Pa",
+			option, told->pressure);
+	if (isnan(pump.fragment_area))
+		pump.fragment_area = told->area;
+	if (differ(pump.fragment_area, told->area))
+		die(EXIT_USAGE, "--wear %s: fragments of %g m2, not of %g m2", option,
+			told->area, pump.fragment_area);
+	if (isnan(*distance))
+		*distance = told->distance;
+	if (differ(*distance, told->distance))
+		die(EXIT_USAGE, "--wear %s: steps of %g m, not of %g m", option,
+			told->distance, *distance);
+}
+
 /* Reads one --wear FILE[:PRESSURE[:AREA]] into a class of its own. */
-static void read_wear(struct partition *p, const char *option, char **cmd)
+static void read_wear(
+	struct partition *p, const char *option, char **cmd, double *distance)
 {
 	const char *colon = strchr(option, ':'), *rest = colon ? colon + 1 : NULL;
 	char *file = xstrdup(option);
 	double pressure = NAN, area = -1;
 	int with_area;
 	struct wear w = { .file = file };
+	struct physics told;
+	long part;
 
 	file[strcspn(file, ":")] = '\0';
 	if (rest)
@@ -87,14 +145,23 @@ static void read_wear(struct partition *p, const char *option, char **cmd)
 	if (with_area && !(area > 0 && isfinite(area)))
 		die(EXIT_USAGE, "--wear %s: want an area above 0", option);
 	w.table = table_open(file);
+	told = physics_of(w.table);
+	check_options(option, &told, pressure, distance);
+	if (isnan(pressure))
+		pressure = told.pressure;
 	w.realisation = table_find(w.table, "realisation");
 	w.step = table_find(w.table, "step");
 	w.volume = table_need(w.table, "volume");
 	w.diameter = isnan(pump.critical_size) ? -1 : table_need(w.table, "diameter");
 	w.class =
 		partition_class(p, table_find(w.table, "particle") >= 0, pressure, area);
-	for (long row = 0; table_next(w.table); row++)
+	part = table_part(w.table);
+	for (long row = 0; table_next(w.table); row++) {
+		if (table_part(w.table) != part)
+			check_part(w.table, &told);
+		part = table_part(w.table);
 		read_row(p, &w, row);
+	}
 	if (table_upstream(w.table))
 		*cmd = xstrdup(table_upstream(w.table));
 	table_close(w.table);
@@ -118,23 +185,29 @@ static int is_doubtful(const struct partition *p, int class, const char *file)
 }
 
 struct partition *fragments_read(
-	const struct opt_texts *files, long first_step, char **made_by, int *doubtful)
+	const struct opt_texts *files, long first_step, char **made_by, double *distance)
 {
-	struct partition *p = partition_new(pump.fragment_area, pump.pair.area,
-		first_step, !isnan(pump.critical_size));
-	enum partition_status status;
+	struct partition *p =
+		partition_new(pump.pair.area, first_step, !isnan(pump.critical_size));
 
 	if (!p)
 		die(EXIT_RUN, "out of memory");
+	*distance = NAN;
 	for (int i = 0; i < files->n; i++)
-		read_wear(p, files->v[i], &made_by[i]);
-	status = partition_close(p, pump.transition);
-	switch (status) {
+		read_wear(p, files->v[i], &made_by[i], distance);
+	return p;
+}
+
+int fragments_close(struct partition *p, const struct opt_texts *files)
+{
+	int doubtful = 0;
+
+	switch (partition_close(p, pump.fragment_area, pump.transition)) {
 	case PARTITION_OK:
 		break;
 	case PARTITION_EMPTY:
-		die(EXIT_RUN, "%s: no fragment from step %ld on",
-			files->v[partition_culprit(p)], first_step);
+		die(EXIT_RUN, "%s: no fragment in the steps that count",
+			files->v[partition_culprit(p)]);
 	case PARTITION_TWICE:
 		die(EXIT_RUN, "%s: realisation %ld has a step twice",
 			files->v[partition_culprit(p)], partition_realisation(p));
@@ -151,6 +224,6 @@ struct partition *fragments_read(
 		die(EXIT_RUN, "out of memory");
 	}
 	for (int i = 0; i < files->n; i++)
-		*doubtful |= is_doubtful(p, i, files->v[i]);
-	return p;
+		doubtful |= is_doubtful(p, i, files->v[i]);
+	return doubtful;
 }

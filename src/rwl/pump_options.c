@@ -1,6 +1,7 @@
 #include "pump_options.h"
 #include "cli/msg.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char *const size_sets[] = { "all", "step", NULL };
@@ -10,7 +11,7 @@ struct pump pump = { .pair = { .area = 2346.3e-6,
 			     .threshold_gap = NAN,
 			     .threshold_leakage = NAN,
 			     .threshold_volume = NAN },
-	.fragment_area = 1e-8,
+	.fragment_area = NAN,
 	.transition = 0.1,
 	.critical_size = NAN,
 	.critical_probability = 0.05,
@@ -18,6 +19,7 @@ struct pump pump = { .pair = { .area = 2346.3e-6,
 	.ports = { 2, { 0.15e6, 21e6 } } };
 
 struct opt pump_threshold_rows[] = {
+	OPT_HEADING("Failure"),
 	{ 0, "threshold-gap", OPT_NUM, UNIT_LENGTH, &pump.pair.threshold_gap, 1e-12, 1,
 		"H", "failure at this gap", 0, 0 },
 	{ 0, "threshold-leakage", OPT_NUM, UNIT_FLOW, &pump.pair.threshold_leakage, 1e-15,
@@ -36,10 +38,11 @@ struct opt pump_threshold_rows[] = {
 };
 
 struct opt pump_face_rows[] = {
+	OPT_HEADING("Sliding pair"),
 	{ 0, "area", OPT_NUM, UNIT_AREA, &pump.pair.area, 1e-18, 1e6, "A",
 		"nominal contact area", 0, 0 },
 	{ 0, "fragment-area", OPT_NUM, UNIT_AREA, &pump.fragment_area, 1e-24, 1e6, "A",
-		"area of a fragment", 0, 0 },
+		"area of a fragment [that of the table of --wear, else 1e-8 m2]", 0, 0 },
 	{ 0, "transition", OPT_NUM, UNIT_FRACTION, &pump.transition, 0, 1, "SHARE",
 		"share of the area in the zone of linear pressure", 0, 0 },
 	{ 0, "initial-gap", OPT_NUM, UNIT_LENGTH, &pump.pair.gap_new, 0, 1, "H",
@@ -76,4 +79,42 @@ void pump_check(void)
 	if (isnan(p->threshold_gap) && isnan(p->threshold_leakage) &&
 		isnan(p->threshold_volume) && isnan(pump.critical_size))
 		p->threshold_leakage = 2.8e-3 / 60;
+}
+
+/* Appends a phrase where none of some options was given. */
+static void assume(char **list, const char *phrase, const char *const *options)
+{
+	char *longer;
+
+	for (; *options; options++)
+		if (opt_given(*options))
+			return;
+	longer = xprintf("%s%s%s", *list ? *list : "", *list ? ", " : "", phrase);
+	free(*list);
+	*list = longer;
+}
+
+char *pump_assumed(int fragments, int leaks)
+{
+	static const char *const area[] = { "area", NULL };
+	static const char *const threshold[] = { "threshold-gap", "threshold-leakage",
+		"threshold-volume", "critical-size", NULL };
+	static const char *const lands[] = { "radii", "ports", "viscosity", "alpha0",
+		"leak-ratio", NULL };
+	char *list = NULL;
+
+	if (fragments && isnan(pump.fragment_area)) {
+		pump.fragment_area = 1e-8;
+		list = xstrdup("fragments of 1e-8 m2 (--fragment-area)");
+	}
+	if (fragments)
+		assume(&list, "a contact area of 2346.3 mm2 (--area)", area);
+	assume(&list, "failure at a leakage of 2.8 L/min (--threshold-leakage)",
+		threshold);
+	if (leaks || !isnan(pump.pair.threshold_leakage))
+		assume(&list,
+			"sealing lands, ports and oil of the thesis' pump (--radii, "
+			"--ports, --viscosity)",
+			lands);
+	return list;
 }
