@@ -2,8 +2,10 @@
 #ifndef CONTACT_STATE_H
 #define CONTACT_STATE_H
 
+#include "contact/extension.h"
 #include "contact/mlms.h"
 #include "contact/solver.h"
+#include "contact/transfer.h"
 #include "num/convolve.h"
 #include "num/sweep.h"
 #include <math.h>
@@ -22,12 +24,13 @@ struct contact {
 	struct contact_result result;
 
 	/* preconditioned solver only */
-	struct convolve *periodic;      /* transforms of the preconditioner */
-	double *inverse;                /* its kernel */
-	double *residual;               /* g on the contact, then preconditioned */
-	unsigned char *active;          /* 1 for the cells the residual was taken of */
-	double near_x, near_y, near_xy; /* see make_extension() */
-	struct contact *coarse;         /* grid of half as many cells each way, or NULL */
+	struct convolve *periodic;   /* transforms of the preconditioner */
+	double *inverse;             /* its kernel */
+	double *residual;            /* g on the contact, then preconditioned */
+	unsigned char *active;       /* 1 for the cells the residual was taken of */
+	struct extension *extension; /* of the residual beyond the contact */
+	struct contact *coarse;      /* grid of half as many cells each way, or NULL */
+	struct transfer transfer;    /* to it */
 	double *coarse_height, *coarse_pressure; /* parts of residual */
 
 	/* the problem being solved */
@@ -44,7 +47,6 @@ struct contact {
 	double beta;    /* share of the last step; also a factor of pressures */
 	double tau;     /* step length that is guessed */
 	double stretch; /* ... and what the line search makes of it */
-	int extend;     /* continue the residual beyond the contact */
 	double best;    /* certificate so far, and the iterations since */
 	long since;
 	double energy; /* least when contact_gradient_due() looked */
@@ -56,13 +58,6 @@ static inline int is_free(const struct contact *c, double p)
 	return (p > 0) & (p < c->cap);
 }
 
-/* ... and active where it is free or its gap says that it should be. */
-static inline int is_active(const struct contact *c, double p, double g)
-{
-	return is_free(c, p) | ((p <= 0) & (g < 0)) | ((p >= c->cap) & (g > 0));
-}
-
-/* Written so that it needs no branch, which the rims of contacts would mislead. */
 static inline double within(const struct contact *c, double p)
 {
 	p = p > 0 ? p : 0;
@@ -75,21 +70,6 @@ static inline double gap_at(const struct contact *c, size_t i)
 	return c->gap[i] - c->result.approach;
 }
 
-/* What the certificate is made of: sum p g, sum p, sum of g^2 over free cells, p g+,
- * depth of what overlaps below the hardness; the deepest overlap. */
-static inline void certify_cell(
-	const struct contact *c, double p, double g, struct sweep *s)
-{
-	double below = g < 0 ? g : 0;
-
-	s->sum[0] += p * g;
-	s->sum[1] += p;
-	s->sum[2] += is_free(c, p) * (g * g);
-	s->sum[3] += p * (g - below);
-	s->sum[4] -= below < 0 ? (c->cap - p) * below : 0;
-	s->max = -g > s->max ? -g : s->max;
-}
-
 typedef void contact_pass(void *context, size_t begin, size_t end, struct sweep *s);
 struct sweep contact_sweep(struct contact *c, contact_pass *pass);
 /* y = K x, counted; y is not x.  Returns the sum of x y. */
@@ -99,10 +79,11 @@ void contact_gap(struct contact *c);
 /* The approach that is given; or the mean gap of the free cells, or where there are none
  * the one of least duality gap. */
 void contact_find_approach(struct contact *c);
-/* The certificate from the sums of certify_cell() over all cells. */
-double contact_certificate(struct contact *c, const struct sweep *s);
-/* Makes those sums. */
+/* What the certificate is made of: sum p g, sum p, sum of g^2 over free cells (not needed
+ * for it), and where g < 0 sum p g and sum g; the deepest overlap as the maximum. */
 struct sweep contact_certify(struct contact *c);
+/* The certificate from these sums. */
+double contact_certificate(struct contact *c, const struct sweep *s);
 /* What the solution makes least, sum p u / 2 - sum p h, from the same sums just after
  * contact_gap(). */
 double contact_energy(const struct contact *c, const struct sweep *s);
@@ -146,9 +127,10 @@ enum contact_status contact_solve_pk(struct contact *c);
 int contact_make_preconditioner(struct contact *c, const struct contact *lender);
 enum contact_status contact_solve_bccg(struct contact *c);
 
-/* grids.c: halves the grid down to some 32 cells a side; 1 if this one can be halved */
-int contact_can_halve(const struct contact_par *par);
-/* A first guess from the coarser grids; 0 where they found none. */
-int contact_guess(struct contact *c);
+/* grids.c: between this grid and the coarser one, down to some 32 cells a side. */
+int contact_can_coarsen(const struct contact_par *par, struct contact_par *coarse);
+void contact_average_height(struct contact *c);
+/* Returns the sum of the pressures. */
+double contact_interpolate_pressure(struct contact *c);
 
 #endif
