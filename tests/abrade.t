@@ -89,7 +89,7 @@ roughgen --points 64 --length 0.25mm --sq 4um --corr 30um --crown 16um | bemcont
 	debrisgen --yield 355MPa --friction 0.3 --surface w.nrrd 2>err |
 	abrade --load 5N --hardness 4GPa --friction 0.1 --slide 1mm --surface w.nrrd 2>err | roughgen --measure - >measured.tsv
 rising "the loop: a surface scratched by its own debris is rougher" \
-	"$(roughgen --measure w.nrrd | tail -n 1 | cut -f 9)" "$(cut -f 9 measured.tsv | tail -n 1)"
+	"$(roughgen --measure w.nrrd | column sdq /dev/stdin)" "$(column sdq measured.tsv)"
 
 p="--hardness 2GPa --friction 0.1"
 fails "neither gap nor load" 2 'want either --gap H or --load F' abrade $p four.tsv

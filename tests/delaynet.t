@@ -31,7 +31,7 @@ delaynet --task score --columns 40 a.net >a.tsv
 is "score reads standard input" "$(delaynet --task score --columns 40 <a.net)" "$(cat a.tsv)"
 is "score keeps the pipeline" "$(sed -n 's/^# cmd: //p' a.tsv)" \
 	"delaynet --columns 40 --layers 6 --count 200 --batch 20 --epochs 30 | delaynet --task score --columns 40"
-is "best order is never worse" "$(awk '!/^#/ && NR > 2 { print ($5 ~ /^[0-9]/ && $5 + 0 <= $3 + 0) }' a.tsv | sort -u)" 1
+is "best order is never worse" "$(awk '!/^#/ && NR > 3 { print ($5 ~ /^[0-9]/ && $5 + 0 <= $3 + 0) }' a.tsv | sort -u)" 1
 
 # A linear network without hidden worth: gradient descent on the constant stays the mean.
 delaynet --columns 4 --layers 2:relu --optimiser descent --learning-rate 0.5 --epochs 400 --batch 0 \
@@ -50,8 +50,8 @@ delaynet --task score --columns 40 --count 50 a.net >b.tsv
 near "the same score by way of data and apply" "$got" "$(column ordered b.tsv | head -n 1)" 1e-6
 delaynet --task apply --network a.net <x.snd >in.tsv
 same "apply reads a pipe" in.tsv out.tsv
-is "data by parts" "$(for f in 0 3; do delaynet --task data --columns 40 -f "$f" -c 3 | tail -c 1920; done | cksum)" \
-	"$(delaynet --task data --columns 40 -c 6 | tail -c 3840 | cksum)"
+is "data by parts" "$(for f in 0 3; do delaynet --task data --columns 40 -f "$f" -c 3 | head -c -16 | tail -c 1920; done | cksum)" \
+	"$(delaynet --task data --columns 40 -c 6 | head -c -16 | tail -c 3840 | cksum)"
 
 # Auto-encoders.
 delaynet --columns 40 --layers "8 6" --activation sigmoid --pretrain 20 --sparsity 4 --epochs 5 \

@@ -48,7 +48,7 @@ layout --best 3 --extent 1m --least-unique 0.99 --snr 30dB --arrivals 100 --spre
 near "with one the best layout just meets it" "$(column p_unique_width best.tsv)" 0.99 1e-6
 rising "layouts looked at are counted" 500 "$(column layouts_searched s)"
 layout --coils "$(column coils best.tsv)" --snr 30dB --arrivals 100 --spread 10% >again.tsv
-is "a layout that was found is judged as given" "$(tail -n 1 again.tsv)" "$(tail -n 1 best.tsv)"
+is "a layout that was found is judged as given" "$(sed "/^#/d" again.tsv)" "$(sed "/^#/d" best.tsv)"
 
 layout --coils 0,1 --snr -30dB --arrivals 1 >low.tsv 2>err
 is "a particle lost in the noise is said and the status is 3" "$? $(grep -c deviations err)" "3 1"

@@ -11,7 +11,8 @@ $surfaces -c 4 >whole.nrrd
 for k in 0 1 2 3; do
 	$surfaces -f $k -c 1
 done >split.nrrd
-same 'surfaces: one process and four' whole.nrrd split.nrrd
+records --join split.nrrd >joined.nrrd
+same 'surfaces: one process and four' whole.nrrd joined.nrrd
 $contact <whole.nrrd | $debris >whole.tsv
 $contact -j 2 <split.nrrd | $debris -j 2 >split.tsv
 same 'particles: one thread and two, joined surfaces' whole.tsv split.tsv
@@ -21,7 +22,7 @@ same 'particles: four pipelines joined in order' whole.tsv ensemble.tsv
 # The pipeline of each realisation stands in the table; they rebuild it together.
 is 'a line of provenance for each realisation' "$(grep -c '^# cmd: ' whole.tsv)" 4
 sed -n 's/^# cmd: //p' whole.tsv >commands
-sh -e commands | awk '/^realisation/ && n++ { next } /^# / && !/^# cmd/ && seen[$0]++ { next } { print }' >replayed.tsv
+sh -e commands | records --join >replayed.tsv
 same 'the recorded commands rebuild the table' whole.tsv replayed.tsv
 
 # What is made of the whole ensemble says how the whole is made.

@@ -9,12 +9,12 @@ value() { column "$1" "$2" | head -1; }
 roughgen -n 60x45 -q 0.5um:2um -c 8 -j 1 >one
 for k in 0 1 2 3 4 5 6 7; do
 	roughgen -n 60x45 -q 0.5um:2um -f $k -c 1
-done >many
+done | records --join >many
 same "eight realisations in one process and in eight" one many
 roughgen -n 60x45 -q 0.5um:2um -c 8 -j 2 >two
 same "one thread and two" one two
 roughgen -n 60x45 --skewness -1 --kurtosis 5 -c 3 -j 1 >one
-(roughgen -n 60x45 --skewness -1 --kurtosis 5 -f 0 -c 2 -j 3 && roughgen -n 60x45 --skewness -1 --kurtosis 5 -f 2) >two
+(roughgen -n 60x45 --skewness -1 --kurtosis 5 -f 0 -c 2 -j 3 && roughgen -n 60x45 --skewness -1 --kurtosis 5 -f 2) | records --join >two
 same "the same with imposed heights" one two
 
 # The header rebuilds the record.
@@ -26,7 +26,7 @@ records --pick 2 -o nrrd three | tail -c 8192 >a
 tail -c 8192 again >b
 same "cmd rebuilds one record of an ensemble" a b
 is "keys of a record" "$(sed -n '/^#/q; s/:=.*//p' again | tr '\n' ' ')" \
-	"fields realisation seed sq crown cmd "
+	"fields realisation seed sq crown cmd stream "
 
 # Roughness is met exactly, without the crown.
 roughgen -n 64 -q 3um --measure >t
@@ -182,7 +182,7 @@ fails "kurtosis out of reach of few points" 1 'out of reach' \
 	roughgen -n 4 -L 1mm -l 0.1mm --skewness 0 --kurtosis 60
 fails "correlation length above the side" 1 'longer than a side' roughgen -l 2mm
 fails "one point cannot be rough" 2 'single point' roughgen --points 1
-is "one flat point is a surface" "$(roughgen --points 1 --sq 0 | records | awk 'NR == 2 { print $5 * $6 }')" 1
+is "one flat point is a surface" "$(roughgen --points 1 --sq 0 | records | awk '/^1/ { print $5 * $6 }')" 1
 if command -v python3 >/dev/null; then
 	python3 -c 'import pty, sys; sys.exit(pty.spawn(["timeout", "5", "roughgen", "--measure"]) >> 8)' >tty </dev/null
 	is "--measure does not wait for a terminal" "$? $(grep -c 'nothing to measure' tty)" "2 1"

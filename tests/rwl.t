@@ -159,7 +159,7 @@ near "the thesis' halves" "$(cell rates.tsv 1 mean)" \
 roughgen --points 32 --length 25um --sq 0.8um --corr 5um --count 4 |
 	bemcontact --pressure 21MPa --young 210GPa >contact.nrrd
 debrisgen --yield 355MPa --friction 0.3 --steps 3 --young 210GPa --summary steps.tsv contact.nrrd >particles.tsv 2>err
-is "the tables tell the scene" "$(sed -n 's/^# \([nfs][a-z_]*: .*\)/\1/p' steps.tsv | tr '\n' ' ')" \
+is "the tables tell the scene" "$(sed -n '/^# stream/d; s/^# \([nfs][a-z_]*: .*\)/\1/p' steps.tsv | tr '\n' ' ')" \
 	"nominal_area: 6.25e-10 m2 nominal_pressure: 21000000 Pa friction: 0.3 step_distance: 2.5e-05 m "
 new="--new --threshold-gap 15um --initial-gap 10um --count 50"
 for f in particles.tsv steps.tsv; do
@@ -179,8 +179,8 @@ fails "a speed without a distance" 2 'tell no .# step_distance' rwl $new --wear 
 fails "two step times" 2 'exclude one another' rwl $new --wear steps.tsv --speed 1m/s --step-time 1h
 fails "several pressures in one table" 1 'nominal pressures of 2.1e+07 and of 1e+06 Pa in one table' sh -c \
 	"bemcontact --pressure 1MPa --young 210GPa contact.nrrd | debrisgen --yield 355MPa --friction 0.3 --steps 3 \
-	--young 210GPa 2>/dev/null | sed 's/^[0-9]/1&/' | cat particles.tsv - | rwl $new --wear - --step-time 1h"
-sed 's/^# nominal_area: .*/# nominal_area: 5 Pa/' steps.tsv >wrong.tsv
+	--young 210GPa 2>/dev/null | sed -e '/^# stream/d' -e '/^# end/d' -e 's/^[0-9]/1&/' | cat particles.tsv - | rwl $new --wear - --step-time 1h"
+sed -e '/^# stream/d' -e '/^# end/d' -e 's/^# nominal_area: .*/# nominal_area: 5 Pa/' steps.tsv >wrong.tsv
 fails "an area in Pa" 1 "wrong.tsv: nominal_area: '5 Pa' has the wrong unit, want m2" rwl $new --wear wrong.tsv --step-time 1h
 rwl --new --wear even.tsv --step-time 1h >out 2>err
 is "what is taken for granted is said" "$(cat err)" \
@@ -206,7 +206,7 @@ ok "grey model and scores" rwl --wear even.tsv --state-unit L/min --time-unit h 
 near "grey life of an exponential, h" "$(cell out 13 grey | awk '{ print $1 / 3600 }')" 586 0.2
 near "truth is what is left" "$(cell out 13 truth)" 2109600 0
 is "summary of the scores" "$(sed -n 's/^# \([a-z_]*\):.*/\1/p' out | tr '\n' ' ')" \
-	"cmd units assumed predictions infinite_medians bias mean_absolute_error root_mean_square_error relative_accuracy alpha_lambda prognostic_horizon coverage crps "
+	"stream cmd units assumed predictions infinite_medians bias mean_absolute_error root_mean_square_error relative_accuracy alpha_lambda prognostic_horizon coverage crps end "
 near "error is median less truth" "$(cell out 5 error)" \
 	"$(calc "$(cell out 5 q50) - $(cell out 5 truth)")" 1e-6
 

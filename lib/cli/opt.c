@@ -1,4 +1,5 @@
 #include "cli/opt.h"
+#include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
 #include <ctype.h>
@@ -12,7 +13,7 @@
 
 enum { ROWS_MAX = 128, LETTERLESS = 256 };
 
-static int verbose_flag;
+static int verbose_flag, follow;
 static const char *stats_path;
 
 static const struct opt common[] = {
@@ -25,6 +26,12 @@ static const struct opt common[] = {
 		1 },
 	{ 'V', "version", OPT_FLAG, UNIT_NONE, 0, 0, 0, 0, "print the version and exit",
 		0, 1 },
+	OPT_END,
+};
+
+static const struct opt reading[] = {
+	{ 0, "follow", OPT_FLAG, UNIT_NONE, &follow, 0, 0, 0,
+		"wait for the end of an input that is still being written", 0, 1 },
 	OPT_END,
 };
 
@@ -434,10 +441,13 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 	char letters[2 * ROWS_MAX + 2];
 	int c;
 
+	files_start();
 	prog = program;
 	msg_name(program->name);
 	stats_start();
 	gather(program->opts);
+	if (strcmp(program->reads, "nothing") != 0)
+		gather(reading);
 	gather(common);
 	getopt_tables(letters, words);
 	opterr = 0;
@@ -459,7 +469,10 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 		}
 	}
 	verbose = verbose_flag;
+	if (follow)
+		file_follow();
 	check_operands(argc, argv);
+	file_claim_output();
 	if (stats_path)
 		stats_open(stats_path);
 	operand = argv + optind;
@@ -509,7 +522,9 @@ char *opt_cmd(const char *upstream, const char *extra)
 int shell_done(int status)
 {
 	errno = 0;
-	if (ferror(stdout) || fflush(stdout) || fclose(stdout))
+	/* Some file systems report a failure only when a descriptor is closed; standard
+	 * output itself stays open, for messages flush it. */
+	if (ferror(stdout) || fflush(stdout) || close(dup(STDOUT_FILENO)))
 		die(EXIT_RUN,
 			errno ? "standard output:" : "standard output: write error");
 	stats_write(prog->name);

@@ -13,7 +13,8 @@
  *		OPT_END,
  *	};
  *
- * Every program also has -h --help, -V --version, -v --verbose and -S --stats FILE.
+ * Every program also has -h --help, -V --version, -v --verbose, -S --stats FILE and,
+ * unless it reads nothing, --follow.
  * A number that was not given stays at its initial value; use NAN for "not given".
  */
 #ifndef SHELL_OPT_H

@@ -13,9 +13,8 @@
  * and the gap is recomputed when those add up.
  *
  * The inverse of the half-space restricted to the contact is not the restricted
- * inverse: that would need a residual continued beyond the contact so that its image
- * there vanishes.  One sweep of Jacobi's method towards that, over nearest neighbours,
- * costs nothing and saves a fifth of the iterations. */
+ * inverse: that needs a residual continued beyond the contact so that its image there
+ * vanishes, see extension.h. */
 #include "contact/state.h"
 #include "num/fft.h"
 #include <math.h>
@@ -23,65 +22,46 @@
 
 static const double drift_limit = 0.02; /* of the step, in the sum of pressures */
 static const double load_slack = 0.03;  /* of the step, in the same */
-static const double relaxation = 1.5;   /* of the sweep beyond the contact */
+
+struct box {
+	double estar, lx, ly;
+};
 
 static double stiffness(const void *context, size_t kx, size_t ky)
 {
-	const struct contact_par *par = context;
-	double lx = par->nx * par->dx, ly = par->ny * par->dy;
-	double q = hypot((double)kx / lx, (double)ky / ly);
+	const struct box *b = context;
+	double q = hypot((double)kx / b->lx, (double)ky / b->ly);
 
 	/* The mean counts only where the approach is given; about half the least
 	 * wave number is right for it. */
 	if (kx == 0 && ky == 0)
-		q = 0.5 / fmax(lx, ly);
-	return par->estar * M_PI * q;
-}
-
-/* Weights of the nearest neighbours in the inverse of the half-space, over that of
- * the cell itself: the transform of |q| over the wave vectors of the grid. */
-static void make_extension(struct contact *c)
-{
-	enum { M = 32 };
-	double sum = 0, x = 0, y = 0, xy = 0;
-	int ny = c->par.ny > 1 ? M : 1, nx = c->par.nx > 1 ? M : 1;
-
-	for (int j = 0; j < ny; j++) {
-		for (int i = 0; i < nx; i++) {
-			double ax = nx > 1 ? M_PI * (i + 0.5) / M : 0;
-			double ay = ny > 1 ? M_PI * (j + 0.5) / M : 0;
-			double q = hypot(ax / c->par.dx, ay / c->par.dy);
-
-			sum += q;
-			x += q * cos(ax);
-			y += q * cos(ay);
-			xy += q * cos(ax) * cos(ay);
-		}
-	}
-	if (sum > 0) {
-		c->near_x = c->par.nx > 3 ? -relaxation * x / sum : 0;
-		c->near_y = c->par.ny > 3 ? -relaxation * y / sum : 0;
-		c->near_xy = c->par.nx > 3 && c->par.ny > 3 ? -relaxation * xy / sum : 0;
-	}
+		q = 0.5 / fmax(b->lx, b->ly);
+	return b->estar * M_PI * q;
 }
 
 int contact_make_preconditioner(struct contact *c, const struct contact *lender)
 {
 	const struct convolve *scratch = lender ? lender->periodic : c->plane;
+	struct box box = { .estar = c->par.estar };
+	size_t mx, my, room;
+	double *memory;
 
-	c->periodic = c->plane;
-	if (c->par.boundary == CONTACT_FREE)
-		c->periodic = convolve_borrow((size_t)c->par.nx, (size_t)c->par.ny,
-			CONVOLVE_PERIODIC, c->par.pool, scratch);
+	c->periodic = convolve_borrow((size_t)c->par.nx, (size_t)c->par.ny,
+		c->par.boundary == CONTACT_FREE ? CONVOLVE_BRIDGED_FAR : CONVOLVE_BRIDGED,
+		c->par.pool, scratch);
 	if (!c->periodic)
 		return -1;
+	memory = convolve_scratch(c->periodic, &room);
+	c->extension =
+		extension_new(&c->par, lender ? lender->extension : NULL, memory, room);
 	c->inverse = convolve_alloc(c->periodic);
 	c->active = malloc(c->n);
-	if (!c->inverse || !c->active)
+	if (!c->extension || !c->inverse || !c->active)
 		return -1;
-	convolve_spectrum(c->periodic, c->inverse, stiffness, &c->par);
-	make_extension(c);
-	return 0;
+	convolve_size(c->periodic, &mx, &my);
+	box.lx = (double)mx * c->par.dx;
+	box.ly = (double)my * c->par.dy;
+	return convolve_spectrum(c->periodic, c->inverse, stiffness, &box);
 }
 
 /* The residual of the active cells, and the sums of the certificate. */
@@ -99,63 +79,6 @@ static void set_residual(void *context, size_t begin, size_t end, struct sweep *
 		c->residual[i] = active * g;
 	}
 	*s = t;
-}
-
-/* Rows or columns on either side; beyond a free rim there is nothing, which the
- * inactive cell itself stands for. */
-static inline size_t before(size_t x, size_t n, int periodic)
-{
-	return x > 0 ? x - 1 : periodic ? n - 1 : x;
-}
-
-static inline size_t after(size_t x, size_t n, int periodic)
-{
-	return x + 1 < n ? x + 1 : periodic ? 0 : x;
-}
-
-/* The residual of an inactive cell: a mean of its active neighbours. */
-static double extended_gap(
-	const struct contact *c, const size_t row[3], const size_t column[3])
-{
-	const double weight[3][3] = { { c->near_xy, c->near_y, c->near_xy },
-		{ c->near_x, 0, c->near_x }, { c->near_xy, c->near_y, c->near_xy } };
-	double sum = 0;
-
-	for (int k = 0; k < 3; k++)
-		for (int j = 0; j < 3; j++) {
-			size_t i = row[k] + column[j];
-
-			if (c->active[i])
-				sum += weight[k][j] * c->residual[i];
-		}
-	return sum;
-}
-
-/* ... where one of the four nearest is active; reads active cells and writes others. */
-static void extend_residual(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	const struct contact copy = *(struct contact *)context, *c = &copy;
-	size_t nx = (size_t)c->par.nx, ny = (size_t)c->par.ny;
-	int periodic = c->par.boundary == CONTACT_PERIODIC;
-
-	(void)s;
-	for (size_t y = begin / nx; y * nx < end; y++) {
-		const size_t row[3] = { before(y, ny, periodic) * nx, y * nx,
-			after(y, ny, periodic) * nx };
-		size_t first = row[1] > begin ? 0 : begin - row[1];
-		size_t last = row[1] + nx < end ? nx : end - row[1];
-
-		for (size_t x = first; x < last; x++) {
-			const size_t column[3] = { before(x, nx, periodic), x,
-				after(x, nx, periodic) };
-
-			if (!c->active[row[1] + x] &&
-				(c->active[row[1] + column[0]] |
-					c->active[row[1] + column[2]] |
-					c->active[row[0] + x] | c->active[row[2] + x]))
-				c->residual[row[1] + x] = extended_gap(c, row, column);
-		}
-	}
 }
 
 /* Sums over the active cells for beta and the means. */
@@ -285,8 +208,7 @@ static double find_step(struct contact *c, struct state *state)
 	double count, mean, limit, rest = 0;
 	struct sweep s;
 
-	if (c->extend)
-		contact_sweep(c, extend_residual);
+	c->result.work += extension_apply(c->extension, c->active, c->residual);
 	precondition(c);
 	s = contact_sweep(c, sum_residual);
 	count = fmax(s.sum[4], 1);
@@ -368,7 +290,6 @@ enum contact_status contact_solve_bccg(struct contact *c)
 	struct state state = { 0 };
 
 	c->tau = 0.5;
-	c->extend = 1;
 	renew_gap(c, &state);
 	for (long k = 0;; k++) {
 		double certificate = certify(c), slope;
@@ -404,7 +325,6 @@ enum contact_status contact_solve_bccg(struct contact *c)
 			 * may lead uphill; a plain one does not. */
 			state.retreat = state.retreat < 32 ? 2 * state.retreat + 1 : 63;
 			state.plain = state.retreat;
-			c->extend = 0;
 		}
 		if (state.moved <= 0 || state.drift > drift_limit * state.moved)
 			renew_gap(c, &state);

@@ -60,8 +60,7 @@ static int make_kernel(struct contact *c, const struct contact *lender)
 		return -1;
 	if (is_free)
 		return convolve_kernel(c->plane, c->kernel, free_kernel, &c->par);
-	convolve_spectrum(c->plane, c->kernel, periodic_kernel, &c->par);
-	return 0;
+	return convolve_spectrum(c->plane, c->kernel, periodic_kernel, &c->par);
 }
 
 /* Each array starts on a cache line. */
@@ -72,10 +71,17 @@ static size_t padded(size_t n)
 
 static int make_coarse(struct contact *c);
 
-/* Room for all arrays, and for what padding adds to two halves of the last. */
+/* Room for all arrays; two coarse ones fit into the last or nearly so. */
 static size_t room(const struct contact_par *par, size_t n)
 {
-	return (par->solver == CONTACT_BCCG ? 4 : 3) * padded(n) + 16;
+	struct contact_par coarse;
+	size_t two = 0;
+
+	if (par->solver != CONTACT_BCCG)
+		return 3 * padded(n);
+	if (contact_can_coarsen(par, &coarse))
+		two = 2 * padded((size_t)coarse.nx * (size_t)coarse.ny);
+	return 3 * padded(n) + (two > padded(n) ? two : padded(n));
 }
 
 /* lender: a finer grid whose memory is free to use, or NULL. */
@@ -118,20 +124,12 @@ static struct contact *new_grid(
  * them: four of its arrays fit into one, or on a strip into two and a bit. */
 static int make_coarse(struct contact *c)
 {
-	struct contact_par par = c->par;
+	struct contact_par par;
 
-	if (!contact_can_halve(&par))
+	if (!contact_can_coarsen(&c->par, &par))
 		return 0;
-	if (par.nx > 1) {
-		par.nx /= 2;
-		par.dx *= 2;
-	}
-	if (par.ny > 1) {
-		par.ny /= 2;
-		par.dy *= 2;
-	}
 	c->coarse = new_grid(&par, c);
-	if (!c->coarse)
+	if (!c->coarse || transfer_make(&c->transfer, &c->par, &par) != 0)
 		return -1;
 	c->coarse_height = c->residual;
 	c->coarse_pressure = c->residual + padded(c->coarse->n);
@@ -148,8 +146,9 @@ void contact_free(struct contact *c)
 	if (!c)
 		return;
 	contact_free(c->coarse);
-	if (c->periodic != c->plane)
-		convolve_free(c->periodic);
+	transfer_done(&c->transfer);
+	extension_free(c->extension);
+	convolve_free(c->periodic);
 	mlms_free(c->mlms);
 	convolve_free(c->plane);
 	fft_free(c->kernel);
@@ -215,6 +214,28 @@ static int is_in_range(const struct contact *c, double size)
 	return isfinite(size * size * stiffest * (double)c->n);
 }
 
+/* Pressures need to be no better than what interpolation loses. */
+static const double coarse_tolerance = 1e-2;
+
+/* A first guess from the coarser grids; 0 where they found none. */
+static int guess_pressure(struct contact *c)
+{
+	struct contact *coarse = c->coarse;
+	enum contact_status status;
+
+	if (!coarse)
+		return 0;
+	contact_average_height(c);
+	memset(c->coarse_pressure, 0, coarse->n * sizeof(*c->coarse_pressure));
+	coarse->tolerance = fmax(coarse_tolerance, c->tolerance);
+	status = contact_solve(coarse, c->coarse_height, c->control, c->target,
+		c->coarse_pressure, NULL);
+	c->result.work += coarse->result.work * (double)coarse->n / (double)c->n;
+	if (status != CONTACT_OK && status != CONTACT_NOCONV)
+		return 0;
+	return contact_interpolate_pressure(c) > 0;
+}
+
 static enum contact_status prepare(struct contact *c)
 {
 	struct sweep s = contact_sweep(c, survey);
@@ -237,7 +258,7 @@ static enum contact_status prepare(struct contact *c)
 		/* The pressure that sinks the whole grid by depth. */
 		first = fmin((c->target - touch) / contact_sinking(c, 1), c->cap / 2);
 	}
-	if (guess <= 0 && !contact_guess(c))
+	if (guess <= 0 && !guess_pressure(c))
 		contact_fill_empty(c, first);
 	if (c->control == CONTACT_PRESSURE)
 		contact_scale_load(c, 0);

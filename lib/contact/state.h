@@ -2,8 +2,10 @@
 #ifndef CONTACT_STATE_H
 #define CONTACT_STATE_H
 
+#include "contact/extension.h"
 #include "contact/mlms.h"
 #include "contact/solver.h"
+#include "contact/transfer.h"
 #include "num/convolve.h"
 #include "num/sweep.h"
 #include <math.h>
@@ -22,12 +24,13 @@ struct contact {
 	struct contact_result result;
 
 	/* preconditioned solver only */
-	struct convolve *periodic;      /* transforms of the preconditioner */
-	double *inverse;                /* its kernel */
-	double *residual;               /* g on the contact, then preconditioned */
-	unsigned char *active;          /* 1 for the cells the residual was taken of */
-	double near_x, near_y, near_xy; /* see make_extension() */
-	struct contact *coarse;         /* grid of half as many cells each way, or NULL */
+	struct convolve *periodic;   /* transforms of the preconditioner */
+	double *inverse;             /* its kernel */
+	double *residual;            /* g on the contact, then preconditioned */
+	unsigned char *active;       /* 1 for the cells the residual was taken of */
+	struct extension *extension; /* of the residual beyond the contact */
+	struct contact *coarse;      /* grid of half as many cells each way, or NULL */
+	struct transfer transfer;    /* to it */
 	double *coarse_height, *coarse_pressure; /* parts of residual */
 
 	/* the problem being solved */
@@ -44,7 +47,6 @@ struct contact {
 	double beta;    /* share of the last step; also a factor of pressures */
 	double tau;     /* step length that is guessed */
 	double stretch; /* ... and what the line search makes of it */
-	int extend;     /* continue the residual beyond the contact */
 	double best;    /* certificate so far, and the iterations since */
 	long since;
 	double energy; /* least when contact_gradient_due() looked */
@@ -146,9 +148,10 @@ enum contact_status contact_solve_pk(struct contact *c);
 int contact_make_preconditioner(struct contact *c, const struct contact *lender);
 enum contact_status contact_solve_bccg(struct contact *c);
 
-/* grids.c: halves the grid down to some 32 cells a side; 1 if this one can be halved */
-int contact_can_halve(const struct contact_par *par);
-/* A first guess from the coarser grids; 0 where they found none. */
-int contact_guess(struct contact *c);
+/* grids.c: between this grid and the coarser one, down to some 32 cells a side. */
+int contact_can_coarsen(const struct contact_par *par, struct contact_par *coarse);
+void contact_average_height(struct contact *c);
+/* Returns the sum of the pressures. */
+double contact_interpolate_pressure(struct contact *c);
 
 #endif

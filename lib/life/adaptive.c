@@ -3,6 +3,7 @@
 #include "life/grey.h"
 #include "life/noise.h"
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,15 +26,16 @@ struct adaptive {
 	struct order *order;
 	struct noise *noise;
 	struct fits fits;
-	double *mean; /* [N] prior means */
-	double scale; /* power of two that values are divided by: of the first but 0 */
+	double *mean;       /* [N] prior means */
+	double *past, *gap; /* rings of the last rows: values and gaps before */
+	double *line_up;    /* past in order */
+	double scale;       /* from here on the state, see adaptive_pass(): power of two
+			     * that values are divided by, of the first but 0 */
 	int scaled;
 	long rows;
 	double time;
 	double observed, observed_time, observed_gap; /* the last observation */
 	double mean_gap;
-	double *past, *gap; /* rings of the last rows: values and gaps before */
-	double *line_up;    /* past in order */
 	int newest, filled;
 	double missed[RECENT]; /* last squared errors of the grey model, a ring */
 	long misses;
@@ -100,6 +102,21 @@ void adaptive_free(struct adaptive *a)
 	free(a->gap);
 	free(a->line_up);
 	free(a);
+}
+
+void adaptive_pass(struct adaptive *a, struct state *s)
+{
+	size_t depth = (size_t)a->par.filter.depth,
+	       from = offsetof(struct adaptive, scale);
+
+	draw_pass(a->draw, s);
+	draw_pass(a->draw_paths, s);
+	filter_pass(a->filter, s);
+	order_pass(a->order, s);
+	noise_pass(a->noise, s);
+	state_move(s, a->past, depth * sizeof *a->past);
+	state_move(s, a->gap, depth * sizeof *a->gap);
+	state_move(s, (unsigned char *)a + from, sizeof *a - from);
 }
 
 const struct order *adaptive_order(const struct adaptive *a)

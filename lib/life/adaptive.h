@@ -44,6 +44,7 @@ struct adaptive;
 
 struct adaptive *adaptive_new(const struct adaptive_par *par); /* NULL: no memory */
 void adaptive_free(struct adaptive *a);
+void adaptive_pass(struct adaptive *a, struct state *s);
 /* Takes the next row; t must rise.  Any finite y will do. */
 void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *row);
 /* The literal recursion (4-21): every particle goes on step by step by its own model,

@@ -41,8 +41,8 @@
 #ifndef LIFE_BANK_H
 #define LIFE_BANK_H
 
+#include "num/state.h"
 #include <stdint.h>
-#include <stdio.h>
 
 enum bank_family {
 	BANK_LINEAR = 1,
@@ -119,8 +119,6 @@ struct bank_counts {
 };
 struct bank_counts bank_counts(const struct bank *b);
 
-/* The whole state, as bytes of this machine: 1, or 0 with errno. */
-int bank_save(const struct bank *b, FILE *f);
-int bank_load(struct bank *b, FILE *f); /* into one made with the same par */
+void bank_pass(struct bank *b, struct state *s); /* of one with the same par */
 
 #endif

@@ -36,6 +36,7 @@ struct filter;
 /* draw stays the caller's.  NULL when out of memory. */
 struct filter *filter_new(const struct filter_par *par, struct draw *draw);
 void filter_free(struct filter *f);
+void filter_pass(struct filter *f, struct state *s);
 
 /* (Re)starts with count <= depth past values, oldest first, each particle's uniform
  * within +- spread of them, and equal weights. */

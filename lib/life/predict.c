@@ -12,8 +12,10 @@ struct predict {
 	struct history *history; /* of states, for the grey model; else NULL */
 	struct bank *bank;       /* for the others; else NULL */
 	double scale;            /* power of two near the threshold, for the grey model */
-	long rows;
-	double first, last; /* times */
+	struct progress {
+		long rows;
+		double first, last; /* times */
+	} now;
 };
 
 struct predict *predict_new(const struct predict_par *par)
@@ -54,11 +56,20 @@ void predict_free(struct predict *p)
 	free(p);
 }
 
+void predict_pass(struct predict *p, struct state *s)
+{
+	state_move(s, &p->now, sizeof p->now);
+	if (p->history)
+		history_pass(p->history, s);
+	if (p->bank)
+		bank_pass(p->bank, s);
+}
+
 void predict_add(struct predict *p, double t, double y, double state)
 {
-	if (p->rows++ == 0)
-		p->first = t;
-	p->last = t;
+	if (p->now.rows++ == 0)
+		p->now.first = t;
+	p->now.last = t;
 	if (p->history)
 		history_add(p->history, t, (state - p->par.zero) / p->scale);
 	if (p->bank)
@@ -117,7 +128,8 @@ static int draw_grey(struct predict *p, double *life)
 		double level = g.mean_x + grey_level_error(&g) * level_z +
 			       rate * (g.tail - g.mean_u);
 
-		life[i] = grey_crossing(p, level, rate, g.span + p->last - t[n - 1], gap);
+		life[i] = grey_crossing(
+			p, level, rate, g.span + p->now.last - t[n - 1], gap);
 	}
 	return 1;
 }
@@ -132,7 +144,7 @@ static int draw_lives(struct predict *p, double *life)
 			p->par.direction, LITERAL_STEPS, life);
 	if (!bank_ready(p->bank))
 		return 0;
-	bank_draw(p->bank, p->par.chances, p->last, p->par.threshold, life);
+	bank_draw(p->bank, p->par.chances, p->now.last, p->par.threshold, life);
 	return 1;
 }
 
@@ -151,7 +163,8 @@ int predict_life(struct predict *p, double *life)
 	if (drawn <= 0)
 		return drawn;
 	if (!(horizon > 0))
-		horizon = p->par.n_paths > 0 ? INFINITY : 10 * (p->last - p->first);
+		horizon =
+			p->par.n_paths > 0 ? INFINITY : 10 * (p->now.last - p->now.first);
 	for (int i = 0; i < n; i++)
 		if (!(life[i] <= horizon))
 			life[i] = INFINITY;

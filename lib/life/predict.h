@@ -43,6 +43,7 @@ struct predict;
 
 struct predict *predict_new(const struct predict_par *par); /* NULL: no memory */
 void predict_free(struct predict *p);
+void predict_pass(struct predict *p, struct state *s);
 /* Takes a row: the observation, NAN where it is missing, and the filtered state (of the
  * grey model alone). */
 void predict_add(struct predict *p, double t, double y, double state);

@@ -71,7 +71,7 @@ void scratches_cut(const char *path, double length, double cut, uint64_t seed, i
 		r.cmd = cmd;
 		if (!out)
 			out = fields_create(NULL);
-		fields_write(out, &r);
+		fields_write(out, &r, fields_more(in));
 		stats_add("records", 1);
 	}
 	record_free(&r);

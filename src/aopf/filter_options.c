@@ -16,8 +16,7 @@ static double hysteresis = 0.03, share = 0.5, freedom, process = NAN, noise = NA
 static long largest = 60, window = 50;
 static int scheme;
 
-struct opt filtering_rows[] = {
-	OPT_HEADING("Particle filter"),
+struct opt filtering_rows[] = { OPT_HEADING("Particle filter"),
 	{ 0, "order", OPT_CHOICE, UNIT_COUNT, &order, 4, 1000, "N|window|insample|all",
 		"order of the grey model, or how it is chosen", orders, 0 },
 	{ 0, "max-order", OPT_INT, UNIT_COUNT, &largest, 4, 1000, "N",
@@ -45,8 +44,7 @@ struct opt filtering_rows[] = {
 	{ 0, "sigma-v", OPT_NUM, UNIT_NONE, &noise, 0, DBL_MAX, "SD",
 		"observation noise, in units of y (default from second differences)",
 		NULL, 0 },
-	OPT_END
-};
+	OPT_END };
 
 void filtering_check(void)
 {

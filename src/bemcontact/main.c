@@ -165,7 +165,7 @@ int main(int argc, char **argv)
 		drop_fields(&r);
 		free(r.cmd);
 		r.cmd = cmd;
-		fields_write(out, &r);
+		fields_write(out, &r, fields_more(in));
 	}
 	fields_done(out);
 	fields_close(in);

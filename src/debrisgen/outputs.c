@@ -42,12 +42,37 @@ static const char summary_columns[] =
 	"particles mean_diameter max_diameter depth relative_roughness max_von_mises";
 static const char summary_units[] = "1 1 m N 1 Pa 1 m3 1 m m m 1 Pa";
 
+/* A stream of records; the last is held back until it is known whether another one
+ * follows. */
+struct held_fields {
+	struct fields_out *out; /* NULL: not wanted */
+	struct record last;     /* without fields: none yet */
+};
+
 struct worn {
 	struct table_out *particles, *summary;
-	struct fields_out *surface, *stress;
+	struct held_fields surface, stress;
 	struct worn_conditions told; /* to both tables */
 	int begun;
 };
+
+/* Takes the record over. */
+static void held_put(struct held_fields *f, const struct record *r)
+{
+	if (f->last.nfields)
+		fields_write(f->out, &f->last, 1);
+	record_free(&f->last);
+	f->last = *r;
+}
+
+static void held_done(struct held_fields *f)
+{
+	if (f->last.nfields)
+		fields_write(f->out, &f->last, 0);
+	record_free(&f->last);
+	if (f->out)
+		fields_done(f->out);
+}
 
 /* The pipeline that prints what went to the file of an option, on standard output; of the
  * particles with option NULL.  Fresh memory. */
@@ -79,9 +104,9 @@ struct worn *worn_open(const char *upstream)
 		w->summary = table_create(
 			summary_path, summary, summary_units, summary_columns);
 	if (surface_path)
-		w->surface = fields_create(surface_path);
+		w->surface.out = fields_create(surface_path);
 	if (stress_path)
-		w->stress = fields_create(stress_path);
+		w->stress.out = fields_create(stress_path);
 	free(cmd);
 	free(summary);
 	return w;
@@ -184,7 +209,7 @@ static void bare_record(
 }
 
 static void put_surface(
-	struct fields_out *f, const struct worn_surface *c, const struct worn_step *s)
+	struct held_fields *f, const struct worn_surface *c, const struct worn_step *s)
 {
 	size_t bytes = (size_t)c->r->nx * c->r->ny * sizeof(*c->h);
 	struct record out = { 0 };
@@ -193,8 +218,7 @@ static void put_surface(
 	memcpy(record_add(&out, "height", "m"), c->h, bytes);
 	/* The next solution starts from it, here as in a pipeline. */
 	memcpy(record_add(&out, "pressure", "Pa"), c->p, bytes);
-	fields_write(f, &out);
-	record_free(&out);
+	held_put(f, &out);
 }
 
 /* The fields wanted at one point, in the order of their names in put_stress(). */
@@ -218,7 +242,7 @@ static int derive(const double t[STRESS_COMPONENTS], double *out)
 }
 
 static void put_stress(
-	struct fields_out *f, const struct record *r, const struct worn_step *s)
+	struct held_fields *f, const struct record *r, const struct worn_step *s)
 {
 	static const char *const names[] = { "von_mises", "hydrostatic", "principal_1",
 		"principal_2", "principal_3", "xx", "yy", "zz", "xy", "xz", "yz" };
@@ -251,8 +275,7 @@ static void put_stress(
 				out.data[k][m * n + i] = v[k];
 		}
 	}
-	fields_write(f, &out);
-	record_free(&out);
+	held_put(f, &out);
 	free(tensor);
 }
 
@@ -261,10 +284,10 @@ void worn_put(struct worn *w, const struct worn_surface *c, const struct worn_st
 	put_particles(w->particles, c->r->realisation, s);
 	if (w->summary)
 		put_summary(w->summary, c, s);
-	if (w->stress)
-		put_stress(w->stress, c->r, s);
-	if (w->surface)
-		put_surface(w->surface, c, s);
+	if (w->stress.out)
+		put_stress(&w->stress, c->r, s);
+	if (w->surface.out)
+		put_surface(&w->surface, c, s);
 }
 
 void worn_close(struct worn *w)
@@ -272,9 +295,7 @@ void worn_close(struct worn *w)
 	table_done(w->particles);
 	if (w->summary)
 		table_done(w->summary);
-	if (w->surface)
-		fields_done(w->surface);
-	if (w->stress)
-		fields_done(w->stress);
+	held_done(&w->surface);
+	held_done(&w->stress);
 	free(w);
 }

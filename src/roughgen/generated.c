@@ -169,6 +169,11 @@ int generated_next(struct generated *g, struct record *r)
 	return 1;
 }
 
+int generated_more(const struct generated *g)
+{
+	return g->done < count;
+}
+
 void generated_close(struct generated *g)
 {
 	rough_free(g->rough);

@@ -126,8 +126,9 @@ static void print_spectrum(const struct record *r, const double *z)
 	free(ring);
 }
 
-/* Crowns a surface, on top of the crown it had, and writes it out. */
-static void finish(struct record *r, double had)
+/* Crowns a surface, on top of the crown it had, and writes it out; more: another one
+ * follows. */
+static void finish(struct record *r, double had, int more)
 {
 	double *z = record_need(r, "height", 0, NULL), rms = surface_sq(r->nx, r->ny, z);
 	double drop = had;
@@ -150,7 +151,7 @@ static void finish(struct record *r, double had)
 		return;
 	if (!out)
 		out = fields_create(NULL);
-	fields_write(out, r);
+	fields_write(out, r, more);
 }
 
 /* The file to prepare, NULL where surfaces are generated: without an operand, unless what
@@ -179,13 +180,13 @@ int main(int argc, char **argv)
 		double had;
 
 		while (measured_next(surfaces, &r, &had))
-			finish(&r, had);
+			finish(&r, had, measured_more(surfaces));
 		measured_close(surfaces);
 	} else {
 		struct generated *surfaces = generated_open((int)threads);
 
 		while (generated_next(surfaces, &r))
-			finish(&r, 0);
+			finish(&r, 0, generated_more(surfaces));
 		generated_close(surfaces);
 	}
 	record_free(&r);

@@ -60,6 +60,11 @@ struct measured *measured_open(const char *path)
 	return m;
 }
 
+int measured_more(struct measured *m)
+{
+	return fields_more(m->in);
+}
+
 void measured_close(struct measured *m)
 {
 	record_free(&m->read);

@@ -19,8 +19,7 @@ static double step_time = NAN, skip, eol = NAN, cone = 0.2, horizon = NAN, speed
 static long seed = 1, first_path, count = 1000, first_step = 1, parts;
 static int rule = RATE_MEAN, samples, grey, new;
 
-static const struct opt opts[] = {
-	OPT_HEADING("Input"),
+static const struct opt opts[] = { OPT_HEADING("Input"),
 	{ 0, "wear", OPT_TEXTS, UNIT_NONE, &wear_files, 0, 0, "FILE[:PRESSURE[:AREA]]",
 		"particles or volumes worn off fragments under a nominal pressure", 0,
 		0 },
@@ -29,8 +28,7 @@ static const struct opt opts[] = {
 		1 },
 	{ 0, "new", OPT_FLAG, UNIT_NONE, &new, 0, 0, 0,
 		"read no state: the life of a new pair", 0, 0 },
-	OPT_TABLE(state_rows), OPT_TABLE(pump_threshold_rows),
-	OPT_HEADING("Wear rate"),
+	OPT_TABLE(state_rows), OPT_TABLE(pump_threshold_rows), OPT_HEADING("Wear rate"),
 	{ 0, "wear-rate", OPT_WORD, UNIT_NONE, &rule, 0, 0, "mean|last|filter",
 		"rate by (4-29), by (4-28), or followed by filters", rules, 0 },
 	{ 0, "step-time", OPT_NUM, UNIT_TIME, &step_time, 1e-15, 1e15, "T",
@@ -47,8 +45,7 @@ static const struct opt opts[] = {
 		"run-in left out of all rates observed, from the first row", 0, 0 },
 	{ 0, "parts", OPT_INT, UNIT_COUNT, &parts, 0, 1e9, "N",
 		"parts of a class that wear independently; 0: as many as fit", 0, 0 },
-	OPT_TABLE(pump_face_rows),
-	OPT_HEADING("Output"),
+	OPT_TABLE(pump_face_rows), OPT_HEADING("Output"),
 	{ 0, "grey", OPT_FLAG, UNIT_NONE, &grey, 0, 0, 0,
 		"add a column: grey model of the state observed", 0, 0 },
 	{ 0, "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "P,...",
@@ -70,8 +67,7 @@ static const struct opt opts[] = {
 	{ 'f', "first", OPT_INT, UNIT_COUNT, &first_path, 0, 4e9, "K",
 		"number of the first one", 0, 0 },
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "random seed", 0, 0 },
-	OPT_END
-};
+	OPT_END };
 
 static const struct prog prog = { "rwl",
 	"Predict the remaining wear life of a sliding pair as a distribution.", "[state]",
@@ -157,6 +153,8 @@ static struct forecast *new_forecast(struct paths *e, int quantity)
 		.from_new = new || quantity >= PAIR_VOLUME,
 		.rule = (enum rate_rule)rule,
 		.count = count,
+		.seed = (uint64_t)seed,
+		.first = (uint32_t)first_path,
 		.scaled = wear_files.n && (calibrations.n || !isnan(step_time)),
 		.skip = skip,
 		.horizon = horizon,
@@ -187,6 +185,8 @@ static void follow(struct state *s, struct lifetable *out, struct forecast *f)
 	while (state_next(s)) {
 		long n = forecast_add(f, s->t, s->value, s->gap, s->gap_error);
 
+		if (n == -2)
+			die(EXIT_RUN, "out of memory");
 		if (n >= 0) {
 			stats_add("paths", n > 1 ? (double)n : 0);
 			stats_add("paths_skipped", n > 1 ? 0 : (double)count);

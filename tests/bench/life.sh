@@ -24,7 +24,7 @@ life() {
 	k=1
 	while [ $k -le "$pumps" ]; do
 		aopf --time-unit h -y 2.8 --direction up -S stats "$@" "pump$k.tsv" >out
-		printf '%s\t%s\n' "$(tail -1 out)" "$(column cpu_seconds stats)" >>lives
+		printf '%s\t%s\n' "$(grep -v "^#" out | tail -1)" "$(column cpu_seconds stats)" >>lives
 		k=$((k + 1))
 	done
 	awk -F '\t' -v scene="$scene" -v knob="$knob" '{

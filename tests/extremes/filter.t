@@ -81,7 +81,7 @@ scene "64 channels" "each its own impulse" 0 1e-15 "$(frames out.au 64 | awk '
 
 # --- long streams
 printf 'time\tdiameter\n3\t1e-4\n86395.0005\t1e-4\n' >day.tsv
-sensorsim -r 1kHz --duration 1d -S sim.stats day.tsv | bpfilter -b 0:500 --zero-phase -S filter.stats | tail -c 160000 >last
+sensorsim -r 1kHz --duration 1d -S sim.stats day.tsv | bpfilter -b 0:500 --zero-phase -S filter.stats | head -c -16 | tail -c 160000 >last
 kilobytes="$(column memory_kb sim.stats) and $(column memory_kb filter.stats) kB"
 is "a day at 1 kHz | constant memory | $kilobytes | none" \
 	"$(echo "$kilobytes" | awk '{ print ($1 < 20000 && $3 < 20000) }')" 1

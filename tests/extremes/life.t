@@ -151,7 +151,7 @@ long() {
 }
 long 20000 | aopf --order 4 --particles 10 -S few -y 3 >/dev/null
 long 1000000 | aopf --order 4 --particles 10 -S stats >out
-accurate "a million rows" "state" "$(tail -1 out | cut -f 5)" 2.025 0.02
+accurate "a million rows" "state" "$(column state out | tail -1)" 2.025 0.02
 accurate "a million rows" "the memory of 20000" "$(column memory_kb stats)" \
 	"$(column memory_kb few)" 0.2
 

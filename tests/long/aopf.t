@@ -27,7 +27,7 @@ done
 # Ends of life at 600 h, true 1186
 for model in average grey; do
 	for s in $(seq 1 100); do
-		aopf --time-unit h -y 2.8 --direction up --model $model "pump$s.tsv" | tail -1
+		aopf --time-unit h -y 2.8 --direction up --model $model "pump$s.tsv" | grep -v '^#' | tail -1
 	done >$model.last
 	awk -F '\t' '{ left = $9 == "inf" ? 10 * $1 : $9
 		e = $1 + left - 1186; print e < 0 ? -e : e }' $model.last >$model.error
