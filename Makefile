@@ -35,7 +35,7 @@ WARN = -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototype
 B = build
 BIN = bin
 Q = $(if $(V),,@)
-say = $(if $(V),@:,@printf '  %-4s %s\n' $(1) '$(2)')
+say = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),@:,@printf '  %-4s %s\n' $(1) '$(2)')
 
 # The outer libraries of each program; what it uses of lib/ the linker takes from one archive.
 PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal

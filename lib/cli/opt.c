@@ -204,11 +204,35 @@ static double parse_number(const struct opt *o, const char *text)
 	double value;
 
 	wrong = unit_parse(text, o->unit, "", &value, &end);
+	if (wrong && unit_meant(text, o->unit))
+		die(EXIT_USAGE, "--%s %s: did you mean %s?", o->word, text,
+			unit_meant(text, o->unit));
 	if (wrong)
 		die(EXIT_USAGE, "--%s %s: '%s' %s%s%s", o->word, text, text, wrong,
 			*unit_shown(o->unit) ? ", want " : "", unit_shown(o->unit));
 	check_range(o, text, value);
 	return value;
+}
+
+const char *opt_reads(void)
+{
+	return prog ? prog->reads : "another stream";
+}
+
+/* "mm" after "--length 1": a unit, not a file. */
+static void check_operand(const char *text)
+{
+	char *one = xprintf("1%s", text);
+	const char *end;
+	double value;
+
+	if (*text && unit_parse(one, UNIT_ANY, "", &value, &end) == NULL &&
+		access(text, F_OK) != 0)
+		die(EXIT_USAGE,
+			"'%s' is taken for a file, which is not there; a unit stands "
+			"behind its number without a blank",
+			text);
+	free(one);
 }
 
 static int count(const char *text, const char *end, char c)
@@ -246,6 +270,9 @@ static void parse_list(const struct opt *o, const char *text)
 			die(EXIT_USAGE, "--%s %s: more than %d numbers", o->word, text,
 				OPT_LIST_MAX);
 		wrong = unit_parse(s, o->unit, separator, &l->v[l->n], &s);
+		if (wrong && unit_meant(s, o->unit))
+			die(EXIT_USAGE, "--%s %s: did you mean %s?", o->word, text,
+				unit_meant(s, o->unit));
 		if (wrong)
 			die(EXIT_USAGE, "--%s %s: '%s' %s, want %s%s%s", o->word, text, s,
 				wrong, o->arg, *unit_shown(o->unit) ? " in " : "",
@@ -424,6 +451,8 @@ static void check_operands(int argc, char **argv)
 {
 	int most = strstr(prog->operands, "...") ? argc : *prog->operands != '\0';
 
+	for (int i = optind; i < argc; i++)
+		check_operand(argv[i]);
 	if (argc - optind > most)
 		die(EXIT_USAGE, "%s: %s", argv[optind + most],
 			most ? "one file at most" : "takes no file");

@@ -102,6 +102,9 @@ int opt_given(const char *word);
 /* The word of the first of these rows that was, or NULL. */
 const char *opt_any_given(const struct opt *table);
 
+/* What the program reads, for messages: "fields: height". */
+const char *opt_reads(void);
+
 /* The recorded command line, fresh memory: upstream, " | ", program, the options
  * given in long form and shell-quoted, then extra (may be NULL).  The operands are
  * recorded only where upstream is NULL, since otherwise upstream rebuilds the input. */

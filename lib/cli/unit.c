@@ -170,6 +170,46 @@ const char *unit_parse(const char *text, enum unit unit, const char *stop, doubl
 	return NULL;
 }
 
+/* Letters of a that differ from those of b by more than capitals: -1; else by capitals.
+ */
+static int capitals(const char *a, const char *b)
+{
+	int n = 0;
+
+	for (; *a && *b; a++, b++) {
+		if (tolower((unsigned char)*a) != tolower((unsigned char)*b))
+			return -1;
+		n += *a != *b;
+	}
+	return (*a && *a != ',' && *a != ':') || *b ? -1 : n;
+}
+
+const char *unit_meant(const char *text, enum unit unit)
+{
+	static char meant[32];
+	int least = 1000;
+	char *rest;
+
+	strtod(text, &rest);
+	for (size_t i = 0; i < NSPELLINGS; i++) {
+		if (spellings[i].unit != unit)
+			continue;
+		for (size_t k = 0; k <= (spellings[i].power ? NPREFIXES : 0); k++) {
+			char name[32];
+			int n;
+
+			snprintf(name, sizeof name, "%s%s", k ? prefixes[k - 1].text : "",
+				spellings[i].text);
+			n = capitals(rest, name);
+			if (n >= 0 && n < least) {
+				least = n;
+				memcpy(meant, name, sizeof meant);
+			}
+		}
+	}
+	return least < 1000 ? meant : NULL;
+}
+
 const char *number_text(double value, char text[NUMBER_TEXT])
 {
 	if (isnan(value))

@@ -1,10 +1,12 @@
 #include "io/fields.h"
 #include "cli/files.h"
 #include "cli/msg.h"
+#include "cli/opt.h"
 #include "io/bytes.h"
 #include "io/crc32.h"
 #include "io/ends.h"
 #include "io/formats.h"
+#include "io/kinds.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -107,8 +109,8 @@ double *record_need(
 	size_t n = points(r);
 
 	if (k < 0)
-		die(EXIT_RUN, "%s: record %ld: no field '%s'", in->at.name, in->at.record,
-			name);
+		die(EXIT_RUN, "%s: record %ld: no field '%s', want %s", in->at.name,
+			in->at.record, name, opt_reads());
 	for (size_t i = 0; finite && i < n; i++)
 		if (!isfinite(r->data[k][i]))
 			die(EXIT_RUN,
@@ -186,6 +188,8 @@ char *header_line(struct place *at, size_t *header_size)
 		die(EXIT_RUN, "%s: record %ld: header longer than %zu bytes", at->name,
 			at->record, most);
 	if (n == 0 || line[n - 1] != '\n') {
+		if (*header_size == 0 && at->record == 1)
+			kind_refuse(at->name, line, n, KIND_FIELD);
 		free(line);
 		return NULL;
 	}
@@ -303,9 +307,12 @@ static void read_formatted(struct fields_in *in, struct record *r)
 		nrrd_read(&in->at, r);
 	else if (magic && strcmp(magic, "Gwyddion Simple Field 1.0") == 0)
 		gsf_read(&in->at, r);
-	else
+	else {
+		if (magic && in->at.record == 1)
+			kind_refuse(in->at.name, magic, strlen(magic), KIND_FIELD);
 		die(EXIT_RUN, "%s: record %ld: want NRRD or GSF, got '%.8s'", in->at.name,
 			in->at.record, magic ? magic : "");
+	}
 	free(magic);
 }
 

@@ -11,6 +11,7 @@
 #include "io/crc32.h"
 #include "io/ends.h"
 #include "io/input.h"
+#include "io/kinds.h"
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -126,6 +127,8 @@ static void read_header(struct signal_in *in)
 	size_t got = input_read(in->in, b, HEADER_MIN);
 	char *text, *promise;
 
+	if (got < HEADER_MIN || memcmp(b, ".snd", 4) != 0)
+		kind_refuse(in->name, b, got, KIND_SIGNAL);
 	if (got < HEADER_MIN)
 		die(EXIT_RUN, "%s: want an AU header of at least %d bytes, got %zu",
 			in->name, HEADER_MIN, got);

@@ -1,6 +1,7 @@
 #include "io/tables.h"
 #include "cli/files.h"
 #include "cli/msg.h"
+#include "cli/opt.h"
 #include "cli/text.h"
 #include "cli/unit.h"
 #include "cli/upstream.h"
@@ -8,6 +9,7 @@
 #include "io/ends.h"
 #include "io/input.h"
 #include "io/keys.h"
+#include "io/kinds.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -103,7 +105,8 @@ static size_t read_line(struct table_in *t)
 
 	if (n == 0)
 		return 0;
-	t->number++;
+	if (t->number++ == 0)
+		kind_refuse(t->name, t->line, n, KIND_TABLE);
 	if (n > t->most)
 		die(EXIT_RUN, "%s: line %ld: longer than %zu bytes", t->name, t->number,
 			t->most);
@@ -218,6 +221,15 @@ static int cut(struct table_in *t, char *line, char **cells, int max)
 		if (*t->blanks == ' ')
 			s += strspn(s, t->blanks);
 	}
+}
+
+/* "1,5" */
+static int is_comma_decimal(const char *s)
+{
+	size_t whole = strspn(s, "+-0123456789");
+
+	return whole > 0 && s[whole] == ',' && s[whole + 1] &&
+	       s[whole + 1 + strspn(s + whole + 1, "0123456789eE+-")] == '\0';
 }
 
 static int is_missing(const char *s)
@@ -350,22 +362,41 @@ int table_find(const struct table_in *t, const char *column)
 	return found;
 }
 
-/* 1 where the header looks like that of a table parted by commas. */
-static int has_commas(const struct table_in *t)
+/* What is wrong with a header whose columns are separated by other characters. */
+static const char *wrong_separator(const struct table_in *t)
 {
-	for (int i = 0; i < t->ncolumns; i++)
+	for (int i = 0; i < t->ncolumns; i++) {
+		if (strchr(t->column[i], ';'))
+			return ": a TAB parts columns, not a semicolon";
 		if (*t->blanks == ' ' && strchr(t->column[i], ','))
-			return 1;
-	return 0;
+			return ": a TAB parts columns, not a comma";
+	}
+	return "";
+}
+
+/* The names of the first columns, for a message before the end. */
+static char *list_columns(const struct table_in *t)
+{
+	char *list = xstrdup("");
+
+	for (int i = 0; i < t->ncolumns && i < 8; i++) {
+		char *longer = xprintf("%s%s'%.40s'", list, i ? " " : "", t->column[i]);
+
+		free(list);
+		list = longer;
+	}
+	return list;
 }
 
 int table_need(const struct table_in *t, const char *column)
 {
 	int i = table_find(t, column);
 
+	if (i < 0 && t->ncolumns == 0)
+		die(EXIT_RUN, "%s: empty, want %s", t->name, opt_reads());
 	if (i < 0)
-		die(EXIT_RUN, "%s: no column '%s'%s", t->name, column,
-			has_commas(t) ? ": a TAB parts columns, not a comma" : "");
+		die(EXIT_RUN, "%s: no column '%s' among %s%s", t->name, column,
+			list_columns(t), wrong_separator(t));
 	return i;
 }
 
@@ -416,8 +447,11 @@ double table_number(const struct table_in *t, int column)
 	if (column < 0)
 		return NAN;
 	if (!to_number(t->cell[column], &v))
-		die(EXIT_RUN, "%s: line %ld: %s: '%.40s' is not a number", t->name,
-			t->number, t->column[column], t->cell[column]);
+		die(EXIT_RUN, "%s: line %ld: %s: '%.40s' is not a number%s", t->name,
+			t->number, t->column[column], t->cell[column],
+			is_comma_decimal(t->cell[column])
+				? ": decimals are behind a point"
+				: "");
 	return v;
 }
 

@@ -57,6 +57,10 @@ void press_check(void)
 
 	if (!isnan(press.load) + !isnan(press.pressure) + !isnan(press.approach) > 1)
 		die(EXIT_USAGE, "want only one of --load, --pressure and --approach");
+	for (int i = 0; i < e->n; i++)
+		if (e->v[i] < 1e5)
+			warn("--young %g Pa is softer than any solid surface: is %gGPa meant?",
+				e->v[i], e->v[i]);
 	if (!isnan(press.estar) && e->n)
 		die(EXIT_USAGE, "want either --estar or --young and --poisson");
 	if (press.multiply && press.boundary)

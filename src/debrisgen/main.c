@@ -28,7 +28,7 @@ static const struct opt opts[] = {
 
 static const struct prog prog = { "debrisgen",
 	"Find the wear particles that a rough contact tears off, step by step.", "[file]",
-	"fields: height, pressure", "table: one row per wear particle", opts };
+	"fields: height, pressure, as bemcontact writes", "table: one row per wear particle", opts };
 
 /* Load on the outermost cells, where the half-space ends: steps with more than 5 %, and
  * the worst of them. */

@@ -39,6 +39,9 @@ void wearing_check(void)
 {
 	if (isnan(yield))
 		die(EXIT_USAGE, "want --yield");
+	if (yield < 1e5)
+		warn("--yield %g Pa is weaker than any solid surface: is %gMPa meant?", yield,
+			yield);
 	if (press.poisson.v[0] < 0)
 		die(EXIT_USAGE, "--poisson %g: want 0 to 0.5 for the worn body",
 			press.poisson.v[0]);

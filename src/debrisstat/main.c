@@ -57,7 +57,7 @@ static const struct opt opts[] = {
 
 static const struct prog prog = { "debrisstat",
 	"Fit and count the wear particles of an ensemble.", "[file]",
-	"table: realisation, step, volume, diameter, aspect", "table", opts };
+	"table: realisation, step, volume, diameter, aspect, as debrisgen writes", "table", opts };
 
 static _Noreturn void no_memory(void)
 {

@@ -114,6 +114,21 @@ static struct spectrum_par spectrum(void)
 	return p;
 }
 
+/* Values that are possible, but hardly what was meant. */
+static void doubt(const struct spectrum_par *p)
+{
+	double dx = p->lx / p->nx, dy = p->ly / p->ny;
+
+	if (length.v[0] >= 0.1)
+		warn("--length %g m: sides are in metres unless a unit is given: is %gmm "
+		     "meant?",
+			length.v[0], length.v[0]);
+	if (corr.n && (p->corr_x < dx || p->corr_y < dy))
+		warn("--corr %g m is below the spacing of %g m: the heights are hardly "
+		     "correlated; use more --points",
+			fmin(p->corr_x, p->corr_y), fmax(dx, dy));
+}
+
 struct generated *generated_open(int threads)
 {
 	struct generated *g = xcalloc(1, sizeof *g);
@@ -136,6 +151,7 @@ struct generated *generated_open(int threads)
 	if (!g->rough)
 		die(status == ROUGH_IMPOSSIBLE ? EXIT_USAGE : EXIT_RUN, "%s",
 			problem[status]);
+	doubt(&g->par.spectrum);
 	waves = rough_spectrum(g->rough);
 	stats_set("waves", waves ? (double)spectrum_waves(waves) : 0);
 	stats_set("waves_skipped", waves ? (double)spectrum_waves_skipped(waves) : 0);
