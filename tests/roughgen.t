@@ -147,14 +147,14 @@ roughgen --l-filter 50um --ends periodic iso.nrrd | records -o text | grep -v '^
 records -o text iso.nrrd | grep -v '^#' >c
 near "together they are the whole" "$(paste a b c | awk 'NF { for (i = 1; i <= 96; i++) { d = $i + $(i + 96) - $(i + 192)
 	m = d > m ? d : -d > m ? -d : m } } END { print m * 1e12 }')" 0 0.01
-roughgen --s-filter 100um --ends crop --stats st iso.nrrd | records | awk 'NR == 2 { print $5, $6 }' >size
-is "crop cuts half the nesting index off on all sides" "$(cat size) $(value samples_cropped st)" "86 86 1820"
+roughgen --s-filter 100um --ends crop --stats st iso.nrrd | records >size
+is "crop cuts half the nesting index off on all sides" \
+	"$(column nx size) $(column ny size) $(value samples_cropped st)" "86 86 1820"
 for k in 0 1 2; do
 	roughgen --s-filter 0.2mm --ends $k --measure iso.nrrd | tail -n 1 | cut -f 3
 done >orders
 is "the orders at the rim differ" "$(sort -u orders | wc -l)" 3
-roughgen -n 40 -q 0 --crown 1um | sed 's/^crown:=.*/crownless:=1/' >bowl.nrrd
-roughgen --form paraboloid --measure bowl.nrrd >t
+roughgen -n 40 -q 0 --crown 1um | roughgen --crop 2:1:36:38 --form paraboloid --measure >t
 near "a paraboloid is removed as form" "$(value sz t | awk '{ print $1 * 1e6 }')" 0 1e-9
 roughgen --form poly6 --measure iso.nrrd >p6.tsv
 roughgen --form plane --measure iso.nrrd >p1.tsv
