@@ -11,49 +11,79 @@ summary() {
 	column "$1" summary.tsv
 }
 
+# lost: cells of 7.8125 um that the volume of the summary is
+lost() {
+	summary volume | awk '{ printf "%.0f", $1 / 7.8125e-6 ^ 3 }'
+}
+
 # A paraboloid of radius 5 mm on 1 mm x 1 mm: smooth, so the counts hang on nothing but
-# pressure, stress and rule.  Values found with independent code.
+# pressure, stress and rule.  Cells of the thesis were counted with independent code for
+# cells of constant pressure: 21884 by columns, 21868 and 21910 for a yield 0.1 % off, 30074
+# in all, 21986 by the middle.
 roughgen -n 128 -L 1mm --sq 0 --crown 50um | bemcontact -F 50N -E 210GPa >ball.nrrd
 wear="debrisgen -Y 355MPa -u 0.3"
+cube="--depth-step 7.8125um"
 near "ball: largest pressure" "$(records ball.nrrd | awk '$3 == "pressure" { print $12 }')" 1725.5455e6 1e3
-$wear --summary summary.tsv -S stats.tsv ball.nrrd >ball.tsv
-is "ball: cells lost by column" "$(column nodes ball.tsv)" 21884
-near "ball: volume" "$(summary volume)" 1.0435104370117188e-11 1e-24
+$wear $cube --summary summary.tsv -S stats.tsv ball.nrrd >t.tsv
+near "ball: cells lost by column" "$(lost)" 21884 20
+near "ball: the particle has the volume worn off" "$(column volume t.tsv)" "$(summary volume)" 1e-24
 near "ball: 31 layers deep" "$(summary depth)" 242.1875e-6 1e-12
 is "ball: layers searched" "$(column layers stats.tsv)" 32
-near "ball: diameter" "$(column diameter ball.tsv)" 271.1228108e-6 1e-13
-near "ball: friction moves the particle to its front" "$(column x ball.tsv)" 503.367186e-6 1e-11
-near "ball: and leaves it in the middle across" "$(column y ball.tsv)" 500e-6 1e-12
-$wear --removal potential ball.nrrd >t.tsv
-is "ball: all failed cells" "$(column nodes t.tsv)" 30074
-$wear --layer mid ball.nrrd >t.tsv
-is "ball: stress at mid height" "$(column nodes t.tsv)" 21986
+near "ball: diameter" "$(column diameter t.tsv)" 271.1228108e-6 0.1e-6
+near "ball: friction moves the particle to its front" "$(column x t.tsv)" 503.367186e-6 0.05e-6
+near "ball: and leaves it in the middle across" "$(column y t.tsv)" 500e-6 1e-12
+$wear $cube --removal potential --summary summary.tsv ball.nrrd >t.tsv
+near "ball: all failed cells" "$(lost)" 30074 20
+$wear $cube --layer mid --summary summary.tsv ball.nrrd >t.tsv
+near "ball: stress at mid height" "$(lost)" 21986 100
 # One part in a thousand of yield: no more than the outermost cells.
-debrisgen -Y 355.355MPa -u 0.3 ball.nrrd >t.tsv
-is "ball: yield 0.1 % higher" "$(column nodes t.tsv)" 21868
-debrisgen -Y 354.645MPa -u 0.3 ball.nrrd >t.tsv
-is "ball: yield 0.1 % lower" "$(column nodes t.tsv)" 21910
-# Without friction the surface hardly fails: the rim alone, 36 pieces.
+debrisgen -Y 355.355MPa -u 0.3 $cube --summary summary.tsv ball.nrrd >t.tsv
+near "ball: yield 0.1 % higher" "$(lost)" 21868 20
+debrisgen -Y 354.645MPa -u 0.3 $cube --summary summary.tsv ball.nrrd >t.tsv
+near "ball: yield 0.1 % lower" "$(lost)" 21910 100
+debrisgen -Y 355MPa $cube --layer mid --removal potential --summary summary.tsv ball.nrrd >t.tsv
+near "ball without friction: all failed cells at mid height" "$(lost)" 27400 20
+
+# The depth that is interpolated is that of cells of a sixteenth of the spacing, in half as
+# many layers as cells of the spacing need; friction-free, the surface loses next to nothing.
+roughgen -n 48 -L 1mm --sq 0 --crown 50um | bemcontact -F 50N -E 210GPa >small.nrrd
+$wear --depth-step 1.3um --summary summary.tsv small.nrrd >t.tsv
+fine=$(summary volume)
+$wear --summary summary.tsv small.nrrd >t.tsv
+near "ball: the interpolated depth is that of fine cells" \
+	"$(summary volume | awk -v f="$fine" '{ print $1 / f }')" 1 0.005
+$wear --summary summary.tsv -S stats.tsv ball.nrrd >ball.tsv
+is "ball: depths searched" "$(column layers stats.tsv)" 18
+near "ball: the particle has the volume worn off" \
+	"$(column volume ball.tsv | awk -v v="$(summary volume)" '{ print $1 / v }')" 1 1e-14
+near "ball: the volume of a diameter" "$(column diameter ball.tsv)" \
+	"$(summary volume | awk '{ printf "%.17g", (6 * $1 / 3.14159265358979324) ^ (1 / 3) }')" 1e-17
+$wear --full-sum --summary full.tsv ball.nrrd >full
+near "ball: the full sum has the same volume" \
+	"$(column volume full.tsv | awk -v v="$(summary volume)" '{ print $1 / v }')" 1 1e-5
+debrisgen -Y 355MPa -u 0.3 --criterion tresca --summary summary.tsv ball.nrrd >t.tsv
+mises=$(column volume full.tsv)
+debrisgen -Y 307.439MPa -u 0.3 --summary low.tsv ball.nrrd >t.tsv
+ok "ball: Tresca loses more than von Mises and less than von Mises at sqrt(3)/2 of the yield" \
+	awk -v t="$(summary volume)" -v m="$mises" -v l="$(column volume low.tsv)" \
+	'BEGIN { exit !(t > 1.02 * m && t < l) }'
 debrisgen -Y 355MPa --summary summary.tsv ball.nrrd >t.tsv
-near "ball without friction: cells lost" "$(summary volume)" 3.814697265625e-14 1e-26
-is "ball without friction: pieces" "$(summary particles)" 36
-debrisgen -Y 355MPa --layer mid --removal potential ball.nrrd >t.tsv
-is "ball without friction: all failed cells at mid height" "$(column nodes t.tsv)" 27400
+ok "ball without friction: the surface loses less than 1e-3 of what it does with" \
+	awk -v v="$(summary volume)" -v m="$mises" 'BEGIN { exit !(v < 1e-3 * m) }'
 
 # A point load F fails the volume c (F / yield)^1.5, c = 0.26692 without friction and
-# 0.28665 with 0.3 (by quadrature of Boussinesq's and Cerruti's solutions); cells of 1/77 of
-# (F / yield)^0.5 see it to 1e-3.
+# 0.28665 with 0.3 (by quadrature of Boussinesq's and Cerruti's solutions); depths that are
+# interpolated see it within 0.6 %.
 roughgen -n 129 -L 129um --sq 0 --crown 1mm | bemcontact -F 1mN --estar 1000TPa >point.nrrd
 for c in 0:0.26692 0.3:0.28665; do
-	debrisgen -Y 169.5kPa -u ${c%:*} --layer mid --removal potential --summary summary.tsv point.nrrd >t.tsv
+	debrisgen -Y 169.5kPa -u ${c%:*} --removal potential --summary summary.tsv point.nrrd >t.tsv
 	near "point load, friction ${c%:*}: volume failed" \
-		"$(summary volume | awk '{ print $1 / (1e-3 / 169.5e3) ^ 1.5 }')" ${c#*:} 3e-4
+		"$(summary volume | awk '{ print $1 / (1e-3 / 169.5e3) ^ 1.5 }')" ${c#*:} 0.0016
 done
 
 # Shear along y is shear along x, turned.
 $wear --shear y ball.nrrd >t.tsv
-is "shear along y turns the particle" "$(awk '/^0/ { print $4, $9 }' t.tsv)" \
-	"$(awk '/^0/ { print $4, $8 }' ball.tsv)"
+near "shear along y turns the particle" "$(column y t.tsv)" "$(column x ball.tsv)" 1e-15
 
 # Steps inside and one after another.
 roughgen -n 64 -L 0.5mm -q 8um -l 50um --crown 32um -c 2 >rough.nrrd
@@ -76,12 +106,13 @@ records --pick 3 -o text all.nrrd >a
 records --pick 1 -o text worn3.nrrd >b
 same "and the same worn surface" a b
 records -o nrrd start.nrrd >again.nrrd
-$wear --steps 3 -E 210GPa again.nrrd >t.tsv 2>warning
-rows t.tsv >a
-rows inside.tsv >b
-same "the load is that of the input" a b
-$wear --steps 3 -F 20N -E 210GPa -j 2 --memory 0 start.nrrd >t.tsv 2>warning
-same "threads and kept memory change nothing" t.tsv inside.tsv
+$wear --steps 3 -E 210GPa --summary again.tsv again.nrrd >t.tsv 2>warning
+# Its mean pressure has been rounded: contacts are the same within their tolerance.
+column volume again.tsv >a
+column volume all.tsv | paste a - >volumes
+ok "the load is that of the input" awk '{ d = $1 / $2 - 1; if (d * d > 1e-10) exit 1 } END { exit NR != 6 }' volumes
+$wear --steps 3 -F 20N -E 210GPa -j 2 start.nrrd >t.tsv 2>warning
+same "threads change nothing" t.tsv inside.tsv
 $wear --steps 3 -F 20N -E 210GPa --solver pk --tolerance 1e-12 --summary pk.tsv start.nrrd >t.tsv 2>warning
 $wear --steps 3 -F 20N -E 210GPa --tolerance 1e-12 --summary bccg.tsv start.nrrd >t.tsv 2>warning
 near "both contact solvers wear off the same volume" \
@@ -156,7 +187,7 @@ records -o table stress.nrrd | awk '!/^[#r]/ {
 	END { print bad }' >bad
 near "stress: invariants agree" "$(cat bad)" 0 1
 near "stress: under the surface szz is the pressure" "$(records stress.nrrd | awk '$3 == "zz" { print $10 }')" \
-	-1725.5455e6 1e3
+	-1725.5455e6 1e5
 
 # The whole way from a smooth ball to the stress: radius R = 1 m pressed to the contact radius
 # a = 1 mm, F = 4/3 E* a^3 / R, p0 = 2 E* a / (pi R); 129 points over 4 a.  Von Mises on the
@@ -170,7 +201,7 @@ records -o table s.nrrd | awk '!/^[#r]/ && $2 > 1.99e-3 && $2 < 2.01e-3 && $3 > 
 	xz = -0.3 * (1 - 1.5 * Z * t + Z * Z / (2 * (1 + Z * Z)))
 	d = $5 / p0 - sqrt((zz - rr) ^ 2 + 3 * xz ^ 2); if (d < 0) d = -d; if (d > m) m = d; n++ }
 	END { print n == 21 ? m : "rows: " n }' >error
-near "Hertz contact to stress: von Mises within 1e-4 p0" "$(cat error)" 0 1e-4
+near "Hertz contact to stress: von Mises within 2e-4 p0" "$(cat error)" 0 2e-4
 
 # A reader of the format's own makers.
 unu=$(command -v unu || command -v teem-unu)
@@ -208,8 +239,7 @@ perl -e 'binmode STDOUT; print "NRRD0004\ntype: double\nendian: little\nencoding
 debrisgen --yield 355MPa --friction 0.3 ridge.nrrd >t.tsv 2>err
 is "a particle around a periodic grid: exit status 3, a line, no length" \
 	"$? $(grep -c '1 of 1 particles go round' err) $(column length t.tsv) $(column x t.tsv)" "3 1 nan nan"
-near "and its volume is that of one period" "$(column volume t.tsv)" \
-	"$(column nodes t.tsv | awk '{ printf "%.17g", $1 * 1e-15 }')" 1e-24
+is "of so many columns as lie in one period" "$(column columns t.tsv)" 16
 
 replay s.nrrd cmd:= >a
 same "the command of a stress field rebuilds it" a s.nrrd
@@ -226,5 +256,5 @@ fails "no pressure" 1 "pressure" debrisgen -Y 1GPa rough.nrrd
 fails "a stress field as input" 1 "plane fields" debrisgen -Y 1GPa stress.nrrd
 head -c 20000 start.nrrd >cut.nrrd
 fails "a truncated record" 1 "cut.nrrd: record 1: want" debrisgen -Y 1GPa cut.nrrd
-fails "material without strength" 1 "step 1: material fails deeper" debrisgen -Y 1e-6 start.nrrd
+fails "material without strength" 1 "step 1: material fails deeper" debrisgen --yield 200kPa start.nrrd
 done_testing

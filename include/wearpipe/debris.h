@@ -3,7 +3,7 @@
  * One step takes the pressure of a contact, finds the von Mises stress below it, removes
  * the material that fails, and returns its connected pieces.  Fields are row-major.
  *
- *	struct wp_debris_par par = { 32, 32, 8e-6, 8e-6, 8e-6, 0, 0.3, 0.3, 355e6, 0, 1 };
+ *	struct wp_debris_par par = { 32, 32, 8e-6, 8e-6, 0, 0, 0.3, 0.3, 355e6, 0, 1 };
  *	struct wp_debris *d = wp_debris_new(&par, NULL);
  *	static double h[32 * 32], p[32 * 32];
  *	const struct wp_particle *particle;
@@ -28,23 +28,25 @@ extern "C" {
 struct wp_debris;
 
 struct wp_debris_par {
-	int nx, ny;      /* cells */
-	double dx, dy;   /* cell size, m */
-	double dz;       /* depth of a cell, m */
-	int periodic;    /* as the contact was solved */
+	int nx, ny;    /* cells */
+	double dx, dy; /* cell size, m */
+	double cell;   /* material falls in cells so deep, m; 0: its depth is interpolated
+			*/
+	int periodic;  /* as the contact was solved */
 	double poisson;  /* of the worn body */
 	double friction; /* coefficient; shear along +x */
 	double yield;    /* Pa */
-	int potential;   /* 1: every failed cell is lost; 0: columns from the surface */
+	int potential;   /* 1: all that fails is lost; 0: what fails from the surface down
+			  */
 	int threads;     /* >= 1 */
 };
 
 struct wp_particle {
-	double cells, volume; /* number, m3 */
-	double diameter;      /* of the sphere of this volume, m */
-	double length, width; /* Feret diameters, m: largest, and largest across it */
-	double solidity;      /* volume over that of the convex hull */
-	double x, y, z;       /* centroid, m; z down from the surface */
+	double columns, volume; /* number of columns of the grid, m3 */
+	double diameter;        /* of the sphere of this volume, m */
+	double length, width;   /* Feret diameters, m: largest, and largest across it */
+	double solidity;        /* volume over that of the convex hull */
+	double x, y, z;         /* centroid, m; z down from the surface */
 };
 
 WP_API struct wp_debris *wp_debris_new(

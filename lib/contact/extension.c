@@ -2,6 +2,7 @@
 #include "contact/transfer.h"
 #include "num/convolve.h"
 #include "num/fft.h"
+#include "num/lanes.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -141,27 +142,49 @@ static size_t smaller(size_t a, size_t b)
 	return a < b ? a : b;
 }
 
-/* Adds a fine row with its weight to those of a coarse row. */
+static inline void add_cells(double *to, double w, lanes x, int n)
+{
+	lanes_store(to, lanes_load(to, n) + w * x, n);
+}
+
+/* Adds w times a fine row of the residual, which is 0 where it is not active, and w where
+ * it is. */
+static void add_residual(const struct extension *e, size_t row, double w, double *value,
+	double *weight, size_t n)
+{
+	const double *r = e->residual + row * n;
+	const unsigned char *a = e->active + row * n;
+
+	for (size_t x = 0; x < n; x += 2) {
+		int k = x + 1 < n ? 2 : 1;
+
+		add_cells(value + x, w, lanes_load(r + x, k), k);
+		add_cells(
+			weight + x, w, lanes_if(lanes_flags(a + x, k), lanes_all(1)), k);
+	}
+}
+
+/* The same for a level. */
+static void add_level(const struct level *l, size_t row, double w, double *value,
+	double *weight, size_t n)
+{
+	const double *v = l->value + row * n, *u = l->weight + row * n;
+
+	for (size_t x = 0; x < n; x += 2) {
+		int k = x + 1 < n ? 2 : 1;
+
+		add_cells(value + x, w, lanes_load(v + x, k), k);
+		add_cells(weight + x, w, lanes_load(u + x, k), k);
+	}
+}
+
 static void add_row(const struct extension *e, size_t row, double w, double *value,
 	double *weight, size_t n)
 {
-	if (e->now == 0) {
-		const double *r = e->residual + row * n;
-		const unsigned char *a = e->active + row * n;
-
-		for (size_t x = 0; x < n; x++) {
-			value[x] += a[x] ? w * r[x] : 0;
-			weight[x] += w * a[x];
-		}
-	} else {
-		const double *v = e->level[e->now - 1].value + row * n;
-		const double *u = e->level[e->now - 1].weight + row * n;
-
-		for (size_t x = 0; x < n; x++) {
-			value[x] += w * v[x];
-			weight[x] += w * u[x];
-		}
-	}
+	if (e->now == 0)
+		add_residual(e, row, w, value, weight, n);
+	else
+		add_level(&e->level[e->now - 1], row, w, value, weight, n);
 }
 
 static double cover(const double *part, const double *fine)

@@ -25,8 +25,8 @@ struct extension *extension_new(const struct contact_par *par,
 	const struct extension *finer, double *memory, size_t room);
 void extension_free(struct extension *e);
 
-/* Fills in the residual where the cell is not active.  Returns the transforms that took,
- * in units of such of the whole grid. */
+/* Fills in the residual, 0 on entry, where the cell is not active.  Returns the
+ * transforms that took, in units of such of the whole grid. */
 double extension_apply(
 	struct extension *e, const unsigned char *active, double *residual);
 

@@ -35,34 +35,45 @@ double contact_multiply(struct contact *c, const double *x, double *y)
 	return convolve_product(c->plane, c->kernel, x, y);
 }
 
-/* The gap for approach 0 from the displacement, which it replaces; minus the least
- * displacement as the maximum. */
+/* The gap for approach 0 from the displacement, which it replaces: its sum and count over
+ * free cells, and the least displacement. */
 static void subtract_height(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	struct contact *c = context;
-
-	for (size_t i = begin; i < end; i++) {
-		s->max = -c->gap[i] > s->max ? -c->gap[i] : s->max;
-		c->gap[i] -= c->h[i];
-	}
-}
-
-/* Sum of the gap and count over free cells; least gap of the cells without contact
- * (as a maximum of -g), for when nothing is free. */
-static void sum_free(void *context, size_t begin, size_t end, struct sweep *s)
 {
 	const struct contact copy = *(struct contact *)context, *c = &copy;
 	struct sweep t = *s;
 
 	for (size_t i = begin; i < end; i++) {
+		double u = c->gap[i], gap = u - c->h[i];
 		int is = is_free(c, c->p[i]);
 
-		t.sum[0] += is ? c->gap[i] : 0;
+		t.sum[0] += is ? gap : 0;
 		t.sum[1] += is;
-		if (c->p[i] <= 0 && -c->gap[i] > t.max)
-			t.max = -c->gap[i];
+		t.min = u < t.min ? u : t.min;
+		c->gap[i] = gap;
 	}
 	*s = t;
+}
+
+static void sum_free(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	const struct contact *c = context;
+
+	for (size_t i = begin; i < end; i++) {
+		int is = is_free(c, c->p[i]);
+
+		s->sum[0] += is ? c->gap[i] : 0;
+		s->sum[1] += is;
+	}
+}
+
+/* The least gap of the cells without contact, negative. */
+static void least_empty(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	const struct contact *c = context;
+
+	for (size_t i = begin; i < end; i++)
+		if (c->p[i] <= 0 && -c->gap[i] > s->max)
+			s->max = -c->gap[i];
 }
 
 /* Cells with a gap up to c->shift; the greatest of those gaps, the least of the others.
@@ -120,25 +131,33 @@ static double approach_of_load(struct contact *c)
 	return (gap_of_rank(c, first) + gap_of_rank(c, fmax(first, last))) / 2;
 }
 
+static void set_approach(struct contact *c, double sum, double count)
+{
+	if (c->control == CONTACT_APPROACH)
+		c->result.approach = c->target;
+	else if (count > 0)
+		c->result.approach = sum / count;
+	else if (c->cap < INFINITY)
+		c->result.approach = approach_of_load(c);
+	else
+		c->result.approach = -contact_sweep(c, least_empty).max;
+}
+
 void contact_find_approach(struct contact *c)
 {
-	struct sweep s;
+	struct sweep s = contact_sweep(c, sum_free);
 
-	c->result.approach = c->target;
-	if (c->control == CONTACT_APPROACH)
-		return;
-	s = contact_sweep(c, sum_free);
-	if (s.sum[1] > 0)
-		c->result.approach = s.sum[0] / s.sum[1];
-	else
-		c->result.approach = c->cap < INFINITY ? approach_of_load(c) : -s.max;
+	set_approach(c, s.sum[0], s.sum[1]);
 }
 
 void contact_gap(struct contact *c)
 {
+	struct sweep s;
+
 	c->work = contact_multiply(c, c->p, c->gap);
-	c->least = fmin(-contact_sweep(c, subtract_height).max, 0);
-	contact_find_approach(c);
+	s = contact_sweep(c, subtract_height);
+	c->least = fmin(s.min, 0);
+	set_approach(c, s.sum[0], s.sum[1]);
 }
 
 static void certify(void *context, size_t begin, size_t end, struct sweep *s)
@@ -146,8 +165,16 @@ static void certify(void *context, size_t begin, size_t end, struct sweep *s)
 	const struct contact copy = *(struct contact *)context, *c = &copy;
 	struct sweep t = *s;
 
-	for (size_t i = begin; i < end; i++)
-		certify_cell(c, c->p[i], gap_at(c, i), &t);
+	for (size_t i = begin; i < end; i++) {
+		double p = c->p[i], g = gap_at(c, i), below = g < 0 ? g : 0;
+
+		t.sum[0] += p * g;
+		t.sum[1] += p;
+		t.sum[2] += is_free(c, p) * (g * g);
+		t.sum[3] += p * below;
+		t.sum[4] += below;
+		t.max = -g > t.max ? -g : t.max;
+	}
 	*s = t;
 }
 
@@ -159,16 +186,18 @@ struct sweep contact_certify(struct contact *c)
 double contact_certificate(struct contact *c, const struct sweep *s)
 {
 	double sum = s->sum[1], work = c->work - sum * c->least, excess, rounding;
+	double plastic = s->sum[4] < 0 ? -c->cap * s->sum[4] : 0;
 
 	if (sum <= 0)
 		return s->max > 0 ? INFINITY : 0;
 	/* The gap at the approach that is, and at the highest that lets nothing overlap.
 	 */
 	if (c->control == CONTACT_PRESSURE)
-		excess = fmin(s->sum[0] + sum * s->max, s->sum[3] + s->sum[4]);
+		excess = fmin(s->sum[0] + sum * s->max, s->sum[0] + plastic);
+	else if (c->cap < INFINITY)
+		excess = s->sum[0] + plastic;
 	else
-		excess = s->sum[3] +
-			 (c->cap < INFINITY ? s->sum[4] : sum * fmax(s->max, 0));
+		excess = s->sum[0] - s->sum[3] + sum * fmax(s->max, 0);
 	/* A flat surface in full periodic contact stores no energy at all. */
 	rounding = 16 * DBL_EPSILON * sum *
 		   (fabs(c->result.approach) + contact_sinking(c, sum / (double)c->n));
@@ -265,7 +294,7 @@ double contact_scale_load(struct contact *c, int gently)
 		fixed = s.sum[0];
 		rest = s.sum[1];
 		c->beta = (load - fixed) / rest;
-		if (fabs(fixed + rest - load) <= 4 * DBL_EPSILON * load)
+		if (fabs(fixed + rest - load) <= 16 * DBL_EPSILON * load)
 			break;
 		if (gently && !(c->beta > 0.5 && c->beta < 2))
 			break;

@@ -58,13 +58,6 @@ static inline int is_free(const struct contact *c, double p)
 	return (p > 0) & (p < c->cap);
 }
 
-/* ... and active where it is free or its gap says that it should be. */
-static inline int is_active(const struct contact *c, double p, double g)
-{
-	return is_free(c, p) | ((p <= 0) & (g < 0)) | ((p >= c->cap) & (g > 0));
-}
-
-/* Written so that it needs no branch, which the rims of contacts would mislead. */
 static inline double within(const struct contact *c, double p)
 {
 	p = p > 0 ? p : 0;
@@ -77,21 +70,6 @@ static inline double gap_at(const struct contact *c, size_t i)
 	return c->gap[i] - c->result.approach;
 }
 
-/* What the certificate is made of: sum p g, sum p, sum of g^2 over free cells, p g+,
- * depth of what overlaps below the hardness; the deepest overlap. */
-static inline void certify_cell(
-	const struct contact *c, double p, double g, struct sweep *s)
-{
-	double below = g < 0 ? g : 0;
-
-	s->sum[0] += p * g;
-	s->sum[1] += p;
-	s->sum[2] += is_free(c, p) * (g * g);
-	s->sum[3] += p * (g - below);
-	s->sum[4] -= below < 0 ? (c->cap - p) * below : 0;
-	s->max = -g > s->max ? -g : s->max;
-}
-
 typedef void contact_pass(void *context, size_t begin, size_t end, struct sweep *s);
 struct sweep contact_sweep(struct contact *c, contact_pass *pass);
 /* y = K x, counted; y is not x.  Returns the sum of x y. */
@@ -101,10 +79,11 @@ void contact_gap(struct contact *c);
 /* The approach that is given; or the mean gap of the free cells, or where there are none
  * the one of least duality gap. */
 void contact_find_approach(struct contact *c);
-/* The certificate from the sums of certify_cell() over all cells. */
-double contact_certificate(struct contact *c, const struct sweep *s);
-/* Makes those sums. */
+/* What the certificate is made of: sum p g, sum p, sum of g^2 over free cells (not needed
+ * for it), and where g < 0 sum p g and sum g; the deepest overlap as the maximum. */
 struct sweep contact_certify(struct contact *c);
+/* The certificate from these sums. */
+double contact_certificate(struct contact *c, const struct sweep *s);
 /* What the solution makes least, sum p u / 2 - sum p h, from the same sums just after
  * contact_gap(). */
 double contact_energy(const struct contact *c, const struct sweep *s);

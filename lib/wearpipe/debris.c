@@ -4,10 +4,6 @@
 #include <stdlib.h>
 #include <wearpipe/debris.h>
 
-/* Bytes for influence coefficients that are kept between steps; without effect on the
- * result. */
-enum { KEPT = 64 << 20 };
-
 struct wp_debris {
 	struct pool *pool;
 	struct debris *debris;
@@ -18,6 +14,7 @@ struct wp_debris {
 struct wp_debris *wp_debris_new(const struct wp_debris_par *par, enum wp_status *status)
 {
 	struct debris_par wanted = { .yield = par->yield,
+		.cell = par->cell,
 		.rule = par->potential ? WEAR_POTENTIAL : WEAR_COLUMN };
 	struct wp_debris *d;
 	enum wp_status why;
@@ -32,11 +29,9 @@ struct wp_debris *wp_debris_new(const struct wp_debris_par *par, enum wp_status 
 		.ny = par->ny,
 		.ax = par->dx,
 		.ay = par->dy,
-		.dz = par->dz,
 		.nu = par->poisson,
 		.mu = par->friction,
 		.periodic = par->periodic,
-		.memory = KEPT,
 		.pool = d->pool };
 	d->debris = d->pool ? debris_new(&wanted) : NULL;
 	if (!d->debris) {
@@ -98,8 +93,9 @@ enum wp_status wp_debris_wear(struct wp_debris *d, double *height, const double 
 	for (size_t i = 0; i < step.count; i++) {
 		const struct particle *p = &step.particle[i];
 
-		d->particle[i] = (struct wp_particle){ p->nodes, p->volume, p->diameter,
-			p->length, p->width, p->convexity, p->x, p->y, p->z };
+		d->particle[i] =
+			(struct wp_particle){ (double)p->columns, p->volume, p->diameter,
+				p->length, p->width, p->convexity, p->x, p->y, p->z };
 	}
 	*particle = d->particle;
 	*count = step.count;

@@ -28,18 +28,18 @@ struct opt worn_rows[] = {
 		"what to write of von_mises, hydrostatic, principal, tensor",
 		stress_words, 1 },
 	{ 0, "stress-layers", OPT_INT, UNIT_COUNT, &stress_layers, 0, 1e6, "N",
-		"layers of --stress; 0: as many as were searched for failure", NULL, 1 },
+		"layers of --stress; 0: as deep as was searched for failure", NULL, 1 },
 	OPT_END,
 };
 
 static const char particle_columns[] =
-	"realisation step particle nodes volume diameter aspect x y z length width elongation "
+	"realisation step particle columns volume diameter aspect x y z length width elongation "
 	"convexity area azimuth dip x_low x_high y_low y_high z_low z_high";
 static const char particle_units[] =
 	"1 1 1 1 m3 m 1 m m m m m 1 1 m2 rad rad m m m m m m";
 static const char summary_columns[] =
 	"realisation step distance load contact_fraction max_pressure edge_load volume "
-	"particles mean_diameter max_diameter depth relative_roughness max_von_mises";
+	"particles mean_diameter max_diameter depth relative_roughness max_stress";
 static const char summary_units[] = "1 1 m N 1 Pa 1 m3 1 m m m 1 Pa";
 
 /* A stream of records; the last is held back until it is known whether another one
@@ -52,8 +52,6 @@ struct held_fields {
 struct worn {
 	struct table_out *particles, *summary;
 	struct held_fields surface, stress;
-	struct worn_conditions told; /* to both tables */
-	int begun;
 };
 
 /* Takes the record over. */
@@ -136,10 +134,6 @@ void worn_begin(
 	table_cmd_for(w->particles, r, NULL);
 	if (w->summary)
 		table_cmd_for(w->summary, r, "--summary");
-	if (w->begun && memcmp(&w->told, conditions, sizeof w->told) == 0)
-		return;
-	w->begun = 1;
-	w->told = *conditions;
 	tell(w->particles, conditions);
 	tell(w->summary, conditions);
 }
@@ -150,8 +144,8 @@ static void put_particles(
 	for (size_t i = 0; i < s->lost->count; i++) {
 		const struct particle *p = &s->lost->particle[i];
 		double row[] = { (double)realisation, (double)s->number, (double)(i + 1),
-			p->nodes, p->volume, p->diameter, p->aspect, p->x, p->y, p->z,
-			p->length, p->width, p->elongation, p->convexity, p->area,
+			(double)p->columns, p->volume, p->diameter, p->aspect, p->x, p->y,
+			p->z, p->length, p->width, p->elongation, p->convexity, p->area,
 			p->azimuth, p->dip, p->low[0], p->high[0], p->low[1], p->high[1],
 			p->low[2], p->high[2] };
 
@@ -187,7 +181,7 @@ static void put_summary(
 		lost->load, lost->contact, lost->max_pressure, lost->edge_load,
 		lost->volume, (double)lost->count, lost->count ? mean : NAN,
 		lost->count ? most : NAN, lost->depth, worn_roughness(c) / c->sq,
-		lost->wear.mises };
+		lost->wear.stress };
 
 	table_put_row(t, row, sizeof(row) / sizeof(*row));
 	table_flush(t);
@@ -249,9 +243,10 @@ static void put_stress(
 	static const int part[] = { MISES, HYDROSTATIC, PRINCIPAL, PRINCIPAL, PRINCIPAL,
 		TENSOR, TENSOR, TENSOR, TENSOR, TENSOR, TENSOR };
 	size_t n = (size_t)r->nx * r->ny;
-	long count = stress_layers              ? stress_layers
-		     : s->lost->wear.layers > 0 ? s->lost->wear.layers
-						: 1;
+	/* As deep as was searched. */
+	long count = stress_layers ? stress_layers
+				   : 1 + (long)ceil(fmax(0, s->lost->wear.depth / s->dz -
+								    s->offset));
 	double *tensor = xcalloc(n, STRESS_COMPONENTS * sizeof(*tensor));
 	struct record out = { 0 };
 
@@ -263,7 +258,7 @@ static void put_stress(
 		if (stress_wanted & part[k])
 			record_add(&out, names[k], "Pa");
 	for (long m = 0; m < count; m++) {
-		if (stress_tensor(s->stress, m, tensor))
+		if (stress_tensor(s->stress, ((double)m + s->offset) * s->dz, tensor))
 			die(EXIT_RUN, "no memory for the stress of %ld layers", count);
 		for (size_t i = 0; i < n; i++) {
 			double t[STRESS_COMPONENTS], v[RECORD_FIELDS_MAX];

@@ -25,7 +25,7 @@ struct worn_step {
 	double distance; /* slid so far, m */
 	const struct debris_step *lost;
 	struct stress *stress; /* below the contact */
-	double dz, offset;     /* its layers, as in struct stress_par */
+	double dz, offset;     /* layers of --stress lie (layer + offset) dz deep, m */
 };
 
 struct worn;

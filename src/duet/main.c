@@ -5,6 +5,7 @@
 #include "instrument_options.h"
 #include "io/signals.h"
 #include "methods.h"
+#include "whole_record.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,8 +22,7 @@ static const char *separated, *histogram, *sections;
 static const char *const methods[] = { "fit", "duet", "count", NULL };
 static const char *const automatic[] = { "auto", NULL };
 
-static const struct opt opts[] = {
-	OPT_HEADING("Method"),
+static const struct opt opts[] = { OPT_HEADING("Method"),
 	{ 0, "method", OPT_WORD, UNIT_NONE, &method, 0, 0, "fit|duet|count",
 		"joint fit of all pulses, time-frequency masks, or counted peaks",
 		methods, 0 },
@@ -34,8 +34,7 @@ static const struct opt opts[] = {
 		"peak voltage over velocity and diameter cubed, V s/m4", 0, 0 },
 	{ 0, "sources", OPT_CHOICE, UNIT_COUNT, &sources, 1, 16, "auto|N",
 		"particles in each section", automatic, 0 },
-	OPT_TABLE(instrument_rows),
-	OPT_HEADING("Working on the record"),
+	OPT_TABLE(instrument_rows), OPT_HEADING("Working on the record"),
 	{ 0, "learn", OPT_NUM, UNIT_TIME, &learn, 0, 1e9, "T",
 		"start of the record that the instrument is learned from", 0, 0 },
 	{ 0, "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
@@ -55,16 +54,23 @@ static const struct opt opts[] = {
 		"write the weighted histograms as a table (duet)", 0, 0 },
 	{ 0, "sections", OPT_TEXT, UNIT_NONE, &sections, 0, 0, "FILE",
 		"write one row per section", 0, 0 },
-	OPT_END
-};
+	OPT_END };
 
 static const struct prog prog = { "duet",
 	"Find the wear particles in the record of two inductive sensors.", "[file]",
 	"signal: two channels, V", "table: one row per particle", opts };
 
+/* Channels aligned already and no pulse to look for: a mixture like that of talkers. */
+static int is_mixture(void)
+{
+	return method == METHOD_DUET && instrument_align() == 0 &&
+	       !opt_given("pulse-duration");
+}
+
 static void check_options(void)
 {
-	if (method != METHOD_DUET && (opt_given("window") || opt_given("hop") || histogram))
+	if (method != METHOD_DUET &&
+		(opt_given("window") || opt_given("hop") || histogram))
 		die(EXIT_USAGE, "--window, --hop and --histogram need --method duet");
 	if (method != METHOD_COUNT && (opt_given("sensor") || opt_given("floor")))
 		die(EXIT_USAGE, "--sensor and --floor need --method count");
@@ -76,6 +82,9 @@ static void check_options(void)
 		hop = window / 2;
 	if (hop > window)
 		die(EXIT_USAGE, "--hop %ld is longer than the window", hop);
+	if (is_mixture() && opt_given("hop") &&
+		(!opt_given("window") || hop > window / 2))
+		die(EXIT_USAGE, "--align 0: --hop wants a --window twice as long");
 }
 
 static size_t to_samples(double time, double rate)
@@ -139,6 +148,7 @@ int main(int argc, char **argv)
 		.spacing = spacing,
 		.kappa = kappa };
 	char *cmd;
+	int doubtful = 0;
 
 	check_options();
 	in = signal_open(argv[i], NULL);
@@ -151,10 +161,15 @@ int main(int argc, char **argv)
 	found_open(&out, signal_format(in), cmd);
 	if (method == METHOD_COUNT)
 		count_all(in, &out);
+	else if (is_mixture())
+		doubtful =
+			whole_record(in, &out, opt_given("window") ? (size_t)window : 0,
+				opt_given("hop") ? (size_t)hop : 0,
+				sources.word < 0 ? (int)sources.value : 0);
 	else
 		separate_all(in, &out);
 	found_close(&out);
 	signal_close(in);
 	free(cmd);
-	return shell_done(0);
+	return shell_done(doubtful ? EXIT_NOCONV : 0);
 }
