@@ -42,7 +42,7 @@ Q = $(if $(V),,@)
 say = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),@:,@printf '  %-4s %s\n' $(1) '$(2)')
 
 # The outer libraries of each program; what it uses of lib/ the linker takes from one archive.
-PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal
+PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal surfimport
 roughgen_LIBS = fftw
 bemcontact_LIBS = fftw
 debrisgen_LIBS = fftw
@@ -69,7 +69,7 @@ fftw_LINK = $(FFTW_LIBS)
 gsl_LINK = $(GSL_LIBS)
 
 # Scripts that users call, built and installed beside the programs.
-SCRIPTS = wearplot
+SCRIPTS = wearplot surfunzip
 
 ALL_CFLAGS = $(STD) $(WARN) $(CFLAGS) -pthread
 ALL_CPPFLAGS = -Iinclude -Ilib -Isrc -DWEARPIPE_VERSION='"$(VERSION)"' $(BLAS_FLAG) $(FFTW_CFLAGS) $(GSL_CFLAGS) $(CPPFLAGS)
