@@ -65,8 +65,6 @@ struct worn {
 	struct table_out *particles, *summary;
 	struct held_fields surface, counter, stress;
 	struct coefficients coefficients;
-	struct worn_conditions told; /* to both tables */
-	int begun;
 };
 
 /* Takes the record over. */
@@ -152,10 +150,6 @@ void worn_begin(
 	if (w->summary)
 		table_cmd_for(w->summary, r, "--summary");
 	w->coefficients = (struct coefficients){ 0 };
-	if (w->begun && memcmp(&w->told, conditions, sizeof w->told) == 0)
-		return;
-	w->begun = 1;
-	w->told = *conditions;
 	tell(w->particles, conditions);
 	tell(w->summary, conditions);
 }
