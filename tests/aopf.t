@@ -176,9 +176,9 @@ is "0 once the threshold is passed" "$(cat r)" 0
 aopf -y 1 --direction down exp.tsv | column p_no_crossing /dev/stdin | tail -1 >r
 near "mass that never crosses is reported" "$(cat r)" 1 1e-9
 
-ok "literal recursion" aopf -y 2.8 --model literal --particles 50 exp.tsv
+ok "literal recursion" aopf -y 2.8 --model literal --particles 1000 exp.tsv
 column rul_q50 out | tail -1 >r
-near "which carries an exponential on" "$(cat r)" "$(awk 'BEGIN { print log(2.8 / 1.5) / 0.01 - 39 }')" 1
+near "which carries an exponential on" "$(cat r)" "$(awk 'BEGIN { print log(2.8 / 1.5) / 0.01 - 39 }')" 2
 
 # Each model on the series it is made for, without noise: the end is at t = 100.
 for shape in 'linear t / 100' 'exponential 0.3 * (exp(log(1 + 1 / 0.3) * t / 100) - 1)' \

@@ -104,8 +104,9 @@ struct bank {
 struct bank_chances {
 	int n;
 	struct chance {
-		double u[CHANCES],
-			z[CHANCES]; /* uniform, and the normal deviates of it */
+		double u[CHANCES];   /* uniform */
+		double z[CHANCES];   /* the normal deviates of them */
+		double turn, growth; /* of the next regime by them, in ages */
 	} draw[];
 };
 
@@ -164,6 +165,12 @@ struct bank_chances *bank_chances_new(int draws, uint64_t seed)
 			c->draw[i].u[k] = u;
 			c->draw[i].z[k] = normal_quantile(u);
 		}
+	}
+	for (int i = 0; i < draws; i++) {
+		struct chance *d = &c->draw[i];
+
+		d->turn = pow(d->u[5], -1 / future.hazard) - 1;
+		d->growth = future.growth * exp(future.sd * d->z[7]);
 	}
 	return c;
 }
@@ -534,18 +541,19 @@ static void start(struct bank *b)
 	b->n_held = 0;
 }
 
-/* What the lines together expect step after the last row: the density of a damage there,
- * and the share of the weight that finds it surprising. */
-static double expect(const struct bank *b, double damage, double step, double *surprised)
+/* Calls for each line that has a weight: an observation of a damage, step after the last
+ * row, as the line expects it, with its standardised innovation and variance. */
+static double expect(const struct bank *b, double damage, double step,
+	double (*of)(const struct bank *, const struct line *, const struct place *,
+		double f, double z))
 {
-	double density = 0;
+	double sum = 0;
 	struct place place;
 	int shape = -1;
 
-	*surprised = 0;
 	for (int i = 0; i < b->lines; i++) {
 		struct line l = b->line[i];
-		double f, z;
+		double f;
 
 		if (l.weight < 1e-6)
 			continue;
@@ -553,12 +561,23 @@ static double expect(const struct bank *b, double damage, double step, double *s
 			place = place_of(b, shape = l.shape, damage);
 		project(b, &l, &place, step, 1);
 		f = l.phh + place.slope2;
-		z = (place.h - l.h) / sqrt(f);
-		density += l.weight * exp(log_density(b, &l, &place, f, z));
-		if (z * z > SURPRISE * SURPRISE * l.sum / freedom_of(b, &l))
-			*surprised += l.weight;
+		sum += l.weight * of(b, &l, &place, f, (place.h - l.h) / sqrt(f));
 	}
-	return density;
+	return sum;
+}
+
+static double density(const struct bank *b, const struct line *l, const struct place *p,
+	double f, double z)
+{
+	return exp(log_density(b, l, p, f, z));
+}
+
+static double is_surprised(const struct bank *b, const struct line *l,
+	const struct place *p, double f, double z)
+{
+	(void)p;
+	(void)f;
+	return z * z > SURPRISE * SURPRISE * l->sum / freedom_of(b, l);
 }
 
 /* Standard deviation of an observation's damage. */
@@ -617,10 +636,10 @@ static void release(struct bank *b)
 /* Time that counts: after a long gap the machine may have stood. */
 static double running(struct bank *b, double t, double damage)
 {
-	double step = (t - b->last) / b->unit, unused;
+	double step = (t - b->last) / b->unit;
 
 	if (b->n_held > 0 || step <= HALT * b->gap ||
-		expect(b, damage, b->gap, &unused) <= expect(b, damage, step, &unused))
+		expect(b, damage, b->gap, density) <= expect(b, damage, step, density))
 		return t;
 	b->idle += (step - b->gap) * b->unit;
 	b->counts.halts++;
@@ -629,8 +648,6 @@ static double running(struct bank *b, double t, double damage)
 
 void bank_add(struct bank *b, double t, double y)
 {
-	double surprised;
-
 	if (isnan(y))
 		return;
 	if (b->rows == 0) {
@@ -647,8 +664,7 @@ void bank_add(struct bank *b, double t, double y)
 		return;
 	}
 	t = running(b, t, damage_of(b, y));
-	expect(b, damage_of(b, y), (t - b->last) / b->unit, &surprised);
-	if (surprised < 0.9) {
+	if (expect(b, damage_of(b, y), (t - b->last) / b->unit, is_surprised) < 0.9) {
 		b->counts.outliers += (unsigned long)b->n_held;
 		b->n_held = 0;
 		take(b, t, y);
@@ -759,9 +775,14 @@ static double chi2(double freedom, double z)
 
 /* Normal deviate given that it is above -m, as by drawing until one is; NAN where none of
  * 32 would be. */
-static double normal_above(double m, double u)
+static double normal_above(double m, const struct chance *c)
 {
-	double above = 0.5 * erfc(-m / sqrt(2)), none = pow(1 - above, 32);
+	double u = c->u[1], above, none;
+
+	if (m > 8) /* always */
+		return -c->z[1];
+	above = 0.5 * erfc(-m / sqrt(2));
+	none = pow(1 - above, 32);
 
 	if (u < none)
 		return NAN;
@@ -772,13 +793,14 @@ static double normal_above(double m, double u)
 /* Time to the passage if the regime changes once. */
 static double change(double time, double age, double hazard, const struct chance *c)
 {
-	double j = age * (pow(c->u[5], -1 / hazard) - 1), rest = time - j, g;
+	double turn = hazard == future.hazard ? c->turn : pow(c->u[5], -1 / hazard) - 1;
+	double j = age * turn, rest = time - j, g;
 
 	if (!(rest > 0))
 		return time;
 	if (c->u[6] < future.other)
 		return j + rest * exp(-future.scale * log(c->u[7]));
-	g = future.growth / age * exp(future.sd * c->z[7]);
+	g = c->growth / age;
 	return j + log1p(g * rest) / g;
 }
 
@@ -786,7 +808,7 @@ static double draw_life(
 	const struct bank *b, const struct passage *p, double age, const struct chance *c)
 {
 	double sd = sqrt(p->variance * p->freedom / chi2(p->freedom, c->z[0]));
-	double z = normal_above(p->v / (sd * sqrt(p->pvv)), c->u[1]), v, h, time;
+	double z = normal_above(p->v / (sd * sqrt(p->pvv)), c), v, h, time;
 
 	v = p->v + sd * sqrt(p->pvv) * z;
 	if (!(v > 0)) /* damage does not heal */

@@ -145,6 +145,14 @@ const double *filter_lag(const struct filter *f, int lag, uint32_t *index, int *
 	return s->x;
 }
 
+const double *filter_states(const struct filter *f, int lag, const uint32_t **ancestor)
+{
+	const struct step *s = &f->ring[(f->newest - lag + f->par.depth) % f->par.depth];
+
+	*ancestor = s->resampled ? s->ancestor : NULL;
+	return s->x;
+}
+
 void filter_predict(struct filter *f, const double *mean, double sigma)
 {
 	double *x, moment = 0;

@@ -50,6 +50,10 @@ int filter_depth(const struct filter *f);
  * (index is carried on).  Returns 1 where index changed, 0 where it stayed. */
 const double *filter_lag(const struct filter *f, int lag, uint32_t *index, int *changed);
 
+/* The same without the walk: the states of step k - lag, and which of them each particle
+ * after it comes from; NULL: the one of the same place. */
+const double *filter_states(const struct filter *f, int lag, const uint32_t **ancestor);
+
 /* Moves to the next step: states mean[N] plus normal noise. */
 void filter_predict(struct filter *f, const double *mean, double sigma);
 /* Weighted mean and variance of the states of the present step. */

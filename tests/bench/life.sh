@@ -10,6 +10,7 @@
 # average-RULE        N      the 5 to 95 % interval: twenty synthetic pumps (see
 #                            scripts/synthetic-pump), 600 rows each, by the rule that
 #                            chooses the order; seconds for one series
+# steps-ORDER         N      seconds of aopf itself for 1e6 particle-steps at a fixed order
 # rows                N      seconds for a row without and (rows-life) with prediction of
 #                            life, 1200 rows
 . "$(dirname "$0")/setup"
@@ -61,6 +62,11 @@ all() {
 		life average-window $n --particles $n
 	done
 	"$top/scripts/synthetic-pump" 1 1200 >pump.tsv
+	for order in 4 60; do
+		aopf --time-unit h --order $order --particles 10000 -S stats pump.tsv >/dev/null
+		printf 'steps-%s\t10000\tnan\tnan\t%s\n' $order \
+			"$(column cpu_seconds stats | awk '{ print $1 / 12 }')"
+	done
 	for n in 100 300 1000 3000; do
 		aopf --time-unit h --particles $n -S stats pump.tsv >/dev/null
 		printf 'rows\t%s\tnan\tnan\t%s\n' $n \
