@@ -57,7 +57,8 @@ static const struct opt opts[] = {
 
 static const struct prog prog = { "debrisstat",
 	"Fit and count the wear particles of an ensemble.", "[file]",
-	"table: realisation, step, volume, diameter, aspect, as debrisgen writes", "table", opts };
+	"table: realisation, step, volume, diameter, aspect, as debrisgen writes",
+	"table", opts };
 
 static _Noreturn void no_memory(void)
 {
@@ -211,10 +212,15 @@ static struct ensemble *new_ensemble(void)
 	return e;
 }
 
-static void put_quantity(struct table_out *t, const char *name, struct estimate e)
+static void put_quantity(
+	struct table_out *t, const char *name, const char *unit, struct estimate e)
 {
 	table_put_text(t, name);
-	table_put_row(t, (double[]){ e.value, e.low, e.high }, 3);
+	table_put(t, e.value);
+	table_put(t, e.low);
+	table_put(t, e.high);
+	table_put_text(t, unit);
+	table_end_row(t);
 }
 
 static void print_fits(const struct ensemble *e, const char *cmd)
@@ -222,9 +228,12 @@ static void print_fits(const struct ensemble *e, const char *cmd)
 	static const char *const names[] = { "weibull_shape", "weibull_scale",
 		"weibull_mean", "ks_distance", "mean_diameter", "power_factor",
 		"power_exponent", "power_offset", "volume_per_step" };
+	static const char *const units[] = { "1", "m", "m", "1", "m", "1", "1", "1",
+		"m3" };
 	static const char *const counts[] = { "realisations", "steps", "particles" };
 	const struct ensemble_par *par = ensemble_par(e);
-	struct table_out *t = table_create(NULL, cmd, NULL, "quantity value low high");
+	struct table_out *t = table_create(
+		NULL, cmd, "1 unit unit unit 1", "quantity value low high unit");
 	struct estimate out[ESTIMATES];
 
 	if (estimate_all(e, out) ||
@@ -235,9 +244,9 @@ static void print_fits(const struct ensemble *e, const char *cmd)
 	double count[] = { par->realisations, (double)(par->last - par->first + 1),
 		ensemble_diameter(e)->n };
 	for (int k = 0; k < 3; k++)
-		put_quantity(t, counts[k], (struct estimate){ count[k], NAN, NAN });
+		put_quantity(t, counts[k], "1", (struct estimate){ count[k], NAN, NAN });
 	for (int q = 0; q < ESTIMATES; q++)
-		put_quantity(t, names[q], out[q]);
+		put_quantity(t, names[q], units[q], out[q]);
 	table_done(t);
 }
 
