@@ -78,4 +78,46 @@ fails "approach beyond full contact" 1 'beyond full contact' $solve --boundary p
 fails "heights cut short" 1 'record 1' sh -c "head -c 6000 h.f64 | $solve --pressure 1MPa | cat >/dev/null; exit 1"
 printf 'NRRD0004\ntype: double\nendian: little\nencoding: raw\ndimension: 3\nsizes: 1 2 1\nkinds: list domain domain\nspacings: 1 1 1\nfields:=pressure Pa\n\n1234567812345678' >bad.nrrd
 fails "no heights" 1 "height" bemcontact --pressure 1Pa --estar 1GPa bad.nrrd
+# Tables: a ball of radius 1 against the closed forms of Hertz
+perl -e 'for $y (0 .. 95) { for $x (0 .. 95) {
+	print pack "d<", -((($x - 47.3) / 96) ** 2 + (($y - 48) / 96) ** 2) / 2 } }' >ball.f64
+ball="bemcontact --raw 96x96 --pixel 0.010416666666666666m --estar 1Pa --load 0.02N"
+$ball --table curve.tsv --patches patches.tsv --sweep 5 --stats stats ball.f64 >ball.nrrd
+is "a row for each step of the load" "$(column load curve.tsv | awk '{ printf "%.4f ", $1 }')" \
+	"0.0040 0.0080 0.0120 0.0160 0.0200 "
+near "stiffness is 2 E* a" "$(column stiffness curve.tsv | tail -1)" 0.49324 2e-3
+near "the last approach is that of the record" \
+	"$(column approach curve.tsv | tail -1)" "$(key approach ball.nrrd)" 1e-12
+near "approach by Hertz on the way" "$(column indentation curve.tsv | head -1)" 0.020801 2e-5
+near "area corrected for the perimeter" "$(column corrected_area curve.tsv | tail -1)" 0.19108 2e-3
+near "largest pressure" "$(column peak curve.tsv | tail -1)" 0.15701 2e-4
+near "half of the cells below p0 sqrt(1/2)" "$(column p50 curve.tsv | tail -1)" 0.11102 2e-3
+is "one patch" "$(column patches curve.tsv | tail -1),$(column cells patches.tsv | wc -l)" "1,1"
+near "it bears the load" "$(column load patches.tsv)" 0.02 1e-13
+near "its centre is that of the ball" "$(column x patches.tsv)" 0.4979166666 1e-5
+ok "stiffness counts its work apart" [ "$(column stiffness_transforms stats | cut -d . -f 1)" -gt 0 ]
+bemcontact --raw 96x96 --pixel 0.010416666666666666m --estar 1Pa --approach 40mm --sweep 2 \
+	--table curve.tsv ball.f64 >/dev/null
+near "approach in equal steps from first touch" "$(column indentation curve.tsv | awk '
+	{ r[NR] = $1 } END { print r[1] / r[2] }')" 0.5 1e-9
+$ball --hardness 0.02001Pa --table curve.tsv ball.f64 >/dev/null
+is "no stiffness beyond what the hardness bears" "$(column stiffness curve.tsv)" nan
+$ball --table curve.tsv ball.f64 >/dev/null
+sh -c "$(sed -n 's/^# cmd: //p' curve.tsv)" >again.tsv
+same "cmd rebuilds the table" curve.tsv again.tsv
+# A coating: one of the same material is none, a thick one is the material itself
+layer="bemcontact --raw 32x24 --pixel 2um --boundary periodic --pressure 50MPa h.f64"
+$layer --young 100GPa --poisson 0.3 --tolerance 1e-12 >bare.nrrd
+$layer --young 100GPa --poisson 0.3 --tolerance 1e-12 --coating 3um --coating-young 100GPa >same.nrrd
+near "a coating of the same material changes nothing" "$(awk "BEGIN {
+	print $(key approach same.nrrd) / $(key approach bare.nrrd) - 1 }")" 0 1e-10
+$layer --young 100GPa,1e30Pa --poisson 0.25 --tolerance 1e-12 >bare.nrrd
+$layer --young 1GPa,1e30Pa --coating 1mm --coating-young 100GPa --coating-poisson 0.25 --tolerance 1e-12 >thick.nrrd
+near "a thick one is all that is felt" "$(awk "BEGIN {
+	print $(key approach thick.nrrd) / $(key approach bare.nrrd) - 1 }")" 0 1e-10
+is "no contact modulus is recorded for it" "$(key estar thick.nrrd)" nan
+fails "a coating on a free surface" 2 'want --boundary periodic' \
+	bemcontact --pressure 1Pa --young 1GPa --coating 1um --coating-young 2GPa
+fails "a coating of no material" 2 'want --young and --coating-young' \
+	bemcontact --pressure 1Pa --estar 1GPa --coating 1um
 done_testing
