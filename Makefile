@@ -6,7 +6,11 @@
 #	make install      PREFIX, DESTDIR, BINDIR, LIBDIR, INCLUDEDIR, MANDIR, DOCDIR
 #
 #	make bin/duet     one program alone, with the libraries it needs and no others
-#	make check-long   the longer checks; make check-all: both
+#	make check-long   the longer checks; make # A Slurm cluster of one node, started for the test; wants slurm-wlm and munge.
+check-cluster: all
+	@BIN=$(abspath $(BIN)) tests/run tests/cluster/*.t
+
+check-all: both
 #	make bench        error against run time; one domain: make bench-contact
 #	make extremes-contact  the table of extreme scenes of a domain
 #	make matrix       duet on a matrix of instruments: rows wrong, found, errors, time
@@ -97,7 +101,7 @@ UNITS := $(patsubst tests/unit/%.c,$(B)/unit/%,$(wildcard tests/unit/*.c))
 LONG_UNITS := $(patsubst tests/long/%.c,$(B)/long/%,$(wildcard tests/long/*.c))
 BENCH_BINS := $(patsubst tests/bench/%.c,$(B)/bench/%,$(wildcard tests/bench/*.c))
 
-.PHONY: all check check-long check-all bench lint asan asan-quick fuzz demo install uninstall dist clean help
+.PHONY: check-cluster all check check-long check-all bench lint asan asan-quick fuzz demo install uninstall dist clean help
 .SECONDARY:
 .DELETE_ON_ERROR:
 
