@@ -73,7 +73,7 @@ says "two points, threshold 5" "no life predicted yet" "$(last rul_q50 -y 5 s)" 
 series 4 1+t >s
 accurate "four points on a line, threshold 10" "6 left by the straight line" "$(last rul_q50 --threshold 10 --model linear s)" 6 0.02
 : >empty
-refused "empty input" "refused" "no column 'y'" aopf empty
+refused "empty input" "refused" 'empty: empty, want table' aopf empty
 printf 't\ty\n0\tnan\n1\tnan\n2\tnan\n' >s
 says "nothing but missing values" "state nan" "$(last state -y 1 s)" nan
 

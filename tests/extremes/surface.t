@@ -48,7 +48,7 @@ scene "3 x 2 points" "Sq exact" sq 1e-6 1e-12 -n 3x2
 scene "prime sides, 127 x 131" "Sq exact" sq 1e-6 1e-12 -n 127x131
 scene "odd sides, 99 x 75" "rms slope as wanted" sdq_iso7 0.1 0.02 -n 99x75 -l 60um --slope 0.1
 scene "one flat point" "Sq = 0" sq 0 0 -n 1 -q 0
-refused "one rough point" 'no wave' 1 -n 1
+refused "one rough point" 'want --sq 0 or more --points' 2 -n 1
 scene "2048 x 2 points" "Sq exact" sq 1e-6 1e-12 -n 2048x2 -L 1mmx1mm
 
 # Correlation lengths.  White noise: Sdq = sqrt 4 Sq / dx, up to 2 / sqrt(2 n) = 2 %.
