@@ -54,7 +54,7 @@ scene() {
 		normal=$?
 		for f in $sides; do mv "$f" "$f.whole"; done
 		read -r n <count
-		bad=
+		odd=
 		tried=0
 		step=$((n > most ? n / most : 1))
 		at=1
@@ -63,12 +63,12 @@ scene() {
 			got=$?
 			tried=$((tried + 1))
 			what=$(broken)
-			[ -z "$what" ] || bad="$bad
+			[ -z "$what" ] || odd="$odd
 $call $at of $n: $what"
 			at=$((at < 8 || at + step > n && at < n ? at + 1 : at + step))
 		done
 		all=$((all + tried))
-		faults="$faults$bad"
+		faults="$faults$odd"
 	done
 	is "$1: $all faults are told or do no harm" "$faults" ''
 	# The smallest stack that is accepted is enough.
