@@ -23,9 +23,12 @@ double worn_roughness(const struct worn_surface *c);
 struct worn_step {
 	long number;     /* from 1, over all programs of a pipeline */
 	double distance; /* slid so far, m */
-	const struct debris_step *lost;
-	struct stress *stress; /* below the contact */
-	double dz, offset;     /* layers of --stress lie (layer + offset) dz deep, m */
+	const struct debris_step *lost, *second; /* NULL: the counterface is not worn */
+	const struct record *counterface;        /* worn so far; NULL: there is none */
+	double length;                           /* slid in this step, m */
+	double hardness;                         /* of Archard's coefficient, Pa */
+	struct stress *stress;                   /* below the contact */
+	double dz, offset; /* layers of --stress lie (layer + offset) dz deep, m */
 };
 
 struct worn;
