@@ -124,6 +124,8 @@ $(SCRIPTS:%=$(BIN)/%): $(BIN)/%: scripts/%
 	@sed 's/@VERSION@/$(VERSION)/' $< >$@
 	@chmod 755 $@
 
+$(B)/src/records/replay.o: ALL_CPPFLAGS += -DWEARPIPE_PROGRAMS='"$(PROGRAMS)"'
+
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
 	$(call say,CC,$<)
