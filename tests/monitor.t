@@ -49,7 +49,7 @@ aopf --threshold 1 --direction up --lives-only --save killed in >before &
 p=$!
 exec 3>in
 head -41 one.tsv >&3
-for k in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
 	[ "$(grep -c '^[0-9]' before)" = 40 ] && break
 	sleep 0.1
 done
