@@ -90,6 +90,11 @@ is "one has no diameter, which is said" "$(column particles_without_diameter cro
 is "wear-volume: spheres" "$(column y volume.tsv | awk '{ printf "%.6f ", $1 / 0.523598775598e-9 }')" \
 	"1.000000 2.000000 42.000000 42.000000 43.000000 "
 is "and says it too" "$(cat err)" "wear-volume: rows passed over for want of a diameter: 1"
+for t in abc nan 1e12 -1; do
+	printf 'time1\tdiameter\n0.5\t1e-4\n%s\t1e-4\n' "$t" >odd.tsv
+	fails "wear-volume: a time of $t" 1 'line 3: time1' timeout 10 "$top/scripts/wear-volume" odd.tsv
+done
+fails "wear-volume: a window of 0" 2 'want a number of seconds' timeout 10 "$top/scripts/wear-volume" -w 0 odd.tsv
 
 # Large particles: 1 of 4 in step 1, 3 of 5 in step 2.
 {
