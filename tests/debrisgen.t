@@ -85,6 +85,22 @@ done
 $wear --shear y ball.nrrd >t.tsv
 near "shear along y turns the particle" "$(column y t.tsv)" "$(column x ball.tsv)" 1e-15
 
+# The same step on coarser grids: what they give is what scenes of their own give, and the
+# extrapolation follows from the three volumes.
+roughgen -n 64 -L 0.5mm -q 0.4um -l 60um --crown 4um -s 5 | bemcontact -F 20N -E 210GPa >grid.nrrd
+$wear --richardson --summary summary.tsv grid.nrrd >t.tsv
+roughgen --resample 32 grid.nrrd | bemcontact -F 20N -E 210GPa | $wear --summary half.tsv >t.tsv
+near "--richardson: the volume of twice the spacing" "$(column volume half.tsv)" "$(summary volume_2h)" 1e-22
+is "and its particles" "$(column particles half.tsv)" "$(summary particles_2h)"
+ok "the volume is extrapolated by the order of the three" awk -v a="$(summary volume)" \
+	-v b="$(summary volume_2h)" -v c="$(summary volume_4h)" -v p="$(summary order)" \
+	-v e="$(summary volume_extrapolated)" -v d="$(summary volume_grid_error)" 'BEGIN {
+	if (p == "nan") exit !(d > 0 && e == "nan")
+	q = log((c - b) / (b - a)) / log(2); w = a - (b - a) / (2 ^ p - 1)
+	exit !((p - q) ^ 2 < 1e-12 && (e / w - 1) ^ 2 < 1e-12 && (d / (e - a)) ^ 2 < 1 + 1e-9) }'
+fails "--richardson on a grid that cannot be halved twice" 2 "want multiples of 4" \
+	$wear --richardson point.nrrd
+
 # Steps inside and one after another.
 roughgen -n 64 -L 0.5mm -q 8um -l 50um --crown 32um -c 2 >rough.nrrd
 contact="bemcontact -F 20N -E 210GPa"

@@ -216,7 +216,7 @@ int main(int argc, char **argv)
 	run.wearing = wearing_open(run.in, steps);
 	while (fields_read(run.in, &r)) {
 		if (!run.out)
-			run.out = worn_open(r.cmd);
+			run.out = worn_open(r.cmd, wearing_richardson());
 		wear_record(&run, &r);
 	}
 	progress_clear();

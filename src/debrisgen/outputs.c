@@ -47,6 +47,11 @@ static const char summary_columns[] =
 	"wear_coefficient_high";
 static const char summary_units[] = "1 1 m N 1 Pa 1 m3 1 m m m 1 Pa m3 m3 1 1 1 1";
 
+#define GRID_COLUMNS                                                                \
+	" volume_2h volume_4h particles_2h particles_4h order volume_extrapolated " \
+	"volume_grid_error"
+#define GRID_UNITS " m3 m3 1 1 1 m3 m3"
+
 /* A stream of records; the last is held back until it is known whether another one
  * follows. */
 struct held_fields {
@@ -105,15 +110,22 @@ static char *cmd_of(const char *upstream, const char *option)
 	return cmd;
 }
 
-struct worn *worn_open(const char *upstream)
+struct worn *worn_open(const char *upstream, int richardson)
 {
 	struct worn *w = xcalloc(1, sizeof(*w));
 	char *cmd = cmd_of(upstream, NULL), *summary = cmd_of(upstream, "--summary");
 
 	w->particles = table_create(NULL, cmd, particle_units, particle_columns);
-	if (summary_path)
-		w->summary = table_create(
-			summary_path, summary, summary_units, summary_columns);
+	if (summary_path) {
+		char *units =
+			xprintf("%s%s", summary_units, richardson ? GRID_UNITS : "");
+		char *columns =
+			xprintf("%s%s", summary_columns, richardson ? GRID_COLUMNS : "");
+
+		w->summary = table_create(summary_path, summary, units, columns);
+		free(units);
+		free(columns);
+	}
 	if (surface_path)
 		w->surface.out = fields_create(surface_path);
 	if (counter_path)
@@ -228,9 +240,18 @@ static void put_summary(struct table_out *t, struct coefficients *coefficients,
 		volume, particles, particles > 0 ? sum / particles : NAN,
 		particles > 0 ? most : NAN, fmax(first->depth, second->depth),
 		worn_roughness(c) / c->sq, fmax(first->wear.stress, second->wear.stress),
-		first->volume, second->volume, coefficient, k[0], k[1], k[2] };
+		first->volume, second->volume, coefficient, k[0], k[1], k[2], 0, 0, 0, 0,
+		0, 0, 0 };
+	enum { GRID = 7, PLAIN = sizeof(row) / sizeof(*row) - GRID };
 
-	table_put_row(t, row, sizeof(row) / sizeof(*row));
+	if (s->grid) {
+		const struct grid_error *g = s->grid;
+		const double more[GRID] = { g->volume[0], g->volume[1], g->particles[0],
+			g->particles[1], g->order, g->extrapolated, g->error };
+
+		memcpy(row + PLAIN, more, sizeof more);
+	}
+	table_put_row(t, row, s->grid ? PLAIN + GRID : PLAIN);
 	table_flush(t);
 }
 

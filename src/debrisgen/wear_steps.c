@@ -4,8 +4,10 @@
 #include "common/contact_options.h"
 #include "contact/solver.h"
 #include "counterface.h"
+#include "grid_error.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const char *const axes[] = { "x", "y", NULL };
 static const char *const layers[] = { "top", "mid", NULL };
@@ -19,7 +21,7 @@ enum { STRESS, ARCHARD };
 
 static struct opt_list yield, wear_rate;
 static double friction, depth_step = NAN;
-static int shear, layer, removal, criterion, full_sum, wears, law;
+static int shear, layer, removal, criterion, full_sum, wears, law, richardson;
 
 struct opt wearing_rows[] = {
 	OPT_HEADING("Wear"),
@@ -42,6 +44,9 @@ struct opt wearing_rows[] = {
 		rules, 0 },
 	{ 0, "full-sum", OPT_FLAG, UNIT_NONE, &full_sum, 0, 0, NULL,
 		"sum the stress over all cells at every depth, slowly: to compare with",
+		NULL, 0 },
+	{ 0, "richardson", OPT_FLAG, UNIT_NONE, &richardson, 0, 0, NULL,
+		"repeat each step on grids twice and four times as coarse, and extrapolate",
 		NULL, 0 },
 	OPT_HEADING("Sliding pair"),
 	OPT_TABLE(counterface_rows),
@@ -83,6 +88,8 @@ static void check_pair(void)
 void wearing_check(void)
 {
 	check_pair();
+	if (richardson && (counterface_check() || law == ARCHARD))
+		die(EXIT_USAGE, "--richardson is for the wear of one body by its stress");
 	if (!yield.n && law == STRESS)
 		die(EXIT_USAGE, "want --yield");
 	if (!yield.n)
@@ -113,7 +120,8 @@ struct wearing {
 	struct debris_step second_lost;
 	struct stress_work second_seen;
 	double *other, *pair; /* heights: what lies above the grid, and both together */
-	double steepest;      /* rms slope of a pair */
+	struct grid_error grid;
+	double steepest; /* rms slope of a pair */
 	long steep_step;
 };
 
@@ -135,6 +143,11 @@ struct wearing *wearing_open(const struct fields_in *in, long steps)
 static int solves(const struct wearing *w, long step)
 {
 	return step > 1 || w->counterface || law == ARCHARD;
+}
+
+int wearing_richardson(void)
+{
+	return richardson;
 }
 
 void wearing_close(struct wearing *w)
@@ -176,7 +189,11 @@ void wearing_prepare(struct wearing *w, const struct record *r)
 		counterface_next(w->counterface, r);
 	if (w->debris && press_same(&pressing, &w->pressing))
 		return;
-	if (solves(w, w->steps) && isnan(pressing.estar))
+	if (richardson && (r->nx % 4 || r->ny % 4 || r->nx < 32 || r->ny < 32))
+		die(EXIT_USAGE,
+			"--richardson: %dx%d cells: want multiples of 4, 32 or more",
+			r->nx, r->ny);
+	if ((solves(w, w->steps) || richardson) && isnan(pressing.estar))
 		die(EXIT_USAGE,
 			"--steps %ld solves contacts: want --young or --estar, which %s does not tell",
 			w->steps, fields_name(w->in));
@@ -410,17 +427,33 @@ static double hardness_of(const struct wearing *w)
 struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c,
 	double target, double distance, long step, int *solved)
 {
+	size_t n = (size_t)c->r->nx * (size_t)c->r->ny;
+	double *before = NULL;
+
 	*solved = 1;
+	if (richardson) {
+		before = xcalloc(n, sizeof *before);
+		memcpy(before, c->h, n * sizeof *before);
+	}
 	if (law == ARCHARD)
 		*solved = wear_by_archard(w, c, target, distance, step);
 	else
 		wear_by_stress(w, c, step);
+	if (richardson) {
+		struct worn_surface was = *c;
+
+		was.h = before;
+		*solved = grid_error_find(&was, &w->pressing, &w->par, press_control(),
+			target, w->lost.volume, &w->grid);
+		free(before);
+	}
 	stats_add("steps", 1);
 	return (struct worn_step){ .number = step,
 		.lost = &w->lost,
 		.second = is_worn(SECOND) ? &w->second_lost : NULL,
 		.counterface = w->counterface ? counterface_record(w->counterface) : NULL,
 		.hardness = hardness_of(w),
+		.grid = richardson ? &w->grid : NULL,
 		.stress = debris_stress(w->debris),
 		.dz = w->par.cell > 0 ? w->par.cell : w->par.stress.ax,
 		.offset = w->par.offset };

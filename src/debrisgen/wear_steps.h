@@ -36,6 +36,7 @@ struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c,
 void wearing_warn(const struct wearing *w);
 
 double wearing_friction(void);
+int wearing_richardson(void); /* whether steps are repeated on coarser grids */
 /* Distance the bodies slide in a step that is not amplified: that of a counterface, or
  * the length of the grid along the shear. */
 double wearing_length(const struct record *r);

@@ -72,9 +72,11 @@ $call $at of $n: $what"
 	done
 	is "$1: $all faults are told or do no harm" "$faults" ''
 	# The smallest stack that is accepted is enough.
+	# shellcheck disable=SC3045 # dash and bash have it
 	(ulimit -s 256 && "$@" >out 2>err </dev/null)
 	got=$?
 	is "$1: a small stack changes nothing" "$(broken)" ""
+	# shellcheck disable=SC3045
 	(ulimit -s 64 && "$@" >out 2>err </dev/null)
 	is "$1: a smaller one is refused" "$? $(cat err)" \
 		"1 $1: the stack may have 64 kB, want 256: see ulimit -s"
