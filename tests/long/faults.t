@@ -12,7 +12,7 @@ if ! ${CC:-cc} -shared -fPIC -O1 -o shim.so "$top/tests/faults/shim.c" -ldl 2>er
 	skip 'faults' 'no library can be preloaded here'
 	done_testing
 fi
-most=${FAULTS:-25} # calls of a function that are tried, first, last and spread between
+most=${FAULTS:-8} # calls of a function that are tried, first, last and spread between
 
 roughgen --points 16 --length 10um --sq 0.1um --corr 3um --count 2 >surfaces
 bemcontact --pressure 50MPa --young 210GPa surfaces >contacts
