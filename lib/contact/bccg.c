@@ -53,8 +53,7 @@ int contact_make_preconditioner(struct contact *c, const struct contact *lender)
 	double *memory;
 
 	c->periodic = convolve_borrow((size_t)c->par.nx, (size_t)c->par.ny,
-		c->par.boundary == CONTACT_FREE ? CONVOLVE_BRIDGED_FAR : CONVOLVE_BRIDGED,
-		c->par.pool, scratch);
+		CONVOLVE_BRIDGED, c->par.pool, scratch);
 	if (!c->periodic)
 		return -1;
 	memory = convolve_scratch(c->periodic, &room);
