@@ -151,7 +151,7 @@ def press(heights, spacing, pressure, estar, hardness=0.0, periodic=False, toler
 # --- wear particles
 
 _DebrisPar = _struct(("nx", c_int), ("ny", c_int), ("dx", c_double), ("dy", c_double),
-                     ("dz", c_double), ("periodic", c_int), ("poisson", c_double),
+                     ("cell", c_double), ("periodic", c_int), ("poisson", c_double),
                      ("friction", c_double), ("yield_", c_double), ("potential", c_int),
                      ("threads", c_int))
 _PARTICLE = ("cells", "volume", "diameter", "length", "width", "solidity", "x", "y", "z")
@@ -161,7 +161,7 @@ _debris_wear = _function("wp_debris_wear", c_int, c_void_p, _array, _array,
                          POINTER(POINTER(c_double)), POINTER(c_size_t))
 
 
-def wear(heights, pressure, spacing, yield_stress, friction=0.0, poisson=0.3, depth=None,
+def wear(heights, pressure, spacing, yield_stress, friction=0.0, poisson=0.3, cell=0.0,
          periodic=False, potential=False, threads=1):
     """One step of wear.  Returns the worn heights and the particles as a structured array
     with the fields cells, volume, diameter, length, width, solidity, x, y, z (SI)."""
@@ -170,7 +170,7 @@ def wear(heights, pressure, spacing, yield_stress, friction=0.0, poisson=0.3, de
         raise ValueError("heights and pressure differ in shape")
     dx, dy = (spacing, spacing) if np.isscalar(spacing) else spacing
     ny, nx = worn.shape
-    par = _DebrisPar(nx, ny, dx, dy, depth or dx, periodic, poisson, friction, yield_stress,
+    par = _DebrisPar(nx, ny, dx, dy, cell, periodic, poisson, friction, yield_stress,
                      potential, threads)
     status = c_int()
     d = _made(_debris_new(byref(par), byref(status)), status)

@@ -61,8 +61,9 @@ static double depth_of(const struct wear_par *p, long layer)
 	return layer ? p->spacing * FIRST * exp2(0.5 * (double)(layer - 1)) : 0;
 }
 
-/* Strength over stress, to the half: it grows in proportion to the depth below a load that
- * is far away, so that little is left to interpolate.  Bounded where there is no stress. */
+/* Strength over stress, to the half: it grows in proportion to the depth below a load
+ * that is far away, so that little is left to interpolate.  Bounded where there is no
+ * stress. */
 static double reserve(const struct wear *w, int ago, size_t at)
 {
 	return sqrt(w->par->yield / fmax(w->value[ago][at], 1e-6 * w->par->yield));

@@ -1,7 +1,7 @@
 /* delaydata.c - the simulated sections that the thesis trains its delay networks on */
 #include "net/delaydata.h"
-#include "num/philox.h"
 #include "net/delayloss.h"
+#include "num/philox.h"
 #include <math.h>
 
 /* Places in the stream of one sample; network.h draws at lower ones. */

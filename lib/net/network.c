@@ -1,6 +1,6 @@
 /* network.c - small feed-forward networks: their layers, weights and output */
-#include "num/philox.h"
 #include "net/network_state.h"
+#include "num/philox.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "surface/areal.h"
-#include "surface/surface.h"
 #include "num/fft.h"
+#include "surface/surface.h"
 #include <complex.h>
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* spectrum.c - rough surfaces with a prescribed power spectrum */
 #include "surface/spectrum.h"
-#include "surface/heights.h"
 #include "num/fft.h"
+#include "surface/heights.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,11 +1,12 @@
-/* contact_options.h - how bodies are pressed together: options that bemcontact and debrisgen share
+/* contact_options.h - how bodies are pressed together: options that bemcontact and
+ * debrisgen share
  */
 #ifndef PRESS_H
 #define PRESS_H
 
+#include "cli/opt.h"
 #include "contact/solver.h"
 #include "io/fields.h"
-#include "cli/opt.h"
 
 /* Values of the options; nan where not given.  estar follows from young and poisson
  * once press_check() was called. */

@@ -2,8 +2,8 @@
 #ifndef RAW_H
 #define RAW_H
 
-#include "io/fields.h"
 #include "cli/opt.h"
+#include "io/fields.h"
 
 extern struct opt raw_rows[]; /* for OPT_TABLE */
 

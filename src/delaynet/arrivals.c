@@ -104,7 +104,8 @@ static int find_pulses(struct network *net, struct stretch *s, long long from,
 	section.n = (size_t)((to < end ? to : end) - from);
 	section.y1 = s->y[0] + (from - s->first);
 	section.y2 = s->y[1] + (from - s->first) + shift;
-	return cnn_apply(net, &section, opt_given("sources") ? (int)lessons.sources : 0, pulse);
+	return cnn_apply(
+		net, &section, opt_given("sources") ? (int)lessons.sources : 0, pulse);
 }
 
 /* Reads the table of sections, and the record up to the end of each. */

@@ -18,8 +18,7 @@ static const char *const optimisers[] = { "adam", "descent", NULL };
 static const char *const losses[] = { "ordered", "sums", "unordered", NULL };
 static const char *const penalties[] = { "squared", "absolute", NULL };
 
-struct opt learning_rows[] = {
-	OPT_HEADING("Network and training"),
+struct opt learning_rows[] = { OPT_HEADING("Network and training"),
 	{ 0, "layers", OPT_TEXT, UNIT_NONE, &learning.layers, 0, 0, "WORDS",
 		"hidden layers: 50, 50+ (cascade), 10conv30x2, pool2x2, each with "
 		":ACTIVATION",
@@ -53,8 +52,7 @@ struct opt learning_rows[] = {
 	{ 0, "sparsity-level", OPT_NUM, UNIT_NONE, &learning.sparsity_level, 1e-6,
 		0.999999, "P", "sparsity proportion: the mean activation wanted", NULL,
 		0 },
-	OPT_END
-};
+	OPT_END };
 
 /* For the report: what is going on, and for how long. */
 static const char *phase;
@@ -75,7 +73,8 @@ static void check_trained(enum network_status status)
 	if (status == NETWORK_MEMORY)
 		die(EXIT_RUN, "out of memory");
 	if (status == NETWORK_DIVERGED)
-		die(EXIT_RUN, "the training diverged: want a smaller --learning-rate than %g",
+		die(EXIT_RUN,
+			"the training diverged: want a smaller --learning-rate than %g",
 			learning.rate);
 }
 

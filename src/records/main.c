@@ -7,8 +7,8 @@
 #include "io/fields.h"
 #include "io/tables.h"
 #include "join.h"
-#include "replay.h"
 #include "people.h"
+#include "replay.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -8,8 +8,8 @@
 #ifndef GENERATED_H
 #define GENERATED_H
 
-#include "io/fields.h"
 #include "cli/opt.h"
+#include "io/fields.h"
 
 /* For OPT_TABLE; what no measured surface goes with. */
 extern struct opt generated_grid_rows[], generated_rows[];

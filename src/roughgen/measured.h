@@ -8,8 +8,8 @@
 #ifndef MEASURED_H
 #define MEASURED_H
 
-#include "io/fields.h"
 #include "cli/opt.h"
+#include "io/fields.h"
 
 extern struct opt measured_rows[]; /* for OPT_TABLE; what needs a file */
 

@@ -1,10 +1,10 @@
-/* roughness_options.h - how rough a surface shall be: options of roughgen for generated and
- * measured ones alike */
+/* roughness_options.h - how rough a surface shall be: options of roughgen for generated
+ * and measured ones alike */
 #ifndef ROUGHNESS_H
 #define ROUGHNESS_H
 
-#include "surface/rough.h"
 #include "cli/opt.h"
+#include "surface/rough.h"
 
 extern struct opt roughness_rows[]; /* for OPT_TABLE */
 

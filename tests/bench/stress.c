@@ -1,8 +1,8 @@
 /* Rows for stress.sh: see there. */
 #include "stress/stress.h"
 #include "debris/debris.h"
-#include "stress/stress_kernel.h"
 #include "num/philox.h"
+#include "stress/stress_kernel.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -32,12 +32,9 @@ static void row(
 
 static struct stress_par grid(int n, double side)
 {
-	struct stress_par par = { .nx = n,
-		.ny = n,
-		.ax = side / n,
-		.ay = side / n,
-		.nu = 0.3,
-		.mu = 0.3 };
+	struct stress_par par = {
+		.nx = n, .ny = n, .ax = side / n, .ay = side / n, .nu = 0.3, .mu = 0.3
+	};
 
 	return par;
 }
@@ -206,8 +203,8 @@ static void bench_layers(void)
 
 		for (int mid = 0; mid < 2; mid++)
 			for (int k = 1; k <= 32; k *= 2) {
-				v = worn(0.32 / k, mid ? 0.5 : 0,
-					(enum wear_rule)rule, &time);
+				v = worn(0.32 / k, mid ? 0.5 : 0, (enum wear_rule)rule,
+					&time);
 				snprintf(way, sizeof(way), "%s_%s", rules[rule],
 					mid ? "mid" : "top");
 				row("layers", way, 0.32 / k, fabs(v / best - 1), time);

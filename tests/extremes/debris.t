@@ -46,7 +46,7 @@ cells() {
 	sq=$1 corr=$2 crown=$3 length=$4 load=$5 young=$6 yield=$7
 	roughgen -n 64 -L "$length" -q "$sq" -l "$corr" --crown "$crown" | bemcontact -F "$load" -E "$young" |
 		debrisgen -Y "$yield" -u 0.3 --steps 3 -E "$young" 2>/dev/null | awk '/^[#r]/ { next }
-			{ printf "%d %d %d %.9f %.9f;", $2, $3, $4, $7, $13 }'
+			{ printf "%d %d %.6f %.6f;", $2, $4, $8, $14 }'
 }
 here=$(cells 8um 50um 32um 0.5mm 20N 210GPa 355MPa)
 count=$(echo "$here" | tr ';' '\n' | grep -c .)

@@ -1,7 +1,7 @@
 /* Sets of delays: losses, scores, levels without data, and the thesis' training set */
-#include "num/philox.h"
 #include "net/delaydata.h"
 #include "net/delayloss.h"
+#include "num/philox.h"
 #include "tap.h"
 #include <string.h>
 

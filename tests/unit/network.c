@@ -1,7 +1,7 @@
 /* Networks: what each layer computes, training towards known answers, files of weights */
-#include "num/philox.h"
 #include "net/netfile.h"
 #include "net/training.h"
+#include "num/philox.h"
 #include "tap.h"
 #include <stdlib.h>
 #include <string.h>

@@ -181,8 +181,8 @@ static void check_spectrum(void)
 	for (int k = 0; k < n; k++)
 		sum += ring[k].power * ring[k].waves / area;
 	/* all but the waves of ring 0: longer than 2 shorter sides */
-	ok(sum <= sq * sq * (1 + 1e-12) && sum > 0.99 * sq * sq, "the spectrum adds up to Sq^2: %.4f",
-		sum / (sq * sq));
+	ok(sum <= sq * sq * (1 + 1e-12) && sum > 0.99 * sq * sq,
+		"the spectrum adds up to Sq^2: %.4f", sum / (sq * sq));
 	for (int i = 0; i < NX * NY; i++)
 		z[i] = cos(2 * M_PI * 6 * (i % NX) / NX);
 	n = surface_spectrum(NX, NY, dx, dy, z, 0, ring);
