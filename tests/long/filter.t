@@ -7,7 +7,8 @@
 last() {
 	printf '.snd\000\000\000\030' >end.au
 	head -c 16 /dev/zero >>end.au
-	tail -c $(($1 * 160)) >>end.au
+	# The last frame is the end of the stream, no sample.
+	tail -c $(($1 * 160 + 16)) | head -c $(($1 * 160)) >>end.au
 	frames end.au 2
 }
 

@@ -16,7 +16,7 @@ for scene in 5cm:40dB 25cm:30dB 50cm:35dB; do
 	# One particle every 0.1 s, at any place between two samples.
 	sensorsim --uniform 100um:100um --number 1200 --burst 1 --span 1ms --period 100ms --snr "$snr" \
 		--spacing "$d" --seed 5 >scene.au
-	duet --spacing "$d" --shape sine --gain 1 scene.au >found.tsv 2>err
+	duet --spacing "$d" --pulse sine --gain 1 scene.au >found.tsv 2>err
 	spread found.tsv >got
 	layout --coils "0,$d" --snr "$snr" --arrivals 10 >bound.tsv
 	near "coils $d apart at $snr: duet finds the particles" "$(cut -d ' ' -f 2 got)" 1200 12
