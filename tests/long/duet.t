@@ -132,7 +132,7 @@ filtered() { # M SNR PAUSE UNDO COUNT RATIO SIZE bpfilter-options
 	"$top/scripts/score" -p "$period" -o 0.95 truth.tsv found.tsv >score.tsv
 }
 for m in 1 3 6; do
-	for band in '20:1000 -n 1000' 0:3000; do
+	for band in '20:1000 --order 1000' 0:3000; do
 		for snr in 20 30; do
 			size=$(awk -v s=$snr 'BEGIN { print (s > 25 ? 0.01 : 0.03) }')
 			# shellcheck disable=SC2086 # options are words
@@ -166,11 +166,11 @@ guessed() { # M SNR PAUSE COUNT SIZE bpfilter-options
 }
 guessed 1 20 0.1 0.95 0.03 -b 0:3000
 guessed 3 20 0.1 0.8 0.05 -b 0:3000
-guessed 1 20 0.3 0.95 0.03 -b 20:1000 -n 1000
+guessed 1 20 0.3 0.95 0.03 -b 20:1000 --order 1000
 guessed 1 30 0.1 0.95 0.01 -b 0:3000
 guessed 3 30 0.1 0.95 0.01 -b 0:3000
 guessed 6 30 0.3 0.95 0.01 -b 0:3000
-guessed 1 30 0.3 0.95 0.01 -b 20:1000 -n 1000
+guessed 1 30 0.3 0.95 0.01 -b 20:1000 --order 1000
 
 # No invented particle in 1e7 samples at 1e-9 per sample (0.01 expected).
 sensorsim --uniform 100um:100um --number 0 --duration 1000s --noise 1V >noise.au
