@@ -153,5 +153,5 @@ int main(int argc, char **argv)
 	found_close(&out);
 	signal_close(in);
 	free(cmd);
-	return shell_done(0);
+	return shell_done(out.doubtful ? EXIT_NOCONV : 0);
 }

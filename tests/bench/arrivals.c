@@ -82,7 +82,8 @@ static void work_section(struct network *net, struct joint *joint,
 	const struct shape *shape, struct cnndata_section *s, enum method method,
 	struct tally *t)
 {
-	struct joint_scene scene = { .shape = shape,
+	struct joint_scene scene = { .shape = { shape, shape },
+		.negative = INFINITY,
 		.duration = s->section.duration,
 		.transit = 196.35,
 		.gain = s->section.gain,

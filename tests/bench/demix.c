@@ -104,7 +104,8 @@ int main(void)
 {
 	struct shape *shape = shape_new(PULSE_SINE);
 	struct joint *joint = joint_new();
-	struct joint_scene s = { .shape = shape,
+	struct joint_scene s = { .shape = { shape, shape },
+		.negative = INFINITY,
 		.duration = 100,
 		.transit = 196.35,
 		.gain = 0.909,

@@ -89,14 +89,14 @@ static void sample_pulse(const struct problem *q, const double *x, int c,
 	double a = x[2] * (c ? s->gain : 1), stretch = s->duration / s->transit;
 	double *by_t = col->d[c], *by_T = col->d[1 - c];
 	size_t n;
-	long first = shape_support(s->shape, t, T, &n), last = first + (long)n;
+	long first = shape_support(s->shape[0], t, T, &n), last = first + (long)n;
 
 	first = first < 0 ? 0 : first;
 	last = last > (long)q->n ? (long)q->n : last;
 	col->first = first;
 	col->n = last > first ? (size_t)(last - first) : 0;
 	col->n = col->n < SUPPORT ? col->n : SUPPORT;
-	shape_sample(s->shape, t, T, first, col->n, col->d[2], derivatives ? by_t : NULL,
+	shape_sample(s->shape[0], t, T, first, col->n, col->d[2], derivatives ? by_t : NULL,
 		derivatives ? by_T : NULL);
 	for (size_t k = 0; derivatives && k < col->n; k++) {
 		double lengthen = by_T[k] * stretch;
@@ -442,7 +442,8 @@ int main(int argc, char **argv)
 	size_t n = (size_t)scenes;
 	struct shape *shape = shape_new(PULSE_SINE);
 	struct joint *joint = joint_new();
-	struct joint_scene scene = { .shape = shape,
+	struct joint_scene scene = { .shape = { shape, shape },
+		.negative = INFINITY,
 		.duration = 100,
 		.transit = 196.35,
 		.gain = 0.909,
