@@ -494,7 +494,7 @@ void calibration_scene(const struct calibration *c, struct joint_scene *scene)
 		.drop = c->drop,
 		.drop_near = c->drop_near,
 		.misfit = 3 * c->error * c->error,
-		.negative = c->negatives ? 0 : 14,
+		.negative = c->negatives ? 0 : c->dense ? INFINITY : 14,
 		.offset = 1,
 		.tone_variance = c->tone_variance,
 		.low = c->whitening[0].low,

@@ -18,6 +18,9 @@ static const double TOLERABLE = 0.03;
 /* Share of a pulse's energy that a form far from its own may leave. */
 static const double ROUGH = 0.05;
 
+/* Chi-square per degree of freedom that asks for no other form. */
+static const double FITS = 1.05;
+
 /* Change of a logarithm that leaves things as they are. */
 static const double SURE = 0.15;
 
@@ -688,10 +691,36 @@ static int try_crowd(const struct calibrate_par *par, struct learning *l,
 			update_duration(l, c);
 		if (isnan(par->gain))
 			update_gain(l, c);
+		l->scene.misfit *= 0.1;
 		if (!fit_all(l, 1))
 			return 0;
 	}
 	return l->price < best->cost ? save(l, c, l->price, best) : 1;
+}
+
+/* Duration and gain by turns with the pulses of some pieces of a crowd: the closer they come,
+ * the smaller a pulse may be that is not just a misfit of its neighbour. */
+static int converge(const struct calibrate_par *par, struct learning *l,
+	double *const y[2], unsigned char *const bad[2], size_t n, struct calibration *c)
+{
+	enum { ROUNDS = 8 };
+	double before = 0, level, error2, se;
+	int ok = pick(l, y, bad, n, 16, 1);
+
+	l->pieces = 1;
+	l->scene.misfit = 1e-3;
+	ok = ok && fit_all(l, 1);
+	for (int k = 0; ok && k < ROUNDS && fabs(c->duration / before - 1) > 3e-4; k++) {
+		before = c->duration;
+		judge_stretches(l, -1, &level, &error2, &se);
+		if (isnan(par->duration))
+			update_duration(l, c);
+		if (isnan(par->gain))
+			update_gain(l, c);
+		l->scene.misfit = 1e-4;
+		ok = fit_all(l, 1);
+	}
+	return ok;
 }
 
 static int learn_crowd(const struct calibrate_par *par, struct learning *l,
@@ -720,8 +749,7 @@ static int learn_crowd(const struct calibrate_par *par, struct learning *l,
 				continue;
 			ok = try_crowd(par, l, c, p, duration, best);
 		}
-	if (ok && best->plain)
-		ok = restore(l, c, best);
+	ok = ok && best->plain && restore(l, c, best) && converge(par, l, y, bad, n, c);
 	if (best)
 		shape_free(best->plain);
 	free(best);
@@ -843,7 +871,7 @@ static int learn_more(const struct calibrate_par *par, struct learning *l,
 	double misfit)
 {
 	enum { ROUNDS = 4 };
-	double level, error2 = 1, se;
+	double level, error2 = 1, se, price = l->price;
 	int ok = 1;
 
 	for (int k = 0; ok && k < ROUNDS; k++) {
@@ -852,11 +880,47 @@ static int learn_more(const struct calibrate_par *par, struct learning *l,
 		use_scene(l, c, LEARN_PULSES);
 		l->scene.misfit = fmax(misfit, 3 * fmin(error2 + 2 * se, TOLERABLE * TOLERABLE));
 		misfit *= 0.2;
-		ok = pick(l, y, bad, n, 32, 0) && (l->count >= ENOUGH || pick(l, y, bad, n, 16, 1)) && fit_all(l, 1);
+		ok = pick(l, y, bad, n, 24, 0) && fit_all(l, 1);
+		if (!ok || l->count < ENOUGH)
+			break;
+		if (misfit > 0 && l->price > 10 * price)
+			break;
 		judge_stretches(l, -1, &level, &error2, &se);
 		DBG("more: count %d error %g\n", l->count, sqrt(error2));
+		if (c->pulse != CALIBRATE_ANY_PULSE && median_chi2(l) < FITS) {
+			double before = c->duration;
+
+			for (int turn = 0; ok && turn < 2 && isnan(par->duration); turn++)
+				update_duration(l, c);
+			update_gain(l, c);
+			if (misfit < 1e-3 && fabs(c->duration / before - 1) < 5e-4)
+				break;
+			continue;
+		}
 		ok = ok && turn_free(l, c, -1, 2) && choose_form(par, l, c, 0, 0, 0);
 	}
+	return ok;
+}
+
+/* A form of its own may do with fewer pulses than those of sensor.h, each of which costs what
+ * it must take away. */
+static int learn_rough(const struct calibrate_par *par, struct learning *l,
+	double *const y[2], unsigned char *const bad[2], size_t n, struct calibration *c)
+{
+	struct state *before = calloc(1, sizeof *before);
+	double price = l->price;
+	int count = l->count,
+	    ok = before && save(l, c, 0, before) && learn_more(par, l, y, bad, n, c, ROUGH);
+
+	l->pieces = 0;
+	if (ok && (!(l->price < price) || l->count < ENOUGH)) {
+		l->pieces = 1;
+		ok = restore(l, c, before);
+		l->count = count;
+	}
+	if (before)
+		shape_free(before->plain);
+	free(before);
 	return ok;
 }
 
@@ -883,16 +947,19 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, double *const
 	int ok = first != NULL, lone = 0;
 
 	c->attempts++;
-	l->scene.negative = 0;
 	if (!again)
-		c->through = l->crowded = 0;
+		c->through = l->crowded = l->pieces = 0;
+	l->scene.negative = l->pieces ? INFINITY : 0;
 	ok = ok && use_shape(l, c, first);
 	c->error = INFINITY;
 	if (ok && !l->crowded)
 		lone = learn_lone(par, l, y, bad, n, again, c, &ok);
 	if (ok && (lone || l->crowded)) {
+		use_scene(l, c, l->crowded ? LEARN_PULSES : 1);
 		l->crowded |= l->count < MANY;
-		if (l->crowded)
+		if (l->crowded && l->pieces)
+			ok = converge(par, l, y, bad, n, c);
+		else if (l->crowded)
 			ok = learn_more(par, l, y, bad, n, c, 0);
 		ok = ok && conclude(l, c);
 	}
@@ -907,8 +974,8 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, double *const
 		c->through = 0;
 		l->scene.negative = INFINITY;
 		use_scene(l, c, LEARN_PULSES);
-		ok = ok && learn_crowd(par, l, y, bad, n, c);
-		ok = ok && learn_more(par, l, y, bad, n, c, ROUGH) && conclude(l, c);
+		ok = ok && learn_crowd(par, l, y, bad, n, c) &&
+		     learn_rough(par, l, y, bad, n, c) && conclude(l, c);
 		l->crowded = 1;
 		if (ok && !(c->error < error) && events) {
 			ok = restore(l, c, before);
@@ -922,6 +989,7 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, double *const
 	}
 	if (!ok)
 		return CALIBRATE_MEMORY;
+	c->dense = l->pieces;
 	learn_sign(l, c);
 	learn_range(par, l, c);
 	return CALIBRATE_OK;

@@ -32,6 +32,7 @@ struct learning {
 	struct stretch stretch[LEARN_STRETCHES];
 	int count;
 	int crowded; /* 1: lone pulses were too few, and others served, too */
+	int pieces;   /* 1: even these were too few: some cut pulses through */
 	double price; /* chi-square and what each pulse must take away, per degree */
 };
 

@@ -126,23 +126,26 @@ static int is_louder(const struct noise *longer, const struct noise *shorter, si
 	return 0;
 }
 
+/* Segments are short against most pauses between pulses, or they are not quiet; those so
+ * short that a pulse may be quiet in them only tell that. */
 int noise_measure(struct noise *noise, const double *y1, const double *y2, size_t n)
 {
-	struct noise *shorter = malloc(sizeof *shorter);
+	struct noise *shortest = malloc(sizeof *shortest);
+	int ok = shortest != NULL, found = 0;
 
-	noise->quiets = shorter ? 0 : -1;
-	for (size_t segment = SEGMENT; noise->quiets >= 0 && segment >= 64; segment /= 4) {
-		shorter->quiets = measure_segments(shorter, y1, y2, n, segment);
-		if (shorter->quiets < 0)
-			noise->quiets = -1;
-		else if (shorter->quiets >= ENOUGH &&
-			 (noise->quiets < ENOUGH || is_louder(noise, shorter, segment)))
-			*noise = *shorter;
+	if (ok)
+		shortest->quiets = measure_segments(shortest, y1, y2, n, SEGMENT / 16);
+	for (size_t segment = SEGMENT; ok && !found && segment >= SEGMENT / 4; segment /= 4) {
+		noise->quiets = measure_segments(noise, y1, y2, n, segment);
+		ok = noise->quiets >= 0 && shortest->quiets >= 0;
+		found = noise->quiets >= ENOUGH &&
+			!(shortest->quiets >= ENOUGH &&
+				is_louder(noise, shortest, SEGMENT / 16));
 	}
-	free(shorter);
-	if (noise->quiets < 0)
+	free(shortest);
+	if (!ok)
 		return 0;
-	if (noise->quiets >= ENOUGH)
+	if (found)
 		return sharpen(noise->power[0], noise->quiets, &noise->white[0]) &&
 		       sharpen(noise->power[1], noise->quiets, &noise->white[1]);
 	noise->quiets = 0;
