@@ -3,14 +3,16 @@
 #	make              build all programs into bin/
 #	make demo         install or name what is missing, build, run the whole pipeline
 #	make check        build and run the tests
-#	make install      PREFIX and DESTDIR as usual
+#	make install      PREFIX, DESTDIR, BINDIR, LIBDIR, INCLUDEDIR, MANDIR, DOCDIR
 #
 #	make bin/duet     one program alone, with the libraries it needs and no others
 #	make check-long   the longer checks; make check-all: both
 #	make bench        error against run time; one domain: make bench-contact
 #	make extremes-contact  the table of extreme scenes of a domain
+#	make matrix       duet on a matrix of instruments: rows wrong, found, errors, time
 #	make lint asan fuzz    linters, sanitizers, fuzzers
 #	make uninstall dist clean
+#	make V=1          show every command
 
 VERSION = 0.1.0
 PREFIX ?= /usr/local
@@ -19,14 +21,24 @@ AR ?= ar
 PKG_CONFIG ?= pkg-config
 CFLAGS ?= -O2 -g
 
-# -ffp-contract=off: the same bytes from every build of one compiler.
-STD = -std=c11 -D_XOPEN_SOURCE=700 -ffp-contract=off
+BINDIR ?= $(PREFIX)/bin
+LIBDIR ?= $(PREFIX)/lib
+INCLUDEDIR ?= $(PREFIX)/include
+DATADIR ?= $(PREFIX)/share
+MANDIR ?= $(DATADIR)/man
+DOCDIR ?= $(DATADIR)/doc/wearpipe
+
+# -ffp-contract=off: the same bytes from every build of one compiler.  Names are hidden
+# but for those that include/wearpipe/ declares.
+STD = -std=c11 -D_XOPEN_SOURCE=700 -ffp-contract=off -fPIC -fvisibility=hidden
 WARN = -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes
 B = build
 BIN = bin
+Q = $(if $(V),,@)
+say = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),@:,@printf '  %-4s %s\n' $(1) '$(2)')
 
 # The outer libraries of each program; what it uses of lib/ the linker takes from one archive.
-PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records
+PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal
 roughgen_LIBS = fftw
 bemcontact_LIBS = fftw
 debrisgen_LIBS = fftw
@@ -35,6 +47,8 @@ bpfilter_LIBS = fftw
 duet_LIBS = fftw
 delaynet_LIBS = cblas gsl
 rwl_LIBS = gsl
+debriscount_LIBS = gsl
+ballcal_LIBS = gsl
 
 FFTW_CFLAGS ?= $(shell $(PKG_CONFIG) --cflags fftw3 2>/dev/null)
 FFTW_LIBS ?= $(shell $(PKG_CONFIG) --libs fftw3 2>/dev/null || echo -lfftw3)
@@ -50,8 +64,11 @@ cblas_LINK = $(CBLAS_LIBS)
 fftw_LINK = $(FFTW_LIBS)
 gsl_LINK = $(GSL_LIBS)
 
+# Scripts that users call, built and installed beside the programs.
+SCRIPTS = wearplot
+
 ALL_CFLAGS = $(STD) $(WARN) $(CFLAGS) -pthread
-ALL_CPPFLAGS = -Ilib -Isrc -DWEARPIPE_VERSION='"$(VERSION)"' $(BLAS_FLAG) $(FFTW_CFLAGS) $(GSL_CFLAGS) $(CPPFLAGS)
+ALL_CPPFLAGS = -Iinclude -Ilib -Isrc -DWEARPIPE_VERSION='"$(VERSION)"' $(BLAS_FLAG) $(FFTW_CFLAGS) $(GSL_CFLAGS) $(CPPFLAGS)
 
 # A program is listed from the moment its folder is there.
 BUILT := $(foreach p,$(PROGRAMS),$(if $(wildcard src/$(p)/main.c),$(p)))
@@ -74,60 +91,103 @@ UNITS := $(patsubst tests/unit/%.c,$(B)/unit/%,$(wildcard tests/unit/*.c))
 LONG_UNITS := $(patsubst tests/long/%.c,$(B)/long/%,$(wildcard tests/long/*.c))
 BENCH_BINS := $(patsubst tests/bench/%.c,$(B)/bench/%,$(wildcard tests/bench/*.c))
 
-.PHONY: all check check-long check-all bench lint asan fuzz demo install uninstall dist clean help
+.PHONY: all check check-long check-all bench lint asan asan-quick fuzz demo install uninstall dist clean help
 .SECONDARY:
 .DELETE_ON_ERROR:
 
-all: libraries $(BUILT:%=$(BIN)/%)
+all: libraries $(BUILT:%=$(BIN)/%) $(SCRIPTS:%=$(BIN)/%)
 
 .PHONY: libraries
 libraries:
 	@PKG_CONFIG="$(PKG_CONFIG)" scripts/deps --check
 
 define program
-$(BIN)/$(1): $(call objects,$(wildcard src/$(1)/*.c)) $(B)/libcommon.a $(B)/libshell.a $(B)/libwearpipe.a
+$(BIN)/$(1): $(call objects,$(wildcard src/$(1)/*.c)) $(B)/libcommon.a $(B)/libcli.a $(B)/libwearpipe.a
 	@mkdir -p $(BIN)
-	$$(CC) $$(ALL_CFLAGS) $$(LDFLAGS) -o $$@ $$^ $$(foreach l,$($(1)_LIBS),$$($$(l)_LINK)) -lm
+	$$(call say,LINK,$$@)
+	$$(Q)$$(CC) $$(ALL_CFLAGS) $$(LDFLAGS) -o $$@ $$^ $$(foreach l,$($(1)_LIBS),$$($$(l)_LINK)) -lm
 endef
 $(foreach p,$(PROGRAMS),$(eval $(call program,$(p))))
 
+$(SCRIPTS:%=$(BIN)/%): $(BIN)/%: scripts/%
+	@mkdir -p $(BIN)
+	@sed 's/@VERSION@/$(VERSION)/' $< >$@
+	@chmod 755 $@
+
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CPPFLAGS) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
+	$(call say,CC,$<)
+	$(Q)$(CC) $(ALL_CPPFLAGS) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
 
 define archive
 $(B)/$(1): $(call objects,$(2))
 	@rm -f $$@
-	$$(AR) rcs $$@ $$^
+	$$(call say,AR,$$@)
+	$$(Q)$$(AR) rcs $$@ $$^
 endef
 $(eval $(call archive,libwearpipe.a,$(LIB_SRC)))
-$(eval $(call archive,libshell.a,$(CLI_SRC)))
+$(eval $(call archive,libcli.a,$(CLI_SRC)))
 $(eval $(call archive,libcommon.a,$(COMMON_SRC)))
+
+# The library for other programs: the modules that lib/wearpipe/ needs, joined into one
+# object whose hidden names are made local, as an archive and as a shared object.
+FACE_SRC := $(wildcard lib/wearpipe/*.c)
+SONAME = libwearpipe.so.0
+OBJCOPY ?= objcopy
+$(B)/face.o: $(call objects,$(FACE_SRC)) $(B)/libwearpipe.a
+	$(call say,LD,$@)
+	$(Q)$(LD) -r -o $@ $(call objects,$(FACE_SRC)) $(B)/libwearpipe.a
+	$(Q)$(OBJCOPY) --localize-hidden $@
+$(B)/install/libwearpipe.a: $(B)/face.o
+	@mkdir -p $(@D)
+	@rm -f $@
+	$(Q)$(AR) rcs $@ $^
+$(B)/install/$(SONAME): $(B)/face.o
+	@mkdir -p $(@D)
+	$(call say,LINK,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(LDFLAGS) -shared -Wl,-soname,$(SONAME) -Wl,-z,defs -o $@ $^ \
+		$(FFTW_LIBS) $(GSL_LIBS) -lm
+LIBRARY = $(B)/install/libwearpipe.a $(B)/install/$(SONAME)
+.PHONY: library
+library: $(LIBRARY)
 
 # Unit tests, long tests and benchmarks in C: one file each, linked with everything.
 define single
-$(B)/$(1)/%: $(B)/tests/$(1)/%.o $(B)/libshell.a $(B)/libwearpipe.a
+$(B)/$(1)/%: $(B)/tests/$(1)/%.o $(B)/libcli.a $(B)/libwearpipe.a
 	@mkdir -p $$(@D)
-	$$(CC) $$(ALL_CFLAGS) $$(LDFLAGS) -o $$@ $$^ $$(FFTW_LIBS) $$(GSL_LIBS) -lm
+	$$(call say,LINK,$$@)
+	$$(Q)$$(CC) $$(ALL_CFLAGS) $$(LDFLAGS) -o $$@ $$^ $$(FFTW_LIBS) $$(GSL_LIBS) -lm
 endef
 $(foreach d,unit long bench,$(eval $(call single,$(d))))
+
+# The simulator of the matrix of instruments shares no code with the library.
+$(B)/matrix/%: tests/matrix/%.c
+	@mkdir -p $(@D)
+	$(CC) $(STD) $(WARN) $(CFLAGS) -o $@ $< -lm
+MATRIX = $(B)/matrix/simulate
 
 TESTS = tests/*.t tests/extremes/*.t $(UNITS)
 LONG_TESTS = tests/long/*.t $(LONG_UNITS)
 
-check: all $(UNITS)
-	@BIN=$(abspath $(BIN)) tests/run $(TESTS)
+check: all $(UNITS) $(MATRIX)
+	@BIN="$(abspath $(BIN))" tests/run $(TESTS)
 
-check-long: all $(LONG_UNITS) $(BENCH_BINS)
-	@BIN=$(abspath $(BIN)) tests/run $(LONG_TESTS)
+check-long: all $(LONG_UNITS) $(BENCH_BINS) $(MATRIX)
+	@BIN="$(abspath $(BIN))" tests/run $(LONG_TESTS)
 
-check-all: all $(UNITS) $(LONG_UNITS) $(BENCH_BINS)
-	@BIN=$(abspath $(BIN)) tests/run $(TESTS) $(LONG_TESTS)
+check-all: all $(UNITS) $(LONG_UNITS) $(BENCH_BINS) $(MATRIX)
+	@BIN="$(abspath $(BIN))" tests/run $(TESTS) $(LONG_TESTS)
 
 # make bench, or one domain: make bench-contact
 bench: $(patsubst tests/bench/%.sh,bench-%,$(wildcard tests/bench/*.sh))
 bench-%: all $(BENCH_BINS)
 	@sh tests/bench/$*.sh
+
+# What duet makes of every scene of the matrix of instruments: make matrix SCENE=hum
+SCENE = .
+.PHONY: matrix
+matrix: all $(MATRIX)
+	@PATH=$(abspath $(BIN)):$$PATH tests/matrix/run tests/matrix/scenes.tsv '$(SCENE)'
 
 # The table of extreme scenes of one domain: make extremes-contact
 extremes-%: all
@@ -136,10 +196,15 @@ extremes-%: all
 lint: all
 	@scripts/lint
 
+# Address and undefined-behaviour sanitizers on all default tests, or on the unit tests and
+# the tests of streams and options alone.
+SANITIZED = ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 \
+	$(MAKE) --no-print-directory B=build/asan BIN=build/asan/bin \
+	CFLAGS='-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all'
 asan:
-	ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 \
-		$(MAKE) B=build/asan BIN=build/asan/bin check \
-		CFLAGS='-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all'
+	@$(SANITIZED) check
+asan-quick:
+	@$(SANITIZED) check TESTS='tests/programs.t tests/streams.t tests/tables.t tests/signals.t $$(UNITS)'
 
 # Needs clang; SECONDS for each target.
 SECONDS = 30
@@ -150,40 +215,65 @@ fuzz:
 demo:
 	@scripts/deps
 	@$(MAKE) --no-print-directory all
-	@$(MAKE) --no-print-directory -C examples/demo BIN=$(abspath $(BIN)) SURFACE="$(abspath $(SURFACE))"
+	@$(MAKE) --no-print-directory -C examples/demo \
+		SURFACE="$(if $(filter /%,$(SURFACE)),,$(SURFACE:%=$(CURDIR)/))$(SURFACE)"
 
-$(B)/wearpipe.bash: $(BUILT:%=$(BIN)/%) scripts/completion
-	@scripts/completion $(BUILT:%=$(BIN)/%) >$@
+$(B)/install/wearpipe $(B)/install/_wearpipe $(B)/install/wearpipe.fish: $(BUILT:%=$(BIN)/%) scripts/completion
+	@mkdir -p $(@D)
+	@scripts/completion $(if $(findstring fish,$@),fish,$(if $(findstring _,$(@F)),zsh,bash)) \
+		$(BUILT:%=$(BIN)/%) >$@
 
-# The library's interface is what the programs call: the headers they include, and what
-# those include.
-DOMAINS = num surface contact stress debris stats signal net life
-HEADERS = $(sort $(filter $(DOMAINS:%=lib/%/%.h),$(shell $(CC) $(ALL_CPPFLAGS) -MM src/*/*.c)))
+HEADERS = $(wildcard include/wearpipe/*.h)
 MAN1 = $(wildcard man/*.1)
-D = $(DESTDIR)$(PREFIX)
+MAN5 = $(wildcard man/*.5)
+MAN7 = $(wildcard man/*.7)
+# What is installed, as FOLDER|FILES; make uninstall removes the same.
+define installed
+$(BINDIR)|$(BUILT:%=$(BIN)/%) $(SCRIPTS:%=$(BIN)/%)
+$(LIBDIR)|$(LIBRARY)
+$(LIBDIR)/pkgconfig|$(B)/install/wearpipe.pc
+$(INCLUDEDIR)/wearpipe|$(HEADERS)
+$(MANDIR)/man1|$(MAN1)
+$(MANDIR)/man5|$(MAN5)
+$(MANDIR)/man7|$(MAN7)
+$(DATADIR)/wearpipe|share/arrivals.net
+$(DATADIR)/bash-completion/completions|$(B)/install/wearpipe
+$(DATADIR)/zsh/site-functions|$(B)/install/_wearpipe
+$(DATADIR)/fish/vendor_completions.d|$(B)/install/wearpipe.fish
+$(DATADIR)/wearpipe/python|python/wearpipe.py
+$(DOCDIR)|README.md LICENSE CHANGELOG.md
+endef
+export installed
 
-install: all $(B)/libwearpipe.a $(B)/wearpipe.bash
-	install -d $(D)/bin $(D)/lib/pkgconfig $(D)/share/man/man1 $(D)/share/man/man5 \
-		$(D)/share/man/man7 $(D)/share/bash-completion/completions $(D)/share/wearpipe \
-		$(DOMAINS:%=$(D)/include/wearpipe/%)
-	install $(BUILT:%=$(BIN)/%) $(D)/bin
-	install -m 644 $(B)/libwearpipe.a $(D)/lib
-	for h in $(HEADERS:lib/%=%); do install -m 644 lib/$$h $(D)/include/wearpipe/$$h || exit; done
-	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' wearpipe.pc.in \
-		>$(D)/lib/pkgconfig/wearpipe.pc
-	install -m 644 $(MAN1) $(D)/share/man/man1
-	install -m 644 man/wearpipe-streams.5 $(D)/share/man/man5
-	install -m 644 man/wearpipe.7 $(D)/share/man/man7
-	install -m 644 share/arrivals.net $(D)/share/wearpipe
-	install -m 644 $(B)/wearpipe.bash $(D)/share/bash-completion/completions/wearpipe
-	for p in $(BUILT); do ln -sf wearpipe $(D)/share/bash-completion/completions/$$p || exit; done
+$(B)/install/wearpipe.pc: wearpipe.pc.in Makefile FORCE
+	@mkdir -p $(@D)
+	@sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@INCLUDEDIR@|$(INCLUDEDIR)|' \
+		-e 's|@VERSION@|$(VERSION)|' wearpipe.pc.in >$@
+FORCE:
+
+COMPLETIONS = $(B)/install/wearpipe $(B)/install/_wearpipe $(B)/install/wearpipe.fish
+install: all $(LIBRARY) $(COMPLETIONS) $(B)/install/wearpipe.pc
+	@printf '%s\n' "$$installed" | while IFS='|' read -r folder files; do \
+		install -d "$(DESTDIR)$$folder" || exit; \
+		for f in $$files; do \
+			mode=644; [ ! -x "$$f" ] || mode=755; \
+			install -m $$mode "$$f" "$(DESTDIR)$$folder" || exit; \
+		done; \
+	done
+	@ln -sf $(SONAME) "$(DESTDIR)$(LIBDIR)/libwearpipe.so"
+	@for p in $(BUILT); do \
+		ln -sf wearpipe "$(DESTDIR)$(DATADIR)/bash-completion/completions/$$p" || exit; \
+	done
 
 uninstall:
-	rm -f $(BUILT:%=$(D)/bin/%) $(D)/lib/libwearpipe.a $(D)/lib/pkgconfig/wearpipe.pc \
-		$(MAN1:man/%=$(D)/share/man/man1/%) $(D)/share/man/man5/wearpipe-streams.5 \
-		$(D)/share/man/man7/wearpipe.7 $(D)/share/bash-completion/completions/wearpipe \
-		$(BUILT:%=$(D)/share/bash-completion/completions/%)
-	rm -rf $(D)/include/wearpipe $(D)/share/wearpipe
+	@printf '%s\n' "$$installed" | while IFS='|' read -r folder files; do \
+		for f in $$files; do rm -f "$(DESTDIR)$$folder/$${f##*/}"; done; \
+	done
+	@rm -f "$(DESTDIR)$(LIBDIR)/libwearpipe.so"
+	@for p in $(BUILT); do rm -f "$(DESTDIR)$(DATADIR)/bash-completion/completions/$$p"; done
+	@for d in "$(INCLUDEDIR)/wearpipe" "$(DATADIR)/wearpipe/python" "$(DATADIR)/wearpipe" "$(DOCDIR)"; do \
+		[ ! -d "$(DESTDIR)$$d" ] || rmdir "$(DESTDIR)$$d"; \
+	done
 
 dist:
 	git archive --prefix=wearpipe-$(VERSION)/ -o wearpipe-$(VERSION).tar.gz HEAD
@@ -194,4 +284,4 @@ help:
 clean:
 	rm -rf build bin
 
--include $(shell find $(B) -name '*.d' 2>/dev/null)
+-include $(shell find $(B) -path $(B)/deb -prune -o -type f -name '*.d' -print 2>/dev/null)

@@ -3,7 +3,8 @@
 #
 #	au RATE CHANNELS <VALUES >FILE    one frame of doubles a line; nan, inf and tiny
 #	                                  (2e-320) are words
-#	frames FILE [CHANNELS]            the doubles of a stream, one frame a line
+#	frames FILE [CHANNELS]            the doubles of a stream, one frame a line, without
+#	                                  the end of a stream that has one
 #	worst FILE FILE                   largest difference between two lists of numbers
 
 au() {
@@ -32,12 +33,16 @@ au() {
 
 frames() {
 	header=$(od -An -tu1 -j4 -N4 "$1" | awk '{ print (($1 * 256 + $2) * 256 + $3) * 256 + $4 }')
-	tail -c +$((header + 1)) "$1" | od -An -v -tu1 -w8 | awk -v channels="${2:-1}" '{
+	held=0
+	! head -c "$header" "$1" | grep -qa 'stream wearpipe' || held=$(od -An -tu1 -j23 -N1 "$1")
+	tail -c +$((header + 1)) "$1" | od -An -v -tu1 -w8 | awk -v channels="${2:-1}" -v held="$held" '{
 		s = $1 >= 128; e = ($1 % 128) * 16 + int($2 / 16); m = $2 % 16
 		for (i = 3; i <= 8; i++) m = m * 256 + $i
 		if (e == 2047) x = m ? "nan" : "inf"
 		else x = sprintf("%.17g", e ? (1 + m / 4503599627370496) * 2 ^ (e - 1023) : 0)
-		printf "%s%s%s", s ? "-" : "", x, NR % channels ? "\t" : "\n" }'
+		last[NR % (held + 1)] = (s ? "-" : "") x
+		k = NR - held
+		if (k > 0) printf "%s%s", last[k % (held + 1)], k % channels ? "\t" : "\n" }'
 }
 
 worst() {

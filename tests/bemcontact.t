@@ -12,7 +12,7 @@ perl -e 'for $y (0..23) { for $x (0..31) {
 	+ 2e-7 * sin($x * 1.9 + $y * 2.3) } }' >h.f64
 solve="bemcontact --raw 32x24 --pixel 2um --estar 100GPa"
 
-ok "a free surface" sh -c "$solve -P 200MPa h.f64 >free.nrrd"
+ok "a free surface" sh -c "$solve --pressure 200MPa h.f64 >free.nrrd"
 near "load is mean pressure times area" "$(key load free.nrrd)" 0.6144 1e-13
 is "it converged" "$(key converged free.nrrd)" yes
 near "and says how well" "$(key certificate free.nrrd)" 0 1e-8
@@ -21,61 +21,88 @@ near "indentation is approach from first touch" "$(awk "BEGIN {
 	"$(od -An -v -t f8 -w8 h.f64 | sort -g | tail -1 | awk '{ print 1e6 * $1 }')" 1e-5
 $solve -F 0.6144N h.f64 >load.nrrd
 is "the same as a load" "$(key area load.nrrd)" "$(key area free.nrrd)"
-$solve -D "$(key approach free.nrrd)m" h.f64 >approach.nrrd
+$solve --approach "$(key approach free.nrrd)m" h.f64 >approach.nrrd
 near "the same as an approach" "$(key load approach.nrrd)" 0.6144 1e-6
-bemcontact --raw 32x24 --pixel 2um -E 200GPa -N 0 -P 200MPa h.f64 >two.nrrd
+bemcontact --raw 32x24 --pixel 2um -E 200GPa --poisson 0 --pressure 200MPa h.f64 >two.nrrd
 is "two bodies of 200 GPa are E* 100 GPa" "$(key approach two.nrrd)" "$(key approach free.nrrd)"
-bemcontact --raw 32x24 --pixel 2um -E 150GPa,300GPa -N 0,0 -P 200MPa h.f64 >two.nrrd
+bemcontact --raw 32x24 --pixel 2um -E 150GPa,300GPa --poisson 0,0 --pressure 200MPa h.f64 >two.nrrd
 near "150 and 300 GPa as well" "$(key approach two.nrrd)" "$(key approach free.nrrd)" 1e-17
 
-for m in "-m pk" "-M mlms" "-M mlms -m pk"; do
+for m in "--solver pk" "--multiply mlms" "--multiply mlms --solver pk"; do
 	# shellcheck disable=SC2086 # several words
-	$solve -P 200MPa -t 1e-10 $m h.f64 >other.nrrd
+	$solve --pressure 200MPa --tolerance 1e-10 $m h.f64 >other.nrrd
 	near "the same by $m" "$(awk "BEGIN { print $(key energy other.nrrd) / $(key energy free.nrrd) - 1 }")" 0 2e-7
 done
 
-$solve -P 200MPa -b periodic h.f64 >periodic.nrrd
+$solve --pressure 200MPa --boundary periodic h.f64 >periodic.nrrd
 near "a periodic surface under the same load" "$(key load periodic.nrrd)" 0.6144 1e-13
 ok "is another solution" [ "$(key energy periodic.nrrd)" != "$(key energy free.nrrd)" ]
-$solve -P 200MPa -K 300MPa h.f64 >capped.nrrd
-is "no pressure above the hardness" "$(records -o list -k pressure capped.nrrd | tail -1 | cut -f 12)" 300000000
+$solve --pressure 200MPa --hardness 300MPa h.f64 >capped.nrrd
+is "no pressure above the hardness" "$(records -o list --field pressure capped.nrrd | column max /dev/stdin)" 300000000
 
-$solve -P 200MPa -o gap,pressure h.f64 >some.nrrd
+$solve --pressure 200MPa --fields gap,pressure h.f64 >some.nrrd
 is "the fields asked for" "$(key fields some.nrrd)" "pressure Pa, gap m"
-$solve -P 200MPa -t 1e-13 -o height,pressure,displacement,gap h.f64 | records -o table |
+$solve --pressure 200MPa --tolerance 1e-13 --fields height,pressure,displacement,gap h.f64 | records -o table |
 	awk '!/^#/ && ++n > 1 { r = $7 - ($5 + $8); d = n == 2 ? r : d
 	if (r - d > 1e-17 || d - r > 1e-17) bad = 1; if ($8 < -1e-12 || $6 < 0) bad = 1
 	if ($6 > 0 && $8 > 1e-12) bad = 1 } END { print bad + 0, n - 1 }' >check
 is "g = u - h - approach, p >= 0, g >= 0, p g = 0 in every cell" "$(cat check)" "0 768"
 
 cat free.nrrd load.nrrd periodic.nrrd >three.nrrd
-bemcontact --estar 100GPa -P 200MPa -S stats three.nrrd >again.nrrd
+bemcontact --estar 100GPa --pressure 200MPa -S stats three.nrrd >again.nrrd
 is "three records in, three out" "$(records -o count again.nrrd)" 3
 is "started from their pressures" "$(column warm_starts stats)" 3
 is "nothing was left to do for two of them" "$(key iterations again.nrrd 1),$(key iterations again.nrrd 2)" 0,0
-bemcontact --estar 100GPa -P 200MPa -j 2 three.nrrd >threads.nrrd
+bemcontact --estar 100GPa --pressure 200MPa -j 2 three.nrrd >threads.nrrd
 same "two threads: the same bytes" again.nrrd threads.nrrd
 
 sh -c "$(key cmd free.nrrd)" >replay.nrrd
 same "cmd rebuilds the stream" free.nrrd replay.nrrd
 
 fails "not converged: status 3" 3 'record 1: not converged: certificate .* after 2 iterations' \
-	sh -c "$solve -P 200MPa -i 2 h.f64 >poor.nrrd"
+	sh -c "$solve --pressure 200MPa --max-iterations 2 h.f64 >poor.nrrd"
 is "and the record says so" "$(key converged poor.nrrd)" no
-is "no load, no pressure, no work" "$($solve -P 0Pa -S stats h.f64 >none.nrrd
+is "no load, no pressure, no work" "$($solve --pressure 0Pa -S stats h.f64 >none.nrrd
 	column transforms stats),$(key area none.nrrd)" 0,0
 fails "no load given" 2 'want one of --load' bemcontact --estar 1GPa
-fails "two loads given" 2 'want only one of --load' bemcontact --estar 1GPa -P 1Pa -F 1N
-fails "no material" 2 'either --estar or --young' bemcontact -P 1Pa
-fails "both materials" 2 'either --estar or --young' bemcontact -P 1Pa -e 1GPa -E 2GPa
+fails "two loads given" 2 'want only one of --load' bemcontact --estar 1GPa --pressure 1Pa -F 1N
+fails "no material" 2 'either --estar or --young' bemcontact --pressure 1Pa
+fails "both materials" 2 'either --estar or --young' bemcontact --pressure 1Pa --estar 1GPa -E 2GPa
 fails "multi-level sums over a period" 2 'no --boundary periodic' \
-	bemcontact -P 1Pa -e 1GPa -M mlms -b periodic
-fails "unknown field" 2 "--fields sigma: want height|pressure" bemcontact -P 1Pa -e 1GPa -o gap,sigma
-fails "unit of another quantity" 2 '--load' bemcontact -F 1MPa -e 1GPa
+	bemcontact --pressure 1Pa --estar 1GPa --multiply mlms --boundary periodic
+fails "unknown field" 2 "--fields sigma: want height|pressure" bemcontact --pressure 1Pa --estar 1GPa --fields gap,sigma
+fails "unit of another quantity" 2 '--load' bemcontact -F 1MPa --estar 1GPa
 fails "load above the hardness" 1 'h.f64: record 1: mean pressure 2e+08 Pa is not below' \
-	$solve -P 200MPa -K 200MPa h.f64
-fails "approach beyond full contact" 1 'beyond full contact' $solve -b periodic -D 1mm h.f64
-fails "heights cut short" 1 'record 1' sh -c "head -c 6000 h.f64 | $solve -P 1MPa | cat >/dev/null; exit 1"
+	$solve --pressure 200MPa --hardness 200MPa h.f64
+fails "approach beyond full contact" 1 'beyond full contact' $solve --boundary periodic --approach 1mm h.f64
+fails "heights cut short" 1 'record 1' sh -c "head -c 6000 h.f64 | $solve --pressure 1MPa | cat >/dev/null; exit 1"
 printf 'NRRD0004\ntype: double\nendian: little\nencoding: raw\ndimension: 3\nsizes: 1 2 1\nkinds: list domain domain\nspacings: 1 1 1\nfields:=pressure Pa\n\n1234567812345678' >bad.nrrd
-fails "no heights" 1 "height" bemcontact -P 1Pa -e 1GPa bad.nrrd
+fails "no heights" 1 "height" bemcontact --pressure 1Pa --estar 1GPa bad.nrrd
+# Tables: a ball of radius 1 against the closed forms of Hertz
+perl -e 'for $y (0 .. 95) { for $x (0 .. 95) {
+	print pack "d<", -((($x - 47.3) / 96) ** 2 + (($y - 48) / 96) ** 2) / 2 } }' >ball.f64
+ball="bemcontact --raw 96x96 --pixel 0.010416666666666666m --estar 1Pa --load 0.02N"
+$ball --table curve.tsv --patches patches.tsv --sweep 5 --stats stats ball.f64 >ball.nrrd
+is "a row for each step of the load" "$(column load curve.tsv | awk '{ printf "%.4f ", $1 }')" \
+	"0.0040 0.0080 0.0120 0.0160 0.0200 "
+near "stiffness is 2 E* a" "$(column stiffness curve.tsv | tail -1)" 0.49324 2e-3
+near "the last approach is that of the record" \
+	"$(column approach curve.tsv | tail -1)" "$(key approach ball.nrrd)" 1e-12
+near "approach by Hertz on the way" "$(column indentation curve.tsv | head -1)" 0.020801 2e-5
+near "area corrected for the perimeter" "$(column corrected_area curve.tsv | tail -1)" 0.19108 2e-3
+near "largest pressure" "$(column peak curve.tsv | tail -1)" 0.15701 2e-4
+near "half of the cells below p0 sqrt(1/2)" "$(column p50 curve.tsv | tail -1)" 0.11102 2e-3
+is "one patch" "$(column patches curve.tsv | tail -1),$(column cells patches.tsv | wc -l)" "1,1"
+near "it bears the load" "$(column load patches.tsv)" 0.02 1e-13
+near "its centre is that of the ball" "$(column x patches.tsv)" 0.4979166666 1e-5
+ok "stiffness counts its work apart" [ "$(column stiffness_transforms stats | cut -d . -f 1)" -gt 0 ]
+bemcontact --raw 96x96 --pixel 0.010416666666666666m --estar 1Pa --approach 40mm --sweep 2 \
+	--table curve.tsv ball.f64 >/dev/null
+near "approach in equal steps from first touch" "$(column indentation curve.tsv | awk '
+	{ r[NR] = $1 } END { print r[1] / r[2] }')" 0.5 1e-9
+$ball --hardness 0.02001Pa --table curve.tsv ball.f64 >/dev/null
+is "no stiffness beyond what the hardness bears" "$(column stiffness curve.tsv)" nan
+$ball --table curve.tsv ball.f64 >/dev/null
+sh -c "$(sed -n 's/^# cmd: //p' curve.tsv)" >again.tsv
+same "cmd rebuilds the table" curve.tsv again.tsv
 done_testing

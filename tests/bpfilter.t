@@ -8,31 +8,31 @@ impulse() {
 }
 
 # response: the filter of the thesis at 10 kHz
-bpfilter -R >response.tsv
+bpfilter --response >response.tsv
 for want in 0:-24.5 20:-17.4 50:-6.3 70:-2.2 100:0 130:-2.1 150:-6.2 200:-30.5 2000:-61.9; do
 	got=$(awk -F '\t' -v f="${want%:*}" '$1 == f { print $3 }' response.tsv)
 	near "level at ${want%:*} Hz" "$got" "${want#*:}" 0.05
 done
-got=$(bpfilter -R -k | awk -F '\t' '$1 == 100 { print $3 }')
+got=$(bpfilter --response --no-scale | awk -F '\t' '$1 == 100 { print $3 }')
 near "without scaling the middle is at -4.57 dB" "$got" -4.57 0.005
-got=$(bpfilter -R -n 800 | awk -F '\t' '$1 == 50 { print $3 }')
+got=$(bpfilter --response --order 800 | awk -F '\t' '$1 == 50 { print $3 }')
 near "order 800 reaches -48 dB at 50 Hz" "$got" -48 0.5
-got=$(bpfilter -R -z | awk -F '\t' '$1 == 80 || $1 == 120 { s += ($4 < 0 ? -$4 : $4) } END { print s }')
+got=$(bpfilter --response --zero-phase | awk -F '\t' '$1 == 80 || $1 == 120 { s += ($4 < 0 ? -$4 : $4) } END { print s }')
 near "no phase in the band without the delay" "$got" 0 1e-9
 
 # an impulse gives the taps, causal and with the delay taken out
-bpfilter -p | column tap /dev/stdin >taps
+bpfilter --taps | column tap /dev/stdin >taps
 impulse 500 50 | au 10000 1 >impulse.au
 bpfilter impulse.au >h.au
 frames h.au | sed -n 51,251p >got
 near "an impulse gives the taps" "$(worst taps got)" 0 1e-16
 is "as many frames out as in" "$(frames h.au | wc -l)" 500
-bpfilter -z impulse.au >z.au
+bpfilter --zero-phase impulse.au >z.au
 is "--zero-phase: as many frames out as in" "$(frames z.au | wc -l)" 500
 frames z.au | sed -n 1,151p >left
 frames h.au | sed -n 101,251p >right
 near "--zero-phase shifts by half the order" "$(worst left right)" 0 1e-16
-impulse 60 10 | au 10000 1 | bpfilter -z >short.au
+impulse 60 10 | au 10000 1 | bpfilter --zero-phase >short.au
 is "--zero-phase on a record shorter than the filter" "$(frames short.au | wc -l)" 60
 
 # channels do not mix; the pipe's block size does not matter
@@ -69,14 +69,14 @@ is "--latency: output before the input ends" "$(timeout 1 head -c 20000 live | w
 wait
 
 # lines: gone to the last digits where they keep their amplitude, hardly any harm to pulses
-sensorsim -u 50um:50um -N 0 -d 9.7 --mains 0.5,0.3,0.05 >lines.au
-bpfilter -b 0:5000 -z -l 50,150,250 lines.au >clean.au
+sensorsim --uniform 50um:50um --number 0 --duration 9.7 --mains 0.5,0.3,0.05 >lines.au
+bpfilter -b 0:5000 --zero-phase --lines 50,150,250 lines.au >clean.au
 is "--lines: as many frames out as in" "$(frames clean.au 2 | wc -l)" 97000
 near "--lines takes steady lines out" "$(frames clean.au | awk '{ d = $1 < 0 ? -$1 : $1
 	if (d > m) m = d } END { print m }')" 0 1e-10
-pulses="-u 50um:150um -N 200 -d 10 --noise 10mV"
+pulses="--uniform 50um:150um --number 200 --duration 10 --noise 10mV"
 sensorsim $pulses >without.au
-sensorsim $pulses --mains 0.5,0.3,0.05 | bpfilter -b 0:5000 -z -l 50,150,250 >clean.au
+sensorsim $pulses --mains 0.5,0.3,0.05 | bpfilter -b 0:5000 --zero-phase --lines 50,150,250 >clean.au
 frames without.au >a
 frames clean.au >b
 near "--lines spares pulses: rms of what is left" \
@@ -84,19 +84,19 @@ near "--lines spares pulses: rms of what is left" \
 # an offset stays; a line of 10 Hz that grows by half in 10 s is followed
 awk 'BEGIN { for (i = 0; i < 10000; i++) { a = 1 + i / 20000
 	print 7 + a * sin(6.283185307179586 * i / 100) } }' | au 1000 1 |
-	bpfilter -b 0:500 -z -l 10 -m 0.5 >grow.au
+	bpfilter -b 0:500 --zero-phase --lines 10 --line-window 0.5 >grow.au
 near "--lines follows a changing amplitude and leaves the offset" "$(frames grow.au |
 	awk 'NR > 500 && NR < 9500 { d = $1 - 7; if (d < 0) d = -d; if (d > m) m = d } END { print m }')" 0 2e-3
 for n in 0 1 10 999 1000 1001 2500; do
 	awk -v n="$n" 'BEGIN { for (i = 0; i < n; i++) print sin(i / 5) }' | au 1000 1 |
-		bpfilter -b 0:500 -z -l 31.830988618 -m 1 >part.au
+		bpfilter -b 0:500 --zero-phase --lines 31.830988618 --line-window 1 >part.au
 	frames part.au | awk '{ d = $1 < 0 ? -$1 : $1; if (d > m || /nan/) m = d } END { print NR, (m !~ /nan/ && m < 1e-6) }'
 done >parts
 is "--lines on records of any length" "$(tr '\n' ' ' <parts)" \
 	"0 1 1 1 10 0 999 1 1000 1 1001 1 2500 1 "
-fails "lines too near for the window" 2 'window of 0.1 s' bpfilter -l 50,55 -m 0.1 lines.au
-fails "lines out of order" 2 'in order' bpfilter -l 150,50 lines.au
-fails "a line at half the rate" 1 'half the rate' bpfilter -l 5000 lines.au
+fails "lines too near for the window" 2 'window of 0.1 s' bpfilter --lines 50,55 --line-window 0.1 lines.au
+fails "lines out of order" 2 'in order' bpfilter --lines 150,50 lines.au
+fails "a line at half the rate" 1 'half the rate' bpfilter --lines 5000 lines.au
 
 # numpy and scipy, where they are; bands much narrower than 10 Hz magnify the last bits of
 # sin() when scaled, on both sides
@@ -113,8 +113,8 @@ for n in (2, 3, 31, 200, 1001, 20000):
             for scale in (True, False):
                 if hi == 5000 and n % 2:
                     continue
-                args = ["bpfilter", "-p", "-n", str(n), "-b", "%g:%g" % (lo, hi), "-w", w]
-                out = subprocess.run(args + ([] if scale else ["-k"]), check=True,
+                args = ["bpfilter", "--taps", "--order", str(n), "-b", "%g:%g" % (lo, hi), "--window", w]
+                out = subprocess.run(args + ([] if scale else ["--no-scale"]), check=True,
                                      capture_output=True, text=True).stdout
                 h = np.array([float(l.split("\t")[1]) for l in out.split("\n")
                               if l and l[0] in "-0123456789"])
@@ -135,12 +135,12 @@ seq 100 >text
 fails "text for a signal" 1 "text: want AU ('.snd'), got '1'" bpfilter text
 fails "edges the wrong way round" 2 'first edge' bpfilter -b 130:70 impulse.au
 fails "one edge" 2 'band 70: want LO:HI' bpfilter -b 70 impulse.au
-fails "a file that the response does not read" 2 'read nothing' bpfilter -R impulse.au
-fails "or the taps" 2 'read nothing' bpfilter -p impulse.au
-fails "taps and response at once" 2 'exclude each other' bpfilter -R -p
+fails "a file that the response does not read" 2 'read nothing' bpfilter --response impulse.au
+fails "or the taps" 2 'read nothing' bpfilter --taps impulse.au
+fails "taps and response at once" 2 'exclude each other' bpfilter --response --taps
 fails "edge above half the rate" 1 'impulse.au.*above half the rate' bpfilter -b 70:5001 impulse.au
-fails "odd order with --zero-phase" 2 'even --order' bpfilter -z -n 201 impulse.au
-fails "odd order for a high-pass" 2 'odd --order' bpfilter -n 201 -b 100:5000 impulse.au
+fails "odd order with --zero-phase" 2 'even --order' bpfilter --zero-phase --order 201 impulse.au
+fails "odd order for a high-pass" 2 'odd --order' bpfilter --order 201 -b 100:5000 impulse.au
 awk 'NR == 4001 { $2 = "nan" } 1' three | au 10000 3 >nan.au
 fails "a nan is named" 1 'nan.au: frame 4000, channel 2' bpfilter nan.au
 awk 'NR == 1 { $3 = "inf" } 1' three | au 10000 3 >inf.au

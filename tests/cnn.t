@@ -27,12 +27,12 @@ shipped=$top/share/arrivals.net
 sensorsim --uniform 80um:120um --number 100 --burst 2 --span 8ms --gap 2ms --period 0.1s \
 	--duration 5.2s --snr 30dB --lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv >s.au
 duet --sections sections.tsv s.au >fit.tsv
-known="--sections sections.tsv --transit 19.98ms --pulse-length 10ms --gain 0.909:0.909
+known="--sections sections.tsv --align 19.98ms --pulse-duration 10ms --gain 0.909:0.909
 	--reach 0.01:0.02"
 apply="delaynet --task apply --model pulses"
 
 delaynet --model pulses --fresh --layers "8conv13x1/4 12conv5x1/2 32" --activation relu \
-	--count 1000 --epochs 20 --rate 4e-3 --rate-end 1e-4 >small.net
+	--count 1000 --epochs 20 --learning-rate 4e-3 --learning-rate-end 1e-4 >small.net
 for net in small.net "$shipped"; do
 	which=${net##*/}
 	# shellcheck disable=SC2086
@@ -73,8 +73,8 @@ is "and the message" "$(cat err)" "delaynet: 1 of 2 sections do not suit the net
 
 # shellcheck disable=SC2086
 {
-	fails "no sections" 2 "wants --sections" $apply --network small.net --transit 1ms s.au
-	fails "an instrument without use" 2 "--transit is for" delaynet --transit 1ms
+	fails "no sections" 2 "wants --sections" $apply --network small.net --align 1ms s.au
+	fails "an instrument without use" 2 "--align is for" delaynet --align 1ms
 	printf 'section\tbegin\tend\n1\t0.2\t0.1\n' >bad.tsv
 	fails "a section that ends before it begins" 1 "bad.tsv: line 2: want sections in order" \
 		$apply --network small.net $known --sections bad.tsv s.au

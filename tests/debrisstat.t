@@ -29,11 +29,18 @@ near "its width: 1.53 shape / sqrt(n)" \
 near "fit and data part little" "$(fit ks_distance 2)" 0 0.001
 is "realisations" "$(fit realisations 2)" 3
 is "particles" "$(fit particles 2)" 3000
-debrisstat -d 0:200um weibull.tsv >fits.tsv
+debrisstat --diameter 0:200um weibull.tsv >fits.tsv
 rising "leaving out the large ones bends the fit" 2.9 "$(fit weibull_shape 2)"
-debrisstat -d 0:200um -t weibull.tsv >fits.tsv
+debrisstat --diameter 0:200um --truncated weibull.tsv >fits.tsv
 near "unless the distribution is cut off too: shape" "$(fit weibull_shape 2)" 2.718 0.02
 near "and scale" "$(fit weibull_scale 2)" 200.698e-6 1e-6
+
+# Diameters that are equal to nine digits: the logarithms of Weibull quantiles, scaled by 1e-9.
+awk 'BEGIN { for (i = 0; i < 400; i++) printf "%d 1 %.17g 1\n", i, 100 * (1 + 1e-9 * log(-log(1 - (i + 0.5) / 400))) }' |
+	table >equal.tsv
+debrisstat equal.tsv >fits.tsv
+near "nearly equal diameters have the shape of their spread" "$(fit weibull_shape 2 | awk '{ print $1 / 1e9 }')" 1 0.02
+rising "and its interval holds it" "$(fit weibull_shape 3)" 1e9 "$(fit weibull_shape 4)"
 
 # Counts 3 x^2 + 2 in all up to step x, over two realisations.
 awk 'BEGIN { for (x = 1; x <= 6; x++) { n = x == 1 ? 5 : 3 * (2 * x - 1)
@@ -42,7 +49,7 @@ debrisstat growth.tsv >fits.tsv
 near "power law of the cumulative count: factor" "$(fit power_factor 2)" 3 1e-6
 near "exponent" "$(fit power_exponent 2)" 2 1e-7
 near "offset" "$(fit power_offset 2)" 2 1e-5
-debrisstat -g step -p 2:6 growth.tsv >fits.tsv
+debrisstat --growth step --step 2:6 growth.tsv >fits.tsv
 near "of the count per step: exponent" "$(fit power_exponent 2)" 1 1e-7
 near "factor" "$(fit power_factor 2)" 6 1e-5
 near "offset" "$(fit power_offset 2)" -3 1e-5
@@ -57,16 +64,16 @@ is "steps: cumulative particles" "$(column cumulative_particles steps.tsv | tr '
 	"5 14 29 50 77 110 "
 near "steps: volume" "$(column volume steps.tsv | head -n 1)" 1.3089969389957e-12 1e-24
 near "steps: cumulative volume" "$(column cumulative_volume steps.tsv | tail -n 1)" 2.87979326579e-11 1e-22
-debrisstat -o steps -n 5 growth.tsv >steps.tsv
+debrisstat -o steps --realisations 5 growth.tsv >steps.tsv
 is "realisations without particles count as zero" "$(column particles steps.tsv | head -n 1)" 1
 printf 'realisation\tstep\n0\t1\n0\t2\n1\t1\n2\t1\n' >summary.tsv
-debrisstat -o steps -p 1:2 -U summary.tsv growth.tsv >steps.tsv
+debrisstat -o steps --step 1:2 --summary summary.tsv growth.tsv >steps.tsv
 is "the summary tells which steps took place" "$(column realisations steps.tsv | tr '\n' ' ')" "3 2 "
 
-debrisstat -o aspects -a 1,2,3,4 growth.tsv >aspects.tsv
+debrisstat -o aspects --aspects 1,2,3,4 growth.tsv >aspects.tsv
 is "aspects: counts" "$(column count aspects.tsv | tr '\n' ' ')" "31 27 27 25 "
 near "aspects: shares add up" "$(column share aspects.tsv | awk '{ s += $1 } END { print s }')" 1 1e-6
-debrisstat -o sizes -b 20um weibull.tsv >sizes.tsv
+debrisstat -o sizes --bin 20um weibull.tsv >sizes.tsv
 is "sizes: all counted" "$(column count sizes.tsv | awk '{ s += $1 } END { print s }')" 3000
 near "sizes: density adds up" "$(column density sizes.tsv | awk '{ s += $1 * 20e-6 } END { print s }')" 1 1e-6
 near "sizes: the fit follows the classes" "$(awk '!/^[#l]/ { d = $4 - $5; s += (d < 0 ? -d : d) * 20e-6 }
@@ -77,16 +84,16 @@ awk 'BEGIN { for (r = 0; r < 12; r++) for (i = 0; i < 50; i++)
 	print r, 1 + i % 5, (60 + 15 * r) * (-log(1 - (i + 0.5) / 50)) ^ 0.5, 1 }' | table >groups.tsv
 debrisstat groups.tsv >fits.tsv
 plain=$(awk '$1 == "weibull_scale" { print $4 - $3 }' fits.tsv)
-debrisstat -B 200 groups.tsv >fits.tsv
+debrisstat --bootstrap 200 groups.tsv >fits.tsv
 cp fits.tsv again
 near "bootstrap over realisations: wider by far" \
 	"$(awk -v p="$plain" '$1 == "weibull_scale" { print ($4 - $3) / p }' fits.tsv)" 4 1.5
-debrisstat -B 200 groups.tsv >fits.tsv
+debrisstat --bootstrap 200 groups.tsv >fits.tsv
 same "and the same every time" fits.tsv again
 
-roughgen -n 32 -L 0.25mm -q 4um -l 30um -C 16um -c 3 | bemcontact -F 5N -E 210GPa |
-	debrisgen -Y 355MPa -u 0.3 -T 3 -E 210GPa -U s.tsv 2>warning >p.tsv
-debrisstat -o steps -U s.tsv p.tsv >steps.tsv
+roughgen -n 32 -L 0.25mm -q 4um -l 30um --crown 16um -c 3 | bemcontact -F 5N -E 210GPa |
+	debrisgen -Y 355MPa -u 0.3 --steps 3 -E 210GPa --summary s.tsv 2>warning >p.tsv
+debrisstat -o steps --summary s.tsv p.tsv >steps.tsv
 near "volume as in the summary of debrisgen" \
 	"$(column volume steps.tsv | awk '{ s += 1e12 * $1 } END { print s * 3 }')" \
 	"$(column volume s.tsv | awk '{ s += 1e12 * $1 } END { print s }')" 1e-9
@@ -107,10 +114,10 @@ printf 'realisation\tstep\tdiameter\tvolume\taspect\n0\t1\tnan\t1\t1\n' >t
 fails "a missing diameter" 1 "line 2: diameter is nan" debrisstat t
 printf 'realisation\tstep\tdiameter\tvolume\taspect\n0\t1.5\t1\t1\t1\n' >t
 fails "half a step" 1 "line 2: step is 1.5" debrisstat t
-fails "diameters turned round" 2 "LO below HI" debrisstat -d 2um:1um t
-fails "more realisations than said" 1 "has 2" debrisstat -n 1 growth.tsv
+fails "diameters turned round" 2 "LO below HI" debrisstat --diameter 2um:1um t
+fails "more realisations than said" 1 "has 2" debrisstat --realisations 1 growth.tsv
 awk '/^[#r]/ || $1 == 0' growth.tsv >s1.tsv
-fails "a bootstrap of one realisation" 1 "two realisations" debrisstat -B 10 s1.tsv
+fails "a bootstrap of one realisation" 1 "two realisations" debrisstat --bootstrap 10 s1.tsv
 printf 'realisation\tstep\tvolume\tdiameter\taspect\n4000000000\t2000000\t1\t1\t1\n' >late.tsv
 fails 'a step beyond those of debrisgen' 1 'line 2: step is 2000000, want a whole number, 1 to 1e+06' \
 	debrisstat late.tsv

@@ -60,7 +60,7 @@ sensorsim --uniform 90um:110um --number 40 --burst 2 --span 3ms --gap 1.5ms --pe
 duet twins.au >found.tsv
 is "twins: both of each pair" "$(score matched twins.tsv found.tsv)" 40
 is "twins: no third" "$(score false twins.tsv found.tsv)" 0
-duet -m count twins.au >counted.tsv
+duet --method count twins.au >counted.tsv
 at_most "twins: counted peaks see one of two" "$(column particle counted.tsv | wc -l)" 25
 
 # Pulses with long tails, in a regular train: neither cut short, nor taken for lines, nor
@@ -87,12 +87,12 @@ at_most "lines: delays to 0.16 samples" "$(score delay_rms lines.tsv found.tsv)"
 # Masks: isolated pulses come out, with the delay not shrunk to 0.56.
 sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 50ms --snr 40dB \
 	--lag 0.2ms:0.5ms --truth truth.tsv >s.au
-duet -m duet -O sources.au -G hist.tsv s.au >masks.tsv
+duet --method duet --separated sources.au --histogram hist.tsv s.au >masks.tsv
 is "masks: all particles" "$(score matched truth.tsv masks.tsv)" 60
 at_most "masks: delays of lone pulses to 0.4 samples" "$(score delay_rms truth.tsv masks.tsv)" 40e-6
 ok "masks: a histogram" sh -c "grep -q ^section hist.tsv"
 ok "masks: separated signals" sh -c "test \$(wc -c <sources.au) -gt 1000000"
-ok "counting, sensor 1" sh -c "duet -m count s.au >c.tsv"
+ok "counting, sensor 1" sh -c "duet --method count s.au >c.tsv"
 is "counting: lone pulses" "$(column particle c.tsv | wc -l)" 60
 
 # Standard errors: 68 % inside one, give or take 3.5 deviations of 200 draws.
@@ -110,7 +110,7 @@ done >off.txt
 is "standard errors: 68 % inside" "$(cat off.txt)" ""
 
 # Counted on either sensor: that one has an arrival.
-duet -m count -k 2 --align 20ms lone.au >c.tsv
+duet --method count --sensor 2 --align 20ms lone.au >c.tsv
 is "counting, sensor 2: no arrival at sensor 1" "$(column time1 c.tsv | sort -u)" nan
 column time2 t.tsv >t.col
 at_most "counting, sensor 2: peaks a quarter of a pulse (2.5 ms) from the arrivals there" \
@@ -119,12 +119,12 @@ at_most "counting, sensor 2: peaks a quarter of a pulse (2.5 ms) from the arriva
 is "counting, sensor 2: all of them" "$(column time2 c.tsv | wc -l)" 200
 
 # Work left out.
-duet --stats stats.tsv -m duet s.au >/dev/null
+duet --stats stats.tsv --method duet s.au >/dev/null
 at_most "masks: lone pulses are not demixed" "$(column_of demixings <stats.tsv)" 2
 
 # Too dense: said so, and the sum of squares is right (1000 per second, A = 1: 1000 V2/s).
 sensorsim --uniform 100um:100um --number 8000 --duration 8s --snr 30dB --truth t.tsv >dense.au
-duet -Z sections.tsv dense.au >dense.tsv
+duet --sections sections.tsv dense.au >dense.tsv
 is "dense: no invented particle" "$(column verdict dense.tsv | sort -u)" unresolved
 near "dense: the sum of squares" "$(column square sections.tsv |
 	awk "{ s += \$1 } END { print s / NR }")" 1000 200
@@ -145,12 +145,12 @@ rows() {
 sensorsim --uniform 80um:120um --number 100 --start 1s --span 14s --duration 16s --gap 20ms \
 	--snr 30dB --lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv >raw.au
 bpfilter --zero-phase raw.au >narrow.au
-bpfilter -b 20:1000 -n 1000 --zero-phase raw.au >wide.au
-bpfilter -b 0:2000 -w kaiser raw.au | bpfilter -b 30:1000 -n 600 >chain.au
+bpfilter -b 20:1000 --order 1000 --zero-phase raw.au >wide.au
+bpfilter -b 0:2000 --window kaiser raw.au | bpfilter -b 30:1000 --order 600 >chain.au
 is "filtered: the header says so" "$(passed narrow.au)" "70:130 200 hamming 0 scaled"
 is "filtered twice: so says the header, causal or not" "$(passed chain.au)" \
 	"0:2000 200 kaiser 5.6532600000000004 scaled | 30:1000 600 hamming 0 scaled"
-duet -m duet -O separated.au wide.au >/dev/null
+duet --method duet --separated separated.au wide.au >/dev/null
 is "filtered: what duet writes is not" "$(passed separated.au)" ""
 
 # The bound is that of white noise: undoing the filter must cost next to nothing.  The ratio
@@ -180,7 +180,7 @@ duet --undo taps.tsv bare.au >found.tsv
 rows narrow.tsv >a
 rows found.tsv >b
 same "the taps of a table are those of the header" a b
-bpfilter --taps -b 20:1000 -n 1000 >taps.tsv
+bpfilter --taps -b 20:1000 --order 1000 >taps.tsv
 bare wide.au | duet --undo taps.tsv >found.tsv
 rows wide.tsv >a
 rows found.tsv >b
@@ -213,7 +213,7 @@ at_least "70:130 guessed: learned more than once" "$(column_of calibrations <sta
 # deviations (0.73 to 1.19 on five records); the size bias was at most 0.21 % on them.
 sensorsim --uniform 80um:120um --number 50 --burst 1 --span 50ms --period 0.3s --start 1s \
 	--duration 17s --snr 20dB --lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv |
-	bpfilter -b 20:1000 -n 1000 --zero-phase >wide.au
+	bpfilter -b 20:1000 --order 1000 --zero-phase >wide.au
 duet --undo none --stats stats.tsv wide.au >found.tsv
 is "20:1000 guessed: all particles" "$(score matched truth.tsv found.tsv)" 50
 is "20:1000 guessed: no other" "$(score false truth.tsv found.tsv)" 0
@@ -238,7 +238,7 @@ duet --stats stats.tsv twins.au >/dev/null
 is "twins, white: learned once" "$(column_of calibrations <stats.tsv)" 1
 
 # What the header or the table of taps should not say.  All frequencies pass 0:5000.
-bpfilter -b 0:5000 -n 2 twins.au | sed 's/^\(filter .*\) hamming/\1 unknown/' >odd.au
+bpfilter -b 0:5000 --order 2 twins.au | sed -e 's/wearpipe-streams(5)/anything-streams(5)/' -e 's/^\(filter .*\) hamming/\1 unknown/' >odd.au
 is "a filter that is not known" "$(passed odd.au)" "0:5000 2 unknown 0 scaled"
 duet odd.au >found.tsv 2>warning
 is "is warned of, once" "$(wc -l <warning)" 1
@@ -272,10 +272,10 @@ head -c 32000 s.au >cut.au
 fails "a record cut inside a frame" 1 'cut' duet "$work/cut.au"
 fails "empty input" 1 . duet /dev/null
 fails "too little to learn from" 1 "10 samples at 10000 Hz, want at least 64" duet --learn 1ms s.au
-bpfilter -b 95:105 -n 800 s.au >tight.au
+bpfilter -b 95:105 --order 800 s.au >tight.au
 fails "a filter that leaves too little of the pulses" 1 "too narrow a band" duet tight.au
 fails "a lag as long as the record" 1 "align is as long as what is learned from" duet --align 10s s.au
-fails "method" 2 'method' duet -m best s.au
-fails "odd window" 2 'even' duet -m duet -w 63 s.au
-fails "window without duet" 2 'need --method duet' duet -w 64 s.au
+fails "method" 2 'method' duet --method best s.au
+fails "odd window" 2 'even' duet --method duet --window 63 s.au
+fails "window without duet" 2 'need --method duet' duet --window 64 s.au
 done_testing

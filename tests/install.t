@@ -1,76 +1,120 @@
 #!/bin/sh
-# What make install lays down works: programs, manuals, completion, library and headers
+# make install: programs, manuals, completion, headers and library work from where they lie
 . "$(dirname "$0")/tap.sh"
 
 programs=$(sed -n 's/^PROGRAMS = //p' "$top/Makefile")
-if ! make -s -C "$top" install DESTDIR="$work/root" PREFIX=/usr >out 2>err; then
+root=$work/'a root'
+if ! make -s -C "$top" install DESTDIR="$root" PREFIX=/usr >out 2>err; then
 	fail 'make install' "$(tail -5 err)"
 	done_testing
 fi
-pass 'make install'
+pass 'make install, to a path with a blank'
+usr=$root/usr
 missing=
 for p in $programs; do
-	[ -x "root/usr/bin/$p" ] || missing="$missing $p"
-	[ -s "root/usr/share/man/man1/$p.1" ] || missing="$missing $p.1"
-	[ -s "root/usr/share/bash-completion/completions/$p" ] || missing="$missing completion of $p"
+	[ -x "$usr/bin/$p" ] || missing="$missing $p"
+	[ -s "$usr/share/man/man1/$p.1" ] || missing="$missing $p.1"
+	[ -s "$usr/share/bash-completion/completions/$p" ] || missing="$missing completion of $p"
 done
 is 'every program has its manual and completion' "$missing" ''
-if command -v bash >/dev/null; then
-	is 'completion knows the choices of an option' "$(bash -c '
-		. root/usr/share/bash-completion/completions/wearpipe
-		COMP_WORDS=(roughgen --acf g) COMP_CWORD=2
-		_wearpipe_roughgen; echo "${COMPREPLY[@]}"')" gauss
-	is 'and the words of the options' "$(bash -c '
-		. root/usr/share/bash-completion/completions/wearpipe
-		COMP_WORDS=(bemcontact --pois) COMP_CWORD=1
-		_wearpipe_bemcontact; echo "${COMPREPLY[@]}"')" --poisson
-else
-	skip 'completion knows the choices of an option' 'no bash'
-	skip 'and the words of the options' 'no bash'
-fi
-
-# Headers: the interface, each of use alone, without what the modules share among themselves.
-cd root/usr/include/wearpipe || exit
-broken=
-for h in */*.h; do
-	echo "#include <$h>" | ${CC:-cc} -std=c11 -D_XOPEN_SOURCE=700 -I. -fsyntax-only -x c - || broken="$broken $h"
-done 2>err
-is 'every header compiles by itself' "$broken" ''
-is 'those of contact and filter among them' "$(ls contact/solver.h signal/fir.h)" "$(printf 'contact/solver.h\nsignal/fir.h')"
-is 'but none that is for its own modules only' "$(grep -l 'for lib/.* only' -r .)" ''
-cd "$work" || exit
-
-# The example of contact/solver.h, more or less, against the installed library.
-cat >x.c <<'E2'
-#include <contact/solver.h>
-#include <stdio.h>
-
-int main(void)
-{
-	static double h[64], p[64];
-	struct contact_par par = { .nx = 8, .ny = 8, .dx = 1e-6, .dy = 1e-6, .estar = 1e11,
-		.tolerance = 1e-8, .max_iterations = 1000 };
-	struct contact *c = contact_new(&par);
-
-	h[27] = 1e-9;
-	if (!c || contact_solve(c, h, CONTACT_PRESSURE, 1e6, p, NULL) != CONTACT_OK)
-		return 1;
-	printf("%.3f\n", contact_result(c)->pressure / 1e6);
-	contact_free(c);
-	return 0;
+# complete WORD...: what bash offers for the last word of a command line.
+complete_words() {
+	bash -c '. "$0"/share/bash-completion/completions/wearpipe
+		COMP_WORDS=("$@") COMP_CWORD=$(($# - 1))
+		"_wearpipe_$1"; echo "${COMPREPLY[@]}"' "$usr" "$@"
 }
-E2
-PKG_CONFIG_PATH=$work/root/usr/lib/pkgconfig:${PKG_CONFIG_PATH:-}
-PKG_CONFIG_SYSROOT_DIR=$work/root
-export PKG_CONFIG_PATH PKG_CONFIG_SYSROOT_DIR
-if [ -n "${ASAN_OPTIONS:-}" ]; then
-	skip 'a program is built against the installed library' 'it was built for the sanitizers'
-elif flags=$(pkg-config --cflags --libs wearpipe) && ${CC:-cc} -std=c11 x.c $flags -lfftw3 -lgsl -lgslcblas \
-	-lm -pthread -o x 2>err && ./x >out; then
-	is 'a program is built against the installed library' "$(cat out)" 1.000
+if command -v bash >/dev/null; then
+	is 'completion offers all choices of an option' "$(complete_words roughgen --acf '')" 'gauss exp'
+	is 'and those that begin as typed' "$(complete_words roughgen --acf g)" gauss
+	is 'also behind an equals sign' "$(complete_words bemcontact --boundary = p)" periodic
+	is 'completion offers the words of the options' "$(complete_words duet --m)" --method
+	is 'and files elsewhere' "$(cd "$top" && complete_words bpfilter READ)" README.md
 else
-	fail 'a program is built against the installed library' "$(cat err)"
+	skip 'completion' 'no bash'
 fi
-ok 'make uninstall' make -s -C "$top" uninstall DESTDIR="$work/root" PREFIX=/usr
-is 'leaves no file behind' "$(find root -type f -o -type l)" ''
+for s in zsh fish; do
+	file=$usr/share/zsh/site-functions/_wearpipe
+	[ $s = zsh ] || file=$usr/share/fish/vendor_completions.d/wearpipe.fish
+	if command -v $s >/dev/null; then
+		ok "the completion of $s is well formed" $s -n "$file"
+	else
+		skip "the completion of $s is well formed" "no $s"
+	fi
+done
+
+# Names: all that the library defines for others begins with wp_.
+names() {
+	nm "$@" | awk 'NF == 3 && $3 !~ /^wp_/ { print $3 }'
+}
+if [ -n "${ASAN_OPTIONS:-}" ]; then
+	skip 'names' 'built for the sanitizers'
+elif command -v nm >/dev/null; then
+	is 'the shared library shows only names that begin with wp_' \
+		"$(names -D --defined-only "$usr/lib/libwearpipe.so.0")" ''
+	is 'the archive shows only names that begin with wp_' \
+		"$(names -g --defined-only "$usr/lib/libwearpipe.a")" ''
+	is 'every function of the headers is in the library' "$(
+		sed -n 's/^.*\(wp_[a-z_]*\)(.*/\1/p' "$usr"/include/wearpipe/*.h | sort -u >declared
+		nm -D --defined-only "$usr/lib/libwearpipe.so.0" | awk '{ print $3 }' | sort >defined
+		grep -h '^WP_API' -A 1 "$usr"/include/wearpipe/*.h | grep -o 'wp_[a-z_]*(' |
+			tr -d '(' | sort -u | comm -23 - defined)" ''
+fi
+
+# The examples of the headers, each a whole program around the lines of its comment.
+cd "$usr/include/wearpipe" || exit
+for h in *.h; do
+	{
+		printf '#include <stdio.h>\n#include <stdlib.h>\n#include <string.h>\n'
+		echo "#include <wearpipe/$h>"
+		printf 'int main(void)\n{\n'
+		awk '/\*\// { exit } /^ \*\t/ { sub(/^ \*\t/, "\t"); print }' "$h"
+		printf '\treturn 0;\n}\n'
+	} >"$work/${h%.h}.example.c"
+done
+for h in *.h; do echo "#include <wearpipe/$h>"; done >"$work/all.c"
+echo 'int main(void) { return 0; }' >>"$work/all.c"
+cd "$work" || exit
+cp all.c all.cc
+ok 'all headers together are C11' ${CC:-cc} -std=c11 -Wall -Wextra -Wpedantic -Werror \
+	-I"$usr/include" -fsyntax-only all.c
+if command -v "${CXX:-c++}" >/dev/null; then
+	ok 'all headers together are C++17' "${CXX:-c++}" -std=c++17 -Wall -Wextra -Wpedantic \
+		-Werror -I"$usr/include" -fsyntax-only all.cc
+else
+	skip 'all headers together are C++17' 'no C++ compiler'
+fi
+for c in *.example.c; do
+	name=${c%.example.c}
+	if [ -n "${ASAN_OPTIONS:-}" ]; then
+		skip "the example of $name.h" 'the library was built for the sanitizers'
+	elif ${CC:-cc} -std=c11 -Wall -Wextra -Werror -I"$usr/include" "$c" \
+		"$usr/lib/libwearpipe.so.0" -lm -o "$name" 2>err &&
+		LD_LIBRARY_PATH=$usr/lib "./$name" >out 2>>err; then
+		pass "the example of $name.h compiles and runs"
+	else
+		fail "the example of $name.h compiles and runs" "$(head -20 err)"
+	fi
+done
+
+# The same through pkg-config, statically.
+cp contact.example.c x.c
+PKG_CONFIG_PATH=$usr/lib/pkgconfig:${PKG_CONFIG_PATH:-}
+export PKG_CONFIG_PATH
+if [ -n "${ASAN_OPTIONS:-}" ] || ! command -v pkg-config >/dev/null; then
+	skip 'pkg-config leads to the archive' 'not here'
+else
+	is 'pkg-config knows the version' "$(pkg-config --modversion wearpipe)" \
+		"$(sed -n 's/^VERSION = //p' "$top/Makefile")"
+	flags=$(pkg-config --static --libs-only-l wearpipe | sed 's/-lwearpipe//')
+	# shellcheck disable=SC2086 # flags are words
+	if ${CC:-cc} -std=c11 -I"$usr/include" x.c "$usr/lib/libwearpipe.a" $flags -pthread \
+		-o x 2>err && ./x >out; then
+		is 'the archive gives what the shared library gives' "$(cat out)" \
+			"$(LD_LIBRARY_PATH=$usr/lib ./contact)"
+	else
+		fail 'the archive links with the libraries that pkg-config names' "$(head err)"
+	fi
+fi
+ok 'make uninstall' make -s -C "$top" uninstall DESTDIR="$root" PREFIX=/usr
+is 'leaves no file behind' "$(find "$root" -type f -o -type l)" ''
 done_testing

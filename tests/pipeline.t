@@ -3,15 +3,16 @@
 # and the command recorded in a stream rebuilds it
 . "$(dirname "$0")/tap.sh"
 
-surfaces='roughgen -n 32 -L 1mm -q 0.8um -l 100um -C auto'
-contact='bemcontact -P 50MPa -E 210GPa'
-debris='debrisgen -Y 355MPa -u 0.3 -E 210GPa -T 2'
+surfaces='roughgen -n 32 -L 1mm -q 0.8um -l 100um --crown auto'
+contact='bemcontact --pressure 50MPa -E 210GPa'
+debris='debrisgen -Y 355MPa -u 0.3 -E 210GPa --steps 2'
 
 $surfaces -c 4 >whole.nrrd
 for k in 0 1 2 3; do
 	$surfaces -f $k -c 1
 done >split.nrrd
-same 'surfaces: one process and four' whole.nrrd split.nrrd
+records --join split.nrrd >joined.nrrd
+same 'surfaces: one process and four' whole.nrrd joined.nrrd
 $contact <whole.nrrd | $debris >whole.tsv
 $contact -j 2 <split.nrrd | $debris -j 2 >split.tsv
 same 'particles: one thread and two, joined surfaces' whole.tsv split.tsv
@@ -21,7 +22,7 @@ same 'particles: four pipelines joined in order' whole.tsv ensemble.tsv
 # The pipeline of each realisation stands in the table; they rebuild it together.
 is 'a line of provenance for each realisation' "$(grep -c '^# cmd: ' whole.tsv)" 4
 sed -n 's/^# cmd: //p' whole.tsv >commands
-sh -e commands | awk '/^realisation/ && n++ { next } /^# units/ && u++ { next } { print }' >replayed.tsv
+sh -e commands | records --join >replayed.tsv
 same 'the recorded commands rebuild the table' whole.tsv replayed.tsv
 
 # What is made of the whole ensemble says how the whole is made.
@@ -33,7 +34,7 @@ debrisstat whole.tsv >fits.tsv
 is 'an ensemble is counted' "$(sed -n 's/^# cmd: //p' fits.tsv | grep -o -e '--first.* | b')" \
 	'--first 0 --count 4 | b'
 rebuilt fits.tsv
-sensorsim -d 5s -n 5mV -T truth.tsv whole.tsv >heard.au
+sensorsim --duration 5s --noise 5mV --truth truth.tsv whole.tsv >heard.au
 mv truth.tsv told.tsv
 duet heard.au >heard.tsv
 rebuilt heard.tsv
@@ -53,7 +54,7 @@ is 'only realisations of surfaces are counted' \
 key() {
 	strings -n 4 "$1" | sed -n 's/^cmd //p;/^cmd /q'
 }
-sensorsim -u 80um:150um -N 20 -d 0.5s -n 5mV -s 3 |
+sensorsim --uniform 80um:150um --number 20 --duration 0.5s --noise 5mV -s 3 |
 	bpfilter --order 100 --zero-phase >signal.au
 sh -c "$(key signal.au)" >again.au
 same 'a signal is rebuilt by its own header' signal.au again.au
@@ -62,7 +63,7 @@ is 'and the table made from it says so' "$(sed -n 's/^# cmd: //p' found.tsv)" "$
 
 # Quoting: an argument that needs it comes back as it was.
 $surfaces -c 1 >'it'\''s a name: here.nrrd'
-roughgen -z "it's a name: here.nrrd" >measured.nrrd
+roughgen --level "it's a name: here.nrrd" >measured.nrrd
 (eval "$(head -c 1024 measured.nrrd | sed -n 's/^cmd:=//p')") >again.nrrd
 same 'a file name with quotes, blanks and a colon survives' measured.nrrd again.nrrd
 is 'and no colon with a blank stands in a value' \

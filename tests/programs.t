@@ -19,11 +19,16 @@ for p in $programs; do
 	debrisgen) needed='--yield 355MPa' ;;
 	rwl) needed='--wear no-such-file --threshold-gap 1um' ;;
 	delaynet) needed='--task score' ;;
+	abrade) needed='--gap 1um --hardness 1GPa --friction 0' ;;
+	ballcal) needed='--balls no-such-file:1mm' ;;
+	layout) needed='--coils 0 --snr 40dB --arrivals 1' ;;
 	*) needed= ;;
 	esac
+	file=no-such-file
+	grep -q '^usage: .*\[file' "$p.help" || file=
 	fails "$p opens --stats before any work" 1 "^$p: /nonexistent/x: " \
-		"$p" $needed --stats /nonexistent/x no-such-file
-	fails "$p names a missing file" 1 "^$p: .*no-such-file" "$p" $needed no-such-file
+		"$p" $needed --stats /nonexistent/x $file
+	[ -z "$file" ] || fails "$p names a missing file" 1 "^$p: .*no-such-file" "$p" $needed $file
 done
 
 # A list has as many members as its placeholder shows: one less or more is refused.
@@ -31,7 +36,7 @@ ones() {
 	awk -v n="$1" -v by="$2" 'BEGIN { for (i = 0; i < n; i++) printf "%s1", i ? by : "" }'
 }
 for p in $programs; do
-	[ -e "$p.help" ] && sed -n "s/^  -., --\([a-z0-9-]*\) \([^ ]*[:,x][^ ]*\).*/\1 \2/p" "$p.help" |
+	[ -e "$p.help" ] && sed -n "s/^ *\(-., \)*--\([a-z0-9-]*\) \([^ ]*[:,x][^ ]*\).*/\2 \3/p" "$p.help" |
 		grep -v -e '\.\.\.' -e '|' -e FILE >lists
 	while read -r word shape; do
 		case $shape in *:*) by=: ;; *,*) by=, ;; *) by=x ;; esac
@@ -45,7 +50,7 @@ for p in $programs; do
 done
 fails "bounds of a fraction are no percentage" 2 '^debrisstat: --confidence 95: want 0.01 to 0.9999$' \
 	debrisstat --confidence 95
-fails "other bounds have a unit" 2 '^sensorsim: --bore 20: want 1e-06 to 10 m$' sensorsim --bore 20
+fails "other bounds have a unit" 2 '^sensorsim: --bore 20: want 1um to 10m$' sensorsim --bore 20
 
 # The same word has the same letter everywhere, and reserved letters keep their meaning.
 for p in $programs; do
@@ -53,13 +58,18 @@ for p in $programs; do
 done >letters
 is "one letter per word in the whole suite" \
 	"$(sort -u -k1,2 letters | awk '$1 == w && $2 != l { print w, l, $2, $3 } { w = $1; l = $2 }')" ""
+is "a letter stands for one word in the whole suite" \
+	"$(awk '{ print $2, $1 }' letters | sort -u | awk '$1 == l { print l, w, $2 } { l = $1; w = $2 }')" ""
+is "a word has its letter in every program or in none" \
+	"$(awk '{ print $1 }' letters | sort -u | while read -r word; do
+		grep -lE -- "^      --$word( |$)" ./*.help; done)" ""
 is "reserved letters mean the same everywhere" \
 	"$(awk 'BEGIN { split("s seed c count f first j threads v verbose h help V version S stats", a)
 		for (i = 1; i < 16; i += 2) want[a[i]] = a[i + 1] }
 		$2 in want && want[$2] != $1 { print $3, $2, $1 }' letters)" ""
 is "no default is shown that could not be given" "$(grep -hE 'default (-1|-?inf|-?nan)\b' ./*.help)" ""
 is "the members of a default are parted as on the command line" \
-	"$(grep -o 'default 70:130 Hz' bpfilter.help)" 'default 70:130 Hz'
+	"$(grep -o 'default 70Hz:130Hz' bpfilter.help)" 'default 70Hz:130Hz'
 is "every option has a phrase of help" \
-	"$(cat ./*.help | awk '/^  -/ && NF < 3 { getline more; if (more !~ /^   /) print }')" ""
+	"$(cat ./*.help | awk '/^ *--*[a-zA-Z]/ && NF < 2 + /^  -/ { getline more; if (more !~ /^   /) print }')" ""
 done_testing

@@ -9,75 +9,75 @@ value() { column "$1" "$2" | head -1; }
 roughgen -n 60x45 -q 0.5um:2um -c 8 -j 1 >one
 for k in 0 1 2 3 4 5 6 7; do
 	roughgen -n 60x45 -q 0.5um:2um -f $k -c 1
-done >many
+done | records --join >many
 same "eight realisations in one process and in eight" one many
 roughgen -n 60x45 -q 0.5um:2um -c 8 -j 2 >two
 same "one thread and two" one two
-roughgen -n 60x45 -K -1 -Q 5 -c 3 -j 1 >one
-(roughgen -n 60x45 -K -1 -Q 5 -f 0 -c 2 -j 3 && roughgen -n 60x45 -K -1 -Q 5 -f 2) >two
+roughgen -n 60x45 --skewness -1 --kurtosis 5 -c 3 -j 1 >one
+(roughgen -n 60x45 --skewness -1 --kurtosis 5 -f 0 -c 2 -j 3 && roughgen -n 60x45 --skewness -1 --kurtosis 5 -f 2) | records --join >two
 same "the same with imposed heights" one two
 
 # The header rebuilds the record.
-roughgen -n 32 -q 1um:3um -p 0.5um -C auto -s 7 -c 3 >three
-records -n 2 -o nrrd three >second
+roughgen -n 32 -q 1um:3um --pair 0.5um --crown auto -s 7 -c 3 >three
+records --pick 2 -o nrrd three >second
 cmd=$(sed -n 's/^cmd:=//p' second | head -1)
 sh -c "$cmd" >again
-records -n 2 -o nrrd three | tail -c 8192 >a
+records --pick 2 -o nrrd three | tail -c 8192 >a
 tail -c 8192 again >b
 same "cmd rebuilds one record of an ensemble" a b
 is "keys of a record" "$(sed -n '/^#/q; s/:=.*//p' again | tr '\n' ' ')" \
-	"fields realisation seed sq crown cmd "
+	"fields realisation seed sq crown cmd stream "
 
 # Roughness is met exactly, without the crown.
-roughgen -n 64 -q 3um -m >t
+roughgen -n 64 -q 3um --measure >t
 near "--sq" "$(value sq t)" 3e-6 1e-20
-roughgen -n 64 -a 3um -m >t
+roughgen -n 64 --sa 3um --measure >t
 near "--sa" "$(value sa t)" 3e-6 1e-20
-roughgen -n 64 -L 1mm -l 200um -g 0.1 -m >t
+roughgen -n 64 -L 1mm -l 200um --slope 0.1 --measure >t
 # Wavelengths of 60 points and more: seven-point differences are exact to 1e-3 or so;
 # the area is periodic but the differences are not taken across its rim.
 near "--slope" "$(value sdq_iso7 t)" 0.1 0.004
-roughgen -n 64 -q 1um -c 50 -m >t
+roughgen -n 64 -q 1um -c 50 --measure >t
 is "one row per realisation" "$(column sq t | wc -l)" 50
-roughgen -n 64 -q 78um:82um -c 50 -m >t
+roughgen -n 64 -q 78um:82um -c 50 --measure >t
 column sq t | sort -g >sorted
 ok "--sq A:B: within the range and spread over it" awk '
 	NR == 1 { low = $1 } { high = $1 }
 	END { exit !(low >= 78e-6 && low < 78.5e-6 && high <= 82e-6 && high > 81.5e-6) }' sorted
 # Greenwood and Tripp: variances add; the two samples correlate by about a tenth.
-roughgen -n 128 -l 40um -q 0.8um -p 1.6um -c 20 -m >t
+roughgen -n 128 -l 40um -q 0.8um --pair 1.6um -c 20 --measure >t
 near "--pair: variances add" "$(column sq t | awk '{ s += $1 * $1 } END { print s / NR }')" \
 	3.2e-12 0.1e-12
 roughgen -n 64 -q 1um >a
-roughgen -n 64 -q 0 -p 1um >b
+roughgen -n 64 -q 0 --pair 1um >b
 ok "--pair: the second surface is another one" sh -c '! cmp -s a b'
-roughgen -n 64 -q 1um -C auto >a
+roughgen -n 64 -q 1um --crown auto >a
 is "--crown auto is 4 Sq" "$(sed -n 's/^crown:=//p' a | awk '{ printf "%.12g", $1 }')" 4e-06
-roughgen -n 3 -q 0 -L 3mm -C 8um >a
+roughgen -n 3 -q 0 -L 3mm --crown 8um >a
 # Centre 0; edge centres (1 mm)^2 / 4.5 mm^2, corner centres 2 / 4.5.
 is "--crown on a flat" "$(records -o text a | awk '!/^#/ && NF { printf "%.5g %.5g %.5g ", $1, $2, $3 }')" \
 	"-3.5556e-06 -1.7778e-06 -3.5556e-06 -1.7778e-06 0 -1.7778e-06 -3.5556e-06 -1.7778e-06 -3.5556e-06 "
 
-roughgen -n 3 -q 0 -L 3mm -C 8um -m >t
+roughgen -n 3 -q 0 -L 3mm --crown 8um --measure >t
 near "--measure: the crown belongs to the heights" "$(value sq t)" 1.18519e-6 1e-11
 # A crown stays out of what is done to the roughness.
-roughgen -n 64 -q 1um -C 4um | roughgen -q 3um -C 2um - >a
+roughgen -n 64 -q 1um --crown 4um | roughgen -q 3um --crown 2um - >a
 is "a crown goes through: sq and crown" \
 	"$(sed -n 's/^sq:=//p; s/^crown:=//p' a | awk '{ printf "%.12g ", $1 }')" "3e-06 6e-06 "
-roughgen -n 64 -q 3um -C 6um >b
+roughgen -n 64 -q 3um --crown 6um >b
 records -o text a >a.txt
 records -o text b >b.txt
 near "a crown goes through: heights" "$(paste a.txt b.txt | awk '!/^#/ { for (i = 1; i <= NF / 2; i++) {
 	d = $i - $(i + NF / 2); if (d < 0) d = -d; if (d > w) w = d } } END { print w + 0 }')" 0 1e-14
 
 # Heights of given moments.
-roughgen -n 128 -l 50um -K -1.2 -Q 4.3 -m >t
+roughgen -n 128 -l 50um --skewness -1.2 --kurtosis 4.3 --measure >t
 near "--skewness" "$(value ssk t)" -1.2 1e-6
 near "--kurtosis" "$(value sku t)" 4.3 1e-6
-roughgen -n 128 -l 50um -K -1.2 -Q 4.3 >a
+roughgen -n 128 -l 50um --skewness -1.2 --kurtosis 4.3 >a
 ok "the error of the spectrum is stated and small" awk -F = '
 	/^spectrum_error/ { e = $2 } END { exit !(e > 0 && e < 0.05) }' a
-roughgen -n 64 -K 1 -m >t
+roughgen -n 64 --skewness 1 --measure >t
 near "kurtosis unless given: 3 + 1.5 S^2" "$(value sku t)" 4.5 1e-6
 
 # Parameters against their definitions, written out.
@@ -90,85 +90,92 @@ sum_up() { # NAME FILE
 		{ d = $1 / $2 - 1; if (d < 0) d = -d; if (d > w) w = d; n += NF == 2 }
 		END { if (n == 15) print w; else print "only " n " values" }' both)" 0 1e-10
 }
-roughgen -n 48x40 -L 96umx60um -q 1um -l 8umx5um -K 0.8 >rough
-roughgen -m rough >t
+roughgen -n 48x40 -L 96umx60um -q 1um -l 8umx5um --skewness 0.8 >rough
+roughgen --measure rough >t
 tail -c 15360 rough >heights
 sum_up "a rough surface" t
 # Levelled, it is as it was before it was tilted.
-roughgen -z rough >level
+roughgen --level rough >level
 perl -e 'read STDIN, my $b, 15360; my $i = 0;
 	print pack "d<*", map { $_ + 3e-7 * ($i % 48) - 5e-7 * int($i++ / 48) } unpack "d<*", $b' \
 	<heights >tilted
 tail -c 15360 level >heights
-roughgen -z -m -x 48x40 -X 2umx1.5um tilted >t
+roughgen --level --measure --raw 48x40 --pixel 2umx1.5um tilted >t
 sum_up "tilted and levelled" t
 
 # Preparing: crop, level, resample, raw, streams with several records.
 roughgen -n 40x30 -c 2 >s
-roughgen -w 5:6:20:10 s >c
+roughgen --crop 5:6:20:10 s >c
 is "--crop: size and spacing" "$(records c | awk -F '\t' '$1 == 1 { print $5, $6, $8 }')" \
 	"20 10 2.5e-05"
-is "--crop: the samples" "$(records -o text -n 1 c | sed -n 2p | cut -f 1-3)" \
-	"$(records -o text -n 1 s | sed -n 8p | cut -f 6-8)"
+is "--crop: the samples" "$(records -o text --pick 1 c | sed -n 2p | cut -f 1-3)" \
+	"$(records -o text --pick 1 s | sed -n 8p | cut -f 6-8)"
 is "every record of a stream is prepared" "$(records -o count c)" "2"
-roughgen -r 20x15 s >c
+roughgen --resample 20x15 s >c
 is "--resample: size and spacing" "$(records c | awk -F '\t' '$1 == 1 { print $5, $6, $8, $9 }')" \
 	"20 15 5e-05 5e-05"
 tail -c 9600 s >raw.f64
-roughgen -x 40x30 -X 25um raw.f64 | tail -c 9600 >c
+roughgen --raw 40x30 --pixel 25um raw.f64 | tail -c 9600 >c
 same "--raw: the samples pass unchanged" raw.f64 c
 cat s | roughgen - >c
 roughgen s >d
 is "standard input by name: -" "$(tail -c 9600 c | cksum)" "$(tail -c 9600 d | cksum)"
-roughgen -w 5:6:20:10 -z -r 15 -C 1um s >c
-records -n 2 -o nrrd c >second
+roughgen --crop 5:6:20:10 --level --resample 15 --crown 1um s >c
+records --pick 2 -o nrrd c >second
 sh -c "$(sed -n 's/^cmd:=//p' second | head -1)" >again
 same "cmd rebuilds a prepared record through the pipe" second again
-records -n 1 -o gsf s >s.gsf
-roughgen -m s.gsf >t
-roughgen -n 40x30 -m >u
+records --pick 1 -o gsf s >s.gsf
+roughgen --measure s.gsf >t
+roughgen -n 40x30 --measure >u
 near "a GSF file is measured (float32)" "$(value sq t)" "$(value sq u)" 1e-12
-roughgen -q 2um s | roughgen -m - >t
+roughgen -q 2um s | roughgen --measure - >t
 near "a measured surface is scaled on request" "$(value sq t)" 2e-6 1e-20
-roughgen -n 64 -K 5 | roughgen -m >t
+roughgen -n 64 --skewness 5 | roughgen --measure >t
 near "--measure alone reads standard input" "$(value ssk t)" 5 1e-6
-roughgen -n 64 -K 5 | roughgen -q 2um -z -m >u
+roughgen -n 64 --skewness 5 | roughgen -q 2um --level --measure >u
 near "also what it is to prepare" "$(value sq u)" 2e-6 1e-20
 is "and says so in its header" "$(sed -n 's/^# cmd: .*| //p' t)" "roughgen --measure -"
 
 # Refusals.
 fails "no heights of kurtosis below skewness^2 + 1" 2 'must exceed' \
-	roughgen -K 1 -Q 1.9
+	roughgen --skewness 1 --kurtosis 1.9
 fails "kurtosis out of reach of few points" 1 'out of reach' \
-	roughgen -n 4 -L 1mm -l 0.1mm -K 0 -Q 60
+	roughgen -n 4 -L 1mm -l 0.1mm --skewness 0 --kurtosis 60
 fails "correlation length above the side" 1 'longer than a side' roughgen -l 2mm
-fails "no waves" 1 'no wave' roughgen -n 1
+fails "one point cannot be rough" 2 'single point' roughgen --points 1
+is "one flat point is a surface" "$(roughgen --points 1 --sq 0 | records | awk '/^1/ { print $5 * $6 }')" 1
+if command -v python3 >/dev/null; then
+	python3 -c 'import pty, sys; sys.exit(pty.spawn(["timeout", "5", "roughgen", "--measure"]) >> 8)' >tty </dev/null
+	is "--measure does not wait for a terminal" "$? $(grep -c 'nothing to measure' tty)" "2 1"
+else
+	skip "--measure does not wait for a terminal" "no python3"
+fi
 fails "a range that runs backwards" 2 'runs backwards' roughgen -q 2um:1um
 fails "a bare prefix" 2 'q' roughgen -q 2u
-fails "Sq and Sa" 2 'exclude' roughgen -q 1um -a 1um
-fails "roll-off without Hurst" 2 'need --hurst' roughgen -R 1um
-fails "level without file" 2 '--level: is for a measured' roughgen -z
+fails "Sq and Sa" 2 'exclude' roughgen -q 1um --sa 1um
+fails "roll-off without Hurst" 2 'need --hurst' roughgen --rolloff 1um
+fails "level without file" 2 '--level: is for a measured' roughgen --level
 fails "points with file" 2 '--points: is for generated' roughgen -n 4 s
 fails "a spectrum with file" 2 '--corr: is for generated' roughgen -l 1um s
 fails "a crop outside" 1 'record 1: --crop 30:0:11:5 is not within 40 x 30' \
-	roughgen -w 30:0:11:5 s
-fails "raw without pixel" 2 'go together' roughgen -x 3x3 s
+	roughgen --crop 30:0:11:5 s
+fails "raw without pixel" 2 'go together' roughgen --raw 3x3 s
 fails "a file that is not there" 1 'nowhere: No such file' roughgen nowhere
-fails "nothing to measure" 1 'standard input: no record$' roughgen -m
+fails "nothing to measure" 1 'standard input: no record$' roughgen --measure
 fails "an empty file" 1 '/dev/null: no record$' roughgen /dev/null
 printf '\0\0\0\0\0\0\370\177\0\0\0\0\0\0\0\0' >nan.f64
-fails "a missing sample" 1 'record 1: height is .*nan' roughgen -x 2x1 -X 1um nan.f64
+fails "a missing sample" 1 'record 1: height is .*nan' roughgen --raw 2x1 --pixel 1um nan.f64
 is "nothing is written before a refusal" "$(wc -c <out)" 0
 printf '\0\0\0\0\0\0\370\177\0\0\0\0\0\0\360\177' >inf.f64
-fails "an infinite sample is not filled" 1 'inf' roughgen -i -x 2x1 -X 1um inf.f64
+fails "an infinite sample is not filled" 1 'inf' roughgen --fill --raw 2x1 --pixel 1um inf.f64
 printf '\0\0\0\0\0\0\370\177' >all.f64
-fails "all samples missing" 1 'every height is missing' roughgen -i -x 1x1 -X 1um all.f64
-fails "a truncated file" 1 'want 24 bytes, got 16' roughgen -x 3x1 -X 1um nan.f64
+fails "all samples missing" 1 'every height is missing' roughgen --fill --raw 1x1 --pixel 1um all.f64
+fails "a truncated file" 1 'want 24 bytes, got 16' roughgen --raw 3x1 --pixel 1um nan.f64
 fails "a flat surface cannot be scaled" 1 'flat' sh -c \
 	'roughgen -n 4 -q 0 | roughgen -q 1um -'
 
 # Counters say what was done and what was left out.
-roughgen -n 64 -H 0.8 -R 0.25mm -W 0.25mm -k 0.1mm -S st >/dev/null
+roughgen -n 64 --hurst 0.8 --rolloff 0.25mm --longest 0.25mm --cutoff 0.1mm -S st >/dev/null
 near "waves drawn and left out" "$(awk '{ print $1 + $2 }' <<-EOF
 	$(value waves st) $(value waves_skipped st)
 	EOF

@@ -20,7 +20,7 @@ near "all quantiles agree" "$(cell even.out 1 q05)" "$(cell even.out 1 q95)" 0
 near "without an observation the last one ages" "$(cell even.out 3 mean)" \
 	"$(calc "39 * 3600")" 1e-5
 is "beyond the threshold nothing is left" "$(cell even.out 5 mean) $(cell even.out 5 p_no_failure)" "0 0"
-ok "volume threshold" rwl -w even.tsv -p 1h --threshold-volume 2.3463e-9m3 gap.tsv
+ok "volume threshold" rwl --wear even.tsv --step-time 1h --threshold-volume 2.3463e-9m3 gap.tsv
 near "one um over the whole area" "$(cell out 1 mean)" 36000 1e-5
 
 # Without fragments: (4-29) over all, (4-28) over the last interval.
@@ -31,23 +31,36 @@ ok "rate of the observations, last" rwl --wear-rate last --threshold-gap 21um ga
 near "1 um left at 7 um/h" "$(cell out 5 mean)" "$(calc 3600/7)" 1e-6
 
 # The scale of the steps from the state: the mean wears what was observed.
-ok "steps scaled by the state" rwl -w even.tsv -g 15um gap.tsv
+ok "steps scaled by the state" rwl --wear even.tsv --threshold-gap 15um gap.tsv
 near "2 um left at 1 um/h again" "$(cell out 4 mean)" 7200 1e-6
-ok "steps scaled by an earlier unit" rwl --new -w even.tsv -g 15um --calibrate gap.tsv
+ok "steps scaled by an earlier unit" rwl --new --wear even.tsv --threshold-gap 15um --calibrate gap.tsv
 # least-squares slope of 10 11 13 20 um at 0 1 3 4 h: 2.2 um/h, new at 1.5 L/min
 near "its whole life" "$(cell out 1 mean)" "$(calc "(15 - 16.7899943 * (1.5 / 2.8)^(1/3)) / 2.2 * 3600")" 0.1
 
 # Leakage: 2.8 L/min is the default threshold, 16.79 um.
 printf 't\tstate\n0\t1.5\n100\t2.0\n200\t2.9\n' >flow.tsv
-ok "leakage in L/min, hours" rwl -w even.tsv -p 1h -u L/min -t h flow.tsv
+ok "leakage in L/min, hours" rwl --wear even.tsv --step-time 1h --state-unit L/min --time-unit h flow.tsv
 near "cube root of the leakage" "$(cell out 2 mean)" \
 	"$(calc "16.7899943 * (1 - (2 / 2.8)^(1/3)) / 0.1 * 3600")" 0.05
 is "time in seconds" "$(cell out 2 t)" 360000
 is "beyond 2.8 L/min is failure" "$(cell out 3 mean)" 0
 sed 's/state/leakage/' flow.tsv >flow2.tsv
-rwl -w even.tsv -p 1h -u L/min -t h flow2.tsv | grep -v '^#' >a
+rwl --wear even.tsv --step-time 1h --state-unit L/min --time-unit h flow2.tsv | grep -v '^#' >a
 grep -v '^#' out >b
 same "a state is leakage unless said otherwise" a b
+
+# Units: the table's own, or the option's; neither may be of another quantity.
+printf '# units: h L/min\nt\tleakage\n0\t1.5\n100\t2.0\n200\t2.9\n' >units.tsv
+rwl --wear even.tsv --step-time 1h units.tsv 2>err | grep -v '^#' >b
+same "the units of the table are read" a b
+fails "micrometres of a leakage" 2 '--state-unit um: is no unit of a leakage, want m3/s' \
+	rwl --wear even.tsv --step-time 1h --state-unit um --time-unit h flow2.tsv
+fails "litres per minute of a gap" 2 '--state-unit L/min: is no unit of a gap, want m' rwl --state-unit L/min gap.tsv
+fails "a unit that contradicts the table" 2 "--state-unit L/h contradicts '# units:' of units.tsv" \
+	rwl --state-unit L/h units.tsv
+fails "a time unit that does" 2 "--time-unit contradicts '# units:' of units.tsv" rwl --time-unit d units.tsv
+fails "a table in volts" 1 "volts.tsv: column 'gap' is in 'V', want m" sh -c \
+	"(echo '# units: s V'; cat gap.tsv) >volts.tsv; rwl volts.tsv"
 
 # Debris caught: spheres add up.
 printf 'time1\tdiameter\n1\t1e-3\n1\t1e-3\n2\t2e-3\n' >debris.tsv
@@ -55,7 +68,7 @@ ok "particles as state" rwl --threshold-volume 1e-8m3 debris.tsv
 # 10 spheres of 1 mm, 0.5236e-9 m3 each, in two seconds (4-29)
 near "life from caught particles" "$(cell out 3 mean)" \
 	"$(calc "(1e-8 - 10 * 0.523598775598e-9) / (5 * 0.523598775598e-9)")" 1e-9
-ok "the last of them" rwl --threshold-volume 1e-8m3 -R last debris.tsv
+ok "the last of them" rwl --threshold-volume 1e-8m3 --wear-rate last debris.tsv
 near "8 of them in one second (4-28)" "$(cell out 3 mean)" \
 	"$(calc "(1e-8 - 10 * 0.523598775598e-9) / (8 * 0.523598775598e-9)")" 1e-9
 
@@ -84,7 +97,7 @@ is "and says it too" "$(cat err)" "wear-volume: rows passed over for want of a d
 	printf '%s\n' "0 1 1 1e-16 1e-6" "0 1 2 1e-16 9e-6" "1 1 1 1e-16 1e-6" "1 1 2 1e-16 1e-6" \
 		"0 2 1 1e-16 9e-6" "0 2 2 1e-16 9e-6" "1 2 1 1e-16 9e-6" "1 2 2 1e-16 1e-6" "1 2 3 1e-16 1e-6" | tr ' ' '\t'
 } >size.tsv
-ok "large particles" rwl -w size.tsv -p 1h -d 5um -P 40% --rates rates.tsv -c 2000 -q 0.5 gap.tsv
+ok "large particles" rwl --wear size.tsv --step-time 1h --critical-size 5um --critical-probability 40% --rates rates.tsv -c 2000 --levels 0.5 gap.tsv
 # all: 4 of 9 at the end of step 2
 near "critical share at the end of step 2" "$(cell out 1 q50)" 7200 1e-9
 near "less the time that passed" "$(cell out 2 q50)" 3600 1e-9
@@ -92,53 +105,92 @@ near "less the time that passed" "$(cell out 2 q50)" 3600 1e-9
 is "surface 0 twice fails in step 1, both in step 2, surface 1 twice never" \
 	"$(column large_step rates.tsv | sort -u | tr '\n' ' ')" "0 1 2 "
 near "one replicate in four never fails" "$(cell out 1 p_no_failure)" 0.25 0.04
-ok "share in one step" rwl -w size.tsv -p 1h -d 5um -P 60% -b step -q 0.5 gap.tsv
+ok "share in one step" rwl --wear size.tsv --step-time 1h --critical-size 5um --critical-probability 60% --sizes step --levels 0.5 gap.tsv
 near "3 of 5 in step 2" "$(cell out 1 q50)" 7200 1e-9
-ok "the earlier of both criteria" rwl -w size.tsv -p 1h -d 5um -P 40% -g 10.02um -q 0.5 gap.tsv
+ok "the earlier of both criteria" rwl --wear size.tsv --step-time 1h --critical-size 5um --critical-probability 40% --threshold-gap 10.02um --levels 0.5 gap.tsv
 rising "the gap comes first" 1 "$(cell out 1 q50)" 7199
 
-# Monte-Carlo: the spread of 16 fragments' mean, by the bootstrap.
+# Monte-Carlo: the mean of 16 fragments by Student's t in its logarithm.
 awk 'BEGIN { print "volume"; for (i = 0; i < 16; i++) print (1 + i / 10) "e-15" }' >spread.tsv
-ok "spread of an ensemble" rwl --new -w spread.tsv -p 1h -g 15um -i 10um -c 4000 -R mean -W rates.tsv
+ok "spread of an ensemble" rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um \
+	--initial-gap 10um --count 4000 --wear-rate mean --rates rates.tsv
 cp out spread.out
-near "standard deviation of the mean" "$(column mean rates.tsv |
-	awk '{ n++; d = $1 - m; m += d / n; s += d * ($1 - m) } END { print sqrt(s / n) / m }')" \
-	"$(calc "sqrt((256 - 1) / 12) / 10 / 4 / 1.75")" 0.003
-ok "one part wears like one fragment" rwl --new -w spread.tsv -p 1h -g 15um -i 10um -c 4000 --parts 1
+# relative standard error sqrt((16^2 - 1) / 12 * 16 / 15) / 10 / 1.75 / 4; t of 15 degrees at 95 %: 1.75305
+error=$(calc "sqrt(255 / 12 * 16 / 15) / 70")
+mean=$(calc "1.75e-15 * 2346.3e-6 / 1e-8")
+near "5 % of the paths wear less than Student's t has it" \
+	"$(column mean rates.tsv | sort -g | sed -n 200p)" "$(calc "$mean * exp(-1.75305 * $error)")" \
+	"$(calc "0.01 * $mean")"
+near "5 % wear more, with the second-order term" "$(column mean rates.tsv | sort -g | sed -n 3800p)" \
+	"$(calc "$mean * exp(1.75305 * $error + (1.75305 * $error)^2 / 2)")" "$(calc "0.01 * $mean")"
+ok "one part wears like one fragment" rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um -c 4000 --parts 1
 rising "which is wider" "$(calc "1.3 * $(cell spread.out 1 q95)")" "$(cell out 1 q95)"
-ok "new rate in every step" rwl --new -w spread.tsv -p 1h -g 15um -i 10um -c 4000 --parts 1 -R last
+ok "new rate in every step" rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um -c 4000 --parts 1 --wear-rate last
 near "has the same mean" "$(cell out 1 mean)" "$(cell spread.out 1 mean)" 3000
 
+# One realisation, and wear that was never seen.
+printf 'realisation\tstep\tvolume\n0\t1\t1e-15\n0\t2\t2e-15\n' >single.tsv
+fails "one realisation is doubtful" 3 'single.tsv: a single realisation' \
+	rwl --new --wear single.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um \
+	--area 2346.3mm2 --fragment-area 1e-8m2
+printf 'volume\n0\n0\n0\n' >nothing.tsv
+fails "wear that was never seen is doubtful" 3 'nothing.tsv: none of 3 realisations wore' \
+	rwl --new --wear nothing.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um \
+	--area 2346.3mm2 --fragment-area 1e-8m2
+
 # Any split of an ensemble is the same bytes.
-rwl --new -w spread.tsv -p 1h -g 15um -O -c 20 --parts 1 -R last | grep -v '^#' >whole
-rwl --new -w spread.tsv -p 1h -g 15um -O -c 12 --parts 1 -R last | grep -v '^#' >part.tsv
-rwl --new -w spread.tsv -p 1h -g 15um -O -f 12 -c 8 --parts 1 -R last | rows /dev/stdin >>part.tsv
+rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um --samples -c 20 --parts 1 --wear-rate last | grep -v '^#' >whole
+rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um --samples -c 12 --parts 1 --wear-rate last | grep -v '^#' >part.tsv
+rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um --samples -f 12 -c 8 --parts 1 --wear-rate last | rows /dev/stdin >>part.tsv
 same "paths 0-19, and 0-11 with 12-19" whole part.tsv
 
 # Classes: the zone of linear pressure is in by default, between the extremes.
 sed 's/e-15/e-18/' even.tsv >low.tsv
-ok "two classes" rwl --new -w even.tsv:21MPa -w low.tsv:0.15MPa -p 1h -W rates.tsv
+ok "two classes" rwl --new --wear even.tsv:21MPa --wear low.tsv:0.15MPa --step-time 1h --rates rates.tsv
 zone=$(awk 'BEGIN { p = log(1e3) / log(140) + 1; r = log(140)
 	m = 1e-18 * 0.15 * (exp(p * r) - 1) / p / 20.85
 	printf "%.15g", 2346.3e-6 / 1e-8 * (0.45 * 1e-15 + 0.45 * 1e-18 + 0.1 * m) }')
 near "wear of the valve plate" "$(cell rates.tsv 1 mean)" "$zone" 1e-22
-ok "areas of their own" rwl --new -w even.tsv:21MPa:1173.15mm2 -w low.tsv:0.15MPa:1173.15mm2 -p 1h -W rates.tsv
+ok "areas of their own" rwl --new --wear even.tsv:21MPa:1173.15mm2 --wear low.tsv:0.15MPa:1173.15mm2 --step-time 1h --rates rates.tsv
 near "the thesis' halves" "$(cell rates.tsv 1 mean)" \
 	"$(calc "117315 * 1.001e-15")" 1e-22
-ok "dry sliding" rwl --new -w even.tsv:21MPa -w low.tsv:0.15MPa -p 1h --archard 1e-9 -g 15um -i 10um
-# V = 5 um 2346.3 mm2; F = 0.45 A 21 MPa + 0.45 A 0.15 MPa + 0.1 A 10.575 MPa
-near "Archard's law" "$(cell out 1 archard)" \
-	"$(calc "5e-6 / (1e-9 * 20.94 / 1.065e9 * (0.45 * 21.15e6 + 0.1 * 10.575e6))")" 1e-6
-
-# What debrisgen writes: the particles and their summary tell the same.
+# What debrisgen writes: the particles and their summary tell the same, and under what
+# pressure, on what area and over what distance they came off.
 roughgen --points 32 --length 25um --sq 0.8um --corr 5um --count 4 |
-	bemcontact --pressure 21MPa --young 210GPa |
-	debrisgen --yield 355MPa --friction 0.3 --steps 3 --young 210GPa --summary steps.tsv >particles.tsv 2>err
+	bemcontact --pressure 21MPa --young 210GPa >contact.nrrd
+debrisgen --yield 355MPa --friction 0.3 --steps 3 --young 210GPa --summary steps.tsv contact.nrrd >particles.tsv 2>err
+is "the tables tell the scene" "$(sed -n '/^# stream/d; s/^# \([nfs][a-z_]*: .*\)/\1/p' steps.tsv | tr '\n' ' ')" \
+	"nominal_area: 6.25e-10 m2 nominal_pressure: 21000000 Pa friction: 0.3 step_distance: 2.5e-05 m "
+new="--new --threshold-gap 15um --initial-gap 10um --count 50"
 for f in particles.tsv steps.tsv; do
-	rwl --new -w $f -p 1h -B 625um2 -g 15um -i 10um -c 50 | grep -v '^#' >$f.life
+	rwl $new --wear $f --step-time 1h 2>err | grep -v '^#' >$f.life
 done
+rwl $new --wear steps.tsv:21MPa --fragment-area 625um2 --step-time 1h 2>err | grep -v '^#' >told.life
+same "the area of a fragment comes from the table" steps.tsv.life told.life
+# 25 um at 0.01 m/s: 2.5 ms
+rwl $new --wear steps.tsv --speed 10mm/s >speed.out 2>err
+near "the sliding speed makes the step time" "$(cell speed.out 1 q50)" \
+	"$(sed 1d steps.tsv.life | cut -f 4 | awk '{ printf "%.15g", $1 / 3600 * 2.5e-3 }')" 1e-6
+fails "a pressure that contradicts the table" 2 'steps.tsv:21Pa: the fragments were pressed with 2.1e+07 Pa' \
+	rwl $new --wear steps.tsv:21Pa --step-time 1h
+fails "an area that contradicts the table" 2 'fragments of 6.25e-10 m2, not of 1e-08 m2' \
+	rwl $new --wear steps.tsv --fragment-area 1e-8m2 --step-time 1h
+fails "a speed without a distance" 2 'tell no .# step_distance' rwl $new --wear even.tsv --speed 1m/s
+fails "two step times" 2 'exclude one another' rwl $new --wear steps.tsv --speed 1m/s --step-time 1h
+fails "several pressures in one table" 1 'nominal pressures of 2.1e+07 and of 1e+06 Pa in one table' sh -c \
+	"bemcontact --pressure 1MPa --young 210GPa contact.nrrd | debrisgen --yield 355MPa --friction 0.3 --steps 3 \
+	--young 210GPa 2>/dev/null | sed -e '/^# stream/d' -e '/^# end/d' -e 's/^[0-9]/1&/' | cat particles.tsv - | rwl $new --wear - --step-time 1h"
+sed -e '/^# stream/d' -e '/^# end/d' -e 's/^# nominal_area: .*/# nominal_area: 5 Pa/' steps.tsv >wrong.tsv
+fails "an area in Pa" 1 "wrong.tsv: nominal_area: '5 Pa' has the wrong unit, want m2" rwl $new --wear wrong.tsv --step-time 1h
+rwl --new --wear even.tsv --step-time 1h >out 2>err
+is "what is taken for granted is said" "$(cat err)" \
+	"rwl: $(sed -n 's/^# assumed: /taken for granted: /p' out)"
+is "all of it" "$(grep -o -e '--[a-z-]*' err | tr '\n' ' ')" \
+	"--fragment-area --area --threshold-leakage --radii --ports --viscosity "
+rwl --new --wear even.tsv --step-time 1000h --threshold-gap 11um --initial-gap 10.95um >out 2>err
+is "a life below one simulated step is said" "$(grep -c 'a life of .* s is below one simulated step' err)" 1
 same "a particle table and its summary" particles.tsv.life steps.tsv.life
-rwl --new -w steps.tsv -p 1h -c 2 >out
+rwl --new --wear steps.tsv --step-time 1h -c 2 >out
 is "how the fragments were made is passed on" "$(sed -n 's/^# wear: steps.tsv made by //p' out)" \
 	"$(sed -n '/^# cmd: /{s///;s/--first 0/& --count 4/;p;q;}' steps.tsv)"
 (eval "$(sed -n 's/^# wear: steps.tsv made by //p' out)") >again.tsv
@@ -149,26 +201,26 @@ same "and makes them all" steps.tsv.rows again.tsv.rows
 
 # Comparators and scores on an exponential leakage, which a grey model foretells.
 awk 'BEGIN { print "t\tleakage"; for (t = 0; t <= 600; t += 50) printf "%d\t%.12g\n", t, 1.5 * exp(t / 1186 * log(2.8 / 1.5)) }' >exp.tsv
-ok "grey model and scores" rwl -w even.tsv -u L/min -t h --grey --eol 1186h exp.tsv
+ok "grey model and scores" rwl --wear even.tsv --state-unit L/min --time-unit h --grey --eol 1186h exp.tsv
 # the model's a of an exponential of ratio q per step is -2 (q - 1) / (q + 1): 1e-4 here
 near "grey life of an exponential, h" "$(cell out 13 grey | awk '{ print $1 / 3600 }')" 586 0.2
 near "truth is what is left" "$(cell out 13 truth)" 2109600 0
 is "summary of the scores" "$(sed -n 's/^# \([a-z_]*\):.*/\1/p' out | tr '\n' ' ')" \
-	"cmd predictions bias mean_absolute_error root_mean_square_error relative_accuracy alpha_lambda prognostic_horizon coverage crps "
+	"stream cmd units assumed predictions infinite_medians bias mean_absolute_error root_mean_square_error relative_accuracy alpha_lambda prognostic_horizon coverage crps end "
 near "error is median less truth" "$(cell out 5 error)" \
 	"$(calc "$(cell out 5 q50) - $(cell out 5 truth)")" 1e-6
 
 # Filters.
-ok "filters" rwl -R filter -u L/min -t h exp.tsv
+ok "filters" rwl --wear-rate filter --state-unit L/min --time-unit h exp.tsv
 is "no prediction before the fourth observation" "$(cell out 3 mean) $(cell out 4 mean | sed 's/[0-9.e+]*/number/')" "nan number"
-ok "filters with the fragments' rate" rwl -w spread.tsv -p 1h -R filter -u L/min -t h exp.tsv
+ok "filters with the fragments' rate" rwl --wear spread.tsv --step-time 1h --wear-rate filter --state-unit L/min --time-unit h exp.tsv
 
 # A state of standard error 0.5 um: normal with 0.5 um over the rate of 0.1 um/h.
-ok "uncertain state" rwl -w even.tsv -p 1h -g 15um --state-error 0.5e-6 -c 20000 gap.tsv
+ok "uncertain state" rwl --wear even.tsv --step-time 1h --threshold-gap 15um --state-error 0.5e-6 -c 20000 gap.tsv
 near "5 h of standard deviation" "$(calc "($(cell out 1 q95) - $(cell out 1 q05)) / 2 / 1.644854")" 18000 400
 near "about the same median" "$(cell out 1 q50)" 180000 600
 near "beyond the threshold by ten of them" "$(cell out 5 q95)" 0 0
-ok "without fragments too" rwl -g 15um --state-error 0.5e-6 -c 20000 gap.tsv
+ok "without fragments too" rwl --threshold-gap 15um --state-error 0.5e-6 -c 20000 gap.tsv
 near "1 um/h" "$(calc "($(cell out 4 q95) - $(cell out 4 q05)) / 2 / 1.644854")" 1800 40
 
 # Run-in: the rates start after it, the state is known all the time.
@@ -176,20 +228,20 @@ printf 't\tgap\n0\t9e-6\n3600\t10e-6\n7200\t10.5e-6\n10800\t11e-6\n' >run-in.tsv
 ok "run-in is skipped" rwl --threshold-gap 15um --skip 1h run-in.tsv
 near "4 um at 0.5 um/h" "$(cell out 4 mean)" 28800 1e-6
 is "no rate before" "$(cell out 2 mean)" nan
-ok "and in the calibration" rwl --new -w even.tsv -g 15um -i 10um --skip 1h --calibrate run-in.tsv
+ok "and in the calibration" rwl --new --wear even.tsv --threshold-gap 15um --initial-gap 10um --skip 1h --calibrate run-in.tsv
 near "5 um at 0.5 um/h" "$(cell out 1 mean)" 36000 1e-6
 
 # Provenance: the command line rebuilds the bytes.
-rwl -w even.tsv -p 1h -g 15um --state gap.tsv >a
+rwl --wear even.tsv --step-time 1h --threshold-gap 15um --state gap.tsv >a
 eval "$(sed -n 's/^# cmd: //p' a)" >b
 same "the recorded command rebuilds a table" a b
 { echo "# cmd: cat gap.tsv"; cat gap.tsv; } >upstream.tsv
-rwl -w even.tsv -p 1h -g 15um upstream.tsv >a
+rwl --wear even.tsv --step-time 1h --threshold-gap 15um upstream.tsv >a
 eval "$(sed -n 's/^# cmd: //p' a)" >b 2>err
 is "so it does behind a pipe" "$(rows a)" "$(rows b)"
 
 # Work left out.
-rwl -w even.tsv -p 1h -g 15um --stats stats.tsv gap.tsv >/dev/null
+rwl --wear even.tsv --step-time 1h --threshold-gap 15um --stats stats.tsv gap.tsv >/dev/null
 is "no sizes are counted unless asked" "$(column sizes_skipped stats.tsv)" 1000
 is "no paths once the threshold is passed" "$(column paths_skipped stats.tsv)" 1000
 
@@ -206,27 +258,27 @@ fails "times that stand still" 1 'twice.tsv: line 3: time 0 s does not grow' rwl
 fails "a negative gap" 1 'minus.tsv: line 2: -1e-05 is not a gap' rwl minus.tsv
 fails "text for a number" 1 'text.tsv' rwl text.tsv
 fails "no column of the state" 1 'column.tsv.*leakage' rwl column.tsv
-fails "a step twice" 1 'again.tsv: line 3: realisation 0 has step 1 twice' rwl --new -w again.tsv -p 1h
-fails "no fragment" 1 'none.tsv: no fragment' rwl --new -w none.tsv -p 1h
-fails "negative wear" 1 'negative.tsv: line 2: volume' rwl --new -w negative.tsv -p 1h
-fails "half a step" 1 'half.tsv: line 2: step' rwl --new -w half.tsv -p 1h
-fails "no step time" 2 '--new needs --step-time' rwl --new -w even.tsv
-fails "classes without pressures" 2 'pressure of its own' rwl --new -w even.tsv -w low.tsv -p 1h
-fails "a pressure that is none" 2 '--wear even.tsv:21um: the pressure has the wrong unit' rwl --new -w even.tsv:21um -p 1h
-fails "no pressure" 2 'even.tsv:0Pa: want a pressure above 0' rwl --new -w even.tsv:0Pa -p 1h
-fails "a negative one" 2 'even.tsv:-1MPa: want a pressure above 0' rwl --new -w even.tsv:-1MPa -p 1h
-fails "no area" 2 ':0: want an area above 0' rwl --new -w even.tsv:21MPa:0 -p 1h
-fails "a negative one" 2 'mm2: want an area above 0' rwl --new -w even.tsv:21MPa:-1mm2 -p 1h
-fails "more than that" 2 'want FILE' rwl --new -w even.tsv:21MPa:1mm2:3 -p 1h
-fails "too much area" 2 'more than --area' rwl --new -w even.tsv:21MPa:9e3mm2 -p 1h
-fails "size without diameters" 1 'even.tsv.*diameter' rwl --new -w even.tsv -p 1h -d 5um
-fails "a unit that does not suit" 2 '--state-unit foo' rwl -u foo gap.tsv
-fails "levels that fall" 2 '--levels must grow' rwl -q 0.9,0.1 gap.tsv
+fails "a step twice" 1 'again.tsv: line 3: realisation 0 has step 1 twice' rwl --new --wear again.tsv --step-time 1h
+fails "no fragment" 1 'none.tsv: no fragment' rwl --new --wear none.tsv --step-time 1h
+fails "negative wear" 1 'negative.tsv: line 2: volume' rwl --new --wear negative.tsv --step-time 1h
+fails "half a step" 1 'half.tsv: line 2: step' rwl --new --wear half.tsv --step-time 1h
+fails "no step time" 2 '--new needs --step-time' rwl --new --wear even.tsv
+fails "classes without pressures" 2 'pressure of its own' rwl --new --wear even.tsv --wear low.tsv --step-time 1h
+fails "a pressure that is none" 2 '--wear even.tsv:21um: the pressure has the wrong unit' rwl --new --wear even.tsv:21um --step-time 1h
+fails "no pressure" 2 'even.tsv:0Pa: want a pressure above 0' rwl --new --wear even.tsv:0Pa --step-time 1h
+fails "a negative one" 2 'even.tsv:-1MPa: want a pressure above 0' rwl --new --wear even.tsv:-1MPa --step-time 1h
+fails "no area" 2 ':0: want an area above 0' rwl --new --wear even.tsv:21MPa:0 --step-time 1h
+fails "a negative one" 2 'mm2: want an area above 0' rwl --new --wear even.tsv:21MPa:-1mm2 --step-time 1h
+fails "more than that" 2 'want FILE' rwl --new --wear even.tsv:21MPa:1mm2:3 --step-time 1h
+fails "too much area" 2 'more than --area' rwl --new --wear even.tsv:21MPa:9e3mm2 --step-time 1h
+fails "size without diameters" 1 'even.tsv.*diameter' rwl --new --wear even.tsv --step-time 1h --critical-size 5um
+fails "a unit that does not suit" 2 '--state-unit foo' rwl --state-unit foo gap.tsv
+fails "levels that fall" 2 '--levels must grow' rwl --levels 0.9,0.1 gap.tsv
 printf 't\tvolume\n-1\t1e-9\n' >before.tsv
 fails "volume before the beginning" 1 'before.tsv: line 2: time -1 s is before' rwl before.tsv
-fails "one stream for two inputs" 2 'standard input cannot be both' rwl -w -:21MPa
-fails "scores of samples" 2 '--eol scores the summary' rwl -O --eol 10h gap.tsv
-fails "outlet below inlet" 2 'outlet pressure' rwl -D 21MPa:1MPa gap.tsv
+fails "one stream for two inputs" 2 'standard input cannot be both' rwl --wear -:21MPa
+fails "scores of samples" 2 '--eol scores the summary' rwl --samples --eol 10h gap.tsv
+fails "outlet below inlet" 2 'outlet pressure' rwl --ports 21MPa:1MPa gap.tsv
 fails "a unit that does not wear" 1 'minus2.tsv.*does not wear' sh -c \
-	'printf "t\tgap\n0\t2e-5\n1\t1e-5\n" >minus2.tsv; rwl --new -w even.tsv -C minus2.tsv'
+	'printf "t\tgap\n0\t2e-5\n1\t1e-5\n" >minus2.tsv; rwl --new --wear even.tsv --calibrate minus2.tsv'
 done_testing

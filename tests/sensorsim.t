@@ -51,7 +51,7 @@ near "pairs: mean residual delay" "$(cut -d' ' -f2 delays)" 3.5 0.2
 sensorsim --uniform 100um:100um --number 5 --gap 2ms --span 8ms --truth - >even.tsv
 column time1 even.tsv | awk 'NR > 1 { printf "%.6f ", $1 - t } { t = $1 }' >even
 is "a span without freedom spaces evenly" "$(cat even)" "0.002000 0.002000 0.002000 0.002000 "
-sensorsim -C 250mg/L -D 3g/cm3 -u 100um:100um -d 1s -S st -T - >mass.tsv
+sensorsim --concentration 250mg/L --density 3g/cm3 --uniform 100um:100um --duration 1s -S st --truth - >mass.tsv
 # 1 L/s of 0.25 g/L over 1.5708 ug; the window is 1 s less one transit and one pulse
 near "concentration gives the number" "$(column time1 mass.tsv | wc -l)" 154436 1600
 
@@ -60,28 +60,27 @@ sensorsim --gain 0.909 --snr 30dB --duration 19.95s pairs.tsv >again.au
 frames pairs.au 2 | head -20000 >a
 frames again.au 2 | head -20000 >b
 same "a truth table rebuilds its signal" a b
-sensorsim -u 50um:150um -N 20 -d 1s -T a >/dev/null
-sensorsim -u 50um:150um -N 20 -d 1s -T b -f 1 >/dev/null
-sensorsim -u 50um:150um -N 20 -d 1s -T c -s 2 >/dev/null
-ok "realisations and seeds differ" sh -c '! tail -1 a | cmp -s - b && ! tail -1 a | grep -qf - b &&
-	! tail -1 a | grep -qf - c'
-sensorsim --truth - -u 50um:150um -N 20 -d 1s >d
-tail -20 a >a20
-tail -20 d >d20
+sensorsim --uniform 50um:150um --number 20 --duration 1s --truth a >/dev/null
+sensorsim --uniform 50um:150um --number 20 --duration 1s --truth b -f 1 >/dev/null
+sensorsim --uniform 50um:150um --number 20 --duration 1s --truth c -s 2 >/dev/null
+ok "realisations and seeds differ" sh -c 'grep "^19" a >last && ! grep -qf last b && ! grep -qf last c'
+sensorsim --truth - --uniform 50um:150um --number 20 --duration 1s >d
+grep -v '^#' a >a20
+grep -v '^#' d >d20
 same "--truth - gives the same particles" a20 d20
 
 # pipe profiles: the flow-weighted mean velocity of even mixing
-sensorsim -u 50um:50um -N 20000 -d 1000 -p laminar -T - | column velocity /dev/stdin >v
+sensorsim --uniform 50um:50um --number 20000 --duration 1000 --profile laminar --truth - | column velocity /dev/stdin >v
 # <v^2>/<v> = 4/3 U, sd 0.48 U, less what is nearer than 1 % to the wall
 near "laminar: mean velocity of the particles" "$(awk '{ s += $1 } END { print s / NR / 12.7324 }' v)" \
 	1.3335 0.014
-sensorsim -u 50um:50um -N 20000 -d 1000 -p turbulent -T - | column velocity /dev/stdin >v
+sensorsim --uniform 50um:50um --number 20000 --duration 1000 --profile turbulent --truth - | column velocity /dev/stdin >v
 # (60/49)^2 * <y^(2/7)> = 1.4994 * 49/72 = 1.0204
 near "turbulent: mean velocity of the particles" "$(awk '{ s += $1 } END { print s / NR / 12.7324 }' v)" \
 	1.021 0.005
 
 # disturbances
-sensorsim -u 1um:1um -N 0 -d 10 --noise 0.1 --common 0.5 | cat >noise.au
+sensorsim --uniform 1um:1um --number 0 --duration 10 --noise 0.1 --common 0.5 | cat >noise.au
 frames noise.au 2 >noise.txt
 awk '{ a += $1; b += $2; aa += $1 * $1; bb += $2 * $2; ab += $1 * $2; if (NR > 1) lag += $1 * old; old = $1 }
 	END { print sqrt(aa / NR), sqrt(bb / NR), ab / sqrt(aa * bb), lag / aa, a / NR }' noise.txt >moments
@@ -90,17 +89,17 @@ near "noise: rms of sensor 2" "$(cut -d' ' -f2 moments)" 0.1 0.001
 near "noise: correlation of the sensors" "$(cut -d' ' -f3 moments)" 0.5 0.012
 near "noise: white" "$(cut -d' ' -f4 moments)" 0 0.015
 near "noise: no offset" "$(cut -d' ' -f5 moments)" 0 0.0015
-sensorsim -u 1um:1um -N 0 -d 10 --noise 0.1 --corner 500Hz | cat >color.au
+sensorsim --uniform 1um:1um --number 0 --duration 10 --noise 0.1 --corner 500Hz | cat >color.au
 frames color.au 2 | awk '{ aa += $1 * $1; if (NR > 1) lag += $1 * old; old = $1 }
 	END { print sqrt(aa / NR), lag / aa }' >moments
 near "coloured noise: rms" "$(cut -d' ' -f1 moments)" 0.1 0.003
 near "coloured noise: exp(-2 pi corner / rate)" "$(cut -d' ' -f2 moments)" 0.7304 0.01
-sensorsim -u 1um:1um -N 0 -d 2 --mains 0.5,0.3,0.05 --pump 0.2,0.1 >lines.au
+sensorsim --uniform 1um:1um --number 0 --duration 2 --mains 0.5,0.3,0.05 --pump 0.2,0.1 >lines.au
 frames lines.au 2 >lines.txt
 for line in 50:0.5 150:0.3 250:0.05 2000:0.2 4000:0.1; do
 	near "line at ${line%:*} Hz" "$(level lines.txt "${line%:*}" 2)" "${line#*:}" 1e-10
 done
-sensorsim -u 1um:1um -N 0 -d 200 -r 100 --drift 1 --drift-time 1s >drift.au
+sensorsim --uniform 1um:1um --number 0 --duration 200 -r 100 --drift 1 --drift-time 1s >drift.au
 frames drift.au 2 | awk '{ aa += $1 * $1; h[NR] = $1; if (NR > 100) lag += $1 * h[NR - 100] }
 	END { print sqrt(aa / NR), lag / aa }' >moments
 # 200 correlation times: the standard error of both is about 0.1
@@ -108,16 +107,112 @@ near "drift: rms" "$(cut -d' ' -f1 moments)" 1 0.25
 near "drift: correlation after its time" "$(cut -d' ' -f2 moments)" 0.3679 0.25
 
 # (3-1) by the coils: 2 N ND I mu0 (mur-1)/mur (pi/6) (pi/2) b / L
-sensorsim -u 100um:100um -N 1 -d 1 -T - --coil 200,150,0.3A,2000,5mm,9mm,1e6 >coil.tsv
+sensorsim --uniform 100um:100um --number 1 --duration 1 --truth - --coil 200,150,0.3A,2000,5mm,9mm,1e6 >coil.tsv
 want=$(awk 'BEGIN { pi = 3.14159265358979; b = 1 / 25e-6 - 1 / 81e-6
 	k = 2 * 200 * 150 * 0.3 * 1.25663706212e-6 * 1999 / 2000 * pi / 6 * pi / 2 * b / (0.4 / pi) * 1e6
 	printf "%.12g", k * 1e-12 * 0.04 / pi * 1e3 }')
 near "amplitude by the coils" "$(column amplitude coil.tsv)" "$want" 1e-9
 
 # work done and left out
-sensorsim -u 50um:150um -N 10 -d 100 -S stats >/dev/null
+sensorsim --uniform 50um:150um --number 10 --duration 100 -S stats >/dev/null
 near "each pulse touches its own samples" "$(column pulse_samples stats)" 2000 20
 is "constant memory" "$(column particles_pending stats | awk '{ print $1 <= 10 }')" 1
+
+# What the particles are made of.
+printf 'time\tdiameter\n0.02\t1e-4\n' >one.tsv
+sensorsim --mur 1 --sigma 5.8e7 --truth copper.tsv one.tsv >/dev/null
+# golden polarisability of 50 um at 100 kHz: -8.32103627821e-5 - 7.6315414178458e-3 i, by 2
+near "copper: in phase" "$(column amplitude copper.tsv | awk '{ printf "%.12g", $1 * 1e5 }')" -4.160518139105 1e-9
+near "copper: in quadrature" "$(column quadrature copper.tsv)" -3.8157707089229e-3 1e-14
+near "copper: phase" "$(column phase copper.tsv)" -1.58169944 1e-7
+sensorsim --material copper --truth named.tsv one.tsv >/dev/null
+is "copper by name" "$(column amplitude named.tsv) $(column material named.tsv)" \
+	"$(column amplitude copper.tsv) copper"
+sensorsim --material copper --phase 90deg --truth turned.tsv one.tsv >/dev/null
+near "a demodulator a quarter of a turn ahead" "$(column amplitude turned.tsv)" 3.8157707089229e-3 1e-14
+sensorsim --material steel --quadrature --gain 0.5 --duration 60ms --truth steel.tsv one.tsv >iq.au
+frames iq.au 4 >iq.txt
+is "frames of four channels" "$(wc -l <iq.txt) $(head -1 iq.txt | wc -w)" "600 4"
+for c in 1:amplitude:1 2:quadrature:1 3:amplitude:0.5 4:quadrature:0.5; do
+	set -- $(echo "$c" | tr : ' ')
+	most=$(awk -v c="$1" '{ x = $c < 0 ? -$c : $c; if (x > m) m = x } END { print m }' iq.txt)
+	# the peak lies between two of a hundred samples of the sine: up to 0.05 % off
+	near "quadrature: peak of channel $1" "$most" \
+		"$(column "$2" steel.tsv | awk -v g="$3" '{ x = g * $1; print x < 0 ? -x : x }')" \
+		"$(column "$2" steel.tsv | awk '{ x = $1 * 6e-4; print x < 0 ? -x : x }')"
+done
+sensorsim --uniform 100um:100um --number 4000 --duration 400s --rate 100 --truth mixed.tsv \
+	--material steel=0.7,aluminium=0.3 >/dev/null
+near "a mixture by its shares" "$(column material mixed.tsv | grep -c aluminium)" 1200 90
+head -30 mixed.tsv | sensorsim --truth again.tsv --seed 9 >/dev/null
+is "materials of a table are kept" "$(column amplitude again.tsv | head -20)" \
+	"$(column amplitude mixed.tsv | head -20)"
+fails "a material that is none" 2 "no 'cheese'; there are ferrous, steel" \
+	sensorsim --material cheese one.tsv
+fails "a share that is none" 2 "'x' is no share" sensorsim --material steel=x one.tsv
+fails "two ways to name a material" 2 "exclude each other" \
+	sensorsim --material steel --mur 3 one.tsv
+printf 'time\tdiameter\tmaterial\n0.02\t1e-4\tcheese\n' >bad.tsv
+fails "a material of a table that is none" 1 "bad.tsv: line 2: material 'cheese', want one of" \
+	sensorsim bad.tsv
+
+# Events that are no particles: each adds what it says, where the truth says it is.
+some="--uniform 100um:100um --number 10 --duration 3s --rate 2000 --noise 10mV"
+# shellcheck disable=SC2086 # options are words
+sensorsim $some >plain.au
+frames plain.au 2 >plain.txt
+for kind in bubble shock impulse transient dropout; do
+	# shellcheck disable=SC2086
+	sensorsim $some --"${kind}s" 2 --truth events.tsv >events.au
+	frames events.au 2 >events.txt
+	is "${kind}s stand in the truth" "$(column kind events.tsv | sort -u | tr '\n' ' ')" \
+		"$(printf '%s\nparticle\n' $kind | sort | tr '\n' ' ')"
+	# Where the record differs from that without them, an event is near: a transient lasts
+	# 36 times three pulses, a bubble begins one and a half before its middle.
+	paste plain.txt events.txt | awk '$1 != $3 || $2 != $4 { print (NR - 1) / 2e3 }' >where
+	awk -F '\t' -v kind="$kind" '!/^#/ && $NF == kind { print $2 }' events.tsv >when
+	is "${kind}s change the record there and nowhere else" "$(awk 'NR == FNR { t[NR] = $1; n = NR; next }
+		{ near = 0; for (i = 1; i <= n; i++) if ($1 > t[i] - 0.0155 && $1 < t[i] + 1.1) { near = 1; hit[i] = 1 }
+		  bad += !near } END { for (i in hit) k++; print bad + 0, (k >= n - 1) }' when where)" "0 1"
+	near "$kind: mean number" "$(wc -l <when)" 6 6
+done
+is "dropouts read 0" "$(awk '$1 == 0 && $2 == 0' events.txt | wc -l | awk '{ print ($1 > 30) }')" 1
+sensorsim --uniform 100um:100um --number 10 --duration 1s --saturation 0.6 --gain 0.5 \
+	--truth limited.tsv >limited.au
+frames limited.au 2 >limited.txt
+is "saturation cuts sensor 1 and not sensor 2" "$(awk '$1 > a { a = $1 } $2 > b { b = $2 }
+	END { printf "%.6g %d", a, (b > 0.49 && b < 0.6) }' limited.txt)" "0.6 1"
+is "and the truth says so" "$(column saturated limited.tsv | sort -u)" 1
+sensorsim --uniform 100um:100um --number 2000 --duration 2000s --rate 20 --flow-drift 0.05 \
+	--drift-time 5s --truth drifting.tsv >/dev/null
+column velocity drifting.tsv | awk '{ x = $1 / 12.7324 - 1; s += x; q += x * x; if (NR > 1) d += (x - l) ^ 2; l = x }
+	END { print s / NR, sqrt(q / NR), d / q }' >moments
+# 400 correlation times; neighbours 1 s apart keep exp(-1/5): 2 (1 - 0.82) = 0.36
+near "flow drift: none on average" "$(cut -d' ' -f1 moments)" 0 0.012
+near "flow drift: rms" "$(cut -d' ' -f2 moments)" 0.05 0.006
+near "flow drift: neighbours are alike" "$(cut -d' ' -f3 moments)" 0.33 0.12
+sensorsim --uniform 1um:1um --number 0 --duration 20s --rate 1000 --mains 1 --mains-wander 0.5 \
+	--drift-time 2s >wander.au
+frames wander.au 2 | awk 'NR > 1 && l < 0 && $1 >= 0 { t = (NR - 1 - $1 / ($1 - l)) / 1e3
+	if (n++) { f = 1 / (t - last); s += f; q += f * f } last = t } { l = $1 }
+	END { n--; print s / n, sqrt(q / n - (s / n) ^ 2) }' >moments
+# ten correlation times
+near "mains wander about their frequency" "$(cut -d' ' -f1 moments)" 50 0.5
+near "mains wander: rms" "$(cut -d' ' -f2 moments)" 0.5 0.2
+sensorsim --uniform 100um:100um --number 200 --duration 100s --rate 1000 --gain-drift 0.1 --drift-time 0.3s \
+	--gap 100ms --truth gains.tsv >gains.au
+frames gains.au 2 | awk -v f=gains.tsv 'BEGIN { while ((getline line < f) > 0) { split(line, c, "\t")
+	if (c[1] ~ /^[0-9]/) { n++; a[n] = int(c[2] * 1000 + 0.5); b[n] = int(c[3] * 1000 + 0.5) } } }
+	{ x[NR - 1] = $1; y[NR - 1] = $2 }
+	END { for (i = 1; i <= n; i++) { e = h = 0
+		for (k = -6; k <= 6; k++) { e += x[a[i] + k] ^ 2; h += y[b[i] + k] ^ 2 }
+		g = sqrt(h / e); s += g; q += g * g } print s / n, sqrt(q / n - (s / n) ^ 2) }' >moments
+near "gain drift: mean of sensor 2" "$(cut -d' ' -f1 moments)" 1 0.03
+near "gain drift: rms" "$(cut -d' ' -f2 moments)" 0.1 0.02
+sensorsim --uniform 100um:100um --number 2000 --duration 2000s --rate 20 --phase-drift 5deg --drift-time 5s \
+	--truth phases.tsv >/dev/null
+near "phase drift: rms" "$(column phase phases.tsv | awk '{ q += $1 * $1 } END { print sqrt(q / NR) }')" 0.0873 0.011
+fails "events without an end" 2 'need --duration' sensorsim --bubbles 1 one.tsv
 
 # what it refuses
 fails "no table" 1 'none.tsv' sensorsim none.tsv
@@ -131,16 +226,16 @@ printf 'time\tdiameter\n0.02\tnan\n' >bad.tsv
 fails "missing diameter" 1 'bad.tsv: line 2: diameter' sensorsim bad.tsv
 printf 'time\tdiameter\tvelocity\n0.02\t1e-4\t0.01\n' >bad.tsv
 fails "a particle that stands still" 1 'bad.tsv: line 2: velocity' sensorsim bad.tsv
-fails "a particle as wide as the pipe" 2 'bore' sensorsim -u 1cm:2cm -N 1 -d 1
-fails "neither number nor concentration" 2 'number' sensorsim -u 1um:2um -d 1
-fails "no window" 2 'duration' sensorsim -u 1um:2um -N 3
-fails "a window too short" 2 'no room' sensorsim -u 1um:2um -N 300 -i 10ms -d 1
+fails "a particle as wide as the pipe" 2 'bore' sensorsim --uniform 1cm:2cm --number 1 --duration 1
+fails "neither number nor concentration" 2 'number' sensorsim --uniform 1um:2um --duration 1
+fails "no window" 2 'duration' sensorsim --uniform 1um:2um --number 3
+fails "a window too short" 2 'no room' sensorsim --uniform 1um:2um --number 300 --gap 10ms --duration 1
 fails "a line above half the rate" 2 '^sensorsim: --pump: a line at 4000 Hz is above half the rate, 2500 Hz$' \
-	sensorsim -r 5000 -P 0.1,0.1 -u 1um:1um -N 1 -d 1
+	sensorsim -r 5000 --pump 0.1,0.1 --uniform 1um:1um --number 1 --duration 1
 is "leaves no stream that looks whole" "$(wc -c <out)" 0
 fails "one of two ways to say how many" 2 'needs one of --number and --concentration' \
-	sensorsim -u 1um:1um -N 1 -C 1 -d 1
-fails "a full disk" 1 'o space' sh -c 'sensorsim -u 1um:1um -N 1 -d 1 >/dev/full'
+	sensorsim --uniform 1um:1um --number 1 --concentration 1 --duration 1
+fails "a full disk" 1 'o space' sh -c 'sensorsim --uniform 1um:1um --number 1 --duration 1 >/dev/full'
 
 printf 'time\tdiameter\n1e300\t1e-4\n' >never.tsv
 fails "a particle after the end of days" 1 'line 2: time 1e+300 s, want times in order, up to 1e9 s' \

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Signal streams: what is read, what is refused and in which words; sox and numpy read ours
 . "$(dirname "$0")/tap.sh"
+. "$top/tests/au.sh"
 
 # word N: N as four bytes, big-endian, in printf escapes
 word() {
@@ -22,11 +23,7 @@ unfiltered() {
 }
 # samples FILE: the samples of our 64-bit AU output as numbers
 samples() {
-	skip=$(od -An -tu1 -j4 -N4 "$1" | awk '{ print ((($1 * 256) + $2) * 256 + $3) * 256 + $4 }')
-	tail -c +"$((skip + 1))" "$1" | od -An -v -tu1 -w8 | awk '{
-		s = $1 >= 128 ? -1 : 1; e = ($1 % 128) * 16 + int($2 / 16); m = $2 % 16
-		for (i = 3; i <= 8; i++) m = m * 256 + $i
-		printf "%.10g ", e ? s * (1 + m / 4503599627370496) * 2 ^ (e - 1023) : 0 }'
+	frames "$1" | awk '{ printf "%.10g ", $1 }'
 }
 { au 24 4294967295 3 8000 2; printf '\100\000\300\000\040\000\340\000'; } >pcm16.au
 ok '16-bit PCM is read' sh -c 'bpfilter --band 0:4000 --order 2 --zero-phase --no-scale pcm16.au >out.au'
@@ -49,7 +46,7 @@ au 24 4294967295 7 8000 2 >empty.au
 ok 'a signal without samples' sh -c 'bpfilter --band 0:4000 --order 2 empty.au >out.au'
 
 fails 'a header cut off' 1 'want an AU header of at least 24 bytes, got 6' sh -c 'head -c 6 double.au | bpfilter'
-fails 'another format' 1 "want AU ('.snd'), got 'RIFF'" sh -c 'printf RIFFxxxxxxxxxxxxxxxxxxxxxxxx | bpfilter'
+fails 'another format' 1 "this is WAV audio, want signal: sox" sh -c 'printf RIFFxxxxxxxxxxxxxxxxxxxxxxxx | bpfilter'
 # refuse NAME PATTERN HEADER...
 refuse() {
 	name=$1
@@ -78,7 +75,7 @@ is 'dripped input gives the same samples' "$(samples dripped.au)" "$(samples who
 
 if command -v sox >/dev/null; then
 	is 'sox reads ours' "$(unfiltered pcm16.au 4000 | sox -t au - -t dat - 2>/dev/null |
-		awk '!/^;/ { printf "%g %g ", $2, $3 }')" '0.5 -0.5 0.25 -0.25 '
+		awk '!/^;/ { printf "%g %g ", $2, $3 }')" '0.5 -0.5 0.25 -0.25 0 0 '
 else
 	skip 'sox reads ours' 'no sox'
 fi
@@ -87,7 +84,7 @@ if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
 	is 'numpy reads ours' "$(/usr/bin/python3 -c "
 import numpy as np
 b = open('out.au', 'rb').read()
-x = np.frombuffer(b, '>f8', offset=int.from_bytes(b[4:8], 'big')).reshape(-1, 2)
+x = np.frombuffer(b, '>f8', offset=int.from_bytes(b[4:8], 'big')).reshape(-1, 2)[:-1]
 print(x.shape, x[1, 1])")" '(2, 2) -0.25'
 else
 	skip 'numpy reads ours' 'no numpy'
@@ -95,8 +92,8 @@ fi
 if command -v octave >/dev/null; then
 	unfiltered pcm16.au 4000 >out.au
 	is 'Octave reads ours' "$(octave --no-gui --norc --eval \
-		"[x, rate] = audioread('out.au'); printf('%g %g %g', rate, x(1, 1), x(2, 2))" 2>/dev/null)" \
-		'8000 0.5 -0.25'
+		"[x, rate] = audioread('out.au'); x = x(1:end-1, :); printf('%g %g %g %g', rate, x(1, 1), x(end, 2), rows(x))" 2>/dev/null)" \
+		'8000 0.5 -0.25 2'
 else
 	skip 'Octave reads ours' 'no octave'
 fi
@@ -104,7 +101,7 @@ if command -v gnuplot >/dev/null; then
 	unfiltered pcm16.au 4000 >out.au
 	skip=$(od -An -tu1 -j4 -N4 out.au | awk '{ print ((($1 * 256) + $2) * 256 + $3) * 256 + $4 }')
 	is 'gnuplot reads ours' "$(gnuplot -e "set table; plot 'out.au' binary skip=$skip format='%double%double' endian=big using 0:1 with lines" |
-		awk '/^ *[0-9]/ { printf "%g %g ", $1, $2 }')" '0 0.5 1 0.25 '
+		awk '/^ *[0-9]/ { printf "%g %.4f ", $1, $2 }')" '0 0.5000 1 0.2500 2 0.0000 '
 else
 	skip 'gnuplot reads ours' 'no gnuplot'
 fi

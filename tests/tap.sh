@@ -2,6 +2,7 @@
 # tap.sh - what a shell test needs; read it with: . "$(dirname "$0")/tap.sh"
 #
 #	is NAME GOT WANT           equal strings
+#	like NAME GOT PATTERN      GOT matches a basic regular expression
 #	near NAME GOT WANT TOL     |got - want| <= tol
 #	rising NAME NUMBER...      numbers, none below the one before (nan is no number)
 #	ok NAME COMMAND...         command succeeds
@@ -39,6 +40,8 @@ fail() {
 	tests=$((tests + 1))
 	bad=$((bad + 1))
 	echo "not ok $tests - $1"
+	line=$(grep -nF -m 1 -e "$1" "$test_file" | cut -d: -f1)
+	echo "# at ${test_file#"$top"/}${line:+:$line}"
 	shift
 	for line in "$@"; do
 		printf '%s\n' "$line" | sed 's/^/# /'
@@ -52,6 +55,10 @@ skip() {
 
 is() {
 	if [ "$2" = "$3" ]; then pass "$1"; else fail "$1" "got:  $2" "want: $3"; fi
+}
+
+like() {
+	if printf '%s\n' "$2" | grep -q -e "$3"; then pass "$1"; else fail "$1" "got:  $2" "want: $3"; fi
 }
 
 near() {

@@ -60,7 +60,7 @@ row() {
 		"$(echo "$7 $4" | awk '{ printf $1 == "-" ? "-" : "%.4g", $1 * $2 }')" "$8"
 }
 
-last=$(tail -n 1 50N.contact | cut -f 1)
+last=$(grep -v '^#' 50N.contact | tail -n 1 | cut -f 1)
 v50=$(fit 50N.fits volume_per_step)
 v100=$(fit 100N.fits volume_per_step)
 

@@ -31,7 +31,7 @@ row "fig 8" "cells in contact, step 1" % 100 - "$(value $c contact_fraction 1)" 
 	"falls as the slope 2 Sq / corr grows"
 row "fig 8" "largest pressure, step 1" GPa 1e-9 - "$(value $c max_pressure 1)" - \
 	"elastic: the mean is 0.35 E* times the slope; yield is 0.355"
-row "fig 9" "largest von Mises stress, step 1" GPa 1e-9 - "$(value $c max_von_mises 1)" - \
+row "fig 9" "largest von Mises stress, step 1" GPa 1e-9 - "$(value $c max_stress 1)" - \
 	"(2-9), (2-10) as corrected"
 row "fig 12 a" "largest particle, step 1" um 1e6 307 "$(value $c max_diameter 1)" \
 	"$(value $p max_diameter 1)" "a point load of 50 N gives 307.0 for the whole set"

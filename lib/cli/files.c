@@ -1,5 +1,9 @@
 #include "cli/files.h"
 #include "cli/msg.h"
+#include "cli/text.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -12,7 +16,7 @@ static struct {
 	ino_t number;
 	int written;
 } used[FILES_MAX];
-static int nused;
+static int nused, claimed_output;
 
 static void claim(FILE *f, const char *name, int written)
 {
@@ -36,14 +40,47 @@ static void claim(FILE *f, const char *name, int written)
 	used[nused++].written = written;
 }
 
+static int follow;
+
+void file_follow(void)
+{
+	follow = 1;
+}
+
+int file_followed(void)
+{
+	return follow;
+}
+
+static void open_closed(int fd, int flags)
+{
+	if (fcntl(fd, F_GETFD) >= 0 || errno != EBADF)
+		return;
+	if (open("/dev/null", flags) != fd)
+		exit(EXIT_RUN); /* and nowhere to say why */
+}
+
+void files_start(void)
+{
+	open_closed(STDIN_FILENO, O_WRONLY);  /* cannot be read */
+	open_closed(STDOUT_FILENO, O_RDONLY); /* cannot be written */
+	open_closed(STDERR_FILENO, O_WRONLY);
+}
+
+void file_claim_output(void)
+{
+	if (!claimed_output++)
+		claim(stdout, "standard output", 1);
+}
+
 FILE *file_open(const char *path, const char **name)
 {
 	int standard = !path || strcmp(path, "-") == 0;
 	FILE *f = standard ? stdin : fopen(path, "rb");
 
 	if (!f)
-		die(EXIT_RUN, "%s:", path);
-	*name = standard ? "standard input" : path;
+		die(EXIT_RUN, "%s:", text_file_name(path));
+	*name = standard ? "standard input" : text_file_name(path);
 	claim(f, *name, 0);
 	return f;
 }
@@ -56,9 +93,12 @@ FILE *file_reserve(const char *path, const char **name)
 		die(EXIT_USAGE, "-: an output wants the name of a file");
 	f = path ? fopen(path, "ab") : stdout; /* not emptied yet */
 	if (!f)
-		die(EXIT_RUN, "%s:", path);
-	*name = path ? path : "standard output";
-	claim(f, *name, 1);
+		die(EXIT_RUN, "%s:", text_file_name(path));
+	*name = path ? text_file_name(path) : "standard output";
+	if (path)
+		claim(f, *name, 1);
+	else
+		file_claim_output();
 	return f;
 }
 

@@ -9,6 +9,14 @@
 
 #include <stdio.h>
 
+/* First of all: what was closed of standard input, output and error becomes a descriptor
+ * that fails, or drops messages, lest a file that is opened takes its place. */
+void files_start(void);
+/* Standard output is in use, by whatever is printed there. */
+void file_claim_output(void);
+/* Inputs that end without an end are still being written: --follow. */
+void file_follow(void);
+int file_followed(void);
 /* To read; path NULL or "-" is standard input. */
 FILE *file_open(const char *path, const char **name);
 /* To write, emptied; path NULL is standard output, and "-" is misuse. */

@@ -1,5 +1,6 @@
 #include "cli/msg.h"
 #include "cli/progress.h"
+#include "cli/text.h"
 #include <errno.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -23,16 +24,19 @@ const char *msg_program(void)
 
 static void say(const char *format, va_list ap)
 {
+	/* No memory is taken: it may be what the message is about. */
+	static char text[4096], line[4 * sizeof text];
 	int reason = errno;
 	size_t length = strlen(format);
 
 	progress_clear();
 	fflush(stdout);
-	fprintf(stderr, "%s: ", program);
-	vfprintf(stderr, format, ap);
+	vsnprintf(text, sizeof text, format, ap);
+	text_escape_to(line, text);
 	if (length && format[length - 1] == ':')
-		fprintf(stderr, " %s", strerror(reason));
-	fputc('\n', stderr);
+		fprintf(stderr, "%s: %s %s\n", program, line, strerror(reason));
+	else
+		fprintf(stderr, "%s: %s\n", program, line);
 }
 
 void die(int status, const char *format, ...)

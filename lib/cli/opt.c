@@ -1,4 +1,5 @@
 #include "cli/opt.h"
+#include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
 #include <ctype.h>
@@ -10,12 +11,13 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { ROWS_MAX = 64 };
+enum { ROWS_MAX = 128, LETTERLESS = 256 };
 
-static int verbose_flag;
+static int verbose_flag, follow;
 static const char *stats_path;
 
 static const struct opt common[] = {
+	OPT_HEADING("All programs"),
 	{ 'S', "stats", OPT_TEXT, UNIT_NONE, &stats_path, 0, 0, "FILE",
 		"write one row of work counters to FILE", 0, 1 },
 	{ 'v', "verbose", OPT_FLAG, UNIT_NONE, &verbose_flag, 0, 0, 0,
@@ -27,11 +29,19 @@ static const struct opt common[] = {
 	OPT_END,
 };
 
+static const struct opt reading[] = {
+	{ 0, "follow", OPT_FLAG, UNIT_NONE, &follow, 0, 0, 0,
+		"wait for the end of an input that is still being written", 0, 1 },
+	OPT_END,
+};
+
 /* The command line that was parsed: what opt_cmd() and shell_done() need. */
 static const struct prog *prog;
 static char *recorded; /* " --word value ..." */
 static char **operand; /* NULL-ended */
-static unsigned char given[128];
+static const struct opt *rows[ROWS_MAX];
+static unsigned char given[ROWS_MAX];
+static int nrows;
 
 /* Shell quoting.  A blank after a colon is put outside of the quoted piece before
  * it, since ParaView's NRRD reader stumbles over ": ". */
@@ -92,7 +102,7 @@ static const char *unit_shown(enum unit unit)
 /* A value that could not be given says that there is none, and is not shown. */
 static void print_default(const struct opt *o)
 {
-	const char *unit = unit_shown(o->unit), *blank = *unit ? " " : "";
+	char text[NUMBER_TEXT];
 
 	switch (o->kind) {
 	case OPT_INT:
@@ -101,7 +111,8 @@ static void print_default(const struct opt *o)
 		break;
 	case OPT_NUM:
 		if (isfinite(*(double *)o->var))
-			printf(" (default %.6g%s%s)", *(double *)o->var, blank, unit);
+			printf(" (default %s)",
+				quantity_text(*(double *)o->var, o->unit, text));
 		break;
 	case OPT_WORD:
 		printf(" (default %s)", o->words[*(int *)o->var]);
@@ -123,7 +134,7 @@ static void print_default(const struct opt *o)
 		if (c->word >= 0)
 			printf(" (default %s)", o->words[c->word]);
 		else if (!isnan(c->value))
-			printf(" (default %.6g%s%s)", c->value, blank, unit);
+			printf(" (default %s)", quantity_text(c->value, o->unit, text));
 		break;
 	}
 	case OPT_LIST: {
@@ -131,26 +142,33 @@ static void print_default(const struct opt *o)
 		const char separator[2] = { separator_of(o) };
 
 		for (int i = 0; i < l->n; i++)
-			printf("%s%.*s%.6g", i ? "" : " (default ", i > 0, separator,
-				l->v[i]);
+			printf("%s%.*s%s", i ? "" : " (default ", i > 0, separator,
+				quantity_text(l->v[i], o->unit, text));
 		if (l->n)
-			printf("%s%s)", blank, unit);
+			putchar(')');
 		break;
 	}
 	case OPT_FLAG:
 	case OPT_TEXTS:
 	case OPT_ROWS:
+	case OPT_GROUP:
 		break;
 	}
 }
 
-static void print_rows(const struct opt *const *rows, int n)
+static void print_rows(void)
 {
-	for (int i = 0; i < n; i++) {
+	for (int i = 0; i < nrows; i++) {
 		const struct opt *o = rows[i];
-		int column = printf("  -%c, --%s%s%s", o->letter, o->word,
-			o->arg ? " " : "", o->arg ? o->arg : "");
+		int column;
 
+		if (o->kind == OPT_GROUP) {
+			printf("\n%s:\n", o->word);
+			continue;
+		}
+		column = o->letter ? printf("  -%c, --", o->letter) : printf("      --");
+		column += printf(
+			"%s%s%s", o->word, o->arg ? " " : "", o->arg ? o->arg : "");
 		printf(column < 30 ? "%*s" : "\n%*s", column < 30 ? 32 - column : 32, "");
 		printf("%s", o->help);
 		if (o->var)
@@ -159,20 +177,25 @@ static void print_rows(const struct opt *const *rows, int n)
 	}
 }
 
-static _Noreturn void help(const struct opt *const *rows, int n)
+static _Noreturn void help(void)
 {
 	printf("usage: %s [option ...]%s%s\n%s\n", prog->name, *prog->operands ? " " : "",
 		prog->operands, prog->gist);
-	printf("reads: %s\nwrites: %s\n\n", prog->reads, prog->writes);
-	print_rows(rows, n);
+	printf("reads: %s\nwrites: %s\n", prog->reads, prog->writes);
+	if (nrows && rows[0]->kind != OPT_GROUP)
+		putchar('\n');
+	print_rows();
 	exit(shell_done(EXIT_SUCCESS));
 }
 
 static void check_range(const struct opt *o, const char *text, double value)
 {
+	char least[NUMBER_TEXT], most[NUMBER_TEXT];
+
 	if (value < o->min || value > o->max)
-		die(EXIT_USAGE, "--%s %s: want %g to %g%s%s", o->word, text, o->min,
-			o->max, *unit_shown(o->unit) ? " " : "", unit_shown(o->unit));
+		die(EXIT_USAGE, "--%s %s: want %s to %s", o->word, text,
+			quantity_text(o->min, o->unit, least),
+			quantity_text(o->max, o->unit, most));
 }
 
 static double parse_number(const struct opt *o, const char *text)
@@ -181,11 +204,35 @@ static double parse_number(const struct opt *o, const char *text)
 	double value;
 
 	wrong = unit_parse(text, o->unit, "", &value, &end);
+	if (wrong && unit_meant(text, o->unit))
+		die(EXIT_USAGE, "--%s %s: did you mean %s?", o->word, text,
+			unit_meant(text, o->unit));
 	if (wrong)
 		die(EXIT_USAGE, "--%s %s: '%s' %s%s%s", o->word, text, text, wrong,
 			*unit_shown(o->unit) ? ", want " : "", unit_shown(o->unit));
 	check_range(o, text, value);
 	return value;
+}
+
+const char *opt_reads(void)
+{
+	return prog ? prog->reads : "another stream";
+}
+
+/* "mm" after "--length 1": a unit, not a file. */
+static void check_operand(const char *text)
+{
+	char *one = xprintf("1%s", text);
+	const char *end;
+	double value;
+
+	if (*text && unit_parse(one, UNIT_ANY, "", &value, &end) == NULL &&
+		access(text, F_OK) != 0)
+		die(EXIT_USAGE,
+			"'%s' is taken for a file, which is not there; a unit stands "
+			"behind its number without a blank",
+			text);
+	free(one);
 }
 
 static int count(const char *text, const char *end, char c)
@@ -223,6 +270,9 @@ static void parse_list(const struct opt *o, const char *text)
 			die(EXIT_USAGE, "--%s %s: more than %d numbers", o->word, text,
 				OPT_LIST_MAX);
 		wrong = unit_parse(s, o->unit, separator, &l->v[l->n], &s);
+		if (wrong && unit_meant(s, o->unit))
+			die(EXIT_USAGE, "--%s %s: did you mean %s?", o->word, text,
+				unit_meant(s, o->unit));
 		if (wrong)
 			die(EXIT_USAGE, "--%s %s: '%s' %s, want %s%s%s", o->word, text, s,
 				wrong, o->arg, *unit_shown(o->unit) ? " in " : "",
@@ -321,6 +371,7 @@ static void store(const struct opt *o, const char *text)
 		break;
 	}
 	case OPT_ROWS:
+	case OPT_GROUP:
 		break;
 	}
 }
@@ -335,37 +386,57 @@ static void record(const struct opt *o, const char *text)
 		append_word(&recorded, text);
 }
 
-/* The rows of a table and of those it contains, behind the n that are there. */
-static int gather(const struct opt *table, const struct opt **rows, int n)
+/* Takes in the rows of a table and of those it contains.  A letter or word that stands
+ * for two options, or too many rows, is an error of the program. */
+static void gather(const struct opt *table)
 {
 	for (const struct opt *o = table; o->word; o++) {
-		if (o->kind == OPT_ROWS)
-			n = gather(o->var, rows, n);
-		else if (n < ROWS_MAX)
-			rows[n++] = o;
+		if (o->kind == OPT_ROWS) {
+			gather(o->var);
+			continue;
+		}
+		if (nrows == ROWS_MAX)
+			die(EXIT_RUN, "more than %d options in the table", ROWS_MAX);
+		for (int i = 0; i < nrows && o->kind != OPT_GROUP; i++)
+			if (rows[i]->kind != OPT_GROUP &&
+				((o->letter && rows[i]->letter == o->letter) ||
+					strcmp(rows[i]->word, o->word) == 0))
+				die(EXIT_RUN, "--%s and --%s: one letter or word twice",
+					rows[i]->word, o->word);
+		rows[nrows++] = o;
 	}
-	return n;
 }
 
-static void getopt_tables(
-	const struct opt *const *rows, int n, char *letters, struct option *words)
+/* What getopt_long() returns for row i. */
+static int code_of(int i)
+{
+	return rows[i]->letter ? rows[i]->letter : LETTERLESS + i;
+}
+
+static void getopt_tables(char *letters, struct option *words)
 {
 	*letters++ = ':';
-	for (int i = 0; i < n; i++) {
+	for (int i = 0; i < nrows; i++) {
 		int takes = rows[i]->kind != OPT_FLAG;
 
-		*letters++ = (char)rows[i]->letter;
-		if (takes)
-			*letters++ = ':';
-		words[i] = (struct option){ rows[i]->word,
-			takes ? required_argument : no_argument, NULL, rows[i]->letter };
+		if (rows[i]->kind == OPT_GROUP)
+			continue;
+		if (rows[i]->letter) {
+			*letters++ = (char)rows[i]->letter;
+			if (takes)
+				*letters++ = ':';
+		}
+		*words++ = (struct option){ rows[i]->word,
+			takes ? required_argument : no_argument, NULL, code_of(i) };
 	}
 	*letters = '\0';
 }
 
 static _Noreturn void misuse(int problem, char **argv)
 {
-	char *shown = optopt && !strncmp(argv[optind - 1], "--", 2)
+	char *shown = optopt >= LETTERLESS
+			      ? xprintf("--%s", rows[optopt - LETTERLESS]->word)
+		      : optopt && !strncmp(argv[optind - 1], "--", 2)
 			      ? xstrdup(argv[optind - 1])
 		      : optopt ? xprintf("-%c", optopt)
 			       : xstrdup(argv[optind - 1]);
@@ -380,6 +451,8 @@ static void check_operands(int argc, char **argv)
 {
 	int most = strstr(prog->operands, "...") ? argc : *prog->operands != '\0';
 
+	for (int i = optind; i < argc; i++)
+		check_operand(argv[i]);
 	if (argc - optind > most)
 		die(EXIT_USAGE, "%s: %s", argv[optind + most],
 			most ? "one file at most" : "takes no file");
@@ -393,56 +466,64 @@ static void check_operands(int argc, char **argv)
 
 int opt_parse(const struct prog *program, int argc, char **argv)
 {
-	const struct opt *rows[ROWS_MAX];
 	struct option words[ROWS_MAX + 1] = { { 0 } };
 	char letters[2 * ROWS_MAX + 2];
-	int c, n;
+	int c;
 
+	files_start();
 	prog = program;
 	msg_name(program->name);
 	stats_start();
-	n = gather(program->opts, rows, 0);
-	n = gather(common, rows, n);
-	getopt_tables(rows, n, letters, words);
+	gather(program->opts);
+	if (strcmp(program->reads, "nothing") != 0)
+		gather(reading);
+	gather(common);
+	getopt_tables(letters, words);
 	opterr = 0;
 	while ((c = getopt_long(argc, argv, letters, words, NULL)) != -1) {
 		if (c == 'h')
-			help(rows, n);
+			help();
 		if (c == 'V') {
 			printf("%s (wearpipe) %s\n", program->name, WEARPIPE_VERSION);
 			exit(shell_done(EXIT_SUCCESS));
 		}
 		if (c == '?' || c == ':')
 			misuse(c, argv);
-		for (int i = 0; i < n; i++) {
-			if (rows[i]->letter != c)
+		for (int i = 0; i < nrows; i++) {
+			if (rows[i]->kind == OPT_GROUP || code_of(i) != c)
 				continue;
 			store(rows[i], optarg);
 			record(rows[i], optarg);
-			given[c & 127] = 1;
+			given[i] = 1;
 		}
 	}
 	verbose = verbose_flag;
+	if (follow)
+		file_follow();
 	check_operands(argc, argv);
+	file_claim_output();
 	if (stats_path)
 		stats_open(stats_path);
 	operand = argv + optind;
 	return optind;
 }
 
-int opt_given(int letter)
+int opt_given(const char *word)
 {
-	return given[letter & 127];
+	for (int i = 0; i < nrows; i++)
+		if (given[i] && strcmp(rows[i]->word, word) == 0)
+			return 1;
+	return 0;
 }
 
-const char *opt_any_given(const struct opt *rows)
+const char *opt_any_given(const struct opt *table)
 {
 	const char *word = NULL;
 
-	for (const struct opt *o = rows; o->word && !word; o++)
+	for (const struct opt *o = table; o->word && !word; o++)
 		if (o->kind == OPT_ROWS)
 			word = opt_any_given(o->var);
-		else if (opt_given(o->letter))
+		else if (o->kind != OPT_GROUP && opt_given(o->word))
 			word = o->word;
 	return word;
 }
@@ -470,7 +551,9 @@ char *opt_cmd(const char *upstream, const char *extra)
 int shell_done(int status)
 {
 	errno = 0;
-	if (ferror(stdout) || fflush(stdout) || fclose(stdout))
+	/* Some file systems report a failure only when a descriptor is closed; standard
+	 * output itself stays open, for messages flush it. */
+	if (ferror(stdout) || fflush(stdout) || close(dup(STDOUT_FILENO)))
 		die(EXIT_RUN,
 			errno ? "standard output:" : "standard output: write error");
 	stats_write(prog->name);

@@ -9,11 +9,12 @@
  *	static const struct opt opts[] = {
  *		{ 'b', "band", OPT_LIST, UNIT_FREQUENCY, &band, 0, 1e12, "LO:HI",
  *			"pass band" },
- *		{ 'n', "order", OPT_INT, UNIT_COUNT, &order, 2, 1e6, "N", "taps" },
+ *		{ 0, "order", OPT_INT, UNIT_COUNT, &order, 2, 1e6, "N", "taps" },
  *		OPT_END,
  *	};
  *
- * Every program also has -h --help, -V --version, -v --verbose and -S --stats FILE.
+ * Every program also has -h --help, -V --version, -v --verbose, -S --stats FILE and,
+ * unless it reads nothing, --follow.
  * A number that was not given stays at its initial value; use NAN for "not given".
  */
 #ifndef SHELL_OPT_H
@@ -32,7 +33,8 @@ enum opt_kind {
 	OPT_WORD,   /* int: index into words */
 	OPT_WORDS,  /* int: words parted by commas, bit k for words[k] */
 	OPT_CHOICE, /* struct opt_choice: one of words, or a number */
-	OPT_ROWS    /* struct opt []: a further table in this place; letter 0, word "" */
+	OPT_ROWS,   /* struct opt []: a further table in this place; letter 0, word "" */
+	OPT_GROUP   /* no option: word is a heading of --help for the rows that follow */
 };
 
 enum { OPT_LIST_MAX = 64, OPT_TEXTS_MAX = 64 };
@@ -53,7 +55,7 @@ struct opt_choice {
 };
 
 struct opt {
-	int letter;
+	int letter; /* 0: none.  A letter means one word in the whole suite. */
 	const char *word;
 	enum opt_kind kind;
 	enum unit unit;
@@ -75,6 +77,12 @@ struct opt {
 		0, "", OPT_ROWS, UNIT_NONE, rows, 0, 0, 0, 0, 0, 0 \
 	}
 
+/* A heading of --help. */
+#define OPT_HEADING(text)                                          \
+	{                                                          \
+		0, text, OPT_GROUP, UNIT_NONE, 0, 0, 0, 0, 0, 0, 0 \
+	}
+
 struct prog {
 	const char *name;
 	const char *gist;     /* one sentence, with full stop */
@@ -89,10 +97,13 @@ struct prog {
  * the program takes. */
 int opt_parse(const struct prog *prog, int argc, char **argv);
 
-/* 1 if the option with this letter was on the command line. */
-int opt_given(int letter);
+/* 1 if the option with this word was on the command line. */
+int opt_given(const char *word);
 /* The word of the first of these rows that was, or NULL. */
-const char *opt_any_given(const struct opt *rows);
+const char *opt_any_given(const struct opt *table);
+
+/* What the program reads, for messages: "fields: height". */
+const char *opt_reads(void);
 
 /* The recorded command line, fresh memory: upstream, " | ", program, the options
  * given in long form and shell-quoted, then extra (may be NULL).  The operands are

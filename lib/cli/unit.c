@@ -94,6 +94,51 @@ static double suffix_scale(const char *text, size_t length, enum unit unit)
 	return 0;
 }
 
+/* The unit in which a person reads a quantity, where that is not the SI unit. */
+static const struct spelling *shown_spelling(enum unit unit)
+{
+	const char *text = unit == UNIT_FLOW            ? "L/min"
+			   : unit == UNIT_CONCENTRATION ? "g/L"
+							: unit_name(unit);
+
+	for (size_t i = 0; i < NSPELLINGS; i++)
+		if (spellings[i].unit == unit && strcmp(spellings[i].text, text) == 0)
+			return &spellings[i];
+	return NULL;
+}
+
+static double prefix_scale(char prefix)
+{
+	for (size_t k = 0; k < NPREFIXES; k++)
+		if (prefixes[k].text[0] == prefix && !prefixes[k].text[1])
+			return prefixes[k].scale;
+	return 1;
+}
+
+const char *quantity_text(double value, enum unit unit, char text[NUMBER_TEXT])
+{
+	const struct spelling *s =
+		unit == UNIT_FRACTION || !(fabs(value) > 0) ? NULL : shown_spelling(unit);
+	char prefix[2] = "";
+	double scale = s ? s->scale : 1;
+
+	/* The largest prefix, "" among them, that leaves at least 1; times of a second
+	 * and more stay in seconds. */
+	for (const char *p = "pnum kMG"; s && s->power && *p; p++) {
+		double prefixed = s->scale * pow(prefix_scale(*p), s->power);
+
+		if (unit == UNIT_TIME && prefixed > 1)
+			break;
+		if (fabs(value) >= prefixed * (1 - 1e-12)) {
+			scale = prefixed;
+			prefix[0] = *p == ' ' ? '\0' : *p;
+		}
+	}
+	snprintf(text, NUMBER_TEXT, "%.6g%s%s", value / scale, s ? prefix : "",
+		s ? s->text : "");
+	return text;
+}
+
 const char *unit_parse(const char *text, enum unit unit, const char *stop, double *value,
 	const char **end)
 {
@@ -123,6 +168,46 @@ const char *unit_parse(const char *text, enum unit unit, const char *stop, doubl
 		return "is not a whole number";
 	*end = rest + length;
 	return NULL;
+}
+
+/* Letters of a that differ from those of b by more than capitals: -1; else by capitals.
+ */
+static int capitals(const char *a, const char *b)
+{
+	int n = 0;
+
+	for (; *a && *b; a++, b++) {
+		if (tolower((unsigned char)*a) != tolower((unsigned char)*b))
+			return -1;
+		n += *a != *b;
+	}
+	return (*a && *a != ',' && *a != ':') || *b ? -1 : n;
+}
+
+const char *unit_meant(const char *text, enum unit unit)
+{
+	static char meant[32];
+	int least = 1000;
+	char *rest;
+
+	strtod(text, &rest);
+	for (size_t i = 0; i < NSPELLINGS; i++) {
+		if (spellings[i].unit != unit)
+			continue;
+		for (size_t k = 0; k <= (spellings[i].power ? NPREFIXES : 0); k++) {
+			char name[32];
+			int n;
+
+			snprintf(name, sizeof name, "%s%s", k ? prefixes[k - 1].text : "",
+				spellings[i].text);
+			n = capitals(rest, name);
+			if (n >= 0 && n < least) {
+				least = n;
+				memcpy(meant, name, sizeof meant);
+			}
+		}
+	}
+	return least < 1000 ? meant : NULL;
 }
 
 const char *number_text(double value, char text[NUMBER_TEXT])

@@ -40,8 +40,17 @@ const char *unit_name(enum unit unit);
 const char *unit_parse(const char *text, enum unit unit, const char *stop, double *value,
 	const char **end);
 
+/* Where the unit behind the number of text differs from one that suits by nothing but
+ * capitals: the one that is meant ("GPa" for "210Gpa"), valid until the next call; else
+ * NULL. */
+const char *unit_meant(const char *text, enum unit unit);
+
 /* Shortest decimal of 15 to 17 digits that reads back as the same number, or "nan". */
 enum { NUMBER_TEXT = 32 };
 const char *number_text(double value, char text[NUMBER_TEXT]);
+
+/* An SI value as a person writes it, with prefix and unit: "1mm", "210GPa", "10L/min".
+ * Six digits; unit_parse() reads it back.  A plain number has no unit. */
+const char *quantity_text(double value, enum unit unit, char text[NUMBER_TEXT]);
 
 #endif

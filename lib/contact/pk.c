@@ -70,26 +70,49 @@ static double step_length(struct contact *c, double last)
 	return curvature > 0 && s.sum[0] > 0 ? s.sum[0] / curvature : last;
 }
 
+/* Returns 0 if that took more than scaling. */
+static int restore_load(struct contact *c)
+{
+	double sum = contact_scale_load(c, c->cap < INFINITY);
+
+	if (contact_carries(c, sum))
+		return 1;
+	if (!contact_carries(c, contact_place_rest(c, sum)))
+		contact_gradient_step(c);
+	return 0;
+}
+
 enum contact_status contact_solve_pk(struct contact *c)
 {
 	double last_moment = 1;
-	int conjugate = 0;
+	int conjugate = 0, plain = 0;
 
 	c->tau = c->par.estar / sqrt(c->par.dx * c->par.dy);
 	for (long k = 0;; k++) {
+		double moment, tau;
 		struct sweep s;
-		double moment;
 
 		contact_gap(c);
 		s = contact_certify(c);
 		moment = s.sum[2];
 		c->result.certificate = contact_certificate(c, &s);
-		if (c->result.certificate <= c->tolerance)
+		if (c->result.certificate <= c->tolerance &&
+			(c->control == CONTACT_APPROACH || contact_carries(c, s.sum[1])))
 			return CONTACT_OK;
 		if (k == c->par.max_iterations ||
 			contact_stalls(c, c->result.certificate))
 			return CONTACT_NOCONV;
 		c->result.iterations++;
+		if (c->cap < INFINITY && contact_lingers(c))
+			plain = contact_gradient_due(c, &s);
+		if (plain > 0) {
+			plain--;
+			conjugate = 0;
+			tau = c->tau;
+			contact_gradient_step(c);
+			c->tau = tau;
+			continue;
+		}
 		c->beta = conjugate && last_moment > 0 ? moment / last_moment : 0;
 		last_moment = moment;
 		contact_sweep(c, turn_step);
@@ -98,6 +121,6 @@ enum contact_status contact_solve_pk(struct contact *c)
 		s = contact_sweep(c, move_pressure);
 		conjugate = s.sum[0] == 0;
 		if (c->control == CONTACT_PRESSURE)
-			contact_scale_load(c, 0);
+			conjugate &= restore_load(c);
 	}
 }

@@ -60,8 +60,7 @@ static int make_kernel(struct contact *c, const struct contact *lender)
 		return -1;
 	if (is_free)
 		return convolve_kernel(c->plane, c->kernel, free_kernel, &c->par);
-	convolve_spectrum(c->plane, c->kernel, periodic_kernel, &c->par);
-	return 0;
+	return convolve_spectrum(c->plane, c->kernel, periodic_kernel, &c->par);
 }
 
 /* Each array starts on a cache line. */
@@ -72,10 +71,17 @@ static size_t padded(size_t n)
 
 static int make_coarse(struct contact *c);
 
-/* Room for all arrays, and for what padding adds to two halves of the last. */
+/* Room for all arrays; two coarse ones fit into the last or nearly so. */
 static size_t room(const struct contact_par *par, size_t n)
 {
-	return (par->solver == CONTACT_BCCG ? 4 : 3) * padded(n) + 16;
+	struct contact_par coarse;
+	size_t two = 0;
+
+	if (par->solver != CONTACT_BCCG)
+		return 3 * padded(n);
+	if (contact_can_coarsen(par, &coarse))
+		two = 2 * padded((size_t)coarse.nx * (size_t)coarse.ny);
+	return 3 * padded(n) + (two > padded(n) ? two : padded(n));
 }
 
 /* lender: a finer grid whose memory is free to use, or NULL. */
@@ -94,6 +100,7 @@ static struct contact *new_grid(
 	c->par = *par;
 	c->n = (size_t)par->nx * (size_t)par->ny;
 	c->cap = par->hardness > 0 ? par->hardness : INFINITY;
+	c->near_cap = c->cap * (1 - 4 * DBL_EPSILON);
 	c->tolerance = par->tolerance;
 	c->memory = lender ? NULL : fft_alloc(room(par, c->n));
 	c->gap = lender ? lender->gap : c->memory;
@@ -117,20 +124,12 @@ static struct contact *new_grid(
  * them: four of its arrays fit into one, or on a strip into two and a bit. */
 static int make_coarse(struct contact *c)
 {
-	struct contact_par par = c->par;
+	struct contact_par par;
 
-	if (!contact_can_halve(&par))
+	if (!contact_can_coarsen(&c->par, &par))
 		return 0;
-	if (par.nx > 1) {
-		par.nx /= 2;
-		par.dx *= 2;
-	}
-	if (par.ny > 1) {
-		par.ny /= 2;
-		par.dy *= 2;
-	}
 	c->coarse = new_grid(&par, c);
-	if (!c->coarse)
+	if (!c->coarse || transfer_make(&c->transfer, &c->par, &par) != 0)
 		return -1;
 	c->coarse_height = c->residual;
 	c->coarse_pressure = c->residual + padded(c->coarse->n);
@@ -147,8 +146,9 @@ void contact_free(struct contact *c)
 	if (!c)
 		return;
 	contact_free(c->coarse);
-	if (c->periodic != c->plane)
-		convolve_free(c->periodic);
+	transfer_done(&c->transfer);
+	extension_free(c->extension);
+	convolve_free(c->periodic);
 	mlms_free(c->mlms);
 	convolve_free(c->plane);
 	fft_free(c->kernel);
@@ -163,197 +163,12 @@ const struct contact_result *contact_result(const struct contact *c)
 	return &c->result;
 }
 
-struct sweep contact_sweep(struct contact *c,
-	void (*pass)(void *context, size_t begin, size_t end, struct sweep *s))
-{
-	return sweep_run(c->par.pool, c->n, pass, c);
-}
-
-static void multiply_pairs(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	const double *const *pair = context;
-
-	for (size_t i = begin; i < end; i++)
-		s->sum[0] += pair[0][i] * pair[1][i];
-}
-
-double contact_multiply(struct contact *c, const double *x, double *y)
-{
-	if (c->mlms) {
-		const double *pair[2] = { x, y };
-
-		mlms_apply(c->mlms, x, y);
-		return sweep_run(c->par.pool, c->n, multiply_pairs, pair).sum[0];
-	}
-	c->result.transforms += 2;
-	c->result.work += 2;
-	return convolve_product(c->plane, c->kernel, x, y);
-}
-
 void contact_displacement(struct contact *c, const double *pressure, double *displacement)
 {
 	if (c->mlms)
 		mlms_apply(c->mlms, pressure, displacement);
 	else
 		convolve_apply(c->plane, c->kernel, pressure, displacement);
-}
-
-static void subtract_height(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	struct contact *c = context;
-
-	(void)s;
-	for (size_t i = begin; i < end; i++)
-		c->gap[i] -= c->h[i];
-}
-
-/* Sum of the gap and count over free cells; least gap of the cells without contact
- * (as a maximum of -g), for when nothing is free. */
-static void sum_free(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	const struct contact copy = *(struct contact *)context, *c = &copy;
-	struct sweep t = *s;
-
-	for (size_t i = begin; i < end; i++) {
-		int is = is_free(c, c->p[i]);
-
-		t.sum[0] += is ? c->gap[i] : 0;
-		t.sum[1] += is;
-		if (c->p[i] <= 0 && -c->gap[i] > t.max)
-			t.max = -c->gap[i];
-	}
-	*s = t;
-}
-
-static void find_approach(struct contact *c)
-{
-	struct sweep s;
-
-	c->result.approach = c->target;
-	if (c->control == CONTACT_APPROACH)
-		return;
-	s = contact_sweep(c, sum_free);
-	c->result.approach = s.sum[1] > 0 ? s.sum[0] / s.sum[1] : -s.max;
-}
-
-void contact_gap(struct contact *c)
-{
-	contact_multiply(c, c->p, c->gap);
-	contact_sweep(c, subtract_height);
-	find_approach(c);
-}
-
-static void certify(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	const struct contact copy = *(struct contact *)context, *c = &copy;
-	struct sweep t = *s;
-
-	for (size_t i = begin; i < end; i++)
-		certify_cell(c, c->p[i], gap_at(c, i), &t);
-	*s = t;
-}
-
-struct sweep contact_certify(struct contact *c)
-{
-	return contact_sweep(c, certify);
-}
-
-double contact_certificate(struct contact *c, const struct sweep *s)
-{
-	double sum = s->sum[1], excess;
-
-	if (sum <= 0)
-		return s->max > 0 ? INFINITY : 0;
-	if (c->cap < INFINITY)
-		excess = s->sum[3] + s->sum[4];
-	else if (c->control == CONTACT_PRESSURE)
-		excess = s->sum[0] + sum * s->max;
-	else
-		excess = s->sum[3] + sum * fmax(s->max, 0);
-	return fmax(excess, 0) / (sum * c->scale);
-}
-
-int contact_stalls(struct contact *c, double certificate)
-{
-	const long patience = c->par.solver == CONTACT_PK ? 500 : 100;
-
-	if (certificate < 0.9 * c->best) {
-		c->best = certificate;
-		c->since = 0;
-	}
-	return c->since++ >= patience;
-}
-
-static void sum_load(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	const struct contact copy = *(struct contact *)context, *c = &copy;
-	struct sweep t = *s;
-
-	for (size_t i = begin; i < end; i++) {
-		if (c->p[i] >= c->cap)
-			t.sum[0] += c->p[i];
-		else
-			t.sum[1] += c->p[i];
-		t.sum[2] += c->p[i] <= 0;
-	}
-	*s = t;
-}
-
-static void scale_free(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	struct contact *c = context;
-
-	(void)s;
-	for (size_t i = begin; i < end; i++)
-		if (c->p[i] < c->cap)
-			c->p[i] = fmin(c->p[i] * c->beta, c->cap);
-}
-
-static void scale_all(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	struct contact *c = context;
-
-	(void)s;
-	for (size_t i = begin; i < end; i++)
-		c->p[i] *= c->beta;
-}
-
-static void fill_empty(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	struct contact *c = context;
-
-	(void)s;
-	for (size_t i = begin; i < end; i++)
-		if (c->p[i] <= 0)
-			c->p[i] = c->beta;
-}
-
-double contact_scale_load(struct contact *c, int gently)
-{
-	double load = c->target * (double)c->n, fixed = 0, rest = 0;
-
-	/* Cells that reach the hardness on the way leave the rest to the others. */
-	for (int k = 0; k < 100; k++) {
-		struct sweep s = contact_sweep(c, sum_load);
-
-		fixed = s.sum[0];
-		rest = s.sum[1];
-		c->beta = (load - fixed) / rest;
-		if (fabs(fixed + rest - load) <= 4 * DBL_EPSILON * load)
-			break;
-		if (gently && !(c->beta > 0.5 && c->beta < 2))
-			break;
-		if (fixed >= load) {
-			c->beta = load / (fixed + rest);
-			contact_sweep(c, scale_all);
-		} else if (rest > 0) {
-			contact_sweep(c, scale_free);
-		} else {
-			c->beta = (load - fixed) / s.sum[2];
-			contact_sweep(c, fill_empty);
-		}
-	}
-	return fixed + rest;
 }
 
 static void survey(void *context, size_t begin, size_t end, struct sweep *s)
@@ -370,20 +185,8 @@ static void survey(void *context, size_t begin, size_t end, struct sweep *s)
 			p = c->cap;
 		c->p[i] = p;
 		s->sum[1] += p;
-		if (c->h[i] > s->max)
-			s->max = c->h[i];
-	}
-}
-
-static void spread(void *context, size_t begin, size_t end, struct sweep *s)
-{
-	struct contact *c = context;
-
-	for (size_t i = begin; i < end; i++) {
-		double d = c->h[i] - c->shift;
-
-		s->sum[0] += d * d;
-		s->sum[1] += d;
+		s->max = c->h[i] > s->max ? c->h[i] : s->max;
+		s->min = c->h[i] < s->min ? c->h[i] : s->min;
 	}
 }
 
@@ -398,51 +201,65 @@ static void final_sums(void *context, size_t begin, size_t end, struct sweep *s)
 		s->sum[1] += p >= c->cap;
 		s->sum[2] += p;
 		s->sum[3] += p * (c->gap[i] + c->h[i]);
-		if (c->h[i] > s->max)
-			s->max = c->h[i];
+		s->max = c->h[i] > s->max ? c->h[i] : s->max;
+		s->min = c->h[i] < s->min ? c->h[i] : s->min;
 	}
 }
 
-/* A pressure that is about right for bodies that come together by depth. */
-static double guess_pressure(const struct contact *c, double depth)
+/* Gaps of that size times pressures that make them must be within the numbers. */
+static int is_in_range(const struct contact *c, double size)
 {
-	double size = fmax(c->par.nx * c->par.dx, c->par.ny * c->par.dy);
+	double stiffest = c->par.estar / fmin(c->par.dx, c->par.dy);
 
-	return fmin(c->par.estar * depth / size, c->cap / 2);
+	return isfinite(size * size * stiffest * (double)c->n);
+}
+
+/* Pressures need to be no better than what interpolation loses. */
+static const double coarse_tolerance = 1e-2;
+
+/* A first guess from the coarser grids; 0 where they found none. */
+static int guess_pressure(struct contact *c)
+{
+	struct contact *coarse = c->coarse;
+	enum contact_status status;
+
+	if (!coarse)
+		return 0;
+	contact_average_height(c);
+	memset(c->coarse_pressure, 0, coarse->n * sizeof(*c->coarse_pressure));
+	coarse->tolerance = fmax(coarse_tolerance, c->tolerance);
+	status = contact_solve(coarse, c->coarse_height, c->control, c->target,
+		c->coarse_pressure, NULL);
+	c->result.work += coarse->result.work * (double)coarse->n / (double)c->n;
+	if (status != CONTACT_OK && status != CONTACT_NOCONV)
+		return 0;
+	return contact_interpolate_pressure(c) > 0;
 }
 
 static enum contact_status prepare(struct contact *c)
 {
 	struct sweep s = contact_sweep(c, survey);
-	double mean = s.sum[0] / (double)c->n, highest = s.max, guess = s.sum[1];
-	double touch = -highest;
+	double mean = s.sum[0] / (double)c->n, guess = s.sum[1];
+	double touch = -s.max, first;
 
-	if (!isfinite(s.sum[0]) || !isfinite(guess) || !isfinite(c->target))
-		return CONTACT_NUMBERS;
-	c->shift = mean;
-	s = contact_sweep(c, spread);
-	/* The second term is the rounding of the mean. */
-	c->scale = sqrt(s.sum[0] / (double)c->n - pow(s.sum[1] / (double)c->n, 2));
-	if (!isfinite(c->scale))
+	if (!isfinite(s.sum[0]) || !isfinite(guess) || !isfinite(c->target) ||
+		!is_in_range(c, fmax(s.max, -s.min)))
 		return CONTACT_NUMBERS;
 	if (c->control == CONTACT_PRESSURE) {
 		if (c->target < 0)
 			return CONTACT_NUMBERS;
 		if (c->target >= c->cap)
 			return CONTACT_OVERLOAD;
-		c->beta = c->target;
+		first = c->target;
 	} else {
 		if (c->par.boundary == CONTACT_PERIODIC && c->target >= -mean &&
 			c->target > touch)
 			return CONTACT_TOO_DEEP;
-		c->beta = guess_pressure(c, c->target - touch);
+		/* The pressure that sinks the whole grid by depth. */
+		first = fmin((c->target - touch) / contact_sinking(c, 1), c->cap / 2);
 	}
-	if (c->scale <= 16 * DBL_EPSILON * fabs(mean)) /* flat: take a displacement */
-		c->scale = fmax(c->par.nx * c->par.dx, c->par.ny * c->par.dy) *
-			   (c->control == CONTACT_PRESSURE ? c->target : c->beta) /
-			   c->par.estar;
-	if (guess <= 0 && !contact_guess(c))
-		contact_sweep(c, fill_empty);
+	if (guess <= 0 && !guess_pressure(c))
+		contact_fill_empty(c, first);
 	if (c->control == CONTACT_PRESSURE)
 		contact_scale_load(c, 0);
 	return CONTACT_OK;
@@ -477,6 +294,7 @@ enum contact_status contact_solve(struct contact *c, const double *height,
 	c->control = control;
 	c->target = target;
 	c->best = INFINITY;
+	c->energy = INFINITY;
 	c->since = 0;
 	if (is_apart(c)) {
 		status = CONTACT_OK;

@@ -84,10 +84,14 @@ struct contact_result {
 	double area;        /* cells with p > 0 over all cells */
 	double plastic;     /* cells at the hardness over all cells */
 	double energy;      /* elastic, J */
-	/* sum p (g - min g) / (sum p * rms h): bounds the relative error in energy
-	 * whatever the method, and needs no reference.  With a hardness it is the
-	 * duality gap of the capped problem in the same units; for a given approach,
-	 * g itself takes the place of g - min g. */
+	/* sum p (g - min g) / sum p (u - u0), u0 the least displacement below zero or
+	 * else 0: the relative duality gap, which needs no reference.  With C for it and
+	 * W = sum p (u - u0), the energy sum p u / 2 - sum p h exceeds that of the
+	 * solution p* by at most C W, and sum (p - p*) K (p - p*) is at most 2 C W,
+	 * whatever the method; W is twice the elastic energy on a free boundary and a
+	 * little more on a periodic one.  Nothing out of contact enters.  With a hardness
+	 * it is the gap of the capped problem if that is less; for a given approach that
+	 * of the approach less the deepest overlap, which is at most C W / sum p. */
 	double certificate;
 	long iterations; /* on the given grid */
 	long transforms; /* Fourier transforms on the given grid, padded or not */

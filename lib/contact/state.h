@@ -2,8 +2,10 @@
 #ifndef CONTACT_STATE_H
 #define CONTACT_STATE_H
 
+#include "contact/extension.h"
 #include "contact/mlms.h"
 #include "contact/solver.h"
+#include "contact/transfer.h"
 #include "num/convolve.h"
 #include "num/sweep.h"
 #include <math.h>
@@ -12,6 +14,7 @@ struct contact {
 	struct contact_par par;
 	size_t n;               /* cells */
 	double cap;             /* hardness or INFINITY */
+	double near_cap;        /* the same less rounding */
 	struct convolve *plane; /* transforms of displacement = kernel * pressure */
 	double *kernel;
 	struct mlms *mlms;    /* in place of those two */
@@ -21,12 +24,13 @@ struct contact {
 	struct contact_result result;
 
 	/* preconditioned solver only */
-	struct convolve *periodic;      /* transforms of the preconditioner */
-	double *inverse;                /* its kernel */
-	double *residual;               /* g on the contact, then preconditioned */
-	unsigned char *active;          /* 1 for the cells the residual was taken of */
-	double near_x, near_y, near_xy; /* see make_extension() */
-	struct contact *coarse;         /* grid of half as many cells each way, or NULL */
+	struct convolve *periodic;   /* transforms of the preconditioner */
+	double *inverse;             /* its kernel */
+	double *residual;            /* g on the contact, then preconditioned */
+	unsigned char *active;       /* 1 for the cells the residual was taken of */
+	struct extension *extension; /* of the residual beyond the contact */
+	struct contact *coarse;      /* grid of half as many cells each way, or NULL */
+	struct transfer transfer;    /* to it */
 	double *coarse_height, *coarse_pressure; /* parts of residual */
 
 	/* the problem being solved */
@@ -35,16 +39,17 @@ struct contact {
 	enum contact_control control;
 	double target; /* mean pressure or approach */
 	double tolerance;
-	double scale; /* length that makes the certificate a number */
+	double work;  /* sum p u, followed from the last contact_gap() on */
+	double least; /* least u then, or 0 */
 
 	/* of the iteration in progress, for the passes over the cells */
 	double shift;   /* of the direction, that the load is kept */
 	double beta;    /* share of the last step; also a factor of pressures */
 	double tau;     /* step length that is guessed */
 	double stretch; /* ... and what the line search makes of it */
-	int extend;     /* continue the residual beyond the contact */
 	double best;    /* certificate so far, and the iterations since */
 	long since;
+	double energy; /* least when contact_gradient_due() looked */
 };
 
 /* A cell is free where its pressure is strictly between the bounds. */
@@ -53,17 +58,10 @@ static inline int is_free(const struct contact *c, double p)
 	return (p > 0) & (p < c->cap);
 }
 
-/* ... and active where it is free or its gap says that it should be. */
-static inline int is_active(const struct contact *c, double p, double g)
-{
-	return is_free(c, p) | ((p <= 0) & (g < 0)) | ((p >= c->cap) & (g > 0));
-}
-
-/* Written so that it needs no branch, which the rims of contacts would mislead. */
 static inline double within(const struct contact *c, double p)
 {
 	p = p > 0 ? p : 0;
-	return p < c->cap ? p : c->cap;
+	return p < c->near_cap ? p : c->cap;
 }
 
 /* Gap of cell i; the array holds it for approach 0. */
@@ -72,49 +70,67 @@ static inline double gap_at(const struct contact *c, size_t i)
 	return c->gap[i] - c->result.approach;
 }
 
-/* What the certificate is made of: sum p g, sum p, sum of g^2 over free cells, p g+,
- * depth of what overlaps below the hardness; the deepest overlap. */
-static inline void certify_cell(
-	const struct contact *c, double p, double g, struct sweep *s)
-{
-	double below = g < 0 ? g : 0;
-
-	s->sum[0] += p * g;
-	s->sum[1] += p;
-	s->sum[2] += is_free(c, p) * (g * g);
-	s->sum[3] += p * (g - below);
-	if (c->cap < INFINITY)
-		s->sum[4] -= (c->cap - p) * below;
-	s->max = -g > s->max ? -g : s->max;
-}
-
-struct sweep contact_sweep(struct contact *c,
-	void (*pass)(void *context, size_t begin, size_t end, struct sweep *s));
+typedef void contact_pass(void *context, size_t begin, size_t end, struct sweep *s);
+struct sweep contact_sweep(struct contact *c, contact_pass *pass);
 /* y = K x, counted; y is not x.  Returns the sum of x y. */
 double contact_multiply(struct contact *c, const double *x, double *y);
-/* Gap of the pressure from scratch, and the approach: given, or the mean gap of the free
- * cells. */
+/* Gap of the pressure from scratch, and the approach. */
 void contact_gap(struct contact *c);
-/* The certificate from the sums of certify_cell() over all cells. */
-double contact_certificate(struct contact *c, const struct sweep *s);
-/* Makes those sums. */
+/* The approach that is given; or the mean gap of the free cells, or where there are none
+ * the one of least duality gap. */
+void contact_find_approach(struct contact *c);
+/* What the certificate is made of: sum p g, sum p, sum of g^2 over free cells (not needed
+ * for it), and where g < 0 sum p g and sum g; the deepest overlap as the maximum. */
 struct sweep contact_certify(struct contact *c);
+/* The certificate from these sums. */
+double contact_certificate(struct contact *c, const struct sweep *s);
+/* What the solution makes least, sum p u / 2 - sum p h, from the same sums just after
+ * contact_gap(). */
+double contact_energy(const struct contact *c, const struct sweep *s);
+/* Displacement by a pressure all over the grid, roughly. */
+double contact_sinking(const struct contact *c, double pressure);
+/* Gives this pressure to the cells that have none. */
+void contact_fill_empty(struct contact *c, double pressure);
+/* 1 if this sum of the pressures is the wanted load. */
+int contact_carries(const struct contact *c, double sum);
 /* Scales the free pressures so that the load is the wanted one, or leaves them where
  * gently and that is more than a matter of scale.  Returns the sum of the pressures. */
 double contact_scale_load(struct contact *c, int gently);
+/* Where all cells are empty or at the hardness and the load falls short or beyond by less
+ * than a cell, the cell whose gap is next in rank takes the rest.  sum: of the pressures;
+ * returns the new one. */
+double contact_place_rest(struct contact *c, double sum);
+/* Finds the shift with which the step of a pass carries what is missing of the load, to
+ * slack times the size of the step: Newton's method, kept within what is known to be too
+ * little and too much.  The pass sums step * gap, the step, its size, and the cells that
+ * it leaves free, each of which moves by rate times the shift; s: those of the present
+ * shift, and on return those of the last.  Returns what is left missing. */
+double contact_share_load(struct contact *c, contact_pass *pass, double missing,
+	double rate, double slack, struct sweep *s);
 /* 1 where the certificate has long stopped falling: rounding is all that is left, or
  * the method fails.  Keeps count of calls. */
 int contact_stalls(struct contact *c, double certificate);
 
+/* gradient.c: one step of the projected gradient, which always lowers the energy and
+ * keeps the load, or restores it.  contact_gap() is to follow. */
+void contact_gradient_step(struct contact *c);
+/* How many such steps to take: now and then one, while the certificate does not fall, and
+ * more where the energy has not fallen either.  s: sums just after contact_gap(). */
+int contact_gradient_due(struct contact *c, const struct sweep *s);
+/* 1 when it is time to ask that. */
+int contact_lingers(const struct contact *c);
+
+/* pk.c */
 enum contact_status contact_solve_pk(struct contact *c);
 
 /* bccg.c */
 int contact_make_preconditioner(struct contact *c, const struct contact *lender);
 enum contact_status contact_solve_bccg(struct contact *c);
 
-/* grids.c: halves the grid down to some 32 cells a side; 1 if this one can be halved */
-int contact_can_halve(const struct contact_par *par);
-/* A first guess from the coarser grids; 0 where they found none. */
-int contact_guess(struct contact *c);
+/* grids.c: between this grid and the coarser one, down to some 32 cells a side. */
+int contact_can_coarsen(const struct contact_par *par, struct contact_par *coarse);
+void contact_average_height(struct contact *c);
+/* Returns the sum of the pressures. */
+double contact_interpolate_pressure(struct contact *c);
 
 #endif

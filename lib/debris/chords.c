@@ -135,7 +135,7 @@ int chords_measure(struct chords *c, const struct hull *h, const double step[3],
 		return -1;
 	for (size_t i = 0; i < c->corners; i++)
 		for (int k = X; k <= Z; k++)
-			c->corner[i][k] = p[i].v[k] * step[k];
+			c->corner[i][k] = ((double)p[i].v[k] - p[0].v[k]) * step[k];
 	*length = longest(c, along);
 	*width = widest(c, along);
 	return 0;

@@ -11,7 +11,7 @@ struct debris {
 	struct debris_par par;
 	struct stress *stress;
 	struct particles *particles;
-	int *removed;
+	struct wear *wear;
 };
 
 struct debris *debris_new(const struct debris_par *par)
@@ -21,11 +21,11 @@ struct debris *debris_new(const struct debris_par *par)
 		.ny = s->ny,
 		.ax = s->ax,
 		.ay = s->ay,
-		.az = s->dz,
+		.az = par->cell,
 		.periodic = s->periodic };
 	struct debris *d;
 
-	if (!(par->yield > 0)) {
+	if (!(par->yield > 0) || !(par->cell >= 0) || !(par->offset >= 0)) {
 		errno = EDOM;
 		return NULL;
 	}
@@ -35,9 +35,8 @@ struct debris *debris_new(const struct debris_par *par)
 	d->par = *par;
 	d->stress = stress_new(s);
 	d->particles = d->stress ? particles_new(&p) : NULL;
-	d->removed =
-		d->particles ? calloc((size_t)s->nx * s->ny, sizeof(*d->removed)) : NULL;
-	if (!d->removed) {
+	d->wear = d->particles ? wear_new(s->nx, s->ny) : NULL;
+	if (!d->wear) {
 		int reason = errno;
 
 		debris_free(d);
@@ -53,7 +52,7 @@ void debris_free(struct debris *d)
 		return;
 	stress_free(d->stress);
 	particles_free(d->particles);
-	free(d->removed);
+	wear_free(d->wear);
 	free(d);
 }
 
@@ -88,31 +87,37 @@ enum debris_status debris_step(struct debris *d, double *height, const double *p
 	struct debris_step *step)
 {
 	const struct stress_par *s = &d->par.stress;
-	size_t n = (size_t)s->nx * s->ny;
-	double side = fmax(s->nx * s->ax, s->ny * s->ay);
+	size_t n = (size_t)s->nx * (size_t)s->ny;
 	struct wear_par wear = { .yield = d->par.yield,
 		.rule = d->par.rule,
-		.max_layers = (long)fmin(1e9, ceil(DEEPEST * side / s->dz)) };
+		.spacing = fmin(s->ax, s->ay),
+		.cell = d->par.cell,
+		.offset = d->par.offset,
+		.deepest = DEEPEST * fmax(s->nx * s->ax, s->ny * s->ay) };
 	enum wear_status status;
 
 	debris_contact(d, pressure, step);
 	for (size_t i = 0; i < n; i++)
+		if (!isfinite(pressure[i]))
+			return DEBRIS_NUMBERS;
+	for (size_t i = 0; i < n; i++)
 		if (pressure[i] < 0)
 			return DEBRIS_PULL;
 	if (stress_load(d->stress, pressure))
-		return DEBRIS_MEMORY;
-	particles_begin(d->particles);
-	status = wear_remove(
-		d->stress, &wear, s->nx, s->ny, d->particles, d->removed, &step->wear);
+		return DEBRIS_NUMBERS;
+	status = wear_remove(d->wear, d->stress, &wear, &step->wear);
 	if (status != WEAR_OK)
 		return status == WEAR_DEEP ? DEBRIS_DEEP : DEBRIS_MEMORY;
-	step->count = particles_end(d->particles, &step->particle);
+	step->count = particles_find(
+		d->particles, step->wear.stretch, step->wear.count, &step->particle);
 	if (step->count == (size_t)-1)
 		return DEBRIS_MEMORY;
-	step->volume = step->wear.cells * (s->ax * s->ay * s->dz);
-	for (size_t i = 0; i < step->count; i++)
-		step->depth = fmax(step->depth, step->particle[i].high[2]);
-	for (size_t i = 0; i < n; i++)
-		height[i] -= d->removed[i] * s->dz;
+	step->volume = step->wear.height * (s->ax * s->ay);
+	for (size_t i = 0; i < step->wear.count; i++) {
+		const struct stretch *lost = &step->wear.stretch[i];
+
+		step->depth = fmax(step->depth, lost->bottom);
+		height[lost->column] -= lost->bottom - lost->top;
+	}
 	return DEBRIS_OK;
 }

@@ -1,22 +1,23 @@
 /* debris.h - one step of wear: stress below a contact, removal, particles, worn surface
  *
- * Joins stress.h, wear.h and particles.h.  Memory, transforms and influence kernels are
- * kept over calls, so use one struct for all steps of all surfaces of one grid; results
- * do not depend on what was computed before, nor on threads.
+ * Joins stress.h, wear.h and particles.h.  Memory is kept over calls, so use one struct
+ *for all steps of all surfaces of one grid; results do not depend on what was computed
+ * before, nor on threads.
  *
- *	struct debris_par par = { .stress = { .nx = 128, .ny = 128, .ax = 8e-6, .ay =
- *8e-6, .dz = 8e-6, .nu = 0.3, .mu = 0.3, .memory = 1 << 28 }, .yield = 355e6 }; struct
- *debris *d = debris_new(&par); if (debris_step(d, height, pressure, &step) == DEBRIS_OK)
+ *	struct debris_par par = { .stress = { .nx = 128, .ny = 128, .ax = 8e-6,
+ *		.ay = 8e-6, .nu = 0.3, .mu = 0.3 }, .yield = 355e6 };
+ *	struct debris *d = debris_new(&par);
+ *	if (debris_step(d, height, pressure, &step) == DEBRIS_OK)
  *		for (i = 0; i < step.count; i++)
  *			printf("%g\n", step.particle[i].diameter);
  *	debris_free(d);
  */
-#ifndef CONTACT_DEBRIS_H
-#define CONTACT_DEBRIS_H
+#ifndef DEBRIS_DEBRIS_H
+#define DEBRIS_DEBRIS_H
 
 #include "debris/particles.h"
-#include "stress/stress.h"
 #include "debris/wear.h"
+#include "stress/stress.h"
 
 struct debris;
 
@@ -24,6 +25,7 @@ struct debris_par {
 	struct stress_par stress; /* its periodic flag goes for particles and edges too */
 	double yield;             /* Pa, > 0 */
 	enum wear_rule rule;
+	double cell, offset; /* as in struct wear_par */
 };
 
 struct debris_step {
@@ -32,7 +34,7 @@ struct debris_step {
 	double edge_load; /* share of the load on the outermost cells; 0 if periodic */
 	double max_pressure;
 	double volume; /* worn off, m3 (2-15) */
-	double depth;  /* of the deepest cell worn off, m */
+	double depth;  /* of the deepest material worn off, m */
 	struct wear_result wear;
 	size_t count;
 	const struct particle *particle; /* valid until the next call */
@@ -40,9 +42,10 @@ struct debris_step {
 
 enum debris_status {
 	DEBRIS_OK,
-	DEBRIS_PULL, /* a pressure below zero: nothing done */
-	DEBRIS_DEEP, /* material fails deeper than ten times the grid is long; height
-		      * is as it was */
+	DEBRIS_PULL,    /* a pressure below zero: nothing done */
+	DEBRIS_NUMBERS, /* a pressure that is not finite: nothing done */
+	DEBRIS_DEEP,    /* material fails deeper than ten times the grid is long; height
+			 * is as it was */
 	DEBRIS_MEMORY
 };
 
@@ -55,7 +58,7 @@ void debris_contact(
 	const struct debris *d, const double *pressure, struct debris_step *step);
 
 /* Wears the surface under a pressure (Pa, >= 0): lowers height (m, towards the other
- * body) by the depth step times the cells lost in each column. */
+ * body) by what each column loses. */
 enum debris_status debris_step(struct debris *d, double *height, const double *pressure,
 	struct debris_step *step);
 

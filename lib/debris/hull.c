@@ -8,9 +8,8 @@
 #include <string.h>
 
 struct face {
-	int v[3];      /* counter-clockwise from outside */
-	int64_t n[3];  /* outward normal */
-	int64_t level; /* n . x on the plane */
+	int v[3];     /* counter-clockwise from outside */
+	int64_t n[3]; /* outward normal */
 };
 
 struct hull {
@@ -41,9 +40,15 @@ void hull_free(struct hull *h)
 	free(h);
 }
 
-static int64_t dot(const int64_t n[3], const struct hull_point *p)
+/* n . (p - o) */
+static int64_t height(
+	const int64_t n[3], const struct hull_point *p, const struct hull_point *o)
 {
-	return n[0] * p->v[0] + n[1] * p->v[1] + n[2] * p->v[2];
+	int64_t sum = 0;
+
+	for (int k = 0; k < 3; k++)
+		sum += n[k] * ((int64_t)p->v[k] - o->v[k]);
+	return sum;
 }
 
 static void normal(const struct hull_point *a, const struct hull_point *b,
@@ -52,8 +57,8 @@ static void normal(const struct hull_point *a, const struct hull_point *b,
 	int64_t u[3], w[3];
 
 	for (int k = 0; k < 3; k++) {
-		u[k] = b->v[k] - a->v[k];
-		w[k] = c->v[k] - a->v[k];
+		u[k] = (int64_t)b->v[k] - a->v[k];
+		w[k] = (int64_t)c->v[k] - a->v[k];
 	}
 	n[0] = u[1] * w[2] - u[2] * w[1];
 	n[1] = u[2] * w[0] - u[0] * w[2];
@@ -69,7 +74,6 @@ static int add_face(struct hull *h, int a, int b, int c)
 	f = &h->face[h->nfaces++];
 	f->v[0] = a, f->v[1] = b, f->v[2] = c;
 	normal(&h->point[a], &h->point[b], &h->point[c], f->n);
-	f->level = dot(f->n, &h->point[a]);
 	return 0;
 }
 
@@ -101,7 +105,7 @@ static int add_point(struct hull *h, int p)
 	for (size_t i = 0; i < h->nfaces; i++) {
 		struct face f = h->face[i];
 
-		if (dot(f.n, at) <= f.level) {
+		if (height(f.n, at, &h->point[f.v[0]]) <= 0) {
 			h->face[kept++] = f;
 			continue;
 		}
@@ -182,7 +186,7 @@ static int start(struct hull *h, size_t count, int corner[4])
 		return 0;
 	corner[2] = (int)i;
 	for (i++; i < count; i++) {
-		int64_t side = dot(n, &h->point[i]) - dot(n, &h->point[0]);
+		int64_t side = height(n, &h->point[i], &h->point[0]);
 
 		if (side == 0)
 			continue;
@@ -202,7 +206,7 @@ static double volume6(const struct hull *h)
 	double sum = 0;
 
 	for (size_t i = 0; i < h->nfaces; i++)
-		sum += (double)(h->face[i].level - dot(h->face[i].n, o));
+		sum -= (double)height(h->face[i].n, o, &h->point[h->face[i].v[0]]);
 	return sum;
 }
 
@@ -237,13 +241,30 @@ static int collect(struct hull *h)
 	return 0;
 }
 
-int hull_build(struct hull *h, struct hull_point *point, size_t count)
+static int too_large(const struct hull_point *point, size_t count)
+{
+	for (int k = 0; k < 3; k++) {
+		int64_t low = INT32_MAX, high = INT32_MIN;
+
+		for (size_t i = 0; i < count; i++) {
+			low = point[i].v[k] < low ? point[i].v[k] : low;
+			high = point[i].v[k] > high ? point[i].v[k] : high;
+		}
+		if (high - low > HULL_SPAN)
+			return 1;
+	}
+	return 0;
+}
+
+enum hull_status hull_build(struct hull *h, struct hull_point *point, size_t count)
 {
 	struct hull_point *p;
 	int c[4];
 
+	if (too_large(point, count))
+		return HULL_LARGE;
 	if (room_for(&h->point, &h->point_room, count, sizeof(*p)))
-		return -1;
+		return HULL_MEMORY;
 	p = h->point;
 	for (int axis = 0; axis < 3; axis++)
 		count = drop_lines(point, count, axis);
@@ -251,15 +272,15 @@ int hull_build(struct hull *h, struct hull_point *point, size_t count)
 	memcpy(p, point, h->points * sizeof(*p));
 	h->nfaces = 0;
 	if (h->points < 4 || !start(h, h->points, c))
-		return -1;
+		return HULL_FLAT;
 	if (add_face(h, c[0], c[1], c[2]) || add_face(h, c[0], c[3], c[1]) ||
 		add_face(h, c[1], c[3], c[2]) || add_face(h, c[2], c[3], c[0]))
-		return -1;
+		return HULL_MEMORY;
 	for (size_t i = 1; i < h->points; i++)
 		if (add_point(h, (int)i))
-			return -1;
+			return HULL_MEMORY;
 	h->volume6 = volume6(h);
-	return collect(h);
+	return collect(h) ? HULL_MEMORY : HULL_OK;
 }
 
 const struct hull_point *hull_points(const struct hull *h, size_t *count)

@@ -1,10 +1,12 @@
 /* hull.h - convex hull of points of a cubic lattice, in exact integer arithmetic
  *
  * Because an affine map takes hulls to hulls, cells of any shape may be counted in
- * whole steps and scaled afterwards.  Coordinates within +-2^20 cannot overflow.
+ * whole steps and scaled afterwards.  All products are formed of differences of
+ * coordinates; with differences up to D a normal has components up to 2 D^2 and its
+ * product with a difference is at most 6 D^3, which for D = HULL_SPAN is below 2^63.
  *
  *	struct hull *h = hull_new();
- *	if (hull_build(h, point, count) == 0)
+ *	if (hull_build(h, point, count) == HULL_OK)
  *		volume = hull_volume6(h) / 6;
  *	hull_free(h);
  */
@@ -15,6 +17,15 @@
 #include <stdint.h>
 
 struct hull;
+
+#define HULL_SPAN (1 << 20)
+
+enum hull_status {
+	HULL_OK,
+	HULL_FLAT,  /* all points lie in one plane */
+	HULL_LARGE, /* coordinates differ by more than HULL_SPAN */
+	HULL_MEMORY
+};
 
 struct hull_point {
 	int32_t v[3];
@@ -27,9 +38,8 @@ struct hull_edge {
 struct hull *hull_new(void); /* NULL when out of memory */
 void hull_free(struct hull *h);
 
-/* Builds the hull of the points, which are sorted on the way.  -1 when out of memory or
- * where all points lie in one plane. */
-int hull_build(struct hull *h, struct hull_point *point, size_t count);
+/* Builds the hull of the points, which are sorted on the way. */
+enum hull_status hull_build(struct hull *h, struct hull_point *point, size_t count);
 
 /* Of the last hull: its corners, the edges between them (with some diagonals of flat
  * faces), and six times its volume in lattice cells. */

@@ -1,62 +1,47 @@
-/* Union-find over runs of cells.  Every run starts a body of its own; bodies that touch
- * are united, the smaller one taken into the frame of the larger (on a periodic grid
- * frames differ by whole periods).  A body no run of the newest layer belongs to is
- * complete: it is measured and its place used again. */
+/* The stretches are sorted by column and each body is filled from its first one.  On a
+ * periodic grid every stretch is reached in a frame, whole periods from the grid; where
+ * a body meets itself in another frame it goes round the grid. */
 #include "debris/particles.h"
 #include "debris/chords.h"
 #include "debris/hull.h"
-#include "debris/tally.h"
 #include "num/room.h"
+#include "num/sym3.h"
 
 #include <errno.h>
+#include <float.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { X, Y, Z, NONE = -1, REDUCE_FROM = 4096 };
+enum { X, Y, Z };
 
-struct body {
-	int parent;    /* itself for a root */
-	int period[2]; /* of this frame in the parent's */
-	int layer;     /* of the newest run; NONE: the place is free */
-	struct tally cells;
-	int corner, last;     /* list of corners */
-	int corners, reduced; /* their number now and when last reduced */
-};
+/* Steps of depth to a body in its hull where none are given.  Between the corners of a
+ * hull and the chords between them lies more than the square of their number; columns are
+ * no finer than their spacing either. */
+enum { STEPS = 64 };
 
-struct run {
-	int begin, end;
-	int body, period[2]; /* the grid's frame in the body's */
-};
-
-struct sheet {
-	struct run *run;
-	size_t count, room;
-	size_t *row; /* of ny + 1: where the runs of a row start */
-};
-
-struct corner {
-	struct hull_point at;
-	int next;
+/* A stretch on its way. */
+struct piece {
+	double top, bottom;
+	int x, y;      /* column, on the grid */
+	int period[2]; /* of the frame in which it was reached */
+	int reached;
 };
 
 struct particles {
 	struct particles_par par;
-	int layer;
-	struct sheet now, before;
-	struct body *body;
-	size_t bodies, body_room;
-	int *idle; /* free places of body[] */
-	size_t nidle, idle_room;
-	int *taken; /* bodies taken up by others in this layer */
-	size_t ntaken, taken_room;
-	struct corner *corner;
-	size_t corners, corner_room;
-	int free_corner;
+	size_t *start; /* of nx * ny + 1: the pieces of a column */
+	struct piece *piece;
+	size_t piece_room;
+	size_t *body; /* pieces of the present body, in the order reached */
+	size_t members, body_room;
+	double area;  /* of its exposed sides */
+	int winds[2]; /* it goes round along x, y */
 	struct hull *hull;
 	struct chords *chords;
-	struct hull_point *scratch;
-	size_t scratch_room;
+	struct hull_point *corner;
+	size_t corner_room;
 	struct particle *done;
 	size_t ndone, done_room;
 };
@@ -64,27 +49,24 @@ struct particles {
 struct particles *particles_new(const struct particles_par *par)
 {
 	struct particles *ps;
-	int limit = 1 << 19; /* leaves room for one period either way */
 
-	if (par->nx < 1 || par->ny < 1 || par->nx > limit || par->ny > limit ||
-		!(par->ax > 0) || !(par->ay > 0) || !(par->az > 0)) {
+	if (par->nx < 1 || par->ny < 1 || par->nx > HULL_SPAN || par->ny > HULL_SPAN ||
+		!(par->ax > 0) || !(par->ay > 0) || !(par->az >= 0)) {
 		errno = EDOM;
 		return NULL;
 	}
-	ps = calloc(1, sizeof(*ps));
+	ps = calloc(1, sizeof *ps);
 	if (!ps)
 		return NULL;
 	ps->par = *par;
-	ps->now.row = calloc((size_t)par->ny + 1, sizeof(*ps->now.row));
-	ps->before.row = calloc((size_t)par->ny + 1, sizeof(*ps->before.row));
+	ps->start = malloc(((size_t)par->nx * (size_t)par->ny + 1) * sizeof *ps->start);
 	ps->hull = hull_new();
 	ps->chords = chords_new();
-	if (!ps->now.row || !ps->before.row || !ps->hull || !ps->chords) {
+	if (!ps->start || !ps->hull || !ps->chords) {
 		particles_free(ps);
 		errno = ENOMEM;
 		return NULL;
 	}
-	particles_begin(ps);
 	return ps;
 }
 
@@ -92,390 +74,362 @@ void particles_free(struct particles *ps)
 {
 	if (!ps)
 		return;
-	free(ps->now.run);
-	free(ps->now.row);
-	free(ps->before.run);
-	free(ps->before.row);
+	free(ps->start);
+	free(ps->piece);
 	free(ps->body);
-	free(ps->idle);
-	free(ps->taken);
-	free(ps->corner);
 	hull_free(ps->hull);
 	chords_free(ps->chords);
-	free(ps->scratch);
+	free(ps->corner);
 	free(ps->done);
 	free(ps);
 }
 
-void particles_begin(struct particles *ps)
+/* Counting sort by column; within a column from the surface down. */
+static int sort_by_column(struct particles *ps, const struct stretch *s, size_t count)
 {
-	ps->layer = 0;
-	ps->now.count = ps->before.count = 0;
-	memset(ps->now.row, 0, ((size_t)ps->par.ny + 1) * sizeof(*ps->now.row));
-	ps->bodies = ps->nidle = ps->ntaken = ps->corners = ps->ndone = 0;
-	ps->free_corner = NONE;
-}
+	size_t columns = (size_t)ps->par.nx * (size_t)ps->par.ny;
 
-/* Corners */
+	if (room_for(&ps->piece, &ps->piece_room, count + 1, sizeof *ps->piece) ||
+		room_for(&ps->body, &ps->body_room, count + 1, sizeof *ps->body))
+		return -1;
+	memset(ps->start, 0, (columns + 1) * sizeof *ps->start);
+	for (size_t i = 0; i < count; i++)
+		ps->start[s[i].column + 1]++;
+	for (size_t c = 0; c < columns; c++)
+		ps->start[c + 1] += ps->start[c];
+	/* Filled from the front, each column's start moves to its end, and back. */
+	for (size_t i = 0; i < count; i++) {
+		size_t at = ps->start[s[i].column]++;
 
-static int put_corner(struct particles *ps, struct body *b, int x, int y, int z)
-{
-	int at = ps->free_corner;
-
-	if (at != NONE) {
-		ps->free_corner = ps->corner[at].next;
-	} else {
-		if (room_for(&ps->corner, &ps->corner_room, ps->corners + 1,
-			    sizeof(*ps->corner)))
-			return -1;
-		at = (int)ps->corners++;
+		ps->piece[at] = (struct piece){ .top = s[i].top,
+			.bottom = s[i].bottom,
+			.x = (int)(s[i].column % (size_t)ps->par.nx),
+			.y = (int)(s[i].column / (size_t)ps->par.nx) };
 	}
-	ps->corner[at].at = (struct hull_point){ { x, y, z } };
-	ps->corner[at].next = b->corner;
-	if (b->corner == NONE)
-		b->last = at;
-	b->corner = at;
-	b->corners++;
+	memmove(ps->start + 1, ps->start, columns * sizeof *ps->start);
+	ps->start[0] = 0;
+	for (size_t c = 0; c < columns; c++)
+		for (size_t i = ps->start[c] + 1; i < ps->start[c + 1]; i++)
+			for (size_t k = i; k > ps->start[c] &&
+					   ps->piece[k].top < ps->piece[k - 1].top;
+				k--) {
+				struct piece t = ps->piece[k];
+
+				ps->piece[k] = ps->piece[k - 1];
+				ps->piece[k - 1] = t;
+			}
 	return 0;
 }
 
-static void drop_corners(struct particles *ps, struct body *b)
+static void reach(struct particles *ps, size_t at, const int period[2])
 {
-	if (b->corner == NONE)
+	struct piece *p = &ps->piece[at];
+
+	if (p->reached) {
+		for (int k = X; k <= Y; k++)
+			ps->winds[k] |= p->period[k] != period[k];
 		return;
-	ps->corner[b->last].next = ps->free_corner;
-	ps->free_corner = b->corner;
-	b->corner = NONE;
-	b->corners = 0;
+	}
+	p->reached = 1;
+	memcpy(p->period, period, sizeof p->period);
+	ps->body[ps->members++] = at;
 }
 
-static int build_hull(struct particles *ps, const struct body *b)
+/* Brings a coordinate onto the grid; whether there is such a column. */
+static int onto_grid(int *at, int n, int periodic, int *period)
 {
-	size_t n = 0;
+	int over = *at < 0 ? -1 : *at >= n;
 
-	if (room_for(&ps->scratch, &ps->scratch_room, b->corners, sizeof(*ps->scratch)))
-		return -1;
-	for (int at = b->corner; at != NONE; at = ps->corner[at].next)
-		ps->scratch[n++] = ps->corner[at].at;
-	return hull_build(ps->hull, ps->scratch, n);
+	*at -= over * n;
+	*period += over;
+	return !over || periodic;
 }
 
-/* Leaves a body with many corners those of its convex hull. */
-static int reduce(struct particles *ps, struct body *b)
+/* Reaches what overlaps a piece in the column at (dx, dy) from it; returns how much of
+ * its height does. */
+static double reach_column(struct particles *ps, const struct piece *p, int dx, int dy)
 {
-	const struct hull_point *p;
-	size_t n;
+	int x = p->x + dx, y = p->y + dy, period[2] = { p->period[X], p->period[Y] };
+	double top = p->top, bottom = p->bottom, shared = 0;
+	size_t column;
 
-	if (b->corners < REDUCE_FROM || b->corners < 2 * b->reduced)
+	if (!onto_grid(&x, ps->par.nx, ps->par.periodic, &period[X]) ||
+		!onto_grid(&y, ps->par.ny, ps->par.periodic, &period[Y]))
 		return 0;
-	if (build_hull(ps, b))
-		return -1;
-	p = hull_points(ps->hull, &n);
-	drop_corners(ps, b);
-	for (size_t i = 0; i < n; i++)
-		if (put_corner(ps, b, p[i].v[X], p[i].v[Y], p[i].v[Z]))
-			return -1;
-	b->reduced = (int)n;
-	return 0;
-}
+	column = (size_t)y * (size_t)ps->par.nx + (size_t)x;
+	for (size_t i = ps->start[column]; i < ps->start[column + 1]; i++) {
+		double overlap =
+			fmin(bottom, ps->piece[i].bottom) - fmax(top, ps->piece[i].top);
 
-/* Bodies */
-
-static int body_new(struct particles *ps)
-{
-	if (ps->nidle > 0)
-		return ps->idle[--ps->nidle];
-	if (room_for(&ps->body, &ps->body_room, ps->bodies + 1, sizeof(*ps->body)))
-		return NONE;
-	return (int)ps->bodies++;
-}
-
-static int set_idle(struct particles *ps, int body)
-{
-	if (room_for(&ps->idle, &ps->idle_room, ps->nidle + 1, sizeof(*ps->idle)))
-		return -1;
-	ps->body[body].layer = NONE;
-	ps->idle[ps->nidle++] = body;
-	return 0;
-}
-
-/* A body of the cells [begin, end) of row y in the present layer. */
-static int body_of_run(struct particles *ps, int y, int begin, int end)
-{
-	int id = body_new(ps), z = ps->layer;
-	struct body *b;
-
-	if (id == NONE)
-		return NONE;
-	b = &ps->body[id];
-	memset(b, 0, sizeof(*b));
-	b->parent = id;
-	b->layer = z;
-	b->cells = tally_run(begin, end, y, z);
-	b->corner = NONE;
-	for (int k = 0; k < 8; k++)
-		if (put_corner(
-			    ps, b, k & 1 ? end : begin, y + (k >> 1 & 1), z + (k >> 2)))
-			return NONE;
-	return id;
-}
-
-/* Root of a body and, added to period, where its frame lies in the root's. */
-static int find(struct particles *ps, int id, int period[2])
-{
-	int root = id, total[2] = { 0, 0 };
-
-	while (ps->body[root].parent != root) {
-		total[X] += ps->body[root].period[X];
-		total[Y] += ps->body[root].period[Y];
-		root = ps->body[root].parent;
+		if (!(overlap > 0))
+			continue;
+		shared += overlap;
+		reach(ps, i, period);
 	}
-	period[X] += total[X];
-	period[Y] += total[Y];
-	while (ps->body[id].parent != root && id != root) {
-		struct body *b = &ps->body[id];
-		int next = b->parent, step[2] = { b->period[X], b->period[Y] };
+	return shared;
+}
 
-		b->parent = root;
-		b->period[X] = total[X];
-		b->period[Y] = total[Y];
-		total[X] -= step[X];
-		total[Y] -= step[Y];
-		id = next;
+/* All pieces of the body of one. */
+static void fill(struct particles *ps, size_t from)
+{
+	static const int home[2] = { 0, 0 };
+
+	ps->members = 0;
+	ps->area = 0;
+	ps->winds[X] = ps->winds[Y] = 0;
+	reach(ps, from, home);
+	for (size_t next = 0; next < ps->members; next++) {
+		struct piece p = ps->piece[ps->body[next]];
+		double height = p.bottom - p.top;
+
+		for (int side = -1; side <= 1; side += 2) {
+			ps->area += (height - reach_column(ps, &p, side, 0)) * ps->par.ay;
+			ps->area += (height - reach_column(ps, &p, 0, side)) * ps->par.ax;
+			if (!ps->par.corners)
+				continue;
+			reach_column(ps, &p, side, -1);
+			reach_column(ps, &p, side, 1);
+		}
+		ps->area += 2 * ps->par.ax * ps->par.ay;
 	}
-	return root;
-}
-
-/* Moves a body by (dx, dy) cells. */
-static void shift(struct particles *ps, struct body *b, int dx, int dy)
-{
-	if (dx == 0 && dy == 0)
-		return;
-	tally_shift(&b->cells, dx, dy);
-	for (int at = b->corner; at != NONE; at = ps->corner[at].next) {
-		ps->corner[at].at.v[X] += dx;
-		ps->corner[at].at.v[Y] += dy;
-	}
-}
-
-/* Adds b, already in a's frame, to a. */
-static void absorb(struct particles *ps, struct body *a, struct body *b)
-{
-	a->layer = a->layer > b->layer ? a->layer : b->layer;
-	tally_add(&a->cells, &b->cells);
-	if (b->corner == NONE)
-		return;
-	ps->corner[b->last].next = a->corner;
-	if (a->corner == NONE)
-		a->last = b->last;
-	a->corner = b->corner;
-	a->corners += b->corners;
-	a->reduced = a->reduced > b->reduced ? a->reduced : b->reduced;
-	b->corner = NONE;
-}
-
-/* Cells of run p touch cells of run q, seen (px, py) periods further; across the faces
- * along axis they share so many. */
-static int unite(struct particles *ps, const struct run *p, const struct run *q, int px,
-	int py, int axis, int shared)
-{
-	int in_a[2] = { p->period[X], p->period[Y] },
-	    in_b[2] = { q->period[X], q->period[Y] };
-	int a = find(ps, p->body, in_a), b = find(ps, q->body, in_b);
-	int move[2] = { in_a[X] + px - in_b[X], in_a[Y] + py - in_b[Y] };
-
-	ps->body[a].cells.faces[axis] -= 2 * shared;
-	if (a == b)
-		return 0;
-	if (ps->body[a].corners < ps->body[b].corners) {
-		int t = a;
-
-		a = b;
-		b = t;
-		move[X] = -move[X];
-		move[Y] = -move[Y];
-	}
-	shift(ps, &ps->body[b], move[X] * ps->par.nx, move[Y] * ps->par.ny);
-	absorb(ps, &ps->body[a], &ps->body[b]);
-	ps->body[b].parent = a;
-	ps->body[b].period[X] = move[X];
-	ps->body[b].period[Y] = move[Y];
-	if (room_for(&ps->taken, &ps->taken_room, ps->ntaken + 1, sizeof(*ps->taken)))
-		return -1;
-	ps->taken[ps->ntaken++] = b;
-	return reduce(ps, &ps->body[a]);
-}
-
-/* Layers */
-
-static int scan_row(struct particles *ps, const unsigned char *mask, int y)
-{
-	const unsigned char *end = mask + ps->par.nx, *at = mask;
-	struct sheet *s = &ps->now;
-
-	while ((at = memchr(at, 1, end - at))) {
-		const unsigned char *stop = memchr(at, 0, end - at);
-		struct run r = { .begin = (int)(at - mask) };
-
-		at = stop ? stop : end;
-		r.end = (int)(at - mask);
-		r.body = body_of_run(ps, y, r.begin, r.end);
-		if (r.body == NONE ||
-			room_for(&s->run, &s->room, s->count + 1, sizeof(*s->run)))
-			return -1;
-		s->run[s->count++] = r;
-	}
-	return 0;
-}
-
-/* Unites touching runs of two rows; b's row is seen (px, py) periods further and its
- * runs reach corner cells beyond their ends. */
-static int join_rows(struct particles *ps, const struct sheet *sa, size_t ya,
-	const struct sheet *sb, size_t yb, int px, int py, int axis, int corner)
-{
-	size_t i = sa->row[ya], iend = sa->row[ya + 1];
-	size_t j = sb->row[yb], jend = sb->row[yb + 1];
-	int far = px * ps->par.nx;
-
-	while (i < iend && j < jend) {
-		const struct run *a = &sa->run[i], *b = &sb->run[j];
-		int begin = a->begin > b->begin + far ? a->begin : b->begin + far;
-		int end = a->end < b->end + far ? a->end : b->end + far;
-
-		if (end + corner > begin &&
-			unite(ps, a, b, px, py, axis, end > begin ? end - begin : 0))
-			return -1;
-		if (a->end < b->end + far)
-			i++;
-		else
-			j++;
-	}
-	return 0;
-}
-
-/* Row y of the new layer with row other of the same layer, next to it. */
-static int join_neighbour(struct particles *ps, int y, int other, int py)
-{
-	const struct sheet *s = &ps->now;
-	int wrap = ps->par.periodic && ps->par.corners;
-
-	if (join_rows(ps, s, y, s, other, 0, py, Y, ps->par.corners))
-		return -1;
-	return wrap && (join_rows(ps, s, y, s, other, 1, py, Y, 1) ||
-			       join_rows(ps, s, y, s, other, -1, py, Y, 1))
-		       ? -1
-		       : 0;
-}
-
-static int join_layer(struct particles *ps)
-{
-	const struct sheet *s = &ps->now;
-	int ny = ps->par.ny, nx = ps->par.nx;
-
-	for (int y = 0; y < ny; y++) {
-		size_t a = s->row[y], b = s->row[y + 1];
-
-		if (y > 0 && join_neighbour(ps, y, y - 1, 0))
-			return -1;
-		if (join_rows(ps, s, y, &ps->before, y, 0, 0, Z, 0))
-			return -1;
-		if (ps->par.periodic && b > a && s->run[a].begin == 0 &&
-			s->run[b - 1].end == nx &&
-			unite(ps, &s->run[b - 1], &s->run[a], 1, 0, X, 1))
-			return -1;
-	}
-	return ps->par.periodic ? join_neighbour(ps, 0, ny - 1, -1) : 0;
 }
 
 /* Measures */
 
-static int measure_hull(struct particles *ps, const struct body *b, struct particle *p)
+/* Column of a piece in the frame of its body. */
+static void column_of(const struct particles *ps, const struct piece *p, int at[2])
 {
-	const double step[3] = { ps->par.ax, ps->par.ay, ps->par.az };
+	at[X] = p->x + p->period[X] * ps->par.nx;
+	at[Y] = p->y + p->period[Y] * ps->par.ny;
+}
 
-	if (build_hull(ps, b) ||
-		chords_measure(ps->chords, ps->hull, step, &p->length, &p->width))
+/* Columns and depths, low[] to high[] exclusive, of the body. */
+struct extent {
+	int low[2], high[2];
+	double top, bottom;
+};
+
+static struct extent extent_of(const struct particles *ps)
+{
+	struct extent e = { { INT_MAX, INT_MAX }, { INT_MIN, INT_MIN }, INFINITY, 0 };
+
+	for (size_t i = 0; i < ps->members; i++) {
+		const struct piece *p = &ps->piece[ps->body[i]];
+		int at[2];
+
+		column_of(ps, p, at);
+		for (int k = X; k <= Y; k++) {
+			e.low[k] = at[k] < e.low[k] ? at[k] : e.low[k];
+			e.high[k] = at[k] + 1 > e.high[k] ? at[k] + 1 : e.high[k];
+		}
+		e.top = fmin(e.top, p->top);
+		e.bottom = fmax(e.bottom, p->bottom);
+	}
+	return e;
+}
+
+/* Volume, over that of a unit of depth, and centroid from the low corner of the body, in
+ * columns and metres. */
+static double centroid(const struct particles *ps, const struct extent *e, double mean[3])
+{
+	double sum = 0;
+
+	mean[X] = mean[Y] = mean[Z] = 0;
+	for (size_t i = 0; i < ps->members; i++) {
+		const struct piece *p = &ps->piece[ps->body[i]];
+		double height = p->bottom - p->top;
+		int at[2];
+
+		column_of(ps, p, at);
+		sum += height;
+		mean[X] += height * (at[X] - e->low[X] + 0.5);
+		mean[Y] += height * (at[Y] - e->low[Y] + 0.5);
+		mean[Z] += height * (0.5 * (p->bottom + p->top) - e->top);
+	}
+	for (int k = X; k <= Z; k++)
+		mean[k] /= sum;
+	return sum;
+}
+
+/* Elongation and direction, by the second moments about the centroid. */
+static void measure_moments(const struct particles *ps, const struct extent *e,
+	const double mean[3], double volume, struct particle *out)
+{
+	double m[6] = { 0 }, value[3], axis[3][3], ax = ps->par.ax, ay = ps->par.ay;
+	double rounding = 16 * sqrt((double)ps->members + 16) * DBL_EPSILON;
+
+	for (size_t i = 0; i < ps->members; i++) {
+		const struct piece *p = &ps->piece[ps->body[i]];
+		double height = p->bottom - p->top, share = height / volume, x, y, z;
+		int at[2];
+
+		column_of(ps, p, at);
+		x = ax * (at[X] - e->low[X] + 0.5 - mean[X]);
+		y = ay * (at[Y] - e->low[Y] + 0.5 - mean[Y]);
+		z = 0.5 * (p->bottom + p->top) - e->top - mean[Z];
+		m[0] += share * (x * x + ax * ax / 12);
+		m[1] += share * (y * y + ay * ay / 12);
+		m[2] += share * (z * z + height * height / 12);
+		m[3] += share * x * y;
+		m[4] += share * x * z;
+		m[5] += share * y * z;
+	}
+	/* Sums of so many terms are right to their square root of units of the last
+	 * place, and the terms to some more; products less than that are none, so that
+	 * bodies along the axes have whole directions. */
+	for (int k = 3; k < 6; k++) {
+		double most = sqrt(m[k == 5] * m[k == 3 ? 1 : 2]);
+
+		m[k] = fabs(m[k]) < rounding * most ? 0 : m[k];
+	}
+	sym3_eigen(m, value, axis);
+	out->elongation = 1 - sqrt(value[1] / value[0]);
+	out->azimuth = out->dip = NAN;
+	if (value[0] - value[1] < rounding * value[0])
+		return;
+	if (axis[0][X] < 0 || (axis[0][X] == 0 && axis[0][Y] < 0))
+		for (int k = X; k <= Z; k++)
+			axis[0][k] = -axis[0][k];
+	out->azimuth = atan2(axis[0][Y], axis[0][X]);
+	out->dip = atan2(fabs(axis[0][Z]), hypot(axis[0][X], axis[0][Y]));
+}
+
+/* Corners of the body, depths in steps of unit. */
+static int put_corners(struct particles *ps, const struct extent *e, double unit)
+{
+	size_t n = 0;
+
+	if (room_for(&ps->corner, &ps->corner_room, 8 * ps->members, sizeof *ps->corner))
 		return -1;
-	p->aspect = p->length / p->width;
-	p->convexity = 6 * b->cells.nodes / hull_volume6(ps->hull);
+	for (size_t i = 0; i < ps->members; i++) {
+		const struct piece *p = &ps->piece[ps->body[i]];
+		int at[2];
+
+		column_of(ps, p, at);
+		for (int k = 0; k < 8; k++) {
+			double z = (k & 4 ? p->bottom : p->top) - e->top;
+
+			ps->corner[n++] = (struct hull_point){ {
+				at[X] - e->low[X] + (k & 1),
+				at[Y] - e->low[Y] + (k >> 1 & 1),
+				(int32_t)lround(z / unit),
+			} };
+		}
+	}
 	return 0;
 }
 
-static int measure(struct particles *ps, const struct body *b)
+static int measure_hull(struct particles *ps, const struct extent *e, struct particle *p)
 {
-	struct particle *p;
+	double range = e->bottom - e->top,
+	       unit = ps->par.az > 0 ? ps->par.az : range / STEPS;
+	const double step[3] = { ps->par.ax, ps->par.ay, unit };
+	enum hull_status status = HULL_LARGE;
 
-	if (room_for(&ps->done, &ps->done_room, ps->ndone + 1, sizeof(*ps->done)))
+	p->length = p->width = p->aspect = p->convexity = NAN;
+	if (!p->endless && range / unit <= HULL_SPAN) {
+		if (put_corners(ps, e, unit))
+			return -1;
+		status = hull_build(ps->hull, ps->corner, 8 * ps->members);
+	}
+	if (status == HULL_LARGE)
+		return 0;
+	if (status != HULL_OK ||
+		chords_measure(ps->chords, ps->hull, step, &p->length, &p->width))
+		return -1;
+	p->aspect = p->length / p->width;
+	p->convexity = 6 * p->volume /
+		       (hull_volume6(ps->hull) * (ps->par.ax * ps->par.ay * unit));
+	return 0;
+}
+
+/* Whole periods that bring the centroid back onto the grid. */
+static double home(const struct particles *ps, double at, int n)
+{
+	return ps->par.periodic ? n * floor(at / n) : 0;
+}
+
+static void place(const struct particles *ps, const struct extent *e,
+	const double mean[3], struct particle *p)
+{
+	const int points[2] = { ps->par.nx, ps->par.ny };
+	const double step[2] = { ps->par.ax, ps->par.ay };
+	double at[2];
+
+	for (int k = X; k <= Y; k++) {
+		double back = home(ps, e->low[k] + mean[k], points[k]);
+
+		at[k] = (e->low[k] + mean[k] - back) * step[k];
+		p->low[k] = (e->low[k] - back) * step[k];
+		p->high[k] = (e->high[k] - back) * step[k];
+		if (ps->winds[k]) {
+			at[k] = NAN;
+			p->low[k] = 0;
+			p->high[k] = points[k] * step[k];
+		}
+	}
+	p->x = at[X];
+	p->y = at[Y];
+	p->z = e->top + mean[Z];
+	p->low[Z] = e->top;
+	p->high[Z] = e->bottom;
+}
+
+static int measure(struct particles *ps)
+{
+	const struct piece *first = &ps->piece[ps->body[0]];
+	struct extent e = extent_of(ps);
+	struct particle *p;
+	double mean[3], volume;
+
+	if (room_for(&ps->done, &ps->done_room, ps->ndone + 1, sizeof *ps->done))
 		return -1;
 	p = &ps->done[ps->ndone];
-	tally_measure(&b->cells, &ps->par, p);
-	if (measure_hull(ps, b, p))
+	*p = (struct particle){ .columns = ps->members,
+		.area = ps->area,
+		.first = { first->x, first->y },
+		.endless = ps->winds[X] || ps->winds[Y] };
+	volume = centroid(ps, &e, mean);
+	p->volume = volume * (ps->par.ax * ps->par.ay);
+	p->diameter = cbrt(6 * p->volume / M_PI);
+	place(ps, &e, mean, p);
+	p->elongation = p->azimuth = p->dip = NAN;
+	if (!p->endless)
+		measure_moments(ps, &e, mean, volume, p);
+	if (measure_hull(ps, &e, p))
 		return -1;
 	ps->ndone++;
 	return 0;
 }
 
-/* Points the runs of the new layer at their roots, closes the bodies of the layer before
- * that did not reach the new one, and frees the places of those taken up by others. */
-static int settle(struct particles *ps)
-{
-	for (size_t i = 0; i < ps->now.count; i++) {
-		struct run *r = &ps->now.run[i];
-
-		r->body = find(ps, r->body, r->period);
-	}
-	for (size_t i = 0; i < ps->before.count; i++) {
-		int period[2] = { 0, 0 }, root = find(ps, ps->before.run[i].body, period);
-		struct body *b = &ps->body[root];
-
-		if (b->layer == NONE || b->layer == ps->layer)
-			continue;
-		if (measure(ps, b) || set_idle(ps, root))
-			return -1;
-		drop_corners(ps, b);
-	}
-	while (ps->ntaken > 0)
-		if (set_idle(ps, ps->taken[--ps->ntaken]))
-			return -1;
-	return 0;
-}
-
-int particles_layer(struct particles *ps, const unsigned char *mask)
-{
-	struct sheet t = ps->before;
-
-	ps->before = ps->now;
-	ps->now = t;
-	ps->now.count = 0;
-	for (int y = 0; y < ps->par.ny; y++) {
-		ps->now.row[y] = ps->now.count;
-		if (mask && scan_row(ps, mask + (size_t)y * ps->par.nx, y))
-			return -1;
-	}
-	ps->now.row[ps->par.ny] = ps->now.count;
-	if (join_layer(ps) || settle(ps))
-		return -1;
-	ps->layer++;
-	return 0;
-}
-
-/* Largest first, equal ones in order of their first cell. */
 static int in_order(const void *a, const void *b)
 {
 	const struct particle *p = a, *q = b;
 
-	if (p->nodes != q->nodes)
-		return p->nodes > q->nodes ? -1 : 1;
-	return tally_precedes(p->first, q->first) ? -1 : 1;
+	if (p->volume != q->volume)
+		return p->volume > q->volume ? -1 : 1;
+	for (int k = Y; k >= X; k--)
+		if (p->first[k] != q->first[k])
+			return p->first[k] < q->first[k] ? -1 : 1;
+	return p->low[Z] < q->low[Z] ? -1 : 1;
 }
 
-size_t particles_end(struct particles *ps, const struct particle **list)
+size_t particles_find(struct particles *ps, const struct stretch *stretch, size_t count,
+	const struct particle **list)
 {
-	/* An empty layer closes whatever is open. */
-	if (particles_layer(ps, NULL))
+	ps->ndone = 0;
+	*list = NULL;
+	if (sort_by_column(ps, stretch, count))
 		return (size_t)-1;
+	for (size_t i = 0; i < count; i++) {
+		if (ps->piece[i].reached)
+			continue;
+		fill(ps, i);
+		if (measure(ps))
+			return (size_t)-1;
+	}
 	if (ps->ndone > 0)
-		qsort(ps->done, ps->ndone, sizeof(*ps->done), in_order);
+		qsort(ps->done, ps->ndone, sizeof *ps->done, in_order);
 	*list = ps->done;
 	return ps->ndone;
 }

@@ -1,37 +1,41 @@
-/* particles.h - connected particles of a set of cells, found layer by layer
+/* particles.h - connected bodies among stretches of the columns of a grid
  *
- * Cells that share a face belong together (on request, also cells of one layer that
- * share a corner: the patches of a contact map).  Layers are handed in from the
- * surface down; memory is that of two layers and of the corners of open particles.
+ * A set of material below a surface is given as stretches of its columns, from top to
+ * bottom.  Stretches of neighbouring columns that overlap in depth belong to one body (on
+ * request, also those of columns that touch along an edge: the patches of a contact
+ * map).
  *
- *	struct particles_par par = { .nx = 128, .ny = 128, .ax = 8e-6, .ay = 8e-6,
- *		.az = 8e-6 };
+ *	struct particles_par par = { .nx = 128, .ny = 128, .ax = 8e-6, .ay = 8e-6 };
  *	struct particles *ps = particles_new(&par);
- *	particles_begin(ps);
- *	for (m = 0; m < layers; m++)
- *		particles_layer(ps, failed[m]);
- *	n = particles_end(ps, &list);
+ *	n = particles_find(ps, stretch, count, &list);
  *
- * Lengths are taken over the cells as bodies, corners included: a single cube has the
- * largest diameter sqrt(3) times its side.
+ * Lengths are taken over the bodies as they are, boxes with their corners: a single cube
+ *has the largest diameter sqrt(3) times its side.
  */
-#ifndef CONTACT_PARTICLES_H
-#define CONTACT_PARTICLES_H
+#ifndef DEBRIS_PARTICLES_H
+#define DEBRIS_PARTICLES_H
 
 #include <stddef.h>
 
 struct particles;
 
 struct particles_par {
-	int nx, ny;        /* cells */
-	double ax, ay, az; /* m */
-	int corners;       /* cells of a layer that share a corner are joined too */
-	int periodic;      /* the grid repeats in x and y */
+	int nx, ny;    /* columns */
+	double ax, ay; /* m */
+	double az;     /* depths are whole multiples of it, m; 0: of nothing */
+	int corners;   /* columns that share an edge in depth alone are joined too */
+	int periodic;  /* the grid repeats in x and y */
+};
+
+/* Of column y * nx + x, from top to bottom > top >= 0, m. */
+struct stretch {
+	size_t column;
+	double top, bottom;
 };
 
 struct particle {
-	double nodes;      /* cells, N */
-	double volume;     /* N ax ay az, m3 */
+	size_t columns;    /* stretches */
+	double volume;     /* m3 */
 	double diameter;   /* of the sphere of this volume, m (2-14) */
 	double length;     /* largest diameter: between the farthest two points, m */
 	double width;      /* largest chord of the convex hull at right angles to it, m */
@@ -45,20 +49,23 @@ struct particle {
 	double azimuth, dip;
 	double x, y, z;         /* centroid, m; z down from the surface */
 	double low[3], high[3]; /* bounding box, m */
-	/* First cell in order of layer, y, x: the address. */
-	int first[3];
+	int first[2];           /* first column in order of y and x: the address */
+	/* On a periodic grid: goes round it and meets itself, a ridge without end.
+	 * Columns, volume, diameter and area are those of one period; what would need an
+	 * end (length to convexity, direction) is nan, as is the centroid along x or y
+	 * where it winds that way. */
+	int endless;
 };
 
 /* NULL with errno EDOM or ENOMEM. */
 struct particles *particles_new(const struct particles_par *par);
 void particles_free(struct particles *ps);
 
-void particles_begin(struct particles *ps);
-/* The next layer: mask[y * nx + x] is 1 where a cell belongs to the set, else 0.  -1 when
- * out of memory. */
-int particles_layer(struct particles *ps, const unsigned char *mask);
-/* Closes all; *list is valid until the next particles_begin().  Largest first, equal
- * ones by address.  Returns their number, (size_t)-1 when out of memory. */
-size_t particles_end(struct particles *ps, const struct particle **list);
+/* The bodies of count stretches; those of a column neither overlap nor touch.  *list is
+ * valid until the next call: largest first, equal ones by address and depth.  Where az is
+ * 0 the hull takes depths in steps of 1/64 of those of its body.  Returns their number,
+ * (size_t)-1 when out of memory. */
+size_t particles_find(struct particles *ps, const struct stretch *stretch, size_t count,
+	const struct particle **list);
 
 #endif

@@ -1,123 +1,225 @@
 #include "debris/wear.h"
+#include "num/room.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* First depth below the surface over the spacing.  Volumes of smooth and rough contacts,
+ * shallow and deep, come within some percent of those of steps of 1/16 of the spacing,
+ * and no closer with a smaller one (tests/bench/stress.c). */
+static const double FIRST = 0.125;
+
 struct wear {
+	int nx, ny;
 	struct stress *stress;
 	const struct wear_par *par;
-	int nx, ny;
-	struct particles *particles;
-	int *removed;
 	struct wear_result *result;
 	struct stress_span *span;
-	size_t nspans;
-	double *mises;
-	unsigned char *mask;
+	size_t nspans, span_room;
+	double *value[3]; /* equivalent stress at this depth and the two before */
+	double *top; /* where the open stretch of a column begins; < 0: none is open */
+	struct stretch *stretch;
+	size_t count, room;
 };
 
-/* Marks the cells of this layer that fail; their number. */
-static double mark(struct wear *w)
+struct wear *wear_new(int nx, int ny)
+{
+	struct wear *w = calloc(1, sizeof *w);
+	size_t n = (size_t)nx * (size_t)ny;
+
+	if (!w)
+		return NULL;
+	w->nx = nx;
+	w->ny = ny;
+	for (int k = 0; k < 3; k++)
+		w->value[k] = malloc(n * sizeof **w->value);
+	w->top = malloc(n * sizeof *w->top);
+	if (!w->value[0] || !w->value[1] || !w->value[2] || !w->top) {
+		wear_free(w);
+		return NULL;
+	}
+	return w;
+}
+
+void wear_free(struct wear *w)
+{
+	if (!w)
+		return;
+	for (int k = 0; k < 3; k++)
+		free(w->value[k]);
+	free(w->top);
+	free(w->span);
+	free(w->stretch);
+	free(w);
+}
+
+static double depth_of(const struct wear_par *p, long layer)
+{
+	if (p->cell > 0)
+		return ((double)layer + p->offset) * p->cell;
+	return layer ? p->spacing * FIRST * exp2(0.5 * (double)(layer - 1)) : 0;
+}
+
+/* Strength over stress, to the half: it grows in proportion to the depth below a load that
+ * is far away, so that little is left to interpolate.  Bounded where there is no stress. */
+static double reserve(const struct wear *w, int ago, size_t at)
+{
+	return sqrt(w->par->yield / fmax(w->value[ago][at], 1e-6 * w->par->yield));
+}
+
+/* Where the stress crosses the yield stress between the last two depths: on the parabola
+ * through the last three, or the line through two. */
+static double crossing(const struct wear *w, size_t at, long layer)
+{
+	double z1 = depth_of(w->par, layer - 1), z2 = depth_of(w->par, layer);
+	double g1 = reserve(w, 1, at), g2 = reserve(w, 0, at), step = z2 - z1;
+	double slope = (g2 - g1) / step, bend = 0, b, c = g1 - 1, q, s;
+
+	if (layer > 1) {
+		double z0 = depth_of(w->par, layer - 2), g0 = reserve(w, 2, at);
+
+		bend = (slope - (g1 - g0) / (z1 - z0)) / (z2 - z0);
+	}
+	/* bend s^2 + b s + c = 0 has one root in [0, step]. */
+	b = slope - bend * step;
+	q = -0.5 * (b + copysign(sqrt(fmax(0, b * b - 4 * bend * c)), b));
+	s = c / q;
+	if (!(s >= 0 && s <= step))
+		s = q / bend;
+	return z1 + fmin(fmax(s, 0), step);
+}
+
+static int close_stretch(struct wear *w, size_t at, double bottom)
+{
+	double top = w->top[at];
+
+	w->top[at] = -1;
+	if (!(bottom > top))
+		return 0;
+	if (room_for(&w->stretch, &w->room, w->count + 1, sizeof *w->stretch))
+		return -1;
+	w->stretch[w->count++] = (struct stretch){ at, top, bottom };
+	w->result->height += bottom - top;
+	return 0;
+}
+
+/* Takes the stress of one node at this depth. */
+static int take_node(struct wear *w, size_t at, long layer)
+{
+	double cell = w->par->cell, f = w->value[0][at], z;
+	int open = w->top[at] >= 0, fails = f > w->par->yield;
+
+	w->result->stress = fmax(w->result->stress, f);
+	if (open == fails)
+		return 0;
+	z = cell > 0 ? (double)layer * cell : layer > 0 ? crossing(w, at, layer) : 0;
+	if (open)
+		return close_stretch(w, at, z);
+	if (layer == 0 || w->par->rule == WEAR_POTENTIAL)
+		w->top[at] = z;
+	return 0;
+}
+
+static int take_layer(struct wear *w, long layer)
 {
 	struct wear_result *r = w->result;
-	double cells = 0, nodes = 0;
+	double nodes = 0;
 
-	memset(w->mask, 0, (size_t)w->nx * w->ny);
 	for (size_t i = 0; i < w->nspans; i++) {
 		const struct stress_span *s = &w->span[i];
 
 		nodes += s->end - s->begin;
-		for (int x = s->begin; x < s->end; x++) {
-			size_t at = (size_t)s->y * w->nx + x;
-
-			if (w->mises[at] > r->mises)
-				r->mises = w->mises[at];
-			if (!(w->mises[at] > w->par->yield))
-				continue;
-			w->mask[at] = 1;
-			r->columns += w->removed[at] == 0;
-			w->removed[at]++;
-			cells++;
-		}
+		for (int x = s->begin; x < s->end; x++)
+			if (take_node(w, (size_t)s->y * (size_t)w->nx + (size_t)x, layer))
+				return -1;
 	}
+	r->layers++;
 	r->nodes += nodes;
 	r->nodes_skipped += (double)w->nx * w->ny - nodes;
-	return cells;
+	return 0;
 }
 
-/* Spans of the marked cells: what the layer below may lose under the column rule. */
-static void follow(struct wear *w)
+/* Spans of open columns: what greater depths may lose under the column rule.  They lie
+ * within the spans so far. */
+static int follow(struct wear *w)
 {
+	size_t old = w->nspans;
+
 	w->nspans = 0;
+	if (room_for(&w->span, &w->span_room, (size_t)w->ny * (((size_t)w->nx + 1) / 2),
+		    sizeof *w->span))
+		return -1;
+	if (old == 0)
+		return 0;
 	for (int y = 0; y < w->ny; y++) {
-		const unsigned char *row = w->mask + (size_t)y * w->nx;
+		const double *row = w->top + (size_t)y * (size_t)w->nx;
 
 		for (int x = 0; x < w->nx; x++) {
-			struct stress_span *s = &w->span[w->nspans];
+			int begin = x;
 
-			if (!row[x])
+			if (!(row[x] >= 0))
 				continue;
-			*s = (struct stress_span){ y, x, x };
-			while (x < w->nx && row[x])
+			while (x < w->nx && row[x] >= 0)
 				x++;
-			s->end = x;
-			w->nspans++;
+			w->span[w->nspans++] = (struct stress_span){ y, begin, x };
 		}
 	}
+	return 0;
 }
 
 static enum wear_status remove_layers(struct wear *w)
 {
-	double yield = w->par->yield;
+	const struct wear_par *p = w->par;
 
-	if (w->par->max_layers && stress_deep(w->stress, w->par->max_layers) > yield)
+	if (p->deepest > 0 && stress_deep(w->stress, p->deepest) > p->yield)
 		return WEAR_DEEP;
-	w->nspans = stress_reach(w->stress, 0, yield, w->span);
-	for (long m = 0; w->nspans > 0; m++) {
-		double cells;
+	w->nspans = stress_reach(w->stress, 0, p->yield, w->span);
+	for (long k = 0; w->nspans > 0; k++) {
+		double z = depth_of(p, k), *oldest = w->value[2];
 
-		if (w->par->max_layers && m == w->par->max_layers)
+		if (p->deepest > 0 && z > p->deepest)
 			return WEAR_DEEP;
-		if (stress_mises(w->stress, m, w->span, w->nspans, w->mises))
+		w->value[2] = w->value[1];
+		w->value[1] = w->value[0];
+		w->value[0] = oldest;
+		if (stress_at(w->stress, z, w->span, w->nspans, w->value[0]) ||
+			take_layer(w, k))
 			return WEAR_MEMORY;
-		cells = mark(w);
-		w->result->layers++;
-		w->result->cells += cells;
-		if (w->particles && particles_layer(w->particles, w->mask))
+		w->result->depth = z;
+		/* The potential set may go on anywhere that was in reach at this depth:
+		 * the next is evaluated there, so that both sides of a crossing are
+		 * known. */
+		if (p->rule == WEAR_POTENTIAL)
+			w->nspans = stress_reach(w->stress, z, p->yield, w->span);
+		else if (follow(w))
 			return WEAR_MEMORY;
-		if (w->par->rule == WEAR_COLUMN)
-			follow(w);
-		else
-			w->nspans = stress_reach(w->stress, m + 1, yield, w->span);
 	}
 	return WEAR_OK;
 }
 
-enum wear_status wear_remove(struct stress *stress, const struct wear_par *par, int nx,
-	int ny, struct particles *particles, int *removed, struct wear_result *result)
+enum wear_status wear_remove(struct wear *w, struct stress *stress,
+	const struct wear_par *par, struct wear_result *result)
 {
-	struct wear w = { .stress = stress,
-		.par = par,
-		.nx = nx,
-		.ny = ny,
-		.particles = particles,
-		.removed = removed,
-		.result = result };
-	size_t n = (size_t)nx * ny, spans = stress_spans_max(stress);
-	enum wear_status status = WEAR_MEMORY;
+	size_t n = (size_t)w->nx * (size_t)w->ny;
+	enum wear_status status;
 
-	/* Marked cells make at most every other cell a span. */
-	if (spans < (size_t)ny * ((nx + 1) / 2))
-		spans = (size_t)ny * ((nx + 1) / 2);
-	memset(result, 0, sizeof(*result));
-	memset(removed, 0, n * sizeof(*removed));
-	w.span = malloc(spans * sizeof(*w.span));
-	w.mises = malloc(n * sizeof(*w.mises));
-	w.mask = malloc(n);
-	if (w.span && w.mises && w.mask)
-		status = remove_layers(&w);
-	free(w.span);
-	free(w.mises);
-	free(w.mask);
+	w->stress = stress;
+	w->par = par;
+	w->result = result;
+	w->count = w->nspans = 0;
+	memset(result, 0, sizeof *result);
+	for (size_t i = 0; i < n; i++)
+		w->top[i] = -1;
+	if (room_for(&w->span, &w->span_room, stress_spans_max(stress), sizeof *w->span))
+		return WEAR_MEMORY;
+	status = remove_layers(w);
+	/* All stretches are closed; from here on 0 marks a column that is counted. */
+	for (size_t i = 0; i < w->count; i++) {
+		result->columns += w->top[w->stretch[i].column] != 0;
+		w->top[w->stretch[i].column] = 0;
+	}
+	result->stretch = w->stretch;
+	result->count = w->count;
 	return status;
 }

@@ -1,13 +1,16 @@
 #include "io/fields.h"
-#include "io/bytes.h"
 #include "cli/files.h"
-#include "io/formats.h"
 #include "cli/msg.h"
+#include "cli/opt.h"
+#include "io/bytes.h"
+#include "io/crc32.h"
+#include "io/ends.h"
+#include "io/formats.h"
+#include "io/kinds.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 enum { HEADER_MAX = 1 << 20 };
@@ -16,11 +19,14 @@ struct fields_in {
 	struct place at;
 	struct raw_layout raw;
 	int is_raw;
+	long unmarked; /* records that did not say whether another one follows */
 };
 
 struct fields_out {
 	FILE *f;
 	const char *name;
+	long records; /* of the stream that is being written */
+	int open;     /* another record was promised */
 };
 
 /* Records */
@@ -103,8 +109,8 @@ double *record_need(
 	size_t n = points(r);
 
 	if (k < 0)
-		die(EXIT_RUN, "%s: record %ld: no field '%s'", in->at.name, in->at.record,
-			name);
+		die(EXIT_RUN, "%s: record %ld: no field '%s', want %s", in->at.name,
+			in->at.record, name, opt_reads());
 	for (size_t i = 0; finite && i < n; i++)
 		if (!isfinite(r->data[k][i]))
 			die(EXIT_RUN,
@@ -155,30 +161,43 @@ double record_get_number(const struct record *r, const char *key)
 
 /* What the formats share */
 
-char *header_line(const struct place *at, size_t *header_size)
-{
-	char *line = NULL;
-	size_t n = 0, room = 0;
-	int c;
+const char mark_key[] = "stream:=", mark_zeros[] = "00000000";
 
-	while ((c = getc(at->f)) != EOF && c != '\n') {
-		if (*header_size + n >= HEADER_MAX)
-			die(EXIT_RUN, "%s: record %ld: header longer than %d bytes",
-				at->name, at->record, HEADER_MAX);
-		if (n + 1 >= room)
-			line = xrealloc(line, room = 2 * room + 80, 1);
-		line[n++] = (char)c;
+/* Adds a line to the checksum, with zeros for the digits of a mark. */
+static void sum_line(struct place *at, const char *line, size_t n)
+{
+	size_t key = strlen(mark_key), digits = strlen(mark_zeros);
+
+	if (strncmp(line, mark_key, key) || n < key + digits + 1) {
+		at->checksum = crc32_add(at->checksum, line, n);
+		return;
 	}
-	if (c == EOF) {
+	at->checksum = crc32_add(at->checksum, line, n - digits - 1);
+	at->checksum = crc32_add(at->checksum, mark_zeros, digits);
+	at->checksum = crc32_add(at->checksum, line + n - 1, 1);
+}
+
+char *header_line(struct place *at, size_t *header_size)
+{
+	size_t most = input_limit("header", HEADER_MAX), room = 0, n;
+	char *line = NULL;
+
+	n = *header_size < most ? input_line(at->in, &line, &room, most - *header_size)
+				: 1;
+	if (*header_size + n > most)
+		die(EXIT_RUN, "%s: record %ld: header longer than %zu bytes", at->name,
+			at->record, most);
+	if (n == 0 || line[n - 1] != '\n') {
+		if (*header_size == 0 && at->record == 1)
+			kind_refuse(at->name, line, n, KIND_FIELD);
 		free(line);
 		return NULL;
 	}
-	if (!line)
-		line = xcalloc(1, 1);
+	*header_size += n;
+	sum_line(at, line, n);
+	line[--n] = '\0';
 	if (n && line[n - 1] == '\r')
-		n--;
-	line[n] = '\0';
-	*header_size += n + 1;
+		line[--n] = '\0';
 	return line;
 }
 
@@ -209,15 +228,11 @@ void check_spacing(const struct place *at, int axis, double spacing)
 /* A regular file must hold what its header declares: said before memory is taken. */
 static void check_length(const struct place *at, uint64_t want)
 {
-	struct stat s;
-	off_t here = ftello(at->f), left;
+	uint64_t left = input_left(at->in);
 
-	if (here < 0 || fstat(fileno(at->f), &s) || !S_ISREG(s.st_mode))
-		return;
-	left = s.st_size > here ? s.st_size - here : 0;
-	if ((uint64_t)left < want)
-		die(EXIT_RUN, "%s: record %ld: want %llu bytes, got %lld", at->name,
-			at->record, (unsigned long long)want, (long long)left);
+	if (left < want)
+		die(EXIT_RUN, "%s: record %ld: want %llu bytes, got %llu", at->name,
+			at->record, (unsigned long long)want, (unsigned long long)left);
 }
 
 static double sample(const unsigned char *b, struct samples layout)
@@ -228,7 +243,7 @@ static double sample(const unsigned char *b, struct samples layout)
 	return layout.big_endian ? bytes_double_big(b) : bytes_double_little(b);
 }
 
-void samples_read(const struct place *at, struct record *r, struct samples layout)
+void samples_read(struct place *at, struct record *r, struct samples layout)
 {
 	size_t width = layout.single ? 4 : 8, nf = (size_t)r->nfields, nx = (size_t)r->nx;
 	size_t row_size = nx * nf * width, rows = (size_t)r->ny * (size_t)r->nz;
@@ -236,10 +251,9 @@ void samples_read(const struct place *at, struct record *r, struct samples layou
 
 	check_length(at, (uint64_t)row_size * rows);
 	for (size_t iy = 0; iy < rows; iy++) {
-		size_t got = fread(row, 1, row_size, at->f);
+		size_t got = input_read(at->in, row, row_size);
 
-		if (got < row_size && ferror(at->f))
-			die(EXIT_RUN, "%s: record %ld:", at->name, at->record);
+		at->checksum = crc32_add(at->checksum, row, got);
 		if (got < row_size)
 			die(EXIT_RUN, "%s: record %ld: want %zu bytes, got %zu", at->name,
 				at->record, row_size * rows, row_size * iy + got);
@@ -253,11 +267,19 @@ void samples_read(const struct place *at, struct record *r, struct samples layou
 
 /* Streams of records */
 
-struct fields_in *fields_open(const char *path, const struct raw_layout *raw)
+struct fields_in *fields_from(struct input *input)
 {
 	struct fields_in *in = xcalloc(1, sizeof *in);
 
-	in->at.f = file_open(path, &in->at.name);
+	in->at.in = input;
+	in->at.name = input_name(input);
+	return in;
+}
+
+struct fields_in *fields_open(const char *path, const struct raw_layout *raw)
+{
+	struct fields_in *in = fields_from(input_open(path));
+
 	if (raw) {
 		in->raw = *raw;
 		in->is_raw = 1;
@@ -285,37 +307,78 @@ static void read_formatted(struct fields_in *in, struct record *r)
 		nrrd_read(&in->at, r);
 	else if (magic && strcmp(magic, "Gwyddion Simple Field 1.0") == 0)
 		gsf_read(&in->at, r);
-	else
+	else {
+		if (magic && in->at.record == 1)
+			kind_refuse(in->at.name, magic, strlen(magic), KIND_FIELD);
 		die(EXIT_RUN, "%s: record %ld: want NRRD or GSF, got '%.8s'", in->at.name,
 			in->at.record, magic ? magic : "");
+	}
 	free(magic);
+}
+
+/* A record that promised another one came. */
+static int promised(const struct fields_in *in)
+{
+	return in->at.mark.number > 0 && !in->at.mark.last;
 }
 
 int fields_more(struct fields_in *in)
 {
-	int c = getc(in->at.f);
+	return promised(in) || input_peek(in->at.in) >= 0;
+}
 
-	if (ferror(in->at.f))
-		die(EXIT_RUN, "%s:", in->at.name);
-	if (c != EOF)
-		ungetc(c, in->at.f);
-	return c != EOF;
+/* Records of a stream of ours are numbered from 1. */
+static void check_mark(const struct fields_in *in, struct mark before)
+{
+	const struct mark *mark = &in->at.mark;
+	long want = before.number > 0 && !before.last ? before.number + 1 : 1;
+
+	if (mark->number > 0 && mark->checksum != in->at.checksum)
+		die(EXIT_RUN, "%s: record %ld: want crc32 %08lx, got %08lx: damaged",
+			in->at.name, in->at.record, (unsigned long)mark->checksum,
+			(unsigned long)in->at.checksum);
+	if (mark->number != want && (mark->number > 0 || want > 1))
+		die(EXIT_RUN,
+			"%s: record %ld: want number %ld of its stream, got number %ld",
+			in->at.name, in->at.record, want, mark->number);
+}
+
+static void read_record(struct fields_in *in, struct record *r)
+{
+	struct mark before = in->at.mark;
+
+	r->realisation = in->at.record++;
+	in->at.checksum = 0;
+	in->at.mark = (struct mark){ 0 };
+	if (in->is_raw)
+		read_raw(in, r);
+	else
+		read_formatted(in, r);
+	in->unmarked += in->at.mark.number == 0;
+	check_mark(in, before);
+	input_whole(in->at.in, in->at.mark.last);
 }
 
 int fields_read(struct fields_in *in, struct record *r)
 {
 	record_free(r);
-	if (!fields_more(in)) {
-		if (in->at.record == 0)
-			die(EXIT_RUN, "%s: no record", in->at.name);
-		return 0;
+	if (input_peek(in->at.in) >= 0) {
+		read_record(in, r);
+		return 1;
 	}
-	r->realisation = in->at.record++;
-	if (in->is_raw)
-		read_raw(in, r);
-	else
-		read_formatted(in, r);
-	return 1;
+	if (in->at.record == 0)
+		die(EXIT_RUN, "%s: no record", in->at.name);
+	if (promised(in) && !file_followed())
+		die(EXIT_RUN,
+			"%s: the stream ends after record %ld, which says that another "
+			"follows: what wrote it did not finish",
+			in->at.name, in->at.record);
+	return 0;
+}
+
+int fields_marked(const struct fields_in *in)
+{
+	return in->unmarked == 0;
 }
 
 const char *fields_name(const struct fields_in *in)
@@ -330,8 +393,7 @@ long fields_count(const struct fields_in *in)
 
 void fields_close(struct fields_in *in)
 {
-	if (in->at.f != stdin)
-		fclose(in->at.f);
+	input_close(in->at.in);
 	free(in);
 }
 
@@ -345,15 +407,19 @@ struct fields_out *fields_create(const char *path)
 	return out;
 }
 
-void fields_write(struct fields_out *out, const struct record *r)
+void fields_write(struct fields_out *out, const struct record *r, int more)
 {
-	nrrd_write(out->f, r);
+	nrrd_write(out->f, r, ++out->records, !more);
+	out->open = more;
 	if (fflush(out->f) || ferror(out->f))
 		die(EXIT_RUN, "%s:", out->name);
 }
 
 void fields_done(struct fields_out *out)
 {
+	ends_check();
+	if (out->open)
+		die(EXIT_RUN, "%s: record %ld is missing", out->name, out->records + 1);
 	if (out->f != stdout && fclose(out->f))
 		die(EXIT_RUN, "%s:", out->name);
 	free(out);

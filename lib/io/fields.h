@@ -11,7 +11,7 @@
  *		double *h = record_need(&r, "height", in);
  *		double *p = record_add(&r, "pressure", "Pa");
  *		...
- *		fields_write(out, &r);
+ *		fields_write(out, &r, fields_more(in));
  *	}
  *	record_free(&r);
  *	fields_close(in);
@@ -19,6 +19,7 @@
 #ifndef SHELL_FIELDS_H
 #define SHELL_FIELDS_H
 
+#include "io/input.h"
 #include "io/keys.h"
 #include <stdint.h>
 #include <stdio.h>
@@ -48,7 +49,10 @@ struct fields_out;
 
 /* path NULL or "-" is standard input; raw NULL unless the data are headerless. */
 struct fields_in *fields_open(const char *path, const struct raw_layout *raw);
-/* 1 where a record follows. */
+struct fields_in *fields_from(struct input *in); /* takes an open input over */
+/* 1 where all records read so far said whether another one follows. */
+int fields_marked(const struct fields_in *in);
+/* 1 where a record follows, or is promised. */
 int fields_more(struct fields_in *in);
 /* Fills r, whose old contents are freed or reused; 0 at the end of the stream.  A stream
  * without any record dies: what should have written it failed. */
@@ -59,9 +63,10 @@ void fields_close(struct fields_in *in);
 
 /* path NULL is standard output, which must not be a terminal. */
 struct fields_out *fields_create(const char *path);
-/* Writes and flushes one record with all its fields.  Values must be finite unless
- * they are missing samples (nan). */
-void fields_write(struct fields_out *out, const struct record *r);
+/* Writes and flushes one record with all its fields; more: another one will follow, and a
+ * reader that does not find it says so.  Values must be finite unless they are missing
+ * samples (nan). */
+void fields_write(struct fields_out *out, const struct record *r, int more);
 /* Gwyddion Simple Field (float32) of one field, for tools that want it. */
 void fields_write_gsf(FILE *out, const struct record *r, int field);
 void fields_done(struct fields_out *out); /* checks that all was written; frees */

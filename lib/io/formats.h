@@ -3,19 +3,31 @@
 #define SHELL_FORMATS_H
 
 #include "io/fields.h"
+#include "io/input.h"
+#include <stdint.h>
 #include <stdio.h>
+
+/* What a record of ours says of its stream. */
+struct mark {
+	long number; /* of the record in its stream, from 1; 0: no mark */
+	int last;
+	uint32_t checksum; /* of the record with zeros for its digits */
+};
 
 /* Where a reader is, for its messages. */
 struct place {
-	FILE *f;
-	const char *name; /* of the stream */
-	long record;      /* from 1 */
+	struct input *in;
+	const char *name;  /* of the stream */
+	long record;       /* from 1 */
+	uint32_t checksum; /* of the bytes of this record so far */
+	struct mark mark;
 };
 
 /* Both start behind the magic line and fill an empty record, or die. */
-void nrrd_read(const struct place *at, struct record *r);
-void gsf_read(const struct place *at, struct record *r);
-void nrrd_write(FILE *f, const struct record *r);
+void nrrd_read(struct place *at, struct record *r);
+void gsf_read(struct place *at, struct record *r);
+/* The number of the record in its stream, and whether it is the last. */
+void nrrd_write(FILE *f, const struct record *r, long number, int last);
 
 /* Layout of raw samples in a stream: points of nfields values, x fastest. */
 struct samples {
@@ -25,11 +37,15 @@ struct samples {
 
 /* Fills all fields of r, whose sizes and names are set; dies where the stream ends
  * before "want N bytes". */
-void samples_read(const struct place *at, struct record *r, struct samples layout);
+void samples_read(struct place *at, struct record *r, struct samples layout);
 
 /* One header line without its newline, fresh memory; NULL at the end of the stream.
  * Dies where the header grows past a mebibyte. */
-char *header_line(const struct place *at, size_t *header_size);
+char *header_line(struct place *at, size_t *header_size);
+
+/* The line of a header that is its mark begins with the key; its checksum, at the end,
+ * covers the record with zeros for its own digits. */
+extern const char mark_key[], mark_zeros[];
 
 /* Dies unless nx * ny * nz * nfields points make sense. */
 void check_sizes(const struct place *at, const double *sizes, int n);

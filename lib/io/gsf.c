@@ -1,8 +1,8 @@
 /* gsf.c - Gwyddion Simple Field 1.0: one float32 field, text header padded with NULs */
-#include "io/bytes.h"
-#include "io/formats.h"
 #include "cli/msg.h"
 #include "cli/unit.h"
+#include "io/bytes.h"
+#include "io/formats.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,27 +47,25 @@ static char *split(char *line)
 }
 
 /* The header ends with one to four NULs, up to a multiple of four bytes. */
-static void skip_padding(const struct place *at, size_t header_size)
+static void skip_padding(struct place *at, size_t header_size)
 {
 	size_t n = 4 - header_size % 4;
 
 	for (size_t i = 0; i < n; i++)
-		if (getc(at->f) != 0)
+		if (input_get(at->in) != 0)
 			die(EXIT_RUN,
 				"%s: record %ld: GSF header is not padded with NUL bytes",
 				at->name, at->record);
 }
 
-void gsf_read(const struct place *at, struct record *r)
+void gsf_read(struct place *at, struct record *r)
 {
 	double sizes[2] = { 0 }, real[2] = { 0 }, xy = 1, z = 1;
 	size_t size = sizeof magic - 1;
-	int c;
 
-	while ((c = getc(at->f)) > 0) {
+	while (input_peek(at->in) > 0) {
 		char *line, *value;
 
-		ungetc(c, at->f);
 		line = header_line(at, &size);
 		if (!line)
 			die(EXIT_RUN, "%s: record %ld: the stream ends inside the header",
@@ -90,8 +88,6 @@ void gsf_read(const struct place *at, struct record *r)
 			z = unit_scale(at, value);
 		free(line);
 	}
-	if (c == 0)
-		ungetc(c, at->f);
 	if (!(sizes[0] > 0 && sizes[1] > 0 && real[0] > 0 && real[1] > 0))
 		die(EXIT_RUN,
 			"%s: record %ld: GSF header without XRes, YRes, XReal and YReal",

@@ -4,16 +4,18 @@
  * multiple of 1024 bytes) is what teem, ParaView, Gwyddion, numpy, Octave and
  * gnuplot all read rightly.
  */
-#include "io/bytes.h"
-#include "io/formats.h"
 #include "cli/msg.h"
+#include "cli/text.h"
 #include "cli/unit.h"
+#include "io/bytes.h"
+#include "io/crc32.h"
+#include "io/formats.h"
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-enum { AXES = 4, HEADER_UNIT = 1024 };
+enum { AXES = 4, HEADER_UNIT = 1024, KEYS_MAX = 1000 };
 
 static const long REALISATION_MAX = 1000000000000000; /* exact in a table of doubles */
 
@@ -154,11 +156,31 @@ static void unescape(char *s)
 	*to = '\0';
 }
 
-static void read_key(const struct place *at, struct header *h, struct record *r,
+static void read_mark(struct place *at, const char *value)
+{
+	unsigned checksum;
+	char state[16];
+	int end = 0;
+
+	if (sscanf(value, "record %ld, %15[a-z], crc32 %8x%n", &at->mark.number, state,
+		    &checksum, &end) != 3 ||
+		value[end] || at->mark.number < 1 ||
+		(strcmp(state, "last") != 0 && strcmp(state, "more") != 0))
+		bad(at, "stream", value);
+	at->mark.last = !strcmp(state, "last");
+	at->mark.checksum = checksum;
+}
+
+static void read_key(struct place *at, struct header *h, struct record *r,
 	const char *key, char *value)
 {
+	char *text;
+
 	unescape(value);
-	if (strcmp(key, "fields") == 0) {
+	value = text = text_escape(value);
+	if (strcmp(key, "stream") == 0) {
+		read_mark(at, value);
+	} else if (strcmp(key, "fields") == 0) {
 		free(h->fields);
 		h->fields = xstrdup(value);
 	} else if (strcmp(key, "cmd") == 0) {
@@ -172,11 +194,18 @@ static void read_key(const struct place *at, struct header *h, struct record *r,
 			r->realisation > REALISATION_MAX)
 			bad(at, key, value);
 	} else {
-		keys_set(&r->keys, key, value);
+		char *name = text_escape(key);
+
+		keys_set(&r->keys, name, value);
+		free(name);
+		if ((size_t)r->keys.n > input_limit("keys", KEYS_MAX))
+			die(EXIT_RUN, "%s: record %ld: more than %zu keys", at->name,
+				at->record, input_limit("keys", KEYS_MAX));
 	}
+	free(text);
 }
 
-static void read_header(const struct place *at, struct header *h, struct record *r)
+static void read_header(struct place *at, struct header *h, struct record *r)
 {
 	size_t size = 0;
 	char *line;
@@ -274,7 +303,7 @@ static void name_fields(
 	free(text);
 }
 
-void nrrd_read(const struct place *at, struct record *r)
+void nrrd_read(struct place *at, struct record *r)
 {
 	struct header h = { 0 };
 	int list = 0;
@@ -297,83 +326,94 @@ void nrrd_read(const struct place *at, struct record *r)
 }
 
 /* Value of a key: escaped, and without the ": " that ParaView's reader trips over. */
-static void write_key(FILE *f, const char *key, const char *value)
+static void write_key(struct text *t, const char *key, const char *value)
 {
 	char before = '=';
 
-	fprintf(f, "%s:=", key);
+	text_add(t, "%s:=", key);
 	for (; *value; before = *value++) {
 		if (*value == '\\')
-			fputs("\\\\", f);
+			text_add(t, "\\\\");
 		else if (*value == '\n')
-			fputs("\\n", f);
+			text_add(t, "\\n");
 		else if (!(*value == ' ' && before == ':'))
-			putc(*value, f);
+			text_add(t, "%c", *value);
 	}
-	putc('\n', f);
+	text_add(t, "\n");
 }
 
-static void write_number(FILE *f, double value)
+static void write_number(struct text *t, double value)
 {
 	char text[NUMBER_TEXT];
 
-	fprintf(f, " %s", number_text(value, text));
+	text_add(t, " %s", number_text(value, text));
 }
 
-static char *make_header(const struct record *r, size_t *size)
+/* The mark stands at the end, the digits of its checksum being zeros. */
+static struct text make_header(const struct record *r, long number, int last)
 {
-	char *text = NULL;
-	FILE *f = open_memstream(&text, size);
+	struct text t = { 0 };
 	int volume = r->nz > 1;
 
-	if (!f)
-		die(EXIT_RUN, "out of memory");
-	fprintf(f, "NRRD0004\ntype: double\ndimension: %d\nsizes: %d %d %d", 3 + volume,
+	text_add(&t, "NRRD0004\ntype: double\ndimension: %d\nsizes: %d %d %d", 3 + volume,
 		r->nfields, r->nx, r->ny);
 	if (volume)
-		fprintf(f, " %d", r->nz);
-	fprintf(f, "\nkinds: list domain domain%s\nspacings:", volume ? " domain" : "");
-	write_number(f, r->dx);
-	write_number(f, r->dx);
-	write_number(f, r->dy);
+		text_add(&t, " %d", r->nz);
+	text_add(&t, "\nkinds: list domain domain%s\nspacings:", volume ? " domain" : "");
+	write_number(&t, r->dx);
+	write_number(&t, r->dx);
+	write_number(&t, r->dy);
 	if (volume)
-		write_number(f, r->dz);
-	fprintf(f, "\nunits: \"m\" \"m\" \"m\"%s\nlabels: \"", volume ? " \"m\"" : "");
+		write_number(&t, r->dz);
+	text_add(&t, "\nunits: \"m\" \"m\" \"m\"%s\nlabels: \"", volume ? " \"m\"" : "");
 	for (int i = 0; i < r->nfields; i++)
-		fprintf(f, "%s%s", i ? " " : "", r->name[i]);
-	fprintf(f, "\" \"x\" \"y\"%s\nendian: little\nencoding: raw\nfields:=",
+		text_add(&t, "%s%s", i ? " " : "", r->name[i]);
+	text_add(&t, "\" \"x\" \"y\"%s\nendian: little\nencoding: raw\nfields:=",
 		volume ? " \"z\"" : "");
 	for (int i = 0; i < r->nfields; i++)
-		fprintf(f, "%s%s%s%s", i ? ", " : "", r->name[i], *r->unit[i] ? " " : "",
-			r->unit[i]);
-	fprintf(f, "\nrealisation:=%ld\n", r->realisation);
+		text_add(&t, "%s%s%s%s", i ? ", " : "", r->name[i],
+			*r->unit[i] ? " " : "", r->unit[i]);
+	text_add(&t, "\nrealisation:=%ld\n", r->realisation);
 	for (int i = 0; i < r->keys.n; i++)
-		write_key(f, r->keys.key[i], r->keys.value[i]);
+		write_key(&t, r->keys.key[i], r->keys.value[i]);
 	if (r->cmd)
-		write_key(f, "cmd", r->cmd);
-	fflush(f);
-	fprintf(f, "#%*s\n\n",
-		(int)((HEADER_UNIT - (*size + 3) % HEADER_UNIT) % HEADER_UNIT), "");
-	if (fclose(f))
-		die(EXIT_RUN, "out of memory");
-	return text;
+		write_key(&t, "cmd", r->cmd);
+	text_add(&t, "%srecord %ld, %s, crc32 %s\n", mark_key, number,
+		last ? "last" : "more", mark_zeros);
+	text_add(&t, "#%*s\n\n",
+		(int)((HEADER_UNIT - (t.n + 3) % HEADER_UNIT) % HEADER_UNIT), "");
+	return t;
 }
 
-void nrrd_write(FILE *f, const struct record *r)
+/* One row of the grid, the fields of a point side by side. */
+static void make_row(const struct record *r, size_t iy, unsigned char *b)
 {
-	size_t size, n = (size_t)r->nx * (size_t)r->nfields * 8;
-	char *header = make_header(r, &size);
+	for (size_t ix = 0; ix < (size_t)r->nx; ix++)
+		for (int k = 0; k < r->nfields; k++, b += 8)
+			bytes_put_double_little(b, r->data[k][iy * (size_t)r->nx + ix]);
+}
+
+void nrrd_write(FILE *f, const struct record *r, long number, int last)
+{
+	size_t n = (size_t)r->nx * (size_t)r->nfields * 8;
+	size_t rows = (size_t)r->ny * (size_t)r->nz;
+	struct text header = make_header(r, number, last);
 	unsigned char *row = xcalloc(n, 1);
+	uint32_t checksum = crc32_add(0, header.s, header.n);
+	char *digits = header.s + header.n - strlen(mark_zeros);
 
-	fwrite(header, 1, size, f);
-	free(header);
-	for (size_t iy = 0; iy < (size_t)r->ny * (size_t)r->nz; iy++) {
-		unsigned char *b = row;
-
-		for (size_t ix = 0; ix < (size_t)r->nx; ix++)
-			for (int k = 0; k < r->nfields; k++, b += 8)
-				bytes_put_double_little(
-					b, r->data[k][iy * (size_t)r->nx + ix]);
+	for (size_t iy = 0; iy < rows; iy++) {
+		make_row(r, iy, row);
+		checksum = crc32_add(checksum, row, n);
+	}
+	while (memcmp(digits, mark_zeros, strlen(mark_zeros)) != 0)
+		digits--;
+	for (int i = 7; i >= 0; i--, checksum >>= 4)
+		digits[i] = "0123456789abcdef"[checksum & 15];
+	fwrite(header.s, 1, header.n, f);
+	free(header.s);
+	for (size_t iy = 0; iy < rows; iy++) {
+		make_row(r, iy, row);
 		fwrite(row, 1, n, f);
 	}
 	free(row);

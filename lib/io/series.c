@@ -38,7 +38,8 @@ struct series *series_open(const char *path, const char *unit)
 
 static int find_unit(struct series *s, const char *name)
 {
-	for (int i = s->n - 1; i >= 0; i--)
+	/* most often it is the unit of the row before, or the one that came after it */
+	for (int i = s->n > 0 ? s->unit : 0, k = 0; k < s->n; k++, i = (i + 1) % s->n)
 		if (strcmp(s->seen[i].name, name) == 0)
 			return i;
 	s->seen = xrealloc(s->seen, (size_t)s->n + 1, sizeof *s->seen);

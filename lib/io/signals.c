@@ -4,11 +4,15 @@
  * because sox, libsndfile, Octave and numpy read it.
  */
 #include "io/signals.h"
-#include "io/bytes.h"
 #include "cli/files.h"
 #include "cli/msg.h"
+#include "cli/text.h"
+#include "io/bytes.h"
+#include "io/crc32.h"
+#include "io/ends.h"
+#include "io/input.h"
+#include "io/kinds.h"
 #include <ctype.h>
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,60 +35,61 @@ static const uint32_t unknown = 0xffffffff;
 
 struct signal_in {
 	struct signal_format format;
+	struct input *in;
 	const char *name;
-	FILE *f;
-	int fd;               /* of f: what is there is read, however little */
 	int encoding;         /* 0: raw little-endian float64 */
-	size_t width;         /* bytes per sample */
+	size_t width, frame;  /* bytes per sample, per frame */
 	uint64_t left, total; /* bytes of data still declared; UINT64_MAX: unknown */
+	int promised;         /* the last frame is an end */
+	uint32_t checksum;    /* of the bytes handed out, where an end is promised */
+	uint64_t frames;      /* handed out */
+	int done;             /* nothing more to hand out */
 	unsigned char buffer[BUFFER];
 	size_t begin, end; /* unread bytes of buffer */
-	int at_end;
 };
 
 struct signal_out {
 	FILE *f;
 	const char *name;
 	int channels, single;
+	uint32_t checksum;
+	uint64_t frames;
 };
+
+/* A subnormal number, which every tool takes for silence: a bit that marks it, the lowest
+ * bits of the count of frames and those of the checksum of all bytes before. */
+static void make_end(unsigned char *b, int single, uint64_t frames, uint32_t checksum)
+{
+	if (single) {
+		bytes_put_u32_big(b, 0x400000u | (checksum & 0x3fffffu));
+		return;
+	}
+	bytes_put_u32_big(b, 0x80000u | (uint32_t)(frames & 0x7ffff));
+	bytes_put_u32_big(b + 4, checksum);
+}
 
 /* Reads what is there, at least one byte; 0 at the end. */
 static size_t fill(struct signal_in *in)
 {
-	ssize_t n;
+	size_t n;
 
 	if (in->begin > 0) {
 		memmove(in->buffer, in->buffer + in->begin, in->end - in->begin);
 		in->end -= in->begin;
 		in->begin = 0;
 	}
-	do
-		n = read(in->fd, in->buffer + in->end, BUFFER - in->end);
-	while (n < 0 && errno == EINTR);
-	if (n < 0)
-		die(EXIT_RUN, "%s:", in->name);
-	in->end += (size_t)n;
-	in->at_end = n == 0;
-	return (size_t)n;
-}
-
-static int have(struct signal_in *in, size_t bytes)
-{
-	while (in->end - in->begin < bytes)
-		if (!fill(in))
-			return 0;
-	return 1;
+	n = input_some(in->in, in->buffer + in->end, BUFFER - in->end);
+	in->end += n;
+	return n;
 }
 
 static char *read_annotation(struct signal_in *in, size_t size)
 {
 	char *text = xcalloc(size + 1, 1);
 
-	for (size_t i = 0; i < size; i++) {
-		if (!have(in, 1))
-			die(EXIT_RUN, "%s: the stream ends inside the header", in->name);
-		text[i] = (char)in->buffer[in->begin++];
-	}
+	if (input_read(in->in, text, size) < size)
+		die(EXIT_RUN, "%s: the stream ends inside the header", in->name);
+	in->checksum = crc32_add(in->checksum, text, size);
 	return text;
 }
 
@@ -97,9 +102,12 @@ static char *annotated(const char *text, const char *key)
 		size_t length = strcspn(text, "\n");
 
 		if (length > n && strncmp(text, key, n) == 0 && text[n] == ' ') {
-			char *value = xcalloc(length - n, 1);
+			char *value = xcalloc(length - n, 1), *escaped;
 
-			return memcpy(value, text + n + 1, length - n - 1);
+			memcpy(value, text + n + 1, length - n - 1);
+			escaped = text_escape(value);
+			free(value);
+			return escaped;
 		}
 		text += length + (text[length] == '\n');
 	}
@@ -115,13 +123,15 @@ static void read_header(struct signal_in *in)
 		[FLOAT32] = 4,
 		[FLOAT64] = 8 };
 	uint32_t header, size, encoding, rate, channels;
-	const unsigned char *b;
-	char *text;
+	unsigned char b[HEADER_MIN];
+	size_t got = input_read(in->in, b, HEADER_MIN);
+	char *text, *promise;
 
-	if (!have(in, HEADER_MIN))
+	if (got < HEADER_MIN || memcmp(b, ".snd", 4) != 0)
+		kind_refuse(in->name, b, got, KIND_SIGNAL);
+	if (got < HEADER_MIN)
 		die(EXIT_RUN, "%s: want an AU header of at least %d bytes, got %zu",
-			in->name, HEADER_MIN, in->end - in->begin);
-	b = in->buffer + in->begin;
+			in->name, HEADER_MIN, got);
 	if (memcmp(b, ".snd", 4) != 0) {
 		int shown = 0;
 
@@ -147,7 +157,7 @@ static void read_header(struct signal_in *in)
 	if (channels < 1 || channels > CHANNELS_MAX)
 		die(EXIT_RUN, "%s: %lu channels, want 1 to %d", in->name,
 			(unsigned long)channels, CHANNELS_MAX);
-	in->begin += HEADER_MIN;
+	in->checksum = crc32_add(0, b, HEADER_MIN);
 	in->encoding = (int)encoding;
 	in->width = widths[encoding];
 	in->left = in->total = size == unknown ? UINT64_MAX : size;
@@ -155,6 +165,10 @@ static void read_header(struct signal_in *in)
 	in->format.channels = (int)channels;
 	in->format.single = encoding != FLOAT64 && encoding != PCM32;
 	text = read_annotation(in, header - HEADER_MIN);
+	promise = annotated(text, "stream");
+	in->promised = promise && !strcmp(promise, ENDS_PROMISE) && size == unknown &&
+		       encoding >= FLOAT32;
+	free(promise);
 	in->format.cmd = annotated(text, "cmd");
 	in->format.units = annotated(text, "units");
 	in->format.seed = annotated(text, "seed");
@@ -162,12 +176,12 @@ static void read_header(struct signal_in *in)
 	free(text);
 }
 
-struct signal_in *signal_open(const char *path, const struct signal_raw *raw)
+static struct signal_in *new_signal(struct input *input, const struct signal_raw *raw)
 {
 	struct signal_in *in = xcalloc(1, sizeof *in);
 
-	in->f = file_open(path, &in->name);
-	in->fd = fileno(in->f);
+	in->in = input;
+	in->name = input_name(input);
 	if (raw) {
 		in->format.rate = raw->rate;
 		in->format.channels = raw->channels;
@@ -176,7 +190,23 @@ struct signal_in *signal_open(const char *path, const struct signal_raw *raw)
 	} else {
 		read_header(in);
 	}
+	in->frame = in->width * (size_t)in->format.channels;
 	return in;
+}
+
+struct signal_in *signal_open(const char *path, const struct signal_raw *raw)
+{
+	return new_signal(input_open(path), raw);
+}
+
+struct signal_in *signal_from(struct input *in)
+{
+	return new_signal(in, NULL);
+}
+
+int signal_marked(const struct signal_in *in)
+{
+	return in->promised || in->total != UINT64_MAX;
 }
 
 const struct signal_format *signal_format(const struct signal_in *in)
@@ -220,70 +250,148 @@ static void decode(
 	}
 }
 
-static void check_end(const struct signal_in *in, size_t frame)
+/* Hands out n frames of the buffer. */
+static void take(struct signal_in *in, double *x, size_t n)
 {
-	if (in->total != UINT64_MAX && in->left > 0)
-		die(EXIT_RUN, "%s: want %llu bytes of samples, got %llu", in->name,
-			(unsigned long long)in->total,
-			(unsigned long long)(in->total - in->left + in->end - in->begin));
-	if (in->end - in->begin > 0 && in->left > 0)
-		die(EXIT_RUN,
-			"%s: the stream ends inside a frame: want %zu bytes, got %zu",
-			in->name, frame, in->end - in->begin);
+	const unsigned char *b = in->buffer + in->begin;
+
+	decode(in, b, x, n * (size_t)in->format.channels);
+	if (in->promised)
+		in->checksum = crc32_add(in->checksum, b, n * in->frame);
+	in->begin += n * in->frame;
+	in->frames += n;
+	if (in->left != UINT64_MAX)
+		in->left -= n * in->frame;
 }
 
-/* Decodes what the buffer holds, at most nframes. */
-static size_t take(struct signal_in *in, double *x, size_t nframes)
+/* Frames that the buffer has to hand out: one that may be the end is held back. */
+static size_t ready(const struct signal_in *in)
 {
-	size_t channels = (size_t)in->format.channels, frame = in->width * channels;
 	uint64_t bytes = in->end - in->begin;
-	size_t n;
 
 	if (in->left < bytes)
 		bytes = in->left;
-	n = (size_t)bytes / frame;
-	if (n > nframes)
-		n = nframes;
-	decode(in, in->buffer + in->begin, x, n * channels);
-	in->begin += n * frame;
-	if (in->left != UINT64_MAX)
-		in->left -= n * frame;
+	return (size_t)(bytes / in->frame) - (in->promised && bytes >= in->frame);
+}
+
+/* 1 where the frame left over is the end that was promised; torn says whether it is one
+ * at all. */
+static int is_end(const struct signal_in *in, int *torn)
+{
+	const unsigned char *b = in->buffer + in->begin;
+	unsigned char want[8];
+	int same = 1;
+
+	*torn = 0;
+	make_end(want, in->width == 4, in->frames, in->checksum);
+	for (int c = 0; c < in->format.channels; c++, b += in->width) {
+		same &= memcmp(b, want, in->width) == 0;
+		*torn |= (bytes_u32_big(b) >> (in->width == 4 ? 22 : 19)) != 1;
+	}
+	return same;
+}
+
+/* Reads on; what may be the end of a signal that is followed is taken for that. */
+static size_t fill_past(struct signal_in *in)
+{
+	int torn;
+
+	input_whole(in->in,
+		in->promised && in->end - in->begin == in->frame && is_end(in, &torn));
+	return fill(in);
+}
+
+/* At the end of the bytes of a signal that promised an end: what remains is that, or a
+ * last frame of a signal that was cut off, which is handed out. */
+static size_t finish_promised(struct signal_in *in, double *x)
+{
+	size_t rest = in->end - in->begin, n = 0;
+	int torn = 1;
+
+	if (rest == in->frame && is_end(in, &torn))
+		return 0;
+	if (rest >= in->frame && torn) {
+		n = 1;
+		take(in, x, 1);
+	}
+	if (!torn)
+		ends_miss("%s: the checksum of its end does not fit its %llu frames: "
+			  "damaged, or signals joined",
+			in->name, (unsigned long long)in->frames);
+	else if (!file_followed())
+		ends_miss("%s: the signal has no end after %llu frames: what wrote it "
+			  "did not finish",
+			in->name, (unsigned long long)in->frames);
 	return n;
+}
+
+static void check_end(const struct signal_in *in)
+{
+	size_t rest = in->end - in->begin;
+
+	if (in->total != UINT64_MAX && in->left > 0)
+		ends_miss("%s: want %llu bytes of samples, got %llu", in->name,
+			(unsigned long long)in->total,
+			(unsigned long long)(in->total - in->left + rest));
+	else if (rest > 0 && !file_followed())
+		ends_miss("%s: the stream ends inside a frame: want %zu bytes, got %zu",
+			in->name, in->frame, rest);
+}
+
+/* All declared bytes were handed out, or less than a frame of them is left. */
+static void check_declared(struct signal_in *in)
+{
+	if (in->left > 0)
+		ends_miss("%s: %llu bytes of samples are no whole frames of %zu",
+			in->name, (unsigned long long)in->total, in->frame);
+	else if (in->end > in->begin || input_peek(in->in) >= 0)
+		ends_miss("%s: want %llu bytes of samples, got more", in->name,
+			(unsigned long long)in->total);
 }
 
 size_t signal_read_some(struct signal_in *in, double *x, size_t nframes)
 {
-	size_t frame = in->width * (size_t)in->format.channels, n;
+	size_t n;
 
-	while ((n = take(in, x, nframes)) == 0) {
-		if (in->left == 0)
-			return 0;
-		if (in->left < frame)
-			die(EXIT_RUN,
-				"%s: %llu bytes of samples are no whole frames of %zu",
-				in->name, (unsigned long long)in->total, frame);
-		if (in->at_end || !fill(in)) {
-			check_end(in, frame);
-			return 0;
+	if (in->done)
+		ends_check();
+	while (!in->done) {
+		n = ready(in);
+		if (n > nframes)
+			n = nframes;
+		if (n > 0) {
+			take(in, x, n);
+			return n;
 		}
+		in->done = 1;
+		if (in->left < in->frame)
+			check_declared(in);
+		else if (fill_past(in))
+			in->done = 0;
+		else if (in->promised)
+			return finish_promised(in, x);
+		else
+			check_end(in);
 	}
-	return n;
+	return 0;
 }
 
 size_t signal_read(struct signal_in *in, double *x, size_t nframes)
 {
 	size_t n = 0, got;
 
-	while (n < nframes && (got = signal_read_some(in,
-				       x + n * (size_t)in->format.channels, nframes - n)))
+	while (n < nframes && !(in->done && n) &&
+		(got = signal_read_some(
+			 in, x + n * (size_t)in->format.channels, nframes - n)))
 		n += got;
 	return n;
 }
 
 void signal_close(struct signal_in *in)
 {
-	if (in->f != stdin)
-		fclose(in->f);
+	if (in->done)
+		ends_check();
+	input_close(in->in);
 	free(in->format.cmd);
 	free(in->format.units);
 	free(in->format.seed);
@@ -294,8 +402,9 @@ void signal_close(struct signal_in *in)
 /* A line for each thing that is known. */
 static char *annotation(const struct signal_format *format)
 {
-	const char *line[][2] = { { "cmd", format->cmd }, { "units", format->units },
-		{ "seed", format->seed }, { "filter", format->filter } };
+	const char *line[][2] = { { "stream", ENDS_PROMISE }, { "cmd", format->cmd },
+		{ "units", format->units }, { "seed", format->seed },
+		{ "filter", format->filter } };
 	char *text = xprintf("%s", "");
 
 	for (size_t i = 0; i < sizeof line / sizeof *line; i++) {
@@ -310,6 +419,13 @@ static char *annotation(const struct signal_format *format)
 	return text;
 }
 
+static void put_bytes(struct signal_out *out, const void *bytes, size_t n)
+{
+	out->checksum = crc32_add(out->checksum, bytes, n);
+	if (fwrite(bytes, 1, n, out->f) != n)
+		die(EXIT_RUN, "%s:", out->name);
+}
+
 static void write_header(struct signal_out *out, const struct signal_format *format)
 {
 	unsigned char b[HEADER_MIN] = ".snd";
@@ -321,10 +437,10 @@ static void write_header(struct signal_out *out, const struct signal_format *for
 	bytes_put_u32_big(b + 12, format->single ? FLOAT32 : FLOAT64);
 	bytes_put_u32_big(b + 16, (uint32_t)format->rate);
 	bytes_put_u32_big(b + 20, (uint32_t)format->channels);
-	fwrite(b, 1, sizeof b, out->f);
-	fwrite(text, 1, length, out->f);
-	for (; length < padded; length++)
-		putc(0, out->f);
+	text = xrealloc(text, padded, 1);
+	memset(text + length, 0, padded - length);
+	put_bytes(out, b, sizeof b);
+	put_bytes(out, text, padded);
 	free(text);
 }
 
@@ -347,6 +463,7 @@ void signal_write(struct signal_out *out, const double *x, size_t nframes)
 	size_t n = nframes * (size_t)out->channels, width = out->single ? 4 : 8;
 	unsigned char bytes[8 * CHUNK];
 
+	out->frames += nframes;
 	while (n > 0) {
 		size_t m = n < CHUNK ? n : CHUNK;
 
@@ -356,8 +473,7 @@ void signal_write(struct signal_out *out, const double *x, size_t nframes)
 			else
 				bytes_put_double_big(bytes + 8 * i, x[i]);
 		}
-		if (fwrite(bytes, width, m, out->f) != m)
-			die(EXIT_RUN, "%s:", out->name);
+		put_bytes(out, bytes, m * width);
 		x += m;
 		n -= m;
 	}
@@ -371,7 +487,15 @@ void signal_flush(struct signal_out *out)
 
 void signal_done(struct signal_out *out)
 {
+	unsigned char end[8];
+
+	ends_check();
+	make_end(end, out->single, out->frames, out->checksum);
+	for (int c = 0; c < out->channels; c++)
+		fwrite(end, out->single ? 4 : 8, 1, out->f);
 	signal_flush(out);
+	if (ferror(out->f))
+		die(EXIT_RUN, "%s:", out->name);
 	if (out->f != stdout && fclose(out->f))
 		die(EXIT_RUN, "%s:", out->name);
 	free(out);

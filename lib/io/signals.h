@@ -7,6 +7,7 @@
 #ifndef SHELL_SIGNALS_H
 #define SHELL_SIGNALS_H
 
+#include "io/input.h"
 #include <stddef.h>
 
 struct signal_format {
@@ -29,11 +30,15 @@ struct signal_in;
 struct signal_out;
 
 struct signal_in *signal_open(const char *path, const struct signal_raw *raw);
+struct signal_in *signal_from(struct input *in); /* takes an open input over */
+/* 1 where it promises an end or declares its length. */
+int signal_marked(const struct signal_in *in);
 const struct signal_format *signal_format(const struct signal_in *in);
 const char *signal_name(const struct signal_in *in);
 /* Reads up to nframes frames; blocks until that many or the end came.  Returns the
- * frames read, 0 at the end.  Dies where the stream ends inside a frame or before
- * its declared length.  Samples may be nan: the caller decides. */
+ * frames read, 0 at the end.  Where a stream ends too early the whole frames are handed
+ * out; the next call, signal_close() or the end of an output dies.  Samples may be nan:
+ * the caller decides. */
 size_t signal_read(struct signal_in *in, double *x, size_t nframes);
 /* The same, but returns as soon as at least one frame is there. */
 size_t signal_read_some(struct signal_in *in, double *x, size_t nframes);
@@ -43,6 +48,7 @@ void signal_close(struct signal_in *in);
 struct signal_out *signal_create(const char *path, const struct signal_format *format);
 void signal_write(struct signal_out *out, const double *x, size_t nframes);
 void signal_flush(struct signal_out *out);
+/* Writes the end and checks that all was written; frees. */
 void signal_done(struct signal_out *out);
 
 #endif

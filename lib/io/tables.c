@@ -1,22 +1,31 @@
 #include "io/tables.h"
 #include "cli/files.h"
-#include "io/keys.h"
 #include "cli/msg.h"
+#include "cli/opt.h"
+#include "cli/text.h"
 #include "cli/unit.h"
 #include "cli/upstream.h"
+#include "io/crc32.h"
+#include "io/ends.h"
+#include "io/input.h"
+#include "io/keys.h"
+#include "io/kinds.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/types.h>
-#include <unistd.h>
+
+enum { LINE_MOST = 1 << 24, KEYS_MOST = 1000 }; /* bytes of a line, keys of a table */
+
+static const char promise[] = "# stream: " ENDS_PROMISE "\n";
+static const char end_line[] = "# end: ";
 
 struct table_in {
-	FILE *f;
+	struct input *in;
 	const char *name;
 	char *line; /* the present row, cut into cells */
-	size_t room;
+	size_t room, most, most_keys;
 	long number; /* of that line, from 1 */
 	int ncolumns;
 	char **column; /* names */
@@ -25,17 +34,27 @@ struct table_in {
 	int headed;         /* the names stand in the table */
 	int pending;        /* the row read ahead by table_open() is still to come */
 	struct keys keys;   /* of comment lines */
+	table_comment_taker *take;
+	void *context; /* of take */
 	struct upstream upstream;
 	long part;
+	int promised;      /* an end must come */
+	int unmarked;      /* a header or row came where no end was promised */
+	long rows;         /* since the promise */
+	uint32_t checksum; /* of the lines since then */
 };
 
 struct table_out {
 	FILE *f;
 	const char *name;
-	char *head;    /* comment lines not yet written */
-	char *columns; /* header line, NULL once written */
-	char *cmd;
+	char *head;       /* comment lines not yet written */
+	char *columns;    /* header line, NULL once written */
+	struct keys told; /* comments so far */
 	int ncolumns, ncells;
+	char *row; /* the cells of the present row */
+	size_t length, room;
+	long rows;
+	uint32_t checksum; /* of all lines so far */
 };
 
 /* Reader */
@@ -49,15 +68,27 @@ static char *trim(char *s)
 	return s + strspn(s, " \t");
 }
 
+/* Comments are free text, but what begins with a single word and a colon is a key. */
 static void keep_key(struct table_in *t, char *comment)
 {
-	char *colon = strchr(comment, ':');
+	char *colon = strchr(comment, ':'), *value;
 
 	if (!colon)
 		return;
 	*colon = '\0';
 	comment = trim(comment);
-	keys_set(&t->keys, comment, trim(colon + 1));
+	if (!*comment || comment[strcspn(comment, " \t")] || !strcmp(comment, "stream"))
+		return;
+	if (t->take)
+		t->take(t->context, comment, trim(colon + 1));
+	/* Names and units may be separated by TABs. */
+	value = strcmp(comment, "cmd") ? xstrdup(trim(colon + 1))
+				       : text_escape(trim(colon + 1));
+	keys_set(&t->keys, comment, value);
+	free(value);
+	if ((size_t)t->keys.n > t->most_keys)
+		die(EXIT_RUN, "%s: line %ld: more than %zu keys", t->name, t->number,
+			t->most_keys);
 	if (!strcmp(comment, "cmd")) {
 		upstream_add(&t->upstream, table_key(t, "cmd"));
 		t->part++;
@@ -67,32 +98,104 @@ static void keep_key(struct table_in *t, char *comment)
 /* UTF-8 has none, but spreadsheets begin a file with it. */
 static const char byte_order_mark[] = "\xef\xbb\xbf";
 
+/* The next line with its newline; returns its length, 0 at the end. */
+static size_t read_line(struct table_in *t)
+{
+	size_t n = input_line(t->in, &t->line, &t->room, t->most);
+
+	if (n == 0)
+		return 0;
+	if (t->number++ == 0)
+		kind_refuse(t->name, t->line, n, KIND_TABLE);
+	if (n > t->most)
+		die(EXIT_RUN, "%s: line %ld: longer than %zu bytes", t->name, t->number,
+			t->most);
+	if (t->line[n - 1] == '\n')
+		return n;
+	if (file_followed())
+		return 0;
+	die(EXIT_RUN, "%s: line %ld: no newline at the end: the table is cut off",
+		t->name, t->number);
+}
+
+/* A table that promises an end begins. */
+static void begin_promised(struct table_in *t)
+{
+	if (t->promised)
+		die(EXIT_RUN, "%s: line %ld: the table before has no '# end' line",
+			t->name, t->number);
+	input_whole(t->in, 0);
+	t->promised = 1;
+	t->rows = 0;
+	t->checksum = 0;
+}
+
+static void check_end(struct table_in *t)
+{
+	long rows = -1;
+	unsigned checksum = 0;
+	int n = 0;
+
+	sscanf(t->line + sizeof end_line - 1, "%ld rows, crc32 %8x\n%n", &rows, &checksum,
+		&n);
+	if (!t->promised && n > 0)
+		die(EXIT_RUN,
+			"%s: line %ld: the end of a table whose first line is missing",
+			t->name, t->number);
+	if (!t->promised)
+		return;
+	if (rows != t->rows || checksum != t->checksum)
+		die(EXIT_RUN,
+			"%s: line %ld: want %ld rows and crc32 %08x, got %ld and %08lx: "
+			"damaged or edited; grep -v '^#' makes a plain table of it",
+			t->name, t->number, rows, checksum, t->rows,
+			(unsigned long)t->checksum);
+	t->promised = 0;
+	input_whole(t->in, 1);
+}
+
+/* Minds promise, checksum and end; 1 where the line is one for the reader. */
+static int mind_end(struct table_in *t, size_t n)
+{
+	if (strcmp(t->line, promise) == 0)
+		begin_promised(t);
+	if (strncmp(t->line, end_line, sizeof end_line - 1) == 0) {
+		check_end(t);
+		return 0;
+	}
+	if (t->promised)
+		t->checksum = crc32_add(t->checksum, t->line, n);
+	return 1;
+}
+
 /* The next line that is neither empty nor a comment; 0 at the end. */
 static int next_line(struct table_in *t)
 {
-	ssize_t n;
+	size_t n;
 
-	while ((n = getline(&t->line, &t->room, t->f)) > 0) {
-		t->number++;
-		if (t->line[n - 1] != '\n')
-			die(EXIT_RUN,
-				"%s: line %ld: no newline at the end: the table is cut off",
-				t->name, t->number);
+	while ((n = read_line(t)) > 0) {
+		if (!mind_end(t, n))
+			continue;
 		t->line[--n] = '\0';
 		if (n && t->line[n - 1] == '\r')
 			t->line[--n] = '\0';
-		if ((size_t)n != strlen(t->line))
+		if (n != strlen(t->line))
 			die(EXIT_RUN, "%s: line %ld: NUL byte in a table", t->name,
 				t->number);
 		if (t->number == 1 && strncmp(t->line, byte_order_mark, 3) == 0)
-			memmove(t->line, t->line + 3, (size_t)(n -= 3) + 1);
+			memmove(t->line, t->line + 3, (n -= 3) + 1);
 		if (*t->line == '#')
 			keep_key(t, t->line + 1);
-		else if (n)
+		else if (n) {
+			t->unmarked |= !t->promised;
 			return 1;
+		}
 	}
-	if (ferror(t->f))
-		die(EXIT_RUN, "%s:", t->name);
+	if (t->promised && !file_followed())
+		die(EXIT_RUN,
+			"%s: the table ends after %ld rows without its '# end' line: "
+			"what wrote it did not finish",
+			t->name, t->rows);
 	return 0;
 }
 
@@ -118,6 +221,15 @@ static int cut(struct table_in *t, char *line, char **cells, int max)
 		if (*t->blanks == ' ')
 			s += strspn(s, t->blanks);
 	}
+}
+
+/* "1,5" */
+static int is_comma_decimal(const char *s)
+{
+	size_t whole = strspn(s, "+-0123456789");
+
+	return whole > 0 && s[whole] == ',' && s[whole + 1] &&
+	       s[whole + 1 + strspn(s + whole + 1, "0123456789eE+-")] == '\0';
 }
 
 static int is_missing(const char *s)
@@ -168,10 +280,26 @@ static void name_columns(struct table_in *t)
 
 struct table_in *table_open(const char *path)
 {
+	return table_from(input_open(path));
+}
+
+struct table_in *table_from(struct input *in)
+{
+	return table_with_comments(in, NULL, NULL);
+}
+
+struct table_in *table_with_comments(
+	struct input *in, table_comment_taker *take, void *context)
+{
 	struct table_in *t = xcalloc(1, sizeof *t);
 	char *copy;
 
-	t->f = file_open(path, &t->name);
+	t->in = in;
+	t->take = take;
+	t->context = context;
+	t->name = input_name(t->in);
+	t->most = input_limit("line", LINE_MOST);
+	t->most_keys = input_limit("keys", KEYS_MOST);
 	if (!next_line(t))
 		return t;
 	t->blanks = strchr(t->line, '\t') ? "\t" : " \t";
@@ -183,6 +311,11 @@ struct table_in *table_open(const char *path)
 	cut(t, t->line, t->cell, t->ncolumns);
 	name_columns(t);
 	return t;
+}
+
+int table_marked(const struct table_in *t)
+{
+	return !t->unmarked;
 }
 
 const char *table_name(const struct table_in *t)
@@ -229,22 +362,41 @@ int table_find(const struct table_in *t, const char *column)
 	return found;
 }
 
-/* 1 where the header looks like that of a table parted by commas. */
-static int has_commas(const struct table_in *t)
+/* What is wrong with a header whose columns are separated by other characters. */
+static const char *wrong_separator(const struct table_in *t)
 {
-	for (int i = 0; i < t->ncolumns; i++)
+	for (int i = 0; i < t->ncolumns; i++) {
+		if (strchr(t->column[i], ';'))
+			return ": a TAB parts columns, not a semicolon";
 		if (*t->blanks == ' ' && strchr(t->column[i], ','))
-			return 1;
-	return 0;
+			return ": a TAB parts columns, not a comma";
+	}
+	return "";
+}
+
+/* The names of the first columns, for a message before the end. */
+static char *list_columns(const struct table_in *t)
+{
+	char *list = xstrdup("");
+
+	for (int i = 0; i < t->ncolumns && i < 8; i++) {
+		char *longer = xprintf("%s%s'%.40s'", list, i ? " " : "", t->column[i]);
+
+		free(list);
+		list = longer;
+	}
+	return list;
 }
 
 int table_need(const struct table_in *t, const char *column)
 {
 	int i = table_find(t, column);
 
+	if (i < 0 && t->ncolumns == 0)
+		die(EXIT_RUN, "%s: empty, want %s", t->name, opt_reads());
 	if (i < 0)
-		die(EXIT_RUN, "%s: no column '%s'%s", t->name, column,
-			has_commas(t) ? ": a TAB parts columns, not a comma" : "");
+		die(EXIT_RUN, "%s: no column '%s' among %s%s", t->name, column,
+			list_columns(t), wrong_separator(t));
 	return i;
 }
 
@@ -263,6 +415,7 @@ int table_next(struct table_in *t)
 {
 	if (t->pending) {
 		t->pending = 0;
+		t->rows++;
 		return 1;
 	}
 	for (;;) {
@@ -274,8 +427,10 @@ int table_next(struct table_in *t)
 		if (n != t->ncolumns)
 			die(EXIT_RUN, "%s: line %ld: want %d cells, got %d", t->name,
 				t->number, t->ncolumns, n);
-		if (!is_header(t))
+		if (!is_header(t)) {
+			t->rows++;
 			return 1;
+		}
 		t->part++;
 	}
 }
@@ -292,8 +447,11 @@ double table_number(const struct table_in *t, int column)
 	if (column < 0)
 		return NAN;
 	if (!to_number(t->cell[column], &v))
-		die(EXIT_RUN, "%s: line %ld: %s: '%.40s' is not a number", t->name,
-			t->number, t->column[column], t->cell[column]);
+		die(EXIT_RUN, "%s: line %ld: %s: '%.40s' is not a number%s", t->name,
+			t->number, t->column[column], t->cell[column],
+			is_comma_decimal(t->cell[column])
+				? ": decimals are behind a point"
+				: "");
 	return v;
 }
 
@@ -325,8 +483,7 @@ const char *table_text(const struct table_in *t, int column)
 
 void table_close(struct table_in *t)
 {
-	if (t->f != stdin)
-		fclose(t->f);
+	input_close(t->in);
 	for (int i = 0; i < t->ncolumns; i++)
 		free(t->column[i]);
 	free(t->column);
@@ -345,7 +502,7 @@ struct table_out *table_create(
 	struct table_out *t = xcalloc(1, sizeof *t);
 
 	t->f = file_create(path, &t->name);
-	t->head = xstrdup("");
+	t->head = xstrdup(promise);
 	if (cmd)
 		table_cmd(t, cmd);
 	if (units)
@@ -361,24 +518,30 @@ struct table_out *table_create(
 	return t;
 }
 
-static void check(const struct table_out *t)
+static void put_line(struct table_out *t, const char *line, size_t n)
 {
-	if (ferror(t->f))
+	t->checksum = crc32_add(t->checksum, line, n);
+	if (fwrite(line, 1, n, t->f) != n)
 		die(EXIT_RUN, "%s:", t->name);
 }
 
 static void write_head(struct table_out *t)
 {
+	char *text;
+
 	if (!t->columns)
 		return;
-	fprintf(t->f, "%s%s\n", t->head, t->columns);
+	text = xprintf("%s%s\n", t->head, t->columns);
+	put_line(t, text, strlen(text));
+	free(text);
 	free(t->columns);
 	t->columns = NULL;
 }
 
 void table_comment(struct table_out *t, const char *key, const char *format, ...)
 {
-	char *value, *longer;
+	char *value, *escaped, *line, *longer;
+	const char *before;
 	va_list ap;
 	int n;
 
@@ -389,44 +552,66 @@ void table_comment(struct table_out *t, const char *key, const char *format, ...
 	va_start(ap, format);
 	vsnprintf(value, (size_t)n + 1, format, ap);
 	va_end(ap);
+	escaped = text_escape(value);
+	free(value);
+	before = keys_get(&t->told, key);
+	if (before && strcmp(before, escaped) == 0) {
+		free(escaped);
+		return;
+	}
+	if (before && strcmp(key, "cmd") == 0)
+		write_head(t); /* with the first pipeline, even where it made no row */
+	keys_set(&t->told, key, escaped);
+	line = xprintf("# %s: %s\n", key, escaped);
 	if (t->columns || !t->ncolumns) {
-		longer = xprintf("%s# %s: %s\n", t->head, key, value);
+		longer = xprintf("%s%s", t->head, line);
 		free(t->head);
 		t->head = longer;
 	} else {
-		fprintf(t->f, "# %s: %s\n", key, value);
+		put_line(t, line, strlen(line));
 	}
-	free(value);
+	free(line);
+	free(escaped);
 }
 
 void table_cmd(struct table_out *t, const char *cmd)
 {
-	if (!cmd || (t->cmd && strcmp(t->cmd, cmd) == 0))
-		return;
-	free(t->cmd);
-	t->cmd = xstrdup(cmd);
-	table_comment(t, "cmd", "%s", cmd);
+	if (cmd)
+		table_comment(t, "cmd", "%s", cmd);
 }
 
-static void begin_cell(struct table_out *t)
+static void append(struct table_out *t, const char *text)
 {
-	write_head(t);
+	size_t n = strlen(text);
+
+	if (t->length + n + 1 > t->room) {
+		t->room = 2 * (t->length + n + 1);
+		t->row = xrealloc(t->row, t->room, 1);
+	}
+	memcpy(t->row + t->length, text, n + 1);
+	t->length += n;
+}
+
+static void put_cell(struct table_out *t, const char *text)
+{
 	if (t->ncells++)
-		putc('\t', t->f);
+		append(t, "\t");
+	append(t, text);
+}
+
+void table_put_text(struct table_out *t, const char *text)
+{
+	char *escaped = text_escape(text);
+
+	put_cell(t, escaped);
+	free(escaped);
 }
 
 void table_put(struct table_out *t, double value)
 {
 	char text[NUMBER_TEXT];
 
-	begin_cell(t);
-	fputs(number_text(value, text), t->f);
-}
-
-void table_put_text(struct table_out *t, const char *text)
-{
-	begin_cell(t);
-	fputs(text, t->f);
+	put_cell(t, number_text(value, text));
 }
 
 void table_end_row(struct table_out *t)
@@ -434,9 +619,12 @@ void table_end_row(struct table_out *t)
 	if (t->ncells != t->ncolumns)
 		die(EXIT_RUN, "%s: wrote %d cells to a row of %d", t->name, t->ncells,
 			t->ncolumns);
+	write_head(t);
+	append(t, "\n");
+	put_line(t, t->row, t->length);
+	t->rows++;
 	t->ncells = 0;
-	putc('\n', t->f);
-	check(t);
+	t->length = 0;
 }
 
 void table_put_row(struct table_out *t, const double *value, int n)
@@ -455,11 +643,15 @@ void table_flush(struct table_out *t)
 
 void table_done(struct table_out *t)
 {
+	ends_check();
+	write_head(t);
+	fprintf(t->f, "%s%ld rows, crc32 %08lx\n", end_line, t->rows,
+		(unsigned long)t->checksum);
 	table_flush(t);
-	check(t);
-	if (t->f != stdout && fclose(t->f))
+	if (ferror(t->f) || (t->f != stdout && fclose(t->f)))
 		die(EXIT_RUN, "%s:", t->name);
 	free(t->head);
-	free(t->cmd);
+	keys_free(&t->told);
+	free(t->row);
 	free(t);
 }

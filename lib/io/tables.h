@@ -12,14 +12,23 @@
 #ifndef SHELL_TABLES_H
 #define SHELL_TABLES_H
 
+#include "io/input.h"
 #include <stddef.h>
 
 struct table_in;
 struct table_out;
 
 struct table_in *table_open(const char *path); /* NULL or "-": standard input */
+struct table_in *table_from(struct input *in); /* takes an open input over */
+/* The same, handing every comment "# key: value" on but those of ends. */
+typedef void table_comment_taker(void *context, const char *key, const char *value);
+struct table_in *table_with_comments(
+	struct input *in, table_comment_taker *take, void *context);
+/* 1 where all rows read so far stand between the begin and the end of a table of ours. */
+int table_marked(const struct table_in *t);
 const char *table_name(const struct table_in *t);
-/* Value of a "# key: value" line read so far (the latest), NULL if none. */
+/* Value of the latest "# key: value" line read so far, NULL if none; only of the keys
+ * cmd, units and columns. */
 const char *table_key(const struct table_in *t, const char *key);
 /* The pipeline that rebuilds all that was read so far, NULL if none is known; valid until
  * the next call.  What is made of a whole table inherits this one. */
@@ -30,8 +39,9 @@ int table_columns(const struct table_in *t);
 const char *table_column_name(const struct table_in *t, int column);
 int table_find(const struct table_in *t, const char *column); /* -1 where absent */
 int table_need(const struct table_in *t, const char *column); /* dies naming it */
-/* Moves to the next row; 0 at the end.  A row with too few or too many cells, or a
- * last line without its newline, kills the program naming file and line. */
+/* Moves to the next row; 0 at the end.  A row with too few or too many cells, a last line
+ * without its newline, or a table of ours without its end kills the program naming file
+ * and line. */
 int table_next(struct table_in *t);
 long table_line(const struct table_in *t); /* of the present row, from 1 */
 /* Cell as a number; nan, NaN, NA and an empty cell are NAN; anything else that is
@@ -48,7 +58,8 @@ void table_close(struct table_in *t);
 /* columns: names parted by blanks, "t y state".  cmd and units may be NULL. */
 struct table_out *table_create(
 	const char *path, const char *cmd, const char *units, const char *columns);
-/* One more "# key: value" line; before the first row it stands above the header. */
+/* One more "# key: value" line, unless the key has this value already; before the first
+ * row it stands above the header. */
 void table_comment(struct table_out *t, const char *key, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));
 /* A further "# cmd:" line where the pipeline that made the rows changes; nothing is
@@ -60,6 +71,7 @@ void table_end_row(struct table_out *t); /* checks the number of cells */
 /* The last n cells of a row, and its end. */
 void table_put_row(struct table_out *t, const double *value, int n);
 void table_flush(struct table_out *t);
-void table_done(struct table_out *t); /* checks that all was written; frees */
+/* Writes the end and checks that all was written; frees. */
+void table_done(struct table_out *t);
 
 #endif

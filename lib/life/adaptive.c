@@ -3,6 +3,7 @@
 #include "life/grey.h"
 #include "life/noise.h"
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,11 +13,22 @@ static const double MONITOR_LIMIT = 4; /* of the mean squared innovation */
 static const double MONITOR_CLIP = 16; /* so that one outlier is not a drift */
 static const double MEMORY = 0.05;     /* weight of the newest innovation */
 
-/* Sums of the grey fits of all particles, as struct grey has them for one. */
-struct fits {
-	double *tail, *mean_u, *mean_x, *suu, *sux;
-	uint32_t *index;
+/* A past row of all particles: their states and the gap after them. */
+struct lag {
+	const double *x;
+	const uint32_t *ancestor; /* of the particles after it; NULL: of the same place */
+	double gap;
 };
+
+/* Two particles side by side, and the sums of their grey fits, as struct grey has them,
+ * about a centre of x. */
+typedef double pair __attribute__((vector_size(16)));
+
+struct sums {
+	pair tail, u, x, uu, ux;
+};
+
+enum { LANES = 4 };
 
 struct adaptive {
 	struct adaptive_par par;
@@ -24,16 +36,18 @@ struct adaptive {
 	struct filter *filter;
 	struct order *order;
 	struct noise *noise;
-	struct fits fits;
-	double *mean; /* [N] prior means */
-	double scale; /* power of two that values are divided by: of the first but 0 */
+	struct lag *lag;    /* [depth] */
+	uint32_t *index;    /* [N] */
+	double *mean;       /* [N] prior means */
+	double *past, *gap; /* rings of the last rows: values and gaps before */
+	double *line_up;    /* past in order */
+	double scale;       /* from here on the state, see adaptive_pass(): power of two
+			     * that values are divided by, of the first but 0 */
 	int scaled;
 	long rows;
 	double time;
 	double observed, observed_time, observed_gap; /* the last observation */
 	double mean_gap;
-	double *past, *gap; /* rings of the last rows: values and gaps before */
-	double *line_up;    /* past in order */
 	int newest, filled;
 	double missed[RECENT]; /* last squared errors of the grey model, a ring */
 	long misses;
@@ -65,15 +79,14 @@ struct adaptive *adaptive_new(const struct adaptive_par *par)
 	a->filter = a->draw ? filter_new(&a->par.filter, a->draw) : NULL;
 	a->order = order_new(&par->order);
 	a->noise = noise_new();
-	a->fits = (struct fits){ column(a), column(a), column(a), column(a), column(a),
-		calloc(par->filter.particles, sizeof(uint32_t)) };
+	a->lag = calloc(depth, sizeof *a->lag);
+	a->index = calloc(par->filter.particles, sizeof *a->index);
 	a->mean = column(a);
 	a->past = calloc(depth, sizeof *a->past);
 	a->gap = calloc(depth, sizeof *a->gap);
 	a->line_up = calloc(depth, sizeof *a->line_up);
-	if (!a->draw_paths || !a->filter || !a->order || !a->noise || !a->fits.tail ||
-		!a->fits.mean_u || !a->fits.mean_x || !a->fits.suu || !a->fits.sux ||
-		!a->fits.index || !a->mean || !a->past || !a->gap || !a->line_up) {
+	if (!a->draw_paths || !a->filter || !a->order || !a->noise || !a->lag ||
+		!a->index || !a->mean || !a->past || !a->gap || !a->line_up) {
 		adaptive_free(a);
 		return NULL;
 	}
@@ -89,17 +102,28 @@ void adaptive_free(struct adaptive *a)
 	filter_free(a->filter);
 	order_free(a->order);
 	noise_free(a->noise);
-	free(a->fits.tail);
-	free(a->fits.mean_u);
-	free(a->fits.mean_x);
-	free(a->fits.suu);
-	free(a->fits.sux);
-	free(a->fits.index);
+	free(a->lag);
+	free(a->index);
 	free(a->mean);
 	free(a->past);
 	free(a->gap);
 	free(a->line_up);
 	free(a);
+}
+
+void adaptive_pass(struct adaptive *a, struct state *s)
+{
+	size_t depth = (size_t)a->par.filter.depth,
+	       from = offsetof(struct adaptive, scale);
+
+	draw_pass(a->draw, s);
+	draw_pass(a->draw_paths, s);
+	filter_pass(a->filter, s);
+	order_pass(a->order, s);
+	noise_pass(a->noise, s);
+	state_move(s, a->past, depth * sizeof *a->past);
+	state_move(s, a->gap, depth * sizeof *a->gap);
+	state_move(s, (unsigned char *)a + from, sizeof *a - from);
 }
 
 const struct order *adaptive_order(const struct adaptive *a)
@@ -122,46 +146,81 @@ unsigned long adaptive_outliers(const struct adaptive *a)
 	return a->outliers;
 }
 
-/* One older point into the fit of every particle: grey_add() side by side. */
-static void add_lag(struct fits *f, size_t n, const double *x, const uint32_t *index,
-	double gap, int rows)
+static inline void add_state(struct sums *s, pair x, double gap, double centre)
 {
-	double share = 1.0 / rows, rest = 1 - share;
+	pair part = x * gap, u = s->tail + 0.5 * part, off = x - centre;
 
-	for (size_t i = 0; i < n; i++) {
-		double v = x[index[i]], part = v * gap;
-		double du = f->tail[i] + 0.5 * part - f->mean_u[i];
-		double dx = v - f->mean_x[i];
+	s->u += u;
+	s->x += off;
+	s->uu += u * u;
+	s->ux += u * off;
+	s->tail += part;
+}
 
-		f->mean_u[i] += share * du;
-		f->mean_x[i] += share * dx;
-		f->suu[i] += rest * du * du;
-		f->sux[i] += rest * du * dx;
-		f->tail[i] += part;
+/* Level and rate of the curve of one of a pair, and the mean of its states. */
+static double curve_of(
+	const struct sums *s, int i, double n, double centre, double *level, double *rate)
+{
+	double suu = s->uu[i] - s->u[i] * s->u[i] / n,
+	       sux = s->ux[i] - s->u[i] * s->x[i] / n, middle = centre + s->x[i] / n;
+
+	*rate = suu > 0 ? sux / suu : 0;
+	*level = middle + *rate * (s->tail[i] - s->u[i] / n);
+	return middle;
+}
+
+/* What the grey curve through the last count states of each of some particles makes of
+ * the interval h after the newest.  An exponential through states that cannot be told
+ * from 0 means nothing: these stay at their mean. */
+static void forecast_lanes(const struct lag *lag, int count, double h, double noise,
+	uint32_t index[LANES], double mean[LANES])
+{
+	const pair zero = { 0, 0 };
+	struct sums s = { zero, zero, zero, zero, zero }, t = s;
+	double span = 0, centre = lag[0].x[0];
+	uint32_t a = index[0], b = index[1], c = index[2], d = index[3];
+
+	for (int k = 0; k < count; k++) {
+		const double *x = lag[k].x;
+		const uint32_t *ancestor = lag[k].ancestor;
+
+		if (ancestor) {
+			a = ancestor[a];
+			b = ancestor[b];
+			c = ancestor[c];
+			d = ancestor[d];
+		}
+		add_state(&s, (pair){ x[a], x[b] }, lag[k].gap, centre);
+		add_state(&t, (pair){ x[c], x[d] }, lag[k].gap, centre);
+		span += lag[k].gap;
+	}
+	for (int i = 0; i < LANES; i++) {
+		double level, rate,
+			middle = curve_of(
+				i < 2 ? &s : &t, i % 2, count, centre, &level, &rate);
+
+		mean[i] = fabs(middle) > 3 * noise ? grey_curve(level, rate, span + h, h)
+						   : middle;
 	}
 }
 
-static void clear_fits(struct fits *f, size_t n)
+/* The same for n particles, those in index where there is one. */
+static void forecast(const struct lag *lag, int count, double h, double noise,
+	const uint32_t *index, size_t n, double *mean)
 {
-	memset(f->tail, 0, n * sizeof(double));
-	memset(f->mean_u, 0, n * sizeof(double));
-	memset(f->mean_x, 0, n * sizeof(double));
-	memset(f->suu, 0, n * sizeof(double));
-	memset(f->sux, 0, n * sizeof(double));
-}
+	uint32_t lane[LANES];
+	double of[LANES];
 
-/* What the fitted curves make of the interval h after the newest point.  An exponential
- * through states that cannot be told from 0 means nothing: these stay at their mean. */
-static void forecast(
-	const struct fits *f, size_t n, double span, double h, double noise, double *mean)
-{
-	for (size_t i = 0; i < n; i++) {
-		double rate = f->suu[i] > 0 ? f->sux[i] / f->suu[i] : 0;
-		double level = f->mean_x[i] + rate * (f->tail[i] - f->mean_u[i]);
+	for (size_t i = 0; i < n; i += LANES) {
+		size_t width = n - i < LANES ? n - i : LANES;
 
-		mean[i] = fabs(f->mean_x[i]) > 3 * noise
-				  ? grey_curve(level, rate, span + h, h)
-				  : f->mean_x[i];
+		for (size_t j = 0; j < LANES; j++) {
+			size_t k = i + (j < width ? j : 0);
+
+			lane[j] = index ? index[k] : (uint32_t)k;
+		}
+		forecast_lanes(lag, count, h, noise, lane, of);
+		memcpy(mean + i, of, width * sizeof *of);
 	}
 }
 
@@ -169,28 +228,22 @@ static void forecast(
  * of the window only opens the first interval (see grey.h). */
 static void forecast_particles(struct adaptive *a, int p, double h, double noise)
 {
-	size_t n = a->par.filter.particles;
-	int depth = a->par.filter.depth, changed;
-	double span = 0;
+	int depth = a->par.filter.depth;
 
-	clear_fits(&a->fits, n);
-	for (int lag = 0; lag < p - 1; lag++) {
-		double gap = a->gap[(a->newest - lag + depth) % depth];
-		const double *x = filter_lag(a->filter, lag, a->fits.index, &changed);
-
-		add_lag(&a->fits, n, x, a->fits.index, gap, lag + 1);
-		span += gap;
+	for (int k = 0; k < p - 1; k++) {
+		a->lag[k].x = filter_states(a->filter, k, &a->lag[k].ancestor);
+		a->lag[k].gap = a->gap[(a->newest - k + depth) % depth];
 	}
-	forecast(&a->fits, n, span, h, noise, a->mean);
+	forecast(a->lag, p - 1, h, noise, NULL, a->par.filter.particles, a->mean);
 }
 
 static void hold_particles(struct adaptive *a)
 {
 	int changed;
-	const double *x = filter_lag(a->filter, 0, a->fits.index, &changed);
+	const double *x = filter_lag(a->filter, 0, a->index, &changed);
 
 	for (size_t i = 0; i < a->par.filter.particles; i++)
-		a->mean[i] = x[a->fits.index[i]];
+		a->mean[i] = x[a->index[i]];
 }
 
 /* Remembers a value for a restart and the gap before it. */
@@ -444,10 +497,10 @@ static int start_paths(struct adaptive *a, struct paths *s)
 		return 0;
 	s->newest = s->p - 1;
 	for (int lag = 0; lag < s->p; lag++) {
-		const double *x = filter_lag(a->filter, lag, a->fits.index, &changed);
+		const double *x = filter_lag(a->filter, lag, a->index, &changed);
 
 		for (size_t i = 0; i < n; i++)
-			path_lag(s, n, lag)[i] = x[a->fits.index[i]];
+			path_lag(s, n, lag)[i] = x[a->index[i]];
 	}
 	return 1;
 }
@@ -460,10 +513,9 @@ static size_t step_paths(struct adaptive *a, struct paths *s, size_t live, doubl
 	size_t n = a->par.filter.particles, left = 0;
 	double gap = a->mean_gap, *old = path_lag(s, n, 0), *x;
 
-	clear_fits(&a->fits, live);
-	for (int lag = 0; lag < s->p - 1; lag++)
-		add_lag(&a->fits, live, path_lag(s, n, lag), s->index, gap, lag + 1);
-	forecast(&a->fits, live, gap * (s->p - 1), gap, s->noise, a->mean);
+	for (int k = 0; k < s->p - 1; k++)
+		a->lag[k] = (struct lag){ path_lag(s, n, k), NULL, gap };
+	forecast(a->lag, s->p - 1, gap, s->noise, s->index, live, a->mean);
 	s->newest = (s->newest + 1) % s->p;
 	x = path_lag(s, n, 0);
 	for (size_t k = 0; k < live; k++) {
@@ -506,5 +558,5 @@ int adaptive_lives(
 			a, &s, left, process, limit, direction, k * a->mean_gap, life);
 	free(s.x);
 	free(s.index);
-	return good;
+	return good ? 1 : -1;
 }

@@ -30,6 +30,13 @@ void draw_free(struct draw *draw)
 	free(draw);
 }
 
+void draw_pass(struct draw *d, struct state *s)
+{
+	state_move(s, d->counter, sizeof d->counter);
+	state_move(s, d->word, sizeof d->word);
+	state_move(s, &d->left, sizeof d->left);
+}
+
 static inline uint32_t next_word(struct draw *d)
 {
 	if (d->left == 0) {

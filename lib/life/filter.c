@@ -62,6 +62,25 @@ void filter_free(struct filter *f)
 	free(f);
 }
 
+void filter_pass(struct filter *f, struct state *s)
+{
+	size_t n = f->par.particles;
+
+	for (int k = 0; k < f->par.depth; k++) {
+		state_move(s, f->ring[k].x, n * sizeof *f->ring[k].x);
+		state_move(s, f->ring[k].ancestor, n * sizeof *f->ring[k].ancestor);
+		state_move(s, &f->ring[k].resampled, sizeof f->ring[k].resampled);
+	}
+	state_move(s, &f->newest, sizeof f->newest);
+	state_move(s, &f->filled, sizeof f->filled);
+	state_move(s, f->log_weight, n * sizeof *f->log_weight);
+	state_move(s, f->weight, n * sizeof *f->weight);
+	state_move(s, &f->sum, sizeof f->sum);
+	state_move(s, &f->mean, sizeof f->mean);
+	state_move(s, &f->ess, sizeof f->ess);
+	state_move(s, &f->resamplings, sizeof f->resamplings);
+}
+
 int filter_depth(const struct filter *f)
 {
 	return f->filled;
@@ -123,6 +142,14 @@ const double *filter_lag(const struct filter *f, int lag, uint32_t *index, int *
 		for (size_t i = 0; i < n; i++)
 			index[i] = (uint32_t)i;
 	*changed = first || s->resampled;
+	return s->x;
+}
+
+const double *filter_states(const struct filter *f, int lag, const uint32_t **ancestor)
+{
+	const struct step *s = &f->ring[(f->newest - lag + f->par.depth) % f->par.depth];
+
+	*ancestor = s->resampled ? s->ancestor : NULL;
 	return s->x;
 }
 

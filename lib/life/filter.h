@@ -36,6 +36,7 @@ struct filter;
 /* draw stays the caller's.  NULL when out of memory. */
 struct filter *filter_new(const struct filter_par *par, struct draw *draw);
 void filter_free(struct filter *f);
+void filter_pass(struct filter *f, struct state *s);
 
 /* (Re)starts with count <= depth past values, oldest first, each particle's uniform
  * within +- spread of them, and equal weights. */
@@ -48,6 +49,10 @@ int filter_depth(const struct filter *f);
  * particle.  Call with lag 0 first (index is filled), then with each next lag in turn
  * (index is carried on).  Returns 1 where index changed, 0 where it stayed. */
 const double *filter_lag(const struct filter *f, int lag, uint32_t *index, int *changed);
+
+/* The same without the walk: the states of step k - lag, and which of them each particle
+ * after it comes from; NULL: the one of the same place. */
+const double *filter_states(const struct filter *f, int lag, const uint32_t **ancestor);
 
 /* Moves to the next step: states mean[N] plus normal noise. */
 void filter_predict(struct filter *f, const double *mean, double sigma);

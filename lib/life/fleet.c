@@ -1,24 +1,37 @@
 /* fleet.c - see fleet.h */
 #include "life/fleet.h"
-#include "life/draw.h"
+#include "num/select.h"
 #include <math.h>
 #include <stdlib.h>
 
-enum { SMOOTHED = 20 }; /* rows from which medians of three are taken */
+enum {
+	SMOOTHED = 20, /* rows before medians of three are taken */
+	LEVELS = 24,   /* of a path */
+	AHEAD = 7,     /* of them to the threshold, for a unit that has not reached it */
+	DRAWS = 200    /* of their ages */
+};
 
-/* Rising steps of one unit: age at which each level was first reached. */
+/* Log prior of all paths together over the coordinates of the bank: kinship is likely,
+ * but an alien unit must be outweighed by some twenty rows that speak against it. */
+static const double KINSHIP = 4;
+
 struct path {
-	struct climb climb;
+	int rows;
+	double t[3], y[3]; /* last rows, newest first; y times the direction */
+	double first, last;
+	struct bank *bank;
+	double *age, *level; /* rising */
 	int n, room;
-	double *age, *level; /* level times direction */
-	double life;         /* age at the threshold; NAN if it was not reached */
 };
 
 struct fleet {
 	double threshold;
 	int direction;
-	int units;
 	struct path *path;
+	int units;
+	struct bank_shape *shape;
+	double *grid; /* ages and levels of the shapes */
+	int shapes;
 };
 
 struct fleet *fleet_new(double threshold, int direction)
@@ -39,8 +52,11 @@ void fleet_free(struct fleet *f)
 	for (int i = 0; i < f->units; i++) {
 		free(f->path[i].age);
 		free(f->path[i].level);
+		bank_free(f->path[i].bank);
 	}
 	free(f->path);
+	free(f->shape);
+	free(f->grid);
 	free(f);
 }
 
@@ -49,31 +65,15 @@ int fleet_units(const struct fleet *f)
 	return f->units;
 }
 
+const struct bank_shape *fleet_shapes(const struct fleet *f, int *n)
+{
+	*n = f->shapes;
+	return f->shape;
+}
+
 static double median3(double a, double b, double c)
 {
 	return fmax(fmin(a, b), fmin(fmax(a, b), c));
-}
-
-void climb_add(struct climb *c, double t, double y)
-{
-	double level = y, when = t;
-
-	if (c->rows == 0)
-		c->first = t;
-	for (int k = 2; k > 0; k--) {
-		c->t[k] = c->t[k - 1];
-		c->y[k] = c->y[k - 1];
-	}
-	c->t[0] = t;
-	c->y[0] = y;
-	if (++c->rows >= SMOOTHED) {
-		level = median3(c->y[0], c->y[1], c->y[2]);
-		when = c->t[1];
-	}
-	if (c->rows == 1 || c->direction * (level - c->level) > 0) {
-		c->level = level;
-		c->age = when - c->first;
-	}
 }
 
 static int grow(struct path *p)
@@ -92,10 +92,10 @@ static int grow(struct path *p)
 	return 1;
 }
 
-/* Adds a step where it leads higher; 0: no memory. */
+/* Adds a step where it leads higher, and later; 0: no memory. */
 static int rise(struct path *p, double age, double level)
 {
-	if (p->n > 0 && level <= p->level[p->n - 1])
+	if (p->n > 0 && (level <= p->level[p->n - 1] || age <= p->age[p->n - 1]))
 		return 1;
 	if (p->n == p->room && !grow(p))
 		return 0;
@@ -104,119 +104,121 @@ static int rise(struct path *p, double age, double level)
 	return 1;
 }
 
-int fleet_add(struct fleet *f, int unit, double t, double y)
+static struct path *path_of(struct fleet *f, int unit)
 {
-	struct path *p;
+	struct bank_par par = { .threshold = f->threshold, .direction = f->direction };
 
 	if (unit >= f->units) {
-		p = realloc(f->path, ((size_t)unit + 1) * sizeof *p);
+		struct path *p = realloc(f->path, ((size_t)unit + 1) * sizeof *p);
+
 		if (!p)
-			return 0;
+			return NULL;
 		f->path = p;
 		while (f->units <= unit)
-			f->path[f->units++] =
-				(struct path){ .climb = { .direction = f->direction } };
+			f->path[f->units++] = (struct path){ .bank = bank_new(&par) };
 	}
-	p = &f->path[unit];
-	climb_add(&p->climb, t, y);
-	return rise(p, p->climb.age, f->direction * p->climb.level);
+	return f->path[unit].bank ? &f->path[unit] : NULL;
 }
 
-/* Age at which a level was first reached; NAN where it was not. */
-static double passage(const struct path *p, double level)
+int fleet_add(struct fleet *f, int unit, double t, double y)
 {
-	int low = 0, high = p->n - 1;
+	struct path *p = path_of(f, unit);
 
-	if (p->n == 0 || level > p->level[high])
-		return NAN;
-	if (level <= p->level[0])
+	if (!p)
 		return 0;
-	while (high - low > 1) {
-		int mid = (low + high) / 2;
-
-		if (p->level[mid] < level)
-			low = mid;
-		else
-			high = mid;
+	if (p->rows++ == 0)
+		p->first = t;
+	p->last = t;
+	bank_add(p->bank, t, y);
+	for (int k = 2; k > 0; k--) {
+		p->t[k] = p->t[k - 1];
+		p->y[k] = p->y[k - 1];
 	}
-	return p->age[low] + (p->age[high] - p->age[low]) * (level - p->level[low]) /
-				     (p->level[high] - p->level[low]);
+	p->t[0] = t;
+	p->y[0] = f->direction * y;
+	if (p->rows < SMOOTHED)
+		return rise(p, t - p->first, p->y[0]);
+	return rise(p, p->t[1] - p->first, median3(p->y[0], p->y[1], p->y[2]));
 }
 
-int fleet_build(struct fleet *f)
+/* Carries a unit on to the threshold by what its own bank foresees; 0: no memory. */
+static int carry_on(const struct fleet *f, struct path *p)
 {
-	int failed = 0;
+	struct bank_chances *chances = bank_chances_new(DRAWS, 0);
+	double end = f->direction * f->threshold, from = p->level[p->n - 1], life[DRAWS];
+	size_t middle = DRAWS / 2;
+	int good = chances != NULL;
 
+	for (int k = 1; good && k <= AHEAD && bank_ready(p->bank); k++) {
+		double level = from + (end - from) * k / AHEAD;
+
+		bank_draw(p->bank, chances, p->last, f->direction * level, life);
+		select_ranks(life, DRAWS, &middle, 1);
+		if (isfinite(life[middle]))
+			good = rise(p, p->last - p->first + life[middle], level);
+	}
+	bank_chances_free(chances);
+	return good;
+}
+
+/* Age at a level between the ends of a path. */
+static double age_at(const struct path *p, double level)
+{
+	int k = 1;
+
+	while (k < p->n - 1 && p->level[k] < level)
+		k++;
+	return p->age[k - 1] + (p->age[k] - p->age[k - 1]) * (level - p->level[k - 1]) /
+				       (p->level[k] - p->level[k - 1]);
+}
+
+/* The path on even levels up to the threshold; 0 where it has no length. */
+static int lay_out(const struct path *p, double end, double *age, double *level)
+{
+	double from, to;
+
+	from = p->level[0];
+	to = fmin(end, p->level[p->n - 1]);
+	for (int k = 0; k < LEVELS; k++) {
+		level[k] = from + (to - from) * k / (LEVELS - 1);
+		age[k] = age_at(p, level[k]);
+	}
+	return to > from && age[LEVELS - 1] > 0;
+}
+
+int fleet_build(struct fleet *f, int *failed, int *carried_on)
+{
+	double end = f->direction * f->threshold;
+	size_t units = (size_t)f->units;
+
+	*failed = *carried_on = 0;
+	f->shape = calloc(units + 1, sizeof *f->shape);
+	f->grid = calloc(units + 1, 2 * LEVELS * sizeof *f->grid);
+	if (!f->shape || !f->grid)
+		return -1;
 	for (int i = 0; i < f->units; i++) {
 		struct path *p = &f->path[i];
+		double *age = f->grid + (size_t)f->shapes * 2 * LEVELS,
+		       *level = age + LEVELS;
+		int reached;
 
 		/* No median waits for rows that will not come. */
-		if (!rise(p, p->climb.t[0] - p->climb.first,
-			    f->direction * p->climb.y[0]))
+		if (p->rows == 0 || !rise(p, p->t[0] - p->first, p->y[0]))
 			return -1;
-		p->life = passage(p, f->direction * f->threshold);
-		failed += p->life > 0;
+		if (p->n < 2)
+			continue; /* shows no wear */
+		reached = p->level[p->n - 1] >= end;
+		if (!reached && !carry_on(f, p))
+			return -1;
+		if (!lay_out(p, end, age, level))
+			continue;
+		f->shape[f->shapes++] = (struct bank_shape){
+			.family = BANK_OTHER, .age = age, .level = level, .n = LEVELS
+		};
+		*failed += reached;
+		*carried_on += !reached;
 	}
-	return failed;
-}
-
-/* Sums of a regression of y on x. */
-struct sums {
-	int n;
-	double x, y, xx, xy, yy; /* means and centred sums */
-};
-
-static void sum_pair(struct sums *s, double x, double y)
-{
-	double dx = x - s->x, dy = y - s->y, rest;
-
-	s->n++;
-	rest = 1 - 1.0 / s->n;
-	s->x += dx / s->n;
-	s->y += dy / s->n;
-	s->xx += rest * dx * dx;
-	s->xy += rest * dx * dy;
-	s->yy += rest * dy * dy;
-}
-
-/* Pairs of log age at the level and log time left from there. */
-static struct sums compare_units(const struct fleet *f, double level, double age)
-{
-	struct sums s = { 0 };
-
-	for (int i = 0; i < f->units; i++) {
-		const struct path *p = &f->path[i];
-		double then = age > 0 ? passage(p, f->direction * level) : 0;
-
-		if (p->life > then && (then > 0 || !(age > 0)))
-			sum_pair(&s, age > 0 ? log(then) : 0, log(p->life - then));
-	}
-	return s;
-}
-
-int fleet_life(const struct fleet *f, double level, double age, const double *z,
-	double *life, int n)
-{
-	struct sums s = compare_units(f, level, age);
-	double slope = 0, away = 0, centre, variance, freedom;
-
-	if (s.n < FLEET_MIN)
-		return 0;
-	if (age > 0) {
-		/* About a slope of 1, with the variance of the ratio as ridge. */
-		double ratio = fmax(0, s.yy - 2 * s.xy + s.xx) / (s.n - 1);
-
-		slope = s.xx + ratio > 0 ? 1 + (s.xy - s.xx) / (s.xx + ratio) : 1;
-		away = log(age) - s.x;
-	}
-	freedom = s.n > FLEET_MIN ? s.n - (age > 0 ? 2 : 1) : s.n - 1;
-	variance = fmax(0, s.yy - 2 * slope * s.xy + slope * slope * s.xx) / freedom;
-	centre = s.y + slope * away;
-	variance *= 1 + 1.0 / s.n + (s.xx > 0 && age > 0 ? away * away / s.xx : 0);
-	for (int i = 0; i < n; i++) {
-		double chi = chi2_from_normal(freedom, z[2 * i]) / freedom;
-
-		life[i] = exp(fmin(700, centre + sqrt(variance / chi) * z[2 * i + 1]));
-	}
-	return 1;
+	for (int i = 0; i < f->shapes; i++)
+		f->shape[i].log_prior = KINSHIP - log(f->shapes);
+	return f->shapes;
 }

@@ -4,6 +4,12 @@
  *	forecast_add(f, t, value, gap, 0);
  *	row = forecast_at(f, t);
  *	forecast_free(f);
+ *
+ * With RATE_FILTER the value observed is followed by the bank of bank.h, in two
+ * coordinates: one in which it grows at a constant rate itself, and one in which the
+ * other of gap and leakage does; the rate may change in past and future.  Where the paths
+ * know how long a step takes, it is the gap that is followed, and their rate is known
+ * beforehand.
  */
 #ifndef LIFE_FORECAST_H
 #define LIFE_FORECAST_H
@@ -15,22 +21,23 @@ struct forecast_par {
 	struct pair pair; /* gap_new NAN: the first gap observed */
 	enum pair_quantity quantity;
 	int from_new;        /* wear counts from the new pair at time 0 */
-	enum rate_rule rule; /* as that of the paths, as is count */
+	enum rate_rule rule; /* as that of the paths, as are count, seed and first */
 	long count;
-	int scaled;      /* the paths know how long a step takes */
-	double skip;     /* run-in left out of the rates, s from the first row */
-	double horizon;  /* what lives longer counts as no failure; NAN: none, or for
-			  * filters on their own ten times the age */
-	double dry_rate; /* volume per s; NAN: none */
-	int grey;        /* follow the grey model too */
+	uint64_t seed;
+	uint32_t first;
+	int scaled;     /* the paths know how long a step takes */
+	double skip;    /* run-in left out of the rates, s from the first row */
+	double horizon; /* what lives longer counts as no failure; NAN: none, or for
+			 * filters on their own ten times the age */
+	int grey;       /* follow the grey model too */
 };
 
 /* What is known at a time; NAN: nothing. */
 struct forecast_row {
 	double *life; /* n samples, valid until the next call; may be reordered */
 	long n;
-	double limit;     /* what lives longer counts as no failure */
-	double dry, grey; /* life left by dry sliding, by the grey model */
+	double limit; /* what lives longer counts as no failure */
+	double grey;  /* life left by the grey model */
 };
 
 struct forecast;
@@ -40,7 +47,7 @@ struct forecast *forecast_new(struct paths *paths, const struct forecast_par *pa
 void forecast_free(struct forecast *f);
 
 /* The next row observed: value as read, the gap it tells and the error of that.  Returns
- * the number of samples of a prediction; -1 where gap is NAN. */
+ * the number of samples of a prediction; -1 where gap is NAN, -2 when out of memory. */
 long forecast_add(struct forecast *f, double t, double value, double gap, double error);
 /* Instead of it, for a new pair that was not observed yet. */
 void forecast_foresee(struct forecast *f);

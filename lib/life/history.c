@@ -29,6 +29,11 @@ void history_free(struct history *h)
 	free(h);
 }
 
+void history_pass(struct history *h, struct state *s)
+{
+	state_move(s, h, sizeof *h);
+}
+
 static void merge_pairs(struct history *h)
 {
 	for (int k = 0; k < HISTORY_MAX / 2; k++) {

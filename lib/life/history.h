@@ -6,12 +6,15 @@
 #ifndef LIFE_HISTORY_H
 #define LIFE_HISTORY_H
 
+#include "num/state.h"
+
 enum { HISTORY_MAX = 512 };
 
 struct history;
 
 struct history *history_new(void); /* NULL when out of memory */
 void history_free(struct history *h);
+void history_pass(struct history *h, struct state *s);
 void history_clear(struct history *h);
 void history_add(struct history *h, double t, double x);
 /* The whole groups, oldest first, and after them the rows of the last, unfinished one

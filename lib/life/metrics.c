@@ -10,7 +10,7 @@ struct weighted {
 
 struct metrics {
 	struct metrics_par par;
-	size_t n;
+	size_t n, infinite;
 	double error, abs_error, square_error, accuracy, crps;
 	size_t inside, covered;
 	double since; /* time of the first of an unbroken run of good ones; NAN if none */
@@ -165,10 +165,14 @@ int metrics_add(struct metrics *m, double t, double point, double lower, double 
 	else if (isnan(m->since))
 		m->since = t;
 	m->n++;
-	m->error += r.error;
-	m->abs_error += fabs(r.error);
-	m->square_error += r.error * r.error;
-	m->accuracy += r.accuracy;
+	if (isinf(point)) {
+		m->infinite++;
+	} else {
+		m->error += r.error;
+		m->abs_error += fabs(r.error);
+		m->square_error += r.error * r.error;
+		m->accuracy += r.accuracy;
+	}
 	m->crps += r.crps;
 	m->inside += (size_t)r.inside;
 	m->covered += (size_t)r.covered;
@@ -180,13 +184,15 @@ int metrics_add(struct metrics *m, double t, double point, double lower, double 
 struct metrics_sum metrics_get(const struct metrics *m)
 {
 	double n = m->n ? (double)m->n : NAN;
+	double finite = m->n > m->infinite ? (double)(m->n - m->infinite) : NAN;
 
 	return (struct metrics_sum){
 		.n = m->n,
-		.bias = m->error / n,
-		.mae = m->abs_error / n,
-		.rmse = sqrt(m->square_error / n),
-		.accuracy = m->accuracy / n,
+		.infinite = m->infinite,
+		.bias = m->error / finite,
+		.mae = m->abs_error / finite,
+		.rmse = sqrt(m->square_error / finite),
+		.accuracy = m->accuracy / finite,
 		.alpha_lambda = (double)m->inside / n,
 		.horizon = m->n ? (isnan(m->since) ? 0 : m->par.eol - m->since) : NAN,
 		.coverage = (double)m->covered / n,

@@ -52,6 +52,7 @@ struct metrics_row {
 /* All predictions made before the end of life; NAN where there were none. */
 struct metrics_sum {
 	size_t n;
+	size_t infinite; /* of these, whose point is INFINITY; not in the next four */
 	double bias, mae, rmse; /* mean error, mean |error|, root mean square error */
 	double accuracy;        /* cumulative relative accuracy: mean of accuracy */
 	double alpha_lambda;    /* share of predictions inside the cone */
@@ -70,8 +71,8 @@ void metrics_free(struct metrics *m);
 
 /* Adds the prediction made at t; times must not fall.  sample may be NULL (n = 0):
  * the point stands for all of them.  Samples need not be sorted.  row may be NULL.
- * An infinite point makes the mean errors infinite: take the median where samples
- * may never fail.  Returns 1, 0 when t >= eol or the point is NAN (nothing is
+ * An infinite point (a median where most samples never fail) has no error that could be
+ * averaged: it is counted apart, and judged by its samples and interval.  Returns 1, 0 when t >= eol or the point is NAN (nothing is
  * counted), -1 when out of memory. */
 int metrics_add(struct metrics *m, double t, double point, double lower, double upper,
 	const double *sample, const double *weight, size_t n, struct metrics_row *row);

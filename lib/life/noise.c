@@ -27,6 +27,11 @@ void noise_free(struct noise *n)
 	free(n);
 }
 
+void noise_pass(struct noise *n, struct state *s)
+{
+	state_move(s, n, sizeof *n);
+}
+
 /* The median says nothing where most residuals vanish, as with rounded values: then the
  * root mean square does. */
 static double spread(struct noise *n, int count)

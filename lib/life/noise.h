@@ -7,10 +7,13 @@
 #ifndef LIFE_NOISE_H
 #define LIFE_NOISE_H
 
+#include "num/state.h"
+
 struct noise;
 
 struct noise *noise_new(void); /* NULL when out of memory */
 void noise_free(struct noise *n);
+void noise_pass(struct noise *n, struct state *s);
 /* Takes the observation made gap after the last one. */
 void noise_add(struct noise *n, double y, double gap);
 /* Standard deviation; 0 below three observations or for an exact line. */

@@ -14,7 +14,7 @@
 enum rate_rule {
 	RATE_MEAN,  /* all that was worn over the time it took (4-29) */
 	RATE_LAST,  /* the last wear over the last interval (4-28) */
-	RATE_FILTER /* followed by filters (rate.h) */
+	RATE_FILTER /* followed by the bank of bank.h */
 };
 
 struct observed;

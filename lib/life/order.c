@@ -60,6 +60,25 @@ void order_free(struct order *o)
 	free(o);
 }
 
+void order_pass(struct order *o, struct state *s)
+{
+	size_t orders = (size_t)o->par.largest + 1;
+
+	state_move(s, &o->chosen, sizeof o->chosen);
+	state_move(s, &o->rows, sizeof o->rows);
+	state_move(s, &o->first, sizeof o->first);
+	state_move(s, &o->next, sizeof o->next);
+	state_move(s, o->y, (size_t)o->ring * sizeof *o->y);
+	state_move(s, o->gap, (size_t)o->ring * sizeof *o->gap);
+	state_move(s, o->fit, orders * sizeof *o->fit);
+	state_move(s, o->since, orders * sizeof *o->since);
+	state_move(s, o->error, orders * (size_t)o->par.window * sizeof *o->error);
+	state_move(s, o->total, orders * sizeof *o->total);
+	state_move(s, &o->tried, sizeof o->tried);
+	state_move(s, &o->skipped, sizeof o->skipped);
+	state_move(s, &o->changes, sizeof o->changes);
+}
+
 static int lag_place(const struct order *o, int lag)
 {
 	return (o->next - 1 - lag + 2 * o->ring) % o->ring;

@@ -15,6 +15,8 @@
 #ifndef LIFE_ORDER_H
 #define LIFE_ORDER_H
 
+#include "num/state.h"
+
 enum order_rule { ORDER_WINDOW, ORDER_INSAMPLE, ORDER_ALL, ORDER_FIXED };
 
 struct order_par {
@@ -30,6 +32,7 @@ struct order;
 
 struct order *order_new(const struct order_par *par); /* NULL when out of memory */
 void order_free(struct order *o);
+void order_pass(struct order *o, struct state *s);
 
 /* Takes the observation made gap steps after the last one: scores the forecasts made
  * for it, then makes those for the next and chooses an order. */

@@ -1,55 +1,70 @@
 /* partition.c - see partition.h */
 #include "life/partition.h"
+#include "num/realisations.h"
 #include "num/room.h"
+#include "num/running.h"
+#include <gsl/gsl_randist.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 
-/* One realisation in one step. */
-struct cell {
-	long realisation, step;
-	double volume, count, large;
+/* For the sizes realisations are merged, two neighbours into one, when there are so many
+ * groups of them, or so many cells and more than the least number of groups.  A mean of
+ * groups varies between draws as that of their realisations does. */
+enum { GROUPS_MOST = 4096, GROUPS_LEAST = 64, GROUP_CELLS = 1 << 20 };
+
+/* Particles of a group of realisations in one step. */
+struct group_cell {
+	size_t group;
+	long step;
+	double count, large;
 };
 
-/* One realisation: sums over the steps that count for the rate. */
-struct history {
-	size_t first, end; /* its cells */
-	double volume, square;
-	double rows; /* steps */
-};
-
-/* Of a set of realisations. */
 struct moments {
 	double mean, step_variance, life_variance;
 };
 
 struct class
 {
+	const struct partition *owner;
 	int sparse;
 	double pressure, area; /* own area after partition_close() */
-	struct cell *cell;
-	size_t ncells, cell_room;
-	struct history *history;
-	size_t nhistories;    /* told of */
-	size_t nrealisations; /* with those that shed nothing */
-	size_t *times;        /* how often each history is in the present replicate */
-	struct moments now;
+	struct realisations *reader;
+	long last_realisation, last_step; /* of the row before; -1: none */
+	long lowest, highest;             /* realisations with rows */
+	/* Over realisations: volume and steps that count for the rate. */
+	struct running volume, steps;
+	double product;      /* sum of their products about their means */
+	struct running cell; /* over realisations and steps: volume */
+	struct group_cell *group_cell;
+	size_t ncells, cell_room, nhistories, per_group;
+	double ngroups, empty_groups; /* with and without particles */
+	double *times;                /* how often each is in the present replicate */
+	/* Of a closed class. */
+	double realisations, error; /* error: relative, of the mean */
+	struct moments all, now;
 };
 
 struct partition {
 	double fragment_area, area, zone;
+	long first_step;
+	int sizes;
 	struct class class[PARTITION_CLASSES_MAX]; /* by rising pressure once closed */
 	int order[PARTITION_CLASSES_MAX];          /* order[place] = the caller's index */
 	int nclasses, culprit;
+	long culprit_realisation;
 	long steps;
+	double *shed; /* particles, and large ones, [class][step] */
 };
 
-struct partition *partition_new(double fragment_area, double area)
+struct partition *partition_new(double area, long first_step, int sizes)
 {
 	struct partition *p = calloc(1, sizeof *p);
 
 	if (p) {
-		p->fragment_area = fragment_area;
 		p->area = area;
+		p->first_step = first_step;
+		p->sizes = sizes;
 	}
 	return p;
 }
@@ -59,99 +74,175 @@ void partition_free(struct partition *p)
 	if (!p)
 		return;
 	for (int c = 0; c < p->nclasses; c++) {
-		free(p->class[c].cell);
-		free(p->class[c].history);
+		realisations_free(p->class[c].reader);
+		free(p->class[c].group_cell);
 		free(p->class[c].times);
 	}
+	free(p->shed);
 	free(p);
+}
+
+static int compare_groups(const void *a, const void *b)
+{
+	const struct group_cell *x = a, *y = b;
+
+	if (x->group != y->group)
+		return x->group < y->group ? -1 : 1;
+	return (x->step > y->step) - (x->step < y->step);
+}
+
+static void merge_groups(struct class *c)
+{
+	size_t n = 0;
+
+	for (size_t i = 0; i < c->ncells; i++)
+		c->group_cell[i].group /= 2;
+	qsort(c->group_cell, c->ncells, sizeof *c->group_cell, compare_groups);
+	for (size_t i = 0; i < c->ncells; i++) {
+		if (n && compare_groups(&c->group_cell[n - 1], &c->group_cell[i]) == 0) {
+			c->group_cell[n - 1].count += c->group_cell[i].count;
+			c->group_cell[n - 1].large += c->group_cell[i].large;
+		} else {
+			c->group_cell[n++] = c->group_cell[i];
+		}
+	}
+	c->ncells = n;
+	c->per_group *= 2;
+}
+
+static int group_sizes(struct class *c, const struct realisation_cell *cell, size_t n)
+{
+	size_t group = c->nhistories / c->per_group;
+
+	if (room_for(&c->group_cell, &c->cell_room, c->ncells + n, sizeof *c->group_cell))
+		return -1;
+	for (size_t i = 0; i < n; i++)
+		c->group_cell[c->ncells++] = (struct group_cell){ group, cell[i].step,
+			cell[i].count, cell[i].large };
+	if (group + 1 >= GROUPS_MOST ||
+		(c->ncells > GROUP_CELLS && group + 1 > GROUPS_LEAST))
+		merge_groups(c);
+	return 0;
+}
+
+/* Takes all that one realisation did; its cells are sorted by step. */
+static int take_history(void *to, const struct realisation_cell *cell, size_t n)
+{
+	struct class *c = to;
+	double volume = 0, steps = 0, d;
+
+	for (size_t i = 0, end; i < n; i = end) {
+		double here = 0;
+
+		for (end = i; end < n && cell[end].step == cell[i].step; end++)
+			here += cell[end].volume;
+		if (!c->sparse && end > i + 1)
+			return -1;
+		if (cell[i].step < c->owner->first_step)
+			continue;
+		running_add(&c->cell, here);
+		volume += here;
+		steps++;
+	}
+	if (c->nhistories == 0)
+		c->lowest = cell->realisation;
+	c->lowest = cell->realisation < c->lowest ? cell->realisation : c->lowest;
+	c->highest = cell->realisation > c->highest ? cell->realisation : c->highest;
+	d = steps - c->steps.mean;
+	running_add(&c->steps, steps);
+	running_add(&c->volume, volume);
+	c->product += d * (volume - c->volume.mean);
+	if (c->owner->sizes && group_sizes(c, cell, n))
+		return -1;
+	c->nhistories++;
+	return 0;
 }
 
 int partition_class(struct partition *p, int sparse, double pressure, double area)
 {
+	struct class *c = &p->class[p->nclasses];
+
 	if (p->nclasses == PARTITION_CLASSES_MAX)
 		return -1;
-	p->class[p->nclasses] =
-		(struct class){ .sparse = sparse, .pressure = pressure, .area = area };
-	return p->nclasses++;
+	*c = (struct class){ .owner = p,
+		.sparse = sparse,
+		.pressure = pressure,
+		.area = area,
+		.last_realisation = -1,
+		.per_group = 1 };
+	c->reader = realisations_new(REALISATIONS_ROOM, take_history, c);
+	return c->reader ? p->nclasses++ : -1;
+}
+
+static enum partition_status reading(
+	struct partition *p, struct class *c, enum realisations_status status)
+{
+	p->culprit_realisation = realisations_culprit(c->reader);
+	switch (status) {
+	case REALISATIONS_OK:
+		return PARTITION_OK;
+	case REALISATIONS_AGAIN:
+		return PARTITION_APART;
+	case REALISATIONS_STOP:
+		return c->sparse ? PARTITION_MEMORY : PARTITION_TWICE;
+	default:
+		return PARTITION_MEMORY;
+	}
 }
 
 enum partition_status partition_fragment(struct partition *p, int class, long realisation,
 	long step, double volume, double count, double large)
 {
 	struct class *c = &p->class[class];
-	struct cell *last = c->ncells ? &c->cell[c->ncells - 1] : NULL;
+	struct realisation_cell cell = { realisation, step, 0, volume, count, large };
 
 	p->culprit = class;
+	p->culprit_realisation = realisation;
 	if (step > p->steps)
 		p->steps = step;
-	if (last && last->realisation == realisation && last->step == step) {
-		if (!c->sparse)
-			return PARTITION_TWICE;
-		last->volume += volume;
-		last->count += count;
-		last->large += large;
-		return PARTITION_OK;
-	}
-	if (room_for(&c->cell, &c->cell_room, c->ncells + 1, sizeof *c->cell))
-		return PARTITION_MEMORY;
-	c->cell[c->ncells++] = (struct cell){ realisation, step, volume, count, large };
-	return PARTITION_OK;
+	if (!c->sparse && c->last_realisation == realisation && c->last_step == step)
+		return PARTITION_TWICE;
+	c->last_realisation = realisation;
+	c->last_step = step;
+	return reading(p, c, realisations_add(c->reader, &cell));
 }
 
-static int compare_cells(const void *a, const void *b)
+/* Moments of what was read.  Realisations and steps of which a particle table does not
+ * tell shed nothing. */
+static enum partition_status sum_up(struct partition *p, struct class *c)
 {
-	const struct cell *x = a, *y = b;
+	double empty = 0, scatter;
 
-	if (x->realisation != y->realisation)
-		return x->realisation < y->realisation ? -1 : 1;
-	return (x->step > y->step) - (x->step < y->step);
-}
-
-/* Sums of one realisation; its cells are sorted by step. */
-static void sum_history(const struct partition *p, const struct class *c,
-	struct history *h, long first_step)
-{
-	for (size_t i = h->first; i < h->end; i++) {
-		if (c->cell[i].step < first_step)
-			continue;
-		h->volume += c->cell[i].volume;
-		h->square += c->cell[i].volume * c->cell[i].volume;
-		h->rows++;
-	}
-	if (c->sparse)
-		h->rows =
-			p->steps >= first_step ? (double)(p->steps - first_step + 1) : 0;
-}
-
-static enum partition_status gather(struct partition *p, struct class *c, long first_step)
-{
-	double rows = 0;
-
-	if (c->ncells == 0)
+	if (c->nhistories == 0)
 		return PARTITION_EMPTY;
-	qsort(c->cell, c->ncells, sizeof *c->cell, compare_cells);
-	for (size_t i = 1; i < c->ncells; i++)
-		if (compare_cells(&c->cell[i - 1], &c->cell[i]) == 0)
-			return PARTITION_TWICE;
-	c->history = calloc(c->ncells, sizeof *c->history);
-	c->times = calloc(c->ncells, sizeof *c->times);
-	if (!c->history || !c->times)
-		return PARTITION_MEMORY;
-	for (size_t i = 0; i < c->ncells; i++) {
-		if (i == 0 || c->cell[i].realisation != c->cell[i - 1].realisation)
-			c->history[c->nhistories++].first = i;
-		c->history[c->nhistories - 1].end = i + 1;
+	if (c->sparse) {
+		double steps = fmax((double)(p->steps - p->first_step) + 1, 0);
+
+		empty = (double)c->highest - (double)c->lowest + 1 -
+			(double)c->nhistories;
+		running_repeat(&c->volume, 0, empty);
+		c->steps = (struct running){ c->volume.n, steps, 0 };
+		c->product = 0;
+		running_repeat(&c->cell, 0, c->volume.n * steps - c->cell.n);
 	}
-	for (size_t i = 0; i < c->nhistories; i++) {
-		sum_history(p, c, &c->history[i], first_step);
-		rows += c->history[i].rows;
-	}
-	c->nrealisations = c->nhistories;
-	if (c->sparse)
-		c->nrealisations = (size_t)(c->cell[c->ncells - 1].realisation -
-					    c->cell[0].realisation) +
-				   1;
-	return rows > 0 ? PARTITION_OK : PARTITION_EMPTY;
+	if (!(c->steps.mean > 0))
+		return PARTITION_EMPTY;
+	c->realisations = c->volume.n;
+	c->all.mean = c->volume.mean / c->steps.mean;
+	/* Of volume - mean * steps over the realisations, whose mean is 0. */
+	scatter = c->volume.square - 2 * c->all.mean * c->product +
+		  c->all.mean * c->all.mean * c->steps.square;
+	if (c->realisations > 1)
+		c->all.life_variance = fmax(scatter, 0) / (c->realisations - 1) /
+				       (c->steps.mean * c->steps.mean);
+	c->all.step_variance = c->cell.n > 1 ? running_variance(&c->cell) : 0;
+	if (c->all.mean > 0)
+		c->error = sqrt(c->all.life_variance / c->realisations) / c->all.mean;
+	c->ngroups = ceil((double)c->nhistories / (double)c->per_group);
+	c->empty_groups = empty / (double)c->per_group;
+	if (p->sizes)
+		c->times = calloc((size_t)c->ngroups, sizeof *c->times);
+	return p->sizes && !c->times ? PARTITION_MEMORY : PARTITION_OK;
 }
 
 /* Sorts the classes by pressure, keeping the caller's numbers in order[]. */
@@ -202,16 +293,25 @@ static enum partition_status share_area(struct partition *p, double transition)
 }
 
 enum partition_status partition_close(
-	struct partition *p, double transition, long first_step)
+	struct partition *p, double fragment_area, double transition)
 {
-	for (int c = 0; c < p->nclasses; c++) {
-		enum partition_status s = gather(p, &p->class[c], first_step);
+	enum partition_status status = PARTITION_OK;
 
+	p->fragment_area = fragment_area;
+	for (int c = 0; c < p->nclasses; c++) {
 		p->culprit = c;
-		if (s != PARTITION_OK)
-			return s;
-		if (p->nclasses > 1 && !(p->class[c].pressure > 0))
-			return PARTITION_PRESSURE;
+		status = reading(p, &p->class[c], realisations_end(p->class[c].reader));
+		if (status != PARTITION_OK)
+			return status;
+	}
+	for (int c = 0; c < p->nclasses; c++) {
+		p->culprit = c;
+		status = sum_up(p, &p->class[c]);
+		if (status == PARTITION_OK && p->nclasses > 1 &&
+			!(p->class[c].pressure > 0))
+			status = PARTITION_PRESSURE;
+		if (status != PARTITION_OK)
+			return status;
 	}
 	sort_classes(p);
 	for (int c = 1; c < p->nclasses; c++) {
@@ -219,12 +319,33 @@ enum partition_status partition_close(
 		if (p->class[c].pressure == p->class[c - 1].pressure)
 			return PARTITION_PRESSURE;
 	}
+	if (p->sizes) {
+		p->shed = calloc(
+			2 * (size_t)p->nclasses * (size_t)p->steps, sizeof *p->shed);
+		if (!p->shed)
+			return PARTITION_MEMORY;
+	}
 	return share_area(p, transition);
 }
 
 int partition_culprit(const struct partition *p)
 {
 	return p->culprit;
+}
+
+long partition_realisation(const struct partition *p)
+{
+	return p->culprit_realisation;
+}
+
+double partition_count(const struct partition *p, int class, double *mean)
+{
+	int place = 0;
+
+	while (p->order[place] != class)
+		place++;
+	*mean = p->class[place].all.mean;
+	return p->class[place].realisations;
 }
 
 double partition_power_mean(double p0, double y0, double p1, double y1)
@@ -239,40 +360,6 @@ double partition_power_mean(double p0, double y0, double p1, double y1)
 	if (fabs(power * ratio) < 1e-12)
 		return y0 * p0 * ratio / (p1 - p0);
 	return y0 * p0 * expm1(power * ratio) / power / (p1 - p0);
-}
-
-/* Moments of the histories, each taken times[] times, out of n realisations. */
-static void take_moments(struct class *c, double n)
-{
-	double rows = 0, volume = 0, square = 0, scatter = 0, per_history;
-
-	for (size_t i = 0; i < c->nhistories; i++) {
-		double times = (double)c->times[i];
-
-		rows += times * c->history[i].rows;
-		volume += times * c->history[i].volume;
-	}
-	/* Realisations that shed nothing have the rows of any other one. */
-	if (c->sparse)
-		rows = n * c->history[0].rows;
-	c->now = (struct moments){ 0 };
-	if (!(rows > 0))
-		return;
-	per_history = rows / n;
-	c->now.mean = volume / rows;
-	for (size_t i = 0; i < c->nhistories; i++) {
-		const struct history *h = &c->history[i];
-		double times = (double)c->times[i], d = h->volume - c->now.mean * h->rows;
-
-		square += times * (h->square - 2 * c->now.mean * h->volume +
-					  c->now.mean * c->now.mean * h->rows);
-		scatter += times * d * d;
-		n -= times;
-	}
-	square += n * c->now.mean * c->now.mean * per_history;
-	scatter += n * c->now.mean * c->now.mean * per_history * per_history;
-	c->now.step_variance = fmax(square / rows, 0);
-	c->now.life_variance = scatter / (rows * per_history);
 }
 
 /* Adds the moments of an area that behaves as parts independent ones. */
@@ -329,11 +416,47 @@ void partition_estimate(struct partition *p, double parts, struct partition_wear
 	for (int c = 0; c < p->nclasses; c++) {
 		struct class *k = &p->class[c];
 
-		for (size_t i = 0; i < k->nhistories; i++)
+		k->now = k->all;
+		for (size_t i = 0; k->times && i < (size_t)k->ngroups; i++)
 			k->times[i] = 1;
-		take_moments(k, (double)k->nrealisations);
 	}
 	integrate(p, parts, wear);
+}
+
+/* Below a hundredth of the mean observed there are no draws: the mean of 1 / m would not
+ * exist.  Within the interval of 90 % of three realisations they are above exp(-2.92). */
+static const double least_draw = 0.01;
+
+/* A draw of the mean over that observed: see partition.h. */
+static double draw_mean(const struct class *c, gsl_rng *rng)
+{
+	double t, more;
+
+	if (!(c->error > 0))
+		return 1;
+	t = gsl_ran_tdist(rng, c->realisations - 1) * c->error;
+	more = t < 0 ? t * t / 2 : 0;
+	/* Few realisations draw t of any size: no infinite rates, and see least_draw. */
+	return fmax(exp(fmin(more - t, 200)), least_draw);
+}
+
+/* Resamples the groups with replacement.  Only those with particles are drawn one by one;
+ * how many they are among all is binomial, or Poisson where the others are too many to
+ * be counted. */
+static void draw_groups(struct class *c, gsl_rng *rng)
+{
+	size_t n = (size_t)c->ngroups;
+	double all = c->ngroups + c->empty_groups;
+	unsigned int drawn = (unsigned int)n;
+
+	if (c->empty_groups > 0 && all < UINT_MAX)
+		drawn = gsl_ran_binomial(rng, c->ngroups / all, (unsigned int)all);
+	else if (c->empty_groups > 0)
+		drawn = gsl_ran_poisson(rng, c->ngroups);
+	for (size_t i = 0; i < n; i++)
+		c->times[i] = 0;
+	for (unsigned int i = 0; i < drawn; i++)
+		c->times[gsl_rng_uniform_int(rng, (unsigned long)n)]++;
 }
 
 void partition_replicate(
@@ -341,34 +464,30 @@ void partition_replicate(
 {
 	for (int c = 0; c < p->nclasses; c++) {
 		struct class *k = &p->class[c];
+		double ratio = draw_mean(k, rng);
 
-		for (size_t i = 0; i < k->nhistories; i++)
-			k->times[i] = 0;
-		for (size_t i = 0; i < k->nrealisations; i++) {
-			size_t pick = gsl_rng_uniform_int(rng, k->nrealisations);
-
-			if (pick < k->nhistories)
-				k->times[pick]++;
-		}
-		take_moments(k, (double)k->nrealisations);
+		k->now.mean = ratio * k->all.mean;
+		k->now.step_variance = ratio * ratio * k->all.step_variance;
+		k->now.life_variance = ratio * ratio * k->all.life_variance;
+		if (p->sizes)
+			draw_groups(k, rng);
 	}
 	integrate(p, parts, wear);
 }
 
-/* Particles and large ones that one fragment of a class sheds in each step; count and
- * large have room for steps values. */
+/* Particles and large ones that one fragment of a class sheds in each step. */
 static void shed(const struct class *c, double *count, double *large)
 {
-	for (size_t i = 0; i < c->nhistories; i++)
-		for (size_t k = c->history[i].first; k < c->history[i].end; k++) {
-			double share = (double)c->times[i] / (double)c->nrealisations;
+	for (size_t i = 0; i < c->ncells; i++) {
+		const struct group_cell *k = &c->group_cell[i];
+		double share = c->times[k->group] / c->realisations;
 
-			count[c->cell[k].step - 1] += share * c->cell[k].count;
-			large[c->cell[k].step - 1] += share * c->cell[k].large;
-		}
+		count[k->step - 1] += share * k->count;
+		large[k->step - 1] += share * k->large;
+	}
 }
 
-/* Adds the area-weighted sum over classes and zone of what fragments shed. */
+/* Area-weighted sum over classes and zone of what fragments shed. */
 static double whole(const struct partition *p, const double *per_class, long step)
 {
 	double y[PARTITION_CLASSES_MAX], sum = 0;
@@ -383,31 +502,17 @@ static double whole(const struct partition *p, const double *per_class, long ste
 long partition_large(struct partition *p, double probability, int cumulative)
 {
 	size_t n = (size_t)p->nclasses * (size_t)p->steps;
-	double *count = calloc(2 * n, sizeof *count), *large;
-	double all = 0, all_large = 0;
-	long found = 0;
+	double *count = p->shed, *large = count + n, all = 0, all_large = 0;
 
-	if (!count)
-		return -1;
-	large = count + n;
+	for (size_t i = 0; i < 2 * n; i++)
+		p->shed[i] = 0;
 	for (int c = 0; c < p->nclasses; c++)
 		shed(&p->class[c], count + c * p->steps, large + c * p->steps);
-	for (long s = 0; s < p->steps && !found; s++) {
+	for (long s = 0; s < p->steps; s++) {
 		all = (cumulative ? all : 0) + whole(p, count, s);
 		all_large = (cumulative ? all_large : 0) + whole(p, large, s);
 		if (all > 0 && all_large >= probability * all)
-			found = s + 1;
+			return s + 1;
 	}
-	free(count);
-	return found;
-}
-
-double partition_load(const struct partition *p)
-{
-	double load =
-		p->zone * (p->class[0].pressure + p->class[p->nclasses - 1].pressure) / 2;
-
-	for (int c = 0; c < p->nclasses; c++)
-		load += p->class[c].area * p->class[c].pressure;
-	return load;
+	return 0;
 }

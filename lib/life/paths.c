@@ -55,13 +55,8 @@ struct paths *paths_new(const struct paths_par *par, struct partition *partition
 		return e;
 	partition_estimate(partition, par->parts, &all);
 	e->mean = all.mean;
-	for (long i = 0; i < par->count; i++) {
+	for (long i = 0; i < par->count; i++)
 		draw_path(e, partition, i);
-		if (e->path[i].large_step < 0) {
-			paths_free(e);
-			return NULL;
-		}
-	}
 	return e;
 }
 
@@ -80,20 +75,34 @@ const struct path *paths_get(const struct paths *e, long i)
 	return e->path ? &e->path[i] : NULL;
 }
 
-struct rate *paths_filter(const struct paths *e)
+static int ascending(const void *a, const void *b)
 {
-	double mean = 0, square = 0;
+	double x = *(const double *)a, y = *(const double *)b;
 
+	return (x > y) - (x < y);
+}
+
+void paths_rate(const struct paths *e, double *mean, double *sd)
+{
+	size_t n = (size_t)e->par.count;
+	double *rate;
+
+	*mean = *sd = 0;
 	if (!e->path || isnan(e->path[0].step_time))
-		return rate_new(0, INFINITY);
-	for (long i = 0; i < e->par.count; i++) {
-		double r = e->path[i].wear.mean / (e->par.area * e->path[i].step_time);
-		double d = r - mean;
-
-		mean += d / (double)(i + 1);
-		square += d * (r - mean);
-	}
-	return rate_new(mean, sqrt(square / (double)e->par.count));
+		return;
+	rate = malloc(n * sizeof *rate);
+	if (!rate)
+		return;
+	for (size_t i = 0; i < n; i++)
+		rate[i] = e->path[i].wear.mean / (e->par.area * e->path[i].step_time);
+	qsort(rate, n, sizeof *rate, ascending);
+	*mean = rate[n / 2];
+	/* Never certain: an ensemble without spread has but one realisation. */
+	*sd = fmax(
+		(rate[(size_t)(0.841 * (double)n)] - rate[(size_t)(0.159 * (double)n)]) /
+			2,
+		1e-6 * *mean);
+	free(rate);
 }
 
 /* Time for path i to open the gap by left, in steps of tau. */
@@ -119,18 +128,7 @@ static double draw_error(const struct paths *e, long i)
 	return z[0];
 }
 
-static double follow_rate(
-	struct paths *e, long i, const struct rate *filter, double limit)
-{
-	uint32_t k = e->par.first + (uint32_t)i;
-	double z[2];
-
-	philox_normal2(e->par.seed, k, RNG_PREDICT, 0, z);
-	return rate_passage(
-		filter, limit, philox_uniform(e->par.seed, k, RNG_LIFE, 0), z[0]);
-}
-
-long paths_predict(struct paths *e, const struct observed *o, const struct rate *filter,
+long paths_predict(struct paths *e, const struct observed *o, const double *passage,
 	double limit, double gap_error, double *life)
 {
 	double left = limit - observed_gap(o), rate = observed_rate(o);
@@ -141,7 +139,7 @@ long paths_predict(struct paths *e, const struct observed *o, const struct rate 
 		life[0] = 0;
 		return 1;
 	}
-	if (filtered ? !rate_ready(filter)
+	if (filtered ? !passage
 		     : isnan(rate) && (!e->path || isnan(e->path[0].step_time)))
 		return 0;
 	if (!filtered && !e->path && !(gap_error > 0)) {
@@ -158,7 +156,7 @@ long paths_predict(struct paths *e, const struct observed *o, const struct rate 
 		if (e->path && !isnan(e->path[i].step_time))
 			tau = e->path[i].step_time;
 		if (filtered)
-			life[i] = follow_rate(e, i, filter, limit);
+			life[i] = passage[i];
 		else if (e->path)
 			life[i] = wear_out(e, i, here, tau);
 		else

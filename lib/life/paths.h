@@ -14,7 +14,6 @@
 
 #include "life/observed.h"
 #include "life/partition.h"
-#include "life/rate.h"
 #include <stdint.h>
 
 struct paths_par {
@@ -48,15 +47,16 @@ void paths_free(struct paths *e);
 
 const struct path *paths_get(const struct paths *e, long i); /* NULL without partition */
 
-/* Filters that start from the rate of the paths where their step time is known. */
-struct rate *paths_filter(const struct paths *e);
+/* What the paths know of the rate of the gap, per s: median, and half of the width of the
+ * middle 68 %; sd 0: nothing. */
+void paths_rate(const struct paths *e, double *mean, double *sd);
 
 /* Life left at the latest observation, until the gap is limit or large particles are
  * too many, as samples in life, which has room for count.  gap_error: standard error of
- * the gap observed.  filter is needed for RATE_FILTER, and knows the error itself.
- * Returns how many samples there are: count, 1 where all are the same, 0 where nothing
- * can be said yet. */
-long paths_predict(struct paths *e, const struct observed *o, const struct rate *filter,
+ * the gap observed.  passage: with RATE_FILTER, count samples of the time to the limit
+ * (NULL: not yet known), which know that error.  Returns how many samples there are:
+ * count, 1 where all are the same, 0 where nothing can be said yet. */
+long paths_predict(struct paths *e, const struct observed *o, const double *passage,
 	double limit, double gap_error, double *life);
 
 #endif

@@ -68,11 +68,6 @@ double remaining_large(long step, double step_time, double t)
 	return step < 1 ? INFINITY : fmax((double)step * step_time - t, 0);
 }
 
-double remaining_archard(double coefficient, double load, double speed, double hardness)
-{
-	return coefficient * load * speed / hardness;
-}
-
 static int compare_numbers(const void *a, const void *b)
 {
 	double x = *(const double *)a, y = *(const double *)b;

@@ -29,9 +29,6 @@ double remaining_gamma(double left, double mean, double variance, gsl_rng *rng);
  * time 0) in which large particles become too many; never for step < 1. */
 double remaining_large(long step, double step_time, double t);
 
-/* Wear of dry sliding by Archard's law, m3/s: the thesis' bound from above. */
-double remaining_archard(double coefficient, double load, double speed, double hardness);
-
 /* A gamma variate of given mean and variance; the mean where the variance is 0. */
 double remaining_draw_rate(double mean, double variance, gsl_rng *rng);
 

@@ -12,9 +12,11 @@ enum {
 };
 
 struct convolve {
-	enum convolve_kind kind;
 	size_t nx, ny;  /* field */
 	size_t mx, my;  /* transform: periodic nx, ny; padded at least twice that */
+	int padded_y;   /* columns are padded */
+	int wrapped;    /* periodic, but in a padded direction */
+	int bridged;    /* beyond the field x goes on linearly, back to its beginning */
 	size_t lx, ly;  /* kept coefficients mx / 2 + 1; length of column transforms */
 	size_t stride;  /* coefficients from row to row of work */
 	size_t column;  /* coefficients from column to column of a scratch buffer */
@@ -47,21 +49,39 @@ struct convolve *convolve_new(
 	return convolve_borrow(nx, ny, kind, pool, NULL);
 }
 
+/* 1 where a transform of n points takes longer than a padded one: FFTW 3.3 does from the
+ * prime factor 37 on (992 = 31 * 32: 0.9, 962 = 26 * 37: 1.3, 1021: 2.8 times as long).
+ */
+static int is_awkward(size_t n)
+{
+	for (size_t p = 2; p <= 31; p++)
+		while (n % p == 0 && n > 1)
+			n /= p;
+	return n > 1;
+}
+
 struct convolve *convolve_borrow(size_t nx, size_t ny, enum convolve_kind kind,
 	struct pool *pool, const struct convolve *lender)
 {
 	struct convolve *c = calloc(1, sizeof(*c));
+	int bridged = kind == CONVOLVE_BRIDGED || kind == CONVOLVE_BRIDGED_FAR;
 	int padded = kind == CONVOLVE_PADDED;
-	size_t columns;
+	int padded_x = padded || (!bridged && is_awkward(nx));
+	size_t bridge_x = kind == CONVOLVE_BRIDGED_FAR ? nx / 16 : 0, columns;
+	size_t bridge_y = kind == CONVOLVE_BRIDGED_FAR ? ny / 16 : 0;
 
 	if (!c)
 		return NULL;
-	c->kind = kind;
+	padded = padded || (!bridged && is_awkward(ny));
+	c->padded_y = padded;
+	c->wrapped = kind == CONVOLVE_PERIODIC && (padded_x || padded);
+	c->bridged = bridged;
 	c->nx = nx;
 	c->ny = ny;
-	c->ly = padded ? fft_good_size(ny) : ny;
-	c->mx = padded ? 2 * fft_good_size(nx) : nx;
-	c->my = padded ? 2 * c->ly : ny;
+	c->ly = padded || bridged ? fft_good_size(ny + bridge_y) : ny;
+	c->mx = padded_x || bridged ? fft_good_size(nx + bridge_x) : nx;
+	c->mx *= padded_x ? 2 : 1;
+	c->my = padded ? 2 * c->ly : c->ly;
 	c->lx = c->mx / 2 + 1;
 	c->stride = pad_stride(c->lx);
 	c->column = pad_stride(c->ly);
@@ -110,9 +130,21 @@ static size_t kernel_column(const struct convolve *c)
 
 static size_t kernel_place(const struct convolve *c, size_t ky)
 {
-	if (c->kind == CONVOLVE_PERIODIC)
+	if (!c->padded_y)
 		return ky;
 	return ky % 2 == 0 ? ky / 2 : c->ly / 2 + 1 + ky / 2;
+}
+
+void convolve_size(const struct convolve *c, size_t *mx, size_t *my)
+{
+	*mx = c->mx;
+	*my = c->my;
+}
+
+double *convolve_scratch(const struct convolve *c, size_t *room)
+{
+	*room = 2 * c->room;
+	return (double *)c->work;
 }
 
 double *convolve_alloc(const struct convolve *c)
@@ -120,76 +152,142 @@ double *convolve_alloc(const struct convolve *c)
 	return fft_alloc(c->lx * kernel_column(c));
 }
 
-void convolve_spectrum(const struct convolve *c, double *kernel,
-	double (*factor)(const void *context, size_t kx, size_t ky), const void *context)
+/* Transforms an even field given by its quarter, rows of mx / 2 + 1, in place: rows and
+ * columns one by one, each spread to its full length, and the half that symmetry gives
+ * back is left out. */
+static int transform_quarter(double *quarter, size_t mx, size_t my)
 {
-	size_t height = kernel_column(c);
-	double scale = 1 / ((double)c->mx * (double)c->my);
-
-	for (size_t kx = 0; kx < c->lx; kx++)
-		for (size_t ky = 0; ky < height; ky++)
-			kernel[kx * height + kernel_place(c, ky)] =
-				scale * factor(context, kx, ky);
-}
-
-struct quarter {
-	const double *spectrum;
-	size_t stride;
-};
-
-static double quarter_factor(const void *context, size_t kx, size_t ky)
-{
-	const struct quarter *q = context;
-
-	return q->spectrum[ky * q->stride + kx];
-}
-
-/* The spectrum of an even kernel: rows and columns are transformed one by one, each
- * spread to its full length, and the half that symmetry gives back is left out. */
-int convolve_kernel(const struct convolve *c, double *kernel,
-	double (*value)(const void *context, size_t ix, size_t iy), const void *context)
-{
-	size_t height = kernel_column(c), longest = c->mx > c->my ? c->mx : c->my;
+	size_t lx = mx / 2 + 1, ly = my / 2 + 1, longest = mx > my ? mx : my;
 	double *line = fft_alloc(longest);
 	double complex *out = fft_alloc_complex(longest / 2 + 1);
-	double *quarter = fft_alloc(height * c->lx);
-	struct fft *rows = fft_new(c->mx, 1), *columns = fft_new(c->my, 1);
-	int status = -1;
+	struct fft *rows = fft_new(mx, 1), *columns = fft_new(my, 1);
+	int status = line && out && rows && columns ? 0 : -1;
 
-	if (line && out && quarter && rows && columns) {
-		for (size_t iy = 0; iy < height; iy++) {
-			for (size_t ix = 0; ix < c->lx; ix++)
-				line[ix] = value(context, ix, iy);
-			for (size_t ix = c->lx; ix < c->mx; ix++)
-				line[ix] = line[c->mx - ix];
-			fft_forward(rows, line, out);
-			for (size_t kx = 0; kx < c->lx; kx++)
-				quarter[iy * c->lx + kx] = creal(out[kx]);
-		}
-		for (size_t kx = 0; kx < c->lx; kx++) {
-			for (size_t iy = 0; iy < height; iy++)
-				line[iy] = quarter[iy * c->lx + kx];
-			for (size_t iy = height; iy < c->my; iy++)
-				line[iy] = line[c->my - iy];
-			fft_forward(columns, line, out);
-			for (size_t ky = 0; ky < height; ky++)
-				quarter[ky * c->lx + kx] = creal(out[ky]);
-		}
-		convolve_spectrum(
-			c, kernel, quarter_factor, &(struct quarter){ quarter, c->lx });
-		status = 0;
+	for (size_t y = 0; status == 0 && y < ly; y++) {
+		for (size_t x = 0; x < mx; x++)
+			line[x] = quarter[y * lx + (x < lx ? x : mx - x)];
+		fft_forward(rows, line, out);
+		for (size_t x = 0; x < lx; x++)
+			quarter[y * lx + x] = creal(out[x]);
+	}
+	for (size_t x = 0; status == 0 && x < lx; x++) {
+		for (size_t y = 0; y < my; y++)
+			line[y] = quarter[(y < ly ? y : my - y) * lx + x];
+		fft_forward(columns, line, out);
+		for (size_t y = 0; y < ly; y++)
+			quarter[y * lx + x] = creal(out[y]);
 	}
 	fft_done(rows);
 	fft_done(columns);
 	fft_free(line);
 	fft_free(out);
+	return status;
+}
+
+static int set_kernel(const struct convolve *c, double *kernel,
+	double (*value)(const void *context, size_t ix, size_t iy), const void *context)
+{
+	size_t height = kernel_column(c);
+	double scale = 1 / ((double)c->mx * (double)c->my);
+	double *quarter = fft_alloc(height * c->lx);
+	int status = -1;
+
+	if (quarter) {
+		for (size_t iy = 0; iy < height; iy++)
+			for (size_t ix = 0; ix < c->lx; ix++)
+				quarter[iy * c->lx + ix] = value(context, ix, iy);
+		status = transform_quarter(quarter, c->mx, c->my);
+	}
+	for (size_t kx = 0; status == 0 && kx < c->lx; kx++)
+		for (size_t ky = 0; ky < height; ky++)
+			kernel[kx * height + kernel_place(c, ky)] =
+				scale * quarter[ky * c->lx + kx];
 	fft_free(quarter);
 	return status;
+}
+
+/* An even kernel of one period, at any offset. */
+struct period {
+	size_t nx, ny;
+	double (*value)(const void *context, size_t ix, size_t iy);
+	const void *context;
+};
+
+static double periodic_value(const void *context, size_t ix, size_t iy)
+{
+	const struct period *p = context;
+	size_t x = ix % p->nx, y = iy % p->ny;
+
+	return p->value(
+		p->context, x < p->nx - x ? x : p->nx - x, y < p->ny - y ? y : p->ny - y);
+}
+
+int convolve_kernel(const struct convolve *c, double *kernel,
+	double (*value)(const void *context, size_t ix, size_t iy), const void *context)
+{
+	const struct period period = { c->nx, c->ny, value, context };
+
+	return c->wrapped ? set_kernel(c, kernel, periodic_value, &period)
+			  : set_kernel(c, kernel, value, context);
+}
+
+struct quarter {
+	const double *value;
+	size_t stride;
+	double scale;
+};
+
+static double quarter_value(const void *context, size_t ix, size_t iy)
+{
+	const struct quarter *q = context;
+
+	return q->scale * q->value[iy * q->stride + ix];
+}
+
+/* By way of the values of one period. */
+static int wrapped_spectrum(const struct convolve *c, double *kernel,
+	double (*factor)(const void *context, size_t kx, size_t ky), const void *context)
+{
+	size_t lx = c->nx / 2 + 1, ly = c->ny / 2 + 1;
+	double *value = fft_alloc(lx * ly);
+	struct quarter quarter = { value, lx, 1 / ((double)c->nx * (double)c->ny) };
+	int status = -1;
+
+	if (value) {
+		for (size_t i = 0; i < lx * ly; i++)
+			value[i] = factor(context, i % lx, i / lx);
+		status = transform_quarter(value, c->nx, c->ny);
+	}
+	if (status == 0)
+		status = convolve_kernel(c, kernel, quarter_value, &quarter);
+	fft_free(value);
+	return status;
+}
+
+int convolve_spectrum(const struct convolve *c, double *kernel,
+	double (*factor)(const void *context, size_t kx, size_t ky), const void *context)
+{
+	size_t height = kernel_column(c);
+	double scale = 1 / ((double)c->mx * (double)c->my);
+
+	if (c->wrapped)
+		return wrapped_spectrum(c, kernel, factor, context);
+	for (size_t kx = 0; kx < c->lx; kx++)
+		for (size_t ky = 0; ky < height; ky++)
+			kernel[kx * height + kernel_place(c, ky)] =
+				scale * factor(context, kx, ky);
+	return 0;
 }
 
 static size_t smaller(size_t a, size_t b)
 {
 	return a < b ? a : b;
+}
+
+/* How far across a bridge of n cells cell i lies. */
+static double bridge(size_t i, size_t n)
+{
+	return (double)(i + 1) / (double)(n + 1);
 }
 
 static void forward_rows(void *context, size_t job, int worker)
@@ -198,10 +296,16 @@ static void forward_rows(void *context, size_t job, int worker)
 	double *row = c->buffers + (size_t)worker * c->scratch;
 	size_t end = smaller((job + 1) * ROWS, c->ny);
 
-	/* The inverse of an earlier job may have left something in the padding. */
-	memset(row + c->nx, 0, (c->mx - c->nx) * sizeof(*row));
 	for (size_t iy = job * ROWS; iy < end; iy++) {
+		double first = c->x[iy * c->nx], last = c->x[(iy + 1) * c->nx - 1];
+
 		memcpy(row, c->x + iy * c->nx, c->nx * sizeof(*row));
+		/* The inverse of an earlier row may have left something there. */
+		for (size_t ix = c->nx; ix < c->mx; ix++)
+			row[ix] = c->bridged
+					  ? last + (first - last) * bridge(ix - c->nx,
+									    c->mx - c->nx)
+					  : 0;
 		fft_forward(c->row, row, c->work + iy * c->stride);
 	}
 }
@@ -249,7 +353,7 @@ static void convolve_column(const struct convolve *c, const double *k, double co
 
 	fft_line_forward(c->line, a, f);
 	multiply_even(f, k, n);
-	if (c->kind == CONVOLVE_PERIODIC) {
+	if (!c->padded_y) {
 		fft_line_inverse(c->line, f, a);
 		return;
 	}
@@ -274,7 +378,13 @@ static void convolve_columns(void *context, size_t job, int worker)
 		for (size_t j = 0; j < n; j++)
 			a[j * c->column + iy] = c->work[iy * c->stride + kx + j];
 	for (size_t j = 0; j < n; j++) {
-		memset(a + j * c->column + c->ny, 0, (c->ly - c->ny) * sizeof(*a));
+		double complex *column = a + j * c->column, last = column[c->ny - 1];
+
+		for (size_t iy = c->ny; iy < c->ly; iy++)
+			column[iy] = c->bridged ? last + (column[0] - last) *
+								  bridge(iy - c->ny,
+									  c->ly - c->ny)
+						: 0;
 		convolve_column(c, c->kernel + (kx + j) * kernel_column(c),
 			a + j * c->column, f, e);
 	}

@@ -2,7 +2,9 @@
  *
  * y = k * x for nx * ny real fields and a kernel even in both directions, whose
  * spectrum is then real and even: only its quarter is stored.  Periodic, or linear
- * (CONVOLVE_PADDED: as if x were surrounded by zeros) at any grid size.
+ * (CONVOLVE_PADDED: as if x were surrounded by zeros) at any grid size.  Where n has a
+ * prime factor beyond what Fourier transforms like, a periodic convolution is done as the
+ * linear one with the kernel of all periods.
  *
  * The rows are transformed first; then a few columns at a time are copied out,
  * transformed, multiplied and transformed back while they sit in cache; then the rows
@@ -23,7 +25,14 @@
 #include "num/pool.h"
 #include <stddef.h>
 
-enum convolve_kind { CONVOLVE_PERIODIC, CONVOLVE_PADDED };
+enum convolve_kind {
+	CONVOLVE_PERIODIC,
+	CONVOLVE_PADDED,
+	/* Periodic over fft_good_size(n) cells, x going on linearly across those that are
+	 * added: for kernels that need not be exact. */
+	CONVOLVE_BRIDGED,
+	CONVOLVE_BRIDGED_FAR /* the same with a sixteenth more */
+};
 
 struct convolve;
 
@@ -37,6 +46,12 @@ struct convolve *convolve_borrow(size_t nx, size_t ny, enum convolve_kind kind,
 	struct pool *pool, const struct convolve *lender);
 void convolve_free(struct convolve *c);
 
+/* Points of the transform each way. */
+void convolve_size(const struct convolve *c, size_t *mx, size_t *my);
+
+/* Scratch memory that is free between the calls, and how many doubles there are. */
+double *convolve_scratch(const struct convolve *c, size_t *room);
+
 /* Room for one kernel, to be freed with fft_free(); NULL when out of memory. */
 double *convolve_alloc(const struct convolve *c);
 
@@ -46,8 +61,9 @@ int convolve_kernel(const struct convolve *c, double *kernel,
 	double (*value)(const void *context, size_t ix, size_t iy), const void *context);
 
 /* A kernel by its factors in Fourier space at wavenumber (kx, ky), 0 <= kx <= mx / 2,
- * in cycles per mx points, where mx = nx, or the padded size. */
-void convolve_spectrum(const struct convolve *c, double *kernel,
+ * in cycles per mx points, where mx = nx for periodic ones, or the padded or bridged
+ * size. Returns 0, or -1 when out of memory. */
+int convolve_spectrum(const struct convolve *c, double *kernel,
 	double (*factor)(const void *context, size_t kx, size_t ky), const void *context);
 
 /* y = kernel * x; y may be x. */

@@ -28,7 +28,11 @@ enum rng_purpose {
 	RNG_LIFE = 7,      /* wear-life ensemble */
 	RNG_BOOTSTRAP = 8, /* resampling for intervals */
 	RNG_NETWORK = 9,   /* initial weights, shuffling, training scenes */
-	RNG_PREDICT = 10   /* long-term prediction paths */
+	RNG_PREDICT = 10,  /* long-term prediction paths */
+	RNG_ABRASION =
+		11, /* particles drawn from a cleanliness code, places of grooves */
+	RNG_MATERIAL = 12,   /* materials of the sensor's particles */
+	RNG_DISTURBANCE = 13 /* events at the sensors that are no particles */
 };
 
 /* Uniform in (0, 1) and standard normal by address: for index i of stream (seed,

@@ -16,8 +16,20 @@ static void run_chunk(void *context, size_t i, int worker)
 	size_t begin = i * t->chunk, end = begin + t->chunk;
 
 	(void)worker;
-	t->part[i] = (struct sweep){ .max = -INFINITY };
+	t->part[i] = (struct sweep){ .max = -INFINITY, .min = INFINITY };
 	t->pass(t->context, begin, end < t->n ? end : t->n, &t->part[i]);
+}
+
+static size_t chunk_size(size_t n)
+{
+	size_t chunk = (n + SWEEP_CHUNKS - 1) / SWEEP_CHUNKS;
+
+	return chunk < CHUNK_MIN ? CHUNK_MIN : chunk;
+}
+
+double sweep_terms(size_t n)
+{
+	return (double)chunk_size(n) + SWEEP_CHUNKS;
 }
 
 struct sweep sweep_run(struct pool *pool, size_t n,
@@ -25,12 +37,10 @@ struct sweep sweep_run(struct pool *pool, size_t n,
 	void *context)
 {
 	struct task t = { .n = n, .pass = pass, .context = context };
-	struct sweep all = { .max = -INFINITY };
+	struct sweep all = { .max = -INFINITY, .min = INFINITY };
 	size_t chunks;
 
-	t.chunk = (n + SWEEP_CHUNKS - 1) / SWEEP_CHUNKS;
-	if (t.chunk < CHUNK_MIN)
-		t.chunk = CHUNK_MIN;
+	t.chunk = chunk_size(n);
 	chunks = (n + t.chunk - 1) / t.chunk;
 	pool_run(pool, chunks, run_chunk, &t);
 	for (size_t i = 0; i < chunks; i++) {
@@ -38,6 +48,8 @@ struct sweep sweep_run(struct pool *pool, size_t n,
 			all.sum[k] += t.part[i].sum[k];
 		if (t.part[i].max > all.max)
 			all.max = t.part[i].max;
+		if (t.part[i].min < all.min)
+			all.min = t.part[i].min;
 	}
 	return all;
 }

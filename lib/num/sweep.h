@@ -9,16 +9,21 @@
 #include "num/pool.h"
 #include <stddef.h>
 
-enum { SWEEP_CHUNKS = 256, SWEEP_SUMS = 5 };
+enum { SWEEP_CHUNKS = 256, SWEEP_SUMS = 6 };
 
-/* What one pass gathers; a pass adds to the sums and raises the maximum. */
+/* What one pass gathers; a pass adds to the sums, raises the maximum and lowers the
+ * minimum. */
 struct sweep {
 	double sum[SWEEP_SUMS];
 	double max; /* -INFINITY at the start */
+	double min; /* INFINITY at the start */
 };
 
 struct sweep sweep_run(struct pool *pool, size_t n,
 	void (*pass)(void *context, size_t begin, size_t end, struct sweep *s),
 	void *context);
+
+/* Terms that are added one after another in such a sum. */
+double sweep_terms(size_t n);
 
 #endif

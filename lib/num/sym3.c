@@ -38,8 +38,9 @@ static void orient(double vector[3])
 	for (int k = 1; k < 3; k++)
 		if (fabs(vector[k]) > fabs(vector[big]))
 			big = k;
-	for (int k = 0; k < 3; k++)
-		vector[k] = vector[big] < 0 ? -vector[k] : vector[k];
+	if (vector[big] < 0)
+		for (int k = 0; k < 3; k++)
+			vector[k] = -vector[k];
 }
 
 void sym3_eigen(const double m[6], double value[3], double vector[3][3])

@@ -61,7 +61,8 @@ struct calibration {
 	double level;                /* noise power over what was thought, and ... */
 	double error;  /* ... error of the form over the form, from pulses that it was not
 			* learned from */
-	double error_least; /* what was learned from allows to tell */
+	double error_least; /* its standard error, ... */
+	double error_floor; /* ... and what the noise in the form makes of it */
 	int events;    /* pulses the form was learned from */
 	int negatives; /* 1: pulses of both signs among them */
 	int reversed;  /* 1: most begin with their negative lobe */

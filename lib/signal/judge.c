@@ -31,12 +31,11 @@ static double energy(const struct joint_scene *s, const struct joint_pulse *p)
 }
 
 /* More than noise leaves by this many standard deviations, and than what the form of the
- * pulses may be out by (scene->misfit is three times its square)? */
-static int too_much(const struct joint_scene *s, double chi2, double dof, double power,
-	double deviations)
+ * pulses may be out by? */
+static int too_much(double error, double chi2, double dof, double power, double deviations)
 {
 	return chi2 > dof * (1 + LEVEL) + deviations * sqrt(2 * dof) +
-			      4.0 / 3 * s->misfit * power;
+			      4 * error * error * power;
 }
 
 /* Do the channels agree on the amplitude, within four deviations or 8 %, and does either
@@ -98,7 +97,7 @@ double judge_velocities(const struct joint_pulse *p, int m, double spread2, int 
 /* Is the residual under pulse i more than noise?  Among those of a stretch of which that
  * is known: three deviations. */
 static int is_misfit(struct joint *joint, const struct joint_scene *s, size_t n,
-	const struct joint_pulse *pulses, int m, int i)
+	const struct joint_pulse *pulses, int m, int i, double error)
 {
 	double half = shape_reach_above(s->shape[0], 0.02) * s->duration;
 	double from = fmax(pulses[i].t - half, 0),
@@ -111,13 +110,13 @@ static int is_misfit(struct joint *joint, const struct joint_scene *s, size_t n,
 		dof -= 3 * near;
 		power += near * energy(s, &pulses[k]);
 	}
-	return too_much(s, residual_square(joint, from, to, pulses[i].delta, (double)n),
+	return too_much(error, residual_square(joint, from, to, pulses[i].delta, (double)n),
 		fmax(dof, 1), power, 3);
 }
 
 void judge(struct joint *joint, const struct joint_scene *s, size_t n,
 	const struct joint_pulse *pulses, int m, int done, double boundary,
-	const struct joint_result *r, struct judgement *out)
+	double error, const struct joint_result *r, struct judgement *out)
 {
 	double chi2 = r->chi2, dof = (double)r->dof, power = 0;
 	int doubted = 0, bad;
@@ -130,9 +129,9 @@ void judge(struct joint *joint, const struct joint_scene *s, size_t n,
 		power += energy(s, &pulses[i]);
 	out->chi2 = chi2 / dof;
 	out->stretch = m > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
-	bad = too_much(s, chi2, dof, power, 5);
+	bad = too_much(error, chi2, dof, power, 5);
 	for (int i = 0; i < done; i++) {
-		int doubt = bad && (m == 1 || is_misfit(joint, s, n, pulses, m, i));
+		int doubt = bad && (m == 1 || is_misfit(joint, s, n, pulses, m, i, error));
 
 		doubt |= !channels_agree(joint, s, &pulses[i]);
 		out->pulse[i] = doubt ? SEPARATE_MISFIT

@@ -19,10 +19,11 @@ struct judgement {
 };
 
 /* The first done of the m pulses of the last fit, which are those that arrive before
- * boundary; only the samples before it count.  n: length of what was fitted. */
+ * boundary; only the samples before it count.  n: length of what was fitted; error: of the
+ * pulses' form, over the form. */
 void judge(struct joint *joint, const struct joint_scene *scene, size_t n,
 	const struct joint_pulse *pulses, int m, int done, double boundary,
-	const struct joint_result *r, struct judgement *out);
+	double error, const struct joint_result *r, struct judgement *out);
 
 /* Do the delays of m > 1 pulses tell that they are no parts of one object, which would
  * share its velocity (*told)?  Returns the probability that particles do not, if their

@@ -799,6 +799,16 @@ static void learn_sign(struct learning *l, struct calibration *c)
 	c->events = positive + negative;
 }
 
+static double total_energy(const struct learning *l)
+{
+	double sum = 0;
+
+	for (int i = 0; i < l->count; i++)
+		if (!l->stretch[i].foreign)
+			sum += l->stretch[i].energy;
+	return fmax(sum, 1);
+}
+
 /* How well a form learned from half of the stretches describes the other half. */
 static int validate(struct learning *l, struct calibration *c)
 {
@@ -825,6 +835,8 @@ static int validate(struct learning *l, struct calibration *c)
 	c->level = level;
 	c->error = sqrt(sum);
 	c->error_least = sqrt(sqrt(se2));
+	c->error_floor = sqrt((form == CALIBRATE_ANY_PULSE ? TEMPLATE_COUNT : 2) /
+			      total_energy(l));
 	return ok;
 }
 

@@ -1,19 +1,19 @@
 /* masks.c - see masks.h */
 #include "signal/masks.h"
+#include "signal/histogram.h"
 #include "signal/stft.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { CELLS = MASKS_CELLS, ALL = CELLS * CELLS };
+enum { CELLS = MASKS_CELLS };
 
 struct masks {
 	struct masks_par par;
 	struct stft *stft;
 	size_t bins, top; /* bins 1 .. top are used */
 	double *omega;    /* calibrated frequency of each bin, rad per sample */
-	double histogram[ALL], smooth[ALL];
-	int owner[ALL]; /* source of each cell, -1: none */
+	struct histogram histogram;
 	size_t n, frames, capacity;
 	double complex *y1, *y2, *part;
 	int *cell; /* of each point of the plane, -1 outside the histogram */
@@ -124,12 +124,12 @@ void masks_cell(const struct masks *m, int i, int j, double *attenuation, double
 
 const double *masks_histogram(const struct masks *m)
 {
-	return m->histogram;
+	return m->histogram.weight;
 }
 
 static void fill_histogram(struct masks *m)
 {
-	memset(m->histogram, 0, sizeof m->histogram);
+	memset(m->histogram.weight, 0, sizeof m->histogram.weight);
 	for (size_t p = 0; p < m->frames * m->bins; p++) {
 		size_t k = p % m->bins;
 		double x, y, weight = cabs(m->y1[p]) * cabs(m->y2[p]);
@@ -143,113 +143,23 @@ static void fill_histogram(struct masks *m)
 		if (!(x >= 0 && x < CELLS && y >= 0 && y < CELLS))
 			continue;
 		m->cell[p] = (int)x * CELLS + (int)y;
-		m->histogram[m->cell[p]] += weight;
+		m->histogram.weight[m->cell[p]] += weight;
 	}
 }
 
-/* Binomial smoothing along both axes: twelve passes of (1, 2, 1) / 4, sd 2.4 cells. */
-static void smooth_histogram(struct masks *m)
-{
-	double *a = m->smooth, b[ALL];
-
-	memcpy(a, m->histogram, sizeof m->smooth);
-	for (int pass = 0; pass < 12; pass++) {
-		for (int i = 0; i < ALL; i++) {
-			int j = i % CELLS;
-
-			b[i] = (2 * a[i] + (j ? a[i - 1] : a[i]) +
-				       (j < CELLS - 1 ? a[i + 1] : a[i])) /
-			       4;
-		}
-		for (int i = 0; i < ALL; i++)
-			a[i] = (2 * b[i] + (i >= CELLS ? b[i - CELLS] : b[i]) +
-				       (i < ALL - CELLS ? b[i + CELLS] : b[i])) /
-			       4;
-	}
-}
-
-/* The highest of cell i and its eight neighbours; ties go to the lower index. */
-static int uphill(const struct masks *m, int i)
-{
-	int best = i, row = i / CELLS, col = i % CELLS;
-
-	for (int r = row - 1; r <= row + 1; r++)
-		for (int c = col - 1; c <= col + 1; c++)
-			if (r >= 0 && r < CELLS && c >= 0 && c < CELLS &&
-				m->smooth[r * CELLS + c] > m->smooth[best])
-				best = r * CELLS + c;
-	return best;
-}
-
-/* Vertex of the parabola through three values, within half a cell. */
-static double vertex(double before, double at, double after)
-{
-	double bend = before - 2 * at + after,
-	       x = bend < 0 ? 0.5 * (before - after) / bend : 0;
-
-	return x > 0.5 ? 0.5 : x < -0.5 ? -0.5 : x;
-}
-
-static void locate(const struct masks *m, int peak, struct masks_source *source)
-{
-	int i = peak / CELLS, j = peak % CELLS;
-	const double *h = m->smooth + peak;
-
-	masks_cell(m, i, j, &source->attenuation, &source->delta);
-	if (i > 0 && i < CELLS - 1)
-		source->attenuation +=
-			vertex(h[-CELLS], h[0], h[CELLS]) * m->par.gain_max / CELLS;
-	if (j > 0 && j < CELLS - 1)
-		source->delta += vertex(h[-1], h[0], h[1]) *
-				 (m->par.delta_max - m->par.delta_min) / CELLS;
-}
-
-/* Peaks by height; the cells below each are its own. */
 static int find_peaks(struct masks *m, struct masks_source *source)
 {
-	int peak[MASKS_SOURCES_MAX] = { 0 }, most, count = 0;
-	double floor_height = 0, total = 0;
+	struct histogram_peak peak[HISTOGRAM_PEAKS];
+	int given = m->par.sources;
+	int n = histogram_peaks(&m->histogram, given ? given : MASKS_SOURCES_MAX,
+		given ? 0 : m->par.peak_share, peak);
 
-	most = m->par.sources ? m->par.sources : MASKS_SOURCES_MAX;
-	for (int i = 0; i < ALL; i++) {
-		int at;
-
-		if (m->smooth[i] <= 0 || uphill(m, i) != i)
-			continue;
-		for (at = count; at > 0 && m->smooth[peak[at - 1]] < m->smooth[i]; at--)
-			if (at < most)
-				peak[at] = peak[at - 1];
-		if (at < most) {
-			peak[at] = i;
-			count += count < most;
-		}
-	}
-	if (count > 0 && !m->par.sources)
-		floor_height = m->par.peak_share * m->smooth[peak[0]];
-	while (count > 1 && m->smooth[peak[count - 1]] < floor_height)
-		count--;
-	for (int k = 0; k < count; k++) {
-		locate(m, peak[k], &source[k]);
-		source[k].weight = 0;
-	}
-	for (int i = 0; i < ALL; i++) {
-		int top = i, next;
-
-		m->owner[i] = -1;
-		if (m->smooth[i] <= 0)
-			continue;
-		while ((next = uphill(m, top)) != top)
-			top = next;
-		for (int k = 0; k < count; k++)
-			if (peak[k] == top)
-				m->owner[i] = k;
-		if (m->owner[i] >= 0)
-			source[m->owner[i]].weight += m->histogram[i];
-		total += m->histogram[i];
-	}
-	for (int k = 0; k < count; k++)
-		source[k].weight /= total;
-	return count;
+	for (int k = 0; k < n; k++)
+		source[k] = (struct masks_source){ peak[k].i * m->par.gain_max / CELLS,
+			m->par.delta_min +
+				peak[k].j * (m->par.delta_max - m->par.delta_min) / CELLS,
+			peak[k].share };
+	return n;
 }
 
 int masks_find(struct masks *m, const double *y1, const double *y2, size_t n,
@@ -260,7 +170,6 @@ int masks_find(struct masks *m, const double *y1, const double *y2, size_t n,
 	stft_forward(m->stft, y1, n, m->y1);
 	stft_forward(m->stft, y2, n, m->y2);
 	fill_histogram(m);
-	smooth_histogram(m);
 	return find_peaks(m, source);
 }
 
@@ -272,7 +181,7 @@ void masks_separate(struct masks *m, int k, double *x)
 		       voter = bin < 1 || bin > m->top ? p - bin + 1 : p;
 		int cell = m->cell[voter];
 
-		m->part[p] = cell >= 0 && m->owner[cell] == k ? m->y1[p] : 0;
+		m->part[p] = cell >= 0 && m->histogram.owner[cell] == k ? m->y1[p] : 0;
 	}
 	stft_inverse(m->stft, m->part, m->n, x);
 }

@@ -19,10 +19,11 @@
 #ifndef SIGNAL_MASKS_H
 #define SIGNAL_MASKS_H
 
+#include "signal/histogram.h"
 #include "signal/shape.h"
 #include <stddef.h>
 
-enum { MASKS_SOURCES_MAX = 16, MASKS_CELLS = 64 };
+enum { MASKS_SOURCES_MAX = HISTOGRAM_PEAKS, MASKS_CELLS = HISTOGRAM_CELLS };
 
 struct masks_par {
 	size_t window, hop;          /* samples */

@@ -101,6 +101,8 @@ void passage_carry(const struct stream *stream, uint64_t index, struct passage *
 		  stream->lag[0] + u * (stream->lag[1] - stream->lag[0]);
 	p->velocity = stream->spacing / transit;
 	p->time[1] = p->time[0] + transit;
+	p->response[0] = 1;
+	p->response[1] = 0;
 }
 
 void passage_draw(const struct stream *stream, uint64_t index, struct passage *p)

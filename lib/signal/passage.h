@@ -47,6 +47,10 @@ struct passage {
 	double diameter; /* m */
 	double radius;   /* distance from the axis of the pipe, m; NAN unknown */
 	double velocity; /* m/s */
+	/* Of its pulse over kappa v d^3, in phase with that of a ferrous particle and a
+	 * quarter of a turn ahead; see polarisability.h.  passage_carry() makes them 1,
+	 * 0. */
+	double response[2];
 };
 
 /* What the particles are drawn from. */

@@ -1,12 +1,16 @@
 /* scene.h - the signal of two sensors, made piece by piece
  *
- * Adds the pulses of particles, white or coloured noise, slow drift and the lines of
- * mains and pump.  Each pulse touches its own samples only, and memory holds no more
- * than the particles now between the sensors; a stream may go on for days.
+ * Adds the pulses of particles, events that are none, white or coloured noise, slow drift
+ * and the lines of mains and pump, and limits the sum.  A demodulator gives each sensor a
+ * channel in phase with the pulses of ferrous particles and, if asked for, one in
+ * quadrature with noise, drift and phases of lines of its own.  Each pulse touches its
+ *own samples only, and memory holds no more than the particles now between the sensors; a
+ *stream may go on for days.
  *
  *	struct scene *scene = scene_new(&par);
  *	while (...) {
  *		scene_pass(scene, &passage);     // all that begin before the piece ends
+ *		scene_disturb(scene, &event);    // likewise
  *		scene_next(scene, x, nframes);   // x[2 * frame + sensor], V
  *	}
  *	scene_free(scene);
@@ -14,6 +18,7 @@
 #ifndef SIGNAL_SCENE_H
 #define SIGNAL_SCENE_H
 
+#include "signal/disturbance.h"
 #include "signal/passage.h"
 #include <stdint.h>
 
@@ -36,6 +41,15 @@ struct scene_par {
 	int nlines;
 	double line[SCENE_LINES_MAX];       /* frequencies, Hz; phases are drawn */
 	double line_level[SCENE_LINES_MAX]; /* amplitudes, V */
+	double multiple[SCENE_LINES_MAX];   /* share in the wandering of the mains: 1 for
+					       the line itself, 3 for its third harmonic */
+
+	double wander;      /* rms of the frequency of the mains, Hz */
+	double gain_drift;  /* rms of the relative change of gain */
+	double phase_drift; /* rms of the demodulator's phase, rad */
+	double phase;       /* its mean: turns responses by exp(i phase), rad */
+	double saturation;  /* limit of |x|, V; 0: none */
+	int quadrature;     /* 1: four channels, I1 Q1 I2 Q2, in place of two */
 };
 
 struct scene;
@@ -47,7 +61,13 @@ void scene_free(struct scene *scene);
 /* Notes a particle; 0 when out of memory, else 1.  Parts of its pulses that lie before
  * the present frame are lost. */
 int scene_pass(struct scene *scene, const struct passage *p);
-/* The next frames of both sensors. */
+/* Notes an event, likewise. */
+int scene_disturb(struct scene *scene, const struct disturbance *event);
+/* What the sensors make of a particle, as scene_pass() does, without noting it: peaks at
+ * sensor 1 in phase and in quadrature, V.  Returns 1 if its pulse alone reaches the
+ * saturation at either sensor.  Particles must come in order of time[0]. */
+int scene_receive(struct scene *scene, const struct passage *p, double peak[2]);
+/* The next frames of both sensors, or of four channels. */
 void scene_next(struct scene *scene, double *x, size_t nframes);
 
 /* Moment after which the particles noted so far leave no trace, s. */

@@ -542,7 +542,8 @@ static enum separate_status fit_section(
 	boundary = cut ? choose_cut(s, m, n) : INFINITY;
 	while (done < m && s->pulse[done].t < boundary)
 		done++;
-	judge(s->joint, &s->scene, n, s->pulse, m, done, boundary, &r, &judgement);
+	judge(s->joint, &s->scene, n, s->pulse, m, done, boundary, s->cal.error,
+		&r, &judgement);
 	check_velocities(s, m, done, &judgement);
 	unresolved = judgement.stretch == SEPARATE_UNRESOLVED && !s->par.sources;
 	if (unresolved && !cut && !s->continuing &&

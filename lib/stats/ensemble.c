@@ -1,183 +1,366 @@
+/* ensemble.c - see ensemble.h */
 #include "stats/ensemble.h"
-#include "num/room.h"
+#include "num/realisations.h"
+#include <limits.h>
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
-struct mark {
-	long realisation, step;
+/* Room for the diameters of the steps or groups together, and the least of one. */
+enum { VALUES = 1 << 19, VALUES_LEAST = 64 };
+
+/* A realisation that has a group to itself. */
+struct place {
+	long realisation;
+	int used;
 };
 
 struct ensemble {
-	struct shed *row;
-	size_t rows, row_room;
-	struct mark *mark; /* steps known to have taken place */
-	size_t marks, mark_room;
-	long *id; /* realisations, ascending */
-	size_t ids;
-	long steps; /* up to the last */
 	struct ensemble_par par;
-	struct ensemble_cell *cell; /* [realisation * steps + step - 1] */
+	struct realisations *reader;
+	int clash;
+	long culprit;
+	double particles, told;
+	size_t steps; /* up to the last told of */
+	struct ensemble_step *step;
+	size_t step_room;
+	struct ensemble_step after; /* of a step after all those told of */
+	struct running volume, diameter;
+	struct sketch diameters, *step_diameters;
+	struct ensemble_group *group;
+	struct place *place; /* of the groups, hashed */
+	size_t groups, places;
 };
 
-struct ensemble *ensemble_new(void)
+/* The step becomes one of those there are: nothing happened in it so far. */
+static int reach_step(struct ensemble *e, size_t step)
 {
-	return calloc(1, sizeof(struct ensemble));
+	if (step > e->step_room) {
+		size_t room = e->step_room ? e->step_room : 64;
+		struct ensemble_step *more;
+		struct sketch *sketch;
+
+		while (room < step)
+			room *= 2;
+		more = realloc(e->step, room * sizeof *more);
+		if (!more)
+			return -1;
+		e->step = more;
+		if (e->par.by_step) {
+			sketch = realloc(e->step_diameters, room * sizeof *sketch);
+			if (!sketch)
+				return -1;
+			e->step_diameters = sketch;
+		}
+		e->step_room = room;
+	}
+	for (; e->steps < step; e->steps++) {
+		e->step[e->steps] = e->after;
+		if (e->par.by_step)
+			e->step_diameters[e->steps] = (struct sketch){ 0 };
+	}
+	return 0;
+}
+
+static uint64_t mix(uint64_t x)
+{
+	x ^= x >> 33;
+	x *= 0xff51afd7ed558ccdu; /* finaliser of MurmurHash3: spreads neighbours */
+	x ^= x >> 33;
+	x *= 0xc4ceb9fe1a85ec53u;
+	return x ^ x >> 33;
+}
+
+/* The group of a realisation: of its own as long as there are any left. */
+static struct ensemble_group *group_of(struct ensemble *e, long realisation)
+{
+	uint64_t hash = mix((uint64_t)realisation);
+	size_t at = hash & (e->places - 1);
+
+	while (e->place[at].used && e->place[at].realisation != realisation)
+		at = (at + 1) & (e->places - 1);
+	if (e->place[at].used)
+		return &e->group[e->place[at].used - 1];
+	if (e->groups == (size_t)e->par.groups)
+		return &e->group[(hash >> 32) % e->groups];
+	e->place[at] = (struct place){ realisation, (int)++e->groups };
+	return &e->group[e->groups - 1];
+}
+
+/* What one realisation did in one step. */
+static int take_step(struct ensemble *e, struct ensemble_group *g,
+	const struct realisation_cell *cell, double volume_before)
+{
+	struct ensemble_step *s = &e->step[cell->step - 1];
+	size_t step = (size_t)cell->step;
+
+	running_add(&s->count, cell->count);
+	running_add(&s->volume, cell->volume);
+	running_add(&s->total_volume, volume_before + cell->volume);
+	if (!g || cell->count == 0)
+		return 0;
+	if (step > g->steps) {
+		double *more = realloc(g->count, step * sizeof *more);
+
+		if (!more)
+			return -1;
+		memset(more + g->steps, 0, (step - g->steps) * sizeof *more);
+		g->count = more;
+		g->steps = step;
+	}
+	g->count[step - 1] += cell->count;
+	return 0;
+}
+
+/* Steps up to last in which a realisation shed nothing; sums: of the steps before. */
+static void take_nothing(
+	struct ensemble *e, long *next, long last, const struct realisation_cell *sums)
+{
+	for (; *next <= last; ++*next) {
+		struct ensemble_step *s = &e->step[*next - 1];
+
+		s->total_count += sums->count;
+		if (e->par.partial)
+			continue;
+		running_add(&s->count, 0);
+		running_add(&s->volume, 0);
+		running_add(&s->total_volume, sums->volume);
+	}
+}
+
+/* Sums the cells of one step up, from i on; returns the first of the next step, or 0
+ * where they come from two parts. */
+static size_t sum_step(const struct realisation_cell *cell, size_t i, size_t n,
+	long *part, struct realisation_cell *here)
+{
+	*here = (struct realisation_cell){ .step = cell[i].step };
+	for (; i < n && cell[i].step == here->step; i++) {
+		if (*part >= 0 && cell[i].part >= 0 && cell[i].part != *part)
+			return 0;
+		if (cell[i].part >= 0)
+			*part = cell[i].part;
+		here->count += cell[i].count;
+		here->volume += cell[i].volume;
+	}
+	return i;
+}
+
+/* Notes the mean volume per step of a realisation.  Where all steps took place their
+ * number is known at the end, and the same for all. */
+static void take_volume(
+	struct ensemble *e, struct ensemble_group *g, double volume, double steps)
+{
+	e->told++;
+	if (g)
+		g->realisations++;
+	if (!e->par.partial)
+		steps = 1;
+	if (!(steps > 0))
+		return;
+	running_add(&e->volume, volume / steps);
+	if (g) {
+		g->worn++;
+		g->volume += volume / steps;
+	}
+}
+
+/* Takes a realisation whose cells are sorted by step. */
+static int take(void *to, const struct realisation_cell *cell, size_t n)
+{
+	struct ensemble *e = to;
+	struct ensemble_group *g = e->par.groups ? group_of(e, cell->realisation) : NULL;
+	struct realisation_cell sums = { 0 }, here;
+	long part = -1, next = 1, last = e->par.last ? e->par.last : LONG_MAX;
+	double volume = 0, steps = 0;
+
+	for (size_t i = 0; i < n;) {
+		i = sum_step(cell, i, n, &part, &here);
+		if (i == 0) {
+			e->clash = 1;
+			return -1;
+		}
+		take_nothing(e, &next, here.step - 1, &sums);
+		if (take_step(e, g, &here, sums.volume))
+			return -1;
+		next++;
+		sums.volume += here.volume;
+		sums.count += here.count;
+		e->step[here.step - 1].total_count += sums.count;
+		if (here.step >= e->par.first && here.step <= last) {
+			volume += here.volume;
+			steps++;
+		}
+	}
+	take_nothing(e, &next, (long)e->steps, &sums);
+	if (!e->par.partial) {
+		running_add(&e->after.count, 0);
+		running_add(&e->after.volume, 0);
+		running_add(&e->after.total_volume, sums.volume);
+	}
+	e->after.total_count += sums.count;
+	take_volume(e, g, volume, steps);
+	return 0;
+}
+
+struct ensemble *ensemble_new(const struct ensemble_par *par)
+{
+	struct ensemble *e = calloc(1, sizeof *e);
+
+	if (!e)
+		return NULL;
+	e->par = *par;
+	e->places = 1;
+	while (par->groups && e->places < 2 * (size_t)par->groups)
+		e->places *= 2;
+	e->reader = realisations_new(REALISATIONS_ROOM, take, e);
+	if (par->groups) {
+		e->group = calloc((size_t)par->groups, sizeof *e->group);
+		e->place = calloc(e->places, sizeof *e->place);
+	}
+	if (!e->reader || (par->groups && (!e->group || !e->place)) ||
+		(par->last && reach_step(e, (size_t)par->last))) {
+		ensemble_free(e);
+		return NULL;
+	}
+	return e;
 }
 
 void ensemble_free(struct ensemble *e)
 {
 	if (!e)
 		return;
-	free(e->row);
-	free(e->mark);
-	free(e->id);
-	free(e->cell);
+	for (size_t s = 0; e->step_diameters && s < e->steps; s++)
+		sketch_free(&e->step_diameters[s]);
+	for (size_t g = 0; e->group && g < e->groups; g++) {
+		sketch_free(&e->group[g].diameters);
+		free(e->group[g].count);
+	}
+	sketch_free(&e->diameters);
+	realisations_free(e->reader);
+	free(e->step_diameters);
+	free(e->step);
+	free(e->group);
+	free(e->place);
 	free(e);
 }
 
-static void note_step(struct ensemble *e, long step)
+static enum ensemble_status reading(struct ensemble *e, enum realisations_status status)
 {
-	e->steps = step > e->steps ? step : e->steps;
+	e->culprit = realisations_culprit(e->reader);
+	switch (status) {
+	case REALISATIONS_OK:
+		return ENSEMBLE_OK;
+	case REALISATIONS_AGAIN:
+		return ENSEMBLE_APART;
+	case REALISATIONS_STOP:
+		return e->clash ? ENSEMBLE_CLASH : ENSEMBLE_MEMORY;
+	default:
+		return ENSEMBLE_MEMORY;
+	}
 }
 
-int ensemble_add(struct ensemble *e, const struct shed *particle)
+/* Each of n sketches has its share of the room. */
+static size_t share(size_t n, size_t most)
 {
-	if (room_for(&e->row, &e->row_room, e->rows + 1, sizeof *e->row))
+	size_t each = VALUES / (n ? n : 1);
+
+	return each > most ? most : each < VALUES_LEAST ? VALUES_LEAST : each;
+}
+
+static int add_diameter(struct ensemble *e, const struct shed *p)
+{
+	if (p->step < e->par.first || (e->par.last && p->step > e->par.last))
+		return 0;
+	running_add(&e->diameter, p->diameter);
+	if (sketch_add(&e->diameters, p->diameter, SKETCH_MOST))
 		return -1;
-	e->row[e->rows++] = *particle;
-	note_step(e, particle->step);
+	if (e->par.by_step && sketch_add(&e->step_diameters[p->step - 1], p->diameter,
+				      share(e->steps, SKETCH_MOST)))
+		return -1;
+	if (e->par.groups && sketch_add(&group_of(e, p->realisation)->diameters,
+				     p->diameter, share(e->groups, SKETCH_MOST)))
+		return -1;
 	return 0;
 }
 
-int ensemble_took_place(struct ensemble *e, long realisation, long step)
+enum ensemble_status ensemble_add(struct ensemble *e, const struct shed *p)
 {
-	if (room_for(&e->mark, &e->mark_room, e->marks + 1, sizeof *e->mark))
-		return -1;
-	e->mark[e->marks++] = (struct mark){ realisation, step };
-	note_step(e, step);
-	return 0;
+	int counts = p->diameter >= e->par.low && p->diameter <= e->par.high;
+	struct realisation_cell cell = { p->realisation, p->step, p->part, p->volume,
+		counts, 0 };
+
+	e->particles++;
+	if (reach_step(e, (size_t)p->step) || (counts && add_diameter(e, p)))
+		return ENSEMBLE_MEMORY;
+	return reading(e, realisations_add(e->reader, &cell));
 }
 
-static int by_realisation(const void *a, const void *b)
+enum ensemble_status ensemble_took_place(struct ensemble *e, long realisation, long step)
 {
-	const struct shed *p = a, *q = b;
+	struct realisation_cell cell = { realisation, step, -1, 0, 0, 0 };
 
-	if (p->realisation != q->realisation)
-		return p->realisation < q->realisation ? -1 : 1;
-	return (p->step > q->step) - (p->step < q->step);
+	if (reach_step(e, (size_t)step))
+		return ENSEMBLE_MEMORY;
+	return reading(e, realisations_add(e->reader, &cell));
 }
 
-static int ascending(const void *a, const void *b)
+/* Realisations that nothing tells of shed nothing, in steps that all took place. */
+static void add_empty(struct ensemble *e)
 {
-	long p = *(const long *)a, q = *(const long *)b;
+	double n = e->par.realisations - e->told;
 
-	return (p > q) - (p < q);
+	for (size_t s = 0; s < e->steps; s++) {
+		running_repeat(&e->step[s].count, 0, n);
+		running_repeat(&e->step[s].volume, 0, n);
+		running_repeat(&e->step[s].total_volume, 0, n);
+	}
+	running_repeat(&e->volume, 0, n);
 }
 
-/* Appends unless it is what was appended last. */
-static size_t append(long *id, size_t n, long realisation)
+/* Volumes per step from volumes. */
+static void divide_volumes(struct ensemble *e, double steps)
 {
-	if (n == 0 || id[n - 1] != realisation)
-		id[n++] = realisation;
-	return n;
+	if (!(steps > 0))
+		e->volume = (struct running){ 0 };
+	e->volume.mean /= fmax(steps, 1);
+	e->volume.square /= fmax(steps * steps, 1);
+	for (size_t g = 0; g < e->groups; g++)
+		e->group[g].volume /= fmax(steps, 1);
 }
 
-int ensemble_sort(struct ensemble *e)
+enum ensemble_status ensemble_close(struct ensemble *e)
 {
-	size_t n = 0;
+	enum ensemble_status status = reading(e, realisations_end(e->reader));
 
-	e->id = malloc((e->rows + e->marks + 1) * sizeof *e->id);
-	if (!e->id)
-		return -1;
-	for (size_t i = 0; i < e->rows; i++)
-		n = append(e->id, n, e->row[i].realisation);
-	for (size_t i = 0; i < e->marks; i++)
-		n = append(e->id, n, e->mark[i].realisation);
-	qsort(e->id, n, sizeof *e->id, ascending);
-	for (size_t i = 0; i < n; i++)
-		e->ids = append(e->id, e->ids, e->id[i]);
-	if (e->rows)
-		qsort(e->row, e->rows, sizeof *e->row, by_realisation);
-	return 0;
+	if (status != ENSEMBLE_OK)
+		return status;
+	if (!(e->par.realisations > 0))
+		e->par.realisations = e->told;
+	if (e->par.realisations < e->told)
+		return ENSEMBLE_MORE;
+	if (!e->par.last)
+		e->par.last = (long)e->steps;
+	if (!e->par.partial) {
+		add_empty(e);
+		divide_volumes(e, (double)(e->par.last - e->par.first + 1));
+	}
+	if (sketch_sort(&e->diameters))
+		return ENSEMBLE_MEMORY;
+	for (size_t s = 0; e->par.by_step && s < e->steps; s++)
+		if (sketch_sort(&e->step_diameters[s]))
+			return ENSEMBLE_MEMORY;
+	return ENSEMBLE_OK;
 }
 
-long ensemble_clash(const struct ensemble *e)
+long ensemble_culprit(const struct ensemble *e)
 {
-	for (size_t i = 1; i < e->rows; i++)
-		if (e->row[i].realisation == e->row[i - 1].realisation &&
-			e->row[i].part != e->row[i - 1].part)
-			return e->row[i].realisation;
-	return -1;
+	return e->culprit;
 }
 
 size_t ensemble_told(const struct ensemble *e)
 {
-	return e->ids;
-}
-
-static struct ensemble_cell *find_cell(struct ensemble *e, long realisation, long step)
-{
-	size_t low = 0, high = e->ids;
-
-	while (high - low > 1) {
-		size_t middle = low + (high - low) / 2;
-
-		if (e->id[middle] <= realisation)
-			low = middle;
-		else
-			high = middle;
-	}
-	return &e->cell[low * (size_t)e->steps + (size_t)(step - 1)];
-}
-
-static int counts(const struct ensemble *e, const struct shed *row)
-{
-	return row->diameter >= e->par.low && row->diameter <= e->par.high;
-}
-
-static void sum_up(struct ensemble_cell *cell, long steps)
-{
-	for (long s = 0; s < steps; s++) {
-		cell[s].total_count = cell[s].count + (s ? cell[s - 1].total_count : 0);
-		cell[s].total_volume =
-			(s ? cell[s - 1].total_volume : 0) + cell[s].volume;
-	}
-}
-
-int ensemble_close(struct ensemble *e, const struct ensemble_par *par)
-{
-	e->par = *par;
-	if (!e->par.realisations)
-		e->par.realisations = e->ids;
-	if (!e->par.last)
-		e->par.last = e->steps;
-	note_step(e, e->par.last);
-	if (e->steps && e->par.realisations > (SIZE_MAX - 1) / (size_t)e->steps)
-		return -1;
-	e->cell = calloc(e->par.realisations * (size_t)e->steps + 1, sizeof *e->cell);
-	if (!e->cell)
-		return -1;
-	for (size_t i = 0; i < e->marks; i++)
-		find_cell(e, e->mark[i].realisation, e->mark[i].step)->there = 1;
-	for (size_t i = 0; i < e->rows; i++) {
-		const struct shed *row = &e->row[i];
-		struct ensemble_cell *cell = find_cell(e, row->realisation, row->step);
-
-		if (cell->end == cell->begin)
-			cell->begin = i;
-		cell->end = i + 1;
-		cell->there = 1;
-		cell->count += counts(e, row);
-		cell->volume += row->volume;
-	}
-	for (size_t r = 0; r < e->par.realisations; r++) {
-		struct ensemble_cell *cell = &e->cell[r * (size_t)e->steps];
-
-		for (long s = 0; !par->partial && s < e->steps; s++)
-			cell[s].there = 1;
-		sum_up(cell, e->steps);
-	}
-	return 0;
+	return (size_t)e->told;
 }
 
 const struct ensemble_par *ensemble_par(const struct ensemble *e)
@@ -185,66 +368,43 @@ const struct ensemble_par *ensemble_par(const struct ensemble *e)
 	return &e->par;
 }
 
-size_t ensemble_particles(const struct ensemble *e)
+double ensemble_particles(const struct ensemble *e)
 {
-	return e->rows;
+	return e->particles;
 }
 
-const struct ensemble_cell *ensemble_cell(
-	const struct ensemble *e, size_t realisation, long step)
+const struct ensemble_step *ensemble_step(const struct ensemble *e, long step)
 {
-	return &e->cell[realisation * (size_t)e->steps + (size_t)(step - 1)];
+	return &e->step[step - 1];
 }
 
-/* Diameters of one step that count go to x; returns how many. */
-static size_t copy_diameters(
-	const struct ensemble *e, const struct ensemble_cell *cell, double *x)
+const struct running *ensemble_volume(const struct ensemble *e)
 {
-	size_t n = 0;
-
-	for (size_t k = cell->begin; k < cell->end; k++)
-		if (counts(e, &e->row[k]))
-			x[n++] = e->row[k].diameter;
-	return n;
+	return &e->volume;
 }
 
-double *ensemble_diameters(
-	const struct ensemble *e, const size_t *pick, long first, long last, size_t *n)
+const struct running *ensemble_diameter(const struct ensemble *e)
 {
-	size_t room = 1;
-	double *x;
-
-	for (size_t i = 0; i < e->par.realisations; i++)
-		for (long s = first; s <= last; s++)
-			room += (size_t)ensemble_cell(e, pick ? pick[i] : i, s)->count;
-	*n = 0;
-	x = malloc(room * sizeof *x);
-	for (size_t i = 0; x && i < e->par.realisations; i++)
-		for (long s = first; s <= last; s++)
-			*n += copy_diameters(
-				e, ensemble_cell(e, pick ? pick[i] : i, s), x + *n);
-	return x;
+	return &e->diameter;
 }
 
-double ensemble_aspects(
-	const struct ensemble *e, const double *edge, int n, double *count)
+const struct sketch *ensemble_diameters(const struct ensemble *e)
 {
-	double all = 0;
+	return &e->diameters;
+}
 
-	for (int k = 0; k < n; k++)
-		count[k] = 0;
-	for (size_t i = 0; i < e->rows; i++) {
-		const struct shed *row = &e->row[i];
-		int k = 0;
+const struct sketch *ensemble_step_diameters(const struct ensemble *e, long step)
+{
+	return &e->step_diameters[step - 1];
+}
 
-		if (!counts(e, row) || row->step < e->par.first ||
-			row->step > e->par.last)
-			continue;
-		while (k < n && row->aspect >= edge[k])
-			k++;
-		if (k > 0)
-			count[k - 1]++;
-		all++;
-	}
-	return all;
+const struct ensemble_group *ensemble_groups(const struct ensemble *e, size_t *n)
+{
+	*n = e->groups;
+	return e->group;
+}
+
+double ensemble_empty(const struct ensemble *e)
+{
+	return e->par.realisations - e->told;
 }

@@ -1,18 +1,23 @@
-/* ensemble.h - wear particles of many realisations, step by step
+/* ensemble.h - wear particles of many realisations, summed up step by step
  *
  *	struct ensemble_par par = { .first = 1, .high = INFINITY, .confidence = 0.95 };
- *	struct ensemble *e = ensemble_new();
+ *	struct ensemble *e = ensemble_new(&par);
  *	ensemble_add(e, &particle);
  *	...
- *	if (ensemble_close(e, &par) == 0)
- *		x = ensemble_diameters(e, NULL, 1, 10, &n);
+ *	if (ensemble_close(e) == ENSEMBLE_OK)
+ *		estimate_all(e, out);
  *	ensemble_free(e);
  *
- * Functions that return int give 0, or -1 when out of memory.  SI units throughout.
+ * One pass over the particles, in any order as long as the rows of a realisation stand
+ * together or the table is short (num/realisations.h); memory grows with the steps but
+ * not with the particles or the realisations.  Diameters are kept one by one up to
+ * SKETCH_MOST of them, beyond in classes of nearly equal ones (sketch.h).  SI units.
  */
 #ifndef CONTACT_ENSEMBLE_H
 #define CONTACT_ENSEMBLE_H
 
+#include "stats/sketch.h"
+#include "stats/statistics.h"
 #include <stddef.h>
 
 struct ensemble;
@@ -20,58 +25,72 @@ struct ensemble;
 /* One wear particle. */
 struct shed {
 	long realisation, step; /* from 0; from 1 */
-	double diameter, volume, aspect;
+	double diameter, volume;
 	long part; /* of the table; a realisation stands in one */
 };
 
+enum ensemble_status {
+	ENSEMBLE_OK,
+	ENSEMBLE_MEMORY,
+	ENSEMBLE_APART, /* a realisation's rows stand too far apart */
+	ENSEMBLE_CLASH, /* a realisation stands in two parts */
+	ENSEMBLE_MORE   /* more realisations than there were said to be */
+};
+
 struct ensemble_par {
-	size_t realisations; /* with those that shed nothing; 0: those told of */
+	double realisations; /* with those that shed nothing; 0: those told of */
 	long first, last;    /* steps that count; last 0: up to the last told of */
 	int partial;         /* only steps told of took place, else all of them */
 	double low, high;    /* diameters that count */
 	int truncated;       /* distributions are cut off at low and high */
 	int per_step;        /* growth: particles of a step, not all so far */
 	double confidence;   /* of intervals */
+	int by_step;         /* keep the diameters of every step apart */
+	int groups; /* keep so many groups of realisations apart for a bootstrap, at
+		     * most: each realisation is one where there are no more */
 };
 
-/* A step of one realisation. */
-struct ensemble_cell {
-	int there;            /* it took place */
-	double count, volume; /* count: of the diameters that count; volume: of all */
-	double total_count, total_volume; /* of the steps up to this one */
-	size_t begin, end;
+/* One step over the realisations it took place in. */
+struct ensemble_step {
+	struct running count,
+		volume; /* count: of the diameters that count; volume: of all */
+	struct running total_volume; /* of the steps up to this one */
+	double total_count;          /* sum over all realisations and the steps so far */
 };
 
-struct ensemble *ensemble_new(void); /* NULL when out of memory */
+/* Some realisations; sums over them, of the steps and diameters that count. */
+struct ensemble_group {
+	double realisations;
+	double worn, volume; /* those with steps; sum of their mean volumes per step */
+	double *count;       /* per step, from step 1 */
+	size_t steps;        /* in count */
+	struct sketch diameters;
+};
+
+struct ensemble *ensemble_new(const struct ensemble_par *par); /* NULL: out of memory */
 void ensemble_free(struct ensemble *e);
 
-int ensemble_add(struct ensemble *e, const struct shed *particle);
+enum ensemble_status ensemble_add(struct ensemble *e, const struct shed *particle);
 /* A step that took place, whether or not it shed a particle. */
-int ensemble_took_place(struct ensemble *e, long realisation, long step);
-/* Puts the realisations in order; afterwards ensemble_told() knows how many there are. */
-int ensemble_sort(struct ensemble *e);
-/* A realisation that stands in two parts, -1 without. */
-long ensemble_clash(const struct ensemble *e);
-size_t ensemble_told(const struct ensemble *e);
-/* Once, after ensemble_sort(); the functions below are for closed ensembles.  par is
- * copied; par->realisations is 0 or at least ensemble_told(). */
-int ensemble_close(struct ensemble *e, const struct ensemble_par *par);
+enum ensemble_status ensemble_took_place(struct ensemble *e, long realisation, long step);
+/* Once; the functions below are for closed ensembles. */
+enum ensemble_status ensemble_close(struct ensemble *e);
+/* The realisation that ENSEMBLE_APART and ENSEMBLE_CLASH are about. */
+long ensemble_culprit(const struct ensemble *e);
+size_t ensemble_told(const struct ensemble *e); /* realisations that the rows tell of */
 
 /* As given, with the values that 0 stands for. */
 const struct ensemble_par *ensemble_par(const struct ensemble *e);
-size_t ensemble_particles(const struct ensemble *e); /* all, whether they count or not */
-/* realisation: 0, 1, ... in ascending order of their numbers. */
-const struct ensemble_cell *ensemble_cell(
-	const struct ensemble *e, size_t realisation, long step);
-
-/* The diameters that count in steps first to last, fresh memory, NULL without: of as many
- * realisations as there are, those in pick (NULL: of each one). */
-double *ensemble_diameters(
-	const struct ensemble *e, const size_t *pick, long first, long last, size_t *n);
-
-/* Sorts the aspect ratios of what counts into n classes from edge[k] to edge[k + 1], the
- * last one open; returns how many there are, with those below the first edge. */
-double ensemble_aspects(
-	const struct ensemble *e, const double *edge, int n, double *count);
+double ensemble_particles(const struct ensemble *e); /* all, whether they count or not */
+const struct ensemble_step *ensemble_step(const struct ensemble *e, long step);
+/* Mean volumes per step of the realisations. */
+const struct running *ensemble_volume(const struct ensemble *e);
+/* Diameters that count; their ascending values, and with by_step those of a step. */
+const struct running *ensemble_diameter(const struct ensemble *e);
+const struct sketch *ensemble_diameters(const struct ensemble *e);
+const struct sketch *ensemble_step_diameters(const struct ensemble *e, long step);
+/* The groups of realisations told of. */
+const struct ensemble_group *ensemble_groups(const struct ensemble *e, size_t *n);
+double ensemble_empty(const struct ensemble *e); /* realisations in no group */
 
 #endif

@@ -1,106 +1,221 @@
 #include "stats/estimates.h"
-#include "num/philox.h"
+#include "num/rng.h"
+#include <gsl/gsl_randist.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 
-int estimate_weibull(
-	const struct ensemble *e, const double *x, size_t n, struct weibull *w)
-{
-	const struct ensemble_par *par = ensemble_par(e);
+/* What the estimates are made of: an ensemble or a draw of it. */
+struct basis {
+	const double *diameter, *weight;
+	size_t diameters;
+	const double *step, *growth; /* number, and particles in it or so far */
+	size_t steps;
+};
 
-	return weibull_fit(x, n, par->truncated ? par->low : 0,
+static enum weibull_status fit(const struct ensemble_par *par, const double *x,
+	const double *weight, size_t n, struct weibull *w)
+{
+	return weibull_fit(x, weight, n, par->truncated ? par->low : 0,
 		par->truncated ? par->high : INFINITY, par->confidence, w);
 }
 
-static int estimate_diameters(
-	const struct ensemble *e, const size_t *pick, struct estimate out[ESTIMATES])
+enum weibull_status estimate_weibull(
+	const struct ensemble *e, const struct sketch *diameters, struct weibull *w)
 {
-	const struct ensemble_par *par = ensemble_par(e);
-	struct weibull w;
-	double deviation, *x;
-	size_t n;
-
-	x = ensemble_diameters(e, pick, par->first, par->last, &n);
-	if (!x)
-		return -1;
-	if (n > 0)
-		out[ESTIMATE_MEAN_DIAMETER] =
-			sample_mean(x, n, par->confidence, &deviation);
-	if (estimate_weibull(e, x, n, &w) == 0) {
-		out[ESTIMATE_SHAPE] = w.shape;
-		out[ESTIMATE_SCALE] = w.scale;
-		out[ESTIMATE_WEIBULL_MEAN].value = w.mean;
-		if (!pick)
-			out[ESTIMATE_KS].value = weibull_distance(&w, x, n);
-	}
-	free(x);
-	return 0;
+	return fit(ensemble_par(e), diameters->value, diameters->weight, diameters->n, w);
 }
 
-static int estimate_growth(
-	const struct ensemble *e, const size_t *pick, struct estimate out[ESTIMATES])
+static int estimate_fits(const struct ensemble_par *par, const struct basis *b,
+	struct weibull *w, struct estimate out[ESTIMATES])
 {
-	const struct ensemble_par *par = ensemble_par(e);
-	size_t n = par->last < par->first ? 0 : (size_t)(par->last - par->first + 1);
-	double *x = calloc(2 * n + 1, sizeof *x), *y;
+	enum weibull_status status = fit(par, b->diameter, b->weight, b->diameters, w);
 	struct power p;
 
-	if (!x)
+	for (int q = 0; q < ESTIMATES; q++)
+		out[q] = (struct estimate){ NAN, NAN, NAN };
+	if (status == WEIBULL_MEMORY)
 		return -1;
-	y = x + n;
-	for (size_t k = 0; k < n; k++) {
-		x[k] = (double)(par->first + (long)k);
-		for (size_t i = 0; i < par->realisations; i++) {
-			const struct ensemble_cell *cell = ensemble_cell(
-				e, pick ? pick[i] : i, par->first + (long)k);
-
-			y[k] += par->per_step ? cell->count : cell->total_count;
-		}
+	if (status == WEIBULL_OK) {
+		out[ESTIMATE_SHAPE] = w->shape;
+		out[ESTIMATE_SCALE] = w->scale;
+		out[ESTIMATE_WEIBULL_MEAN].value = w->mean;
 	}
-	if (n > 0 && power_fit(x, y, n, par->confidence, &p) == 0) {
+	if (b->steps > 0 &&
+		power_fit(b->step, b->growth, b->steps, par->confidence, &p) == 0) {
 		out[ESTIMATE_FACTOR] = p.factor;
 		out[ESTIMATE_EXPONENT] = p.exponent;
 		out[ESTIMATE_OFFSET] = p.offset;
 	}
-	free(x);
 	return 0;
 }
 
-static int estimate_volume(
-	const struct ensemble *e, const size_t *pick, struct estimate out[ESTIMATES])
+/* Numbers of the steps that count, and as many places for their particles. */
+static double *new_growth(const struct ensemble_par *par, struct basis *b)
+{
+	double *step;
+
+	b->steps = par->last < par->first ? 0 : (size_t)(par->last - par->first + 1);
+	step = calloc(2 * b->steps + 1, sizeof *step);
+	for (size_t k = 0; step && k < b->steps; k++)
+		step[k] = (double)(par->first + (long)k);
+	b->step = step;
+	b->growth = step + b->steps;
+	return step;
+}
+
+int estimate_all(const struct ensemble *e, struct estimate out[ESTIMATES])
 {
 	const struct ensemble_par *par = ensemble_par(e);
-	double *v = calloc(par->realisations + 1, sizeof *v), deviation;
-	size_t n = 0;
+	const struct sketch *x = ensemble_diameters(e);
+	struct basis b = { .diameter = x->value, .weight = x->weight, .diameters = x->n };
+	double *step = new_growth(par, &b);
+	struct weibull w;
+	int status;
 
-	if (!v)
+	if (!step)
 		return -1;
-	for (size_t i = 0; i < par->realisations; i++) {
-		double sum = 0, steps = 0;
+	for (size_t k = 0; k < b.steps; k++) {
+		const struct ensemble_step *s = ensemble_step(e, par->first + (long)k);
 
-		for (long s = par->first; s <= par->last; s++) {
-			const struct ensemble_cell *cell =
-				ensemble_cell(e, pick ? pick[i] : i, s);
-
-			sum += cell->volume;
-			steps += cell->there;
-		}
-		if (steps > 0)
-			v[n++] = sum / steps;
+		step[b.steps + k] =
+			par->per_step ? s->count.mean * s->count.n : s->total_count;
 	}
-	out[ESTIMATE_VOLUME_STEP] = sample_mean(v, n, par->confidence, &deviation);
-	free(v);
-	return 0;
+	status = estimate_fits(par, &b, &w, out);
+	if (!isnan(out[ESTIMATE_SHAPE].value))
+		out[ESTIMATE_KS].value = weibull_distance(&w, x->value, x->weight, x->n);
+	if (ensemble_diameter(e)->n > 0)
+		out[ESTIMATE_MEAN_DIAMETER] =
+			sample_mean(ensemble_diameter(e), par->confidence);
+	out[ESTIMATE_VOLUME_STEP] = sample_mean(ensemble_volume(e), par->confidence);
+	free(step);
+	return status;
 }
 
-int estimate_all(
-	const struct ensemble *e, const size_t *pick, struct estimate out[ESTIMATES])
+/* Draws of the groups. */
+struct bootstrap {
+	const struct ensemble *e;
+	const struct ensemble_group *group;
+	size_t groups, values;
+	double *times; /* how often each is in the draw */
+	double *value, *weight, *step;
+	struct basis basis;
+	gsl_rng *rng;
+};
+
+static void bootstrap_free(struct bootstrap *b)
 {
-	for (int q = 0; q < ESTIMATES; q++)
-		out[q] = (struct estimate){ NAN, NAN, NAN };
-	if (estimate_diameters(e, pick, out) || estimate_growth(e, pick, out) ||
-		estimate_volume(e, pick, out))
+	free(b->times);
+	free(b->value);
+	free(b->weight);
+	free(b->step);
+	if (b->rng)
+		gsl_rng_free(b->rng);
+}
+
+static int bootstrap_open(struct bootstrap *b, const struct ensemble *e, uint64_t seed)
+{
+	*b = (struct bootstrap){ .e = e };
+	b->group = ensemble_groups(e, &b->groups);
+	for (size_t g = 0; g < b->groups; g++)
+		b->values += b->group[g].diameters.n;
+	b->times = calloc(b->groups + 1, sizeof *b->times);
+	b->value = calloc(b->values + 1, sizeof *b->value);
+	b->weight = calloc(b->values + 1, sizeof *b->weight);
+	b->step = new_growth(ensemble_par(e), &b->basis);
+	b->basis.diameter = b->value;
+	b->basis.weight = b->weight;
+	b->rng = rng_new(seed, 0, RNG_BOOTSTRAP);
+	if (b->times && b->value && b->weight && b->step && b->rng)
+		return 0;
+	bootstrap_free(b);
+	return -1;
+}
+
+/* Draws as many groups as there are, those of realisations that nothing tells of among
+ * them; returns how many realisations they have. */
+static double draw_groups(struct bootstrap *b)
+{
+	size_t n = b->groups;
+	double per_group = (double)ensemble_told(b->e) / (double)n, drawn = 0;
+	double empty = round(ensemble_empty(b->e) / per_group);
+	unsigned int picks = (unsigned int)n;
+
+	if (empty > 0 && (double)n + empty < UINT_MAX)
+		picks = gsl_ran_binomial(b->rng, (double)n / ((double)n + empty),
+			(unsigned int)((double)n + empty));
+	else if (empty > 0)
+		picks = gsl_ran_poisson(b->rng, (double)n);
+	for (size_t g = 0; g < n; g++)
+		b->times[g] = 0;
+	for (unsigned int i = 0; i < picks; i++)
+		b->times[gsl_rng_uniform_int(b->rng, (unsigned long)n)]++;
+	for (size_t g = 0; g < n; g++)
+		drawn += b->times[g] * b->group[g].realisations;
+	return drawn + fmax((double)n + empty - picks, 0) * per_group;
+}
+
+/* Particles of the draw in every step, or so far, as of so many realisations as there
+ * are. */
+static void sum_growth(struct bootstrap *b, double drawn)
+{
+	const struct ensemble_par *par = ensemble_par(b->e);
+	double *growth = b->step + b->basis.steps, so_far = 0;
+
+	for (size_t k = 0; k < b->basis.steps; k++)
+		growth[k] = 0;
+	for (size_t g = 0; g < b->groups; g++) {
+		const struct ensemble_group *a = &b->group[g];
+		double times = b->times[g] * par->realisations / drawn;
+
+		for (size_t s = 0; b->times[g] > 0 && s < a->steps; s++) {
+			long k = (long)s + 1 - par->first;
+
+			if (k < 0 && !par->per_step)
+				so_far += times * a->count[s];
+			if (k >= 0 && k < (long)b->basis.steps)
+				growth[k] += times * a->count[s];
+		}
+	}
+	for (size_t k = 0; !par->per_step && k < b->basis.steps; k++)
+		so_far = growth[k] += so_far;
+}
+
+/* Of a draw that has so many realisations. */
+static int draw_estimates(
+	struct bootstrap *b, double drawn, struct estimate out[ESTIMATES])
+{
+	const struct ensemble_par *par = ensemble_par(b->e);
+	double volume = 0, worn = 0, known = 0;
+	struct running diameter = { 0 };
+	struct weibull w;
+
+	b->basis.diameters = 0;
+	for (size_t g = 0; g < b->groups; g++) {
+		const struct ensemble_group *a = &b->group[g];
+
+		if (!(b->times[g] > 0))
+			continue;
+		known += b->times[g] * a->realisations;
+		volume += b->times[g] * a->volume;
+		worn += b->times[g] * a->worn;
+		for (size_t i = 0; i < a->diameters.n; i++) {
+			size_t k = b->basis.diameters++;
+
+			b->value[k] = a->diameters.value[i];
+			b->weight[k] = a->diameters.weight[i] * b->times[g];
+			running_repeat(&diameter, b->value[k], b->weight[k]);
+		}
+	}
+	sum_growth(b, drawn);
+	if (estimate_fits(par, &b->basis, &w, out))
 		return -1;
+	if (!par->partial)
+		worn += drawn - known;
+	if (diameter.n > 0)
+		out[ESTIMATE_MEAN_DIAMETER].value = diameter.mean;
+	if (worn > 0)
+		out[ESTIMATE_VOLUME_STEP].value = volume / worn;
 	return 0;
 }
 
@@ -119,74 +234,32 @@ static void put_interval(double *x, long draws, double confidence, struct estima
 int estimate_bootstrap(const struct ensemble *e, uint64_t seed, long draws,
 	struct estimate out[ESTIMATES])
 {
-	const struct ensemble_par *par = ensemble_par(e);
 	double *draw = calloc((size_t)draws * ESTIMATES, sizeof *draw);
-	size_t *pick = calloc(par->realisations + 1, sizeof *pick);
-	int status = draw && pick ? 0 : -1;
+	struct estimate each[ESTIMATES];
+	struct bootstrap b;
+	int status = draw ? bootstrap_open(&b, e, seed) : -1;
 
-	for (long b = 0; status == 0 && b < draws; b++) {
+	if (status) {
+		free(draw);
+		return -1;
+	}
+	/* Each group once: differs from the ensemble where diameters had to be merged. */
+	for (size_t g = 0; g < b.groups; g++)
+		b.times[g] = 1;
+	status = draw_estimates(&b, ensemble_par(e)->realisations, each);
+	for (long i = 0; status == 0 && i < draws; i++) {
 		struct estimate one[ESTIMATES];
 
-		for (size_t i = 0; i < par->realisations; i++)
-			pick[i] = (size_t)(philox_uniform(
-						   seed, (uint32_t)b, RNG_BOOTSTRAP, i) *
-					   (double)par->realisations);
-		status = estimate_all(e, pick, one);
+		rng_reset(b.rng, seed, (uint32_t)i, RNG_BOOTSTRAP);
+		status = draw_estimates(&b, draw_groups(&b), one);
 		for (int q = 0; status == 0 && q < ESTIMATES; q++)
-			draw[q * draws + b] = one[q].value;
+			draw[q * draws + i] =
+				one[q].value + (out[q].value - each[q].value);
 	}
 	for (int q = 0; status == 0 && q < ESTIMATES; q++)
-		put_interval(draw + q * draws, draws, par->confidence, &out[q]);
+		put_interval(
+			draw + q * draws, draws, ensemble_par(e)->confidence, &out[q]);
+	bootstrap_free(&b);
 	free(draw);
-	free(pick);
-	return status;
-}
-
-/* Means over the realisations; room holds three values for each. */
-static void average(
-	const struct ensemble *e, long step, double *room, struct step_estimate *out)
-{
-	const struct ensemble_par *par = ensemble_par(e);
-	double *count = room, *volume = count + par->realisations;
-	double *total = volume + par->realisations;
-	size_t n = 0;
-
-	for (size_t r = 0; r < par->realisations; r++) {
-		const struct ensemble_cell *cell = ensemble_cell(e, r, step);
-
-		out->all_count += cell->total_count;
-		if (!cell->there)
-			continue;
-		count[n] = cell->count;
-		volume[n] = cell->volume;
-		total[n++] = cell->total_volume;
-	}
-	out->realisations = (double)n;
-	out->count = sample_mean(count, n, par->confidence, &out->count_sd).value;
-	out->volume = sample_mean(volume, n, par->confidence, &out->volume_sd).value;
-	out->all_volume =
-		sample_mean(total, n, par->confidence, &out->all_volume_sd).value;
-}
-
-int estimate_step(const struct ensemble *e, long step, struct step_estimate *out)
-{
-	const struct ensemble_par *par = ensemble_par(e);
-	double *room = calloc(3 * par->realisations + 1, sizeof *room), spread;
-	size_t n;
-	double *x = ensemble_diameters(e, NULL, step, step, &n);
-	struct weibull w;
-	int status = room && x ? 0 : -1;
-
-	*out = (struct step_estimate){ .shape = NAN, .scale = NAN };
-	if (status == 0) {
-		average(e, step, room, out);
-		out->diameter = sample_mean(x, n, par->confidence, &spread).value;
-		if (estimate_weibull(e, x, n, &w) == 0) {
-			out->shape = w.shape.value;
-			out->scale = w.scale.value;
-		}
-	}
-	free(room);
-	free(x);
 	return status;
 }

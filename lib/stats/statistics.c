@@ -6,12 +6,20 @@
 
 /* Weibull */
 
+/* The parameters of the search are ln k and K ln s, with K about k: all curvatures are
+ * then of the order of 1, however narrow the distribution. */
 struct sample {
-	const double *x;   /* over the unit */
-	const double *log; /* of them */
+	const double *log; /* of the values over the unit */
+	const double *weight;
 	size_t n;
-	double low, high, mean_log;
+	double count; /* sum of the weights */
+	double low, high, mean_log, stretch /* K */;
 };
+
+static double weight_of(const double *weight, size_t i)
+{
+	return weight ? weight[i] : 1;
+}
 
 /* F(high) - F(low), computed so that a small tail is not lost. */
 static double window(double low, double high, double k, double s)
@@ -21,15 +29,15 @@ static double window(double low, double high, double k, double s)
 	return a > 0 ? exp(-a) * -expm1(a - b) : -expm1(-b);
 }
 
-/* Negative log likelihood over n in the logarithms of shape and scale. */
-static double minus_log(const struct sample *m, double log_k, double log_s)
+/* Negative log likelihood over n. */
+static double minus_log(const struct sample *m, double log_k, double stretched)
 {
-	double k = exp(log_k), s = exp(log_s), sum = 0;
+	double k = exp(log_k), log_s = stretched / m->stretch, sum = 0;
 
 	for (size_t i = 0; i < m->n; i++)
-		sum += exp(k * (m->log[i] - log_s));
-	return -(log_k - log_s + (k - 1) * (m->mean_log - log_s) - sum / (double)m->n -
-		 log(window(m->low, m->high, k, s)));
+		sum += weight_of(m->weight, i) * exp(k * (m->log[i] - log_s));
+	return -(log_k - log_s + (k - 1) * (m->mean_log - log_s) - sum / m->count -
+		 log(window(m->low, m->high, k, exp(log_s))));
 }
 
 /* Derivative of the likelihood of a whole distribution by the shape, with the scale at
@@ -39,7 +47,7 @@ static double shape_equation(const struct sample *m, double k, double *derivativ
 	double sum = 0, logs = 0, squares = 0;
 
 	for (size_t i = 0; i < m->n; i++) {
-		double l = m->log[i], p = exp(k * l);
+		double l = m->log[i], p = weight_of(m->weight, i) * exp(k * l);
 
 		sum += p;
 		logs += p * l;
@@ -50,7 +58,7 @@ static double shape_equation(const struct sample *m, double k, double *derivativ
 	return 1 / k + m->mean_log - logs;
 }
 
-/* Newton's method within a bracket. */
+/* Newton's method within a bracket, which is doubled until it holds the maximum. */
 static double whole_shape(const struct sample *m)
 {
 	double low = 1e-3, high = INFINITY, k = 1, slope;
@@ -64,7 +72,7 @@ static double whole_shape(const struct sample *m)
 			high = k;
 		if (!(next > low && next < high))
 			next = isfinite(high) ? 0.5 * (low + high) : 2 * k;
-		if (fabs(next - k) < 1e-15 * k || next > 1e6)
+		if (fabs(next - k) < 1e-15 * k)
 			break;
 		k = next;
 	}
@@ -83,18 +91,19 @@ static double edge(double x, double k, double s, double *with_log)
 /* Gradient of minus_log() in closed form. */
 static void slope(const struct sample *m, const double p[2], double g[2])
 {
-	double k = exp(p[0]), s = exp(p[1]), sum = 0, logs = 0, la, lb, n = (double)m->n;
+	double k = exp(p[0]), log_s = p[1] / m->stretch, s = exp(log_s);
+	double sum = 0, logs = 0, la, lb, n = m->count;
 	double w = window(m->low, m->high, k, s);
 	double a = edge(m->low, k, s, &la), b = edge(m->high, k, s, &lb);
 
 	for (size_t i = 0; i < m->n; i++) {
-		double l = m->log[i] - p[1], u = exp(k * l);
+		double l = m->log[i] - log_s, u = weight_of(m->weight, i) * exp(k * l);
 
 		sum += u;
 		logs += u * l;
 	}
-	g[0] = -(1 + k * (m->mean_log - p[1]) - k * logs / n - (lb - la) / w);
-	g[1] = -(-k + k * sum / n - k * (a - b) / w);
+	g[0] = -(1 + k * (m->mean_log - log_s) - k * logs / n - (lb - la) / w);
+	g[1] = -(-k + k * sum / n - k * (a - b) / w) / m->stretch;
 }
 
 /* Curvature (11, 12, 22) by central differences of the gradient. */
@@ -132,9 +141,11 @@ static void newton_step(const double g[2], const double h[3], double step[2])
 /* Minimum from p on, with steps of at most a half that never lead up. */
 static int descend(const struct sample *m, double p[2], double h[3])
 {
-	double here = minus_log(m, p[0], p[1]), g[2], step[2];
+	double here = minus_log(m, p[0], p[1]), g[2], step[2], start = p[0];
 
-	for (int i = 0; i < 500 && fabs(p[0]) < 20 && fabs(p[1]) < 20; i++) {
+	for (int i = 0; i < 500 && fabs(p[0] - start) < 20 &&
+			fabs(p[1]) < 20 * fmax(m->stretch, 1);
+		i++) {
 		double size, there, steep;
 
 		slope(m, p, g);
@@ -186,17 +197,18 @@ static int ascending(const void *a, const void *b)
 	return (p > q) - (p < q);
 }
 
-double weibull_distance(const struct weibull *w, double *x, size_t n)
+double weibull_distance(
+	const struct weibull *w, const double *x, const double *weight, size_t n)
 {
-	double most = 0;
+	double most = 0, all = 0, below = 0;
 
-	if (n > 0)
-		qsort(x, n, sizeof(*x), ascending);
+	for (size_t i = 0; i < n; i++)
+		all += weight_of(weight, i);
 	for (size_t i = 0; i < n; i++) {
-		double f = distribution(w, x[i]);
+		double f = distribution(w, x[i]), next = below + weight_of(weight, i);
 
-		most = fmax(most,
-			fmax(f - (double)i / (double)n, (double)(i + 1) / (double)n - f));
+		most = fmax(most, fmax(f - below / all, next / all - f));
+		below = next;
 	}
 	return most;
 }
@@ -212,61 +224,66 @@ static struct estimate log_interval(
 }
 
 /* On values over their mean. */
-static int fit_scaled(
-	const struct sample *m, double unit, double confidence, struct weibull *w)
+static enum weibull_status fit_scaled(
+	struct sample *m, double unit, double confidence, struct weibull *w)
 {
-	double p[2], h[3], det, z = gsl_cdf_ugaussian_Pinv(0.5 + 0.5 * confidence),
-				sum = 0;
-	double k = whole_shape(m), n = (double)m->n;
+	double p[2], h[3], det, sum = 0;
+	double z = gsl_cdf_ugaussian_Pinv(0.5 + 0.5 * confidence);
+	double k = whole_shape(m), n = m->count;
 
 	for (size_t i = 0; i < m->n; i++)
-		sum += pow(m->x[i], k);
+		sum += weight_of(m->weight, i) * exp(k * m->log[i]);
+	m->stretch = k;
 	p[0] = log(k);
-	p[1] = log(sum / n) / k;
+	p[1] = log(sum / n);
 	if (m->low > 0 || isfinite(m->high)) {
 		if (descend(m, p, h))
-			return -1;
+			return WEIBULL_NONE;
 	} else {
 		curvature(m, p, h);
 	}
 	det = h[0] * h[2] - h[1] * h[1];
+	if (!(det > 0 && h[0] > 0 && h[2] > 0))
+		return WEIBULL_NONE;
 	w->shape = log_interval(p[0], sqrt(h[2] / det / n), 1, z);
-	w->scale = log_interval(p[1], sqrt(h[0] / det / n), unit, z);
+	w->scale = log_interval(
+		p[1] / m->stretch, sqrt(h[0] / det / n) / m->stretch, unit, z);
 	w->low = m->low * unit;
 	w->high = m->high * unit;
 	w->mean = w->scale.value * tgamma(1 + 1 / w->shape.value);
-	return 0;
+	return WEIBULL_OK;
 }
 
-int weibull_fit(const double *x, size_t n, double low, double high, double confidence,
-	struct weibull *w)
+enum weibull_status weibull_fit(const double *x, const double *weight, size_t n,
+	double low, double high, double confidence, struct weibull *w)
 {
 	double *y, unit = 0, least = INFINITY, most = 0;
-	struct sample m = { 0 };
-	int status = -1;
+	struct sample m = { .weight = weight, .n = n };
+	enum weibull_status status;
 
 	for (size_t i = 0; i < n; i++) {
 		if (!(x[i] > 0) || x[i] < low || x[i] > high)
-			return -1;
-		unit += x[i] / (double)n;
+			return WEIBULL_NONE;
+		m.count += weight_of(weight, i);
+		unit += (x[i] - unit) * weight_of(weight, i) / m.count;
 		least = fmin(least, x[i]);
 		most = fmax(most, x[i]);
 	}
-	y = malloc((2 * n + 1) * sizeof(*y));
+	if (n < 2 || least >= most * (1 - 1e-12))
+		return WEIBULL_NONE;
+	y = malloc(n * sizeof *y);
 	if (!y)
-		return -1;
+		return WEIBULL_MEMORY;
 	for (size_t i = 0; i < n; i++) {
-		y[i] = x[i] / unit;
-		y[n + i] = log(y[i]);
-		m.mean_log += y[n + i] / (double)n;
+		/* Nearly equal values: their differences have all the digits there are.
+		 */
+		y[i] = log1p((x[i] - unit) / unit);
+		m.mean_log += y[i] * weight_of(weight, i) / m.count;
 	}
-	m.log = y + n;
-	m.x = y;
-	m.n = n;
+	m.log = y;
 	m.low = low / unit;
 	m.high = high / unit;
-	if (n > 1 && least < most * (1 - 1e-12))
-		status = fit_scaled(&m, unit, confidence, w);
+	status = fit_scaled(&m, unit, confidence, w);
 	free(y);
 	return status;
 }
@@ -413,19 +430,10 @@ int power_fit(
 
 /* Samples */
 
-struct estimate sample_mean(
-	const double *x, size_t n, double confidence, double *deviation)
+struct estimate sample_mean(const struct running *r, double confidence)
 {
-	double mean = 0, square = 0;
-
-	for (size_t i = 0; i < n; i++)
-		mean += x[i];
-	mean /= (double)n;
-	for (size_t i = 0; i < n; i++)
-		square += (x[i] - mean) * (x[i] - mean);
-	*deviation = n > 1 ? sqrt(square / (double)(n - 1)) : NAN;
-	return t_interval(
-		n ? mean : NAN, *deviation / sqrt((double)n), (double)n - 1, confidence);
+	return t_interval(r->n > 0 ? r->mean : NAN, sqrt(running_variance(r) / r->n),
+		r->n - 1, confidence);
 }
 
 double sample_quantile(double *x, size_t n, double level)

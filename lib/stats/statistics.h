@@ -1,12 +1,13 @@
 /* statistics.h - distributions of wear particles: Weibull and power-law fits
  *
  *	struct weibull w;
- *	if (weibull_fit(diameter, n, 0, INFINITY, 0.95, &w) == 0)
+ *	if (weibull_fit(diameter, NULL, n, 0, INFINITY, 0.95, &w) == WEIBULL_OK)
  *		printf("%g (%g .. %g)\n", w.shape.value, w.shape.low, w.shape.high);
  */
 #ifndef CONTACT_STATISTICS_H
 #define CONTACT_STATISTICS_H
 
+#include "num/running.h"
 #include <stddef.h>
 
 /* A value and its confidence interval; nan where there is none. */
@@ -21,18 +22,26 @@ struct weibull {
 	double low, high; /* where it is cut off */
 };
 
-/* Maximum likelihood for n values x > 0.  Where values below low or above high could not
- * be seen, the density is that of the distribution cut off there; 0 and INFINITY for a
- * whole one.  Intervals from the curvature of the likelihood in the logarithms of the
- * parameters.  -1 with fewer than two different values, values outside [low, high], no
- * maximum (a cut-off sample that looks like no Weibull distribution), or without
- * memory. */
-int weibull_fit(const double *x, size_t n, double low, double high, double confidence,
-	struct weibull *w);
+enum weibull_status {
+	WEIBULL_OK,
+	WEIBULL_NONE, /* fewer than two different values (apart by 1e-12 of themselves),
+		       * values outside [low, high], or no maximum: a cut-off sample
+		       * that looks like no Weibull distribution */
+	WEIBULL_MEMORY
+};
+
+/* Maximum likelihood for n values x > 0, each of them weight[i] times (NULL: once).
+ * Where values below low or above high could not be seen, the density is that of the
+ * distribution cut off there; 0 and INFINITY for a whole one.  Intervals from the
+ * curvature of the likelihood in the logarithms of the parameters.  w is set only where
+ * the fit succeeds. */
+enum weibull_status weibull_fit(const double *x, const double *weight, size_t n,
+	double low, double high, double confidence, struct weibull *w);
 double weibull_density(const struct weibull *w, double x); /* cut off as fitted */
-/* Kolmogorov-Smirnov: largest |empirical - fitted| distribution of n values, which are
- * sorted. */
-double weibull_distance(const struct weibull *w, double *x, size_t n);
+/* Kolmogorov-Smirnov: largest |empirical - fitted| distribution of n ascending values,
+ * each weight[i] times (NULL: once). */
+double weibull_distance(
+	const struct weibull *w, const double *x, const double *weight, size_t n);
 
 /* y = factor x^exponent + offset (2-16). */
 struct power {
@@ -46,9 +55,8 @@ struct power {
 int power_fit(
 	const double *x, const double *y, size_t n, double confidence, struct power *p);
 
-/* Mean with its interval by Student's t, and standard deviation (n - 1). */
-struct estimate sample_mean(
-	const double *x, size_t n, double confidence, double *deviation);
+/* The mean of values, with its interval by Student's t. */
+struct estimate sample_mean(const struct running *r, double confidence);
 
 /* Quantile of n values, which are sorted: linear between order statistics. */
 double sample_quantile(double *x, size_t n, double level);

@@ -1,145 +1,194 @@
 #include "stress/influence.h"
+#include "stress/stress_kernel.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { N = STRESS_COMPONENTS };
-
-static const enum stress_component first[TENSOR_NUMBERS] = { [DEV_X] = STRESS_XX,
+static const enum stress_component component[STRESS_NUMBERS] = { [DEV_X] = STRESS_XX,
 	[DEV_Y] = STRESS_YY,
 	[DEV_XY] = STRESS_XY,
 	[DEV_XZ] = STRESS_XZ,
 	[DEV_YZ] = STRESS_YZ,
 	[DEV_ZZ] = STRESS_ZZ };
 
-double influence_mises(const double v[MISES_NUMBERS])
+int influence_odd(enum stress_number number, int axis)
 {
-	double t = v[DEV_XY] * v[DEV_XY] + v[DEV_XZ] * v[DEV_XZ] + v[DEV_YZ] * v[DEV_YZ];
-	double d = v[DEV_X] * v[DEV_X] + v[DEV_Y] * v[DEV_Y] - v[DEV_X] * v[DEV_Y];
-
-	return sqrt(d + 3 * t);
+	return stress_odd(component[number], axis);
 }
 
-int influence_odd(enum influence_number number, int axis)
+/* Adds weight times a stress found for shear along x to the numbers; with swap, x and y
+ * have changed places. */
+static void add_numbers(double *number, const double *stress, double weight, int swap)
 {
-	return stress_odd(first[number], axis);
+	double zz = stress[STRESS_ZZ];
+
+	number[swap ? DEV_Y : DEV_X] += weight * (stress[STRESS_XX] - zz);
+	number[swap ? DEV_X : DEV_Y] += weight * (stress[STRESS_YY] - zz);
+	number[DEV_XY] += weight * stress[STRESS_XY];
+	number[swap ? DEV_YZ : DEV_XZ] += weight * stress[STRESS_XZ];
+	number[swap ? DEV_XZ : DEV_YZ] += weight * stress[STRESS_YZ];
+	number[DEV_ZZ] += weight * zz;
 }
 
-static void swap_axes(double *t)
+static void add_point(const struct influence_par *p, double x, double y, double z,
+	double weight, struct influence *f)
 {
-	double xx = t[STRESS_XX], xz = t[STRESS_XZ];
+	double normal[STRESS_COMPONENTS], shear[STRESS_COMPONENTS];
+	double area = weight * p->ax * p->ay;
+	int swap = p->axis;
 
-	t[STRESS_XX] = t[STRESS_YY];
-	t[STRESS_YY] = xx;
-	t[STRESS_XZ] = t[STRESS_YZ];
-	t[STRESS_YZ] = xz;
+	stress_point_load(
+		p->nu, swap ? y : x, swap ? x : y, z, normal, p->mu != 0 ? shear : NULL);
+	add_numbers(f->normal, normal, area, swap);
+	if (p->mu != 0)
+		add_numbers(f->shear, shear, area, swap);
 }
 
-/* Coefficients are found for shear along x; for shear along y the axes change places. */
-int influence_new(
-	struct influence *f, const struct stress_par *par, double z, int wx, int wy)
+static void add_patch(const struct influence_par *p, double x, double y, double z,
+	double weight, struct influence *f)
 {
-	size_t n = (size_t)wx * wy * N;
-	int status;
+	double normal[STRESS_COMPONENTS], shear[STRESS_COMPONENTS];
+	int swap = p->axis;
 
-	*f = (struct influence){ .par = par, .wx = wx, .wy = wy };
-	f->normal = malloc(n * (par->mu > 0 ? 2 : 1) * sizeof(*f->normal));
-	if (!f->normal)
-		return -1;
-	f->shear = par->mu > 0 ? f->normal + n : NULL;
-	if (par->axis == 0)
-		status = stress_cells(
-			par->ax, par->ay, par->nu, z, wx, wy, f->normal, f->shear);
-	else
-		status = stress_cells(
-			par->ay, par->ax, par->nu, z, wy, wx, f->normal, f->shear);
-	if (status)
-		influence_free(f);
-	for (size_t i = 0; !status && par->axis && i < n; i += N) {
-		swap_axes(f->normal + i);
-		if (f->shear)
-			swap_axes(f->shear + i);
-	}
-	return status;
+	stress_patch(0.5 * (swap ? p->ay : p->ax), 0.5 * (swap ? p->ax : p->ay), p->nu,
+		swap ? y : x, swap ? x : y, z, normal, p->mu != 0 ? shear : NULL);
+	add_numbers(f->normal, normal, weight, swap);
+	if (p->mu != 0)
+		add_numbers(f->shear, shear, weight, swap);
 }
 
-void influence_free(struct influence *f)
+struct influence influence_point(
+	const struct influence_par *p, double x, double y, double z)
 {
-	free(f->normal);
-	f->normal = f->shear = NULL;
+	struct influence f = { { 0 }, { 0 } };
+
+	add_point(p, x, y, z, 1, &f);
+	return f;
 }
 
-/* A number at an offset and its mirror images: value[flipy][flipx].  The parity under
- * shear is the other one along its axis. */
-static void quadrants(const struct influence *f, enum influence_number number, int i,
-	int j, double value[2][2])
+/* Three points for the weight 1 - |x| on [-1, 1], exact to degree 5. */
+enum { HAT = 3 };
+static const double hat_node[HAT] = { -0.63245553203367586640, 0,
+	0.63245553203367586640 };
+static const double hat_weight[HAT] = { 5. / 24, 14. / 24, 5. / 24 };
+
+/* Five Gauss points on [-1/2, 1/2]. */
+enum { GAUSS = 5 };
+static const double gauss_node[GAUSS] = { -0.45308992296933199640,
+	-0.26923465505284154552, 0, 0.26923465505284154552, 0.45308992296933199640 };
+static const double gauss_weight[GAUSS] = { 0.11846344252809454376,
+	0.23931433524968323402, 0.28444444444444444444, 0.23931433524968323402,
+	0.11846344252809454376 };
+
+/* Points that crowd towards the ends of [-1/2, 1/2], x' = 30 t^2 (1 - t)^2, where the
+ * stress on the edges of a loaded cell has logarithms and steps. */
+enum { CROWD = 16 };
+
+static double crowd(int k, double *weight)
 {
-	size_t at = (f->par->axis ? (size_t)i * f->wy + j : (size_t)j * f->wx + i) * N;
-	int c = first[number], axis = f->par->axis;
-	double p = f->normal[at + c], s = f->shear ? f->shear[at + c] : 0;
+	double t = (k + 0.5) / CROWD, u = 1 - t;
 
-	if (number == DEV_X || number == DEV_Y) {
-		p -= f->normal[at + STRESS_ZZ];
-		s -= f->shear ? f->shear[at + STRESS_ZZ] : 0;
-	}
-	s *= f->par->mu;
-	for (int fy = 0; fy < 2; fy++)
-		for (int fx = 0; fx < 2; fx++) {
-			int odd = (fx && stress_odd(c, 0)) ^ (fy && stress_odd(c, 1));
-			int shear_odd = odd ^ (axis ? fy : fx);
+	*weight = 30 * t * t * u * u / CROWD;
+	return t * t * t * (10 - 15 * t + 6 * t * t) - 0.5;
+}
 
-			value[fy][fx] = (odd ? -p : p) + (shear_odd ? -s : s);
+/* The pyramid is the mean of cells whose centres are spread over one cell. */
+static void mean_of_patches(const struct influence_par *p, double x, double y, double z,
+	int crowded, struct influence *f)
+{
+	int n = crowded ? CROWD : GAUSS;
+
+	for (int j = 0; j < n; j++)
+		for (int i = 0; i < n; i++) {
+			double wx = gauss_weight[i % GAUSS], wy = gauss_weight[j % GAUSS];
+			double u = crowded ? crowd(i, &wx) : gauss_node[i];
+			double v = crowded ? crowd(j, &wy) : gauss_node[j];
+
+			add_patch(p, x - u * p->ax, y - v * p->ay, z, wx * wy, f);
 		}
 }
 
-void influence_table(const struct influence *f, double *table)
+struct influence influence_element(
+	const struct influence_par *p, double x, double y, double z)
 {
-	ptrdiff_t row = 2 * (ptrdiff_t)f->wx - 1;
-	double *middle = table + ((f->wy - 1) * row + f->wx - 1) * MISES_NUMBERS;
+	struct influence f = { { 0 }, { 0 } };
+	double side = fmax(p->ax, p->ay), r = sqrt(x * x + y * y + z * z) / side;
+	int touches = fabs(x) < 1.5 * p->ax && fabs(y) < 1.5 * p->ay && z < side;
 
-	for (int j = 0; j < f->wy; j++)
-		for (int i = 0; i < f->wx; i++)
-			for (int c = 0; c < MISES_NUMBERS; c++) {
-				double v[2][2];
-
-				quadrants(f, c, i, j, v);
-				for (int k = 0; k < 4; k++) {
-					int x = k & 1 ? -i : i, y = k & 2 ? -j : j;
-
-					/* On an axis the image must not overwrite. */
-					if ((k & 1 && !i) || (k & 2 && !j))
-						continue;
-					middle[(y * row + x) * MISES_NUMBERS + c] =
-						v[k >> 1][k & 1];
-				}
-			}
+	/* Three points leave about 0.06 / r^6 of the stress. */
+	if (r < 4) {
+		mean_of_patches(p, x, y, z, touches, &f);
+		return f;
+	}
+	for (int j = 0; j < HAT; j++)
+		for (int i = 0; i < HAT; i++)
+			add_point(p, x - hat_node[i] * p->ax, y - hat_node[j] * p->ay, z,
+				hat_weight[i] * hat_weight[j], &f);
+	return f;
 }
 
-void influence_plane(const struct influence *f, enum influence_number number,
-	double *plane, size_t px, size_t py)
+/* 1 - w: 0 with seven derivatives at the middle (in r), 1 with three at the rim. */
+static double outside(double x, double y, double rx, double ry)
 {
-	memset(plane, 0, px * py * sizeof(*plane));
-	for (int j = 0; j < f->wy; j++)
-		for (int i = 0; i < f->wx; i++) {
-			double v[2][2];
+	double u = x * x / (rx * rx) + y * y / (ry * ry), u2 = u * u;
 
-			quadrants(f, number, i, j, v);
-			for (int k = 0; k < 4; k++) {
-				size_t x = k & 1 ? px - i : (size_t)i;
-				size_t y = k & 2 ? py - j : (size_t)j;
-
-				if ((k & 1 && !i) || (k & 2 && !j))
-					continue;
-				plane[y * px + x] = v[k >> 1][k & 1];
-			}
-		}
+	return u < 1 ? u2 * u2 * (35 - 84 * u + 70 * u2 - 20 * u2 * u) : 1;
 }
 
-void influence_wave(const struct stress_par *p, double kx, double ky, double z,
-	double complex out[TENSOR_NUMBERS])
+static void add_outer(const struct influence_par *p, double x, double y, double z,
+	double rx, double ry, double weight, struct influence *f)
 {
-	double q = hypot(kx, ky), e = exp(-q * z), nu = p->nu, a, b, along, across;
+	weight *= outside(x, y, rx, ry);
+	if (weight > 0)
+		add_point(p, x, y, z, weight, f);
+}
+
+struct influence influence_outer_point(
+	const struct influence_par *p, double x, double y, double z, double rx, double ry)
+{
+	struct influence f = { { 0 }, { 0 } };
+
+	add_outer(p, x, y, z, rx, ry, 1, &f);
+	return f;
+}
+
+struct influence influence_outer_element(
+	const struct influence_par *p, double x, double y, double z, double rx, double ry)
+{
+	struct influence f = { { 0 }, { 0 } };
+
+	for (int j = 0; j < HAT; j++)
+		for (int i = 0; i < HAT; i++)
+			add_outer(p, x - hat_node[i] * p->ax, y - hat_node[j] * p->ay, z,
+				rx, ry, hat_weight[i] * hat_weight[j], &f);
+	return f;
+}
+
+struct influence influence_less(struct influence a, const struct influence *b)
+{
+	for (int c = 0; c < STRESS_NUMBERS; c++) {
+		a.normal[c] -= b->normal[c];
+		a.shear[c] -= b->shear[c];
+	}
+	return a;
+}
+
+/* Under shear the parity is the other one along its axis. */
+double influence_image(const struct influence_par *p, const struct influence *f,
+	enum stress_number number, int mx, int my)
+{
+	int odd = (mx && influence_odd(number, 0)) ^ (my && influence_odd(number, 1));
+	int shear_odd = odd ^ (p->axis ? my : mx);
+	double n = f->normal[number], s = p->mu * f->shear[number];
+
+	return (odd ? -n : n) + (shear_odd ? -s : s);
+}
+
+void influence_wave(const struct influence_par *p, double kx, double ky, double z,
+	double complex out[STRESS_NUMBERS])
+{
+	double q = sqrt(kx * kx + ky * ky), e = exp(-q * z), nu = p->nu, a, b, along,
+	       across;
 	double complex ll, tt, zz, lt, lz, tz, xx, yy;
 
 	if (q == 0) {
@@ -169,4 +218,12 @@ void influence_wave(const struct stress_par *p, double kx, double ky, double z,
 	out[DEV_XZ] = a * lz - b * tz;
 	out[DEV_YZ] = b * lz + a * tz;
 	out[DEV_ZZ] = zz;
+}
+
+double influence_wave_bound(const struct influence_par *p, double x)
+{
+	double normal = 2 + 4 * p->nu * p->nu + 4 * x * x;
+	double shear = 10 - 8 * x + 4 * x * x + 4 * p->nu * p->nu;
+
+	return exp(-x) * (sqrt(normal) + fabs(p->mu) * sqrt(shear));
 }

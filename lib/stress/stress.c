@@ -1,7 +1,8 @@
+#include "stress/stress.h"
+#include "stress/free_sum.h"
 #include "stress/influence.h"
-#include "stress/stress_state.h"
-#include "stress/window.h"
-#include "num/fft.h"
+#include "stress/stress_kernel.h"
+#include "stress/wave_sum.h"
 
 #include <errno.h>
 #include <math.h>
@@ -10,9 +11,53 @@
 
 enum { BLOCK = 8, BLOCKS_SIDE = 64 };
 
-/* Largest von Mises stress, times distance squared, of a point load with friction, over
- * all directions; 2 % are added for the steps of the search. */
-static double largest_point_stress(double nu, double mu)
+struct block {
+	int x0, x1, y0, y1; /* loaded cells within, inclusive */
+	double load;        /* in units times m2; 0: none */
+};
+
+struct stress {
+	struct stress_par par;
+	const struct stress_criterion *criterion;
+	struct influence_par influence;
+	/* Pressures are held in this unit, a power of two near the largest, so that
+	 * squares neither overflow nor vanish. */
+	double unit;
+	double *pressure;
+	double total;     /* N */
+	int loaded;       /* some cell is */
+	int side, bx, by; /* cells to a block's side, blocks */
+	struct block *blocks;
+	double point; /* largest equivalent stress times distance^2 */
+	struct free_sum *free;
+	struct wave_sum *wave; /* one of the two is NULL */
+	double nodes;
+};
+
+/* The numbers of a stress tensor. */
+static void numbers_of(const double t[STRESS_COMPONENTS], double v[STRESS_NUMBERS])
+{
+	v[DEV_X] = t[STRESS_XX] - t[STRESS_ZZ];
+	v[DEV_Y] = t[STRESS_YY] - t[STRESS_ZZ];
+	v[DEV_XY] = t[STRESS_XY];
+	v[DEV_XZ] = t[STRESS_XZ];
+	v[DEV_YZ] = t[STRESS_YZ];
+	v[DEV_ZZ] = t[STRESS_ZZ];
+}
+
+/* Equivalent stress, times distance squared, of a point load in a direction. */
+static double point_stress(const struct stress *s, double x, double y, double z)
+{
+	double t[STRESS_COMPONENTS], v[STRESS_NUMBERS];
+
+	stress_point(s->par.nu, s->par.mu, x, y, z, t);
+	numbers_of(t, v);
+	return s->criterion->value(v);
+}
+
+/* The largest over all directions.  Between steps of 1 and 2 degrees it is no more than
+ * 1e-4 larger; 2 % are added. */
+static double largest_point_stress(const struct stress *s)
 {
 	double most = 0;
 
@@ -20,11 +65,9 @@ static double largest_point_stress(double nu, double mu)
 		for (int j = 0; j < 360; j += 2) {
 			double up = i * 0.017453292519943295,
 			       turn = j * 0.017453292519943295;
-			double s[STRESS_COMPONENTS];
 
-			stress_point(nu, mu, cos(up) * cos(turn), cos(up) * sin(turn),
-				sin(up), s);
-			most = fmax(most, stress_von_mises(s));
+			most = fmax(most, point_stress(s, cos(up) * cos(turn),
+						  cos(up) * sin(turn), sin(up)));
 		}
 	return 1.02 * most;
 }
@@ -32,68 +75,61 @@ static double largest_point_stress(double nu, double mu)
 static int par_ok(const struct stress_par *p)
 {
 	return p->nx > 0 && p->ny > 0 && p->nx <= 1 << 20 && p->ny <= 1 << 20 &&
-	       p->ax > 0 && p->ay > 0 && p->dz > 0 && p->offset >= 0 && p->nu >= 0 &&
-	       p->nu <= 0.5 && p->mu >= 0 &&
-	       isfinite(p->ax + p->ay + p->dz + p->offset + p->mu);
+	       p->ax > 0 && p->ay > 0 && p->nu >= 0 && p->nu <= 0.5 &&
+	       isfinite(p->ax + p->ay + p->mu);
 }
 
 struct stress *stress_new(const struct stress_par *par)
 {
 	struct stress *s;
-	size_t n = (size_t)par->nx * par->ny;
+	size_t n = (size_t)par->nx * (size_t)par->ny;
+	int full = par->method == STRESS_FULL;
 
 	if (!par_ok(par)) {
 		errno = EDOM;
 		return NULL;
 	}
-	s = calloc(1, sizeof(*s));
+	s = calloc(1, sizeof *s);
 	if (!s)
 		return NULL;
 	s->par = *par;
+	s->criterion = par->criterion ? par->criterion : &stress_von_mises_criterion;
+	s->influence =
+		(struct influence_par){ par->ax, par->ay, par->nu, par->mu, par->axis };
 	s->side = (par->nx > par->ny ? par->nx : par->ny) / BLOCKS_SIDE;
 	s->side = s->side < BLOCK ? BLOCK : s->side;
 	s->bx = (par->nx + s->side - 1) / s->side;
 	s->by = (par->ny + s->side - 1) / s->side;
-	s->blocks = calloc((size_t)s->bx * s->by, sizeof(*s->blocks));
-	s->loads = malloc(n * sizeof(*s->loads));
-	s->pressure = malloc(n * sizeof(*s->pressure));
-	s->layers = calloc(LAYERS_KEPT, sizeof(*s->layers));
-	if (!s->blocks || !s->loads || !s->pressure || !s->layers) {
+	s->blocks = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->blocks);
+	s->pressure = malloc(n * sizeof *s->pressure);
+	if (par->periodic)
+		s->wave = wave_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
+	else
+		s->free = free_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
+	if (!s->blocks || !s->pressure || (!s->wave && !s->free)) {
 		stress_free(s);
 		errno = ENOMEM;
 		return NULL;
 	}
-	s->point = largest_point_stress(par->nu, par->mu);
+	s->point = largest_point_stress(s);
 	return s;
-}
-
-void stress_layer_free(struct layer *l)
-{
-	free(l->table);
-	fft_free(l->spectra);
-	memset(l, 0, sizeof(*l));
 }
 
 void stress_free(struct stress *s)
 {
 	if (!s)
 		return;
-	for (int i = 0; s->layers && i < LAYERS_KEPT; i++)
-		stress_layer_free(&s->layers[i]);
-	stress_layer_free(&s->spare);
-	for (int i = 0; i < WINDOWS; i++)
-		window_free(s->part[i].window);
-	free(s->sums);
-	free(s->layers);
+	free_sum_free(s->free);
+	wave_sum_free(s->wave);
 	free(s->blocks);
-	free(s->loads);
 	free(s->pressure);
 	free(s);
 }
 
 static void add_to_block(struct stress *s, int x, int y, double load)
 {
-	struct block *b = &s->blocks[(size_t)(y / s->side) * s->bx + x / s->side];
+	struct block *b =
+		&s->blocks[(size_t)(y / s->side) * (size_t)s->bx + (size_t)(x / s->side)];
 
 	if (b->load == 0) {
 		b->x0 = b->x1 = x;
@@ -122,59 +158,52 @@ static double unit_of(const double *pressure, size_t n)
 
 int stress_load(struct stress *s, const double *pressure)
 {
-	int nx = s->par.nx, ny = s->par.ny;
-	double area = s->par.ax * s->par.ay, unit = unit_of(pressure, (size_t)nx * ny);
+	size_t nx = (size_t)s->par.nx, ny = (size_t)s->par.ny;
+	double area = s->par.ax * s->par.ay, unit = unit_of(pressure, nx * ny);
 
 	if (unit == 0) {
 		errno = EDOM;
 		return -1;
 	}
 	s->unit = unit;
-	for (int i = 0; i < WINDOWS; i++)
-		s->part[i].loaded = 0;
-	s->nloads = 0;
 	s->total = 0;
-	memset(s->blocks, 0, (size_t)s->bx * s->by * sizeof(*s->blocks));
-	s->x0 = nx, s->x1 = -1, s->y0 = ny, s->y1 = -1;
-	for (int y = 0; y < ny; y++)
-		for (int x = 0; x < nx; x++) {
-			double p = pressure[(size_t)y * nx + x] / unit;
+	s->loaded = 0;
+	memset(s->blocks, 0, (size_t)s->bx * (size_t)s->by * sizeof *s->blocks);
+	for (size_t y = 0; y < ny; y++)
+		for (size_t x = 0; x < nx; x++) {
+			double p = pressure[y * nx + x] / unit;
 
-			s->pressure[(size_t)y * nx + x] = p;
+			s->pressure[y * nx + x] = p;
 			if (p == 0)
 				continue;
-			s->loads[s->nloads++] = (struct load){ x, y, p };
-			s->x0 = x < s->x0 ? x : s->x0;
-			s->x1 = x > s->x1 ? x : s->x1;
-			s->y0 = y < s->y0 ? y : s->y0;
-			s->y1 = y;
+			s->loaded = 1;
 			s->total += p * area * unit;
-			add_to_block(s, x, y, fabs(p) * area);
+			add_to_block(s, (int)x, (int)y, fabs(p) * area);
 		}
+	if (s->wave)
+		wave_sum_load(s->wave, s->pressure);
+	else
+		free_sum_load(s->free, s->pressure);
 	return 0;
-}
-
-int stress_claim(struct stress *s, size_t bytes)
-{
-	if (s->used + bytes > s->par.memory)
-		return 0;
-	s->used += bytes;
-	return 1;
 }
 
 struct stress_work stress_work(const struct stress *s)
 {
-	return s->work;
+	struct sum_work w = s->wave ? wave_sum_work(s->wave) : free_sum_work(s->free);
+
+	return (struct stress_work){ w.transforms, w.kernel_cells, w.full_layers,
+		w.split_layers, w.coarse_layers, s->nodes };
 }
 
 /* What nodes can fail */
 
-/* Distance between two ranges of cells, from node centre to the edge of a loaded cell. */
+/* Distance between two ranges of cells, from node centre to the edge of the elements of
+ * loaded cells, which reach over half of the next. */
 static double apart(int a0, int a1, int b0, int b1, double size)
 {
 	int cells = b0 > a1 ? b0 - a1 : a0 > b1 ? a0 - b1 : 0;
 
-	return cells ? (cells - 0.5) * size : 0;
+	return cells ? (cells - 1) * size : 0;
 }
 
 static int block_may_fail(const struct stress *s, int bx, int by, double z, double limit)
@@ -182,7 +211,7 @@ static int block_may_fail(const struct stress *s, int bx, int by, double z, doub
 	int x0 = bx * s->side, y0 = by * s->side, last = s->side - 1;
 	double sum = 0;
 
-	for (size_t i = 0; i < (size_t)s->bx * s->by; i++) {
+	for (size_t i = 0; i < (size_t)s->bx * (size_t)s->by; i++) {
 		const struct block *b = &s->blocks[i];
 		double dx, dy;
 
@@ -200,19 +229,18 @@ static int block_may_fail(const struct stress *s, int bx, int by, double z, doub
 
 size_t stress_spans_max(const struct stress *s)
 {
-	return (size_t)s->bx * s->par.ny;
+	return (size_t)s->bx * (size_t)s->par.ny;
 }
 
-size_t stress_reach(struct stress *s, long layer, double limit, struct stress_span *span)
+size_t stress_reach(struct stress *s, double z, double limit, struct stress_span *span)
 {
-	double z = stress_depth(s, layer);
 	size_t count = 0;
 
 	limit /= s->unit;
-	if (s->nloads == 0 || (s->par.periodic && !stress_waves_may_fail(s, z, limit)))
+	if (!s->loaded || (s->wave && wave_sum_bound(s->wave, s->criterion, z) <= limit))
 		return 0;
 	for (int by = 0; by < s->by; by++) {
-		size_t first = count;
+		size_t first = count, width;
 		int y0 = by * s->side,
 		    y1 = y0 + s->side < s->par.ny ? y0 + s->side : s->par.ny;
 
@@ -220,15 +248,14 @@ size_t stress_reach(struct stress *s, long layer, double limit, struct stress_sp
 			int x0 = bx * s->side;
 			int x1 = x0 + s->side < s->par.nx ? x0 + s->side : s->par.nx;
 
-			if (!s->par.periodic && !block_may_fail(s, bx, by, z, limit))
+			if (s->free && !block_may_fail(s, bx, by, z, limit))
 				continue;
 			if (count > first && span[count - 1].end == x0)
 				span[count - 1].end = x1;
 			else
 				span[count++] = (struct stress_span){ y0, x0, x1 };
 		}
-		size_t width = count - first;
-
+		width = count - first;
 		for (int y = y0 + 1; y < y1; y++)
 			for (size_t k = 0; k < width; k++) {
 				span[count] = span[first + k];
@@ -238,48 +265,103 @@ size_t stress_reach(struct stress *s, long layer, double limit, struct stress_sp
 	return count;
 }
 
-double stress_deep(const struct stress *s, long layer)
+double stress_deep(const struct stress *s, double z)
 {
-	double point[STRESS_COMPONENTS], z = stress_depth(s, layer), v[MISES_NUMBERS];
-	double complex mean[TENSOR_NUMBERS];
+	double complex mean[STRESS_NUMBERS];
+	double v[STRESS_DEVIATOR];
 
-	if (!s->par.periodic) {
-		stress_point(s->par.nu, s->par.mu, 0, 0, 1, point);
-		return stress_von_mises(point) * s->total / (z * z);
-	}
-	influence_wave(&s->par, 0, 0, z, mean);
-	for (int c = 0; c < MISES_NUMBERS; c++)
+	if (s->free)
+		return point_stress(s, 0, 0, 1) * fabs(s->total) / (z * z);
+	influence_wave(&s->influence, 0, 0, z, mean);
+	for (int c = 0; c < STRESS_DEVIATOR; c++)
 		v[c] = creal(mean[c]);
-	return influence_mises(v) * s->total /
+	return s->criterion->value(v) * fabs(s->total) /
 	       (s->par.nx * s->par.ax * s->par.ny * s->par.ay);
 }
 
-/* Direct sums cost a multiplication per load and node, transforms some per point and
- * doubling; the factor is where both take the same time (tests/bench/stress.sh). */
-static int prefer_direct(const struct stress *s, double nodes, const struct part *p)
-{
-	static const double CROSSOVER = 0.3;
-	double points = 4. * p->wx * p->wy;
+/* Sums */
 
-	if (s->par.periodic || s->par.method == STRESS_FOURIER)
-		return 0;
-	return s->par.method == STRESS_DIRECT ||
-	       nodes * s->nloads < CROSSOVER * points * log2(points);
+struct take {
+	const struct stress *s;
+	double *out;
+};
+
+static void take_equivalent(void *context, const struct stress_span *span,
+	const double *const number[STRESS_NUMBERS])
+{
+	const struct take *t = context;
+	double *out = t->out + (size_t)span->y * (size_t)t->s->par.nx;
+
+	for (int x = span->begin; x < span->end; x++) {
+		double v[STRESS_DEVIATOR];
+
+		for (int c = 0; c < STRESS_DEVIATOR; c++)
+			v[c] = number[c][x - span->begin];
+		out[x] = t->s->unit * t->s->criterion->value(v);
+	}
 }
 
-int stress_mises(struct stress *s, long layer, const struct stress_span *span,
-	size_t count, double *mises)
+static void take_tensor(void *context, const struct stress_span *span,
+	const double *const number[STRESS_NUMBERS])
 {
-	struct part want;
-	double nodes = 0;
+	static const enum stress_component place[STRESS_NUMBERS] = { [DEV_X] = STRESS_XX,
+		[DEV_Y] = STRESS_YY,
+		[DEV_XY] = STRESS_XY,
+		[DEV_XZ] = STRESS_XZ,
+		[DEV_YZ] = STRESS_YZ,
+		[DEV_ZZ] = STRESS_ZZ };
+	const struct take *t = context;
+	size_t nx = (size_t)t->s->par.nx, n = nx * (size_t)t->s->par.ny;
 
+	for (int c = 0; c < STRESS_NUMBERS; c++)
+		for (int x = span->begin; x < span->end; x++) {
+			int k = x - span->begin;
+			double zz = c == DEV_X || c == DEV_Y ? number[DEV_ZZ][k] : 0;
+
+			t->out[place[c] * n + (size_t)span->y * nx + (size_t)x] =
+				t->s->unit * (number[c][k] + zz);
+		}
+}
+
+static int sum(struct stress *s, double z, const struct stress_want *want)
+{
+	for (size_t i = 0; i < want->count; i++)
+		s->nodes += want->span[i].end - want->span[i].begin;
+	return s->wave ? wave_sum_at(s->wave, z, want) : free_sum_at(s->free, z, want);
+}
+
+int stress_at(struct stress *s, double z, const struct stress_span *span, size_t count,
+	double *value)
+{
+	struct take t = { s, value };
+	struct stress_want want = { span, count, STRESS_DEVIATOR, take_equivalent, &t };
+
+	if (count > 0 && s->loaded)
+		return sum(s, z, &want);
 	for (size_t i = 0; i < count; i++)
-		nodes += span[i].end - span[i].begin;
-	if (nodes == 0)
-		return 0;
-	s->work.nodes += nodes;
-	want = stress_part(s, span, count);
-	if (prefer_direct(s, nodes, &want))
-		return stress_mises_direct(s, layer, span, count, mises);
-	return stress_mises_fourier(s, layer, want, mises);
+		memset(value + (size_t)span[i].y * (size_t)s->par.nx + span[i].begin, 0,
+			(size_t)(span[i].end - span[i].begin) * sizeof *value);
+	return 0;
+}
+
+int stress_tensor(struct stress *s, double z, double *tensor)
+{
+	size_t rows = (size_t)s->par.ny, n = rows * (size_t)s->par.nx;
+	struct stress_span *span = malloc(rows * sizeof *span);
+	struct take t = { s, tensor };
+	struct stress_want want = { span, rows, STRESS_NUMBERS, take_tensor, &t };
+	int status = -1;
+
+	if (!span)
+		return -1;
+	for (int y = 0; y < s->par.ny; y++)
+		span[y] = (struct stress_span){ y, 0, s->par.nx };
+	if (s->loaded)
+		status = sum(s, z, &want);
+	else {
+		memset(tensor, 0, STRESS_COMPONENTS * n * sizeof *tensor);
+		status = 0;
+	}
+	free(span);
+	return status;
 }

@@ -1,10 +1,8 @@
-/* stress.h - stress below a surface loaded by pressure and friction, layer by layer
+/* stress.h - stress below a surface loaded by pressure and friction, depth by depth
  *
- * Sums the influence of every loaded cell (2-6) at the nodes below the cell centres, at
- * depth z = (layer + offset) dz: directly where few cells or few nodes are concerned, by
- * Fourier transform otherwise.  The surface carries pressure p and the shear mu p along
- * +x or +y.  Kernels are combined for both and kept from call to call, as far as the
- * memory allowed for them reaches.
+ * Sums the influence of every loaded cell (2-6) at the nodes below the cell centres.  The
+ * surface carries pressure p, interpolated between the cell centres, and the shear mu p
+ * along +x or +y.
  *
  * On a free surface the grid is all that is loaded; on a periodic one the pressure is the
  * Fourier series through the cell centres, repeated for ever, and the mean lateral strain
@@ -14,76 +12,76 @@
  * Results depend on the arguments alone, not on what was computed before or on threads.
  *
  *	struct stress_par par = { .nx = 128, .ny = 128, .ax = 8e-6, .ay = 8e-6,
- *		.dz = 8e-6, .nu = 0.3, .mu = 0.3, .memory = 1 << 28 };
+ *		.nu = 0.3, .mu = 0.3 };
  *	struct stress *s = stress_new(&par);
- *	struct stress_span span[128];
+ *	struct stress_span *span = malloc(stress_spans_max(s) * sizeof *span);
  *	stress_load(s, p);
  *	n = stress_reach(s, 0, yield, span);
- *	stress_mises(s, 0, span, n, mises);
+ *	stress_at(s, 0, span, n, equivalent);
  */
-#ifndef CONTACT_STRESS_H
-#define CONTACT_STRESS_H
+#ifndef STRESS_STRESS_H
+#define STRESS_STRESS_H
 
 #include "num/pool.h"
+#include "stress/criterion.h"
+#include "stress/span.h"
 
 #include <stddef.h>
 
 struct stress;
 
-/* How a layer is summed; the faster way is chosen from the numbers of loads and nodes. */
-enum stress_method { STRESS_FASTER, STRESS_DIRECT, STRESS_FOURIER };
+/* Sums on points as coarse as the depth allows (free_sum.h, wave_sum.h: within 3e-4 of
+ * the largest pressure), or on all cells, which is to compare with. */
+enum stress_method { STRESS_COARSE, STRESS_FULL };
 
 struct stress_par {
-	int nx, ny;        /* cells */
-	double ax, ay;     /* cell size, m */
-	double dz, offset; /* depth of a layer is (layer + offset) dz, m */
-	double nu, mu;     /* Poisson's ratio, friction coefficient */
-	int axis;          /* shear along x (0) or y (1) */
-	int periodic;      /* then always by transform */
+	int nx, ny;    /* cells */
+	double ax, ay; /* cell size, m */
+	double nu, mu; /* Poisson's ratio, shear over pressure (either sign) */
+	int axis;      /* shear along x (0) or y (1) */
+	int periodic;
 	enum stress_method method;
-	size_t memory;     /* bytes that kept kernels may take; 0: none is kept */
-	struct pool *pool; /* borrowed; NULL: one thread */
-};
-
-/* Nodes [begin, end) of row y. */
-struct stress_span {
-	int y, begin, end;
+	const struct stress_criterion *criterion; /* NULL: von Mises */
+	struct pool *pool;                        /* borrowed; NULL: one thread */
 };
 
 /* Work done since stress_new(). */
 struct stress_work {
-	double transforms;     /* Fourier transforms of the padded grid */
-	double kernel_cells;   /* influence coefficients evaluated, per component set */
-	double direct_layers;  /* layers summed directly */
-	double fourier_layers; /* layers by transform */
-	double nodes;          /* nodes at which a stress was found */
+	double transforms;    /* Fourier transforms of any size */
+	double kernel_cells;  /* influence coefficients evaluated */
+	double full_layers;   /* summed on all cells */
+	double split_layers;  /* on coarser points, and nearby on the cells */
+	double coarse_layers; /* on coarser points alone */
+	double nodes;         /* at which a stress was wanted */
 };
 
 /* NULL with errno EDOM (a parameter out of range) or ENOMEM. */
 struct stress *stress_new(const struct stress_par *par);
 void stress_free(struct stress *s);
 
-/* Takes a pressure (nx * ny, finite; kept until the next call). */
+/* Takes a pressure (nx * ny, finite; kept until the next call); -1 if it is not finite.
+ */
 int stress_load(struct stress *s, const double *pressure);
 
-/* Spans of nodes whose von Mises stress at this layer may exceed limit; all others are
- * below it for certain, and remain so at every deeper layer.  span has room for
- * stress_spans_max().  The bound adds up the von Mises stress of loads block by block, or
- * of waves (a norm, so the triangle inequality holds). */
-size_t stress_reach(struct stress *s, long layer, double limit, struct stress_span *span);
+/* Spans of nodes whose equivalent stress at depth z may exceed limit; all others are
+ * below it for certain, and remain so at every greater depth.  span has room for
+ * stress_spans_max().  The bound adds up the equivalent stress of loads block by block,
+ * or of waves (criterion.h). */
+size_t stress_reach(struct stress *s, double z, double limit, struct stress_span *span);
 size_t stress_spans_max(const struct stress *s);
 
-/* von Mises stress in the middle below the load as it would be at a layer many times
- * deeper than the grid is long: of a point load, or of the mean load if periodic. */
-double stress_deep(const struct stress *s, long layer);
+/* Equivalent stress in the middle below the load as it would be many times deeper than
+ * the grid is long: of a point load, or of the mean load if periodic. */
+double stress_deep(const struct stress *s, double z);
 
-/* von Mises stress at the nodes of the spans (at least there); -1 when out of memory. */
-int stress_mises(struct stress *s, long layer, const struct stress_span *span,
-	size_t count, double *mises);
+/* Equivalent stress at depth z at the nodes of the spans: value[iy * nx + ix].  -1 when
+ * out of memory. */
+int stress_at(struct stress *s, double z, const struct stress_span *span, size_t count,
+	double *value);
 
 /* The whole tensor on the whole grid: six fields xx yy zz xy xz yz of nx * ny each, one
- * after another. */
-int stress_tensor(struct stress *s, long layer, double *tensor);
+ * after another.  -1 when out of memory. */
+int stress_tensor(struct stress *s, double z, double *tensor);
 
 struct stress_work stress_work(const struct stress *s);
 

@@ -1,16 +1,10 @@
 #include "stress/stress_kernel.h"
 #include "num/sym3.h"
 
-#include <errno.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include <stddef.h>
 
 enum { N = STRESS_COMPONENTS };
-
-/* From here on (in cells) the point load is integrated over the cell: the difference of
- * four corners would lose (distance)^2 digits. */
-static const double FAR = 64;
 
 /* What the closed forms are made of at a corner (x, y), for the roles of x and y as
  * given: nothing here cancels where y < 0 and R + y is small. */
@@ -117,6 +111,17 @@ static void point_load(
 	}
 }
 
+void stress_point_load(double nu, double x, double y, double z,
+	double normal[STRESS_COMPONENTS], double shear[STRESS_COMPONENTS])
+{
+	point_load(x, y, z, nu, normal, shear);
+	for (int c = 0; c < N; c++) {
+		normal[c] *= 1 / (2 * M_PI);
+		if (shear)
+			shear[c] *= 1 / (2 * M_PI);
+	}
+}
+
 void stress_point(double nu, double mu, double x, double y, double z,
 	double stress[STRESS_COMPONENTS])
 {
@@ -125,91 +130,6 @@ void stress_point(double nu, double mu, double x, double y, double z,
 	point_load(x, y, z, nu, stress, shear);
 	for (int c = 0; c < N; c++)
 		stress[c] = (stress[c] + mu * shear[c]) / (2 * M_PI);
-}
-
-/* Point load over a cell by 3 x 3 Gauss-Legendre points. */
-static void far_cell(double x, double y, double z, double ax, double ay, double nu,
-	double *normal, double *shear)
-{
-	static const double node[3] = { -0.77459666924148337704, 0,
-		0.77459666924148337704 };
-	static const double weight[3] = { 5. / 18, 8. / 18, 5. / 18 };
-	double n[N], s[N] = { 0 };
-
-	memset(normal, 0, N * sizeof(*normal));
-	if (shear)
-		memset(shear, 0, N * sizeof(*shear));
-	for (int j = 0; j < 3; j++)
-		for (int i = 0; i < 3; i++) {
-			double area = ax * ay * weight[i] * weight[j] / (2 * M_PI);
-
-			point_load(x - 0.5 * ax * node[i], y - 0.5 * ay * node[j], z, nu,
-				n, shear ? s : NULL);
-			for (int c = 0; c < N; c++) {
-				normal[c] += area * n[c];
-				if (shear)
-					shear[c] += area * s[c];
-			}
-		}
-}
-
-/* Corner values of a row of cells: x = (i - 1/2) ax for 0 <= i <= count. */
-static void corner_row(
-	double *row, int count, double ax, double y, double z, double nu, int shear)
-{
-	for (int i = 0; i <= count; i++) {
-		double *at = row + (size_t)i * 2 * N;
-
-		corner((i - 0.5) * ax, y, z, nu, at, shear ? at + N : NULL);
-	}
-}
-
-int stress_cells(double ax, double ay, double nu, double z, int wx, int wy,
-	double *normal, double *shear)
-{
-	double unit = ax > ay ? ax : ay, *low, *high, *swap;
-
-	ax /= unit, ay /= unit, z /= unit;
-	low = malloc(2 * ((size_t)wx + 1) * 2 * N * sizeof(*low));
-	if (!low) {
-		errno = ENOMEM;
-		return -1;
-	}
-	high = low + ((size_t)wx + 1) * 2 * N;
-	swap = low;
-	for (int j = 0; j < wy; j++) {
-		double y = j * ay, rest = FAR * FAR - y * y - z * z;
-		/* Cells of this row that are near enough for corners. */
-		int near = rest <= 0 ? 0 : (int)fmin(wx, ceil(sqrt(rest) / ax));
-
-		if (near > 0) {
-			if (j == 0)
-				corner_row(low, near, ax, y - 0.5 * ay, z, nu,
-					shear != NULL);
-			corner_row(high, near, ax, y + 0.5 * ay, z, nu, shear != NULL);
-		}
-		for (int i = 0; i < wx; i++) {
-			size_t at = ((size_t)j * wx + i) * N;
-			const double *l = low + (size_t)i * 2 * N,
-				     *h = high + (size_t)i * 2 * N;
-
-			if (i >= near) {
-				far_cell(i * ax, y, z, ax, ay, nu, normal + at,
-					shear ? shear + at : NULL);
-				continue;
-			}
-			difference(h + 2 * N, l + 2 * N, h, l, normal + at);
-			if (shear)
-				difference(
-					h + 3 * N, l + 3 * N, h + N, l + N, shear + at);
-		}
-		double *t = low;
-
-		low = high;
-		high = t;
-	}
-	free(swap);
-	return 0;
 }
 
 int stress_odd(enum stress_component component, int axis)

@@ -28,18 +28,13 @@ enum stress_component {
 void stress_patch(double a, double b, double nu, double x, double y, double z,
 	double normal[STRESS_COMPONENTS], double shear[STRESS_COMPONENTS]);
 
-/* Stress times distance squared at distance one from a unit point load: direction
- * (x, y, z) of unit length, z >= 0.  Pressure 1 and shear mu along +x together. */
+/* Stress under a unit point load, normal and along +x (shear, may be NULL), at a point
+ * other than the load's. */
+void stress_point_load(double nu, double x, double y, double z,
+	double normal[STRESS_COMPONENTS], double shear[STRESS_COMPONENTS]);
+/* Both together, pressure 1 and shear mu. */
 void stress_point(double nu, double mu, double x, double y, double z,
 	double stress[STRESS_COMPONENTS]);
-
-/* Influence of a grid of cells ax by ay at depth z: for offsets 0 <= i < wx, 0 <= j < wy,
- * normal and shear[(j * wx + i) * 6 + component].  shear may be NULL.  Corners are
- * shared between neighbours; beyond 64 cells, where their differences cancel, the point
- * load is integrated over the cell instead, which keeps the relative error below 1e-11.
- */
-int stress_cells(double ax, double ay, double nu, double z, int wx, int wy,
-	double *normal, double *shear);
 
 /* 1 where the component changes sign with x (axis 0) or y (axis 1), for pressure; under
  * shear along an axis the parity in that axis is the other one. */

@@ -1,36 +1,34 @@
 #include "stress/window.h"
 #include "num/fft.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 struct window {
-	const struct stress_par *par;
-	int wx, wy;
-	size_t px, py, columns, rows; /* points; coefficients along x, stored along y */
+	int mx, my, reach_x, reach_y;
+	size_t px, py; /* padded points */
 	struct fft *fft;
 	double *plane;
-	double complex *image; /* of the pressure */
+	double complex *image; /* of the loads */
 	double complex *product;
 };
 
-struct window *window_new(const struct stress_par *par, int wx, int wy)
+struct window *window_new(int mx, int my, int reach_x, int reach_y)
 {
-	struct window *w = calloc(1, sizeof(*w));
+	struct window *w = calloc(1, sizeof *w);
+	size_t spectrum;
 
 	if (!w)
 		return NULL;
-	w->par = par;
-	w->wx = wx;
-	w->wy = wy;
-	w->px = par->periodic ? (size_t)wx : fft_good_size(2 * (size_t)wx - 1);
-	w->py = par->periodic ? (size_t)wy : fft_good_size(2 * (size_t)wy - 1);
-	w->columns = w->px / 2 + 1;
-	w->rows = w->py / 2 + 1;
+	*w = (struct window){
+		.mx = mx, .my = my, .reach_x = reach_x, .reach_y = reach_y
+	};
+	w->px = fft_good_size((size_t)mx + (size_t)reach_x);
+	w->py = fft_good_size((size_t)my + (size_t)reach_y);
+	spectrum = (w->px / 2 + 1) * w->py;
 	w->plane = fft_alloc(w->px * w->py);
-	w->image = fft_alloc_complex(w->columns * w->py);
-	w->product = fft_alloc_complex(w->columns * w->py);
+	w->image = fft_alloc_complex(spectrum);
+	w->product = fft_alloc_complex(spectrum);
 	w->fft = fft_new(w->px, w->py);
 	if (!w->plane || !w->image || !w->product || !w->fft) {
 		window_free(w);
@@ -51,113 +49,58 @@ void window_free(struct window *w)
 	free(w);
 }
 
-size_t window_size(const struct window *w)
+void window_load(struct window *w, const double *load, size_t stride)
 {
-	return w->columns * w->rows;
-}
-
-static void periodic_spectra(
-	const struct window *w, double z, int count, double complex *spectra)
-{
-	double ux = 2 * M_PI / (w->wx * w->par->ax), uy = 2 * M_PI / (w->wy * w->par->ay);
-
-	for (size_t j = 0; j < w->rows; j++)
-		for (size_t i = 0; i < w->columns; i++) {
-			int edge = 2 * i == w->px || 2 * j == w->py;
-			double complex v[TENSOR_NUMBERS];
-
-			influence_wave(w->par, i * ux, j * uy, z, v);
-			/* The shortest wave has no sense of direction. */
-			for (int c = 0; c < count; c++)
-				spectra[c * window_size(w) + j * w->columns + i] =
-					edge ? creal(v[c]) : v[c];
-		}
-}
-
-int window_spectra(struct window *w, double z, int count, double complex *spectra)
-{
-	struct influence f;
-
-	if (w->par->periodic) {
-		periodic_spectra(w, z, count, spectra);
-		return 0;
-	}
-	if (influence_new(&f, w->par, z, w->wx, w->wy))
-		return -1;
-	for (int c = 0; c < count; c++) {
-		influence_plane(&f, c, w->plane, w->px, w->py);
-		fft_forward(w->fft, w->plane, w->product);
-		memcpy(spectra + c * window_size(w), w->product,
-			window_size(w) * sizeof(*spectra));
-	}
-	influence_free(&f);
-	return 0;
-}
-
-void window_load(struct window *w, const double *pressure, int x0, int y0)
-{
-	memset(w->plane, 0, w->px * w->py * sizeof(*w->plane));
-	for (int y = 0; y < w->wy; y++)
-		memcpy(w->plane + y * w->px,
-			pressure + (size_t)(y0 + y) * w->par->nx + x0,
-			w->wx * sizeof(*w->plane));
+	memset(w->plane, 0, w->px * w->py * sizeof *w->plane);
+	for (int y = 0; y < w->my; y++)
+		memcpy(w->plane + (size_t)y * w->px, load + (size_t)y * stride,
+			(size_t)w->mx * sizeof *w->plane);
 	fft_forward(w->fft, w->plane, w->image);
 }
 
-void window_sum(struct window *w, const double complex *spectra,
-	enum influence_number number, double *out)
+/* A kernel on the plane, negative offsets wrapped around.  On a line of symmetry what
+ * is odd across it vanishes. */
+static void put_kernel(struct window *w, const struct influence_par *par,
+	const struct influence *kernel, enum stress_number number)
 {
-	const double complex *half = spectra + number * window_size(w);
-	double scale = 1. / ((double)w->px * (double)w->py);
-	/* Shear along x leaves the parity in y alone: K(kx, -ky) = +-K(kx, ky).  Shear
-	 * along y leaves that in x, and K is that of a real function. */
-	int turned = w->par->axis, odd = influence_odd(number, turned ? 0 : 1);
-	double mirror = odd ? -scale : scale;
+	double normal[4], shear[4]; /* signs of the mirror images, shear times mu */
 
-	for (size_t j = 0; j < w->py; j++) {
-		const double complex *a = w->image + j * w->columns;
-		const double complex *k =
-			half + (j < w->rows ? j : w->py - j) * w->columns;
-		double complex *to = w->product + j * w->columns;
+	for (int m = 0; m < 4; m++) {
+		int odd = ((m & 1) && influence_odd(number, 0)) ^
+			  ((m >> 1) && influence_odd(number, 1));
 
-		for (size_t i = 0; i < w->columns; i++)
-			to[i] = j < w->rows ? scale * (a[i] * k[i])
-				: turned    ? mirror * (a[i] * conj(k[i]))
-					    : mirror * (a[i] * k[i]);
+		normal[m] = odd ? -1 : 1;
+		shear[m] = (odd ^ (par->axis ? m >> 1 : m & 1)) ? -par->mu : par->mu;
 	}
-	fft_inverse(w->fft, w->product, w->plane);
-	for (int y = 0; y < w->wy; y++)
-		memcpy(out + (size_t)y * w->wx, w->plane + y * w->px,
-			w->wx * sizeof(*out));
-}
+	memset(w->plane, 0, w->px * w->py * sizeof *w->plane);
+	for (int j = 0; j <= w->reach_y; j++)
+		for (int i = 0; i <= w->reach_x; i++, kernel++) {
+			double n = kernel->normal[number], s = kernel->shear[number];
+			double share = (i ? 1 : 0.5) * (j ? 1 : 0.5);
 
-/* Largest von Mises stress of a wave at its depth x = q z, by the norm of its tensor:
- * falls with x for all nu and mu. */
-static double wave_bound(const struct stress_par *p, double x)
-{
-	double normal = 2 + 4 * p->nu * p->nu + 4 * x * x;
-	double shear = 10 - 8 * x + 4 * x * x + 4 * p->nu * p->nu;
+			for (int m = 0; m < 4; m++) {
+				size_t x = (m & 1) && i ? w->px - (size_t)i : (size_t)i;
+				size_t y = (m >> 1) && j ? w->py - (size_t)j : (size_t)j;
 
-	return sqrt(1.5) * exp(-x) * (sqrt(normal) + p->mu * sqrt(shear));
-}
-
-double window_bound(const struct window *w, double z)
-{
-	double ux = 2 * M_PI / (w->wx * w->par->ax), uy = 2 * M_PI / (w->wy * w->par->ay);
-	double complex mean[TENSOR_NUMBERS];
-	double v[MISES_NUMBERS], sum;
-
-	influence_wave(w->par, 0, 0, z, mean);
-	for (int c = 0; c < MISES_NUMBERS; c++)
-		v[c] = creal(mean[c] * w->image[0]);
-	sum = influence_mises(v);
-	for (size_t j = 0; j < w->py; j++)
-		for (size_t i = j == 0; i < w->columns; i++) {
-			double ky = j < w->rows ? j * uy : (w->py - j) * uy;
-			int twice = i > 0 && 2 * i < w->px;
-
-			sum += (twice + 1) * cabs(w->image[j * w->columns + i]) *
-			       wave_bound(w->par, hypot(i * ux, ky) * z);
+				w->plane[y * w->px + x] +=
+					share * (normal[m] * n + shear[m] * s);
+			}
 		}
-	return sum / ((double)w->px * (double)w->py);
+}
+
+void window_sum(struct window *w, const struct influence_par *par,
+	const struct influence *kernel, enum stress_number number, double *out,
+	size_t stride)
+{
+	double scale = 1. / ((double)w->px * (double)w->py);
+	size_t n = (w->px / 2 + 1) * w->py;
+
+	put_kernel(w, par, kernel, number);
+	fft_forward(w->fft, w->plane, w->product);
+	for (size_t i = 0; i < n; i++)
+		w->product[i] = scale * (w->product[i] * w->image[i]);
+	fft_inverse(w->fft, w->product, w->plane);
+	for (int y = 0; y < w->my; y++)
+		memcpy(out + (size_t)y * stride, w->plane + (size_t)y * w->px,
+			(size_t)w->mx * sizeof *out);
 }

@@ -1,34 +1,26 @@
-/* window.h - sums over the loads of a part of the grid, by Fourier transform
+/* window.h - sums over the loads of a rectangle, by Fourier transform
  *
- * A window of wx times wy cells holds all loads and all nodes whose stress is wanted.  On
- * a free surface it is padded to twice its size, so that nothing wraps around; on a
- * periodic one it is the whole grid.  Spectra of the influence numbers are stored for
- * half of the wavenumbers along y; the others follow by symmetry.
+ * Loads and nodes are those of mx times my points; a kernel reaches so many points either
+ * way.  Points are padded so that nothing wraps around.
  */
-#ifndef CONTACT_WINDOW_H
-#define CONTACT_WINDOW_H
+#ifndef STRESS_WINDOW_H
+#define STRESS_WINDOW_H
 
 #include "stress/influence.h"
+#include <stddef.h>
 
 struct window;
 
 /* NULL when out of memory. */
-struct window *window_new(const struct stress_par *par, int wx, int wy);
+struct window *window_new(int mx, int my, int reach_x, int reach_y);
 void window_free(struct window *w);
 
-/* Spectra of the first count numbers at depth z: room for window_size(w) coefficients
- * each.  -1 when out of memory. */
-size_t window_size(const struct window *w);
-int window_spectra(struct window *w, double z, int count, double complex *spectra);
-
-/* Takes the pressures of the window whose first cell is (x0, y0) of the grid. */
-void window_load(struct window *w, const double *pressure, int x0, int y0);
-/* out[wy][wx]: the sum for one number. */
-void window_sum(struct window *w, const double complex *spectra,
-	enum influence_number number, double *out);
-
-/* A bound of the von Mises stress at depth z that falls with z: the sum over the waves
- * of the loaded pressure.  Periodic only. */
-double window_bound(const struct window *w, double z);
+/* Takes loads of the points, rows of stride. */
+void window_load(struct window *w, const double *load, size_t stride);
+/* The sum for one number, rows of stride.  kernel[j * (reach_x + 1) + i] is the influence
+ * at the offset (i, j); the others follow by symmetry. */
+void window_sum(struct window *w, const struct influence_par *par,
+	const struct influence *kernel, enum stress_number number, double *out,
+	size_t stride);
 
 #endif

@@ -70,17 +70,19 @@ static double dot(size_t n, const double *a, const double *b)
 	return sum;
 }
 
-static int solve_holes(struct holes *h, const double *z)
+/* The number of steps grows with the width of the widest hole in samples, and is no more
+ * than that of the unknowns in exact arithmetic; twice that leaves room for rounding. */
+static int solve_holes(struct holes *h, const double *z, double *residual)
 {
-	const double tolerance = 1e-13;
-	double rr, first;
+	double rr, first, most = 2 * (double)h->n + 100;
 	int step;
 
 	laplacian(h, h->x, z, h->r);
 	for (size_t k = 0; k < h->n; k++)
 		h->p[k] = h->r[k] = -h->r[k];
 	first = rr = dot(h->n, h->r, h->r);
-	for (step = 0; rr > tolerance * tolerance * first && step < 100000; step++) {
+	for (step = 0; rr > SURFACE_FILLED * SURFACE_FILLED * first && step < most;
+		step++) {
 		double alpha, beta;
 
 		laplacian(h, h->p, NULL, h->q);
@@ -95,10 +97,11 @@ static int solve_holes(struct holes *h, const double *z)
 		for (size_t k = 0; k < h->n; k++)
 			h->p[k] = h->r[k] + beta * h->p[k];
 	}
+	*residual = first > 0 ? sqrt(rr / first) : 0;
 	return step;
 }
 
-int surface_fill(int nx, int ny, double *z, int *iterations)
+int surface_fill(int nx, int ny, double *z, int *iterations, double *residual)
 {
 	size_t n = (size_t)nx * ny, missing = surface_missing(nx, ny, z), k = 0;
 	struct holes h = { nx, ny, missing, NULL, NULL, NULL, NULL, NULL, NULL };
@@ -106,6 +109,7 @@ int surface_fill(int nx, int ny, double *z, int *iterations)
 	int done = 0;
 
 	*iterations = 0;
+	*residual = 0;
 	if (missing == 0)
 		return 1;
 	h.place = calloc(missing, sizeof *h.place);
@@ -124,7 +128,7 @@ int surface_fill(int nx, int ny, double *z, int *iterations)
 		}
 		for (k = 0; k < missing; k++)
 			h.x[k] = mean;
-		*iterations = solve_holes(&h, z);
+		*iterations = solve_holes(&h, z, residual);
 		for (k = 0; k < missing; k++)
 			z[h.place[k]] = h.x[k];
 		done = 1;

@@ -19,8 +19,10 @@ size_t surface_missing(int nx, int ny, const double *z);
 
 /* Replaces missing samples by the solution of Laplace's equation on the grid, the
  * known ones fixed, no slope across the rim.  At least one sample must be known.
- * *iterations counts conjugate-gradient steps. */
-int surface_fill(int nx, int ny, double *z, int *iterations);
+ * *iterations counts conjugate-gradient steps, *residual receives the residual over the
+ * first one; above SURFACE_FILLED the iteration stopped before it converged. */
+#define SURFACE_FILLED 1e-13
+int surface_fill(int nx, int ny, double *z, int *iterations, double *residual);
 
 /* Subtracts the least-squares plane. */
 void surface_level(int nx, int ny, double *z);

@@ -16,36 +16,35 @@ static double hysteresis = 0.03, share = 0.5, freedom, process = NAN, noise = NA
 static long largest = 60, window = 50;
 static int scheme;
 
-struct opt filtering_rows[] = {
-	{ 'n', "order", OPT_CHOICE, UNIT_COUNT, &order, 4, 1000, "N|window|insample|all",
+struct opt filtering_rows[] = { OPT_HEADING("Particle filter"),
+	{ 0, "order", OPT_CHOICE, UNIT_COUNT, &order, 4, 1000, "N|window|insample|all",
 		"order of the grey model, or how it is chosen", orders, 0 },
-	{ 'P', "max-order", OPT_INT, UNIT_COUNT, &largest, 4, 1000, "N",
+	{ 0, "max-order", OPT_INT, UNIT_COUNT, &largest, 4, 1000, "N",
 		"largest order that may be chosen", NULL, 0 },
-	{ 'w', "order-window", OPT_INT, UNIT_COUNT, &window, 1, 10000, "N",
+	{ 0, "order-window", OPT_INT, UNIT_COUNT, &window, 1, 10000, "N",
 		"rows whose forecast errors choose the order", NULL, 0 },
-	{ 'g', "hysteresis", OPT_NUM, UNIT_FRACTION, &hysteresis, 0, 1, "X",
+	{ 0, "hysteresis", OPT_NUM, UNIT_FRACTION, &hysteresis, 0, 1, "X",
 		"relative fall of the error that changes the order", NULL, 0 },
-	{ 'R', "order-range", OPT_LIST, UNIT_COUNT, &range, 0, 1000, "LO:HI",
+	{ 0, "order-range", OPT_LIST, UNIT_COUNT, &range, 0, 1000, "LO:HI",
 		"orders searched while the trend goes on", NULL, 0 },
-	{ 'N', "particles", OPT_INT, UNIT_COUNT, &filtering.particles, 1, 1e7, "N",
+	{ 0, "particles", OPT_INT, UNIT_COUNT, &filtering.particles, 1, 1e7, "N",
 		"particles", NULL, 0 },
-	{ 'r', "resampling", OPT_WORD, UNIT_NONE, &scheme, 0, 0,
+	{ 0, "resampling", OPT_WORD, UNIT_NONE, &scheme, 0, 0,
 		"systematic|stratified|residual|multinomial", "resampling scheme",
 		schemes, 0 },
-	{ 'e', "ess", OPT_NUM, UNIT_FRACTION, &share, 0, 1, "X",
+	{ 0, "ess", OPT_NUM, UNIT_FRACTION, &share, 0, 1, "X",
 		"resample below this effective share of the particles; 1: always", NULL,
 		0 },
-	{ 'l', "freedom", OPT_NUM, UNIT_NONE, &freedom, 0, 1e6, "NU",
+	{ 0, "freedom", OPT_NUM, UNIT_NONE, &freedom, 0, 1e6, "NU",
 		"degrees of freedom of Student-t observation noise; 0: Gaussian", NULL,
 		0 },
-	{ 'a', "sigma-u", OPT_NUM, UNIT_NONE, &process, 0, DBL_MAX, "SD",
+	{ 0, "sigma-u", OPT_NUM, UNIT_NONE, &process, 0, DBL_MAX, "SD",
 		"process noise per row, in units of y (default from the innovations)",
 		NULL, 0 },
-	{ 'b', "sigma-v", OPT_NUM, UNIT_NONE, &noise, 0, DBL_MAX, "SD",
+	{ 0, "sigma-v", OPT_NUM, UNIT_NONE, &noise, 0, DBL_MAX, "SD",
 		"observation noise, in units of y (default from second differences)",
 		NULL, 0 },
-	OPT_END
-};
+	OPT_END };
 
 void filtering_check(void)
 {

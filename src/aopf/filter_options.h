@@ -2,8 +2,8 @@
 #ifndef FILTERING_H
 #define FILTERING_H
 
-#include "life/adaptive.h"
 #include "cli/opt.h"
+#include "life/adaptive.h"
 
 /* Values of the options. */
 extern struct filtering {

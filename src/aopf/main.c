@@ -1,26 +1,49 @@
 /* aopf - adaptive-order particle filter of a degradation series, and the time it has left
  */
-#include "filter_options.h"
-#include "remaining_life.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
-#include "io/series.h"
 #include "cli/stats.h"
+#include "filter_options.h"
+#include "io/series.h"
+#include "num/pool.h"
+#include "units.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const char *unit_column;
+enum {
+	EXIT_ALARM = 4, /* an alarm stands after the last rows */
+	BLOCK = 4096    /* rows at a time with more than one thread */
+};
+
+static const char *unit_column, *clock_column, *save_file, *resume_file;
+static int bare, json;
+static long threads = 1;
 
 static const struct opt opts[] = {
 	OPT_TABLE(outlook_end_rows),
-	OPT_TABLE(filtering_rows),
 	OPT_TABLE(outlook_model_rows),
-	{ 'u', "unit", OPT_TEXT, UNIT_NONE, &unit_column, 0, 0, "COLUMN",
+	OPT_HEADING("Monitoring"),
+	OPT_TABLE(outlook_plant_rows),
+	{ 0, "save", OPT_TEXT, UNIT_NONE, &save_file, 0, 0, "FILE",
+		"keep the state after each row here", NULL, 1 },
+	{ 0, "resume", OPT_TEXT, UNIT_NONE, &resume_file, 0, 0, "FILE",
+		"go on from a state kept by --save", NULL, 1 },
+	OPT_HEADING("Input and output"),
+	{ 0, "unit", OPT_TEXT, UNIT_NONE, &unit_column, 0, 0, "COLUMN",
 		"column that tells units apart", NULL, 0 },
+	{ 0, "clock", OPT_TEXT, UNIT_NONE, &clock_column, 0, 0, "COLUMN",
+		"column of the time that wears, as operating hours", NULL, 0 },
+	{ 0, "json", OPT_FLAG, UNIT_NONE, &json, 0, 0, NULL,
+		"write a line of JSON for each row", NULL, 0 },
+	{ 'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N",
+		"threads, for streams of many units; rows then come in blocks", NULL, 1 },
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &filtering.seed, 0, 9e18, "N",
 		"seed of the random numbers", NULL, 0 },
+	{ 0, "lives-only", OPT_FLAG, UNIT_NONE, &bare, 0, 0, NULL,
+		"leave out the filter and its columns", NULL, 0 },
+	OPT_TABLE(filtering_rows),
 	OPT_END,
 };
 
@@ -29,58 +52,65 @@ static const struct prog prog = { "aopf",
 	"table: t y (or y alone: t is the row, from 0)",
 	"table: one row per row read, flushed at once", opts };
 
-/* What is kept of one unit between its rows. */
-struct unit_state {
-	struct adaptive *filter;
-	struct outlook *outlook; /* NULL without a threshold */
-	long rows;
-};
+/* --- rows out ----------------------------------------------------------------------- */
 
-struct units {
-	struct unit_state *unit;
+struct sink {
+	struct table_out *table; /* NULL: JSON */
+	char **name;             /* of the columns, [n] */
 	int n;
 };
 
-static struct unit_state *find_unit(struct units *units, int number)
+static void put_json(const struct sink *out, const struct outlook_row *in,
+	const double *cell, int cells)
 {
-	struct unit_state *u;
+	int first = out->n - cells - 2;
+	char text[NUMBER_TEXT];
 
-	if (number < units->n)
-		return &units->unit[number];
-	units->unit = xrealloc(units->unit, (size_t)number + 1, sizeof *units->unit);
-	u = &units->unit[units->n++];
-	*u = (struct unit_state){ .filter = filtering_new(number) };
-	if (!isnan(outlook_options.threshold))
-		u->outlook = outlook_new(number, u->filter);
-	return u;
+	putchar('{');
+	if (first > 0) {
+		printf("\"%s\":\"", out->name[0]);
+		for (const char *p = in->unit; *p; p++)
+			if (*p == '"' || *p == '\\')
+				printf("\\%c", *p);
+			else if ((unsigned char)*p < ' ')
+				printf("\\u%04x", (unsigned char)*p);
+			else
+				putchar(*p);
+		printf("\",");
+	}
+	for (int i = first; i < out->n; i++) {
+		double x = i == first       ? in->t
+			   : i == first + 1 ? in->y
+					    : cell[i - first - 2];
+
+		printf("\"%s\":%s%s", out->name[i],
+			isnan(x)   ? "null"
+			: isinf(x) ? "\"inf\""
+				   : number_text(x, text),
+			i + 1 < out->n ? "," : "}\n");
+	}
+	fflush(stdout);
 }
 
-static void step(struct unit_state *u, const struct series *in, struct table_out *out)
+static void put_row(const struct sink *out, const struct outlook_row *in,
+	const double *cell, int cells)
 {
-	double t = series_time(in), y = series_value(in), zero = outlook_options.zero;
-	struct adaptive_row row;
-
-	u->rows++;
-	adaptive_step(u->filter, t, y - zero, &row);
+	if (!out->table) {
+		put_json(out, in, cell, cells);
+		return;
+	}
 	if (unit_column)
-		table_put_text(out, series_unit_name(in));
-	table_put(out, t);
-	table_put(out, y);
-	table_put(out, row.grey + zero);
-	table_put(out, row.prediction + zero);
-	table_put(out, row.state + zero);
-	table_put(out, row.order);
-	table_put(out, row.ess);
-	if (u->outlook)
-		outlook_put(u->outlook, t, y, &row, out);
-	table_end_row(out);
-	table_flush(out);
+		table_put_text(out->table, in->unit);
+	table_put(out->table, in->t);
+	table_put(out->table, in->y);
+	table_put_row(out->table, cell, cells);
+	table_flush(out->table);
 }
 
 static char *column_names(void)
 {
-	char *names = xprintf(
-		"%st y grey prediction state order ess", unit_column ? "unit " : "");
+	char *names = xprintf("%st y%s", unit_column ? "unit " : "",
+		bare ? "" : " grey prediction state order ess");
 	char *all;
 
 	if (isnan(outlook_options.threshold))
@@ -93,11 +123,13 @@ static char *column_names(void)
 /* Units of the columns written, when the input says "T Y"; NULL otherwise. */
 static char *column_units(const char *read)
 {
-	char t[32], y[32], more, *units, *all;
+	char t[32], y[32], more, *filtered, *units, *all;
 
 	if (!read || strchr(read, ':') || sscanf(read, "%31s %31s %c", t, y, &more) != 2)
 		return NULL;
-	units = xprintf("%s%s %s %s %s %s 1 1", unit_column ? "1 " : "", t, y, y, y, y);
+	filtered = bare ? xstrdup("") : xprintf(" %s %s %s 1 1", y, y, y);
+	units = xprintf("%s%s %s%s", unit_column ? "1 " : "", t, y, filtered);
+	free(filtered);
 	if (isnan(outlook_options.threshold))
 		return units;
 	all = outlook_units(units, t);
@@ -105,44 +137,164 @@ static char *column_units(const char *read)
 	return all;
 }
 
-static void finish(struct units *units)
+static struct sink open_sink(const struct series *in)
 {
-	for (int i = 0; i < units->n; i++) {
-		struct unit_state *u = &units->unit[i];
+	char *cmd = opt_cmd(table_key(series_table(in), "cmd"), NULL),
+	     *units = column_units(table_key(series_table(in), "units")),
+	     *names = column_names();
+	struct sink out = { 0 };
 
-		stats_add("rows", (double)u->rows);
-		filtering_count(u->filter);
-		outlook_free(u->outlook);
-		adaptive_free(u->filter);
+	if (json) {
+		for (char *word = strtok(names, " "); word; word = strtok(NULL, " ")) {
+			out.name =
+				xrealloc(out.name, (size_t)out.n + 1, sizeof *out.name);
+			out.name[out.n++] = xstrdup(word);
+		}
+	} else {
+		out.table = table_create(NULL, cmd, units, names);
+		table_comment(out.table, "seed", "%ld", filtering.seed);
 	}
-	free(units->unit);
+	free(cmd);
+	free(units);
+	free(names);
+	return out;
+}
+
+static void close_sink(struct sink *out)
+{
+	if (out->table)
+		table_done(out->table);
+	for (int i = 0; i < out->n; i++)
+		free(out->name[i]);
+	free(out->name);
+}
+
+/* --- rows in ------------------------------------------------------------------------ */
+
+/* Rows of several units; those of one unit follow each other by next. */
+struct block {
+	struct item {
+		struct outlook_row in;
+		struct machine *unit;
+		int next; /* -1: the last */
+	} * item;
+	double *cell; /* [n][cells] */
+	int n, room, cells;
+	int *first, chains; /* first item of each unit in the block */
+	int *last, lasts;   /* last item so far, by number of the unit; -1: none */
+};
+
+static void step_chain(void *context, size_t i, int worker)
+{
+	struct block *b = context;
+
+	(void)worker;
+	for (int k = b->first[i]; k >= 0; k = b->item[k].next)
+		unit_step(b->item[k].unit, &b->item[k].in,
+			b->cell + (size_t)k * (size_t)b->cells);
+}
+
+/* Links the last row of the block to those of its unit before. */
+static void link_row(struct block *b)
+{
+	int k = b->n - 1, number = unit_number(b->item[k].unit);
+
+	while (b->lasts <= number) {
+		b->last = xrealloc(b->last, (size_t)b->lasts + 1, sizeof *b->last);
+		b->last[b->lasts++] = -1;
+	}
+	b->item[k].next = -1;
+	if (b->last[number] < 0)
+		b->first[b->chains++] = k;
+	else
+		b->item[b->last[number]].next = k;
+	b->last[number] = k;
+}
+
+static void finish_block(
+	struct block *b, struct units *units, struct pool *pool, const struct sink *out)
+{
+	pool_run(pool, (size_t)b->chains, step_chain, b);
+	for (int k = 0; k < b->n; k++) {
+		put_row(out, &b->item[k].in, b->cell + (size_t)k * (size_t)b->cells,
+			b->cells);
+		if (b->item[k].next < 0)
+			unit_save(units, b->item[k].unit);
+		b->last[unit_number(b->item[k].unit)] = -1;
+	}
+	b->n = b->chains = 0;
+}
+
+static void read_rows(
+	struct series *in, struct units *units, struct pool *pool, const struct sink *out)
+{
+	struct block b = { .room = pool ? BLOCK : 1, .cells = unit_cells(bare) };
+	size_t room = (size_t)b.room;
+	int clock = clock_column ? table_need(series_table(in), clock_column) : -1;
+	long before = 0;
+
+	b.item = xcalloc(room, sizeof *b.item);
+	b.cell = xcalloc(room, (size_t)(b.cells ? b.cells : 1) * sizeof *b.cell);
+	b.first = xcalloc(room, sizeof *b.first);
+	while (series_next(in)) {
+		struct item *item = &b.item[b.n];
+		double t = series_time(in);
+
+		item->unit = units_find(units, series_unit(in), series_unit_name(in));
+		if (!unit_takes(item->unit, t)) {
+			before++;
+			continue;
+		}
+		item->in = (struct outlook_row){ t,
+			clock < 0 ? t : table_number(series_table(in), clock),
+			series_value(in), series_unit_name(in) };
+		if (!isfinite(item->in.clock))
+			die(EXIT_RUN, "%s: line %ld: %s is missing or not finite",
+				table_name(series_table(in)),
+				table_line(series_table(in)), clock_column);
+		b.n++;
+		link_row(&b);
+		if (b.n == b.room)
+			finish_block(&b, units, pool, out);
+	}
+	finish_block(&b, units, pool, out);
+	if (resume_file)
+		stats_set("rows_before", (double)before);
+	free(b.item);
+	free(b.cell);
+	free(b.first);
+	free(b.last);
 }
 
 int main(int argc, char **argv)
 {
-	int operand = opt_parse(&prog, argc, argv);
+	int operand = opt_parse(&prog, argc, argv), alarm;
+	struct units *units;
+	struct pool *pool = NULL;
 	struct series *in;
-	struct table_out *out;
-	struct units units = { 0 };
-	char *cmd, *names, *units_line;
+	struct sink out;
+	char *options;
 
 	filtering_check();
-	outlook_check();
+	outlook_check(bare);
+	if (threads > 1 && !(pool = pool_new((int)threads)))
+		die(EXIT_RUN, "no %ld threads", threads);
 	outlook_open(unit_column);
+	units = units_new(bare);
+	options = opt_cmd("", NULL);
+	if (resume_file)
+		units_resume(units, resume_file, options);
+	if (save_file)
+		units_keep(units, save_file, options);
+	free(options);
 	in = series_open(argv[operand], unit_column);
-	cmd = opt_cmd(table_key(series_table(in), "cmd"), NULL);
-	names = column_names();
-	units_line = column_units(table_key(series_table(in), "units"));
-	out = table_create(NULL, cmd, units_line, names);
-	table_comment(out, "seed", "%ld", filtering.seed);
-	while (series_next(in))
-		step(find_unit(&units, series_unit(in)), in, out);
-	finish(&units);
+	out = open_sink(in);
+	read_rows(in, units, pool, &out);
+	alarm = units_alarm(units);
+	units_free(units);
+	pool_free(pool);
 	outlook_close();
-	table_done(out);
+	close_sink(&out);
 	series_close(in);
-	free(cmd);
-	free(names);
-	free(units_line);
-	return shell_done(0);
+	return shell_done(alarm > 0 ? EXIT_ALARM : 0);
 }

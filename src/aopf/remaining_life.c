@@ -1,18 +1,21 @@
 #include "remaining_life.h"
-#include "filter_options.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
 #include "common/quantile_columns.h"
+#include "common/time_unit.h"
+#include "filter_options.h"
+#include "io/series.h"
+#include "life/fleet.h"
+#include "life/metrics.h"
 #include "life/predict.h"
 #include "life/runin.h"
-#include "cli/msg.h"
-#include "io/series.h"
-#include "cli/stats.h"
-#include "common/time_unit.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { UP, DOWN, AUTO };
+enum { GREY = PREDICT_GREY };
 static const char *const directions[] = { "up", "down", "auto", NULL };
 static const char *const models[] = { "average", "linear", "exponential", "power", "rate",
 	"grey", "literal", NULL };
@@ -25,99 +28,196 @@ static int direction = AUTO, model;
 static long persist = 3;
 static struct opt_choice skip = { -1, 0 };
 static struct opt_list levels = { 3, { 0.05, 0.5, 0.95 } };
-static const char *fleet_file;
+static const char *fleet_file, *events_file;
+static int weights;
+static double mission = NAN, cost_ratio = NAN;
+static struct opt_list alarms;
 
-struct opt outlook_end_rows[] = {
+struct opt outlook_end_rows[] = { OPT_HEADING("End of life"),
 	{ 'y', "threshold", OPT_NUM, UNIT_NONE, &outlook_options.threshold, -DBL_MAX,
 		DBL_MAX, "Y",
 		"value that ends the life, in units of y; none: no prediction of life",
 		NULL, 0 },
-	{ 'd', "direction", OPT_WORD, UNIT_NONE, &direction, 0, 0, "up|down|auto",
+	{ 0, "direction", OPT_WORD, UNIT_NONE, &direction, 0, 0, "up|down|auto",
 		"side the threshold is reached from; auto: from the first value",
 		directions, 0 },
-	{ 'k', "persist", OPT_INT, UNIT_COUNT, &persist, 1, 1e6, "K",
+	{ 0, "persist", OPT_INT, UNIT_COUNT, &persist, 1, 1e6, "K",
 		"successive values beyond the threshold that end the life", NULL, 0 },
-	{ 'z', "zero", OPT_NUM, UNIT_NONE, &outlook_options.zero, -DBL_MAX, DBL_MAX, "Y",
+	{ 0, "zero", OPT_NUM, UNIT_NONE, &outlook_options.zero, -DBL_MAX, DBL_MAX, "Y",
 		"value of y without any degradation, the zero of the grey model", NULL,
 		0 },
-	{ 'T', "skip", OPT_CHOICE, UNIT_TIME, &skip, 0, DBL_MAX, "T|auto",
+	{ 0, "skip", OPT_CHOICE, UNIT_TIME, &skip, 0, DBL_MAX, "T|auto",
 		"run-in left out of long-term models, from the first row", skips, 0 },
+	OPT_END };
+
+struct opt outlook_model_rows[] = { OPT_HEADING("Prediction"),
+	{ 0, "model", OPT_WORD, UNIT_NONE, &model, 0, 0,
+		"average|linear|exponential|power|rate|grey|literal", "long-term model",
+		models, 0 },
+	{ 0, "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, DBL_MAX, "T",
+		"longest life ahead; 0: ten times the time so far", NULL, 0 },
+	{ 0, "after", OPT_NUM, UNIT_TIME, &after, -DBL_MAX, DBL_MAX, "T",
+		"time from which on life is predicted (default all the time)", NULL, 0 },
+	{ 0, "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "Q,Q,...",
+		"levels of the quantiles of remaining life", NULL, 0 },
+	{ 0, "fleet", OPT_TEXT, UNIT_NONE, &fleet_file, 0, 0, "FILE",
+		"table of earlier units, failed or not: unit t y", NULL, 0 },
+	{ 0, "weights", OPT_FLAG, UNIT_NONE, &weights, 0, 0, NULL,
+		"add columns of the weight of each family of models", NULL, 0 },
+	OPT_TABLE(timeunit_rows), OPT_END };
+
+struct opt outlook_plant_rows[] = {
+	{ 0, "events", OPT_TEXT, UNIT_NONE, &events_file, 0, 0, "FILE",
+		"table of repairs and changes of load: t event [unit]", NULL, 0 },
+	{ 0, "mission", OPT_NUM, UNIT_TIME, &mission, 0, DBL_MAX, "T",
+		"add the probability of failure within this time", NULL, 0 },
+	{ 0, "cost-ratio", OPT_NUM, UNIT_NONE, &cost_ratio, 1, 1e9, "R",
+		"add the cheapest time to replace, a failure costing R replacements",
+		NULL, 0 },
+	{ 0, "alarm", OPT_LIST, UNIT_TIME, &alarms, 0, DBL_MAX, "T,T,...",
+		"add the alarm level: how many of these falling times the lowest "
+		"quantile has reached",
+		NULL, 0 },
 	OPT_END
 };
 
-struct opt outlook_model_rows[] = {
-	{ 'm', "model", OPT_WORD, UNIT_NONE, &model, 0, 0,
-		"average|linear|exponential|power|rate|grey|literal", "long-term model",
-		models, 0 },
-	{ 'H', "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, DBL_MAX, "T",
-		"longest life ahead; 0: ten times the time so far", NULL, 0 },
-	{ 'A', "after", OPT_NUM, UNIT_TIME, &after, -DBL_MAX, DBL_MAX, "T",
-		"time from which on life is predicted (default all the time)", NULL, 0 },
-	{ 'q', "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "Q,Q,...",
-		"levels of the quantiles of remaining life", NULL, 0 },
-	{ 'F', "fleet", OPT_TEXT, UNIT_NONE, &fleet_file, 0, 0, "FILE",
-		"table of earlier units that reached the threshold: unit t y", NULL, 0 },
-	OPT_TABLE(timeunit_rows), OPT_END
-};
+enum { DRAWS = 500 };
+
+/* An alarm is cleared once the quantile is so much above its level again. */
+static const double CLEARED = 1.25;
+
+static const struct {
+	const char *name;
+	enum bank_family family;
+} weighed[] = { { "linear", BANK_LINEAR }, { "exponential", BANK_EXPONENTIAL },
+	{ "power", BANK_POWER }, { "rate", BANK_RATE }, { "fleet", BANK_OTHER },
+	{ "changed", BANK_ALL } };
+
+enum { WEIGHED = sizeof weighed / sizeof *weighed };
 
 static struct fleet *fleet; /* NULL without --fleet */
+static struct bank_chances *chances;
+
+static struct event {
+	double t;
+	enum bank_event what;
+	char *unit; /* NULL: all */
+} * events;
+static int n_events;
 
 struct outlook {
-	int unit;
 	struct adaptive *filter;
 	struct predict *predict; /* NULL before the first value */
-	struct runin runin;
-	double first; /* time */
-	long rows;
-	long beyond; /* successive values past the threshold */
-	int failed;
+	struct outlook_state {
+		int started, direction;
+		struct runin runin;
+		double first, last, clock; /* times */
+		long rows;
+		long beyond; /* successive values past the threshold */
+		int failed, alarm;
+		unsigned long lives, left_out, skipped, run_ins, events, standing;
+	} now;
 };
 
-void outlook_check(void)
+void outlook_check(int bare)
 {
 	for (int k = 1; k < levels.n; k++)
 		if (levels.v[k] <= levels.v[k - 1])
 			die(EXIT_USAGE, "--levels: want rising levels");
+	for (int k = 1; k < alarms.n; k++)
+		if (alarms.v[k] >= alarms.v[k - 1])
+			die(EXIT_USAGE, "--alarm: want falling times");
 	if (fleet_file && (isnan(outlook_options.threshold) || direction == AUTO))
 		die(EXIT_USAGE, "--fleet wants --threshold and --direction up or down");
+	if (isnan(outlook_options.threshold) &&
+		(bare || opt_any_given(outlook_plant_rows)))
+		die(EXIT_USAGE, "--%s wants --threshold",
+			bare ? "lives-only" : opt_any_given(outlook_plant_rows));
+	if ((weights || events_file) && model >= GREY)
+		die(EXIT_USAGE, "--%s is not for --model %s",
+			weights ? "weights" : "events", models[model]);
+	if (bare && (model >= GREY || skip.word == 0))
+		die(EXIT_USAGE, "--lives-only excludes %s, which wants the filter",
+			model >= GREY ? "--model grey and literal" : "--skip auto");
+}
+
+static void read_fleet(const char *unit_column)
+{
+	struct series *in = series_open(fleet_file, unit_column);
+	int good, failed, carried_on, n;
+
+	fleet = fleet_new(outlook_options.threshold, direction == UP ? 1 : -1);
+	good = fleet != NULL;
+	while (good && series_next(in))
+		if (!isnan(series_value(in)))
+			good = fleet_add(fleet, series_unit(in), series_time(in),
+				series_value(in));
+	n = good ? fleet_build(fleet, &failed, &carried_on) : -1;
+	if (n < 0)
+		die(EXIT_RUN, "no memory for the fleet");
+	if (n == 0)
+		die(EXIT_RUN, "%s: none of %d units shows any wear to compare with",
+			fleet_file, series_units(in));
+	stats_set("fleet_units", failed);
+	stats_set("fleet_units_carried_on", carried_on);
+	stats_set("fleet_units_left_out", series_units(in) - n);
+	series_close(in);
+}
+
+static void read_events(const char *unit_column)
+{
+	struct table_in *in = table_open(events_file);
+	int t = table_need(in, "t"), what = table_need(in, "event"),
+	    unit = table_find(in, unit_column);
+
+	while (table_next(in)) {
+		struct event *e;
+		const char *word = table_text(in, what);
+		int repair = strcmp(word, "repair") == 0;
+
+		if (!repair && strcmp(word, "load") != 0)
+			die(EXIT_RUN, "%s: line %ld: event '%s', want repair or load",
+				table_name(in), table_line(in), word);
+		events = xrealloc(events, (size_t)n_events + 1, sizeof *events);
+		e = &events[n_events++];
+		*e = (struct event){ table_number(in, t),
+			repair ? BANK_REPAIR : BANK_LOAD,
+			unit < 0 ? NULL : xstrdup(table_text(in, unit)) };
+		if (!isfinite(e->t))
+			die(EXIT_RUN, "%s: line %ld: time is missing or not finite",
+				table_name(in), table_line(in));
+	}
+	table_close(in);
 }
 
 void outlook_open(const char *unit_column)
 {
-	struct series *in;
-	int added, reached, n;
+	const char *unit = unit_column ? unit_column : "unit";
 
-	if (!fleet_file)
+	if (isnan(outlook_options.threshold))
 		return;
-	in = series_open(fleet_file, unit_column ? unit_column : "unit");
-	fleet = fleet_new(outlook_options.threshold, direction == UP ? 1 : -1);
-	added = fleet != NULL;
-	while (added && series_next(in))
-		if (!isnan(series_value(in)))
-			added = fleet_add(fleet, series_unit(in), series_time(in),
-				series_value(in));
-	n = series_units(in);
-	reached = added ? fleet_build(fleet) : -1;
-	if (reached < 0)
-		die(EXIT_RUN, "no memory for the fleet");
-	if (reached < FLEET_MIN)
-		die(EXIT_RUN, "%s: %d of %d units reach the threshold; want %d or more",
-			fleet_file, reached, n, (int)FLEET_MIN);
-	stats_set("fleet_units", reached);
-	stats_set("fleet_units_left_out", n - reached);
-	series_close(in);
+	chances = bank_chances_new(DRAWS, (uint64_t)filtering.seed);
+	if (!chances)
+		die(EXIT_RUN, "no memory");
+	if (fleet_file)
+		read_fleet(unit);
+	if (events_file)
+		read_events(unit);
 }
 
 void outlook_close(void)
 {
 	fleet_free(fleet);
+	bank_chances_free(chances);
+	for (int i = 0; i < n_events; i++)
+		free(events[i].unit);
+	free(events);
 }
 
-struct outlook *outlook_new(int unit, struct adaptive *filter)
+struct outlook *outlook_new(struct adaptive *filter)
 {
 	struct outlook *o = xcalloc(1, sizeof *o);
 
-	o->unit = unit;
 	o->filter = filter;
 	return o;
 }
@@ -130,93 +230,250 @@ void outlook_free(struct outlook *o)
 }
 
 /* Prediction begins with the first value, which may tell the direction. */
-static void start(struct outlook *o, double y)
+static void start(struct outlook *o)
 {
-	int up = direction == AUTO ? y <= outlook_options.threshold : direction == UP;
 	struct predict_par par = {
 		.model = (enum predict_model)model,
 		.threshold = outlook_options.threshold,
-		.direction = up ? 1 : -1,
+		.direction = o->now.direction,
 		.zero = outlook_options.zero,
 		.horizon = horizon / timeunit(),
-		.fleet = fleet,
 		.adaptive = o->filter,
-		.draws = model == PREDICT_LITERAL ? (int)filtering.particles : 500,
-		.seed = (uint64_t)filtering.seed,
-		.realisation = (uint32_t)o->unit,
+		.draws = (int)filtering.particles,
+		.chances = chances,
 	};
 
+	if (fleet)
+		par.paths = fleet_shapes(fleet, &par.n_paths);
 	o->predict = predict_new(&par);
 	if (!o->predict)
 		die(EXIT_RUN, "no memory for the prediction");
-	o->runin.direction = par.direction;
+}
+
+/* A state that is saved before the first value still has room for all of it. */
+void outlook_pass(struct outlook *o, struct state *s)
+{
+	state_move(s, &o->now, sizeof o->now);
+	if (!o->predict) {
+		o->now.direction = o->now.direction ? o->now.direction : 1;
+		start(o);
+		predict_pass(o->predict, s);
+		if (!o->now.started) {
+			predict_free(o->predict);
+			o->predict = NULL;
+		}
+		return;
+	}
+	predict_pass(o->predict, s);
+}
+
+/* Events since the row before. */
+static void heed_events(struct outlook *o, const struct outlook_row *in)
+{
+	for (int i = 0; i < n_events; i++) {
+		const struct event *e = &events[i];
+
+		if (e->t > in->t || (o->now.rows > 0 && e->t <= o->now.last) ||
+			(e->unit && strcmp(e->unit, in->unit) != 0))
+			continue;
+		bank_event(predict_bank(o->predict), e->what);
+		o->now.events++;
+	}
 }
 
 /* What the long-term model is told of a row. */
-static void learn(struct outlook *o, double t, double y, const struct adaptive_row *row)
+static void learn(struct outlook *o, const struct outlook_row *in,
+	const struct adaptive_row *filtered)
 {
-	if (skip.word == 0 && !isnan(y) && runin_add(&o->runin, y, row->noise)) {
-		predict_restart(o->predict);
-		stats_add("run_ins", 1);
+	struct outlook_state *now = &o->now;
+
+	if (now->rows > 0 && in->clock <= now->clock) {
+		now->standing++; /* no time that wears has passed */
+		return;
 	}
-	if (skip.word == 0 || t - o->first >= skip.value / timeunit())
-		predict_add(o->predict, t, y, row->state + outlook_options.zero);
+	now->clock = in->clock;
+	heed_events(o, in);
+	if (skip.word == 0 && !isnan(in->y) &&
+		runin_add(&now->runin, in->y, filtered->noise)) {
+		predict_restart(o->predict);
+		now->run_ins++;
+	}
+	if (skip.word == 0 || in->clock - now->first >= skip.value / timeunit())
+		predict_add(o->predict, in->clock, in->y,
+			filtered ? filtered->state + outlook_options.zero : NAN);
 	else
-		stats_add("rows_skipped", 1);
+		now->skipped++;
 }
 
-static void put_life(struct outlook *o, struct table_out *out, double t, double y)
+static int raise_alarm(int standing, double quantile)
 {
-	double q[OPT_LIST_MAX], never = NAN;
-	int wanted = t >= after / timeunit();
+	int level = 0;
 
-	if (!isnan(y))
-		o->beyond = o->runin.direction * (y - outlook_options.threshold) >= 0
-				    ? o->beyond + 1
-				    : 0;
-	o->failed |= o->predict && o->beyond >= persist;
-	for (int i = 0; i < levels.n; i++)
-		q[i] = o->failed ? 0 : NAN;
-	if (o->failed)
-		never = 0;
-	else if (o->predict && wanted)
-		predict_life(o->predict, levels.v, q, levels.n, &never);
-	stats_add("lives", o->predict && !o->failed && wanted);
-	stats_add("lives_left_out", o->failed || !wanted);
-	for (int i = 0; i < levels.n; i++)
-		table_put(out, q[i]);
-	table_put(out, never);
+	for (int k = 0; k < alarms.n; k++) {
+		double limit = alarms.v[k] / timeunit();
+
+		if (quantile <= limit * (k < standing ? CLEARED : 1))
+			level = k + 1;
+	}
+	return level;
 }
 
-void outlook_put(struct outlook *o, double t, double y, const struct adaptive_row *row,
-	struct table_out *out)
+/* Fills the cells of a life, ascending draws. */
+static void put_draws(struct outlook *o, const double *life, int n, double *cell)
 {
-	if (o->rows++ == 0)
-		o->first = t;
-	if (!o->predict && !isnan(y))
-		start(o, y);
-	if (o->predict)
-		learn(o, t, y, row);
-	put_life(o, out, t, y);
+	int ends = n, failures = 0;
+
+	for (int i = 0; i < levels.n; i++)
+		*cell++ = metric_quantile(life, (size_t)n, levels.v[i]);
+	while (ends > 0 && isinf(life[ends - 1]))
+		ends--;
+	*cell++ = (double)(n - ends) / n;
+	while (failures < n && life[failures] <= mission / timeunit())
+		failures++;
+	if (!isnan(mission))
+		*cell++ = (double)failures / n;
+	if (!isnan(cost_ratio))
+		*cell++ = predict_replacement(
+			life, n, o->now.clock - o->now.first, cost_ratio);
+	if (alarms.n > 0)
+		*cell = o->now.alarm = raise_alarm(
+			o->now.alarm, metric_quantile(life, (size_t)n, levels.v[0]));
+}
+
+static void foresee(struct outlook *o, double *cell)
+{
+	int n = predict_draws(o->predict), drawn;
+	double *life = malloc((size_t)n * sizeof *life);
+
+	drawn = life ? predict_life(o->predict, life) : -1;
+	if (drawn < 0)
+		die(EXIT_RUN, "no memory for %d paths", n);
+	if (drawn > 0)
+		put_draws(o, life, n, cell);
+	free(life);
+}
+
+/* Cells of a unit that has failed. */
+static void put_failure(struct outlook *o, double *cell)
+{
+	double gone = 0;
+
+	put_draws(o, &gone, 1, cell);
+}
+
+static void put_weights(const struct outlook *o, double *cell)
+{
+	const struct bank *b = o->predict ? predict_bank(o->predict) : NULL;
+
+	for (int k = 0; k < WEIGHED; k++)
+		cell[k] = b && bank_ready(b) ? bank_weight(b, weighed[k].family) : NAN;
+}
+
+static int life_cells(void)
+{
+	return levels.n + 1 + !isnan(mission) + !isnan(cost_ratio) + (alarms.n > 0);
+}
+
+int outlook_cells(void)
+{
+	return life_cells() + (weights ? WEIGHED : 0);
+}
+
+void outlook_step(struct outlook *o, const struct outlook_row *in,
+	const struct adaptive_row *filtered, double *cell)
+{
+	struct outlook_state *now = &o->now;
+	int wanted = in->t >= after / timeunit();
+
+	if (now->rows == 0)
+		now->first = in->clock;
+	if (!now->started && !isnan(in->y)) {
+		int up = direction == AUTO ? in->y <= outlook_options.threshold
+					   : direction == UP;
+
+		now->started = 1;
+		now->direction = now->runin.direction = up ? 1 : -1;
+		start(o);
+	}
+	if (now->started)
+		learn(o, in, filtered);
+	now->rows++;
+	now->last = in->t;
+	if (!isnan(in->y))
+		now->beyond =
+			now->runin.direction * (in->y - outlook_options.threshold) >= 0
+				? now->beyond + 1
+				: 0;
+	now->failed |= now->started && now->beyond >= persist;
+	for (int i = 0; i < life_cells(); i++)
+		cell[i] = NAN;
+	if (now->failed)
+		put_failure(o, cell);
+	else if (now->started && wanted)
+		foresee(o, cell);
+	now->lives += now->started && !now->failed && wanted;
+	now->left_out += now->failed || !wanted;
+	if (weights)
+		put_weights(o, cell + life_cells());
+}
+
+int outlook_alarm(const struct outlook *o)
+{
+	return o->now.alarm;
+}
+
+void outlook_count(struct outlook *o)
+{
+	stats_add("lives", (double)o->now.lives);
+	stats_add("lives_left_out", (double)o->now.left_out);
+	stats_add("rows_skipped", (double)o->now.skipped);
+	stats_add("rows_standing", (double)o->now.standing);
+	stats_add("run_ins", (double)o->now.run_ins);
+	stats_add("events", (double)o->now.events);
+	if (o->predict && predict_bank(o->predict)) {
+		struct bank_counts c = bank_counts(predict_bank(o->predict));
+
+		stats_add("outliers_of_wear", (double)c.outliers);
+		stats_add("shifts", (double)c.shifts);
+		stats_add("halts", (double)c.halts);
+		stats_add("particles_born", (double)c.births);
+	}
+}
+
+/* Adds a word to a list; frees the list before. */
+static char *add_word(char *list, const char *prefix, const char *word)
+{
+	char *longer = xprintf("%s %s%s", list, prefix, word);
+
+	free(list);
+	return longer;
 }
 
 char *outlook_columns(const char *before)
 {
 	char *names = levels_columns(before, "rul_q", &levels);
-	char *longer = xprintf("%s p_no_crossing", names);
 
-	free(names);
-	return longer;
+	names = add_word(names, "", "p_no_crossing");
+	if (!isnan(mission))
+		names = add_word(names, "", "p_failure");
+	if (!isnan(cost_ratio))
+		names = add_word(names, "", "replace_in");
+	if (alarms.n > 0)
+		names = add_word(names, "", "alarm");
+	for (int k = 0; weights && k < WEIGHED; k++)
+		names = add_word(names, "weight_", weighed[k].name);
+	return names;
 }
 
 char *outlook_units(const char *before, const char *time)
 {
-	char *units = xstrdup(before), *longer;
+	char *units = xstrdup(before);
 
-	for (int i = 0; i <= levels.n; i++) {
-		longer = xprintf("%s %s", units, i < levels.n ? time : "1");
-		free(units);
-		units = longer;
+	for (int i = 0; i < outlook_cells(); i++) {
+		int is_time = i < levels.n ||
+			      (!isnan(cost_ratio) && i == levels.n + 1 + !isnan(mission));
+
+		units = add_word(units, "", is_time ? time : "1");
 	}
 	return units;
 }

@@ -1,18 +1,20 @@
 /* remaining_life.h - the life that a unit has left: options of aopf, and its columns
  *
  *	outlook_open(unit_column);
- *	struct outlook *o = outlook_new(0, filter);
+ *	struct outlook *o = outlook_new(filter);
  *	for each row
- *		outlook_put(o, t, y, &row, out);
+ *		outlook_step(o, &in, &row, cell);
  *	outlook_free(o);
  *	outlook_close();
+ *
+ * Different units may step at the same time.
  */
 #ifndef OUTLOOK_H
 #define OUTLOOK_H
 
-#include "life/adaptive.h"
 #include "cli/opt.h"
-#include "io/tables.h"
+#include "life/adaptive.h"
+#include "num/state.h"
 
 /* Values of the options. */
 extern struct outlook_options {
@@ -21,24 +23,36 @@ extern struct outlook_options {
 	double zero;      /* value of y without any degradation */
 } outlook_options;
 
-/* For OPT_TABLE: what ends a life; how it is foreseen. */
-extern struct opt outlook_end_rows[], outlook_model_rows[];
+/* For OPT_TABLE: what ends a life; how it is foreseen; what a plant makes of it. */
+extern struct opt outlook_end_rows[], outlook_model_rows[], outlook_plant_rows[];
 
-/* Dies where options contradict one another. */
-void outlook_check(void);
+/* Dies where options contradict one another; bare: there is no filter. */
+void outlook_check(int bare);
 
-/* Reads the fleet, if there is one; its units are told apart by this column, or by unit
- * where it is NULL. */
+/* Reads the fleet and the events, if there are any; units are told apart by this column,
+ * or by unit where it is NULL. */
 void outlook_open(const char *unit_column);
 void outlook_close(void);
 
+/* A row of the input. */
+struct outlook_row {
+	double t, clock, y; /* clock: the time that wears, t unless there is another */
+	const char *unit;   /* its name, "" without one */
+};
+
 struct outlook;
 
-struct outlook *outlook_new(int unit, struct adaptive *filter);
+struct outlook *outlook_new(struct adaptive *filter); /* NULL: there is none */
 void outlook_free(struct outlook *o);
-/* Learns from a row and puts its cells. */
-void outlook_put(struct outlook *o, double t, double y, const struct adaptive_row *row,
-	struct table_out *out);
+void outlook_pass(struct outlook *o, struct state *s);
+/* Learns from a row and fills its outlook_cells() cells; filtered: NULL without a filter.
+ */
+void outlook_step(struct outlook *o, const struct outlook_row *in,
+	const struct adaptive_row *filtered, double *cell);
+int outlook_cells(void);
+int outlook_alarm(const struct outlook *o); /* the level that stands, 0: none */
+/* Counts the work it did. */
+void outlook_count(struct outlook *o);
 
 /* Names of the columns and their units, behind those given; fresh memory. */
 char *outlook_columns(const char *before);

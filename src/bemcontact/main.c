@@ -1,11 +1,12 @@
 /* bemcontact - pressure between rough elastic bodies pressed together */
-#include "contact/solver.h"
-#include "common/contact_options.h"
-#include "common/raw_layout.h"
-#include "io/fields.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "common/contact_options.h"
+#include "common/raw_layout.h"
+#include "contact/solver.h"
+#include "io/fields.h"
+#include "tables.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,11 +16,16 @@ static const char *const field_names[] = { "height", "pressure", "displacement",
 	NULL };
 
 static int fields = 1 << HEIGHT | 1 << PRESSURE;
+static long sweep = 1;
 
 static const struct opt opts[] = {
 	OPT_TABLE(press_rows),
-	{ 'o', "fields", OPT_WORDS, UNIT_NONE, &fields, 0, 0, "NAME,...",
+	OPT_HEADING("Output"),
+	{ 0, "fields", OPT_WORDS, UNIT_NONE, &fields, 0, 0, "NAME,...",
 		"what to write of height, pressure, displacement, gap", field_names, 0 },
+	OPT_TABLE(table_opts),
+	{ 0, "sweep", OPT_INT, UNIT_COUNT, &sweep, 1, 1e6, "N",
+		"load in N equal steps, each a row of --table", 0, 0 },
 	OPT_TABLE(raw_rows),
 	OPT_END,
 };
@@ -82,50 +88,118 @@ static void count_work(const struct contact_result *s, int warm)
 	stats_max("certificate", s->certificate);
 }
 
-/* Solves one record in place; returns 1 if it converged. */
-static int solve_record(struct record *r, const struct fields_in *in, struct pool *pool)
-{
-	const char *name = fields_name(in);
-	long number = fields_count(in);
-	struct contact_par par = press_par(r, pool);
-	struct contact *c = solver_for(r, &par, name, number);
-	double *h = record_need(r, "height", 1, in), *p, *u = NULL, *g = NULL;
-	int warm = record_find(r, "pressure") >= 0;
-	double target = press_target(r);
-	enum contact_status status;
+/* What is solved for a record. */
+struct task {
+	struct record *r;
+	const char *name;
+	long number;
+	struct contact_par par;
+	struct contact *c;
+	double *h, *p, *gap;
+	double *other; /* a pressure to vary the load with */
+};
 
-	if (r->nz != 1)
-		die(EXIT_RUN, "%s: record %ld: want a plane field, got %d layers", name,
-			number, r->nz);
-	p = warm ? record_need(r, "pressure", 1, in) : record_add(r, "pressure", "Pa");
-	if (fields & 1 << DISPLACEMENT)
-		u = record_add(r, "displacement", "m");
-	if (fields & 1 << GAP)
-		g = record_add(r, "gap", "m");
-	status = contact_solve(c, h, press_control(), target, p, g);
+static enum contact_status press_to(const struct task *t, enum contact_control control,
+	double target, double *p, double *gap)
+{
+	enum contact_status status = contact_solve(t->c, t->h, control, target, p, gap);
+
 	if (status == CONTACT_OVERLOAD)
 		die(EXIT_RUN,
 			"%s: record %ld: mean pressure %g Pa is not below the hardness",
-			name, number, target);
+			t->name, t->number, target);
 	if (status == CONTACT_TOO_DEEP)
 		die(EXIT_RUN, "%s: record %ld: approach %g m is beyond full contact",
-			name, number, target);
+			t->name, t->number, target);
 	if (status == CONTACT_NUMBERS)
 		die(EXIT_RUN, "%s: record %ld: heights or load beyond double precision",
-			name, number);
-	if (u)
-		contact_displacement(c, p, u);
-	put_results(r, &par, contact_result(c), status == CONTACT_OK);
-	count_work(contact_result(c), warm);
-	note("%s: record %ld: area %.4g, approach %.6g m, certificate %.2g, %ld "
-	     "iterations",
-		name, number, contact_result(c)->area, contact_result(c)->approach,
-		contact_result(c)->certificate, contact_result(c)->iterations);
+			t->name, t->number);
+	return status;
+}
+
+/* dF / d approach from loads a hundredth less and more; nan where these are not solved.
+ */
+static double find_stiffness(const struct task *t, double pressure)
+{
+	size_t cells = (size_t)t->par.nx * (size_t)t->par.ny;
+	double area = t->par.nx * t->par.dx * t->par.ny * t->par.dy, approach[2];
+
+	for (int k = 0; k < 2; k++) {
+		double target = pressure * (k ? 1.01 : 0.99);
+
+		if (!(target > 0) || (t->par.hardness > 0 && target >= t->par.hardness))
+			return NAN;
+		memcpy(t->other, t->p, cells * sizeof(*t->other));
+		if (press_to(t, CONTACT_PRESSURE, target, t->other, NULL) != CONTACT_OK)
+			return NAN;
+		approach[k] = contact_result(t->c)->approach;
+		stats_add("stiffness_transforms", contact_result(t->c)->work);
+	}
+	return 0.02 * pressure * area / (approach[1] - approach[0]);
+}
+
+static double highest(const struct task *t)
+{
+	double h = -INFINITY;
+
+	for (size_t i = 0; i < (size_t)t->par.nx * (size_t)t->par.ny; i++)
+		h = fmax(h, t->h[i]);
+	return h;
+}
+
+/* One contact and its row; returns 1 if it converged. */
+static int solve_step(const struct task *t, double target, int warm, int last)
+{
+	enum contact_status status = press_to(t, press_control(), target, t->p, t->gap);
+	struct contact_result found = *contact_result(t->c);
+	double stiffness = NAN;
+
+	count_work(&found, warm);
+	note("%s: record %ld: area %.4g, approach %.6g m, certificate %.2g, %ld iterations",
+		t->name, t->number, found.area, found.approach, found.certificate,
+		found.iterations);
 	if (status == CONTACT_NOCONV)
 		warn("%s: record %ld: not converged: certificate %.2g after %ld iterations",
-			name, number, contact_result(c)->certificate,
-			contact_result(c)->iterations);
+			t->name, t->number, found.certificate, found.iterations);
+	if (last)
+		put_results(t->r, &t->par, &found, status == CONTACT_OK);
+	if (table_wanted())
+		stiffness = find_stiffness(t, found.pressure);
+	tables_put(t->r, &t->par, &found, t->p, stiffness, status == CONTACT_OK, last);
 	return status == CONTACT_OK;
+}
+
+/* Solves one record in place; returns 1 if it converged. */
+static int solve_record(struct record *r, const struct fields_in *in, struct pool *pool)
+{
+	struct task t = { .r = r, .name = fields_name(in), .number = fields_count(in) };
+	double *u = NULL, target = press_target(r), from = 0;
+	int warm = record_find(r, "pressure") >= 0, converged = 1;
+
+	t.par = press_par(r, pool);
+	t.c = solver_for(r, &t.par, t.name, t.number);
+	t.h = record_need(r, "height", 1, in);
+	if (r->nz != 1)
+		die(EXIT_RUN, "%s: record %ld: want a plane field, got %d layers", t.name,
+			t.number, r->nz);
+	t.p = warm ? record_need(r, "pressure", 1, in) : record_add(r, "pressure", "Pa");
+	if (fields & 1 << DISPLACEMENT)
+		u = record_add(r, "displacement", "m");
+	if (fields & 1 << GAP)
+		t.gap = record_add(r, "gap", "m");
+	if (table_wanted())
+		t.other = xcalloc((size_t)r->nx * (size_t)r->ny, sizeof(*t.other));
+	if (press_control() == CONTACT_APPROACH)
+		from = -highest(&t);
+	for (long k = 1; k <= sweep; k++)
+		converged &= solve_step(&t,
+			k < sweep ? from + (target - from) * (double)k / (double)sweep
+				  : target,
+			warm || k > 1, k == sweep);
+	free(t.other);
+	if (u)
+		contact_displacement(t.c, t.p, u);
+	return converged;
 }
 
 /* Leaves the wanted fields only. */
@@ -156,6 +230,7 @@ int main(int argc, char **argv)
 		die(EXIT_RUN, "cannot start %ld threads:", press.threads);
 	in = fields_open(argv[first], raw_given());
 	out = fields_create(NULL);
+	tables_open(NULL);
 	while (fields_read(in, &r)) {
 		char *cmd = opt_cmd(r.cmd, NULL);
 
@@ -164,9 +239,10 @@ int main(int argc, char **argv)
 		drop_fields(&r);
 		free(r.cmd);
 		r.cmd = cmd;
-		fields_write(out, &r);
+		fields_write(out, &r, fields_more(in));
 	}
 	fields_done(out);
+	tables_done();
 	fields_close(in);
 	record_free(&r);
 	pool_free(pool);

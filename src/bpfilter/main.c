@@ -1,8 +1,8 @@
 /* bpfilter - band-pass every channel of a signal */
 #include "cli/msg.h"
 #include "cli/opt.h"
-#include "io/signals.h"
 #include "cli/stats.h"
+#include "io/signals.h"
 #include "io/tables.h"
 #include "signal/fir.h"
 #include "signal/lines.h"
@@ -18,34 +18,37 @@ static double attenuation = 60, latency = INFINITY, memory = NAN, rate = 10e3;
 static const char *const windows[] = { "hamming", "hann", "blackman", "kaiser", NULL };
 
 static const struct opt opts[] = {
+	OPT_HEADING("Filter"),
 	{ 'b', "band", OPT_LIST, UNIT_FREQUENCY, &edges, 0, 1e12, "LO:HI",
 		"pass band; LO 0 makes a low-pass, HI half the rate a high-pass", 0, 0 },
-	{ 'n', "order", OPT_INT, UNIT_COUNT, &order, 1, 1e6, "N", "taps less one", 0, 0 },
-	{ 'w', "window", OPT_WORD, UNIT_NONE, &window, 0, 0,
-		"hamming|hann|blackman|kaiser", "window that cuts the ideal response",
-		windows, 0 },
-	{ 'A', "attenuation", OPT_NUM, UNIT_DECIBEL, &attenuation, 0, 300, "A",
+	{ 0, "order", OPT_INT, UNIT_COUNT, &order, 1, 1e6, "N", "taps less one", 0, 0 },
+	{ 0, "window", OPT_WORD, UNIT_NONE, &window, 0, 0, "hamming|hann|blackman|kaiser",
+		"window that cuts the ideal response", windows, 0 },
+	{ 0, "attenuation", OPT_NUM, UNIT_DECIBEL, &attenuation, 0, 300, "A",
 		"stop-band attenuation the Kaiser window is made for", 0, 0 },
-	{ 'k', "no-scale", OPT_FLAG, UNIT_NONE, &no_scale, 0, 0, 0,
+	{ 0, "no-scale", OPT_FLAG, UNIT_NONE, &no_scale, 0, 0, 0,
 		"leave the gain in the middle of the band as the window makes it", 0, 0 },
-	{ 'z', "zero-phase", OPT_FLAG, UNIT_NONE, &zero_phase, 0, 0, 0,
+	{ 0, "zero-phase", OPT_FLAG, UNIT_NONE, &zero_phase, 0, 0, 0,
 		"take the delay of half the order out", 0, 0 },
-	{ 'l', "lines", OPT_LIST, UNIT_FREQUENCY, &removed, 0, 1e12, "F,F,...",
+	OPT_HEADING("Interfering lines"),
+	{ 0, "lines", OPT_LIST, UNIT_FREQUENCY, &removed, 0, 1e12, "F,F,...",
 		"take narrow lines out before the filter, by least squares", 0, 0 },
-	{ 'm', "line-window", OPT_NUM, UNIT_TIME, &memory, 0, 1e9, "T",
+	{ 0, "line-window", OPT_NUM, UNIT_TIME, &memory, 0, 1e9, "T",
 		"window of the least squares (default 2 s, at most 131072 frames)", 0,
 		0 },
-	{ 'y', "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
+	OPT_HEADING("Output"),
+	{ 0, "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
 		"hold back no more than T of signal for speed", 0, 0 },
-	{ 'F', "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
+	{ 0, "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
 		0 },
-	{ 'R', "response", OPT_FLAG, UNIT_NONE, &response, 0, 0, 0,
+	OPT_HEADING("The filter itself, instead of a signal"),
+	{ 0, "response", OPT_FLAG, UNIT_NONE, &response, 0, 0, 0,
 		"print the frequency response as a table and read nothing", 0, 0 },
-	{ 'p', "taps", OPT_FLAG, UNIT_NONE, &taps_only, 0, 0, 0,
+	{ 0, "taps", OPT_FLAG, UNIT_NONE, &taps_only, 0, 0, 0,
 		"print the taps as a table and read nothing", 0, 0 },
 	{ 'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 1e12, "F",
 		"sampling rate for --response and --taps", 0, 0 },
-	{ 'G', "grid", OPT_INT, UNIT_COUNT, &grid, 2, 1e7, "N",
+	{ 0, "grid", OPT_INT, UNIT_COUNT, &grid, 2, 1e7, "N",
 		"points of the response from 0 to half the rate", 0, 0 },
 	OPT_END,
 };

@@ -1,6 +1,6 @@
 #include "contact_options.h"
-#include "contact/kernel.h"
 #include "cli/msg.h"
+#include "contact/kernel.h"
 #include <math.h>
 #include <string.h>
 
@@ -18,30 +18,32 @@ static const char *const multipliers[] = { "fft", "mlms", NULL };
 static const char *const solvers[] = { "bccg", "pk", NULL };
 
 struct opt press_rows[] = {
+	OPT_HEADING("Contact"),
 	{ 'F', "load", OPT_NUM, UNIT_FORCE, &press.load, 0, 1e30, "F", "normal load", 0,
 		0 },
-	{ 'P', "pressure", OPT_NUM, UNIT_PRESSURE, &press.pressure, 0, 1e30, "P",
+	{ 0, "pressure", OPT_NUM, UNIT_PRESSURE, &press.pressure, 0, 1e30, "P",
 		"mean pressure, in place of a load", 0, 0 },
-	{ 'D', "approach", OPT_NUM, UNIT_LENGTH, &press.approach, -1e12, 1e12, "D",
+	{ 0, "approach", OPT_NUM, UNIT_LENGTH, &press.approach, -1e12, 1e12, "D",
 		"how far the flat goes past height 0, in place of a load", 0, 0 },
 	{ 'E', "young", OPT_LIST, UNIT_PRESSURE, &press.young, 1e-6, 1e30, "E1[,E2]",
 		"Young's moduli of the bodies; one for both", 0, 0 },
-	{ 'N', "poisson", OPT_LIST, UNIT_NONE, &press.poisson, -0.999, 0.5, "N1[,N2]",
+	{ 0, "poisson", OPT_LIST, UNIT_NONE, &press.poisson, -0.999, 0.5, "N1[,N2]",
 		"Poisson's ratios of the bodies; one for both", 0, 0 },
-	{ 'e', "estar", OPT_NUM, UNIT_PRESSURE, &press.estar, 1e-6, 1e30, "E",
+	{ 0, "estar", OPT_NUM, UNIT_PRESSURE, &press.estar, 1e-6, 1e30, "E",
 		"contact modulus, in place of --young", 0, 0 },
-	{ 'b', "boundary", OPT_WORD, UNIT_NONE, &press.boundary, 0, 0, "free|periodic",
+	{ 0, "boundary", OPT_WORD, UNIT_NONE, &press.boundary, 0, 0, "free|periodic",
 		"surface around the grid: free of load, or the grid repeated", boundaries,
 		0 },
-	{ 'K', "hardness", OPT_NUM, UNIT_PRESSURE, &press.hardness, 0, 1e30, "H",
+	{ 0, "hardness", OPT_NUM, UNIT_PRESSURE, &press.hardness, 0, 1e30, "H",
 		"largest pressure; 0: none", 0, 0 },
-	{ 't', "tolerance", OPT_NUM, UNIT_NONE, &press.tolerance, 1e-16, 1, "T",
+	OPT_HEADING("Contact: accuracy and method"),
+	{ 0, "tolerance", OPT_NUM, UNIT_NONE, &press.tolerance, 1e-16, 1, "T",
 		"certificate to reach", 0, 0 },
-	{ 'i', "max-iterations", OPT_INT, UNIT_COUNT, &press.max_iterations, 1, 1e9, "N",
+	{ 0, "max-iterations", OPT_INT, UNIT_COUNT, &press.max_iterations, 1, 1e9, "N",
 		"iterations after which to give up", 0, 0 },
-	{ 'm', "solver", OPT_WORD, UNIT_NONE, &press.solver, 0, 0, "bccg|pk",
+	{ 0, "solver", OPT_WORD, UNIT_NONE, &press.solver, 0, 0, "bccg|pk",
 		"preconditioned on nested grids, or Polonsky and Keer's", solvers, 0 },
-	{ 'M', "multiply", OPT_WORD, UNIT_NONE, &press.multiply, 0, 0, "fft|mlms",
+	{ 0, "multiply", OPT_WORD, UNIT_NONE, &press.multiply, 0, 0, "fft|mlms",
 		"how the half-space is applied: Fourier, or multi-level summation",
 		multipliers, 0 },
 	{ 'j', "threads", OPT_INT, UNIT_COUNT, &press.threads, 1, 1024, "N",
@@ -55,6 +57,10 @@ void press_check(void)
 
 	if (!isnan(press.load) + !isnan(press.pressure) + !isnan(press.approach) > 1)
 		die(EXIT_USAGE, "want only one of --load, --pressure and --approach");
+	for (int i = 0; i < e->n; i++)
+		if (e->v[i] < 1e5)
+			warn("--young %g Pa is softer than any solid surface: is %gGPa meant?",
+				e->v[i], e->v[i]);
 	if (!isnan(press.estar) && e->n)
 		die(EXIT_USAGE, "want either --estar or --young and --poisson");
 	if (press.multiply && press.boundary)
@@ -66,25 +72,26 @@ void press_check(void)
 }
 
 /* Number of a key that bemcontact wrote, for an option that was not given. */
-static double inherited(const struct record *r, const char *key, int letter, double value)
+static double inherited(
+	const struct record *r, const char *key, const char *word, double value)
 {
 	double v = record_get_number(r, key);
 
-	return opt_given(letter) || isnan(v) ? value : v;
+	return opt_given(word) || isnan(v) ? value : v;
 }
 
 struct contact_par press_par(const struct record *r, struct pool *pool)
 {
 	const char *around = record_get(r, "boundary");
-	int periodic = opt_given('b') || !around ? press.boundary
-						 : strcmp(around, "periodic") == 0;
+	int periodic = opt_given("boundary") || !around ? press.boundary
+							: strcmp(around, "periodic") == 0;
 
 	return (struct contact_par){ .nx = r->nx,
 		.ny = r->ny,
 		.dx = r->dx,
 		.dy = r->dy,
 		.estar = isnan(press.estar) ? record_get_number(r, "estar") : press.estar,
-		.hardness = inherited(r, "hardness", 'K', press.hardness),
+		.hardness = inherited(r, "hardness", "hardness", press.hardness),
 		.boundary = periodic ? CONTACT_PERIODIC : CONTACT_FREE,
 		.solver = (enum contact_solver)press.solver,
 		.multiply = (enum contact_multiply)press.multiply,

@@ -4,9 +4,9 @@
 static struct opt_list size, pixel;
 
 struct opt raw_rows[] = {
-	{ 'x', "raw", OPT_LIST, UNIT_COUNT, &size, 1, 1e9, "NXxNY",
+	{ 0, "raw", OPT_LIST, UNIT_COUNT, &size, 1, 1e9, "NXxNY",
 		"read headerless little-endian float64 heights", 0, 0 },
-	{ 'X', "pixel", OPT_LIST, UNIT_LENGTH, &pixel, 1e-15, 1e12, "D[xD]",
+	{ 0, "pixel", OPT_LIST, UNIT_LENGTH, &pixel, 1e-15, 1e12, "D[xD]",
 		"spacing of --raw along x and y", 0, 0 },
 	OPT_END,
 };

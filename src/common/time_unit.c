@@ -7,7 +7,7 @@ static const double seconds[] = { 1, 60, 3600, 86400 };
 static int unit;
 
 struct opt timeunit_rows[] = {
-	{ 't', "time-unit", OPT_WORD, UNIT_NONE, &unit, 0, 0, "s|min|h|d",
+	{ 0, "time-unit", OPT_WORD, UNIT_NONE, &unit, 0, 0, "s|min|h|d",
 		"unit of the times read", words, 0 },
 	OPT_END,
 };

@@ -1,12 +1,12 @@
 /* debrisgen - wear particles that a contact tears off a rough surface */
-#include "common/contact_options.h"
-#include "io/fields.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
-#include "wear_steps.h"
+#include "common/contact_options.h"
+#include "io/fields.h"
 #include "outputs.h"
+#include "wear_steps.h"
 #include <math.h>
 
 static long steps = 1;
@@ -14,11 +14,12 @@ static double stop_area = 0.8, amplification = 1;
 
 static const struct opt opts[] = {
 	OPT_TABLE(wearing_rows),
-	{ 'T', "steps", OPT_INT, UNIT_COUNT, &steps, 1, 1e6, "N",
+	OPT_HEADING("Steps"),
+	{ 0, "steps", OPT_INT, UNIT_COUNT, &steps, 1, 1e6, "N",
 		"wear steps; the contact is solved anew from the second on", NULL, 0 },
-	{ 'A', "stop-area", OPT_NUM, UNIT_FRACTION, &stop_area, 0, 1, "A",
+	{ 0, "stop-area", OPT_NUM, UNIT_FRACTION, &stop_area, 0, 1, "A",
 		"stop where this share of the cells is in contact; 1: never", NULL, 0 },
-	{ 'Z', "amplification", OPT_NUM, UNIT_NONE, &amplification, 0, 1e12, "K",
+	{ 0, "amplification", OPT_NUM, UNIT_NONE, &amplification, 0, 1e12, "K",
 		"sliding distance of a step over the length of the grid", NULL, 0 },
 	OPT_TABLE(worn_rows),
 	OPT_TABLE(press_rows),
@@ -27,10 +28,18 @@ static const struct opt opts[] = {
 
 static const struct prog prog = { "debrisgen",
 	"Find the wear particles that a rough contact tears off, step by step.", "[file]",
-	"fields: height, pressure", "table: one row per wear particle", opts };
+	"fields: height, pressure, as bemcontact writes", "table: one row per wear particle", opts };
+
+/* Load on the outermost cells, where the half-space ends: steps with more than 5 %, and
+ * the worst of them. */
+struct edge {
+	long steps, realisation, step;
+	double most;
+};
 
 /* What the program goes through its records with. */
 struct run {
+	struct edge edge;
 	struct fields_in *in;
 	struct wearing *wearing;
 	struct worn *out; /* NULL before the first record */
@@ -42,7 +51,6 @@ struct scene {
 	struct worn_surface now;
 	double target; /* mean pressure, or approach */
 	long done;     /* steps before the first of this run */
-	int warned;    /* of load on the rim, once a surface */
 };
 
 static double choose_target(const struct scene *c, double contact_load)
@@ -87,21 +95,43 @@ static int check_contact(struct run *run, struct scene *c, long step)
 	struct debris_step s;
 
 	wearing_contact(run->wearing, &c->now, &s);
-	if (s.edge_load > 0.05 && !c->warned++)
-		warn("%s: realisation %ld, step %ld: %.0f %% of the load lies on the "
-		     "outermost cells",
-			name, c->now.r->realisation, step, 100 * s.edge_load);
+	if (s.edge_load > 0.05)
+		run->edge.steps++;
+	if (s.edge_load > run->edge.most) {
+		run->edge.most = s.edge_load;
+		run->edge.realisation = c->now.r->realisation;
+		run->edge.step = step;
+	}
 	if (s.contact < stop_area || stop_area == 1)
 		return 0;
-	note("%s: realisation %ld, step %ld: %.3g of the cells in contact: stopped", name,
-		c->now.r->realisation, step, s.contact);
+	warn("%s: realisation %ld: stopped before step %ld: %.3g of the cells in contact, "
+	     "--stop-area %g",
+		name, c->now.r->realisation, step, s.contact, stop_area);
 	return 1;
+}
+
+/* Particles without end on a periodic grid have no shape. */
+static void check_ends(struct run *run, const struct scene *c, const struct worn_step *s)
+{
+	size_t endless = 0;
+
+	for (size_t i = 0; i < s->lost->count; i++)
+		endless += s->lost->particle[i].endless != 0;
+	if (endless == 0)
+		return;
+	warn("%s: realisation %ld, step %ld: %zu of %zu particles go round the periodic "
+	     "grid and have no end: their shape is nan",
+		fields_name(run->in), c->now.r->realisation, s->number, endless,
+		s->lost->count);
+	run->status = EXIT_NOCONV;
+	stats_add("particles_endless", (double)endless);
 }
 
 static void wear_step(struct run *run, const struct scene *c, long step)
 {
 	struct worn_step s = wearing_step(run->wearing, &c->now, step);
 
+	check_ends(run, c, &s);
 	s.distance = (double)step * amplification * wearing_length(c->now.r);
 	worn_put(run->out, &c->now, &s);
 	note("%s: realisation %ld, step %ld: %zu particles, %.6g m3, %ld layers",
@@ -109,23 +139,53 @@ static void wear_step(struct run *run, const struct scene *c, long step)
 		s.lost->volume, s.lost->wear.layers);
 }
 
+/* The nominal pressure is that of the steps, or not one where these keep an approach.
+ * Rounded, lest its last digit differ from record to record. */
+static struct worn_conditions conditions_of(const struct scene *c)
+{
+	const struct record *r = c->now.r;
+	int pressed = press_control() == CONTACT_PRESSURE;
+
+	return (struct worn_conditions){ .area = r->nx * r->dx * r->ny * r->dy,
+		.pressure = pressed ? (double)(float)c->target : NAN,
+		.friction = wearing_friction(),
+		.distance = amplification * wearing_length(r) };
+}
+
 /* Wears one surface step by step. */
 static void wear_record(struct run *run, struct record *r)
 {
 	struct scene c = { 0 };
+	struct worn_conditions conditions;
 
 	open_scene(run, r, &c);
-	worn_begin(run->out, r);
+	conditions = conditions_of(&c);
+	worn_begin(run->out, r, &conditions);
 	for (long k = 1; k <= steps; k++) {
 		progress("steps", (double)(k - 1), (double)steps);
 		if (k > 1 && !wearing_press(run->wearing, &c.now, c.target, c.done + k))
 			run->status = EXIT_NOCONV;
 		if (check_contact(run, &c, c.done + k)) {
 			stats_add("steps_skipped", (double)(steps - k + 1));
+			if (k == 1)
+				run->status = EXIT_NOCONV;
 			break;
 		}
 		wear_step(run, &c, c.done + k);
 	}
+}
+
+static void warn_of_edge(const struct run *run)
+{
+	const struct edge *e = &run->edge;
+
+	stats_add("edge_load_steps", (double)e->steps);
+	if (e->steps)
+		warn("%s: %ld steps with more than 5 %% of the load on the outermost "
+		     "cells, worst %.0f %% (realisation %ld, step %ld): use a larger area, "
+		     "roughgen --crown auto, or --boundary periodic",
+			fields_name(run->in), e->steps, 100 * e->most, e->realisation,
+			e->step);
 }
 
 int main(int argc, char **argv)
@@ -144,6 +204,7 @@ int main(int argc, char **argv)
 		wear_record(&run, &r);
 	}
 	progress_clear();
+	warn_of_edge(&run);
 	worn_close(run.out);
 	wearing_close(run.wearing);
 	fields_close(run.in);

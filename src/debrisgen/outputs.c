@@ -1,8 +1,8 @@
 #include "outputs.h"
-#include "stress/stress_kernel.h"
-#include "surface/surface.h"
 #include "cli/msg.h"
 #include "io/tables.h"
+#include "stress/stress_kernel.h"
+#include "surface/surface.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,34 +17,62 @@ static long stress_layers;
 static const char *surface_path, *summary_path, *stress_path;
 
 struct opt worn_rows[] = {
-	{ 'O', "surface", OPT_TEXT, UNIT_NONE, &surface_path, 0, 0, "FILE",
+	OPT_HEADING("Further output"),
+	{ 0, "surface", OPT_TEXT, UNIT_NONE, &surface_path, 0, 0, "FILE",
 		"write the worn surface of every step", NULL, 1 },
-	{ 'U', "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
+	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
 		"write a table with a row per step", NULL, 1 },
-	{ 'G', "stress", OPT_TEXT, UNIT_NONE, &stress_path, 0, 0, "FILE",
+	{ 0, "stress", OPT_TEXT, UNIT_NONE, &stress_path, 0, 0, "FILE",
 		"write the stress below every contact", NULL, 1 },
-	{ 'o', "fields", OPT_WORDS, UNIT_NONE, &stress_wanted, 0, 0, "NAME,...",
+	{ 0, "fields", OPT_WORDS, UNIT_NONE, &stress_wanted, 0, 0, "NAME,...",
 		"what to write of von_mises, hydrostatic, principal, tensor",
 		stress_words, 1 },
-	{ 'y', "stress-layers", OPT_INT, UNIT_COUNT, &stress_layers, 0, 1e6, "N",
-		"layers of --stress; 0: as many as were searched for failure", NULL, 1 },
+	{ 0, "stress-layers", OPT_INT, UNIT_COUNT, &stress_layers, 0, 1e6, "N",
+		"layers of --stress; 0: as deep as was searched for failure", NULL, 1 },
 	OPT_END,
 };
 
 static const char particle_columns[] =
-	"realisation step particle nodes volume diameter aspect x y z length width elongation "
+	"realisation step particle columns volume diameter aspect x y z length width elongation "
 	"convexity area azimuth dip x_low x_high y_low y_high z_low z_high";
 static const char particle_units[] =
 	"1 1 1 1 m3 m 1 m m m m m 1 1 m2 rad rad m m m m m m";
 static const char summary_columns[] =
 	"realisation step distance load contact_fraction max_pressure edge_load volume "
-	"particles mean_diameter max_diameter depth relative_roughness max_von_mises";
+	"particles mean_diameter max_diameter depth relative_roughness max_stress";
 static const char summary_units[] = "1 1 m N 1 Pa 1 m3 1 m m m 1 Pa";
+
+/* A stream of records; the last is held back until it is known whether another one
+ * follows. */
+struct held_fields {
+	struct fields_out *out; /* NULL: not wanted */
+	struct record last;     /* without fields: none yet */
+};
 
 struct worn {
 	struct table_out *particles, *summary;
-	struct fields_out *surface, *stress;
+	struct held_fields surface, stress;
+	struct worn_conditions told; /* to both tables */
+	int begun;
 };
+
+/* Takes the record over. */
+static void held_put(struct held_fields *f, const struct record *r)
+{
+	if (f->last.nfields)
+		fields_write(f->out, &f->last, 1);
+	record_free(&f->last);
+	f->last = *r;
+}
+
+static void held_done(struct held_fields *f)
+{
+	if (f->last.nfields)
+		fields_write(f->out, &f->last, 0);
+	record_free(&f->last);
+	if (f->out)
+		fields_done(f->out);
+}
 
 /* The pipeline that prints what went to the file of an option, on standard output; of the
  * particles with option NULL.  Fresh memory. */
@@ -76,9 +104,9 @@ struct worn *worn_open(const char *upstream)
 		w->summary = table_create(
 			summary_path, summary, summary_units, summary_columns);
 	if (surface_path)
-		w->surface = fields_create(surface_path);
+		w->surface.out = fields_create(surface_path);
 	if (stress_path)
-		w->stress = fields_create(stress_path);
+		w->stress.out = fields_create(stress_path);
 	free(cmd);
 	free(summary);
 	return w;
@@ -92,11 +120,28 @@ static void table_cmd_for(struct table_out *t, const struct record *r, const cha
 	free(cmd);
 }
 
-void worn_begin(struct worn *w, const struct record *r)
+static void tell(struct table_out *t, const struct worn_conditions *c)
+{
+	if (!t)
+		return;
+	table_comment(t, "nominal_area", "%.12g m2", c->area);
+	table_comment(t, "nominal_pressure", "%.12g Pa", c->pressure);
+	table_comment(t, "friction", "%.12g", c->friction);
+	table_comment(t, "step_distance", "%.12g m", c->distance);
+}
+
+void worn_begin(
+	struct worn *w, const struct record *r, const struct worn_conditions *conditions)
 {
 	table_cmd_for(w->particles, r, NULL);
 	if (w->summary)
 		table_cmd_for(w->summary, r, "--summary");
+	if (w->begun && memcmp(&w->told, conditions, sizeof w->told) == 0)
+		return;
+	w->begun = 1;
+	w->told = *conditions;
+	tell(w->particles, conditions);
+	tell(w->summary, conditions);
 }
 
 static void put_particles(
@@ -105,8 +150,8 @@ static void put_particles(
 	for (size_t i = 0; i < s->lost->count; i++) {
 		const struct particle *p = &s->lost->particle[i];
 		double row[] = { (double)realisation, (double)s->number, (double)(i + 1),
-			p->nodes, p->volume, p->diameter, p->aspect, p->x, p->y, p->z,
-			p->length, p->width, p->elongation, p->convexity, p->area,
+			(double)p->columns, p->volume, p->diameter, p->aspect, p->x, p->y,
+			p->z, p->length, p->width, p->elongation, p->convexity, p->area,
 			p->azimuth, p->dip, p->low[0], p->high[0], p->low[1], p->high[1],
 			p->low[2], p->high[2] };
 
@@ -142,7 +187,7 @@ static void put_summary(
 		lost->load, lost->contact, lost->max_pressure, lost->edge_load,
 		lost->volume, (double)lost->count, lost->count ? mean : NAN,
 		lost->count ? most : NAN, lost->depth, worn_roughness(c) / c->sq,
-		lost->wear.mises };
+		lost->wear.stress };
 
 	table_put_row(t, row, sizeof(row) / sizeof(*row));
 	table_flush(t);
@@ -164,7 +209,7 @@ static void bare_record(
 }
 
 static void put_surface(
-	struct fields_out *f, const struct worn_surface *c, const struct worn_step *s)
+	struct held_fields *f, const struct worn_surface *c, const struct worn_step *s)
 {
 	size_t bytes = (size_t)c->r->nx * c->r->ny * sizeof(*c->h);
 	struct record out = { 0 };
@@ -173,8 +218,7 @@ static void put_surface(
 	memcpy(record_add(&out, "height", "m"), c->h, bytes);
 	/* The next solution starts from it, here as in a pipeline. */
 	memcpy(record_add(&out, "pressure", "Pa"), c->p, bytes);
-	fields_write(f, &out);
-	record_free(&out);
+	held_put(f, &out);
 }
 
 /* The fields wanted at one point, in the order of their names in put_stress(). */
@@ -198,16 +242,17 @@ static int derive(const double t[STRESS_COMPONENTS], double *out)
 }
 
 static void put_stress(
-	struct fields_out *f, const struct record *r, const struct worn_step *s)
+	struct held_fields *f, const struct record *r, const struct worn_step *s)
 {
 	static const char *const names[] = { "von_mises", "hydrostatic", "principal_1",
 		"principal_2", "principal_3", "xx", "yy", "zz", "xy", "xz", "yz" };
 	static const int part[] = { MISES, HYDROSTATIC, PRINCIPAL, PRINCIPAL, PRINCIPAL,
 		TENSOR, TENSOR, TENSOR, TENSOR, TENSOR, TENSOR };
 	size_t n = (size_t)r->nx * r->ny;
-	long count = stress_layers              ? stress_layers
-		     : s->lost->wear.layers > 0 ? s->lost->wear.layers
-						: 1;
+	/* As deep as was searched. */
+	long count = stress_layers ? stress_layers
+				   : 1 + (long)ceil(fmax(0, s->lost->wear.depth / s->dz -
+								    s->offset));
 	double *tensor = xcalloc(n, STRESS_COMPONENTS * sizeof(*tensor));
 	struct record out = { 0 };
 
@@ -219,7 +264,7 @@ static void put_stress(
 		if (stress_wanted & part[k])
 			record_add(&out, names[k], "Pa");
 	for (long m = 0; m < count; m++) {
-		if (stress_tensor(s->stress, m, tensor))
+		if (stress_tensor(s->stress, ((double)m + s->offset) * s->dz, tensor))
 			die(EXIT_RUN, "no memory for the stress of %ld layers", count);
 		for (size_t i = 0; i < n; i++) {
 			double t[STRESS_COMPONENTS], v[RECORD_FIELDS_MAX];
@@ -231,8 +276,7 @@ static void put_stress(
 				out.data[k][m * n + i] = v[k];
 		}
 	}
-	fields_write(f, &out);
-	record_free(&out);
+	held_put(f, &out);
 	free(tensor);
 }
 
@@ -241,10 +285,10 @@ void worn_put(struct worn *w, const struct worn_surface *c, const struct worn_st
 	put_particles(w->particles, c->r->realisation, s);
 	if (w->summary)
 		put_summary(w->summary, c, s);
-	if (w->stress)
-		put_stress(w->stress, c->r, s);
-	if (w->surface)
-		put_surface(w->surface, c, s);
+	if (w->stress.out)
+		put_stress(&w->stress, c->r, s);
+	if (w->surface.out)
+		put_surface(&w->surface, c, s);
 }
 
 void worn_close(struct worn *w)
@@ -252,9 +296,7 @@ void worn_close(struct worn *w)
 	table_done(w->particles);
 	if (w->summary)
 		table_done(w->summary);
-	if (w->surface)
-		fields_done(w->surface);
-	if (w->stress)
-		fields_done(w->stress);
+	held_done(&w->surface);
+	held_done(&w->stress);
 	free(w);
 }

@@ -2,9 +2,9 @@
 #ifndef WORN_H
 #define WORN_H
 
+#include "cli/opt.h"
 #include "debris/debris.h"
 #include "io/fields.h"
-#include "cli/opt.h"
 
 extern struct opt worn_rows[]; /* for OPT_TABLE: the files besides the particles */
 
@@ -25,15 +25,24 @@ struct worn_step {
 	double distance; /* slid so far, m */
 	const struct debris_step *lost;
 	struct stress *stress; /* below the contact */
-	double dz, offset;     /* its layers, as in struct stress_par */
+	double dz, offset;     /* layers of --stress lie (layer + offset) dz deep, m */
 };
 
 struct worn;
 
 /* upstream: the pipeline that made what is read, NULL if unknown. */
 struct worn *worn_open(const char *upstream);
+/* Under what the particles were torn off, which rwl needs; NAN: not known. */
+struct worn_conditions {
+	double area;     /* of the grid, m2 */
+	double pressure; /* nominal, Pa */
+	double friction; /* shear over pressure */
+	double distance; /* slid in a step, m */
+};
+
 /* What follows is of this record. */
-void worn_begin(struct worn *w, const struct record *r);
+void worn_begin(
+	struct worn *w, const struct record *r, const struct worn_conditions *conditions);
 void worn_put(struct worn *w, const struct worn_surface *c, const struct worn_step *s);
 void worn_close(struct worn *w);
 

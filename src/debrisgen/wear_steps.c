@@ -1,36 +1,40 @@
 #include "wear_steps.h"
-#include "contact/solver.h"
-#include "common/contact_options.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "common/contact_options.h"
+#include "contact/solver.h"
 #include <math.h>
 #include <stdlib.h>
 
 static const char *const axes[] = { "x", "y", NULL };
 static const char *const layers[] = { "top", "mid", NULL };
 static const char *const rules[] = { "column", "potential", NULL };
+static const char *const criteria[] = { "von-mises", "tresca", NULL };
 
 static double yield = NAN, friction, depth_step = NAN;
-static int shear, layer, removal;
-static long memory = 512;
+static int shear, layer, removal, criterion, full_sum;
 
 struct opt wearing_rows[] = {
+	OPT_HEADING("Wear"),
 	{ 'Y', "yield", OPT_NUM, UNIT_PRESSURE, &yield, 1e-30, 1e30, "Y",
-		"yield stress: material under more von Mises stress is lost", NULL, 0 },
+		"yield stress: material under more equivalent stress is lost", NULL, 0 },
+	{ 0, "criterion", OPT_WORD, UNIT_NONE, &criterion, 0, 0, "von-mises|tresca",
+		"equivalent stress", criteria, 0 },
 	{ 'u', "friction", OPT_NUM, UNIT_NONE, &friction, 0, 1e6, "MU",
 		"friction coefficient: shear over pressure", NULL, 0 },
-	{ 'z', "depth-step", OPT_NUM, UNIT_LENGTH, &depth_step, 1e-30, 1e30, "H",
-		"height of a cell; by default the spacing along x", NULL, 0 },
-	{ 'd', "shear", OPT_WORD, UNIT_NONE, &shear, 0, 0, "x|y",
+	{ 0, "depth-step", OPT_NUM, UNIT_LENGTH, &depth_step, 1e-30, 1e30, "H",
+		"material falls in cells of this height; by default the depth is interpolated",
+		NULL, 0 },
+	{ 0, "shear", OPT_WORD, UNIT_NONE, &shear, 0, 0, "x|y",
 		"direction in which friction drags the worn body", axes, 0 },
-	{ 'l', "layer", OPT_WORD, UNIT_NONE, &layer, 0, 0, "top|mid",
-		"where in a cell the stress is taken", layers, 0 },
-	{ 'r', "removal", OPT_WORD, UNIT_NONE, &removal, 0, 0, "column|potential",
-		"what is lost: columns of failed cells from the surface, or every failed cell",
+	{ 0, "layer", OPT_WORD, UNIT_NONE, &layer, 0, 0, "top|mid",
+		"where in a cell of --depth-step the stress is taken", layers, 0 },
+	{ 0, "removal", OPT_WORD, UNIT_NONE, &removal, 0, 0, "column|potential",
+		"what is lost: what fails from the surface down, or all that fails",
 		rules, 0 },
-	{ 'k', "memory", OPT_INT, UNIT_COUNT, &memory, 0, 1e7, "MB",
-		"megabytes for influence coefficients kept; the result is the same", NULL,
-		1 },
+	{ 0, "full-sum", OPT_FLAG, UNIT_NONE, &full_sum, 0, 0, NULL,
+		"sum the stress over all cells at every depth, slowly: to compare with",
+		NULL, 0 },
 	OPT_END,
 };
 
@@ -38,6 +42,11 @@ void wearing_check(void)
 {
 	if (isnan(yield))
 		die(EXIT_USAGE, "want --yield");
+	if (layer && isnan(depth_step))
+		die(EXIT_USAGE, "--layer is for cells: want --depth-step");
+	if (yield < 1e5)
+		warn("--yield %g Pa is weaker than any solid surface: is %gMPa meant?", yield,
+			yield);
 	if (press.poisson.v[0] < 0)
 		die(EXIT_USAGE, "--poisson %g: want 0 to 0.5 for the worn body",
 			press.poisson.v[0]);
@@ -89,18 +98,21 @@ void wearing_prepare(struct wearing *w, const struct record *r)
 	debris_free(w->debris);
 	contact_free(w->contact);
 	w->contact = NULL;
-	w->par = (struct debris_par){ .yield = yield, .rule = (enum wear_rule)removal };
+	w->par = (struct debris_par){ .yield = yield,
+		.rule = (enum wear_rule)removal,
+		.cell = isnan(depth_step) ? 0 : depth_step,
+		.offset = layer ? 0.5 : 0 };
 	w->par.stress = (struct stress_par){ .nx = r->nx,
 		.ny = r->ny,
 		.ax = r->dx,
 		.ay = r->dy,
-		.dz = isnan(depth_step) ? r->dx : depth_step,
-		.offset = layer ? 0.5 : 0,
 		.nu = press.poisson.v[0],
 		.mu = friction,
 		.axis = shear,
 		.periodic = pressing.boundary == CONTACT_PERIODIC,
-		.memory = (size_t)memory << 20,
+		.method = full_sum ? STRESS_FULL : STRESS_COARSE,
+		.criterion = criterion ? &stress_tresca_criterion
+				       : &stress_von_mises_criterion,
 		.pool = w->pool };
 	w->seen = (struct stress_work){ 0 };
 	w->debris = debris_new(&w->par);
@@ -152,8 +164,9 @@ static void count_work(struct wearing *w)
 	stats_add("nodes_skipped", s->wear.nodes_skipped);
 	stats_add("stress_transforms", work.transforms - w->seen.transforms);
 	stats_add("kernel_cells", work.kernel_cells - w->seen.kernel_cells);
-	stats_add("layers_direct", work.direct_layers - w->seen.direct_layers);
-	stats_add("layers_fourier", work.fourier_layers - w->seen.fourier_layers);
+	stats_add("layers_full", work.full_layers - w->seen.full_layers);
+	stats_add("layers_split", work.split_layers - w->seen.split_layers);
+	stats_add("layers_coarse", work.coarse_layers - w->seen.coarse_layers);
 	w->seen = work;
 }
 
@@ -163,7 +176,8 @@ static void refuse(const struct wearing *w, enum debris_status status, long step
 		return;
 	die(EXIT_RUN, "%s: record %ld, step %ld: %s", fields_name(w->in),
 		fields_count(w->in), step,
-		status == DEBRIS_PULL ? "pressure below zero"
+		status == DEBRIS_PULL      ? "pressure below zero"
+		: status == DEBRIS_NUMBERS ? "pressure beyond the range of numbers"
 		: status == DEBRIS_DEEP
 			? "material fails deeper than ten times the grid is long"
 			: "out of memory");
@@ -176,8 +190,13 @@ struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c, l
 	return (struct worn_step){ .number = step,
 		.lost = &w->lost,
 		.stress = debris_stress(w->debris),
-		.dz = w->par.stress.dz,
-		.offset = w->par.stress.offset };
+		.dz = w->par.cell > 0 ? w->par.cell : w->par.stress.ax,
+		.offset = w->par.offset };
+}
+
+double wearing_friction(void)
+{
+	return friction;
 }
 
 double wearing_length(const struct record *r)

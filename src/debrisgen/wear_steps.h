@@ -1,4 +1,5 @@
-/* wear_steps.h - the machinery of debrisgen: contact, stress below it, and what is lost */
+/* wear_steps.h - the machinery of debrisgen: contact, stress below it, and what is lost
+ */
 #ifndef WEARING_H
 #define WEARING_H
 
@@ -27,6 +28,7 @@ int wearing_press(
 /* Wears c; what was lost is valid until the next call.  The distance is the caller's. */
 struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c, long step);
 
+double wearing_friction(void);
 /* Of the grid, in the direction in which the bodies slide. */
 double wearing_length(const struct record *r);
 

@@ -1,9 +1,10 @@
 /* debrisstat - statistics of wear particles: fits, steps, sizes, shapes */
-#include "stats/estimates.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
 #include "io/tables.h"
+#include "stats/estimates.h"
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -18,42 +19,145 @@ static double bin = 10e-6, confidence = 0.95;
 static long realisations, bootstrap, seed = 1;
 static const char *summary_path;
 
+/* Groups of realisations that --bootstrap draws; up to so many, each is one. */
+enum { GROUPS = 512 };
+
 static const struct opt opts[] = {
+	OPT_HEADING("Output"),
 	{ 'o', "output", OPT_WORD, UNIT_NONE, &output, 0, 0, "fits|steps|sizes|aspects",
 		"what to print", outputs, 0 },
-	{ 'd', "diameter", OPT_LIST, UNIT_LENGTH, &diameters, 0, 1e30, "LO:HI",
+	{ 0, "diameter", OPT_LIST, UNIT_LENGTH, &diameters, 0, 1e30, "LO:HI",
 		"only particles of this equivalent diameter", NULL, 0 },
-	{ 't', "truncated", OPT_FLAG, UNIT_NONE, &truncated, 0, 0, NULL,
+	OPT_HEADING("Fits"),
+	{ 0, "truncated", OPT_FLAG, UNIT_NONE, &truncated, 0, 0, NULL,
 		"fit the Weibull distribution as cut off at --diameter", NULL, 0 },
-	{ 'p', "step", OPT_LIST, UNIT_COUNT, &range, 1, 1e9, "A[:B]",
+	{ 0, "step", OPT_LIST, UNIT_COUNT, &range, 1, 1e9, "A[:B]",
 		"only these steps; default all", NULL, 0 },
-	{ 'g', "growth", OPT_WORD, UNIT_NONE, &growth, 0, 0, "cumulative|step",
+	{ 0, "growth", OPT_WORD, UNIT_NONE, &growth, 0, 0, "cumulative|step",
 		"what the power law follows: all particles so far, or those of a step",
 		growths, 0 },
-	{ 'b', "bin", OPT_NUM, UNIT_LENGTH, &bin, 1e-30, 1e30, "W",
+	{ 0, "bin", OPT_NUM, UNIT_LENGTH, &bin, 1e-30, 1e30, "W",
 		"width of the classes of sizes", NULL, 0 },
-	{ 'a', "aspects", OPT_LIST, UNIT_NONE, &edges, 1, 1e9, "A,A,...",
+	{ 0, "aspects", OPT_LIST, UNIT_NONE, &edges, 1, 1e9, "A,A,...",
 		"edges of the classes of aspect ratio", NULL, 0 },
-	{ 'C', "confidence", OPT_NUM, UNIT_FRACTION, &confidence, 0.01, 0.9999, "C",
+	OPT_HEADING("Intervals"),
+	{ 0, "confidence", OPT_NUM, UNIT_FRACTION, &confidence, 0.01, 0.9999, "C",
 		"of the intervals", NULL, 0 },
-	{ 'B', "bootstrap", OPT_INT, UNIT_COUNT, &bootstrap, 0, 1e6, "N",
+	{ 0, "bootstrap", OPT_INT, UNIT_COUNT, &bootstrap, 0, 1e6, "N",
 		"intervals by drawing the realisations N times anew", NULL, 0 },
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "of --bootstrap", NULL,
 		0 },
-	{ 'n', "realisations", OPT_INT, UNIT_COUNT, &realisations, 0, 1e9, "N",
+	{ 0, "realisations", OPT_INT, UNIT_COUNT, &realisations, 0, 1e9, "N",
 		"realisations there were, with those that gave no particle", NULL, 0 },
-	{ 'U', "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
+	OPT_HEADING("Further output"),
+	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
 		"summary of debrisgen, to know of steps without particles", NULL, 0 },
 	OPT_END,
 };
 
 static const struct prog prog = { "debrisstat",
 	"Fit and count the wear particles of an ensemble.", "[file]",
-	"table: realisation, step, volume, diameter, aspect", "table", opts };
+	"table: realisation, step, volume, diameter, aspect, as debrisgen writes", "table", opts };
 
 static _Noreturn void no_memory(void)
 {
 	die(EXIT_RUN, "out of memory");
+}
+
+/* Classes of sizes and aspect ratios, which need no ensemble. */
+static double *size_count, aspect_count[OPT_LIST_MAX], aspects;
+static size_t classes, class_room;
+
+static void check(struct ensemble *e, enum ensemble_status status)
+{
+	switch (status) {
+	case ENSEMBLE_OK:
+		return;
+	case ENSEMBLE_APART:
+		die(EXIT_RUN,
+			"the rows of realisation %ld stand too far apart: sort the table "
+			"by realisation",
+			ensemble_culprit(e));
+	case ENSEMBLE_CLASH:
+		die(EXIT_RUN,
+			"realisation %ld stands in two parts of the table; "
+			"ensembles to be joined want numbers of their own",
+			ensemble_culprit(e));
+	case ENSEMBLE_MORE:
+		die(EXIT_RUN, "--realisations %ld, but the table has %zu", realisations,
+			ensemble_told(e));
+	case ENSEMBLE_MEMORY:
+		no_memory();
+	}
+}
+
+static int counts(const struct shed *s)
+{
+	return s->diameter >= diameters.v[0] && s->diameter <= diameters.v[1] &&
+	       (range.n == 0 || (s->step >= (long)range.v[0] &&
+					s->step <= (long)range.v[range.n - 1]));
+}
+
+static void classify(const struct shed *s, double aspect)
+{
+	int k = 0;
+
+	if (!counts(s))
+		return;
+	while (k < edges.n && aspect >= edges.v[k])
+		k++;
+	if (k > 0)
+		aspect_count[k - 1]++;
+	aspects++;
+	if (output != SIZES)
+		return;
+	if (s->diameter / bin > 1e6)
+		die(EXIT_RUN, "--bin %g m: more than a million classes", bin);
+	if ((size_t)(s->diameter / bin) + 1 > classes)
+		classes = (size_t)(s->diameter / bin) + 1;
+	while (classes > class_room) {
+		size_t room = class_room ? 2 * class_room : 64;
+
+		size_count = xrealloc(size_count, room, sizeof *size_count);
+		for (size_t i = class_room; i < room; i++)
+			size_count[i] = 0;
+		class_room = room;
+	}
+	size_count[(size_t)(s->diameter / bin)]++;
+}
+
+/* The summary of debrisgen beside its particles, row by row. */
+struct summary {
+	struct table_in *table; /* NULL: none */
+	int realisation, step;  /* columns */
+	long at;                /* realisation of the present row */
+	int more;
+};
+
+static void next_summary(struct summary *s)
+{
+	s->more = table_next(s->table);
+	if (s->more)
+		s->at = table_whole(s->table, s->realisation, 0, 1e15);
+}
+
+static void open_summary(struct summary *s)
+{
+	*s = (struct summary){ 0 };
+	if (!summary_path)
+		return;
+	s->table = table_open(summary_path);
+	s->realisation = table_need(s->table, "realisation");
+	s->step = table_need(s->table, "step");
+	next_summary(s);
+}
+
+/* Reads up to a realisation: the rows of both tables reach the ensemble together. */
+static void read_summary(struct summary *s, struct ensemble *e, long realisation)
+{
+	for (; s->more && s->at <= realisation; next_summary(s))
+		check(e, ensemble_took_place(
+				 e, s->at, table_whole(s->table, s->step, 1, 1e6)));
 }
 
 static void read_particles(struct ensemble *e, const char *path, char **cmd)
@@ -61,6 +165,7 @@ static void read_particles(struct ensemble *e, const char *path, char **cmd)
 	struct table_in *t = table_open(path);
 	int more = table_next(t);
 	int cr, cs, cd, cv, ca;
+	struct summary summary;
 
 	if (table_columns(t) == 0)
 		die(EXIT_RUN, "%s: no table", table_name(t));
@@ -69,34 +174,26 @@ static void read_particles(struct ensemble *e, const char *path, char **cmd)
 	cd = table_need(t, "diameter");
 	cv = table_need(t, "volume");
 	ca = table_need(t, "aspect");
+	open_summary(&summary);
 	for (; more; more = table_next(t)) {
 		struct shed s = { table_whole(t, cr, 0, 1e15), table_whole(t, cs, 1, 1e6),
-			table_positive(t, cd), table_positive(t, cv),
-			table_positive(t, ca), table_part(t) };
+			table_positive(t, cd), table_positive(t, cv), table_part(t) };
 
-		if (ensemble_add(e, &s))
-			no_memory();
+		read_summary(&summary, e, s.realisation);
+		check(e, ensemble_add(e, &s));
+		/* A particle around a periodic grid has no shape. */
+		classify(&s, isnan(table_number(t, ca)) ? NAN : table_positive(t, ca));
 	}
+	read_summary(&summary, e, LONG_MAX);
+	if (summary.table)
+		table_close(summary.table);
 	*cmd = opt_cmd(table_upstream(t), NULL);
 	table_close(t);
 }
 
-static void read_summary(struct ensemble *e)
+static struct ensemble *new_ensemble(void)
 {
-	struct table_in *t = table_open(summary_path);
-	int more = table_next(t), cr = table_need(t, "realisation");
-	int cs = table_need(t, "step");
-
-	for (; more; more = table_next(t))
-		if (ensemble_took_place(
-			    e, table_whole(t, cr, 0, 1e15), table_whole(t, cs, 1, 1e6)))
-			no_memory();
-	table_close(t);
-}
-
-static void close_ensemble(struct ensemble *e)
-{
-	struct ensemble_par par = { .realisations = (size_t)realisations,
+	struct ensemble_par par = { .realisations = (double)realisations,
 		.first = range.n > 0 ? (long)range.v[0] : 1,
 		.last = range.n > 0 ? (long)range.v[range.n - 1] : 0,
 		.partial = summary_path != NULL,
@@ -104,34 +201,14 @@ static void close_ensemble(struct ensemble *e)
 		.high = diameters.v[1],
 		.truncated = truncated,
 		.per_step = growth,
-		.confidence = confidence };
+		.confidence = confidence,
+		.by_step = output == STEPS,
+		.groups = output == FITS && bootstrap ? GROUPS : 0 };
+	struct ensemble *e = ensemble_new(&par);
 
-	if (ensemble_sort(e))
+	if (!e)
 		no_memory();
-	if (ensemble_clash(e) >= 0)
-		die(EXIT_RUN,
-			"realisation %ld stands in two parts of the table; "
-			"ensembles to be joined want numbers of their own",
-			ensemble_clash(e));
-	if (realisations && par.realisations < ensemble_told(e))
-		die(EXIT_RUN, "--realisations %ld, but the table has %zu", realisations,
-			ensemble_told(e));
-	if (bootstrap && ensemble_told(e) < 2)
-		die(EXIT_RUN, "--bootstrap wants at least two realisations, got %zu",
-			ensemble_told(e));
-	if (ensemble_close(e, &par))
-		no_memory();
-}
-
-/* All diameters that count; the caller frees. */
-static double *diameters_of(const struct ensemble *e, size_t *n)
-{
-	const struct ensemble_par *par = ensemble_par(e);
-	double *x = ensemble_diameters(e, NULL, par->first, par->last, n);
-
-	if (!x)
-		no_memory();
-	return x;
+	return e;
 }
 
 static void put_quantity(struct table_out *t, const char *name, struct estimate e)
@@ -149,21 +226,24 @@ static void print_fits(const struct ensemble *e, const char *cmd)
 	const struct ensemble_par *par = ensemble_par(e);
 	struct table_out *t = table_create(NULL, cmd, NULL, "quantity value low high");
 	struct estimate out[ESTIMATES];
-	size_t n;
 
-	free(diameters_of(e, &n));
-	if (estimate_all(e, NULL, out) ||
+	if (estimate_all(e, out) ||
 		(bootstrap && estimate_bootstrap(e, (uint64_t)seed, bootstrap, out)))
 		no_memory();
 	if (bootstrap)
 		stats_add("draws", (double)bootstrap);
-	double count[] = { (double)par->realisations,
-		(double)(par->last - par->first + 1), (double)n };
+	double count[] = { par->realisations, (double)(par->last - par->first + 1),
+		ensemble_diameter(e)->n };
 	for (int k = 0; k < 3; k++)
 		put_quantity(t, counts[k], (struct estimate){ count[k], NAN, NAN });
 	for (int q = 0; q < ESTIMATES; q++)
 		put_quantity(t, names[q], out[q]);
 	table_done(t);
+}
+
+static double mean(const struct running *t)
+{
+	return t->n > 0 ? t->mean : NAN;
 }
 
 static void print_steps(const struct ensemble *e, const char *cmd)
@@ -175,14 +255,22 @@ static void print_steps(const struct ensemble *e, const char *cmd)
 	const struct ensemble_par *par = ensemble_par(e);
 
 	for (long s = par->first; s <= par->last; s++) {
-		struct step_estimate o;
+		const struct ensemble_step *o = ensemble_step(e, s);
+		const struct sketch *x = ensemble_step_diameters(e, s);
+		struct running diameter = { 0 };
+		struct weibull w = { { NAN, NAN, NAN }, { NAN, NAN, NAN }, NAN, 0, 0 };
 
-		if (estimate_step(e, s, &o))
+		if (estimate_weibull(e, x, &w) == WEIBULL_MEMORY)
 			no_memory();
+		for (size_t i = 0; i < x->n; i++)
+			running_repeat(&diameter, x->value[i], x->weight[i]);
 		table_put_row(t,
-			(double[]){ (double)s, o.realisations, o.count, o.count_sd,
-				o.all_count, o.volume, o.volume_sd, o.all_volume,
-				o.all_volume_sd, o.diameter, o.shape, o.scale },
+			(double[]){ (double)s, o->count.n, mean(&o->count),
+				sqrt(running_variance(&o->count)), o->total_count,
+				mean(&o->volume), sqrt(running_variance(&o->volume)),
+				mean(&o->total_volume),
+				sqrt(running_variance(&o->total_volume)), mean(&diameter),
+				w.shape.value, w.scale.value },
 			12);
 	}
 	table_done(t);
@@ -192,46 +280,36 @@ static void print_sizes(const struct ensemble *e, const char *cmd)
 {
 	struct table_out *t = table_create(
 		NULL, cmd, "m m 1 1/m 1/m", "low high count density weibull");
-	size_t n, classes = 0;
-	double *x = diameters_of(e, &n), *count;
+	double n = ensemble_diameter(e)->n;
 	struct weibull w;
-	int fitted = estimate_weibull(e, x, n, &w) == 0;
+	enum weibull_status fit = estimate_weibull(e, ensemble_diameters(e), &w);
 
-	for (size_t i = 0; i < n; i++) {
-		if (x[i] / bin > 1e6)
-			die(EXIT_RUN, "--bin %g m: more than a million classes", bin);
-		if ((size_t)(x[i] / bin) + 1 > classes)
-			classes = (size_t)(x[i] / bin) + 1;
-	}
-	count = xcalloc(classes + 1, sizeof(*count));
-	for (size_t i = 0; i < n; i++)
-		count[(size_t)(x[i] / bin)]++;
+	if (fit == WEIBULL_MEMORY)
+		no_memory();
 	for (size_t i = 0; i < classes; i++) {
 		double low = (double)i * bin, high = (double)(i + 1) * bin;
-		double density = count[i] / ((double)n * bin);
+		double density = size_count[i] / (n * bin);
 		double middle = ((double)i + 0.5) * bin;
 
 		table_put_row(t,
-			(double[]){ low, high, count[i], density,
-				fitted ? weibull_density(&w, middle) : NAN },
+			(double[]){ low, high, size_count[i], density,
+				fit == WEIBULL_OK ? weibull_density(&w, middle) : NAN },
 			5);
 	}
 	table_done(t);
-	free(count);
-	free(x);
 }
 
 static void print_aspects(const struct ensemble *e, const char *cmd)
 {
 	struct table_out *t = table_create(NULL, cmd, "1 1 1 1", "low high count share");
-	double count[OPT_LIST_MAX];
-	double all = ensemble_aspects(e, edges.v, edges.n, count);
 
+	(void)e;
 	for (int k = 0; k < edges.n; k++)
 		table_put_row(t,
 			(double[]){ edges.v[k],
-				k + 1 < edges.n ? edges.v[k + 1] : INFINITY, count[k],
-				all > 0 ? count[k] / all : NAN },
+				k + 1 < edges.n ? edges.v[k + 1] : INFINITY,
+				aspect_count[k],
+				aspects > 0 ? aspect_count[k] / aspects : NAN },
 			4);
 	table_done(t);
 }
@@ -253,20 +331,23 @@ int main(int argc, char **argv)
 	static void (*const print[])(const struct ensemble *,
 		const char *) = { print_fits, print_steps, print_sizes, print_aspects };
 	int first = opt_parse(&prog, argc, argv);
-	struct ensemble *e = ensemble_new();
+	struct ensemble *e;
 	char *cmd;
 
 	check_options();
-	if (!e)
-		no_memory();
+	e = new_ensemble();
 	read_particles(e, argv[first], &cmd);
-	if (summary_path)
-		read_summary(e);
-	close_ensemble(e);
-	stats_add("particles", (double)ensemble_particles(e));
-	stats_add("realisations", (double)ensemble_par(e)->realisations);
+	check(e, ensemble_close(e));
+	if (bootstrap && ensemble_told(e) < 2)
+		die(EXIT_RUN, "--bootstrap wants at least two realisations, got %zu",
+			ensemble_told(e));
+	stats_add("particles", ensemble_particles(e));
+	stats_add("realisations", ensemble_par(e)->realisations);
+	stats_add("diameters_merged",
+		ensemble_diameter(e)->n - (double)ensemble_diameters(e)->n);
 	print[output](e, cmd);
 	ensemble_free(e);
+	free(size_count);
 	free(cmd);
 	return shell_done(EXIT_SUCCESS);
 }

@@ -13,11 +13,12 @@ static double duration = NAN, align = NAN;
 static long sections, refused;
 
 struct opt arrivals_rows[] = {
-	{ 'Z', "sections", OPT_TEXT, UNIT_NONE, &sections_file, 0, 0, "FILE",
+	OPT_HEADING("Records"),
+	{ 0, "sections", OPT_TEXT, UNIT_NONE, &sections_file, 0, 0, "FILE",
 		"apply, pulses: table of the sections, as of duet --sections", NULL, 0 },
-	{ 'P', "pulse-length", OPT_NUM, UNIT_TIME, &duration, 1e-12, 1e9, "T",
+	{ 0, "pulse-duration", OPT_NUM, UNIT_TIME, &duration, 1e-12, 1e9, "T",
 		"apply, pulses: duration of a pulse of the mean particle", NULL, 0 },
-	{ 'G', "transit", OPT_NUM, UNIT_TIME, &align, 0, 1e9, "T",
+	{ 0, "align", OPT_NUM, UNIT_TIME, &align, 0, 1e9, "T",
 		"apply, pulses: time from sensor 1 to sensor 2 of the mean particle",
 		NULL, 0 },
 	OPT_END,
@@ -37,7 +38,7 @@ void arrivals_check(void)
 {
 	if (!sections_file || isnan(duration) || isnan(align))
 		die(EXIT_USAGE, "--task apply --model pulses wants --sections, "
-				"--pulse-length and --transit");
+				"--pulse-duration and --align");
 }
 
 int arrivals_refused(void)
@@ -103,7 +104,7 @@ static int find_pulses(struct network *net, struct stretch *s, long long from,
 	section.n = (size_t)((to < end ? to : end) - from);
 	section.y1 = s->y[0] + (from - s->first);
 	section.y2 = s->y[1] + (from - s->first) + shift;
-	return cnn_apply(net, &section, opt_given('n') ? (int)lessons.sources : 0, pulse);
+	return cnn_apply(net, &section, opt_given("sources") ? (int)lessons.sources : 0, pulse);
 }
 
 /* Reads the table of sections, and the record up to the end of each. */

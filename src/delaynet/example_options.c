@@ -24,40 +24,41 @@ static const char *const orders[] = { "drawn", "arrival", "sorted", NULL };
 static const char *const shapes[] = { "sine", "gauss", "lorentz", NULL };
 
 struct opt lessons_rows[] = {
-	{ 'x', "columns", OPT_INT, UNIT_COUNT, &lessons.points, 2, 1e5, "N",
+	OPT_HEADING("Examples"),
+	{ 0, "columns", OPT_INT, UNIT_COUNT, &lessons.points, 2, 1e5, "N",
 		"points per channel", NULL, 0 },
-	{ 'n', "sources", OPT_INT, UNIT_COUNT, &lessons.sources, 1, DELAYS_MAX, "N",
+	{ 0, "sources", OPT_INT, UNIT_COUNT, &lessons.sources, 1, DELAYS_MAX, "N",
 		"overlapping sources", NULL, 0 },
-	{ 'X', "span", OPT_NUM, UNIT_ANGLE, &lessons.span, 1e-3, 1e6, "X",
+	{ 0, "span", OPT_NUM, UNIT_ANGLE, &lessons.span, 1e-3, 1e6, "X",
 		"range of the x axis", NULL, 0 },
-	{ 'B', "section", OPT_WORD, UNIT_NONE, &lessons.section, 0, 0,
+	{ 0, "section", OPT_WORD, UNIT_NONE, &lessons.section, 0, 0,
 		"length|period|range", "what of the sine the range pi/2 to 3pi/2 is",
 		sections, 0 },
-	{ 'z', "section-range", OPT_LIST, UNIT_ANGLE, &lessons.length, 0, 1e6, "A:B",
+	{ 0, "section-range", OPT_LIST, UNIT_ANGLE, &lessons.length, 0, 1e6, "A:B",
 		"that range, pi/2 to 3pi/2 if not given", NULL, 0 },
-	{ 'E', "endless", OPT_FLAG, UNIT_NONE, &lessons.endless, 0, 0, NULL,
+	{ 0, "endless", OPT_FLAG, UNIT_NONE, &lessons.endless, 0, 0, NULL,
 		"the sine goes on outside its section", NULL, 0 },
-	{ 'A', "amplitude", OPT_LIST, UNIT_NONE, &lessons.amplitude, 0, 1e6, "A:B",
+	{ 0, "amplitude", OPT_LIST, UNIT_NONE, &lessons.amplitude, 0, 1e6, "A:B",
 		"amplitudes, uniform", NULL, 0 },
-	{ 'g', "gain", OPT_LIST, UNIT_NONE, &lessons.gain, 0, 1e6, "A:B",
+	{ 0, "gain", OPT_LIST, UNIT_NONE, &lessons.gain, 0, 1e6, "A:B",
 		"of the second channel, uniform", NULL, 0 },
-	{ 'd', "delay", OPT_NUM, UNIT_ANGLE, &lessons.unit, 0, 1e6, "X",
+	{ 0, "delay", OPT_NUM, UNIT_ANGLE, &lessons.unit, 0, 1e6, "X",
 		"shift of a delay of 1", NULL, 0 },
-	{ 'O', "labels", OPT_WORD, UNIT_NONE, &lessons.order, 0, 0,
-		"drawn|arrival|sorted", "order of the delays", orders, 0 },
-	{ 'C', "scaled", OPT_FLAG, UNIT_NONE, &lessons.scaled, 0, 0, NULL,
+	{ 0, "labels", OPT_WORD, UNIT_NONE, &lessons.order, 0, 0, "drawn|arrival|sorted",
+		"order of the delays", orders, 0 },
+	{ 0, "scaled", OPT_FLAG, UNIT_NONE, &lessons.scaled, 0, 0, NULL,
 		"divide both channels by the peak of the first", NULL, 0 },
-	{ 'u', "deviation", OPT_NUM, UNIT_NONE, &lessons.noise, 0, 1e6, "SD",
+	{ 0, "deviation", OPT_NUM, UNIT_NONE, &lessons.noise, 0, 1e6, "SD",
 		"of white noise on the samples (score: of its second row, 0.316 if not "
 		"given)",
 		NULL, 0 },
-	{ 'R', "snr", OPT_LIST, UNIT_DECIBEL, &lessons.snr, -20, 200, "A:B",
+	{ 0, "snr", OPT_LIST, UNIT_DECIBEL, &lessons.snr, -20, 200, "A:B",
 		"pulses: peak of amplitude 1 over the noise", NULL, 0 },
-	{ 't', "separation", OPT_NUM, UNIT_NONE, &lessons.separation, 0, 0.5, "D",
+	{ 0, "separation", OPT_NUM, UNIT_NONE, &lessons.separation, 0, 0.5, "D",
 		"pulses: least distance of arrivals, pulse durations", NULL, 0 },
-	{ 'H', "reach", OPT_LIST, UNIT_NONE, &lessons.reach, CNN_REACH_MIN, CNN_REACH_MAX,
+	{ 0, "reach", OPT_LIST, UNIT_NONE, &lessons.reach, CNN_REACH_MIN, CNN_REACH_MAX,
 		"A:B", "pulses: largest delay, pulse durations", NULL, 0 },
-	{ 'w', "pulse", OPT_WORD, UNIT_NONE, &lessons.shape, 0, 0, "sine|gauss|lorentz",
+	{ 0, "pulse", OPT_WORD, UNIT_NONE, &lessons.shape, 0, 0, "sine|gauss|lorentz",
 		"pulses: their shape", shapes, 0 },
 	OPT_END,
 };
@@ -83,11 +84,11 @@ struct cnndata_par lessons_pulses(void)
 {
 	struct cnndata_par par = cnndata_default();
 
-	if (opt_given('n'))
+	if (opt_given("sources"))
 		par.sources[0] = par.sources[1] = lessons.sources;
-	if (opt_given('g'))
+	if (opt_given("gain"))
 		memcpy(par.gain, lessons.gain.v, sizeof par.gain);
-	if (opt_given('A')) {
+	if (opt_given("amplitude")) {
 		par.size[0] = cbrt(lessons.amplitude.v[0]);
 		par.size[1] = cbrt(lessons.amplitude.v[1]);
 	}

@@ -26,26 +26,27 @@ static int task = TRAIN;
 static const char *network_file, *truth_file;
 
 static const struct opt opts[] = {
-	{ 'k', "task", OPT_WORD, UNIT_NONE, &task, 0, 0, "train|score|apply|data",
+	OPT_HEADING("Task"),
+	{ 0, "task", OPT_WORD, UNIT_NONE, &task, 0, 0, "train|score|apply|data",
 		"what to do", tasks, 0 },
-	{ 'm', "model", OPT_WORD, UNIT_NONE, &lessons.model, 0, 0, "sines|pulses",
+	{ 0, "model", OPT_WORD, UNIT_NONE, &lessons.model, 0, 0, "sines|pulses",
 		"samples: the sines of the thesis or the pulses of two sensors", models,
 		0 },
-	{ 'N', "network", OPT_TEXT, UNIT_NONE, &network_file, 0, 0, "FILE",
+	{ 0, "network", OPT_TEXT, UNIT_NONE, &network_file, 0, 0, "FILE",
 		"network to apply", NULL, 0 },
-	{ 'T', "truth", OPT_TEXT, UNIT_NONE, &truth_file, 0, 0, "FILE",
+	{ 0, "truth", OPT_TEXT, UNIT_NONE, &truth_file, 0, 0, "FILE",
 		"with --task data: write the delays there", NULL, 1 },
 	OPT_TABLE(learning_rows),
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &lessons.seed, 0, 9e15, "N",
 		"of the data and weights", NULL, 0 },
-	{ 'i', "repetition", OPT_INT, UNIT_COUNT, &learning.repetition, 0, 1e9, "K",
+	{ 0, "repetition", OPT_INT, UNIT_COUNT, &learning.repetition, 0, 1e9, "K",
 		"which initial weights and order of the samples", NULL, 0 },
 	{ 'f', "first", OPT_INT, UNIT_COUNT, &lessons.first, 0, 4e9, "K",
 		"first sample of the set; score: 1000, or 4e9 of pulses, if not given",
 		NULL, 0 },
 	{ 'c', "count", OPT_INT, UNIT_COUNT, &lessons.count, 1, 1e7, "N",
 		"samples; score: 300 if not given", NULL, 0 },
-	{ 'F', "fresh", OPT_FLAG, UNIT_NONE, &learning.fresh, 0, 0, NULL,
+	{ 0, "fresh", OPT_FLAG, UNIT_NONE, &learning.fresh, 0, 0, NULL,
 		"new samples in every epoch", NULL, 0 },
 	OPT_TABLE(lessons_rows),
 	OPT_TABLE(arrivals_rows),
@@ -73,9 +74,9 @@ static void check_options(void)
 	else if (opt_any_given(arrivals_rows))
 		die(EXIT_USAGE, "--%s is for --task apply --model pulses",
 			opt_any_given(arrivals_rows));
-	if (task == SCORE && !opt_given('f'))
+	if (task == SCORE && !opt_given("first"))
 		lessons.first = lessons.model == PULSES ? 4000000000 : 1000;
-	if (task == SCORE && !opt_given('c'))
+	if (task == SCORE && !opt_given("count"))
 		lessons.count = 300;
 	if (learning.batch == 0 || learning.batch > lessons.count)
 		learning.batch = lessons.count;

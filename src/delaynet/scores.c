@@ -83,7 +83,7 @@ void score_network(const char *path)
 	if (lessons.model == SINES && sd > 0)
 		score_sines(t, net, sd);
 	for (int n = 1; n <= CNN_SOURCES && lessons.model == PULSES; n++)
-		if (!opt_given('n') || n == lessons.sources)
+		if (!opt_given("sources") || n == lessons.sources)
 			score_pulses(t, net, n);
 	table_done(t);
 	free(cmd);

@@ -19,37 +19,38 @@ static const char *const losses[] = { "ordered", "sums", "unordered", NULL };
 static const char *const penalties[] = { "squared", "absolute", NULL };
 
 struct opt learning_rows[] = {
-	{ 'l', "layers", OPT_TEXT, UNIT_NONE, &learning.layers, 0, 0, "WORDS",
+	OPT_HEADING("Network and training"),
+	{ 0, "layers", OPT_TEXT, UNIT_NONE, &learning.layers, 0, 0, "WORDS",
 		"hidden layers: 50, 50+ (cascade), 10conv30x2, pool2x2, each with "
 		":ACTIVATION",
 		NULL, 0 },
-	{ 'a', "activation", OPT_WORD, UNIT_NONE, &learning.activation, 0, 0,
+	{ 0, "activation", OPT_WORD, UNIT_NONE, &learning.activation, 0, 0,
 		"linear|tanh|sigmoid|relu", "of layers that name none", activations, 0 },
-	{ 'o', "optimiser", OPT_WORD, UNIT_NONE, &learning.optimiser, 0, 0,
-		"adam|descent", "Adam or gradient descent", optimisers, 0 },
-	{ 'r', "rate", OPT_NUM, UNIT_NONE, &learning.rate, 0, 1e3, "R", "step length",
-		NULL, 0 },
-	{ 'Y', "rate-end", OPT_NUM, UNIT_NONE, &learning.rate_end, 0, 1e3, "R",
+	{ 0, "optimiser", OPT_WORD, UNIT_NONE, &learning.optimiser, 0, 0, "adam|descent",
+		"Adam or gradient descent", optimisers, 0 },
+	{ 0, "learning-rate", OPT_NUM, UNIT_NONE, &learning.rate, 0, 1e3, "R",
+		"step length", NULL, 0 },
+	{ 0, "learning-rate-end", OPT_NUM, UNIT_NONE, &learning.rate_end, 0, 1e3, "R",
 		"step length at the end, reached along a half cosine (0: the same)", NULL,
 		0 },
-	{ 'e', "epochs", OPT_INT, UNIT_COUNT, &learning.epochs, 0, 1e7, "N",
+	{ 0, "epochs", OPT_INT, UNIT_COUNT, &learning.epochs, 0, 1e7, "N",
 		"passes over the samples", NULL, 0 },
-	{ 'b', "batch", OPT_INT, UNIT_COUNT, &learning.batch, 0, 1 << 20, "N",
+	{ 0, "batch", OPT_INT, UNIT_COUNT, &learning.batch, 0, 1 << 20, "N",
 		"samples per step (0: all)", NULL, 0 },
-	{ 'L', "loss", OPT_WORD, UNIT_NONE, &lessons.loss, 0, 0, "ordered|sums|unordered",
+	{ 0, "loss", OPT_WORD, UNIT_NONE, &lessons.loss, 0, 0, "ordered|sums|unordered",
 		"squared error in order, (3-20), or squared error in the best order",
 		losses, 0 },
-	{ 'W', "lambda", OPT_NUM, UNIT_NONE, &lessons.lambda, 0, 1e6, "L",
+	{ 0, "lambda", OPT_NUM, UNIT_NONE, &lessons.lambda, 0, 1e6, "L",
 		"coefficient of the penalty of (3-20)", NULL, 0 },
-	{ 'y', "penalty", OPT_WORD, UNIT_NONE, &lessons.penalty, 0, 0, "squared|absolute",
+	{ 0, "penalty", OPT_WORD, UNIT_NONE, &lessons.penalty, 0, 0, "squared|absolute",
 		"of the difference of the variances in (3-20)", penalties, 0 },
-	{ 'D', "decay", OPT_NUM, UNIT_NONE, &learning.decay, 0, 1e6, "D",
+	{ 0, "decay", OPT_NUM, UNIT_NONE, &learning.decay, 0, 1e6, "D",
 		"half of this times the squared weights joins the loss", NULL, 0 },
-	{ 'p', "pretrain", OPT_INT, UNIT_COUNT, &learning.pretrain, 0, 1e7, "N",
+	{ 0, "pretrain", OPT_INT, UNIT_COUNT, &learning.pretrain, 0, 1e7, "N",
 		"epochs of each hidden layer as an auto-encoder first", NULL, 0 },
-	{ 'q', "sparsity", OPT_NUM, UNIT_NONE, &learning.sparsity, 0, 1e6, "B",
+	{ 0, "sparsity", OPT_NUM, UNIT_NONE, &learning.sparsity, 0, 1e6, "B",
 		"sparsity regularisation of the auto-encoders (0: none)", NULL, 0 },
-	{ 'Q', "sparsity-level", OPT_NUM, UNIT_NONE, &learning.sparsity_level, 1e-6,
+	{ 0, "sparsity-level", OPT_NUM, UNIT_NONE, &learning.sparsity_level, 1e-6,
 		0.999999, "P", "sparsity proportion: the mean activation wanted", NULL,
 		0 },
 	OPT_END
@@ -74,7 +75,7 @@ static void check_trained(enum network_status status)
 	if (status == NETWORK_MEMORY)
 		die(EXIT_RUN, "out of memory");
 	if (status == NETWORK_DIVERGED)
-		die(EXIT_RUN, "the training diverged: want a smaller --rate than %g",
+		die(EXIT_RUN, "the training diverged: want a smaller --learning-rate than %g",
 			learning.rate);
 }
 

@@ -5,6 +5,7 @@
 #include "instrument_options.h"
 #include "io/signals.h"
 #include "methods.h"
+#include "whole_record.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,58 +22,69 @@ static const char *separated, *histogram, *sections;
 static const char *const methods[] = { "fit", "duet", "count", NULL };
 static const char *const automatic[] = { "auto", NULL };
 
-static const struct opt opts[] = {
-	{ 'm', "method", OPT_WORD, UNIT_NONE, &method, 0, 0, "fit|duet|count",
+static const struct opt opts[] = { OPT_HEADING("Method"),
+	{ 0, "method", OPT_WORD, UNIT_NONE, &method, 0, 0, "fit|duet|count",
 		"joint fit of all pulses, time-frequency masks, or counted peaks",
 		methods, 0 },
-	{ 'a', "align", OPT_CHOICE, UNIT_TIME, &instrument.align, 0, 1e9, "auto|T",
+	{ 0, "align", OPT_CHOICE, UNIT_TIME, &instrument.align, 0, 1e9, "auto|T",
 		"time from sensor 1 to sensor 2 of the mean particle", automatic, 0 },
-	{ 'L', "spacing", OPT_NUM, UNIT_LENGTH, &spacing, 1e-6, 1e3, "D",
+	{ 0, "spacing", OPT_NUM, UNIT_LENGTH, &spacing, 1e-6, 1e3, "D",
 		"between the two sensors", 0, 0 },
-	{ 'K', "calibration", OPT_NUM, UNIT_NONE, &kappa, 1e-30, 1e30, "K",
+	{ 0, "calibration", OPT_NUM, UNIT_NONE, &kappa, 1e-30, 1e30, "K",
 		"peak voltage over velocity and diameter cubed, V s/m4", 0, 0 },
-	{ 'n', "sources", OPT_CHOICE, UNIT_COUNT, &sources, 1, 16, "auto|N",
+	{ 0, "sources", OPT_CHOICE, UNIT_COUNT, &sources, 1, 16, "auto|N",
 		"particles in each section", automatic, 0 },
-	OPT_TABLE(instrument_rows),
-	{ 'e', "learn", OPT_NUM, UNIT_TIME, &learn, 0, 1e9, "T",
+	OPT_TABLE(instrument_rows), OPT_HEADING("Working on the record"),
+	{ 0, "learn", OPT_NUM, UNIT_TIME, &learn, 0, 1e9, "T",
 		"start of the record that the instrument is learned from", 0, 0 },
-	{ 'y', "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
+	{ 0, "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
 		"hold back no more than T of signal", 0, 0 },
-	{ 'w', "window", OPT_INT, UNIT_COUNT, &window, 4, 1e6, "N",
+	{ 0, "window", OPT_INT, UNIT_COUNT, &window, 4, 1e6, "N",
 		"samples of a Hamming window (duet)", 0, 0 },
-	{ 'H', "hop", OPT_INT, UNIT_COUNT, &hop, 1, 1e6, "N",
+	{ 0, "hop", OPT_INT, UNIT_COUNT, &hop, 1, 1e6, "N",
 		"samples from window to window (duet; half the window)", 0, 0 },
-	{ 'k', "sensor", OPT_INT, UNIT_COUNT, &sensor, 1, 2, "N",
+	{ 0, "sensor", OPT_INT, UNIT_COUNT, &sensor, 1, 2, "N",
 		"channel to count on (count)", 0, 0 },
-	{ 'z', "floor", OPT_NUM, UNIT_VOLTAGE, &floor_height, 1e-30, 1e30, "V",
+	{ 0, "floor", OPT_NUM, UNIT_VOLTAGE, &floor_height, 1e-30, 1e30, "V",
 		"lowest peak (count; five deviations of the record)", 0, 0 },
-	{ 'O', "separated", OPT_TEXT, UNIT_NONE, &separated, 0, 0, "FILE",
+	OPT_HEADING("Further output"),
+	{ 0, "separated", OPT_TEXT, UNIT_NONE, &separated, 0, 0, "FILE",
 		"write each source of a section as a channel of its own", 0, 0 },
-	{ 'G', "histogram", OPT_TEXT, UNIT_NONE, &histogram, 0, 0, "FILE",
+	{ 0, "histogram", OPT_TEXT, UNIT_NONE, &histogram, 0, 0, "FILE",
 		"write the weighted histograms as a table (duet)", 0, 0 },
-	{ 'Z', "sections", OPT_TEXT, UNIT_NONE, &sections, 0, 0, "FILE",
+	{ 0, "sections", OPT_TEXT, UNIT_NONE, &sections, 0, 0, "FILE",
 		"write one row per section", 0, 0 },
-	OPT_END
-};
+	OPT_END };
 
 static const struct prog prog = { "duet",
 	"Find the wear particles in the record of two inductive sensors.", "[file]",
 	"signal: two channels, V", "table: one row per particle", opts };
 
+/* Channels aligned already and no pulse to look for: a mixture like that of talkers. */
+static int is_mixture(void)
+{
+	return method == METHOD_DUET && instrument_align() == 0 &&
+	       !opt_given("pulse-duration");
+}
+
 static void check_options(void)
 {
-	if (method != METHOD_DUET && (opt_given('w') || opt_given('H') || histogram))
+	if (method != METHOD_DUET &&
+		(opt_given("window") || opt_given("hop") || histogram))
 		die(EXIT_USAGE, "--window, --hop and --histogram need --method duet");
-	if (method != METHOD_COUNT && (opt_given('k') || opt_given('z')))
+	if (method != METHOD_COUNT && (opt_given("sensor") || opt_given("floor")))
 		die(EXIT_USAGE, "--sensor and --floor need --method count");
 	if (method == METHOD_COUNT && (separated || sections))
 		die(EXIT_USAGE, "--method count knows no sections and separates nothing");
 	if (window % 2)
 		die(EXIT_USAGE, "--window %ld: want an even number of samples", window);
-	if (!opt_given('H'))
+	if (!opt_given("hop"))
 		hop = window / 2;
 	if (hop > window)
 		die(EXIT_USAGE, "--hop %ld is longer than the window", hop);
+	if (is_mixture() && opt_given("hop") &&
+		(!opt_given("window") || hop > window / 2))
+		die(EXIT_USAGE, "--align 0: --hop wants a --window twice as long");
 }
 
 static size_t to_samples(double time, double rate)
@@ -136,6 +148,7 @@ int main(int argc, char **argv)
 		.spacing = spacing,
 		.kappa = kappa };
 	char *cmd;
+	int doubtful = 0;
 
 	check_options();
 	in = signal_open(argv[i], NULL);
@@ -148,10 +161,15 @@ int main(int argc, char **argv)
 	found_open(&out, signal_format(in), cmd);
 	if (method == METHOD_COUNT)
 		count_all(in, &out);
+	else if (is_mixture())
+		doubtful =
+			whole_record(in, &out, opt_given("window") ? (size_t)window : 0,
+				opt_given("hop") ? (size_t)hop : 0,
+				sources.word < 0 ? (int)sources.value : 0);
 	else
 		separate_all(in, &out);
 	found_close(&out);
 	signal_close(in);
 	free(cmd);
-	return shell_done(out.doubtful ? EXIT_NOCONV : 0);
+	return shell_done(doubtful || out.doubtful ? EXIT_NOCONV : 0);
 }

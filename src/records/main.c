@@ -1,9 +1,11 @@
 /* records - list, pick, count and convert the records of a field stream */
-#include "common/raw_layout.h"
-#include "io/fields.h"
+#include "check.h"
+#include "join.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "common/raw_layout.h"
+#include "io/fields.h"
 #include "io/tables.h"
 #include <math.h>
 #include <stdlib.h>
@@ -16,20 +18,25 @@ static const char *const formats[] = { "list", "count", "nrrd", "gsf", "text", "
 static int format = LIST;
 static struct opt_list pick;
 static const char *field;
+static int check, join;
 
 static const struct opt opts[] = {
 	{ 'o', "output", OPT_WORD, UNIT_NONE, &format, 0, 0,
 		"list|count|nrrd|gsf|text|table", "what to write", formats, 0 },
-	{ 'n', "pick", OPT_LIST, UNIT_COUNT, &pick, 1, 1e9, "K,...",
+	{ 0, "pick", OPT_LIST, UNIT_COUNT, &pick, 1, 1e9, "K,...",
 		"only the K-th records, from 1", NULL, 1 },
-	{ 'k', "field", OPT_TEXT, UNIT_NONE, &field, 0, 0, "NAME", "only this field",
-		NULL, 0 },
+	{ 0, "field", OPT_TEXT, UNIT_NONE, &field, 0, 0, "NAME", "only this field", NULL,
+		0 },
+	{ 0, "check", OPT_FLAG, UNIT_NONE, &check, 0, 0, NULL,
+		"say whether a stream of any format is whole", NULL, 1 },
+	{ 0, "join", OPT_FLAG, UNIT_NONE, &join, 0, 0, NULL,
+		"write streams of several processes as the stream of one", NULL, 1 },
 	OPT_TABLE(raw_rows),
 	OPT_END,
 };
 
 static const struct prog prog = { "records",
-	"List, pick, count and convert the records of a field stream.", "[file]",
+	"List, pick, count and convert the records of a field stream.", "[file ...]",
 	"fields: any", "table or fields", opts };
 
 static int picked(long number)
@@ -184,6 +191,15 @@ static void check_plane(const struct record *r, struct fields_in *in)
 		die(EXIT_USAGE, "GSF holds one plane field: use --pick and --field");
 }
 
+/* 1 where another record is to be written. */
+static int picks_left(struct fields_in *in)
+{
+	for (int i = 0; i < pick.n; i++)
+		if ((long)pick.v[i] > fields_count(in))
+			return 1;
+	return pick.n == 0 && fields_more(in);
+}
+
 static void put_record(struct output *o, struct record *r, struct fields_in *in)
 {
 	o->records++;
@@ -192,7 +208,7 @@ static void put_record(struct output *o, struct record *r, struct fields_in *in)
 		list_record(o->table, r, fields_count(in));
 		break;
 	case NRRD:
-		fields_write(o->fields, r);
+		fields_write(o->fields, r, picks_left(in));
 		break;
 	case GSF:
 		check_plane(r, in);
@@ -231,10 +247,9 @@ static int next_record(struct fields_in *in, struct record *r)
 	return (!may_be_empty || fields_more(in)) && fields_read(in, r);
 }
 
-int main(int argc, char **argv)
+static void convert(const char *path)
 {
-	int first = opt_parse(&prog, argc, argv);
-	struct fields_in *in = fields_open(argv[first], raw_given());
+	struct fields_in *in = fields_open(path, raw_given());
 	struct output out = { 0 };
 	struct record r = { 0 };
 
@@ -251,5 +266,19 @@ int main(int argc, char **argv)
 	record_free(&r);
 	fields_close(in);
 	stats_set("records", (double)out.records);
-	return shell_done(EXIT_SUCCESS);
+}
+
+int main(int argc, char **argv)
+{
+	int first = opt_parse(&prog, argc, argv), status = EXIT_SUCCESS;
+
+	if (!join && argc - first > 1)
+		die(EXIT_USAGE, "%s: one file at most, unless --join", argv[first + 1]);
+	if (join)
+		join_streams(argc - first, argv + first);
+	else if (check)
+		status = check_stream(argv[first]);
+	else
+		convert(argv[first]);
+	return shell_done(status);
 }

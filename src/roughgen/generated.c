@@ -1,9 +1,9 @@
 #include "generated.h"
-#include "surface/rough.h"
-#include "roughness_options.h"
 #include "cli/msg.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
+#include "roughness_options.h"
+#include "surface/rough.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -19,6 +19,7 @@ static double hurst = NAN, rolloff, longest, cutoff, skewness, kurtosis = NAN;
 static long seed = 1, count = 1, first;
 
 struct opt generated_grid_rows[] = {
+	OPT_HEADING("Generated surfaces"),
 	{ 'n', "points", OPT_LIST, UNIT_COUNT, &points, 1, POINTS_MAX, "N[xM]",
 		"points along x and y", NULL, 0 },
 	{ 'L', "length", OPT_LIST, UNIT_LENGTH, &length, 1e-12, 1e12, "L[xL]",
@@ -27,26 +28,27 @@ struct opt generated_grid_rows[] = {
 };
 
 struct opt generated_rows[] = {
-	{ 'g', "slope", OPT_LIST, UNIT_NONE, &slope, 0, 1e6, "G[:G2]",
+	{ 0, "slope", OPT_LIST, UNIT_NONE, &slope, 0, 1e6, "G[:G2]",
 		"root mean square slope instead", NULL, 0 },
-	{ 'A', "acf", OPT_WORD, UNIT_NONE, &acf, 0, 0, "gauss|exp",
+	{ 0, "acf", OPT_WORD, UNIT_NONE, &acf, 0, 0, "gauss|exp",
 		"autocorrelation function", acf_words, 0 },
 	{ 'l', "corr", OPT_LIST, UNIT_LENGTH, &corr, 1e-18, 1e12, "L[xL]",
 		"1/e correlation lengths (default a tenth of the length)", NULL, 0 },
-	{ 'H', "hurst", OPT_NUM, UNIT_NONE, &hurst, 0, 2, "H",
+	{ 0, "hurst", OPT_NUM, UNIT_NONE, &hurst, 0, 2, "H",
 		"self-affine spectrum instead of --acf", NULL, 0 },
-	{ 'R', "rolloff", OPT_NUM, UNIT_LENGTH, &rolloff, 1e-15, 1e12, "L",
+	{ 0, "rolloff", OPT_NUM, UNIT_LENGTH, &rolloff, 1e-15, 1e12, "L",
 		"longest self-affine wavelength; longer waves alike", NULL, 0 },
-	{ 'W', "longest", OPT_NUM, UNIT_LENGTH, &longest, 1e-15, 1e12, "L",
+	{ 0, "longest", OPT_NUM, UNIT_LENGTH, &longest, 1e-15, 1e12, "L",
 		"leave out longer waves", NULL, 0 },
-	{ 'k', "cutoff", OPT_NUM, UNIT_LENGTH, &cutoff, 1e-15, 1e12, "L",
+	{ 0, "cutoff", OPT_NUM, UNIT_LENGTH, &cutoff, 1e-15, 1e12, "L",
 		"leave out shorter waves", NULL, 0 },
-	{ 'K', "skewness", OPT_NUM, UNIT_NONE, &skewness, -30, 30, "S",
+	{ 0, "skewness", OPT_NUM, UNIT_NONE, &skewness, -30, 30, "S",
 		"Ssk of the heights", NULL, 0 },
-	{ 'Q', "kurtosis", OPT_NUM, UNIT_NONE, &kurtosis, 1, 1000, "K",
+	{ 0, "kurtosis", OPT_NUM, UNIT_NONE, &kurtosis, 1, 1000, "K",
 		"Sku of the heights (default 3 + 1.5 S^2)", NULL, 0 },
-	{ 'p', "pair", OPT_LIST, UNIT_LENGTH, &pair, 0, 1e9, "Q[:Q2]",
+	{ 0, "pair", OPT_LIST, UNIT_LENGTH, &pair, 0, 1e9, "Q[:Q2]",
 		"add a second, independent surface of this roughness", NULL, 0 },
+	OPT_HEADING("Realisations"),
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e18, "N", "random seed", NULL, 0 },
 	{ 'f', "first", OPT_INT, UNIT_COUNT, &first, 0, 4294967295.0, "K",
 		"number of the first realisation", NULL, 1 },
@@ -57,11 +59,11 @@ struct opt generated_rows[] = {
 
 void generated_check(void)
 {
-	if (opt_given('g') && opt_given('p'))
+	if (opt_given("slope") && opt_given("pair"))
 		die(EXIT_USAGE, "--pair is a height and does not go with --slope");
-	if (opt_given('H') && (opt_given('A') || opt_given('l')))
+	if (opt_given("hurst") && (opt_given("acf") || opt_given("corr")))
 		die(EXIT_USAGE, "--hurst excludes --acf and --corr");
-	if (!opt_given('H') && (opt_given('R') || opt_given('W')))
+	if (!opt_given("hurst") && (opt_given("rolloff") || opt_given("longest")))
 		die(EXIT_USAGE, "--rolloff and --longest need --hurst");
 	if (rolloff > 0 && longest > 0 && longest < rolloff)
 		die(EXIT_USAGE, "--longest %g m is shorter than --rolloff %g m", longest,
@@ -112,6 +114,21 @@ static struct spectrum_par spectrum(void)
 	return p;
 }
 
+/* Values that are possible, but hardly what was meant. */
+static void doubt(const struct spectrum_par *p)
+{
+	double dx = p->lx / p->nx, dy = p->ly / p->ny;
+
+	if (length.v[0] >= 0.1)
+		warn("--length %g m: sides are in metres unless a unit is given: is %gmm "
+		     "meant?",
+			length.v[0], length.v[0]);
+	if (corr.n && (p->corr_x < dx || p->corr_y < dy))
+		warn("--corr %g m is below the spacing of %g m: the heights are hardly "
+		     "correlated; use more --points",
+			fmin(p->corr_x, p->corr_y), fmax(dx, dy));
+}
+
 struct generated *generated_open(int threads)
 {
 	struct generated *g = xcalloc(1, sizeof *g);
@@ -127,9 +144,14 @@ struct generated *generated_open(int threads)
 		.seed = (uint64_t)seed,
 		.pool = pool_new(threads) };
 	g->rough = rough_new(&g->par, &status);
+	if (!g->rough && status == ROUGH_EMPTY && g->par.spectrum.nx == 1 &&
+		g->par.spectrum.ny == 1)
+		die(EXIT_USAGE,
+			"a single point has no roughness: want --sq 0 or more --points");
 	if (!g->rough)
 		die(status == ROUGH_IMPOSSIBLE ? EXIT_USAGE : EXIT_RUN, "%s",
 			problem[status]);
+	doubt(&g->par.spectrum);
 	waves = rough_spectrum(g->rough);
 	stats_set("waves", waves ? (double)spectrum_waves(waves) : 0);
 	stats_set("waves_skipped", waves ? (double)spectrum_waves_skipped(waves) : 0);
@@ -161,6 +183,11 @@ int generated_next(struct generated *g, struct record *r)
 	stats_add("transforms", (double)work.transforms);
 	stats_add("iterations", (double)work.iterations);
 	return 1;
+}
+
+int generated_more(const struct generated *g)
+{
+	return g->done < count;
 }
 
 void generated_close(struct generated *g)

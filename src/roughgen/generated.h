@@ -23,6 +23,7 @@ struct generated;
 struct generated *generated_open(int threads);
 /* The next realisation; 0 after the last. */
 int generated_next(struct generated *g, struct record *r);
+int generated_more(const struct generated *g); /* 1 where one follows */
 void generated_close(struct generated *g);
 
 #endif

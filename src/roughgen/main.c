@@ -1,15 +1,16 @@
 /* roughgen - rough surfaces, generated or measured, and their areal parameters */
-#include "surface/areal.h"
-#include "surface/surface.h"
-#include "generated.h"
-#include "measured.h"
-#include "roughness_options.h"
-#include "io/fields.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "generated.h"
+#include "io/fields.h"
 #include "io/tables.h"
+#include "measured.h"
+#include "roughness_options.h"
+#include "surface/areal.h"
+#include "surface/surface.h"
 #include <stdlib.h>
+#include <unistd.h>
 
 static const char *const crown_words[] = { "none", "auto", NULL };
 
@@ -24,10 +25,11 @@ static const struct opt opts[] = {
 	{ 'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N", "threads", NULL,
 		1 },
 	OPT_TABLE(measured_rows),
-	{ 'C', "crown", OPT_CHOICE, UNIT_LENGTH, &crown, 0, 1e9, "none|auto|DROP",
+	OPT_HEADING("All surfaces"),
+	{ 0, "crown", OPT_CHOICE, UNIT_LENGTH, &crown, 0, 1e9, "none|auto|DROP",
 		"put on a paraboloid, DROP lower at the corners; auto is 4 Sq",
 		crown_words, 0 },
-	{ 'm', "measure", OPT_FLAG, UNIT_NONE, &measure, 0, 0, NULL,
+	{ 0, "measure", OPT_FLAG, UNIT_NONE, &measure, 0, 0, NULL,
 		"print areal parameters instead of heights", NULL, 0 },
 	OPT_END,
 };
@@ -63,7 +65,7 @@ static void check_options(int from_file)
 		refuse(measured_rows, "is for a measured surface: name a file, or - for "
 				      "standard input");
 	}
-	if (opt_given('q') + opt_given('a') + opt_given('g') > 1)
+	if (opt_given("sq") + opt_given("sa") + opt_given("slope") > 1)
 		die(EXIT_USAGE, "--sq, --sa and --slope exclude each other");
 	roughness_check();
 	generated_check();
@@ -85,8 +87,9 @@ static void print_parameters(const struct record *r, const double *z)
 	stats_add("measured", 1);
 }
 
-/* Crowns a surface, on top of the crown it had, and writes it out. */
-static void finish(struct record *r, double had)
+/* Crowns a surface, on top of the crown it had, and writes it out; more: another one
+ * follows. */
+static void finish(struct record *r, double had, int more)
 {
 	double *z = record_need(r, "height", 0, NULL), rms = surface_sq(r->nx, r->ny, z);
 	double drop = had;
@@ -107,7 +110,7 @@ static void finish(struct record *r, double had)
 	}
 	if (!out)
 		out = fields_create(NULL);
-	fields_write(out, r);
+	fields_write(out, r, more);
 }
 
 /* The file to prepare, NULL where surfaces are generated: without an operand, unless what
@@ -116,10 +119,13 @@ static const char *file_of(int argc, char **argv, int operand)
 {
 	if (operand < argc)
 		return argv[operand];
-	return measure && !opt_any_given(generated_grid_rows) &&
-			       !opt_any_given(generated_rows)
-		       ? "-"
-		       : NULL;
+	if (!measure || opt_any_given(generated_grid_rows) ||
+		opt_any_given(generated_rows))
+		return NULL;
+	if (isatty(STDIN_FILENO))
+		die(EXIT_USAGE,
+			"nothing to measure: name a file, pipe surfaces in, or give --points");
+	return "-";
 }
 
 int main(int argc, char **argv)
@@ -133,13 +139,13 @@ int main(int argc, char **argv)
 		double had;
 
 		while (measured_next(surfaces, &r, &had))
-			finish(&r, had);
+			finish(&r, had, measured_more(surfaces));
 		measured_close(surfaces);
 	} else {
 		struct generated *surfaces = generated_open((int)threads);
 
 		while (generated_next(surfaces, &r))
-			finish(&r, 0);
+			finish(&r, 0, generated_more(surfaces));
 		generated_close(surfaces);
 	}
 	record_free(&r);

@@ -1,9 +1,9 @@
 #include "measured.h"
-#include "surface/surface.h"
-#include "common/raw_layout.h"
-#include "roughness_options.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "common/raw_layout.h"
+#include "roughness_options.h"
+#include "surface/surface.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,14 +15,15 @@ static struct opt_list crop, resample;
 static int level, fill;
 
 struct opt measured_rows[] = {
+	OPT_HEADING("Measured surfaces"),
 	OPT_TABLE(raw_rows),
-	{ 'w', "crop", OPT_LIST, UNIT_COUNT, &crop, 0, POINTS_MAX, "X:Y:NX:NY",
+	{ 0, "crop", OPT_LIST, UNIT_COUNT, &crop, 0, POINTS_MAX, "X:Y:NX:NY",
 		"cut NX by NY samples of file from X, Y on", NULL, 0 },
-	{ 'i', "fill", OPT_FLAG, UNIT_NONE, &fill, 0, 0, NULL,
+	{ 0, "fill", OPT_FLAG, UNIT_NONE, &fill, 0, 0, NULL,
 		"fill missing samples of file by Laplace's equation", NULL, 0 },
-	{ 'z', "level", OPT_FLAG, UNIT_NONE, &level, 0, 0, NULL,
+	{ 0, "level", OPT_FLAG, UNIT_NONE, &level, 0, 0, NULL,
 		"subtract the least-squares plane of file", NULL, 0 },
-	{ 'r', "resample", OPT_LIST, UNIT_COUNT, &resample, 1, POINTS_MAX, "N[xM]",
+	{ 0, "resample", OPT_LIST, UNIT_COUNT, &resample, 1, POINTS_MAX, "N[xM]",
 		"bring file to this many points", NULL, 0 },
 	OPT_END,
 };
@@ -40,6 +41,11 @@ struct measured *measured_open(const char *path)
 	m->in = fields_open(path, raw_given());
 	m->piped = strcmp(path, "-") == 0;
 	return m;
+}
+
+int measured_more(struct measured *m)
+{
+	return fields_more(m->in);
 }
 
 void measured_close(struct measured *m)
@@ -95,6 +101,7 @@ static void fill_holes(const struct fields_in *in, struct record *s)
 {
 	double *z = record_need(s, "height", !fill, in);
 	size_t n = (size_t)s->nx * (size_t)s->ny, missing;
+	double residual;
 	int steps;
 
 	if (!fill)
@@ -103,7 +110,11 @@ static void fill_holes(const struct fields_in *in, struct record *s)
 	if (missing == n)
 		die(EXIT_RUN, "%s: record %ld: every height is missing", fields_name(in),
 			fields_count(in));
-	need_memory(surface_fill(s->nx, s->ny, z, &steps));
+	need_memory(surface_fill(s->nx, s->ny, z, &steps, &residual));
+	if (!(residual <= SURFACE_FILLED))
+		die(EXIT_RUN,
+			"%s: record %ld: --fill stopped at a residual of %.2g after %d steps",
+			fields_name(in), fields_count(in), residual, steps);
 	record_need(s, "height", 1, in);
 	stats_add("samples_filled", (double)missing);
 	stats_add("iterations", steps);
@@ -169,7 +180,7 @@ int measured_next(struct measured *m, struct record *r, double *crown)
 		surface_level(r->nx, r->ny, r->data[0]);
 	if (resample.n)
 		resample_heights(r);
-	if (opt_given('q') || opt_given('a'))
+	if (opt_given("sq") || opt_given("sa"))
 		scale_heights(m->in, r);
 	/* What comes through a pipe has to be asked for. */
 	upstream = m->read.cmd;

@@ -1,8 +1,8 @@
 #include "fragments.h"
-#include "pump_options.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
-#include "io/tables.h"
+#include "io/quantities.h"
+#include "pump_options.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,6 +27,14 @@ struct wear {
 	int class;
 };
 
+static _Noreturn void apart(const struct partition *p, const char *file)
+{
+	die(EXIT_RUN,
+		"%s: the rows of realisation %ld stand too far apart: sort the table by "
+		"realisation",
+		file, partition_realisation(p));
+}
+
 static void read_row(struct partition *p, const struct wear *w, long row)
 {
 	struct table_in *t = w->table;
@@ -35,9 +43,10 @@ static void read_row(struct partition *p, const struct wear *w, long row)
 	double v = table_number(t, w->volume);
 	enum partition_status status;
 
-	if (!(r >= 0 && r <= 4294967295. && r == floor(r)))
-		die(EXIT_RUN, "%s: line %ld: realisation must be a whole number", w->file,
-			table_line(t));
+	if (!(r >= 0 && r <= 1e15 && r == floor(r)))
+		die(EXIT_RUN,
+			"%s: line %ld: realisation must be a whole number from 0 to 1e15",
+			w->file, table_line(t));
 	if (!(k >= 1 && k <= 1e6 && k == floor(k)))
 		die(EXIT_RUN, "%s: line %ld: step must be a whole number from 1 to 1e6",
 			w->file, table_line(t));
@@ -51,17 +60,77 @@ static void read_row(struct partition *p, const struct wear *w, long row)
 	if (status == PARTITION_TWICE)
 		die(EXIT_RUN, "%s: line %ld: realisation %g has step %g twice", w->file,
 			table_line(t), r, k);
+	if (status == PARTITION_APART)
+		apart(p, w->file);
 	stats_add("fragments_read", 1);
 }
 
+/* What a table tells of its fragments; NAN: nothing. */
+struct physics {
+	double area, pressure, distance;
+};
+
+static struct physics physics_of(const struct table_in *t)
+{
+	return (struct physics){ table_quantity(t, "nominal_area", UNIT_AREA),
+		table_quantity(t, "nominal_pressure", UNIT_PRESSURE),
+		table_quantity(t, "step_distance", UNIT_LENGTH) };
+}
+
+/* Digits may be lost on the way. */
+static int differ(double a, double b)
+{
+	return fabs(a - b) > 1e-3 * fmax(fabs(a), fabs(b));
+}
+
+/* All parts of a table must be of the same fragments. */
+static void check_part(const struct table_in *t, const struct physics *first)
+{
+	struct physics now = physics_of(t);
+
+	if (differ(now.area, first->area))
+		die(EXIT_RUN, "%s: line %ld: fragments of %g and of %g m2 in one table",
+			table_name(t), table_line(t), first->area, now.area);
+	if (differ(now.pressure, first->pressure))
+		die(EXIT_RUN,
+			"%s: line %ld: nominal pressures of %g and of %g Pa in one table: "
+			"give each its own --wear",
+			table_name(t), table_line(t), first->pressure, now.pressure);
+	if (differ(now.distance, first->distance))
+		die(EXIT_RUN, "%s: line %ld: steps of %g and of %g m in one table",
+			table_name(t), table_line(t), first->distance, now.distance);
+}
+
+/* The options must not contradict what the table tells. */
+static void check_options(
+	const char *option, const struct physics *told, double pressure, double *distance)
+{
+	if (differ(pressure, told->pressure))
+		die(EXIT_USAGE, "--wear %s: the fragments were pressed with %g Pa",
+			option, told->pressure);
+	if (isnan(pump.fragment_area))
+		pump.fragment_area = told->area;
+	if (differ(pump.fragment_area, told->area))
+		die(EXIT_USAGE, "--wear %s: fragments of %g m2, not of %g m2", option,
+			told->area, pump.fragment_area);
+	if (isnan(*distance))
+		*distance = told->distance;
+	if (differ(*distance, told->distance))
+		die(EXIT_USAGE, "--wear %s: steps of %g m, not of %g m", option,
+			told->distance, *distance);
+}
+
 /* Reads one --wear FILE[:PRESSURE[:AREA]] into a class of its own. */
-static void read_wear(struct partition *p, const char *option, char **cmd)
+static void read_wear(
+	struct partition *p, const char *option, char **cmd, double *distance)
 {
 	const char *colon = strchr(option, ':'), *rest = colon ? colon + 1 : NULL;
 	char *file = xstrdup(option);
 	double pressure = NAN, area = -1;
 	int with_area;
 	struct wear w = { .file = file };
+	struct physics told;
+	long part;
 
 	file[strcspn(file, ":")] = '\0';
 	if (rest)
@@ -76,40 +145,74 @@ static void read_wear(struct partition *p, const char *option, char **cmd)
 	if (with_area && !(area > 0 && isfinite(area)))
 		die(EXIT_USAGE, "--wear %s: want an area above 0", option);
 	w.table = table_open(file);
+	told = physics_of(w.table);
+	check_options(option, &told, pressure, distance);
+	if (isnan(pressure))
+		pressure = told.pressure;
 	w.realisation = table_find(w.table, "realisation");
 	w.step = table_find(w.table, "step");
 	w.volume = table_need(w.table, "volume");
 	w.diameter = isnan(pump.critical_size) ? -1 : table_need(w.table, "diameter");
 	w.class =
 		partition_class(p, table_find(w.table, "particle") >= 0, pressure, area);
-	for (long row = 0; table_next(w.table); row++)
+	part = table_part(w.table);
+	for (long row = 0; table_next(w.table); row++) {
+		if (table_part(w.table) != part)
+			check_part(w.table, &told);
+		part = table_part(w.table);
 		read_row(p, &w, row);
+	}
 	if (table_upstream(w.table))
 		*cmd = xstrdup(table_upstream(w.table));
 	table_close(w.table);
 	free(file);
 }
 
-struct partition *fragments_read(
-	const struct opt_texts *files, long first_step, char **made_by)
+/* 1 where the ensemble of a class cannot tell how uncertain its mean is. */
+static int is_doubtful(const struct partition *p, int class, const char *file)
 {
-	struct partition *p = partition_new(pump.fragment_area, pump.pair.area);
-	enum partition_status status;
+	double mean, n = partition_count(p, class, &mean);
+
+	if (n < 2)
+		warn("%s: a single realisation: the uncertainty of its wear is unknown "
+		     "and left out",
+			file);
+	else if (!(mean > 0))
+		warn("%s: none of %.0f realisations wore: the wear is taken for none at "
+		     "all",
+			file, n);
+	return n < 2 || !(mean > 0);
+}
+
+struct partition *fragments_read(
+	const struct opt_texts *files, long first_step, char **made_by, double *distance)
+{
+	struct partition *p =
+		partition_new(pump.pair.area, first_step, !isnan(pump.critical_size));
 
 	if (!p)
 		die(EXIT_RUN, "out of memory");
+	*distance = NAN;
 	for (int i = 0; i < files->n; i++)
-		read_wear(p, files->v[i], &made_by[i]);
-	status = partition_close(p, pump.transition, first_step);
-	switch (status) {
+		read_wear(p, files->v[i], &made_by[i], distance);
+	return p;
+}
+
+int fragments_close(struct partition *p, const struct opt_texts *files)
+{
+	int doubtful = 0;
+
+	switch (partition_close(p, pump.fragment_area, pump.transition)) {
 	case PARTITION_OK:
 		break;
 	case PARTITION_EMPTY:
-		die(EXIT_RUN, "%s: no fragment from step %ld on",
-			files->v[partition_culprit(p)], first_step);
-	case PARTITION_TWICE:
-		die(EXIT_RUN, "%s: a realisation has the same step twice",
+		die(EXIT_RUN, "%s: no fragment in the steps that count",
 			files->v[partition_culprit(p)]);
+	case PARTITION_TWICE:
+		die(EXIT_RUN, "%s: realisation %ld has a step twice",
+			files->v[partition_culprit(p)], partition_realisation(p));
+	case PARTITION_APART:
+		apart(p, files->v[partition_culprit(p)]);
 	case PARTITION_PRESSURE:
 		die(EXIT_USAGE,
 			"--wear %s: each of several tables needs a pressure of its own",
@@ -120,5 +223,7 @@ struct partition *fragments_read(
 	case PARTITION_MEMORY:
 		die(EXIT_RUN, "out of memory");
 	}
-	return p;
+	for (int i = 0; i < files->n; i++)
+		doubtful |= is_doubtful(p, i, files->v[i]);
+	return doubtful;
 }

@@ -1,9 +1,9 @@
 #include "life_table.h"
+#include "cli/msg.h"
 #include "common/quantile_columns.h"
+#include "io/tables.h"
 #include "life/metrics.h"
 #include "life/remaining.h"
-#include "cli/msg.h"
-#include "io/tables.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -11,6 +11,7 @@ struct lifetable {
 	struct lifetable_par par;
 	struct table_out *out;
 	struct metrics *metrics; /* NULL without scores */
+	double median;           /* of the row written last */
 };
 
 static char *column_names(const struct lifetable_par *par)
@@ -20,11 +21,25 @@ static char *column_names(const struct lifetable_par *par)
 	if (par->samples)
 		return xstrdup("t path rwl");
 	names = levels_columns("t mean", "q", par->levels);
-	more = xprintf("%s p_no_failure%s%s%s", names, par->dry ? " archard" : "",
-		par->grey ? " grey" : "",
+	more = xprintf("%s p_no_failure%s%s", names, par->grey ? " grey" : "",
 		isnan(par->eol) ? "" : " truth error accuracy mass inside covered crps");
 	free(names);
 	return more;
+}
+
+static char *column_units(const struct lifetable_par *par)
+{
+	char *quantiles, *all;
+
+	if (par->samples)
+		return xstrdup("s 1 s");
+	quantiles = xcalloc((size_t)par->levels->n, 2);
+	for (int i = 0; i < 2 * par->levels->n - 1; i++)
+		quantiles[i] = i % 2 ? ' ' : 's';
+	all = xprintf("s s %s 1%s%s", quantiles, par->grey ? " s" : "",
+		isnan(par->eol) ? "" : " s s 1 1 1 1 s");
+	free(quantiles);
+	return all;
 }
 
 static struct metrics *new_metrics(const struct lifetable_par *par)
@@ -46,12 +61,14 @@ static struct metrics *new_metrics(const struct lifetable_par *par)
 struct lifetable *lifetable_open(const char *cmd, const struct lifetable_par *par)
 {
 	struct lifetable *t = xcalloc(1, sizeof *t);
-	char *names = column_names(par);
+	char *names = column_names(par), *units = column_units(par);
 
 	t->par = *par;
 	t->metrics = new_metrics(par);
-	t->out = table_create(NULL, cmd, par->samples ? "s 1 s" : NULL, names);
+	t->median = NAN;
+	t->out = table_create(NULL, cmd, units, names);
 	free(names);
+	free(units);
 	return t;
 }
 
@@ -107,20 +124,18 @@ static void put_scores(
 	table_put(t->out, r.crps);
 }
 
-static void put_summary(
-	const struct lifetable *t, double time, const struct forecast_row *row)
+static void put_summary(struct lifetable *t, double time, const struct forecast_row *row)
 {
 	struct remaining_summary sum = { NAN, NAN };
 
 	if (row->n > 0)
 		sum = remaining_sum_up(row->life, (size_t)row->n, row->limit);
+	t->median = quantile(row, 0.5);
 	table_put(t->out, time);
 	table_put(t->out, sum.mean);
 	for (int i = 0; i < t->par.levels->n; i++)
 		table_put(t->out, quantile(row, t->par.levels->v[i]));
 	table_put(t->out, sum.p_no_failure);
-	if (t->par.dry)
-		table_put(t->out, row->dry);
 	if (t->par.grey)
 		table_put(t->out, row->grey);
 	if (t->metrics)
@@ -137,11 +152,17 @@ void lifetable_put(struct lifetable *t, double time, struct forecast_row row)
 	table_flush(t->out);
 }
 
+double lifetable_median(const struct lifetable *t)
+{
+	return t->median;
+}
+
 static void write_scores(struct table_out *out, const struct metrics *m)
 {
 	struct metrics_sum s = metrics_get(m);
 
 	table_comment(out, "predictions", "%zu", s.n);
+	table_comment(out, "infinite_medians", "%zu", s.infinite);
 	table_comment(out, "bias", "%.6g s", s.bias);
 	table_comment(out, "mean_absolute_error", "%.6g s", s.mae);
 	table_comment(out, "root_mean_square_error", "%.6g s", s.rmse);

@@ -3,13 +3,13 @@
 #ifndef LIFETABLE_H
 #define LIFETABLE_H
 
-#include "life/forecast.h"
 #include "cli/opt.h"
+#include "life/forecast.h"
 
 struct lifetable_par {
 	const struct opt_list *levels; /* of the quantiles */
 	int samples;                   /* print every path instead */
-	int dry, grey;                 /* add these columns */
+	int grey;                      /* add this column */
 	long first;                    /* number of the first path */
 	long least;                    /* samples to print where one stands for all */
 	double eol, cone, horizon;     /* eol not NAN: add scores */
@@ -22,6 +22,8 @@ struct lifetable *lifetable_open(const char *cmd, const struct lifetable_par *pa
 struct table_out *lifetable_out(struct lifetable *t);
 /* One observation time; sorts the samples of the row. */
 void lifetable_put(struct lifetable *t, double time, struct forecast_row row);
+/* Of the row written last; NAN before, and of samples. */
+double lifetable_median(const struct lifetable *t);
 /* Writes the scores and frees. */
 void lifetable_close(struct lifetable *t);
 

@@ -1,11 +1,11 @@
 /* rwl - remaining wear life from fragments' wear and the state observed */
+#include "cli/msg.h"
+#include "cli/stats.h"
 #include "fragments.h"
 #include "life/remaining.h"
 #include "life_table.h"
-#include "pump_options.h"
-#include "cli/msg.h"
-#include "cli/stats.h"
 #include "observations.h"
+#include "pump_options.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,63 +15,59 @@ static const char *const rules[] = { "mean", "last", "filter", NULL };
 static struct opt_texts wear_files, calibrations;
 static const char *state_file, *rates_file;
 static struct opt_list levels = { 3, { 0.05, 0.5, 0.95 } };
-static double step_time = NAN, skip, eol = NAN, cone = 0.2, horizon = NAN;
-static double archard = NAN, hardness = 1.065e9, speed = 20.94;
+static double step_time = NAN, skip, eol = NAN, cone = 0.2, horizon = NAN, speed = NAN;
 static long seed = 1, first_path, count = 1000, first_step = 1, parts;
 static int rule = RATE_MEAN, samples, grey, new;
 
-static const struct opt opts[] = {
-	{ 'w', "wear", OPT_TEXTS, UNIT_NONE, &wear_files, 0, 0, "FILE[:PRESSURE[:AREA]]",
+static const struct opt opts[] = { OPT_HEADING("Input"),
+	{ 0, "wear", OPT_TEXTS, UNIT_NONE, &wear_files, 0, 0, "FILE[:PRESSURE[:AREA]]",
 		"particles or volumes worn off fragments under a nominal pressure", 0,
 		0 },
-	{ 'x', "state", OPT_TEXT, UNIT_NONE, &state_file, 0, 0, "FILE",
+	{ 0, "state", OPT_TEXT, UNIT_NONE, &state_file, 0, 0, "FILE",
 		"observed leakage, gap, volume or debris; the operand says the same", 0,
 		1 },
-	{ 'N', "new", OPT_FLAG, UNIT_NONE, &new, 0, 0, 0,
+	{ 0, "new", OPT_FLAG, UNIT_NONE, &new, 0, 0, 0,
 		"read no state: the life of a new pair", 0, 0 },
-	OPT_TABLE(state_rows), OPT_TABLE(pump_threshold_rows),
-	{ 'R', "wear-rate", OPT_WORD, UNIT_NONE, &rule, 0, 0, "mean|last|filter",
+	OPT_TABLE(state_rows), OPT_TABLE(pump_threshold_rows), OPT_HEADING("Wear rate"),
+	{ 0, "wear-rate", OPT_WORD, UNIT_NONE, &rule, 0, 0, "mean|last|filter",
 		"rate by (4-29), by (4-28), or followed by filters", rules, 0 },
-	{ 'p', "step-time", OPT_NUM, UNIT_TIME, &step_time, 1e-15, 1e15, "T",
+	{ 0, "step-time", OPT_NUM, UNIT_TIME, &step_time, 1e-15, 1e15, "T",
 		"time that one step of the fragments stands for [from the state so far]",
 		0, 0 },
-	{ 'C', "calibrate", OPT_TEXTS, UNIT_NONE, &calibrations, 0, 0, "FILE",
+	{ 0, "speed", OPT_NUM, UNIT_SPEED, &speed, 1e-12, 1e6, "V",
+		"sliding speed: the step time is a step's sliding distance over it", 0,
+		0 },
+	{ 0, "calibrate", OPT_TEXTS, UNIT_NONE, &calibrations, 0, 0, "FILE",
 		"take the step time from the whole life of an earlier unit", 0, 0 },
-	{ 'k', "first-step", OPT_INT, UNIT_COUNT, &first_step, 1, 1e6, "K",
+	{ 0, "first-step", OPT_INT, UNIT_COUNT, &first_step, 1, 1e6, "K",
 		"steps before are running-in and count not for the rate", 0, 0 },
-	{ 'T', "skip", OPT_NUM, UNIT_TIME, &skip, 0, 1e300, "T",
+	{ 0, "skip", OPT_NUM, UNIT_TIME, &skip, 0, 1e300, "T",
 		"run-in left out of all rates observed, from the first row", 0, 0 },
-	{ 'n', "parts", OPT_INT, UNIT_COUNT, &parts, 0, 1e9, "N",
+	{ 0, "parts", OPT_INT, UNIT_COUNT, &parts, 0, 1e9, "N",
 		"parts of a class that wear independently; 0: as many as fit", 0, 0 },
-	OPT_TABLE(pump_face_rows),
-	{ 'E', "archard", OPT_NUM, UNIT_NONE, &archard, 1e-30, 1, "K",
-		"add a column: dry sliding with this wear coefficient", 0, 0 },
-	{ 'K', "hardness", OPT_NUM, UNIT_PRESSURE, &hardness, 1, 1e15, "H",
-		"hardness of --archard", 0, 0 },
-	{ 'U', "speed", OPT_NUM, UNIT_SPEED, &speed, 1e-12, 1e6, "V",
-		"sliding speed of --archard", 0, 0 },
-	{ 'G', "grey", OPT_FLAG, UNIT_NONE, &grey, 0, 0, 0,
+	OPT_TABLE(pump_face_rows), OPT_HEADING("Output"),
+	{ 0, "grey", OPT_FLAG, UNIT_NONE, &grey, 0, 0, 0,
 		"add a column: grey model of the state observed", 0, 0 },
-	{ 'q', "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "P,...",
+	{ 0, "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "P,...",
 		"quantiles to print", 0, 0 },
-	{ 'O', "samples", OPT_FLAG, UNIT_NONE, &samples, 0, 0, 0,
+	{ 0, "samples", OPT_FLAG, UNIT_NONE, &samples, 0, 0, 0,
 		"print every path instead of the summary", 0, 0 },
-	{ 'W', "rates", OPT_TEXT, UNIT_NONE, &rates_file, 0, 0, "FILE",
+	{ 0, "rates", OPT_TEXT, UNIT_NONE, &rates_file, 0, 0, "FILE",
 		"write the component's wear per step, one row per path", 0, 1 },
-	{ 'H', "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, 1e18, "T",
+	{ 0, "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, 1e18, "T",
 		"what lives longer counts as no failure [none; 10 x age for filters on their own]",
 		0, 0 },
-	{ 'e', "eol", OPT_NUM, UNIT_TIME, &eol, 1e-18, 1e18, "T",
+	{ 0, "eol", OPT_NUM, UNIT_TIME, &eol, 1e-18, 1e18, "T",
 		"true end of life: add scores of the predictions", 0, 0 },
-	{ 'l', "cone", OPT_NUM, UNIT_FRACTION, &cone, 1e-6, 10, "ALPHA",
+	{ 0, "cone", OPT_NUM, UNIT_FRACTION, &cone, 1e-6, 10, "ALPHA",
 		"half-width of the alpha-lambda test", 0, 0 },
+	OPT_HEADING("Monte Carlo"),
 	{ 'c', "count", OPT_INT, UNIT_COUNT, &count, 1, 1e7, "N", "Monte-Carlo paths", 0,
 		0 },
 	{ 'f', "first", OPT_INT, UNIT_COUNT, &first_path, 0, 4e9, "K",
 		"number of the first one", 0, 0 },
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "random seed", 0, 0 },
-	OPT_END
-};
+	OPT_END };
 
 static const struct prog prog = { "rwl",
 	"Predict the remaining wear life of a sliding pair as a distribution.", "[state]",
@@ -87,20 +83,21 @@ static void settle(void)
 			die(EXIT_USAGE, "--levels must grow");
 	if (!isnan(pump.critical_size) && wear_files.n == 0)
 		die(EXIT_USAGE, "--critical-size needs --wear");
-	if ((calibrations.n || rates_file || !isnan(archard)) && wear_files.n == 0)
-		die(EXIT_USAGE, "--calibrate, --rates and --archard need --wear");
+	if ((calibrations.n || rates_file || !isnan(speed)) && wear_files.n == 0)
+		die(EXIT_USAGE, "--calibrate, --rates and --speed need --wear");
 	for (int i = 0; i < wear_files.n; i++)
 		if (!new && (!state_file || !strcmp(state_file, "-")) &&
 			!strncmp(wear_files.v[i], "-", strcspn(wear_files.v[i], ":")))
 			die(EXIT_USAGE, "standard input cannot be both --wear and state");
 	if (new && (wear_files.n == 0 || rule == RATE_FILTER))
 		die(EXIT_USAGE, "--new needs --wear and the rates of its fragments");
-	if (new && !calibrations.n && isnan(step_time))
-		die(EXIT_USAGE, "--new needs --step-time or --calibrate");
+	if (new && !calibrations.n && isnan(step_time) && isnan(speed))
+		die(EXIT_USAGE, "--new needs --step-time, --speed or --calibrate");
 	if (samples && !isnan(eol))
 		die(EXIT_USAGE, "--eol scores the summary, not --samples");
-	if (calibrations.n && !isnan(step_time))
-		die(EXIT_USAGE, "--calibrate and --step-time exclude each other");
+	if ((calibrations.n > 0) + !isnan(step_time) + !isnan(speed) > 1)
+		die(EXIT_USAGE,
+			"--step-time, --speed and --calibrate exclude one another");
 }
 
 static struct paths *draw_paths(struct partition *p)
@@ -149,30 +146,18 @@ static void write_rates(const struct paths *e, const char *cmd)
 	table_done(out);
 }
 
-/* Wear of dry sliding, m3/s; NAN without --archard. */
-static double dry_rate(const struct partition *p)
-{
-	double rate;
-
-	if (isnan(archard))
-		return NAN;
-	rate = remaining_archard(archard, partition_load(p), speed, hardness);
-	if (isnan(rate))
-		die(EXIT_USAGE, "--archard needs the pressures of --wear");
-	return rate;
-}
-
-static struct forecast *new_forecast(struct paths *e, int quantity, double dry)
+static struct forecast *new_forecast(struct paths *e, int quantity)
 {
 	struct forecast_par par = { .pair = pump.pair,
 		.quantity = (enum pair_quantity)quantity,
 		.from_new = new || quantity >= PAIR_VOLUME,
 		.rule = (enum rate_rule)rule,
 		.count = count,
+		.seed = (uint64_t)seed,
+		.first = (uint32_t)first_path,
 		.scaled = wear_files.n && (calibrations.n || !isnan(step_time)),
 		.skip = skip,
 		.horizon = horizon,
-		.dry_rate = dry,
 		.grey = grey };
 	struct forecast *f = forecast_new(e, &par);
 
@@ -181,16 +166,33 @@ static struct forecast *new_forecast(struct paths *e, int quantity, double dry)
 	return f;
 }
 
+/* Steps cannot tell of a life of less than one. */
+static void check_life(const struct lifetable *out, double time)
+{
+	static int said;
+	double life = time + lifetable_median(out);
+
+	if (isnan(step_time) || said || !(life < step_time))
+		return;
+	said = 1;
+	warn("a life of %.3g s is below one simulated step of %.3g s: wear within a step "
+	     "is not known",
+		life, step_time);
+}
+
 static void follow(struct state *s, struct lifetable *out, struct forecast *f)
 {
 	while (state_next(s)) {
 		long n = forecast_add(f, s->t, s->value, s->gap, s->gap_error);
 
+		if (n == -2)
+			die(EXIT_RUN, "out of memory");
 		if (n >= 0) {
 			stats_add("paths", n > 1 ? (double)n : 0);
 			stats_add("paths_skipped", n > 1 ? 0 : (double)count);
 		}
 		lifetable_put(out, s->t, forecast_at(f, s->t));
+		check_life(out, s->t);
 		stats_add("rows", 1);
 	}
 }
@@ -209,11 +211,10 @@ static char *record_cmd(const struct state *s, int operand)
 	return cmd;
 }
 
-static struct lifetable *open_table(const char *cmd, char **made_by)
+static struct lifetable *open_table(const char *cmd, char **made_by, const char *assumed)
 {
 	struct lifetable_par par = { .levels = &levels,
 		.samples = samples,
-		.dry = !isnan(archard),
 		.grey = grey,
 		.first = first_path,
 		.least = wear_files.n ? count : 1,
@@ -222,6 +223,8 @@ static struct lifetable *open_table(const char *cmd, char **made_by)
 		.horizon = horizon };
 	struct lifetable *t = lifetable_open(cmd, &par);
 
+	if (assumed)
+		table_comment(lifetable_out(t), "assumed", "%s", assumed);
 	for (int k = 0; k < wear_files.n; k++)
 		if (made_by[k])
 			table_comment(lifetable_out(t), "wear", "%s made by %s",
@@ -229,16 +232,31 @@ static struct lifetable *open_table(const char *cmd, char **made_by)
 	return t;
 }
 
+/* The fragments of --wear, and the step time that their sliding distance makes. */
+static struct partition *read_fragments(char **made_by)
+{
+	double distance;
+	struct partition *p = fragments_read(&wear_files, first_step, made_by, &distance);
+
+	if (isnan(speed))
+		return p;
+	if (isnan(distance))
+		die(EXIT_USAGE,
+			"--speed: the tables of --wear tell no '# step_distance:'; give "
+			"--step-time");
+	step_time = distance / speed;
+	return p;
+}
+
 int main(int argc, char **argv)
 {
-	char *made_by[OPT_TEXTS_MAX] = { NULL }, *cmd;
+	char *made_by[OPT_TEXTS_MAX] = { NULL }, *cmd, *assumed;
 	struct partition *p = NULL;
 	struct paths *e;
 	struct lifetable *out;
 	struct forecast *f;
 	struct state s = { 0 };
-	double dry;
-	int i;
+	int i, status = 0;
 
 	pump_init();
 	i = opt_parse(&prog, argc, argv);
@@ -246,30 +264,36 @@ int main(int argc, char **argv)
 		state_file = argv[i];
 	settle();
 	if (wear_files.n)
-		p = fragments_read(&wear_files, first_step, made_by);
+		p = read_fragments(made_by);
 	if (!new)
 		state_open(&s, state_file, &pump.pair);
+	assumed = pump_assumed(p != NULL, s.quantity == PAIR_LEAKAGE);
+	if (p && fragments_close(p, &wear_files))
+		status = EXIT_NOCONV;
 	if (isnan(pump.pair.gap_new) && (new || s.quantity >= PAIR_VOLUME))
 		pump.pair.gap_new = leakage_gap(&pump.pair.leakage, 1.5e-3 / 60);
 	e = draw_paths(p);
-	dry = dry_rate(p);
 	cmd = record_cmd(&s, argv[i] != NULL);
 	if (rates_file)
 		write_rates(e, cmd);
-	out = open_table(cmd, made_by);
-	f = new_forecast(e, s.quantity, dry);
+	out = open_table(cmd, made_by, assumed);
+	f = new_forecast(e, s.quantity);
 	if (new) {
 		forecast_foresee(f);
 		lifetable_put(out, 0, forecast_at(f, 0));
+		check_life(out, 0);
 	} else {
 		follow(&s, out, f);
 	}
 	lifetable_close(out);
+	if (assumed)
+		warn("taken for granted: %s", assumed);
 	forecast_free(f);
 	partition_free(p);
 	paths_free(e);
 	for (int k = 0; k < wear_files.n; k++)
 		free(made_by[k]);
 	free(cmd);
-	return shell_done(0);
+	free(assumed);
+	return shell_done(status);
 }

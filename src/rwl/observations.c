@@ -1,8 +1,9 @@
 #include "observations.h"
-#include "life/slope.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
 #include "common/time_unit.h"
+#include "io/quantities.h"
+#include "life/slope.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,22 +14,50 @@ static const double sphere = 0.52359877559829887; /* pi / 6 */
 
 struct state_options state_options;
 
-struct opt state_rows[] = {
-	{ 'y', "quantity", OPT_WORD, UNIT_NONE, &state_options.quantity, 0, 0,
-		"auto|leakage|gap|volume|debris", "what the state is", quantities, 0 },
-	{ 'u', "state-unit", OPT_TEXT, UNIT_NONE, &state_options.unit, 0, 0, "UNIT",
+struct opt state_rows[] = { { 0, "quantity", OPT_WORD, UNIT_NONE, &state_options.quantity,
+				    0, 0, "auto|leakage|gap|volume|debris",
+				    "what the state is", quantities, 0 },
+	{ 0, "state-unit", OPT_TEXT, UNIT_NONE, &state_options.unit, 0, 0, "UNIT",
 		"unit of the state, where not SI: L/min", 0, 0 },
-	{ 'X', "state-error", OPT_NUM, UNIT_NONE, &state_options.error, 0, 1e300, "SD",
+	{ 0, "state-error", OPT_NUM, UNIT_NONE, &state_options.error, 0, 1e300, "SD",
 		"standard error of the state, in its unit", 0, 0 },
-	OPT_TABLE(timeunit_rows), OPT_END
-};
+	OPT_TABLE(timeunit_rows), OPT_END };
+
+/* Units of time and value: the table's own, or those of the options, or SI. */
+static void settle_units(struct state *s)
+{
+	static const enum unit units[] = { UNIT_ANY, UNIT_FLOW, UNIT_LENGTH, UNIT_VOLUME,
+		UNIT_LENGTH };
+	enum unit unit = units[s->quantity];
+	double told = table_scale(s->table, s->value_column, unit), asked = NAN;
+	double time = table_scale(s->table, s->time_column, UNIT_TIME);
+	const char *wrong, *end;
+
+	if (state_options.unit) {
+		char *one = xprintf("1%s", state_options.unit);
+
+		wrong = unit_parse(one, unit, "", &asked, &end);
+		free(one);
+		if (wrong)
+			die(EXIT_USAGE, "--state-unit %s: is no unit of a %s, want %s",
+				state_options.unit, quantities[s->quantity],
+				unit_name(unit));
+		if (!isnan(told) && fabs(asked / told - 1) > 1e-9)
+			die(EXIT_USAGE, "--state-unit %s contradicts '# units:' of %s",
+				state_options.unit, table_name(s->table));
+	}
+	s->scale = !isnan(told) ? told : !isnan(asked) ? asked : 1;
+	if (!isnan(time) && opt_given("time-unit") && fabs(timeunit() / time - 1) > 1e-9)
+		die(EXIT_USAGE, "--time-unit contradicts '# units:' of %s",
+			table_name(s->table));
+	s->time_scale = isnan(time) ? timeunit() : time;
+}
 
 void state_open(struct state *s, const char *file, const struct pair *pair)
 {
 	static const char *const columns[] = { "", "leakage", "gap", "volume",
 		"diameter" };
 	struct table_in *t = table_open(file);
-	const char *wrong, *end;
 
 	*s = (struct state){
 		.table = t, .quantity = state_options.quantity, .scale = 1, .pair = pair
@@ -54,14 +83,7 @@ void state_open(struct state *s, const char *file, const struct pair *pair)
 		s->value_column = table_need(t, columns[s->quantity]);
 	s->sources_column = table_find(t, "sources");
 	s->verdict_column = table_find(t, "verdict");
-	if (state_options.unit) {
-		char *one = xprintf("1%s", state_options.unit);
-
-		wrong = unit_parse(one, UNIT_ANY, "", &s->scale, &end);
-		if (wrong)
-			die(EXIT_USAGE, "--state-unit %s: %s", state_options.unit, wrong);
-		free(one);
-	}
+	settle_units(s);
 }
 
 /* Volume of all particles so far, with those of the present row. */
@@ -87,7 +109,7 @@ int state_next(struct state *s)
 				table_name(t), s->passed);
 		return 0;
 	}
-	time = table_number(t, s->time_column) * timeunit();
+	time = table_number(t, s->time_column) * s->time_scale;
 	value = table_number(t, s->value_column) * s->scale;
 	if (!isfinite(time))
 		die(EXIT_RUN, "%s: line %ld: the time is missing", table_name(t),

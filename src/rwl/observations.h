@@ -1,4 +1,5 @@
-/* observations.h - the wear of a pair as it was observed: rows of a table turned into gaps
+/* observations.h - the wear of a pair as it was observed: rows of a table turned into
+ *gaps
  *
  *	struct state s;
  *	state_open(&s, path, &pair);
@@ -12,9 +13,9 @@
 #ifndef STATE_H
 #define STATE_H
 
-#include "life/pair.h"
 #include "cli/opt.h"
 #include "io/tables.h"
+#include "life/pair.h"
 
 /* Values of the options. */
 extern struct state_options {
@@ -32,7 +33,7 @@ struct state {
 	int sources_column, verdict_column; /* of particles; -1 where absent */
 	int quantity;                       /* enum pair_quantity, found in the columns */
 	int filtered;                       /* read from the column state */
-	double scale;                       /* of the value to SI */
+	double scale, time_scale;           /* to SI */
 	double debris;                      /* volume of the particles so far */
 	long rows;
 	long passed;          /* particles without a diameter */

@@ -1,15 +1,16 @@
-/* pump_options.h - the sliding pair rwl is told of: options of its faces, leakage and thresholds
+/* pump_options.h - the sliding pair rwl is told of: options of its faces, leakage and
+ * thresholds
  */
 #ifndef PUMP_H
 #define PUMP_H
 
-#include "life/pair.h"
 #include "cli/opt.h"
+#include "life/pair.h"
 
 /* Values of the options; nan where not given. */
 extern struct pump {
 	struct pair pair;
-	double fragment_area, transition;           /* see life/partition.h */
+	double fragment_area, transition; /* see life/partition.h; NAN: not known */
 	double critical_size, critical_probability; /* failure by large particles */
 	int per_step;                               /* their share in one step */
 	struct opt_list radii, ports;
@@ -19,6 +20,10 @@ extern struct opt pump_threshold_rows[], pump_face_rows[]; /* for OPT_TABLE */
 
 /* Sets the defaults; before the options are parsed. */
 void pump_init(void);
+/* What is taken for granted since neither options nor tables tell, for a message; fresh
+ * memory, NULL: nothing.  fragments: they are read; leaks: a leakage is observed.  Sets
+ * the area of a fragment if it is not known. */
+char *pump_assumed(int fragments, int leaks);
 /* Dies where options make no pump; sets what follows from several of them. */
 void pump_check(void);
 

@@ -1,11 +1,12 @@
 /* sensorsim - the signal of wear particles in a pipe past two inductive sensors */
-#include "sensor_options.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
-#include "io/signals.h"
 #include "cli/stats.h"
+#include "io/signals.h"
 #include "io/tables.h"
+#include "material_options.h"
 #include "particle_source.h"
+#include "sensor_options.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,32 +19,113 @@ static const char *truth;
 
 static const struct opt opts[] = {
 	OPT_TABLE(source_rows),
+	OPT_TABLE(material_rows),
 	OPT_TABLE(sensors_rows),
-	{ 'T', "truth", OPT_TEXT, UNIT_NONE, &truth, 0, 0, "FILE",
-		"write a table of the particles", 0, 0 },
+	OPT_HEADING("Output"),
+	{ 0, "truth", OPT_TEXT, UNIT_NONE, &truth, 0, 0, "FILE",
+		"write a table of the particles and other events", 0, 0 },
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "of the random numbers",
 		0, 0 },
 	{ 'f', "first", OPT_INT, UNIT_COUNT, &first, 0, 4e9, "K", "realisation to make",
 		0, 0 },
-	{ 'F', "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
+	{ 0, "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
 		0 },
 	OPT_END,
 };
 
 static const struct prog prog = { "sensorsim",
 	"Make the signal of wear particles that pass two inductive sensors.", "[file]",
-	"table: diameter [time] [velocity], unless --uniform", "signal: two channels, V",
-	opts };
+	"table: diameter [time] [velocity], unless --uniform",
+	"signal: two or four channels, V", opts };
 
-static void put_truth(
-	struct table_out *t, uint64_t particle, const struct passage *p, double k)
+/* What comes along: particles and events that are none, in order of time1. */
+struct traffic {
+	struct source *source;
+	struct disturbances *disturbances; /* NULL: none */
+	struct scene *scene;
+	struct passage particle;
+	struct disturbance event;
+	int particles, events; /* is there a next one? */
+	double count;
+};
+
+static void next_particle(struct traffic *f)
 {
-	const double row[] = { (double)particle, p->time[0], p->time[1], p->diameter,
-		sensor_voltage(k, p->velocity, p->diameter), p->time[1] - p->time[0],
-		p->velocity, M_PI / 6 * p->diameter * p->diameter * p->diameter,
-		p->radius };
+	f->particles = source_next(f->source, &f->particle);
+}
 
-	table_put_row(t, row, (int)(sizeof row / sizeof *row));
+static void next_event(struct traffic *f)
+{
+	f->events = f->disturbances && disturbances_next(f->disturbances, &f->event) &&
+		    f->event.time[0] < source_duration;
+}
+
+static int is_particle_next(const struct traffic *f)
+{
+	return f->particles && (!f->events || f->particle.time[0] <= f->event.time[0]);
+}
+
+static void put_row(struct table_out *t, const double *row, int n, const char *material,
+	const char *kind)
+{
+	for (int i = 0; i < n; i++)
+		table_put(t, row[i]);
+	table_put_text(t, material);
+	table_put_text(t, kind);
+	table_end_row(t);
+}
+
+static void put_particle(struct table_out *t, struct traffic *f)
+{
+	const struct passage *p = &f->particle;
+	double d = p->diameter, peak[2];
+	int saturated = scene_receive(f->scene, p, peak);
+	const double row[] = { (double)(source_count(f->source) - 1), p->time[0],
+		p->time[1], d, peak[0], p->time[1] - p->time[0], p->velocity,
+		M_PI / 6 * d * d * d, p->radius, peak[1], atan2(peak[1], peak[0]),
+		saturated };
+
+	put_row(t, row, (int)(sizeof row / sizeof *row), source_material(f->source),
+		"particle");
+}
+
+static void put_event(struct table_out *t, const struct disturbance *e)
+{
+	const double row[] = { NAN, e->time[0], e->time[1], NAN, e->level[0],
+		e->time[1] - e->time[0], NAN, NAN, NAN, NAN, NAN, NAN };
+
+	put_row(t, row, (int)(sizeof row / sizeof *row), "none",
+		disturbance_names[e->kind]);
+}
+
+/* Passes on what has its time1 before the given one: to the scene, unless it is the truth
+ * alone that is wanted, and to the truth, unless NULL. */
+static void pass_traffic(
+	struct traffic *f, double before, int truth_alone, struct table_out *t)
+{
+	int room = 1;
+
+	for (;;) {
+		if (is_particle_next(f) && f->particle.time[0] <= before) {
+			if (t)
+				put_particle(t, f);
+			if (!truth_alone)
+				room = scene_pass(f->scene, &f->particle);
+			f->count++;
+			next_particle(f);
+		} else if (!is_particle_next(f) && f->events &&
+			   f->event.time[0] <= before) {
+			if (t)
+				put_event(t, &f->event);
+			if (!truth_alone)
+				room = scene_disturb(f->scene, &f->event);
+			next_event(f);
+		} else {
+			return;
+		}
+		if (!room)
+			die(EXIT_RUN, "no memory");
+	}
 }
 
 /* Frames of the next piece: a whole one, or what is left of the record. */
@@ -62,75 +144,70 @@ static struct table_out *create_truth(const char *cmd)
 {
 	const char *path = strcmp(truth, "-") == 0 ? NULL : truth;
 
-	return table_create(path, opt_cmd(cmd, NULL), "1 s s m V s m/s m3 m",
-		"particle time1 time2 diameter amplitude delay velocity volume radius");
+	return table_create(path, opt_cmd(cmd, NULL), "1 s s m V s m/s m3 m V rad 1 1 1",
+		"particle time1 time2 diameter amplitude delay velocity volume radius "
+		"quadrature phase saturated material kind");
 }
 
-static void run(struct source *source, struct table_out *t, struct signal_out *out)
+static void run(struct traffic *f, struct table_out *t, struct signal_out *out)
 {
-	static double x[2 * BLOCK];
-	double half = sensors_half_pulse(source_slowest(source));
-	double rate = (double)sensors_rate(), k = sensors_calibration();
-	double frames = 0, particles = 0;
-	struct scene *scene = sensors_scene((uint64_t)seed, (uint32_t)first);
-	struct passage p = { { 0 }, 0, 0, 0 };
-	int more = source_next(source, &p);
+	static double x[4 * BLOCK];
+	double rate = (double)sensors_rate(), frames = 0;
+	/* The first trace of an event lies before its time1 by no more than this. */
+	double ahead =
+		fmax(sensors_half_pulse(source_slowest(f->source)), 2 * sensors_pulse());
 	size_t n;
 
 	do {
-		for (; more && p.time[0] - half <= (frames + BLOCK) / rate;
-			more = source_next(source, &p)) {
-			if (!scene_pass(scene, &p))
-				die(EXIT_RUN, "no memory");
-			if (t)
-				put_truth(t, source_count(source) - 1, &p, k);
-			particles++;
-		}
-		n = piece(scene, rate, frames, more);
-		scene_next(scene, x, n);
+		pass_traffic(f, (frames + BLOCK) / rate + ahead, 0, t);
+		n = piece(f->scene, rate, frames, f->particles);
+		scene_next(f->scene, x, n);
 		signal_write(out, x, n);
 		frames += (double)n;
-		stats_max("particles_pending", (double)scene_pending(scene));
+		stats_max("particles_pending", (double)scene_pending(f->scene));
 	} while (n > 0);
 	stats_set("frames", frames);
-	stats_set("particles", particles);
-	stats_set("pulse_samples", scene_touched(scene));
-	stats_set(
-		"pulse_samples_left_out", 2 * frames * particles - scene_touched(scene));
-	scene_free(scene);
+	stats_set("particles", f->count);
+	stats_set("pulse_samples", scene_touched(f->scene));
+	stats_set("pulse_samples_left_out",
+		2 * frames * f->count - scene_touched(f->scene));
 }
 
 int main(int argc, char **argv)
 {
 	int i = opt_parse(&prog, argc, argv);
-	struct signal_format format = { .rate = sensors_rate(),
-		.channels = 2,
-		.single = single,
-		.units = (char[]){ "V V" } };
-	struct passage p = { { 0 }, 0, 0, 0 };
-	struct source *source;
+	struct signal_format format = { .rate = sensors_rate(), .single = single };
+	struct traffic f = { 0 };
 	struct table_out *table = NULL;
 
 	source_check(argc - i);
 	sensors_check();
-	source = source_open(argv[i], (uint64_t)seed, (uint32_t)first);
+	material_check();
+	f.source = source_open(argv[i], (uint64_t)seed, (uint32_t)first);
+	f.scene = sensors_scene((uint64_t)seed, (uint32_t)first);
+	f.disturbances =
+		sensors_disturbances((uint64_t)seed, (uint32_t)first, source_duration);
+	next_particle(&f);
+	next_event(&f);
 	if (truth)
-		table = create_truth(source_cmd(source));
+		table = create_truth(source_cmd(f.source));
 	if (truth && strcmp(truth, "-") == 0) {
-		while (source_next(source, &p))
-			put_truth(table, source_count(source) - 1, &p,
-				sensors_calibration());
+		pass_traffic(&f, INFINITY, 1, table);
 	} else {
 		struct signal_out *out;
 
+		format.channels = sensors_channels();
+		format.units = format.channels == 4 ? "V V V V" : "V V";
 		format.seed = xprintf("%ld", seed);
-		format.cmd = opt_cmd(source_cmd(source), NULL);
+		format.cmd = opt_cmd(source_cmd(f.source), NULL);
 		out = signal_create(NULL, &format);
-		run(source, table, out);
+		run(&f, table, out);
 		signal_done(out);
 	}
 	if (table)
 		table_done(table);
-	source_close(source);
+	scene_free(f.scene);
+	disturbances_free(f.disturbances);
+	source_close(f.source);
 	return shell_done(0);
 }

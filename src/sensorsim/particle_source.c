@@ -1,44 +1,54 @@
 #include "particle_source.h"
-#include "sensor_options.h"
 #include "cli/msg.h"
 #include "io/tables.h"
+#include "material_options.h"
+#include "sensor_options.h"
+#include "signal/wander.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* Standard deviations of the flow's drift at most. */
+enum { DRIFT_MOST = 3 };
 
 double source_duration = NAN;
 
 static long number = -1, burst;
 static double concentration = NAN, density = 3e3, start = NAN;
-static double span = NAN, gap, period = NAN;
+static double span = NAN, gap, period = NAN, flow_drift;
 static int by_volume;
 static struct opt_list uniform;
 static const char *const measures[] = { "diameter", "volume", NULL };
 
 struct opt source_rows[] = {
-	{ 'u', "uniform", OPT_LIST, UNIT_LENGTH, &uniform, 1e-9, 1, "A:B",
+	OPT_HEADING("Particles"),
+	{ 0, "uniform", OPT_LIST, UNIT_LENGTH, &uniform, 1e-9, 1, "A:B",
 		"draw particles with diameters from A to B instead of reading a table", 0,
 		0 },
-	{ 'y', "by", OPT_WORD, UNIT_NONE, &by_volume, 0, 0, "diameter|volume",
+	{ 0, "by", OPT_WORD, UNIT_NONE, &by_volume, 0, 0, "diameter|volume",
 		"what --uniform makes uniform", measures, 0 },
-	{ 'N', "number", OPT_INT, UNIT_COUNT, &number, 0, 1e15, "N", "particles to draw",
-		0, 0 },
-	{ 'C', "concentration", OPT_NUM, UNIT_CONCENTRATION, &concentration, 0, 1e4, "C",
+	{ 0, "number", OPT_INT, UNIT_COUNT, &number, 0, 1e15, "N", "particles to draw", 0,
+		0 },
+	{ 0, "concentration", OPT_NUM, UNIT_CONCENTRATION, &concentration, 0, 1e4, "C",
 		"draw a Poisson number of particles, C of mass in the oil", 0, 0 },
-	{ 'D', "density", OPT_NUM, UNIT_DENSITY, &density, 1, 1e5, "RHO",
+	{ 0, "density", OPT_NUM, UNIT_DENSITY, &density, 1, 1e5, "RHO",
 		"of the particles", 0, 0 },
 	/* arrivals */
-	{ 'd', "duration", OPT_NUM, UNIT_TIME, &source_duration, 0, 1e9, "T",
+	OPT_HEADING("Arrivals"),
+	{ 0, "duration", OPT_NUM, UNIT_TIME, &source_duration, 0, 1e9, "T",
 		"of the record", 0, 0 },
-	{ 'o', "start", OPT_NUM, UNIT_TIME, &start, -1e9, 1e9, "T",
+	{ 0, "start", OPT_NUM, UNIT_TIME, &start, -1e9, 1e9, "T",
 		"when particles begin to arrive", 0, 0 },
-	{ 'X', "span", OPT_NUM, UNIT_TIME, &span, 0, 1e9, "T",
+	{ 0, "span", OPT_NUM, UNIT_TIME, &span, 0, 1e9, "T",
 		"time within which the particles of a burst arrive", 0, 0 },
-	{ 'i', "gap", OPT_NUM, UNIT_TIME, &gap, 0, 1e9, "T",
-		"least time between arrivals", 0, 0 },
-	{ 'b', "burst", OPT_INT, UNIT_COUNT, &burst, 1, 1e9, "M", "particles of a burst",
+	{ 0, "gap", OPT_NUM, UNIT_TIME, &gap, 0, 1e9, "T", "least time between arrivals",
 		0, 0 },
-	{ 't', "period", OPT_NUM, UNIT_TIME, &period, 0, 1e9, "T", "from burst to burst",
-		0, 0 },
+	{ 0, "burst", OPT_INT, UNIT_COUNT, &burst, 1, 1e9, "M", "particles of a burst", 0,
+		0 },
+	{ 0, "flow-drift", OPT_NUM, UNIT_FRACTION, &flow_drift, 0, 0.3, "S",
+		"rms of the relative change of all velocities", 0, 0 },
+	{ 0, "period", OPT_NUM, UNIT_TIME, &period, 0, 1e9, "T", "from burst to burst", 0,
+		0 },
 	OPT_END,
 };
 
@@ -47,10 +57,14 @@ struct source {
 	struct stream stream;
 	struct arrivals *arrivals; /* NULL: times stand in the table */
 	struct table_in *table;    /* NULL: all is drawn, or was read into diameters */
-	int time_column, diameter_column, velocity_column;
+	int time_column, diameter_column, velocity_column, material_column, kind_column;
 	double *diameters; /* of a table without times */
-	uint64_t count;    /* particles handed out */
-	char *cmd;         /* pipeline that made the table; NULL: none */
+	const struct material **materials;
+	const struct material *material; /* of the particle handed out last */
+	struct normals *normals;         /* of the drift of the flow */
+	struct wander drift;
+	uint64_t count; /* particles handed out */
+	char *cmd;      /* pipeline that made the table; NULL: none */
 	double slowest;
 };
 
@@ -128,16 +142,43 @@ static double read_diameter(const struct source *s)
 	return d;
 }
 
+/* The next row that is a particle. */
+static int next_line(struct source *s)
+{
+	while (table_next(s->table))
+		if (s->kind_column < 0 ||
+			strcmp(table_text(s->table, s->kind_column), "particle") == 0)
+			return 1;
+	return 0;
+}
+
+/* By its column, or drawn for particle i. */
+static const struct material *read_material(const struct source *s, uint64_t i)
+{
+	const struct material *m;
+
+	if (s->material_column < 0)
+		return material_draw(s->stream.seed, s->stream.realisation, i);
+	m = material_find(table_text(s->table, s->material_column));
+	if (!m)
+		die(EXIT_RUN, "%s: line %ld: material '%s', want one of %s",
+			table_name(s->table), table_line(s->table),
+			table_text(s->table, s->material_column), material_names());
+	return m;
+}
+
 /* A table without times is read whole; its particles arrive in the order of the rows. */
 static void read_diameters(struct source *s)
 {
 	uint64_t n = 0, room = 0;
 
-	while (table_next(s->table)) {
+	while (next_line(s)) {
 		if (n == room) {
 			room = room ? 2 * room : 1024;
 			s->diameters = xrealloc(s->diameters, room, sizeof *s->diameters);
+			s->materials = xrealloc(s->materials, room, sizeof *s->materials);
 		}
+		s->materials[n] = read_material(s, n);
 		s->diameters[n++] = read_diameter(s);
 	}
 	if (table_upstream(s->table))
@@ -155,9 +196,13 @@ struct source *source_open(const char *path, uint64_t seed, uint32_t realisation
 	s->stream.diameter[0] = uniform.v[0];
 	s->stream.diameter[1] = uniform.v[1];
 	s->stream.by_volume = by_volume;
-	s->slowest = passage_slowest(&s->stream);
+	s->slowest = passage_slowest(&s->stream) * (1 - DRIFT_MOST * flow_drift);
 	if (s->slowest < 0.01 * pipe_mean_velocity(&s->stream.pipe))
 		die(EXIT_USAGE, "--lag makes particles slower than 1 %% of the oil");
+	s->normals = normals_new(seed, realisation, RNG_MATERIAL);
+	if (!s->normals)
+		die(EXIT_RUN, "no memory");
+	wander_start(&s->drift, s->normals, (uint64_t)1 << 47, sensors_drift_time());
 	if (uniform.n) {
 		make_arrivals(s, number >= 0 ? (uint64_t)number : UINT64_MAX);
 		return s;
@@ -165,6 +210,8 @@ struct source *source_open(const char *path, uint64_t seed, uint32_t realisation
 	s->table = table_open(path);
 	s->diameter_column = table_need(s->table, "diameter");
 	s->velocity_column = table_find(s->table, "velocity");
+	s->material_column = table_find(s->table, "material");
+	s->kind_column = table_find(s->table, "kind");
 	s->time_column = table_find(s->table, "time");
 	if (s->time_column < 0)
 		s->time_column = table_find(s->table, "time1");
@@ -177,13 +224,27 @@ struct source *source_open(const char *path, uint64_t seed, uint32_t realisation
 	return s;
 }
 
+/* The drift is cut where it would stop the flow. */
+static void drift_flow(struct source *s, struct passage *p)
+{
+	double z;
+
+	if (flow_drift <= 0)
+		return;
+	wander_move(&s->drift, fmax(p->time[0], 0));
+	z = fmax(-DRIFT_MOST, fmin(DRIFT_MOST, wander_value(&s->drift, 0)));
+	p->velocity *= 1 + flow_drift * z;
+	p->time[1] = p->time[0] + s->stream.spacing / p->velocity;
+}
+
 static int next_row(struct source *s, struct passage *p)
 {
 	struct table_in *t = s->table;
 	double before = p->time[0];
 
-	if (!table_next(t))
+	if (!next_line(s))
 		return 0;
+	s->material = read_material(s, s->count);
 	p->diameter = read_diameter(s);
 	p->time[0] = table_number(t, s->time_column);
 	if (!(fabs(p->time[0]) <= 1e9) || (s->count && p->time[0] < before))
@@ -191,8 +252,10 @@ static int next_row(struct source *s, struct passage *p)
 			"%s: line %ld: time %g s, want times in order, up to 1e9 s (before: %g s)",
 			table_name(t), table_line(t), p->time[0], before);
 	passage_carry(&s->stream, s->count, p);
-	if (s->velocity_column < 0)
+	if (s->velocity_column < 0) {
+		drift_flow(s, p);
 		return 1;
+	}
 	p->velocity = table_number(t, s->velocity_column);
 	if (!(p->velocity >= s->slowest && isfinite(p->velocity)))
 		die(EXIT_RUN,
@@ -213,10 +276,16 @@ static int next_particle(struct source *s, struct passage *p)
 		return 0;
 	} else if (s->diameters) {
 		p->diameter = s->diameters[s->count];
+		s->material = s->materials[s->count];
 		passage_carry(&s->stream, s->count, p);
+		drift_flow(s, p);
 	} else {
+		s->material =
+			material_draw(s->stream.seed, s->stream.realisation, s->count);
 		passage_draw(&s->stream, s->count, p);
+		drift_flow(s, p);
 	}
+	material_respond(s->material, p);
 	s->count++;
 	return 1;
 }
@@ -238,6 +307,11 @@ uint64_t source_count(const struct source *s)
 	return s->count;
 }
 
+const char *source_material(const struct source *s)
+{
+	return s->material->name;
+}
+
 double source_slowest(const struct source *s)
 {
 	return s->slowest;
@@ -253,7 +327,9 @@ void source_close(struct source *s)
 	if (s->table)
 		table_close(s->table);
 	arrivals_free(s->arrivals);
+	normals_free(s->normals);
 	free(s->diameters);
+	free(s->materials);
 	free(s->cmd);
 	free(s);
 }

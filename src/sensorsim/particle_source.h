@@ -28,6 +28,7 @@ struct source *source_open(const char *path, uint64_t seed, uint32_t realisation
  * ends; 0 where there is none. */
 int source_next(struct source *s, struct passage *p);
 uint64_t source_count(const struct source *s); /* particles so far, unseen ones too */
+const char *source_material(const struct source *s); /* of the last one */
 /* Velocity that none of them is below, m/s. */
 double source_slowest(const struct source *s);
 const char *source_cmd(const struct source *s); /* that made the table, or NULL */

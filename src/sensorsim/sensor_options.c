@@ -6,58 +6,87 @@ static double rate = 10e3, flow = 1e-3, bore = 0.01, exponent = 7, spacing = 0.2
 static double zone = 0.4 / M_PI;       /* 10 ms at 60 L/min in 1 cm */
 static double kappa = M_PI / 4 * 1e11; /* 1 V for 100 um there */
 static double gain = 1, noise, snr = NAN, corner, common, drift, drift_time = 10;
-static double mains_frequency = 50, pump_frequency = 2e3;
+static double mains_frequency = 50, pump_frequency = 2e3, mains_wander;
+static double gain_drift, phase, phase_drift, saturation, event_level = NAN;
+static double events[DISTURBANCES]; /* per second */
+static int quadrature;
 static int profile = PIPE_PLUG, shape;
 static struct opt_list lag, mains, pump, coil;
 static const char *const profiles[] = { "plug", "laminar", "turbulent", NULL };
 static const char *const shapes[] = { "sine", "gauss", "lorentz", NULL };
 
 struct opt sensors_rows[] = {
+	OPT_HEADING("Pipe and sensors"),
 	{ 'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 2e9, "F", "sampling rate", 0,
 		0 },
-	{ 'Q', "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-12, 1e3, "Q", "of the oil", 0, 0 },
-	{ 'B', "bore", OPT_NUM, UNIT_LENGTH, &bore, 1e-6, 10, "D", "diameter of the pipe",
+	{ 0, "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-12, 1e3, "Q", "of the oil", 0, 0 },
+	{ 0, "bore", OPT_NUM, UNIT_LENGTH, &bore, 1e-6, 10, "D", "diameter of the pipe",
 		0, 0 },
-	{ 'p', "profile", OPT_WORD, UNIT_NONE, &profile, 0, 0, "plug|laminar|turbulent",
+	{ 0, "profile", OPT_WORD, UNIT_NONE, &profile, 0, 0, "plug|laminar|turbulent",
 		"velocity profile", profiles, 0 },
-	{ 'e', "exponent", OPT_NUM, UNIT_NONE, &exponent, 1, 100, "N",
+	{ 0, "exponent", OPT_NUM, UNIT_NONE, &exponent, 1, 100, "N",
 		"of the turbulent profile (1 - r/R)^(1/N)", 0, 0 },
-	{ 'L', "spacing", OPT_NUM, UNIT_LENGTH, &spacing, 1e-6, 1e3, "D",
+	{ 0, "spacing", OPT_NUM, UNIT_LENGTH, &spacing, 1e-6, 1e3, "D",
 		"between the two sensors", 0, 0 },
-	{ 'a', "lag", OPT_LIST, UNIT_TIME, &lag, 0, 1e6, "A:B",
+	{ 0, "lag", OPT_LIST, UNIT_TIME, &lag, 0, 1e6, "A:B",
 		"transit takes longer than that of the oil by A to B", 0, 0 },
-	{ 'w', "pulse", OPT_WORD, UNIT_NONE, &shape, 0, 0, "sine|gauss|lorentz",
+	{ 0, "pulse", OPT_WORD, UNIT_NONE, &shape, 0, 0, "sine|gauss|lorentz",
 		"pulse shape", shapes, 0 },
-	{ 'l', "zone", OPT_NUM, UNIT_LENGTH, &zone, 1e-9, 1e3, "L",
+	{ 0, "zone", OPT_NUM, UNIT_LENGTH, &zone, 1e-9, 1e3, "L",
 		"of the sensing zone: a pulse lasts L over the velocity", 0, 0 },
-	{ 'K', "calibration", OPT_NUM, UNIT_NONE, &kappa, 1e-30, 1e30, "K",
+	{ 0, "calibration", OPT_NUM, UNIT_NONE, &kappa, 1e-30, 1e30, "K",
 		"peak voltage over velocity and diameter cubed, V s/m4", 0, 0 },
-	{ 'I', "coil", OPT_LIST, UNIT_ANY, &coil, 0, 1e30, "N,ND,I,MUR,L0,LF,AMP",
+	{ 0, "coil", OPT_LIST, UNIT_ANY, &coil, 0, 1e30, "N,ND,I,MUR,L0,LF,AMP",
 		"calibration by turns, exciting turns, current, permeability, paths, gain",
 		0, 0 },
-	{ 'g', "gain", OPT_NUM, UNIT_NONE, &gain, 0, 1e9, "G",
-		"of sensor 2 over sensor 1", 0, 0 },
-	/* disturbances */
-	{ 'n', "noise", OPT_NUM, UNIT_VOLTAGE, &noise, 0, 1e9, "V",
-		"rms noise of a sample", 0, 0 },
-	{ 'R', "snr", OPT_NUM, UNIT_DECIBEL, &snr, -100, 400, "S",
+	{ 0, "gain", OPT_NUM, UNIT_NONE, &gain, 0, 1e9, "G", "of sensor 2 over sensor 1",
+		0, 0 },
+	{ 0, "gain-drift", OPT_NUM, UNIT_FRACTION, &gain_drift, 0, 1, "S",
+		"rms of the relative change of this gain", 0, 0 },
+	{ 0, "phase", OPT_NUM, UNIT_ANGLE, &phase, -10, 10, "A",
+		"of the demodulator: that of ferrous particles", 0, 0 },
+	{ 0, "phase-drift", OPT_NUM, UNIT_ANGLE, &phase_drift, 0, 10, "A",
+		"rms of the change of this phase", 0, 0 },
+	{ 0, "quadrature", OPT_FLAG, UNIT_NONE, &quadrature, 0, 0, 0,
+		"write four channels, in phase and in quadrature: I1 Q1 I2 Q2", 0, 0 },
+	OPT_HEADING("Noise and interference"),
+	{ 0, "noise", OPT_NUM, UNIT_VOLTAGE, &noise, 0, 1e9, "V", "rms noise of a sample",
+		0, 0 },
+	{ 0, "snr", OPT_NUM, UNIT_DECIBEL, &snr, -100, 400, "S",
 		"noise by the peak of a 100 um particle over its rms", 0, 0 },
-	{ 'k', "corner", OPT_NUM, UNIT_FREQUENCY, &corner, 0, 1e12, "F",
+	{ 0, "corner", OPT_NUM, UNIT_FREQUENCY, &corner, 0, 1e12, "F",
 		"low-pass of the noise; 0: white", 0, 0 },
-	{ 'q', "common", OPT_NUM, UNIT_NONE, &common, -1, 1, "R",
+	{ 0, "common", OPT_NUM, UNIT_NONE, &common, -1, 1, "R",
 		"correlation of the noise of both sensors", 0, 0 },
-	{ 'z', "drift", OPT_NUM, UNIT_VOLTAGE, &drift, 0, 1e9, "V",
+	{ 0, "drift", OPT_NUM, UNIT_VOLTAGE, &drift, 0, 1e9, "V",
 		"rms drift of the base line", 0, 0 },
-	{ 'Z', "drift-time", OPT_NUM, UNIT_TIME, &drift_time, 1e-9, 1e9, "T",
+	{ 0, "drift-time", OPT_NUM, UNIT_TIME, &drift_time, 1e-9, 1e9, "T",
 		"correlation time of the drift", 0, 0 },
-	{ 'm', "mains", OPT_LIST, UNIT_VOLTAGE, &mains, 0, 1e9, "V[,V3[,V5]]",
+	{ 0, "mains", OPT_LIST, UNIT_VOLTAGE, &mains, 0, 1e9, "V[,V3[,V5]]",
 		"amplitudes of the mains and its odd harmonics", 0, 0 },
-	{ 'M', "mains-frequency", OPT_NUM, UNIT_FREQUENCY, &mains_frequency, 0, 1e9, "F",
+	{ 0, "mains-frequency", OPT_NUM, UNIT_FREQUENCY, &mains_frequency, 0, 1e9, "F",
 		"of the mains", 0, 0 },
-	{ 'P', "pump", OPT_LIST, UNIT_VOLTAGE, &pump, 0, 1e9, "V[,V2]",
+	{ 0, "mains-wander", OPT_NUM, UNIT_FREQUENCY, &mains_wander, 0, 10, "F",
+		"rms of its change", 0, 0 },
+	{ 0, "pump", OPT_LIST, UNIT_VOLTAGE, &pump, 0, 1e9, "V[,V2]",
 		"amplitudes of the pump line and its harmonics", 0, 0 },
-	{ 'U', "pump-frequency", OPT_NUM, UNIT_FREQUENCY, &pump_frequency, 0, 1e9, "F",
+	{ 0, "pump-frequency", OPT_NUM, UNIT_FREQUENCY, &pump_frequency, 0, 1e9, "F",
 		"of the pump line", 0, 0 },
+	OPT_HEADING("Other events"),
+	{ 0, "saturation", OPT_NUM, UNIT_VOLTAGE, &saturation, 0, 1e9, "V",
+		"limit of the signal; 0: none", 0, 0 },
+	{ 0, "bubbles", OPT_NUM, UNIT_FREQUENCY, &events[DISTURBANCE_BUBBLE], 0, 1e6, "F",
+		"air bubbles, how often", 0, 0 },
+	{ 0, "shocks", OPT_NUM, UNIT_FREQUENCY, &events[DISTURBANCE_SHOCK], 0, 1e6, "F",
+		"shocks to both sensors, how often", 0, 0 },
+	{ 0, "impulses", OPT_NUM, UNIT_FREQUENCY, &events[DISTURBANCE_IMPULSE], 0, 1e6,
+		"F", "spikes of one sample, how often", 0, 0 },
+	{ 0, "transients", OPT_NUM, UNIT_FREQUENCY, &events[DISTURBANCE_TRANSIENT], 0,
+		1e6, "F", "steps at one sensor that die away, how often", 0, 0 },
+	{ 0, "dropouts", OPT_NUM, UNIT_FREQUENCY, &events[DISTURBANCE_DROPOUT], 0, 1e6,
+		"F", "stretches of zeros, how often", 0, 0 },
+	{ 0, "event-level", OPT_NUM, UNIT_VOLTAGE, &event_level, 0, 1e9, "V",
+		"mean level of these events; the peak of 100 um if not given", 0, 0 },
 	OPT_END,
 };
 
@@ -86,12 +115,12 @@ void sensors_check(void)
 		die(EXIT_USAGE, "--lag: want A:B with A not above B");
 	if (rate != floor(rate))
 		die(EXIT_USAGE, "--rate: AU wants whole hertz, not %g", rate);
-	if (coil.n && opt_given('K'))
+	if (coil.n && opt_given("calibration"))
 		die(EXIT_USAGE, "--coil and --calibration exclude each other");
 	if (coil.n && !(coil.v[3] >= 1 && coil.v[4] > 0 && coil.v[5] > coil.v[4]))
 		die(EXIT_USAGE,
 			"--coil: want a permeability of at least 1 and paths 0 < L0 < LF");
-	if (opt_given('R') && opt_given('n'))
+	if (opt_given("snr") && opt_given("noise"))
 		die(EXIT_USAGE, "--noise and --snr exclude each other");
 	if (corner > rate / 2)
 		die(EXIT_USAGE, "--corner %g Hz is above half the rate, %g Hz", corner,
@@ -127,38 +156,93 @@ double sensors_calibration(void)
 	return coil.n ? coil.v[6] * sensor_kappa(&c, (enum pulse_shape)shape) : kappa;
 }
 
-static void add_lines(
-	struct scene_par *par, const struct opt_list *level, double frequency, int step)
+double sensors_pulse(void)
+{
+	struct pipe pipe = sensors_pipe();
+
+	return zone / pipe_mean_velocity(&pipe);
+}
+
+double sensors_drift_time(void)
+{
+	return drift_time;
+}
+
+int sensors_channels(void)
+{
+	return quadrature ? 4 : 2;
+}
+
+/* Peak voltage of 100 um with the oil. */
+static double typical_peak(void)
+{
+	struct pipe pipe = sensors_pipe();
+
+	return sensor_voltage(sensors_calibration(), pipe_mean_velocity(&pipe), 100e-6);
+}
+
+struct disturbances *sensors_disturbances(
+	uint64_t seed, uint32_t realisation, double length)
+{
+	struct pipe pipe = sensors_pipe();
+	double mean = pipe_mean_velocity(&pipe);
+	struct disturbances_par par = { .seed = seed,
+		.realisation = realisation,
+		.level = isnan(event_level) ? typical_peak() : event_level,
+		.duration = sensors_pulse(),
+		.transit = spacing / mean,
+		.sample = 1 / rate };
+	struct disturbances *d;
+	double any = 0;
+
+	for (int kind = 0; kind < DISTURBANCES; kind++)
+		any += par.rate[kind] = events[kind];
+	if (any == 0)
+		return NULL;
+	if (isnan(length))
+		die(EXIT_USAGE, "bubbles, shocks and other events need --duration");
+	d = disturbances_new(&par);
+	if (!d)
+		die(EXIT_RUN, "no memory");
+	return d;
+}
+
+static void add_lines(struct scene_par *par, const struct opt_list *level,
+	double frequency, int step, int wanders)
 {
 	for (int i = 0; i < level->n; i++) {
 		if (level->v[i] == 0)
 			continue;
 		par->line[par->nlines] = frequency * (1 + step * i);
+		par->multiple[par->nlines] = wanders ? 1 + step * i : 0;
 		par->line_level[par->nlines++] = level->v[i];
 	}
 }
 
 struct scene *sensors_scene(uint64_t seed, uint32_t realisation)
 {
-	struct pipe pipe = sensors_pipe();
-	double k = sensors_calibration();
-	double peak = sensor_voltage(k, pipe_mean_velocity(&pipe), 100e-6);
 	struct scene_par par = { .rate = rate,
 		.shape = (enum pulse_shape)shape,
 		.length = zone,
-		.kappa = k,
+		.kappa = sensors_calibration(),
 		.gain = gain,
 		.seed = seed,
 		.realisation = realisation,
-		.noise = isnan(snr) ? noise : peak * pow(10, -snr / 20),
+		.noise = isnan(snr) ? noise : typical_peak() * pow(10, -snr / 20),
 		.corner = corner,
 		.common = common,
 		.drift = drift,
-		.drift_time = drift_time };
+		.drift_time = drift_time,
+		.wander = mains_wander,
+		.gain_drift = gain_drift,
+		.phase = phase,
+		.phase_drift = phase_drift,
+		.saturation = saturation,
+		.quadrature = quadrature };
 	struct scene *scene;
 
-	add_lines(&par, &mains, mains_frequency, 2);
-	add_lines(&par, &pump, pump_frequency, 1);
+	add_lines(&par, &mains, mains_frequency, 2, 1);
+	add_lines(&par, &pump, pump_frequency, 1, 0);
 	scene = scene_new(&par);
 	if (!scene)
 		die(EXIT_RUN, "no memory");

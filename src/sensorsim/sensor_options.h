@@ -1,4 +1,5 @@
-/* sensor_options.h - the pipe, its two sensors and what disturbs them: options of sensorsim */
+/* sensor_options.h - the pipe, its two sensors and what disturbs them: options of
+ * sensorsim */
 #ifndef SENSORS_H
 #define SENSORS_H
 
@@ -19,6 +20,13 @@ struct stream sensors_stream(uint64_t seed, uint32_t realisation);
 double sensors_half_pulse(double velocity);
 /* Peak voltage over velocity and diameter cubed, V s/m4. */
 double sensors_calibration(void);
+/* Duration of a pulse at mean velocity, s. */
+double sensors_pulse(void);
+double sensors_drift_time(void); /* s */
+int sensors_channels(void);
+/* Events that are no particles, in a record of this length, s; NULL: there are none. */
+struct disturbances *sensors_disturbances(
+	uint64_t seed, uint32_t realisation, double length);
 /* The signal without its particles; dies where a line is above half the rate. */
 struct scene *sensors_scene(uint64_t seed, uint32_t realisation);
 

@@ -6,7 +6,7 @@
 # free      rough paraboloid on a free surface
 # hertz     paraboloid, wave: closed forms, whose error is that of the grid
 #
-# certificate     sum p (g - min g) / (sum p * rms height) reached
+# certificate     sum p (g - min g) / sum p (u - u0) reached: see bemcontact(1)
 # pressure_error  mean |p - reference| over the mean pressure; reference: tolerance 1e-12
 # area_error      area less that of the reference
 # exact_error     mean |p - closed form| over the mean pressure

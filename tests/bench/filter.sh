@@ -52,10 +52,10 @@ row() {
 
 all() {
 	printf 'scene\tknob\terror\tseconds\n'
-	sensorsim -u 50um:150um -N 3000 -d 100 --noise 10mV >x.au
+	sensorsim --uniform 50um:150um --number 3000 --duration 100 --noise 10mV >x.au
 	for n in 100 200 400 800 1600 3200; do
-		row design $n "$(bpfilter -R -n $n | awk '$1 == 50 || $1 == 150 { if ($2 > m) m = $2 }
-			END { print m }')" "$(median filter -n $n)"
+		row design $n "$(bpfilter --response --order $n | awk '$1 == 50 || $1 == 150 { if ($2 > m) m = $2 }
+			END { print m }')" "$(median filter --order $n)"
 	done
 	"$top/build/bench/filter" | awk -F '\t' '{
 		printf "%s\t%s\t%s\t%.4g\n", $1, $1 == "block" ? $3 : $2 - 1, $5, 2 * $6 }'
@@ -64,11 +64,11 @@ all() {
 		filter
 		cp y.au double.au
 		row single 200 "$(filter --single; difference double.au y.au)" "$(median filter --single)"
-		sensorsim -u 50um:150um -N 3000 -d 100 --noise 10mV --mains 0.5,0.3,0.05 >lined.au
+		sensorsim --uniform 50um:150um --number 3000 --duration 100 --noise 10mV --mains 0.5,0.3,0.05 >lined.au
 		for memory in 0.1 0.2 0.5 1 2 5 10; do
 			# shellcheck disable=SC2317 # median calls it
 			left() {
-				bpfilter -b 0:5000 -z -n 2 -l 50,150,250 -m $memory -S stats lined.au >y.au
+				bpfilter -b 0:5000 --zero-phase --order 2 --lines 50,150,250 --line-window $memory -S stats lined.au >y.au
 			}
 			seconds=$(median left)
 			row lines $memory "$($py - <<-END
@@ -95,8 +95,8 @@ all() {
 			    print("peer\t200\t%.2e\t%.4g" % (abs(z - y).max() / y.std(), sorted(t)[2]))
 		END
 		if command -v sox >/dev/null; then
-			bpfilter -p | column tap /dev/stdin >taps
-			sensorsim -u 50um:150um -N 3000 -d 100 --noise 10mV -K 2e9 >x.au # within +-1
+			bpfilter --taps | column tap /dev/stdin >taps
+			sensorsim --uniform 50um:150um --number 3000 --duration 100 --noise 10mV --calibration 2e9 >x.au # within +-1
 			filter
 			seconds=$($py - <<-END
 				import os, subprocess
@@ -109,15 +109,15 @@ all() {
 			END
 			)
 			# sox takes the delay out
-			filter -z
+			filter --zero-phase
 			row peer 200 "$(difference y.au sox.au)" "$seconds"
 		fi
 	fi
-	row quiet 0 nan "$(median simulate -u 1um:1um -N 0 -d 100)"
-	row sparse 1 nan "$(median simulate -u 50um:150um -N 100 -d 100)"
-	row noisy 1 nan "$(median simulate -u 50um:150um -N 100 -d 100 -n 10mV)"
+	row quiet 0 nan "$(median simulate --uniform 1um:1um --number 0 --duration 100)"
+	row sparse 1 nan "$(median simulate --uniform 50um:150um --number 100 --duration 100)"
+	row noisy 1 nan "$(median simulate --uniform 50um:150um --number 100 --duration 100 --noise 10mV)"
 	for rate in 10 100 1000 10000; do
-		row dense $rate nan "$(median simulate -u 50um:150um -N ${rate}00 -d 100)"
+		row dense $rate nan "$(median simulate --uniform 50um:150um --number ${rate}00 --duration 100)"
 	done
 }
 

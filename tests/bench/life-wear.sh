@@ -43,10 +43,10 @@ printf 'scene\tknob\terror\tseconds\tmemory_kb\n'
 	ensemble 1 30 >e.tsv
 	for rule in mean last; do
 		scene=$([ $rule = mean ] && echo paths || echo steps)
-		life -w e.tsv -n 1 -R $rule -c 3000000 -s 99 >exact
+		life --wear e.tsv --parts 1 --wear-rate $rule -c 3000000 -s 99 >exact
 		for n in 100 1000 10000 100000; do
 			for seed in 1 2 3 4 5 6 7 8 9 10; do
-				life -w e.tsv -n 1 -R $rule -c $n -s $seed
+				life --wear e.tsv --parts 1 --wear-rate $rule -c $n -s $seed
 			done >got
 			row $scene $n "$(awk 'NR == FNR { a = $1; m = $2; b = $3; next }
 				{ s += ($1 - a) ^ 2 + ($3 - b) ^ 2; n += 2 }
@@ -56,7 +56,7 @@ printf 'scene\tknob\terror\tseconds\tmemory_kb\n'
 	for n in 10 30 100 300 1000 3000 10000; do
 		for seed in 1 2 3 4 5 6 7 8 9 10; do
 			ensemble $seed $n >f.tsv
-			life -w f.tsv -c 100
+			life --wear f.tsv -c 100
 		done >got
 		row fragments $n "$(awk -v t="$truth" '{ s += ($2 / t - 1) ^ 2 } END { printf "%.3g", sqrt(s / NR) }' got)"
 	done
@@ -64,7 +64,7 @@ printf 'scene\tknob\terror\tseconds\tmemory_kb\n'
 		seed=100
 		while [ $seed -lt 200 ]; do
 			ensemble $seed $n >f.tsv
-			life -w f.tsv -c 200
+			life --wear f.tsv -c 200
 			seed=$((seed + 1))
 		done >got
 		row covered $n "$(awk -v t="$truth" '{ k += $1 <= t && t <= $3 } END { print k / NR }' got)"
@@ -73,8 +73,8 @@ printf 'scene\tknob\terror\tseconds\tmemory_kb\n'
 	printf 'volume\n1e-15\n2e-15\n1e-15\n2e-15\n1e-15\n2e-15\n' >two.tsv
 	for n in 10 1000 100000 10000000; do
 		h=$(awk -v n=$n 'BEGIN { printf "%.12gum", n * 1.5e-3 }')
-		rwl --new -p 1s -i 0m -n 1 -g "$h" -B 1mm2 -A 1mm2 -R last -w two.tsv -c 10000 -W rates.tsv \
-			-O --stats stats >samples
+		rwl --new --step-time 1s --initial-gap 0m --parts 1 --threshold-gap "$h" --fragment-area 1mm2 --area 1mm2 --wear-rate last --wear two.tsv -c 10000 --rates rates.tsv \
+			--samples --stats stats >samples
 		# life times the path's own mean is what is left, but for the scatter of steps
 		row far $n "$(awk -F '\t' -v left="$(echo "$n" | awk '{ print $1 * 1.5e-15 }')" '/^#/ { next }
 			FNR == NR { mean[$1] = $2; next } $2 in mean && $1 + 0 == $1 { d = $3 * mean[$2] / left - 1
@@ -83,7 +83,7 @@ printf 'scene\tknob\terror\tseconds\tmemory_kb\n'
 	for n in 1000 10000 100000; do
 		awk -v n=$n 'BEGIN { print "t\tgap"; for (i = 0; i < n; i++)
 			printf "%d\t%.9g\n", i, 1e-5 + 1e-6 * i / n + 1e-8 * sin(i * i) }' |
-			rwl -g 12um -R filter -c 10 --stats stats >/dev/null
+			rwl --threshold-gap 12um --wear-rate filter -c 10 --stats stats >/dev/null
 		row rows $n nan
 	done
 } | tee bench.tsv

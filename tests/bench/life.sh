@@ -10,6 +10,7 @@
 # average-RULE        N      the 5 to 95 % interval: twenty synthetic pumps (see
 #                            scripts/synthetic-pump), 600 rows each, by the rule that
 #                            chooses the order; seconds for one series
+# steps-ORDER         N      seconds of aopf itself for 1e6 particle-steps at a fixed order
 # rows                N      seconds for a row without and (rows-life) with prediction of
 #                            life, 1200 rows
 . "$(dirname "$0")/setup"
@@ -23,8 +24,8 @@ life() {
 	: >lives
 	k=1
 	while [ $k -le "$pumps" ]; do
-		aopf -t h -y 2.8 -d up -S stats "$@" "pump$k.tsv" >out
-		printf '%s\t%s\n' "$(tail -1 out)" "$(column cpu_seconds stats)" >>lives
+		aopf --time-unit h -y 2.8 --direction up -S stats "$@" "pump$k.tsv" >out
+		printf '%s\t%s\n' "$(grep -v "^#" out | tail -1)" "$(column cpu_seconds stats)" >>lives
 		k=$((k + 1))
 	done
 	awk -F '\t' -v scene="$scene" -v knob="$knob" '{
@@ -56,16 +57,21 @@ all() {
 	done
 	for n in 100 300 1000 3000; do
 		for rule in 7 20 window insample all; do
-			life "grey-$rule" $n -m grey -n $rule -N $n
+			life "grey-$rule" $n --model grey --order $rule --particles $n
 		done
-		life average-window $n -N $n
+		life average-window $n --particles $n
 	done
 	"$top/scripts/synthetic-pump" 1 1200 >pump.tsv
+	for order in 4 60; do
+		aopf --time-unit h --order $order --particles 10000 -S stats pump.tsv >/dev/null
+		printf 'steps-%s\t10000\tnan\tnan\t%s\n' $order \
+			"$(column cpu_seconds stats | awk '{ print $1 / 12 }')"
+	done
 	for n in 100 300 1000 3000; do
-		aopf -t h -N $n -S stats pump.tsv >/dev/null
+		aopf --time-unit h --particles $n -S stats pump.tsv >/dev/null
 		printf 'rows\t%s\tnan\tnan\t%s\n' $n \
 			"$(column cpu_seconds stats | awk '{ print $1 / 1200 }')"
-		aopf -t h -y 2.8 -N $n -S stats pump.tsv >/dev/null
+		aopf --time-unit h -y 2.8 --particles $n -S stats pump.tsv >/dev/null
 		printf 'rows-life\t%s\tnan\tnan\t%s\n' $n \
 			"$(column cpu_seconds stats | awk '{ print $1 / 1200 }')"
 	done

@@ -28,21 +28,21 @@ structure() {
 
 delays() {
 	for e in 3 10 30 100 300; do
-		structure '[10] descent' $e -l 10 -o descent -r 0.05
-		structure '[10] adam' $e -l 10
-		structure 'cascade [10]' $e -l 10+
-		structure '[8 8] adam' $e -l '8 8'
+		structure '[10] descent' $e --layers 10 --optimiser descent --learning-rate 0.05
+		structure '[10] adam' $e --layers 10
+		structure 'cascade [10]' $e --layers 10+
+		structure '[8 8] adam' $e --layers '8 8'
 	done
 	for e in 3 10 30; do
-		structure 'auto-encoder [100 50]' $e -l '100 50' -a sigmoid -p $e
-		structure 'sparse [100 50]' $e -l '100 50' -a sigmoid -p $e -q 4
+		structure 'auto-encoder [100 50]' $e --layers '100 50' --activation sigmoid --pretrain $e
+		structure 'sparse [100 50]' $e --layers '100 50' --activation sigmoid --pretrain $e --sparsity 4
 	done
 	for e in 1 3 9; do
-		structure '10conv20*2' $e -l '10conv20x2 pool2x2 256' -a relu -b 20 -r 3e-4
+		structure '10conv20*2' $e --layers '10conv20x2 pool2x2 256' --activation relu --batch 20 --learning-rate 3e-4
 	done
 	for e in 1 3; do
-		structure '10conv30*2 10conv15*1' $e -b 20 -r 3e-4 -a relu \
-			-l '10conv30x2 pool2x2 10conv15x1 pool2x1 1024'
+		structure '10conv30*2 10conv15*1' $e --batch 20 --learning-rate 3e-4 --activation relu \
+			--layers '10conv30x2 pool2x2 10conv15x1 pool2x1 1024'
 	done
 }
 

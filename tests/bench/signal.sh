@@ -78,19 +78,19 @@ for snr in 10 20 30 40; do
 	for m in 1 2 4 6; do
 		scenes $snr $m 10
 		row fit $snr $m 10
-		row duet64 $snr $m 10 -m duet -w 64
+		row duet64 $snr $m 10 --method duet --window 64
 	done
 done
 for w in 128 256; do
 	for m in 1 2; do
 		scenes 30 $m 10
-		row duet$w 30 $m 10 -m duet -w $w
+		row duet$w 30 $m 10 --method duet --window $w
 	done
 done
 for gap in 2 5 20 40; do
 	scenes 30 2 $gap
 	row fit 30 2 $gap
-	row duet64 30 2 $gap -m duet -w 64
+	row duet64 30 2 $gap --method duet --window 64
 done
 
 cp all.tsv "$out/signal.tsv"
@@ -107,10 +107,10 @@ filtered() {
 			--truth truth.tsv "$@" >s.au
 		if [ -n "$order" ]; then
 			# shellcheck disable=SC2086 # options are words
-			bpfilter -z -b $order s.au >passed.au
+			bpfilter --zero-phase -b $order s.au >passed.au
 			mv passed.au s.au
 		fi
-		duet -S stats.tsv -u "$undo" s.au >found.tsv
+		duet -S stats.tsv --undo "$undo" s.au >found.tsv
 		"$top/scripts/score" truth.tsv found.tsv >score.tsv
 		for c in matched false delay_ratio size_bias; do
 			printf '%s\t' "$(column $c score.tsv)"
@@ -127,7 +127,7 @@ filtered() {
 {
 	printf 'record\tundo\tfound\tfalse\tratio\tbias\tseconds\n'
 	filtered raw auto
-	for order in '70:130 -n 200' '20:1000 -n 1000' '0:3000 -n 200'; do
+	for order in '70:130 --order 200' '20:1000 --order 1000' '0:3000 --order 200'; do
 		filtered "${order%% *}" auto "$order"
 		filtered "${order%% *}" none "$order"
 	done

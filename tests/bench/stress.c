@@ -36,10 +36,8 @@ static struct stress_par grid(int n, double side)
 		.ny = n,
 		.ax = side / n,
 		.ay = side / n,
-		.dz = 0.05,
 		.nu = 0.3,
-		.mu = 0.3,
-		.memory = (size_t)1 << 30 };
+		.mu = 0.3 };
 
 	return par;
 }
@@ -89,7 +87,7 @@ static void bench_grid(int n)
 	time = seconds();
 	stress_load(s, p);
 	for (int k = 10; k <= 30; k++) {
-		stress_mises(s, k, span, count, m);
+		stress_at(s, 0.05 * k, span, count, m);
 		error = fmax(error,
 			fabs(m[(size_t)n * n / 2] - axis_mises(0.05 * k, 0.3, 0.3)));
 	}
@@ -124,8 +122,8 @@ static void bench_padding(double factor)
 	time = seconds();
 	stress_load(ws, q);
 	for (int k = 10; k <= 30; k += 10) {
-		stress_mises(s, k, span, count, m);
-		stress_mises(ws, k, wspan, wcount, w);
+		stress_at(s, 0.05 * k, span, count, m);
+		stress_at(ws, 0.05 * k, wspan, wcount, w);
 		for (int i = 0; i < N * N; i++)
 			error = fmax(error,
 				fabs(m[i] - w[(size_t)(i / N + at) * side + i % N + at]));
@@ -141,42 +139,35 @@ static void bench_padding(double factor)
 	free(wspan);
 }
 
-/* One layer of n x n nodes under some loads: both ways, kernels kept. */
-static void bench_way(int n, int loads, double share)
+/* One depth, in cells, of n x n nodes with a share of the cells loaded at random: coarse
+ * sums, with their difference from full ones, and full ones. */
+static void bench_way(int n, double depth, double share)
 {
-	struct stress_par par = grid(n, 4);
+	struct stress_par par = grid(n, n);
 	double *p = calloc((size_t)n * n, sizeof(*p)), *m[2], time[2], error = 0;
 	struct stress_span *span;
 	size_t count = whole(&par, &span);
 	char scene[64];
 
-	for (size_t i = 0; i < count; i++)
-		span[i].end = (int)(share * n) > 0 ? (int)(share * n) : 1;
-	for (int k = 0; k < loads; k++)
-		p[(size_t)(philox_uniform(1, 0, RNG_NOISE, k) * n * n)] = 1;
+	for (int k = 0; k < n * n; k++)
+		p[k] = philox_uniform(1, 0, RNG_NOISE, k) < share;
 	for (int way = 0; way < 2; way++) {
 		struct stress *s;
-		int repeat = 0;
 
 		m[way] = calloc((size_t)n * n, sizeof(**m));
-		par.method = way ? STRESS_FOURIER : STRESS_DIRECT;
+		par.method = way ? STRESS_FULL : STRESS_COARSE;
 		s = stress_new(&par);
 		stress_load(s, p);
-		stress_mises(s, 4, span, count, m[way]);
 		time[way] = seconds();
-		do {
-			stress_mises(s, 4, span, count, m[way]);
-			repeat++;
-		} while (seconds() - time[way] < 0.02);
-		time[way] = (seconds() - time[way]) / repeat;
+		stress_at(s, depth, span, count, m[way]);
+		time[way] = seconds() - time[way];
 		stress_free(s);
 	}
-	for (size_t i = 0; i < count; i++)
-		for (int x = span[i].begin; x < span[i].end; x++)
-			error = fmax(error, fabs(m[0][i * n + x] - m[1][i * n + x]));
+	for (int i = 0; i < n * n; i++)
+		error = fmax(error, fabs(m[0][i] - m[1][i]));
 	snprintf(scene, sizeof(scene), "way_%d_%g", n, share);
-	row(scene, "direct", loads, error, time[0]);
-	row(scene, "fourier", loads, error, time[1]);
+	row(scene, "coarse", depth, error, time[0]);
+	row(scene, "full", depth, 0, time[1]);
 	for (int way = 0; way < 2; way++)
 		free(m[way]);
 	free(span);
@@ -192,8 +183,8 @@ static double worn(double dz, double offset, enum wear_rule rule, double *time)
 	struct debris_step step;
 	struct debris *d;
 
-	par.stress.dz = dz;
-	par.stress.offset = offset;
+	par.cell = dz;
+	par.offset = offset;
 	d = debris_new(&par);
 	*time = seconds();
 	debris_step(d, h, p, &step);
@@ -211,17 +202,19 @@ static void bench_layers(void)
 	double time;
 
 	for (int rule = 0; rule < 2; rule++) {
-		double best = worn(0.001, 0.5, (enum wear_rule)rule, &time);
+		double best = worn(0.001, 0, (enum wear_rule)rule, &time), v;
 
 		for (int mid = 0; mid < 2; mid++)
 			for (int k = 1; k <= 32; k *= 2) {
-				double v = worn(0.32 / k, mid ? 0.5 : 0,
+				v = worn(0.32 / k, mid ? 0.5 : 0,
 					(enum wear_rule)rule, &time);
-
 				snprintf(way, sizeof(way), "%s_%s", rules[rule],
 					mid ? "mid" : "top");
 				row("layers", way, 0.32 / k, fabs(v / best - 1), time);
 			}
+		v = worn(0, 0, (enum wear_rule)rule, &time);
+		snprintf(way, sizeof(way), "%s_interpolated", rules[rule]);
+		row("layers", way, 0, fabs(v / best - 1), time);
 	}
 }
 
@@ -234,9 +227,9 @@ int main(void)
 		bench_padding(f);
 	bench_layers();
 	for (int n = 64; n <= 512; n *= 2)
-		for (int loads = 4; loads <= n; loads *= 4) {
-			bench_way(n, loads, 1);
-			bench_way(n, loads * 8, 0.1);
+		for (int depth = 1; depth <= n / 4; depth *= 4) {
+			bench_way(n, depth, 0.03);
+			bench_way(n, depth, 0.5);
 		}
 	return 0;
 }

@@ -13,9 +13,10 @@
 # layers    RULE_Z    height  worn volume against the height of a layer, in a, by removal
 #                             rule and place of the node in the layer: relative
 #                             difference to layers of a/1000; seconds per wear step
-# way_N_S   direct    loads   one layer of N x N nodes, stress at the share S of them:
-#           fourier           difference of the two ways; where their times cross is
-#                             what stress.c goes by (coefficients kept)
+#                             (height 0: the depth is interpolated)
+# way_N_S   coarse    depth   one depth (in cells) of N x N nodes with a share S of the
+#           full              cells loaded: difference of coarse sums from full ones, in the
+#                             largest pressure
 set -eu
 top=$(cd "$(dirname "$0")/../.." && pwd)
 cd "$top"
@@ -38,12 +39,12 @@ plot pick("hertz") using 5:4 with linespoints title "Hertz, 17 to 513 points", \
 	way("column_mid") using 5:4 with linespoints title "volume, column, mid", \
 	way("potential_top") using 5:4 with linespoints title "volume, potential, top", \
 	way("potential_mid") using 5:4 with linespoints title "volume, potential, mid"
-set xlabel "loaded cells"
-set ylabel "seconds per layer"
-cost(n, w) = sprintf("< awk '$1 == \"way_%d_1\" && $2 == \"%s\"' build/bench/stress.tsv", n, w)
-plot for [n in "64 128 256 512"] cost(int(n), "direct") using 3:5 with linespoints \
-	title sprintf("%s x %s, direct", n, n), \
-	for [n in "64 128 256 512"] cost(int(n), "fourier") using 3:5 with lines \
-	dashtype 2 title sprintf("%s x %s, transform", n, n)
+set xlabel "depth, cells"
+set ylabel "seconds per depth"
+cost(n, w) = sprintf("< awk '$1 == \"way_%d_0.03\" && $2 == \"%s\"' build/bench/stress.tsv", n, w)
+plot for [n in "64 128 256 512"] cost(int(n), "coarse") using 3:5 with linespoints \
+	title sprintf("%s x %s, coarse", n, n), \
+	for [n in "64 128 256 512"] cost(int(n), "full") using 3:5 with lines \
+	dashtype 2 title sprintf("%s x %s, full", n, n)
 END
 echo "# plot: build/bench/stress.png"

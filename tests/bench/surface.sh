@@ -21,20 +21,20 @@ row() {
 all() {
 	printf 'scene\tpoints\trealisations\terror\tseconds\tmemory_kb\n'
 	for count in 4 16 64 256 1024; do
-		roughgen -n 128 -l 40um -c $count -m -S stats >table
+		roughgen -n 128 -l 40um -c $count --measure -S stats >table
 		row acf 128 $count "$(column corr_x table | awk '{ s += $1 }
 			END { e = s / NR / 40e-6 - 1; print e < 0 ? -e : e }')"
 	done
 	for n in 32 64 128 256 512 1024; do
-		roughgen -n $n -l 100um -g 0.1 -m -S stats >table
+		roughgen -n $n -l 100um --slope 0.1 --measure -S stats >table
 		row slope $n 1 "$(column sdq_iso7 table | awk '{ e = $1 / 0.1 - 1; print e < 0 ? -e : e }')"
 	done
 	for n in 64 128 256 512 1024; do
-		roughgen -n $n -l 40um -K -1.2 -Q 4.3 -S stats >out
+		roughgen -n $n -l 40um --skewness -1.2 --kurtosis 4.3 -S stats >out
 		row heights $n 1 "$(sed -n 's/^spectrum_error:=//p' out)"
 	done
 	for n in 128 256 512 1024 2048; do
-		roughgen -n $n -H 0.8 -S stats >out
+		roughgen -n $n --hurst 0.8 -S stats >out
 		row affine $n 1 "$(sed -n 's/^sq:=//p' out | awk '{ e = $1 / 1e-6 - 1; print e < 0 ? -e : e }')"
 	done
 }

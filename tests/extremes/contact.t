@@ -15,7 +15,7 @@ heights() {
 
 # solve ARGUMENTS: presses h.f64 into out.nrrd; status in $status, message in err
 solve() {
-	timeout 60 bemcontact --raw "$size" -o height,pressure,gap "$@" h.f64 >out.nrrd 2>err
+	timeout 60 bemcontact --raw "$size" --fields height,pressure,gap "$@" h.f64 >out.nrrd 2>err
 	status=$?
 }
 
@@ -47,7 +47,7 @@ refused() {
 }
 
 # Values of a field as text
-values() { records -o text -k "$1" out.nrrd | tr '\t' '\n' | grep '^[-0-9]'; }
+values() { records -o text --field "$1" out.nrrd | tr '\t' '\n' | grep '^[-0-9]'; }
 
 rough='1e-6 * (cos($x * 0.2) * sin($y * 0.3 + 1) + 0.3 * sin($x * 0.9 + $y * 0.7) + 0.2 * noise())'
 
@@ -57,57 +57,57 @@ solve --pixel 1um --estar 100GPa -F 0.05N
 accurate "one cell in contact, free" "indentation F 4 asinh(1) / (pi E* h)" \
 	"$(error "$(key indentation)" "0.05 * 3.525494348078172 / ($pi * 1e11 * 1e-6)")" 1e-12
 near "one cell | area is one cell | $(key area) | -" "$(key area)" 0.00091827364554637 1e-15
-solve --pixel 1um --estar 100GPa -F 0.05N -m pk
+solve --pixel 1um --estar 100GPa -F 0.05N --solver pk
 accurate "one cell in contact, pk" "indentation F 4 asinh(1) / (pi E* h)" \
 	"$(error "$(key indentation)" "0.05 * 3.525494348078172 / ($pi * 1e11 * 1e-6)")" 1e-12
 heights 64 64 "$rough"
 last=0
 for p in 1e2 1e5 1e7 1e8 1e9 1e10 1e11 1e13; do
-	solve --pixel 1um --estar 100GPa -b periodic -P ${p}Pa
+	solve --pixel 1um --estar 100GPa --boundary periodic --pressure ${p}Pa
 	accurate "periodic, mean pressure ${p%e*}e$((${p#*e} - 11)) E*" "converged, more area than before" \
 		"$(calc "$(key area) < $last ? 1 : $(key certificate)")" 1e-8
 	last=$(key area)
 done
 is "periodic, 100 E* | full contact | area $last | -" "$last" 1
 for p in 1e2 1e7 1e9 1e13; do
-	solve --pixel 1um --estar 100GPa -P ${p}Pa
+	solve --pixel 1um --estar 100GPa --pressure ${p}Pa
 	accurate "free, mean pressure ${p%e*}e$((${p#*e} - 11)) E*" "converged" "$(key certificate)" 1e-8
 done
 
 # Stiffness: pressures scale with it, shapes do not change
-solve --pixel 1um --estar 1GPa -P 10MPa
+solve --pixel 1um --estar 1GPa --pressure 10MPa
 area=$(key area) approach=$(key approach)
 for e in 1e3 1e6 1e12 1e15; do
-	solve --pixel 1um --estar ${e}Pa -P "$(calc "$e / 100")Pa"
+	solve --pixel 1um --estar ${e}Pa --pressure "$(calc "$e / 100")Pa"
 	accurate "E* $e Pa" "the approach of 1 GPa" "$(error "$(key approach)" "$approach")" 1e-12
 done
-solve --pixel 1um --young 1GPa,1000TPa --poisson 0,0 -P 10MPa
+solve --pixel 1um --young 1GPa,1000TPa --poisson 0,0 --pressure 10MPa
 accurate "E1/E2 = 1e6" "as against a rigid body, 1e-6 less" \
 	"$(error "$(key approach)" "$approach")" 1e-5
 for nu in 0 0.25 0.499999 0.5; do
-	solve --pixel 1um --young "$(calc "2e9 * (1 - $nu ^ 2)")Pa" --poisson $nu -P 10MPa
+	solve --pixel 1um --young "$(calc "2e9 * (1 - $nu ^ 2)")Pa" --poisson $nu --pressure 10MPa
 	accurate "nu $nu" "E / (2 (1 - nu^2)) is E*" "$(error "$(key approach)" "$approach")" 1e-11
 done
 
 # Slopes and sizes: a similar problem at another scale
 for s in 1e-6 1e-3 1e3; do
 	heights 64 64 "$s * ($rough)"
-	solve --pixel 1um --estar 1GPa -P "$(calc "1e7 * $s")Pa"
+	solve --pixel 1um --estar 1GPa --pressure "$(calc "1e7 * $s")Pa"
 	accurate "heights x $s" "the same area, approach in proportion" \
 		"$(error "$(key approach)" "$approach * $s")" 1e-11
 done
 for l in 1e-6 1e6 1e9; do
 	heights 64 64 "$l * ($rough)"
-	solve --pixel "$(calc "1e-6 * $l")m" --estar 1GPa -P 10MPa
+	solve --pixel "$(calc "1e-6 * $l")m" --estar 1GPa --pressure 10MPa
 	accurate "all lengths x $l (pixel $(calc "1e-6 * $l") m)" "units alone change" \
 		"$(error "$(key approach)" "$approach * $l")" 1e-11
 done
 heights 64 64 "$rough"
-solve --pixel 1um --estar 1Pa -P 0.01Pa
+solve --pixel 1um --estar 1Pa --pressure 0.01Pa
 accurate "all stresses x 1e-9" "units alone change" "$(error "$(key approach)" "$approach")" 1e-11
 is "lengths and stresses scaled | the same cells in contact | area $(key area) | -" "$(key area)" "$area"
 heights 64 64 "$rough"
-solve --pixel 1pm --estar 100GPa -P 100GPa
+solve --pixel 1pm --estar 100GPa --pressure 100GPa
 accurate "rms slope 5e5 (pixel 1 pm)" "converged" "$(key certificate)" 1e-8
 
 # Aspect of cells: a wave along x, cells 100 times as long as wide and the reverse
@@ -118,35 +118,35 @@ for d in "1e-6 1e-4" "1e-4 1e-6"; do
 		perl -e 'for (0 .. 1023) { print pack "d<", 1e-6 * cos(2 * 3.141592653589793 * (($_ & 255) + 0.5) / 256) }'
 	} >wave.nrrd
 	dx=${d% *}
-	bemcontact --estar 100GPa -b periodic -P "$(calc "0.3 * $pi * 1e11 * 1e-6 / (256 * $dx)")Pa" wave.nrrd >out.nrrd 2>err
+	bemcontact --estar 100GPa --boundary periodic --pressure "$(calc "0.3 * $pi * 1e11 * 1e-6 / (256 * $dx)")Pa" wave.nrrd >out.nrrd 2>err
 	status=$?
 	accurate "cells of $d m, a wave" "area (2/pi) asin sqrt 0.3 to a cell" \
 		"$(calc "sqrt(($(key area) - 0.369010119565545) ^ 2)")" 0.008
-	bemcontact --estar 100GPa -P 100MPa wave.nrrd >out.nrrd 2>err
+	bemcontact --estar 100GPa --pressure 100MPa wave.nrrd >out.nrrd 2>err
 	status=$?
 	accurate "cells of $d m, free" "converged" "$(key certificate)" 1e-8
 done
 
 # Shapes
 heights 48 48 1e-6
-solve --pixel 1um --estar 100GPa -b periodic -P 1GPa
+solve --pixel 1um --estar 100GPa --boundary periodic --pressure 1GPa
 accurate "flat, periodic" "pressure even everywhere" \
 	"$(values pressure | awk '{ d = $1 / 1e9 - 1; if (d < 0) d = -d; if (d > m) m = d } END { print m + 0 }')" 1e-8
-solve --pixel 1um --estar 100GPa -P 1GPa
+solve --pixel 1um --estar 100GPa --pressure 1GPa
 accurate "flat, free: a punch" "converged; full contact" "$(calc "$(key area) == 1 ? $(key certificate) : 1")" 1e-8
 heights 48 48 '$x < 24 ? 1e-6 : 0'
-solve --pixel 1um --estar 100GPa -P 10MPa
+solve --pixel 1um --estar 100GPa --pressure 10MPa
 accurate "step edge, light" "the upper half alone" "$(calc "sqrt(($(key area) - 0.5) ^ 2)")" 1e-9
-solve --pixel 1um --estar 100GPa -P 10GPa -b periodic
+solve --pixel 1um --estar 100GPa --pressure 10GPa --boundary periodic
 accurate "step edge, pressed in" "converged; all but the foot of the step" \
 	"$(calc "($(key area) > 0.5) * ($(key area) < 1) ? $(key certificate) : 1")" 1e-8
 heights 48 48 '1e-6 * noise()'
 for b in free periodic; do
-	solve --pixel 1um --estar 100GPa -P 1GPa -b $b
+	solve --pixel 1um --estar 100GPa --pressure 1GPa --boundary $b
 	accurate "white noise, $b" "converged" "$(key certificate)" 1e-8
 done
 heights 64 64 '(($x + $y) & 1) * 1e-7'
-solve --pixel 1um --estar 100GPa -P 1GPa -b periodic
+solve --pixel 1um --estar 100GPa --pressure 1GPa --boundary periodic
 accurate "checkerboard" "converged" "$(key certificate)" 1e-8
 
 # Grids
@@ -154,7 +154,7 @@ for g in "1 1" "1 97" "97 1" "2 2" "3 5" "31 37" "61 61" "127 2" "400 4" "4 400"
 	# shellcheck disable=SC2086 # two words
 	heights $g "$rough"
 	for b in free periodic; do
-		solve --pixel 1um --estar 100GPa -P 500MPa -b $b
+		solve --pixel 1um --estar 100GPa --pressure 500MPa --boundary $b
 		accurate "grid $size, $b" "converged" "$(key certificate)" 1e-8
 	done
 done
@@ -162,22 +162,51 @@ done
 # Hardness
 heights 64 64 "$rough"
 for h in 1.000001 1.01 2; do
-	solve --pixel 1um --estar 100GPa -P 1GPa -K "$(calc "$h * 1e9")Pa"
+	solve --pixel 1um --estar 100GPa --pressure 1GPa --hardness "$(calc "$h * 1e9")Pa"
 	accurate "hardness $h x mean pressure" "area at least load / hardness" \
 		"$(calc "$(key area) * $h < 1 - 1e-9 ? 1 : $(key certificate)")" 1e-8
 done
-solve --pixel 1um --estar 100GPa -P 1GPa -K 1GPa
+solve --pixel 1um --estar 100GPa --pressure 1GPa --hardness 1GPa
 refused "hardness at the mean pressure" "refused" 1 'not below the hardness'
-solve --pixel 1um --estar 100GPa -P 1GPa -K 999999999Pa
+solve --pixel 1um --estar 100GPa --pressure 1GPa --hardness 999999999Pa
 refused "hardness just below the mean pressure" "refused" 1 'not below the hardness'
-solve --pixel 1um --estar 100GPa -b periodic -D 5um
+solve --pixel 1um --estar 100GPa --boundary periodic --approach 5um
 refused "periodic, approach past full contact" "refused" 1 'beyond full contact'
+
+for k in 16 1000 4000; do
+	for solver in bccg pk; do
+		solve --pixel 1um --estar 100GPa --pressure "$(calc "$k / 4096 * 2e9")Pa" --hardness 2GPa --solver $solver
+		accurate "load of $k cells at the hardness, $solver" "the energy at 1e-9 less load" \
+			"$(error "$(key energy)" "$(bemcontact --raw $size --pixel 1um --estar 100GPa --hardness 2GPa \
+				--pressure "$(calc "$k / 4096 * 2e9 * (1 - 1e-9)")Pa" --tolerance 1e-11 h.f64 >near.nrrd
+				key energy near.nrrd)")" 1e-7
+	done
+done
+
+# A pit that touches nothing changes nothing, however deep and wherever it is: the mean
+# difference of the pressures from those over a pit of 0.1 mm
+for at in "20 31" "40 10"; do
+	set -- $at
+	for b in free periodic; do
+		for depth in 1e-4 1 1e3; do
+			heights 64 64 "\$x == $1 && \$y == $2 ? -$depth : ($rough)"
+			if [ $depth = 1e-4 ]; then
+				solve --pixel 1um --estar 100GPa --pressure 1GPa --boundary $b --tolerance 1e-12
+				values pressure >shallow
+				continue
+			fi
+			solve --pixel 1um --estar 100GPa --pressure 1GPa --boundary $b
+			accurate "a pit of $depth m at $at, $b" "the pressure over a pit of 0.1 mm" "$(values pressure |
+				paste - shallow | awk '{ d = $1 - $2; s += d < 0 ? -d : d; t += $2 } END { print s / t }')" 2e-7
+		done
+	done
+done
 
 # Precision
 for b in free periodic; do
-	solve --pixel 1um --estar 100GPa -P 500MPa -t 1e-13 -b $b
+	solve --pixel 1um --estar 100GPa --pressure 500MPa --tolerance 1e-13 --boundary $b
 	accurate "tolerance 1e-13, $b" "reached" "$(key certificate)" 1e-13
-	solve --pixel 1um --estar 100GPa -P 500MPa -t 1e-16 -b $b
+	solve --pixel 1um --estar 100GPa --pressure 500MPa --tolerance 1e-16 --boundary $b
 	line="tolerance 1e-16, $b | reached, or exit 3 within 400 iterations"
 	line="$line | exit $status, $(key iterations) iterations | $(key certificate)"
 	case $status$(key converged) in
@@ -188,12 +217,12 @@ done
 
 # Not numbers, or beyond them
 heights 8 8 '$x + $y ? 0 : "nan"'
-solve --pixel 1um --estar 1GPa -P 1MPa
+solve --pixel 1um --estar 1GPa --pressure 1MPa
 refused "a height that is not a number" "refused" 1 'height'
 heights 8 8 '$x + $y ? 0 : 1e308 * ($x ? -1 : 1)'
-solve --pixel 1um --estar 1GPa -P 1MPa
+solve --pixel 1um --estar 1GPa --pressure 1MPa
 refused "a height of 1e308 m" "refused" 1 'precision'
 heights 8 8 '$x & 1 ? 1e200 : -1e200'
-solve --pixel 1um --estar 1GPa -P 1MPa
+solve --pixel 1um --estar 1GPa --pressure 1MPa
 refused "heights whose square overflows" "refused" 1 'precision'
 done_testing

@@ -18,34 +18,34 @@ refused() {
 }
 
 # One loaded cell of side 1 um and 1 GPa in the middle of 9 x 9.
-roughgen -n 9 -L 9um --sq 0 --crown 9um | bemcontact -F 1mN -e 1000TPa >cell.nrrd
+roughgen -n 9 -L 9um --sq 0 --crown 9um | bemcontact -F 1mN --estar 1000TPa >cell.nrrd
 
 # below H OPTION...: largest von Mises stress of layer 1 at depth H, Pa
 below() {
 	h=$1
 	shift
-	debrisgen -Y 1e30 -z "$h" -G s.nrrd -y 2 "$@" cell.nrrd >/dev/null
+	debrisgen -Y 1e30 --depth-step "$h" --stress s.nrrd --stress-layers 2 "$@" cell.nrrd >/dev/null
 	records -o table s.nrrd | awk -v z="$h" '!/^[#r]/ && $4 > 0 && $5 > m { m = $5 } END { print m }'
 }
 
-# Below the middle of a square patch of side 1, pressure 1 (closed form, 50 digits); from
-# far away a point load: 3/2pi + (1 - 2 nu)/4pi over z^2.
+# Below the middle of the pyramid of pressure of one cell (sums over 10^4 parts of it,
+# extrapolated); from far away a point load: 3/2pi + (1 - 2 nu)/4pi over z^2.
 # Near the surface the values are those at z = 0 and a term in z/h.
-scene "one cell, z/h = 1e-6" "0.2 p under the middle" 0.2e9 3e-5 "$(below 1e-12m)"
-scene "one cell, z/h = 0.5" "0.617996 p" 617995562.0884587 1e-14 "$(below 0.5um)"
-scene "one cell, z/h = 5" "0.0199838 p" 19983846.9809753 1e-14 "$(below 5um)"
+scene "one cell, z/h = 1e-6" "0.2 p under the middle" 0.2e9 2e-4 "$(below 1e-12m)"
+scene "one cell, z/h = 0.5" "0.436438 p" 436438093 3e-5 "$(below 0.5um)"
+scene "one cell, z/h = 5" "0.0196142 p" 19614181 2e-5 "$(below 5um)"
 far() { awk -v z="$1" 'BEGIN { printf "%.17g", 1e9 * (1.5 + 0.1) / 3.14159265358979324 / z ^ 2 }'; }
 scene "one cell, z/h = 1e3" "a point load" "$(far 1e3)" 1e-6 "$(below 1mm)"
 scene "one cell, z/h = 1e4" "a point load" "$(far 1e4)" 1e-7 "$(below 10mm)"
 scene "mu = 5, on the surface" "sqrt(0.2^2 + 3 5^2) p" 8662563131.083085 1e-5 "$(below 1e-12m -u 5)"
-scene "nu = 0.5, on the surface" "a hydrostatic patch: 0" 0 1e4 "$(below 1e-12m -N 0.5)"
-scene "nu = 0, on the surface" "sxx = syy = -p/2: 0.5 p" 0.5e9 1e-5 "$(below 1e-12m -N 0)"
+scene "nu = 0.5, on the surface" "a hydrostatic patch: 0, in Pa" 0 5e4 "$(below 1e-12m --poisson 0.5)"
+scene "nu = 0, on the surface" "sxx = syy = -p/2: 0.5 p" 0.5e9 1e-4 "$(below 1e-12m --poisson 0)"
 
 # The same scene in other units.
 cells() {
 	sq=$1 corr=$2 crown=$3 length=$4 load=$5 young=$6 yield=$7
-	roughgen -n 64 -L "$length" -q "$sq" -l "$corr" -C "$crown" | bemcontact -F "$load" -E "$young" |
-		debrisgen -Y "$yield" -u 0.3 -T 3 -E "$young" 2>/dev/null | awk '/^[#r]/ { next }
+	roughgen -n 64 -L "$length" -q "$sq" -l "$corr" --crown "$crown" | bemcontact -F "$load" -E "$young" |
+		debrisgen -Y "$yield" -u 0.3 --steps 3 -E "$young" 2>/dev/null | awk '/^[#r]/ { next }
 			{ printf "%d %d %d %.9f %.9f;", $2, $3, $4, $7, $13 }'
 }
 here=$(cells 8um 50um 32um 0.5mm 20N 210GPa 355MPa)
@@ -61,23 +61,24 @@ is "all stresses x 1e-15 | the same $count particles | $count | 0" \
 debrisgen -Y 1e30 -S st cell.nrrd >t
 is "nothing fails | no particle | $(grep -vc '^[#r]' t) rows, $(column layers st) layers searched | 0" \
 	"$(grep -vc '^[#r]' t) $(column layers st)" "0 1"
-refused "everything fails" "deeper than ten times" debrisgen -Y 1uPa cell.nrrd
-roughgen -n 32 -L 1mm --sq 1nm -l 200um | bemcontact -P 1GPa -E 210GPa -b periodic >flat.nrrd
-refused "everything fails, periodic" "deeper than ten times" debrisgen -A 1 -Y 1MPa -b periodic flat.nrrd
-debrisgen -A 1 -Y 600MPa -b periodic flat.nrrd >t 2>err
+roughgen -n 9 -L 9um --sq 0 --crown 9um | bemcontact -F 1N --estar 1000TPa >crushed.nrrd
+refused "everything fails" "deeper than ten times" debrisgen --yield 1MPa crushed.nrrd
+roughgen -n 32 -L 1mm --sq 1nm -l 200um | bemcontact --pressure 1GPa -E 210GPa --boundary periodic >flat.nrrd
+refused "everything fails, periodic" "deeper than ten times" debrisgen --stop-area 1 -Y 1MPa --boundary periodic flat.nrrd
+debrisgen --stop-area 1 -Y 600MPa --boundary periodic flat.nrrd >t 2>err
 is "periodic, yield just above the confined mean 4/7 p | no particle | $(grep -vc '^[#r]' t) rows | 0" \
 	"$(grep -vc '^[#r]' t) $(cat err)" "0 "
-roughgen -n 16 -L 1mm | bemcontact -P 0 -E 1GPa >zero.nrrd
+roughgen -n 16 -L 1mm | bemcontact --pressure 0 -E 1GPa >zero.nrrd
 debrisgen -Y 1 zero.nrrd >t
 is "no load | no particle | $(grep -vc '^[#r]' t) rows | 0" "$(grep -vc '^[#r]' t)" 0
 
 # Yield exactly at the largest stress: over it nothing, under it one cell.
-peak=$(debrisgen -Y 1e30 -u 0.3 -G s.nrrd -y 1 cell.nrrd >t && records s.nrrd | awk 'NR == 2 { print $12 }')
+peak=$(debrisgen -Y 1e30 -u 0.3 --stress s.nrrd --stress-layers 1 cell.nrrd >t && records s.nrrd | awk '$3 == "von_mises" { print $12 }')
 times_peak() { awk -v p="$peak" -v f="$1" 'BEGIN { printf "%.17g", p * f }'; }
 debrisgen -u 0.3 -Y "$(times_peak 1.000000000001)" cell.nrrd >t
 is "yield 1e-12 above the largest stress | no particle | $(grep -vc '^[#r]' t) rows | 0" \
 	"$(grep -vc '^[#r]' t)" 0
-debrisgen -u 0.3 -Y "$(times_peak 0.999999999999)" -z 10um cell.nrrd >t
+debrisgen -u 0.3 -Y "$(times_peak 0.999999999999)" --depth-step 10um cell.nrrd >t
 scene "yield 1e-12 below it" "one cell, 12.41 um across" \
 	"$(awk 'BEGIN { printf "%.17g", (6 * 10 / 3.14159265358979324) ^ (1 / 3) * 1e-6 }')" 1e-6 "$(column diameter t)"
 
@@ -85,17 +86,17 @@ scene "yield 1e-12 below it" "one cell, 12.41 um across" \
 for n in 1x64 64x1 7x131; do
 	nx=${n%x*} ny=${n#*x}
 	roughgen -n $n -L "$(awk -v x="$nx" -v y="$ny" 'BEGIN { print x "um" "x" y "um" }')" -q 0.1um -l 5um |
-		bemcontact -P 50MPa -E 210GPa | debrisgen -Y 355MPa -u 0.3 -U s.tsv 2>err >t
-	scene "$n cells" "volume is cells times 1 um3" \
-		"$(column nodes t | awk '{ s += $1 } END { printf "%.17g", s * 1e-18 }')" 1e-12 "$(column volume s.tsv)"
+		bemcontact --pressure 50MPa -E 210GPa | debrisgen -Y 355MPa -u 0.3 --summary s.tsv 2>err >t
+	scene "$n cells" "particles have the volume worn off" \
+		"$(column volume t | awk '{ s += $1 } END { printf "%.17g", s }')" 1e-12 "$(column volume s.tsv)"
 done
 roughgen -n 16 -L 1mmx10um -q 0.1um -l 8um | bemcontact -F 1N -E 210GPa |
-	debrisgen -Y 355MPa -u 0.3 -z 1um 2>err >t
+	debrisgen -Y 355MPa -u 0.3 --depth-step 1um 2>err >t
 ok "cells 1:100 | a table | $(grep -vc '^[#r]' t) particles | none" test -s t
 
 # Depth steps far from the cell's sides: the volume of a smooth contact stays.
 roughgen -n 64 -L 1mm --sq 0 --crown 50um | bemcontact -F 50N -E 210GPa >ball.nrrd
-volume() { debrisgen -Y 355MPa -u 0.3 -l mid -z "$1" -U s.tsv ball.nrrd >t && column volume s.tsv; }
+volume() { debrisgen -Y 355MPa -u 0.3 --layer mid --depth-step "$1" --summary s.tsv ball.nrrd >t && column volume s.tsv; }
 fine=$(volume 2um)
 scene "cells 8 times flatter" "the volume of 2 um steps" "$fine" 0.01 "$(volume 1um)"
 scene "cells twice as tall, eight deep" "the volume of 2 um steps" "$fine" 0.2 "$(volume 31.25um)"

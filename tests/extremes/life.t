@@ -59,7 +59,7 @@ odd_cells() {
 series 50 2 >s
 accurate "constant series" "forecast as it is" "$(last prediction s)" 2 1e-6
 says "constant series, threshold 3" "no crossing" "$(last p_no_crossing -y 3 s)" 1
-says "constant series, grey model" "no crossing" "$(last p_no_crossing -y 3 -m grey s)" 1
+says "constant series, grey model" "no crossing" "$(last p_no_crossing -y 3 --model grey s)" 1
 series 50 '2 + 1e-12 * (t % 3)' >s
 accurate "nearly constant series (1e-12)" "forecast as it is" "$(last prediction s)" 2 1e-9
 series 50 0 >s
@@ -71,7 +71,7 @@ series 2 1+t >s
 accurate "two points" "state is the point" "$(last state s)" 2 1e-6
 says "two points, threshold 5" "no life predicted yet" "$(last rul_q50 -y 5 s)" nan
 series 4 1+t >s
-accurate "four points on a line, threshold 10" "6 left" "$(last rul_q50 -y 10 s)" 6 0.02
+accurate "four points on a line, threshold 10" "6 left by the straight line" "$(last rul_q50 --threshold 10 --model linear s)" 6 0.02
 : >empty
 refused "empty input" "refused" "no column 'y'" aopf empty
 printf 't\ty\n0\tnan\n1\tnan\n2\tnan\n' >s
@@ -94,17 +94,17 @@ says "vanishing series, 1/e per row" "all finite" "$(odd_cells)" 0
 
 series 100 '1 + t / 100' >s
 accurate "threshold already passed" "0 left" "$(last rul_q95 -y 1.5 s)" 0 0
-accurate "threshold at the first value" "0 left" "$(last rul_q50 -y 1 -d up s)" 0 0
-says "threshold on the other side" "never" "$(last rul_q05 -y 0.5 -d down s)" inf
+accurate "threshold at the first value" "0 left" "$(last rul_q50 -y 1 --direction up s)" 0 0
+says "threshold on the other side" "never" "$(last rul_q05 -y 0.5 --direction down s)" inf
 accurate "threshold 1e300" "no crossing" "$(last p_no_crossing -y 1e300 s)" 1 0.01
 accurate "threshold at twice the life" "100 left" "$(last rul_q50 -y 2.99 s)" 100 0.01
 
 series 100 '1 + 0.001 * t' >s
 accurate "noise 1e-12 of what the model errs" "ess >= 1" \
-	"$(last ess -b 1e-15 s | awk '{ print ($1 ~ /^[0-9]/ && $1 + 0 >= 1) }')" 1 0
-accurate "noise 1e12 of the series" "ess of the order of N" "$(last ess -b 1e12 s)" 300 0.5
-accurate "one particle" "state near the data" "$(last state -N 1 s)" 1.099 0.05
-accurate "order 1000 of 100 points" "state" "$(last state -n 1000 s)" 1.099 0.01
+	"$(last ess --sigma-v 1e-15 s | awk '{ print ($1 ~ /^[0-9]/ && $1 + 0 >= 1) }')" 1 0
+accurate "noise 1e12 of the series" "ess of the order of N" "$(last ess --sigma-v 1e12 s)" 300 0.5
+accurate "one particle" "state near the data" "$(last state --particles 1 s)" 1.099 0.05
+accurate "order 1000 of 100 points" "state" "$(last state --order 1000 s)" 1.099 0.01
 
 for scale in 1e-300 1e-12 1e12 1e300; do
 	series 100 "(1 + 0.001 * t) * $scale" >s
@@ -113,7 +113,7 @@ for scale in 1e-300 1e-12 1e12 1e300; do
 	accurate "values of $scale, threshold 1.2" "101 left" \
 		"$(last rul_q50 -y "$(awk "BEGIN { printf \"%.17g\", 1.2 * $scale }")" s)" 101 0.01
 	accurate "values of $scale, grey model" "101 left" \
-		"$(last rul_q50 -m grey -y "$(awk "BEGIN { printf \"%.17g\", 1.2 * $scale }")" s)" \
+		"$(last rul_q50 --model grey -y "$(awk "BEGIN { printf \"%.17g\", 1.2 * $scale }")" s)" \
 		101 0.15
 	series 100 "1 + 0.001 * t" "$scale" >s
 	case $scale in *300) continue ;; esac
@@ -130,7 +130,7 @@ for scale in 1e-300 1e-12 1e12 1e300; do
 done
 series 100 '-(1 + 0.001 * t)' >s
 accurate "negative values" "state" "$(last state s)" -1.099 1e-3
-accurate "negative values falling to -1.2" "101 left" "$(last rul_q50 -y -1.2 -d down s)" 101 0.01
+accurate "negative values falling to -1.2" "101 left" "$(last rul_q50 -y -1.2 --direction down s)" 101 0.01
 awk 'BEGIN { print "t\ty"; for (k = 0; k < 60; k++) { t += 10 ^ (k % 7 - 3); printf "%.17g\t%.17g\n", t, 1 + t / 1e4 } }' >s
 accurate "gaps of 1e-3 to 1e3" "state" "$(last state s)" \
 	"$(tail -1 s | cut -f 2)" 0.01
@@ -138,7 +138,7 @@ accurate "gaps of 1e-3 to 1e3, threshold 3" "life" "$(last rul_q50 -y 3 s)" \
 	"$(tail -1 s | awk '{ print 2e4 - $1 }')" 0.05
 
 series 8 '1 + 0.1 * t' >s
-accurate "1e7 particles" "state" "$(last state -N 1e7 -P 4 s)" 1.7 0.01
+accurate "1e7 particles" "state" "$(last state --particles 1e7 --max-order 4 s)" 1.7 0.01
 refused "times that repeat" "refused by name" "line 3: time 0 comes twice" \
 	sh -c 'printf "t\ty\n0\t1\n0\t1\n" | aopf'
 refused "time 1e400" "refused" "not" sh -c 'printf "t\ty\n1e400\t1\n" | aopf'
@@ -149,9 +149,9 @@ long() {
 		s = (s * 16807 + 1) % 2147483647
 		printf "%d\t%.6f\n", t, 1 + t / n + 0.05 * s / 2147483647 } }'
 }
-long 20000 | aopf -n 4 -N 10 -S few -y 3 >/dev/null
-long 1000000 | aopf -n 4 -N 10 -S stats >out
-accurate "a million rows" "state" "$(tail -1 out | cut -f 5)" 2.025 0.02
+long 20000 | aopf --order 4 --particles 10 -S few -y 3 >/dev/null
+long 1000000 | aopf --order 4 --particles 10 -S stats >out
+accurate "a million rows" "state" "$(column state out | tail -1)" 2.025 0.02
 accurate "a million rows" "the memory of 20000" "$(column memory_kb stats)" \
 	"$(column memory_kb few)" 0.2
 

@@ -29,7 +29,7 @@ x="--columns 40"
 			error ordered $x --scaled --amplitude 0:1e6)"
 	# Descent alone reaches the mean of the labels: 1/12 to what 10000 labels allow.
 	scene "silence" "the constant, 1/12" 0.083333 0.001 \
-		"$(delaynet $x --amplitude 0:0 --scaled -o descent --rate 0.1 |
+		"$(delaynet $x --amplitude 0:0 --scaled --optimiser descent --learning-rate 0.1 |
 			error ordered $x --amplitude 0:0 --scaled --count 10000)"
 	scene "two columns" "no better than 1/18, no worse than 1/12" 0.0695 0.02 \
 		"$(delaynet --columns 2 --epochs 20 | error ordered --columns 2)"
@@ -43,7 +43,7 @@ x="--columns 40"
 	delaynet $x --epochs 3 --batch 0 >all.net
 	delaynet $x --epochs 3 --batch 1000000 >more.net
 	alike "a batch larger than the set" "the whole set" all.net more.net
-	delaynet $x --epochs 3 --rate 0 >still.net
+	delaynet $x --epochs 3 --learning-rate 0 >still.net
 	delaynet $x --epochs 0 >start.net
 	alike "steps of length 0" "the weights drawn" still.net start.net
 	fifteen="1 1 1 1 1 1 1 1 1 1 1 1 1 1 1"

@@ -65,7 +65,7 @@ within "clipped at half the height" "not believed: no row alone or overlap" 0 0 
 # --- scale and rate
 for unit in 1e-12 1e12; do
 	awk -v u=$unit '{ print $1 * u, $2 * u }' frames.txt | au 10000 2 >scaled.au
-	duet -K "$(awk -v u=$unit 'BEGIN { print 7.853981633974483e10 * u }')" scaled.au >found.tsv
+	duet --calibration "$(awk -v u=$unit 'BEGIN { print 7.853981633974483e10 * u }')" scaled.au >found.tsv
 	within "volts times $unit" "the same 20 particles" 20 0 "$(score matched)"
 	within "volts times $unit" "sizes to 0.2 %" 0 0.002 "$(score size_rms)"
 done
@@ -129,14 +129,14 @@ within "80 dB apart, overlapping" "sizes of the large ones to 0.1 %" 0 0.001 "$(
 
 # --- filtered
 scene
-bpfilter -z -b 20:1000 -n 4000 s.au >filtered.au
+bpfilter --zero-phase -b 20:1000 --order 4000 s.au >filtered.au
 duet filtered.au >found.tsv
 within "a filter of 4001 taps, its inverse longer than the record" "18 to 20 particles" 20 2 \
 	"$(score matched)"
 within "a filter of 4001 taps, its inverse longer than the record" "no other" 0 0 "$(score false)"
 within "a filter of 4001 taps, its inverse longer than the record" "delays to 0.06 samples" 0 6e-6 \
 	"$(score delay_rms)"
-bpfilter -z -b 95:105 -n 800 s.au >filtered.au
+bpfilter --zero-phase -b 95:105 --order 800 s.au >filtered.au
 refused "a tenth of the band of the pulses left" 1 "too narrow a band" duet filtered.au
 # A low-pass of one pole delays low frequencies more than high ones: no filter that is
 # undone, but its pulses are of one form, which is learned.
@@ -172,9 +172,9 @@ within "2000 particles a second, 20 at once" "unresolved, none invented" 0 0 "$(
 
 # --- masks
 scene
-duet -m duet -w 4 -H 1 s.au >found.tsv
+duet --method duet --window 4 --hop 1 s.au >found.tsv
 ok "masks of 4 samples | particles or none, no fault | $(score matched) of 20 | none" true
-duet -m duet -w 100000 s.au >found.tsv
+duet --method duet --window 100000 s.au >found.tsv
 ok "masks longer than the record | particles or none, no fault | $(score matched) of 20 | none" true
 
 # --- long: memory does not grow, time does not drift

@@ -14,7 +14,7 @@ scene() {
 	want=$4
 	tol=$5
 	shift 5
-	if roughgen "$@" -m >t 2>err; then
+	if roughgen "$@" --measure >t 2>err; then
 		error=$(awk -v g="$(value "$c")" -v w="$want" 'BEGIN {
 			if (g !~ /^[-+]?[0-9.]/) print "none"
 			else { d = w ? g / w - 1 : g; printf "%.1e", d < 0 ? -d : d } }')
@@ -46,7 +46,7 @@ scene "64 x 1 points" "Sq exact" sq 1e-6 1e-12 -n 64x1
 scene "2 x 2 points" "Sq exact" sq 1e-6 1e-12 -n 2
 scene "3 x 2 points" "Sq exact" sq 1e-6 1e-12 -n 3x2
 scene "prime sides, 127 x 131" "Sq exact" sq 1e-6 1e-12 -n 127x131
-scene "odd sides, 99 x 75" "rms slope as wanted" sdq_iso7 0.1 0.02 -n 99x75 -l 60um -g 0.1
+scene "odd sides, 99 x 75" "rms slope as wanted" sdq_iso7 0.1 0.02 -n 99x75 -l 60um --slope 0.1
 scene "one flat point" "Sq = 0" sq 0 0 -n 1 -q 0
 refused "one rough point" 'no wave' 1 -n 1
 scene "2048 x 2 points" "Sq exact" sq 1e-6 1e-12 -n 2048x2 -L 1mmx1mm
@@ -54,7 +54,7 @@ scene "2048 x 2 points" "Sq exact" sq 1e-6 1e-12 -n 2048x2 -L 1mmx1mm
 # Correlation lengths.  White noise: Sdq = sqrt 4 Sq / dx, up to 2 / sqrt(2 n) = 2 %.
 scene "correlation length 1/1000 of the spacing" "white noise: Sdq = 2 Sq / dx" sdq 0.2 0.02 \
 	-n 100 -l 10nm
-scene "the same, exponential" "white noise: Sdq = 2 Sq / dx" sdq 0.2 0.02 -n 100 -l 10nm -A exp
+scene "the same, exponential" "white noise: Sdq = 2 Sq / dx" sdq 0.2 0.02 -n 100 -l 10nm --acf exp
 # Gaussian: Sdq = 2 Sq / corr; 400 patches: 5 %.
 scene "correlation length of four spacings" "Sdq = 2 Sq / corr" sdq_iso7 0.05 0.05 \
 	-n 256 -l 40um -L 2.56mm
@@ -65,20 +65,20 @@ refused "correlation length above the side" 'longer than a side' 1 -l 1.1mm
 refused "anisotropic, one length above the side" 'longer than a side' 1 -l 10umx2mm
 scene "correlation lengths 1 : 100 on pixels 1 : 100" "Str of the samples = 0.01" str 0.01 0.2 \
 	-n 256 -L 1mmx100mm -l 50umx5mm
-scene "Hurst exponent 0" "rms slope as wanted" sdq_iso7 0.1 0.15 -n 256 -H 0 -k 20um -g 0.1
-scene "Hurst exponent 2" "Sq exact" sq 1e-6 1e-12 -n 256 -H 2
-refused "cut-off above the side" 'no wave' 1 -k 3mm
-refused "cut-off above roll-off" 'longer than' 2 -H 0.8 -R 10um -k 20um
+scene "Hurst exponent 0" "rms slope as wanted" sdq_iso7 0.1 0.15 -n 256 --hurst 0 --cutoff 20um --slope 0.1
+scene "Hurst exponent 2" "Sq exact" sq 1e-6 1e-12 -n 256 --hurst 2
+refused "cut-off above the side" 'no wave' 1 --cutoff 3mm
+refused "cut-off above roll-off" 'longer than' 2 --hurst 0.8 --rolloff 10um --cutoff 20um
 
 # Units: lengths times 1e9 change nothing but units.
-roughgen -n 64 -L 1mm -q 1um -m >t
+roughgen -n 64 -L 1mm -q 1um --measure >t
 want=$(value sdq)
 for l in "1pm 1e-15" "1m 1e-3" "1Mm 1e3"; do
 	set -- $l
 	scene "side $1, Sq $2 m" "Sdq as at 1 mm, 1 um" sdq "$want" 1e-12 -n 64 -L "$1" -q "$2"
 done
-scene "rms slope 1e-6" "Sdr = Sdq_cell^2 / 2 = 4.9e-13" sdr 4.943e-13 0.002 -n 64 -g 1e-6
-scene "rms slope 10" "Sdq as wanted" sdq_iso7 10 0.02 -n 64 -g 10
+scene "rms slope 1e-6" "Sdr = Sdq_cell^2 / 2 = 4.9e-13" sdr 4.943e-13 0.002 -n 64 --slope 1e-6
+scene "rms slope 10" "Sdq as wanted" sdq_iso7 10 0.02 -n 64 --slope 10
 scene "Sq 1e9 m" "Sq exact" sq 1e9 1e-12 -n 64 -q 1e9
 refused "Sq 1e-300 m" 'want 0, or 1e-30' 2 -n 64 -q 1e-300
 refused "Sq nan" 'nan' 2 -n 64 -q nan
@@ -87,23 +87,23 @@ refused "side 1e-300 m" 'length' 2 -n 64 -L 1e-300
 refused "4e9 points" 'points' 2 -n 4000000000
 
 # Moments.
-scene "kurtosis 1.01: heights near two values" "Sku exact" sku 1.01 1e-6 -n 64 -K 0 -Q 1.01
-scene "skewness 10, kurtosis 200" "Ssk exact" ssk 10 1e-6 -n 64 -K 10 -Q 200
-scene "skewness -30, kurtosis 950" "Sku exact" sku 950 1e-6 -n 64 -K -30 -Q 950
-scene "kurtosis a thousandth above the limit" "Ssk exact" ssk 2 1e-5 -n 64 -K 2 -Q 5.005
-refused "kurtosis at the limit" 'must exceed' 2 -n 64 -K 2 -Q 5
-refused "kurtosis 900 with 64 points" 'out of reach' 1 -n 8 -K 0 -Q 900
-refused "imposed heights on 2 x 2 points" 'out of reach' 1 -n 2 -K 1
+scene "kurtosis 1.01: heights near two values" "Sku exact" sku 1.01 1e-6 -n 64 --skewness 0 --kurtosis 1.01
+scene "skewness 10, kurtosis 200" "Ssk exact" ssk 10 1e-6 -n 64 --skewness 10 --kurtosis 200
+scene "skewness -30, kurtosis 950" "Sku exact" sku 950 1e-6 -n 64 --skewness -30 --kurtosis 950
+scene "kurtosis a thousandth above the limit" "Ssk exact" ssk 2 1e-5 -n 64 --skewness 2 --kurtosis 5.005
+refused "kurtosis at the limit" 'must exceed' 2 -n 64 --skewness 2 --kurtosis 5
+refused "kurtosis 900 with 64 points" 'out of reach' 1 -n 8 --skewness 0 --kurtosis 900
+refused "imposed heights on 2 x 2 points" 'out of reach' 1 -n 2 --skewness 1
 
 # Measured surfaces.
 printf '%8s' '' | tr ' ' '\0' >zero.f64
-scene "one measured point" "Sq = 0" sq 0 0 -x 1x1 -X 1um zero.f64
+scene "one measured point" "Sq = 0" sq 0 0 --raw 1x1 --pixel 1um zero.f64
 roughgen -n 64 -q 1nm >small.nrrd
-scene "resampled to one point" "Sq = 0" sq 0 1e-24 -r 1 small.nrrd
+scene "resampled to one point" "Sq = 0" sq 0 1e-24 --resample 1 small.nrrd
 # The Gaussian correlation has 6.4 samples to its length: cubic pieces follow it to a
 # per cent.  The wanted slope is that of the 64 points by a formula of sixth order.
-roughgen -m small.nrrd >t
+roughgen --measure small.nrrd >t
 want=$(value sdq_iso7)
 scene "resampled from 64 to 1001 x 999 points" "Sdq is kept" sdq "$want" 0.02 \
-	-r 1001x999 small.nrrd
+	--resample 1001x999 small.nrrd
 done_testing

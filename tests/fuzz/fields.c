@@ -13,7 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	in = fields_open(stream_of(data, size), NULL);
 	out = fields_create("/dev/null");
 	while (fields_read(in, &r))
-		fields_write(out, &r);
+		fields_write(out, &r, fields_more(in));
 	record_free(&r);
 	fields_done(out);
 	fields_close(in);

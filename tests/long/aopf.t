@@ -7,7 +7,7 @@
 for s in $(seq 1 1000); do
 	"$top/scripts/synthetic-pump" "$s" 600 >pump.tsv
 	if [ "$s" -le 100 ]; then cp pump.tsv "pump$s.tsv"; fi
-	aopf -t h -s "$s" pump.tsv | awk -F '\t' -v s="$s" '/^[0-9]/ && $1 >= 100 {
+	aopf --time-unit h -s "$s" pump.tsv | awk -F '\t' -v s="$s" '/^[0-9]/ && $1 >= 100 {
 		d = $5 - (1.5 + 1.3 * $1 / 1186 + 0.35 * exp((20 - $1) / 18))
 		if (d < 0) d = -d
 		if (d > m) m = d } END { print s, m }'
@@ -16,7 +16,7 @@ sort -k 2 -g strays | tail -1 | sed 's/^/# worst seed, error: /'
 is "none of 1000 runs strays" "$(awk '$2 > 0.3' strays | wc -l | tr -d ' ')" 0
 for n in 20 40 60; do
 	for s in $(seq 1 100); do
-		aopf -t h -s "$s" -n $n "pump$s.tsv" | awk -F '\t' '/^[0-9]/ && $1 >= 100 {
+		aopf --time-unit h -s "$s" --order $n "pump$s.tsv" | awk -F '\t' '/^[0-9]/ && $1 >= 100 {
 			d = $5 - (1.5 + 1.3 * $1 / 1186 + 0.35 * exp((20 - $1) / 18))
 			if (d < 0) d = -d
 			if (d > m) m = d } END { print m }'
@@ -27,7 +27,7 @@ done
 # Ends of life at 600 h, true 1186
 for model in average grey; do
 	for s in $(seq 1 100); do
-		aopf -t h -y 2.8 -d up -m $model "pump$s.tsv" | tail -1
+		aopf --time-unit h -y 2.8 --direction up --model $model "pump$s.tsv" | grep -v '^#' | tail -1
 	done >$model.last
 	awk -F '\t' '{ left = $9 == "inf" ? 10 * $1 : $9
 		e = $1 + left - 1186; print e < 0 ? -e : e }' $model.last >$model.error

@@ -28,7 +28,7 @@ ok "volumes below a point load's" awk -v a="$v50" -v b="$v100" \
 	'BEGIN { exit !(a > 1e-12 && a < 1.515e-11 && b < 4.286e-11) }'
 ok "twice the load wears 2 to 2^1.5 times as much" awk -v a="$v50" -v b="$v100" \
 	'BEGIN { exit !(b / a > 1.9 && b / a < 3) }'
-roughgen -n 128 -L 1mm -q 78um:82um -l 100um -C 320um -c 4 |
+roughgen -n 128 -L 1mm -q 78um:82um -l 100um --crown 320um -c 4 |
 	bemcontact --young 210GPa --load 50N |
 	debrisgen -Y 355MPa -u 0.3 --young 210GPa --steps 9 >all 2>/dev/null
 grep -v '^#' all >b

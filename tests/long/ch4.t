@@ -54,8 +54,7 @@ covered() {
 				'/^[0-9]/ { t = 100 * (k == 1 ? a : b); print (t >= $3 && t <= $5) }'
 	done <truths | awk '{ s += $1; n++ } END { printf "%.3f", s / n }'
 }
-# the percentile bootstrap of 30 skew draws is known to fall a little short
-within "interval of the mean of countless fragments" "$(covered 0 1)" 0.82 0.95
+within "interval of the mean of countless fragments" "$(covered 0 1)" 0.84 0.95
 within "interval of a plate that wears as one fragment" "$(covered 1 2)" 0.84 0.95
 
 # --- filters: 100 units of even wear with noise and a passing wander, at 60 % of life
@@ -76,14 +75,14 @@ BEGIN {
 	}
 }' >ends
 within "intervals of the filters" "$(while read -r unit truth; do
-	rwl --wear-rate filter --threshold-gap 14um --count 400 "run$unit.tsv" | tail -1 |
-		awk -F '\t' -v t="$truth" '{ print ($3 ~ /^[0-9]/ && t >= $3 + 0 && t <= $5 + 0) }'
-done <ends | awk '{ s += $1; n++ } END { printf "%.3f", s / n }')" 0.85 0.99
+	rwl --wear-rate filter --threshold-gap 14um --count 400 "run$unit.tsv" | grep -v '^#' | tail -1 |
+		awk -F '\t' -v t="$truth" '{ print ($3 ~ /^[0-9]/ && t >= $3 + 0 && ($5 == "inf" || t <= $5 + 0)) }'
+done <ends | awk '{ s += $1; n++ } END { printf "%.3f", s / n }')" 0.85 1
 
 # --- a million rows
 rows() { awk -v n="$1" 'BEGIN { print "t\tgap"; for (i = 0; i < n; i++) print i "\t" 1e-5 + i * 1e-12 }'; }
 for n in 10000 1000000; do
-	rows $n | rwl -g 20um -R filter -c 2 --grey --stats stats.$n >out.$n
+	rows $n | rwl --threshold-gap 20um --wear-rate filter -c 2 --grey --stats stats.$n >out.$n
 done
 is "a million rows out" "$(grep -c '^[0-9]' out.1000000)" 1000000
 within "memory of a million rows over that of ten thousand" \

@@ -15,6 +15,8 @@ int main(void)
 		.periodic = 1 };
 	static unsigned char map[256 * 256];
 	FILE *f = fopen(path, "rb");
+	static struct stretch stretch[256 * 256];
+	size_t count = 0;
 	struct particles *ps;
 	const struct particle *p;
 	static const double largest[5] = { 6526, 2977, 403, 370, 210 };
@@ -28,24 +30,24 @@ int main(void)
 		return tap_done();
 	}
 	fclose(f);
+	for (size_t i = 0; i < sizeof(map); i++)
+		if (map[i])
+			stretch[count++] = (struct stretch){ i, 0, 1 };
 	ps = particles_new(&par);
-	particles_begin(ps);
-	particles_layer(ps, map);
-	n = particles_end(ps, &p);
+	n = particles_find(ps, stretch, count, &p);
 	ok(n == 123, "contact map: 123 patches over corners and borders (got %zu)", n);
 	for (size_t i = 0; i < n; i++)
-		cells += p[i].nodes;
+		cells += (double)p[i].columns;
 	ok(cells == 11412, "contact map: 11412 cells");
 	for (int i = 0; i < 5; i++)
-		ok(p[i].nodes == largest[i], "contact map: patch %d has %g cells", i + 1,
-			largest[i]);
+		ok((double)p[i].columns == largest[i],
+			"contact map: patch %d has %g cells", i + 1, largest[i]);
 	particles_free(ps);
 	par.periodic = 0;
 	par.corners = 0;
 	ps = particles_new(&par);
-	particles_begin(ps);
-	particles_layer(ps, map);
-	ok(particles_end(ps, &p) == 235, "contact map: 235 patches over sides alone");
+	ok(particles_find(ps, stretch, count, &p) == 235,
+		"contact map: 235 patches over sides alone");
 	particles_free(ps);
 	return tap_done();
 }

@@ -5,13 +5,13 @@
 
 # rough SQ CORR CROWN LOAD COUNT: contacts on 1 mm x 1 mm
 rough() {
-	roughgen -n 128 -L 1mm -q "$1" -l "$2" -C "$3" -c "$5" | bemcontact -F "$4" -E 210GPa
+	roughgen -n 128 -L 1mm -q "$1" -l "$2" --crown "$3" -c "$5" | bemcontact -F "$4" -E 210GPa
 }
 
 # first NAME CONTACT% VOLUME PARTICLES: the first step of 20 surfaces; their means differ
 # from those of three by what single surfaces scatter (10 to 20 %) over sqrt(3)
 first() {
-	debrisgen -Y 355MPa -u 0.3 -U s.tsv contact.nrrd >p.tsv 2>warning
+	debrisgen -Y 355MPa -u 0.3 --summary s.tsv contact.nrrd >p.tsv 2>warning
 	mean() { column "$1" s.tsv | awk '{ s += $1 } END { print s / NR }'; }
 	near "$1: contact, %" "$(mean contact_fraction | awk '{ print 100 * $1 }')" "$2" \
 		"$(awk -v v="$2" 'BEGIN { print 0.2 * v }')"
@@ -26,7 +26,7 @@ first "Sq 80 um, correlation 100 um" 0.153 6.57 1
 near "largest particle of a single one, um" \
 	"$(awk '/^[#r]/ { next } { n[$1]++; d[$1] = $6 } END { for (r in n) if (n[r] == 1) { s += d[r]; k++ }
 		print 1e6 * s / k }' p.tsv)" 232.7 2
-debrisgen -Y 355MPa -u 0.3 -r potential contact.nrrd >p.tsv 2>warning
+debrisgen -Y 355MPa -u 0.3 --removal potential contact.nrrd >p.tsv 2>warning
 near "of the whole potential set, 307 um in the thesis" \
 	"$(awk '/^[#r]/ { next } { n[$1]++; d[$1] = $6 } END { for (r in n) if (n[r] == 1) { s += d[r]; k++ }
 		print 1e6 * s / k }' p.tsv)" 308.4 2
@@ -41,21 +41,21 @@ first "Sq 0.8 um, correlation 20 um" 1.85 1.7 74
 
 # Ten steps.
 rough 80um 100um 320um 50N 10 >contact.nrrd
-debrisgen -Y 355MPa -u 0.3 -T 10 -E 210GPa -U s.tsv contact.nrrd >p.tsv 2>warning
+debrisgen -Y 355MPa -u 0.3 --steps 10 -E 210GPa --summary s.tsv contact.nrrd >p.tsv 2>warning
 near "ten steps: mean volume, 1e-12 m3" \
 	"$(column volume s.tsv | awk '{ s += 1e12 * $1 } END { print s / NR }')" 5.2 0.8
 near "ten steps: particles" "$(column particles s.tsv | awk '{ s += $1 } END { print s / NR * 10 }')" 38 12
 ok "ten steps: relative roughness 0.95 to 1.5" awk '!/^[#r]/ && $2 == 10 && ($13 < 0.95 || $13 > 1.5) { bad = 1 }
 	END { exit bad }' s.tsv
 rough 80um 100um 320um 100N 10 >contact.nrrd
-debrisgen -Y 355MPa -u 0.3 -T 10 -E 210GPa -U s.tsv contact.nrrd >p.tsv 2>warning
+debrisgen -Y 355MPa -u 0.3 --steps 10 -E 210GPa --summary s.tsv contact.nrrd >p.tsv 2>warning
 near "ten steps at 100 N: mean volume, 1e-12 m3" \
 	"$(column volume s.tsv | awk '{ s += 1e12 * $1 } END { print s / NR }')" 12.7 2
 
 # Chapter 4: 100 um x 100 um, 0.8 and 1.6 um of roughness together, cells 0.39 um high.
 fragment() {
-	roughgen -n 128 -L 100um -q 0.8um --pair 1.6um -l 10um -c 20 | bemcontact -P "$1" -E 210GPa |
-		debrisgen -Y 355MPa -u 0.3 -z 0.390625um -T 6 -E 210GPa -U s.tsv 2>warning >p.tsv
+	roughgen -n 128 -L 100um -q 0.8um --pair 1.6um -l 10um -c 20 | bemcontact --pressure "$1" -E 210GPa |
+		debrisgen -Y 355MPa -u 0.3 --depth-step 0.390625um --steps 6 -E 210GPa --summary s.tsv 2>warning >p.tsv
 	column volume s.tsv | awk -v unit="$2" '{ s += $1 } END { print s / NR / unit }'
 }
 near "fragment at 21 MPa: mean volume, 1e-15 m3" "$(fragment 21MPa 1e-15)" 1.25 0.25

@@ -18,8 +18,8 @@ small() {
 # one particle every 10 s, its centre a quarter sample after a frame
 awk 'BEGIN { print "time\tdiameter"
 	for (t = 5; t < 86400; t += 10) printf "%.6f\t1e-4\n", t + 0.000025 }' >day.tsv
-sensorsim -d 1d -S sim.stats day.tsv |
-	bpfilter -b 0:5000 -z -n 20 -S filter.stats | last 10000 >end
+sensorsim --duration 1d -S sim.stats day.tsv |
+	bpfilter -b 0:5000 --zero-phase --order 20 -S filter.stats | last 10000 >end
 near "all frames of a day at 10 kHz" "$(column frames filter.stats)" 864000000 0
 near "each pulse touched its own samples" "$(column pulse_samples sim.stats)" 1728000 20
 small sim.stats
@@ -30,8 +30,8 @@ near "the last pulse is where it was put" "$(awk '{
 	p = NR - 1 - 50000.25; d = $1 - (p > -50 && p < 50 ? -sin(6.283185307179586 * p / 100) : 0)
 	if (d < 0) d = -d; if (d > m) m = d } END { print m }' end)" 0 1e-7
 
-sensorsim -r 200 -d 1d --mains 0.5 -u 1um:1um -N 0 |
-	bpfilter -b 0:100 -z -n 20 -l 50 -S filter.stats | last 200 >end
+sensorsim -r 200 --duration 1d --mains 0.5 --uniform 1um:1um --number 0 |
+	bpfilter -b 0:100 --zero-phase --order 20 --lines 50 -S filter.stats | last 200 >end
 near "the mains line is gone to the end" "$(awk '{ d = $1 < 0 ? -$1 : $1
 	if (d > m) m = d } END { print m }' end)" 0 1e-7
 small filter.stats

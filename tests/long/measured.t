@@ -17,7 +17,7 @@ check_measured() {
 	pixel=$3
 	suffix=$4
 	shift 4
-	roughgen --raw "$size" --pixel "$pixel" "$@" -m "$data/$name.f64" >t
+	roughgen --raw "$size" --pixel "$pixel" "$@" --measure "$data/$name.f64" >t
 	worst=$(while read -r key want; do
 		case $key in
 		numpy_S[apqv] | numpy_Ssk | numpy_Sku) c=$(echo "${key#numpy_}" | tr S s) ;;
@@ -45,7 +45,7 @@ while [ $# -gt 0 ]; do
 	check_measured "$1" "$2" "$3" .lev --level
 	shift 3
 done
-roughgen -x 640x480 -X 1.9673303177114576e-07 -i "$data/film_wyko_opd1.nan.f64" |
+roughgen --raw 640x480 --pixel 1.9673303177114576e-07 --fill "$data/film_wyko_opd1.nan.f64" |
 	tail -c 2457600 | od -An -v -w8 -t f8 >filled
 od -An -v -w8 -t f8 "$data/film_wyko_opd1.f64" | paste filled - >both
 near "116 missing samples filled as by Gwyddion, m" "$(awk '

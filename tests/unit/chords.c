@@ -13,7 +13,8 @@ static void measure(const struct hull_point *point, size_t n, const double step[
 
 	for (size_t i = 0; i < n; i++)
 		copy[i] = point[i];
-	ok(hull_build(h, copy, n) == 0 && chords_measure(c, h, step, length, width) == 0,
+	ok(hull_build(h, copy, n) == HULL_OK &&
+			chords_measure(c, h, step, length, width) == 0,
 		"measured");
 	chords_free(c);
 	hull_free(h);
@@ -125,8 +126,39 @@ static void test_random(void)
 	}
 }
 
+/* The largest span for which products stay below 2^63, anywhere among the integers. */
+static void test_span(void)
+{
+	static const int32_t from[] = { 0, -(1 << 20), INT32_MIN, INT32_MAX - HULL_SPAN };
+	struct hull *h = hull_new();
+
+	for (int k = 0; k < 4; k++) {
+		struct hull_point p[16];
+		int n = 0;
+
+		for (int c = 0; c < 8; c++)
+			for (int inner = 0; inner < 2; inner++, n++)
+				for (int a = 0; a < 3; a++)
+					p[n].v[a] =
+						from[k] +
+						(c >> a & 1 ? HULL_SPAN - inner * (a + 1)
+							    : inner * (3 - a));
+		ok(hull_build(h, p, 16) == HULL_OK &&
+				hull_volume6(h) == 6 * pow(HULL_SPAN, 3),
+			"a cube of the largest span at %d has its volume", from[k]);
+	}
+	{
+		struct hull_point p[4] = { { { 0, 0, 0 } }, { { HULL_SPAN + 1, 0, 0 } },
+			{ { 0, 1, 0 } }, { { 0, 0, 1 } } };
+
+		ok(hull_build(h, p, 4) == HULL_LARGE, "a larger span is refused");
+	}
+	hull_free(h);
+}
+
 int main(void)
 {
+	test_span();
 	test_known();
 	test_random();
 	return tap_done();

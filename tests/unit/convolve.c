@@ -57,6 +57,60 @@ static double worst_error(
 	return worst / size;
 }
 
+/* What multiplies a wave, at sizes that are transformed as they are and others. */
+static double wave_factor(const void *context, size_t kx, size_t ky)
+{
+	(void)context;
+	return 1 / (1. + (double)(kx + 3 * ky));
+}
+
+static double spectrum_error(size_t nx, size_t ny)
+{
+	struct convolve *c = convolve_new(nx, ny, CONVOLVE_PERIODIC, NULL);
+	double *k = convolve_alloc(c), *x = fft_alloc(nx * ny), worst = 0;
+	size_t kx = nx / 3, ky = ny / 4;
+
+	for (size_t i = 0; i < nx * ny; i++)
+		x[i] = cos(2 * M_PI * (double)(kx * (i % nx)) / (double)nx + 0.3) *
+		       cos(2 * M_PI * (double)(ky * (i / nx)) / (double)ny - 1);
+	convolve_spectrum(c, k, wave_factor, NULL);
+	convolve_apply(c, k, x, x);
+	for (size_t i = 0; i < nx * ny; i++)
+		worst = fmax(worst,
+			fabs(x[i] / wave_factor(NULL, kx, ky) -
+				cos(2 * M_PI * (double)(kx * (i % nx)) / (double)nx +
+					0.3) *
+					cos(2 * M_PI * (double)(ky * (i / nx)) /
+							(double)ny -
+						1)));
+	fft_free(k);
+	fft_free(x);
+	convolve_free(c);
+	return worst;
+}
+
+/* Bridged, what is even and slow is as if the few cells more were part of it. */
+static void bridged(void)
+{
+	enum { N = 121 }; /* of 125 */
+	struct convolve *c = convolve_new(N, N, CONVOLVE_BRIDGED, NULL);
+	double *k = convolve_alloc(c), *x = fft_alloc(N * N), worst = 0;
+	size_t mx, my;
+
+	convolve_size(c, &mx, &my);
+	for (size_t i = 0; i < (size_t)N * N; i++)
+		x[i] = 2;
+	convolve_spectrum(c, k, wave_factor, NULL);
+	convolve_apply(c, k, x, x);
+	for (size_t i = 0; i < (size_t)N * N; i++)
+		worst = fmax(worst, fabs(x[i] - 2));
+	ok(mx == 125 && my == 125 && worst < 1e-14,
+		"bridged 121 to %zux%zu keeps a constant: error %.1e", mx, my, worst);
+	fft_free(k);
+	fft_free(x);
+	convolve_free(c);
+}
+
 static void same_bytes(struct pool *two)
 {
 	enum { NX = 150, NY = 90 };
@@ -85,7 +139,8 @@ static void same_bytes(struct pool *two)
 int main(void)
 {
 	static const size_t sizes[][2] = { { 16, 16 }, { 17, 23 }, { 1, 1 }, { 1, 40 },
-		{ 40, 1 }, { 2, 3 }, { 30, 11 }, { 13, 64 } };
+		{ 40, 1 }, { 2, 3 }, { 30, 11 }, { 13, 64 }, { 37, 41 }, { 74, 16 },
+		{ 12, 47 } };
 	struct pool *two = pool_new(2);
 
 	for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
@@ -95,7 +150,10 @@ int main(void)
 		ok(e < 1e-14, "periodic %zux%zu equals the sum: error %.1e", nx, ny, e);
 		e = worst_error(nx, ny, CONVOLVE_PADDED, i % 2 ? two : NULL);
 		ok(e < 1e-14, "padded %zux%zu equals the sum: error %.1e", nx, ny, e);
+		e = spectrum_error(nx, ny);
+		ok(e < 5e-13, "periodic %zux%zu by its spectrum: error %.1e", nx, ny, e);
 	}
+	bridged();
 	same_bytes(two);
 	pool_free(two);
 	return tap_done();

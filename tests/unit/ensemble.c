@@ -1,118 +1,168 @@
 /* Ensembles of wear particles against counts by hand. */
+#include "num/philox.h"
 #include "stats/estimates.h"
 #include "tap.h"
-#include <stdlib.h>
 
-/* Realisations 7 and 2, out of order; diameter, volume and aspect as easy numbers. */
-static const struct shed particles[] = { { 7, 1, 10, 1, 1.5, 0 }, { 2, 3, 20, 2, 2.5, 0 },
-	{ 7, 3, 30, 4, 0.5, 0 }, { 7, 3, 40, 8, 3.5, 0 }, { 2, 1, 50, 16, 1.5, 0 } };
+/* Realisations 7 and 2, out of order; diameter and volume as easy numbers. */
+static const struct shed particles[] = { { 7, 1, 10, 1, 0 }, { 2, 3, 20, 2, 0 },
+	{ 7, 3, 30, 4, 0 }, { 7, 3, 40, 8, 0 }, { 2, 1, 50, 16, 0 } };
 
+/* mark: realisation of which step 2 is told; 0: none. */
 static struct ensemble *make(const struct ensemble_par *par, long mark)
 {
-	struct ensemble *e = ensemble_new();
+	struct ensemble *e = ensemble_new(par);
 
 	for (int i = 0; i < 5; i++)
 		ensemble_add(e, &particles[i]);
 	if (mark)
 		ensemble_took_place(e, mark, 2);
-	ensemble_sort(e);
+	ok(ensemble_close(e) == ENSEMBLE_OK, "closed");
 	ok(ensemble_told(e) == (mark && mark != 2 && mark != 7 ? 3 : 2),
 		"realisations told of");
-	ok(ensemble_close(e, par) == 0, "closed");
 	return e;
 }
 
-static void test_cells(void)
+static void test_sums(void)
 {
 	struct ensemble_par par = {
-		.first = 1, .low = 15, .high = 45, .confidence = 0.9
+		.first = 1, .low = 15, .high = 45, .confidence = 0.9, .by_step = 1
 	};
 	struct ensemble *e = make(&par, 0);
-	const struct ensemble_cell *second = ensemble_cell(e, 1, 3);
-	double *x, count[2];
-	size_t pick[2] = { 1, 1 }, n;
+	const struct ensemble_step *third = ensemble_step(e, 3);
+	const struct sketch *x = ensemble_diameters(e);
 
 	ok(ensemble_par(e)->realisations == 2 && ensemble_par(e)->last == 3,
 		"what 0 stands for");
-	near(second->count, 2, 0, "realisation 7 comes second");
-	near(second->total_volume, 13, 0, "volumes of all steps, whatever the diameter");
-	near(ensemble_cell(e, 1, 1)->count, 0, 0, "diameters below do not count");
-	ok(ensemble_cell(e, 0, 2)->there, "a step without particles took place");
-	x = ensemble_diameters(e, NULL, 1, 3, &n);
-	ok(n == 3 && x[0] == 20 && x[1] + x[2] == 70, "diameters that count");
-	free(x);
-	x = ensemble_diameters(e, pick, 1, 3, &n);
-	ok(n == 4 && x[0] + x[2] + x[1] + x[3] == 140, "one realisation drawn twice");
-	free(x);
-	near(ensemble_aspects(e, (double[]){ 1, 3 }, 2, count), 3, 0, "aspects in all");
-	ok(count[0] == 1 && count[1] == 1, "in their classes");
+	near(third->count.mean, 1.5, 0, "mean count of the diameters that count");
+	near(sqrt(running_variance(&third->count)), sqrt(0.5), 1e-15, "its deviation");
+	near(third->total_volume.mean, (18 + 13) / 2., 0,
+		"volumes of all steps, whatever the diameter");
+	near(ensemble_step(e, 1)->count.mean, 0, 0, "diameters outside do not count");
+	near(ensemble_step(e, 2)->count.n, 2, 0, "a step without particles took place");
+	near(ensemble_step(e, 2)->total_volume.mean, (16 + 1) / 2., 0,
+		"and has the volumes so far");
+	near(third->total_count, 3, 0, "particles so far");
+	ok(x->n == 3 && x->value[0] == 20 && x->value[1] == 30 && x->value[2] == 40,
+		"diameters that count, in order");
+	ok(ensemble_step_diameters(e, 1)->n == 0 && ensemble_step_diameters(e, 3)->n == 3,
+		"and by step");
+	near(ensemble_volume(e)->mean, (18 + 13) / 2. / 3, 1e-15,
+		"mean volume of a realisation per step");
 	ensemble_free(e);
 }
 
 static void test_partial(void)
 {
-	struct ensemble_par par = {
-		.first = 1, .last = 5, .partial = 1, .high = INFINITY, .confidence = 0.9
-	};
+	struct ensemble_par par = { .first = 1,
+		.last = 5,
+		.partial = 1,
+		.high = INFINITY,
+		.confidence = 0.9,
+		.by_step = 1 };
 	struct ensemble *e = make(&par, 4);
-	struct step_estimate s;
+	const struct ensemble_step *third = ensemble_step(e, 3);
 
-	ok(!ensemble_cell(e, 0, 2)->there, "a step nobody told of");
-	ok(ensemble_cell(e, 1, 2)->there, "a step told of without particles");
-	ok(!ensemble_cell(e, 2, 5)->there, "steps after the last one");
-	ok(estimate_step(e, 3, &s) == 0, "estimates of a step");
-	near(s.realisations, 2, 0, "realisations it took place in");
-	near(s.count, 1.5, 1e-15, "mean count");
-	near(s.count_sd, sqrt(0.5), 1e-15, "its standard deviation");
-	near(s.all_count, 5, 0, "particles so far");
-	near(s.volume, 7, 1e-15, "mean volume");
-	near(s.all_volume, (18 + 13) / 2., 1e-14, "mean volume so far");
-	near(s.diameter, 30, 1e-14, "mean diameter");
+	near(ensemble_step(e, 2)->count.n, 1, 0, "a step told of without particles");
+	near(ensemble_step(e, 2)->count.mean, 0, 0, "has none");
+	near(ensemble_step(e, 5)->count.n, 0, 0, "steps after the last one");
+	near(third->count.n, 2, 0, "realisations a step took place in");
+	near(third->total_count, 5, 0, "particles so far");
+	near(third->volume.mean, 7, 1e-15, "mean volume");
+	near(third->total_volume.mean, (18 + 13) / 2., 1e-14, "mean volume so far");
+	/* Two steps each of 2 and 7, one of 4. */
+	near(ensemble_volume(e)->mean, (9 + 6.5 + 0) / 3, 1e-14,
+		"volumes per step that took place");
 	ensemble_free(e);
 }
 
 static void test_estimates(void)
 {
-	struct ensemble_par par = { .first = 1, .high = INFINITY, .confidence = 0.9 };
+	struct ensemble_par par = {
+		.first = 1, .high = INFINITY, .confidence = 0.9, .groups = 8
+	};
 	struct ensemble *e = make(&par, 0);
-	struct estimate all[ESTIMATES], again[ESTIMATES], drawn[ESTIMATES];
-	size_t each[2] = { 0, 1 };
+	struct estimate all[ESTIMATES];
+	size_t n;
 
-	estimate_all(e, NULL, all);
-	estimate_all(e, each, again);
-	near(all[ESTIMATE_MEAN_DIAMETER].value, 30, 1e-14, "mean diameter of all");
+	ensemble_groups(e, &n);
+	ok(n == 2, "each realisation is a group");
+	ok(estimate_all(e, all) == 0, "estimates");
+	near(all[ESTIMATE_MEAN_DIAMETER].value, 30, 1e-14, "mean diameter");
 	near(all[ESTIMATE_VOLUME_STEP].value, 31 / 6., 1e-14, "volume per step");
-	ok(all[ESTIMATE_SHAPE].value == again[ESTIMATE_SHAPE].value,
-		"each one picked once is the whole");
-	ok(!isnan(all[ESTIMATE_KS].value) && isnan(again[ESTIMATE_KS].value),
-		"no distance of draws");
-	estimate_all(e, NULL, drawn);
-	ok(estimate_bootstrap(e, 1, 200, drawn) == 0, "bootstrap");
-	/* Two realisations: volumes per step 6, 13/3 and their mean. */
-	near(drawn[ESTIMATE_VOLUME_STEP].low, 13 / 3., 1e-14, "lower end: twice one");
-	near(drawn[ESTIMATE_VOLUME_STEP].high, 6, 1e-14, "upper end: twice the other");
-	near(drawn[ESTIMATE_VOLUME_STEP].value, 31 / 6., 1e-14, "the value stays");
+	ok(estimate_bootstrap(e, 1, 200, all) == 0, "bootstrap");
+	/* Draws: 7 twice, 2 twice, or both. */
+	near(all[ESTIMATE_VOLUME_STEP].low, 13 / 3., 1e-14, "the lowest draw");
+	near(all[ESTIMATE_VOLUME_STEP].high, 6, 1e-14, "the highest draw");
 	ensemble_free(e);
 }
 
-static void test_empty(void)
+static void test_refusals(void)
 {
-	struct ensemble_par par = { .first = 1, .high = INFINITY, .confidence = 0.9 };
-	struct ensemble *e = ensemble_new();
-	struct estimate all[ESTIMATES];
+	struct ensemble_par par = { .first = 1, .high = INFINITY, .realisations = 1 };
+	struct ensemble *e = ensemble_new(&par);
 
-	ok(ensemble_sort(e) == 0 && ensemble_close(e, &par) == 0, "no particle at all");
-	ok(estimate_all(e, NULL, all) == 0 && isnan(all[ESTIMATE_SHAPE].value) &&
-			isnan(all[ESTIMATE_FACTOR].value),
-		"has no fit");
+	for (int i = 0; i < 5; i++)
+		ensemble_add(e, &particles[i]);
+	ok(ensemble_close(e) == ENSEMBLE_MORE && ensemble_told(e) == 2,
+		"more realisations than said");
+	ensemble_free(e);
+	e = ensemble_new(&par);
+	for (long part = 0; part < 2; part++)
+		ensemble_add(e, &(struct shed){ 3, 1, 1, 1, part });
+	ok(ensemble_close(e) == ENSEMBLE_CLASH && ensemble_culprit(e) == 3,
+		"a realisation in two parts");
+	ensemble_free(e);
+}
+
+/* 300000 diameters of a Weibull distribution: more than are kept one by one, in 3000
+ * realisations, more than there are groups. */
+static void test_large(void)
+{
+	enum { REALISATIONS = 3000, EACH = 100, N = REALISATIONS * EACH };
+	struct ensemble_par par = {
+		.first = 1, .high = INFINITY, .confidence = 0.9, .groups = 256
+	};
+	struct ensemble *e = ensemble_new(&par);
+	static double x[N];
+	struct estimate out[ESTIMATES];
+	struct weibull w;
+	double plain;
+
+	for (long i = 0; i < N; i++) {
+		struct shed s = {
+			.realisation = 1000000 - i / EACH, .step = 1 + i % 4, .volume = 1
+		};
+
+		x[i] = s.diameter =
+			2e-5 *
+			pow(-log(philox_uniform(5, 0, RNG_BOOTSTRAP, (uint64_t)i)), 0.4);
+		ensemble_add(e, &s);
+	}
+	ok(ensemble_close(e) == ENSEMBLE_OK, "300000 particles");
+	ok(ensemble_diameters(e)->n <= SKETCH_MOST, "diameters are merged");
+	weibull_fit(x, NULL, N, 0, INFINITY, 0.9, &w);
+	estimate_all(e, out);
+	/* The classes are narrower than 1e-4: see sketch.h. */
+	near(out[ESTIMATE_SHAPE].value / w.shape.value, 1, 1e-7,
+		"the shape hardly changes");
+	near(out[ESTIMATE_SCALE].value / w.scale.value, 1, 1e-8, "nor does the scale");
+	plain = (out[ESTIMATE_SHAPE].high - out[ESTIMATE_SHAPE].low) / 2;
+	ok(estimate_bootstrap(e, 1, 200, out) == 0, "bootstrap of groups");
+	/* Independent particles: the interval of the likelihood; 200 draws of 256 groups
+	 * give its width to about 10 %, taken three times. */
+	near((out[ESTIMATE_SHAPE].high - out[ESTIMATE_SHAPE].low) / 2 / plain, 1, 0.3,
+		"interval of independent diameters");
+	near((out[ESTIMATE_SHAPE].high + out[ESTIMATE_SHAPE].low) / 2, w.shape.value,
+		plain, "around the value");
 	ensemble_free(e);
 }
 
 int main(void)
 {
-	test_cells();
+	test_sums();
 	test_partial();
 	test_estimates();
-	test_empty();
+	test_refusals();
+	test_large();
 	return tap_done();
 }

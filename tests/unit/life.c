@@ -1,6 +1,6 @@
 /* Order selection, noise, run-in, history, damage models and fleet comparison. */
 #include "life/adaptive.h"
-#include "life/damage.h"
+#include "life/bank.h"
 #include "life/fleet.h"
 #include "life/grey.h"
 #include "life/history.h"
@@ -128,64 +128,137 @@ static double median(double *v, int n)
 
 /* Straight wear with white noise: the interval of the line is that of least squares,
  * here the standard error of the passage by the delta method. */
-static void test_damage(void)
+static void test_straight_wear(void)
 {
 	struct draw *d = draw_new(2, 0, RNG_NOISE);
-	double *z = malloc(5 * DRAWS * sizeof *z), *life = malloc(DRAWS * sizeof *life);
+	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
+	struct bank_par par = {
+		.threshold = 1, .direction = 1, .families = BANK_LINEAR, .steady = 1
+	};
+	double *life = malloc(DRAWS * sizeof *life);
 	double noise = 0.01, sum = 0, squares = 0, inside = 0;
 	int runs = 60;
 
-	draw_normals(d, z, 5 * DRAWS);
 	for (int r = 0; r < runs; r++) {
-		struct damage *m = damage_new(DAMAGE_LINEAR, 1, 1);
+		struct bank *b = bank_new(&par);
 		double mid, low, high;
 
 		for (int k = 0; k < 60; k++)
-			damage_add(m, k, (k + 0.0) / 100 + noise * draw_normal(d));
-		damage_draw(m, 59, z, 5 * DRAWS, life, DRAWS);
+			bank_add(b, k, (k + 0.0) / 100 + noise * draw_normal(d));
+		bank_draw(b, chances, 59, 1, life);
 		mid = median(life, DRAWS);
 		low = life[DRAWS / 20];
 		high = life[DRAWS - DRAWS / 20];
 		sum += mid - 41;
 		squares += (mid - 41) * (mid - 41);
 		inside += low <= 41 && 41 <= high;
-		damage_free(m);
+		bank_free(b);
 	}
 	near(sum / runs, 0, 0.6, "lives of straight lines are unbiased");
 	/* Least squares: sd of the passage at 100 from 60 rows, sigma / slope times
 	 * sqrt(1 / n + (100 - 29.5)^2 / Sxx) = 0.54; shorter memories and Wiener noise in
 	 * the bank may cost a factor of two. */
 	ok(sqrt(squares / runs) < 1.1, "error %.2f of lives", sqrt(squares / runs));
-	ok(inside / runs > 0.85, "the 90 %% interval holds %.0f %%", 100 * inside / runs);
-	free(z);
+	ok(inside / runs > 0.85 && inside / runs < 0.99,
+		"the 90 %% interval holds %.0f %%", 100 * inside / runs);
 	free(life);
+	bank_chances_free(chances);
 	draw_free(d);
 }
 
+/* Median life of a straight series of n rows, y = t / 100 with noise, as changed by f. */
+static double median_life(int n, double (*f)(int k, double y), double gap, int at)
+{
+	struct draw *d = draw_new(3, 0, RNG_NOISE);
+	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
+	struct bank_par par = { .threshold = 1, .direction = 1 };
+	struct bank *b = bank_new(&par);
+	double life[DRAWS], t = 0;
+
+	for (int k = 0; k < n; k++) {
+		t = k + (k >= at ? gap : 0);
+		bank_add(b, t, f(k, k / 100.0 + 0.01 * draw_normal(d)));
+	}
+	bank_draw(b, chances, t, 1, life);
+	bank_free(b);
+	bank_chances_free(chances);
+	draw_free(d);
+	return median(life, DRAWS);
+}
+
+static double as_it_is(int k, double y)
+{
+	(void)k;
+	return y;
+}
+
+static double burst(int k, double y)
+{
+	return k >= 50 && k < 56 ? y + 0.2 : y;
+}
+
+static double repair(int k, double y)
+{
+	return k >= 50 ? y - 0.4 : y;
+}
+
+static void test_disturbances(void)
+{
+	double plain = median_life(60, as_it_is, 0, 0);
+
+	near(plain, 41, 4, "a straight series as it is");
+	near(median_life(60, burst, 0, 0), plain, 1,
+		"six outliers in a row move no life");
+	near(median_life(60, as_it_is, 80, 58), plain, 1, "nor does a halt of 0.8 lives");
+	near(median_life(56, burst, 0, 0), plain + 4, 2,
+		"nor do outliers at the very end");
+	/* back by 0.4 at row 50: at the rate of 0.01 a row 40 rows more are left; the
+	 * regime may change in them, hence less */
+	ok(median_life(60, repair, 0, 0) > plain + 15 &&
+			median_life(60, repair, 0, 0) < 85,
+		"a repair that sets the wear back by 0.4 lengthens the life");
+}
+
+/* y = 1 - (t / T)^2 falls to 0; an earlier unit tells the shape at once. */
 static void test_fleet(void)
 {
 	struct fleet *f = fleet_new(0, -1);
 	struct draw *d = draw_new(2, 0, RNG_NOISE);
-	double z[200], life[100];
+	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
+	struct bank_par par = { .threshold = 0, .direction = -1 };
+	struct bank *b;
+	double life[DRAWS], alone = 0;
+	int failed, carried_on;
 
-	draw_normals(d, z, 200);
-	/* y = 1 - t / T falls to 0 after T = 10, 20, 30, 40; the fifth never does. */
-	for (int u = 0; u < 4; u++)
-		for (int k = 0; k <= 12; k++)
-			fleet_add(f, u, 5 + k * (u + 1), 1 - k / 10.0);
-	fleet_add(f, 4, 0, 1);
-	ok(fleet_build(f) == 4 && fleet_units(f) == 5, "units that failed are counted");
-	ok(fleet_life(f, 0.5, 60, z, life, 100), "life by comparison");
-	near(median(life, 100), 60, 1e-6, "half way at 60: as much again");
-	near(life[99] - life[0], 0, 1e-4, "no spread where units are alike");
-	ok(fleet_life(f, 1, 0, z, life, 100) && median(life, 100) > 15 && life[50] < 30,
-		"whole lives at age 0");
-	fleet_free(f);
-	f = fleet_new(1, 1);
-	fleet_add(f, 0, 0, 0);
-	fleet_add(f, 0, 1, 2);
-	ok(fleet_build(f) == 1 && !fleet_life(f, 0.5, 1, z, life, 100),
-		"one unit is too few");
+	for (int k = 0; k <= 104; k++)
+		fleet_add(f, 0, 7 + k, 1 - k * k / 1e4 + 0.005 * draw_normal(d));
+	for (int k = 0; k <= 100; k++)
+		fleet_add(f, 1, k, 1 - k * k / 1.7e4 + 0.005 * draw_normal(d));
+	for (int k = 0; k < 50; k++)
+		fleet_add(f, 2, k, 1);
+	ok(fleet_build(f, &failed, &carried_on) == 2 && failed == 1 && carried_on == 1 &&
+			fleet_units(f) == 3,
+		"a unit that failed, one that is carried on, one that shows no wear");
+	for (int with = 0; with <= 1; with++) {
+		if (with)
+			par.more = fleet_shapes(f, &par.n_more);
+		b = bank_new(&par);
+		for (int k = 0; k <= 48; k++)
+			bank_add(b, k, 1 - k * k / 1.44e4 + 0.005 * draw_normal(d));
+		bank_draw(b, chances, 48, 0, life);
+		if (!with)
+			alone = fabs(median(life, DRAWS) - 72);
+		else
+			near(median(life, DRAWS), 72, 8, "life with a fleet of two");
+		if (with)
+			ok(bank_weight(b, BANK_OTHER) > 0.5,
+				"the fleet has most of the weight: %.2f",
+				bank_weight(b, BANK_OTHER));
+		bank_free(b);
+	}
+	ok(fabs(median(life, DRAWS) - 72) < 0.7 * alone, "nearer than without: %.0f",
+		alone);
+	bank_chances_free(chances);
 	fleet_free(f);
 	draw_free(d);
 }
@@ -234,7 +307,8 @@ int main(void)
 	test_history();
 	test_orders();
 	test_runin();
-	test_damage();
+	test_straight_wear();
+	test_disturbances();
 	test_fleet();
 	test_adaptive();
 	return tap_done();

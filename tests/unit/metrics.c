@@ -104,10 +104,31 @@ static void check_sums(void)
 	ok(metrics_new(&par) == NULL, "alpha of zero is refused");
 }
 
+/* A median that never fails must not make the mean errors of all others infinite. */
+static void check_infinite(void)
+{
+	struct metrics_par par = { .eol = 100, .alpha = 0.2, .beta = 0.5, .limit = 1000 };
+	struct metrics *m = metrics_new(&par);
+	struct metrics_sum s;
+
+	metrics_add(m, 0, INFINITY, 50, INFINITY, NULL, NULL, 0, NULL);
+	metrics_add(m, 20, 90, 70, 100, NULL, NULL, 0, NULL);
+	metrics_add(m, 40, 50, 40, 55, NULL, NULL, 0, NULL);
+	s = metrics_get(m);
+	ok(s.n == 3 && s.infinite == 1, "the infinite median is counted");
+	near(s.bias, 0, 1e-15, "bias of the finite ones");
+	near(s.mae, 10, 1e-15, "mean absolute error of the finite ones");
+	near(s.accuracy, 1 - (10 / 80. + 10 / 60.) / 2, 1e-15, "their relative accuracy");
+	near(s.coverage, 2 / 3., 1e-15, "intervals of all three are judged");
+	near(s.crps, (900 + 10 + 10) / 3., 1e-12, "so are their scores");
+	metrics_free(m);
+}
+
 int main(void)
 {
 	check_crps();
 	check_quantile();
 	check_sums();
+	check_infinite();
 	return tap_done();
 }

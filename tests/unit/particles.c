@@ -8,22 +8,50 @@
 
 typedef int (*shape)(double x, double y, double z);
 
+/* Stretches of the cells of a mask [z][y][x], so high. */
+static size_t find(struct particles *ps, const unsigned char *mask, int nx, int ny,
+	int nz, double az, const struct particle **list)
+{
+	size_t columns = (size_t)nx * ny, count = 0, n;
+	struct stretch *s = malloc((columns * nz + 1) * sizeof *s);
+
+	/* In the order of layers, as a search from the surface down finds them. */
+	for (int z = 0; z < nz; z++)
+		for (size_t i = 0; i < columns; i++) {
+			int end = z;
+
+			if (!mask[z * columns + i] || (z && mask[(z - 1) * columns + i]))
+				continue;
+			while (end < nz && mask[end * columns + i])
+				end++;
+			s[count++] = (struct stretch){ i, z * az, end * az };
+		}
+	n = particles_find(ps, s, count, list);
+	free(s);
+	return n;
+}
+
 /* Particles of the cells whose centres are in the shape. */
-static size_t scan(struct particles *ps, int nx, int ny, int nz, shape in,
+static size_t scan(struct particles *ps, int nx, int ny, int nz, double az, shape in,
 	const struct particle **list)
 {
-	unsigned char *mask = malloc((size_t)nx * ny);
+	unsigned char *mask = malloc((size_t)nx * ny * nz);
+	size_t n;
 
-	particles_begin(ps);
-	for (int z = 0; z < nz; z++) {
+	for (int z = 0; z < nz; z++)
 		for (int y = 0; y < ny; y++)
 			for (int x = 0; x < nx; x++)
-				mask[y * nx + x] =
+				mask[(z * ny + y) * nx + x] =
 					(unsigned char)in(x + 0.5, y + 0.5, z + 0.5);
-		particles_layer(ps, mask);
-	}
+	n = find(ps, mask, nx, ny, nz, az, list);
 	free(mask);
-	return particles_end(ps, list);
+	return n;
+}
+
+/* Cells of a particle, by its volume. */
+static double cells(const struct particle *p, const struct particles_par *par)
+{
+	return round(p->volume / (par->ax * par->ay * par->az));
 }
 
 static int box(double x, double y, double z)
@@ -38,8 +66,8 @@ static void test_box(void)
 	const struct particle *p;
 
 	/* 7 x 3 x 2 cells: 14 x 3 x 1 in length. */
-	ok(scan(ps, 16, 12, 6, box, &p) == 1, "a box is one particle");
-	near(p->nodes, 42, 0, "box: cells");
+	ok(scan(ps, 16, 12, 6, par.az, box, &p) == 1, "a box is one particle");
+	near(cells(p, &par), 42, 0, "box: cells");
 	near(p->volume, 42, 0, "box: volume");
 	near(p->diameter, cbrt(6 * 42 / M_PI), 1e-14, "box: equivalent diameter");
 	near(p->area, 2 * (14 * 3 + 14 + 3), 1e-12, "box: surface");
@@ -57,7 +85,7 @@ static void test_box(void)
 	ok(p->low[0] == 6 && p->high[0] == 20 && p->low[1] == 2 && p->high[1] == 5 &&
 			p->low[2] == 0.5 && p->high[2] == 1.5,
 		"box: bounding box");
-	ok(p->first[0] == 3 && p->first[1] == 2 && p->first[2] == 1, "box: address");
+	ok(p->first[0] == 3 && p->first[1] == 2, "box: address");
 	particles_free(ps);
 }
 
@@ -72,7 +100,7 @@ static void test_cube(void)
 	struct particles *ps = particles_new(&par);
 	const struct particle *p;
 
-	scan(ps, 5, 5, 1, cube, &p);
+	scan(ps, 5, 5, 1, par.az, cube, &p);
 	near(p->length, sqrt(3), 1e-15, "cube: largest diameter is the space diagonal");
 	/* Half-way along its diagonal its section is a regular hexagon of side 1/sqrt(2);
 	 * the corners lie at a third and two thirds, with triangles of side sqrt(2). */
@@ -98,7 +126,7 @@ static void test_ball(void)
 	struct particles *ps = particles_new(&par);
 	const struct particle *p;
 
-	ok(scan(ps, n, n, n, ball, &p) == 1, "a ball is one particle");
+	ok(scan(ps, n, n, n, par.az, ball, &p) == 1, "a ball is one particle");
 	/* Cells stand out by up to half a diagonal: 0.87 of the radius 20. */
 	near(p->diameter, 2 * R, 0.1, "ball: equivalent diameter");
 	near(p->length, 2 * R, 1.8, "ball: largest diameter");
@@ -129,7 +157,7 @@ static void test_rod(void)
 	struct particles *ps = particles_new(&par);
 	const struct particle *p;
 
-	ok(scan(ps, 60, 60, 40, rod, &p) == 1, "a slanted rod is one particle");
+	ok(scan(ps, 60, 60, 40, par.az, rod, &p) == 1, "a slanted rod is one particle");
 	near(p->azimuth, 0.6, 0.01, "rod: azimuth");
 	near(p->dip, 0.4, 0.01, "rod: dip");
 	/* Length 48, width 6: the diagonal and a cell more. */
@@ -137,6 +165,197 @@ static void test_rod(void)
 	ok(p->aspect > 6.5 && p->aspect < 8, "rod: aspect ratio %g", p->aspect);
 	/* Moments 48^2/12 and 3^2/4. */
 	near(p->elongation, 1 - sqrt(9. / 4 / 192), 0.01, "rod: elongation");
+	particles_free(ps);
+}
+
+/* A flat bar with its own signs of direction and a place on the grid; periods of the grid
+ * are added so that it may lie across its border. */
+static struct pose {
+	double x, y, z, azimuth, dip;
+	int nx, ny; /* of a periodic grid, or 0 */
+	int cubes;  /* cells are cubes */
+	double along[3], across[3];
+} pose;
+
+static int bar_at(double x, double y, double z)
+{
+	const double *d = pose.along, *side = pose.across;
+	double u[3] = { x - pose.x, y - pose.y, z - pose.z };
+
+	if (u[0] * u[0] + u[1] * u[1] + u[2] * u[2] > 16 * 16)
+		return 0;
+	double along = u[0] * d[0] + u[1] * d[1] + u[2] * d[2];
+	double across = u[0] * side[0] + u[1] * side[1];
+	double up =
+		u[0] * u[0] + u[1] * u[1] + u[2] * u[2] - along * along - across * across;
+
+	return fabs(along) < 15 && fabs(across) < 4 && up < 5;
+}
+
+static int bar(double x, double y, double z)
+{
+	for (int i = -1; i <= 1; i++)
+		for (int j = -1; j <= 1; j++)
+			if ((pose.nx || (!i && !j)) &&
+				bar_at(x + i * pose.nx, y + j * pose.ny, z))
+				return 1;
+	return 0;
+}
+
+/* The bar of a pose; everything about it that does not name its place is compared. */
+static struct particle measured_bar(int nx, int ny, struct pose p)
+{
+	struct particles_par par = { .nx = nx, .ny = ny, .ax = 1.5, .ay = 1, .az = 0.5 };
+	const struct particle *list;
+	struct particles *ps;
+	struct particle got = { .columns = 0 };
+
+	par.periodic = p.nx > 0;
+	if (p.cubes)
+		par.ax = par.az = 1;
+	ps = particles_new(&par);
+	pose = p;
+	pose.along[0] = cos(p.azimuth) * cos(p.dip);
+	pose.along[1] = sin(p.azimuth) * cos(p.dip);
+	pose.along[2] = sin(p.dip);
+	pose.across[0] = -sin(p.azimuth);
+	pose.across[1] = cos(p.azimuth);
+	if (scan(ps, nx, ny, 40, par.az, bar, &list) == 1)
+		got = list[0];
+	particles_free(ps);
+	return got;
+}
+
+static int same(double a, double b)
+{
+	return fabs(a - b) <= 1e-13 * fabs(b);
+}
+
+static int same_shape(const struct particle *a, const struct particle *b)
+{
+	return a->columns == b->columns && same(a->volume, b->volume) &&
+	       same(a->area, b->area) && same(a->length, b->length) &&
+	       same(a->width, b->width) && same(a->aspect, b->aspect) &&
+	       same(a->elongation, b->elongation) && same(a->convexity, b->convexity) &&
+	       same(a->dip, b->dip);
+}
+
+static void test_pose(void)
+{
+	struct pose p = { .x = 20, .y = 20, .z = 20 }, q;
+	struct particle here, there;
+	int bad = 0, out = 0, mirrored = 0, far = 0, over = 0;
+	double off = 0;
+
+	for (int k = 0; k < 40; k += 3) {
+		p.azimuth = -1.5 + 0.075 * k;
+		p.dip = 1.3 * sin(3. * k);
+		here = measured_bar(40, 40, p);
+		bad += here.columns < 30;
+		out += !(here.dip >= 0 && here.dip <= M_PI / 2);
+		q = p;
+		q.cubes = 1;
+		there = measured_bar(40, 40, q);
+		off = fmax(off, acos(cos(there.dip) * cos(p.dip) *
+						cos(there.azimuth - p.azimuth) +
+					sin(there.dip) * sin(fabs(p.dip))));
+		q = p;
+		q.azimuth = -p.azimuth;
+		there = measured_bar(40, 40, q);
+		mirrored +=
+			!same_shape(&here, &there) || !same(here.azimuth, -there.azimuth);
+		q.dip = -p.dip;
+		there = measured_bar(40, 40, q);
+		mirrored +=
+			!same_shape(&here, &there) || !same(here.azimuth, -there.azimuth);
+		q = p;
+		q.x += 1000;
+		there = measured_bar(1040, 40, q);
+		far += !same_shape(&here, &there) || !same(here.azimuth, there.azimuth);
+		q = p;
+		q.nx = q.ny = 40;
+		q.x = 39 - k, q.y = k;
+		there = measured_bar(40, 40, q);
+		over += !same_shape(&here, &there) ||
+			!same(here.azimuth, there.azimuth) ||
+			fabs(there.x - 1.5 * (19 - k < 0 ? 59 - k : 19 - k) -
+				(here.x - 30)) > 60 ||
+			!(there.x >= 0 && there.x < 60 && there.y >= 0 && there.y < 40);
+	}
+	ok(bad == 0, "bars of 14 directions are one particle each");
+	ok(out == 0, "their dips are from 0 to pi/2");
+	ok(off < 0.03, "and their directions those of the bars, in cubes to %.3f", off);
+	ok(mirrored == 0,
+		"mirrored bars have mirrored directions and the same shape (%d do not)",
+		mirrored);
+	ok(far == 0, "a bar has the same row 1000 cells further (%d have not)", far);
+	ok(over == 0,
+		"and across the border of a periodic grid, its centroid on the grid (%d have not)",
+		over);
+}
+
+/* Four equal cubes: in order of y and x. */
+static int equals(double x, double y, double z)
+{
+	return ((int)x == 6 && (int)y == 1 && (int)z == 1) ||
+	       ((int)x == 1 && (int)y == 4 && (int)z == 0) ||
+	       ((int)x == 5 && (int)y == 4 && (int)z == 0) ||
+	       ((int)x == 7 && (int)y == 2 && (int)z == 0);
+}
+
+static void test_order(void)
+{
+	static const int want[4][2] = { { 6, 1 }, { 7, 2 }, { 1, 4 }, { 5, 4 } };
+	struct particles_par par = { .nx = 9, .ny = 6, .ax = 1, .ay = 1, .az = 1 };
+	struct particles *ps = particles_new(&par);
+	const struct particle *p;
+	int bad = scan(ps, 9, 6, 2, par.az, equals, &p) != 4;
+
+	for (int i = 0; i < 4 && !bad; i++)
+		for (int k = 0; k < 2; k++)
+			bad += p[i].first[k] != want[i][k];
+	ok(bad == 0, "equal particles come in order of their first cells");
+	particles_free(ps);
+}
+
+/* Stripes that wind about a torus: slope 3 periods of x for one of y, then a ring. */
+static int stripe(double x, double y, double z)
+{
+	(void)z;
+	return ((int)x + 3 * (int)(y / 2)) % 24 < 4;
+}
+
+static int ring(double x, double y, double z)
+{
+	return (int)y == 3 && z < 2 && x >= 0;
+}
+
+static void test_endless(void)
+{
+	struct particles_par par = {
+		.nx = 24, .ny = 16, .ax = 1, .ay = 1, .az = 1, .periodic = 1
+	};
+	struct particles *ps = particles_new(&par);
+	const struct particle *p;
+
+	ok(scan(ps, 24, 16, 1, par.az, stripe, &p) == 1 && p->endless && p->columns == 64,
+		"a stripe that winds about a periodic grid is endless");
+	ok(isnan(p->length) && isnan(p->width) && isnan(p->convexity) &&
+			isnan(p->azimuth) && isnan(p->elongation) && isnan(p->x) &&
+			isnan(p->y) && p->volume == 64,
+		"it has a volume for each period and no shape");
+	ok(p->low[0] == 0 && p->high[0] == 24 && p->low[1] == 0 && p->high[1] == 16,
+		"its bounding box is the grid");
+	ok(scan(ps, 24, 16, 2, par.az, ring, &p) == 1 && p->endless && isnan(p->x),
+		"a ring about the grid is endless");
+	near(p->y, 3.5, 1e-15, "across itself it has a centroid");
+	near(p->area, 2 * 24 * 3, 0, "and its surface is that of one period");
+	ok(p->low[1] == 3 && p->high[1] == 4, "and it has two sides");
+	particles_free(ps);
+	par.periodic = 0;
+	ps = particles_new(&par);
+	ok(scan(ps, 24, 16, 2, par.az, ring, &p) == 1 && !p->endless,
+		"on a free grid it is a bar");
 	particles_free(ps);
 }
 
@@ -156,9 +375,10 @@ static void test_fork(void)
 	struct particles *ps = particles_new(&par);
 	const struct particle *p;
 
-	ok(scan(ps, 12, 8, 8, fork, &p) == 2, "arms that meet below are one particle");
-	near(p[0].nodes, 7 + 7 + 7, 0, "fork: cells");
-	near(p[1].nodes, 7, 0, "free arm: cells");
+	ok(scan(ps, 12, 8, 8, par.az, fork, &p) == 2,
+		"arms that meet below are one particle");
+	near(cells(&p[0], &par), 7 + 7 + 7, 0, "fork: cells");
+	near(cells(&p[1], &par), 7, 0, "free arm: cells");
 	near(p[0].convexity, 21. / 56, 1e-14, "fork: convexity");
 	near(p[0].area,
 		2 * (7 * 8 - 5 * 7) + 2 * 8 + 4 * 7 - 2 * 7 + 5 * 2 + 2 * 2 + 2 * 7 - 14,
@@ -177,14 +397,15 @@ static void test_corners(void)
 	struct particles_par par = { .nx = 31, .ny = 17, .ax = 1, .ay = 1, .az = 1 };
 	struct particles *ps = particles_new(&par);
 	const struct particle *p;
-	size_t n = scan(ps, 31, 17, 9, checker, &p);
+	size_t n = scan(ps, 31, 17, 9, par.az, checker, &p);
 
 	ok(n == 31 * 17 * 9 / 2, "a checkerboard falls into single cells");
-	ok(p[n - 1].nodes == 1, "each of one cell");
+	ok(cells(&p[n - 1], &par) == 1, "each of one cell");
 	particles_free(ps);
 	par.corners = 1;
 	ps = particles_new(&par);
-	ok(scan(ps, 31, 17, 1, checker, &p) == 1, "joined over corners it is one");
+	ok(scan(ps, 31, 17, 1, par.az, checker, &p) == 1,
+		"joined over corners it is one");
 	particles_free(ps);
 }
 
@@ -203,9 +424,9 @@ static void test_periodic(void)
 	const struct particle *p;
 
 	/* 5 x 4 cells around the corner of the grid: from 7 to 12 and from 5 to 9. */
-	ok(scan(ps, 10, 8, 2, wrapped, &p) == 1,
+	ok(scan(ps, 10, 8, 2, par.az, wrapped, &p) == 1,
 		"periodic: one particle over the corner");
-	near(p->nodes, 40, 0, "periodic: cells");
+	near(cells(p, &par), 40, 0, "periodic: cells");
 	near(p->length, sqrt(25 + 16 + 4), 1e-12, "periodic: largest diameter");
 	near(p->area, 2 * (20 + 8 + 10), 1e-12, "periodic: surface");
 	near(p->convexity, 1, 1e-12, "periodic: convexity");
@@ -282,13 +503,12 @@ static void test_random(void)
 			c[i] = (state >> 16) % 10 < 3u + trial % 4;
 			nodes += c[i];
 		}
-		particles_begin(ps);
-		for (int z = 0; z < nz; z++)
-			particles_layer(ps, c + z * nx * ny);
-		n = particles_end(ps, &p);
+		n = find(ps, c, nx, ny, nz, 1, &p);
 		for (size_t i = 0; i < n; i++) {
-			sum += (size_t)p[i].nodes;
-			bad += !(p[i].length > 0 && p[i].convexity <= 1 + 1e-12);
+			sum += (size_t)round(p[i].volume);
+			bad += !(p[i].endless ? isnan(p[i].length)
+					      : p[i].length > 0 &&
+							p[i].convexity <= 1 + 1e-12);
 		}
 		bad += sum != nodes ||
 		       n != flood(c, nx, ny, nz, trial % 2, trial / 2 % 2);
@@ -332,12 +552,10 @@ static void test_map(void)
 
 		memcpy(copy, map, sizeof(copy));
 		want = flood(copy, NX, NY, 1, par.corners, par.periodic);
-		particles_begin(ps);
-		particles_layer(ps, map);
-		n = particles_end(ps, &p);
+		n = find(ps, map, NX, NY, 1, 1, &p);
 		for (size_t i = 0; i < n; i++) {
-			nodes += p[i].nodes;
-			largest = fmax(largest, p[i].nodes);
+			nodes += p[i].volume;
+			largest = fmax(largest, p[i].volume);
 		}
 		ok(n == want && n > 100, "contact map: %zu patches, want %zu%s%s", n,
 			want, par.corners ? ", over corners" : "",
@@ -354,6 +572,9 @@ int main(void)
 	test_cube();
 	test_ball();
 	test_rod();
+	test_pose();
+	test_order();
+	test_endless();
 	test_fork();
 	test_corners();
 	test_periodic();

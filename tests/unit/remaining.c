@@ -1,6 +1,5 @@
 /* remaining - first passages, thresholds and the rate followed through noise */
 #include "life/remaining.h"
-#include "life/rate.h"
 #include "num/rng.h"
 #include "tap.h"
 #include <gsl/gsl_cdf.h>
@@ -63,8 +62,6 @@ static void check_passages(void)
 	near(remaining_large(3, 10, 12), 18, 0, "large particles at the end of step 3");
 	ok(remaining_large(3, 10, 31) == 0 && isinf(remaining_large(0, 10, 0)),
 		"passed, and never");
-	/* K F v / H */
-	near(remaining_archard(1e-6, 1000, 2, 1e9), 2e-12, 1e-27, "Archard's law");
 	s = remaining_sum_up(a, 4, 40);
 	ok(s.mean == 2 && s.p_no_failure == 0.5 && a[0] == 1 && isinf(a[2]) &&
 			isinf(a[3]),
@@ -74,73 +71,8 @@ static void check_passages(void)
 	gsl_rng_free(rng);
 }
 
-/* A straight line in white noise: the filter knows as much as a straight-line fit. */
-static void check_rate(void)
-{
-	double slope = 2e-12, noise = 1e-7, t0 = 1e6, gap, rate;
-	gsl_rng *rng = rng_new(5, 0, RNG_LIFE);
-	struct rate *r = rate_new(0, INFINITY);
-	int early = 0, n = 400, ready = 1;
-	double sd = noise * sqrt(12. / n / n / n) / 3600;
-
-	for (int i = 0; i < n; i++) {
-		double t = t0 + 3600. * i;
-
-		ready &= rate_ready(r) == (i >= RATE_START);
-		rate_add(r, t,
-			i % 10 == 9 ? NAN : slope * t + noise * gsl_ran_ugaussian(rng));
-	}
-	ok(ready, "ready from the fourth on");
-	rate_state(r, &gap, &rate);
-	near(rate / slope, 1, 5 * sd / slope,
-		"slope of a line within five standard errors");
-	near(gap, slope * (t0 + 3600. * (n - 1)), noise / 2, "and its end");
-	for (int i = 0; i < N; i++) {
-		double left = rate_passage(r, gap + 1e-6, (i + 0.5) / N,
-			gsl_cdf_ugaussian_Pinv(
-				philox_uniform(1, 0, RNG_LIFE, (uint64_t)i)));
-
-		early += left < 1e-6 / slope;
-	}
-	ok(early > 0.02 * N && early < 0.98 * N, "the truth is inside: %d of %d early",
-		early, N);
-	ok(rate_passage(r, 0, 0.5, 0) == 0, "a threshold behind is reached");
-	rate_free(r);
-	r = rate_new(0, INFINITY);
-	for (int i = 0; i < 50; i++)
-		rate_add(r, i, 3);
-	ok(isinf(rate_passage(r, 4, 0.5, 0)), "a constant never gets there");
-	rate_free(r);
-	/* A prior that is certain is believed. */
-	r = rate_new(slope, slope * 1e-9);
-	for (int i = 0; i < RATE_START; i++)
-		rate_add(r, 3600. * i, 1e-5 + noise * gsl_ran_ugaussian(rng));
-	rate_state(r, &gap, &rate);
-	/* four noisy points alone would leave a standard error of six slopes */
-	near(rate / slope, 1, 0.5, "a certain prior holds against few data");
-	rate_free(r);
-	r = rate_new(slope, 0);
-	for (int i = 0; i < 100; i++)
-		rate_add(r, 3600. * i, slope * 3600 * i + noise * gsl_ran_ugaussian(rng));
-	rate_state(r, &gap, &rate);
-	near(rate / slope, 1, 1e-12, "a prior without spread stays");
-	near(rate_passage(r, gap + 1e-6, 0.5, 0) * slope, 1e-6, noise / 2,
-		"and tells the passage");
-	rate_free(r);
-	/* Five times the prior's mean, forty of its standard deviations off. */
-	r = rate_new(slope, slope / 10);
-	for (int i = 0; i < 400; i++)
-		rate_add(r, 3600. * i,
-			5 * slope * 3600 * i + noise * gsl_ran_ugaussian(rng));
-	rate_state(r, &gap, &rate);
-	ok(rate > 2 * slope, "data outdo the prior: %.2f slopes", rate / slope);
-	rate_free(r);
-	gsl_rng_free(rng);
-}
-
 int main(void)
 {
 	check_passages();
-	check_rate();
 	return tap_done();
 }

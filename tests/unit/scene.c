@@ -154,7 +154,7 @@ static void test_memory(void)
 
 	for (int i = 0; i < 1000; i++) {
 		struct passage p = { { 0.01 * i + 0.006, 0.01 * i + 0.026 }, 1e-4, 0,
-			12.7 };
+			12.7, { 1, 0 } };
 
 		scene_pass(s, &p);
 		scene_next(s, x, 100);

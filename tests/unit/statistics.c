@@ -10,7 +10,7 @@ static void test_weibull(void)
 	struct weibull w;
 	double scaled[10];
 
-	ok(weibull_fit(sizes, 10, 0, INFINITY, 0.95, &w) == 0, "Weibull fit");
+	ok(weibull_fit(sizes, NULL, 10, 0, INFINITY, 0.95, &w) == 0, "Weibull fit");
 	/* scipy.stats.weibull_min, maximum polished; intervals from its curvature. */
 	near(w.shape.value, 2.200002120499429, 1e-12, "shape");
 	near(w.scale.value, 55.74214415993261, 1e-11, "scale");
@@ -18,14 +18,13 @@ static void test_weibull(void)
 	near(w.shape.high, 3.5982395, 1e-5, "shape: upper end");
 	near(w.scale.low, 41.431386, 1e-4, "scale: lower end");
 	near(w.scale.high, 74.995962, 1e-4, "scale: upper end");
-	near(weibull_distance(
-		     &w, (double[10]){ 95, 12, 25, 31, 36, 44, 52, 57, 63, 78 }, 10),
-		0.08237637732554093, 1e-12, "Kolmogorov-Smirnov distance");
+	near(weibull_distance(&w, sizes, NULL, 10), 0.08237637732554093, 1e-12,
+		"Kolmogorov-Smirnov distance");
 	near(w.mean, 55.74214415993261 * tgamma(1 + 1 / 2.200002120499429), 1e-10,
 		"mean");
 	for (int i = 0; i < 10; i++)
 		scaled[i] = sizes[i] * 1e-6;
-	weibull_fit(scaled, 10, 0, INFINITY, 0.95, &w);
+	weibull_fit(scaled, NULL, 10, 0, INFINITY, 0.95, &w);
 	near(w.shape.value, 2.200002120499429, 1e-12, "shape does not know the unit");
 	near(w.scale.value, 55.74214415993261e-6, 1e-17, "scale does");
 }
@@ -35,7 +34,7 @@ static void test_truncated(void)
 	struct weibull w;
 	double sum = 0;
 
-	ok(weibull_fit(sizes, 8, 10, 70, 0.95, &w) == 0,
+	ok(weibull_fit(sizes, NULL, 8, 10, 70, 0.95, &w) == 0,
 		"Weibull fit, cut off at both ends");
 	/* scipy: minimum of the negative log likelihood by simplex. */
 	near(w.shape.value, 1.61333481, 1e-5, "cut off: shape");
@@ -45,8 +44,44 @@ static void test_truncated(void)
 	near(sum, 1, 1e-6, "cut off: density integrates to one");
 	ok(weibull_density(&w, 9) == 0 && weibull_density(&w, 71) == 0,
 		"and is 0 outside");
-	ok(weibull_fit(sizes, 10, 20, 70, 0.95, &w) == -1, "values outside are refused");
-	ok(weibull_fit(sizes, 1, 0, INFINITY, 0.95, &w) == -1, "one value is refused");
+	ok(weibull_fit(sizes, NULL, 10, 20, 70, 0.95, &w) == WEIBULL_NONE,
+		"values outside are refused");
+	ok(weibull_fit(sizes, NULL, 1, 0, INFINITY, 0.95, &w) == WEIBULL_NONE,
+		"one value is refused");
+}
+
+/* The same sample, narrow: the logarithms of the values scale, and so does the shape. */
+static void test_narrow(void)
+{
+	static const double spread[] = { 1e-3, 1e-6, 1e-9, 1e-11 };
+	double x[10], weight[10] = { 1, 2, 1, 1, 3, 1, 1, 1, 1, 1 }, twice[13];
+	struct weibull w, v;
+	size_t n = 0;
+
+	for (int k = 0; k < 4; k++) {
+		for (int i = 0; i < 10; i++)
+			x[i] = 1e-5 * (1 + expm1(spread[k] * log(sizes[i])));
+		ok(weibull_fit(x, NULL, 10, 0, INFINITY, 0.95, &w) == WEIBULL_OK,
+			"values within %g of each other", spread[k]);
+		/* Values are rounded to 1e-16 of themselves. */
+		near(w.shape.value * spread[k] / 2.200002120499429, 1,
+			1e-12 + 1e-14 / spread[k], "shape");
+		near(w.shape.low * spread[k] / 1.3451048, 1, 1e-5, "shape: lower end");
+		near(log(w.scale.value / 1e-5) / spread[k] / log(55.74214415993261), 1,
+			1e-10 + 1e-15 / spread[k], "scale");
+		ok(weibull_fit(x, NULL, 10, 0.9e-5, 1, 0.95, &v) == WEIBULL_OK,
+			"the same, cut off far away");
+		near(v.shape.value / w.shape.value, 1, 1e-6, "has the same shape");
+	}
+	for (int i = 0; i < 10; i++)
+		for (int k = 0; k < (int)weight[i]; k++)
+			twice[n++] = sizes[i];
+	weibull_fit(sizes, weight, 10, 0, INFINITY, 0.95, &w);
+	weibull_fit(twice, NULL, n, 0, INFINITY, 0.95, &v);
+	near(w.shape.high / v.shape.high, 1, 1e-12, "weights are repeated values");
+	near(weibull_distance(&w, sizes, weight, 10) /
+			weibull_distance(&v, twice, NULL, n),
+		1, 1e-12, "also for the distance");
 }
 
 /* In 95 % of samples the interval holds the truth; with so many values and 1000 samples
@@ -65,7 +100,7 @@ static void test_coverage(double high, int n)
 			x[j] = s *
 			       pow(-log1p(-cut * philox_uniform(7, i, RNG_BOOTSTRAP, j)),
 				       1 / k);
-		if (weibull_fit(x, n, 0, high, 0.95, &w))
+		if (weibull_fit(x, NULL, n, 0, high, 0.95, &w))
 			continue;
 		fits++;
 		shapes += w.shape.low < k && k < w.shape.high;
@@ -108,11 +143,15 @@ static void test_power(void)
 
 static void test_samples(void)
 {
-	double x[4] = { 4, 1, 3, 2 }, sd;
-	struct estimate e = sample_mean(x, 4, 0.95, &sd);
+	double x[4] = { 4, 1, 3, 2 };
+	struct running t = { 0 };
+	struct estimate e;
 
+	for (int i = 0; i < 4; i++)
+		running_add(&t, x[i]);
+	e = sample_mean(&t, 0.95);
 	near(e.value, 2.5, 0, "mean");
-	near(sd, sqrt(5. / 3), 1e-15, "standard deviation");
+	near(sqrt(running_variance(&t)), sqrt(5. / 3), 1e-15, "standard deviation");
 	/* Student's t of three degrees of freedom: 3.182446. */
 	near(e.high, 2.5 + 3.182446305284263 * sqrt(5. / 12), 1e-9,
 		"interval of the mean");
@@ -124,6 +163,7 @@ int main(void)
 {
 	test_weibull();
 	test_truncated();
+	test_narrow();
 	test_coverage(INFINITY, 60);
 	test_coverage(280, 400);
 	test_power();

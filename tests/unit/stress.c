@@ -1,8 +1,9 @@
-/* Stress below a surface: Hertz with friction in closed form, direct sums against
- * transforms, periodic waves, what may be left out. */
+/* Stress below a surface: Hertz with friction in closed form, sums on coarse points
+ * against full ones, periodic waves, what may be left out. */
 #include "stress/stress.h"
-#include "stress/stress_kernel.h"
 #include "num/philox.h"
+#include "stress/influence.h"
+#include "stress/stress_kernel.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -10,14 +11,9 @@
 
 static struct stress_par plain(int nx, int ny, double mu)
 {
-	struct stress_par par = { .nx = nx,
-		.ny = ny,
-		.ax = 1,
-		.ay = 1,
-		.dz = 1,
-		.nu = 0.3,
-		.mu = mu,
-		.memory = (size_t)1 << 28 };
+	struct stress_par par = {
+		.nx = nx, .ny = ny, .ax = 1, .ay = 1, .nu = 0.3, .mu = mu
+	};
 
 	return par;
 }
@@ -61,13 +57,12 @@ static double hertz_error(int n, double mu, double *surface)
 	struct stress *s;
 
 	par.ax = par.ay = 4. / n;
-	par.dz = 0.05;
 	s = stress_new(&par);
 	stress_load(s, p);
 	for (int k = 0; k <= 30; k++) {
 		double e;
 
-		stress_mises(s, k, span, whole_grid(&par, span), m);
+		stress_at(s, 0.05 * k, span, whole_grid(&par, span), m);
 		e = k ? fabs(m[(size_t)n * n / 2] - axis_mises(0.05 * k, 0.3, mu)) : 0;
 		if (k == 0)
 			*surface = m[(size_t)n * n / 2];
@@ -87,13 +82,73 @@ static void test_hertz(void)
 
 	coarse = hertz_error(65, 0.3, &surface);
 	fine = hertz_error(129, 0.3, &surface);
-	ok(fine < 1e-4,
+	/* The element widens a load by h^2 / 6, against h^2 / 12 of a cell. */
+	ok(fine < 2e-4,
 		"Hertz with friction: von Mises on the axis from a/2 on, 129 points: %.1e p0",
 		fine);
 	ok(coarse / fine > 3.3, "and converges with the square of the grid: %.1e, %.1e",
 		coarse, fine);
 	/* Under the middle sxx = syy = -(1 + 2 nu)/2, szz = -1, sxz = -mu. */
 	near(surface, sqrt(0.04 + 3 * 0.09), 2e-3, "surface in the middle");
+}
+
+/* The surface of a Hertz contact with friction, radius a = 1 and p0 = 1, within 0.9 a:
+ * normal stresses as in Johnson, Contact Mechanics, 3.42, those of the shear as in
+ * Hamilton, Proc. Inst. Mech. Eng. 197C (1983), linear in x and y. */
+static double surface_mises(double x, double y, double nu, double mu)
+{
+	double r2 = x * x + y * y, p = sqrt(1 - r2);
+	double f = r2 > 0 ? (1 - 2 * nu) / 3 * (1 - p * p * p) / r2 : (1 - 2 * nu) / 2;
+	double rr = f - p, tt = -f - 2 * nu * p, c = r2 > 0 ? x * x / r2 : 1;
+	double cs = r2 > 0 ? x * y / r2 : 0, q = mu * M_PI / 8;
+	double t[6];
+
+	t[STRESS_XX] = rr * c + tt * (1 - c) - q * (4 + nu) * x;
+	t[STRESS_YY] = rr * (1 - c) + tt * c - q * 3 * nu * x;
+	t[STRESS_ZZ] = -p;
+	t[STRESS_XY] = (rr - tt) * cs - q * (2 - nu) * y;
+	t[STRESS_XZ] = -mu * p;
+	t[STRESS_YZ] = 0;
+	return stress_von_mises(t);
+}
+
+static double surface_error(int cells, double mu, double within)
+{
+	int n = 2 * cells + 8;
+	struct stress_par par = plain(n, n, mu);
+	double h = 1. / cells, *p = hertz(n, h), *m = malloc((size_t)n * n * sizeof(*m));
+	struct stress_span *span = malloc(n * sizeof(*span));
+	struct stress *s;
+	double error = 0;
+
+	par.ax = par.ay = h;
+	s = stress_new(&par);
+	stress_load(s, p);
+	stress_at(s, 0, span, whole_grid(&par, span), m);
+	for (int i = 0; i < n * n; i++) {
+		double x = (i % n + 0.5 - 0.5 * n) * h, y = (i / n + 0.5 - 0.5 * n) * h;
+
+		if (x * x + y * y < within * within)
+			error = fmax(error, fabs(m[i] - surface_mises(x, y, 0.3, mu)));
+	}
+	stress_free(s);
+	free(span);
+	free(m);
+	free(p);
+	return error;
+}
+
+static void test_surface_order(double mu)
+{
+	double e10 = surface_error(10, mu, 0.6), e40 = surface_error(40, mu, 0.6);
+	double rim = surface_error(40, mu, 0.9);
+
+	/* Cells of constant pressure would leave 0.13 mu h / a. */
+	ok(e40 < 2e-4 * (1 + mu) && e10 / e40 > (mu > 0 ? 12 : 8),
+		"surface, friction %g: second order within 0.6 a: %.1e, %.1e p0", mu, e10,
+		e40);
+	/* At the rim the pressure rises like a square root, which no element follows. */
+	ok(rim < 6e-4 + 2e-3 * mu, "and within 0.9 a: %.1e p0", rim);
 }
 
 /* Largest stress on the plane y = 0, where and how large (1001 points, sampled). */
@@ -107,11 +162,10 @@ static void test_hertz_peak(void)
 	struct stress *s;
 
 	par.ax = par.ay = h;
-	par.dz = 0.01;
 	s = stress_new(&par);
 	stress_load(s, p);
 	for (int k = 30; k <= 60; k++) {
-		stress_mises(s, k, &row, 1, m);
+		stress_at(s, 0.01 * k, &row, 1, m);
 		for (int i = 0; i < NODES; i++)
 			if (m[NODES / 2 * NODES + i] > most) {
 				most = m[NODES / 2 * NODES + i];
@@ -122,7 +176,7 @@ static void test_hertz_peak(void)
 	near(most, 0.65975605, 2e-4, "mu = 0.3: largest stress below the surface");
 	near(x, 0.3188, h, "lies ahead of the middle");
 	near(z, 0.4282, 0.01, "at this depth");
-	stress_mises(s, 0, &row, 1, m);
+	stress_at(s, 0, &row, 1, m);
 	/* Nodes on the rim, where the pressure rises like a square root. */
 	trail = m[NODES / 2 * NODES + NODES / 2 - 64];
 	lead = m[NODES / 2 * NODES + NODES / 2 + 64];
@@ -135,78 +189,148 @@ static void test_hertz_peak(void)
 	free(p);
 }
 
-/* The same layer by many spans (direct) and by the tensor (transform). */
-static void test_direct(int nx, int ny, double mu, int axis)
+/* Largest difference of sums on coarse points from full ones, over the largest pressure,
+ * at depths of every kind of sum; a rough pressure, some share of it zero. */
+static double coarse_error(
+	struct stress_par par, double share, const struct stress_criterion *criterion)
 {
-	struct stress_par par = plain(nx, ny, mu);
-	size_t n = (size_t)nx * ny;
-	double *p = calloc(n, sizeof(*p)), *m = malloc(n * sizeof(*m)), error = 0;
-	double *t = malloc(6 * n * sizeof(*t));
-	struct stress_span *span = malloc(ny * sizeof(*span));
-	struct stress *s;
+	static const double depth[] = { 0, 1, 7, 9.99, 10, 14, 20, 40 };
+	size_t n = (size_t)par.nx * par.ny;
+	double *p = malloc(3 * n * sizeof(*p)), *a = p + n, *b = a + n, error = 0;
+	double side = fmax(par.ax, par.ay), most = 0;
+	struct stress_span *span = malloc(par.ny * sizeof(*span));
+	struct stress *s, *full;
 
-	par.ax = 1.5e-6, par.ay = 1e-6, par.dz = 0.7e-6, par.axis = axis;
-	par.method = STRESS_DIRECT;
+	par.criterion = criterion;
 	s = stress_new(&par);
-	for (int k = 0; k < 6; k++)
-		p[(size_t)(n * philox_uniform(3, nx, RNG_NOISE, k))] = 1e9 * (k + 1);
-	stress_load(s, p);
-	for (int layer = 0; layer < 4; layer++) {
-		stress_mises(s, layer, span, whole_grid(&par, span), m);
-		stress_tensor(s, layer, t);
-		for (size_t i = 0; i < n; i++) {
-			double v[6];
+	par.method = STRESS_FULL;
+	full = stress_new(&par);
+	for (size_t i = 0; i < n; i++) {
+		double x = 2 * M_PI * (double)(i % par.nx) / 50,
+		       y = 2 * M_PI * (double)(i / par.nx) / 50;
+		double h = cos(2 * x + 3 * y + 1) + cos(7 * x - 2 * y) + cos(5 * y) +
+			   0.5 * cos(13 * x + 11 * y + 2) + 0.3 * cos(21 * x - 17 * y);
 
-			for (int c = 0; c < 6; c++)
-				v[c] = t[c * n + i];
-			error = fmax(error, fabs(stress_von_mises(v) - m[i]) / 6e9);
-		}
+		p[i] = fmax(0, h - share);
+		most = fmax(most, p[i]);
 	}
-	ok(stress_work(s).direct_layers == 4 && error < 1e-14,
-		"%dx%d, mu %g along %c: direct sums and transforms agree to %.1e", nx, ny,
-		mu, "xy"[axis], error);
+	stress_load(s, p);
+	stress_load(full, p);
+	for (size_t k = 0; k < sizeof(depth) / sizeof(*depth); k++) {
+		size_t rows = whole_grid(&par, span);
+
+		stress_at(s, depth[k] * side, span, rows, a);
+		stress_at(full, depth[k] * side, span, rows, b);
+		for (size_t i = 0; i < n; i++)
+			error = fmax(error, fabs(a[i] - b[i]) / most);
+	}
 	stress_free(s);
+	stress_free(full);
 	free(span);
-	free(t);
-	free(m);
 	free(p);
+	return error;
 }
 
-/* One loaded cell: the sum is the patch. */
-static void test_patch(void)
+static void test_coarse(void)
 {
-	struct stress_par par = plain(9, 7, 0.4);
-	double p[63] = { 0 }, t[6 * 63], n[6], s[6], turned[6], error = 0;
-	struct stress *st = stress_new(&par);
+	static const char *const dense[] = { "few cells loaded",
+		"half of the cells loaded" };
 
-	p[3 * 9 + 4] = 2;
-	stress_load(st, p);
-	stress_tensor(st, 2, t);
-	for (int i = 0; i < 63; i++) {
-		stress_patch(0.5, 0.5, 0.3, i % 9 - 4, i / 9 - 3, 2, n, s);
-		for (int c = 0; c < 6; c++)
-			error = fmax(
-				error, fabs(t[c * 63 + i] - 2 * (n[c] + 0.4 * s[c])));
+	for (int k = 0; k < 8; k++) {
+		struct stress_par par = plain(k & 1 ? 150 : 131, k & 1 ? 97 : 160, 0.4);
+		double share = k & 1 ? 0 : 1.9, error;
+
+		par.axis = k >> 1 & 1;
+		par.periodic = k >> 2 & 1;
+		par.ax = 1e-6;
+		par.ay = k & 1 ? 1e-6 : 1.7e-6;
+		error = coarse_error(par, share, NULL);
+		ok(error < 1e-4,
+			"%s, %s, shear along %c: coarse sums within %.1e of p_max",
+			par.periodic ? "periodic" : "free", dense[k & 1], "xy"[par.axis],
+			error);
 	}
-	near(error, 0, 1e-15, "one cell: the tensor of the patch, shear along x");
-	stress_free(st);
-	par.axis = 1;
-	st = stress_new(&par);
-	stress_load(st, p);
-	stress_tensor(st, 2, t);
-	error = 0;
-	for (int i = 0; i < 63; i++) {
-		stress_patch(0.5, 0.5, 0.3, i % 9 - 4, i / 9 - 3, 2, n, s);
-		stress_patch(0.5, 0.5, 0.3, i / 9 - 3, i % 9 - 4, 2, turned, s);
-		turned[STRESS_XX] = s[STRESS_YY], turned[STRESS_YY] = s[STRESS_XX];
-		turned[STRESS_ZZ] = s[STRESS_ZZ], turned[STRESS_XY] = s[STRESS_XY];
-		turned[STRESS_XZ] = s[STRESS_YZ], turned[STRESS_YZ] = s[STRESS_XZ];
-		for (int c = 0; c < 6; c++)
-			error = fmax(error,
-				fabs(t[c * 63 + i] - 2 * (n[c] + 0.4 * turned[c])));
+	{
+		struct stress_par par = plain(120, 120, 0.4);
+		double error = coarse_error(par, 1, &stress_tresca_criterion);
+
+		ok(error < 1e-4, "the same by Tresca's criterion: within %.1e", error);
+		par = plain(80, 40, 0.2);
+		par.ay = 30;
+		error = coarse_error(par, 1, NULL);
+		ok(error < 1e-13, "elongated cells are summed in full (%.1e)", error);
 	}
-	near(error, 0, 1e-15, "one cell: the tensor of the patch, shear along y");
-	stress_free(st);
+}
+
+/* Criteria against principal stresses. */
+static void test_criteria(void)
+{
+	double mises = 0, tresca = 0, over = 0;
+
+	for (int k = 0; k < 1000; k++) {
+		double t[6], v[STRESS_DEVIATOR], p[3], a, b, c, norm = 0;
+
+		for (int i = 0; i < 6; i++)
+			t[i] = 2 * philox_uniform(7, 0, RNG_NOISE, 6 * k + i) - 1;
+		v[DEV_X] = t[STRESS_XX] - t[STRESS_ZZ],
+		v[DEV_Y] = t[STRESS_YY] - t[STRESS_ZZ];
+		v[DEV_XY] = t[STRESS_XY], v[DEV_XZ] = t[STRESS_XZ],
+		v[DEV_YZ] = t[STRESS_YZ];
+		stress_principal(t, p);
+		for (int i = 0; i < 3; i++)
+			norm += p[i] * p[i];
+		norm = sqrt(norm);
+		a = p[0] - p[1], b = p[1] - p[2], c = p[2] - p[0];
+		mises = fmax(mises, fabs(stress_von_mises_criterion.value(v) -
+					    sqrt((a * a + b * b + c * c) / 2)));
+		tresca = fmax(tresca, fabs(stress_tresca_criterion.value(v) + c));
+		over = fmax(over, stress_von_mises_criterion.value(v) /
+					  (stress_von_mises_criterion.norm * norm));
+		over = fmax(over, stress_tresca_criterion.value(v) /
+					  (stress_tresca_criterion.norm * norm));
+	}
+	near(mises, 0, 1e-14, "von Mises: the three differences of principal stresses");
+	near(tresca, 0, 1e-14, "Tresca: the largest difference");
+	ok(over <= 1 && over > 0.98, "their bounds by the norm hold (%.4f)", over);
+}
+
+/* One loaded cell: its pyramid by quadrature of uniformly loaded cells that shrink to
+ * strips, and its load from afar. */
+static void test_element(void)
+{
+	struct influence_par par = { .ax = 1, .ay = 1, .nu = 0.3, .mu = 0.4 };
+	double error = 0, far = 0;
+
+	for (int k = 0; k < 60; k++) {
+		double x = (k % 4) - 0.0, y = k / 4 % 3, z = 0.2 + 0.7 * (k / 12),
+		       sum[6] = { 0 };
+		struct influence f = influence_element(&par, x, y, z), g;
+		int parts = 120;
+
+		for (int i = 0; i < parts; i++)
+			for (int j = 0; j < parts; j++) {
+				double u = (i + 0.5) / parts * 2 - 1,
+				       v = (j + 0.5) / parts * 2 - 1;
+				double n[6], s[6], w = (1 - fabs(u)) * (1 - fabs(v));
+
+				stress_patch(1. / parts, 1. / parts, 0.3, x - u, y - v, z,
+					n, s);
+				for (int c = 0; c < 6; c++)
+					sum[c] += w * (n[c] + 0.4 * s[c]);
+			}
+		error = fmax(error,
+			fabs(influence_image(&par, &f, DEV_XY, 0, 0) - sum[STRESS_XY]));
+		error = fmax(error,
+			fabs(influence_image(&par, &f, DEV_XZ, 0, 0) - sum[STRESS_XZ]));
+		error = fmax(error, fabs(influence_image(&par, &f, DEV_X, 0, 0) -
+					    (sum[STRESS_XX] - sum[STRESS_ZZ])));
+		g = influence_element(&par, 40 + x, y, 30);
+		f = influence_point(&par, 40 + x, y, 30);
+		far = fmax(far, fabs(g.shear[DEV_X] / f.shear[DEV_X] - 1));
+	}
+	/* Parts of 1/60 of the side replace slopes by steps. */
+	ok(error < 3e-4, "element: within %.1e of a sum over 14400 parts of it", error);
+	ok(far > 0 && far < 1e-3, "and a point load from afar (%.1e)", far);
 }
 
 /* No node outside the spans reaches the limit. */
@@ -233,7 +357,7 @@ static void test_reach(double mu)
 				span[i].end - span[i].begin);
 			kept += span[i].end - span[i].begin;
 		}
-		stress_mises(s, layer, all, whole_grid(&par, all), m);
+		stress_at(s, layer, all, whole_grid(&par, all), m);
 		for (int i = 0; i < SIDE * SIDE; i++) {
 			missed += m[i] > 0.2 && !in[i];
 			failed += m[i] > 0.2;
@@ -331,7 +455,7 @@ static void test_periodic_reach(void)
 		p[(int)(SIDE * SIDE * philox_uniform(6, 0, RNG_NOISE, k))] = 1 + k;
 	stress_load(s, p);
 	for (int layer = 0; layer < 60; layer++) {
-		stress_mises(s, layer, all, whole_grid(&par, all), m);
+		stress_at(s, layer, all, whole_grid(&par, all), m);
 		for (int i = 0; i < SIDE * SIDE; i++)
 			last = m[i] > limit ? layer : last;
 		if (stress_reach(s, layer, limit, span))
@@ -361,20 +485,18 @@ static void test_refusals(void)
 	stress_free(s);
 	par.nu = 0.6;
 	ok(!stress_new(&par), "Poisson's ratio over one half");
-	par.nu = 0.3;
-	par.dz = 0;
-	ok(!stress_new(&par), "no depth step");
 }
 
 int main(void)
 {
 	test_hertz();
 	test_hertz_peak();
-	test_patch();
-	test_direct(17, 9, 0.3, 0);
-	test_direct(12, 33, 0.3, 1);
-	test_direct(16, 16, 0, 0);
-	test_direct(40, 1, 5, 0);
+	test_surface_order(0);
+	test_surface_order(0.3);
+	test_surface_order(1);
+	test_element();
+	test_criteria();
+	test_coarse();
 	test_reach(0);
 	test_reach(0.3);
 	test_periodic();

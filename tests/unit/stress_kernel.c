@@ -79,29 +79,6 @@ static void check_equilibrium(void)
 	near(most, 0, 1e-8, "stress is in equilibrium (divergence by differences)");
 }
 
-/* The grid is the patch, cell by cell; far cells by quadrature agree with corners. */
-static void check_cells(double ax, double ay, double z, double tolerance)
-{
-	enum { W = 90 };
-	double *n = malloc(2 * W * W * N * sizeof(*n)), *s = n + W * W * N, error = 0;
-
-	stress_cells(ax, ay, 0.3, z, W, W, n, s);
-	for (int j = 0; j < W; j++)
-		for (int i = 0; i < W; i++) {
-			double pn[N], ps[N], size;
-
-			stress_patch(ax / 2, ay / 2, 0.3, i * ax, j * ay, z, pn, ps);
-			/* Stress falls like the area over the distance squared. */
-			size = ax * ay /
-			       (ax * ay + i * ax * i * ax + j * ay * j * ay + z * z);
-			error = fmax(error, worst(n + (j * W + i) * N, pn) / size);
-			error = fmax(error, worst(s + (j * W + i) * N, ps) / size);
-		}
-	ok(error < tolerance, "cells %g x %g at z = %g: error %.1e of the local size", ax,
-		ay, z, error);
-	free(n);
-}
-
 static void check_principal(void)
 {
 	double s[N] = { 3, -1, 0.5, 0.25, -2, 1 }, p[3], i1, i2, i3;
@@ -145,10 +122,6 @@ int main(void)
 	check_table("tests/data/patch_shear_x.tsv", 1);
 	check_equilibrium();
 	/* Corners lose (distance / cell)^2 ulps against their own size. */
-	check_cells(1, 1, 0, 1e-10);
-	check_cells(1, 1, 0.5, 1e-10);
-	check_cells(1, 1, 80, 1e-9);
-	check_cells(2e-6, 1e-6, 3e-6, 1e-10);
 	check_principal();
 	check_point();
 	return tap_done();

@@ -95,7 +95,7 @@ static void check_small(void)
 static void check_fill(void)
 {
 	enum { NX = 21, NY = 17 };
-	double z[NX * NY], worst = 0;
+	double z[NX * NY], worst = 0, residual;
 	int steps;
 
 	for (int iy = 0; iy < NY; iy++)
@@ -106,7 +106,7 @@ static void check_fill(void)
 			z[iy * NX + ix] = NAN;
 	z[14 * NX + 5] = NAN;
 	ok(surface_missing(NX, NY, z) == 8 * 14 + 1, "missing samples are counted");
-	ok(surface_fill(NX, NY, z, &steps) && steps > 0, "a hole is filled");
+	ok(surface_fill(NX, NY, z, &steps, &residual) && steps > 0, "a hole is filled");
 	for (int iy = 0; iy < NY; iy++)
 		for (int ix = 0; ix < NX; ix++)
 			worst = fmax(
@@ -116,8 +116,15 @@ static void check_fill(void)
 	/* A hole at the rim has no slope across it: one known column spreads. */
 	for (int i = 0; i < NX * NY; i++)
 		z[i] = i % NX ? NAN : 4;
-	surface_fill(NX, NY, z, &steps);
+	surface_fill(NX, NY, z, &steps, &residual);
 	near(z[NX * NY - 1], 4, 1e-9, "fill: constant beyond the last known column");
+	ok(residual <= SURFACE_FILLED, "fill: the residual is returned (%.1e)", residual);
+	/* The numbers leave the range of doubles: no result, and the residual says so. */
+	for (int i = 0; i < NX * NY; i++)
+		z[i] = i % NX ? NAN : i % 2 ? 1e300 : -1e300;
+	surface_fill(NX, NY, z, &steps, &residual);
+	ok(!(residual <= SURFACE_FILLED),
+		"fill: an iteration that fails is not passed off as a result");
 }
 
 static double cubic_error(int n)

@@ -8,9 +8,10 @@
 
 static int tap_tests, tap_bad;
 
-/* One result; the description is a printf format. */
-__attribute__((format(printf, 2, 3))) static inline int ok(
-	int good, const char *format, ...)
+/* One result; the description is a printf format.  A failure names file and line. */
+#define ok(good, ...) tap_ok(__FILE__, __LINE__, good, __VA_ARGS__)
+__attribute__((format(printf, 4, 5))) static inline int tap_ok(
+	const char *file, int line, int good, const char *format, ...)
 {
 	va_list ap;
 
@@ -20,15 +21,20 @@ __attribute__((format(printf, 2, 3))) static inline int ok(
 	vprintf(format, ap);
 	va_end(ap);
 	putchar('\n');
+	if (!good)
+		printf("# at %s:%d\n", file, line);
 	return good;
 }
 
 /* |got - want| <= tolerance, absolute. */
-static inline int near(double got, double want, double tolerance, const char *what)
+#define near(got, want, tolerance, what) \
+	tap_near(__FILE__, __LINE__, got, want, tolerance, what)
+static inline int tap_near(const char *file, int line, double got, double want,
+	double tolerance, const char *what)
 {
 	int good = fabs(got - want) <= tolerance;
 
-	ok(good, "%s", what);
+	tap_ok(file, line, good, "%s", what);
 	if (!good)
 		printf("# got %.17g, want %.17g, difference %.3g > %.3g\n", got, want,
 			got - want, tolerance);

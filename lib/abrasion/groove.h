@@ -1,0 +1,27 @@
+/* groove.h - grooves along x cut into heights on a grid
+ *
+ * Every height along the way is lowered by what a sphere of the given depth takes away
+ * there, as mean over the cell, so that the volume is that of the groove whatever the
+ * grid.  A part of it may be pushed aside: two ridges, each half as wide as the groove,
+ * take it up.  The grid repeats: what leaves it on one side comes in on the other.
+ *
+ *	struct groove g = { .x = 0, .y = 5e-5, .length = 1e-3, .diameter = 1e-5,
+ *		.depth = 1e-6, .cut = 0.5 };
+ *	groove_cut(nx, ny, dx, dy, z, &g);
+ */
+#ifndef ABRASION_GROOVE_H
+#define ABRASION_GROOVE_H
+
+struct groove {
+	double x, y;     /* where it begins, m from the corner of the first cell */
+	double length;   /* along x, m */
+	double diameter; /* of the sphere, m */
+	double depth;    /* at most diameter / 2, m */
+	double cut;      /* share of its volume that leaves the surface, [0, 1] */
+};
+
+/* Returns the number of heights changed. */
+double groove_cut(
+	int nx, int ny, double dx, double dy, double *z, const struct groove *g);
+
+#endif

@@ -1,0 +1,85 @@
+/* particle.h - a hard particle between two sliding surfaces
+ *
+ * A rigid sphere of diameter d in a gap h < d sinks d - h into the two bodies, x into
+ * body 1 and y into body 2, so that the loads on both sides are equal:
+ *
+ *	H1 c(x) = H2 c(y) = F / pi,   c(x) = d x - x^2 below d / 2, d^2 / 4 above,
+ *
+ * for pi c(x) is the area of the impression and a body's hardness is the pressure in it.
+ * Where the particle slides on a body only its front half bears on that body, and the
+ * hardness counts half.  It is held by the softer body and slides on the harder one,
+ *where the groove resists less (H times its section; so wherever neither body would be
+ *grooved deeper than the radius), and on both half the way where they are equally hard.
+ *
+ * Whether it slides or rolls is told by its shape, a spheroid of the given aspect ratio
+ * k: on its way round the lines of the two normal forces come up to (k - 1/k) / 2 gaps
+ * apart, and friction turns it over only as long as that is below the coefficient.
+ *
+ * Fluid forces, elastic deflection, heat and fracture of the particle are left out.
+ *
+ *	struct abrasion_par par = { .gap = 9e-6, .hardness = { 2e9, 6e9 },
+ *		.abrasive = INFINITY, .friction = 0.1, .inlet = INFINITY };
+ *	struct abrasion a;
+ *	abrasion_particle(&par, 10e-6, 1, &a);
+ */
+#ifndef ABRASION_PARTICLE_H
+#define ABRASION_PARTICLE_H
+
+enum abrasion_motion { ABRASION_BY_SHAPE, ABRASION_ALL_GROOVE, ABRASION_ALL_ROLL };
+
+struct abrasion_par {
+	double gap;         /* m */
+	double hardness[2]; /* of the bodies, Pa */
+	double abrasive;    /* hardness of the particle, Pa; INFINITY: rigid */
+	double friction;    /* between particle and bodies */
+	double inlet;       /* radius of the ball whose gap to a flat it is, m; INFINITY:
+			     * whatever there is comes in */
+	enum abrasion_motion motion;
+};
+
+enum abrasion_mode {
+	ABRASION_FREE,     /* smaller than the gap */
+	ABRASION_REJECTED, /* too large to be drawn into the inlet */
+	ABRASION_ROLLS,
+	ABRASION_GROOVES,
+	ABRASION_EMBEDS, /* sinks into one body, too soft to mark the other */
+	ABRASION_YIELDS, /* too soft to mark either: not described */
+	ABRASION_BURIED, /* its groove is deeper than its radius: not described */
+	ABRASION_MODES
+};
+
+struct abrasion {
+	enum abrasion_mode mode;
+	double load;       /* N; nan where the particle yields */
+	double depth[2];   /* in either body, m; nan where the particle yields */
+	double section[2]; /* of the grooves, m2: volume per length slid; nan where not
+			    * described */
+};
+
+/* A particle marks a body if it is this many times as hard (J. Tribol. 132, 034502). */
+extern const double abrasion_harder;
+
+void abrasion_particle(const struct abrasion_par *par, double diameter, double aspect,
+	struct abrasion *a);
+
+/* Depth in body 1 of a sphere of diameter d that two bodies of these hardnesses share
+ * the depth d - gap of, 0 < gap < d; *load, unless NULL, is pi H1 c(x). */
+double abrasion_squeeze(
+	double d, double gap, double hardness1, double hardness2, double *load);
+
+/* Section of the groove of a sphere of diameter d at a depth of at most d / 2, m2. */
+double abrasion_section(double d, double depth);
+
+/* The largest sphere that friction draws between a ball of radius R and a flat a gap h
+ * apart: tan of half the angle between the faces is the coefficient. */
+double abrasion_largest(double friction, double radius, double gap);
+
+/* Gap at which n particles carry a load together, aspect NULL for spheres: the one below
+ * which they carry more.  *carried is what they carry there, which may differ from the
+ * load where the way they move changes at that gap.  NAN where they cannot carry it at
+ * any gap; *carried is the most they can.  The gap of par is not used. *evaluations
+ * counts particles. */
+double abrasion_gap(const struct abrasion_par *par, const double *diameter,
+	const double *aspect, long n, double load, double *carried, double *evaluations);
+
+#endif

@@ -1,0 +1,113 @@
+#include "abrasion/population.h"
+#include "num/philox.h"
+#include "num/room.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* Exponent of N between point k and k + 1. */
+static double slope(const struct population *p, int k)
+{
+	return log(p->number[k] / p->number[k + 1]) /
+	       log(p->diameter[k + 1] / p->diameter[k]);
+}
+
+/* The line through all points, with what is beyond largest. */
+static double line(const struct population *p, double d)
+{
+	int k = d > p->diameter[1];
+
+	return p->number[k] * pow(d / p->diameter[k], -slope(p, k));
+}
+
+double population_larger(const struct population *p, double d)
+{
+	return d < p->largest ? line(p, d) - line(p, p->largest) : 0;
+}
+
+double population_diameter(const struct population *p, double n)
+{
+	double all = n + line(p, p->largest);
+	int k = all < p->number[1];
+	double s = slope(p, k);
+
+	return s > 0 ? p->diameter[k] * pow(all / p->number[k], -1 / s) : p->diameter[k];
+}
+
+int population_draw(const struct population *p, double volume, double least,
+	uint64_t seed, uint32_t realisation, size_t most, double **list, size_t *n)
+{
+	double all, sum = 0;
+	size_t room = 0;
+
+	*list = NULL;
+	*n = 0;
+	all = volume * population_larger(p, fmax(least, p->diameter[0]));
+	if (all > (double)most)
+		return -1;
+	for (;;) {
+		sum -= log(philox_uniform(seed, realisation, RNG_ABRASION, *n));
+		if (!(sum < all))
+			return 0;
+		if (*n == most || room_for(list, &room, *n + 1, sizeof **list)) {
+			free(*list);
+			*list = NULL;
+			return -1;
+		}
+		(*list)[(*n)++] = population_diameter(p, sum / volume);
+	}
+}
+
+/* Midpoints in ln d: N falls by the difference from step to step. */
+void population_mean(const struct population *p, const struct abrasion_par *par, size_t n,
+	struct population_mean *m)
+{
+	double from = log(fmax(par->gap, p->diameter[0])), to = log(p->largest);
+
+	*m = (struct population_mean){ 0 };
+	for (size_t i = 0; i < n && from < to; i++) {
+		double low = from + (to - from) * (double)i / (double)n;
+		double high = from + (to - from) * (double)(i + 1) / (double)n;
+		double number = par->gap * (line(p, exp(low)) - line(p, exp(high)));
+		struct abrasion a;
+
+		abrasion_particle(par, exp(0.5 * (low + high)), 1, &a);
+		if (!isnan(a.load))
+			m->pressure += number * a.load;
+		if (a.mode == ABRASION_YIELDS || a.mode == ABRASION_BURIED)
+			m->undescribed += number;
+		for (int k = 0; k < 2; k++)
+			if (!isnan(a.section[k]))
+				m->section[k] += number * a.section[k];
+	}
+}
+
+/* Fewer particles are in a narrow gap, so that what they carry has a largest value: the
+ * first gap from above that will do is looked for in steps and then halved. */
+double population_gap(const struct population *p, const struct abrasion_par *par,
+	double pressure, size_t n, double *most)
+{
+	const double step = 0.98;
+	struct abrasion_par at = *par;
+	struct population_mean m;
+	double low, high = p->largest;
+
+	*most = 0;
+	for (low = high * step; low > 1e-6 * p->largest; high = low, low *= step) {
+		at.gap = low;
+		population_mean(p, &at, n, &m);
+		*most = fmax(*most, m.pressure);
+		if (m.pressure >= pressure)
+			break;
+	}
+	if (*most < pressure)
+		return NAN;
+	for (int k = 0; k < 60; k++) {
+		at.gap = 0.5 * (low + high);
+		population_mean(p, &at, n, &m);
+		if (m.pressure >= pressure)
+			low = at.gap;
+		else
+			high = at.gap;
+	}
+	return low;
+}

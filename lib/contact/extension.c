@@ -1,0 +1,353 @@
+#include "contact/extension.h"
+#include "contact/transfer.h"
+#include "num/convolve.h"
+#include "num/fft.h"
+#include "num/lanes.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+	LEVELS = 30,
+	COARSEST = 1024, /* cells to solve on */
+	STEPS = 20,      /* of conjugate gradients there */
+	ROWS = 16        /* rows in one job */
+};
+
+struct level {
+	struct contact_par par;
+	size_t nx, ny;
+	struct transfer from; /* the next finer grid */
+	double *value;        /* weighted residual, then what becomes of it */
+	double *weight;       /* part of the cell that is active */
+};
+
+struct extension {
+	struct contact_par par;
+	struct level own[LEVELS], *level; /* level[0]: of half as many cells each way */
+	int levels, borrowed;
+	double *memory;         /* of the levels, unless lent */
+	double *scratch;        /* 2 rows for each thread */
+	size_t row;             /* doubles in one of them */
+	struct convolve *plane; /* of the coarsest level */
+	double *stiffness;
+	double *gradient, *step, *image; /* there */
+
+	/* of the call in progress */
+	int now;
+	const unsigned char *active;
+	double *residual;
+};
+
+/* |q| */
+static double wave_number(const void *context, size_t kx, size_t ky)
+{
+	const struct contact_par *par = context;
+
+	return 2 * M_PI *
+	       hypot((double)kx / (par->nx * par->dx), (double)ky / (par->ny * par->dy));
+}
+
+static int make_coarsest(struct extension *e)
+{
+	struct level *l = &e->level[e->levels - 1];
+
+	e->plane = convolve_new(l->nx, l->ny, CONVOLVE_PERIODIC, NULL);
+	if (!e->plane)
+		return -1;
+	e->stiffness = convolve_alloc(e->plane);
+	e->gradient = fft_alloc(3 * l->nx * l->ny);
+	if (!e->stiffness || !e->gradient)
+		return -1;
+	e->step = e->gradient + l->nx * l->ny;
+	e->image = e->step + l->nx * l->ny;
+	return convolve_spectrum(e->plane, e->stiffness, wave_number, &l->par);
+}
+
+static int make_levels(struct extension *e, double *memory, size_t room)
+{
+	const struct contact_par *fine = &e->par;
+	size_t cells = 0;
+
+	e->level = e->own;
+	while (e->levels < LEVELS) {
+		struct level *l = &e->own[e->levels];
+
+		if ((size_t)fine->nx * (size_t)fine->ny <= COARSEST ||
+			!transfer_coarsen(fine, &l->par))
+			break;
+		e->levels++;
+		l->nx = (size_t)l->par.nx;
+		l->ny = (size_t)l->par.ny;
+		cells += l->nx * l->ny;
+		if (transfer_make(&l->from, fine, &l->par) != 0)
+			return -1;
+		fine = &l->par;
+	}
+	if (2 * cells > room) {
+		memory = e->memory = fft_alloc(2 * cells);
+		if (!memory)
+			return -1;
+	}
+	for (int k = 0; k < e->levels; k++) {
+		struct level *l = &e->own[k];
+
+		l->value = memory;
+		l->weight = l->value + l->nx * l->ny;
+		memory = l->weight + l->nx * l->ny;
+	}
+	return e->levels > 0 ? make_coarsest(e) : 0;
+}
+
+struct extension *extension_new(const struct contact_par *par,
+	const struct extension *finer, double *memory, size_t room)
+{
+	struct extension *e = calloc(1, sizeof(*e));
+
+	if (!e)
+		return NULL;
+	if (finer && finer->levels > 1) {
+		*e = *finer;
+		e->par = *par;
+		e->level = finer->level + 1;
+		e->levels = finer->levels - 1;
+		e->borrowed = 1;
+		return e;
+	}
+	e->par = *par;
+	e->row = (size_t)par->nx + TRANSFER_TAPS;
+	e->scratch = fft_alloc(2 * (size_t)pool_threads(par->pool) * e->row);
+	if (e->scratch && make_levels(e, memory, room) == 0)
+		return e;
+	extension_free(e);
+	return NULL;
+}
+
+void extension_free(struct extension *e)
+{
+	if (e && !e->borrowed) {
+		for (int k = 0; k < e->levels; k++)
+			transfer_done(&e->own[k].from);
+		convolve_free(e->plane);
+		fft_free(e->stiffness);
+		fft_free(e->gradient);
+		fft_free(e->memory);
+		fft_free(e->scratch);
+	}
+	free(e);
+}
+
+static size_t smaller(size_t a, size_t b)
+{
+	return a < b ? a : b;
+}
+
+static inline void add_cells(double *to, double w, lanes x, int n)
+{
+	lanes_store(to, lanes_load(to, n) + w * x, n);
+}
+
+/* Adds w times a fine row of the residual, which is 0 where it is not active, and w where
+ * it is. */
+static void add_residual(const struct extension *e, size_t row, double w, double *value,
+	double *weight, size_t n)
+{
+	const double *r = e->residual + row * n;
+	const unsigned char *a = e->active + row * n;
+
+	for (size_t x = 0; x < n; x += 2) {
+		int k = x + 1 < n ? 2 : 1;
+
+		add_cells(value + x, w, lanes_load(r + x, k), k);
+		add_cells(
+			weight + x, w, lanes_if(lanes_flags(a + x, k), lanes_all(1)), k);
+	}
+}
+
+/* The same for a level. */
+static void add_level(const struct level *l, size_t row, double w, double *value,
+	double *weight, size_t n)
+{
+	const double *v = l->value + row * n, *u = l->weight + row * n;
+
+	for (size_t x = 0; x < n; x += 2) {
+		int k = x + 1 < n ? 2 : 1;
+
+		add_cells(value + x, w, lanes_load(v + x, k), k);
+		add_cells(weight + x, w, lanes_load(u + x, k), k);
+	}
+}
+
+static void add_row(const struct extension *e, size_t row, double w, double *value,
+	double *weight, size_t n)
+{
+	if (e->now == 0)
+		add_residual(e, row, w, value, weight, n);
+	else
+		add_level(&e->level[e->now - 1], row, w, value, weight, n);
+}
+
+static double cover(const double *part, const double *fine)
+{
+	return part[0] * fine[0] + part[1] * fine[1] + part[2] * fine[2];
+}
+
+/* Rows of a level from those of the next finer one. */
+static void gather(void *context, size_t job, int worker)
+{
+	struct extension *e = context;
+	struct level *l = &e->level[e->now];
+	const struct axis *ax = &l->from.x, *ay = &l->from.y;
+	double *value = e->scratch + 2 * (size_t)worker * e->row,
+	       *weight = value + e->row;
+
+	for (size_t y = job * ROWS; y < smaller((job + 1) * ROWS, l->ny); y++) {
+		memset(value, 0, e->row * sizeof(*value));
+		memset(weight, 0, e->row * sizeof(*weight));
+		for (size_t k = 0; k < TRANSFER_TAPS; k++)
+			if (ay->cover[TRANSFER_TAPS * y + k] > 0)
+				add_row(e, ay->first[y] + k,
+					ay->cover[TRANSFER_TAPS * y + k], value, weight,
+					ax->n);
+		for (size_t x = 0; x < l->nx; x++) {
+			const double *part = ax->cover + TRANSFER_TAPS * x;
+			size_t first = ax->first[x], i = y * l->nx + x;
+
+			l->value[i] = cover(part, value + first);
+			l->weight[i] = cover(part, weight + first);
+		}
+	}
+}
+
+/* Share of a cell's own contact in its potential, the rest being what is around. */
+static double own_share(double weight)
+{
+	/* Resistance times mean |q| of the added waves: 2 asinh(1) / pi and
+	 * 7 / 18 (sqrt(2) + asinh(1)) pi over the width. */
+	const double product = 7. / 9 * asinh(1) * (M_SQRT2 + asinh(1));
+	double root = sqrt(weight);
+
+	return root / (root + product * (1 - root));
+}
+
+/* Rows of a level from the next coarser one and the cells' own; on the grid itself, for
+ * the cells that are not active. */
+static void spread(void *context, size_t job, int worker)
+{
+	struct extension *e = context;
+	const struct level *coarse = &e->level[e->now];
+	const struct axis *ax = &coarse->from.x, *ay = &coarse->from.y;
+	double *between = e->scratch + 2 * (size_t)worker * e->row;
+
+	for (size_t y = job * ROWS; y < smaller((job + 1) * ROWS, ay->n); y++) {
+		const double *low = coarse->value + ay->low[y] * ax->m;
+		const double *high = coarse->value + ay->high[y] * ax->m;
+		double share = ay->share[y];
+		double *fine = e->now ? coarse[-1].value : e->residual;
+
+		for (size_t x = 0; x < ax->m; x++)
+			between[x] = low[x] + share * (high[x] - low[x]);
+		fine += y * ax->n;
+		for (size_t x = 0; x < ax->n; x++) {
+			double a = between[ax->low[x]], b = between[ax->high[x]];
+			double around = a + ax->share[x] * (b - a);
+
+			if (e->now == 0) {
+				fine[x] = e->active[y * ax->n + x] ? fine[x] : around;
+			} else {
+				double w = coarse[-1].weight[y * ax->n + x];
+
+				fine[x] = w > 0 ? around + own_share(w) *
+								   (fine[x] / w - around)
+						: around;
+			}
+		}
+	}
+}
+
+/* Conductance by which a coarsest cell is tied to its contact, for its area. */
+static double tie(double width, double weight)
+{
+	double root = sqrt(weight);
+
+	/* A cell that is all contact: tied as if a fiftieth of its width were not. */
+	return root / (2 * asinh(1) / M_PI * width * fmax(1 - root, 0.02));
+}
+
+/* |q| r + tie (r - own) = 0 on the coarsest level, by conjugate gradients preconditioned
+ * with its diagonal. */
+static double solve_coarsest(struct extension *e)
+{
+	struct level *l = &e->level[e->levels - 1];
+	double width = sqrt(l->par.dx * l->par.dy), mean = 0, all = 0, last = 0;
+	double diagonal = M_PI * (M_SQRT2 + asinh(1)) / 3 / width; /* mean |q| */
+	size_t n = l->nx * l->ny;
+	int k = 0;
+
+	for (size_t i = 0; i < n; i++) {
+		mean += l->value[i];
+		all += l->weight[i];
+	}
+	mean /= all > 0 ? all : 1;
+	for (size_t i = 0; i < n; i++) {
+		double w = l->weight[i], own = w > 0 ? l->value[i] / w - mean : 0;
+
+		l->value[i] = own_share(w) * own;
+		e->gradient[i] = tie(width, w) * (l->value[i] - own);
+	}
+	convolve_apply(e->plane, e->stiffness, l->value, e->image);
+	for (size_t i = 0; i < n; i++)
+		e->gradient[i] += e->image[i];
+	for (; k < STEPS; k++) {
+		double moment = 0, curvature = 0, slope = 0, length;
+
+		for (size_t i = 0; i < n; i++)
+			moment += e->gradient[i] * e->gradient[i] /
+				  (diagonal + tie(width, l->weight[i]));
+		if (!(moment > 0))
+			break;
+		for (size_t i = 0; i < n; i++)
+			e->step[i] =
+				(k ? moment / last * e->step[i] : 0) -
+				e->gradient[i] / (diagonal + tie(width, l->weight[i]));
+		last = moment;
+		convolve_apply(e->plane, e->stiffness, e->step, e->image);
+		for (size_t i = 0; i < n; i++) {
+			e->image[i] += tie(width, l->weight[i]) * e->step[i];
+			curvature += e->step[i] * e->image[i];
+			slope += e->step[i] * e->gradient[i];
+		}
+		if (!(curvature > 0))
+			break;
+		length = -slope / curvature;
+		for (size_t i = 0; i < n; i++) {
+			l->value[i] += length * e->step[i];
+			e->gradient[i] += length * e->image[i];
+		}
+	}
+	for (size_t i = 0; i < n; i++)
+		l->value[i] += mean;
+	return 2 * (k + 1) * (double)n;
+}
+
+static void run_rows(struct extension *e, size_t rows,
+	void (*job)(void *context, size_t i, int worker))
+{
+	pool_run(e->par.pool, (rows + ROWS - 1) / ROWS, job, e);
+}
+
+double extension_apply(struct extension *e, const unsigned char *active, double *residual)
+{
+	double work;
+
+	if (e->levels == 0)
+		return 0;
+	e->active = active;
+	e->residual = residual;
+	for (e->now = 0; e->now < e->levels; e->now++)
+		run_rows(e, e->level[e->now].ny, gather);
+	work = solve_coarsest(e);
+	for (e->now = e->levels - 1; e->now >= 0; e->now--)
+		run_rows(e, e->level[e->now].from.y.n, spread);
+	return work / ((double)e->par.nx * (double)e->par.ny);
+}

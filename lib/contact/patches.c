@@ -1,0 +1,161 @@
+#include "contact/patches.h"
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* A cell, counted on beyond the edges of a periodic grid from where its patch began. */
+struct place {
+	int x, y;
+};
+
+struct search {
+	const struct patch_grid *grid;
+	const double *p;
+	unsigned char *seen;
+	struct place *stack;
+	size_t depth;
+};
+
+/* Index of a place, or -1 beyond a free edge. */
+static long index_of(const struct patch_grid *g, struct place a)
+{
+	if (g->periodic) {
+		a.x = (a.x % g->nx + g->nx) % g->nx;
+		a.y = (a.y % g->ny + g->ny) % g->ny;
+	}
+	if (a.x < 0 || a.y < 0 || a.x >= g->nx || a.y >= g->ny)
+		return -1;
+	return (long)a.y * g->nx + a.x;
+}
+
+/* Goes to a neighbour; what does not touch adds the side between to the perimeter. */
+static void visit(
+	struct search *s, struct contact_patch *patch, struct place a, double side)
+{
+	long i = index_of(s->grid, a);
+
+	if (i < 0 || !(s->p[i] > 0)) {
+		patch->perimeter += side;
+	} else if (!s->seen[i]) {
+		s->seen[i] = 1;
+		s->stack[s->depth++] = a;
+	}
+}
+
+static double into_grid(double x, double length, int periodic)
+{
+	return periodic ? x - length * floor(x / length) : x;
+}
+
+static struct contact_patch find_patch(struct search *s, size_t first)
+{
+	const struct patch_grid *g = s->grid;
+	struct contact_patch patch = { 0 };
+	double sum = 0, x = 0, y = 0, cell = g->dx * g->dy;
+
+	s->seen[first] = 1;
+	s->stack[s->depth++] = (struct place){ (int)(first % (size_t)g->nx),
+		(int)(first / (size_t)g->nx) };
+	while (s->depth > 0) {
+		struct place a = s->stack[--s->depth];
+		double p = s->p[index_of(g, a)];
+
+		patch.cells++;
+		sum += p;
+		x += p * (a.x + 0.5);
+		y += p * (a.y + 0.5);
+		patch.peak = p > patch.peak ? p : patch.peak;
+		visit(s, &patch, (struct place){ a.x - 1, a.y }, g->dy);
+		visit(s, &patch, (struct place){ a.x + 1, a.y }, g->dy);
+		visit(s, &patch, (struct place){ a.x, a.y - 1 }, g->dx);
+		visit(s, &patch, (struct place){ a.x, a.y + 1 }, g->dx);
+	}
+	patch.area = patch.cells * cell;
+	patch.load = sum * cell;
+	patch.x = into_grid(x / sum * g->dx, g->nx * g->dx, g->periodic);
+	patch.y = into_grid(y / sum * g->dy, g->ny * g->dy, g->periodic);
+	return patch;
+}
+
+/* Room for one more, doubled as needed; NULL when out of memory. */
+static struct contact_patch *grow(struct contact_patch *list, size_t n)
+{
+	struct contact_patch *more;
+
+	if (n & (n - 1))
+		return list;
+	more = realloc(list, (n ? 2 * n : 1) * sizeof(*list));
+	if (!more)
+		free(list);
+	return more;
+}
+
+struct contact_patch *contact_patches(
+	const struct patch_grid *grid, const double *pressure, size_t *n)
+{
+	size_t cells = (size_t)grid->nx * (size_t)grid->ny;
+	struct search s = { .grid = grid,
+		.p = pressure,
+		.seen = calloc(cells, 1),
+		.stack = calloc(cells, sizeof(*s.stack)) };
+	struct contact_patch *list = NULL;
+	int failed = !s.seen || !s.stack;
+
+	*n = 0;
+	for (size_t i = 0; !failed && i < cells; i++) {
+		if (!(pressure[i] > 0) || s.seen[i])
+			continue;
+		list = grow(list, *n);
+		failed = !list;
+		if (list)
+			list[(*n)++] = find_patch(&s, i);
+	}
+	free(s.seen);
+	free(s.stack);
+	if (failed) {
+		free(list);
+		list = NULL;
+		*n = 0;
+	}
+	errno = failed ? ENOMEM : 0;
+	return list;
+}
+
+double contact_corrected_area(
+	const struct patch_grid *grid, double area, double perimeter)
+{
+	double width = sqrt(grid->dx * grid->dy);
+
+	return fmax(area - (M_PI - 1 + M_LN2) / 24 * perimeter * width, 0);
+}
+
+static int compare(const void *a, const void *b)
+{
+	double x = *(const double *)a, y = *(const double *)b;
+
+	return (x > y) - (x < y);
+}
+
+int contact_quantiles(
+	const double *pressure, size_t cells, const double *part, double *quantile, int n)
+{
+	double *sorted = malloc(cells * sizeof(*sorted));
+	size_t loaded = 0;
+
+	if (!sorted)
+		return -1;
+	for (size_t i = 0; i < cells; i++)
+		if (pressure[i] > 0)
+			sorted[loaded++] = pressure[i];
+	qsort(sorted, loaded, sizeof(*sorted), compare);
+	for (int k = 0; k < n; k++) {
+		double place = loaded ? part[k] * (double)(loaded - 1) : 0;
+		size_t low = (size_t)place, high = low + 1 < loaded ? low + 1 : low;
+
+		quantile[k] = loaded ? sorted[low] + (place - (double)low) *
+							     (sorted[high] - sorted[low])
+				     : NAN;
+	}
+	free(sorted);
+	return 0;
+}

@@ -1,0 +1,156 @@
+#include "count/classes.h"
+#include "count/interval.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What is known of one class, twice: of sure rows, and with the doubtful. */
+struct class
+{
+	struct weighted number[2], volume[2];
+	double unresolved, unresolved_volume;
+};
+
+struct classes {
+	struct classes_par par;
+	int n;
+	double *edge;        /* n + 1, the last INFINITY */
+	double *most;        /* upper bound of what stretches hold above an edge */
+	double *most_volume; /* of its volume */
+	struct class *class;
+	int unknown; /* a stretch without a diameter was there */
+};
+
+static double ball(double d)
+{
+	return M_PI / 6 * d * d * d;
+}
+
+struct classes *classes_new(const double *edge, int n, const struct classes_par *par)
+{
+	struct classes *c = calloc(1, sizeof *c);
+
+	if (!c)
+		return NULL;
+	c->par = *par;
+	c->n = n;
+	c->edge = calloc(3 * ((size_t)n + 1), sizeof *c->edge);
+	c->class = calloc((size_t)n, sizeof *c->class);
+	if (!c->edge || !c->class) {
+		classes_free(c);
+		return NULL;
+	}
+	c->most = c->edge + n + 1;
+	c->most_volume = c->most + n + 1;
+	memcpy(c->edge, edge, (size_t)n * sizeof *edge);
+	c->edge[n] = INFINITY;
+	return c;
+}
+
+void classes_free(struct classes *c)
+{
+	if (!c)
+		return;
+	free(c->edge);
+	free(c->class);
+	free(c);
+}
+
+void classes_clear(struct classes *c)
+{
+	memset(c->class, 0, (size_t)c->n * sizeof *c->class);
+	memset(c->most, 0, 2 * ((size_t)c->n + 1) * sizeof *c->most);
+	c->unknown = 0;
+}
+
+/* -1 below the first class. */
+static int class_of(const struct classes *c, double d)
+{
+	int k = c->n - 1;
+
+	while (k >= 0 && d < c->edge[k])
+		k--;
+	return k;
+}
+
+void classes_add(struct classes *c, double diameter, int sure)
+{
+	double w = 1 / detection_probability(&c->par.detection, diameter);
+	int k = class_of(c, diameter);
+
+	for (int i = sure ? 0 : 1; k >= 0 && i < 2; i++) {
+		weighted_add(&c->class[k].number[i], w);
+		weighted_add(&c->class[k].volume[i], w * ball(diameter));
+	}
+}
+
+void classes_add_stretch(struct classes *c, double number, double diameter)
+{
+	int k = class_of(c, diameter);
+
+	if (!(number >= 0) || !(diameter > 0)) {
+		c->unknown = 1;
+		return;
+	}
+	if (k >= 0) {
+		c->class[k].unresolved += number;
+		c->class[k].unresolved_volume += number * ball(diameter);
+	}
+	for (k = 0; k < c->n; k++) {
+		double x = pow(diameter / c->edge[k], 3);
+
+		c->most[k] += number * fmin(x * x, x * x * x * x);
+		c->most_volume[k] += number * ball(diameter) * x;
+	}
+}
+
+/* Adds up the classes from first to last. */
+static void count(const struct classes *c, int first, int last, struct class_count *out)
+{
+	struct weighted number[2] = { { 0 } }, volume[2] = { { 0 } };
+	double lower = c->edge[first], upper = c->edge[last + 1], low, high;
+	/* The least likely to be seen, and the largest. */
+	double weight = 1 / detection_probability(&c->par.detection, lower);
+	double heavy = ball(upper) / detection_probability(&c->par.detection, upper);
+
+	*out = (struct class_count){ 0 };
+	for (int k = first; k <= last; k++) {
+		for (int i = 0; i < 2; i++) {
+			struct weighted *from[2] = { &c->class[k].number[i],
+				&c->class[k].volume[i] };
+			struct weighted *to[2] = { &number[i], &volume[i] };
+
+			for (int j = 0; j < 2; j++) {
+				to[j]->n += from[j]->n;
+				to[j]->sum += from[j]->sum;
+				to[j]->squares += from[j]->squares;
+				to[j]->largest = fmax(to[j]->largest, from[j]->largest);
+			}
+		}
+		out->unresolved += c->class[k].unresolved;
+		out->volume.value += c->class[k].unresolved_volume;
+	}
+	out->sure = number[0].n;
+	out->doubtful = number[1].n - number[0].n;
+	out->number.value = number[0].sum + out->unresolved;
+	out->volume.value += volume[0].sum;
+	weighted_interval(&number[0], 0, c->par.confidence, &out->number.low, &high);
+	weighted_interval(&volume[0], 0, c->par.confidence, &out->volume.low, &high);
+	weighted_interval(&number[1], weight, c->par.confidence, &low, &out->number.high);
+	if (number[1].n > 0 &&
+		isinf(upper)) /* the largest that was seen stands for more */
+		heavy = volume[1].largest;
+	weighted_interval(&volume[1], heavy, c->par.confidence, &low, &out->volume.high);
+	out->number.high += c->unknown ? INFINITY : c->most[first];
+	out->volume.high += c->unknown ? INFINITY : c->most_volume[first];
+}
+
+void classes_count(const struct classes *c, int k, struct class_count *out)
+{
+	count(c, k, k, out);
+}
+
+void classes_count_above(const struct classes *c, int k, struct class_count *out)
+{
+	count(c, k, c->n - 1, out);
+}

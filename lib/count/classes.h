@@ -1,0 +1,53 @@
+/* classes.h - particles of one period sorted into classes of size
+ *
+ * What a sensor saw is weighted by 1 over the probability of seeing it; stretches that
+ *are not resolved are known by the number and diameter of equal particles with the same
+ *sums of d^6 and d^12 (of the second and fourth power of the pulses).  By Markov's
+ *inequality no more than N min((d_eq / d)^6, (d_eq / d)^12) particles of the stretch are
+ *larger than d, and the sum of d^3 over these is at most N d_eq^3 (d_eq / d)^3.
+ *
+ *	struct classes *c = classes_new(edges, n, &par);
+ *	classes_add(c, d, 1);
+ *	classes_count(c, k, &count);
+ *	classes_clear(c);
+ */
+#ifndef COUNT_CLASSES_H
+#define COUNT_CLASSES_H
+
+#include "count/detection.h"
+
+struct classes_par {
+	struct detection detection;
+	double confidence;
+};
+
+/* A value and the ends of its interval. */
+struct counted {
+	double value, low, high;
+};
+
+struct class_count {
+	double sure, doubtful; /* rows */
+	double unresolved;     /* equal particles of stretches, in their class */
+	struct counted number; /* of particles, by weight */
+	struct counted volume; /* of all of them, m3 */
+};
+
+struct classes;
+
+/* n classes from edge[k] to edge[k + 1], the last without an upper end.  NULL when out of
+ * memory. */
+struct classes *classes_new(const double *edge, int n, const struct classes_par *par);
+void classes_free(struct classes *c);
+void classes_clear(struct classes *c);
+
+/* A particle; doubtful ones count for the upper end alone. */
+void classes_add(struct classes *c, double diameter, int sure);
+/* A stretch of so many equal particles; a diameter of NAN: nothing is known of it. */
+void classes_add_stretch(struct classes *c, double number, double diameter);
+
+/* Class k, or all particles of class k and above. */
+void classes_count(const struct classes *c, int k, struct class_count *out);
+void classes_count_above(const struct classes *c, int k, struct class_count *out);
+
+#endif

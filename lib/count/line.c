@@ -1,0 +1,70 @@
+#include "count/line.h"
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+
+double line_t(double confidence, size_t degrees)
+{
+	return gsl_cdf_tdist_Pinv(0.5 + 0.5 * confidence, (double)degrees);
+}
+
+int line_fit(
+	const double *x, const double *y, size_t n, double confidence, struct line *l)
+{
+	double mx = 0, my = 0, xx = 0, xy = 0, rest = 0;
+
+	if (n < 3)
+		return -1;
+	for (size_t i = 0; i < n; i++) {
+		mx += x[i] / (double)n;
+		my += y[i] / (double)n;
+	}
+	for (size_t i = 0; i < n; i++) {
+		xx += (x[i] - mx) * (x[i] - mx);
+		xy += (x[i] - mx) * (y[i] - my);
+	}
+	if (!(xx > 0))
+		return -1;
+	l->slope = xy / xx;
+	l->middle = mx;
+	l->value = my;
+	for (size_t i = 0; i < n; i++) {
+		double d = y[i] - my - l->slope * (x[i] - mx);
+
+		rest += d * d;
+	}
+	l->rms = sqrt(rest / (double)(n - 2));
+	l->slope_se = l->rms / sqrt(xx);
+	l->value_se = l->rms / sqrt((double)n);
+	l->t = line_t(confidence, n - 2);
+	return 0;
+}
+
+double line_lack_of_fit(const double *x, const double *y, size_t n, const struct line *l)
+{
+	double within = 0, about = 0, groups = 0;
+	size_t end;
+
+	for (size_t i = 0; i < n; i = end) {
+		double mean = 0, off;
+
+		for (end = i; end < n && x[end] == x[i]; end++)
+			mean += y[end];
+		mean /= (double)(end - i);
+		for (size_t k = i; k < end; k++)
+			within += (y[k] - mean) * (y[k] - mean);
+		off = mean - l->value - l->slope * (x[i] - l->middle);
+		about += (double)(end - i) * off * off;
+		groups++;
+	}
+	if (groups < 3 || (double)n <= groups || !(within > 0))
+		return NAN;
+	return gsl_cdf_fdist_Q(about / (groups - 2) / (within / ((double)n - groups)),
+		groups - 2, (double)n - groups);
+}
+
+double line_slope_p(const struct line *l, size_t n, double want)
+{
+	if (!(l->slope_se > 0))
+		return l->slope == want ? 1 : 0;
+	return 2 * gsl_cdf_tdist_Q(fabs(l->slope - want) / l->slope_se, (double)(n - 2));
+}

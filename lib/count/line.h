@@ -1,0 +1,34 @@
+/* line.h - a straight line through points, with what is not known of it
+ *
+ *	struct line l;
+ *	if (line_fit(x, y, n, 0.95, &l) == 0)
+ *		printf("%g (%g .. %g)\n", l.slope, l.slope - l.slope_half, ...);
+ */
+#ifndef COUNT_LINE_H
+#define COUNT_LINE_H
+
+#include <stddef.h>
+
+struct line {
+	double slope, slope_se;
+	double middle, value, value_se; /* at the mean of x */
+	double rms;                     /* of the residuals, n - 2 degrees of freedom */
+	double t;                       /* Student's t of the confidence */
+};
+
+/* Student's t: the interval of this confidence is as many standard errors either way. */
+double line_t(double confidence, size_t degrees);
+
+/* Least squares.  -1 with fewer than three points or a single x. */
+int line_fit(
+	const double *x, const double *y, size_t n, double confidence, struct line *l);
+
+/* Probability of a line that scatters more about the means of groups of equal x than the
+ * points within them, if it were straight (F test); points ordered by x.  NAN with fewer
+ * than three groups or one point each. */
+double line_lack_of_fit(const double *x, const double *y, size_t n, const struct line *l);
+
+/* Probability of a slope at least this far from want, if that were the true one. */
+double line_slope_p(const struct line *l, size_t n, double want);
+
+#endif

@@ -1,0 +1,44 @@
+/* input.h - the bytes of an input: a file, a pipe, or a file that is still being written
+ *
+ * Reads die where the system reports an error.  With --follow (file_follow()) a regular
+ * file that ends is waited for: another process is writing it.
+ */
+#ifndef SHELL_INPUT_H
+#define SHELL_INPUT_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <sys/types.h>
+
+struct input;
+
+/* path NULL or "-" is standard input. */
+struct input *input_open(const char *path);
+const char *input_name(const struct input *in); /* for messages */
+void input_close(struct input *in);
+
+/* With --follow: what was read so far is whole, or not, so that the end of a file is the
+ * end of the stream, or nobody's. */
+void input_whole(struct input *in, int whole);
+
+/* The next byte, which peek leaves; -1 at the end. */
+int input_get(struct input *in);
+int input_peek(struct input *in);
+/* 1 where the next bytes are these, at most 16; they stay. */
+int input_begins(struct input *in, const char *bytes);
+/* Up to n bytes: fewer only at the end. */
+size_t input_read(struct input *in, void *bytes, size_t n);
+/* What is there, at least one byte; 0 at the end. */
+size_t input_some(struct input *in, void *bytes, size_t n);
+/* A line with its newline, which only the last may lack, and a NUL behind it, in memory
+ * that grows; returns its length, 0 at the end, most + 1 where it is longer than most
+ * bytes. */
+size_t input_line(struct input *in, char **line, size_t *room, size_t most);
+/* Bytes that a regular file still holds; UINT64_MAX where nobody knows. */
+uint64_t input_left(const struct input *in);
+
+/* A bound on what is read, lowered by "NAME=N" in WEARPIPE_LIMITS; see
+ * wearpipe-streams(5). */
+size_t input_limit(const char *name, size_t standard);
+
+#endif

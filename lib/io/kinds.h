@@ -1,0 +1,13 @@
+/* kinds.h - what a stream of the wrong kind is, by its first bytes */
+#ifndef SHELL_KINDS_H
+#define SHELL_KINDS_H
+
+#include <stddef.h>
+
+enum stream_kind { KIND_OTHER, KIND_FIELD, KIND_SIGNAL, KIND_TABLE };
+
+/* Dies with "this is a signal (AU), want ..." where the n bytes begin a stream of another
+ * kind, as far as that can be told. */
+void kind_refuse(const char *name, const void *bytes, size_t n, enum stream_kind wanted);
+
+#endif

@@ -1,0 +1,113 @@
+#include "layout/search.h"
+#include <math.h>
+#include <string.h>
+
+enum { HALVINGS = 30 };             /* of the step: 1e-9 of the extent */
+static const double deviations = 3; /* of a window to either side */
+
+void layout_judge(
+	const struct layout_par *par, const double *coil, int coils, struct layout *out)
+{
+	double window = traffic_window(&par->traffic), first = 0, width = 0;
+	double narrow = window;
+	int next;
+
+	for (int k = 0; k < coils; k = next) {
+		double way, sd;
+		struct bound b;
+
+		for (next = k + 1; next < coils && !(coil[next] > coil[k]);)
+			next++;
+		if (next == coils)
+			break;
+		/* What the coils up to here know of the slowness, s/m. */
+		way = coil[next] - coil[k];
+		bound_closed(&par->bound, coil, next, &b);
+		sd = b.velocity / (par->bound.velocity * par->bound.velocity);
+		narrow = fmin(window, 2 * deviations * sd);
+		first += way * (k == 0 ? window : narrow);
+		width += way * narrow;
+	}
+	bound_closed(&par->bound, coil, coils, &out->bound);
+	out->unique = traffic_unique(&par->traffic, first);
+	out->by_width = traffic_unique(&par->traffic, width);
+}
+
+/* One search. */
+struct search {
+	const struct layout_par *par;
+	int coils;
+	double extent, least;
+	double best[LAYOUT_COILS];
+	double error; /* of the velocity, of the best */
+	long judged;
+};
+
+static int try(struct search *s, const double *coil)
+{
+	struct layout found;
+
+	s->judged++;
+	layout_judge(s->par, coil, s->coils, &found);
+	if (found.by_width < s->least || !(found.bound.velocity < s->error))
+		return 0;
+	s->error = found.bound.velocity;
+	memcpy(s->best, coil, (size_t)s->coils * sizeof *coil);
+	return 1;
+}
+
+/* All positions of coil k and those after it, from the place of the one before on. */
+static void try_all(struct search *s, double *coil, int k, int from, int steps)
+{
+	if (k == s->coils) {
+		try(s, coil);
+		return;
+	}
+	for (int i = from; i <= steps; i++) {
+		coil[k] = s->extent * i / steps;
+		try_all(s, coil, k + 1, i, steps);
+	}
+}
+
+/* Moves the coils i to j, which stay in order, by step. */
+static int move(struct search *s, int i, int j, double step)
+{
+	double coil[LAYOUT_COILS];
+
+	memcpy(coil, s->best, sizeof coil);
+	for (int k = i; k <= j; k++)
+		coil[k] = fmin(fmax(coil[k] + step, 0), s->extent);
+	if (coil[i] < coil[i - 1] || (j + 1 < s->coils && coil[j] > coil[j + 1]))
+		return 0;
+	return try(s, coil);
+}
+
+static int improve(struct search *s, double step)
+{
+	int better = 0;
+
+	for (int i = 1; i < s->coils; i++)
+		for (int j = i; j < s->coils; j++)
+			better |= move(s, i, j, step) || move(s, i, j, -step);
+	return better;
+}
+
+int layout_search(const struct layout_par *par, int coils, double extent, double least,
+	int steps, double *coil, struct layout *out)
+{
+	struct search s = { par, coils, extent, least, { 0 }, INFINITY, 0 };
+	double trial[LAYOUT_COILS] = { 0 }, step = extent / steps;
+
+	try_all(&s, trial, 1, 0, steps);
+	if (!isfinite(s.error))
+		return -1;
+	for (int k = 0; k < HALVINGS; k++) {
+		for (int turn = 0; turn < 2 * steps && improve(&s, step); turn++)
+			;
+		step /= 2;
+	}
+	memcpy(coil, s.best, (size_t)coils * sizeof *coil);
+	layout_judge(par, coil, coils, out);
+	out->judged = s.judged;
+	return 0;
+}

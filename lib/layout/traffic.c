@@ -1,0 +1,40 @@
+#include "layout/traffic.h"
+#include <math.h>
+
+enum { RINGS = 256 };                 /* of the section: 1e-5 in probability */
+static const double near_wall = 0.99; /* of the radius, as particles are drawn */
+
+/* Slowness of the particles at the share u of the flow. */
+static double slowness(const struct traffic *t, double u)
+{
+	double r = pipe_position(&t->pipe, near_wall * t->pipe.bore / 2, u);
+
+	return 1 / pipe_velocity(&t->pipe, r);
+}
+
+double traffic_alone(const struct traffic *t, double zone)
+{
+	double s[RINGS], mean = 0, sum = 0;
+
+	if (t->pipe.profile == PIPE_PLUG)
+		return exp(-2 * t->arrivals * zone / pipe_mean_velocity(&t->pipe));
+	for (int i = 0; i < RINGS; i++) {
+		s[i] = slowness(t, (i + 0.5) / RINGS);
+		mean += s[i] / RINGS;
+	}
+	for (int i = 0; i < RINGS; i++)
+		sum += exp(-t->arrivals * zone * (s[i] + mean));
+	return sum / RINGS;
+}
+
+double traffic_window(const struct traffic *t)
+{
+	double fast = 1 / pipe_velocity(&t->pipe, 0), slow = slowness(t, 1);
+
+	return slow * (1 + t->spread) - fast * (1 - t->spread);
+}
+
+double traffic_unique(const struct traffic *t, double width)
+{
+	return exp(-t->arrivals * width);
+}

@@ -1,0 +1,34 @@
+/* traffic.h - how often particles in a pipe stand in each other's way
+ *
+ * Particles arrive as a Poisson process, spread over the section of the pipe in
+ * proportion to the flow.  None comes nearer to the wall than 1 % of the radius.
+ *
+ * A pulse stands alone if no other overlaps it at its coil: other pulses last as long as
+ * their particles take, so that the probability is the mean of
+ * exp(-arrivals (T + mean T)); exp(-2 arrivals T) where all are alike.
+ *
+ * A pulse is paired rightly if no other arrives at the second coil in the window where
+ * it is expected: exp(-arrivals times the width of the window).
+ */
+#ifndef LAYOUT_TRAFFIC_H
+#define LAYOUT_TRAFFIC_H
+
+#include "signal/sensor.h"
+
+struct traffic {
+	struct pipe pipe;
+	double arrivals; /* particles per second */
+	double spread;   /* transit times differ by up to this share of those of the oil,
+			  * [0, 1) */
+};
+
+/* Mean over the particles of exp(-arrivals (T + mean T)), T = zone / v. */
+double traffic_alone(const struct traffic *t, double zone);
+
+/* Width of the window of transit times over a distance of 1 m, s. */
+double traffic_window(const struct traffic *t);
+
+/* Probability that no other particle arrives within a window of this width, s. */
+double traffic_unique(const struct traffic *t, double width);
+
+#endif

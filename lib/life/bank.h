@@ -1,0 +1,124 @@
+/* bank.h - remaining life by a bank of local trends in damage coordinates
+ *
+ * The damage D runs from 0 at the start (the median of the first three observations) to 1
+ * at the threshold and grows at the rate dD/dt = v g(D), so that in the coordinate
+ * h(D) = int_0^D dD' / g(D') it is a straight line, h = h_0 + v t, whose level and rate a
+ * Kalman filter follows over gaps of any length.  A row of a table makes a coordinate
+ * (struct bank_shape), and so does the path of an earlier unit (fleet.h).  Each
+ * runs with two kinds of noise, on the observation alone or as much again per mean gap on
+ * the damage (a Wiener process), and with three memories, observation j of k weighing
+ * (j / k)^0, (j / k)^1 or (j / k)^3 through a discount.  The variance of the noise is
+ * unknown, so that predictions are Student-t.  Innovations beyond three standard
+ * deviations are cut to that.
+ *
+ * Regime changes: as the age grows, particles are born from the present lines by their
+ * weight, whose rate from then on grows as e^{g (t - onset)}, or has jumped; each is a
+ * Kalman filter of its own, so that this is a Rao-Blackwellised particle filter
+ * (Chen, Liu, J. R. Stat. Soc. B 62 (2000) 493).  The lightest make room for new ones.
+ *
+ * Lines and particles are averaged by the logarithm of their one-step predictive
+ * densities, which fades with age as j / k and counts for at most twenty rows: rows are
+ * not independent given a wrong model (Raftery, Karny, Ettler, Technometrics 52 (2010)
+ *52; Grunwald, van Ommen, Bayesian Analysis 12 (2017) 1069).
+ *
+ * The future has regime changes too: after a time J with P(J > x) = (a / (a + x))^c at
+ *age a (what has gone on for long goes on for long) the rate begins to grow, or falls.
+ *
+ * What happens to machines: a row that all lines find surprising is held back.  It is
+ * dropped as an outlier when a later row is in order; when three in a row lie on the
+ * healthy side (a repair) or eight have been held, the level is learned anew and the
+ * rates are kept; when they run away in steps, they are taken as they are.  After a gap
+ * of more than five mean ones the machine may have stood: what the observation after it
+ * tells decides.
+ *
+ *	struct bank_chances *chances = bank_chances_new(500, seed);
+ *	struct bank *b = bank_new(&par);
+ *	for each row
+ *		bank_add(b, t, y);              (y NAN: missing)
+ *	if (bank_ready(b))
+ *		bank_draw(b, chances, t, par.threshold, life);
+ */
+#ifndef LIFE_BANK_H
+#define LIFE_BANK_H
+
+#include "num/state.h"
+#include <stdint.h>
+
+enum bank_family {
+	BANK_LINEAR = 1,
+	BANK_EXPONENTIAL = 2,
+	BANK_POWER = 4,
+	BANK_RATE = 8,
+	BANK_OTHER = 16, /* the caller's coordinates */
+	BANK_ALL = 31
+};
+
+/* g(D) = e^{par D} where scale is 0, else (1 + D / scale)^par; or, where there is a path,
+ * dD over the age at which another unit had D. */
+struct bank_shape {
+	unsigned family;
+	double scale, par;
+	double log_prior;
+	const double *age, *level; /* [n] of a path, rising; level is direction times y */
+	int n;                     /* 0: no path, else 2 or more */
+};
+
+struct bank_par {
+	double threshold;
+	int direction;                 /* +1 reached from below, -1 from above */
+	unsigned families;             /* of coordinates; 0: all */
+	const struct bank_shape *more; /* further coordinates, the caller's; NULL: none */
+	int n_more;
+	double rate_mean, rate_sd; /* what is known of dy/dt beforehand; sd 0: nothing */
+	int steady;                /* 1: no regime changes, neither past nor future */
+};
+
+enum { BANK_START = 4 }; /* observations before there is a prediction */
+
+struct bank;
+struct bank_chances; /* random numbers, shared by all units of a run */
+
+struct bank_chances *bank_chances_new(int draws, uint64_t seed); /* NULL: no memory */
+void bank_chances_free(struct bank_chances *chances);
+int bank_chances_count(const struct bank_chances *chances);
+/* Normal deviate k < 8 of a draw. */
+double bank_chance_normal(const struct bank_chances *chances, int draw, int k);
+
+/* par is copied; its shapes stay the caller's.  NULL: no memory. */
+struct bank *bank_new(const struct bank_par *par);
+void bank_free(struct bank *b);
+void bank_clear(struct bank *b); /* forgets all rows */
+
+/* Takes an observation; t rises; y NAN: none.  Those before the first on the good side of
+ * the threshold are passed over. */
+void bank_add(struct bank *b, double t, double y);
+int bank_ready(const struct bank *b);
+
+/* What is known to have happened before the next row. */
+enum bank_event {
+	BANK_REPAIR, /* the level is new, the rate as before */
+	BANK_LOAD    /* the rate is new, the level as before */
+};
+void bank_event(struct bank *b, enum bank_event event);
+
+/* Draws bank_chances_count() times from now on (>= the last t) to the first passage of
+ * the level, unsorted; INFINITY: never.  The same chances at every row make smooth
+ * successions. */
+void bank_draw(struct bank *b, const struct bank_chances *chances, double now,
+	double level, double *life);
+
+/* Weighted mean of y and of dy/dt at the last row. */
+void bank_state(const struct bank *b, double *y, double *rate);
+/* Share of the weight of a family, changed regimes left out; BANK_ALL: share of changed
+ * regimes. */
+double bank_weight(const struct bank *b, enum bank_family family);
+
+/* What was met so far. */
+struct bank_counts {
+	unsigned long outliers, shifts, halts, births;
+};
+struct bank_counts bank_counts(const struct bank *b);
+
+void bank_pass(struct bank *b, struct state *s); /* of one with the same par */
+
+#endif

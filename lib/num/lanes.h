@@ -1,0 +1,77 @@
+/* lanes.h - two doubles at a time, for passes over long arrays
+ *
+ * Vectors of 16 bytes, which every 64-bit processor has; sums are kept in two lanes in
+ * the order of the array, so that the result does not depend on the compiler's choice.
+ * Written with the vectors of GCC and Clang.  n is 2, or 1 for a last single element,
+ * which then stands in both lanes and counts once in a sum.
+ */
+#ifndef NUM_LANES_H
+#define NUM_LANES_H
+
+#include <stdint.h>
+#include <string.h>
+
+typedef double lanes __attribute__((vector_size(16)));
+typedef int64_t lane_mask __attribute__((vector_size(16))); /* -1 for yes, 0 for no */
+
+static inline lanes lanes_all(double x)
+{
+	return (lanes){ x, x };
+}
+
+static inline lanes lanes_load(const double *x, int n)
+{
+	lanes v;
+
+	if (n == 1)
+		return lanes_all(x[0]);
+	memcpy(&v, x, sizeof(v));
+	return v;
+}
+
+static inline void lanes_store(double *x, lanes v, int n)
+{
+	if (n == 1)
+		x[0] = v[0];
+	else
+		memcpy(x, &v, sizeof(v));
+}
+
+static inline lane_mask lanes_flags(const unsigned char *flag, int n)
+{
+	return (lane_mask){ -(int64_t)flag[0], -(int64_t)flag[n - 1] };
+}
+
+/* x where yes, 0 elsewhere. */
+static inline lanes lanes_if(lane_mask yes, lanes x)
+{
+	return (lanes)(yes & (lane_mask)x);
+}
+
+static inline lanes lanes_pick(lane_mask yes, lanes a, lanes b)
+{
+	return (lanes)((yes & (lane_mask)a) | (~yes & (lane_mask)b));
+}
+
+static inline lanes lanes_min(lanes a, lanes b)
+{
+	return lanes_pick(a < b, a, b);
+}
+
+static inline lanes lanes_max(lanes a, lanes b)
+{
+	return lanes_pick(a > b, a, b);
+}
+
+static inline lanes lanes_abs(lanes x)
+{
+	return lanes_max(x, -x);
+}
+
+/* sum += x, lane by lane */
+static inline void lanes_add(lanes *sum, lanes x, int n)
+{
+	*sum += n == 1 ? (lanes){ x[0], 0 } : x;
+}
+
+#endif

@@ -1,0 +1,24 @@
+/* running.c - see running.h */
+#include "num/running.h"
+#include <math.h>
+
+void running_repeat(struct running *r, double x, double times)
+{
+	double all = r->n + times, d = x - r->mean;
+
+	if (!(times > 0))
+		return;
+	r->square += d * d * r->n * times / all;
+	r->mean += d * times / all;
+	r->n = all;
+}
+
+void running_add(struct running *r, double x)
+{
+	running_repeat(r, x, 1);
+}
+
+double running_variance(const struct running *r)
+{
+	return r->n > 1 ? r->square / (r->n - 1) : NAN;
+}

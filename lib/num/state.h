@@ -1,0 +1,37 @@
+/* state.h - what an object remembers, as bytes of this machine and back
+ *
+ * One function of the object names its parts; whether they are counted, written or read
+ * is the state's business:
+ *
+ *	void order_pass(struct order *o, struct state *s)
+ *	{
+ *		state_move(s, &o->rows, sizeof o->rows);
+ *		...
+ *	}
+ *
+ *	struct state s = { 0 };              (counts: s.size bytes)
+ *	s = (struct state){ .at = bytes };   (writes)
+ *	s = (struct state){ .at = bytes, .load = 1 };
+ */
+#ifndef NUM_STATE_H
+#define NUM_STATE_H
+
+#include <stddef.h>
+#include <string.h>
+
+struct state {
+	unsigned char *at; /* NULL: only count */
+	int load;          /* 1: from there into the object */
+	size_t size;       /* so far */
+};
+
+static inline void state_move(struct state *s, void *part, size_t size)
+{
+	if (s->at && s->load)
+		memcpy(part, s->at + s->size, size);
+	else if (s->at)
+		memcpy(s->at + s->size, part, size);
+	s->size += size;
+}
+
+#endif

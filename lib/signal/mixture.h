@@ -1,0 +1,70 @@
+/* mixture.h - sources of a whole record of two channels, told apart by attenuation and
+ *delay
+ *
+ * DUET for what it was invented for: sources that are sparse in time and frequency, like
+ * talkers, each of which reaches the second channel weaker by a and later by delta,
+ *
+ *	x1 = sum of s_k,   X2(w) = sum of a_k exp(-i w delta_k) S_k(w)
+ *
+ * (Yilmaz, Rickard: Blind separation of speech mixtures via time-frequency masking, IEEE
+ * Trans. Signal Process. 52, 2004).  Peaks of the histogram of a - 1/a and delta,
+ *weighted by |X1 X2|, over the frequencies at which no delay in question turns the phase
+ *by more than half a turn, are the sources; a_k and delta_k follow by least squares over
+ *the points of the plane that are theirs; each point goes to the source that makes it
+ *most likely,
+ *
+ *	least |a_k exp(-i w delta_k) X1 - X2|^2 / (1 + a_k^2),
+ *
+ * so that the sources add up to channel 1.  The record is held: 16 bytes a frame.
+ *
+ *	struct mixture *m = mixture_new(&par);
+ *	while ((n = read(x)) > 0)
+ *		mixture_push(m, x, n);
+ *	count = mixture_find(m, source);
+ *	mixture_separate(m, y);
+ */
+#ifndef SIGNAL_MIXTURE_H
+#define SIGNAL_MIXTURE_H
+
+#include "signal/histogram.h"
+#include <stddef.h>
+
+enum { MIXTURE_SOURCES = HISTOGRAM_PEAKS };
+
+struct mixture_par {
+	size_t window,
+		hop; /* of the transform, samples: window even, hop to half of it */
+	int sources; /* how many to find; 0: as many as there are peaks */
+};
+
+struct mixture_source {
+	double attenuation, delta; /* at channel 2, samples */
+	double share;              /* of the weight of the histogram */
+};
+
+struct mixture;
+struct mixture *mixture_new(
+	const struct mixture_par *par); /* NULL: bad sizes, no memory */
+void mixture_free(struct mixture *m);
+
+/* n frames of two finite channels, interleaved; 0: no memory. */
+int mixture_push(struct mixture *m, const double *x, size_t n);
+size_t mixture_frames(const struct mixture *m);
+
+/* The sources of all that was pushed, largest share first: their number, 0 where both
+ * channels have nothing in common or are silent. */
+int mixture_find(struct mixture *m, struct mixture_source source[MIXTURE_SOURCES]);
+/* What each puts on channel 1: x[k * frames + i]; 0: no memory. */
+int mixture_separate(struct mixture *m, double *x);
+
+/* 1 if delays of more than 16 samples, which cannot be told, had a share in the record.
+ */
+int mixture_is_far(const struct mixture *m);
+
+/* Weights of the histogram of mixture_find(), by rows of the attenuation; the middle of
+ * cell (i, j). */
+const double *mixture_histogram(const struct mixture *m);
+void mixture_cell(
+	const struct mixture *m, int i, int j, double *attenuation, double *delta);
+
+#endif

@@ -1,0 +1,107 @@
+/* sketch.c - see sketch.h */
+#include "stats/sketch.h"
+#include <math.h>
+#include <stdlib.h>
+
+struct weighted {
+	double value, weight;
+};
+
+static int ascending(const void *a, const void *b)
+{
+	const struct weighted *p = a, *q = b;
+
+	return (p->value > q->value) - (p->value < q->value);
+}
+
+int sketch_sort(struct sketch *s)
+{
+	struct weighted *pair;
+
+	for (size_t i = 1;; i++) {
+		if (i >= s->n)
+			return 0;
+		if (s->value[i] < s->value[i - 1])
+			break;
+	}
+	pair = malloc(s->n * sizeof *pair);
+	if (!pair)
+		return -1;
+	for (size_t i = 0; i < s->n; i++)
+		pair[i] = (struct weighted){ s->value[i], s->weight[i] };
+	qsort(pair, s->n, sizeof *pair, ascending);
+	for (size_t i = 0; i < s->n; i++) {
+		s->value[i] = pair[i].value;
+		s->weight[i] = pair[i].weight;
+	}
+	free(pair);
+	return 0;
+}
+
+/* How many there would be if all within a ratio of their least were one. */
+static size_t merged(const struct sketch *s, double ratio)
+{
+	size_t n = 0;
+	double least = 0;
+
+	for (size_t i = 0; i < s->n; i++) {
+		if (i == 0 || s->value[i] > least * ratio) {
+			least = s->value[i];
+			n++;
+		}
+	}
+	return n;
+}
+
+static int merge(struct sketch *s, size_t most)
+{
+	double ratio = s->ratio > 1 ? s->ratio : 1, least = 0;
+	size_t n = 0;
+
+	if (sketch_sort(s))
+		return -1;
+	while (merged(s, ratio) > most / 2)
+		ratio = 1 + fmax(2 * (ratio - 1), 1e-12);
+	for (size_t i = 0; i < s->n; i++) {
+		double value = s->value[i], weight = s->weight[i];
+
+		if (i == 0 || value > least * ratio) {
+			least = s->value[n] = value;
+			s->weight[n++] = weight;
+			continue;
+		}
+		s->weight[n - 1] += weight;
+		s->value[n - 1] += (value - s->value[n - 1]) * weight / s->weight[n - 1];
+	}
+	s->n = n;
+	s->ratio = ratio;
+	return 0;
+}
+
+int sketch_add(struct sketch *s, double x, size_t most)
+{
+	if (s->n >= most && merge(s, most))
+		return -1;
+	if (s->n == s->room) {
+		size_t room = s->room ? 2 * s->room : 16;
+		double *value = realloc(s->value, room * sizeof *value), *weight;
+
+		if (value)
+			s->value = value;
+		weight = value ? realloc(s->weight, room * sizeof *weight) : NULL;
+		if (!weight)
+			return -1;
+		s->weight = weight;
+		s->room = room;
+	}
+	s->value[s->n] = x;
+	s->weight[s->n++] = 1;
+	return 0;
+}
+
+void sketch_free(struct sketch *s)
+{
+	free(s->value);
+	free(s->weight);
+	*s = (struct sketch){ 0 };
+}

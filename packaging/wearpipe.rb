@@ -1,0 +1,27 @@
+class Wearpipe < Formula
+  desc "Remaining wear life of hydraulic pumps from the debris they shed"
+  homepage "https://example.org/wearpipe"
+  url "file:///tmp/wearpipe-0.1.0.tar.gz" # made by: make dist
+  version "0.1.0"
+  license "GPL-3.0-or-later"
+
+  depends_on "pkgconf" => :build
+  depends_on "fftw"
+  depends_on "gsl"
+  depends_on "gnuplot" => :recommended
+
+  def install
+    system "make", "all"
+    bin.install Dir["bin/*"]
+    man1.install Dir["man/*.1"]
+    man5.install Dir["man/*.5"]
+    man7.install Dir["man/*.7"]
+    pkgshare.install "share/arrivals.net"
+    doc.install "README.md", "CHANGELOG.md"
+  end
+
+  test do
+    system "sh", "-c", "#{bin}/roughgen --points 16 | #{bin}/bemcontact --pressure 1MPa --estar 1GPa >out.nrrd"
+    assert_predicate testpath/"out.nrrd", :exist?
+  end
+end

@@ -1,0 +1,244 @@
+"""Rough contact, wear particles, filters and remaining wear life for numpy.
+
+A thin layer over the shared library libwearpipe.so.0 by ctypes: arrays in, arrays out, SI
+units, the same numbers as the programs.  The library is looked for in the folder that
+WEARPIPE_LIBRARY names, beside an installed prefix, and where the system looks.
+
+    import wearpipe
+    heights = wearpipe.surface(128, 1e-3, sq=0.8e-6, corr=1e-4)
+    pressure, result = wearpipe.press(heights, 1e-3 / 128, 50e6, estar=115e9)
+"""
+import ctypes
+import ctypes.util
+import os
+from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_long, c_size_t, c_uint32, c_uint64, c_void_p
+from types import SimpleNamespace
+
+import numpy as np
+
+
+class Error(RuntimeError):
+    """What the library reports: out of memory, a parameter out of range, no solution."""
+
+
+def _open():
+    folder = os.environ.get("WEARPIPE_LIBRARY")
+    here = os.path.dirname(os.path.abspath(__file__))
+    places = [os.path.join(p, "libwearpipe.so.0") for p in
+              ([folder] if folder else []) +
+              [os.path.join(here, up, "lib") for up in ("../..", "../../..", "../../../..")]]
+    for place in places:
+        if os.path.exists(place):
+            return ctypes.CDLL(place)
+    return ctypes.CDLL(ctypes.util.find_library("wearpipe") or "libwearpipe.so.0")
+
+
+_lib = _open()
+_OK, _NOT_CONVERGED = 0, 4
+_array = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
+
+
+def _struct(*fields):
+    return type("Struct", (ctypes.Structure,), {"_fields_": list(fields)})
+
+
+def _function(name, result, *arguments):
+    f = getattr(_lib, name)
+    f.restype, f.argtypes = result, list(arguments)
+    return f
+
+
+_text = _function("wp_status_text", c_char_p, c_int)
+version = _function("wp_version", c_char_p)().decode()
+
+
+def _check(status, allowed=(_OK,)):
+    if status not in allowed:
+        raise Error(_text(status).decode())
+
+
+def _made(pointer, status):
+    if not pointer:
+        raise Error(_text(status.value).decode())
+    return pointer
+
+
+def _field(values):
+    field = np.ascontiguousarray(values, dtype=np.float64)
+    if field.ndim != 2:
+        raise ValueError("want a field [iy, ix], got %d dimensions" % field.ndim)
+    return field
+
+
+# --- surfaces
+
+_SurfacePar = _struct(("nx", c_int), ("ny", c_int), ("lx", c_double), ("ly", c_double),
+                      ("kind", c_int), ("sq", c_double), ("corr_x", c_double),
+                      ("corr_y", c_double), ("hurst", c_double), ("rolloff", c_double),
+                      ("cutoff", c_double), ("seed", c_uint64))
+_ROUGHNESS = ("sa", "sq", "ssk", "sku", "sp", "sv", "sz", "sdq", "sdr", "sal", "str")
+_Roughness = _struct(*[(name, c_double) for name in _ROUGHNESS])
+_surface_new = _function("wp_surface_new", c_void_p, POINTER(_SurfacePar), POINTER(c_int))
+_surface_free = _function("wp_surface_free", None, c_void_p)
+_surface_heights = _function("wp_surface_heights", c_int, c_void_p, c_uint32, _array)
+_roughness = _function("wp_roughness", c_int, c_int, c_int, c_double, c_double, _array,
+                       POINTER(_Roughness))
+
+
+def surface(points, length, sq=1e-6, corr=None, kind="gauss", hurst=0.8, rolloff=0.0,
+            cutoff=0.0, seed=1, realisation=0):
+    """A rough surface: heights [iy, ix], m.  points and length (m): one number or (x, y);
+    corr: correlation lengths; kind: gauss, exponential or self-affine (by hurst)."""
+    nx, ny = (points, points) if np.isscalar(points) else points
+    lx, ly = (length, length * ny / max(nx, 1)) if np.isscalar(length) else length
+    corr = 0.1 * lx if corr is None else corr
+    cx, cy = (corr, corr) if np.isscalar(corr) else corr
+    par = _SurfacePar(nx, ny, lx, ly, ("gauss", "exponential", "self-affine").index(kind), sq,
+                      cx, cy, hurst, rolloff, cutoff, seed)
+    status = c_int()
+    s = _made(_surface_new(byref(par), byref(status)), status)
+    try:
+        heights = np.empty((ny, nx))
+        _check(_surface_heights(s, realisation, heights))
+        return heights
+    finally:
+        _surface_free(s)
+
+
+def roughness(heights, spacing):
+    """Parameters of ISO 25178-2 as attributes: sa, sq, ssk, sku, sp, sv, sz, sdq, sdr, sal, str."""
+    heights = _field(heights)
+    dx, dy = (spacing, spacing) if np.isscalar(spacing) else spacing
+    r = _Roughness()
+    _check(_roughness(heights.shape[1], heights.shape[0], dx, dy, heights, byref(r)))
+    return SimpleNamespace(**{name: getattr(r, name) for name in _ROUGHNESS})
+
+
+# --- contact
+
+_ContactPar = _struct(("nx", c_int), ("ny", c_int), ("dx", c_double), ("dy", c_double),
+                      ("estar", c_double), ("hardness", c_double), ("periodic", c_int),
+                      ("tolerance", c_double), ("threads", c_int))
+_CONTACT = ("pressure", "load", "approach", "indentation", "area", "energy", "gap")
+_ContactResult = _struct(*[(name, c_double) for name in _CONTACT], ("iterations", c_long))
+_contact_new = _function("wp_contact_new", c_void_p, POINTER(_ContactPar), POINTER(c_int))
+_contact_free = _function("wp_contact_free", None, c_void_p)
+_contact_press = _function("wp_contact_press", c_int, c_void_p, _array, c_double, _array,
+                           c_void_p, POINTER(_ContactResult))
+modulus = _function("wp_contact_modulus", c_double, c_double, c_double, c_double, c_double)
+
+
+def press(heights, spacing, pressure, estar, hardness=0.0, periodic=False, tolerance=1e-8,
+          threads=1):
+    """Presses a rough surface with a mean pressure (Pa).  Returns the pressure [iy, ix] and
+    the result: load, approach, area, energy, gap, converged, ..."""
+    heights = _field(heights)
+    dx, dy = (spacing, spacing) if np.isscalar(spacing) else spacing
+    ny, nx = heights.shape
+    par = _ContactPar(nx, ny, dx, dy, estar, hardness, periodic, tolerance, threads)
+    status = c_int()
+    c = _made(_contact_new(byref(par), byref(status)), status)
+    try:
+        p, r = np.zeros((ny, nx)), _ContactResult()
+        status = _contact_press(c, heights, pressure, p, None, byref(r))
+        _check(status, (_OK, _NOT_CONVERGED))
+        found = {name: getattr(r, name) for name in _CONTACT + ("iterations",)}
+        return p, SimpleNamespace(converged=status == _OK, **found)
+    finally:
+        _contact_free(c)
+
+
+# --- wear particles
+
+_DebrisPar = _struct(("nx", c_int), ("ny", c_int), ("dx", c_double), ("dy", c_double),
+                     ("dz", c_double), ("periodic", c_int), ("poisson", c_double),
+                     ("friction", c_double), ("yield_", c_double), ("potential", c_int),
+                     ("threads", c_int))
+_PARTICLE = ("cells", "volume", "diameter", "length", "width", "solidity", "x", "y", "z")
+_debris_new = _function("wp_debris_new", c_void_p, POINTER(_DebrisPar), POINTER(c_int))
+_debris_free = _function("wp_debris_free", None, c_void_p)
+_debris_wear = _function("wp_debris_wear", c_int, c_void_p, _array, _array,
+                         POINTER(POINTER(c_double)), POINTER(c_size_t))
+
+
+def wear(heights, pressure, spacing, yield_stress, friction=0.0, poisson=0.3, depth=None,
+         periodic=False, potential=False, threads=1):
+    """One step of wear.  Returns the worn heights and the particles as a structured array
+    with the fields cells, volume, diameter, length, width, solidity, x, y, z (SI)."""
+    worn, pressure = _field(heights).copy(), _field(pressure)
+    if worn.shape != pressure.shape:
+        raise ValueError("heights and pressure differ in shape")
+    dx, dy = (spacing, spacing) if np.isscalar(spacing) else spacing
+    ny, nx = worn.shape
+    par = _DebrisPar(nx, ny, dx, dy, depth or dx, periodic, poisson, friction, yield_stress,
+                     potential, threads)
+    status = c_int()
+    d = _made(_debris_new(byref(par), byref(status)), status)
+    try:
+        rows, count = POINTER(c_double)(), c_size_t()
+        _check(_debris_wear(d, worn, pressure, byref(rows), byref(count)))
+        kind = np.dtype([(name, np.float64) for name in _PARTICLE])
+        if not count.value:
+            return worn, np.empty(0, kind)
+        flat = np.ctypeslib.as_array(rows, (count.value * len(_PARTICLE),))
+        return worn, flat.copy().view(kind)
+    finally:
+        _debris_free(d)
+
+
+# --- filters
+
+_taps = _function("wp_filter_taps", c_int, c_int, c_double, c_double, c_double, _array)
+_filter_new = _function("wp_filter_new", c_void_p, _array, c_size_t, c_int, POINTER(c_int))
+_filter_free = _function("wp_filter_free", None, c_void_p)
+_filter_run = _function("wp_filter_run", c_int, c_void_p, _array, c_size_t)
+
+
+def taps(order, low, high, rate):
+    """Taps of a Hamming-windowed band-pass from low to high, Hz."""
+    h = np.empty(order + 1)
+    _check(_taps(order, low, high, rate, h))
+    return h
+
+
+def bandpass(record, low, high, rate, order=200):
+    """A record [frame] or [frame, channel], filtered; it lags by order / 2 frames."""
+    h = taps(order, low, high, rate)
+    out = np.array(record, dtype=np.float64, order="C")
+    channels = 1 if out.ndim == 1 else out.shape[1]
+    status = c_int()
+    f = _made(_filter_new(h, h.size, channels, byref(status)), status)
+    try:
+        _check(_filter_run(f, out, out.shape[0]))
+        return out
+    finally:
+        _filter_free(f)
+
+
+# --- lives
+
+_life_new = _function("wp_life_new", c_void_p, c_double, c_int, c_int, c_uint64, POINTER(c_int))
+_life_free = _function("wp_life_free", None, c_void_p)
+_life_observe = _function("wp_life_observe", c_int, c_void_p, c_double, c_double)
+_life_quantiles = _function("wp_life_quantiles", c_int, c_void_p, _array, _array, c_int,
+                            POINTER(c_double))
+
+
+def remaining_life(t, y, threshold, levels=(0.05, 0.5, 0.95), rising=None, draws=500, seed=1):
+    """Quantiles of the time left after the last of the observations y at times t until they
+    reach the threshold; inf where that much mass never does."""
+    t, y = np.asarray(t, dtype=np.float64), np.asarray(y, dtype=np.float64)
+    if t.shape != y.shape or t.ndim != 1:
+        raise ValueError("want t and y of one length")
+    rising = threshold > y[np.isfinite(y)][0] if rising is None else rising
+    status = c_int()
+    life = _made(_life_new(threshold, 1 if rising else -1, draws, seed, byref(status)), status)
+    try:
+        for row in zip(t, y):
+            _check(_life_observe(life, *row))
+        levels = np.array(levels, dtype=np.float64)
+        quantiles = np.empty_like(levels)
+        _check(_life_quantiles(life, levels, quantiles, levels.size, None))
+        return quantiles
+    finally:
+        _life_free(life)

@@ -1,0 +1,269 @@
+/* abrade - what hard particles in a gap do to the surfaces that slide on them */
+#include "abrasion/particle.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
+#include "cli/stats.h"
+#include "io/tables.h"
+#include "particles_in.h"
+#include "scratches.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { CLASSES = 1000 }; /* of the sizes of an oil: 1e-5 of pressure and wear */
+
+static const char *const motions[] = { "moment", "groove", "roll", NULL };
+static const char *const mode_names[] = { "free", "rejected", "rolls", "grooves",
+	"embeds", "yields", "buried" };
+
+static double gap = NAN, load = NAN, area = NAN, friction = NAN, abrasive = NAN;
+static double cutting = 1, slide = 1, inlet = NAN;
+static struct opt_list hardness;
+static int motion;
+static long seed = 1, body = 1;
+static const char *summary_path, *particles_path, *surface_path;
+
+static const struct opt opts[] = {
+	OPT_HEADING("Gap and bodies"),
+	{ 0, "gap", OPT_NUM, UNIT_LENGTH, &gap, 1e-12, 1, "H", "between the surfaces",
+		NULL, 0 },
+	{ 'F', "load", OPT_NUM, UNIT_FORCE, &load, 1e-30, 1e12, "F",
+		"that the particles carry instead: the gap follows", NULL, 0 },
+	{ 0, "hardness", OPT_LIST, UNIT_PRESSURE, &hardness, 1, 1e15, "H1[,H2]",
+		"of the two bodies", NULL, 0 },
+	{ 0, "abrasive-hardness", OPT_NUM, UNIT_PRESSURE, &abrasive, 1, 1e15, "H",
+		"of the particles (default rigid)", NULL, 0 },
+	{ 'u', "friction", OPT_NUM, UNIT_NONE, &friction, 0, 10, "MU",
+		"of particles on the bodies", NULL, 0 },
+	OPT_HEADING("Motion"),
+	{ 0, "inlet", OPT_NUM, UNIT_LENGTH, &inlet, 1e-9, 1e6, "R",
+		"radius of the ball whose gap to a flat it is; larger particles stay out",
+		NULL, 0 },
+	{ 0, "motion", OPT_WORD, UNIT_NONE, &motion, 0, 0, "moment|groove|roll",
+		"whether particles roll or groove: by their shape, or all alike", motions,
+		0 },
+	{ 0, "cutting", OPT_NUM, UNIT_FRACTION, &cutting, 0, 1, "C",
+		"share of a groove that is removed, not pushed aside", NULL, 0 },
+	{ 0, "slide", OPT_NUM, UNIT_LENGTH, &slide, 0, 1e9, "D", "distance slid", NULL,
+		0 },
+	{ 0, "area", OPT_NUM, UNIT_AREA, &area, 1e-18, 1e6, "A",
+		"of the contact: for rates, and for --iso", NULL, 0 },
+	OPT_TABLE(particles_rows),
+	OPT_HEADING("Output"),
+	{ 0, "surface", OPT_TEXT, UNIT_NONE, &surface_path, 0, 0, "FILE",
+		"cut the grooves into these heights and write them out", NULL, 0 },
+	{ 0, "body", OPT_INT, UNIT_COUNT, &body, 1, 2, "N", "that the surface is: 1 or 2",
+		NULL, 0 },
+	{ 0, "particles", OPT_TEXT, UNIT_NONE, &particles_path, 0, 0, "FILE",
+		"with --surface: write the table of particles to FILE", NULL, 1 },
+	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
+		"write one row per realisation", NULL, 1 },
+	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "of random numbers",
+		NULL, 0 },
+	OPT_END,
+};
+
+static const struct prog prog = { "abrade",
+	"Find what hard particles in a gap do to the surfaces that slide on them.",
+	"[file]", "table: diameter [aspect] [realisation], unless --iso",
+	"table: one row per particle; with --surface fields: height", opts };
+
+static struct table_out *table, *summary;
+static const struct population *population; /* of --iso */
+static int doubtful;
+
+static struct abrasion_par parameters(void)
+{
+	return (struct abrasion_par){ .gap = gap,
+		.hardness = { hardness.v[0], hardness.v[hardness.n - 1] },
+		.abrasive = isnan(abrasive) ? INFINITY : abrasive,
+		.friction = friction,
+		.inlet = isnan(inlet) ? INFINITY : inlet,
+		.motion = (enum abrasion_motion)motion };
+}
+
+static void check_options(int operands)
+{
+	if (isnan(gap) == isnan(load))
+		die(EXIT_USAGE, "want either --gap H or --load F");
+	if (!hardness.n)
+		die(EXIT_USAGE, "--hardness is missing: H1[,H2] in Pa");
+	if (isnan(friction))
+		die(EXIT_USAGE, "--friction is missing");
+	if (particles_path && !surface_path)
+		die(EXIT_USAGE, "--particles: the table goes to standard output unless "
+				"--surface is given");
+	particles_check(operands, area, inlet);
+}
+
+static void check_rigid(const struct abrasion_par *par)
+{
+	if (par->abrasive < abrasion_harder * fmin(par->hardness[0], par->hardness[1]))
+		die(EXIT_RUN,
+			"--abrasive-hardness %g Pa: the particles yield, what they "
+			"carry is not known",
+			par->abrasive);
+}
+
+/* Gap at which the particles of a realisation carry the load. */
+static double find_gap(
+	const struct abrasion_par *par, const struct particles_in *in, long realisation)
+{
+	double evaluations = 0, carried, found, error;
+
+	check_rigid(par);
+	found = abrasion_gap(
+		par, in->diameter, in->aspect, (long)in->n, load, &carried, &evaluations);
+	stats_add("loads_computed", evaluations);
+	if (isnan(found))
+		die(EXIT_RUN,
+			"realisation %ld: the particles carry at most %g N of %g N: the "
+			"surfaces touch",
+			realisation, carried, load);
+	error = carried / load - 1;
+	/* The way a particle moves may change at this very gap. */
+	if (fabs(error) > 1e-6) {
+		warn("realisation %ld: at a gap of %.6g m the load jumps past %g N to "
+		     "%g N",
+			realisation, found, load, carried);
+		doubtful = 1;
+	}
+	return found;
+}
+
+/* The gap of an oil, at which its particles carry the load on average. */
+static double mean_gap(const struct abrasion_par *par)
+{
+	double most, found;
+
+	check_rigid(par);
+	found = population_gap(population, par, load / area, CLASSES, &most);
+	if (isnan(found))
+		die(EXIT_RUN,
+			"the particles of the oil carry at most %g Pa of %g Pa: the "
+			"surfaces touch",
+			most, load / area);
+	return found;
+}
+
+struct totals {
+	double load, volume[2], number[ABRASION_MODES];
+};
+
+static void put_particle(long realisation, size_t number, double diameter,
+	const struct abrasion *a, const double volume[2])
+{
+	table_put(table, (double)realisation);
+	table_put(table, (double)number);
+	table_put(table, diameter);
+	table_put(table, a->load);
+	table_put(table, a->depth[0]);
+	table_put(table, a->depth[1]);
+	table_put_text(table, mode_names[a->mode]);
+	table_put_row(table, volume, 2);
+}
+
+static void put_summary(long realisation, const struct abrasion_par *par,
+	const struct totals *t, size_t n)
+{
+	double per_metre = slide > 0 ? 1 / (area * slide) : NAN;
+	struct population_mean mean = { NAN, { NAN, NAN }, NAN };
+
+	if (!summary)
+		return;
+	if (population)
+		population_mean(population, par, CLASSES, &mean);
+	const double row[] = { (double)realisation, par->gap, t->load, t->load / area,
+		(double)n, t->number[ABRASION_FREE], t->number[ABRASION_REJECTED],
+		t->number[ABRASION_ROLLS], t->number[ABRASION_GROOVES],
+		t->number[ABRASION_EMBEDS], t->number[ABRASION_YIELDS],
+		t->number[ABRASION_BURIED], t->volume[0], t->volume[1],
+		t->volume[0] * per_metre, t->volume[1] * per_metre, mean.pressure,
+		cutting * mean.section[0], cutting * mean.section[1] };
+
+	table_put_row(summary, row, (int)(sizeof row / sizeof *row));
+}
+
+static void run_realisation(const struct particles_in *in, long realisation)
+{
+	struct abrasion_par par = parameters();
+	struct totals t = { 0 };
+
+	if (!population && isnan(gap))
+		par.gap = find_gap(&par, in, realisation);
+	else
+		par.gap = gap;
+	for (size_t i = 0; i < in->n; i++) {
+		struct abrasion a;
+		double volume[2];
+
+		abrasion_particle(
+			&par, in->diameter[i], in->aspect ? in->aspect[i] : 1, &a);
+		for (int k = 0; k < 2; k++) {
+			volume[k] = cutting * a.section[k] * slide;
+			if (!isnan(volume[k]))
+				t.volume[k] += volume[k];
+		}
+		if (!isnan(a.load))
+			t.load += a.load;
+		t.number[a.mode]++;
+		if (table)
+			put_particle(realisation, i, in->diameter[i], &a, volume);
+		if (surface_path && a.section[body - 1] > 0)
+			scratches_add(realisation, in->diameter[i], a.depth[body - 1],
+				a.section[body - 1]);
+	}
+	put_summary(realisation, &par, &t, in->n);
+	for (int m = 0; m < ABRASION_MODES; m++)
+		if (t.number[m] > 0)
+			stats_add(mode_names[m], t.number[m]);
+	if (t.number[ABRASION_YIELDS] + t.number[ABRASION_BURIED] > 0) {
+		warn("realisation %ld: %.0f particles yield and %.0f are buried deeper "
+		     "than their radius: what they wear is not in the volumes",
+			realisation, t.number[ABRASION_YIELDS],
+			t.number[ABRASION_BURIED]);
+		doubtful = 1;
+	}
+}
+
+int main(int argc, char **argv)
+{
+	static const char columns[] =
+		"realisation particle diameter load depth1 depth2 mode volume1 volume2";
+	int operand = opt_parse(&prog, argc, argv);
+	struct particles_in in = { 0 };
+	struct abrasion_par par;
+	struct source *source;
+	long realisation;
+	char *cmd;
+
+	check_options(argc - operand);
+	par = parameters();
+	population = particles_population(
+		abrasion_largest(friction, par.inlet, isnan(gap) ? 0 : gap));
+	if (population && isnan(gap))
+		gap = mean_gap(&par);
+	source = population ? particles_drawn(population, area, gap, (uint64_t)seed)
+			    : particles_read(argv[operand]);
+	cmd = opt_cmd(particles_upstream(source), NULL);
+	if (!surface_path || particles_path)
+		table = table_create(particles_path, cmd, "1 1 m N m m 1 m3 m3", columns);
+	if (summary_path)
+		summary = table_create(summary_path, cmd,
+			"1 m N Pa 1 1 1 1 1 1 1 1 m3 m3 1 1 Pa 1 1",
+			"realisation gap load pressure particles free rejected "
+			"rolls grooves embeds yields buried volume1 volume2 "
+			"depth_rate1 depth_rate2 mean_pressure "
+			"mean_depth_rate1 mean_depth_rate2");
+	while (particles_next(source, &in, &realisation))
+		run_realisation(&in, realisation);
+	if (surface_path)
+		scratches_cut(surface_path, slide, cutting, (uint64_t)seed,
+			particles_apart(source));
+	particles_close(source);
+	if (table)
+		table_done(table);
+	if (summary)
+		table_done(summary);
+	free(cmd);
+	return shell_done(doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
+}

@@ -1,0 +1,198 @@
+#include "particles_in.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
+#include "count/codes.h"
+#include "io/tables.h"
+#include "num/room.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { DRAWN_MOST = 10000000 };
+
+static struct opt_list iso;
+static double largest = NAN;
+static long count = 1;
+
+struct opt particles_rows[] = {
+	OPT_HEADING("Particles"),
+	{ 0, "iso", OPT_LIST, UNIT_COUNT, &iso, 0, ISO4406_CODES - 1, "C:C:C",
+		"draw the particles of an oil of this ISO 4406 code, 18:16:13", NULL, 0 },
+	{ 0, "largest", OPT_NUM, UNIT_LENGTH, &largest, 1e-9, 1, "D",
+		"of --iso: largest particle there is", NULL, 0 },
+	{ 'c', "count", OPT_INT, UNIT_COUNT, &count, 1, 1000000000, "N",
+		"of --iso: number of realisations", NULL, 0 },
+	OPT_END,
+};
+
+struct row {
+	long realisation;
+	size_t number;
+	double diameter, aspect;
+};
+
+struct source {
+	struct row *row;
+	size_t rows, room, at;
+	int apart;
+	char *upstream;
+	double *diameter, *aspect; /* of the realisation at hand */
+	size_t held;
+	/* drawn */
+	const struct population *population;
+	double volume, gap;
+	uint64_t seed;
+	long realisation;
+};
+
+void particles_check(int operands, double area, double inlet)
+{
+	if (!iso.n) {
+		if (!isnan(largest) || count > 1)
+			die(EXIT_USAGE, "--largest and --count are for --iso");
+		return;
+	}
+	if (operands)
+		die(EXIT_USAGE, "want either --iso or a table of particles, not both");
+	if (isnan(area))
+		die(EXIT_USAGE, "--iso wants --area: particles are drawn in its gap");
+	if (isnan(largest) && isnan(inlet))
+		die(EXIT_USAGE,
+			"--iso wants --largest or --inlet: the code does not tell "
+			"how large particles may be");
+	for (int k = 0; k + 1 < ISO4406_SIZES; k++)
+		if (iso.v[k] <= iso.v[k + 1])
+			die(EXIT_USAGE,
+				"--iso %.0f:%.0f:%.0f: there are fewer of larger particles",
+				iso.v[0], iso.v[1], iso.v[2]);
+}
+
+const struct population *particles_population(double inlet_limit)
+{
+	static struct population p;
+
+	if (!iso.n)
+		return NULL;
+	for (int k = 0; k < ISO4406_SIZES; k++) {
+		p.diameter[k] = iso4406_size[k];
+		p.number[k] = iso4406_limit((int)iso.v[k]);
+	}
+	p.largest = isnan(largest) ? inlet_limit : largest;
+	if (p.largest <= p.diameter[0])
+		die(EXIT_USAGE, "no particle of the code is smaller than %g m",
+			p.largest);
+	return &p;
+}
+
+static int in_order(const void *a, const void *b)
+{
+	const struct row *x = a, *y = b;
+
+	if (x->realisation != y->realisation)
+		return x->realisation < y->realisation ? -1 : 1;
+	return x->number < y->number ? -1 : x->number > y->number;
+}
+
+struct source *particles_read(const char *path)
+{
+	struct source *s = xcalloc(1, sizeof *s);
+	struct table_in *t = table_open(path);
+	int more = table_next(t), cd, ca, cr;
+
+	if (table_columns(t) == 0)
+		die(EXIT_RUN, "%s: no table", table_name(t));
+	cd = table_need(t, "diameter");
+	ca = table_find(t, "aspect");
+	cr = table_find(t, "realisation");
+	for (; more; more = table_next(t)) {
+		struct row r = { .number = s->rows, .aspect = 1 };
+
+		if (room_for(&s->row, &s->room, s->rows + 1, sizeof *s->row))
+			die(EXIT_RUN, "out of memory");
+		r.diameter = table_positive(t, cd);
+		if (ca >= 0)
+			r.aspect = table_positive(t, ca);
+		if (r.aspect < 1)
+			die(EXIT_RUN, "%s: line %ld: aspect is %g, want 1 or more",
+				table_name(t), table_line(t), r.aspect);
+		if (cr >= 0)
+			r.realisation = table_whole(t, cr, 0, 1e15);
+		s->row[s->rows++] = r;
+	}
+	s->apart = cr >= 0;
+	if (table_upstream(t))
+		s->upstream = xstrdup(table_upstream(t));
+	table_close(t);
+	qsort(s->row, s->rows, sizeof *s->row, in_order);
+	s->diameter = xcalloc(s->rows + 1, sizeof *s->diameter);
+	s->aspect = xcalloc(s->rows + 1, sizeof *s->aspect);
+	return s;
+}
+
+struct source *particles_drawn(
+	const struct population *p, double area, double gap, uint64_t seed)
+{
+	struct source *s = xcalloc(1, sizeof *s);
+
+	s->population = p;
+	s->volume = area * gap;
+	s->gap = gap;
+	s->seed = seed;
+	s->apart = 1;
+	return s;
+}
+
+static int draw(struct source *s, struct particles_in *in, long *realisation)
+{
+	double all = s->volume * population_larger(s->population, iso4406_size[0]);
+
+	if (s->realisation == count)
+		return 0;
+	free(s->diameter);
+	if (population_draw(s->population, s->volume, s->gap, s->seed,
+		    (uint32_t)s->realisation, DRAWN_MOST, &s->diameter, &in->n))
+		die(EXIT_RUN,
+			"out of memory, or more than %d particles in the gap: a smaller "
+			"--area would do",
+			DRAWN_MOST);
+	stats_add("particles_left_out", floor(fmax(all - (double)in->n, 0)));
+	in->diameter = s->diameter;
+	in->aspect = NULL;
+	*realisation = s->realisation++;
+	return 1;
+}
+
+int particles_next(struct source *s, struct particles_in *in, long *realisation)
+{
+	if (s->population)
+		return draw(s, in, realisation);
+	if (s->at == s->rows)
+		return 0;
+	*realisation = s->row[s->at].realisation;
+	in->diameter = s->diameter;
+	in->aspect = s->aspect;
+	for (in->n = 0; s->at < s->rows && s->row[s->at].realisation == *realisation;
+		s->at++, in->n++) {
+		s->diameter[in->n] = s->row[s->at].diameter;
+		s->aspect[in->n] = s->row[s->at].aspect;
+	}
+	return 1;
+}
+
+int particles_apart(const struct source *s)
+{
+	return s->apart;
+}
+
+const char *particles_upstream(const struct source *s)
+{
+	return s->upstream;
+}
+
+void particles_close(struct source *s)
+{
+	free(s->row);
+	free(s->upstream);
+	free(s->diameter);
+	free(s->aspect);
+	free(s);
+}

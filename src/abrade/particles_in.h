@@ -1,0 +1,38 @@
+/* particles_in.h - the particles that meet a gap: from a table or from a cleanliness code
+ */
+#ifndef PARTICLES_IN_H
+#define PARTICLES_IN_H
+
+#include "abrasion/population.h"
+#include "cli/opt.h"
+#include <stddef.h>
+#include <stdint.h>
+
+extern struct opt particles_rows[]; /* for OPT_TABLE */
+
+struct source;
+
+/* The particles of one realisation. */
+struct particles_in {
+	double *diameter, *aspect; /* aspect NULL: spheres */
+	size_t n;
+};
+
+/* Dies where options contradict one another. */
+void particles_check(int operands, double area, double inlet);
+/* NULL where a table is read. */
+const struct population *particles_population(double inlet_limit);
+
+/* Reads the table from path to its end. */
+struct source *particles_read(const char *path);
+/* Draws what is in an area of the gap. */
+struct source *particles_drawn(
+	const struct population *p, double area, double gap, uint64_t seed);
+/* The next realisation; 0 at the end. */
+int particles_next(struct source *s, struct particles_in *in, long *realisation);
+/* 1 where the table tells realisations apart. */
+int particles_apart(const struct source *s);
+const char *particles_upstream(const struct source *s); /* NULL if unknown */
+void particles_close(struct source *s);
+
+#endif

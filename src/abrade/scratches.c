@@ -1,0 +1,82 @@
+#include "scratches.h"
+#include "abrasion/groove.h"
+#include "abrasion/particle.h"
+#include "cli/msg.h"
+#include "cli/opt.h"
+#include "cli/stats.h"
+#include "io/fields.h"
+#include "num/philox.h"
+#include "num/room.h"
+#include <math.h>
+#include <stdlib.h>
+
+struct scratch {
+	long realisation;
+	double diameter, depth, section;
+};
+
+static struct scratch *list;
+static size_t n, room;
+
+void scratches_add(long realisation, double diameter, double depth, double section)
+{
+	if (room_for(&list, &room, n + 1, sizeof *list))
+		die(EXIT_RUN, "out of memory");
+	list[n++] = (struct scratch){ realisation, diameter, depth, section };
+}
+
+/* A groove from which two bodies of equal hardness take half each goes half the way. */
+static double way(const struct scratch *s, double length)
+{
+	double whole = abrasion_section(s->diameter, s->depth);
+
+	return whole > 0 ? length * s->section / whole : 0;
+}
+
+void scratches_cut(const char *path, double length, double cut, uint64_t seed, int apart)
+{
+	struct fields_in *in = fields_open(path, NULL);
+	struct fields_out *out = NULL;
+	struct record r = { 0 };
+
+	while (fields_read(in, &r)) {
+		double *z = record_need(&r, "height", 1, in), lx = r.nx * r.dx,
+		       ly = r.ny * r.dy;
+		char *cmd;
+
+		if (r.nz != 1)
+			die(EXIT_RUN, "%s: record %ld: %d layers, want a plane field",
+				fields_name(in), fields_count(in), r.nz);
+		for (size_t i = 0; i < n; i++) {
+			struct groove g = { .length = way(&list[i], length),
+				.diameter = list[i].diameter,
+				.depth = list[i].depth,
+				.cut = cut };
+
+			if (apart && list[i].realisation != r.realisation)
+				continue;
+			g.x = lx * philox_uniform(seed, (uint32_t)r.realisation,
+					   RNG_ABRASION, (1ull << 40) + 2 * i);
+			g.y = ly * philox_uniform(seed, (uint32_t)r.realisation,
+					   RNG_ABRASION, (1ull << 40) + 2 * i + 1);
+			stats_add("heights_changed",
+				groove_cut(r.nx, r.ny, r.dx, r.dy, z, &g));
+			stats_add("grooves_cut", 1);
+		}
+		for (int k = r.nfields - 1; k >= 0; k--)
+			if (z != r.data[k])
+				record_drop(&r, r.name[k]);
+		cmd = opt_cmd(r.cmd, NULL);
+		free(r.cmd);
+		r.cmd = cmd;
+		if (!out)
+			out = fields_create(NULL);
+		fields_write(out, &r, fields_more(in));
+		stats_add("records", 1);
+	}
+	record_free(&r);
+	fields_close(in);
+	if (out)
+		fields_done(out);
+	free(list);
+}

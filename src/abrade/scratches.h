@@ -1,0 +1,13 @@
+/* scratches.h - the grooves of particles, cut into a stream of surfaces */
+#ifndef SCRATCHES_H
+#define SCRATCHES_H
+
+#include <stdint.h>
+
+/* One groove, to be cut into the surface of its realisation. */
+void scratches_add(long realisation, double diameter, double depth, double section);
+/* Reads heights, cuts the grooves of their realisation (of all of them where apart is 0)
+ * at random places and writes the fields to standard output. */
+void scratches_cut(const char *path, double length, double cut, uint64_t seed, int apart);
+
+#endif

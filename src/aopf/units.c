@@ -1,0 +1,347 @@
+#include "units.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
+#include "filter_options.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { NAME = 64, FILTERED = 5 };
+
+struct machine {
+	char *name;
+	int number; /* in order of appearance, over all runs */
+	long rows;
+	double last; /* time */
+	int resumed;
+	uint64_t sequence;       /* of the last saved state */
+	struct adaptive *filter; /* NULL where bare */
+	struct outlook *outlook; /* NULL without a threshold */
+};
+
+struct units {
+	int bare;
+	struct machine **unit;
+	int n;
+	int *of_input, n_input; /* unit of each number in the input */
+	int file;               /* -1: nothing is kept */
+	const char *path;
+	size_t size; /* of the state of a unit */
+	unsigned char *place;
+};
+
+/* At the start of the file, and of each place in it. */
+struct head {
+	char magic[16];
+	uint64_t options, size;
+};
+
+struct place {
+	uint64_t sequence, check;
+	char name[NAME];
+	int64_t number, rows;
+	double last;
+};
+
+static const char magic[16] = "aopf state 1\n";
+
+struct units *units_new(int bare)
+{
+	struct units *units = xcalloc(1, sizeof *units);
+
+	units->bare = bare;
+	units->file = -1;
+	return units;
+}
+
+static struct machine *add_unit(struct units *units, int number, const char *name)
+{
+	struct machine *u = xcalloc(1, sizeof *u);
+
+	u->name = xstrdup(name);
+	u->number = number;
+	if (!units->bare)
+		u->filter = filtering_new(number);
+	if (!isnan(outlook_options.threshold))
+		u->outlook = outlook_new(u->filter);
+	units->unit =
+		xrealloc(units->unit, (size_t)units->n + 1, sizeof(struct machine *));
+	return units->unit[units->n++] = u;
+}
+
+static void free_unit(struct machine *u)
+{
+	outlook_free(u->outlook);
+	adaptive_free(u->filter);
+	free(u->name);
+	free(u);
+}
+
+void units_free(struct units *units)
+{
+	for (int i = 0; i < units->n; i++) {
+		struct machine *u = units->unit[i];
+
+		stats_add("rows", (double)u->rows);
+		if (u->filter)
+			filtering_count(u->filter);
+		if (u->outlook)
+			outlook_count(u->outlook);
+		free_unit(u);
+	}
+	if (units->file >= 0 && close(units->file))
+		die(EXIT_RUN, "%s:", units->path);
+	free(units->unit);
+	free(units->of_input);
+	free(units->place);
+	free(units);
+}
+
+int units_alarm(const struct units *units)
+{
+	int most = 0;
+
+	for (int i = 0; i < units->n; i++)
+		if (units->unit[i]->outlook &&
+			outlook_alarm(units->unit[i]->outlook) > most)
+			most = outlook_alarm(units->unit[i]->outlook);
+	return most;
+}
+
+struct machine *units_find(struct units *units, int number, const char *name)
+{
+	int i = 0;
+
+	if (number < units->n_input)
+		return units->unit[units->of_input[number]];
+	while (i < units->n &&
+		!(units->unit[i]->resumed && strcmp(units->unit[i]->name, name) == 0))
+		i++;
+	if (i == units->n)
+		add_unit(units, units->n, name);
+	units->of_input =
+		xrealloc(units->of_input, (size_t)number + 1, sizeof *units->of_input);
+	units->of_input[number] = i;
+	units->n_input = number + 1;
+	return units->unit[i];
+}
+
+int unit_number(const struct machine *u)
+{
+	return u->number;
+}
+
+int unit_takes(const struct machine *u, double t)
+{
+	return !u->resumed || t > u->last;
+}
+
+int unit_cells(int bare)
+{
+	return (bare ? 0 : FILTERED) +
+	       (isnan(outlook_options.threshold) ? 0 : outlook_cells());
+}
+
+void unit_step(struct machine *u, const struct outlook_row *in, double *cell)
+{
+	double zero = outlook_options.zero;
+	struct adaptive_row row;
+
+	u->rows++;
+	u->last = in->t;
+	if (u->filter) {
+		adaptive_step(u->filter, in->t, in->y - zero, &row);
+		*cell++ = row.grey + zero;
+		*cell++ = row.prediction + zero;
+		*cell++ = row.state + zero;
+		*cell++ = row.order;
+		*cell++ = row.ess;
+	}
+	if (u->outlook)
+		outlook_step(u->outlook, in, u->filter ? &row : NULL, cell);
+}
+
+/* --- on disk ------------------------------------------------------------------------ */
+
+/* FNV-1a */
+static uint64_t checksum(const void *bytes, size_t n, uint64_t sum)
+{
+	const unsigned char *p = bytes;
+
+	for (size_t i = 0; i < n; i++)
+		sum = (sum ^ p[i]) * 0x100000001b3u;
+	return sum;
+}
+
+static const uint64_t BASIS = 0xcbf29ce484222325u;
+
+static void pass(struct machine *u, struct state *s)
+{
+	if (u->filter)
+		adaptive_pass(u->filter, s);
+	if (u->outlook)
+		outlook_pass(u->outlook, s);
+}
+
+/* The size of the state of any unit. */
+static size_t state_size(struct units *units)
+{
+	struct state s = { 0 };
+	struct machine *u = add_unit(units, 0, "");
+
+	pass(u, &s);
+	free_unit(u);
+	units->n--;
+	return s.size;
+}
+
+static struct head head_of(struct units *units, const char *options)
+{
+	struct head h = { .size = state_size(units),
+		.options = checksum(options, strlen(options), BASIS) };
+
+	memcpy(h.magic, magic, sizeof magic);
+	return h;
+}
+
+static off_t offset_of(const struct units *units, int number, uint64_t sequence)
+{
+	size_t size = sizeof(struct place) + units->size;
+
+	return (off_t)(sizeof(struct head) + (2 * (size_t)number + sequence % 2) * size);
+}
+
+static void make_room(struct units *units, size_t size)
+{
+	units->size = size;
+	free(units->place);
+	units->place = xcalloc(1, sizeof(struct place) + size);
+}
+
+static uint64_t check_of(const struct units *units)
+{
+	struct place p;
+
+	memcpy(&p, units->place, sizeof p);
+	p.check = 0;
+	return checksum(
+		units->place + sizeof p, units->size, checksum(&p, sizeof p, BASIS));
+}
+
+/* Reads a place; 1 where it is whole. */
+static int read_place(
+	struct units *units, FILE *f, int number, int which, struct place *p)
+{
+	size_t size = sizeof *p + units->size;
+
+	if (fseeko(f, offset_of(units, number, (uint64_t)which), SEEK_SET) ||
+		fread(units->place, 1, size, f) != size)
+		return 0;
+	memcpy(p, units->place, sizeof *p);
+	return p->sequence > 0 && check_of(units) == p->check;
+}
+
+/* The unit of that number, from its newer whole place; 0 where there is none. */
+static int resume_unit(struct units *units, FILE *f, int number)
+{
+	struct place place[2];
+	int whole[2], newer;
+	struct state s = { .load = 1 };
+	struct machine *u;
+
+	for (int k = 0; k < 2; k++)
+		whole[k] = read_place(units, f, number, k, &place[k]);
+	if (!whole[0] && !whole[1])
+		return 0;
+	newer = whole[1] && (!whole[0] || place[1].sequence > place[0].sequence);
+	read_place(units, f, number, newer, &place[newer]);
+	u = add_unit(units, number, place[newer].name);
+	u->resumed = 1;
+	u->sequence = place[newer].sequence;
+	u->rows = (long)place[newer].rows;
+	u->last = place[newer].last;
+	s.at = units->place + sizeof place[0];
+	pass(u, &s);
+	return 1;
+}
+
+void units_resume(struct units *units, const char *path, const char *options)
+{
+	struct head want = head_of(units, options), h;
+	FILE *f = fopen(path, "rb");
+
+	if (!f)
+		die(EXIT_RUN, "%s:", path);
+	if (fread(&h, sizeof h, 1, f) != 1 || memcmp(h.magic, magic, sizeof magic) != 0)
+		die(EXIT_RUN, "%s: no state saved by aopf --save", path);
+	if (h.options != want.options || h.size != want.size)
+		die(EXIT_RUN, "%s: saved with other options, or by another aopf", path);
+	make_room(units, (size_t)h.size);
+	while (resume_unit(units, f, units->n))
+		;
+	fclose(f);
+	stats_set("units_resumed", units->n);
+}
+
+static void write_at(struct units *units, const void *bytes, size_t n, off_t at)
+{
+	const unsigned char *p = bytes;
+
+	while (n > 0) {
+		ssize_t done = pwrite(units->file, p, n, at);
+
+		if (done < 0 && errno == EINTR)
+			continue;
+		if (done <= 0)
+			die(EXIT_RUN, "%s:", units->path);
+		p += done;
+		n -= (size_t)done;
+		at += done;
+	}
+}
+
+void units_keep(struct units *units, const char *path, const char *options)
+{
+	struct head h = head_of(units, options);
+	char *fresh = xprintf("%s.new", path);
+
+	make_room(units, (size_t)h.size);
+	units->path = path;
+	/* A state to resume from stays until this one holds as much. */
+	units->file = open(fresh, O_RDWR | O_CREAT | O_TRUNC, 0666);
+	if (units->file < 0)
+		die(EXIT_RUN, "%s:", fresh);
+	write_at(units, &h, sizeof h, 0);
+	for (int i = 0; i < units->n; i++)
+		unit_save(units, units->unit[i]);
+	if (rename(fresh, path))
+		die(EXIT_RUN, "%s:", path);
+	free(fresh);
+}
+
+void unit_save(struct units *units, struct machine *u)
+{
+	struct place p = { .sequence = ++u->sequence,
+		.number = u->number,
+		.rows = u->rows,
+		.last = u->last };
+	struct state s = { .at = units->place + sizeof p };
+
+	if (units->file < 0)
+		return;
+	if (strlen(u->name) >= NAME)
+		die(EXIT_RUN, "%s: a name of %d letters or more cannot be saved", u->name,
+			(int)NAME);
+	memcpy(p.name, u->name, strlen(u->name));
+	pass(u, &s);
+	memcpy(units->place, &p, sizeof p);
+	p.check = check_of(units);
+	memcpy(units->place, &p, sizeof p);
+	write_at(units, units->place, sizeof p + units->size,
+		offset_of(units, u->number, p.sequence));
+}

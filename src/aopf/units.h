@@ -1,0 +1,40 @@
+/* units.h - the units of a stream and what is kept of each between its rows; on disk too
+ *
+ *	struct units *units = units_new(filtered);
+ *	units_load(units, path);
+ *	struct machine *u = units_find(units, series_unit(in), series_unit_name(in));
+ *	unit_step(u, &row, cell);
+ *	units_save(units, u);
+ *
+ * The file of a saved state has two places for each unit, which are written in turn, with
+ * a checksum: whatever stops the program, one of them is whole.
+ */
+#ifndef UNITS_H
+#define UNITS_H
+
+#include "remaining_life.h"
+
+struct machine;
+struct units;
+
+/* bare: without filters.  cells: of a row, see unit_step(). */
+struct units *units_new(int bare);
+void units_free(struct units *units); /* counts the work done, too */
+/* The unit with this number in the input, a new one where it is not known yet. */
+struct machine *units_find(struct units *units, int number, const char *name);
+
+int unit_number(const struct machine *u);
+/* 0 where the row is not after the last one of a resumed unit. */
+int unit_takes(const struct machine *u, double t);
+/* Fills the cells of a row; different units may step at the same time. */
+void unit_step(struct machine *u, const struct outlook_row *in, double *cell);
+int unit_cells(int bare);
+int units_alarm(const struct units *units); /* the highest level that stands */
+
+/* options: those that shape the state; a file made with others is refused. */
+void units_resume(struct units *units, const char *path, const char *options);
+void units_keep(struct units *units, const char *path, const char *options);
+/* Writes the state of a unit where units_keep() said. */
+void unit_save(struct units *units, struct machine *u);
+
+#endif

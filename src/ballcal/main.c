@@ -1,0 +1,202 @@
+/* ballcal - calibrate a debris sensor by reference balls */
+#include "cli/msg.h"
+#include "cli/opt.h"
+#include "cli/stats.h"
+#include "common/verdicts.h"
+#include "count/detection.h"
+#include "count/line.h"
+#include "io/tables.h"
+#include "num/room.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static struct opt_texts balls;
+static double exponent = 3, confidence = 0.95, noise = NAN, duration = NAN;
+static double alarms = 1.0 / 3600, velocity = NAN;
+
+static const struct opt opts[] = {
+	{ 0, "balls", OPT_TEXTS, UNIT_NONE, &balls, 0, 0, "FILE:D",
+		"pulses of balls of diameter D; may be repeated", NULL, 0 },
+	OPT_TABLE(verdict_rows),
+	{ 0, "exponent", OPT_NUM, UNIT_NONE, &exponent, 0.1, 20, "N",
+		"of the diameter in the amplitude: 3, or 5 for non-ferrous balls", NULL,
+		0 },
+	{ 0, "confidence", OPT_NUM, UNIT_FRACTION, &confidence, 0.01, 0.9999, "C",
+		"of the intervals", NULL, 0 },
+	{ 0, "noise", OPT_NUM, UNIT_VOLTAGE, &noise, 1e-30, 1e9, "V",
+		"deviation of what the threshold is laid on: for the smallest size", NULL,
+		0 },
+	{ 0, "pulse-duration", OPT_NUM, UNIT_TIME, &duration, 1e-12, 1e9, "T",
+		"of a pulse: noise gets as many chances as pulses fit", NULL, 0 },
+	{ 0, "false-alarms", OPT_NUM, UNIT_FREQUENCY, &alarms, 1e-30, 1e12, "F",
+		"false particles per second that are allowed", NULL, 0 },
+	{ 0, "velocity", OPT_NUM, UNIT_SPEED, &velocity, 1e-9, 1e6, "V",
+		"of the particles the smallest size is for (default mean of the balls)",
+		NULL, 0 },
+	OPT_END,
+};
+
+static const struct prog prog = { "ballcal",
+	"Calibrate a debris sensor by the pulses of reference balls.", "",
+	"nothing; --balls: tables: amplitude velocity [verdict]",
+	"table: constant, exponent, smallest size", opts };
+
+/* One pulse: logarithms of its ball's diameter and of amplitude over velocity. */
+struct pulse {
+	double diameter, response;
+};
+
+struct pulses {
+	struct pulse *pulse;
+	size_t n, room;
+	double speed; /* sum of velocities */
+};
+
+/* Reads "FILE:DIAMETER"; fresh memory. */
+static char *split(const char *text, double *diameter)
+{
+	const char *colon = strrchr(text, ':'), *end, *wrong;
+	char *path;
+
+	if (!colon || colon == text)
+		die(EXIT_USAGE, "--balls %s: want FILE:D", text);
+	wrong = unit_parse(colon + 1, UNIT_LENGTH, "", diameter, &end);
+	if (wrong || !(*diameter > 0))
+		die(EXIT_USAGE, "--balls %s: '%s' %s, want a diameter", text, colon + 1,
+			wrong ? wrong : "is not above 0");
+	path = xstrdup(text);
+	path[colon - text] = '\0';
+	return path;
+}
+
+static void read_balls(struct pulses *p, const char *text)
+{
+	double diameter;
+	char *path = split(text, &diameter);
+	struct table_in *t = table_open(path);
+	int more = table_next(t), ca, cv, cw;
+	size_t before = p->n;
+
+	if (table_columns(t) == 0)
+		die(EXIT_RUN, "%s: no table", table_name(t));
+	ca = table_need(t, "amplitude");
+	cv = table_need(t, "velocity");
+	cw = table_find(t, "verdict");
+	for (; more; more = table_next(t)) {
+		double a, v;
+
+		if (verdict_of(t, cw) != VERDICT_SURE)
+			continue;
+		a = table_positive(t, ca);
+		v = table_positive(t, cv);
+		if (room_for(&p->pulse, &p->room, p->n + 1, sizeof *p->pulse))
+			die(EXIT_RUN, "out of memory");
+		p->pulse[p->n++] = (struct pulse){ log(diameter), log(a / v) };
+		p->speed += v;
+	}
+	if (p->n == before)
+		die(EXIT_RUN, "%s: no pulse to calibrate by", table_name(t));
+	table_close(t);
+	free(path);
+}
+
+static int by_diameter(const void *a, const void *b)
+{
+	double x = ((const struct pulse *)a)->diameter,
+	       y = ((const struct pulse *)b)->diameter;
+
+	return x < y ? -1 : x > y;
+}
+
+static void put(
+	struct table_out *t, const char *name, double value, double low, double high)
+{
+	table_put_text(t, name);
+	table_put_row(t, (double[]){ value, low, high }, 3);
+}
+
+/* A quantity whose logarithm has this half interval. */
+static void put_log(struct table_out *t, const char *name, double ln, double half)
+{
+	put(t, name, exp(ln), exp(ln - half), exp(ln + half));
+}
+
+static void put_smallest(struct table_out *t, double ln_k, double half, double speed)
+{
+	struct detection d = { 1, detection_threshold(duration, alarms), exponent };
+	double ln50 = (log(d.threshold * noise / speed) - ln_k) / exponent;
+	put(t, "threshold", d.threshold, NAN, NAN);
+	put_log(t, "d50", ln50, half / exponent);
+	put_log(t, "d90", ln50 + log(detection_diameter(&d, 0.9)), half / exponent);
+}
+
+int main(int argc, char **argv)
+{
+	struct pulses p = { 0 };
+	struct table_out *t;
+	struct line l;
+	double *x, *y, sizes = 1, ln_k = 0, deviation = 0, half, lack, slope_p = NAN;
+	int fitted, doubtful;
+
+	opt_parse(&prog, argc, argv);
+	if (!balls.n)
+		die(EXIT_USAGE, "--balls is missing: FILE:D, a table of pulses and the "
+				"diameter of its balls");
+	if (isnan(noise) != isnan(duration))
+		die(EXIT_USAGE, "the smallest size wants both --noise and "
+				"--pulse-duration");
+	if (!isnan(noise) && isnan(detection_threshold(duration, alarms)))
+		die(EXIT_USAGE,
+			"--false-alarms %g Hz: no threshold keeps pulses of %g s so often",
+			alarms, duration);
+	for (int i = 0; i < balls.n; i++)
+		read_balls(&p, balls.v[i]);
+	if (p.n < 3)
+		die(EXIT_RUN, "%zu pulses are too few to tell how they scatter", p.n);
+	qsort(p.pulse, p.n, sizeof *p.pulse, by_diameter);
+	x = xcalloc(p.n, sizeof *x);
+	y = xcalloc(p.n, sizeof *y);
+	for (size_t i = 0; i < p.n; i++) {
+		x[i] = p.pulse[i].diameter;
+		y[i] = p.pulse[i].response;
+		ln_k += (y[i] - exponent * x[i]) / (double)p.n;
+		sizes += i > 0 && x[i] > x[i - 1];
+	}
+	for (size_t i = 0; i < p.n; i++)
+		deviation += pow(y[i] - exponent * x[i] - ln_k, 2);
+	deviation = sqrt(deviation / (double)(p.n - 1));
+	half = line_t(confidence, p.n - 1) * deviation / sqrt((double)p.n);
+	fitted = line_fit(x, y, p.n, confidence, &l) == 0;
+	lack = fitted ? line_lack_of_fit(x, y, p.n, &l) : NAN;
+	if (fitted)
+		slope_p = line_slope_p(&l, p.n, exponent);
+	doubtful = slope_p < 0.01 || lack < 0.01;
+	if (slope_p < 0.01)
+		warn("the exponent is %.3g, not %g: p = %.2g", l.slope, exponent,
+			slope_p);
+	if (lack < 0.01)
+		warn("no power law fits all balls: p = %.2g", lack);
+	t = table_create(NULL, opt_cmd(NULL, NULL), NULL, "quantity value low high");
+	put(t, "pulses", (double)p.n, NAN, NAN);
+	put(t, "sizes", sizes, NAN, NAN);
+	put_log(t, "calibration", ln_k, half);
+	put(t, "scatter", deviation, NAN, NAN);
+	if (fitted) {
+		double wide = l.t * l.slope_se;
+
+		put(t, "exponent", l.slope, l.slope - wide, l.slope + wide);
+		put(t, "exponent_p", slope_p, NAN, NAN);
+		put(t, "lack_of_fit_p", lack, NAN, NAN);
+	}
+	if (!isnan(noise))
+		put_smallest(t, ln_k, half,
+			isnan(velocity) ? p.speed / (double)p.n : velocity);
+	table_done(t);
+	stats_set("pulses", (double)p.n);
+	verdict_report();
+	free(x);
+	free(y);
+	free(p.pulse);
+	return shell_done(doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
+}

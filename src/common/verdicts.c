@@ -1,0 +1,45 @@
+#include "verdicts.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
+#include <string.h>
+
+static int doubtful_too;
+static double doubtful, unresolved;
+
+struct opt verdict_rows[] = {
+	{ 0, "doubtful", OPT_FLAG, UNIT_NONE, &doubtful_too, 0, 0, NULL,
+		"take rows for particles whose verdict is neither alone nor overlap",
+		NULL, 0 },
+	OPT_END,
+};
+
+enum verdict verdict_of(const struct table_in *t, int column)
+{
+	const char *word = column < 0 ? "alone" : table_text(t, column);
+
+	if (strcmp(word, "alone") == 0 || strcmp(word, "overlap") == 0)
+		return VERDICT_SURE;
+	if (strcmp(word, "unresolved") == 0) {
+		unresolved++;
+		return VERDICT_UNRESOLVED;
+	}
+	doubtful++;
+	return doubtful_too ? VERDICT_SURE : VERDICT_DOUBTFUL;
+}
+
+int verdict_doubtful_too(void)
+{
+	return doubtful_too;
+}
+
+void verdict_report(void)
+{
+	stats_set("rows_doubtful", doubtful);
+	stats_set("rows_unresolved", unresolved);
+	if (doubtful > 0 && !doubtful_too)
+		warn("%.0f rows are doubtful by their verdict and left out; --doubtful "
+		     "takes them in",
+			doubtful);
+	if (unresolved > 0)
+		warn("%.0f rows stand for stretches that are not resolved", unresolved);
+}

@@ -1,0 +1,24 @@
+/* verdicts.h - which rows of duet's table are to be counted: an option of debriscount and
+ * ballcal */
+#ifndef VERDICTS_H
+#define VERDICTS_H
+
+#include "cli/opt.h"
+#include "io/tables.h"
+
+extern struct opt verdict_rows[]; /* for OPT_TABLE */
+
+enum verdict {
+	VERDICT_SURE,      /* alone, overlap, or a table without verdicts */
+	VERDICT_DOUBTFUL,  /* any other word: left out, unless --doubtful is given */
+	VERDICT_UNRESOLVED /* a row that stands for many */
+};
+
+/* Of the present row; counts what is doubtful.  column may be -1. */
+enum verdict verdict_of(const struct table_in *t, int column);
+/* 1 where doubtful rows are counted in. */
+int verdict_doubtful_too(void);
+/* Says how many rows were left out, and puts them into the counters. */
+void verdict_report(void);
+
+#endif

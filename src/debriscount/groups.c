@@ -1,0 +1,109 @@
+#include "groups.h"
+#include "cli/msg.h"
+#include "cli/stats.h"
+#include "num/room.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct group {
+	char *name;
+	struct classes *classes;
+	struct history history;
+};
+
+struct groups {
+	struct report_par par;
+	struct report *report;
+	struct group *group;
+	size_t n, room;
+	double reported; /* end of the last period that was printed */
+	int doubtful;
+};
+
+struct groups *groups_new(const struct report_par *par)
+{
+	struct groups *g = xcalloc(1, sizeof *g);
+
+	g->par = *par;
+	g->report = report_open(par);
+	if (!par->by)
+		groups_at(g, "");
+	return g;
+}
+
+struct classes *groups_at(struct groups *g, const char *name)
+{
+	struct group *new;
+
+	for (size_t i = 0; i < g->n; i++)
+		if (strcmp(g->group[i].name, name) == 0)
+			return g->group[i].classes;
+	if (room_for(&g->group, &g->room, g->n + 1, sizeof *g->group))
+		die(EXIT_RUN, "out of memory");
+	new = &g->group[g->n++];
+	*new = (struct group){ .name = xstrdup(name),
+		.classes = classes_new(g->par.edge, g->par.edges, &g->par.classes) };
+	if (!new->classes)
+		die(EXIT_RUN, "out of memory");
+	return new->classes;
+}
+
+void groups_report(struct groups *g, double begin, double end, int whole)
+{
+	for (size_t i = 0; i < g->n; i++) {
+		struct group *one = &g->group[i];
+
+		report_period(g->report, &one->history, one->name, one->classes, begin,
+			end, whole);
+		classes_clear(one->classes);
+	}
+	report_flush(g->report);
+	stats_add("periods", 1);
+	g->reported = end;
+}
+
+void groups_finish(struct groups *g, double period, double duration, double last)
+{
+	double end = !isnan(duration) ? duration : last;
+
+	for (; !isnan(duration) && g->reported + period <= duration;)
+		groups_report(g, g->reported, g->reported + period, 1);
+	if (isnan(period) || (!isnan(duration) && end > g->reported))
+		groups_report(g, g->reported, end, isnan(period));
+	else if (isnan(duration)) {
+		note("what came after %g s is of a period that is not over: left out",
+			g->reported);
+		stats_set("periods_left_out", 1);
+	}
+}
+
+void groups_doubtful(struct groups *g)
+{
+	g->doubtful = 1;
+}
+
+int groups_status(const struct groups *g)
+{
+	return g->doubtful ? EXIT_NOCONV : EXIT_SUCCESS;
+}
+
+int groups_alarm(const struct groups *g)
+{
+	for (size_t i = 0; i < g->n; i++)
+		if (g->group[i].history.alarm)
+			return 1;
+	return 0;
+}
+
+void groups_free(struct groups *g)
+{
+	report_close(g->report);
+	for (size_t i = 0; i < g->n; i++) {
+		free(g->group[i].name);
+		classes_free(g->group[i].classes);
+		history_free(&g->group[i].history);
+	}
+	free(g->group);
+	free(g);
+}

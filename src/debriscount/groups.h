@@ -1,0 +1,23 @@
+/* groups.h - the counts of one period, apart for each word of a column, and their reports
+ */
+#ifndef GROUPS_H
+#define GROUPS_H
+
+#include "reports.h"
+
+struct groups;
+
+struct groups *groups_new(const struct report_par *par);
+/* The counts of a group, made where it is new. */
+struct classes *groups_at(struct groups *g, const char *name);
+/* Prints the rows of a period of all groups, and begins the next. */
+void groups_report(struct groups *g, double begin, double end, int whole);
+/* The last period, up to the end of the record, which is duration, the last whole period,
+ * or the last particle. */
+void groups_finish(struct groups *g, double period, double duration, double last);
+void groups_doubtful(struct groups *g);
+int groups_status(const struct groups *g); /* 0, or 3 where something was doubtful */
+int groups_alarm(const struct groups *g);  /* 1 where an alarm stands */
+void groups_free(struct groups *g);
+
+#endif

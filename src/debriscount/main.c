@@ -1,0 +1,218 @@
+/* debriscount - how many particles of which sizes, by period: classes, codes, trend,
+ * alarm */
+#include "cli/msg.h"
+#include "cli/opt.h"
+#include "cli/stats.h"
+#include "common/verdicts.h"
+#include "groups.h"
+#include "io/tables.h"
+#include "reports.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { EXIT_ALARM = 4 };
+
+static const char *const outputs[] = { "classes", "codes", "trend", NULL };
+static const char *const standards[] = { "own", "iso4406", "as4059", NULL };
+
+static struct opt_list edges;
+static double period = NAN, duration = NAN, density = NAN, d50 = NAN, threshold = NAN;
+static double detection_exponent = 3, confidence = 0.95;
+static int output, standard;
+static const char *by;
+
+static struct opt_list alarm_level;
+static int alarm_mass;
+
+static const struct opt opts[] = {
+	{ 'o', "output", OPT_WORD, UNIT_NONE, &output, 0, 0, "classes|codes|trend",
+		"what to print", outputs, 0 },
+	{ 0, "classes", OPT_LIST, UNIT_LENGTH, &edges, 0, 1, "D,D,...",
+		"lower ends of the classes of size; the last is open", NULL, 0 },
+	{ 0, "standard", OPT_WORD, UNIT_NONE, &standard, 0, 0, "own|iso4406|as4059",
+		"classes of a standard instead", standards, 0 },
+	{ 0, "period", OPT_NUM, UNIT_TIME, &period, 1e-9, 1e12, "T",
+		"one set of rows for each period (default all of the record)", NULL, 0 },
+	{ 0, "duration", OPT_NUM, UNIT_TIME, &duration, 0, 1e12, "T",
+		"of the record (default until its last particle)", NULL, 0 },
+	{ 0, "by", OPT_TEXT, UNIT_NONE, &by, 0, 0, "COLUMN",
+		"count apart what differs in this column: material, ...", NULL, 0 },
+	OPT_TABLE(oil_rows),
+	{ 0, "density", OPT_NUM, UNIT_DENSITY, &density, 1, 1e5, "RHO",
+		"of the particles, for masses", NULL, 0 },
+	{ 0, "d50", OPT_NUM, UNIT_LENGTH, &d50, 1e-9, 1, "D",
+		"size of which the sensor sees half the particles (default sees all)",
+		NULL, 0 },
+	{ 0, "detection-threshold", OPT_NUM, UNIT_NONE, &threshold, 0.1, 1e6, "T",
+		"of the sensor in deviations of its noise, with --d50", NULL, 0 },
+	{ 0, "detection-exponent", OPT_NUM, UNIT_NONE, &detection_exponent, 0.1, 20, "N",
+		"of the diameter in the amplitude", NULL, 0 },
+	OPT_TABLE(verdict_rows),
+	{ 0, "confidence", OPT_NUM, UNIT_FRACTION, &confidence, 0.01, 0.9999, "C",
+		"of the intervals", NULL, 0 },
+	OPT_TABLE(report_rows),
+	{ 0, "alarm", OPT_LIST, UNIT_NONE, &alarm_level, 0, 1e300, "LEVEL[:CLEAR]",
+		"alarm from LEVEL particles per hour on until below CLEAR", NULL, 0 },
+	{ 0, "alarm-mass", OPT_FLAG, UNIT_NONE, &alarm_mass, 0, 0, NULL,
+		"levels of --alarm are kg per hour", NULL, 0 },
+	OPT_END,
+};
+
+static const struct prog prog = { "debriscount",
+	"Count particles by size and time: classes, cleanliness codes, trend, alarm.",
+	"[file]", "table: diameter [time1] [verdict] [sources]",
+	"table: one row per period and class", opts };
+
+static void check_options(void)
+{
+	if (standard && edges.n)
+		die(EXIT_USAGE, "--classes and --standard exclude each other");
+	if (output == REPORT_CODES && edges.n)
+		die(EXIT_USAGE, "--output codes has the sizes of the standards");
+	if (isnan(d50) != isnan(threshold))
+		die(EXIT_USAGE, "want both --d50 and --detection-threshold, or neither");
+	for (int k = 1; k < edges.n; k++)
+		if (edges.v[k] <= edges.v[k - 1])
+			die(EXIT_USAGE, "--classes: %g m does not lie above %g m",
+				edges.v[k], edges.v[k - 1]);
+	if (alarm_level.n == 2 && alarm_level.v[1] > alarm_level.v[0])
+		die(EXIT_USAGE, "--alarm wants LEVEL:CLEAR with CLEAR not above LEVEL");
+	if (alarm_mass && (!alarm_level.n || isnan(density)))
+		die(EXIT_USAGE, "--alarm-mass wants --alarm and --density");
+	report_check(output, !isnan(period));
+}
+
+static struct report_par parameters(void)
+{
+	struct report_par par = { .output = (enum report_kind)output,
+		.density = density,
+		.alarm = alarm_level.n ? alarm_level.v[0] : INFINITY,
+		.clear = alarm_level.n ? alarm_level.v[alarm_level.n - 1] : INFINITY,
+		.alarm_mass = alarm_mass,
+		.by = by };
+	const double *from = edges.v;
+	int n = edges.n;
+
+	if (output == REPORT_CODES || standard) {
+		int as4059 = standard == 2 || output == REPORT_CODES;
+
+		from = as4059 ? as4059_size : iso4406_size;
+		n = as4059 ? AS4059_SIZES : ISO4406_SIZES;
+	}
+	par.classes.detection = (struct detection){ isnan(d50) ? 0 : d50,
+		isnan(threshold) ? 1 : threshold, detection_exponent };
+	par.classes.confidence = confidence;
+	par.edges = n > 0 ? n : 1;
+	par.edge[0] = 0;
+	memcpy(par.edge, from, (size_t)n * sizeof *from);
+	return par;
+}
+
+/* The column of times; -1 where there is none. */
+static int time_column(const struct table_in *t)
+{
+	static const char *const names[] = { "time1", "time", "t" };
+	int found = -1;
+
+	for (int i = 0; i < 3 && found < 0; i++)
+		found = table_find(t, names[i]);
+	return found;
+}
+
+static double time_of(const struct table_in *t, int column)
+{
+	double v = table_number(t, column);
+
+	if (!isfinite(v) || v < 0)
+		die(EXIT_RUN, "%s: line %ld: %s is %g, want a time of 0 or later",
+			table_name(t), table_line(t), table_column_name(t, column), v);
+	return v;
+}
+
+/* Reads all rows; returns the end of the record. */
+static double count_rows(struct table_in *t, struct groups *groups)
+{
+	int cd = table_need(t, "diameter"), ct = time_column(t);
+	int cv = table_find(t, "verdict"), cs = table_find(t, "sources");
+	int cb = by ? table_need(t, by) : -1;
+	double last = 0, late = 0, begin = 0, end = isnan(period) ? INFINITY : period;
+	long part = table_part(t);
+
+	if (ct < 0 && !isnan(period))
+		die(EXIT_RUN, "%s: no column of times: --period needs time1, time or t",
+			table_name(t));
+	do {
+		double time = ct >= 0 ? time_of(t, ct) : NAN, d;
+		enum verdict v = verdict_of(t, cv);
+		struct classes *c;
+
+		if (table_part(t) != part && !isnan(period))
+			die(EXIT_RUN,
+				"%s: line %ld: another record begins: count each "
+				"for itself",
+				table_name(t), table_line(t));
+		if (time > duration)
+			die(EXIT_RUN,
+				"%s: line %ld: a particle at %g s, after --duration "
+				"%g s",
+				table_name(t), table_line(t), time, duration);
+		for (; time >= end; begin = end, end += period)
+			groups_report(groups, begin, end, 1);
+		late += time < begin;
+		last = fmax(last, time);
+		c = groups_at(groups, cb >= 0 ? table_text(t, cb) : "");
+		if (v == VERDICT_UNRESOLVED) {
+			classes_add_stretch(c, cs >= 0 ? table_number(t, cs) : NAN,
+				table_number(t, cd));
+			continue;
+		}
+		d = table_positive(t, cd);
+		classes_add(c, d, v == VERDICT_SURE);
+		stats_add("particles", 1);
+	} while (table_next(t));
+	if (late > 0) {
+		warn("%.0f particles came after their period was over and are counted in "
+		     "a later one",
+			late);
+		stats_set("particles_late", late);
+		groups_doubtful(groups);
+	}
+	return last;
+}
+
+int main(int argc, char **argv)
+{
+	int operand = opt_parse(&prog, argc, argv), more, status;
+	struct report_par par;
+	struct groups *groups;
+	struct table_in *t;
+	double last = 0;
+
+	check_options();
+	t = table_open(argv[operand]);
+	more = table_next(t);
+	if (table_columns(t) == 0)
+		die(EXIT_RUN, "%s: no table", table_name(t));
+	par = parameters();
+	par.cmd = opt_cmd(table_upstream(t), NULL);
+	groups = groups_new(&par);
+	if (more)
+		last = count_rows(t, groups);
+	else if (isnan(duration))
+		die(EXIT_RUN,
+			"%s: no particle: how long the record is has to be told by "
+			"--duration",
+			table_name(t));
+	if (isnan(duration) && isnan(period) && time_column(t) >= 0)
+		warn("the record is taken to end with its last particle, at %g s; "
+		     "--duration tells better",
+			last);
+	groups_finish(groups, period, duration, time_column(t) >= 0 ? last : NAN);
+	verdict_report();
+	table_close(t);
+	status = groups_alarm(groups) ? EXIT_ALARM : groups_status(groups);
+	groups_free(groups);
+	free(par.cmd);
+	return shell_done(status);
+}

@@ -1,0 +1,45 @@
+/* reports.h - the tables that debriscount prints */
+#ifndef REPORTS_H
+#define REPORTS_H
+
+#include "cli/opt.h"
+#include "count/classes.h"
+#include "count/codes.h"
+#include <stddef.h>
+
+extern struct opt oil_rows[], report_rows[]; /* for OPT_TABLE */
+
+enum report_kind { REPORT_CLASSES, REPORT_CODES, REPORT_TREND };
+
+struct report_par {
+	enum report_kind output;
+	struct classes_par classes;
+	double edge[OPT_LIST_MAX];
+	int edges;
+	double density;      /* of the particles, kg/m3; nan: no masses */
+	double alarm, clear; /* levels, per hour */
+	int alarm_mass;      /* of kg */
+	const char *by;      /* column that tells groups apart, or NULL */
+	char *cmd;
+};
+
+/* What is remembered of the periods of one group. */
+struct history {
+	double *time, *rate[2]; /* middle of each period, h; particles and kg per hour */
+	size_t n, room[3];
+	int alarm;
+};
+
+struct report;
+
+/* Dies where options contradict one another. */
+void report_check(enum report_kind output, int periods);
+struct report *report_open(const struct report_par *par);
+/* Rows of one period of a group. */
+void report_period(struct report *r, struct history *h, const char *group,
+	const struct classes *c, double begin, double end, int whole);
+void report_flush(struct report *r);
+void report_close(struct report *r);
+void history_free(struct history *h);
+
+#endif

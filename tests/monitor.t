@@ -1,0 +1,154 @@
+#!/bin/sh
+# aopf as a monitor: saved states, units side by side, alarms, events, costs, JSON
+. "$(dirname "$0")/tap.sh"
+
+# wear LIFE ROWS SEED: straight wear with noise of 1 % of the way to 1
+wear() {
+	awk -v life="$1" -v rows="$2" -v seed="$3" 'BEGIN { srand(seed); for (t = 0; t < rows; t++) {
+		z = 0
+		for (k = 0; k < 12; k++) z += rand()
+		printf "%d\t%.6f\n", t, t / life + 0.01 * (z - 6) } }'
+}
+
+# Three units that alternate.
+{
+	printf 'unit\tt\ty\n'
+	for u in 1 2 3; do wear $((60 + 40 * u)) 80 "$u" | sed "s/^/u$u	/"; done | sort -s -n -k 2
+} >three.tsv
+head -1 three.tsv >head
+rows() { grep -v '^#' "$1" | grep -v '^unit'; }
+for how in '' '--lives-only --mission 20 --cost-ratio 5 --weights'; do
+	# shellcheck disable=SC2086 # words
+	run() { aopf --unit unit --threshold 1 --direction up $how "$@"; }
+	run three.tsv >whole
+	rows whole >whole.rows
+	head -122 three.tsv | run --save state >first
+	{ cat head; tail -n +123 three.tsv; } | run --resume state --save state >second
+	{ rows first; rows second; } >parts
+	same "a stop and a resumption leave no trace (${how:-with the filter})" parts whole.rows
+	run --resume state three.tsv | rows - >again
+	is "rows that were taken before are passed over (${how:-with the filter})" "$(wc -l <again | tr -d ' ')" 0
+	run --threads 3 three.tsv >side
+	same "threads change nothing (${how:-with the filter})" side whole
+done
+fails "a state of other options" 1 "state: saved with other options" \
+	aopf --unit unit --threshold 1 --direction up --resume state three.tsv
+fails "what is no state" 1 "no state saved by aopf" \
+	aopf --unit unit --threshold 1 --resume three.tsv three.tsv
+cp state torn
+printf 'xxxx' | dd of=torn bs=1 seek=3000 conv=notrunc 2>/dev/null
+ok "a torn state leaves the one before it" \
+	aopf --unit unit --threshold 1 --direction up --lives-only --mission 20 --cost-ratio 5 --weights --resume torn --stats torn.stats three.tsv
+is "with all units" "$(column units_resumed torn.stats)" 3
+
+# Killed between two rows.
+wear 100 70 7 | sed '1i t	y' >one.tsv
+aopf --threshold 1 --direction up --lives-only one.tsv | grep '^[0-9]' >whole
+mkfifo in
+aopf --threshold 1 --direction up --lives-only --save killed in >before &
+p=$!
+exec 3>in
+head -41 one.tsv >&3
+for k in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+	[ "$(grep -c '^[0-9]' before)" = 40 ] && break
+	sleep 0.1
+done
+sleep 0.1
+kill -KILL $p
+exec 3>&-
+wait $p 2>/dev/null
+aopf --threshold 1 --direction up --lives-only --resume killed one.tsv >after
+{ grep '^[0-9]' before; grep '^[0-9]' after; } >both
+same "nor does a kill between two rows" both whole
+
+# The memory of a unit: of a stream of 400 and of 4000 units, five rows each.
+stream() {
+	awk -v n="$1" 'BEGIN { print "unit\tt\ty"; for (t = 0; t < 5; t++)
+		for (u = 0; u < n; u++) print u "\t" t "\t" t / 100 }'
+}
+for n in 400 4000; do
+	stream $n | aopf --unit unit --threshold 1 --direction up --lives-only --after 1e9 --stats stats >/dev/null
+	column memory_kb stats
+done >memory
+near "kilobytes for each further unit" "$(awk 'NR == 1 { a = $1 } END { print ($1 - a) / 3600 }' memory)" 16 4
+
+# Probability and costs, of draws that the quantiles tell: the lowest quantile at 0, others
+# in steps of 5 %.
+levels=$(seq -s, 0 0.05 1)
+aopf --threshold 1 --direction up --lives-only --levels "$levels" --mission 15 --cost-ratio 10 one.tsv | grep -v '^#' | tail -1 >last
+awk -F '\t' '{ for (k = 3; k <= 23 && $k <= 15; k++); print (k - 4 + (15 - $(k - 1)) / ($k - $(k - 1))) / 20 }' last >p
+near "the probability of failure before the end of a mission" "$(cut -f 25 last)" "$(cat p)" 0.01
+# by hand: cost per time of a replacement at each quantile
+awk -F '\t' '{ best = 1e9; for (k = 3; k <= 22; k++) { p = (k - 3) / 20
+		area += k > 3 ? (1 - p + 0.025) * ($k - $(k - 1)) : $k
+		cost = (1 + 9 * p) / (69 + area)
+		if (cost < best) { best = cost; at = $k } } print at }' last >at
+near "the cheapest time to replace" "$(cut -f 26 last)" "$(cat at)" 2
+is "none is worth it where a failure costs no more" \
+	"$(aopf --threshold 1 --direction up --lives-only --cost-ratio 1 one.tsv | column replace_in /dev/stdin | tail -1)" inf
+
+# Alarms: raised when the lowest quantile falls to a level, cleared above 1.25 of it.
+wear 100 95 8 | sed '1i t	y' >worn.tsv
+aopf --threshold 1 --direction up --lives-only --alarm 20,5 worn.tsv >alarms
+is "an alarm stands at the end" $? 4
+awk -F '\t' '/^[0-9]/ { want = 0
+	if ($3 != "nan") {
+		if ($3 <= 20 * (was >= 1 ? 1.25 : 1)) want = 1
+		if ($3 <= 5 * (was >= 2 ? 1.25 : 1)) want = 2
+		bad += $7 != want
+		was = want
+		n++
+	} } END { print bad + 0, (n > 80) }' alarms >bad
+is "levels and their hysteresis" "$(cat bad)" "0 1"
+head -20 worn.tsv | aopf --threshold 1 --direction up --lives-only --alarm 1,0.5 >alarms
+is "no alarm, no status" $? 0
+fails "alarms that rise" 2 "falling" aopf --threshold 1 --alarm 1,2 one.tsv
+fails "a mission without a threshold" 2 "mission wants --threshold" aopf --mission 3 one.tsv
+fails "lives without a threshold" 2 "lives-only wants --threshold" aopf --lives-only one.tsv
+fails "lives of the filter without it" 2 "excludes" \
+	aopf --lives-only --threshold 1 --model grey one.tsv
+
+# Downtime: the same wear, the clock of the calendar stopped for 500 after row 40.
+awk -F '\t' 'NR == 1 { print "t\thours\ty"; next } { print $1 + ($1 > 40 ? 500 : 0) "\t" $1 "\t" $2 }' one.tsv >halt.tsv
+aopf --threshold 1 --direction up --lives-only --clock hours halt.tsv | grep '^[0-9]' | cut -f 3- >clock
+cut -f 3- whole >plain
+same "lives by operating hours" clock plain
+awk -F '\t' 'NR == 1 { print "t\ty"; next } { print $1 "\t" $3 }' halt.tsv >bare.tsv
+aopf --threshold 1 --direction up --lives-only --stats halt.stats bare.tsv | grep -v '^#' | tail -1 | cut -f 4 >r
+near "a halt is told by the values after it" "$(cat r)" "$(grep -v '^#' whole | tail -1 | cut -f 4)" 1
+is "and counted" "$(column halts halt.stats)" 1
+# the first rows after it: healthy, not dead
+aopf --threshold 1 --direction up --lives-only bare.tsv | awk -F '\t' '$1 == 541 { print $4 }' >r
+near "the row after a halt knows no failure" "$(cat r)" "$(awk -F '\t' '$1 == 41 { print $4 }' whole)" 5
+
+# A repair that is told takes effect at once, one that is not after three rows.
+awk -F '\t' 'NR > 1 && $1 >= 60 { $2 -= 0.3 } { print $1 "\t" $2 }' one.tsv >repaired.tsv
+printf 't\tevent\n60\trepair\n' >events.tsv
+aopf --threshold 1 --direction up --lives-only repaired.tsv >untold
+aopf --threshold 1 --direction up --lives-only --events events.tsv --stats events.stats repaired.tsv >told
+is "the event is counted" "$(column events events.stats)" 1
+near "life after a repair that is told" "$(awk '$1 == 60 { print $4 }' told)" 68 12
+near "one that is not told, three rows later" "$(awk '$1 == 63 { print $4 }' untold)" \
+	"$(awk '$1 == 63 { print $4 }' told)" 8
+printf 't\tevent\n60\tfire\n' >bad.tsv
+fails "an event of another kind" 1 "bad.tsv: line 2: event 'fire', want repair or load" \
+	aopf --threshold 1 --events bad.tsv one.tsv
+
+# Weights of straight wear
+aopf --threshold 1 --direction up --lives-only --weights one.tsv >weights
+column weight_linear weights | tail -1 >w
+ok "the straight line has the most of the families" sh -c \
+	"grep -v '^#' weights | tail -1 | cut -f 7-11 | tr '\t' '\n' | sort -g | tail -1 | cmp - w"
+near "weights add up to 1" "$(grep -v '^#' weights | tail -1 | cut -f 7-12 | awk '{ print $1 + $2 + $3 + $4 + $5 + $6 }')" 1 1e-9
+
+# JSON
+aopf --unit unit --threshold 1 --direction up --lives-only --json three.tsv >rows.json
+is "a line of JSON for each row" "$(grep -c '^{"unit":"u[123]","t":[0-9]*,"y":.*}$' rows.json)" 240
+if command -v python3 >/dev/null; then
+	python3 -c 'import json
+n = [json.loads(x) for x in open("rows.json")]
+print(len(n), sorted(n[0]), n[0]["rul_q50"])' >parsed
+	is "that parses" "$(cat parsed)" \
+		"240 ['p_no_crossing', 'rul_q05', 'rul_q50', 'rul_q95', 't', 'unit', 'y'] None"
+fi
+done_testing

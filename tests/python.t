@@ -1,0 +1,65 @@
+#!/bin/sh
+# The Python module gives the numbers of the programs
+. "$(dirname "$0")/tap.sh"
+
+for python in /usr/bin/python3 python3 ''; do
+	[ -n "$python" ] && "$python" -c 'import numpy' 2>/dev/null && break
+done
+if [ -z "$python" ] || [ -n "${ASAN_OPTIONS:-}" ]; then
+	skip 'the Python module' 'no numpy, or built for the sanitizers'
+	done_testing
+fi
+if ! make -s -C "$top" library >out 2>err; then
+	fail 'make library' "$(tail -3 err)"
+	done_testing
+fi
+WEARPIPE_LIBRARY=$top/build/install
+PYTHONPATH=$top/python
+PYTHONDONTWRITEBYTECODE=1
+export WEARPIPE_LIBRARY PYTHONPATH PYTHONDONTWRITEBYTECODE
+
+roughgen -n 32 -L 1mm -q 0.8um -l 100um | bemcontact --pressure 50MPa --estar 115GPa |
+	debrisgen -Y 355MPa -u 0.3 --surface worn.nrrd >particles.tsv
+roughgen -n 32 -L 1mm -q 0.8um -l 100um | bemcontact --pressure 50MPa --estar 115GPa --fields height,pressure >c.nrrd
+cat >check.py <<'E2'
+import numpy as np, wearpipe
+dx = 1e-3 / 32
+z = wearpipe.surface(32, 1 * 1e-3, sq=0.8 * 1e-6, corr=100 * 1e-6)  # as units are read
+p, result = wearpipe.press(z, dx, 50 * 1e6, 115 * 1e9)
+raw = open("c.nrrd", "rb").read()
+field = np.frombuffer(raw, "<f8", 2 * 32 * 32, raw.index(b"\n\n") + 2).reshape(32, 32, 2)
+print("heights", np.array_equal(z, field[:, :, 0]))
+print("pressure", np.array_equal(p, field[:, :, 1]), result.converged)
+print("load %.6g" % (p.sum() * dx * dx))
+r = wearpipe.roughness(z, dx)
+print("sq %.6g" % r.sq)
+worn, particles = wearpipe.wear(z, p, dx, 355e6, friction=0.3)
+print("volume %.9g %.9g" % (particles["volume"].sum(), (z - worn).sum() * dx * dx))
+x = np.zeros(401); x[100] = 1
+h = wearpipe.taps(200, 70, 130, 10e3)
+print("filter %.3g" % np.abs(wearpipe.bandpass(x, 70, 130, 10e3)[100:301] - h).max())
+t = np.arange(60.0)
+low, median, high = wearpipe.remaining_life(t, 0.1 * t + 0.01 * np.sin(17 * t), 10.0)
+print("life", low < median < high, abs(median - 41) < 4)
+for wrong in (lambda: wearpipe.press(z, dx, -1, 115e9), lambda: wearpipe.surface(0, 1e-3),
+              lambda: wearpipe.remaining_life([0, 1], [0, 1], 5.0)):
+    try:
+        wrong(); print("accepted")
+    except wearpipe.Error as e:
+        print("refused")
+E2
+if ! "$python" check.py >got 2>err; then
+	fail 'the module runs' "$(tail -5 err)"
+	done_testing
+fi
+got() { sed -n "s/^$1 //p" got; }
+is 'the same heights as roughgen, to the last bit' "$(got heights)" True
+is 'the same pressure as bemcontact, and it converged' "$(got pressure)" 'True True'
+near 'the load is the mean pressure times the area, 50 N' "$(got load)" 50 1e-4
+near 'Sq is what was asked for' "$(got sq)" 8e-07 1e-12
+worn=$(column volume particles.tsv | awk '{ s += $1 } END { printf "%.9g", s }')
+is 'the particles of debrisgen, whose volume the surface lost' "$(got volume)" "$worn $worn"
+is 'an impulse comes out as the taps' "$(got filter | awk '{ print ($1 < 1e-15) }')" 1
+is 'the remaining life of a straight line' "$(got life)" 'True True'
+is 'what cannot be is refused as an exception' "$(grep -c refused got)" 3
+done_testing

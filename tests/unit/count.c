@@ -1,0 +1,226 @@
+/* count - intervals against drawn counts, codes against their tables, lines and bounds */
+#include "count/classes.h"
+#include "count/codes.h"
+#include "count/interval.h"
+#include "count/line.h"
+#include "num/philox.h"
+#include "tap.h"
+
+static uint64_t drawn;
+
+static double uniform(void)
+{
+	return philox_uniform(11, 0, RNG_PARTICLE, drawn++);
+}
+
+/* Events of a Poisson process with this mean. */
+static int poisson(double mean)
+{
+	double sum = 0;
+	int n = -1;
+
+	for (; sum < mean; n++)
+		sum -= log(uniform());
+	return n;
+}
+
+static void check_poisson(void)
+{
+	struct weighted s = { 0 };
+	double low, high;
+
+	weighted_interval(&s, 1, 0.95, &low, &high);
+	near(low, 0, 0, "nothing seen: from 0");
+	near(high, -log(0.025), 1e-9, "to -ln 0.025");
+	for (int i = 0; i < 5; i++)
+		weighted_add(&s, 1);
+	weighted_interval(&s, 1, 0.95, &low, &high);
+	near(low, 1.62348639, 1e-7, "five events: Garwood's lower end");
+	near(high, 11.66833208, 1e-7, "and upper end");
+	weighted_interval(&s, INFINITY, 0.95, &low, &high);
+	ok(isinf(high), "what could weigh anything has no upper end");
+}
+
+/* Sums of weights w^3, w uniform, whose mean is known. */
+static void check_coverage(double mean)
+{
+	enum { RUNS = 4000 };
+	double expected = mean * 0.25, below = 0, above = 0;
+
+	for (int run = 0; run < RUNS; run++) {
+		struct weighted s = { 0 };
+		double low, high;
+
+		for (int n = poisson(mean); n > 0; n--)
+			weighted_add(&s, pow(uniform(), 3));
+		weighted_interval(&s, 1, 0.9, &low, &high);
+		below += high < expected;
+		above += low > expected;
+	}
+	/* 5 % on either side, sd 0.34 %; the upper end is conservative by design */
+	ok(below / RUNS < 0.05 + 0.011, "mean %g: the upper end is too low in %.2f %%",
+		mean, 100 * below / RUNS);
+	ok(above / RUNS < 0.05 + 0.011, "mean %g: the lower end is too high in %.2f %%",
+		mean, 100 * above / RUNS);
+}
+
+static void check_detection(void)
+{
+	struct detection d = { 100e-6, 5, 3 };
+
+	near(detection_probability(&d, 100e-6), 0.5, 1e-15, "d50 is seen half the time");
+	near(detection_diameter(&d, 0.9) / 100e-6, cbrt((5 + 1.2815515655) / 5), 1e-9,
+		"d90 / d50 is the cube root of (T + 1.28) / T");
+	near(detection_probability(&d, detection_diameter(&d, 0.3)), 0.3, 1e-12,
+		"size and probability are inverse");
+	near(detection_threshold(10e-3, 1.34 / 3600), 5, 1e-3,
+		"10 ms pulses: 1.34 false alarms per hour at 5 sigma");
+	near(detection_threshold(10e-3, .0055 / 3600), 6, 2e-3, "and 0.0055 at 6");
+	ok(isnan(detection_threshold(1, 2)), "more alarms than pulses: no threshold");
+}
+
+static void check_codes(void)
+{
+	int bad = 0;
+
+	for (int k = 0; k < ISO4406_CODES; k++) {
+		bad += iso4406_code(iso4406_limit(k)) != k;
+		bad += iso4406_code(iso4406_limit(k) * (1 + 1e-9)) != k + 1;
+		/* the table doubles, rounded to 5 % */
+		bad += k > 0 && fabs(iso4406_limit(k) / iso4406_limit(k - 1) - 2) > 0.1;
+	}
+	ok(bad == 0, "a scale number ends with its limit: %d do not", bad);
+	near(iso4406_code(2000e6), 18, 0, "2000 per ml is 18");
+	near(iso4406_code(0), 0, 0, "none is 0");
+	for (int s = 0; s < AS4059_SIZES; s++)
+		for (int k = 0; k < AS4059_CLASSES; k++)
+			bad += k > 7 && fabs(as4059_limit(s, k) / as4059_limit(s, k - 1) -
+						2) > 0.01;
+	ok(bad == 0, "classes of AS4059 double");
+	near(as4059_limit(0, 14), 3200000e4, 0, "class 12A is 3.2 million per 100 ml");
+	near(as4059_limit(3, 7), 306e4, 0, "class 5D is 306 per 100 ml");
+	near(as4059_class(5, 1.5e4), 5, 0, "1.5 per 100 ml above 70 um is class 3");
+}
+
+static void check_lines(void)
+{
+	enum { N = 60, RUNS = 2000 };
+	double x[N], y[N], held = 0, lack = 0, slope = 0;
+	struct line l;
+
+	for (int run = 0; run < RUNS; run++) {
+		for (int i = 0; i < N; i++) {
+			double normal[2];
+
+			philox_normal2(5, 0, RNG_NOISE, (uint64_t)(run * N + i), normal);
+			x[i] = i / 20;
+			y[i] = 2 + 3 * x[i] + normal[0];
+		}
+		line_fit(x, y, N, 0.9, &l);
+		held += fabs(l.slope - 3) < l.t * l.slope_se;
+		lack += line_lack_of_fit(x, y, N, &l) < 0.1;
+		slope += line_slope_p(&l, N, 3) < 0.1;
+	}
+	/* sd 0.7 % */
+	near(held / RUNS, 0.9, 0.025,
+		"intervals of 90 % hold the slope in as many cases");
+	near(lack / RUNS, 0.1, 0.025, "a straight line is refused at 10 % in as many");
+	near(slope / RUNS, 0.1, 0.025, "and so is the true slope");
+	ok(line_fit(x, y, 2, 0.9, &l) != 0, "two points are no line");
+}
+
+/* Stretches: the bound holds for any particles with the same sums of d^6 and d^12. */
+static void check_stretches(void)
+{
+	static const double edge[] = { 40e-6, 60e-6, 100e-6, 140e-6 };
+	struct classes_par par = { { 0, 1, 3 }, 0.95 };
+	struct classes *c = classes_new(edge, 4, &par);
+	int bad = 0, close = 0;
+
+	for (int run = 0; run < 500; run++) {
+		double s6 = 0, s12 = 0, above[4] = { 0 }, volume[4] = { 0 };
+		int n = 2 + (int)(uniform() * 200);
+		double power = 0.2 + 5 * uniform();
+
+		for (int i = 0; i < n; i++) {
+			double d = 150e-6 * pow(uniform(), power);
+
+			s6 += pow(d, 6);
+			s12 += pow(d, 12);
+			for (int k = 0; k < 4; k++)
+				if (d >= edge[k]) {
+					above[k]++;
+					volume[k] += M_PI / 6 * d * d * d;
+				}
+		}
+		classes_clear(c);
+		classes_add_stretch(c, s6 * s6 / s12, pow(s12 / s6, 1.0 / 6));
+		for (int k = 0; k < 4; k++) {
+			struct class_count out;
+
+			classes_count_above(c, k, &out);
+			bad += out.number.high < above[k] || out.volume.high < volume[k];
+			close += out.number.high < 5 + 4 * above[k];
+		}
+	}
+	ok(bad == 0, "no stretch has more particles than its bound: %d have", bad);
+	ok(close > 500, "and the bound means something: within 4 times in %d of 2000",
+		close);
+	classes_clear(c);
+	classes_add_stretch(c, 10, NAN);
+	{
+		struct class_count out;
+
+		classes_count(c, 1, &out);
+		ok(isinf(out.number.high),
+			"a stretch of which nothing is known has none");
+	}
+	classes_free(c);
+}
+
+/* A sensor that sees some: the true number lies in the interval. */
+static void check_blind(void)
+{
+	static const double edge[] = { 90e-6, 110e-6 };
+	struct classes_par par = { { 95e-6, 6, 3 }, 0.9 };
+	struct classes *c = classes_new(edge, 2, &par);
+	double held[2] = { 0 }, mean[2] = { 0 };
+
+	for (int run = 0; run < 1000; run++) {
+		classes_clear(c);
+		for (int n = poisson(40); n > 0; n--) {
+			double d = 90e-6 + 40e-6 * uniform();
+
+			if (uniform() < detection_probability(&par.detection, d))
+				classes_add(c, d, 1);
+		}
+		for (int k = 0; k < 2; k++) {
+			struct class_count out;
+
+			classes_count(c, k, &out);
+			mean[k] += out.number.value / 1000;
+			held[k] += out.number.low <= 20 && out.number.high >= 20;
+		}
+	}
+	for (int k = 0; k < 2; k++) {
+		near(mean[k], 20, 0.6,
+			"numbers are right on average where some are missed");
+		ok(held[k] >= 870, "and their intervals of 90 %% hold: %.0f of 1000",
+			held[k]);
+	}
+	classes_free(c);
+}
+
+int main(void)
+{
+	check_poisson();
+	check_coverage(1);
+	check_coverage(5);
+	check_coverage(30);
+	check_detection();
+	check_codes();
+	check_lines();
+	check_stretches();
+	check_blind();
+	return tap_done();
+}

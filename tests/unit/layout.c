@@ -1,0 +1,181 @@
+/* layout - the Cramer-Rao bound of coils, against matrices by finite differences */
+#include "layout/search.h"
+#include "tap.h"
+#include <stdlib.h>
+
+static double voltage(
+	const struct bound_par *p, double t, double t1, double v, double a, double x)
+{
+	double s = ((t - t1) * v - x) / p->zone;
+
+	return fabs(s) < pulse_reach(p->shape) ? a * pulse_value(p->shape, s) : 0;
+}
+
+/* Variances of arrival at the first coil, velocity and amplitude by Gauss-Jordan from
+ * derivatives by central differences, samples at (k + phase) / rate. */
+static void brute(const struct bound_par *p, const double *coil, int coils, double phase,
+	double variance[3])
+{
+	double f[3][6] = { { 0 } }, theta[3] = { 0, p->velocity, p->snr };
+	double span = p->zone / p->velocity * pulse_reach(p->shape);
+	double step[3] = { 1e-6 * p->zone / p->velocity, 1e-6 * p->velocity,
+		1e-6 * p->snr };
+
+	for (int m = 0; m < coils; m++) {
+		double x = coil[m] - coil[0], at = x / p->velocity;
+		long low = (long)floor((at - span) * p->rate) - 1;
+		long high = (long)ceil((at + span) * p->rate) + 1;
+
+		for (long k = low; k <= high; k++) {
+			double t = ((double)k + phase) / p->rate, g[3];
+
+			for (int i = 0; i < 3; i++) {
+				double up[3] = { theta[0], theta[1], theta[2] },
+				       down[3] = { theta[0], theta[1], theta[2] };
+
+				up[i] += step[i];
+				down[i] -= step[i];
+				g[i] = (voltage(p, t, up[0], up[1], up[2], x) -
+					       voltage(p, t, down[0], down[1], down[2],
+						       x)) /
+				       (2 * step[i]) * theta[i == 0 ? 1 : i];
+			}
+			g[0] *= p->zone / p->velocity / p->velocity;
+			for (int i = 0; i < 3; i++)
+				for (int j = 0; j < 3; j++)
+					f[i][j] += g[i] * g[j];
+		}
+	}
+	for (int i = 0; i < 3; i++)
+		f[i][3 + i] = 1;
+	for (int i = 0; i < 3; i++) {
+		double pivot = f[i][i];
+
+		for (int j = 0; j < 6; j++)
+			f[i][j] /= pivot;
+		for (int k = 0; k < 3; k++) {
+			double c = f[k][i];
+
+			for (int j = 0; k != i && j < 6; j++)
+				f[k][j] -= c * f[i][j];
+		}
+	}
+	for (int i = 0; i < 3; i++)
+		variance[i] = f[i][3 + i];
+}
+
+static void compare_with_differences(enum pulse_shape shape, const char *name)
+{
+	struct bound_par p = { shape, 0.1273, 12.73, 40e3, 100 };
+	const double coil[] = { 0.1, 0.15, 0.35 };
+	double variance[3], mean[3] = { 0 }, unit = p.zone / p.velocity;
+	struct bound b, c;
+
+	for (int k = 0; k < 4; k++) {
+		brute(&p, coil, 3, (k + 0.5) / 4, variance);
+		for (int i = 0; i < 3; i++)
+			mean[i] += variance[i] / 4;
+	}
+	bound_sampled(&p, coil, 3, 16, &b);
+	bound_closed(&p, coil, 3, &c);
+	/* 400 samples a pulse; a sample at the jump of the slope of the sine counts 1/400
+	 */
+	ok(fabs(b.time / unit / sqrt(mean[0]) - 1) < 1e-3,
+		"%s: the arrival is as uncertain as finite differences tell", name);
+	ok(fabs(b.velocity / p.velocity / sqrt(mean[1]) - 1) < 1e-3,
+		"%s: so is the velocity", name);
+	ok(fabs(b.amplitude / sqrt(mean[2]) - 1) < 1e-3, "%s: and the amplitude", name);
+	ok(fabs(c.time / b.time - 1) < 1e-4 && fabs(c.velocity / b.velocity - 1) < 1e-4 &&
+			fabs(c.diameter / b.diameter - 1) < 1e-4,
+		"%s: integrals and sums agree to 1e-4 (%.1e)", name,
+		c.velocity / b.velocity - 1);
+}
+
+/* The closed form in the literature's notation, for the sine. */
+static void compare_with_formula(void)
+{
+	static const struct {
+		int coils;
+		double coil[4], want; /* sd(v) / v at 40 dB */
+	} row[] = { { 1, { 0 }, 7.52e-4 }, { 2, { 0, .05 }, 4.44e-4 },
+		{ 2, { 0, .25 }, 1.55e-4 }, { 3, { 0, .05, .25 }, 1.44e-4 },
+		{ 4, { 0, 0, .25, .25 }, 1.10e-4 }, { 3, { 0, .25, .5 }, .797e-4 } };
+	struct bound_par p = { PULSE_SINE, 0.1273, 12.73, 10e3, 100 };
+
+	for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+		double n = row[i].coils, mean = 0, s = 0, formula;
+		struct bound b;
+
+		for (int k = 0; k < row[i].coils; k++)
+			mean += row[i].coil[k] / n;
+		for (int k = 0; k < row[i].coils; k++)
+			s += pow(row[i].coil[k] - mean, 2);
+		formula = sqrt(
+			1e-4 * p.velocity * p.zone /
+			(p.rate * (2 * M_PI * M_PI * s + (M_PI * M_PI / 6 + 0.125) * n *
+								 p.zone * p.zone)));
+		bound_closed(&p, row[i].coil, row[i].coils, &b);
+		ok(fabs(b.velocity / p.velocity / formula - 1) < 1e-12,
+			"the closed form is that of the page, %d coils over %g m",
+			row[i].coils, row[i].coil[row[i].coils - 1]);
+		ok(fabs(formula / row[i].want - 1) < 5e-3, "and the reference value %.3g",
+			row[i].want);
+	}
+}
+
+static void check_traffic(void)
+{
+	struct traffic t = { { 0.01, 1e-3, PIPE_PLUG, 7 }, 100, 0.025 };
+	double v = pipe_mean_velocity(&t.pipe), plug = traffic_alone(&t, 0.1273);
+
+	near(plug, exp(-200 * 0.1273 / v), 1e-15,
+		"equal particles stand alone with exp(-2 arrivals zone / v)");
+	near(traffic_window(&t), 0.05 / v, 1e-15,
+		"equal particles fall into a window of twice the spread");
+	near(traffic_unique(&t, 0.25 * traffic_window(&t)), exp(-100 * 0.25 * 0.05 / v),
+		1e-15, "and are paired with exp(-2 arrivals spacing spread / v)");
+	t.pipe.profile = PIPE_LAMINAR;
+	t.spread = 0;
+	/* the wall is at 0.99 R, where the velocity is 2 U (1 - 0.99^2) */
+	near(traffic_window(&t) * v * 2, 1 / (1 - 0.99 * 0.99) - 1, 1e-9,
+		"a laminar profile spreads transit times from the axis to the wall");
+	/* The mean of 1/v over the flow is area / flow whatever the profile, so that
+	 * exp(-x), being convex, can only gain. */
+	ok(traffic_alone(&t, 0.1273) > plug,
+		"with the same mean transit time the fast ones are alone more often");
+}
+
+static void check_search(void)
+{
+	struct layout_par par = { { PULSE_SINE, 0.1273, 12.73, 10e3, 31.6 },
+		{ { 0.01, 1e-3, PIPE_PLUG, 7 }, 100, 0.025 } };
+	double coil[LAYOUT_COILS], far;
+	struct layout of;
+
+	ok(layout_search(&par, 4, 0.1, 0, 32, coil, &of) == 0 && coil[1] == 0 &&
+			coil[2] == 0.1 && coil[3] == 0.1,
+		"without a bound on pairing half the coils stand at either end");
+	ok(layout_search(&par, 2, 10, 0.95, 64, coil, &of) == 0,
+		"two coils find a place");
+	/* p = exp(-arrivals D 6 sd(1/v)), sd from the width of the first pulse */
+	{
+		struct bound b;
+
+		bound_closed(&par.bound, coil, 1, &b);
+		far = -log(0.95) / (100 * 6 * b.velocity / (12.73 * 12.73));
+	}
+	near(coil[1] / far, 1, 1e-6, "as far apart as pairing by width allows");
+	ok(layout_search(&par, 2, 10, 1, 64, coil, &of) == 0 && coil[1] == 0,
+		"where pairing must be certain they stand in one place");
+}
+
+int main(void)
+{
+	compare_with_differences(PULSE_SINE, "sine");
+	compare_with_differences(PULSE_GAUSS, "gauss");
+	compare_with_differences(PULSE_LORENTZ, "lorentz");
+	compare_with_formula();
+	check_traffic();
+	check_search();
+	return tap_done();
+}

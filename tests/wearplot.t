@@ -1,0 +1,63 @@
+#!/bin/sh
+# wearplot: a picture of every kind of stream, and what it refuses
+. "$(dirname "$0")/tap.sh"
+
+if ! command -v gnuplot >/dev/null; then
+	skip 'all of wearplot' 'no gnuplot'
+	done_testing
+fi
+# picture NAME PATTERN OPTION...: an SVG whose text matches
+picture() {
+	name=$1 pattern=$2
+	shift 2
+	if ! wearplot "$@" >p.svg 2>err; then
+		fail "$name" "$(cat err)"
+	elif ! tr -d '\n' <p.svg | sed 's/<[^>]*>//g' | grep -q -e "$pattern"; then
+		fail "$name" "no text '$pattern' in the picture"
+	elif ! tail -n 2 p.svg | grep -q "</svg>"; then
+		fail "$name" 'the picture is not whole'
+	else
+		pass "$name"
+	fi
+}
+roughgen -n 32 -L 1mm -c 2 | bemcontact --pressure 50MPa -E 210GPa >contact.nrrd
+picture 'a field is drawn with its unit and a scale bar' 'height, um.*0.2 mm' contact.nrrd
+picture 'the field asked for is drawn' 'pressure, GPa' --field pressure --record 2 contact.nrrd
+picture 'a relief has a height axis' 'height, um' --relief contact.nrrd
+sensorsim --uniform 50um:150um --number 20 --duration 2s --truth truth.tsv >signal.au
+picture 'a signal has a trace for every channel' 'channel 1.*channel 2' signal.au
+picture 'particles are marked' 'particles' --found truth.tsv --from=0.5 --to=0.6 signal.au
+wearplot --from 0.5 --to 0.6 --output a.png signal.au
+is 'a name that ends in .png makes a PNG' "$(head -c 4 a.png | tail -c 3)" PNG
+
+# No pulse of one frame is lost in the envelope of a long record.
+perl -e 'print ".snd", pack("N5", 24, 0xffffffff, 7, 10000, 1);
+	print reverse pack("d", $_ == 54321 ? 3 : 0) for 0 .. 99999' >spike.au
+picture 'an envelope keeps a spike of one frame' '3' spike.au
+
+printf 't\ty\n0\t1\n3600\t2\n7200\t3\n' >series.tsv
+picture 'a series is drawn over time' 'observed' series.tsv
+picture 'with its threshold' 'threshold' --end 5 series.tsv
+printf 't\tq05\tq50\tq95\n0\t8\t10\t12\n1\t7\t9\t11\n' >life.tsv
+picture 'lives have a band, a median and the truth' 'band.*median.*true' --truth 10 life.tsv
+printf 'error\tseconds\n1e-3\t1\n1e-4\t2\n' >cost.tsv
+picture 'error against time' 'processor time' cost.tsv
+printf 'diameter\tverdict\n1e-4\talone\n2e-4\tmisfit\n' >found.tsv
+picture 'particles by size' 'diameter, um' found.tsv
+is 'doubtful particles are not counted' "$(printf 'diameter\tverdict\n2e-4\tmisfit\n3e-4\tmisfit\n' |
+	wearplot 2>&1)" 'wearplot: standard input: no particle with a diameter'
+
+fails 'an unknown table is refused by its columns' 1 'no picture for the columns a b' \
+	sh -c 'printf "a\tb\n1\t2\n" | wearplot'
+fails 'an empty stream' 1 'standard input: empty' wearplot
+fails 'a missing file' 1 'none.tsv: cannot be read' wearplot none.tsv
+fails 'a field that is not there' 1 'no such field' wearplot --field gap contact.nrrd
+fails 'a record that is not there' 1 'contact.nrrd' wearplot --record 3 contact.nrrd
+fails 'another ending' 2 'ends in .svg or .png' wearplot --output x.gif contact.nrrd
+fails 'a size without a height' 2 'want WxH' wearplot --size 900 contact.nrrd
+fails 'an unknown option' 2 'no such option' wearplot --colour contact.nrrd
+fails 'a time that is no number' 2 'from abc: want a number' wearplot --from abc signal.au
+fails 'a stretch of no length' 2 'want a time after' wearplot --from 1 --to 1 signal.au
+fails 'a record that ends before' 1 'ends before' wearplot --from 100 signal.au
+is 'the version' "$(wearplot -V)" "wearplot (wearpipe) $(sed -n 's/^VERSION = //p' "$top/Makefile")"
+done_testing
