@@ -7,12 +7,14 @@
 #include "signal/tape.h"
 #include <math.h>
 #include <stdlib.h>
-#include <stdio.h>
 #include <string.h>
 
 /* Band of a filter, over one cycle per duration of a pulse, that tells too little of it:
  * what it leaves rings on, and others fit into that. */
 static const double NARROW = 0.5;
+
+/* Chi-square that a pulse next to another must take away. */
+static const double NEAR = 28;
 
 /* The record that is learned from. */
 struct record {
@@ -280,13 +282,11 @@ static enum calibrate_status find_start(
 	if (!isnan(par->lag) && !(par->lag < (double)n - 16))
 		return CALIBRATE_FAR;
 	if (!start_find(r->tape[0].x + edge, r->tape[1].x + edge, n, par->duration,
-		    par->lag, &s))
+		    par->lag, r->noise.quiets == 0, &s))
 		return CALIBRATE_MEMORY;
-	if (getenv("DBG")) fprintf(stderr,"DBGS start T %g lag %ld score %g sign %d tog %d quiets %d white %d %d noise %g\n", s.duration,s.lag,s.score,s.sign,s.together,r->noise.quiets,r->noise.white[0],r->noise.white[1],c->noise[0]);
 	if (s.duration == 0 ||
 		(s.score == 0 && (isnan(par->lag) || isnan(par->duration))))
 		return CALIBRATE_NO_LAG;
-	if (getenv("DBG")) fprintf(stderr,"DBGS start T %g lag %ld score %g sign %d tog %d quiets %d white %d %d noise %g\n", s.duration,s.lag,s.score,s.sign,s.together,r->noise.quiets,r->noise.white[0],r->noise.white[1],c->noise[0]);
 	c->duration = s.duration;
 	if (par->filter &&
 		(c->whitening[0].high - c->whitening[0].low) * c->duration < NARROW)
@@ -313,6 +313,35 @@ static enum calibrate_status find_start(
 
 /* --- rounds */
 
+/* A line that regular pulses have was taken off in vain, and stands in what they leave.
+ * Returns how many are dropped. */
+static int drop_pulse_tones(const struct record *r, struct calibration *c,
+	double *const rest[2], size_t n)
+{
+	int kept = 0, before = c->tones;
+	double coefficient[2][2 * TONES_MAX + 1];
+
+	for (int k = 0; k < 2; k++)
+		if (c->tones == 0 || !tones_fit(rest[k], n, (double)edge_of(r, c) + k * (double)c->shift,
+					     c->tones, c->omega, coefficient[k], NULL, NULL))
+			return 0;
+	for (int t = 0; t < before; t++) {
+		int vain = 0;
+
+		for (int k = 0; k < 2; k++) {
+			const double *taken = r->tape[k].coefficient + 1 + 2 * t;
+			const double *left = coefficient[k] + 1 + 2 * t;
+
+			vain |= hypot(left[0], left[1]) * c->noise[k] >
+				0.5 * hypot(taken[0], taken[1]);
+		}
+		if (!vain)
+			c->omega[kept++] = c->omega[t];
+	}
+	c->tones = kept;
+	return before - kept;
+}
+
 /* Spectrum of what the pulses leave: what it is not white by is put right. */
 static int measure_rest(const struct calibrate_par *par, struct record *r,
 	struct calibration *c)
@@ -335,6 +364,8 @@ static int measure_rest(const struct calibrate_par *par, struct record *r,
 		for (size_t i = 0; i < n; i++)
 			if (r->bad[k][i])
 				rest[k][i] = 0;
+	if (drop_pulse_tones(r, c, rest, n))
+		return 1;
 	if (!noise_measure(&noise, rest[0], rest[1], n))
 		return 0;
 	if (noise.quiets == 0 && r->noise.quiets > 0)
@@ -376,8 +407,8 @@ static void set_thresholds(const struct calibrate_par *par, struct calibration *
 
 	c->drop = calibrate_drop(par->false_alarm, c->shape[0], c->duration, gain,
 		c->delta_max - c->delta_min);
-	/* Next to a pulse the search is over some 40 cells: 23 means 2e-3 false ones. */
-	c->drop_near = c->drop < 23 ? c->drop : 23;
+	/* Next to a pulse the search is over some 40 cells: 28 means 2e-4 false ones. */
+	c->drop_near = c->drop < NEAR ? c->drop : NEAR;
 }
 
 static enum calibrate_status settle(
@@ -409,19 +440,22 @@ static enum calibrate_status learn_record(
 {
 	enum { ROUNDS = 2 };
 	enum calibrate_status status = make_white(par, r, c);
+	int rounds = ROUNDS;
 
 	if (status == CALIBRATE_OK)
 		status = find_start(par, r, c);
-	for (int round = 0; status == CALIBRATE_OK && round < ROUNDS; round++) {
+	for (int round = 0; status == CALIBRATE_OK && round < rounds; round++) {
 		double gain = c->gain * c->noise[0] / c->noise[1];
+		int tones = c->tones;
 
 		if (round && (!measure_rest(par, r, c) || !clean(r, c)))
 			return CALIBRATE_MEMORY;
+		rounds += c->tones < tones;
 		c->gain = round ? c->gain : gain * c->noise[1] / c->noise[0];
 		align(r, c);
 		if (r->length < 16)
 			return CALIBRATE_FAR;
-		c->drop = c->drop_near = 23;
+		c->drop = c->drop_near = NEAR;
 		set_range(par, c);
 		status = learn_pulse(
 			par, r->y, r->bad, r->length, round, r->learning, c);
@@ -452,7 +486,6 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 		joint_free(r.learning->joint);
 	free(r.learning);
 	free(r.work);
-	if (getenv("DBG")) fprintf(stderr,"DBGS status %d\n", (int)status);
 	if (status != CALIBRATE_OK)
 		calibration_clear(c);
 	return status;

@@ -41,8 +41,8 @@ struct joint_scene {
 	double drop;                 /* chi-square a pulse must take away ... */
 	double drop_near; /* ... where it overlaps others: the search is narrower, */
 	double misfit;   /* plus this share of the energy it overlaps, ... */
-	double negative; /* ... plus this where its amplitude is negative; INFINITY:
-			  * none is */
+	double negative; /* ... plus this where its amplitude is negative and it stands
+			  * alone; not 0: none that overlaps others is */
 	int max_pulses;   /* at most JOINT_PULSES_MAX */
 	int offset;       /* 1: a constant is fitted too */
 	int tones;

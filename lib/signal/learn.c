@@ -6,8 +6,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <stdio.h>
-#define DBG(...) (getenv("DBG") ? fprintf(stderr, __VA_ARGS__) : 0)
 
 /* Stretches with one pulse that a free form can be learned from. */
 enum { ENOUGH = 5, MANY = 20 };
@@ -653,7 +651,6 @@ static int choose_form(const struct calibrate_par *par, struct learning *l,
 			c->through = through;
 			ok = ok && turn_known(par, l, c, p, low, best->cost);
 			here = cost(total_chi2(l), 2);
-			DBG("  form %d through %d T %g cost %g free %g\n", p, through, c->duration, here, free_form->cost);
 			if (ok && here < best->cost)
 				ok = save(l, c, here, best);
 		}
@@ -855,7 +852,6 @@ static int learn_lone(const struct calibrate_par *par, struct learning *l,
 		l->scene.misfit = INFINITY;
 		*ok = *ok && pick_lone(l, y, bad, n) && fit_all(l, 1);
 		lone = *ok ? find_common(l) : 0;
-		DBG("lone %d of %d T %g\n", lone, l->count, c->duration);
 		if (!*ok || lone < ENOUGH)
 			return 0;
 		*ok = turn_free(l, c, -1, again ? 3 : 5);
@@ -898,7 +894,6 @@ static int learn_more(const struct calibrate_par *par, struct learning *l,
 		if (misfit > 0 && l->price > 10 * price)
 			break;
 		judge_stretches(l, -1, &level, &error2, &se);
-		DBG("more: count %d error %g\n", l->count, sqrt(error2));
 		if (c->pulse != CALIBRATE_ANY_PULSE && median_chi2(l) < FITS) {
 			double before = c->duration;
 
@@ -945,7 +940,6 @@ static int conclude(struct learning *l, struct calibration *c)
 	if (!validate(l, c))
 		return 0;
 	c->chi2 = median_chi2(l);
-	DBG("end: pulse %d T %g through %d gain %g level %g error %g least %g chi2 %g count %d\n", c->pulse,c->duration,c->through,c->gain,c->level,c->error,c->error_least,c->chi2,l->count);
 	return 1;
 }
 

@@ -133,6 +133,36 @@ static double find_duration(struct bank *b)
 	return best;
 }
 
+/* Lag of the lowest autocorrelation before it clearly rises, as the duration of a sine pulse
+ * that has its there. */
+static double least_like_itself(struct bank *b)
+{
+	enum { SINE = 100 };
+	size_t low = 1;
+	double least = 0, sine = 1;
+
+	for (size_t k = 0; k <= b->size / 2; k++)
+		b->part[k] = b->y[0][k] * conj(b->y[0][k]) + b->y[1][k] * conj(b->y[1][k]);
+	fft_inverse(b->fft, b->part, b->z[0]);
+	for (size_t k = 2; k < b->n / 4; k++) {
+		if (b->z[0][k] < b->z[0][low])
+			low = k;
+		else if (b->z[0][low] < 0 && b->z[0][k] > 0.5 * b->z[0][low])
+			break;
+	}
+	for (int k = 1; k < SINE; k++) {
+		double r = 0;
+
+		for (int i = 0; i + k < SINE; i++)
+			r += sin(2 * M_PI * i / SINE) * sin(2 * M_PI * (i + k) / SINE);
+		if (r < least) {
+			least = r;
+			sine = (double)k / SINE;
+		}
+	}
+	return b->z[0][low] < 0 ? (double)low / sine : find_duration(b);
+}
+
 /* Correlation of the trains of clear pulses, in z[0]: lag k at k, -k at size - k. */
 static void correlate_trains(struct bank *b, double T)
 {
@@ -236,14 +266,16 @@ static void find_lag(struct bank *b, double known, struct start *s)
 }
 
 int start_find(const double *y1, const double *y2, size_t n, double duration, double lag,
-	struct start *s)
+	int crowded, struct start *s)
 {
 	struct bank b;
 	int ok = bank_start(&b, y1, y2, n);
 
 	*s = (struct start){ .sign = 1 };
 	if (ok) {
-		s->duration = isnan(duration) ? find_duration(&b) : duration;
+		s->duration = !isnan(duration) ? duration
+			      : crowded	  ? least_like_itself(&b)
+						: find_duration(&b);
 		if (s->duration > 0)
 			find_lag(&b, lag, s);
 	}
