@@ -6,7 +6,11 @@
 #	make install      PREFIX, DESTDIR, BINDIR, LIBDIR, INCLUDEDIR, MANDIR, DOCDIR
 #
 #	make bin/duet     one program alone, with the libraries it needs and no others
-#	make check-long   the longer checks; make check-all: both
+#	make check-long   the longer checks; make # A Slurm cluster of one node, started for the test; wants slurm-wlm and munge.
+check-cluster: all
+	@BIN=$(abspath $(BIN)) tests/run tests/cluster/*.t
+
+check-all: both
 #	make bench        error against run time; one domain: make bench-contact
 #	make extremes-contact  the table of extreme scenes of a domain
 #	make matrix       duet on a matrix of instruments: rows wrong, found, errors, time
@@ -38,7 +42,7 @@ Q = $(if $(V),,@)
 say = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),@:,@printf '  %-4s %s\n' $(1) '$(2)')
 
 # The outer libraries of each program; what it uses of lib/ the linker takes from one archive.
-PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal
+PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal surfimport
 roughgen_LIBS = fftw
 bemcontact_LIBS = fftw
 debrisgen_LIBS = fftw
@@ -65,7 +69,7 @@ fftw_LINK = $(FFTW_LIBS)
 gsl_LINK = $(GSL_LIBS)
 
 # Scripts that users call, built and installed beside the programs.
-SCRIPTS = wearplot
+SCRIPTS = wearplot surfunzip
 
 ALL_CFLAGS = $(STD) $(WARN) $(CFLAGS) -pthread
 ALL_CPPFLAGS = -Iinclude -Ilib -Isrc -DWEARPIPE_VERSION='"$(VERSION)"' $(BLAS_FLAG) $(FFTW_CFLAGS) $(GSL_CFLAGS) $(CPPFLAGS)
@@ -91,7 +95,7 @@ UNITS := $(patsubst tests/unit/%.c,$(B)/unit/%,$(wildcard tests/unit/*.c))
 LONG_UNITS := $(patsubst tests/long/%.c,$(B)/long/%,$(wildcard tests/long/*.c))
 BENCH_BINS := $(patsubst tests/bench/%.c,$(B)/bench/%,$(wildcard tests/bench/*.c))
 
-.PHONY: all check check-long check-all bench lint asan asan-quick fuzz demo install uninstall dist clean help
+.PHONY: check-cluster all check check-long check-all bench lint asan asan-quick fuzz demo install uninstall dist clean help
 .SECONDARY:
 .DELETE_ON_ERROR:
 

@@ -105,4 +105,19 @@ is "no stiffness beyond what the hardness bears" "$(column stiffness curve.tsv)"
 $ball --table curve.tsv ball.f64 >/dev/null
 sh -c "$(sed -n 's/^# cmd: //p' curve.tsv)" >again.tsv
 same "cmd rebuilds the table" curve.tsv again.tsv
+# A coating: one of the same material is none, a thick one is the material itself
+layer="bemcontact --raw 32x24 --pixel 2um --boundary periodic --pressure 50MPa h.f64"
+$layer --young 100GPa --poisson 0.3 --tolerance 1e-12 >bare.nrrd
+$layer --young 100GPa --poisson 0.3 --tolerance 1e-12 --coating 3um --coating-young 100GPa >same.nrrd
+near "a coating of the same material changes nothing" "$(awk "BEGIN {
+	print $(key approach same.nrrd) / $(key approach bare.nrrd) - 1 }")" 0 1e-10
+$layer --young 100GPa,1e30Pa --poisson 0.25 --tolerance 1e-12 >bare.nrrd
+$layer --young 1GPa,1e30Pa --coating 1mm --coating-young 100GPa --coating-poisson 0.25 --tolerance 1e-12 >thick.nrrd
+near "a thick one is all that is felt" "$(awk "BEGIN {
+	print $(key approach thick.nrrd) / $(key approach bare.nrrd) - 1 }")" 0 1e-10
+is "no contact modulus is recorded for it" "$(key estar thick.nrrd)" nan
+fails "a coating on a free surface" 2 'want --boundary periodic' \
+	bemcontact --pressure 1Pa --young 1GPa --coating 1um --coating-young 2GPa
+fails "a coating of no material" 2 'want --young and --coating-young' \
+	bemcontact --pressure 1Pa --estar 1GPa --coating 1um
 done_testing

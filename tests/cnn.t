@@ -27,8 +27,7 @@ shipped=$top/share/arrivals.net
 sensorsim --uniform 80um:120um --number 100 --burst 2 --span 8ms --gap 2ms --period 0.1s \
 	--duration 5.2s --snr 30dB --lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv >s.au
 duet --sections sections.tsv s.au >fit.tsv
-known="--sections sections.tsv --align 19.98ms --pulse-duration 10ms --gain 0.909:0.909
-	--reach 0.01:0.02"
+known="--sections sections.tsv --align 19.98ms --pulse-duration 10ms --gain 0.909:0.909 --reach 0.01:0.02"
 apply="delaynet --task apply --model pulses"
 
 delaynet --model pulses --fresh --layers "8conv13x1/4 12conv5x1/2 32" --activation relu \
@@ -37,7 +36,7 @@ for net in small.net "$shipped"; do
 	which=${net##*/}
 	# shellcheck disable=SC2086
 	ok "$which: applied to the sections of duet" \
-		sh -c "$apply --network $net $(echo $known) --stats st s.au >cnn.tsv"
+		sh -c "$apply --network $net $known --stats st s.au >cnn.tsv"
 	is "$which: every section is looked at" "$(column sections st) $(column sections_refused st)" \
 		"$(column section sections.tsv | wc -l) 0"
 	is "$which: rows say what they are" "$(column verdict cnn.tsv | sort -u)" guessed

@@ -98,6 +98,32 @@ near "volume as in the summary of debrisgen" \
 	"$(column volume steps.tsv | awk '{ s += 1e12 * $1 } END { print s * 3 }')" \
 	"$(column volume s.tsv | awk '{ s += 1e12 * $1 } END { print s }')" 1e-9
 
+# Two studies: volumes 1 2 3 4 and 2 4 6 8 (1e-12 m3) of one particle each.
+study() {
+	printf 'realisation\tstep\tvolume\tdiameter\taspect\n'
+	awk -v f="$1" 'BEGIN { for (r = 0; r < 4; r++) for (i = 0; i < 3; i++)
+		printf "%d\t1\t%.17g\t%.17g\t1\n", r, f * (r + 1) * 1e-12 / 3, (10 + r + i) * f * 1e-6 }'
+}
+study 1 >one.tsv
+study 2 >two.tsv
+debrisstat --compare two.tsv one.tsv >against.tsv
+row() { awk -F '\t' -v q="$1" -v c="$2" '$1 == q { print $c }' against.tsv; }
+near "the other study wears twice as much" "$(row volume_per_step 7)" 2 1e-12
+near "its particles are twice as large" "$(row mean_diameter 7)" 2 1e-12
+near "which is a difference of as much as the first" "$(row volume_per_step 4)" 2.5e-12 1e-22
+# standard errors sqrt(5 / 3 / 4) / 2.5 of both logarithms; Welch: 6 degrees, t 1.94318 at 95 %
+near "lower end by Student's t" "$(row volume_per_step 8)" \
+	"$(awk 'BEGIN { e = sqrt(5 / 12) / 2.5; print 2 * exp(-1.94318 * e * sqrt(2)) }')" 1e-4
+# (1.644854 + 1.281552)^2 2 (5 / 3) / 2.5^2 / ln(2)^2 = 9.5
+is "realisations that would tell them apart" "$(row volume_per_step 10)" 10
+near "life goes as the inverse" "$(awk "BEGIN { print $(row life 8) * $(row volume_per_step 9) }")" 1 1e-6
+is "every quantity has its unit" "$(cut -f 11 against.tsv | grep -v '^#' | tr '\n' ' ')" "unit m3 m 1 m m 1 "
+debrisstat --compare one.tsv one.tsv >against.tsv
+is "a study does not differ from itself" "$(row volume_per_step 7) $(row volume_per_step 10)" "1 inf"
+fails "studies are compared by their fits" 2 '--compare takes no --output' debrisstat --compare two.tsv --output sizes one.tsv
+fails "one realisation cannot be compared" 1 'at least two realisations of each study' sh -c \
+	'awk "!/^[123]/" two.tsv >lone.tsv; debrisstat --compare lone.tsv one.tsv'
+
 # Two ensembles in one table must not be added up realisation by realisation.
 fails "the same realisations twice" 1 'realisation 0 stands in two parts' sh -c 'cat growth.tsv growth.tsv | debrisstat'
 grep -v '^#' growth.tsv >bare.tsv

@@ -136,6 +136,45 @@ roughgen -n 64 --skewness 5 | roughgen -q 2um --level --measure >u
 near "also what it is to prepare" "$(value sq u)" 2e-6 1e-20
 is "and says so in its header" "$(sed -n 's/^# cmd: .*| //p' t)" "roughgen --measure -"
 
+# ISO 25178: S-filter, form, L-filter, core, spectrum.
+roughgen -n 96 -L 0.96mm -q 1um -l 40um >iso.nrrd
+roughgen --s-filter 50um --ends periodic --measure iso.nrrd >s.tsv
+roughgen --l-filter 50um --ends periodic --measure iso.nrrd >l.tsv
+roughgen --measure iso.nrrd >whole.tsv
+rising "the filters part the slopes of a surface" "$(value sdq l.tsv)" "$(value sdq s.tsv)" "$(value sdq whole.tsv)"
+roughgen --s-filter 50um --ends periodic iso.nrrd | records -o text | grep -v '^#' >a
+roughgen --l-filter 50um --ends periodic iso.nrrd | records -o text | grep -v '^#' >b
+records -o text iso.nrrd | grep -v '^#' >c
+near "together they are the whole" "$(paste a b c | awk 'NF { for (i = 1; i <= 96; i++) { d = $i + $(i + 96) - $(i + 192)
+	m = d > m ? d : -d > m ? -d : m } } END { print m * 1e12 }')" 0 0.01
+roughgen --s-filter 100um --ends crop --stats st iso.nrrd | records >size
+is "crop cuts half the nesting index off on all sides" \
+	"$(column nx size) $(column ny size) $(value samples_cropped st)" "86 86 1820"
+for k in 0 1 2; do
+	roughgen --s-filter 0.2mm --ends $k --measure iso.nrrd | tail -n 1 | cut -f 3
+done >orders
+is "the orders at the rim differ" "$(sort -u orders | wc -l)" 3
+roughgen -n 40 -q 0 --crown 1um | roughgen --crop 2:1:36:38 --form paraboloid --measure >t
+near "a paraboloid is removed as form" "$(value sz t | awk '{ print $1 * 1e6 }')" 0 1e-9
+roughgen --form poly6 --measure iso.nrrd >p6.tsv
+roughgen --form plane --measure iso.nrrd >p1.tsv
+rising "a form of more terms leaves less" "$(value sq p6.tsv)" "$(value sq p1.tsv)" "$(value sq whole.tsv)"
+roughgen -n 256 -L 1mm -q 1um -l 5um --measure >core.tsv
+# normal heights, some 10^4 independent ones: 2.574 Sq and 9.9 %
+near "normal heights: Sk is 2.574 Sq" "$(value sk core.tsv | awk '{ print $1 * 1e6 }')" 2.574 0.06
+near "Smr1 is 9.9 %" "$(value smr1 core.tsv)" 0.099 0.01
+roughgen -n 64 -q 1um --spectrum --taper none >psd.tsv
+near "the spectrum adds up to Sq^2" "$(awk -F '\t' '/^[0-9]/ { s += $4 * $5 / 1e-6 } END { printf "%.9f", s * 1e12 }' psd.tsv)" 1 1e-6
+roughgen -n 64 -q 1um | roughgen --spectrum >hann.tsv
+near "a window keeps it on average" "$(awk -F '\t' '/^[0-9]/ { s += $4 * $5 / 1e-6 } END { printf "%.9f", s * 1e12 }' hann.tsv)" 1 0.4
+fails "a form of too few samples" 1 'too few for --form poly2' sh -c 'roughgen -n 2 -q 0 | roughgen --form poly2 -'
+fails "a crop of everything" 1 'leaves nothing' roughgen --l-filter 0.96mm --ends crop iso.nrrd
+fails "measure and spectrum" 2 'exclude each other' roughgen --measure --spectrum iso.nrrd
+fails "a taper without a spectrum" 2 'is for --spectrum' roughgen --taper none iso.nrrd
+fails "a filter without a file" 2 '\--s-filter: is for a measured' roughgen --s-filter 1um
+roughgen --l-filter 2mm iso.nrrd 2>err >long.nrrd
+is "a filter longer than the surface is said" "$(grep -c 'longer than the surface' err)" 1
+
 # Refusals.
 fails "no heights of kurtosis below skewness^2 + 1" 2 'must exceed' \
 	roughgen --skewness 1 --kurtosis 1.9

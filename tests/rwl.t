@@ -189,7 +189,11 @@ is "all of it" "$(grep -o -e '--[a-z-]*' err | tr '\n' ' ')" \
 	"--fragment-area --area --threshold-leakage --radii --ports --viscosity "
 rwl --new --wear even.tsv --step-time 1000h --threshold-gap 11um --initial-gap 10.95um >out 2>err
 is "a life below one simulated step is said" "$(grep -c 'a life of .* s is below one simulated step' err)" 1
-same "a particle table and its summary" particles.tsv.life steps.tsv.life
+# Volumes are summed up in another order.
+for f in particles.tsv steps.tsv; do
+	sed 1d $f.life | awk '{ for (i = 1; i <= NF; i++) printf "%.12g ", $i }' >$f.digits
+done
+same "a particle table and its summary" particles.tsv.digits steps.tsv.digits
 rwl --new --wear steps.tsv --step-time 1h -c 2 >out
 is "how the fragments were made is passed on" "$(sed -n 's/^# wear: steps.tsv made by //p' out)" \
 	"$(sed -n '/^# cmd: /{s///;s/--first 0/& --count 4/;p;q;}' steps.tsv)"

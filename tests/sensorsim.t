@@ -134,6 +134,7 @@ sensorsim --material steel --quadrature --gain 0.5 --duration 60ms --truth steel
 frames iq.au 4 >iq.txt
 is "frames of four channels" "$(wc -l <iq.txt) $(head -1 iq.txt | wc -w)" "600 4"
 for c in 1:amplitude:1 2:quadrature:1 3:amplitude:0.5 4:quadrature:0.5; do
+	# shellcheck disable=SC2046 # three words
 	set -- $(echo "$c" | tr : ' ')
 	most=$(awk -v c="$1" '{ x = $c < 0 ? -$c : $c; if (x > m) m = x } END { print m }' iq.txt)
 	# the peak lies between two of a hundred samples of the sine: up to 0.05 % off

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 enum { ROWS_MAX = 128, LETTERLESS = 256 };
@@ -464,6 +465,18 @@ static void check_operands(int argc, char **argv)
 			prog->name, prog->operands, prog->name);
 }
 
+/* A stack that is too small would end in a crash. */
+static void check_stack(void)
+{
+	enum { WANT = 256 }; /* kB; the deepest calls take about 100 */
+	struct rlimit limit;
+
+	if (getrlimit(RLIMIT_STACK, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
+		limit.rlim_cur < 1024 * WANT)
+		die(EXIT_RUN, "the stack may have %lu kB, want %d: see ulimit -s",
+			(unsigned long)(limit.rlim_cur / 1024), WANT);
+}
+
 int opt_parse(const struct prog *program, int argc, char **argv)
 {
 	struct option words[ROWS_MAX + 1] = { { 0 } };
@@ -473,6 +486,7 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 	files_start();
 	prog = program;
 	msg_name(program->name);
+	check_stack();
 	stats_start();
 	gather(program->opts);
 	if (strcmp(program->reads, "nothing") != 0)

@@ -28,25 +28,27 @@ static const double drift_limit = 0.02;
 static const double load_slack = 0.03; /* of the step, in the same */
 
 struct box {
-	double estar, lx, ly;
+	const struct contact_kernel *body;
+	double lx, ly;
 };
 
 static double stiffness(const void *context, size_t kx, size_t ky)
 {
 	const struct box *b = context;
-	double q = hypot((double)kx / b->lx, (double)ky / b->ly);
+	double q = 2 * M_PI * hypot((double)kx / b->lx, (double)ky / b->ly);
 
-	/* The mean counts only where the approach is given; about half the least
-	 * wave number is right for it. */
+	/* The mean counts only where the approach is given; half the stiffness of the
+	 * longest wave is right for it. */
 	if (kx == 0 && ky == 0)
-		q = 0.5 / fmax(b->lx, b->ly);
-	return b->estar * M_PI * q;
+		return 0.5 /
+		       b->body->wave(b->body->context, 2 * M_PI / fmax(b->lx, b->ly));
+	return 1 / b->body->wave(b->body->context, q);
 }
 
 int contact_make_preconditioner(struct contact *c, const struct contact *lender)
 {
 	const struct convolve *scratch = lender ? lender->periodic : c->plane;
-	struct box box = { .estar = c->par.estar };
+	struct box box = { .body = &c->body };
 	size_t mx, my, room;
 	double *memory;
 

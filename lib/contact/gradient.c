@@ -53,7 +53,7 @@ void contact_gradient_step(struct contact *c)
 		if (!contact_carries(c, s.sum[0]))
 			missing = c->target * (double)c->n - s.sum[0];
 	}
-	c->tau = c->par.estar / sqrt(c->par.dx * c->par.dy); /* of a single cell */
+	c->tau = contact_cell_stiffness(c);
 	c->shift = 0;
 	s = contact_sweep(c, project_step);
 	if (load_given)

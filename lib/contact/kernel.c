@@ -94,3 +94,39 @@ double kernel_modulus(double e1, double nu1, double e2, double nu2)
 {
 	return 1 / ((1 - nu1 * nu1) / e1 + (1 - nu2 * nu2) / e2);
 }
+
+static double halfspace_patch(
+	const void *context, double ax, double ay, double x, double y)
+{
+	return kernel_patch(ax, ay, x, y) / (M_PI * *(const double *)context);
+}
+
+static double halfspace_wave(const void *context, double q)
+{
+	return 2 / (*(const double *)context * q);
+}
+
+struct contact_kernel kernel_halfspace(const double *estar)
+{
+	return (struct contact_kernel){ estar, halfspace_patch, halfspace_wave };
+}
+
+static double coated_wave(const void *context, double q)
+{
+	const struct kernel_coating *c = context;
+	double nu = c->poisson, base = c->base_poisson, depth = q * c->thickness;
+	double shear = c->young / (2 * (1 + nu));
+	double ratio = shear / (c->base_young / (2 * (1 + base)));
+	double lambda = 1 - 4 * (1 - nu) / (1 + ratio * (3 - 4 * base));
+	double kappa = (ratio - 1) / (ratio + 3 - 4 * nu), theta = exp(-2 * depth);
+	double above = 1 + 4 * depth * kappa * theta - lambda * kappa * theta * theta;
+	double below = 1 - (lambda + kappa + 4 * kappa * depth * depth) * theta +
+		       lambda * kappa * theta * theta;
+
+	return ((1 - nu) / shear * above / below + 2 * c->other) / q;
+}
+
+struct contact_kernel kernel_coated(const struct kernel_coating *coating)
+{
+	return (struct contact_kernel){ coating, NULL, coated_wave };
+}

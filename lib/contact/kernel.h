@@ -1,4 +1,7 @@
-/* kernel.h - displacement of an elastic half-space under pressure
+/* kernel.h - displacement of an elastic body under pressure on its plane surface
+ *
+ * A body is a struct contact_kernel, which the solver takes in place of the half-space of
+ * a contact modulus.
  *
  * A cell ax * ay under uniform pressure p sinks the point at (x, y) from its centre by
  * u = p I / (pi E*), I the integral of 1/r over the cell (Love 1929; Johnson, Contact
@@ -6,6 +9,29 @@
  */
 #ifndef CONTACT_KERNEL_H
 #define CONTACT_KERNEL_H
+
+struct contact_kernel {
+	const void *context;
+	/* Displacement at (x, y) from the centre of a cell ax * ay under unit pressure,
+	 * m/Pa; NULL where it is not known: periodic boundaries only. */
+	double (*patch)(const void *context, double ax, double ay, double x, double y);
+	/* Factor of wavenumber q > 0, rad/m, in u^ = factor p^, m/Pa: falling with q. */
+	double (*wave)(const void *context, double q);
+};
+
+/* The half-space of a contact modulus, which must stay. */
+struct contact_kernel kernel_halfspace(const double *estar);
+
+/* A half-space under a bonded layer of another material, against an elastic body: wave
+ * factor only (O'Sullivan, King, J. Tribol. 110 (1988) 235-240; Nogi, Kato, J. Tribol.
+ * 119 (1997) 493-500). */
+struct kernel_coating {
+	double thickness;      /* m */
+	double young, poisson; /* of the layer, Pa */
+	double base_young, base_poisson;
+	double other; /* (1 - nu^2) / E of the other body, 1/Pa; 0: rigid */
+};
+struct contact_kernel kernel_coated(const struct kernel_coating *coating);
 
 /* I to full double precision (a few 1e-16 relative) everywhere outside the lines
  * |x| = ax / 2 and |y| = ay / 2, any aspect. */

@@ -87,7 +87,7 @@ enum contact_status contact_solve_pk(struct contact *c)
 	double last_moment = 1;
 	int conjugate = 0, plain = 0;
 
-	c->tau = c->par.estar / sqrt(c->par.dx * c->par.dy);
+	c->tau = contact_cell_stiffness(c);
 	for (long k = 0;; k++) {
 		double moment, tau;
 		struct sweep s;

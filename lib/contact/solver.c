@@ -12,20 +12,20 @@ enum { mlms_order = 8, mlms_reach = 18 };
 
 static double free_kernel(const void *context, size_t ix, size_t iy)
 {
-	const struct contact_par *par = context;
-	double patch = kernel_patch(
-		par->dx, par->dy, (double)ix * par->dx, (double)iy * par->dy);
+	const struct contact *c = context;
+	double dx = c->par.dx, dy = c->par.dy;
 
-	return patch / (M_PI * par->estar);
+	return c->body.patch(c->body.context, dx, dy, (double)ix * dx, (double)iy * dy);
 }
 
 static double periodic_kernel(const void *context, size_t kx, size_t ky)
 {
-	const struct contact_par *par = context;
-	double qx = 2 * M_PI * (double)kx / (par->nx * par->dx);
-	double qy = 2 * M_PI * (double)ky / (par->ny * par->dy);
+	const struct contact *c = context;
+	double qx = 2 * M_PI * (double)kx / (c->par.nx * c->par.dx);
+	double qy = 2 * M_PI * (double)ky / (c->par.ny * c->par.dy);
 
-	return kernel_periodic(par->estar, qx, qy);
+	/* The mean displacement is taken as zero. */
+	return kx + ky > 0 ? c->body.wave(c->body.context, hypot(qx, qy)) : 0;
 }
 
 static int positive(double x)
@@ -36,8 +36,9 @@ static int positive(double x)
 static int valid(const struct contact_par *par)
 {
 	return par->nx > 0 && par->ny > 0 && positive(par->dx) && positive(par->dy) &&
-	       positive(par->estar) && par->hardness >= 0 && par->tolerance > 0 &&
-	       par->max_iterations > 0 &&
+	       (par->kernel ? par->kernel->patch || par->boundary == CONTACT_PERIODIC
+			    : positive(par->estar)) &&
+	       par->hardness >= 0 && par->tolerance > 0 && par->max_iterations > 0 &&
 	       (par->multiply == CONTACT_FFT || par->boundary == CONTACT_FREE);
 }
 
@@ -47,7 +48,7 @@ static int make_kernel(struct contact *c, const struct contact *lender)
 
 	if (c->par.multiply == CONTACT_MLMS) {
 		c->mlms = mlms_new((size_t)c->par.nx, (size_t)c->par.ny, mlms_order,
-			mlms_reach, free_kernel, &c->par, c->par.pool);
+			mlms_reach, free_kernel, c, c->par.pool);
 		return c->mlms ? 0 : -1;
 	}
 	c->plane = convolve_borrow((size_t)c->par.nx, (size_t)c->par.ny,
@@ -59,8 +60,8 @@ static int make_kernel(struct contact *c, const struct contact *lender)
 	if (!c->kernel)
 		return -1;
 	if (is_free)
-		return convolve_kernel(c->plane, c->kernel, free_kernel, &c->par);
-	return convolve_spectrum(c->plane, c->kernel, periodic_kernel, &c->par);
+		return convolve_kernel(c->plane, c->kernel, free_kernel, c);
+	return convolve_spectrum(c->plane, c->kernel, periodic_kernel, c);
 }
 
 /* Each array starts on a cache line. */
@@ -98,6 +99,7 @@ static struct contact *new_grid(
 	if (!c)
 		return NULL;
 	c->par = *par;
+	c->body = par->kernel ? *par->kernel : kernel_halfspace(&c->par.estar);
 	c->n = (size_t)par->nx * (size_t)par->ny;
 	c->cap = par->hardness > 0 ? par->hardness : INFINITY;
 	c->near_cap = c->cap * (1 - 4 * DBL_EPSILON);
@@ -209,7 +211,8 @@ static void final_sums(void *context, size_t begin, size_t end, struct sweep *s)
 /* Gaps of that size times pressures that make them must be within the numbers. */
 static int is_in_range(const struct contact *c, double size)
 {
-	double stiffest = c->par.estar / fmin(c->par.dx, c->par.dy);
+	double narrow = fmin(c->par.dx, c->par.dy);
+	double stiffest = 1 / c->body.wave(c->body.context, 2 / narrow);
 
 	return isfinite(size * size * stiffest * (double)c->n);
 }

@@ -32,6 +32,7 @@
 #ifndef CONTACT_SOLVER_H
 #define CONTACT_SOLVER_H
 
+#include "contact/kernel.h"
 #include "num/pool.h"
 
 struct contact;
@@ -55,10 +56,12 @@ enum contact_control {
 };
 
 struct contact_par {
-	int nx, ny;      /* cells, >= 1 each */
-	double dx, dy;   /* cell size, m */
-	double estar;    /* contact modulus E*, Pa; see kernel_modulus() */
-	double hardness; /* largest pressure, Pa; 0: none */
+	int nx, ny;    /* cells, >= 1 each */
+	double dx, dy; /* cell size, m */
+	double estar;  /* contact modulus E*, Pa; see kernel_modulus() */
+	const struct contact_kernel *kernel; /* another body than its half-space, or NULL;
+					      * what it points at must stay */
+	double hardness;                     /* largest pressure, Pa; 0: none */
 	enum contact_boundary boundary;
 	enum contact_solver solver;
 	enum contact_multiply multiply;

@@ -208,8 +208,18 @@ double contact_certificate(struct contact *c, const struct sweep *s)
 
 double contact_sinking(const struct contact *c, double pressure)
 {
-	return pressure * fmax(c->par.nx * c->par.dx, c->par.ny * c->par.dy) /
-	       c->par.estar;
+	double length = fmax(c->par.nx * c->par.dx, c->par.ny * c->par.dy);
+
+	return pressure * M_PI * c->body.wave(c->body.context, 2 * M_PI / length);
+}
+
+double contact_cell_stiffness(const struct contact *c)
+{
+	double width = sqrt(c->par.dx * c->par.dy);
+
+	/* Half the wave number that the cell resolves stands for all: 2 / width gives the
+	 * half-space E* / width. */
+	return 1 / c->body.wave(c->body.context, 2 / width);
 }
 
 double contact_energy(const struct contact *c, const struct sweep *s)

@@ -17,10 +17,11 @@ struct contact {
 	double near_cap;        /* the same less rounding */
 	struct convolve *plane; /* transforms of displacement = kernel * pressure */
 	double *kernel;
-	struct mlms *mlms;    /* in place of those two */
-	double *memory;       /* holds the arrays below, unless borrowed */
-	double *gap;          /* g */
-	double *step, *image; /* step of the pressure, and its displacement */
+	struct contact_kernel body; /* whose displacement that is */
+	struct mlms *mlms;          /* in place of those two */
+	double *memory;             /* holds the arrays below, unless borrowed */
+	double *gap;                /* g */
+	double *step, *image;       /* step of the pressure, and its displacement */
 	struct contact_result result;
 
 	/* preconditioned solver only */
@@ -87,8 +88,11 @@ double contact_certificate(struct contact *c, const struct sweep *s);
 /* What the solution makes least, sum p u / 2 - sum p h, from the same sums just after
  * contact_gap(). */
 double contact_energy(const struct contact *c, const struct sweep *s);
-/* Displacement by a pressure all over the grid, roughly. */
+/* Displacement by a pressure all over the grid, roughly: that of a wave of its length,
+ * times pi. */
 double contact_sinking(const struct contact *c, double pressure);
+/* Pressure on a cell that makes unit displacement there, roughly. */
+double contact_cell_stiffness(const struct contact *c);
 /* Gives this pressure to the cells that have none. */
 void contact_fill_empty(struct contact *c, double pressure);
 /* 1 if this sum of the pressures is the wanted load. */

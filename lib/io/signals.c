@@ -54,6 +54,7 @@ struct signal_out {
 	int channels, single;
 	uint32_t checksum;
 	uint64_t frames;
+	unsigned char buffer[BUFFER]; /* what a pipe holds */
 };
 
 /* A subnormal number, which every tool takes for silence: a bit that marks it, the lowest
@@ -459,9 +460,9 @@ struct signal_out *signal_create(const char *path, const struct signal_format *f
 
 void signal_write(struct signal_out *out, const double *x, size_t nframes)
 {
-	enum { CHUNK = 8192 }; /* 64 KiB, what a pipe holds */
+	enum { CHUNK = BUFFER / 8 };
 	size_t n = nframes * (size_t)out->channels, width = out->single ? 4 : 8;
-	unsigned char bytes[8 * CHUNK];
+	unsigned char *bytes = out->buffer;
 
 	out->frames += nframes;
 	while (n > 0) {

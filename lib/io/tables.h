@@ -27,8 +27,7 @@ struct table_in *table_with_comments(
 /* 1 where all rows read so far stand between the begin and the end of a table of ours. */
 int table_marked(const struct table_in *t);
 const char *table_name(const struct table_in *t);
-/* Value of the latest "# key: value" line read so far, NULL if none; only of the keys
- * cmd, units and columns. */
+/* Value of the latest "# key: value" line read so far, NULL if none. */
 const char *table_key(const struct table_in *t, const char *key);
 /* The pipeline that rebuilds all that was read so far, NULL if none is known; valid until
  * the next call.  What is made of a whole table inherits this one. */

@@ -1,4 +1,5 @@
 #include "num/rng.h"
+#include <gsl/gsl_errno.h>
 #include <stdint.h>
 
 /* The counter's low words count blocks of four numbers; see philox.h. */
@@ -50,8 +51,10 @@ const gsl_rng_type *const rng_philox = &type;
 
 gsl_rng *rng_new(uint64_t seed, uint32_t realisation, enum rng_purpose purpose)
 {
+	gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* it aborts */
 	gsl_rng *rng = gsl_rng_alloc(rng_philox);
 
+	gsl_set_error_handler(handler);
 	if (rng)
 		rng_reset(rng, seed, realisation, purpose);
 	return rng;

@@ -1,6 +1,7 @@
 /* lines.c - takes narrow lines out of a stream */
 #include "signal/lines.h"
 #include "signal/tones.h"
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -67,17 +68,21 @@ static void take_channel(struct lines *l, size_t c, size_t begin, size_t n)
 }
 
 /* Fits the last frames of total kept, a window if there are so many, and cleans the first
- * of those held. */
-static void clean_channel(struct lines *l, size_t c, size_t total, size_t cleaned)
+ * of those held; 0 when out of memory. */
+static int clean_channel(struct lines *l, size_t c, size_t total, size_t cleaned)
 {
 	size_t nc = (size_t)l->channels, window = total < 2 * l->hop ? total : 2 * l->hop;
 	double start = l->start - (double)l->older + (double)(total - window);
 	struct fit next = { start + 0.5 * (double)window, { 0 } };
 
 	take_channel(l, c, total - window, window);
+	errno = 0;
 	if (!tones_fit(l->channel, window, start, l->count, l->omega, next.coefficient,
-		    NULL, NULL))
+		    NULL, NULL)) {
+		if (errno == ENOMEM)
+			return 0;
 		memcpy(next.coefficient, l->last[c].coefficient, sizeof next.coefficient);
+	}
 	next.coefficient[0] = 0; /* the offset stays */
 	if (l->windows == 0)
 		l->last[c] = next;
@@ -87,6 +92,7 @@ static void clean_channel(struct lines *l, size_t c, size_t total, size_t cleane
 	l->last[c] = next;
 	for (size_t i = 0; i < cleaned; i++)
 		l->clean[i * nc + c] = l->channel[i];
+	return 1;
 }
 
 const double *lines_run(struct lines *l, const double *x, size_t n, size_t *clean)
@@ -97,7 +103,8 @@ const double *lines_run(struct lines *l, const double *x, size_t n, size_t *clea
 	if (n > 0)
 		memcpy(l->frames + (l->older + l->held) * nc, x, n * nc * sizeof *x);
 	for (size_t c = 0; cleaned > 0 && c < nc; c++)
-		clean_channel(l, c, total, cleaned);
+		if (!clean_channel(l, c, total, cleaned))
+			return NULL;
 	if (cleaned > 0) {
 		/* what was just cleaned is the older hop now */
 		memmove(l->frames, l->frames + l->older * nc, waiting * nc * sizeof *x);

@@ -28,7 +28,7 @@ void lines_free(struct lines *lines);
 
 /* Takes the next n frames, x[frame * channels + c]: hop of them, fewer (or none) at the
  * end of the stream and only there.  Returns the frames that are now clean and their
- * number, two hops at most, valid until the next call.  A whole
+ * number, two hops at most, valid until the next call; NULL when out of memory.  A whole
  * stream too short for a fit (16 samples per line) comes back as it went in. */
 const double *lines_run(struct lines *lines, const double *x, size_t n, size_t *clean);
 

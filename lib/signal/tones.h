@@ -25,7 +25,7 @@ int tones_find(const double *y1, const double *y2, size_t n, int max, double *om
  * the rest is livelier than usual are left out of further passes, so that pulses do not
  * bend it.  *deviation (may be NULL) is the usual root mean square of the rest,
  * variance[k] (may be NULL) that of coefficient k in units of its square.  Returns 0 when
- * out of memory or for too short a stretch. */
+ * out of memory (errno is ENOMEM) or for too short a stretch. */
 int tones_fit(const double *x, size_t n, double start, int tones, const double *omega,
 	double *coefficient, double *deviation, double *variance);
 

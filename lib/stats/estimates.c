@@ -1,5 +1,6 @@
 #include "stats/estimates.h"
 #include "num/rng.h"
+#include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
 #include <limits.h>
 #include <math.h>
@@ -219,6 +220,39 @@ static int draw_estimates(
 	return 0;
 }
 
+/* Draws of all estimates, [quantity][draw], in fresh memory; NULL when out of memory. */
+static double *draw_all(const struct ensemble *e, uint64_t seed, long draws,
+	const struct estimate value[ESTIMATES])
+{
+	double *draw = calloc((size_t)draws * ESTIMATES, sizeof *draw);
+	struct estimate each[ESTIMATES];
+	struct bootstrap b;
+	int status = draw ? bootstrap_open(&b, e, seed) : -1;
+
+	if (status) {
+		free(draw);
+		return NULL;
+	}
+	/* Each group once: differs from the ensemble where diameters had to be merged. */
+	for (size_t g = 0; g < b.groups; g++)
+		b.times[g] = 1;
+	status = draw_estimates(&b, ensemble_par(e)->realisations, each);
+	for (long i = 0; status == 0 && i < draws; i++) {
+		struct estimate one[ESTIMATES];
+
+		rng_reset(b.rng, seed, (uint32_t)i, RNG_BOOTSTRAP);
+		status = draw_estimates(&b, draw_groups(&b), one);
+		for (int q = 0; status == 0 && q < ESTIMATES; q++)
+			draw[q * draws + i] =
+				one[q].value + (value[q].value - each[q].value);
+	}
+	bootstrap_free(&b);
+	if (status == 0)
+		return draw;
+	free(draw);
+	return NULL;
+}
+
 /* Interval of one quantity from its draws, which are reordered. */
 static void put_interval(double *x, long draws, double confidence, struct estimate *out)
 {
@@ -234,32 +268,90 @@ static void put_interval(double *x, long draws, double confidence, struct estima
 int estimate_bootstrap(const struct ensemble *e, uint64_t seed, long draws,
 	struct estimate out[ESTIMATES])
 {
-	double *draw = calloc((size_t)draws * ESTIMATES, sizeof *draw);
-	struct estimate each[ESTIMATES];
-	struct bootstrap b;
-	int status = draw ? bootstrap_open(&b, e, seed) : -1;
+	double *draw = draw_all(e, seed, draws, out);
 
-	if (status) {
-		free(draw);
+	if (!draw)
 		return -1;
-	}
-	/* Each group once: differs from the ensemble where diameters had to be merged. */
-	for (size_t g = 0; g < b.groups; g++)
-		b.times[g] = 1;
-	status = draw_estimates(&b, ensemble_par(e)->realisations, each);
-	for (long i = 0; status == 0 && i < draws; i++) {
-		struct estimate one[ESTIMATES];
-
-		rng_reset(b.rng, seed, (uint32_t)i, RNG_BOOTSTRAP);
-		status = draw_estimates(&b, draw_groups(&b), one);
-		for (int q = 0; status == 0 && q < ESTIMATES; q++)
-			draw[q * draws + i] =
-				one[q].value + (out[q].value - each[q].value);
-	}
-	for (int q = 0; status == 0 && q < ESTIMATES; q++)
+	for (int q = 0; q < ESTIMATES; q++)
 		put_interval(
 			draw + q * draws, draws, ensemble_par(e)->confidence, &out[q]);
-	bootstrap_free(&b);
 	free(draw);
-	return status;
+	return 0;
+}
+
+int estimate_errors(const struct ensemble *e, uint64_t seed, long draws,
+	const struct estimate value[ESTIMATES], double error[ESTIMATES],
+	double log_error[ESTIMATES])
+{
+	double *draw = draw_all(e, seed, draws, value), k = ensemble_par(e)->realisations;
+	const struct running *volume = ensemble_volume(e);
+
+	if (!draw)
+		return -1;
+	for (int q = 0; q < ESTIMATES; q++) {
+		struct running plain = { 0 }, log_of = { 0 };
+
+		for (long i = 0; i < draws; i++) {
+			double x = draw[q * draws + i];
+
+			if (!isnan(x))
+				running_add(&plain, x);
+			if (x > 0)
+				running_add(&log_of, log(x));
+		}
+		error[q] = sqrt(running_variance(&plain) * k / (k - 1));
+		log_error[q] = sqrt(running_variance(&log_of) * k / (k - 1));
+	}
+	error[ESTIMATE_VOLUME_STEP] = sqrt(running_variance(volume) / volume->n);
+	log_error[ESTIMATE_VOLUME_STEP] = error[ESTIMATE_VOLUME_STEP] / volume->mean;
+	free(draw);
+	return 0;
+}
+
+/* Student's t of the sum of two variances (Welch, Biometrika 34 (1947) 28). */
+static double welch_t(
+	const double error[2], const double realisations[2], double confidence)
+{
+	double sum = 0, square = 0;
+
+	for (int i = 0; i < 2; i++) {
+		double v = error[i] * error[i];
+
+		sum += v;
+		square += v * v / (realisations[i] - 1);
+	}
+	return gsl_cdf_tdist_Pinv(0.5 + 0.5 * confidence, sum * sum / square);
+}
+
+struct estimate_contrast estimate_compare(const double value[2], const double error[2],
+	const double log_error[2], const double realisations[2], double confidence)
+{
+	struct estimate_contrast c = { { NAN, NAN, NAN }, { NAN, NAN, NAN }, NAN };
+	double wide = hypot(error[0], error[1]), log_ratio;
+
+	c.difference.value = value[1] - value[0];
+	if (wide > 0) {
+		double half = wide * welch_t(error, realisations, confidence);
+
+		c.difference.low = c.difference.value - half;
+		c.difference.high = c.difference.value + half;
+	}
+	if (!(value[0] > 0 && value[1] > 0))
+		return c;
+	log_ratio = log(value[1] / value[0]);
+	c.ratio.value = value[1] / value[0];
+	wide = hypot(log_error[0], log_error[1]);
+	if (wide > 0) {
+		double half = wide * welch_t(log_error, realisations, confidence);
+		/* Of the normal law: the interval's end, and nine of ten beyond it. */
+		double far = gsl_cdf_ugaussian_Pinv(0.5 + 0.5 * confidence) +
+			     gsl_cdf_ugaussian_Pinv(0.9);
+		double one = log_error[0] * log_error[0] * realisations[0] +
+			     log_error[1] * log_error[1] * realisations[1];
+
+		c.ratio.low = exp(log_ratio - half);
+		c.ratio.high = exp(log_ratio + half);
+		c.realisations = fmax(2, ceil(one * far * far / (log_ratio * log_ratio)));
+	}
+	return c;
 }

@@ -34,6 +34,25 @@ int estimate_all(const struct ensemble *e, struct estimate out[ESTIMATES]);
 int estimate_bootstrap(const struct ensemble *e, uint64_t seed, long draws,
 	struct estimate out[ESTIMATES]);
 
+/* Standard errors of the estimates and of their logarithms by the same draws, enlarged by
+ * sqrt(K / (K - 1)) for K realisations, since resampling has their variance over K; that
+ * of the volume from its standard deviation.  NAN where there is none. */
+int estimate_errors(const struct ensemble *e, uint64_t seed, long draws,
+	const struct estimate value[ESTIMATES], double error[ESTIMATES],
+	double log_error[ESTIMATES]);
+
+/* One study against another. */
+struct estimate_contrast {
+	struct estimate difference, ratio; /* other - value, other / value */
+	double realisations; /* of each study, of which the interval of the ratio leaves
+			      * out 1 in nine of ten studies; INFINITY: none would */
+};
+
+/* Of two independent values, their standard errors and those of their logarithms, found
+ * from na and nb realisations: by Student's t with Welch's degrees of freedom. */
+struct estimate_contrast estimate_compare(const double value[2], const double error[2],
+	const double log_error[2], const double realisations[2], double confidence);
+
 /* The Weibull distribution of diameters, cut off as the ensemble has it. */
 enum weibull_status estimate_weibull(
 	const struct ensemble *e, const struct sketch *diameters, struct weibull *w);

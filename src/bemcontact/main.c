@@ -17,9 +17,18 @@ static const char *const field_names[] = { "height", "pressure", "displacement",
 
 static int fields = 1 << HEIGHT | 1 << PRESSURE;
 static long sweep = 1;
+static struct kernel_coating coating = { .young = NAN, .poisson = 0.3 };
+static struct contact_kernel coated;
 
 static const struct opt opts[] = {
 	OPT_TABLE(press_rows),
+	{ 0, "coating", OPT_NUM, UNIT_LENGTH, &coating.thickness, 0, 1e6, "T",
+		"thickness of a layer of another material on the first body; 0: none", 0,
+		0 },
+	{ 0, "coating-young", OPT_NUM, UNIT_PRESSURE, &coating.young, 1e-6, 1e30, "E",
+		"its Young's modulus", 0, 0 },
+	{ 0, "coating-poisson", OPT_NUM, UNIT_NONE, &coating.poisson, -0.999, 0.499, "N",
+		"its Poisson's ratio", 0, 0 },
 	OPT_HEADING("Output"),
 	{ 0, "fields", OPT_WORDS, UNIT_NONE, &fields, 0, 0, "NAME,...",
 		"what to write of height, pressure, displacement, gap", field_names, 0 },
@@ -35,6 +44,23 @@ static const struct prog prog = { "bemcontact",
 	"bodies.",
 	"[file]", "fields: height", "fields: height, pressure", opts };
 
+/* The body below the layer is the first of --young, the other one the last. */
+static void set_coating(void)
+{
+	const struct opt_list *e = &press.young, *nu = &press.poisson;
+	double other = nu->v[nu->n - 1];
+
+	if (!e->n || isnan(coating.young))
+		die(EXIT_USAGE, "--coating: want --young and --coating-young");
+	if (press.boundary != CONTACT_PERIODIC)
+		die(EXIT_USAGE,
+			"--coating is known for a period alone: want --boundary periodic");
+	coating.base_young = e->v[0];
+	coating.base_poisson = nu->v[0];
+	coating.other = (1 - other * other) / e->v[e->n - 1];
+	coated = kernel_coated(&coating);
+}
+
 static void check_options(void)
 {
 	press_check();
@@ -42,6 +68,8 @@ static void check_options(void)
 		die(EXIT_USAGE, "want one of --load, --pressure and --approach");
 	if (isnan(press.estar))
 		die(EXIT_USAGE, "want either --estar or --young and --poisson");
+	if (coating.thickness > 0)
+		set_coating();
 }
 
 /* The solver for a record; the last one is kept while grid and material stay. */
@@ -65,6 +93,11 @@ static void put_results(struct record *r, const struct contact_par *par,
 	const struct contact_result *s, int converged)
 {
 	press_record(r, par);
+	if (par->kernel) {
+		/* No contact modulus presses this again. */
+		record_set(r, "estar", "nan");
+		record_set(r, "coating", "%.17g", coating.thickness);
+	}
 	record_set(r, "load", "%.17g", s->load);
 	record_set(r, "mean_pressure", "%.17g", s->pressure);
 	record_set(r, "approach", "%.17g", s->approach);
@@ -177,6 +210,7 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 	int warm = record_find(r, "pressure") >= 0, converged = 1;
 
 	t.par = press_par(r, pool);
+	t.par.kernel = coating.thickness > 0 ? &coated : NULL;
 	t.c = solver_for(r, &t.par, t.name, t.number);
 	t.h = record_need(r, "height", 1, in);
 	if (r->nz != 1)

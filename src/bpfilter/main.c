@@ -275,6 +275,8 @@ static void run(const char *path)
 		check_samples(x, n, (int)c.channels, frames, signal_name(in));
 		if (c.lines)
 			y = lines_run(c.lines, x, n, &clean);
+		if (!y)
+			die(EXIT_RUN, "no memory to fit the lines");
 		put(&c, y, clean);
 		if (isfinite(latency))
 			signal_flush(c.out);

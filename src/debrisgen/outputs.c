@@ -52,8 +52,6 @@ struct held_fields {
 struct worn {
 	struct table_out *particles, *summary;
 	struct held_fields surface, stress;
-	struct worn_conditions told; /* to both tables */
-	int begun;
 };
 
 /* Takes the record over. */
@@ -136,10 +134,6 @@ void worn_begin(
 	table_cmd_for(w->particles, r, NULL);
 	if (w->summary)
 		table_cmd_for(w->summary, r, "--summary");
-	if (w->begun && memcmp(&w->told, conditions, sizeof w->told) == 0)
-		return;
-	w->begun = 1;
-	w->told = *conditions;
 	tell(w->particles, conditions);
 	tell(w->summary, conditions);
 }

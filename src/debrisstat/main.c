@@ -17,7 +17,7 @@ static struct opt_list diameters = { 2, { 0, INFINITY } }, range;
 static struct opt_list edges = { 8, { 1, 1.25, 1.5, 2, 3, 5, 8, 13 } };
 static double bin = 10e-6, confidence = 0.95;
 static long realisations, bootstrap, seed = 1;
-static const char *summary_path;
+static const char *summary_path, *other_path;
 
 /* Groups of realisations that --bootstrap draws; up to so many, each is one. */
 enum { GROUPS = 512 };
@@ -50,6 +50,8 @@ static const struct opt opts[] = {
 	{ 0, "realisations", OPT_INT, UNIT_COUNT, &realisations, 0, 1e9, "N",
 		"realisations there were, with those that gave no particle", NULL, 0 },
 	OPT_HEADING("Further output"),
+	{ 0, "compare", OPT_TEXT, UNIT_NONE, &other_path, 0, 0, "FILE",
+		"fits of another study against these: differences and ratios", NULL, 0 },
 	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
 		"summary of debrisgen, to know of steps without particles", NULL, 0 },
 	OPT_END,
@@ -57,7 +59,8 @@ static const struct opt opts[] = {
 
 static const struct prog prog = { "debrisstat",
 	"Fit and count the wear particles of an ensemble.", "[file]",
-	"table: realisation, step, volume, diameter, aspect, as debrisgen writes", "table", opts };
+	"table: realisation, step, volume, diameter, aspect, as debrisgen writes",
+	"table", opts };
 
 static _Noreturn void no_memory(void)
 {
@@ -203,7 +206,7 @@ static struct ensemble *new_ensemble(void)
 		.per_step = growth,
 		.confidence = confidence,
 		.by_step = output == STEPS,
-		.groups = output == FITS && bootstrap ? GROUPS : 0 };
+		.groups = output == FITS && (bootstrap || other_path) ? GROUPS : 0 };
 	struct ensemble *e = ensemble_new(&par);
 
 	if (!e)
@@ -211,20 +214,29 @@ static struct ensemble *new_ensemble(void)
 	return e;
 }
 
-static void put_quantity(struct table_out *t, const char *name, struct estimate e)
+static void put_quantity(
+	struct table_out *t, const char *name, const char *unit, struct estimate e)
 {
 	table_put_text(t, name);
-	table_put_row(t, (double[]){ e.value, e.low, e.high }, 3);
+	table_put(t, e.value);
+	table_put(t, e.low);
+	table_put(t, e.high);
+	table_put_text(t, unit);
+	table_end_row(t);
 }
+
+/* Of enum estimate_quantity. */
+static const char *const names[] = { "weibull_shape", "weibull_scale", "weibull_mean",
+	"ks_distance", "mean_diameter", "power_factor", "power_exponent", "power_offset",
+	"volume_per_step" };
+static const char *const units[] = { "1", "m", "m", "1", "m", "1", "1", "1", "m3" };
 
 static void print_fits(const struct ensemble *e, const char *cmd)
 {
-	static const char *const names[] = { "weibull_shape", "weibull_scale",
-		"weibull_mean", "ks_distance", "mean_diameter", "power_factor",
-		"power_exponent", "power_offset", "volume_per_step" };
 	static const char *const counts[] = { "realisations", "steps", "particles" };
 	const struct ensemble_par *par = ensemble_par(e);
-	struct table_out *t = table_create(NULL, cmd, NULL, "quantity value low high");
+	struct table_out *t = table_create(
+		NULL, cmd, "1 unit unit unit 1", "quantity value low high unit");
 	struct estimate out[ESTIMATES];
 
 	if (estimate_all(e, out) ||
@@ -235,10 +247,92 @@ static void print_fits(const struct ensemble *e, const char *cmd)
 	double count[] = { par->realisations, (double)(par->last - par->first + 1),
 		ensemble_diameter(e)->n };
 	for (int k = 0; k < 3; k++)
-		put_quantity(t, counts[k], (struct estimate){ count[k], NAN, NAN });
+		put_quantity(t, counts[k], "1", (struct estimate){ count[k], NAN, NAN });
 	for (int q = 0; q < ESTIMATES; q++)
-		put_quantity(t, names[q], out[q]);
+		put_quantity(t, names[q], units[q], out[q]);
 	table_done(t);
+}
+
+/* Reads the other study with the same options. */
+static struct ensemble *read_other(void)
+{
+	struct ensemble *e = new_ensemble();
+	char *cmd;
+
+	read_particles(e, other_path, &cmd);
+	check(e, ensemble_close(e));
+	free(cmd);
+	return e;
+}
+
+static void put_contrast(struct table_out *t, const char *name, const double value[2],
+	const struct estimate_contrast *c, const char *unit)
+{
+	table_put_text(t, name);
+	table_put(t, value[0]);
+	table_put(t, value[1]);
+	table_put(t, c->difference.value);
+	table_put(t, c->difference.low);
+	table_put(t, c->difference.high);
+	table_put(t, c->ratio.value);
+	table_put(t, c->ratio.low);
+	table_put(t, c->ratio.high);
+	table_put(t, c->realisations);
+	table_put_text(t, unit);
+	table_end_row(t);
+}
+
+/* Life at equal thresholds and equal steps goes as the inverse of the volume. */
+static void put_life(struct table_out *t, const struct estimate_contrast *volume)
+{
+	struct estimate_contrast life = *volume;
+
+	life.difference = (struct estimate){ NAN, NAN, NAN };
+	life.ratio = (struct estimate){ 1 / volume->ratio.value, 1 / volume->ratio.high,
+		1 / volume->ratio.low };
+	put_contrast(t, "life", (double[]){ NAN, NAN }, &life, "1");
+}
+
+static void print_comparison(const struct ensemble *e, const char *cmd)
+{
+	static const int shown[] = { ESTIMATE_VOLUME_STEP, ESTIMATE_MEAN_DIAMETER,
+		ESTIMATE_SHAPE, ESTIMATE_SCALE, ESTIMATE_WEIBULL_MEAN };
+	struct ensemble *other = read_other();
+	const struct ensemble *both[] = { e, other };
+	struct table_out *t = table_create(NULL, cmd,
+		"1 unit unit unit unit unit 1 1 1 1 1",
+		"quantity value other difference difference_low difference_high ratio "
+		"ratio_low ratio_high realisations unit");
+	double error[2][ESTIMATES], log_error[2][ESTIMATES], n[2];
+	struct estimate value[2][ESTIMATES];
+	struct estimate_contrast volume;
+
+	for (int i = 0; i < 2; i++) {
+		n[i] = ensemble_par(both[i])->realisations;
+		if (n[i] < 2)
+			die(EXIT_RUN,
+				"--compare wants at least two realisations of each "
+				"study, got %g",
+				n[i]);
+		if (estimate_all(both[i], value[i]) ||
+			estimate_errors(both[i], (uint64_t)seed + (uint64_t)i, bootstrap,
+				value[i], error[i], log_error[i]))
+			no_memory();
+	}
+	for (size_t k = 0; k < sizeof shown / sizeof *shown; k++) {
+		int q = shown[k];
+		double v[] = { value[0][q].value, value[1][q].value };
+		struct estimate_contrast c = estimate_compare(v,
+			(double[]){ error[0][q], error[1][q] },
+			(double[]){ log_error[0][q], log_error[1][q] }, n, confidence);
+
+		put_contrast(t, names[q], v, &c, units[q]);
+		if (q == ESTIMATE_VOLUME_STEP)
+			volume = c;
+	}
+	put_life(t, &volume);
+	table_done(t);
+	ensemble_free(other);
 }
 
 static double mean(const struct running *t)
@@ -316,6 +410,13 @@ static void print_aspects(const struct ensemble *e, const char *cmd)
 
 static void check_options(void)
 {
+	if (other_path && (output != FITS || summary_path || realisations))
+		die(EXIT_USAGE,
+			"--compare takes no --output, --summary or --realisations");
+	if (other_path && !bootstrap)
+		bootstrap = 400;
+	if (other_path && !opt_given("confidence"))
+		confidence = 0.9;
 	if (diameters.v[0] >= diameters.v[1])
 		die(EXIT_USAGE, "--diameter wants LO:HI with LO below HI");
 	if (range.n == 2 && range.v[0] > range.v[1])
@@ -345,7 +446,10 @@ int main(int argc, char **argv)
 	stats_add("realisations", ensemble_par(e)->realisations);
 	stats_add("diameters_merged",
 		ensemble_diameter(e)->n - (double)ensemble_diameters(e)->n);
-	print[output](e, cmd);
+	if (other_path)
+		print_comparison(e, cmd);
+	else
+		print[output](e, cmd);
 	ensemble_free(e);
 	free(size_count);
 	free(cmd);

@@ -89,16 +89,20 @@ static void check_options(void)
 static struct table_out *create_delays(const char *path, const char *cmd, int n)
 {
 	struct table_out *t;
-	char *columns = xstrdup("section");
+	char *columns = xstrdup("section"), *units = xstrdup("1");
 
 	for (int i = 1; i <= n; i++) {
 		char *longer = xprintf("%s delay%d", columns, i);
 
 		free(columns);
 		columns = longer;
+		longer = xprintf("%s 1", units);
+		free(units);
+		units = longer;
 	}
-	t = table_create(path, cmd, NULL, columns);
+	t = table_create(path, cmd, units, columns);
 	free(columns);
+	free(units);
 	return t;
 }
 

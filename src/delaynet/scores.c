@@ -64,7 +64,8 @@ void score_network(const char *path)
 	struct netfile file;
 	struct network *net = lessons_network(path, &file);
 	char *cmd = opt_cmd(file.cmd, NULL);
-	struct table_out *t = table_create(NULL, cmd, NULL,
+	struct table_out *t = table_create(NULL, cmd,
+		lessons.model == SINES ? "1 1 1 1 1 1 1 1 1 1 1 1" : "1 1 1 1 1 1 1",
 		lessons.model == SINES
 			? "noise samples ordered ordered_se unordered unordered_se sorted "
 			  "sums constant constant_sorted sorted_ordered draw"

@@ -22,12 +22,13 @@ void found_open(struct found *out, const struct signal_format *format, const cha
 	if (format->seed)
 		table_comment(out->particles, "seed", "%s", format->seed);
 	if (out->sections)
-		out->section_rows = table_create(out->sections, cmd, NULL,
+		out->section_rows = table_create(out->sections, cmd,
+			"1 s s 1 1 V V V2 V2 V4 V4 1 1",
 			"section begin end sources sources_se amplitude amplitude_se square square_se "
 			"fourth fourth_se chi2 verdict");
 	if (out->histogram)
-		out->weights = table_create(
-			out->histogram, cmd, NULL, "section attenuation delay weight");
+		out->weights = table_create(out->histogram, cmd, "1 1 s 1",
+			"section attenuation delay weight");
 	if (out->separated)
 		out->sources = signal_create(out->separated, &many);
 }

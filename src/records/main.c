@@ -1,12 +1,13 @@
 /* records - list, pick, count and convert the records of a field stream */
 #include "check.h"
-#include "join.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
 #include "common/raw_layout.h"
 #include "io/fields.h"
 #include "io/tables.h"
+#include "join.h"
+#include "people.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +19,7 @@ static const char *const formats[] = { "list", "count", "nrrd", "gsf", "text", "
 static int format = LIST;
 static struct opt_list pick;
 static const char *field;
-static int check, join;
+static int check, join, pretty;
 
 static const struct opt opts[] = {
 	{ 'o', "output", OPT_WORD, UNIT_NONE, &format, 0, 0,
@@ -31,13 +32,15 @@ static const struct opt opts[] = {
 		"say whether a stream of any format is whole", NULL, 1 },
 	{ 0, "join", OPT_FLAG, UNIT_NONE, &join, 0, 0, NULL,
 		"write streams of several processes as the stream of one", NULL, 1 },
+	{ 0, "pretty", OPT_FLAG, UNIT_NONE, &pretty, 0, 0, NULL,
+		"show a table to people: units, four digits, aligned columns", NULL, 1 },
 	OPT_TABLE(raw_rows),
 	OPT_END,
 };
 
 static const struct prog prog = { "records",
 	"List, pick, count and convert the records of a field stream.", "[file ...]",
-	"fields: any", "table or fields", opts };
+	"fields: any, or with --pretty a table", "table or fields", opts };
 
 static int picked(long number)
 {
@@ -105,16 +108,20 @@ static void print_text(const struct record *r)
 static struct table_out *create_table(const struct record *r)
 {
 	struct table_out *t;
-	char *columns = xstrdup("realisation x y z");
+	char *columns = xstrdup("realisation x y z"), *units = xstrdup("1 m m m");
 
 	for (int k = 0; k < r->nfields; k++) {
 		char *longer = xprintf("%s %s", columns, r->name[k]);
 
 		free(columns);
 		columns = longer;
+		longer = xprintf("%s %s", units, *r->unit[k] ? r->unit[k] : "1");
+		free(units);
+		units = longer;
 	}
-	t = table_create(NULL, r->cmd, NULL, columns);
+	t = table_create(NULL, r->cmd, units, columns);
 	free(columns);
+	free(units);
 	return t;
 }
 
@@ -179,7 +186,7 @@ static void open_output(struct output *o)
 	if (format == NRRD)
 		o->fields = fields_create(NULL);
 	if (format == LIST)
-		o->table = table_create(NULL, NULL, NULL,
+		o->table = table_create(NULL, NULL, "1 1 1 1 1 1 1 m m unit unit unit",
 			"record realisation field unit nx ny nz dx dy min mean max");
 }
 
@@ -278,6 +285,8 @@ int main(int argc, char **argv)
 		join_streams(argc - first, argv + first);
 	else if (check)
 		status = check_stream(argv[first]);
+	else if (pretty)
+		people_show(argv[first]);
 	else
 		convert(argv[first]);
 	return shell_done(status);

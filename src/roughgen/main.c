@@ -8,13 +8,17 @@
 #include "measured.h"
 #include "roughness_options.h"
 #include "surface/areal.h"
+#include "surface/filter.h"
+#include "surface/ratio.h"
 #include "surface/surface.h"
+#include <math.h>
 #include <stdlib.h>
 #include <unistd.h>
 
 static const char *const crown_words[] = { "none", "auto", NULL };
 
-static int measure;
+static int measure, spectrum, taper;
+static const char *const tapers[] = { "hann", "none", NULL };
 static struct opt_choice crown = { 0, 0 };
 static long threads = 1;
 
@@ -31,6 +35,10 @@ static const struct opt opts[] = {
 		crown_words, 0 },
 	{ 0, "measure", OPT_FLAG, UNIT_NONE, &measure, 0, 0, NULL,
 		"print areal parameters instead of heights", NULL, 0 },
+	{ 0, "spectrum", OPT_FLAG, UNIT_NONE, &spectrum, 0, 0, NULL,
+		"print the power spectrum by rings instead of heights", NULL, 0 },
+	{ 0, "taper", OPT_WORD, UNIT_NONE, &taper, 0, 0, "hann|none",
+		"of --spectrum: window against the jump at the rim", tapers, 0 },
 	OPT_END,
 };
 
@@ -40,8 +48,9 @@ static const struct prog prog = { "roughgen",
 	opts };
 
 static const char columns[] = "realisation sa sq ssk sku sp sv sz sdq sdq_cell sdq_2x2 "
-			      "sdq_central sdq_iso7 sdr sal str corr_x corr_y";
-static const char units[] = "1 m m 1 1 m m m 1 1 1 1 1 1 m 1 m m";
+			      "sdq_central sdq_iso7 sdr sal str corr_x corr_y sk spk "
+			      "svk smr1 smr2";
+static const char units[] = "1 m m 1 1 m m m 1 1 1 1 1 1 m 1 m m m m m 1 1";
 
 static struct fields_out *out;
 static struct table_out *table;
@@ -67,6 +76,10 @@ static void check_options(int from_file)
 	}
 	if (opt_given("sq") + opt_given("sa") + opt_given("slope") > 1)
 		die(EXIT_USAGE, "--sq, --sa and --slope exclude each other");
+	if (measure && spectrum)
+		die(EXIT_USAGE, "--measure and --spectrum exclude each other");
+	if (opt_given("taper") && !spectrum)
+		die(EXIT_USAGE, "--taper is for --spectrum");
 	roughness_check();
 	generated_check();
 }
@@ -74,17 +87,43 @@ static void check_options(int from_file)
 static void print_parameters(const struct record *r, const double *z)
 {
 	struct surface_parameters p;
+	struct core c;
 
-	if (!surface_measure(r->nx, r->ny, r->dx, r->dy, z, &p))
+	if (!surface_measure(r->nx, r->ny, r->dx, r->dy, z, &p) ||
+		!surface_core((size_t)r->nx * (size_t)r->ny, z, &c))
 		die(EXIT_RUN, "out of memory measuring %d x %d points", r->nx, r->ny);
 	const double row[] = { (double)r->realisation, p.sa, p.sq, p.ssk, p.sku, p.sp,
 		p.sv, p.sz, p.sdq, p.sdq_cell, p.sdq_2x2, p.sdq_central, p.sdq_iso7,
-		p.sdr, p.sal, p.str, p.corr_x, p.corr_y };
+		p.sdr, p.sal, p.str, p.corr_x, p.corr_y, c.sk, c.spk, c.svk, c.smr1,
+		c.smr2 };
 	if (!table)
 		table = table_create(NULL, r->cmd, units, columns);
 	table_cmd(table, r->cmd);
 	table_put_row(table, row, (int)(sizeof row / sizeof *row));
 	stats_add("measured", 1);
+}
+
+static void print_spectrum(const struct record *r, const double *z)
+{
+	struct ring *ring = xcalloc((size_t)hypot(r->nx, r->ny) + 3, sizeof *ring);
+	int n = surface_spectrum(r->nx, r->ny, r->dx, r->dy, z, !taper, ring);
+
+	if (n < 0)
+		die(EXIT_RUN, "out of memory for the spectrum of %d x %d points", r->nx,
+			r->ny);
+	if (!table)
+		table = table_create(NULL, r->cmd, "1 1/m m m4 1",
+			"realisation frequency wavelength power waves");
+	table_cmd(table, r->cmd);
+	for (int k = 0; k < n; k++)
+		if (ring[k].waves > 0)
+			table_put_row(table,
+				(double[]){ (double)r->realisation, ring[k].frequency,
+					1 / ring[k].frequency, ring[k].power,
+					ring[k].waves },
+				5);
+	stats_add("measured", 1);
+	free(ring);
 }
 
 /* Crowns a surface, on top of the crown it had, and writes it out; more: another one
@@ -104,10 +143,12 @@ static void finish(struct record *r, double had, int more)
 	record_set(r, "crown", "%.17g", drop);
 	note("realisation %ld: Sq %g m, crown %g m", r->realisation, rms, drop);
 	stats_add("records", 1);
-	if (measure) {
+	if (measure)
 		print_parameters(r, z);
+	if (spectrum)
+		print_spectrum(r, z);
+	if (measure || spectrum)
 		return;
-	}
 	if (!out)
 		out = fields_create(NULL);
 	fields_write(out, r, more);
@@ -119,7 +160,7 @@ static const char *file_of(int argc, char **argv, int operand)
 {
 	if (operand < argc)
 		return argv[operand];
-	if (!measure || opt_any_given(generated_grid_rows) ||
+	if (!(measure || spectrum) || opt_any_given(generated_grid_rows) ||
 		opt_any_given(generated_rows))
 		return NULL;
 	if (isatty(STDIN_FILENO))

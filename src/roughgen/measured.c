@@ -3,7 +3,9 @@
 #include "cli/stats.h"
 #include "common/raw_layout.h"
 #include "roughness_options.h"
+#include "surface/filter.h"
 #include "surface/surface.h"
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +15,12 @@ enum { SEED = 1 }; /* of a roughness drawn: --seed is for generated surfaces */
 
 static struct opt_list crop, resample;
 static int level, fill;
+static double s_filter, l_filter;
+static int form, ends;
+static const char *const forms[] = { "none", "plane", "paraboloid", "poly2", "poly3",
+	"poly4", "poly5", "poly6", NULL };
+enum { ENDS_CROP = 3, ENDS_PERIODIC };
+static const char *const ends_words[] = { "0", "1", "2", "crop", "periodic", NULL };
 
 struct opt measured_rows[] = {
 	OPT_HEADING("Measured surfaces"),
@@ -23,6 +31,15 @@ struct opt measured_rows[] = {
 		"fill missing samples of file by Laplace's equation", NULL, 0 },
 	{ 0, "level", OPT_FLAG, UNIT_NONE, &level, 0, 0, NULL,
 		"subtract the least-squares plane of file", NULL, 0 },
+	{ 0, "s-filter", OPT_NUM, UNIT_LENGTH, &s_filter, 1e-15, 1e6, "L",
+		"take off waves shorter than L by a Gaussian filter", NULL, 0 },
+	{ 0, "form", OPT_WORD, UNIT_NONE, &form, 0, 0, "none|plane|paraboloid|poly2|...",
+		"then subtract this least-squares form; up to poly6", forms, 0 },
+	{ 0, "l-filter", OPT_NUM, UNIT_LENGTH, &l_filter, 1e-15, 1e6, "L",
+		"then take off waves longer than L", NULL, 0 },
+	{ 0, "ends", OPT_WORD, UNIT_NONE, &ends, 0, 0, "0|1|2|crop|periodic",
+		"filters at the rim: order of the local fit, half of L cut off, or around",
+		ends_words, 0 },
 	{ 0, "resample", OPT_LIST, UNIT_COUNT, &resample, 1, POINTS_MAX, "N[xM]",
 		"bring file to this many points", NULL, 0 },
 	OPT_END,
@@ -132,6 +149,66 @@ static double take_crown(struct record *s)
 	return drop;
 }
 
+/* One Gaussian filter: what it passes, or with high != 0 what is left. */
+static void filter_heights(const char *word, double nesting, int high, struct record *s)
+{
+	enum filter_ends how = ends == ENDS_CROP       ? FILTER_MEAN
+			       : ends == ENDS_PERIODIC ? FILTER_PERIODIC
+						       : (enum filter_ends)ends;
+	double side = fmin(s->nx * s->dx, s->ny * s->dy), *z = s->data[0];
+	size_t n = (size_t)s->nx * (size_t)s->ny;
+	double *smooth;
+
+	if (!(nesting > 0))
+		return;
+	if (nesting < fmax(s->dx, s->dy))
+		warn("--%s %g m is shorter than a pixel and does nothing", word, nesting);
+	if (nesting > side)
+		warn("--%s %g m is longer than the surface, %g m", word, nesting, side);
+	smooth = xcalloc(n, sizeof *smooth);
+	need_memory(surface_gauss(s->nx, s->ny, s->dx, s->dy, z, nesting, how, smooth));
+	stats_add("filter_products",
+		surface_gauss_products(s->nx, s->ny, s->dx, s->dy, nesting, how));
+	for (size_t i = 0; i < n; i++)
+		z[i] = high ? z[i] - smooth[i] : smooth[i];
+	free(smooth);
+}
+
+/* Cuts off what the ends of the filters have touched: half a nesting index. */
+static void crop_ends(const struct fields_in *in, struct record *s)
+{
+	double border = 0.5 * fmax(s_filter, l_filter);
+	int cx = (int)fmin(ceil(border / s->dx), s->nx);
+	int cy = (int)fmin(ceil(border / s->dy), s->ny);
+	struct record t = { 0 };
+
+	if (s->nx - 2 * cx < 1 || s->ny - 2 * cy < 1)
+		die(EXIT_RUN,
+			"%s: record %ld: --ends crop leaves nothing of %d x %d samples",
+			fields_name(in), fields_count(in), s->nx, s->ny);
+	new_record(&t, s, s->nx - 2 * cx, s->ny - 2 * cy, s->dx, s->dy);
+	surface_crop(s->nx, s->data[0], cx, cy, t.nx, t.ny, t.data[0]);
+	stats_add("samples_cropped", (double)s->nx * s->ny - (double)t.nx * t.ny);
+	record_free(s);
+	*s = t;
+}
+
+/* ISO 25178-2: S-filter, F-operation, L-filter. */
+static void scale_limit(const struct fields_in *in, struct record *s)
+{
+	filter_heights("s-filter", s_filter, 0, s);
+	if (form > 0 && !surface_form(s->nx, s->ny, s->dx, s->dy, (enum form)(form - 1),
+				s->data[0])) {
+		if (errno != EDOM)
+			need_memory(0);
+		die(EXIT_RUN, "%s: record %ld: %d x %d samples are too few for --form %s",
+			fields_name(in), fields_count(in), s->nx, s->ny, forms[form]);
+	}
+	filter_heights("l-filter", l_filter, 1, s);
+	if (ends == ENDS_CROP && (s_filter > 0 || l_filter > 0))
+		crop_ends(in, s);
+}
+
 static void resample_heights(struct record *s)
 {
 	int nx = (int)resample.v[0], ny = (int)resample.v[resample.n - 1];
@@ -178,6 +255,7 @@ int measured_next(struct measured *m, struct record *r, double *crown)
 	*crown = take_crown(r);
 	if (level)
 		surface_level(r->nx, r->ny, r->data[0]);
+	scale_limit(m->in, r);
 	if (resample.n)
 		resample_heights(r);
 	if (opt_given("sq") || opt_given("sa"))

@@ -48,7 +48,7 @@ scene "3 x 2 points" "Sq exact" sq 1e-6 1e-12 -n 3x2
 scene "prime sides, 127 x 131" "Sq exact" sq 1e-6 1e-12 -n 127x131
 scene "odd sides, 99 x 75" "rms slope as wanted" sdq_iso7 0.1 0.02 -n 99x75 -l 60um --slope 0.1
 scene "one flat point" "Sq = 0" sq 0 0 -n 1 -q 0
-refused "one rough point" 'no wave' 1 -n 1
+refused "one rough point" 'single point' 2 -n 1
 scene "2048 x 2 points" "Sq exact" sq 1e-6 1e-12 -n 2048x2 -L 1mmx1mm
 
 # Correlation lengths.  White noise: Sdq = sqrt 4 Sq / dx, up to 2 / sqrt(2 n) = 2 %.
@@ -106,4 +106,17 @@ roughgen --measure small.nrrd >t
 want=$(value sdq_iso7)
 scene "resampled from 64 to 1001 x 999 points" "Sdq is kept" sdq "$want" 0.02 \
 	--resample 1001x999 small.nrrd
+
+# Filters and form.
+roughgen --measure small.nrrd >t
+sq=$(value sq)
+scene "an L-filter of 1000 km" "Sq stays" sq "$sq" 1e-9 --l-filter 1e6 small.nrrd
+scene "an S-filter of 1000 km around a surface that repeats" "Sq = 0" sq 0 1e-21 --s-filter 1e3 --ends periodic small.nrrd
+scene "an S-filter of 1 fm" "Sq stays to the bit" sq "$sq" 0 --s-filter 1e-15 small.nrrd
+scene "one point filtered" "Sq = 0" sq 0 0 --raw 1x1 --pixel 1um --s-filter 1um --ends 2 zero.f64
+roughgen -n 2000x1 -q 1nm -l 20um >line.nrrd
+scene "a profile of 2000 points, poly6" "Sk of some nm" sk 2.5e-9 0.5 --form poly6 line.nrrd
+awk 'BEGIN { for (i = 0; i < 4096; i++) printf "%s", i % 64 < 32 ? "\\0\\0\\0\\0\\0\\0\\0\\0" : "\\0\\0\\0\\0\\0\\0\\360\\077" }' >words
+printf "$(cat words)" >steps.f64
+scene "steps of 1 m on pixels of 1 nm" "Svk = 2 m" svk 2 1e-3 --raw 64x64 --pixel 1nm steps.f64
 done_testing

@@ -75,6 +75,101 @@ static double worst_along(double ax, double ay, int sx, int sy, int cells)
 	return worst;
 }
 
+/* Solves a small system by elimination. */
+static void eliminate(int n, double a[6][7])
+{
+	for (int k = 0; k < n; k++) {
+		int best = k;
+
+		for (int i = k; i < n; i++)
+			if (fabs(a[i][k]) > fabs(a[best][k]))
+				best = i;
+		for (int j = 0; j <= n; j++) {
+			double swap = a[k][j];
+
+			a[k][j] = a[best][j];
+			a[best][j] = swap;
+		}
+		for (int i = 0; i < n; i++)
+			for (int j = n; i != k && j >= k; j--)
+				a[i][j] -= a[i][k] / a[k][k] * a[k][j];
+	}
+}
+
+/* One of the solutions of plane strain that go as a wave along x, of unit wave number:
+ * ux = -U sin x, uz = W cos x with W = e^(s z) or z e^(s z), s = -1 or 1, and the U that
+ * equilibrium asks for.  col: ux and uz over their waves, sigma_xz, sigma_zz. */
+static void wave_part(double g, double nu, int s, int grows, double z, double col[4])
+{
+	double e = exp(s * z), w = grows ? z : 1, dw = grows ? 1 + s * z : s;
+	double u = grows ? s * z + 3 - 4 * nu : s, du = grows ? s + s * u : 1;
+
+	col[0] = -u * e;
+	col[1] = w * e;
+	col[2] = g * (-du - w) * e;
+	col[3] = 2 * g / (1 - 2 * nu) * ((1 - nu) * dw - nu * u) * e;
+}
+
+static void coated(void)
+{
+	double worst = 0, deep = 0, thin = 0, same = 0;
+
+	for (int k = 0; k < 200; k++) {
+		struct kernel_coating c = { .thickness = pow(10, -2 + 3 * (k % 20) / 19.),
+			.young = pow(10, -2 + 4 * (k / 20) / 9.),
+			.poisson = 0.1 + 0.03 * (k % 11),
+			.base_young = 1,
+			.base_poisson = 0.05 + 0.05 * (k % 9) };
+		struct contact_kernel kernel = kernel_coated(&c);
+		double t = c.thickness, g = c.young / (2 * (1 + c.poisson));
+		double base = c.base_young / (2 * (1 + c.base_poisson));
+		double a[6][7] = { { 0 } }, col[4], u = 0, v;
+
+		/* Layer: four parts; below: the two that decay.  sigma_zz = -1 and no
+		 * shear above, all four continuous below. */
+		for (int part = 0; part < 4; part++) {
+			wave_part(g, c.poisson, part < 2 ? -1 : 1, part % 2, 0, col);
+			a[0][part] = col[2];
+			a[1][part] = col[3];
+			wave_part(g, c.poisson, part < 2 ? -1 : 1, part % 2, t, col);
+			for (int i = 0; i < 4; i++)
+				a[2 + i][part] = col[i];
+		}
+		for (int part = 0; part < 2; part++) {
+			wave_part(base, c.base_poisson, -1, part, t, col);
+			for (int i = 0; i < 4; i++)
+				a[2 + i][4 + part] = -col[i];
+		}
+		a[1][6] = -1;
+		eliminate(6, a);
+		for (int part = 0; part < 4; part++) {
+			wave_part(g, c.poisson, part < 2 ? -1 : 1, part % 2, 0, col);
+			u += col[1] * a[part][6] / a[part][part];
+		}
+		v = kernel.wave(kernel.context, 1);
+		worst = fmax(worst, fabs(v / u - 1));
+		c.thickness = 40;
+		deep = fmax(deep, fabs(kernel.wave(&c, 1) * c.young /
+						  (2 * (1 - c.poisson * c.poisson)) -
+					  1));
+		c.thickness = 1e-9;
+		thin = fmax(thin,
+			fabs(kernel.wave(&c, 1) /
+					(2 * (1 - c.base_poisson * c.base_poisson)) -
+				1));
+		c.thickness = t;
+		c.young = c.base_young;
+		c.poisson = c.base_poisson;
+		same = fmax(same,
+			fabs(kernel.wave(&c, 1) / (2 * (1 - c.poisson * c.poisson)) - 1));
+	}
+	ok(worst < 1e-9, "coating: the wave factor of the layered equations, to %.1e",
+		worst);
+	ok(deep < 1e-12, "a thick coating is a half-space of its own, to %.1e", deep);
+	ok(thin < 1e-6, "a thin one is the half-space below, to %.1e", thin);
+	ok(same < 1e-14, "a coating of the same material is none, to %.1e", same);
+}
+
 int main(void)
 {
 	static const double aspects[] = { 1, 1.5, 3, 100 };
@@ -108,5 +203,6 @@ int main(void)
 		"a million times stiffer");
 	near(kernel_periodic(4, 3, 4), 0.1, 1e-17, "periodic: 2 / (E* |q|)");
 	near(kernel_periodic(4, 0, 0), 0, 0, "periodic: mean displacement zero");
+	coated();
 	return tap_done();
 }

@@ -1,0 +1,61 @@
+/* filter.h - areal Gaussian filters (ISO 16610-61), form removal, power spectrum
+ *
+ * The Gaussian filter of nesting index c passes half of the amplitude of waves of length
+ *c, 2^-(c / l)^2 of those of length l: an S-filter is what it passes, an L-filter what is
+ * left.  Near the rim a polynomial of order p in either direction is fitted with the
+ * Gaussian weights to what is there, and its value taken: order 0 is the mean, order 1
+ * leaves planes and order 2 paraboloids as they are up to the rim.  Order 2 has another
+ * transmission, (1 + pi a^2 f^2) exp(-pi a^2 f^2), with a such that half is passed at c.
+ *
+ *	surface_gauss(nx, ny, dx, dy, z, 8e-6, FILTER_MEAN, smooth);
+ */
+#ifndef SURFACE_FILTER_H
+#define SURFACE_FILTER_H
+
+#include <stddef.h>
+
+enum filter_ends {
+	FILTER_MEAN,     /* order 0 */
+	FILTER_LINE,     /* order 1 */
+	FILTER_PARABOLA, /* order 2 */
+	FILTER_PERIODIC  /* the surface repeats */
+};
+
+/* Fills out with what the filter passes; z and out may be the same.  0 when out of
+ * memory. */
+int surface_gauss(int nx, int ny, double dx, double dy, const double *z, double nesting,
+	enum filter_ends ends, double *out);
+
+/* Products of an odd number of points in the sums of a filter: what it costs. */
+double surface_gauss_products(
+	int nx, int ny, double dx, double dy, double nesting, enum filter_ends ends);
+
+enum form {
+	FORM_PLANE,
+	FORM_PARABOLOID, /* of revolution, axis along z, and a plane */
+	FORM_POLY2,      /* all terms x^i y^j with i + j <= 2 */
+	FORM_POLY3,
+	FORM_POLY4,
+	FORM_POLY5,
+	FORM_POLY6
+};
+
+/* Subtracts the least-squares form.  0 when out of memory or with too few points for it
+ * (errno EDOM). */
+int surface_form(int nx, int ny, double dx, double dy, enum form form, double *z);
+
+/* One ring of the power spectrum: all waves whose frequency is k - 1/2 to k + 1/2 times
+ * that of the longest wave along the shorter side. */
+struct ring {
+	double frequency; /* mean over its waves, 1/m */
+	double power;     /* mean power spectral density over its waves, m4 */
+	double waves; /* of both signs; power times waves over the area is the variance */
+};
+
+/* Rings from k = 1 on, at most (int)hypot(nx, ny) + 2 of them, go to ring; returns how
+ * many, -1 when out of memory.  The mean is taken off; with a window the heights are
+ * multiplied by a Hann window along both sides, whose mean square is divided out. */
+int surface_spectrum(int nx, int ny, double dx, double dy, const double *z, int window,
+	struct ring *ring);
+
+#endif

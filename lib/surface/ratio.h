@@ -1,0 +1,22 @@
+/* ratio.h - the material ratio curve and the Sk family (ISO 25178-2, ISO 13565-2)
+ *
+ * Heights in descending order over the share of the surface above them.  Where a secant
+ * over 40 % of it is least steep (the first of equal ones) a straight line is fitted to
+ * the points, least squares along the heights; it goes from Sk above at 0 to 0 at 100 %.
+ * The peaks above its upper end and the valleys below its lower end are turned into
+ * triangles of equal area.
+ */
+#ifndef SURFACE_RATIO_H
+#define SURFACE_RATIO_H
+
+#include <stddef.h>
+
+struct core {
+	double sk, spk, svk; /* m */
+	double smr1, smr2;   /* shares above the upper and the lower end of the core */
+};
+
+/* All are nan with fewer than five points.  0 when out of memory. */
+int surface_core(size_t n, const double *z, struct core *core);
+
+#endif

@@ -1,0 +1,272 @@
+#include "cli/msg.h"
+#include "formats_in.h"
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* UTF-16, as spreadsheets write it, to bytes: what is not Latin-1 becomes '?'. */
+static char *plain(const struct content *c)
+{
+	const unsigned char *b = (const unsigned char *)c->data;
+	int big = c->size >= 2 && b[0] == 0xfe && b[1] == 0xff;
+	int little = c->size >= 2 && b[0] == 0xff && b[1] == 0xfe;
+	char *text = xcalloc(c->size + 1, 1);
+	size_t n = 0;
+
+	if (!big && !little) {
+		size_t mark = c->size >= 3 && memcmp(b, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+
+		memcpy(text, c->data + mark, c->size - mark);
+		if (strlen(text) != c->size - mark)
+			die(EXIT_RUN,
+				"%s: NUL byte: neither text nor a format that is "
+				"known; --format raw reads samples",
+				c->name);
+		return text;
+	}
+	for (size_t i = 2; i + 1 < c->size; i += 2) {
+		unsigned high = b[i + (big ? 0 : 1)], low = b[i + (big ? 1 : 0)];
+
+		text[n++] = high ? '?' : (char)low;
+	}
+	return text;
+}
+
+struct text {
+	const struct content *c;
+	char separator; /* ' ' for blanks */
+	int comma;      /* decimal */
+	double *value;
+	size_t n, room;
+	int columns;
+	long rows, line;
+	char *header; /* the last line that is no row of numbers */
+};
+
+/* What parts the cells: a semicolon or TAB, if there is one; a comma unless blanks part
+ * numbers with decimal commas. */
+static void find_separator(struct text *t, const char *sample)
+{
+	const char *comma = strchr(sample, ',');
+
+	t->separator = strchr(sample, ';')    ? ';'
+		       : strchr(sample, '\t') ? '\t'
+		       : comma                ? ','
+					      : ' ';
+	t->comma = (t->separator == ';' || t->separator == '\t') && comma;
+	/* 1,25 2,50: blanks part what would else be a cell of two numbers */
+	if (t->separator == ',' && !strchr(sample, '.')) {
+		const char *s = sample;
+		int inner = 0, spaced = 0;
+
+		for (; *s; s++) {
+			inner += *s == ',' && s > sample &&
+				 isdigit((unsigned char)s[-1]) &&
+				 isdigit((unsigned char)s[1]);
+			spaced += *s == ' ' && isdigit((unsigned char)s[1]) &&
+				  s > sample && isdigit((unsigned char)s[-1]);
+		}
+		if (inner && spaced) {
+			t->separator = ' ';
+			t->comma = 1;
+		}
+	}
+}
+
+static int is_gap(const char *s)
+{
+	static const char *const words[] = { "", "nan", "NaN", "NAN", "NA", "BAD", "bad",
+		"***", "---", "-", "null", NULL };
+
+	for (int i = 0; words[i]; i++)
+		if (strcmp(s, words[i]) == 0)
+			return 1;
+	return 0;
+}
+
+/* One cell; 0 where it is no number. */
+static int cell(const struct text *t, char *s, double *v)
+{
+	char *end = s + strlen(s);
+
+	while (end > s && isspace((unsigned char)end[-1]))
+		*--end = '\0';
+	s += strspn(s, " \t\"");
+	if (end > s && end[-1] == '"')
+		*--end = '\0';
+	if (is_gap(s)) {
+		*v = NAN;
+		return 1;
+	}
+	if (t->comma && strchr(s, ','))
+		*strchr(s, ',') = '.';
+	*v = strtod(s, &end);
+	return end != s && !*end;
+}
+
+static void keep(struct text *t, double v)
+{
+	if (t->n == t->room) {
+		t->room = t->room ? 2 * t->room : 1024;
+		t->value = xrealloc(t->value, t->room, sizeof *t->value);
+	}
+	t->value[t->n++] = v;
+}
+
+/* Reads a row; returns its cells, -1 where one is no number. */
+static int read_row(struct text *t, char *line)
+{
+	size_t before = t->n;
+	int n = 0;
+
+	for (char *s = line; s;) {
+		char *next = NULL;
+		double v;
+
+		if (t->separator == ' ') {
+			s += strspn(s, " ");
+			if (!*s)
+				break;
+			next = strchr(s, ' ');
+		} else {
+			next = strchr(s, t->separator);
+		}
+		if (next)
+			*next++ = '\0';
+		/* a separator at the end of the line parts nothing */
+		if (!next && !*s && n > 0)
+			break;
+		if (!cell(t, s, &v)) {
+			t->n = before;
+			return -1;
+		}
+		keep(t, v);
+		n++;
+		s = next;
+	}
+	return n;
+}
+
+static void read_rows(struct text *t, char *text)
+{
+	char *rest = text;
+
+	while (rest && *rest) {
+		char *line = rest, *end = strpbrk(line, "\r\n"), *copy;
+		int n;
+
+		rest = end ? end + 1 + (*end == '\r' && end[1] == '\n') : NULL;
+		if (end)
+			*end = '\0';
+		t->line++;
+		if (!line[strspn(line, " \t;,")] || *line == '#')
+			continue;
+		if (!t->rows)
+			find_separator(t, line);
+		copy = xstrdup(line);
+		n = read_row(t, line);
+		if (n < 0 && t->rows)
+			die(EXIT_RUN, "%s: line %ld: not a row of numbers: %.40s",
+				t->c->name, t->line, copy);
+		if (n < 0) {
+			free(t->header);
+			t->header = copy;
+			continue;
+		}
+		free(copy);
+		if (t->rows && n != t->columns)
+			die(EXIT_RUN, "%s: line %ld: want %d heights, got %d", t->c->name,
+				t->line, t->columns, n);
+		t->columns = n;
+		t->rows++;
+	}
+}
+
+/* The unit in the heading of a column from its end: "(microns)", "[um]", "in um", "x/mm".
+ */
+static double unit_of(const struct text *t, int from_end)
+{
+	char *copy, *part, *s, *end;
+	double unit = NAN;
+	char by[2] = { t->separator, '\0' };
+	int n = 0, k = 0;
+
+	if (!t->header)
+		return NAN;
+	copy = xstrdup(t->header);
+	for (part = copy; part; part = strchr(part, *by), part = part ? part + 1 : NULL)
+		n++;
+	for (part = copy; part && k < n - 1 - from_end; k++)
+		part = strchr(part, *by) + 1;
+	if (part && strchr(part, *by))
+		*strchr(part, *by) = '\0';
+	/* the last word that is a unit */
+	for (s = part; s && *s; s = end) {
+		double u;
+
+		s += strspn(s, " \t()[]/_\"");
+		end = s + strcspn(s, " \t()[]/_\"\r\n");
+		u = unit_named(s, (size_t)(end - s));
+		if (!isnan(u))
+			unit = u;
+		if (*end)
+			end++;
+	}
+	free(copy);
+	return unit;
+}
+
+/* Places must be equally far apart: to a thousandth of a step, or as they were rounded.
+ */
+static void profile_read(const struct text *t, const struct told *told, struct record *r)
+{
+	double dx, dy, unit, x_unit, *z;
+	size_t n = (size_t)t->rows, w = (size_t)t->columns;
+	const double *x = t->value + w - 2;
+
+	if (t->columns < 2 || t->rows < 2)
+		die(EXIT_RUN,
+			"%s: %d columns of %ld rows, want two of places and heights",
+			t->c->name, t->columns, t->rows);
+	x_unit = unit_of(t, 1);
+	unit = settle_unit(t->c, told, unit_of(t, 0));
+	if (isnan(x_unit))
+		x_unit = unit;
+	dx = (x[(n - 1) * w] - x[0]) / (double)(n - 1);
+	for (size_t i = 0; i < n; i++)
+		if (!(fabs(x[i * w] - x[0] - (double)i * dx) <= 0.02 * fabs(dx)))
+			die(EXIT_RUN,
+				"%s: row %zu: place %g, want %g: places must be equally "
+				"far apart",
+				t->c->name, i + 1, x[i * w], x[0] + (double)i * dx);
+	dx = fabs(dx) * x_unit;
+	dy = dx;
+	settle_pixel(t->c, told, &dx, &dy);
+	z = new_heights(t->c, (double)n, 1, dx, dx, r);
+	for (size_t i = 0; i < n; i++)
+		z[i] = x[i * w + 1] == told->missing ? NAN : x[i * w + 1] * unit;
+}
+
+void text_read(const struct content *c, const struct told *told, struct record *r)
+{
+	struct text t = { .c = c, .separator = ' ' };
+	char *text = plain(c);
+	double dx = NAN, dy = NAN, unit, *z;
+
+	read_rows(&t, text);
+	if (!t.rows)
+		die(EXIT_RUN, "%s: no row of numbers", c->name);
+	if (told->profile) {
+		profile_read(&t, told, r);
+	} else {
+		settle_pixel(c, told, &dx, &dy);
+		unit = settle_unit(c, told, NAN);
+		z = new_heights(c, t.columns, (double)t.rows, dx, dy, r);
+		for (size_t i = 0; i < t.n; i++)
+			z[i] = t.value[i] == told->missing ? NAN : t.value[i] * unit;
+	}
+	free(t.value);
+	free(t.header);
+	free(text);
+}

@@ -1,0 +1,101 @@
+#!/bin/sh
+# A system call or allocation that fails, whichever and whenever: every program says so in
+# one line and fails, or its output is the same bytes
+. "$(dirname "$0")/../tap.sh"
+case ${ASAN_OPTIONS:-} in
+?*)
+	skip 'faults' 'the sanitizer has an allocator of its own'
+	done_testing
+	;;
+esac
+if ! ${CC:-cc} -shared -fPIC -O1 -o shim.so "$top/tests/faults/shim.c" -ldl 2>err; then
+	skip 'faults' 'no library can be preloaded here'
+	done_testing
+fi
+most=${FAULTS:-25} # calls of a function that are tried, first, last and spread between
+
+roughgen --points 16 --length 10um --sq 0.1um --corr 3um --count 2 >surfaces
+bemcontact --pressure 50MPa --young 210GPa surfaces >contacts
+debrisgen --yield 355MPa --friction 0.3 contacts >particles 2>/dev/null
+sensorsim --uniform 80um:150um --number 10 --duration 200ms --noise 5mV --truth truth >signal
+awk 'BEGIN { print "t\ty"; for (i = 0; i < 30; i++) print i "\t" 1 + i / 50 }' >series
+printf 'volume\n1.1e-15\n1.4e-15\n0.9e-15\n1.2e-15\n' >wear
+delaynet --columns 8 --layers 3:relu --count 20 --epochs 2 --batch 10 >net
+delaynet --task data --columns 8 --count 3 >sections
+
+# broken: what a run did that it should not have done; empty where all is well
+broken() {
+	lines=0
+	while read -r line; do
+		lines=$((lines + 1))
+	done <err
+	if [ "$got" -ge 126 ]; then
+		echo "ended by signal $((got - 128))"
+	elif [ "$got" = 0 ] || [ "$got" = "$normal" ]; then
+		for f in out $sides; do
+			cmp -s "$f" "$f.whole" || echo "exit status $got with other bytes in $f"
+		done
+	elif [ $lines = 0 ]; then
+		echo "exit status $got without a word"
+	elif [ $lines -gt 1 ] && [ "$(grep -cvxFf err.whole err)" -gt 1 ]; then
+		echo "$lines lines: $(tail -n 1 err)"
+	fi
+}
+
+# scene "SIDE-OUTPUTS" COMMAND...
+scene() {
+	sides=$1
+	shift
+	calls='malloc calloc'
+	# duet's learning takes a fit without memory for a bad fit
+	[ "$1" != duet ] || calls=calloc
+	for call in $calls realloc strdup read write fwrite fopen fclose fflush open_memstream pthread_create; do
+		FAULT_CALL=$call FAULT_COUNT=count LD_PRELOAD=./shim.so "$@" >out.whole 2>err.whole </dev/null
+		normal=$?
+		for f in $sides; do mv "$f" "$f.whole"; done
+		read -r n <count
+		bad=
+		tried=0
+		step=$((n > most ? n / most : 1))
+		at=1
+		while [ "$at" -le "$n" ]; do
+			timeout 20 env FAULT_CALL=$call FAULT_AT=$at LD_PRELOAD=./shim.so "$@" >out 2>err </dev/null
+			got=$?
+			tried=$((tried + 1))
+			what=$(broken)
+			[ -z "$what" ] || bad="$bad
+$call $at of $n: $what"
+			at=$((at < 8 || at + step > n && at < n ? at + 1 : at + step))
+		done
+		all=$((all + tried))
+		faults="$faults$bad"
+	done
+	is "$1: $all faults are told or do no harm" "$faults" ''
+	# The smallest stack that is accepted is enough.
+	(ulimit -s 256 && "$@" >out 2>err </dev/null)
+	got=$?
+	is "$1: a small stack changes nothing" "$(broken)" ""
+	(ulimit -s 64 && "$@" >out 2>err </dev/null)
+	is "$1: a smaller one is refused" "$? $(cat err)" \
+		"1 $1: the stack may have 64 kB, want 256: see ulimit -s"
+	all=0
+	faults=
+}
+all=0
+faults=
+scene '' roughgen --points 16 --length 10um --sq 0.1um --corr 3um --count 2 --threads 2
+scene '' roughgen --measure surfaces
+scene '' bemcontact --pressure 50MPa --young 210GPa --threads 2 surfaces
+scene 'side1 side2 side3' debrisgen --yield 355MPa --friction 0.3 --steps 2 --threads 2 --surface side1 \
+	--summary side2 --stress side3 contacts
+scene '' debrisstat particles
+scene 'side1' sensorsim --uniform 80um:150um --number 10 --duration 200ms --noise 5mV --truth side1
+scene '' bpfilter --order 100 --lines 50 signal
+scene 'side1 side2' duet --separated side1 --sections side2 signal
+scene '' aopf --particles 20 --threshold 2 series
+scene '' rwl --new --wear wear --step-time 1h --threshold-gap 11um --count 20
+scene '' delaynet --columns 8 --layers 3:relu --count 20 --epochs 2 --batch 10
+scene '' delaynet --task apply --network net sections
+scene '' records --output nrrd surfaces
+scene '' records --join particles particles
+done_testing

@@ -1,0 +1,219 @@
+#!/bin/sh
+# surfimport and surfunzip: measured heights in the formats of instruments, and what is wrong
+# with them
+. "$(dirname "$0")/tap.sh"
+
+# heights FILE: all samples of a stream in metres, parted by blanks
+heights() {
+	records -o text "$1" | grep -v '^#' | tr '\t\n' '  ' | sed -e 's/  */ /g' -e 's/ $//'
+}
+# list COLUMN FILE
+list() {
+	records "$2" >list.tsv
+	column "$1" list.tsv
+}
+
+# Matrices of text.
+printf '1\t2\t3\n4\tnan\t6\n' >tab.txt
+surfimport --pixel 1umx2um --height-unit 1um tab.txt >a.nrrd
+is "a matrix of text" "$(heights a.nrrd)" "1e-06 2e-06 3e-06 4e-06 nan 6e-06"
+is "its spacing" "$(list dx a.nrrd) $(list dy a.nrrd)" "1e-06 2e-06"
+printf '1,5;2;3\r\n4;;6\r\n' >comma.csv
+surfimport --pixel 1um --height-unit 1m comma.csv >b.nrrd
+is "semicolons and decimal commas" "$(heights b.nrrd)" "1.5 2 3 4 nan 6"
+printf '1,5,2\n4,BAD,6\n' >plain.csv
+surfimport --pixel 1um --height-unit 1m plain.csv >b.nrrd
+is "commas that part cells" "$(heights b.nrrd)" "1 5 2 4 nan 6"
+printf '# by hand\nheights of a plate\n 1.5   -2e-3 \n4 6 \n' >blank.txt
+surfimport --pixel 1um --height-unit 1m blank.txt >b.nrrd
+is "blanks, comments and a heading" "$(heights b.nrrd)" "1.5 -0.002 4 6"
+printf '1,5 2,25\n4,0 6,5\n' >german.txt
+surfimport --pixel 1um --height-unit 1m german.txt >b.nrrd
+is "blanks between decimal commas" "$(heights b.nrrd)" "1.5 2.25 4 6.5"
+printf '\377\3761\0,\0002\0\n\0003\0,\0004\0\n\0' >utf16.csv
+surfimport --pixel 1um --height-unit 1m utf16.csv >b.nrrd
+is "UTF-16 with its mark" "$(heights b.nrrd)" "1 2 3 4"
+surfimport --pixel 1um --height-unit 1m --missing 99 <<-'END' >b.nrrd
+	1 99
+	3 4
+END
+is "a number that stands for nothing" "$(heights b.nrrd)" "1 nan 3 4"
+printf 'X_(microns),height [nm]\n10,1\n12,2\n14,3\n' >profile.csv
+surfimport --profile profile.csv >p.nrrd
+is "a profile: its units are those of the headings" "$(heights p.nrrd) $(list dx p.nrrd) $(list ny p.nrrd)" \
+	"1e-09 2e-09 3e-09 2e-06 1"
+roughgen --measure --fill a.nrrd >m.tsv
+is "roughgen takes it from there" "$(column sz m.tsv)" 5e-06
+
+# Binary files, made byte by byte.
+le16() { for v in "$@"; do printf "\\$(printf %03o $((v & 255)))\\$(printf %03o $((v >> 8 & 255)))"; done; }
+le32() { for v in "$@"; do le16 $((v & 65535)) $((v >> 16 & 65535)); done; }
+zeros() { head -c "$1" /dev/zero; }
+{
+	printf '\223NUMPY\001\000'
+	le16 70
+	printf "%-69s\n" "{'descr': '<i2', 'fortran_order': False, 'shape': (2, 3), }"
+	le16 1 2 3 4 5 65535
+} >i.npy
+surfimport --pixel 1um --height-unit 1um i.npy >b.nrrd
+is "npy of whole numbers" "$(heights b.nrrd)" "1e-06 2e-06 3e-06 4e-06 5e-06 -1e-06"
+sed "s/False/True /" i.npy >f.npy
+surfimport --pixel 1umx2um --height-unit 1um f.npy >b.nrrd
+is "npy in Fortran's order" "$(heights b.nrrd) $(list dy b.nrrd)" "1e-06 3e-06 5e-06 2e-06 4e-06 -1e-06 2e-06"
+{
+	printf 'bISO-1.0%10s%12s%12s' x 010120200000 010120200000
+	le16 3 2
+	# 1e-6, 2e-6, 1e-9 and 0 as doubles
+	printf '\215\355\265\240\367\306\260\076\215\355\265\240\367\306\300\076\225\326\046\350\013\056\021\076'
+	zeros 8
+	printf '\0\005\0'
+	le16 10 20 30 40 32768 60
+} >b.sdf
+surfimport b.sdf >b.nrrd
+is "binary SDF with a missing sample" "$(heights b.nrrd) $(list dx b.nrrd) $(list dy b.nrrd)" \
+	"1e-08 2e-08 3e-08 4e-08 nan 6e-08 1e-06 2e-06"
+cat >a.sdf <<-'END'
+	aISO-1.0
+	ManufacID = x
+	NumPoints = 2
+	NumProfiles = 2
+	Xscale = 1e-6
+	Yscale = 2e-6
+	Zscale = 1e-6
+	*
+	1 2
+	BAD 4
+	*
+	a trailer
+END
+surfimport a.sdf >b.nrrd
+is "text SDF" "$(heights b.nrrd) $(list dy b.nrrd)" "1e-06 2e-06 nan 4e-06 2e-06"
+{
+	printf 'DIGITAL SURF'
+	le16 0 1 1 2
+	printf '%60s' ''
+	zeros 6 # to byte 86
+	le16 1 0
+	zeros 8
+	le16 32
+	le32 5 60 3 2 6
+	# 2, 4 and 0.5 as floats
+	printf '\0\0\0\100\0\0\200\100\0\0\000\077'
+	printf '%48s' ''
+	printf '%-16s%-16s%-16s' um um nm
+	zeros 246 # to byte 474
+	zeros 38
+	le32 10 20 30 40 3 60
+} >s.sur
+surfimport s.sur >b.nrrd
+is "Digital Surf with a missing sample" "$(heights b.nrrd) $(list dx b.nrrd) $(list dy b.nrrd)" \
+	"5e-09 1e-08 1.5e-08 2e-08 nan 3e-08 2e-06 4e-06"
+tag() { { printf %s "$1" && zeros $((20 - ${#1})) && printf %s "$2" && zeros $((30 - ${#2})) && printf '\r\n'; }; }
+{
+	printf 'AliconaImaging\0\r\n'
+	tag Version 1
+	tag TagCount 6
+	tag PixelSizeXMeter 1e-6
+	tag PixelSizeYMeter 3e-6
+	tag DepthImageOffset 433
+	tag Cols 3
+	tag Rows 2
+	tag InvalidPixelValue 0.5
+	# 1, 2, 0.5 and 4 bytes of padding, 3, 4, 5 m
+	printf '\0\0\200\077\0\0\0\100\0\0\0\077XXXX\0\0\100\100\0\0\200\100\0\0\240\100XXXX'
+} >a.al3d
+surfimport a.al3d >b.nrrd
+is "Alicona with padded rows and a missing sample" "$(heights b.nrrd) $(list dy b.nrrd)" "1 2 nan 3 4 5 3e-06"
+le16 256 512 >r.bin
+surfimport --format raw --size 2x1 --type uint16 --pixel 1um --height-unit 1m r.bin >b.nrrd
+is "headerless samples" "$(heights b.nrrd)" "256 512"
+surfimport --format raw --size 1x1 --type int16 --big-endian --skip 2 --pixel 1um --height-unit 1m r.bin >b.nrrd
+is "big-endian, behind other bytes" "$(heights b.nrrd)" "2"
+same "the header rebuilds the file" b.nrrd "$(sh -c "$(sed -n 's/^cmd:=//p' b.nrrd)" >again; echo again)"
+
+if command -v unzip >/dev/null && command -v xmllint >/dev/null && command -v zip >/dev/null; then
+	mkdir -p bindata
+	surfimport --pixel 1um --height-unit 1m <<-'END' | records -o text | grep -v '^#' >/dev/null
+		1 2
+	END
+	le16 1 2 3 4 5 65535 >bindata/data.bin
+	x3p() { # TYPE INCREMENT MD5
+		cat >main.xml <<-END
+			<?xml version="1.0"?>
+			<p:ISO5436_2 xmlns:p="http://www.opengps.eu/2008/ISO5436_2"><Record1><FeatureType>SUR</FeatureType>
+			<Axes><CX><AxisType>I</AxisType><DataType>D</DataType><Increment>1e-6</Increment></CX>
+			<CY><AxisType>I</AxisType><DataType>D</DataType><Increment>2.0E-6</Increment></CY>
+			<CZ><AxisType>A</AxisType><DataType>$1</DataType><Increment>$2</Increment></CZ></Axes></Record1>
+			<Record3><MatrixDimension><SizeX>3</SizeX><SizeY>2</SizeY><SizeZ>1</SizeZ></MatrixDimension>
+			<DataLink><PointDataLink>bindata/data.bin</PointDataLink>
+			<MD5ChecksumPointData>$3</MD5ChecksumPointData></DataLink></Record3></p:ISO5436_2>
+		END
+		rm -f "a b.x3p"
+		zip -q "a b.x3p" main.xml bindata/data.bin
+	}
+	x3p I 1e-9 "$(md5sum <bindata/data.bin | cut -d ' ' -f 1)"
+	surfunzip "a b.x3p" >b.nrrd
+	is "x3p of whole numbers" "$(heights b.nrrd) $(list dx b.nrrd) $(list dy b.nrrd)" \
+		"1e-09 2e-09 3e-09 4e-09 5e-09 -1e-09 1e-06 2e-06"
+	# NRRD doubles backslashes in its header
+	same "its header rebuilds it, blank in the name or not" b.nrrd \
+		"$(sh -c "$(sed -n -e 's/\\\\/\\/g' -e 's/^cmd:=//p' b.nrrd)" >again; echo again)"
+	x3p I 1e-9 00000000000000000000000000000000
+	fails "x3p that is damaged" 1 'md5 differs' surfunzip "a b.x3p"
+	x3p D 1 ""
+	fails "x3p with too few samples" 1 'want 48 bytes, got 12' surfunzip "a b.x3p"
+	printf '\0\0\200\077\044\044\164\111' >LAYER_0.raw # 1, 1000002.25
+	printf '\0\0\200\077\020\044\164\111' >LAYER_0.raw # 1, 1000001
+	printf '<xml><GENERAL><IMAGE_SIZE_X>2</IMAGE_SIZE_X><IMAGE_SIZE_Y>1</IMAGE_SIZE_Y><FOV_X>0.5</FOV_X><FOV_Y>0.5</FOV_Y></GENERAL></xml>' >index.xml
+	zip -q s.plux index.xml LAYER_0.raw
+	surfunzip s.plux >b.nrrd
+	is "plux with a missing sample" "$(heights b.nrrd) $(list dx b.nrrd)" "1e-06 nan 5e-07"
+	fails "a container is named to surfimport's user" 1 'surfunzip reads .x3p' surfimport s.plux
+	fails "what is no container" 1 'is no zip container' surfunzip tab.txt
+	zip -q other.zip tab.txt
+	fails "a container of something else" 1 'neither main.xml' surfunzip other.zip
+	fails "no file" 2 'want a file' surfunzip
+	fails "an option that is none" 2 'no such option' surfunzip --nothing x
+else
+	skip "surfunzip" "no unzip, xmllint or zip"
+fi
+
+# Real files, where they are.
+data=$top/../shared/data/formats
+if [ -e "$data/sur-3.sur" ]; then
+	surfimport "$data/sur-3.sur" >b.nrrd
+	is "a .sur of an instrument" "$(list nx b.nrrd) $(list ny b.nrrd) $(list dx b.nrrd | cut -c 1-9)" "512 512 0.0002955"
+	surfimport "$data/sdf-1.sdf" >b.nrrd
+	is "a softgauge in SDF" "$(list nx b.nrrd) $(list ny b.nrrd) $(list max b.nrrd)" "7 4 1e-06"
+	for k in 2 3; do
+		surfimport --profile "$data/csv-$k.csv" >b.nrrd
+		is "profile $k of an instrument, units from its headings" \
+			"$(list nx b.nrrd) $(list dx b.nrrd | cut -c 1-6) $(list max b.nrrd | cut -c 1-7)" "8 8.3333 -1.4274"
+	done
+else
+	skip "files of instruments" "no ../shared/data/formats"
+fi
+
+fails "no spacing" 1 'give --pixel' surfimport --height-unit 1m tab.txt
+fails "no unit" 1 'give --height-unit' surfimport --pixel 1um tab.txt
+fails "a spacing that the file contradicts" 1 'not --pixel' surfimport --pixel 5um a.sdf
+printf '1 2\n3\n' >short.txt
+fails "a short row" 1 'line 2: want 2 heights, got 1' surfimport --pixel 1um --height-unit 1m short.txt
+printf '1 2\n3 x\n' >word.txt
+fails "a word among heights" 1 'line 2: not a row of numbers: 3 x' surfimport --pixel 1um --height-unit 1m word.txt
+fails "nothing at all" 1 'no row of numbers' surfimport --pixel 1um --height-unit 1m
+printf 'nan nan\n' >gone.txt
+fails "every height missing" 1 'every height is missing' surfimport --pixel 1um --height-unit 1m gone.txt
+printf '0,1\n1,2\n5,3\n' >uneven.csv
+fails "places at unequal steps" 1 'equally far apart' surfimport --profile --height-unit 1um uneven.csv
+head -c 100 s.sur >cut.sur
+fails "a header that is cut off" 1 'want 512 bytes of a .sur header' surfimport cut.sur
+head -c 530 s.sur >cut.sur
+fails "samples that are cut off" 1 'bytes of samples, got 530' surfimport cut.sur
+printf '\001\002\0\003' >noise
+fails "bytes that are no format" 1 'neither text nor' surfimport noise
+fails "raw without a size" 2 'wants --size' surfimport --format raw noise
+fails "a size without raw" 2 'are for --format raw' surfimport --size 2x2 noise
+roughgen -n 4 >n.nrrd
+fails "a stream of ours" 1 'roughgen reads it' surfimport n.nrrd
+done_testing
