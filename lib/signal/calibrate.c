@@ -160,8 +160,8 @@ static int find_tones(
 	const struct calibrate_par *par, struct record *r, struct calibration *c)
 {
 	enum { ENOUGH = 16384 };
-	size_t edge = edge_of(r, c), n = r->n - 2 * edge,
-	       some = n < ENOUGH ? n : ENOUGH, from = edge + (n - some) / 2;
+	size_t edge = edge_of(r, c), n = r->n - 2 * edge, some = n < ENOUGH ? n : ENOUGH,
+	       from = edge + (n - some) / 2;
 	const double *y1 = r->tape[0].x + edge, *y2 = r->tape[1].x + edge;
 
 	c->tone_hop = r->n < 8192 ? r->n : 4096;
@@ -240,8 +240,8 @@ static enum calibrate_status make_white(
 	if (!clean(r, c) || !find_tones(par, r, c) || (c->tones && !clean(r, c)))
 		return CALIBRATE_MEMORY;
 	edge = edge_of(r, c);
-	if (!noise_measure(&r->noise, r->tape[0].x + edge, r->tape[1].x + edge,
-		    r->n - 2 * edge))
+	if (!noise_measure(
+		    &r->noise, r->tape[0].x + edge, r->tape[1].x + edge, r->n - 2 * edge))
 		return CALIBRATE_MEMORY;
 	if (!use_noise(par, r, c))
 		return CALIBRATE_MEMORY;
@@ -303,7 +303,7 @@ static enum calibrate_status find_start(
 	c->transit = c->shift > 0 ? (double)c->shift : INFINITY;
 	v1 = power(r->tape[0].x + edge, n, r->work);
 	v2 = power(r->tape[1].x + edge, n, r->work);
-	c->gain = !isnan(par->gain)    ? par->gain
+	c->gain = !isnan(par->gain)  ? par->gain
 		  : v1 > 0 && v2 > 0 ? sqrt(v2 / v1) * c->noise[1] / c->noise[0]
 				     : 1;
 	c->gain *= s.sign;
@@ -315,15 +315,17 @@ static enum calibrate_status find_start(
 
 /* A line that regular pulses have was taken off in vain, and stands in what they leave.
  * Returns how many are dropped. */
-static int drop_pulse_tones(const struct record *r, struct calibration *c,
-	double *const rest[2], size_t n)
+static int drop_pulse_tones(
+	const struct record *r, struct calibration *c, double *const rest[2], size_t n)
 {
 	int kept = 0, before = c->tones;
 	double coefficient[2][2 * TONES_MAX + 1];
 
 	for (int k = 0; k < 2; k++)
-		if (c->tones == 0 || !tones_fit(rest[k], n, (double)edge_of(r, c) + k * (double)c->shift,
-					     c->tones, c->omega, coefficient[k], NULL, NULL))
+		if (c->tones == 0 ||
+			!tones_fit(rest[k], n,
+				(double)edge_of(r, c) + k * (double)c->shift, c->tones,
+				c->omega, coefficient[k], NULL, NULL))
 			return 0;
 	for (int t = 0; t < before; t++) {
 		int vain = 0;
@@ -343,8 +345,8 @@ static int drop_pulse_tones(const struct record *r, struct calibration *c,
 }
 
 /* Spectrum of what the pulses leave: what it is not white by is put right. */
-static int measure_rest(const struct calibrate_par *par, struct record *r,
-	struct calibration *c)
+static int measure_rest(
+	const struct calibrate_par *par, struct record *r, struct calibration *c)
 {
 	size_t n = r->length;
 	const struct learning *l = r->learning;
@@ -457,8 +459,7 @@ static enum calibrate_status learn_record(
 			return CALIBRATE_FAR;
 		c->drop = c->drop_near = NEAR;
 		set_range(par, c);
-		status = learn_pulse(
-			par, r->y, r->bad, r->length, round, r->learning, c);
+		status = learn_pulse(par, r->y, r->bad, r->length, round, r->learning, c);
 	}
 	return status == CALIBRATE_OK ? settle(par, r, c) : status;
 }
@@ -528,7 +529,9 @@ void calibration_scene(const struct calibration *c, struct joint_scene *scene)
 		.drop_near = c->drop_near,
 		.misfit = 3 * fmax(c->error * c->error - c->error_least * c->error_least,
 				      c->error_floor * c->error_floor),
-		.negative = c->negatives ? 0 : c->dense ? INFINITY : 14,
+		.negative = c->negatives ? 0
+			    : c->dense   ? INFINITY
+					 : 14,
 		.offset = 1,
 		.tone_variance = c->tone_variance,
 		.low = c->whitening[0].low,

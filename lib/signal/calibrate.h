@@ -4,11 +4,11 @@
  * the second sensor, duration and form of the pulses, ratio of the gains, range of the
  * velocities.  Whatever the caller knows is taken as given.
  *
- * All of it is one model, estimated by turns: a record is pulses of one form plus noise of
- * a spectrum.  Where nothing happens gives a first spectrum; what is whitened by it shows
- * clear pulses (start.h), whose common form is learned (learn.h); what they leave gives the
- * spectrum anew, and that their form.  In the end half of the clear pulses tell how well
- * the form learned from the others describes them.
+ * All of it is one model, estimated by turns: a record is pulses of one form plus noise
+ * of a spectrum.  Where nothing happens gives a first spectrum; what is whitened by it
+ * shows clear pulses (start.h), whose common form is learned (learn.h); what they leave
+ * gives the spectrum anew, and that their form.  In the end half of the clear pulses tell
+ * how well the form learned from the others describes them.
  */
 #ifndef SIGNAL_CALIBRATE_H
 #define SIGNAL_CALIBRATE_H
@@ -59,16 +59,16 @@ struct calibration {
 	double delta_var;            /* of the delays of what was learned from */
 	double drop, drop_near;      /* thresholds of joint.h */
 	double level;                /* noise power over what was thought, and ... */
-	double error;  /* ... error of the form over the form, from pulses that it was not
-			* learned from */
+	double error; /* ... error of the form over the form, from pulses that it was not
+		       * learned from */
 	double error_least; /* its standard error, ... */
 	double error_floor; /* ... and what the noise in the form makes of it */
-	int events;    /* pulses the form was learned from */
-	int negatives; /* 1: pulses of both signs among them */
-	int reversed;  /* 1: most begin with their negative lobe */
-	int attempts;  /* times the form was learned */
-	int dense;     /* 1: pulses throughout, hardly any of them clear */
-	double chi2;   /* of these, per degree of freedom: the median */
+	int events;         /* pulses the form was learned from */
+	int negatives;      /* 1: pulses of both signs among them */
+	int reversed;       /* 1: most begin with their negative lobe */
+	int attempts;       /* times the form was learned */
+	int dense;          /* 1: pulses throughout, hardly any of them clear */
+	double chi2;        /* of these, per degree of freedom: the median */
 };
 
 enum calibrate_status {
@@ -76,11 +76,11 @@ enum calibrate_status {
 	CALIBRATE_MEMORY,
 	CALIBRATE_SILENT_1, /* channel 1 is constant */
 	CALIBRATE_SILENT_2,
-	CALIBRATE_NO_LAG, /* the channels have nothing in common */
-	CALIBRATE_FAR,    /* the lag given is as long as the record */
-	CALIBRATE_NARROW, /* the filter has left a band narrower than half the pulse's */
-	CALIBRATE_FAST,   /* pulses of fewer than 8 samples */
-	CALIBRATE_SLOW,   /* pulses longer than half the record */
+	CALIBRATE_NO_LAG,  /* the channels have nothing in common */
+	CALIBRATE_FAR,     /* the lag given is as long as the record */
+	CALIBRATE_NARROW,  /* the filter has left a band narrower than half the pulse's */
+	CALIBRATE_FAST,    /* pulses of fewer than 8 samples */
+	CALIBRATE_SLOW,    /* pulses longer than half the record */
 	CALIBRATE_SWAPPED, /* pulses come to channel 2 first */
 	CALIBRATE_TOGETHER /* pulses come to both channels at once */
 };

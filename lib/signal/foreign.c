@@ -62,7 +62,8 @@ static double count_loud(const struct view *v, long long from, long long to)
 	return count;
 }
 
-static int is_clipped(const unsigned char *bad, const struct view *v, long long from, long long to)
+static int is_clipped(
+	const unsigned char *bad, const struct view *v, long long from, long long to)
 {
 	for (long long i = from; i < to; i++)
 		if (i >= v->begin && i < v->begin + (long long)v->n &&
@@ -91,12 +92,14 @@ void foreign_look(const double *const y[2], const unsigned char *const bad[2],
 	if (shift && fabs(alike(&v[0], &v[1], from + shift, to + shift, 0)) > ALIKE &&
 		moving < ALIKE)
 		f->kind = FOREIGN_NOTHING;
-	else if (shift && fabs(alike(&v[0], &v[1], from, to, 0)) > ALIKE && moving < ALIKE)
+	else if (shift && fabs(alike(&v[0], &v[1], from, to, 0)) > ALIKE &&
+		 moving < ALIKE)
 		f->kind = FOREIGN_COMMON;
 	else if (is_clipped(bad[0], &v[0], from, to) ||
 		 is_clipped(bad[1], &v[1], from + shift, to + shift))
 		f->kind = FOREIGN_CLIPPED;
-	else if (count_loud(&v[0], from, to) + count_loud(&v[1], from + shift, to + shift) <
+	else if (count_loud(&v[0], from, to) +
+			 count_loud(&v[1], from + shift, to + shift) <
 		 SHORT * duration)
 		f->kind = FOREIGN_IMPULSE;
 	else

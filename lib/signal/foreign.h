@@ -1,9 +1,9 @@
 /* foreign.h - what an event is that is no particle
  *
- * A particle passes sensor 1 and then sensor 2.  What both see at once is common to them: a
- * shock, or interference.  What a few samples hold is an impulse.  What both see one after
- * the other, though not as a particle, moves with the oil: a bubble, or a particle that
- * sticks to another.  All else is a transient.
+ * A particle passes sensor 1 and then sensor 2.  What both see at once is common to them:
+ * a shock, or interference.  What a few samples hold is an impulse.  What both see one
+ * after the other, though not as a particle, moves with the oil: a bubble, or a particle
+ * that sticks to another.  All else is a transient.
  */
 #ifndef SIGNAL_FOREIGN_H
 #define SIGNAL_FOREIGN_H

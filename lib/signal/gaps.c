@@ -36,8 +36,8 @@ void gaps_learn(struct gaps *g, const double *x, size_t n)
 		g->high = high;
 }
 
-size_t gaps_mark(const struct gaps *g, const double *x, size_t from, size_t n,
-	unsigned char *bad)
+size_t gaps_mark(
+	const struct gaps *g, const double *x, size_t from, size_t n, unsigned char *bad)
 {
 	size_t run = 1, clipped = 0, at = from;
 

@@ -1,9 +1,9 @@
 /* gaps.h - samples of a channel that say nothing: clipped, or not sampled at all
  *
- * Samples of a channel with noise seldom equal their neighbours.  A run of equal ones that
- * chance would not give is a gap: an amplifier at its rail, or a sampler that holds or has
- * lost its signal.  Where runs are at the highest or lowest value of the record, that value
- * is a rail, and every sample at it is clipped.
+ * Samples of a channel with noise seldom equal their neighbours.  A run of equal ones
+ * that chance would not give is a gap: an amplifier at its rail, or a sampler that holds
+ * or has lost its signal.  Where runs are at the highest or lowest value of the record,
+ * that value is a rail, and every sample at it is clipped.
  */
 #ifndef SIGNAL_GAPS_H
 #define SIGNAL_GAPS_H
@@ -24,7 +24,7 @@ void gaps_learn(struct gaps *g, const double *x, size_t n);
 
 /* Marks x[from .. n) in bad (as long as x), looking back as far as it must; returns the
  * number of clipped samples. */
-size_t gaps_mark(const struct gaps *g, const double *x, size_t from, size_t n,
-	unsigned char *bad);
+size_t gaps_mark(
+	const struct gaps *g, const double *x, size_t from, size_t n, unsigned char *bad);
 
 #endif

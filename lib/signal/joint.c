@@ -12,8 +12,7 @@ static size_t filter_residual(
 	for (int c = 0; c < 2; c++) {
 		long first = shape_support(s->shape[c], 0, T, &len);
 
-		shape_sample(
-			s->shape[c], 0, T, first, len, j->scratch, NULL, NULL);
+		shape_sample(s->shape[c], 0, T, first, len, j->scratch, NULL, NULL);
 		for (size_t k = 0; k < points; k++) {
 			long from = (long)(k * stride) + first,
 			     skip = from < 0 ? -from : 0;
@@ -31,8 +30,8 @@ static size_t filter_residual(
 	return points;
 }
 
-static int tried_before(
-	const struct joint_scene *s, const struct candidate *tried, int n, double t, double delta)
+static int tried_before(const struct joint_scene *s, const struct candidate *tried, int n,
+	double t, double delta)
 {
 	for (int i = 0; i < n; i++)
 		if (fabs(t - tried[i].t) < 0.15 * s->duration &&
@@ -85,8 +84,9 @@ static struct candidate search(struct joint *j, const struct joint_scene *s,
 {
 	struct candidate best = { 0 };
 	int bank = joint_bank(s);
-	double ratio = pow(pulse_duration(s, s->delta_max) /
-				   pulse_duration(s, s->delta_min), 1.0 / bank);
+	double ratio =
+		pow(pulse_duration(s, s->delta_max) / pulse_duration(s, s->delta_min),
+			1.0 / bank);
 	double lo = s->delta_min, hi;
 
 	joint_project(j);
@@ -118,7 +118,7 @@ static void finish(struct joint *j, const struct joint_scene *s,
 	for (int b = j->slow; b < j->basis; b++)
 		taken += 2 * j->share[b];
 	result->dof = (long)((1 - s->lost) * (2 * (double)j->n - (double)j->left_out) -
-			     taken + 0.5) -
+			      taken + 0.5) -
 		      PAR * m;
 	if (result->dof < 1)
 		result->dof = 1;
@@ -134,7 +134,8 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 	enum { TRIES = 3 + JOINT_PULSES_MAX / 8 };
 	enum joint_status status = joint_start(j, s, y1, y2, n, pulses, *m);
 	struct candidate tried[TRIES];
-	/* Twice what crowds of two pulses per duration take; what is no pulse takes all. */
+	/* Twice what crowds of two pulses per duration take; what is no pulse takes all.
+	 */
 	double budget = 1000 + 250 * (double)n / s->duration;
 	int failed = 0;
 	double chi2;

@@ -240,10 +240,9 @@ static int scene_is_sane(
 	const struct joint_scene *s, const struct joint_pulse *pulses, int m)
 {
 	if (!s->shape[0] || !s->shape[1] || !(s->duration >= 4) || !(s->transit > 0) ||
-		s->gain == 0 || !isfinite(s->gain) ||
-		!(s->delta_min <= s->delta_max) || !(s->drop >= 0) ||
-		!(s->drop_near >= 0) || !(s->tone_variance >= 0) || s->tones < 0 ||
-		!(s->low >= 0) || !(s->lost >= 0) || !(s->lost < 1) ||
+		s->gain == 0 || !isfinite(s->gain) || !(s->delta_min <= s->delta_max) ||
+		!(s->drop >= 0) || !(s->drop_near >= 0) || !(s->tone_variance >= 0) ||
+		s->tones < 0 || !(s->low >= 0) || !(s->lost >= 0) || !(s->lost < 1) ||
 		s->tones > JOINT_TONES_MAX || s->max_pulses < 0 ||
 		s->max_pulses > JOINT_PULSES_MAX || m < 0 || m > s->max_pulses)
 		return 0;
@@ -267,10 +266,9 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	if (!scene_is_sane(s, pulses, m) || n == 0)
 		return JOINT_DOMAIN;
 	longest = s->delta_max + 0.1 * (s->delta_max - s->delta_min);
-	support =
-		(size_t)(2 * scene_reach(s) * pulse_duration(s, fmax(longest, 0)) +
-			 0.4 * s->duration) +
-		4;
+	support = (size_t)(2 * scene_reach(s) * pulse_duration(s, fmax(longest, 0)) +
+			   0.4 * s->duration) +
+		  4;
 	if (!reserve_samples(j, n) || !reserve_columns(j, support))
 		return JOINT_MEMORY;
 	j->n = n;

@@ -51,7 +51,8 @@ static int worth(const struct joint_scene *s, const struct joint_pulse *pulses, 
 	double energy = energy_near(s, pulses, m, i);
 	double need = energy > 0 ? s->drop_near + s->misfit * energy : s->drop;
 
-	/* Pulses of both signs build any form: where negative ones are rare, none overlap. */
+	/* Pulses of both signs build any form: where negative ones are rare, none
+	 * overlap. */
 	if (pulses[i].a < 0 && s->negative > 0)
 		need = energy > 0 ? INFINITY : need + s->negative;
 

@@ -32,10 +32,11 @@ static double energy(const struct joint_scene *s, const struct joint_pulse *p)
 
 /* More than noise leaves by this many standard deviations, and than what the form of the
  * pulses may be out by? */
-static int too_much(double error, double chi2, double dof, double power, double deviations)
+static int too_much(
+	double error, double chi2, double dof, double power, double deviations)
 {
-	return chi2 > dof * (1 + LEVEL) + deviations * sqrt(2 * dof) +
-			      4 * error * error * power;
+	return chi2 >
+	       dof * (1 + LEVEL) + deviations * sqrt(2 * dof) + 4 * error * error * power;
 }
 
 /* Do the channels agree on the amplitude, within four deviations or 8 %, and does either
@@ -110,13 +111,14 @@ static int is_misfit(struct joint *joint, const struct joint_scene *s, size_t n,
 		dof -= 3 * near;
 		power += near * energy(s, &pulses[k]);
 	}
-	return too_much(error, residual_square(joint, from, to, pulses[i].delta, (double)n),
+	return too_much(error,
+		residual_square(joint, from, to, pulses[i].delta, (double)n),
 		fmax(dof, 1), power, 3);
 }
 
 void judge(struct joint *joint, const struct joint_scene *s, size_t n,
-	const struct joint_pulse *pulses, int m, int done, double boundary,
-	double error, const struct joint_result *r, struct judgement *out)
+	const struct joint_pulse *pulses, int m, int done, double boundary, double error,
+	const struct joint_result *r, struct judgement *out)
 {
 	double chi2 = r->chi2, dof = (double)r->dof, power = 0;
 	int doubted = 0, bad;
@@ -131,10 +133,11 @@ void judge(struct joint *joint, const struct joint_scene *s, size_t n,
 	out->stretch = m > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
 	bad = too_much(error, chi2, dof, power, 5);
 	for (int i = 0; i < done; i++) {
-		int doubt = bad && (m == 1 || is_misfit(joint, s, n, pulses, m, i, error));
+		int doubt =
+			bad && (m == 1 || is_misfit(joint, s, n, pulses, m, i, error));
 
 		doubt |= !channels_agree(joint, s, &pulses[i]);
-		out->pulse[i] = doubt ? SEPARATE_MISFIT
+		out->pulse[i] = doubt             ? SEPARATE_MISFIT
 				: pulses[i].a < 0 ? SEPARATE_NONFERROUS
 						  : out->stretch;
 		doubted += doubt;

@@ -59,11 +59,12 @@ static int pick(struct learning *l, double *const y[2], unsigned char *const bad
 	double merit[LEARN_STRETCHES] = { 0 };
 	struct sections *s = sections_new(scene, BEYOND);
 	struct section section;
-	double longest = scene->duration * (1 + fmax(scene->delta_max, 0) / scene->transit);
+	double longest =
+		scene->duration * (1 + fmax(scene->delta_max, 0) / scene->transit);
 	double reach = fmax(shape_reach_above(scene->shape[0], 0.01),
 		shape_reach_above(scene->shape[1], 0.01));
-	long margin = (long)(1.2 * reach * longest +
-			     fmax(scene->delta_max, -scene->delta_min));
+	long margin =
+		(long)(1.2 * reach * longest + fmax(scene->delta_max, -scene->delta_min));
 
 	l->count = 0;
 	if (!s)
@@ -74,7 +75,6 @@ static int pick(struct learning *l, double *const y[2], unsigned char *const bad
 		long long begin = section.begin > 0 ? section.begin : 0;
 		long long end = section.end < (long long)n ? section.end : (long long)n;
 		long long pieces = 1 + (end - begin) / (6 * margin);
-
 
 		for (long long k = 0; k < pieces && (pieces == 1 || allow_pieces); k++) {
 			long long from = begin + (end - begin) * k / pieces;
@@ -94,8 +94,8 @@ static int pick(struct learning *l, double *const y[2], unsigned char *const bad
 }
 
 /* Largest matched filter of either channel at every twenty-fourth of a duration. */
-static double *filter_record(
-	const struct joint_scene *s, double *const y[2], size_t n, size_t stride, size_t *points)
+static double *filter_record(const struct joint_scene *s, double *const y[2], size_t n,
+	size_t stride, size_t *points)
 {
 	double *z, *p;
 
@@ -132,8 +132,8 @@ static const double NEIGHBOUR = 0.3;
 
 /* Stretches around lone pulses, the loudest of the record.  They reach as far as a free
  * form does. */
-static int pick_lone(struct learning *l, double *const y[2], unsigned char *const bad[2],
-	size_t n)
+static int pick_lone(
+	struct learning *l, double *const y[2], unsigned char *const bad[2], size_t n)
 {
 	const struct joint_scene *s = &l->scene;
 	double merit[LEARN_STRETCHES] = { 0 }, T = s->duration;
@@ -174,7 +174,8 @@ static int pick_lone(struct learning *l, double *const y[2], unsigned char *cons
 
 static double pulse_energy(const struct joint_scene *s, const struct joint_pulse *p)
 {
-	double unit = shape_energy(s->shape[0]) + s->gain * s->gain * shape_energy(s->shape[1]);
+	double unit =
+		shape_energy(s->shape[0]) + s->gain * s->gain * shape_energy(s->shape[1]);
 
 	return p->a * p->a * unit * s->duration * (1 + p->delta / s->transit);
 }
@@ -206,8 +207,8 @@ static int fit_one(struct learning *l, struct stretch *s, int search)
 /* Error of the form and of the noise's power from what stretches leave beside noise:
  * chi2 - dof = (level - 1) dof + error^2 energy, by least squares that leaves out what is
  * foreign.  part: every second stretch from this one on; -1: all. */
-static void judge_stretches(struct learning *l, int part, double *level, double *error2,
-	double *error2_se)
+static void judge_stretches(
+	struct learning *l, int part, double *level, double *error2, double *error2_se)
 {
 	*level = 1;
 	*error2_se = 0;
@@ -230,13 +231,12 @@ static void judge_stretches(struct learning *l, int part, double *level, double 
 			struct stretch *s = &l->stretch[i];
 			double y = s->chi2 - s->dof, noise = sqrt(2 * s->dof), weight;
 
-			s->foreign = s->m == 0 ||
-				     y > (*level - 1) * s->dof + BEYOND * noise +
-						     4 * *error2 * s->energy;
+			s->foreign = s->m == 0 || y > (*level - 1) * s->dof +
+								  BEYOND * noise +
+								  4 * *error2 * s->energy;
 			if (s->foreign || (part >= 0 && i % 2 != part))
 				continue;
-			weight = 1 / (2 * s->dof +
-					     pow(*error2 * s->energy, 2));
+			weight = 1 / (2 * s->dof + pow(*error2 * s->energy, 2));
 			aa += weight * s->dof * s->dof;
 			ae += weight * s->dof * s->energy;
 			ee += weight * s->energy * s->energy;
@@ -349,7 +349,8 @@ static void update_gain(struct learning *l, struct calibration *c)
 }
 
 /* The free form from stretches of a parity (-1: all). */
-static int update_free(struct learning *l, struct template *t, int part, struct calibration *c)
+static int update_free(
+	struct learning *l, struct template *t, int part, struct calibration *c)
 {
 	double scale, shift;
 	struct shape *plain;
@@ -470,7 +471,8 @@ static int find_common(struct learning *l)
 		l->stretch[i].foreign = !l->stretch[i].lone || l->stretch[i].m != 1 ||
 					!draw_wave(l, &l->stretch[i], &w[i]);
 	for (int pass = 0; w && pass < 2; pass++)
-		for (int i = pass ? best : 0; i < (pass ? best + 1 : l->count) && i >= 0; i++) {
+		for (int i = pass ? best : 0; i < (pass ? best + 1 : l->count) && i >= 0;
+			i++) {
 			int count = 0;
 
 			for (int k = 0; k < l->count; k++) {
@@ -480,7 +482,8 @@ static int find_common(struct learning *l)
 
 				if (s->foreign || o->foreign)
 					continue;
-				/* Half of an energy is that of channel 1, more or less. */
+				/* Half of an energy is that of channel 1, more or less.
+				 */
 				noise = WAVE * (2 / s->energy + 2 / o->energy) *
 					(l->scene.duration / TEMPLATE_KNOTS);
 				r = i == k ? 1 : agree(&w[i], &w[k], &shift);
@@ -644,8 +647,10 @@ static int choose_form(const struct calibrate_par *par, struct learning *l,
 		for (int p = PULSE_SINE; ok && p <= PULSE_LORENTZ; p++) {
 			double here;
 
-			if (par->pulse != CALIBRATE_ANY_PULSE ? p != par->pulse
-				    : again && (p != known || through != through_known))
+			if (par->pulse != CALIBRATE_ANY_PULSE
+					? p != par->pulse
+					: again && (p != known ||
+							   through != through_known))
 				continue;
 			ok = restore(l, c, free_form);
 			c->through = through;
@@ -695,8 +700,8 @@ static int try_crowd(const struct calibrate_par *par, struct learning *l,
 	return l->price < best->cost ? save(l, c, l->price, best) : 1;
 }
 
-/* Duration and gain by turns with the pulses of some pieces of a crowd: the closer they come,
- * the smaller a pulse may be that is not just a misfit of its neighbour. */
+/* Duration and gain by turns with the pulses of some pieces of a crowd: the closer they
+ * come, the smaller a pulse may be that is not just a misfit of its neighbour. */
 static int converge(const struct calibrate_par *par, struct learning *l,
 	double *const y[2], unsigned char *const bad[2], size_t n, struct calibration *c)
 {
@@ -775,7 +780,8 @@ static void learn_range(
 			noise += p->cov[0] - 2 * p->cov[1] + p->cov[2];
 			events++;
 		}
-	c->delta_var = events ? fmax((squares - sum * sum / events - noise) / events, 0) : 0;
+	c->delta_var =
+		events ? fmax((squares - sum * sum / events - noise) / events, 0) : 0;
 	margin = fmax(0.5 * (hi - lo), 0.02 * c->duration);
 	if (isnan(par->spread) && events >= RANGE_EVENTS) {
 		c->delta_min = fmax(c->delta_min, lo - margin);
@@ -832,8 +838,8 @@ static int validate(struct learning *l, struct calibration *c)
 	c->level = level;
 	c->error = sqrt(sum);
 	c->error_least = sqrt(sqrt(se2));
-	c->error_floor = sqrt((form == CALIBRATE_ANY_PULSE ? TEMPLATE_COUNT : 2) /
-			      total_energy(l));
+	c->error_floor = sqrt(
+		(form == CALIBRATE_ANY_PULSE ? TEMPLATE_COUNT : 2) / total_energy(l));
 	return ok;
 }
 
@@ -872,8 +878,8 @@ static int learn_lone(const struct calibrate_par *par, struct learning *l,
 	return 1;
 }
 
-/* Pulses that overlap others tell their form, too: where few stand alone, these are fitted
- * together and all learned from. */
+/* Pulses that overlap others tell their form, too: where few stand alone, these are
+ * fitted together and all learned from. */
 static int learn_more(const struct calibrate_par *par, struct learning *l,
 	double *const y[2], unsigned char *const bad[2], size_t n, struct calibration *c,
 	double misfit)
@@ -886,7 +892,8 @@ static int learn_more(const struct calibrate_par *par, struct learning *l,
 		if (l->count)
 			judge_stretches(l, -1, &level, &error2, &se);
 		use_scene(l, c, LEARN_PULSES);
-		l->scene.misfit = fmax(misfit, 3 * fmin(error2 + 2 * se, TOLERABLE * TOLERABLE));
+		l->scene.misfit =
+			fmax(misfit, 3 * fmin(error2 + 2 * se, TOLERABLE * TOLERABLE));
 		misfit *= 0.2;
 		ok = pick(l, y, bad, n, 24, 0) && fit_all(l, 1);
 		if (!ok || l->count < ENOUGH)
@@ -909,15 +916,15 @@ static int learn_more(const struct calibrate_par *par, struct learning *l,
 	return ok;
 }
 
-/* A form of its own may do with fewer pulses than those of sensor.h, each of which costs what
- * it must take away. */
+/* A form of its own may do with fewer pulses than those of sensor.h, each of which costs
+ * what it must take away. */
 static int learn_rough(const struct calibrate_par *par, struct learning *l,
 	double *const y[2], unsigned char *const bad[2], size_t n, struct calibration *c)
 {
 	struct state *before = calloc(1, sizeof *before);
 	double price = l->price;
-	int count = l->count,
-	    ok = before && save(l, c, 0, before) && learn_more(par, l, y, bad, n, c, ROUGH);
+	int count = l->count, ok = before && save(l, c, 0, before) &&
+				   learn_more(par, l, y, bad, n, c, ROUGH);
 
 	l->pieces = 0;
 	if (ok && (!(l->price < price) || l->count < ENOUGH)) {
@@ -947,8 +954,8 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, double *const
 	unsigned char *const bad[2], size_t n, int again, struct learning *l,
 	struct calibration *c)
 {
-	struct shape *first = again ? shape_filter(c->plain, 256, NULL, 0, 0)
-				    : shape_new(PULSE_SINE);
+	struct shape *first =
+		again ? shape_filter(c->plain, 256, NULL, 0, 0) : shape_new(PULSE_SINE);
 	double duration = c->duration;
 	int ok = first != NULL, lone = 0;
 

@@ -31,14 +31,15 @@ struct learning {
 	struct joint_scene scene; /* as the instrument is taken to be now */
 	struct stretch stretch[LEARN_STRETCHES];
 	int count;
-	int crowded; /* 1: lone pulses were too few, and others served, too */
+	int crowded;  /* 1: lone pulses were too few, and others served, too */
 	int pieces;   /* 1: even these were too few: some cut pulses through */
 	double price; /* chi-square and what each pulse must take away, per degree */
 };
 
 /* Fills the pulse, its duration, the gain, the range of delays and the errors of c from
  * y[channel][0 .. n), aligned; bad: as long.  c has a first duration, gain and range.
- * On return learning has the stretches and their pulses.  again: c has a pulse already. */
+ * On return learning has the stretches and their pulses.  again: c has a pulse already.
+ */
 enum calibrate_status learn_pulse(const struct calibrate_par *par, double *const y[2],
 	unsigned char *const bad[2], size_t n, int again, struct learning *learning,
 	struct calibration *c);

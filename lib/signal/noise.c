@@ -87,8 +87,8 @@ static int measure_above(
 /* Quiet spectra of both channels by segments, at NOISE_BINS frequencies: between those of
  * shorter segments by the straight line.  Returns how many were quiet, -1 when out of
  * memory. */
-static int measure_segments(struct noise *noise, const double *y1, const double *y2,
-	size_t n, size_t segment)
+static int measure_segments(
+	struct noise *noise, const double *y1, const double *y2, size_t n, size_t segment)
 {
 	double part[2][NOISE_BINS];
 	size_t ratio = SEGMENT / segment;
@@ -107,7 +107,8 @@ static int measure_segments(struct noise *noise, const double *y1, const double 
 }
 
 /* Is there more in what is quiet for longer?  Then something happened in it. */
-static int is_louder(const struct noise *longer, const struct noise *shorter, size_t segment)
+static int is_louder(
+	const struct noise *longer, const struct noise *shorter, size_t segment)
 {
 	size_t group = 2 * SEGMENT / segment;
 
@@ -120,7 +121,7 @@ static int is_louder(const struct noise *longer, const struct noise *shorter, si
 				y += shorter->power[c][i];
 			}
 			if (x > y * (1.1 + BEYOND / sqrt(0.5 * (double)group *
-								 longer->quiets)))
+							    longer->quiets)))
 				return 1;
 		}
 	return 0;
@@ -135,7 +136,8 @@ int noise_measure(struct noise *noise, const double *y1, const double *y2, size_
 
 	if (ok)
 		shortest->quiets = measure_segments(shortest, y1, y2, n, SEGMENT / 16);
-	for (size_t segment = SEGMENT; ok && !found && segment >= SEGMENT / 4; segment /= 4) {
+	for (size_t segment = SEGMENT; ok && !found && segment >= SEGMENT / 4;
+		segment /= 4) {
 		noise->quiets = measure_segments(noise, y1, y2, n, segment);
 		ok = noise->quiets >= 0 && shortest->quiets >= 0;
 		found = noise->quiets >= ENOUGH &&

@@ -15,7 +15,7 @@ enum { NOISE_BINS = 513 };
 
 struct noise {
 	double power[2][NOISE_BINS]; /* at frequency k / (2 (NOISE_BINS - 1)) */
-	int white[2]; /* 1: no lag of the autocorrelation says otherwise */
+	int white[2];                /* 1: no lag of the autocorrelation says otherwise */
 	int quiets;                  /* segments it is the mean of; 0: taken for white */
 };
 

@@ -33,7 +33,8 @@ struct sections {
  * weak trigger may be the flank of a strong pulse: a hundredth always counts. */
 static void set_margins(struct sections *s, const struct joint_scene *scene)
 {
-	double longest = scene->duration * (1 + fmax(scene->delta_max, 0) / scene->transit);
+	double longest =
+		scene->duration * (1 + fmax(scene->delta_max, 0) / scene->transit);
 	double slack = fmax(scene->delta_max, -scene->delta_min);
 
 	for (int c = 0; c < 2; c++) {
@@ -135,8 +136,7 @@ long sections_reach(const struct sections *s)
 	return (s->reach > margin ? s->reach : margin) + 1;
 }
 
-static double filter_at(
-	const struct filter *f, const double *y, size_t n, long long at)
+static double filter_at(const struct filter *f, const double *y, size_t n, long long at)
 {
 	long long from = at + f->first;
 	size_t begin = from < 0 ? (size_t)-from : 0, end = f->len, i;

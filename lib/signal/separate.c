@@ -32,9 +32,9 @@ struct separate {
 	size_t count, given, capacity;
 	double *source;
 	struct separate_counters counters;
-	int refused;                   /* pulses are of no common form */
-	double unconfirmed, expected;  /* groups of which no velocities tell; by chance */
-	enum separate_status reason; /* why nothing could be learned */
+	int refused;                  /* pulses are of no common form */
+	double unconfirmed, expected; /* groups of which no velocities tell; by chance */
+	enum separate_status reason;  /* why nothing could be learned */
 	long long bad_frame;
 	int bad_channel;
 };
@@ -94,7 +94,8 @@ int separate_next(struct separate *s, struct particle *p)
 		return 0;
 	}
 	*p = s->queue[s->given++];
-	*(p->verdict < SEPARATE_MISFIT ? &s->counters.believed : &s->counters.doubted) += 1;
+	*(p->verdict < SEPARATE_MISFIT ? &s->counters.believed : &s->counters.doubted) +=
+		1;
 	return 1;
 }
 
@@ -232,7 +233,8 @@ static void look_at(struct separate *s, long long from, long long to, struct for
  * elsewhere. */
 static int emit_foreign(struct separate *s, long long from, long long to, double chi2)
 {
-	static const enum separate_verdict of[] = { [FOREIGN_CLIPPED] = SEPARATE_SATURATED,
+	static const enum separate_verdict of[] = { [FOREIGN_CLIPPED] =
+							    SEPARATE_SATURATED,
 		[FOREIGN_COMMON] = SEPARATE_COMMON,
 		[FOREIGN_IMPULSE] = SEPARATE_IMPULSE,
 		[FOREIGN_MOVING] = SEPARATE_BUBBLE,
@@ -250,7 +252,8 @@ static int emit_foreign(struct separate *s, long long from, long long to, double
 	p->sources = 0;
 	p->t1 = f.at;
 	p->amplitude = f.peak * s->cal.noise[0];
-	p->t2 = p->t1_se = p->t2_se = p->delay_se = p->amplitude_se = p->correlation = NAN;
+	p->t2 = p->t1_se = p->t2_se = p->delay_se = p->amplitude_se = p->correlation =
+		NAN;
 	p->chi2 = chi2;
 	p->verdict = of[f.kind];
 	s->counters.foreign++;
@@ -365,8 +368,8 @@ static enum separate_status dense_section(
 	return SEPARATE_OK;
 }
 
-/* A group whose velocities do not tell its pulses apart may be one object of another form.
- * So are some groups of particles, by chance; more than that are not believed. */
+/* A group whose velocities do not tell its pulses apart may be one object of another
+ * form. So are some groups of particles, by chance; more than that are not believed. */
 static void check_velocities(struct separate *s, int m, int done, struct judgement *j)
 {
 	enum { LARGEST = 8 };
@@ -385,8 +388,8 @@ static void check_velocities(struct separate *s, int m, int done, struct judgeme
 	j->stretch = SEPARATE_MISFIT;
 }
 
-/* Gives out the first done of the m pulses fitted to [from, to); neighbours that do not fit
- * are one event. */
+/* Gives out the first done of the m pulses fitted to [from, to); neighbours that do not
+ * fit are one event. */
 static enum separate_status give_pulses(struct separate *s, long long from, long long to,
 	int m, int done, const struct judgement *j)
 {
@@ -404,8 +407,8 @@ static enum separate_status give_pulses(struct separate *s, long long from, long
 		while (i + 1 < done && j->pulse[i + 1] >= SEPARATE_MISFIT &&
 			s->pulse[i + 1].t - half < end + half)
 			end = s->pulse[++i].t + half;
-		if (!emit_foreign(s, from + (long long)begin, from + (long long)end,
-			    j->chi2))
+		if (!emit_foreign(
+			    s, from + (long long)begin, from + (long long)end, j->chi2))
 			return SEPARATE_MEMORY;
 	}
 	if (!s->par.on_section)
@@ -542,8 +545,8 @@ static enum separate_status fit_section(
 	boundary = cut ? choose_cut(s, m, n) : INFINITY;
 	while (done < m && s->pulse[done].t < boundary)
 		done++;
-	judge(s->joint, &s->scene, n, s->pulse, m, done, boundary, s->cal.error,
-		&r, &judgement);
+	judge(s->joint, &s->scene, n, s->pulse, m, done, boundary, s->cal.error, &r,
+		&judgement);
 	check_velocities(s, m, done, &judgement);
 	unresolved = judgement.stretch == SEPARATE_UNRESOLVED && !s->par.sources;
 	if (unresolved && !cut && !s->continuing &&
@@ -702,7 +705,8 @@ static enum separate_status work(struct separate *s)
 			s->counters.sections++;
 		}
 		next = to;
-		s->dense |= cut && s->crowded && s->par.method == SEPARATE_FIT && !s->refused;
+		s->dense |=
+			cut && s->crowded && s->par.method == SEPARATE_FIT && !s->refused;
 		if (s->refused)
 			status = foreign_section(s, from, to, NAN);
 		else if (s->dense)

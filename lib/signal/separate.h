@@ -26,9 +26,9 @@
 #include "signal/masks.h"
 #include <stddef.h>
 
-/* Error of the pulses' form, over the form, beyond which nothing is told apart by it: over
- * 3 such errors, squared, a pulse's neighbours must stand out of its energy (joint.h,
- * misfit): at 0.08 by 2 %, of an amplitude of 1/7 of it. */
+/* Error of the pulses' form, over the form, beyond which nothing is told apart by it:
+ * over 3 such errors, squared, a pulse's neighbours must stand out of its energy
+ * (joint.h, misfit): at 0.08 by 2 %, of an amplitude of 1/7 of it. */
 #define SEPARATE_ERROR 0.08
 
 /* Samples that nothing can be learned from fewer of. */
@@ -38,8 +38,8 @@ enum separate_method { SEPARATE_FIT, SEPARATE_MASKS };
 
 /* How far a row may be trusted. */
 enum separate_verdict {
-	SEPARATE_ALONE,     /* one pulse in its section */
-	SEPARATE_OVERLAP,   /* several, told apart */
+	SEPARATE_ALONE,      /* one pulse in its section */
+	SEPARATE_OVERLAP,    /* several, told apart */
 	SEPARATE_NONFERROUS, /* as believable as these, of the other sign */
 	SEPARATE_MISFIT,     /* the model does not describe it */
 	SEPARATE_UNRESOLVED, /* too dense: a row stands for sources particles */
@@ -113,7 +113,7 @@ struct separate_counters {
 	double masks, masks_skipped; /* sections demixed, and those that need not be */
 	double unresolved;
 	double believed, doubted; /* rows alone, overlap or nonferrous, and others */
-	double foreign, impulses;  /* events that are no particles; samples masked */
+	double foreign, impulses; /* events that are no particles; samples masked */
 };
 
 struct separate;

@@ -136,11 +136,12 @@ static void filter_at(const struct shape *shape, double T, const double *tap, in
 	}
 }
 
-struct shape *shape_filter(const struct shape *shape, double T, const double *tap,
-	int half, double cut)
+struct shape *shape_filter(
+	const struct shape *shape, double T, const double *tap, int half, double cut)
 {
 	static const double one = 1;
-	int reach = (int)ceil((shape->reach + (half = tap ? half : 0) / T) * STEPS), keep = reach;
+	int reach = (int)ceil((shape->reach + (half = tap ? half : 0) / T) * STEPS),
+	    keep = reach;
 	size_t points = 2 * (size_t)reach + 1,
 	       support = (size_t)(2 * shape->reach * T) + 2;
 	double *value = malloc((2 * points + 2 * support) * sizeof *value);

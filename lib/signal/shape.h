@@ -22,8 +22,8 @@ struct shape *shape_from_values(const double *value, int half, double reach);
 /* What a pulse of duration T becomes in a filter of symmetric taps -half .. half (NULL:
  * none), cut where it stays below this share of its peak, which is no longer 1.  NULL: no
  * memory. */
-struct shape *shape_filter(const struct shape *shape, double T, const double *tap,
-	int half, double cut);
+struct shape *shape_filter(
+	const struct shape *shape, double T, const double *tap, int half, double cut);
 void shape_free(struct shape *shape);
 
 double shape_reach(const struct shape *shape); /* p(s) = 0 for |s| >= reach */

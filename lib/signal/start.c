@@ -4,10 +4,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Deviations of a clear pulse, of one that counts as much as any, and of the lag's peak. */
+/* Deviations of a clear pulse, of one that counts as much as any, and of the lag's peak.
+ */
 static const double CLEAR = 6, LIMIT = 10, PEAK = 3;
 
-/* Lags of a regular train recur: the least of those that do as well to this share holds. */
+/* Lags of a regular train recur: the least of those that do as well to this share holds.
+ */
 static const double AS_GOOD = 0.85;
 
 /* Lags within this share of a duration are no transit. */
@@ -75,8 +77,8 @@ static void bank_filter(struct bank *b, double T)
 	}
 }
 
-/* Energy beyond what is clear of the largest values, each alone within two durations: more
- * of one pulse would speak for durations that are too short. */
+/* Energy beyond what is clear of the largest values, each alone within two durations:
+ * more of one pulse would speak for durations that are too short. */
 static double gathered(const double *z, size_t n, double T)
 {
 	double sum = 0, top = 0;
@@ -133,8 +135,8 @@ static double find_duration(struct bank *b)
 	return best;
 }
 
-/* Lag of the lowest autocorrelation before it clearly rises, as the duration of a sine pulse
- * that has its there. */
+/* Lag of the lowest autocorrelation before it clearly rises, as the duration of a sine
+ * pulse that has its there. */
 static double least_like_itself(struct bank *b)
 {
 	enum { SINE = 100 };
@@ -142,7 +144,8 @@ static double least_like_itself(struct bank *b)
 	double least = 0, sine = 1;
 
 	for (size_t k = 0; k <= b->size / 2; k++)
-		b->part[k] = b->y[0][k] * conj(b->y[0][k]) + b->y[1][k] * conj(b->y[1][k]);
+		b->part[k] =
+			b->y[0][k] * conj(b->y[0][k]) + b->y[1][k] * conj(b->y[1][k]);
 	fft_inverse(b->fft, b->part, b->z[0]);
 	for (size_t k = 2; k < b->n / 4; k++) {
 		if (b->z[0][k] < b->z[0][low])
@@ -274,8 +277,8 @@ int start_find(const double *y1, const double *y2, size_t n, double duration, do
 	*s = (struct start){ .sign = 1 };
 	if (ok) {
 		s->duration = !isnan(duration) ? duration
-			      : crowded	  ? least_like_itself(&b)
-						: find_duration(&b);
+			      : crowded        ? least_like_itself(&b)
+					       : find_duration(&b);
 		if (s->duration > 0)
 			find_lag(&b, lag, s);
 	}

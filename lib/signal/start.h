@@ -19,9 +19,9 @@ struct start {
 };
 
 /* Of y1, y2[0 .. n), white noise of variance 1 and pulses.  duration, lag: NAN, or known.
- * crowded: pulses everywhere, and the duration is rather that whose sine pulse is least like
- * itself where the record is: superposition does not change that.
- * Returns 0 when out of memory. */
+ * crowded: pulses everywhere, and the duration is rather that whose sine pulse is least
+ * like itself where the record is: superposition does not change that. Returns 0 when out
+ * of memory. */
 int start_find(const double *y1, const double *y2, size_t n, double duration, double lag,
 	int crowded, struct start *s);
 

@@ -175,10 +175,9 @@ static void whiten(struct tape *t, const struct calibration *c, int channel, int
 	block = (long long)fir_block(t->whiten);
 	while (ended ? t->white < last : t->fed + block <= end) {
 		for (long long i = 0; i < block; i++)
-			t->piece[i] =
-				t->fed + i < end ? t->x[t->fed + i - t->begin] -
-							     c->mean[channel]
-						   : 0;
+			t->piece[i] = t->fed + i < end ? t->x[t->fed + i - t->begin] -
+								 c->mean[channel]
+						       : 0;
 		fir_run(t->whiten, t->piece, (size_t)block);
 		for (long long i = 0; i < block; i++) {
 			long long at = t->fed + i - w->half;

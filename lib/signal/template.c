@@ -10,7 +10,8 @@ enum { N = TEMPLATE_COUNT, FINER = 10 };
  * coefficient: it decides only what the record leaves open. */
 static const double STIFFNESS = 1e-3;
 
-struct template {
+struct template
+{
 	double duration;
 	struct shape *basis[2]; /* a B-spline, as either channel has it */
 	double a[N][N], b[N];

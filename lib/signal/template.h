@@ -23,11 +23,10 @@ void template_free(struct template *t);
 /* Forgets all it was given. */
 void template_clear(struct template *t);
 /* One more stretch of the record, and the m pulses in it. */
-void template_add(struct template *t, const struct joint_scene *scene,
-	const double *y1, const double *y2, size_t n, const struct joint_pulse *pulses,
-	int m);
-/* The pulse that leaves least, max |p| = 1, its first lobe positive, and s = 0 between its
- * lobes.  *scale and *shift: the pulses were of that amplitude, and so many durations
+void template_add(struct template *t, const struct joint_scene *scene, const double *y1,
+	const double *y2, size_t n, const struct joint_pulse *pulses, int m);
+/* The pulse that leaves least, max |p| = 1, its first lobe positive, and s = 0 between
+ * its lobes.  *scale and *shift: the pulses were of that amplitude, and so many durations
  * late.  NULL: no memory, or nothing to learn from. */
 struct shape *template_solve(struct template *t, double *scale, double *shift);
 

@@ -22,9 +22,11 @@ static void check_status(
 		[SEPARATE_FAST] = "no pulse of at least 8 samples found: give "
 				  "--pulse-duration or sample faster",
 		[SEPARATE_SLOW] = "pulses as long as the record: --learn from more of it",
-		[SEPARATE_SWAPPED] = "pulses come to channel 2 first: are the sensors swapped?",
-		[SEPARATE_TOGETHER] = "pulses come to both channels at once, which no particle "
-				      "does: give --align 0 if they are aligned",
+		[SEPARATE_SWAPPED] =
+			"pulses come to channel 2 first: are the sensors swapped?",
+		[SEPARATE_TOGETHER] =
+			"pulses come to both channels at once, which no particle "
+			"does: give --align 0 if they are aligned",
 	};
 	int channel;
 	long long frame = separate_bad_sample(s, &channel);

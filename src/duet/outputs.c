@@ -47,7 +47,8 @@ void found_instrument(struct found *out, const struct calibration *c)
 	double limit = SEPARATE_ERROR;
 
 	out->told = 1;
-	table_comment(out->particles, "model", "%s: pulses are of one form to %.2g of it, limit %g",
+	table_comment(out->particles, "model",
+		"%s: pulses are of one form to %.2g of it, limit %g",
 		c->error > limit ? "refused" : "holds", c->error, limit);
 	if (c->reversed)
 		table_comment(out->particles, "polarity", "reversed");

@@ -189,10 +189,9 @@ static void test_small(void)
 	struct sections *s;
 	struct section section;
 	struct shape *shape = shape_new(PULSE_SINE);
-	struct joint_scene scene = { .shape = { shape, shape },
-		.duration = 100,
-		.transit = INFINITY,
-		.gain = 1 };
+	struct joint_scene scene = {
+		.shape = { shape, shape }, .duration = 100, .transit = INFINITY, .gain = 1
+	};
 
 	int peaks = 0;
 
@@ -241,10 +240,9 @@ static void test_sections(void)
 {
 	static double x[N];
 	struct shape *shape = shape_new(PULSE_LORENTZ);
-	struct joint_scene scene = { .shape = { shape, shape },
-		.duration = 100,
-		.transit = 200,
-		.gain = 1 };
+	struct joint_scene scene = {
+		.shape = { shape, shape }, .duration = 100, .transit = 200, .gain = 1
+	};
 	struct sections *s = sections_new(&scene, 5);
 	struct section first, second;
 	const double strong[2] = { 10, 2000 };

@@ -1,9 +1,9 @@
 /* Undoing a filter: gains, noise and pulses before and after; the spectrum of noise */
 #include "signal/whiten.h"
 #include "num/normals.h"
-#include "signal/noise.h"
 #include "signal/fir.h"
 #include "signal/joint.h"
+#include "signal/noise.h"
 #include "signal/quiet.h"
 #include "tap.h"
 #include <stdlib.h>
@@ -249,10 +249,11 @@ static void test_colour(void)
 		squares += off * off / NOISE_BINS;
 		worst = fmax(worst, fabs(off));
 	}
-	/* Autocorrelations beyond the last that says something, a^k below five deviations,
-	 * are left out: the scatter is less than that of 352 whole ones. */
+	/* Autocorrelations beyond the last that says something, a^k below five
+	 * deviations, are left out: the scatter is less than that of 352 whole ones. */
 	scatter = sqrt(352.0 / N * 2);
-	ok(sqrt(squares) < 0.5 * scatter, "its power is |H|^2 to %.3f of that of a periodogram",
+	ok(sqrt(squares) < 0.5 * scatter,
+		"its power is |H|^2 to %.3f of that of a periodogram",
 		sqrt(squares) / scatter);
 	ok(worst < 2 * scatter, "at every frequency (%.2f)", worst / scatter);
 	near(mean, 0, 6 / sqrt(N), "and in the mean");
