@@ -437,15 +437,35 @@ static enum calibrate_status settle(
 	return CALIBRATE_OK;
 }
 
+/* Does what makes the noise white make pulses ring on and on?  Then they passed a filter
+ * that must be told. */
+static int rings(struct calibration *c, int *ok)
+{
+	static const double LONGEST = 12; /* durations */
+	double reach;
+
+	shape_free(c->plain);
+	c->plain = shape_new(PULSE_SINE);
+	*ok = c->plain && calibration_set_shapes(c);
+	reach = *ok ? fmax(shape_reach_above(c->shape[0], 0.01),
+			      shape_reach_above(c->shape[1], 0.01))
+		    : 0;
+	return reach > LONGEST;
+}
+
 static enum calibrate_status learn_record(
 	const struct calibrate_par *par, struct record *r, struct calibration *c)
 {
 	enum { ROUNDS = 2 };
 	enum calibrate_status status = make_white(par, r, c);
-	int rounds = ROUNDS;
+	int rounds = ROUNDS, ok = 1;
 
 	if (status == CALIBRATE_OK)
 		status = find_start(par, r, c);
+	if (status == CALIBRATE_OK && !par->filter && rings(c, &ok))
+		status = CALIBRATE_NARROW;
+	if (status == CALIBRATE_OK && !ok)
+		status = CALIBRATE_MEMORY;
 	for (int round = 0; status == CALIBRATE_OK && round < rounds; round++) {
 		double gain = c->gain * c->noise[0] / c->noise[1];
 		int tones = c->tones;

@@ -751,7 +751,10 @@ static int learn_crowd(const struct calibrate_par *par, struct learning *l,
 				continue;
 			ok = try_crowd(par, l, c, p, duration, best);
 		}
-	ok = ok && best->plain && restore(l, c, best) && converge(par, l, y, bad, n, c);
+	if (ok && !best->plain)
+		l->count = 0; /* nothing at all */
+	else
+		ok = ok && restore(l, c, best) && converge(par, l, y, bad, n, c);
 	if (best)
 		shape_free(best->plain);
 	free(best);
@@ -987,8 +990,9 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, double *const
 		c->through = 0;
 		l->scene.negative = INFINITY;
 		use_scene(l, c, LEARN_PULSES);
-		ok = ok && learn_crowd(par, l, y, bad, n, c) &&
-		     learn_rough(par, l, y, bad, n, c) && conclude(l, c);
+		ok = ok && learn_crowd(par, l, y, bad, n, c);
+		if (ok && l->count)
+			ok = learn_rough(par, l, y, bad, n, c) && conclude(l, c);
 		l->crowded = 1;
 		if (ok && !(c->error < error) && events) {
 			ok = restore(l, c, before);
@@ -999,6 +1003,15 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, double *const
 		if (before)
 			shape_free(before->plain);
 		free(before);
+	}
+	if (ok && l->count == 0) {
+		struct shape *sine = shape_new(
+			par->pulse == CALIBRATE_ANY_PULSE ? PULSE_SINE : par->pulse);
+
+		ok = use_shape(l, c, sine);
+		c->error = c->error_least = c->error_floor = 0;
+		c->level = 1;
+		c->duration = duration;
 	}
 	if (!ok)
 		return CALIBRATE_MEMORY;

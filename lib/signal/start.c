@@ -256,10 +256,14 @@ static void find_lag(struct bank *b, double known, struct start *s)
 	s->score = fabs(value(b, s->lag)) / fmax(rms, 1e-300);
 	if (value(b, s->lag) == 0)
 		s->score = 0;
-	if (isnan(known) && s->score < PEAK) {
-		s->lag = largest(b, (long)(-TOGETHER * T), (long)(TOGETHER * T), 0);
-		s->score = fabs(value(b, s->lag)) / fmax(rms, 1e-300);
-		s->together = 1;
+	if (isnan(known)) {
+		long none = largest(b, (long)(-TOGETHER * T), (long)(TOGETHER * T), 0);
+
+		if (s->score < PEAK || fabs(value(b, none)) > 2 * fabs(value(b, s->lag))) {
+			s->lag = none;
+			s->score = fabs(value(b, none)) / fmax(rms, 1e-300);
+			s->together = 1;
+		}
 	}
 	s->sign = value(b, s->lag) < 0 ? -1 : 1;
 	if (!isnan(known))
