@@ -42,7 +42,7 @@ Q = $(if $(V),,@)
 say = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),@:,@printf '  %-4s %s\n' $(1) '$(2)')
 
 # The outer libraries of each program; what it uses of lib/ the linker takes from one archive.
-PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal surfimport
+PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal surfimport sigconvert
 roughgen_LIBS = fftw
 bemcontact_LIBS = fftw
 debrisgen_LIBS = fftw
@@ -53,6 +53,7 @@ delaynet_LIBS = cblas gsl
 rwl_LIBS = gsl
 debriscount_LIBS = gsl
 ballcal_LIBS = gsl
+sigconvert_LIBS = sndfile
 
 FFTW_CFLAGS ?= $(shell $(PKG_CONFIG) --cflags fftw3 2>/dev/null)
 FFTW_LIBS ?= $(shell $(PKG_CONFIG) --libs fftw3 2>/dev/null || echo -lfftw3)
@@ -64,6 +65,11 @@ CBLAS_LIBS ?= $(shell $(PKG_CONFIG) --libs openblas)
 BLAS_FLAG = -DWITH_OPENBLAS
 endif
 CBLAS_LIBS ?= -lgslcblas
+# WAV, FLAC and the like, where libsndfile is.
+ifeq ($(shell $(PKG_CONFIG) --exists sndfile 2>/dev/null && echo yes),yes)
+sndfile_LINK = $(shell $(PKG_CONFIG) --libs sndfile)
+SNDFILE_FLAG = -DWITH_SNDFILE $(shell $(PKG_CONFIG) --cflags sndfile)
+endif
 cblas_LINK = $(CBLAS_LIBS)
 fftw_LINK = $(FFTW_LIBS)
 gsl_LINK = $(GSL_LIBS)
@@ -72,7 +78,7 @@ gsl_LINK = $(GSL_LIBS)
 SCRIPTS = wearplot surfunzip
 
 ALL_CFLAGS = $(STD) $(WARN) $(CFLAGS) -pthread
-ALL_CPPFLAGS = -Iinclude -Ilib -Isrc -DWEARPIPE_VERSION='"$(VERSION)"' $(BLAS_FLAG) $(FFTW_CFLAGS) $(GSL_CFLAGS) $(CPPFLAGS)
+ALL_CPPFLAGS = -Iinclude -Ilib -Isrc -DWEARPIPE_VERSION='"$(VERSION)"' $(BLAS_FLAG) $(SNDFILE_FLAG) $(FFTW_CFLAGS) $(GSL_CFLAGS) $(CPPFLAGS)
 
 # A program is listed from the moment its folder is there.
 BUILT := $(foreach p,$(PROGRAMS),$(if $(wildcard src/$(p)/main.c),$(p)))
@@ -117,6 +123,8 @@ $(SCRIPTS:%=$(BIN)/%): $(BIN)/%: scripts/%
 	@mkdir -p $(BIN)
 	@sed 's/@VERSION@/$(VERSION)/' $< >$@
 	@chmod 755 $@
+
+$(B)/src/records/replay.o: ALL_CPPFLAGS += -DWEARPIPE_PROGRAMS='"$(PROGRAMS)"'
 
 $(B)/%.o: %.c
 	@mkdir -p $(@D)

@@ -132,7 +132,7 @@ fi
 # what it refuses
 fails "no such file" 1 'none.au' bpfilter none.au
 seq 100 >text
-fails "text for a signal" 1 "text: want AU ('.snd'), got '1'" bpfilter text
+fails "text for a signal" 1 'text: this is text, want signal' bpfilter text
 fails "edges the wrong way round" 2 'first edge' bpfilter -b 130:70 impulse.au
 fails "one edge" 2 'band 70: want LO:HI' bpfilter -b 70 impulse.au
 fails "a file that the response does not read" 2 'read nothing' bpfilter --response impulse.au

@@ -56,7 +56,7 @@ less "shipped: no larger than a megabyte" "$(wc -c <"$shipped")" 1000000
 is "the number of pulses can be told" "$(column sources two.tsv | sort -u)" 2
 is "a record from a pipe gives the same rows" "$(grep -v '^#' piped.tsv)" "$(grep -v '^#' cnn.tsv)"
 # The arrival is a place in the record: a section cut off 1 ms earlier gives the same pulses.
-awk -F '\t' -v OFS='\t' '!/^#/ && $1 != "section" { $2 -= 1e-3 } { print }' sections.tsv >wide.tsv
+awk -F '\t' -v OFS='\t' '/^#/ { next } $1 != "section" { $2 -= 1e-3 } { print }' sections.tsv >wide.tsv
 # shellcheck disable=SC2086
 $apply --network "$shipped" $known --sections wide.tsv s.au >wide
 near "where a section is cut moves no arrival" "$(column time1 wide | sed -n 3p)" \

@@ -77,7 +77,7 @@ kill -TERM $run
 wait $run
 is 'a run that is ended says so' $? 130
 sleep 0.5
-is 'and its members end with it' "$(for p in $(cat pids); do ps -o stat= -p "$p" | grep -v Z; done)" ''
+is 'and its members end with it' "$(while read -r p; do ps -o stat= -p "$p" | grep -v Z; done <pids)" ''
 is 'and nothing was joined' "$(wc -c <first)" 0
 
 # The array of a cluster, task by task

@@ -15,7 +15,7 @@ wear() {
 	printf 'unit\tt\ty\n'
 	for u in 1 2 3; do wear $((60 + 40 * u)) 80 "$u" | sed "s/^/u$u	/"; done | sort -s -n -k 2
 } >three.tsv
-head -1 three.tsv >head
+head -1 three.tsv >header
 rows() { grep -v '^#' "$1" | grep -v '^unit'; }
 for how in '' '--lives-only --mission 20 --cost-ratio 5 --weights'; do
 	# shellcheck disable=SC2086 # words
@@ -23,7 +23,7 @@ for how in '' '--lives-only --mission 20 --cost-ratio 5 --weights'; do
 	run three.tsv >whole
 	rows whole >whole.rows
 	head -122 three.tsv | run --save state >first
-	{ cat head; tail -n +123 three.tsv; } | run --resume state --save state >second
+	{ cat header; tail -n +123 three.tsv; } | run --resume state --save state >second
 	{ rows first; rows second; } >parts
 	same "a stop and a resumption leave no trace (${how:-with the filter})" parts whole.rows
 	run --resume state three.tsv | rows - >again
@@ -49,7 +49,7 @@ aopf --threshold 1 --direction up --lives-only --save killed in >before &
 p=$!
 exec 3>in
 head -41 one.tsv >&3
-for k in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
 	[ "$(grep -c '^[0-9]' before)" = 40 ] && break
 	sleep 0.1
 done
@@ -82,8 +82,8 @@ near "the probability of failure before the end of a mission" "$(cut -f 25 last)
 awk -F '\t' '{ best = 1e9; for (k = 3; k <= 22; k++) { p = (k - 3) / 20
 		area += k > 3 ? (1 - p + 0.025) * ($k - $(k - 1)) : $k
 		cost = (1 + 9 * p) / (69 + area)
-		if (cost < best) { best = cost; at = $k } } print at }' last >at
-near "the cheapest time to replace" "$(cut -f 26 last)" "$(cat at)" 2
+		if (cost < best) { best = cost; at = $k } } print at }' last >best
+near "the cheapest time to replace" "$(cut -f 26 last)" "$(cat best)" 2
 is "none is worth it where a failure costs no more" \
 	"$(aopf --threshold 1 --direction up --lives-only --cost-ratio 1 one.tsv | column replace_in /dev/stdin | tail -1)" inf
 

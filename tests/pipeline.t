@@ -35,10 +35,9 @@ is 'an ensemble is counted' "$(sed -n 's/^# cmd: //p' fits.tsv | grep -o -e '--f
 	'--first 0 --count 4 | b'
 rebuilt fits.tsv
 sensorsim --duration 5s --noise 5mV --truth truth.tsv whole.tsv >heard.au
-mv truth.tsv told.tsv
 duet heard.au >heard.tsv
 rebuilt heard.tsv
-same 'and writes the truth again' told.tsv truth.tsv
+rebuilt truth.tsv
 $surfaces -f 7 -c 2 | $contact | $debris | cat whole.tsv - >gap.tsv
 debrisstat -o steps gap.tsv >steps.tsv
 is 'ensembles that do not follow each other stand in a group' \
@@ -60,6 +59,39 @@ sh -c "$(key signal.au)" >again.au
 same 'a signal is rebuilt by its own header' signal.au again.au
 duet signal.au >found.tsv
 is 'and the table made from it says so' "$(sed -n 's/^# cmd: //p' found.tsv)" "$(key signal.au) | duet"
+
+# Every kind of stream is replayed without a shell, from the programs of wearpipe alone.
+mkdir replay && cd replay || exit
+$surfaces --count 2 >surfaces
+$contact surfaces >contacts
+$debris --summary summary --surface worn --stress stress contacts >particles 2>err
+debrisstat particles >fits 2>err
+sensorsim --uniform 80um:150um --number 5 --duration 100ms --truth truth >heard
+sensorsim --uniform 80um:150um --number 5 --duration 100ms --truth - >alone
+bpfilter --order 50 heard >filtered
+duet heard >found
+for f in surfaces contacts particles summary worn stress fits truth alone heard filtered found; do
+	records --replay "$f" >"$f.again" 2>err
+	same "$f: replayed" "$f" "$f.again"
+done
+rm truth
+records --replay heard >heard.again
+is 'a replay writes no file' "$(ls truth 2>/dev/null)" ''
+refuse() {
+	printf '# cmd: %s\nx\n1\n' "$2" >hostile
+	fails "$1" 1 "$3" records --replay hostile
+}
+refuse 'another program is not run' 'rm -rf /nowhere' "'rm' is no program of wearpipe"
+refuse 'nor by its path' '/bin/sh -c true' "'/bin/sh' is no program"
+refuse 'nor behind ours' 'roughgen --points 4 | tee stolen' "'tee' is no program"
+refuse 'nor beside ours' 'roughgen --points 4; touch stolen' 'touch'
+refuse 'nor in a substitution' 'roughgen --points $(touch stolen)' 'a character for a shell'
+refuse 'nor in a group' '{ roughgen --points 4; touch stolen; }' "'touch' is no program"
+refuse 'nothing is redirected' 'roughgen --points 4 >stolen' 'a character for a shell'
+is 'and nothing was done' "$(ls stolen 2>/dev/null)" ''
+printf 'x\n1\n' >silent
+fails 'a stream that does not say how it was made' 1 'no cmd' records --replay silent
+cd "$work" || exit
 
 # Quoting: an argument that needs it comes back as it was.
 $surfaces -c 1 >'it'\''s a name: here.nrrd'

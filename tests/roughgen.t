@@ -17,6 +17,10 @@ roughgen -n 60x45 --skewness -1 --kurtosis 5 -c 3 -j 1 >one
 (roughgen -n 60x45 --skewness -1 --kurtosis 5 -f 0 -c 2 -j 3 && roughgen -n 60x45 --skewness -1 --kurtosis 5 -f 2) | records --join >two
 same "the same with imposed heights" one two
 
+is "neighbours among large seeds differ" \
+	"$(for s in 9007199254740992 9007199254740993; do roughgen -n 8 -s $s | tail -c 512 | cksum; done | sort -u | wc -l)" 2
+fails "a large seed has all its digits" 2 'want all digits' roughgen -s 1e17
+
 # The header rebuilds the record.
 roughgen -n 32 -q 1um:3um --pair 0.5um --crown auto -s 7 -c 3 >three
 records --pick 2 -o nrrd three >second

@@ -43,7 +43,7 @@ records -o nrrd ours.nrrd >again.nrrd
 same 'a record written, read and written has the same bytes' ours.nrrd again.nrrd
 is 'the header fills whole kibibytes' "$(($(wc -c <ours.nrrd) % 1024))" 96
 records -o gsf plain.nrrd >plain.gsf 2>err || true
-is 'GSF keeps the spacing' "$(records plain.gsf | sed -n 3p | cut -f 8,9,12)" "$(printf '1e-06\t2e-06\t11')"
+is 'GSF keeps the spacing' "$(records plain.gsf | grep '^1' | cut -f 8,9,12)" "$(printf '1e-06\t2e-06\t11')"
 ramp >plain.raw
 ok 'headerless samples are read' records --raw 4x3 --pixel 2um plain.raw
 is 'with the pixel given' "$(cell dx) $(cell max)" '2e-06 11'
@@ -143,6 +143,30 @@ is 'are overwritten' "$(wc -l <old.stats)" 2
 
 fails 'no room left on the device' 1 'standard output: No space left' \
 	sh -c 'records -o nrrd plain.nrrd >/dev/full'
+
+# Standard input, output and error that are closed
+fails 'standard output closed' 1 'standard output: Bad file descriptor' sh -c 'records plain.nrrd >&-'
+fails 'standard input closed' 1 'standard input: Bad file descriptor' sh -c 'records <&-'
+ok 'standard error closed' sh -c "$wear --summary closed.tsv --steps 2 contact.nrrd 2>&-"
+ok 'no message lands in a side output' records --check closed.tsv
+fails 'standard output closed beside a side output' 1 'Bad file descriptor' \
+	sh -c "$wear --summary closed.tsv contact.nrrd >&-"
+fails 'counters that are standard output' 2 'x: the same file is written twice' sh -c 'records --output count -S x plain.nrrd >x'
+cp plain.nrrd same.nrrd
+fails 'standard output that is the input' 2 'same.nrrd: the same file is read and written' \
+	sh -c 'records --output text same.nrrd 1<>same.nrrd'
+same 'leaves it as it was' plain.nrrd same.nrrd
+
+# Text from outside stays within its line.
+fails 'a newline in a value' 1 "realisation: 'a.nall is well' is not understood" \
+	sh -c "printf 'NRRD0004\\nrealisation:=a\\\\nall is well\\n\\n' | records"
+fails 'control characters' 1 'type .x1b.31mred: want' sh -c "printf 'NRRD0004\\ntype: \\033[31mred\\n\\n' | records"
+fails 'a name of two lines' 1 "^records: 'a.nb': No such file" records "$(printf 'a\nb')"
+is 'a header line cannot be forged' "$({ header 'key:=a\nsizes: 1 1 1'; ramp; } | records --output nrrd | grep -ac '^sizes')" 1
+{ header $(seq -f 'key%g:=1' 1001); ramp; } >keys.nrrd
+fails 'more than 1000 keys' 1 'more than 1000 keys' records keys.nrrd
+{ header 'k1:=1' 'k2:=2'; ramp; } >keys.nrrd
+fails 'limits can be lowered' 1 'more than 1 keys' env WEARPIPE_LIMITS=keys=1 records keys.nrrd
 
 # Other tools, where they are installed
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then

@@ -124,6 +124,8 @@ tag() { { printf %s "$1" && zeros $((20 - ${#1})) && printf %s "$2" && zeros $((
 } >a.al3d
 surfimport a.al3d >b.nrrd
 is "Alicona with padded rows and a missing sample" "$(heights b.nrrd) $(list dy b.nrrd)" "1 2 nan 3 4 5 3e-06"
+sed 's/DepthImageOffset\(....\)433/DepthImageOffset\1999/' a.al3d >far.al3d
+fails "heights beyond the end of an Alicona file" 1 'from byte 999 on, but the file has' surfimport far.al3d
 le16 256 512 >r.bin
 surfimport --format raw --size 2x1 --type uint16 --pixel 1um --height-unit 1m r.bin >b.nrrd
 is "headerless samples" "$(heights b.nrrd)" "256 512"

@@ -26,6 +26,7 @@ is 'a byte order mark is passed over' "$(read_series marked)" '0 1 2 1 2 4 '
 printf 't\ty\n0\t1\n1\tnan\n2\tNA\n3\t\n4\t4\n' >missing
 is 'three spellings of a missing value' "$(read_series missing)" '0 1 2 3 4 1 nan nan nan 4 '
 
+fails 'y beside others, without t, is no series' 1 "no column 't'" sh -c "printf 'x\ty\n0\t1\n' | aopf"
 refuse() {
 	# shellcheck disable=SC2059 # the escapes are the table
 	printf "$3" >bad

@@ -91,6 +91,8 @@ FILE *file_reserve(const char *path, const char **name)
 
 	if (path && strcmp(path, "-") == 0)
 		die(EXIT_USAGE, "-: an output wants the name of a file");
+	if (path && getenv(FILE_REPLAY) && strncmp(path, "/dev/fd/", 8) != 0)
+		path = "/dev/null";
 	f = path ? fopen(path, "ab") : stdout; /* not emptied yet */
 	if (!f)
 		die(EXIT_RUN, "%s:", text_file_name(path));

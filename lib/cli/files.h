@@ -9,6 +9,10 @@
 
 #include <stdio.h>
 
+/* Set in the environment of programs that replay a pipeline: what they would write to
+ * files by name goes nowhere. */
+#define FILE_REPLAY "WEARPIPE_REPLAY"
+
 /* First of all: what was closed of standard input, output and error becomes a descriptor
  * that fails, or drops messages, lest a file that is opened takes its place. */
 void files_start(void);

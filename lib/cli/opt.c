@@ -5,6 +5,7 @@
 #include <ctype.h>
 #include <errno.h>
 #include <getopt.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -236,6 +237,25 @@ static void check_operand(const char *text)
 	free(one);
 }
 
+/* A whole number; one that is written in digits may have more of them than a double. */
+static long parse_whole(const struct opt *o, const char *text)
+{
+	const double exact = 9007199254740992; /* 2^53 */
+	double value = parse_number(o, text);
+	const char *digits = text + (*text == '+' || *text == '-');
+	long long whole;
+
+	if (fabs(value) < exact)
+		return (long)value;
+	errno = 0;
+	whole = strtoll(text, NULL, 10);
+	if (digits[strspn(digits, "0123456789")] || errno || whole > LONG_MAX ||
+		whole < LONG_MIN)
+		die(EXIT_USAGE, "--%s %s: want all digits of a number above 2^53",
+			o->word, text);
+	return (long)whole;
+}
+
 static int count(const char *text, const char *end, char c)
 {
 	int n = 0;
@@ -333,7 +353,7 @@ static void store(const struct opt *o, const char *text)
 		*(int *)o->var = 1;
 		break;
 	case OPT_INT:
-		*(long *)o->var = (long)parse_number(o, text);
+		*(long *)o->var = parse_whole(o, text);
 		break;
 	case OPT_NUM:
 		*(double *)o->var = parse_number(o, text);

@@ -32,6 +32,9 @@ struct series *series_open(const char *path, const char *unit)
 	}
 	if (s->y < 0)
 		s->y = table_need(s->table, "y");
+	/* Beside others, y without t may be a coordinate. */
+	if (s->t < 0 && table_columns(s->table) > 1 + (unit != NULL))
+		table_need(s->table, "t");
 	s->u = unit ? table_need(s->table, unit) : -1;
 	return s;
 }

@@ -1,6 +1,6 @@
 /* series.h - time series of one or more units, row by row
  *
- * A table with the columns t and y; y alone has the row number of its unit, from 0, as
+ * A table with the columns t and y; y as the only column, but for that of units, has the row number of its unit, from 0, as
  * time, and a table without a header goes by position.  With a unit column the rows of
  * several units may alternate.  Times must be finite and rise for each unit; y may be
  * missing (nan) but not infinite: anything else ends the program with one line that

@@ -22,12 +22,16 @@ struct forecast {
 
 /* The value is h or q with q as h^3; steady wear is a straight line in h, and the pumps
  * of the thesis are one in q.  With D = (y - y0) / (limit - y0) the rate in the other
- * coordinate goes as (1 + D / s)^par, s = y0 / (limit - y0). */
+ * coordinate goes as (1 + D / s)^par, s = y0 / (limit - y0).  Its weight beforehand is
+ * about that of the straight line and its neighbours in the bank together; the bank's
+ * other coordinates stand for wear that ages: without them intervals of 90 % held 42 to
+ * 82 % of the ends of gaps that open as the square root of time, with them 96 to 100 %.
+ */
 static int open_bank(struct forecast *f)
 {
 	const struct forecast_par *par = &f->par;
 	double limit = pair_limit(&par->pair);
-	struct bank_par bank = { .direction = 1, .families = BANK_LINEAR };
+	struct bank_par bank = { .direction = 1 };
 
 	paths_rate(f->paths, &bank.rate_mean, &bank.rate_sd);
 	f->by_gap = bank.rate_sd > 0 || par->quantity == PAIR_GAP;
@@ -35,8 +39,7 @@ static int open_bank(struct forecast *f)
 	if (f->by_gap || par->quantity == PAIR_LEAKAGE) {
 		f->other = (struct bank_shape){ .family = BANK_OTHER,
 			.par = f->by_gap ? -2 : 2. / 3,
-			.log_prior = 1.7 };
-		bank.families |= BANK_OTHER;
+			.log_prior = 2.5 };
 		bank.more = &f->other;
 		bank.n_more = 1;
 	}

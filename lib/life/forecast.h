@@ -5,9 +5,9 @@
  *	row = forecast_at(f, t);
  *	forecast_free(f);
  *
- * With RATE_FILTER the value observed is followed by the bank of bank.h, in two
- * coordinates: one in which it grows at a constant rate itself, and one in which the
- * other of gap and leakage does; the rate may change in past and future.  Where the paths
+ * With RATE_FILTER the value observed is followed by the bank of bank.h, and besides its
+ * coordinates in one in which the other of gap and leakage grows at a constant rate; the
+ * rate may change in past and future.  Where the paths
  * know how long a step takes, it is the gap that is followed, and their rate is known
  * beforehand.
  */

@@ -64,11 +64,10 @@ struct convolve *convolve_borrow(size_t nx, size_t ny, enum convolve_kind kind,
 	struct pool *pool, const struct convolve *lender)
 {
 	struct convolve *c = calloc(1, sizeof(*c));
-	int bridged = kind == CONVOLVE_BRIDGED || kind == CONVOLVE_BRIDGED_FAR;
+	int bridged = kind == CONVOLVE_BRIDGED;
 	int padded = kind == CONVOLVE_PADDED;
 	int padded_x = padded || (!bridged && is_awkward(nx));
-	size_t bridge_x = kind == CONVOLVE_BRIDGED_FAR ? nx / 16 : 0, columns;
-	size_t bridge_y = kind == CONVOLVE_BRIDGED_FAR ? ny / 16 : 0;
+	size_t columns;
 
 	if (!c)
 		return NULL;
@@ -78,8 +77,8 @@ struct convolve *convolve_borrow(size_t nx, size_t ny, enum convolve_kind kind,
 	c->bridged = bridged;
 	c->nx = nx;
 	c->ny = ny;
-	c->ly = padded || bridged ? fft_good_size(ny + bridge_y) : ny;
-	c->mx = padded_x || bridged ? fft_good_size(nx + bridge_x) : nx;
+	c->ly = padded || bridged ? fft_good_size(ny) : ny;
+	c->mx = padded_x || bridged ? fft_good_size(nx) : nx;
 	c->mx *= padded_x ? 2 : 1;
 	c->my = padded ? 2 * c->ly : c->ly;
 	c->lx = c->mx / 2 + 1;

@@ -30,8 +30,7 @@ enum convolve_kind {
 	CONVOLVE_PADDED,
 	/* Periodic over fft_good_size(n) cells, x going on linearly across those that are
 	 * added: for kernels that need not be exact. */
-	CONVOLVE_BRIDGED,
-	CONVOLVE_BRIDGED_FAR /* the same with a sixteenth more */
+	CONVOLVE_BRIDGED
 };
 
 struct convolve;

@@ -80,7 +80,7 @@ static void check_options(void)
 		die(EXIT_USAGE, "--alarm wants LEVEL:CLEAR with CLEAR not above LEVEL");
 	if (alarm_mass && (!alarm_level.n || isnan(density)))
 		die(EXIT_USAGE, "--alarm-mass wants --alarm and --density");
-	report_check(output, !isnan(period));
+	report_check((enum report_kind)output, !isnan(period));
 }
 
 static struct report_par parameters(void)

@@ -20,7 +20,8 @@ static const struct opt opts[] = {
 	{ 0, "stop-area", OPT_NUM, UNIT_FRACTION, &stop_area, 0, 1, "A",
 		"stop where this share of the cells is in contact; 1: never", NULL, 0 },
 	{ 0, "amplification", OPT_NUM, UNIT_NONE, &amplification, 0, 1e12, "K",
-		"sliding distance of a step over the length of the grid", NULL, 0 },
+		"distance slid in a step over the length of the grid, or --slide", NULL,
+		0 },
 	OPT_TABLE(worn_rows),
 	OPT_TABLE(press_rows),
 	OPT_END,
@@ -28,7 +29,8 @@ static const struct opt opts[] = {
 
 static const struct prog prog = { "debrisgen",
 	"Find the wear particles that a rough contact tears off, step by step.", "[file]",
-	"fields: height, pressure, as bemcontact writes", "table: one row per wear particle", opts };
+	"fields: height, pressure, as bemcontact writes",
+	"table: one row per wear particle", opts };
 
 /* Load on the outermost cells, where the half-space ends: steps with more than 5 %, and
  * the worst of them. */
@@ -73,6 +75,8 @@ static void open_scene(struct run *run, struct record *r, struct scene *c)
 			fields_name(run->in), fields_count(run->in), r->nz);
 	crown = record_get_number(r, "crown");
 	sq = record_get_number(r, "sq");
+	if (record_find(r, "pressure") < 0 && wearing_solves(run->wearing, 1))
+		record_add(r, "pressure", "Pa");
 	c->now = (struct worn_surface){ .r = r,
 		.h = record_need(r, "height", 1, run->in),
 		.p = record_need(r, "pressure", 1, run->in),
@@ -86,6 +90,11 @@ static void open_scene(struct run *run, struct record *r, struct scene *c)
 	wearing_prepare(run->wearing, r);
 	wearing_contact(run->wearing, &c->now, &s);
 	c->target = choose_target(c, s.load);
+	if (c->target == 0 && s.load == 0 && wearing_solves(run->wearing, 1) &&
+		isnan(press.approach))
+		die(EXIT_USAGE,
+			"%s: record %ld bears no load: want --load, --pressure or --approach",
+			fields_name(run->in), fields_count(run->in));
 }
 
 /* 1 where the contact is too large for a further step. */
@@ -129,10 +138,16 @@ static void check_ends(struct run *run, const struct scene *c, const struct worn
 
 static void wear_step(struct run *run, const struct scene *c, long step)
 {
-	struct worn_step s = wearing_step(run->wearing, &c->now, step);
+	double length = amplification * wearing_length(c->now.r);
+	int solved;
+	struct worn_step s =
+		wearing_step(run->wearing, &c->now, c->target, length, step, &solved);
 
+	if (!solved)
+		run->status = EXIT_NOCONV;
 	check_ends(run, c, &s);
-	s.distance = (double)step * amplification * wearing_length(c->now.r);
+	s.length = length;
+	s.distance = (double)step * length;
 	worn_put(run->out, &c->now, &s);
 	note("%s: realisation %ld, step %ld: %zu particles, %.6g m3, %ld layers",
 		fields_name(run->in), c->now.r->realisation, step, s.lost->count,
@@ -163,7 +178,8 @@ static void wear_record(struct run *run, struct record *r)
 	worn_begin(run->out, r, &conditions);
 	for (long k = 1; k <= steps; k++) {
 		progress("steps", (double)(k - 1), (double)steps);
-		if (k > 1 && !wearing_press(run->wearing, &c.now, c.target, c.done + k))
+		if (wearing_solves(run->wearing, k) &&
+			!wearing_press(run->wearing, &c.now, c.target, c.done + k))
 			run->status = EXIT_NOCONV;
 		if (check_contact(run, &c, c.done + k)) {
 			stats_add("steps_skipped", (double)(steps - k + 1));
@@ -200,11 +216,12 @@ int main(int argc, char **argv)
 	run.wearing = wearing_open(run.in, steps);
 	while (fields_read(run.in, &r)) {
 		if (!run.out)
-			run.out = worn_open(r.cmd);
+			run.out = worn_open(r.cmd, wearing_richardson());
 		wear_record(&run, &r);
 	}
 	progress_clear();
 	warn_of_edge(&run);
+	wearing_warn(run.wearing);
 	worn_close(run.out);
 	wearing_close(run.wearing);
 	fields_close(run.in);

@@ -1,6 +1,7 @@
 #include "outputs.h"
 #include "cli/msg.h"
 #include "io/tables.h"
+#include "num/student.h"
 #include "stress/stress_kernel.h"
 #include "surface/surface.h"
 #include <math.h>
@@ -14,12 +15,14 @@ static const char *const stress_words[] = { "von_mises", "hydrostatic", "princip
 
 static int stress_wanted = MISES;
 static long stress_layers;
-static const char *surface_path, *summary_path, *stress_path;
+static const char *surface_path, *counter_path, *summary_path, *stress_path;
 
 struct opt worn_rows[] = {
 	OPT_HEADING("Further output"),
 	{ 0, "surface", OPT_TEXT, UNIT_NONE, &surface_path, 0, 0, "FILE",
 		"write the worn surface of every step", NULL, 1 },
+	{ 0, "counter-surface", OPT_TEXT, UNIT_NONE, &counter_path, 0, 0, "FILE",
+		"write the worn counterface of every step", NULL, 1 },
 	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
 		"write a table with a row per step", NULL, 1 },
 	{ 0, "stress", OPT_TEXT, UNIT_NONE, &stress_path, 0, 0, "FILE",
@@ -33,14 +36,21 @@ struct opt worn_rows[] = {
 };
 
 static const char particle_columns[] =
-	"realisation step particle columns volume diameter aspect x y z length width elongation "
+	"realisation step body particle columns volume diameter aspect x y z length width elongation "
 	"convexity area azimuth dip x_low x_high y_low y_high z_low z_high";
 static const char particle_units[] =
-	"1 1 1 1 m3 m 1 m m m m m 1 1 m2 rad rad m m m m m m";
+	"1 1 1 1 1 m3 m 1 m m m m m 1 1 m2 rad rad m m m m m m";
 static const char summary_columns[] =
 	"realisation step distance load contact_fraction max_pressure edge_load volume "
-	"particles mean_diameter max_diameter depth relative_roughness max_stress";
-static const char summary_units[] = "1 1 m N 1 Pa 1 m3 1 m m m 1 Pa";
+	"particles mean_diameter max_diameter depth relative_roughness max_stress volume_first volume_second "
+	"wear_coefficient wear_coefficient_mean wear_coefficient_low "
+	"wear_coefficient_high";
+static const char summary_units[] = "1 1 m N 1 Pa 1 m3 1 m m m 1 Pa m3 m3 1 1 1 1";
+
+#define GRID_COLUMNS                                                                \
+	" volume_2h volume_4h particles_2h particles_4h order volume_extrapolated " \
+	"volume_grid_error"
+#define GRID_UNITS " m3 m3 1 1 1 m3 m3"
 
 /* A stream of records; the last is held back until it is known whether another one
  * follows. */
@@ -49,9 +59,17 @@ struct held_fields {
 	struct record last;     /* without fields: none yet */
 };
 
+/* Archard's coefficients of the steps of a surface so far. */
+struct coefficients {
+	long count;
+	double sum, squares; /* about the first one */
+	double first;
+};
+
 struct worn {
 	struct table_out *particles, *summary;
-	struct held_fields surface, stress;
+	struct held_fields surface, counter, stress;
+	struct coefficients coefficients;
 };
 
 /* Takes the record over. */
@@ -92,17 +110,26 @@ static char *cmd_of(const char *upstream, const char *option)
 	return cmd;
 }
 
-struct worn *worn_open(const char *upstream)
+struct worn *worn_open(const char *upstream, int richardson)
 {
 	struct worn *w = xcalloc(1, sizeof(*w));
 	char *cmd = cmd_of(upstream, NULL), *summary = cmd_of(upstream, "--summary");
 
 	w->particles = table_create(NULL, cmd, particle_units, particle_columns);
-	if (summary_path)
-		w->summary = table_create(
-			summary_path, summary, summary_units, summary_columns);
+	if (summary_path) {
+		char *units =
+			xprintf("%s%s", summary_units, richardson ? GRID_UNITS : "");
+		char *columns =
+			xprintf("%s%s", summary_columns, richardson ? GRID_COLUMNS : "");
+
+		w->summary = table_create(summary_path, summary, units, columns);
+		free(units);
+		free(columns);
+	}
 	if (surface_path)
 		w->surface.out = fields_create(surface_path);
+	if (counter_path)
+		w->counter.out = fields_create(counter_path);
 	if (stress_path)
 		w->stress.out = fields_create(stress_path);
 	free(cmd);
@@ -134,16 +161,17 @@ void worn_begin(
 	table_cmd_for(w->particles, r, NULL);
 	if (w->summary)
 		table_cmd_for(w->summary, r, "--summary");
+	w->coefficients = (struct coefficients){ 0 };
 	tell(w->particles, conditions);
 	tell(w->summary, conditions);
 }
 
-static void put_particles(
-	struct table_out *t, long realisation, const struct worn_step *s)
+static void put_particles(struct table_out *t, long realisation, long step, int body,
+	const struct debris_step *lost)
 {
-	for (size_t i = 0; i < s->lost->count; i++) {
-		const struct particle *p = &s->lost->particle[i];
-		double row[] = { (double)realisation, (double)s->number, (double)(i + 1),
+	for (size_t i = 0; i < lost->count; i++) {
+		const struct particle *p = &lost->particle[i];
+		double row[] = { (double)realisation, (double)step, body, (double)(i + 1),
 			(double)p->columns, p->volume, p->diameter, p->aspect, p->x, p->y,
 			p->z, p->length, p->width, p->elongation, p->convexity, p->area,
 			p->azimuth, p->dip, p->low[0], p->high[0], p->low[1], p->high[1],
@@ -152,6 +180,27 @@ static void put_particles(
 		table_put_row(t, row, sizeof(row) / sizeof(*row));
 	}
 	table_flush(t);
+}
+
+/* Takes the coefficient of a step; mean and 95 % interval of those so far, as of
+ * independent steps. */
+static void take_coefficient(struct coefficients *c, double k, double out[3])
+{
+	double d, mean, half = NAN;
+
+	if (c->count++ == 0)
+		c->first = k;
+	d = k - c->first;
+	c->sum += d;
+	c->squares += d * d;
+	mean = c->sum / (double)c->count;
+	if (c->count > 1)
+		half = student_two_sided(0.95, c->count - 1) *
+		       sqrt(fmax(0, c->squares / (double)c->count - mean * mean) /
+			       (double)(c->count - 1));
+	out[0] = c->first + mean;
+	out[1] = out[0] - half;
+	out[2] = out[0] + half;
 }
 
 double worn_roughness(const struct worn_surface *c)
@@ -167,23 +216,42 @@ double worn_roughness(const struct worn_surface *c)
 	return sq;
 }
 
-static void put_summary(
-	struct table_out *t, const struct worn_surface *c, const struct worn_step *s)
+static void put_summary(struct table_out *t, struct coefficients *coefficients,
+	const struct worn_surface *c, const struct worn_step *s)
 {
-	const struct debris_step *lost = s->lost;
-	double mean = 0, most = 0;
+	const struct debris_step *first = s->lost;
+	const struct debris_step none = { .volume = 0 },
+				 *second = s->second ? s->second : &none;
+	double particles = (double)(first->count + second->count), sum = 0, most = 0;
+	double volume = first->volume + second->volume, k[3];
+	double coefficient = volume * s->hardness / (first->load * s->length);
 
-	for (size_t i = 0; i < lost->count; i++) {
-		mean += lost->particle[i].diameter / (double)lost->count;
-		most = fmax(most, lost->particle[i].diameter);
+	for (size_t i = 0; i < first->count; i++) {
+		sum += first->particle[i].diameter;
+		most = fmax(most, first->particle[i].diameter);
 	}
+	for (size_t i = 0; i < second->count; i++) {
+		sum += second->particle[i].diameter;
+		most = fmax(most, second->particle[i].diameter);
+	}
+	take_coefficient(coefficients, coefficient, k);
 	double row[] = { (double)c->r->realisation, (double)s->number, s->distance,
-		lost->load, lost->contact, lost->max_pressure, lost->edge_load,
-		lost->volume, (double)lost->count, lost->count ? mean : NAN,
-		lost->count ? most : NAN, lost->depth, worn_roughness(c) / c->sq,
-		lost->wear.stress };
+		first->load, first->contact, first->max_pressure, first->edge_load,
+		volume, particles, particles > 0 ? sum / particles : NAN,
+		particles > 0 ? most : NAN, fmax(first->depth, second->depth),
+		worn_roughness(c) / c->sq, fmax(first->wear.stress, second->wear.stress),
+		first->volume, second->volume, coefficient, k[0], k[1], k[2], 0, 0, 0, 0,
+		0, 0, 0 };
+	enum { GRID = 7, PLAIN = sizeof(row) / sizeof(*row) - GRID };
 
-	table_put_row(t, row, sizeof(row) / sizeof(*row));
+	if (s->grid) {
+		const struct grid_error *g = s->grid;
+		const double more[GRID] = { g->volume[0], g->volume[1], g->particles[0],
+			g->particles[1], g->order, g->extrapolated, g->error };
+
+		memcpy(row + PLAIN, more, sizeof more);
+	}
+	table_put_row(t, row, s->grid ? PLAIN + GRID : PLAIN);
 	table_flush(t);
 }
 
@@ -212,6 +280,22 @@ static void put_surface(
 	memcpy(record_add(&out, "height", "m"), c->h, bytes);
 	/* The next solution starts from it, here as in a pipeline. */
 	memcpy(record_add(&out, "pressure", "Pa"), c->p, bytes);
+	held_put(f, &out);
+}
+
+/* The whole counterface, in a frame of its own. */
+static void put_counter(
+	struct held_fields *f, const struct worn_surface *c, const struct worn_step *s)
+{
+	const struct record *r = s->counterface;
+	struct record out = { 0 };
+
+	record_init(&out, r->nx, r->ny, r->dx, r->dy);
+	out.realisation = c->r->realisation;
+	out.cmd = cmd_of(c->r->cmd, "--counter-surface");
+	record_set(&out, "step", "%ld", s->number);
+	memcpy(record_add(&out, "height", "m"), r->data[record_find(r, "height")],
+		(size_t)r->nx * (size_t)r->ny * sizeof(double));
 	held_put(f, &out);
 }
 
@@ -276,9 +360,13 @@ static void put_stress(
 
 void worn_put(struct worn *w, const struct worn_surface *c, const struct worn_step *s)
 {
-	put_particles(w->particles, c->r->realisation, s);
+	put_particles(w->particles, c->r->realisation, s->number, 1, s->lost);
+	if (s->second)
+		put_particles(w->particles, c->r->realisation, s->number, 2, s->second);
 	if (w->summary)
-		put_summary(w->summary, c, s);
+		put_summary(w->summary, &w->coefficients, c, s);
+	if (w->counter.out && s->counterface)
+		put_counter(&w->counter, c, s);
 	if (w->stress.out)
 		put_stress(&w->stress, c->r, s);
 	if (w->surface.out)
@@ -291,6 +379,7 @@ void worn_close(struct worn *w)
 	if (w->summary)
 		table_done(w->summary);
 	held_done(&w->surface);
+	held_done(&w->counter);
 	held_done(&w->stress);
 	free(w);
 }

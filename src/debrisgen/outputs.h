@@ -19,19 +19,32 @@ struct worn_surface {
 /* Root mean square height, the crown taken off. */
 double worn_roughness(const struct worn_surface *c);
 
+/* The step on grids of twice and four times the spacing. */
+struct grid_error {
+	double volume[2], particles[2];
+	double order; /* of the volume in the spacing; nan: none between 0.5 and 3 */
+	double extrapolated; /* volume; nan without an order */
+	double error;        /* its distance, or that of the three volumes, m3 */
+};
+
 /* A step of wear and what it took off. */
 struct worn_step {
 	long number;     /* from 1, over all programs of a pipeline */
 	double distance; /* slid so far, m */
-	const struct debris_step *lost;
-	struct stress *stress; /* below the contact */
-	double dz, offset;     /* layers of --stress lie (layer + offset) dz deep, m */
+	const struct debris_step *lost, *second; /* NULL: the counterface is not worn */
+	const struct record *counterface;        /* worn so far; NULL: there is none */
+	const struct grid_error *grid;           /* NULL: not asked for */
+	double length;                           /* slid in this step, m */
+	double hardness;                         /* of Archard's coefficient, Pa */
+	struct stress *stress;                   /* below the contact */
+	double dz, offset; /* layers of --stress lie (layer + offset) dz deep, m */
 };
 
 struct worn;
 
-/* upstream: the pipeline that made what is read, NULL if unknown. */
-struct worn *worn_open(const char *upstream);
+/* upstream: the pipeline that made what is read, NULL if unknown; richardson: the summary
+ * has columns for steps on coarser grids. */
+struct worn *worn_open(const char *upstream, int richardson);
 /* Under what the particles were torn off, which rwl needs; NAN: not known. */
 struct worn_conditions {
 	double area;     /* of the grid, m2 */

@@ -3,21 +3,31 @@
 #include "cli/stats.h"
 #include "common/contact_options.h"
 #include "contact/solver.h"
+#include "counterface.h"
+#include "grid_error.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const char *const axes[] = { "x", "y", NULL };
 static const char *const layers[] = { "top", "mid", NULL };
 static const char *const rules[] = { "column", "potential", NULL };
 static const char *const criteria[] = { "von-mises", "tresca", NULL };
 
-static double yield = NAN, friction, depth_step = NAN;
-static int shear, layer, removal, criterion, full_sum;
+static const char *const bodies[] = { "first", "second", "both", NULL };
+static const char *const laws[] = { "stress", "archard", NULL };
+enum { FIRST, SECOND, BOTH };
+enum { STRESS, ARCHARD };
+
+static struct opt_list yield, wear_rate;
+static double friction, depth_step = NAN;
+static int shear, layer, removal, criterion, full_sum, wears, law, richardson;
 
 struct opt wearing_rows[] = {
 	OPT_HEADING("Wear"),
-	{ 'Y', "yield", OPT_NUM, UNIT_PRESSURE, &yield, 1e-30, 1e30, "Y",
-		"yield stress: material under more equivalent stress is lost", NULL, 0 },
+	{ 'Y', "yield", OPT_LIST, UNIT_PRESSURE, &yield, 1e-30, 1e30, "Y1[,Y2]",
+		"yield stress: material under more equivalent stress is lost; of both bodies",
+		NULL, 0 },
 	{ 0, "criterion", OPT_WORD, UNIT_NONE, &criterion, 0, 0, "von-mises|tresca",
 		"equivalent stress", criteria, 0 },
 	{ 'u', "friction", OPT_NUM, UNIT_NONE, &friction, 0, 1e6, "MU",
@@ -35,18 +45,60 @@ struct opt wearing_rows[] = {
 	{ 0, "full-sum", OPT_FLAG, UNIT_NONE, &full_sum, 0, 0, NULL,
 		"sum the stress over all cells at every depth, slowly: to compare with",
 		NULL, 0 },
+	{ 0, "richardson", OPT_FLAG, UNIT_NONE, &richardson, 0, 0, NULL,
+		"repeat each step on grids twice and four times as coarse, and extrapolate",
+		NULL, 0 },
+	OPT_HEADING("Sliding pair"),
+	OPT_TABLE(counterface_rows),
+	{ 0, "wears", OPT_WORD, UNIT_NONE, &wears, 0, 0, "first|second|both",
+		"the body that is worn: that of the input, the counterface, or both",
+		bodies, 0 },
+	{ 0, "law", OPT_WORD, UNIT_NONE, &law, 0, 0, "stress|archard",
+		"wear by stress over yield, or by pressure and distance", laws, 0 },
+	{ 0, "wear-rate", OPT_LIST, UNIT_NONE, &wear_rate, 0, 1e30, "K1[,K2]",
+		"volume over load and distance of --law archard, m2/N", NULL, 0 },
 	OPT_END,
 };
 
+/* Of a body, 0 or 1; one value is that of both. */
+static double of_body(const struct opt_list *list, int body)
+{
+	return list->v[body < list->n ? body : 0];
+}
+
+static int is_worn(int body)
+{
+	return wears == BOTH || wears == body;
+}
+
+static void check_pair(void)
+{
+	int pair = counterface_check();
+
+	if (wears != FIRST && !pair)
+		die(EXIT_USAGE, "--wears %s: want a --counterface", bodies[wears]);
+	if (law == ARCHARD && !wear_rate.n)
+		die(EXIT_USAGE, "--law archard: want --wear-rate");
+	if (law == STRESS && wear_rate.n)
+		die(EXIT_USAGE, "--wear-rate is for --law archard");
+	if (wears != FIRST && !(press.poisson.v[press.poisson.n - 1] >= 0))
+		die(EXIT_USAGE, "--poisson: want 0 to 0.5 for a body that is worn");
+}
+
 void wearing_check(void)
 {
-	if (isnan(yield))
+	check_pair();
+	if (richardson && (counterface_check() || law == ARCHARD))
+		die(EXIT_USAGE, "--richardson is for the wear of one body by its stress");
+	if (!yield.n && law == STRESS)
 		die(EXIT_USAGE, "want --yield");
+	if (!yield.n)
+		yield = (struct opt_list){ 1, { INFINITY } };
 	if (layer && isnan(depth_step))
 		die(EXIT_USAGE, "--layer is for cells: want --depth-step");
-	if (yield < 1e5)
-		warn("--yield %g Pa is weaker than any solid surface: is %gMPa meant?", yield,
-			yield);
+	if (yield.v[0] < 1e5)
+		warn("--yield %g Pa is weaker than any solid surface: is %gMPa meant?",
+			yield.v[0], yield.v[0]);
 	if (press.poisson.v[0] < 0)
 		die(EXIT_USAGE, "--poisson %g: want 0 to 0.5 for the worn body",
 			press.poisson.v[0]);
@@ -62,6 +114,15 @@ struct wearing {
 	struct contact_par pressing; /* the contact's problem */
 	struct debris_step lost;     /* in the last step */
 	struct stress_work seen;     /* counted already */
+	/* Of a sliding pair: NULL without. */
+	struct counterface *counterface;
+	struct debris *second;
+	struct debris_step second_lost;
+	struct stress_work second_seen;
+	double *other, *pair; /* heights: what lies above the grid, and both together */
+	struct grid_error grid;
+	double steepest; /* rms slope of a pair */
+	long steep_step;
 };
 
 struct wearing *wearing_open(const struct fields_in *in, long steps)
@@ -73,24 +134,66 @@ struct wearing *wearing_open(const struct fields_in *in, long steps)
 	w->pool = pool_new((int)press.threads);
 	if (!w->pool)
 		die(EXIT_RUN, "cannot start %ld threads:", press.threads);
+	if (counterface_check())
+		w->counterface = counterface_open(shear);
 	return w;
+}
+
+/* Whether the contact of a step (from 1 in this run) is solved here. */
+static int solves(const struct wearing *w, long step)
+{
+	return step > 1 || w->counterface || law == ARCHARD;
+}
+
+int wearing_richardson(void)
+{
+	return richardson;
 }
 
 void wearing_close(struct wearing *w)
 {
 	debris_free(w->debris);
+	debris_free(w->second);
 	contact_free(w->contact);
+	counterface_close(w->counterface);
 	pool_free(w->pool);
+	free(w->other);
+	free(w->pair);
 	free(w);
+}
+
+static void prepare_second(struct wearing *w, const struct record *r)
+{
+	struct debris_par par = w->par;
+	size_t n = (size_t)r->nx * (size_t)r->ny;
+
+	debris_free(w->second);
+	w->second_seen = (struct stress_work){ 0 };
+	par.yield = of_body(&yield, SECOND);
+	par.stress.nu = of_body(&press.poisson, SECOND);
+	/* Friction drags the two bodies in opposite directions. */
+	par.stress.mu = -friction;
+	w->second = debris_new(&par);
+	w->other = xrealloc(w->other, n, sizeof *w->other);
+	w->pair = xrealloc(w->pair, n, sizeof *w->pair);
+	if (!w->second)
+		die(EXIT_RUN, "%s: record %ld: %dx%d cells:", fields_name(w->in),
+			fields_count(w->in), r->nx, r->ny);
 }
 
 void wearing_prepare(struct wearing *w, const struct record *r)
 {
 	struct contact_par pressing = press_par(r, w->pool);
 
+	if (w->counterface)
+		counterface_next(w->counterface, r);
 	if (w->debris && press_same(&pressing, &w->pressing))
 		return;
-	if (w->steps > 1 && isnan(pressing.estar))
+	if (richardson && (r->nx % 4 || r->ny % 4 || r->nx < 32 || r->ny < 32))
+		die(EXIT_USAGE,
+			"--richardson: %dx%d cells: want multiples of 4, 32 or more",
+			r->nx, r->ny);
+	if ((solves(w, w->steps) || richardson) && isnan(pressing.estar))
 		die(EXIT_USAGE,
 			"--steps %ld solves contacts: want --young or --estar, which %s does not tell",
 			w->steps, fields_name(w->in));
@@ -98,7 +201,7 @@ void wearing_prepare(struct wearing *w, const struct record *r)
 	debris_free(w->debris);
 	contact_free(w->contact);
 	w->contact = NULL;
-	w->par = (struct debris_par){ .yield = yield,
+	w->par = (struct debris_par){ .yield = yield.v[0],
 		.rule = (enum wear_rule)removal,
 		.cell = isnan(depth_step) ? 0 : depth_step,
 		.offset = layer ? 0.5 : 0 };
@@ -116,9 +219,11 @@ void wearing_prepare(struct wearing *w, const struct record *r)
 		.pool = w->pool };
 	w->seen = (struct stress_work){ 0 };
 	w->debris = debris_new(&w->par);
-	if (w->debris && w->steps > 1)
+	if (w->debris && solves(w, w->steps))
 		w->contact = contact_new(&pressing);
-	if (!w->debris || (w->steps > 1 && !w->contact))
+	if (w->counterface)
+		prepare_second(w, r);
+	if (!w->debris || (solves(w, w->steps) && !w->contact))
 		die(EXIT_RUN, "%s: record %ld: %dx%d cells:", fields_name(w->in),
 			fields_count(w->in), r->nx, r->ny);
 }
@@ -129,11 +234,58 @@ void wearing_contact(
 	debris_contact(w->debris, c->p, s);
 }
 
+/* Root mean square slope, by differences of neighbours. */
+static double rms_slope(const struct record *r, const double *h)
+{
+	double sum = 0, n = (double)(r->nx - 1) * (r->ny - 1);
+
+	for (int y = 0; y + 1 < r->ny; y++)
+		for (int x = 0; x + 1 < r->nx; x++) {
+			const double *at = h + (size_t)y * (size_t)r->nx + x;
+			double u = (at[1] - at[0]) / r->dx,
+			       v = (at[r->nx] - at[0]) / r->dy;
+
+			sum += u * u + v * v;
+		}
+	return n > 0 ? sqrt(sum / n) : 0;
+}
+
+void wearing_warn(const struct wearing *w)
+{
+	if (w->steepest > 0.2)
+		warn("%s: the pair reaches an rms slope of %.2g (step %ld), above 0.2, where "
+		     "half-spaces no longer describe it: give a --hardness",
+			fields_name(w->in), w->steepest, w->steep_step);
+}
+
+/* What presses on the flat: the surface, and what of the other lies above it in a step.
+ */
+static const double *pressed(struct wearing *w, const struct worn_surface *c, long step)
+{
+	size_t n = (size_t)c->r->nx * (size_t)c->r->ny;
+
+	if (!w->counterface)
+		return c->h;
+	counterface_window(w->counterface, step, w->other);
+	for (size_t i = 0; i < n; i++)
+		w->pair[i] = c->h[i] + w->other[i];
+	if (rms_slope(c->r, w->pair) > w->steepest) {
+		w->steepest = rms_slope(c->r, w->pair);
+		w->steep_step = step;
+	}
+	return w->pair;
+}
+
+int wearing_solves(const struct wearing *w, long run)
+{
+	return solves(w, run);
+}
+
 int wearing_press(
 	struct wearing *w, const struct worn_surface *c, double target, long step)
 {
-	enum contact_status status =
-		contact_solve(w->contact, c->h, press_control(), target, c->p, NULL);
+	enum contact_status status = contact_solve(
+		w->contact, pressed(w, c, step), press_control(), target, c->p, NULL);
 	const struct contact_result *found = contact_result(w->contact);
 
 	if (status != CONTACT_OK && status != CONTACT_NOCONV)
@@ -152,22 +304,19 @@ int wearing_press(
 	return status == CONTACT_OK;
 }
 
-static void count_work(struct wearing *w)
+static void count_work(
+	const struct debris_step *s, struct stress_work work, struct stress_work *seen)
 {
-	const struct debris_step *s = &w->lost;
-	struct stress_work work = stress_work(debris_stress(w->debris));
-
-	stats_add("steps", 1);
 	stats_add("particles", (double)s->count);
 	stats_add("layers", (double)s->wear.layers);
 	stats_add("nodes", s->wear.nodes);
 	stats_add("nodes_skipped", s->wear.nodes_skipped);
-	stats_add("stress_transforms", work.transforms - w->seen.transforms);
-	stats_add("kernel_cells", work.kernel_cells - w->seen.kernel_cells);
-	stats_add("layers_full", work.full_layers - w->seen.full_layers);
-	stats_add("layers_split", work.split_layers - w->seen.split_layers);
-	stats_add("layers_coarse", work.coarse_layers - w->seen.coarse_layers);
-	w->seen = work;
+	stats_add("stress_transforms", work.transforms - seen->transforms);
+	stats_add("kernel_cells", work.kernel_cells - seen->kernel_cells);
+	stats_add("layers_full", work.full_layers - seen->full_layers);
+	stats_add("layers_split", work.split_layers - seen->split_layers);
+	stats_add("layers_coarse", work.coarse_layers - seen->coarse_layers);
+	*seen = work;
 }
 
 static void refuse(const struct wearing *w, enum debris_status status, long step)
@@ -183,12 +332,128 @@ static void refuse(const struct wearing *w, enum debris_status status, long step
 			: "out of memory");
 }
 
-struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c, long step)
+/* Takes off what fails under the pressure of c. */
+static void wear_by_stress(struct wearing *w, const struct worn_surface *c, long step)
 {
-	refuse(w, debris_step(w->debris, c->h, c->p, &w->lost), step);
-	count_work(w);
+	debris_contact(w->debris, c->p, &w->lost);
+	if (is_worn(FIRST)) {
+		refuse(w, debris_step(w->debris, c->h, c->p, &w->lost), step);
+		count_work(&w->lost, stress_work(debris_stress(w->debris)), &w->seen);
+	} else if (stress_load(debris_stress(w->debris), c->p)) {
+		refuse(w, DEBRIS_NUMBERS, step);
+	}
+	if (is_worn(SECOND)) {
+		refuse(w, debris_step(w->second, w->other, c->p, &w->second_lost), step);
+		count_work(&w->second_lost, stress_work(debris_stress(w->second)),
+			&w->second_seen);
+		counterface_return(w->counterface, step, w->other);
+	}
+}
+
+/* Waves of wear grow where a part of the distance wears off more than 4 d / (sqrt(2) pi
+ * E*) of a pressure: the shortest wave is then worn deeper than its pressure pushes it
+ * in.  Four fifths of that. */
+static long archard_parts(const struct wearing *w, double distance)
+{
+	const struct contact_par *p = &w->pressing;
+	double k = is_worn(FIRST) ? of_body(&wear_rate, FIRST) : 0, limit;
+
+	k += is_worn(SECOND) ? of_body(&wear_rate, SECOND) : 0;
+	limit = 0.8 * 4 * fmin(p->dx, p->dy) / (sqrt(2) * M_PI * p->estar);
+	return (long)fmin(1e9, fmax(1, ceil(k * distance / limit)));
+}
+
+/* Takes the same from a body for every part of the distance; the volume, m3. */
+static double wear_part(double *height, const double *p, size_t n, double rate,
+	double distance, double area, double *deepest)
+{
+	double volume = 0;
+
+	for (size_t i = 0; i < n; i++) {
+		double depth = rate * p[i] * distance;
+
+		height[i] -= depth;
+		volume += depth * area;
+		*deepest = fmax(*deepest, depth);
+	}
+	return volume;
+}
+
+/* Wears by k p ds, pressing anew for every part of the distance; 1, or 0 where a contact
+ * did not converge. */
+static int wear_by_archard(struct wearing *w, const struct worn_surface *c, double target,
+	double distance, long step)
+{
+	size_t n = (size_t)c->r->nx * (size_t)c->r->ny;
+	double area = c->r->dx * c->r->dy;
+	long parts = archard_parts(w, distance);
+	int solved = 1;
+
+	debris_contact(w->debris, c->p, &w->lost);
+	w->second_lost = w->lost;
+	if (stress_load(debris_stress(w->debris), c->p))
+		refuse(w, DEBRIS_NUMBERS, step);
+	for (long k = 0; k < parts; k++) {
+		double ds = distance / (double)parts, first = 0, second = 0;
+
+		if (k > 0)
+			solved &= wearing_press(w, c, target, step);
+		if (is_worn(FIRST))
+			w->lost.volume += wear_part(c->h, c->p, n,
+				of_body(&wear_rate, FIRST), ds, area, &first);
+		if (is_worn(SECOND)) {
+			w->second_lost.volume += wear_part(w->other, c->p, n,
+				of_body(&wear_rate, SECOND), ds, area, &second);
+			counterface_return(w->counterface, step, w->other);
+		}
+		w->lost.depth += first;
+		w->second_lost.depth += second;
+	}
+	w->lost.wear.stress = w->second_lost.wear.stress = NAN;
+	stats_add("wear_parts", (double)parts);
+	return solved;
+}
+
+/* That of Archard's coefficient; nan where nothing tells it. */
+static double hardness_of(const struct wearing *w)
+{
+	double softer = fmin(yield.v[0], of_body(&yield, SECOND));
+
+	if (w->pressing.hardness > 0)
+		return w->pressing.hardness;
+	return isfinite(softer) ? 3 * softer : NAN;
+}
+
+struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c,
+	double target, double distance, long step, int *solved)
+{
+	size_t n = (size_t)c->r->nx * (size_t)c->r->ny;
+	double *before = NULL;
+
+	*solved = 1;
+	if (richardson) {
+		before = xcalloc(n, sizeof *before);
+		memcpy(before, c->h, n * sizeof *before);
+	}
+	if (law == ARCHARD)
+		*solved = wear_by_archard(w, c, target, distance, step);
+	else
+		wear_by_stress(w, c, step);
+	if (richardson) {
+		struct worn_surface was = *c;
+
+		was.h = before;
+		*solved = grid_error_find(&was, &w->pressing, &w->par, press_control(),
+			target, w->lost.volume, &w->grid);
+		free(before);
+	}
+	stats_add("steps", 1);
 	return (struct worn_step){ .number = step,
 		.lost = &w->lost,
+		.second = is_worn(SECOND) ? &w->second_lost : NULL,
+		.counterface = w->counterface ? counterface_record(w->counterface) : NULL,
+		.hardness = hardness_of(w),
+		.grid = richardson ? &w->grid : NULL,
 		.stress = debris_stress(w->debris),
 		.dz = w->par.cell > 0 ? w->par.cell : w->par.stress.ax,
 		.offset = w->par.offset };
@@ -201,5 +466,7 @@ double wearing_friction(void)
 
 double wearing_length(const struct record *r)
 {
-	return shear ? r->ny * r->dy : r->nx * r->dx;
+	double side = shear ? r->ny * r->dy : r->nx * r->dx;
+
+	return isnan(counterface_slide()) ? side : counterface_slide();
 }

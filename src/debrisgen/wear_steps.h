@@ -25,11 +25,20 @@ void wearing_contact(
  * not converge. */
 int wearing_press(
 	struct wearing *w, const struct worn_surface *c, double target, long step);
-/* Wears c; what was lost is valid until the next call.  The distance is the caller's. */
-struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c, long step);
+/* Whether a step (from 1 in this run) presses anew, or goes by the input's pressure. */
+int wearing_solves(const struct wearing *w, long run);
+/* Wears c over a distance under its pressure; what was lost is valid until the next call.
+ * *solved is 0 where a contact that was solved on the way did not converge. */
+struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c,
+	double target, double distance, long step, int *solved);
+
+/* Warns of what the pairs so far were too steep for. */
+void wearing_warn(const struct wearing *w);
 
 double wearing_friction(void);
-/* Of the grid, in the direction in which the bodies slide. */
+int wearing_richardson(void); /* whether steps are repeated on coarser grids */
+/* Distance the bodies slide in a step that is not amplified: that of a counterface, or
+ * the length of the grid along the shear. */
 double wearing_length(const struct record *r);
 
 #endif

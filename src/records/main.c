@@ -7,6 +7,7 @@
 #include "io/fields.h"
 #include "io/tables.h"
 #include "join.h"
+#include "replay.h"
 #include "people.h"
 #include <math.h>
 #include <stdlib.h>
@@ -19,7 +20,7 @@ static const char *const formats[] = { "list", "count", "nrrd", "gsf", "text", "
 static int format = LIST;
 static struct opt_list pick;
 static const char *field;
-static int check, join, pretty;
+static int check, join, replay, pretty;
 
 static const struct opt opts[] = {
 	{ 'o', "output", OPT_WORD, UNIT_NONE, &format, 0, 0,
@@ -30,6 +31,8 @@ static const struct opt opts[] = {
 		0 },
 	{ 0, "check", OPT_FLAG, UNIT_NONE, &check, 0, 0, NULL,
 		"say whether a stream of any format is whole", NULL, 1 },
+	{ 0, "replay", OPT_FLAG, UNIT_NONE, &replay, 0, 0, NULL,
+		"run the pipeline that made a stream of any format", NULL, 1 },
 	{ 0, "join", OPT_FLAG, UNIT_NONE, &join, 0, 0, NULL,
 		"write streams of several processes as the stream of one", NULL, 1 },
 	{ 0, "pretty", OPT_FLAG, UNIT_NONE, &pretty, 0, 0, NULL,
@@ -283,6 +286,8 @@ int main(int argc, char **argv)
 		die(EXIT_USAGE, "%s: one file at most, unless --join", argv[first + 1]);
 	if (join)
 		join_streams(argc - first, argv + first);
+	else if (replay)
+		status = replay_stream(argv[first]);
 	else if (check)
 		status = check_stream(argv[first]);
 	else if (pretty)

@@ -23,7 +23,7 @@ static const struct opt opts[] = {
 	OPT_TABLE(sensors_rows),
 	OPT_HEADING("Output"),
 	{ 0, "truth", OPT_TEXT, UNIT_NONE, &truth, 0, 0, "FILE",
-		"write a table of the particles and other events", 0, 0 },
+		"write a table of the particles and other events", 0, 1 },
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "of the random numbers",
 		0, 0 },
 	{ 'f', "first", OPT_INT, UNIT_COUNT, &first, 0, 4e9, "K", "realisation to make",
@@ -142,9 +142,11 @@ static size_t piece(const struct scene *scene, double rate, double frames, int m
 
 static struct table_out *create_truth(const char *cmd)
 {
-	const char *path = strcmp(truth, "-") == 0 ? NULL : truth;
+	int alone = strcmp(truth, "-") == 0;
+	const char *rebuild = alone ? "--truth -" : "--truth /dev/fd/3 3>&1 >/dev/null";
 
-	return table_create(path, opt_cmd(cmd, NULL), "1 s s m V s m/s m3 m V rad 1 1 1",
+	return table_create(alone ? NULL : truth, opt_cmd(cmd, rebuild),
+		"1 s s m V s m/s m3 m V rad 1 1 1",
 		"particle time1 time2 diameter amplitude delay velocity volume radius "
 		"quadrature phase saturated material kind");
 }

@@ -174,7 +174,7 @@ static void npy_read(const struct content *c, const struct told *told, struct re
 	descr = entry(header, "'descr'");
 	shape = entry(header, "'shape'");
 	fortran = entry(header, "'fortran_order'");
-	if (!descr || !shape || !fortran)
+	if (!descr || strlen(descr) < 5 || !shape || !fortran)
 		die(EXIT_RUN, "%s: the npy header has no descr, shape or fortran_order",
 			c->name);
 	while (type < 6 && strncmp(descr + 2, types[type], 2) != 0)
@@ -379,6 +379,9 @@ static void al3d_read(const struct content *c, const struct told *told, struct r
 	if (!(at > 0))
 		die(EXIT_RUN, "%s: no DepthImageOffset: the file holds no heights",
 			c->name);
+	if (!(at < (double)c->size))
+		die(EXIT_RUN, "%s: heights from byte %g on, but the file has %zu",
+			c->name, at, c->size);
 	settle_pixel(c, told, &dx, &dy);
 	new_heights(c, nx, ny, dx, dy, r);
 	/* rows begin at multiples of 8 bytes */

@@ -3,6 +3,7 @@
 # A description reads: scene | expectation | outcome | error
 . "$(dirname "$0")/../tap.sh"
 . "$top/tests/extremes/scenes.sh"
+. "$top/tests/au.sh"
 
 # alike NAME EXPECTATION FILE FILE: the same weights
 alike() {
@@ -58,19 +59,15 @@ x="--columns 40"
 }
 delaynet --task data --columns 40 --count 2 >two.snd
 head -c 1000 two.snd >some.snd
-delaynet --task data --columns 40 --count 1 | head -c -640 >empty.snd
+frames two.snd 2 >two.txt
+rate=$(od -An -v -tu1 -j16 -N4 two.snd | awk '{ print (($1 * 256 + $2) * 256 + $3) * 256 + $4 }')
+: | au "$rate" 2 >empty.snd
 delaynet --task apply --network start.net empty.snd >none.tsv
 is "a signal without frames | a table without rows | 0 | 0" "$(column section none.tsv | wc -l)" 0
-{
-	head -c -8 two.snd
-	printf '\177\370\0\0\0\0\0\0'
-} >nan.snd
+sed '$ s/[^[:blank:]]*$/nan/' two.txt | au "$rate" 2 >nan.snd
 refused "nan as the last of the samples" 1 "frame 79: want finite" \
 	delaynet --task apply --network start.net nan.snd
-{
-	head -c -8 two.snd
-	printf '\177\357\377\377\377\377\377\377'
-} >huge.snd
+sed '$ s/[^[:blank:]]*$/1.797e308/' two.txt | au "$rate" 2 >huge.snd
 refused "1.8e308 among the samples" 1 "frame 79: want finite" \
 	delaynet --task apply --network start.net huge.snd
 done_testing

@@ -43,7 +43,7 @@ for row in "4096x64 60" "64x1024 25" "1024x16 30" "3x2000 30" "509x37 25"; do
 	# shellcheck disable=SC2086 # two words
 	set -- $row
 	nx=${1%x*} ny=${1#*x}
-	roughgen --points "$1" --length "${nx}um"x"${ny}um" --hurst 0.8 --rolloff 64um --cutoff 8um --slope 0.1 -s 3 >strip.nrrd
+	roughgen --points "$1" --length "${nx}umx${ny}um" --hurst 0.8 --rolloff 64um --cutoff 8um --slope 0.1 -s 3 >strip.nrrd
 	bemcontact --estar 1Pa --boundary periodic --pressure 0.02Pa strip.nrrd >fast.nrrd
 	bemcontact --estar 1Pa --boundary periodic --pressure 0.02Pa --solver pk --tolerance 1e-7 strip.nrrd >slow.nrrd
 	at_most "$1 periodic: iterations" "$(key iterations fast.nrrd)" "$2"

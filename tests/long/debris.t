@@ -11,7 +11,7 @@ rough() {
 # first NAME CONTACT% VOLUME PARTICLES: the first step of 20 surfaces; their means differ
 # from those of three by what single surfaces scatter (10 to 20 %) over sqrt(3)
 first() {
-	debrisgen -Y 355MPa -u 0.3 --summary s.tsv contact.nrrd >p.tsv 2>warning
+	debrisgen -Y 355MPa -u 0.3 --depth-step 7.8125um --summary s.tsv contact.nrrd >p.tsv 2>warning
 	mean() { column "$1" s.tsv | awk '{ s += $1 } END { print s / NR }'; }
 	near "$1: contact, %" "$(mean contact_fraction | awk '{ print 100 * $1 }')" "$2" \
 		"$(awk -v v="$2" 'BEGIN { print 0.2 * v }')"
@@ -24,11 +24,11 @@ rough 80um 100um 320um 50N 20 >contact.nrrd
 first "Sq 80 um, correlation 100 um" 0.153 6.57 1
 # One cluster carries the load: the particle hardly knows the roughness.
 near "largest particle of a single one, um" \
-	"$(awk '/^[#r]/ { next } { n[$1]++; d[$1] = $6 } END { for (r in n) if (n[r] == 1) { s += d[r]; k++ }
+	"$(awk '/^[#r]/ { next } { n[$1]++; d[$1] = $7 } END { for (r in n) if (n[r] == 1) { s += d[r]; k++ }
 		print 1e6 * s / k }' p.tsv)" 232.7 2
-debrisgen -Y 355MPa -u 0.3 --removal potential contact.nrrd >p.tsv 2>warning
+debrisgen -Y 355MPa -u 0.3 --depth-step 7.8125um --removal potential contact.nrrd >p.tsv 2>warning
 near "of the whole potential set, 307 um in the thesis" \
-	"$(awk '/^[#r]/ { next } { n[$1]++; d[$1] = $6 } END { for (r in n) if (n[r] == 1) { s += d[r]; k++ }
+	"$(awk '/^[#r]/ { next } { n[$1]++; d[$1] = $7 } END { for (r in n) if (n[r] == 1) { s += d[r]; k++ }
 		print 1e6 * s / k }' p.tsv)" 308.4 2
 rough 80um 50um 320um 50N 20 >contact.nrrd
 first "Sq 80 um, correlation 50 um" 0.073 5.3 2.7
@@ -41,14 +41,14 @@ first "Sq 0.8 um, correlation 20 um" 1.85 1.7 74
 
 # Ten steps.
 rough 80um 100um 320um 50N 10 >contact.nrrd
-debrisgen -Y 355MPa -u 0.3 --steps 10 -E 210GPa --summary s.tsv contact.nrrd >p.tsv 2>warning
+debrisgen -Y 355MPa -u 0.3 --depth-step 7.8125um --steps 10 -E 210GPa --summary s.tsv contact.nrrd >p.tsv 2>warning
 near "ten steps: mean volume, 1e-12 m3" \
 	"$(column volume s.tsv | awk '{ s += 1e12 * $1 } END { print s / NR }')" 5.2 0.8
 near "ten steps: particles" "$(column particles s.tsv | awk '{ s += $1 } END { print s / NR * 10 }')" 38 12
 ok "ten steps: relative roughness 0.95 to 1.5" awk '!/^[#r]/ && $2 == 10 && ($13 < 0.95 || $13 > 1.5) { bad = 1 }
 	END { exit bad }' s.tsv
 rough 80um 100um 320um 100N 10 >contact.nrrd
-debrisgen -Y 355MPa -u 0.3 --steps 10 -E 210GPa --summary s.tsv contact.nrrd >p.tsv 2>warning
+debrisgen -Y 355MPa -u 0.3 --depth-step 7.8125um --steps 10 -E 210GPa --summary s.tsv contact.nrrd >p.tsv 2>warning
 near "ten steps at 100 N: mean volume, 1e-12 m3" \
 	"$(column volume s.tsv | awk '{ s += 1e12 * $1 } END { print s / NR }')" 12.7 2
 

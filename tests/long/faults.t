@@ -54,7 +54,7 @@ scene() {
 		normal=$?
 		for f in $sides; do mv "$f" "$f.whole"; done
 		read -r n <count
-		bad=
+		odd=
 		tried=0
 		step=$((n > most ? n / most : 1))
 		at=1
@@ -63,18 +63,20 @@ scene() {
 			got=$?
 			tried=$((tried + 1))
 			what=$(broken)
-			[ -z "$what" ] || bad="$bad
+			[ -z "$what" ] || odd="$odd
 $call $at of $n: $what"
 			at=$((at < 8 || at + step > n && at < n ? at + 1 : at + step))
 		done
 		all=$((all + tried))
-		faults="$faults$bad"
+		faults="$faults$odd"
 	done
 	is "$1: $all faults are told or do no harm" "$faults" ''
 	# The smallest stack that is accepted is enough.
+	# shellcheck disable=SC3045 # dash and bash have it
 	(ulimit -s 256 && "$@" >out 2>err </dev/null)
 	got=$?
 	is "$1: a small stack changes nothing" "$(broken)" ""
+	# shellcheck disable=SC3045
 	(ulimit -s 64 && "$@" >out 2>err </dev/null)
 	is "$1: a smaller one is refused" "$? $(cat err)" \
 		"1 $1: the stack may have 64 kB, want 256: see ulimit -s"

@@ -186,6 +186,29 @@ static double echo(double s)
 	return sine(s) + 0.12 * sine(s - 0.7);
 }
 
+/* Two flat lobes apart; three lobes; one with long tails that fall exponentially. */
+static double trapezoid(double s)
+{
+	double x = fabs(fabs(s) - 0.3) / 0.22;
+	double y = x < 0.4 ? 1 : x < 1 ? 0.5 + 0.5 * cos(M_PI * (x - 0.4) / 0.6) : 0;
+
+	return s < 0 ? y : -y;
+}
+
+static double triple(double s)
+{
+	double a = (s + 0.42) / 0.13, b = (s + 0.1) / 0.13, c = (s - 0.25) / 0.15;
+
+	return exp(-b * b / 2) - 0.3 * exp(-a * a / 2) - 0.7 * exp(-c * c / 2);
+}
+
+static double sech(double s)
+{
+	double c = 1 / cosh(7 * s);
+
+	return -tanh(7 * s) * c * c * 2.598076211353316;
+}
+
 /* No particle: one lobe alone, and a ringing that begins at 0. */
 static double bump(double s)
 {
@@ -207,6 +230,9 @@ static const struct shape {
 	{ "lorentz", lorentz, -6, 6 },
 	{ "skew", skew, -1.1, 1.5 },
 	{ "echo", echo, -0.5, 1.2 },
+	{ "trapezoid", trapezoid, -0.55, 0.55 },
+	{ "triple", triple, -1.1, 1.1 },
+	{ "sech", sech, -2.8, 2.8 },
 	{ "bump", bump, -0.5, 0.5 },
 	{ "ring", ring, 0, 8 },
 };

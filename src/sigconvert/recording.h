@@ -1,0 +1,46 @@
+/* recording.h - signals in the formats of other programs
+ *
+ * Text: one row per frame, cells parted by TAB, semicolon, comma or blanks; with
+ * semicolons or TABs decimal commas are read, too.  Raw: little-endian float64,
+ * interleaved.  Sound: what libsndfile knows, where the program was built with it.
+ */
+#ifndef RECORDING_H
+#define RECORDING_H
+
+#include "io/signals.h"
+#include <stddef.h>
+
+enum recording_from { FROM_AUTO, FROM_AU, FROM_TEXT, FROM_RAW, FROM_SOUND };
+enum recording_to { TO_AU, TO_TEXT, TO_RAW, TO_WAV, TO_FLAC };
+
+struct recording_par {
+	enum recording_from from;
+	double rate; /* Hz; nan: not told */
+	int channels;
+	const char *columns, *time; /* headings; NULL: all, "time" or "t" */
+	long skip;                  /* lines before the heading */
+};
+
+struct recording;
+struct recording_out;
+
+/* All of them die where the file is not what it should be. */
+struct recording *recording_open(const char *path, const struct recording_par *par);
+const struct signal_format *recording_format(const struct recording *r);
+size_t recording_read(struct recording *r, double *x, size_t frames);
+void recording_close(struct recording *r);
+
+struct recording_out *recording_create(
+	enum recording_to to, const struct signal_format *format);
+/* Returns the samples beyond full scale, which the format cuts off. */
+double recording_write(struct recording_out *o, const double *x, size_t frames);
+void recording_done(struct recording_out *o);
+
+/* Text, for recording.c. */
+struct text_in;
+struct text_in *text_open(const char *path, const struct recording_par *par);
+const struct signal_format *text_format(const struct text_in *t);
+size_t text_read(struct text_in *t, double *x, size_t frames);
+void text_close(struct text_in *t);
+
+#endif
