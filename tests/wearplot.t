@@ -50,6 +50,10 @@ is 'doubtful particles are not counted' "$(printf 'diameter\tverdict\n2e-4\tmisf
 fails 'an unknown table is refused by its columns' 1 'no picture for the columns a b' \
 	sh -c 'printf "a\tb\n1\t2\n" | wearplot'
 fails 'an empty stream' 1 'standard input: empty' wearplot
+head -c 3000 signal.au >torn.au
+fails 'a signal that was cut off' 1 '^wearplot: torn.au: ' wearplot torn.au
+sed '$d' truth.tsv >torn.tsv
+fails 'a table that was cut off' 1 '^wearplot: torn.tsv: ' wearplot torn.tsv
 fails 'a missing file' 1 'none.tsv: cannot be read' wearplot none.tsv
 fails 'a field that is not there' 1 'no such field' wearplot --field gap contact.nrrd
 fails 'a record that is not there' 1 'contact.nrrd' wearplot --record 3 contact.nrrd
