@@ -6,11 +6,7 @@
 #	make install      PREFIX, DESTDIR, BINDIR, LIBDIR, INCLUDEDIR, MANDIR, DOCDIR
 #
 #	make bin/duet     one program alone, with the libraries it needs and no others
-#	make check-long   the longer checks; make # A Slurm cluster of one node, started for the test; wants slurm-wlm and munge.
-check-cluster: all
-	@BIN=$(abspath $(BIN)) tests/run tests/cluster/*.t
-
-check-all: both
+#	make check-long   the longer checks; make check-all: both; make check-cluster: under Slurm
 #	make bench        error against run time; one domain: make bench-contact
 #	make extremes-contact  the table of extreme scenes of a domain
 #	make matrix       duet on a matrix of instruments: rows wrong, found, errors, time
@@ -189,6 +185,10 @@ check-long: all $(LONG_UNITS) $(BENCH_BINS) $(MATRIX)
 
 check-all: all $(UNITS) $(LONG_UNITS) $(BENCH_BINS) $(MATRIX)
 	@BIN="$(abspath $(BIN))" tests/run $(TESTS) $(LONG_TESTS)
+
+# A Slurm cluster of one node, started for the test; wants slurm-wlm and munge.
+check-cluster: all
+	@BIN="$(abspath $(BIN))" tests/run tests/cluster/*.t
 
 # make bench, or one domain: make bench-contact
 bench: $(patsubst tests/bench/%.sh,bench-%,$(wildcard tests/bench/*.sh))
