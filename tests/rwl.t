@@ -192,7 +192,7 @@ done
 same "a particle table and its summary" particles.tsv.digits steps.tsv.digits
 rwl --new --wear steps.tsv --step-time 1h -c 2 >out
 is "how the fragments were made is passed on" "$(sed -n 's/^# wear: steps.tsv made by //p' out)" \
-	"$(sed -n '/^# cmd: /{s///;s/--first 0/& --count 4/;p;q;}' steps.tsv)"
+	"$(sed -n '/^# cmd: /{s///;s/--first 0 --count 1/--first 0 --count 4/;p;q;}' steps.tsv)"
 (eval "$(sed -n 's/^# wear: steps.tsv made by //p' out)") >again.tsv
 for f in steps.tsv again.tsv; do
 	grep -v '^#' $f >$f.rows

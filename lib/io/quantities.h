@@ -1,6 +1,6 @@
 /* quantities.h - numbers with units in the comment lines of tables */
-#ifndef SHELL_QUANTITIES_H
-#define SHELL_QUANTITIES_H
+#ifndef IO_QUANTITIES_H
+#define IO_QUANTITIES_H
 
 #include "cli/unit.h"
 #include "io/tables.h"

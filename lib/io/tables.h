@@ -9,8 +9,8 @@
  *		double d = table_number(t, cd);
  *		...
  */
-#ifndef SHELL_TABLES_H
-#define SHELL_TABLES_H
+#ifndef IO_TABLES_H
+#define IO_TABLES_H
 
 #include "io/input.h"
 #include <stddef.h>

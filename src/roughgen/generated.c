@@ -174,7 +174,7 @@ int generated_next(struct generated *g, struct record *r)
 		g->rough, (uint32_t)r->realisation, record_add(r, "height", "m"), &work);
 	if (status != ROUGH_OK)
 		die(EXIT_RUN, "%s", problem[status]);
-	extra = xprintf("--first %ld", r->realisation);
+	extra = xprintf("--first %ld --count 1", r->realisation);
 	r->cmd = opt_cmd(NULL, extra);
 	free(extra);
 	record_set(r, "seed", "%ld", seed);
