@@ -5,6 +5,7 @@
 #include "cli/opt.h"
 #include "cli/stats.h"
 #include "io/signals.h"
+#include "moment.h"
 #include "recording.h"
 #include <math.h>
 #include <stdlib.h>
@@ -19,7 +20,7 @@ static int from, to;
 static struct opt_list rate = { 0 };
 static long channels, skip;
 static double scale = 1;
-static const char *columns, *time_column;
+static const char *columns, *time_column, *start;
 
 static const struct opt opts[] = {
 	{ 0, "from", OPT_WORD, UNIT_NONE, &from, 0, 0, "auto|au|text|raw|sound",
@@ -27,7 +28,7 @@ static const struct opt opts[] = {
 		0 },
 	{ 'o', "output", OPT_WORD, UNIT_NONE, &to, 0, 0, "au|text|raw|wav|flac",
 		"format that is written", out_words, 0 },
-	{ 'r', "rate", OPT_LIST, UNIT_FREQUENCY, &rate, 1, 2e9, "F",
+	{ 'r', "rate", OPT_LIST, UNIT_FREQUENCY, &rate, RATE_LEAST, RATE_MOST, "F",
 		"text and raw: samples per second, where no time tells", NULL, 0 },
 	{ 0, "channels", OPT_INT, UNIT_COUNT, &channels, 1, 1024, "N",
 		"raw: channels of little-endian float64, interleaved", NULL, 0 },
@@ -36,6 +37,8 @@ static const struct opt opts[] = {
 		0 },
 	{ 0, "time", OPT_TEXT, UNIT_NONE, &time_column, 0, 0, "NAME",
 		"text: column of the times (default time or t)", NULL, 0 },
+	{ 0, "start", OPT_TEXT, UNIT_NONE, &start, 0, 0, "TIME",
+		"moment of the first sample, ISO 8601, where nothing tells it", NULL, 0 },
 	{ 0, "skip-lines", OPT_INT, UNIT_COUNT, &skip, 0, 1000000, "N",
 		"text: lines before the heading", NULL, 0 },
 	{ 0, "scale", OPT_NUM, UNIT_NONE, &scale, -1e300, 1e300, "K",
@@ -52,12 +55,17 @@ static double clipped;
 
 static void check_options(void)
 {
+	struct moment moment;
+
 	if (from == FROM_RAW && (!rate.n || !channels))
 		die(EXIT_USAGE, "--from raw wants --rate and --channels");
 	if (from != FROM_RAW && channels)
 		die(EXIT_USAGE, "--channels is for --from raw");
 	if (scale == 0)
 		die(EXIT_USAGE, "--scale 0 leaves nothing");
+	if (start && !moment_parse(start, &moment))
+		die(EXIT_USAGE, "--start %s: want a moment like 2026-11-22T03:04:05.5Z",
+			start);
 }
 
 int main(int argc, char **argv)
@@ -68,6 +76,7 @@ int main(int argc, char **argv)
 		.channels = (int)channels,
 		.columns = columns,
 		.time = time_column,
+		.start = start,
 		.skip = skip };
 	struct recording *in;
 	struct recording_out *out;
