@@ -162,7 +162,7 @@ static double find_stiffness(const struct task *t, double pressure)
 
 		if (!(target > 0) || (t->par.hardness > 0 && target >= t->par.hardness))
 			return NAN;
-		memcpy(t->other, t->p, cells * sizeof(*t->other));
+		memcpy(t->other, t->p, cells * sizeof *t->other);
 		if (press_to(t, CONTACT_PRESSURE, target, t->other, NULL) != CONTACT_OK)
 			return NAN;
 		approach[k] = contact_result(t->c)->approach;
@@ -222,7 +222,7 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 	if (fields & 1 << GAP)
 		t.gap = record_add(r, "gap", "m");
 	if (table_wanted())
-		t.other = xcalloc((size_t)r->nx * (size_t)r->ny, sizeof(*t.other));
+		t.other = xcalloc((size_t)r->nx * (size_t)r->ny, sizeof *t.other);
 	if (press_control() == CONTACT_APPROACH)
 		from = -highest(&t);
 	for (long k = 1; k <= sweep; k++)
