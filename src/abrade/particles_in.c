@@ -18,7 +18,7 @@ struct opt particles_rows[] = {
 	{ 0, "iso", OPT_LIST, UNIT_COUNT, &iso, 0, ISO4406_CODES - 1, "C:C:C",
 		"draw the particles of an oil of this ISO 4406 code, 18:16:13", NULL, 0 },
 	{ 0, "largest", OPT_NUM, UNIT_LENGTH, &largest, 1e-9, 1, "D",
-		"of --iso: largest particle there is", NULL, 0 },
+		"of --iso: largest particle", NULL, 0 },
 	{ 'c', "count", OPT_INT, UNIT_COUNT, &count, 1, 1000000000, "N",
 		"of --iso: number of realisations", NULL, 0 },
 	OPT_END,

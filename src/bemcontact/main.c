@@ -23,25 +23,23 @@ static struct contact_kernel coated;
 static const struct opt opts[] = {
 	OPT_TABLE(press_rows),
 	{ 0, "coating", OPT_NUM, UNIT_LENGTH, &coating.thickness, 0, 1e6, "T",
-		"thickness of a layer of another material on the first body; 0: none", 0,
-		0 },
+		"thickness of a bonded layer on the first body; 0: none", 0, 0 },
 	{ 0, "coating-young", OPT_NUM, UNIT_PRESSURE, &coating.young, 1e-6, 1e30, "E",
-		"its Young's modulus", 0, 0 },
+		"Young's modulus of the layer", 0, 0 },
 	{ 0, "coating-poisson", OPT_NUM, UNIT_NONE, &coating.poisson, -0.999, 0.499, "N",
-		"its Poisson's ratio", 0, 0 },
+		"Poisson's ratio of the layer", 0, 0 },
 	OPT_HEADING("Output"),
 	{ 0, "fields", OPT_WORDS, UNIT_NONE, &fields, 0, 0, "NAME,...",
-		"what to write of height, pressure, displacement, gap", field_names, 0 },
+		"fields to write: height, pressure, displacement, gap", field_names, 0 },
 	OPT_TABLE(table_opts),
 	{ 0, "sweep", OPT_INT, UNIT_COUNT, &sweep, 1, 1e6, "N",
-		"load in N equal steps, each a row of --table", 0, 0 },
+		"apply the load in N equal steps, each a row of --table", 0, 0 },
 	OPT_TABLE(raw_rows),
 	OPT_END,
 };
 
 static const struct prog prog = { "bemcontact",
-	"Press a rough surface against a flat: pressure, contact and gap of elastic "
-	"bodies.",
+	"Solve the elastic contact of a rough surface with a flat: pressure and gap.",
 	"[file]", "fields: height", "fields: height, pressure", opts };
 
 /* The body below the layer is the first of --young, the other one the last. */

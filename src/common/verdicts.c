@@ -8,8 +8,7 @@ static double doubtful, unresolved;
 
 struct opt verdict_rows[] = {
 	{ 0, "doubtful", OPT_FLAG, UNIT_NONE, &doubtful_too, 0, 0, NULL,
-		"take rows for particles whose verdict is neither alone nor overlap",
-		NULL, 0 },
+		"also use rows whose verdict is neither alone nor overlap", NULL, 0 },
 	OPT_END,
 };
 

@@ -15,15 +15,15 @@ static long window;
 
 struct opt oil_rows[] = {
 	{ 0, "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-15, 1e3, "Q",
-		"of oil past the sensor, for numbers per volume", NULL, 0 },
+		"flow of oil through the sensor, for numbers per volume", NULL, 0 },
 	{ 0, "volume", OPT_NUM, UNIT_VOLUME, &volume, 1e-15, 1e6, "V",
-		"of oil in all that was counted, instead of --flow", NULL, 0 },
+		"total volume of oil, in place of --flow", NULL, 0 },
 	OPT_END,
 };
 
 struct opt report_rows[] = {
 	{ 0, "window", OPT_INT, UNIT_COUNT, &window, 3, 1000000000, "N",
-		"of --output trend: periods that a slope is fitted to (default all)",
+		"of --output trend: periods to which the slope is fitted (default all)",
 		NULL, 0 },
 	OPT_END,
 };

@@ -16,10 +16,9 @@ struct opt counterface_rows[] = {
 	{ 0, "counterface", OPT_TEXT, UNIT_NONE, &path, 0, 0, "FILE",
 		"slide the rough surface of this file over that of the input", NULL, 0 },
 	{ 0, "slide", OPT_NUM, UNIT_LENGTH, &slide, 0, 1e12, "D",
-		"distance it moves from step to step; by default the length of the grid",
-		NULL, 0 },
+		"sliding distance per step; by default the length of the grid", NULL, 0 },
 	{ 0, "renew", OPT_WORD, UNIT_NONE, &renew, 0, 0, "wrap|fresh",
-		"it goes round, or is longer than the grid and never returns", renewals,
+		"counterface: periodic, or longer than the grid and used once", renewals,
 		0 },
 	OPT_END,
 };

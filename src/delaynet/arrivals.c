@@ -15,7 +15,7 @@ static long sections, refused;
 struct opt arrivals_rows[] = {
 	OPT_HEADING("Records"),
 	{ 0, "sections", OPT_TEXT, UNIT_NONE, &sections_file, 0, 0, "FILE",
-		"apply, pulses: table of the sections, as of duet --sections", NULL, 0 },
+		"apply, pulses: table of sections from duet --sections", NULL, 0 },
 	{ 0, "pulse-duration", OPT_NUM, UNIT_TIME, &duration, 1e-12, 1e9, "T",
 		"apply, pulses: duration of a pulse of the mean particle", NULL, 0 },
 	{ 0, "align", OPT_NUM, UNIT_TIME, &align, 0, 1e9, "T",

@@ -23,13 +23,13 @@ struct opt generated_grid_rows[] = {
 	{ 'n', "points", OPT_LIST, UNIT_COUNT, &points, 1, POINTS_MAX, "N[xM]",
 		"points along x and y", NULL, 0 },
 	{ 'L', "length", OPT_LIST, UNIT_LENGTH, &length, 1e-12, 1e12, "L[xL]",
-		"sides of the area; one: square pixels", NULL, 0 },
+		"side lengths of the area; one number: square cells", NULL, 0 },
 	OPT_END,
 };
 
 struct opt generated_rows[] = {
 	{ 0, "slope", OPT_LIST, UNIT_NONE, &slope, 0, 1e6, "G[:G2]",
-		"root mean square slope instead", NULL, 0 },
+		"root mean square slope, in place of --sq", NULL, 0 },
 	{ 0, "acf", OPT_WORD, UNIT_NONE, &acf, 0, 0, "gauss|exp",
 		"autocorrelation function", acf_words, 0 },
 	{ 'l', "corr", OPT_LIST, UNIT_LENGTH, &corr, 1e-18, 1e12, "L[xL]",
@@ -37,7 +37,7 @@ struct opt generated_rows[] = {
 	{ 0, "hurst", OPT_NUM, UNIT_NONE, &hurst, 0, 2, "H",
 		"self-affine spectrum instead of --acf", NULL, 0 },
 	{ 0, "rolloff", OPT_NUM, UNIT_LENGTH, &rolloff, 1e-15, 1e12, "L",
-		"longest self-affine wavelength; longer waves alike", NULL, 0 },
+		"roll-off wavelength: the spectrum is constant above it", NULL, 0 },
 	{ 0, "longest", OPT_NUM, UNIT_LENGTH, &longest, 1e-15, 1e12, "L",
 		"leave out longer waves", NULL, 0 },
 	{ 0, "cutoff", OPT_NUM, UNIT_LENGTH, &cutoff, 1e-15, 1e12, "L",

@@ -5,9 +5,9 @@ static struct opt_list sq = { 1, { 1e-6 } }, sa;
 
 struct opt roughness_rows[] = {
 	{ 'q', "sq", OPT_LIST, UNIT_LENGTH, &sq, 0, 1e9, "Q[:Q2]",
-		"root mean square height, exact or drawn", 0, 0 },
+		"root mean square height Sq; two: drawn between them", 0, 0 },
 	{ 0, "sa", OPT_LIST, UNIT_LENGTH, &sa, 0, 1e9, "Q[:Q2]",
-		"mean absolute height instead", 0, 0 },
+		"mean absolute height Sa, in place of --sq", 0, 0 },
 	OPT_END,
 };
 

@@ -16,9 +16,9 @@ struct state_options state_options;
 
 struct opt state_rows[] = { { 0, "quantity", OPT_WORD, UNIT_NONE, &state_options.quantity,
 				    0, 0, "auto|leakage|gap|volume|debris",
-				    "what the state is", quantities, 0 },
+				    "quantity of the state", quantities, 0 },
 	{ 0, "state-unit", OPT_TEXT, UNIT_NONE, &state_options.unit, 0, 0, "UNIT",
-		"unit of the state, where not SI: L/min", 0, 0 },
+		"unit of the state if not SI, such as L/min", 0, 0 },
 	{ 0, "state-error", OPT_NUM, UNIT_NONE, &state_options.error, 0, 1e300, "SD",
 		"standard error of the state, in its unit", 0, 0 },
 	OPT_TABLE(timeunit_rows), OPT_END };

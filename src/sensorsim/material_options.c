@@ -19,7 +19,7 @@ static struct material own = { "own", 1, 0 };
 struct opt material_rows[] = {
 	OPT_HEADING("Materials"),
 	{ 0, "material", OPT_TEXT, UNIT_NONE, &mixture, 0, 0, "NAME[=SHARE],...",
-		"of the particles; ferrous if not given", 0, 0 },
+		"materials of the particles (default ferrous)", 0, 0 },
 	{ 0, "mur", OPT_NUM, UNIT_NONE, &mur, 1, 1e6, "MUR",
 		"relative permeability, in place of --material", 0, 0 },
 	{ 0, "sigma", OPT_NUM, UNIT_NONE, &sigma, 0, 1e9, "S",
