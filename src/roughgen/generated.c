@@ -143,7 +143,7 @@ struct generated *generated_open(int threads)
 		.kurtosis = isnan(kurtosis) ? 3 + 1.5 * skewness * skewness : kurtosis,
 		.seed = (uint64_t)seed,
 		.pool = pool_new(threads) };
-	g->rough = rough_new(&g->par, &status);
+	status = rough_make(&g->par, &g->rough);
 	if (!g->rough && status == ROUGH_EMPTY && g->par.spectrum.nx == 1 &&
 		g->par.spectrum.ny == 1)
 		die(EXIT_USAGE,
