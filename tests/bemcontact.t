@@ -64,11 +64,11 @@ fails "not converged: status 3" 3 'record 1: not converged: certificate .* after
 is "and the record says so" "$(key converged poor.nrrd)" no
 is "no load, no pressure, no work" "$($solve --pressure 0Pa -S stats h.f64 >none.nrrd
 	column transforms stats),$(key area none.nrrd)" 0,0
-fails "no load given" 2 'want one of --load' bemcontact --estar 1GPa
-fails "two loads given" 2 'want only one of --load' bemcontact --estar 1GPa --pressure 1Pa -F 1N
+fails "no load given" 2 'specify one of --load' bemcontact --estar 1GPa
+fails "two loads given" 2 'specify only one of --load' bemcontact --estar 1GPa --pressure 1Pa -F 1N
 fails "no material" 2 'either --estar or --young' bemcontact --pressure 1Pa
 fails "both materials" 2 'either --estar or --young' bemcontact --pressure 1Pa --estar 1GPa -E 2GPa
-fails "multi-level sums over a period" 2 'no --boundary periodic' \
+fails "multi-level sums over a period" 2 'requires --boundary free' \
 	bemcontact --pressure 1Pa --estar 1GPa --multiply mlms --boundary periodic
 fails "unknown field" 2 "--fields sigma: want height|pressure" bemcontact --pressure 1Pa --estar 1GPa --fields gap,sigma
 fails "unit of another quantity" 2 '--load' bemcontact -F 1MPa --estar 1GPa
@@ -116,8 +116,8 @@ $layer --young 1GPa,1e30Pa --coating 1mm --coating-young 100GPa --coating-poisso
 near "a thick one is all that is felt" "$(awk "BEGIN {
 	print $(key approach thick.nrrd) / $(key approach bare.nrrd) - 1 }")" 0 1e-10
 is "no contact modulus is recorded for it" "$(key estar thick.nrrd)" nan
-fails "a coating on a free surface" 2 'want --boundary periodic' \
+fails "a coating on a free surface" 2 'requires --boundary periodic' \
 	bemcontact --pressure 1Pa --young 1GPa --coating 1um --coating-young 2GPa
-fails "a coating of no material" 2 'want --young and --coating-young' \
+fails "a coating of no material" 2 'requires --young and --coating-young' \
 	bemcontact --pressure 1Pa --estar 1GPa --coating 1um
 done_testing

@@ -84,7 +84,7 @@ static struct abrasion_par parameters(void)
 static void check_options(int operands)
 {
 	if (isnan(gap) == isnan(load))
-		die(EXIT_USAGE, "want either --gap H or --load F");
+		die(EXIT_USAGE, "specify either --gap H or --load F");
 	if (!hardness.n)
 		die(EXIT_USAGE, "--hardness is missing: H1[,H2] in Pa");
 	if (isnan(friction))
@@ -99,8 +99,7 @@ static void check_rigid(const struct abrasion_par *par)
 {
 	if (par->abrasive < abrasion_harder * fmin(par->hardness[0], par->hardness[1]))
 		die(EXIT_RUN,
-			"--abrasive-hardness %g Pa: the particles yield, what they "
-			"carry is not known",
+			"--abrasive-hardness %g Pa: the particles yield, and the load they carry is unknown",
 			par->abrasive);
 }
 
@@ -122,8 +121,7 @@ static double find_gap(
 	error = carried / load - 1;
 	/* The way a particle moves may change at this very gap. */
 	if (fabs(error) > 1e-6) {
-		warn("realisation %ld: at a gap of %.6g m the load jumps past %g N to "
-		     "%g N",
+		warn("realisation %ld: at a gap of %.6g m the load jumps over %g N to %g N",
 			realisation, found, load, carried);
 		doubtful = 1;
 	}
@@ -217,8 +215,7 @@ static void run_realisation(const struct particles_in *in, long realisation)
 		if (t.number[m] > 0)
 			stats_add(mode_names[m], t.number[m]);
 	if (t.number[ABRASION_YIELDS] + t.number[ABRASION_BURIED] > 0) {
-		warn("realisation %ld: %.0f particles yield and %.0f are buried deeper "
-		     "than their radius: what they wear is not in the volumes",
+		warn("realisation %ld: %.0f particles yield and %.0f are buried deeper than their radius: the volumes do not include their wear",
 			realisation, t.number[ABRASION_YIELDS],
 			t.number[ABRASION_BURIED]);
 		doubtful = 1;

@@ -50,7 +50,7 @@ struct opt filtering_rows[] = { OPT_HEADING("Particle filter"),
 void filtering_check(void)
 {
 	if (range.n == 2 && range.v[0] > range.v[1])
-		die(EXIT_USAGE, "--order-range wants LO:HI with LO not above HI");
+		die(EXIT_USAGE, "--order-range requires LO:HI with LO not above HI");
 }
 
 struct adaptive *filtering_new(int unit)

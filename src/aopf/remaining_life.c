@@ -123,21 +123,22 @@ void outlook_check(int bare)
 {
 	for (int k = 1; k < levels.n; k++)
 		if (levels.v[k] <= levels.v[k - 1])
-			die(EXIT_USAGE, "--levels: want rising levels");
+			die(EXIT_USAGE, "--levels: levels must be ascending");
 	for (int k = 1; k < alarms.n; k++)
 		if (alarms.v[k] >= alarms.v[k - 1])
-			die(EXIT_USAGE, "--alarm: want falling times");
+			die(EXIT_USAGE, "--alarm: times must be descending");
 	if (fleet_file && (isnan(outlook_options.threshold) || direction == AUTO))
-		die(EXIT_USAGE, "--fleet wants --threshold and --direction up or down");
+		die(EXIT_USAGE,
+			"--fleet requires --threshold and --direction up or down");
 	if (isnan(outlook_options.threshold) &&
 		(bare || opt_any_given(outlook_plant_rows)))
-		die(EXIT_USAGE, "--%s wants --threshold",
+		die(EXIT_USAGE, "--%s requires --threshold",
 			bare ? "lives-only" : opt_any_given(outlook_plant_rows));
 	if ((weights || events_file) && model >= GREY)
 		die(EXIT_USAGE, "--%s is not for --model %s",
 			weights ? "weights" : "events", models[model]);
 	if (bare && (model >= GREY || skip.word == 0))
-		die(EXIT_USAGE, "--lives-only excludes %s, which wants the filter",
+		die(EXIT_USAGE, "--lives-only excludes %s, which requires the filter",
 			model >= GREY ? "--model grey and literal" : "--skip auto");
 }
 

@@ -93,7 +93,7 @@ static void read_balls(struct pulses *p, const char *text)
 		p->speed += v;
 	}
 	if (p->n == before)
-		die(EXIT_RUN, "%s: no pulse to calibrate by", table_name(t));
+		die(EXIT_RUN, "%s: no pulse for the calibration", table_name(t));
 	table_close(t);
 	free(path);
 }
@@ -141,16 +141,16 @@ int main(int argc, char **argv)
 		die(EXIT_USAGE, "--balls is missing: FILE:D, a table of pulses and the "
 				"diameter of its balls");
 	if (isnan(noise) != isnan(duration))
-		die(EXIT_USAGE, "the smallest size wants both --noise and "
-				"--pulse-duration");
+		die(EXIT_USAGE,
+			"the smallest size requires both --noise and --pulse-duration");
 	if (!isnan(noise) && isnan(detection_threshold(duration, alarms)))
 		die(EXIT_USAGE,
-			"--false-alarms %g Hz: no threshold keeps pulses of %g s so often",
+			"--false-alarms %g Hz: too many for any threshold with pulses of %g s",
 			alarms, duration);
 	for (int i = 0; i < balls.n; i++)
 		read_balls(&p, balls.v[i]);
 	if (p.n < 3)
-		die(EXIT_RUN, "%zu pulses are too few to tell how they scatter", p.n);
+		die(EXIT_RUN, "%zu pulses are too few to estimate their scatter", p.n);
 	qsort(p.pulse, p.n, sizeof *p.pulse, by_diameter);
 	x = xcalloc(p.n, sizeof *x);
 	y = xcalloc(p.n, sizeof *y);

@@ -49,10 +49,9 @@ static void set_coating(void)
 	double other = nu->v[nu->n - 1];
 
 	if (!e->n || isnan(coating.young))
-		die(EXIT_USAGE, "--coating: want --young and --coating-young");
+		die(EXIT_USAGE, "--coating requires --young and --coating-young");
 	if (press.boundary != CONTACT_PERIODIC)
-		die(EXIT_USAGE,
-			"--coating is known for a period alone: want --boundary periodic");
+		die(EXIT_USAGE, "--coating requires --boundary periodic");
 	coating.base_young = e->v[0];
 	coating.base_poisson = nu->v[0];
 	coating.other = (1 - other * other) / e->v[e->n - 1];
@@ -63,9 +62,9 @@ static void check_options(void)
 {
 	press_check();
 	if (isnan(press.load) && isnan(press.pressure) && isnan(press.approach))
-		die(EXIT_USAGE, "want one of --load, --pressure and --approach");
+		die(EXIT_USAGE, "specify one of --load, --pressure and --approach");
 	if (isnan(press.estar))
-		die(EXIT_USAGE, "want either --estar or --young and --poisson");
+		die(EXIT_USAGE, "specify either --estar or --young and --poisson");
 	if (coating.thickness > 0)
 		set_coating();
 }

@@ -61,16 +61,15 @@ static const struct prog prog = { "bpfilter",
 static void check_options(int operands)
 {
 	if (response && taps_only)
-		die(EXIT_USAGE, "--response and --taps exclude each other");
+		die(EXIT_USAGE, "--response and --taps exclude one another");
 	if ((response || taps_only) && operands)
-		die(EXIT_USAGE, "--response and --taps read nothing: name no file");
+		die(EXIT_USAGE, "--response and --taps have no input: omit the file");
 	if (edges.v[0] >= edges.v[1])
-		die(EXIT_USAGE, "--band %g:%g: the first edge must be the lower one",
+		die(EXIT_USAGE, "--band %g:%g: the first edge must be the lower",
 			edges.v[0], edges.v[1]);
 	if (zero_phase && order % 2)
 		die(EXIT_USAGE,
-			"--zero-phase needs an even --order: half of %ld is no whole "
-			"number of samples",
+			"--zero-phase needs an even --order: half of %ld is not an integer number of samples",
 			order);
 }
 

@@ -57,16 +57,15 @@ void press_check(void)
 	const struct opt_list *e = &press.young, *nu = &press.poisson;
 
 	if (!isnan(press.load) + !isnan(press.pressure) + !isnan(press.approach) > 1)
-		die(EXIT_USAGE, "want only one of --load, --pressure and --approach");
+		die(EXIT_USAGE, "specify only one of --load, --pressure and --approach");
 	for (int i = 0; i < e->n; i++)
 		if (e->v[i] < 1e5)
 			warn("--young %g Pa is softer than any solid surface: is %gGPa meant?",
 				e->v[i], e->v[i]);
 	if (!isnan(press.estar) && e->n)
-		die(EXIT_USAGE, "want either --estar or --young and --poisson");
+		die(EXIT_USAGE, "specify either --estar or --young and --poisson");
 	if (press.multiply && press.boundary)
-		die(EXIT_USAGE,
-			"--multiply mlms sums over a free surface: no --boundary periodic");
+		die(EXIT_USAGE, "--multiply mlms requires --boundary free");
 	if (e->n)
 		press.estar = kernel_modulus(
 			e->v[0], nu->v[0], e->v[e->n - 1], nu->v[nu->n - 1]);

@@ -40,5 +40,6 @@ void verdict_report(void)
 		     "takes them in",
 			doubtful);
 	if (unresolved > 0)
-		warn("%.0f rows stand for stretches that are not resolved", unresolved);
+		warn("%.0f rows are sections that are not resolved into particles",
+			unresolved);
 }

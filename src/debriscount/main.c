@@ -70,19 +70,21 @@ static const struct prog prog = { "debriscount",
 static void check_options(void)
 {
 	if (standard && edges.n)
-		die(EXIT_USAGE, "--classes and --standard exclude each other");
+		die(EXIT_USAGE, "--classes and --standard exclude one another");
 	if (output == REPORT_CODES && edges.n)
-		die(EXIT_USAGE, "--output codes has the sizes of the standards");
+		die(EXIT_USAGE, "--output codes uses the sizes of the standards");
 	if (isnan(d50) != isnan(threshold))
-		die(EXIT_USAGE, "want both --d50 and --detection-threshold, or neither");
+		die(EXIT_USAGE,
+			"specify both --d50 and --detection-threshold, or neither");
 	for (int k = 1; k < edges.n; k++)
 		if (edges.v[k] <= edges.v[k - 1])
-			die(EXIT_USAGE, "--classes: %g m does not lie above %g m",
-				edges.v[k], edges.v[k - 1]);
+			die(EXIT_USAGE, "--classes: %g m is not above %g m", edges.v[k],
+				edges.v[k - 1]);
 	if (alarm_level.n == 2 && alarm_level.v[1] > alarm_level.v[0])
-		die(EXIT_USAGE, "--alarm wants LEVEL:CLEAR with CLEAR not above LEVEL");
+		die(EXIT_USAGE,
+			"--alarm requires LEVEL:CLEAR with CLEAR not above LEVEL");
 	if (alarm_mass && (!alarm_level.n || isnan(density)))
-		die(EXIT_USAGE, "--alarm-mass wants --alarm and --density");
+		die(EXIT_USAGE, "--alarm-mass requires --alarm and --density");
 	report_check((enum report_kind)output, !isnan(period));
 }
 
@@ -152,8 +154,7 @@ static double count_rows(struct table_in *t, struct groups *groups)
 
 		if (table_part(t) != part && !isnan(period))
 			die(EXIT_RUN,
-				"%s: line %ld: another record begins: count each "
-				"for itself",
+				"%s: line %ld: another record begins: count each record separately",
 				table_name(t), table_line(t));
 		if (time > duration)
 			die(EXIT_RUN,
@@ -175,8 +176,7 @@ static double count_rows(struct table_in *t, struct groups *groups)
 		stats_add("particles", 1);
 	} while (table_next(t));
 	if (late > 0) {
-		warn("%.0f particles came after their period was over and are counted in "
-		     "a later one",
+		warn("%.0f particles arrived after the end of their period and are counted in a later one",
 			late);
 		stats_set("particles_late", late);
 		groups_doubtful(groups);
@@ -204,8 +204,7 @@ int main(int argc, char **argv)
 		last = count_rows(t, groups);
 	else if (isnan(duration))
 		die(EXIT_RUN,
-			"%s: no particle: how long the record is has to be told by "
-			"--duration",
+			"%s: no particle: specify the length of the record with --duration",
 			table_name(t));
 	if (isnan(duration) && isnan(period) && time_column(t) >= 0)
 		warn("the record is taken to end with its last particle, at %g s; "

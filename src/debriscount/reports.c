@@ -36,13 +36,13 @@ struct report {
 void report_check(enum report_kind output, int periods)
 {
 	if (!isnan(flow) && !isnan(volume))
-		die(EXIT_USAGE, "want --flow or --volume, not both");
+		die(EXIT_USAGE, "specify --flow or --volume, not both");
 	if (!isnan(volume) && periods)
-		die(EXIT_USAGE, "--volume is of all oil: --period wants --flow");
+		die(EXIT_USAGE, "--volume is the total volume: --period requires --flow");
 	if (output == REPORT_CODES && isnan(flow) && isnan(volume))
-		die(EXIT_USAGE, "--output codes wants --flow or --volume");
+		die(EXIT_USAGE, "--output codes requires --flow or --volume");
 	if (output == REPORT_TREND && !periods)
-		die(EXIT_USAGE, "--output trend wants --period");
+		die(EXIT_USAGE, "--output trend requires --period");
 	if (window && output != REPORT_TREND)
 		die(EXIT_USAGE, "--window is for --output trend");
 }

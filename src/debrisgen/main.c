@@ -94,7 +94,7 @@ static void open_scene(struct run *run, struct record *r, struct scene *c)
 	if (c->target == 0 && s.load == 0 && wearing_solves(run->wearing, 1) &&
 		isnan(press.approach))
 		die(EXIT_USAGE,
-			"%s: record %ld bears no load: want --load, --pressure or --approach",
+			"%s: record %ld carries no load: specify --load, --pressure or --approach",
 			fields_name(run->in), fields_count(run->in));
 }
 
@@ -129,8 +129,7 @@ static void check_ends(struct run *run, const struct scene *c, const struct worn
 		endless += s->lost->particle[i].endless != 0;
 	if (endless == 0)
 		return;
-	warn("%s: realisation %ld, step %ld: %zu of %zu particles go round the periodic "
-	     "grid and have no end: their shape is nan",
+	warn("%s: realisation %ld, step %ld: %zu of %zu particles connect to themselves across the periodic grid: their shape is nan",
 		fields_name(run->in), c->now.r->realisation, s->number, endless,
 		s->lost->count);
 	run->status = EXIT_NOCONV;

@@ -79,8 +79,7 @@ static void check(struct ensemble *e, enum ensemble_status status)
 		return;
 	case ENSEMBLE_APART:
 		die(EXIT_RUN,
-			"the rows of realisation %ld stand too far apart: sort the table "
-			"by realisation",
+			"the rows of realisation %ld are not contiguous: sort the table by realisation",
 			ensemble_culprit(e));
 	case ENSEMBLE_CLASH:
 		die(EXIT_RUN,
@@ -312,8 +311,7 @@ static void print_comparison(const struct ensemble *e, const char *cmd)
 		n[i] = ensemble_par(both[i])->realisations;
 		if (n[i] < 2)
 			die(EXIT_RUN,
-				"--compare wants at least two realisations of each "
-				"study, got %g",
+				"--compare requires at least two realisations of each study, got %g",
 				n[i]);
 		if (estimate_all(both[i], value[i]) ||
 			estimate_errors(both[i], (uint64_t)seed + (uint64_t)i, bootstrap,
@@ -413,18 +411,18 @@ static void check_options(void)
 {
 	if (other_path && (output != FITS || summary_path || realisations))
 		die(EXIT_USAGE,
-			"--compare takes no --output, --summary or --realisations");
+			"--compare excludes --output, --summary and --realisations");
 	if (other_path && !bootstrap)
 		bootstrap = 400;
 	if (other_path && !opt_given("confidence"))
 		confidence = 0.9;
 	if (diameters.v[0] >= diameters.v[1])
-		die(EXIT_USAGE, "--diameter wants LO:HI with LO below HI");
+		die(EXIT_USAGE, "--diameter requires LO:HI with LO below HI");
 	if (range.n == 2 && range.v[0] > range.v[1])
-		die(EXIT_USAGE, "--step wants A or A:B with A not above B");
+		die(EXIT_USAGE, "--step requires A or A:B with A not above B");
 	for (int k = 1; k < edges.n; k++)
 		if (edges.v[k] <= edges.v[k - 1])
-			die(EXIT_USAGE, "--aspects: %g does not lie above %g", edges.v[k],
+			die(EXIT_USAGE, "--aspects: %g is not above %g", edges.v[k],
 				edges.v[k - 1]);
 }
 
@@ -441,7 +439,7 @@ int main(int argc, char **argv)
 	read_particles(e, argv[first], &cmd);
 	check(e, ensemble_close(e));
 	if (bootstrap && ensemble_told(e) < 2)
-		die(EXIT_RUN, "--bootstrap wants at least two realisations, got %zu",
+		die(EXIT_RUN, "--bootstrap requires at least two realisations, got %zu",
 			ensemble_told(e));
 	stats_add("particles", ensemble_particles(e));
 	stats_add("realisations", ensemble_par(e)->realisations);

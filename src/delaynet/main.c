@@ -65,9 +65,9 @@ static void check_options(void)
 	if (lessons.model == PULSES && lessons.sources > CNN_SOURCES)
 		die(EXIT_USAGE, "--sources: want at most %d pulses", CNN_SOURCES);
 	if (task == APPLY && !network_file)
-		die(EXIT_USAGE, "--task apply wants --network FILE");
+		die(EXIT_USAGE, "--task apply requires --network FILE");
 	if (task != APPLY && network_file)
-		die(EXIT_USAGE, "--network is for --task apply");
+		die(EXIT_USAGE, "--network requires --task apply");
 	if (task == APPLY && lessons.model == PULSES)
 		arrivals_check();
 	else if (opt_any_given(arrivals_rows))
@@ -192,7 +192,7 @@ int main(int argc, char **argv)
 #endif
 	check_options();
 	if (i < argc && (task == TRAIN || task == DATA))
-		die(EXIT_USAGE, "--task %s reads nothing, got %s", tasks[task], argv[i]);
+		die(EXIT_USAGE, "--task %s has no input: omit %s", tasks[task], argv[i]);
 	switch (task) {
 	case TRAIN:
 		learning_train();

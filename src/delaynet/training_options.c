@@ -73,8 +73,7 @@ static void check_trained(enum network_status status)
 	if (status == NETWORK_MEMORY)
 		die(EXIT_RUN, "out of memory");
 	if (status == NETWORK_DIVERGED)
-		die(EXIT_RUN,
-			"the training diverged: want a smaller --learning-rate than %g",
+		die(EXIT_RUN, "the training diverged: use a --learning-rate below %g",
 			learning.rate);
 }
 
@@ -129,9 +128,9 @@ void learning_train(void)
 
 		if (layer->kind != NETWORK_DENSE)
 			die(EXIT_USAGE,
-				"--pretrain: only dense layers can be auto-encoders");
+				"--pretrain: only dense layers can be pretrained");
 		if (learning.sparsity > 0 && layer->activation != NETWORK_SIGMOID)
-			die(EXIT_USAGE, "--sparsity wants --activation sigmoid");
+			die(EXIT_USAGE, "--sparsity requires --activation sigmoid");
 		check_trained(network_pretrain(net, i, &par, lesson_sample, &l));
 	}
 	phase = "training";

@@ -100,14 +100,15 @@ static struct layout_par parameters(void)
 static void check_options(void)
 {
 	if (!coils.n == !best)
-		die(EXIT_USAGE, "want either --coils X,X,... or --best N");
+		die(EXIT_USAGE, "specify either --coils X,X,... or --best N");
 	if (best && isnan(extent))
-		die(EXIT_USAGE, "--best %ld: wants --extent, the room there is", best);
+		die(EXIT_USAGE, "--best %ld requires --extent, the available length",
+			best);
 	if (isnan(snr))
 		die(EXIT_USAGE,
 			"--snr is missing: peak of a 100 um particle over the noise, dB");
 	if (isnan(arrivals) == isnan(per_ml))
-		die(EXIT_USAGE, "want either --arrivals F or --per-ml N");
+		die(EXIT_USAGE, "specify either --arrivals F or --per-ml N");
 }
 
 /* Reads "0,5cm,25cm"; returns the number of coils. */
@@ -125,7 +126,7 @@ static int read_coils(const char *text, double *coil)
 			die(EXIT_USAGE, "--coils %s: '%s' %s, want positions in m", text,
 				s, wrong);
 		if (n && !(coil[n] >= coil[n - 1]))
-			die(EXIT_USAGE, "--coils %s: positions must ascend", text);
+			die(EXIT_USAGE, "--coils %s: positions must be ascending", text);
 		if (!(fabs(coil[n]) <= 1e3))
 			die(EXIT_USAGE, "--coils %s: '%s' is beyond 1000 m", text, s);
 		n++;
@@ -156,8 +157,7 @@ static double detection(const struct layout_par *par, double samples, int n)
 	bound_energies(par->bound.shape, e);
 	d = par->bound.snr * sqrt(samples * e[0] * n);
 	if (d < found && !doubtful++)
-		warn("the pulses stand %.3g deviations out of the noise, want %g: "
-		     "such particles are missed and no estimate reaches the bound",
+		warn("the detection statistic is %.3g standard deviations, below %g: such particles are often missed and the bound is not attained",
 			d, found);
 	return d;
 }
@@ -236,7 +236,8 @@ int main(int argc, char **argv)
 
 		if (layout_search(
 			    &par, (int)best, extent, least, grid_steps(), coil, &of))
-			die(EXIT_RUN, "no layout of %ld coils is paired rightly with %g",
+			die(EXIT_RUN,
+				"no layout of %ld coils has p_unique_width of %g or more",
 				best, least);
 		stats_add("layouts_searched", (double)of.judged);
 		put_layout(t, &par, coil, (int)best);

@@ -45,8 +45,7 @@ static const struct opt opts[] = {
 
 static const struct prog prog = { "records",
 	"List, select, count, check and convert the records of a stream.", "[file ...]",
-	"fields; --pretty: table; --check, --replay, --join: any stream",
-	"table or fields", opts };
+	"fields, or a table with --pretty", "table or fields", opts };
 
 static int picked(long number)
 {

@@ -60,7 +60,7 @@ struct opt generated_rows[] = {
 void generated_check(void)
 {
 	if (opt_given("slope") && opt_given("pair"))
-		die(EXIT_USAGE, "--pair is a height and does not go with --slope");
+		die(EXIT_USAGE, "--pair excludes --slope");
 	if (opt_given("hurst") && (opt_given("acf") || opt_given("corr")))
 		die(EXIT_USAGE, "--hurst excludes --acf and --corr");
 	if (!opt_given("hurst") && (opt_given("rolloff") || opt_given("longest")))
@@ -120,8 +120,7 @@ static void doubt(const struct spectrum_par *p)
 	double dx = p->lx / p->nx, dy = p->ly / p->ny;
 
 	if (length.v[0] >= 0.1)
-		warn("--length %g m: sides are in metres unless a unit is given: is %gmm "
-		     "meant?",
+		warn("--length %g m: in metres without a unit: is %gmm meant?",
 			length.v[0], length.v[0]);
 	if (corr.n && (p->corr_x < dx || p->corr_y < dy))
 		warn("--corr %g m is below the spacing of %g m: the heights are hardly "

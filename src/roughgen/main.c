@@ -72,15 +72,15 @@ static void check_options(int from_file)
 		refuse(generated_grid_rows, no_file);
 		refuse(generated_rows, no_file);
 	} else {
-		refuse(measured_rows, "is for a measured surface: name a file, or - for "
-				      "standard input");
+		refuse(measured_rows,
+			"applies to a measured surface only: name a file, or - for standard input");
 	}
 	if (opt_given("sq") + opt_given("sa") + opt_given("slope") > 1)
-		die(EXIT_USAGE, "--sq, --sa and --slope exclude each other");
+		die(EXIT_USAGE, "--sq, --sa and --slope exclude one another");
 	if (measure && spectrum)
-		die(EXIT_USAGE, "--measure and --spectrum exclude each other");
+		die(EXIT_USAGE, "--measure and --spectrum exclude one another");
 	if (opt_given("taper") && !spectrum)
-		die(EXIT_USAGE, "--taper is for --spectrum");
+		die(EXIT_USAGE, "--taper requires --spectrum");
 	roughness_check();
 	generated_check();
 }

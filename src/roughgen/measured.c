@@ -74,7 +74,7 @@ void measured_close(struct measured *m)
 static void need_memory(enum num_status status)
 {
 	if (status)
-		die(EXIT_RUN, "out of memory preparing a measured surface");
+		die(EXIT_RUN, "out of memory for a measured surface");
 }
 
 /* A record with an empty height field and what else r knows of itself. */
@@ -183,7 +183,7 @@ static void crop_ends(const struct fields_in *in, struct record *s)
 
 	if (s->nx - 2 * cx < 1 || s->ny - 2 * cy < 1)
 		die(EXIT_RUN,
-			"%s: record %ld: --ends crop leaves nothing of %d x %d samples",
+			"%s: record %ld: --ends crop removes all of %d x %d samples",
 			fields_name(in), fields_count(in), s->nx, s->ny);
 	new_record(&t, s, s->nx - 2 * cx, s->ny - 2 * cy, s->dx, s->dy);
 	surface_crop(s->nx, s->data[0], cx, cy, t.nx, t.ny, t.data[0]);

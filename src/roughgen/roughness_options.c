@@ -16,7 +16,7 @@ void roughness_check_range(const char *word, const struct opt_list *range)
 	const double least = 1e-30; /* smaller ones would underflow when squared */
 
 	if (range->n == 2 && range->v[0] > range->v[1])
-		die(EXIT_USAGE, "--%s %g:%g: the range runs backwards", word, range->v[0],
+		die(EXIT_USAGE, "--%s %g:%g: the range is descending", word, range->v[0],
 			range->v[1]);
 	for (int i = 0; i < range->n; i++)
 		if (range->v[i] > 0 && range->v[i] < least)

@@ -78,19 +78,19 @@ static void settle(void)
 	pump_check();
 	for (int i = 1; i < levels.n; i++)
 		if (!(levels.v[i] > levels.v[i - 1]))
-			die(EXIT_USAGE, "--levels must grow");
+			die(EXIT_USAGE, "--levels: levels must be ascending");
 	if (!isnan(pump.critical_size) && wear_files.n == 0)
-		die(EXIT_USAGE, "--critical-size needs --wear");
+		die(EXIT_USAGE, "--critical-size requires --wear");
 	if ((calibrations.n || rates_file || !isnan(speed)) && wear_files.n == 0)
-		die(EXIT_USAGE, "--calibrate, --rates and --speed need --wear");
+		die(EXIT_USAGE, "--calibrate, --rates and --speed require --wear");
 	for (int i = 0; i < wear_files.n; i++)
 		if (!new && (!state_file || !strcmp(state_file, "-")) &&
 			!strncmp(wear_files.v[i], "-", strcspn(wear_files.v[i], ":")))
 			die(EXIT_USAGE, "standard input cannot be both --wear and state");
 	if (new && (wear_files.n == 0 || rule == RATE_FILTER))
-		die(EXIT_USAGE, "--new needs --wear and the rates of its fragments");
+		die(EXIT_USAGE, "--new requires --wear and --wear-rate mean or last");
 	if (new && !calibrations.n && isnan(step_time) && isnan(speed))
-		die(EXIT_USAGE, "--new needs --step-time, --speed or --calibrate");
+		die(EXIT_USAGE, "--new requires --step-time, --speed or --calibrate");
 	if (samples && !isnan(eol))
 		die(EXIT_USAGE, "--eol scores the summary, not --samples");
 	if ((calibrations.n > 0) + !isnan(step_time) + !isnan(speed) > 1)
@@ -285,7 +285,7 @@ int main(int argc, char **argv)
 	}
 	lifetable_close(out);
 	if (assumed)
-		warn("taken for granted: %s", assumed);
+		warn("assumed: %s", assumed);
 	forecast_free(f);
 	partition_free(p);
 	paths_free(e);

@@ -80,15 +80,15 @@ void source_check(int operands)
 			"--uniform: a particle of %g m does not fit a bore of %g m",
 			uniform.v[1], bore);
 	if (uniform.n && operands)
-		die(EXIT_USAGE, "--uniform draws the particles: no file to read");
+		die(EXIT_USAGE, "--uniform draws the particles: omit the file");
 	if (uniform.n && (number >= 0) + !isnan(concentration) != 1)
-		die(EXIT_USAGE, "--uniform needs one of --number and --concentration");
+		die(EXIT_USAGE, "--uniform requires one of --number and --concentration");
 	if (!uniform.n && (number >= 0 || !isnan(concentration)))
-		die(EXIT_USAGE, "--number and --concentration need --uniform");
+		die(EXIT_USAGE, "--number and --concentration require --uniform");
 	if (burst > 0 && (isnan(span) || isnan(period)))
-		die(EXIT_USAGE, "--burst needs --span and --period");
+		die(EXIT_USAGE, "--burst requires --span and --period");
 	if (burst > 0 && !isnan(concentration))
-		die(EXIT_USAGE, "--burst and --concentration exclude each other");
+		die(EXIT_USAGE, "--burst and --concentration exclude one another");
 	if (burst > 0 && period < span + gap)
 		die(EXIT_USAGE, "--period %g s is shorter than --span and --gap", period);
 }
@@ -118,7 +118,7 @@ static void make_arrivals(struct source *s, uint64_t n)
 	double most = burst ? (double)burst : (double)n;
 
 	if (isnan(window))
-		die(EXIT_USAGE, "particles without times need --duration or --span");
+		die(EXIT_USAGE, "particles without times require --duration or --span");
 	if (window < 0 || (par.rate == 0 && most * gap > window + gap * (1 + 1e-9)))
 		die(EXIT_USAGE, "%s leaves no room for the particles",
 			isnan(span) ? "--duration" : "--span");

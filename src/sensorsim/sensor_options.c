@@ -116,14 +116,15 @@ void sensors_check(void)
 	if (lag.n && lag.v[0] > lag.v[1])
 		die(EXIT_USAGE, "--lag: want A:B with A not above B");
 	if (rate != floor(rate))
-		die(EXIT_USAGE, "--rate: AU wants whole hertz, not %g", rate);
+		die(EXIT_USAGE, "--rate: AU requires an integer number of hertz, got %g",
+			rate);
 	if (coil.n && opt_given("calibration"))
-		die(EXIT_USAGE, "--coil and --calibration exclude each other");
+		die(EXIT_USAGE, "--coil and --calibration exclude one another");
 	if (coil.n && !(coil.v[3] >= 1 && coil.v[4] > 0 && coil.v[5] > coil.v[4]))
 		die(EXIT_USAGE,
 			"--coil: want a permeability of at least 1 and paths 0 < L0 < LF");
 	if (opt_given("snr") && opt_given("noise"))
-		die(EXIT_USAGE, "--noise and --snr exclude each other");
+		die(EXIT_USAGE, "--noise and --snr exclude one another");
 	if (corner > rate / 2)
 		die(EXIT_USAGE, "--corner %g Hz is above half the rate, %g Hz", corner,
 			rate / 2);
@@ -202,7 +203,7 @@ struct disturbances *sensors_disturbances(
 	if (any == 0)
 		return NULL;
 	if (isnan(length))
-		die(EXIT_USAGE, "bubbles, shocks and other events need --duration");
+		die(EXIT_USAGE, "bubbles, shocks and other events require --duration");
 	d = disturbances_new(&par);
 	if (!d)
 		die(EXIT_RUN, "no memory");

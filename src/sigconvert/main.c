@@ -53,11 +53,11 @@ static double clipped;
 static void check_options(void)
 {
 	if (from == FROM_RAW && (!rate.n || !channels))
-		die(EXIT_USAGE, "--from raw wants --rate and --channels");
+		die(EXIT_USAGE, "--from raw requires --rate and --channels");
 	if (from != FROM_RAW && channels)
-		die(EXIT_USAGE, "--channels is for --from raw");
+		die(EXIT_USAGE, "--channels requires --from raw");
 	if (scale == 0)
-		die(EXIT_USAGE, "--scale 0 leaves nothing");
+		die(EXIT_USAGE, "--scale must not be 0");
 }
 
 int main(int argc, char **argv)
@@ -93,7 +93,7 @@ int main(int argc, char **argv)
 	stats_set("frames", frames);
 	stats_set("samples_clipped", clipped);
 	if (clipped > 0)
-		warn("%.0f samples lie beyond full scale and are clipped: --scale",
+		warn("%.0f samples exceed full scale and are clipped: see --scale",
 			clipped);
 	free(x);
 	return shell_done(clipped > 0 ? EXIT_NOCONV : EXIT_SUCCESS);

@@ -109,13 +109,13 @@ static enum in_format recognise(const struct content *c)
 static void check_options(void)
 {
 	if (format == IN_RAW && size.n != 2)
-		die(EXIT_USAGE, "--format raw wants --size NXxNY");
+		die(EXIT_USAGE, "--format raw requires --size NXxNY");
 	if (format != IN_RAW && (size.n || skip > 0 || big_endian || opt_given("type")))
 		die(EXIT_USAGE,
 			"--size, --type, --skip and --big-endian are for --format "
 			"raw");
 	if (profile && format != IN_AUTO && format != IN_TEXT)
-		die(EXIT_USAGE, "--profile is for text");
+		die(EXIT_USAGE, "--profile requires --format text");
 }
 
 int main(int argc, char **argv)
