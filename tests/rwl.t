@@ -180,7 +180,7 @@ sed -e '/^# stream/d' -e '/^# end/d' -e 's/^# nominal_area: .*/# nominal_area: 5
 fails "an area in Pa" 1 "wrong.tsv: nominal_area: '5 Pa' has the wrong unit, want m2" rwl $new --wear wrong.tsv --step-time 1h
 rwl --new --wear even.tsv --step-time 1h >out 2>err
 is "parameters that are assumed are reported" "$(cat err)" \
-	"rwl: $(sed -n 's/^# assumed: /taken for granted: /p' out)"
+	"rwl: $(sed -n 's/^# assumed: /assumed: /p' out)"
 is "all of it" "$(grep -o -e '--[a-z-]*' err | tr '\n' ' ')" \
 	"--fragment-area --area --threshold-leakage --radii --ports --viscosity "
 rwl --new --wear even.tsv --step-time 1000h --threshold-gap 11um --initial-gap 10.95um >out 2>err
