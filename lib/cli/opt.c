@@ -253,7 +253,7 @@ static long parse_whole(const struct opt *o, const char *text)
 	whole = strtoll(text, NULL, 10);
 	if (digits[strspn(digits, "0123456789")] || errno || whole > LONG_MAX ||
 		whole < LONG_MIN)
-		die(EXIT_USAGE, "--%s %s: want all digits of a number above 2^53",
+		die(EXIT_USAGE, "--%s %s: write a number above 2^53 with all its digits",
 			o->word, text);
 	return (long)whole;
 }

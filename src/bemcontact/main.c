@@ -24,28 +24,26 @@ static struct contact_kernel coated;
 static const struct opt opts[] = {
 	OPT_TABLE(press_rows),
 	{ 0, "coating", OPT_NUM, UNIT_LENGTH, &coating.thickness, 0, 1e6, "T",
-		"thickness of a layer of another material on the first body; 0: none", 0,
-		0 },
+		"thickness of a bonded layer on the first body; 0: none", 0, 0 },
 	{ 0, "coating-young", OPT_NUM, UNIT_PRESSURE, &coating.young, 1e-6, 1e30, "E",
-		"its Young's modulus", 0, 0 },
+		"Young's modulus of the layer", 0, 0 },
 	{ 0, "coating-poisson", OPT_NUM, UNIT_NONE, &coating.poisson, -0.999, 0.499, "N",
-		"its Poisson's ratio", 0, 0 },
+		"Poisson's ratio of the layer", 0, 0 },
 	OPT_TABLE(slip_rows),
 	OPT_HEADING("Output"),
 	{ 0, "fields", OPT_WORDS, UNIT_NONE, &fields, 0, 0, "NAME,...",
-		"what to write of height, pressure, displacement, gap, shear, residual",
+		"fields to write: height, pressure, displacement, gap, shear, residual",
 		field_names, 0 },
 	OPT_TABLE(table_opts),
 	{ 0, "sweep", OPT_INT, UNIT_COUNT, &sweep, 1, 1e6, "N",
-		"load in N equal steps, each a row of --table", 0, 0 },
+		"apply the load in N equal steps, each a row of --table", 0, 0 },
 	OPT_TABLE(unload_rows),
 	OPT_TABLE(raw_rows),
 	OPT_END,
 };
 
 static const struct prog prog = { "bemcontact",
-	"Press a rough surface against a flat: pressure, contact and gap of elastic "
-	"bodies.",
+	"Solve the elastic contact of a rough surface with a flat: pressure and gap.",
 	"[file]", "fields: height", "fields: height, pressure", opts };
 
 /* The body below the layer is the first of --young, the other one the last. */
@@ -55,10 +53,9 @@ static void set_coating(void)
 	double other = nu->v[nu->n - 1];
 
 	if (!e->n || isnan(coating.young))
-		die(EXIT_USAGE, "--coating: want --young and --coating-young");
+		die(EXIT_USAGE, "--coating requires --young and --coating-young");
 	if (press.boundary != CONTACT_PERIODIC)
-		die(EXIT_USAGE,
-			"--coating is known for a period alone: want --boundary periodic");
+		die(EXIT_USAGE, "--coating requires --boundary periodic");
 	coating.base_young = e->v[0];
 	coating.base_poisson = nu->v[0];
 	coating.other = (1 - other * other) / e->v[e->n - 1];
@@ -69,16 +66,16 @@ static void check_options(void)
 {
 	press_check();
 	if (isnan(press.load) && isnan(press.pressure) && isnan(press.approach))
-		die(EXIT_USAGE, "want one of --load, --pressure and --approach");
+		die(EXIT_USAGE, "specify one of --load, --pressure and --approach");
 	if (isnan(press.estar))
-		die(EXIT_USAGE, "want either --estar or --young and --poisson");
+		die(EXIT_USAGE, "specify either --estar or --young and --poisson");
 	if (coating.thickness > 0)
 		set_coating();
 	slip_check();
 	if (slip_wanted() && coating.thickness > 0)
-		die(EXIT_USAGE, "--tangential is not known for a --coating");
+		die(EXIT_USAGE, "--tangential excludes --coating");
 	if (fields & 1 << SHEAR && !slip_wanted())
-		die(EXIT_USAGE, "--fields shear: want --tangential and --friction");
+		die(EXIT_USAGE, "--fields shear requires --tangential and --friction");
 	unload_check();
 }
 

@@ -13,10 +13,10 @@ static struct table_out *table, *patches;
 
 struct opt table_opts[] = {
 	{ 0, "table", OPT_TEXT, UNIT_NONE, &table_path, 0, 0, "FILE",
-		"write load, approach, area, stiffness and pressures, a row per contact",
+		"write load, approach, area, stiffness, pressures: one row per contact",
 		0, 1 },
 	{ 0, "patches", OPT_TEXT, UNIT_NONE, &patches_path, 0, 0, "FILE",
-		"write the patches of each contact, a row per patch", 0, 1 },
+		"write the patches of each contact: one row per patch", 0, 1 },
 	OPT_END,
 };
 

@@ -25,14 +25,15 @@ struct opt worn_rows[] = {
 	{ 0, "counter-surface", OPT_TEXT, UNIT_NONE, &counter_path, 0, 0, "FILE",
 		"write the worn counterface of every step", NULL, 1 },
 	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
-		"write a table with a row per step", NULL, 1 },
+		"write a table with one row per step", NULL, 1 },
 	{ 0, "stress", OPT_TEXT, UNIT_NONE, &stress_path, 0, 0, "FILE",
 		"write the stress below every contact", NULL, 1 },
 	{ 0, "fields", OPT_WORDS, UNIT_NONE, &stress_wanted, 0, 0, "NAME,...",
-		"what to write of von_mises, hydrostatic, principal, tensor",
+		"fields of --stress: von_mises, hydrostatic, principal, tensor",
 		stress_words, 1 },
 	{ 0, "stress-layers", OPT_INT, UNIT_COUNT, &stress_layers, 0, 1e6, "N",
-		"layers of --stress; 0: as deep as was searched for failure", NULL, 1 },
+		"number of layers of --stress; 0: down to the depth searched for failure",
+		NULL, 1 },
 	OPT_END,
 };
 
