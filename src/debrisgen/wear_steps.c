@@ -126,7 +126,7 @@ struct wearing {
 
 struct wearing *wearing_open(const struct fields_in *in, long steps)
 {
-	struct wearing *w = xcalloc(1, sizeof(*w));
+	struct wearing *w = xcalloc(1, sizeof *w);
 
 	w->in = in;
 	w->steps = steps;
