@@ -76,7 +76,7 @@ printf 't,u\n2024-02-29T00:30:00+01:00,1\n2024-02-28T23:30:01Z,2\n2024-02-28T23:
 is "a leap day, and zones that differ" "$(sigconvert --output text zones.csv | sed -n -e 's/^# rate: //p' -e 's/^# start: //p' | tr '\n' ' ')" \
 	"1 2024-02-29T00:30:00+01:00 "
 for moment in 2026-02-29T00:00 2026-13-01T00:00 2026-01-01T24:00 2026-01-01 22.11.2026; do
-	fails "a start of $moment" 2 'want a moment like' sigconvert --start $moment a.au
+	fails "a start of $moment" 2 'expected a moment like' sigconvert --start $moment a.au
 done
 fails "two starts" 2 'began at 2026-11-22T23:59:59.5' sigconvert --start 2026-11-22T00:00 w.au
 sensorsim --uniform 50um:150um --number 3 --duration 2s --rate 1234.5Hz | sigconvert --start 2026-11-22T03:00Z >s.au
@@ -128,7 +128,7 @@ else
 	skip "WAV and FLAC" "built without libsndfile"
 fi
 
-fails "no rate and no times" 1 'give --rate' sigconvert --skip-lines 1 plain.csv
+fails "no rate and no times" 1 'specify --rate' sigconvert --skip-lines 1 plain.csv
 fails "a column that is not there" 1 "no column 'x'" sigconvert --columns x daq.csv
 fails "no headings" 1 'want a line of headings' sigconvert --skip-lines 2 plain.csv
 printf 't\tu\n0\t1\n1\t2\n2\t3\n5\t4\n' >gap.tsv
@@ -139,7 +139,7 @@ printf 't\tu\n0\t1\n1\n' >short.tsv
 fails "a short row" 1 'line 3: want 2 cells, got 1' sigconvert short.tsv
 printf 'Time [kg]\tu\n0\t1\n1\t1\n' >kg.tsv
 fails "times in kilograms" 1 'want a unit of time' sigconvert --time Time kg.tsv
-fails "raw without a rate" 2 'wants --rate and --channels' sigconvert --from raw a.raw
-fails "channels of what is not raw" 2 'is for --from raw' sigconvert --channels 2 a.au
+fails "raw without a rate" 2 'requires --rate and --channels' sigconvert --from raw a.raw
+fails "channels of what is not raw" 2 'requires --from raw' sigconvert --channels 2 a.au
 fails "half a frame of raw" 1 'a.raw' sh -c 'head -c 40 a.raw >h; mv h a.raw; sigconvert --from raw --rate 1 --channels 2 a.raw'
 done_testing

@@ -13,4 +13,9 @@ double table_quantity(const struct table_in *t, const char *key, enum unit unit)
  * tells no unit of the column, or 1.  Dies where it is not a unit of this kind. */
 double table_scale(const struct table_in *t, int column, enum unit unit);
 
+/* table_need() and table_find() for a column that is read in SI: its numbers are
+ * converted where the "# units:" line gives another unit of this kind. */
+int table_need_quantity(struct table_in *t, const char *column, enum unit unit);
+int table_find_quantity(struct table_in *t, const char *column, enum unit unit);
+
 #endif

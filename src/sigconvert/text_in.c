@@ -50,7 +50,7 @@ static int any_line(struct text_in *t)
 	while (n > 0 && strchr("\r\n", t->line[n - 1]))
 		t->line[--n] = '\0';
 	if (n != strlen(t->line))
-		die(EXIT_RUN, "%s: line %ld: NUL byte: no text", t->name, t->number);
+		die(EXIT_RUN, "%s: line %ld: NUL byte: not a text file", t->name, t->number);
 	if (t->number == 1 && strncmp(t->line, "\xef\xbb\xbf", 3) == 0)
 		memmove(t->line, t->line + 3, n - 2);
 	return 1;
@@ -177,13 +177,12 @@ static void choose(struct text_in *t, const struct recording_par *par)
 		if (cell < 0)
 			die(EXIT_RUN, "%s: no column '%s'", t->name, name);
 		if (t->format.channels == t->cells)
-			die(EXIT_USAGE, "--columns: more than the %d there are",
-				t->cells);
+			die(EXIT_USAGE, "--columns: the table has only %d", t->cells);
 		take(t, cell);
 	}
 	free(list);
 	if (!t->format.channels)
-		die(EXIT_RUN, "%s: no column but that of the times", t->name);
+		die(EXIT_RUN, "%s: no column other than the times", t->name);
 }
 
 /* Scales to SI by the units of the headings; those that are not known stay as they are.
@@ -368,7 +367,7 @@ static double told_rate(const struct text_in *t)
 		return NAN;
 	span = t->ahead[(t->nahead - 1) * width] - *t->ahead;
 	if (!(span > 0))
-		die(EXIT_RUN, "%s: the times do not rise", t->name);
+		die(EXIT_RUN, "%s: the times are not ascending", t->name);
 	rate = simplest_rate(t, (double)(t->nahead - 1) / span);
 	if (t->resolution > 1e-3 * span && deviation(t, rate) > 1e-9 * span)
 		warn("%s: the times tell no better than by %.1g of it that the rate is "
@@ -395,7 +394,7 @@ static void learn_rate(struct text_in *t, const struct recording_par *par)
 	if (isnan(rate))
 		rate = told_rate(t);
 	if (isnan(rate))
-		die(EXIT_RUN, "%s: no times tell the rate: give --rate", t->name);
+		die(EXIT_RUN, "%s: no column of times: specify --rate", t->name);
 	if (!(rate >= RATE_LEAST && rate <= RATE_MOST))
 		die(EXIT_RUN, "%s: %g samples per second, want %g to %g", t->name, rate,
 			RATE_LEAST, RATE_MOST);
