@@ -122,5 +122,15 @@ head -n 1 six.tsv >none.tsv
 fails "no particle and no duration" 1 'told by --duration' debriscount none.tsv
 debriscount --duration 1h none.tsv >none.out
 is "no particle in an hour: none, at most 3.7" "$(cell number none.out) $(cell number_high none.out)" "0 3.68888"
+printf '# units: um min\ndiameter\ttime1\n50\t1\n150\t2\n' >um.tsv
+debriscount --classes 40um,100um um.tsv >um.out 2>err
+is "diameters and times in units that the table names are converted" "$(column end um.out | tr '\n' ' ')$(column number um.out | tr '\n' ' ')" "120 120 1 1 "
+fails "units that change within a table" 1 'line 5: the units change' sh -c '(cat um.tsv; sed "s/um/mm/" um.tsv) | debriscount'
+printf '# units: kg s\ndiameter\ttime1\n50\t1\n' >kg.tsv
+fails "a diameter in kilograms" 1 "column 'diameter' is in 'kg', want m" debriscount kg.tsv
+grep -v '^#' um.tsv >bare.tsv
+fails "a diameter of 50 metres" 1 'line 2: diameter is 50 m, want metres' debriscount bare.tsv
+printf 'diameter\ttime1\n1e-6\t5\n1e-6\t1e15\n' >far.tsv
+fails "a time without end of periods before it" 1 'more than 100000 periods' debriscount --period 2s far.tsv
 fails "a record after a record" 1 'another record begins' sh -c 'cat six.tsv six.tsv | debriscount --period 100s'
 done_testing

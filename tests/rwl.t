@@ -74,7 +74,7 @@ near "8 of them in one second (4-28)" "$(cell out 3 mean)" \
 
 # A row that duet calls unresolved is as many spheres as it has sources, one without a
 # diameter is none; sources of other rows tell of their section.  The volumes are those of
-# scripts/wear-volume.
+# wear-volume.
 {
 	printf 'time1\tdiameter\tsources\tverdict\n'
 	printf '%s\n' '0.5 1e-3 1 alone' '1.5 1e-3 2 overlap' '2.5 2e-3 5 unresolved' '3.5 nan 3 unresolved' \
@@ -86,22 +86,6 @@ near "life from all of them" "$(cell out 7 mean)" \
 	"$(calc "(1e-7 - 44 * 0.523598775598e-9) / (44 * 0.523598775598e-9 / 5.5)")" 1e-7
 is "one has no diameter, which is said" "$(column particles_without_diameter crowd.stats): $(cat err)" \
 	"1: rwl: crowd.tsv: rows passed over for want of a diameter: 1"
-"$top/scripts/wear-volume" crowd.tsv >volume.tsv 2>err
-is "wear-volume: spheres" "$(column y volume.tsv | awk '{ printf "%.6f ", $1 / 0.523598775598e-9 }')" \
-	"1.000000 2.000000 42.000000 42.000000 43.000000 "
-is "and says it too" "$(cat err)" "wear-volume: rows passed over for want of a diameter: 1"
-printf 'time1\tdiameter\tverdict\n0.5\t1e-3\talone\n0.6\t1e-3\tmisfit\n1.5\t1e-3\talone\n' >doubt.tsv
-"$top/scripts/wear-volume" doubt.tsv >volume.tsv 2>err
-is "wear-volume leaves out a row that is not believed" \
-	"$(column y volume.tsv | awk '{ printf "%.6f ", $1 / 0.523598775598e-9 }')" "1.000000 "
-is "and reports it" "$(cat err)" "wear-volume: rows left out that are no believable particle: 1"
-is "wear-volume -a counts it" "$("$top/scripts/wear-volume" -a doubt.tsv 2>err | column y - |
-	awk '{ printf "%.6f ", $1 / 0.523598775598e-9 }')$(cat err)" "2.000000 "
-for t in abc nan 1e12 -1; do
-	printf 'time1\tdiameter\n0.5\t1e-4\n%s\t1e-4\n' "$t" >odd.tsv
-	fails "wear-volume: a time of $t" 1 'line 3: time1' timeout 10 "$top/scripts/wear-volume" odd.tsv
-done
-fails "wear-volume: a window of 0" 2 'want a number of seconds' timeout 10 "$top/scripts/wear-volume" -w 0 odd.tsv
 
 # Large particles: 1 of 4 in step 1, 3 of 5 in step 2.
 {
@@ -208,7 +192,7 @@ done
 same "a particle table and its summary" particles.tsv.digits steps.tsv.digits
 rwl --new --wear steps.tsv --step-time 1h -c 2 >out
 is "how the fragments were made is passed on" "$(sed -n 's/^# wear: steps.tsv made by //p' out)" \
-	"$(sed -n '/^# cmd: /{s///;s/--first 0/& --count 4/;p;q;}' steps.tsv)"
+	"$(sed -n '/^# cmd: /{s///;s/--first 0 --count 1/--first 0 --count 4/;p;q;}' steps.tsv)"
 (eval "$(sed -n 's/^# wear: steps.tsv made by //p' out)") >again.tsv
 for f in steps.tsv again.tsv; do
 	grep -v '^#' $f >$f.rows

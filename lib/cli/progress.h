@@ -1,6 +1,6 @@
 /* progress.h - a progress bar, on a terminal only and for work over a second */
-#ifndef SHELL_PROGRESS_H
-#define SHELL_PROGRESS_H
+#ifndef CLI_PROGRESS_H
+#define CLI_PROGRESS_H
 
 /* Draws done / total (total <= 0: unknown, shows done alone); cheap to call often. */
 void progress(const char *what, double done, double total);

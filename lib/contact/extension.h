@@ -14,7 +14,7 @@
 #ifndef CONTACT_EXTENSION_H
 #define CONTACT_EXTENSION_H
 
-#include "contact/solver.h"
+#include "contact/problem.h"
 
 struct extension;
 

@@ -1,5 +1,7 @@
-#include "contact/kernel.h"
-#include "contact/state.h"
+#include "contact/solver.h"
+#include "contact/bccg.h"
+#include "contact/grids.h"
+#include "contact/pk.h"
 #include "num/fft.h"
 #include <errno.h>
 #include <float.h>

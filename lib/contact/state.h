@@ -4,7 +4,7 @@
 
 #include "contact/extension.h"
 #include "contact/mlms.h"
-#include "contact/solver.h"
+#include "contact/problem.h"
 #include "contact/transfer.h"
 #include "num/convolve.h"
 #include "num/sweep.h"
@@ -114,27 +114,5 @@ double contact_share_load(struct contact *c, contact_pass *pass, double missing,
 /* 1 where the certificate has long stopped falling: rounding is all that is left, or
  * the method fails.  Keeps count of calls. */
 int contact_stalls(struct contact *c, double certificate);
-
-/* gradient.c: one step of the projected gradient, which always lowers the energy and
- * keeps the load, or restores it.  contact_gap() is to follow. */
-void contact_gradient_step(struct contact *c);
-/* How many such steps to take: now and then one, while the certificate does not fall, and
- * more where the energy has not fallen either.  s: sums just after contact_gap(). */
-int contact_gradient_due(struct contact *c, const struct sweep *s);
-/* 1 when it is time to ask that. */
-int contact_lingers(const struct contact *c);
-
-/* pk.c */
-enum contact_status contact_solve_pk(struct contact *c);
-
-/* bccg.c */
-int contact_make_preconditioner(struct contact *c, const struct contact *lender);
-enum contact_status contact_solve_bccg(struct contact *c);
-
-/* grids.c: between this grid and the coarser one, down to some 32 cells a side. */
-int contact_can_coarsen(const struct contact_par *par, struct contact_par *coarse);
-void contact_average_height(struct contact *c);
-/* Returns the sum of the pressures. */
-double contact_interpolate_pressure(struct contact *c);
 
 #endif

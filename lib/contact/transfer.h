@@ -7,7 +7,7 @@
 #ifndef CONTACT_TRANSFER_H
 #define CONTACT_TRANSFER_H
 
-#include "contact/solver.h"
+#include "contact/problem.h"
 
 enum { TRANSFER_TAPS = 3 };
 

@@ -4,12 +4,12 @@
  * multiple of 1024 bytes) is what teem, ParaView, Gwyddion, numpy, Octave and
  * gnuplot all read rightly.
  */
+#include "io/nrrd.h"
 #include "cli/msg.h"
 #include "cli/text.h"
 #include "cli/unit.h"
 #include "io/bytes.h"
 #include "io/crc32.h"
-#include "io/formats.h"
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -301,6 +301,11 @@ static void name_fields(
 		die(EXIT_RUN, "%s: record %ld: want the names of %d fields, got '%s'",
 			at->name, at->record, n, h->fields);
 	free(text);
+}
+
+int nrrd_is(const char *magic)
+{
+	return strncmp(magic, "NRRD000", 7) == 0 && strlen(magic) == 8;
 }
 
 void nrrd_read(struct place *at, struct record *r)

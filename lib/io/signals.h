@@ -4,8 +4,8 @@
  * 24, 32-bit PCM (scaled to +-1), float and double, and headerless little-endian
  * float64 when a raw layout is given.  Frames are interleaved: x[frame * channels + c].
  */
-#ifndef SHELL_SIGNALS_H
-#define SHELL_SIGNALS_H
+#ifndef IO_SIGNALS_H
+#define IO_SIGNALS_H
 
 #include "io/input.h"
 #include <stddef.h>

@@ -2,6 +2,7 @@
 #include "cli/msg.h"
 #include "cli/stats.h"
 #include "count/codes.h"
+#include "io/quantities.h"
 #include "io/tables.h"
 #include "num/room.h"
 #include <math.h>
@@ -100,7 +101,7 @@ struct source *particles_read(const char *path)
 
 	if (table_columns(t) == 0)
 		die(EXIT_RUN, "%s: no table", table_name(t));
-	cd = table_need(t, "diameter");
+	cd = table_need_quantity(t, "diameter", UNIT_LENGTH);
 	ca = table_find(t, "aspect");
 	cr = table_find(t, "realisation");
 	for (; more; more = table_next(t)) {

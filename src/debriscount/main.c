@@ -5,13 +5,18 @@
 #include "cli/stats.h"
 #include "common/verdicts.h"
 #include "groups.h"
+#include "io/quantities.h"
 #include "io/tables.h"
 #include "reports.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { EXIT_ALARM = 4 };
+enum { EXIT_ALARM = 4, MOST_EMPTY = 100000 };
+
+/* The bores of debris sensors are millimetres to a few centimetres wide (layout(1) takes
+ * up to this one); a larger particle is one in another unit. */
+static const double LARGEST = 0.1;
 
 static const char *const outputs[] = { "classes", "codes", "trend", NULL };
 static const char *const standards[] = { "own", "iso4406", "as4059", NULL };
@@ -110,13 +115,13 @@ static struct report_par parameters(void)
 }
 
 /* The column of times; -1 where there is none. */
-static int time_column(const struct table_in *t)
+static int time_column(struct table_in *t)
 {
 	static const char *const names[] = { "time1", "time", "t" };
 	int found = -1;
 
 	for (int i = 0; i < 3 && found < 0; i++)
-		found = table_find(t, names[i]);
+		found = table_find_quantity(t, names[i], UNIT_TIME);
 	return found;
 }
 
@@ -133,7 +138,7 @@ static double time_of(const struct table_in *t, int column)
 /* Reads all rows; returns the end of the record. */
 static double count_rows(struct table_in *t, struct groups *groups)
 {
-	int cd = table_need(t, "diameter"), ct = time_column(t);
+	int cd = table_need_quantity(t, "diameter", UNIT_LENGTH), ct = time_column(t);
 	int cv = table_find(t, "verdict"), cs = table_find(t, "sources");
 	int cb = by ? table_need(t, by) : -1;
 	double last = 0, late = 0, begin = 0, end = isnan(period) ? INFINITY : period;
@@ -157,6 +162,12 @@ static double count_rows(struct table_in *t, struct groups *groups)
 				"%s: line %ld: a particle at %g s, after --duration "
 				"%g s",
 				table_name(t), table_line(t), time, duration);
+		if (time - end > MOST_EMPTY * period)
+			die(EXIT_RUN,
+				"%s: line %ld: %s is %g s, more than %d periods after the "
+				"particle before: --period or the unit of time is wrong",
+				table_name(t), table_line(t), table_column_name(t, ct),
+				time, MOST_EMPTY);
 		for (; time >= end; begin = end, end += period)
 			groups_report(groups, begin, end, 1);
 		late += time < begin;
@@ -168,6 +179,11 @@ static double count_rows(struct table_in *t, struct groups *groups)
 			continue;
 		}
 		d = table_positive(t, cd);
+		if (d > LARGEST)
+			die(EXIT_RUN,
+				"%s: line %ld: diameter is %g m, want metres or a '# units:' "
+				"line above the header that names the unit",
+				table_name(t), table_line(t), d);
 		classes_add(c, d, v == VERDICT_SURE);
 		stats_add("particles", 1);
 	} while (table_next(t));

@@ -28,7 +28,7 @@ static int wear_coarser(const struct worn_surface *c, struct contact_par pressin
 	contact = contact_new(&pressing);
 	debris = debris_new(&wear);
 	if (!contact || !debris ||
-		!surface_resample(r->nx, r->ny, c->h, pressing.nx, pressing.ny, h))
+		surface_resample(r->nx, r->ny, c->h, pressing.nx, pressing.ny, h))
 		die(EXIT_RUN, "no memory for a grid of %dx%d cells", pressing.nx,
 			pressing.ny);
 	*volume = *particles = NAN;

@@ -2,6 +2,7 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "io/quantities.h"
 #include "io/tables.h"
 #include "stats/estimates.h"
 #include <limits.h>
@@ -174,8 +175,8 @@ static void read_particles(struct ensemble *e, const char *path, char **cmd)
 		die(EXIT_RUN, "%s: no table", table_name(t));
 	cr = table_need(t, "realisation");
 	cs = table_need(t, "step");
-	cd = table_need(t, "diameter");
-	cv = table_need(t, "volume");
+	cd = table_need_quantity(t, "diameter", UNIT_LENGTH);
+	cv = table_need_quantity(t, "volume", UNIT_VOLUME);
 	ca = table_need(t, "aspect");
 	open_summary(&summary);
 	for (; more; more = table_next(t)) {

@@ -65,19 +65,19 @@ struct opt lessons_rows[] = {
 
 struct delaydata_par lessons_sines(void)
 {
-	return (struct delaydata_par){ .points = lessons.points,
-		.sources = lessons.sources,
+	return (struct delaydata_par){ .points = (int)lessons.points,
+		.sources = (int)lessons.sources,
 		.span = lessons.span,
-		.section = lessons.section,
+		.section = (enum delaydata_section)lessons.section,
 		.length = { lessons.length.v[0], lessons.length.v[1] },
 		.endless = lessons.endless,
 		.amplitude = { lessons.amplitude.v[0], lessons.amplitude.v[1] },
 		.gain = { lessons.gain.v[0], lessons.gain.v[1] },
 		.unit = lessons.unit,
-		.order = lessons.order,
+		.order = (enum delaydata_order)lessons.order,
 		.scaled = lessons.scaled,
 		.noise = isnan(lessons.noise) ? 0 : lessons.noise,
-		.seed = lessons.seed };
+		.seed = (uint64_t)lessons.seed };
 }
 
 struct cnndata_par lessons_pulses(void)
@@ -85,7 +85,7 @@ struct cnndata_par lessons_pulses(void)
 	struct cnndata_par par = cnndata_default();
 
 	if (opt_given("sources"))
-		par.sources[0] = par.sources[1] = lessons.sources;
+		par.sources[0] = par.sources[1] = (int)lessons.sources;
 	if (opt_given("gain"))
 		memcpy(par.gain, lessons.gain.v, sizeof par.gain);
 	if (opt_given("amplitude")) {
@@ -95,8 +95,8 @@ struct cnndata_par lessons_pulses(void)
 	memcpy(par.snr, lessons.snr.v, sizeof par.snr);
 	memcpy(par.reach, lessons.reach.v, sizeof par.reach);
 	par.spacing = lessons.separation;
-	par.shape = lessons.shape;
-	par.seed = lessons.seed;
+	par.shape = (enum pulse_shape)lessons.shape;
+	par.seed = (uint64_t)lessons.seed;
 	return par;
 }
 
@@ -119,7 +119,8 @@ void lessons_check(void)
 
 struct delayloss_par lessons_loss(void)
 {
-	return (struct delayloss_par){ lessons.lambda, lessons.penalty };
+	return (struct delayloss_par){ lessons.lambda,
+		(enum delayloss_penalty)lessons.penalty };
 }
 
 struct lesson lessons_make(void)
@@ -128,10 +129,11 @@ struct lesson lessons_make(void)
 		delayloss_unordered };
 	struct delaydata_par sines = lessons_sines();
 	struct cnndata_par pulses = lessons_pulses();
+	uint32_t first = (uint32_t)lessons.first;
 
 	return lessons.model == PULSES
-		       ? lesson_of_pulses(&pulses, lessons.first)
-		       : lesson_of_sines(&sines, loss_of[lessons.loss], lessons.first);
+		       ? lesson_of_pulses(&pulses, first)
+		       : lesson_of_sines(&sines, loss_of[lessons.loss], first);
 }
 
 void lessons_keep(struct lesson *l)
@@ -139,7 +141,7 @@ void lessons_keep(struct lesson *l)
 	if ((double)lessons.count * l->inputs > 1 << 28)
 		die(EXIT_USAGE, "--count %ld of %d numbers each: more than 2^28",
 			lessons.count, l->inputs);
-	if (!lesson_keep(l, lessons.count))
+	if (lesson_keep(l, lessons.count))
 		die(EXIT_RUN, "out of memory");
 }
 

@@ -80,8 +80,9 @@ static void check_options(void)
 		lessons.count = 300;
 	if (learning.batch == 0 || learning.batch > lessons.count)
 		learning.batch = lessons.count;
-	if (lessons.first +
-			(double)lessons.count * (learning.fresh ? learning.epochs : 1) >
+	if ((double)lessons.first +
+			(double)lessons.count *
+				(double)(learning.fresh ? learning.epochs : 1) >
 		UINT32_MAX)
 		die(EXIT_USAGE, "--count: the samples run beyond number 2^32");
 }
@@ -108,9 +109,9 @@ static struct table_out *create_delays(const char *path, const char *cmd, int n)
 
 static void put_delays(struct table_out *t, long i, const network_real *delay, int n)
 {
-	table_put(t, i);
+	table_put(t, (double)i);
 	for (int k = 0; k < n; k++)
-		table_put(t, delay[k]);
+		table_put(t, (double)delay[k]);
 	table_end_row(t);
 }
 
@@ -123,16 +124,16 @@ static void apply_network(const char *path)
 	int n = network_input(net).width, channels = signal_format(in)->channels;
 	char *cmd = opt_cmd(signal_format(in)->cmd, NULL);
 	struct table_out *t = create_delays(NULL, cmd, network_outputs(net));
-	double *frame = xcalloc(n * 2, sizeof *frame);
-	network_real *x = xcalloc(n * 2, sizeof *x);
+	double *frame = xcalloc((size_t)n * 2, sizeof *frame);
+	network_real *x = xcalloc((size_t)n * 2, sizeof *x);
 	size_t got;
 	long k = 0;
 
 	if (channels != 2)
 		die(EXIT_RUN, "%s: want 2 channels, got %d", signal_name(in), channels);
-	for (; (got = signal_read(in, frame, n)) == (size_t)n; k++) {
+	for (; (got = signal_read(in, frame, (size_t)n)) == (size_t)n; k++) {
 		for (int i = 0; i < 2 * n; i++) {
-			x[i % 2 * n + i / 2] = frame[i];
+			x[i % 2 * n + i / 2] = (network_real)frame[i];
 			if (!isfinite(x[i % 2 * n + i / 2]))
 				die(EXIT_RUN, "%s: frame %ld: want finite samples",
 					signal_name(in), k * n + i / 2);
@@ -142,7 +143,7 @@ static void apply_network(const char *path)
 	if (got > 0)
 		die(EXIT_RUN, "%s: section %ld: want %d frames, got %zu", signal_name(in),
 			k, n, got);
-	stats_add("sections", k);
+	stats_add("sections", (double)k);
 	table_done(t);
 	signal_close(in);
 	free(frame);
@@ -160,20 +161,21 @@ static void write_data(void)
 	};
 	struct signal_out *out = signal_create(NULL, &format);
 	struct table_out *t =
-		truth_file ? create_delays(truth_file, cmd, lessons.sources) : NULL;
+		truth_file ? create_delays(truth_file, cmd, (int)lessons.sources) : NULL;
 	struct delaydata_par par = lessons_sines();
-	network_real *x = xcalloc(2 * lessons.points, sizeof *x), delay[DELAYS_MAX];
-	double *frame = xcalloc(2 * lessons.points, sizeof *frame);
+	size_t points = (size_t)lessons.points;
+	network_real *x = xcalloc(2 * points, sizeof *x), delay[DELAYS_MAX];
+	double *frame = xcalloc(2 * points, sizeof *frame);
 
 	for (long i = 0; i < lessons.count; i++) {
-		delaydata_sample(&par, lessons.first + i, x, delay);
-		for (long k = 0; k < 2 * lessons.points; k++)
-			frame[k] = x[k % 2 * lessons.points + k / 2];
-		signal_write(out, frame, lessons.points);
+		delaydata_sample(&par, (uint32_t)(lessons.first + i), x, delay);
+		for (size_t k = 0; k < 2 * points; k++)
+			frame[k] = (double)x[k % 2 * points + k / 2];
+		signal_write(out, frame, points);
 		if (t)
-			put_delays(t, lessons.first + i, delay, lessons.sources);
+			put_delays(t, lessons.first + i, delay, par.sources);
 	}
-	stats_add("samples", lessons.count);
+	stats_add("samples", (double)lessons.count);
 	signal_done(out);
 	if (t)
 		table_done(t);

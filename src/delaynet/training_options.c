@@ -61,7 +61,7 @@ static long phase_epochs;
 static void report_epoch(void *context, long epoch, double value)
 {
 	(void)context;
-	progress(phase, epoch + 1, phase_epochs);
+	progress(phase, (double)(epoch + 1), (double)phase_epochs);
 	if ((epoch + 1) % ((phase_epochs + 9) / 10) == 0)
 		note("%s: epoch %ld: loss %g", phase, epoch + 1, value);
 	stats_add("epochs", 1);
@@ -83,7 +83,8 @@ static struct network *new_network(const struct lesson *l)
 	struct network_layer layer[NETWORK_LAYERS_MAX];
 	struct network *net;
 	char why[NETFILE_TEXT];
-	int n = netfile_parse_layers(learning.layers, learning.activation, layer, why);
+	int n = netfile_parse_layers(learning.layers,
+		(enum network_activation)learning.activation, layer, why);
 
 	if (n == 0)
 		die(EXIT_USAGE, "--layers: %s", why);
@@ -91,10 +92,10 @@ static struct network *new_network(const struct lesson *l)
 		die(EXIT_USAGE, "--layers: want at most %d", NETWORK_LAYERS_MAX - 1);
 	layer[n++] = (struct network_layer){ NETWORK_DENSE, NETWORK_LINEAR,
 		.units = l->outputs };
-	net = network_new(l->input, layer, n, learning.batch);
+	net = network_new(l->input, layer, n, (int)learning.batch);
 	if (!net)
 		die(EXIT_RUN, "--layers: the network is too large");
-	network_start(net, lessons.seed, learning.repetition);
+	network_start(net, (uint64_t)lessons.seed, (uint32_t)learning.repetition);
 	return net;
 }
 
@@ -103,21 +104,23 @@ void learning_train(void)
 	struct delayloss_par loss_par = lessons_loss();
 	struct lesson l = lessons_make();
 	struct network *net = new_network(&l);
-	struct network_training par = { .optimiser = learning.optimiser,
+	struct network_training par = {
+		.optimiser = (enum network_optimiser)learning.optimiser,
 		.rate = learning.rate,
 		.rate_end = learning.rate_end,
 		.epochs = learning.pretrain,
 		.samples = lessons.count,
-		.batch = learning.batch,
+		.batch = (int)learning.batch,
 		.fresh = learning.fresh,
-		.seed = lessons.seed,
-		.repetition = learning.repetition,
+		.seed = (uint64_t)lessons.seed,
+		.repetition = (uint32_t)learning.repetition,
 		.penalty = { learning.decay, 0, learning.sparsity,
 			learning.sparsity_level },
 		.targets = l.targets,
 		.loss = l.loss,
 		.loss_context = &loss_par,
-		.report = report_epoch };
+		.report = report_epoch
+	};
 	char *cmd = opt_cmd(NULL, NULL);
 
 	if (!learning.fresh)
@@ -138,9 +141,9 @@ void learning_train(void)
 	phase_epochs = par.epochs = learning.epochs;
 	par.penalty.sparse_weight = 0;
 	check_trained(network_train(net, &par, lesson_sample, &l));
-	stats_set("weights", network_weight_count(net));
-	stats_set("samples",
-		learning.fresh ? lessons.count * learning.epochs : lessons.count);
+	stats_set("weights", (double)network_weight_count(net));
+	stats_set("samples", (double)(learning.fresh ? lessons.count * learning.epochs
+						     : lessons.count));
 	if (netfile_write(stdout, net, l.purpose, cmd))
 		die(EXIT_RUN, "standard output:");
 	free(cmd);

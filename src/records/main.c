@@ -5,6 +5,7 @@
 #include "cli/stats.h"
 #include "common/raw_layout.h"
 #include "io/fields.h"
+#include "io/gsf.h"
 #include "io/tables.h"
 #include "join.h"
 #include "people.h"
@@ -222,7 +223,7 @@ static void put_record(struct output *o, struct record *r, struct fields_in *in)
 		break;
 	case GSF:
 		check_plane(r, in);
-		fields_write_gsf(stdout, r, 0);
+		gsf_write(stdout, r, 0);
 		break;
 	case TEXT:
 		print_text(r);

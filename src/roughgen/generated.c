@@ -143,7 +143,7 @@ struct generated *generated_open(int threads)
 		.kurtosis = isnan(kurtosis) ? 3 + 1.5 * skewness * skewness : kurtosis,
 		.seed = (uint64_t)seed,
 		.pool = pool_new(threads) };
-	g->rough = rough_new(&g->par, &status);
+	status = rough_make(&g->par, &g->rough);
 	if (!g->rough && status == ROUGH_EMPTY && g->par.spectrum.nx == 1 &&
 		g->par.spectrum.ny == 1)
 		die(EXIT_USAGE,
@@ -174,7 +174,7 @@ int generated_next(struct generated *g, struct record *r)
 		g->rough, (uint32_t)r->realisation, record_add(r, "height", "m"), &work);
 	if (status != ROUGH_OK)
 		die(EXIT_RUN, "%s", problem[status]);
-	extra = xprintf("--first %ld", r->realisation);
+	extra = xprintf("--first %ld --count 1", r->realisation);
 	r->cmd = opt_cmd(NULL, extra);
 	free(extra);
 	record_set(r, "seed", "%ld", seed);

@@ -89,8 +89,8 @@ static void print_parameters(const struct record *r, const double *z)
 	struct surface_parameters p;
 	struct core c;
 
-	if (!surface_measure(r->nx, r->ny, r->dx, r->dy, z, &p) ||
-		!surface_core((size_t)r->nx * (size_t)r->ny, z, &c))
+	if (surface_measure(r->nx, r->ny, r->dx, r->dy, z, &p) ||
+		surface_core((size_t)r->nx * (size_t)r->ny, z, &c))
 		die(EXIT_RUN, "out of memory measuring %d x %d points", r->nx, r->ny);
 	const double row[] = { (double)r->realisation, p.sa, p.sq, p.ssk, p.sku, p.sp,
 		p.sv, p.sz, p.sdq, p.sdq_cell, p.sdq_2x2, p.sdq_central, p.sdq_iso7,
@@ -106,9 +106,9 @@ static void print_parameters(const struct record *r, const double *z)
 static void print_spectrum(const struct record *r, const double *z)
 {
 	struct ring *ring = xcalloc((size_t)hypot(r->nx, r->ny) + 3, sizeof *ring);
-	int n = surface_spectrum(r->nx, r->ny, r->dx, r->dy, z, !taper, ring);
+	int n;
 
-	if (n < 0)
+	if (surface_spectrum(r->nx, r->ny, r->dx, r->dy, z, !taper, ring, &n))
 		die(EXIT_RUN, "out of memory for the spectrum of %d x %d points", r->nx,
 			r->ny);
 	if (!table)

@@ -5,7 +5,6 @@
 #include "roughness_options.h"
 #include "surface/filter.h"
 #include "surface/surface.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,9 +71,9 @@ void measured_close(struct measured *m)
 	free(m);
 }
 
-static void need_memory(int done)
+static void need_memory(enum num_status status)
 {
-	if (!done)
+	if (status)
 		die(EXIT_RUN, "out of memory preparing a measured surface");
 }
 
@@ -196,14 +195,16 @@ static void crop_ends(const struct fields_in *in, struct record *s)
 /* ISO 25178-2: S-filter, F-operation, L-filter. */
 static void scale_limit(const struct fields_in *in, struct record *s)
 {
+	enum num_status status = NUM_OK;
+
 	filter_heights("s-filter", s_filter, 0, s);
-	if (form > 0 && !surface_form(s->nx, s->ny, s->dx, s->dy, (enum form)(form - 1),
-				s->data[0])) {
-		if (errno != EDOM)
-			need_memory(0);
+	if (form > 0)
+		status = surface_form(
+			s->nx, s->ny, s->dx, s->dy, (enum form)(form - 1), s->data[0]);
+	if (status == NUM_DOMAIN)
 		die(EXIT_RUN, "%s: record %ld: %d x %d samples are too few for --form %s",
 			fields_name(in), fields_count(in), s->nx, s->ny, forms[form]);
-	}
+	need_memory(status);
 	filter_heights("l-filter", l_filter, 1, s);
 	if (ends == ENDS_CROP && (s_filter > 0 || l_filter > 0))
 		crop_ends(in, s);
@@ -228,7 +229,7 @@ static void scale_heights(const struct fields_in *in, struct record *s)
 	double have = roughness_kind() == ROUGH_SA ? surface_sa(s->nx, s->ny, z)
 						   : surface_sq(s->nx, s->ny, z);
 
-	if (!rough_scale(s->nx, s->ny, z, have, want))
+	if (rough_scale(s->nx, s->ny, z, have, want))
 		die(EXIT_RUN, "%s: record %ld: a flat surface cannot be scaled to %g m",
 			fields_name(in), fields_count(in), want);
 }

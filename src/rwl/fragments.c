@@ -151,8 +151,10 @@ static void read_wear(
 		pressure = told.pressure;
 	w.realisation = table_find(w.table, "realisation");
 	w.step = table_find(w.table, "step");
-	w.volume = table_need(w.table, "volume");
-	w.diameter = isnan(pump.critical_size) ? -1 : table_need(w.table, "diameter");
+	w.volume = table_need_quantity(w.table, "volume", UNIT_VOLUME);
+	w.diameter = isnan(pump.critical_size)
+			     ? -1
+			     : table_need_quantity(w.table, "diameter", UNIT_LENGTH);
 	w.class =
 		partition_class(p, table_find(w.table, "particle") >= 0, pressure, area);
 	part = table_part(w.table);

@@ -1,5 +1,6 @@
 #include "particle_source.h"
 #include "cli/msg.h"
+#include "io/quantities.h"
 #include "io/tables.h"
 #include "material_options.h"
 #include "sensor_options.h"
@@ -208,13 +209,13 @@ struct source *source_open(const char *path, uint64_t seed, uint32_t realisation
 		return s;
 	}
 	s->table = table_open(path);
-	s->diameter_column = table_need(s->table, "diameter");
-	s->velocity_column = table_find(s->table, "velocity");
+	s->diameter_column = table_need_quantity(s->table, "diameter", UNIT_LENGTH);
+	s->velocity_column = table_find_quantity(s->table, "velocity", UNIT_SPEED);
 	s->material_column = table_find(s->table, "material");
 	s->kind_column = table_find(s->table, "kind");
-	s->time_column = table_find(s->table, "time");
+	s->time_column = table_find_quantity(s->table, "time", UNIT_TIME);
 	if (s->time_column < 0)
-		s->time_column = table_find(s->table, "time1");
+		s->time_column = table_find_quantity(s->table, "time1", UNIT_TIME);
 	if (s->velocity_column >= 0)
 		s->slowest = 0.01 * pipe_mean_velocity(&s->stream.pipe);
 	if (s->time_column < 0)
