@@ -57,7 +57,7 @@ fi
 # sensor 1 is driven beyond its range in hour 3, sensor 2 dead in hour 6, both exchanged in 9.
 sigconvert --output text day.au | awk -F '\t' '
 	/^[0-9]/ { if ($1 >= 24) exit
-		if ($1 >= 6 && $1 < 8 && $2 > 0.15) $2 = 0.15
+		if ($1 >= 5.8 && $1 < 8.2 && $2 > 0.15) $2 = 0.15
 		if ($1 >= 12 && $1 < 14) $3 = 0
 		if ($1 >= 18 && $1 < 20) { x = $2; $2 = $3; $3 = x }
 		print $2, $3 }' |
@@ -100,8 +100,11 @@ for dir in day faults; do
 			--disable-background-networking --disable-component-update --disable-sync \
 			--user-data-dir="$work/profile" --enable-logging=stderr --window-size=$width,900 \
 			--force-dark-mode --dump-dom "file://$work/probe.html" >dom 2>log
-		is "$dir, $width pixels wide: all pictures are drawn, nothing is wider, no cell is void" \
-			"$(sed -n 's/.*<title>\(.*\)<\/title>.*/\1/p' dom)" '3 pictures, 0 too wide, 0 nan'
+		like "$dir, $width pixels wide: all pictures are drawn, nothing is wider, no cell is void" \
+			"$(sed -n 's/.*<title>\(.*\)<\/title>.*/\1/p' dom)" \
+			"^$(grep -c '<figure>' $dir/index.html) pictures, 0 too wide, 0 nan"
+		is "$dir: there is one of the wear, one of the sizes and, of a day, one of the life" \
+			"$(grep -c '<figure>' $dir/index.html)" $((2 + (${#dir} == 3)))
 		is "$dir, $width pixels wide: no error on the console" "$(grep 'CONSOLE' log)" ''
 	done
 done
