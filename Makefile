@@ -31,7 +31,8 @@ DOCDIR ?= $(DATADIR)/doc/wearpipe
 # -ffp-contract=off: the same bytes from every build of one compiler.  Names are hidden
 # but for those that include/wearpipe/ declares.
 STD = -std=c11 -D_XOPEN_SOURCE=700 -ffp-contract=off -fPIC -fvisibility=hidden
-WARN = -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes
+WARN = -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes $(CONVERSION)
+CONVERSION = -Wconversion -Wsign-conversion
 B = build
 BIN = bin
 Q = $(if $(V),,@)
@@ -122,6 +123,9 @@ $(SCRIPTS:%=$(BIN)/%): $(BIN)/%: scripts/% share/page.css
 
 $(B)/src/records/replay.o: ALL_CPPFLAGS += -DWEARPIPE_PROGRAMS='"$(PROGRAMS)"'
 $(B)/src/records/replay.o: Makefile
+
+# Not clean yet of implicit conversions.
+$(B)/lib/signal/%.o $(B)/src/duet/%.o $(B)/tests/%.o: CONVERSION =
 
 $(B)/%.o: %.c
 	@mkdir -p $(@D)

@@ -64,20 +64,20 @@ else
 	skip "WAV and FLAC" "built without libsndfile"
 fi
 
-fails "no rate and no times" 1 'give --rate' sigconvert --skip-lines 1 plain.csv
+fails "no rate and no times" 1 'specify --rate' sigconvert --skip-lines 1 plain.csv
 fails "a column that is not there" 1 "no column 'x'" sigconvert --columns x daq.csv
 fails "no headings" 1 'want a line of headings' sigconvert --skip-lines 2 plain.csv
 printf 't\tu\n0\t1\n1\t2\n2\t3\n5\t4\n' >gap.tsv
 fails "samples that are missing" 1 'line 5: time 5 s, want 3 s' sigconvert --rate 1Hz gap.tsv
 printf 't\tu\n0\t1\n0.3\t2\n0.6\t3\n' >odd.tsv
-fails "a rate that is not whole" 1 'whole number' sigconvert odd.tsv
+fails "a rate that is not whole" 1 'not an integer' sigconvert odd.tsv
 printf 't\tu\n0\t1\n1\tx\n' >word.tsv
 fails "a word among samples" 1 'line 3: not a number' sigconvert word.tsv
 printf 't\tu\n0\t1\n1\n' >short.tsv
 fails "a short row" 1 'line 3: want 2 cells, got 1' sigconvert short.tsv
 printf 'Time [kg]\tu\n0\t1\n1\t1\n' >kg.tsv
 fails "times in kilograms" 1 'want a unit of time' sigconvert --time Time kg.tsv
-fails "raw without a rate" 2 'wants --rate and --channels' sigconvert --from raw a.raw
-fails "channels of what is not raw" 2 'is for --from raw' sigconvert --channels 2 a.au
+fails "raw without a rate" 2 'requires --rate and --channels' sigconvert --from raw a.raw
+fails "channels of what is not raw" 2 'requires --from raw' sigconvert --channels 2 a.au
 fails "half a frame of raw" 1 'a.raw' sh -c 'head -c 40 a.raw >h; mv h a.raw; sigconvert --from raw --rate 1 --channels 2 a.raw'
 done_testing

@@ -14,7 +14,7 @@ spheres() {
 wear-volume --stats stats crowd.tsv >volume.tsv 2>err
 is 'an unresolved row counts as its sources' "$(spheres volume.tsv)" "1.000000 2.000000 42.000000 42.000000 43.000000 "
 is 'a row without a diameter is reported' "$(head -n 1 err)" \
-	"wear-volume: crowd.tsv: rows passed over for want of a diameter: 1"
+	"wear-volume: crowd.tsv: rows ignored because they have no diameter: 1"
 is 'the counters tell what was counted' \
 	"$(column particles stats) $(column particles_without_diameter stats) $(column rows_unresolved stats)" "9 1 3"
 is 'the units are those of a state' "$(sed -n 's/^# units: //p' volume.tsv)" 's m3'

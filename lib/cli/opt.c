@@ -105,10 +105,12 @@ static const char *unit_shown(enum unit unit)
 static void print_default(const struct opt *o)
 {
 	char text[NUMBER_TEXT];
+	double whole;
 
 	switch (o->kind) {
 	case OPT_INT:
-		if (*(long *)o->var >= o->min && *(long *)o->var <= o->max)
+		whole = (double)*(long *)o->var;
+		if (whole >= o->min && whole <= o->max)
 			printf(" (default %ld)", *(long *)o->var);
 		break;
 	case OPT_NUM:
@@ -251,7 +253,7 @@ static long parse_whole(const struct opt *o, const char *text)
 	whole = strtoll(text, NULL, 10);
 	if (digits[strspn(digits, "0123456789")] || errno || whole > LONG_MAX ||
 		whole < LONG_MIN)
-		die(EXIT_USAGE, "--%s %s: want all digits of a number above 2^53",
+		die(EXIT_USAGE, "--%s %s: write a number above 2^53 with all its digits",
 			o->word, text);
 	return (long)whole;
 }

@@ -1,5 +1,5 @@
 #include "debris/debris.h"
-
+#include "num/grid.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -29,7 +29,7 @@ struct debris *debris_new(const struct debris_par *par)
 		errno = EDOM;
 		return NULL;
 	}
-	d = calloc(1, sizeof(*d));
+	d = calloc(1, sizeof *d);
 	if (!d)
 		return NULL;
 	d->par = *par;
@@ -67,10 +67,10 @@ void debris_contact(
 	const struct stress_par *s = &d->par.stress;
 	double sum = 0, edge = 0, cells = 0;
 
-	memset(step, 0, sizeof(*step));
+	memset(step, 0, sizeof *step);
 	for (int y = 0; y < s->ny; y++)
 		for (int x = 0; x < s->nx; x++) {
-			double p = pressure[(size_t)y * s->nx + x];
+			double p = pressure[grid_at(s->nx, x, y)];
 
 			sum += p;
 			cells += p > 0;

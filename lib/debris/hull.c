@@ -69,7 +69,7 @@ static int add_face(struct hull *h, int a, int b, int c)
 {
 	struct face *f;
 
-	if (room_for(&h->face, &h->face_room, h->nfaces + 1, sizeof(*f)))
+	if (room_for(&h->face, &h->face_room, h->nfaces + 1, sizeof *f))
 		return -1;
 	f = &h->face[h->nfaces++];
 	f->v[0] = a, f->v[1] = b, f->v[2] = c;
@@ -79,7 +79,7 @@ static int add_face(struct hull *h, int a, int b, int c)
 
 static int add_edge(struct hull *h, int from, int to)
 {
-	if (room_for(&h->edge, &h->edge_room, h->edges + 1, sizeof(*h->edge)))
+	if (room_for(&h->edge, &h->edge_room, h->edges + 1, sizeof *h->edge))
 		return -1;
 	h->edge[h->edges++] = (struct hull_edge){ from, to };
 	return 0;
@@ -156,7 +156,7 @@ static size_t drop_lines(struct hull_point *point, size_t count, int axis)
 	int u = (axis + 1) % 3, w = (axis + 2) % 3;
 	size_t kept = 0, line = 0;
 
-	qsort(point, count, sizeof(*point), order[axis]);
+	qsort(point, count, sizeof *point, order[axis]);
 	for (size_t i = 0; i < count; i++) {
 		if (kept && !compare(&point[kept - 1], &point[i], axis))
 			continue;
@@ -216,10 +216,10 @@ static int collect(struct hull *h)
 	int *place;
 	size_t kept = 0;
 
-	if (room_for(&h->place, &h->place_room, h->points, sizeof(*place)))
+	if (room_for(&h->place, &h->place_room, h->points, sizeof *place))
 		return -1;
 	place = h->place;
-	memset(place, 0, h->points * sizeof(*place));
+	memset(place, 0, h->points * sizeof *place);
 	for (size_t i = 0; i < h->nfaces; i++)
 		for (int k = 0; k < 3; k++)
 			place[h->face[i].v[k]] = 1;
@@ -263,13 +263,13 @@ enum hull_status hull_build(struct hull *h, struct hull_point *point, size_t cou
 
 	if (too_large(point, count))
 		return HULL_LARGE;
-	if (room_for(&h->point, &h->point_room, count, sizeof(*p)))
+	if (room_for(&h->point, &h->point_room, count, sizeof *p))
 		return HULL_MEMORY;
 	p = h->point;
 	for (int axis = 0; axis < 3; axis++)
 		count = drop_lines(point, count, axis);
 	h->points = count;
-	memcpy(p, point, h->points * sizeof(*p));
+	memcpy(p, point, h->points * sizeof *p);
 	h->nfaces = 0;
 	if (h->points < 4 || !start(h, h->points, c))
 		return HULL_FLAT;

@@ -156,8 +156,7 @@ int fields_read(struct fields_in *in, struct record *r)
 		die(EXIT_RUN, "%s: no record", in->at.name);
 	if (promised(in) && !file_followed())
 		die(EXIT_RUN,
-			"%s: the stream ends after record %ld, which says that another "
-			"follows: what wrote it did not finish",
+			"%s: the stream ends after record %ld, which announces another: its writer did not finish",
 			in->at.name, in->at.record);
 	return 0;
 }

@@ -25,26 +25,27 @@ static int check, join, replay, pretty;
 
 static const struct opt opts[] = {
 	{ 'o', "output", OPT_WORD, UNIT_NONE, &format, 0, 0,
-		"list|count|nrrd|gsf|text|table", "what to write", formats, 0 },
+		"list|count|nrrd|gsf|text|table", "output format", formats, 0 },
 	{ 0, "pick", OPT_LIST, UNIT_COUNT, &pick, 1, 1e9, "K,...",
-		"only the K-th records, from 1", NULL, 1 },
+		"only these records, counted from 1", NULL, 1 },
 	{ 0, "field", OPT_TEXT, UNIT_NONE, &field, 0, 0, "NAME", "only this field", NULL,
 		0 },
 	{ 0, "check", OPT_FLAG, UNIT_NONE, &check, 0, 0, NULL,
-		"say whether a stream of any format is whole", NULL, 1 },
+		"report whether a stream of any format is complete", NULL, 1 },
 	{ 0, "replay", OPT_FLAG, UNIT_NONE, &replay, 0, 0, NULL,
-		"run the pipeline that made a stream of any format", NULL, 1 },
+		"run the pipeline recorded in a stream of any format", NULL, 1 },
 	{ 0, "join", OPT_FLAG, UNIT_NONE, &join, 0, 0, NULL,
-		"write streams of several processes as the stream of one", NULL, 1 },
+		"join streams of several processes into one", NULL, 1 },
 	{ 0, "pretty", OPT_FLAG, UNIT_NONE, &pretty, 0, 0, NULL,
-		"show a table to people: units, four digits, aligned columns", NULL, 1 },
+		"format a table for reading: units, four digits, aligned columns", NULL,
+		1 },
 	OPT_TABLE(raw_rows),
 	OPT_END,
 };
 
 static const struct prog prog = { "records",
-	"List, pick, count and convert the records of a field stream.", "[file ...]",
-	"fields: any, or with --pretty a table", "table or fields", opts };
+	"List, select, count, check and convert the records of a stream.", "[file ...]",
+	"fields, or a table with --pretty", "table or fields", opts };
 
 static int picked(long number)
 {

@@ -25,23 +25,23 @@ static const char *columns, *time_column;
 
 static const struct opt opts[] = {
 	{ 0, "from", OPT_WORD, UNIT_NONE, &from, 0, 0, "auto|au|text|raw|sound",
-		"format that is read; auto tells by the beginning of a file", in_words,
+		"input format; auto: recognised by the first bytes of a file", in_words,
 		0 },
 	{ 'o', "output", OPT_WORD, UNIT_NONE, &to, 0, 0, "au|text|raw|wav|flac|channels",
-		"format that is written, or a table of the channels", out_words, 0 },
+		"output format, or a table of the channels", out_words, 0 },
 	{ 'r', "rate", OPT_LIST, UNIT_FREQUENCY, &rate, 1, 2e9, "F",
-		"text and raw: samples per second, where no time tells", NULL, 0 },
+		"text and raw: sampling rate (default from the times)", NULL, 0 },
 	{ 0, "channels", OPT_INT, UNIT_COUNT, &channels, 1, 1024, "N",
-		"raw: channels of little-endian float64, interleaved", NULL, 0 },
+		"raw: number of channels of interleaved little-endian float64", NULL, 0 },
 	{ 0, "columns", OPT_TEXT, UNIT_NONE, &columns, 0, 0, "NAME;NAME",
-		"text: columns to take, by heading, without its unit, or number", NULL,
+		"text: columns to read, by heading without its unit, or by number", NULL,
 		0 },
 	{ 0, "time", OPT_TEXT, UNIT_NONE, &time_column, 0, 0, "NAME",
 		"text: column of the times (default time or t)", NULL, 0 },
 	{ 0, "skip-lines", OPT_INT, UNIT_COUNT, &skip, 0, 1000000, "N",
-		"text: lines before the heading", NULL, 0 },
+		"text: number of lines before the heading", NULL, 0 },
 	{ 0, "scale", OPT_NUM, UNIT_NONE, &scale, -1e300, 1e300, "K",
-		"multiply all samples: volts for full scale of whole numbers", NULL, 0 },
+		"factor for all samples, such as volts at full scale", NULL, 0 },
 	OPT_END,
 };
 
@@ -55,11 +55,11 @@ static double clipped;
 static void check_options(void)
 {
 	if (from == FROM_RAW && (!rate.n || !channels))
-		die(EXIT_USAGE, "--from raw wants --rate and --channels");
+		die(EXIT_USAGE, "--from raw requires --rate and --channels");
 	if (from != FROM_RAW && channels)
-		die(EXIT_USAGE, "--channels is for --from raw");
+		die(EXIT_USAGE, "--channels requires --from raw");
 	if (scale == 0)
-		die(EXIT_USAGE, "--scale 0 leaves nothing");
+		die(EXIT_USAGE, "--scale must not be 0");
 }
 
 int main(int argc, char **argv)
@@ -105,7 +105,7 @@ int main(int argc, char **argv)
 	stats_set("frames", frames);
 	stats_set("samples_clipped", clipped);
 	if (clipped > 0)
-		warn("%.0f samples lie beyond full scale and are clipped: --scale",
+		warn("%.0f samples exceed full scale and are clipped: see --scale",
 			clipped);
 	free(x);
 	return shell_done(clipped > 0 ? EXIT_NOCONV : EXIT_SUCCESS);

@@ -41,7 +41,7 @@ static int next_line(struct text_in *t)
 		while (n > 0 && strchr("\r\n", t->line[n - 1]))
 			t->line[--n] = '\0';
 		if ((size_t)n != strlen(t->line))
-			die(EXIT_RUN, "%s: line %ld: NUL byte: no text", t->name,
+			die(EXIT_RUN, "%s: line %ld: NUL byte: not a text file", t->name,
 				t->number);
 		if (t->number <= 1 && strncmp(t->line, "\xef\xbb\xbf", 3) == 0)
 			memmove(t->line, t->line + 3, (size_t)n - 2);
@@ -164,13 +164,12 @@ static void choose(struct text_in *t, const struct recording_par *par)
 		if (cell < 0)
 			die(EXIT_RUN, "%s: no column '%s'", t->name, name);
 		if (t->format.channels == t->cells)
-			die(EXIT_USAGE, "--columns: more than the %d there are",
-				t->cells);
+			die(EXIT_USAGE, "--columns: the table has only %d", t->cells);
 		take(t, cell);
 	}
 	free(list);
 	if (!t->format.channels)
-		die(EXIT_RUN, "%s: no column but that of the times", t->name);
+		die(EXIT_RUN, "%s: no column other than the times", t->name);
 }
 
 /* Scales to SI by the units of the headings; those that are not known stay as they are.
@@ -262,19 +261,18 @@ static void learn_rate(struct text_in *t, const struct recording_par *par)
 		double span = t->ahead[(t->nahead - 1) * width] - t->ahead[0];
 
 		if (!(span > 0))
-			die(EXIT_RUN, "%s: the times do not rise", t->name);
+			die(EXIT_RUN, "%s: the times are not ascending", t->name);
 		if (isnan(rate))
 			rate = (double)(t->nahead - 1) / span;
 		t->first = t->ahead[0];
 	}
 	if (isnan(rate))
-		die(EXIT_RUN, "%s: no times tell the rate: give --rate", t->name);
+		die(EXIT_RUN, "%s: no column of times: specify --rate", t->name);
 	t->format.rate = (long)(rate + 0.5);
 	/* within what rounded times can tell of 64 rows */
 	if (t->format.rate < 1 || fabs(rate - (double)t->format.rate) > 2e-3 * rate)
 		die(EXIT_RUN,
-			"%s: %.6g samples per second: a signal has a whole number of "
-			"them, give --rate",
+			"%s: %.6g samples per second is not an integer: specify --rate",
 			t->name, rate);
 	t->step = 1 / (double)t->format.rate;
 }

@@ -26,7 +26,7 @@ static struct debris_par plain(enum wear_rule rule)
 /* Some loaded cells, away from the rim. */
 static void press(double *p, int seed)
 {
-	memset(p, 0, CELLS * sizeof(*p));
+	memset(p, 0, CELLS * sizeof *p);
 	for (int k = 0; k < 25; k++) {
 		int x = 6 + (int)(28 * philox_uniform(seed, 0, RNG_NOISE, 3 * k));
 		int y = 6 + (int)(16 * philox_uniform(seed, 0, RNG_NOISE, 3 * k + 1));
@@ -210,8 +210,8 @@ static void test_history(void)
  */
 static double hertz_volume(int n, double cell, double offset, enum wear_rule rule)
 {
-	double *p = calloc((size_t)n * n, sizeof(*p)),
-	       *h = calloc((size_t)n * n, sizeof(*h));
+	double *p = calloc((size_t)n * n, sizeof *p),
+	       *h = calloc((size_t)n * n, sizeof *h);
 	struct debris_par par = { .yield = 0.25,
 		.rule = rule,
 		.cell = cell,

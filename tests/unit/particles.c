@@ -439,7 +439,7 @@ static void test_periodic(void)
 /* Against a flood fill on random sets, all connectivities. */
 static size_t flood(unsigned char *c, int nx, int ny, int nz, int corners, int periodic)
 {
-	int *stack = malloc(sizeof(*stack) * nx * ny * nz);
+	int *stack = malloc(sizeof *stack * nx * ny * nz);
 	size_t count = 0;
 
 	for (int i = 0; i < nx * ny * nz; i++) {

@@ -22,7 +22,7 @@ int main(void)
 		.nx = N, .ny = N, .ax = 1e-6, .ay = 1e-6, .az = 1e-6
 	};
 	struct particles *ps = particles_new(&par);
-	struct stretch *s = malloc(sizeof(*s) * N * N * LAYERS / EVERY);
+	struct stretch *s = malloc(sizeof *s * N * N * LAYERS / EVERY);
 	const struct particle *p;
 	double want = (double)N * N * LAYERS * 1e-18;
 	size_t n, count = 0;
