@@ -37,12 +37,13 @@ started() {
 }
 if command -v setsid >/dev/null; then
 	mkfifo live
-	setsid sh -c 'cat before.au - <live | wearwatch --chunk 1s --overlap 0.1s --scale 3600 --threshold-volume 2e-10 \
+	# shellcheck disable=SC2016 # of the other shell
+	setsid sh -c 'echo $$ >group; cat before.au - <live | wearwatch --chunk 1s --overlap 0.1s --scale 3600 --threshold-volume 2e-10 \
 		--classes 50um,75um,100um --no-pictures --state cut' 2>/dev/null &
 	p=$!
 	exec 3>live
 	started 2
-	kill -KILL -$p
+	kill -KILL "-$(cat group)"
 	exec 3>&-
 	wait $p 2>/dev/null
 	# A torn row, and rows of a chunk that has no row

@@ -35,9 +35,11 @@ if command -v setsid >/dev/null; then
 	} 4<day.au &
 	kills=0 status=137
 	while [ $status = 137 ] && [ $kills -lt 60 ]; do
-		setsid wearwatch "$@" --no-pictures --state killed --alarm-life 20h,5h --follow growing.au 2>/dev/null &
+		# shellcheck disable=SC2016 # of the other shell
+		setsid --wait sh -c 'echo $$ >group; exec wearwatch "$@"' sh "$@" --no-pictures --state killed \
+			--alarm-life 20h,5h --follow growing.au 2>/dev/null &
 		p=$!
-		{ sleep "$(awk -v k=$kills 'BEGIN { srand(k + 1); print 0.2 + 3 * rand() * (1 + k / 5) }')"; kill -KILL -$p; } 2>/dev/null &
+		{ sleep "$(awk -v k=$kills 'BEGIN { srand(k + 1); print 0.2 + 3 * rand() * (1 + k / 5) }')"; kill -KILL "-$(cat group)"; } 2>/dev/null &
 		q=$!
 		wait $p
 		status=$?
