@@ -27,8 +27,8 @@ struct wp_debris *wp_debris_new(const struct wp_debris_par *par, enum wp_status 
 	d->pool = pool_new(par->threads);
 	wanted.stress = (struct stress_par){ .nx = par->nx,
 		.ny = par->ny,
-		.ax = par->dx,
-		.ay = par->dy,
+		.dx = par->dx,
+		.dy = par->dy,
 		.nu = par->poisson,
 		.mu = par->friction,
 		.periodic = par->periodic,

@@ -33,7 +33,7 @@ static void row(
 static struct stress_par grid(int n, double side)
 {
 	struct stress_par par = {
-		.nx = n, .ny = n, .ax = side / n, .ay = side / n, .nu = 0.3, .mu = 0.3
+		.nx = n, .ny = n, .dx = side / n, .dy = side / n, .nu = 0.3, .mu = 0.3
 	};
 
 	return par;
@@ -46,8 +46,8 @@ static double *hertz(const struct stress_par *par)
 	double *p = calloc(n, sizeof *p);
 
 	for (size_t i = 0; i < n; i++) {
-		double x = ((int)(i % par->nx) + 0.5 - 0.5 * par->nx) * par->ax;
-		double y = ((int)(i / par->nx) + 0.5 - 0.5 * par->ny) * par->ay;
+		double x = ((int)(i % par->nx) + 0.5 - 0.5 * par->nx) * par->dx;
+		double y = ((int)(i / par->nx) + 0.5 - 0.5 * par->ny) * par->dy;
 
 		p[i] = sqrt(fmax(0, 1 - x * x - y * y));
 	}

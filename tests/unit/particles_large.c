@@ -19,7 +19,7 @@ static long peak_kb(void)
 int main(void)
 {
 	struct particles_par par = {
-		.nx = N, .ny = N, .ax = 1e-6, .ay = 1e-6, .az = 1e-6
+		.nx = N, .ny = N, .dx = 1e-6, .dy = 1e-6, .dz = 1e-6
 	};
 	struct particles *ps = particles_new(&par);
 	struct stretch *s = malloc(sizeof *s * N * N * LAYERS / EVERY);
