@@ -105,10 +105,12 @@ static const char *unit_shown(enum unit unit)
 static void print_default(const struct opt *o)
 {
 	char text[NUMBER_TEXT];
+	double whole;
 
 	switch (o->kind) {
 	case OPT_INT:
-		if (*(long *)o->var >= o->min && *(long *)o->var <= o->max)
+		whole = (double)*(long *)o->var;
+		if (whole >= o->min && whole <= o->max)
 			printf(" (default %ld)", *(long *)o->var);
 		break;
 	case OPT_NUM:

@@ -2,7 +2,7 @@
  * The solver accepts any struct contact_kernel in place of the half-space of a contact
  * modulus.
  *
- * Uniform pressure p on a cell ax * ay displaces the point at (x, y) from its centre by
+ * Uniform pressure p on a cell dx * dy displaces the point at (x, y) from its centre by
  * u = p I / (pi E*), where I is the integral of 1/r over the cell (Love 1929; Johnson,
  * Contact Mechanics, 3.25).  All lengths have the same unit; I is a length.
  */
@@ -11,9 +11,9 @@
 
 struct contact_kernel {
 	const void *context;
-	/* Displacement at (x, y) from the centre of a cell ax * ay under unit pressure,
+	/* Displacement at (x, y) from the centre of a cell dx * dy under unit pressure,
 	 * m/Pa; NULL if it is not known: then only periodic boundaries are possible. */
-	double (*patch)(const void *context, double ax, double ay, double x, double y);
+	double (*patch)(const void *context, double dx, double dy, double x, double y);
 	/* Factor of wavenumber q > 0, rad/m, in u^ = factor p^, m/Pa; decreases with q.
 	 */
 	double (*wave)(const void *context, double q);
@@ -34,8 +34,8 @@ struct kernel_coating {
 struct contact_kernel kernel_coated(const struct kernel_coating *coating);
 
 /* I to full double precision (a few 1e-16 relative) everywhere outside the lines
- * |x| = ax / 2 and |y| = ay / 2, any aspect. */
-double kernel_patch(double ax, double ay, double x, double y);
+ * |x| = dx / 2 and |y| = dy / 2, any aspect. */
+double kernel_patch(double dx, double dy, double x, double y);
 
 /* Factor of wavenumber (qx, qy), rad/m, in u^ = factor p^ of the periodic half-space:
  * 2 / (E* |q|), m/Pa; 0 at q = 0, where the mean displacement is taken as zero. */

@@ -60,7 +60,7 @@ enum contact_status contact_slip(struct contact *c, const double *height,
 		rest = 0;
 	if (!(rest >= 0))
 		return CONTACT_OVERLOAD;
-	memcpy(shear, pressure, c->n * sizeof(*shear));
+	memcpy(shear, pressure, c->n * sizeof *shear);
 	status = contact_solve(c, height, CONTACT_PRESSURE, rest, shear, NULL);
 	if (status != CONTACT_OK && status != CONTACT_NOCONV)
 		return status;

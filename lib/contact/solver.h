@@ -19,7 +19,7 @@
  *	struct contact_par par = { .nx = 512, .ny = 512, .dx = 1e-6, .dy = 1e-6,
  *		.estar = 115e9, .tolerance = 1e-8, .max_iterations = 1000 };
  *	struct contact *c = contact_new(&par);
- *	memset(p, 0, n * sizeof(*p));
+ *	memset(p, 0, n * sizeof *p);
  *	if (contact_solve(c, h, CONTACT_PRESSURE, 21e6, p, NULL) == CONTACT_OK)
  *		printf("%g\n", contact_result(c)->area);
  *	contact_free(c);

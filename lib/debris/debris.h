@@ -3,8 +3,8 @@
  * struct for all steps of all surfaces of one grid; results do not depend on previous
  * calls or on the number of threads.
  *
- *	struct debris_par par = { .stress = { .nx = 128, .ny = 128, .ax = 8e-6,
- *		.ay = 8e-6, .nu = 0.3, .mu = 0.3 }, .yield = 355e6 };
+ *	struct debris_par par = { .stress = { .nx = 128, .ny = 128, .dx = 8e-6,
+ *		.dy = 8e-6, .nu = 0.3, .mu = 0.3 }, .yield = 355e6 };
  *	struct debris *d = debris_new(&par);
  *	if (debris_step(d, height, pressure, &step) == DEBRIS_OK)
  *		for (i = 0; i < step.count; i++)

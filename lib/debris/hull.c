@@ -69,7 +69,7 @@ static int add_face(struct hull *h, int a, int b, int c)
 {
 	struct face *f;
 
-	if (room_for(&h->face, &h->face_room, h->nfaces + 1, sizeof(*f)))
+	if (room_for(&h->face, &h->face_room, h->nfaces + 1, sizeof *f))
 		return -1;
 	f = &h->face[h->nfaces++];
 	f->v[0] = a, f->v[1] = b, f->v[2] = c;
@@ -79,7 +79,7 @@ static int add_face(struct hull *h, int a, int b, int c)
 
 static int add_edge(struct hull *h, int from, int to)
 {
-	if (room_for(&h->edge, &h->edge_room, h->edges + 1, sizeof(*h->edge)))
+	if (room_for(&h->edge, &h->edge_room, h->edges + 1, sizeof *h->edge))
 		return -1;
 	h->edge[h->edges++] = (struct hull_edge){ from, to };
 	return 0;
@@ -183,7 +183,7 @@ static int drop_inside(struct hull *h, struct hull_point *point, size_t *count, 
 {
 	size_t kept = 0, first = 0, unique = 0;
 
-	qsort(point, *count, sizeof(*point), axis ? compare_y : compare_x);
+	qsort(point, *count, sizeof *point, axis ? compare_y : compare_x);
 	for (size_t i = 0; i < *count; i++)
 		if (!unique || compare(&point[unique - 1], &point[i], axis))
 			point[unique++] = point[i];
@@ -192,10 +192,10 @@ static int drop_inside(struct hull *h, struct hull_point *point, size_t *count, 
 
 		if (i < unique && point[i].v[axis] == point[first].v[axis])
 			continue;
-		if (room_for(&h->point, &h->point_room, 2 * (i - first), sizeof(*point)))
+		if (room_for(&h->point, &h->point_room, 2 * (i - first), sizeof *point))
 			return -1;
 		n = plane_hull(point + first, i - first, h->point, axis);
-		memcpy(point + kept, h->point, n * sizeof(*point));
+		memcpy(point + kept, h->point, n * sizeof *point);
 		kept += n;
 		first = i;
 	}
@@ -249,10 +249,10 @@ static int collect(struct hull *h)
 	int *place;
 	size_t kept = 0;
 
-	if (room_for(&h->place, &h->place_room, h->points, sizeof(*place)))
+	if (room_for(&h->place, &h->place_room, h->points, sizeof *place))
 		return -1;
 	place = h->place;
-	memset(place, 0, h->points * sizeof(*place));
+	memset(place, 0, h->points * sizeof *place);
 	for (size_t i = 0; i < h->nfaces; i++)
 		for (int k = 0; k < 3; k++)
 			place[h->face[i].v[k]] = 1;
@@ -297,11 +297,11 @@ enum hull_status hull_build(struct hull *h, struct hull_point *point, size_t cou
 	if (too_large(point, count))
 		return HULL_LARGE;
 	if (drop_inside(h, point, &count, 1) || drop_inside(h, point, &count, 0) ||
-		room_for(&h->point, &h->point_room, count, sizeof(*p)))
+		room_for(&h->point, &h->point_room, count, sizeof *p))
 		return HULL_MEMORY;
 	p = h->point;
 	h->points = count;
-	memcpy(p, point, h->points * sizeof(*p));
+	memcpy(p, point, h->points * sizeof *p);
 	h->nfaces = 0;
 	if (h->points < 4 || !start(h, h->points, c))
 		return HULL_FLAT;

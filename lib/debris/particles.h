@@ -4,7 +4,7 @@
  * bottom.  Stretches of neighbouring columns that overlap in depth belong to one body
  * (optionally also those of columns that share only an edge).
  *
- *	struct particles_par par = { .nx = 128, .ny = 128, .ax = 8e-6, .ay = 8e-6 };
+ *	struct particles_par par = { .nx = 128, .ny = 128, .dx = 8e-6, .dy = 8e-6 };
  *	struct particles *ps = particles_new(&par);
  *	n = particles_find(ps, stretch, count, &list);
  * Lengths are those of the boxes, including their corners: the largest diameter of a
@@ -19,8 +19,8 @@ struct particles;
 
 struct particles_par {
 	int nx, ny;    /* columns */
-	double ax, ay; /* m */
-	double az;     /* depths are integer multiples of it, m; 0: any depth */
+	double dx, dy; /* m */
+	double dz;     /* depths are integer multiples of it, m; 0: any depth */
 	int corners;   /* 1: columns that share only a vertical edge are joined */
 	int periodic;  /* the grid repeats in x and y */
 };
@@ -60,7 +60,7 @@ void particles_free(struct particles *ps);
 
 /* Finds the bodies of count stretches; stretches of one column must neither overlap nor
  * touch.  *list is valid until the next call: largest first, equal ones by first column
- * and depth.  If az is 0 the hull resolves the depth of a body in 64 steps.  Returns the
+ * and depth.  If dz is 0 the hull resolves the depth of a body in 64 steps.  Returns the
  * number of bodies, or (size_t)-1 when out of memory. */
 size_t particles_find(struct particles *ps, const struct stretch *stretch, size_t count,
 	const struct particle **list);

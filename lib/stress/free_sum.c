@@ -124,7 +124,7 @@ struct kernel {
 static struct influence kernel_value(const struct kernel *k, double x, double y)
 {
 	const struct influence_par *p = k->par;
-	double z = k->z, rx = RADIUS * p->ax, ry = RADIUS * p->ay;
+	double z = k->z, rx = RADIUS * p->dx, ry = RADIUS * p->dy;
 	struct influence far;
 
 	switch (k->source) {
@@ -161,7 +161,7 @@ static void kernel_row(void *context, size_t j, int worker)
 static struct influence *kernel_new(
 	struct free_sum *s, enum source source, double z, double cells, int wx, int wy)
 {
-	struct kernel k = { &s->par, source, wx, cells * s->par.ax, cells * s->par.ay, z,
+	struct kernel k = { &s->par, source, wx, cells * s->par.dx, cells * s->par.dy, z,
 		malloc((size_t)wx * (size_t)wy * sizeof(struct influence)) };
 
 	if (k.value)
@@ -390,7 +390,7 @@ static int sum_split(
 
 int free_sum_at(struct free_sum *s, double z, const struct stress_want *want)
 {
-	double side = fmax(s->par.ax, s->par.ay), small = fmin(s->par.ax, s->par.ay);
+	double side = fmax(s->par.dx, s->par.dy), small = fmin(s->par.dx, s->par.dy);
 	struct box b = box_of(s, want);
 	int cells = 2;
 

@@ -16,7 +16,7 @@
 #include <complex.h>
 
 struct influence_par {
-	double ax, ay; /* cell size */
+	double dx, dy; /* cell size */
 	double nu, mu; /* Poisson's ratio, shear over pressure (either sign) */
 	int axis;      /* shear along x (0) or y (1) */
 };

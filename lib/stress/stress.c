@@ -77,8 +77,8 @@ static double largest_point_stress(const struct stress *s)
 static int par_ok(const struct stress_par *p)
 {
 	return p->nx > 0 && p->ny > 0 && p->nx <= 1 << 20 && p->ny <= 1 << 20 &&
-	       p->ax > 0 && p->ay > 0 && p->nu >= 0 && p->nu <= 0.5 &&
-	       isfinite(p->ax + p->ay + p->mu);
+	       p->dx > 0 && p->dy > 0 && p->nu >= 0 && p->nu <= 0.5 &&
+	       isfinite(p->dx + p->dy + p->mu);
 }
 
 struct stress *stress_new(const struct stress_par *par)
@@ -97,7 +97,7 @@ struct stress *stress_new(const struct stress_par *par)
 	s->par = *par;
 	s->criterion = par->criterion ? par->criterion : &stress_von_mises_criterion;
 	s->influence =
-		(struct influence_par){ par->ax, par->ay, par->nu, par->mu, par->axis };
+		(struct influence_par){ par->dx, par->dy, par->nu, par->mu, par->axis };
 	s->side = (par->nx > par->ny ? par->nx : par->ny) / BLOCKS_SIDE;
 	s->side = s->side < BLOCK ? BLOCK : s->side;
 	s->bx = (par->nx + s->side - 1) / s->side;
@@ -163,7 +163,7 @@ static double unit_of(const double *pressure, size_t n)
 int stress_load(struct stress *s, const double *pressure)
 {
 	size_t nx = (size_t)s->par.nx, ny = (size_t)s->par.ny;
-	double area = s->par.ax * s->par.ay, unit = unit_of(pressure, nx * ny);
+	double area = s->par.dx * s->par.dy, unit = unit_of(pressure, nx * ny);
 
 	if (unit == 0) {
 		errno = EDOM;
@@ -218,14 +218,14 @@ static int block_may_fail(const struct stress *s, int bx, int by, double z, doub
 
 	for (size_t i = 0; i < (size_t)s->bx * (size_t)s->by; i++) {
 		const struct block *b = &s->blocks[i];
-		double dx, dy;
+		double away_x, away_y;
 
 		if (b->load == 0)
 			continue;
-		dx = apart(x0, x0 + last, b->x0, b->x1, s->par.ax);
-		dy = apart(y0, y0 + last, b->y0, b->y1, s->par.ay);
+		away_x = apart(x0, x0 + last, b->x0, b->x1, s->par.dx);
+		away_y = apart(y0, y0 + last, b->y0, b->y1, s->par.dy);
 		/* Infinite (and so true) where the node may lie on the load. */
-		sum += b->load * s->point / (dx * dx + dy * dy + z * z);
+		sum += b->load * s->point / (away_x * away_x + away_y * away_y + z * z);
 		if (sum > limit)
 			return 1;
 	}
@@ -289,7 +289,7 @@ double stress_deep(const struct stress *s, double z)
 	for (int c = 0; c < STRESS_DEVIATOR; c++)
 		v[c] = creal(mean[c]);
 	return s->criterion->value(v) * fabs(s->total) /
-	       (s->par.nx * s->par.ax * s->par.ny * s->par.ay);
+	       (s->par.nx * s->par.dx * s->par.ny * s->par.dy);
 }
 
 /* Sums */

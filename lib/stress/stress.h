@@ -9,7 +9,7 @@
  * Units are SI, fields row-major [iy * nx + ix], tension positive; see stress_kernel.h.
  * Results depend on the arguments alone, not on previous calls or the number of threads.
  *
- *	struct stress_par par = { .nx = 128, .ny = 128, .ax = 8e-6, .ay = 8e-6,
+ *	struct stress_par par = { .nx = 128, .ny = 128, .dx = 8e-6, .dy = 8e-6,
  *		.nu = 0.3, .mu = 0.3 };
  *	struct stress *s = stress_new(&par);
  *	struct stress_span *span = malloc(stress_spans_max(s) * sizeof *span);
@@ -34,7 +34,7 @@ enum stress_method { STRESS_COARSE, STRESS_FULL };
 
 struct stress_par {
 	int nx, ny;    /* cells */
-	double ax, ay; /* cell size, m */
+	double dx, dy; /* cell size, m */
 	double nu, mu; /* Poisson's ratio, shear over pressure (either sign) */
 	int axis;      /* shear along x (0) or y (1) */
 	int periodic;

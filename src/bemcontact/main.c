@@ -159,7 +159,7 @@ static double find_stiffness(
 
 		if (!(target > 0) || (t->par.hardness > 0 && target >= t->par.hardness))
 			return NAN;
-		memcpy(t->other, p, cells * sizeof(*t->other));
+		memcpy(t->other, p, cells * sizeof *t->other);
 		if (press_to(t, height, CONTACT_PRESSURE, target, t->other, NULL) !=
 			CONTACT_OK)
 			return NAN;
@@ -223,8 +223,8 @@ static int solve_after(const struct task *t, const struct contact_result *full)
 
 	if (slip_wanted()) {
 		if (!shear)
-			shear = own = xcalloc(
-				(size_t)t->r->nx * (size_t)t->r->ny, sizeof(*own));
+			shear = own =
+				xcalloc((size_t)t->r->nx * (size_t)t->r->ny, sizeof *own);
 		converged &= slip_solve(t, full, shear);
 		free(own);
 	}
@@ -251,9 +251,9 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 	u = field_of(r, DISPLACEMENT, "m");
 	t.gap = field_of(r, GAP, "m");
 	if (!t.gap && (unload_wanted() || fields & 1 << RESIDUAL))
-		t.gap = own_gap = xcalloc(cells, sizeof(*own_gap));
+		t.gap = own_gap = xcalloc(cells, sizeof *own_gap);
 	if (table_wanted())
-		t.other = xcalloc(cells, sizeof(*t.other));
+		t.other = xcalloc(cells, sizeof *t.other);
 	if (press_control() == CONTACT_APPROACH)
 		from = -highest(&t);
 	for (long k = 1; k <= sweep; k++)

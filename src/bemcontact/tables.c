@@ -74,7 +74,7 @@ static void put_patches(const struct record *r, const struct patch_grid *grid,
 			contact_corrected_area(grid, a->area, a->perimeter), a->perimeter,
 			a->load, a->peak, a->x, a->y };
 
-		table_put_row(patches, row, sizeof(row) / sizeof(*row));
+		table_put_row(patches, row, sizeof(row) / sizeof *row);
 	}
 	stats_add("patches", (double)n);
 }
@@ -94,7 +94,7 @@ static void put_contact(const struct record *r, const struct patch_grid *grid,
 		found->certificate, (double)found->iterations, converged };
 
 	follow_cmd(table, r, "--table");
-	table_put_row(table, row, sizeof(row) / sizeof(*row));
+	table_put_row(table, row, sizeof(row) / sizeof *row);
 }
 
 void tables_put(const struct record *r, const struct contact_par *par,

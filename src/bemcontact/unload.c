@@ -30,10 +30,10 @@ static int take_off(
 	const struct task *t, const struct contact_result *full, const double *height)
 {
 	size_t n = (size_t)t->par.nx * (size_t)t->par.ny;
-	double *p = xcalloc(n, sizeof(*p));
+	double *p = xcalloc(n, sizeof *p);
 	int converged = 1;
 
-	memcpy(p, t->p, n * sizeof(*p));
+	memcpy(p, t->p, n * sizeof *p);
 	for (long k = steps - 1; k >= 0; k--) {
 		enum contact_status status = press_to(t, height, CONTACT_PRESSURE,
 			full->pressure * (double)k / (double)steps, p, NULL);
@@ -60,7 +60,7 @@ int unload_solve(
 	if (!(hardness > 0))
 		hardness = INFINITY;
 	if (!residual)
-		height = xcalloc(n, sizeof(*height));
+		height = xcalloc(n, sizeof *height);
 	flow = contact_unloaded(n, t->h, t->p, t->gap, hardness, height);
 	record_set(t->r, "flow_depth", "%.17g", flow.depth);
 	record_set(t->r, "flow_volume", "%.17g", flow.sum * t->par.dx * t->par.dy);

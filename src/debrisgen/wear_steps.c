@@ -126,7 +126,7 @@ struct wearing {
 
 struct wearing *wearing_open(const struct fields_in *in, long steps)
 {
-	struct wearing *w = xcalloc(1, sizeof(*w));
+	struct wearing *w = xcalloc(1, sizeof *w);
 
 	w->in = in;
 	w->steps = steps;
@@ -206,8 +206,8 @@ void wearing_prepare(struct wearing *w, const struct record *r)
 		.offset = layer ? 0.5 : 0 };
 	w->par.stress = (struct stress_par){ .nx = r->nx,
 		.ny = r->ny,
-		.ax = r->dx,
-		.ay = r->dy,
+		.dx = r->dx,
+		.dy = r->dy,
 		.nu = press.poisson.v[0],
 		.mu = friction,
 		.axis = shear,
@@ -453,7 +453,7 @@ struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c,
 		.hardness = hardness_of(w),
 		.grid = richardson ? &w->grid : NULL,
 		.stress = debris_stress(w->debris),
-		.dz = w->par.cell > 0 ? w->par.cell : w->par.stress.ax,
+		.dz = w->par.cell > 0 ? w->par.cell : w->par.stress.dx,
 		.offset = w->par.offset };
 }
 

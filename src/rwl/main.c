@@ -105,7 +105,7 @@ static struct paths *draw_paths(struct partition *p)
 	struct paths_par par = { .seed = (uint64_t)seed,
 		.first = (uint32_t)first_path,
 		.count = count,
-		.rule = rule,
+		.rule = (enum rate_rule)rule,
 		.area = pump.pair.area,
 		.parts = (double)parts,
 		.critical = sizes ? pump.critical_probability : NAN,
@@ -144,10 +144,10 @@ static void write_rates(const struct paths *e, const char *cmd)
 	table_done(out);
 }
 
-static struct forecast *new_forecast(struct paths *e, int quantity)
+static struct forecast *new_forecast(struct paths *e, enum pair_quantity quantity)
 {
 	struct forecast_par par = { .pair = pump.pair,
-		.quantity = (enum pair_quantity)quantity,
+		.quantity = quantity,
 		.from_new = new || quantity >= PAIR_VOLUME,
 		.rule = (enum rate_rule)rule,
 		.count = count,

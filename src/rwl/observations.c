@@ -59,16 +59,17 @@ void state_open(struct state *s, const char *file, const struct pair *pair)
 		"diameter" };
 	struct table_in *t = table_open(file);
 
-	*s = (struct state){
-		.table = t, .quantity = state_options.quantity, .scale = 1, .pair = pair
-	};
+	*s = (struct state){ .table = t,
+		.quantity = (enum pair_quantity)state_options.quantity,
+		.scale = 1,
+		.pair = pair };
 	s->time_column = table_find(t, "t");
 	if (s->time_column < 0)
 		s->time_column = table_find(t, "time1");
 	if (s->time_column < 0)
 		s->time_column = table_need(t, "t");
 	s->value_column = table_find(t, "state");
-	for (int q = PAIR_LEAKAGE;
+	for (enum pair_quantity q = PAIR_LEAKAGE;
 		q <= PAIR_DEBRIS && s->quantity == PAIR_AUTO && s->value_column < 0; q++)
 		if (table_find(t, columns[q]) >= 0)
 			s->quantity = q;
