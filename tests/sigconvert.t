@@ -108,8 +108,8 @@ else
 	skip "numpy reads raw, text and a signal of fractional rate" "no numpy"
 fi
 # Noise of 1 mV with runs of four at the top of channel 1; channel 2 does not move.
-sensorsim --uniform 10um:11um --number 1 --duration 2s --noise 1mV | sigconvert --output text |
-	awk -F '\t' -v OFS='\t' '/^[0-9]/ { if (NR % 1000 < 4) $2 = 0.02; $3 = 0.5 } { print }' |
+sensorsim --uniform 10um:11um --number 1 --duration 2s --noise 1mV | sigconvert --output text | grep -v '^#' |
+	awk -F '\t' -v OFS='\t' '/^[0-9]/ { if ((NR + 500) % 1000 < 4) $2 = 0.02; $3 = 0.5 } { print }' |
 	sigconvert --from text | sigconvert --output channels >channels.tsv
 is "samples at the end of the range" "$(column rails channels.tsv | tr '\n' ' ')" '80 20000 '
 is "and that end" "$(column high channels.tsv | tr '\n' ' ')" '0.02 0.5 '
