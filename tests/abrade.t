@@ -92,13 +92,13 @@ rising "the loop: a surface scratched by its own debris is rougher" \
 	"$(roughgen --measure w.nrrd | column sdq /dev/stdin)" "$(column sdq measured.tsv)"
 
 p="--hardness 2GPa --friction 0.1"
-fails "neither gap nor load" 2 'want either --gap H or --load F' abrade $p four.tsv
+fails "neither gap nor load" 2 'specify either --gap H or --load F' abrade $p four.tsv
 fails "no hardness" 2 '\--hardness is missing' abrade --gap 1um --friction 0.1 four.tsv
 fails "no friction" 2 '\--friction is missing' abrade --gap 1um --hardness 2GPa four.tsv
 fails "a code and a table" 2 'not both' abrade --gap 1um $p --iso 18:16:13 four.tsv
-fails "a code without an area" 2 'wants --area' abrade --gap 1um $p --iso 18:16:13 --largest 70um
-fails "a code without a largest particle" 2 'wants --largest or --inlet' abrade --gap 1um $p --iso 18:16:13 --area 1mm2
-fails "a code that grows" 2 'fewer of larger particles' abrade --gap 1um $p --iso 13:16:18 --area 1mm2 --largest 70um
+fails "a code without an area" 2 'requires --area' abrade --gap 1um $p --iso 18:16:13 --largest 70um
+fails "a code without a largest particle" 2 'requires --largest or --inlet' abrade --gap 1um $p --iso 18:16:13 --area 1mm2
+fails "a code that grows" 2 'must not increase with size' abrade --gap 1um $p --iso 13:16:18 --area 1mm2 --largest 70um
 fails "a code where a table is read" 2 'are for --iso' abrade --gap 1um $p --largest 70um four.tsv
 fails "a table without a surface to leave standard output to" 2 '\--surface is given' abrade --gap 1um $p --particles x four.tsv
 printf 'diameter\taspect\n1e-6\t0.5\n' >flat.tsv

@@ -243,7 +243,7 @@ ok "and foretells a life" test "$(column rul_q50 half.out | tail -1 | cut -d. -f
 printf 'unit\tt\ty\na\t0\t0.1\na\t1\t0.1\n' >idle.tsv
 fails "a fleet that shows no wear" 1 "idle.tsv: none of 1 units shows any wear" \
 	aopf --threshold 1 --direction up --fleet idle.tsv unit.tsv
-fails "a fleet without a direction" 2 "fleet wants" aopf --threshold 1 --fleet one.tsv unit.tsv
+fails "a fleet without a direction" 2 "fleet requires" aopf --threshold 1 --fleet one.tsv unit.tsv
 
 # Refusals
 printf 't\ty\n0\t1\n2\t1\n1\t1\n' >fall.tsv

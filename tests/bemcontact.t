@@ -64,11 +64,11 @@ fails "not converged: status 3" 3 'record 1: not converged: certificate .* after
 is "and the record says so" "$(key converged poor.nrrd)" no
 is "no load, no pressure, no work" "$($solve --pressure 0Pa -S stats h.f64 >none.nrrd
 	column transforms stats),$(key area none.nrrd)" 0,0
-fails "no load given" 2 'want one of --load' bemcontact --estar 1GPa
-fails "two loads given" 2 'want only one of --load' bemcontact --estar 1GPa --pressure 1Pa -F 1N
+fails "no load given" 2 'specify one of --load' bemcontact --estar 1GPa
+fails "two loads given" 2 'specify only one of --load' bemcontact --estar 1GPa --pressure 1Pa -F 1N
 fails "no material" 2 'either --estar or --young' bemcontact --pressure 1Pa
 fails "both materials" 2 'either --estar or --young' bemcontact --pressure 1Pa --estar 1GPa -E 2GPa
-fails "multi-level sums over a period" 2 'no --boundary periodic' \
+fails "multi-level sums over a period" 2 'requires --boundary free' \
 	bemcontact --pressure 1Pa --estar 1GPa --multiply mlms --boundary periodic
 fails "unknown field" 2 "--fields sigma: want height|pressure" bemcontact --pressure 1Pa --estar 1GPa --fields gap,sigma
 fails "unit of another quantity" 2 '--load' bemcontact -F 1MPa --estar 1GPa
@@ -116,8 +116,43 @@ $layer --young 1GPa,1e30Pa --coating 1mm --coating-young 100GPa --coating-poisso
 near "a thick one is all that is felt" "$(awk "BEGIN {
 	print $(key approach thick.nrrd) / $(key approach bare.nrrd) - 1 }")" 0 1e-10
 is "no contact modulus is recorded for it" "$(key estar thick.nrrd)" nan
-fails "a coating on a free surface" 2 'want --boundary periodic' \
+fails "a coating on a free surface" 2 'requires --boundary periodic' \
 	bemcontact --pressure 1Pa --young 1GPa --coating 1um --coating-young 2GPa
-fails "a coating of no material" 2 'want --young and --coating-young' \
+fails "a coating of no material" 2 'requires --young and --coating-young' \
 	bemcontact --pressure 1Pa --estar 1GPa --coating 1um
+# Partial slip: Cattaneo and Mindlin are in tests/unit/slip.c
+slip="bemcontact --raw 96x96 --pixel 0.010416666666666666m --young 1.82GPa --load 0.02GN -u 0.5"
+$slip --tangential 0.005GN --fields shear,pressure ball.f64 >slip.nrrd
+near "the shear is the tangential load" "$(records -o text --field shear slip.nrrd | tr '\t' '\n' | awk '
+	/^[-0-9]/ { s += $1 } END { print s / 96 / 96 / 1e9 }')" 0.005 1e-10
+near "half of the friction moves a ball by 1 - 0.5^(2/3) of the friction's all" "$(awk "BEGIN {
+	print $(key tangential_displacement slip.nrrd) / (0.5 * 1.7 / 1.4 * $(key indentation slip.nrrd)) }")" 0.370039 2e-4
+ok "less sticks than touches" [ "$(awk "BEGIN { print ($(key stick_area slip.nrrd) < $(key area slip.nrrd)) }")" = 1 ]
+fails "more than friction bears" 1 'friction bears 1e+07 N' $slip --tangential 0.02GN ball.f64
+fails "shear without a tangential load" 2 'requires --tangential' \
+	bemcontact --pressure 1Pa --estar 1GPa --fields shear
+fails "a tangential load without friction" 2 'need one another' \
+	bemcontact --pressure 1Pa --young 1GPa --tangential 1N
+fails "partial slip of unknown bodies" 2 'want the materials' \
+	bemcontact --pressure 1Pa --estar 1GPa --tangential 1N -u 0.1
+fails "partial slip of bodies that couple" 2 'same (1 - 2 nu)' \
+	bemcontact --pressure 1Pa --young 1GPa,2GPa --tangential 1N -u 0.1
+fails "partial slip where material flows" 2 'want no --hardness' \
+	bemcontact --pressure 1Pa --young 1GPa --tangential 1N -u 0.1 --hardness 1GPa
+fails "partial slip of a coated body" 2 'tangential excludes --coating' bemcontact --pressure 1Pa --young 1GPa \
+	--tangential 1N -u 0.1 --boundary periodic --coating 1um --coating-young 2GPa
+
+# Unloading: stiffness and energy are in tests/unit/slip.c
+$ball --hardness 0.12Pa --sweep 2 --unload 4 --table curve.tsv --fields height,residual,pressure ball.f64 >flowed.nrrd
+is "a row for each step up and down" "$(column load curve.tsv | awk '{ printf "%.4f ", $1 }')" \
+	"0.0100 0.0200 0.0150 0.0100 0.0050 0.0000 "
+ok "the bodies part later than they met" [ "$(column approach curve.tsv | awk '
+	{ a[NR] = $1 } END { print (a[4] > a[1] && a[6] > 0) }')" = 1 ]
+is "nothing flows on the way back" "$(column plastic_area curve.tsv | tail -n +3 | tr '\n' ' ')" "0 0 0 0 "
+for f in height residual; do
+	records -o text --field $f flowed.nrrd | tr '\t' '\n' | grep '^[-0-9]' >$f.txt
+done
+near "the deepest flow is what remains" "$(key flow_depth flowed.nrrd)" "$(paste height.txt residual.txt |
+	awk '{ d = $1 - $2; if (d > m) m = d } END { print m }')" 1e-7
+fails "unloading without a table" 2 'want one' bemcontact --pressure 1Pa --estar 1GPa --unload 3
 done_testing

@@ -68,14 +68,14 @@ printf 'section\tbegin\tend\n1\t0.1\t0.16\n2\t0.2\t0.23\n' >long.tsv
 $apply --network "$shipped" $known --sections long.tsv s.au >long 2>err
 is "a section of six durations: exit status" $? 3
 is "and its row" "$(column verdict long | head -n 1)" refused
-is "and the message" "$(cat err)" "delaynet: 1 of 2 sections do not suit the network"
+is "and the message" "$(cat err)" "delaynet: 1 of 2 sections are outside the range of the network"
 
 # shellcheck disable=SC2086
 {
-	fails "no sections" 2 "wants --sections" $apply --network small.net --align 1ms s.au
+	fails "no sections" 2 "requires --sections" $apply --network small.net --align 1ms s.au
 	fails "an instrument without use" 2 "--align is for" delaynet --align 1ms
 	printf 'section\tbegin\tend\n1\t0.2\t0.1\n' >bad.tsv
-	fails "a section that ends before it begins" 1 "bad.tsv: line 2: want sections in order" \
+	fails "a section that ends before it begins" 1 "bad.tsv: line 2: sections must be in order" \
 		$apply --network small.net $known --sections bad.tsv s.au
 	printf 'section\tbegin\n1\t0.2\n' >bad.tsv
 	fails "a section without an end" 1 "end" \

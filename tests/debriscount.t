@@ -101,7 +101,7 @@ sleep 1
 is "a period is written when the next begins" "$(grep -c '^0	10	' live.tsv)" 1
 wait
 printf 'time1\tdiameter\n1\t5e-5\n11\t5e-5\n3\t5e-5\n' | debriscount --period 10s --duration 20s >late.tsv 2>err
-is "a particle that comes too late is counted and marked" "$? $(column rows late.tsv | tr '\n' ' ')$(grep -c 'after their period' err)" "3 1 2 1"
+is "a particle that comes too late is counted and marked" "$? $(column rows late.tsv | tr '\n' ' ')$(grep -c 'after the end of their period' err)" "3 1 2 1"
 
 sensorsim --uniform 50um:150um --number 60 --duration 20s --snr 40dB --truth truth.tsv | duet >found.tsv 2>err
 debriscount --duration 20s --classes 50um,100um truth.tsv >a.tsv
@@ -109,18 +109,28 @@ debriscount --duration 20s --classes 50um,100um found.tsv >b.tsv 2>err
 rising "what duet finds is counted as what there was, or held by the interval" "$(cell number_low b.tsv)" \
 	"$(cell number a.tsv)" "$(cell number_high b.tsv)"
 
-fails "classes that do not ascend" 2 'does not lie above' debriscount --classes 2um,1um six.tsv
-fails "classes and a standard" 2 'exclude each other' debriscount --classes 2um --standard iso4406 six.tsv
+fails "classes that do not ascend" 2 'is not above' debriscount --classes 2um,1um six.tsv
+fails "classes and a standard" 2 'exclude one another' debriscount --classes 2um --standard iso4406 six.tsv
 fails "half of the detection" 2 'both --d50 and --detection-threshold' debriscount --d50 2um six.tsv
-fails "codes of no volume" 2 'wants --flow or --volume' debriscount --output codes six.tsv
-fails "a trend without periods" 2 'wants --period' debriscount --output trend six.tsv
+fails "codes of no volume" 2 'requires --flow or --volume' debriscount --output codes six.tsv
+fails "a trend without periods" 2 'requires --period' debriscount --output trend six.tsv
 fails "an alarm that clears above its level" 2 'CLEAR not above LEVEL' debriscount --alarm 1:2 six.tsv
-fails "a volume by the period" 2 'wants --flow' debriscount --volume 1L --period 1s six.tsv
+fails "a volume by the period" 2 'requires --flow' debriscount --volume 1L --period 1s six.tsv
 fails "no times to part periods by" 1 'no column of times' debriscount --period 1s bottle.tsv
 fails "an empty stream" 1 'no table' debriscount
 head -n 1 six.tsv >none.tsv
-fails "no particle and no duration" 1 'told by --duration' debriscount none.tsv
+fails "no particle and no duration" 1 'with --duration' debriscount none.tsv
 debriscount --duration 1h none.tsv >none.out
 is "no particle in an hour: none, at most 3.7" "$(cell number none.out) $(cell number_high none.out)" "0 3.68888"
+printf '# units: um min\ndiameter\ttime1\n50\t1\n150\t2\n' >um.tsv
+debriscount --classes 40um,100um um.tsv >um.out 2>err
+is "diameters and times in units that the table names are converted" "$(column end um.out | tr '\n' ' ')$(column number um.out | tr '\n' ' ')" "120 120 1 1 "
+fails "units that change within a table" 1 'line 5: the units change' sh -c '(cat um.tsv; sed "s/um/mm/" um.tsv) | debriscount'
+printf '# units: kg s\ndiameter\ttime1\n50\t1\n' >kg.tsv
+fails "a diameter in kilograms" 1 "column 'diameter' is in 'kg', want m" debriscount kg.tsv
+grep -v '^#' um.tsv >bare.tsv
+fails "a diameter of 50 metres" 1 'line 2: diameter is 50 m, want metres' debriscount bare.tsv
+printf 'diameter\ttime1\n1e-6\t5\n1e-6\t1e15\n' >far.tsv
+fails "a time without end of periods before it" 1 'more than 100000 periods' debriscount --period 2s far.tsv
 fails "a record after a record" 1 'another record begins' sh -c 'cat six.tsv six.tsv | debriscount --period 100s'
 done_testing

@@ -255,15 +255,15 @@ perl -e 'binmode STDOUT; print "NRRD0004\ntype: double\nendian: little\nencoding
 	for my $y (0 .. 15) { print pack("d<2", 0, $y == 8 ? 1e9 : 0) for 0 .. 15 }' >ridge.nrrd
 debrisgen --yield 355MPa --friction 0.3 ridge.nrrd >t.tsv 2>err
 is "a particle around a periodic grid: exit status 3, a line, no length" \
-	"$? $(grep -c '1 of 1 particles go round' err) $(column length t.tsv) $(column x t.tsv)" "3 1 nan nan"
+	"$? $(grep -c '1 of 1 particles connect to themselves' err) $(column length t.tsv) $(column x t.tsv)" "3 1 nan nan"
 is "of so many columns as lie in one period" "$(column columns t.tsv)" 16
 
 replay s.nrrd cmd:= >a
 same "the command of a stress field rebuilds it" a s.nrrd
 
-fails "no yield stress" 2 "want --yield" debrisgen
+fails "no yield stress" 2 "--yield is missing" debrisgen
 LC_ALL=C sed -e 's/^estar:=/other:=/' -e '/^stream:=/d' ball.nrrd >stripped.nrrd
-fails "steps without a modulus" 2 "want --young or --estar" debrisgen -Y 1GPa --steps 2 stripped.nrrd
+fails "steps without a modulus" 2 "specify --young or --estar" debrisgen -Y 1GPa --steps 2 stripped.nrrd
 $wear -E 210GPa --steps 2 ball.nrrd | grep -v '^#' >given.tsv
 $wear --steps 2 ball.nrrd | grep -v '^#' >inherited.tsv
 same "the modulus is that of the input unless given" given.tsv inherited.tsv

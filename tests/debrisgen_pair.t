@@ -111,15 +111,15 @@ done
 
 # Worn into pits the pair leaves the theory of small slopes.
 $wear --steps 6 --counterface b.nrrd --slide 0.125mm --wears both a.nrrd 2>told >p
-ok "slopes beyond the theory are warned of" grep -q "rms slope .* above 0.2, where .* --hardness" told
+ok "slopes beyond the theory are warned of" grep -q "rms slope .* above 0.2, the limit .* --hardness" told
 
-fails "a slide that is no whole number of cells" 2 "want whole cells" $wear --counterface b.nrrd --slide 7um a.nrrd
-fails "a slide without a counterface" 2 "for a --counterface" $wear --slide 0.125mm a.nrrd
-fails "the wear of a body that is not there" 2 "want a --counterface" $wear --wears both start.nrrd
+fails "a slide that is no whole number of cells" 2 "want a multiple of the cell size" $wear --counterface b.nrrd --slide 7um a.nrrd
+fails "a slide without a counterface" 2 "require --counterface" $wear --slide 0.125mm a.nrrd
+fails "the wear of a body that is not there" 2 "requires --counterface" $wear --wears both start.nrrd
 fails "a counterface of another size" 1 "120x48 cells over 48x48: want as many" $wear --counterface long.nrrd a.nrrd
 roughgen --points 48 --length 1mm --sq 0.4um >wide.nrrd
 fails "a counterface of another spacing" 1 "spacings of" $wear --counterface wide.nrrd a.nrrd
-fails "Archard's law without a rate" 2 "want --wear-rate" debrisgen --law archard start.nrrd
-fails "a rate without Archard's law" 2 "for --law archard" $wear --wear-rate 1e-15 start.nrrd
-fails "no load" 2 "bears no load" debrisgen --yield 355MPa --young 210GPa --counterface b.nrrd a.nrrd
+fails "Archard's law without a rate" 2 "requires --wear-rate" debrisgen --law archard start.nrrd
+fails "a rate without Archard's law" 2 "requires --law archard" $wear --wear-rate 1e-15 start.nrrd
+fails "no load" 2 "carries no load" debrisgen --yield 355MPa --young 210GPa --counterface b.nrrd a.nrrd
 done_testing

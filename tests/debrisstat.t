@@ -120,7 +120,7 @@ near "life goes as the inverse" "$(awk "BEGIN { print $(row life 8) * $(row volu
 is "every quantity has its unit" "$(cut -f 11 against.tsv | grep -v '^#' | tr '\n' ' ')" "unit m3 m 1 m m 1 "
 debrisstat --compare one.tsv one.tsv >against.tsv
 is "a study does not differ from itself" "$(row volume_per_step 7) $(row volume_per_step 10)" "1 inf"
-fails "studies are compared by their fits" 2 '--compare takes no --output' debrisstat --compare two.tsv --output sizes one.tsv
+fails "studies are compared by their fits" 2 '--compare excludes --output' debrisstat --compare two.tsv --output sizes one.tsv
 fails "one realisation cannot be compared" 1 'at least two realisations of each study' sh -c \
 	'awk "!/^[123]/" two.tsv >lone.tsv; debrisstat --compare lone.tsv one.tsv'
 

@@ -83,11 +83,11 @@ fails "arrivals for delays" 1 "want a network for delays, got one for arrivals" 
 fails "delays for arrivals" 1 "want a network for arrivals, got one for delays" \
 	delaynet --task score --model pulses a.net
 fails "five pulses" 2 "at most 4" delaynet --model pulses --sources 5
-fails "apply of arrivals without sections" 2 "wants --sections" delaynet --task apply --model pulses --network tiny.net
+fails "apply of arrivals without sections" 2 "requires --sections" delaynet --task apply --model pulses --network tiny.net
 
 fails "layers that are none" 2 "--layers: '5x' is no layer" delaynet --layers 5x
-fails "too many operands" 2 "reads nothing" delaynet a.net
-fails "apply without a network" 2 "wants --network" delaynet --task apply x.snd
+fails "too many operands" 2 "has no input" delaynet a.net
+fails "apply without a network" 2 "requires --network" delaynet --task apply x.snd
 fails "a network that is not there" 1 "no.net: No such file" delaynet --task score no.net
 fails "a signal for a network" 1 "x.snd: line 1:" delaynet --task score x.snd
 head -c 3000 a.net >cut.net
@@ -102,7 +102,7 @@ fails "half a section" 1 "cut.snd: section 6: want 40 frames" \
 	delaynet --task apply --network a.net cut.snd
 fails "a step too long" 1 "the training diverged" \
 	delaynet --columns 40 --optimiser descent --learning-rate 900 --activation linear
-fails "sparsity without sigmoid" 2 "--sparsity wants" delaynet --pretrain 1 --sparsity 4
+fails "sparsity without sigmoid" 2 "--sparsity requires" delaynet --pretrain 1 --sparsity 4
 fails "convolutions are no auto-encoders" 2 "only dense" delaynet --layers 2conv3x1 --pretrain 1
 fails "an empty range" 2 "--gain: want A:B" delaynet --gain 1:0.5
 done_testing

@@ -55,7 +55,7 @@ head -c $((2 * record + 300)) fields >cut
 fails 'a cut stream of fields is refused' 1 'record 3' bemcontact --load 1N --estar 100GPa cut
 bemcontact --load 1N --estar 100GPa cut >passed 2>err
 is 'two of three records were passed on' "$(grep -ac '^realisation' passed)" 2
-fails 'and the next program knows' 1 'the stream ends after record 2, which says that another follows' \
+fails 'and the next program knows' 1 'the stream ends after record 2, which announces another' \
 	debrisgen --yield 1MPa passed
 head -c $((2 * record)) fields >cut
 fails 'a cut between two records is seen' 1 'the stream ends after record 2' records cut
@@ -99,7 +99,7 @@ like 'tables too' "$(records --check two)" 'table: rows 10, whole'
 cat signal signal >two
 fails 'two signals are no signal' 1 'no end\|signals joined' records --check two
 { sed '$d' table; cat table; } >two
-fails 'a cut table before a whole one' 1 "the table before has no '# end' line" records --check two
+fails 'a cut table before a whole one' 1 "the preceding table has no '# end' line" records --check two
 { head -c $record fields; cat fields; } >two
 fails 'a cut stream before a whole one' 1 'want number 2 of its stream, got number 1' records --check two
 

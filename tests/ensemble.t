@@ -64,7 +64,7 @@ fails 'a member that is cut off' 1 'member 0.*no whole stream' "$ensemble" -j 1 
 ok 'an empty first member' records --check joined
 is 'keeps the header of the table' "$(grep -c '^realisation' joined)" 1
 
-# Two runs on one folder exclude each other; children end with their run.
+# Two runs on one folder exclude one another; children end with their run.
 "$ensemble" -j 2 -d busy 2 "echo \$\$ >>$work/pids; sleep 20; $surfaces --first \$K" >first 2>/dev/null &
 run=$!
 i=0

@@ -57,11 +57,11 @@ is "oil without particles hinders none" "$(column p_alone none.tsv) $(column arr
 layout --coils 0 --snr 40dB --per-ml 0.1 --flow 60L/min >some.tsv
 near "concentration times flow is arrivals" "$(column arrivals some.tsv)" 100 1e-9
 
-fails "neither coils nor a search" 2 'want either --coils X,X,... or --best N' layout --snr 40dB --arrivals 1
-fails "a search without room" 2 'wants --extent' layout --best 2 --snr 40dB --arrivals 1
+fails "neither coils nor a search" 2 'specify either --coils X,X,... or --best N' layout --snr 40dB --arrivals 1
+fails "a search without room" 2 'requires --extent' layout --best 2 --snr 40dB --arrivals 1
 fails "no signal to noise ratio" 2 '\--snr is missing' layout --coils 0 --arrivals 1
-fails "no rate of arrivals" 2 'want either --arrivals F or --per-ml N' layout --coils 0 --snr 40dB
-fails "positions that do not ascend" 2 'positions must ascend' layout --coils 1,0 --snr 40dB --arrivals 1
+fails "no rate of arrivals" 2 'specify either --arrivals F or --per-ml N' layout --coils 0 --snr 40dB
+fails "positions that do not ascend" 2 'positions must be ascending' layout --coils 1,0 --snr 40dB --arrivals 1
 fails "a position without a unit that is one" 2 'want positions in m' layout --coils 0,5s --snr 40dB --arrivals 1
 fails "more coils than there is room for" 2 'more than 16 coils' \
 	layout --coils 0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16 --snr 40dB --arrivals 1

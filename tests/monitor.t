@@ -102,9 +102,9 @@ awk -F '\t' '/^[0-9]/ { want = 0
 is "levels and their hysteresis" "$(cat bad)" "0 1"
 head -20 worn.tsv | aopf --threshold 1 --direction up --lives-only --alarm 1,0.5 >alarms
 is "no alarm, no status" $? 0
-fails "alarms that rise" 2 "falling" aopf --threshold 1 --alarm 1,2 one.tsv
-fails "a mission without a threshold" 2 "mission wants --threshold" aopf --mission 3 one.tsv
-fails "lives without a threshold" 2 "lives-only wants --threshold" aopf --lives-only one.tsv
+fails "alarms that rise" 2 "descending" aopf --threshold 1 --alarm 1,2 one.tsv
+fails "a mission without a threshold" 2 "mission requires --threshold" aopf --mission 3 one.tsv
+fails "lives without a threshold" 2 "lives-only requires --threshold" aopf --lives-only one.tsv
 fails "lives of the filter without it" 2 "excludes" \
 	aopf --lives-only --threshold 1 --model grey one.tsv
 

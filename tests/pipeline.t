@@ -85,9 +85,9 @@ refuse 'another program is not run' 'rm -rf /nowhere' "'rm' is no program of wea
 refuse 'nor by its path' '/bin/sh -c true' "'/bin/sh' is no program"
 refuse 'nor behind ours' 'roughgen --points 4 | tee stolen' "'tee' is no program"
 refuse 'nor beside ours' 'roughgen --points 4; touch stolen' 'touch'
-refuse 'nor in a substitution' 'roughgen --points $(touch stolen)' 'a character for a shell'
+refuse 'nor in a substitution' 'roughgen --points $(touch stolen)' 'a special character of the shell'
 refuse 'nor in a group' '{ roughgen --points 4; touch stolen; }' "'touch' is no program"
-refuse 'nothing is redirected' 'roughgen --points 4 >stolen' 'a character for a shell'
+refuse 'nothing is redirected' 'roughgen --points 4 >stolen' 'a special character of the shell'
 is 'and nothing was done' "$(ls stolen 2>/dev/null)" ''
 printf 'x\n1\n' >silent
 fails 'a stream that does not say how it was made' 1 'no cmd' records --replay silent

@@ -19,7 +19,7 @@ same "the same with imposed heights" one two
 
 is "neighbours among large seeds differ" \
 	"$(for s in 9007199254740992 9007199254740993; do roughgen -n 8 -s $s | tail -c 512 | cksum; done | sort -u | wc -l)" 2
-fails "a large seed has all its digits" 2 'want all digits' roughgen -s 1e17
+fails "a large seed has all its digits" 2 'with all its digits' roughgen -s 1e17
 
 # The header rebuilds the record.
 roughgen -n 32 -q 1um:3um --pair 0.5um --crown auto -s 7 -c 3 >three
@@ -172,10 +172,10 @@ near "the spectrum adds up to Sq^2" "$(awk -F '\t' '/^[0-9]/ { s += $4 * $5 / 1e
 roughgen -n 64 -q 1um | roughgen --spectrum >hann.tsv
 near "a window keeps it on average" "$(awk -F '\t' '/^[0-9]/ { s += $4 * $5 / 1e-6 } END { printf "%.9f", s * 1e12 }' hann.tsv)" 1 0.4
 fails "a form of too few samples" 1 'too few for --form poly2' sh -c 'roughgen -n 2 -q 0 | roughgen --form poly2 -'
-fails "a crop of everything" 1 'leaves nothing' roughgen --l-filter 0.96mm --ends crop iso.nrrd
-fails "measure and spectrum" 2 'exclude each other' roughgen --measure --spectrum iso.nrrd
-fails "a taper without a spectrum" 2 'is for --spectrum' roughgen --taper none iso.nrrd
-fails "a filter without a file" 2 '\--s-filter: is for a measured' roughgen --s-filter 1um
+fails "a crop of everything" 1 'removes all of' roughgen --l-filter 0.96mm --ends crop iso.nrrd
+fails "measure and spectrum" 2 'exclude one another' roughgen --measure --spectrum iso.nrrd
+fails "a taper without a spectrum" 2 'requires --spectrum' roughgen --taper none iso.nrrd
+fails "a filter without a file" 2 '\--s-filter: applies to a measured' roughgen --s-filter 1um
 roughgen --l-filter 2mm iso.nrrd 2>err >long.nrrd
 is "a filter longer than the surface is said" "$(grep -c 'longer than the surface' err)" 1
 
@@ -193,11 +193,11 @@ if command -v python3 >/dev/null; then
 else
 	skip "--measure does not wait for a terminal" "no python3"
 fi
-fails "a range that runs backwards" 2 'runs backwards' roughgen -q 2um:1um
+fails "a range that runs backwards" 2 'is descending' roughgen -q 2um:1um
 fails "a bare prefix" 2 'q' roughgen -q 2u
 fails "Sq and Sa" 2 'exclude' roughgen -q 1um --sa 1um
 fails "roll-off without Hurst" 2 'need --hurst' roughgen --rolloff 1um
-fails "level without file" 2 '--level: is for a measured' roughgen --level
+fails "level without file" 2 '--level: applies to a measured' roughgen --level
 fails "points with file" 2 '--points: is for generated' roughgen -n 4 s
 fails "a spectrum with file" 2 '--corr: is for generated' roughgen -l 1um s
 fails "a crop outside" 1 'record 1: --crop 30:0:11:5 is not within 40 x 30' \

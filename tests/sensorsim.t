@@ -150,8 +150,8 @@ is "materials of a table are kept" "$(column amplitude again.tsv | head -20)" \
 	"$(column amplitude mixed.tsv | head -20)"
 fails "a material that is none" 2 "no 'cheese'; there are ferrous, steel" \
 	sensorsim --material cheese one.tsv
-fails "a share that is none" 2 "'x' is no share" sensorsim --material steel=x one.tsv
-fails "two ways to name a material" 2 "exclude each other" \
+fails "a share that is none" 2 "'x' is not a share" sensorsim --material steel=x one.tsv
+fails "two ways to name a material" 2 "exclude one another" \
 	sensorsim --material steel --mur 3 one.tsv
 printf 'time\tdiameter\tmaterial\n0.02\t1e-4\tcheese\n' >bad.tsv
 fails "a material of a table that is none" 1 "bad.tsv: line 2: material 'cheese', want one of" \
@@ -213,7 +213,7 @@ near "gain drift: rms" "$(cut -d' ' -f2 moments)" 0.1 0.02
 sensorsim --uniform 100um:100um --number 2000 --duration 2000s --rate 20 --phase-drift 5deg --drift-time 5s \
 	--truth phases.tsv >/dev/null
 near "phase drift: rms" "$(column phase phases.tsv | awk '{ q += $1 * $1 } END { print sqrt(q / NR) }')" 0.0873 0.011
-fails "events without an end" 2 'need --duration' sensorsim --bubbles 1 one.tsv
+fails "events without an end" 2 'require --duration' sensorsim --bubbles 1 one.tsv
 
 # what it refuses
 fails "no table" 1 'none.tsv' sensorsim none.tsv
@@ -234,7 +234,7 @@ fails "a window too short" 2 'no room' sensorsim --uniform 1um:2um --number 300 
 fails "a line above half the rate" 2 '^sensorsim: --pump: a line at 4000 Hz is above half the rate, 2500 Hz$' \
 	sensorsim -r 5000 --pump 0.1,0.1 --uniform 1um:1um --number 1 --duration 1
 is "leaves no stream that looks whole" "$(wc -c <out)" 0
-fails "one of two ways to say how many" 2 'needs one of --number and --concentration' \
+fails "one of two ways to say how many" 2 'requires one of --number and --concentration' \
 	sensorsim --uniform 1um:1um --number 1 --concentration 1 --duration 1
 fails "a full disk" 1 'o space' sh -c 'sensorsim --uniform 1um:1um --number 1 --duration 1 >/dev/full'
 

@@ -86,7 +86,7 @@ fails 'truncation names the record' 1 'record 2: want 96 bytes, got 50' records 
 printf 'NRRD0004\ntype: double\n' >cut.nrrd
 fails 'a header cut off' 1 'record 1: the stream ends inside the header' records cut.nrrd
 printf 'GIF89a\n' >gif
-fails 'another format' 1 "this is a picture, want fields: any" records gif
+fails 'another format' 1 "this is a picture, want fields" records gif
 { printf 'NRRD0004\n# '; head -c 2000000 /dev/zero | tr '\0' x; } >endless
 fails 'an endless header' 1 'header longer than 1048576 bytes' records endless
 refuse 'a negative size' 'size -4, want a whole number' 'sizes: -4 3'
@@ -130,9 +130,9 @@ fails 'two outputs that are one file' 2 'x: the same file is written twice' \
 	$wear --surface x --summary x contact.nrrd
 fails 'an output that is standard output' 2 'x: the same file is written twice' \
 	sh -c "$wear --summary x contact.nrrd >x"
-fails 'an output without a name' 2 '^debrisgen: -: an output wants the name of a file' \
+fails 'an output without a name' 2 '^debrisgen: -: an output requires a file name' \
 	$wear --surface - contact.nrrd
-fails 'counters without a name' 2 '^debrisgen: -: an output wants' $wear -S - contact.nrrd
+fails 'counters without a name' 2 '^debrisgen: -: an output requires' $wear -S - contact.nrrd
 ok 'what goes nowhere may go there twice' $wear --surface /dev/null --summary /dev/null contact.nrrd
 seq 1000 >old
 ok 'an old file' $wear --summary old -S old.stats contact.nrrd

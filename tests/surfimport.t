@@ -196,8 +196,8 @@ else
 	skip "files of instruments" "no ../shared/data/formats"
 fi
 
-fails "no spacing" 1 'give --pixel' surfimport --height-unit 1m tab.txt
-fails "no unit" 1 'give --height-unit' surfimport --pixel 1um tab.txt
+fails "no spacing" 1 'specify --pixel' surfimport --height-unit 1m tab.txt
+fails "no unit" 1 'specify --height-unit' surfimport --pixel 1um tab.txt
 fails "a spacing that the file contradicts" 1 'not --pixel' surfimport --pixel 5um a.sdf
 printf '1 2\n3\n' >short.txt
 fails "a short row" 1 'line 2: want 2 heights, got 1' surfimport --pixel 1um --height-unit 1m short.txt
@@ -207,14 +207,14 @@ fails "nothing at all" 1 'no row of numbers' surfimport --pixel 1um --height-uni
 printf 'nan nan\n' >gone.txt
 fails "every height missing" 1 'every height is missing' surfimport --pixel 1um --height-unit 1m gone.txt
 printf '0,1\n1,2\n5,3\n' >uneven.csv
-fails "places at unequal steps" 1 'equally far apart' surfimport --profile --height-unit 1um uneven.csv
+fails "places at unequal steps" 1 'equally spaced' surfimport --profile --height-unit 1um uneven.csv
 head -c 100 s.sur >cut.sur
 fails "a header that is cut off" 1 'want 512 bytes of a .sur header' surfimport cut.sur
 head -c 530 s.sur >cut.sur
 fails "samples that are cut off" 1 'bytes of samples, got 530' surfimport cut.sur
 printf '\001\002\0\003' >noise
 fails "bytes that are no format" 1 'neither text nor' surfimport noise
-fails "raw without a size" 2 'wants --size' surfimport --format raw noise
+fails "raw without a size" 2 'requires --size' surfimport --format raw noise
 fails "a size without raw" 2 'are for --format raw' surfimport --size 2x2 noise
 roughgen -n 4 >n.nrrd
 fails "a stream of ours" 1 'roughgen reads it' surfimport n.nrrd

@@ -2,7 +2,7 @@
 # The tutorials run as printed
 . "$(dirname "$0")/tap.sh"
 
-PATH=$top/scripts:$PATH
+
 for page in "$top"/doc/tutorials/*.md; do
 	name=$(basename "$page" .md)
 	mkdir "$name"

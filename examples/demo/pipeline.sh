@@ -12,7 +12,6 @@
 #
 # Leaves its streams in the working directory for the pictures.
 set -eu
-scripts=$(dirname "$0")/../../scripts
 
 # A measured surface is put on a crown, so that its middle carries the load.
 if [ $# -gt 0 ]; then
@@ -42,7 +41,7 @@ sensorsim --duration 96s --calibration $sensor --noise 5mV --mains 20mV --pump 5
 	--truth truth.tsv particles.tsv | tee raw.au |
 	bpfilter --band 0:1500 --lines 50 --zero-phase | tee band.au |
 	duet --calibration $sensor --separated pulses.au | tee found.tsv |
-	"$scripts"/wear-volume -w 2 -k 1800 |
+	wear-volume --period 2s --time-scale 1800 |
 	aopf | tee state.tsv |
 	rwl --wear particles.tsv --fragment-area $area --area $area --quantity volume \
 		--threshold-volume $volume - >life.tsv

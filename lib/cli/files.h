@@ -4,8 +4,8 @@
  * output, must not be written: its data would be lost or mixed.  All functions die where
  * a file cannot be opened, and tell its name for messages.
  */
-#ifndef SHELL_FILES_H
-#define SHELL_FILES_H
+#ifndef CLI_FILES_H
+#define CLI_FILES_H
 
 #include <stdio.h>
 

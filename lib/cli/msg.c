@@ -1,6 +1,6 @@
 #include "cli/msg.h"
+#include "cli/escape.h"
 #include "cli/progress.h"
-#include "cli/text.h"
 #include <errno.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -32,7 +32,7 @@ static void say(const char *format, va_list ap)
 	progress_clear();
 	fflush(stdout);
 	vsnprintf(text, sizeof text, format, ap);
-	text_escape_to(line, text);
+	escape_to(line, text);
 	if (length && format[length - 1] == ':')
 		fprintf(stderr, "%s: %s %s\n", program, line, strerror(reason));
 	else

@@ -3,10 +3,10 @@
  * The one way a program fails: die() prints a single line "program: what" and
  * leaves.  A format that ends in ':' gets the reason from errno appended, as in
  * die(EXIT_RUN, "%s:", path)  ->  "bemcontact: surf.nrrd: No such file".
- * Only lib/shell and src may call these; the numerics return statuses.
+ * Only lib/cli, lib/io and src may call these; the numerics return statuses.
  */
-#ifndef SHELL_MSG_H
-#define SHELL_MSG_H
+#ifndef CLI_MSG_H
+#define CLI_MSG_H
 
 #include <stddef.h>
 

@@ -1,6 +1,7 @@
 #include "cli/opt.h"
 #include "cli/files.h"
 #include "cli/msg.h"
+#include "cli/progress.h"
 #include "cli/stats.h"
 #include <ctype.h>
 #include <errno.h>
@@ -105,10 +106,12 @@ static const char *unit_shown(enum unit unit)
 static void print_default(const struct opt *o)
 {
 	char text[NUMBER_TEXT];
+	double whole;
 
 	switch (o->kind) {
 	case OPT_INT:
-		if (*(long *)o->var >= o->min && *(long *)o->var <= o->max)
+		whole = (double)*(long *)o->var;
+		if (whole >= o->min && whole <= o->max)
 			printf(" (default %ld)", *(long *)o->var);
 		break;
 	case OPT_NUM:
@@ -251,7 +254,7 @@ static long parse_whole(const struct opt *o, const char *text)
 	whole = strtoll(text, NULL, 10);
 	if (digits[strspn(digits, "0123456789")] || errno || whole > LONG_MAX ||
 		whole < LONG_MIN)
-		die(EXIT_USAGE, "--%s %s: want all digits of a number above 2^53",
+		die(EXIT_USAGE, "--%s %s: write a number above 2^53 with all its digits",
 			o->word, text);
 	return (long)whole;
 }
@@ -590,6 +593,7 @@ int shell_done(int status)
 	if (ferror(stdout) || fflush(stdout) || close(dup(STDOUT_FILENO)))
 		die(EXIT_RUN,
 			errno ? "standard output:" : "standard output: write error");
+	progress_clear();
 	stats_write(prog->name);
 	return status;
 }

@@ -17,8 +17,8 @@
  * unless it reads nothing, --follow.
  * A number that was not given stays at its initial value; use NAN for "not given".
  */
-#ifndef SHELL_OPT_H
-#define SHELL_OPT_H
+#ifndef CLI_OPT_H
+#define CLI_OPT_H
 
 #include "cli/unit.h"
 

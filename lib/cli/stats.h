@@ -4,8 +4,8 @@
  * then the counters in the order they were first named.  -v prints them too.
  * Names are lower_case nouns: iterations, transforms, layers, layers_skipped.
  */
-#ifndef SHELL_STATS_H
-#define SHELL_STATS_H
+#ifndef CLI_STATS_H
+#define CLI_STATS_H
 
 void stats_add(const char *name, double amount); /* counts; the first call starts at 0 */
 void stats_set(const char *name, double value);  /* keeps the last value */

@@ -1,4 +1,5 @@
 #include "cli/text.h"
+#include "cli/escape.h"
 #include "cli/msg.h"
 #include <stdarg.h>
 #include <stdio.h>
@@ -25,31 +26,11 @@ void text_add(struct text *t, const char *format, ...)
 	t->n += (size_t)n;
 }
 
-void text_escape_to(char *to, const char *s)
-{
-	for (; *s; s++) {
-		unsigned char c = (unsigned char)*s, next = (unsigned char)s[1];
-
-		if (c == '\n' || c == '\t' || c == '\r') {
-			*to++ = '\\';
-			*to++ = c == '\n' ? 'n' : c == '\t' ? 't' : 'r';
-		} else if (c < 32 || c == 127) {
-			to += sprintf(to, "\\x%02x", c);
-		} else if (c == 0xc2 && next >= 0x80 && next < 0xa0) {
-			to += sprintf(to, "\\x%02x", next); /* U+0080 to U+009f */
-			s++;
-		} else {
-			*to++ = (char)c;
-		}
-	}
-	*to = '\0';
-}
-
 char *text_escape(const char *s)
 {
 	char *escaped = xcalloc(strlen(s) + 1, 4);
 
-	text_escape_to(escaped, s);
+	escape_to(escaped, s);
 	return escaped;
 }
 

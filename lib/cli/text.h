@@ -5,8 +5,8 @@
  *	puts(t.s);
  *	free(t.s);
  */
-#ifndef SHELL_TEXT_H
-#define SHELL_TEXT_H
+#ifndef CLI_TEXT_H
+#define CLI_TEXT_H
 
 #include <stddef.h>
 
@@ -22,7 +22,6 @@ void text_add(struct text *t, const char *format, ...)
 /* Fresh memory: control characters as in C, "\n", "\t" or "\x1b", so that the text stays
  * within its line and cell; the rest as it is. */
 char *text_escape(const char *s);
-void text_escape_to(char *to, const char *s); /* to holds four times as many bytes */
 
 /* The name of a file as messages show it: between single quotes and escaped where it has
  * blanks, quotes, colons or control characters, else path itself. */

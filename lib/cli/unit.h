@@ -5,8 +5,8 @@
  * refused, so that metre and milli never meet.  Powers carry the prefix along:
  * mm3 is (1e-3 m)^3.  nan, inf and trailing junk are refused.
  */
-#ifndef SHELL_UNIT_H
-#define SHELL_UNIT_H
+#ifndef CLI_UNIT_H
+#define CLI_UNIT_H
 
 enum unit {
 	UNIT_NONE,          /* a plain number */

@@ -4,22 +4,46 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where the number of the realisation stands: that of roughgen, which alone has a --count
- * to go with it.  NULL where there is none. */
-static const char *find_number(const char *cmd)
-{
-	const char *word = " --first ", *at = strstr(cmd, word),
-		   *pipe = strstr(cmd, " | ");
-	size_t digits;
+/* The realisations that a pipeline makes. */
+struct numbers {
+	const char *at;    /* " --first A --count B" in it; NULL where there is none */
+	const char *after; /* ... and what follows */
+	long long first, count; /* A and B */
+};
 
-	if (strncmp(cmd, "roughgen ", 9) || !at || (pipe && pipe < at))
+/* A whole number of at most 17 digits behind word, which cmd begins with; NULL for none.
+ */
+static const char *read_number(const char *cmd, const char *word, long long *number)
+{
+	size_t n = strlen(word), digits;
+
+	if (strncmp(cmd, word, n) != 0)
 		return NULL;
-	at += strlen(word);
-	digits = strspn(at, "0123456789");
-	return digits > 0 && digits < 18 && (!at[digits] || at[digits] == ' ') &&
-			       strncmp(at + digits, " --count ", 9)
-		       ? at
-		       : NULL;
+	digits = strspn(cmd + n, "0123456789");
+	*number = strtoll(cmd + n, NULL, 10);
+	return digits > 0 && digits < 18 ? cmd + n + digits : NULL;
+}
+
+/* Those of the first command of the pipeline, which makes what the others read. */
+static struct numbers find_numbers(const char *cmd)
+{
+	const char *pipe = strstr(cmd, " | ");
+	struct numbers none = { 0 }, found;
+
+	for (const char *at = cmd; (at = strstr(at, " --first ")); at++) {
+		const char *after;
+
+		if (pipe && pipe < at)
+			break;
+		found.at = at;
+		after = read_number(at, " --first ", &found.first);
+		if (after)
+			after = read_number(after, " --count ", &found.count);
+		found.after = after;
+		if (after && (!*after || *after == ' '))
+			return found;
+	}
+	return none;
 }
 
 static char *copy(const char *text, size_t length)
@@ -29,22 +53,22 @@ static char *copy(const char *text, size_t length)
 
 void upstream_add(struct upstream *u, const char *cmd)
 {
-	const char *number = find_number(cmd);
-	struct upstream_run *last = u->n ? &u->run[u->n - 1] : NULL;
-	struct upstream_run run = { .count = 1 };
-	char *after = NULL;
+	struct numbers found = find_numbers(cmd);
+	struct upstream_run *last = u->n ? &u->run[u->n - 1] : NULL, run = { 0 };
+	size_t before = found.at ? (size_t)(found.at - cmd) : strlen(cmd);
 
-	if (number)
-		run.first = strtoll(number, &after, 10);
-	if (number && last && last->after && !strcmp(last->after, after) &&
-		last->first + last->count == run.first &&
-		strlen(last->before) == (size_t)(number - cmd) &&
-		!strncmp(last->before, cmd, (size_t)(number - cmd))) {
-		last->count++;
+	if (found.at && last && last->after && !strcmp(last->after, found.after) &&
+		last->first + last->count == found.first &&
+		strlen(last->before) == before && !strncmp(last->before, cmd, before)) {
+		last->count += found.count;
 		return;
 	}
-	run.before = copy(cmd, number ? (size_t)(number - cmd) : strlen(cmd));
-	run.after = number ? xstrdup(after) : NULL;
+	run.before = copy(cmd, before);
+	if (found.at) {
+		run.after = xstrdup(found.after);
+		run.first = found.first;
+		run.count = found.count;
+	}
 	if (u->n == u->room) {
 		u->room = 2 * u->room + 1;
 		u->run = xrealloc(u->run, (size_t)u->room, sizeof *u->run);
@@ -54,12 +78,9 @@ void upstream_add(struct upstream *u, const char *cmd)
 
 static char *one(const struct upstream_run *run)
 {
-	if (!run->after)
-		return xstrdup(run->before);
-	if (run->count == 1)
-		return xprintf("%s%lld%s", run->before, run->first, run->after);
-	return xprintf(
-		"%s%lld --count %lld%s", run->before, run->first, run->count, run->after);
+	return run->after ? xprintf("%s --first %lld --count %lld%s", run->before,
+				    run->first, run->count, run->after)
+			  : xstrdup(run->before);
 }
 
 const char *upstream_cmd(struct upstream *u)

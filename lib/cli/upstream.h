@@ -1,21 +1,22 @@
 /* upstream.h - the pipelines that made the parts of a table, written as one
  *
  *	struct upstream u = { 0 };
- *	upstream_add(&u, "roughgen --points 64 --first 0 | bemcontact");
- *	upstream_add(&u, "roughgen --points 64 --first 1 | bemcontact");
- *	upstream_cmd(&u);       "roughgen --points 64 --first 0 --count 2 | bemcontact"
+ *	upstream_add(&u, "a --first 0 --count 1 | b");
+ *	upstream_add(&u, "a --first 1 --count 1 | b");
+ *	upstream_cmd(&u);       "a --first 0 --count 2 | b"
  *
- * What follows in the numbers of the realisations is counted; pipelines that differ in
+ * A program that makes realisations records which ones as --first and --count side by
+ * side; parts whose realisations follow one another become one.  Pipelines that differ in
  * anything else stand in a group, "{ a; b; }", whose output is the parts as cat joins
- *them.
+ * them.
  */
-#ifndef SHELL_UPSTREAM_H
-#define SHELL_UPSTREAM_H
+#ifndef CLI_UPSTREAM_H
+#define CLI_UPSTREAM_H
 
-/* Pipelines that differ in the number of the realisation alone. */
+/* Pipelines that differ in the realisations alone. */
 struct upstream_run {
-	char *before, *after;   /* of the number; after is NULL where there is none */
-	long long first, count; /* numbers */
+	char *before, *after; /* of the numbers; after is NULL where there are none */
+	long long first, count;
 };
 
 struct upstream {

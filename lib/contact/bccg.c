@@ -15,7 +15,8 @@
  * The inverse of the half-space restricted to the contact is not the restricted
  * inverse: that needs a residual continued beyond the contact so that its image there
  * vanishes, see extension.h. */
-#include "contact/state.h"
+#include "contact/bccg.h"
+#include "contact/gradient.h"
 #include "num/fft.h"
 #include "num/lanes.h"
 #include <math.h>

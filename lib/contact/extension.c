@@ -102,7 +102,7 @@ static int make_levels(struct extension *e, double *memory, size_t room)
 struct extension *extension_new(const struct contact_par *par,
 	const struct extension *finer, double *memory, size_t room)
 {
-	struct extension *e = calloc(1, sizeof(*e));
+	struct extension *e = calloc(1, sizeof *e);
 
 	if (!e)
 		return NULL;
@@ -202,8 +202,8 @@ static void gather(void *context, size_t job, int worker)
 	       *weight = value + e->row;
 
 	for (size_t y = job * ROWS; y < smaller((job + 1) * ROWS, l->ny); y++) {
-		memset(value, 0, e->row * sizeof(*value));
-		memset(weight, 0, e->row * sizeof(*weight));
+		memset(value, 0, e->row * sizeof *value);
+		memset(weight, 0, e->row * sizeof *weight);
 		for (size_t k = 0; k < TRANSFER_TAPS; k++)
 			if (ay->cover[TRANSFER_TAPS * y + k] > 0)
 				add_row(e, ay->first[y] + k,

@@ -1,6 +1,6 @@
 /* Nested iteration: a loose solution on a grid of half as many cells each way is the
  * first guess for this one, and so on down. */
-#include "contact/state.h"
+#include "contact/grids.h"
 #include <math.h>
 #include <string.h>
 

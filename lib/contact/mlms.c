@@ -167,7 +167,7 @@ static int make_levels(
 		l->halve_y = worth_halving(ny, m->order);
 		if (!l->halve_x && !l->halve_y)
 			return make_coarsest(l, value, context);
-		l->begin = calloc(2 * ny, sizeof(*l->begin));
+		l->begin = calloc(2 * ny, sizeof *l->begin);
 		if (!l->begin)
 			return -1;
 		l->end = l->begin + ny;
@@ -187,7 +187,7 @@ static int make_levels(
 struct mlms *mlms_new(size_t nx, size_t ny, int order, int reach, kernel_value value,
 	const void *context, struct pool *pool)
 {
-	struct mlms *m = calloc(1, sizeof(*m));
+	struct mlms *m = calloc(1, sizeof *m);
 
 	if (!m)
 		return NULL;
@@ -227,7 +227,7 @@ static void gather_row(const struct mlms *m, const double *fine, size_t n, doubl
 {
 	size_t shift = (size_t)m->order / 2 - 1;
 
-	memset(coarse, 0, coarse_size(n, m->order) * sizeof(*coarse));
+	memset(coarse, 0, coarse_size(n, m->order) * sizeof *coarse);
 	for (size_t i = 0; i < n; i += 2)
 		coarse[i / 2 + shift] += fine[i];
 	for (size_t i = 1; i < n; i += 2)
@@ -288,7 +288,7 @@ static void gather_x(void *context, size_t job, int worker)
 		if (l->halve_x)
 			gather_row(m, source + y * l->nx, l->nx, l->half + y * n);
 		else
-			memcpy(l->half + y * n, source + y * n, n * sizeof(*source));
+			memcpy(l->half + y * n, source + y * n, n * sizeof *source);
 	}
 }
 
@@ -305,10 +305,10 @@ static void gather_y(void *context, size_t job, int worker)
 		double *to = next->source + y * n;
 
 		if (!l->halve_y) {
-			memcpy(to, l->half + y * n, n * sizeof(*to));
+			memcpy(to, l->half + y * n, n * sizeof *to);
 			continue;
 		}
-		memset(to, 0, n * sizeof(*to));
+		memset(to, 0, n * sizeof *to);
 		if (y >= shift && 2 * (y - shift) < l->ny)
 			add_row(to, 1, l->half + 2 * (y - shift) * n, n);
 		for (size_t k = 0; k < (size_t)m->order && k <= y; k++)
@@ -350,7 +350,7 @@ static void spread(void *context, size_t job, int worker)
 		double *half = l->half + y * n;
 		size_t first = y > reach ? y - reach : 0;
 
-		memset(half, 0, n * sizeof(*half));
+		memset(half, 0, n * sizeof *half);
 		if (!l->halve_y)
 			add_row(half, 1, next->image + y * n, n);
 		else if (y % 2 == 0)
@@ -362,7 +362,7 @@ static void spread(void *context, size_t job, int worker)
 		if (l->halve_x)
 			spread_row(m, half, l->nx, image);
 		else
-			memcpy(image, half, n * sizeof(*half));
+			memcpy(image, half, n * sizeof *half);
 		for (size_t ys = first; ys < smaller(y + reach + 1, l->ny); ys++)
 			add_near(m, l, source + ys * l->nx, ys, image, y);
 	}
@@ -379,7 +379,7 @@ static void sum_directly(void *context, size_t job, int worker)
 	for (size_t y = job * ROWS; y < smaller((job + 1) * ROWS, l->ny); y++) {
 		double *image = (m->now ? l->image : m->y) + y * nx;
 
-		memset(image, 0, nx * sizeof(*image));
+		memset(image, 0, nx * sizeof *image);
 		for (size_t ys = 0; ys < l->ny; ys++) {
 			const double *k = l->near + (y > ys ? y - ys : ys - y) * nx;
 

@@ -84,7 +84,7 @@ static struct contact_patch *grow(struct contact_patch *list, size_t n)
 
 	if (n & (n - 1))
 		return list;
-	more = realloc(list, (n ? 2 * n : 1) * sizeof(*list));
+	more = realloc(list, (n ? 2 * n : 1) * sizeof *list);
 	if (!more)
 		free(list);
 	return more;
@@ -97,7 +97,7 @@ struct contact_patch *contact_patches(
 	struct search s = { .grid = grid,
 		.p = pressure,
 		.seen = calloc(cells, 1),
-		.stack = calloc(cells, sizeof(*s.stack)) };
+		.stack = calloc(cells, sizeof *s.stack) };
 	struct contact_patch *list = NULL;
 	int failed = !s.seen || !s.stack;
 
@@ -139,7 +139,7 @@ static int compare(const void *a, const void *b)
 int contact_quantiles(
 	const double *pressure, size_t cells, const double *part, double *quantile, int n)
 {
-	double *sorted = malloc(cells * sizeof(*sorted));
+	double *sorted = malloc(cells * sizeof *sorted);
 	size_t loaded = 0;
 
 	if (!sorted)
@@ -147,7 +147,7 @@ int contact_quantiles(
 	for (size_t i = 0; i < cells; i++)
 		if (pressure[i] > 0)
 			sorted[loaded++] = pressure[i];
-	qsort(sorted, loaded, sizeof(*sorted), compare);
+	qsort(sorted, loaded, sizeof *sorted, compare);
 	for (int k = 0; k < n; k++) {
 		double place = loaded ? part[k] * (double)(loaded - 1) : 0;
 		size_t low = (size_t)place, high = low + 1 < loaded ? low + 1 : low;

@@ -2,7 +2,8 @@
  * contact, which come and go as their pressure or gap says; two applications of the
  * half-space per iteration.  A cell at the hardness is out of the iteration until its
  * gap opens. */
-#include "contact/state.h"
+#include "contact/pk.h"
+#include "contact/gradient.h"
 #include "num/fft.h"
 #include <math.h>
 

@@ -1,5 +1,7 @@
-#include "contact/kernel.h"
-#include "contact/state.h"
+#include "contact/solver.h"
+#include "contact/bccg.h"
+#include "contact/grids.h"
+#include "contact/pk.h"
 #include "num/fft.h"
 #include <errno.h>
 #include <float.h>
@@ -95,7 +97,7 @@ static struct contact *new_grid(
 		errno = EDOM;
 		return NULL;
 	}
-	c = calloc(1, sizeof(*c));
+	c = calloc(1, sizeof *c);
 	if (!c)
 		return NULL;
 	c->par = *par;
@@ -229,7 +231,7 @@ static int guess_pressure(struct contact *c)
 	if (!coarse)
 		return 0;
 	contact_average_height(c);
-	memset(c->coarse_pressure, 0, coarse->n * sizeof(*c->coarse_pressure));
+	memset(c->coarse_pressure, 0, coarse->n * sizeof *c->coarse_pressure);
 	coarse->tolerance = fmax(coarse_tolerance, c->tolerance);
 	status = contact_solve(coarse, c->coarse_height, c->control, c->target,
 		c->coarse_pressure, NULL);
@@ -278,7 +280,7 @@ static int is_apart(struct contact *c)
 	s = contact_sweep(c, survey);
 	if (c->control == CONTACT_APPROACH && c->target > -s.max)
 		return 0;
-	memset(c->p, 0, c->n * sizeof(*c->p));
+	memset(c->p, 0, c->n * sizeof *c->p);
 	c->result.approach = c->control == CONTACT_APPROACH ? c->target : -s.max;
 	for (size_t i = 0; i < c->n; i++)
 		c->gap[i] = -c->h[i];

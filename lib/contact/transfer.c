@@ -27,11 +27,11 @@ static int make_axis(struct axis *a, size_t n, size_t m, int periodic)
 
 	a->n = n;
 	a->m = m;
-	a->first = calloc(m, sizeof(*a->first));
-	a->cover = calloc(m, TRANSFER_TAPS * sizeof(*a->cover));
-	a->low = calloc(n, sizeof(*a->low));
-	a->high = calloc(n, sizeof(*a->high));
-	a->share = calloc(n, sizeof(*a->share));
+	a->first = calloc(m, sizeof *a->first);
+	a->cover = calloc(m, TRANSFER_TAPS * sizeof *a->cover);
+	a->low = calloc(n, sizeof *a->low);
+	a->high = calloc(n, sizeof *a->high);
+	a->share = calloc(n, sizeof *a->share);
 	if (!a->first || !a->cover || !a->low || !a->high || !a->share)
 		return -1;
 	for (size_t i = 0; i < m; i++) {

@@ -89,7 +89,7 @@ static size_t section(struct chords *c, double level)
 
 	for (size_t i = 0; i < c->corners; i++)
 		if (c->height[i] == level)
-			memcpy(c->cut[count++], c->corner[i], sizeof(*c->cut));
+			memcpy(c->cut[count++], c->corner[i], sizeof *c->cut);
 	for (size_t i = 0; i < c->edges; i++) {
 		const struct hull_edge *e = &c->edge[i];
 		const double *p = c->corner[e->from], *q = c->corner[e->to];
@@ -129,9 +129,9 @@ int chords_measure(struct chords *c, const struct hull *h, const double step[3],
 	double along[3];
 
 	c->edge = hull_edges(h, &c->edges);
-	if (room_for(&c->corner, &c->corner_room, c->corners, sizeof(*c->corner)) ||
-		room_for(&c->height, &c->height_room, c->corners, sizeof(*c->height)) ||
-		room_for(&c->cut, &c->cut_room, c->corners + c->edges, sizeof(*c->cut)))
+	if (room_for(&c->corner, &c->corner_room, c->corners, sizeof *c->corner) ||
+		room_for(&c->height, &c->height_room, c->corners, sizeof *c->height) ||
+		room_for(&c->cut, &c->cut_room, c->corners + c->edges, sizeof *c->cut))
 		return -1;
 	for (size_t i = 0; i < c->corners; i++)
 		for (int k = X; k <= Z; k++)

@@ -51,7 +51,7 @@ struct particles *particles_new(const struct particles_par *par)
 	struct particles *ps;
 
 	if (par->nx < 1 || par->ny < 1 || par->nx > HULL_SPAN || par->ny > HULL_SPAN ||
-		!(par->ax > 0) || !(par->ay > 0) || !(par->az >= 0)) {
+		!(par->dx > 0) || !(par->dy > 0) || !(par->dz >= 0)) {
 		errno = EDOM;
 		return NULL;
 	}
@@ -183,14 +183,14 @@ static void fill(struct particles *ps, size_t from)
 		double height = p.bottom - p.top;
 
 		for (int side = -1; side <= 1; side += 2) {
-			ps->area += (height - reach_column(ps, &p, side, 0)) * ps->par.ay;
-			ps->area += (height - reach_column(ps, &p, 0, side)) * ps->par.ax;
+			ps->area += (height - reach_column(ps, &p, side, 0)) * ps->par.dy;
+			ps->area += (height - reach_column(ps, &p, 0, side)) * ps->par.dx;
 			if (!ps->par.corners)
 				continue;
 			reach_column(ps, &p, side, -1);
 			reach_column(ps, &p, side, 1);
 		}
-		ps->area += 2 * ps->par.ax * ps->par.ay;
+		ps->area += 2 * ps->par.dx * ps->par.dy;
 	}
 }
 
@@ -255,7 +255,7 @@ static double centroid(const struct particles *ps, const struct extent *e, doubl
 static void measure_moments(const struct particles *ps, const struct extent *e,
 	const double mean[3], double volume, struct particle *out)
 {
-	double m[6] = { 0 }, value[3], axis[3][3], ax = ps->par.ax, ay = ps->par.ay;
+	double m[6] = { 0 }, value[3], axis[3][3], dx = ps->par.dx, dy = ps->par.dy;
 	double rounding = 16 * sqrt((double)ps->members + 16) * DBL_EPSILON;
 
 	for (size_t i = 0; i < ps->members; i++) {
@@ -264,11 +264,11 @@ static void measure_moments(const struct particles *ps, const struct extent *e,
 		int at[2];
 
 		column_of(ps, p, at);
-		x = ax * (at[X] - e->low[X] + 0.5 - mean[X]);
-		y = ay * (at[Y] - e->low[Y] + 0.5 - mean[Y]);
+		x = dx * (at[X] - e->low[X] + 0.5 - mean[X]);
+		y = dy * (at[Y] - e->low[Y] + 0.5 - mean[Y]);
 		z = 0.5 * (p->bottom + p->top) - e->top - mean[Z];
-		m[0] += share * (x * x + ax * ax / 12);
-		m[1] += share * (y * y + ay * ay / 12);
+		m[0] += share * (x * x + dx * dx / 12);
+		m[1] += share * (y * y + dy * dy / 12);
 		m[2] += share * (z * z + height * height / 12);
 		m[3] += share * x * y;
 		m[4] += share * x * z;
@@ -322,8 +322,8 @@ static int put_corners(struct particles *ps, const struct extent *e, double unit
 static int measure_hull(struct particles *ps, const struct extent *e, struct particle *p)
 {
 	double range = e->bottom - e->top,
-	       unit = ps->par.az > 0 ? ps->par.az : range / STEPS;
-	const double step[3] = { ps->par.ax, ps->par.ay, unit };
+	       unit = ps->par.dz > 0 ? ps->par.dz : range / STEPS;
+	const double step[3] = { ps->par.dx, ps->par.dy, unit };
 	enum hull_status status = HULL_LARGE;
 
 	p->length = p->width = p->aspect = p->convexity = NAN;
@@ -339,7 +339,7 @@ static int measure_hull(struct particles *ps, const struct extent *e, struct par
 		return -1;
 	p->aspect = p->length / p->width;
 	p->convexity = 6 * p->volume /
-		       (hull_volume6(ps->hull) * (ps->par.ax * ps->par.ay * unit));
+		       (hull_volume6(ps->hull) * (ps->par.dx * ps->par.dy * unit));
 	return 0;
 }
 
@@ -353,7 +353,7 @@ static void place(const struct particles *ps, const struct extent *e,
 	const double mean[3], struct particle *p)
 {
 	const int points[2] = { ps->par.nx, ps->par.ny };
-	const double step[2] = { ps->par.ax, ps->par.ay };
+	const double step[2] = { ps->par.dx, ps->par.dy };
 	double at[2];
 
 	for (int k = X; k <= Y; k++) {
@@ -390,7 +390,7 @@ static int measure(struct particles *ps)
 		.first = { first->x, first->y },
 		.endless = ps->winds[X] || ps->winds[Y] };
 	volume = centroid(ps, &e, mean);
-	p->volume = volume * (ps->par.ax * ps->par.ay);
+	p->volume = volume * (ps->par.dx * ps->par.dy);
 	p->diameter = cbrt(6 * p->volume / M_PI);
 	place(ps, &e, mean, p);
 	p->elongation = p->azimuth = p->dip = NAN;

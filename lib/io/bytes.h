@@ -1,6 +1,6 @@
 /* bytes.h - IEEE numbers from and to bytes of a stated order, on any host */
-#ifndef SHELL_BYTES_H
-#define SHELL_BYTES_H
+#ifndef IO_BYTES_H
+#define IO_BYTES_H
 
 #include <stdint.h>
 #include <string.h>

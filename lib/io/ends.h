@@ -4,8 +4,8 @@
  * and hands out what was whole.  The writers call ends_check() before they end a
  * stream, so that a program dies before what it made of half an input looks whole.
  */
-#ifndef SHELL_ENDS_H
-#define SHELL_ENDS_H
+#ifndef IO_ENDS_H
+#define IO_ENDS_H
 
 /* Value of the key "stream" of streams that promise an end. */
 #define ENDS_PROMISE "wearpipe-streams(5)"

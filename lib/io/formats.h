@@ -1,11 +1,11 @@
-/* formats.h - the field formats behind fields.h: one file each, reader and writer */
-#ifndef SHELL_FORMATS_H
-#define SHELL_FORMATS_H
+/* formats.h - steps that the formats of fields share: each has a file of its own, reader
+ * and writer, and a row in the table of fields.c */
+#ifndef IO_FORMATS_H
+#define IO_FORMATS_H
 
-#include "io/fields.h"
 #include "io/input.h"
+#include "io/record.h"
 #include <stdint.h>
-#include <stdio.h>
 
 /* What a record of ours says of its stream. */
 struct mark {
@@ -23,12 +23,6 @@ struct place {
 	struct mark mark;
 };
 
-/* Both start behind the magic line and fill an empty record, or die. */
-void nrrd_read(struct place *at, struct record *r);
-void gsf_read(struct place *at, struct record *r);
-/* The number of the record in its stream, and whether it is the last. */
-void nrrd_write(FILE *f, const struct record *r, long number, int last);
-
 /* Layout of raw samples in a stream: points of nfields values, x fastest. */
 struct samples {
 	int single; /* 4-byte float instead of 8-byte */
@@ -38,6 +32,10 @@ struct samples {
 /* Fills all fields of r, whose sizes and names are set; dies where the stream ends
  * before "want N bytes". */
 void samples_read(struct place *at, struct record *r, struct samples layout);
+
+/* Adds n fields by names and units, "height m, pressure Pa"; NULL: a single one is a
+ * height in metres. */
+void name_fields(const struct place *at, const char *fields, struct record *r, int n);
 
 /* One header line without its newline, fresh memory; NULL at the end of the stream.
  * Dies where the header grows past a mebibyte. */
@@ -52,8 +50,5 @@ void check_sizes(const struct place *at, const double *sizes, int n);
 
 /* Dies unless the spacing of an axis, in metres, is one that a surface can have. */
 void check_spacing(const struct place *at, int axis, double spacing);
-
-/* Adds a field that must not exist yet; memory is not touched. */
-void record_new_field(struct record *r, const char *name, const char *unit);
 
 #endif

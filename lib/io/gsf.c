@@ -1,13 +1,13 @@
 /* gsf.c - Gwyddion Simple Field 1.0: one float32 field, text header padded with NULs */
+#include "io/gsf.h"
 #include "cli/msg.h"
 #include "cli/unit.h"
 #include "io/bytes.h"
-#include "io/formats.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const char magic[] = "Gwyddion Simple Field 1.0\n";
+static const char first_line[] = "Gwyddion Simple Field 1.0";
 
 static double number(const struct place *at, const char *key, const char *text)
 {
@@ -58,10 +58,15 @@ static void skip_padding(struct place *at, size_t header_size)
 				at->name, at->record);
 }
 
+int gsf_is(const char *magic)
+{
+	return strcmp(magic, first_line) == 0;
+}
+
 void gsf_read(struct place *at, struct record *r)
 {
 	double sizes[2] = { 0 }, real[2] = { 0 }, xy = 1, z = 1;
-	size_t size = sizeof magic - 1;
+	size_t size = strlen(first_line) + 1;
 
 	while (input_peek(at->in) > 0) {
 		char *line, *value;
@@ -107,12 +112,12 @@ void gsf_read(struct place *at, struct record *r)
 		r->data[0][i] *= z;
 }
 
-void fields_write_gsf(FILE *f, const struct record *r, int field)
+void gsf_write(FILE *f, const struct record *r, int field)
 {
 	size_t n = (size_t)r->nx * (size_t)r->ny;
-	char *header = xprintf("%sXRes = %d\nYRes = %d\nXReal = %.17g\nYReal = %.17g\n"
+	char *header = xprintf("%s\nXRes = %d\nYRes = %d\nXReal = %.17g\nYReal = %.17g\n"
 			       "XYUnits = m\nZUnits = %s\nTitle = %s\n",
-		magic, r->nx, r->ny, r->nx * r->dx, r->ny * r->dy, r->unit[field],
+		first_line, r->nx, r->ny, r->nx * r->dx, r->ny * r->dy, r->unit[field],
 		r->name[field]);
 	size_t size = strlen(header);
 	unsigned char b[4] = { 0 };

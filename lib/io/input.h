@@ -3,8 +3,8 @@
  * Reads die where the system reports an error.  With --follow (file_follow()) a regular
  * file that ends is waited for: another process is writing it.
  */
-#ifndef SHELL_INPUT_H
-#define SHELL_INPUT_H
+#ifndef IO_INPUT_H
+#define IO_INPUT_H
 
 #include <stddef.h>
 #include <stdint.h>

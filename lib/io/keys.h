@@ -1,6 +1,6 @@
 /* keys.h - a short list of key and value texts, in order of first appearance */
-#ifndef SHELL_KEYS_H
-#define SHELL_KEYS_H
+#ifndef IO_KEYS_H
+#define IO_KEYS_H
 
 struct keys {
 	int n;

@@ -1,6 +1,6 @@
 /* kinds.h - what a stream of the wrong kind is, by its first bytes */
-#ifndef SHELL_KINDS_H
-#define SHELL_KINDS_H
+#ifndef IO_KINDS_H
+#define IO_KINDS_H
 
 #include <stddef.h>
 

@@ -45,3 +45,19 @@ double table_scale(const struct table_in *t, int column, enum unit unit)
 			table_column_name(t, column), (int)n, units, unit_name(unit));
 	return scale;
 }
+
+int table_find_quantity(struct table_in *t, const char *column, enum unit unit)
+{
+	int found = table_find(t, column);
+	double scale = table_scale(t, found, unit);
+
+	if (found >= 0 && !isnan(scale))
+		table_set_scale(t, found, scale);
+	return found;
+}
+
+int table_need_quantity(struct table_in *t, const char *column, enum unit unit)
+{
+	table_need(t, column);
+	return table_find_quantity(t, column, unit);
+}

@@ -1,6 +1,6 @@
 /* quantities.h - numbers with units in the comment lines of tables */
-#ifndef SHELL_QUANTITIES_H
-#define SHELL_QUANTITIES_H
+#ifndef IO_QUANTITIES_H
+#define IO_QUANTITIES_H
 
 #include "cli/unit.h"
 #include "io/tables.h"
@@ -12,5 +12,10 @@ double table_quantity(const struct table_in *t, const char *key, enum unit unit)
 /* What one of the numbers of a column is in SI, by the "# units:" line; NAN where that
  * tells no unit of the column, or 1.  Dies where it is not a unit of this kind. */
 double table_scale(const struct table_in *t, int column, enum unit unit);
+
+/* table_need() and table_find() for a column that is read in SI: its numbers are
+ * converted where the "# units:" line gives another unit of this kind. */
+int table_need_quantity(struct table_in *t, const char *column, enum unit unit);
+int table_find_quantity(struct table_in *t, const char *column, enum unit unit);
 
 #endif

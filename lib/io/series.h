@@ -6,8 +6,8 @@
  * rise for each unit; y may be missing (nan) but not infinite: anything else ends the
  * program with one line that names file, line, unit and what was wrong.
  */
-#ifndef SHELL_SERIES_H
-#define SHELL_SERIES_H
+#ifndef IO_SERIES_H
+#define IO_SERIES_H
 
 #include "io/tables.h"
 

@@ -29,6 +29,7 @@ struct table_in {
 	long number; /* of that line, from 1 */
 	int ncolumns;
 	char **column; /* names */
+	double *scale; /* what table_number() multiplies with, NULL for 1 */
 	char **cell;
 	const char *blanks; /* what parts the cells */
 	int headed;         /* the names stand in the table */
@@ -84,6 +85,10 @@ static void keep_key(struct table_in *t, char *comment)
 	/* Names and units may be separated by TABs. */
 	value = strcmp(comment, "cmd") ? xstrdup(trim(colon + 1))
 				       : text_escape(trim(colon + 1));
+	if (t->scale && !strcmp(comment, "units") &&
+		(!table_key(t, "units") || strcmp(table_key(t, "units"), value) != 0))
+		die(EXIT_RUN, "%s: line %ld: the units change within the table", t->name,
+			t->number);
 	keys_set(&t->keys, comment, value);
 	free(value);
 	if ((size_t)t->keys.n > t->most_keys)
@@ -114,7 +119,7 @@ static size_t read_line(struct table_in *t)
 		return n;
 	if (file_followed())
 		return 0;
-	die(EXIT_RUN, "%s: line %ld: no newline at the end: the table is cut off",
+	die(EXIT_RUN, "%s: line %ld: no newline at the end: the table is truncated",
 		t->name, t->number);
 }
 
@@ -122,7 +127,7 @@ static size_t read_line(struct table_in *t)
 static void begin_promised(struct table_in *t)
 {
 	if (t->promised)
-		die(EXIT_RUN, "%s: line %ld: the table before has no '# end' line",
+		die(EXIT_RUN, "%s: line %ld: the preceding table has no '# end' line",
 			t->name, t->number);
 	input_whole(t->in, 0);
 	t->promised = 1;
@@ -193,8 +198,7 @@ static int next_line(struct table_in *t)
 	}
 	if (t->promised && !file_followed())
 		die(EXIT_RUN,
-			"%s: the table ends after %ld rows without its '# end' line: "
-			"what wrote it did not finish",
+			"%s: the table ends after %ld rows without its '# end' line: its writer did not finish",
 			t->name, t->rows);
 	return 0;
 }
@@ -450,9 +454,19 @@ double table_number(const struct table_in *t, int column)
 		die(EXIT_RUN, "%s: line %ld: %s: '%.40s' is not a number%s", t->name,
 			t->number, t->column[column], t->cell[column],
 			is_comma_decimal(t->cell[column])
-				? ": decimals are behind a point"
+				? ": write decimals with a point"
 				: "");
-	return v;
+	return t->scale ? v * t->scale[column] : v;
+}
+
+void table_set_scale(struct table_in *t, int column, double scale)
+{
+	if (!t->scale) {
+		t->scale = xcalloc((size_t)t->ncolumns, sizeof *t->scale);
+		for (int i = 0; i < t->ncolumns; i++)
+			t->scale[i] = 1;
+	}
+	t->scale[column] = scale;
 }
 
 double table_positive(const struct table_in *t, int column)
@@ -487,6 +501,7 @@ void table_close(struct table_in *t)
 	for (int i = 0; i < t->ncolumns; i++)
 		free(t->column[i]);
 	free(t->column);
+	free(t->scale);
 	free(t->cell);
 	keys_free(&t->keys);
 	upstream_free(&t->upstream);

@@ -9,8 +9,8 @@
  *		double d = table_number(t, cd);
  *		...
  */
-#ifndef SHELL_TABLES_H
-#define SHELL_TABLES_H
+#ifndef IO_TABLES_H
+#define IO_TABLES_H
 
 #include "io/input.h"
 #include <stddef.h>
@@ -46,6 +46,10 @@ long table_line(const struct table_in *t); /* of the present row, from 1 */
 /* Cell as a number; nan, NaN, NA and an empty cell are NAN; anything else that is
  * not a number dies.  A column below 0 gives NAN. */
 double table_number(const struct table_in *t, int column);
+/* From then on table_number() multiplies the cells of the column with scale, and a
+ * further
+ * "# units:" line with other units dies. */
+void table_set_scale(struct table_in *t, int column, double scale);
 /* The same, but only numbers above 0, or whole numbers from least to most: anything else
  * dies. */
 double table_positive(const struct table_in *t, int column);

@@ -2,6 +2,7 @@
 #include "life/adaptive.h"
 #include "life/grey.h"
 #include "life/noise.h"
+#include "num/lanes.h"
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -16,19 +17,16 @@ static const double MEMORY = 0.05;     /* weight of the newest innovation */
 /* A past row of all particles: their states and the gap after them. */
 struct lag {
 	const double *x;
-	const uint32_t *ancestor; /* of the particles after it; NULL: of the same place */
+	const uint32_t *ancestor; /* of those after it; NULL: of the same place */
+	size_t count;             /* of x */
 	double gap;
 };
 
-/* Two particles side by side, and the sums of their grey fits, as struct grey has them,
- * about a centre of x. */
-typedef double pair __attribute__((vector_size(16)));
-
+/* The sums of the grey fits of two particles, x about a centre, u the integral of the
+ * states from the oldest on. */
 struct sums {
-	pair tail, u, x, uu, ux;
+	lanes tail, u, x, uu, ux;
 };
-
-enum { LANES = 4 };
 
 struct adaptive {
 	struct adaptive_par par;
@@ -39,6 +37,7 @@ struct adaptive {
 	struct lag *lag;    /* [depth] */
 	uint32_t *index;    /* [N] */
 	double *mean;       /* [N] prior means */
+	struct sums *sums;  /* [N / 2] */
 	double *past, *gap; /* rings of the last rows: values and gaps before */
 	double *line_up;    /* past in order */
 	double scale;       /* from here on the state, see adaptive_pass(): power of two
@@ -82,11 +81,12 @@ struct adaptive *adaptive_new(const struct adaptive_par *par)
 	a->lag = calloc(depth, sizeof *a->lag);
 	a->index = calloc(par->filter.particles, sizeof *a->index);
 	a->mean = column(a);
+	a->sums = calloc((par->filter.particles + 1) / 2, sizeof *a->sums);
 	a->past = calloc(depth, sizeof *a->past);
 	a->gap = calloc(depth, sizeof *a->gap);
 	a->line_up = calloc(depth, sizeof *a->line_up);
 	if (!a->draw_paths || !a->filter || !a->order || !a->noise || !a->lag ||
-		!a->index || !a->mean || !a->past || !a->gap || !a->line_up) {
+		!a->index || !a->mean || !a->sums || !a->past || !a->gap || !a->line_up) {
 		adaptive_free(a);
 		return NULL;
 	}
@@ -105,6 +105,7 @@ void adaptive_free(struct adaptive *a)
 	free(a->lag);
 	free(a->index);
 	free(a->mean);
+	free(a->sums);
 	free(a->past);
 	free(a->gap);
 	free(a->line_up);
@@ -146,9 +147,10 @@ unsigned long adaptive_outliers(const struct adaptive *a)
 	return a->outliers;
 }
 
-static inline void add_state(struct sums *s, pair x, double gap, double centre)
+/* The sums go on by a state at a gap after the one before. */
+static inline void add_state(struct sums *s, lanes x, double gap, double centre)
 {
-	pair part = x * gap, u = s->tail + 0.5 * part, off = x - centre;
+	lanes part = x * gap, u = s->tail + 0.5 * part, off = x - centre;
 
 	s->u += u;
 	s->x += off;
@@ -157,71 +159,85 @@ static inline void add_state(struct sums *s, pair x, double gap, double centre)
 	s->tail += part;
 }
 
-/* Level and rate of the curve of one of a pair, and the mean of its states. */
-static double curve_of(
-	const struct sums *s, int i, double n, double centre, double *level, double *rate)
+/* The states of a stretch of lags, oldest first, join the sums of each of n of them. */
+static void add_stretch(struct sums *sums, const struct lag *newest, int count,
+	double centre, const uint32_t *index, size_t n)
 {
-	double suu = s->uu[i] - s->u[i] * s->u[i] / n,
-	       sux = s->ux[i] - s->u[i] * s->x[i] / n, middle = centre + s->x[i] / n;
+	for (size_t i = 0; i < n; i += 2) {
+		size_t a = i, b = i + 1 < n ? i + 1 : i;
+		struct sums s = sums[i / 2];
 
-	*rate = suu > 0 ? sux / suu : 0;
-	*level = middle + *rate * (s->tail[i] - s->u[i] / n);
-	return middle;
-}
-
-/* What the grey curve through the last count states of each of some particles makes of
- * the interval h after the newest.  An exponential through states that cannot be told
- * from 0 means nothing: these stay at their mean. */
-static void forecast_lanes(const struct lag *lag, int count, double h, double noise,
-	uint32_t index[LANES], double mean[LANES])
-{
-	const pair zero = { 0, 0 };
-	struct sums s = { zero, zero, zero, zero, zero }, t = s;
-	double span = 0, centre = lag[0].x[0];
-	uint32_t a = index[0], b = index[1], c = index[2], d = index[3];
-
-	for (int k = 0; k < count; k++) {
-		const double *x = lag[k].x;
-		const uint32_t *ancestor = lag[k].ancestor;
-
-		if (ancestor) {
-			a = ancestor[a];
-			b = ancestor[b];
-			c = ancestor[c];
-			d = ancestor[d];
+		if (index) {
+			a = index[a];
+			b = index[b];
 		}
-		add_state(&s, (pair){ x[a], x[b] }, lag[k].gap, centre);
-		add_state(&t, (pair){ x[c], x[d] }, lag[k].gap, centre);
-		span += lag[k].gap;
-	}
-	for (int i = 0; i < LANES; i++) {
-		double level, rate,
-			middle = curve_of(
-				i < 2 ? &s : &t, i % 2, count, centre, &level, &rate);
-
-		mean[i] = fabs(middle) > 3 * noise ? grey_curve(level, rate, span + h, h)
-						   : middle;
+		for (int k = count; k-- > 0;)
+			add_state(&s, (lanes){ newest[k].x[a], newest[k].x[b] },
+				newest[k].gap, centre);
+		sums[i / 2] = s;
 	}
 }
 
-/* The same for n particles, those in index where there is one. */
-static void forecast(const struct lag *lag, int count, double h, double noise,
+static struct sums pick_sums(const struct sums *sums, size_t a, size_t b)
+{
+	const struct sums *s = &sums[a / 2], *t = &sums[b / 2];
+	size_t i = a % 2, j = b % 2;
+
+	return (struct sums){ { s->tail[i], t->tail[j] }, { s->u[i], t->u[j] },
+		{ s->x[i], t->x[j] }, { s->uu[i], t->uu[j] }, { s->ux[i], t->ux[j] } };
+}
+
+/* Hands the sums of ancestors, which rise, to their n descendants, in place. */
+static void hand_down(struct sums *sums, const uint32_t *ancestor, size_t n)
+{
+	for (size_t i = (n + 1) / 2; i-- > 0;)
+		sums[i] = pick_sums(sums, ancestor[2 * i],
+			ancestor[2 * i + 1 < n ? 2 * i + 1 : 2 * i]);
+}
+
+/* What the grey curve through these states makes of the interval h after the newest, span
+ * after the oldest.  An exponential through states that cannot be told from 0 means
+ * nothing: these stay at their mean. */
+static lanes forecast_pair(const struct sums *s, double n, double centre, double span,
+	double h, double noise)
+{
+	lanes u = s->u / n, x = s->x / n, uu = s->uu - s->u * u, ux = s->ux - s->u * x,
+	      middle = centre + x;
+	lanes rate = lanes_if(uu > 0, -ux / lanes_pick(uu > 0, uu, lanes_all(1)));
+
+	return lanes_pick(lanes_abs(middle) > 3 * noise,
+		grey_curve_lanes(middle + rate * u, rate, span + h, h), middle);
+}
+
+/* The same for n particles, those in index where there is one.  Histories that have an
+ * ancestor in common share its sums. */
+static void forecast(struct adaptive *a, int count, double h, double noise,
 	const uint32_t *index, size_t n, double *mean)
 {
-	uint32_t lane[LANES];
-	double of[LANES];
+	const struct lag *lag = a->lag;
+	const lanes zero = { 0, 0 };
+	double span = 0, centre = lag[0].x[0];
 
-	for (size_t i = 0; i < n; i += LANES) {
-		size_t width = n - i < LANES ? n - i : LANES;
+	for (size_t i = 0; i < (n + 1) / 2; i++)
+		a->sums[i] = (struct sums){ zero, zero, zero, zero, zero };
+	for (int from = count; from > 0;) {
+		int to = from - 1;
 
-		for (size_t j = 0; j < LANES; j++) {
-			size_t k = i + (j < width ? j : 0);
-
-			lane[j] = index ? index[k] : (uint32_t)k;
-		}
-		forecast_lanes(lag, count, h, noise, lane, of);
-		memcpy(mean + i, of, width * sizeof *of);
+		while (to > 0 && !lag[to].ancestor)
+			to--;
+		add_stretch(a->sums, lag + to, from - to, centre, index,
+			index ? n : lag[to].count);
+		if (lag[to].ancestor)
+			hand_down(a->sums, lag[to].ancestor,
+				to > 0 ? lag[to - 1].count : n);
+		from = to;
 	}
+	for (int k = 0; k < count; k++)
+		span += lag[k].gap;
+	for (size_t i = 0; i < n; i += 2)
+		lanes_store(mean + i,
+			forecast_pair(&a->sums[i / 2], count, centre, span, h, noise),
+			n - i < 2 ? 1 : 2);
 }
 
 /* Prior mean of every particle: the grey forecast of its own last p states.  The oldest
@@ -231,10 +247,12 @@ static void forecast_particles(struct adaptive *a, int p, double h, double noise
 	int depth = a->par.filter.depth;
 
 	for (int k = 0; k < p - 1; k++) {
-		a->lag[k].x = filter_states(a->filter, k, &a->lag[k].ancestor);
-		a->lag[k].gap = a->gap[(a->newest - k + depth) % depth];
+		struct lag *lag = &a->lag[k];
+
+		lag->x = filter_states(a->filter, k, &lag->ancestor, &lag->count);
+		lag->gap = a->gap[(a->newest - k + depth) % depth];
 	}
-	forecast(a->lag, p - 1, h, noise, NULL, a->par.filter.particles, a->mean);
+	forecast(a, p - 1, h, noise, NULL, a->par.filter.particles, a->mean);
 }
 
 static void hold_particles(struct adaptive *a)
@@ -514,8 +532,8 @@ static size_t step_paths(struct adaptive *a, struct paths *s, size_t live, doubl
 	double gap = a->mean_gap, *old = path_lag(s, n, 0), *x;
 
 	for (int k = 0; k < s->p - 1; k++)
-		a->lag[k] = (struct lag){ path_lag(s, n, k), NULL, gap };
-	forecast(a->lag, s->p - 1, gap, s->noise, s->index, live, a->mean);
+		a->lag[k] = (struct lag){ path_lag(s, n, k), NULL, n, gap };
+	forecast(a, s->p - 1, gap, s->noise, s->index, live, a->mean);
 	s->newest = (s->newest + 1) % s->p;
 	x = path_lag(s, n, 0);
 	for (size_t k = 0; k < live; k++) {

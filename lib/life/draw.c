@@ -4,10 +4,12 @@
 #include <math.h>
 #include <stdlib.h>
 
+enum { WORDS = 4 * PHILOX_ROW };
+
 struct draw {
 	uint32_t counter[4], key[2];
-	uint32_t word[4];
-	int left; /* words not yet used */
+	uint32_t word[4][PHILOX_ROW]; /* of one counter after another */
+	unsigned used;                /* of the 4 PHILOX_ROW words */
 	struct ziggurat layers;
 };
 
@@ -21,6 +23,7 @@ struct draw *draw_new(uint64_t seed, uint32_t realisation, enum rng_purpose purp
 	d->key[1] = (uint32_t)(seed >> 32);
 	d->counter[2] = realisation;
 	d->counter[3] = purpose;
+	d->used = WORDS;
 	ziggurat_make(&d->layers);
 	return d;
 }
@@ -34,18 +37,21 @@ void draw_pass(struct draw *d, struct state *s)
 {
 	state_move(s, d->counter, sizeof d->counter);
 	state_move(s, d->word, sizeof d->word);
-	state_move(s, &d->left, sizeof d->left);
+	state_move(s, &d->used, sizeof d->used);
 }
 
 static inline uint32_t next_word(struct draw *d)
 {
-	if (d->left == 0) {
-		philox4x32(d->counter, d->key, d->word);
-		d->left = 4;
-		if (++d->counter[0] == 0)
-			d->counter[1]++;
+	unsigned k;
+
+	if (d->used == WORDS) {
+		philox4x32_row(d->counter, d->key, d->word);
+		d->counter[0] += PHILOX_ROW;
+		d->counter[1] += d->counter[0] < PHILOX_ROW;
+		d->used = 0;
 	}
-	return d->word[4 - d->left--];
+	k = d->used++;
+	return d->word[k % 4][k / 4];
 }
 
 double draw_uniform(struct draw *d)

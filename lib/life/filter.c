@@ -1,13 +1,18 @@
 /* filter.c - see filter.h */
 #include "life/filter.h"
+#include "num/lanes.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* Log weights below it, relative to the largest, weigh nothing. */
+static const double LEAST = -700;
+
 /* One remembered step. */
 struct step {
 	double *x;
-	uint32_t *ancestor; /* of the particles after it, where it was resampled */
+	size_t count;       /* of those that have descendants today */
+	uint32_t *ancestor; /* of the states after it, where it was resampled */
 	int resampled;
 };
 
@@ -17,6 +22,7 @@ struct filter {
 	struct step *ring;
 	int newest, filled;
 	double *log_weight, *weight;
+	uint32_t *kept;
 	double sum; /* of weight */
 	double mean, ess;
 	unsigned long resamplings;
@@ -35,7 +41,8 @@ struct filter *filter_new(const struct filter_par *par, struct draw *draw)
 	f->ring = calloc((size_t)par->depth, sizeof *f->ring);
 	f->log_weight = calloc(n, sizeof *f->log_weight);
 	f->weight = calloc(n, sizeof *f->weight);
-	good = f->ring && f->log_weight && f->weight;
+	f->kept = calloc(n, sizeof *f->kept);
+	good = f->ring && f->log_weight && f->weight && f->kept;
 	for (int k = 0; good && k < par->depth; k++) {
 		f->ring[k].x = calloc(n, sizeof *f->ring[k].x);
 		f->ring[k].ancestor = calloc(n, sizeof *f->ring[k].ancestor);
@@ -59,6 +66,7 @@ void filter_free(struct filter *f)
 	free(f->ring);
 	free(f->log_weight);
 	free(f->weight);
+	free(f->kept);
 	free(f);
 }
 
@@ -70,6 +78,7 @@ void filter_pass(struct filter *f, struct state *s)
 		state_move(s, f->ring[k].x, n * sizeof *f->ring[k].x);
 		state_move(s, f->ring[k].ancestor, n * sizeof *f->ring[k].ancestor);
 		state_move(s, &f->ring[k].resampled, sizeof f->ring[k].resampled);
+		state_move(s, &f->ring[k].count, sizeof f->ring[k].count);
 	}
 	state_move(s, &f->newest, sizeof f->newest);
 	state_move(s, &f->filled, sizeof f->filled);
@@ -92,6 +101,7 @@ static struct step *push_step(struct filter *f)
 	if (f->filled < f->par.depth)
 		f->filled++;
 	f->ring[f->newest].resampled = 0;
+	f->ring[f->newest].count = f->par.particles;
 	return &f->ring[f->newest];
 }
 
@@ -145,11 +155,13 @@ const double *filter_lag(const struct filter *f, int lag, uint32_t *index, int *
 	return s->x;
 }
 
-const double *filter_states(const struct filter *f, int lag, const uint32_t **ancestor)
+const double *filter_states(
+	const struct filter *f, int lag, const uint32_t **ancestor, size_t *count)
 {
 	const struct step *s = &f->ring[(f->newest - lag + f->par.depth) % f->par.depth];
 
 	*ancestor = s->resampled ? s->ancestor : NULL;
+	*count = s->count;
 	return s->x;
 }
 
@@ -221,23 +233,66 @@ static double log_constant(const struct filter *f, double noise)
 	return -0.5 * log(2 * M_PI) - log(noise);
 }
 
+/* Numbers the distinct ones of n ancestors, which rise, anew from 0, and lists what they
+ * were.  Returns how many there are. */
+static size_t renumber(uint32_t *ancestor, size_t n, uint32_t *kept)
+{
+	size_t m = 0;
+
+	for (size_t i = 0; i < n; i++) {
+		uint32_t old = ancestor[i];
+
+		if (m == 0 || old != kept[m - 1])
+			kept[m++] = old;
+		ancestor[i] = (uint32_t)(m - 1);
+	}
+	return m;
+}
+
+/* Drops the states that have no descendants since the newest step was resampled. */
+static void prune(struct filter *f)
+{
+	size_t n = 0;
+
+	for (int lag = 0; lag < f->filled; lag++) {
+		struct step *s =
+			&f->ring[(f->newest - lag + f->par.depth) % f->par.depth];
+
+		if (s->resampled) {
+			for (size_t i = 0; i < n; i++)
+				s->ancestor[i] = s->ancestor[f->kept[i]];
+			n = renumber(s->ancestor, lag ? n : s->count, f->kept);
+		}
+		if (n == s->count)
+			return;
+		for (size_t i = 0; i < n; i++)
+			s->x[i] = s->x[f->kept[i]];
+		s->count = n;
+	}
+}
+
 double filter_update(struct filter *f, double y, double noise)
 {
 	struct step *s = &f->ring[f->newest];
-	double before = f->sum, top = weigh(f, y, noise), sum = 0, squares = 0,
-	       moment = 0;
+	double before = f->sum, top = weigh(f, y, noise), sum, squares, moment;
+	lanes sums[3] = { { 0 } };
 	size_t n = f->par.particles;
 
-	for (size_t i = 0; i < n; i++) {
-		double w;
+	for (size_t i = 0; i < n; i += 2) {
+		int width = n - i < 2 ? 1 : 2;
+		lanes lw = lanes_load(f->log_weight + i, width) - top;
+		lanes w =
+			lanes_if(lw > LEAST, lanes_exp(lanes_max(lw, lanes_all(LEAST))));
 
-		f->log_weight[i] -= top;
-		w = exp(f->log_weight[i]);
-		f->weight[i] = w;
-		sum += w;
-		squares += w * w;
-		moment += w * s->x[i];
+		lanes_store(f->log_weight + i, lw, width);
+		lanes_store(f->weight + i, w, width);
+		lanes_add(&sums[0], w, width);
+		lanes_add(&sums[1], w * w, width);
+		lanes_add(&sums[2], w * lanes_load(s->x + i, width), width);
 	}
+	sum = sums[0][0] + sums[0][1];
+	squares = sums[1][0] + sums[1][1];
+	moment = sums[2][0] + sums[2][1];
 	f->sum = sum;
 	f->ess = sum * sum / squares;
 	f->mean = moment / sum;
@@ -245,6 +300,7 @@ double filter_update(struct filter *f, double y, double noise)
 		resample(f->par.scheme, f->draw, f->weight, f->sum, n, s->ancestor);
 		s->resampled = 1;
 		f->resamplings++;
+		prune(f);
 	}
 	return log_constant(f, noise) + top + log(f->sum / before);
 }

@@ -4,8 +4,8 @@
  * y_k = x_k + noise.  The caller computes the means from the histories of the
  * particles; the filter adds the noise, weighs in logarithms, and resamples when the
  * effective sample size falls below a share of N (Gordon, Salmond, Smith 1993; Li's
- * thesis, eq. 4-9 to 4-19).  Histories are genealogies: each step keeps its N states
- * and, where it was resampled, the N ancestors; nothing is copied.
+ * thesis, eq. 4-9 to 4-19).  Histories are genealogies: each step keeps those of its
+ * states that have descendants and, where it was resampled, which they are.
  *
  *	struct filter *f = filter_new(&par, draw);
  *	filter_start(f, first, 4, spread);
@@ -50,9 +50,11 @@ int filter_depth(const struct filter *f);
  * (index is carried on).  Returns 1 where index changed, 0 where it stayed. */
 const double *filter_lag(const struct filter *f, int lag, uint32_t *index, int *changed);
 
-/* The same without the walk: the states of step k - lag, and which of them each particle
- * after it comes from; NULL: the one of the same place. */
-const double *filter_states(const struct filter *f, int lag, const uint32_t **ancestor);
+/* The same without the walk: the count states of step k - lag that have descendants, and
+ * which of them each state of the step after it comes from, ascending; NULL: the one of
+ * the same place. */
+const double *filter_states(
+	const struct filter *f, int lag, const uint32_t **ancestor, size_t *count);
 
 /* Moves to the next step: states mean[N] plus normal noise. */
 void filter_predict(struct filter *f, const double *mean, double sigma);

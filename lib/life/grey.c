@@ -2,21 +2,6 @@
 #include "life/grey.h"
 #include <math.h>
 
-/* (exp(a) - 1) / a, the mean of exp over [0, a]: its series, 1 / 1! + a / 2! + ..., where
- * that is short (the next term is a^9 / 10!). */
-static double mean_exp(double a)
-{
-	static const double factor[] = { 1.0 / 362880, 1.0 / 40320, 1.0 / 5040, 1.0 / 720,
-		1.0 / 120, 1.0 / 24, 1.0 / 6, 1.0 / 2, 1 };
-	double sum = 0;
-
-	if (fabs(a) > 0.1)
-		return expm1(a) / a;
-	for (int k = 0; k < 9; k++)
-		sum = sum * a + factor[k];
-	return sum;
-}
-
 void grey_add(struct grey *g, double x, double gap)
 {
 	if (g->n > 0) {
@@ -75,7 +60,10 @@ static double clamp(double x, double limit)
 /* Growth beyond e^600 is as good as for ever; the clamps keep it finite. */
 double grey_curve(double level, double rate, double t, double gap)
 {
-	return level * mean_exp(clamp(rate * gap, 600)) * exp(clamp(-rate * t, 600));
+	double a = clamp(rate * gap, 600), mean;
+
+	mean = fabs(a) > GREY_SERIES ? expm1(a) / a : grey_mean_exp(lanes_all(a))[0];
+	return level * mean * lanes_exp(lanes_all(clamp(-rate * t, 600)))[0];
 }
 
 double grey_forecast(const struct grey *g, double h, double gap)

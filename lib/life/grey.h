@@ -19,6 +19,8 @@
 #ifndef LIFE_GREY_H
 #define LIFE_GREY_H
 
+#include "num/lanes.h"
+
 enum { GREY_ORDER_MIN = 4 }; /* fewest points of a fit */
 
 /* Zero it to start. */
@@ -55,5 +57,31 @@ double grey_forecast(const struct grey *g, double h, double gap);
 /* The mean of level exp(-rate t) over the gap that ends at t: what grey_forecast() makes
  * of the fitted level and rate at t = span + h. */
 double grey_curve(double level, double rate, double t, double gap);
+
+/* (exp(a) - 1) / a, the mean of exp over [0, a], for |a| <= GREY_SERIES by its series,
+ * 1 / 1! + a / 2! + ... (the next term is a^9 / 10!). */
+static const double GREY_SERIES = 0.1;
+
+static inline lanes grey_mean_exp(lanes a)
+{
+	lanes aa = a * a, even, odd;
+
+	even = 1 +
+	       aa * (1. / 6 + aa * (1. / 120 + aa * (1. / 5040 + aa * (1. / 362880))));
+	odd = 0.5 + aa * (1. / 24 + aa * (1. / 720 + aa * (1. / 40320)));
+	return even + a * odd;
+}
+
+/* The same two at a time. */
+static inline lanes grey_curve_lanes(lanes level, lanes rate, double t, double gap)
+{
+	lanes a = rate * gap, b = -rate * t;
+	lane_mask far = (lanes_abs(a) > GREY_SERIES) | (lanes_abs(b) > 600);
+
+	if (far[0] | far[1])
+		return (lanes){ grey_curve(level[0], rate[0], t, gap),
+			grey_curve(level[1], rate[1], t, gap) };
+	return level * grey_mean_exp(a) * lanes_exp(b);
+}
 
 #endif

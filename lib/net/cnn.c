@@ -72,8 +72,9 @@ int cnn_lay(const struct cnn_section *s, network_real *x, struct cnn_frame *fram
 		return 0;
 	slope = 2 * M_PI * frame->reach / s->duration;
 	for (int k = 0; k < CNN_POINTS; k++) {
-		x[k] = y1[k] / frame->scale;
-		x[CNN_POINTS + k] = (y2[k] / s->gain - y1[k]) / frame->scale / slope;
+		x[k] = (network_real)(y1[k] / frame->scale);
+		x[CNN_POINTS + k] =
+			(network_real)((y2[k] / s->gain - y1[k]) / frame->scale / slope);
 	}
 	return 1;
 }

@@ -27,8 +27,8 @@
  *		for (int i = 0, m = cnn_apply(net, &s, 0, p); i < m; i++)
  *			print(p[i]);
  */
-#ifndef SIGNAL_CNN_H
-#define SIGNAL_CNN_H
+#ifndef NET_CNN_H
+#define NET_CNN_H
 
 #include "net/network.h"
 #include <stddef.h>

@@ -1,5 +1,6 @@
 /* cnndata.c - simulated sections to train and score the networks of cnn.h */
 #include "net/cnndata.h"
+#include "num/grid.h"
 #include "num/philox.h"
 #include <math.h>
 #include <string.h>
@@ -26,9 +27,15 @@ struct cnndata_par cnndata_default(void)
 }
 
 static double draw(
-	const struct cnndata_par *par, uint32_t i, int k, double low, double high)
+	const struct cnndata_par *par, uint32_t i, unsigned k, double low, double high)
 {
 	return low + (high - low) * philox_uniform(par->seed, i, RNG_NETWORK, DRAWS + k);
+}
+
+/* The first draw of a pulse. */
+static unsigned of_pulse(int k)
+{
+	return ARRIVALS + OF_PULSES * (unsigned)k;
 }
 
 /* Rising arrivals with the spacing kept: that much is taken from the span beforehand and
@@ -39,7 +46,7 @@ static void draw_arrivals(const struct cnndata_par *par, uint32_t i, int n, doub
 	double span = fmax(0.5 * n * CNNDATA_DURATION - (n - 1) * space, 0);
 
 	for (int k = 0; k < n; k++) {
-		double u = draw(par, i, ARRIVALS + k * OF_PULSES, 0, span);
+		double u = draw(par, i, of_pulse(k), 0, span);
 		int at = k;
 
 		for (; at > 0 && t[at - 1] > u; at--)
@@ -55,19 +62,23 @@ static void add_pulse(
 {
 	double p[CNNDATA_SAMPLES];
 	size_t n;
-	long first = pulse_support(shape, t, duration, &n), skip = first < 0 ? -first : 0;
+	long first = pulse_support(shape, t, duration, &n), end = first + (long)n;
 
-	if (first + (long)n > CNNDATA_SAMPLES)
-		n = CNNDATA_SAMPLES - first;
-	pulse_sample(shape, t, duration, first + skip, n - skip, p, NULL, NULL);
-	for (size_t i = 0; i + skip < n; i++)
-		y[first + skip + i] += a * p[i];
+	if (first < 0)
+		first = 0;
+	if (end > CNNDATA_SAMPLES)
+		end = CNNDATA_SAMPLES;
+	if (first >= end)
+		return;
+	pulse_sample(shape, t, duration, first, (size_t)(end - first), p, NULL, NULL);
+	for (long i = first; i < end; i++)
+		y[i] += a * p[i - first];
 }
 
 void cnndata_section(
 	const struct cnndata_par *par, uint32_t i, struct cnndata_section *out)
 {
-	int least = par->sources[0], n = draw(par, i, 0, least, par->sources[1] + 1);
+	int n = (int)draw(par, i, 0, par->sources[0], par->sources[1] + 1);
 	double reach = CNNDATA_DURATION *
 		       exp(draw(par, i, 1, log(par->reach[0]), log(par->reach[1])));
 	double gain = draw(par, i, 2, par->gain[0], par->gain[1]);
@@ -81,7 +92,7 @@ void cnndata_section(
 	out->noise = pow(10, -draw(par, i, 3, par->snr[0], par->snr[1]) / 20);
 	draw_arrivals(par, i, n, t);
 	for (int k = 0; k < n; k++) {
-		int at = ARRIVALS + k * OF_PULSES;
+		unsigned at = of_pulse(k);
 		struct cnn_pulse *p = &out->pulse[k];
 		double duration;
 
@@ -111,7 +122,7 @@ void cnndata_target(
 	struct cnn_frame f;
 
 	memset(target, 0, CNNDATA_TARGETS * sizeof *target);
-	target[0] = s->sources;
+	target[0] = (network_real)s->sources;
 	if (!cnn_lay(&s->section, x, &f))
 		return;
 	for (int k = 0; k < s->sources; k++, value += 3, variance += 3) {
@@ -122,13 +133,13 @@ void cnndata_target(
 		double delta = 2 * t * pow(f.duration / f.reach, 2);
 		double size = noise * noise / samples / 9;
 
-		value[0] = (p->t - f.centre) / f.duration;
-		value[1] = (p->delta - f.middle) / f.reach;
-		value[2] = cbrt(p->a / f.scale);
+		value[0] = (network_real)((p->t - f.centre) / f.duration);
+		value[1] = (network_real)((p->delta - f.middle) / f.reach);
+		value[2] = (network_real)cbrt(p->a / f.scale);
 		/* With a floor under what a network of this size can tell. */
-		variance[0] = t + 5e-3 * 5e-3;
-		variance[1] = 1 / (1 / delta + 3) + 0.02 * 0.02;
-		variance[2] = value[2] * value[2] * (size + 0.01 * 0.01);
+		variance[0] = (network_real)(t + 5e-3 * 5e-3);
+		variance[1] = (network_real)(1 / (1 / delta + 3) + 0.02 * 0.02);
+		variance[2] = (network_real)(value[2] * value[2] * (size + 0.01 * 0.01));
 	}
 }
 
@@ -143,7 +154,8 @@ static double count_loss(
 	for (int k = 0; k < CNN_SOURCES; k++)
 		sum += exp(output[k] - top);
 	for (int k = 0; k < CNN_SOURCES; k++)
-		gradient[k] = scale * (exp(output[k] - top) / sum - (k == count - 1));
+		gradient[k] = (network_real)(scale * (exp(output[k] - top) / sum -
+							     (k == count - 1)));
 	return log(sum) - (output[count - 1] - top);
 }
 
@@ -153,9 +165,9 @@ double cnndata_loss(const void *context, int n, int width, const network_real *o
 	double sum = 0;
 
 	(void)context;
-	memset(gradient, 0, (size_t)n * width * sizeof *gradient);
+	memset(gradient, 0, grid_size(n, width) * sizeof *gradient);
 	for (int s = 0; s < n; s++) {
-		int count = target[0], head = cnn_head(count);
+		int count = (int)target[0], head = cnn_head(count);
 		double each = 1.0 / (3 * count);
 
 		sum += CNNDATA_COUNT *
@@ -165,7 +177,8 @@ double cnndata_loss(const void *context, int n, int width, const network_real *o
 			double variance = target[1 + 3 * CNN_SOURCES + k];
 
 			sum += each * error * error / variance;
-			gradient[head + k] = 2 * each * error / variance / n;
+			gradient[head + k] =
+				(network_real)(2 * each * error / variance / n);
 		}
 		output += width;
 		gradient += width;
@@ -200,13 +213,13 @@ struct cnndata_score cnndata_score(
 	for (long i = 0; i < sections; i++) {
 		struct cnn_pulse pulse[CNN_SOURCES];
 
-		cnndata_section(par, first + i, &s);
+		cnndata_section(par, first + (uint32_t)i, &s);
 		score.count_right += cnn_apply(net, &s.section, 0, pulse) == s.sources;
 		cnn_apply(net, &s.section, s.sources, pulse);
 		add_errors(&score, &s, pulse);
 		pulses += s.sources;
 	}
-	score.count_right /= sections;
+	score.count_right /= (double)sections;
 	score.arrival = sqrt(score.arrival / pulses) / CNNDATA_DURATION;
 	score.delay = sqrt(score.delay / pulses) / CNNDATA_DURATION;
 	score.alone = sqrt(score.alone / pulses) / CNNDATA_DURATION;

@@ -7,8 +7,8 @@
  * pulse, at least a spacing apart.  The labels stand in order of arrival, which gives
  * each output one meaning.
  */
-#ifndef SIGNAL_CNNDATA_H
-#define SIGNAL_CNNDATA_H
+#ifndef NET_CNNDATA_H
+#define NET_CNNDATA_H
 
 #include "net/cnn.h"
 #include "signal/sensor.h"

@@ -22,11 +22,11 @@ static double between(const double range[2], double u)
 static void draw_source(
 	const struct delaydata_par *par, uint32_t i, int k, struct source *s)
 {
+	uint64_t first = DRAWS + (uint64_t)k * DRAWS_EACH;
 	double u[DRAWS_EACH];
 
-	for (int j = 0; j < DRAWS_EACH; j++)
-		u[j] = philox_uniform(
-			par->seed, i, RNG_NETWORK, DRAWS + k * DRAWS_EACH + j);
+	for (unsigned j = 0; j < DRAWS_EACH; j++)
+		u[j] = philox_uniform(par->seed, i, RNG_NETWORK, first + j);
 	s->length = par->section == DELAYDATA_RANGE ? par->length[1] - par->length[0]
 						    : between(par->length, u[0]);
 	s->amplitude = between(par->amplitude, u[1]);
@@ -56,7 +56,8 @@ static void add_source(const struct delaydata_par *par, const struct source *s,
 		double u = i * step - s->begin - shift;
 
 		if (par->endless || (u >= 0 && u < s->length))
-			x[i] += amplitude * sin(frequency * u + phase);
+			x[i] = (network_real)(x[i] +
+					      amplitude * sin(frequency * u + phase));
 	}
 }
 
@@ -67,7 +68,7 @@ static void scale_channels(const struct delaydata_par *par, network_real *x)
 	for (int p = 0; p < par->points; p++)
 		peak = fmax(peak, fabs((double)x[p]));
 	for (int p = 0; p < 2 * par->points && peak > 0; p++)
-		x[p] /= peak;
+		x[p] = (network_real)(x[p] / peak);
 }
 
 void delaydata_sample(
@@ -92,15 +93,15 @@ void delaydata_sample(
 		add_source(par, s, s->amplitude, 0, x);
 		add_source(par, s, s->amplitude * s->gain, par->unit * s->delay,
 			x + par->points);
-		delay[k] = s->delay;
+		delay[k] = (network_real)s->delay;
 	}
 	if (par->scaled)
 		scale_channels(par, x);
 	for (int p = 0; p < 2 * par->points && par->noise > 0; p += 2) {
 		double normal[2];
 
-		philox_normal2(par->seed, i, RNG_NETWORK, NOISE + p, normal);
-		x[p] += par->noise * normal[0];
-		x[p + 1] += par->noise * normal[1];
+		philox_normal2(par->seed, i, RNG_NETWORK, NOISE + (uint64_t)p, normal);
+		x[p] = (network_real)(x[p] + par->noise * normal[0]);
+		x[p + 1] = (network_real)(x[p + 1] + par->noise * normal[1]);
 	}
 }

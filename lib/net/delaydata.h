@@ -11,8 +11,8 @@
  * A source is s(x) = A w((x - x0)), with x running over [0, span); the second channel is
  * g s(x - unit * delay), delay uniform in (0, 1).  The labels are the delays.
  */
-#ifndef SIGNAL_DELAYDATA_H
-#define SIGNAL_DELAYDATA_H
+#ifndef NET_DELAYDATA_H
+#define NET_DELAYDATA_H
 
 #include "net/network.h"
 

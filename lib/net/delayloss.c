@@ -46,8 +46,8 @@ static double sums_loss(const struct delayloss_par *par, int n,
 				   : (spread > 0) - (spread < 0);
 
 	for (int i = 0; i < n && gradient; i++)
-		gradient[i] =
-			2 * sum + par->lambda * by_spread * 2 * (output[i] - mean) / n;
+		gradient[i] = (network_real)(2 * sum + par->lambda * by_spread * 2 *
+							       (output[i] - mean) / n);
 	return sum * sum + par->lambda * phi;
 }
 
@@ -60,7 +60,7 @@ double delayloss_sums(const void *context, int n, int width, const network_real 
 		sum += sums_loss(context, width, output + s * width, target + s * width,
 			gradient + s * width);
 	for (int i = 0; i < n * width; i++)
-		gradient[i] /= n;
+		gradient[i] /= (network_real)n;
 	return sum / n;
 }
 
@@ -78,7 +78,7 @@ double delayloss_unordered(const void *context, int n, int width,
 			double d = (double)output[a[i]] - target[b[i]];
 
 			sum += d * d;
-			gradient[a[i]] = 2 * scale * d;
+			gradient[a[i]] = (network_real)(2 * scale * d);
 		}
 	}
 	return sum * scale;
@@ -117,7 +117,7 @@ static double standard_error(double squares, double mean, double n)
 
 void delayscore_finish(struct delayscore *score)
 {
-	double n = score->samples;
+	double n = (double)score->samples;
 
 	score->ordered /= n;
 	score->unordered /= n;

@@ -5,8 +5,8 @@
  * sets least pairs both in order of size, so the minimum over all n! orders that (3-21)
  * asks for needs one sort.
  */
-#ifndef SIGNAL_DELAYLOSS_H
-#define SIGNAL_DELAYLOSS_H
+#ifndef NET_DELAYLOSS_H
+#define NET_DELAYLOSS_H
 
 #include "net/network.h"
 

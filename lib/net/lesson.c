@@ -35,24 +35,24 @@ static void make_sample(
 	struct cnndata_section s;
 
 	if (!l->of_pulses) {
-		delaydata_sample(&l->sines, l->first + i, x, target);
+		delaydata_sample(&l->sines, l->first + (uint32_t)i, x, target);
 		return;
 	}
-	cnndata_section(&l->pulses, l->first + i, &s);
+	cnndata_section(&l->pulses, l->first + (uint32_t)i, &s);
 	cnndata_target(&s, x, target);
 }
 
-int lesson_keep(struct lesson *l, long count)
+enum num_status lesson_keep(struct lesson *l, long count)
 {
-	l->x = calloc((size_t)count * l->inputs, sizeof *l->x);
-	l->target = calloc((size_t)count * l->targets, sizeof *l->target);
+	l->x = calloc((size_t)count * (size_t)l->inputs, sizeof *l->x);
+	l->target = calloc((size_t)count * (size_t)l->targets, sizeof *l->target);
 	if (!l->x || !l->target) {
 		lesson_drop(l);
-		return 0;
+		return NUM_MEMORY;
 	}
 	for (long i = 0; i < count; i++)
 		make_sample(l, i, l->x + i * l->inputs, l->target + i * l->targets);
-	return 1;
+	return NUM_OK;
 }
 
 void lesson_drop(struct lesson *l)
@@ -70,8 +70,8 @@ void lesson_sample(void *context, long i, network_real *x, network_real *target)
 		make_sample(l, i, x, target);
 		return;
 	}
-	memcpy(x, l->x + i * l->inputs, l->inputs * sizeof *x);
-	memcpy(target, l->target + i * l->targets, l->targets * sizeof *target);
+	memcpy(x, l->x + i * l->inputs, (size_t)l->inputs * sizeof *x);
+	memcpy(target, l->target + i * l->targets, (size_t)l->targets * sizeof *target);
 }
 
 int lesson_suits(const struct lesson *l, const struct network *net, const char *purpose)

@@ -3,13 +3,14 @@
  * A lesson gives network_train() its samples, counted from first; those of a set that is
  * gone through many times can be kept in memory.
  */
-#ifndef SIGNAL_LESSON_H
-#define SIGNAL_LESSON_H
+#ifndef NET_LESSON_H
+#define NET_LESSON_H
 
 #include "net/cnndata.h"
 #include "net/delaydata.h"
 #include "net/delayloss.h"
 #include "net/training.h"
+#include "num/status.h"
 
 struct lesson {
 	const char *purpose; /* for the file of weights */
@@ -29,9 +30,8 @@ struct lesson lesson_of_sines(
 /* Sections of pulses (cnndata.h), for the networks of cnn.h. */
 struct lesson lesson_of_pulses(const struct cnndata_par *par, uint32_t first);
 
-/* Makes count samples and keeps them; 0 where memory is short.  They are given back
- * with lesson_drop(). */
-int lesson_keep(struct lesson *lesson, long count);
+/* Makes count samples and keeps them; they are given back with lesson_drop(). */
+enum num_status lesson_keep(struct lesson *lesson, long count);
 void lesson_drop(struct lesson *lesson);
 
 /* For network_train(); the context is the lesson. */

@@ -20,7 +20,7 @@ static int take_number(const char **s)
 	if (errno || n < 1 || n > 1 << 20)
 		return 0;
 	*s = end;
-	return n;
+	return (int)n;
 }
 
 static int take_window(const char **s, struct network_layer *l)
@@ -35,9 +35,9 @@ static int take_window(const char **s, struct network_layer *l)
 
 static int take_activation(const char *s, enum network_activation *activation)
 {
-	for (int i = 0; i < 4; i++)
+	for (unsigned i = 0; i < sizeof activations / sizeof *activations; i++)
 		if (strcmp(s, activations[i]) == 0) {
-			*activation = i;
+			*activation = (enum network_activation)i;
 			return 1;
 		}
 	return 0;
@@ -165,6 +165,10 @@ static char *next_line(struct reader *r, const char *want)
 		if (strncmp(r->text, "# cmd: ", 7) == 0) {
 			free(r->file->cmd);
 			r->file->cmd = strdup(r->text + 7);
+			if (!r->file->cmd) {
+				snprintf(r->why, NETFILE_TEXT, "out of memory");
+				return NULL;
+			}
 		}
 	} while (r->text[0] == '#');
 	return r->text;
@@ -203,9 +207,7 @@ static int read_weights(struct reader *r, struct network *net)
 		if (!s)
 			return 0;
 		for (; i < n && *(s += strspn(s, " \t")); s = end) {
-			double x = strtod(s, &end);
-
-			w[i++] = x;
+			w[i++] = (network_real)strtod(s, &end);
 			if (end == s || (*end && *end != ' ' && *end != '\t') ||
 				!isfinite(w[i - 1])) {
 				snprintf(r->why, NETFILE_TEXT,

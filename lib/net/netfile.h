@@ -23,8 +23,8 @@
  *
  * Numbers are written with the nine digits that give back the same single precision.
  */
-#ifndef SIGNAL_NETFILE_H
-#define SIGNAL_NETFILE_H
+#ifndef NET_NETFILE_H
+#define NET_NETFILE_H
 
 #include "net/network.h"
 #include <stdio.h>

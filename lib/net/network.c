@@ -1,6 +1,7 @@
 /* network.c - small feed-forward networks: their layers, weights and output */
 #include "net/network_state.h"
 #include "num/philox.h"
+#include "num/status.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -63,36 +64,38 @@ static int size_layer(struct layer *l, size_t *weights)
 		(double)l->fan * l->out.height * l->out.width > NETWORK_UNFOLDED_MAX)
 		return 0;
 	if (p->kind != NETWORK_POOL)
-		*weights = ((size_t)l->fan + 1) * p->units;
+		*weights = ((size_t)l->fan + 1) * (size_t)p->units;
 	return *weights <= NETWORK_WEIGHTS_MAX;
 }
 
-static int allocate(struct network *net)
+static enum num_status allocate(struct network *net)
 {
 	size_t columns = 1, unit = 1;
 
 	for (int i = 0; i < net->layers; i++) {
 		struct layer *l = &net->layer[i];
-		size_t n = (size_t)net->batch * l->outputs;
+		size_t n = grid_size(net->batch, l->outputs);
 
-		l->value = malloc(n * sizeof(real));
-		l->slope = malloc(n * sizeof(real));
+		l->value = malloc(n * sizeof *l->value);
+		l->slope = malloc(n * sizeof *l->slope);
 		if (l->par.kind == NETWORK_POOL)
-			l->choice = malloc(n * sizeof(int));
+			l->choice = malloc(n * sizeof *l->choice);
 		if (!l->value || !l->slope || (l->par.kind == NETWORK_POOL && !l->choice))
-			return 0;
+			return NUM_MEMORY;
 		if (l->par.kind == NETWORK_CONV) {
-			size_t c = (size_t)l->fan * l->out.height * l->out.width;
+			size_t c =
+				(size_t)l->fan * grid_size(l->out.width, l->out.height);
+
 			if (c > columns)
 				columns = c;
 		}
 		if (n > unit)
 			unit = n;
 	}
-	net->columns = malloc(columns * sizeof(real));
-	net->unit = malloc(unit * sizeof(real));
-	net->weights = calloc(net->count + 1, sizeof(real)); /* pools have none */
-	return net->columns && net->unit && net->weights;
+	net->columns = malloc(columns * sizeof *net->columns);
+	net->unit = malloc(unit * sizeof *net->unit);
+	net->weights = calloc(net->count + 1, sizeof *net->weights); /* pools have none */
+	return net->columns && net->unit && net->weights ? NUM_OK : NUM_MEMORY;
 }
 
 struct network *network_new(struct network_shape input, const struct network_layer *layer,
@@ -125,9 +128,9 @@ struct network *network_new(struct network_shape input, const struct network_lay
 		}
 		l->weight = net->count - n;
 		l->bias = l->par.kind == NETWORK_POOL ? l->weight
-						      : net->count - l->par.units;
+						      : net->count - (size_t)l->par.units;
 	}
-	if (!allocate(net)) {
+	if (allocate(net)) {
 		network_free(net);
 		errno = ENOMEM;
 		return NULL;
@@ -194,7 +197,8 @@ real *network_layer_weights(struct network *net, int i, size_t *count)
 {
 	const struct layer *l = &net->layer[i];
 
-	*count = l->par.kind == NETWORK_POOL ? 0 : l->bias - l->weight + l->par.units;
+	*count = l->par.kind == NETWORK_POOL ? 0
+					     : l->bias - l->weight + (size_t)l->par.units;
 	return net->weights + l->weight;
 }
 
@@ -212,7 +216,7 @@ void network_start(struct network *net, uint64_t seed, uint32_t repetition)
 {
 	for (int i = 0; i < net->layers; i++) {
 		struct layer *l = &net->layer[i];
-		double fan = l->fan, width;
+		double fan = l->fan, reach;
 		size_t w;
 
 		if (l->par.kind == NETWORK_POOL)
@@ -222,11 +226,12 @@ void network_start(struct network *net, uint64_t seed, uint32_t repetition)
 			fan += (double)l->par.units *
 			       (l->par.kind == NETWORK_CONV ? l->par.width * l->par.height
 							    : 1);
-		width = sqrt(6 / fan);
+		reach = sqrt(6 / fan);
 		for (w = l->weight; w < l->bias; w++)
-			net->weights[w] = width * (2 * philox_uniform(seed, repetition,
-							       RNG_NETWORK, w) -
-							  1);
+			net->weights[w] =
+				(real)(reach * (2 * philox_uniform(seed, repetition,
+							    RNG_NETWORK, w) -
+						       1));
 		for (int u = 0; u < l->par.units; u++)
 			net->weights[w++] = 0;
 	}
@@ -236,9 +241,9 @@ static real activate(enum network_activation kind, real x)
 {
 	switch (kind) {
 	case NETWORK_TANH:
-		return tanh(x);
+		return (real)tanh((double)x);
 	case NETWORK_SIGMOID:
-		return 1 / (1 + exp(-(double)x));
+		return (real)(1 / (1 + exp(-(double)x)));
 	case NETWORK_RELU:
 		return x > 0 ? x : 0;
 	default:
@@ -253,16 +258,16 @@ static void dense_forward(
 	const real *bias = net->weights + l->bias;
 
 	for (int s = 0; s < n; s++) {
-		real *row = l->value + (size_t)s * l->outputs;
+		real *row = l->value + network_row(l->outputs, s);
 
-		memcpy(row, x + (size_t)s * l->inputs, skip * sizeof(real));
-		memcpy(row + skip, bias, units * sizeof(real));
+		memcpy(row, x + network_row(l->inputs, s), (size_t)skip * sizeof *row);
+		memcpy(row + skip, bias, (size_t)units * sizeof *row);
 	}
 	gemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, n, units, l->inputs, 1, x,
 		l->inputs, net->weights + l->weight, units, 1, l->value + skip,
 		l->outputs);
 	for (int s = 0; s < n; s++) {
-		real *row = l->value + (size_t)s * l->outputs + skip;
+		real *row = l->value + network_row(l->outputs, s) + skip;
 
 		for (int u = 0; u < units; u++)
 			row[u] = activate(l->par.activation, row[u]);
@@ -300,10 +305,10 @@ void network_unfold(const struct layer *l, const real *x, real *columns, real *b
 				back[at + o * step] += columns[o];
 			continue;
 		}
-		memset(columns, 0, begin * sizeof(real));
+		memset(columns, 0, (size_t)begin * sizeof *columns);
 		for (int o = begin; o < end; o++)
 			columns[o] = x[at + o * step];
-		memset(columns + end, 0, (ow - end) * sizeof(real));
+		memset(columns + end, 0, (size_t)(ow - end) * sizeof *columns);
 	}
 }
 
@@ -313,9 +318,9 @@ static void conv_forward(const struct network *net, struct layer *l, const real 
 	const real *bias = net->weights + l->bias;
 
 	for (int s = 0; s < n; s++) {
-		real *y = l->value + (size_t)s * l->outputs;
+		real *y = l->value + network_row(l->outputs, s);
 
-		network_unfold(l, x + (size_t)s * l->inputs, net->columns, NULL);
+		network_unfold(l, x + network_row(l->inputs, s), net->columns, NULL);
 		for (int u = 0; u < units; u++)
 			for (int p = 0; p < places; p++)
 				y[u * places + p] = bias[u];

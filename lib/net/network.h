@@ -20,8 +20,8 @@
  *	const network_real *y = network_forward(net, x, 1);
  *	network_free(net);
  */
-#ifndef SIGNAL_NETWORK_H
-#define SIGNAL_NETWORK_H
+#ifndef NET_NETWORK_H
+#define NET_NETWORK_H
 
 #include <stddef.h>
 #include <stdint.h>

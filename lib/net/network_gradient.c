@@ -25,10 +25,10 @@ static void dense_backward(const struct network *net, const struct layer *l,
 	int units = l->par.units, skip = network_first_unit(l);
 	real *unit = net->unit, *bias = gradient + l->bias;
 
-	memset(bias, 0, units * sizeof(real));
+	memset(bias, 0, (size_t)units * sizeof *bias);
 	for (int s = 0; s < n; s++) {
-		const real *y = l->value + (size_t)s * l->outputs + skip;
-		const real *dy = l->slope + (size_t)s * l->outputs + skip;
+		const real *y = l->value + network_row(l->outputs, s) + skip;
+		const real *dy = l->slope + network_row(l->outputs, s) + skip;
 
 		for (int u = 0; u < units; u++) {
 			unit[s * units + u] = dy[u] * incline(l->par.activation, y[u]);
@@ -40,8 +40,9 @@ static void dense_backward(const struct network *net, const struct layer *l,
 	if (!back)
 		return;
 	for (int s = 0; s < n && skip; s++)
-		memcpy(back + (size_t)s * l->inputs, l->slope + (size_t)s * l->outputs,
-			skip * sizeof(real));
+		memcpy(back + network_row(l->inputs, s),
+			l->slope + network_row(l->outputs, s),
+			(size_t)skip * sizeof *back);
 	gemm(CblasRowMajor, CblasNoTrans, CblasTrans, n, l->inputs, units, 1, unit, units,
 		net->weights + l->weight, units, skip ? 1 : 0, back, l->inputs);
 }
@@ -52,19 +53,20 @@ static void conv_backward(const struct network *net, const struct layer *l, cons
 	int places = l->out.height * l->out.width, units = l->par.units;
 	real *unit = net->unit, *bias = gradient + l->bias;
 
-	memset(gradient + l->weight, 0, (l->bias - l->weight + units) * sizeof(real));
+	memset(gradient + l->weight, 0,
+		(l->bias - l->weight + (size_t)units) * sizeof *gradient);
 	if (back)
-		memset(back, 0, (size_t)n * l->inputs * sizeof(real));
+		memset(back, 0, grid_size(n, l->inputs) * sizeof *back);
 	for (int s = 0; s < n; s++) {
-		const real *y = l->value + (size_t)s * l->outputs;
-		const real *dy = l->slope + (size_t)s * l->outputs;
+		const real *y = l->value + network_row(l->outputs, s);
+		const real *dy = l->slope + network_row(l->outputs, s);
 
 		for (int u = 0; u < units; u++)
 			for (int p = u * places; p < (u + 1) * places; p++) {
 				unit[p] = dy[p] * incline(l->par.activation, y[p]);
 				bias[u] += unit[p];
 			}
-		network_unfold(l, x + (size_t)s * l->inputs, net->columns, NULL);
+		network_unfold(l, x + network_row(l->inputs, s), net->columns, NULL);
 		gemm(CblasRowMajor, CblasNoTrans, CblasTrans, units, l->fan, places, 1,
 			unit, places, net->columns, places, 1, gradient + l->weight,
 			l->fan);
@@ -73,7 +75,7 @@ static void conv_backward(const struct network *net, const struct layer *l, cons
 		gemm(CblasRowMajor, CblasTrans, CblasNoTrans, l->fan, places, units, 1,
 			net->weights + l->weight, l->fan, unit, places, 0, net->columns,
 			places);
-		network_unfold(l, NULL, net->columns, back + (size_t)s * l->inputs);
+		network_unfold(l, NULL, net->columns, back + network_row(l->inputs, s));
 	}
 }
 
@@ -81,8 +83,8 @@ static void pool_backward(const struct layer *l, int n, real *back)
 {
 	if (!back)
 		return;
-	memset(back, 0, (size_t)n * l->inputs * sizeof(real));
-	for (size_t o = 0; o < (size_t)n * l->outputs; o++)
+	memset(back, 0, grid_size(n, l->inputs) * sizeof *back);
+	for (size_t o = 0; o < grid_size(n, l->outputs); o++)
 		back[l->choice[o]] += l->slope[o];
 }
 
@@ -92,11 +94,11 @@ double network_mse(const void *context, int n, int width, const real *output,
 	double sum = 0, scale = 1.0 / ((double)n * width);
 
 	(void)context;
-	for (size_t i = 0; i < (size_t)n * width; i++) {
+	for (size_t i = 0; i < grid_size(n, width); i++) {
 		double d = (double)output[i] - target[i];
 
 		sum += d * d;
-		gradient[i] = 2 * scale * d;
+		gradient[i] = (real)(2 * scale * d);
 	}
 	return sum * scale;
 }
@@ -111,14 +113,17 @@ static double add_sparsity(struct layer *l, int n, double weight, double level)
 		double mean = 0, slope;
 
 		for (int s = 0; s < n; s++)
-			mean += l->value[(size_t)s * l->outputs + u];
+			mean += (double)l->value[grid_at(l->outputs, u, s)];
 		mean /= n;
 		mean = fmin(fmax(mean, 1e-6), 1 - 1e-6);
 		sum += level * log(level / mean) +
 		       (1 - level) * log((1 - level) / (1 - mean));
 		slope = weight / n * ((1 - level) / (1 - mean) - level / mean);
-		for (int s = 0; s < n; s++)
-			l->slope[(size_t)s * l->outputs + u] += slope;
+		for (int s = 0; s < n; s++) {
+			real *at = &l->slope[grid_at(l->outputs, u, s)];
+
+			*at = (real)(*at + slope);
+		}
 	}
 	return weight * sum;
 }
@@ -130,7 +135,7 @@ static double add_decay(const struct network *net, double decay, real *gradient)
 	for (int i = 0; i < net->layers; i++)
 		for (size_t w = net->layer[i].weight; w < net->layer[i].bias; w++) {
 			sum += (double)net->weights[w] * net->weights[w];
-			gradient[w] += decay * net->weights[w];
+			gradient[w] = (real)(gradient[w] + decay * net->weights[w]);
 		}
 	return decay / 2 * sum;
 }

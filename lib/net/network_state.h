@@ -1,8 +1,9 @@
 /* network_state.h - inside of struct network: for network*.c only */
-#ifndef SIGNAL_NETWORK_STATE_H
-#define SIGNAL_NETWORK_STATE_H
+#ifndef NET_NETWORK_STATE_H
+#define NET_NETWORK_STATE_H
 
 #include "net/network.h"
+#include "num/grid.h"
 #include <gsl/gsl_cblas.h>
 
 #ifdef NETWORK_DOUBLE
@@ -32,6 +33,12 @@ struct network {
 	real *columns; /* unfolded input of a convolution, one sample */
 	real *unit;    /* slope by the sums before the activation, batch rows */
 };
+
+/* Row s of a batch of rows of n values. */
+static inline size_t network_row(int n, int s)
+{
+	return grid_at(n, 0, s);
+}
 
 /* Where the units of a dense or cascade layer begin in a row of its output. */
 static inline int network_first_unit(const struct layer *l)

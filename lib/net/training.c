@@ -1,6 +1,8 @@
 /* training.c - networks trained by gradient descent or Adam */
 #include "net/training.h"
+#include "num/grid.h"
 #include "num/philox.h"
+#include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,7 +33,7 @@ static void free_descent(struct descent *d)
 	free(d->order);
 }
 
-static int allocate_descent(
+static enum num_status allocate_descent(
 	struct descent *d, struct network *net, const struct network_training *par)
 {
 	long per_epoch = (par->samples + par->batch - 1) / par->batch;
@@ -39,19 +41,21 @@ static int allocate_descent(
 	*d = (struct descent){ .total = per_epoch * par->epochs };
 	d->weight = network_weights(net);
 	d->weights = network_weight_count(net);
-	d->gradient = calloc(d->weights, sizeof(real));
-	d->mean = calloc(d->weights, sizeof(real));
-	d->square = calloc(d->weights, sizeof(real));
-	d->x = calloc((size_t)par->batch * network_inputs(net), sizeof(real));
+	d->gradient = calloc(d->weights, sizeof *d->gradient);
+	d->mean = calloc(d->weights, sizeof *d->mean);
+	d->square = calloc(d->weights, sizeof *d->square);
+	d->x = calloc(grid_size(par->batch, network_inputs(net)), sizeof *d->x);
 	d->targets = par->targets ? par->targets : network_outputs(net);
-	d->target = calloc((size_t)par->batch * d->targets, sizeof(real));
-	d->order = malloc(par->samples * sizeof *d->order);
-	return d->gradient && d->mean && d->square && d->x && d->target && d->order;
+	d->target = calloc(grid_size(par->batch, d->targets), sizeof *d->target);
+	d->order = malloc((size_t)par->samples * sizeof *d->order);
+	return d->gradient && d->mean && d->square && d->x && d->target && d->order
+		       ? NUM_OK
+		       : NUM_MEMORY;
 }
 
 static double step_length(const struct network_training *par, const struct descent *d)
 {
-	double done = (double)d->steps / d->total;
+	double done = (double)d->steps / (double)d->total;
 
 	if (par->rate_end <= 0)
 		return par->rate;
@@ -61,19 +65,19 @@ static double step_length(const struct network_training *par, const struct desce
 static void update(const struct network_training *par, struct descent *d)
 {
 	double rate = step_length(par, d);
-	const real keep = 0.9, keep_square = 0.999;
+	const real keep = (real)0.9, keep_square = (real)0.999;
 	real step, guard;
 
 	d->steps++;
 	if (par->optimiser == NETWORK_DESCENT) {
 		for (size_t w = 0; w < d->weights; w++)
-			d->weight[w] -= rate * d->gradient[w];
+			d->weight[w] = (real)(d->weight[w] - rate * d->gradient[w]);
 		return;
 	}
 	/* The two corrections of the start are taken into the step and the guard. */
-	guard = sqrt(1 - pow(keep_square, d->steps));
-	step = rate * guard / (1 - pow(keep, d->steps));
-	guard *= 1e-8;
+	guard = (real)sqrt(1 - pow(keep_square, (double)d->steps));
+	step = (real)(rate * guard / (1 - pow(keep, (double)d->steps)));
+	guard = (real)(guard * 1e-8);
 	for (size_t w = 0; w < d->weights; w++) {
 		real g = d->gradient[w];
 
@@ -89,9 +93,9 @@ static void shuffle(const struct network_training *par, long epoch, long *order)
 	for (long i = 0; i < par->samples; i++)
 		order[i] = i;
 	for (long i = par->samples - 1; i > 0; i--) {
-		uint64_t place = SHUFFLE + (uint64_t)epoch * par->samples + i;
-		long k = (i + 1) *
-			 philox_uniform(par->seed, par->repetition, RNG_NETWORK, place);
+		uint64_t place = SHUFFLE + (uint64_t)(epoch * par->samples + i);
+		double u = philox_uniform(par->seed, par->repetition, RNG_NETWORK, place);
+		long k = (long)((double)(i + 1) * u);
 		long keep = order[i];
 
 		order[i] = order[k];
@@ -108,20 +112,20 @@ static double run_epoch(struct network *net, const struct network_training *par,
 	if (!par->fresh)
 		shuffle(par, epoch, d->order);
 	for (long begin = 0; begin < par->samples; begin += par->batch) {
-		long n = par->samples - begin;
+		long left = par->samples - begin;
+		int n = left > par->batch ? par->batch : (int)left;
 
-		if (n > par->batch)
-			n = par->batch;
-		for (long i = 0; i < n; i++)
+		for (int i = 0; i < n; i++)
 			sample(context,
 				par->fresh ? epoch * par->samples + begin + i
 					   : d->order[begin + i],
-				d->x + i * inputs, d->target + i * d->targets);
+				d->x + grid_at(inputs, 0, i),
+				d->target + grid_at(d->targets, 0, i));
 		sum += n * network_gradient(net, d->x, d->target, n, par->loss,
 				   par->loss_context, &par->penalty, d->gradient);
 		update(par, d);
 	}
-	return sum / par->samples;
+	return sum / (double)par->samples;
 }
 
 enum network_status network_train(struct network *net, const struct network_training *par,
@@ -132,7 +136,7 @@ enum network_status network_train(struct network *net, const struct network_trai
 
 	if (par->batch > network_batch(net))
 		return NETWORK_MEMORY;
-	if (!allocate_descent(&d, net, par)) {
+	if (allocate_descent(&d, net, par)) {
 		free_descent(&d);
 		return NETWORK_MEMORY;
 	}
@@ -171,8 +175,8 @@ static void encoder_sample(void *context, long i, real *x, real *target)
 		network_forward(e->net, e->x, 1);
 		in = network_activations(e->net, e->layer - 1);
 	}
-	memcpy(x, in, e->inputs * sizeof(real));
-	memcpy(target, in, e->inputs * sizeof(real));
+	memcpy(x, in, (size_t)e->inputs * sizeof *x);
+	memcpy(target, in, (size_t)e->inputs * sizeof *target);
 }
 
 static void encoder_report(void *context, long epoch, double loss)
@@ -202,14 +206,14 @@ enum network_status network_pretrain(struct network *net, int i,
 	inner.targets = 0;
 	inner.penalty.sparse_layer = 0;
 	inner.report = encoder_report;
-	e.x = malloc(network_inputs(net) * sizeof(real));
-	e.target = malloc(targets * sizeof(real));
+	e.x = malloc((size_t)network_inputs(net) * sizeof *e.x);
+	e.target = malloc((size_t)targets * sizeof *e.target);
 	if (both && e.x && e.target) {
 		real *weight = network_layer_weights(net, i, &count);
 
 		network_start(both, par->seed, par->repetition);
 		status = network_train(both, &inner, encoder_sample, &e);
-		memcpy(weight, network_weights(both), count * sizeof(real));
+		memcpy(weight, network_weights(both), count * sizeof *weight);
 	}
 	network_free(both);
 	free(e.x);

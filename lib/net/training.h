@@ -7,8 +7,8 @@
  *	network_train(net, &(struct network_training){ .epochs = 100, .samples = 1000,
  *		.batch = 64, .rate = 1e-3, .loss = network_mse }, sample, context);
  */
-#ifndef SIGNAL_TRAINING_H
-#define SIGNAL_TRAINING_H
+#ifndef NET_TRAINING_H
+#define NET_TRAINING_H
 
 #include "net/network.h"
 

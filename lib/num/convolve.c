@@ -63,7 +63,7 @@ static int is_awkward(size_t n)
 struct convolve *convolve_borrow(size_t nx, size_t ny, enum convolve_kind kind,
 	struct pool *pool, const struct convolve *lender)
 {
-	struct convolve *c = calloc(1, sizeof(*c));
+	struct convolve *c = calloc(1, sizeof *c);
 	int bridged = kind == CONVOLVE_BRIDGED;
 	int padded = kind == CONVOLVE_PADDED;
 	int padded_x = padded || (!bridged && is_awkward(nx));
@@ -298,7 +298,7 @@ static void forward_rows(void *context, size_t job, int worker)
 	for (size_t iy = job * ROWS; iy < end; iy++) {
 		double first = c->x[iy * c->nx], last = c->x[(iy + 1) * c->nx - 1];
 
-		memcpy(row, c->x + iy * c->nx, c->nx * sizeof(*row));
+		memcpy(row, c->x + iy * c->nx, c->nx * sizeof *row);
 		/* The inverse of an earlier row may have left something there. */
 		for (size_t ix = c->nx; ix < c->mx; ix++)
 			row[ix] = c->bridged
@@ -319,7 +319,7 @@ static void inverse_rows(void *context, size_t job, int worker)
 		const double *x = c->x + iy * c->nx;
 
 		fft_inverse(c->row, c->work + iy * c->stride, row);
-		memcpy(c->y + iy * c->nx, row, c->nx * sizeof(*row));
+		memcpy(c->y + iy * c->nx, row, c->nx * sizeof *row);
 		for (size_t ix = 0; c->x != c->y && ix < c->nx; ix++)
 			sum += x[ix] * row[ix];
 	}

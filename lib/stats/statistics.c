@@ -443,6 +443,6 @@ double sample_quantile(double *x, size_t n, double level)
 
 	if (n == 0)
 		return NAN;
-	qsort(x, n, sizeof(*x), ascending);
+	qsort(x, n, sizeof *x, ascending);
 	return i + 1 < n ? x[i] + (at - (double)i) * (x[i + 1] - x[i]) : x[n - 1];
 }

@@ -28,6 +28,8 @@ struct stress {
 	int loaded;       /* some cell is */
 	int side, bx, by; /* cells to a block's side, blocks */
 	struct block *blocks;
+	char *held; /* of the blocks: no node can fail at held_depth and below */
+	double held_depth, held_limit;
 	double point; /* largest equivalent stress times distance^2 */
 	struct free_sum *free;
 	struct wave_sum *wave; /* one of the two is NULL */
@@ -75,8 +77,8 @@ static double largest_point_stress(const struct stress *s)
 static int par_ok(const struct stress_par *p)
 {
 	return p->nx > 0 && p->ny > 0 && p->nx <= 1 << 20 && p->ny <= 1 << 20 &&
-	       p->ax > 0 && p->ay > 0 && p->nu >= 0 && p->nu <= 0.5 &&
-	       isfinite(p->ax + p->ay + p->mu);
+	       p->dx > 0 && p->dy > 0 && p->nu >= 0 && p->nu <= 0.5 &&
+	       isfinite(p->dx + p->dy + p->mu);
 }
 
 struct stress *stress_new(const struct stress_par *par)
@@ -95,18 +97,19 @@ struct stress *stress_new(const struct stress_par *par)
 	s->par = *par;
 	s->criterion = par->criterion ? par->criterion : &stress_von_mises_criterion;
 	s->influence =
-		(struct influence_par){ par->ax, par->ay, par->nu, par->mu, par->axis };
+		(struct influence_par){ par->dx, par->dy, par->nu, par->mu, par->axis };
 	s->side = (par->nx > par->ny ? par->nx : par->ny) / BLOCKS_SIDE;
 	s->side = s->side < BLOCK ? BLOCK : s->side;
 	s->bx = (par->nx + s->side - 1) / s->side;
 	s->by = (par->ny + s->side - 1) / s->side;
 	s->blocks = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->blocks);
+	s->held = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->held);
 	s->pressure = malloc(n * sizeof *s->pressure);
 	if (par->periodic)
 		s->wave = wave_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
 	else
 		s->free = free_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
-	if (!s->blocks || !s->pressure || (!s->wave && !s->free)) {
+	if (!s->blocks || !s->held || !s->pressure || (!s->wave && !s->free)) {
 		stress_free(s);
 		errno = ENOMEM;
 		return NULL;
@@ -122,6 +125,7 @@ void stress_free(struct stress *s)
 	free_sum_free(s->free);
 	wave_sum_free(s->wave);
 	free(s->blocks);
+	free(s->held);
 	free(s->pressure);
 	free(s);
 }
@@ -159,7 +163,7 @@ static double unit_of(const double *pressure, size_t n)
 int stress_load(struct stress *s, const double *pressure)
 {
 	size_t nx = (size_t)s->par.nx, ny = (size_t)s->par.ny;
-	double area = s->par.ax * s->par.ay, unit = unit_of(pressure, nx * ny);
+	double area = s->par.dx * s->par.dy, unit = unit_of(pressure, nx * ny);
 
 	if (unit == 0) {
 		errno = EDOM;
@@ -168,6 +172,7 @@ int stress_load(struct stress *s, const double *pressure)
 	s->unit = unit;
 	s->total = 0;
 	s->loaded = 0;
+	s->held_depth = INFINITY;
 	memset(s->blocks, 0, (size_t)s->bx * (size_t)s->by * sizeof *s->blocks);
 	for (size_t y = 0; y < ny; y++)
 		for (size_t x = 0; x < nx; x++) {
@@ -213,14 +218,14 @@ static int block_may_fail(const struct stress *s, int bx, int by, double z, doub
 
 	for (size_t i = 0; i < (size_t)s->bx * (size_t)s->by; i++) {
 		const struct block *b = &s->blocks[i];
-		double dx, dy;
+		double away_x, away_y;
 
 		if (b->load == 0)
 			continue;
-		dx = apart(x0, x0 + last, b->x0, b->x1, s->par.ax);
-		dy = apart(y0, y0 + last, b->y0, b->y1, s->par.ay);
+		away_x = apart(x0, x0 + last, b->x0, b->x1, s->par.dx);
+		away_y = apart(y0, y0 + last, b->y0, b->y1, s->par.dy);
 		/* Infinite (and so true) where the node may lie on the load. */
-		sum += b->load * s->point / (dx * dx + dy * dy + z * z);
+		sum += b->load * s->point / (away_x * away_x + away_y * away_y + z * z);
 		if (sum > limit)
 			return 1;
 	}
@@ -237,6 +242,11 @@ size_t stress_reach(struct stress *s, double z, double limit, struct stress_span
 	size_t count = 0;
 
 	limit /= s->unit;
+	/* What held at a smaller depth holds: the bound falls with depth. */
+	if (!(z >= s->held_depth && limit >= s->held_limit))
+		memset(s->held, 0, (size_t)s->bx * (size_t)s->by * sizeof *s->held);
+	s->held_depth = z;
+	s->held_limit = limit;
 	if (!s->loaded || (s->wave && wave_sum_bound(s->wave, s->criterion, z) <= limit))
 		return 0;
 	for (int by = 0; by < s->by; by++) {
@@ -247,8 +257,11 @@ size_t stress_reach(struct stress *s, double z, double limit, struct stress_span
 		for (int bx = 0; bx < s->bx; bx++) {
 			int x0 = bx * s->side;
 			int x1 = x0 + s->side < s->par.nx ? x0 + s->side : s->par.nx;
+			char *held = &s->held[(size_t)by * (size_t)s->bx + (size_t)bx];
 
-			if (s->free && !block_may_fail(s, bx, by, z, limit))
+			if (s->free && !*held)
+				*held = !block_may_fail(s, bx, by, z, limit);
+			if (*held)
 				continue;
 			if (count > first && span[count - 1].end == x0)
 				span[count - 1].end = x1;
@@ -276,7 +289,7 @@ double stress_deep(const struct stress *s, double z)
 	for (int c = 0; c < STRESS_DEVIATOR; c++)
 		v[c] = creal(mean[c]);
 	return s->criterion->value(v) * fabs(s->total) /
-	       (s->par.nx * s->par.ax * s->par.ny * s->par.ay);
+	       (s->par.nx * s->par.dx * s->par.ny * s->par.dy);
 }
 
 /* Sums */

@@ -32,8 +32,8 @@ struct wave_sum *wave_sum_new(
 	*s = (struct wave_sum){
 		.par = *par, .nx = nx, .ny = ny, .full = full, .pool = pool
 	};
-	s->ux = 2 * M_PI / (nx * par->ax);
-	s->uy = 2 * M_PI / (ny * par->ay);
+	s->ux = 2 * M_PI / (nx * par->dx);
+	s->uy = 2 * M_PI / (ny * par->dy);
 	s->image = fft_alloc_complex(((size_t)nx / 2 + 1) * (size_t)ny);
 	s->plane = fft_alloc((size_t)nx * (size_t)ny);
 	s->fft = fft_new((size_t)nx, (size_t)ny);
@@ -207,9 +207,9 @@ static int hand_over(struct wave_sum *s, double *const *field,
 int wave_sum_at(struct wave_sum *s, double z, const struct stress_want *want)
 {
 	struct lattice_axis x = lattice_periodic(
-				    s->nx, points_for(s->nx, s->par.ax, z, s->full)),
+				    s->nx, points_for(s->nx, s->par.dx, z, s->full)),
 			    y = lattice_periodic(
-				    s->ny, points_for(s->ny, s->par.ay, z, s->full));
+				    s->ny, points_for(s->ny, s->par.dy, z, s->full));
 	size_t columns = (size_t)x.points / 2 + 1,
 	       n = (size_t)x.points * (size_t)y.points;
 	double complex *spectrum[STRESS_NUMBERS] = { NULL };

@@ -1,5 +1,6 @@
 #include "surface/areal.h"
 #include "num/fft.h"
+#include "num/grid.h"
 #include "surface/surface.h"
 #include <complex.h>
 #include <math.h>
@@ -19,7 +20,7 @@ static void measure_heights(int nx, int ny, const double *z, struct surface_para
 		double r3 = 0, r4 = 0;
 
 		for (int ix = 0; ix < nx; ix++) {
-			double d = z[(size_t)iy * nx + ix] - mean, t = d / p->sq;
+			double d = z[grid_at(nx, ix, iy)] - mean, t = d / p->sq;
 
 			r3 += t * t * t;
 			r4 += t * t * t * t;
@@ -67,7 +68,7 @@ static void measure_neighbours(int nx, int ny, double dx, double dy, const doubl
 
 	for (int iy = 0; iy < ny; iy++)
 		for (int ix = 0; ix < nx; ix++) {
-			const double *a = z + (size_t)iy * nx + ix;
+			const double *a = z + grid_at(nx, ix, iy);
 			int right = ix + 1 < nx, down = iy + 1 < ny;
 
 			if (right)
@@ -98,7 +99,7 @@ static double measure_formula(
 
 	for (int iy = ry; iy < ny - ry; iy++)
 		for (int ix = rx; ix < nx - rx; ix++) {
-			const double *a = z + (size_t)iy * nx + ix;
+			const double *a = z + grid_at(nx, ix, iy);
 			double x = 0, y = 0;
 
 			for (int k = 0; k < reach; k++) {
@@ -131,7 +132,7 @@ static double measure_area(int nx, int ny, double dx, double dy, const double *z
 	double sum = 0;
 
 	if (nx == 1 || ny == 1) {
-		size_t n = (size_t)nx * ny - 1;
+		size_t n = grid_size(nx, ny) - 1;
 
 		for (size_t i = 0; i < n; i++)
 			sum += excess((z[i + 1] - z[i]) / (ny == 1 ? dx : dy), 0);
@@ -141,7 +142,7 @@ static double measure_area(int nx, int ny, double dx, double dy, const double *z
 		double row = 0;
 
 		for (int ix = 0; ix + 1 < nx; ix++) {
-			const double *a = z + (size_t)iy * nx + ix;
+			const double *a = z + grid_at(nx, ix, iy);
 			double top = (a[1] - a[0]) / dx,
 			       bottom = (a[nx + 1] - a[nx]) / dx;
 			double left = (a[nx] - a[0]) / dy,
@@ -166,26 +167,26 @@ struct correlation {
 
 static double *at(const struct correlation *c, int jx, int jy)
 {
-	return c->r + (size_t)(jy + c->hy) * (2 * c->hx + 1) + jx + c->hx;
+	return c->r + grid_at(2 * c->hx + 1, jx + c->hx, jy + c->hy);
 }
 
 /* Transform of z - mean with zeros behind, squared, transformed back; each lag is
  * divided by the number of products in it. */
-static int correlate(struct correlation *c, int nx, int ny, const double *z)
+static enum num_status correlate(struct correlation *c, int nx, int ny, const double *z)
 {
-	size_t px = fft_good_size((size_t)nx + c->hx),
-	       py = fft_good_size((size_t)ny + c->hy);
+	size_t px = fft_good_size((size_t)(nx + c->hx)),
+	       py = fft_good_size((size_t)(ny + c->hy));
 	size_t columns = px / 2 + 1;
 	double mean = surface_mean(nx, ny, z), zero, *pad = fft_alloc(px * py);
 	double complex *spectrum = fft_alloc_complex(columns * py);
 	struct fft *fft = fft_new(px, py);
-	int done = pad && spectrum && fft && c->r;
+	enum num_status status = NUM_MEMORY;
 
-	if (done) {
+	if (pad && spectrum && fft && c->r) {
 		for (int iy = 0; iy < ny; iy++)
 			for (int ix = 0; ix < nx; ix++)
-				pad[(size_t)iy * px + ix] =
-					z[(size_t)iy * nx + ix] - mean;
+				pad[(size_t)iy * px + (size_t)ix] =
+					z[grid_at(nx, ix, iy)] - mean;
 		fft_forward(fft, pad, spectrum);
 		for (size_t i = 0; i < columns * py; i++) {
 			double re = creal(spectrum[i]), im = cimag(spectrum[i]);
@@ -196,17 +197,18 @@ static int correlate(struct correlation *c, int nx, int ny, const double *z)
 		zero = pad[0] / ((double)nx * ny);
 		for (int jy = -c->hy; jy <= c->hy; jy++)
 			for (int jx = -c->hx; jx <= c->hx; jx++) {
-				size_t x = jx < 0 ? px + jx : (size_t)jx;
-				size_t y = jy < 0 ? py + jy : (size_t)jy;
+				size_t x = jx < 0 ? px - (size_t)-jx : (size_t)jx;
+				size_t y = jy < 0 ? py - (size_t)-jy : (size_t)jy;
 				double many = (double)(nx - abs(jx)) * (ny - abs(jy));
 
 				*at(c, jx, jy) = pad[y * px + x] / many / zero;
 			}
+		status = NUM_OK;
 	}
 	fft_free(pad);
 	fft_free(spectrum);
 	fft_done(fft);
-	return done;
+	return status;
 }
 
 /* Lag along one axis where the correlation falls to level; nan if it does not. */
@@ -228,7 +230,7 @@ static double first_fall(const struct correlation *c, int along_y, double level)
 /* Shortest and longest lag at which the central lobe, the connected lags above level,
  * ends; crossings are interpolated between neighbouring lags.  Where the lobe runs
  * into the largest lag, the longest is not known. */
-static int measure_lobe(
+static enum num_status measure_lobe(
 	const struct correlation *c, double level, double *shortest, double *longest)
 {
 	static const int step[4][2] = { { 1, 0 }, { -1, 0 }, { 0, 1 }, { 0, -1 } };
@@ -236,13 +238,15 @@ static int measure_lobe(
 	       top = 0;
 	unsigned char *seen = calloc(n, 1);
 	size_t *stack = malloc(n * sizeof *stack);
+	enum num_status status = NUM_MEMORY;
 	int open = 0;
 
 	*shortest = INFINITY;
 	*longest = 0;
 	if (seen && stack) {
-		stack[top++] = (size_t)c->hy * width + c->hx;
+		stack[top++] = grid_at(2 * c->hx + 1, c->hx, c->hy);
 		seen[stack[0]] = 1;
+		status = NUM_OK;
 	}
 	while (top) {
 		size_t i = stack[--top];
@@ -257,7 +261,8 @@ static int measure_lobe(
 				continue;
 			}
 			if (*at(c, kx, ky) > level) {
-				size_t next = (size_t)(ky + c->hy) * width + kx + c->hx;
+				size_t next =
+					grid_at(2 * c->hx + 1, kx + c->hx, ky + c->hy);
 
 				if (!seen[next]) {
 					seen[next] = 1;
@@ -272,39 +277,39 @@ static int measure_lobe(
 			*longest = fmax(*longest, lag);
 		}
 	}
-	open |= !seen || !stack;
-	if (open)
+	if (open || status)
 		*longest = NAN;
 	if (!isfinite(*shortest))
 		*shortest = NAN;
-	open = seen && stack;
 	free(seen);
 	free(stack);
-	return open;
+	return status;
 }
 
-static int measure_correlation(int nx, int ny, double dx, double dy, const double *z,
-	struct surface_parameters *p)
+static enum num_status measure_correlation(int nx, int ny, double dx, double dy,
+	const double *z, struct surface_parameters *p)
 {
 	struct correlation c = { nx / 2, ny / 2, dx, dy, NULL };
 	double longest = NAN;
-	int done;
+	enum num_status status;
 
 	p->sal = p->str = p->corr_x = p->corr_y = NAN;
 	if (!(p->sq > 0))
-		return 1;
+		return NUM_OK;
 	c.r = fft_alloc((2 * (size_t)c.hx + 1) * (2 * (size_t)c.hy + 1));
-	done = correlate(&c, nx, ny, z) && measure_lobe(&c, 0.2, &p->sal, &longest);
-	if (done) {
+	status = correlate(&c, nx, ny, z);
+	if (!status)
+		status = measure_lobe(&c, 0.2, &p->sal, &longest);
+	if (!status) {
 		p->str = nx > 1 && ny > 1 ? p->sal / longest : NAN;
 		p->corr_x = first_fall(&c, 0, exp(-1));
 		p->corr_y = first_fall(&c, 1, exp(-1));
 	}
 	fft_free(c.r);
-	return done;
+	return status;
 }
 
-int surface_measure(int nx, int ny, double dx, double dy, const double *z,
+enum num_status surface_measure(int nx, int ny, double dx, double dy, const double *z,
 	struct surface_parameters *par)
 {
 	static const double central[] = { 0.5 };

@@ -1,10 +1,12 @@
 /* areal.h - areal parameters of heights on a grid as in surface.h
  *
- *	if (surface_measure(nx, ny, dx, dy, z, &par))
+ *	if (surface_measure(nx, ny, dx, dy, z, &par) == NUM_OK)
  *		printf("%g %g\n", par.sq, par.sdq);
  */
-#ifndef CONTACT_AREAL_H
-#define CONTACT_AREAL_H
+#ifndef SURFACE_AREAL_H
+#define SURFACE_AREAL_H
+
+#include "num/status.h"
 
 /* Parameters of ISO 25178-2, heights taken from their mean; nan where a surface has
  * too few points for one. */
@@ -21,8 +23,7 @@ struct surface_parameters {
 	double corr_x, corr_y; /* lag along x and y where it falls to 1/e, m */
 };
 
-/* 0 when out of memory, else 1. */
-int surface_measure(int nx, int ny, double dx, double dy, const double *z,
+enum num_status surface_measure(int nx, int ny, double dx, double dy, const double *z,
 	struct surface_parameters *par);
 
 #endif

@@ -1,6 +1,5 @@
 #include "surface/filter.h"
 #include "num/fft.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +40,7 @@ static int reach_of(double step, double nesting, enum filter_ends ends, int n)
 	return is_mean(step, nesting, n) ? n / 2 : (int)reach;
 }
 
-static int kernel_new(
+static enum num_status kernel_make(
 	struct kernel *k, int n, double step, double nesting, enum filter_ends ends)
 {
 	double a = width(ends) * nesting / step;
@@ -53,11 +52,11 @@ static int kernel_new(
 	k->order = ends == FILTER_LINE ? 1 : ends == FILTER_PARABOLA ? 2 : 0;
 	k->weight = calloc(3 * (size_t)k->reach + 2, sizeof *k->weight);
 	if (!k->weight)
-		return 0;
+		return NUM_MEMORY;
 	k->row = k->weight + k->reach + 1;
 	for (int i = 0; i <= k->reach; i++)
 		k->weight[i] = exp(-M_PI * (i / a) * (i / a));
-	return 1;
+	return NUM_OK;
 }
 
 /* Solves the normal equations of the polynomial; m: moments 0 to 2 order.  c: what the
@@ -159,26 +158,27 @@ static void filter_lines(struct kernel *k, const double *in, double *out, size_t
 	}
 }
 
-int surface_gauss(int nx, int ny, double dx, double dy, const double *z, double nesting,
-	enum filter_ends ends, double *out)
+enum num_status surface_gauss(int nx, int ny, double dx, double dy, const double *z,
+	double nesting, enum filter_ends ends, double *out)
 {
 	struct kernel kx = { 0 }, ky = { 0 };
 	size_t n = (size_t)nx * (size_t)ny;
 	double *half = malloc(n * sizeof *half);
-	int done = half && kernel_new(&kx, nx, dx, nesting, ends) &&
-		   kernel_new(&ky, ny, dy, nesting, ends);
+	enum num_status status = NUM_MEMORY;
 
-	if (done) {
+	if (half && !kernel_make(&kx, nx, dx, nesting, ends) &&
+		!kernel_make(&ky, ny, dy, nesting, ends)) {
 		filter_lines(&ky, z, half, (size_t)nx, 1, nx);
 		/* Rows one by one keep to the cache. */
 		for (int iy = 0; iy < ny; iy++)
 			filter_lines(&kx, half + (size_t)iy * (size_t)nx,
 				out + (size_t)iy * (size_t)nx, 1, 1, 1);
+		status = NUM_OK;
 	}
 	free(kx.weight);
 	free(ky.weight);
 	free(half);
-	return done;
+	return status;
 }
 
 double surface_gauss_products(
@@ -192,7 +192,7 @@ double surface_gauss_products(
 /* ---- form ---- */
 
 /* Polynomials of the places of n points, orthonormal over them: p[k * n + i]. */
-static int orthonormal(int n, int degree, double *p)
+static enum num_status orthonormal(int n, int degree, double *p)
 {
 	for (int k = 0; k <= degree; k++) {
 		double *q = p + (size_t)k * (size_t)n, norm = 0;
@@ -217,11 +217,11 @@ static int orthonormal(int n, int degree, double *p)
 			norm += q[i] * q[i];
 		norm = sqrt(norm);
 		if (!(norm > 1e-10))
-			return 0;
+			return NUM_DOMAIN;
 		for (int i = 0; i < n; i++)
 			q[i] /= norm;
 	}
-	return 1;
+	return NUM_OK;
 }
 
 /* Coefficient of px py in z. */
@@ -257,7 +257,8 @@ static double square_along(int n, double step, const double *p)
 	return sum;
 }
 
-int surface_form(int nx, int ny, double dx, double dy, enum form form, double *z)
+enum num_status surface_form(
+	int nx, int ny, double dx, double dy, enum form form, double *z)
 {
 	int degree = form == FORM_PLANE ? 1 : form == FORM_PARABOLOID ? 2 : (int)form;
 	int bowl = form == FORM_PARABOLOID;
@@ -266,13 +267,13 @@ int surface_form(int nx, int ny, double dx, double dy, enum form form, double *z
 	double *py = malloc(terms * (size_t)ny * sizeof *py);
 	/* A profile has a form along itself alone. */
 	int along_x = nx > 1 ? degree : 0, along_y = ny > 1 ? degree : 0;
-	int done = px && py;
+	enum num_status status = px && py ? NUM_OK : NUM_MEMORY;
 
-	if (done && !(orthonormal(nx, along_x, px) && orthonormal(ny, along_y, py))) {
-		errno = EDOM;
-		done = 0;
-	}
-	for (int i = 0; done && i <= along_x; i++)
+	if (!status)
+		status = orthonormal(nx, along_x, px);
+	if (!status)
+		status = orthonormal(ny, along_y, py);
+	for (int i = 0; !status && i <= along_x; i++)
 		for (int j = 0; j <= along_y && j <= degree - i; j++) {
 			const double *qx = px + (size_t)i * (size_t)nx;
 			const double *qy = py + (size_t)j * (size_t)ny;
@@ -281,7 +282,7 @@ int surface_form(int nx, int ny, double dx, double dy, enum form form, double *z
 				continue;
 			subtract(nx, ny, qx, qy, project(nx, ny, qx, qy, z), z);
 		}
-	if (done && bowl && along_x && along_y) {
+	if (!status && bowl && along_x && along_y) {
 		/* x^2 + y^2 less what the plane holds: a X2(x) Y0 + b X0 Y2(y) */
 		const double *x2 = px + 2 * (size_t)nx, *y2 = py + 2 * (size_t)ny;
 		double a = square_along(nx, dx, x2) * sqrt(ny);
@@ -294,7 +295,7 @@ int surface_form(int nx, int ny, double dx, double dy, enum form form, double *z
 	}
 	free(px);
 	free(py);
-	return done;
+	return status;
 }
 
 /* ---- power spectrum ---- */
@@ -329,16 +330,18 @@ static double windowed(int nx, int ny, const double *z, int window, double *out)
 	return square / ((double)nx * ny);
 }
 
-int surface_spectrum(int nx, int ny, double dx, double dy, const double *z, int window,
-	struct ring *ring)
+enum num_status surface_spectrum(int nx, int ny, double dx, double dy, const double *z,
+	int window, struct ring *ring, int *rings)
 {
 	size_t n = (size_t)nx * (size_t)ny, columns = (size_t)nx / 2 + 1;
 	double lx = nx * dx, ly = ny * dy, step = 1 / fmin(lx, ly), square;
-	int most = (int)hypot(nx, ny) + 2, rings = 0;
+	enum num_status status = NUM_MEMORY;
+	int most = (int)hypot(nx, ny) + 2;
 	double *x = fft_alloc(n);
 	double complex *q = fft_alloc_complex(columns * (size_t)ny);
 	struct fft *fft = fft_new((size_t)nx, (size_t)ny);
 
+	*rings = 0;
 	if (x && q && fft) {
 		square = windowed(nx, ny, z, window, x);
 		fft_forward(fft, x, q);
@@ -359,18 +362,17 @@ int surface_spectrum(int nx, int ny, double dx, double dy, const double *z, int 
 				ring[k].power += twice * p * lx * ly /
 						 ((double)n * (double)n * square);
 				ring[k].waves += twice;
-				rings = k + 1 > rings ? k + 1 : rings;
+				*rings = k + 1 > *rings ? k + 1 : *rings;
 			}
-		for (int k = 0; k < rings; k++) {
+		for (int k = 0; k < *rings; k++) {
 			ring[k].frequency /= ring[k].waves;
 			ring[k].power /= ring[k].waves;
 		}
-	} else {
-		rings = -1;
+		status = NUM_OK;
 	}
 	if (fft)
 		fft_done(fft);
 	fft_free(q);
 	fft_free(x);
-	return rings;
+	return status;
 }

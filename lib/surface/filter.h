@@ -12,7 +12,7 @@
 #ifndef SURFACE_FILTER_H
 #define SURFACE_FILTER_H
 
-#include <stddef.h>
+#include "num/status.h"
 
 enum filter_ends {
 	FILTER_MEAN,     /* order 0 */
@@ -21,10 +21,9 @@ enum filter_ends {
 	FILTER_PERIODIC  /* the surface repeats */
 };
 
-/* Fills out with what the filter passes; z and out may be the same.  0 when out of
- * memory. */
-int surface_gauss(int nx, int ny, double dx, double dy, const double *z, double nesting,
-	enum filter_ends ends, double *out);
+/* Fills out with what the filter passes; z and out may be the same. */
+enum num_status surface_gauss(int nx, int ny, double dx, double dy, const double *z,
+	double nesting, enum filter_ends ends, double *out);
 
 /* Products of an odd number of points in the sums of a filter: what it costs. */
 double surface_gauss_products(
@@ -40,9 +39,9 @@ enum form {
 	FORM_POLY6
 };
 
-/* Subtracts the least-squares form.  0 when out of memory or with too few points for it
- * (errno EDOM). */
-int surface_form(int nx, int ny, double dx, double dy, enum form form, double *z);
+/* Subtracts the least-squares form; NUM_DOMAIN with too few points for it. */
+enum num_status surface_form(
+	int nx, int ny, double dx, double dy, enum form form, double *z);
 
 /* One ring of the power spectrum: all waves whose frequency is k - 1/2 to k + 1/2 times
  * that of the longest wave along the shorter side. */
@@ -52,10 +51,10 @@ struct ring {
 	double waves; /* of both signs; power times waves over the area is the variance */
 };
 
-/* Rings from k = 1 on, at most (int)hypot(nx, ny) + 2 of them, go to ring; returns how
- * many, -1 when out of memory.  The mean is taken off; with a window the heights are
+/* Rings from k = 1 on, at most (int)hypot(nx, ny) + 2 of them, go to ring; *rings is how
+ * many.  The mean is taken off; with a window the heights are
  * multiplied by a Hann window along both sides, whose mean square is divided out. */
-int surface_spectrum(int nx, int ny, double dx, double dy, const double *z, int window,
-	struct ring *ring);
+enum num_status surface_spectrum(int nx, int ny, double dx, double dy, const double *z,
+	int window, struct ring *ring, int *rings);
 
 #endif

@@ -6,8 +6,8 @@
  * quantiles has these moments.  ranking_impose() lays the set over a surface in the
  * order of its heights.
  */
-#ifndef CONTACT_HEIGHTS_H
-#define CONTACT_HEIGHTS_H
+#ifndef SURFACE_HEIGHTS_H
+#define SURFACE_HEIGHTS_H
 
 #include <stddef.h>
 

@@ -51,17 +51,17 @@ static double above(const double *z, size_t n, double level, int sign, double *s
 	return area;
 }
 
-int surface_core(size_t n, const double *z, struct core *core)
+enum num_status surface_core(size_t n, const double *z, struct core *core)
 {
 	double *sorted, sx, sy = 0, xx = 0, xy = 0, slope, top, bottom, area, middle;
 	size_t m = (size_t)(window * (double)n + 0.5), from;
 
 	*core = (struct core){ NAN, NAN, NAN, NAN, NAN };
 	if (n < 5)
-		return 1;
+		return NUM_OK;
 	sorted = malloc(n * sizeof *sorted);
 	if (!sorted)
-		return 0;
+		return NUM_MEMORY;
 	memcpy(sorted, z, n * sizeof *sorted);
 	qsort(sorted, n, sizeof *sorted, descending);
 	from = flattest(sorted, n, m);
@@ -85,5 +85,5 @@ int surface_core(size_t n, const double *z, struct core *core)
 	core->svk = core->smr2 > 0 ? 2 * area / core->smr2 : 0;
 	core->smr2 = 1 - core->smr2;
 	free(sorted);
-	return 1;
+	return NUM_OK;
 }

@@ -9,6 +9,7 @@
 #ifndef SURFACE_RATIO_H
 #define SURFACE_RATIO_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 struct core {
@@ -16,7 +17,7 @@ struct core {
 	double smr1, smr2;   /* shares above the upper and the lower end of the core */
 };
 
-/* All are nan with fewer than five points.  0 when out of memory. */
-int surface_core(size_t n, const double *z, struct core *core);
+/* All are nan with fewer than five points. */
+enum num_status surface_core(size_t n, const double *z, struct core *core);
 
 #endif

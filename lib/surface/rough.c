@@ -1,5 +1,6 @@
 /* rough.c - an ensemble of rough surfaces of given roughness */
 #include "surface/rough.h"
+#include "num/grid.h"
 #include "surface/heights.h"
 #include "surface/surface.h"
 #include <math.h>
@@ -15,15 +16,12 @@ struct rough {
 
 static size_t points(const struct rough *r)
 {
-	return (size_t)r->par.spectrum.nx * (size_t)r->par.spectrum.ny;
+	return grid_size(r->par.spectrum.nx, r->par.spectrum.ny);
 }
 
 static enum rough_status make_spectrum(struct rough *r)
 {
-	enum spectrum_status status;
-
-	r->spectrum = spectrum_new(&r->par.spectrum, &status);
-	switch (status) {
+	switch (spectrum_make(&r->par.spectrum, &r->spectrum)) {
 	case SPECTRUM_OK:
 		return ROUGH_OK;
 	case SPECTRUM_DOMAIN:
@@ -75,19 +73,21 @@ static enum rough_status build(struct rough *r)
 	return make_heights(r);
 }
 
-struct rough *rough_new(const struct rough_par *par, enum rough_status *status)
+enum rough_status rough_make(const struct rough_par *par, struct rough **made)
 {
 	struct rough *r = calloc(1, sizeof *r);
+	enum rough_status status;
 
-	*status = ROUGH_MEMORY;
+	*made = NULL;
 	if (!r)
-		return NULL;
+		return ROUGH_MEMORY;
 	r->par = *par;
-	*status = build(r);
-	if (*status == ROUGH_OK)
-		return r;
-	rough_free(r);
-	return NULL;
+	status = build(r);
+	if (status != ROUGH_OK)
+		rough_free(r);
+	else
+		*made = r;
+	return status;
 }
 
 void rough_free(struct rough *r)
@@ -114,13 +114,13 @@ double rough_draw(const struct rough_range *range, uint64_t seed, uint32_t reali
 								 RNG_ROUGHNESS, index);
 }
 
-int rough_scale(int nx, int ny, double *z, double have, double want)
+enum num_status rough_scale(int nx, int ny, double *z, double have, double want)
 {
 	double factor = have > 0 ? want / have : 0;
 
-	for (size_t i = 0; i < (size_t)nx * (size_t)ny; i++)
+	for (size_t i = 0; i < grid_size(nx, ny); i++)
 		z[i] *= factor;
-	return have > 0 || want == 0;
+	return have > 0 || want == 0 ? NUM_OK : NUM_DOMAIN;
 }
 
 /* One surface of roughness want into z. */
@@ -129,7 +129,7 @@ static enum rough_status make_surface(struct rough *r, uint32_t realisation,
 {
 	int nx = r->par.spectrum.nx, ny = r->par.spectrum.ny, turns = 0;
 	int by_slope = r->par.kind == ROUGH_SLOPE;
-	double have = 0;
+	double have = 0, error;
 
 	if (want == 0) {
 		memset(z, 0, points(r) * sizeof *z);
@@ -139,22 +139,21 @@ static enum rough_status make_surface(struct rough *r, uint32_t realisation,
 		by_slope ? &have : NULL);
 	work->transforms++;
 	if (r->sorted) {
-		double error = spectrum_impose(r->spectrum, r->sorted, z, &turns);
-
-		if (error < 0)
+		if (spectrum_impose(r->spectrum, r->sorted, z, &turns, &error))
 			return ROUGH_MEMORY;
 		work->spectrum_error = fmax(work->spectrum_error, error);
 		work->iterations += turns;
 		work->transforms += 2 + 2 * turns;
 		if (by_slope) {
-			have = spectrum_slope(r->spectrum, z);
+			if (spectrum_slope(r->spectrum, z, &have))
+				return ROUGH_MEMORY;
 			work->transforms++;
 		}
 	}
 	if (!by_slope)
 		have = r->par.kind == ROUGH_SA ? surface_sa(nx, ny, z)
 					       : surface_sq(nx, ny, z);
-	return rough_scale(nx, ny, z, have, want) ? ROUGH_OK : ROUGH_MEMORY;
+	return rough_scale(nx, ny, z, have, want) ? ROUGH_EMPTY : ROUGH_OK;
 }
 
 enum rough_status rough_surface(

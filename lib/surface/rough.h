@@ -8,13 +8,15 @@
  *
  *	struct rough_par par = { .spectrum = { ... }, .kind = ROUGH_SQ,
  *		.target = { 78e-6, 82e-6 }, .kurtosis = 3, .seed = 1 };
- *	struct rough *r = rough_new(&par, &status);
+ *	struct rough *r;
+ *	if (rough_make(&par, &r) != ROUGH_OK)
+ *		...
  *	for (uint32_t k = 0; k < 100; k++)
  *		rough_surface(r, k, z, NULL);
  *	rough_free(r);
  */
-#ifndef CONTACT_ROUGH_H
-#define CONTACT_ROUGH_H
+#ifndef SURFACE_ROUGH_H
+#define SURFACE_ROUGH_H
 
 #include "surface/spectrum.h"
 
@@ -57,8 +59,8 @@ struct rough_work {
 
 struct rough;
 
-/* NULL and *status where that fails. */
-struct rough *rough_new(const struct rough_par *par, enum rough_status *status);
+/* *made is NULL where that fails. */
+enum rough_status rough_make(const struct rough_par *par, struct rough **made);
 void rough_free(struct rough *r);
 
 /* Fills z (nx * ny), mean 0.  work may be NULL. */
@@ -72,7 +74,8 @@ const struct spectrum *rough_spectrum(const struct rough *r);
 double rough_draw(const struct rough_range *range, uint64_t seed, uint32_t realisation,
 	uint64_t index);
 
-/* Scales heights from roughness have to want; 0 where have is 0 but want is not. */
-int rough_scale(int nx, int ny, double *z, double have, double want);
+/* Scales heights from roughness have to want; NUM_DOMAIN where have is 0 but want is not.
+ */
+enum num_status rough_scale(int nx, int ny, double *z, double have, double want);
 
 #endif

@@ -1,6 +1,7 @@
 /* spectrum.c - rough surfaces with a prescribed power spectrum */
 #include "surface/spectrum.h"
 #include "num/fft.h"
+#include "num/grid.h"
 #include "surface/heights.h"
 #include <math.h>
 #include <stdlib.h>
@@ -42,29 +43,29 @@ static double gauss_power(double c, int n, int k)
 }
 
 /* Adds weight times the product of two one-dimensional Gaussian powers. */
-static int add_gauss(struct spectrum *s, double weight, double cx, double cy)
+static enum num_status add_gauss(struct spectrum *s, double weight, double cx, double cy)
 {
 	double *px = malloc((size_t)s->mx * sizeof *px);
 
 	if (!px)
-		return 0;
+		return NUM_MEMORY;
 	for (int kx = 0; kx < s->mx; kx++)
 		px[kx] = weight * gauss_power(cx, s->par.nx, kx);
 	for (int ky = 0; ky < s->my; ky++) {
 		double py = gauss_power(cy, s->par.ny, ky);
-		double *row = s->amplitude + (size_t)ky * s->mx;
+		double *row = s->amplitude + grid_at(s->mx, 0, ky);
 
 		for (int kx = 0; kx < s->mx; kx++)
 			row[kx] += py * px[kx];
 	}
 	free(px);
-	return 1;
+	return NUM_OK;
 }
 
 /* exp(-r) = pi^-1/2 int_0^inf exp(-t^2 / 4) exp(-r^2 / t^2) dt, by the trapezoidal rule
  * in log t, which converges geometrically; the step leaves an error below 1e-14.  Scales
  * far below the spacing are white noise and need one number only. */
-static int add_exponential(struct spectrum *s, double cx, double cy)
+static enum num_status add_exponential(struct spectrum *s, double cx, double cy)
 {
 	enum { PER_UNIT = 8, FIRST = -40 * PER_UNIT, LAST = 5 * PER_UNIT / 2 };
 	const double white = 0.12; /* exp(-1 / white^2) is nothing */
@@ -76,13 +77,13 @@ static int add_exponential(struct spectrum *s, double cx, double cy)
 
 		if (t * c < white)
 			noise += weight;
-		else if (!add_gauss(s, weight, t * cx, t * cy))
-			return 0;
+		else if (add_gauss(s, weight, t * cx, t * cy))
+			return NUM_MEMORY;
 	}
 	noise /= (double)s->par.nx * s->par.ny;
-	for (size_t i = 0; i < (size_t)s->mx * s->my; i++)
+	for (size_t i = 0; i < grid_size(s->mx, s->my); i++)
 		s->amplitude[i] += noise;
-	return 1;
+	return NUM_OK;
 }
 
 /* ---- self-affine power ---- */
@@ -103,7 +104,7 @@ static void add_affine(struct spectrum *s)
 		for (int kx = 0; kx < s->mx; kx++) {
 			double q = wave_number(s, kx, ky) / start;
 
-			s->amplitude[(size_t)ky * s->mx + kx] =
+			s->amplitude[grid_at(s->mx, kx, ky)] =
 				q > 1 ? pow(q, -2 * (1 + p->hurst)) : kx || ky;
 		}
 }
@@ -132,7 +133,7 @@ static int within_bounds(const struct spectrum *s, int kx, int ky)
 
 /* Applies the bounds, makes the power sum to 1 and takes its root.  Waves so weak that
  * they cannot change a digit of the heights are left out. */
-static int finish_power(struct spectrum *s)
+static enum spectrum_status finish_power(struct spectrum *s)
 {
 	const double negligible = 1e-40; /* of the strongest wave: 1e-20 of its height */
 	double sum = s->amplitude[0], strongest = 0;
@@ -140,7 +141,7 @@ static int finish_power(struct spectrum *s)
 	s->amplitude[0] = 0;
 	for (int ky = 0; ky < s->my; ky++)
 		for (int kx = 0; kx < s->mx; kx++) {
-			double *power = &s->amplitude[(size_t)ky * s->mx + kx];
+			double *power = &s->amplitude[grid_at(s->mx, kx, ky)];
 
 			if (!within_bounds(s, kx, ky))
 				*power = 0;
@@ -148,10 +149,10 @@ static int finish_power(struct spectrum *s)
 			sum += multiplicity(s, kx, ky) * *power;
 		}
 	if (!(strongest > 0))
-		return 0;
+		return SPECTRUM_EMPTY;
 	for (int ky = 0; ky < s->my; ky++)
 		for (int kx = 0; kx < s->mx; kx++) {
-			double *power = &s->amplitude[(size_t)ky * s->mx + kx];
+			double *power = &s->amplitude[grid_at(s->mx, kx, ky)];
 
 			if (*power < negligible * strongest)
 				*power = 0;
@@ -160,7 +161,7 @@ static int finish_power(struct spectrum *s)
 			*power = sqrt(*power / sum);
 		}
 	s->skipped--; /* the mean is no wave */
-	return 1;
+	return SPECTRUM_OK;
 }
 
 static int positive(double x)
@@ -203,12 +204,12 @@ static enum spectrum_status build(struct spectrum *s)
 {
 	const struct spectrum_par *p = &s->par;
 	double cx, cy;
-	int done = 1;
+	enum num_status status = NUM_OK;
 
 	s->mx = p->nx / 2 + 1;
 	s->my = p->ny / 2 + 1;
-	s->amplitude = fft_alloc((size_t)s->mx * s->my);
-	s->modes = fft_alloc_complex((size_t)s->mx * p->ny);
+	s->amplitude = fft_alloc(grid_size(s->mx, s->my));
+	s->modes = fft_alloc_complex(grid_size(s->mx, p->ny));
 	s->shift_x = centre_shift(p->nx, s->mx);
 	s->shift_y = centre_shift(p->ny, s->my);
 	s->fft = fft_new((size_t)p->nx, (size_t)p->ny);
@@ -217,35 +218,32 @@ static enum spectrum_status build(struct spectrum *s)
 	cx = p->corr_x / p->lx * p->nx;
 	cy = p->corr_y / p->ly * p->ny;
 	if (p->kind == SPECTRUM_GAUSS)
-		done = add_gauss(s, 1, cx, cy);
+		status = add_gauss(s, 1, cx, cy);
 	else if (p->kind == SPECTRUM_EXP)
-		done = add_exponential(s, cx, cy);
+		status = add_exponential(s, cx, cy);
 	else
 		add_affine(s);
-	if (!done)
-		return SPECTRUM_MEMORY;
-	return finish_power(s) ? SPECTRUM_OK : SPECTRUM_EMPTY;
+	return status ? SPECTRUM_MEMORY : finish_power(s);
 }
 
-struct spectrum *spectrum_new(
-	const struct spectrum_par *par, enum spectrum_status *status)
+enum spectrum_status spectrum_make(const struct spectrum_par *par, struct spectrum **made)
 {
+	enum spectrum_status status = check(par);
 	struct spectrum *s;
 
-	*status = check(par);
-	if (*status != SPECTRUM_OK)
-		return NULL;
+	*made = NULL;
+	if (status != SPECTRUM_OK)
+		return status;
 	s = calloc(1, sizeof *s);
-	if (!s) {
-		*status = SPECTRUM_MEMORY;
-		return NULL;
-	}
+	if (!s)
+		return SPECTRUM_MEMORY;
 	s->par = *par;
-	*status = build(s);
-	if (*status == SPECTRUM_OK)
-		return s;
-	spectrum_free(s);
-	return NULL;
+	status = build(s);
+	if (status != SPECTRUM_OK)
+		spectrum_free(s);
+	else
+		*made = s;
+	return status;
 }
 
 void spectrum_free(struct spectrum *s)
@@ -262,7 +260,7 @@ void spectrum_free(struct spectrum *s)
 
 double spectrum_power(const struct spectrum *s, int kx, int ky)
 {
-	double a = s->amplitude[(size_t)abs(ky) * s->mx + abs(kx)];
+	double a = s->amplitude[grid_at(s->mx, abs(kx), abs(ky))];
 
 	return a * a;
 }
@@ -291,7 +289,7 @@ static double complex draw_mode(const struct draw *d, int kx, int ky)
 {
 	const struct spectrum *s = d->s;
 	int ay = abs(ky);
-	double a = s->amplitude[(size_t)ay * s->mx + kx], z[2];
+	double a = s->amplitude[grid_at(s->mx, kx, ay)], z[2];
 	int real_x = kx == 0 || 2 * kx == s->par.nx,
 	    real_y = ay == 0 || 2 * ay == s->par.ny;
 
@@ -312,7 +310,7 @@ static void draw_row(void *context, size_t iy, int worker)
 	const struct draw *d = context;
 	const struct spectrum *s = d->s;
 	int ny = s->par.ny, ky = 2 * (int)iy <= ny ? (int)iy : (int)iy - ny;
-	double complex *row = s->modes + iy * s->mx;
+	double complex *row = s->modes + iy * (size_t)s->mx;
 
 	(void)worker;
 	for (int kx = 0; kx < s->mx; kx++) {
@@ -331,7 +329,7 @@ static double modes_slope(const struct spectrum *s)
 
 	for (int iy = 0; iy < s->par.ny; iy++) {
 		int ky = 2 * iy <= s->par.ny ? iy : s->par.ny - iy;
-		const double complex *row = s->modes + (size_t)iy * s->mx;
+		const double complex *row = s->modes + grid_at(s->mx, 0, iy);
 		double part = 0;
 
 		for (int kx = 0; kx < s->mx; kx++) {
@@ -357,19 +355,18 @@ void spectrum_surface(struct spectrum *s, struct pool *pool, uint64_t seed,
 	fft_inverse(s->fft, s->modes, z);
 }
 
-double spectrum_slope(struct spectrum *s, const double *z)
+enum num_status spectrum_slope(struct spectrum *s, const double *z, double *slope)
 {
-	size_t n = (size_t)s->par.nx * s->par.ny;
+	size_t n = grid_size(s->par.nx, s->par.ny);
 	double *copy = fft_alloc(n);
-	double slope;
 
 	if (!copy)
-		return NAN;
+		return NUM_MEMORY;
 	memcpy(copy, z, n * sizeof *copy);
 	fft_forward(s->fft, copy, s->modes);
-	slope = modes_slope(s) / (double)n;
+	*slope = modes_slope(s) / (double)n;
 	fft_free(copy);
-	return slope;
+	return NUM_OK;
 }
 
 /* ---- heights of another distribution ---- */
@@ -382,7 +379,7 @@ static double impose_magnitudes(struct spectrum *s, const double *wanted)
 
 	for (int iy = 0; iy < s->par.ny; iy++)
 		for (int kx = 0; kx < s->mx; kx++) {
-			size_t i = (size_t)iy * s->mx + kx;
+			size_t i = grid_at(s->mx, kx, iy);
 			double a = cabs(s->modes[i]);
 			int many = kx == 0 || 2 * kx == s->par.nx ? 1 : 2;
 
@@ -397,7 +394,7 @@ static double impose_magnitudes(struct spectrum *s, const double *wanted)
 static void wanted_magnitudes(
 	struct spectrum *s, double *z, const double *sorted, double *wanted)
 {
-	size_t n = (size_t)s->par.nx * s->par.ny, m = (size_t)s->mx * s->par.ny;
+	size_t n = grid_size(s->par.nx, s->par.ny), m = grid_size(s->mx, s->par.ny);
 	double have = 0, want = 0, scale;
 
 	for (size_t i = 0; i < n; i++) {
@@ -410,15 +407,16 @@ static void wanted_magnitudes(
 		wanted[i] = cabs(s->modes[i]) * scale;
 }
 
-double spectrum_impose(
-	struct spectrum *s, const double *sorted, double *z, int *iterations)
+enum num_status spectrum_impose(struct spectrum *s, const double *sorted, double *z,
+	int *iterations, double *error)
 {
 	enum { MOST = 200 };
 	const double gain = 0.995; /* a turn that improves less is the last */
-	size_t n = (size_t)s->par.nx * s->par.ny;
-	double *wanted = fft_alloc((size_t)s->mx * s->par.ny), *copy = fft_alloc(n);
+	size_t n = grid_size(s->par.nx, s->par.ny);
+	double *wanted = fft_alloc(grid_size(s->mx, s->par.ny)), *copy = fft_alloc(n);
 	struct ranking *rank = ranking_new(n);
-	double error = -1, last = INFINITY;
+	enum num_status status = NUM_MEMORY;
+	double last = INFINITY;
 
 	*iterations = 0;
 	if (wanted && copy && rank) {
@@ -428,16 +426,17 @@ double spectrum_impose(
 		for (;; ++*iterations) {
 			memcpy(copy, z, n * sizeof *z);
 			fft_forward(s->fft, copy, s->modes);
-			error = impose_magnitudes(s, wanted);
-			if (error > gain * last || *iterations == MOST)
+			*error = impose_magnitudes(s, wanted);
+			if (*error > gain * last || *iterations == MOST)
 				break;
-			last = error;
+			last = *error;
 			fft_inverse(s->fft, s->modes, z);
 			ranking_impose(rank, sorted, z);
 		}
+		status = NUM_OK;
 	}
 	ranking_free(rank);
 	fft_free(wanted);
 	fft_free(copy);
-	return error;
+	return status;
 }

@@ -12,18 +12,20 @@
  *
  *	struct spectrum_par par = { .nx = 512, .ny = 512, .lx = 1e-3, .ly = 1e-3,
  *		.kind = SPECTRUM_GAUSS, .corr_x = 1e-4, .corr_y = 1e-4 };
- *	struct spectrum *s = spectrum_new(&par, &status);
- *	spectrum_surface(s, NULL, seed, realisation, RNG_SURFACE, z, NULL);
+ *	struct spectrum *s;
+ *	if (spectrum_make(&par, &s) == SPECTRUM_OK)
+ *		spectrum_surface(s, NULL, seed, realisation, RNG_SURFACE, z, NULL);
  *	spectrum_free(s);
  *
  * Heights are row-major, z[iy * nx + ix], and have the expected variance 1 less the
  * power of the mean; the caller scales them.
  */
-#ifndef CONTACT_SPECTRUM_H
-#define CONTACT_SPECTRUM_H
+#ifndef SURFACE_SPECTRUM_H
+#define SURFACE_SPECTRUM_H
 
 #include "num/philox.h"
 #include "num/pool.h"
+#include "num/status.h"
 
 enum spectrum_kind {
 	SPECTRUM_GAUSS, /* autocorrelation exp(-(x/corr_x)^2 - (y/corr_y)^2) */
@@ -53,11 +55,11 @@ enum spectrum_status {
 
 struct spectrum;
 
-/* NULL and *status where that fails.  On the sampled periodic grid the two correlation
+/* *made is NULL where that fails.  On the sampled periodic grid the two correlation
  * functions hold exactly: the power is the discrete transform of their periodic sums,
  * for the exponential one written as a mixture of Gaussians. */
-struct spectrum *spectrum_new(
-	const struct spectrum_par *par, enum spectrum_status *status);
+enum spectrum_status spectrum_make(
+	const struct spectrum_par *par, struct spectrum **made);
 void spectrum_free(struct spectrum *s);
 
 /* Fills z (nx * ny).  pool may be NULL.  slope, unless NULL, receives the rms slope
@@ -66,7 +68,7 @@ void spectrum_surface(struct spectrum *s, struct pool *pool, uint64_t seed,
 	uint32_t realisation, enum rng_purpose purpose, double *z, double *slope);
 
 /* The same rms slope of any heights on the grid (one transform). */
-double spectrum_slope(struct spectrum *s, const double *z);
+enum num_status spectrum_slope(struct spectrum *s, const double *z, double *slope);
 
 /* Expected power of the wave (kx, ky), |kx| <= nx / 2, |ky| <= ny / 2; all of them and
  * the power of the mean, which is not drawn and 0 here, sum to 1. */
@@ -80,9 +82,9 @@ long spectrum_waves_skipped(const struct spectrum *s);
  * the Fourier coefficients z came with: the two are imposed in turn (Schreiber and
  * Schmitz, Phys. Rev. Lett. 77, 1996; for surfaces Perez-Rafols and Almqvist, Tribol.
  * Int. 131, 2019) until the magnitudes stop improving; the sorted values always hold.
- * Returns the rms error of the magnitudes relative to their rms, -1 without memory;
- * *iterations counts the turns. */
-double spectrum_impose(
-	struct spectrum *s, const double *sorted, double *z, int *iterations);
+ * *error is the rms error of the magnitudes relative to their rms, *iterations counts the
+ * turns. */
+enum num_status spectrum_impose(struct spectrum *s, const double *sorted, double *z,
+	int *iterations, double *error);
 
 #endif

@@ -1,5 +1,6 @@
 /* surface.c - see surface.h */
 #include "surface/surface.h"
+#include "num/grid.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,15 +11,14 @@ size_t surface_missing(int nx, int ny, const double *z)
 {
 	size_t missing = 0;
 
-	for (size_t i = 0; i < (size_t)nx * ny; i++)
+	for (size_t i = 0; i < grid_size(nx, ny); i++)
 		missing += isnan(z[i]) != 0;
 	return missing;
 }
 
 /* The unknown samples and their neighbours: sample place[k], unknown or known. */
 struct holes {
-	int nx, ny;
-	size_t n;
+	size_t nx, ny, n;
 	size_t *place;
 	size_t *index; /* of a sample: its unknown, or n where it is known */
 	double *x, *r, *p, *q;
@@ -27,7 +27,8 @@ struct holes {
 /* Neighbours of a sample; returns how many. */
 static int neighbours(const struct holes *h, size_t place, size_t next[4])
 {
-	int ix = (int)(place % h->nx), iy = (int)(place / h->nx), n = 0;
+	size_t ix = place % h->nx, iy = place / h->nx;
+	int n = 0;
 
 	if (ix > 0)
 		next[n++] = place - 1;
@@ -101,17 +102,17 @@ static int solve_holes(struct holes *h, const double *z, double *residual)
 	return step;
 }
 
-int surface_fill(int nx, int ny, double *z, int *iterations, double *residual)
+enum num_status surface_fill(int nx, int ny, double *z, int *iterations, double *residual)
 {
-	size_t n = (size_t)nx * ny, missing = surface_missing(nx, ny, z), k = 0;
-	struct holes h = { nx, ny, missing, NULL, NULL, NULL, NULL, NULL, NULL };
+	size_t n = grid_size(nx, ny), missing = surface_missing(nx, ny, z), k = 0;
+	struct holes h = { .nx = (size_t)nx, .ny = (size_t)ny, .n = missing };
+	enum num_status status = NUM_MEMORY;
 	double mean = 0;
-	int done = 0;
 
 	*iterations = 0;
 	*residual = 0;
 	if (missing == 0)
-		return 1;
+		return NUM_OK;
 	h.place = calloc(missing, sizeof *h.place);
 	h.index = malloc(n * sizeof *h.index);
 	h.x = malloc(4 * missing * sizeof *h.x);
@@ -131,12 +132,12 @@ int surface_fill(int nx, int ny, double *z, int *iterations, double *residual)
 		*iterations = solve_holes(&h, z, residual);
 		for (k = 0; k < missing; k++)
 			z[h.place[k]] = h.x[k];
-		done = 1;
+		status = NUM_OK;
 	}
 	free(h.place);
 	free(h.index);
 	free(h.x);
-	return done;
+	return status;
 }
 
 /* ---- plane, crop, crown ---- */
@@ -150,7 +151,7 @@ void surface_level(int nx, int ny, double *z)
 		double row = 0, moment = 0;
 
 		for (int ix = 0; ix < nx; ix++) {
-			double d = z[(size_t)iy * nx + ix] - mean;
+			double d = z[grid_at(nx, ix, iy)] - mean;
 
 			row += d;
 			moment += d * (ix - 0.5 * (nx - 1));
@@ -164,14 +165,14 @@ void surface_level(int nx, int ny, double *z)
 	sy = yy > 0 ? sy / yy : 0;
 	for (int iy = 0; iy < ny; iy++)
 		for (int ix = 0; ix < nx; ix++)
-			z[(size_t)iy * nx + ix] -= mean + sx * (ix - 0.5 * (nx - 1)) +
-						   sy * (iy - 0.5 * (ny - 1));
+			z[grid_at(nx, ix, iy)] -= mean + sx * (ix - 0.5 * (nx - 1)) +
+						  sy * (iy - 0.5 * (ny - 1));
 }
 
 void surface_crop(int nx, const double *z, int x0, int y0, int mx, int my, double *out)
 {
 	for (int iy = 0; iy < my; iy++)
-		memcpy(out + (size_t)iy * mx, z + (size_t)(y0 + iy) * nx + x0,
+		memcpy(out + grid_at(mx, 0, iy), z + grid_at(nx, x0, y0 + iy),
 			(size_t)mx * sizeof *out);
 }
 
@@ -184,7 +185,7 @@ void surface_crown(int nx, int ny, double dx, double dy, double drop, double *z)
 			double x = (ix + 0.5 - 0.5 * nx) * dx,
 			       y = (iy + 0.5 - 0.5 * ny) * dy;
 
-			z[(size_t)iy * nx + ix] -= drop * ((x * x + y * y) / corner);
+			z[grid_at(nx, ix, iy)] -= drop * ((x * x + y * y) / corner);
 		}
 }
 
@@ -252,18 +253,20 @@ static void resample_line(
 			      : interpolate(z, stride, n, (i + 0.5) * ratio - 0.5);
 }
 
-int surface_resample(int nx, int ny, const double *z, int mx, int my, double *out)
+enum num_status surface_resample(
+	int nx, int ny, const double *z, int mx, int my, double *out)
 {
-	double *half = malloc((size_t)mx * ny * sizeof *half);
+	double *half = malloc(grid_size(mx, ny) * sizeof *half);
 
 	if (!half)
-		return 0;
+		return NUM_MEMORY;
 	for (int iy = 0; iy < ny; iy++)
-		resample_line(z + (size_t)iy * nx, nx, 1, half + (size_t)iy * mx, mx, 1);
+		resample_line(
+			z + grid_at(nx, 0, iy), nx, 1, half + grid_at(mx, 0, iy), mx, 1);
 	for (int ix = 0; ix < mx; ix++)
 		resample_line(half + ix, ny, (size_t)mx, out + ix, my, (size_t)mx);
 	free(half);
-	return 1;
+	return NUM_OK;
 }
 
 /* ---- mean heights ---- */
@@ -278,7 +281,7 @@ static double sum_rows(int nx, int ny, const double *z,
 		double row = 0;
 
 		for (int ix = 0; ix < nx; ix++)
-			row += term(z[(size_t)iy * nx + ix], mean);
+			row += term(z[grid_at(nx, ix, iy)], mean);
 		sum += row;
 	}
 	return sum;

@@ -1,15 +1,15 @@
 /* surface.h - heights on a grid: preparing measured ones, crowns, mean heights
  *
  * Heights z[iy * nx + ix], in metres, stand for cells of dx by dy; nothing is assumed
- * to be periodic.  Missing samples are nan.  Functions that need memory return 0
- * when there is none, else 1.
+ * to be periodic.  Missing samples are nan.
  *
  *	surface_level(nx, ny, z);
  *	printf("%g\n", surface_sq(nx, ny, z));
  */
-#ifndef CONTACT_SURFACE_H
-#define CONTACT_SURFACE_H
+#ifndef SURFACE_SURFACE_H
+#define SURFACE_SURFACE_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 /* ---- preparing ---- */
@@ -22,7 +22,8 @@ size_t surface_missing(int nx, int ny, const double *z);
  * *iterations counts conjugate-gradient steps, *residual receives the residual over the
  * first one; above SURFACE_FILLED the iteration stopped before it converged. */
 #define SURFACE_FILLED 1e-13
-int surface_fill(int nx, int ny, double *z, int *iterations, double *residual);
+enum num_status surface_fill(
+	int nx, int ny, double *z, int *iterations, double *residual);
 
 /* Subtracts the least-squares plane. */
 void surface_level(int nx, int ny, double *z);
@@ -33,7 +34,8 @@ void surface_crop(int nx, const double *z, int x0, int y0, int mx, int my, doubl
 /* Brings heights to mx by my samples of the same area: the mean over the new cell
  * where it is larger than the old one, cubic convolution (Keys, IEEE Trans. ASSP 29,
  * 1981; third order, straight lines exact up to the rim) where it is smaller. */
-int surface_resample(int nx, int ny, const double *z, int mx, int my, double *out);
+enum num_status surface_resample(
+	int nx, int ny, const double *z, int mx, int my, double *out);
 
 /* Adds the paraboloid of revolution that is 0 in the middle of the area and -drop at
  * its corners. */

@@ -41,7 +41,7 @@ struct wp_surface *wp_surface_new(
 	enum rough_status why;
 	struct wp_surface *s;
 
-	if ((unsigned)par->kind >= sizeof(kinds) / sizeof(*kinds) || !(par->sq >= 0))
+	if ((unsigned)par->kind >= sizeof(kinds) / sizeof *kinds || !(par->sq >= 0))
 		return report(status, WP_DOMAIN);
 	rough.spectrum = (struct spectrum_par){ .nx = par->nx,
 		.ny = par->ny,
@@ -53,11 +53,11 @@ struct wp_surface *wp_surface_new(
 		.hurst = par->hurst,
 		.rolloff = par->rolloff,
 		.cutoff = par->cutoff };
-	s = malloc(sizeof(*s));
+	s = malloc(sizeof *s);
 	if (!s)
 		return report(status, WP_NO_MEMORY);
-	s->rough = rough_new(&rough, &why);
-	if (!s->rough) {
+	why = rough_make(&rough, &s->rough);
+	if (why != ROUGH_OK) {
 		free(s);
 		return report(status, translated(why));
 	}
@@ -84,7 +84,7 @@ enum wp_status wp_roughness(int nx, int ny, double dx, double dy, const double *
 
 	if (nx < 1 || ny < 1 || !(dx > 0) || !(dy > 0))
 		return WP_DOMAIN;
-	if (!surface_measure(nx, ny, dx, dy, z, &p))
+	if (surface_measure(nx, ny, dx, dy, z, &p))
 		return WP_NO_MEMORY;
 	*roughness = (struct wp_roughness){ p.sa, p.sq, p.ssk, p.sku, p.sp, p.sv, p.sz,
 		p.sdq, p.sdr, p.sal, p.str };

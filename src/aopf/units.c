@@ -335,8 +335,8 @@ void unit_save(struct units *units, struct machine *u)
 	if (units->file < 0)
 		return;
 	if (strlen(u->name) >= NAME)
-		die(EXIT_RUN, "%s: a name of %d letters or more cannot be saved", u->name,
-			(int)NAME);
+		die(EXIT_RUN, "%s: a name of %d characters or more cannot be saved",
+			u->name, (int)NAME);
 	memcpy(p.name, u->name, strlen(u->name));
 	pass(u, &s);
 	memcpy(units->place, &p, sizeof p);

@@ -72,7 +72,7 @@ void groups_finish(struct groups *g, double period, double duration, double last
 	if (isnan(period) || (!isnan(duration) && end > g->reported))
 		groups_report(g, g->reported, end, isnan(period));
 	else if (isnan(duration)) {
-		note("what came after %g s is of a period that is not over: left out",
+		note("particles after %g s belong to an incomplete period and are left out",
 			g->reported);
 		stats_set("periods_left_out", 1);
 	}

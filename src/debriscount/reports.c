@@ -15,15 +15,15 @@ static long window;
 
 struct opt oil_rows[] = {
 	{ 0, "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-15, 1e3, "Q",
-		"of oil past the sensor, for numbers per volume", NULL, 0 },
+		"flow of oil through the sensor, for numbers per volume", NULL, 0 },
 	{ 0, "volume", OPT_NUM, UNIT_VOLUME, &volume, 1e-15, 1e6, "V",
-		"of oil in all that was counted, instead of --flow", NULL, 0 },
+		"total volume of oil, in place of --flow", NULL, 0 },
 	OPT_END,
 };
 
 struct opt report_rows[] = {
 	{ 0, "window", OPT_INT, UNIT_COUNT, &window, 3, 1000000000, "N",
-		"of --output trend: periods that a slope is fitted to (default all)",
+		"of --output trend: periods to which the slope is fitted (default all)",
 		NULL, 0 },
 	OPT_END,
 };
@@ -36,13 +36,13 @@ struct report {
 void report_check(enum report_kind output, int periods)
 {
 	if (!isnan(flow) && !isnan(volume))
-		die(EXIT_USAGE, "want --flow or --volume, not both");
+		die(EXIT_USAGE, "specify --flow or --volume, not both");
 	if (!isnan(volume) && periods)
-		die(EXIT_USAGE, "--volume is of all oil: --period wants --flow");
+		die(EXIT_USAGE, "--volume is the total volume: --period requires --flow");
 	if (output == REPORT_CODES && isnan(flow) && isnan(volume))
-		die(EXIT_USAGE, "--output codes wants --flow or --volume");
+		die(EXIT_USAGE, "--output codes requires --flow or --volume");
 	if (output == REPORT_TREND && !periods)
-		die(EXIT_USAGE, "--output trend wants --period");
+		die(EXIT_USAGE, "--output trend requires --period");
 	if (window && output != REPORT_TREND)
 		die(EXIT_USAGE, "--window is for --output trend");
 }

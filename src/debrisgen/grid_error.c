@@ -23,12 +23,12 @@ static int wear_coarser(const struct worn_surface *c, struct contact_par pressin
 
 	pressing.nx = wear.stress.nx = r->nx / factor;
 	pressing.ny = wear.stress.ny = r->ny / factor;
-	pressing.dx = wear.stress.ax = r->dx * factor;
-	pressing.dy = wear.stress.ay = r->dy * factor;
+	pressing.dx = wear.stress.dx = r->dx * factor;
+	pressing.dy = wear.stress.dy = r->dy * factor;
 	contact = contact_new(&pressing);
 	debris = debris_new(&wear);
 	if (!contact || !debris ||
-		!surface_resample(r->nx, r->ny, c->h, pressing.nx, pressing.ny, h))
+		surface_resample(r->nx, r->ny, c->h, pressing.nx, pressing.ny, h))
 		die(EXIT_RUN, "no memory for a grid of %dx%d cells", pressing.nx,
 			pressing.ny);
 	*volume = *particles = NAN;

@@ -16,21 +16,22 @@ static const struct opt opts[] = {
 	OPT_TABLE(wearing_rows),
 	OPT_HEADING("Steps"),
 	{ 0, "steps", OPT_INT, UNIT_COUNT, &steps, 1, 1e6, "N",
-		"wear steps; the contact is solved anew from the second on", NULL, 0 },
+		"number of wear steps; from the second on the contact is solved again",
+		NULL, 0 },
 	{ 0, "stop-area", OPT_NUM, UNIT_FRACTION, &stop_area, 0, 1, "A",
-		"stop where this share of the cells is in contact; 1: never", NULL, 0 },
+		"stop when this fraction of the cells is in contact; 1: never", NULL, 0 },
 	{ 0, "amplification", OPT_NUM, UNIT_NONE, &amplification, 0, 1e12, "K",
-		"distance slid in a step over the length of the grid, or --slide", NULL,
-		0 },
+		"sliding distance of a step over the length of the grid, or over --slide",
+		NULL, 0 },
 	OPT_TABLE(worn_rows),
 	OPT_TABLE(press_rows),
 	OPT_END,
 };
 
 static const struct prog prog = { "debrisgen",
-	"Find the wear particles that a rough contact tears off, step by step.", "[file]",
-	"fields: height, pressure, as bemcontact writes",
-	"table: one row per wear particle", opts };
+	"Compute the wear particles of a rough contact, step by step.", "[file]",
+	"fields: height, pressure, from bemcontact", "table: one row per wear particle",
+	opts };
 
 /* Load on the outermost cells, where the half-space ends: steps with more than 5 %, and
  * the worst of them. */
@@ -93,7 +94,7 @@ static void open_scene(struct run *run, struct record *r, struct scene *c)
 	if (c->target == 0 && s.load == 0 && wearing_solves(run->wearing, 1) &&
 		isnan(press.approach))
 		die(EXIT_USAGE,
-			"%s: record %ld bears no load: want --load, --pressure or --approach",
+			"%s: record %ld carries no load: specify --load, --pressure or --approach",
 			fields_name(run->in), fields_count(run->in));
 }
 
@@ -128,8 +129,7 @@ static void check_ends(struct run *run, const struct scene *c, const struct worn
 		endless += s->lost->particle[i].endless != 0;
 	if (endless == 0)
 		return;
-	warn("%s: realisation %ld, step %ld: %zu of %zu particles go round the periodic "
-	     "grid and have no end: their shape is nan",
+	warn("%s: realisation %ld, step %ld: %zu of %zu particles connect to themselves across the periodic grid: their shape is nan",
 		fields_name(run->in), c->now.r->realisation, s->number, endless,
 		s->lost->count);
 	run->status = EXIT_NOCONV;

@@ -1,6 +1,7 @@
 #include "outputs.h"
 #include "cli/msg.h"
 #include "io/tables.h"
+#include "num/grid.h"
 #include "num/student.h"
 #include "stress/stress_kernel.h"
 #include "surface/surface.h"
@@ -24,14 +25,15 @@ struct opt worn_rows[] = {
 	{ 0, "counter-surface", OPT_TEXT, UNIT_NONE, &counter_path, 0, 0, "FILE",
 		"write the worn counterface of every step", NULL, 1 },
 	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
-		"write a table with a row per step", NULL, 1 },
+		"write a table with one row per step", NULL, 1 },
 	{ 0, "stress", OPT_TEXT, UNIT_NONE, &stress_path, 0, 0, "FILE",
 		"write the stress below every contact", NULL, 1 },
 	{ 0, "fields", OPT_WORDS, UNIT_NONE, &stress_wanted, 0, 0, "NAME,...",
-		"what to write of von_mises, hydrostatic, principal, tensor",
+		"fields of --stress: von_mises, hydrostatic, principal, tensor",
 		stress_words, 1 },
 	{ 0, "stress-layers", OPT_INT, UNIT_COUNT, &stress_layers, 0, 1e6, "N",
-		"layers of --stress; 0: as deep as was searched for failure", NULL, 1 },
+		"number of layers of --stress; 0: down to the depth searched for failure",
+		NULL, 1 },
 	OPT_END,
 };
 
@@ -112,7 +114,7 @@ static char *cmd_of(const char *upstream, const char *option)
 
 struct worn *worn_open(const char *upstream, int richardson)
 {
-	struct worn *w = xcalloc(1, sizeof(*w));
+	struct worn *w = xcalloc(1, sizeof *w);
 	char *cmd = cmd_of(upstream, NULL), *summary = cmd_of(upstream, "--summary");
 
 	w->particles = table_create(NULL, cmd, particle_units, particle_columns);
@@ -177,7 +179,7 @@ static void put_particles(struct table_out *t, long realisation, long step, int 
 			p->azimuth, p->dip, p->low[0], p->high[0], p->low[1], p->high[1],
 			p->low[2], p->high[2] };
 
-		table_put_row(t, row, sizeof(row) / sizeof(*row));
+		table_put_row(t, row, sizeof(row) / sizeof *row);
 	}
 	table_flush(t);
 }
@@ -206,10 +208,10 @@ static void take_coefficient(struct coefficients *c, double k, double out[3])
 double worn_roughness(const struct worn_surface *c)
 {
 	const struct record *r = c->r;
-	size_t n = (size_t)r->nx * r->ny;
-	double *z = xcalloc(n, sizeof(*z)), sq;
+	size_t n = grid_size(r->nx, r->ny);
+	double *z = xcalloc(n, sizeof *z), sq;
 
-	memcpy(z, c->h, n * sizeof(*z));
+	memcpy(z, c->h, n * sizeof *z);
 	surface_crown(r->nx, r->ny, r->dx, r->dy, -c->crown, z);
 	sq = surface_sq(r->nx, r->ny, z);
 	free(z);
@@ -242,7 +244,7 @@ static void put_summary(struct table_out *t, struct coefficients *coefficients,
 		worn_roughness(c) / c->sq, fmax(first->wear.stress, second->wear.stress),
 		first->volume, second->volume, coefficient, k[0], k[1], k[2], 0, 0, 0, 0,
 		0, 0, 0 };
-	enum { GRID = 7, PLAIN = sizeof(row) / sizeof(*row) - GRID };
+	enum { GRID = 7, PLAIN = sizeof(row) / sizeof *row - GRID };
 
 	if (s->grid) {
 		const struct grid_error *g = s->grid;
@@ -273,7 +275,7 @@ static void bare_record(
 static void put_surface(
 	struct held_fields *f, const struct worn_surface *c, const struct worn_step *s)
 {
-	size_t bytes = (size_t)c->r->nx * c->r->ny * sizeof(*c->h);
+	size_t bytes = grid_size(c->r->nx, c->r->ny) * sizeof *c->h;
 	struct record out = { 0 };
 
 	bare_record(&out, c->r, "--surface", s->number);
@@ -313,7 +315,7 @@ static int derive(const double t[STRESS_COMPONENTS], double *out)
 		n += 3;
 	}
 	if (stress_wanted & TENSOR) {
-		memcpy(out + n, t, STRESS_COMPONENTS * sizeof(*t));
+		memcpy(out + n, t, STRESS_COMPONENTS * sizeof *t);
 		n += STRESS_COMPONENTS;
 	}
 	return n;
@@ -326,19 +328,19 @@ static void put_stress(
 		"principal_2", "principal_3", "xx", "yy", "zz", "xy", "xz", "yz" };
 	static const int part[] = { MISES, HYDROSTATIC, PRINCIPAL, PRINCIPAL, PRINCIPAL,
 		TENSOR, TENSOR, TENSOR, TENSOR, TENSOR, TENSOR };
-	size_t n = (size_t)r->nx * r->ny;
+	size_t n = grid_size(r->nx, r->ny);
 	/* As deep as was searched. */
 	long count = stress_layers ? stress_layers
 				   : 1 + (long)ceil(fmax(0, s->lost->wear.depth / s->dz -
 								    s->offset));
-	double *tensor = xcalloc(n, STRESS_COMPONENTS * sizeof(*tensor));
+	double *tensor = xcalloc(n, STRESS_COMPONENTS * sizeof *tensor);
 	struct record out = { 0 };
 
 	bare_record(&out, r, "--stress", s->number);
 	out.nz = (int)count;
 	out.dz = s->dz;
 	record_set(&out, "first_depth", "%.17g", s->offset * out.dz);
-	for (size_t k = 0; k < sizeof(part) / sizeof(*part); k++)
+	for (size_t k = 0; k < sizeof(part) / sizeof *part; k++)
 		if (stress_wanted & part[k])
 			record_add(&out, names[k], "Pa");
 	for (long m = 0; m < count; m++) {
@@ -348,10 +350,10 @@ static void put_stress(
 			double t[STRESS_COMPONENTS], v[RECORD_FIELDS_MAX];
 
 			for (int c = 0; c < STRESS_COMPONENTS; c++)
-				t[c] = tensor[c * n + i];
+				t[c] = tensor[(size_t)c * n + i];
 			derive(t, v);
 			for (int k = 0; k < out.nfields; k++)
-				out.data[k][m * n + i] = v[k];
+				out.data[k][(size_t)m * n + i] = v[k];
 		}
 	}
 	held_put(f, &out);

@@ -26,37 +26,36 @@ static int shear, layer, removal, criterion, full_sum, wears, law, richardson;
 struct opt wearing_rows[] = {
 	OPT_HEADING("Wear"),
 	{ 'Y', "yield", OPT_LIST, UNIT_PRESSURE, &yield, 1e-30, 1e30, "Y1[,Y2]",
-		"yield stress: material under more equivalent stress is lost; of both bodies",
-		NULL, 0 },
+		"yield stress of the worn body and of the counterface", NULL, 0 },
 	{ 0, "criterion", OPT_WORD, UNIT_NONE, &criterion, 0, 0, "von-mises|tresca",
 		"equivalent stress", criteria, 0 },
 	{ 'u', "friction", OPT_NUM, UNIT_NONE, &friction, 0, 1e6, "MU",
 		"friction coefficient: shear over pressure", NULL, 0 },
 	{ 0, "depth-step", OPT_NUM, UNIT_LENGTH, &depth_step, 1e-30, 1e30, "H",
-		"material falls in cells of this height; by default the depth is interpolated",
+		"remove whole cells of this height; by default the depth is continuous",
 		NULL, 0 },
 	{ 0, "shear", OPT_WORD, UNIT_NONE, &shear, 0, 0, "x|y",
-		"direction in which friction drags the worn body", axes, 0 },
+		"direction of the friction force on the worn body", axes, 0 },
 	{ 0, "layer", OPT_WORD, UNIT_NONE, &layer, 0, 0, "top|mid",
-		"where in a cell of --depth-step the stress is taken", layers, 0 },
+		"where the stress of a cell of --depth-step is evaluated", layers, 0 },
 	{ 0, "removal", OPT_WORD, UNIT_NONE, &removal, 0, 0, "column|potential",
-		"what is lost: what fails from the surface down, or all that fails",
+		"removal rule: failed material down from the surface, or all that fails",
 		rules, 0 },
 	{ 0, "full-sum", OPT_FLAG, UNIT_NONE, &full_sum, 0, 0, NULL,
-		"sum the stress over all cells at every depth, slowly: to compare with",
+		"sum the stress over all cells at every depth: slow, for verification",
 		NULL, 0 },
 	{ 0, "richardson", OPT_FLAG, UNIT_NONE, &richardson, 0, 0, NULL,
-		"repeat each step on grids twice and four times as coarse, and extrapolate",
-		NULL, 0 },
+		"repeat each step on two coarser grids and extrapolate the volume", NULL,
+		0 },
 	OPT_HEADING("Sliding pair"),
 	OPT_TABLE(counterface_rows),
 	{ 0, "wears", OPT_WORD, UNIT_NONE, &wears, 0, 0, "first|second|both",
-		"the body that is worn: that of the input, the counterface, or both",
-		bodies, 0 },
+		"body that wears: that of the input, the counterface, or both", bodies,
+		0 },
 	{ 0, "law", OPT_WORD, UNIT_NONE, &law, 0, 0, "stress|archard",
 		"wear by stress over yield, or by pressure and distance", laws, 0 },
 	{ 0, "wear-rate", OPT_LIST, UNIT_NONE, &wear_rate, 0, 1e30, "K1[,K2]",
-		"volume over load and distance of --law archard, m2/N", NULL, 0 },
+		"volume per load and distance of --law archard, m2/N", NULL, 0 },
 	OPT_END,
 };
 
@@ -76,26 +75,26 @@ static void check_pair(void)
 	int pair = counterface_check();
 
 	if (wears != FIRST && !pair)
-		die(EXIT_USAGE, "--wears %s: want a --counterface", bodies[wears]);
+		die(EXIT_USAGE, "--wears %s requires --counterface", bodies[wears]);
 	if (law == ARCHARD && !wear_rate.n)
-		die(EXIT_USAGE, "--law archard: want --wear-rate");
+		die(EXIT_USAGE, "--law archard requires --wear-rate");
 	if (law == STRESS && wear_rate.n)
-		die(EXIT_USAGE, "--wear-rate is for --law archard");
+		die(EXIT_USAGE, "--wear-rate requires --law archard");
 	if (wears != FIRST && !(press.poisson.v[press.poisson.n - 1] >= 0))
-		die(EXIT_USAGE, "--poisson: want 0 to 0.5 for a body that is worn");
+		die(EXIT_USAGE, "--poisson: want 0 to 0.5 for a body that wears");
 }
 
 void wearing_check(void)
 {
 	check_pair();
 	if (richardson && (counterface_check() || law == ARCHARD))
-		die(EXIT_USAGE, "--richardson is for the wear of one body by its stress");
+		die(EXIT_USAGE, "--richardson requires wear of one body by stress");
 	if (!yield.n && law == STRESS)
-		die(EXIT_USAGE, "want --yield");
+		die(EXIT_USAGE, "--yield is missing");
 	if (!yield.n)
 		yield = (struct opt_list){ 1, { INFINITY } };
 	if (layer && isnan(depth_step))
-		die(EXIT_USAGE, "--layer is for cells: want --depth-step");
+		die(EXIT_USAGE, "--layer requires --depth-step");
 	if (yield.v[0] < 1e5)
 		warn("--yield %g Pa is weaker than any solid surface: is %gMPa meant?",
 			yield.v[0], yield.v[0]);
@@ -127,7 +126,7 @@ struct wearing {
 
 struct wearing *wearing_open(const struct fields_in *in, long steps)
 {
-	struct wearing *w = xcalloc(1, sizeof(*w));
+	struct wearing *w = xcalloc(1, sizeof *w);
 
 	w->in = in;
 	w->steps = steps;
@@ -191,11 +190,11 @@ void wearing_prepare(struct wearing *w, const struct record *r)
 		return;
 	if (richardson && (r->nx % 4 || r->ny % 4 || r->nx < 32 || r->ny < 32))
 		die(EXIT_USAGE,
-			"--richardson: %dx%d cells: want multiples of 4, 32 or more",
+			"--richardson: %dx%d cells: want multiples of 4, at least 32",
 			r->nx, r->ny);
 	if ((solves(w, w->steps) || richardson) && isnan(pressing.estar))
 		die(EXIT_USAGE,
-			"--steps %ld solves contacts: want --young or --estar, which %s does not tell",
+			"--steps %ld solves contacts: specify --young or --estar, which %s does not state",
 			w->steps, fields_name(w->in));
 	w->pressing = pressing;
 	debris_free(w->debris);
@@ -207,8 +206,8 @@ void wearing_prepare(struct wearing *w, const struct record *r)
 		.offset = layer ? 0.5 : 0 };
 	w->par.stress = (struct stress_par){ .nx = r->nx,
 		.ny = r->ny,
-		.ax = r->dx,
-		.ay = r->dy,
+		.dx = r->dx,
+		.dy = r->dy,
 		.nu = press.poisson.v[0],
 		.mu = friction,
 		.axis = shear,
@@ -253,8 +252,7 @@ static double rms_slope(const struct record *r, const double *h)
 void wearing_warn(const struct wearing *w)
 {
 	if (w->steepest > 0.2)
-		warn("%s: the pair reaches an rms slope of %.2g (step %ld), above 0.2, where "
-		     "half-spaces no longer describe it: give a --hardness",
+		warn("%s: the pair reaches an rms slope of %.2g (step %ld), above 0.2, the limit of half-space theory: specify --hardness",
 			fields_name(w->in), w->steepest, w->steep_step);
 }
 
@@ -326,9 +324,9 @@ static void refuse(const struct wearing *w, enum debris_status status, long step
 	die(EXIT_RUN, "%s: record %ld, step %ld: %s", fields_name(w->in),
 		fields_count(w->in), step,
 		status == DEBRIS_PULL      ? "pressure below zero"
-		: status == DEBRIS_NUMBERS ? "pressure beyond the range of numbers"
+		: status == DEBRIS_NUMBERS ? "pressure beyond double precision"
 		: status == DEBRIS_DEEP
-			? "material fails deeper than ten times the grid is long"
+			? "material fails deeper than ten times the length of the grid"
 			: "out of memory");
 }
 
@@ -455,7 +453,7 @@ struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c,
 		.hardness = hardness_of(w),
 		.grid = richardson ? &w->grid : NULL,
 		.stress = debris_stress(w->debris),
-		.dz = w->par.cell > 0 ? w->par.cell : w->par.stress.ax,
+		.dz = w->par.cell > 0 ? w->par.cell : w->par.stress.dx,
 		.offset = w->par.offset };
 }
 

@@ -32,52 +32,52 @@ struct opt lessons_rows[] = {
 	{ 0, "span", OPT_NUM, UNIT_ANGLE, &lessons.span, 1e-3, 1e6, "X",
 		"range of the x axis", NULL, 0 },
 	{ 0, "section", OPT_WORD, UNIT_NONE, &lessons.section, 0, 0,
-		"length|period|range", "what of the sine the range pi/2 to 3pi/2 is",
+		"length|period|range", "interpretation of the range pi/2 to 3pi/2",
 		sections, 0 },
 	{ 0, "section-range", OPT_LIST, UNIT_ANGLE, &lessons.length, 0, 1e6, "A:B",
-		"that range, pi/2 to 3pi/2 if not given", NULL, 0 },
+		"this range", NULL, 0 },
 	{ 0, "endless", OPT_FLAG, UNIT_NONE, &lessons.endless, 0, 0, NULL,
-		"the sine goes on outside its section", NULL, 0 },
+		"continue the sine outside its section", NULL, 0 },
 	{ 0, "amplitude", OPT_LIST, UNIT_NONE, &lessons.amplitude, 0, 1e6, "A:B",
-		"amplitudes, uniform", NULL, 0 },
+		"range of uniform amplitudes", NULL, 0 },
 	{ 0, "gain", OPT_LIST, UNIT_NONE, &lessons.gain, 0, 1e6, "A:B",
-		"of the second channel, uniform", NULL, 0 },
+		"range of the gain of the second channel, uniform", NULL, 0 },
 	{ 0, "delay", OPT_NUM, UNIT_ANGLE, &lessons.unit, 0, 1e6, "X",
 		"shift of a delay of 1", NULL, 0 },
 	{ 0, "labels", OPT_WORD, UNIT_NONE, &lessons.order, 0, 0, "drawn|arrival|sorted",
-		"order of the delays", orders, 0 },
+		"order of the labels", orders, 0 },
 	{ 0, "scaled", OPT_FLAG, UNIT_NONE, &lessons.scaled, 0, 0, NULL,
 		"divide both channels by the peak of the first", NULL, 0 },
 	{ 0, "deviation", OPT_NUM, UNIT_NONE, &lessons.noise, 0, 1e6, "SD",
-		"of white noise on the samples (score: of its second row, 0.316 if not "
-		"given)",
+		"standard deviation of white noise (score: of the second row, 0.316)",
 		NULL, 0 },
 	{ 0, "snr", OPT_LIST, UNIT_DECIBEL, &lessons.snr, -20, 200, "A:B",
-		"pulses: peak of amplitude 1 over the noise", NULL, 0 },
+		"pulses: signal-to-noise ratio for amplitude 1", NULL, 0 },
 	{ 0, "separation", OPT_NUM, UNIT_NONE, &lessons.separation, 0, 0.5, "D",
-		"pulses: least distance of arrivals, pulse durations", NULL, 0 },
+		"pulses: smallest distance of arrivals, in pulse durations", NULL, 0 },
 	{ 0, "reach", OPT_LIST, UNIT_NONE, &lessons.reach, CNN_REACH_MIN, CNN_REACH_MAX,
-		"A:B", "pulses: largest delay, pulse durations", NULL, 0 },
+		"A:B", "pulses: range of the largest delay, in pulse durations", NULL,
+		0 },
 	{ 0, "pulse", OPT_WORD, UNIT_NONE, &lessons.shape, 0, 0, "sine|gauss|lorentz",
-		"pulses: their shape", shapes, 0 },
+		"pulses: pulse shape", shapes, 0 },
 	OPT_END,
 };
 
 struct delaydata_par lessons_sines(void)
 {
-	return (struct delaydata_par){ .points = lessons.points,
-		.sources = lessons.sources,
+	return (struct delaydata_par){ .points = (int)lessons.points,
+		.sources = (int)lessons.sources,
 		.span = lessons.span,
-		.section = lessons.section,
+		.section = (enum delaydata_section)lessons.section,
 		.length = { lessons.length.v[0], lessons.length.v[1] },
 		.endless = lessons.endless,
 		.amplitude = { lessons.amplitude.v[0], lessons.amplitude.v[1] },
 		.gain = { lessons.gain.v[0], lessons.gain.v[1] },
 		.unit = lessons.unit,
-		.order = lessons.order,
+		.order = (enum delaydata_order)lessons.order,
 		.scaled = lessons.scaled,
 		.noise = isnan(lessons.noise) ? 0 : lessons.noise,
-		.seed = lessons.seed };
+		.seed = (uint64_t)lessons.seed };
 }
 
 struct cnndata_par lessons_pulses(void)
@@ -85,7 +85,7 @@ struct cnndata_par lessons_pulses(void)
 	struct cnndata_par par = cnndata_default();
 
 	if (opt_given("sources"))
-		par.sources[0] = par.sources[1] = lessons.sources;
+		par.sources[0] = par.sources[1] = (int)lessons.sources;
 	if (opt_given("gain"))
 		memcpy(par.gain, lessons.gain.v, sizeof par.gain);
 	if (opt_given("amplitude")) {
@@ -95,8 +95,8 @@ struct cnndata_par lessons_pulses(void)
 	memcpy(par.snr, lessons.snr.v, sizeof par.snr);
 	memcpy(par.reach, lessons.reach.v, sizeof par.reach);
 	par.spacing = lessons.separation;
-	par.shape = lessons.shape;
-	par.seed = lessons.seed;
+	par.shape = (enum pulse_shape)lessons.shape;
+	par.seed = (uint64_t)lessons.seed;
 	return par;
 }
 
@@ -119,7 +119,8 @@ void lessons_check(void)
 
 struct delayloss_par lessons_loss(void)
 {
-	return (struct delayloss_par){ lessons.lambda, lessons.penalty };
+	return (struct delayloss_par){ lessons.lambda,
+		(enum delayloss_penalty)lessons.penalty };
 }
 
 struct lesson lessons_make(void)
@@ -128,10 +129,11 @@ struct lesson lessons_make(void)
 		delayloss_unordered };
 	struct delaydata_par sines = lessons_sines();
 	struct cnndata_par pulses = lessons_pulses();
+	uint32_t first = (uint32_t)lessons.first;
 
 	return lessons.model == PULSES
-		       ? lesson_of_pulses(&pulses, lessons.first)
-		       : lesson_of_sines(&sines, loss_of[lessons.loss], lessons.first);
+		       ? lesson_of_pulses(&pulses, first)
+		       : lesson_of_sines(&sines, loss_of[lessons.loss], first);
 }
 
 void lessons_keep(struct lesson *l)
@@ -139,7 +141,7 @@ void lessons_keep(struct lesson *l)
 	if ((double)lessons.count * l->inputs > 1 << 28)
 		die(EXIT_USAGE, "--count %ld of %d numbers each: more than 2^28",
 			lessons.count, l->inputs);
-	if (!lesson_keep(l, lessons.count))
+	if (lesson_keep(l, lessons.count))
 		die(EXIT_RUN, "out of memory");
 }
 

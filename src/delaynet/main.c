@@ -27,25 +27,24 @@ static const char *network_file, *truth_file;
 
 static const struct opt opts[] = {
 	OPT_HEADING("Task"),
-	{ 0, "task", OPT_WORD, UNIT_NONE, &task, 0, 0, "train|score|apply|data",
-		"what to do", tasks, 0 },
+	{ 0, "task", OPT_WORD, UNIT_NONE, &task, 0, 0, "train|score|apply|data", "task",
+		tasks, 0 },
 	{ 0, "model", OPT_WORD, UNIT_NONE, &lessons.model, 0, 0, "sines|pulses",
 		"samples: the sines of the thesis or the pulses of two sensors", models,
 		0 },
 	{ 0, "network", OPT_TEXT, UNIT_NONE, &network_file, 0, 0, "FILE",
 		"network to apply", NULL, 0 },
 	{ 0, "truth", OPT_TEXT, UNIT_NONE, &truth_file, 0, 0, "FILE",
-		"with --task data: write the delays there", NULL, 1 },
+		"with --task data: write the true delays to FILE", NULL, 1 },
 	OPT_TABLE(learning_rows),
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &lessons.seed, 0, 9e15, "N",
-		"of the data and weights", NULL, 0 },
+		"seed of samples and weights", NULL, 0 },
 	{ 0, "repetition", OPT_INT, UNIT_COUNT, &learning.repetition, 0, 1e9, "K",
-		"which initial weights and order of the samples", NULL, 0 },
+		"selects the initial weights and the order of the samples", NULL, 0 },
 	{ 'f', "first", OPT_INT, UNIT_COUNT, &lessons.first, 0, 4e9, "K",
-		"first sample of the set; score: 1000, or 4e9 of pulses, if not given",
-		NULL, 0 },
+		"number of the first sample; score: 1000, or 4e9 for pulses", NULL, 0 },
 	{ 'c', "count", OPT_INT, UNIT_COUNT, &lessons.count, 1, 1e7, "N",
-		"samples; score: 300 if not given", NULL, 0 },
+		"number of samples; score: 300", NULL, 0 },
 	{ 0, "fresh", OPT_FLAG, UNIT_NONE, &learning.fresh, 0, 0, NULL,
 		"new samples in every epoch", NULL, 0 },
 	OPT_TABLE(lessons_rows),
@@ -54,7 +53,7 @@ static const struct opt opts[] = {
 };
 
 static const struct prog prog = { "delaynet",
-	"Train, score and apply networks that tell the delays of overlapping pulses.",
+	"Train, score and apply networks that estimate delays of overlapping pulses.",
 	"[file]", "nothing; network; signal: two channels", "network; table; signal",
 	opts };
 
@@ -66,9 +65,9 @@ static void check_options(void)
 	if (lessons.model == PULSES && lessons.sources > CNN_SOURCES)
 		die(EXIT_USAGE, "--sources: want at most %d pulses", CNN_SOURCES);
 	if (task == APPLY && !network_file)
-		die(EXIT_USAGE, "--task apply wants --network FILE");
+		die(EXIT_USAGE, "--task apply requires --network FILE");
 	if (task != APPLY && network_file)
-		die(EXIT_USAGE, "--network is for --task apply");
+		die(EXIT_USAGE, "--network requires --task apply");
 	if (task == APPLY && lessons.model == PULSES)
 		arrivals_check();
 	else if (opt_any_given(arrivals_rows))
@@ -80,8 +79,9 @@ static void check_options(void)
 		lessons.count = 300;
 	if (learning.batch == 0 || learning.batch > lessons.count)
 		learning.batch = lessons.count;
-	if (lessons.first +
-			(double)lessons.count * (learning.fresh ? learning.epochs : 1) >
+	if ((double)lessons.first +
+			(double)lessons.count *
+				(double)(learning.fresh ? learning.epochs : 1) >
 		UINT32_MAX)
 		die(EXIT_USAGE, "--count: the samples run beyond number 2^32");
 }
@@ -108,9 +108,9 @@ static struct table_out *create_delays(const char *path, const char *cmd, int n)
 
 static void put_delays(struct table_out *t, long i, const network_real *delay, int n)
 {
-	table_put(t, i);
+	table_put(t, (double)i);
 	for (int k = 0; k < n; k++)
-		table_put(t, delay[k]);
+		table_put(t, (double)delay[k]);
 	table_end_row(t);
 }
 
@@ -123,16 +123,16 @@ static void apply_network(const char *path)
 	int n = network_input(net).width, channels = signal_format(in)->channels;
 	char *cmd = opt_cmd(signal_format(in)->cmd, NULL);
 	struct table_out *t = create_delays(NULL, cmd, network_outputs(net));
-	double *frame = xcalloc(n * 2, sizeof *frame);
-	network_real *x = xcalloc(n * 2, sizeof *x);
+	double *frame = xcalloc((size_t)n * 2, sizeof *frame);
+	network_real *x = xcalloc((size_t)n * 2, sizeof *x);
 	size_t got;
 	long k = 0;
 
 	if (channels != 2)
 		die(EXIT_RUN, "%s: want 2 channels, got %d", signal_name(in), channels);
-	for (; (got = signal_read(in, frame, n)) == (size_t)n; k++) {
+	for (; (got = signal_read(in, frame, (size_t)n)) == (size_t)n; k++) {
 		for (int i = 0; i < 2 * n; i++) {
-			x[i % 2 * n + i / 2] = frame[i];
+			x[i % 2 * n + i / 2] = (network_real)frame[i];
 			if (!isfinite(x[i % 2 * n + i / 2]))
 				die(EXIT_RUN, "%s: frame %ld: want finite samples",
 					signal_name(in), k * n + i / 2);
@@ -142,7 +142,7 @@ static void apply_network(const char *path)
 	if (got > 0)
 		die(EXIT_RUN, "%s: section %ld: want %d frames, got %zu", signal_name(in),
 			k, n, got);
-	stats_add("sections", k);
+	stats_add("sections", (double)k);
 	table_done(t);
 	signal_close(in);
 	free(frame);
@@ -160,20 +160,21 @@ static void write_data(void)
 	};
 	struct signal_out *out = signal_create(NULL, &format);
 	struct table_out *t =
-		truth_file ? create_delays(truth_file, cmd, lessons.sources) : NULL;
+		truth_file ? create_delays(truth_file, cmd, (int)lessons.sources) : NULL;
 	struct delaydata_par par = lessons_sines();
-	network_real *x = xcalloc(2 * lessons.points, sizeof *x), delay[DELAYS_MAX];
-	double *frame = xcalloc(2 * lessons.points, sizeof *frame);
+	size_t points = (size_t)lessons.points;
+	network_real *x = xcalloc(2 * points, sizeof *x), delay[DELAYS_MAX];
+	double *frame = xcalloc(2 * points, sizeof *frame);
 
 	for (long i = 0; i < lessons.count; i++) {
-		delaydata_sample(&par, lessons.first + i, x, delay);
-		for (long k = 0; k < 2 * lessons.points; k++)
-			frame[k] = x[k % 2 * lessons.points + k / 2];
-		signal_write(out, frame, lessons.points);
+		delaydata_sample(&par, (uint32_t)(lessons.first + i), x, delay);
+		for (size_t k = 0; k < 2 * points; k++)
+			frame[k] = (double)x[k % 2 * points + k / 2];
+		signal_write(out, frame, points);
 		if (t)
-			put_delays(t, lessons.first + i, delay, lessons.sources);
+			put_delays(t, lessons.first + i, delay, par.sources);
 	}
-	stats_add("samples", lessons.count);
+	stats_add("samples", (double)lessons.count);
 	signal_done(out);
 	if (t)
 		table_done(t);
@@ -193,7 +194,7 @@ int main(int argc, char **argv)
 #endif
 	check_options();
 	if (i < argc && (task == TRAIN || task == DATA))
-		die(EXIT_USAGE, "--task %s reads nothing, got %s", tasks[task], argv[i]);
+		die(EXIT_USAGE, "--task %s has no input: omit %s", tasks[task], argv[i]);
 	switch (task) {
 	case TRAIN:
 		learning_train();

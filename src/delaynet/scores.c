@@ -8,9 +8,9 @@
 
 static void put_sines(struct table_out *t, double sd, const struct delayscore *s)
 {
-	struct delaylevels level = delaylevels(lessons.sources);
-	const double row[] = { sd, s->samples, s->ordered, s->ordered_se, s->unordered,
-		s->unordered_se, s->sorted, s->sums, level.constant,
+	struct delaylevels level = delaylevels((int)lessons.sources);
+	const double row[] = { sd, (double)s->samples, s->ordered, s->ordered_se,
+		s->unordered, s->unordered_se, s->sorted, s->sums, level.constant,
 		level.constant_sorted, level.sorted_ordered, level.draw };
 
 	table_put_row(t, row, sizeof row / sizeof *row);
@@ -27,15 +27,15 @@ static void score_sines(struct table_out *t, struct network *net, double sd)
 	l = lessons_make();
 	lessons_keep(&l);
 	for (long i = 0; i < lessons.count; i += FORWARD) {
-		long n = lessons.count - i < FORWARD ? lessons.count - i : FORWARD;
+		int n = lessons.count - i < FORWARD ? (int)(lessons.count - i) : FORWARD;
 
-		delayscore_add(&score, &loss_par, n, lessons.sources,
+		delayscore_add(&score, &loss_par, n, (int)lessons.sources,
 			network_forward(net, l.x + i * l.inputs, n),
 			l.target + i * l.targets);
 	}
 	delayscore_finish(&score);
 	put_sines(t, sd, &score);
-	stats_add("samples", lessons.count);
+	stats_add("samples", (double)lessons.count);
 	lesson_drop(&l);
 }
 
@@ -54,9 +54,9 @@ static void score_pulses(struct table_out *t, struct network *net, int n)
 	struct cnndata_score score;
 
 	par.sources[0] = par.sources[1] = n;
-	score = cnndata_score(net, &par, lessons.first, lessons.count);
+	score = cnndata_score(net, &par, (uint32_t)lessons.first, lessons.count);
 	put_pulses(t, n, &score);
-	stats_add("samples", lessons.count);
+	stats_add("samples", (double)lessons.count);
 }
 
 void score_network(const char *path)

@@ -5,7 +5,6 @@
 #include "roughness_options.h"
 #include "surface/filter.h"
 #include "surface/surface.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,22 +25,22 @@ struct opt measured_rows[] = {
 	OPT_HEADING("Measured surfaces"),
 	OPT_TABLE(raw_rows),
 	{ 0, "crop", OPT_LIST, UNIT_COUNT, &crop, 0, POINTS_MAX, "X:Y:NX:NY",
-		"cut NX by NY samples of file from X, Y on", NULL, 0 },
+		"cut out NX by NY samples, the first at column X and row Y", NULL, 0 },
 	{ 0, "fill", OPT_FLAG, UNIT_NONE, &fill, 0, 0, NULL,
-		"fill missing samples of file by Laplace's equation", NULL, 0 },
+		"fill missing samples with a solution of Laplace's equation", NULL, 0 },
 	{ 0, "level", OPT_FLAG, UNIT_NONE, &level, 0, 0, NULL,
-		"subtract the least-squares plane of file", NULL, 0 },
+		"subtract the least-squares plane", NULL, 0 },
 	{ 0, "s-filter", OPT_NUM, UNIT_LENGTH, &s_filter, 1e-15, 1e6, "L",
-		"take off waves shorter than L by a Gaussian filter", NULL, 0 },
+		"S-filter: attenuate waves shorter than L (Gaussian)", NULL, 0 },
 	{ 0, "form", OPT_WORD, UNIT_NONE, &form, 0, 0, "none|plane|paraboloid|poly2|...",
 		"then subtract this least-squares form; up to poly6", forms, 0 },
 	{ 0, "l-filter", OPT_NUM, UNIT_LENGTH, &l_filter, 1e-15, 1e6, "L",
-		"then take off waves longer than L", NULL, 0 },
+		"L-filter: then attenuate waves longer than L", NULL, 0 },
 	{ 0, "ends", OPT_WORD, UNIT_NONE, &ends, 0, 0, "0|1|2|crop|periodic",
-		"filters at the rim: order of the local fit, half of L cut off, or around",
+		"edge treatment of the filters: order of the local fit, cropped, or periodic",
 		ends_words, 0 },
 	{ 0, "resample", OPT_LIST, UNIT_COUNT, &resample, 1, POINTS_MAX, "N[xM]",
-		"bring file to this many points", NULL, 0 },
+		"resample the same area to this many points", NULL, 0 },
 	OPT_END,
 };
 
@@ -72,10 +71,10 @@ void measured_close(struct measured *m)
 	free(m);
 }
 
-static void need_memory(int done)
+static void need_memory(enum num_status status)
 {
-	if (!done)
-		die(EXIT_RUN, "out of memory preparing a measured surface");
+	if (status)
+		die(EXIT_RUN, "out of memory for a measured surface");
 }
 
 /* A record with an empty height field and what else r knows of itself. */
@@ -184,7 +183,7 @@ static void crop_ends(const struct fields_in *in, struct record *s)
 
 	if (s->nx - 2 * cx < 1 || s->ny - 2 * cy < 1)
 		die(EXIT_RUN,
-			"%s: record %ld: --ends crop leaves nothing of %d x %d samples",
+			"%s: record %ld: --ends crop removes all of %d x %d samples",
 			fields_name(in), fields_count(in), s->nx, s->ny);
 	new_record(&t, s, s->nx - 2 * cx, s->ny - 2 * cy, s->dx, s->dy);
 	surface_crop(s->nx, s->data[0], cx, cy, t.nx, t.ny, t.data[0]);
@@ -196,14 +195,16 @@ static void crop_ends(const struct fields_in *in, struct record *s)
 /* ISO 25178-2: S-filter, F-operation, L-filter. */
 static void scale_limit(const struct fields_in *in, struct record *s)
 {
+	enum num_status status = NUM_OK;
+
 	filter_heights("s-filter", s_filter, 0, s);
-	if (form > 0 && !surface_form(s->nx, s->ny, s->dx, s->dy, (enum form)(form - 1),
-				s->data[0])) {
-		if (errno != EDOM)
-			need_memory(0);
+	if (form > 0)
+		status = surface_form(
+			s->nx, s->ny, s->dx, s->dy, (enum form)(form - 1), s->data[0]);
+	if (status == NUM_DOMAIN)
 		die(EXIT_RUN, "%s: record %ld: %d x %d samples are too few for --form %s",
 			fields_name(in), fields_count(in), s->nx, s->ny, forms[form]);
-	}
+	need_memory(status);
 	filter_heights("l-filter", l_filter, 1, s);
 	if (ends == ENDS_CROP && (s_filter > 0 || l_filter > 0))
 		crop_ends(in, s);
@@ -228,7 +229,7 @@ static void scale_heights(const struct fields_in *in, struct record *s)
 	double have = roughness_kind() == ROUGH_SA ? surface_sa(s->nx, s->ny, z)
 						   : surface_sq(s->nx, s->ny, z);
 
-	if (!rough_scale(s->nx, s->ny, z, have, want))
+	if (rough_scale(s->nx, s->ny, z, have, want))
 		die(EXIT_RUN, "%s: record %ld: a flat surface cannot be scaled to %g m",
 			fields_name(in), fields_count(in), want);
 }

@@ -30,8 +30,7 @@ struct wear {
 static _Noreturn void apart(const struct partition *p, const char *file)
 {
 	die(EXIT_RUN,
-		"%s: the rows of realisation %ld stand too far apart: sort the table by "
-		"realisation",
+		"%s: the rows of realisation %ld are not contiguous: sort the table by realisation",
 		file, partition_realisation(p));
 }
 
@@ -51,7 +50,7 @@ static void read_row(struct partition *p, const struct wear *w, long row)
 		die(EXIT_RUN, "%s: line %ld: step must be a whole number from 1 to 1e6",
 			w->file, table_line(t));
 	if (!(v >= 0 && v <= 1e3))
-		die(EXIT_RUN, "%s: line %ld: volume must lie within 0 and 1000 m3",
+		die(EXIT_RUN, "%s: line %ld: volume must be between 0 and 1000 m3",
 			w->file, table_line(t));
 	status = partition_fragment(p, w->class, (long)r, (long)k, v, 1,
 		table_number(t, w->diameter) >= pump.critical_size);
@@ -106,7 +105,8 @@ static void check_options(
 	const char *option, const struct physics *told, double pressure, double *distance)
 {
 	if (differ(pressure, told->pressure))
-		die(EXIT_USAGE, "--wear %s: the fragments were pressed with %g Pa",
+		die(EXIT_USAGE,
+			"--wear %s: the nominal pressure of the fragments is %g Pa",
 			option, told->pressure);
 	if (isnan(pump.fragment_area))
 		pump.fragment_area = told->area;
@@ -151,8 +151,10 @@ static void read_wear(
 		pressure = told.pressure;
 	w.realisation = table_find(w.table, "realisation");
 	w.step = table_find(w.table, "step");
-	w.volume = table_need(w.table, "volume");
-	w.diameter = isnan(pump.critical_size) ? -1 : table_need(w.table, "diameter");
+	w.volume = table_need_quantity(w.table, "volume", UNIT_VOLUME);
+	w.diameter = isnan(pump.critical_size)
+			     ? -1
+			     : table_need_quantity(w.table, "diameter", UNIT_LENGTH);
 	w.class =
 		partition_class(p, table_find(w.table, "particle") >= 0, pressure, area);
 	part = table_part(w.table);
@@ -174,12 +176,10 @@ static int is_doubtful(const struct partition *p, int class, const char *file)
 	double mean, n = partition_count(p, class, &mean);
 
 	if (n < 2)
-		warn("%s: a single realisation: the uncertainty of its wear is unknown "
-		     "and left out",
+		warn("%s: a single realisation: the uncertainty of its wear is unknown and not included",
 			file);
 	else if (!(mean > 0))
-		warn("%s: none of %.0f realisations wore: the wear is taken for none at "
-		     "all",
+		warn("%s: none of %.0f realisations wore: its wear is assumed to be zero",
 			file, n);
 	return n < 2 || !(mean > 0);
 }
@@ -206,7 +206,7 @@ int fragments_close(struct partition *p, const struct opt_texts *files)
 	case PARTITION_OK:
 		break;
 	case PARTITION_EMPTY:
-		die(EXIT_RUN, "%s: no fragment in the steps that count",
+		die(EXIT_RUN, "%s: no fragment in the steps from --first-step on",
 			files->v[partition_culprit(p)]);
 	case PARTITION_TWICE:
 		die(EXIT_RUN, "%s: realisation %ld has a step twice",
@@ -214,8 +214,7 @@ int fragments_close(struct partition *p, const struct opt_texts *files)
 	case PARTITION_APART:
 		apart(p, files->v[partition_culprit(p)]);
 	case PARTITION_PRESSURE:
-		die(EXIT_USAGE,
-			"--wear %s: each of several tables needs a pressure of its own",
+		die(EXIT_USAGE, "--wear %s: each of several tables requires a pressure",
 			files->v[partition_culprit(p)]);
 	case PARTITION_AREA:
 		die(EXIT_USAGE, "--wear: the areas add up to more than --area %g m2",

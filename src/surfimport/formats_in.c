@@ -102,7 +102,7 @@ void settle_pixel(
 	const struct content *c, const struct told *told, double *dx, double *dy)
 {
 	if (isnan(*dx) && isnan(told->dx))
-		die(EXIT_RUN, "%s: the spacing of the samples is not told: give --pixel",
+		die(EXIT_RUN, "%s: the file does not state the spacing: specify --pixel",
 			c->name);
 	if (!isnan(*dx) && !isnan(told->dx) &&
 		(differ(told->dx, *dx) || differ(told->dy, *dy)))
@@ -118,7 +118,7 @@ double settle_unit(const struct content *c, const struct told *told, double from
 {
 	if (isnan(from_file) && isnan(told->unit))
 		die(EXIT_RUN,
-			"%s: the unit of the heights is not told: give --height-unit",
+			"%s: the file does not state the unit of the heights: specify --height-unit",
 			c->name);
 	if (!isnan(from_file) && !isnan(told->unit) && differ(told->unit, from_file))
 		die(EXIT_RUN, "%s: heights are in units of %g m, not --height-unit %g m",
@@ -133,8 +133,7 @@ double *new_heights(const struct content *c, double nx, double ny, double dx, do
 		die(EXIT_RUN, "%s: %g x %g samples, want 1 to %d each way", c->name, nx,
 			ny, SIDE_MAX);
 	if (!(dx > 0 && dx < 1e3 && dy > 0 && dy < 1e3))
-		die(EXIT_RUN, "%s: samples %g x %g m apart are no surface", c->name, dx,
-			dy);
+		die(EXIT_RUN, "%s: invalid spacing of %g x %g m", c->name, dx, dy);
 	record_init(r, (int)nx, (int)ny, dx, dy);
 	return record_add(r, "height", "m");
 }
@@ -310,7 +309,7 @@ static double sur_unit(const struct content *c, size_t at)
 		n--;
 	unit = unit_named(c->data + at, n);
 	if (isnan(unit))
-		die(EXIT_RUN, "%s: unit '%.*s' is not one of length", c->name, (int)n,
+		die(EXIT_RUN, "%s: unit '%.*s' is not a unit of length", c->name, (int)n,
 			c->data + at);
 	return unit;
 }
@@ -324,7 +323,7 @@ static void sur_read(const struct content *c, const struct told *told, struct re
 
 	need(c, HEADER, "a .sur header");
 	if (number(c, 12, INT16) != 0)
-		die(EXIT_RUN, "%s: written by a big-endian machine: not read", c->name);
+		die(EXIT_RUN, "%s: big-endian files are not supported", c->name);
 	if (number(c, 18, INT16) != 2 && number(c, 18, INT16) != 1)
 		die(EXIT_RUN,
 			"%s: object of type %g, want a surface (2) or a profile (1)",

@@ -227,7 +227,7 @@ static void profile_read(const struct text *t, const struct told *told, struct r
 
 	if (t->columns < 2 || t->rows < 2)
 		die(EXIT_RUN,
-			"%s: %d columns of %ld rows, want two of places and heights",
+			"%s: %d columns of %ld rows, want two: positions and heights",
 			t->c->name, t->columns, t->rows);
 	x_unit = unit_of(t, 1);
 	unit = settle_unit(t->c, told, unit_of(t, 0));
@@ -237,8 +237,7 @@ static void profile_read(const struct text *t, const struct told *told, struct r
 	for (size_t i = 0; i < n; i++)
 		if (!(fabs(x[i * w] - x[0] - (double)i * dx) <= 0.02 * fabs(dx)))
 			die(EXIT_RUN,
-				"%s: row %zu: place %g, want %g: places must be equally "
-				"far apart",
+				"%s: row %zu: position %g, want %g: positions must be equally spaced",
 				t->c->name, i + 1, x[i * w], x[0] + (double)i * dx);
 	dx = fabs(dx) * x_unit;
 	dy = dx;

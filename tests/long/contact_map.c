@@ -8,9 +8,9 @@ int main(void)
 	static const char path[] = "../shared/data/map/contact_map_256x256.u8";
 	struct particles_par par = { .nx = 256,
 		.ny = 256,
-		.ax = 1,
-		.ay = 1,
-		.az = 1,
+		.dx = 1,
+		.dy = 1,
+		.dz = 1,
 		.corners = 1,
 		.periodic = 1 };
 	static unsigned char map[256 * 256];

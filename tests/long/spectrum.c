@@ -22,9 +22,10 @@ static struct spectrum_par shape(enum spectrum_kind kind)
 static struct spectrum *make(enum spectrum_kind kind)
 {
 	struct spectrum_par par = shape(kind);
-	enum spectrum_status status;
+	struct spectrum *s;
 
-	return spectrum_new(&par, &status);
+	spectrum_make(&par, &s);
+	return s;
 }
 
 /* Mean over the surface of z times z shifted round by (jx, jy). */
@@ -107,13 +108,13 @@ static void check_imposed(void)
 		.target = { 1, 1 },
 		.kurtosis = 3,
 		.seed = 5 };
-	enum rough_status status;
-	struct rough *normal = rough_new(&par, &status), *r;
+	struct rough *normal, *r;
 	double z[N * N], g[N * N], sum = 0, want = 0;
 
+	rough_make(&par, &normal);
 	par.skewness = -1.2;
 	par.kurtosis = 4.3;
-	r = rough_new(&par, &status);
+	rough_make(&par, &r);
 	for (uint32_t k = 0; k < 300; k++) {
 		rough_surface(r, k, z, NULL);
 		rough_surface(normal, k, g, NULL);

@@ -15,8 +15,8 @@ static struct debris_par plain(enum wear_rule rule)
 		.rule = rule,
 		.stress = { .nx = NX,
 			.ny = NY,
-			.ax = 2e-6,
-			.ay = 1e-6,
+			.dx = 2e-6,
+			.dy = 1e-6,
 			.nu = 0.3,
 			.mu = 0.3 } };
 
@@ -26,7 +26,7 @@ static struct debris_par plain(enum wear_rule rule)
 /* Some loaded cells, away from the rim. */
 static void press(double *p, int seed)
 {
-	memset(p, 0, CELLS * sizeof(*p));
+	memset(p, 0, CELLS * sizeof *p);
 	for (int k = 0; k < 25; k++) {
 		int x = 6 + (int)(28 * philox_uniform(seed, 0, RNG_NOISE, 3 * k));
 		int y = 6 + (int)(16 * philox_uniform(seed, 0, RNG_NOISE, 3 * k + 1));
@@ -95,7 +95,7 @@ static void test_symmetry(void)
 	int bad = 0;
 
 	turned.stress.nx = NY, turned.stress.ny = NX;
-	turned.stress.ax = par.stress.ay, turned.stress.ay = par.stress.ax;
+	turned.stress.dx = par.stress.dy, turned.stress.dy = par.stress.dx;
 	turned.stress.axis = 1;
 	press(p, 3);
 	for (int i = 0; i < CELLS; i++)
@@ -138,7 +138,7 @@ static void test_periodic_symmetry(void)
 	par.stress.periodic = 1;
 	turned = par;
 	turned.stress.nx = NY, turned.stress.ny = NX;
-	turned.stress.ax = par.stress.ay, turned.stress.ay = par.stress.ax;
+	turned.stress.dx = par.stress.dy, turned.stress.dy = par.stress.dx;
 	turned.stress.axis = 1;
 	d = debris_new(&par);
 	e = debris_new(&turned);
@@ -210,16 +210,16 @@ static void test_history(void)
  */
 static double hertz_volume(int n, double cell, double offset, enum wear_rule rule)
 {
-	double *p = calloc((size_t)n * n, sizeof(*p)),
-	       *h = calloc((size_t)n * n, sizeof(*h));
+	double *p = calloc((size_t)n * n, sizeof *p),
+	       *h = calloc((size_t)n * n, sizeof *h);
 	struct debris_par par = { .yield = 0.25,
 		.rule = rule,
 		.cell = cell,
 		.offset = offset,
 		.stress = { .nx = n,
 			.ny = n,
-			.ax = 3. / n,
-			.ay = 3. / n,
+			.dx = 3. / n,
+			.dy = 3. / n,
 			.nu = 0.3,
 			.mu = 0.4 } };
 	struct debris *d = debris_new(&par);

@@ -19,10 +19,10 @@ static long peak_kb(void)
 int main(void)
 {
 	struct particles_par par = {
-		.nx = N, .ny = N, .ax = 1e-6, .ay = 1e-6, .az = 1e-6
+		.nx = N, .ny = N, .dx = 1e-6, .dy = 1e-6, .dz = 1e-6
 	};
 	struct particles *ps = particles_new(&par);
-	struct stretch *s = malloc(sizeof(*s) * N * N * LAYERS / EVERY);
+	struct stretch *s = malloc(sizeof *s * N * N * LAYERS / EVERY);
 	const struct particle *p;
 	double want = (double)N * N * LAYERS * 1e-18;
 	size_t n, count = 0;

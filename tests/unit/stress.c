@@ -12,7 +12,7 @@
 static struct stress_par plain(int nx, int ny, double mu)
 {
 	struct stress_par par = {
-		.nx = nx, .ny = ny, .ax = 1, .ay = 1, .nu = 0.3, .mu = mu
+		.nx = nx, .ny = ny, .dx = 1, .dy = 1, .nu = 0.3, .mu = mu
 	};
 
 	return par;
@@ -28,7 +28,7 @@ static size_t whole_grid(const struct stress_par *par, struct stress_span *span)
 /* Hertz pressure p0 = a = 1 on n x n cells of side h, at their centres. */
 static double *hertz(int n, double h)
 {
-	double *p = calloc((size_t)n * n, sizeof(*p));
+	double *p = calloc((size_t)n * n, sizeof *p);
 
 	for (int i = 0; i < n * n; i++) {
 		double x = (i % n + 0.5 - 0.5 * n) * h, y = (i / n + 0.5 - 0.5 * n) * h;
@@ -52,11 +52,11 @@ static double axis_mises(double Z, double nu, double mu)
 static double hertz_error(int n, double mu, double *surface)
 {
 	struct stress_par par = plain(n, n, mu);
-	double *p = hertz(n, 4. / n), *m = malloc((size_t)n * n * sizeof(*m)), error = 0;
-	struct stress_span *span = malloc(n * sizeof(*span));
+	double *p = hertz(n, 4. / n), *m = malloc((size_t)n * n * sizeof *m), error = 0;
+	struct stress_span *span = malloc(n * sizeof *span);
 	struct stress *s;
 
-	par.ax = par.ay = 4. / n;
+	par.dx = par.dy = 4. / n;
 	s = stress_new(&par);
 	stress_load(s, p);
 	for (int k = 0; k <= 30; k++) {
@@ -116,12 +116,12 @@ static double surface_error(int cells, double mu, double within)
 {
 	int n = 2 * cells + 8;
 	struct stress_par par = plain(n, n, mu);
-	double h = 1. / cells, *p = hertz(n, h), *m = malloc((size_t)n * n * sizeof(*m));
-	struct stress_span *span = malloc(n * sizeof(*span));
+	double h = 1. / cells, *p = hertz(n, h), *m = malloc((size_t)n * n * sizeof *m);
+	struct stress_span *span = malloc(n * sizeof *span);
 	struct stress *s;
 	double error = 0;
 
-	par.ax = par.ay = h;
+	par.dx = par.dy = h;
 	s = stress_new(&par);
 	stress_load(s, p);
 	stress_at(s, 0, span, whole_grid(&par, span), m);
@@ -157,11 +157,11 @@ static void test_hertz_peak(void)
 	enum { NODES = 257 };
 	struct stress_par par = plain(NODES, NODES, 0.3);
 	double h = 1. / 64, lead, trail, most = 0, x = 0, z = 0;
-	double *p = hertz(NODES, h), *m = malloc(sizeof(*m) * NODES * NODES);
+	double *p = hertz(NODES, h), *m = malloc(sizeof *m * NODES * NODES);
 	struct stress_span row = { NODES / 2, 0, NODES };
 	struct stress *s;
 
-	par.ax = par.ay = h;
+	par.dx = par.dy = h;
 	s = stress_new(&par);
 	stress_load(s, p);
 	for (int k = 30; k <= 60; k++) {
@@ -196,9 +196,9 @@ static double coarse_error(
 {
 	static const double depth[] = { 0, 1, 7, 9.99, 10, 14, 20, 40 };
 	size_t n = (size_t)par.nx * par.ny;
-	double *p = malloc(3 * n * sizeof(*p)), *a = p + n, *b = a + n, error = 0;
-	double side = fmax(par.ax, par.ay), most = 0;
-	struct stress_span *span = malloc(par.ny * sizeof(*span));
+	double *p = malloc(3 * n * sizeof *p), *a = p + n, *b = a + n, error = 0;
+	double side = fmax(par.dx, par.dy), most = 0;
+	struct stress_span *span = malloc(par.ny * sizeof *span);
 	struct stress *s, *full;
 
 	par.criterion = criterion;
@@ -216,7 +216,7 @@ static double coarse_error(
 	}
 	stress_load(s, p);
 	stress_load(full, p);
-	for (size_t k = 0; k < sizeof(depth) / sizeof(*depth); k++) {
+	for (size_t k = 0; k < sizeof(depth) / sizeof *depth; k++) {
 		size_t rows = whole_grid(&par, span);
 
 		stress_at(s, depth[k] * side, span, rows, a);
@@ -242,8 +242,8 @@ static void test_coarse(void)
 
 		par.axis = k >> 1 & 1;
 		par.periodic = k >> 2 & 1;
-		par.ax = 1e-6;
-		par.ay = k & 1 ? 1e-6 : 1.7e-6;
+		par.dx = 1e-6;
+		par.dy = k & 1 ? 1e-6 : 1.7e-6;
 		error = coarse_error(par, share, NULL);
 		ok(error < 1e-4,
 			"%s, %s, shear along %c: coarse sums within %.1e of p_max",
@@ -256,7 +256,7 @@ static void test_coarse(void)
 
 		ok(error < 1e-4, "the same by Tresca's criterion: within %.1e", error);
 		par = plain(80, 40, 0.2);
-		par.ay = 30;
+		par.dy = 30;
 		error = coarse_error(par, 1, NULL);
 		ok(error < 1e-13, "elongated cells are summed in full (%.1e)", error);
 	}
@@ -298,7 +298,7 @@ static void test_criteria(void)
  * strips, and its load from afar. */
 static void test_element(void)
 {
-	struct influence_par par = { .ax = 1, .ay = 1, .nu = 0.3, .mu = 0.4 };
+	struct influence_par par = { .dx = 1, .dy = 1, .nu = 0.3, .mu = 0.4 };
 	double error = 0, far = 0;
 
 	for (int k = 0; k < 60; k++) {
@@ -340,7 +340,7 @@ static void test_reach(double mu)
 	struct stress_par par = plain(SIDE, SIDE, mu);
 	struct stress *s = stress_new(&par);
 	double p[SIDE * SIDE] = { 0 }, m[SIDE * SIDE];
-	struct stress_span *span = malloc(stress_spans_max(s) * sizeof(*span)), all[SIDE];
+	struct stress_span *span = malloc(stress_spans_max(s) * sizeof *span), all[SIDE];
 	int missed = 0;
 	double nodes = 0, kept = 0, failed = 0;
 
@@ -406,8 +406,7 @@ static void test_periodic_free(double mu, int axis)
 	enum { SIDE = 128, MID = SIDE / 2 };
 	struct stress_par par = plain(SIDE, SIDE, mu);
 	size_t n = SIDE * SIDE;
-	double *p = calloc(n, sizeof(*p)), *a = malloc(12 * n * sizeof(*a)),
-	       *b = a + 6 * n;
+	double *p = calloc(n, sizeof *p), *a = malloc(12 * n * sizeof *a), *b = a + 6 * n;
 	double error = 0, most = 0;
 	struct stress *s;
 

@@ -28,7 +28,7 @@ static void check_sine(void)
 	for (int iy = 0; iy < NY; iy++)
 		for (int ix = 0; ix < NX; ix++)
 			z[iy * NX + ix] = 5e-3 + a * sin(q * (ix + 0.5));
-	ok(surface_measure(NX, NY, d, d, z, &p), "a sine is measured");
+	ok(surface_measure(NX, NY, d, d, z, &p) == NUM_OK, "a sine is measured");
 	near(p.sq / a, sqrt(0.5), 1e-10, "sine: Sq = A / sqrt 2");
 	near(p.ssk, 0, 1e-9, "sine: Ssk = 0");
 	near(p.sku, 1.5, 1e-9, "sine: Sku = 3 / 2");
@@ -106,7 +106,8 @@ static void check_fill(void)
 			z[iy * NX + ix] = NAN;
 	z[14 * NX + 5] = NAN;
 	ok(surface_missing(NX, NY, z) == 8 * 14 + 1, "missing samples are counted");
-	ok(surface_fill(NX, NY, z, &steps, &residual) && steps > 0, "a hole is filled");
+	ok(surface_fill(NX, NY, z, &steps, &residual) == NUM_OK && steps > 0,
+		"a hole is filled");
 	for (int iy = 0; iy < NY; iy++)
 		for (int ix = 0; ix < NX; ix++)
 			worst = fmax(
@@ -131,7 +132,7 @@ static double cubic_error(int n)
 {
 	enum { TIMES = 3 };
 	double *z = malloc((size_t)n * sizeof *z),
-	       *f = malloc((size_t)TIMES * n * sizeof *f);
+	       *f = malloc(TIMES * (size_t)n * sizeof *f);
 	double worst = 0;
 
 	for (int i = 0; i < n; i++)
@@ -197,11 +198,11 @@ static void check_correlation(void)
 		.kind = SPECTRUM_GAUSS,
 		.corr_x = 0.02,
 		.corr_y = 0.01 };
-	enum spectrum_status status;
-	struct spectrum *s = spectrum_new(&par, &status);
+	struct spectrum *s;
 	double *z = malloc(N * N * sizeof *z);
 	struct surface_parameters p;
 
+	spectrum_make(&par, &s);
 	spectrum_surface(s, NULL, 1, 0, RNG_SURFACE, z, NULL);
 	surface_measure(N, N, 1.0 / N, 1.0 / N, z, &p);
 	/* About 1600 independent patches: 2.5 %; twice that. */

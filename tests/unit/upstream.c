@@ -19,25 +19,33 @@ static void joins(const char *const *part, const char *want)
 int main(void)
 {
 	joins((const char *[]){ NULL }, NULL);
-	joins((const char *[]){ "roughgen --first 9", NULL }, "roughgen --first 9");
-	joins((const char *[]){ "roughgen --first 9", "roughgen --first 10", NULL },
-		"roughgen --first 9 --count 2");
-	joins((const char *[]){ "roughgen --first 1 | a", "roughgen --first 2 | a",
-		      "roughgen --first 3 | b", NULL },
-		"{ roughgen --first 1 --count 2 | a; roughgen --first 3 | b; }");
-	joins((const char *[]){ "roughgen --first 1", "roughgen --first 1", NULL },
-		"{ roughgen --first 1; roughgen --first 1; }");
-	joins((const char *[]){ "roughgen --first 2", "roughgen --first 1", NULL },
-		"{ roughgen --first 2; roughgen --first 1; }");
-	/* Numbers that are those of no surface. */
-	joins((const char *[]){ "roughgen f | rwl --first 1",
-		      "roughgen f | rwl --first 2", NULL },
-		"{ roughgen f | rwl --first 1; roughgen f | rwl --first 2; }");
-	joins((const char *[]){ "roughgen --first 1mm", "roughgen --first 2mm", NULL },
-		"{ roughgen --first 1mm; roughgen --first 2mm; }");
-	/* A part that is counted already. */
-	joins((const char *[]){ "roughgen --first 0 --count 2",
-		      "roughgen --first 1 --count 2", NULL },
-		"{ roughgen --first 0 --count 2; roughgen --first 1 --count 2; }");
+	joins((const char *[]){ "a --first 9 --count 1", NULL }, "a --first 9 --count 1");
+	joins((const char *[]){ "a --first 9 --count 1", "a --first 10 --count 1", NULL },
+		"a --first 9 --count 2");
+	joins((const char *[]){ "a -x --first 1 --count 1 -y | b",
+		      "a -x --first 2 --count 1 -y | b",
+		      "a -x --first 3 --count 1 -y | c", NULL },
+		"{ a -x --first 1 --count 2 -y | b; a -x --first 3 --count 1 -y | c; }");
+	joins((const char *[]){ "a --first 1 --count 1", "a --first 1 --count 1", NULL },
+		"{ a --first 1 --count 1; a --first 1 --count 1; }");
+	joins((const char *[]){ "a --first 2 --count 1", "a --first 1 --count 1", NULL },
+		"{ a --first 2 --count 1; a --first 1 --count 1; }");
+	/* Several realisations in one part. */
+	joins((const char *[]){ "a --first 0 --count 2", "a --first 2 --count 3", NULL },
+		"a --first 0 --count 5");
+	joins((const char *[]){ "a --first 0 --count 2", "a --first 1 --count 2", NULL },
+		"{ a --first 0 --count 2; a --first 1 --count 2; }");
+	/* A program without --count, and numbers that are those of no source. */
+	joins((const char *[]){ "a --first 0", "a --first 1", NULL },
+		"{ a --first 0; a --first 1; }");
+	joins((const char *[]){ "a f | b --first 1 --count 1",
+		      "a f | b --first 2 --count 1", NULL },
+		"{ a f | b --first 1 --count 1; a f | b --first 2 --count 1; }");
+	joins((const char *[]){ "a --first 1mm --count 1", "a --first 2mm --count 1",
+		      NULL },
+		"{ a --first 1mm --count 1; a --first 2mm --count 1; }");
+	joins((const char *[]){ "a --first 1 --count 1e3", "a --first 2 --count 1e3",
+		      NULL },
+		"{ a --first 1 --count 1e3; a --first 2 --count 1e3; }");
 	return tap_done();
 }

@@ -1,0 +1,117 @@
+#include "io/record.h"
+#include "cli/msg.h"
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void record_free(struct record *r)
+{
+	for (int i = 0; i < r->nfields; i++) {
+		free(r->name[i]);
+		free(r->unit[i]);
+		free(r->data[i]);
+	}
+	keys_free(&r->keys);
+	free(r->cmd);
+	*r = (struct record){ 0 };
+}
+
+void record_init(struct record *r, int nx, int ny, double dx, double dy)
+{
+	record_free(r);
+	r->nx = nx;
+	r->ny = ny;
+	r->nz = 1;
+	r->dx = dx;
+	r->dy = dy;
+}
+
+int record_find(const struct record *r, const char *name)
+{
+	for (int i = 0; i < r->nfields; i++)
+		if (strcmp(r->name[i], name) == 0)
+			return i;
+	return -1;
+}
+
+size_t record_points(const struct record *r)
+{
+	return (size_t)r->nx * (size_t)r->ny * (size_t)r->nz;
+}
+
+void record_new_field(struct record *r, const char *name, const char *unit)
+{
+	if (r->nfields == RECORD_FIELDS_MAX)
+		die(EXIT_RUN, "more than %d fields in a record", RECORD_FIELDS_MAX);
+	r->name[r->nfields] = xstrdup(name);
+	r->unit[r->nfields] = xstrdup(unit);
+	r->data[r->nfields++] = xcalloc(record_points(r), sizeof(double));
+}
+
+double *record_add(struct record *r, const char *name, const char *unit)
+{
+	int i = record_find(r, name);
+
+	if (i < 0) {
+		record_new_field(r, name, unit);
+		i = r->nfields - 1;
+	}
+	return r->data[i];
+}
+
+void record_drop(struct record *r, const char *name)
+{
+	int i = record_find(r, name);
+
+	if (i < 0)
+		return;
+	free(r->name[i]);
+	free(r->unit[i]);
+	free(r->data[i]);
+	for (r->nfields--; i < r->nfields; i++) {
+		r->name[i] = r->name[i + 1];
+		r->unit[i] = r->unit[i + 1];
+		r->data[i] = r->data[i + 1];
+	}
+}
+
+void record_set(struct record *r, const char *key, const char *format, ...)
+{
+	char value[4096];
+	va_list ap;
+	int n;
+
+	va_start(ap, format);
+	n = vsnprintf(value, sizeof value, format, ap);
+	va_end(ap);
+	if (n < 0 || (size_t)n >= sizeof value)
+		die(EXIT_RUN, "value of key %s is longer than %zu bytes", key,
+			sizeof value);
+	keys_set(&r->keys, key, value);
+}
+
+const char *record_get(const struct record *r, const char *key)
+{
+	return keys_get(&r->keys, key);
+}
+
+void record_copy_keys(struct record *to, const struct record *from)
+{
+	to->realisation = from->realisation;
+	for (int i = 0; i < from->keys.n; i++)
+		keys_set(&to->keys, from->keys.key[i], from->keys.value[i]);
+}
+
+double record_get_number(const struct record *r, const char *key)
+{
+	const char *text = record_get(r, key);
+	char *end;
+	double v;
+
+	if (!text)
+		return NAN;
+	v = strtod(text, &end);
+	return end == text || *end ? NAN : v;
+}

@@ -1,0 +1,43 @@
+/* record.h - fields on one regular grid, with names, units and keys, in memory */
+#ifndef IO_RECORD_H
+#define IO_RECORD_H
+
+#include "io/keys.h"
+#include <stddef.h>
+
+enum { RECORD_FIELDS_MAX = 32 };
+
+struct record {
+	int nx, ny, nz;    /* points; nz = 1 for plane fields */
+	double dx, dy, dz; /* spacing, m */
+	int nfields;
+	char *name[RECORD_FIELDS_MAX];   /* "height" */
+	char *unit[RECORD_FIELDS_MAX];   /* "m" */
+	double *data[RECORD_FIELDS_MAX]; /* planar: data[k][(iz * ny + iy) * nx + ix] */
+	long realisation; /* from the key, else the place in the stream from 0 */
+	char *cmd;        /* pipeline that rebuilds this record; NULL if unknown */
+	struct keys keys; /* other key:=value pairs, carried through */
+};
+
+/* A record without fields; frees what r held. */
+void record_init(struct record *r, int nx, int ny, double dx, double dy);
+void record_free(struct record *r);
+/* nx ny nz. */
+size_t record_points(const struct record *r);
+/* Index of a field, -1 if absent. */
+int record_find(const struct record *r, const char *name);
+/* A zeroed new field, or the existing one of that name. */
+double *record_add(struct record *r, const char *name, const char *unit);
+/* A zeroed field of that name, which must not exist yet. */
+void record_new_field(struct record *r, const char *name, const char *unit);
+/* Drops a field. */
+void record_drop(struct record *r, const char *name);
+/* Keys; record_get returns NULL where absent. */
+void record_set(struct record *r, const char *key, const char *format, ...)
+	__attribute__((format(printf, 3, 4)));
+const char *record_get(const struct record *r, const char *key);
+/* Copies the realisation and all keys but cmd. */
+void record_copy_keys(struct record *to, const struct record *from);
+double record_get_number(const struct record *r, const char *key); /* NAN where absent */
+
+#endif

@@ -1,0 +1,143 @@
+/* wear-volume - volume worn off against time, from the particles that passed a sensor */
+#include "cli/msg.h"
+#include "cli/opt.h"
+#include "cli/stats.h"
+#include "common/verdicts.h"
+#include "io/tables.h"
+#include <math.h>
+#include <stdlib.h>
+
+static const double sphere = 0.52359877559829887; /* pi / 6 */
+static const double rows_most = 1e7;              /* between two particles */
+static double period = 1, time_scale = 1;
+
+static const struct opt opts[] = {
+	{ 0, "period", OPT_NUM, UNIT_TIME, &period, 1e-9, 1e12, "T",
+		"time of the record between rows", NULL, 0 },
+	{ 0, "time-scale", OPT_NUM, UNIT_NONE, &time_scale, 1e-12, 1e12, "K",
+		"time of running that the same time of the record stands for", NULL, 0 },
+	OPT_TABLE(verdict_rows),
+	OPT_END,
+};
+
+static const struct prog prog = { "wear-volume", "Sum the volume of particles over time.",
+	"[file]", "table: diameter, time1 [verdict] [sources]", "table: t, y (volume)",
+	opts };
+
+struct columns {
+	int time, diameter, verdict, sources;
+};
+
+static struct columns find_columns(const struct table_in *t)
+{
+	struct columns c = { table_find(t, "time1"), table_need(t, "diameter"),
+		table_find(t, "verdict"), table_find(t, "sources") };
+
+	if (c.time < 0)
+		c.time = table_find(t, "t");
+	if (c.time < 0)
+		c.time = table_need(t, "time1");
+	return c;
+}
+
+/* Time of the present row, which is not before that of the row above. */
+static double time_of(const struct table_in *t, int column, double before)
+{
+	double time = table_number(t, column);
+
+	if (!isfinite(time))
+		die(EXIT_RUN, "%s: line %ld: %s is %g, want a number", table_name(t),
+			table_line(t), table_column_name(t, column), time);
+	if (time < before)
+		die(EXIT_RUN, "%s: line %ld: %s %.17g comes after %.17g: sort by time",
+			table_name(t), table_line(t), table_column_name(t, column), time,
+			before);
+	return time;
+}
+
+/* Volume of the particles of the present row. */
+static double volume_of(const struct table_in *t, const struct columns *c, long *without)
+{
+	enum verdict v = verdict_of(t, c->verdict);
+	double d = table_number(t, c->diameter), many = 1;
+
+	if (v == VERDICT_DOUBTFUL)
+		return 0;
+	if (isnan(d)) {
+		++*without;
+		return 0;
+	}
+	if (!(d >= 0 && d <= 1))
+		die(EXIT_RUN, "%s: line %ld: diameter is %g m, want 0 to 1 m",
+			table_name(t), table_line(t), d);
+	if (v == VERDICT_UNRESOLVED && c->sources >= 0)
+		many = (double)table_whole(t, c->sources, 0, 1e15);
+	stats_add("particles", many);
+	return many * sphere * d * d * d;
+}
+
+static void put_until(struct table_out *out, double time, double volume, double *rows)
+{
+	double before = *rows;
+
+	for (; time >= (*rows + 1) * period; ++*rows) {
+		const double row[2] = { (*rows + 1) * period * time_scale, volume };
+
+		table_put_row(out, row, 2);
+	}
+	if (*rows > before)
+		table_flush(out);
+}
+
+static void sum_rows(struct table_in *t, struct table_out *out)
+{
+	struct columns c = find_columns(t);
+	double before = -INFINITY, rows = 0, volume = 0;
+	long part = -1, without = 0;
+
+	while (table_next(t)) {
+		double time = time_of(t, c.time, before);
+
+		if (part < 0)
+			part = table_part(t);
+		if (table_part(t) != part)
+			die(EXIT_RUN,
+				"%s: line %ld: another record begins: sum each for itself",
+				table_name(t), table_line(t));
+		if (time / period - rows > rows_most)
+			die(EXIT_RUN,
+				"%s: line %ld: %s %g is more than ten million --period "
+				"behind the row above",
+				table_name(t), table_line(t),
+				table_column_name(t, c.time), time);
+		before = time;
+		put_until(out, time, volume, &rows);
+		volume += volume_of(t, &c, &without);
+	}
+	stats_set("rows", rows);
+	stats_set("particles_without_diameter", (double)without);
+	if (without > 0)
+		warn("%s: rows ignored because they have no diameter: %ld", table_name(t),
+			without);
+}
+
+int main(int argc, char **argv)
+{
+	int operand = opt_parse(&prog, argc, argv);
+	struct table_in *t = table_open(argv[operand]);
+	const char *start = table_key(t, "start");
+	struct table_out *out;
+	char *cmd;
+
+	find_columns(t);
+	cmd = opt_cmd(table_upstream(t), NULL);
+	out = table_create(NULL, cmd, "s m3", "t y");
+	if (start)
+		table_comment(out, "start", "%s", start);
+	sum_rows(t, out);
+	verdict_report();
+	table_close(t);
+	table_done(out);
+	free(cmd);
+	return shell_done(EXIT_SUCCESS);
+}
