@@ -236,18 +236,14 @@ demo:
 	@$(MAKE) --no-print-directory -C examples/demo \
 		SURFACE="$(if $(filter /%,$(SURFACE)),,$(SURFACE:%=$(CURDIR)/))$(SURFACE)"
 
-<<<<<<< HEAD
 # Every experiment of the thesis, and build/thesis/full/index.html or .../quick/...
 .PHONY: thesis thesis-quick
 thesis thesis-quick: all $(UNITS)
 	+@MAKE="$(MAKE)" scripts/thesis $(if $(filter thesis,$@),full,quick)
 
-$(B)/install/wearpipe $(B)/install/_wearpipe $(B)/install/wearpipe.fish: $(BUILT:%=$(BIN)/%) scripts/completion
-=======
 # Those that print their options.
 COMPLETED = $(BUILT) wearplot wearwatch
 $(B)/install/wearpipe $(B)/install/_wearpipe $(B)/install/wearpipe.fish: $(COMPLETED:%=$(BIN)/%) scripts/completion
->>>>>>> main
 	@mkdir -p $(@D)
 	@scripts/completion $(if $(findstring fish,$@),fish,$(if $(findstring _,$(@F)),zsh,bash)) \
 		$(COMPLETED:%=$(BIN)/%) >$@
