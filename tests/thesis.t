@@ -47,7 +47,7 @@ done)" ''
 # --- Numbers of the READMEs: those of the thesis, of our results, or of the experiment.
 for page in "$top"/examples/*/README.md; do
 	e=$(basename "$(dirname "$page")")
-	sed -e '/^```/,/^```/d' -e 's/`[^`]*`//g' "$page" |
+	sed -e '/^```/,/^```/d' -e 's/`[^`]*`//g' -e 's/ISO [0-9]*//g' "$page" |
 		grep -oE '(^|[^A-Za-z0-9_.])[-+]?[0-9]+(\.[0-9]+)?(e-?[0-9]+)?' | sed 's/^[^-+0-9]//' | sort -u >numbers
 	# the options of the experiment are its own numbers
 	find "$top/examples/$e" -type f ! -name README.md -exec cat "$table" "$top/examples/results.tsv" {} + |

@@ -53,7 +53,7 @@ force = 2346.3e-6 * (0.45 * 21.15e6 + 0.1 * 10.575e6)
 rate = real(system("awk -F '\t' '/^#/ { next } !/^[-0-9]/ { for (i = 1; i <= NF; i++) c[$i] = i; next } { s += $c[\"mean\"] / $c[\"step_time\"]; n++ } END { print s / n }' rates.tsv"))
 plot k / 1.065e9 * force * 20.94 * x * 3600 * 1e9 lw 2 lc rgb "black" title sprintf("Archard, K = %.1e", k), \
 	rate * x * 3600 * 1e9 lw 2 lc rgb blue title "fragments, mean"
-set output "fig63.png"
+set output "fig64-field.png"
 set title "Pressure of the valve plate by angle, and the thesis' two halves"
 set xlabel "angle, degrees"; set ylabel "pressure, MPa"; set xrange [0:360]
 plot "field.tsv" using "angle":"pressure" with lines lw 2 lc rgb blue title "field", \
