@@ -1,4 +1,4 @@
-/* progress.h - a progress bar, on a terminal only and for work over a second */
+/* progress.h - a progress bar, only on a terminal and for work of more than a second */
 #ifndef CLI_PROGRESS_H
 #define CLI_PROGRESS_H
 

@@ -1,6 +1,6 @@
-/* Incremental hull: a point outside removes the faces it sees and is joined to their
- * rim.  "Sees" is strict and exact, so a face in whose plane the point lies stays, and no
- * face of zero area arises. */
+/* Incremental hull: a point outside removes the faces visible from it and is connected to
+ * their boundary. Visibility is strict and exact, so a face in whose plane the point lies
+ * stays, and no face of zero area arises. */
 #include "debris/hull.h"
 #include "num/room.h"
 
@@ -17,7 +17,7 @@ struct hull {
 	size_t points, point_room;
 	struct face *face;
 	size_t nfaces, face_room;
-	struct hull_edge *edge; /* the rim while building, then the edges */
+	struct hull_edge *edge; /* the boundary while building, then the edges */
 	size_t edges, edge_room;
 	int *place; /* of the points among the corners */
 	size_t place_room;
@@ -85,7 +85,7 @@ static int add_edge(struct hull *h, int from, int to)
 	return 0;
 }
 
-/* Adds an edge of a removed face to the rim, or cancels it against its twin. */
+/* Adds an edge of a removed face to the boundary, or cancels it with its twin. */
 static int toggle_edge(struct hull *h, int from, int to)
 {
 	for (size_t i = 0; i < h->edges; i++)

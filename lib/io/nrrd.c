@@ -272,8 +272,8 @@ static double spacing(const struct place *at, const struct header *h, int axis)
 	return s * scale;
 }
 
-/* Names and units, "height m, pressure Pa"; a single field without a name is taken
- * for a height in metres. */
+/* Names and units, "height m, pressure Pa"; a single field without a name is read as a
+ * height in metres. */
 static void name_fields(
 	const struct place *at, const struct header *h, struct record *r, int n)
 {
@@ -354,7 +354,7 @@ static void write_number(struct text *t, double value)
 	text_add(t, " %s", number_text(value, text));
 }
 
-/* The mark stands at the end, the digits of its checksum being zeros. */
+/* The mark is the last key, with zeros for the digits of its checksum. */
 static struct text make_header(const struct record *r, long number, int last)
 {
 	struct text t = { 0 };

@@ -11,8 +11,8 @@
 
 #include <stddef.h>
 
-/* Sees to it that the array whose pointer stands at *array has room for want elements;
- * what is in it stays.  -1 when out of memory: then all is as before. */
+/* Enlarges the array at *array to at least want elements, keeping its contents. -1 when
+ * out of memory: then nothing is changed. */
 int room_for(void *array, size_t *room, size_t want, size_t size);
 
 #endif

@@ -133,8 +133,8 @@ static int bootstrap_open(struct bootstrap *b, const struct ensemble *e, uint64_
 	return -1;
 }
 
-/* Draws as many groups as there are, those of realisations that nothing tells of among
- * them; returns how many realisations they have. */
+/* Draws as many groups as there are, including realisations without rows; returns the
+ * number of realisations drawn. */
 static double draw_groups(struct bootstrap *b)
 {
 	size_t n = b->groups;

@@ -11,12 +11,13 @@ enum {
 	OUTER = 2 * INNER, /* to that of the next */
 	RADIUS =
 		2 * INNER, /* cells to the radius of the innermost, on every other cell */
-	REACH = RADIUS + 1, /* of what it leaves to the cells: the element adds one */
-	RUN = 8,            /* loads side by side that are summed at once */
-	BLOCK = 8,          /* cells of a row that are summed at once */
+	REACH = RADIUS +
+		1, /* of the part that is summed on the cells: the element adds one */
+	RUN = 8,   /* adjacent loads that are summed together */
+	BLOCK = 8, /* cells of a row that are summed together */
 	WIDTH = (2 * REACH + RUN + BLOCK - 1) / BLOCK * BLOCK, /* cells a run reaches */
 	SMALL = 32,          /* sides up to this are summed in full, which is no slower */
-	COARSEST = 6 * OUTER /* points a side up to which no window is worth its while */
+	COARSEST = 6 * OUTER /* points per side up to which a window does not save time */
 };
 
 /* Depth over the distance of points: interpolation through eight of them leaves 2e-5 of
@@ -277,7 +278,7 @@ struct scatter {
 	double *const *field;
 };
 
-/* Two cells at a time; a compiler leaves it at one where it does not know the alignment.
+/* Two cells at a time; compilers vectorise this only if they know the alignment.
  */
 typedef double two __attribute__((vector_size(2 * sizeof(double))));
 
@@ -294,7 +295,7 @@ static void store_two(double *p, two v)
 	memcpy(p, &v, sizeof v);
 }
 
-/* The sums of a block are kept apart, since each waits for its last term. */
+/* Separate sums for each cell of a block avoid waiting for the previous term. */
 static void add_run(double *f, const double *row, const struct run *r)
 {
 	for (int x = 0; x < 2 * REACH + r->count; x += BLOCK) {
@@ -461,7 +462,7 @@ static int level_new(const struct free_sum *s, struct level *l, int mx, int my,
 }
 
 /* Fields on the points of a level, cells apart: of all loads, or of those outside the
- * window of INNER points where finer points have the rest. */
+ * window of INNER points if finer points sum the others. */
 static int sum_level(struct free_sum *s, double z, int cells, int outer, struct level *l)
 {
 	int mx = l->x.points, my = l->y.points, status;

@@ -203,7 +203,7 @@ static void check_plane(const struct record *r, struct fields_in *in)
 		die(EXIT_USAGE, "GSF holds one plane field: use --pick and --field");
 }
 
-/* 1 where another record is to be written. */
+/* 1 if another record is to be written. */
 static int picks_left(struct fields_in *in)
 {
 	for (int i = 0; i < pick.n; i++)

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/types.h>
 
-enum { AHEAD = 64 }; /* rows that tell the rate */
+enum { AHEAD = 64 }; /* rows used to estimate the rate */
 
 struct text_in {
 	FILE *f;
@@ -18,7 +18,7 @@ struct text_in {
 	size_t room;
 	long number; /* of the line */
 	char separator;
-	int commas; /* decimal ones may stand */
+	int commas; /* decimal commas are possible */
 	int cells;
 	char **heading;
 	int *taken; /* cells of the channels */
@@ -31,7 +31,7 @@ struct text_in {
 	struct signal_format format;
 };
 
-/* The next line that says something; 0 at the end. */
+/* The next line that is neither empty nor a comment; 0 at the end. */
 static int next_line(struct text_in *t)
 {
 	ssize_t n;
@@ -96,7 +96,7 @@ static int number(const struct text_in *t, char *s, double *v)
 	return end != s && !*end;
 }
 
-/* The unit in "Flow [L/min]" or "u (mV)", cut off its heading; NULL where there is none.
+/* The unit in "Flow [L/min]" or "u (mV)", cut off its heading; NULL if there is none.
  */
 static char *unit_of(char *heading)
 {
@@ -236,7 +236,7 @@ static int read_row(struct text_in *t, double *row)
 	return 1;
 }
 
-/* Every time must stand within half a step of where the rate has it. */
+/* Every time must be within half a step of that of the rate. */
 static void check_time(struct text_in *t, double time)
 {
 	double want = t->first + (double)t->rows * t->step;
@@ -269,7 +269,7 @@ static void learn_rate(struct text_in *t, const struct recording_par *par)
 	if (isnan(rate))
 		die(EXIT_RUN, "%s: no column of times: specify --rate", t->name);
 	t->format.rate = (long)(rate + 0.5);
-	/* within what rounded times can tell of 64 rows */
+	/* within the resolution of rounded times over 64 rows */
 	if (t->format.rate < 1 || fabs(rate - (double)t->format.rate) > 2e-3 * rate)
 		die(EXIT_RUN,
 			"%s: %.6g samples per second is not an integer: specify --rate",
