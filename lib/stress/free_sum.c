@@ -1,4 +1,5 @@
 #include "stress/free_sum.h"
+#include "num/status.h"
 #include "stress/lattice.h"
 #include "stress/window.h"
 
@@ -184,9 +185,9 @@ static struct influence *kernel_new(
 
 /* Convolution of loads on mx by my points with a kernel of this reach: a field for each
  * number. */
-static int convolve(struct free_sum *s, enum source source, double z, double cells,
-	int reach_x, int reach_y, int mx, int my, const double *load, size_t load_stride,
-	int numbers, double *const *out, size_t stride)
+static enum num_status convolve(struct free_sum *s, enum source source, double z,
+	double cells, int reach_x, int reach_y, int mx, int my, const double *load,
+	size_t load_stride, int numbers, double *const *out, size_t stride)
 {
 	struct influence *kernel =
 		kernel_new(s, source, z, cells, reach_x + 1, reach_y + 1);
@@ -201,7 +202,7 @@ static int convolve(struct free_sum *s, enum source source, double z, double cel
 	}
 	window_free(w);
 	free(kernel);
-	return w ? 0 : -1;
+	return w ? NUM_OK : NUM_MEMORY;
 }
 
 static void free_fields(double **field, int count)
@@ -210,16 +211,16 @@ static void free_fields(double **field, int count)
 		free(field[c]);
 }
 
-static int new_fields(double **field, int count, size_t n)
+static enum num_status new_fields(double **field, int count, size_t n)
 {
 	for (int c = 0; c < count; c++) {
 		field[c] = calloc(n, sizeof **field);
 		if (!field[c]) {
 			free_fields(field, c);
-			return -1;
+			return NUM_MEMORY;
 		}
 	}
-	return 0;
+	return NUM_OK;
 }
 
 /* The full sum. */
@@ -244,15 +245,15 @@ static void hand_span(void *context, size_t job, int worker)
 	h->want->put(h->want->context, span, number);
 }
 
-static int sum_full(
+static enum num_status sum_full(
 	struct free_sum *s, double z, const struct stress_want *want, const struct box *b)
 {
 	struct hand_over hand = { NULL, b, want };
 	double *field[STRESS_NUMBERS];
-	int status;
+	enum num_status status;
 
 	if (new_fields(field, want->numbers, (size_t)b->wx * (size_t)b->wy))
-		return -1;
+		return NUM_MEMORY;
 	status = convolve(s, ELEMENT, z, 1, b->wx - 1, b->wy - 1, b->wx, b->wy,
 		corner(s, b), (size_t)s->nx, want->numbers, field, (size_t)b->wx);
 	hand.field = field;
@@ -364,8 +365,9 @@ static double *table_new(
 	return table;
 }
 
-static int scatter_near(struct free_sum *s, double z, const struct stress_want *want,
-	const struct box *b, double *const *field, size_t stride)
+static enum num_status scatter_near(struct free_sum *s, double z,
+	const struct stress_want *want, const struct box *b, double *const *field,
+	size_t stride)
 {
 	struct influence *kernel =
 		kernel_new(s, ELEMENT_INNER, z, 1, REACH + 1, REACH + 1);
@@ -399,7 +401,7 @@ static int scatter_near(struct free_sum *s, double z, const struct stress_want *
 	free(run);
 	free(table);
 	free(kernel);
-	return run && table ? 0 : -1;
+	return run && table ? NUM_OK : NUM_MEMORY;
 }
 
 /* A load takes about 0.3 ns for each of its products, a transform 1 ns for each point and
@@ -413,8 +415,9 @@ static int prefer_scatter(const struct free_sum *s, const struct box *b, int num
 }
 
 /* The nodes of the box start REACH cells into the fields either way. */
-static int sum_near(struct free_sum *s, double z, const struct stress_want *want,
-	const struct box *b, double *const *field, double *const *inset, size_t stride)
+static enum num_status sum_near(struct free_sum *s, double z,
+	const struct stress_want *want, const struct box *b, double *const *field,
+	double *const *inset, size_t stride)
 {
 	if (prefer_scatter(s, b, want->numbers))
 		return scatter_near(s, z, want, b, field, stride);
@@ -440,8 +443,8 @@ static void level_free(struct level *l)
 }
 
 /* Points every so many cells, or finer points, with their loads. */
-static int level_new(const struct free_sum *s, struct level *l, int mx, int my,
-	int spacing, const double *load, size_t stride, int element, int numbers)
+static enum num_status level_new(const struct free_sum *s, struct level *l, int mx,
+	int my, int spacing, const double *load, size_t stride, int element, int numbers)
 {
 	size_t points;
 
@@ -454,15 +457,16 @@ static int level_new(const struct free_sum *s, struct level *l, int mx, int my,
 	if (!l->lattice || !l->load || new_fields(l->field, numbers, points)) {
 		l->numbers = 0;
 		level_free(l);
-		return -1;
+		return NUM_MEMORY;
 	}
 	lattice_spread(l->lattice, load, stride, element, l->load);
-	return 0;
+	return NUM_OK;
 }
 
 /* Fields on the points of a level, cells apart: of all loads, or of those outside the
  * window of INNER points where finer points have the rest. */
-static int sum_level(struct free_sum *s, double z, int cells, int outer, struct level *l)
+static enum num_status sum_level(
+	struct free_sum *s, double z, int cells, int outer, struct level *l)
 {
 	int mx = l->x.points, my = l->y.points, status;
 	struct level next;
@@ -473,7 +477,7 @@ static int sum_level(struct free_sum *s, double z, int cells, int outer, struct 
 	if (convolve(s, outer ? POINT_RING : POINT_INNER, z, cells, OUTER, OUTER, mx, my,
 		    l->load, (size_t)mx, l->numbers, l->field, (size_t)mx) ||
 		level_new(s, &next, mx, my, 2, l->load, (size_t)mx, 0, l->numbers))
-		return -1;
+		return NUM_MEMORY;
 	status = sum_level(s, z, 2 * cells, 1, &next);
 	for (int c = 0; !status && c < l->numbers; c++)
 		status = lattice_refine(next.lattice, next.field[c], l->field[c]);
@@ -481,15 +485,15 @@ static int sum_level(struct free_sum *s, double z, int cells, int outer, struct 
 	return status;
 }
 
-static int sum_coarse(struct free_sum *s, double z, int cells,
+static enum num_status sum_coarse(struct free_sum *s, double z, int cells,
 	const struct stress_want *want, const struct box *b)
 {
 	struct level l;
-	int status;
+	enum num_status status;
 
 	if (level_new(s, &l, b->wx, b->wy, cells, corner(s, b), (size_t)s->nx, 1,
 		    want->numbers))
-		return -1;
+		return NUM_MEMORY;
 	status = sum_level(s, z, cells, 0, &l);
 	if (!status)
 		status = lattice_gather(l.lattice, l.field, NULL, 0, b->x0, b->y0, want);
@@ -498,17 +502,17 @@ static int sum_coarse(struct free_sum *s, double z, int cells,
 	return status;
 }
 
-static int sum_split(
+static enum num_status sum_split(
 	struct free_sum *s, double z, const struct stress_want *want, const struct box *b)
 {
 	size_t stride = (size_t)b->wx + WIDTH, n = stride * ((size_t)b->wy + 2 * REACH);
 	double *near[STRESS_NUMBERS], *inset[STRESS_NUMBERS];
 	struct level l;
-	int status;
+	enum num_status status;
 
 	if (level_new(s, &l, b->wx, b->wy, 2, corner(s, b), (size_t)s->nx, 1,
 		    want->numbers))
-		return -1;
+		return NUM_MEMORY;
 	status = sum_level(s, z, 2, 1, &l);
 	if (!status && !(status = new_fields(near, want->numbers, n))) {
 		for (int c = 0; c < want->numbers; c++)
@@ -524,14 +528,14 @@ static int sum_split(
 	return status;
 }
 
-int free_sum_at(struct free_sum *s, double z, const struct stress_want *want)
+enum num_status free_sum_at(struct free_sum *s, double z, const struct stress_want *want)
 {
 	double side = fmax(s->par.dx, s->par.dy), small = fmin(s->par.dx, s->par.dy);
 	struct box b = box_of(s, want);
 	int cells = 2;
 
 	if (want->count == 0)
-		return 0;
+		return NUM_OK;
 	if (s->full || b.wx <= SMALL || b.wy <= SMALL || side > OBLONG * small)
 		return sum_full(s, z, want, &b);
 	if (z < SMOOTH * cells * side)

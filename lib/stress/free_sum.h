@@ -15,6 +15,7 @@
 #define STRESS_FREE_SUM_H
 
 #include "num/pool.h"
+#include "num/status.h"
 #include "stress/influence.h"
 #include "stress/span.h"
 
@@ -36,8 +37,8 @@ void free_sum_free(struct free_sum *s);
 
 /* Sets the pressure, which is borrowed until the next call. */
 void free_sum_load(struct free_sum *s, const double *pressure);
-/* Stress at depth z; -1 when out of memory. */
-int free_sum_at(struct free_sum *s, double z, const struct stress_want *want);
+/* Stress at depth z. */
+enum num_status free_sum_at(struct free_sum *s, double z, const struct stress_want *want);
 
 struct sum_work free_sum_work(const struct free_sum *s);
 
