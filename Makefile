@@ -72,7 +72,7 @@ fftw_LINK = $(FFTW_LIBS)
 gsl_LINK = $(GSL_LIBS)
 
 # Scripts that users call, built and installed beside the programs.
-SCRIPTS = wearplot surfunzip
+SCRIPTS = wearplot surfunzip wearwatch
 
 ALL_CFLAGS = $(STD) $(WARN) $(CFLAGS) -pthread
 ALL_CPPFLAGS = -Iinclude -Ilib -Isrc -DWEARPIPE_VERSION='"$(VERSION)"' $(BLAS_FLAG) $(SNDFILE_FLAG) $(FFTW_CFLAGS) $(GSL_CFLAGS) $(CPPFLAGS)
@@ -116,9 +116,9 @@ $(BIN)/$(1): $(call objects,$(wildcard src/$(1)/*.c)) $(B)/libcommon.a $(B)/libc
 endef
 $(foreach p,$(PROGRAMS),$(eval $(call program,$(p))))
 
-$(SCRIPTS:%=$(BIN)/%): $(BIN)/%: scripts/%
+$(SCRIPTS:%=$(BIN)/%): $(BIN)/%: scripts/% share/page.css
 	@mkdir -p $(BIN)
-	@sed 's/@VERSION@/$(VERSION)/' $< >$@
+	@sed -e 's/@VERSION@/$(VERSION)/' -e '/^@STYLE@$$/r share/page.css' -e '/^@STYLE@$$/d' $< >$@
 	@chmod 755 $@
 
 $(B)/src/records/replay.o: ALL_CPPFLAGS += -DWEARPIPE_PROGRAMS='"$(PROGRAMS)"'
@@ -235,10 +235,12 @@ demo:
 	@$(MAKE) --no-print-directory -C examples/demo \
 		SURFACE="$(if $(filter /%,$(SURFACE)),,$(SURFACE:%=$(CURDIR)/))$(SURFACE)"
 
-$(B)/install/wearpipe $(B)/install/_wearpipe $(B)/install/wearpipe.fish: $(BUILT:%=$(BIN)/%) scripts/completion
+# Those that print their options.
+COMPLETED = $(BUILT) wearplot wearwatch
+$(B)/install/wearpipe $(B)/install/_wearpipe $(B)/install/wearpipe.fish: $(COMPLETED:%=$(BIN)/%) scripts/completion
 	@mkdir -p $(@D)
 	@scripts/completion $(if $(findstring fish,$@),fish,$(if $(findstring _,$(@F)),zsh,bash)) \
-		$(BUILT:%=$(BIN)/%) >$@
+		$(COMPLETED:%=$(BIN)/%) >$@
 
 HEADERS = $(wildcard include/wearpipe/*.h)
 MAN1 = $(wildcard man/*.1)
@@ -278,7 +280,7 @@ install: all $(LIBRARY) $(COMPLETIONS) $(B)/install/wearpipe.pc
 		done; \
 	done
 	@ln -sf $(SONAME) "$(DESTDIR)$(LIBDIR)/libwearpipe.so"
-	@for p in $(BUILT); do \
+	@for p in $(COMPLETED); do \
 		ln -sf wearpipe "$(DESTDIR)$(DATADIR)/bash-completion/completions/$$p" || exit; \
 	done
 
@@ -287,7 +289,7 @@ uninstall:
 		for f in $$files; do rm -f "$(DESTDIR)$$folder/$${f##*/}"; done; \
 	done
 	@rm -f "$(DESTDIR)$(LIBDIR)/libwearpipe.so"
-	@for p in $(BUILT); do rm -f "$(DESTDIR)$(DATADIR)/bash-completion/completions/$$p"; done
+	@for p in $(COMPLETED); do rm -f "$(DESTDIR)$(DATADIR)/bash-completion/completions/$$p"; done
 	@for d in "$(INCLUDEDIR)/wearpipe" "$(DATADIR)/wearpipe/python" "$(DATADIR)/wearpipe" "$(DOCDIR)"; do \
 		[ ! -d "$(DESTDIR)$$d" ] || rmdir "$(DESTDIR)$$d"; \
 	done

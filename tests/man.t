@@ -27,7 +27,7 @@ help_options() {
 		-e 's/^      --\([a-z0-9-]*\).*/- \1/p' | sort
 }
 
-for p in $programs; do
+for p in $programs wearwatch; do
 	page=$top/man/$p.1
 	if [ ! -e "$page" ]; then
 		fail "$p has a manual page"

@@ -36,6 +36,15 @@ is "no times: the rate is told" "$(samples d.au)" "1.5 2 3 4"
 printf 'a b\n1 2\n3 4\n' | sigconvert --from text --rate 100Hz >d.au
 is "blanks, from a pipe" "$(samples d.au)" "1 2 3 4"
 
+# Noise of 1 mV with runs of four at the top of channel 1; channel 2 does not move.
+sensorsim --uniform 10um:11um --number 1 --duration 2s --noise 1mV | sigconvert --output text |
+	awk -F '\t' -v OFS='\t' '/^[0-9]/ { if (NR % 1000 < 4) $2 = 0.02; $3 = 0.5 } { print }' |
+	sigconvert --from text | sigconvert --output channels >channels.tsv
+is "samples at the end of the range" "$(column rails channels.tsv | tr '\n' ' ')" '80 20000 '
+is "and that end" "$(column high channels.tsv | tr '\n' ' ')" '0.02 0.5 '
+near "the noise of the quiet stretches, less 6 %" "$(column level channels.tsv | head -n 1)" 9.4e-4 3e-5
+is "that of a dead channel" "$(column level channels.tsv | tail -n 1)" 0
+
 if sigconvert --output wav a.au >a.wav 2>err; then
 	sigconvert --output text a.wav >w.tsv
 	is "WAV in float64 reads back to the last bit" "$(rows a.tsv)" "$(rows w.tsv)"

@@ -1,5 +1,6 @@
 /* sigconvert - recordings of other programs into signals, and signals into what they read
  */
+#include "channels.h"
 #include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
@@ -10,10 +11,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCK = 4096 };
+enum { BLOCK = 4096, CHANNELS = TO_FLAC + 1 };
 
 static const char *const in_words[] = { "auto", "au", "text", "raw", "sound", NULL };
-static const char *const out_words[] = { "au", "text", "raw", "wav", "flac", NULL };
+static const char *const out_words[] = { "au", "text", "raw", "wav", "flac", "channels",
+	NULL };
 
 static int from, to;
 static struct opt_list rate = { 0 };
@@ -25,8 +27,8 @@ static const struct opt opts[] = {
 	{ 0, "from", OPT_WORD, UNIT_NONE, &from, 0, 0, "auto|au|text|raw|sound",
 		"input format; auto: recognised by the first bytes of a file", in_words,
 		0 },
-	{ 'o', "output", OPT_WORD, UNIT_NONE, &to, 0, 0, "au|text|raw|wav|flac",
-		"output format", out_words, 0 },
+	{ 'o', "output", OPT_WORD, UNIT_NONE, &to, 0, 0, "au|text|raw|wav|flac|channels",
+		"output format, or a table of the channels", out_words, 0 },
 	{ 'r', "rate", OPT_LIST, UNIT_FREQUENCY, &rate, 1, 2e9, "F",
 		"text and raw: sampling rate (default from the times)", NULL, 0 },
 	{ 0, "channels", OPT_INT, UNIT_COUNT, &channels, 1, 1024, "N",
@@ -46,7 +48,7 @@ static const struct opt opts[] = {
 static const struct prog prog = { "sigconvert",
 	"Convert recordings into signals and signals into recordings.", "[file]",
 	"signal, or a recording: text, raw, WAV, FLAC, ...",
-	"signal, or a recording: text, raw, WAV, FLAC", opts };
+	"signal, recording (text, raw, WAV, FLAC), or table", opts };
 
 static double clipped;
 
@@ -70,7 +72,8 @@ int main(int argc, char **argv)
 		.time = time_column,
 		.skip = skip };
 	struct recording *in;
-	struct recording_out *out;
+	struct recording_out *out = NULL;
+	struct channels *table = NULL;
 	struct signal_format format;
 	double *x, frames = 0;
 	size_t n;
@@ -80,16 +83,25 @@ int main(int argc, char **argv)
 	format = *recording_format(in);
 	format.cmd = opt_cmd(format.cmd, NULL);
 	format.single = 0;
-	out = recording_create((enum recording_to)to, &format);
+	if (to == CHANNELS)
+		table = channels_new(&format);
+	else
+		out = recording_create((enum recording_to)to, &format);
 	x = xcalloc(BLOCK * (size_t)format.channels, sizeof *x);
 	while ((n = recording_read(in, x, BLOCK)) > 0) {
 		for (size_t i = 0; i < n * (size_t)format.channels; i++)
 			x[i] *= scale;
-		clipped += recording_write(out, x, n);
+		if (table)
+			channels_add(table, x, n);
+		else
+			clipped += recording_write(out, x, n);
 		frames += (double)n;
 	}
 	recording_close(in);
-	recording_done(out);
+	if (table)
+		channels_done(table);
+	else
+		recording_done(out);
 	stats_set("frames", frames);
 	stats_set("samples_clipped", clipped);
 	if (clipped > 0)
