@@ -63,10 +63,12 @@ enum num_status transfer_make(struct transfer *t, const struct contact_par *fine
 	const struct contact_par *coarse)
 {
 	int periodic = fine->boundary == CONTACT_PERIODIC;
-	int x = make_axis(&t->x, (size_t)fine->nx, (size_t)coarse->nx, periodic);
-	int y = make_axis(&t->y, (size_t)fine->ny, (size_t)coarse->ny, periodic);
+	enum num_status x =
+		make_axis(&t->x, (size_t)fine->nx, (size_t)coarse->nx, periodic);
+	enum num_status y =
+		make_axis(&t->y, (size_t)fine->ny, (size_t)coarse->ny, periodic);
 
-	return x == 0 && y == 0 ? NUM_OK : NUM_MEMORY;
+	return x ? x : y;
 }
 
 static void free_axis(struct axis *a)

@@ -3,6 +3,7 @@
 #include "num/realisations.h"
 #include "num/room.h"
 #include "num/running.h"
+#include "num/status.h"
 #include <gsl/gsl_randist.h>
 #include <limits.h>
 #include <math.h>

@@ -36,7 +36,7 @@ void lattice_done(struct lattice *l);
 
 /* Adds the loads of the cells, rows of stride, to load[points of y][points of x];
  * element: they are those of elements. */
-void lattice_spread(const struct lattice *l, const double *cell, size_t stride,
+enum num_status lattice_spread(const struct lattice *l, const double *cell, size_t stride,
 	int element, double *load);
 
 /* Adds the interpolated field to cell[cells of y][cells of x]. */

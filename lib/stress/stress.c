@@ -29,6 +29,8 @@ struct stress {
 	int loaded;       /* some cell is */
 	int side, bx, by; /* cells to a block's side, blocks */
 	struct block *blocks;
+	char *held; /* of the blocks: no node can fail at held_depth and below */
+	double held_depth, held_limit;
 	double point; /* largest equivalent stress times distance^2 */
 	struct free_sum *free;
 	struct wave_sum *wave; /* one of the two is NULL */
@@ -102,12 +104,13 @@ struct stress *stress_new(const struct stress_par *par)
 	s->bx = (par->nx + s->side - 1) / s->side;
 	s->by = (par->ny + s->side - 1) / s->side;
 	s->blocks = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->blocks);
+	s->held = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->held);
 	s->pressure = malloc(n * sizeof *s->pressure);
 	if (par->periodic)
 		s->wave = wave_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
 	else
 		s->free = free_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
-	if (!s->blocks || !s->pressure || (!s->wave && !s->free)) {
+	if (!s->blocks || !s->held || !s->pressure || (!s->wave && !s->free)) {
 		stress_free(s);
 		errno = ENOMEM;
 		return NULL;
@@ -123,6 +126,7 @@ void stress_free(struct stress *s)
 	free_sum_free(s->free);
 	wave_sum_free(s->wave);
 	free(s->blocks);
+	free(s->held);
 	free(s->pressure);
 	free(s);
 }
@@ -168,6 +172,7 @@ enum num_status stress_load(struct stress *s, const double *pressure)
 	s->unit = unit;
 	s->total = 0;
 	s->loaded = 0;
+	s->held_depth = INFINITY;
 	memset(s->blocks, 0, (size_t)s->bx * (size_t)s->by * sizeof *s->blocks);
 	for (size_t y = 0; y < ny; y++)
 		for (size_t x = 0; x < nx; x++) {
@@ -237,6 +242,11 @@ size_t stress_reach(struct stress *s, double z, double limit, struct stress_span
 	size_t count = 0;
 
 	limit /= s->unit;
+	/* What held at a smaller depth holds: the bound falls with depth. */
+	if (!(z >= s->held_depth && limit >= s->held_limit))
+		memset(s->held, 0, (size_t)s->bx * (size_t)s->by * sizeof *s->held);
+	s->held_depth = z;
+	s->held_limit = limit;
 	if (!s->loaded || (s->wave && wave_sum_bound(s->wave, s->criterion, z) <= limit))
 		return 0;
 	for (int by = 0; by < s->by; by++) {
@@ -247,8 +257,11 @@ size_t stress_reach(struct stress *s, double z, double limit, struct stress_span
 		for (int bx = 0; bx < s->bx; bx++) {
 			int x0 = bx * s->side;
 			int x1 = x0 + s->side < s->par.nx ? x0 + s->side : s->par.nx;
+			char *held = &s->held[(size_t)by * (size_t)s->bx + (size_t)bx];
 
-			if (s->free && !block_may_fail(s, bx, by, z, limit))
+			if (s->free && !*held)
+				*held = !block_may_fail(s, bx, by, z, limit);
+			if (*held)
 				continue;
 			if (count > first && span[count - 1].end == x0)
 				span[count - 1].end = x1;
