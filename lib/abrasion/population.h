@@ -11,6 +11,7 @@
 #define ABRASION_POPULATION_H
 
 #include "abrasion/particle.h"
+#include "num/status.h"
 #include <stddef.h>
 #include <stdint.h>
 
@@ -27,8 +28,8 @@ double population_larger(const struct population *p, double d);
 double population_diameter(const struct population *p, double n);
 
 /* Particles above least in a volume at random, the largest first: a Poisson process
- * in N.  Fresh memory in *list.  -1 when out of memory or beyond most particles. */
-int population_draw(const struct population *p, double volume, double least,
+ * in N.  Fresh memory in *list.  NUM_DOMAIN beyond most particles. */
+enum num_status population_draw(const struct population *p, double volume, double least,
 	uint64_t seed, uint32_t realisation, size_t most, double **list, size_t *n);
 
 /* What the particles in the gap do on average, spheres as many in the gap's volume as in

@@ -1,6 +1,7 @@
 #include "cli/opt.h"
 #include "cli/files.h"
 #include "cli/msg.h"
+#include "cli/progress.h"
 #include "cli/stats.h"
 #include <ctype.h>
 #include <errno.h>
@@ -592,6 +593,7 @@ int shell_done(int status)
 	if (ferror(stdout) || fflush(stdout) || close(dup(STDOUT_FILENO)))
 		die(EXIT_RUN,
 			errno ? "standard output:" : "standard output: write error");
+	progress_clear();
 	stats_write(prog->name);
 	return status;
 }

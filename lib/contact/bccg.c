@@ -19,6 +19,7 @@
 #include "contact/gradient.h"
 #include "num/fft.h"
 #include "num/lanes.h"
+#include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -51,7 +52,8 @@ static double stiffness(const void *context, size_t kx, size_t ky)
 	return 1 / b->body->wave(b->body->context, q);
 }
 
-int contact_make_preconditioner(struct contact *c, const struct contact *lender)
+enum num_status contact_make_preconditioner(
+	struct contact *c, const struct contact *lender)
 {
 	const struct convolve *scratch = lender ? lender->periodic : c->plane;
 	struct box box = { .body = &c->body };
@@ -61,14 +63,14 @@ int contact_make_preconditioner(struct contact *c, const struct contact *lender)
 	c->periodic = convolve_borrow((size_t)c->par.nx, (size_t)c->par.ny,
 		CONVOLVE_BRIDGED, c->par.pool, scratch);
 	if (!c->periodic)
-		return -1;
+		return NUM_MEMORY;
 	memory = convolve_scratch(c->periodic, &room);
 	c->extension =
 		extension_new(&c->par, lender ? lender->extension : NULL, memory, room);
 	c->inverse = convolve_alloc(c->periodic);
 	c->active = malloc(c->n);
 	if (!c->extension || !c->inverse || !c->active)
-		return -1;
+		return NUM_MEMORY;
 	convolve_size(c->periodic, &mx, &my);
 	box.lx = (double)mx * c->par.dx;
 	box.ly = (double)my * c->par.dy;

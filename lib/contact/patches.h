@@ -11,6 +11,7 @@
 #ifndef CONTACT_PATCHES_H
 #define CONTACT_PATCHES_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 struct patch_grid {
@@ -39,8 +40,8 @@ double contact_corrected_area(
 	const struct patch_grid *grid, double area, double perimeter);
 
 /* Quantiles of the pressure of the cells in contact at the levels part, interpolated.
- * Returns 0, or -1 when out of memory.  nan without contact. */
-int contact_quantiles(const double *pressure, size_t cells, const double *part,
-	double *quantile, int n);
+ * nan without contact. */
+enum num_status contact_quantiles(const double *pressure, size_t cells,
+	const double *part, double *quantile, int n);
 
 #endif

@@ -13,6 +13,7 @@
 #ifndef DEBRIS_PARTICLES_H
 #define DEBRIS_PARTICLES_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 struct particles;
@@ -60,9 +61,9 @@ void particles_free(struct particles *ps);
 
 /* Finds the bodies of count stretches; stretches of one column must neither overlap nor
  * touch.  *list is valid until the next call: largest first, equal ones by first column
- * and depth.  If dz is 0 the hull resolves the depth of a body in 64 steps.  Returns the
- * number of bodies, or (size_t)-1 when out of memory. */
-size_t particles_find(struct particles *ps, const struct stretch *stretch, size_t count,
-	const struct particle **list);
+ * and depth.  If dz is 0 the hull resolves the depth of a body in 64 steps.
+ * *n receives the number of bodies. */
+enum num_status particles_find(struct particles *ps, const struct stretch *stretch,
+	size_t count, const struct particle **list, size_t *n);
 
 #endif

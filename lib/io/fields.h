@@ -24,8 +24,10 @@
 
 /* Headerless input: sizes must be known beforehand. */
 struct raw_layout {
-	int nx, ny;
-	double dx, dy;
+	int nx, ny, nz;
+	double dx, dy, dz;
+	const char *fields; /* of a point, side by side: "height m, pressure Pa"; NULL: a
+			     * height */
 };
 
 struct fields_in;

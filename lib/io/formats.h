@@ -33,6 +33,10 @@ struct samples {
  * before "want N bytes". */
 void samples_read(struct place *at, struct record *r, struct samples layout);
 
+/* Adds n fields by names and units, "height m, pressure Pa"; NULL: a single one is a
+ * height in metres. */
+void name_fields(const struct place *at, const char *fields, struct record *r, int n);
+
 /* One header line without its newline, fresh memory; NULL at the end of the stream.
  * Dies where the header grows past a mebibyte. */
 char *header_line(struct place *at, size_t *header_size);

@@ -11,7 +11,7 @@
 #include <stddef.h>
 
 struct signal_format {
-	long rate; /* frames per second, Hz */
+	double rate; /* frames per second, Hz */
 	int channels;
 	int single;   /* writer: 32-bit float */
 	char *cmd;    /* pipeline that made it; NULL if unknown */
@@ -19,10 +19,11 @@ struct signal_format {
 	char *seed;   /* NULL if none */
 	char *filter; /* linear-phase filters it passed, as fir_print() has them, with " |
 			 " between; NULL if none */
+	char *start;  /* moment of the first frame, ISO 8601; NULL if unknown */
 };
 
 struct signal_raw {
-	long rate;
+	double rate; /* Hz */
 	int channels;
 };
 

@@ -22,6 +22,7 @@
 #ifndef LAYOUT_BOUND_H
 #define LAYOUT_BOUND_H
 
+#include "num/status.h"
 #include "signal/sensor.h"
 
 struct bound_par {
@@ -48,8 +49,8 @@ void bound_closed(
 	const struct bound_par *par, const double *coil, int coils, struct bound *b);
 
 /* The same from the sums over the samples, as mean square over so many positions of the
- * arrival between two samples.  -1 when out of memory. */
-int bound_sampled(const struct bound_par *par, const double *coil, int coils, int phases,
-	struct bound *b);
+ * arrival between two samples. */
+enum num_status bound_sampled(const struct bound_par *par, const double *coil, int coils,
+	int phases, struct bound *b);
 
 #endif

@@ -15,6 +15,7 @@
 
 #include "layout/bound.h"
 #include "layout/traffic.h"
+#include "num/status.h"
 
 struct layout_par {
 	struct bound_par bound;
@@ -36,8 +37,8 @@ void layout_judge(
 
 /* The best of coils >= 2 within extent, the first at 0, whose by_width is not below
  * least: first of all layouts on a grid of so many steps, then by moving coils by half
- * the step again and again.  -1 where no layout of the grid is good enough. */
-int layout_search(const struct layout_par *par, int coils, double extent, double least,
-	int steps, double *coil, struct layout *out);
+ * the step again and again.  NUM_DOMAIN where no layout of the grid is good enough. */
+enum num_status layout_search(const struct layout_par *par, int coils, double extent,
+	double least, int steps, double *coil, struct layout *out);
 
 #endif

@@ -13,6 +13,7 @@
 #ifndef NUM_REALISATIONS_H
 #define NUM_REALISATIONS_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 enum { REALISATIONS_ROOM = 1 << 20 }; /* cells: 48 MB */
@@ -33,7 +34,8 @@ enum realisations_status {
 
 /* Receives all cells of a realisation by ascending step, several of one step where its
  * rows did not follow one another; not 0: give up. */
-typedef int realisations_take(void *to, const struct realisation_cell *cell, size_t n);
+typedef enum num_status realisations_take(
+	void *to, const struct realisation_cell *cell, size_t n);
 
 struct realisations;
 

@@ -8,6 +8,7 @@
 #define CONTACT_STATISTICS_H
 
 #include "num/running.h"
+#include "num/status.h"
 #include <stddef.h>
 
 /* A value and its confidence interval; nan where there is none. */
@@ -50,9 +51,9 @@ struct power {
 };
 
 /* Least squares for n points with x > 0.  Intervals from the Jacobian and Student's t,
- * nan with three points.  -1 with fewer than three different x or without a minimum for
- * an exponent in [0.01, 20]. */
-int power_fit(
+ * nan with three points.  NUM_DOMAIN with fewer than three different x or without a
+ * minimum for an exponent in [0.01, 20]. */
+enum num_status power_fit(
 	const double *x, const double *y, size_t n, double confidence, struct power *p);
 
 /* The mean of values, with its interval by Student's t. */

@@ -8,6 +8,7 @@
 #define STRESS_WAVE_SUM_H
 
 #include "num/pool.h"
+#include "num/status.h"
 #include "stress/free_sum.h"
 
 struct wave_sum;
@@ -18,8 +19,8 @@ struct wave_sum *wave_sum_new(
 void wave_sum_free(struct wave_sum *s);
 
 void wave_sum_load(struct wave_sum *s, const double *pressure);
-/* Stress at depth z; -1 when out of memory. */
-int wave_sum_at(struct wave_sum *s, double z, const struct stress_want *want);
+/* Stress at depth z. */
+enum num_status wave_sum_at(struct wave_sum *s, double z, const struct stress_want *want);
 
 /* An upper bound of an equivalent stress at depth z, decreasing with z: the sum over the
  * waves. */

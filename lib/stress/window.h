@@ -8,6 +8,7 @@
 #define STRESS_WINDOW_H
 
 #include "num/pool.h"
+#include "num/status.h"
 #include "stress/influence.h"
 #include "stress/span.h"
 #include <stddef.h>
@@ -29,7 +30,7 @@ struct window {
 	struct pool *pool;
 };
 
-/* Computes the sums.  Returns the transforms that took, -1 when out of memory. */
-double window_sum(const struct window *w);
+/* Computes the sums; *transforms receives how many that took. */
+enum num_status window_sum(const struct window *w, double *transforms);
 
 #endif

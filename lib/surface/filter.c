@@ -1,5 +1,6 @@
 #include "surface/filter.h"
 #include "num/fft.h"
+#include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

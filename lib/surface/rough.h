@@ -18,6 +18,7 @@
 #ifndef SURFACE_ROUGH_H
 #define SURFACE_ROUGH_H
 
+#include "num/status.h"
 #include "surface/spectrum.h"
 
 enum rough_kind {
