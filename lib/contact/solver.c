@@ -223,7 +223,7 @@ static int is_in_range(const struct contact *c, double size)
 /* Pressures need to be no better than what interpolation loses. */
 static const double coarse_tolerance = 1e-2;
 
-/* A first guess from the coarser grids; 0 where they found none. */
+/* An initial guess from the coarser grids; 0 if they have none. */
 static int guess_pressure(struct contact *c)
 {
 	struct contact *coarse = c->coarse;

@@ -1,6 +1,6 @@
-/* Incremental hull: a point outside removes the faces it sees and is joined to their
- * rim.  "Sees" is strict and exact, so a face in whose plane the point lies stays, and no
- * face of zero area arises. */
+/* Incremental hull: a point outside removes the faces visible from it and is connected to
+ * their boundary. Visibility is strict and exact, so a face in whose plane the point lies
+ * stays, and no face of zero area arises. */
 #include "debris/hull.h"
 #include "num/room.h"
 #include "num/status.h"
@@ -18,7 +18,7 @@ struct hull {
 	size_t points, point_room;
 	struct face *face;
 	size_t nfaces, face_room;
-	struct hull_edge *edge; /* the rim while building, then the edges */
+	struct hull_edge *edge; /* the boundary while building, then the edges */
 	size_t edges, edge_room;
 	int *place; /* of the points among the corners */
 	size_t place_room;

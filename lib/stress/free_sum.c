@@ -14,7 +14,7 @@ enum {
 		2 * INNER, /* cells to the radius of the innermost, on every other cell */
 	REACH = RADIUS + 1,  /* of what it leaves to the cells: the element adds one */
 	SMALL = 32,          /* sides up to this are summed in full, which is no slower */
-	COARSEST = 6 * OUTER /* points a side up to which no window is worth its while */
+	COARSEST = 6 * OUTER /* points per side up to which a window does not save time */
 };
 
 /* Depth over the distance of points: interpolation through eight of them leaves 2e-5 of

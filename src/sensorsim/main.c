@@ -38,7 +38,7 @@ static const struct prog prog = { "sensorsim",
 	"[file]", "table: diameter [time] [velocity], unless --uniform",
 	"signal: two or four channels, V", opts };
 
-/* What comes along: particles and events that are none, in order of time1. */
+/* Particles and other events, in order of time1. */
 struct traffic {
 	struct source *source;
 	struct disturbances *disturbances; /* NULL: none */

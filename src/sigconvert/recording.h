@@ -20,7 +20,7 @@ enum recording_to { TO_AU, TO_TEXT, TO_RAW, TO_WAV, TO_FLAC };
 
 struct recording_par {
 	enum recording_from from;
-	double rate; /* Hz; nan: not told */
+	double rate; /* Hz; nan: unknown */
 	int channels;
 	const char *columns, *time; /* headings; NULL: all, "time" or "t" */
 	const char *start;          /* moment of the first sample; NULL: not told */
@@ -30,7 +30,7 @@ struct recording_par {
 struct recording;
 struct recording_out;
 
-/* All of them die where the file is not what it should be. */
+/* All of them die if the file is invalid. */
 struct recording *recording_open(const char *path, const struct recording_par *par);
 const struct signal_format *recording_format(const struct recording *r);
 size_t recording_read(struct recording *r, double *x, size_t frames);

@@ -18,7 +18,7 @@ struct text_in {
 	size_t room, most;
 	long number; /* of the line */
 	char separator;
-	int commas; /* decimal ones may stand */
+	int commas; /* decimal commas are possible */
 	int cells;
 	char **heading;
 	int *taken; /* cells of the channels */
@@ -108,7 +108,7 @@ static int number(const struct text_in *t, char *s, double *v)
 	return end != s && !*end;
 }
 
-/* The unit in "Flow [L/min]" or "u (mV)", cut off its heading; NULL where there is none.
+/* The unit in "Flow [L/min]" or "u (mV)", cut off its heading; NULL if there is none.
  */
 static char *unit_of(char *heading)
 {
@@ -299,7 +299,7 @@ static int read_row(struct text_in *t, double *row)
 	return 1;
 }
 
-/* Every time must stand within half a step of where the rate has it. */
+/* Every time must be within half a step of that of the rate. */
 static void check_time(struct text_in *t, double time)
 {
 	double want = t->first + (double)t->rows * t->step;
