@@ -1,8 +1,8 @@
 /* population.h - the particles of an oil whose cleanliness code is known
  *
  * The number of particles larger than d per volume, N(d), is known at three diameters;
- * between them and beyond the last ln N is linear in ln d.  What is smaller than the
- *first is not told and left out; what is larger than largest is not there.
+ * between them and beyond the last ln N is linear in ln d.  Particles smaller than the
+ * first size are not specified and are left out; there are none larger than largest.
  *
  *	struct population p = { { 4e-6, 6e-6, 14e-6 }, { 2.5e9, 6.4e8, 8e7 }, 70e-6 };
  *	population_draw(&p, volume, 1e-6, seed, 0, &list, &n);
@@ -44,7 +44,7 @@ struct population_mean {
 void population_mean(const struct population *p, const struct abrasion_par *par, size_t n,
 	struct population_mean *m);
 
-/* The widest gap at which they carry a pressure; NAN where they carry it at none, *most
+/* The widest gap at which they carry a pressure; NAN if they carry it at none, *most
  * is what they carry at most.  The gap of par is not used. */
 double population_gap(const struct population *p, const struct abrasion_par *par,
 	double pressure, size_t n, double *most);

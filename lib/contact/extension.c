@@ -148,7 +148,7 @@ static inline void add_cells(double *to, double w, lanes x, int n)
 	lanes_store(to, lanes_load(to, n) + w * x, n);
 }
 
-/* Adds w times a fine row of the residual, which is 0 where it is not active, and w where
+/* Adds w times a fine row of the residual, which is 0 if it is not active, and w where
  * it is. */
 static void add_residual(const struct extension *e, size_t row, double w, double *value,
 	double *weight, size_t n)

@@ -36,7 +36,7 @@ struct mlms {
 };
 
 /* The coarse grid reaches order / 2 nodes beyond the fine one, so that the same weights
- * serve up to its rim. */
+ * apply up to its edge. */
 static size_t coarse_size(size_t n, int order)
 {
 	return (n - 1) / 2 + (size_t)order;
@@ -60,7 +60,8 @@ static void set_weights(struct mlms *m)
 	}
 }
 
-/* Places, relative to a cell, of the coarse nodes that stand for it, and their weights.
+/* Positions, relative to a cell, of the coarse nodes that represent it, and their
+ * weights.
  */
 struct nodes {
 	int n, place[ORDER_MAX];

@@ -30,7 +30,7 @@ struct contact_patch {
 };
 
 /* Finds the patches of a pressure, in the order of their first cells.  Returns their
- * number and a new array for free(); NULL and 0 where there are none, with errno ENOMEM
+ * number and a new array for free(); NULL and 0 if there are none, with errno ENOMEM
  * when out of memory, 0 otherwise. */
 struct contact_patch *contact_patches(
 	const struct patch_grid *grid, const double *pressure, size_t *n);

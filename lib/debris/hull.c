@@ -1,6 +1,6 @@
-/* Incremental hull: a point outside removes the faces it sees and is joined to their
- * rim.  "Sees" is strict and exact, so a face in whose plane the point lies stays, and no
- * face of zero area arises. */
+/* Incremental hull: a point outside removes the faces visible from it and is connected to
+ * their boundary. Visibility is strict and exact, so a face in whose plane the point lies
+ * stays, and no face of zero area arises. */
 #include "debris/hull.h"
 #include "num/room.h"
 #include "num/status.h"
@@ -18,7 +18,7 @@ struct hull {
 	size_t points, point_room;
 	struct face *face;
 	size_t nfaces, face_room;
-	struct hull_edge *edge; /* the rim while building, then the edges */
+	struct hull_edge *edge; /* the boundary while building, then the edges */
 	size_t edges, edge_room;
 	int *place; /* of the points among the corners */
 	size_t place_room;
@@ -86,7 +86,7 @@ static enum num_status add_edge(struct hull *h, int from, int to)
 	return NUM_OK;
 }
 
-/* Adds an edge of a removed face to the rim, or cancels it against its twin. */
+/* Adds an edge of a removed face to the boundary, or cancels it with its twin. */
 static enum num_status toggle_edge(struct hull *h, int from, int to)
 {
 	for (size_t i = 0; i < h->edges; i++)
@@ -180,7 +180,8 @@ static size_t plane_hull(
 /* Drops repeated points and those that are no corners of the hull of their plane across
  * an axis, x or y, which cannot be corners of the body.  Bodies made of cells have many.
  */
-static enum num_status drop_inside(struct hull *h, struct hull_point *point, size_t *count, int axis)
+static enum num_status drop_inside(
+	struct hull *h, struct hull_point *point, size_t *count, int axis)
 {
 	size_t kept = 0, first = 0, unique = 0;
 

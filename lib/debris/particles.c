@@ -1,6 +1,6 @@
 /* The stretches are sorted by column and each body is filled from its first one.  On a
- * periodic grid every stretch is reached in a frame, whole periods from the grid; where
- * a body meets itself in another frame it goes round the grid. */
+ * periodic grid every stretch is visited with an offset of whole periods; a body that is
+ * visited with two different offsets is infinite. */
 #include "debris/particles.h"
 #include "debris/chords.h"
 #include "debris/hull.h"
@@ -17,9 +17,9 @@
 
 enum { X, Y, Z };
 
-/* Steps of depth to a body in its hull where none are given.  Between the corners of a
- * hull and the chords between them lies more than the square of their number; columns are
- * no finer than their spacing either. */
+/* Steps of depth to a body in its hull where none are given.  The number of chords grows
+ * with the square of the number of corners of a hull; columns are no finer than their
+ * spacing either. */
 enum { STEPS = 64 };
 
 /* A stretch on its way. */

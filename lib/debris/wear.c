@@ -214,9 +214,9 @@ static enum wear_status remove_layers(struct wear *w)
 			take_layer(w, k))
 			return WEAR_MEMORY;
 		w->result->depth = z;
-		/* The potential set may go on anywhere that was in reach at this depth:
-		 * the next is evaluated there, so that both sides of a crossing are
-		 * known. */
+		/* The potential set may continue wherever the bound allowed failure at
+		 * this depth: the next depth is evaluated there, so that both sides of a
+		 * crossing are known. */
 		if (p->rule == WEAR_POTENTIAL)
 			w->nspans = stress_reach(w->stress, z, p->yield, w->span);
 		else if (follow(w))

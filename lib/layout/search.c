@@ -21,7 +21,7 @@ void layout_judge(
 			next++;
 		if (next == coils)
 			break;
-		/* What the coils up to here know of the slowness, s/m. */
+		/* Information of the coils so far on the slowness, s/m. */
 		way = coil[next] - coil[k];
 		bound_closed(&par->bound, coil, next, &b);
 		sd = b.velocity / (par->bound.velocity * par->bound.velocity);

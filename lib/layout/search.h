@@ -1,10 +1,11 @@
 /* search.h - where to put a given number of coils
  *
- * The velocity is known best where the sum of squares of the positions is largest, half
- * the coils at either end; pairing asks for short ways from coil to coil.  A pulse is
- * paired from each place to the next: over the first way within the window of the
- * traffic, or what the width of the first pulse leaves of it; over later ones within
- * three standard errors on either side of what the coils so far have measured.
+ * The standard error of the velocity is smallest if the sum of squares of the positions
+ * is largest, with half of the coils at either end; matching requires short distances
+ * between coils.  A pulse is paired from each place to the next: over the first way
+ * within the window of the traffic, or what the width of the first pulse leaves of it;
+ * over later ones within three standard errors on either side of what the coils so far
+ * have measured.
  *
  *	struct layout_par par = { .bound = { ... }, .traffic = { ... } };
  *	layout_judge(&par, coil, 2, &judged);
@@ -24,7 +25,7 @@ struct layout_par {
 
 struct layout {
 	struct bound bound; /* closed form */
-	double unique;      /* probability that no other pulse can be taken for its own */
+	double unique;      /* probability of an unambiguous match */
 	double by_width;    /* the same where the first pulse's width is made use of */
 	long judged;        /* layouts looked at */
 };

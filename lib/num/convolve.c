@@ -50,7 +50,7 @@ struct convolve *convolve_new(
 	return convolve_borrow(nx, ny, kind, pool, NULL);
 }
 
-/* 1 where a transform of n points takes longer than a padded one: FFTW 3.3 does from the
+/* 1 if a transform of n points takes longer than a padded one: FFTW 3.3 does from the
  * prime factor 37 on (992 = 31 * 32: 0.9, 962 = 26 * 37: 1.3, 1021: 2.8 times as long).
  */
 static int is_awkward(size_t n)

@@ -306,7 +306,7 @@ enum ensemble_status ensemble_took_place(struct ensemble *e, long realisation, l
 	return reading(e, realisations_add(e->reader, &cell));
 }
 
-/* Realisations that nothing tells of shed nothing, in steps that all took place. */
+/* Realisations without rows have no particles, and all their steps took place. */
 static void add_empty(struct ensemble *e)
 {
 	double n = e->par.realisations - e->told;

@@ -135,8 +135,8 @@ static enum num_status bootstrap_open(
 	return NUM_MEMORY;
 }
 
-/* Draws as many groups as there are, those of realisations that nothing tells of among
- * them; returns how many realisations they have. */
+/* Draws as many groups as there are, including realisations without rows; returns the
+ * number of realisations drawn. */
 static double draw_groups(struct bootstrap *b)
 {
 	size_t n = b->groups;

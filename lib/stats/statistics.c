@@ -342,7 +342,8 @@ static struct estimate t_interval(
 	return e;
 }
 
-/* Golden section around the best of a grid of exponents; -1 if that is at the rim. */
+/* Golden-section search around the best of a grid of exponents; -1 if that is at an end
+ * of the grid. */
 static double best_exponent(const double *x, const double *y, size_t n, double unit)
 {
 	static const double golden = 0.6180339887498949;

@@ -11,7 +11,7 @@
 #include "num/status.h"
 #include <stddef.h>
 
-/* A value and its confidence interval; nan where there is none. */
+/* A value and its confidence interval; nan if there is none. */
 struct estimate {
 	double value, low, high;
 };
@@ -26,8 +26,8 @@ struct weibull {
 enum weibull_status {
 	WEIBULL_OK,
 	WEIBULL_NONE, /* fewer than two different values (apart by 1e-12 of themselves),
-		       * values outside [low, high], or no maximum: a cut-off sample
-		       * that looks like no Weibull distribution */
+		       * values outside [low, high], or no maximum: a truncated sample
+		       * that no Weibull distribution fits */
 	WEIBULL_MEMORY
 };
 

@@ -1,4 +1,5 @@
 /* free_sum.h - stress below a loaded part of an otherwise free half-space
+ *
  * Multilevel summation.  The stress at depth z is smooth on a length of about z, so it is
  * summed on points as far apart as the depth allows: loads are distributed onto them, and
  * the stress is interpolated at the nodes.  The influence is split by smooth windows

@@ -21,8 +21,8 @@ struct stress {
 	struct stress_par par;
 	const struct stress_criterion *criterion;
 	struct influence_par influence;
-	/* Pressures are held in this unit, a power of two near the largest, so that
-	 * squares neither overflow nor vanish. */
+	/* Pressures are scaled by a power of two near the largest one, so that squares
+	 * neither overflow nor underflow. */
 	double unit;
 	double *pressure;
 	double total;     /* N */
@@ -146,7 +146,7 @@ static void add_to_block(struct stress *s, int x, int y, double load)
 	b->load += load;
 }
 
-/* Power of two at or below the largest magnitude; 0 where a value is not finite. */
+/* Power of two at or below the largest magnitude; 0 if a value is not finite. */
 static double unit_of(const double *pressure, size_t n)
 {
 	double most = 0;

@@ -3,6 +3,7 @@
  * Sums the influence of every loaded cell (2-6) at the nodes below the cell centres.  The
  * surface carries pressure p, interpolated between the cell centres, and the shear mu p
  * along +x or +y.
+ *
  * On a free surface there is no load outside the grid; on a periodic one the pressure is
  * the Fourier series through the cell centres, and the mean lateral strain is zero.
  *

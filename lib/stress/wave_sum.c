@@ -82,8 +82,8 @@ struct carry {
 	double complex *const *spectrum;
 };
 
-/* Influence of wave (i, j).  The shortest wave along an axis of even size stands for
- * both directions: the mean of the two. */
+/* Influence of wave (i, j).  The shortest wave along an axis of even size represents both
+ * directions: the mean of the two. */
 static void grid_wave(
 	const struct carry *g, int i, int j, double complex number[STRESS_NUMBERS])
 {

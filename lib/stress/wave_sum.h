@@ -1,4 +1,5 @@
 /* wave_sum.h - stress below a periodic half-space
+ *
  * The pressure is the Fourier series through the cell centres; the mean lateral strain is
  * zero.  A wave decays exponentially with wavenumber times depth, so below the surface
  * the short waves are omitted, the sum is computed on as few points as the others need,

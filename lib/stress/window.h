@@ -1,4 +1,5 @@
 /* window.h - sums over the loads of a rectangle, by Fourier transform
+ *
  * Loads and nodes are on mx times my points; a kernel extends reach_x and reach_y points
  * in either direction.  A rectangle much larger than the reach is cut into tiles, which
  * are transformed with the loads within reach (overlap-save); tiles without loads, or in
