@@ -38,7 +38,7 @@ static const struct prog prog = { "sensorsim",
 	"[file]", "table: diameter [time] [velocity], unless --uniform",
 	"signal: two or four channels, V", opts };
 
-/* What comes along: particles and events that are none, in order of time1. */
+/* Particles and other events, in order of time1. */
 struct traffic {
 	struct source *source;
 	struct disturbances *disturbances; /* NULL: none */
@@ -154,7 +154,7 @@ static struct table_out *create_truth(const char *cmd)
 static void run(struct traffic *f, struct table_out *t, struct signal_out *out)
 {
 	static double x[4 * BLOCK];
-	double rate = (double)sensors_rate(), frames = 0;
+	double rate = sensors_rate(), frames = 0;
 	/* The first trace of an event lies before its time1 by no more than this. */
 	double ahead =
 		fmax(sensors_half_pulse(source_slowest(f->source)), 2 * sensors_pulse());

@@ -115,9 +115,6 @@ void sensors_check(void)
 {
 	if (lag.n && lag.v[0] > lag.v[1])
 		die(EXIT_USAGE, "--lag: want A:B with A not above B");
-	if (rate != floor(rate))
-		die(EXIT_USAGE, "--rate: AU requires an integer number of hertz, got %g",
-			rate);
 	if (coil.n && opt_given("calibration"))
 		die(EXIT_USAGE, "--coil and --calibration exclude one another");
 	if (coil.n && !(coil.v[3] >= 1 && coil.v[4] > 0 && coil.v[5] > coil.v[4]))
@@ -132,9 +129,9 @@ void sensors_check(void)
 	check_lines("pump", &pump, pump_frequency, 1);
 }
 
-long sensors_rate(void)
+double sensors_rate(void)
 {
-	return (long)rate;
+	return rate;
 }
 
 struct stream sensors_stream(uint64_t seed, uint32_t realisation)

@@ -6,6 +6,7 @@
 #include "cli/opt.h"
 #include "cli/stats.h"
 #include "io/signals.h"
+#include "moment.h"
 #include "recording.h"
 #include <math.h>
 #include <stdlib.h>
@@ -21,7 +22,7 @@ static int from, to;
 static struct opt_list rate = { 0 };
 static long channels, skip;
 static double scale = 1;
-static const char *columns, *time_column;
+static const char *columns, *time_column, *start;
 
 static const struct opt opts[] = {
 	{ 0, "from", OPT_WORD, UNIT_NONE, &from, 0, 0, "auto|au|text|raw|sound",
@@ -29,7 +30,7 @@ static const struct opt opts[] = {
 		0 },
 	{ 'o', "output", OPT_WORD, UNIT_NONE, &to, 0, 0, "au|text|raw|wav|flac|channels",
 		"output format, or a table of the channels", out_words, 0 },
-	{ 'r', "rate", OPT_LIST, UNIT_FREQUENCY, &rate, 1, 2e9, "F",
+	{ 'r', "rate", OPT_LIST, UNIT_FREQUENCY, &rate, RATE_LEAST, RATE_MOST, "F",
 		"text and raw: sampling rate (default from the times)", NULL, 0 },
 	{ 0, "channels", OPT_INT, UNIT_COUNT, &channels, 1, 1024, "N",
 		"raw: number of channels of interleaved little-endian float64", NULL, 0 },
@@ -38,6 +39,8 @@ static const struct opt opts[] = {
 		0 },
 	{ 0, "time", OPT_TEXT, UNIT_NONE, &time_column, 0, 0, "NAME",
 		"text: column of the times (default time or t)", NULL, 0 },
+	{ 0, "start", OPT_TEXT, UNIT_NONE, &start, 0, 0, "TIME",
+		"moment of the first sample in ISO 8601, if the input has none", NULL, 0 },
 	{ 0, "skip-lines", OPT_INT, UNIT_COUNT, &skip, 0, 1000000, "N",
 		"text: number of lines before the heading", NULL, 0 },
 	{ 0, "scale", OPT_NUM, UNIT_NONE, &scale, -1e300, 1e300, "K",
@@ -54,12 +57,17 @@ static double clipped;
 
 static void check_options(void)
 {
+	struct moment moment;
+
 	if (from == FROM_RAW && (!rate.n || !channels))
 		die(EXIT_USAGE, "--from raw requires --rate and --channels");
 	if (from != FROM_RAW && channels)
 		die(EXIT_USAGE, "--channels requires --from raw");
 	if (scale == 0)
 		die(EXIT_USAGE, "--scale must not be 0");
+	if (start && !moment_parse(start, &moment))
+		die(EXIT_USAGE, "--start %s: expected a moment like 2026-11-22T03:04:05.5Z",
+			start);
 }
 
 int main(int argc, char **argv)
@@ -70,6 +78,7 @@ int main(int argc, char **argv)
 		.channels = (int)channels,
 		.columns = columns,
 		.time = time_column,
+		.start = start,
 		.skip = skip };
 	struct recording *in;
 	struct recording_out *out = NULL;

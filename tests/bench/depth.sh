@@ -23,7 +23,7 @@ wear() {
 }
 
 row() {
-	paste new fine | awk -v scene="$scene" -v way="$1" -v t="$(column seconds stats.tsv)" '
+	paste new fine | awk -v scene="$scene" -v way="$1" -v t="$(column cpu_seconds stats.tsv)" '
 		{ e = $3 ? $1 / $3 - 1 : 0; if (e * e > worst * worst) worst = e
 		v += $1; w += $3; n += $2; m += $4 }
 		END { printf "%s\t%s\t%.1e\t%.1e\t%.1e\t%.3g\n", scene, way, v / w - 1, worst, n / m - 1, t / NR }'
