@@ -7,13 +7,13 @@
 #include <string.h>
 
 const char *const footprint_names[FOOTPRINT_FEATURES] = { "cells", "mean_stress",
-	"largest_stress", "load", "pressure", "contact", "spread", "neighbours",
-	"friction", "poisson", "depth" };
+	"largest_stress", "load", "pressure", "contact", "unevenness", "spread",
+	"neighbours", "friction", "poisson", "depth" };
 
 /* The root of strength over stress at the depth found is 1 within CLOSE, which is less
  * than the model of the loss is off; secants meet it in two or three. */
 enum { STEPS = 12 };
-static const double CLOSE = 0.01;
+static const double CLOSE = 0.02;
 
 struct footprints {
 	struct stress_par par;
@@ -74,6 +74,7 @@ static void take_cell(
 	r->high[0] = fmax(r->high[0], x + s->dx);
 	r->high[1] = fmax(r->high[1], y + s->dy);
 	r->load += p;
+	r->squares += p * p;
 	r->peak = fmax(r->peak, p);
 	r->contact += p > 0;
 	r->stress_sum += v;
@@ -172,6 +173,13 @@ static double depth_below(
 	return z;
 }
 
+static double unevenness(const struct footprint *r)
+{
+	double mean = r->load / r->area;
+
+	return r->load > 0 ? log(r->squares / (double)r->cells / (mean * mean)) : 0;
+}
+
 static void describe(const struct footprints *f, struct footprint *r, double yield)
 {
 	double *x = r->feature;
@@ -183,6 +191,7 @@ static void describe(const struct footprints *f, struct footprint *r, double yie
 	x[FOOTPRINT_LOAD] = log1p(r->load / r->area / yield);
 	x[FOOTPRINT_PRESSURE] = log1p(r->peak / yield);
 	x[FOOTPRINT_CONTACT] = r->contact / (double)r->cells;
+	x[FOOTPRINT_UNEVEN] = unevenness(r);
 	x[FOOTPRINT_SPREAD] = log(r->spread / r->area);
 	x[FOOTPRINT_NEIGHBOUR] = log1p(pressed_by_others(f, r) / yield);
 	x[FOOTPRINT_FRICTION] = fabs(f->par.mu);

@@ -19,6 +19,7 @@ enum footprint_feature {
 	FOOTPRINT_LOAD,      /* ln of 1 + load over area and yield stress */
 	FOOTPRINT_PRESSURE,  /* ln of 1 + largest pressure over yield stress */
 	FOOTPRINT_CONTACT,   /* loaded share of the cells */
+	FOOTPRINT_UNEVEN,    /* ln of mean square over squared mean pressure */
 	FOOTPRINT_SPREAD,    /* ln of mean square distance from the centroid over area */
 	FOOTPRINT_NEIGHBOUR, /* ln of 1 + sum of load over squared distance and yield
 			      * stress of the other regions and the load between them */
@@ -40,7 +41,7 @@ struct footprint {
 	double depth;           /* at which the stress below it is the yield stress, m */
 	double feature[FOOTPRINT_FEATURES];
 	/* what the features are made of */
-	double load, peak, stress_sum, stress_most, contact, spread;
+	double load, squares, peak, stress_sum, stress_most, contact, spread;
 };
 
 struct footprints;

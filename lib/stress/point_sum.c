@@ -5,8 +5,9 @@
 #include <stdlib.h>
 
 enum { BLOCK = 8 };
-static const double FAR = 3;    /* sides of a block */
-static const double NEAR = 2.5; /* cells */
+static const double FAR = 3; /* sides of a block */
+static const double NEAR =
+	1.25; /* cells: farther elements are points within some percent */
 
 struct block {
 	double load, x, y; /* sum of pressures and their centroid, m */

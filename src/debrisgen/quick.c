@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 static const char *path;
-static double level = 0.9, width = 0.1, audit = 0.02;
+static double level = 0.9, width = 0.25, audit = 0.02;
 
 struct opt quick_rows[] = {
 	OPT_HEADING("Surrogate"),
