@@ -125,8 +125,9 @@ static struct contact *new_grid(
 	return c;
 }
 
-/* While the coarser grid is at work this one needs none of its own arrays, and lends
- * them: four of its arrays fit into one, or on a strip into two and a bit. */
+/* While the coarser grid is in use this one does not need its arrays and lends them: four
+ * arrays of the coarser grid fit into one, or for elongated grids into slightly more than
+ * two. */
 static enum num_status make_coarse(struct contact *c)
 {
 	struct contact_par par;

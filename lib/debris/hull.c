@@ -86,7 +86,7 @@ static enum num_status add_edge(struct hull *h, int from, int to)
 	return NUM_OK;
 }
 
-/* Adds an edge of a removed face to the rim, or cancels it against its twin. */
+/* Adds an edge of a removed face to the boundary, or cancels it with its twin. */
 static enum num_status toggle_edge(struct hull *h, int from, int to)
 {
 	for (size_t i = 0; i < h->edges; i++)
@@ -180,7 +180,8 @@ static size_t plane_hull(
 /* Drops repeated points and those that are no corners of the hull of their plane across
  * an axis, x or y, which cannot be corners of the body.  Bodies made of cells have many.
  */
-static enum num_status drop_inside(struct hull *h, struct hull_point *point, size_t *count, int axis)
+static enum num_status drop_inside(
+	struct hull *h, struct hull_point *point, size_t *count, int axis)
 {
 	size_t kept = 0, first = 0, unique = 0;
 

@@ -28,16 +28,16 @@ enum estimate_quantity {
 
 enum num_status estimate_all(const struct ensemble *e, struct estimate out[ESTIMATES]);
 
-/* Puts intervals from draws of whole realisations with replacement (Efron's bootstrap)
- * into out, but for the distance: particles of one surface hang together.  Needs groups
- * (struct ensemble_par); where there are more realisations than groups, the groups are
- * drawn, whose means vary as those of their realisations do. */
+/* Computes intervals by bootstrap samples of whole realisations (Efron), except for the
+ * distance: particles of one surface are correlated.  Needs groups (struct ensemble_par);
+ * where there are more realisations than groups, the groups are drawn, whose means vary
+ * as those of their realisations do. */
 enum num_status estimate_bootstrap(const struct ensemble *e, uint64_t seed, long draws,
 	struct estimate out[ESTIMATES]);
 
 /* Standard errors of the estimates and of their logarithms by the same draws, enlarged by
  * sqrt(K / (K - 1)) for K realisations, since resampling has their variance over K; that
- * of the volume from its standard deviation.  NAN where there is none. */
+ * of the volume from its standard deviation.  NAN if there is none. */
 enum num_status estimate_errors(const struct ensemble *e, uint64_t seed, long draws,
 	const struct estimate value[ESTIMATES], double error[ESTIMATES],
 	double log_error[ESTIMATES]);

@@ -12,8 +12,9 @@ enum {
 	OUTER = 2 * INNER, /* to that of the next */
 	RADIUS =
 		2 * INNER, /* cells to the radius of the innermost, on every other cell */
-	REACH = RADIUS + 1,  /* of what it leaves to the cells: the element adds one */
-	SMALL = 32,          /* sides up to this are summed in full, which is no slower */
+	REACH = RADIUS +
+		1,  /* of the part that is summed on the cells: the element adds one */
+	SMALL = 32, /* sides up to this are summed in full, which is no slower */
 	COARSEST = 6 * OUTER /* points per side up to which a window does not save time */
 };
 
@@ -319,7 +320,7 @@ static enum num_status level_new(const struct free_sum *s, struct level *l, int 
 }
 
 /* Fields on the points of a level, cells apart: of all loads, or of those outside the
- * window of INNER points where finer points have the rest. */
+ * window of INNER points if finer points sum the others. */
 static enum num_status sum_level(
 	struct free_sum *s, double z, int cells, int outer, struct level *l)
 {

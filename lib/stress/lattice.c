@@ -126,7 +126,7 @@ void lattice_done(struct lattice *l)
 	free(l);
 }
 
-/* A row of cells onto a row of points; 0 where all are zero. */
+/* A row of cells onto a row of points; 0 if all are zero. */
 static int spread_row(
 	const struct line *l, const double *cell, int element, double *restrict row)
 {

@@ -1,9 +1,10 @@
 /* recording.h - signals in the formats of other programs
  *
- * Text: one row per frame, cells parted by TAB, semicolon, comma or blanks; with any but
- * commas decimal commas are read, too.  What sigconvert wrote is a table of ours, which
- * has an end and tells rate, units, start, seed and filters.  Raw: little-endian float64,
- * interleaved.  Sound: what libsndfile knows, where the program was built with it.
+ * Text: one row per frame, cells separated by TAB, semicolon, comma or blanks; with any
+ * but commas decimal commas are read, too.  What sigconvert wrote is a table of ours,
+ * which has an end and tells rate, units, start, seed and filters.  Raw: little-endian
+ * float64, interleaved.  Sound: the formats of libsndfile, if the program was built with
+ * it.
  */
 #ifndef RECORDING_H
 #define RECORDING_H
