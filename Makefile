@@ -9,6 +9,7 @@
 #	make check-long   the longer checks; make check-all: both; make check-cluster: under Slurm
 #	make bench        error against run time; one domain: make bench-contact
 #	make extremes-contact  the table of extreme scenes of a domain
+#	make thesis       every item of the thesis beside ours, on one page; make thesis-quick
 #	make matrix       duet on a matrix of instruments: rows wrong, found, errors, time
 #	make lint asan fuzz    linters, sanitizers, fuzzers
 #	make uninstall dist clean
@@ -238,6 +239,11 @@ demo:
 	@$(MAKE) --no-print-directory all
 	@$(MAKE) --no-print-directory -C examples/demo \
 		SURFACE="$(if $(filter /%,$(SURFACE)),,$(SURFACE:%=$(CURDIR)/))$(SURFACE)"
+
+# Every experiment of the thesis, and build/thesis/full/index.html or .../quick/...
+.PHONY: thesis thesis-quick
+thesis thesis-quick: all $(UNITS)
+	+@MAKE="$(MAKE)" scripts/thesis $(if $(filter thesis,$@),full,quick)
 
 # Those that print their options.
 COMPLETED = $(BUILT) wearplot wearwatch
