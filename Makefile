@@ -40,10 +40,11 @@ Q = $(if $(V),,@)
 say = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),@:,@printf '  %-4s %s\n' $(1) '$(2)')
 
 # The outer libraries of each program; what it uses of lib/ the linker takes from one archive.
-PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal surfimport sigconvert wear-volume
+PROGRAMS = roughgen bemcontact debrisgen debrisfit debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal surfimport sigconvert wear-volume
 roughgen_LIBS = fftw
 bemcontact_LIBS = fftw
 debrisgen_LIBS = fftw
+debrisfit_LIBS = fftw
 debrisstat_LIBS = gsl
 bpfilter_LIBS = fftw
 duet_LIBS = fftw
