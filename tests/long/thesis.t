@@ -8,11 +8,11 @@ command -v gnuplot >/dev/null || {
 }
 left() { (cd "$top" && git status --porcelain --ignored -- examples scripts 2>/dev/null); }
 left >before
-ok 'every experiment runs and the page is written' env OUT="$work/thesis" "$top/scripts/thesis" quick
+ok 'every experiment runs and the page is written' env MAKE='make -j 2' OUT="$work/thesis" "$top/scripts/thesis" quick
 left >after
 same 'nothing is left in the source tree' before after
 ok 'a second time nothing is to be done' env OUT="$work/thesis" "$top/scripts/thesis" quick
-is 'in less than five seconds' "$(cut -d ' ' -f 1 out | grep -c ' s$')" 0
+is 'no experiment ran again' "$(grep -c ' s$' out)" 0
 
 # value EXPERIMENT KEY
 value() {
