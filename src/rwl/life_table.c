@@ -119,8 +119,8 @@ static void put_scores(
 	table_put(t->out, r.error);
 	table_put(t->out, r.accuracy);
 	table_put(t->out, r.mass);
-	table_put(t->out, counted ? r.inside : NAN);
-	table_put(t->out, counted ? r.covered : NAN);
+	table_put(t->out, counted ? (double)r.inside : NAN);
+	table_put(t->out, counted ? (double)r.covered : NAN);
 	table_put(t->out, r.crps);
 }
 

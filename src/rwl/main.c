@@ -107,7 +107,7 @@ static struct paths *draw_paths(struct partition *p)
 	struct paths_par par = { .seed = (uint64_t)seed,
 		.first = (uint32_t)first_path,
 		.count = count,
-		.rule = rule,
+		.rule = (enum rate_rule)rule,
 		.area = pump.pair.area,
 		.parts = (double)parts,
 		.critical = sizes ? pump.critical_probability : NAN,

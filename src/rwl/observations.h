@@ -19,7 +19,7 @@
 
 /* Values of the options. */
 extern struct state_options {
-	int quantity;
+	enum pair_quantity quantity;
 	const char *unit;
 	double error; /* in that unit */
 } state_options;
@@ -31,7 +31,7 @@ struct state {
 	const struct pair *pair;
 	int time_column, value_column;
 	int sources_column, verdict_column; /* of particles; -1 where absent */
-	int quantity;                       /* enum pair_quantity, found in the columns */
+	enum pair_quantity quantity;                       /* enum pair_quantity, found in the columns */
 	int filtered;                       /* read from the column state */
 	double scale, time_scale;           /* to SI */
 	double debris;                      /* volume of the particles so far */
