@@ -9,6 +9,7 @@
 #	make check-long   the longer checks; make check-all: both; make check-cluster: under Slurm
 #	make bench        error against run time; one domain: make bench-contact
 #	make extremes-contact  the table of extreme scenes of a domain
+#	make thesis       every item of the thesis beside ours, on one page; make thesis-quick
 #	make matrix       duet on a matrix of instruments: rows wrong, found, errors, time
 #	make lint asan fuzz    linters, sanitizers, fuzzers
 #	make uninstall dist clean
@@ -31,17 +32,19 @@ DOCDIR ?= $(DATADIR)/doc/wearpipe
 # -ffp-contract=off: the same bytes from every build of one compiler.  Names are hidden
 # but for those that include/wearpipe/ declares.
 STD = -std=c11 -D_XOPEN_SOURCE=700 -ffp-contract=off -fPIC -fvisibility=hidden
-WARN = -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes
+WARN = -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes $(CONVERSION)
+CONVERSION = -Wconversion -Wsign-conversion
 B = build
 BIN = bin
 Q = $(if $(V),,@)
 say = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),@:,@printf '  %-4s %s\n' $(1) '$(2)')
 
 # The outer libraries of each program; what it uses of lib/ the linker takes from one archive.
-PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal surfimport sigconvert wear-volume
+PROGRAMS = roughgen bemcontact debrisgen debrisfit debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal surfimport sigconvert wear-volume
 roughgen_LIBS = fftw
 bemcontact_LIBS = fftw
 debrisgen_LIBS = fftw
+debrisfit_LIBS = fftw
 debrisstat_LIBS = gsl
 bpfilter_LIBS = fftw
 duet_LIBS = fftw
@@ -71,7 +74,7 @@ fftw_LINK = $(FFTW_LIBS)
 gsl_LINK = $(GSL_LIBS)
 
 # Scripts that users call, built and installed beside the programs.
-SCRIPTS = wearplot surfunzip
+SCRIPTS = wearplot surfunzip wearwatch
 
 ALL_CFLAGS = $(STD) $(WARN) $(CFLAGS) -pthread
 ALL_CPPFLAGS = -Iinclude -Ilib -Isrc -DWEARPIPE_VERSION='"$(VERSION)"' $(BLAS_FLAG) $(SNDFILE_FLAG) $(FFTW_CFLAGS) $(GSL_CFLAGS) $(CPPFLAGS)
@@ -115,13 +118,16 @@ $(BIN)/$(1): $(call objects,$(wildcard src/$(1)/*.c)) $(B)/libcommon.a $(B)/libc
 endef
 $(foreach p,$(PROGRAMS),$(eval $(call program,$(p))))
 
-$(SCRIPTS:%=$(BIN)/%): $(BIN)/%: scripts/%
+$(SCRIPTS:%=$(BIN)/%): $(BIN)/%: scripts/% share/page.css
 	@mkdir -p $(BIN)
-	@sed 's/@VERSION@/$(VERSION)/' $< >$@
+	@sed -e 's/@VERSION@/$(VERSION)/' -e '/^@STYLE@$$/r share/page.css' -e '/^@STYLE@$$/d' $< >$@
 	@chmod 755 $@
 
 $(B)/src/records/replay.o: ALL_CPPFLAGS += -DWEARPIPE_PROGRAMS='"$(PROGRAMS)"'
 $(B)/src/records/replay.o: Makefile
+
+# Not clean yet of implicit conversions.
+$(B)/lib/signal/%.o $(B)/src/duet/%.o $(B)/tests/%.o: CONVERSION =
 
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
@@ -205,6 +211,10 @@ matrix: all $(MATRIX)
 # The table of extreme scenes of one domain: make extremes-contact
 extremes-%: all
 	@sh tests/extremes/$*.t | sed -n 's/^\(not ok\|ok\) [0-9]* - /\1 | /p'
+# Those of the contact include solutions that are known.
+extremes-contact: all $(B)/long/exact
+	@{ sh tests/extremes/contact.t; $(B)/long/exact; } | \
+		sed -n 's/^\(not ok\|ok\) [0-9]* - /\1 | /p'
 
 lint: all
 	@scripts/lint
@@ -231,10 +241,17 @@ demo:
 	@$(MAKE) --no-print-directory -C examples/demo \
 		SURFACE="$(if $(filter /%,$(SURFACE)),,$(SURFACE:%=$(CURDIR)/))$(SURFACE)"
 
-$(B)/install/wearpipe $(B)/install/_wearpipe $(B)/install/wearpipe.fish: $(BUILT:%=$(BIN)/%) scripts/completion
+# Every experiment of the thesis, and build/thesis/full/index.html or .../quick/...
+.PHONY: thesis thesis-quick
+thesis thesis-quick: all $(UNITS)
+	+@MAKE="$(MAKE)" scripts/thesis $(if $(filter thesis,$@),full,quick)
+
+# Those that print their options.
+COMPLETED = $(BUILT) wearplot wearwatch
+$(B)/install/wearpipe $(B)/install/_wearpipe $(B)/install/wearpipe.fish: $(COMPLETED:%=$(BIN)/%) scripts/completion
 	@mkdir -p $(@D)
 	@scripts/completion $(if $(findstring fish,$@),fish,$(if $(findstring _,$(@F)),zsh,bash)) \
-		$(BUILT:%=$(BIN)/%) >$@
+		$(COMPLETED:%=$(BIN)/%) >$@
 
 HEADERS = $(wildcard include/wearpipe/*.h)
 MAN1 = $(wildcard man/*.1)
@@ -274,7 +291,7 @@ install: all $(LIBRARY) $(COMPLETIONS) $(B)/install/wearpipe.pc
 		done; \
 	done
 	@ln -sf $(SONAME) "$(DESTDIR)$(LIBDIR)/libwearpipe.so"
-	@for p in $(BUILT); do \
+	@for p in $(COMPLETED); do \
 		ln -sf wearpipe "$(DESTDIR)$(DATADIR)/bash-completion/completions/$$p" || exit; \
 	done
 
@@ -283,7 +300,7 @@ uninstall:
 		for f in $$files; do rm -f "$(DESTDIR)$$folder/$${f##*/}"; done; \
 	done
 	@rm -f "$(DESTDIR)$(LIBDIR)/libwearpipe.so"
-	@for p in $(BUILT); do rm -f "$(DESTDIR)$(DATADIR)/bash-completion/completions/$$p"; done
+	@for p in $(COMPLETED); do rm -f "$(DESTDIR)$(DATADIR)/bash-completion/completions/$$p"; done
 	@for d in "$(INCLUDEDIR)/wearpipe" "$(DATADIR)/wearpipe/python" "$(DATADIR)/wearpipe" "$(DOCDIR)"; do \
 		[ ! -d "$(DESTDIR)$$d" ] || rmdir "$(DESTDIR)$$d"; \
 	done

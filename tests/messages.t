@@ -9,7 +9,7 @@ printf 'RIFF\044\0\0\0WAVEfmt ' >s.wav
 printf 't\ty\n0\t1\n1\t2\n' >t.tsv
 
 # One stream for another: what it is, and what the program reads.
-fails "a field for a table" 1 's.nrrd: this is a field (NRRD), want table: .*, as debrisgen writes' debrisstat s.nrrd
+fails "a field for a table" 1 's.nrrd: this is a field (NRRD), want table: .*, from debrisgen' debrisstat s.nrrd
 fails "a signal for a table" 1 's.au: this is a signal (AU), want table: t y' aopf --threshold 1 s.au
 fails "a table for a field" 1 't.tsv: this is text, want fields: height' bemcontact --pressure 1MPa --young 210GPa t.tsv
 fails "a signal for a field" 1 's.au: this is a signal (AU), want fields: height' \
@@ -17,7 +17,7 @@ fails "a signal for a field" 1 's.au: this is a signal (AU), want fields: height
 fails "a table for a signal" 1 't.tsv: this is text, want signal' bpfilter t.tsv
 fails "a field for a signal" 1 's.nrrd: this is a field (NRRD), want signal' bpfilter s.nrrd
 fails "WAV tells how to convert it" 1 's.wav: this is WAV audio, want signal: sox IN .* converts it' bpfilter s.wav
-fails "a surface without pressure tells who makes it" 1 "no field 'pressure', want .* as bemcontact writes" \
+fails "a surface without pressure tells who makes it" 1 "no field 'pressure', want .* from bemcontact" \
 	debrisgen --yield 355MPa s.nrrd
 fails "an empty table" 1 '/dev/null: empty, want' rwl --new --wear /dev/null --step-time 1h
 
@@ -25,7 +25,7 @@ fails "an empty table" 1 '/dev/null: empty, want' rwl --new --wear /dev/null --s
 printf 't;y\n0;1\n' >semicolon
 fails "semicolons" 1 "no column 'y' among 't;y': a TAB parts columns, not a semicolon" aopf --threshold 1 semicolon
 printf 't\ty\n0,5\t1\n' >comma
-fails "decimal commas" 1 "line 2: t: '0,5' is not a number: decimals are behind a point" aopf --threshold 1 comma
+fails "decimal commas" 1 "line 2: t: '0,5' is not a number: write decimals with a point" aopf --threshold 1 comma
 printf 'Time [h]\tFlow [L/min]\n0\t1\n' >named
 fails "the columns there are are named" 1 "no column 'y' among 'Time \[h\]' 'Flow \[L/min\]'" aopf --threshold 1 named
 
@@ -34,11 +34,11 @@ fails "a unit with wrong capitals" 2 'young 210Gpa: did you mean GPa?' bemcontac
 fails "one of two" 2 'young 210GPa,70gpa: did you mean GPa?' bemcontact --young 210GPa,70gpa --pressure 1MPa s.nrrd
 fails "a unit of another quantity" 2 "'210um' has the wrong unit" bemcontact --young 210um --pressure 1MPa s.nrrd
 fails "a blank before the unit" 2 "'mm' is taken for a file, which is not there; a unit" roughgen --length 1 mm
-is "a file of that name is one" "$(cp s.nrrd mm; roughgen --sq 1um mm | records - | grep -c height)" 1
+is "a file of that name is read as a file" "$(cp s.nrrd mm; roughgen --sq 1um mm | records - | grep -c height)" 1
 
 # Possible, but hardly meant: said, and done.
 doubted() {
-	is "$1" "$("$3" 2>&1 >/dev/null | grep -c -e "$2")" 1
+	is "$1 gives a warning" "$("$3" 2>&1 >/dev/null | grep -c -e "$2")" 1
 }
 metre() { roughgen --points 8 --length 1; }
 white() { roughgen --points 8 --length 10um --corr 1um; }
@@ -49,5 +49,5 @@ doubted "a surface of a metre" '--length 1 m: .* is 1mm meant?' metre
 doubted "waves shorter than the spacing" '--corr 1e-06 m is below the spacing of 1.25e-06 m' white
 doubted "a body softer than jelly" '--young 210 Pa .* is 210GPa meant?' soft
 doubted "a yield stress of jelly" '--yield 355 Pa .* is 355MPa meant?' weak
-is "what is ordinary is not doubted" "$(plain 2>&1 >/dev/null)" ""
+is "ordinary values give no warning" "$(plain 2>&1 >/dev/null)" ""
 done_testing

@@ -16,59 +16,138 @@ sigconvert --output text a.au >a.tsv
 sigconvert a.tsv >b.au
 sigconvert --output text b.au >b.tsv
 is "text reads back to the last bit" "$(rows a.tsv)" "$(rows b.tsv)"
-is "rate and channels are kept" "$(sed -n 's/^# rate: //p' b.tsv) $(head -n 4 b.tsv | grep ^time)" \
+is "rate and channels are kept" "$(sed -n 's/^# rate: //p' b.tsv) $(grep ^time b.tsv)" \
 	"10000 $(printf 'time\tchannel1\tchannel2')"
 sigconvert --output raw a.au >a.raw
-is "raw has 8 bytes a sample" "$(wc -c <a.raw)" 48000
+is "raw has 8 bytes per sample" "$(wc -c <a.raw)" 48000
 sigconvert --from raw --rate 10kHz --channels 2 --output text a.raw >c.tsv
 is "raw reads back to the last bit" "$(rows a.tsv)" "$(rows c.tsv)"
-is "the header holds the pipeline" "$(sed -n 's/^# cmd: .*| //p' a.tsv)" "sigconvert --output text"
+is "the header records the pipeline" "$(sed -n 's/^# cmd: .*| //p' a.tsv)" "sigconvert --output text"
 
 printf 'Time [ms];Flow [L/min];"u1 [mV]";u2 (V)\r\n0,0;60;1500,5;2\r\n0,5;61;-20;nan\r\n1,0;60;3;4\r\n' >daq.csv
 sigconvert --columns 'u1;u2' daq.csv >d.au
-is "columns by name, units and decimal commas" "$(samples d.au)" "1.5005 2 -0.02 nan 0.003 4"
-is "the times tell the rate" "$(sigconvert --output text d.au | sed -n 's/^# rate: //p')" 2000
+is "columns are read by name, with units and decimal commas" "$(samples d.au)" "1.5005 2 -0.02 nan 0.003 4"
+is "the times determine the rate" "$(sigconvert --output text d.au | sed -n 's/^# rate: //p')" 2000
 sigconvert --columns 2 --scale 0.5 daq.csv >d.au
-is "a column by number, scaled" "$(samples d.au)" "30 30.5 30"
+is "a column is read by number and scaled" "$(samples d.au)" "30 30.5 30"
 printf 'made by hand\na,b\n1.5,2\n3,4\n' >plain.csv
 sigconvert --skip-lines 1 --rate 100Hz plain.csv >d.au
-is "no times: the rate is told" "$(samples d.au)" "1.5 2 3 4"
+is "the rate can be given if there are no times" "$(samples d.au)" "1.5 2 3 4"
 printf 'a b\n1 2\n3 4\n' | sigconvert --from text --rate 100Hz >d.au
-is "blanks, from a pipe" "$(samples d.au)" "1 2 3 4"
+is "cells separated by blanks are read from a pipe" "$(samples d.au)" "1 2 3 4"
+
+# The rate that times tell is the one of fewest digits that they allow.
+# told STEP DIGITS ROWS: the rate learned from times printed with so many digits
+told() {
+	awk -v step="$1" -v digits="$2" -v n="$3" 'BEGIN { print "t\tu"
+		for (i = 0; i < n; i++) printf "%.*f\t%d\n", digits, i * step, i }' >times.tsv
+	sigconvert --output text times.tsv 2>err | sed -n 's/^# rate: //p'
+}
+is "a step of 0.3 s" "$(told 0.3 1 20)" "3.3333333333333335"
+is "44100 Hz, times of nine digits" "$(told 2.2675736961451248e-05 9 300)" 44100
+is "44.1 Hz, times of six digits" "$(told 0.022675736961451248 6 500)" 44.1
+is "10007 Hz, exact times" "$(told 9.993004896572399e-05 15 300)" 10007
+is "10 kHz, times in whole milliseconds" "$(told 1e-4 3 3000)" 10000
+is "a minute" "$(told 60 0 10)" 0.016666666666666666
+is "and none warns" "$(cat err)" ''
+told 2.2675736961451248e-05 3 200 >out
+like "times that tell little are said to" "$(cat err)" 'tell no better .* --rate does'
+awk 'BEGIN { print "t\tu"; srand(3); for (i = 0; i < 1000; i++) print i / 100 + 0.001 * rand() "\t" i }' >jitter.tsv
+is "times that jitter by a tenth of a step" "$(sigconvert --output text jitter.tsv | sed -n 's/^# rate: //p')" 100
+printf 'Rate [Hz];u [V]\n12,5;1\n12,5;2\n' >rated.csv
+is "a column tells the rate" "$(sigconvert --output text rated.csv | sed -n 's/^# rate: //p')" 12.5
+printf 'Rate;u\n12,5;1\n12;2\n' >rated.csv
+fails "a rate that changes" 1 'line 3: rate 12 after 12.5' sigconvert rated.csv
+
+# A rate that is no whole number, and the moment of the first sample, pass every format.
+sigconvert --rate 44.1Hz --start 2026-11-22T03:04:05.250+01:00 plain.csv --skip-lines 1 >f.au
+is "a fraction of a hertz, and the start" \
+	"$(sigconvert --output text f.au | sed -n -e 's/^# rate: //p' -e 's/^# start: //p' | tr '\n' ' ')" \
+	"44.1 2026-11-22T03:04:05.250+01:00 "
+sigconvert --output text f.au | sigconvert | sigconvert --output text >g.tsv
+is "also through text and pipes" "$(sed -n -e 's/^# rate: //p' -e 's/^# start: //p' g.tsv | tr '\n' ' ')" \
+	"44.1 2026-11-22T03:04:05.250+01:00 "
+printf 'When,u\n2026-11-22 23:59:59.500,1\n2026-11-23 00:00:00.000,2\n2026-11-23 00:00:00.500,3\n' >when.csv
+sigconvert --time When when.csv >w.au
+is "moments are times, and tell the start" \
+	"$(sigconvert --output text w.au | sed -n -e 's/^# rate: //p' -e 's/^# start: //p' | tr '\n' ' ')$(samples w.au)" \
+	"2 2026-11-22T23:59:59.5 1 2 3"
+printf 't,u\n2024-02-29T00:30:00+01:00,1\n2024-02-28T23:30:01Z,2\n2024-02-28T23:30:02Z,3\n' >zones.csv
+is "a leap day, and zones that differ" "$(sigconvert --output text zones.csv | sed -n -e 's/^# rate: //p' -e 's/^# start: //p' | tr '\n' ' ')" \
+	"1 2024-02-29T00:30:00+01:00 "
+for moment in 2026-02-29T00:00 2026-13-01T00:00 2026-01-01T24:00 2026-01-01 22.11.2026; do
+	fails "a start of $moment" 2 'expected a moment like' sigconvert --start $moment a.au
+done
+fails "two starts" 2 'began at 2026-11-22T23:59:59.5' sigconvert --start 2026-11-22T00:00 w.au
+sensorsim --uniform 50um:150um --number 3 --duration 2s --rate 1234.5Hz | sigconvert --start 2026-11-22T03:00Z >s.au
+bpfilter --order 20 --band 20:200 s.au | tee b.au | duet --pulse-duration 10ms >found.tsv 2>err
+wear-volume --period 100ms found.tsv >volume.tsv 2>err
+is "the start passes bpfilter, duet and wear-volume" \
+	"$(sed -n 's/^# start: //p' found.tsv volume.tsv | tr '\n' ' ')" "2026-11-22T03:00Z 2026-11-22T03:00Z "
+is "and the rate bpfilter" "$(sigconvert --output text b.au | sed -n 's/^# rate: //p')" 1234.5
+
+# What is written as text has an end that its reader checks; numpy reads it as it is.
+head -c -40 a.tsv >torn.tsv
+fails "text that is cut off" 1 'torn.tsv' sigconvert torn.tsv
+sigconvert --from text --columns channel2 a.tsv >d.au
+is "a column of our own text" "$(samples d.au | cut -d ' ' -f 1-3)" "$(grep -v '^[#t]' a.tsv | cut -f 3 | head -n 3 | tr '\n' ' ' | sed 's/ $//')"
+py=python3
+$py -c 'import numpy' 2>/dev/null || py=/usr/bin/python3
+if $py -c 'import numpy' 2>/dev/null; then
+	is "numpy reads raw, text and a signal of fractional rate" "$($py - <<-'END'
+		import numpy as np
+		a = np.loadtxt('a.tsv', skiprows=sum(l[0] == '#' for l in open('a.tsv')))
+		t = np.genfromtxt('a.tsv', names=True, comments='#', skip_header=sum(1 for l in open('a.tsv') if l[0] == '#') - 1)
+		r = np.fromfile('a.raw').reshape(-1, 2)
+		b = open('f.au', 'rb').read()
+		x = np.frombuffer(b, '>f8', offset=int.from_bytes(b[4:8], 'big')).reshape(-1, 2)[:-1]
+		print((a[:, 1:] == r).all(), len(t) == len(a), x.ravel().tolist())
+	END
+	)" "True True [1.5, 2.0, 3.0, 4.0]"
+else
+	skip "numpy reads raw, text and a signal of fractional rate" "no numpy"
+fi
+# Noise of 1 mV with runs of four at the top of channel 1; channel 2 does not move.
+sensorsim --uniform 10um:11um --number 1 --duration 2s --noise 1mV | sigconvert --output text | grep -v '^#' |
+	awk -F '\t' -v OFS='\t' '/^[0-9]/ { if ((NR + 500) % 1000 < 4) $2 = 0.02; $3 = 0.5 } { print }' |
+	sigconvert --from text | sigconvert --output channels >channels.tsv
+is "samples at the end of the range are counted" "$(column rails channels.tsv | tr '\n' ' ')" '80 20000 '
+is "the largest sample of each channel is stated" "$(column high channels.tsv | tr '\n' ' ')" '0.02 0.5 '
+near "the noise of quiet sections is estimated to 6 %" "$(column level channels.tsv | head -n 1)" 9.4e-4 3e-5
+is "the noise of a dead channel is estimated" "$(column level channels.tsv | tail -n 1)" 0
 
 if sigconvert --output wav a.au >a.wav 2>err; then
 	sigconvert --output text a.wav >w.tsv
 	is "WAV in float64 reads back to the last bit" "$(rows a.tsv)" "$(rows w.tsv)"
 	sigconvert --from sound --output text <a.wav >w.tsv
-	is "also through a pipe" "$(rows a.tsv)" "$(rows w.tsv)"
+	is "WAV reads back through a pipe" "$(rows a.tsv)" "$(rows w.tsv)"
 	sigconvert --output flac --scale 0.1 a.au >a.flac
 	sigconvert --output text --scale 10 a.flac >f.tsv
-	near "FLAC has 24 bits" "$(paste a.tsv f.tsv | awk '/^[0-9]/ { d = $2 - $5; d = d < 0 ? -d : d; m = d > m ? d : m }
+	near "FLAC has 24 bits" "$(grep -v '^#' f.tsv >f; grep -v '^#' a.tsv | paste - f | awk '/^[0-9]/ { d = $2 - $5; d = d < 0 ? -d : d; m = d > m ? d : m }
 		END { printf "%.9f", m }')" 0 1.2e-6
 	printf 't\tu\n0\t0.5\n0.001\t2\n0.002\t-3\n' | sigconvert --from text --output flac --stats st >clip.flac 2>err
 	is "clipping is counted, said and marked: status 3" "$? $(column samples_clipped st) $(grep -c 'clipped' err)" "3 2 1"
 	is "and cuts at full scale" "$(samples clip.flac | awk '{ printf "%.3f %.3f %.3f", $1, $2, $3 }')" "0.500 1.000 -1.000"
+	fails "WAV of a fractional rate" 1 '44.1.* Hz: WAV and FLAC want a whole number' sigconvert --output wav f.au
 	head -c 20 a.wav >cut.wav
 	fails "a WAV that is cut off" 1 'cut.wav' sigconvert cut.wav
 	fails "noise that is no sound" 1 'tsv: ' sigconvert --from sound a.tsv
 else
-	skip "WAV and FLAC" "built without libsndfile"
+	skip "WAV and FLAC can be tested" "built without libsndfile"
 fi
 
-fails "no rate and no times" 1 'give --rate' sigconvert --skip-lines 1 plain.csv
+fails "no rate and no times" 1 'specify --rate' sigconvert --skip-lines 1 plain.csv
 fails "a column that is not there" 1 "no column 'x'" sigconvert --columns x daq.csv
 fails "no headings" 1 'want a line of headings' sigconvert --skip-lines 2 plain.csv
 printf 't\tu\n0\t1\n1\t2\n2\t3\n5\t4\n' >gap.tsv
 fails "samples that are missing" 1 'line 5: time 5 s, want 3 s' sigconvert --rate 1Hz gap.tsv
-printf 't\tu\n0\t1\n0.3\t2\n0.6\t3\n' >odd.tsv
-fails "a rate that is not whole" 1 'whole number' sigconvert odd.tsv
 printf 't\tu\n0\t1\n1\tx\n' >word.tsv
 fails "a word among samples" 1 'line 3: not a number' sigconvert word.tsv
 printf 't\tu\n0\t1\n1\n' >short.tsv
 fails "a short row" 1 'line 3: want 2 cells, got 1' sigconvert short.tsv
 printf 'Time [kg]\tu\n0\t1\n1\t1\n' >kg.tsv
 fails "times in kilograms" 1 'want a unit of time' sigconvert --time Time kg.tsv
-fails "raw without a rate" 2 'wants --rate and --channels' sigconvert --from raw a.raw
-fails "channels of what is not raw" 2 'is for --from raw' sigconvert --channels 2 a.au
+fails "raw without a rate" 2 'requires --rate and --channels' sigconvert --from raw a.raw
+fails "channels of what is not raw" 2 'requires --from raw' sigconvert --channels 2 a.au
 fails "half a frame of raw" 1 'a.raw' sh -c 'head -c 40 a.raw >h; mv h a.raw; sigconvert --from raw --rate 1 --channels 2 a.raw'
 done_testing

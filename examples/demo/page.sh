@@ -91,19 +91,11 @@ fi
 	cat <<'EOH'
 <!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
-<title>wearpipe: from a rough surface to remaining wear life</title><style>
-:root { color-scheme: light dark; --text: #222; --page: #fff; --soft: #f2f2f2; --line: #ccc }
-@media (prefers-color-scheme: dark) { :root { --text: #ddd; --page: #181818; --soft: #262626; --line: #444 } }
-body { font: 16px/1.5 sans-serif; max-width: 78em; margin: 0 auto; padding: 1em; color: var(--text); background: var(--page) }
-main { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 24em), 1fr)); gap: 1.2em }
-figure { margin: 0; min-width: 0 }
-img { width: 100%; height: auto; background: #fff; border: 1px solid var(--line) }
-figcaption { font-size: 95% }
-summary { cursor: pointer }
-pre { background: var(--soft); padding: 0.7em; overflow-x: auto; white-space: pre-wrap; overflow-wrap: anywhere }
-table { border-collapse: collapse; margin: 1em 0 }
-th, td { border-bottom: 1px solid var(--line); padding: 0.3em 0.8em; text-align: right }
-th:first-child, td:first-child { text-align: left }
+<title>wearpipe: from a rough surface to remaining wear life</title>
+EOH
+	echo '<style>'
+	cat "$here/../../share/page.css"
+	cat <<'EOH'
 </style></head><body>
 <h1>From a rough surface to remaining wear life</h1>
 EOH

@@ -90,7 +90,7 @@ FILE *file_reserve(const char *path, const char **name)
 	FILE *f;
 
 	if (path && strcmp(path, "-") == 0)
-		die(EXIT_USAGE, "-: an output wants the name of a file");
+		die(EXIT_USAGE, "-: an output requires a file name");
 	if (path && getenv(FILE_REPLAY) && strncmp(path, "/dev/fd/", 8) != 0)
 		path = "/dev/null";
 	f = path ? fopen(path, "ab") : stdout; /* not emptied yet */

@@ -1,9 +1,16 @@
 #include "cli/progress.h"
+#include "cli/msg.h"
+#include <dirent.h>
+#include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
-static double started = -1, drawn; /* seconds; drawn 0 while no bar is shown */
+static double started = -1, drawn; /* seconds; drawn 0 while no line is shown */
+static int terminal = -1, told;    /* progress() was called */
+static int line, lines = 1;        /* of this program and of all in its pipeline */
 
 static double now(void)
 {
@@ -13,31 +20,114 @@ static double now(void)
 	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-void progress(const char *what, double done, double total)
+/* The directory of a program's file, "" where the system does not tell. */
+static void folder_of(const char *process, char folder[PATH_MAX])
 {
-	enum { WIDTH = 40 };
+	char path[300], *slash;
+	ssize_t n;
+
+	snprintf(path, sizeof path, "/proc/%.255s/exe", process);
+	n = readlink(path, folder, PATH_MAX - 1);
+	folder[n > 0 ? n : 0] = '\0';
+	slash = strrchr(folder, '/');
+	if (slash)
+		*slash = '\0';
+}
+
+/* Programs of the suite in the same process group stand in one pipeline. */
+static void find_line(void)
+{
+	char mine[PATH_MAX], other[PATH_MAX];
+	DIR *all = opendir("/proc");
+	struct dirent *e;
+
+	folder_of("self", mine);
+	while (all && *mine && (e = readdir(all))) {
+		long pid = strtol(e->d_name, NULL, 10);
+
+		if (pid <= 0 || pid == getpid() || getpgid((pid_t)pid) != getpgrp())
+			continue;
+		folder_of(e->d_name, other);
+		if (strcmp(mine, other) == 0) {
+			lines++;
+			line += pid < getpid();
+		}
+	}
+	if (all)
+		closedir(all);
+}
+
+/* Puts the text into the line of this program, all at once, lest others write between:
+ * makes room below, goes down, and comes back. */
+static void put(const char *text)
+{
+	char all[512];
+	size_t n = 0;
+
+	for (int i = 1; i < lines && i < 32; i++)
+		all[n++] = '\n';
+	if (n > 0)
+		n += (size_t)snprintf(all + n, sizeof all - n, "\033[%zuA", n);
+	if (line > 0)
+		n += (size_t)snprintf(all + n, sizeof all - n, "\033[%dB", line);
+	n += (size_t)snprintf(all + n, sizeof all - n, "\r%.300s\033[K", text);
+	if (line > 0)
+		n += (size_t)snprintf(all + n, sizeof all - n, "\033[%dA", line);
+	n += (size_t)snprintf(all + n, sizeof all - n, "\r");
+	if (write(STDERR_FILENO, all, n) < 0)
+		terminal = 0;
+}
+
+static const char *duration(double seconds, char text[32])
+{
+	double h = seconds / 3600;
+
+	snprintf(text, 32, seconds < 100 ? "%.0f s" : h < 2 ? "%.0f min" : "%.1f h",
+		seconds < 100 ? seconds
+		: h < 2	      ? seconds / 60
+			      : h);
+	return text;
+}
+
+static void draw(const char *what, double done, double total)
+{
+	char text[256], left[32];
 	double t = now();
 
+	if (terminal < 0)
+		terminal = isatty(STDERR_FILENO);
 	if (started < 0)
 		started = t;
-	if (t - started < 1 || t - drawn < 0.1 || !isatty(STDERR_FILENO))
+	if (!terminal || t - started < 1 || t - drawn < 0.2)
 		return;
+	if (drawn == 0 && line == 0 && lines == 1)
+		find_line();
 	drawn = t;
-	if (total > 0) {
-		int full = (int)(WIDTH * (done < total ? done / total : 1));
+	if (total > 0 && done > 0 && done <= total)
+		snprintf(text, sizeof text, "%s: %.0f %%, %s left", msg_program(),
+			100 * done / total,
+			duration((t - started) * (total - done) / done, left));
+	else
+		snprintf(text, sizeof text, "%s: %.0f %s, %s", msg_program(), done, what,
+			duration(t - started, left));
+	put(text);
+}
 
-		fprintf(stderr, "\r%s [%.*s%*s] %3.0f %%", what, full,
-			"########################################", WIDTH - full, "",
-			100 * done / total);
-	} else {
-		fprintf(stderr, "\r%s %.0f", what, done);
-	}
-	fflush(stderr);
+void progress(const char *what, double done, double total)
+{
+	told = 1;
+	draw(what, done, total);
+}
+
+void progress_read(double bytes, double total)
+{
+	if (!told)
+		draw("MB", total > 0 ? bytes : 1e-6 * bytes, total);
 }
 
 void progress_clear(void)
 {
 	if (drawn > 0)
-		fputs("\r\033[K", stderr);
+		put("");
 	drawn = 0;
 }

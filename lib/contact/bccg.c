@@ -19,6 +19,7 @@
 #include "contact/gradient.h"
 #include "num/fft.h"
 #include "num/lanes.h"
+#include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -27,8 +28,11 @@
  * more. */
 static const double drift_limit = 0.02;
 /* Of the step, in the same.  On those scenes 0.003 to 0.1 take 11 to 14 iterations alike;
- * each tenth costs about one more sweep over the cells per step. */
+ * each factor of ten takes about one more sweep over the cells per step. */
 static const double load_slack = 0.03;
+
+/* Step length below which one that leads uphill is replaced by a gradient step. */
+static const double least_length = 1e-3;
 
 struct box {
 	const struct contact_kernel *body;
@@ -48,7 +52,8 @@ static double stiffness(const void *context, size_t kx, size_t ky)
 	return 1 / b->body->wave(b->body->context, q);
 }
 
-int contact_make_preconditioner(struct contact *c, const struct contact *lender)
+enum num_status contact_make_preconditioner(
+	struct contact *c, const struct contact *lender)
 {
 	const struct convolve *scratch = lender ? lender->periodic : c->plane;
 	struct box box = { .body = &c->body };
@@ -58,14 +63,14 @@ int contact_make_preconditioner(struct contact *c, const struct contact *lender)
 	c->periodic = convolve_borrow((size_t)c->par.nx, (size_t)c->par.ny,
 		CONVOLVE_BRIDGED, c->par.pool, scratch);
 	if (!c->periodic)
-		return -1;
+		return NUM_MEMORY;
 	memory = convolve_scratch(c->periodic, &room);
 	c->extension =
 		extension_new(&c->par, lender ? lender->extension : NULL, memory, room);
 	c->inverse = convolve_alloc(c->periodic);
 	c->active = malloc(c->n);
 	if (!c->extension || !c->inverse || !c->active)
-		return -1;
+		return NUM_MEMORY;
 	convolve_size(c->periodic, &mx, &my);
 	box.lx = (double)mx * c->par.dx;
 	box.ly = (double)my * c->par.dy;
@@ -107,8 +112,8 @@ static inline lane_mask are_free(const struct contact *c, lanes p)
 		cells(c, i, 1, &t);                                         \
 	add_pass(s, &t)
 
-/* The residual of the active cells, which are free or whose gap says that they should be,
- * and the sums of contact_certify(). */
+/* The residual of the active cells, which are free or should become free because of their
+ * gap, and the sums of contact_certify(). */
 static inline void set_cells(const struct contact *c, size_t i, int n, struct pass *t)
 {
 	lanes p = lanes_load(c->p + i, n);
@@ -225,13 +230,13 @@ static void take_step(void *context, size_t begin, size_t end, struct sweep *s)
 struct state {
 	double sum;       /* of the pressures */
 	double curvature; /* step times image; 0: nothing to be conjugate to */
-	double drift;     /* how far gap and pressure are apart, as a sum of pressures */
+	double drift;     /* mismatch of gap and pressure, as a sum of pressures */
 	double moved;     /* sum of the last step; 0: it led nowhere */
 	double bounded;   /* cells that the step takes to a bound */
-	int plain, retreat; /* steps along the gradient to go; last time */
-	int forced;         /* the step is to restore the load, whatever the energy */
-	int crowded;        /* the active cells cannot bear more, or less */
-	int exact;          /* gap and load have just been computed */
+	int plain;        /* steps along the gradient to go */
+	int forced;       /* the step is to restore the load, whatever the energy */
+	int crowded;      /* the active cells cannot carry more, or less */
+	int exact;        /* gap and load have just been computed */
 };
 
 static void precondition(struct contact *c)
@@ -275,20 +280,22 @@ static void follow_step(struct contact *c, struct state *state, double slope)
 {
 	struct sweep s;
 
+	state->moved = state->curvature = 0;
+	if (!(slope < 0 || state->forced))
+		return;
 	state->curvature = contact_multiply(c, c->step, c->image);
-	state->moved = 0;
-	if (!(state->curvature > 0) || !(slope < 0 || state->forced)) {
+	if (!(state->curvature > 0)) {
 		state->curvature = 0;
 		return;
 	}
-	/* Far beyond a bounded step lies something else than what it was made for. */
+	/* The prediction is not valid far beyond a bounded step. */
 	c->stretch = fmin(-slope / state->curvature, state->bounded > 0 ? 2 : 10);
 	if (state->forced)
 		c->stretch = 1;
 	s = contact_sweep(c, take_step);
-	/* Strips of 64 x 4096 to 3 x 10000 take as many iterations with a least length of
-	 * 0.01, or with the whole stretch in place of its root, within a tenth. */
-	c->tau = fmin(fmax(c->tau * sqrt(c->stretch), 0.05), 5);
+	/* Strips of 64 x 4096 to 3 x 10000 take as many iterations with the whole stretch
+	 * in place of its root, within a tenth. */
+	c->tau = fmin(c->tau * sqrt(c->stretch), 5);
 	state->drift += s.sum[0];
 	state->moved = s.sum[1];
 	state->sum = s.sum[2];
@@ -300,7 +307,7 @@ static void follow_step(struct contact *c, struct state *state, double slope)
 		contact_find_approach(c);
 }
 
-/* The gap from the pressure, once what the load is short of has been put right. */
+/* The gap from the pressure, after correction of the load. */
 static void renew_gap(struct contact *c, struct state *state)
 {
 	state->exact = 1;
@@ -365,12 +372,12 @@ enum contact_status contact_solve_bccg(struct contact *c)
 			continue;
 		}
 		follow_step(c, &state, slope);
-		if (state.moved <= 0) {
-			/* A step bounded in one metric and preconditioned in another
-			 * may lead uphill; a plain one does not. */
-			state.retreat = state.retreat < 32 ? 2 * state.retreat + 1 : 63;
-			state.plain = state.retreat;
-		}
+		/* A step bounded in one metric and preconditioned in another may lead
+		 * uphill, the less the shorter it is; a plain one never does. */
+		if (state.moved <= 0 && state.bounded > 0 && c->tau > least_length)
+			c->tau /= 4;
+		else
+			state.plain = state.moved <= 0;
 		if (state.moved <= 0 || state.drift > drift_limit * state.moved)
 			renew_gap(c, &state);
 	}

@@ -1,15 +1,16 @@
-/* extension.h - continues a residual beyond the contact; for lib/contact only
+/* extension.h - extends a residual beyond the contact; for lib/contact only
  *
- * The exact inverse of the half-space on the contact is |q| applied to a residual that
- * goes on outside so that its image there vanishes: the potential of the surface of a
- * conductor between electrodes of given potentials.  That is solved on a coarse grid and
- * refined on the way back up, without transforms.
+ * The exact inverse of the half-space on the contact is |q| applied to a residual that is
+ * extended outside so that its image vanishes there: the potential of a conductor surface
+ * between electrodes of given potentials.  This problem is solved on a coarse grid and
+ * refined grid by grid, without transforms.
  *
- * A coarse cell of which the contact covers the part w has contact as an electrode
- * sqrt(w) times its width, and is tied to its potential by the constriction resistance
- * between the two sizes, R (1 / sqrt(w) - 1) / width with R = 2 asinh(1) / pi that of a
- * square; what the next coarser grid gives in between, by the mean |q| of the waves that
- * this grid adds to that one.
+ * In a coarse cell with a fraction w in contact, the contact is an electrode of sqrt(w)
+ * times the width of the cell.  It is coupled to the potential of the cell by the
+ * constriction resistance between the two sizes, R (1 / sqrt(w) - 1) / width, where R =
+ * 2 asinh(1) / pi is that of a square.  The correction by the next coarser grid is
+ * coupled by the mean |q| of the waves that this grid resolves and the coarser one does
+ * not.
  */
 #ifndef CONTACT_EXTENSION_H
 #define CONTACT_EXTENSION_H
@@ -18,15 +19,15 @@
 
 struct extension;
 
-/* finer: that of the grid of which this one is the next coarser, to share its levels
- * while it is not at work, or NULL; memory: room doubles to use in each call if they are
- * enough, and others if not.  NULL when out of memory. */
+/* finer: the extension of the next finer grid, whose levels are shared while it is not in
+ * use, or NULL; memory: room doubles of scratch space, used if they are enough.  Returns
+ * NULL when out of memory. */
 struct extension *extension_new(const struct contact_par *par,
 	const struct extension *finer, double *memory, size_t room);
 void extension_free(struct extension *e);
 
-/* Fills in the residual, 0 on entry, where the cell is not active.  Returns the
- * transforms that took, in units of such of the whole grid. */
+/* Fills in the residual, 0 on entry, where the cell is not active.  Returns the work in
+ * units of transforms of the whole grid. */
 double extension_apply(
 	struct extension *e, const unsigned char *active, double *residual);
 

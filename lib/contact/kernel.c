@@ -19,17 +19,17 @@ static const struct gauss gauss5 = { 3,
 
 /* Integral of 1/r by a product rule.  Both signs of every node are visited; node 0
  * carries half its weight twice. */
-static double patch_far(const struct gauss *g, double ax, double ay, double x, double y)
+static double patch_far(const struct gauss *g, double dx, double dy, double x, double y)
 {
 	double sum = 0;
 
 	for (int i = 0; i < g->n; i++) {
 		double wx = g->node[i] == 0 ? g->weight[i] / 2 : g->weight[i];
-		double x1 = x - ax * g->node[i], x2 = x + ax * g->node[i], line = 0;
+		double x1 = x - dx * g->node[i], x2 = x + dx * g->node[i], line = 0;
 
 		for (int j = 0; j < g->n; j++) {
 			double w = g->node[j] == 0 ? g->weight[j] / 2 : g->weight[j];
-			double y1 = y - ay * g->node[j], y2 = y + ay * g->node[j];
+			double y1 = y - dy * g->node[j], y2 = y + dy * g->node[j];
 
 			line += w * (1 / sqrt(x1 * x1 + y1 * y1) +
 					    1 / sqrt(x1 * x1 + y2 * y2) +
@@ -38,7 +38,7 @@ static double patch_far(const struct gauss *g, double ax, double ay, double x, d
 		}
 		sum += wx * line;
 	}
-	return ax * ay * sum;
+	return dx * dy * sum;
 }
 
 /* Corner function x asinh(y/|x|) + y asinh(x/|y|).  The usual x ln(y + r) + y ln(x + r)
@@ -54,9 +54,9 @@ static double corner(double x, double y)
 	return f;
 }
 
-static double patch_near(double ax, double ay, double x, double y)
+static double patch_near(double dx, double dy, double x, double y)
 {
-	double x1 = x - ax / 2, x2 = x + ax / 2, y1 = y - ay / 2, y2 = y + ay / 2;
+	double x1 = x - dx / 2, x2 = x + dx / 2, y1 = y - dy / 2, y2 = y + dy / 2;
 
 	return corner(x2, y2) - corner(x2, y1) - corner(x1, y2) + corner(x1, y1);
 }
@@ -64,23 +64,23 @@ static double patch_near(double ax, double ay, double x, double y)
 /* The four corners cancel more and more with distance, while from 8 cells on a Gauss
  * rule is exact to rounding; the farther, the fewer points it needs.  In between, and
  * where a long cell is far only in units of its short side, the cell is halved. */
-double kernel_patch(double ax, double ay, double x, double y)
+double kernel_patch(double dx, double dy, double x, double y)
 {
-	double side = ax > ay ? ax : ay, r = hypot(x, y) / side;
+	double side = dx > dy ? dx : dy, r = hypot(x, y) / side;
 
 	if (r > 130)
-		return patch_far(&gauss3, ax, ay, x, y);
+		return patch_far(&gauss3, dx, dy, x, y);
 	if (r > 32)
-		return patch_far(&gauss4, ax, ay, x, y);
+		return patch_far(&gauss4, dx, dy, x, y);
 	if (r > 8)
-		return patch_far(&gauss5, ax, ay, x, y);
-	if (r <= 2 && ax <= 2 * ay && ay <= 2 * ax)
-		return patch_near(ax, ay, x, y);
-	if (ax > ay)
-		return kernel_patch(ax / 2, ay, x - ax / 4, y) +
-		       kernel_patch(ax / 2, ay, x + ax / 4, y);
-	return kernel_patch(ax, ay / 2, x, y - ay / 4) +
-	       kernel_patch(ax, ay / 2, x, y + ay / 4);
+		return patch_far(&gauss5, dx, dy, x, y);
+	if (r <= 2 && dx <= 2 * dy && dy <= 2 * dx)
+		return patch_near(dx, dy, x, y);
+	if (dx > dy)
+		return kernel_patch(dx / 2, dy, x - dx / 4, y) +
+		       kernel_patch(dx / 2, dy, x + dx / 4, y);
+	return kernel_patch(dx, dy / 2, x, y - dy / 4) +
+	       kernel_patch(dx, dy / 2, x, y + dy / 4);
 }
 
 double kernel_periodic(double estar, double qx, double qy)
@@ -96,9 +96,9 @@ double kernel_modulus(double e1, double nu1, double e2, double nu2)
 }
 
 static double halfspace_patch(
-	const void *context, double ax, double ay, double x, double y)
+	const void *context, double dx, double dy, double x, double y)
 {
-	return kernel_patch(ax, ay, x, y) / (M_PI * *(const double *)context);
+	return kernel_patch(dx, dy, x, y) / (M_PI * *(const double *)context);
 }
 
 static double halfspace_wave(const void *context, double q)

@@ -1,25 +1,26 @@
 /* kernel.h - displacement of an elastic body under pressure on its plane surface
  *
- * A body is a struct contact_kernel, which the solver takes in place of the half-space of
- * a contact modulus.
+ * The solver accepts any struct contact_kernel in place of the half-space of a contact
+ * modulus.
  *
- * A cell ax * ay under uniform pressure p sinks the point at (x, y) from its centre by
- * u = p I / (pi E*), I the integral of 1/r over the cell (Love 1929; Johnson, Contact
- * Mechanics, 3.25).  All lengths in one unit; I is a length.
+ * Uniform pressure p on a cell dx * dy displaces the point at (x, y) from its centre by
+ * u = p I / (pi E*), where I is the integral of 1/r over the cell (Love 1929; Johnson,
+ * Contact Mechanics, 3.25).  All lengths have the same unit; I is a length.
  */
 #ifndef CONTACT_KERNEL_H
 #define CONTACT_KERNEL_H
 
 struct contact_kernel {
 	const void *context;
-	/* Displacement at (x, y) from the centre of a cell ax * ay under unit pressure,
-	 * m/Pa; NULL where it is not known: periodic boundaries only. */
-	double (*patch)(const void *context, double ax, double ay, double x, double y);
-	/* Factor of wavenumber q > 0, rad/m, in u^ = factor p^, m/Pa: falling with q. */
+	/* Displacement at (x, y) from the centre of a cell dx * dy under unit pressure,
+	 * m/Pa; NULL if it is not known: then only periodic boundaries are possible. */
+	double (*patch)(const void *context, double dx, double dy, double x, double y);
+	/* Factor of wavenumber q > 0, rad/m, in u^ = factor p^, m/Pa; decreases with q.
+	 */
 	double (*wave)(const void *context, double q);
 };
 
-/* The half-space of a contact modulus, which must stay. */
+/* The half-space of a contact modulus, which must outlive the kernel. */
 struct contact_kernel kernel_halfspace(const double *estar);
 
 /* A half-space under a bonded layer of another material, against an elastic body: wave
@@ -34,8 +35,8 @@ struct kernel_coating {
 struct contact_kernel kernel_coated(const struct kernel_coating *coating);
 
 /* I to full double precision (a few 1e-16 relative) everywhere outside the lines
- * |x| = ax / 2 and |y| = ay / 2, any aspect. */
-double kernel_patch(double ax, double ay, double x, double y);
+ * |x| = dx / 2 and |y| = dy / 2, any aspect. */
+double kernel_patch(double dx, double dy, double x, double y);
 
 /* Factor of wavenumber (qx, qy), rad/m, in u^ = factor p^ of the periodic half-space:
  * 2 / (E* |q|), m/Pa; 0 at q = 0, where the mean displacement is taken as zero. */

@@ -1,5 +1,6 @@
 #include "contact/mlms.h"
 #include "num/fft.h"
+#include "num/status.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,7 +36,7 @@ struct mlms {
 };
 
 /* The coarse grid reaches order / 2 nodes beyond the fine one, so that the same weights
- * serve up to its rim. */
+ * apply up to its edge. */
 static size_t coarse_size(size_t n, int order)
 {
 	return (n - 1) / 2 + (size_t)order;
@@ -59,7 +60,8 @@ static void set_weights(struct mlms *m)
 	}
 }
 
-/* Places, relative to a cell, of the coarse nodes that stand for it, and their weights.
+/* Positions, relative to a cell, of the coarse nodes that represent it, and their
+ * weights.
  */
 struct nodes {
 	int n, place[ORDER_MAX];
@@ -104,7 +106,7 @@ static double missing(const struct mlms *m, const double *table, size_t width,
 }
 
 /* The corrections of one level; 0, or -1 when out of memory. */
-static int make_near(
+static enum num_status make_near(
 	struct mlms *m, struct level *l, kernel_value value, const void *context)
 {
 	int reach = m->reach, side = 2 * reach + 1;
@@ -114,7 +116,7 @@ static int make_near(
 	l->near = fft_alloc(4 * (size_t)side * (size_t)side);
 	if (!table || !l->near) {
 		fft_free(table);
-		return -1;
+		return NUM_MEMORY;
 	}
 	for (size_t i = 0; i < width * width; i++)
 		table[i] = value(
@@ -130,21 +132,22 @@ static int make_near(
 				l->near[out++] = missing(m, table, width, odd, dx, dy);
 			}
 	fft_free(table);
-	return 0;
+	return NUM_OK;
 }
 
-static int make_coarsest(struct level *l, kernel_value value, const void *context)
+static enum num_status make_coarsest(
+	struct level *l, kernel_value value, const void *context)
 {
 	l->near = fft_alloc(l->nx * l->ny);
 	if (!l->near)
-		return -1;
+		return NUM_MEMORY;
 	for (size_t i = 0; i < l->nx * l->ny; i++)
 		l->near[i] = value(
 			context, (i % l->nx) << l->depth_x, (i / l->nx) << l->depth_y);
-	return 0;
+	return NUM_OK;
 }
 
-static int make_levels(
+static enum num_status make_levels(
 	struct mlms *m, size_t nx, size_t ny, kernel_value value, const void *context)
 {
 	int depth_x = 0, depth_y = 0;
@@ -161,33 +164,33 @@ static int make_levels(
 			l->source = fft_alloc(nx * ny);
 			l->image = fft_alloc(nx * ny);
 			if (!l->source || !l->image)
-				return -1;
+				return NUM_MEMORY;
 		}
 		l->halve_x = worth_halving(nx, m->order);
 		l->halve_y = worth_halving(ny, m->order);
 		if (!l->halve_x && !l->halve_y)
 			return make_coarsest(l, value, context);
-		l->begin = calloc(2 * ny, sizeof(*l->begin));
+		l->begin = calloc(2 * ny, sizeof *l->begin);
 		if (!l->begin)
-			return -1;
+			return NUM_MEMORY;
 		l->end = l->begin + ny;
 		if (make_near(m, l, value, context) != 0)
-			return -1;
+			return NUM_MEMORY;
 		nx = l->halve_x ? coarse_size(nx, m->order) : nx;
 		l->half = fft_alloc(nx * ny);
 		if (!l->half)
-			return -1;
+			return NUM_MEMORY;
 		ny = l->halve_y ? coarse_size(ny, m->order) : ny;
 		depth_x += l->halve_x;
 		depth_y += l->halve_y;
 	}
-	return -1;
+	return NUM_MEMORY;
 }
 
 struct mlms *mlms_new(size_t nx, size_t ny, int order, int reach, kernel_value value,
 	const void *context, struct pool *pool)
 {
-	struct mlms *m = calloc(1, sizeof(*m));
+	struct mlms *m = calloc(1, sizeof *m);
 
 	if (!m)
 		return NULL;
@@ -227,7 +230,7 @@ static void gather_row(const struct mlms *m, const double *fine, size_t n, doubl
 {
 	size_t shift = (size_t)m->order / 2 - 1;
 
-	memset(coarse, 0, coarse_size(n, m->order) * sizeof(*coarse));
+	memset(coarse, 0, coarse_size(n, m->order) * sizeof *coarse);
 	for (size_t i = 0; i < n; i += 2)
 		coarse[i / 2 + shift] += fine[i];
 	for (size_t i = 1; i < n; i += 2)
@@ -288,7 +291,7 @@ static void gather_x(void *context, size_t job, int worker)
 		if (l->halve_x)
 			gather_row(m, source + y * l->nx, l->nx, l->half + y * n);
 		else
-			memcpy(l->half + y * n, source + y * n, n * sizeof(*source));
+			memcpy(l->half + y * n, source + y * n, n * sizeof *source);
 	}
 }
 
@@ -305,10 +308,10 @@ static void gather_y(void *context, size_t job, int worker)
 		double *to = next->source + y * n;
 
 		if (!l->halve_y) {
-			memcpy(to, l->half + y * n, n * sizeof(*to));
+			memcpy(to, l->half + y * n, n * sizeof *to);
 			continue;
 		}
-		memset(to, 0, n * sizeof(*to));
+		memset(to, 0, n * sizeof *to);
 		if (y >= shift && 2 * (y - shift) < l->ny)
 			add_row(to, 1, l->half + 2 * (y - shift) * n, n);
 		for (size_t k = 0; k < (size_t)m->order && k <= y; k++)
@@ -350,7 +353,7 @@ static void spread(void *context, size_t job, int worker)
 		double *half = l->half + y * n;
 		size_t first = y > reach ? y - reach : 0;
 
-		memset(half, 0, n * sizeof(*half));
+		memset(half, 0, n * sizeof *half);
 		if (!l->halve_y)
 			add_row(half, 1, next->image + y * n, n);
 		else if (y % 2 == 0)
@@ -362,7 +365,7 @@ static void spread(void *context, size_t job, int worker)
 		if (l->halve_x)
 			spread_row(m, half, l->nx, image);
 		else
-			memcpy(image, half, n * sizeof(*half));
+			memcpy(image, half, n * sizeof *half);
 		for (size_t ys = first; ys < smaller(y + reach + 1, l->ny); ys++)
 			add_near(m, l, source + ys * l->nx, ys, image, y);
 	}
@@ -379,7 +382,7 @@ static void sum_directly(void *context, size_t job, int worker)
 	for (size_t y = job * ROWS; y < smaller((job + 1) * ROWS, l->ny); y++) {
 		double *image = (m->now ? l->image : m->y) + y * nx;
 
-		memset(image, 0, nx * sizeof(*image));
+		memset(image, 0, nx * sizeof *image);
 		for (size_t ys = 0; ys < l->ny; ys++) {
 			const double *k = l->near + (y > ys ? y - ys : ys - y) * nx;
 

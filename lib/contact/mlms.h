@@ -1,12 +1,14 @@
-/* mlms.h - multi-level multi-summation: sums of a kernel over all cells without Fourier
+/* mlms.h - multi-level multi-summation: sums of a kernel over all cells without
+ * transforms
  *
- * y_i = sum over j of K(i - j) x_j on a grid, K even, singular only at its centre and
- * ever smoother away from it.  Far from the centre K is interpolated from every second
- * cell, so sources are gathered on, and sums spread from, a grid half as fine, and so on
- * down to a few cells, which are summed directly; near the centre, within reach cells,
- * what interpolation misses is added on each level.  The work is one pass over the
- * sources that are not zero, (2 reach + 1)^2 additions for each, and a few over the
- * cells.  The error falls with order (of the interpolation) and reach.
+ * y_i = sum over j of K(i - j) x_j on a grid, where K is even, singular only at its
+ * centre and smoother with distance from it.  Far from the centre K is interpolated from
+ * every second cell.  Sources are therefore gathered on a grid of half as many cells in
+ * each direction, and sums interpolated from it, recursively down to a few cells, which
+ * are summed directly.  Within reach cells of the centre the interpolation error is
+ * corrected on each level.  The work is one pass over the non-zero sources, with (2
+ * reach + 1)^2 additions for each, and a few passes over the cells.  The error decreases
+ * with order (of the interpolation) and reach.
  *
  * Brandt, Lubrecht, J. Comput. Phys. 90 (1990) 348-370; Polonsky, Keer, Wear 231 (1999)
  * 206-219.
@@ -30,7 +32,7 @@ struct mlms *mlms_new(size_t nx, size_t ny, int order, int reach,
 	struct pool *pool);
 void mlms_free(struct mlms *m);
 
-/* y = K * x; the same bytes for any number of threads.  y is not x. */
+/* y = K * x; byte-identical for any number of threads.  y must not be x. */
 void mlms_apply(struct mlms *m, const double *x, double *y);
 
 #endif

@@ -1,4 +1,5 @@
 #include "contact/patches.h"
+#include "num/status.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -84,7 +85,7 @@ static struct contact_patch *grow(struct contact_patch *list, size_t n)
 
 	if (n & (n - 1))
 		return list;
-	more = realloc(list, (n ? 2 * n : 1) * sizeof(*list));
+	more = realloc(list, (n ? 2 * n : 1) * sizeof *list);
 	if (!more)
 		free(list);
 	return more;
@@ -97,7 +98,7 @@ struct contact_patch *contact_patches(
 	struct search s = { .grid = grid,
 		.p = pressure,
 		.seen = calloc(cells, 1),
-		.stack = calloc(cells, sizeof(*s.stack)) };
+		.stack = calloc(cells, sizeof *s.stack) };
 	struct contact_patch *list = NULL;
 	int failed = !s.seen || !s.stack;
 
@@ -136,18 +137,18 @@ static int compare(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-int contact_quantiles(
+enum num_status contact_quantiles(
 	const double *pressure, size_t cells, const double *part, double *quantile, int n)
 {
-	double *sorted = malloc(cells * sizeof(*sorted));
+	double *sorted = malloc(cells * sizeof *sorted);
 	size_t loaded = 0;
 
 	if (!sorted)
-		return -1;
+		return NUM_MEMORY;
 	for (size_t i = 0; i < cells; i++)
 		if (pressure[i] > 0)
 			sorted[loaded++] = pressure[i];
-	qsort(sorted, loaded, sizeof(*sorted), compare);
+	qsort(sorted, loaded, sizeof *sorted, compare);
 	for (int k = 0; k < n; k++) {
 		double place = loaded ? part[k] * (double)(loaded - 1) : 0;
 		size_t low = (size_t)place, high = low + 1 < loaded ? low + 1 : low;
@@ -157,5 +158,5 @@ int contact_quantiles(
 				     : NAN;
 	}
 	free(sorted);
-	return 0;
+	return NUM_OK;
 }

@@ -1,15 +1,17 @@
-/* patches.h - the separate patches of a contact and what is read off them
+/* patches.h - separate patches of a contact: area, perimeter, load, pressure quantiles
  *
- * Cells under pressure belong to one patch where they share a side, across the edge of
- * the grid where it is periodic.
+ * Cells under pressure belong to one patch if they share a side, also across the edge of
+ * a periodic grid.
  *
- * A grid shows too much contact: cells along the rim count whole.  The true area is about
- * the counted one less (pi - 1 + ln 2) / 24 times the perimeter in sides of cells times
- * the cell (Yastrebov, Anciaux, Molinari, Tribol. Int. 114 (2017) 161-171).
+ * A grid overestimates the contact area, because cells along the boundary of a patch
+ * count in full.  The true area is approximately the counted one minus (pi - 1 + ln 2) /
+ * 24 cells per cell side along the perimeter (Yastrebov, Anciaux, Molinari, Tribol. Int.
+ * 114 (2017) 161-171).
  */
 #ifndef CONTACT_PATCHES_H
 #define CONTACT_PATCHES_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 struct patch_grid {
@@ -28,18 +30,18 @@ struct contact_patch {
 };
 
 /* Finds the patches of a pressure, in the order of their first cells.  Returns their
- * number and a new array for free(); NULL and 0 where there are none, with errno ENOMEM
+ * number and a new array for free(); NULL and 0 if there are none, with errno ENOMEM
  * when out of memory, 0 otherwise. */
 struct contact_patch *contact_patches(
 	const struct patch_grid *grid, const double *pressure, size_t *n);
 
-/* The area of cells of this size, less what their rim counts too much; not below 0. */
+/* The corrected area for this counted area and perimeter; not below 0. */
 double contact_corrected_area(
 	const struct patch_grid *grid, double area, double perimeter);
 
-/* Pressures below which the given parts of the cells in contact lie, interpolated;
- * returns 0, or -1 when out of memory.  nan without contact. */
-int contact_quantiles(const double *pressure, size_t cells, const double *part,
-	double *quantile, int n);
+/* Quantiles of the pressure of the cells in contact at the levels part, interpolated.
+ * nan without contact. */
+enum num_status contact_quantiles(const double *pressure, size_t cells,
+	const double *part, double *quantile, int n);
 
 #endif

@@ -1,4 +1,4 @@
-/* problem.h - what a contact problem is given by, and what its solution says of itself
+/* problem.h - parameters of a contact problem, and the scalar results of its solution
  *
  * Units and signs as in solver.h.
  */
@@ -30,20 +30,20 @@ struct contact_par {
 	int nx, ny;    /* cells, >= 1 each */
 	double dx, dy; /* cell size, m */
 	double estar;  /* contact modulus E*, Pa; see kernel_modulus() */
-	const struct contact_kernel *kernel; /* another body than its half-space, or NULL;
-					      * what it points at must stay */
+	const struct contact_kernel *kernel; /* in place of the half-space, or NULL;
+					      * must outlive the solver */
 	double hardness;                     /* largest pressure, Pa; 0: none */
 	enum contact_boundary boundary;
 	enum contact_solver solver;
 	enum contact_multiply multiply;
-	double tolerance; /* certificate to reach */
+	double tolerance; /* relative duality gap at which the iteration stops */
 	long max_iterations;
 	struct pool *pool; /* borrowed; NULL: one thread */
 };
 
 enum contact_status {
 	CONTACT_OK,
-	CONTACT_NOCONV,   /* the fields hold the last iterate, of its certificate */
+	CONTACT_NOCONV,   /* not converged: the fields hold the last iterate */
 	CONTACT_OVERLOAD, /* mean pressure not below the hardness: nothing done */
 	CONTACT_TOO_DEEP, /* periodic: approach beyond full contact: nothing done */
 	CONTACT_NUMBERS   /* input not finite or over the range of doubles */
@@ -54,23 +54,25 @@ struct contact_result {
 	double pressure;    /* mean, Pa */
 	double load;        /* N */
 	double approach;    /* m */
-	double indentation; /* approach from first touch, m */
+	double indentation; /* approach from first contact, m */
 	double area;        /* cells with p > 0 over all cells */
 	double plastic;     /* cells at the hardness over all cells */
 	double energy;      /* elastic, J */
-	/* sum p (g - min g) / sum p (u - u0), u0 the least displacement below zero or
-	 * else 0: the relative duality gap, which needs no reference.  With C for it and
-	 * W = sum p (u - u0), the energy sum p u / 2 - sum p h exceeds that of the
-	 * solution p* by at most C W, and sum (p - p*) K (p - p*) is at most 2 C W,
-	 * whatever the method; W is twice the elastic energy on a free boundary and a
-	 * little more on a periodic one.  Nothing out of contact enters.  With a hardness
-	 * it is the gap of the capped problem if that is less; for a given approach that
-	 * of the approach less the deepest overlap, which is at most C W / sum p. */
+	/* C = sum p (g - min g) / sum p (u - u0), where u0 is the least displacement or
+	 * 0, whichever is less: the relative duality gap, a bound of the error that is
+	 * computed from the pressure alone.  With W = sum p (u - u0), the energy sum p u
+	 * / 2
+	 * - sum p h exceeds that of the solution p* by at most C W, and sum (p - p*) K (p
+	 * - p*) is at most 2 C W, with any solver.  W is twice the elastic energy on a
+	 * free boundary and slightly more on a periodic one.  Cells out of contact do not
+	 * contribute.  With a hardness it is the gap of the problem with bounded pressure
+	 * if that is smaller; for a given approach it applies to the approach minus the
+	 * deepest overlap, which is at most C W / sum p. */
 	double certificate;
 	long iterations; /* on the given grid */
 	long transforms; /* Fourier transforms on the given grid, padded or not */
-	double work;     /* the same with those of coarser grids, by size: in units of
-			  * the half-space's, which on a free boundary are padded */
+	double work; /* transforms on all grids, weighted by size, in units of those of
+		      * the half-space on the given grid (padded on a free boundary) */
 };
 
 #endif

@@ -1,13 +1,15 @@
-/* transfer.h - between a grid and one of about half as many cells over the same area;
- * for lib/contact only
+/* transfer.h - restriction to a grid of about half as many cells in each direction, and
+ * interpolation from it; for lib/contact only
  *
- * Any two sizes go together: a coarse cell averages what it covers of at most three fine
- * ones each way, and a fine cell lies between four coarse centres.
+ * Any two sizes can be combined: a coarse cell is the mean over the parts of at most
+ * three fine cells in each direction that it covers; a fine cell is interpolated between
+ * four coarse centres.
  */
 #ifndef CONTACT_TRANSFER_H
 #define CONTACT_TRANSFER_H
 
 #include "contact/problem.h"
+#include "num/status.h"
 
 enum { TRANSFER_TAPS = 3 };
 
@@ -24,11 +26,11 @@ struct transfer {
 	struct axis x, y;
 };
 
-/* The grid to go with another, sized for fast transforms; 1 if it is coarser. */
+/* Chooses the next coarser grid, sized for fast transforms; 1 if it is coarser. */
 int transfer_coarsen(const struct contact_par *fine, struct contact_par *coarse);
 
-/* Returns 0, or -1 when out of memory; either way transfer_done() frees it. */
-int transfer_make(struct transfer *t, const struct contact_par *fine,
+/* Whether it succeeds or not, transfer_done() frees it. */
+enum num_status transfer_make(struct transfer *t, const struct contact_par *fine,
 	const struct contact_par *coarse);
 void transfer_done(struct transfer *t);
 

@@ -1,5 +1,5 @@
-/* chords.h - length and width of a convex hull: its longest chord, and the longest one at
- * right angles to that
+/* chords.h - length and width of a convex hull: its largest Feret diameter, and its
+ * longest chord perpendicular to that
  *
  *	struct chords *c = chords_new();
  *	if (chords_measure(c, hull, step, &length, &width) == 0)
@@ -10,15 +10,15 @@
 #define CONTACT_CHORDS_H
 
 #include "debris/hull.h"
+#include "num/status.h"
 
-struct chords; /* memory that is kept over calls */
+struct chords; /* memory that is kept between calls */
 
 struct chords *chords_new(void); /* NULL when out of memory */
 void chords_free(struct chords *c);
 
-/* Of the last hull built in h, a step of whose lattice is so long along x, y and z.  -1
- * when out of memory. */
-int chords_measure(struct chords *c, const struct hull *h, const double step[3],
-	double *length, double *width);
+/* Measures the last hull built in h; step: lattice spacings along x, y and z. */
+enum num_status chords_measure(struct chords *c, const struct hull *h,
+	const double step[3], double *length, double *width);
 
 #endif

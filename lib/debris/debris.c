@@ -1,5 +1,5 @@
 #include "debris/debris.h"
-
+#include "num/grid.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -19,9 +19,9 @@ struct debris *debris_new(const struct debris_par *par)
 	const struct stress_par *s = &par->stress;
 	struct particles_par p = { .nx = s->nx,
 		.ny = s->ny,
-		.ax = s->ax,
-		.ay = s->ay,
-		.az = par->cell,
+		.dx = s->dx,
+		.dy = s->dy,
+		.dz = par->cell,
 		.periodic = s->periodic };
 	struct debris *d;
 
@@ -29,7 +29,7 @@ struct debris *debris_new(const struct debris_par *par)
 		errno = EDOM;
 		return NULL;
 	}
-	d = calloc(1, sizeof(*d));
+	d = calloc(1, sizeof *d);
 	if (!d)
 		return NULL;
 	d->par = *par;
@@ -67,10 +67,10 @@ void debris_contact(
 	const struct stress_par *s = &d->par.stress;
 	double sum = 0, edge = 0, cells = 0;
 
-	memset(step, 0, sizeof(*step));
+	memset(step, 0, sizeof *step);
 	for (int y = 0; y < s->ny; y++)
 		for (int x = 0; x < s->nx; x++) {
-			double p = pressure[(size_t)y * s->nx + x];
+			double p = pressure[grid_at(s->nx, x, y)];
 
 			sum += p;
 			cells += p > 0;
@@ -78,7 +78,7 @@ void debris_contact(
 			if (x == 0 || y == 0 || x == s->nx - 1 || y == s->ny - 1)
 				edge += p;
 		}
-	step->load = sum * s->ax * s->ay;
+	step->load = sum * s->dx * s->dy;
 	step->contact = cells / ((double)s->nx * s->ny);
 	step->edge_load = sum > 0 && !s->periodic ? edge / sum : 0;
 }
@@ -90,10 +90,10 @@ enum debris_status debris_step(struct debris *d, double *height, const double *p
 	size_t n = (size_t)s->nx * (size_t)s->ny;
 	struct wear_par wear = { .yield = d->par.yield,
 		.rule = d->par.rule,
-		.spacing = fmin(s->ax, s->ay),
+		.spacing = fmin(s->dx, s->dy),
 		.cell = d->par.cell,
 		.offset = d->par.offset,
-		.deepest = DEEPEST * fmax(s->nx * s->ax, s->ny * s->ay) };
+		.deepest = DEEPEST * fmax(s->nx * s->dx, s->ny * s->dy) };
 	enum wear_status status;
 
 	debris_contact(d, pressure, step);
@@ -108,11 +108,10 @@ enum debris_status debris_step(struct debris *d, double *height, const double *p
 	status = wear_remove(d->wear, d->stress, &wear, &step->wear);
 	if (status != WEAR_OK)
 		return status == WEAR_DEEP ? DEBRIS_DEEP : DEBRIS_MEMORY;
-	step->count = particles_find(
-		d->particles, step->wear.stretch, step->wear.count, &step->particle);
-	if (step->count == (size_t)-1)
+	if (particles_find(d->particles, step->wear.stretch, step->wear.count,
+		    &step->particle, &step->count))
 		return DEBRIS_MEMORY;
-	step->volume = step->wear.height * (s->ax * s->ay);
+	step->volume = step->wear.height * (s->dx * s->dy);
 	for (size_t i = 0; i < step->wear.count; i++) {
 		const struct stretch *lost = &step->wear.stretch[i];
 

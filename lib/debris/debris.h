@@ -1,11 +1,11 @@
 /* debris.h - one step of wear: stress below a contact, removal, particles, worn surface
  *
- * Joins stress.h, wear.h and particles.h.  Memory is kept over calls, so use one struct
- *for all steps of all surfaces of one grid; results do not depend on what was computed
- * before, nor on threads.
+ * Combines stress.h, wear.h and particles.h.  Memory is kept between calls, so use one
+ * struct for all steps of all surfaces of one grid; results do not depend on previous
+ * calls or on the number of threads.
  *
- *	struct debris_par par = { .stress = { .nx = 128, .ny = 128, .ax = 8e-6,
- *		.ay = 8e-6, .nu = 0.3, .mu = 0.3 }, .yield = 355e6 };
+ *	struct debris_par par = { .stress = { .nx = 128, .ny = 128, .dx = 8e-6,
+ *		.dy = 8e-6, .nu = 0.3, .mu = 0.3 }, .yield = 355e6 };
  *	struct debris *d = debris_new(&par);
  *	if (debris_step(d, height, pressure, &step) == DEBRIS_OK)
  *		for (i = 0; i < step.count; i++)
@@ -22,8 +22,9 @@
 struct debris;
 
 struct debris_par {
-	struct stress_par stress; /* its periodic flag goes for particles and edges too */
-	double yield;             /* Pa, > 0 */
+	struct stress_par
+		stress; /* its periodic flag also applies to particles and edges */
+	double yield;   /* Pa, > 0 */
 	enum wear_rule rule;
 	double cell, offset; /* as in struct wear_par */
 };
@@ -33,8 +34,8 @@ struct debris_step {
 	double contact;   /* loaded cells over all cells */
 	double edge_load; /* share of the load on the outermost cells; 0 if periodic */
 	double max_pressure;
-	double volume; /* worn off, m3 (2-15) */
-	double depth;  /* of the deepest material worn off, m */
+	double volume; /* worn in this step, m3 (2-15) */
+	double depth;  /* of the deepest removed material, m */
 	struct wear_result wear;
 	size_t count;
 	const struct particle *particle; /* valid until the next call */
@@ -44,8 +45,8 @@ enum debris_status {
 	DEBRIS_OK,
 	DEBRIS_PULL,    /* a pressure below zero: nothing done */
 	DEBRIS_NUMBERS, /* a pressure that is not finite: nothing done */
-	DEBRIS_DEEP,    /* material fails deeper than ten times the grid is long; height
-			 * is as it was */
+	DEBRIS_DEEP,    /* material fails deeper than ten times the length of the grid;
+			 * height is unchanged */
 	DEBRIS_MEMORY
 };
 
@@ -53,12 +54,13 @@ enum debris_status {
 struct debris *debris_new(const struct debris_par *par);
 void debris_free(struct debris *d);
 
-/* The contact of a step before its wear: load, contact, edge_load and max_pressure. */
+/* Fills in the contact of a step before its wear: load, contact, edge_load and
+ * max_pressure. */
 void debris_contact(
 	const struct debris *d, const double *pressure, struct debris_step *step);
 
-/* Wears the surface under a pressure (Pa, >= 0): lowers height (m, towards the other
- * body) by what each column loses. */
+/* Wears the surface under a pressure (Pa, >= 0): lowers height (m, positive towards the
+ * other body) by the loss of each column. */
 enum debris_status debris_step(struct debris *d, double *height, const double *pressure,
 	struct debris_step *step);
 

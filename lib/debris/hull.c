@@ -1,8 +1,9 @@
-/* Incremental hull: a point outside removes the faces it sees and is joined to their
- * rim.  "Sees" is strict and exact, so a face in whose plane the point lies stays, and no
- * face of zero area arises. */
+/* Incremental hull: a point outside removes the faces visible from it and is connected to
+ * their boundary. Visibility is strict and exact, so a face in whose plane the point lies
+ * stays, and no face of zero area arises. */
 #include "debris/hull.h"
 #include "num/room.h"
+#include "num/status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +18,7 @@ struct hull {
 	size_t points, point_room;
 	struct face *face;
 	size_t nfaces, face_room;
-	struct hull_edge *edge; /* the rim while building, then the edges */
+	struct hull_edge *edge; /* the boundary while building, then the edges */
 	size_t edges, edge_room;
 	int *place; /* of the points among the corners */
 	size_t place_room;
@@ -65,38 +66,38 @@ static void normal(const struct hull_point *a, const struct hull_point *b,
 	n[2] = u[0] * w[1] - u[1] * w[0];
 }
 
-static int add_face(struct hull *h, int a, int b, int c)
+static enum num_status add_face(struct hull *h, int a, int b, int c)
 {
 	struct face *f;
 
-	if (room_for(&h->face, &h->face_room, h->nfaces + 1, sizeof(*f)))
-		return -1;
+	if (room_for(&h->face, &h->face_room, h->nfaces + 1, sizeof *f))
+		return NUM_MEMORY;
 	f = &h->face[h->nfaces++];
 	f->v[0] = a, f->v[1] = b, f->v[2] = c;
 	normal(&h->point[a], &h->point[b], &h->point[c], f->n);
-	return 0;
+	return NUM_OK;
 }
 
-static int add_edge(struct hull *h, int from, int to)
+static enum num_status add_edge(struct hull *h, int from, int to)
 {
-	if (room_for(&h->edge, &h->edge_room, h->edges + 1, sizeof(*h->edge)))
-		return -1;
+	if (room_for(&h->edge, &h->edge_room, h->edges + 1, sizeof *h->edge))
+		return NUM_MEMORY;
 	h->edge[h->edges++] = (struct hull_edge){ from, to };
-	return 0;
+	return NUM_OK;
 }
 
-/* Adds an edge of a removed face to the rim, or cancels it against its twin. */
-static int toggle_edge(struct hull *h, int from, int to)
+/* Adds an edge of a removed face to the boundary, or cancels it with its twin. */
+static enum num_status toggle_edge(struct hull *h, int from, int to)
 {
 	for (size_t i = 0; i < h->edges; i++)
 		if (h->edge[i].from == to && h->edge[i].to == from) {
 			h->edge[i] = h->edge[--h->edges];
-			return 0;
+			return NUM_OK;
 		}
 	return add_edge(h, from, to);
 }
 
-static int add_point(struct hull *h, int p)
+static enum num_status add_point(struct hull *h, int p)
 {
 	const struct hull_point *at = &h->point[p];
 	size_t kept = 0;
@@ -111,19 +112,19 @@ static int add_point(struct hull *h, int p)
 		}
 		for (int k = 0; k < 3; k++)
 			if (toggle_edge(h, f.v[k], f.v[(k + 1) % 3]))
-				return -1;
+				return NUM_MEMORY;
 	}
 	h->nfaces = kept;
 	for (size_t i = 0; i < h->edges; i++)
 		if (add_face(h, h->edge[i].from, h->edge[i].to, p))
-			return -1;
-	return 0;
+			return NUM_MEMORY;
+	return NUM_OK;
 }
 
-/* Order along lines parallel to an axis: first by the two others. */
+/* Order plane by plane across an axis, in each along the next axis and then the last. */
 static int compare(const struct hull_point *p, const struct hull_point *q, int axis)
 {
-	for (int k = 2; k >= 0; k--) {
+	for (int k = 0; k < 3; k++) {
 		int at = (axis + k) % 3;
 
 		if (p->v[at] != q->v[at])
@@ -142,32 +143,66 @@ static int compare_y(const void *a, const void *b)
 	return compare(a, b, 1);
 }
 
-static int compare_z(const void *a, const void *b)
+/* Which way a path in a plane turns at q: > 0 to the left. */
+static int64_t turn(const struct hull_point *p, const struct hull_point *q,
+	const struct hull_point *r, int axis)
 {
-	return compare(a, b, 2);
+	int u = (axis + 1) % 3, w = (axis + 2) % 3;
+
+	return ((int64_t)q->v[u] - p->v[u]) * ((int64_t)r->v[w] - q->v[w]) -
+	       ((int64_t)q->v[w] - p->v[w]) * ((int64_t)r->v[u] - q->v[u]);
 }
 
-/* Drops repeated points and those between two others on a line parallel to an axis,
- * which cannot be corners.  Bodies made of cells have many. */
-static size_t drop_lines(struct hull_point *point, size_t count, int axis)
+/* Of the sorted points of a plane those that are corners of their hull, in to; returns
+ * how many. */
+static size_t plane_hull(
+	const struct hull_point *point, size_t count, struct hull_point *to, int axis)
 {
-	static int (*const order[])(
-		const void *, const void *) = { compare_x, compare_y, compare_z };
-	int u = (axis + 1) % 3, w = (axis + 2) % 3;
-	size_t kept = 0, line = 0;
+	size_t kept = 0, lower;
 
-	qsort(point, count, sizeof(*point), order[axis]);
 	for (size_t i = 0; i < count; i++) {
-		if (kept && !compare(&point[kept - 1], &point[i], axis))
-			continue;
-		if (kept && (point[kept - 1].v[u] != point[i].v[u] ||
-				    point[kept - 1].v[w] != point[i].v[w]))
-			line = kept;
-		if (kept > line + 1)
-			kept = line + 1;
-		point[kept++] = point[i];
+		while (kept > 1 &&
+			turn(&to[kept - 2], &to[kept - 1], &point[i], axis) <= 0)
+			kept--;
+		to[kept++] = point[i];
 	}
-	return kept;
+	lower = kept;
+	for (size_t i = count - 1; i-- > 0;) {
+		while (kept > lower &&
+			turn(&to[kept - 2], &to[kept - 1], &point[i], axis) <= 0)
+			kept--;
+		to[kept++] = point[i];
+	}
+	/* The path comes back to where it began. */
+	return kept > 1 ? kept - 1 : kept;
+}
+
+/* Drops repeated points and those that are no corners of the hull of their plane across
+ * an axis, x or y, which cannot be corners of the body.  Bodies made of cells have many.
+ */
+static enum num_status drop_inside(
+	struct hull *h, struct hull_point *point, size_t *count, int axis)
+{
+	size_t kept = 0, first = 0, unique = 0;
+
+	qsort(point, *count, sizeof *point, axis ? compare_y : compare_x);
+	for (size_t i = 0; i < *count; i++)
+		if (!unique || compare(&point[unique - 1], &point[i], axis))
+			point[unique++] = point[i];
+	for (size_t i = 1; i <= unique; i++) {
+		size_t n;
+
+		if (i < unique && point[i].v[axis] == point[first].v[axis])
+			continue;
+		if (room_for(&h->point, &h->point_room, 2 * (i - first), sizeof *point))
+			return NUM_MEMORY;
+		n = plane_hull(point + first, i - first, h->point, axis);
+		memcpy(point + kept, h->point, n * sizeof *point);
+		kept += n;
+		first = i;
+	}
+	*count = kept;
+	return NUM_OK;
 }
 
 /* Four points that span space as the first faces; 0 if there are none. */
@@ -211,15 +246,15 @@ static double volume6(const struct hull *h)
 }
 
 /* Keeps the points that are corners of a face, and lists the edges. */
-static int collect(struct hull *h)
+static enum num_status collect(struct hull *h)
 {
 	int *place;
 	size_t kept = 0;
 
-	if (room_for(&h->place, &h->place_room, h->points, sizeof(*place)))
-		return -1;
+	if (room_for(&h->place, &h->place_room, h->points, sizeof *place))
+		return NUM_MEMORY;
 	place = h->place;
-	memset(place, 0, h->points * sizeof(*place));
+	memset(place, 0, h->points * sizeof *place);
 	for (size_t i = 0; i < h->nfaces; i++)
 		for (int k = 0; k < 3; k++)
 			place[h->face[i].v[k]] = 1;
@@ -236,9 +271,9 @@ static int collect(struct hull *h)
 
 			/* Every edge is met once from either side. */
 			if (a < b && add_edge(h, place[a], place[b]))
-				return -1;
+				return NUM_MEMORY;
 		}
-	return 0;
+	return NUM_OK;
 }
 
 static int too_large(const struct hull_point *point, size_t count)
@@ -263,13 +298,12 @@ enum hull_status hull_build(struct hull *h, struct hull_point *point, size_t cou
 
 	if (too_large(point, count))
 		return HULL_LARGE;
-	if (room_for(&h->point, &h->point_room, count, sizeof(*p)))
+	if (drop_inside(h, point, &count, 1) || drop_inside(h, point, &count, 0) ||
+		room_for(&h->point, &h->point_room, count, sizeof *p))
 		return HULL_MEMORY;
 	p = h->point;
-	for (int axis = 0; axis < 3; axis++)
-		count = drop_lines(point, count, axis);
 	h->points = count;
-	memcpy(p, point, h->points * sizeof(*p));
+	memcpy(p, point, h->points * sizeof *p);
 	h->nfaces = 0;
 	if (h->points < 4 || !start(h, h->points, c))
 		return HULL_FLAT;

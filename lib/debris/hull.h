@@ -1,9 +1,9 @@
 /* hull.h - convex hull of points of a cubic lattice, in exact integer arithmetic
  *
- * Because an affine map takes hulls to hulls, cells of any shape may be counted in
- * whole steps and scaled afterwards.  All products are formed of differences of
- * coordinates; with differences up to D a normal has components up to 2 D^2 and its
- * product with a difference is at most 6 D^3, which for D = HULL_SPAN is below 2^63.
+ * Affine maps preserve convex hulls, so cells of any shape can be described by integers
+ * and scaled afterwards.  All products are products of differences of coordinates.  With
+ * differences up to D a normal has components up to 2 D^2, and its product with a
+ * difference is at most 6 D^3, which is below 2^63 for D = HULL_SPAN.
  *
  *	struct hull *h = hull_new();
  *	if (hull_build(h, point, count) == HULL_OK)
@@ -32,13 +32,13 @@ struct hull_point {
 };
 
 struct hull_edge {
-	int from, to; /* places in hull_points() */
+	int from, to; /* indices into hull_points() */
 };
 
 struct hull *hull_new(void); /* NULL when out of memory */
 void hull_free(struct hull *h);
 
-/* Builds the hull of the points, which are sorted on the way. */
+/* Builds the hull of the points, and sorts them. */
 enum hull_status hull_build(struct hull *h, struct hull_point *point, size_t count);
 
 /* Of the last hull: its corners, the edges between them (with some diagonals of flat

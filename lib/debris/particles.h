@@ -1,29 +1,29 @@
-/* particles.h - connected bodies among stretches of the columns of a grid
+/* particles.h - connected bodies of removed material, and their sizes and shapes
  *
- * A set of material below a surface is given as stretches of its columns, from top to
- * bottom.  Stretches of neighbouring columns that overlap in depth belong to one body (on
- * request, also those of columns that touch along an edge: the patches of a contact
- * map).
+ * A set of material below a surface is given as stretches of grid columns, from top to
+ * bottom.  Stretches of neighbouring columns that overlap in depth belong to one body
+ * (optionally also those of columns that share only an edge).
  *
- *	struct particles_par par = { .nx = 128, .ny = 128, .ax = 8e-6, .ay = 8e-6 };
+ *	struct particles_par par = { .nx = 128, .ny = 128, .dx = 8e-6, .dy = 8e-6 };
  *	struct particles *ps = particles_new(&par);
  *	n = particles_find(ps, stretch, count, &list);
  *
- * Lengths are taken over the bodies as they are, boxes with their corners: a single cube
- *has the largest diameter sqrt(3) times its side.
+ * Lengths are those of the boxes, including their corners: the largest diameter of a
+ * single cube is sqrt(3) times its side.
  */
 #ifndef DEBRIS_PARTICLES_H
 #define DEBRIS_PARTICLES_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 struct particles;
 
 struct particles_par {
 	int nx, ny;    /* columns */
-	double ax, ay; /* m */
-	double az;     /* depths are whole multiples of it, m; 0: of nothing */
-	int corners;   /* columns that share an edge in depth alone are joined too */
+	double dx, dy; /* m */
+	double dz;     /* depths are integer multiples of it, m; 0: any depth */
+	int corners;   /* 1: columns that share only a vertical edge are joined */
 	int periodic;  /* the grid repeats in x and y */
 };
 
@@ -37,23 +37,22 @@ struct particle {
 	size_t columns;    /* stretches */
 	double volume;     /* m3 */
 	double diameter;   /* of the sphere of this volume, m (2-14) */
-	double length;     /* largest diameter: between the farthest two points, m */
-	double width;      /* largest chord of the convex hull at right angles to it, m */
+	double length;     /* largest Feret diameter, m */
+	double width;      /* longest chord of the convex hull perpendicular to it, m */
 	double aspect;     /* length / width */
 	double elongation; /* 1 - sqrt(second / first principal moment): 0 round, 1 needle
 			    */
-	double convexity;  /* volume / volume of the convex hull */
+	double convexity;  /* solidity (ISO 9276-6): volume / volume of the convex hull */
 	double area;       /* of the exposed faces, m2 (1.5 x that of a smooth sphere) */
 	/* Longest principal axis: from +x towards +y, (-pi/2, pi/2], and up from the
-	 * plane of the layers, [0, pi/2]; nan where the two first moments are equal. */
+	 * plane of the layers, [0, pi/2]; nan if the two first moments are equal. */
 	double azimuth, dip;
 	double x, y, z;         /* centroid, m; z down from the surface */
 	double low[3], high[3]; /* bounding box, m */
 	int first[2];           /* first column in order of y and x: the address */
-	/* On a periodic grid: goes round it and meets itself, a ridge without end.
-	 * Columns, volume, diameter and area are those of one period; what would need an
-	 * end (length to convexity, direction) is nan, as is the centroid along x or y
-	 * where it winds that way. */
+	/* 1 if the body connects to itself across a periodic grid (an infinite ridge).
+	 * Columns, volume, diameter and area are then those of one period; length to
+	 * convexity, the direction, and the centroid along the infinite axis are nan. */
 	int endless;
 };
 
@@ -61,11 +60,11 @@ struct particle {
 struct particles *particles_new(const struct particles_par *par);
 void particles_free(struct particles *ps);
 
-/* The bodies of count stretches; those of a column neither overlap nor touch.  *list is
- * valid until the next call: largest first, equal ones by address and depth.  Where az is
- * 0 the hull takes depths in steps of 1/64 of those of its body.  Returns their number,
- * (size_t)-1 when out of memory. */
-size_t particles_find(struct particles *ps, const struct stretch *stretch, size_t count,
-	const struct particle **list);
+/* Finds the bodies of count stretches; stretches of one column must neither overlap nor
+ * touch.  *list is valid until the next call: largest first, equal ones by first column
+ * and depth.  If dz is 0 the hull resolves the depth of a body in 64 steps.
+ * *n receives the number of bodies. */
+enum num_status particles_find(struct particles *ps, const struct stretch *stretch,
+	size_t count, const struct particle **list, size_t *n);
 
 #endif

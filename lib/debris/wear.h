@@ -1,14 +1,15 @@
 /* wear.h - removal of the material whose equivalent stress exceeds the yield stress
  *
- * The potential set (2-11) is all that is over yield; the actual set (2-12) is what a
- *column loses from the surface down to where it first holds.  Depths are taken one by one
- *until none below can lose anything, and at each only the columns that still can.
+ * The potential set (2-11) is all material above yield; the actual set (2-12) is, in each
+ * column, the failed material from the surface down to the first depth that does not
+ * fail.  Depths are processed in order until no material below can fail, and at each
+ * depth only the columns that can still fail.
  *
  * Without cells the depth at which the stress crosses the yield stress is interpolated
- * between depths that grow geometrically, from an eighth of the spacing on: most of the
- * loss lies near the surface, where the stress changes fastest.  With cells the material
- * falls in cells of one height, each by the stress at its upper side or middle, as in the
- * thesis.
+ * between depths that increase geometrically from an eighth of the spacing, because most
+ * of the loss is near the surface, where the stress varies most.  With cells the
+ * material is removed in cells of one height, each by the stress at its upper side or
+ * centre, as in the thesis.
  *
  *	struct wear_par par = { .yield = 355e6, .rule = WEAR_COLUMN, .spacing = 8e-6 };
  *	struct wear *w = wear_new(nx, ny);
@@ -29,19 +30,19 @@ struct wear_par {
 	double spacing; /* of the grid, m: the smaller one */
 	double cell;    /* height of a cell, m; 0: none, the depth is interpolated */
 	double offset;  /* of a cell's node from its upper side, in cells */
-	double deepest; /* give up below this depth, which should lie far below the load,
-			 * m; 0: never */
+	double deepest; /* fail with WEAR_DEEP below this depth, which should be far below
+			 * the load, m; 0: no limit */
 };
 
 struct wear_result {
 	long layers;                   /* depths evaluated */
 	double depth;                  /* of the last one, m */
-	double height;                 /* lost, added up over the columns, m */
-	long columns;                  /* that lost something */
-	double stress;                 /* largest equivalent stress met, Pa */
-	double nodes;                  /* at which the stress was needed */
-	double nodes_skipped;          /* of the depths evaluated */
-	const struct stretch *stretch; /* lost; valid until the next call */
+	double height;                 /* sum of the losses of the columns, m */
+	long columns;                  /* columns with a loss */
+	double stress;                 /* largest equivalent stress evaluated, Pa */
+	double nodes;                  /* at which the stress was evaluated */
+	double nodes_skipped;          /* at the same depths, not evaluated */
+	const struct stretch *stretch; /* removed; valid until the next call */
 	size_t count;
 };
 
@@ -51,12 +52,12 @@ enum wear_status {
 	WEAR_MEMORY
 };
 
-struct wear; /* memory that is kept over calls */
+struct wear; /* memory that is kept between calls */
 
 struct wear *wear_new(int nx, int ny); /* NULL when out of memory */
 void wear_free(struct wear *w);
 
-/* Removes under the load that stress holds. */
+/* Removes the material that fails under the load of stress. */
 enum wear_status wear_remove(struct wear *w, struct stress *stress,
 	const struct wear_par *par, struct wear_result *result);
 

@@ -66,12 +66,19 @@ struct fields_in *fields_open(const char *path, const struct raw_layout *raw)
 
 static void read_raw(struct fields_in *in, struct record *r)
 {
+	const char *fields = in->raw.fields;
+	int n = 1;
+
+	for (const char *s = fields; s && *s; s++)
+		n += *s == ',';
 	r->nx = in->raw.nx;
 	r->ny = in->raw.ny;
-	r->nz = 1;
+	r->nz = in->raw.nz;
 	r->dx = in->raw.dx;
 	r->dy = in->raw.dy;
-	record_new_field(r, "height", "m");
+	r->dz = in->raw.dz;
+	check_sizes(&in->at, (double[]){ n, r->nx, r->ny, r->nz }, 4);
+	name_fields(&in->at, fields, r, n);
 	samples_read(&in->at, r, (struct samples){ 0, 0 });
 }
 
@@ -156,8 +163,7 @@ int fields_read(struct fields_in *in, struct record *r)
 		die(EXIT_RUN, "%s: no record", in->at.name);
 	if (promised(in) && !file_followed())
 		die(EXIT_RUN,
-			"%s: the stream ends after record %ld, which says that another "
-			"follows: what wrote it did not finish",
+			"%s: the stream ends after record %ld, which announces another: its writer did not finish",
 			in->at.name, in->at.record);
 	return 0;
 }

@@ -1,5 +1,5 @@
-/* formats.h - steps that the formats of fields share: each has a file of its own, reader
- * and writer, and a row in the table of fields.c */
+/* formats.h - functions shared by the formats of fields: each format has its own file and
+ * a row in the table of fields.c */
 #ifndef IO_FORMATS_H
 #define IO_FORMATS_H
 
@@ -7,7 +7,7 @@
 #include "io/record.h"
 #include <stdint.h>
 
-/* What a record of ours says of its stream. */
+/* The end mark of a record of wearpipe. */
 struct mark {
 	long number; /* of the record in its stream, from 1; 0: no mark */
 	int last;
@@ -32,6 +32,10 @@ struct samples {
 /* Fills all fields of r, whose sizes and names are set; dies where the stream ends
  * before "want N bytes". */
 void samples_read(struct place *at, struct record *r, struct samples layout);
+
+/* Adds n fields by names and units, "height m, pressure Pa"; NULL: a single one is a
+ * height in metres. */
+void name_fields(const struct place *at, const char *fields, struct record *r, int n);
 
 /* One header line without its newline, fresh memory; NULL at the end of the stream.
  * Dies where the header grows past a mebibyte. */

@@ -1,6 +1,7 @@
 #include "io/input.h"
 #include "cli/files.h"
 #include "cli/msg.h"
+#include "cli/progress.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,6 +16,7 @@ struct input {
 	FILE *f; /* holds the descriptor; what is read goes past it */
 	int fd;
 	int regular, whole;
+	double size, taken; /* bytes: of a regular file, else 0; read so far */
 	const char *name;
 	size_t begin, end; /* unread bytes of buffer */
 	unsigned char buffer[BUFFER];
@@ -28,6 +30,7 @@ struct input *input_open(const char *path)
 	in->f = file_open(path, &in->name);
 	in->fd = fileno(in->f);
 	in->regular = fstat(in->fd, &s) == 0 && S_ISREG(s.st_mode);
+	in->size = in->regular ? (double)s.st_size : 0;
 	return in;
 }
 
@@ -53,13 +56,17 @@ static int waits(const struct input *in)
 	return file_followed() && in->regular && !in->whole;
 }
 
-static size_t read_some(const struct input *in, void *bytes, size_t n)
+static size_t read_some(struct input *in, void *bytes, size_t n)
 {
 	static const struct timespec pause = { 0, 50000000 };
 	ssize_t got;
 
 	for (;;) {
 		got = read(in->fd, bytes, n);
+		if (got > 0) {
+			in->taken += (double)got;
+			progress_read(in->taken, file_followed() ? 0 : in->size);
+		}
 		if (got > 0 || (got == 0 && !waits(in)))
 			return (size_t)got;
 		if (got == 0)

@@ -272,12 +272,9 @@ static double spacing(const struct place *at, const struct header *h, int axis)
 	return s * scale;
 }
 
-/* Names and units, "height m, pressure Pa"; a single field without a name is taken
- * for a height in metres. */
-static void name_fields(
-	const struct place *at, const struct header *h, struct record *r, int n)
+void name_fields(const struct place *at, const char *fields, struct record *r, int n)
 {
-	char *text = xstrdup(h->fields ? h->fields : n == 1 ? "height m" : ""), *s = text;
+	char *text = xstrdup(fields ? fields : n == 1 ? "height m" : ""), *s = text;
 
 	for (int i = 0; i < n; i++) {
 		char *comma = strchr(s, ','), *blank;
@@ -290,16 +287,16 @@ static void name_fields(
 		if (blank)
 			*blank = '\0';
 		snprintf(numbered, sizeof numbered, "field%d", i + 1);
-		if (h->fields && (!*s || record_find(r, s) >= 0))
+		if (fields && (!*s || record_find(r, s) >= 0))
 			die(EXIT_RUN,
 				"%s: record %ld: want the names of %d fields, got '%s'",
-				at->name, at->record, n, h->fields);
+				at->name, at->record, n, fields);
 		record_new_field(r, *s ? s : numbered, blank ? blank + 1 : "");
 		s = comma ? comma + 1 : s + strlen(s);
 	}
-	if (*s && h->fields)
+	if (*s && fields)
 		die(EXIT_RUN, "%s: record %ld: want the names of %d fields, got '%s'",
-			at->name, at->record, n, h->fields);
+			at->name, at->record, n, fields);
 	free(text);
 }
 
@@ -325,7 +322,7 @@ void nrrd_read(struct place *at, struct record *r)
 	r->dx = spacing(at, &h, list);
 	r->dy = spacing(at, &h, list + 1);
 	r->dz = h.dimension == 4 ? spacing(at, &h, 3) : 0;
-	name_fields(at, &h, r, list ? (int)h.sizes[0] : 1);
+	name_fields(at, h.fields, r, list ? (int)h.sizes[0] : 1);
 	free(h.fields);
 	samples_read(at, r, (struct samples){ h.type == 4, h.endian == 2 });
 }
@@ -354,7 +351,7 @@ static void write_number(struct text *t, double value)
 	text_add(t, " %s", number_text(value, text));
 }
 
-/* The mark stands at the end, the digits of its checksum being zeros. */
+/* The mark is the last key, with zeros for the digits of its checksum. */
 static struct text make_header(const struct record *r, long number, int last)
 {
 	struct text t = { 0 };

@@ -7,12 +7,14 @@
 #include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/text.h"
+#include "cli/unit.h"
 #include "io/bytes.h"
 #include "io/crc32.h"
 #include "io/ends.h"
 #include "io/input.h"
 #include "io/kinds.h"
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -115,6 +117,27 @@ static char *annotated(const char *text, const char *key)
 	return NULL;
 }
 
+/* The header has room for whole numbers: others stand in the annotation, too. */
+static uint32_t whole_rate(double rate)
+{
+	return rate < 1 ? 1 : (uint32_t)(rate + 0.5);
+}
+
+static void take_rate(struct signal_in *in, const char *text)
+{
+	char *told = annotated(text, "rate"), *end = told;
+	double rate = told ? strtod(told, &end) : NAN;
+
+	if (in->promised && told) {
+		if (end == told || *end || !(rate > 0) ||
+			whole_rate(rate) != (uint32_t)in->format.rate)
+			die(EXIT_RUN, "%s: rate '%.40s' in a signal of %g Hz", in->name,
+				told, in->format.rate);
+		in->format.rate = rate;
+	}
+	free(told);
+}
+
 static void read_header(struct signal_in *in)
 {
 	static const size_t widths[] = { [PCM8] = 1,
@@ -162,7 +185,7 @@ static void read_header(struct signal_in *in)
 	in->encoding = (int)encoding;
 	in->width = widths[encoding];
 	in->left = in->total = size == unknown ? UINT64_MAX : size;
-	in->format.rate = (long)rate;
+	in->format.rate = (double)rate;
 	in->format.channels = (int)channels;
 	in->format.single = encoding != FLOAT64 && encoding != PCM32;
 	text = read_annotation(in, header - HEADER_MIN);
@@ -174,6 +197,8 @@ static void read_header(struct signal_in *in)
 	in->format.units = annotated(text, "units");
 	in->format.seed = annotated(text, "seed");
 	in->format.filter = annotated(text, "filter");
+	in->format.start = annotated(text, "start");
+	take_rate(in, text);
 	free(text);
 }
 
@@ -275,7 +300,7 @@ static size_t ready(const struct signal_in *in)
 	return (size_t)(bytes / in->frame) - (in->promised && bytes >= in->frame);
 }
 
-/* 1 where the frame left over is the end that was promised; torn says whether it is one
+/* 1 if the frame left over is the end that was promised; torn says whether it is one
  * at all. */
 static int is_end(const struct signal_in *in, int *torn)
 {
@@ -397,15 +422,21 @@ void signal_close(struct signal_in *in)
 	free(in->format.units);
 	free(in->format.seed);
 	free(in->format.filter);
+	free(in->format.start);
 	free(in);
 }
 
 /* A line for each thing that is known. */
 static char *annotation(const struct signal_format *format)
 {
+	char rate[NUMBER_TEXT];
+	const char *fraction = format->rate != floor(format->rate)
+				       ? number_text(format->rate, rate)
+				       : NULL;
 	const char *line[][2] = { { "stream", ENDS_PROMISE }, { "cmd", format->cmd },
 		{ "units", format->units }, { "seed", format->seed },
-		{ "filter", format->filter } };
+		{ "filter", format->filter }, { "rate", fraction },
+		{ "start", format->start } };
 	char *text = xprintf("%s", "");
 
 	for (size_t i = 0; i < sizeof line / sizeof *line; i++) {
@@ -436,7 +467,7 @@ static void write_header(struct signal_out *out, const struct signal_format *for
 	bytes_put_u32_big(b + 4, (uint32_t)(HEADER_MIN + padded));
 	bytes_put_u32_big(b + 8, unknown);
 	bytes_put_u32_big(b + 12, format->single ? FLOAT32 : FLOAT64);
-	bytes_put_u32_big(b + 16, (uint32_t)format->rate);
+	bytes_put_u32_big(b + 16, whole_rate(format->rate));
 	bytes_put_u32_big(b + 20, (uint32_t)format->channels);
 	text = xrealloc(text, padded, 1);
 	memset(text + length, 0, padded - length);

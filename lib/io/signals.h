@@ -11,7 +11,7 @@
 #include <stddef.h>
 
 struct signal_format {
-	long rate; /* frames per second, Hz */
+	double rate; /* frames per second, Hz */
 	int channels;
 	int single;   /* writer: 32-bit float */
 	char *cmd;    /* pipeline that made it; NULL if unknown */
@@ -19,10 +19,11 @@ struct signal_format {
 	char *seed;   /* NULL if none */
 	char *filter; /* linear-phase filters it passed, as fir_print() has them, with " |
 			 " between; NULL if none */
+	char *start;  /* moment of the first frame, ISO 8601; NULL if unknown */
 };
 
 struct signal_raw {
-	long rate;
+	double rate; /* Hz */
 	int channels;
 };
 
@@ -30,8 +31,8 @@ struct signal_in;
 struct signal_out;
 
 struct signal_in *signal_open(const char *path, const struct signal_raw *raw);
-struct signal_in *signal_from(struct input *in); /* takes an open input over */
-/* 1 where it promises an end or declares its length. */
+struct signal_in *signal_from(struct input *in); /* takes ownership of an open input */
+/* 1 if it promises an end or declares its length. */
 int signal_marked(const struct signal_in *in);
 const struct signal_format *signal_format(const struct signal_in *in);
 const char *signal_name(const struct signal_in *in);

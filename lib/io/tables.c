@@ -119,7 +119,7 @@ static size_t read_line(struct table_in *t)
 		return n;
 	if (file_followed())
 		return 0;
-	die(EXIT_RUN, "%s: line %ld: no newline at the end: the table is cut off",
+	die(EXIT_RUN, "%s: line %ld: no newline at the end: the table is truncated",
 		t->name, t->number);
 }
 
@@ -127,7 +127,7 @@ static size_t read_line(struct table_in *t)
 static void begin_promised(struct table_in *t)
 {
 	if (t->promised)
-		die(EXIT_RUN, "%s: line %ld: the table before has no '# end' line",
+		die(EXIT_RUN, "%s: line %ld: the preceding table has no '# end' line",
 			t->name, t->number);
 	input_whole(t->in, 0);
 	t->promised = 1;
@@ -159,7 +159,7 @@ static void check_end(struct table_in *t)
 	input_whole(t->in, 1);
 }
 
-/* Minds promise, checksum and end; 1 where the line is one for the reader. */
+/* Minds promise, checksum and end; 1 if the line is one for the reader. */
 static int mind_end(struct table_in *t, size_t n)
 {
 	if (strcmp(t->line, promise) == 0)
@@ -198,8 +198,7 @@ static int next_line(struct table_in *t)
 	}
 	if (t->promised && !file_followed())
 		die(EXIT_RUN,
-			"%s: the table ends after %ld rows without its '# end' line: "
-			"what wrote it did not finish",
+			"%s: the table ends after %ld rows without its '# end' line: its writer did not finish",
 			t->name, t->rows);
 	return 0;
 }
@@ -455,7 +454,7 @@ double table_number(const struct table_in *t, int column)
 		die(EXIT_RUN, "%s: line %ld: %s: '%.40s' is not a number%s", t->name,
 			t->number, t->column[column], t->cell[column],
 			is_comma_decimal(t->cell[column])
-				? ": decimals are behind a point"
+				? ": write decimals with a point"
 				: "");
 	return t->scale ? v * t->scale[column] : v;
 }

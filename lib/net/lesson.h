@@ -1,7 +1,7 @@
-/* lesson.h - what a network is trained with: samples of one kind, with their loss
+/* lesson.h - training samples of one kind, with their loss
  *
- * A lesson gives network_train() its samples, counted from first; those of a set that is
- * gone through many times can be kept in memory.
+ * A lesson provides the samples of network_train(), counted from first; a set that is
+ * used many times can be kept in memory.
  */
 #ifndef NET_LESSON_H
 #define NET_LESSON_H
@@ -37,7 +37,7 @@ void lesson_drop(struct lesson *lesson);
 /* For network_train(); the context is the lesson. */
 network_sample lesson_sample;
 
-/* 1 where the network has the lesson's purpose, inputs and outputs, of any width. */
+/* 1 if the network has the lesson's purpose, inputs and outputs, of any width. */
 int lesson_suits(
 	const struct lesson *lesson, const struct network *net, const char *purpose);
 

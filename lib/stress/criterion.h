@@ -1,11 +1,11 @@
 /* criterion.h - equivalent stresses by which a material fails
  *
- * An equivalent stress is a seminorm of the stress: it grows in proportion to the load,
- * and that of a sum is at most the sum of those of its parts, so that bounds of parts add
- * up to a bound of the whole.  It depends on the deviator alone, which the five numbers
- * of influence.h describe.
+ * An equivalent stress is a seminorm of the stress: it is proportional to the load, and
+ * the equivalent stress of a sum is at most the sum of the equivalent stresses, so bounds
+ * for parts of the load add up to a bound for the whole.  It depends only on the
+ * deviator, which has five independent components.
  *
- * A further criterion is one more row in criterion.c.
+ * To add a criterion, add a row in criterion.c.
  */
 #ifndef STRESS_CRITERION_H
 #define STRESS_CRITERION_H
@@ -29,7 +29,7 @@ struct stress_criterion {
 	double norm; /* value <= norm times the Frobenius norm of the tensor */
 };
 
-/* (2-10); NULL in a parameter stands for it. */
+/* (2-10); the default where a parameter is NULL. */
 extern const struct stress_criterion stress_von_mises_criterion;
 /* Largest difference of principal stresses. */
 extern const struct stress_criterion stress_tresca_criterion;

@@ -1,4 +1,5 @@
 #include "stress/free_sum.h"
+#include "num/status.h"
 #include "stress/lattice.h"
 #include "stress/window.h"
 
@@ -11,12 +12,10 @@ enum {
 	OUTER = 2 * INNER, /* to that of the next */
 	RADIUS =
 		2 * INNER, /* cells to the radius of the innermost, on every other cell */
-	REACH = RADIUS + 1, /* of what it leaves to the cells: the element adds one */
-	RUN = 8,            /* loads side by side that are summed at once */
-	BLOCK = 8,          /* cells of a row that are summed at once */
-	WIDTH = (2 * REACH + RUN + BLOCK - 1) / BLOCK * BLOCK, /* cells a run reaches */
-	SMALL = 32,          /* sides up to this are summed in full, which is no slower */
-	COARSEST = 6 * OUTER /* points a side up to which no window is worth its while */
+	REACH = RADIUS +
+		1,  /* of the part that is summed on the cells: the element adds one */
+	SMALL = 32, /* sides up to this are summed in full, which is no slower */
+	COARSEST = 6 * OUTER /* points per side up to which a window does not save time */
 };
 
 /* Depth over the distance of points: interpolation through eight of them leaves 2e-5 of
@@ -30,19 +29,12 @@ struct box {
 	int x0, y0, wx, wy;
 };
 
-/* Loads side by side. */
-struct run {
-	double p[RUN];
-	int count, x, y; /* of the first, from the corner of the box */
-};
-
 struct free_sum {
 	struct influence_par par;
 	int nx, ny, full;
 	struct pool *pool;
 	const double *pressure;
 	int x0, x1, y0, y1; /* of the loads, inclusive; x1 < x0: there are none */
-	double loads;
 	struct sum_work work;
 };
 
@@ -71,13 +63,11 @@ struct sum_work free_sum_work(const struct free_sum *s)
 void free_sum_load(struct free_sum *s, const double *pressure)
 {
 	s->pressure = pressure;
-	s->loads = 0;
 	s->x0 = s->nx, s->x1 = -1, s->y0 = s->ny, s->y1 = -1;
 	for (int y = 0; y < s->ny; y++)
 		for (int x = 0; x < s->nx; x++) {
 			if (pressure[(size_t)y * (size_t)s->nx + (size_t)x] == 0)
 				continue;
-			s->loads++;
 			s->x0 = x < s->x0 ? x : s->x0;
 			s->x1 = x > s->x1 ? x : s->x1;
 			s->y0 = y < s->y0 ? y : s->y0;
@@ -136,7 +126,7 @@ struct kernel {
 static struct influence kernel_value(const struct kernel *k, double x, double y)
 {
 	const struct influence_par *p = k->par;
-	double z = k->z, rx = RADIUS * p->ax, ry = RADIUS * p->ay;
+	double z = k->z, rx = RADIUS * p->dx, ry = RADIUS * p->dy;
 	struct influence far;
 
 	switch (k->source) {
@@ -173,7 +163,7 @@ static void kernel_row(void *context, size_t j, int worker)
 static struct influence *kernel_new(
 	struct free_sum *s, enum source source, double z, double cells, int wx, int wy)
 {
-	struct kernel k = { &s->par, source, wx, cells * s->par.ax, cells * s->par.ay, z,
+	struct kernel k = { &s->par, source, wx, cells * s->par.dx, cells * s->par.dy, z,
 		malloc((size_t)wx * (size_t)wy * sizeof(struct influence)) };
 
 	if (k.value)
@@ -182,26 +172,23 @@ static struct influence *kernel_new(
 	return k.value;
 }
 
-/* Convolution of loads on mx by my points with a kernel of this reach: a field for each
- * number. */
-static int convolve(struct free_sum *s, enum source source, double z, double cells,
-	int reach_x, int reach_y, int mx, int my, const double *load, size_t load_stride,
-	int numbers, double *const *out, size_t stride)
+/* Convolution of loads with a kernel of the reach that w has: a field for each number. */
+static enum num_status convolve(
+	struct free_sum *s, enum source source, double z, double cells, struct window *w)
 {
 	struct influence *kernel =
-		kernel_new(s, source, z, cells, reach_x + 1, reach_y + 1);
-	struct window *w = kernel ? window_new(mx, my, reach_x, reach_y) : NULL;
+		kernel_new(s, source, z, cells, w->reach_x + 1, w->reach_y + 1);
+	enum num_status status = NUM_MEMORY;
+	double transforms = 0;
 
-	if (w) {
-		window_load(w, load, load_stride);
-		for (int c = 0; c < numbers; c++)
-			window_sum(w, &s->par, kernel, (enum stress_number)c, out[c],
-				stride);
-		s->work.transforms += 1 + 2 * numbers;
-	}
-	window_free(w);
+	w->par = &s->par;
+	w->kernel = kernel;
+	w->pool = s->pool;
+	if (kernel)
+		status = window_sum(w, &transforms);
 	free(kernel);
-	return w ? 0 : -1;
+	s->work.transforms += transforms;
+	return status;
 }
 
 static void free_fields(double **field, int count)
@@ -210,16 +197,16 @@ static void free_fields(double **field, int count)
 		free(field[c]);
 }
 
-static int new_fields(double **field, int count, size_t n)
+static enum num_status new_fields(double **field, int count, size_t n)
 {
 	for (int c = 0; c < count; c++) {
 		field[c] = calloc(n, sizeof **field);
 		if (!field[c]) {
 			free_fields(field, c);
-			return -1;
+			return NUM_MEMORY;
 		}
 	}
-	return 0;
+	return NUM_OK;
 }
 
 /* The full sum. */
@@ -244,17 +231,25 @@ static void hand_span(void *context, size_t job, int worker)
 	h->want->put(h->want->context, span, number);
 }
 
-static int sum_full(
+static enum num_status sum_full(
 	struct free_sum *s, double z, const struct stress_want *want, const struct box *b)
 {
 	struct hand_over hand = { NULL, b, want };
 	double *field[STRESS_NUMBERS];
-	int status;
+	struct window w = { .mx = b->wx,
+		.my = b->wy,
+		.reach_x = b->wx - 1,
+		.reach_y = b->wy - 1,
+		.load = corner(s, b),
+		.load_stride = (size_t)s->nx,
+		.numbers = want->numbers,
+		.out = field,
+		.stride = (size_t)b->wx };
+	enum num_status status;
 
 	if (new_fields(field, want->numbers, (size_t)b->wx * (size_t)b->wy))
-		return -1;
-	status = convolve(s, ELEMENT, z, 1, b->wx - 1, b->wy - 1, b->wx, b->wy,
-		corner(s, b), (size_t)s->nx, want->numbers, field, (size_t)b->wx);
+		return NUM_MEMORY;
+	status = convolve(s, ELEMENT, z, 1, &w);
 	hand.field = field;
 	if (!status)
 		pool_run(s->pool, want->count, hand_span, &hand);
@@ -263,163 +258,24 @@ static int sum_full(
 	return status;
 }
 
-/* The part near the loads, on the cells of the box with REACH more on each side. */
-
-/* A row of the table: 2 REACH + 1 coefficients after RUN zeros, and zeros up to the width
- * of a run. */
-enum { ROW = RUN + WIDTH, ROWS = 2 * REACH + 1 };
-
-struct scatter {
-	const struct run *run;
-	size_t count, stride;
-	int low, high;       /* rows of nodes wanted, from the corner of the box */
-	const double *table; /* ROWS for each number */
-	double *const *field;
-};
-
-/* Two cells at a time; a compiler leaves it at one where it does not know the alignment.
- */
-typedef double two __attribute__((vector_size(2 * sizeof(double))));
-
-static two load_two(const double *p)
+/* The part inside the innermost window, on the cells of the box. */
+static enum num_status sum_near(struct free_sum *s, double z,
+	const struct stress_want *want, const struct box *b, double *const *field)
 {
-	two v;
+	struct window w = { .mx = b->wx,
+		.my = b->wy,
+		.reach_x = REACH,
+		.reach_y = REACH,
+		.load = corner(s, b),
+		.load_stride = (size_t)s->nx,
+		.numbers = want->numbers,
+		.out = field,
+		.stride = (size_t)b->wx,
+		.want = want,
+		.x0 = b->x0,
+		.y0 = b->y0 };
 
-	memcpy(&v, p, sizeof v);
-	return v;
-}
-
-static void store_two(double *p, two v)
-{
-	memcpy(p, &v, sizeof v);
-}
-
-/* The sums of a block are kept apart, since each waits for its last term. */
-static void add_run(double *f, const double *row, const struct run *r)
-{
-	for (int x = 0; x < 2 * REACH + r->count; x += BLOCK) {
-		const double *k = row + RUN + x;
-		two a = load_two(f + x), b = load_two(f + x + 2), c = load_two(f + x + 4),
-		    d = load_two(f + x + 6);
-
-		for (int m = 0; m < r->count; m++) {
-			two p = { r->p[m], r->p[m] };
-
-			a += p * load_two(k - m);
-			b += p * load_two(k - m + 2);
-			c += p * load_two(k - m + 4);
-			d += p * load_two(k - m + 6);
-		}
-		store_two(f + x, a);
-		store_two(f + x + 2, b);
-		store_two(f + x + 4, c);
-		store_two(f + x + 6, d);
-	}
-}
-
-static void scatter_number(void *context, size_t c, int worker)
-{
-	const struct scatter *s = context;
-	const double *table = s->table + c * ROWS * ROW;
-
-	(void)worker;
-	for (size_t i = 0; i < s->count; i++) {
-		const struct run *r = &s->run[i];
-		int from = larger(-REACH, s->low - r->y),
-		    to = smaller(REACH, s->high - r->y);
-
-		for (int j = from; j <= to; j++)
-			add_run(s->field[c] + (size_t)(r->y + REACH + j) * s->stride +
-					(size_t)r->x,
-				table + (j + REACH) * ROW, r);
-	}
-}
-
-static double *table_new(
-	const struct free_sum *s, const struct influence *kernel, int numbers)
-{
-	double *table = calloc((size_t)numbers * ROWS * ROW, sizeof *table);
-
-	for (int c = 0; table && c < numbers; c++)
-		for (int j = -REACH; j <= REACH; j++)
-			for (int i = -REACH; i <= REACH; i++) {
-				const struct influence *f =
-					&kernel[abs(j) * (REACH + 1) + abs(i)];
-				double v = influence_image(
-					&s->par, f, (enum stress_number)c, i < 0, j < 0);
-
-				/* On a line of symmetry what is odd across it vanishes.
-				 */
-				if (!i)
-					v = 0.5 * (v + influence_image(&s->par, f,
-							       (enum stress_number)c, 1,
-							       j < 0));
-				if (!j)
-					v = 0.5 * (v + influence_image(&s->par, f,
-							       (enum stress_number)c,
-							       i < 0, 1));
-				table[((size_t)c * ROWS + (size_t)(j + REACH)) * ROW +
-					(size_t)(RUN + i + REACH)] = v;
-			}
-	return table;
-}
-
-static int scatter_near(struct free_sum *s, double z, const struct stress_want *want,
-	const struct box *b, double *const *field, size_t stride)
-{
-	struct influence *kernel =
-		kernel_new(s, ELEMENT_INNER, z, 1, REACH + 1, REACH + 1);
-	struct run *run = malloc((size_t)s->loads * sizeof *run);
-	struct scatter sc = { run, 0, stride, b->wy, 0, NULL, field };
-	double *table = kernel ? table_new(s, kernel, want->numbers) : NULL;
-
-	for (size_t i = 0; i < want->count; i++) {
-		sc.low = smaller(sc.low, want->span[i].y - b->y0);
-		sc.high = larger(sc.high, want->span[i].y - b->y0);
-	}
-	for (int y = 0; run && y < b->wy; y++)
-		for (int x = 0; x < b->wx; x++) {
-			const double *p =
-				corner(s, b) + (size_t)y * (size_t)s->nx + (size_t)x;
-			struct run *r = &run[sc.count];
-
-			if (*p == 0)
-				continue;
-			*r = (struct run){ .x = x, .y = y };
-			while (r->count < RUN && x < b->wx && *p != 0) {
-				r->p[r->count++] = *p++;
-				x++;
-			}
-			x--;
-			sc.count++;
-		}
-	sc.table = table;
-	if (run && table)
-		pool_run(s->pool, (size_t)want->numbers, scatter_number, &sc);
-	free(run);
-	free(table);
-	free(kernel);
-	return run && table ? 0 : -1;
-}
-
-/* A load takes about 0.3 ns for each of its products, a transform 1 ns for each point and
- * doubling. */
-static int prefer_scatter(const struct free_sum *s, const struct box *b, int numbers)
-{
-	double points = ((double)b->wx + REACH) * ((double)b->wy + REACH);
-
-	return 0.3 * s->loads * numbers * ROWS * ROWS <
-	       1.0 * (1 + 2 * numbers) * points * log2(points);
-}
-
-/* The nodes of the box start REACH cells into the fields either way. */
-static int sum_near(struct free_sum *s, double z, const struct stress_want *want,
-	const struct box *b, double *const *field, double *const *inset, size_t stride)
-{
-	if (prefer_scatter(s, b, want->numbers))
-		return scatter_near(s, z, want, b, field, stride);
-	return convolve(s, ELEMENT_INNER, z, 1, REACH, REACH, b->wx, b->wy, corner(s, b),
-		(size_t)s->nx, want->numbers, inset, stride);
+	return convolve(s, ELEMENT_INNER, z, 1, &w);
 }
 
 /* Levels */
@@ -440,8 +296,8 @@ static void level_free(struct level *l)
 }
 
 /* Points every so many cells, or finer points, with their loads. */
-static int level_new(const struct free_sum *s, struct level *l, int mx, int my,
-	int spacing, const double *load, size_t stride, int element, int numbers)
+static enum num_status level_new(const struct free_sum *s, struct level *l, int mx,
+	int my, int spacing, const double *load, size_t stride, int element, int numbers)
 {
 	size_t points;
 
@@ -454,26 +310,39 @@ static int level_new(const struct free_sum *s, struct level *l, int mx, int my,
 	if (!l->lattice || !l->load || new_fields(l->field, numbers, points)) {
 		l->numbers = 0;
 		level_free(l);
-		return -1;
+		return NUM_MEMORY;
 	}
-	lattice_spread(l->lattice, load, stride, element, l->load);
-	return 0;
+	if (lattice_spread(l->lattice, load, stride, element, l->load)) {
+		level_free(l);
+		return NUM_MEMORY;
+	}
+	return NUM_OK;
 }
 
 /* Fields on the points of a level, cells apart: of all loads, or of those outside the
- * window of INNER points where finer points have the rest. */
-static int sum_level(struct free_sum *s, double z, int cells, int outer, struct level *l)
+ * window of INNER points if finer points sum the others. */
+static enum num_status sum_level(
+	struct free_sum *s, double z, int cells, int outer, struct level *l)
 {
-	int mx = l->x.points, my = l->y.points, status;
+	int mx = l->x.points, my = l->y.points;
+	enum num_status status;
 	struct level next;
+	struct window w = { .mx = mx,
+		.my = my,
+		.reach_x = mx - 1,
+		.reach_y = my - 1,
+		.load = l->load,
+		.load_stride = (size_t)mx,
+		.numbers = l->numbers,
+		.out = l->field,
+		.stride = (size_t)mx };
 
 	if (mx <= COARSEST && my <= COARSEST)
-		return convolve(s, outer ? POINT_OUTER : POINT, z, cells, mx - 1, my - 1,
-			mx, my, l->load, (size_t)mx, l->numbers, l->field, (size_t)mx);
-	if (convolve(s, outer ? POINT_RING : POINT_INNER, z, cells, OUTER, OUTER, mx, my,
-		    l->load, (size_t)mx, l->numbers, l->field, (size_t)mx) ||
+		return convolve(s, outer ? POINT_OUTER : POINT, z, cells, &w);
+	w.reach_x = w.reach_y = OUTER;
+	if (convolve(s, outer ? POINT_RING : POINT_INNER, z, cells, &w) ||
 		level_new(s, &next, mx, my, 2, l->load, (size_t)mx, 0, l->numbers))
-		return -1;
+		return NUM_MEMORY;
 	status = sum_level(s, z, 2 * cells, 1, &next);
 	for (int c = 0; !status && c < l->numbers; c++)
 		status = lattice_refine(next.lattice, next.field[c], l->field[c]);
@@ -481,15 +350,15 @@ static int sum_level(struct free_sum *s, double z, int cells, int outer, struct 
 	return status;
 }
 
-static int sum_coarse(struct free_sum *s, double z, int cells,
+static enum num_status sum_coarse(struct free_sum *s, double z, int cells,
 	const struct stress_want *want, const struct box *b)
 {
 	struct level l;
-	int status;
+	enum num_status status;
 
 	if (level_new(s, &l, b->wx, b->wy, cells, corner(s, b), (size_t)s->nx, 1,
 		    want->numbers))
-		return -1;
+		return NUM_MEMORY;
 	status = sum_level(s, z, cells, 0, &l);
 	if (!status)
 		status = lattice_gather(l.lattice, l.field, NULL, 0, b->x0, b->y0, want);
@@ -498,25 +367,23 @@ static int sum_coarse(struct free_sum *s, double z, int cells,
 	return status;
 }
 
-static int sum_split(
+static enum num_status sum_split(
 	struct free_sum *s, double z, const struct stress_want *want, const struct box *b)
 {
-	size_t stride = (size_t)b->wx + WIDTH, n = stride * ((size_t)b->wy + 2 * REACH);
-	double *near[STRESS_NUMBERS], *inset[STRESS_NUMBERS];
+	double *near[STRESS_NUMBERS];
 	struct level l;
-	int status;
+	enum num_status status;
 
 	if (level_new(s, &l, b->wx, b->wy, 2, corner(s, b), (size_t)s->nx, 1,
 		    want->numbers))
-		return -1;
+		return NUM_MEMORY;
 	status = sum_level(s, z, 2, 1, &l);
-	if (!status && !(status = new_fields(near, want->numbers, n))) {
-		for (int c = 0; c < want->numbers; c++)
-			inset[c] = near[c] + REACH * stride + REACH;
-		status = sum_near(s, z, want, b, near, inset, stride);
+	if (!status && !(status = new_fields(
+				 near, want->numbers, (size_t)b->wx * (size_t)b->wy))) {
+		status = sum_near(s, z, want, b, near);
 		if (!status)
-			status = lattice_gather(
-				l.lattice, l.field, inset, stride, b->x0, b->y0, want);
+			status = lattice_gather(l.lattice, l.field, near, (size_t)b->wx,
+				b->x0, b->y0, want);
 		free_fields(near, want->numbers);
 	}
 	level_free(&l);
@@ -524,14 +391,14 @@ static int sum_split(
 	return status;
 }
 
-int free_sum_at(struct free_sum *s, double z, const struct stress_want *want)
+enum num_status free_sum_at(struct free_sum *s, double z, const struct stress_want *want)
 {
-	double side = fmax(s->par.ax, s->par.ay), small = fmin(s->par.ax, s->par.ay);
+	double side = fmax(s->par.dx, s->par.dy), small = fmin(s->par.dx, s->par.dy);
 	struct box b = box_of(s, want);
 	int cells = 2;
 
 	if (want->count == 0)
-		return 0;
+		return NUM_OK;
 	if (s->full || b.wx <= SMALL || b.wy <= SMALL || side > OBLONG * small)
 		return sum_full(s, z, want, &b);
 	if (z < SMOOTH * cells * side)

@@ -34,7 +34,7 @@ static void add_point(const struct influence_par *p, double x, double y, double 
 	double weight, struct influence *f)
 {
 	double normal[STRESS_COMPONENTS], shear[STRESS_COMPONENTS];
-	double area = weight * p->ax * p->ay;
+	double area = weight * p->dx * p->dy;
 	int swap = p->axis;
 
 	stress_point_load(
@@ -50,7 +50,7 @@ static void add_patch(const struct influence_par *p, double x, double y, double 
 	double normal[STRESS_COMPONENTS], shear[STRESS_COMPONENTS];
 	int swap = p->axis;
 
-	stress_patch(0.5 * (swap ? p->ay : p->ax), 0.5 * (swap ? p->ax : p->ay), p->nu,
+	stress_patch(0.5 * (swap ? p->dy : p->dx), 0.5 * (swap ? p->dx : p->dy), p->nu,
 		swap ? y : x, swap ? x : y, z, normal, p->mu != 0 ? shear : NULL);
 	add_numbers(f->normal, normal, weight, swap);
 	if (p->mu != 0)
@@ -104,7 +104,7 @@ static void mean_of_patches(const struct influence_par *p, double x, double y, d
 			double u = crowded ? crowd(i, &wx) : gauss_node[i];
 			double v = crowded ? crowd(j, &wy) : gauss_node[j];
 
-			add_patch(p, x - u * p->ax, y - v * p->ay, z, wx * wy, f);
+			add_patch(p, x - u * p->dx, y - v * p->dy, z, wx * wy, f);
 		}
 }
 
@@ -112,8 +112,8 @@ struct influence influence_element(
 	const struct influence_par *p, double x, double y, double z)
 {
 	struct influence f = { { 0 }, { 0 } };
-	double side = fmax(p->ax, p->ay), r = sqrt(x * x + y * y + z * z) / side;
-	int touches = fabs(x) < 1.5 * p->ax && fabs(y) < 1.5 * p->ay && z < side;
+	double side = fmax(p->dx, p->dy), r = sqrt(x * x + y * y + z * z) / side;
+	int touches = fabs(x) < 1.5 * p->dx && fabs(y) < 1.5 * p->dy && z < side;
 
 	/* Three points leave about 0.06 / r^6 of the stress. */
 	if (r < 4) {
@@ -122,12 +122,12 @@ struct influence influence_element(
 	}
 	for (int j = 0; j < HAT; j++)
 		for (int i = 0; i < HAT; i++)
-			add_point(p, x - hat_node[i] * p->ax, y - hat_node[j] * p->ay, z,
+			add_point(p, x - hat_node[i] * p->dx, y - hat_node[j] * p->dy, z,
 				hat_weight[i] * hat_weight[j], &f);
 	return f;
 }
 
-/* 1 - w: 0 with seven derivatives at the middle (in r), 1 with three at the rim. */
+/* 1 - w: 0 with seven derivatives at the centre (in r), 1 with three at the edge. */
 static double outside(double x, double y, double rx, double ry)
 {
 	double u = x * x / (rx * rx) + y * y / (ry * ry), u2 = u * u;
@@ -159,7 +159,7 @@ struct influence influence_outer_element(
 
 	for (int j = 0; j < HAT; j++)
 		for (int i = 0; i < HAT; i++)
-			add_outer(p, x - hat_node[i] * p->ax, y - hat_node[j] * p->ay, z,
+			add_outer(p, x - hat_node[i] * p->dx, y - hat_node[j] * p->dy, z,
 				rx, ry, hat_weight[i] * hat_weight[j], &f);
 	return f;
 }

@@ -1,4 +1,5 @@
 #include "stress/lattice.h"
+#include "num/status.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -64,7 +65,7 @@ static void add_element(double t, double spacing, double weight[ORDER])
 				weight);
 }
 
-static int line_new(struct line *l, const struct lattice_axis *axis)
+static enum num_status line_new(struct line *l, const struct lattice_axis *axis)
 {
 	size_t n = (size_t)axis->cells;
 	double origin = lattice_origin(axis);
@@ -74,16 +75,24 @@ static int line_new(struct line *l, const struct lattice_axis *axis)
 	l->gather = calloc(n, sizeof *l->gather);
 	l->spread = calloc(n, sizeof *l->spread);
 	if (!l->start || !l->gather || !l->spread)
-		return -1;
+		return NUM_MEMORY;
 	for (int i = 0; i < axis->cells; i++) {
 		double t = (i - origin) / axis->spacing;
 		int start = (int)floor(t) - SIDE;
 
 		l->start[i] = start;
+		/* Whole spacings repeat themselves. */
+		if (!axis->wrap && i >= (int)axis->spacing) {
+			const int same = i - (int)axis->spacing;
+
+			memcpy(l->gather[i], l->gather[same], sizeof *l->gather);
+			memcpy(l->spread[i], l->spread[same], sizeof *l->spread);
+			continue;
+		}
 		add_weights(t - start, 1, l->gather[i]);
 		add_element(t - start, axis->spacing, l->spread[i]);
 	}
-	return 0;
+	return NUM_OK;
 }
 
 static void line_free(struct line *l)
@@ -117,33 +126,46 @@ void lattice_done(struct lattice *l)
 	free(l);
 }
 
-static void spread_one(
-	const struct lattice *l, int x, int y, double value, int element, double *load)
+/* A row of cells onto a row of points; 0 if all are zero. */
+static int spread_row(
+	const struct line *l, const double *cell, int element, double *restrict row)
 {
-	const double *wx = element ? l->x.spread[x] : l->x.gather[x];
-	const double *wy = element ? l->y.spread[y] : l->y.gather[y];
-	double *to = load + (size_t)l->y.start[y] * (size_t)l->x.axis.points +
-		     (size_t)l->x.start[x];
+	int any = 0;
 
-	for (int j = 0; j < ORDER; j++) {
-		double row = value * wy[j];
+	memset(row, 0, (size_t)l->axis.points * sizeof *row);
+	for (int x = 0; x < l->axis.cells; x++) {
+		const double *w = element ? l->spread[x] : l->gather[x];
+		double value = cell[x], *to = row + l->start[x];
 
+		if (value == 0)
+			continue;
+		any = 1;
 		for (int i = 0; i < ORDER; i++)
-			to[i] += row * wx[i];
-		to += l->x.axis.points;
+			to[i] += value * w[i];
 	}
+	return any;
 }
 
-void lattice_spread(const struct lattice *l, const double *cell, size_t stride,
+enum num_status lattice_spread(const struct lattice *l, const double *cell, size_t stride,
 	int element, double *load)
 {
-	for (int y = 0; y < l->y.axis.cells; y++)
-		for (int x = 0; x < l->x.axis.cells; x++) {
-			double value = cell[(size_t)y * stride + (size_t)x];
+	size_t points = (size_t)l->x.axis.points;
+	double *row = malloc(points * sizeof *row);
 
-			if (value != 0)
-				spread_one(l, x, y, value, element, load);
-		}
+	if (!row)
+		return NUM_MEMORY;
+	for (int y = 0; y < l->y.axis.cells; y++) {
+		const double *wy = element ? l->y.spread[y] : l->y.gather[y];
+		double *restrict to = load + (size_t)l->y.start[y] * points;
+
+		if (!spread_row(&l->x, cell + (size_t)y * stride, element, row))
+			continue;
+		for (int j = 0; j < ORDER; j++, to += points)
+			for (size_t i = 0; i < points; i++)
+				to[i] += wy[j] * row[i];
+	}
+	free(row);
+	return NUM_OK;
 }
 
 struct gather {
@@ -218,8 +240,9 @@ static void gather_span(void *context, size_t job, int worker)
 	g->want->put(g->want->context, span, number);
 }
 
-int lattice_gather(const struct lattice *l, double *const *field, double *const *more,
-	size_t stride, int x0, int y0, const struct stress_want *want)
+enum num_status lattice_gather(const struct lattice *l, double *const *field,
+	double *const *more, size_t stride, int x0, int y0,
+	const struct stress_want *want)
 {
 	struct gather g = { l, field, more, stride, x0, y0, want, NULL, 0 };
 
@@ -227,23 +250,23 @@ int lattice_gather(const struct lattice *l, double *const *field, double *const 
 		 (size_t)want->numbers * (size_t)l->x.axis.cells;
 	g.scratch = malloc(g.room * (size_t)pool_threads(l->pool) * sizeof *g.scratch);
 	if (!g.scratch)
-		return -1;
+		return NUM_MEMORY;
 	pool_run(l->pool, want->count, gather_span, &g);
 	free(g.scratch);
-	return 0;
+	return NUM_OK;
 }
 
-int lattice_refine(const struct lattice *l, const double *field, double *cell)
+enum num_status lattice_refine(const struct lattice *l, const double *field, double *cell)
 {
 	double *row = malloc((size_t)l->x.axis.points * sizeof *row);
 
 	if (!row)
-		return -1;
+		return NUM_MEMORY;
 	for (int y = 0; y < l->y.axis.cells; y++) {
 		combine_rows(l, field, y, 0, l->x.axis.points, row);
 		for (int x = 0; x < l->x.axis.cells; x++)
 			*cell++ += interpolate(&l->x, x, row);
 	}
 	free(row);
-	return 0;
+	return NUM_OK;
 }

@@ -1,4 +1,4 @@
-/* span.h - where on a grid a stress is wanted, and how it is handed over */
+/* span.h - the nodes at which stress is requested, and the callback that receives it */
 #ifndef STRESS_SPAN_H
 #define STRESS_SPAN_H
 
@@ -10,12 +10,12 @@ struct stress_span {
 	int y, begin, end;
 };
 
-/* Takes the numbers of a span, number[c][x - begin].  Called once for each span, in any
- * order and from any thread. */
+/* Receives the stress components of a span, number[c][x - begin].  Called once for each
+ * span, in any order and from any thread. */
 typedef void stress_put(void *context, const struct stress_span *span,
 	const double *const number[STRESS_NUMBERS]);
 
-/* The nodes wanted: count spans, the first numbers of STRESS_NUMBERS. */
+/* The request: count spans, the first numbers components of STRESS_NUMBERS. */
 struct stress_want {
 	const struct stress_span *span;
 	size_t count;

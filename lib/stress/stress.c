@@ -1,4 +1,5 @@
 #include "stress/stress.h"
+#include "num/status.h"
 #include "stress/free_sum.h"
 #include "stress/influence.h"
 #include "stress/stress_kernel.h"
@@ -20,14 +21,16 @@ struct stress {
 	struct stress_par par;
 	const struct stress_criterion *criterion;
 	struct influence_par influence;
-	/* Pressures are held in this unit, a power of two near the largest, so that
-	 * squares neither overflow nor vanish. */
+	/* Pressures are scaled by a power of two near the largest one, so that squares
+	 * neither overflow nor underflow. */
 	double unit;
 	double *pressure;
 	double total;     /* N */
 	int loaded;       /* some cell is */
 	int side, bx, by; /* cells to a block's side, blocks */
 	struct block *blocks;
+	char *held; /* of the blocks: no node can fail at held_depth and below */
+	double held_depth, held_limit;
 	double point; /* largest equivalent stress times distance^2 */
 	struct free_sum *free;
 	struct wave_sum *wave; /* one of the two is NULL */
@@ -75,8 +78,8 @@ static double largest_point_stress(const struct stress *s)
 static int par_ok(const struct stress_par *p)
 {
 	return p->nx > 0 && p->ny > 0 && p->nx <= 1 << 20 && p->ny <= 1 << 20 &&
-	       p->ax > 0 && p->ay > 0 && p->nu >= 0 && p->nu <= 0.5 &&
-	       isfinite(p->ax + p->ay + p->mu);
+	       p->dx > 0 && p->dy > 0 && p->nu >= 0 && p->nu <= 0.5 &&
+	       isfinite(p->dx + p->dy + p->mu);
 }
 
 struct stress *stress_new(const struct stress_par *par)
@@ -95,18 +98,19 @@ struct stress *stress_new(const struct stress_par *par)
 	s->par = *par;
 	s->criterion = par->criterion ? par->criterion : &stress_von_mises_criterion;
 	s->influence =
-		(struct influence_par){ par->ax, par->ay, par->nu, par->mu, par->axis };
+		(struct influence_par){ par->dx, par->dy, par->nu, par->mu, par->axis };
 	s->side = (par->nx > par->ny ? par->nx : par->ny) / BLOCKS_SIDE;
 	s->side = s->side < BLOCK ? BLOCK : s->side;
 	s->bx = (par->nx + s->side - 1) / s->side;
 	s->by = (par->ny + s->side - 1) / s->side;
 	s->blocks = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->blocks);
+	s->held = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->held);
 	s->pressure = malloc(n * sizeof *s->pressure);
 	if (par->periodic)
 		s->wave = wave_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
 	else
 		s->free = free_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
-	if (!s->blocks || !s->pressure || (!s->wave && !s->free)) {
+	if (!s->blocks || !s->held || !s->pressure || (!s->wave && !s->free)) {
 		stress_free(s);
 		errno = ENOMEM;
 		return NULL;
@@ -122,6 +126,7 @@ void stress_free(struct stress *s)
 	free_sum_free(s->free);
 	wave_sum_free(s->wave);
 	free(s->blocks);
+	free(s->held);
 	free(s->pressure);
 	free(s);
 }
@@ -141,7 +146,7 @@ static void add_to_block(struct stress *s, int x, int y, double load)
 	b->load += load;
 }
 
-/* Power of two at or below the largest magnitude; 0 where a value is not finite. */
+/* Power of two at or below the largest magnitude; 0 if a value is not finite. */
 static double unit_of(const double *pressure, size_t n)
 {
 	double most = 0;
@@ -156,18 +161,18 @@ static double unit_of(const double *pressure, size_t n)
 	return most > 0 ? ldexp(0.5, exponent) : 1;
 }
 
-int stress_load(struct stress *s, const double *pressure)
+enum num_status stress_load(struct stress *s, const double *pressure)
 {
 	size_t nx = (size_t)s->par.nx, ny = (size_t)s->par.ny;
-	double area = s->par.ax * s->par.ay, unit = unit_of(pressure, nx * ny);
+	double area = s->par.dx * s->par.dy, unit = unit_of(pressure, nx * ny);
 
 	if (unit == 0) {
-		errno = EDOM;
-		return -1;
+		return NUM_DOMAIN;
 	}
 	s->unit = unit;
 	s->total = 0;
 	s->loaded = 0;
+	s->held_depth = INFINITY;
 	memset(s->blocks, 0, (size_t)s->bx * (size_t)s->by * sizeof *s->blocks);
 	for (size_t y = 0; y < ny; y++)
 		for (size_t x = 0; x < nx; x++) {
@@ -184,7 +189,7 @@ int stress_load(struct stress *s, const double *pressure)
 		wave_sum_load(s->wave, s->pressure);
 	else
 		free_sum_load(s->free, s->pressure);
-	return 0;
+	return NUM_OK;
 }
 
 struct stress_work stress_work(const struct stress *s)
@@ -213,14 +218,14 @@ static int block_may_fail(const struct stress *s, int bx, int by, double z, doub
 
 	for (size_t i = 0; i < (size_t)s->bx * (size_t)s->by; i++) {
 		const struct block *b = &s->blocks[i];
-		double dx, dy;
+		double away_x, away_y;
 
 		if (b->load == 0)
 			continue;
-		dx = apart(x0, x0 + last, b->x0, b->x1, s->par.ax);
-		dy = apart(y0, y0 + last, b->y0, b->y1, s->par.ay);
+		away_x = apart(x0, x0 + last, b->x0, b->x1, s->par.dx);
+		away_y = apart(y0, y0 + last, b->y0, b->y1, s->par.dy);
 		/* Infinite (and so true) where the node may lie on the load. */
-		sum += b->load * s->point / (dx * dx + dy * dy + z * z);
+		sum += b->load * s->point / (away_x * away_x + away_y * away_y + z * z);
 		if (sum > limit)
 			return 1;
 	}
@@ -237,6 +242,11 @@ size_t stress_reach(struct stress *s, double z, double limit, struct stress_span
 	size_t count = 0;
 
 	limit /= s->unit;
+	/* What held at a smaller depth holds: the bound falls with depth. */
+	if (!(z >= s->held_depth && limit >= s->held_limit))
+		memset(s->held, 0, (size_t)s->bx * (size_t)s->by * sizeof *s->held);
+	s->held_depth = z;
+	s->held_limit = limit;
 	if (!s->loaded || (s->wave && wave_sum_bound(s->wave, s->criterion, z) <= limit))
 		return 0;
 	for (int by = 0; by < s->by; by++) {
@@ -247,8 +257,11 @@ size_t stress_reach(struct stress *s, double z, double limit, struct stress_span
 		for (int bx = 0; bx < s->bx; bx++) {
 			int x0 = bx * s->side;
 			int x1 = x0 + s->side < s->par.nx ? x0 + s->side : s->par.nx;
+			char *held = &s->held[(size_t)by * (size_t)s->bx + (size_t)bx];
 
-			if (s->free && !block_may_fail(s, bx, by, z, limit))
+			if (s->free && !*held)
+				*held = !block_may_fail(s, bx, by, z, limit);
+			if (*held)
 				continue;
 			if (count > first && span[count - 1].end == x0)
 				span[count - 1].end = x1;
@@ -276,7 +289,7 @@ double stress_deep(const struct stress *s, double z)
 	for (int c = 0; c < STRESS_DEVIATOR; c++)
 		v[c] = creal(mean[c]);
 	return s->criterion->value(v) * fabs(s->total) /
-	       (s->par.nx * s->par.ax * s->par.ny * s->par.ay);
+	       (s->par.nx * s->par.dx * s->par.ny * s->par.dy);
 }
 
 /* Sums */
@@ -323,15 +336,15 @@ static void take_tensor(void *context, const struct stress_span *span,
 		}
 }
 
-static int sum(struct stress *s, double z, const struct stress_want *want)
+static enum num_status sum(struct stress *s, double z, const struct stress_want *want)
 {
 	for (size_t i = 0; i < want->count; i++)
 		s->nodes += want->span[i].end - want->span[i].begin;
 	return s->wave ? wave_sum_at(s->wave, z, want) : free_sum_at(s->free, z, want);
 }
 
-int stress_at(struct stress *s, double z, const struct stress_span *span, size_t count,
-	double *value)
+enum num_status stress_at(struct stress *s, double z, const struct stress_span *span,
+	size_t count, double *value)
 {
 	struct take t = { s, value };
 	struct stress_want want = { span, count, STRESS_DEVIATOR, take_equivalent, &t };
@@ -341,26 +354,26 @@ int stress_at(struct stress *s, double z, const struct stress_span *span, size_t
 	for (size_t i = 0; i < count; i++)
 		memset(value + (size_t)span[i].y * (size_t)s->par.nx + span[i].begin, 0,
 			(size_t)(span[i].end - span[i].begin) * sizeof *value);
-	return 0;
+	return NUM_OK;
 }
 
-int stress_tensor(struct stress *s, double z, double *tensor)
+enum num_status stress_tensor(struct stress *s, double z, double *tensor)
 {
 	size_t rows = (size_t)s->par.ny, n = rows * (size_t)s->par.nx;
 	struct stress_span *span = malloc(rows * sizeof *span);
 	struct take t = { s, tensor };
 	struct stress_want want = { span, rows, STRESS_NUMBERS, take_tensor, &t };
-	int status = -1;
+	enum num_status status = NUM_MEMORY;
 
 	if (!span)
-		return -1;
+		return NUM_MEMORY;
 	for (int y = 0; y < s->par.ny; y++)
 		span[y] = (struct stress_span){ y, 0, s->par.nx };
 	if (s->loaded)
 		status = sum(s, z, &want);
 	else {
 		memset(tensor, 0, STRESS_COMPONENTS * n * sizeof *tensor);
-		status = 0;
+		status = NUM_OK;
 	}
 	free(span);
 	return status;

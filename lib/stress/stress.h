@@ -4,14 +4,13 @@
  * surface carries pressure p, interpolated between the cell centres, and the shear mu p
  * along +x or +y.
  *
- * On a free surface the grid is all that is loaded; on a periodic one the pressure is the
- * Fourier series through the cell centres, repeated for ever, and the mean lateral strain
- * is zero.
+ * On a free surface there is no load outside the grid; on a periodic one the pressure is
+ * the Fourier series through the cell centres, and the mean lateral strain is zero.
  *
  * Units are SI, fields row-major [iy * nx + ix], tension positive; see stress_kernel.h.
- * Results depend on the arguments alone, not on what was computed before or on threads.
+ * Results depend on the arguments alone, not on previous calls or the number of threads.
  *
- *	struct stress_par par = { .nx = 128, .ny = 128, .ax = 8e-6, .ay = 8e-6,
+ *	struct stress_par par = { .nx = 128, .ny = 128, .dx = 8e-6, .dy = 8e-6,
  *		.nu = 0.3, .mu = 0.3 };
  *	struct stress *s = stress_new(&par);
  *	struct stress_span *span = malloc(stress_spans_max(s) * sizeof *span);
@@ -23,6 +22,7 @@
 #define STRESS_STRESS_H
 
 #include "num/pool.h"
+#include "num/status.h"
 #include "stress/criterion.h"
 #include "stress/span.h"
 
@@ -31,12 +31,12 @@
 struct stress;
 
 /* Sums on points as coarse as the depth allows (free_sum.h, wave_sum.h: within 3e-4 of
- * the largest pressure), or on all cells, which is to compare with. */
+ * the largest pressure), or on all cells, for verification. */
 enum stress_method { STRESS_COARSE, STRESS_FULL };
 
 struct stress_par {
 	int nx, ny;    /* cells */
-	double ax, ay; /* cell size, m */
+	double dx, dy; /* cell size, m */
 	double nu, mu; /* Poisson's ratio, shear over pressure (either sign) */
 	int axis;      /* shear along x (0) or y (1) */
 	int periodic;
@@ -47,41 +47,41 @@ struct stress_par {
 
 /* Work done since stress_new(). */
 struct stress_work {
-	double transforms;    /* Fourier transforms of any size */
-	double kernel_cells;  /* influence coefficients evaluated */
-	double full_layers;   /* summed on all cells */
-	double split_layers;  /* on coarser points, and nearby on the cells */
-	double coarse_layers; /* on coarser points alone */
-	double nodes;         /* at which a stress was wanted */
+	double transforms;   /* Fourier transforms of any size */
+	double kernel_cells; /* influence coefficients evaluated */
+	double full_layers;  /* summed on all cells */
+	double split_layers; /* summed on coarser points and, at short range, on the cells
+			      */
+	double coarse_layers; /* summed only on coarser points */
+	double nodes;         /* at which stress was requested */
 };
 
 /* NULL with errno EDOM (a parameter out of range) or ENOMEM. */
 struct stress *stress_new(const struct stress_par *par);
 void stress_free(struct stress *s);
 
-/* Takes a pressure (nx * ny, finite; kept until the next call); -1 if it is not finite.
- */
-int stress_load(struct stress *s, const double *pressure);
+/* Sets the pressure (nx * ny, finite; borrowed until the next call); NUM_DOMAIN if it is
+ * not finite. */
+enum num_status stress_load(struct stress *s, const double *pressure);
 
-/* Spans of nodes whose equivalent stress at depth z may exceed limit; all others are
- * below it for certain, and remain so at every greater depth.  span has room for
- * stress_spans_max().  The bound adds up the equivalent stress of loads block by block,
+/* Finds spans of nodes whose equivalent stress at depth z may exceed limit; all other
+ * nodes are below the limit at this and every greater depth.  span has room for
+ * stress_spans_max().  The bound is a sum of the equivalent stresses of blocks of loads,
  * or of waves (criterion.h). */
 size_t stress_reach(struct stress *s, double z, double limit, struct stress_span *span);
 size_t stress_spans_max(const struct stress *s);
 
-/* Equivalent stress in the middle below the load as it would be many times deeper than
- * the grid is long: of a point load, or of the mean load if periodic. */
+/* Asymptotic equivalent stress below the centre of the load at depths of many grid
+ * lengths: that of a point load, or of the mean load if periodic. */
 double stress_deep(const struct stress *s, double z);
 
-/* Equivalent stress at depth z at the nodes of the spans: value[iy * nx + ix].  -1 when
- * out of memory. */
-int stress_at(struct stress *s, double z, const struct stress_span *span, size_t count,
-	double *value);
+/* Equivalent stress at depth z at the nodes of the spans: value[iy * nx + ix]. */
+enum num_status stress_at(struct stress *s, double z, const struct stress_span *span,
+	size_t count, double *value);
 
 /* The whole tensor on the whole grid: six fields xx yy zz xy xz yz of nx * ny each, one
- * after another.  -1 when out of memory. */
-int stress_tensor(struct stress *s, double z, double *tensor);
+ * after another. */
+enum num_status stress_tensor(struct stress *s, double z, double *tensor);
 
 struct stress_work stress_work(const struct stress *s);
 

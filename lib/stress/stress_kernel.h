@@ -6,8 +6,8 @@
  * unit, of any size: the stresses depend on their ratios alone.
  *
  * Love's and Cerruti's solutions as printed by Liu and Wang, J. Tribol. 124 (2002)
- * 36-45, with two signs corrected (the logarithm of sigma_xx and the whole of sigma_yz
- * under shear) and every term rewritten so that R + x, R + y near zero loses no digits.
+ * 36-45, with two signs corrected (the logarithm of sigma_xx and all of sigma_yz under
+ * shear) and every term rewritten to avoid cancellation in R + x and R + y.
  */
 #ifndef CONTACT_STRESS_KERNEL_H
 #define CONTACT_STRESS_KERNEL_H
@@ -36,11 +36,11 @@ void stress_point_load(double nu, double x, double y, double z,
 void stress_point(double nu, double mu, double x, double y, double z,
 	double stress[STRESS_COMPONENTS]);
 
-/* 1 where the component changes sign with x (axis 0) or y (axis 1), for pressure; under
- * shear along an axis the parity in that axis is the other one. */
+/* 1 if under pressure the component changes sign with x (axis 0) or y (axis 1); under
+ * shear along an axis the parity in that axis is opposite. */
 int stress_odd(enum stress_component component, int axis);
 
-/* von Mises stress, with the three differences of (2-10) taken in turn. */
+/* von Mises stress, (2-10) with its three differences corrected. */
 double stress_von_mises(const double stress[STRESS_COMPONENTS]);
 
 /* Principal stresses, largest (most tensile) first. */

@@ -1,26 +1,37 @@
 /* window.h - sums over the loads of a rectangle, by Fourier transform
  *
- * Loads and nodes are those of mx times my points; a kernel reaches so many points either
- * way.  Points are padded so that nothing wraps around.
+ * Loads and nodes are on mx times my points; a kernel extends reach_x and reach_y points
+ * in either direction.  A rectangle much larger than the reach is cut into tiles, which
+ * are transformed with the loads within reach (overlap-save); tiles without loads, or in
+ * which nothing is wanted, are left out.
  */
 #ifndef STRESS_WINDOW_H
 #define STRESS_WINDOW_H
 
+#include "num/pool.h"
+#include "num/status.h"
 #include "stress/influence.h"
+#include "stress/span.h"
 #include <stddef.h>
 
-struct window;
+struct window {
+	int mx, my, reach_x, reach_y;
+	const struct influence_par *par;
+	/* kernel[j * (reach_x + 1) + i] is the influence at the offset (i, j); the others
+	 * follow by symmetry. */
+	const struct influence *kernel;
+	const double *load; /* rows of load_stride */
+	size_t load_stride;
+	int numbers;        /* the first so many of enum stress_number ... */
+	double *const *out; /* ... into these, zero on entry, rows of stride */
+	size_t stride;
+	/* Nodes wanted, counted from (x0, y0); NULL: all. */
+	const struct stress_want *want;
+	int x0, y0;
+	struct pool *pool;
+};
 
-/* NULL when out of memory. */
-struct window *window_new(int mx, int my, int reach_x, int reach_y);
-void window_free(struct window *w);
-
-/* Takes loads of the points, rows of stride. */
-void window_load(struct window *w, const double *load, size_t stride);
-/* The sum for one number, rows of stride.  kernel[j * (reach_x + 1) + i] is the influence
- * at the offset (i, j); the others follow by symmetry. */
-void window_sum(struct window *w, const struct influence_par *par,
-	const struct influence *kernel, enum stress_number number, double *out,
-	size_t stride);
+/* Computes the sums; *transforms receives how many that took. */
+enum num_status window_sum(const struct window *w, double *transforms);
 
 #endif

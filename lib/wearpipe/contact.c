@@ -30,7 +30,7 @@ struct wp_contact *wp_contact_new(
 
 	if (par->threads < 1)
 		return report(status, WP_DOMAIN);
-	c = calloc(1, sizeof(*c));
+	c = calloc(1, sizeof *c);
 	if (!c)
 		return report(status, WP_NO_MEMORY);
 	c->pool = wanted.pool = pool_new(par->threads);

@@ -21,14 +21,14 @@ struct wp_debris *wp_debris_new(const struct wp_debris_par *par, enum wp_status 
 
 	if (par->threads < 1)
 		return report(status, WP_DOMAIN);
-	d = calloc(1, sizeof(*d));
+	d = calloc(1, sizeof *d);
 	if (!d)
 		return report(status, WP_NO_MEMORY);
 	d->pool = pool_new(par->threads);
 	wanted.stress = (struct stress_par){ .nx = par->nx,
 		.ny = par->ny,
-		.ax = par->dx,
-		.ay = par->dy,
+		.dx = par->dx,
+		.dy = par->dy,
 		.nu = par->poisson,
 		.mu = par->friction,
 		.periodic = par->periodic,
@@ -83,7 +83,7 @@ enum wp_status wp_debris_wear(struct wp_debris *d, double *height, const double 
 		return status;
 	if (step.count > d->room) {
 		struct wp_particle *more =
-			realloc(d->particle, step.count * sizeof(*more));
+			realloc(d->particle, step.count * sizeof *more);
 
 		if (!more)
 			return WP_NO_MEMORY;

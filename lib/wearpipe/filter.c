@@ -26,7 +26,7 @@ struct wp_filter *wp_filter_new(
 
 	if (n < 1 || channels < 1)
 		return report(status, WP_DOMAIN);
-	f = malloc(sizeof(*f));
+	f = malloc(sizeof *f);
 	if (!f)
 		return report(status, WP_NO_MEMORY);
 	f->channels = channels;

@@ -20,7 +20,7 @@ struct wp_life *wp_life_new(
 
 	if (!isfinite(threshold) || (direction != 1 && direction != -1) || draws < 1)
 		return report(status, WP_DOMAIN);
-	l = malloc(sizeof(*l) + (size_t)draws * sizeof(*l->life));
+	l = malloc(sizeof *l + (size_t)draws * sizeof *l->life);
 	if (!l)
 		return report(status, WP_NO_MEMORY);
 	l->par = (struct bank_par){ .threshold = threshold, .direction = direction };
@@ -70,7 +70,7 @@ enum wp_status wp_life_quantiles(
 	if (!bank_ready(l->bank))
 		return WP_IMPOSSIBLE;
 	bank_draw(l->bank, l->chances, l->last, l->par.threshold, l->life);
-	qsort(l->life, (size_t)draws, sizeof(*l->life), ascending);
+	qsort(l->life, (size_t)draws, sizeof *l->life, ascending);
 	while (finite < draws && isfinite(l->life[finite]))
 		finite++;
 	for (int i = 0; i < n; i++) {

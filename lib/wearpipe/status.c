@@ -11,8 +11,8 @@ const char *wp_status_text(enum wp_status status)
 		[WP_IMPOSSIBLE] = "no solution",
 	};
 
-	return (unsigned)status < sizeof(text) / sizeof(*text) ? text[status]
-							       : "unknown status";
+	return (unsigned)status < sizeof(text) / sizeof *text ? text[status]
+							      : "unknown status";
 }
 
 const char *wp_version(void)

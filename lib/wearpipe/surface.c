@@ -41,7 +41,7 @@ struct wp_surface *wp_surface_new(
 	enum rough_status why;
 	struct wp_surface *s;
 
-	if ((unsigned)par->kind >= sizeof(kinds) / sizeof(*kinds) || !(par->sq >= 0))
+	if ((unsigned)par->kind >= sizeof(kinds) / sizeof *kinds || !(par->sq >= 0))
 		return report(status, WP_DOMAIN);
 	rough.spectrum = (struct spectrum_par){ .nx = par->nx,
 		.ny = par->ny,
@@ -53,7 +53,7 @@ struct wp_surface *wp_surface_new(
 		.hurst = par->hurst,
 		.rolloff = par->rolloff,
 		.cutoff = par->cutoff };
-	s = malloc(sizeof(*s));
+	s = malloc(sizeof *s);
 	if (!s)
 		return report(status, WP_NO_MEMORY);
 	why = rough_make(&rough, &s->rough);

@@ -24,47 +24,47 @@ static const char *summary_path, *particles_path, *surface_path;
 
 static const struct opt opts[] = {
 	OPT_HEADING("Gap and bodies"),
-	{ 0, "gap", OPT_NUM, UNIT_LENGTH, &gap, 1e-12, 1, "H", "between the surfaces",
+	{ 0, "gap", OPT_NUM, UNIT_LENGTH, &gap, 1e-12, 1, "H", "gap between the surfaces",
 		NULL, 0 },
 	{ 'F', "load", OPT_NUM, UNIT_FORCE, &load, 1e-30, 1e12, "F",
-		"that the particles carry instead: the gap follows", NULL, 0 },
+		"load that the particles carry, in place of --gap", NULL, 0 },
 	{ 0, "hardness", OPT_LIST, UNIT_PRESSURE, &hardness, 1, 1e15, "H1[,H2]",
-		"of the two bodies", NULL, 0 },
+		"hardness of the two bodies", NULL, 0 },
 	{ 0, "abrasive-hardness", OPT_NUM, UNIT_PRESSURE, &abrasive, 1, 1e15, "H",
-		"of the particles (default rigid)", NULL, 0 },
+		"hardness of the particles (default rigid)", NULL, 0 },
 	{ 'u', "friction", OPT_NUM, UNIT_NONE, &friction, 0, 10, "MU",
-		"of particles on the bodies", NULL, 0 },
+		"friction coefficient between particles and bodies", NULL, 0 },
 	OPT_HEADING("Motion"),
 	{ 0, "inlet", OPT_NUM, UNIT_LENGTH, &inlet, 1e-9, 1e6, "R",
-		"radius of the ball whose gap to a flat it is; larger particles stay out",
+		"radius of a ball on a flat: too large particles do not enter the gap",
 		NULL, 0 },
 	{ 0, "motion", OPT_WORD, UNIT_NONE, &motion, 0, 0, "moment|groove|roll",
-		"whether particles roll or groove: by their shape, or all alike", motions,
+		"whether particles roll or groove: by shape, or all the same", motions,
 		0 },
 	{ 0, "cutting", OPT_NUM, UNIT_FRACTION, &cutting, 0, 1, "C",
-		"share of a groove that is removed, not pushed aside", NULL, 0 },
-	{ 0, "slide", OPT_NUM, UNIT_LENGTH, &slide, 0, 1e9, "D", "distance slid", NULL,
+		"share of the volume of a groove that is removed", NULL, 0 },
+	{ 0, "slide", OPT_NUM, UNIT_LENGTH, &slide, 0, 1e9, "D", "sliding distance", NULL,
 		0 },
 	{ 0, "area", OPT_NUM, UNIT_AREA, &area, 1e-18, 1e6, "A",
-		"of the contact: for rates, and for --iso", NULL, 0 },
+		"area of the contact: for rates, and for --iso", NULL, 0 },
 	OPT_TABLE(particles_rows),
 	OPT_HEADING("Output"),
 	{ 0, "surface", OPT_TEXT, UNIT_NONE, &surface_path, 0, 0, "FILE",
 		"cut the grooves into these heights and write them out", NULL, 0 },
-	{ 0, "body", OPT_INT, UNIT_COUNT, &body, 1, 2, "N", "that the surface is: 1 or 2",
+	{ 0, "body", OPT_INT, UNIT_COUNT, &body, 1, 2, "N", "body of --surface: 1 or 2",
 		NULL, 0 },
 	{ 0, "particles", OPT_TEXT, UNIT_NONE, &particles_path, 0, 0, "FILE",
 		"with --surface: write the table of particles to FILE", NULL, 1 },
 	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
 		"write one row per realisation", NULL, 1 },
-	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "of random numbers",
-		NULL, 0 },
+	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N",
+		"seed of the random numbers", NULL, 0 },
 	OPT_END,
 };
 
 static const struct prog prog = { "abrade",
-	"Find what hard particles in a gap do to the surfaces that slide on them.",
-	"[file]", "table: diameter [aspect] [realisation], unless --iso",
+	"Compute three-body abrasion by hard particles in a gap.", "[file]",
+	"table: diameter [aspect] [realisation], unless --iso",
 	"table: one row per particle; with --surface fields: height", opts };
 
 static struct table_out *table, *summary;
@@ -84,7 +84,7 @@ static struct abrasion_par parameters(void)
 static void check_options(int operands)
 {
 	if (isnan(gap) == isnan(load))
-		die(EXIT_USAGE, "want either --gap H or --load F");
+		die(EXIT_USAGE, "specify either --gap H or --load F");
 	if (!hardness.n)
 		die(EXIT_USAGE, "--hardness is missing: H1[,H2] in Pa");
 	if (isnan(friction))
@@ -99,8 +99,7 @@ static void check_rigid(const struct abrasion_par *par)
 {
 	if (par->abrasive < abrasion_harder * fmin(par->hardness[0], par->hardness[1]))
 		die(EXIT_RUN,
-			"--abrasive-hardness %g Pa: the particles yield, what they "
-			"carry is not known",
+			"--abrasive-hardness %g Pa: the particles yield, and the load they carry is unknown",
 			par->abrasive);
 }
 
@@ -122,8 +121,7 @@ static double find_gap(
 	error = carried / load - 1;
 	/* The way a particle moves may change at this very gap. */
 	if (fabs(error) > 1e-6) {
-		warn("realisation %ld: at a gap of %.6g m the load jumps past %g N to "
-		     "%g N",
+		warn("realisation %ld: at a gap of %.6g m the load jumps over %g N to %g N",
 			realisation, found, load, carried);
 		doubtful = 1;
 	}
@@ -217,8 +215,7 @@ static void run_realisation(const struct particles_in *in, long realisation)
 		if (t.number[m] > 0)
 			stats_add(mode_names[m], t.number[m]);
 	if (t.number[ABRASION_YIELDS] + t.number[ABRASION_BURIED] > 0) {
-		warn("realisation %ld: %.0f particles yield and %.0f are buried deeper "
-		     "than their radius: what they wear is not in the volumes",
+		warn("realisation %ld: %.0f particles yield and %.0f are buried deeper than their radius: the volumes do not include their wear",
 			realisation, t.number[ABRASION_YIELDS],
 			t.number[ABRASION_BURIED]);
 		doubtful = 1;

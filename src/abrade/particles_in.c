@@ -19,7 +19,7 @@ struct opt particles_rows[] = {
 	{ 0, "iso", OPT_LIST, UNIT_COUNT, &iso, 0, ISO4406_CODES - 1, "C:C:C",
 		"draw the particles of an oil of this ISO 4406 code, 18:16:13", NULL, 0 },
 	{ 0, "largest", OPT_NUM, UNIT_LENGTH, &largest, 1e-9, 1, "D",
-		"of --iso: largest particle there is", NULL, 0 },
+		"of --iso: largest particle", NULL, 0 },
 	{ 'c', "count", OPT_INT, UNIT_COUNT, &count, 1, 1000000000, "N",
 		"of --iso: number of realisations", NULL, 0 },
 	OPT_END,
@@ -53,17 +53,16 @@ void particles_check(int operands, double area, double inlet)
 		return;
 	}
 	if (operands)
-		die(EXIT_USAGE, "want either --iso or a table of particles, not both");
+		die(EXIT_USAGE, "specify either --iso or a table of particles, not both");
 	if (isnan(area))
-		die(EXIT_USAGE, "--iso wants --area: particles are drawn in its gap");
+		die(EXIT_USAGE, "--iso requires --area: particles are drawn for its gap");
 	if (isnan(largest) && isnan(inlet))
 		die(EXIT_USAGE,
-			"--iso wants --largest or --inlet: the code does not tell "
-			"how large particles may be");
+			"--iso requires --largest or --inlet: the code does not limit the size of particles");
 	for (int k = 0; k + 1 < ISO4406_SIZES; k++)
 		if (iso.v[k] <= iso.v[k + 1])
 			die(EXIT_USAGE,
-				"--iso %.0f:%.0f:%.0f: there are fewer of larger particles",
+				"--iso %.0f:%.0f:%.0f: counts must not increase with size",
 				iso.v[0], iso.v[1], iso.v[2]);
 }
 
@@ -152,8 +151,7 @@ static int draw(struct source *s, struct particles_in *in, long *realisation)
 	if (population_draw(s->population, s->volume, s->gap, s->seed,
 		    (uint32_t)s->realisation, DRAWN_MOST, &s->diameter, &in->n))
 		die(EXIT_RUN,
-			"out of memory, or more than %d particles in the gap: a smaller "
-			"--area would do",
+			"out of memory, or more than %d particles in the gap: use a smaller --area",
 			DRAWN_MOST);
 	stats_add("particles_left_out", floor(fmax(all - (double)in->n, 0)));
 	in->diameter = s->diameter;

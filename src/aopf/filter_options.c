@@ -18,23 +18,24 @@ static int scheme;
 
 struct opt filtering_rows[] = { OPT_HEADING("Particle filter"),
 	{ 0, "order", OPT_CHOICE, UNIT_COUNT, &order, 4, 1000, "N|window|insample|all",
-		"order of the grey model, or how it is chosen", orders, 0 },
+		"order of the grey model, or the rule that selects it", orders, 0 },
 	{ 0, "max-order", OPT_INT, UNIT_COUNT, &largest, 4, 1000, "N",
 		"largest order that may be chosen", NULL, 0 },
 	{ 0, "order-window", OPT_INT, UNIT_COUNT, &window, 1, 10000, "N",
-		"rows whose forecast errors choose the order", NULL, 0 },
+		"number of rows whose forecast errors select the order", NULL, 0 },
 	{ 0, "hysteresis", OPT_NUM, UNIT_FRACTION, &hysteresis, 0, 1, "X",
-		"relative fall of the error that changes the order", NULL, 0 },
+		"smallest relative decrease of the error that changes the order", NULL,
+		0 },
 	{ 0, "order-range", OPT_LIST, UNIT_COUNT, &range, 0, 1000, "LO:HI",
-		"orders searched while the trend goes on", NULL, 0 },
+		"orders searched while the trend continues", NULL, 0 },
 	{ 0, "particles", OPT_INT, UNIT_COUNT, &filtering.particles, 1, 1e7, "N",
-		"particles", NULL, 0 },
+		"number of particles", NULL, 0 },
 	{ 0, "resampling", OPT_WORD, UNIT_NONE, &scheme, 0, 0,
 		"systematic|stratified|residual|multinomial", "resampling scheme",
 		schemes, 0 },
 	{ 0, "ess", OPT_NUM, UNIT_FRACTION, &share, 0, 1, "X",
-		"resample below this effective share of the particles; 1: always", NULL,
-		0 },
+		"resample below this effective sample size, as a fraction; 1: always",
+		NULL, 0 },
 	{ 0, "freedom", OPT_NUM, UNIT_NONE, &freedom, 0, 1e6, "NU",
 		"degrees of freedom of Student-t observation noise; 0: Gaussian", NULL,
 		0 },
@@ -49,7 +50,7 @@ struct opt filtering_rows[] = { OPT_HEADING("Particle filter"),
 void filtering_check(void)
 {
 	if (range.n == 2 && range.v[0] > range.v[1])
-		die(EXIT_USAGE, "--order-range wants LO:HI with LO not above HI");
+		die(EXIT_USAGE, "--order-range requires LO:HI with LO not above HI");
 }
 
 struct adaptive *filtering_new(int unit)

@@ -13,7 +13,7 @@
 #include <string.h>
 
 enum {
-	EXIT_ALARM = 4, /* an alarm stands after the last rows */
+	EXIT_ALARM = 4, /* an alarm is active after the last rows */
 	BLOCK = 4096    /* rows at a time with more than one thread */
 };
 
@@ -27,28 +27,29 @@ static const struct opt opts[] = {
 	OPT_HEADING("Monitoring"),
 	OPT_TABLE(outlook_plant_rows),
 	{ 0, "save", OPT_TEXT, UNIT_NONE, &save_file, 0, 0, "FILE",
-		"keep the state after each row here", NULL, 1 },
+		"write the state to FILE after each row", NULL, 1 },
 	{ 0, "resume", OPT_TEXT, UNIT_NONE, &resume_file, 0, 0, "FILE",
-		"go on from a state kept by --save", NULL, 1 },
+		"continue from a state written by --save", NULL, 1 },
 	OPT_HEADING("Input and output"),
 	{ 0, "unit", OPT_TEXT, UNIT_NONE, &unit_column, 0, 0, "COLUMN",
-		"column that tells units apart", NULL, 0 },
+		"column that identifies the unit", NULL, 0 },
 	{ 0, "clock", OPT_TEXT, UNIT_NONE, &clock_column, 0, 0, "COLUMN",
-		"column of the time that wears, as operating hours", NULL, 0 },
+		"column of the operating time", NULL, 0 },
 	{ 0, "json", OPT_FLAG, UNIT_NONE, &json, 0, 0, NULL,
 		"write a line of JSON for each row", NULL, 0 },
 	{ 'j', "threads", OPT_INT, UNIT_COUNT, &threads, 1, 1024, "N",
-		"threads, for streams of many units; rows then come in blocks", NULL, 1 },
+		"threads for streams of many units; rows are then written in blocks",
+		NULL, 1 },
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &filtering.seed, 0, 9e18, "N",
 		"seed of the random numbers", NULL, 0 },
 	{ 0, "lives-only", OPT_FLAG, UNIT_NONE, &bare, 0, 0, NULL,
-		"leave out the filter and its columns", NULL, 0 },
+		"leave out the particle filter and its columns", NULL, 0 },
 	OPT_TABLE(filtering_rows),
 	OPT_END,
 };
 
 static const struct prog prog = { "aopf",
-	"Filter a degradation series and predict the life it has left.", "[file]",
+	"Filter a degradation series and predict the remaining life.", "[file]",
 	"table: t y (or y alone: t is the row, from 0)",
 	"table: one row per row read, flushed at once", opts };
 

@@ -35,19 +35,19 @@ static struct opt_list alarms;
 
 struct opt outlook_end_rows[] = { OPT_HEADING("End of life"),
 	{ 'y', "threshold", OPT_NUM, UNIT_NONE, &outlook_options.threshold, -DBL_MAX,
-		DBL_MAX, "Y",
-		"value that ends the life, in units of y; none: no prediction of life",
+		DBL_MAX, "Y", "value of y at failure; without it no life is predicted",
 		NULL, 0 },
 	{ 0, "direction", OPT_WORD, UNIT_NONE, &direction, 0, 0, "up|down|auto",
-		"side the threshold is reached from; auto: from the first value",
-		directions, 0 },
-	{ 0, "persist", OPT_INT, UNIT_COUNT, &persist, 1, 1e6, "K",
-		"successive values beyond the threshold that end the life", NULL, 0 },
-	{ 0, "zero", OPT_NUM, UNIT_NONE, &outlook_options.zero, -DBL_MAX, DBL_MAX, "Y",
-		"value of y without any degradation, the zero of the grey model", NULL,
+		"direction towards the threshold; auto: from the first value", directions,
 		0 },
+	{ 0, "persist", OPT_INT, UNIT_COUNT, &persist, 1, 1e6, "K",
+		"successive values beyond the threshold that constitute failure", NULL,
+		0 },
+	{ 0, "zero", OPT_NUM, UNIT_NONE, &outlook_options.zero, -DBL_MAX, DBL_MAX, "Y",
+		"value of y without degradation, the zero of the grey model", NULL, 0 },
 	{ 0, "skip", OPT_CHOICE, UNIT_TIME, &skip, 0, DBL_MAX, "T|auto",
-		"run-in left out of long-term models, from the first row", skips, 0 },
+		"run-in that the long-term model does not use, from the first row", skips,
+		0 },
 	OPT_END };
 
 struct opt outlook_model_rows[] = { OPT_HEADING("Prediction"),
@@ -55,15 +55,16 @@ struct opt outlook_model_rows[] = { OPT_HEADING("Prediction"),
 		"average|linear|exponential|power|rate|saturating|grey|literal", "long-term model",
 		models, 0 },
 	{ 0, "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, DBL_MAX, "T",
-		"longest life ahead; 0: ten times the time so far", NULL, 0 },
+		"longest remaining life; 0: ten times the time so far", NULL, 0 },
 	{ 0, "after", OPT_NUM, UNIT_TIME, &after, -DBL_MAX, DBL_MAX, "T",
-		"time from which on life is predicted (default all the time)", NULL, 0 },
+		"predict the remaining life only from this time on (default always)",
+		NULL, 0 },
 	{ 0, "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "Q,Q,...",
 		"levels of the quantiles of remaining life", NULL, 0 },
 	{ 0, "fleet", OPT_TEXT, UNIT_NONE, &fleet_file, 0, 0, "FILE",
 		"table of earlier units, failed or not: unit t y", NULL, 0 },
 	{ 0, "weights", OPT_FLAG, UNIT_NONE, &weights, 0, 0, NULL,
-		"add columns of the weight of each family of models", NULL, 0 },
+		"add columns with the weight of each family of models", NULL, 0 },
 	OPT_TABLE(timeunit_rows), OPT_END };
 
 struct opt outlook_plant_rows[] = {
@@ -72,12 +73,11 @@ struct opt outlook_plant_rows[] = {
 	{ 0, "mission", OPT_NUM, UNIT_TIME, &mission, 0, DBL_MAX, "T",
 		"add the probability of failure within this time", NULL, 0 },
 	{ 0, "cost-ratio", OPT_NUM, UNIT_NONE, &cost_ratio, 1, 1e9, "R",
-		"add the cheapest time to replace, a failure costing R replacements",
+		"add the optimal replacement time if a failure costs R replacements",
 		NULL, 0 },
 	{ 0, "alarm", OPT_LIST, UNIT_TIME, &alarms, 0, DBL_MAX, "T,T,...",
-		"add the alarm level: how many of these falling times the lowest "
-		"quantile has reached",
-		NULL, 0 },
+		"add the alarm level: number of these descending times reached", NULL,
+		0 },
 	OPT_END
 };
 
@@ -124,21 +124,22 @@ void outlook_check(int bare)
 {
 	for (int k = 1; k < levels.n; k++)
 		if (levels.v[k] <= levels.v[k - 1])
-			die(EXIT_USAGE, "--levels: want rising levels");
+			die(EXIT_USAGE, "--levels: levels must be ascending");
 	for (int k = 1; k < alarms.n; k++)
 		if (alarms.v[k] >= alarms.v[k - 1])
-			die(EXIT_USAGE, "--alarm: want falling times");
+			die(EXIT_USAGE, "--alarm: times must be descending");
 	if (fleet_file && (isnan(outlook_options.threshold) || direction == AUTO))
-		die(EXIT_USAGE, "--fleet wants --threshold and --direction up or down");
+		die(EXIT_USAGE,
+			"--fleet requires --threshold and --direction up or down");
 	if (isnan(outlook_options.threshold) &&
 		(bare || opt_any_given(outlook_plant_rows)))
-		die(EXIT_USAGE, "--%s wants --threshold",
+		die(EXIT_USAGE, "--%s requires --threshold",
 			bare ? "lives-only" : opt_any_given(outlook_plant_rows));
 	if ((weights || events_file) && model >= GREY)
 		die(EXIT_USAGE, "--%s is not for --model %s",
 			weights ? "weights" : "events", models[model]);
 	if (bare && (model >= GREY || skip.word == 0))
-		die(EXIT_USAGE, "--lives-only excludes %s, which wants the filter",
+		die(EXIT_USAGE, "--lives-only excludes %s, which requires the filter",
 			model >= GREY ? "--model grey and literal" : "--skip auto");
 }
 
@@ -282,7 +283,7 @@ static void heed_events(struct outlook *o, const struct outlook_row *in)
 	}
 }
 
-/* What the long-term model is told of a row. */
+/* Passes a row to the long-term model. */
 static void learn(struct outlook *o, const struct outlook_row *in,
 	const struct adaptive_row *filtered)
 {

@@ -20,25 +20,22 @@ static const struct opt opts[] = {
 		"pulses of balls of diameter D; may be repeated", NULL, 0 },
 	OPT_TABLE(verdict_rows),
 	{ 0, "exponent", OPT_NUM, UNIT_NONE, &exponent, 0.1, 20, "N",
-		"of the diameter in the amplitude: 3, or 5 for non-ferrous balls", NULL,
-		0 },
+		"exponent of the diameter: 3, or 5 for non-ferrous balls", NULL, 0 },
 	{ 0, "confidence", OPT_NUM, UNIT_FRACTION, &confidence, 0.01, 0.9999, "C",
-		"of the intervals", NULL, 0 },
+		"confidence level of the intervals", NULL, 0 },
 	{ 0, "noise", OPT_NUM, UNIT_VOLTAGE, &noise, 1e-30, 1e9, "V",
-		"deviation of what the threshold is laid on: for the smallest size", NULL,
-		0 },
+		"standard deviation of the noise: for the smallest size", NULL, 0 },
 	{ 0, "pulse-duration", OPT_NUM, UNIT_TIME, &duration, 1e-12, 1e9, "T",
-		"of a pulse: noise gets as many chances as pulses fit", NULL, 0 },
+		"duration of a pulse: for the smallest size", NULL, 0 },
 	{ 0, "false-alarms", OPT_NUM, UNIT_FREQUENCY, &alarms, 1e-30, 1e12, "F",
-		"false particles per second that are allowed", NULL, 0 },
+		"accepted number of false detections per second", NULL, 0 },
 	{ 0, "velocity", OPT_NUM, UNIT_SPEED, &velocity, 1e-9, 1e6, "V",
-		"of the particles the smallest size is for (default mean of the balls)",
-		NULL, 0 },
+		"velocity for the smallest size (default mean of the balls)", NULL, 0 },
 	OPT_END,
 };
 
 static const struct prog prog = { "ballcal",
-	"Calibrate a debris sensor by the pulses of reference balls.", "",
+	"Calibrate a debris sensor with the pulses of reference balls.", "",
 	"nothing; --balls: tables: amplitude velocity [verdict]",
 	"table: constant, exponent, smallest size", opts };
 
@@ -96,7 +93,7 @@ static void read_balls(struct pulses *p, const char *text)
 		p->speed += v;
 	}
 	if (p->n == before)
-		die(EXIT_RUN, "%s: no pulse to calibrate by", table_name(t));
+		die(EXIT_RUN, "%s: no pulse for the calibration", table_name(t));
 	table_close(t);
 	free(path);
 }
@@ -144,16 +141,16 @@ int main(int argc, char **argv)
 		die(EXIT_USAGE, "--balls is missing: FILE:D, a table of pulses and the "
 				"diameter of its balls");
 	if (isnan(noise) != isnan(duration))
-		die(EXIT_USAGE, "the smallest size wants both --noise and "
-				"--pulse-duration");
+		die(EXIT_USAGE,
+			"the smallest size requires both --noise and --pulse-duration");
 	if (!isnan(noise) && isnan(detection_threshold(duration, alarms)))
 		die(EXIT_USAGE,
-			"--false-alarms %g Hz: no threshold keeps pulses of %g s so often",
+			"--false-alarms %g Hz: too many for any threshold with pulses of %g s",
 			alarms, duration);
 	for (int i = 0; i < balls.n; i++)
 		read_balls(&p, balls.v[i]);
 	if (p.n < 3)
-		die(EXIT_RUN, "%zu pulses are too few to tell how they scatter", p.n);
+		die(EXIT_RUN, "%zu pulses are too few to estimate their scatter", p.n);
 	qsort(p.pulse, p.n, sizeof *p.pulse, by_diameter);
 	x = xcalloc(p.n, sizeof *x);
 	y = xcalloc(p.n, sizeof *y);

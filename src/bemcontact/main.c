@@ -7,13 +7,14 @@
 #include "contact/solver.h"
 #include "io/fields.h"
 #include "tables.h"
+#include "task.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum field { HEIGHT, PRESSURE, DISPLACEMENT, GAP };
+enum field { HEIGHT, PRESSURE, DISPLACEMENT, GAP, SHEAR, RESIDUAL };
 static const char *const field_names[] = { "height", "pressure", "displacement", "gap",
-	NULL };
+	"shear", "residual", NULL };
 
 static int fields = 1 << HEIGHT | 1 << PRESSURE;
 static long sweep = 1;
@@ -23,25 +24,26 @@ static struct contact_kernel coated;
 static const struct opt opts[] = {
 	OPT_TABLE(press_rows),
 	{ 0, "coating", OPT_NUM, UNIT_LENGTH, &coating.thickness, 0, 1e6, "T",
-		"thickness of a layer of another material on the first body; 0: none", 0,
-		0 },
+		"thickness of a bonded layer on the first body; 0: none", 0, 0 },
 	{ 0, "coating-young", OPT_NUM, UNIT_PRESSURE, &coating.young, 1e-6, 1e30, "E",
-		"its Young's modulus", 0, 0 },
+		"Young's modulus of the layer", 0, 0 },
 	{ 0, "coating-poisson", OPT_NUM, UNIT_NONE, &coating.poisson, -0.999, 0.499, "N",
-		"its Poisson's ratio", 0, 0 },
+		"Poisson's ratio of the layer", 0, 0 },
+	OPT_TABLE(slip_rows),
 	OPT_HEADING("Output"),
 	{ 0, "fields", OPT_WORDS, UNIT_NONE, &fields, 0, 0, "NAME,...",
-		"what to write of height, pressure, displacement, gap", field_names, 0 },
+		"fields to write: height, pressure, displacement, gap, shear, residual",
+		field_names, 0 },
 	OPT_TABLE(table_opts),
 	{ 0, "sweep", OPT_INT, UNIT_COUNT, &sweep, 1, 1e6, "N",
-		"load in N equal steps, each a row of --table", 0, 0 },
+		"apply the load in N equal steps, each a row of --table", 0, 0 },
+	OPT_TABLE(unload_rows),
 	OPT_TABLE(raw_rows),
 	OPT_END,
 };
 
 static const struct prog prog = { "bemcontact",
-	"Press a rough surface against a flat: pressure, contact and gap of elastic "
-	"bodies.",
+	"Solve the elastic contact of a rough surface with a flat: pressure and gap.",
 	"[file]", "fields: height", "fields: height, pressure", opts };
 
 /* The body below the layer is the first of --young, the other one the last. */
@@ -51,10 +53,9 @@ static void set_coating(void)
 	double other = nu->v[nu->n - 1];
 
 	if (!e->n || isnan(coating.young))
-		die(EXIT_USAGE, "--coating: want --young and --coating-young");
+		die(EXIT_USAGE, "--coating requires --young and --coating-young");
 	if (press.boundary != CONTACT_PERIODIC)
-		die(EXIT_USAGE,
-			"--coating is known for a period alone: want --boundary periodic");
+		die(EXIT_USAGE, "--coating requires --boundary periodic");
 	coating.base_young = e->v[0];
 	coating.base_poisson = nu->v[0];
 	coating.other = (1 - other * other) / e->v[e->n - 1];
@@ -65,11 +66,17 @@ static void check_options(void)
 {
 	press_check();
 	if (isnan(press.load) && isnan(press.pressure) && isnan(press.approach))
-		die(EXIT_USAGE, "want one of --load, --pressure and --approach");
+		die(EXIT_USAGE, "specify one of --load, --pressure and --approach");
 	if (isnan(press.estar))
-		die(EXIT_USAGE, "want either --estar or --young and --poisson");
+		die(EXIT_USAGE, "specify either --estar or --young and --poisson");
 	if (coating.thickness > 0)
 		set_coating();
+	slip_check();
+	if (slip_wanted() && coating.thickness > 0)
+		die(EXIT_USAGE, "--tangential excludes --coating");
+	if (fields & 1 << SHEAR && !slip_wanted())
+		die(EXIT_USAGE, "--fields shear requires --tangential and --friction");
+	unload_check();
 }
 
 /* The solver for a record; the last one is kept while grid and material stay. */
@@ -111,7 +118,7 @@ static void put_results(struct record *r, const struct contact_par *par,
 	record_set(r, "converged", "%s", converged ? "yes" : "no");
 }
 
-static void count_work(const struct contact_result *s, int warm)
+void count_work(const struct contact_result *s, int warm)
 {
 	stats_add("records", 1);
 	stats_add("warm_starts", warm);
@@ -121,21 +128,10 @@ static void count_work(const struct contact_result *s, int warm)
 	stats_max("certificate", s->certificate);
 }
 
-/* What is solved for a record. */
-struct task {
-	struct record *r;
-	const char *name;
-	long number;
-	struct contact_par par;
-	struct contact *c;
-	double *h, *p, *gap;
-	double *other; /* a pressure to vary the load with */
-};
-
-static enum contact_status press_to(const struct task *t, enum contact_control control,
-	double target, double *p, double *gap)
+enum contact_status press_to(const struct task *t, const double *height,
+	enum contact_control control, double target, double *p, double *gap)
 {
-	enum contact_status status = contact_solve(t->c, t->h, control, target, p, gap);
+	enum contact_status status = contact_solve(t->c, height, control, target, p, gap);
 
 	if (status == CONTACT_OVERLOAD)
 		die(EXIT_RUN,
@@ -150,9 +146,10 @@ static enum contact_status press_to(const struct task *t, enum contact_control c
 	return status;
 }
 
-/* dF / d approach from loads a hundredth less and more; nan where these are not solved.
+/* dF / d approach from loads a hundredth less and more; nan if these are not solved.
  */
-static double find_stiffness(const struct task *t, double pressure)
+static double find_stiffness(
+	const struct task *t, const double *height, const double *p, double pressure)
 {
 	size_t cells = (size_t)t->par.nx * (size_t)t->par.ny;
 	double area = t->par.nx * t->par.dx * t->par.ny * t->par.dy, approach[2];
@@ -162,8 +159,9 @@ static double find_stiffness(const struct task *t, double pressure)
 
 		if (!(target > 0) || (t->par.hardness > 0 && target >= t->par.hardness))
 			return NAN;
-		memcpy(t->other, t->p, cells * sizeof(*t->other));
-		if (press_to(t, CONTACT_PRESSURE, target, t->other, NULL) != CONTACT_OK)
+		memcpy(t->other, p, cells * sizeof *t->other);
+		if (press_to(t, height, CONTACT_PRESSURE, target, t->other, NULL) !=
+			CONTACT_OK)
 			return NAN;
 		approach[k] = contact_result(t->c)->approach;
 		stats_add("stiffness_transforms", contact_result(t->c)->work);
@@ -180,34 +178,67 @@ static double highest(const struct task *t)
 	return h;
 }
 
-/* One contact and its row; returns 1 if it converged. */
-static int solve_step(const struct task *t, double target, int warm, int last)
+void put_row(const struct task *t, const double *height, const struct contact_result *s,
+	double *p, int converged, int last)
 {
-	enum contact_status status = press_to(t, press_control(), target, t->p, t->gap);
-	struct contact_result found = *contact_result(t->c);
 	double stiffness = NAN;
 
-	count_work(&found, warm);
+	if (table_wanted())
+		stiffness = find_stiffness(t, height, p, s->pressure);
+	tables_put(t->r, &t->par, s, p, stiffness, converged, last);
+}
+
+/* One contact and its row; returns 1 if it converged. */
+static int solve_step(const struct task *t, double target, int warm, int last,
+	struct contact_result *found)
+{
+	enum contact_status status =
+		press_to(t, t->h, press_control(), target, t->p, t->gap);
+
+	*found = *contact_result(t->c);
+	count_work(found, warm);
 	note("%s: record %ld: area %.4g, approach %.6g m, certificate %.2g, %ld iterations",
-		t->name, t->number, found.area, found.approach, found.certificate,
-		found.iterations);
+		t->name, t->number, found->area, found->approach, found->certificate,
+		found->iterations);
 	if (status == CONTACT_NOCONV)
 		warn("%s: record %ld: not converged: certificate %.2g after %ld iterations",
-			t->name, t->number, found.certificate, found.iterations);
+			t->name, t->number, found->certificate, found->iterations);
 	if (last)
-		put_results(t->r, &t->par, &found, status == CONTACT_OK);
-	if (table_wanted())
-		stiffness = find_stiffness(t, found.pressure);
-	tables_put(t->r, &t->par, &found, t->p, stiffness, status == CONTACT_OK, last);
+		put_results(t->r, &t->par, found, status == CONTACT_OK);
+	put_row(t, t->h, found, t->p, status == CONTACT_OK, last);
 	return status == CONTACT_OK;
+}
+
+static double *field_of(struct record *r, enum field f, const char *unit)
+{
+	return fields & 1 << f ? record_add(r, field_names[f], unit) : NULL;
+}
+
+/* What follows the contact under all of the load; returns 1 if it converged. */
+static int solve_after(const struct task *t, const struct contact_result *full)
+{
+	double *shear = field_of(t->r, SHEAR, "Pa"),
+	       *residual = field_of(t->r, RESIDUAL, "m"), *own = NULL;
+	int converged = 1;
+
+	if (slip_wanted()) {
+		if (!shear)
+			shear = own =
+				xcalloc((size_t)t->r->nx * (size_t)t->r->ny, sizeof *own);
+		converged &= slip_solve(t, full, shear);
+		free(own);
+	}
+	return converged & unload_solve(t, full, residual);
 }
 
 /* Solves one record in place; returns 1 if it converged. */
 static int solve_record(struct record *r, const struct fields_in *in, struct pool *pool)
 {
 	struct task t = { .r = r, .name = fields_name(in), .number = fields_count(in) };
-	double *u = NULL, target = press_target(r), from = 0;
+	size_t cells = (size_t)r->nx * (size_t)r->ny;
+	double *u = NULL, *own_gap = NULL, target = press_target(r), from = 0;
 	int warm = record_find(r, "pressure") >= 0, converged = 1;
+	struct contact_result found = { 0 };
 
 	t.par = press_par(r, pool);
 	t.par.kernel = coating.thickness > 0 ? &coated : NULL;
@@ -217,22 +248,24 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 		die(EXIT_RUN, "%s: record %ld: want a plane field, got %d layers", t.name,
 			t.number, r->nz);
 	t.p = warm ? record_need(r, "pressure", 1, in) : record_add(r, "pressure", "Pa");
-	if (fields & 1 << DISPLACEMENT)
-		u = record_add(r, "displacement", "m");
-	if (fields & 1 << GAP)
-		t.gap = record_add(r, "gap", "m");
+	u = field_of(r, DISPLACEMENT, "m");
+	t.gap = field_of(r, GAP, "m");
+	if (!t.gap && (unload_wanted() || fields & 1 << RESIDUAL))
+		t.gap = own_gap = xcalloc(cells, sizeof *own_gap);
 	if (table_wanted())
-		t.other = xcalloc((size_t)r->nx * (size_t)r->ny, sizeof(*t.other));
+		t.other = xcalloc(cells, sizeof *t.other);
 	if (press_control() == CONTACT_APPROACH)
 		from = -highest(&t);
 	for (long k = 1; k <= sweep; k++)
 		converged &= solve_step(&t,
 			k < sweep ? from + (target - from) * (double)k / (double)sweep
 				  : target,
-			warm || k > 1, k == sweep);
-	free(t.other);
+			warm || k > 1, k == sweep, &found);
 	if (u)
 		contact_displacement(t.c, t.p, u);
+	converged &= solve_after(&t, &found);
+	free(own_gap);
+	free(t.other);
 	return converged;
 }
 

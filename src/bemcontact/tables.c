@@ -13,10 +13,10 @@ static struct table_out *table, *patches;
 
 struct opt table_opts[] = {
 	{ 0, "table", OPT_TEXT, UNIT_NONE, &table_path, 0, 0, "FILE",
-		"write load, approach, area, stiffness and pressures, a row per contact",
+		"write load, approach, area, stiffness, pressures: one row per contact",
 		0, 1 },
 	{ 0, "patches", OPT_TEXT, UNIT_NONE, &patches_path, 0, 0, "FILE",
-		"write the patches of each contact, a row per patch", 0, 1 },
+		"write the patches of each contact: one row per patch", 0, 1 },
 	OPT_END,
 };
 
@@ -74,7 +74,7 @@ static void put_patches(const struct record *r, const struct patch_grid *grid,
 			contact_corrected_area(grid, a->area, a->perimeter), a->perimeter,
 			a->load, a->peak, a->x, a->y };
 
-		table_put_row(patches, row, sizeof(row) / sizeof(*row));
+		table_put_row(patches, row, sizeof(row) / sizeof *row);
 	}
 	stats_add("patches", (double)n);
 }
@@ -94,7 +94,7 @@ static void put_contact(const struct record *r, const struct patch_grid *grid,
 		found->certificate, (double)found->iterations, converged };
 
 	follow_cmd(table, r, "--table");
-	table_put_row(table, row, sizeof(row) / sizeof(*row));
+	table_put_row(table, row, sizeof(row) / sizeof *row);
 }
 
 void tables_put(const struct record *r, const struct contact_par *par,

@@ -21,24 +21,25 @@ static const struct opt opts[] = {
 	OPT_HEADING("Filter"),
 	{ 'b', "band", OPT_LIST, UNIT_FREQUENCY, &edges, 0, 1e12, "LO:HI",
 		"pass band; LO 0 makes a low-pass, HI half the rate a high-pass", 0, 0 },
-	{ 0, "order", OPT_INT, UNIT_COUNT, &order, 1, 1e6, "N", "taps less one", 0, 0 },
+	{ 0, "order", OPT_INT, UNIT_COUNT, &order, 1, 1e6, "N",
+		"number of taps minus one", 0, 0 },
 	{ 0, "window", OPT_WORD, UNIT_NONE, &window, 0, 0, "hamming|hann|blackman|kaiser",
 		"window that cuts the ideal response", windows, 0 },
 	{ 0, "attenuation", OPT_NUM, UNIT_DECIBEL, &attenuation, 0, 300, "A",
-		"stop-band attenuation the Kaiser window is made for", 0, 0 },
+		"stop-band attenuation of the Kaiser window", 0, 0 },
 	{ 0, "no-scale", OPT_FLAG, UNIT_NONE, &no_scale, 0, 0, 0,
-		"leave the gain in the middle of the band as the window makes it", 0, 0 },
+		"do not scale the taps to gain 1 in the band", 0, 0 },
 	{ 0, "zero-phase", OPT_FLAG, UNIT_NONE, &zero_phase, 0, 0, 0,
-		"take the delay of half the order out", 0, 0 },
+		"compensate the delay of half the order", 0, 0 },
 	OPT_HEADING("Interfering lines"),
 	{ 0, "lines", OPT_LIST, UNIT_FREQUENCY, &removed, 0, 1e12, "F,F,...",
-		"take narrow lines out before the filter, by least squares", 0, 0 },
+		"remove narrow lines before the filter, by least squares", 0, 0 },
 	{ 0, "line-window", OPT_NUM, UNIT_TIME, &memory, 0, 1e9, "T",
 		"window of the least squares (default 2 s, at most 131072 frames)", 0,
 		0 },
 	OPT_HEADING("Output"),
 	{ 0, "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
-		"hold back no more than T of signal for speed", 0, 0 },
+		"largest delay of the output by block processing", 0, 0 },
 	{ 0, "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
 		0 },
 	OPT_HEADING("The filter itself, instead of a signal"),
@@ -53,22 +54,22 @@ static const struct opt opts[] = {
 	OPT_END,
 };
 
-static const struct prog prog = { "bpfilter", "Band-pass each channel of a signal.",
-	"[file]", "signal", "signal, or a table with --response or --taps", opts };
+static const struct prog prog = { "bpfilter",
+	"Band-pass filter each channel of a signal.", "[file]", "signal",
+	"signal, or a table with --response or --taps", opts };
 
 static void check_options(int operands)
 {
 	if (response && taps_only)
-		die(EXIT_USAGE, "--response and --taps exclude each other");
+		die(EXIT_USAGE, "--response and --taps exclude one another");
 	if ((response || taps_only) && operands)
-		die(EXIT_USAGE, "--response and --taps read nothing: name no file");
+		die(EXIT_USAGE, "--response and --taps have no input: omit the file");
 	if (edges.v[0] >= edges.v[1])
-		die(EXIT_USAGE, "--band %g:%g: the first edge must be the lower one",
+		die(EXIT_USAGE, "--band %g:%g: the first edge must be the lower",
 			edges.v[0], edges.v[1]);
 	if (zero_phase && order % 2)
 		die(EXIT_USAGE,
-			"--zero-phase needs an even --order: half of %ld is no whole "
-			"number of samples",
+			"--zero-phase needs an even --order: half of %ld is not an integer number of samples",
 			order);
 }
 
@@ -137,7 +138,7 @@ static void check_samples(
 	size_t n = nframes * (size_t)channels, i, place;
 	double bad[LANES] = { 0 }, sum = 0;
 
-	/* x - x is 0, or nan where x is not finite */
+	/* x - x is 0, or nan if x is not finite */
 	for (i = 0; i + LANES <= n; i += LANES)
 		for (size_t k = 0; k < LANES; k++)
 			bad[k] += x[i + k] * headroom - x[i + k] * headroom;
@@ -166,7 +167,7 @@ struct chain {
 	struct signal_out *out;
 };
 
-/* A window tells lines apart that differ by a period in it. */
+/* A window resolves lines that differ by one period within it. */
 static void check_lines(double fs, double frames)
 {
 	double before = 0;

@@ -32,22 +32,23 @@ struct opt press_rows[] = {
 	{ 0, "estar", OPT_NUM, UNIT_PRESSURE, &press.estar, 1e-6, 1e30, "E",
 		"contact modulus, in place of --young", 0, 0 },
 	{ 0, "boundary", OPT_WORD, UNIT_NONE, &press.boundary, 0, 0, "free|periodic",
-		"surface around the grid: free of load, or the grid repeated", boundaries,
+		"surface around the grid without load, or the grid repeated", boundaries,
 		0 },
 	{ 0, "hardness", OPT_NUM, UNIT_PRESSURE, &press.hardness, 0, 1e30, "H",
 		"largest pressure; 0: none", 0, 0 },
 	OPT_HEADING("Contact: accuracy and method"),
 	{ 0, "tolerance", OPT_NUM, UNIT_NONE, &press.tolerance, 1e-16, 1, "T",
-		"certificate to reach", 0, 0 },
+		"relative duality gap at which the iteration stops", 0, 0 },
 	{ 0, "max-iterations", OPT_INT, UNIT_COUNT, &press.max_iterations, 1, 1e9, "N",
-		"iterations after which to give up", 0, 0 },
+		"maximum number of iterations", 0, 0 },
 	{ 0, "solver", OPT_WORD, UNIT_NONE, &press.solver, 0, 0, "bccg|pk",
-		"preconditioned on nested grids, or Polonsky and Keer's", solvers, 0 },
+		"preconditioned conjugate gradients, or Polonsky and Keer's", solvers,
+		0 },
 	{ 0, "multiply", OPT_WORD, UNIT_NONE, &press.multiply, 0, 0, "fft|mlms",
-		"how the half-space is applied: Fourier, or multi-level summation",
-		multipliers, 0 },
+		"displacement by Fourier transform or multi-level summation", multipliers,
+		0 },
 	{ 'j', "threads", OPT_INT, UNIT_COUNT, &press.threads, 1, 1024, "N",
-		"threads; the result is the same", 0, 1 },
+		"number of threads; the result does not depend on it", 0, 1 },
 	OPT_END,
 };
 
@@ -56,16 +57,15 @@ void press_check(void)
 	const struct opt_list *e = &press.young, *nu = &press.poisson;
 
 	if (!isnan(press.load) + !isnan(press.pressure) + !isnan(press.approach) > 1)
-		die(EXIT_USAGE, "want only one of --load, --pressure and --approach");
+		die(EXIT_USAGE, "specify only one of --load, --pressure and --approach");
 	for (int i = 0; i < e->n; i++)
 		if (e->v[i] < 1e5)
 			warn("--young %g Pa is softer than any solid surface: is %gGPa meant?",
 				e->v[i], e->v[i]);
 	if (!isnan(press.estar) && e->n)
-		die(EXIT_USAGE, "want either --estar or --young and --poisson");
+		die(EXIT_USAGE, "specify either --estar or --young and --poisson");
 	if (press.multiply && press.boundary)
-		die(EXIT_USAGE,
-			"--multiply mlms sums over a free surface: no --boundary periodic");
+		die(EXIT_USAGE, "--multiply mlms requires --boundary free");
 	if (e->n)
 		press.estar = kernel_modulus(
 			e->v[0], nu->v[0], e->v[e->n - 1], nu->v[nu->n - 1]);

@@ -8,8 +8,7 @@ static double doubtful, unresolved;
 
 struct opt verdict_rows[] = {
 	{ 0, "doubtful", OPT_FLAG, UNIT_NONE, &doubtful_too, 0, 0, NULL,
-		"take rows for particles whose verdict is neither alone nor overlap",
-		NULL, 0 },
+		"also use rows whose verdict is neither alone nor overlap", NULL, 0 },
 	OPT_END,
 };
 
@@ -41,5 +40,6 @@ void verdict_report(void)
 		     "takes them in",
 			doubtful);
 	if (unresolved > 0)
-		warn("%.0f rows stand for stretches that are not resolved", unresolved);
+		warn("%.0f rows are sections that are not resolved into particles",
+			unresolved);
 }

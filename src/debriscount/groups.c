@@ -9,7 +9,7 @@
 struct group {
 	char *name;
 	struct classes *classes;
-	struct history history;
+	struct rate_history history;
 };
 
 struct groups {
@@ -72,7 +72,7 @@ void groups_finish(struct groups *g, double period, double duration, double last
 	if (isnan(period) || (!isnan(duration) && end > g->reported))
 		groups_report(g, g->reported, end, isnan(period));
 	else if (isnan(duration)) {
-		note("what came after %g s is of a period that is not over: left out",
+		note("particles after %g s belong to an incomplete period and are left out",
 			g->reported);
 		stats_set("periods_left_out", 1);
 	}
@@ -102,7 +102,7 @@ void groups_free(struct groups *g)
 	for (size_t i = 0; i < g->n; i++) {
 		free(g->group[i].name);
 		classes_free(g->group[i].classes);
-		history_free(&g->group[i].history);
+		rate_history_free(&g->group[i].history);
 	}
 	free(g->group);
 	free(g);

@@ -34,57 +34,62 @@ static const struct opt opts[] = {
 	{ 'o', "output", OPT_WORD, UNIT_NONE, &output, 0, 0, "classes|codes|trend",
 		"what to print", outputs, 0 },
 	{ 0, "classes", OPT_LIST, UNIT_LENGTH, &edges, 0, 1, "D,D,...",
-		"lower ends of the classes of size; the last is open", NULL, 0 },
+		"lower limits of the size classes; the last class is open", NULL, 0 },
 	{ 0, "standard", OPT_WORD, UNIT_NONE, &standard, 0, 0, "own|iso4406|as4059",
-		"classes of a standard instead", standards, 0 },
+		"classes of a standard", standards, 0 },
 	{ 0, "period", OPT_NUM, UNIT_TIME, &period, 1e-9, 1e12, "T",
-		"one set of rows for each period (default all of the record)", NULL, 0 },
+		"one set of rows per period (default the whole record)", NULL, 0 },
 	{ 0, "duration", OPT_NUM, UNIT_TIME, &duration, 0, 1e12, "T",
-		"of the record (default until its last particle)", NULL, 0 },
+		"duration of the record (default until its last particle)", NULL, 0 },
 	{ 0, "by", OPT_TEXT, UNIT_NONE, &by, 0, 0, "COLUMN",
-		"count apart what differs in this column: material, ...", NULL, 0 },
+		"count separately for each value of this column: material, ...", NULL,
+		0 },
 	OPT_TABLE(oil_rows),
 	{ 0, "density", OPT_NUM, UNIT_DENSITY, &density, 1, 1e5, "RHO",
-		"of the particles, for masses", NULL, 0 },
+		"density of the particles, for masses", NULL, 0 },
 	{ 0, "d50", OPT_NUM, UNIT_LENGTH, &d50, 1e-9, 1, "D",
-		"size of which the sensor sees half the particles (default sees all)",
+		"size at which the sensor detects half of the particles (default detects all)",
 		NULL, 0 },
 	{ 0, "detection-threshold", OPT_NUM, UNIT_NONE, &threshold, 0.1, 1e6, "T",
-		"of the sensor in deviations of its noise, with --d50", NULL, 0 },
+		"detection threshold in standard deviations of the noise, with --d50",
+		NULL, 0 },
 	{ 0, "detection-exponent", OPT_NUM, UNIT_NONE, &detection_exponent, 0.1, 20, "N",
-		"of the diameter in the amplitude", NULL, 0 },
+		"exponent of the diameter in the amplitude", NULL, 0 },
 	OPT_TABLE(verdict_rows),
 	{ 0, "confidence", OPT_NUM, UNIT_FRACTION, &confidence, 0.01, 0.9999, "C",
-		"of the intervals", NULL, 0 },
+		"confidence level of the intervals", NULL, 0 },
 	OPT_TABLE(report_rows),
 	{ 0, "alarm", OPT_LIST, UNIT_NONE, &alarm_level, 0, 1e300, "LEVEL[:CLEAR]",
-		"alarm from LEVEL particles per hour on until below CLEAR", NULL, 0 },
+		"raise an alarm at LEVEL particles per hour, clear it below CLEAR", NULL,
+		0 },
 	{ 0, "alarm-mass", OPT_FLAG, UNIT_NONE, &alarm_mass, 0, 0, NULL,
-		"levels of --alarm are kg per hour", NULL, 0 },
+		"levels of --alarm are in kg per hour", NULL, 0 },
 	OPT_END,
 };
 
 static const struct prog prog = { "debriscount",
-	"Count particles by size and time: classes, cleanliness codes, trend, alarm.",
+	"Count particles by size and time: classes, cleanliness codes, trends, alarms.",
 	"[file]", "table: diameter [time1] [verdict] [sources]",
 	"table: one row per period and class", opts };
 
 static void check_options(void)
 {
 	if (standard && edges.n)
-		die(EXIT_USAGE, "--classes and --standard exclude each other");
+		die(EXIT_USAGE, "--classes and --standard exclude one another");
 	if (output == REPORT_CODES && edges.n)
-		die(EXIT_USAGE, "--output codes has the sizes of the standards");
+		die(EXIT_USAGE, "--output codes uses the sizes of the standards");
 	if (isnan(d50) != isnan(threshold))
-		die(EXIT_USAGE, "want both --d50 and --detection-threshold, or neither");
+		die(EXIT_USAGE,
+			"specify both --d50 and --detection-threshold, or neither");
 	for (int k = 1; k < edges.n; k++)
 		if (edges.v[k] <= edges.v[k - 1])
-			die(EXIT_USAGE, "--classes: %g m does not lie above %g m",
-				edges.v[k], edges.v[k - 1]);
+			die(EXIT_USAGE, "--classes: %g m is not above %g m", edges.v[k],
+				edges.v[k - 1]);
 	if (alarm_level.n == 2 && alarm_level.v[1] > alarm_level.v[0])
-		die(EXIT_USAGE, "--alarm wants LEVEL:CLEAR with CLEAR not above LEVEL");
+		die(EXIT_USAGE,
+			"--alarm requires LEVEL:CLEAR with CLEAR not above LEVEL");
 	if (alarm_mass && (!alarm_level.n || isnan(density)))
-		die(EXIT_USAGE, "--alarm-mass wants --alarm and --density");
+		die(EXIT_USAGE, "--alarm-mass requires --alarm and --density");
 	report_check((enum report_kind)output, !isnan(period));
 }
 
@@ -114,7 +119,7 @@ static struct report_par parameters(void)
 	return par;
 }
 
-/* The column of times; -1 where there is none. */
+/* The column of times; -1 if there is none. */
 static int time_column(struct table_in *t)
 {
 	static const char *const names[] = { "time1", "time", "t" };
@@ -154,8 +159,7 @@ static double count_rows(struct table_in *t, struct groups *groups)
 
 		if (table_part(t) != part && !isnan(period))
 			die(EXIT_RUN,
-				"%s: line %ld: another record begins: count each "
-				"for itself",
+				"%s: line %ld: another record begins: count each record separately",
 				table_name(t), table_line(t));
 		if (time > duration)
 			die(EXIT_RUN,
@@ -188,8 +192,7 @@ static double count_rows(struct table_in *t, struct groups *groups)
 		stats_add("particles", 1);
 	} while (table_next(t));
 	if (late > 0) {
-		warn("%.0f particles came after their period was over and are counted in "
-		     "a later one",
+		warn("%.0f particles arrived after the end of their period and are counted in a later one",
 			late);
 		stats_set("particles_late", late);
 		groups_doubtful(groups);
@@ -217,8 +220,7 @@ int main(int argc, char **argv)
 		last = count_rows(t, groups);
 	else if (isnan(duration))
 		die(EXIT_RUN,
-			"%s: no particle: how long the record is has to be told by "
-			"--duration",
+			"%s: no particle: specify the length of the record with --duration",
 			table_name(t));
 	if (isnan(duration) && isnan(period) && time_column(t) >= 0)
 		warn("the record is taken to end with its last particle, at %g s; "

@@ -15,15 +15,15 @@ static long window;
 
 struct opt oil_rows[] = {
 	{ 0, "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-15, 1e3, "Q",
-		"of oil past the sensor, for numbers per volume", NULL, 0 },
+		"flow of oil through the sensor, for numbers per volume", NULL, 0 },
 	{ 0, "volume", OPT_NUM, UNIT_VOLUME, &volume, 1e-15, 1e6, "V",
-		"of oil in all that was counted, instead of --flow", NULL, 0 },
+		"total volume of oil, in place of --flow", NULL, 0 },
 	OPT_END,
 };
 
 struct opt report_rows[] = {
 	{ 0, "window", OPT_INT, UNIT_COUNT, &window, 3, 1000000000, "N",
-		"of --output trend: periods that a slope is fitted to (default all)",
+		"of --output trend: periods to which the slope is fitted (default all)",
 		NULL, 0 },
 	OPT_END,
 };
@@ -36,13 +36,13 @@ struct report {
 void report_check(enum report_kind output, int periods)
 {
 	if (!isnan(flow) && !isnan(volume))
-		die(EXIT_USAGE, "want --flow or --volume, not both");
+		die(EXIT_USAGE, "specify --flow or --volume, not both");
 	if (!isnan(volume) && periods)
-		die(EXIT_USAGE, "--volume is of all oil: --period wants --flow");
+		die(EXIT_USAGE, "--volume is the total volume: --period requires --flow");
 	if (output == REPORT_CODES && isnan(flow) && isnan(volume))
-		die(EXIT_USAGE, "--output codes wants --flow or --volume");
+		die(EXIT_USAGE, "--output codes requires --flow or --volume");
 	if (output == REPORT_TREND && !periods)
-		die(EXIT_USAGE, "--output trend wants --period");
+		die(EXIT_USAGE, "--output trend requires --period");
 	if (window && output != REPORT_TREND)
 		die(EXIT_USAGE, "--window is for --output trend");
 }
@@ -89,7 +89,7 @@ static void put_counted(struct table_out *t, struct counted c, double scale)
 	table_put(t, c.high * scale);
 }
 
-/* Of oil in a period, m3; nan where it is not known. */
+/* Of oil in a period, m3; nan if it is not known. */
 static double oil(double begin, double end)
 {
 	return isnan(volume) ? flow * (end - begin) : volume;
@@ -170,7 +170,7 @@ static void put_code_row(struct report *r, const struct classes *c, const char *
 	table_end_row(r->table);
 }
 
-static void put_trend(struct report *r, const struct history *h, const char *group,
+static void put_trend(struct report *r, const struct rate_history *h, const char *group,
 	double begin, double end)
 {
 	size_t n = window && h->n > (size_t)window ? (size_t)window : h->n;
@@ -198,7 +198,7 @@ static void put_trend(struct report *r, const struct history *h, const char *gro
 
 /* Remembers a period; only the trend needs more than the last. */
 static void remember(
-	const struct report *r, struct history *h, double time, const double rate[2])
+	const struct report *r, struct rate_history *h, double time, const double rate[2])
 {
 	double **column[3] = { &h->time, &h->rate[0], &h->rate[1] };
 	const double value[3] = { time, rate[0], rate[1] };
@@ -219,7 +219,7 @@ static void remember(
 	h->n = at + 1;
 }
 
-void report_period(struct report *r, struct history *h, const char *group,
+void report_period(struct report *r, struct rate_history *h, const char *group,
 	const struct classes *c, double begin, double end, int whole)
 {
 	double per_hour = end > begin ? hour / (end - begin) : NAN, rate[2], watched;
@@ -255,7 +255,7 @@ void report_close(struct report *r)
 	free(r);
 }
 
-void history_free(struct history *h)
+void rate_history_free(struct rate_history *h)
 {
 	free(h->time);
 	free(h->rate[0]);

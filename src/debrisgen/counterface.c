@@ -16,10 +16,9 @@ struct opt counterface_rows[] = {
 	{ 0, "counterface", OPT_TEXT, UNIT_NONE, &path, 0, 0, "FILE",
 		"slide the rough surface of this file over that of the input", NULL, 0 },
 	{ 0, "slide", OPT_NUM, UNIT_LENGTH, &slide, 0, 1e12, "D",
-		"distance it moves from step to step; by default the length of the grid",
-		NULL, 0 },
+		"sliding distance per step; by default the length of the grid", NULL, 0 },
 	{ 0, "renew", OPT_WORD, UNIT_NONE, &renew, 0, 0, "wrap|fresh",
-		"it goes round, or is longer than the grid and never returns", renewals,
+		"counterface: periodic, or longer than the grid and used once", renewals,
 		0 },
 	OPT_END,
 };
@@ -37,7 +36,7 @@ struct counterface {
 int counterface_check(void)
 {
 	if (!path && (!isnan(slide) || renew))
-		die(EXIT_USAGE, "--slide and --renew are for a --counterface");
+		die(EXIT_USAGE, "--slide and --renew require --counterface");
 	return path != NULL;
 }
 
@@ -117,16 +116,18 @@ void counterface_next(struct counterface *c, const struct record *r)
 	if (across || (renew == WRAP ? along != 0 : along < 0))
 		die(EXIT_RUN, "%s: record %ld: %dx%d cells over %dx%d: want %s", name,
 			fields_count(c->in), own->nx, own->ny, r->nx, r->ny,
-			renew == WRAP ? "as many"
-				      : "as many across and more along the way");
+			renew == WRAP
+				? "as many"
+				: "as many across and more in the direction of sliding");
 	cells = isnan(slide) ? (double)(c->axis ? r->ny : r->nx) : slide / step;
 	c->cells = lround(cells);
 	if (fabs(cells - (double)c->cells) > 1e-6 * fmax(1, cells))
-		die(EXIT_USAGE, "--slide %g m: want whole cells of %g m", slide, step);
+		die(EXIT_USAGE, "--slide %g m: want a multiple of the cell size %g m",
+			slide, step);
 }
 
-/* Where the first cell of the grid lies on it: it moves along the axis, so that what is
- * above the grid moves back. */
+/* Position of the first cell of the grid on the counterface, which moves along the axis;
+ * the window of the grid therefore moves backwards. */
 static long start(const struct counterface *c, long step)
 {
 	const struct record *r = &c->record;
@@ -137,7 +138,7 @@ static long start(const struct counterface *c, long step)
 		return (own - moved % own) % own;
 	if (own - grid < moved)
 		die(EXIT_RUN,
-			"%s: record %ld: %ld cells along the way end before step %ld",
+			"%s: record %ld: %ld cells in the direction of sliding end before step %ld",
 			fields_name(c->in), fields_count(c->in), own, step);
 	return own - grid - moved;
 }

@@ -6,6 +6,7 @@
 #include "common/contact_options.h"
 #include "io/fields.h"
 #include "outputs.h"
+#include "quick.h"
 #include "wear_steps.h"
 #include <math.h>
 
@@ -16,21 +17,22 @@ static const struct opt opts[] = {
 	OPT_TABLE(wearing_rows),
 	OPT_HEADING("Steps"),
 	{ 0, "steps", OPT_INT, UNIT_COUNT, &steps, 1, 1e6, "N",
-		"wear steps; the contact is solved anew from the second on", NULL, 0 },
+		"number of wear steps; from the second on the contact is solved again",
+		NULL, 0 },
 	{ 0, "stop-area", OPT_NUM, UNIT_FRACTION, &stop_area, 0, 1, "A",
-		"stop where this share of the cells is in contact; 1: never", NULL, 0 },
+		"stop when this fraction of the cells is in contact; 1: never", NULL, 0 },
 	{ 0, "amplification", OPT_NUM, UNIT_NONE, &amplification, 0, 1e12, "K",
-		"distance slid in a step over the length of the grid, or --slide", NULL,
-		0 },
+		"sliding distance of a step over the length of the grid, or over --slide",
+		NULL, 0 },
 	OPT_TABLE(worn_rows),
 	OPT_TABLE(press_rows),
 	OPT_END,
 };
 
 static const struct prog prog = { "debrisgen",
-	"Find the wear particles that a rough contact tears off, step by step.", "[file]",
-	"fields: height, pressure, as bemcontact writes",
-	"table: one row per wear particle", opts };
+	"Compute the wear particles of a rough contact, step by step.", "[file]",
+	"fields: height, pressure, from bemcontact", "table: one row per wear particle",
+	opts };
 
 /* Load on the outermost cells, where the half-space ends: steps with more than 5 %, and
  * the worst of them. */
@@ -93,11 +95,11 @@ static void open_scene(struct run *run, struct record *r, struct scene *c)
 	if (c->target == 0 && s.load == 0 && wearing_solves(run->wearing, 1) &&
 		isnan(press.approach))
 		die(EXIT_USAGE,
-			"%s: record %ld bears no load: want --load, --pressure or --approach",
+			"%s: record %ld carries no load: specify --load, --pressure or --approach",
 			fields_name(run->in), fields_count(run->in));
 }
 
-/* 1 where the contact is too large for a further step. */
+/* 1 if the contact is too large for a further step. */
 static int check_contact(struct run *run, struct scene *c, long step)
 {
 	const char *name = fields_name(run->in);
@@ -128,8 +130,7 @@ static void check_ends(struct run *run, const struct scene *c, const struct worn
 		endless += s->lost->particle[i].endless != 0;
 	if (endless == 0)
 		return;
-	warn("%s: realisation %ld, step %ld: %zu of %zu particles go round the periodic "
-	     "grid and have no end: their shape is nan",
+	warn("%s: realisation %ld, step %ld: %zu of %zu particles connect to themselves across the periodic grid: their shape is nan",
 		fields_name(run->in), c->now.r->realisation, s->number, endless,
 		s->lost->count);
 	run->status = EXIT_NOCONV;
@@ -155,7 +156,7 @@ static void wear_step(struct run *run, const struct scene *c, long step)
 }
 
 /* The nominal pressure is that of the steps, or not one where these keep an approach.
- * Rounded, lest its last digit differ from record to record. */
+ * Rounded, so that its last digit does not differ between records. */
 static struct worn_conditions conditions_of(const struct scene *c)
 {
 	const struct record *r = c->now.r;
@@ -216,12 +217,13 @@ int main(int argc, char **argv)
 	run.wearing = wearing_open(run.in, steps);
 	while (fields_read(run.in, &r)) {
 		if (!run.out)
-			run.out = worn_open(r.cmd, wearing_richardson());
+			run.out = worn_open(r.cmd, wearing_richardson(), quick_asked());
 		wear_record(&run, &r);
 	}
 	progress_clear();
 	warn_of_edge(&run);
-	wearing_warn(run.wearing);
+	if (!wearing_warn(run.wearing))
+		run.status = EXIT_NOCONV;
 	worn_close(run.out);
 	wearing_close(run.wearing);
 	fields_close(run.in);

@@ -1,6 +1,7 @@
 #include "outputs.h"
 #include "cli/msg.h"
 #include "io/tables.h"
+#include "num/grid.h"
 #include "num/student.h"
 #include "stress/stress_kernel.h"
 #include "surface/surface.h"
@@ -24,14 +25,15 @@ struct opt worn_rows[] = {
 	{ 0, "counter-surface", OPT_TEXT, UNIT_NONE, &counter_path, 0, 0, "FILE",
 		"write the worn counterface of every step", NULL, 1 },
 	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
-		"write a table with a row per step", NULL, 1 },
+		"write a table with one row per step", NULL, 1 },
 	{ 0, "stress", OPT_TEXT, UNIT_NONE, &stress_path, 0, 0, "FILE",
 		"write the stress below every contact", NULL, 1 },
 	{ 0, "fields", OPT_WORDS, UNIT_NONE, &stress_wanted, 0, 0, "NAME,...",
-		"what to write of von_mises, hydrostatic, principal, tensor",
+		"fields of --stress: von_mises, hydrostatic, principal, tensor",
 		stress_words, 1 },
 	{ 0, "stress-layers", OPT_INT, UNIT_COUNT, &stress_layers, 0, 1e6, "N",
-		"layers of --stress; 0: as deep as was searched for failure", NULL, 1 },
+		"number of layers of --stress; 0: down to the depth searched for failure",
+		NULL, 1 },
 	OPT_END,
 };
 
@@ -50,6 +52,8 @@ static const char summary_units[] = "1 1 m N 1 Pa 1 m3 1 m m m 1 Pa m3 m3 1 1 1 
 #define GRID_COLUMNS                                                                \
 	" volume_2h volume_4h particles_2h particles_4h order volume_extrapolated " \
 	"volume_grid_error"
+#define GUESS_COLUMNS " volume_low volume_high exact"
+#define GUESS_UNITS " m3 m3 1"
 #define GRID_UNITS " m3 m3 1 1 1 m3 m3"
 
 /* A stream of records; the last is held back until it is known whether another one
@@ -110,17 +114,30 @@ static char *cmd_of(const char *upstream, const char *option)
 	return cmd;
 }
 
-struct worn *worn_open(const char *upstream, int richardson)
+struct worn *worn_open(const char *upstream, int richardson, int surrogate)
 {
-	struct worn *w = xcalloc(1, sizeof(*w));
+	struct worn *w = xcalloc(1, sizeof *w);
 	char *cmd = cmd_of(upstream, NULL), *summary = cmd_of(upstream, "--summary");
 
-	w->particles = table_create(NULL, cmd, particle_units, particle_columns);
-	if (summary_path) {
+	{
 		char *units =
-			xprintf("%s%s", summary_units, richardson ? GRID_UNITS : "");
+			xprintf("%s%s", particle_units, surrogate ? GUESS_UNITS : "");
 		char *columns =
-			xprintf("%s%s", summary_columns, richardson ? GRID_COLUMNS : "");
+			xprintf("%s%s", particle_columns, surrogate ? GUESS_COLUMNS : "");
+
+		w->particles = table_create(NULL, cmd, units, columns);
+		free(units);
+		free(columns);
+	}
+	if (summary_path) {
+		char *units = xprintf("%s%s", summary_units,
+			richardson  ? GRID_UNITS
+			: surrogate ? GUESS_UNITS
+				    : "");
+		char *columns = xprintf("%s%s", summary_columns,
+			richardson  ? GRID_COLUMNS
+			: surrogate ? GUESS_COLUMNS
+				    : "");
 
 		w->summary = table_create(summary_path, summary, units, columns);
 		free(units);
@@ -167,7 +184,7 @@ void worn_begin(
 }
 
 static void put_particles(struct table_out *t, long realisation, long step, int body,
-	const struct debris_step *lost)
+	const struct debris_step *lost, const struct quick_volumes *volumes)
 {
 	for (size_t i = 0; i < lost->count; i++) {
 		const struct particle *p = &lost->particle[i];
@@ -175,9 +192,15 @@ static void put_particles(struct table_out *t, long realisation, long step, int 
 			(double)p->columns, p->volume, p->diameter, p->aspect, p->x, p->y,
 			p->z, p->length, p->width, p->elongation, p->convexity, p->area,
 			p->azimuth, p->dip, p->low[0], p->high[0], p->low[1], p->high[1],
-			p->low[2], p->high[2] };
+			p->low[2], p->high[2], p->volume, p->volume, 1 };
+		enum { GUESS = 3, PLAIN = sizeof(row) / sizeof *row - GUESS };
 
-		table_put_row(t, row, sizeof(row) / sizeof(*row));
+		if (volumes && !volumes->exact) {
+			row[PLAIN] = volumes->particle[i].low;
+			row[PLAIN + 1] = volumes->particle[i].high;
+			row[PLAIN + 2] = 0;
+		}
+		table_put_row(t, row, volumes ? PLAIN + GUESS : PLAIN);
 	}
 	table_flush(t);
 }
@@ -206,10 +229,10 @@ static void take_coefficient(struct coefficients *c, double k, double out[3])
 double worn_roughness(const struct worn_surface *c)
 {
 	const struct record *r = c->r;
-	size_t n = (size_t)r->nx * r->ny;
-	double *z = xcalloc(n, sizeof(*z)), sq;
+	size_t n = grid_size(r->nx, r->ny);
+	double *z = xcalloc(n, sizeof *z), sq;
 
-	memcpy(z, c->h, n * sizeof(*z));
+	memcpy(z, c->h, n * sizeof *z);
 	surface_crown(r->nx, r->ny, r->dx, r->dy, -c->crown, z);
 	sq = surface_sq(r->nx, r->ny, z);
 	free(z);
@@ -242,7 +265,12 @@ static void put_summary(struct table_out *t, struct coefficients *coefficients,
 		worn_roughness(c) / c->sq, fmax(first->wear.stress, second->wear.stress),
 		first->volume, second->volume, coefficient, k[0], k[1], k[2], 0, 0, 0, 0,
 		0, 0, 0 };
-	enum { GRID = 7, PLAIN = sizeof(row) / sizeof(*row) - GRID };
+	enum {
+		GRID = 7,
+		PLAIN = sizeof(row) / sizeof *row - GRID,
+		DEPTH = 11,
+		ROUGHNESS
+	};
 
 	if (s->grid) {
 		const struct grid_error *g = s->grid;
@@ -251,7 +279,17 @@ static void put_summary(struct table_out *t, struct coefficients *coefficients,
 
 		memcpy(row + PLAIN, more, sizeof more);
 	}
-	table_put_row(t, row, s->grid ? PLAIN + GRID : PLAIN);
+	if (s->volumes) {
+		int exact = s->volumes->exact;
+
+		row[PLAIN] = exact ? volume : s->volumes->total.low;
+		row[PLAIN + 1] = exact ? volume : s->volumes->total.high;
+		row[PLAIN + 2] = exact;
+	}
+	/* a surrogate knows neither depths nor the surface that is left */
+	if (s->volumes && !s->volumes->exact)
+		row[DEPTH] = row[ROUGHNESS] = NAN;
+	table_put_row(t, row, s->grid ? PLAIN + GRID : s->volumes ? PLAIN + 3 : PLAIN);
 	table_flush(t);
 }
 
@@ -273,7 +311,7 @@ static void bare_record(
 static void put_surface(
 	struct held_fields *f, const struct worn_surface *c, const struct worn_step *s)
 {
-	size_t bytes = (size_t)c->r->nx * c->r->ny * sizeof(*c->h);
+	size_t bytes = grid_size(c->r->nx, c->r->ny) * sizeof *c->h;
 	struct record out = { 0 };
 
 	bare_record(&out, c->r, "--surface", s->number);
@@ -283,7 +321,7 @@ static void put_surface(
 	held_put(f, &out);
 }
 
-/* The whole counterface, in a frame of its own. */
+/* The whole counterface, in its own coordinates. */
 static void put_counter(
 	struct held_fields *f, const struct worn_surface *c, const struct worn_step *s)
 {
@@ -313,7 +351,7 @@ static int derive(const double t[STRESS_COMPONENTS], double *out)
 		n += 3;
 	}
 	if (stress_wanted & TENSOR) {
-		memcpy(out + n, t, STRESS_COMPONENTS * sizeof(*t));
+		memcpy(out + n, t, STRESS_COMPONENTS * sizeof *t);
 		n += STRESS_COMPONENTS;
 	}
 	return n;
@@ -326,19 +364,19 @@ static void put_stress(
 		"principal_2", "principal_3", "xx", "yy", "zz", "xy", "xz", "yz" };
 	static const int part[] = { MISES, HYDROSTATIC, PRINCIPAL, PRINCIPAL, PRINCIPAL,
 		TENSOR, TENSOR, TENSOR, TENSOR, TENSOR, TENSOR };
-	size_t n = (size_t)r->nx * r->ny;
+	size_t n = grid_size(r->nx, r->ny);
 	/* As deep as was searched. */
 	long count = stress_layers ? stress_layers
 				   : 1 + (long)ceil(fmax(0, s->lost->wear.depth / s->dz -
 								    s->offset));
-	double *tensor = xcalloc(n, STRESS_COMPONENTS * sizeof(*tensor));
+	double *tensor = xcalloc(n, STRESS_COMPONENTS * sizeof *tensor);
 	struct record out = { 0 };
 
 	bare_record(&out, r, "--stress", s->number);
 	out.nz = (int)count;
 	out.dz = s->dz;
 	record_set(&out, "first_depth", "%.17g", s->offset * out.dz);
-	for (size_t k = 0; k < sizeof(part) / sizeof(*part); k++)
+	for (size_t k = 0; k < sizeof(part) / sizeof *part; k++)
 		if (stress_wanted & part[k])
 			record_add(&out, names[k], "Pa");
 	for (long m = 0; m < count; m++) {
@@ -348,10 +386,10 @@ static void put_stress(
 			double t[STRESS_COMPONENTS], v[RECORD_FIELDS_MAX];
 
 			for (int c = 0; c < STRESS_COMPONENTS; c++)
-				t[c] = tensor[c * n + i];
+				t[c] = tensor[(size_t)c * n + i];
 			derive(t, v);
 			for (int k = 0; k < out.nfields; k++)
-				out.data[k][m * n + i] = v[k];
+				out.data[k][(size_t)m * n + i] = v[k];
 		}
 	}
 	held_put(f, &out);
@@ -360,9 +398,10 @@ static void put_stress(
 
 void worn_put(struct worn *w, const struct worn_surface *c, const struct worn_step *s)
 {
-	put_particles(w->particles, c->r->realisation, s->number, 1, s->lost);
+	put_particles(w->particles, c->r->realisation, s->number, 1, s->lost, s->volumes);
 	if (s->second)
-		put_particles(w->particles, c->r->realisation, s->number, 2, s->second);
+		put_particles(
+			w->particles, c->r->realisation, s->number, 2, s->second, NULL);
 	if (w->summary)
 		put_summary(w->summary, &w->coefficients, c, s);
 	if (w->counter.out && s->counterface)

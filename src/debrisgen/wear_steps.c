@@ -5,6 +5,7 @@
 #include "contact/solver.h"
 #include "counterface.h"
 #include "grid_error.h"
+#include "quick.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,37 +27,37 @@ static int shear, layer, removal, criterion, full_sum, wears, law, richardson;
 struct opt wearing_rows[] = {
 	OPT_HEADING("Wear"),
 	{ 'Y', "yield", OPT_LIST, UNIT_PRESSURE, &yield, 1e-30, 1e30, "Y1[,Y2]",
-		"yield stress: material under more equivalent stress is lost; of both bodies",
-		NULL, 0 },
+		"yield stress of the worn body and of the counterface", NULL, 0 },
 	{ 0, "criterion", OPT_WORD, UNIT_NONE, &criterion, 0, 0, "von-mises|tresca",
 		"equivalent stress", criteria, 0 },
 	{ 'u', "friction", OPT_NUM, UNIT_NONE, &friction, 0, 1e6, "MU",
 		"friction coefficient: shear over pressure", NULL, 0 },
 	{ 0, "depth-step", OPT_NUM, UNIT_LENGTH, &depth_step, 1e-30, 1e30, "H",
-		"material falls in cells of this height; by default the depth is interpolated",
+		"remove whole cells of this height; by default the depth is continuous",
 		NULL, 0 },
 	{ 0, "shear", OPT_WORD, UNIT_NONE, &shear, 0, 0, "x|y",
-		"direction in which friction drags the worn body", axes, 0 },
+		"direction of the friction force on the worn body", axes, 0 },
 	{ 0, "layer", OPT_WORD, UNIT_NONE, &layer, 0, 0, "top|mid",
-		"where in a cell of --depth-step the stress is taken", layers, 0 },
+		"where the stress of a cell of --depth-step is evaluated", layers, 0 },
 	{ 0, "removal", OPT_WORD, UNIT_NONE, &removal, 0, 0, "column|potential",
-		"what is lost: what fails from the surface down, or all that fails",
+		"removal rule: failed material down from the surface, or all that fails",
 		rules, 0 },
 	{ 0, "full-sum", OPT_FLAG, UNIT_NONE, &full_sum, 0, 0, NULL,
-		"sum the stress over all cells at every depth, slowly: to compare with",
+		"sum the stress over all cells at every depth: slow, for verification",
 		NULL, 0 },
 	{ 0, "richardson", OPT_FLAG, UNIT_NONE, &richardson, 0, 0, NULL,
-		"repeat each step on grids twice and four times as coarse, and extrapolate",
-		NULL, 0 },
+		"repeat each step on two coarser grids and extrapolate the volume", NULL,
+		0 },
+	OPT_TABLE(quick_rows),
 	OPT_HEADING("Sliding pair"),
 	OPT_TABLE(counterface_rows),
 	{ 0, "wears", OPT_WORD, UNIT_NONE, &wears, 0, 0, "first|second|both",
-		"the body that is worn: that of the input, the counterface, or both",
-		bodies, 0 },
+		"body that wears: that of the input, the counterface, or both", bodies,
+		0 },
 	{ 0, "law", OPT_WORD, UNIT_NONE, &law, 0, 0, "stress|archard",
 		"wear by stress over yield, or by pressure and distance", laws, 0 },
 	{ 0, "wear-rate", OPT_LIST, UNIT_NONE, &wear_rate, 0, 1e30, "K1[,K2]",
-		"volume over load and distance of --law archard, m2/N", NULL, 0 },
+		"volume per load and distance of --law archard, m2/N", NULL, 0 },
 	OPT_END,
 };
 
@@ -76,26 +77,41 @@ static void check_pair(void)
 	int pair = counterface_check();
 
 	if (wears != FIRST && !pair)
-		die(EXIT_USAGE, "--wears %s: want a --counterface", bodies[wears]);
+		die(EXIT_USAGE, "--wears %s requires --counterface", bodies[wears]);
 	if (law == ARCHARD && !wear_rate.n)
-		die(EXIT_USAGE, "--law archard: want --wear-rate");
+		die(EXIT_USAGE, "--law archard requires --wear-rate");
 	if (law == STRESS && wear_rate.n)
-		die(EXIT_USAGE, "--wear-rate is for --law archard");
+		die(EXIT_USAGE, "--wear-rate requires --law archard");
 	if (wears != FIRST && !(press.poisson.v[press.poisson.n - 1] >= 0))
-		die(EXIT_USAGE, "--poisson: want 0 to 0.5 for a body that is worn");
+		die(EXIT_USAGE, "--poisson: want 0 to 0.5 for a body that wears");
+}
+
+/* A surrogate knows volumes below the footprints of one surface, and no depths. */
+static void check_surrogate(void)
+{
+	static const char *const without[] = { "depth-step", "removal", "criterion",
+		"full-sum", "richardson", "counterface", "law", "surface", "stress",
+		"counter-surface", NULL };
+
+	if (!quick_asked())
+		return;
+	for (int k = 0; without[k]; k++)
+		if (opt_given(without[k]))
+			die(EXIT_USAGE, "--surrogate excludes --%s", without[k]);
 }
 
 void wearing_check(void)
 {
 	check_pair();
+	check_surrogate();
 	if (richardson && (counterface_check() || law == ARCHARD))
-		die(EXIT_USAGE, "--richardson is for the wear of one body by its stress");
+		die(EXIT_USAGE, "--richardson requires wear of one body by stress");
 	if (!yield.n && law == STRESS)
-		die(EXIT_USAGE, "want --yield");
+		die(EXIT_USAGE, "--yield is missing");
 	if (!yield.n)
 		yield = (struct opt_list){ 1, { INFINITY } };
 	if (layer && isnan(depth_step))
-		die(EXIT_USAGE, "--layer is for cells: want --depth-step");
+		die(EXIT_USAGE, "--layer requires --depth-step");
 	if (yield.v[0] < 1e5)
 		warn("--yield %g Pa is weaker than any solid surface: is %gMPa meant?",
 			yield.v[0], yield.v[0]);
@@ -110,16 +126,17 @@ struct wearing {
 	struct pool *pool;
 	struct debris *debris;
 	struct debris_par par;
-	struct contact *contact;     /* NULL where a single step needs none */
+	struct contact *contact;     /* NULL if a single step needs none */
 	struct contact_par pressing; /* the contact's problem */
 	struct debris_step lost;     /* in the last step */
 	struct stress_work seen;     /* counted already */
 	/* Of a sliding pair: NULL without. */
 	struct counterface *counterface;
+	struct quick *quick; /* NULL without a surrogate */
 	struct debris *second;
 	struct debris_step second_lost;
 	struct stress_work second_seen;
-	double *other, *pair; /* heights: what lies above the grid, and both together */
+	double *other, *pair; /* heights: the part above the grid, and the sum of both */
 	struct grid_error grid;
 	double steepest; /* rms slope of a pair */
 	long steep_step;
@@ -127,7 +144,7 @@ struct wearing {
 
 struct wearing *wearing_open(const struct fields_in *in, long steps)
 {
-	struct wearing *w = xcalloc(1, sizeof(*w));
+	struct wearing *w = xcalloc(1, sizeof *w);
 
 	w->in = in;
 	w->steps = steps;
@@ -136,6 +153,11 @@ struct wearing *wearing_open(const struct fields_in *in, long steps)
 		die(EXIT_RUN, "cannot start %ld threads:", press.threads);
 	if (counterface_check())
 		w->counterface = counterface_open(shear);
+	if (quick_asked()) {
+		if (steps > 1)
+			die(EXIT_USAGE, "--surrogate knows one step: want --steps 1");
+		w->quick = quick_open();
+	}
 	return w;
 }
 
@@ -156,6 +178,7 @@ void wearing_close(struct wearing *w)
 	debris_free(w->second);
 	contact_free(w->contact);
 	counterface_close(w->counterface);
+	quick_close(w->quick);
 	pool_free(w->pool);
 	free(w->other);
 	free(w->pair);
@@ -191,11 +214,11 @@ void wearing_prepare(struct wearing *w, const struct record *r)
 		return;
 	if (richardson && (r->nx % 4 || r->ny % 4 || r->nx < 32 || r->ny < 32))
 		die(EXIT_USAGE,
-			"--richardson: %dx%d cells: want multiples of 4, 32 or more",
+			"--richardson: %dx%d cells: want multiples of 4, at least 32",
 			r->nx, r->ny);
 	if ((solves(w, w->steps) || richardson) && isnan(pressing.estar))
 		die(EXIT_USAGE,
-			"--steps %ld solves contacts: want --young or --estar, which %s does not tell",
+			"--steps %ld solves contacts: specify --young or --estar, which %s does not state",
 			w->steps, fields_name(w->in));
 	w->pressing = pressing;
 	debris_free(w->debris);
@@ -207,8 +230,8 @@ void wearing_prepare(struct wearing *w, const struct record *r)
 		.offset = layer ? 0.5 : 0 };
 	w->par.stress = (struct stress_par){ .nx = r->nx,
 		.ny = r->ny,
-		.ax = r->dx,
-		.ay = r->dy,
+		.dx = r->dx,
+		.dy = r->dy,
 		.nu = press.poisson.v[0],
 		.mu = friction,
 		.axis = shear,
@@ -219,6 +242,12 @@ void wearing_prepare(struct wearing *w, const struct record *r)
 		.pool = w->pool };
 	w->seen = (struct stress_work){ 0 };
 	w->debris = debris_new(&w->par);
+	if (w->quick && w->par.stress.periodic)
+		die(EXIT_USAGE,
+			"%s: record %ld is periodic: --surrogate is for free surfaces",
+			fields_name(w->in), fields_count(w->in));
+	if (w->quick)
+		quick_prepare(w->quick, &w->par.stress);
 	if (w->debris && solves(w, w->steps))
 		w->contact = contact_new(&pressing);
 	if (w->counterface)
@@ -250,15 +279,16 @@ static double rms_slope(const struct record *r, const double *h)
 	return n > 0 ? sqrt(sum / n) : 0;
 }
 
-void wearing_warn(const struct wearing *w)
+int wearing_warn(const struct wearing *w)
 {
 	if (w->steepest > 0.2)
-		warn("%s: the pair reaches an rms slope of %.2g (step %ld), above 0.2, where "
-		     "half-spaces no longer describe it: give a --hardness",
+		warn("%s: the pair reaches an rms slope of %.2g (step %ld), above 0.2, the limit of half-space theory: specify --hardness",
 			fields_name(w->in), w->steepest, w->steep_step);
+	return !w->quick || quick_report(w->quick, fields_name(w->in));
 }
 
-/* What presses on the flat: the surface, and what of the other lies above it in a step.
+/* The equivalent surface in a step: the surface plus the part of the counterface above
+ * it.
  */
 static const double *pressed(struct wearing *w, const struct worn_surface *c, long step)
 {
@@ -326,9 +356,9 @@ static void refuse(const struct wearing *w, enum debris_status status, long step
 	die(EXIT_RUN, "%s: record %ld, step %ld: %s", fields_name(w->in),
 		fields_count(w->in), step,
 		status == DEBRIS_PULL      ? "pressure below zero"
-		: status == DEBRIS_NUMBERS ? "pressure beyond the range of numbers"
+		: status == DEBRIS_NUMBERS ? "pressure beyond double precision"
 		: status == DEBRIS_DEEP
-			? "material fails deeper than ten times the grid is long"
+			? "material fails deeper than ten times the length of the grid"
 			: "out of memory");
 }
 
@@ -336,9 +366,14 @@ static void refuse(const struct wearing *w, enum debris_status status, long step
 static void wear_by_stress(struct wearing *w, const struct worn_surface *c, long step)
 {
 	debris_contact(w->debris, c->p, &w->lost);
-	if (is_worn(FIRST)) {
+	if (w->quick && quick_step(w->quick, debris_stress(w->debris), c->p, yield.v[0],
+				c->r->realisation, &w->lost)) {
+		count_work(&w->lost, stress_work(debris_stress(w->debris)), &w->seen);
+	} else if (is_worn(FIRST)) {
 		refuse(w, debris_step(w->debris, c->h, c->p, &w->lost), step);
 		count_work(&w->lost, stress_work(debris_stress(w->debris)), &w->seen);
+		if (w->quick)
+			quick_take(w->quick, &w->lost);
 	} else if (stress_load(debris_stress(w->debris), c->p)) {
 		refuse(w, DEBRIS_NUMBERS, step);
 	}
@@ -379,8 +414,8 @@ static double wear_part(double *height, const double *p, size_t n, double rate,
 	return volume;
 }
 
-/* Wears by k p ds, pressing anew for every part of the distance; 1, or 0 where a contact
- * did not converge. */
+/* Wears by k p ds, solving the contact for every part of the distance; 1, or 0 if a
+ * contact did not converge. */
 static int wear_by_archard(struct wearing *w, const struct worn_surface *c, double target,
 	double distance, long step)
 {
@@ -414,7 +449,7 @@ static int wear_by_archard(struct wearing *w, const struct worn_surface *c, doub
 	return solved;
 }
 
-/* That of Archard's coefficient; nan where nothing tells it. */
+/* The hardness of Archard's coefficient; nan if unknown. */
 static double hardness_of(const struct wearing *w)
 {
 	double softer = fmin(yield.v[0], of_body(&yield, SECOND));
@@ -454,8 +489,9 @@ struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c,
 		.counterface = w->counterface ? counterface_record(w->counterface) : NULL,
 		.hardness = hardness_of(w),
 		.grid = richardson ? &w->grid : NULL,
+		.volumes = w->quick ? quick_volumes(w->quick) : NULL,
 		.stress = debris_stress(w->debris),
-		.dz = w->par.cell > 0 ? w->par.cell : w->par.stress.ax,
+		.dz = w->par.cell > 0 ? w->par.cell : w->par.stress.dx,
 		.offset = w->par.offset };
 }
 

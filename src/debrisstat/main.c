@@ -31,11 +31,11 @@ static const struct opt opts[] = {
 		"only particles of this equivalent diameter", NULL, 0 },
 	OPT_HEADING("Fits"),
 	{ 0, "truncated", OPT_FLAG, UNIT_NONE, &truncated, 0, 0, NULL,
-		"fit the Weibull distribution as cut off at --diameter", NULL, 0 },
+		"fit a Weibull distribution truncated at --diameter", NULL, 0 },
 	{ 0, "step", OPT_LIST, UNIT_COUNT, &range, 1, 1e9, "A[:B]",
-		"only these steps; default all", NULL, 0 },
+		"use only these steps; default all", NULL, 0 },
 	{ 0, "growth", OPT_WORD, UNIT_NONE, &growth, 0, 0, "cumulative|step",
-		"what the power law follows: all particles so far, or those of a step",
+		"fit the power law to all particles so far, or to those of each step",
 		growths, 0 },
 	{ 0, "bin", OPT_NUM, UNIT_LENGTH, &bin, 1e-30, 1e30, "W",
 		"width of the classes of sizes", NULL, 0 },
@@ -43,24 +43,25 @@ static const struct opt opts[] = {
 		"edges of the classes of aspect ratio", NULL, 0 },
 	OPT_HEADING("Intervals"),
 	{ 0, "confidence", OPT_NUM, UNIT_FRACTION, &confidence, 0.01, 0.9999, "C",
-		"of the intervals", NULL, 0 },
+		"confidence level of the intervals", NULL, 0 },
 	{ 0, "bootstrap", OPT_INT, UNIT_COUNT, &bootstrap, 0, 1e6, "N",
-		"intervals by drawing the realisations N times anew", NULL, 0 },
-	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "of --bootstrap", NULL,
-		0 },
+		"intervals by N bootstrap samples of whole realisations", NULL, 0 },
+	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "seed of --bootstrap",
+		NULL, 0 },
 	{ 0, "realisations", OPT_INT, UNIT_COUNT, &realisations, 0, 1e9, "N",
-		"realisations there were, with those that gave no particle", NULL, 0 },
+		"number of realisations, including those without particles", NULL, 0 },
 	OPT_HEADING("Further output"),
 	{ 0, "compare", OPT_TEXT, UNIT_NONE, &other_path, 0, 0, "FILE",
-		"fits of another study against these: differences and ratios", NULL, 0 },
+		"compare with the table of another study: differences and ratios", NULL,
+		0 },
 	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
-		"summary of debrisgen, to know of steps without particles", NULL, 0 },
+		"summary of debrisgen, which lists steps without particles", NULL, 0 },
 	OPT_END,
 };
 
 static const struct prog prog = { "debrisstat",
-	"Fit and count the wear particles of an ensemble.", "[file]",
-	"table: realisation, step, volume, diameter, aspect, as debrisgen writes",
+	"Fit distributions and growth laws to the wear particles of an ensemble.",
+	"[file]", "table: realisation, step, volume, diameter, aspect, from debrisgen",
 	"table", opts };
 
 static _Noreturn void no_memory(void)
@@ -79,8 +80,7 @@ static void check(struct ensemble *e, enum ensemble_status status)
 		return;
 	case ENSEMBLE_APART:
 		die(EXIT_RUN,
-			"the rows of realisation %ld stand too far apart: sort the table "
-			"by realisation",
+			"the rows of realisation %ld are not contiguous: sort the table by realisation",
 			ensemble_culprit(e));
 	case ENSEMBLE_CLASH:
 		die(EXIT_RUN,
@@ -130,7 +130,7 @@ static void classify(const struct shed *s, double aspect)
 	size_count[(size_t)(s->diameter / bin)]++;
 }
 
-/* The summary of debrisgen beside its particles, row by row. */
+/* The summary of debrisgen for the particles, row by row. */
 struct summary {
 	struct table_in *table; /* NULL: none */
 	int realisation, step;  /* columns */
@@ -312,8 +312,7 @@ static void print_comparison(const struct ensemble *e, const char *cmd)
 		n[i] = ensemble_par(both[i])->realisations;
 		if (n[i] < 2)
 			die(EXIT_RUN,
-				"--compare wants at least two realisations of each "
-				"study, got %g",
+				"--compare requires at least two realisations of each study, got %g",
 				n[i]);
 		if (estimate_all(both[i], value[i]) ||
 			estimate_errors(both[i], (uint64_t)seed + (uint64_t)i, bootstrap,
@@ -413,18 +412,18 @@ static void check_options(void)
 {
 	if (other_path && (output != FITS || summary_path || realisations))
 		die(EXIT_USAGE,
-			"--compare takes no --output, --summary or --realisations");
+			"--compare excludes --output, --summary and --realisations");
 	if (other_path && !bootstrap)
 		bootstrap = 400;
 	if (other_path && !opt_given("confidence"))
 		confidence = 0.9;
 	if (diameters.v[0] >= diameters.v[1])
-		die(EXIT_USAGE, "--diameter wants LO:HI with LO below HI");
+		die(EXIT_USAGE, "--diameter requires LO:HI with LO below HI");
 	if (range.n == 2 && range.v[0] > range.v[1])
-		die(EXIT_USAGE, "--step wants A or A:B with A not above B");
+		die(EXIT_USAGE, "--step requires A or A:B with A not above B");
 	for (int k = 1; k < edges.n; k++)
 		if (edges.v[k] <= edges.v[k - 1])
-			die(EXIT_USAGE, "--aspects: %g does not lie above %g", edges.v[k],
+			die(EXIT_USAGE, "--aspects: %g is not above %g", edges.v[k],
 				edges.v[k - 1]);
 }
 
@@ -441,7 +440,7 @@ int main(int argc, char **argv)
 	read_particles(e, argv[first], &cmd);
 	check(e, ensemble_close(e));
 	if (bootstrap && ensemble_told(e) < 2)
-		die(EXIT_RUN, "--bootstrap wants at least two realisations, got %zu",
+		die(EXIT_RUN, "--bootstrap requires at least two realisations, got %zu",
 			ensemble_told(e));
 	stats_add("particles", ensemble_particles(e));
 	stats_add("realisations", ensemble_par(e)->realisations);

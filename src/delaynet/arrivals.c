@@ -15,7 +15,7 @@ static long sections, refused;
 struct opt arrivals_rows[] = {
 	OPT_HEADING("Records"),
 	{ 0, "sections", OPT_TEXT, UNIT_NONE, &sections_file, 0, 0, "FILE",
-		"apply, pulses: table of the sections, as of duet --sections", NULL, 0 },
+		"apply, pulses: table of sections from duet --sections", NULL, 0 },
 	{ 0, "pulse-duration", OPT_NUM, UNIT_TIME, &duration, 1e-12, 1e9, "T",
 		"apply, pulses: duration of a pulse of the mean particle", NULL, 0 },
 	{ 0, "align", OPT_NUM, UNIT_TIME, &align, 0, 1e9, "T",
@@ -37,7 +37,7 @@ struct stretch {
 void arrivals_check(void)
 {
 	if (!sections_file || isnan(duration) || isnan(align))
-		die(EXIT_USAGE, "--task apply --model pulses wants --sections, "
+		die(EXIT_USAGE, "--task apply --model pulses requires --sections, "
 				"--pulse-duration and --align");
 }
 
@@ -83,7 +83,7 @@ static void move_stretch(struct stretch *s, long long from, long long to)
 }
 
 /* The pulses of frames [from, to) of channel 1 and of as many of channel 2, shift frames
- * later; 0 where they do not suit the network. */
+ * later; 0 if they do not suit the network. */
 static int find_pulses(struct network *net, struct stretch *s, long long from,
 	long long to, long long shift, struct cnn_pulse *pulse)
 {
@@ -126,7 +126,7 @@ static void work_sections(struct network *net, struct stretch *s, struct table_i
 
 		if (!(from >= last) || !(to >= from) || !(to * rate < 1e15))
 			die(EXIT_RUN,
-				"%s: line %ld: want sections in order, begin before end",
+				"%s: line %ld: sections must be in order, with begin before end",
 				table_name(in), table_line(in));
 		last = from;
 		first = llround(from * rate);
@@ -153,7 +153,7 @@ static void work_sections(struct network *net, struct stretch *s, struct table_i
 	stats_set("sections_refused", (double)refused);
 }
 
-/* What is left of a pipe is read, lest its writer be cut off. */
+/* The rest of a pipe is read, so that its writer does not fail. */
 static void drain(struct stretch *s)
 {
 	double x[2];
@@ -178,7 +178,8 @@ void arrivals_apply(const char *network, const char *record)
 	work_sections(net, &s, in, out);
 	drain(&s);
 	if (refused)
-		warn("%ld of %ld sections do not suit the network", refused, sections);
+		warn("%ld of %ld sections are outside the range of the network", refused,
+			sections);
 	table_done(out);
 	table_close(in);
 	signal_close(s.in);

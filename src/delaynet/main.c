@@ -1,4 +1,4 @@
-/* delaynet - train, score and apply networks that tell the delays of overlapping pulses
+/* delaynet - train, score and apply networks that estimate delays of overlapping pulses
  */
 #include "arrivals.h"
 #include "cli/msg.h"
@@ -27,25 +27,24 @@ static const char *network_file, *truth_file;
 
 static const struct opt opts[] = {
 	OPT_HEADING("Task"),
-	{ 0, "task", OPT_WORD, UNIT_NONE, &task, 0, 0, "train|score|apply|data",
-		"what to do", tasks, 0 },
+	{ 0, "task", OPT_WORD, UNIT_NONE, &task, 0, 0, "train|score|apply|data", "task",
+		tasks, 0 },
 	{ 0, "model", OPT_WORD, UNIT_NONE, &lessons.model, 0, 0, "sines|pulses",
 		"samples: the sines of the thesis or the pulses of two sensors", models,
 		0 },
 	{ 0, "network", OPT_TEXT, UNIT_NONE, &network_file, 0, 0, "FILE",
 		"network to apply", NULL, 0 },
 	{ 0, "truth", OPT_TEXT, UNIT_NONE, &truth_file, 0, 0, "FILE",
-		"with --task data: write the delays there", NULL, 1 },
+		"with --task data: write the true delays to FILE", NULL, 1 },
 	OPT_TABLE(learning_rows),
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &lessons.seed, 0, 9e15, "N",
-		"of the data and weights", NULL, 0 },
+		"seed of samples and weights", NULL, 0 },
 	{ 0, "repetition", OPT_INT, UNIT_COUNT, &learning.repetition, 0, 1e9, "K",
-		"which initial weights and order of the samples", NULL, 0 },
+		"selects the initial weights and the order of the samples", NULL, 0 },
 	{ 'f', "first", OPT_INT, UNIT_COUNT, &lessons.first, 0, 4e9, "K",
-		"first sample of the set; score: 1000, or 4e9 of pulses, if not given",
-		NULL, 0 },
+		"number of the first sample; score: 1000, or 4e9 for pulses", NULL, 0 },
 	{ 'c', "count", OPT_INT, UNIT_COUNT, &lessons.count, 1, 1e7, "N",
-		"samples; score: 300 if not given", NULL, 0 },
+		"number of samples; score: 300", NULL, 0 },
 	{ 0, "fresh", OPT_FLAG, UNIT_NONE, &learning.fresh, 0, 0, NULL,
 		"new samples in every epoch", NULL, 0 },
 	OPT_TABLE(lessons_rows),
@@ -54,7 +53,7 @@ static const struct opt opts[] = {
 };
 
 static const struct prog prog = { "delaynet",
-	"Train, score and apply networks that tell the delays of overlapping pulses.",
+	"Train, score and apply networks that estimate delays of overlapping pulses.",
 	"[file]", "nothing; network; signal: two channels", "network; table; signal",
 	opts };
 
@@ -66,9 +65,9 @@ static void check_options(void)
 	if (lessons.model == PULSES && lessons.sources > CNN_SOURCES)
 		die(EXIT_USAGE, "--sources: want at most %d pulses", CNN_SOURCES);
 	if (task == APPLY && !network_file)
-		die(EXIT_USAGE, "--task apply wants --network FILE");
+		die(EXIT_USAGE, "--task apply requires --network FILE");
 	if (task != APPLY && network_file)
-		die(EXIT_USAGE, "--network is for --task apply");
+		die(EXIT_USAGE, "--network requires --task apply");
 	if (task == APPLY && lessons.model == PULSES)
 		arrivals_check();
 	else if (opt_any_given(arrivals_rows))
@@ -195,7 +194,7 @@ int main(int argc, char **argv)
 #endif
 	check_options();
 	if (i < argc && (task == TRAIN || task == DATA))
-		die(EXIT_USAGE, "--task %s reads nothing, got %s", tasks[task], argv[i]);
+		die(EXIT_USAGE, "--task %s has no input: omit %s", tasks[task], argv[i]);
 	switch (task) {
 	case TRAIN:
 		learning_train();

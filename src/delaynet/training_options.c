@@ -24,34 +24,34 @@ struct opt learning_rows[] = { OPT_HEADING("Network and training"),
 		":ACTIVATION",
 		NULL, 0 },
 	{ 0, "activation", OPT_WORD, UNIT_NONE, &learning.activation, 0, 0,
-		"linear|tanh|sigmoid|relu", "of layers that name none", activations, 0 },
+		"linear|tanh|sigmoid|relu", "activation of layers that specify none",
+		activations, 0 },
 	{ 0, "optimiser", OPT_WORD, UNIT_NONE, &learning.optimiser, 0, 0, "adam|descent",
 		"Adam or gradient descent", optimisers, 0 },
 	{ 0, "learning-rate", OPT_NUM, UNIT_NONE, &learning.rate, 0, 1e3, "R",
-		"step length", NULL, 0 },
+		"learning rate", NULL, 0 },
 	{ 0, "learning-rate-end", OPT_NUM, UNIT_NONE, &learning.rate_end, 0, 1e3, "R",
-		"step length at the end, reached along a half cosine (0: the same)", NULL,
+		"final learning rate, reached along a half cosine (0: constant)", NULL,
 		0 },
 	{ 0, "epochs", OPT_INT, UNIT_COUNT, &learning.epochs, 0, 1e7, "N",
 		"passes over the samples", NULL, 0 },
 	{ 0, "batch", OPT_INT, UNIT_COUNT, &learning.batch, 0, 1 << 20, "N",
 		"samples per step (0: all)", NULL, 0 },
 	{ 0, "loss", OPT_WORD, UNIT_NONE, &lessons.loss, 0, 0, "ordered|sums|unordered",
-		"squared error in order, (3-20), or squared error in the best order",
+		"loss: squared error by position, (3-20), or of the best permutation",
 		losses, 0 },
 	{ 0, "lambda", OPT_NUM, UNIT_NONE, &lessons.lambda, 0, 1e6, "L",
 		"coefficient of the penalty of (3-20)", NULL, 0 },
 	{ 0, "penalty", OPT_WORD, UNIT_NONE, &lessons.penalty, 0, 0, "squared|absolute",
-		"of the difference of the variances in (3-20)", penalties, 0 },
+		"penalty on the difference of the variances in (3-20)", penalties, 0 },
 	{ 0, "decay", OPT_NUM, UNIT_NONE, &learning.decay, 0, 1e6, "D",
-		"half of this times the squared weights joins the loss", NULL, 0 },
+		"weight decay: D/2 times the sum of squared weights", NULL, 0 },
 	{ 0, "pretrain", OPT_INT, UNIT_COUNT, &learning.pretrain, 0, 1e7, "N",
 		"epochs of each hidden layer as an auto-encoder first", NULL, 0 },
 	{ 0, "sparsity", OPT_NUM, UNIT_NONE, &learning.sparsity, 0, 1e6, "B",
 		"sparsity regularisation of the auto-encoders (0: none)", NULL, 0 },
 	{ 0, "sparsity-level", OPT_NUM, UNIT_NONE, &learning.sparsity_level, 1e-6,
-		0.999999, "P", "sparsity proportion: the mean activation wanted", NULL,
-		0 },
+		0.999999, "P", "sparsity proportion: target mean activation", NULL, 0 },
 	OPT_END };
 
 /* For the report: what is going on, and for how long. */
@@ -73,8 +73,7 @@ static void check_trained(enum network_status status)
 	if (status == NETWORK_MEMORY)
 		die(EXIT_RUN, "out of memory");
 	if (status == NETWORK_DIVERGED)
-		die(EXIT_RUN,
-			"the training diverged: want a smaller --learning-rate than %g",
+		die(EXIT_RUN, "the training diverged: use a --learning-rate below %g",
 			learning.rate);
 }
 
@@ -132,9 +131,9 @@ void learning_train(void)
 
 		if (layer->kind != NETWORK_DENSE)
 			die(EXIT_USAGE,
-				"--pretrain: only dense layers can be auto-encoders");
+				"--pretrain: only dense layers can be pretrained");
 		if (learning.sparsity > 0 && layer->activation != NETWORK_SIGMOID)
-			die(EXIT_USAGE, "--sparsity wants --activation sigmoid");
+			die(EXIT_USAGE, "--sparsity requires --activation sigmoid");
 		check_trained(network_pretrain(net, i, &par, lesson_sample, &l));
 	}
 	phase = "training";

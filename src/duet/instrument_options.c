@@ -18,7 +18,7 @@ struct opt instrument_rows[] = {
 	{ 0, "pulse-duration", OPT_CHOICE, UNIT_TIME, &instrument.duration, 1e-12, 1e9,
 		"auto|T", "duration of a pulse of the mean particle", automatic, 0 },
 	{ 0, "gain", OPT_CHOICE, UNIT_NONE, &instrument.gain, 1e-6, 1e6, "auto|G",
-		"of sensor 2 over sensor 1", automatic, 0 },
+		"ratio of the gains of sensor 2 and sensor 1", automatic, 0 },
 	{ 0, "lines", OPT_LIST, UNIT_FREQUENCY, &instrument.lines, 0, 1e12, "F,F,...",
 		"interfering lines to fit (0: none) instead of those found", 0, 0 },
 	{ 0, "false-alarm", OPT_NUM, UNIT_NONE, &instrument.false_alarm, 1e-15, 0.01, "P",

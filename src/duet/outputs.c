@@ -12,7 +12,7 @@ static const char *const verdicts[] = { "alone", "overlap", "misfit", "unresolve
 void found_open(struct found *out, const struct signal_format *format, const char *cmd)
 {
 	struct signal_format many = { format->rate, SOURCES_SHOWN, 0, (char *)cmd, NULL,
-		NULL, NULL };
+		NULL, NULL, format->start };
 
 	out->rate = format->rate;
 	out->particles = table_create(NULL, cmd, "1 s s m V s m/s s s m V s m/s 1 1 1 1",
@@ -20,6 +20,8 @@ void found_open(struct found *out, const struct signal_format *format, const cha
 		"diameter_se amplitude_se delay_se velocity_se section sources chi2 verdict");
 	if (format->seed)
 		table_comment(out->particles, "seed", "%s", format->seed);
+	if (format->start)
+		table_comment(out->particles, "start", "%s", format->start);
 	if (out->sections)
 		out->section_rows = table_create(out->sections, cmd,
 			"1 s s 1 1 V V V2 V2 V4 V4 1 1",

@@ -10,7 +10,7 @@
 struct found {
 	const char *separated, *histogram, *sections; /* files, NULL: not wanted */
 	double spacing, kappa;                        /* m, V s/m4 */
-	long rate;
+	double rate;
 	long count; /* particles so far */
 	struct table_out *particles, *section_rows, *weights;
 	struct signal_out *sources;

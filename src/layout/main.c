@@ -30,49 +30,51 @@ static const struct opt opts[] = {
 	{ 0, "coils", OPT_TEXTS, UNIT_NONE, &coils, 0, 0, "X,X,...",
 		"positions of the coils along the pipe; may be repeated", NULL, 0 },
 	{ 0, "best", OPT_INT, UNIT_COUNT, &best, 2, LAYOUT_COILS, "N",
-		"find the best place of N coils", NULL, 0 },
+		"find the best positions of N coils", NULL, 0 },
 	{ 0, "extent", OPT_NUM, UNIT_LENGTH, &extent, 1e-6, 1e3, "X",
-		"of --best: longest way from the first coil to the last", NULL, 0 },
+		"of --best: largest distance from the first coil to the last", NULL, 0 },
 	{ 0, "least-unique", OPT_NUM, UNIT_FRACTION, &least, 0, 1, "P",
-		"of --best: least probability that pulses are paired rightly", NULL, 0 },
+		"of --best: smallest probability of an unambiguous match", NULL, 0 },
 	{ 0, "steps", OPT_INT, UNIT_COUNT, &steps, 2, 4096, "N",
-		"of --best: grid to begin with (default by the number of coils)", NULL,
-		0 },
+		"of --best: steps of the initial grid (default by the number of coils)",
+		NULL, 0 },
 	OPT_HEADING("Particles"),
 	{ 0, "snr", OPT_NUM, UNIT_DECIBEL, &snr, -100, 400, "S",
 		"peak of the pulse of a 100 um particle over the rms noise", NULL, 0 },
 	{ 0, "diameter", OPT_NUM, UNIT_LENGTH, &diameter, 1e-9, 0.1, "D",
-		"of the particle that is measured", NULL, 0 },
+		"diameter of the measured particle", NULL, 0 },
 	{ 0, "arrivals", OPT_NUM, UNIT_FREQUENCY, &arrivals, 0, 1e12, "F",
 		"particles per second", NULL, 0 },
 	{ 0, "per-ml", OPT_NUM, UNIT_NONE, &per_ml, 0, 1e12, "N",
-		"particles per millilitre of oil instead", NULL, 0 },
+		"particles per millilitre of oil, in place of --arrivals", NULL, 0 },
 	{ 0, "spread", OPT_NUM, UNIT_FRACTION, &spread, 0, 0.9999, "S",
-		"transit times differ by up to this share from those of the oil", NULL,
+		"largest relative difference of transit times from that of the oil", NULL,
 		0 },
 	OPT_HEADING("Method"),
 	{ 0, "method", OPT_WORD, UNIT_NONE, &method, 0, 0, "auto|closed|sum",
-		"standard errors from integrals over time or sums over samples", methods,
+		"standard errors from integrals over time, or sums over samples", methods,
 		0 },
 	OPT_HEADING("Instrument"),
 	{ 'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 2e9, "F", "sampling rate", NULL,
 		0 },
-	{ 0, "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-12, 1e3, "Q", "of the oil", NULL, 0 },
+	{ 0, "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-12, 1e3, "Q", "volume flow of the oil",
+		NULL, 0 },
 	{ 0, "bore", OPT_NUM, UNIT_LENGTH, &bore, 1e-6, 10, "D", "diameter of the pipe",
 		NULL, 0 },
 	{ 0, "profile", OPT_WORD, UNIT_NONE, &profile, 0, 0, "plug|laminar|turbulent",
 		"velocity profile", profiles, 0 },
 	{ 0, "exponent", OPT_NUM, UNIT_NONE, &exponent, 1, 100, "N",
-		"of the turbulent profile (1 - r/R)^(1/N)", NULL, 0 },
+		"exponent N of the turbulent profile (1 - r/R)^(1/N)", NULL, 0 },
 	{ 0, "zone", OPT_NUM, UNIT_LENGTH, &zone, 1e-9, 1e3, "L",
-		"of the sensing zone: a pulse lasts L over the velocity", NULL, 0 },
+		"length of the sensing zone; duration of a pulse is L over the velocity",
+		NULL, 0 },
 	{ 0, "pulse", OPT_WORD, UNIT_NONE, &shape, 0, 0, "sine|gauss|lorentz",
 		"pulse shape", shapes, 0 },
 	OPT_END,
 };
 
 static const struct prog prog = { "layout",
-	"Judge layouts of inductive sensors by their information bound.", "", "nothing",
+	"Compare layouts of inductive sensors by the Cramer-Rao bound.", "", "nothing",
 	"table: one row per layout", opts };
 
 static struct layout_par parameters(void)
@@ -98,14 +100,15 @@ static struct layout_par parameters(void)
 static void check_options(void)
 {
 	if (!coils.n == !best)
-		die(EXIT_USAGE, "want either --coils X,X,... or --best N");
+		die(EXIT_USAGE, "specify either --coils X,X,... or --best N");
 	if (best && isnan(extent))
-		die(EXIT_USAGE, "--best %ld: wants --extent, the room there is", best);
+		die(EXIT_USAGE, "--best %ld requires --extent, the available length",
+			best);
 	if (isnan(snr))
 		die(EXIT_USAGE,
 			"--snr is missing: peak of a 100 um particle over the noise, dB");
 	if (isnan(arrivals) == isnan(per_ml))
-		die(EXIT_USAGE, "want either --arrivals F or --per-ml N");
+		die(EXIT_USAGE, "specify either --arrivals F or --per-ml N");
 }
 
 /* Reads "0,5cm,25cm"; returns the number of coils. */
@@ -123,7 +126,7 @@ static int read_coils(const char *text, double *coil)
 			die(EXIT_USAGE, "--coils %s: '%s' %s, want positions in m", text,
 				s, wrong);
 		if (n && !(coil[n] >= coil[n - 1]))
-			die(EXIT_USAGE, "--coils %s: positions must ascend", text);
+			die(EXIT_USAGE, "--coils %s: positions must be ascending", text);
 		if (!(fabs(coil[n]) <= 1e3))
 			die(EXIT_USAGE, "--coils %s: '%s' is beyond 1000 m", text, s);
 		n++;
@@ -132,8 +135,9 @@ static int read_coils(const char *text, double *coil)
 	}
 }
 
-/* The length of a zone at which n coils this far apart know the velocity least; 0 where
- * they all stand in one place and a longer zone is always better. */
+/* The length of the zone for which the standard error of the velocity is largest, for n
+ * coils at this distance; 0 if all coils coincide, when a longer zone is always better.
+ */
 static double worst_zone(const double *coil, int n)
 {
 	double e[3], mean = 0, square = 0;
@@ -154,8 +158,7 @@ static double detection(const struct layout_par *par, double samples, int n)
 	bound_energies(par->bound.shape, e);
 	d = par->bound.snr * sqrt(samples * e[0] * n);
 	if (d < found && !doubtful++)
-		warn("the pulses stand %.3g deviations out of the noise, want %g: "
-		     "such particles are missed and no estimate reaches the bound",
+		warn("the detection statistic is %.3g standard deviations, below %g: such particles are often missed and the bound is not attained",
 			d, found);
 	return d;
 }
@@ -195,7 +198,7 @@ static void put_layout(
 	free(where);
 }
 
-/* A grid whose layouts are at most 300000; steps asked for are taken as they are. */
+/* A grid whose layouts are at most 300000; a given number of steps is not changed. */
 static int grid_steps(void)
 {
 	int n = 64;
@@ -234,7 +237,8 @@ int main(int argc, char **argv)
 
 		if (layout_search(
 			    &par, (int)best, extent, least, grid_steps(), coil, &of))
-			die(EXIT_RUN, "no layout of %ld coils is paired rightly with %g",
+			die(EXIT_RUN,
+				"no layout of %ld coils has p_unique_width of %g or more",
 				best, least);
 		stats_add("layouts_searched", (double)of.judged);
 		put_layout(t, &par, coil, (int)best);

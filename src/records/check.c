@@ -43,7 +43,7 @@ static long count_rows(struct input *input, int *marked)
 	long rows = 0;
 
 	if (table_columns(in) == 0)
-		die(EXIT_RUN, "%s: no stream: it is empty", input_name(input));
+		die(EXIT_RUN, "%s: empty, want a stream", input_name(input));
 	while (table_next(in))
 		rows++;
 	*marked = table_marked(in);

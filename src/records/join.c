@@ -49,7 +49,7 @@ static void join_table(struct tables *t, struct input *input)
 	char *columns = columns_of(in);
 
 	if (!columns)
-		die(EXIT_RUN, "%s: no stream: it is empty", table_name(in));
+		die(EXIT_RUN, "%s: empty, want a stream", table_name(in));
 	if (!t->out) {
 		t->columns = columns;
 		t->out = table_create(NULL, NULL, NULL, columns);

@@ -3,48 +3,55 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "cli/unit.h"
 #include "common/raw_layout.h"
+#include "io/bytes.h"
 #include "io/fields.h"
 #include "io/gsf.h"
 #include "io/tables.h"
 #include "join.h"
 #include "people.h"
 #include "replay.h"
+#include "source.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-enum format { LIST, COUNT, NRRD, GSF, TEXT, TABLE };
+enum format { LIST, COUNT, NRRD, GSF, TEXT, TABLE, RAW };
 static const char *const formats[] = { "list", "count", "nrrd", "gsf", "text", "table",
-	NULL };
+	"raw", NULL };
 
 static int format = LIST;
 static struct opt_list pick;
-static const char *field;
+static const char *field, *raw_fields;
 static int check, join, replay, pretty;
 
 static const struct opt opts[] = {
 	{ 'o', "output", OPT_WORD, UNIT_NONE, &format, 0, 0,
-		"list|count|nrrd|gsf|text|table", "what to write", formats, 0 },
+		"list|count|nrrd|gsf|text|table|raw", "output format", formats, 0 },
 	{ 0, "pick", OPT_LIST, UNIT_COUNT, &pick, 1, 1e9, "K,...",
-		"only the K-th records, from 1", NULL, 1 },
+		"only these records, counted from 1", NULL, 1 },
 	{ 0, "field", OPT_TEXT, UNIT_NONE, &field, 0, 0, "NAME", "only this field", NULL,
 		0 },
 	{ 0, "check", OPT_FLAG, UNIT_NONE, &check, 0, 0, NULL,
-		"say whether a stream of any format is whole", NULL, 1 },
+		"report whether a stream of any format is complete", NULL, 1 },
 	{ 0, "replay", OPT_FLAG, UNIT_NONE, &replay, 0, 0, NULL,
-		"run the pipeline that made a stream of any format", NULL, 1 },
+		"run the pipeline recorded in a stream of any format", NULL, 1 },
 	{ 0, "join", OPT_FLAG, UNIT_NONE, &join, 0, 0, NULL,
-		"write streams of several processes as the stream of one", NULL, 1 },
+		"join streams of several processes into one", NULL, 1 },
 	{ 0, "pretty", OPT_FLAG, UNIT_NONE, &pretty, 0, 0, NULL,
-		"show a table to people: units, four digits, aligned columns", NULL, 1 },
+		"format a table for reading: units, four digits, aligned columns", NULL,
+		1 },
 	OPT_TABLE(raw_rows),
+	{ 0, "fields", OPT_TEXT, UNIT_NONE, &raw_fields, 0, 0, "NAME UNIT,...",
+		"fields of a point of --raw (default one, height m)", NULL, 1 },
 	OPT_END,
 };
 
 static const struct prog prog = { "records",
-	"List, pick, count and convert the records of a field stream.", "[file ...]",
-	"fields: any, or with --pretty a table", "table or fields", opts };
+	"List, select, count, check and convert the records of a stream.", "[file ...]",
+	"fields, or a table with --pretty", "table or fields", opts };
 
 static int picked(long number)
 {
@@ -54,11 +61,13 @@ static int picked(long number)
 	return pick.n == 0;
 }
 
-static void keep_field(struct record *r, const struct fields_in *in)
+static void keep_field(struct record *r, const struct source *in)
 {
 	char *cmd = opt_cmd(r->cmd, NULL);
 
-	record_need(r, field, 0, in);
+	if (record_find(r, field) < 0)
+		die(EXIT_RUN, "%s: record %ld: no field '%s'", source_name(in),
+			source_count(in), field);
 	for (int i = r->nfields - 1; i >= 0; i--)
 		if (strcmp(r->name[i], field) != 0)
 			record_drop(r, r->name[i]);
@@ -98,13 +107,16 @@ static void list_record(struct table_out *t, const struct record *r, long number
 /* Rows of samples and an empty line after each field: gnuplot's matrix layout. */
 static void print_text(const struct record *r)
 {
+	char text[NUMBER_TEXT];
+
 	for (int k = 0; k < r->nfields; k++) {
 		const double *x = r->data[k];
 
 		printf("# %s %s\n", r->name[k], r->unit[k]);
 		for (long iy = 0; iy < (long)r->ny * r->nz; iy++)
 			for (int ix = 0; ix < r->nx; ix++)
-				printf("%.9g%c", *x++, ix + 1 < r->nx ? '\t' : '\n');
+				printf("%s%c", number_text(*x++, text),
+					ix + 1 < r->nx ? '\t' : '\n');
 		putchar('\n');
 	}
 }
@@ -112,7 +124,7 @@ static void print_text(const struct record *r)
 static struct table_out *create_table(const struct record *r)
 {
 	struct table_out *t;
-	char *columns = xstrdup("realisation x y z"), *units = xstrdup("1 m m m");
+	char *columns = xstrdup(SOURCE_COLUMNS), *units = xstrdup("1 m m m");
 
 	for (int k = 0; k < r->nfields; k++) {
 		char *longer = xprintf("%s %s", columns, r->name[k]);
@@ -123,14 +135,14 @@ static struct table_out *create_table(const struct record *r)
 		free(units);
 		units = longer;
 	}
-	t = table_create(NULL, r->cmd, units, columns);
+	t = table_create(NULL, NULL, units, columns);
 	free(columns);
 	free(units);
 	return t;
 }
 
 /* The records of one table have the same fields. */
-static void check_fields(char **first, const struct record *r, const struct fields_in *in)
+static void check_fields(char **first, const struct record *r, const struct source *in)
 {
 	char *names = xstrdup("");
 
@@ -144,9 +156,49 @@ static void check_fields(char **first, const struct record *r, const struct fiel
 		die(EXIT_RUN,
 			"%s: record %ld has fields %s, the first one %s: use "
 			"--field or --pick",
-			fields_name(in), fields_count(in), names, *first);
+			source_name(in), source_count(in), names, *first);
 	free(*first);
 	*first = names;
+}
+
+/* What is written, and what has been. */
+struct output {
+	struct fields_out *fields;
+	struct table_out *table;
+	char *names;      /* of the fields of a table */
+	struct keys told; /* of records in it */
+	long records;
+};
+
+/* The keys of a record stand before its rows; one that the record before had and this one
+ * has not stands without a value. */
+static void put_keys(struct output *o, const struct record *r)
+{
+	if (r->cmd || keys_get(&o->told, "cmd"))
+		table_comment(o->table, "cmd", "%s", r->cmd ? r->cmd : "");
+	if (r->cmd)
+		keys_set(&o->told, "cmd", r->cmd);
+	for (int i = 0; i < o->told.n; i++)
+		if (strcmp(o->told.key[i], "cmd") != 0 && !record_get(r, o->told.key[i]))
+			table_comment(o->table, o->told.key[i], "%s", "");
+	for (int i = 0; i < r->keys.n; i++) {
+		table_comment(o->table, r->keys.key[i], "%s", r->keys.value[i]);
+		keys_set(&o->told, r->keys.key[i], r->keys.value[i]);
+	}
+}
+
+/* Little-endian 64-bit floats: the fields of a point side by side, x fastest. */
+static void put_raw(const struct record *r)
+{
+	size_t n = record_points(r);
+	unsigned char bytes[8];
+
+	for (size_t i = 0; i < n; i++)
+		for (int k = 0; k < r->nfields; k++) {
+			bytes_put_double_little(bytes, r->data[k][i]);
+			if (fwrite(bytes, 1, sizeof bytes, stdout) != sizeof bytes)
+				die(EXIT_RUN, "standard output:");
+		}
 }
 
 /* One row per point, at the centre of its cell; layers lie at the depth z = iz dz. */
@@ -169,54 +221,48 @@ static void print_table(struct table_out *t, const struct record *r)
 	}
 }
 
-static void check_picked(const struct fields_in *in)
+static void check_picked(const struct source *in)
 {
 	for (int i = 0; i < pick.n; i++)
-		if ((long)pick.v[i] > fields_count(in))
-			die(EXIT_RUN, "%s: no record %ld: there are %ld", fields_name(in),
-				(long)pick.v[i], fields_count(in));
+		if ((long)pick.v[i] > source_count(in))
+			die(EXIT_RUN, "%s: no record %ld: there are %ld", source_name(in),
+				(long)pick.v[i], source_count(in));
 }
-
-/* What is written, and what has been. */
-struct output {
-	struct fields_out *fields;
-	struct table_out *table;
-	char *names; /* of the fields of a table */
-	long records;
-};
 
 static void open_output(struct output *o)
 {
 	if (format == NRRD)
 		o->fields = fields_create(NULL);
+	if (format == RAW && isatty(STDOUT_FILENO))
+		die(EXIT_USAGE, "not writing binary data to a terminal");
 	if (format == LIST)
 		o->table = table_create(NULL, NULL, "1 1 1 1 1 1 1 m m unit unit unit",
 			"record realisation field unit nx ny nz dx dy min mean max");
 }
 
 /* Seen before anything is written: half an output would look whole. */
-static void check_plane(const struct record *r, struct fields_in *in)
+static void check_plane(const struct record *r, struct source *in)
 {
 	if (r->nfields != 1 || r->nz > 1 || pick.n > 1 ||
-		(pick.n == 0 && fields_more(in)))
+		(pick.n == 0 && source_more(in)))
 		die(EXIT_USAGE, "GSF holds one plane field: use --pick and --field");
 }
 
-/* 1 where another record is to be written. */
-static int picks_left(struct fields_in *in)
+/* 1 if another record is to be written. */
+static int picks_left(struct source *in)
 {
 	for (int i = 0; i < pick.n; i++)
-		if ((long)pick.v[i] > fields_count(in))
+		if ((long)pick.v[i] > source_count(in))
 			return 1;
-	return pick.n == 0 && fields_more(in);
+	return pick.n == 0 && source_more(in);
 }
 
-static void put_record(struct output *o, struct record *r, struct fields_in *in)
+static void put_record(struct output *o, struct record *r, struct source *in)
 {
 	o->records++;
 	switch (format) {
 	case LIST:
-		list_record(o->table, r, fields_count(in));
+		list_record(o->table, r, source_count(in));
 		break;
 	case NRRD:
 		fields_write(o->fields, r, picks_left(in));
@@ -232,7 +278,11 @@ static void put_record(struct output *o, struct record *r, struct fields_in *in)
 		check_fields(&o->names, r, in);
 		if (!o->table)
 			o->table = create_table(r);
+		put_keys(o, r);
 		print_table(o->table, r);
+		break;
+	case RAW:
+		put_raw(r);
 		break;
 	default:
 		break;
@@ -248,25 +298,41 @@ static void close_output(struct output *o)
 	if (o->table)
 		table_done(o->table);
 	free(o->names);
+	keys_free(&o->told);
 }
 
 /* There may be nothing to list or count, but not to convert. */
-static int next_record(struct fields_in *in, struct record *r)
+static int next_record(struct source *in, struct record *r)
 {
 	int may_be_empty = format == LIST || format == COUNT;
 
-	return (!may_be_empty || fields_more(in)) && fields_read(in, r);
+	return (!may_be_empty || source_more(in)) && source_read(in, r);
+}
+
+/* What --raw and --fields say. */
+static const struct raw_layout *layout(void)
+{
+	static struct raw_layout raw;
+	const struct raw_layout *given = raw_given();
+
+	if (raw_fields && !given)
+		die(EXIT_USAGE, "--fields needs --raw");
+	if (!given)
+		return NULL;
+	raw = *given;
+	raw.fields = raw_fields;
+	return &raw;
 }
 
 static void convert(const char *path)
 {
-	struct fields_in *in = fields_open(path, raw_given());
+	struct source *in = source_open(path, layout());
 	struct output out = { 0 };
 	struct record r = { 0 };
 
 	open_output(&out);
 	while (next_record(in, &r)) {
-		if (!picked(fields_count(in)))
+		if (!picked(source_count(in)))
 			continue;
 		if (field)
 			keep_field(&r, in);
@@ -275,7 +341,7 @@ static void convert(const char *path)
 	check_picked(in);
 	close_output(&out);
 	record_free(&r);
-	fields_close(in);
+	source_close(in);
 	stats_set("records", (double)out.records);
 }
 

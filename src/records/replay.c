@@ -47,7 +47,7 @@ static char *take_word(struct parser *p)
 			size_t n = strcspn(++p->s, "'");
 
 			if (!p->s[n])
-				refuse(p, "a quote without its end");
+				refuse(p, "an unterminated quote");
 			memcpy(to, p->s, n);
 			to += n;
 			p->s += n + 1;
@@ -55,7 +55,7 @@ static char *take_word(struct parser *p)
 			*to++ = p->s[1];
 			p->s += 2;
 		} else if (strchr("`$\"<>&(){}*?[]~#!\\", *p->s)) {
-			refuse(p, "a character for a shell");
+			refuse(p, "a special character of the shell");
 		} else {
 			*to++ = *p->s++;
 		}
@@ -147,7 +147,7 @@ static void parse_command(struct parser *p, struct command *c)
 		c->word[n++] = take_word(p);
 	}
 	if (!n)
-		refuse(p, "a program is wanted");
+		refuse(p, "a program name is missing");
 	c->word[n] = NULL;
 	check_program(p, c->word[0]);
 }
@@ -176,7 +176,7 @@ static void skip_group(struct parser *p)
 		}
 	}
 	if (!*p->s)
-		refuse(p, "a brace without its end");
+		refuse(p, "an unterminated brace");
 	p->s++;
 }
 
@@ -350,7 +350,8 @@ int replay_stream(const char *path)
 	pid_t child;
 
 	if (!cmd)
-		die(EXIT_RUN, "%s: it does not say how it was made: no cmd", w.at.name);
+		die(EXIT_RUN, "%s: no cmd: the stream does not state how it was made",
+			w.at.name);
 	w.at.s = cmd;
 	note("%s: %s", w.at.name, cmd);
 	if (nowhere < 0 || setenv(FILE_REPLAY, "1", 1) || pipe(ends))

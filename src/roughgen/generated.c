@@ -23,13 +23,13 @@ struct opt generated_grid_rows[] = {
 	{ 'n', "points", OPT_LIST, UNIT_COUNT, &points, 1, POINTS_MAX, "N[xM]",
 		"points along x and y", NULL, 0 },
 	{ 'L', "length", OPT_LIST, UNIT_LENGTH, &length, 1e-12, 1e12, "L[xL]",
-		"sides of the area; one: square pixels", NULL, 0 },
+		"side lengths of the area; one number: square cells", NULL, 0 },
 	OPT_END,
 };
 
 struct opt generated_rows[] = {
 	{ 0, "slope", OPT_LIST, UNIT_NONE, &slope, 0, 1e6, "G[:G2]",
-		"root mean square slope instead", NULL, 0 },
+		"root mean square slope, in place of --sq", NULL, 0 },
 	{ 0, "acf", OPT_WORD, UNIT_NONE, &acf, 0, 0, "gauss|exp",
 		"autocorrelation function", acf_words, 0 },
 	{ 'l', "corr", OPT_LIST, UNIT_LENGTH, &corr, 1e-18, 1e12, "L[xL]",
@@ -37,7 +37,7 @@ struct opt generated_rows[] = {
 	{ 0, "hurst", OPT_NUM, UNIT_NONE, &hurst, 0, 2, "H",
 		"self-affine spectrum instead of --acf", NULL, 0 },
 	{ 0, "rolloff", OPT_NUM, UNIT_LENGTH, &rolloff, 1e-15, 1e12, "L",
-		"longest self-affine wavelength; longer waves alike", NULL, 0 },
+		"roll-off wavelength: the spectrum is constant above it", NULL, 0 },
 	{ 0, "longest", OPT_NUM, UNIT_LENGTH, &longest, 1e-15, 1e12, "L",
 		"leave out longer waves", NULL, 0 },
 	{ 0, "cutoff", OPT_NUM, UNIT_LENGTH, &cutoff, 1e-15, 1e12, "L",
@@ -60,7 +60,7 @@ struct opt generated_rows[] = {
 void generated_check(void)
 {
 	if (opt_given("slope") && opt_given("pair"))
-		die(EXIT_USAGE, "--pair is a height and does not go with --slope");
+		die(EXIT_USAGE, "--pair excludes --slope");
 	if (opt_given("hurst") && (opt_given("acf") || opt_given("corr")))
 		die(EXIT_USAGE, "--hurst excludes --acf and --corr");
 	if (!opt_given("hurst") && (opt_given("rolloff") || opt_given("longest")))
@@ -120,8 +120,7 @@ static void doubt(const struct spectrum_par *p)
 	double dx = p->lx / p->nx, dy = p->ly / p->ny;
 
 	if (length.v[0] >= 0.1)
-		warn("--length %g m: sides are in metres unless a unit is given: is %gmm "
-		     "meant?",
+		warn("--length %g m: in metres without a unit: is %gmm meant?",
 			length.v[0], length.v[0]);
 	if (corr.n && (p->corr_x < dx || p->corr_y < dy))
 		warn("--corr %g m is below the spacing of %g m: the heights are hardly "

@@ -31,21 +31,22 @@ static const struct opt opts[] = {
 	OPT_TABLE(measured_rows),
 	OPT_HEADING("All surfaces"),
 	{ 0, "crown", OPT_CHOICE, UNIT_LENGTH, &crown, 0, 1e9, "none|auto|DROP",
-		"put on a paraboloid, DROP lower at the corners; auto is 4 Sq",
-		crown_words, 0 },
+		"add a paraboloid, DROP lower at the corners; auto is 4 Sq", crown_words,
+		0 },
 	{ 0, "measure", OPT_FLAG, UNIT_NONE, &measure, 0, 0, NULL,
 		"print areal parameters instead of heights", NULL, 0 },
 	{ 0, "spectrum", OPT_FLAG, UNIT_NONE, &spectrum, 0, 0, NULL,
-		"print the power spectrum by rings instead of heights", NULL, 0 },
+		"print the radially averaged power spectrum instead of heights", NULL,
+		0 },
 	{ 0, "taper", OPT_WORD, UNIT_NONE, &taper, 0, 0, "hann|none",
-		"of --spectrum: window against the jump at the rim", tapers, 0 },
+		"window of --spectrum; none for periodic surfaces", tapers, 0 },
 	OPT_END,
 };
 
 static const struct prog prog = { "roughgen",
-	"Generate rough surfaces, or prepare measured ones, and measure them.", "[file]",
-	"nothing, or fields: height", "fields: height; or table: areal parameters",
-	opts };
+	"Generate rough surfaces, or process measured ones; areal parameters and spectra.",
+	"[file]", "nothing, or fields: height",
+	"fields: height; or table: areal parameters", opts };
 
 static const char columns[] = "realisation sa sq ssk sku sp sv sz sdq sdq_cell sdq_2x2 "
 			      "sdq_central sdq_iso7 sdr sal str corr_x corr_y sk spk "
@@ -71,15 +72,15 @@ static void check_options(int from_file)
 		refuse(generated_grid_rows, no_file);
 		refuse(generated_rows, no_file);
 	} else {
-		refuse(measured_rows, "is for a measured surface: name a file, or - for "
-				      "standard input");
+		refuse(measured_rows,
+			"applies to a measured surface only: name a file, or - for standard input");
 	}
 	if (opt_given("sq") + opt_given("sa") + opt_given("slope") > 1)
-		die(EXIT_USAGE, "--sq, --sa and --slope exclude each other");
+		die(EXIT_USAGE, "--sq, --sa and --slope exclude one another");
 	if (measure && spectrum)
-		die(EXIT_USAGE, "--measure and --spectrum exclude each other");
+		die(EXIT_USAGE, "--measure and --spectrum exclude one another");
 	if (opt_given("taper") && !spectrum)
-		die(EXIT_USAGE, "--taper is for --spectrum");
+		die(EXIT_USAGE, "--taper requires --spectrum");
 	roughness_check();
 	generated_check();
 }
@@ -154,8 +155,8 @@ static void finish(struct record *r, double had, int more)
 	fields_write(out, r, more);
 }
 
-/* The file to prepare, NULL where surfaces are generated: without an operand, unless what
- * is measured is not told how to be made. */
+/* The file to process, NULL if surfaces are generated: without an operand, unless
+ * --measure has no options of generated surfaces. */
 static const char *file_of(int argc, char **argv, int operand)
 {
 	if (operand < argc)

@@ -25,22 +25,22 @@ struct opt measured_rows[] = {
 	OPT_HEADING("Measured surfaces"),
 	OPT_TABLE(raw_rows),
 	{ 0, "crop", OPT_LIST, UNIT_COUNT, &crop, 0, POINTS_MAX, "X:Y:NX:NY",
-		"cut NX by NY samples of file from X, Y on", NULL, 0 },
+		"cut out NX by NY samples, the first at column X and row Y", NULL, 0 },
 	{ 0, "fill", OPT_FLAG, UNIT_NONE, &fill, 0, 0, NULL,
-		"fill missing samples of file by Laplace's equation", NULL, 0 },
+		"fill missing samples with a solution of Laplace's equation", NULL, 0 },
 	{ 0, "level", OPT_FLAG, UNIT_NONE, &level, 0, 0, NULL,
-		"subtract the least-squares plane of file", NULL, 0 },
+		"subtract the least-squares plane", NULL, 0 },
 	{ 0, "s-filter", OPT_NUM, UNIT_LENGTH, &s_filter, 1e-15, 1e6, "L",
-		"take off waves shorter than L by a Gaussian filter", NULL, 0 },
+		"S-filter: attenuate waves shorter than L (Gaussian)", NULL, 0 },
 	{ 0, "form", OPT_WORD, UNIT_NONE, &form, 0, 0, "none|plane|paraboloid|poly2|...",
 		"then subtract this least-squares form; up to poly6", forms, 0 },
 	{ 0, "l-filter", OPT_NUM, UNIT_LENGTH, &l_filter, 1e-15, 1e6, "L",
-		"then take off waves longer than L", NULL, 0 },
+		"L-filter: then attenuate waves longer than L", NULL, 0 },
 	{ 0, "ends", OPT_WORD, UNIT_NONE, &ends, 0, 0, "0|1|2|crop|periodic",
-		"filters at the rim: order of the local fit, half of L cut off, or around",
+		"edge treatment of the filters: order of the local fit, cropped, or periodic",
 		ends_words, 0 },
 	{ 0, "resample", OPT_LIST, UNIT_COUNT, &resample, 1, POINTS_MAX, "N[xM]",
-		"bring file to this many points", NULL, 0 },
+		"resample the same area to this many points", NULL, 0 },
 	OPT_END,
 };
 
@@ -74,10 +74,10 @@ void measured_close(struct measured *m)
 static void need_memory(enum num_status status)
 {
 	if (status)
-		die(EXIT_RUN, "out of memory preparing a measured surface");
+		die(EXIT_RUN, "out of memory for a measured surface");
 }
 
-/* A record with an empty height field and what else r knows of itself. */
+/* A record with an empty height field and the other properties of r. */
 static void new_record(
 	struct record *s, const struct record *r, int nx, int ny, double dx, double dy)
 {
@@ -148,7 +148,7 @@ static double take_crown(struct record *s)
 	return drop;
 }
 
-/* One Gaussian filter: what it passes, or with high != 0 what is left. */
+/* One Gaussian filter: its output or, with high != 0, the residual. */
 static void filter_heights(const char *word, double nesting, int high, struct record *s)
 {
 	enum filter_ends how = ends == ENDS_CROP       ? FILTER_MEAN
@@ -183,7 +183,7 @@ static void crop_ends(const struct fields_in *in, struct record *s)
 
 	if (s->nx - 2 * cx < 1 || s->ny - 2 * cy < 1)
 		die(EXIT_RUN,
-			"%s: record %ld: --ends crop leaves nothing of %d x %d samples",
+			"%s: record %ld: --ends crop removes all of %d x %d samples",
 			fields_name(in), fields_count(in), s->nx, s->ny);
 	new_record(&t, s, s->nx - 2 * cx, s->ny - 2 * cy, s->dx, s->dy);
 	surface_crop(s->nx, s->data[0], cx, cy, t.nx, t.ny, t.data[0]);
@@ -261,7 +261,7 @@ int measured_next(struct measured *m, struct record *r, double *crown)
 		resample_heights(r);
 	if (opt_given("sq") || opt_given("sa"))
 		scale_heights(m->in, r);
-	/* What comes through a pipe has to be asked for. */
+	/* Input through a pipe must be requested. */
 	upstream = m->read.cmd;
 	r->cmd = opt_cmd(upstream, upstream || m->piped ? "-" : NULL);
 	check_heights(m->in, r);

@@ -5,9 +5,9 @@ static struct opt_list sq = { 1, { 1e-6 } }, sa;
 
 struct opt roughness_rows[] = {
 	{ 'q', "sq", OPT_LIST, UNIT_LENGTH, &sq, 0, 1e9, "Q[:Q2]",
-		"root mean square height, exact or drawn", 0, 0 },
+		"root mean square height Sq; two: drawn between them", 0, 0 },
 	{ 0, "sa", OPT_LIST, UNIT_LENGTH, &sa, 0, 1e9, "Q[:Q2]",
-		"mean absolute height instead", 0, 0 },
+		"mean absolute height Sa, in place of --sq", 0, 0 },
 	OPT_END,
 };
 
@@ -16,7 +16,7 @@ void roughness_check_range(const char *word, const struct opt_list *range)
 	const double least = 1e-30; /* smaller ones would underflow when squared */
 
 	if (range->n == 2 && range->v[0] > range->v[1])
-		die(EXIT_USAGE, "--%s %g:%g: the range runs backwards", word, range->v[0],
+		die(EXIT_USAGE, "--%s %g:%g: the range is descending", word, range->v[0],
 			range->v[1]);
 	for (int i = 0; i < range->n; i++)
 		if (range->v[i] > 0 && range->v[i] < least)

@@ -30,8 +30,7 @@ struct wear {
 static _Noreturn void apart(const struct partition *p, const char *file)
 {
 	die(EXIT_RUN,
-		"%s: the rows of realisation %ld stand too far apart: sort the table by "
-		"realisation",
+		"%s: the rows of realisation %ld are not contiguous: sort the table by realisation",
 		file, partition_realisation(p));
 }
 
@@ -51,7 +50,7 @@ static void read_row(struct partition *p, const struct wear *w, long row)
 		die(EXIT_RUN, "%s: line %ld: step must be a whole number from 1 to 1e6",
 			w->file, table_line(t));
 	if (!(v >= 0 && v <= 1e3))
-		die(EXIT_RUN, "%s: line %ld: volume must lie within 0 and 1000 m3",
+		die(EXIT_RUN, "%s: line %ld: volume must be between 0 and 1000 m3",
 			w->file, table_line(t));
 	status = partition_fragment(p, w->class, (long)r, (long)k, v, 1,
 		table_number(t, w->diameter) >= pump.critical_size);
@@ -65,7 +64,7 @@ static void read_row(struct partition *p, const struct wear *w, long row)
 	stats_add("fragments_read", 1);
 }
 
-/* What a table tells of its fragments; NAN: nothing. */
+/* What a table states about its fragments; NAN: nothing. */
 struct physics {
 	double area, pressure, distance;
 };
@@ -101,12 +100,13 @@ static void check_part(const struct table_in *t, const struct physics *first)
 			table_name(t), table_line(t), first->distance, now.distance);
 }
 
-/* The options must not contradict what the table tells. */
+/* The options must not contradict the table. */
 static void check_options(
 	const char *option, const struct physics *told, double pressure, double *distance)
 {
 	if (differ(pressure, told->pressure))
-		die(EXIT_USAGE, "--wear %s: the fragments were pressed with %g Pa",
+		die(EXIT_USAGE,
+			"--wear %s: the nominal pressure of the fragments is %g Pa",
 			option, told->pressure);
 	if (isnan(pump.fragment_area))
 		pump.fragment_area = told->area;
@@ -120,7 +120,7 @@ static void check_options(
 			told->distance, *distance);
 }
 
-/* Reads one --wear FILE[:PRESSURE[:AREA]] into a class of its own. */
+/* Reads one --wear FILE[:PRESSURE[:AREA]] into a separate class. */
 static void read_wear(
 	struct partition *p, const char *option, char **cmd, double *distance)
 {
@@ -170,18 +170,16 @@ static void read_wear(
 	free(file);
 }
 
-/* 1 where the ensemble of a class cannot tell how uncertain its mean is. */
+/* 1 if the ensemble of a class contains no information on the uncertainty of its mean. */
 static int is_doubtful(const struct partition *p, int class, const char *file)
 {
 	double mean, n = partition_count(p, class, &mean);
 
 	if (n < 2)
-		warn("%s: a single realisation: the uncertainty of its wear is unknown "
-		     "and left out",
+		warn("%s: a single realisation: the uncertainty of its wear is unknown and not included",
 			file);
 	else if (!(mean > 0))
-		warn("%s: none of %.0f realisations wore: the wear is taken for none at "
-		     "all",
+		warn("%s: none of %.0f realisations wore: its wear is assumed to be zero",
 			file, n);
 	return n < 2 || !(mean > 0);
 }
@@ -208,7 +206,7 @@ int fragments_close(struct partition *p, const struct opt_texts *files)
 	case PARTITION_OK:
 		break;
 	case PARTITION_EMPTY:
-		die(EXIT_RUN, "%s: no fragment in the steps that count",
+		die(EXIT_RUN, "%s: no fragment in the steps from --first-step on",
 			files->v[partition_culprit(p)]);
 	case PARTITION_TWICE:
 		die(EXIT_RUN, "%s: realisation %ld has a step twice",
@@ -216,8 +214,7 @@ int fragments_close(struct partition *p, const struct opt_texts *files)
 	case PARTITION_APART:
 		apart(p, files->v[partition_culprit(p)]);
 	case PARTITION_PRESSURE:
-		die(EXIT_USAGE,
-			"--wear %s: each of several tables needs a pressure of its own",
+		die(EXIT_USAGE, "--wear %s: each of several tables requires a pressure",
 			files->v[partition_culprit(p)]);
 	case PARTITION_AREA:
 		die(EXIT_USAGE, "--wear: the areas add up to more than --area %g m2",

@@ -21,41 +21,39 @@ static int rule = RATE_MEAN, samples, grey, new;
 
 static const struct opt opts[] = { OPT_HEADING("Input"),
 	{ 0, "wear", OPT_TEXTS, UNIT_NONE, &wear_files, 0, 0, "FILE[:PRESSURE[:AREA]]",
-		"particles or volumes worn off fragments under a nominal pressure", 0,
-		0 },
+		"particles or worn volumes of fragments under a nominal pressure", 0, 0 },
 	{ 0, "state", OPT_TEXT, UNIT_NONE, &state_file, 0, 0, "FILE",
-		"observed leakage, gap, volume or debris; the operand says the same", 0,
+		"observed leakage, gap, volume or debris, in place of the operand", 0,
 		1 },
 	{ 0, "new", OPT_FLAG, UNIT_NONE, &new, 0, 0, 0,
-		"read no state: the life of a new pair", 0, 0 },
+		"read no state; predict the life of a new pair", 0, 0 },
 	OPT_TABLE(state_rows), OPT_TABLE(pump_threshold_rows), OPT_HEADING("Wear rate"),
 	{ 0, "wear-rate", OPT_WORD, UNIT_NONE, &rule, 0, 0, "mean|last|filter",
-		"rate by (4-29), by (4-28), or followed by filters", rules, 0 },
-	{ 0, "step-time", OPT_NUM, UNIT_TIME, &step_time, 1e-15, 1e15, "T",
-		"time that one step of the fragments stands for [from the state so far]",
-		0, 0 },
-	{ 0, "speed", OPT_NUM, UNIT_SPEED, &speed, 1e-12, 1e6, "V",
-		"sliding speed: the step time is a step's sliding distance over it", 0,
+		"wear rate by (4-29), by (4-28), or estimated by Kalman filters", rules,
 		0 },
+	{ 0, "step-time", OPT_NUM, UNIT_TIME, &step_time, 1e-15, 1e15, "T",
+		"duration of one step of the fragments [from the state so far]", 0, 0 },
+	{ 0, "speed", OPT_NUM, UNIT_SPEED, &speed, 1e-12, 1e6, "V",
+		"sliding speed; step time is sliding distance over speed", 0, 0 },
 	{ 0, "calibrate", OPT_TEXTS, UNIT_NONE, &calibrations, 0, 0, "FILE",
-		"take the step time from the whole life of an earlier unit", 0, 0 },
+		"determine the step time from the whole life of an earlier unit", 0, 0 },
 	{ 0, "first-step", OPT_INT, UNIT_COUNT, &first_step, 1, 1e6, "K",
-		"steps before are running-in and count not for the rate", 0, 0 },
+		"earlier steps are running-in and do not count for the rate", 0, 0 },
 	{ 0, "skip", OPT_NUM, UNIT_TIME, &skip, 0, 1e300, "T",
-		"run-in left out of all rates observed, from the first row", 0, 0 },
+		"run-in that observed rates do not use, from the first row", 0, 0 },
 	{ 0, "parts", OPT_INT, UNIT_COUNT, &parts, 0, 1e9, "N",
-		"parts of a class that wear independently; 0: as many as fit", 0, 0 },
+		"independently wearing parts of a class; 0: number of fragments", 0, 0 },
 	OPT_TABLE(pump_face_rows), OPT_HEADING("Output"),
 	{ 0, "grey", OPT_FLAG, UNIT_NONE, &grey, 0, 0, 0,
-		"add a column: grey model of the state observed", 0, 0 },
+		"add a column: remaining life by the grey model", 0, 0 },
 	{ 0, "levels", OPT_LIST, UNIT_FRACTION, &levels, 0, 1, "P,...",
 		"quantiles to print", 0, 0 },
 	{ 0, "samples", OPT_FLAG, UNIT_NONE, &samples, 0, 0, 0,
 		"print every path instead of the summary", 0, 0 },
 	{ 0, "rates", OPT_TEXT, UNIT_NONE, &rates_file, 0, 0, "FILE",
-		"write the component's wear per step, one row per path", 0, 1 },
+		"write the wear rate of each path", 0, 1 },
 	{ 0, "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, 1e18, "T",
-		"what lives longer counts as no failure [none; 10 x age for filters on their own]",
+		"longer lives count as no failure [none; 10 x age for filters without fragments]",
 		0, 0 },
 	{ 0, "eol", OPT_NUM, UNIT_TIME, &eol, 1e-18, 1e18, "T",
 		"true end of life: add scores of the predictions", 0, 0 },
@@ -65,7 +63,7 @@ static const struct opt opts[] = { OPT_HEADING("Input"),
 	{ 'c', "count", OPT_INT, UNIT_COUNT, &count, 1, 1e7, "N", "Monte-Carlo paths", 0,
 		0 },
 	{ 'f', "first", OPT_INT, UNIT_COUNT, &first_path, 0, 4e9, "K",
-		"number of the first one", 0, 0 },
+		"number of the first path", 0, 0 },
 	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "random seed", 0, 0 },
 	OPT_END };
 
@@ -80,19 +78,19 @@ static void settle(void)
 	pump_check();
 	for (int i = 1; i < levels.n; i++)
 		if (!(levels.v[i] > levels.v[i - 1]))
-			die(EXIT_USAGE, "--levels must grow");
+			die(EXIT_USAGE, "--levels: levels must be ascending");
 	if (!isnan(pump.critical_size) && wear_files.n == 0)
-		die(EXIT_USAGE, "--critical-size needs --wear");
+		die(EXIT_USAGE, "--critical-size requires --wear");
 	if ((calibrations.n || rates_file || !isnan(speed)) && wear_files.n == 0)
-		die(EXIT_USAGE, "--calibrate, --rates and --speed need --wear");
+		die(EXIT_USAGE, "--calibrate, --rates and --speed require --wear");
 	for (int i = 0; i < wear_files.n; i++)
 		if (!new && (!state_file || !strcmp(state_file, "-")) &&
 			!strncmp(wear_files.v[i], "-", strcspn(wear_files.v[i], ":")))
 			die(EXIT_USAGE, "standard input cannot be both --wear and state");
 	if (new && (wear_files.n == 0 || rule == RATE_FILTER))
-		die(EXIT_USAGE, "--new needs --wear and the rates of its fragments");
+		die(EXIT_USAGE, "--new requires --wear and --wear-rate mean or last");
 	if (new && !calibrations.n && isnan(step_time) && isnan(speed))
-		die(EXIT_USAGE, "--new needs --step-time, --speed or --calibrate");
+		die(EXIT_USAGE, "--new requires --step-time, --speed or --calibrate");
 	if (samples && !isnan(eol))
 		die(EXIT_USAGE, "--eol scores the summary, not --samples");
 	if ((calibrations.n > 0) + !isnan(step_time) + !isnan(speed) > 1)
@@ -146,10 +144,10 @@ static void write_rates(const struct paths *e, const char *cmd)
 	table_done(out);
 }
 
-static struct forecast *new_forecast(struct paths *e, int quantity)
+static struct forecast *new_forecast(struct paths *e, enum pair_quantity quantity)
 {
 	struct forecast_par par = { .pair = pump.pair,
-		.quantity = (enum pair_quantity)quantity,
+		.quantity = quantity,
 		.from_new = new || quantity >= PAIR_VOLUME,
 		.rule = (enum rate_rule)rule,
 		.count = count,
@@ -166,7 +164,7 @@ static struct forecast *new_forecast(struct paths *e, int quantity)
 	return f;
 }
 
-/* Steps cannot tell of a life of less than one. */
+/* Steps cannot resolve a life below one step. */
 static void check_life(const struct lifetable *out, double time)
 {
 	static int said;
@@ -197,8 +195,8 @@ static void follow(struct state *s, struct lifetable *out, struct forecast *f)
 	}
 }
 
-/* The command line that rebuilds the output: the state comes through a pipe where it
- * tells how it was made, else from its file. */
+/* The command line that reproduces the output: the state comes through a pipe if it
+ * records its pipeline, else from its file. */
 static char *record_cmd(const struct state *s, int operand)
 {
 	const char *upstream = s->table ? table_key(s->table, "cmd") : NULL;
@@ -287,7 +285,7 @@ int main(int argc, char **argv)
 	}
 	lifetable_close(out);
 	if (assumed)
-		warn("taken for granted: %s", assumed);
+		warn("assumed: %s", assumed);
 	forecast_free(f);
 	partition_free(p);
 	paths_free(e);

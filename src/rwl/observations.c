@@ -16,9 +16,9 @@ struct state_options state_options;
 
 struct opt state_rows[] = { { 0, "quantity", OPT_WORD, UNIT_NONE, &state_options.quantity,
 				    0, 0, "auto|leakage|gap|volume|debris",
-				    "what the state is", quantities, 0 },
+				    "quantity of the state", quantities, 0 },
 	{ 0, "state-unit", OPT_TEXT, UNIT_NONE, &state_options.unit, 0, 0, "UNIT",
-		"unit of the state, where not SI: L/min", 0, 0 },
+		"unit of the state if not SI, such as L/min", 0, 0 },
 	{ 0, "state-error", OPT_NUM, UNIT_NONE, &state_options.error, 0, 1e300, "SD",
 		"standard error of the state, in its unit", 0, 0 },
 	OPT_TABLE(timeunit_rows), OPT_END };
@@ -39,7 +39,7 @@ static void settle_units(struct state *s)
 		wrong = unit_parse(one, unit, "", &asked, &end);
 		free(one);
 		if (wrong)
-			die(EXIT_USAGE, "--state-unit %s: is no unit of a %s, want %s",
+			die(EXIT_USAGE, "--state-unit %s: is not a unit of %s, want %s",
 				state_options.unit, quantities[s->quantity],
 				unit_name(unit));
 		if (!isnan(told) && fabs(asked / told - 1) > 1e-9)
@@ -59,16 +59,17 @@ void state_open(struct state *s, const char *file, const struct pair *pair)
 		"diameter" };
 	struct table_in *t = table_open(file);
 
-	*s = (struct state){
-		.table = t, .quantity = state_options.quantity, .scale = 1, .pair = pair
-	};
+	*s = (struct state){ .table = t,
+		.quantity = (enum pair_quantity)state_options.quantity,
+		.scale = 1,
+		.pair = pair };
 	s->time_column = table_find(t, "t");
 	if (s->time_column < 0)
 		s->time_column = table_find(t, "time1");
 	if (s->time_column < 0)
 		s->time_column = table_need(t, "t");
 	s->value_column = table_find(t, "state");
-	for (int q = PAIR_LEAKAGE;
+	for (enum pair_quantity q = PAIR_LEAKAGE;
 		q <= PAIR_DEBRIS && s->quantity == PAIR_AUTO && s->value_column < 0; q++)
 		if (table_find(t, columns[q]) >= 0)
 			s->quantity = (enum pair_quantity)q;
@@ -105,7 +106,7 @@ int state_next(struct state *s)
 
 	if (!table_next(t)) {
 		if (s->passed)
-			warn("%s: rows passed over for want of a diameter: %ld",
+			warn("%s: rows ignored because they have no diameter: %ld",
 				table_name(t), s->passed);
 		return 0;
 	}
@@ -115,10 +116,10 @@ int state_next(struct state *s)
 		die(EXIT_RUN, "%s: line %ld: the time is missing", table_name(t),
 			table_line(t));
 	if (time < 0 && s->quantity >= PAIR_VOLUME)
-		die(EXIT_RUN, "%s: line %ld: time %g s is before the pair was new",
+		die(EXIT_RUN, "%s: line %ld: time %g s is before the start of the pair",
 			table_name(t), table_line(t), time);
 	if (s->rows++ > 0 && (s->quantity == PAIR_DEBRIS ? time < s->t : time <= s->t))
-		die(EXIT_RUN, "%s: line %ld: time %g s does not grow", table_name(t),
+		die(EXIT_RUN, "%s: line %ld: time %g s is not ascending", table_name(t),
 			table_line(t), time);
 	if (value < 0 && s->filtered)
 		value = 0; /* a filter's idea of nothing worn */
@@ -154,7 +155,7 @@ double state_slope(const char *file, const struct pair *pair, double skip)
 			regression_add(&line, s.t, s.gap);
 	slope = regression_slope(&line);
 	if (!(slope > 0) || !isfinite(slope))
-		die(EXIT_RUN, "%s: the unit to calibrate with does not wear", file);
+		die(EXIT_RUN, "%s: the unit for the calibration does not wear", file);
 	table_close(s.table);
 	return slope;
 }

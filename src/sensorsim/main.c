@@ -24,21 +24,21 @@ static const struct opt opts[] = {
 	OPT_HEADING("Output"),
 	{ 0, "truth", OPT_TEXT, UNIT_NONE, &truth, 0, 0, "FILE",
 		"write a table of the particles and other events", 0, 1 },
-	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N", "of the random numbers",
-		0, 0 },
-	{ 'f', "first", OPT_INT, UNIT_COUNT, &first, 0, 4e9, "K", "realisation to make",
-		0, 0 },
+	{ 's', "seed", OPT_INT, UNIT_COUNT, &seed, 0, 9e15, "N",
+		"seed of the random numbers", 0, 0 },
+	{ 'f', "first", OPT_INT, UNIT_COUNT, &first, 0, 4e9, "K",
+		"number of the realisation", 0, 0 },
 	{ 0, "single", OPT_FLAG, UNIT_NONE, &single, 0, 0, 0, "write 32-bit floats", 0,
 		0 },
 	OPT_END,
 };
 
 static const struct prog prog = { "sensorsim",
-	"Make the signal of wear particles that pass two inductive sensors.", "[file]",
-	"table: diameter [time] [velocity], unless --uniform",
+	"Simulate the signal of wear particles that pass two inductive sensors.",
+	"[file]", "table: diameter [time] [velocity], unless --uniform",
 	"signal: two or four channels, V", opts };
 
-/* What comes along: particles and events that are none, in order of time1. */
+/* Particles and other events, in order of time1. */
 struct traffic {
 	struct source *source;
 	struct disturbances *disturbances; /* NULL: none */
@@ -154,8 +154,8 @@ static struct table_out *create_truth(const char *cmd)
 static void run(struct traffic *f, struct table_out *t, struct signal_out *out)
 {
 	static double x[4 * BLOCK];
-	double rate = (double)sensors_rate(), frames = 0;
-	/* The first trace of an event lies before its time1 by no more than this. */
+	double rate = sensors_rate(), frames = 0;
+	/* An event begins at most this long before its time1. */
 	double ahead =
 		fmax(sensors_half_pulse(source_slowest(f->source)), 2 * sensors_pulse());
 	size_t n;

@@ -19,7 +19,7 @@ static struct material own = { "own", 1, 0 };
 struct opt material_rows[] = {
 	OPT_HEADING("Materials"),
 	{ 0, "material", OPT_TEXT, UNIT_NONE, &mixture, 0, 0, "NAME[=SHARE],...",
-		"of the particles; ferrous if not given", 0, 0 },
+		"materials of the particles (default ferrous)", 0, 0 },
 	{ 0, "mur", OPT_NUM, UNIT_NONE, &mur, 1, 1e6, "MUR",
 		"relative permeability, in place of --material", 0, 0 },
 	{ 0, "sigma", OPT_NUM, UNIT_NONE, &sigma, 0, 1e9, "S",
@@ -55,7 +55,7 @@ static void add_part(const char *text, size_t length)
 		*equals = '\0';
 		share = strtod(equals + 1, &end);
 		if (end == equals + 1 || *end || !(share >= 0 && share <= 1e9))
-			die(EXIT_USAGE, "--material %s: '%s' is no share", mixture,
+			die(EXIT_USAGE, "--material %s: '%s' is not a share", mixture,
 				equals + 1);
 	}
 	if (parts == MIXED)
@@ -72,7 +72,7 @@ static void add_part(const char *text, size_t length)
 void material_check(void)
 {
 	if (mixture && !(isnan(mur) && isnan(sigma)))
-		die(EXIT_USAGE, "--material and --mur or --sigma exclude each other");
+		die(EXIT_USAGE, "--material and --mur or --sigma exclude one another");
 	if (isnan(mur) && isnan(sigma)) {
 		for (const char *s = mixture ? mixture : "ferrous"; s;) {
 			size_t length = strcspn(s, ",");

@@ -27,36 +27,37 @@ struct opt source_rows[] = {
 		"draw particles with diameters from A to B instead of reading a table", 0,
 		0 },
 	{ 0, "by", OPT_WORD, UNIT_NONE, &by_volume, 0, 0, "diameter|volume",
-		"what --uniform makes uniform", measures, 0 },
+		"quantity that is uniform with --uniform", measures, 0 },
 	{ 0, "number", OPT_INT, UNIT_COUNT, &number, 0, 1e15, "N", "particles to draw", 0,
 		0 },
 	{ 0, "concentration", OPT_NUM, UNIT_CONCENTRATION, &concentration, 0, 1e4, "C",
-		"draw a Poisson number of particles, C of mass in the oil", 0, 0 },
+		"draw a Poisson number of particles; mass concentration C in the oil", 0,
+		0 },
 	{ 0, "density", OPT_NUM, UNIT_DENSITY, &density, 1, 1e5, "RHO",
-		"of the particles", 0, 0 },
+		"density of the particles", 0, 0 },
 	/* arrivals */
 	OPT_HEADING("Arrivals"),
 	{ 0, "duration", OPT_NUM, UNIT_TIME, &source_duration, 0, 1e9, "T",
-		"of the record", 0, 0 },
+		"length of the record", 0, 0 },
 	{ 0, "start", OPT_NUM, UNIT_TIME, &start, -1e9, 1e9, "T",
-		"when particles begin to arrive", 0, 0 },
+		"time at which particles begin to arrive", 0, 0 },
 	{ 0, "span", OPT_NUM, UNIT_TIME, &span, 0, 1e9, "T",
 		"time within which the particles of a burst arrive", 0, 0 },
-	{ 0, "gap", OPT_NUM, UNIT_TIME, &gap, 0, 1e9, "T", "least time between arrivals",
-		0, 0 },
-	{ 0, "burst", OPT_INT, UNIT_COUNT, &burst, 1, 1e9, "M", "particles of a burst", 0,
-		0 },
+	{ 0, "gap", OPT_NUM, UNIT_TIME, &gap, 0, 1e9, "T",
+		"smallest time between arrivals", 0, 0 },
+	{ 0, "burst", OPT_INT, UNIT_COUNT, &burst, 1, 1e9, "M",
+		"number of particles per burst", 0, 0 },
 	{ 0, "flow-drift", OPT_NUM, UNIT_FRACTION, &flow_drift, 0, 0.3, "S",
-		"rms of the relative change of all velocities", 0, 0 },
-	{ 0, "period", OPT_NUM, UNIT_TIME, &period, 0, 1e9, "T", "from burst to burst", 0,
-		0 },
+		"rms relative variation of all velocities", 0, 0 },
+	{ 0, "period", OPT_NUM, UNIT_TIME, &period, 0, 1e9, "T",
+		"time from the start of a burst to the next", 0, 0 },
 	OPT_END,
 };
 
 /* Where particles come from: a table, or random numbers. */
 struct source {
 	struct stream stream;
-	struct arrivals *arrivals; /* NULL: times stand in the table */
+	struct arrivals *arrivals; /* NULL: the table has times */
 	struct table_in *table;    /* NULL: all is drawn, or was read into diameters */
 	int time_column, diameter_column, velocity_column, material_column, kind_column;
 	double *diameters; /* of a table without times */
@@ -80,15 +81,15 @@ void source_check(int operands)
 			"--uniform: a particle of %g m does not fit a bore of %g m",
 			uniform.v[1], bore);
 	if (uniform.n && operands)
-		die(EXIT_USAGE, "--uniform draws the particles: no file to read");
+		die(EXIT_USAGE, "--uniform draws the particles: omit the file");
 	if (uniform.n && (number >= 0) + !isnan(concentration) != 1)
-		die(EXIT_USAGE, "--uniform needs one of --number and --concentration");
+		die(EXIT_USAGE, "--uniform requires one of --number and --concentration");
 	if (!uniform.n && (number >= 0 || !isnan(concentration)))
-		die(EXIT_USAGE, "--number and --concentration need --uniform");
+		die(EXIT_USAGE, "--number and --concentration require --uniform");
 	if (burst > 0 && (isnan(span) || isnan(period)))
-		die(EXIT_USAGE, "--burst needs --span and --period");
+		die(EXIT_USAGE, "--burst requires --span and --period");
 	if (burst > 0 && !isnan(concentration))
-		die(EXIT_USAGE, "--burst and --concentration exclude each other");
+		die(EXIT_USAGE, "--burst and --concentration exclude one another");
 	if (burst > 0 && period < span + gap)
 		die(EXIT_USAGE, "--period %g s is shorter than --span and --gap", period);
 }
@@ -118,7 +119,7 @@ static void make_arrivals(struct source *s, uint64_t n)
 	double most = burst ? (double)burst : (double)n;
 
 	if (isnan(window))
-		die(EXIT_USAGE, "particles without times need --duration or --span");
+		die(EXIT_USAGE, "particles without times require --duration or --span");
 	if (window < 0 || (par.rate == 0 && most * gap > window + gap * (1 + 1e-9)))
 		die(EXIT_USAGE, "%s leaves no room for the particles",
 			isnan(span) ? "--duration" : "--span");

@@ -19,43 +19,45 @@ struct opt sensors_rows[] = {
 	OPT_HEADING("Pipe and sensors"),
 	{ 'r', "rate", OPT_NUM, UNIT_FREQUENCY, &rate, 1, 2e9, "F", "sampling rate", 0,
 		0 },
-	{ 0, "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-12, 1e3, "Q", "of the oil", 0, 0 },
+	{ 0, "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-12, 1e3, "Q", "volume flow of the oil",
+		0, 0 },
 	{ 0, "bore", OPT_NUM, UNIT_LENGTH, &bore, 1e-6, 10, "D", "diameter of the pipe",
 		0, 0 },
 	{ 0, "profile", OPT_WORD, UNIT_NONE, &profile, 0, 0, "plug|laminar|turbulent",
 		"velocity profile", profiles, 0 },
 	{ 0, "exponent", OPT_NUM, UNIT_NONE, &exponent, 1, 100, "N",
-		"of the turbulent profile (1 - r/R)^(1/N)", 0, 0 },
+		"exponent N of the turbulent profile (1 - r/R)^(1/N)", 0, 0 },
 	{ 0, "spacing", OPT_NUM, UNIT_LENGTH, &spacing, 1e-6, 1e3, "D",
-		"between the two sensors", 0, 0 },
+		"distance between the two sensors", 0, 0 },
 	{ 0, "lag", OPT_LIST, UNIT_TIME, &lag, 0, 1e6, "A:B",
-		"transit takes longer than that of the oil by A to B", 0, 0 },
+		"transit time exceeds that of the oil by A to B", 0, 0 },
 	{ 0, "pulse", OPT_WORD, UNIT_NONE, &shape, 0, 0, "sine|gauss|lorentz",
 		"pulse shape", shapes, 0 },
 	{ 0, "zone", OPT_NUM, UNIT_LENGTH, &zone, 1e-9, 1e3, "L",
-		"of the sensing zone: a pulse lasts L over the velocity", 0, 0 },
+		"length of the sensing zone; duration of a pulse is L over the velocity",
+		0, 0 },
 	{ 0, "calibration", OPT_NUM, UNIT_NONE, &kappa, 1e-30, 1e30, "K",
 		"peak voltage over velocity and diameter cubed, V s/m4", 0, 0 },
 	{ 0, "coil", OPT_LIST, UNIT_ANY, &coil, 0, 1e30, "N,ND,I,MUR,L0,LF,AMP",
-		"calibration by turns, exciting turns, current, permeability, paths, gain",
+		"calibration from turns, exciting turns, current, permeability, paths, gain",
 		0, 0 },
-	{ 0, "gain", OPT_NUM, UNIT_NONE, &gain, 0, 1e9, "G", "of sensor 2 over sensor 1",
-		0, 0 },
+	{ 0, "gain", OPT_NUM, UNIT_NONE, &gain, 0, 1e9, "G",
+		"ratio of the gains of sensor 2 and sensor 1", 0, 0 },
 	{ 0, "gain-drift", OPT_NUM, UNIT_FRACTION, &gain_drift, 0, 1, "S",
-		"rms of the relative change of this gain", 0, 0 },
+		"rms relative variation of this gain", 0, 0 },
 	{ 0, "phase", OPT_NUM, UNIT_ANGLE, &phase, -10, 10, "A",
-		"of the demodulator: that of ferrous particles", 0, 0 },
+		"phase of ferrous particles after demodulation", 0, 0 },
 	{ 0, "phase-drift", OPT_NUM, UNIT_ANGLE, &phase_drift, 0, 10, "A",
-		"rms of the change of this phase", 0, 0 },
+		"rms variation of this phase", 0, 0 },
 	{ 0, "quadrature", OPT_FLAG, UNIT_NONE, &quadrature, 0, 0, 0,
 		"write four channels, in phase and in quadrature: I1 Q1 I2 Q2", 0, 0 },
 	OPT_HEADING("Noise and interference"),
 	{ 0, "noise", OPT_NUM, UNIT_VOLTAGE, &noise, 0, 1e9, "V", "rms noise of a sample",
 		0, 0 },
 	{ 0, "snr", OPT_NUM, UNIT_DECIBEL, &snr, -100, 400, "S",
-		"noise by the peak of a 100 um particle over its rms", 0, 0 },
+		"peak of a 100 um particle over the rms of the noise", 0, 0 },
 	{ 0, "corner", OPT_NUM, UNIT_FREQUENCY, &corner, 0, 1e12, "F",
-		"low-pass of the noise; 0: white", 0, 0 },
+		"corner frequency of a low-pass of the noise; 0: white", 0, 0 },
 	{ 0, "common", OPT_NUM, UNIT_NONE, &common, -1, 1, "R",
 		"correlation of the noise of both sensors", 0, 0 },
 	{ 0, "drift", OPT_NUM, UNIT_VOLTAGE, &drift, 0, 1e9, "V",
@@ -65,28 +67,28 @@ struct opt sensors_rows[] = {
 	{ 0, "mains", OPT_LIST, UNIT_VOLTAGE, &mains, 0, 1e9, "V[,V3[,V5]]",
 		"amplitudes of the mains and its odd harmonics", 0, 0 },
 	{ 0, "mains-frequency", OPT_NUM, UNIT_FREQUENCY, &mains_frequency, 0, 1e9, "F",
-		"of the mains", 0, 0 },
+		"mains frequency", 0, 0 },
 	{ 0, "mains-wander", OPT_NUM, UNIT_FREQUENCY, &mains_wander, 0, 10, "F",
-		"rms of its change", 0, 0 },
+		"rms variation of the mains frequency", 0, 0 },
 	{ 0, "pump", OPT_LIST, UNIT_VOLTAGE, &pump, 0, 1e9, "V[,V2]",
 		"amplitudes of the pump line and its harmonics", 0, 0 },
 	{ 0, "pump-frequency", OPT_NUM, UNIT_FREQUENCY, &pump_frequency, 0, 1e9, "F",
-		"of the pump line", 0, 0 },
+		"frequency of the pump line", 0, 0 },
 	OPT_HEADING("Other events"),
 	{ 0, "saturation", OPT_NUM, UNIT_VOLTAGE, &saturation, 0, 1e9, "V",
 		"limit of the signal; 0: none", 0, 0 },
 	{ 0, "bubbles", OPT_NUM, UNIT_FREQUENCY, &events[DISTURBANCE_BUBBLE], 0, 1e6, "F",
-		"air bubbles, how often", 0, 0 },
+		"rate of air bubbles", 0, 0 },
 	{ 0, "shocks", OPT_NUM, UNIT_FREQUENCY, &events[DISTURBANCE_SHOCK], 0, 1e6, "F",
-		"shocks to both sensors, how often", 0, 0 },
+		"rate of shocks to both sensors", 0, 0 },
 	{ 0, "impulses", OPT_NUM, UNIT_FREQUENCY, &events[DISTURBANCE_IMPULSE], 0, 1e6,
-		"F", "spikes of one sample, how often", 0, 0 },
+		"F", "rate of spikes of one sample", 0, 0 },
 	{ 0, "transients", OPT_NUM, UNIT_FREQUENCY, &events[DISTURBANCE_TRANSIENT], 0,
-		1e6, "F", "steps at one sensor that die away, how often", 0, 0 },
+		1e6, "F", "rate of decaying steps at one sensor", 0, 0 },
 	{ 0, "dropouts", OPT_NUM, UNIT_FREQUENCY, &events[DISTURBANCE_DROPOUT], 0, 1e6,
-		"F", "stretches of zeros, how often", 0, 0 },
+		"F", "rate of dropouts to zero", 0, 0 },
 	{ 0, "event-level", OPT_NUM, UNIT_VOLTAGE, &event_level, 0, 1e9, "V",
-		"mean level of these events; the peak of 100 um if not given", 0, 0 },
+		"mean level of these events (default the peak of 100 um)", 0, 0 },
 	OPT_END,
 };
 
@@ -113,15 +115,13 @@ void sensors_check(void)
 {
 	if (lag.n && lag.v[0] > lag.v[1])
 		die(EXIT_USAGE, "--lag: want A:B with A not above B");
-	if (rate != floor(rate))
-		die(EXIT_USAGE, "--rate: AU wants whole hertz, not %g", rate);
 	if (coil.n && opt_given("calibration"))
-		die(EXIT_USAGE, "--coil and --calibration exclude each other");
+		die(EXIT_USAGE, "--coil and --calibration exclude one another");
 	if (coil.n && !(coil.v[3] >= 1 && coil.v[4] > 0 && coil.v[5] > coil.v[4]))
 		die(EXIT_USAGE,
 			"--coil: want a permeability of at least 1 and paths 0 < L0 < LF");
 	if (opt_given("snr") && opt_given("noise"))
-		die(EXIT_USAGE, "--noise and --snr exclude each other");
+		die(EXIT_USAGE, "--noise and --snr exclude one another");
 	if (corner > rate / 2)
 		die(EXIT_USAGE, "--corner %g Hz is above half the rate, %g Hz", corner,
 			rate / 2);
@@ -129,9 +129,9 @@ void sensors_check(void)
 	check_lines("pump", &pump, pump_frequency, 1);
 }
 
-long sensors_rate(void)
+double sensors_rate(void)
 {
-	return (long)rate;
+	return rate;
 }
 
 struct stream sensors_stream(uint64_t seed, uint32_t realisation)
@@ -200,7 +200,7 @@ struct disturbances *sensors_disturbances(
 	if (any == 0)
 		return NULL;
 	if (isnan(length))
-		die(EXIT_USAGE, "bubbles, shocks and other events need --duration");
+		die(EXIT_USAGE, "bubbles, shocks and other events require --duration");
 	d = disturbances_new(&par);
 	if (!d)
 		die(EXIT_RUN, "no memory");

@@ -12,7 +12,7 @@ extern struct opt sensors_rows[]; /* for OPT_TABLE */
 /* Dies where options contradict one another. */
 void sensors_check(void);
 
-long sensors_rate(void); /* Hz */
+double sensors_rate(void); /* Hz */
 struct pipe sensors_pipe(void);
 /* What particles pass, but for their diameters. */
 struct stream sensors_stream(uint64_t seed, uint32_t realisation);

@@ -1,63 +1,73 @@
 /* sigconvert - recordings of other programs into signals, and signals into what they read
  */
+#include "channels.h"
 #include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
 #include "io/signals.h"
+#include "moment.h"
 #include "recording.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCK = 4096 };
+enum { BLOCK = 4096, CHANNELS = TO_FLAC + 1 };
 
 static const char *const in_words[] = { "auto", "au", "text", "raw", "sound", NULL };
-static const char *const out_words[] = { "au", "text", "raw", "wav", "flac", NULL };
+static const char *const out_words[] = { "au", "text", "raw", "wav", "flac", "channels",
+	NULL };
 
 static int from, to;
 static struct opt_list rate = { 0 };
 static long channels, skip;
 static double scale = 1;
-static const char *columns, *time_column;
+static const char *columns, *time_column, *start;
 
 static const struct opt opts[] = {
 	{ 0, "from", OPT_WORD, UNIT_NONE, &from, 0, 0, "auto|au|text|raw|sound",
-		"format that is read; auto tells by the beginning of a file", in_words,
+		"input format; auto: recognised by the first bytes of a file", in_words,
 		0 },
-	{ 'o', "output", OPT_WORD, UNIT_NONE, &to, 0, 0, "au|text|raw|wav|flac",
-		"format that is written", out_words, 0 },
-	{ 'r', "rate", OPT_LIST, UNIT_FREQUENCY, &rate, 1, 2e9, "F",
-		"text and raw: samples per second, where no time tells", NULL, 0 },
+	{ 'o', "output", OPT_WORD, UNIT_NONE, &to, 0, 0, "au|text|raw|wav|flac|channels",
+		"output format, or a table of the channels", out_words, 0 },
+	{ 'r', "rate", OPT_LIST, UNIT_FREQUENCY, &rate, RATE_LEAST, RATE_MOST, "F",
+		"text and raw: sampling rate (default from the times)", NULL, 0 },
 	{ 0, "channels", OPT_INT, UNIT_COUNT, &channels, 1, 1024, "N",
-		"raw: channels of little-endian float64, interleaved", NULL, 0 },
+		"raw: number of channels of interleaved little-endian float64", NULL, 0 },
 	{ 0, "columns", OPT_TEXT, UNIT_NONE, &columns, 0, 0, "NAME;NAME",
-		"text: columns to take, by heading, without its unit, or number", NULL,
+		"text: columns to read, by heading without its unit, or by number", NULL,
 		0 },
 	{ 0, "time", OPT_TEXT, UNIT_NONE, &time_column, 0, 0, "NAME",
 		"text: column of the times (default time or t)", NULL, 0 },
+	{ 0, "start", OPT_TEXT, UNIT_NONE, &start, 0, 0, "TIME",
+		"moment of the first sample in ISO 8601, if the input has none", NULL, 0 },
 	{ 0, "skip-lines", OPT_INT, UNIT_COUNT, &skip, 0, 1000000, "N",
-		"text: lines before the heading", NULL, 0 },
+		"text: number of lines before the heading", NULL, 0 },
 	{ 0, "scale", OPT_NUM, UNIT_NONE, &scale, -1e300, 1e300, "K",
-		"multiply all samples: volts for full scale of whole numbers", NULL, 0 },
+		"factor for all samples, such as volts at full scale", NULL, 0 },
 	OPT_END,
 };
 
 static const struct prog prog = { "sigconvert",
 	"Convert recordings into signals and signals into recordings.", "[file]",
 	"signal, or a recording: text, raw, WAV, FLAC, ...",
-	"signal, or a recording: text, raw, WAV, FLAC", opts };
+	"signal, recording (text, raw, WAV, FLAC), or table", opts };
 
 static double clipped;
 
 static void check_options(void)
 {
+	struct moment moment;
+
 	if (from == FROM_RAW && (!rate.n || !channels))
-		die(EXIT_USAGE, "--from raw wants --rate and --channels");
+		die(EXIT_USAGE, "--from raw requires --rate and --channels");
 	if (from != FROM_RAW && channels)
-		die(EXIT_USAGE, "--channels is for --from raw");
+		die(EXIT_USAGE, "--channels requires --from raw");
 	if (scale == 0)
-		die(EXIT_USAGE, "--scale 0 leaves nothing");
+		die(EXIT_USAGE, "--scale must not be 0");
+	if (start && !moment_parse(start, &moment))
+		die(EXIT_USAGE, "--start %s: expected a moment like 2026-11-22T03:04:05.5Z",
+			start);
 }
 
 int main(int argc, char **argv)
@@ -68,9 +78,11 @@ int main(int argc, char **argv)
 		.channels = (int)channels,
 		.columns = columns,
 		.time = time_column,
+		.start = start,
 		.skip = skip };
 	struct recording *in;
-	struct recording_out *out;
+	struct recording_out *out = NULL;
+	struct channels *table = NULL;
 	struct signal_format format;
 	double *x, frames = 0;
 	size_t n;
@@ -80,20 +92,29 @@ int main(int argc, char **argv)
 	format = *recording_format(in);
 	format.cmd = opt_cmd(format.cmd, NULL);
 	format.single = 0;
-	out = recording_create((enum recording_to)to, &format);
+	if (to == CHANNELS)
+		table = channels_new(&format);
+	else
+		out = recording_create((enum recording_to)to, &format);
 	x = xcalloc(BLOCK * (size_t)format.channels, sizeof *x);
 	while ((n = recording_read(in, x, BLOCK)) > 0) {
 		for (size_t i = 0; i < n * (size_t)format.channels; i++)
 			x[i] *= scale;
-		clipped += recording_write(out, x, n);
+		if (table)
+			channels_add(table, x, n);
+		else
+			clipped += recording_write(out, x, n);
 		frames += (double)n;
 	}
 	recording_close(in);
-	recording_done(out);
+	if (table)
+		channels_done(table);
+	else
+		recording_done(out);
 	stats_set("frames", frames);
 	stats_set("samples_clipped", clipped);
 	if (clipped > 0)
-		warn("%.0f samples lie beyond full scale and are clipped: --scale",
+		warn("%.0f samples exceed full scale and are clipped: see --scale",
 			clipped);
 	free(x);
 	return shell_done(clipped > 0 ? EXIT_NOCONV : EXIT_SUCCESS);

@@ -1,7 +1,10 @@
 #include "recording.h"
 #include "cli/files.h"
 #include "cli/msg.h"
+#include "cli/text.h"
 #include "cli/unit.h"
+#include "io/bytes.h"
+#include "io/tables.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,6 +20,8 @@ struct recording {
 	enum recording_from from;
 	struct signal_in *signal;
 	struct text_in *text;
+	struct table_in *table;
+	double row; /* of the table */
 	SNDFILE *sound;
 	const char *name;
 	struct signal_format format;
@@ -25,6 +30,7 @@ struct recording {
 struct recording_out {
 	enum recording_to to;
 	struct signal_out *signal;
+	struct table_out *table;
 	SNDFILE *sound;
 	FILE *file; /* that libsndfile writes, which goes back to its header */
 	int channels;
@@ -34,37 +40,34 @@ struct recording_out {
 /* ---- sound files ---- */
 
 #ifdef WITH_SNDFILE
-/* libsndfile seeks: what comes through a pipe is put aside first. */
-static FILE *seekable(FILE *f, const char *name)
+/* libsndfile seeks: the input is put aside first. */
+static FILE *put_aside(struct input *in)
 {
 	static char block[1 << 16];
-	FILE *copy;
+	FILE *copy = tmpfile();
 	size_t n;
 
-	if (fseeko(f, 0, SEEK_END) == 0 && fseeko(f, 0, SEEK_SET) == 0)
-		return f;
-	copy = tmpfile();
 	if (!copy)
-		die(EXIT_RUN, "%s: no temporary file:", name);
-	while ((n = fread(block, 1, sizeof block, f)) > 0)
+		die(EXIT_RUN, "%s: no temporary file:", input_name(in));
+	while ((n = input_some(in, block, sizeof block)) > 0)
 		if (fwrite(block, 1, n, copy) != n)
-			die(EXIT_RUN, "%s: temporary file:", name);
-	if (ferror(f) || fflush(copy) || fseeko(copy, 0, SEEK_SET))
-		die(EXIT_RUN, "%s:", name);
+			die(EXIT_RUN, "%s: temporary file:", input_name(in));
+	if (fflush(copy) || lseek(fileno(copy), 0, SEEK_SET))
+		die(EXIT_RUN, "%s: temporary file:", input_name(in));
 	return copy;
 }
 
-static void sound_open(struct recording *r, const char *path)
+static void sound_open(struct recording *r, struct input *in)
 {
 	SF_INFO info = { 0 };
-	FILE *f = seekable(file_open(path, &r->name), r->name);
 
-	lseek(fileno(f), 0, SEEK_SET);
-	r->sound = sf_open_fd(fileno(f), SFM_READ, &info, SF_FALSE);
+	r->name = input_name(in);
+	r->sound = sf_open_fd(fileno(put_aside(in)), SFM_READ, &info, SF_FALSE);
 	if (!r->sound)
 		die(EXIT_RUN, "%s: %s", r->name, sf_strerror(NULL));
 	r->format.rate = info.samplerate;
 	r->format.channels = info.channels;
+	input_close(in);
 }
 
 static size_t sound_read(struct recording *r, double *x, size_t frames)
@@ -80,6 +83,9 @@ static void sound_create(struct recording_out *o, const struct signal_format *fo
 {
 	SF_INFO info = { .samplerate = (int)format->rate, .channels = format->channels };
 
+	if (format->rate != info.samplerate)
+		die(EXIT_RUN, "%.17g Hz: WAV and FLAC want a whole number of hertz",
+			format->rate);
 	info.format = o->to == TO_WAV ? SF_FORMAT_WAV | SF_FORMAT_DOUBLE
 				      : SF_FORMAT_FLAC | SF_FORMAT_PCM_24;
 	if (isatty(STDOUT_FILENO))
@@ -89,7 +95,7 @@ static void sound_create(struct recording_out *o, const struct signal_format *fo
 		die(EXIT_RUN, "no temporary file:");
 	o->sound = sf_open_fd(fileno(o->file), SFM_WRITE, &info, SF_FALSE);
 	if (!o->sound)
-		die(EXIT_RUN, "%d channels at %ld Hz: %s", format->channels, format->rate,
+		die(EXIT_RUN, "%d channels at %g Hz: %s", format->channels, format->rate,
 			sf_strerror(NULL));
 	sf_command(o->sound, SFC_SET_CLIPPING, NULL, SF_TRUE);
 }
@@ -128,9 +134,9 @@ static _Noreturn void no_sound(void)
 		      "written");
 }
 
-static void sound_open(struct recording *r, const char *path)
+static void sound_open(struct recording *r, struct input *in)
 {
-	(void)r, (void)path;
+	(void)r, (void)in;
 	no_sound();
 }
 
@@ -161,40 +167,102 @@ static void sound_done(struct recording_out *o)
 
 /* ---- reading ---- */
 
-/* By the first bytes of a file; a pipe cannot be looked into and is AU. */
-static enum recording_from recognise(const char *path)
+static enum recording_from recognise(struct input *in)
 {
 	static const char *const sounds[] = { "RIFF", "fLaC", "FORM", "RF64", "caff",
 		"OggS" };
-	char magic[4] = "";
-	FILE *f;
-	size_t n;
 
-	if (!path || strcmp(path, "-") == 0 || !(f = fopen(path, "rb")))
-		return FROM_AU;
-	n = fread(magic, 1, 4, f);
-	fclose(f);
-	for (size_t i = 0; n == 4 && i < sizeof sounds / sizeof *sounds; i++)
-		if (memcmp(magic, sounds[i], 4) == 0)
+	for (size_t i = 0; i < sizeof sounds / sizeof *sounds; i++)
+		if (input_begins(in, sounds[i]))
 			return FROM_SOUND;
-	return n == 4 && memcmp(magic, ".snd", 4) == 0 ? FROM_AU : FROM_TEXT;
+	return input_begins(in, ".snd") ? FROM_AU : FROM_TEXT;
+}
+
+/* ---- text that sigconvert wrote: a table ---- */
+
+static char *told(const struct table_in *t, const char *key)
+{
+	const char *value = table_key(t, key);
+
+	return value ? xstrdup(value) : NULL;
+}
+
+static void table_begin(struct recording *r, struct input *in)
+{
+	const char *rate, *units;
+	char *end;
+
+	r->table = table_from(in);
+	rate = table_key(r->table, "rate");
+	r->name = table_name(r->table);
+	r->format.channels = table_columns(r->table) - 1;
+	if (!rate || r->format.channels < 1 || table_find(r->table, "time") != 0)
+		die(EXIT_RUN,
+			"%s: a table of wearpipe that holds no signal: want '# rate:', "
+			"time and channels",
+			r->name);
+	r->format.rate = strtod(rate, &end);
+	if (end == rate || *end ||
+		!(r->format.rate >= RATE_LEAST && r->format.rate <= RATE_MOST))
+		die(EXIT_RUN, "%s: rate '%.40s', want %g to %g", r->name, rate,
+			RATE_LEAST, RATE_MOST);
+	units = table_key(r->table, "units");
+	if (units && strncmp(units, "s ", 2) == 0)
+		r->format.units = xstrdup(units + 2);
+	r->format.seed = told(r->table, "seed");
+	r->format.filter = told(r->table, "filter");
+	r->format.start = told(r->table, "start");
+	if (table_upstream(r->table))
+		r->format.cmd = xstrdup(table_upstream(r->table));
+}
+
+static size_t table_read(struct recording *r, double *x, size_t frames)
+{
+	size_t n = 0;
+
+	for (; n < frames && table_next(r->table); n++, r->row++) {
+		double time = table_number(r->table, 0);
+
+		if (!(fabs(time * r->format.rate - r->row) < 0.5))
+			die(EXIT_RUN, "%s: line %ld: time %g s, want %g s", r->name,
+				table_line(r->table), time, r->row / r->format.rate);
+		for (int c = 0; c < r->format.channels; c++)
+			*x++ = table_number(r->table, c + 1);
+	}
+	return n;
+}
+
+static int takes_columns(const struct recording_par *par)
+{
+	return par->columns || par->time || par->skip || !isnan(par->rate);
 }
 
 struct recording *recording_open(const char *path, const struct recording_par *par)
 {
 	struct recording *r = xcalloc(1, sizeof *r);
-	struct signal_raw raw = { isnan(par->rate) ? 0 : (long)par->rate, par->channels };
+	struct signal_raw raw = { par->rate, par->channels };
+	struct input *in = par->from == FROM_RAW ? NULL : input_open(path);
 
-	r->from = par->from == FROM_AUTO ? recognise(path) : par->from;
-	if (r->from == FROM_TEXT) {
-		r->text = text_open(path, par);
+	r->from = par->from == FROM_AUTO ? recognise(in) : par->from;
+	if (r->from == FROM_RAW)
+		r->signal = signal_open(path, &raw);
+	else if (r->from == FROM_AU)
+		r->signal = signal_from(in);
+	else if (r->from == FROM_SOUND)
+		sound_open(r, in);
+	else if (!takes_columns(par) && input_begins(in, "# stream: "))
+		table_begin(r, in);
+	else
+		r->text = text_open(in, par);
+	if (r->text)
 		r->format = *text_format(r->text);
-	} else if (r->from == FROM_SOUND) {
-		sound_open(r, path);
-	} else {
-		r->signal = signal_open(path, r->from == FROM_RAW ? &raw : NULL);
+	if (r->signal)
 		r->format = *signal_format(r->signal);
-	}
+	if (par->start && r->format.start && strcmp(par->start, r->format.start) != 0)
+		die(EXIT_USAGE, "--start %s: the recording began at %s", par->start,
+			r->format.start);
+	if (par->start)
+		r->format.start = xstrdup(par->start);
 	return r;
 }
 
@@ -207,6 +275,8 @@ size_t recording_read(struct recording *r, double *x, size_t frames)
 {
 	if (r->text)
 		return text_read(r->text, x, frames);
+	if (r->table)
+		return table_read(r, x, frames);
 	return r->signal ? signal_read(r->signal, x, frames) : sound_read(r, x, frames);
 }
 
@@ -214,12 +284,46 @@ void recording_close(struct recording *r)
 {
 	if (r->text)
 		text_close(r->text);
+	if (r->table)
+		table_close(r->table);
 	if (r->signal)
 		signal_close(r->signal);
 	free(r);
 }
 
 /* ---- writing ---- */
+
+static struct table_out *create_text(const struct signal_format *f)
+{
+	struct text columns = { 0 }, units = { 0 };
+	const char *left = f->units ? f->units : "";
+	struct table_out *t;
+	char rate[NUMBER_TEXT];
+	const struct {
+		const char *key, *value;
+	} more[] = { { "seed", f->seed }, { "filter", f->filter },
+		{ "start", f->start } };
+
+	text_add(&columns, "time");
+	text_add(&units, "s");
+	for (int c = 0; c < f->channels; c++) {
+		size_t n;
+
+		left += strspn(left, " ");
+		n = strcspn(left, " ");
+		text_add(&columns, " channel%d", c + 1);
+		text_add(&units, " %.*s", n ? (int)n : 1, n ? left : "1");
+		left += n;
+	}
+	t = table_create(NULL, f->cmd, units.s, columns.s);
+	table_comment(t, "rate", "%s", number_text(f->rate, rate));
+	for (size_t i = 0; i < sizeof more / sizeof *more; i++)
+		if (more[i].value)
+			table_comment(t, more[i].key, "%s", more[i].value);
+	free(columns.s);
+	free(units.s);
+	return t;
+}
 
 struct recording_out *recording_create(
 	enum recording_to to, const struct signal_format *format)
@@ -228,44 +332,32 @@ struct recording_out *recording_create(
 
 	o->to = to;
 	o->channels = format->channels;
-	o->rate = (double)format->rate;
+	o->rate = format->rate;
 	if (to == TO_AU)
 		o->signal = signal_create(NULL, format);
 	else if (to == TO_WAV || to == TO_FLAC)
 		sound_create(o, format);
 	else if (to == TO_RAW && isatty(STDOUT_FILENO))
 		die(EXIT_USAGE, "a recording is not written to a terminal");
-	if (to == TO_TEXT) {
-		if (format->cmd)
-			printf("# cmd: %s\n", format->cmd);
-		printf("# rate: %ld\ntime", format->rate);
-		for (int c = 0; c < o->channels; c++)
-			printf("\tchannel%d", c + 1);
-		putchar('\n');
-	}
+	if (to == TO_TEXT)
+		o->table = create_text(format);
 	return o;
 }
 
 static void put_text(struct recording_out *o, const double *x)
 {
-	char text[NUMBER_TEXT];
-
-	fputs(number_text(o->frame++ / o->rate, text), stdout);
-	for (int c = 0; c < o->channels; c++)
-		printf("\t%s", number_text(x[c], text));
-	putchar('\n');
+	table_put(o->table, o->frame++ / o->rate);
+	table_put_row(o->table, x, o->channels);
 }
 
 static void put_raw(const double *x, size_t n)
 {
-	for (size_t i = 0; i < n; i++) {
-		unsigned long long bits;
-		unsigned char byte[8];
+	unsigned char bytes[8];
 
-		memcpy(&bits, &x[i], sizeof bits);
-		for (int k = 0; k < 8; k++)
-			byte[k] = (unsigned char)(bits >> 8 * k);
-		fwrite(byte, 1, 8, stdout);
+	for (size_t i = 0; i < n; i++) {
+		bytes_put_double_little(bytes, x[i]);
+		if (fwrite(bytes, 1, 8, stdout) != 8)
+			die(EXIT_RUN, "standard output:");
 	}
 }
 
@@ -289,6 +381,8 @@ void recording_done(struct recording_out *o)
 {
 	if (o->to == TO_AU)
 		signal_done(o->signal);
+	if (o->table)
+		table_done(o->table);
 	if (o->to == TO_WAV || o->to == TO_FLAC)
 		sound_done(o);
 	if (ferror(stdout))

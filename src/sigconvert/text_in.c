@@ -1,55 +1,71 @@
-#include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/unit.h"
+#include "io/kinds.h"
+#include "moment.h"
 #include "recording.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/types.h>
 
-enum { AHEAD = 64 }; /* rows that tell the rate */
+enum {
+	AHEAD = 256,
+	LINE_MOST = 1 << 24
+}; /* rows used to estimate the rate; bytes of a line */
 
 struct text_in {
-	FILE *f;
+	struct input *in;
 	const char *name;
 	char *line;
-	size_t room;
+	size_t room, most;
 	long number; /* of the line */
 	char separator;
-	int commas; /* decimal ones may stand */
+	int commas; /* decimal commas are possible */
 	int cells;
 	char **heading;
 	int *taken; /* cells of the channels */
 	double *scale;
 	int time; /* cell, -1: none */
-	double time_scale, step, first, last;
+	int rate; /* the same */
+	double time_scale, step, first;
+	double resolution; /* of the times as they are written, s */
+	int absolute;      /* they are moments, counted from the first */
+	struct moment start;
 	double *ahead; /* rows read to learn the rate: times and channels */
 	size_t nahead, at;
 	long rows;
 	struct signal_format format;
 };
 
-/* The next line that says something; 0 at the end. */
+/* The next line, without its newline; 0 at the end. */
+static int any_line(struct text_in *t)
+{
+	size_t n = input_line(t->in, &t->line, &t->room, t->most);
+
+	if (n == 0)
+		return 0;
+	if (t->number++ == 0)
+		kind_refuse(t->name, t->line, n, KIND_TABLE);
+	if (n > t->most)
+		die(EXIT_RUN, "%s: line %ld: longer than %zu bytes", t->name, t->number,
+			t->most);
+	while (n > 0 && strchr("\r\n", t->line[n - 1]))
+		t->line[--n] = '\0';
+	if (n != strlen(t->line))
+		die(EXIT_RUN, "%s: line %ld: NUL byte: not a text file", t->name,
+			t->number);
+	if (t->number == 1 && strncmp(t->line, "\xef\xbb\xbf", 3) == 0)
+		memmove(t->line, t->line + 3, n - 2);
+	return 1;
+}
+
+/* The next line that is neither empty nor a comment; 0 at the end. */
 static int next_line(struct text_in *t)
 {
-	ssize_t n;
-
-	while ((n = getline(&t->line, &t->room, t->f)) > 0) {
-		t->number++;
-		while (n > 0 && strchr("\r\n", t->line[n - 1]))
-			t->line[--n] = '\0';
-		if ((size_t)n != strlen(t->line))
-			die(EXIT_RUN, "%s: line %ld: NUL byte: no text", t->name,
-				t->number);
-		if (t->number <= 1 && strncmp(t->line, "\xef\xbb\xbf", 3) == 0)
-			memmove(t->line, t->line + 3, (size_t)n - 2);
+	while (any_line(t))
 		if (t->line[strspn(t->line, " \t")] && *t->line != '#')
 			return 1;
-	}
-	if (ferror(t->f))
-		die(EXIT_RUN, "%s:", t->name);
 	return 0;
 }
 
@@ -96,7 +112,7 @@ static int number(const struct text_in *t, char *s, double *v)
 	return end != s && !*end;
 }
 
-/* The unit in "Flow [L/min]" or "u (mV)", cut off its heading; NULL where there is none.
+/* The unit in "Flow [L/min]" or "u (mV)", cut off its heading; NULL if there is none.
  */
 static char *unit_of(char *heading)
 {
@@ -150,8 +166,9 @@ static void choose(struct text_in *t, const struct recording_par *par)
 		t->time = find(t, "t");
 	if (par->time && t->time < 0)
 		die(EXIT_RUN, "%s: no column '%s'", t->name, par->time);
+	t->rate = t->time < 0 ? find(t, "rate") : -1;
 	for (int i = 0; !list && i < t->cells; i++)
-		if (i != t->time)
+		if (i != t->time && i != t->rate)
 			take(t, i);
 	while (rest && *rest) {
 		char *name = rest, *end = strchr(rest, ';');
@@ -164,13 +181,12 @@ static void choose(struct text_in *t, const struct recording_par *par)
 		if (cell < 0)
 			die(EXIT_RUN, "%s: no column '%s'", t->name, name);
 		if (t->format.channels == t->cells)
-			die(EXIT_USAGE, "--columns: more than the %d there are",
-				t->cells);
+			die(EXIT_USAGE, "--columns: the table has only %d", t->cells);
 		take(t, cell);
 	}
 	free(list);
 	if (!t->format.channels)
-		die(EXIT_RUN, "%s: no column but that of the times", t->name);
+		die(EXIT_RUN, "%s: no column other than the times", t->name);
 }
 
 /* Scales to SI by the units of the headings; those that are not known stay as they are.
@@ -207,6 +223,57 @@ static void scale_units(struct text_in *t, char **unit)
 	t->format.units = units;
 }
 
+/* Digits behind the decimal point, less the exponent. */
+static double last_digit(const char *s)
+{
+	size_t whole = strcspn(s, ".,eE"), digits = 0;
+	const char *exponent = strpbrk(s, "eE");
+
+	if (s[whole] == '.' || s[whole] == ',')
+		digits = strspn(s + whole + 1, "0123456789");
+	return pow(10, (exponent ? strtod(exponent + 1, NULL) : 0) - (double)digits);
+}
+
+/* A moment, which counts from that of the first row, or a number of the heading's unit.
+ */
+static double read_time(struct text_in *t, char *cell, const char *line)
+{
+	struct moment m;
+	double time = NAN, digit = 0;
+
+	if ((t->absolute || t->nahead == 0) && moment_parse(cell, &m)) {
+		const char *fraction = strpbrk(cell, ".,");
+
+		if (!t->absolute)
+			t->start = m;
+		t->absolute = 1;
+		time = moment_between(&t->start, &m);
+		digit = fraction ? last_digit(fraction) : 1;
+	} else if (!t->absolute && number(t, cell, &time)) {
+		time *= t->time_scale;
+		digit = last_digit(cell) * t->time_scale;
+	}
+	if (!isfinite(time))
+		die(EXIT_RUN, "%s: line %ld: no time: %.40s", t->name, t->number, line);
+	digit = fmax(digit, 4e-16 * fabs(time));
+	if (t->rows == 0 && (t->nahead == 0 || digit < t->resolution))
+		t->resolution = digit;
+	return time;
+}
+
+/* A column that tells the rate holds the same number in every row. */
+static void check_rate(struct text_in *t, char *cell, const char *line)
+{
+	double rate;
+
+	if (!number(t, cell, &rate) || !(rate > 0) || !isfinite(rate))
+		die(EXIT_RUN, "%s: line %ld: no rate: %.40s", t->name, t->number, line);
+	if (t->format.rate > 0 && rate != t->format.rate)
+		die(EXIT_RUN, "%s: line %ld: rate %g after %g", t->name, t->number, rate,
+			t->format.rate);
+	t->format.rate = rate;
+}
+
 /* Takes one row into time and channels; 0 at the end. */
 static int read_row(struct text_in *t, double *row)
 {
@@ -222,10 +289,9 @@ static int read_row(struct text_in *t, double *row)
 	if (n != t->cells && !(n == t->cells + 1 && !*cell[n - 1]))
 		die(EXIT_RUN, "%s: line %ld: want %d cells, got %d", t->name, t->number,
 			t->cells, n);
-	row[0] = NAN;
-	if (t->time >= 0 && (!number(t, cell[t->time], &row[0]) || !isfinite(row[0])))
-		die(EXIT_RUN, "%s: line %ld: no time: %.40s", t->name, t->number, copy);
-	row[0] *= t->time_scale;
+	row[0] = t->time < 0 ? NAN : read_time(t, cell[t->time], copy);
+	if (t->rate >= 0)
+		check_rate(t, cell[t->rate], copy);
 	for (int c = 0; c < t->format.channels; c++) {
 		if (!number(t, cell[t->taken[c]], &row[1 + c]))
 			die(EXIT_RUN, "%s: line %ld: not a number: %.40s", t->name,
@@ -237,58 +303,126 @@ static int read_row(struct text_in *t, double *row)
 	return 1;
 }
 
-/* Every time must stand within half a step of where the rate has it. */
+/* Every time must be within half a step of that of the rate. */
 static void check_time(struct text_in *t, double time)
 {
 	double want = t->first + (double)t->rows * t->step;
 
-	if (t->time >= 0 && t->step > 0 && fabs(time - want) > 0.5 * t->step)
+	if (t->time >= 0 && fabs(time - want) > 0.5 * t->step + t->resolution)
 		die(EXIT_RUN,
 			"%s: line %ld: time %.9g s, want %.9g s: samples are missing or "
-			"the rate is not %ld Hz",
+			"the rate is not %.9g Hz: --rate tells it",
 			t->name, t->number, time, want, t->format.rate);
 	t->rows++;
+}
+
+/* How far the times read ahead lie off those of a rate at most. */
+static double deviation(const struct text_in *t, double rate)
+{
+	size_t width = (size_t)t->format.channels + 1;
+	double most = 0;
+
+	for (size_t i = 0; i < t->nahead; i++)
+		most = fmax(
+			most, fabs(t->ahead[i * width] - *t->ahead - (double)i / rate));
+	return most;
+}
+
+static double rounded(double value, int digits)
+{
+	char text[NUMBER_TEXT];
+
+	snprintf(text, sizeof text, "%.*e", digits - 1, value);
+	return strtod(text, NULL);
+}
+
+/* The rate, or step, of the fewest digits that the times allow: they are rounded to their
+ * last digit, and may besides jitter by a quarter of a step. */
+static double simplest_rate(const struct text_in *t, double rate)
+{
+	double jitter = deviation(t, rate), most = t->resolution;
+
+	if (jitter > most + 0.25 / rate)
+		die(EXIT_RUN,
+			"%s: the times of the first %zu rows are not equally far apart: "
+			"samples are missing, or --rate tells better",
+			t->name, t->nahead);
+	if (jitter > most)
+		most += jitter;
+	for (int digits = 1; digits < 17; digits++) {
+		double a = rounded(rate, digits), b = 1 / rounded(1 / rate, digits);
+		double off_a = deviation(t, a), off_b = deviation(t, b);
+
+		if (fmin(off_a, off_b) <= most)
+			return off_b < off_a && off_b < 1e-3 * off_a ? b
+			       : off_a <= most                       ? a
+								     : b;
+	}
+	return rate;
+}
+
+/* The rate that the times read ahead tell; NAN if there are none. */
+static double told_rate(const struct text_in *t)
+{
+	size_t width = (size_t)t->format.channels + 1;
+	double span, rate;
+
+	if (t->time < 0 || t->nahead < 2)
+		return NAN;
+	span = t->ahead[(t->nahead - 1) * width] - *t->ahead;
+	if (!(span > 0))
+		die(EXIT_RUN, "%s: the times are not ascending", t->name);
+	rate = simplest_rate(t, (double)(t->nahead - 1) / span);
+	if (t->resolution > 1e-3 * span && deviation(t, rate) > 1e-9 * span)
+		warn("%s: the times tell no better than by %.1g of it that the rate is "
+		     "%g Hz: --rate does",
+			t->name, t->resolution / span, rate);
+	return rate;
 }
 
 static void learn_rate(struct text_in *t, const struct recording_par *par)
 {
 	size_t width = (size_t)t->format.channels + 1;
+	size_t most = isnan(par->rate) && t->time >= 0 ? AHEAD : 1;
 	double rate = par->rate;
 
 	t->ahead = xcalloc(AHEAD * width, sizeof *t->ahead);
-	while (t->nahead < AHEAD && read_row(t, t->ahead + t->nahead * width))
+	while (t->nahead < most && read_row(t, t->ahead + t->nahead * width))
 		t->nahead++;
-	if (t->time >= 0 && t->nahead > 1) {
-		double span = t->ahead[(t->nahead - 1) * width] - t->ahead[0];
-
-		if (!(span > 0))
-			die(EXIT_RUN, "%s: the times do not rise", t->name);
-		if (isnan(rate))
-			rate = (double)(t->nahead - 1) / span;
-		t->first = t->ahead[0];
-	}
+	t->first = t->nahead ? *t->ahead : 0;
+	if (t->rate >= 0 && !isnan(rate) && rate != t->format.rate)
+		die(EXIT_USAGE, "--rate %g: the recording says %g Hz", rate,
+			t->format.rate);
+	if (t->rate >= 0)
+		rate = t->format.rate;
 	if (isnan(rate))
-		die(EXIT_RUN, "%s: no times tell the rate: give --rate", t->name);
-	t->format.rate = (long)(rate + 0.5);
-	/* within what rounded times can tell of 64 rows */
-	if (t->format.rate < 1 || fabs(rate - (double)t->format.rate) > 2e-3 * rate)
-		die(EXIT_RUN,
-			"%s: %.6g samples per second: a signal has a whole number of "
-			"them, give --rate",
-			t->name, rate);
-	t->step = 1 / (double)t->format.rate;
+		rate = told_rate(t);
+	if (isnan(rate))
+		die(EXIT_RUN, "%s: no column of times: specify --rate", t->name);
+	if (!(rate >= RATE_LEAST && rate <= RATE_MOST))
+		die(EXIT_RUN, "%s: %g samples per second, want %g to %g", t->name, rate,
+			RATE_LEAST, RATE_MOST);
+	t->format.rate = rate;
+	t->step = 1 / rate;
+	if (t->absolute) {
+		char text[MOMENT_TEXT];
+
+		t->format.start = xstrdup(moment_text(&t->start, text));
+	}
 }
 
-struct text_in *text_open(const char *path, const struct recording_par *par)
+struct text_in *text_open(struct input *in, const struct recording_par *par)
 {
 	struct text_in *t = xcalloc(1, sizeof *t);
 	char **unit, *copy;
 	double v;
 	int numbers = 1;
 
-	t->f = file_open(path, &t->name);
-	for (long i = 0; i < par->skip; i++, t->number++)
-		if (getline(&t->line, &t->room, t->f) <= 0)
+	t->in = in;
+	t->name = input_name(in);
+	t->most = input_limit("line", LINE_MOST);
+	for (long i = 0; i < par->skip; i++)
+		if (!any_line(t))
 			die(EXIT_RUN, "%s: ends within --skip-lines %ld", t->name,
 				par->skip);
 	if (!next_line(t))
@@ -346,8 +480,7 @@ size_t text_read(struct text_in *t, double *x, size_t frames)
 
 void text_close(struct text_in *t)
 {
-	if (t->f != stdin)
-		fclose(t->f);
+	input_close(t->in);
 	free(t->ahead);
 	free(t->taken);
 	free(t->scale);

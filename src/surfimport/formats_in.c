@@ -102,7 +102,7 @@ void settle_pixel(
 	const struct content *c, const struct told *told, double *dx, double *dy)
 {
 	if (isnan(*dx) && isnan(told->dx))
-		die(EXIT_RUN, "%s: the spacing of the samples is not told: give --pixel",
+		die(EXIT_RUN, "%s: the file does not state the spacing: specify --pixel",
 			c->name);
 	if (!isnan(*dx) && !isnan(told->dx) &&
 		(differ(told->dx, *dx) || differ(told->dy, *dy)))
@@ -118,7 +118,7 @@ double settle_unit(const struct content *c, const struct told *told, double from
 {
 	if (isnan(from_file) && isnan(told->unit))
 		die(EXIT_RUN,
-			"%s: the unit of the heights is not told: give --height-unit",
+			"%s: the file does not state the unit of the heights: specify --height-unit",
 			c->name);
 	if (!isnan(from_file) && !isnan(told->unit) && differ(told->unit, from_file))
 		die(EXIT_RUN, "%s: heights are in units of %g m, not --height-unit %g m",
@@ -133,15 +133,14 @@ double *new_heights(const struct content *c, double nx, double ny, double dx, do
 		die(EXIT_RUN, "%s: %g x %g samples, want 1 to %d each way", c->name, nx,
 			ny, SIDE_MAX);
 	if (!(dx > 0 && dx < 1e3 && dy > 0 && dy < 1e3))
-		die(EXIT_RUN, "%s: samples %g x %g m apart are no surface", c->name, dx,
-			dy);
+		die(EXIT_RUN, "%s: invalid spacing of %g x %g m", c->name, dx, dy);
 	record_init(r, (int)nx, (int)ny, dx, dy);
 	return record_add(r, "height", "m");
 }
 
 /* ---- npy: a Python dictionary, then samples ---- */
 
-/* What stands behind 'key': in the dictionary; NULL where it is missing. */
+/* The value of 'key': in the dictionary; NULL if it is missing. */
 static const char *entry(const char *header, const char *key)
 {
 	const char *at = strstr(header, key);
@@ -283,7 +282,7 @@ static void sdf_binary(const struct content *c, const struct told *told, struct 
 			type);
 	settle_pixel(c, told, &dx, &dy);
 	new_heights(c, number(c, 42, UINT16), number(c, 44, UINT16), dx, dy, r);
-	/* the lowest integer stands for what is missing */
+	/* the smallest integer represents a missing sample */
 	if (isnan(missing) && types[type] == INT16)
 		missing = -32768;
 	if (isnan(missing) && types[type] == INT32)
@@ -310,7 +309,7 @@ static double sur_unit(const struct content *c, size_t at)
 		n--;
 	unit = unit_named(c->data + at, n);
 	if (isnan(unit))
-		die(EXIT_RUN, "%s: unit '%.*s' is not one of length", c->name, (int)n,
+		die(EXIT_RUN, "%s: unit '%.*s' is not a unit of length", c->name, (int)n,
 			c->data + at);
 	return unit;
 }
@@ -324,7 +323,7 @@ static void sur_read(const struct content *c, const struct told *told, struct re
 
 	need(c, HEADER, "a .sur header");
 	if (number(c, 12, INT16) != 0)
-		die(EXIT_RUN, "%s: written by a big-endian machine: not read", c->name);
+		die(EXIT_RUN, "%s: big-endian files are not supported", c->name);
 	if (number(c, 18, INT16) != 2 && number(c, 18, INT16) != 1)
 		die(EXIT_RUN,
 			"%s: object of type %g, want a surface (2) or a profile (1)",
@@ -351,7 +350,7 @@ static void sur_read(const struct content *c, const struct told *told, struct re
 
 /* ---- Alicona ---- */
 
-/* Tags of 20 bytes of name, 30 of value and a line end; NAN where there is none. */
+/* Tags of 20 bytes of name, 30 of value and a line end; NAN if there is none. */
 static double al3d_tag(const struct content *c, const char *key)
 {
 	enum { MAGIC = 17, TAG = 52 };

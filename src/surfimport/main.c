@@ -23,35 +23,36 @@ static const char *made_by;
 static const struct opt opts[] = {
 	{ 0, "format", OPT_WORD, UNIT_NONE, &format, 0, 0,
 		"auto|text|npy|sdf|sur|al3d|raw",
-		"of the file; auto tells by its beginning", format_words, 0 },
+		"format of the file; auto: recognised by its first bytes", format_words,
+		0 },
 	{ 0, "pixel", OPT_LIST, UNIT_LENGTH, &pixel, 1e-15, 1, "D[xD]",
-		"spacing of the samples, where the file does not tell", NULL, 0 },
+		"spacing of the samples, if the file does not state it", NULL, 0 },
 	{ 0, "height-unit", OPT_NUM, UNIT_LENGTH, &unit, 1e-30, 1e6, "U",
-		"length that a height of 1 stands for, where the file does not tell",
+		"length represented by a height of 1, if the file does not state it",
 		NULL, 0 },
 	{ 0, "missing", OPT_NUM, UNIT_NONE, &missing, -INFINITY, INFINITY, "V",
-		"number that stands for a missing sample", NULL, 0 },
+		"number that represents a missing sample", NULL, 0 },
 	{ 0, "profile", OPT_FLAG, UNIT_NONE, &profile, 0, 0, NULL,
-		"text: the last two columns are places and heights of a profile", NULL,
+		"text: the last two columns are positions and heights of a profile", NULL,
 		0 },
 	{ 0, "size", OPT_LIST, UNIT_COUNT, &size, 1, 65536, "NXxNY",
 		"raw: samples along x and y", NULL, 0 },
 	{ 0, "type", OPT_WORD, UNIT_NONE, &type, 0, 0,
-		"float64|float32|int32|int16|uint16|uint8", "raw: of a sample",
+		"float64|float32|int32|int16|uint16|uint8", "raw: type of a sample",
 		type_words, 0 },
 	{ 0, "big-endian", OPT_FLAG, UNIT_NONE, &big_endian, 0, 0, NULL,
-		"raw: the first byte of a sample is the highest", NULL, 0 },
+		"raw: samples are big-endian", NULL, 0 },
 	{ 0, "skip", OPT_NUM, UNIT_COUNT, &skip, 0, 1e15, "N",
-		"raw: bytes before the samples", NULL, 0 },
+		"raw: number of bytes before the samples", NULL, 0 },
 	{ 0, "made-by", OPT_TEXT, UNIT_NONE, &made_by, 0, 0, "CMD",
-		"that wrote standard input, for the record", NULL, 0 },
+		"command that wrote standard input, for the record", NULL, 0 },
 	{ 'f', "first", OPT_INT, UNIT_COUNT, &first, 0, 1e15, "K",
 		"number of the realisation", NULL, 0 },
 	OPT_END,
 };
 
 static const struct prog prog = { "surfimport",
-	"Bring measured heights from other formats into a stream of fields.", "[file]",
+	"Convert measured heights from other formats to a stream of fields.", "[file]",
 	"a file of heights: text, npy, sdf, sur, al3d, raw", "fields: height", opts };
 
 static void read_all(FILE *f, struct content *c)
@@ -108,13 +109,13 @@ static enum in_format recognise(const struct content *c)
 static void check_options(void)
 {
 	if (format == IN_RAW && size.n != 2)
-		die(EXIT_USAGE, "--format raw wants --size NXxNY");
+		die(EXIT_USAGE, "--format raw requires --size NXxNY");
 	if (format != IN_RAW && (size.n || skip > 0 || big_endian || opt_given("type")))
 		die(EXIT_USAGE,
 			"--size, --type, --skip and --big-endian are for --format "
 			"raw");
 	if (profile && format != IN_AUTO && format != IN_TEXT)
-		die(EXIT_USAGE, "--profile is for text");
+		die(EXIT_USAGE, "--profile requires --format text");
 }
 
 int main(int argc, char **argv)

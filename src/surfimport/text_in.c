@@ -85,7 +85,7 @@ static int is_gap(const char *s)
 	return 0;
 }
 
-/* One cell; 0 where it is no number. */
+/* One cell; 0 if it is no number. */
 static int cell(const struct text *t, char *s, double *v)
 {
 	char *end = s + strlen(s);
@@ -114,7 +114,7 @@ static void keep(struct text *t, double v)
 	t->value[t->n++] = v;
 }
 
-/* Reads a row; returns its cells, -1 where one is no number. */
+/* Reads a row; returns its cells, -1 if one is no number. */
 static int read_row(struct text *t, char *line)
 {
 	size_t before = t->n;
@@ -217,7 +217,7 @@ static double unit_of(const struct text *t, int from_end)
 	return unit;
 }
 
-/* Places must be equally far apart: to a thousandth of a step, or as they were rounded.
+/* Positions must be equally spaced: to a thousandth of a step, or to their rounding.
  */
 static void profile_read(const struct text *t, const struct told *told, struct record *r)
 {
@@ -227,7 +227,7 @@ static void profile_read(const struct text *t, const struct told *told, struct r
 
 	if (t->columns < 2 || t->rows < 2)
 		die(EXIT_RUN,
-			"%s: %d columns of %ld rows, want two of places and heights",
+			"%s: %d columns of %ld rows, want two: positions and heights",
 			t->c->name, t->columns, t->rows);
 	x_unit = unit_of(t, 1);
 	unit = settle_unit(t->c, told, unit_of(t, 0));
@@ -237,8 +237,7 @@ static void profile_read(const struct text *t, const struct told *told, struct r
 	for (size_t i = 0; i < n; i++)
 		if (!(fabs(x[i * w] - x[0] - (double)i * dx) <= 0.02 * fabs(dx)))
 			die(EXIT_RUN,
-				"%s: row %zu: place %g, want %g: places must be equally "
-				"far apart",
+				"%s: row %zu: position %g, want %g: positions must be equally spaced",
 				t->c->name, i + 1, x[i * w], x[0] + (double)i * dx);
 	dx = fabs(dx) * x_unit;
 	dy = dx;

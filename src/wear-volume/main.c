@@ -117,7 +117,7 @@ static void sum_rows(struct table_in *t, struct table_out *out)
 	stats_set("rows", rows);
 	stats_set("particles_without_diameter", (double)without);
 	if (without > 0)
-		warn("%s: rows passed over for want of a diameter: %ld", table_name(t),
+		warn("%s: rows ignored because they have no diameter: %ld", table_name(t),
 			without);
 }
 

@@ -140,7 +140,7 @@ static double *read_pressure(const char *path, size_t cells)
 	FILE *f = path ? fopen(path, "rb") : NULL;
 	double *q = f ? fft_alloc(cells) : NULL;
 
-	if (q && fread(q, sizeof(*q), cells, f) != cells) {
+	if (q && fread(q, sizeof *q, cells, f) != cells) {
 		fft_free(q);
 		q = NULL;
 	}
@@ -153,7 +153,7 @@ static int write_pressure(const char *path, const double *p, size_t cells)
 {
 	FILE *f = fopen(path, "wb");
 
-	return !f || fwrite(p, sizeof(*p), cells, f) != cells || fclose(f) != 0;
+	return !f || fwrite(p, sizeof *p, cells, f) != cells || fclose(f) != 0;
 }
 
 /* Mean absolute differences over the mean pressure, and of areas: to a reference, and

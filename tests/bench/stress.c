@@ -33,7 +33,7 @@ static void row(
 static struct stress_par grid(int n, double side)
 {
 	struct stress_par par = {
-		.nx = n, .ny = n, .ax = side / n, .ay = side / n, .nu = 0.3, .mu = 0.3
+		.nx = n, .ny = n, .dx = side / n, .dy = side / n, .nu = 0.3, .mu = 0.3
 	};
 
 	return par;
@@ -43,11 +43,11 @@ static struct stress_par grid(int n, double side)
 static double *hertz(const struct stress_par *par)
 {
 	size_t n = (size_t)par->nx * par->ny;
-	double *p = calloc(n, sizeof(*p));
+	double *p = calloc(n, sizeof *p);
 
 	for (size_t i = 0; i < n; i++) {
-		double x = ((int)(i % par->nx) + 0.5 - 0.5 * par->nx) * par->ax;
-		double y = ((int)(i / par->nx) + 0.5 - 0.5 * par->ny) * par->ay;
+		double x = ((int)(i % par->nx) + 0.5 - 0.5 * par->nx) * par->dx;
+		double y = ((int)(i / par->nx) + 0.5 - 0.5 * par->ny) * par->dy;
 
 		p[i] = sqrt(fmax(0, 1 - x * x - y * y));
 	}
@@ -76,7 +76,7 @@ static double axis_mises(double Z, double nu, double mu)
 static void bench_grid(int n)
 {
 	struct stress_par par = grid(n, 4);
-	double *p = hertz(&par), *m = malloc(sizeof(*m) * n * n), error = 0, time;
+	double *p = hertz(&par), *m = malloc(sizeof *m * n * n), error = 0, time;
 	struct stress_span *span;
 	size_t count = whole(&par, &span);
 	struct stress *s = stress_new(&par);
@@ -101,7 +101,7 @@ static void bench_padding(double factor)
 {
 	enum { N = 65 };
 	struct stress_par par = grid(N, 4), wide = par;
-	double *p = hertz(&par), *q, *m = malloc(sizeof(*m) * N * N), *w, error = 0, time;
+	double *p = hertz(&par), *q, *m = malloc(sizeof *m * N * N), *w, error = 0, time;
 	struct stress_span *span, *wspan;
 	size_t count = whole(&par, &span), wcount;
 	struct stress *s = stress_new(&par), *ws;
@@ -110,10 +110,10 @@ static void bench_padding(double factor)
 	wide.nx = wide.ny = side;
 	wide.periodic = 1;
 	wcount = whole(&wide, &wspan);
-	q = calloc((size_t)side * side, sizeof(*q));
-	w = malloc((size_t)side * side * sizeof(*w));
+	q = calloc((size_t)side * side, sizeof *q);
+	w = malloc((size_t)side * side * sizeof *w);
 	for (int y = 0; y < N; y++)
-		memcpy(q + (size_t)(y + at) * side + at, p + y * N, N * sizeof(*p));
+		memcpy(q + (size_t)(y + at) * side + at, p + y * N, N * sizeof *p);
 	stress_load(s, p);
 	ws = stress_new(&wide);
 	time = seconds();
@@ -141,7 +141,7 @@ static void bench_padding(double factor)
 static void bench_way(int n, double depth, double share)
 {
 	struct stress_par par = grid(n, n);
-	double *p = calloc((size_t)n * n, sizeof(*p)), *m[2], time[2], error = 0;
+	double *p = calloc((size_t)n * n, sizeof *p), *m[2], time[2], error = 0;
 	struct stress_span *span;
 	size_t count = whole(&par, &span);
 	char scene[64];
@@ -176,7 +176,7 @@ static void bench_way(int n, double depth, double share)
 static double worn(double dz, double offset, enum wear_rule rule, double *time)
 {
 	struct debris_par par = { .yield = 1. / 3, .rule = rule, .stress = grid(65, 4) };
-	double *p = hertz(&par.stress), *h = calloc(65 * 65, sizeof(*h));
+	double *p = hertz(&par.stress), *h = calloc(65 * 65, sizeof *h);
 	struct debris_step step;
 	struct debris *d;
 

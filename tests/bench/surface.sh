@@ -17,7 +17,7 @@
 # row SCENE N COUNT ERROR
 row() {
 	printf '%s\t%s\t%s\t%s\t%s\t%s\n' "$1" "$2" "$3" "$4" \
-		"$(column seconds stats)" "$(column memory_kb stats)"
+		"$(column cpu_seconds stats)" "$(column memory_kb stats)"
 }
 
 all() {

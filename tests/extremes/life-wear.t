@@ -70,7 +70,7 @@ relative "classes 1 Pa and 1 TPa, wear 12 decades apart: m(p) = p" "zone at 1/2 
 	"$(last mean $new --wear high.tsv:1TPa --wear low.tsv:1Pa)"
 relative "pressures that differ in the last digit" "the mean of both classes" 200 1e-9 \
 	"$(last mean $new --wear even.tsv:21000000.000000004Pa --wear zero.tsv:21MPa)"
-refused "two classes of one pressure" 2 'pressure of its own' rwl $new --wear even.tsv:1Pa --wear zero.tsv:1Pa
+refused "two classes of one pressure" 2 'each of several tables requires a pressure' rwl $new --wear even.tsv:1Pa --wear zero.tsv:1Pa
 refused "a class at no pressure beside another" 2 'a pressure above 0' rwl $new --wear even.tsv:0Pa --wear zero.tsv:1Pa
 relative "64 classes" "all wear alike: 100 s" 100 1e-9 "$(last mean $new $(
 	awk 'BEGIN { for (i = 1; i <= 64; i++) print "--wear even.tsv:" i "MPa" }'))"
@@ -134,7 +134,7 @@ refused "step 1000001" 1 'step must be' rwl $new --wear far.tsv
 printf 'realisation\tstep\tvolume\n4294967295\t1000000\t1e-15\n' >far.tsv
 relative "realisation 4294967295, step 1e6" "as any other" 100 1e-9 "$(last mean $new --wear far.tsv)"
 printf 'realisation\tstep\tvolume\n0\t1\t1e-15' >cut.tsv
-refused "a table cut off in a number" 1 'cut off' rwl $new --wear cut.tsv
+refused "a table cut off in a number" 1 'truncated' rwl $new --wear cut.tsv
 
 # --- scores
 relative "end of life before the first observation" "no score" nan 0 \

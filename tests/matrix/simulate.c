@@ -570,7 +570,7 @@ static void draw_event(struct event *e, double *x, long N)
 		e->peak = e->level[0];
 	}
 	for (long k = (long)(e->time[0] * rate);
-		e->kind == IMPULSE && k < e->end * rate && k < N; k++)
+		e->kind == IMPULSE && (double)k < e->end * rate && k < N; k++)
 		for (int c = 0; c < 2; c++)
 			x[2 * k + c] += e->level[c];
 }
@@ -636,7 +636,7 @@ static void spoil(double *x, long N, unsigned char *masked)
 	for (size_t i = 0; i < count; i++)
 		if (events[i].kind == DROPOUT)
 			for (long k = (long)(events[i].time[0] * rate);
-				k < events[i].end * rate && k < N; k++) {
+				(double)k < events[i].end * rate && k < N; k++) {
 				x[2 * k] = x[2 * k + 1] = 0;
 				masked[2 * k] = masked[2 * k + 1] = 1;
 			}

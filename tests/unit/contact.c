@@ -93,7 +93,7 @@ static void westergaard(enum contact_solver solver)
 		double mean = loads[k] * M_PI, peak = 0;
 		double half = asin(sqrt(loads[k])); /* pi a / lambda */
 
-		memset(p, 0, N * sizeof(*p));
+		memset(p, 0, N * sizeof *p);
 		contact_solve(c, h, CONTACT_PRESSURE, mean, p, NULL);
 		for (int i = 0; i < N; i++)
 			peak = fmax(peak, p[i]);
@@ -107,7 +107,7 @@ static void westergaard(enum contact_solver solver)
 	ok(worst_peak < 1e-3, "Westergaard %s: peak off by %.1e", solver_name[solver],
 		worst_peak);
 	/* Above p* the contact is full and p = mean + p* cos exactly. */
-	memset(p, 0, N * sizeof(*p));
+	memset(p, 0, N * sizeof *p);
 	contact_solve(c, h, CONTACT_PRESSURE, 1.5 * M_PI, p, NULL);
 	worst_peak = 0;
 	for (int i = 0; i < N; i++)
@@ -135,7 +135,7 @@ static void wavy(enum contact_solver solver)
 	for (size_t k = 0; k < sizeof(reference) / sizeof(reference[0]); k++) {
 		double mean = reference[k][0] * sqrt(2) * M_PI;
 
-		memset(p, 0, sizeof(*p) * N * N);
+		memset(p, 0, sizeof *p * N * N);
 		contact_solve(c, h, CONTACT_PRESSURE, mean, p, NULL);
 		worst = fmax(worst, fabs(contact_result(c)->area - reference[k][1]));
 	}
@@ -208,7 +208,7 @@ static void controls(enum contact_solver solver, enum contact_boundary boundary)
 	ok(status == CONTACT_OK && fabs(contact_result(c)->pressure / 0.02 - 1) < 1e-5,
 		"%s %s: the approach gives the load back, %.1e off", solver_name[solver],
 		name, contact_result(c)->pressure / 0.02 - 1);
-	memcpy(q, p, CELLS * sizeof(*p));
+	memcpy(q, p, CELLS * sizeof *p);
 	status = contact_solve(c, h, CONTACT_PRESSURE, 0.02, q, NULL);
 	ok(status == CONTACT_OK && contact_result(c)->iterations <= 1,
 		"%s %s: a solution as first guess is taken", solver_name[solver], name);
@@ -219,7 +219,7 @@ static void controls(enum contact_solver solver, enum contact_boundary boundary)
 
 	par.hardness = 0.1;
 	c = contact_new(&par);
-	memset(q, 0, CELLS * sizeof(*q));
+	memset(q, 0, CELLS * sizeof *q);
 	status = contact_solve(c, h, CONTACT_PRESSURE, 0.02, q, g);
 	for (int i = 0; i < CELLS; i++) {
 		peak = fmax(peak, q[i]);

@@ -119,7 +119,7 @@ static double hardness_gap(
 		sorted[i] = g[i];
 	}
 	work -= sum * least;
-	qsort(sorted, n, sizeof(*sorted), hardness_order);
+	qsort(sorted, n, sizeof *sorted, hardness_order);
 	rank = (size_t)ceil(sum / s->par.hardness - 1e-9);
 	approach = sorted[rank > 0 ? rank - 1 : 0];
 	for (size_t i = 0; i < n; i++)

@@ -2,9 +2,9 @@
 #include "contact/kernel.h"
 #include "tap.h"
 
-/* I of a cell ax * ay at (m ax, n ay), from 50-digit evaluation of the corner sum. */
+/* I of a cell dx * dy at (m dx, n dy), from 50-digit evaluation of the corner sum. */
 static const struct {
-	double ax, ay, m, n, i;
+	double dx, dy, m, n, i;
 } golden[] = {
 	{ 1, 1, 0, 0, 3.5254943480781721 },
 	{ 1, 1, 1, 0, 1.0380497359047561 },
@@ -52,25 +52,25 @@ static long double corner(long double x, long double y)
 	       (y == 0 ? 0 : y * asinhl(x / fabsl(y)));
 }
 
-static double closed_form(double ax, double ay, double x, double y)
+static double closed_form(double dx, double dy, double x, double y)
 {
-	long double x1 = x - (long double)ax / 2, x2 = x + (long double)ax / 2;
-	long double y1 = y - (long double)ay / 2, y2 = y + (long double)ay / 2;
+	long double x1 = x - (long double)dx / 2, x2 = x + (long double)dx / 2;
+	long double y1 = y - (long double)dy / 2, y2 = y + (long double)dy / 2;
 
 	return (double)(corner(x2, y2) - corner(x2, y1) - corner(x1, y2) +
 			corner(x1, y1));
 }
 
 /* Largest relative error along a ray of cells out to distance r (in the long side);
- * the reference itself is good to 5e-20 r^2 ax / ay. */
-static double worst_along(double ax, double ay, int sx, int sy, int cells)
+ * the reference itself is good to 5e-20 r^2 dx / dy. */
+static double worst_along(double dx, double dy, int sx, int sy, int cells)
 {
 	double worst = 0;
 
 	for (int i = 0; i < cells; i++) {
-		double x = i * sx * ax, y = i * sy * ay, want = closed_form(ax, ay, x, y);
+		double x = i * sx * dx, y = i * sy * dy, want = closed_form(dx, dy, x, y);
 
-		worst = fmax(worst, fabs(kernel_patch(ax, ay, x, y) / want - 1));
+		worst = fmax(worst, fabs(kernel_patch(dx, dy, x, y) / want - 1));
 	}
 	return worst;
 }
@@ -176,8 +176,8 @@ int main(void)
 	double worst = 0;
 
 	for (size_t k = 0; k < sizeof(golden) / sizeof(golden[0]); k++) {
-		double got = kernel_patch(golden[k].ax, golden[k].ay,
-			golden[k].m * golden[k].ax, golden[k].n * golden[k].ay);
+		double got = kernel_patch(golden[k].dx, golden[k].dy,
+			golden[k].m * golden[k].dx, golden[k].n * golden[k].dy);
 
 		worst = fmax(worst, fabs(got / golden[k].i - 1));
 	}
@@ -194,7 +194,8 @@ int main(void)
 	}
 	near(kernel_patch(1, 1, 0, 0), 4 * asinh(1), 1e-15,
 		"under its own square cell: 4 asinh 1");
-	near(kernel_patch(2, 1, -6, 3) / kernel_patch(2, 1, 6, 3), 1, 1e-15, "even");
+	near(kernel_patch(2, 1, -6, 3) / kernel_patch(2, 1, 6, 3), 1, 1e-15,
+		"the coefficients are even");
 	near(kernel_modulus(210e9, 0.3, 210e9, 0.3) / (210e9 / 1.82), 1, 1e-15,
 		"two like steels: E / 1.82");
 	near(kernel_modulus(210e9, 0.3, INFINITY, 0.3) / (210e9 / 0.91), 1, 1e-15,

@@ -61,7 +61,7 @@ static void same_bytes(struct pool *two)
 		x[i] = cos(i);
 	mlms_apply(m, x, y);
 	mlms_apply(t, x, z);
-	ok(memcmp(y, z, N * N * sizeof(*y)) == 0, "one and two threads: same bytes");
+	ok(memcmp(y, z, N * N * sizeof *y) == 0, "one and two threads: same bytes");
 	mlms_free(m);
 	mlms_free(t);
 	fft_free(x);

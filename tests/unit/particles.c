@@ -10,7 +10,7 @@ typedef int (*shape)(double x, double y, double z);
 
 /* Stretches of the cells of a mask [z][y][x], so high. */
 static size_t find(struct particles *ps, const unsigned char *mask, int nx, int ny,
-	int nz, double az, const struct particle **list)
+	int nz, double dz, const struct particle **list)
 {
 	size_t columns = (size_t)nx * ny, count = 0, n;
 	struct stretch *s = malloc((columns * nz + 1) * sizeof *s);
@@ -24,15 +24,15 @@ static size_t find(struct particles *ps, const unsigned char *mask, int nx, int 
 				continue;
 			while (end < nz && mask[end * columns + i])
 				end++;
-			s[count++] = (struct stretch){ i, z * az, end * az };
+			s[count++] = (struct stretch){ i, z * dz, end * dz };
 		}
-	n = particles_find(ps, s, count, list);
+	particles_find(ps, s, count, list, &n);
 	free(s);
 	return n;
 }
 
 /* Particles of the cells whose centres are in the shape. */
-static size_t scan(struct particles *ps, int nx, int ny, int nz, double az, shape in,
+static size_t scan(struct particles *ps, int nx, int ny, int nz, double dz, shape in,
 	const struct particle **list)
 {
 	unsigned char *mask = malloc((size_t)nx * ny * nz);
@@ -43,7 +43,7 @@ static size_t scan(struct particles *ps, int nx, int ny, int nz, double az, shap
 			for (int x = 0; x < nx; x++)
 				mask[(z * ny + y) * nx + x] =
 					(unsigned char)in(x + 0.5, y + 0.5, z + 0.5);
-	n = find(ps, mask, nx, ny, nz, az, list);
+	n = find(ps, mask, nx, ny, nz, dz, list);
 	free(mask);
 	return n;
 }
@@ -51,7 +51,7 @@ static size_t scan(struct particles *ps, int nx, int ny, int nz, double az, shap
 /* Cells of a particle, by its volume. */
 static double cells(const struct particle *p, const struct particles_par *par)
 {
-	return round(p->volume / (par->ax * par->ay * par->az));
+	return round(p->volume / (par->dx * par->dy * par->dz));
 }
 
 static int box(double x, double y, double z)
@@ -61,12 +61,12 @@ static int box(double x, double y, double z)
 
 static void test_box(void)
 {
-	struct particles_par par = { .nx = 16, .ny = 12, .ax = 2, .ay = 1, .az = 0.5 };
+	struct particles_par par = { .nx = 16, .ny = 12, .dx = 2, .dy = 1, .dz = 0.5 };
 	struct particles *ps = particles_new(&par);
 	const struct particle *p;
 
 	/* 7 x 3 x 2 cells: 14 x 3 x 1 in length. */
-	ok(scan(ps, 16, 12, 6, par.az, box, &p) == 1, "a box is one particle");
+	ok(scan(ps, 16, 12, 6, par.dz, box, &p) == 1, "a box is one particle");
 	near(cells(p, &par), 42, 0, "box: cells");
 	near(p->volume, 42, 0, "box: volume");
 	near(p->diameter, cbrt(6 * 42 / M_PI), 1e-14, "box: equivalent diameter");
@@ -96,11 +96,11 @@ static int cube(double x, double y, double z)
 
 static void test_cube(void)
 {
-	struct particles_par par = { .nx = 5, .ny = 5, .ax = 1, .ay = 1, .az = 1 };
+	struct particles_par par = { .nx = 5, .ny = 5, .dx = 1, .dy = 1, .dz = 1 };
 	struct particles *ps = particles_new(&par);
 	const struct particle *p;
 
-	scan(ps, 5, 5, 1, par.az, cube, &p);
+	scan(ps, 5, 5, 1, par.dz, cube, &p);
 	near(p->length, sqrt(3), 1e-15, "cube: largest diameter is the space diagonal");
 	/* Half-way along its diagonal its section is a regular hexagon of side 1/sqrt(2);
 	 * the corners lie at a third and two thirds, with triangles of side sqrt(2). */
@@ -122,11 +122,11 @@ static int ball(double x, double y, double z)
 static void test_ball(void)
 {
 	int n = 2 * R + 2;
-	struct particles_par par = { .nx = n, .ny = n, .ax = 1, .ay = 1, .az = 1 };
+	struct particles_par par = { .nx = n, .ny = n, .dx = 1, .dy = 1, .dz = 1 };
 	struct particles *ps = particles_new(&par);
 	const struct particle *p;
 
-	ok(scan(ps, n, n, n, par.az, ball, &p) == 1, "a ball is one particle");
+	ok(scan(ps, n, n, n, par.dz, ball, &p) == 1, "a ball is one particle");
 	/* Cells stand out by up to half a diagonal: 0.87 of the radius 20. */
 	near(p->diameter, 2 * R, 0.1, "ball: equivalent diameter");
 	near(p->length, 2 * R, 1.8, "ball: largest diameter");
@@ -153,11 +153,11 @@ static int rod(double x, double y, double z)
 
 static void test_rod(void)
 {
-	struct particles_par par = { .nx = 60, .ny = 60, .ax = 1, .ay = 1, .az = 1 };
+	struct particles_par par = { .nx = 60, .ny = 60, .dx = 1, .dy = 1, .dz = 1 };
 	struct particles *ps = particles_new(&par);
 	const struct particle *p;
 
-	ok(scan(ps, 60, 60, 40, par.az, rod, &p) == 1, "a slanted rod is one particle");
+	ok(scan(ps, 60, 60, 40, par.dz, rod, &p) == 1, "a slanted rod is one particle");
 	near(p->azimuth, 0.6, 0.01, "rod: azimuth");
 	near(p->dip, 0.4, 0.01, "rod: dip");
 	/* Length 48, width 6: the diagonal and a cell more. */
@@ -205,14 +205,14 @@ static int bar(double x, double y, double z)
 /* The bar of a pose; everything about it that does not name its place is compared. */
 static struct particle measured_bar(int nx, int ny, struct pose p)
 {
-	struct particles_par par = { .nx = nx, .ny = ny, .ax = 1.5, .ay = 1, .az = 0.5 };
+	struct particles_par par = { .nx = nx, .ny = ny, .dx = 1.5, .dy = 1, .dz = 0.5 };
 	const struct particle *list;
 	struct particles *ps;
 	struct particle got = { .columns = 0 };
 
 	par.periodic = p.nx > 0;
 	if (p.cubes)
-		par.ax = par.az = 1;
+		par.dx = par.dz = 1;
 	ps = particles_new(&par);
 	pose = p;
 	pose.along[0] = cos(p.azimuth) * cos(p.dip);
@@ -220,7 +220,7 @@ static struct particle measured_bar(int nx, int ny, struct pose p)
 	pose.along[2] = sin(p.dip);
 	pose.across[0] = -sin(p.azimuth);
 	pose.across[1] = cos(p.azimuth);
-	if (scan(ps, nx, ny, 40, par.az, bar, &list) == 1)
+	if (scan(ps, nx, ny, 40, par.dz, bar, &list) == 1)
 		got = list[0];
 	particles_free(ps);
 	return got;
@@ -284,13 +284,13 @@ static void test_pose(void)
 	}
 	ok(bad == 0, "bars of 14 directions are one particle each");
 	ok(out == 0, "their dips are from 0 to pi/2");
-	ok(off < 0.03, "and their directions those of the bars, in cubes to %.3f", off);
+	ok(off < 0.03, "their directions are those of the bars, in cubes to %.3f", off);
 	ok(mirrored == 0,
 		"mirrored bars have mirrored directions and the same shape (%d do not)",
 		mirrored);
 	ok(far == 0, "a bar has the same row 1000 cells further (%d have not)", far);
 	ok(over == 0,
-		"and across the border of a periodic grid, its centroid on the grid (%d have not)",
+		"a bar has the same row across the border of a periodic grid, with its centroid on the grid (%d have not)",
 		over);
 }
 
@@ -306,10 +306,10 @@ static int equals(double x, double y, double z)
 static void test_order(void)
 {
 	static const int want[4][2] = { { 6, 1 }, { 7, 2 }, { 1, 4 }, { 5, 4 } };
-	struct particles_par par = { .nx = 9, .ny = 6, .ax = 1, .ay = 1, .az = 1 };
+	struct particles_par par = { .nx = 9, .ny = 6, .dx = 1, .dy = 1, .dz = 1 };
 	struct particles *ps = particles_new(&par);
 	const struct particle *p;
-	int bad = scan(ps, 9, 6, 2, par.az, equals, &p) != 4;
+	int bad = scan(ps, 9, 6, 2, par.dz, equals, &p) != 4;
 
 	for (int i = 0; i < 4 && !bad; i++)
 		for (int k = 0; k < 2; k++)
@@ -333,12 +333,12 @@ static int ring(double x, double y, double z)
 static void test_endless(void)
 {
 	struct particles_par par = {
-		.nx = 24, .ny = 16, .ax = 1, .ay = 1, .az = 1, .periodic = 1
+		.nx = 24, .ny = 16, .dx = 1, .dy = 1, .dz = 1, .periodic = 1
 	};
 	struct particles *ps = particles_new(&par);
 	const struct particle *p;
 
-	ok(scan(ps, 24, 16, 1, par.az, stripe, &p) == 1 && p->endless && p->columns == 64,
+	ok(scan(ps, 24, 16, 1, par.dz, stripe, &p) == 1 && p->endless && p->columns == 64,
 		"a stripe that winds about a periodic grid is endless");
 	ok(isnan(p->length) && isnan(p->width) && isnan(p->convexity) &&
 			isnan(p->azimuth) && isnan(p->elongation) && isnan(p->x) &&
@@ -346,15 +346,15 @@ static void test_endless(void)
 		"it has a volume for each period and no shape");
 	ok(p->low[0] == 0 && p->high[0] == 24 && p->low[1] == 0 && p->high[1] == 16,
 		"its bounding box is the grid");
-	ok(scan(ps, 24, 16, 2, par.az, ring, &p) == 1 && p->endless && isnan(p->x),
+	ok(scan(ps, 24, 16, 2, par.dz, ring, &p) == 1 && p->endless && isnan(p->x),
 		"a ring about the grid is endless");
 	near(p->y, 3.5, 1e-15, "across itself it has a centroid");
-	near(p->area, 2 * 24 * 3, 0, "and its surface is that of one period");
-	ok(p->low[1] == 3 && p->high[1] == 4, "and it has two sides");
+	near(p->area, 2 * 24 * 3, 0, "its surface is that of one period");
+	ok(p->low[1] == 3 && p->high[1] == 4, "its surface has two sides");
 	particles_free(ps);
 	par.periodic = 0;
 	ps = particles_new(&par);
-	ok(scan(ps, 24, 16, 2, par.az, ring, &p) == 1 && !p->endless,
+	ok(scan(ps, 24, 16, 2, par.dz, ring, &p) == 1 && !p->endless,
 		"on a free grid it is a bar");
 	particles_free(ps);
 }
@@ -371,11 +371,11 @@ static int fork(double x, double y, double z)
 
 static void test_fork(void)
 {
-	struct particles_par par = { .nx = 12, .ny = 8, .ax = 1, .ay = 1, .az = 1 };
+	struct particles_par par = { .nx = 12, .ny = 8, .dx = 1, .dy = 1, .dz = 1 };
 	struct particles *ps = particles_new(&par);
 	const struct particle *p;
 
-	ok(scan(ps, 12, 8, 8, par.az, fork, &p) == 2,
+	ok(scan(ps, 12, 8, 8, par.dz, fork, &p) == 2,
 		"arms that meet below are one particle");
 	near(cells(&p[0], &par), 7 + 7 + 7, 0, "fork: cells");
 	near(cells(&p[1], &par), 7, 0, "free arm: cells");
@@ -394,17 +394,17 @@ static int checker(double x, double y, double z)
 /* Corner neighbours of a layer are parted or joined as asked. */
 static void test_corners(void)
 {
-	struct particles_par par = { .nx = 31, .ny = 17, .ax = 1, .ay = 1, .az = 1 };
+	struct particles_par par = { .nx = 31, .ny = 17, .dx = 1, .dy = 1, .dz = 1 };
 	struct particles *ps = particles_new(&par);
 	const struct particle *p;
-	size_t n = scan(ps, 31, 17, 9, par.az, checker, &p);
+	size_t n = scan(ps, 31, 17, 9, par.dz, checker, &p);
 
 	ok(n == 31 * 17 * 9 / 2, "a checkerboard falls into single cells");
 	ok(cells(&p[n - 1], &par) == 1, "each of one cell");
 	particles_free(ps);
 	par.corners = 1;
 	ps = particles_new(&par);
-	ok(scan(ps, 31, 17, 1, par.az, checker, &p) == 1,
+	ok(scan(ps, 31, 17, 1, par.dz, checker, &p) == 1,
 		"joined over corners it is one");
 	particles_free(ps);
 }
@@ -418,13 +418,13 @@ static int wrapped(double x, double y, double z)
 static void test_periodic(void)
 {
 	struct particles_par par = {
-		.nx = 10, .ny = 8, .ax = 1, .ay = 1, .az = 1, .periodic = 1
+		.nx = 10, .ny = 8, .dx = 1, .dy = 1, .dz = 1, .periodic = 1
 	};
 	struct particles *ps = particles_new(&par);
 	const struct particle *p;
 
 	/* 5 x 4 cells around the corner of the grid: from 7 to 12 and from 5 to 9. */
-	ok(scan(ps, 10, 8, 2, par.az, wrapped, &p) == 1,
+	ok(scan(ps, 10, 8, 2, par.dz, wrapped, &p) == 1,
 		"periodic: one particle over the corner");
 	near(cells(p, &par), 40, 0, "periodic: cells");
 	near(p->length, sqrt(25 + 16 + 4), 1e-12, "periodic: largest diameter");
@@ -439,7 +439,7 @@ static void test_periodic(void)
 /* Against a flood fill on random sets, all connectivities. */
 static size_t flood(unsigned char *c, int nx, int ny, int nz, int corners, int periodic)
 {
-	int *stack = malloc(sizeof(*stack) * nx * ny * nz);
+	int *stack = malloc(sizeof *stack * nx * ny * nz);
 	size_t count = 0;
 
 	for (int i = 0; i < nx * ny * nz; i++) {
@@ -488,9 +488,9 @@ static void test_random(void)
 		int nx = 1 + trial % 13, ny = 1 + trial % 7, nz = 1 + trial % 5;
 		struct particles_par par = { .nx = nx,
 			.ny = ny,
-			.ax = 1,
-			.ay = 1,
-			.az = 1,
+			.dx = 1,
+			.dy = 1,
+			.dz = 1,
 			.corners = trial % 2,
 			.periodic = trial / 2 % 2 };
 		struct particles *ps = particles_new(&par);
@@ -540,9 +540,9 @@ static void test_map(void)
 	for (int rule = 0; rule < 4; rule++) {
 		struct particles_par par = { .nx = NX,
 			.ny = NY,
-			.ax = 1,
-			.ay = 1,
-			.az = 1,
+			.dx = 1,
+			.dy = 1,
+			.dz = 1,
 			.corners = rule % 2,
 			.periodic = rule / 2 };
 		struct particles *ps = particles_new(&par);

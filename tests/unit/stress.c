@@ -12,7 +12,7 @@
 static struct stress_par plain(int nx, int ny, double mu)
 {
 	struct stress_par par = {
-		.nx = nx, .ny = ny, .ax = 1, .ay = 1, .nu = 0.3, .mu = mu
+		.nx = nx, .ny = ny, .dx = 1, .dy = 1, .nu = 0.3, .mu = mu
 	};
 
 	return par;
@@ -28,7 +28,7 @@ static size_t whole_grid(const struct stress_par *par, struct stress_span *span)
 /* Hertz pressure p0 = a = 1 on n x n cells of side h, at their centres. */
 static double *hertz(int n, double h)
 {
-	double *p = calloc((size_t)n * n, sizeof(*p));
+	double *p = calloc((size_t)n * n, sizeof *p);
 
 	for (int i = 0; i < n * n; i++) {
 		double x = (i % n + 0.5 - 0.5 * n) * h, y = (i / n + 0.5 - 0.5 * n) * h;
@@ -52,11 +52,11 @@ static double axis_mises(double Z, double nu, double mu)
 static double hertz_error(int n, double mu, double *surface)
 {
 	struct stress_par par = plain(n, n, mu);
-	double *p = hertz(n, 4. / n), *m = malloc((size_t)n * n * sizeof(*m)), error = 0;
-	struct stress_span *span = malloc(n * sizeof(*span));
+	double *p = hertz(n, 4. / n), *m = malloc((size_t)n * n * sizeof *m), error = 0;
+	struct stress_span *span = malloc(n * sizeof *span);
 	struct stress *s;
 
-	par.ax = par.ay = 4. / n;
+	par.dx = par.dy = 4. / n;
 	s = stress_new(&par);
 	stress_load(s, p);
 	for (int k = 0; k <= 30; k++) {
@@ -86,8 +86,9 @@ static void test_hertz(void)
 	ok(fine < 2e-4,
 		"Hertz with friction: von Mises on the axis from a/2 on, 129 points: %.1e p0",
 		fine);
-	ok(coarse / fine > 3.3, "and converges with the square of the grid: %.1e, %.1e",
-		coarse, fine);
+	ok(coarse / fine > 3.3,
+		"the stress converges with the square of the spacing: %.1e, %.1e", coarse,
+		fine);
 	/* Under the middle sxx = syy = -(1 + 2 nu)/2, szz = -1, sxz = -mu. */
 	near(surface, sqrt(0.04 + 3 * 0.09), 2e-3, "surface in the middle");
 }
@@ -116,12 +117,12 @@ static double surface_error(int cells, double mu, double within)
 {
 	int n = 2 * cells + 8;
 	struct stress_par par = plain(n, n, mu);
-	double h = 1. / cells, *p = hertz(n, h), *m = malloc((size_t)n * n * sizeof(*m));
-	struct stress_span *span = malloc(n * sizeof(*span));
+	double h = 1. / cells, *p = hertz(n, h), *m = malloc((size_t)n * n * sizeof *m);
+	struct stress_span *span = malloc(n * sizeof *span);
 	struct stress *s;
 	double error = 0;
 
-	par.ax = par.ay = h;
+	par.dx = par.dy = h;
 	s = stress_new(&par);
 	stress_load(s, p);
 	stress_at(s, 0, span, whole_grid(&par, span), m);
@@ -148,7 +149,8 @@ static void test_surface_order(double mu)
 		"surface, friction %g: second order within 0.6 a: %.1e, %.1e p0", mu, e10,
 		e40);
 	/* At the rim the pressure rises like a square root, which no element follows. */
-	ok(rim < 6e-4 + 2e-3 * mu, "and within 0.9 a: %.1e p0", rim);
+	ok(rim < 6e-4 + 2e-3 * mu, "within 0.9 a the error on the surface is %.1e p0",
+		rim);
 }
 
 /* Largest stress on the plane y = 0, where and how large (1001 points, sampled). */
@@ -157,11 +159,11 @@ static void test_hertz_peak(void)
 	enum { NODES = 257 };
 	struct stress_par par = plain(NODES, NODES, 0.3);
 	double h = 1. / 64, lead, trail, most = 0, x = 0, z = 0;
-	double *p = hertz(NODES, h), *m = malloc(sizeof(*m) * NODES * NODES);
+	double *p = hertz(NODES, h), *m = malloc(sizeof *m * NODES * NODES);
 	struct stress_span row = { NODES / 2, 0, NODES };
 	struct stress *s;
 
-	par.ax = par.ay = h;
+	par.dx = par.dy = h;
 	s = stress_new(&par);
 	stress_load(s, p);
 	for (int k = 30; k <= 60; k++) {
@@ -174,8 +176,8 @@ static void test_hertz_peak(void)
 			}
 	}
 	near(most, 0.65975605, 2e-4, "mu = 0.3: largest stress below the surface");
-	near(x, 0.3188, h, "lies ahead of the middle");
-	near(z, 0.4282, 0.01, "at this depth");
+	near(x, 0.3188, h, "the largest stress is ahead of the centre");
+	near(z, 0.4282, 0.01, "the largest stress is at the reference depth");
 	stress_at(s, 0, &row, 1, m);
 	/* Nodes on the rim, where the pressure rises like a square root. */
 	trail = m[NODES / 2 * NODES + NODES / 2 - 64];
@@ -196,9 +198,9 @@ static double coarse_error(
 {
 	static const double depth[] = { 0, 1, 7, 9.99, 10, 14, 20, 40 };
 	size_t n = (size_t)par.nx * par.ny;
-	double *p = malloc(3 * n * sizeof(*p)), *a = p + n, *b = a + n, error = 0;
-	double side = fmax(par.ax, par.ay), most = 0;
-	struct stress_span *span = malloc(par.ny * sizeof(*span));
+	double *p = malloc(3 * n * sizeof *p), *a = p + n, *b = a + n, error = 0;
+	double side = fmax(par.dx, par.dy), most = 0;
+	struct stress_span *span = malloc(par.ny * sizeof *span);
 	struct stress *s, *full;
 
 	par.criterion = criterion;
@@ -216,7 +218,7 @@ static double coarse_error(
 	}
 	stress_load(s, p);
 	stress_load(full, p);
-	for (size_t k = 0; k < sizeof(depth) / sizeof(*depth); k++) {
+	for (size_t k = 0; k < sizeof(depth) / sizeof *depth; k++) {
 		size_t rows = whole_grid(&par, span);
 
 		stress_at(s, depth[k] * side, span, rows, a);
@@ -242,8 +244,8 @@ static void test_coarse(void)
 
 		par.axis = k >> 1 & 1;
 		par.periodic = k >> 2 & 1;
-		par.ax = 1e-6;
-		par.ay = k & 1 ? 1e-6 : 1.7e-6;
+		par.dx = 1e-6;
+		par.dy = k & 1 ? 1e-6 : 1.7e-6;
 		error = coarse_error(par, share, NULL);
 		ok(error < 1e-4,
 			"%s, %s, shear along %c: coarse sums within %.1e of p_max",
@@ -256,7 +258,7 @@ static void test_coarse(void)
 
 		ok(error < 1e-4, "the same by Tresca's criterion: within %.1e", error);
 		par = plain(80, 40, 0.2);
-		par.ay = 30;
+		par.dy = 30;
 		error = coarse_error(par, 1, NULL);
 		ok(error < 1e-13, "elongated cells are summed in full (%.1e)", error);
 	}
@@ -298,7 +300,7 @@ static void test_criteria(void)
  * strips, and its load from afar. */
 static void test_element(void)
 {
-	struct influence_par par = { .ax = 1, .ay = 1, .nu = 0.3, .mu = 0.4 };
+	struct influence_par par = { .dx = 1, .dy = 1, .nu = 0.3, .mu = 0.4 };
 	double error = 0, far = 0;
 
 	for (int k = 0; k < 60; k++) {
@@ -330,7 +332,7 @@ static void test_element(void)
 	}
 	/* Parts of 1/60 of the side replace slopes by steps. */
 	ok(error < 3e-4, "element: within %.1e of a sum over 14400 parts of it", error);
-	ok(far > 0 && far < 1e-3, "and a point load from afar (%.1e)", far);
+	ok(far > 0 && far < 1e-3, "a distant element is a point load (%.1e)", far);
 }
 
 /* No node outside the spans reaches the limit. */
@@ -340,7 +342,7 @@ static void test_reach(double mu)
 	struct stress_par par = plain(SIDE, SIDE, mu);
 	struct stress *s = stress_new(&par);
 	double p[SIDE * SIDE] = { 0 }, m[SIDE * SIDE];
-	struct stress_span *span = malloc(stress_spans_max(s) * sizeof(*span)), all[SIDE];
+	struct stress_span *span = malloc(stress_spans_max(s) * sizeof *span), all[SIDE];
 	int missed = 0;
 	double nodes = 0, kept = 0, failed = 0;
 
@@ -367,7 +369,7 @@ static void test_reach(double mu)
 	ok(missed == 0 && failed > 0 && kept < nodes,
 		"mu %g: no node over the limit is passed over (%.0f over, %.0f of %.0f searched)",
 		mu, failed, kept, nodes);
-	ok(stress_reach(s, 1000, 0.2, span) == 0, "nothing to search far below");
+	ok(stress_reach(s, 1000, 0.2, span) == 0, "far below there is nothing to search");
 	stress_free(s);
 	free(span);
 }
@@ -406,8 +408,7 @@ static void test_periodic_free(double mu, int axis)
 	enum { SIDE = 128, MID = SIDE / 2 };
 	struct stress_par par = plain(SIDE, SIDE, mu);
 	size_t n = SIDE * SIDE;
-	double *p = calloc(n, sizeof(*p)), *a = malloc(12 * n * sizeof(*a)),
-	       *b = a + 6 * n;
+	double *p = calloc(n, sizeof *p), *a = malloc(12 * n * sizeof *a), *b = a + 6 * n;
 	double error = 0, most = 0;
 	struct stress *s;
 
@@ -474,13 +475,13 @@ static void test_refusals(void)
 	struct stress *s = stress_new(&par);
 
 	p[5] = NAN;
-	ok(stress_load(s, p) == -1, "a pressure that is no number");
+	ok(stress_load(s, p) == NUM_DOMAIN, "a pressure that is not a number is refused");
 	p[5] = 0;
-	ok(stress_load(s, p) == 0, "no load at all");
+	ok(stress_load(s, p) == 0, "zero load is accepted");
 	{
 		struct stress_span span[64];
 
-		ok(stress_reach(s, 0, 1, span) == 0, "needs no node");
+		ok(stress_reach(s, 0, 1, span) == 0, "zero load needs no node");
 	}
 	stress_free(s);
 	par.nu = 0.6;

@@ -1,0 +1,85 @@
+#!/bin/sh
+# wearwatch: a pump that wears, watched through a stop and a power cut
+. "$(dirname "$0")/tap.sh"
+
+# Six hours of a pump, one second of the record for each: particles become more, and some
+# larger.
+awk 'BEGIN { srand(3); print "time\tdiameter"
+	for (t = 0.1; t < 5.9; t += 0.06 + 0.6 * rand() / (1 + t)) printf "%.6f\t%.4e\n", t, (60 + 40 * rand()) * 1e-6 }' >particles.tsv
+sensorsim --duration 6s --noise 10mV --truth truth.tsv particles.tsv >hours.au
+watch() {
+	wearwatch --chunk 1s --overlap 0.1s --scale 3600 --threshold-volume 2e-10 --classes 50um,75um,100um \
+		--no-pictures "$@"
+}
+watch --state whole hours.au 2>said
+is 'a sound record is processed without a warning' "$? $(cat said)" '0 '
+is 'every chunk has a row' "$(column chunk whole/chunks.tsv | tr '\n' ' ')" '0 1 2 3 4 5 '
+near 'as many particles are found as were simulated' "$(grep -c '^[0-9]' whole/particles.tsv)" "$(grep -c '^[0-9]' truth.tsv)" 0
+near 'the volume is that of the simulated particles within 2 %' "$(column volume whole/chunks.tsv | tail -1 | awk '{ print $1 * 1e12 }')" \
+	"$(column diameter truth.tsv | awk '{ v += 0.5235987756 * $1 ^ 3 } END { print v * 1e12 }')" 1
+near 'rates are per hour of operation' "$(column per_hour whole/chunks.tsv | tail -1)" \
+	"$(column time1 truth.tsv | awk '$1 >= 5' | wc -l | tr -d ' ')" 0.5
+is 'counts by size add up' "$(sed -n '/Sizes/,/<main>/s/.*<td>[0-9]*<\/td><td>[0-9]*<\/td><td>\([0-9]*\)<.*/\1/p;
+	/Sizes/,/<main>/s/.*<td>100<\/td><td><\/td><td>\([0-9]*\)<.*/\1/p' whole/index.html |
+	awk '{ n += $1 } END { print n }')" "$(grep -c '^[0-9]' truth.tsv)"
+
+# Live, as a pipe: killed with all its children in the third hour, when a tenth of a second
+# of the fourth is there; then started again with what comes after.
+skip=$(od -An -tu1 -j4 -N4 hours.au | awk '{ print $3 * 256 + $4 }')
+n=$((skip + 31000 * 16))
+head -c $n hours.au >before.au
+{ head -c "$skip" hours.au && tail -c +$((n + 1)) hours.au; } >after.au
+started() {
+	for _ in $(seq 400); do
+		[ "$(grep -c '^[0-9]' cut/chunks.tsv)" -ge "$1" ] && [ "$(cat cut/spool/* | wc -c)" -ge $((n - skip)) ] && return
+		sleep 0.05
+	done 2>/dev/null
+}
+if command -v setsid >/dev/null; then
+	mkfifo live
+	# shellcheck disable=SC2016 # of the other shell
+	setsid sh -c 'echo $$ >group; cat before.au - <live | wearwatch --chunk 1s --overlap 0.1s --scale 3600 --threshold-volume 2e-10 \
+		--classes 50um,75um,100um --no-pictures --state cut' 2>/dev/null &
+	p=$!
+	exec 3>live
+	started 2
+	kill -KILL "-$(cat group)"
+	exec 3>&-
+	wait $p 2>/dev/null
+	# A torn row, and rows of a chunk that has no row
+	printf '3\t10800' >>cut/chunks.tsv
+	printf '1\t2\t3\n' >>cut/particles.tsv
+	watch --state cut <after.au 2>said
+	like 'a truncated row is reported' "$(cat said)" 'the last row was cut off'
+	same 'after a power failure all rows are those of an uninterrupted run' cut/chunks.tsv whole/chunks.tsv
+	same 'after a power failure all particles are those of an uninterrupted run' cut/particles.tsv whole/particles.tsv
+else
+	skip 'a power failure can be tested' 'no setsid'
+fi
+
+# Sensor 1 is clipped in one hour; an alarm by rate is raised, told once and cleared.
+sigconvert --output text hours.au | awk -F '\t' -v OFS='\t' '/^[0-9]/ && $1 >= 2 && $1 < 3 && $2 > 0.3 { $2 = 0.3 }
+	/^[0-9]/ && $1 < 4 { print } !/^[0-9]/ { print }' | sigconvert --from text >clipped.au
+watch --state clipped --alarm-rate 7:2 --on-alarm 'echo "$WEARWATCH_ALARM" >>told' clipped.au 2>said
+is 'an alarm is active at the end' $? 4
+is 'the command of the alarm is called once' "$(cat told)" 'rate '
+like 'clipped samples are reported' "$(cat said)" 'channel 1 is clipped'
+is 'clipped samples are reported only in their hour' "$(column doubts clipped/chunks.tsv | sed 's/:.*//; s/,.*//' | tr '\n' ' ')" '- - clipped1 - '
+like 'the page shows the clipping' "$(cat clipped/index.html)" 'channel 1 is clipped in [0-9]* samples'
+like 'the page shows the alarm' "$(cat clipped/index.html)" 'Alarm: particles per hour'
+like 'the page renews itself' "$(cat clipped/index.html)" 'http-equiv="refresh"'
+is 'the page has no external link' "$(grep -cE '(src|href)="?[a-z]*:' clipped/index.html)" 0
+
+fails 'other options for the same state' 1 'made with other options' \
+	wearwatch --state whole --chunk 2s --overlap 0.1s --scale 3600 hours.au
+sensorsim --duration 6s --noise 10mV --seed 2 particles.tsv >other.au
+fails 'another recording for the same state' 1 'not the recording' watch --state whole other.au
+printf 'a,b\n1,2\n' >table.csv
+fails 'a table' 1 'neither AU nor WAV; sigconvert' watch --state other table.csv
+fails 'an empty stream' 1 'empty' watch --state other
+fails 'no state' 2 'want --state' wearwatch hours.au
+fails 'a time without a number' 2 'want a time above 0' wearwatch --state other --chunk x hours.au
+fails 'an overlap as long as a chunk' 2 'less than a chunk' wearwatch --state other --chunk 1s --overlap 1s hours.au
+fails 'alarms of a life without an end' 2 'wants --threshold-volume' wearwatch --state other --alarm-life 2h hours.au
+fails 'an unknown option' 2 'no such option' wearwatch --colour
+done_testing
