@@ -8,6 +8,7 @@
 void scratches_add(long realisation, double diameter, double depth, double section);
 /* Reads heights, cuts the grooves of their realisation (of all of them where apart is 0)
  * at random places and writes the fields to standard output. */
-void scratches_cut(const char *path, double length, double cut, uint64_t seed, int apart);
+void scratches_cut(const char *path, double length, double cut, uint64_t seed, int apart,
+	const char *cmd);
 
 #endif
