@@ -9,64 +9,64 @@ cell() {
 
 printf 'diameter\taspect\n10e-6\t1\n8e-6\t3\n30e-6\t1.1\n10e-6\t3\n' >four.tsv
 abrade --gap 9um --hardness 2GPa,6GPa --friction 0.1 four.tsv >out.tsv
-is "a sphere of 10 um in a gap of 9 um: depth in 2 GPa and load" \
+is "a sphere of 10 um in a gap of 9 um has the depth and the load of an indentation in 2 GPa" \
 	"$(cell depth1 out.tsv) $(cell load out.tsv)" "7.6013e-07 0.0441299"
-is "how particles move" "$(column mode out.tsv | tr '\n' ' ')" "rolls free rolls grooves "
-is "only what grooves wears, and the harder body" \
+is "each particle moves as its shape and hardness prescribe" "$(column mode out.tsv | tr '\n' ' ')" "rolls free rolls grooves "
+is "only grooving particles wear, and only the harder body wears" \
 	"$(column volume1 out.tsv | tr '\n' ' ')$(column volume2 out.tsv | awk '{ printf "%s ", ($1 > 0) }')" \
 	"0 0 0 0 0 0 0 1 "
 abrade --gap 9um --hardness 2GPa,6GPa --friction 1.5 four.tsv >rough.tsv
-is "with more friction the long one rolls, too" "$(column mode rough.tsv | tail -n 1)" rolls
+is "the elongated particle also rolls if the friction is larger" "$(column mode rough.tsv | tail -n 1)" rolls
 abrade --gap 9um --hardness 2GPa,6GPa --friction 0.1 --motion groove --slide 3m --cutting 20% four.tsv >slid.tsv
-near "volume grows with the way and the share that is cut" \
+near "the volume is proportional to the sliding distance and the cutting share" \
 	"$(cell volume2 slid.tsv 4 | awk '{ print $1 * 1e12 }')" \
 	"$(cell volume2 out.tsv 4 | awk '{ print $1 * 0.6e12 }')" 1e-5
-is "all groove if they are told to" "$(column mode slid.tsv | tr '\n' ' ')" "grooves free grooves grooves "
+is "all particles groove with --motion groove" "$(column mode slid.tsv | tr '\n' ' ')" "grooves free grooves grooves "
 
 abrade --load 1N --hardness 2GPa,6GPa --friction 0.1 --summary s.tsv --area 1mm2 four.tsv >loaded.tsv
-near "under a load all particles carry it together" "$(cell load s.tsv)" 1 1e-9
-near "pressure is load over area" "$(cell pressure s.tsv)" 1e6 1
-is "the gap found gives the same again" "$(abrade --gap "$(column gap s.tsv)" --hardness 2GPa,6GPa \
+near "the particles together carry the load" "$(cell load s.tsv)" 1 1e-9
+near "the pressure is load over area" "$(cell pressure s.tsv)" 1e6 1
+is "the computed gap gives the same result as input" "$(abrade --gap "$(column gap s.tsv)" --hardness 2GPa,6GPa \
 	--friction 0.1 four.tsv | sed '/^#/d')" "$(sed '/^#/d' loaded.tsv)"
 printf 'realisation\tdiameter\n1\t10e-6\n0\t20e-6\n1\t12e-6\n' >two.tsv
 abrade --load 0.1N --hardness 2GPa --friction 0 --summary s.tsv two.tsv >loaded.tsv
-is "each realisation has a gap of its own" "$(column realisation s.tsv | tr '\n' ' ')$(column load s.tsv |
+is "each realisation has its own gap" "$(column realisation s.tsv | tr '\n' ' ')$(column load s.tsv |
 	awk '{ printf "%.6f ", $1 }')" "0 1 0.100000 0.100000 "
 fails "more load than they can carry" 1 'carry at most .* the surfaces touch' \
 	abrade --load 1kN --hardness 2GPa --friction 0 two.tsv
 
 abrade --gap 9um --hardness 2GPa,6GPa --abrasive-hardness 3GPa --friction 0.1 four.tsv >soft.tsv
-is "particles softer than 1.2 times the harder body sink into the other" \
+is "particles softer than 1.2 times the harder body are embedded in the softer body" \
 	"$(column mode soft.tsv | sort -u | tr '\n' ' ')" "embeds free "
 abrade --gap 9um --hardness 2GPa,6GPa --abrasive-hardness 2GPa --friction 0.1 four.tsv >soft.tsv 2>err
-is "those softer than both are marked: status 3, no numbers" \
+is "particles softer than both bodies are marked by status 3 and have no volume" \
 	"$? $(column mode soft.tsv | sort -u | tr '\n' ' ')$(cell load soft.tsv) $(grep -c 'yield' err)" \
 	"3 free yields nan 1"
 fails "what such particles carry is not known" 1 'the particles yield' \
 	abrade --load 1N --hardness 2GPa,6GPa --abrasive-hardness 2GPa --friction 0.1 four.tsv
 abrade --gap 1um --hardness 2GPa --friction 0.1 --motion groove four.tsv >deep.tsv 2>err
-is "grooves deeper than their radius are marked" "$? $(column mode deep.tsv | sort -u) $(cell volume1 deep.tsv)" "3 buried nan"
+is "grooves deeper than the radius of the particle are marked" "$? $(column mode deep.tsv | sort -u) $(cell volume1 deep.tsv)" "3 buried nan"
 abrade --gap 9um --hardness 2GPa --friction 0.01 --inlet 5mm four.tsv >in.tsv
-is "a ball of 5 mm draws in 10 um at a friction of 0.01, not 30 um" \
+is "a ball of 5 mm admits 10 um at a friction of 0.01, but not 30 um" \
 	"$(column mode in.tsv | tr '\n' ' ')" "rolls free rejected grooves "
 
 # An oil of a known code: as many particles as it has, the mean beside the draw.
 abrade --iso 18:16:13 --largest 70um --area 1m2 --gap 5um --hardness 2GPa,6GPa --friction 0.1 \
 	--motion groove --summary s.tsv --stats st >oil.tsv
 # 2500 per ml in 5 ml, less those of 4 to 5 um
-near "particles above 14 um: 80 per ml" "$(column diameter oil.tsv | awk '$1 > 14e-6' | wc -l)" 400 80
-near "the draw carries what the mean says" "$(awk -v a="$(cell pressure s.tsv)" -v b="$(cell mean_pressure s.tsv)" \
+near "the number of particles above 14 um is 80 per ml" "$(column diameter oil.tsv | awk '$1 > 14e-6' | wc -l)" 400 80
+near "the particles drawn carry the mean load" "$(awk -v a="$(cell pressure s.tsv)" -v b="$(cell mean_pressure s.tsv)" \
 	'BEGIN { print a / b }')" 1 0.2
-near "and wears as it says" "$(awk -v a="$(cell depth_rate2 s.tsv)" -v b="$(cell mean_depth_rate2 s.tsv)" \
+near "the particles drawn cause the mean wear" "$(awk -v a="$(cell depth_rate2 s.tsv)" -v b="$(cell mean_depth_rate2 s.tsv)" \
 	'BEGIN { print a / b }')" 1 0.2
-near "particles below the gap are not drawn, and counted" "$(awk -v n="$(column diameter oil.tsv | wc -l)" \
+near "particles smaller than the gap are not drawn but counted" "$(awk -v n="$(column diameter oil.tsv | wc -l)" \
 	-v left="$(column particles_left_out st)" 'BEGIN { print n + left }')" 12500 60
 abrade --iso 18:16:13 --largest 70um --area 1m2 --load 604N --hardness 2GPa,6GPa --friction 0.1 \
 	--motion groove --summary s2.tsv >oil2.tsv
 near "under a load the gap is the one at which the oil carries it on average" "$(cell mean_pressure s2.tsv)" 604 1e-3
 abrade --iso 18:16:13 --largest 70um --area 1m2 --gap 5um --hardness 2GPa,6GPa --friction 0.1 \
 	--motion groove --count 3 >three.tsv
-is "the first of three realisations is the one alone" \
+is "the first of three realisations equals a single realisation" \
 	"$(grep '^0	' three.tsv | cksum)" "$(grep '^0	' oil.tsv | cksum)"
 
 # Surfaces: what leaves them is what the table says.
@@ -84,11 +84,11 @@ for k in 1 2; do
 done
 is "grooves are counted" "$(column grooves_cut st)" 3
 abrade --gap 9.5um --hardness 6GPa,2GPa --friction 0.1 --surface h.nrrd --body 2 p.tsv >same.nrrd
-is "the body that is not grooved stays as it was" "$(mean same.nrrd 1)" "$(mean h.nrrd 1)"
+is "the body without grooves is unchanged" "$(mean same.nrrd 1)" "$(mean h.nrrd 1)"
 roughgen --points 64 --length 0.25mm --sq 4um --corr 30um --crown 16um | bemcontact --load 5N --young 210GPa |
 	debrisgen --yield 355MPa --friction 0.3 --surface w.nrrd 2>err |
 	abrade --load 5N --hardness 4GPa --friction 0.1 --slide 1mm --surface w.nrrd 2>err | roughgen --measure - >measured.tsv
-rising "the loop: a surface scratched by its own debris is rougher" \
+rising "a surface scratched by its own debris is rougher" \
 	"$(roughgen --measure w.nrrd | column sdq /dev/stdin)" "$(column sdq measured.tsv)"
 
 p="--hardness 2GPa --friction 0.1"

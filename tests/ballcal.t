@@ -13,15 +13,15 @@ for d in 60 100 160; do
 done
 ballcal --balls 60.tsv:60um --balls 100.tsv:100um --balls 160.tsv:160um --noise 5mV --pulse-duration 10ms \
 	--false-alarms 1e-3Hz >cal.tsv 2>err
-is "three sizes are told apart" "$(value sizes)" 3
-rising "the interval holds the constant of the sensor" "$(value calibration 3)" 78539816339.7 "$(value calibration 4)"
-near "and is narrow" "$(awk -v a="$(value calibration 3)" -v b="$(value calibration 4)" 'BEGIN { print b / a }')" 1 0.01
-rising "the exponent is 3 within its interval" "$(value exponent 3)" 3 "$(value exponent 4)"
+is "three sizes are distinguished" "$(value sizes)" 3
+rising "the interval contains the constant of the sensor" "$(value calibration 3)" 78539816339.7 "$(value calibration 4)"
+near "the interval is narrow" "$(awk -v a="$(value calibration 3)" -v b="$(value calibration 4)" 'BEGIN { print b / a }')" 1 0.01
+rising "the interval of the exponent contains 3" "$(value exponent 3)" 3 "$(value exponent 4)"
 # threshold sqrt(2 ln(1e5)) = 4.7985; d50 = (4.7985 0.005 / (K 12.732))^(1/3)
-near "threshold of one false alarm in 1000 s" "$(value threshold)" 4.79853 1e-5
-near "half of the balls of 28.8 um are seen" "$(value d50 | awk '{ print $1 * 1e6 }')" 28.84 0.02
-near "and 90 % of those 8.3 % larger" "$(awk -v a="$(value d50)" -v b="$(value d90)" 'BEGIN { print b / a }')" 1.0820 1e-4
-near "pulses that duet found alone are all used" "$(value pulses)" 120 2
+near "the threshold allows one false alarm in 1000 s" "$(value threshold)" 4.79853 1e-5
+near "half of the balls of 28.8 um are detected" "$(value d50 | awk '{ print $1 * 1e6 }')" 28.84 0.02
+near "90 % of the balls are detected at a size 8.3 % larger" "$(awk -v a="$(value d50)" -v b="$(value d90)" 'BEGIN { print b / a }')" 1.0820 1e-4
+near "all pulses that duet classifies as alone are used" "$(value pulses)" 120 2
 
 # Exact powers: no scatter, no doubt about the exponent.
 for d in 1 2 4; do
@@ -30,16 +30,16 @@ for d in 1 2 4; do
 		print "1\t2\tmisfit" }' >$d.tsv
 done
 ballcal --balls 1.tsv:1mm --balls 2.tsv:2mm --balls 4.tsv:4mm --exponent 5 --stats st >cal.tsv 2>err
-is "an exponent of 5, as of non-ferrous balls" "$? $(value exponent | awk '{ printf "%.6f", $1 }')" "0 5.000000"
-near "its constant" "$(value calibration | awk '{ print $1 * 1e-15 }')" 1 0.001
-is "doubtful rows are left out, counted and said" "$(column rows_doubtful st) $(grep -c 'left out' err)" "3 1"
+is "non-ferrous balls have the exponent 5" "$? $(value exponent | awk '{ printf "%.6f", $1 }')" "0 5.000000"
+near "non-ferrous balls have their constant" "$(value calibration | awk '{ print $1 * 1e-15 }')" 1 0.001
+is "doubtful rows are left out, counted and reported" "$(column rows_doubtful st) $(grep -c 'left out' err)" "3 1"
 ballcal --balls 1.tsv:1mm --balls 2.tsv:2mm --balls 4.tsv:4mm >cal.tsv 2>err
-is "taken for ferrous they are marked: status 3" "$? $(grep -c 'the exponent is 5, not 3' err)" "3 1"
+is "non-ferrous balls with exponent 3 are marked by status 3" "$? $(grep -c 'the exponent is 5, not 3' err)" "3 1"
 awk 'NR == 1 { print; next } { $1 *= 1.5; print }' OFS='\t' 2.tsv >off.tsv
 ballcal --balls 1.tsv:1mm --balls off.tsv:2mm --balls 4.tsv:4mm --exponent 5 >cal.tsv 2>err
-is "a size off the line is marked: status 3" "$? $(grep -c 'no power law' err)" "3 1"
+is "a size that does not fit the power law is marked by status 3" "$? $(grep -c 'no power law' err)" "3 1"
 ballcal --balls 2.tsv:2mm --exponent 5 >cal.tsv 2>err
-is "one size tells the constant, not the exponent" "$? $(value sizes) $(value exponent)" "0 1 "
+is "one size determines the constant but not the exponent" "$? $(value sizes) $(value exponent)" "0 1 "
 
 fails "no balls" 2 '\--balls is missing' ballcal
 fails "balls without a diameter" 2 'want FILE:D' ballcal --balls 1.tsv

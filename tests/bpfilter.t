@@ -11,29 +11,29 @@ impulse() {
 bpfilter --response >response.tsv
 for want in 0:-24.5 20:-17.4 50:-6.3 70:-2.2 100:0 130:-2.1 150:-6.2 200:-30.5 2000:-61.9; do
 	got=$(awk -F '\t' -v f="${want%:*}" '$1 == f { print $3 }' response.tsv)
-	near "level at ${want%:*} Hz" "$got" "${want#*:}" 0.05
+	near "the level at ${want%:*} Hz is that of the window method" "$got" "${want#*:}" 0.05
 done
 got=$(bpfilter --response --no-scale | awk -F '\t' '$1 == 100 { print $3 }')
-near "without scaling the middle is at -4.57 dB" "$got" -4.57 0.005
+near "without scaling the level at the centre is -4.57 dB" "$got" -4.57 0.005
 got=$(bpfilter --response --order 800 | awk -F '\t' '$1 == 50 { print $3 }')
 near "order 800 reaches -48 dB at 50 Hz" "$got" -48 0.5
 got=$(bpfilter --response --zero-phase | awk -F '\t' '$1 == 80 || $1 == 120 { s += ($4 < 0 ? -$4 : $4) } END { print s }')
-near "no phase in the band without the delay" "$got" 0 1e-9
+near "the phase in the band is zero without the delay" "$got" 0 1e-9
 
 # an impulse gives the taps, causal and with the delay taken out
 bpfilter --taps | column tap /dev/stdin >taps
 impulse 500 50 | au 10000 1 >impulse.au
 bpfilter impulse.au >h.au
 frames h.au | sed -n 51,251p >got
-near "an impulse gives the taps" "$(worst taps got)" 0 1e-16
-is "as many frames out as in" "$(frames h.au | wc -l)" 500
+near "the response to an impulse is the taps" "$(worst taps got)" 0 1e-16
+is "the number of frames is unchanged" "$(frames h.au | wc -l)" 500
 bpfilter --zero-phase impulse.au >z.au
-is "--zero-phase: as many frames out as in" "$(frames z.au | wc -l)" 500
+is "--zero-phase keeps the number of frames" "$(frames z.au | wc -l)" 500
 frames z.au | sed -n 1,151p >left
 frames h.au | sed -n 101,251p >right
 near "--zero-phase shifts by half the order" "$(worst left right)" 0 1e-16
 impulse 60 10 | au 10000 1 | bpfilter --zero-phase >short.au
-is "--zero-phase on a record shorter than the filter" "$(frames short.au | wc -l)" 60
+is "--zero-phase accepts a record shorter than the filter" "$(frames short.au | wc -l)" 60
 
 # channels do not mix; the pipe's block size does not matter
 awk 'BEGIN { for (i = 0; i < 5000; i++) print sin(i * i / 900), i % 37 / 37 - 0.5, 0 }' >three
@@ -42,22 +42,22 @@ bpfilter three.au >three.out
 awk '{ print $2 }' three | au 10000 1 | bpfilter >one.out
 frames three.out | awk 'NR % 3 == 2' >a
 frames one.out >b
-same "a channel among three is as alone" a b
-is "a silent channel stays silent" "$(frames three.out | awk 'NR % 3 == 0 && $1 != 0' | wc -l)" 0
+same "a channel among three is filtered as if it were alone" a b
+is "a silent channel remains silent" "$(frames three.out | awk 'NR % 3 == 0 && $1 != 0' | wc -l)" 0
 (
 	head -c 1000 three.au
 	sleep 0.05
 	tail -c +1001 three.au | dd bs=777 2>/dev/null
 ) | bpfilter >dripped
 cat three.au | bpfilter >poured
-same "a dripping pipe gives the same bytes" dripped poured
+same "a slow pipe gives the same bytes" dripped poured
 bpfilter -S stats three.au >/dev/null
-is "silent blocks are left out, a third of all here" \
+is "silent blocks are skipped, a third of all blocks here" \
 	"$(column blocks stats)/$(column blocks_left_out stats)" 6/3
 bpfilter --latency 1ms three.au >prompt.au
 frames three.out >a
 frames prompt.au >b
-near "--latency changes nothing but rounding" "$(worst a b)" 0 2e-15
+near "--latency changes the result only by rounding" "$(worst a b)" 0 2e-15
 
 # what is done is written at once where a latency is wanted
 mkfifo live
@@ -65,34 +65,34 @@ mkfifo live
 	head -c 24000 three.au
 	sleep 2
 ) | bpfilter --latency 5ms >live &
-is "--latency: output before the input ends" "$(timeout 1 head -c 20000 live | wc -c)" 20000
+is "--latency writes output before the input ends" "$(timeout 1 head -c 20000 live | wc -c)" 20000
 wait
 
 # lines: gone to the last digits where they keep their amplitude, hardly any harm to pulses
 sensorsim --uniform 50um:50um --number 0 --duration 9.7 --mains 0.5,0.3,0.05 >lines.au
 bpfilter -b 0:5000 --zero-phase --lines 50,150,250 lines.au >clean.au
-is "--lines: as many frames out as in" "$(frames clean.au 2 | wc -l)" 97000
-near "--lines takes steady lines out" "$(frames clean.au | awk '{ d = $1 < 0 ? -$1 : $1
+is "--lines keeps the number of frames" "$(frames clean.au 2 | wc -l)" 97000
+near "--lines removes steady lines" "$(frames clean.au | awk '{ d = $1 < 0 ? -$1 : $1
 	if (d > m) m = d } END { print m }')" 0 1e-10
 pulses="--uniform 50um:150um --number 200 --duration 10 --noise 10mV"
 sensorsim $pulses >without.au
 sensorsim $pulses --mains 0.5,0.3,0.05 | bpfilter -b 0:5000 --zero-phase --lines 50,150,250 >clean.au
 frames without.au >a
 frames clean.au >b
-near "--lines spares pulses: rms of what is left" \
+near "--lines distorts pulses by less than the tolerance" \
 	"$(paste a b | awk '{ s += ($1 - $2) ^ 2 } END { print sqrt(s / NR) }')" 0 2e-3
 # an offset stays; a line of 10 Hz that grows by half in 10 s is followed
 awk 'BEGIN { for (i = 0; i < 10000; i++) { a = 1 + i / 20000
 	print 7 + a * sin(6.283185307179586 * i / 100) } }' | au 1000 1 |
 	bpfilter -b 0:500 --zero-phase --lines 10 --line-window 0.5 >grow.au
-near "--lines follows a changing amplitude and leaves the offset" "$(frames grow.au |
+near "--lines follows a changing amplitude and keeps the offset" "$(frames grow.au |
 	awk 'NR > 500 && NR < 9500 { d = $1 - 7; if (d < 0) d = -d; if (d > m) m = d } END { print m }')" 0 2e-3
 for n in 0 1 10 999 1000 1001 2500; do
 	awk -v n="$n" 'BEGIN { for (i = 0; i < n; i++) print sin(i / 5) }' | au 1000 1 |
 		bpfilter -b 0:500 --zero-phase --lines 31.830988618 --line-window 1 >part.au
 	frames part.au | awk '{ d = $1 < 0 ? -$1 : $1; if (d > m || /nan/) m = d } END { print NR, (m !~ /nan/ && m < 1e-6) }'
 done >parts
-is "--lines on records of any length" "$(tr '\n' ' ' <parts)" \
+is "--lines accepts records of any length" "$(tr '\n' ' ' <parts)" \
 	"0 1 1 1 10 0 999 1 1000 1 1001 1 2500 1 "
 fails "lines too near for the window" 2 'window of 0.1 s' bpfilter --lines 50,55 --line-window 0.1 lines.au
 fails "lines out of order" 2 'in order' bpfilter --lines 150,50 lines.au
@@ -124,9 +124,9 @@ for n in (2, 3, 31, 200, 1001, 20000):
                 worst = max(worst, abs(h - g).max())
 print(worst)
 END
-	near "scipy.signal.firwin gives the same taps" "$($py compare.py)" 0 1e-14
+	near "the taps equal those of scipy.signal.firwin" "$($py compare.py)" 0 1e-14
 else
-	skip "scipy.signal.firwin gives the same taps" "no scipy"
+	skip "the taps equal those of scipy.signal.firwin" "no scipy"
 fi
 
 # what it refuses

@@ -35,40 +35,40 @@ delaynet --model pulses --fresh --layers "8conv13x1/4 12conv5x1/2 32" --activati
 for net in small.net "$shipped"; do
 	which=${net##*/}
 	# shellcheck disable=SC2086
-	ok "$which: applied to the sections of duet" \
+	ok "$which: the network is applied to the sections of duet" \
 		sh -c "$apply --network $net $known --stats st s.au >cnn.tsv"
-	is "$which: every section is looked at" "$(column sections st) $(column sections_refused st)" \
+	is "$which: every section is processed" "$(column sections st) $(column sections_refused st)" \
 		"$(column section sections.tsv | wc -l) 0"
-	is "$which: rows say what they are" "$(column verdict cnn.tsv | sort -u)" guessed
+	is "$which: rows are marked as estimates of a network" "$(column verdict cnn.tsv | sort -u)" guessed
 done
 diameters <cnn.tsv >sized.tsv
 # The shipped one tells twins apart, delays to 0.6 samples (a guess without data: 0.87).
-less "shipped: at most 3 % of the particles missed" "$(score missed truth.tsv sized.tsv)" 4
-less "shipped: delays to 60 us" "$(score delay_rms truth.tsv sized.tsv)" 60e-6
-less "shipped: sizes to 5 %" "$(score size_rms truth.tsv sized.tsv)" 0.05
-less "shipped: no larger than a megabyte" "$(wc -c <"$shipped")" 1000000
+less "the installed network misses at most 3 % of the particles" "$(score missed truth.tsv sized.tsv)" 4
+less "the installed network has errors of delay below 60 us" "$(score delay_rms truth.tsv sized.tsv)" 60e-6
+less "the installed network has errors of size below 5 %" "$(score size_rms truth.tsv sized.tsv)" 0.05
+less "the installed network is no larger than a megabyte" "$(wc -c <"$shipped")" 1000000
 # shellcheck disable=SC2086
 {
 	$apply --network "$shipped" $known --sources 2 s.au >two.tsv
 	# shellcheck disable=SC2002 # a pipe is meant
 	cat s.au | $apply --network "$shipped" $known >piped.tsv
 }
-is "the number of pulses can be told" "$(column sources two.tsv | sort -u)" 2
+is "the number of pulses can be given" "$(column sources two.tsv | sort -u)" 2
 is "a record from a pipe gives the same rows" "$(grep -v '^#' piped.tsv)" "$(grep -v '^#' cnn.tsv)"
 # The arrival is a place in the record: a section cut off 1 ms earlier gives the same pulses.
 awk -F '\t' -v OFS='\t' '/^#/ { next } $1 != "section" { $2 -= 1e-3 } { print }' sections.tsv >wide.tsv
 # shellcheck disable=SC2086
 $apply --network "$shipped" $known --sections wide.tsv s.au >wide
-near "where a section is cut moves no arrival" "$(column time1 wide | sed -n 3p)" \
+near "arrivals do not depend on the limits of the section" "$(column time1 wide | sed -n 3p)" \
 	"$(column time1 cnn.tsv | sed -n 3p)" 2e-4
 
 # Too long a section is refused and says so.
 printf 'section\tbegin\tend\n1\t0.1\t0.16\n2\t0.2\t0.23\n' >long.tsv
 # shellcheck disable=SC2086
 $apply --network "$shipped" $known --sections long.tsv s.au >long 2>err
-is "a section of six durations: exit status" $? 3
-is "and its row" "$(column verdict long | head -n 1)" refused
-is "and the message" "$(cat err)" "delaynet: 1 of 2 sections are outside the range of the network"
+is "a section of six durations gives exit status 3" $? 3
+is "a section of six durations has a refused row" "$(column verdict long | head -n 1)" refused
+is "a section of six durations is reported" "$(cat err)" "delaynet: 1 of 2 sections are outside the range of the network"
 
 # shellcheck disable=SC2086
 {

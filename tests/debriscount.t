@@ -11,102 +11,102 @@ cell() {
 printf 'time1\tdiameter\tverdict\tsources\n100\t50e-6\talone\t1\n200\t50e-6\toverlap\t2\n300\t50e-6\talone\t1
 400\t50e-6\tmisfit\t1\n500\t50e-6\talone\t1\n600\t50e-6\talone\t1\n700\t120e-6\talone\t1\n' >six.tsv
 debriscount --duration 30min --density 7.8g/cm3 --flow 2L/min --stats st six.tsv >all.tsv 2>err
-is "doubtful rows are left out, counted and said" \
+is "doubtful rows are left out, counted and reported" \
 	"$(cell rows all.tsv) $(cell doubtful all.tsv) $(cell rows_doubtful st) $(grep -c 'left out' err)" "6 1 1 1"
-is "particles per hour" "$(cell per_hour all.tsv)" 12
-is "per millilitre" "$(cell per_ml all.tsv)" 0.0001
+is "particles per hour are number over duration" "$(cell per_hour all.tsv)" 12
+is "particles per millilitre are number over volume" "$(cell per_ml all.tsv)" 0.0001
 # 5 (50 um)^3 + (120 um)^3 = 2.353e-12 m3
-near "kilograms per hour" "$(cell kg_per_hour all.tsv | awk '{ print $1 * 1e8 }')" 1.92194 1e-4
-is "interval: Garwood's of 6 below, of 7 with the doubtful row above" \
+near "the mass per hour is that of spheres" "$(cell kg_per_hour all.tsv | awk '{ print $1 * 1e8 }')" 1.92194 1e-4
+is "the interval is that of Garwood for 6 below and for 7 with the doubtful row above" \
 	"$(cell number_low all.tsv) $(cell number_high all.tsv)" "2.20189 14.4227"
 debriscount --duration 30min --doubtful six.tsv >all.tsv 2>err
-is "doubtful rows are counted if they shall be" "$(cell rows all.tsv) $(cell doubtful all.tsv)" "7 0"
+is "doubtful rows are counted with --doubtful" "$(cell rows all.tsv) $(cell doubtful all.tsv)" "7 0"
 debriscount --duration 30min --classes 40um,100um,200um six.tsv >classes.tsv 2>err
-is "classes: counts" "$(column rows classes.tsv | tr '\n' ' ')" "5 1 0 "
-is "the last is open and may hold -ln 0.025 unseen" "$(cell high classes.tsv 3) $(cell number_high classes.tsv 3)" "inf 3.68888"
+is "particles are counted in their classes" "$(column rows classes.tsv | tr '\n' ' ')" "5 1 0 "
+is "the last class is open and its upper limit is -ln 0.025" "$(cell high classes.tsv 3) $(cell number_high classes.tsv 3)" "inf 3.68888"
 is "without a density there is no mass" "$(cell kg_per_hour classes.tsv)" nan
 debriscount --duration 30min six.tsv >all.tsv 2>err
 debriscount --duration 30min --confidence 0.9 six.tsv >ninety.tsv 2>err
-rising "a lower confidence is a narrower interval" "$(cell number_low all.tsv)" "$(cell number_low ninety.tsv)" \
+rising "a lower confidence gives a narrower interval" "$(cell number_low all.tsv)" "$(cell number_low ninety.tsv)" \
 	"$(cell number_high ninety.tsv)" "$(cell number_high all.tsv)"
 
 debriscount six.tsv >open.tsv 2>err
-is "without --duration the record ends with its last particle, and that is said" \
+is "without --duration the record ends with its last particle, and a warning is printed" \
 	"$(cell end open.tsv) $(grep -c 'last particle' err)" "700 1"
 debriscount --period 250s --stats st six.tsv >periods.tsv 2>err
-is "periods: rows of each, the last unfinished one left out" \
+is "each complete period has its rows" \
 	"$(column rows periods.tsv | tr '\n' ' ')$(cell periods_left_out st)" "2 1 1"
 debriscount --period 250s --duration 900s six.tsv >periods.tsv 2>err
-is "a duration completes them" "$(column rows periods.tsv | tr '\n' ' ')$(cell end periods.tsv 4)" "2 1 3 0 900"
+is "with --duration the last period is written too" "$(column rows periods.tsv | tr '\n' ' ')$(cell end periods.tsv 4)" "2 1 3 0 900"
 
 # A stretch of 40 equal particles of 100 um.
 printf 'time1\tdiameter\tverdict\tsources\n1\t60e-6\talone\t1\n5\t100e-6\tunresolved\t40\n' >dense.tsv
 debriscount --duration 10s --classes 50um,90um,125um dense.tsv >dense.out 2>err
-is "a stretch counts as equal particles in their class" "$(column unresolved dense.out | tr '\n' ' ')" "0 40 0 "
+is "an unresolved section counts as equal particles in their class" "$(column unresolved dense.out | tr '\n' ' ')" "0 40 0 "
 # 3.69 + 40 (100/125)^12
-near "and bounds what may be above" "$(cell number_high dense.out 3)" 6.43766 1e-4
-is "and that is said" "$(grep -c 'not resolved' err)" 1
+near "an unresolved section bounds the number of larger particles" "$(cell number_high dense.out 3)" 6.43766 1e-4
+is "unresolved sections are reported" "$(grep -c 'not resolved' err)" 1
 printf 'time1\tdiameter\tverdict\tsources\n5\tnan\tunresolved\t40\n' >dense.tsv
 debriscount --duration 10s dense.tsv >dense.out 2>err
-is "a stretch of which nothing is known leaves no upper end" "$(cell number_high dense.out)" inf
+is "an unresolved section without diameter has no upper limit" "$(cell number_high dense.out)" inf
 
 printf 'time1\tdiameter\tmaterial\n1\t60e-6\tsteel\n2\t60e-6\tbronze\n3\t80e-6\tsteel\n' >two.tsv
 debriscount --by material --duration 10s two.tsv >by.tsv
-is "ferrous and non-ferrous apart" "$(awk -F '\t' '/^[0-9]/ { print $3, $6 }' by.tsv | tr '\n' ' ')" "steel 2 bronze 1 "
+is "ferrous and non-ferrous particles are counted separately" "$(awk -F '\t' '/^[0-9]/ { print $3, $6 }' by.tsv | tr '\n' ' ')" "steel 2 bronze 1 "
 
 # Missed particles: half of those of d50.
 printf 'time1\tdiameter\n1\t50e-6\n2\t50e-6\n' >half.tsv
 debriscount --duration 10s --d50 50um --detection-threshold 5 half.tsv >half.out
-is "each particle of d50 stands for two" "$(cell number half.out)" 4
+is "each particle of size d50 counts as two" "$(cell number half.out)" 4
 
 # Cleanliness codes of a bottle: 250 > 4 um, 60 > 6 um, 8 > 14 um in 1 ml.
 awk 'BEGIN { print "diameter"; for (i = 0; i < 190; i++) print 5e-6; for (i = 0; i < 52; i++) print 10e-6
 	for (i = 0; i < 8; i++) print 30e-6 }' >bottle.tsv
 debriscount --output codes --volume 1mL bottle.tsv >codes.tsv
-is "ISO 4406: 250, 60 and 8 per ml" "$(column iso4406 codes.tsv)" 15/13/10
-is "its interval" "$(column iso4406_low codes.tsv) $(column iso4406_high codes.tsv)" "15/13/9 15/13/11"
+is "250, 60 and 8 particles per ml have their ISO 4406 code" "$(column iso4406 codes.tsv)" 15/13/10
+is "the code has an interval" "$(column iso4406_low codes.tsv) $(column iso4406_high codes.tsv)" "15/13/9 15/13/11"
 # 25000 6000 800 800 0 0 per 100 ml
-is "AS4059, cumulative" "$(column as4059 codes.tsv)" 5A/5B/4C/7D/000E/000F
+is "the AS4059 classes are cumulative" "$(column as4059 codes.tsv)" 5A/5B/4C/7D/000E/000F
 debriscount --output codes --volume 1mL --d50 8um --detection-threshold 5 bottle.tsv >codes.tsv
-is "sizes that are not seen have no code" "$(column iso4406 codes.tsv)" -/-/10
+is "sizes that are not detected have no code" "$(column iso4406 codes.tsv)" -/-/10
 debriscount --output codes --flow 1mL/min --duration 60s bottle.tsv >codes.tsv 2>err
-is "flow times time is the same oil" "$(column iso4406 codes.tsv) $(column volume codes.tsv)" "15/13/10 1e-06"
+is "flow times time gives the same result as the volume" "$(column iso4406 codes.tsv) $(column volume codes.tsv)" "15/13/10 1e-06"
 
 # Trend: 2, 4, 6, ... particles in each hour.
 awk 'BEGIN { print "time1\tdiameter"; for (h = 0; h < 8; h++) for (i = 0; i < 2 * (h + 1); i++)
 	print h * 3600 + 10 * i "\t50e-6" }' >grows.tsv
 debriscount --output trend --period 1h --duration 8h grows.tsv >trend.tsv
-is "trend: two per hour more every hour" "$(column slope trend.tsv | tail -n 1 | awk '{ printf "%.6f", $1 }')" 2.000000
-is "two periods have no slope" "$(cell slope trend.tsv 2)" nan
+is "the trend is two per hour in each hour" "$(column slope trend.tsv | tail -n 1 | awk '{ printf "%.6f", $1 }')" 2.000000
+is "two periods have no interval of the slope" "$(cell slope trend.tsv 2)" nan
 awk 'BEGIN { print "time1\tdiameter"; for (h = 0; h < 9; h++) { n = h < 5 ? 20 : 5 + h
 	for (i = 0; i < n; i++) print h * 3600 + 10 * i "\t50e-6" } }' >turns.tsv
 debriscount --output trend --period 1h --duration 9h --window 4 turns.tsv >trend.tsv
-is "a window forgets" "$(column slope trend.tsv | tail -n 1 | awk '{ printf "%.6f", $1 }')" 1.000000
+is "--window limits the trend to the last periods" "$(column slope trend.tsv | tail -n 1 | awk '{ printf "%.6f", $1 }')" 1.000000
 
 awk 'BEGIN { print "time1\tdiameter"; split("1 5 12 8 6 3 11", n, " "); for (h = 1; h <= 7; h++)
 	for (i = 0; i < n[h]; i++) print h * 3600 - 3000 + 10 * i "\t50e-6" }' >level.tsv
 debriscount --period 1h --duration 7h --alarm 10:5 level.tsv >alarm.tsv
-is "an alarm stands at the end: status 4" $? 4
-is "it holds until below the lower level" "$(column alarm alarm.tsv | tr '\n' ' ')" "0 0 1 1 1 0 1 "
+is "an alarm is active at the end and the status is 4" $? 4
+is "the alarm is active until the count falls below the lower level" "$(column alarm alarm.tsv | tr '\n' ' ')" "0 0 1 1 1 0 1 "
 debriscount --period 1h --duration 6h --alarm 10:5 level.tsv >alarm.tsv 2>err
 is "rows after the duration are an error" "$? $(grep -c 'after --duration' err)" "1 1"
 awk -F '\t' 'NR == 1 || $1 < 21600' level.tsv | debriscount --period 1h --duration 6h --alarm 10:5 >alarm.tsv
-is "an alarm that is over: status 0" $? 0
+is "an alarm that was cleared gives status 0" $? 0
 debriscount --period 1h --duration 7h --density 7.8g/cm3 --alarm 5e-9 --alarm-mass level.tsv >alarm.tsv
-is "levels of mass" "$(column alarm alarm.tsv | tr '\n' ' ')" "0 0 1 0 0 0 1 "
+is "levels of mass raise an alarm" "$(column alarm alarm.tsv | tr '\n' ' ')" "0 0 1 0 0 0 1 "
 
 # Rows come out as soon as their period is over.
 (printf 'time1\tdiameter\n1\t5e-5\n11\t5e-5\n' && sleep 3) | debriscount --period 10s >live.tsv &
 sleep 1
-is "a period is written when the next begins" "$(grep -c '^0	10	' live.tsv)" 1
+is "a period is written when the next one begins" "$(grep -c '^0	10	' live.tsv)" 1
 wait
 printf 'time1\tdiameter\n1\t5e-5\n11\t5e-5\n3\t5e-5\n' | debriscount --period 10s --duration 20s >late.tsv 2>err
-is "a particle that comes too late is counted and marked" "$? $(column rows late.tsv | tr '\n' ' ')$(grep -c 'after the end of their period' err)" "3 1 2 1"
+is "a particle that arrives too late is counted and marked" "$? $(column rows late.tsv | tr '\n' ' ')$(grep -c 'after the end of their period' err)" "3 1 2 1"
 
 sensorsim --uniform 50um:150um --number 60 --duration 20s --snr 40dB --truth truth.tsv | duet >found.tsv 2>err
 debriscount --duration 20s --classes 50um,100um truth.tsv >a.tsv
 debriscount --duration 20s --classes 50um,100um found.tsv >b.tsv 2>err
-rising "what duet finds is counted as what there was, or held by the interval" "$(cell number_low b.tsv)" \
+rising "the counts of duet equal the true counts or their intervals contain them" "$(cell number_low b.tsv)" \
 	"$(cell number a.tsv)" "$(cell number_high b.tsv)"
 
 fails "classes that do not ascend" 2 'is not above' debriscount --classes 2um,1um six.tsv
@@ -121,10 +121,10 @@ fails "an empty stream" 1 'no table' debriscount
 head -n 1 six.tsv >none.tsv
 fails "no particle and no duration" 1 'with --duration' debriscount none.tsv
 debriscount --duration 1h none.tsv >none.out
-is "no particle in an hour: none, at most 3.7" "$(cell number none.out) $(cell number_high none.out)" "0 3.68888"
+is "an hour without particles has an upper limit of 3.7" "$(cell number none.out) $(cell number_high none.out)" "0 3.68888"
 printf '# units: um min\ndiameter\ttime1\n50\t1\n150\t2\n' >um.tsv
 debriscount --classes 40um,100um um.tsv >um.out 2>err
-is "diameters and times in units that the table names are converted" "$(column end um.out | tr '\n' ' ')$(column number um.out | tr '\n' ' ')" "120 120 1 1 "
+is "diameters and times are converted from the units of the table" "$(column end um.out | tr '\n' ' ')$(column number um.out | tr '\n' ' ')" "120 120 1 1 "
 fails "units that change within a table" 1 'line 5: the units change' sh -c '(cat um.tsv; sed "s/um/mm/" um.tsv) | debriscount'
 printf '# units: kg s\ndiameter\ttime1\n50\t1\n' >kg.tsv
 fails "a diameter in kilograms" 1 "column 'diameter' is in 'kg', want m" debriscount kg.tsv

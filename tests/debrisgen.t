@@ -23,26 +23,26 @@ lost() {
 roughgen -n 128 -L 1mm --sq 0 --crown 50um | bemcontact -F 50N -E 210GPa >ball.nrrd
 wear="debrisgen -Y 355MPa -u 0.3"
 cube="--depth-step 7.8125um"
-near "ball: largest pressure" "$(records ball.nrrd | awk '$3 == "pressure" { print $12 }')" 1725.5455e6 1e3
+near "ball: the largest pressure is that of the reference solution" "$(records ball.nrrd | awk '$3 == "pressure" { print $12 }')" 1725.5455e6 1e3
 $wear $cube --summary summary.tsv -S stats.tsv ball.nrrd >t.tsv
-near "ball: cells lost by column" "$(lost)" 21884 20
-near "ball: the particle has the volume worn off" "$(column volume t.tsv)" "$(summary volume)" 1e-24
-near "ball: 31 layers deep" "$(summary depth)" 242.1875e-6 1e-12
-is "ball: layers searched" "$(column layers stats.tsv)" 32
-near "ball: diameter" "$(column diameter t.tsv)" 271.1228108e-6 0.1e-6
-near "ball: friction moves the particle to its front" "$(column x t.tsv)" 503.367186e-6 0.05e-6
-near "ball: and leaves it in the middle across" "$(column y t.tsv)" 500e-6 1e-12
+near "ball: the column rule removes the reference number of cells" "$(lost)" 21884 20
+near "ball: the particle has the worn volume" "$(column volume t.tsv)" "$(summary volume)" 1e-24
+near "ball: 31 layers fail" "$(summary depth)" 242.1875e-6 1e-12
+is "ball: the number of layers searched is counted" "$(column layers stats.tsv)" 32
+near "ball: the diameter is that of the sphere of equal volume" "$(column diameter t.tsv)" 271.1228108e-6 0.1e-6
+near "ball: friction shifts the particle towards the front" "$(column x t.tsv)" 503.367186e-6 0.05e-6
+near "ball: the particle is centred across the sliding direction" "$(column y t.tsv)" 500e-6 1e-12
 $wear $cube --removal potential --summary summary.tsv ball.nrrd >t.tsv
-near "ball: all failed cells" "$(lost)" 30074 20
+near "ball: the potential rule removes the reference number of cells" "$(lost)" 30074 20
 $wear $cube --layer mid --summary summary.tsv ball.nrrd >t.tsv
-near "ball: stress at mid height" "$(lost)" 21986 100
+near "ball: the stress at mid height removes the reference number of cells" "$(lost)" 21986 100
 # One part in a thousand of yield: no more than the outermost cells.
 debrisgen -Y 355.355MPa -u 0.3 $cube --summary summary.tsv ball.nrrd >t.tsv
-near "ball: yield 0.1 % higher" "$(lost)" 21868 20
+near "ball: a yield stress 0.1 % higher removes fewer cells" "$(lost)" 21868 20
 debrisgen -Y 354.645MPa -u 0.3 $cube --summary summary.tsv ball.nrrd >t.tsv
-near "ball: yield 0.1 % lower" "$(lost)" 21910 100
+near "ball: a yield stress 0.1 % lower removes more cells" "$(lost)" 21910 100
 debrisgen -Y 355MPa $cube --layer mid --removal potential --summary summary.tsv ball.nrrd >t.tsv
-near "ball without friction: all failed cells at mid height" "$(lost)" 27400 20
+near "ball without friction: the potential rule at mid height removes the reference number of cells" "$(lost)" 27400 20
 
 # The depth that is interpolated is that of cells of a sixteenth of the spacing, in half as
 # many layers as cells of the spacing need; friction-free, the surface loses next to nothing.
@@ -53,22 +53,22 @@ $wear --summary summary.tsv small.nrrd >t.tsv
 near "ball: the interpolated depth is that of fine cells" \
 	"$(summary volume | awk -v f="$fine" '{ print $1 / f }')" 1 0.005
 $wear --summary summary.tsv -S stats.tsv ball.nrrd >ball.tsv
-is "ball: depths searched" "$(column layers stats.tsv)" 18
-near "ball: the particle has the volume worn off" \
+is "ball: the number of depths searched is small" "$(column layers stats.tsv)" 18
+near "ball: the particle with interpolated depth has the worn volume" \
 	"$(column volume ball.tsv | awk -v v="$(summary volume)" '{ print $1 / v }')" 1 1e-14
-near "ball: the volume of a diameter" "$(column diameter ball.tsv)" \
+near "ball: the diameter belongs to the volume" "$(column diameter ball.tsv)" \
 	"$(summary volume | awk '{ printf "%.17g", (6 * $1 / 3.14159265358979324) ^ (1 / 3) }')" 1e-17
 $wear --full-sum --summary full.tsv ball.nrrd >full
-near "ball: the full sum has the same volume" \
+near "ball: the full sum removes the same volume" \
 	"$(column volume full.tsv | awk -v v="$(summary volume)" '{ print $1 / v }')" 1 1e-5
 debrisgen -Y 355MPa -u 0.3 --criterion tresca --summary summary.tsv ball.nrrd >t.tsv
 mises=$(column volume full.tsv)
 debrisgen -Y 307.439MPa -u 0.3 --summary low.tsv ball.nrrd >t.tsv
-ok "ball: Tresca loses more than von Mises and less than von Mises at sqrt(3)/2 of the yield" \
+ok "ball: Tresca removes more than von Mises and less than von Mises at sqrt(3)/2 of the yield stress" \
 	awk -v t="$(summary volume)" -v m="$mises" -v l="$(column volume low.tsv)" \
 	'BEGIN { exit !(t > 1.02 * m && t < l) }'
 debrisgen -Y 355MPa --summary summary.tsv ball.nrrd >t.tsv
-ok "ball without friction: the surface loses less than 1e-3 of what it does with" \
+ok "ball without friction: the surface loses less than 1e-3 of the volume with friction" \
 	awk -v v="$(summary volume)" -v m="$mises" 'BEGIN { exit !(v < 1e-3 * m) }'
 
 # A point load F fails the volume c (F / yield)^1.5, c = 0.26692 without friction and
@@ -77,22 +77,22 @@ ok "ball without friction: the surface loses less than 1e-3 of what it does with
 roughgen -n 129 -L 129um --sq 0 --crown 1mm | bemcontact -F 1mN --estar 1000TPa >point.nrrd
 for c in 0:0.26692 0.3:0.28665; do
 	debrisgen -Y 169.5kPa -u ${c%:*} --removal potential --summary summary.tsv point.nrrd >t.tsv
-	near "point load, friction ${c%:*}: volume failed" \
+	near "point load, friction ${c%:*}: the failed volume is that of the closed solution" \
 		"$(summary volume | awk '{ print $1 / (1e-3 / 169.5e3) ^ 1.5 }')" ${c#*:} 0.0016
 done
 
 # Shear along y is shear along x, turned.
 $wear --shear y ball.nrrd >t.tsv
-near "shear along y turns the particle" "$(column y t.tsv)" "$(column x ball.tsv)" 1e-15
+near "shear along y rotates the particle" "$(column y t.tsv)" "$(column x ball.tsv)" 1e-15
 
 # The same step on coarser grids: what they give is what scenes of their own give, and the
 # extrapolation follows from the three volumes.
 roughgen -n 64 -L 0.5mm -q 0.4um -l 60um --crown 4um -s 5 | bemcontact -F 20N -E 210GPa >grid.nrrd
 $wear --richardson --summary summary.tsv grid.nrrd >t.tsv
 roughgen --resample 32 grid.nrrd | bemcontact -F 20N -E 210GPa | $wear --summary half.tsv >t.tsv
-near "--richardson: the volume of twice the spacing" "$(column volume half.tsv)" "$(summary volume_2h)" 1e-22
-is "and its particles" "$(column particles half.tsv)" "$(summary particles_2h)"
-ok "the volume is extrapolated by the order of the three" awk -v a="$(summary volume)" \
+near "--richardson states the volume at twice the spacing" "$(column volume half.tsv)" "$(summary volume_2h)" 1e-22
+is "--richardson states the particles at twice the spacing" "$(column particles half.tsv)" "$(summary particles_2h)"
+ok "the volume is extrapolated with the order of the three volumes" awk -v a="$(summary volume)" \
 	-v b="$(summary volume_2h)" -v c="$(summary volume_4h)" -v p="$(summary order)" \
 	-v e="$(summary volume_extrapolated)" -v d="$(summary volume_grid_error)" 'BEGIN {
 	if (p == "nan") exit !(d > 0 && e == "nan")
@@ -112,16 +112,16 @@ $contact worn2.nrrd | $wear --surface worn3.nrrd --summary s3.tsv >3.tsv 2>warni
 cat 1.tsv 2.tsv 3.tsv >loop.tsv
 rows inside.tsv | sort -s -n -k1,2 >a
 rows loop.tsv | sort -s -n -k1,2 >b
-ok "particles of three steps" test "$(wc -l <a)" -gt 6
-same "a loop of bemcontact and debrisgen: the same particles" a b
+ok "three steps produce particles" test "$(wc -l <a)" -gt 6
+same "a loop of bemcontact and debrisgen gives the same particles" a b
 cat s1.tsv s2.tsv s3.tsv >s.tsv
 # The coefficient's mean and interval are those of the steps of one run.
 rows all.tsv | cut -f 1-17 | sort -s -n -k1,2 >a
 rows s.tsv | cut -f 1-17 | sort -s -n -k1,2 >b
-same "and the same summary" a b
+same "the loop gives the same summary" a b
 records --pick 3 -o text all.nrrd >a
 records --pick 1 -o text worn3.nrrd >b
-same "and the same worn surface" a b
+same "the loop gives the same worn surface" a b
 records -o nrrd start.nrrd >again.nrrd
 $wear --steps 3 -E 210GPa --summary again.tsv again.nrrd >t.tsv 2>warning
 # Its mean pressure has been rounded: contacts are the same within their tolerance.
@@ -129,16 +129,16 @@ column volume again.tsv >a
 column volume all.tsv | paste a - >volumes
 ok "the load is that of the input" awk '{ d = $1 / $2 - 1; if (d * d > 1e-10) exit 1 } END { exit NR != 6 }' volumes
 $wear --steps 3 -F 20N -E 210GPa -j 2 start.nrrd >t.tsv 2>warning
-same "threads change nothing" t.tsv inside.tsv
+same "the number of threads does not change the result" t.tsv inside.tsv
 $wear --steps 3 -F 20N -E 210GPa --solver pk --tolerance 1e-12 --summary pk.tsv start.nrrd >t.tsv 2>warning
 $wear --steps 3 -F 20N -E 210GPa --tolerance 1e-12 --summary bccg.tsv start.nrrd >t.tsv 2>warning
-near "both contact solvers wear off the same volume" \
+near "both contact solvers give the same worn volume" \
 	"$(column volume pk.tsv | awk '{ s += 1e12 * $1 } END { print s }')" \
 	"$(column volume bccg.tsv | awk '{ s += 1e12 * $1 } END { print s }')" 1e-9
 records --pick 2 -o nrrd start.nrrd | $wear --steps 3 -F 20N -E 210GPa >t.tsv 2>warning
 rows inside.tsv | awk '$1 == 1' >a
 rows t.tsv >b
-same "what came before changes nothing" a b
+same "previous records do not change the result" a b
 
 # The commands in the headers, one for each surface, rebuild what they stand in.
 replay() {
@@ -149,22 +149,22 @@ replay() {
 	done <cmds | records --join
 }
 replay worn2.nrrd cmd:= >a
-same "the commands of worn surfaces rebuild them" a worn2.nrrd
+same "the commands of worn surfaces reproduce them" a worn2.nrrd
 replay s3.tsv "# cmd: " >t.tsv
 rows t.tsv >a
 rows s3.tsv >b
-same "and those of a summary" a b
+same "the command of a summary reproduces it" a b
 replay 3.tsv "# cmd: " >t.tsv
 rows t.tsv >a
 rows 3.tsv >b
-same "and those of the particles behind them" a b
+same "the command of the particles reproduces them" a b
 
 # The worn surface is the old one less the removed volume.
 mean() { records "$1" | awk '$2 == 0 && $3 == "height" { print $11; exit }'; }
-near "volume is what the surface lost" \
+near "the volume is the loss of the surface" \
 	"$(echo "$(mean start.nrrd) $(mean worn1.nrrd)" | awk '{ print ($1 - $2) * 0.25e-6 * 1e12 }')" \
 	"$(column volume s1.tsv | awk '{ print $1 * 1e12; exit }')" 1e-9
-is "distance counts amplified steps" \
+is "the distance includes the amplification" \
 	"$(debrisgen -Y 355MPa --amplification 0.72 --summary /dev/fd/3 start.nrrd 3>&1 >t.tsv | awk '!/^[#r]/ { print $3; exit }')" \
 	"0.00035999999999999997"
 
@@ -172,29 +172,29 @@ is "distance counts amplified steps" \
 roughgen -n 32x64 -L 0.2mmx0.6mm -q 8um -l 50um | bemcontact -F 5N -E 210GPa >oblong.nrrd
 for side in x:0.0002 y:0.0006; do
 	$wear --shear ${side%:*} --summary summary.tsv oblong.nrrd >t.tsv 2>warning
-	near "shear along ${side%:*}: distance" "$(summary distance)" ${side#*:} 1e-18
+	near "shear along ${side%:*}: the distance is that side of the grid" "$(summary distance)" ${side#*:} 1e-18
 done
 
 # What the summary says of particles and of the surface they left.
-near "mean diameter of several particles" "$(column mean_diameter s1.tsv | head -1)" \
+near "the mean diameter is that of several particles" "$(column mean_diameter s1.tsv | head -1)" \
 	"$(awk '$1 == "0" { s += $7; n++ } END { printf "%.17g", (n > 1 ? s / n : 0) }' 1.tsv)" 1e-17
 roughgen worn1.nrrd | sed -n 's/^sq:=//p' >sq # without the crown; it was 8 um
 rough=$(column relative_roughness s1.tsv | head -1)
-near "relative roughness" "$rough" "$(awk 'NR == 1 { printf "%.17g", $1 / 8e-6 }' sq)" 1e-12
-ok "which the wear has changed" awk -v r="$rough" 'BEGIN { exit !(r < 0.999 || r > 1.001) }'
+near "the relative roughness is that of the worn surface" "$rough" "$(awk 'NR == 1 { printf "%.17g", $1 / 8e-6 }' sq)" 1e-12
+ok "wear changes the relative roughness" awk -v r="$rough" 'BEGIN { exit !(r < 0.999 || r > 1.001) }'
 
 # Steps that touch everywhere stop.
 roughgen -n 32 -L 1mm --sq 1nm -l 200um | bemcontact --pressure 100MPa -E 210GPa >flat.nrrd
 debrisgen --yield 1MPa --steps 5 --young 210GPa --stats stats.tsv flat.nrrd 2>err >t.tsv
-is "a surface that is not worn at all: exit status 3 and a line that says why" \
+is "a surface that is not worn at all gives exit status 3 and a warning" \
 	"$? $(grep -c 'stopped before step 1: .* in contact, --stop-area 0.8' err)" "3 1"
-is "contact over 80 % stops the wear" "$(column steps_skipped stats.tsv)" 5
-is "and gives no particles" "$(rows t.tsv)" ""
+is "a contact over 80 % stops the wear" "$(column steps_skipped stats.tsv)" 5
+is "a contact over 80 % gives no particles" "$(rows t.tsv)" ""
 
 # Stress fields.
 debrisgen -Y 355MPa -u 0.3 --stress stress.nrrd --fields von_mises,principal,hydrostatic,tensor --stress-layers 8 \
 	ball.nrrd >t.tsv
-is "stress: fields and layers" "$(records stress.nrrd | awk '!/^#/ && n++ { printf "%s %s;", $3, $7 }')" \
+is "the stress record has the requested fields and layers" "$(records stress.nrrd | awk '!/^#/ && n++ { printf "%s %s;", $3, $7 }')" \
 	"von_mises 8;hydrostatic 8;principal_1 8;principal_2 8;principal_3 8;xx 8;yy 8;zz 8;xy 8;xz 8;yz 8;"
 records -o table stress.nrrd | awk '!/^[#r]/ {
 	i = $6 - ($10 + $11 + $12) / 3; if (i < 0) i = -i
@@ -202,8 +202,8 @@ records -o table stress.nrrd | awk '!/^[#r]/ {
 	v = sqrt((($7 - $8) ^ 2 + ($8 - $9) ^ 2 + ($9 - $7) ^ 2) / 2) - $5; if (v < 0) v = -v
 	if (i > bad) bad = i; if (j > bad) bad = j; if (v > bad) bad = v }
 	END { print bad }' >bad
-near "stress: invariants agree" "$(cat bad)" 0 1
-near "stress: under the surface szz is the pressure" "$(records stress.nrrd | awk '$3 == "zz" { print $10 }')" \
+near "the invariants of the stress agree with its components" "$(cat bad)" 0 1
+near "the normal stress at the surface is the pressure" "$(records stress.nrrd | awk '$3 == "zz" { print $10 }')" \
 	-1725.5455e6 1e5
 
 # The whole way from a smooth ball to the stress: radius R = 1 m pressed to the contact radius
@@ -218,15 +218,15 @@ records -o table s.nrrd | awk '!/^[#r]/ && $2 > 1.99e-3 && $2 < 2.01e-3 && $3 > 
 	xz = -0.3 * (1 - 1.5 * Z * t + Z * Z / (2 * (1 + Z * Z)))
 	d = $5 / p0 - sqrt((zz - rr) ^ 2 + 3 * xz ^ 2); if (d < 0) d = -d; if (d > m) m = d; n++ }
 	END { print n == 21 ? m : "rows: " n }' >error
-near "Hertz contact to stress: von Mises within 2e-4 p0" "$(cat error)" 0 2e-4
+near "the von Mises stress of a Hertz contact is accurate to 2e-4 p0" "$(cat error)" 0 2e-4
 
 # A reader of the format's own makers.
 unu=$(command -v unu || command -v teem-unu)
 if [ -n "$unu" ]; then
-	is "stress: teem reads the layers" "$("$unu" slice -i stress.nrrd -a 0 -p 0 | "$unu" head - |
+	is "teem reads the layers of stress" "$("$unu" slice -i stress.nrrd -a 0 -p 0 | "$unu" head - |
 		awk '/^sizes/ { print $2, $3, $4 }')" "128 128 8"
 else
-	skip "stress: teem reads the layers" "no unu"
+	skip "teem reads the layers of stress" "no unu"
 fi
 
 # Edge load is told: of 0.5 MPa and INNER MPa on one cell each, the first on the rim.
@@ -240,33 +240,33 @@ loaded() {
 }
 for cell in '0 2' '4 2' '2 0' '2 4'; do
 	loaded $cell 2 | debrisgen -Y 1GPa --summary summary.tsv 2>warning >t.tsv
-	near "load on the rim at $cell" "$(summary edge_load)" 0.2 1e-15
-	is "is warned of once, with the remedy" "$(grep -c "worst 20 % (.*): use a larger area" warning)" 1
+	near "the load at the edge is computed at $cell" "$(summary edge_load)" 0.2 1e-15
+	is "load at the edge gives one warning with the remedy" "$(grep -c "worst 20 % (.*): use a larger area" warning)" 1
 done
 loaded 2 0 10 | debrisgen -Y 1GPa --summary summary.tsv 2>warning >t.tsv
-near "less load on the rim" "$(summary edge_load)" 0.047619047619047616 1e-15
-is "goes without a warning below 5 %" "$(cat warning)" ""
+near "less load at the edge is computed" "$(summary edge_load)" 0.047619047619047616 1e-15
+is "below 5 % of load at the edge there is no warning" "$(cat warning)" ""
 loaded 2 0 2 | debrisgen -Y 1GPa --boundary periodic --summary summary.tsv 2>warning >t.tsv
-is "a periodic surface has no rim" "$(summary edge_load) $(cat warning)" "0 "
+is "a periodic surface has no edge" "$(summary edge_load) $(cat warning)" "0 "
 
 # A ridge that goes round a periodic grid has no end, and so no length.
 perl -e 'binmode STDOUT; print "NRRD0004\ntype: double\nendian: little\nencoding: raw\ndimension: 3\n",
 	"sizes: 2 16 16\nspacings: 1e-5 1e-5 1e-5\nfields:=height m, pressure Pa\nboundary:=periodic\n\n";
 	for my $y (0 .. 15) { print pack("d<2", 0, $y == 8 ? 1e9 : 0) for 0 .. 15 }' >ridge.nrrd
 debrisgen --yield 355MPa --friction 0.3 ridge.nrrd >t.tsv 2>err
-is "a particle around a periodic grid: exit status 3, a line, no length" \
+is "a particle that crosses a periodic grid gives exit status 3, one warning and no length" \
 	"$? $(grep -c '1 of 1 particles connect to themselves' err) $(column length t.tsv) $(column x t.tsv)" "3 1 nan nan"
-is "of so many columns as lie in one period" "$(column columns t.tsv)" 16
+is "such a particle has the columns of one period" "$(column columns t.tsv)" 16
 
 replay s.nrrd cmd:= >a
-same "the command of a stress field rebuilds it" a s.nrrd
+same "the command of a stress field reproduces it" a s.nrrd
 
 fails "no yield stress" 2 "--yield is missing" debrisgen
 LC_ALL=C sed -e 's/^estar:=/other:=/' -e '/^stream:=/d' ball.nrrd >stripped.nrrd
 fails "steps without a modulus" 2 "specify --young or --estar" debrisgen -Y 1GPa --steps 2 stripped.nrrd
 $wear -E 210GPa --steps 2 ball.nrrd | grep -v '^#' >given.tsv
 $wear --steps 2 ball.nrrd | grep -v '^#' >inherited.tsv
-same "the modulus is that of the input unless given" given.tsv inherited.tsv
+same "the modulus is that of the input unless one is given" given.tsv inherited.tsv
 fails "two loads" 2 "only one of" debrisgen -Y 1GPa -F 1N --pressure 1MPa
 fails "an unknown stress field" 2 "principal|tensor" debrisgen -Y 1GPa --fields foo
 fails "no pressure" 1 "pressure" debrisgen -Y 1GPa rough.nrrd

@@ -18,36 +18,36 @@ bemcontact $press a.nrrd >start.nrrd
 # A flat counterface is none, wherever it slides.
 $wear --steps 2 --summary none.tsv start.nrrd >none 2>err
 $wear --steps 2 --counterface flat.nrrd --slide 0.125mm --summary flat.tsv start.nrrd >flat 2>err
-near "a flat counterface: the volume of two steps without one" \
+near "a flat counterface gives the volume of two steps without one" \
 	"$(ratio "$(total volume flat.tsv)" "$(total volume none.tsv)")" 1 1e-5
-is "and as many particles" "$(rows flat | wc -l)" "$(rows none | wc -l)"
+is "a flat counterface gives as many particles" "$(rows flat | wc -l)" "$(rows none | wc -l)"
 
 # It goes round: whole sides bring it back, and part of a side does not.
 for d in 0.5mm 0 0.125mm; do
 	$wear --steps 2 --counterface b.nrrd --slide $d --amplification 2 --summary s.tsv a.nrrd >p 2>err
 	total volume s.tsv >volume.$d
 done
-is "a slide by the side of the grid is none" "$(cat volume.0.5mm)" "$(cat volume.0)"
-ok "a quarter of the side brings other asperities together" \
+is "sliding by the side of the grid changes nothing" "$(cat volume.0.5mm)" "$(cat volume.0)"
+ok "sliding by a quarter of the side changes the contact" \
 	awk -v a="$(cat volume.0.125mm)" -v b="$(cat volume.0)" 'BEGIN { d = a / b - 1; exit !(d * d > 1e-4) }'
-near "distances are those slid, amplified" "$(column distance s.tsv | tail -1)" 5e-4 1e-18
+near "distances are sliding distances times the amplification" "$(column distance s.tsv | tail -1)" 5e-4 1e-18
 
 # Both are worn, each in its own frame, and heights lose what the table says.
 $wear --steps 3 --counterface b.nrrd --slide 0.125mm --wears both --summary s.tsv --surface wa.nrrd \
 	--counter-surface wb.nrrd a.nrrd >p 2>err
 near "the first body loses its volume" "$(echo "$(mean a.nrrd) $(mean wa.nrrd 3)" |
 	awk '{ printf "%.12g", ($1 - $2) * 0.25e-6 * 1e15 }')" "$(ratio "$(total volume_first s.tsv)" 1e-15)" 1e-4
-near "and so does the second" "$(echo "$(mean b.nrrd) $(mean wb.nrrd 3)" |
+near "the second body loses its volume" "$(echo "$(mean b.nrrd) $(mean wb.nrrd 3)" |
 	awk '{ printf "%.12g", ($1 - $2) * 0.25e-6 * 1e15 }')" "$(ratio "$(total volume_second s.tsv)" 1e-15)" 1e-4
 for body in first:1 second:2; do
 	near "particles of the ${body%:*} body have the volume it lost" \
 		"$(rows p | awk -v b="${body#*:}" '$3 == b { v += $6 } END { printf "%.12g", v * 1e15 }')" \
 		"$(ratio "$(total volume_${body%:*} s.tsv)" 1e-15)" 1e-8
 done
-near "the volume is that of both" "$(total volume s.tsv)" \
+near "the volume is the sum for both bodies" "$(total volume s.tsv)" \
 	"$(echo "$(total volume_first s.tsv) $(total volume_second s.tsv)" | awk '{ printf "%.17g", $1 + $2 }')" 1e-24
 records --pick 3 -o nrrd wb.nrrd >wb2.nrrd
-near "a worn counterface can be worn on" "$(records --pick 3 -o nrrd wa.nrrd |
+near "a worn counterface is valid input" "$(records --pick 3 -o nrrd wa.nrrd |
 	$wear --counterface wb2.nrrd --slide 0.125mm --summary t.tsv 2>err >p; column step t.tsv)" 4 0
 
 # Without friction the bodies are alike: they change places, and so do their losses.  Each
@@ -55,44 +55,44 @@ near "a worn counterface can be worn on" "$(records --pick 3 -o nrrd wa.nrrd |
 alike="debrisgen --yield 200MPa --removal potential $press --wears both --slide 0"
 $alike --counterface b.nrrd --summary ab.tsv a.nrrd >p 2>err
 $alike --counterface a.nrrd --summary ba.tsv b.nrrd >p 2>err
-near "exchanged bodies exchange their losses" \
+near "exchanging the bodies exchanges their losses" \
 	"$(ratio "$(total volume_first ab.tsv)" "$(total volume_second ba.tsv)")" 1 1e-9
 debrisgen --yield 200MPa,400MPa --removal potential $press --wears both --slide 0 \
 	--counterface b.nrrd --summary s.tsv a.nrrd >p 2>err
-is "the first loses what it lost at its yield" "$(total volume_first s.tsv)" "$(total volume_first ab.tsv)"
-ok "the second, twice as strong, loses less" awk -v a="$(total volume_second s.tsv)" \
+is "the first body loses the volume of its own yield stress" "$(total volume_first s.tsv)" "$(total volume_first ab.tsv)"
+ok "the second body, twice as strong, loses less" awk -v a="$(total volume_second s.tsv)" \
 	-v b="$(total volume_second ab.tsv)" 'BEGIN { exit !(a > 0 && a < 0.6 * b) }'
 
 # Fresh: a window over a surface that is longer.
 roughgen --points 120x48 --length 1.25mmx0.5mm --sq 0.4um --corr 40um --seed 3 >long.nrrd
 fresh="$wear --counterface long.nrrd --renew fresh --slide 0.25mm"
 $fresh --steps 4 --wears second --summary s.tsv --counter-surface wl.nrrd a.nrrd >p 2>err
-near "fresh: the long surface loses the volume, and the first body nothing" \
+near "--renew fresh: the long surface loses the volume, and the first body none" \
 	"$(echo "$(mean long.nrrd) $(mean wl.nrrd 4)" | awk '{ printf "%.12g", ($1 - $2) * 1.25e-3 * 0.5e-3 * 1e15 }')" \
 	"$(ratio "$(total volume s.tsv)" 1e-15)" 1e-4
 fails "fresh: the surface ends" 1 "end before step 5" $fresh --steps 5 a.nrrd
 
 # Archard's coefficient: volume times hardness over load and distance, its mean over the
 # steps and their interval.
-near "the coefficient is V H / (F s)" "$(column wear_coefficient s.tsv | head -1)" \
+near "the wear coefficient is V H / (F s)" "$(column wear_coefficient s.tsv | head -1)" \
 	"$(column volume s.tsv | awk 'NR == 1 { printf "%.17g", $1 * 3 * 355e6 / (20e6 * 0.25e-6 * 0.25e-3) }')" 1e-12
 column wear_coefficient s.tsv | awk '{ s += $1; q[NR] = $1 } END { m = s / NR
 	for (i = 1; i <= NR; i++) v += (q[i] - m) ^ 2
 	printf "%.9g %.9g", m, m - 3.18244630528 * sqrt(v / (NR - 1) / NR) }' >want
-is "its mean and 95 % interval over four steps are Student's" \
+is "the mean and the 95 % interval over four steps are those of Student" \
 	"$(column wear_coefficient_mean s.tsv | tail -1 | awk '{ printf "%.9g", $1 }') $(column wear_coefficient_low s.tsv |
 	tail -1 | awk '{ printf "%.9g", $1 }')" "$(cat want)"
-is "which one step does not give" "$(column wear_coefficient_low s.tsv | head -1)" nan
+is "one step has no interval" "$(column wear_coefficient_low s.tsv | head -1)" nan
 
 # Archard's law: k p ds.
 archard="debrisgen --law archard $press"
 $archard --wear-rate 2e-15,1e-15 --wears both --counterface b.nrrd --slide 0.125mm --steps 3 \
 	--summary s.tsv --surface wa.nrrd a.nrrd >p 2>err
-near "Archard: V = k F s for the first body" "$(ratio "$(total volume_first s.tsv)" \
+near "Archard: the first body loses V = k F s" "$(ratio "$(total volume_first s.tsv)" \
 	"$(awk 'BEGIN { printf "%.17g", 2e-15 * 20e6 * 0.25e-6 * 3 * 0.125e-3 }')")" 1 1e-12
-near "and for the second, by its own rate" \
+near "Archard: the second body loses volume by its own rate" \
 	"$(ratio "$(total volume_second s.tsv)" "$(total volume_first s.tsv)")" 0.5 1e-12
-is "and there are no particles" "$(rows p)" ""
+is "Archard: there are no particles" "$(rows p)" ""
 
 # A ball on a flat wears down to a flat of radius (4 R V / pi)^(1/4), plus what the edge still
 # gives way: ratios of an independent calculation, 1.071 and 1.030 after 40 and 120 parts.
@@ -104,14 +104,14 @@ for v in 40:1.071 120:1.030; do
 		--amplification "$(awk -v s="$distance" 'BEGIN { print s / 1e-3 }')" --summary s.tsv \
 		--surface w.nrrd ball.nrrd >p 2>err
 	records -o table w.nrrd | awk -F '\t' '!/^[#r]/ && $NF > 0 { n++ } END { print n }' >cells
-	near "worn ball: radius of contact over (4 R V / pi)^(1/4) after ${v%:*} parts" \
+	near "worn ball: the radius of contact is (4 R V / pi)^(1/4) after ${v%:*} parts" \
 		"$(awk -v v="$(total volume s.tsv)" '{ print sqrt($1 * 12.5e-6 ^ 2 / 3.14159265) / (4 * 0.01 * v / 3.14159265) ^ 0.25 }' cells)" \
 		"${v#*:}" 0.02
 done
 
 # Worn into pits the pair leaves the theory of small slopes.
 $wear --steps 6 --counterface b.nrrd --slide 0.125mm --wears both a.nrrd 2>told >p
-ok "slopes beyond the theory are warned of" grep -q "rms slope .* above 0.2, the limit .* --hardness" told
+ok "slopes beyond the theory give a warning" grep -q "rms slope .* above 0.2, the limit .* --hardness" told
 
 fails "a slide that is no whole number of cells" 2 "want a multiple of the cell size" $wear --counterface b.nrrd --slide 7um a.nrrd
 fails "a slide without a counterface" 2 "require --counterface" $wear --slide 0.125mm a.nrrd

@@ -20,63 +20,63 @@ awk 'BEGIN { for (i = 0; i < 3000; i++) { p = (i + 0.5) / 3000
 	table >weibull.tsv
 debrisstat weibull.tsv >fits.tsv
 # Quantiles instead of draws: shape and scale within 1/n or so.
-near "Weibull shape" "$(fit weibull_shape 2)" 2.718 0.005
-near "Weibull scale" "$(fit weibull_scale 2)" 200.698e-6 0.05e-6
-near "Weibull mean, 178.5 um in the thesis" "$(fit weibull_mean 2)" 178.52e-6 0.05e-6
-rising "the interval holds the shape" "$(fit weibull_shape 3)" 2.718 "$(fit weibull_shape 4)"
-near "its width: 1.53 shape / sqrt(n)" \
+near "the Weibull shape is that of the sample" "$(fit weibull_shape 2)" 2.718 0.005
+near "the Weibull scale is that of the sample" "$(fit weibull_scale 2)" 200.698e-6 0.05e-6
+near "the Weibull mean is 178.5 um as in the thesis" "$(fit weibull_mean 2)" 178.52e-6 0.05e-6
+rising "the interval contains the shape" "$(fit weibull_shape 3)" 2.718 "$(fit weibull_shape 4)"
+near "the width of the interval is 1.53 shape / sqrt(n)" \
 	"$(awk '$1 == "weibull_shape" { print ($4 - $3) / 2 / $2 }' fits.tsv)" 0.0279 0.0005
-near "fit and data part little" "$(fit ks_distance 2)" 0 0.001
-is "realisations" "$(fit realisations 2)" 3
-is "particles" "$(fit particles 2)" 3000
+near "the Kolmogorov-Smirnov distance is small" "$(fit ks_distance 2)" 0 0.001
+is "realisations are counted" "$(fit realisations 2)" 3
+is "particles are counted" "$(fit particles 2)" 3000
 debrisstat --diameter 0:200um weibull.tsv >fits.tsv
-rising "leaving out the large ones bends the fit" 2.9 "$(fit weibull_shape 2)"
+rising "leaving out large particles biases the shape" 2.9 "$(fit weibull_shape 2)"
 debrisstat --diameter 0:200um --truncated weibull.tsv >fits.tsv
-near "unless the distribution is cut off too: shape" "$(fit weibull_shape 2)" 2.718 0.02
-near "and scale" "$(fit weibull_scale 2)" 200.698e-6 1e-6
+near "a truncated fit has the right shape" "$(fit weibull_shape 2)" 2.718 0.02
+near "a truncated fit has the right scale" "$(fit weibull_scale 2)" 200.698e-6 1e-6
 
 # Diameters that are equal to nine digits: the logarithms of Weibull quantiles, scaled by 1e-9.
 awk 'BEGIN { for (i = 0; i < 400; i++) printf "%d 1 %.17g 1\n", i, 100 * (1 + 1e-9 * log(-log(1 - (i + 0.5) / 400))) }' |
 	table >equal.tsv
 debrisstat equal.tsv >fits.tsv
 near "nearly equal diameters have the shape of their spread" "$(fit weibull_shape 2 | awk '{ print $1 / 1e9 }')" 1 0.02
-rising "and its interval holds it" "$(fit weibull_shape 3)" 1e9 "$(fit weibull_shape 4)"
+rising "the interval of nearly equal diameters contains the shape" "$(fit weibull_shape 3)" 1e9 "$(fit weibull_shape 4)"
 
 # Counts 3 x^2 + 2 in all up to step x, over two realisations.
 awk 'BEGIN { for (x = 1; x <= 6; x++) { n = x == 1 ? 5 : 3 * (2 * x - 1)
 	for (i = 0; i < n; i++) print i % 2, x, 100, 1 + i % 4 } }' | table >growth.tsv
 debrisstat growth.tsv >fits.tsv
-near "power law of the cumulative count: factor" "$(fit power_factor 2)" 3 1e-6
-near "exponent" "$(fit power_exponent 2)" 2 1e-7
-near "offset" "$(fit power_offset 2)" 2 1e-5
+near "cumulative power law: the factor is recovered" "$(fit power_factor 2)" 3 1e-6
+near "cumulative power law: the exponent is recovered" "$(fit power_exponent 2)" 2 1e-7
+near "cumulative power law: the offset is recovered" "$(fit power_offset 2)" 2 1e-5
 debrisstat --growth step --step 2:6 growth.tsv >fits.tsv
-near "of the count per step: exponent" "$(fit power_exponent 2)" 1 1e-7
-near "factor" "$(fit power_factor 2)" 6 1e-5
-near "offset" "$(fit power_offset 2)" -3 1e-5
+near "power law per step: the exponent is recovered" "$(fit power_exponent 2)" 1 1e-7
+near "power law per step: the factor is recovered" "$(fit power_factor 2)" 6 1e-5
+near "power law per step: the offset is recovered" "$(fit power_offset 2)" -3 1e-5
 
 debrisstat -o steps growth.tsv >steps.tsv
-is "steps: mean number of particles" "$(column particles steps.tsv | tr '\n' ' ')" \
+is "steps: the mean number of particles is right" "$(column particles steps.tsv | tr '\n' ' ')" \
 	"2.5 4.5 7.5 10.5 13.5 16.5 "
-is "steps: standard deviation over realisations" \
+is "steps: the standard deviation is taken over realisations" \
 	"$(column particles_sd steps.tsv | awk '{ printf "%.6f ", $1 }')" \
 	"0.707107 0.707107 0.707107 0.707107 0.707107 0.707107 "
-is "steps: cumulative particles" "$(column cumulative_particles steps.tsv | tr '\n' ' ')" \
+is "steps: particles are accumulated" "$(column cumulative_particles steps.tsv | tr '\n' ' ')" \
 	"5 14 29 50 77 110 "
-near "steps: volume" "$(column volume steps.tsv | head -n 1)" 1.3089969389957e-12 1e-24
-near "steps: cumulative volume" "$(column cumulative_volume steps.tsv | tail -n 1)" 2.87979326579e-11 1e-22
+near "steps: the mean volume is right" "$(column volume steps.tsv | head -n 1)" 1.3089969389957e-12 1e-24
+near "steps: volumes are accumulated" "$(column cumulative_volume steps.tsv | tail -n 1)" 2.87979326579e-11 1e-22
 debrisstat -o steps --realisations 5 growth.tsv >steps.tsv
 is "realisations without particles count as zero" "$(column particles steps.tsv | head -n 1)" 1
 printf 'realisation\tstep\n0\t1\n0\t2\n1\t1\n2\t1\n' >summary.tsv
 debrisstat -o steps --step 1:2 --summary summary.tsv growth.tsv >steps.tsv
-is "the summary tells which steps took place" "$(column realisations steps.tsv | tr '\n' ' ')" "3 2 "
+is "the summary states which steps took place" "$(column realisations steps.tsv | tr '\n' ' ')" "3 2 "
 
 debrisstat -o aspects --aspects 1,2,3,4 growth.tsv >aspects.tsv
-is "aspects: counts" "$(column count aspects.tsv | tr '\n' ' ')" "31 27 27 25 "
-near "aspects: shares add up" "$(column share aspects.tsv | awk '{ s += $1 } END { print s }')" 1 1e-6
+is "aspects: particles are counted in their classes" "$(column count aspects.tsv | tr '\n' ' ')" "31 27 27 25 "
+near "aspects: shares add up to 1" "$(column share aspects.tsv | awk '{ s += $1 } END { print s }')" 1 1e-6
 debrisstat -o sizes --bin 20um weibull.tsv >sizes.tsv
-is "sizes: all counted" "$(column count sizes.tsv | awk '{ s += $1 } END { print s }')" 3000
-near "sizes: density adds up" "$(column density sizes.tsv | awk '{ s += $1 * 20e-6 } END { print s }')" 1 1e-6
-near "sizes: the fit follows the classes" "$(awk '!/^[#l]/ { d = $4 - $5; s += (d < 0 ? -d : d) * 20e-6 }
+is "sizes: all particles are counted" "$(column count sizes.tsv | awk '{ s += $1 } END { print s }')" 3000
+near "sizes: the density integrates to 1" "$(column density sizes.tsv | awk '{ s += $1 * 20e-6 } END { print s }')" 1 1e-6
+near "sizes: the fit follows the histogram" "$(awk '!/^[#l]/ { d = $4 - $5; s += (d < 0 ? -d : d) * 20e-6 }
 	END { print s }' sizes.tsv)" 0 0.03
 
 # Realisations that differ: the bootstrap sees it, the likelihood cannot.
@@ -86,15 +86,15 @@ debrisstat groups.tsv >fits.tsv
 plain=$(awk '$1 == "weibull_scale" { print $4 - $3 }' fits.tsv)
 debrisstat --bootstrap 200 groups.tsv >fits.tsv
 cp fits.tsv again
-near "bootstrap over realisations: wider by far" \
+near "bootstrap intervals over realisations are much wider" \
 	"$(awk -v p="$plain" '$1 == "weibull_scale" { print ($4 - $3) / p }' fits.tsv)" 4 1.5
 debrisstat --bootstrap 200 groups.tsv >fits.tsv
-same "and the same every time" fits.tsv again
+same "bootstrap intervals are reproducible" fits.tsv again
 
 roughgen -n 32 -L 0.25mm -q 4um -l 30um --crown 16um -c 3 | bemcontact -F 5N -E 210GPa |
 	debrisgen -Y 355MPa -u 0.3 --steps 3 -E 210GPa --summary s.tsv 2>warning >p.tsv
 debrisstat -o steps --summary s.tsv p.tsv >steps.tsv
-near "volume as in the summary of debrisgen" \
+near "the volume equals that in the summary of debrisgen" \
 	"$(column volume steps.tsv | awk '{ s += 1e12 * $1 } END { print s * 3 }')" \
 	"$(column volume s.tsv | awk '{ s += 1e12 * $1 } END { print s }')" 1e-9
 
@@ -110,13 +110,13 @@ debrisstat --compare two.tsv one.tsv >against.tsv
 row() { awk -F '\t' -v q="$1" -v c="$2" '$1 == q { print $c }' against.tsv; }
 near "the other study wears twice as much" "$(row volume_per_step 7)" 2 1e-12
 near "its particles are twice as large" "$(row mean_diameter 7)" 2 1e-12
-near "which is a difference of as much as the first" "$(row volume_per_step 4)" 2.5e-12 1e-22
+near "the difference is as large as the first value" "$(row volume_per_step 4)" 2.5e-12 1e-22
 # standard errors sqrt(5 / 3 / 4) / 2.5 of both logarithms; Welch: 6 degrees, t 1.94318 at 95 %
-near "lower end by Student's t" "$(row volume_per_step 8)" \
+near "the lower limit is that of Student" "$(row volume_per_step 8)" \
 	"$(awk 'BEGIN { e = sqrt(5 / 12) / 2.5; print 2 * exp(-1.94318 * e * sqrt(2)) }')" 1e-4
 # (1.644854 + 1.281552)^2 2 (5 / 3) / 2.5^2 / ln(2)^2 = 9.5
-is "realisations that would tell them apart" "$(row volume_per_step 10)" 10
-near "life goes as the inverse" "$(awk "BEGIN { print $(row life 8) * $(row volume_per_step 9) }")" 1 1e-6
+is "the number of realisations for a significant difference is right" "$(row volume_per_step 10)" 10
+near "the ratio of lives is the inverse of that of the volumes" "$(awk "BEGIN { print $(row life 8) * $(row volume_per_step 9) }")" 1 1e-6
 is "every quantity has its unit" "$(cut -f 11 against.tsv | grep -v '^#' | tr '\n' ' ')" "unit m3 m 1 m m 1 "
 debrisstat --compare one.tsv one.tsv >against.tsv
 is "a study does not differ from itself" "$(row volume_per_step 7) $(row volume_per_step 10)" "1 inf"
@@ -129,7 +129,7 @@ fails "the same realisations twice" 1 'realisation 0 stands in two parts' sh -c 
 grep -v '^#' growth.tsv >bare.tsv
 fails "so without comments" 1 'realisation 0 stands in two parts' sh -c 'cat bare.tsv bare.tsv | debrisstat'
 awk -F '\t' -v OFS='\t' 'NR > 1 { $1 += 2 } 1' bare.tsv | cat bare.tsv - >both.tsv
-is "others are a larger ensemble" "$(debrisstat both.tsv | sed -n 's/^realisations.\([0-9]*\).*/\1/p')" 4
+is "other realisations form a larger ensemble" "$(debrisstat both.tsv | sed -n 's/^realisations.\([0-9]*\).*/\1/p')" 4
 
 head -n 2 growth.tsv | debrisstat >fits.tsv
 is "a table without rows has no fit" "$(fit weibull_shape 2) $(fit particles 2)" "nan 0"

@@ -10,10 +10,10 @@ small="--columns 40 --layers 6 --count 200 --batch 20"
 	delaynet $small --epochs 30 >b.net
 	same "the same options give the same bytes" a.net b.net
 	delaynet $small --epochs 30 --repetition 1 >b.net
-	ok "another repetition gives others" sh -c '! cmp -s a.net b.net'
-	is "the file says what it is" "$(sed -n '1p;3,5p' a.net | tr '\n' ';')" \
+	ok "another repetition gives other weights" sh -c '! cmp -s a.net b.net'
+	is "the file states its format" "$(sed -n '1p;3,5p' a.net | tr '\n' ';')" \
 		"wearpipe-network 1;purpose delays;input 1 2 40;layers 6:tanh 3:linear;"
-	is "weights as declared" "$(sed '/^weights/,/^end/!d;/^[we]/d' a.net | wc -w)" \
+	is "the file has as many weights as declared" "$(sed '/^weights/,/^end/!d;/^[we]/d' a.net | wc -w)" \
 		"$(sed -n 's/^weights //p' a.net)"
 
 	# Zero epochs with weights that are drawn score worse than the constant; trained ones
@@ -21,42 +21,42 @@ small="--columns 40 --layers 6 --count 200 --batch 20"
 	delaynet $small --sources 1 --fresh --epochs 300 --labels arrival --learning-rate 3e-3 >one.net
 	delaynet --task score --columns 40 --sources 1 one.net >one.tsv
 	got=$(column ordered one.tsv | head -n 1)
-	ok "one source is learnt: $got far below 1/12" \
+	ok "one source is learnt: $got is far below 1/12" \
 		awk -v g="$got" 'BEGIN { exit !(g < 0.4 / 12) }'
-	is "a clean row and a noisy one" "$(column noise one.tsv | tr '\n' ' ')" \
+	is "the table has a clean row and a noisy row" "$(column noise one.tsv | tr '\n' ' ')" \
 		"0 0.31622776601683794 "
-	is "one source: the orders agree" "$(column ordered one.tsv)" "$(column unordered one.tsv)"
+	is "with one source both orders give the same score" "$(column ordered one.tsv)" "$(column unordered one.tsv)"
 }
 delaynet --task score --columns 40 a.net >a.tsv
 is "score reads standard input" "$(delaynet --task score --columns 40 <a.net)" "$(cat a.tsv)"
-is "score keeps the pipeline" "$(sed -n 's/^# cmd: //p' a.tsv)" \
+is "score keeps the recorded pipeline" "$(sed -n 's/^# cmd: //p' a.tsv)" \
 	"delaynet --columns 40 --layers 6 --count 200 --batch 20 --epochs 30 | delaynet --task score --columns 40"
-is "best order is never worse" "$(awk '/^[0-9]/ { print ($5 ~ /^[0-9]/ && $5 + 0 <= $3 + 0) }' a.tsv | sort -u)" 1
+is "the best order is never worse than the given order" "$(awk '/^[0-9]/ { print ($5 ~ /^[0-9]/ && $5 + 0 <= $3 + 0) }' a.tsv | sort -u)" 1
 
 # A linear network without hidden worth: gradient descent on the constant stays the mean.
 delaynet --columns 4 --layers 2:relu --optimiser descent --learning-rate 0.5 --epochs 400 --batch 0 \
 	--amplitude 0:0 >flat.net
 delaynet --task score --columns 4 --amplitude 0:0 flat.net --count 10000 >flat.tsv
-near "without a signal the constant predictor is left: 1/12" \
+near "without a signal the score is that of the constant predictor, 1/12" \
 	"$(column ordered flat.tsv | head -n 1)" 0.083333 0.0015
 
 # Exported data and the application of a network to them.
 delaynet --task data --columns 40 --count 50 --first 1000 --truth truth.tsv >x.snd
 delaynet --task apply --network a.net x.snd >out.tsv
-is "one row per section" "$(column section out.tsv | wc -l)" 50
+is "each section has a row" "$(column section out.tsv | wc -l)" 50
 got=$(awk -F '\t' '/^#/ || /^section/ { next } FNR == NR { for (i = 2; i < 5; i++) t[$1 - 1000, i] = $i; next }
 	{ for (i = 2; i < 5; i++) s += ($i - t[$1, i]) ^ 2 } END { printf "%.6g", s / 150 }' truth.tsv out.tsv)
 delaynet --task score --columns 40 --count 50 a.net >b.tsv
-near "the same score by way of data and apply" "$got" "$(column ordered b.tsv | head -n 1)" 1e-6
+near "data and apply give the same score" "$got" "$(column ordered b.tsv | head -n 1)" 1e-6
 delaynet --task apply --network a.net <x.snd >in.tsv
 same "apply reads a pipe" in.tsv out.tsv
-is "data by parts" "$(for f in 0 3; do delaynet --task data --columns 40 -f "$f" -c 3 | head -c -16 | tail -c 1920; done | cksum)" \
+is "data can be written in parts" "$(for f in 0 3; do delaynet --task data --columns 40 -f "$f" -c 3 | head -c -16 | tail -c 1920; done | cksum)" \
 	"$(delaynet --task data --columns 40 -c 6 | head -c -16 | tail -c 3840 | cksum)"
 
 # Auto-encoders.
 delaynet --columns 40 --layers "8 6" --activation sigmoid --pretrain 20 --sparsity 4 --epochs 5 \
 	--count 100 --stats stats.tsv >ae.net
-is "pre-training is counted: two layers and the rest" "$(column epochs stats.tsv)" 45
+is "pre-training is counted for two layers" "$(column epochs stats.tsv)" 45
 
 delaynet --columns 30 --layers "4conv6x2 pool2x2 3conv3x1 pool2x1 16" --activation relu --count 100 \
 	--epochs 3 --loss sums >cnn.net
@@ -72,12 +72,12 @@ arrivals="--model pulses --reach 0.03:0.03 --snr 30:30"
 		--count 1000 --epochs 20 --learning-rate 4e-3 --learning-rate-end 1e-4 >tiny.net
 	delaynet --task score $arrivals tiny.net >tiny.tsv
 }
-is "counts of one to four are scored" "$(column sources tiny.tsv | tr '\n' ' ')" "1 2 3 4 "
+is "counts of one to four pulses are scored" "$(column sources tiny.tsv | tr '\n' ' ')" "1 2 3 4 "
 got=$(column delay_rmse tiny.tsv | head -n 1)
-ok "a tiny network retrained: delay of one pulse to $got durations, prior 0.0173" \
+ok "a small trained network has an error of delay of $got durations, below 0.0173 of the prior" \
 	awk -v g="$got" 'BEGIN { exit !(g < 0.01) }'
 got=$(column size_rmse tiny.tsv | head -n 1)
-ok "its size to $got" awk -v g="$got" 'BEGIN { exit !(g < 0.1) }'
+ok "a small trained network has an error of size of $got" awk -v g="$got" 'BEGIN { exit !(g < 0.1) }'
 fails "arrivals for delays" 1 "want a network for delays, got one for arrivals" \
 	delaynet --task score tiny.net
 fails "delays for arrivals" 1 "want a network for arrivals, got one for delays" \

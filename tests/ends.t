@@ -10,8 +10,8 @@ $surfaces --count 3 >fields
 $debris --truth table >signal
 $debris --single >single
 for f in fields signal single table; do
-	ok "a whole stream is whole ($f)" records --check $f
-	like "and --check says so ($f)" "$(cat out)" "^$f: .*, whole$"
+	ok "a complete stream is accepted ($f)" records --check $f
+	like "--check reports it as complete ($f)" "$(cat out)" "^$f: .*, whole$"
 done
 
 # refused COMMAND...: exit status 1 and one line
@@ -29,7 +29,7 @@ for f in fields signal single table; do
 		n=$((n + 1))
 		refused records --check cut || missed="$missed $at"
 	done
-	is "$f: each of $n cuts is refused" "$missed" ''
+	is "$f: each of $n truncations is refused" "$missed" ''
 done
 # flip FILE AT: the file with one bit of the byte at this place flipped
 flip() {
@@ -46,7 +46,7 @@ for f in fields signal table; do
 		flip $f "$at" >bad
 		refused records --check bad || missed="$missed $at"
 	done
-	is "$f: a flipped bit is seen wherever it falls" "$missed" ''
+	is "$f: a flipped bit is detected at any position" "$missed" ''
 done
 
 # What is whole is passed on, without an end.
@@ -54,7 +54,7 @@ record=$(($(wc -c <fields) / 3))
 head -c $((2 * record + 300)) fields >cut
 fails 'a cut stream of fields is refused' 1 'record 3' bemcontact --load 1N --estar 100GPa cut
 bemcontact --load 1N --estar 100GPa cut >passed 2>err
-is 'two of three records were passed on' "$(grep -ac '^realisation' passed)" 2
+is 'two of three records are processed' "$(grep -ac '^realisation' passed)" 2
 fails 'and the next program knows' 1 'the stream ends after record 2, which announces another' \
 	debrisgen --yield 1MPa passed
 head -c $((2 * record)) fields >cut
@@ -63,13 +63,13 @@ cut=$(($(wc -c <signal) - 16 * 70 - 5))
 head -c $cut signal >cut
 fails 'a cut signal is refused' 1 'the signal has no end after 930 frames' bpfilter --order 2 cut
 bpfilter --order 2 cut >passed 2>err
-is 'all whole frames were passed on' "$(frames passed 2 | wc -l)" 929 # the last stands in for the end
+is 'all complete frames are processed' "$(frames passed 2 | wc -l)" 929 # the last stands in for the end
 fails 'and duet knows' 1 'the signal has no end' duet passed
 sed '$d' table >cut
 fails 'a cut table is refused' 1 "the table ends after 5 rows without its '# end' line" \
 	sensorsim --duration 1s cut
 fails 'rows that were edited are refused' 1 'damaged or edited' sh -c "sed 's/^3/4/' table | sensorsim --duration 1s"
-ok 'and taken without comments' sh -c "sed 's/^3/4/' table | grep -v '^#' | sensorsim --duration 1s"
+ok 'a table without comment lines is accepted' sh -c "sed 's/^3/4/' table | grep -v '^#' | sensorsim --duration 1s"
 
 # A writer that was killed: the pipeline fails although the reader ran to its end.
 {
@@ -80,22 +80,22 @@ ok 'and taken without comments' sh -c "sed 's/^3/4/' table | grep -v '^#' | sens
 	records --output count >out 2>err
 	echo $? >status
 }
-is 'a generator that was killed leaves no whole stream' "$(cat status out) $(wc -l <err)" '1 1'
+is 'a generator that was killed leaves no complete stream' "$(cat status out) $(wc -l <err)" '1 1'
 
 # Unions
 cat fields fields >two
 is 'cat of two streams is the union of two ensembles' "$(records --output count two)" 6
 records --output nrrd two >one
-ok 'which records makes one stream of' records --check one
+ok 'records makes one stream of the output of cat' records --check one
 $surfaces --count 2 >a
 $surfaces --first 2 >b
 cat a b | records --output nrrd >joined
-same 'with the bytes of a single process' joined fields
+same 'records --join gives the bytes of a single process' joined fields
 cat a b | bemcontact --load 1N --estar 100GPa >one
 bemcontact --load 1N --estar 100GPa fields >two
-same 'and so does every program' one two
+same 'every program reads the output of cat' one two
 cat table table >two
-like 'tables too' "$(records --check two)" 'table: rows 10, whole'
+like 'tables joined by cat are read too' "$(records --check two)" 'table: rows 10, whole'
 cat signal signal >two
 fails 'two signals are no signal' 1 'no end\|signals joined' records --check two
 { sed '$d' table; cat table; } >two
@@ -106,7 +106,7 @@ fails 'a cut stream before a whole one' 1 'want number 2 of its stream, got numb
 # Streams without a mark
 printf 't\ty\n0\t1\n' >foreign
 records --check foreign >out 2>err
-is 'nobody can tell about a foreign table' "$? $(cat out)" \
+is 'a foreign table cannot be checked' "$? $(cat out)" \
 	'3 foreign: table: rows 1, no mark of an end: nobody can tell whether it is whole'
 fails 'an empty file is no stream' 1 'empty' records --check /dev/null
 { printf '.snd\0\0\0\030\0\0\0\010\0\0\0\007\0\0\037\100\0\0\0\001'; printf '\077\340\0\0\0\0\0\0extra'; } >long.au
@@ -121,11 +121,11 @@ wait
 same 'a signal that is still being written is read to its end' followed whole
 { head -n 6 table; sleep 0.3; tail -n +7 table; } >growing &
 sleep 0.1
-ok 'a table too' timeout 10 sensorsim --duration 100ms --follow growing
+ok 'a table that is still being written is read to its end' timeout 10 sensorsim --duration 100ms --follow growing
 wait
 head -c $cut signal >cut
-ok 'a live signal may stop anywhere' sh -c 'cat cut | bpfilter --order 2 --follow >live'
-ok 'and its end is written' records --check live
+ok 'a live signal may stop at any time' sh -c 'cat cut | bpfilter --order 2 --follow >live'
+ok 'the end mark is written when a live signal stops' records --check live
 
 fails 'a line longer than can be held' 1 'table: line [0-9]*: longer than 100 bytes' \
 	env WEARPIPE_LIMITS=line=100 records --check table

@@ -25,12 +25,12 @@ complete_words() {
 }
 if command -v bash >/dev/null; then
 	is 'completion offers all choices of an option' "$(complete_words roughgen --acf '')" 'gauss exp'
-	is 'and those that begin as typed' "$(complete_words roughgen --acf g)" gauss
-	is 'also behind an equals sign' "$(complete_words bemcontact --boundary = p)" periodic
-	is 'completion offers the words of the options' "$(complete_words duet --m)" --method
-	is 'and files elsewhere' "$(cd "$top" && complete_words bpfilter READ)" README.md
+	is 'completion offers the choices that begin as typed' "$(complete_words roughgen --acf g)" gauss
+	is 'completion works after an equals sign' "$(complete_words bemcontact --boundary = p)" periodic
+	is 'completion offers the options' "$(complete_words duet --m)" --method
+	is 'completion offers files otherwise' "$(cd "$top" && complete_words bpfilter READ)" README.md
 else
-	skip 'completion' 'no bash'
+	skip 'completion works in bash' 'no bash'
 fi
 for s in zsh fish; do
 	file=$usr/share/zsh/site-functions/_wearpipe
@@ -47,11 +47,11 @@ names() {
 	nm "$@" | awk 'NF == 3 && $3 !~ /^wp_/ { print $3 }'
 }
 if [ -n "${ASAN_OPTIONS:-}" ]; then
-	skip 'names' 'built for the sanitizers'
+	skip 'the symbols of the library are checked' 'built for the sanitizers'
 elif command -v nm >/dev/null; then
-	is 'the shared library shows only names that begin with wp_' \
+	is 'the shared library exports only names that begin with wp_' \
 		"$(names -D --defined-only "$usr/lib/libwearpipe.so.0")" ''
-	is 'the archive shows only names that begin with wp_' \
+	is 'the archive exports only names that begin with wp_' \
 		"$(names -g --defined-only "$usr/lib/libwearpipe.a")" ''
 	is 'every function of the headers is in the library' "$(
 		sed -n 's/^.*\(wp_[a-z_]*\)(.*/\1/p' "$usr"/include/wearpipe/*.h | sort -u >declared
@@ -75,18 +75,18 @@ for h in *.h; do echo "#include <wearpipe/$h>"; done >"$work/all.c"
 echo 'int main(void) { return 0; }' >>"$work/all.c"
 cd "$work" || exit
 cp all.c all.cc
-ok 'all headers together are C11' ${CC:-cc} -std=c11 -Wall -Wextra -Wpedantic -Werror \
+ok 'all headers together compile as C11' ${CC:-cc} -std=c11 -Wall -Wextra -Wpedantic -Werror \
 	-I"$usr/include" -fsyntax-only all.c
 if command -v "${CXX:-c++}" >/dev/null; then
-	ok 'all headers together are C++17' "${CXX:-c++}" -std=c++17 -Wall -Wextra -Wpedantic \
+	ok 'all headers together compile as C++17' "${CXX:-c++}" -std=c++17 -Wall -Wextra -Wpedantic \
 		-Werror -I"$usr/include" -fsyntax-only all.cc
 else
-	skip 'all headers together are C++17' 'no C++ compiler'
+	skip 'all headers together compile as C++17' 'no C++ compiler'
 fi
 for c in *.example.c; do
 	name=${c%.example.c}
 	if [ -n "${ASAN_OPTIONS:-}" ]; then
-		skip "the example of $name.h" 'the library was built for the sanitizers'
+		skip "the example of $name.h compiles and runs" 'the library was built for the sanitizers'
 	elif ${CC:-cc} -std=c11 -Wall -Wextra -Werror -I"$usr/include" "$c" \
 		"$usr/lib/libwearpipe.so.0" -lm -o "$name" 2>err &&
 		LD_LIBRARY_PATH=$usr/lib "./$name" >out 2>>err; then
@@ -101,20 +101,20 @@ cp contact.example.c x.c
 PKG_CONFIG_PATH=$usr/lib/pkgconfig:${PKG_CONFIG_PATH:-}
 export PKG_CONFIG_PATH
 if [ -n "${ASAN_OPTIONS:-}" ] || ! command -v pkg-config >/dev/null; then
-	skip 'pkg-config leads to the archive' 'not here'
+	skip 'pkg-config finds the archive' 'not here'
 else
-	is 'pkg-config knows the version' "$(pkg-config --modversion wearpipe)" \
+	is 'pkg-config states the version' "$(pkg-config --modversion wearpipe)" \
 		"$(sed -n 's/^VERSION = //p' "$top/Makefile")"
 	flags=$(pkg-config --static --libs-only-l wearpipe | sed 's/-lwearpipe//')
 	# shellcheck disable=SC2086 # flags are words
 	if ${CC:-cc} -std=c11 -I"$usr/include" x.c "$usr/lib/libwearpipe.a" $flags -pthread \
 		-o x 2>err && ./x >out; then
-		is 'the archive gives what the shared library gives' "$(cat out)" \
+		is 'the archive gives the same results as the shared library' "$(cat out)" \
 			"$(LD_LIBRARY_PATH=$usr/lib ./contact)"
 	else
 		fail 'the archive links with the libraries that pkg-config names' "$(head err)"
 	fi
 fi
-ok 'make uninstall' make -s -C "$top" uninstall DESTDIR="$root" PREFIX=/usr
-is 'leaves no file behind' "$(find "$root" -type f -o -type l)" ''
+ok 'make uninstall succeeds' make -s -C "$top" uninstall DESTDIR="$root" PREFIX=/usr
+is 'make uninstall leaves no file' "$(find "$root" -type f -o -type l)" ''
 done_testing

@@ -9,7 +9,7 @@ is "six layouts give six rows" "$(column coils six.tsv | wc -l)" 6
 is "relative errors of the velocity are those of the closed form" \
 	"$(awk -F '\t' '/^[0-9]/ { printf "%.3g ", $10 / $5 * 1e4 }' six.tsv)" "7.52 4.44 1.55 1.44 1.1 0.797 "
 layout --coils 0,25cm --snr 20dB --arrivals 100 >weak.tsv
-near "ten times the noise is ten times the error" \
+near "ten times the noise gives ten times the error" \
 	"$(column se_velocity weak.tsv | awk '{ printf "%.6f", $1 * 1000 }')" 19.74 0.01
 layout --coils 0,25cm --snr 40dB --arrivals 100 --diameter 46.41589um >small.tsv
 near "a particle of a tenth of the volume has a tenth of the signal" \
@@ -19,9 +19,9 @@ layout --coils 0,25cm --coils 0,5cm,25cm --snr 40dB --arrivals 100 --method clos
 layout --coils 0,25cm --coils 0,5cm,25cm --snr 40dB --arrivals 100 --method sum --stats s >sum.tsv
 near "integrals and sums over 100 samples agree to 1e-3" "$(paste closed.tsv sum.tsv |
 	awk -F '\t' '/^[0-9]/ { d = $10 / $25 - 1; if (d < 0) d = -d; if (d > m) m = d } END { printf "%.6f", m }')" 0 1e-3
-near "what is summed is counted" "$(column samples_summed s)" 8000 0
+near "summed samples are counted" "$(column samples_summed s)" 8000 0
 layout --coils 0,25cm --snr 40dB --arrivals 100 --rate 1MHz --stats s >fine.tsv
-near "sums that no digit needs are left out" "$(column samples_left_out s)" 320000 32
+near "sums are skipped where the integrals are exact to all digits" "$(column samples_left_out s)" 320000 32
 
 # Probabilities: a truth table of 20000 particles of sensorsim, 2000 of them asked.
 chance() { # awk condition on the particles i and j, true where j stands in the way of i
@@ -31,31 +31,31 @@ chance() { # awk condition on the particles i and j, true where j stands in the 
 		free += !bad } printf "%.5f", free / m }' truth.tsv
 }
 sensorsim --uniform 100um:100um --number 20000 --duration 500s --profile turbulent --truth - >truth.tsv
-is "particles are drawn" "$(column time1 truth.tsv | wc -l)" 20000
+is "particles are simulated" "$(column time1 truth.tsv | wc -l)" 20000
 layout --coils 0,25cm --snr 40dB --arrivals 40 --profile turbulent >p.tsv
 # 2000 draws of 0.45: 0.011
-near "as many pulses stand alone as drawn particles do" "$(column p_alone p.tsv)" \
+near "as many pulses are isolated as in the simulation" "$(column p_alone p.tsv)" \
 	"$(chance '(a[i] - a[j]) ^ 2 < (0.1273239545 * (1 / v[i] + 1 / v[j]) / 2) ^ 2')" 0.035
 sensorsim --uniform 100um:100um --number 20000 --duration 200s --lag 0:0.9817ms --truth - >truth.tsv
 # transit 19.635 to 20.617 ms: 20.126 ms by 2.439 % either way
 layout --coils 0,25cm --snr 40dB --arrivals 100 --spread 2.439% --flow 58.535L/min >p.tsv
-near "as many pulses are the only candidate as drawn particles are" "$(column p_unique p.tsv)" \
+near "as many pulses have a unique candidate as in the simulation" "$(column p_unique p.tsv)" \
 	"$(chance 'b[j] > a[i] + 0.019635 && b[j] < a[i] + 0.020617')" 0.02
 
 layout --best 4 --extent 1m --least-unique 0 --snr 40dB --arrivals 100 --spread 10% >best.tsv
-is "without a bound on pairing half the coils stand at either end" "$(column coils best.tsv)" "0,0,1,1"
+is "without a bound on matching half of the coils are at either end" "$(column coils best.tsv)" "0,0,1,1"
 layout --best 3 --extent 1m --least-unique 0.99 --snr 30dB --arrivals 100 --spread 10% --stats s >best.tsv
-near "with one the best layout just meets it" "$(column p_unique_width best.tsv)" 0.99 1e-6
-rising "layouts looked at are counted" 500 "$(column layouts_searched s)"
+near "with a bound the best layout just meets it" "$(column p_unique_width best.tsv)" 0.99 1e-6
+rising "layouts evaluated are counted" 500 "$(column layouts_searched s)"
 layout --coils "$(column coils best.tsv)" --snr 30dB --arrivals 100 --spread 10% >again.tsv
-is "a layout that was found is judged as given" "$(sed "/^#/d" again.tsv)" "$(sed "/^#/d" best.tsv)"
+is "the best layout has the same row if it is given" "$(sed "/^#/d" again.tsv)" "$(sed "/^#/d" best.tsv)"
 
 layout --coils 0,1 --snr -30dB --arrivals 1 >low.tsv 2>err
-is "a particle lost in the noise is said and the status is 3" "$? $(grep -c deviations err)" "3 1"
+is "a particle below the noise gives a warning and status 3" "$? $(grep -c deviations err)" "3 1"
 layout --coils 0 --snr 40dB --per-ml 0 >none.tsv
-is "oil without particles hinders none" "$(column p_alone none.tsv) $(column arrivals none.tsv)" "1 0"
+is "oil without other particles has no overlaps" "$(column p_alone none.tsv) $(column arrivals none.tsv)" "1 0"
 layout --coils 0 --snr 40dB --per-ml 0.1 --flow 60L/min >some.tsv
-near "concentration times flow is arrivals" "$(column arrivals some.tsv)" 100 1e-9
+near "concentration times flow is the rate of arrivals" "$(column arrivals some.tsv)" 100 1e-9
 
 fails "neither coils nor a search" 2 'specify either --coils X,X,... or --best N' layout --snr 40dB --arrivals 1
 fails "a search without room" 2 'requires --extent' layout --best 2 --snr 40dB --arrivals 1
@@ -67,5 +67,5 @@ fails "more coils than there is room for" 2 'more than 16 coils' \
 	layout --coils 0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16 --snr 40dB --arrivals 1
 fails "a second layout that is wrong is found before any output" 2 "want positions" \
 	layout --coils 0,1 --coils x --snr 40dB --arrivals 1
-is "and nothing is printed" "$(cat out)" ""
+is "nothing is printed" "$(cat out)" ""
 done_testing

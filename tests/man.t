@@ -35,7 +35,7 @@ for p in $programs wearwatch; do
 	fi
 	page_options "$page" >page.options
 	"$p" --help | help_options >help.options
-	is "$p: options of the page and of --help" "$(diff page.options help.options)" ""
+	is "$p: the page and --help have the same options" "$(diff page.options help.options)" ""
 done
 for page in "$top"/man/*.[1-9]; do
 	name=${page##*/}

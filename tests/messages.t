@@ -34,11 +34,11 @@ fails "a unit with wrong capitals" 2 'young 210Gpa: did you mean GPa?' bemcontac
 fails "one of two" 2 'young 210GPa,70gpa: did you mean GPa?' bemcontact --young 210GPa,70gpa --pressure 1MPa s.nrrd
 fails "a unit of another quantity" 2 "'210um' has the wrong unit" bemcontact --young 210um --pressure 1MPa s.nrrd
 fails "a blank before the unit" 2 "'mm' is taken for a file, which is not there; a unit" roughgen --length 1 mm
-is "a file of that name is one" "$(cp s.nrrd mm; roughgen --sq 1um mm | records - | grep -c height)" 1
+is "a file of that name is read as a file" "$(cp s.nrrd mm; roughgen --sq 1um mm | records - | grep -c height)" 1
 
 # Possible, but hardly meant: said, and done.
 doubted() {
-	is "$1" "$("$3" 2>&1 >/dev/null | grep -c -e "$2")" 1
+	is "$1 gives a warning" "$("$3" 2>&1 >/dev/null | grep -c -e "$2")" 1
 }
 metre() { roughgen --points 8 --length 1; }
 white() { roughgen --points 8 --length 10um --corr 1um; }
@@ -49,5 +49,5 @@ doubted "a surface of a metre" '--length 1 m: .* is 1mm meant?' metre
 doubted "waves shorter than the spacing" '--corr 1e-06 m is below the spacing of 1.25e-06 m' white
 doubted "a body softer than jelly" '--young 210 Pa .* is 210GPa meant?' soft
 doubted "a yield stress of jelly" '--yield 355 Pa .* is 355MPa meant?' weak
-is "what is ordinary is not doubted" "$(plain 2>&1 >/dev/null)" ""
+is "ordinary values give no warning" "$(plain 2>&1 >/dev/null)" ""
 done_testing

@@ -17,30 +17,30 @@ perl -e 'print pack("N8", 0x2e736e64, 32, 0xffffffff, 7, 8000, 2, 0, 0);
 	while (<>) { my @c = split; print pack("d>2", @c[0, 1]) }' all.txt >mix.au
 duet --method duet --align 0 --separated apart.au --sections sections.tsv --histogram h.tsv \
 	mix.au >found.tsv
-is "exit status" $? 0
+is "the exit status is 0" $? 0
 grep '^# source' found.tsv | awk '{ print $5, $7 * 8000 }' | sort -n >sources
-near "attenuation of the first" "$(sed -n 2p sources | cut -d' ' -f1)" 1.2 0.02
-near "its delay, samples" "$(sed -n 2p sources | cut -d' ' -f2)" -1 0.05
-near "attenuation of the second" "$(sed -n 1p sources | cut -d' ' -f1)" 0.8 0.02
-near "its delay, samples" "$(sed -n 1p sources | cut -d' ' -f2)" 1.5 0.05
+near "the attenuation of the first source is found" "$(sed -n 2p sources | cut -d' ' -f1)" 1.2 0.02
+near "the delay of the first source is found" "$(sed -n 2p sources | cut -d' ' -f2)" -1 0.05
+near "the attenuation of the second source is found" "$(sed -n 1p sources | cut -d' ' -f1)" 0.8 0.02
+near "the delay of the second source is found" "$(sed -n 1p sources | cut -d' ' -f2)" 1.5 0.05
 is "the record is one section" "$(column section sections.tsv) $(column sources sections.tsv)" "1 2"
-is "the histogram is whole" "$(column weight h.tsv | wc -l)" 4096
+is "the histogram is complete" "$(column weight h.tsv | wc -l)" 4096
 frames apart.au 8 | paste - all.txt >both.txt
 # SDR of the better order, and what the sum of all channels lacks of channel 1
 awk '{ e11 += ($1 - $11) ^ 2; e12 += ($1 - $12) ^ 2; e21 += ($2 - $11) ^ 2; e22 += ($2 - $12) ^ 2
 	s1 += $11 ^ 2; s2 += $12 ^ 2; d = $1 + $2 - $9; if (d < 0) d = -d; if (d > m) m = d }
 	END { a = s1 / e11 < s2 / e22 ? s1 / e11 : s2 / e22; b = s1 / e21 < s2 / e12 ? s1 / e21 : s2 / e12
 	print 10 * log(a > b ? a : b) / log(10), m }' both.txt >sdr
-ok "both sources to $(cut -d' ' -f1 sdr) dB, each on one channel throughout" \
+ok "both sources are separated to $(cut -d' ' -f1 sdr) dB, each on the same channel throughout" \
 	awk '{ exit !($1 > 9) }' sdr
-near "they add up to channel 1" "$(cut -d' ' -f2 sdr)" 0 1e-12
+near "the sources add up to channel 1" "$(cut -d' ' -f2 sdr)" 0 1e-12
 duet --method duet --align 0 --sources 1 --separated one.au mix.au >one.tsv
-is "one source, if told so" "$(grep -c '^# source' one.tsv)" 1
+is "one source is separated if specified" "$(grep -c '^# source' one.tsv)" 1
 # shellcheck disable=SC2002 # a pipe is meant
 cat mix.au | duet --method duet --align 0 --separated piped.au >piped.tsv
 frames piped.au 8 >piped
 frames apart.au 8 >apart
-same "a record from a pipe gives the same" piped apart
+same "a record from a pipe gives the same result" piped apart
 head -c 32 mix.au >none.au
 fails "no frames" 3 "nothing in common" duet --method duet --align 0 none.au
 fails "a hop without a window" 2 "hop wants a --window" duet --method duet --align 0 --hop 9 mix.au

@@ -25,11 +25,11 @@ for how in '' '--lives-only --mission 20 --cost-ratio 5 --weights'; do
 	head -122 three.tsv | run --save state >first
 	{ cat header; tail -n +123 three.tsv; } | run --resume state --save state >second
 	{ rows first; rows second; } >parts
-	same "a stop and a resumption leave no trace (${how:-with the filter})" parts whole.rows
+	same "stopping and resuming does not change the output (${how:-with the filter})" parts whole.rows
 	run --resume state three.tsv | rows - >again
-	is "rows that were taken before are passed over (${how:-with the filter})" "$(wc -l <again | tr -d ' ')" 0
+	is "rows that were processed before are skipped (${how:-with the filter})" "$(wc -l <again | tr -d ' ')" 0
 	run --threads 3 three.tsv >side
-	same "threads change nothing (${how:-with the filter})" side whole
+	same "threads do not change the output (${how:-with the filter})" side whole
 done
 fails "a state of other options" 1 "state: saved with other options" \
 	aopf --unit unit --threshold 1 --direction up --resume state three.tsv
@@ -37,9 +37,9 @@ fails "what is no state" 1 "no state saved by aopf" \
 	aopf --unit unit --threshold 1 --resume three.tsv three.tsv
 cp state torn
 printf 'xxxx' | dd of=torn bs=1 seek=3000 conv=notrunc 2>/dev/null
-ok "a torn state leaves the one before it" \
+ok "a truncated state leaves the previous one" \
 	aopf --unit unit --threshold 1 --direction up --lives-only --mission 20 --cost-ratio 5 --weights --resume torn --stats torn.stats three.tsv
-is "with all units" "$(column units_resumed torn.stats)" 3
+is "the previous state has all units" "$(column units_resumed torn.stats)" 3
 
 # Killed between two rows.
 wear 100 70 7 | sed '1i t	y' >one.tsv
@@ -59,7 +59,7 @@ exec 3>&-
 wait $p 2>/dev/null
 aopf --threshold 1 --direction up --lives-only --resume killed one.tsv >after
 { grep '^[0-9]' before; grep '^[0-9]' after; } >both
-same "nor does a kill between two rows" both whole
+same "killing the program between two rows does not change the output" both whole
 
 # The memory of a unit: of a stream of 400 and of 4000 units, five rows each.
 stream() {
@@ -70,27 +70,27 @@ for n in 400 4000; do
 	stream $n | aopf --unit unit --threshold 1 --direction up --lives-only --after 1e9 --stats stats >/dev/null
 	column memory_kb stats
 done >memory
-near "kilobytes for each further unit" "$(awk 'NR == 1 { a = $1 } END { print ($1 - a) / 3600 }' memory)" 16 4
+near "each further unit takes some kilobytes" "$(awk 'NR == 1 { a = $1 } END { print ($1 - a) / 3600 }' memory)" 16 4
 
 # Probability and costs, of draws that the quantiles tell: the lowest quantile at 0, others
 # in steps of 5 %.
 levels=$(seq -s, 0 0.05 1)
 aopf --threshold 1 --direction up --lives-only --levels "$levels" --mission 15 --cost-ratio 10 one.tsv | grep -v '^#' | tail -1 >last
 awk -F '\t' '{ for (k = 3; k <= 23 && $k <= 15; k++); print (k - 4 + (15 - $(k - 1)) / ($k - $(k - 1))) / 20 }' last >p
-near "the probability of failure before the end of a mission" "$(cut -f 25 last)" "$(cat p)" 0.01
+near "the probability of failure within a mission is that of the quantiles" "$(cut -f 25 last)" "$(cat p)" 0.01
 # by hand: cost per time of a replacement at each quantile
 awk -F '\t' '{ best = 1e9; for (k = 3; k <= 22; k++) { p = (k - 3) / 20
 		area += k > 3 ? (1 - p + 0.025) * ($k - $(k - 1)) : $k
 		cost = (1 + 9 * p) / (69 + area)
 		if (cost < best) { best = cost; at = $k } } print at }' last >best
-near "the cheapest time to replace" "$(cut -f 26 last)" "$(cat best)" 2
-is "none is worth it where a failure costs no more" \
+near "the replacement time has the lowest cost" "$(cut -f 26 last)" "$(cat best)" 2
+is "no replacement is advised if a failure costs no more" \
 	"$(aopf --threshold 1 --direction up --lives-only --cost-ratio 1 one.tsv | column replace_in /dev/stdin | tail -1)" inf
 
 # Alarms: raised when the lowest quantile falls to a level, cleared above 1.25 of it.
 wear 100 95 8 | sed '1i t	y' >worn.tsv
 aopf --threshold 1 --direction up --lives-only --alarm 20,5 worn.tsv >alarms
-is "an alarm stands at the end" $? 4
+is "an alarm is active at the end" $? 4
 awk -F '\t' '/^[0-9]/ { want = 0
 	if ($3 != "nan") {
 		if ($3 <= 20 * (was >= 1 ? 1.25 : 1)) want = 1
@@ -99,9 +99,9 @@ awk -F '\t' '/^[0-9]/ { want = 0
 		was = want
 		n++
 	} } END { print bad + 0, (n > 80) }' alarms >bad
-is "levels and their hysteresis" "$(cat bad)" "0 1"
+is "the levels have hysteresis" "$(cat bad)" "0 1"
 head -20 worn.tsv | aopf --threshold 1 --direction up --lives-only --alarm 1,0.5 >alarms
-is "no alarm, no status" $? 0
+is "without an alarm the status is 0" $? 0
 fails "alarms that rise" 2 "descending" aopf --threshold 1 --alarm 1,2 one.tsv
 fails "a mission without a threshold" 2 "mission requires --threshold" aopf --mission 3 one.tsv
 fails "lives without a threshold" 2 "lives-only requires --threshold" aopf --lives-only one.tsv
@@ -112,23 +112,23 @@ fails "lives of the filter without it" 2 "excludes" \
 awk -F '\t' 'NR == 1 { print "t\thours\ty"; next } { print $1 + ($1 > 40 ? 500 : 0) "\t" $1 "\t" $2 }' one.tsv >halt.tsv
 aopf --threshold 1 --direction up --lives-only --clock hours halt.tsv | grep '^[0-9]' | cut -f 3- >clock
 cut -f 3- whole >plain
-same "lives by operating hours" clock plain
+same "lives are predicted in operating hours" clock plain
 awk -F '\t' 'NR == 1 { print "t\ty"; next } { print $1 "\t" $3 }' halt.tsv >bare.tsv
 aopf --threshold 1 --direction up --lives-only --stats halt.stats bare.tsv | grep -v '^#' | tail -1 | cut -f 4 >r
-near "a halt is told by the values after it" "$(cat r)" "$(grep -v '^#' whole | tail -1 | cut -f 4)" 1
-is "and counted" "$(column halts halt.stats)" 1
+near "the values after a halt identify it" "$(cat r)" "$(grep -v '^#' whole | tail -1 | cut -f 4)" 1
+is "halts are counted" "$(column halts halt.stats)" 1
 # the first rows after it: healthy, not dead
 aopf --threshold 1 --direction up --lives-only bare.tsv | awk -F '\t' '$1 == 541 { print $4 }' >r
-near "the row after a halt knows no failure" "$(cat r)" "$(awk -F '\t' '$1 == 41 { print $4 }' whole)" 5
+near "the row after a halt predicts no failure" "$(cat r)" "$(awk -F '\t' '$1 == 41 { print $4 }' whole)" 5
 
 # A repair that is told takes effect at once, one that is not after three rows.
 awk -F '\t' 'NR > 1 && $1 >= 60 { $2 -= 0.3 } { print $1 "\t" $2 }' one.tsv >repaired.tsv
 printf 't\tevent\n60\trepair\n' >events.tsv
 aopf --threshold 1 --direction up --lives-only repaired.tsv >untold
 aopf --threshold 1 --direction up --lives-only --events events.tsv --stats events.stats repaired.tsv >told
-is "the event is counted" "$(column events events.stats)" 1
-near "life after a repair that is told" "$(awk '$1 == 60 { print $4 }' told)" 68 12
-near "one that is not told, three rows later" "$(awk '$1 == 63 { print $4 }' untold)" \
+is "events are counted" "$(column events events.stats)" 1
+near "the life after a specified repair is right" "$(awk '$1 == 60 { print $4 }' told)" 68 12
+near "the life after an unspecified repair is right three rows later" "$(awk '$1 == 63 { print $4 }' untold)" \
 	"$(awk '$1 == 63 { print $4 }' told)" 8
 printf 't\tevent\n60\tfire\n' >bad.tsv
 fails "an event of another kind" 1 "bad.tsv: line 2: event 'fire', want repair or load" \
@@ -137,18 +137,18 @@ fails "an event of another kind" 1 "bad.tsv: line 2: event 'fire', want repair o
 # Weights of straight wear
 aopf --threshold 1 --direction up --lives-only --weights one.tsv >weights
 column weight_linear weights | tail -1 >w
-ok "the straight line has the most of the families" sh -c \
+ok "a straight line gives the linear family the largest weight" sh -c \
 	"grep -v '^#' weights | tail -1 | cut -f 7-11 | tr '\t' '\n' | sort -g | tail -1 | cmp - w"
 near "weights add up to 1" "$(grep -v '^#' weights | tail -1 | cut -f 7-12 | awk '{ print $1 + $2 + $3 + $4 + $5 + $6 }')" 1 1e-9
 
 # JSON
 aopf --unit unit --threshold 1 --direction up --lives-only --json three.tsv >rows.json
-is "a line of JSON for each row" "$(grep -c '^{"unit":"u[123]","t":[0-9]*,"y":.*}$' rows.json)" 240
+is "each row is a line of JSON" "$(grep -c '^{"unit":"u[123]","t":[0-9]*,"y":.*}$' rows.json)" 240
 if command -v python3 >/dev/null; then
 	python3 -c 'import json
 n = [json.loads(x) for x in open("rows.json")]
 print(len(n), sorted(n[0]), n[0]["rul_q50"])' >parsed
-	is "that parses" "$(cat parsed)" \
+	is "the JSON can be parsed" "$(cat parsed)" \
 		"240 ['p_no_crossing', 'rul_q05', 'rul_q50', 'rul_q95', 't', 'unit', 'y'] None"
 fi
 done_testing

@@ -12,26 +12,26 @@ for k in 0 1 2 3; do
 	$surfaces -f $k -c 1
 done >split.nrrd
 records --join split.nrrd >joined.nrrd
-same 'surfaces: one process and four' whole.nrrd joined.nrrd
+same 'one process and four give the same surfaces' whole.nrrd joined.nrrd
 $contact <whole.nrrd | $debris >whole.tsv
 $contact -j 2 <split.nrrd | $debris -j 2 >split.tsv
-same 'particles: one thread and two, joined surfaces' whole.tsv split.tsv
+same 'one thread and two give the same particles' whole.tsv split.tsv
 "$top"/scripts/ensemble -j 2 4 "$surfaces -f \$K -c 1 | $contact | $debris" >ensemble.tsv
-same 'particles: four pipelines joined in order' whole.tsv ensemble.tsv
+same 'four joined pipelines give the particles of one' whole.tsv ensemble.tsv
 
 # The pipeline of each realisation stands in the table; they rebuild it together.
-is 'a line of provenance for each realisation' "$(grep -c '^# cmd: ' whole.tsv)" 4
+is 'each realisation has a line of provenance' "$(grep -c '^# cmd: ' whole.tsv)" 4
 sed -n 's/^# cmd: //p' whole.tsv >commands
 sh -e commands | records --join >replayed.tsv
-same 'the recorded commands rebuild the table' whole.tsv replayed.tsv
+same 'the recorded commands reproduce the table' whole.tsv replayed.tsv
 
 # What is made of the whole ensemble says how the whole is made.
 rebuilt() {
 	sh -e -c "$(sed -n 's/^# cmd: //p' "$1")" >again.tsv
-	same "$1 is rebuilt by its own header" "$1" again.tsv
+	same "$1 is reproduced by its own header" "$1" again.tsv
 }
 debrisstat whole.tsv >fits.tsv
-is 'an ensemble is counted' "$(sed -n 's/^# cmd: //p' fits.tsv | grep -o -e '--first.* | b')" \
+is 'an ensemble is recorded as a count' "$(sed -n 's/^# cmd: //p' fits.tsv | grep -o -e '--first.* | b')" \
 	'--first 0 --count 4 | b'
 rebuilt fits.tsv
 sensorsim --duration 5s --noise 5mV --truth truth.tsv whole.tsv >heard.au
@@ -40,12 +40,12 @@ rebuilt heard.tsv
 rebuilt truth.tsv
 $surfaces -f 7 -c 2 | $contact | $debris | cat whole.tsv - >gap.tsv
 debrisstat -o steps gap.tsv >steps.tsv
-is 'ensembles that do not follow each other stand in a group' \
+is 'ensembles that are not consecutive form a group' \
 	"$(sed -n 's/^# cmd: //p' steps.tsv | grep -o -e '--first [^|]*| b' -e '^{ ' -e '; }.*')" \
 	"$(printf '%s\n' '{ ' '--first 0 --count 4 | b' '--first 7 --count 2 | b' '; } | debrisstat --output steps')"
 rebuilt steps.tsv
 printf '# cmd: sensorsim --first 0\nrealisation\tstep\tdiameter\tvolume\taspect\n0\t1\t1\t1\t1\n' >r0
-is 'only realisations of surfaces are counted' \
+is 'only realisations of surfaces are merged' \
 	"$(sed 's/^0/1/; s/first 0/first 1/' r0 | cat r0 - | debrisstat | sed -n 's/^# cmd: //p')" \
 	'{ sensorsim --first 0; sensorsim --first 1; } | debrisstat'
 
@@ -56,9 +56,9 @@ key() {
 sensorsim --uniform 80um:150um --number 20 --duration 0.5s --noise 5mV -s 3 |
 	bpfilter --order 100 --zero-phase >signal.au
 sh -c "$(key signal.au)" >again.au
-same 'a signal is rebuilt by its own header' signal.au again.au
+same 'a signal is reproduced by its own header' signal.au again.au
 duet signal.au >found.tsv
-is 'and the table made from it says so' "$(sed -n 's/^# cmd: //p' found.tsv)" "$(key signal.au) | duet"
+is 'the table made from the signal records the signal' "$(sed -n 's/^# cmd: //p' found.tsv)" "$(key signal.au) | duet"
 
 # Every kind of stream is replayed without a shell, from the programs of wearpipe alone.
 mkdir replay && cd replay || exit
@@ -91,7 +91,7 @@ for f in surfaces contacts particles summary worn stress fits truth alone heard 
 	histogram masked response taps begun recording wear state counts roughness grooved carried loads layouts \
 	lives rates lessons delays points; do
 	records --replay "$f" >"$f.again" 2>err
-	same "$f: replayed" "$f" "$f.again"
+	same "$f: replay reproduces it" "$f" "$f.again"
 done
 rm truth
 records --replay heard >heard.again
@@ -107,7 +107,7 @@ refuse 'nor beside ours' 'roughgen --points 4; touch stolen' 'touch'
 refuse 'nor in a substitution' 'roughgen --points $(touch stolen)' 'a special character of the shell'
 refuse 'nor in a group' '{ roughgen --points 4; touch stolen; }' "'touch' is no program"
 refuse 'nothing is redirected' 'roughgen --points 4 >stolen' 'a special character of the shell'
-is 'and nothing was done' "$(ls stolen 2>/dev/null)" ''
+is 'nothing is executed' "$(ls stolen 2>/dev/null)" ''
 printf 'x\n1\n' >silent
 fails 'a stream that does not say how it was made' 1 'no cmd' records --replay silent
 cd "$work" || exit
@@ -116,8 +116,8 @@ cd "$work" || exit
 $surfaces -c 1 >'it'\''s a name: here.nrrd'
 roughgen --level "it's a name: here.nrrd" >measured.nrrd
 (eval "$(head -c 1024 measured.nrrd | sed -n 's/^cmd:=//p')") >again.nrrd
-same 'a file name with quotes, blanks and a colon survives' measured.nrrd again.nrrd
-is 'and no colon with a blank stands in a value' \
+same 'a file name with quotes, blanks and a colon is preserved' measured.nrrd again.nrrd
+is 'no value contains a colon followed by a blank' \
 	"$(head -c 1024 measured.nrrd | grep -a ':=' | grep -c ': ')" 0
 
 mkdir demo && cd demo || exit

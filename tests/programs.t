@@ -8,10 +8,10 @@ for p in $programs; do
 		fail "$p is built"
 		continue
 	}
-	ok "$p --help" "$p" --help
+	ok "$p --help exits with 0" "$p" --help
 	cp out "$p.help"
-	ok "$p --version" "$p" -V
-	is "$p says its name and version" "$(awk '{ print $1, $2 }' out)" "$p (wearpipe)"
+	ok "$p --version exits with 0" "$p" -V
+	is "$p states its name and version" "$(awk '{ print $1, $2 }' out)" "$p (wearpipe)"
 	fails "$p refuses an unknown option" 2 "^$p: --no-such-option" "$p" --no-such-option
 	case $p in
 	roughgen) needed='--measure' ;;
@@ -56,20 +56,20 @@ fails "other bounds have a unit" 2 '^sensorsim: --bore 20: want 1um to 10m$' sen
 for p in $programs; do
 	[ -e "$p.help" ] && sed -n "s/^  -\(.\), --\([a-z0-9-]*\).*/\2 \1 $p/p" "$p.help"
 done >letters
-is "one letter per word in the whole suite" \
+is "a word has one letter in the whole suite" \
 	"$(sort -u -k1,2 letters | awk '$1 == w && $2 != l { print w, l, $2, $3 } { w = $1; l = $2 }')" ""
-is "a letter stands for one word in the whole suite" \
+is "a letter has one word in the whole suite" \
 	"$(awk '{ print $2, $1 }' letters | sort -u | awk '$1 == l { print l, w, $2 } { l = $1; w = $2 }')" ""
 is "a word has its letter in every program or in none" \
 	"$(awk '{ print $1 }' letters | sort -u | while read -r word; do
 		grep -lE -- "^      --$word( |$)" ./*.help; done)" ""
-is "reserved letters mean the same everywhere" \
+is "reserved letters have the same meaning in all programs" \
 	"$(awk 'BEGIN { split("s seed c count f first j threads v verbose h help V version S stats", a)
 		for (i = 1; i < 16; i += 2) want[a[i]] = a[i + 1] }
 		$2 in want && want[$2] != $1 { print $3, $2, $1 }' letters)" ""
 is "no default is shown that could not be given" "$(grep -hE 'default (-1|-?inf|-?nan)\b' ./*.help)" ""
-is "the members of a default are parted as on the command line" \
+is "the members of a default are separated as on the command line" \
 	"$(grep -o 'default 70Hz:130Hz' bpfilter.help)" 'default 70Hz:130Hz'
-is "every option has a phrase of help" \
+is "every option has a description" \
 	"$(cat ./*.help | awk '/^ *--*[a-zA-Z]/ && NF < 2 + /^  -/ { getline more; if (more !~ /^   /) print }')" ""
 done_testing

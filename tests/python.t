@@ -6,7 +6,7 @@ for python in /usr/bin/python3 python3 ''; do
 	[ -n "$python" ] && "$python" -c 'import numpy' 2>/dev/null && break
 done
 if [ -z "$python" ] || [ -n "${ASAN_OPTIONS:-}" ]; then
-	skip 'the Python module' 'no numpy, or built for the sanitizers'
+	skip 'the Python module can be tested' 'no numpy, or built for the sanitizers'
 	done_testing
 fi
 if ! make -s -C "$top" library >out 2>err; then
@@ -53,13 +53,13 @@ if ! "$python" check.py >got 2>err; then
 	done_testing
 fi
 got() { sed -n "s/^$1 //p" got; }
-is 'the same heights as roughgen, to the last bit' "$(got heights)" True
-is 'the same pressure as bemcontact, and it converged' "$(got pressure)" 'True True'
+is 'the heights are those of roughgen to the last bit' "$(got heights)" True
+is 'the pressure is that of bemcontact and converged' "$(got pressure)" 'True True'
 near 'the load is the mean pressure times the area, 50 N' "$(got load)" 50 1e-4
-near 'Sq is what was asked for' "$(got sq)" 8e-07 1e-12
+near 'Sq is the requested value' "$(got sq)" 8e-07 1e-12
 worn=$(column volume particles.tsv | awk '{ s += $1 } END { printf "%.9g", s }')
-is 'the particles of debrisgen, whose volume the surface lost' "$(got volume)" "$worn $worn"
-is 'an impulse comes out as the taps' "$(got filter | awk '{ print ($1 < 1e-15) }')" 1
-is 'the remaining life of a straight line' "$(got life)" 'True True'
-is 'what cannot be is refused as an exception' "$(grep -c refused got)" 3
+is 'the particles are those of debrisgen and have the volume that the surface lost' "$(got volume)" "$worn $worn"
+is 'the response to an impulse is the taps' "$(got filter | awk '{ print ($1 < 1e-15) }')" 1
+is 'the remaining life of a straight line is right' "$(got life)" 'True True'
+is 'an impossible input raises an exception' "$(grep -c refused got)" 3
 done_testing

@@ -10,14 +10,14 @@ roughgen -n 60x45 -q 0.5um:2um -c 8 -j 1 >one
 for k in 0 1 2 3 4 5 6 7; do
 	roughgen -n 60x45 -q 0.5um:2um -f $k -c 1
 done | records --join >many
-same "eight realisations in one process and in eight" one many
+same "one process and eight give the same realisations" one many
 roughgen -n 60x45 -q 0.5um:2um -c 8 -j 2 >two
-same "one thread and two" one two
+same "one thread and two give the same surface" one two
 roughgen -n 60x45 --skewness -1 --kurtosis 5 -c 3 -j 1 >one
 (roughgen -n 60x45 --skewness -1 --kurtosis 5 -f 0 -c 2 -j 3 && roughgen -n 60x45 --skewness -1 --kurtosis 5 -f 2) | records --join >two
-same "the same with imposed heights" one two
+same "one thread and two give the same non-Gaussian surface" one two
 
-is "neighbours among large seeds differ" \
+is "neighbouring large seeds give different surfaces" \
 	"$(for s in 9007199254740992 9007199254740993; do roughgen -n 8 -s $s | tail -c 512 | cksum; done | sort -u | wc -l)" 2
 fails "a large seed has all its digits" 2 'with all its digits' roughgen -s 1e17
 
@@ -28,61 +28,61 @@ cmd=$(sed -n 's/^cmd:=//p' second | head -1)
 sh -c "$cmd" >again
 records --pick 2 -o nrrd three | tail -c 8192 >a
 tail -c 8192 again >b
-same "cmd rebuilds one record of an ensemble" a b
-is "keys of a record" "$(sed -n '/^#/q; s/:=.*//p' again | tr '\n' ' ')" \
+same "the recorded command reproduces one record of an ensemble" a b
+is "the record has the documented keys" "$(sed -n '/^#/q; s/:=.*//p' again | tr '\n' ' ')" \
 	"fields realisation seed sq crown cmd stream "
 
 # Roughness is met exactly, without the crown.
 roughgen -n 64 -q 3um --measure >t
-near "--sq" "$(value sq t)" 3e-6 1e-20
+near "--sq sets Sq exactly" "$(value sq t)" 3e-6 1e-20
 roughgen -n 64 --sa 3um --measure >t
-near "--sa" "$(value sa t)" 3e-6 1e-20
+near "--sa sets Sa exactly" "$(value sa t)" 3e-6 1e-20
 roughgen -n 64 -L 1mm -l 200um --slope 0.1 --measure >t
 # Wavelengths of 60 points and more: seven-point differences are exact to 1e-3 or so;
 # the area is periodic but the differences are not taken across its rim.
-near "--slope" "$(value sdq_iso7 t)" 0.1 0.004
+near "--slope sets the rms slope" "$(value sdq_iso7 t)" 0.1 0.004
 roughgen -n 64 -q 1um -c 50 --measure >t
-is "one row per realisation" "$(column sq t | wc -l)" 50
+is "each realisation has a row" "$(column sq t | wc -l)" 50
 roughgen -n 64 -q 78um:82um -c 50 --measure >t
 column sq t | sort -g >sorted
-ok "--sq A:B: within the range and spread over it" awk '
+ok "--sq A:B draws Sq from the whole range" awk '
 	NR == 1 { low = $1 } { high = $1 }
 	END { exit !(low >= 78e-6 && low < 78.5e-6 && high <= 82e-6 && high > 81.5e-6) }' sorted
 # Greenwood and Tripp: variances add; the two samples correlate by about a tenth.
 roughgen -n 128 -l 40um -q 0.8um --pair 1.6um -c 20 --measure >t
-near "--pair: variances add" "$(column sq t | awk '{ s += $1 * $1 } END { print s / NR }')" \
+near "--pair adds the variances" "$(column sq t | awk '{ s += $1 * $1 } END { print s / NR }')" \
 	3.2e-12 0.1e-12
 roughgen -n 64 -q 1um >a
 roughgen -n 64 -q 0 --pair 1um >b
-ok "--pair: the second surface is another one" sh -c '! cmp -s a b'
+ok "--pair adds an independent surface" sh -c '! cmp -s a b'
 roughgen -n 64 -q 1um --crown auto >a
 is "--crown auto is 4 Sq" "$(sed -n 's/^crown:=//p' a | awk '{ printf "%.12g", $1 }')" 4e-06
 roughgen -n 3 -q 0 -L 3mm --crown 8um >a
 # Centre 0; edge centres (1 mm)^2 / 4.5 mm^2, corner centres 2 / 4.5.
-is "--crown on a flat" "$(records -o text a | awk '!/^#/ && NF { printf "%.5g %.5g %.5g ", $1, $2, $3 }')" \
+is "--crown works on a flat surface" "$(records -o text a | awk '!/^#/ && NF { printf "%.5g %.5g %.5g ", $1, $2, $3 }')" \
 	"-3.5556e-06 -1.7778e-06 -3.5556e-06 -1.7778e-06 0 -1.7778e-06 -3.5556e-06 -1.7778e-06 -3.5556e-06 "
 
 roughgen -n 3 -q 0 -L 3mm --crown 8um --measure >t
-near "--measure: the crown belongs to the heights" "$(value sq t)" 1.18519e-6 1e-11
+near "--measure includes the crown" "$(value sq t)" 1.18519e-6 1e-11
 # A crown stays out of what is done to the roughness.
 roughgen -n 64 -q 1um --crown 4um | roughgen -q 3um --crown 2um - >a
-is "a crown goes through: sq and crown" \
+is "a crown in the input is kept with its keys" \
 	"$(sed -n 's/^sq:=//p; s/^crown:=//p' a | awk '{ printf "%.12g ", $1 }')" "3e-06 6e-06 "
 roughgen -n 64 -q 3um --crown 6um >b
 records -o text a >a.txt
 records -o text b >b.txt
-near "a crown goes through: heights" "$(paste a.txt b.txt | awk '!/^#/ { for (i = 1; i <= NF / 2; i++) {
+near "a crown in the input is kept in the heights" "$(paste a.txt b.txt | awk '!/^#/ { for (i = 1; i <= NF / 2; i++) {
 	d = $i - $(i + NF / 2); if (d < 0) d = -d; if (d > w) w = d } } END { print w + 0 }')" 0 1e-14
 
 # Heights of given moments.
 roughgen -n 128 -l 50um --skewness -1.2 --kurtosis 4.3 --measure >t
-near "--skewness" "$(value ssk t)" -1.2 1e-6
-near "--kurtosis" "$(value sku t)" 4.3 1e-6
+near "--skewness sets Ssk" "$(value ssk t)" -1.2 1e-6
+near "--kurtosis sets Sku" "$(value sku t)" 4.3 1e-6
 roughgen -n 128 -l 50um --skewness -1.2 --kurtosis 4.3 >a
 ok "the error of the spectrum is stated and small" awk -F = '
 	/^spectrum_error/ { e = $2 } END { exit !(e > 0 && e < 0.05) }' a
 roughgen -n 64 --skewness 1 --measure >t
-near "kurtosis unless given: 3 + 1.5 S^2" "$(value sku t)" 4.5 1e-6
+near "the default kurtosis is 3 + 1.5 S^2" "$(value sku t)" 4.5 1e-6
 
 # Parameters against their definitions, written out.
 sum_up() { # NAME FILE
@@ -90,7 +90,7 @@ sum_up() { # NAME FILE
 	awk '/^[#r]/ { next } { for (i = 2; i <= 14; i++) print $i; print $17; print $18 }' "$2" |
 		paste - want >both
 	# Sdr, the excess over 1, loses three digits; rounding does not.
-	near "$1: fifteen parameters, relative error" "$(awk '
+	near "$1: fifteen parameters agree with an independent computation" "$(awk '
 		{ d = $1 / $2 - 1; if (d < 0) d = -d; if (d > w) w = d; n += NF == 2 }
 		END { if (n == 15) print w; else print "only " n " values" }' both)" 0 1e-10
 }
@@ -110,74 +110,74 @@ sum_up "tilted and levelled" t
 # Preparing: crop, level, resample, raw, streams with several records.
 roughgen -n 40x30 -c 2 >s
 roughgen --crop 5:6:20:10 s >c
-is "--crop: size and spacing" "$(records c | awk -F '\t' '$1 == 1 { print $5, $6, $8 }')" \
+is "--crop sets size and keeps spacing" "$(records c | awk -F '\t' '$1 == 1 { print $5, $6, $8 }')" \
 	"20 10 2.5e-05"
-is "--crop: the samples" "$(records -o text --pick 1 c | sed -n 2p | cut -f 1-3)" \
+is "--crop keeps the samples" "$(records -o text --pick 1 c | sed -n 2p | cut -f 1-3)" \
 	"$(records -o text --pick 1 s | sed -n 8p | cut -f 6-8)"
-is "every record of a stream is prepared" "$(records -o count c)" "2"
+is "every record of a stream is processed" "$(records -o count c)" "2"
 roughgen --resample 20x15 s >c
-is "--resample: size and spacing" "$(records c | awk -F '\t' '$1 == 1 { print $5, $6, $8, $9 }')" \
+is "--resample sets size and spacing" "$(records c | awk -F '\t' '$1 == 1 { print $5, $6, $8, $9 }')" \
 	"20 15 5e-05 5e-05"
 tail -c 9600 s >raw.f64
 roughgen --raw 40x30 --pixel 25um raw.f64 | tail -c 9600 >c
-same "--raw: the samples pass unchanged" raw.f64 c
+same "--raw does not change the samples" raw.f64 c
 cat s | roughgen - >c
 roughgen s >d
-is "standard input by name: -" "$(tail -c 9600 c | cksum)" "$(tail -c 9600 d | cksum)"
+is "- names standard input" "$(tail -c 9600 c | cksum)" "$(tail -c 9600 d | cksum)"
 roughgen --crop 5:6:20:10 --level --resample 15 --crown 1um s >c
 records --pick 2 -o nrrd c >second
 sh -c "$(sed -n 's/^cmd:=//p' second | head -1)" >again
-same "cmd rebuilds a prepared record through the pipe" second again
+same "the recorded command reproduces a processed record through the pipe" second again
 records --pick 1 -o gsf s >s.gsf
 roughgen --measure s.gsf >t
 roughgen -n 40x30 --measure >u
-near "a GSF file is measured (float32)" "$(value sq t)" "$(value sq u)" 1e-12
+near "a GSF file is measured in float32" "$(value sq t)" "$(value sq u)" 1e-12
 roughgen -q 2um s | roughgen --measure - >t
 near "a measured surface is scaled on request" "$(value sq t)" 2e-6 1e-20
 roughgen -n 64 --skewness 5 | roughgen --measure >t
 near "--measure alone reads standard input" "$(value ssk t)" 5 1e-6
 roughgen -n 64 --skewness 5 | roughgen -q 2um --level --measure >u
-near "also what it is to prepare" "$(value sq u)" 2e-6 1e-20
-is "and says so in its header" "$(sed -n 's/^# cmd: .*| //p' t)" "roughgen --measure -"
+near "--measure with processing reads standard input" "$(value sq u)" 2e-6 1e-20
+is "the header of the result records the processing" "$(sed -n 's/^# cmd: .*| //p' t)" "roughgen --measure -"
 
 # ISO 25178: S-filter, form, L-filter, core, spectrum.
 roughgen -n 96 -L 0.96mm -q 1um -l 40um >iso.nrrd
 roughgen --s-filter 50um --ends periodic --measure iso.nrrd >s.tsv
 roughgen --l-filter 50um --ends periodic --measure iso.nrrd >l.tsv
 roughgen --measure iso.nrrd >whole.tsv
-rising "the filters part the slopes of a surface" "$(value sdq l.tsv)" "$(value sdq s.tsv)" "$(value sdq whole.tsv)"
+rising "the filters split the slopes of a surface" "$(value sdq l.tsv)" "$(value sdq s.tsv)" "$(value sdq whole.tsv)"
 roughgen --s-filter 50um --ends periodic iso.nrrd | records -o text | grep -v '^#' >a
 roughgen --l-filter 50um --ends periodic iso.nrrd | records -o text | grep -v '^#' >b
 records -o text iso.nrrd | grep -v '^#' >c
-near "together they are the whole" "$(paste a b c | awk 'NF { for (i = 1; i <= 96; i++) { d = $i + $(i + 96) - $(i + 192)
+near "the filtered parts add up to the whole" "$(paste a b c | awk 'NF { for (i = 1; i <= 96; i++) { d = $i + $(i + 96) - $(i + 192)
 	m = d > m ? d : -d > m ? -d : m } } END { print m * 1e12 }')" 0 0.01
 roughgen --s-filter 100um --ends crop --stats st iso.nrrd | records >size
-is "crop cuts half the nesting index off on all sides" \
+is "--ends crop removes half of the nesting index on all sides" \
 	"$(column nx size) $(column ny size) $(value samples_cropped st)" "86 86 1820"
 for k in 0 1 2; do
 	roughgen --s-filter 0.2mm --ends $k --measure iso.nrrd | tail -n 1 | cut -f 3
 done >orders
-is "the orders at the rim differ" "$(sort -u orders | wc -l)" 3
+is "the regression orders differ at the edge" "$(sort -u orders | wc -l)" 3
 roughgen -n 40 -q 0 --crown 1um | roughgen --crop 2:1:36:38 --form paraboloid --measure >t
 near "a paraboloid is removed as form" "$(value sz t | awk '{ print $1 * 1e6 }')" 0 1e-9
 roughgen --form poly6 --measure iso.nrrd >p6.tsv
 roughgen --form plane --measure iso.nrrd >p1.tsv
-rising "a form of more terms leaves less" "$(value sq p6.tsv)" "$(value sq p1.tsv)" "$(value sq whole.tsv)"
+rising "a form with more terms leaves smaller residuals" "$(value sq p6.tsv)" "$(value sq p1.tsv)" "$(value sq whole.tsv)"
 roughgen -n 256 -L 1mm -q 1um -l 5um --measure >core.tsv
 # normal heights, some 10^4 independent ones: 2.574 Sq and 9.9 %
-near "normal heights: Sk is 2.574 Sq" "$(value sk core.tsv | awk '{ print $1 * 1e6 }')" 2.574 0.06
-near "Smr1 is 9.9 %" "$(value smr1 core.tsv)" 0.099 0.01
+near "Sk of Gaussian heights is 2.574 Sq" "$(value sk core.tsv | awk '{ print $1 * 1e6 }')" 2.574 0.06
+near "Smr1 of Gaussian heights is 9.9 %" "$(value smr1 core.tsv)" 0.099 0.01
 roughgen -n 64 -q 1um --spectrum --taper none >psd.tsv
-near "the spectrum adds up to Sq^2" "$(awk -F '\t' '/^[0-9]/ { s += $4 * $5 / 1e-6 } END { printf "%.9f", s * 1e12 }' psd.tsv)" 1 1e-6
+near "the spectrum integrates to Sq^2" "$(awk -F '\t' '/^[0-9]/ { s += $4 * $5 / 1e-6 } END { printf "%.9f", s * 1e12 }' psd.tsv)" 1 1e-6
 roughgen -n 64 -q 1um | roughgen --spectrum >hann.tsv
-near "a window keeps it on average" "$(awk -F '\t' '/^[0-9]/ { s += $4 * $5 / 1e-6 } END { printf "%.9f", s * 1e12 }' hann.tsv)" 1 0.4
+near "a window preserves the mean of the spectrum" "$(awk -F '\t' '/^[0-9]/ { s += $4 * $5 / 1e-6 } END { printf "%.9f", s * 1e12 }' hann.tsv)" 1 0.4
 fails "a form of too few samples" 1 'too few for --form poly2' sh -c 'roughgen -n 2 -q 0 | roughgen --form poly2 -'
 fails "a crop of everything" 1 'removes all of' roughgen --l-filter 0.96mm --ends crop iso.nrrd
 fails "measure and spectrum" 2 'exclude one another' roughgen --measure --spectrum iso.nrrd
 fails "a taper without a spectrum" 2 'requires --spectrum' roughgen --taper none iso.nrrd
 fails "a filter without a file" 2 '\--s-filter: applies to a measured' roughgen --s-filter 1um
 roughgen --l-filter 2mm iso.nrrd 2>err >long.nrrd
-is "a filter longer than the surface is said" "$(grep -c 'longer than the surface' err)" 1
+is "a filter longer than the surface gives a warning" "$(grep -c 'longer than the surface' err)" 1
 
 # Refusals.
 fails "no heights of kurtosis below skewness^2 + 1" 2 'must exceed' \
@@ -186,7 +186,7 @@ fails "kurtosis out of reach of few points" 1 'out of reach' \
 	roughgen -n 4 -L 1mm -l 0.1mm --skewness 0 --kurtosis 60
 fails "correlation length above the side" 1 'longer than a side' roughgen -l 2mm
 fails "one point cannot be rough" 2 'single point' roughgen --points 1
-is "one flat point is a surface" "$(roughgen --points 1 --sq 0 | records | awk '/^1/ { print $5 * $6 }')" 1
+is "a single point is a valid flat surface" "$(roughgen --points 1 --sq 0 | records | awk '/^1/ { print $5 * $6 }')" 1
 if command -v python3 >/dev/null; then
 	python3 -c 'import pty, sys; sys.exit(pty.spawn(["timeout", "5", "roughgen", "--measure"]) >> 8)' >tty </dev/null
 	is "--measure does not wait for a terminal" "$? $(grep -c 'nothing to measure' tty)" "2 1"
@@ -219,12 +219,12 @@ fails "a flat surface cannot be scaled" 1 'flat' sh -c \
 
 # Counters say what was done and what was left out.
 roughgen -n 64 --hurst 0.8 --rolloff 0.25mm --longest 0.25mm --cutoff 0.1mm -S st >/dev/null
-near "waves drawn and left out" "$(awk '{ print $1 + $2 }' <<-EOF
+near "waves drawn and skipped add up to all waves" "$(awk '{ print $1 + $2 }' <<-EOF
 	$(value waves st) $(value waves_skipped st)
 	EOF
 )" 4095 0
 roughgen -n 64 -q 0 -S st >/dev/null
-is "a flat surface needs no transform" "$(value transforms st)" 0
+is "a flat surface takes no transform" "$(value transforms st)" 0
 roughgen -n 64 -q 1um -S st >/dev/null
-is "a surface needs one" "$(value transforms st)" 1
+is "a rough surface takes one transform" "$(value transforms st)" 1
 done_testing

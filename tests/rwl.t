@@ -12,42 +12,42 @@ cell() { column "$3" "$1" | sed -n "$2p"; }
 printf 'realisation\tstep\tvolume\n0\t1\t1e-15\n0\t2\t1e-15\n1\t1\t1e-15\n' >even.tsv
 printf 't\tgap\n0\t10e-6\n3600\t11e-6\n7200\tnan\n10800\t13e-6\n14400\t20e-6\n' >gap.tsv
 
-ok "equal fragments" rwl --wear even.tsv --step-time 1h --threshold-gap 15um gap.tsv
+ok "equal fragments give the exact life" rwl --wear even.tsv --step-time 1h --threshold-gap 15um gap.tsv
 cp out even.out
 # (15 - 10) um at 0.1 um per hour
-near "life is what is left over the rate" "$(cell even.out 1 mean)" 180000 1e-5
-near "all quantiles agree" "$(cell even.out 1 q05)" "$(cell even.out 1 q95)" 0
-near "without an observation the last one ages" "$(cell even.out 3 mean)" \
+near "the life is the remaining volume over the rate" "$(cell even.out 1 mean)" 180000 1e-5
+near "all quantiles of equal fragments are equal" "$(cell even.out 1 q05)" "$(cell even.out 1 q95)" 0
+near "without an observation the last prediction is continued" "$(cell even.out 3 mean)" \
 	"$(calc "39 * 3600")" 1e-5
-is "beyond the threshold nothing is left" "$(cell even.out 5 mean) $(cell even.out 5 p_no_failure)" "0 0"
-ok "volume threshold" rwl --wear even.tsv --step-time 1h --threshold-volume 2.3463e-9m3 gap.tsv
-near "one um over the whole area" "$(cell out 1 mean)" 36000 1e-5
+is "beyond the threshold the life is 0" "$(cell even.out 5 mean) $(cell even.out 5 p_no_failure)" "0 0"
+ok "a volume threshold is converted to a gap" rwl --wear even.tsv --step-time 1h --threshold-volume 2.3463e-9m3 gap.tsv
+near "a volume is one um over the whole area" "$(cell out 1 mean)" 36000 1e-5
 
 # Without fragments: (4-29) over all, (4-28) over the last interval.
-ok "rate of the observations, mean" rwl --threshold-gap 15um gap.tsv
-near "2 um left at 1 um/h" "$(cell out 4 mean)" 7200 1e-6
-is "nothing is said of one observation" "$(cell out 1 mean)" nan
-ok "rate of the observations, last" rwl --wear-rate last --threshold-gap 21um gap.tsv
-near "1 um left at 7 um/h" "$(cell out 5 mean)" "$(calc 3600/7)" 1e-6
+ok "--wear-rate mean uses the mean rate of the observations" rwl --threshold-gap 15um gap.tsv
+near "2 um at 1 um/h give 2 h" "$(cell out 4 mean)" 7200 1e-6
+is "one observation gives no prediction" "$(cell out 1 mean)" nan
+ok "--wear-rate last uses the last rate of the observations" rwl --wear-rate last --threshold-gap 21um gap.tsv
+near "1 um at 7 um/h gives 1/7 h" "$(cell out 5 mean)" "$(calc 3600/7)" 1e-6
 
 # The scale of the steps from the state: the mean wears what was observed.
-ok "steps scaled by the state" rwl --wear even.tsv --threshold-gap 15um gap.tsv
-near "2 um left at 1 um/h again" "$(cell out 4 mean)" 7200 1e-6
-ok "steps scaled by an earlier unit" rwl --new --wear even.tsv --threshold-gap 15um --calibrate gap.tsv
+ok "steps are scaled by the state" rwl --wear even.tsv --threshold-gap 15um gap.tsv
+near "2 um at 1 um/h give 2 h again" "$(cell out 4 mean)" 7200 1e-6
+ok "steps are scaled by an earlier unit" rwl --new --wear even.tsv --threshold-gap 15um --calibrate gap.tsv
 # least-squares slope of 10 11 13 20 um at 0 1 3 4 h: 2.2 um/h, new at 1.5 L/min
-near "its whole life" "$(cell out 1 mean)" "$(calc "(15 - 16.7899943 * (1.5 / 2.8)^(1/3)) / 2.2 * 3600")" 0.1
+near "the earlier unit is used over its whole life" "$(cell out 1 mean)" "$(calc "(15 - 16.7899943 * (1.5 / 2.8)^(1/3)) / 2.2 * 3600")" 0.1
 
 # Leakage: 2.8 L/min is the default threshold, 16.79 um.
 printf 't\tstate\n0\t1.5\n100\t2.0\n200\t2.9\n' >flow.tsv
-ok "leakage in L/min, hours" rwl --wear even.tsv --step-time 1h --state-unit L/min --time-unit h flow.tsv
-near "cube root of the leakage" "$(cell out 2 mean)" \
+ok "leakage in L/min and times in hours are accepted" rwl --wear even.tsv --step-time 1h --state-unit L/min --time-unit h flow.tsv
+near "the gap is the cube root of the leakage" "$(cell out 2 mean)" \
 	"$(calc "16.7899943 * (1 - (2 / 2.8)^(1/3)) / 0.1 * 3600")" 0.05
-is "time in seconds" "$(cell out 2 t)" 360000
-is "beyond 2.8 L/min is failure" "$(cell out 3 mean)" 0
+is "times are written in seconds" "$(cell out 2 t)" 360000
+is "the pair fails beyond 2.8 L/min" "$(cell out 3 mean)" 0
 sed 's/state/leakage/' flow.tsv >flow2.tsv
 rwl --wear even.tsv --step-time 1h --state-unit L/min --time-unit h flow2.tsv | grep -v '^#' >a
 grep -v '^#' out >b
-same "a state is leakage unless said otherwise" a b
+same "a state is leakage unless stated otherwise" a b
 
 # Units: the table's own, or the option's; neither may be of another quantity.
 printf '# units: h L/min\nt\tleakage\n0\t1.5\n100\t2.0\n200\t2.9\n' >units.tsv
@@ -64,12 +64,12 @@ fails "a table in volts" 1 "volts.tsv: column 'gap' is in 'V', want m" sh -c \
 
 # Debris caught: spheres add up.
 printf 'time1\tdiameter\n1\t1e-3\n1\t1e-3\n2\t2e-3\n' >debris.tsv
-ok "particles as state" rwl --threshold-volume 1e-8m3 debris.tsv
+ok "particles are accepted as state" rwl --threshold-volume 1e-8m3 debris.tsv
 # 10 spheres of 1 mm, 0.5236e-9 m3 each, in two seconds (4-29)
-near "life from caught particles" "$(cell out 3 mean)" \
+near "the life follows from the detected particles" "$(cell out 3 mean)" \
 	"$(calc "(1e-8 - 10 * 0.523598775598e-9) / (5 * 0.523598775598e-9)")" 1e-9
-ok "the last of them" rwl --threshold-volume 1e-8m3 --wear-rate last debris.tsv
-near "8 of them in one second (4-28)" "$(cell out 3 mean)" \
+ok "the last row follows from the last particles" rwl --threshold-volume 1e-8m3 --wear-rate last debris.tsv
+near "the rate is that of 8 particles in one second (4-28)" "$(cell out 3 mean)" \
 	"$(calc "(1e-8 - 10 * 0.523598775598e-9) / (8 * 0.523598775598e-9)")" 1e-9
 
 # A row that duet calls unresolved is as many spheres as it has sources, one without a
@@ -81,10 +81,10 @@ near "8 of them in one second (4-28)" "$(cell out 3 mean)" \
 		'4.5 1e-3 0 unresolved' '4.5 1e-3 1 alone' '5.5 1e-3 1 alone' | tr ' ' '\t'
 } >crowd.tsv
 # 44 spheres of 1 mm in the 5.5 s since nothing was worn
-ok "unresolved particles" rwl --threshold-volume 1e-7m3 --stats crowd.stats crowd.tsv
-near "life from all of them" "$(cell out 7 mean)" \
+ok "unresolved particles are counted as their sources" rwl --threshold-volume 1e-7m3 --stats crowd.stats crowd.tsv
+near "the life follows from all particles" "$(cell out 7 mean)" \
 	"$(calc "(1e-7 - 44 * 0.523598775598e-9) / (44 * 0.523598775598e-9 / 5.5)")" 1e-7
-is "one has no diameter, which is said" "$(column particles_without_diameter crowd.stats): $(cat err)" \
+is "a particle without diameter is reported" "$(column particles_without_diameter crowd.stats): $(cat err)" \
 	"1: rwl: crowd.tsv: rows ignored because they have no diameter: 1"
 
 # Large particles: 1 of 4 in step 1, 3 of 5 in step 2.
@@ -93,36 +93,36 @@ is "one has no diameter, which is said" "$(column particles_without_diameter cro
 	printf '%s\n' "0 1 1 1e-16 1e-6" "0 1 2 1e-16 9e-6" "1 1 1 1e-16 1e-6" "1 1 2 1e-16 1e-6" \
 		"0 2 1 1e-16 9e-6" "0 2 2 1e-16 9e-6" "1 2 1 1e-16 9e-6" "1 2 2 1e-16 1e-6" "1 2 3 1e-16 1e-6" | tr ' ' '\t'
 } >size.tsv
-ok "large particles" rwl --wear size.tsv --step-time 1h --critical-size 5um --critical-probability 40% --rates rates.tsv -c 2000 --levels 0.5 gap.tsv
+ok "large particles end the life" rwl --wear size.tsv --step-time 1h --critical-size 5um --critical-probability 40% --rates rates.tsv -c 2000 --levels 0.5 gap.tsv
 # all: 4 of 9 at the end of step 2
-near "critical share at the end of step 2" "$(cell out 1 q50)" 7200 1e-9
-near "less the time that passed" "$(cell out 2 q50)" 3600 1e-9
+near "the critical share is reached at the end of step 2" "$(cell out 1 q50)" 7200 1e-9
+near "the elapsed time is subtracted" "$(cell out 2 q50)" 3600 1e-9
 # 1 of 2 in step 1; 4 of 9 after step 2; 1 of 5 at last; by 1/4, 1/2, 1/4 of replicates
 is "surface 0 twice fails in step 1, both in step 2, surface 1 twice never" \
 	"$(column large_step rates.tsv | sort -u | tr '\n' ' ')" "0 1 2 "
-near "one replicate in four never fails" "$(cell out 1 p_no_failure)" 0.25 0.04
-ok "share in one step" rwl --wear size.tsv --step-time 1h --critical-size 5um --critical-probability 60% --sizes step --levels 0.5 gap.tsv
-near "3 of 5 in step 2" "$(cell out 1 q50)" 7200 1e-9
-ok "the earlier of both criteria" rwl --wear size.tsv --step-time 1h --critical-size 5um --critical-probability 40% --threshold-gap 10.02um --levels 0.5 gap.tsv
-rising "the gap comes first" 1 "$(cell out 1 q50)" 7199
+near "one path in four never fails" "$(cell out 1 p_no_failure)" 0.25 0.04
+ok "--sizes step uses the share in one step" rwl --wear size.tsv --step-time 1h --critical-size 5um --critical-probability 60% --sizes step --levels 0.5 gap.tsv
+near "the share is 3 of 5 in step 2" "$(cell out 1 q50)" 7200 1e-9
+ok "the earlier of both criteria ends the life" rwl --wear size.tsv --step-time 1h --critical-size 5um --critical-probability 40% --threshold-gap 10.02um --levels 0.5 gap.tsv
+rising "the gap criterion is reached first" 1 "$(cell out 1 q50)" 7199
 
 # Monte-Carlo: the mean of 16 fragments by Student's t in its logarithm.
 awk 'BEGIN { print "volume"; for (i = 0; i < 16; i++) print (1 + i / 10) "e-15" }' >spread.tsv
-ok "spread of an ensemble" rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um \
+ok "the scatter of an ensemble gives the scatter of the life" rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um \
 	--initial-gap 10um --count 4000 --wear-rate mean --rates rates.tsv
 cp out spread.out
 # relative standard error sqrt((16^2 - 1) / 12 * 16 / 15) / 10 / 1.75 / 4; t of 15 degrees at 95 %: 1.75305
 error=$(calc "sqrt(255 / 12 * 16 / 15) / 70")
 mean=$(calc "1.75e-15 * 2346.3e-6 / 1e-8")
-near "5 % of the paths wear less than Student's t has it" \
+near "5 % of the paths wear less than the limit of Student" \
 	"$(column mean rates.tsv | sort -g | sed -n 200p)" "$(calc "$mean * exp(-1.75305 * $error)")" \
 	"$(calc "0.01 * $mean")"
-near "5 % wear more, with the second-order term" "$(column mean rates.tsv | sort -g | sed -n 3800p)" \
+near "5 % of the paths wear more than the limit with the second-order term" "$(column mean rates.tsv | sort -g | sed -n 3800p)" \
 	"$(calc "$mean * exp(1.75305 * $error + (1.75305 * $error)^2 / 2)")" "$(calc "0.01 * $mean")"
-ok "one part wears like one fragment" rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um -c 4000 --parts 1
-rising "which is wider" "$(calc "1.3 * $(cell spread.out 1 q95)")" "$(cell out 1 q95)"
-ok "new rate in every step" rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um -c 4000 --parts 1 --wear-rate last
-near "has the same mean" "$(cell out 1 mean)" "$(cell spread.out 1 mean)" 3000
+ok "with --parts 1 a class wears like one fragment" rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um -c 4000 --parts 1
+rising "with --parts 1 the scatter is larger" "$(calc "1.3 * $(cell spread.out 1 q95)")" "$(cell out 1 q95)"
+ok "--wear-rate last samples a rate in every step" rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um -c 4000 --parts 1 --wear-rate last
+near "--wear-rate last has the same mean life" "$(cell out 1 mean)" "$(cell spread.out 1 mean)" 3000
 
 # One realisation, and wear that was never seen.
 printf 'realisation\tstep\tvolume\n0\t1\t1e-15\n0\t2\t2e-15\n' >single.tsv
@@ -138,34 +138,34 @@ fails "wear that was never seen is doubtful" 3 'nothing.tsv: none of 3 realisati
 rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um --samples -c 20 --parts 1 --wear-rate last | grep -v '^#' >whole
 rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um --samples -c 12 --parts 1 --wear-rate last | grep -v '^#' >part.tsv
 rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um --samples -f 12 -c 8 --parts 1 --wear-rate last | rows /dev/stdin >>part.tsv
-same "paths 0-19, and 0-11 with 12-19" whole part.tsv
+same "paths 0-19 are those of 0-11 and 12-19" whole part.tsv
 
 # Classes: the zone of linear pressure is in by default, between the extremes.
 sed 's/e-15/e-18/' even.tsv >low.tsv
-ok "two classes" rwl --new --wear even.tsv:21MPa --wear low.tsv:0.15MPa --step-time 1h --rates rates.tsv
+ok "two classes are accepted" rwl --new --wear even.tsv:21MPa --wear low.tsv:0.15MPa --step-time 1h --rates rates.tsv
 zone=$(awk 'BEGIN { p = log(1e3) / log(140) + 1; r = log(140)
 	m = 1e-18 * 0.15 * (exp(p * r) - 1) / p / 20.85
 	printf "%.15g", 2346.3e-6 / 1e-8 * (0.45 * 1e-15 + 0.45 * 1e-18 + 0.1 * m) }')
-near "wear of the valve plate" "$(cell rates.tsv 1 mean)" "$zone" 1e-22
-ok "areas of their own" rwl --new --wear even.tsv:21MPa:1173.15mm2 --wear low.tsv:0.15MPa:1173.15mm2 --step-time 1h --rates rates.tsv
-near "the thesis' halves" "$(cell rates.tsv 1 mean)" \
+near "the wear of the valve plate is integrated over its classes" "$(cell rates.tsv 1 mean)" "$zone" 1e-22
+ok "classes may have areas" rwl --new --wear even.tsv:21MPa:1173.15mm2 --wear low.tsv:0.15MPa:1173.15mm2 --step-time 1h --rates rates.tsv
+near "the halves of the thesis are the default" "$(cell rates.tsv 1 mean)" \
 	"$(calc "117315 * 1.001e-15")" 1e-22
 # What debrisgen writes: the particles and their summary tell the same, and under what
 # pressure, on what area and over what distance they came off.
 roughgen --points 32 --length 25um --sq 0.8um --corr 5um --count 4 |
 	bemcontact --pressure 21MPa --young 210GPa >contact.nrrd
 debrisgen --yield 355MPa --friction 0.3 --steps 3 --young 210GPa --summary steps.tsv contact.nrrd >particles.tsv 2>err
-is "the tables tell the scene" "$(sed -n '/^# stream/d; s/^# \([nfs][a-z_]*: .*\)/\1/p' steps.tsv | tr '\n' ' ')" \
+is "the tables state areas, pressures and distances" "$(sed -n '/^# stream/d; s/^# \([nfs][a-z_]*: .*\)/\1/p' steps.tsv | tr '\n' ' ')" \
 	"nominal_area: 6.25e-10 m2 nominal_pressure: 21000000 Pa friction: 0.3 step_distance: 2.5e-05 m "
 new="--new --threshold-gap 15um --initial-gap 10um --count 50"
 for f in particles.tsv steps.tsv; do
 	rwl $new --wear $f --step-time 1h 2>err | grep -v '^#' >$f.life
 done
 rwl $new --wear steps.tsv:21MPa --fragment-area 625um2 --step-time 1h 2>err | grep -v '^#' >told.life
-same "the area of a fragment comes from the table" steps.tsv.life told.life
+same "the area of a fragment is read from the table" steps.tsv.life told.life
 # 25 um at 0.01 m/s: 2.5 ms
 rwl $new --wear steps.tsv --speed 10mm/s >speed.out 2>err
-near "the sliding speed makes the step time" "$(cell speed.out 1 q50)" \
+near "the sliding speed determines the step time" "$(cell speed.out 1 q50)" \
 	"$(sed 1d steps.tsv.life | cut -f 4 | awk '{ printf "%.15g", $1 / 3600 * 2.5e-3 }')" 1e-6
 fails "a pressure that contradicts the table" 2 'steps.tsv:21Pa: the nominal pressure of the fragments is 2.1e+07 Pa' \
 	rwl $new --wear steps.tsv:21Pa --step-time 1h
@@ -181,69 +181,69 @@ fails "an area in Pa" 1 "wrong.tsv: nominal_area: '5 Pa' has the wrong unit, wan
 rwl --new --wear even.tsv --step-time 1h >out 2>err
 is "parameters that are assumed are reported" "$(cat err)" \
 	"rwl: $(sed -n 's/^# assumed: /assumed: /p' out)"
-is "all of it" "$(grep -o -e '--[a-z-]*' err | tr '\n' ' ')" \
+is "all assumed parameters are reported" "$(grep -o -e '--[a-z-]*' err | tr '\n' ' ')" \
 	"--fragment-area --area --threshold-leakage --radii --ports --viscosity "
 rwl --new --wear even.tsv --step-time 1000h --threshold-gap 11um --initial-gap 10.95um >out 2>err
-is "a life below one simulated step is said" "$(grep -c 'a life of .* s is below one simulated step' err)" 1
+is "a life below one simulated step gives a warning" "$(grep -c 'a life of .* s is below one simulated step' err)" 1
 # Volumes are summed up in another order.
 for f in particles.tsv steps.tsv; do
 	sed 1d $f.life | awk '{ for (i = 1; i <= NF; i++) printf "%.12g ", $i }' >$f.digits
 done
-same "a particle table and its summary" particles.tsv.digits steps.tsv.digits
+same "a particle table and its summary give the same life" particles.tsv.digits steps.tsv.digits
 rwl --new --wear steps.tsv --step-time 1h -c 2 >out
-is "how the fragments were made is passed on" "$(sed -n 's/^# wear: steps.tsv made by //p' out)" \
+is "the output records how the fragments were made" "$(sed -n 's/^# wear: steps.tsv made by //p' out)" \
 	"$(sed -n '/^# cmd: /{s///;s/--first 0 --count 1/--first 0 --count 4/;p;q;}' steps.tsv)"
 (eval "$(sed -n 's/^# wear: steps.tsv made by //p' out)") >again.tsv
 for f in steps.tsv again.tsv; do
 	grep -v '^#' $f >$f.rows
 done
-same "and makes them all" steps.tsv.rows again.tsv.rows
+same "the output records all tables of fragments" steps.tsv.rows again.tsv.rows
 
 # Comparators and scores on an exponential leakage, which a grey model foretells.
 awk 'BEGIN { print "t\tleakage"; for (t = 0; t <= 600; t += 50) printf "%d\t%.12g\n", t, 1.5 * exp(t / 1186 * log(2.8 / 1.5)) }' >exp.tsv
-ok "grey model and scores" rwl --wear even.tsv --state-unit L/min --time-unit h --grey --eol 1186h exp.tsv
+ok "the grey model and the scores are added" rwl --wear even.tsv --state-unit L/min --time-unit h --grey --eol 1186h exp.tsv
 # the model's a of an exponential of ratio q per step is -2 (q - 1) / (q + 1): 1e-4 here
-near "grey life of an exponential, h" "$(cell out 13 grey | awk '{ print $1 / 3600 }')" 586 0.2
-near "truth is what is left" "$(cell out 13 truth)" 2109600 0
-is "summary of the scores" "$(sed -n 's/^# \([a-z_]*\):.*/\1/p' out | tr '\n' ' ')" \
+near "the grey model predicts the life of an exponential" "$(cell out 13 grey | awk '{ print $1 / 3600 }')" 586 0.2
+near "the truth is the true remaining life" "$(cell out 13 truth)" 2109600 0
+is "the summary of the scores is written" "$(sed -n 's/^# \([a-z_]*\):.*/\1/p' out | tr '\n' ' ')" \
 	"stream cmd units assumed predictions infinite_medians bias mean_absolute_error root_mean_square_error relative_accuracy alpha_lambda prognostic_horizon coverage crps end "
-near "error is median less truth" "$(cell out 5 error)" \
+near "the error is median minus truth" "$(cell out 5 error)" \
 	"$(calc "$(cell out 5 q50) - $(cell out 5 truth)")" 1e-6
 
 # Filters.
-ok "filters" rwl --wear-rate filter --state-unit L/min --time-unit h exp.tsv
-is "no prediction before the fourth observation" "$(cell out 3 mean) $(cell out 4 mean | sed 's/[0-9.e+]*/number/')" "nan number"
-ok "filters with the fragments' rate" rwl --wear spread.tsv --step-time 1h --wear-rate filter --state-unit L/min --time-unit h exp.tsv
+ok "the filters run" rwl --wear-rate filter --state-unit L/min --time-unit h exp.tsv
+is "the first prediction is at the fourth observation" "$(cell out 3 mean) $(cell out 4 mean | sed 's/[0-9.e+]*/number/')" "nan number"
+ok "the rate of the fragments is used as a prior" rwl --wear spread.tsv --step-time 1h --wear-rate filter --state-unit L/min --time-unit h exp.tsv
 
 # A state of standard error 0.5 um: normal with 0.5 um over the rate of 0.1 um/h.
-ok "uncertain state" rwl --wear even.tsv --step-time 1h --threshold-gap 15um --state-error 0.5e-6 -c 20000 gap.tsv
-near "5 h of standard deviation" "$(calc "($(cell out 1 q95) - $(cell out 1 q05)) / 2 / 1.644854")" 18000 400
-near "about the same median" "$(cell out 1 q50)" 180000 600
-near "beyond the threshold by ten of them" "$(cell out 5 q95)" 0 0
-ok "without fragments too" rwl --threshold-gap 15um --state-error 0.5e-6 -c 20000 gap.tsv
-near "1 um/h" "$(calc "($(cell out 4 q95) - $(cell out 4 q05)) / 2 / 1.644854")" 1800 40
+ok "an uncertain state is accepted" rwl --wear even.tsv --step-time 1h --threshold-gap 15um --state-error 0.5e-6 -c 20000 gap.tsv
+near "the standard deviation of the life is 5 h" "$(calc "($(cell out 1 q95) - $(cell out 1 q05)) / 2 / 1.644854")" 18000 400
+near "the median does not change" "$(cell out 1 q50)" 180000 600
+near "ten paths are beyond the threshold" "$(cell out 5 q95)" 0 0
+ok "an uncertain state is accepted without fragments" rwl --threshold-gap 15um --state-error 0.5e-6 -c 20000 gap.tsv
+near "the rate is 1 um/h" "$(calc "($(cell out 4 q95) - $(cell out 4 q05)) / 2 / 1.644854")" 1800 40
 
 # Run-in: the rates start after it, the state is known all the time.
 printf 't\tgap\n0\t9e-6\n3600\t10e-6\n7200\t10.5e-6\n10800\t11e-6\n' >run-in.tsv
-ok "run-in is skipped" rwl --threshold-gap 15um --skip 1h run-in.tsv
-near "4 um at 0.5 um/h" "$(cell out 4 mean)" 28800 1e-6
-is "no rate before" "$(cell out 2 mean)" nan
-ok "and in the calibration" rwl --new --wear even.tsv --threshold-gap 15um --initial-gap 10um --skip 1h --calibrate run-in.tsv
-near "5 um at 0.5 um/h" "$(cell out 1 mean)" 36000 1e-6
+ok "the run-in is skipped" rwl --threshold-gap 15um --skip 1h run-in.tsv
+near "4 um at 0.5 um/h give 8 h" "$(cell out 4 mean)" 28800 1e-6
+is "there is no rate before the end of the run-in" "$(cell out 2 mean)" nan
+ok "the run-in is skipped in the calibration" rwl --new --wear even.tsv --threshold-gap 15um --initial-gap 10um --skip 1h --calibrate run-in.tsv
+near "5 um at 0.5 um/h give 10 h" "$(cell out 1 mean)" 36000 1e-6
 
 # Provenance: the command line rebuilds the bytes.
 rwl --wear even.tsv --step-time 1h --threshold-gap 15um --state gap.tsv >a
 eval "$(sed -n 's/^# cmd: //p' a)" >b
-same "the recorded command rebuilds a table" a b
+same "the recorded command reproduces the table" a b
 { echo "# cmd: cat gap.tsv"; cat gap.tsv; } >upstream.tsv
 rwl --wear even.tsv --step-time 1h --threshold-gap 15um upstream.tsv >a
 eval "$(sed -n 's/^# cmd: //p' a)" >b 2>err
-is "so it does behind a pipe" "$(rows a)" "$(rows b)"
+is "the recorded command reproduces a table from a pipe" "$(rows a)" "$(rows b)"
 
 # Work left out.
 rwl --wear even.tsv --step-time 1h --threshold-gap 15um --stats stats.tsv gap.tsv >/dev/null
-is "no sizes are counted unless asked" "$(column sizes_skipped stats.tsv)" 1000
-is "no paths once the threshold is passed" "$(column paths_skipped stats.tsv)" 1000
+is "sizes are counted only on request" "$(column sizes_skipped stats.tsv)" 1000
+is "no path is computed once the threshold is passed" "$(column paths_skipped stats.tsv)" 1000
 
 # Refusals.
 printf 't\tgap\n0\t1e-5\n0\t2e-5\n' >twice.tsv

@@ -14,52 +14,52 @@ level() {
 printf 'time\tdiameter\n0.01234\t1e-4\n' >one.tsv
 sensorsim --gain 0.909 --duration 60ms --truth truth.tsv one.tsv >one.au
 frames one.au 2 >one.txt
-is "frames of the record" "$(wc -l <one.txt)" 600
+is "the record has the requested number of frames" "$(wc -l <one.txt)" 600
 worst=$(awk 'function p(t) { return t > -0.005 && t < 0.005 ? -sin(628.3185307179587 * t) : 0 }
 	{ t = (NR - 1) / 10000; d = $1 - p(t - 0.01234)
 	  e = $2 - 0.909 * p(t - 0.01234 - 0.25 / (1e-3 / (3.141592653589793 / 4 * 1e-4)))
 	  if (d < 0) d = -d; if (e < 0) e = -e; if (d > m) m = d; if (e > m) m = e }
 	END { print m }' one.txt)
 near "one particle is one sine period at each sensor" "$worst" 0 1e-13
-near "truth: delay of 25 cm at 60 L/min in 1 cm" "$(column delay truth.tsv)" 0.0196349540849 1e-12
-near "truth: velocity" "$(column velocity truth.tsv)" 12.7323954473516 1e-10
-near "truth: amplitude" "$(column amplitude truth.tsv)" 1 1e-12
-near "truth: volume" "$(column volume truth.tsv)" 5.23598775598e-13 1e-22
+near "truth: the delay is that of 25 cm at 60 L/min in 1 cm" "$(column delay truth.tsv)" 0.0196349540849 1e-12
+near "truth: the velocity is that of the oil" "$(column velocity truth.tsv)" 12.7323954473516 1e-10
+near "truth: the amplitude is that of the pulse" "$(column amplitude truth.tsv)" 1 1e-12
+near "truth: the volume is that of the sphere" "$(column volume truth.tsv)" 5.23598775598e-13 1e-22
 
 # amplitude grows with the cube of the diameter
 printf 'time\tdiameter\n0.01\t2e-4\n' | sensorsim --truth - >big.tsv
-near "twice the diameter is eight times the voltage" "$(column amplitude big.tsv)" 8 1e-11
+near "twice the diameter gives eight times the voltage" "$(column amplitude big.tsv)" 8 1e-11
 
 # scenes
 sensorsim --uniform 79.37um:114.471um --by volume --number 200 --burst 2 --span 10ms --gap 1ms \
 	--period 100ms --lag 0.2ms:0.5ms --gain 0.909 --snr 30dB --truth pairs.tsv >pairs.au
-is "pairs: number of particles" "$(column time1 pairs.tsv | wc -l)" 200
+is "pairs: the number of particles is right" "$(column time1 pairs.tsv | wc -l)" 200
 column time1 pairs.tsv | awk 'NR % 2 { a = $1; if (a < 0.005 + (NR - 1) / 2 * 0.1 - 1e-9) bad++ }
 	NR % 2 == 0 { if ($1 - a < 0.001 - 1e-12 || $1 - a > 0.01 + 1e-12) bad++; sum += $1 - a }
 	END { print bad + 0, sum / (NR / 2) }' >spacing
-is "pairs: none closer than the gap, none beyond the span" "$(cut -d' ' -f1 spacing)" 0
+is "pairs: distances are between the gap and the span" "$(cut -d' ' -f1 spacing)" 0
 # the gap plus a third of the 9 ms that are free; standard error 0.2 ms
-near "pairs: mean distance" "$(cut -d' ' -f2 spacing)" 4e-3 8e-4
+near "pairs: the mean distance is that of a uniform distribution" "$(cut -d' ' -f2 spacing)" 4e-3 8e-4
 column amplitude pairs.tsv | awk '{ s += $1; if ($1 < 0.48 || $1 > 1.5001) bad++ }
 	END { print bad + 0, s / NR }' >amplitudes
-is "pairs: amplitudes from 0.5 to 1.5" "$(cut -d' ' -f1 amplitudes)" 0
-near "pairs: mean amplitude" "$(cut -d' ' -f2 amplitudes)" 0.982 0.06
+is "pairs: amplitudes are between 0.5 and 1.5" "$(cut -d' ' -f1 amplitudes)" 0
+near "pairs: the mean amplitude is 0.98" "$(cut -d' ' -f2 amplitudes)" 0.982 0.06
 column delay pairs.tsv | awk '{ d = $1 * 1e4 - 196.34954; if (d < 2 || d > 5) bad++; s += d }
 	END { print bad + 0, s / NR }' >delays
-is "pairs: 2 to 5 samples slower than the oil" "$(cut -d' ' -f1 delays)" 0
-near "pairs: mean residual delay" "$(cut -d' ' -f2 delays)" 3.5 0.2
+is "pairs: delays are 2 to 5 samples longer than that of the oil" "$(cut -d' ' -f1 delays)" 0
+near "pairs: the mean residual delay is right" "$(cut -d' ' -f2 delays)" 3.5 0.2
 sensorsim --uniform 100um:100um --number 5 --gap 2ms --span 8ms --truth - >even.tsv
 column time1 even.tsv | awk 'NR > 1 { printf "%.6f ", $1 - t } { t = $1 }' >even
-is "a span without freedom spaces evenly" "$(cat even)" "0.002000 0.002000 0.002000 0.002000 "
+is "a span without freedom spaces particles equally" "$(cat even)" "0.002000 0.002000 0.002000 0.002000 "
 sensorsim --concentration 250mg/L --density 3g/cm3 --uniform 100um:100um --duration 1s -S st --truth - >mass.tsv
 # 1 L/s of 0.25 g/L over 1.5708 ug; the window is 1 s less one transit and one pulse
-near "concentration gives the number" "$(column time1 mass.tsv | wc -l)" 154436 1600
+near "the concentration determines the number" "$(column time1 mass.tsv | wc -l)" 154436 1600
 
 # a truth table is a scene; realisations and seeds differ
 sensorsim --gain 0.909 --snr 30dB --duration 19.95s pairs.tsv >again.au
 frames pairs.au 2 | head -20000 >a
 frames again.au 2 | head -20000 >b
-same "a truth table rebuilds its signal" a b
+same "a table of truth reproduces its signal" a b
 sensorsim --uniform 50um:150um --number 20 --duration 1s --truth a >/dev/null
 sensorsim --uniform 50um:150um --number 20 --duration 1s --truth b -f 1 >/dev/null
 sensorsim --uniform 50um:150um --number 20 --duration 1s --truth c -s 2 >/dev/null
@@ -72,11 +72,11 @@ same "--truth - gives the same particles" a20 d20
 # pipe profiles: the flow-weighted mean velocity of even mixing
 sensorsim --uniform 50um:50um --number 20000 --duration 1000 --profile laminar --truth - | column velocity /dev/stdin >v
 # <v^2>/<v> = 4/3 U, sd 0.48 U, less what is nearer than 1 % to the wall
-near "laminar: mean velocity of the particles" "$(awk '{ s += $1 } END { print s / NR / 12.7324 }' v)" \
+near "laminar: the mean velocity of the particles is right" "$(awk '{ s += $1 } END { print s / NR / 12.7324 }' v)" \
 	1.3335 0.014
 sensorsim --uniform 50um:50um --number 20000 --duration 1000 --profile turbulent --truth - | column velocity /dev/stdin >v
 # (60/49)^2 * <y^(2/7)> = 1.4994 * 49/72 = 1.0204
-near "turbulent: mean velocity of the particles" "$(awk '{ s += $1 } END { print s / NR / 12.7324 }' v)" \
+near "turbulent: the mean velocity of the particles is right" "$(awk '{ s += $1 } END { print s / NR / 12.7324 }' v)" \
 	1.021 0.005
 
 # disturbances
@@ -84,67 +84,67 @@ sensorsim --uniform 1um:1um --number 0 --duration 10 --noise 0.1 --common 0.5 | 
 frames noise.au 2 >noise.txt
 awk '{ a += $1; b += $2; aa += $1 * $1; bb += $2 * $2; ab += $1 * $2; if (NR > 1) lag += $1 * old; old = $1 }
 	END { print sqrt(aa / NR), sqrt(bb / NR), ab / sqrt(aa * bb), lag / aa, a / NR }' noise.txt >moments
-near "noise: rms of sensor 1" "$(cut -d' ' -f1 moments)" 0.1 0.001
-near "noise: rms of sensor 2" "$(cut -d' ' -f2 moments)" 0.1 0.001
-near "noise: correlation of the sensors" "$(cut -d' ' -f3 moments)" 0.5 0.012
-near "noise: white" "$(cut -d' ' -f4 moments)" 0 0.015
-near "noise: no offset" "$(cut -d' ' -f5 moments)" 0 0.0015
+near "noise: the rms of sensor 1 is right" "$(cut -d' ' -f1 moments)" 0.1 0.001
+near "noise: the rms of sensor 2 is right" "$(cut -d' ' -f2 moments)" 0.1 0.001
+near "noise: the correlation of the sensors is right" "$(cut -d' ' -f3 moments)" 0.5 0.012
+near "noise: it is white" "$(cut -d' ' -f4 moments)" 0 0.015
+near "noise: it has no offset" "$(cut -d' ' -f5 moments)" 0 0.0015
 sensorsim --uniform 1um:1um --number 0 --duration 10 --noise 0.1 --corner 500Hz | cat >color.au
 frames color.au 2 | awk '{ aa += $1 * $1; if (NR > 1) lag += $1 * old; old = $1 }
 	END { print sqrt(aa / NR), lag / aa }' >moments
-near "coloured noise: rms" "$(cut -d' ' -f1 moments)" 0.1 0.003
-near "coloured noise: exp(-2 pi corner / rate)" "$(cut -d' ' -f2 moments)" 0.7304 0.01
+near "coloured noise: the rms is unchanged" "$(cut -d' ' -f1 moments)" 0.1 0.003
+near "coloured noise: the correlation is exp(-2 pi corner / rate)" "$(cut -d' ' -f2 moments)" 0.7304 0.01
 sensorsim --uniform 1um:1um --number 0 --duration 2 --mains 0.5,0.3,0.05 --pump 0.2,0.1 >lines.au
 frames lines.au 2 >lines.txt
 for line in 50:0.5 150:0.3 250:0.05 2000:0.2 4000:0.1; do
-	near "line at ${line%:*} Hz" "$(level lines.txt "${line%:*}" 2)" "${line#*:}" 1e-10
+	near "the line at ${line%:*} Hz has its amplitude" "$(level lines.txt "${line%:*}" 2)" "${line#*:}" 1e-10
 done
 sensorsim --uniform 1um:1um --number 0 --duration 200 -r 100 --drift 1 --drift-time 1s >drift.au
 frames drift.au 2 | awk '{ aa += $1 * $1; h[NR] = $1; if (NR > 100) lag += $1 * h[NR - 100] }
 	END { print sqrt(aa / NR), lag / aa }' >moments
 # 200 correlation times: the standard error of both is about 0.1
-near "drift: rms" "$(cut -d' ' -f1 moments)" 1 0.25
-near "drift: correlation after its time" "$(cut -d' ' -f2 moments)" 0.3679 0.25
+near "drift: the rms is right" "$(cut -d' ' -f1 moments)" 1 0.25
+near "drift: the correlation after the correlation time is 1/e" "$(cut -d' ' -f2 moments)" 0.3679 0.25
 
 # (3-1) by the coils: 2 N ND I mu0 (mur-1)/mur (pi/6) (pi/2) b / L
 sensorsim --uniform 100um:100um --number 1 --duration 1 --truth - --coil 200,150,0.3A,2000,5mm,9mm,1e6 >coil.tsv
 want=$(awk 'BEGIN { pi = 3.14159265358979; b = 1 / 25e-6 - 1 / 81e-6
 	k = 2 * 200 * 150 * 0.3 * 1.25663706212e-6 * 1999 / 2000 * pi / 6 * pi / 2 * b / (0.4 / pi) * 1e6
 	printf "%.12g", k * 1e-12 * 0.04 / pi * 1e3 }')
-near "amplitude by the coils" "$(column amplitude coil.tsv)" "$want" 1e-9
+near "the amplitude follows from the parameters of the coils" "$(column amplitude coil.tsv)" "$want" 1e-9
 
 # work done and left out
 sensorsim --uniform 50um:150um --number 10 --duration 100 -S stats >/dev/null
-near "each pulse touches its own samples" "$(column pulse_samples stats)" 2000 20
-is "constant memory" "$(column particles_pending stats | awk '{ print $1 <= 10 }')" 1
+near "each pulse is computed only at its own samples" "$(column pulse_samples stats)" 2000 20
+is "memory is constant" "$(column particles_pending stats | awk '{ print $1 <= 10 }')" 1
 
 # What the particles are made of.
 printf 'time\tdiameter\n0.02\t1e-4\n' >one.tsv
 sensorsim --mur 1 --sigma 5.8e7 --truth copper.tsv one.tsv >/dev/null
 # golden polarisability of 50 um at 100 kHz: -8.32103627821e-5 - 7.6315414178458e-3 i, by 2
-near "copper: in phase" "$(column amplitude copper.tsv | awk '{ printf "%.12g", $1 * 1e5 }')" -4.160518139105 1e-9
-near "copper: in quadrature" "$(column quadrature copper.tsv)" -3.8157707089229e-3 1e-14
-near "copper: phase" "$(column phase copper.tsv)" -1.58169944 1e-7
+near "copper: the amplitude in phase is right" "$(column amplitude copper.tsv | awk '{ printf "%.12g", $1 * 1e5 }')" -4.160518139105 1e-9
+near "copper: the amplitude in quadrature is right" "$(column quadrature copper.tsv)" -3.8157707089229e-3 1e-14
+near "copper: the phase is right" "$(column phase copper.tsv)" -1.58169944 1e-7
 sensorsim --material copper --truth named.tsv one.tsv >/dev/null
-is "copper by name" "$(column amplitude named.tsv) $(column material named.tsv)" \
+is "copper is known by name" "$(column amplitude named.tsv) $(column material named.tsv)" \
 	"$(column amplitude copper.tsv) copper"
 sensorsim --material copper --phase 90deg --truth turned.tsv one.tsv >/dev/null
-near "a demodulator a quarter of a turn ahead" "$(column amplitude turned.tsv)" 3.8157707089229e-3 1e-14
+near "a demodulator turned by a quarter exchanges the channels" "$(column amplitude turned.tsv)" 3.8157707089229e-3 1e-14
 sensorsim --material steel --quadrature --gain 0.5 --duration 60ms --truth steel.tsv one.tsv >iq.au
 frames iq.au 4 >iq.txt
-is "frames of four channels" "$(wc -l <iq.txt) $(head -1 iq.txt | wc -w)" "600 4"
+is "frames have four channels" "$(wc -l <iq.txt) $(head -1 iq.txt | wc -w)" "600 4"
 for c in 1:amplitude:1 2:quadrature:1 3:amplitude:0.5 4:quadrature:0.5; do
 	# shellcheck disable=SC2046 # three words
 	set -- $(echo "$c" | tr : ' ')
 	most=$(awk -v c="$1" '{ x = $c < 0 ? -$c : $c; if (x > m) m = x } END { print m }' iq.txt)
 	# the peak lies between two of a hundred samples of the sine: up to 0.05 % off
-	near "quadrature: peak of channel $1" "$most" \
+	near "quadrature: channel $1 has its peak" "$most" \
 		"$(column "$2" steel.tsv | awk -v g="$3" '{ x = g * $1; print x < 0 ? -x : x }')" \
 		"$(column "$2" steel.tsv | awk '{ x = $1 * 6e-4; print x < 0 ? -x : x }')"
 done
 sensorsim --uniform 100um:100um --number 4000 --duration 400s --rate 100 --truth mixed.tsv \
 	--material steel=0.7,aluminium=0.3 >/dev/null
-near "a mixture by its shares" "$(column material mixed.tsv | grep -c aluminium)" 1200 90
+near "a mixture has its shares" "$(column material mixed.tsv | grep -c aluminium)" 1200 90
 head -30 mixed.tsv | sensorsim --truth again.tsv --seed 9 >/dev/null
 is "materials of a table are kept" "$(column amplitude again.tsv | head -20)" \
 	"$(column amplitude mixed.tsv | head -20)"
@@ -166,40 +166,40 @@ for kind in bubble shock impulse transient dropout; do
 	# shellcheck disable=SC2086
 	sensorsim $some --"${kind}s" 2 --truth events.tsv >events.au
 	frames events.au 2 >events.txt
-	is "${kind}s stand in the truth" "$(column kind events.tsv | sort -u | tr '\n' ' ')" \
+	is "${kind}s are in the truth" "$(column kind events.tsv | sort -u | tr '\n' ' ')" \
 		"$(printf '%s\nparticle\n' $kind | sort | tr '\n' ' ')"
 	# Where the record differs from that without them, an event is near: a transient lasts
 	# 36 times three pulses, a bubble begins one and a half before its middle.
 	paste plain.txt events.txt | awk '$1 != $3 || $2 != $4 { print (NR - 1) / 2e3 }' >where
 	awk -F '\t' -v kind="$kind" '!/^#/ && $NF == kind { print $2 }' events.tsv >when
-	is "${kind}s change the record there and nowhere else" "$(awk 'NR == FNR { t[NR] = $1; n = NR; next }
+	is "${kind}s change the record only at their times" "$(awk 'NR == FNR { t[NR] = $1; n = NR; next }
 		{ near = 0; for (i = 1; i <= n; i++) if ($1 > t[i] - 0.0155 && $1 < t[i] + 1.1) { near = 1; hit[i] = 1 }
 		  bad += !near } END { for (i in hit) k++; print bad + 0, (k >= n - 1) }' when where)" "0 1"
-	near "$kind: mean number" "$(wc -l <when)" 6 6
+	near "$kind: the mean number is right" "$(wc -l <when)" 6 6
 done
-is "dropouts read 0" "$(awk '$1 == 0 && $2 == 0' events.txt | wc -l | awk '{ print ($1 > 30) }')" 1
+is "dropouts are 0" "$(awk '$1 == 0 && $2 == 0' events.txt | wc -l | awk '{ print ($1 > 30) }')" 1
 sensorsim --uniform 100um:100um --number 10 --duration 1s --saturation 0.6 --gain 0.5 \
 	--truth limited.tsv >limited.au
 frames limited.au 2 >limited.txt
-is "saturation cuts sensor 1 and not sensor 2" "$(awk '$1 > a { a = $1 } $2 > b { b = $2 }
+is "saturation clips sensor 1 and not sensor 2" "$(awk '$1 > a { a = $1 } $2 > b { b = $2 }
 	END { printf "%.6g %d", a, (b > 0.49 && b < 0.6) }' limited.txt)" "0.6 1"
-is "and the truth says so" "$(column saturated limited.tsv | sort -u)" 1
+is "the truth states the saturation" "$(column saturated limited.tsv | sort -u)" 1
 sensorsim --uniform 100um:100um --number 2000 --duration 2000s --rate 20 --flow-drift 0.05 \
 	--drift-time 5s --truth drifting.tsv >/dev/null
 column velocity drifting.tsv | awk '{ x = $1 / 12.7324 - 1; s += x; q += x * x; if (NR > 1) d += (x - l) ^ 2; l = x }
 	END { print s / NR, sqrt(q / NR), d / q }' >moments
 # 400 correlation times; neighbours 1 s apart keep exp(-1/5): 2 (1 - 0.82) = 0.36
-near "flow drift: none on average" "$(cut -d' ' -f1 moments)" 0 0.012
-near "flow drift: rms" "$(cut -d' ' -f2 moments)" 0.05 0.006
-near "flow drift: neighbours are alike" "$(cut -d' ' -f3 moments)" 0.33 0.12
+near "flow drift: the mean is zero" "$(cut -d' ' -f1 moments)" 0 0.012
+near "flow drift: the rms is right" "$(cut -d' ' -f2 moments)" 0.05 0.006
+near "flow drift: neighbouring particles are correlated" "$(cut -d' ' -f3 moments)" 0.33 0.12
 sensorsim --uniform 1um:1um --number 0 --duration 20s --rate 1000 --mains 1 --mains-wander 0.5 \
 	--drift-time 2s >wander.au
 frames wander.au 2 | awk 'NR > 1 && l < 0 && $1 >= 0 { t = (NR - 1 - $1 / ($1 - l)) / 1e3
 	if (n++) { f = 1 / (t - last); s += f; q += f * f } last = t } { l = $1 }
 	END { n--; print s / n, sqrt(q / n - (s / n) ^ 2) }' >moments
 # ten correlation times
-near "mains wander about their frequency" "$(cut -d' ' -f1 moments)" 50 0.5
-near "mains wander: rms" "$(cut -d' ' -f2 moments)" 0.5 0.2
+near "the mains frequency wanders about its mean" "$(cut -d' ' -f1 moments)" 50 0.5
+near "the rms of the mains frequency is right" "$(cut -d' ' -f2 moments)" 0.5 0.2
 sensorsim --uniform 100um:100um --number 200 --duration 100s --rate 1000 --gain-drift 0.1 --drift-time 0.3s \
 	--gap 100ms --truth gains.tsv >gains.au
 frames gains.au 2 | awk -v f=gains.tsv 'BEGIN { while ((getline line < f) > 0) { split(line, c, "\t")
@@ -208,11 +208,11 @@ frames gains.au 2 | awk -v f=gains.tsv 'BEGIN { while ((getline line < f) > 0) {
 	END { for (i = 1; i <= n; i++) { e = h = 0
 		for (k = -6; k <= 6; k++) { e += x[a[i] + k] ^ 2; h += y[b[i] + k] ^ 2 }
 		g = sqrt(h / e); s += g; q += g * g } print s / n, sqrt(q / n - (s / n) ^ 2) }' >moments
-near "gain drift: mean of sensor 2" "$(cut -d' ' -f1 moments)" 1 0.03
-near "gain drift: rms" "$(cut -d' ' -f2 moments)" 0.1 0.02
+near "gain drift: the mean of sensor 2 is unchanged" "$(cut -d' ' -f1 moments)" 1 0.03
+near "gain drift: the rms is right" "$(cut -d' ' -f2 moments)" 0.1 0.02
 sensorsim --uniform 100um:100um --number 2000 --duration 2000s --rate 20 --phase-drift 5deg --drift-time 5s \
 	--truth phases.tsv >/dev/null
-near "phase drift: rms" "$(column phase phases.tsv | awk '{ q += $1 * $1 } END { print sqrt(q / NR) }')" 0.0873 0.011
+near "phase drift: the rms is right" "$(column phase phases.tsv | awk '{ q += $1 * $1 } END { print sqrt(q / NR) }')" 0.0873 0.011
 fails "events without an end" 2 'require --duration' sensorsim --bubbles 1 one.tsv
 
 # what it refuses
@@ -233,7 +233,7 @@ fails "no window" 2 'duration' sensorsim --uniform 1um:2um --number 3
 fails "a window too short" 2 'no room' sensorsim --uniform 1um:2um --number 300 --gap 10ms --duration 1
 fails "a line above half the rate" 2 '^sensorsim: --pump: a line at 4000 Hz is above half the rate, 2500 Hz$' \
 	sensorsim -r 5000 --pump 0.1,0.1 --uniform 1um:1um --number 1 --duration 1
-is "leaves no stream that looks whole" "$(wc -c <out)" 0
+is "a failed run leaves no stream that looks complete" "$(wc -c <out)" 0
 fails "one of two ways to say how many" 2 'requires one of --number and --concentration' \
 	sensorsim --uniform 1um:1um --number 1 --concentration 1 --duration 1
 fails "a full disk" 1 'o space' sh -c 'sensorsim --uniform 1um:1um --number 1 --duration 1 >/dev/full'

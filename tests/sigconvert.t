@@ -19,22 +19,22 @@ is "text reads back to the last bit" "$(rows a.tsv)" "$(rows b.tsv)"
 is "rate and channels are kept" "$(sed -n 's/^# rate: //p' b.tsv) $(grep ^time b.tsv)" \
 	"10000 $(printf 'time\tchannel1\tchannel2')"
 sigconvert --output raw a.au >a.raw
-is "raw has 8 bytes a sample" "$(wc -c <a.raw)" 48000
+is "raw has 8 bytes per sample" "$(wc -c <a.raw)" 48000
 sigconvert --from raw --rate 10kHz --channels 2 --output text a.raw >c.tsv
 is "raw reads back to the last bit" "$(rows a.tsv)" "$(rows c.tsv)"
-is "the header holds the pipeline" "$(sed -n 's/^# cmd: .*| //p' a.tsv)" "sigconvert --output text"
+is "the header records the pipeline" "$(sed -n 's/^# cmd: .*| //p' a.tsv)" "sigconvert --output text"
 
 printf 'Time [ms];Flow [L/min];"u1 [mV]";u2 (V)\r\n0,0;60;1500,5;2\r\n0,5;61;-20;nan\r\n1,0;60;3;4\r\n' >daq.csv
 sigconvert --columns 'u1;u2' daq.csv >d.au
-is "columns by name, units and decimal commas" "$(samples d.au)" "1.5005 2 -0.02 nan 0.003 4"
-is "the times tell the rate" "$(sigconvert --output text d.au | sed -n 's/^# rate: //p')" 2000
+is "columns are read by name, with units and decimal commas" "$(samples d.au)" "1.5005 2 -0.02 nan 0.003 4"
+is "the times determine the rate" "$(sigconvert --output text d.au | sed -n 's/^# rate: //p')" 2000
 sigconvert --columns 2 --scale 0.5 daq.csv >d.au
-is "a column by number, scaled" "$(samples d.au)" "30 30.5 30"
+is "a column is read by number and scaled" "$(samples d.au)" "30 30.5 30"
 printf 'made by hand\na,b\n1.5,2\n3,4\n' >plain.csv
 sigconvert --skip-lines 1 --rate 100Hz plain.csv >d.au
-is "no times: the rate is told" "$(samples d.au)" "1.5 2 3 4"
+is "the rate can be given if there are no times" "$(samples d.au)" "1.5 2 3 4"
 printf 'a b\n1 2\n3 4\n' | sigconvert --from text --rate 100Hz >d.au
-is "blanks, from a pipe" "$(samples d.au)" "1 2 3 4"
+is "cells separated by blanks are read from a pipe" "$(samples d.au)" "1 2 3 4"
 
 # The rate that times tell is the one of fewest digits that they allow.
 # told STEP DIGITS ROWS: the rate learned from times printed with so many digits
@@ -111,16 +111,16 @@ fi
 sensorsim --uniform 10um:11um --number 1 --duration 2s --noise 1mV | sigconvert --output text | grep -v '^#' |
 	awk -F '\t' -v OFS='\t' '/^[0-9]/ { if ((NR + 500) % 1000 < 4) $2 = 0.02; $3 = 0.5 } { print }' |
 	sigconvert --from text | sigconvert --output channels >channels.tsv
-is "samples at the end of the range" "$(column rails channels.tsv | tr '\n' ' ')" '80 20000 '
-is "and that end" "$(column high channels.tsv | tr '\n' ' ')" '0.02 0.5 '
-near "the noise of the quiet stretches, less 6 %" "$(column level channels.tsv | head -n 1)" 9.4e-4 3e-5
-is "that of a dead channel" "$(column level channels.tsv | tail -n 1)" 0
+is "samples at the end of the range are counted" "$(column rails channels.tsv | tr '\n' ' ')" '80 20000 '
+is "the largest sample of each channel is stated" "$(column high channels.tsv | tr '\n' ' ')" '0.02 0.5 '
+near "the noise of quiet sections is estimated to 6 %" "$(column level channels.tsv | head -n 1)" 9.4e-4 3e-5
+is "the noise of a dead channel is estimated" "$(column level channels.tsv | tail -n 1)" 0
 
 if sigconvert --output wav a.au >a.wav 2>err; then
 	sigconvert --output text a.wav >w.tsv
 	is "WAV in float64 reads back to the last bit" "$(rows a.tsv)" "$(rows w.tsv)"
 	sigconvert --from sound --output text <a.wav >w.tsv
-	is "also through a pipe" "$(rows a.tsv)" "$(rows w.tsv)"
+	is "WAV reads back through a pipe" "$(rows a.tsv)" "$(rows w.tsv)"
 	sigconvert --output flac --scale 0.1 a.au >a.flac
 	sigconvert --output text --scale 10 a.flac >f.tsv
 	near "FLAC has 24 bits" "$(grep -v '^#' f.tsv >f; grep -v '^#' a.tsv | paste - f | awk '/^[0-9]/ { d = $2 - $5; d = d < 0 ? -d : d; m = d > m ? d : m }
@@ -133,7 +133,7 @@ if sigconvert --output wav a.au >a.wav 2>err; then
 	fails "a WAV that is cut off" 1 'cut.wav' sigconvert cut.wav
 	fails "noise that is no sound" 1 'tsv: ' sigconvert --from sound a.tsv
 else
-	skip "WAV and FLAC" "built without libsndfile"
+	skip "WAV and FLAC can be tested" "built without libsndfile"
 fi
 
 fails "no rate and no times" 1 'specify --rate' sigconvert --skip-lines 1 plain.csv

@@ -27,23 +27,23 @@ samples() {
 }
 { au 24 4294967295 3 8000 2; printf '\100\000\300\000\040\000\340\000'; } >pcm16.au
 ok '16-bit PCM is read' sh -c 'bpfilter --band 0:4000 --order 2 --zero-phase --no-scale pcm16.au >out.au'
-is 'and scaled to one' "$(samples out.au)" '0.5 -0.5 0.25 -0.25 '
+is '16-bit PCM is scaled to one' "$(samples out.au)" '0.5 -0.5 0.25 -0.25 '
 { au 24 4 2 8000 2; printf '\100\300\040\340'; } >pcm8.au
 unfiltered pcm8.au 4000 >out.au
-is '8-bit PCM' "$(samples out.au)" '0.5 -0.5 0.25 -0.25 '
+is '8-bit PCM is read' "$(samples out.au)" '0.5 -0.5 0.25 -0.25 '
 { au 24 6 4 8000 1; printf '\100\000\000\300\000\000'; } >pcm24.au
 unfiltered pcm24.au 4000 >out.au
-is '24-bit PCM of a declared length' "$(samples out.au)" '0.5 -0.5 '
+is '24-bit PCM with a declared length is read' "$(samples out.au)" '0.5 -0.5 '
 { au 24 8 6 8000 1; printf '\077\000\000\000\300\000\000\000'; } >float.au
 unfiltered float.au 4000 >out.au
-is '32-bit float, beyond one' "$(samples out.au)" '0.5 -2 '
+is '32-bit float beyond one is read' "$(samples out.au)" '0.5 -2 '
 { au 24 4294967295 7 8000 1; printf '\077\340\000\000\000\000\000\000'; } >double.au
 unfiltered double.au 4000 >out.au
-is '64-bit float' "$(samples out.au)" '0.5 '
-is 'the length of what we write is unknown' "$(od -An -tx1 -j8 -N4 out.au | tr -d ' ')" ffffffff
-is 'the header says how it was made' "$(strings out.au | grep '^cmd' | cut -c 1-26)" 'cmd bpfilter --band 0:4000'
+is '64-bit float is read' "$(samples out.au)" '0.5 '
+is 'the length of the output is unknown' "$(od -An -tx1 -j8 -N4 out.au | tr -d ' ')" ffffffff
+is 'the header records the command' "$(strings out.au | grep '^cmd' | cut -c 1-26)" 'cmd bpfilter --band 0:4000'
 au 24 4294967295 7 8000 2 >empty.au
-ok 'a signal without samples' sh -c 'bpfilter --band 0:4000 --order 2 empty.au >out.au'
+ok 'a signal without samples is read' sh -c 'bpfilter --band 0:4000 --order 2 empty.au >out.au'
 
 fails 'a header cut off' 1 'want an AU header of at least 24 bytes, got 6' sh -c 'head -c 6 double.au | bpfilter'
 fails 'another format' 1 "this is WAV audio, want signal: sox" sh -c 'printf RIFFxxxxxxxxxxxxxxxxxxxxxxxx | bpfilter'
@@ -71,38 +71,38 @@ fails 'a sample that is no number' 1 'frame 0, channel 1: sample is not a finite
 # A pipe that delivers a byte at a time changes nothing.
 bpfilter --band 1000:3000 --order 2 pcm16.au >whole.au
 dd if=pcm16.au bs=1 2>/dev/null | bpfilter --band 1000:3000 --order 2 >dripped.au
-is 'dripped input gives the same samples' "$(samples dripped.au)" "$(samples whole.au)"
+is 'input that arrives slowly gives the same samples' "$(samples dripped.au)" "$(samples whole.au)"
 
 if command -v sox >/dev/null; then
-	is 'sox reads ours' "$(unfiltered pcm16.au 4000 | sox -t au - -t dat - 2>/dev/null |
+	is 'sox reads the output' "$(unfiltered pcm16.au 4000 | sox -t au - -t dat - 2>/dev/null |
 		awk '!/^;/ { printf "%g %g ", $2, $3 }')" '0.5 -0.5 0.25 -0.25 0 0 '
 else
-	skip 'sox reads ours' 'no sox'
+	skip 'sox reads the output' 'no sox'
 fi
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
 	unfiltered pcm16.au 4000 >out.au
-	is 'numpy reads ours' "$(/usr/bin/python3 -c "
+	is 'numpy reads the output' "$(/usr/bin/python3 -c "
 import numpy as np
 b = open('out.au', 'rb').read()
 x = np.frombuffer(b, '>f8', offset=int.from_bytes(b[4:8], 'big')).reshape(-1, 2)[:-1]
 print(x.shape, x[1, 1])")" '(2, 2) -0.25'
 else
-	skip 'numpy reads ours' 'no numpy'
+	skip 'numpy reads the output' 'no numpy'
 fi
 if command -v octave >/dev/null; then
 	unfiltered pcm16.au 4000 >out.au
-	is 'Octave reads ours' "$(octave --no-gui --norc --eval \
+	is 'Octave reads the output' "$(octave --no-gui --norc --eval \
 		"[x, rate] = audioread('out.au'); x = x(1:end-1, :); printf('%g %g %g %g', rate, x(1, 1), x(end, 2), rows(x))" 2>/dev/null)" \
 		'8000 0.5 -0.25 2'
 else
-	skip 'Octave reads ours' 'no octave'
+	skip 'Octave reads the output' 'no octave'
 fi
 if command -v gnuplot >/dev/null; then
 	unfiltered pcm16.au 4000 >out.au
 	skip=$(od -An -tu1 -j4 -N4 out.au | awk '{ print ((($1 * 256) + $2) * 256 + $3) * 256 + $4 }')
-	is 'gnuplot reads ours' "$(gnuplot -e "set table; plot 'out.au' binary skip=$skip format='%double%double' endian=big using 0:1 with lines" |
+	is 'gnuplot reads the output' "$(gnuplot -e "set table; plot 'out.au' binary skip=$skip format='%double%double' endian=big using 0:1 with lines" |
 		awk '/^ *[0-9]/ { printf "%g %.4f ", $1, $2 }')" '0 0.5000 1 0.2500 2 0.0000 '
 else
-	skip 'gnuplot reads ours' 'no gnuplot'
+	skip 'gnuplot reads the output' 'no gnuplot'
 fi
 done_testing

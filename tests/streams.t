@@ -30,43 +30,43 @@ cell() {
 
 { header ''; ramp; } >plain.nrrd
 ok 'a plain two-dimensional NRRD is read' records plain.nrrd
-is 'its size and spacing' "$(cell nx) $(cell ny) $(cell dx) $(cell dy)" '4 3 1e-06 2e-06'
-is 'its samples' "$(cell min) $(cell mean) $(cell max)" '0 5.5 11'
+is 'the size and spacing of a plain NRRD are read' "$(cell nx) $(cell ny) $(cell dx) $(cell dy)" '4 3 1e-06 2e-06'
+is 'the samples of a plain NRRD are read' "$(cell min) $(cell mean) $(cell max)" '0 5.5 11'
 { header 'endian: big'; big_endian_ramp; } >big.nrrd
 ok 'a big-endian NRRD is read' records big.nrrd
-is 'its samples' "$(cell min) $(cell mean) $(cell max)" '0 5.5 11'
+is 'the samples of a big-endian NRRD are read' "$(cell min) $(cell mean) $(cell max)" '0 5.5 11'
 { header 'units: "um" "um"' 'spacings: 1 2'; ramp; } >um.nrrd
-ok 'units of length are honoured' records um.nrrd
-is 'and turned into metres' "$(cell dx) $(cell dy)" '1e-06 2e-06'
+ok 'units of length are read' records um.nrrd
+is 'units of length are converted to metres' "$(cell dx) $(cell dy)" '1e-06 2e-06'
 records -o nrrd plain.nrrd >ours.nrrd
 records -o nrrd ours.nrrd >again.nrrd
-same 'a record written, read and written has the same bytes' ours.nrrd again.nrrd
-is 'the header fills whole kibibytes' "$(($(wc -c <ours.nrrd) % 1024))" 96
+same 'a record that is read and written has the same bytes' ours.nrrd again.nrrd
+is 'the header is a multiple of 1024 bytes' "$(($(wc -c <ours.nrrd) % 1024))" 96
 records -o gsf plain.nrrd >plain.gsf 2>err || true
 is 'GSF keeps the spacing' "$(records plain.gsf | grep '^1' | cut -f 8,9,12)" "$(printf '1e-06\t2e-06\t11')"
 ramp >plain.raw
 ok 'headerless samples are read' records --raw 4x3 --pixel 2um plain.raw
-is 'with the pixel given' "$(cell dx) $(cell max)" '2e-06 11'
-ok 'and with an oblong one' records --raw 4x3 --pixel 2umx3um plain.raw
-is 'that is so long' "$(cell dx) $(cell dy)" '2e-06 3e-06'
+is 'headerless samples have the given spacing' "$(cell dx) $(cell max)" '2e-06 11'
+ok 'headerless samples have the given spacing along x and y' records --raw 4x3 --pixel 2umx3um plain.raw
+is 'the spacing along y is kept' "$(cell dx) $(cell dy)" '2e-06 3e-06'
 fails 'a pixel of no samples' 2 '--raw and --pixel go together' records --pixel 2um plain.raw
 cat plain.nrrd big.nrrd plain.gsf >three
-is 'records of three formats follow each other' "$(records -o count three)" 3
+is 'records of three formats may follow each other' "$(records -o count three)" 3
 ok 'an empty stream has no records' sh -c 'records -o count </dev/null'
-is 'and that is no error' "$(cat out)" 0
+is 'an empty stream is not an error' "$(cat out)" 0
 for p in 'bemcontact -F 1N --estar 1GPa' 'debrisgen -Y 1GPa' 'records -o nrrd' 'roughgen -'; do
 	fails "${p%% *} needs a record" 1 "^${p%% *}: standard input: no record$" $p
-	is 'and writes nothing' "$(wc -c <out)" 0
+	is 'an empty stream gives no output' "$(wc -c <out)" 0
 done
 fails 'two records for GSF' 2 'GSF holds one plane field' sh -c 'cat plain.nrrd big.nrrd | records -o gsf'
-is 'of which none is written' "$(wc -c <out)" 0
-is 'a record keeps keys, escapes included' \
+is 'a failed program writes no record' "$(wc -c <out)" 0
+is 'a record keeps keys with escapes' \
 	"$({ header 'key:=a \\ b'; ramp; } | records -o nrrd | grep -a '^key')" 'key:=a \\ b'
-is 'and one that begins with a blank' \
+is 'a record keeps a value that begins with a blank' \
 	"$({ header 'key:= b: c' 'empty:='; ramp; } | records -o nrrd | grep -a -e ^key -e ^empty)" \
 	"$(printf 'key:= b:c\nempty:=')"
-ok 'the second record alone' sh -c 'records --pick 2 -o nrrd three | records -o count'
-is 'is one record' "$(cat out)" 1
+ok 'the second record is selected' sh -c 'records --pick 2 -o nrrd three | records -o count'
+is 'the selected record is one record' "$(cat out)" 1
 fails 'picking what is not there' 1 'three: no record 4: there are 3' records --pick 4 three
 
 # Refusals: one line each, naming the record and what was wanted.
@@ -125,7 +125,7 @@ fails 'or the counters' 2 'contact.nrrd: the same file is read and written' \
 	$wear -S contact.nrrd contact.nrrd
 ln -s contact.nrrd link
 fails 'by another name' 2 'link: the same file is read and written' $wear --stress link contact.nrrd
-same 'leaves the input as it was' contact.nrrd kept.nrrd
+same 'a refused output leaves the input unchanged' contact.nrrd kept.nrrd
 fails 'two outputs that are one file' 2 'x: the same file is written twice' \
 	$wear --surface x --summary x contact.nrrd
 fails 'an output that is standard output' 2 'x: the same file is written twice' \
@@ -133,13 +133,13 @@ fails 'an output that is standard output' 2 'x: the same file is written twice' 
 fails 'an output without a name' 2 '^debrisgen: -: an output requires a file name' \
 	$wear --surface - contact.nrrd
 fails 'counters without a name' 2 '^debrisgen: -: an output requires' $wear -S - contact.nrrd
-ok 'what goes nowhere may go there twice' $wear --surface /dev/null --summary /dev/null contact.nrrd
+ok '/dev/null may be named twice as output' $wear --surface /dev/null --summary /dev/null contact.nrrd
 seq 1000 >old
-ok 'an old file' $wear --summary old -S old.stats contact.nrrd
-is 'is overwritten' "$(grep -c '^[0-9]' old)" 1
+ok 'an old file exists' $wear --summary old -S old.stats contact.nrrd
+is 'an old file is overwritten' "$(grep -c '^[0-9]' old)" 1
 cp old old.stats
-ok 'old counters' $wear -S old.stats contact.nrrd
-is 'are overwritten' "$(wc -l <old.stats)" 2
+ok 'old counters exist' $wear -S old.stats contact.nrrd
+is 'old counters are overwritten' "$(wc -l <old.stats)" 2
 
 fails 'no room left on the device' 1 'standard output: No space left' \
 	sh -c 'records -o nrrd plain.nrrd >/dev/full'
@@ -147,15 +147,15 @@ fails 'no room left on the device' 1 'standard output: No space left' \
 # Standard input, output and error that are closed
 fails 'standard output closed' 1 'standard output: Bad file descriptor' sh -c 'records plain.nrrd >&-'
 fails 'standard input closed' 1 'standard input: Bad file descriptor' sh -c 'records <&-'
-ok 'standard error closed' sh -c "$wear --summary closed.tsv --steps 2 contact.nrrd 2>&-"
-ok 'no message lands in a side output' records --check closed.tsv
+ok 'a program runs with standard error closed' sh -c "$wear --summary closed.tsv --steps 2 contact.nrrd 2>&-"
+ok 'no message is written to an output file' records --check closed.tsv
 fails 'standard output closed beside a side output' 1 'Bad file descriptor' \
 	sh -c "$wear --summary closed.tsv contact.nrrd >&-"
 fails 'counters that are standard output' 2 'x: the same file is written twice' sh -c 'records --output count -S x plain.nrrd >x'
 cp plain.nrrd same.nrrd
 fails 'standard output that is the input' 2 'same.nrrd: the same file is read and written' \
 	sh -c 'records --output text same.nrrd 1<>same.nrrd'
-same 'leaves it as it was' plain.nrrd same.nrrd
+same 'a refused output leaves the file unchanged' plain.nrrd same.nrrd
 
 # Text from outside stays within its line.
 fails 'a newline in a value' 1 "realisation: 'a.nall is well' is not understood" \

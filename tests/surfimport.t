@@ -16,34 +16,34 @@ list() {
 # Matrices of text.
 printf '1\t2\t3\n4\tnan\t6\n' >tab.txt
 surfimport --pixel 1umx2um --height-unit 1um tab.txt >a.nrrd
-is "a matrix of text" "$(heights a.nrrd)" "1e-06 2e-06 3e-06 4e-06 nan 6e-06"
-is "its spacing" "$(list dx a.nrrd) $(list dy a.nrrd)" "1e-06 2e-06"
+is "a matrix of text is read" "$(heights a.nrrd)" "1e-06 2e-06 3e-06 4e-06 nan 6e-06"
+is "a matrix of text has the given spacing" "$(list dx a.nrrd) $(list dy a.nrrd)" "1e-06 2e-06"
 printf '1,5;2;3\r\n4;;6\r\n' >comma.csv
 surfimport --pixel 1um --height-unit 1m comma.csv >b.nrrd
-is "semicolons and decimal commas" "$(heights b.nrrd)" "1.5 2 3 4 nan 6"
+is "semicolons and decimal commas are read" "$(heights b.nrrd)" "1.5 2 3 4 nan 6"
 printf '1,5,2\n4,BAD,6\n' >plain.csv
 surfimport --pixel 1um --height-unit 1m plain.csv >b.nrrd
-is "commas that part cells" "$(heights b.nrrd)" "1 5 2 4 nan 6"
+is "commas are read as separators" "$(heights b.nrrd)" "1 5 2 4 nan 6"
 printf '# by hand\nheights of a plate\n 1.5   -2e-3 \n4 6 \n' >blank.txt
 surfimport --pixel 1um --height-unit 1m blank.txt >b.nrrd
-is "blanks, comments and a heading" "$(heights b.nrrd)" "1.5 -0.002 4 6"
+is "blanks, comments and a heading are read" "$(heights b.nrrd)" "1.5 -0.002 4 6"
 printf '1,5 2,25\n4,0 6,5\n' >german.txt
 surfimport --pixel 1um --height-unit 1m german.txt >b.nrrd
-is "blanks between decimal commas" "$(heights b.nrrd)" "1.5 2.25 4 6.5"
+is "decimal commas separated by blanks are read" "$(heights b.nrrd)" "1.5 2.25 4 6.5"
 printf '\377\3761\0,\0002\0\n\0003\0,\0004\0\n\0' >utf16.csv
 surfimport --pixel 1um --height-unit 1m utf16.csv >b.nrrd
-is "UTF-16 with its mark" "$(heights b.nrrd)" "1 2 3 4"
+is "UTF-16 with a byte order mark is read" "$(heights b.nrrd)" "1 2 3 4"
 surfimport --pixel 1um --height-unit 1m --missing 99 <<-'END' >b.nrrd
 	1 99
 	3 4
 END
-is "a number that stands for nothing" "$(heights b.nrrd)" "1 nan 3 4"
+is "--missing marks a number as missing" "$(heights b.nrrd)" "1 nan 3 4"
 printf 'X_(microns),height [nm]\n10,1\n12,2\n14,3\n' >profile.csv
 surfimport --profile profile.csv >p.nrrd
-is "a profile: its units are those of the headings" "$(heights p.nrrd) $(list dx p.nrrd) $(list ny p.nrrd)" \
+is "the units of a profile are those of its headings" "$(heights p.nrrd) $(list dx p.nrrd) $(list ny p.nrrd)" \
 	"1e-09 2e-09 3e-09 2e-06 1"
 roughgen --measure --fill a.nrrd >m.tsv
-is "roughgen takes it from there" "$(column sz m.tsv)" 5e-06
+is "roughgen reads the result" "$(column sz m.tsv)" 5e-06
 
 # Binary files, made byte by byte.
 le16() { for v in "$@"; do printf "\\$(printf %03o $((v & 255)))\\$(printf %03o $((v >> 8 & 255)))"; done; }
@@ -56,10 +56,10 @@ zeros() { head -c "$1" /dev/zero; }
 	le16 1 2 3 4 5 65535
 } >i.npy
 surfimport --pixel 1um --height-unit 1um i.npy >b.nrrd
-is "npy of whole numbers" "$(heights b.nrrd)" "1e-06 2e-06 3e-06 4e-06 5e-06 -1e-06"
+is "npy with integers is read" "$(heights b.nrrd)" "1e-06 2e-06 3e-06 4e-06 5e-06 -1e-06"
 sed "s/False/True /" i.npy >f.npy
 surfimport --pixel 1umx2um --height-unit 1um f.npy >b.nrrd
-is "npy in Fortran's order" "$(heights b.nrrd) $(list dy b.nrrd)" "1e-06 3e-06 5e-06 2e-06 4e-06 -1e-06 2e-06"
+is "npy in Fortran order is read" "$(heights b.nrrd) $(list dy b.nrrd)" "1e-06 3e-06 5e-06 2e-06 4e-06 -1e-06 2e-06"
 {
 	printf 'bISO-1.0%10s%12s%12s' x 010120200000 010120200000
 	le16 3 2
@@ -70,7 +70,7 @@ is "npy in Fortran's order" "$(heights b.nrrd) $(list dy b.nrrd)" "1e-06 3e-06 5
 	le16 10 20 30 40 32768 60
 } >b.sdf
 surfimport b.sdf >b.nrrd
-is "binary SDF with a missing sample" "$(heights b.nrrd) $(list dx b.nrrd) $(list dy b.nrrd)" \
+is "binary SDF with a missing sample is read" "$(heights b.nrrd) $(list dx b.nrrd) $(list dy b.nrrd)" \
 	"1e-08 2e-08 3e-08 4e-08 nan 6e-08 1e-06 2e-06"
 cat >a.sdf <<-'END'
 	aISO-1.0
@@ -87,7 +87,7 @@ cat >a.sdf <<-'END'
 	a trailer
 END
 surfimport a.sdf >b.nrrd
-is "text SDF" "$(heights b.nrrd) $(list dy b.nrrd)" "1e-06 2e-06 nan 4e-06 2e-06"
+is "text SDF is read" "$(heights b.nrrd) $(list dy b.nrrd)" "1e-06 2e-06 nan 4e-06 2e-06"
 {
 	printf 'DIGITAL SURF'
 	le16 0 1 1 2
@@ -106,7 +106,7 @@ is "text SDF" "$(heights b.nrrd) $(list dy b.nrrd)" "1e-06 2e-06 nan 4e-06 2e-06
 	le32 10 20 30 40 3 60
 } >s.sur
 surfimport s.sur >b.nrrd
-is "Digital Surf with a missing sample" "$(heights b.nrrd) $(list dx b.nrrd) $(list dy b.nrrd)" \
+is "Digital Surf with a missing sample is read" "$(heights b.nrrd) $(list dx b.nrrd) $(list dy b.nrrd)" \
 	"5e-09 1e-08 1.5e-08 2e-08 nan 3e-08 2e-06 4e-06"
 tag() { { printf %s "$1" && zeros $((20 - ${#1})) && printf %s "$2" && zeros $((30 - ${#2})) && printf '\r\n'; }; }
 {
@@ -123,15 +123,15 @@ tag() { { printf %s "$1" && zeros $((20 - ${#1})) && printf %s "$2" && zeros $((
 	printf '\0\0\200\077\0\0\0\100\0\0\0\077XXXX\0\0\100\100\0\0\200\100\0\0\240\100XXXX'
 } >a.al3d
 surfimport a.al3d >b.nrrd
-is "Alicona with padded rows and a missing sample" "$(heights b.nrrd) $(list dy b.nrrd)" "1 2 nan 3 4 5 3e-06"
+is "Alicona with padded rows and a missing sample is read" "$(heights b.nrrd) $(list dy b.nrrd)" "1 2 nan 3 4 5 3e-06"
 sed 's/DepthImageOffset\(....\)433/DepthImageOffset\1999/' a.al3d >far.al3d
 fails "heights beyond the end of an Alicona file" 1 'from byte 999 on, but the file has' surfimport far.al3d
 le16 256 512 >r.bin
 surfimport --format raw --size 2x1 --type uint16 --pixel 1um --height-unit 1m r.bin >b.nrrd
-is "headerless samples" "$(heights b.nrrd)" "256 512"
+is "headerless samples are read" "$(heights b.nrrd)" "256 512"
 surfimport --format raw --size 1x1 --type int16 --big-endian --skip 2 --pixel 1um --height-unit 1m r.bin >b.nrrd
-is "big-endian, behind other bytes" "$(heights b.nrrd)" "2"
-same "the header rebuilds the file" b.nrrd "$(sh -c "$(sed -n 's/^cmd:=//p' b.nrrd)" >again; echo again)"
+is "big-endian samples after a header are read" "$(heights b.nrrd)" "2"
+same "the recorded command reproduces the file" b.nrrd "$(sh -c "$(sed -n 's/^cmd:=//p' b.nrrd)" >again; echo again)"
 
 if command -v unzip >/dev/null && command -v xmllint >/dev/null && command -v zip >/dev/null; then
 	mkdir -p bindata
@@ -155,10 +155,10 @@ if command -v unzip >/dev/null && command -v xmllint >/dev/null && command -v zi
 	}
 	x3p I 1e-9 "$(md5sum <bindata/data.bin | cut -d ' ' -f 1)"
 	surfunzip "a b.x3p" >b.nrrd
-	is "x3p of whole numbers" "$(heights b.nrrd) $(list dx b.nrrd) $(list dy b.nrrd)" \
+	is "x3p with integers is read" "$(heights b.nrrd) $(list dx b.nrrd) $(list dy b.nrrd)" \
 		"1e-09 2e-09 3e-09 4e-09 5e-09 -1e-09 1e-06 2e-06"
 	# NRRD doubles backslashes in its header
-	same "its header rebuilds it, blank in the name or not" b.nrrd \
+	same "the recorded command reproduces an x3p, with or without a blank in its name" b.nrrd \
 		"$(sh -c "$(sed -n -e 's/\\\\/\\/g' -e 's/^cmd:=//p' b.nrrd)" >again; echo again)"
 	x3p I 1e-9 00000000000000000000000000000000
 	fails "x3p that is damaged" 1 'md5 differs' surfunzip "a b.x3p"
@@ -169,7 +169,7 @@ if command -v unzip >/dev/null && command -v xmllint >/dev/null && command -v zi
 	printf '<xml><GENERAL><IMAGE_SIZE_X>2</IMAGE_SIZE_X><IMAGE_SIZE_Y>1</IMAGE_SIZE_Y><FOV_X>0.5</FOV_X><FOV_Y>0.5</FOV_Y></GENERAL></xml>' >index.xml
 	zip -q s.plux index.xml LAYER_0.raw
 	surfunzip s.plux >b.nrrd
-	is "plux with a missing sample" "$(heights b.nrrd) $(list dx b.nrrd)" "1e-06 nan 5e-07"
+	is "plux with a missing sample is read" "$(heights b.nrrd) $(list dx b.nrrd)" "1e-06 nan 5e-07"
 	fails "a container is named to surfimport's user" 1 'surfunzip reads .x3p' surfimport s.plux
 	fails "what is no container" 1 'is no zip container' surfunzip tab.txt
 	zip -q other.zip tab.txt
@@ -177,23 +177,23 @@ if command -v unzip >/dev/null && command -v xmllint >/dev/null && command -v zi
 	fails "no file" 2 'want a file' surfunzip
 	fails "an option that is none" 2 'no such option' surfunzip --nothing x
 else
-	skip "surfunzip" "no unzip, xmllint or zip"
+	skip "surfunzip can be tested" "no unzip, xmllint or zip"
 fi
 
 # Real files, where they are.
 data=$top/../shared/data/formats
 if [ -e "$data/sur-3.sur" ]; then
 	surfimport "$data/sur-3.sur" >b.nrrd
-	is "a .sur of an instrument" "$(list nx b.nrrd) $(list ny b.nrrd) $(list dx b.nrrd | cut -c 1-9)" "512 512 0.0002955"
+	is "a .sur of an instrument is read" "$(list nx b.nrrd) $(list ny b.nrrd) $(list dx b.nrrd | cut -c 1-9)" "512 512 0.0002955"
 	surfimport "$data/sdf-1.sdf" >b.nrrd
-	is "a softgauge in SDF" "$(list nx b.nrrd) $(list ny b.nrrd) $(list max b.nrrd)" "7 4 1e-06"
+	is "a softgauge in SDF is read" "$(list nx b.nrrd) $(list ny b.nrrd) $(list max b.nrrd)" "7 4 1e-06"
 	for k in 2 3; do
 		surfimport --profile "$data/csv-$k.csv" >b.nrrd
-		is "profile $k of an instrument, units from its headings" \
+		is "profile $k of an instrument is read with the units of its headings" \
 			"$(list nx b.nrrd) $(list dx b.nrrd | cut -c 1-6) $(list max b.nrrd | cut -c 1-7)" "8 8.3333 -1.4274"
 	done
 else
-	skip "files of instruments" "no ../shared/data/formats"
+	skip "files of instruments can be tested" "no ../shared/data/formats"
 fi
 
 fails "no spacing" 1 'specify --pixel' surfimport --height-unit 1m tab.txt

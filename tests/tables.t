@@ -7,24 +7,24 @@ read_series() {
 	aopf "$@" >out 2>err && column t out | tr '\n' ' ' && column y out | tr '\n' ' '
 }
 printf 't\ty\n0\t1\n1\t2\n2\t4\n' >plain
-is 'a table' "$(read_series plain)" '0 1 2 1 2 4 '
+is 'a table is read' "$(read_series plain)" '0 1 2 1 2 4 '
 printf '# key: value\n# more\nextra\ty\tt\nx\t1\t0\n\nx\t2\t1\nx\t4\t2\n' >shuffled
-is 'columns by name, others and empty lines passed over' "$(read_series shuffled)" '0 1 2 1 2 4 '
+is 'columns are found by name; other columns and empty lines are ignored' "$(read_series shuffled)" '0 1 2 1 2 4 '
 printf 't y\n0  1\n1 2 \n2 4\n' >blanks
-is 'cells parted by blanks' "$(read_series blanks)" '0 1 2 1 2 4 '
+is 'cells separated by blanks are read' "$(read_series blanks)" '0 1 2 1 2 4 '
 printf '# columns: t\ty\n0\t1\n1\t2\n2\t4\n' >bare
-is 'names from a comment where there is no header' "$(read_series bare)" '0 1 2 1 2 4 '
+is 'names are read from a comment if there is no header' "$(read_series bare)" '0 1 2 1 2 4 '
 printf 't\ty\r\n0\t1\r\n1\t2\r\n2\t4\r\n' >dos
-is 'lines that end as on DOS' "$(read_series dos)" '0 1 2 1 2 4 '
+is 'lines with DOS endings are read' "$(read_series dos)" '0 1 2 1 2 4 '
 { cat plain; printf '# cmd: other\nt\ty\n3\t5\n'; } >two
-is 'a table behind a table' "$(read_series two)" '0 1 2 3 1 2 4 5 '
+is 'a table after a table is read' "$(read_series two)" '0 1 2 3 1 2 4 5 '
 printf '1\n2\n1\n3\n1\n' | aopf >out
-is 'rows equal to the first where there is no header' "$(column y out | tr '\n' ' ')" '1 2 1 3 1 '
-is 'at their times' "$(column t out | tr '\n' ' ')" '0 1 2 3 4 '
+is 'rows equal to the first are kept if there is no header' "$(column y out | tr '\n' ' ')" '1 2 1 3 1 '
+is 'rows equal to the first keep their times' "$(column t out | tr '\n' ' ')" '0 1 2 3 4 '
 printf '\357\273\277y\tt\n1\t0\n2\t1\n4\t2\n' >marked
-is 'a byte order mark is passed over' "$(read_series marked)" '0 1 2 1 2 4 '
+is 'a byte order mark is ignored' "$(read_series marked)" '0 1 2 1 2 4 '
 printf 't\ty\n0\t1\n1\tnan\n2\tNA\n3\t\n4\t4\n' >missing
-is 'three spellings of a missing value' "$(read_series missing)" '0 1 2 3 4 1 nan nan nan 4 '
+is 'three spellings of a missing value are read' "$(read_series missing)" '0 1 2 3 4 1 nan nan nan 4 '
 
 fails 'y beside others, without t, is no series' 1 "no column 't'" sh -c "printf 'x\ty\n0\t1\n' | aopf"
 refuse() {

@@ -15,6 +15,6 @@ for page in "$top"/doc/tutorials/*.md; do
 	else
 		fail "every command of the tutorial '$name' runs" "$(tail -5 err)"
 	fi
-	is "and none of '$name' warns" "$(cat err)" ''
+	is "the commands of the tutorial $name give no warning" "$(cat err)" ''
 done
 done_testing

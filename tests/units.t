@@ -4,7 +4,7 @@
 
 # told FILE: the number of units is that of the columns
 told() {
-	is "$1 tells its units" "$(awk -F '\t' '/^# units: / { sub("^# units: ", ""); n = split($0, unit, " "); next }
+	is "$1 states its units" "$(awk -F '\t' '/^# units: / { sub("^# units: ", ""); n = split($0, unit, " "); next }
 		!/^#/ { print n == NF ? "all" : n " of " NF; exit }' "$1")" all
 }
 
@@ -31,11 +31,11 @@ done
 
 # What people see: four digits, units, comments but no commands.
 records --pretty life.tsv >shown
-is "units stand in the header" "$(grep -c 't \[s\] *mean \[s\] *q05 \[s\].* p_no_failure$' shown)" 1
-is "numbers have four digits" "$(awk 'END { print $3 }' shown)" \
+is "--pretty shows units in the header" "$(grep -c 't \[s\] *mean \[s\] *q05 \[s\].* p_no_failure$' shown)" 1
+is "--pretty shows four digits" "$(awk 'END { print $3 }' shown)" \
 	"$(awk -F '\t' '/^[0-9]/ { printf "%.4g", $3 }' life.tsv)"
-is "what was assumed is shown, the command is not" "$(grep -c '^assumed: ' shown) $(grep -c cmd shown)" "1 0"
-is "columns are aligned" "$(records --pretty summary.tsv | awk '!/:/ { print length }' | sort -u | wc -l)" 1
-is "text stays" "$(records --pretty fits.tsv | awk '$1 == "weibull_scale" { print $NF }')" m
+is "--pretty shows assumptions but not the command" "$(grep -c '^assumed: ' shown) $(grep -c cmd shown)" "1 0"
+is "--pretty aligns columns" "$(records --pretty summary.tsv | awk '!/:/ { print length }' | sort -u | wc -l)" 1
+is "--pretty keeps text" "$(records --pretty fits.tsv | awk '$1 == "weibull_scale" { print $NF }')" m
 fails "a field is no table" 1 'contact.nrrd: this is a field' records --pretty contact.nrrd
 done_testing

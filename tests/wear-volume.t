@@ -15,25 +15,25 @@ wear-volume --stats stats crowd.tsv >volume.tsv 2>err
 is 'an unresolved row counts as its sources' "$(spheres volume.tsv)" "1.000000 2.000000 42.000000 42.000000 43.000000 "
 is 'a row without a diameter is reported' "$(head -n 1 err)" \
 	"wear-volume: crowd.tsv: rows ignored because they have no diameter: 1"
-is 'the counters tell what was counted' \
+is 'the counters state what was counted' \
 	"$(column particles stats) $(column particles_without_diameter stats) $(column rows_unresolved stats)" "9 1 3"
 is 'the units are those of a state' "$(sed -n 's/^# units: //p' volume.tsv)" 's m3'
 wear-volume --period 2s --time-scale 3600 crowd.tsv >volume.tsv 2>err
-is 'the period and the scale of time' "$(column t volume.tsv | tr '\n' ' ')$(spheres volume.tsv)" \
+is 'period and time scale determine the times' "$(column t volume.tsv | tr '\n' ' ')$(spheres volume.tsv)" \
 	"7200 14400 2.000000 42.000000 "
-ok 'the table has its end' records --check volume.tsv
+ok 'the table has its end mark' records --check volume.tsv
 
 printf 'time1\tdiameter\tverdict\n0.5\t1e-3\talone\n0.6\t1e-3\tmisfit\n1.5\t1e-3\talone\n' >doubt.tsv
 wear-volume doubt.tsv >volume.tsv 2>err
-is 'a row that is not believed is left out' "$(spheres volume.tsv)" "1.000000 "
-like 'and reported' "$(cat err)" '^wear-volume: 1 rows are doubtful by their verdict and left out'
+is 'a doubtful row is left out' "$(spheres volume.tsv)" "1.000000 "
+like 'a doubtful row is reported' "$(cat err)" '^wear-volume: 1 rows are doubtful by their verdict and left out'
 wear-volume --doubtful doubt.tsv >volume.tsv 2>err
-is '--doubtful counts it' "$(spheres volume.tsv)$(cat err)" "2.000000 "
+is '--doubtful counts a doubtful row' "$(spheres volume.tsv)$(cat err)" "2.000000 "
 
 # A thousand particles that tell no verdict, against awk
 awk 'BEGIN { print "t\tdiameter"; for (i = 0; i < 1000; i++) print i / 7 "\t" (1 + i % 13) * 1e-5 }' >many.tsv
 wear-volume --period 10s many.tsv >volume.tsv
-near 'the sum is that of awk' "$(column y volume.tsv | tail -n 1)" \
+near 'the sum equals that of awk' "$(column y volume.tsv | tail -n 1)" \
 	"$(awk '$1 < 140 { s += $2 ^ 3 } END { printf "%.15g", s * 0.52359877559829887 }' many.tsv)" 1e-22
 
 # A live pipe gets each row as soon as it is known.
@@ -47,7 +47,7 @@ until [ "$(grep -c '^1' live.tsv)" = 1 ] || [ $i = 100 ]; do
 	sleep 0.1
 	i=$((i + 1))
 done
-is 'a row is there before the input ends' "$(spheres live.tsv)" "1.000000 "
+is 'a row is written before the input ends' "$(spheres live.tsv)" "1.000000 "
 exec 8>&-
 wait $pid
 
@@ -68,8 +68,8 @@ fails 'a table without diameters is refused' 1 "no column 'diameter'" wear-volum
 sensorsim --number 20 --uniform 100um:200um --duration 2s --noise 1mV --truth truth >signal
 records --check truth >/dev/null && head -c -40 truth >cut
 wear-volume cut >out 2>err
-is 'a table that is cut off is refused' "$? $(wc -l <err)" '1 1'
+is 'a truncated table is refused' "$? $(wc -l <err)" '1 1'
 wear-volume truth >volume
 records --replay volume >again 2>err
-same 'the pipeline in the table rebuilds it' volume again
+same 'the recorded pipeline reproduces the table' volume again
 done_testing

@@ -3,7 +3,7 @@
 . "$(dirname "$0")/tap.sh"
 
 if ! command -v gnuplot >/dev/null; then
-	skip 'all of wearplot' 'no gnuplot'
+	skip 'wearplot can be tested' 'no gnuplot'
 	done_testing
 fi
 # picture NAME PATTERN OPTION...: an SVG whose text matches
@@ -28,7 +28,7 @@ sensorsim --uniform 50um:150um --number 20 --duration 2s --truth truth.tsv >sign
 picture 'a signal has a trace for every channel' 'channel 1.*channel 2' signal.au
 picture 'particles are marked' 'particles' --found truth.tsv --from=0.5 --to=0.6 signal.au
 wearplot --from 0.5 --to 0.6 --output a.png signal.au
-is 'a name that ends in .png makes a PNG' "$(head -c 4 a.png | tail -c 3)" PNG
+is 'a name that ends in .png gives a PNG' "$(head -c 4 a.png | tail -c 3)" PNG
 
 # No pulse of one frame is lost in the envelope of a long record.
 perl -e 'print ".snd", pack("N5", 24, 0xffffffff, 7, 10000, 1);
@@ -63,5 +63,5 @@ fails 'an unknown option' 2 'no such option' wearplot --colour contact.nrrd
 fails 'a time that is no number' 2 'from abc: want a number' wearplot --from abc signal.au
 fails 'a stretch of no length' 2 'want a time after' wearplot --from 1 --to 1 signal.au
 fails 'a record that ends before' 1 'ends before' wearplot --from 100 signal.au
-is 'the version' "$(wearplot -V)" "wearplot (wearpipe) $(sed -n 's/^VERSION = //p' "$top/Makefile")"
+is '--version states the version' "$(wearplot -V)" "wearplot (wearpipe) $(sed -n 's/^VERSION = //p' "$top/Makefile")"
 done_testing

@@ -12,12 +12,12 @@ watch() {
 		--no-pictures "$@"
 }
 watch --state whole hours.au 2>said
-is 'a sound record is worked off without a doubt' "$? $(cat said)" '0 '
-is 'all chunks have a row' "$(column chunk whole/chunks.tsv | tr '\n' ' ')" '0 1 2 3 4 5 '
-near 'as many particles are found as there were' "$(grep -c '^[0-9]' whole/particles.tsv)" "$(grep -c '^[0-9]' truth.tsv)" 0
-near 'the volume is that of the particles put in, within 2 %' "$(column volume whole/chunks.tsv | tail -1 | awk '{ print $1 * 1e12 }')" \
+is 'a sound record is processed without a warning' "$? $(cat said)" '0 '
+is 'every chunk has a row' "$(column chunk whole/chunks.tsv | tr '\n' ' ')" '0 1 2 3 4 5 '
+near 'as many particles are found as were simulated' "$(grep -c '^[0-9]' whole/particles.tsv)" "$(grep -c '^[0-9]' truth.tsv)" 0
+near 'the volume is that of the simulated particles within 2 %' "$(column volume whole/chunks.tsv | tail -1 | awk '{ print $1 * 1e12 }')" \
 	"$(column diameter truth.tsv | awk '{ v += 0.5235987756 * $1 ^ 3 } END { print v * 1e12 }')" 1
-near 'rates are per hour of running' "$(column per_hour whole/chunks.tsv | tail -1)" \
+near 'rates are per hour of operation' "$(column per_hour whole/chunks.tsv | tail -1)" \
 	"$(column time1 truth.tsv | awk '$1 >= 5' | wc -l | tr -d ' ')" 0.5
 is 'counts by size add up' "$(sed -n '/Sizes/,/<main>/s/.*<td>[0-9]*<\/td><td>[0-9]*<\/td><td>\([0-9]*\)<.*/\1/p;
 	/Sizes/,/<main>/s/.*<td>100<\/td><td><\/td><td>\([0-9]*\)<.*/\1/p' whole/index.html |
@@ -50,25 +50,25 @@ if command -v setsid >/dev/null; then
 	printf '3\t10800' >>cut/chunks.tsv
 	printf '1\t2\t3\n' >>cut/particles.tsv
 	watch --state cut <after.au 2>said
-	like 'a row that was cut off is said' "$(cat said)" 'the last row was cut off'
-	same 'after a power cut and with what came later all rows are as if it had not been' cut/chunks.tsv whole/chunks.tsv
-	same 'those of the particles, too' cut/particles.tsv whole/particles.tsv
+	like 'a truncated row is reported' "$(cat said)" 'the last row was cut off'
+	same 'after a power failure all rows are those of an uninterrupted run' cut/chunks.tsv whole/chunks.tsv
+	same 'after a power failure all particles are those of an uninterrupted run' cut/particles.tsv whole/particles.tsv
 else
-	skip 'a power cut' 'no setsid'
+	skip 'a power failure can be tested' 'no setsid'
 fi
 
 # Sensor 1 is clipped in one hour; an alarm by rate is raised, told once and cleared.
 sigconvert --output text hours.au | awk -F '\t' -v OFS='\t' '/^[0-9]/ && $1 >= 2 && $1 < 3 && $2 > 0.3 { $2 = 0.3 }
 	/^[0-9]/ && $1 < 4 { print } !/^[0-9]/ { print }' | sigconvert --from text >clipped.au
 watch --state clipped --alarm-rate 7:2 --on-alarm 'echo "$WEARWATCH_ALARM" >>told' clipped.au 2>said
-is 'an alarm stands at the end' $? 4
-is 'its command is called once' "$(cat told)" 'rate '
-like 'what is clipped is said' "$(cat said)" 'channel 1 is clipped'
-is 'in its hour alone' "$(column doubts clipped/chunks.tsv | sed 's/:.*//; s/,.*//' | tr '\n' ' ')" '- - clipped1 - '
-like 'and stands on the page' "$(cat clipped/index.html)" 'channel 1 is clipped in [0-9]* samples'
-like 'as the alarm does' "$(cat clipped/index.html)" 'Alarm: particles per hour'
-like 'which renews itself' "$(cat clipped/index.html)" 'http-equiv="refresh"'
-is 'without a link to elsewhere' "$(grep -cE '(src|href)="?[a-z]*:' clipped/index.html)" 0
+is 'an alarm is active at the end' $? 4
+is 'the command of the alarm is called once' "$(cat told)" 'rate '
+like 'clipped samples are reported' "$(cat said)" 'channel 1 is clipped'
+is 'clipped samples are reported only in their hour' "$(column doubts clipped/chunks.tsv | sed 's/:.*//; s/,.*//' | tr '\n' ' ')" '- - clipped1 - '
+like 'the page shows the clipping' "$(cat clipped/index.html)" 'channel 1 is clipped in [0-9]* samples'
+like 'the page shows the alarm' "$(cat clipped/index.html)" 'Alarm: particles per hour'
+like 'the page renews itself' "$(cat clipped/index.html)" 'http-equiv="refresh"'
+is 'the page has no external link' "$(grep -cE '(src|href)="?[a-z]*:' clipped/index.html)" 0
 
 fails 'other options for the same state' 1 'made with other options' \
 	wearwatch --state whole --chunk 2s --overlap 0.1s --scale 3600 hours.au

@@ -1,9 +1,9 @@
 /* contact.h - frictionless contact of a rough surface with a flat on a half-space
  *
  * Solves g >= 0, p >= 0, p g = 0 per cell for the gap g = K p - h - approach of two
- *elastic half-spaces with combined height h (row-major, m); with a hardness the pressure
- *stops there.  Pressure is in Pa, positive in compression.  The same bytes for any number
- *of threads; plans and memory are kept over calls.
+ * elastic half-spaces with combined height h (row-major, m); with a hardness the
+ * pressure stops there.  Pressure is in Pa, positive in compression.  The same bytes for
+ * any number of threads; plans and memory are kept over calls.
  *
  *	struct wp_contact_par par = { 32, 32, 1e-6, 1e-6, 115e9, 0, 0, 1e-8, 1 };
  *	struct wp_contact *c = wp_contact_new(&par, NULL);

@@ -15,7 +15,7 @@
  *	wp_surface_free(s);
  *
  * Spectra: Hu and Tonder, Int. J. Mach. Tools Manuf. 32 (1992) 83; parameters: ISO
- *25178-2.
+ * 25178-2.
  */
 #ifndef WEARPIPE_SURFACE_H
 #define WEARPIPE_SURFACE_H

@@ -27,7 +27,7 @@ static double ridge_integral(const struct profile *p, double u)
 	return u < 0 ? -s : s;
 }
 
-/* Length of the way that lies over the cells of column ix, all laps together. */
+/* Length of the groove over the cells of column ix, summed over all periods. */
 static double covered(const struct groove *g, double dx, int nx, int ix)
 {
 	double lap = nx * dx, laps = floor(g->length / lap),

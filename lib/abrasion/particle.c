@@ -18,7 +18,7 @@ double abrasion_squeeze(
 		x = -2 * c / (b + root);
 	else
 		x = a != 0 ? (root - b) / (2 * a) : sum / 2;
-	/* Past its middle a sphere bears on no more than its section. */
+	/* Beyond its radius the contact area of a sphere is its cross-section. */
 	if (!(x <= d / 2) || !(sum - x <= d / 2)) {
 		double soft = fmin(h1, h2), ratio = soft / fmax(h1, h2);
 		/* depth in the harder body: c(y) = ratio d^2 / 4 */
@@ -53,7 +53,7 @@ double abrasion_largest(double friction, double radius, double gap)
 	return isinf(radius) ? INFINITY : gap * (1 + square) + 2 * square * radius;
 }
 
-/* Adds the groove of a particle that slides on one body, for a share of the way. */
+/* Adds the groove of a particle that slides on one body, for a share of the distance. */
 static void slide_on(const struct abrasion_par *par, double d, int body, double share,
 	struct abrasion *a)
 {
@@ -93,7 +93,7 @@ static int rolls(const struct abrasion_par *par, double aspect)
 	return aspect <= mu + sqrt(1 + mu * mu);
 }
 
-/* A particle that is too soft for one of the bodies lies flat on it. */
+/* A particle that is too soft for one of the bodies does not indent it. */
 static void press_into(
 	const struct abrasion_par *par, double d, int body, struct abrasion *a)
 {

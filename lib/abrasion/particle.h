@@ -6,10 +6,10 @@
  *	H1 c(x) = H2 c(y) = F / pi,   c(x) = d x - x^2 below d / 2, d^2 / 4 above,
  *
  * for pi c(x) is the area of the impression and a body's hardness is the pressure in it.
- * Where the particle slides on a body only its front half bears on that body, and the
- * hardness counts half.  It is held by the softer body and slides on the harder one,
- *where the groove resists less (H times its section; so wherever neither body would be
- *grooved deeper than the radius), and on both half the way where they are equally hard.
+ * On a body on which the particle slides, only its front half carries load, and half of
+ * the hardness is used.  It is held by the softer body and slides on the harder one,
+ * where the groove resists less (H times its section; so wherever neither body would be
+ * grooved deeper than the radius), and on both half the way where they are equally hard.
  *
  * Whether it slides or rolls is told by its shape, a spheroid of the given aspect ratio
  * k: on its way round the lines of the two normal forces come up to (k - 1/k) / 2 gaps
@@ -50,9 +50,9 @@ enum abrasion_mode {
 
 struct abrasion {
 	enum abrasion_mode mode;
-	double load;       /* N; nan where the particle yields */
-	double depth[2];   /* in either body, m; nan where the particle yields */
-	double section[2]; /* of the grooves, m2: volume per length slid; nan where not
+	double load;       /* N; nan if the particle yields */
+	double depth[2];   /* in either body, m; nan if the particle yields */
+	double section[2]; /* of the grooves, m2: volume per length slid; nan if not
 			    * described */
 };
 
@@ -71,14 +71,14 @@ double abrasion_squeeze(
 double abrasion_section(double d, double depth);
 
 /* The largest sphere that friction draws between a ball of radius R and a flat a gap h
- * apart: tan of half the angle between the faces is the coefficient. */
+ * apart: tan of half the angle between the surfaces equals the coefficient. */
 double abrasion_largest(double friction, double radius, double gap);
 
-/* Gap at which n particles carry a load together, aspect NULL for spheres: the one below
- * which they carry more.  *carried is what they carry there, which may differ from the
- * load where the way they move changes at that gap.  NAN where they cannot carry it at
- * any gap; *carried is the most they can.  The gap of par is not used. *evaluations
- * counts particles. */
+/* Gap at which n particles together carry a load (at smaller gaps they carry more);
+ * aspect is NULL for spheres.  *carried is the load they carry at this gap; it differs
+ * from the given load if particles change between rolling and grooving there.  NAN if
+ * they cannot carry it at any gap; *carried is the most they can.  The gap of par is not
+ * used. *evaluations counts particles. */
 double abrasion_gap(const struct abrasion_par *par, const double *diameter,
 	const double *aspect, long n, double load, double *carried, double *evaluations);
 

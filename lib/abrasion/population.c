@@ -1,6 +1,7 @@
 #include "abrasion/population.h"
 #include "num/philox.h"
 #include "num/room.h"
+#include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -33,7 +34,7 @@ double population_diameter(const struct population *p, double n)
 	return s > 0 ? p->diameter[k] * pow(all / p->number[k], -1 / s) : p->diameter[k];
 }
 
-int population_draw(const struct population *p, double volume, double least,
+enum num_status population_draw(const struct population *p, double volume, double least,
 	uint64_t seed, uint32_t realisation, size_t most, double **list, size_t *n)
 {
 	double all, sum = 0;
@@ -43,15 +44,15 @@ int population_draw(const struct population *p, double volume, double least,
 	*n = 0;
 	all = volume * population_larger(p, fmax(least, p->diameter[0]));
 	if (all > (double)most)
-		return -1;
+		return NUM_DOMAIN;
 	for (;;) {
 		sum -= log(philox_uniform(seed, realisation, RNG_ABRASION, *n));
 		if (!(sum < all))
-			return 0;
+			return NUM_OK;
 		if (*n == most || room_for(list, &room, *n + 1, sizeof **list)) {
 			free(*list);
 			*list = NULL;
-			return -1;
+			return *n == most ? NUM_DOMAIN : NUM_MEMORY;
 		}
 		(*list)[(*n)++] = population_diameter(p, sum / volume);
 	}

@@ -1,8 +1,8 @@
 /* population.h - the particles of an oil whose cleanliness code is known
  *
  * The number of particles larger than d per volume, N(d), is known at three diameters;
- * between them and beyond the last ln N is linear in ln d.  What is smaller than the
- *first is not told and left out; what is larger than largest is not there.
+ * between them and beyond the last ln N is linear in ln d.  Particles smaller than the
+ * first size are not specified and are left out; there are none larger than largest.
  *
  *	struct population p = { { 4e-6, 6e-6, 14e-6 }, { 2.5e9, 6.4e8, 8e7 }, 70e-6 };
  *	population_draw(&p, volume, 1e-6, seed, 0, &list, &n);
@@ -11,6 +11,7 @@
 #define ABRASION_POPULATION_H
 
 #include "abrasion/particle.h"
+#include "num/status.h"
 #include <stddef.h>
 #include <stdint.h>
 
@@ -27,8 +28,8 @@ double population_larger(const struct population *p, double d);
 double population_diameter(const struct population *p, double n);
 
 /* Particles above least in a volume at random, the largest first: a Poisson process
- * in N.  Fresh memory in *list.  -1 when out of memory or beyond most particles. */
-int population_draw(const struct population *p, double volume, double least,
+ * in N.  Fresh memory in *list.  NUM_DOMAIN beyond most particles. */
+enum num_status population_draw(const struct population *p, double volume, double least,
 	uint64_t seed, uint32_t realisation, size_t most, double **list, size_t *n);
 
 /* What the particles in the gap do on average, spheres as many in the gap's volume as in
@@ -43,7 +44,7 @@ struct population_mean {
 void population_mean(const struct population *p, const struct abrasion_par *par, size_t n,
 	struct population_mean *m);
 
-/* The widest gap at which they carry a pressure; NAN where they carry it at none, *most
+/* The widest gap at which they carry a pressure; NAN if they carry it at none, *most
  * is what they carry at most.  The gap of par is not used. */
 double population_gap(const struct population *p, const struct abrasion_par *par,
 	double pressure, size_t n, double *most);

@@ -25,7 +25,7 @@ extern int verbose;
 
 _Noreturn void die(int status, const char *format, ...)
 	__attribute__((format(printf, 2, 3)));
-/* Prints one line and goes on; for what the user must know but can live with. */
+/* Prints one line and continues; for warnings. */
 void warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Prints one line when -v was given. */
 void note(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -102,7 +102,7 @@ static const char *unit_shown(enum unit unit)
 	return unit == UNIT_FRACTION ? "" : unit_name(unit);
 }
 
-/* A value that could not be given says that there is none, and is not shown. */
+/* An initial value outside the allowed range means that there is no default. */
 static void print_default(const struct opt *o)
 {
 	char text[NUMBER_TEXT];
@@ -240,7 +240,7 @@ static void check_operand(const char *text)
 	free(one);
 }
 
-/* A whole number; one that is written in digits may have more of them than a double. */
+/* An integer; in plain digits it may exceed the precision of a double. */
 static long parse_whole(const struct opt *o, const char *text)
 {
 	const double exact = 9007199254740992; /* 2^53 */
@@ -268,8 +268,8 @@ static int count(const char *text, const char *end, char c)
 	return n;
 }
 
-/* A list has the members that its placeholder shows; those in brackets may be left out,
- * and "..." stands for any number. */
+/* A list has the members shown in its placeholder; those in brackets are optional, and
+ * "..." means any number. */
 static void check_members(const struct opt *o, const char *text)
 {
 	const char *end = o->arg + strlen(o->arg), *optional = strchr(o->arg, '[');
@@ -410,8 +410,8 @@ static void record(const struct opt *o, const char *text)
 		append_word(&recorded, text);
 }
 
-/* Takes in the rows of a table and of those it contains.  A letter or word that stands
- * for two options, or too many rows, is an error of the program. */
+/* Takes in the rows of a table and of those it contains.  Two options with the same
+ * letter or word, or too many rows, are a programming error. */
 static void gather(const struct opt *table)
 {
 	for (const struct opt *o = table; o->word; o++) {
@@ -480,7 +480,8 @@ static void check_operands(int argc, char **argv)
 	if (argc - optind > most)
 		die(EXIT_USAGE, "%s: %s", argv[optind + most],
 			most ? "one file at most" : "takes no file");
-	/* Someone typed the bare name: say what it is rather than wait in silence. */
+	/* Called without arguments on a terminal: print a hint instead of waiting for
+	 * input. */
 	if (argc == 1 && *prog->operands && strncmp(prog->reads, "nothing", 7) != 0 &&
 		isatty(STDIN_FILENO))
 		die(EXIT_USAGE,

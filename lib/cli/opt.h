@@ -26,12 +26,12 @@ enum opt_kind {
 	OPT_FLAG,   /* int: set to 1 */
 	OPT_INT,    /* long; unit UNIT_COUNT */
 	OPT_NUM,    /* double */
-	OPT_LIST,   /* struct opt_list: as many numbers as arg shows, parted by one of
+	OPT_LIST,   /* struct opt_list: as many numbers as arg shows, separated by one of
 		     * ':' 'x' ','; "A:B" two, "A[:B]" one or two, "A,A,..." any */
 	OPT_TEXT,   /* const char *: a file or free text */
 	OPT_TEXTS,  /* struct opt_texts: may be repeated */
 	OPT_WORD,   /* int: index into words */
-	OPT_WORDS,  /* int: words parted by commas, bit k for words[k] */
+	OPT_WORDS,  /* int: words separated by commas, bit k for words[k] */
 	OPT_CHOICE, /* struct opt_choice: one of words, or a number */
 	OPT_ROWS,   /* struct opt []: a further table in this place; letter 0, word "" */
 	OPT_GROUP   /* no option: word is a heading of --help for the rows that follow */

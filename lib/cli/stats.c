@@ -56,8 +56,8 @@ static double seconds(struct timeval t)
 	return (double)t.tv_sec + 1e-6 * (double)t.tv_usec;
 }
 
-/* Peak memory of this program in kB: ru_maxrss is that of whoever ran it, where that was
- * more; it serves where the system does not tell better. */
+/* Peak memory of this program in kB: ru_maxrss may be that of the parent process; it is
+ * used only if the system offers nothing better. */
 static long peak_memory(const struct rusage *use)
 {
 	FILE *f = fopen("/proc/self/status", "r");

@@ -13,7 +13,7 @@ void stats_max(const char *name, double value);  /* keeps the largest value */
 
 /* For opt_parse() and shell_done() only. */
 void stats_start(void);
-void stats_open(const char *path); /* before the work, lest it be done in vain */
+void stats_open(const char *path); /* before the work, to detect errors early */
 void stats_write(const char *program);
 
 #endif

@@ -1,4 +1,4 @@
-/* text.h - strings that grow, and text from outside made fit for a line of output
+/* text.h - growing strings, and escaping of text from outside for a line of output
  *
  *	struct text t = { 0 };
  *	text_add(&t, "%d of %d", 3, 4);

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Spellings of every unit.  power: the exponent a prefix is raised to; 0 where no
- * prefix may stand before the unit. */
+/* Spellings of every unit. power: exponent to which a prefix is raised; 0 if the unit
+ * takes no prefix. */
 static const struct spelling {
 	enum unit unit;
 	const char *text;
@@ -74,7 +74,7 @@ const char *unit_name(enum unit unit)
 	return "";
 }
 
-/* Scale of a suffix of the given length, or 0 where it does not suit the unit. */
+/* Scale of a suffix of the given length, or 0 if it does not suit the unit. */
 static double suffix_scale(const char *text, size_t length, enum unit unit)
 {
 	for (size_t i = 0; i < NSPELLINGS; i++) {

@@ -1,9 +1,9 @@
 /* unit.h - numbers with units: "7.8um", "21MPa", "60L/min", "1186h"
  *
  * A bare number is SI.  A suffix is an optional prefix (f p n u m c k M G T; also
- * the micro sign) and a unit that must suit the quantity; a prefix on its own is
- * refused, so that metre and milli never meet.  Powers carry the prefix along:
- * mm3 is (1e-3 m)^3.  nan, inf and trailing junk are refused.
+ * the micro sign) and a unit of the quantity; a prefix without a unit is refused, because
+ * m could mean metre or milli.  Powers carry the prefix along: mm3 is (1e-3 m)^3.  nan,
+ * inf and trailing junk are refused.
  */
 #ifndef CLI_UNIT_H
 #define CLI_UNIT_H

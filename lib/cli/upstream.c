@@ -6,12 +6,12 @@
 
 /* The realisations that a pipeline makes. */
 struct numbers {
-	const char *at;    /* " --first A --count B" in it; NULL where there is none */
-	const char *after; /* ... and what follows */
+	const char *at;         /* " --first A --count B" in it; NULL if there is none */
+	const char *after;      /* ... and what follows */
 	long long first, count; /* A and B */
 };
 
-/* A whole number of at most 17 digits behind word, which cmd begins with; NULL for none.
+/* An integer of at most 17 digits after word, with which cmd begins; NULL for none.
  */
 static const char *read_number(const char *cmd, const char *word, long long *number)
 {

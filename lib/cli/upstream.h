@@ -6,16 +6,15 @@
  *	upstream_cmd(&u);       "a --first 0 --count 2 | b"
  *
  * A program that makes realisations records which ones as --first and --count side by
- * side; parts whose realisations follow one another become one.  Pipelines that differ in
- * anything else stand in a group, "{ a; b; }", whose output is the parts as cat joins
- * them.
+ * side; parts whose realisations follow one another become one.  Pipelines that differ
+ * in anything else form a group, "{ a; b; }", whose output is that of cat.
  */
 #ifndef CLI_UPSTREAM_H
 #define CLI_UPSTREAM_H
 
 /* Pipelines that differ in the realisations alone. */
 struct upstream_run {
-	char *before, *after; /* of the numbers; after is NULL where there are none */
+	char *before, *after; /* of the numbers; after is NULL if there are none */
 	long long first, count;
 };
 

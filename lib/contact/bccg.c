@@ -19,6 +19,7 @@
 #include "contact/gradient.h"
 #include "num/fft.h"
 #include "num/lanes.h"
+#include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -27,7 +28,7 @@
  * more. */
 static const double drift_limit = 0.02;
 /* Of the step, in the same.  On those scenes 0.003 to 0.1 take 11 to 14 iterations alike;
- * each tenth costs about one more sweep over the cells per step. */
+ * each factor of ten takes about one more sweep over the cells per step. */
 static const double load_slack = 0.03;
 
 struct box {
@@ -48,7 +49,8 @@ static double stiffness(const void *context, size_t kx, size_t ky)
 	return 1 / b->body->wave(b->body->context, q);
 }
 
-int contact_make_preconditioner(struct contact *c, const struct contact *lender)
+enum num_status contact_make_preconditioner(
+	struct contact *c, const struct contact *lender)
 {
 	const struct convolve *scratch = lender ? lender->periodic : c->plane;
 	struct box box = { .body = &c->body };
@@ -58,14 +60,14 @@ int contact_make_preconditioner(struct contact *c, const struct contact *lender)
 	c->periodic = convolve_borrow((size_t)c->par.nx, (size_t)c->par.ny,
 		CONVOLVE_BRIDGED, c->par.pool, scratch);
 	if (!c->periodic)
-		return -1;
+		return NUM_MEMORY;
 	memory = convolve_scratch(c->periodic, &room);
 	c->extension =
 		extension_new(&c->par, lender ? lender->extension : NULL, memory, room);
 	c->inverse = convolve_alloc(c->periodic);
 	c->active = malloc(c->n);
 	if (!c->extension || !c->inverse || !c->active)
-		return -1;
+		return NUM_MEMORY;
 	convolve_size(c->periodic, &mx, &my);
 	box.lx = (double)mx * c->par.dx;
 	box.ly = (double)my * c->par.dy;
@@ -107,8 +109,8 @@ static inline lane_mask are_free(const struct contact *c, lanes p)
 		cells(c, i, 1, &t);                                         \
 	add_pass(s, &t)
 
-/* The residual of the active cells, which are free or whose gap says that they should be,
- * and the sums of contact_certify(). */
+/* The residual of the active cells, which are free or should become free because of their
+ * gap, and the sums of contact_certify(). */
 static inline void set_cells(const struct contact *c, size_t i, int n, struct pass *t)
 {
 	lanes p = lanes_load(c->p + i, n);
@@ -223,14 +225,14 @@ static void take_step(void *context, size_t begin, size_t end, struct sweep *s)
 
 /* What an iteration hands to the next. */
 struct state {
-	double sum;       /* of the pressures */
-	double curvature; /* step times image; 0: nothing to be conjugate to */
-	double drift;     /* how far gap and pressure are apart, as a sum of pressures */
-	double moved;     /* sum of the last step; 0: it led nowhere */
-	double bounded;   /* cells that the step takes to a bound */
+	double sum;         /* of the pressures */
+	double curvature;   /* step times image; 0: nothing to be conjugate to */
+	double drift;       /* mismatch of gap and pressure, as a sum of pressures */
+	double moved;       /* sum of the last step; 0: it led nowhere */
+	double bounded;     /* cells that the step takes to a bound */
 	int plain, retreat; /* steps along the gradient to go; last time */
 	int forced;         /* the step is to restore the load, whatever the energy */
-	int crowded;        /* the active cells cannot bear more, or less */
+	int crowded;        /* the active cells cannot carry more, or less */
 	int exact;          /* gap and load have just been computed */
 };
 
@@ -281,7 +283,7 @@ static void follow_step(struct contact *c, struct state *state, double slope)
 		state->curvature = 0;
 		return;
 	}
-	/* Far beyond a bounded step lies something else than what it was made for. */
+	/* The prediction is not valid far beyond a bounded step. */
 	c->stretch = fmin(-slope / state->curvature, state->bounded > 0 ? 2 : 10);
 	if (state->forced)
 		c->stretch = 1;
@@ -300,7 +302,7 @@ static void follow_step(struct contact *c, struct state *state, double slope)
 		contact_find_approach(c);
 }
 
-/* The gap from the pressure, once what the load is short of has been put right. */
+/* The gap from the pressure, after correction of the load. */
 static void renew_gap(struct contact *c, struct state *state)
 {
 	state->exact = 1;

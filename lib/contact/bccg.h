@@ -3,8 +3,10 @@
 #define CONTACT_BCCG_H
 
 #include "contact/state.h"
+#include "num/status.h"
 
-int contact_make_preconditioner(struct contact *c, const struct contact *lender);
+enum num_status contact_make_preconditioner(
+	struct contact *c, const struct contact *lender);
 enum contact_status contact_solve_bccg(struct contact *c);
 
 #endif

@@ -3,6 +3,7 @@
 #include "num/convolve.h"
 #include "num/fft.h"
 #include "num/lanes.h"
+#include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,23 +49,23 @@ static double wave_number(const void *context, size_t kx, size_t ky)
 	       hypot((double)kx / (par->nx * par->dx), (double)ky / (par->ny * par->dy));
 }
 
-static int make_coarsest(struct extension *e)
+static enum num_status make_coarsest(struct extension *e)
 {
 	struct level *l = &e->level[e->levels - 1];
 
 	e->plane = convolve_new(l->nx, l->ny, CONVOLVE_PERIODIC, NULL);
 	if (!e->plane)
-		return -1;
+		return NUM_MEMORY;
 	e->stiffness = convolve_alloc(e->plane);
 	e->gradient = fft_alloc(3 * l->nx * l->ny);
 	if (!e->stiffness || !e->gradient)
-		return -1;
+		return NUM_MEMORY;
 	e->step = e->gradient + l->nx * l->ny;
 	e->image = e->step + l->nx * l->ny;
 	return convolve_spectrum(e->plane, e->stiffness, wave_number, &l->par);
 }
 
-static int make_levels(struct extension *e, double *memory, size_t room)
+static enum num_status make_levels(struct extension *e, double *memory, size_t room)
 {
 	const struct contact_par *fine = &e->par;
 	size_t cells = 0;
@@ -81,13 +82,13 @@ static int make_levels(struct extension *e, double *memory, size_t room)
 		l->ny = (size_t)l->par.ny;
 		cells += l->nx * l->ny;
 		if (transfer_make(&l->from, fine, &l->par) != 0)
-			return -1;
+			return NUM_MEMORY;
 		fine = &l->par;
 	}
 	if (2 * cells > room) {
 		memory = e->memory = fft_alloc(2 * cells);
 		if (!memory)
-			return -1;
+			return NUM_MEMORY;
 	}
 	for (int k = 0; k < e->levels; k++) {
 		struct level *l = &e->own[k];
@@ -147,7 +148,7 @@ static inline void add_cells(double *to, double w, lanes x, int n)
 	lanes_store(to, lanes_load(to, n) + w * x, n);
 }
 
-/* Adds w times a fine row of the residual, which is 0 where it is not active, and w where
+/* Adds w times a fine row of the residual, which is 0 if it is not active, and w where
  * it is. */
 static void add_residual(const struct extension *e, size_t row, double w, double *value,
 	double *weight, size_t n)

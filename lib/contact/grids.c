@@ -1,5 +1,5 @@
-/* Nested iteration: a loose solution on a grid of half as many cells each way is the
- * first guess for this one, and so on down. */
+/* Nested iteration: a rough solution on a grid of half as many cells in each direction is
+ * the initial guess, recursively. */
 #include "contact/grids.h"
 #include <math.h>
 #include <string.h>
@@ -50,7 +50,7 @@ static void square_pressure(void *context, size_t begin, size_t end, struct swee
 		p[i] *= p[i];
 }
 
-/* Bilinear in p^2, which falls to zero linearly at the rim of a contact. */
+/* Bilinear in p^2, which decreases to zero linearly at the edge of a contact. */
 static void interpolate_pressure(void *context, size_t begin, size_t end, struct sweep *s)
 {
 	struct contact *c = context;

@@ -1,4 +1,5 @@
 /* kernel.h - displacement of an elastic body under pressure on its plane surface
+ *
  * The solver accepts any struct contact_kernel in place of the half-space of a contact
  * modulus.
  *

@@ -1,5 +1,6 @@
 #include "contact/mlms.h"
 #include "num/fft.h"
+#include "num/status.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,7 +36,7 @@ struct mlms {
 };
 
 /* The coarse grid reaches order / 2 nodes beyond the fine one, so that the same weights
- * serve up to its rim. */
+ * apply up to its edge. */
 static size_t coarse_size(size_t n, int order)
 {
 	return (n - 1) / 2 + (size_t)order;
@@ -59,7 +60,8 @@ static void set_weights(struct mlms *m)
 	}
 }
 
-/* Places, relative to a cell, of the coarse nodes that stand for it, and their weights.
+/* Positions, relative to a cell, of the coarse nodes that represent it, and their
+ * weights.
  */
 struct nodes {
 	int n, place[ORDER_MAX];
@@ -104,7 +106,7 @@ static double missing(const struct mlms *m, const double *table, size_t width,
 }
 
 /* The corrections of one level; 0, or -1 when out of memory. */
-static int make_near(
+static enum num_status make_near(
 	struct mlms *m, struct level *l, kernel_value value, const void *context)
 {
 	int reach = m->reach, side = 2 * reach + 1;
@@ -114,7 +116,7 @@ static int make_near(
 	l->near = fft_alloc(4 * (size_t)side * (size_t)side);
 	if (!table || !l->near) {
 		fft_free(table);
-		return -1;
+		return NUM_MEMORY;
 	}
 	for (size_t i = 0; i < width * width; i++)
 		table[i] = value(
@@ -130,21 +132,22 @@ static int make_near(
 				l->near[out++] = missing(m, table, width, odd, dx, dy);
 			}
 	fft_free(table);
-	return 0;
+	return NUM_OK;
 }
 
-static int make_coarsest(struct level *l, kernel_value value, const void *context)
+static enum num_status make_coarsest(
+	struct level *l, kernel_value value, const void *context)
 {
 	l->near = fft_alloc(l->nx * l->ny);
 	if (!l->near)
-		return -1;
+		return NUM_MEMORY;
 	for (size_t i = 0; i < l->nx * l->ny; i++)
 		l->near[i] = value(
 			context, (i % l->nx) << l->depth_x, (i / l->nx) << l->depth_y);
-	return 0;
+	return NUM_OK;
 }
 
-static int make_levels(
+static enum num_status make_levels(
 	struct mlms *m, size_t nx, size_t ny, kernel_value value, const void *context)
 {
 	int depth_x = 0, depth_y = 0;
@@ -161,7 +164,7 @@ static int make_levels(
 			l->source = fft_alloc(nx * ny);
 			l->image = fft_alloc(nx * ny);
 			if (!l->source || !l->image)
-				return -1;
+				return NUM_MEMORY;
 		}
 		l->halve_x = worth_halving(nx, m->order);
 		l->halve_y = worth_halving(ny, m->order);
@@ -169,19 +172,19 @@ static int make_levels(
 			return make_coarsest(l, value, context);
 		l->begin = calloc(2 * ny, sizeof *l->begin);
 		if (!l->begin)
-			return -1;
+			return NUM_MEMORY;
 		l->end = l->begin + ny;
 		if (make_near(m, l, value, context) != 0)
-			return -1;
+			return NUM_MEMORY;
 		nx = l->halve_x ? coarse_size(nx, m->order) : nx;
 		l->half = fft_alloc(nx * ny);
 		if (!l->half)
-			return -1;
+			return NUM_MEMORY;
 		ny = l->halve_y ? coarse_size(ny, m->order) : ny;
 		depth_x += l->halve_x;
 		depth_y += l->halve_y;
 	}
-	return -1;
+	return NUM_MEMORY;
 }
 
 struct mlms *mlms_new(size_t nx, size_t ny, int order, int reach, kernel_value value,

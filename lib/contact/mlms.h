@@ -1,14 +1,14 @@
 /* mlms.h - multi-level multi-summation: sums of a kernel over all cells without
- *transforms
+ * transforms
  *
  * y_i = sum over j of K(i - j) x_j on a grid, where K is even, singular only at its
- *centre and smoother with distance from it.  Far from the centre K is interpolated from
- *every second cell.  Sources are therefore gathered on a grid of half as many cells in
- *each direction, and sums interpolated from it, recursively down to a few cells, which
- *are summed directly.  Within reach cells of the centre the interpolation error is
- *corrected on each level.  The work is one pass over the non-zero sources, with (2 reach
- *+ 1)^2 additions for each, and a few passes over the cells.  The error decreases with
- *order (of the interpolation) and reach.
+ * centre and smoother with distance from it.  Far from the centre K is interpolated from
+ * every second cell.  Sources are therefore gathered on a grid of half as many cells in
+ * each direction, and sums interpolated from it, recursively down to a few cells, which
+ * are summed directly.  Within reach cells of the centre the interpolation error is
+ * corrected on each level.  The work is one pass over the non-zero sources, with (2
+ * reach + 1)^2 additions for each, and a few passes over the cells.  The error decreases
+ * with order (of the interpolation) and reach.
  *
  * Brandt, Lubrecht, J. Comput. Phys. 90 (1990) 348-370; Polonsky, Keer, Wear 231 (1999)
  * 206-219.

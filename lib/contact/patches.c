@@ -1,4 +1,5 @@
 #include "contact/patches.h"
+#include "num/status.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -136,14 +137,14 @@ static int compare(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-int contact_quantiles(
+enum num_status contact_quantiles(
 	const double *pressure, size_t cells, const double *part, double *quantile, int n)
 {
 	double *sorted = malloc(cells * sizeof *sorted);
 	size_t loaded = 0;
 
 	if (!sorted)
-		return -1;
+		return NUM_MEMORY;
 	for (size_t i = 0; i < cells; i++)
 		if (pressure[i] > 0)
 			sorted[loaded++] = pressure[i];
@@ -157,5 +158,5 @@ int contact_quantiles(
 				     : NAN;
 	}
 	free(sorted);
-	return 0;
+	return NUM_OK;
 }

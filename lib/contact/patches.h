@@ -11,6 +11,7 @@
 #ifndef CONTACT_PATCHES_H
 #define CONTACT_PATCHES_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 struct patch_grid {
@@ -29,7 +30,7 @@ struct contact_patch {
 };
 
 /* Finds the patches of a pressure, in the order of their first cells.  Returns their
- * number and a new array for free(); NULL and 0 where there are none, with errno ENOMEM
+ * number and a new array for free(); NULL and 0 if there are none, with errno ENOMEM
  * when out of memory, 0 otherwise. */
 struct contact_patch *contact_patches(
 	const struct patch_grid *grid, const double *pressure, size_t *n);
@@ -39,8 +40,8 @@ double contact_corrected_area(
 	const struct patch_grid *grid, double area, double perimeter);
 
 /* Quantiles of the pressure of the cells in contact at the levels part, interpolated.
- * Returns 0, or -1 when out of memory.  nan without contact. */
-int contact_quantiles(const double *pressure, size_t cells, const double *part,
-	double *quantile, int n);
+ * nan without contact. */
+enum num_status contact_quantiles(const double *pressure, size_t cells,
+	const double *part, double *quantile, int n);
 
 #endif

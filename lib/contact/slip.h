@@ -1,9 +1,9 @@
 /* slip.h - partial slip: a tangential load below friction, after the normal one
  *
- * Bodies in contact under a normal load N that then bear a tangential load T < mu N stick
- * in one part of the contact and slip in the rest, where the shear is mu p.  For normal
- * displacements that shear does not disturb (Dundurs' beta = 0, as for equal materials)
- * and a tangential compliance in proportion to the normal one,
+ * Bodies in contact under a normal load N that then bear a tangential load T < mu N
+ * stick in one part of the contact and slip in the other, where the shear is mu p.  For
+ * normal displacements that shear does not disturb (Dundurs' beta = 0, as for equal
+ * materials) and a tangential compliance in proportion to the normal one,
  *
  *	q = mu (p - p'),   T = mu (N - N')
  *
@@ -24,7 +24,7 @@ struct slip_bodies {
 	double young[2], poisson[2];
 };
 
-/* 1 where shear does not move the bodies apart: (1 - 2 nu) / G is the same for both. */
+/* 1 if shear does not change the gap: (1 - 2 nu) / G is the same for both. */
 int slip_uncoupled(const struct slip_bodies *b);
 /* Tangential over normal compliance: E* / 4 times the sum of (2 - nu) / G (Johnson,
  * Contact Mechanics, 7.42), which is (2 - nu) / (2 (1 - nu)) for equal materials. */
@@ -39,7 +39,8 @@ struct slip_result {
 /* Shear under the mean shear stress (T over the grid, Pa, at most mu times the mean
  * pressure) on top of a pressure that was solved for on this height, without a hardness;
  * normal: what was found then.  compliance: slip_compliance().  Leaves contact_result()
- * of the pressure p'.  CONTACT_OVERLOAD: more than friction bears, nothing done. */
+ * of the pressure p'.  CONTACT_OVERLOAD: the tangential load exceeds friction, nothing
+ * done. */
 enum contact_status contact_slip(struct contact *c, const double *height,
 	const double *pressure, const struct contact_result *normal, double mu,
 	double mean_shear, double compliance, double *shear, struct slip_result *result);

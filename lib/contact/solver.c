@@ -3,6 +3,7 @@
 #include "contact/grids.h"
 #include "contact/pk.h"
 #include "num/fft.h"
+#include "num/status.h"
 #include <errno.h>
 #include <float.h>
 #include <math.h>
@@ -44,23 +45,23 @@ static int valid(const struct contact_par *par)
 	       (par->multiply == CONTACT_FFT || par->boundary == CONTACT_FREE);
 }
 
-static int make_kernel(struct contact *c, const struct contact *lender)
+static enum num_status make_kernel(struct contact *c, const struct contact *lender)
 {
 	int is_free = c->par.boundary == CONTACT_FREE;
 
 	if (c->par.multiply == CONTACT_MLMS) {
 		c->mlms = mlms_new((size_t)c->par.nx, (size_t)c->par.ny, mlms_order,
 			mlms_reach, free_kernel, c, c->par.pool);
-		return c->mlms ? 0 : -1;
+		return c->mlms ? NUM_OK : NUM_MEMORY;
 	}
 	c->plane = convolve_borrow((size_t)c->par.nx, (size_t)c->par.ny,
 		is_free ? CONVOLVE_PADDED : CONVOLVE_PERIODIC, c->par.pool,
 		lender ? lender->plane : NULL);
 	if (!c->plane)
-		return -1;
+		return NUM_MEMORY;
 	c->kernel = convolve_alloc(c->plane);
 	if (!c->kernel)
-		return -1;
+		return NUM_MEMORY;
 	if (is_free)
 		return convolve_kernel(c->plane, c->kernel, free_kernel, c);
 	return convolve_spectrum(c->plane, c->kernel, periodic_kernel, c);
@@ -72,7 +73,7 @@ static size_t padded(size_t n)
 	return (n + 7) / 8 * 8;
 }
 
-static int make_coarse(struct contact *c);
+static enum num_status make_coarse(struct contact *c);
 
 /* Room for all arrays; two coarse ones fit into the last or nearly so. */
 static size_t room(const struct contact_par *par, size_t n)
@@ -124,20 +125,21 @@ static struct contact *new_grid(
 	return c;
 }
 
-/* While the coarser grid is at work this one needs none of its own arrays, and lends
- * them: four of its arrays fit into one, or on a strip into two and a bit. */
-static int make_coarse(struct contact *c)
+/* While the coarser grid is in use this one does not need its arrays and lends them: four
+ * arrays of the coarser grid fit into one, or for elongated grids into slightly more than
+ * two. */
+static enum num_status make_coarse(struct contact *c)
 {
 	struct contact_par par;
 
 	if (!contact_can_coarsen(&c->par, &par))
-		return 0;
+		return NUM_OK;
 	c->coarse = new_grid(&par, c);
 	if (!c->coarse || transfer_make(&c->transfer, &c->par, &par) != 0)
-		return -1;
+		return NUM_MEMORY;
 	c->coarse_height = c->residual;
 	c->coarse_pressure = c->residual + padded(c->coarse->n);
-	return 0;
+	return NUM_OK;
 }
 
 struct contact *contact_new(const struct contact_par *par)
@@ -222,7 +224,7 @@ static int is_in_range(const struct contact *c, double size)
 /* Pressures need to be no better than what interpolation loses. */
 static const double coarse_tolerance = 1e-2;
 
-/* A first guess from the coarser grids; 0 where they found none. */
+/* An initial guess from the coarser grids; 0 if they have none. */
 static int guess_pressure(struct contact *c)
 {
 	struct contact *coarse = c->coarse;

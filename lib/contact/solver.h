@@ -1,11 +1,13 @@
 /* solver.h - frictionless contact of a rough surface with a flat on a half-space
+ *
  * Contact of two elastic half-spaces with combined height h: in each cell, with pressure
  * p, elastic displacement u = K p and gap g,
  *
  *	g = u - h - approach;   g >= 0, p >= 0, p g = 0      (2-5)
+ *
  * With a hardness H the pressure is limited to p = H, where g <= 0 is the plastic depth.
- *K is the half-space of Love's uniformly loaded cells on an otherwise free surface, or
- *the exact periodic kernel 2 / (E* |q|) with mean displacement zero.
+ * K is the half-space of Love's uniformly loaded cells on an otherwise free surface, or
+ * the exact periodic kernel 2 / (E* |q|) with mean displacement zero.
  *
  * Units are SI.  Fields are row-major, field[iy * nx + ix]; heights are positive
  * towards the other body, pressure in compression, displacement into the body;

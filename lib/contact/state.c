@@ -217,8 +217,8 @@ double contact_cell_stiffness(const struct contact *c)
 {
 	double width = sqrt(c->par.dx * c->par.dy);
 
-	/* Half the wave number that the cell resolves stands for all: 2 / width gives the
-	 * half-space E* / width. */
+	/* Approximated by half the largest wavenumber that the cell resolves: 2 / width
+	 * gives the stiffness E* / width. */
 	return 1 / c->body.wave(c->body.context, 2 / width);
 }
 
@@ -297,7 +297,7 @@ double contact_scale_load(struct contact *c, int gently)
 {
 	double load = c->target * (double)c->n, fixed = 0, rest = 0;
 
-	/* Cells that reach the hardness on the way leave the rest to the others. */
+	/* If cells reach the hardness, the other cells carry the rest. */
 	for (int k = 0; k < 100; k++) {
 		struct sweep s = contact_sweep(c, sum_load);
 

@@ -1,5 +1,6 @@
 #include "contact/transfer.h"
 #include "num/fft.h"
+#include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -21,7 +22,7 @@ int transfer_coarsen(const struct contact_par *fine, struct contact_par *coarse)
 	return coarse->nx < fine->nx || coarse->ny < fine->ny;
 }
 
-static int make_axis(struct axis *a, size_t n, size_t m, int periodic)
+static enum num_status make_axis(struct axis *a, size_t n, size_t m, int periodic)
 {
 	double ratio = (double)n / (double)m;
 
@@ -33,7 +34,7 @@ static int make_axis(struct axis *a, size_t n, size_t m, int periodic)
 	a->high = calloc(n, sizeof *a->high);
 	a->share = calloc(n, sizeof *a->share);
 	if (!a->first || !a->cover || !a->low || !a->high || !a->share)
-		return -1;
+		return NUM_MEMORY;
 	for (size_t i = 0; i < m; i++) {
 		double begin = (double)i * ratio, end = begin + ratio;
 
@@ -55,17 +56,19 @@ static int make_axis(struct axis *a, size_t n, size_t m, int periodic)
 			     : periodic            ? 0
 						   : m - 1;
 	}
-	return 0;
+	return NUM_OK;
 }
 
-int transfer_make(struct transfer *t, const struct contact_par *fine,
+enum num_status transfer_make(struct transfer *t, const struct contact_par *fine,
 	const struct contact_par *coarse)
 {
 	int periodic = fine->boundary == CONTACT_PERIODIC;
-	int x = make_axis(&t->x, (size_t)fine->nx, (size_t)coarse->nx, periodic);
-	int y = make_axis(&t->y, (size_t)fine->ny, (size_t)coarse->ny, periodic);
+	enum num_status x =
+		make_axis(&t->x, (size_t)fine->nx, (size_t)coarse->nx, periodic);
+	enum num_status y =
+		make_axis(&t->y, (size_t)fine->ny, (size_t)coarse->ny, periodic);
 
-	return x == 0 && y == 0 ? 0 : -1;
+	return x ? x : y;
 }
 
 static void free_axis(struct axis *a)

@@ -9,6 +9,7 @@
 #define CONTACT_TRANSFER_H
 
 #include "contact/problem.h"
+#include "num/status.h"
 
 enum { TRANSFER_TAPS = 3 };
 
@@ -28,8 +29,8 @@ struct transfer {
 /* Chooses the next coarser grid, sized for fast transforms; 1 if it is coarser. */
 int transfer_coarsen(const struct contact_par *fine, struct contact_par *coarse);
 
-/* Returns 0, or -1 when out of memory; either way transfer_done() frees it. */
-int transfer_make(struct transfer *t, const struct contact_par *fine,
+/* Whether it succeeds or not, transfer_done() frees it. */
+enum num_status transfer_make(struct transfer *t, const struct contact_par *fine,
 	const struct contact_par *coarse);
 void transfer_done(struct transfer *t);
 

@@ -138,7 +138,7 @@ static void count(const struct classes *c, int first, int last, struct class_cou
 	weighted_interval(&volume[0], 0, c->par.confidence, &out->volume.low, &high);
 	weighted_interval(&number[1], weight, c->par.confidence, &low, &out->number.high);
 	if (number[1].n > 0 &&
-		isinf(upper)) /* the largest that was seen stands for more */
+		isinf(upper)) /* the largest observed particle limits an open class */
 		heavy = volume[1].largest;
 	weighted_interval(&volume[1], heavy, c->par.confidence, &low, &out->volume.high);
 	out->number.high += c->unknown ? INFINITY : c->most[first];

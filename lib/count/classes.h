@@ -1,10 +1,10 @@
 /* classes.h - particles of one period sorted into classes of size
  *
  * What a sensor saw is weighted by 1 over the probability of seeing it; stretches that
- *are not resolved are known by the number and diameter of equal particles with the same
- *sums of d^6 and d^12 (of the second and fourth power of the pulses).  By Markov's
- *inequality no more than N min((d_eq / d)^6, (d_eq / d)^12) particles of the stretch are
- *larger than d, and the sum of d^3 over these is at most N d_eq^3 (d_eq / d)^3.
+ * are not resolved are known by the number and diameter of equal particles with the same
+ * sums of d^6 and d^12 (of the second and fourth power of the pulses).  By Markov's
+ * inequality no more than N min((d_eq / d)^6, (d_eq / d)^12) particles of the stretch
+ * are larger than d, and the sum of d^3 over these is at most N d_eq^3 (d_eq / d)^3.
  *
  *	struct classes *c = classes_new(edges, n, &par);
  *	classes_add(c, d, 1);

@@ -18,7 +18,7 @@ double detection_probability(const struct detection *d, double diameter);
 double detection_diameter(const struct detection *d, double p);
 
 /* Threshold that noise of correlation time of one pulse exceeds so many times per second:
- * rate exp(-T^2 / 2) / duration (Rice).  NAN where there is none. */
+ * rate exp(-T^2 / 2) / duration (Rice).  NAN if there is none. */
 double detection_threshold(double duration, double rate);
 
 #endif

@@ -1,4 +1,5 @@
 #include "count/line.h"
+#include "num/status.h"
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 
@@ -7,13 +8,13 @@ double line_t(double confidence, size_t degrees)
 	return gsl_cdf_tdist_Pinv(0.5 + 0.5 * confidence, (double)degrees);
 }
 
-int line_fit(
+enum num_status line_fit(
 	const double *x, const double *y, size_t n, double confidence, struct line *l)
 {
 	double mx = 0, my = 0, xx = 0, xy = 0, rest = 0;
 
 	if (n < 3)
-		return -1;
+		return NUM_DOMAIN;
 	for (size_t i = 0; i < n; i++) {
 		mx += x[i] / (double)n;
 		my += y[i] / (double)n;
@@ -23,7 +24,7 @@ int line_fit(
 		xy += (x[i] - mx) * (y[i] - my);
 	}
 	if (!(xx > 0))
-		return -1;
+		return NUM_DOMAIN;
 	l->slope = xy / xx;
 	l->middle = mx;
 	l->value = my;
@@ -36,7 +37,7 @@ int line_fit(
 	l->slope_se = l->rms / sqrt(xx);
 	l->value_se = l->rms / sqrt((double)n);
 	l->t = line_t(confidence, n - 2);
-	return 0;
+	return NUM_OK;
 }
 
 double line_lack_of_fit(const double *x, const double *y, size_t n, const struct line *l)

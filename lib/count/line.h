@@ -7,6 +7,7 @@
 #ifndef COUNT_LINE_H
 #define COUNT_LINE_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 struct line {
@@ -19,8 +20,8 @@ struct line {
 /* Student's t: the interval of this confidence is as many standard errors either way. */
 double line_t(double confidence, size_t degrees);
 
-/* Least squares.  -1 with fewer than three points or a single x. */
-int line_fit(
+/* Least squares.  NUM_DOMAIN with fewer than three points or a single x. */
+enum num_status line_fit(
 	const double *x, const double *y, size_t n, double confidence, struct line *l);
 
 /* Probability of a line that scatters more about the means of groups of equal x than the

@@ -1,5 +1,6 @@
 #include "debris/chords.h"
 #include "num/room.h"
+#include "num/status.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -122,8 +123,8 @@ static double widest(struct chords *c, const double along[3])
 	return sqrt(most);
 }
 
-int chords_measure(struct chords *c, const struct hull *h, const double step[3],
-	double *length, double *width)
+enum num_status chords_measure(struct chords *c, const struct hull *h,
+	const double step[3], double *length, double *width)
 {
 	const struct hull_point *p = hull_points(h, &c->corners);
 	double along[3];
@@ -132,11 +133,11 @@ int chords_measure(struct chords *c, const struct hull *h, const double step[3],
 	if (room_for(&c->corner, &c->corner_room, c->corners, sizeof *c->corner) ||
 		room_for(&c->height, &c->height_room, c->corners, sizeof *c->height) ||
 		room_for(&c->cut, &c->cut_room, c->corners + c->edges, sizeof *c->cut))
-		return -1;
+		return NUM_MEMORY;
 	for (size_t i = 0; i < c->corners; i++)
 		for (int k = X; k <= Z; k++)
 			c->corner[i][k] = ((double)p[i].v[k] - p[0].v[k]) * step[k];
 	*length = longest(c, along);
 	*width = widest(c, along);
-	return 0;
+	return NUM_OK;
 }

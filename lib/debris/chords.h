@@ -10,15 +10,15 @@
 #define CONTACT_CHORDS_H
 
 #include "debris/hull.h"
+#include "num/status.h"
 
 struct chords; /* memory that is kept between calls */
 
 struct chords *chords_new(void); /* NULL when out of memory */
 void chords_free(struct chords *c);
 
-/* Measures the last hull built in h; step: lattice spacings along x, y and z.  Returns 0,
- * or -1 when out of memory. */
-int chords_measure(struct chords *c, const struct hull *h, const double step[3],
-	double *length, double *width);
+/* Measures the last hull built in h; step: lattice spacings along x, y and z. */
+enum num_status chords_measure(struct chords *c, const struct hull *h,
+	const double step[3], double *length, double *width);
 
 #endif

@@ -108,9 +108,8 @@ enum debris_status debris_step(struct debris *d, double *height, const double *p
 	status = wear_remove(d->wear, d->stress, &wear, &step->wear);
 	if (status != WEAR_OK)
 		return status == WEAR_DEEP ? DEBRIS_DEEP : DEBRIS_MEMORY;
-	step->count = particles_find(
-		d->particles, step->wear.stretch, step->wear.count, &step->particle);
-	if (step->count == (size_t)-1)
+	if (particles_find(d->particles, step->wear.stretch, step->wear.count,
+		    &step->particle, &step->count))
 		return DEBRIS_MEMORY;
 	step->volume = step->wear.height * (s->dx * s->dy);
 	for (size_t i = 0; i < step->wear.count; i++) {

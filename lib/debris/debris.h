@@ -1,4 +1,5 @@
 /* debris.h - one step of wear: stress below a contact, removal, particles, worn surface
+ *
  * Combines stress.h, wear.h and particles.h.  Memory is kept between calls, so use one
  * struct for all steps of all surfaces of one grid; results do not depend on previous
  * calls or on the number of threads.

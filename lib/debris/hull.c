@@ -1,8 +1,9 @@
-/* Incremental hull: a point outside removes the faces it sees and is joined to their
- * rim.  "Sees" is strict and exact, so a face in whose plane the point lies stays, and no
- * face of zero area arises. */
+/* Incremental hull: a point outside removes the faces visible from it and is connected to
+ * their boundary. Visibility is strict and exact, so a face in whose plane the point lies
+ * stays, and no face of zero area arises. */
 #include "debris/hull.h"
 #include "num/room.h"
+#include "num/status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +18,7 @@ struct hull {
 	size_t points, point_room;
 	struct face *face;
 	size_t nfaces, face_room;
-	struct hull_edge *edge; /* the rim while building, then the edges */
+	struct hull_edge *edge; /* the boundary while building, then the edges */
 	size_t edges, edge_room;
 	int *place; /* of the points among the corners */
 	size_t place_room;
@@ -65,38 +66,38 @@ static void normal(const struct hull_point *a, const struct hull_point *b,
 	n[2] = u[0] * w[1] - u[1] * w[0];
 }
 
-static int add_face(struct hull *h, int a, int b, int c)
+static enum num_status add_face(struct hull *h, int a, int b, int c)
 {
 	struct face *f;
 
 	if (room_for(&h->face, &h->face_room, h->nfaces + 1, sizeof *f))
-		return -1;
+		return NUM_MEMORY;
 	f = &h->face[h->nfaces++];
 	f->v[0] = a, f->v[1] = b, f->v[2] = c;
 	normal(&h->point[a], &h->point[b], &h->point[c], f->n);
-	return 0;
+	return NUM_OK;
 }
 
-static int add_edge(struct hull *h, int from, int to)
+static enum num_status add_edge(struct hull *h, int from, int to)
 {
 	if (room_for(&h->edge, &h->edge_room, h->edges + 1, sizeof *h->edge))
-		return -1;
+		return NUM_MEMORY;
 	h->edge[h->edges++] = (struct hull_edge){ from, to };
-	return 0;
+	return NUM_OK;
 }
 
-/* Adds an edge of a removed face to the rim, or cancels it against its twin. */
-static int toggle_edge(struct hull *h, int from, int to)
+/* Adds an edge of a removed face to the boundary, or cancels it with its twin. */
+static enum num_status toggle_edge(struct hull *h, int from, int to)
 {
 	for (size_t i = 0; i < h->edges; i++)
 		if (h->edge[i].from == to && h->edge[i].to == from) {
 			h->edge[i] = h->edge[--h->edges];
-			return 0;
+			return NUM_OK;
 		}
 	return add_edge(h, from, to);
 }
 
-static int add_point(struct hull *h, int p)
+static enum num_status add_point(struct hull *h, int p)
 {
 	const struct hull_point *at = &h->point[p];
 	size_t kept = 0;
@@ -111,13 +112,13 @@ static int add_point(struct hull *h, int p)
 		}
 		for (int k = 0; k < 3; k++)
 			if (toggle_edge(h, f.v[k], f.v[(k + 1) % 3]))
-				return -1;
+				return NUM_MEMORY;
 	}
 	h->nfaces = kept;
 	for (size_t i = 0; i < h->edges; i++)
 		if (add_face(h, h->edge[i].from, h->edge[i].to, p))
-			return -1;
-	return 0;
+			return NUM_MEMORY;
+	return NUM_OK;
 }
 
 /* Order plane by plane across an axis, in each along the next axis and then the last. */
@@ -179,7 +180,8 @@ static size_t plane_hull(
 /* Drops repeated points and those that are no corners of the hull of their plane across
  * an axis, x or y, which cannot be corners of the body.  Bodies made of cells have many.
  */
-static int drop_inside(struct hull *h, struct hull_point *point, size_t *count, int axis)
+static enum num_status drop_inside(
+	struct hull *h, struct hull_point *point, size_t *count, int axis)
 {
 	size_t kept = 0, first = 0, unique = 0;
 
@@ -193,14 +195,14 @@ static int drop_inside(struct hull *h, struct hull_point *point, size_t *count, 
 		if (i < unique && point[i].v[axis] == point[first].v[axis])
 			continue;
 		if (room_for(&h->point, &h->point_room, 2 * (i - first), sizeof *point))
-			return -1;
+			return NUM_MEMORY;
 		n = plane_hull(point + first, i - first, h->point, axis);
 		memcpy(point + kept, h->point, n * sizeof *point);
 		kept += n;
 		first = i;
 	}
 	*count = kept;
-	return 0;
+	return NUM_OK;
 }
 
 /* Four points that span space as the first faces; 0 if there are none. */
@@ -244,13 +246,13 @@ static double volume6(const struct hull *h)
 }
 
 /* Keeps the points that are corners of a face, and lists the edges. */
-static int collect(struct hull *h)
+static enum num_status collect(struct hull *h)
 {
 	int *place;
 	size_t kept = 0;
 
 	if (room_for(&h->place, &h->place_room, h->points, sizeof *place))
-		return -1;
+		return NUM_MEMORY;
 	place = h->place;
 	memset(place, 0, h->points * sizeof *place);
 	for (size_t i = 0; i < h->nfaces; i++)
@@ -269,9 +271,9 @@ static int collect(struct hull *h)
 
 			/* Every edge is met once from either side. */
 			if (a < b && add_edge(h, place[a], place[b]))
-				return -1;
+				return NUM_MEMORY;
 		}
-	return 0;
+	return NUM_OK;
 }
 
 static int too_large(const struct hull_point *point, size_t count)

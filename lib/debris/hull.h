@@ -1,4 +1,5 @@
 /* hull.h - convex hull of points of a cubic lattice, in exact integer arithmetic
+ *
  * Affine maps preserve convex hulls, so cells of any shape can be described by integers
  * and scaled afterwards.  All products are products of differences of coordinates.  With
  * differences up to D a normal has components up to 2 D^2, and its product with a

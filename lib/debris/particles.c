@@ -1,10 +1,11 @@
 /* The stretches are sorted by column and each body is filled from its first one.  On a
- * periodic grid every stretch is reached in a frame, whole periods from the grid; where
- * a body meets itself in another frame it goes round the grid. */
+ * periodic grid every stretch is visited with an offset of whole periods; a body that is
+ * visited with two different offsets is infinite. */
 #include "debris/particles.h"
 #include "debris/chords.h"
 #include "debris/hull.h"
 #include "num/room.h"
+#include "num/status.h"
 #include "num/sym3.h"
 
 #include <errno.h>
@@ -16,9 +17,9 @@
 
 enum { X, Y, Z };
 
-/* Steps of depth to a body in its hull where none are given.  Between the corners of a
- * hull and the chords between them lies more than the square of their number; columns are
- * no finer than their spacing either. */
+/* Steps of depth to a body in its hull where none are given.  The number of chords grows
+ * with the square of the number of corners of a hull; columns are no finer than their
+ * spacing either. */
 enum { STEPS = 64 };
 
 /* A stretch on its way. */
@@ -85,13 +86,14 @@ void particles_free(struct particles *ps)
 }
 
 /* Counting sort by column; within a column from the surface down. */
-static int sort_by_column(struct particles *ps, const struct stretch *s, size_t count)
+static enum num_status sort_by_column(
+	struct particles *ps, const struct stretch *s, size_t count)
 {
 	size_t columns = (size_t)ps->par.nx * (size_t)ps->par.ny;
 
 	if (room_for(&ps->piece, &ps->piece_room, count + 1, sizeof *ps->piece) ||
 		room_for(&ps->body, &ps->body_room, count + 1, sizeof *ps->body))
-		return -1;
+		return NUM_MEMORY;
 	memset(ps->start, 0, (columns + 1) * sizeof *ps->start);
 	for (size_t i = 0; i < count; i++)
 		ps->start[s[i].column + 1]++;
@@ -118,7 +120,7 @@ static int sort_by_column(struct particles *ps, const struct stretch *s, size_t 
 				ps->piece[k] = ps->piece[k - 1];
 				ps->piece[k - 1] = t;
 			}
-	return 0;
+	return NUM_OK;
 }
 
 static void reach(struct particles *ps, size_t at, const int period[2])
@@ -295,12 +297,13 @@ static void measure_moments(const struct particles *ps, const struct extent *e,
 }
 
 /* Corners of the body, depths in steps of unit. */
-static int put_corners(struct particles *ps, const struct extent *e, double unit)
+static enum num_status put_corners(
+	struct particles *ps, const struct extent *e, double unit)
 {
 	size_t n = 0;
 
 	if (room_for(&ps->corner, &ps->corner_room, 8 * ps->members, sizeof *ps->corner))
-		return -1;
+		return NUM_MEMORY;
 	for (size_t i = 0; i < ps->members; i++) {
 		const struct piece *p = &ps->piece[ps->body[i]];
 		int at[2];
@@ -316,10 +319,11 @@ static int put_corners(struct particles *ps, const struct extent *e, double unit
 			} };
 		}
 	}
-	return 0;
+	return NUM_OK;
 }
 
-static int measure_hull(struct particles *ps, const struct extent *e, struct particle *p)
+static enum num_status measure_hull(
+	struct particles *ps, const struct extent *e, struct particle *p)
 {
 	double range = e->bottom - e->top,
 	       unit = ps->par.dz > 0 ? ps->par.dz : range / STEPS;
@@ -329,18 +333,18 @@ static int measure_hull(struct particles *ps, const struct extent *e, struct par
 	p->length = p->width = p->aspect = p->convexity = NAN;
 	if (!p->endless && range / unit <= HULL_SPAN) {
 		if (put_corners(ps, e, unit))
-			return -1;
+			return NUM_MEMORY;
 		status = hull_build(ps->hull, ps->corner, 8 * ps->members);
 	}
 	if (status == HULL_LARGE)
-		return 0;
+		return NUM_OK;
 	if (status != HULL_OK ||
 		chords_measure(ps->chords, ps->hull, step, &p->length, &p->width))
-		return -1;
+		return NUM_MEMORY;
 	p->aspect = p->length / p->width;
 	p->convexity = 6 * p->volume /
 		       (hull_volume6(ps->hull) * (ps->par.dx * ps->par.dy * unit));
-	return 0;
+	return NUM_OK;
 }
 
 /* Whole periods that bring the centroid back onto the grid. */
@@ -375,7 +379,7 @@ static void place(const struct particles *ps, const struct extent *e,
 	p->high[Z] = e->bottom;
 }
 
-static int measure(struct particles *ps)
+static enum num_status measure(struct particles *ps)
 {
 	const struct piece *first = &ps->piece[ps->body[0]];
 	struct extent e = extent_of(ps);
@@ -383,7 +387,7 @@ static int measure(struct particles *ps)
 	double mean[3], volume;
 
 	if (room_for(&ps->done, &ps->done_room, ps->ndone + 1, sizeof *ps->done))
-		return -1;
+		return NUM_MEMORY;
 	p = &ps->done[ps->ndone];
 	*p = (struct particle){ .columns = ps->members,
 		.area = ps->area,
@@ -397,9 +401,9 @@ static int measure(struct particles *ps)
 	if (!p->endless)
 		measure_moments(ps, &e, mean, volume, p);
 	if (measure_hull(ps, &e, p))
-		return -1;
+		return NUM_MEMORY;
 	ps->ndone++;
-	return 0;
+	return NUM_OK;
 }
 
 static int in_order(const void *a, const void *b)
@@ -414,22 +418,24 @@ static int in_order(const void *a, const void *b)
 	return p->low[Z] < q->low[Z] ? -1 : 1;
 }
 
-size_t particles_find(struct particles *ps, const struct stretch *stretch, size_t count,
-	const struct particle **list)
+enum num_status particles_find(struct particles *ps, const struct stretch *stretch,
+	size_t count, const struct particle **list, size_t *n)
 {
 	ps->ndone = 0;
 	*list = NULL;
+	*n = 0;
 	if (sort_by_column(ps, stretch, count))
-		return (size_t)-1;
+		return NUM_MEMORY;
 	for (size_t i = 0; i < count; i++) {
 		if (ps->piece[i].reached)
 			continue;
 		fill(ps, i);
 		if (measure(ps))
-			return (size_t)-1;
+			return NUM_MEMORY;
 	}
 	if (ps->ndone > 0)
 		qsort(ps->done, ps->ndone, sizeof *ps->done, in_order);
 	*list = ps->done;
-	return ps->ndone;
+	*n = ps->ndone;
+	return NUM_OK;
 }

@@ -7,12 +7,14 @@
  *	struct particles_par par = { .nx = 128, .ny = 128, .dx = 8e-6, .dy = 8e-6 };
  *	struct particles *ps = particles_new(&par);
  *	n = particles_find(ps, stretch, count, &list);
+ *
  * Lengths are those of the boxes, including their corners: the largest diameter of a
  * single cube is sqrt(3) times its side.
  */
 #ifndef DEBRIS_PARTICLES_H
 #define DEBRIS_PARTICLES_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 struct particles;
@@ -43,7 +45,7 @@ struct particle {
 	double convexity;  /* solidity (ISO 9276-6): volume / volume of the convex hull */
 	double area;       /* of the exposed faces, m2 (1.5 x that of a smooth sphere) */
 	/* Longest principal axis: from +x towards +y, (-pi/2, pi/2], and up from the
-	 * plane of the layers, [0, pi/2]; nan where the two first moments are equal. */
+	 * plane of the layers, [0, pi/2]; nan if the two first moments are equal. */
 	double azimuth, dip;
 	double x, y, z;         /* centroid, m; z down from the surface */
 	double low[3], high[3]; /* bounding box, m */
@@ -60,9 +62,9 @@ void particles_free(struct particles *ps);
 
 /* Finds the bodies of count stretches; stretches of one column must neither overlap nor
  * touch.  *list is valid until the next call: largest first, equal ones by first column
- * and depth.  If dz is 0 the hull resolves the depth of a body in 64 steps.  Returns the
- * number of bodies, or (size_t)-1 when out of memory. */
-size_t particles_find(struct particles *ps, const struct stretch *stretch, size_t count,
-	const struct particle **list);
+ * and depth.  If dz is 0 the hull resolves the depth of a body in 64 steps.
+ * *n receives the number of bodies. */
+enum num_status particles_find(struct particles *ps, const struct stretch *stretch,
+	size_t count, const struct particle **list, size_t *n);
 
 #endif

@@ -1,5 +1,6 @@
 #include "debris/wear.h"
 #include "num/room.h"
+#include "num/status.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -112,22 +113,22 @@ static double dip(const struct wear *w, size_t at, long layer)
 	return z0 + 2 * c / (-b - sqrt(b * b - 4 * bend * c));
 }
 
-static int close_stretch(struct wear *w, size_t at, double bottom)
+static enum num_status close_stretch(struct wear *w, size_t at, double bottom)
 {
 	double top = w->top[at];
 
 	w->top[at] = -1;
 	if (!(bottom > top))
-		return 0;
+		return NUM_OK;
 	if (room_for(&w->stretch, &w->room, w->count + 1, sizeof *w->stretch))
-		return -1;
+		return NUM_MEMORY;
 	w->stretch[w->count++] = (struct stretch){ at, top, bottom };
 	w->result->height += bottom - top;
-	return 0;
+	return NUM_OK;
 }
 
 /* Takes the stress of one node at this depth. */
-static int take_node(struct wear *w, size_t at, long layer)
+static enum num_status take_node(struct wear *w, size_t at, long layer)
 {
 	double cell = w->par->cell, f = w->value[0][at], z;
 	int open = w->top[at] >= 0, fails = f > w->par->yield;
@@ -135,19 +136,19 @@ static int take_node(struct wear *w, size_t at, long layer)
 	w->result->stress = fmax(w->result->stress, f);
 	if (open && fails && cell == 0 && w->par->rule == WEAR_COLUMN) {
 		z = dip(w, at, layer);
-		return z >= 0 ? close_stretch(w, at, z) : 0;
+		return z >= 0 ? close_stretch(w, at, z) : NUM_OK;
 	}
 	if (open == fails)
-		return 0;
+		return NUM_OK;
 	z = cell > 0 ? (double)layer * cell : layer > 0 ? crossing(w, at, layer) : 0;
 	if (open)
 		return close_stretch(w, at, z);
 	if (layer == 0 || w->par->rule == WEAR_POTENTIAL)
 		w->top[at] = z;
-	return 0;
+	return NUM_OK;
 }
 
-static int take_layer(struct wear *w, long layer)
+static enum num_status take_layer(struct wear *w, long layer)
 {
 	struct wear_result *r = w->result;
 	double nodes = 0;
@@ -158,26 +159,26 @@ static int take_layer(struct wear *w, long layer)
 		nodes += s->end - s->begin;
 		for (int x = s->begin; x < s->end; x++)
 			if (take_node(w, (size_t)s->y * (size_t)w->nx + (size_t)x, layer))
-				return -1;
+				return NUM_MEMORY;
 	}
 	r->layers++;
 	r->nodes += nodes;
 	r->nodes_skipped += (double)w->nx * w->ny - nodes;
-	return 0;
+	return NUM_OK;
 }
 
 /* Spans of open columns: what greater depths may lose under the column rule.  They lie
  * within the spans so far. */
-static int follow(struct wear *w)
+static enum num_status follow(struct wear *w)
 {
 	size_t old = w->nspans;
 
 	w->nspans = 0;
 	if (room_for(&w->span, &w->span_room, (size_t)w->ny * (((size_t)w->nx + 1) / 2),
 		    sizeof *w->span))
-		return -1;
+		return NUM_MEMORY;
 	if (old == 0)
-		return 0;
+		return NUM_OK;
 	for (int y = 0; y < w->ny; y++) {
 		const double *row = w->top + (size_t)y * (size_t)w->nx;
 
@@ -191,7 +192,7 @@ static int follow(struct wear *w)
 			w->span[w->nspans++] = (struct stress_span){ y, begin, x };
 		}
 	}
-	return 0;
+	return NUM_OK;
 }
 
 static enum wear_status remove_layers(struct wear *w)
@@ -213,9 +214,9 @@ static enum wear_status remove_layers(struct wear *w)
 			take_layer(w, k))
 			return WEAR_MEMORY;
 		w->result->depth = z;
-		/* The potential set may go on anywhere that was in reach at this depth:
-		 * the next is evaluated there, so that both sides of a crossing are
-		 * known. */
+		/* The potential set may continue wherever the bound allowed failure at
+		 * this depth: the next depth is evaluated there, so that both sides of a
+		 * crossing are known. */
 		if (p->rule == WEAR_POTENTIAL)
 			w->nspans = stress_reach(w->stress, z, p->yield, w->span);
 		else if (follow(w))

@@ -1,14 +1,15 @@
 /* wear.h - removal of the material whose equivalent stress exceeds the yield stress
+ *
  * The potential set (2-11) is all material above yield; the actual set (2-12) is, in each
  * column, the failed material from the surface down to the first depth that does not
- *fail. Depths are processed in order until no material below can fail, and at each depth
- *only the columns that can still fail.
+ * fail.  Depths are processed in order until no material below can fail, and at each
+ * depth only the columns that can still fail.
  *
  * Without cells the depth at which the stress crosses the yield stress is interpolated
  * between depths that increase geometrically from an eighth of the spacing, because most
- * of the loss is near the surface, where the stress varies most.  With cells the material
- * is removed in cells of one height, each by the stress at its upper side or centre, as
- *in the thesis.
+ * of the loss is near the surface, where the stress varies most.  With cells the
+ * material is removed in cells of one height, each by the stress at its upper side or
+ * centre, as in the thesis.
  *
  *	struct wear_par par = { .yield = 355e6, .rule = WEAR_COLUMN, .spacing = 8e-6 };
  *	struct wear *w = wear_new(nx, ny);

@@ -1,8 +1,8 @@
-/* ends.h - the ends of streams: what was read without one gets none when written
+/* ends.h - end marks of streams: the output of an input without one gets none
  *
- * A reader that can only tell afterwards that its input was cut off calls ends_miss()
- * and hands out what was whole.  The writers call ends_check() before they end a
- * stream, so that a program dies before what it made of half an input looks whole.
+ * A reader that detects a truncated input only at its end calls ends_miss() after it has
+ * returned the complete part.  The writers call ends_check() before the end mark, so that
+ * the result of a truncated input does not look complete.
  */
 #ifndef IO_ENDS_H
 #define IO_ENDS_H

@@ -35,10 +35,10 @@ struct fields_out;
 
 /* path NULL or "-" is standard input; raw NULL unless the data are headerless. */
 struct fields_in *fields_open(const char *path, const struct raw_layout *raw);
-struct fields_in *fields_from(struct input *in); /* takes an open input over */
-/* 1 where all records read so far said whether another one follows. */
+struct fields_in *fields_from(struct input *in); /* takes ownership of an open input */
+/* 1 if all records read so far stated whether another one follows. */
 int fields_marked(const struct fields_in *in);
-/* 1 where a record follows, or is promised. */
+/* 1 if a record follows, or is promised. */
 int fields_more(struct fields_in *in);
 /* Fills r, whose old contents are freed or reused; 0 at the end of the stream.  A stream
  * without any record dies: what should have written it failed. */
@@ -49,9 +49,9 @@ void fields_close(struct fields_in *in);
 
 /* path NULL is standard output, which must not be a terminal. */
 struct fields_out *fields_create(const char *path);
-/* Writes and flushes one record with all its fields; more: another one will follow, and a
- * reader that does not find it says so.  Values must be finite unless they are missing
- * samples (nan). */
+/* Writes and flushes one record with all its fields; more: another record will follow,
+ * and a reader that does not find it reports an error.  Values must be finite unless they
+ * are missing samples (nan). */
 void fields_write(struct fields_out *out, const struct record *r, int more);
 void fields_done(struct fields_out *out); /* checks that all was written; frees */
 

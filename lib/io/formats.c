@@ -73,7 +73,8 @@ void check_spacing(const struct place *at, int axis, double spacing)
 			at->name, at->record, axis, spacing);
 }
 
-/* A regular file must hold what its header declares: said before memory is taken. */
+/* A regular file must have the length that its header declares: checked before memory is
+ * allocated. */
 static void check_length(const struct place *at, uint64_t want)
 {
 	uint64_t left = input_left(at->in);

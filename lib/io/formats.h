@@ -1,5 +1,5 @@
-/* formats.h - steps that the formats of fields share: each has a file of its own, reader
- * and writer, and a row in the table of fields.c */
+/* formats.h - functions shared by the formats of fields: each format has its own file and
+ * a row in the table of fields.c */
 #ifndef IO_FORMATS_H
 #define IO_FORMATS_H
 
@@ -7,7 +7,7 @@
 #include "io/record.h"
 #include <stdint.h>
 
-/* What a record of ours says of its stream. */
+/* The end mark of a record of wearpipe. */
 struct mark {
 	long number; /* of the record in its stream, from 1; 0: no mark */
 	int last;

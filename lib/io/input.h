@@ -17,24 +17,24 @@ struct input *input_open(const char *path);
 const char *input_name(const struct input *in); /* for messages */
 void input_close(struct input *in);
 
-/* With --follow: what was read so far is whole, or not, so that the end of a file is the
- * end of the stream, or nobody's. */
+/* With --follow: states whether the stream read so far is complete, so that the end of
+ * the file is the end of the stream, or whether to wait. */
 void input_whole(struct input *in, int whole);
 
 /* The next byte, which peek leaves; -1 at the end. */
 int input_get(struct input *in);
 int input_peek(struct input *in);
-/* 1 where the next bytes are these, at most 16; they stay. */
+/* 1 if the next bytes are these, at most 16; they stay. */
 int input_begins(struct input *in, const char *bytes);
 /* Up to n bytes: fewer only at the end. */
 size_t input_read(struct input *in, void *bytes, size_t n);
 /* What is there, at least one byte; 0 at the end. */
 size_t input_some(struct input *in, void *bytes, size_t n);
 /* A line with its newline, which only the last may lack, and a NUL behind it, in memory
- * that grows; returns its length, 0 at the end, most + 1 where it is longer than most
+ * that grows; returns its length, 0 at the end, most + 1 if it is longer than most
  * bytes. */
 size_t input_line(struct input *in, char **line, size_t *room, size_t most);
-/* Bytes that a regular file still holds; UINT64_MAX where nobody knows. */
+/* Bytes that a regular file still holds; UINT64_MAX if unknown. */
 uint64_t input_left(const struct input *in);
 
 /* A bound on what is read, lowered by "NAME=N" in WEARPIPE_LIMITS; see

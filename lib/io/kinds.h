@@ -6,8 +6,8 @@
 
 enum stream_kind { KIND_OTHER, KIND_FIELD, KIND_SIGNAL, KIND_TABLE };
 
-/* Dies with "this is a signal (AU), want ..." where the n bytes begin a stream of another
- * kind, as far as that can be told. */
+/* Dies with "this is a signal (AU), want ..." if the n bytes begin a recognised stream of
+ * another kind. */
 void kind_refuse(const char *name, const void *bytes, size_t n, enum stream_kind wanted);
 
 #endif

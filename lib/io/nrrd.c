@@ -351,7 +351,7 @@ static void write_number(struct text *t, double value)
 	text_add(t, " %s", number_text(value, text));
 }
 
-/* The mark stands at the end, the digits of its checksum being zeros. */
+/* The mark is the last key, with zeros for the digits of its checksum. */
 static struct text make_header(const struct record *r, long number, int last)
 {
 	struct text t = { 0 };

@@ -9,8 +9,8 @@
  * it is something else than a number of this unit. */
 double table_quantity(const struct table_in *t, const char *key, enum unit unit);
 
-/* What one of the numbers of a column is in SI, by the "# units:" line; NAN where that
- * tells no unit of the column, or 1.  Dies where it is not a unit of this kind. */
+/* What one of the numbers of a column is in SI, by the "# units:" line; NAN if that line
+ * has no unit for the column, or 1.  Dies where it is not a unit of this kind. */
 double table_scale(const struct table_in *t, int column, enum unit unit);
 
 /* table_need() and table_find() for a column that is read in SI: its numbers are

@@ -32,12 +32,12 @@ double *record_add(struct record *r, const char *name, const char *unit);
 void record_new_field(struct record *r, const char *name, const char *unit);
 /* Drops a field. */
 void record_drop(struct record *r, const char *name);
-/* Keys; record_get returns NULL where absent. */
+/* Keys; record_get returns NULL if absent. */
 void record_set(struct record *r, const char *key, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));
 const char *record_get(const struct record *r, const char *key);
 /* Copies the realisation and all keys but cmd. */
 void record_copy_keys(struct record *to, const struct record *from);
-double record_get_number(const struct record *r, const char *key); /* NAN where absent */
+double record_get_number(const struct record *r, const char *key); /* NAN if absent */
 
 #endif

@@ -12,7 +12,7 @@ struct unit_seen {
 
 struct series {
 	struct table_in *table;
-	int t, y, u; /* columns, -1 where absent */
+	int t, y, u; /* columns, -1 if absent */
 	int n, unit; /* units so far, the present one */
 	struct unit_seen *seen;
 	double time, value;

@@ -13,7 +13,7 @@
 
 struct series;
 
-/* unit: name of the column that tells units apart, or NULL. */
+/* unit: name of the column that identifies the unit, or NULL. */
 struct series *series_open(const char *path, const char *unit);
 /* Moves to the next row; 0 at the end. */
 int series_next(struct series *s);

@@ -300,7 +300,7 @@ static size_t ready(const struct signal_in *in)
 	return (size_t)(bytes / in->frame) - (in->promised && bytes >= in->frame);
 }
 
-/* 1 where the frame left over is the end that was promised; torn says whether it is one
+/* 1 if the frame left over is the end that was promised; torn says whether it is one
  * at all. */
 static int is_end(const struct signal_in *in, int *torn)
 {

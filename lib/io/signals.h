@@ -31,8 +31,8 @@ struct signal_in;
 struct signal_out;
 
 struct signal_in *signal_open(const char *path, const struct signal_raw *raw);
-struct signal_in *signal_from(struct input *in); /* takes an open input over */
-/* 1 where it promises an end or declares its length. */
+struct signal_in *signal_from(struct input *in); /* takes ownership of an open input */
+/* 1 if it promises an end or declares its length. */
 int signal_marked(const struct signal_in *in);
 const struct signal_format *signal_format(const struct signal_in *in);
 const char *signal_name(const struct signal_in *in);

@@ -159,7 +159,7 @@ static void check_end(struct table_in *t)
 	input_whole(t->in, 1);
 }
 
-/* Minds promise, checksum and end; 1 where the line is one for the reader. */
+/* Minds promise, checksum and end; 1 if the line is one for the reader. */
 static int mind_end(struct table_in *t, size_t n)
 {
 	if (strcmp(t->line, promise) == 0)

@@ -19,12 +19,13 @@ struct table_in;
 struct table_out;
 
 struct table_in *table_open(const char *path); /* NULL or "-": standard input */
-struct table_in *table_from(struct input *in); /* takes an open input over */
+struct table_in *table_from(struct input *in); /* takes ownership of an open input */
 /* The same, handing every comment "# key: value" on but those of ends. */
 typedef void table_comment_taker(void *context, const char *key, const char *value);
 struct table_in *table_with_comments(
 	struct input *in, table_comment_taker *take, void *context);
-/* 1 where all rows read so far stand between the begin and the end of a table of ours. */
+/* 1 if all rows read so far are between the first line and the end mark of a table of
+ * wearpipe. */
 int table_marked(const struct table_in *t);
 const char *table_name(const struct table_in *t);
 /* Value of the latest "# key: value" line read so far, NULL if none. */
@@ -36,7 +37,7 @@ const char *table_upstream(struct table_in *t);
 long table_part(const struct table_in *t);
 int table_columns(const struct table_in *t);
 const char *table_column_name(const struct table_in *t, int column);
-int table_find(const struct table_in *t, const char *column); /* -1 where absent */
+int table_find(const struct table_in *t, const char *column); /* -1 if absent */
 int table_need(const struct table_in *t, const char *column); /* dies naming it */
 /* Moves to the next row; 0 at the end.  A row with too few or too many cells, a last line
  * without its newline, or a table of ours without its end kills the program naming file
@@ -50,19 +51,19 @@ double table_number(const struct table_in *t, int column);
  * further
  * "# units:" line with other units dies. */
 void table_set_scale(struct table_in *t, int column, double scale);
-/* The same, but only numbers above 0, or whole numbers from least to most: anything else
- * dies. */
+/* The same, but only numbers above 0, or integers from least to most: anything else dies.
+ */
 double table_positive(const struct table_in *t, int column);
 long table_whole(const struct table_in *t, int column, double least, double most);
 /* Cell as text, valid until the next row. */
 const char *table_text(const struct table_in *t, int column);
 void table_close(struct table_in *t);
 
-/* columns: names parted by blanks, "t y state".  cmd and units may be NULL. */
+/* columns: names separated by blanks, "t y state".  cmd and units may be NULL. */
 struct table_out *table_create(
 	const char *path, const char *cmd, const char *units, const char *columns);
 /* One more "# key: value" line, unless the key has this value already; before the first
- * row it stands above the header. */
+ * row it is written above the header. */
 void table_comment(struct table_out *t, const char *key, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));
 /* A further "# cmd:" line where the pipeline that made the rows changes; nothing is

@@ -1,4 +1,5 @@
 #include "layout/bound.h"
+#include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -120,8 +121,8 @@ static void add_coil(const struct bound_par *par, double t0, double T, double x,
 	}
 }
 
-int bound_sampled(const struct bound_par *par, const double *coil, int coils, int phases,
-	struct bound *b)
+enum num_status bound_sampled(const struct bound_par *par, const double *coil, int coils,
+	int phases, struct bound *b)
 {
 	double T = par->zone / par->velocity * par->rate, middle = mean(coil, coils);
 	double sum[4] = { 0 }, variance[4];
@@ -129,7 +130,7 @@ int bound_sampled(const struct bound_par *par, const double *coil, int coils, in
 	double *work = malloc(3 * room * sizeof *work);
 
 	if (!work)
-		return -1;
+		return NUM_MEMORY;
 	for (int k = 0; k < phases; k++) {
 		struct fisher f = { 0 };
 
@@ -144,5 +145,5 @@ int bound_sampled(const struct bound_par *par, const double *coil, int coils, in
 	}
 	free(work);
 	put(par, sum, b);
-	return 0;
+	return NUM_OK;
 }

@@ -10,8 +10,8 @@
  *
  *	(v / sd(v))^2 = snr^2 n (E1 S / zone^2 + M (E2 - E0 / 4))
  *
- * and for the sine E1 = 2 pi^2, E2 - E0 / 4 = pi^2 / 6 + 1/8.  The width of a single
- * pulse tells the velocity, too.  No unbiased estimate has smaller standard errors.
+ * and for the sine E1 = 2 pi^2, E2 - E0 / 4 = pi^2 / 6 + 1/8.  The duration of a single
+ * pulse also determines the velocity.  No unbiased estimate has smaller standard errors.
  *
  *	struct bound_par par = { .shape = PULSE_SINE, .zone = 0.1273, .velocity = 12.73,
  *		.rate = 10e3, .snr = 100 };
@@ -22,6 +22,7 @@
 #ifndef LAYOUT_BOUND_H
 #define LAYOUT_BOUND_H
 
+#include "num/status.h"
 #include "signal/sensor.h"
 
 struct bound_par {
@@ -32,7 +33,7 @@ struct bound_par {
 	double snr;      /* A over the rms of the noise of a sample */
 };
 
-/* Standard errors; INFINITY where the samples do not determine the particle. */
+/* Standard errors; INFINITY if the samples do not determine the particle. */
 struct bound {
 	double time;      /* of the arrival at the first coil of the list, s */
 	double velocity;  /* m/s */
@@ -48,8 +49,8 @@ void bound_closed(
 	const struct bound_par *par, const double *coil, int coils, struct bound *b);
 
 /* The same from the sums over the samples, as mean square over so many positions of the
- * arrival between two samples.  -1 when out of memory. */
-int bound_sampled(const struct bound_par *par, const double *coil, int coils, int phases,
-	struct bound *b);
+ * arrival between two samples. */
+enum num_status bound_sampled(const struct bound_par *par, const double *coil, int coils,
+	int phases, struct bound *b);
 
 #endif

@@ -1,4 +1,5 @@
 #include "layout/search.h"
+#include "num/status.h"
 #include <math.h>
 #include <string.h>
 
@@ -20,7 +21,7 @@ void layout_judge(
 			next++;
 		if (next == coils)
 			break;
-		/* What the coils up to here know of the slowness, s/m. */
+		/* Information of the coils so far on the slowness, s/m. */
 		way = coil[next] - coil[k];
 		bound_closed(&par->bound, coil, next, &b);
 		sd = b.velocity / (par->bound.velocity * par->bound.velocity);
@@ -92,15 +93,15 @@ static int improve(struct search *s, double step)
 	return better;
 }
 
-int layout_search(const struct layout_par *par, int coils, double extent, double least,
-	int steps, double *coil, struct layout *out)
+enum num_status layout_search(const struct layout_par *par, int coils, double extent,
+	double least, int steps, double *coil, struct layout *out)
 {
 	struct search s = { par, coils, extent, least, { 0 }, INFINITY, 0 };
 	double trial[LAYOUT_COILS] = { 0 }, step = extent / steps;
 
 	try_all(&s, trial, 1, 0, steps);
 	if (!isfinite(s.error))
-		return -1;
+		return NUM_DOMAIN;
 	for (int k = 0; k < HALVINGS; k++) {
 		for (int turn = 0; turn < 2 * steps && improve(&s, step); turn++)
 			;
@@ -109,5 +110,5 @@ int layout_search(const struct layout_par *par, int coils, double extent, double
 	memcpy(coil, s.best, (size_t)coils * sizeof *coil);
 	layout_judge(par, coil, coils, out);
 	out->judged = s.judged;
-	return 0;
+	return NUM_OK;
 }

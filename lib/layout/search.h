@@ -1,10 +1,11 @@
 /* search.h - where to put a given number of coils
  *
- * The velocity is known best where the sum of squares of the positions is largest, half
- * the coils at either end; pairing asks for short ways from coil to coil.  A pulse is
- * paired from each place to the next: over the first way within the window of the
- * traffic, or what the width of the first pulse leaves of it; over later ones within
- * three standard errors on either side of what the coils so far have measured.
+ * The standard error of the velocity is smallest if the sum of squares of the positions
+ * is largest, with half of the coils at either end; matching requires short distances
+ * between coils.  A pulse is paired from each place to the next: over the first way
+ * within the window of the traffic, or what the width of the first pulse leaves of it;
+ * over later ones within three standard errors on either side of what the coils so far
+ * have measured.
  *
  *	struct layout_par par = { .bound = { ... }, .traffic = { ... } };
  *	layout_judge(&par, coil, 2, &judged);
@@ -15,6 +16,7 @@
 
 #include "layout/bound.h"
 #include "layout/traffic.h"
+#include "num/status.h"
 
 struct layout_par {
 	struct bound_par bound;
@@ -23,7 +25,7 @@ struct layout_par {
 
 struct layout {
 	struct bound bound; /* closed form */
-	double unique;      /* probability that no other pulse can be taken for its own */
+	double unique;      /* probability of an unambiguous match */
 	double by_width;    /* the same where the first pulse's width is made use of */
 	long judged;        /* layouts looked at */
 };
@@ -36,8 +38,8 @@ void layout_judge(
 
 /* The best of coils >= 2 within extent, the first at 0, whose by_width is not below
  * least: first of all layouts on a grid of so many steps, then by moving coils by half
- * the step again and again.  -1 where no layout of the grid is good enough. */
-int layout_search(const struct layout_par *par, int coils, double extent, double least,
-	int steps, double *coil, struct layout *out);
+ * the step again and again.  NUM_DOMAIN where no layout of the grid is good enough. */
+enum num_status layout_search(const struct layout_par *par, int coils, double extent,
+	double least, int steps, double *coil, struct layout *out);
 
 #endif

@@ -1,4 +1,4 @@
-/* traffic.h - how often particles in a pipe stand in each other's way
+/* traffic.h - probabilities that pulses of particles in a pipe overlap or are confused
  *
  * Particles arrive as a Poisson process, spread over the section of the pipe in
  * proportion to the flow.  None comes nearer to the wall than 1 % of the radius.

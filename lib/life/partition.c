@@ -3,6 +3,7 @@
 #include "num/realisations.h"
 #include "num/room.h"
 #include "num/running.h"
+#include "num/status.h"
 #include <gsl/gsl_randist.h>
 #include <limits.h>
 #include <math.h>
@@ -126,7 +127,8 @@ static int group_sizes(struct class *c, const struct realisation_cell *cell, siz
 }
 
 /* Takes all that one realisation did; its cells are sorted by step. */
-static int take_history(void *to, const struct realisation_cell *cell, size_t n)
+static enum num_status take_history(
+	void *to, const struct realisation_cell *cell, size_t n)
 {
 	struct class *c = to;
 	double volume = 0, steps = 0, d;
@@ -137,7 +139,7 @@ static int take_history(void *to, const struct realisation_cell *cell, size_t n)
 		for (end = i; end < n && cell[end].step == cell[i].step; end++)
 			here += cell[end].volume;
 		if (!c->sparse && end > i + 1)
-			return -1;
+			return NUM_DOMAIN;
 		if (cell[i].step < c->owner->first_step)
 			continue;
 		running_add(&c->cell, here);
@@ -153,9 +155,9 @@ static int take_history(void *to, const struct realisation_cell *cell, size_t n)
 	running_add(&c->volume, volume);
 	c->product += d * (volume - c->volume.mean);
 	if (c->owner->sizes && group_sizes(c, cell, n))
-		return -1;
+		return NUM_MEMORY;
 	c->nhistories++;
-	return 0;
+	return NUM_OK;
 }
 
 int partition_class(struct partition *p, int sparse, double pressure, double area)

@@ -61,10 +61,10 @@ struct cnn_frame {
 	double centre, duration, scale, middle, reach;
 };
 
-/* 1 where the network has the inputs and outputs described above. */
+/* 1 if the network has the inputs and outputs described above. */
 int cnn_suits(const struct network *net);
 
-/* Fills x[2 * CNN_POINTS]; 0 where the section does not suit: it is longer than the grid
+/* Fills x[2 * CNN_POINTS]; 0 if the section does not suit: it is longer than the grid
  * (CNN_POINTS / CNN_PER_PULSE = 5.12 durations), empty, all zero, sampled too coarsely,
  * or reach is above CNN_REACH_MAX durations.  A smaller reach than CNN_REACH_MIN is taken
  * as that. */
@@ -75,7 +75,7 @@ int cnn_lay(const struct cnn_section *section, network_real *x, struct cnn_frame
 int cnn_pulses(const network_real *output, const struct cnn_frame *frame, int sources,
 	struct cnn_pulse *pulse);
 
-/* Both with the network in between; 0 where the section does not suit. */
+/* Both with the network in between; 0 if the section does not suit. */
 int cnn_apply(struct network *net, const struct cnn_section *section, int sources,
 	struct cnn_pulse *pulse);
 

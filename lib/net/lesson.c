@@ -1,5 +1,6 @@
 /* lesson.c - what a network is trained with: samples of one kind, with their loss */
 #include "net/lesson.h"
+#include "num/status.h"
 #include <stdlib.h>
 #include <string.h>
 

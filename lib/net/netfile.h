@@ -1,6 +1,6 @@
 /* netfile.h - networks as text: the layers in one line, the weights in one file
  *
- * Layers are words parted by blanks:
+ * Layers are words separated by blanks:
  *
  *	50:tanh              dense layer of 50 units
  *	50+:tanh             cascade layer: hands on its input beside its 50 units
@@ -17,7 +17,8 @@
  *	purpose delays                   one word: what the outputs mean
  *	input 1 2 500                    channels, rows, columns
  *	layers 10:tanh 3:linear
- *	weights 10043                    their number, then the numbers, parted by blanks,
+ *	weights 10043                    their number, then the numbers, separated by
+ * blanks,
  *	...                              in the order of network_weights()
  *	end
  *

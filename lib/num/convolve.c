@@ -1,5 +1,6 @@
 #include "num/convolve.h"
 #include "num/fft.h"
+#include "num/status.h"
 #include <complex.h>
 #include <math.h>
 #include <stdlib.h>
@@ -49,7 +50,7 @@ struct convolve *convolve_new(
 	return convolve_borrow(nx, ny, kind, pool, NULL);
 }
 
-/* 1 where a transform of n points takes longer than a padded one: FFTW 3.3 does from the
+/* 1 if a transform of n points takes longer than a padded one: FFTW 3.3 does from the
  * prime factor 37 on (992 = 31 * 32: 0.9, 962 = 26 * 37: 1.3, 1021: 2.8 times as long).
  */
 static int is_awkward(size_t n)
@@ -154,13 +155,13 @@ double *convolve_alloc(const struct convolve *c)
 /* Transforms an even field given by its quarter, rows of mx / 2 + 1, in place: rows and
  * columns one by one, each spread to its full length, and the half that symmetry gives
  * back is left out. */
-static int transform_quarter(double *quarter, size_t mx, size_t my)
+static enum num_status transform_quarter(double *quarter, size_t mx, size_t my)
 {
 	size_t lx = mx / 2 + 1, ly = my / 2 + 1, longest = mx > my ? mx : my;
 	double *line = fft_alloc(longest);
 	double complex *out = fft_alloc_complex(longest / 2 + 1);
 	struct fft *rows = fft_new(mx, 1), *columns = fft_new(my, 1);
-	int status = line && out && rows && columns ? 0 : -1;
+	enum num_status status = line && out && rows && columns ? NUM_OK : NUM_MEMORY;
 
 	for (size_t y = 0; status == 0 && y < ly; y++) {
 		for (size_t x = 0; x < mx; x++)
@@ -183,13 +184,13 @@ static int transform_quarter(double *quarter, size_t mx, size_t my)
 	return status;
 }
 
-static int set_kernel(const struct convolve *c, double *kernel,
+static enum num_status set_kernel(const struct convolve *c, double *kernel,
 	double (*value)(const void *context, size_t ix, size_t iy), const void *context)
 {
 	size_t height = kernel_column(c);
 	double scale = 1 / ((double)c->mx * (double)c->my);
 	double *quarter = fft_alloc(height * c->lx);
-	int status = -1;
+	enum num_status status = NUM_MEMORY;
 
 	if (quarter) {
 		for (size_t iy = 0; iy < height; iy++)
@@ -221,7 +222,7 @@ static double periodic_value(const void *context, size_t ix, size_t iy)
 		p->context, x < p->nx - x ? x : p->nx - x, y < p->ny - y ? y : p->ny - y);
 }
 
-int convolve_kernel(const struct convolve *c, double *kernel,
+enum num_status convolve_kernel(const struct convolve *c, double *kernel,
 	double (*value)(const void *context, size_t ix, size_t iy), const void *context)
 {
 	const struct period period = { c->nx, c->ny, value, context };
@@ -244,13 +245,13 @@ static double quarter_value(const void *context, size_t ix, size_t iy)
 }
 
 /* By way of the values of one period. */
-static int wrapped_spectrum(const struct convolve *c, double *kernel,
+static enum num_status wrapped_spectrum(const struct convolve *c, double *kernel,
 	double (*factor)(const void *context, size_t kx, size_t ky), const void *context)
 {
 	size_t lx = c->nx / 2 + 1, ly = c->ny / 2 + 1;
 	double *value = fft_alloc(lx * ly);
 	struct quarter quarter = { value, lx, 1 / ((double)c->nx * (double)c->ny) };
-	int status = -1;
+	enum num_status status = NUM_MEMORY;
 
 	if (value) {
 		for (size_t i = 0; i < lx * ly; i++)
@@ -263,7 +264,7 @@ static int wrapped_spectrum(const struct convolve *c, double *kernel,
 	return status;
 }
 
-int convolve_spectrum(const struct convolve *c, double *kernel,
+enum num_status convolve_spectrum(const struct convolve *c, double *kernel,
 	double (*factor)(const void *context, size_t kx, size_t ky), const void *context)
 {
 	size_t height = kernel_column(c);

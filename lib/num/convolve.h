@@ -23,6 +23,7 @@
 #define NUM_CONVOLVE_H
 
 #include "num/pool.h"
+#include "num/status.h"
 #include <stddef.h>
 
 enum convolve_kind {
@@ -55,14 +56,14 @@ double *convolve_scratch(const struct convolve *c, size_t *room);
 double *convolve_alloc(const struct convolve *c);
 
 /* A kernel by its values at offset (ix, iy), 0 <= ix, iy; periodic: up to half the
- * grid, beyond it follows by symmetry.  Returns 0, or -1 when out of memory. */
-int convolve_kernel(const struct convolve *c, double *kernel,
+ * grid, beyond it follows by symmetry. */
+enum num_status convolve_kernel(const struct convolve *c, double *kernel,
 	double (*value)(const void *context, size_t ix, size_t iy), const void *context);
 
 /* A kernel by its factors in Fourier space at wavenumber (kx, ky), 0 <= kx <= mx / 2,
  * in cycles per mx points, where mx = nx for periodic ones, or the padded or bridged
- * size. Returns 0, or -1 when out of memory. */
-int convolve_spectrum(const struct convolve *c, double *kernel,
+ * size. */
+enum num_status convolve_spectrum(const struct convolve *c, double *kernel,
 	double (*factor)(const void *context, size_t kx, size_t ky), const void *context);
 
 /* y = kernel * x; y may be x. */

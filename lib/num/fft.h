@@ -1,4 +1,4 @@
-/* fft.h - Fourier transforms whose bits depend on nothing but the data
+/* fft.h - Fourier transforms with reproducible bits
  *
  * Thin wrapper of FFTW plans made with FFTW_ESTIMATE (measured planning picks other
  * algorithms from run to run).  Planning is serialised inside.  Transforms are not

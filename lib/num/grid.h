@@ -1,4 +1,4 @@
-/* grid.h - where a point of a grid stands in memory: rows of nx, ny of them */
+/* grid.h - index of a grid point in memory: ny rows of nx points */
 #ifndef NUM_GRID_H
 #define NUM_GRID_H
 

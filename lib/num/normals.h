@@ -14,8 +14,8 @@ struct normals *normals_new(
 	uint64_t seed, uint32_t realisation, enum rng_purpose purpose);
 void normals_free(struct normals *normals);
 
-/* Two independent numbers for index < 2^48.  One time in fifty more random words are
- * needed: they are taken from indices of 2^48 to 2^61 of the same stream. */
+/* Two independent numbers for index < 2^48. In one case of fifty more random words are
+ * needed; they are taken from indices 2^48 to 2^61 of the same stream. */
 void normals_pair(const struct normals *normals, uint64_t index, double pair[2]);
 /* The same numbers for index, index + 1, ..., faster: pairs[2 * count]. */
 void normals_pairs(

@@ -16,8 +16,8 @@ enum { PHILOX_ROW = 16 };
 void philox4x32_row(
 	const uint32_t counter[4], const uint32_t key[2], uint32_t out[4][PHILOX_ROW]);
 
-/* What a stream is drawn for; part of the counter, so that adding a purpose leaves
- * all others as they were.  Never renumber. */
+/* Purpose of a stream; part of the counter, so that adding a purpose does not change
+ * other streams. Never renumber. */
 enum rng_purpose {
 	RNG_SURFACE = 1,   /* phases and amplitudes of a surface */
 	RNG_SURFACE_2 = 2, /* second surface of a pair */

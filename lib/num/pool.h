@@ -1,7 +1,7 @@
 /* pool.h - a pool of threads whose results do not depend on how many there are
  *
- * Work is cut into jobs beforehand, by the size of the problem alone; each job writes
- * its own place.  Sums are made per chunk and then added in order of the chunks.
+ * Work is divided into jobs that depend only on the size of the problem; each job writes
+ * to its own memory. Sums are computed per chunk and added in the order of the chunks.
  */
 #ifndef NUM_POOL_H
 #define NUM_POOL_H
@@ -10,7 +10,7 @@
 
 struct pool;
 
-/* threads >= 1; NULL when threads cannot be had.  A pool of 1 starts none. */
+/* threads >= 1; NULL when threads cannot be created.  A pool of 1 starts none. */
 struct pool *pool_new(int threads);
 void pool_free(struct pool *pool);
 int pool_threads(const struct pool *pool); /* 1 for NULL */

@@ -1,7 +1,7 @@
-/* realisations.h - the rows of an ensemble, handed on realisation by realisation
+/* realisations.h - the rows of an ensemble, grouped by realisation
  *
- * Rows may come in any order as long as they fit in memory; of longer tables the rows of
- * a realisation must stand together, or at least no further apart than the room.  Memory
+ * Rows may be in any order as long as they fit in memory; in longer tables the rows of a
+ * realisation must be contiguous, or at least no further apart than the room.  Memory
  * does not grow with the number of rows.
  *
  *	struct realisations *r = realisations_new(REALISATIONS_ROOM, take, &sums);
@@ -13,11 +13,12 @@
 #ifndef NUM_REALISATIONS_H
 #define NUM_REALISATIONS_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 enum { REALISATIONS_ROOM = 1 << 20 }; /* cells: 48 MB */
 
-/* What one realisation did in one step; SI units. */
+/* The wear of one realisation in one step; SI units. */
 struct realisation_cell {
 	long realisation, step;
 	long part; /* of the table */
@@ -27,13 +28,14 @@ struct realisation_cell {
 enum realisations_status {
 	REALISATIONS_OK,
 	REALISATIONS_MEMORY,
-	REALISATIONS_AGAIN, /* one comes again that was handed on already */
+	REALISATIONS_AGAIN, /* a realisation occurs again after it was passed on */
 	REALISATIONS_STOP   /* take gave up */
 };
 
 /* Receives all cells of a realisation by ascending step, several of one step where its
  * rows did not follow one another; not 0: give up. */
-typedef int realisations_take(void *to, const struct realisation_cell *cell, size_t n);
+typedef enum num_status realisations_take(
+	void *to, const struct realisation_cell *cell, size_t n);
 
 struct realisations;
 
@@ -44,7 +46,7 @@ void realisations_free(struct realisations *r);
 /* Rows of the same realisation, step and part that follow one another are summed up. */
 enum realisations_status realisations_add(
 	struct realisations *r, const struct realisation_cell *row);
-/* Hands on what is left; once, after the last row. */
+/* Passes on the remaining realisations; call once, after the last row. */
 enum realisations_status realisations_end(struct realisations *r);
 /* The realisation a status other than REALISATIONS_MEMORY is about. */
 long realisations_culprit(const struct realisations *r);

@@ -9,10 +9,11 @@
 #ifndef NUM_ROOM_H
 #define NUM_ROOM_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 /* Sees to it that the array whose pointer stands at *array has room for want elements;
- * what is in it stays.  -1 when out of memory: then all is as before. */
-int room_for(void *array, size_t *room, size_t want, size_t size);
+ * what is in it stays.  Where there is no memory all is as before. */
+enum num_status room_for(void *array, size_t *room, size_t want, size_t size);
 
 #endif

@@ -1,12 +1,12 @@
-/* select.h - as much sorting as a few order statistics need */
+/* select.h - partial sorting for a few order statistics */
 #ifndef NUM_SELECT_H
 #define NUM_SELECT_H
 
 #include <stddef.h>
 
-/* Reorders v[n] so that v[rank[k]] is what it were if v were sorted, for count ascending
- * ranks below n; smaller values come before each of them and larger ones after.  Expected
- * work n log(count).  No NAN. */
+/* Reorders v[n] so that v[rank[k]] is the value it would have if v were sorted, for count
+ * ascending ranks below n; smaller values come before each of them and larger ones after.
+ * Expected work n log(count).  No NAN. */
 void select_ranks(double *v, size_t n, const size_t *rank, size_t count);
 
 #endif

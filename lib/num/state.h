@@ -1,7 +1,7 @@
-/* state.h - what an object remembers, as bytes of this machine and back
+/* state.h - serialises an object to bytes of this machine and back
  *
- * One function of the object names its parts; whether they are counted, written or read
- * is the state's business:
+ * One function of the object lists its members; the state determines whether they are
+ * counted, written or read:
  *
  *	void order_pass(struct order *o, struct state *s)
  *	{

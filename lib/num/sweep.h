@@ -11,8 +11,7 @@
 
 enum { SWEEP_CHUNKS = 256, SWEEP_SUMS = 6 };
 
-/* What one pass gathers; a pass adds to the sums, raises the maximum and lowers the
- * minimum. */
+/* Results of one pass; a pass adds to the sums and updates maximum and minimum. */
 struct sweep {
 	double sum[SWEEP_SUMS];
 	double max; /* -INFINITY at the start */
@@ -23,7 +22,7 @@ struct sweep sweep_run(struct pool *pool, size_t n,
 	void (*pass)(void *context, size_t begin, size_t end, struct sweep *s),
 	void *context);
 
-/* Terms that are added one after another in such a sum. */
+/* Number of terms added sequentially in such a sum. */
 double sweep_terms(size_t n);
 
 #endif

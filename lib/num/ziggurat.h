@@ -1,7 +1,7 @@
 /* ziggurat.h - the layers under the normal curve that normals.h and life/draw.h share
  *
  * Marsaglia and Tsang (J. Stat. Softw. 5(8), 2000) as repaired by Doornik (2005): the
- *caller takes layer and place u within it from different bits.
+ * caller takes layer and place u within it from different bits.
  *
  *	x = u * z.edge[layer];
  *	if (fabs(u) < z.inner[layer])
@@ -27,7 +27,7 @@ struct ziggurat {
 
 void ziggurat_make(struct ziggurat *z);
 
-/* 1 where x of a layer above the lowest lies under the curve, at a height that u, uniform
+/* 1 if x of a layer above the lowest lies under the curve, at a height that u, uniform
  * in (0, 1), tells. */
 int ziggurat_under(const struct ziggurat *z, size_t layer, double x, double u);
 

@@ -1,6 +1,7 @@
 /* ensemble.c - see ensemble.h */
 #include "stats/ensemble.h"
 #include "num/realisations.h"
+#include "num/status.h"
 #include <limits.h>
 #include <math.h>
 #include <stdint.h>
@@ -34,7 +35,7 @@ struct ensemble {
 };
 
 /* The step becomes one of those there are: nothing happened in it so far. */
-static int reach_step(struct ensemble *e, size_t step)
+static enum num_status reach_step(struct ensemble *e, size_t step)
 {
 	if (step > e->step_room) {
 		size_t room = e->step_room ? e->step_room : 64;
@@ -45,12 +46,12 @@ static int reach_step(struct ensemble *e, size_t step)
 			room *= 2;
 		more = realloc(e->step, room * sizeof *more);
 		if (!more)
-			return -1;
+			return NUM_MEMORY;
 		e->step = more;
 		if (e->par.by_step) {
 			sketch = realloc(e->step_diameters, room * sizeof *sketch);
 			if (!sketch)
-				return -1;
+				return NUM_MEMORY;
 			e->step_diameters = sketch;
 		}
 		e->step_room = room;
@@ -60,7 +61,7 @@ static int reach_step(struct ensemble *e, size_t step)
 		if (e->par.by_step)
 			e->step_diameters[e->steps] = (struct sketch){ 0 };
 	}
-	return 0;
+	return NUM_OK;
 }
 
 static uint64_t mix(uint64_t x)
@@ -89,7 +90,7 @@ static struct ensemble_group *group_of(struct ensemble *e, long realisation)
 }
 
 /* What one realisation did in one step. */
-static int take_step(struct ensemble *e, struct ensemble_group *g,
+static enum num_status take_step(struct ensemble *e, struct ensemble_group *g,
 	const struct realisation_cell *cell, double volume_before)
 {
 	struct ensemble_step *s = &e->step[cell->step - 1];
@@ -99,18 +100,18 @@ static int take_step(struct ensemble *e, struct ensemble_group *g,
 	running_add(&s->volume, cell->volume);
 	running_add(&s->total_volume, volume_before + cell->volume);
 	if (!g || cell->count == 0)
-		return 0;
+		return NUM_OK;
 	if (step > g->steps) {
 		double *more = realloc(g->count, step * sizeof *more);
 
 		if (!more)
-			return -1;
+			return NUM_MEMORY;
 		memset(more + g->steps, 0, (step - g->steps) * sizeof *more);
 		g->count = more;
 		g->steps = step;
 	}
 	g->count[step - 1] += cell->count;
-	return 0;
+	return NUM_OK;
 }
 
 /* Steps up to last in which a realisation shed nothing; sums: of the steps before. */
@@ -166,7 +167,7 @@ static void take_volume(
 }
 
 /* Takes a realisation whose cells are sorted by step. */
-static int take(void *to, const struct realisation_cell *cell, size_t n)
+static enum num_status take(void *to, const struct realisation_cell *cell, size_t n)
 {
 	struct ensemble *e = to;
 	struct ensemble_group *g = e->par.groups ? group_of(e, cell->realisation) : NULL;
@@ -178,11 +179,11 @@ static int take(void *to, const struct realisation_cell *cell, size_t n)
 		i = sum_step(cell, i, n, &part, &here);
 		if (i == 0) {
 			e->clash = 1;
-			return -1;
+			return NUM_DOMAIN;
 		}
 		take_nothing(e, &next, here.step - 1, &sums);
 		if (take_step(e, g, &here, sums.volume))
-			return -1;
+			return NUM_MEMORY;
 		next++;
 		sums.volume += here.volume;
 		sums.count += here.count;
@@ -200,7 +201,7 @@ static int take(void *to, const struct realisation_cell *cell, size_t n)
 	}
 	e->after.total_count += sums.count;
 	take_volume(e, g, volume, steps);
-	return 0;
+	return NUM_OK;
 }
 
 struct ensemble *ensemble_new(const struct ensemble_par *par)
@@ -268,20 +269,20 @@ static size_t share(size_t n, size_t most)
 	return each > most ? most : each < VALUES_LEAST ? VALUES_LEAST : each;
 }
 
-static int add_diameter(struct ensemble *e, const struct shed *p)
+static enum num_status add_diameter(struct ensemble *e, const struct shed *p)
 {
 	if (p->step < e->par.first || (e->par.last && p->step > e->par.last))
-		return 0;
+		return NUM_OK;
 	running_add(&e->diameter, p->diameter);
 	if (sketch_add(&e->diameters, p->diameter, SKETCH_MOST))
-		return -1;
+		return NUM_MEMORY;
 	if (e->par.by_step && sketch_add(&e->step_diameters[p->step - 1], p->diameter,
 				      share(e->steps, SKETCH_MOST)))
-		return -1;
+		return NUM_MEMORY;
 	if (e->par.groups && sketch_add(&group_of(e, p->realisation)->diameters,
 				     p->diameter, share(e->groups, SKETCH_MOST)))
-		return -1;
-	return 0;
+		return NUM_MEMORY;
+	return NUM_OK;
 }
 
 enum ensemble_status ensemble_add(struct ensemble *e, const struct shed *p)
@@ -305,7 +306,7 @@ enum ensemble_status ensemble_took_place(struct ensemble *e, long realisation, l
 	return reading(e, realisations_add(e->reader, &cell));
 }
 
-/* Realisations that nothing tells of shed nothing, in steps that all took place. */
+/* Realisations without rows have no particles, and all their steps took place. */
 static void add_empty(struct ensemble *e)
 {
 	double n = e->par.realisations - e->told;

@@ -26,28 +26,28 @@ struct ensemble;
 struct shed {
 	long realisation, step; /* from 0; from 1 */
 	double diameter, volume;
-	long part; /* of the table; a realisation stands in one */
+	long part; /* of the table; a realisation is in one part */
 };
 
 enum ensemble_status {
 	ENSEMBLE_OK,
 	ENSEMBLE_MEMORY,
-	ENSEMBLE_APART, /* a realisation's rows stand too far apart */
-	ENSEMBLE_CLASH, /* a realisation stands in two parts */
-	ENSEMBLE_MORE   /* more realisations than there were said to be */
+	ENSEMBLE_APART, /* the rows of a realisation are too far apart */
+	ENSEMBLE_CLASH, /* a realisation occurs in two parts */
+	ENSEMBLE_MORE   /* more realisations than specified */
 };
 
 struct ensemble_par {
-	double realisations; /* with those that shed nothing; 0: those told of */
-	long first, last;    /* steps that count; last 0: up to the last told of */
-	int partial;         /* only steps told of took place, else all of them */
+	double realisations; /* including those without particles; 0: those with rows */
+	long first, last;    /* steps that count; last 0: up to the last with a row */
+	int partial;         /* 1: only steps with a row took place, else all of them */
 	double low, high;    /* diameters that count */
 	int truncated;       /* distributions are cut off at low and high */
 	int per_step;        /* growth: particles of a step, not all so far */
 	double confidence;   /* of intervals */
-	int by_step;         /* keep the diameters of every step apart */
-	int groups; /* keep so many groups of realisations apart for a bootstrap, at
-		     * most: each realisation is one where there are no more */
+	int by_step;         /* keep the diameters of every step separately */
+	int groups; /* largest number of groups of realisations for a bootstrap; each
+		       realisation is a group if there are no more */
 };
 
 /* One step over the realisations it took place in. */
@@ -71,15 +71,15 @@ struct ensemble *ensemble_new(const struct ensemble_par *par); /* NULL: out of m
 void ensemble_free(struct ensemble *e);
 
 enum ensemble_status ensemble_add(struct ensemble *e, const struct shed *particle);
-/* A step that took place, whether or not it shed a particle. */
+/* A step that took place, with or without particles. */
 enum ensemble_status ensemble_took_place(struct ensemble *e, long realisation, long step);
 /* Once; the functions below are for closed ensembles. */
 enum ensemble_status ensemble_close(struct ensemble *e);
 /* The realisation that ENSEMBLE_APART and ENSEMBLE_CLASH are about. */
 long ensemble_culprit(const struct ensemble *e);
-size_t ensemble_told(const struct ensemble *e); /* realisations that the rows tell of */
+size_t ensemble_told(const struct ensemble *e); /* realisations with rows */
 
-/* As given, with the values that 0 stands for. */
+/* As given, with 0 replaced by the values it stands for. */
 const struct ensemble_par *ensemble_par(const struct ensemble *e);
 double ensemble_particles(const struct ensemble *e); /* all, whether they count or not */
 const struct ensemble_step *ensemble_step(const struct ensemble *e, long step);
@@ -89,7 +89,7 @@ const struct running *ensemble_volume(const struct ensemble *e);
 const struct running *ensemble_diameter(const struct ensemble *e);
 const struct sketch *ensemble_diameters(const struct ensemble *e);
 const struct sketch *ensemble_step_diameters(const struct ensemble *e, long step);
-/* The groups of realisations told of. */
+/* The groups of realisations with rows. */
 const struct ensemble_group *ensemble_groups(const struct ensemble *e, size_t *n);
 double ensemble_empty(const struct ensemble *e); /* realisations in no group */
 

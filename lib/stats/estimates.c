@@ -1,5 +1,6 @@
 #include "stats/estimates.h"
 #include "num/rng.h"
+#include "num/status.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
 #include <limits.h>
@@ -27,8 +28,8 @@ enum weibull_status estimate_weibull(
 	return fit(ensemble_par(e), diameters->value, diameters->weight, diameters->n, w);
 }
 
-static int estimate_fits(const struct ensemble_par *par, const struct basis *b,
-	struct weibull *w, struct estimate out[ESTIMATES])
+static enum num_status estimate_fits(const struct ensemble_par *par,
+	const struct basis *b, struct weibull *w, struct estimate out[ESTIMATES])
 {
 	enum weibull_status status = fit(par, b->diameter, b->weight, b->diameters, w);
 	struct power p;
@@ -36,7 +37,7 @@ static int estimate_fits(const struct ensemble_par *par, const struct basis *b,
 	for (int q = 0; q < ESTIMATES; q++)
 		out[q] = (struct estimate){ NAN, NAN, NAN };
 	if (status == WEIBULL_MEMORY)
-		return -1;
+		return NUM_MEMORY;
 	if (status == WEIBULL_OK) {
 		out[ESTIMATE_SHAPE] = w->shape;
 		out[ESTIMATE_SCALE] = w->scale;
@@ -48,7 +49,7 @@ static int estimate_fits(const struct ensemble_par *par, const struct basis *b,
 		out[ESTIMATE_EXPONENT] = p.exponent;
 		out[ESTIMATE_OFFSET] = p.offset;
 	}
-	return 0;
+	return NUM_OK;
 }
 
 /* Numbers of the steps that count, and as many places for their particles. */
@@ -65,17 +66,17 @@ static double *new_growth(const struct ensemble_par *par, struct basis *b)
 	return step;
 }
 
-int estimate_all(const struct ensemble *e, struct estimate out[ESTIMATES])
+enum num_status estimate_all(const struct ensemble *e, struct estimate out[ESTIMATES])
 {
 	const struct ensemble_par *par = ensemble_par(e);
 	const struct sketch *x = ensemble_diameters(e);
 	struct basis b = { .diameter = x->value, .weight = x->weight, .diameters = x->n };
 	double *step = new_growth(par, &b);
 	struct weibull w;
-	int status;
+	enum num_status status;
 
 	if (!step)
-		return -1;
+		return NUM_MEMORY;
 	for (size_t k = 0; k < b.steps; k++) {
 		const struct ensemble_step *s = ensemble_step(e, par->first + (long)k);
 
@@ -114,7 +115,8 @@ static void bootstrap_free(struct bootstrap *b)
 		gsl_rng_free(b->rng);
 }
 
-static int bootstrap_open(struct bootstrap *b, const struct ensemble *e, uint64_t seed)
+static enum num_status bootstrap_open(
+	struct bootstrap *b, const struct ensemble *e, uint64_t seed)
 {
 	*b = (struct bootstrap){ .e = e };
 	b->group = ensemble_groups(e, &b->groups);
@@ -128,13 +130,13 @@ static int bootstrap_open(struct bootstrap *b, const struct ensemble *e, uint64_
 	b->basis.weight = b->weight;
 	b->rng = rng_new(seed, 0, RNG_BOOTSTRAP);
 	if (b->times && b->value && b->weight && b->step && b->rng)
-		return 0;
+		return NUM_OK;
 	bootstrap_free(b);
-	return -1;
+	return NUM_MEMORY;
 }
 
-/* Draws as many groups as there are, those of realisations that nothing tells of among
- * them; returns how many realisations they have. */
+/* Draws as many groups as there are, including realisations without rows; returns the
+ * number of realisations drawn. */
 static double draw_groups(struct bootstrap *b)
 {
 	size_t n = b->groups;
@@ -183,7 +185,7 @@ static void sum_growth(struct bootstrap *b, double drawn)
 }
 
 /* Of a draw that has so many realisations. */
-static int draw_estimates(
+static enum num_status draw_estimates(
 	struct bootstrap *b, double drawn, struct estimate out[ESTIMATES])
 {
 	const struct ensemble_par *par = ensemble_par(b->e);
@@ -210,14 +212,14 @@ static int draw_estimates(
 	}
 	sum_growth(b, drawn);
 	if (estimate_fits(par, &b->basis, &w, out))
-		return -1;
+		return NUM_MEMORY;
 	if (!par->partial)
 		worn += drawn - known;
 	if (diameter.n > 0)
 		out[ESTIMATE_MEAN_DIAMETER].value = diameter.mean;
 	if (worn > 0)
 		out[ESTIMATE_VOLUME_STEP].value = volume / worn;
-	return 0;
+	return NUM_OK;
 }
 
 /* Draws of all estimates, [quantity][draw], in fresh memory; NULL when out of memory. */
@@ -227,7 +229,7 @@ static double *draw_all(const struct ensemble *e, uint64_t seed, long draws,
 	double *draw = calloc((size_t)draws * ESTIMATES, sizeof *draw);
 	struct estimate each[ESTIMATES];
 	struct bootstrap b;
-	int status = draw ? bootstrap_open(&b, e, seed) : -1;
+	enum num_status status = draw ? bootstrap_open(&b, e, seed) : NUM_MEMORY;
 
 	if (status) {
 		free(draw);
@@ -265,21 +267,21 @@ static void put_interval(double *x, long draws, double confidence, struct estima
 	out->high = sample_quantile(x, n, 0.5 + 0.5 * confidence);
 }
 
-int estimate_bootstrap(const struct ensemble *e, uint64_t seed, long draws,
+enum num_status estimate_bootstrap(const struct ensemble *e, uint64_t seed, long draws,
 	struct estimate out[ESTIMATES])
 {
 	double *draw = draw_all(e, seed, draws, out);
 
 	if (!draw)
-		return -1;
+		return NUM_MEMORY;
 	for (int q = 0; q < ESTIMATES; q++)
 		put_interval(
 			draw + q * draws, draws, ensemble_par(e)->confidence, &out[q]);
 	free(draw);
-	return 0;
+	return NUM_OK;
 }
 
-int estimate_errors(const struct ensemble *e, uint64_t seed, long draws,
+enum num_status estimate_errors(const struct ensemble *e, uint64_t seed, long draws,
 	const struct estimate value[ESTIMATES], double error[ESTIMATES],
 	double log_error[ESTIMATES])
 {
@@ -287,7 +289,7 @@ int estimate_errors(const struct ensemble *e, uint64_t seed, long draws,
 	const struct running *volume = ensemble_volume(e);
 
 	if (!draw)
-		return -1;
+		return NUM_MEMORY;
 	for (int q = 0; q < ESTIMATES; q++) {
 		struct running plain = { 0 }, log_of = { 0 };
 
@@ -305,7 +307,7 @@ int estimate_errors(const struct ensemble *e, uint64_t seed, long draws,
 	error[ESTIMATE_VOLUME_STEP] = sqrt(running_variance(volume) / volume->n);
 	log_error[ESTIMATE_VOLUME_STEP] = error[ESTIMATE_VOLUME_STEP] / volume->mean;
 	free(draw);
-	return 0;
+	return NUM_OK;
 }
 
 /* Student's t of the sum of two variances (Welch, Biometrika 34 (1947) 28). */

@@ -4,11 +4,12 @@
  *	if (estimate_all(e, out) == 0)
  *		printf("%g\n", out[ESTIMATE_SHAPE].value);
  *
- * Functions return 0, or -1 when out of memory.  nan: there is no such value.
+ * nan: there is no such value.
  */
 #ifndef CONTACT_ESTIMATES_H
 #define CONTACT_ESTIMATES_H
 
+#include "num/status.h"
 #include "stats/ensemble.h"
 #include <stdint.h>
 
@@ -25,19 +26,19 @@ enum estimate_quantity {
 	ESTIMATES
 };
 
-int estimate_all(const struct ensemble *e, struct estimate out[ESTIMATES]);
+enum num_status estimate_all(const struct ensemble *e, struct estimate out[ESTIMATES]);
 
-/* Puts intervals from draws of whole realisations with replacement (Efron's bootstrap)
- * into out, but for the distance: particles of one surface hang together.  Needs groups
- * (struct ensemble_par); where there are more realisations than groups, the groups are
- * drawn, whose means vary as those of their realisations do. */
-int estimate_bootstrap(const struct ensemble *e, uint64_t seed, long draws,
+/* Computes intervals by bootstrap samples of whole realisations (Efron), except for the
+ * distance: particles of one surface are correlated.  Needs groups (struct ensemble_par);
+ * where there are more realisations than groups, the groups are drawn, whose means vary
+ * as those of their realisations do. */
+enum num_status estimate_bootstrap(const struct ensemble *e, uint64_t seed, long draws,
 	struct estimate out[ESTIMATES]);
 
 /* Standard errors of the estimates and of their logarithms by the same draws, enlarged by
  * sqrt(K / (K - 1)) for K realisations, since resampling has their variance over K; that
- * of the volume from its standard deviation.  NAN where there is none. */
-int estimate_errors(const struct ensemble *e, uint64_t seed, long draws,
+ * of the volume from its standard deviation.  NAN if there is none. */
+enum num_status estimate_errors(const struct ensemble *e, uint64_t seed, long draws,
 	const struct estimate value[ESTIMATES], double error[ESTIMATES],
 	double log_error[ESTIMATES]);
 

@@ -1,5 +1,6 @@
 /* sketch.c - see sketch.h */
 #include "stats/sketch.h"
+#include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -14,19 +15,19 @@ static int ascending(const void *a, const void *b)
 	return (p->value > q->value) - (p->value < q->value);
 }
 
-int sketch_sort(struct sketch *s)
+enum num_status sketch_sort(struct sketch *s)
 {
 	struct weighted *pair;
 
 	for (size_t i = 1;; i++) {
 		if (i >= s->n)
-			return 0;
+			return NUM_OK;
 		if (s->value[i] < s->value[i - 1])
 			break;
 	}
 	pair = malloc(s->n * sizeof *pair);
 	if (!pair)
-		return -1;
+		return NUM_MEMORY;
 	for (size_t i = 0; i < s->n; i++)
 		pair[i] = (struct weighted){ s->value[i], s->weight[i] };
 	qsort(pair, s->n, sizeof *pair, ascending);
@@ -35,7 +36,7 @@ int sketch_sort(struct sketch *s)
 		s->weight[i] = pair[i].weight;
 	}
 	free(pair);
-	return 0;
+	return NUM_OK;
 }
 
 /* How many there would be if all within a ratio of their least were one. */
@@ -53,13 +54,13 @@ static size_t merged(const struct sketch *s, double ratio)
 	return n;
 }
 
-static int merge(struct sketch *s, size_t most)
+static enum num_status merge(struct sketch *s, size_t most)
 {
 	double ratio = s->ratio > 1 ? s->ratio : 1, least = 0;
 	size_t n = 0;
 
 	if (sketch_sort(s))
-		return -1;
+		return NUM_MEMORY;
 	while (merged(s, ratio) > most / 2)
 		ratio = 1 + fmax(2 * (ratio - 1), 1e-12);
 	for (size_t i = 0; i < s->n; i++) {
@@ -75,13 +76,13 @@ static int merge(struct sketch *s, size_t most)
 	}
 	s->n = n;
 	s->ratio = ratio;
-	return 0;
+	return NUM_OK;
 }
 
-int sketch_add(struct sketch *s, double x, size_t most)
+enum num_status sketch_add(struct sketch *s, double x, size_t most)
 {
 	if (s->n >= most && merge(s, most))
-		return -1;
+		return NUM_MEMORY;
 	if (s->n == s->room) {
 		size_t room = s->room ? 2 * s->room : 16;
 		double *value = realloc(s->value, room * sizeof *value), *weight;
@@ -90,13 +91,13 @@ int sketch_add(struct sketch *s, double x, size_t most)
 			s->value = value;
 		weight = value ? realloc(s->weight, room * sizeof *weight) : NULL;
 		if (!weight)
-			return -1;
+			return NUM_MEMORY;
 		s->weight = weight;
 		s->room = room;
 	}
 	s->value[s->n] = x;
 	s->weight[s->n++] = 1;
-	return 0;
+	return NUM_OK;
 }
 
 void sketch_free(struct sketch *s)

@@ -14,6 +14,7 @@
 #ifndef STATS_SKETCH_H
 #define STATS_SKETCH_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 enum { SKETCH_MOST = 1 << 17 };
@@ -24,10 +25,10 @@ struct sketch {
 	double ratio; /* widest of the values made one, 1: none was */
 };
 
-/* x > 0; most >= 4.  -1 when out of memory. */
-int sketch_add(struct sketch *s, double x, size_t most);
-/* Ascending values; -1 when out of memory. */
-int sketch_sort(struct sketch *s);
+/* x > 0; most >= 4. */
+enum num_status sketch_add(struct sketch *s, double x, size_t most);
+/* Ascending values. */
+enum num_status sketch_sort(struct sketch *s);
 void sketch_free(struct sketch *s);
 
 #endif

@@ -1,4 +1,5 @@
 #include "stats/statistics.h"
+#include "num/status.h"
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
@@ -341,7 +342,8 @@ static struct estimate t_interval(
 	return e;
 }
 
-/* Golden section around the best of a grid of exponents; -1 if that is at the rim. */
+/* Golden-section search around the best of a grid of exponents; -1 if that is at an end
+ * of the grid. */
 static double best_exponent(const double *x, const double *y, size_t n, double unit)
 {
 	static const double golden = 0.6180339887498949;
@@ -393,7 +395,7 @@ static int distinct(const double *x, size_t n)
 	return count;
 }
 
-int power_fit(
+enum num_status power_fit(
 	const double *x, const double *y, size_t n, double confidence, struct power *p)
 {
 	double unit = 0, b, factor, offset, rest, jj[6] = { 0 }, var[3], s2,
@@ -401,14 +403,14 @@ int power_fit(
 
 	for (size_t i = 0; i < n; i++) {
 		if (!(x[i] > 0))
-			return -1;
+			return NUM_DOMAIN;
 		unit = fmax(unit, x[i]);
 	}
 	if (distinct(x, n) < 3)
-		return -1;
+		return NUM_DOMAIN;
 	b = best_exponent(x, y, n, unit);
 	if (b < 0)
-		return -1;
+		return NUM_DOMAIN;
 	rest = linear_fit(x, y, n, b, unit, &factor, &offset);
 	for (size_t i = 0; i < n; i++) {
 		double u = pow(x[i] / unit, b), v = factor * u * log(x[i]);
@@ -425,7 +427,7 @@ int power_fit(
 	p->exponent = t_interval(b, sqrt(s2 * var[1]), dof, confidence);
 	p->offset = t_interval(offset, sqrt(s2 * var[2]), dof, confidence);
 	p->rms = sqrt(rest / (double)n);
-	return 0;
+	return NUM_OK;
 }
 
 /* Samples */

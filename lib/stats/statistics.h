@@ -8,9 +8,10 @@
 #define CONTACT_STATISTICS_H
 
 #include "num/running.h"
+#include "num/status.h"
 #include <stddef.h>
 
-/* A value and its confidence interval; nan where there is none. */
+/* A value and its confidence interval; nan if there is none. */
 struct estimate {
 	double value, low, high;
 };
@@ -25,8 +26,8 @@ struct weibull {
 enum weibull_status {
 	WEIBULL_OK,
 	WEIBULL_NONE, /* fewer than two different values (apart by 1e-12 of themselves),
-		       * values outside [low, high], or no maximum: a cut-off sample
-		       * that looks like no Weibull distribution */
+		       * values outside [low, high], or no maximum: a truncated sample
+		       * that no Weibull distribution fits */
 	WEIBULL_MEMORY
 };
 
@@ -50,9 +51,9 @@ struct power {
 };
 
 /* Least squares for n points with x > 0.  Intervals from the Jacobian and Student's t,
- * nan with three points.  -1 with fewer than three different x or without a minimum for
- * an exponent in [0.01, 20]. */
-int power_fit(
+ * nan with three points.  NUM_DOMAIN with fewer than three different x or without a
+ * minimum for an exponent in [0.01, 20]. */
+enum num_status power_fit(
 	const double *x, const double *y, size_t n, double confidence, struct power *p);
 
 /* The mean of values, with its interval by Student's t. */

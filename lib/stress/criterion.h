@@ -1,4 +1,5 @@
 /* criterion.h - equivalent stresses by which a material fails
+ *
  * An equivalent stress is a seminorm of the stress: it is proportional to the load, and
  * the equivalent stress of a sum is at most the sum of the equivalent stresses, so bounds
  * for parts of the load add up to a bound for the whole.  It depends only on the

@@ -1,4 +1,5 @@
 #include "stress/free_sum.h"
+#include "num/status.h"
 #include "stress/lattice.h"
 #include "stress/window.h"
 
@@ -11,9 +12,10 @@ enum {
 	OUTER = 2 * INNER, /* to that of the next */
 	RADIUS =
 		2 * INNER, /* cells to the radius of the innermost, on every other cell */
-	REACH = RADIUS + 1,  /* of what it leaves to the cells: the element adds one */
-	SMALL = 32,          /* sides up to this are summed in full, which is no slower */
-	COARSEST = 6 * OUTER /* points a side up to which no window is worth its while */
+	REACH = RADIUS +
+		1,  /* of the part that is summed on the cells: the element adds one */
+	SMALL = 32, /* sides up to this are summed in full, which is no slower */
+	COARSEST = 6 * OUTER /* points per side up to which a window does not save time */
 };
 
 /* Depth over the distance of points: interpolation through eight of them leaves 2e-5 of
@@ -171,23 +173,22 @@ static struct influence *kernel_new(
 }
 
 /* Convolution of loads with a kernel of the reach that w has: a field for each number. */
-static int convolve(
+static enum num_status convolve(
 	struct free_sum *s, enum source source, double z, double cells, struct window *w)
 {
 	struct influence *kernel =
 		kernel_new(s, source, z, cells, w->reach_x + 1, w->reach_y + 1);
-	double transforms = -1;
+	enum num_status status = NUM_MEMORY;
+	double transforms = 0;
 
 	w->par = &s->par;
 	w->kernel = kernel;
 	w->pool = s->pool;
 	if (kernel)
-		transforms = window_sum(w);
+		status = window_sum(w, &transforms);
 	free(kernel);
-	if (transforms < 0)
-		return -1;
 	s->work.transforms += transforms;
-	return 0;
+	return status;
 }
 
 static void free_fields(double **field, int count)
@@ -196,16 +197,16 @@ static void free_fields(double **field, int count)
 		free(field[c]);
 }
 
-static int new_fields(double **field, int count, size_t n)
+static enum num_status new_fields(double **field, int count, size_t n)
 {
 	for (int c = 0; c < count; c++) {
 		field[c] = calloc(n, sizeof **field);
 		if (!field[c]) {
 			free_fields(field, c);
-			return -1;
+			return NUM_MEMORY;
 		}
 	}
-	return 0;
+	return NUM_OK;
 }
 
 /* The full sum. */
@@ -230,7 +231,7 @@ static void hand_span(void *context, size_t job, int worker)
 	h->want->put(h->want->context, span, number);
 }
 
-static int sum_full(
+static enum num_status sum_full(
 	struct free_sum *s, double z, const struct stress_want *want, const struct box *b)
 {
 	struct hand_over hand = { NULL, b, want };
@@ -244,10 +245,10 @@ static int sum_full(
 		.numbers = want->numbers,
 		.out = field,
 		.stride = (size_t)b->wx };
-	int status;
+	enum num_status status;
 
 	if (new_fields(field, want->numbers, (size_t)b->wx * (size_t)b->wy))
-		return -1;
+		return NUM_MEMORY;
 	status = convolve(s, ELEMENT, z, 1, &w);
 	hand.field = field;
 	if (!status)
@@ -258,8 +259,8 @@ static int sum_full(
 }
 
 /* The part inside the innermost window, on the cells of the box. */
-static int sum_near(struct free_sum *s, double z, const struct stress_want *want,
-	const struct box *b, double *const *field)
+static enum num_status sum_near(struct free_sum *s, double z,
+	const struct stress_want *want, const struct box *b, double *const *field)
 {
 	struct window w = { .mx = b->wx,
 		.my = b->wy,
@@ -295,8 +296,8 @@ static void level_free(struct level *l)
 }
 
 /* Points every so many cells, or finer points, with their loads. */
-static int level_new(const struct free_sum *s, struct level *l, int mx, int my,
-	int spacing, const double *load, size_t stride, int element, int numbers)
+static enum num_status level_new(const struct free_sum *s, struct level *l, int mx,
+	int my, int spacing, const double *load, size_t stride, int element, int numbers)
 {
 	size_t points;
 
@@ -309,20 +310,22 @@ static int level_new(const struct free_sum *s, struct level *l, int mx, int my,
 	if (!l->lattice || !l->load || new_fields(l->field, numbers, points)) {
 		l->numbers = 0;
 		level_free(l);
-		return -1;
+		return NUM_MEMORY;
 	}
 	if (lattice_spread(l->lattice, load, stride, element, l->load)) {
 		level_free(l);
-		return -1;
+		return NUM_MEMORY;
 	}
-	return 0;
+	return NUM_OK;
 }
 
 /* Fields on the points of a level, cells apart: of all loads, or of those outside the
- * window of INNER points where finer points have the rest. */
-static int sum_level(struct free_sum *s, double z, int cells, int outer, struct level *l)
+ * window of INNER points if finer points sum the others. */
+static enum num_status sum_level(
+	struct free_sum *s, double z, int cells, int outer, struct level *l)
 {
-	int mx = l->x.points, my = l->y.points, status;
+	int mx = l->x.points, my = l->y.points;
+	enum num_status status;
 	struct level next;
 	struct window w = { .mx = mx,
 		.my = my,
@@ -339,7 +342,7 @@ static int sum_level(struct free_sum *s, double z, int cells, int outer, struct 
 	w.reach_x = w.reach_y = OUTER;
 	if (convolve(s, outer ? POINT_RING : POINT_INNER, z, cells, &w) ||
 		level_new(s, &next, mx, my, 2, l->load, (size_t)mx, 0, l->numbers))
-		return -1;
+		return NUM_MEMORY;
 	status = sum_level(s, z, 2 * cells, 1, &next);
 	for (int c = 0; !status && c < l->numbers; c++)
 		status = lattice_refine(next.lattice, next.field[c], l->field[c]);
@@ -347,15 +350,15 @@ static int sum_level(struct free_sum *s, double z, int cells, int outer, struct 
 	return status;
 }
 
-static int sum_coarse(struct free_sum *s, double z, int cells,
+static enum num_status sum_coarse(struct free_sum *s, double z, int cells,
 	const struct stress_want *want, const struct box *b)
 {
 	struct level l;
-	int status;
+	enum num_status status;
 
 	if (level_new(s, &l, b->wx, b->wy, cells, corner(s, b), (size_t)s->nx, 1,
 		    want->numbers))
-		return -1;
+		return NUM_MEMORY;
 	status = sum_level(s, z, cells, 0, &l);
 	if (!status)
 		status = lattice_gather(l.lattice, l.field, NULL, 0, b->x0, b->y0, want);
@@ -364,16 +367,16 @@ static int sum_coarse(struct free_sum *s, double z, int cells,
 	return status;
 }
 
-static int sum_split(
+static enum num_status sum_split(
 	struct free_sum *s, double z, const struct stress_want *want, const struct box *b)
 {
 	double *near[STRESS_NUMBERS];
 	struct level l;
-	int status;
+	enum num_status status;
 
 	if (level_new(s, &l, b->wx, b->wy, 2, corner(s, b), (size_t)s->nx, 1,
 		    want->numbers))
-		return -1;
+		return NUM_MEMORY;
 	status = sum_level(s, z, 2, 1, &l);
 	if (!status && !(status = new_fields(
 				 near, want->numbers, (size_t)b->wx * (size_t)b->wy))) {
@@ -388,14 +391,14 @@ static int sum_split(
 	return status;
 }
 
-int free_sum_at(struct free_sum *s, double z, const struct stress_want *want)
+enum num_status free_sum_at(struct free_sum *s, double z, const struct stress_want *want)
 {
 	double side = fmax(s->par.dx, s->par.dy), small = fmin(s->par.dx, s->par.dy);
 	struct box b = box_of(s, want);
 	int cells = 2;
 
 	if (want->count == 0)
-		return 0;
+		return NUM_OK;
 	if (s->full || b.wx <= SMALL || b.wy <= SMALL || side > OBLONG * small)
 		return sum_full(s, z, want, &b);
 	if (z < SMOOTH * cells * side)

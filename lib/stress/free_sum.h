@@ -1,11 +1,13 @@
 /* free_sum.h - stress below a loaded part of an otherwise free half-space
+ *
  * Multilevel summation.  The stress at depth z is smooth on a length of about z, so it is
  * summed on points as far apart as the depth allows: loads are distributed onto them, and
  * the stress is interpolated at the nodes.  The influence is split by smooth windows
  * whose radius doubles from level to level: the part inside a window is summed at short
  * range on the points, the rest on points twice as far apart.  Near the surface the
- * innermost window is summed on the cells.  Work and memory are proportional to the number of cells.  The error is
- * below 3e-4 of the largest pressure, typically 3e-5 (tests/unit/stress.c).
+ * innermost window is summed on the cells.  Work and memory are proportional to the
+ * number of cells.  The error is below 3e-4 of the largest pressure, typically 3e-5
+ * (tests/unit/stress.c).
  *
  * The full sum over all cells is for small grids, for elongated cells, and for
  * verification.
@@ -14,6 +16,7 @@
 #define STRESS_FREE_SUM_H
 
 #include "num/pool.h"
+#include "num/status.h"
 #include "stress/influence.h"
 #include "stress/span.h"
 
@@ -35,8 +38,8 @@ void free_sum_free(struct free_sum *s);
 
 /* Sets the pressure, which is borrowed until the next call. */
 void free_sum_load(struct free_sum *s, const double *pressure);
-/* Stress at depth z; -1 when out of memory. */
-int free_sum_at(struct free_sum *s, double z, const struct stress_want *want);
+/* Stress at depth z. */
+enum num_status free_sum_at(struct free_sum *s, double z, const struct stress_want *want);
 
 struct sum_work free_sum_work(const struct free_sum *s);
 

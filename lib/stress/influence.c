@@ -127,7 +127,7 @@ struct influence influence_element(
 	return f;
 }
 
-/* 1 - w: 0 with seven derivatives at the middle (in r), 1 with three at the rim. */
+/* 1 - w: 0 with seven derivatives at the centre (in r), 1 with three at the edge. */
 static double outside(double x, double y, double rx, double ry)
 {
 	double u = x * x / (rx * rx) + y * y / (ry * ry), u2 = u * u;

@@ -48,7 +48,7 @@ double influence_image(const struct influence_par *par, const struct influence *
 int influence_odd(enum stress_number number, int axis);
 
 /* Response to the wave exp(i (kx x + ky y)) of pressure on a periodic surface: plane
- * strain along the wave vector, antiplane across it; the mean load meets a laterally
+ * strain along the wave vector, antiplane across it; the mean load acts on a laterally
  * confined half-space (Westergaard; Johnson, Contact Mechanics, 13.1). */
 void influence_wave(const struct influence_par *par, double kx, double ky, double z,
 	double complex number[STRESS_NUMBERS]);

@@ -1,4 +1,5 @@
 #include "stress/lattice.h"
+#include "num/status.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -64,7 +65,7 @@ static void add_element(double t, double spacing, double weight[ORDER])
 				weight);
 }
 
-static int line_new(struct line *l, const struct lattice_axis *axis)
+static enum num_status line_new(struct line *l, const struct lattice_axis *axis)
 {
 	size_t n = (size_t)axis->cells;
 	double origin = lattice_origin(axis);
@@ -74,7 +75,7 @@ static int line_new(struct line *l, const struct lattice_axis *axis)
 	l->gather = calloc(n, sizeof *l->gather);
 	l->spread = calloc(n, sizeof *l->spread);
 	if (!l->start || !l->gather || !l->spread)
-		return -1;
+		return NUM_MEMORY;
 	for (int i = 0; i < axis->cells; i++) {
 		double t = (i - origin) / axis->spacing;
 		int start = (int)floor(t) - SIDE;
@@ -91,7 +92,7 @@ static int line_new(struct line *l, const struct lattice_axis *axis)
 		add_weights(t - start, 1, l->gather[i]);
 		add_element(t - start, axis->spacing, l->spread[i]);
 	}
-	return 0;
+	return NUM_OK;
 }
 
 static void line_free(struct line *l)
@@ -125,7 +126,7 @@ void lattice_done(struct lattice *l)
 	free(l);
 }
 
-/* A row of cells onto a row of points; 0 where all are zero. */
+/* A row of cells onto a row of points; 0 if all are zero. */
 static int spread_row(
 	const struct line *l, const double *cell, int element, double *restrict row)
 {
@@ -145,14 +146,14 @@ static int spread_row(
 	return any;
 }
 
-int lattice_spread(const struct lattice *l, const double *cell, size_t stride,
+enum num_status lattice_spread(const struct lattice *l, const double *cell, size_t stride,
 	int element, double *load)
 {
 	size_t points = (size_t)l->x.axis.points;
 	double *row = malloc(points * sizeof *row);
 
 	if (!row)
-		return -1;
+		return NUM_MEMORY;
 	for (int y = 0; y < l->y.axis.cells; y++) {
 		const double *wy = element ? l->y.spread[y] : l->y.gather[y];
 		double *restrict to = load + (size_t)l->y.start[y] * points;
@@ -164,7 +165,7 @@ int lattice_spread(const struct lattice *l, const double *cell, size_t stride,
 				to[i] += wy[j] * row[i];
 	}
 	free(row);
-	return 0;
+	return NUM_OK;
 }
 
 struct gather {
@@ -239,8 +240,9 @@ static void gather_span(void *context, size_t job, int worker)
 	g->want->put(g->want->context, span, number);
 }
 
-int lattice_gather(const struct lattice *l, double *const *field, double *const *more,
-	size_t stride, int x0, int y0, const struct stress_want *want)
+enum num_status lattice_gather(const struct lattice *l, double *const *field,
+	double *const *more, size_t stride, int x0, int y0,
+	const struct stress_want *want)
 {
 	struct gather g = { l, field, more, stride, x0, y0, want, NULL, 0 };
 
@@ -248,23 +250,23 @@ int lattice_gather(const struct lattice *l, double *const *field, double *const 
 		 (size_t)want->numbers * (size_t)l->x.axis.cells;
 	g.scratch = malloc(g.room * (size_t)pool_threads(l->pool) * sizeof *g.scratch);
 	if (!g.scratch)
-		return -1;
+		return NUM_MEMORY;
 	pool_run(l->pool, want->count, gather_span, &g);
 	free(g.scratch);
-	return 0;
+	return NUM_OK;
 }
 
-int lattice_refine(const struct lattice *l, const double *field, double *cell)
+enum num_status lattice_refine(const struct lattice *l, const double *field, double *cell)
 {
 	double *row = malloc((size_t)l->x.axis.points * sizeof *row);
 
 	if (!row)
-		return -1;
+		return NUM_MEMORY;
 	for (int y = 0; y < l->y.axis.cells; y++) {
 		combine_rows(l, field, y, 0, l->x.axis.points, row);
 		for (int x = 0; x < l->x.axis.cells; x++)
 			*cell++ += interpolate(&l->x, x, row);
 	}
 	free(row);
-	return 0;
+	return NUM_OK;
 }

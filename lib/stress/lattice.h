@@ -10,6 +10,7 @@
 #define STRESS_LATTICE_H
 
 #include "num/pool.h"
+#include "num/status.h"
 #include "stress/span.h"
 
 struct lattice;
@@ -34,17 +35,19 @@ struct lattice *lattice_new(
 void lattice_done(struct lattice *l);
 
 /* Adds the loads of the cells, rows of stride, to load[points of y][points of x];
- * element: they are those of elements.  -1 when out of memory. */
-int lattice_spread(const struct lattice *l, const double *cell, size_t stride,
+ * element: they are those of elements. */
+enum num_status lattice_spread(const struct lattice *l, const double *cell, size_t stride,
 	int element, double *load);
 
-/* Adds the interpolated field to cell[cells of y][cells of x].  -1 when out of memory. */
-int lattice_refine(const struct lattice *l, const double *field, double *cell);
+/* Adds the interpolated field to cell[cells of y][cells of x]. */
+enum num_status lattice_refine(
+	const struct lattice *l, const double *field, double *cell);
 
 /* Interpolates field[c][points of y][points of x] at the requested nodes, whose
  * coordinates are relative to (x0, y0), and adds more[c] (may be NULL), given on the
  * cells from (x0, y0) on with rows of stride. */
-int lattice_gather(const struct lattice *l, double *const *field, double *const *more,
-	size_t stride, int x0, int y0, const struct stress_want *want);
+enum num_status lattice_gather(const struct lattice *l, double *const *field,
+	double *const *more, size_t stride, int x0, int y0,
+	const struct stress_want *want);
 
 #endif

@@ -1,4 +1,5 @@
 #include "stress/stress.h"
+#include "num/status.h"
 #include "stress/free_sum.h"
 #include "stress/influence.h"
 #include "stress/stress_kernel.h"
@@ -20,8 +21,8 @@ struct stress {
 	struct stress_par par;
 	const struct stress_criterion *criterion;
 	struct influence_par influence;
-	/* Pressures are held in this unit, a power of two near the largest, so that
-	 * squares neither overflow nor vanish. */
+	/* Pressures are scaled by a power of two near the largest one, so that squares
+	 * neither overflow nor underflow. */
 	double unit;
 	double *pressure;
 	double total;     /* N */
@@ -145,7 +146,7 @@ static void add_to_block(struct stress *s, int x, int y, double load)
 	b->load += load;
 }
 
-/* Power of two at or below the largest magnitude; 0 where a value is not finite. */
+/* Power of two at or below the largest magnitude; 0 if a value is not finite. */
 static double unit_of(const double *pressure, size_t n)
 {
 	double most = 0;
@@ -160,14 +161,13 @@ static double unit_of(const double *pressure, size_t n)
 	return most > 0 ? ldexp(0.5, exponent) : 1;
 }
 
-int stress_load(struct stress *s, const double *pressure)
+enum num_status stress_load(struct stress *s, const double *pressure)
 {
 	size_t nx = (size_t)s->par.nx, ny = (size_t)s->par.ny;
 	double area = s->par.dx * s->par.dy, unit = unit_of(pressure, nx * ny);
 
 	if (unit == 0) {
-		errno = EDOM;
-		return -1;
+		return NUM_DOMAIN;
 	}
 	s->unit = unit;
 	s->total = 0;
@@ -189,7 +189,7 @@ int stress_load(struct stress *s, const double *pressure)
 		wave_sum_load(s->wave, s->pressure);
 	else
 		free_sum_load(s->free, s->pressure);
-	return 0;
+	return NUM_OK;
 }
 
 struct stress_work stress_work(const struct stress *s)
@@ -336,15 +336,15 @@ static void take_tensor(void *context, const struct stress_span *span,
 		}
 }
 
-static int sum(struct stress *s, double z, const struct stress_want *want)
+static enum num_status sum(struct stress *s, double z, const struct stress_want *want)
 {
 	for (size_t i = 0; i < want->count; i++)
 		s->nodes += want->span[i].end - want->span[i].begin;
 	return s->wave ? wave_sum_at(s->wave, z, want) : free_sum_at(s->free, z, want);
 }
 
-int stress_at(struct stress *s, double z, const struct stress_span *span, size_t count,
-	double *value)
+enum num_status stress_at(struct stress *s, double z, const struct stress_span *span,
+	size_t count, double *value)
 {
 	struct take t = { s, value };
 	struct stress_want want = { span, count, STRESS_DEVIATOR, take_equivalent, &t };
@@ -354,26 +354,26 @@ int stress_at(struct stress *s, double z, const struct stress_span *span, size_t
 	for (size_t i = 0; i < count; i++)
 		memset(value + (size_t)span[i].y * (size_t)s->par.nx + span[i].begin, 0,
 			(size_t)(span[i].end - span[i].begin) * sizeof *value);
-	return 0;
+	return NUM_OK;
 }
 
-int stress_tensor(struct stress *s, double z, double *tensor)
+enum num_status stress_tensor(struct stress *s, double z, double *tensor)
 {
 	size_t rows = (size_t)s->par.ny, n = rows * (size_t)s->par.nx;
 	struct stress_span *span = malloc(rows * sizeof *span);
 	struct take t = { s, tensor };
 	struct stress_want want = { span, rows, STRESS_NUMBERS, take_tensor, &t };
-	int status = -1;
+	enum num_status status = NUM_MEMORY;
 
 	if (!span)
-		return -1;
+		return NUM_MEMORY;
 	for (int y = 0; y < s->par.ny; y++)
 		span[y] = (struct stress_span){ y, 0, s->par.nx };
 	if (s->loaded)
 		status = sum(s, z, &want);
 	else {
 		memset(tensor, 0, STRESS_COMPONENTS * n * sizeof *tensor);
-		status = 0;
+		status = NUM_OK;
 	}
 	free(span);
 	return status;

@@ -3,6 +3,7 @@
  * Sums the influence of every loaded cell (2-6) at the nodes below the cell centres.  The
  * surface carries pressure p, interpolated between the cell centres, and the shear mu p
  * along +x or +y.
+ *
  * On a free surface there is no load outside the grid; on a periodic one the pressure is
  * the Fourier series through the cell centres, and the mean lateral strain is zero.
  *
@@ -21,6 +22,7 @@
 #define STRESS_STRESS_H
 
 #include "num/pool.h"
+#include "num/status.h"
 #include "stress/criterion.h"
 #include "stress/span.h"
 
@@ -58,9 +60,9 @@ struct stress_work {
 struct stress *stress_new(const struct stress_par *par);
 void stress_free(struct stress *s);
 
-/* Sets the pressure (nx * ny, finite; borrowed until the next call); -1 if it is not
- * finite. */
-int stress_load(struct stress *s, const double *pressure);
+/* Sets the pressure (nx * ny, finite; borrowed until the next call); NUM_DOMAIN if it is
+ * not finite. */
+enum num_status stress_load(struct stress *s, const double *pressure);
 
 /* Finds spans of nodes whose equivalent stress at depth z may exceed limit; all other
  * nodes are below the limit at this and every greater depth.  span has room for
@@ -73,14 +75,13 @@ size_t stress_spans_max(const struct stress *s);
  * lengths: that of a point load, or of the mean load if periodic. */
 double stress_deep(const struct stress *s, double z);
 
-/* Equivalent stress at depth z at the nodes of the spans: value[iy * nx + ix].  -1 when
- * out of memory. */
-int stress_at(struct stress *s, double z, const struct stress_span *span, size_t count,
-	double *value);
+/* Equivalent stress at depth z at the nodes of the spans: value[iy * nx + ix]. */
+enum num_status stress_at(struct stress *s, double z, const struct stress_span *span,
+	size_t count, double *value);
 
 /* The whole tensor on the whole grid: six fields xx yy zz xy xz yz of nx * ny each, one
- * after another.  -1 when out of memory. */
-int stress_tensor(struct stress *s, double z, double *tensor);
+ * after another. */
+enum num_status stress_tensor(struct stress *s, double z, double *tensor);
 
 struct stress_work stress_work(const struct stress *s);
 

@@ -4,6 +4,7 @@
  * pushes along +z (sigma_zz = -p under it); a shear s > 0 acts on the material along
  * +x or +y (sigma_xz = -s under it, the outer normal being -z).  All lengths in one
  * unit, of any size: the stresses depend on their ratios alone.
+ *
  * Love's and Cerruti's solutions as printed by Liu and Wang, J. Tribol. 124 (2002)
  * 36-45, with two signs corrected (the logarithm of sigma_xx and all of sigma_yz under
  * shear) and every term rewritten to avoid cancellation in R + x and R + y.

@@ -1,5 +1,6 @@
 #include "stress/wave_sum.h"
 #include "num/fft.h"
+#include "num/status.h"
 #include "stress/lattice.h"
 
 #include <math.h>
@@ -81,8 +82,8 @@ struct carry {
 	double complex *const *spectrum;
 };
 
-/* Influence of wave (i, j).  The shortest wave along an axis of even size stands for
- * both directions: the mean of the two. */
+/* Influence of wave (i, j).  The shortest wave along an axis of even size represents both
+ * directions: the mean of the two. */
 static void grid_wave(
 	const struct carry *g, int i, int j, double complex number[STRESS_NUMBERS])
 {
@@ -184,27 +185,27 @@ static void hand_span(void *context, size_t job, int worker)
 	h->want->put(h->want->context, span, number);
 }
 
-static int hand_over(struct wave_sum *s, double *const *field,
+static enum num_status hand_over(struct wave_sum *s, double *const *field,
 	const struct lattice_axis *x, const struct lattice_axis *y,
 	const struct stress_want *want)
 {
 	struct hand_over h = { s, field, want };
 	struct lattice *l;
-	int status;
+	enum num_status status;
 
 	if (x->points == s->nx && y->points == s->ny) {
 		pool_run(s->pool, want->count, hand_span, &h);
 		s->work.full_layers++;
-		return 0;
+		return NUM_OK;
 	}
 	l = lattice_new(x, y, s->pool);
-	status = l ? lattice_gather(l, field, NULL, 0, 0, 0, want) : -1;
+	status = l ? lattice_gather(l, field, NULL, 0, 0, 0, want) : NUM_MEMORY;
 	lattice_done(l);
 	s->work.coarse_layers++;
 	return status;
 }
 
-int wave_sum_at(struct wave_sum *s, double z, const struct stress_want *want)
+enum num_status wave_sum_at(struct wave_sum *s, double z, const struct stress_want *want)
 {
 	struct lattice_axis x = lattice_periodic(
 				    s->nx, points_for(s->nx, s->par.dx, z, s->full)),
@@ -217,11 +218,11 @@ int wave_sum_at(struct wave_sum *s, double z, const struct stress_want *want)
 		lattice_origin(&y), z, want->numbers, spectrum };
 	double *field[STRESS_NUMBERS] = { NULL }, *plane = fft_alloc(n);
 	struct fft *fft = fft_new((size_t)x.points, (size_t)y.points);
-	int status = plane && fft ? 0 : -1;
+	enum num_status status = plane && fft ? NUM_OK : NUM_MEMORY;
 
 	for (int c = 0; c < want->numbers; c++) {
 		spectrum[c] = fft_alloc_complex(columns * (size_t)y.points);
-		status = spectrum[c] ? status : -1;
+		status = spectrum[c] ? status : NUM_MEMORY;
 	}
 	if (!status)
 		pool_run(s->pool, (size_t)y.points / 2 + 1, carry_row, &carry);

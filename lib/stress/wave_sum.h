@@ -1,4 +1,5 @@
 /* wave_sum.h - stress below a periodic half-space
+ *
  * The pressure is the Fourier series through the cell centres; the mean lateral strain is
  * zero.  A wave decays exponentially with wavenumber times depth, so below the surface
  * the short waves are omitted, the sum is computed on as few points as the others need,
@@ -8,6 +9,7 @@
 #define STRESS_WAVE_SUM_H
 
 #include "num/pool.h"
+#include "num/status.h"
 #include "stress/free_sum.h"
 
 struct wave_sum;
@@ -18,8 +20,8 @@ struct wave_sum *wave_sum_new(
 void wave_sum_free(struct wave_sum *s);
 
 void wave_sum_load(struct wave_sum *s, const double *pressure);
-/* Stress at depth z; -1 when out of memory. */
-int wave_sum_at(struct wave_sum *s, double z, const struct stress_want *want);
+/* Stress at depth z. */
+enum num_status wave_sum_at(struct wave_sum *s, double z, const struct stress_want *want);
 
 /* An upper bound of an equivalent stress at depth z, decreasing with z: the sum over the
  * waves. */

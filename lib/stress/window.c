@@ -1,5 +1,6 @@
 #include "stress/window.h"
 #include "num/fft.h"
+#include "num/status.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -148,7 +149,7 @@ static void mark_wanted(struct tiling *t)
 	}
 }
 
-static int prepare(struct tiling *t)
+static enum num_status prepare(struct tiling *t)
 {
 	const struct window *w = t->w;
 	size_t points = t->x.points * t->y.points,
@@ -167,34 +168,34 @@ static int prepare(struct tiling *t)
 		t->wanted = calloc(tiles, 1);
 	if (!t->plane || !t->image || !t->product || !t->transforms || !t->fft ||
 		(w->want && !t->wanted))
-		return -1;
+		return NUM_MEMORY;
 	if (w->want)
 		mark_wanted(t);
 	for (int c = 0; c < w->numbers; c++) {
 		t->kernel[c] = fft_alloc_complex(t->spectrum);
 		if (!t->kernel[c])
-			return -1;
+			return NUM_MEMORY;
 		put_kernel(t, (enum stress_number)c);
 		fft_forward(t->fft, t->plane, t->kernel[c]);
 		for (size_t i = 0; i < t->spectrum; i++)
 			t->kernel[c][i] *= scale;
 	}
-	return 0;
+	return NUM_OK;
 }
 
-double window_sum(const struct window *w)
+enum num_status window_sum(const struct window *w, double *transforms)
 {
 	struct tiling t = {
 		.w = w, .x = cut_axis(w->mx, w->reach_x), .y = cut_axis(w->my, w->reach_y)
 	};
 	size_t tiles = (size_t)t.x.count * (size_t)t.y.count;
-	double transforms = -1;
+	enum num_status status = prepare(&t);
 
-	if (prepare(&t) == 0) {
+	if (!status) {
 		pool_run(w->pool, tiles, sum_tile, &t);
-		transforms = w->numbers;
+		*transforms = w->numbers;
 		for (size_t i = 0; i < tiles; i++)
-			transforms += t.transforms[i];
+			*transforms += t.transforms[i];
 	}
 	fft_free(t.plane);
 	fft_free(t.image);
@@ -205,5 +206,5 @@ double window_sum(const struct window *w)
 		fft_done(t.fft);
 	free(t.wanted);
 	free(t.transforms);
-	return transforms;
+	return status;
 }

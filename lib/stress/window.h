@@ -1,4 +1,5 @@
 /* window.h - sums over the loads of a rectangle, by Fourier transform
+ *
  * Loads and nodes are on mx times my points; a kernel extends reach_x and reach_y points
  * in either direction.  A rectangle much larger than the reach is cut into tiles, which
  * are transformed with the loads within reach (overlap-save); tiles without loads, or in
@@ -8,6 +9,7 @@
 #define STRESS_WINDOW_H
 
 #include "num/pool.h"
+#include "num/status.h"
 #include "stress/influence.h"
 #include "stress/span.h"
 #include <stddef.h>
@@ -29,7 +31,7 @@ struct window {
 	struct pool *pool;
 };
 
-/* Computes the sums.  Returns the transforms that took, -1 when out of memory. */
-double window_sum(const struct window *w);
+/* Computes the sums; *transforms receives how many that took. */
+enum num_status window_sum(const struct window *w, double *transforms);
 
 #endif

@@ -1,6 +1,7 @@
 #include "surface/areal.h"
 #include "num/fft.h"
 #include "num/grid.h"
+#include "num/status.h"
 #include "surface/surface.h"
 #include <complex.h>
 #include <math.h>

@@ -8,7 +8,7 @@
 
 #include "num/status.h"
 
-/* Parameters of ISO 25178-2, heights taken from their mean; nan where a surface has
+/* Parameters of ISO 25178-2, heights taken from their mean; nan if a surface has
  * too few points for one. */
 struct surface_parameters {
 	double sa, sq, ssk, sku, sp, sv, sz;

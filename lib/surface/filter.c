@@ -1,5 +1,6 @@
 #include "surface/filter.h"
 #include "num/fft.h"
+#include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,7 +25,7 @@ struct kernel {
 	double *row;    /* [2 reach + 1]: of one point, divided by their sum */
 };
 
-/* 1 where waves that repeat along the line pass with less than 5e-13. */
+/* 1 if waves that repeat along the line pass with less than 5e-13. */
 static int is_mean(double step, double nesting, int n)
 {
 	return width(FILTER_PERIODIC) * nesting > 3 * n * step;

@@ -1,8 +1,8 @@
 /* filter.h - areal Gaussian filters (ISO 16610-61), form removal, power spectrum
  *
  * The Gaussian filter of nesting index c passes half of the amplitude of waves of length
- *c, 2^-(c / l)^2 of those of length l: an S-filter is what it passes, an L-filter what is
- * left.  Near the rim a polynomial of order p in either direction is fitted with the
+ * c, 2^-(c / l)^2 of those of length l: an S-filter is what it passes, an L-filter what
+ * is left.  Near the rim a polynomial of order p in either direction is fitted with the
  * Gaussian weights to what is there, and its value taken: order 0 is the mean, order 1
  * leaves planes and order 2 paraboloids as they are up to the rim.  Order 2 has another
  * transmission, (1 + pi a^2 f^2) exp(-pi a^2 f^2), with a such that half is passed at c.

@@ -1,4 +1,5 @@
 #include "surface/ratio.h"
+#include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

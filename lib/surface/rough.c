@@ -1,6 +1,7 @@
 /* rough.c - an ensemble of rough surfaces of given roughness */
 #include "surface/rough.h"
 #include "num/grid.h"
+#include "num/status.h"
 #include "surface/heights.h"
 #include "surface/surface.h"
 #include <math.h>

@@ -18,6 +18,7 @@
 #ifndef SURFACE_ROUGH_H
 #define SURFACE_ROUGH_H
 
+#include "num/status.h"
 #include "surface/spectrum.h"
 
 enum rough_kind {
@@ -59,7 +60,7 @@ struct rough_work {
 
 struct rough;
 
-/* *made is NULL where that fails. */
+/* *made is NULL if that fails. */
 enum rough_status rough_make(const struct rough_par *par, struct rough **made);
 void rough_free(struct rough *r);
 
@@ -67,7 +68,7 @@ void rough_free(struct rough *r);
 enum rough_status rough_surface(
 	struct rough *r, uint32_t realisation, double *z, struct rough_work *work);
 
-/* The spectrum behind it, NULL where all surfaces are flat. */
+/* The spectrum behind it, NULL if all surfaces are flat. */
 const struct spectrum *rough_spectrum(const struct rough *r);
 
 /* The roughness number index of a realisation: 0 the surface, 1 the second. */

@@ -2,6 +2,7 @@
 #include "surface/spectrum.h"
 #include "num/fft.h"
 #include "num/grid.h"
+#include "num/status.h"
 #include "surface/heights.h"
 #include <math.h>
 #include <stdlib.h>

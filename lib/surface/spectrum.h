@@ -55,7 +55,7 @@ enum spectrum_status {
 
 struct spectrum;
 
-/* *made is NULL where that fails.  On the sampled periodic grid the two correlation
+/* *made is NULL if that fails.  On the sampled periodic grid the two correlation
  * functions hold exactly: the power is the discrete transform of their periodic sums,
  * for the exponential one written as a mixture of Gaussians. */
 enum spectrum_status spectrum_make(

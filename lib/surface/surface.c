@@ -1,6 +1,7 @@
 /* surface.c - see surface.h */
 #include "surface/surface.h"
 #include "num/grid.h"
+#include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* report.h - how the modules of lib/wearpipe hand on why an object could not be made */
+/* report.h - how the modules of lib/wearpipe report the reason of a failed _new() */
 #ifndef WEARPIPE_REPORT_H
 #define WEARPIPE_REPORT_H
 

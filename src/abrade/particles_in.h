@@ -1,4 +1,4 @@
-/* particles_in.h - the particles that meet a gap: from a table or from a cleanliness code
+/* particles_in.h - the particles in a gap: from a table or from a cleanliness code
  */
 #ifndef PARTICLES_IN_H
 #define PARTICLES_IN_H
@@ -20,7 +20,7 @@ struct particles_in {
 
 /* Dies where options contradict one another. */
 void particles_check(int operands, double area, double inlet);
-/* NULL where a table is read. */
+/* NULL if a table is read. */
 const struct population *particles_population(double inlet_limit);
 
 /* Reads the table from path to its end. */
@@ -30,7 +30,7 @@ struct source *particles_drawn(
 	const struct population *p, double area, double gap, uint64_t seed);
 /* The next realisation; 0 at the end. */
 int particles_next(struct source *s, struct particles_in *in, long *realisation);
-/* 1 where the table tells realisations apart. */
+/* 1 if the table has a column of realisations. */
 int particles_apart(const struct source *s);
 const char *particles_upstream(const struct source *s); /* NULL if unknown */
 void particles_close(struct source *s);

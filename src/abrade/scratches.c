@@ -25,7 +25,7 @@ void scratches_add(long realisation, double diameter, double depth, double secti
 	list[n++] = (struct scratch){ realisation, diameter, depth, section };
 }
 
-/* A groove from which two bodies of equal hardness take half each goes half the way. */
+/* If both bodies are equally hard, a groove extends over half the distance on each. */
 static double way(const struct scratch *s, double length)
 {
 	double whole = abrasion_section(s->diameter, s->depth);

@@ -13,7 +13,7 @@
 #include <string.h>
 
 enum {
-	EXIT_ALARM = 4, /* an alarm stands after the last rows */
+	EXIT_ALARM = 4, /* an alarm is active after the last rows */
 	BLOCK = 4096    /* rows at a time with more than one thread */
 };
 

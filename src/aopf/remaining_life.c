@@ -282,7 +282,7 @@ static void heed_events(struct outlook *o, const struct outlook_row *in)
 	}
 }
 
-/* What the long-term model is told of a row. */
+/* Passes a row to the long-term model. */
 static void learn(struct outlook *o, const struct outlook_row *in,
 	const struct adaptive_row *filtered)
 {

@@ -23,14 +23,14 @@ extern struct outlook_options {
 	double zero;      /* value of y without any degradation */
 } outlook_options;
 
-/* For OPT_TABLE: what ends a life; how it is foreseen; what a plant makes of it. */
+/* For OPT_TABLE: failure; prediction; maintenance decisions. */
 extern struct opt outlook_end_rows[], outlook_model_rows[], outlook_plant_rows[];
 
 /* Dies where options contradict one another; bare: there is no filter. */
 void outlook_check(int bare);
 
-/* Reads the fleet and the events, if there are any; units are told apart by this column,
- * or by unit where it is NULL. */
+/* Reads the fleet and the events, if there are any; the column identifies units, or
+ * "unit" if it is NULL. */
 void outlook_open(const char *unit_column);
 void outlook_close(void);
 
@@ -50,7 +50,7 @@ void outlook_pass(struct outlook *o, struct state *s);
 void outlook_step(struct outlook *o, const struct outlook_row *in,
 	const struct adaptive_row *filtered, double *cell);
 int outlook_cells(void);
-int outlook_alarm(const struct outlook *o); /* the level that stands, 0: none */
+int outlook_alarm(const struct outlook *o); /* the active alarm level, 0: none */
 /* Counts the work it did. */
 void outlook_count(struct outlook *o);
 

@@ -20,7 +20,7 @@ struct machine {
 	double last; /* time */
 	int resumed;
 	uint64_t sequence;       /* of the last saved state */
-	struct adaptive *filter; /* NULL where bare */
+	struct adaptive *filter; /* NULL if bare */
 	struct outlook *outlook; /* NULL without a threshold */
 };
 
@@ -233,7 +233,7 @@ static uint64_t check_of(const struct units *units)
 		units->place + sizeof p, units->size, checksum(&p, sizeof p, BASIS));
 }
 
-/* Reads a place; 1 where it is whole. */
+/* Reads a place; 1 if it is whole. */
 static int read_place(
 	struct units *units, FILE *f, int number, int which, struct place *p)
 {
@@ -246,7 +246,7 @@ static int read_place(
 	return p->sequence > 0 && check_of(units) == p->check;
 }
 
-/* The unit of that number, from its newer whole place; 0 where there is none. */
+/* The unit of that number, from its newer complete copy; 0 if there is none. */
 static int resume_unit(struct units *units, FILE *f, int number)
 {
 	struct place place[2];

@@ -24,12 +24,12 @@ void units_free(struct units *units); /* counts the work done, too */
 struct machine *units_find(struct units *units, int number, const char *name);
 
 int unit_number(const struct machine *u);
-/* 0 where the row is not after the last one of a resumed unit. */
+/* 0 if the row is not after the last one of a resumed unit. */
 int unit_takes(const struct machine *u, double t);
 /* Fills the cells of a row; different units may step at the same time. */
 void unit_step(struct machine *u, const struct outlook_row *in, double *cell);
 int unit_cells(int bare);
-int units_alarm(const struct units *units); /* the highest level that stands */
+int units_alarm(const struct units *units); /* the highest active alarm level */
 
 /* options: those that shape the state; a file made with others is refused. */
 void units_resume(struct units *units, const char *path, const char *options);

@@ -146,7 +146,7 @@ enum contact_status press_to(const struct task *t, const double *height,
 	return status;
 }
 
-/* dF / d approach from loads a hundredth less and more; nan where these are not solved.
+/* dF / d approach from loads a hundredth less and more; nan if these are not solved.
  */
 static double find_stiffness(
 	const struct task *t, const double *height, const double *p, double pressure)

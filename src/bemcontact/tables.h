@@ -1,4 +1,4 @@
-/* tables.h - what is read off a contact, as rows beside the fields */
+/* tables.h - tables of contacts and of their patches */
 #ifndef BEMCONTACT_TABLES_H
 #define BEMCONTACT_TABLES_H
 
@@ -12,7 +12,7 @@ extern struct opt table_opts[]; /* for OPT_TABLE */
 int table_wanted(void);
 void tables_open(const char *upstream);
 /* A row for a contact, and rows for its patches if it is the record's last.  stiffness is
- * dF / d approach, nan where unknown. */
+ * dF / d approach, nan if unknown. */
 void tables_put(const struct record *r, const struct contact_par *par,
 	const struct contact_result *found, const double *pressure, double stiffness,
 	int converged, int last);

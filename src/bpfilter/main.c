@@ -138,7 +138,7 @@ static void check_samples(
 	size_t n = nframes * (size_t)channels, i, place;
 	double bad[LANES] = { 0 }, sum = 0;
 
-	/* x - x is 0, or nan where x is not finite */
+	/* x - x is 0, or nan if x is not finite */
 	for (i = 0; i + LANES <= n; i += LANES)
 		for (size_t k = 0; k < LANES; k++)
 			bad[k] += x[i + k] * headroom - x[i + k] * headroom;
@@ -167,7 +167,7 @@ struct chain {
 	struct signal_out *out;
 };
 
-/* A window tells lines apart that differ by a period in it. */
+/* A window resolves lines that differ by one period within it. */
 static void check_lines(double fs, double frames)
 {
 	double before = 0;

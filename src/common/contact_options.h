@@ -8,7 +8,7 @@
 #include "contact/solver.h"
 #include "io/fields.h"
 
-/* Values of the options; nan where not given.  estar follows from young and poisson
+/* Values of the options; nan if not given.  estar follows from young and poisson
  * once press_check() was called. */
 extern struct press {
 	double load, pressure, approach, estar, hardness, tolerance;
@@ -23,7 +23,7 @@ extern struct opt press_rows[]; /* for OPT_TABLE */
 void press_check(void);
 
 /* The problem on the grid of a record.  Material and boundary that were not given are
- * those of its keys estar, boundary and hardness; estar is nan where it is not known. */
+ * those of its keys estar, boundary and hardness; estar is nan if it is not known. */
 struct contact_par press_par(const struct record *r, struct pool *pool);
 /* Writes those keys. */
 void press_record(struct record *r, const struct contact_par *par);
@@ -31,7 +31,7 @@ void press_record(struct record *r, const struct contact_par *par);
 int press_same(const struct contact_par *a, const struct contact_par *b);
 
 enum contact_control press_control(void);
-/* Mean pressure or approach asked for; nan where neither they nor a load were given. */
+/* Requested mean pressure or approach; nan if neither of them nor a load was given. */
 double press_target(const struct record *r);
 
 #endif

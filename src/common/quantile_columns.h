@@ -4,7 +4,7 @@
 
 #include "cli/opt.h"
 
-/* The names before and one for each level, parted by blanks; the caller frees. */
+/* The given names and one for each level, separated by blanks; the caller frees. */
 char *levels_columns(
 	const char *before, const char *prefix, const struct opt_list *levels);
 

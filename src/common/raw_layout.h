@@ -7,7 +7,7 @@
 
 extern struct opt raw_rows[]; /* for OPT_TABLE */
 
-/* Layout that was given, for fields_open(); NULL where the stream has headers.  Dies
+/* Layout that was given, for fields_open(); NULL if the stream has headers.  Dies
  * where one option lacks the other. */
 const struct raw_layout *raw_given(void);
 

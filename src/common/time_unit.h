@@ -6,7 +6,7 @@
 
 extern struct opt timeunit_rows[]; /* for OPT_TABLE */
 
-/* In seconds; 1 where it was not given. */
+/* In seconds; 1 if it was not given. */
 double timeunit(void);
 
 #endif

@@ -11,12 +11,12 @@ extern struct opt verdict_rows[]; /* for OPT_TABLE */
 enum verdict {
 	VERDICT_SURE,      /* alone, overlap, or a table without verdicts */
 	VERDICT_DOUBTFUL,  /* any other word: left out, unless --doubtful is given */
-	VERDICT_UNRESOLVED /* a row that stands for many */
+	VERDICT_UNRESOLVED /* a row that represents many */
 };
 
 /* Of the present row; counts what is doubtful.  column may be -1. */
 enum verdict verdict_of(const struct table_in *t, int column);
-/* 1 where doubtful rows are counted in. */
+/* 1 if doubtful rows are counted in. */
 int verdict_doubtful_too(void);
 /* Says how many rows were left out, and puts them into the counters. */
 void verdict_report(void);

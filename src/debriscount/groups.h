@@ -1,4 +1,5 @@
-/* groups.h - the counts of one period, apart for each word of a column, and their reports
+/* groups.h - the counts of one period, separately for each value of a column, and their
+ * reports
  */
 #ifndef GROUPS_H
 #define GROUPS_H
@@ -17,7 +18,7 @@ void groups_report(struct groups *g, double begin, double end, int whole);
 void groups_finish(struct groups *g, double period, double duration, double last);
 void groups_doubtful(struct groups *g);
 int groups_status(const struct groups *g); /* 0, or 3 where something was doubtful */
-int groups_alarm(const struct groups *g);  /* 1 where an alarm stands */
+int groups_alarm(const struct groups *g);  /* 1 if an alarm is active */
 void groups_free(struct groups *g);
 
 #endif

@@ -119,7 +119,7 @@ static struct report_par parameters(void)
 	return par;
 }
 
-/* The column of times; -1 where there is none. */
+/* The column of times; -1 if there is none. */
 static int time_column(struct table_in *t)
 {
 	static const char *const names[] = { "time1", "time", "t" };

@@ -19,7 +19,7 @@ struct report_par {
 	double density;      /* of the particles, kg/m3; nan: no masses */
 	double alarm, clear; /* levels, per hour */
 	int alarm_mass;      /* of kg */
-	const char *by;      /* column that tells groups apart, or NULL */
+	const char *by;      /* column that identifies groups, or NULL */
 	char *cmd;
 };
 

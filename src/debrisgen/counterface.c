@@ -126,8 +126,8 @@ void counterface_next(struct counterface *c, const struct record *r)
 			slide, step);
 }
 
-/* Where the first cell of the grid lies on it: it moves along the axis, so that what is
- * above the grid moves back. */
+/* Position of the first cell of the grid on the counterface, which moves along the axis;
+ * the window of the grid therefore moves backwards. */
 static long start(const struct counterface *c, long step)
 {
 	const struct record *r = &c->record;

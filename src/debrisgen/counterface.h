@@ -16,9 +16,9 @@ struct counterface;
 struct counterface *counterface_open(int axis);
 void counterface_close(struct counterface *c);
 
-/* Takes the next record, or the only one anew, for the surface r. */
+/* Takes the next record, or the only one again, for the surface r. */
 void counterface_next(struct counterface *c, const struct record *r);
-/* What of it lies above the grid in a step (from 1): height[iy * nx + ix]. */
+/* The part above the grid in a step (from 1): height[iy * nx + ix]. */
 void counterface_window(const struct counterface *c, long step, double *height);
 /* Puts that back, worn. */
 void counterface_return(struct counterface *c, long step, const double *height);

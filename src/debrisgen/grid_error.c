@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Orders in which an extrapolation is trusted: the stress is of second order, the rim of
- * a contact of an order near one. */
+/* Orders of convergence accepted for an extrapolation: the stress is of second order, the
+ * edge of a contact of about first order. */
 static const double LEAST = 0.5, MOST = 3;
 
 static int wear_coarser(const struct worn_surface *c, struct contact_par pressing,
@@ -62,7 +62,8 @@ int grid_error_find(const struct worn_surface *c, const struct contact_par *pres
 	if (!(found->order >= LEAST && found->order <= MOST))
 		found->order = NAN;
 	found->extrapolated = volume - fine / (exp2(found->order) - 1);
-	/* Without an order the three volumes lie as far apart as the grid matters. */
+	/* Without an order the error is the largest difference between the three volumes.
+	 */
 	found->error = isnan(found->order)
 			       ? fmax(fabs(fine), fmax(fabs(coarse), fabs(fine + coarse)))
 			       : fabs(found->extrapolated - volume);

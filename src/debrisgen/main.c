@@ -98,7 +98,7 @@ static void open_scene(struct run *run, struct record *r, struct scene *c)
 			fields_name(run->in), fields_count(run->in));
 }
 
-/* 1 where the contact is too large for a further step. */
+/* 1 if the contact is too large for a further step. */
 static int check_contact(struct run *run, struct scene *c, long step)
 {
 	const char *name = fields_name(run->in);
@@ -155,7 +155,7 @@ static void wear_step(struct run *run, const struct scene *c, long step)
 }
 
 /* The nominal pressure is that of the steps, or not one where these keep an approach.
- * Rounded, lest its last digit differ from record to record. */
+ * Rounded, so that its last digit does not differ between records. */
 static struct worn_conditions conditions_of(const struct scene *c)
 {
 	const struct record *r = c->now.r;

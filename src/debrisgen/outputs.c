@@ -285,7 +285,7 @@ static void put_surface(
 	held_put(f, &out);
 }
 
-/* The whole counterface, in a frame of its own. */
+/* The whole counterface, in its own coordinates. */
 static void put_counter(
 	struct held_fields *f, const struct worn_surface *c, const struct worn_step *s)
 {

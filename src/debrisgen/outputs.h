@@ -27,7 +27,7 @@ struct grid_error {
 	double error;        /* its distance, or that of the three volumes, m3 */
 };
 
-/* A step of wear and what it took off. */
+/* A step of wear and its result. */
 struct worn_step {
 	long number;     /* from 1, over all programs of a pipeline */
 	double distance; /* slid so far, m */

@@ -109,7 +109,7 @@ struct wearing {
 	struct pool *pool;
 	struct debris *debris;
 	struct debris_par par;
-	struct contact *contact;     /* NULL where a single step needs none */
+	struct contact *contact;     /* NULL if a single step needs none */
 	struct contact_par pressing; /* the contact's problem */
 	struct debris_step lost;     /* in the last step */
 	struct stress_work seen;     /* counted already */
@@ -118,7 +118,7 @@ struct wearing {
 	struct debris *second;
 	struct debris_step second_lost;
 	struct stress_work second_seen;
-	double *other, *pair; /* heights: what lies above the grid, and both together */
+	double *other, *pair; /* heights: the part above the grid, and the sum of both */
 	struct grid_error grid;
 	double steepest; /* rms slope of a pair */
 	long steep_step;
@@ -256,7 +256,8 @@ void wearing_warn(const struct wearing *w)
 			fields_name(w->in), w->steepest, w->steep_step);
 }
 
-/* What presses on the flat: the surface, and what of the other lies above it in a step.
+/* The equivalent surface in a step: the surface plus the part of the counterface above
+ * it.
  */
 static const double *pressed(struct wearing *w, const struct worn_surface *c, long step)
 {
@@ -377,8 +378,8 @@ static double wear_part(double *height, const double *p, size_t n, double rate,
 	return volume;
 }
 
-/* Wears by k p ds, pressing anew for every part of the distance; 1, or 0 where a contact
- * did not converge. */
+/* Wears by k p ds, solving the contact for every part of the distance; 1, or 0 if a
+ * contact did not converge. */
 static int wear_by_archard(struct wearing *w, const struct worn_surface *c, double target,
 	double distance, long step)
 {
@@ -412,7 +413,7 @@ static int wear_by_archard(struct wearing *w, const struct worn_surface *c, doub
 	return solved;
 }
 
-/* That of Archard's coefficient; nan where nothing tells it. */
+/* The hardness of Archard's coefficient; nan if unknown. */
 static double hardness_of(const struct wearing *w)
 {
 	double softer = fmin(yield.v[0], of_body(&yield, SECOND));

@@ -25,10 +25,11 @@ void wearing_contact(
  * not converge. */
 int wearing_press(
 	struct wearing *w, const struct worn_surface *c, double target, long step);
-/* Whether a step (from 1 in this run) presses anew, or goes by the input's pressure. */
+/* Whether a step (from 1 in this run) solves the contact, or uses the pressure of the
+ * input. */
 int wearing_solves(const struct wearing *w, long run);
-/* Wears c over a distance under its pressure; what was lost is valid until the next call.
- * *solved is 0 where a contact that was solved on the way did not converge. */
+/* Wears c over a distance under its pressure; the removed material is valid until the
+ * next call. *solved is 0 if a contact did not converge. */
 struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c,
 	double target, double distance, long step, int *solved);
 

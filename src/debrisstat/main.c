@@ -130,7 +130,7 @@ static void classify(const struct shed *s, double aspect)
 	size_count[(size_t)(s->diameter / bin)]++;
 }
 
-/* The summary of debrisgen beside its particles, row by row. */
+/* The summary of debrisgen for the particles, row by row. */
 struct summary {
 	struct table_in *table; /* NULL: none */
 	int realisation, step;  /* columns */

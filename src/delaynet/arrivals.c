@@ -83,7 +83,7 @@ static void move_stretch(struct stretch *s, long long from, long long to)
 }
 
 /* The pulses of frames [from, to) of channel 1 and of as many of channel 2, shift frames
- * later; 0 where they do not suit the network. */
+ * later; 0 if they do not suit the network. */
 static int find_pulses(struct network *net, struct stretch *s, long long from,
 	long long to, long long shift, struct cnn_pulse *pulse)
 {
@@ -153,7 +153,7 @@ static void work_sections(struct network *net, struct stretch *s, struct table_i
 	stats_set("sections_refused", (double)refused);
 }
 
-/* What is left of a pipe is read, lest its writer be cut off. */
+/* The rest of a pipe is read, so that its writer does not fail. */
 static void drain(struct stretch *s)
 {
 	double x[2];

@@ -1,4 +1,4 @@
-/* delaynet - train, score and apply networks that tell the delays of overlapping pulses
+/* delaynet - train, score and apply networks that estimate delays of overlapping pulses
  */
 #include "arrivals.h"
 #include "cli/msg.h"

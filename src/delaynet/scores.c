@@ -16,7 +16,7 @@ static void put_sines(struct table_out *t, double sd, const struct delayscore *s
 	table_put_row(t, row, sizeof row / sizeof *row);
 }
 
-/* One row: what the network makes of the samples with this noise. */
+/* One row: scores of the network for samples with this noise. */
 static void score_sines(struct table_out *t, struct network *net, double sd)
 {
 	struct delayloss_par loss_par = lessons_loss();

@@ -1,4 +1,4 @@
-/* scores.h - what the networks of delaynet are worth */
+/* scores.h - scores of the networks of delaynet */
 #ifndef SCORES_H
 #define SCORES_H
 

@@ -135,8 +135,9 @@ static int read_coils(const char *text, double *coil)
 	}
 }
 
-/* The length of a zone at which n coils this far apart know the velocity least; 0 where
- * they all stand in one place and a longer zone is always better. */
+/* The length of the zone for which the standard error of the velocity is largest, for n
+ * coils at this distance; 0 if all coils coincide, when a longer zone is always better.
+ */
 static double worst_zone(const double *coil, int n)
 {
 	double e[3], mean = 0, square = 0;
@@ -197,7 +198,7 @@ static void put_layout(
 	free(where);
 }
 
-/* A grid whose layouts are at most 300000; steps asked for are taken as they are. */
+/* A grid whose layouts are at most 300000; a given number of steps is not changed. */
 static int grid_steps(void)
 {
 	int n = 64;

@@ -2,9 +2,9 @@
 #ifndef CHECK_H
 #define CHECK_H
 
-/* Reads the stream to its end and prints a line that says what it holds; dies where it is
- * damaged or cut off.  Returns the exit status: EXIT_NOCONV where the stream has no mark
- * of its end, so that nobody can tell. */
+/* Reads the stream to its end and prints a line with its contents; dies if it is damaged
+ * or truncated.  Returns the exit status: Returns EXIT_NOCONV if the stream has no end
+ * mark, so that completeness is unknown. */
 int check_stream(const char *path);
 
 #endif

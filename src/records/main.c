@@ -252,7 +252,7 @@ static void check_plane(const struct record *r, struct source *in)
 		die(EXIT_USAGE, "GSF holds one plane field: use --pick and --field");
 }
 
-/* 1 where another record is to be written. */
+/* 1 if another record is to be written. */
 static int picks_left(struct source *in)
 {
 	for (int i = 0; i < pick.n; i++)

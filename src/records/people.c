@@ -10,7 +10,7 @@
 /* "-1.235e-10" */
 enum { NUMBER_WIDTH = 10, UNIT_WIDTH = 32 };
 
-/* What is told of the table in words; of the rest the columns tell, or nobody reads it.
+/* Comments that are shown; other keys are omitted.
  */
 static void show_comment(void *context, const char *key, const char *value)
 {

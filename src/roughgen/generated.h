@@ -19,11 +19,11 @@ void generated_check(void);
 
 struct generated;
 
-/* The ensemble that was asked for; dies where there is none such. */
+/* The requested ensemble; dies if the parameters are impossible. */
 struct generated *generated_open(int threads);
 /* The next realisation; 0 after the last. */
 int generated_next(struct generated *g, struct record *r);
-int generated_more(const struct generated *g); /* 1 where one follows */
+int generated_more(const struct generated *g); /* 1 if one follows */
 void generated_close(struct generated *g);
 
 #endif

@@ -155,8 +155,8 @@ static void finish(struct record *r, double had, int more)
 	fields_write(out, r, more);
 }
 
-/* The file to prepare, NULL where surfaces are generated: without an operand, unless what
- * is measured is not told how to be made. */
+/* The file to process, NULL if surfaces are generated: without an operand, unless
+ * --measure has no options of generated surfaces. */
 static const char *file_of(int argc, char **argv, int operand)
 {
 	if (operand < argc)

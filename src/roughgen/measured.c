@@ -77,7 +77,7 @@ static void need_memory(enum num_status status)
 		die(EXIT_RUN, "out of memory for a measured surface");
 }
 
-/* A record with an empty height field and what else r knows of itself. */
+/* A record with an empty height field and the other properties of r. */
 static void new_record(
 	struct record *s, const struct record *r, int nx, int ny, double dx, double dy)
 {
@@ -148,7 +148,7 @@ static double take_crown(struct record *s)
 	return drop;
 }
 
-/* One Gaussian filter: what it passes, or with high != 0 what is left. */
+/* One Gaussian filter: its output or, with high != 0, the residual. */
 static void filter_heights(const char *word, double nesting, int high, struct record *s)
 {
 	enum filter_ends how = ends == ENDS_CROP       ? FILTER_MEAN
@@ -261,7 +261,7 @@ int measured_next(struct measured *m, struct record *r, double *crown)
 		resample_heights(r);
 	if (opt_given("sq") || opt_given("sa"))
 		scale_heights(m->in, r);
-	/* What comes through a pipe has to be asked for. */
+	/* Input through a pipe must be requested. */
 	upstream = m->read.cmd;
 	r->cmd = opt_cmd(upstream, upstream || m->piped ? "-" : NULL);
 	check_heights(m->in, r);

@@ -17,10 +17,10 @@ struct measured;
 
 struct measured *measured_open(const char *path);
 /* The heights of the next record, cropped, filled, levelled, resampled and scaled as
- * the options want.  A crown that it had is taken off and its drop told.  0 at the
+ * the options want.  An existing crown is subtracted and its drop returned.  0 at the
  * end; dies where there was no record at all. */
 int measured_next(struct measured *m, struct record *r, double *crown);
-int measured_more(struct measured *m); /* 1 where a record follows, or is promised */
+int measured_more(struct measured *m); /* 1 if a record follows, or is promised */
 void measured_close(struct measured *m);
 
 #endif

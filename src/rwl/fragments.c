@@ -64,7 +64,7 @@ static void read_row(struct partition *p, const struct wear *w, long row)
 	stats_add("fragments_read", 1);
 }
 
-/* What a table tells of its fragments; NAN: nothing. */
+/* What a table states about its fragments; NAN: nothing. */
 struct physics {
 	double area, pressure, distance;
 };
@@ -100,7 +100,7 @@ static void check_part(const struct table_in *t, const struct physics *first)
 			table_name(t), table_line(t), first->distance, now.distance);
 }
 
-/* The options must not contradict what the table tells. */
+/* The options must not contradict the table. */
 static void check_options(
 	const char *option, const struct physics *told, double pressure, double *distance)
 {
@@ -120,7 +120,7 @@ static void check_options(
 			told->distance, *distance);
 }
 
-/* Reads one --wear FILE[:PRESSURE[:AREA]] into a class of its own. */
+/* Reads one --wear FILE[:PRESSURE[:AREA]] into a separate class. */
 static void read_wear(
 	struct partition *p, const char *option, char **cmd, double *distance)
 {
@@ -170,7 +170,7 @@ static void read_wear(
 	free(file);
 }
 
-/* 1 where the ensemble of a class cannot tell how uncertain its mean is. */
+/* 1 if the ensemble of a class contains no information on the uncertainty of its mean. */
 static int is_doubtful(const struct partition *p, int class, const char *file)
 {
 	double mean, n = partition_count(p, class, &mean);

@@ -6,10 +6,10 @@
 #include "life/partition.h"
 
 /* Every file is a class; see pump_options.h for the areas and for what counts as large.
- * Nominal pressure, area and sliding distance of a step come from the tables where these
- * tell them, and must not contradict the options; distance is NAN where they do not.
- * Steps before first_step are running-in.  made_by[k] becomes the pipeline that made file
- * k, fresh memory, or stays as it is.  Dies with one line naming the file. */
+ * Nominal pressure, area and sliding distance of a step are read from the tables if these
+ * state them, and must not contradict the options; distance is NAN if they do not. Steps
+ * before first_step are running-in.  made_by[k] becomes the pipeline that made file k,
+ * fresh memory, or stays as it is.  Dies with one line naming the file. */
 struct partition *fragments_read(
 	const struct opt_texts *files, long first_step, char **made_by, double *distance);
 /* After the last of them, once the area of a fragment is known.  1, with a warning, where

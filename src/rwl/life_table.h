@@ -11,7 +11,7 @@ struct lifetable_par {
 	int samples;                   /* print every path instead */
 	int grey;                      /* add this column */
 	long first;                    /* number of the first path */
-	long least;                    /* samples to print where one stands for all */
+	long least;                    /* samples to print if one represents all */
 	double eol, cone, horizon;     /* eol not NAN: add scores */
 };
 

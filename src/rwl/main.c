@@ -167,7 +167,7 @@ static struct forecast *new_forecast(struct paths *e, enum pair_quantity quantit
 	return f;
 }
 
-/* Steps cannot tell of a life of less than one. */
+/* Steps cannot resolve a life below one step. */
 static void check_life(const struct lifetable *out, double time)
 {
 	static int said;
@@ -198,8 +198,8 @@ static void follow(struct state *s, struct lifetable *out, struct forecast *f)
 	}
 }
 
-/* The command line that rebuilds the output: the state comes through a pipe where it
- * tells how it was made, else from its file. */
+/* The command line that reproduces the output: the state comes through a pipe if it
+ * records its pipeline, else from its file. */
 static char *record_cmd(const struct state *s, int operand)
 {
 	const char *upstream = s->table ? table_key(s->table, "cmd") : NULL;

@@ -1,5 +1,5 @@
 /* observations.h - the wear of a pair as it was observed: rows of a table turned into
- *gaps
+ * gaps
  *
  *	struct state s;
  *	state_open(&s, path, &pair);
@@ -30,7 +30,7 @@ struct state {
 	struct table_in *table;
 	const struct pair *pair;
 	int time_column, value_column;
-	int sources_column, verdict_column; /* of particles; -1 where absent */
+	int sources_column, verdict_column; /* of particles; -1 if absent */
 	enum pair_quantity quantity;        /* found in the columns */
 	int filtered;                       /* read from the column state */
 	double scale, time_scale;           /* to SI */
@@ -38,7 +38,7 @@ struct state {
 	long rows;
 	long passed;          /* particles without a diameter */
 	double first_t;       /* of the first row */
-	double t, gap, value; /* latest row, SI; gap and value NAN where missing */
+	double t, gap, value; /* latest row, SI; gap and value NAN if missing */
 	double gap_error;     /* standard error of the gap */
 };
 

@@ -1,5 +1,4 @@
-/* pump_options.h - the sliding pair rwl is told of: options of its faces, leakage and
- * thresholds
+/* pump_options.h - options of the sliding pair of rwl: surfaces, leakage and thresholds
  */
 #ifndef PUMP_H
 #define PUMP_H
@@ -7,7 +6,7 @@
 #include "cli/opt.h"
 #include "life/pair.h"
 
-/* Values of the options; nan where not given. */
+/* Values of the options; nan if not given. */
 extern struct pump {
 	struct pair pair;
 	double fragment_area, transition; /* see life/partition.h; NAN: not known */
@@ -20,9 +19,9 @@ extern struct opt pump_threshold_rows[], pump_face_rows[]; /* for OPT_TABLE */
 
 /* Sets the defaults; before the options are parsed. */
 void pump_init(void);
-/* What is taken for granted since neither options nor tables tell, for a message; fresh
- * memory, NULL: nothing.  fragments: they are read; leaks: a leakage is observed.  Sets
- * the area of a fragment if it is not known. */
+/* Parameters that are assumed because neither options nor tables state them, for a
+ * message; fresh memory, NULL: none.  fragments: they are read; leaks: a leakage is
+ * observed.  Sets the area of a fragment if it is not known. */
 char *pump_assumed(int fragments, int leaks);
 /* Dies where options make no pump; sets what follows from several of them. */
 void pump_check(void);

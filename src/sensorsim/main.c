@@ -38,7 +38,7 @@ static const struct prog prog = { "sensorsim",
 	"[file]", "table: diameter [time] [velocity], unless --uniform",
 	"signal: two or four channels, V", opts };
 
-/* What comes along: particles and events that are none, in order of time1. */
+/* Particles and other events, in order of time1. */
 struct traffic {
 	struct source *source;
 	struct disturbances *disturbances; /* NULL: none */
@@ -155,7 +155,7 @@ static void run(struct traffic *f, struct table_out *t, struct signal_out *out)
 {
 	static double x[4 * BLOCK];
 	double rate = sensors_rate(), frames = 0;
-	/* The first trace of an event lies before its time1 by no more than this. */
+	/* An event begins at most this long before its time1. */
 	double ahead =
 		fmax(sensors_half_pulse(source_slowest(f->source)), 2 * sensors_pulse());
 	size_t n;

@@ -57,7 +57,7 @@ struct opt source_rows[] = {
 /* Where particles come from: a table, or random numbers. */
 struct source {
 	struct stream stream;
-	struct arrivals *arrivals; /* NULL: times stand in the table */
+	struct arrivals *arrivals; /* NULL: the table has times */
 	struct table_in *table;    /* NULL: all is drawn, or was read into diameters */
 	int time_column, diameter_column, velocity_column, material_column, kind_column;
 	double *diameters; /* of a table without times */

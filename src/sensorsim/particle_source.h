@@ -25,7 +25,7 @@ struct source;
 /* A table, NULL or "-": standard input; or random numbers. */
 struct source *source_open(const char *path, uint64_t seed, uint32_t realisation);
 /* The next particle in order of arrival whose pulse at sensor 1 begins before the record
- * ends; 0 where there is none. */
+ * ends; 0 if there is none. */
 int source_next(struct source *s, struct passage *p);
 uint64_t source_count(const struct source *s); /* particles so far, unseen ones too */
 const char *source_material(const struct source *s); /* of the last one */

@@ -1,9 +1,10 @@
 /* recording.h - signals in the formats of other programs
  *
- * Text: one row per frame, cells parted by TAB, semicolon, comma or blanks; with any but
- * commas decimal commas are read, too.  What sigconvert wrote is a table of ours, which
- * has an end and tells rate, units, start, seed and filters.  Raw: little-endian float64,
- * interleaved.  Sound: what libsndfile knows, where the program was built with it.
+ * Text: one row per frame, cells separated by TAB, semicolon, comma or blanks; with any
+ * but commas decimal commas are read, too.  What sigconvert wrote is a table of ours,
+ * which has an end and tells rate, units, start, seed and filters.  Raw: little-endian
+ * float64, interleaved.  Sound: the formats of libsndfile, if the program was built with
+ * it.
  */
 #ifndef RECORDING_H
 #define RECORDING_H
@@ -20,7 +21,7 @@ enum recording_to { TO_AU, TO_TEXT, TO_RAW, TO_WAV, TO_FLAC };
 
 struct recording_par {
 	enum recording_from from;
-	double rate; /* Hz; nan: not told */
+	double rate; /* Hz; nan: unknown */
 	int channels;
 	const char *columns, *time; /* headings; NULL: all, "time" or "t" */
 	const char *start;          /* moment of the first sample; NULL: not told */
@@ -30,7 +31,7 @@ struct recording_par {
 struct recording;
 struct recording_out;
 
-/* All of them die where the file is not what it should be. */
+/* All of them die if the file is invalid. */
 struct recording *recording_open(const char *path, const struct recording_par *par);
 const struct signal_format *recording_format(const struct recording *r);
 size_t recording_read(struct recording *r, double *x, size_t frames);

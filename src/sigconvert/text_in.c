@@ -9,7 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { AHEAD = 256, LINE_MOST = 1 << 24 }; /* rows that tell the rate; bytes of a line */
+enum {
+	AHEAD = 256,
+	LINE_MOST = 1 << 24
+}; /* rows used to estimate the rate; bytes of a line */
 
 struct text_in {
 	struct input *in;
@@ -18,7 +21,7 @@ struct text_in {
 	size_t room, most;
 	long number; /* of the line */
 	char separator;
-	int commas; /* decimal ones may stand */
+	int commas; /* decimal commas are possible */
 	int cells;
 	char **heading;
 	int *taken; /* cells of the channels */
@@ -50,13 +53,14 @@ static int any_line(struct text_in *t)
 	while (n > 0 && strchr("\r\n", t->line[n - 1]))
 		t->line[--n] = '\0';
 	if (n != strlen(t->line))
-		die(EXIT_RUN, "%s: line %ld: NUL byte: not a text file", t->name, t->number);
+		die(EXIT_RUN, "%s: line %ld: NUL byte: not a text file", t->name,
+			t->number);
 	if (t->number == 1 && strncmp(t->line, "\xef\xbb\xbf", 3) == 0)
 		memmove(t->line, t->line + 3, n - 2);
 	return 1;
 }
 
-/* The next line that says something; 0 at the end. */
+/* The next line that is neither empty nor a comment; 0 at the end. */
 static int next_line(struct text_in *t)
 {
 	while (any_line(t))
@@ -108,7 +112,7 @@ static int number(const struct text_in *t, char *s, double *v)
 	return end != s && !*end;
 }
 
-/* The unit in "Flow [L/min]" or "u (mV)", cut off its heading; NULL where there is none.
+/* The unit in "Flow [L/min]" or "u (mV)", cut off its heading; NULL if there is none.
  */
 static char *unit_of(char *heading)
 {
@@ -299,7 +303,7 @@ static int read_row(struct text_in *t, double *row)
 	return 1;
 }
 
-/* Every time must stand within half a step of where the rate has it. */
+/* Every time must be within half a step of that of the rate. */
 static void check_time(struct text_in *t, double time)
 {
 	double want = t->first + (double)t->rows * t->step;
@@ -357,7 +361,7 @@ static double simplest_rate(const struct text_in *t, double rate)
 	return rate;
 }
 
-/* The rate that the times read ahead tell; NAN where there are none. */
+/* The rate that the times read ahead tell; NAN if there are none. */
 static double told_rate(const struct text_in *t)
 {
 	size_t width = (size_t)t->format.channels + 1;

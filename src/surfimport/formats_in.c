@@ -140,7 +140,7 @@ double *new_heights(const struct content *c, double nx, double ny, double dx, do
 
 /* ---- npy: a Python dictionary, then samples ---- */
 
-/* What stands behind 'key': in the dictionary; NULL where it is missing. */
+/* The value of 'key': in the dictionary; NULL if it is missing. */
 static const char *entry(const char *header, const char *key)
 {
 	const char *at = strstr(header, key);
@@ -282,7 +282,7 @@ static void sdf_binary(const struct content *c, const struct told *told, struct 
 			type);
 	settle_pixel(c, told, &dx, &dy);
 	new_heights(c, number(c, 42, UINT16), number(c, 44, UINT16), dx, dy, r);
-	/* the lowest integer stands for what is missing */
+	/* the smallest integer represents a missing sample */
 	if (isnan(missing) && types[type] == INT16)
 		missing = -32768;
 	if (isnan(missing) && types[type] == INT32)
@@ -350,7 +350,7 @@ static void sur_read(const struct content *c, const struct told *told, struct re
 
 /* ---- Alicona ---- */
 
-/* Tags of 20 bytes of name, 30 of value and a line end; NAN where there is none. */
+/* Tags of 20 bytes of name, 30 of value and a line end; NAN if there is none. */
 static double al3d_tag(const struct content *c, const char *key)
 {
 	enum { MAGIC = 17, TAG = 52 };

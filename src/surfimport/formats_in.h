@@ -18,7 +18,7 @@ struct content {
 	size_t size;
 };
 
-/* What the command line says; nan and 0 where it is silent. */
+/* Values from the command line; nan and 0 if not given. */
 struct told {
 	enum in_format format;
 	double dx, dy, unit, missing;
@@ -34,7 +34,7 @@ void formats_read(const struct content *c, const struct told *told, struct recor
 /* For the readers. */
 void text_read(const struct content *c, const struct told *told, struct record *r);
 
-/* A unit of length by its name, "um", "microns", in m; NAN where it is none. */
+/* A unit of length by its name, "um", "microns", in m; NAN if it is none. */
 double unit_named(const char *name, size_t length);
 
 /* Spacing and unit, of the command line or of the file; a contradiction dies, and so does

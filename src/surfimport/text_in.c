@@ -85,7 +85,7 @@ static int is_gap(const char *s)
 	return 0;
 }
 
-/* One cell; 0 where it is no number. */
+/* One cell; 0 if it is no number. */
 static int cell(const struct text *t, char *s, double *v)
 {
 	char *end = s + strlen(s);
@@ -114,7 +114,7 @@ static void keep(struct text *t, double v)
 	t->value[t->n++] = v;
 }
 
-/* Reads a row; returns its cells, -1 where one is no number. */
+/* Reads a row; returns its cells, -1 if one is no number. */
 static int read_row(struct text *t, char *line)
 {
 	size_t before = t->n;
@@ -217,7 +217,7 @@ static double unit_of(const struct text *t, int from_end)
 	return unit;
 }
 
-/* Places must be equally far apart: to a thousandth of a step, or as they were rounded.
+/* Positions must be equally spaced: to a thousandth of a step, or to their rounding.
  */
 static void profile_read(const struct text *t, const struct told *told, struct record *r)
 {

@@ -26,7 +26,7 @@ static size_t find(struct particles *ps, const unsigned char *mask, int nx, int 
 				end++;
 			s[count++] = (struct stretch){ i, z * dz, end * dz };
 		}
-	n = particles_find(ps, s, count, list);
+	particles_find(ps, s, count, list, &n);
 	free(s);
 	return n;
 }

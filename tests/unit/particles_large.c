@@ -29,7 +29,7 @@ int main(void)
 
 	for (size_t i = 0; i < N * N; i++)
 		s[count++] = (struct stretch){ i, 0, LAYERS * 1e-6 };
-	n = particles_find(ps, s, count, &p);
+	particles_find(ps, s, count, &p, &n);
 	ok(n == 1 && fabs(p->volume / want - 1) < 1e-12,
 		"1e7 cells in one particle | volume %g m3 | %g m3 | %.1e", want,
 		p->volume, fabs(p->volume / want - 1));
@@ -48,7 +48,7 @@ int main(void)
 		for (size_t z = (i + i / N) % 2; z < 8; z += 2)
 			s[count++] = (struct stretch){ i, (double)z * 1e-6,
 				(double)(z + 1) * 1e-6 };
-	n = particles_find(ps, s, count, &p);
+	particles_find(ps, s, count, &p, &n);
 	ok(n == N * N * 4, "checkerboard of single cells | %d particles | %zu | %d",
 		N * N * 4, n, (int)n - N * N * 4);
 	ok(fabs(p[0].volume * 1e18 - 1) < 1e-9 && fabs(p[n - 1].volume * 1e18 - 1) < 1e-9,
