@@ -31,6 +31,9 @@ static const double drift_limit = 0.02;
  * each factor of ten takes about one more sweep over the cells per step. */
 static const double load_slack = 0.03;
 
+/* Step length below which one that leads uphill is replaced by a gradient step. */
+static const double least_length = 1e-3;
+
 struct box {
 	const struct contact_kernel *body;
 	double lx, ly;
@@ -225,15 +228,15 @@ static void take_step(void *context, size_t begin, size_t end, struct sweep *s)
 
 /* What an iteration hands to the next. */
 struct state {
-	double sum;         /* of the pressures */
-	double curvature;   /* step times image; 0: nothing to be conjugate to */
-	double drift;       /* mismatch of gap and pressure, as a sum of pressures */
-	double moved;       /* sum of the last step; 0: it led nowhere */
-	double bounded;     /* cells that the step takes to a bound */
-	int plain, retreat; /* steps along the gradient to go; last time */
-	int forced;         /* the step is to restore the load, whatever the energy */
-	int crowded;        /* the active cells cannot carry more, or less */
-	int exact;          /* gap and load have just been computed */
+	double sum;       /* of the pressures */
+	double curvature; /* step times image; 0: nothing to be conjugate to */
+	double drift;     /* mismatch of gap and pressure, as a sum of pressures */
+	double moved;     /* sum of the last step; 0: it led nowhere */
+	double bounded;   /* cells that the step takes to a bound */
+	int plain;        /* steps along the gradient to go */
+	int forced;       /* the step is to restore the load, whatever the energy */
+	int crowded;      /* the active cells cannot carry more, or less */
+	int exact;        /* gap and load have just been computed */
 };
 
 static void precondition(struct contact *c)
@@ -277,9 +280,11 @@ static void follow_step(struct contact *c, struct state *state, double slope)
 {
 	struct sweep s;
 
+	state->moved = state->curvature = 0;
+	if (!(slope < 0 || state->forced))
+		return;
 	state->curvature = contact_multiply(c, c->step, c->image);
-	state->moved = 0;
-	if (!(state->curvature > 0) || !(slope < 0 || state->forced)) {
+	if (!(state->curvature > 0)) {
 		state->curvature = 0;
 		return;
 	}
@@ -288,9 +293,9 @@ static void follow_step(struct contact *c, struct state *state, double slope)
 	if (state->forced)
 		c->stretch = 1;
 	s = contact_sweep(c, take_step);
-	/* Strips of 64 x 4096 to 3 x 10000 take as many iterations with a least length of
-	 * 0.01, or with the whole stretch in place of its root, within a tenth. */
-	c->tau = fmin(fmax(c->tau * sqrt(c->stretch), 0.05), 5);
+	/* Strips of 64 x 4096 to 3 x 10000 take as many iterations with the whole stretch
+	 * in place of its root, within a tenth. */
+	c->tau = fmin(c->tau * sqrt(c->stretch), 5);
 	state->drift += s.sum[0];
 	state->moved = s.sum[1];
 	state->sum = s.sum[2];
@@ -367,12 +372,12 @@ enum contact_status contact_solve_bccg(struct contact *c)
 			continue;
 		}
 		follow_step(c, &state, slope);
-		if (state.moved <= 0) {
-			/* A step bounded in one metric and preconditioned in another
-			 * may lead uphill; a plain one does not. */
-			state.retreat = state.retreat < 32 ? 2 * state.retreat + 1 : 63;
-			state.plain = state.retreat;
-		}
+		/* A step bounded in one metric and preconditioned in another may lead
+		 * uphill, the less the shorter it is; a plain one never does. */
+		if (state.moved <= 0 && state.bounded > 0 && c->tau > least_length)
+			c->tau /= 4;
+		else
+			state.plain = state.moved <= 0;
 		if (state.moved <= 0 || state.drift > drift_limit * state.moved)
 			renew_gap(c, &state);
 	}

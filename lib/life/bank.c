@@ -697,7 +697,7 @@ void bank_event(struct bank *b, enum bank_event event)
 /* --- draws ------------------------------------------------------------------------- */
 
 /* What the draws of one line share. */
-struct passage {
+struct crossing {
 	double h, v, phh, phv, pvv; /* now; covariances in units of the noise */
 	double limit;               /* h of the level to be passed */
 	double variance, freedom;   /* of the noise, with autocorrelation; of chi^2 */
@@ -706,7 +706,7 @@ struct passage {
 };
 
 /* What is known of the rate beforehand, as an observation of v. */
-static void heed_prior(double mean, double sd, struct passage *p)
+static void heed_prior(double mean, double sd, struct crossing *p)
 {
 	double f, e = mean - p->v;
 
@@ -720,14 +720,14 @@ static void heed_prior(double mean, double sd, struct passage *p)
 	p->pvv -= p->pvv / f * p->pvv;
 }
 
-static struct passage prepare(
+static struct crossing prepare(
 	const struct bank *b, const struct line *l, double ahead, double target)
 {
 	struct place here = place_of(b, l->shape, b->level),
 		     there = place_of(b, l->shape, target);
 	double correlation = fmin(0.95, fmax(0, l->lagged / l->sum)), s, scale;
 	struct line now = *l;
-	struct passage p = { .limit = there.h,
+	struct crossing p = { .limit = there.h,
 		.growth = l->growth,
 		.hazard = shape_of(b, l->shape)->n > 0 ? KIN_HAZARD / b->par.n_more
 						       : future.hazard };
@@ -804,8 +804,8 @@ static double change(double time, double age, double hazard, const struct chance
 	return j + log1p(g * rest) / g;
 }
 
-static double draw_life(
-	const struct bank *b, const struct passage *p, double age, const struct chance *c)
+static double draw_life(const struct bank *b, const struct crossing *p, double age,
+	const struct chance *c)
 {
 	double sd = sqrt(p->variance * p->freedom / chi2(p->freedom, c->z[0]));
 	double z = normal_above(p->v / (sd * sqrt(p->pvv)), c), v, h, time;
@@ -838,7 +838,7 @@ void bank_draw(struct bank *b, const struct bank_chances *c, double now, double 
 	int drawn = 0;
 
 	for (int i = 0; i < b->lines; i++) {
-		struct passage p;
+		struct crossing p;
 
 		reached += b->line[i].weight;
 		if (!(reached * c->n > drawn + 0.5))

@@ -21,7 +21,7 @@ struct recording {
 	struct signal_in *signal;
 	struct text_in *text;
 	struct table_in *table;
-	double row; /* of the table */
+	long long row; /* of the table */
 	SNDFILE *sound;
 	const char *name;
 	struct signal_format format;
@@ -265,9 +265,10 @@ static size_t table_read(struct recording *r, double *x, size_t frames)
 	for (; n < frames && table_next(r->table); n++, r->row++) {
 		double time = table_number(r->table, 0);
 
-		if (!(fabs(time * r->format.rate - r->row) < 0.5))
+		if (!(fabs(time * r->format.rate - (double)r->row) < 0.5))
 			die(EXIT_RUN, "%s: line %ld: time %g s, want %g s", r->name,
-				table_line(r->table), time, r->row / r->format.rate);
+				table_line(r->table), time,
+				(double)r->row / r->format.rate);
 		for (int c = 0; c < r->format.channels; c++)
 			*x++ = table_number(r->table, c + 1);
 	}

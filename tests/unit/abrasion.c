@@ -37,11 +37,11 @@ static void check_squeeze(void)
 	unsigned state = 1;
 
 	near(abrasion_squeeze(10e-6, 9e-6, 2e9, 6e9, &load), .76013e-6, 5e-12,
-		"depth of 10 um in a gap of 9 um between 2 and 6 GPa");
-	near(load, .0441299, 5e-8, "and the load it carries");
+		"the depth of 10 um in a gap of 9 um between 2 and 6 GPa is exact");
+	near(load, .0441299, 5e-8, "the load it carries is exact");
 	near(abrasion_squeeze(10e-6, 5e-6, 2e9, 6e9, &load), 4.11438e-6, 5e-12,
-		"in a gap of 5 um");
-	near(load, .152152, 5e-7, "and its load");
+		"the depth in a gap of 5 um is exact");
+	near(load, .152152, 5e-7, "its load is exact");
 	for (int i = 0; i < 20000; i++) {
 		double h1 = pow(10, 6 + 4 * uniform(&state));
 		double h2 = pow(10, 6 + 4 * uniform(&state));
@@ -72,13 +72,13 @@ static void check_grooves(void)
 		double load = M_PI / 2 * (2 * depth[i] - depth[i] * depth[i]);
 
 		near(abrasion_section(2, depth[i]) / load, want[i], 5e-6,
-			"section times hardness over the load of the front half");
+			"section times hardness is the load of the front half");
 	}
 	near(abrasion_section(2, 1e-3 * (1 - 1e-9)) /
 			abrasion_section(2, 1e-3 * (1 + 1e-9)),
-		1, 1e-8, "series and closed form meet");
+		1, 1e-8, "series and closed form agree");
 	near(abrasion_largest(0.1, 20e-3, 1e-6), 401.01e-6, 1e-12,
-		"a ball of 20 mm draws in 401 um with a friction of 0.1");
+		"a ball of 20 mm admits 401 um with a friction of 0.1");
 	/* exact: the faces of ball and flat make the angle 2 atan(mu) at the particle */
 	{
 		double d = abrasion_largest(0.3, 20e-3, 5e-6);
@@ -101,45 +101,46 @@ static void check_modes(void)
 	double limit = 0.3 + sqrt(1.09);
 
 	abrasion_particle(&par, 9e-6, 1, &a);
-	ok(a.mode == ABRASION_FREE && a.load == 0, "a particle of the gap is free");
+	ok(a.mode == ABRASION_FREE && a.load == 0,
+		"a particle as large as the gap is free");
 	abrasion_particle(&par, 10e-6, limit * 0.999, &a);
 	ok(a.mode == ABRASION_ROLLS && a.section[0] == 0 && a.section[1] == 0,
 		"below an aspect of 1.344 it rolls at a friction of 0.3");
 	abrasion_particle(&par, 10e-6, limit * 1.001, &a);
 	ok(a.mode == ABRASION_GROOVES && a.section[0] == 0 && a.section[1] > 0,
-		"above it grooves the harder body, held by the softer one");
-	near(a.depth[1] + a.depth[0], 1e-6, 1e-20, "both depths make up the overlap");
+		"above, it grooves the harder body and is held by the softer one");
+	near(a.depth[1] + a.depth[0], 1e-6, 1e-20, "both depths add up to the overlap");
 	near(M_PI * 2e9 * capped(a.depth[0], 10e-6) /
 			(M_PI / 2 * 6e9 * capped(a.depth[1], 10e-6)),
-		1, 1e-12, "the front half bears as much as the whole impression");
+		1, 1e-12, "the front half carries as much as the whole impression");
 	par.hardness[1] = 2e9;
 	abrasion_particle(&par, 10e-6, 2, &a);
 	near(a.section[0], a.section[1], 0, "bodies of equal hardness share the groove");
 	par.hardness[1] = 2e9 * (1 + 1e-9);
 	abrasion_particle(&par, 10e-6, 2, &b);
-	near(b.load / a.load, 1, 1e-8, "and the load does not jump beside equality");
+	near(b.load / a.load, 1, 1e-8, "the load is continuous near equal hardness");
 	near(b.depth[0] + b.depth[1], a.depth[0] + a.depth[1], 1e-20,
-		"nor do the depths' sum");
+		"the sum of the depths is continuous too");
 	par.hardness[1] = 6e9;
 	par.abrasive = 1.2 * 6e9 * 0.999;
 	abrasion_particle(&par, 10e-6, 2, &a);
 	ok(a.mode == ABRASION_EMBEDS && a.depth[0] == 10e-6 - par.gap && a.depth[1] == 0,
-		"less than 1.2 times as hard as one body it sinks into the other");
+		"a particle less than 1.2 times as hard as one body is embedded in the other");
 	par.abrasive = 2e9;
 	abrasion_particle(&par, 10e-6, 2, &a);
 	ok(a.mode == ABRASION_YIELDS && isnan(a.load),
-		"softer than both bodies it is not described");
+		"a particle softer than both bodies is refused");
 	par.abrasive = INFINITY;
 	par.hardness[0] = par.hardness[1] = 2e9;
 	par.gap = 1e-9;
 	abrasion_particle(&par, 10e-6, 2, &a);
 	ok(a.mode == ABRASION_BURIED && isnan(a.section[0]) && a.load > 0,
-		"a groove deeper than its radius is not described");
+		"a groove deeper than its radius is refused");
 	par.gap = 9e-6;
 	par.inlet = 1e-6;
 	par.friction = 0;
 	abrasion_particle(&par, 10e-6, 2, &a);
-	ok(a.mode == ABRASION_REJECTED, "without friction nothing larger is drawn in");
+	ok(a.mode == ABRASION_REJECTED, "without friction no larger particle enters");
 }
 
 /* The body that is grooved is the one whose groove resists less. */
@@ -187,12 +188,12 @@ static void check_gap(void)
 	gap = abrasion_gap(&par, d, aspect, 500, load, &carried, &evaluations);
 	near(gap / par.gap, 1, 1e-12,
 		"500 particles carry a load at the gap it came from");
-	near(carried / load, 1, 1e-9, "and carry just that");
+	near(carried / load, 1, 1e-9, "they carry exactly this load");
 	ok(evaluations < 500.0 * 60, "particles smaller than the gap are left out: %.0f",
 		evaluations);
 	gap = abrasion_gap(&par, d, aspect, 500, 1e9, &carried, &evaluations);
 	ok(isnan(gap) && carried > 0 && carried < 1e9,
-		"more than they can carry is no gap at all");
+		"a load above what they can carry has no gap");
 }
 
 static void check_cut(void)
@@ -212,18 +213,18 @@ static void check_cut(void)
 	for (int i = 0; i < NX * NY; i++)
 		sum += z[i] * dx * dy;
 	near(-sum / (section * g.length), 1, 1e-12,
-		"a groove across the edge and twice around takes its section times its way");
+		"a groove across the edge and twice around removes its section times its length");
 	for (int i = 0; i < NX * NY; i++)
 		low = fmin(low, z[i]);
 	/* two laps and a third over a part */
-	ok(low < -2.8 * g.depth && low >= -3 * g.depth, "laps add up: %.3g depths",
-		-low / g.depth);
+	ok(low < -2.8 * g.depth && low >= -3 * g.depth,
+		"repeated passes add up: %.3g depths", -low / g.depth);
 	g.cut = 0;
 	groove_cut(NX, NY, dx, dy, z, &g);
 	for (int i = 0; i < NX * NY; i++)
 		sum -= z[i] * dx * dy;
 	ok(fabs(sum) < 1e-12 * section * g.length,
-		"ploughing moves material and takes none");
+		"ploughing moves material and removes none");
 	g = (struct groove){ .y = 12e-6,
 		.length = NX * dx,
 		.diameter = 8e-6,
@@ -256,10 +257,11 @@ static void check_population(void)
 		if (fabs(population_diameter(&p, population_larger(&p, d)) / d - 1) >
 			1e-12)
 			above++;
-	ok(above == 0, "number and diameter are inverse");
+	ok(above == 0, "number and diameter are inverse functions");
 	near(population_larger(&p, 4e-6) - population_larger(&p, 6e-6), 2.5e9 - 6.4e8, 1,
-		"the code's numbers are met");
-	ok(population_draw(&p, volume, 5e-6, 3, 0, 10000000, &list, &n) == 0, "drawn");
+		"the numbers of the code are reproduced");
+	ok(population_draw(&p, volume, 5e-6, 3, 0, 10000000, &list, &n) == 0,
+		"particles are drawn");
 	for (size_t i = 0; i < n; i++) {
 		struct abrasion a;
 
@@ -270,14 +272,15 @@ static void check_population(void)
 	}
 	/* Poisson: 8000 of them */
 	near((double)above / (volume * population_larger(&p, 14e-6)), 1, 4 / sqrt(8000),
-		"as many are drawn as the code has");
+		"the mean number drawn is that of the code");
 	population_mean(&p, &par, 1000, &coarse);
 	population_mean(&p, &par, 16000, &fine);
 	near(coarse.pressure / fine.pressure, 1, 1e-5,
-		"1000 classes do for the pressure");
-	near(coarse.section[1] / fine.section[1], 1, 1e-5, "and for the wear");
+		"1000 classes are sufficient for the pressure");
+	near(coarse.section[1] / fine.section[1], 1, 1e-5,
+		"1000 classes are sufficient for the wear");
 	near(load / fine.pressure, 1, 0.05, "drawn particles carry the mean pressure");
-	near(section / fine.section[1], 1, 0.05, "and wear at the mean rate");
+	near(section / fine.section[1], 1, 0.05, "drawn particles wear at the mean rate");
 	free(list);
 	/* Narrow gaps hold fewer particles: the pressure is largest in between. */
 	par.gap = 40e-6;
@@ -285,7 +288,7 @@ static void check_population(void)
 	gap = population_gap(&p, &par, fine.pressure, 16000, &most);
 	near(gap / par.gap, 1, 1e-9, "the gap follows from the pressure");
 	gap = population_gap(&p, &par, 1e12, 1000, &most);
-	ok(isnan(gap) && most > 0, "a pressure beyond reach has none");
+	ok(isnan(gap) && most > 0, "a pressure that is too large has no gap");
 }
 
 int main(void)

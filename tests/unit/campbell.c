@@ -77,16 +77,20 @@ int main(void)
 	campbell_estimate(y1, y2, N, shape, 100, 0.9, &c);
 	near(c.square, sums[0], 3 * c.square_se,
 		"sum of squares within three standard errors");
-	near(c.fourth, sums[1], 3 * c.fourth_se, "sum of fourth powers too");
+	near(c.fourth, sums[1], 3 * c.fourth_se,
+		"the sum of fourth powers is within three standard errors");
 	ok(c.square_se < 0.03 * sums[0], "squares to 3 %%");
-	ok(c.rate - 3 * c.rate_se < rate, "the equal number is no upper bound");
-	near(c.rate, sums[0] * sums[0] / sums[1], 3 * c.rate_se, "equal number");
-	near(c.amplitude, sqrt(sums[1] / sums[0]), 3 * c.amplitude_se, "equal amplitude");
+	ok(c.rate - 3 * c.rate_se < rate, "the equal number is not an upper bound");
+	near(c.rate, sums[0] * sums[0] / sums[1], 3 * c.rate_se,
+		"the equal number is right");
+	near(c.amplitude, sqrt(sums[1] / sums[0]), 3 * c.amplitude_se,
+		"the equal amplitude is right");
 	campbell_estimate(y1, y2, 3000, shape, 100, 0.9, &d);
-	ok(isinf(d.rate_se), "a short stretch says nothing");
+	ok(isinf(d.rate_se), "a short section gives no estimate");
 	d = c;
 	campbell_scale(&d, 2);
-	near(d.square, 4 * c.square, 1e-12 * d.square, "other units");
+	near(d.square, 4 * c.square, 1e-12 * d.square,
+		"other units give the same result");
 	test_errors(shape);
 	free(y1);
 	free(y2);

@@ -15,7 +15,7 @@ static void measure(const struct hull_point *point, size_t n, const double step[
 		copy[i] = point[i];
 	ok(hull_build(h, copy, n) == HULL_OK &&
 			chords_measure(c, h, step, length, width) == 0,
-		"measured");
+		"the hull is measured");
 	chords_free(c);
 	hull_free(h);
 }
@@ -31,15 +31,15 @@ static void test_known(void)
 	double length, width;
 
 	measure(cube, 8, one, &length, &width);
-	near(length, sqrt(3), 1e-15, "cube: the space diagonal");
+	near(length, sqrt(3), 1e-15, "the length of a cube is its space diagonal");
 	/* The sections through three corners are triangles of that side; the hexagon half
 	 * way is no wider. */
-	near(width, sqrt(2), 1e-15, "cube: the diagonal of a face");
+	near(width, sqrt(2), 1e-15, "the width of a cube is the diagonal of a face");
 	measure(cube, 8, box, &length, &width);
-	near(length, 13, 1e-14, "a box of 3 by 4 by 12");
+	near(length, 13, 1e-14, "the length of a box of 3 by 4 by 12 is 13");
 	measure(tetrahedron, 4, one, &length, &width);
-	near(length, sqrt(2), 1e-15, "tetrahedron: an edge");
-	near(width, sqrt(2), 1e-15, "tetrahedron: the edge across");
+	near(length, sqrt(2), 1e-15, "the length of a tetrahedron is an edge");
+	near(width, sqrt(2), 1e-15, "the width of a tetrahedron is the opposite edge");
 }
 
 static double dot(const double a[3], const double b[3])
@@ -118,7 +118,8 @@ static void test_random(void)
 						along[k] = (p[i][k] - p[j][k]) / most;
 				}
 		brute = brute_width(p, POINTS, along);
-		near(length, most, 1e-12 * most, "random points: length");
+		near(length, most, 1e-12 * most,
+			"the length of random points is that of brute force");
 		/* The levels miss the height of the corner by half a step at the most, on
 		 * which the width changes by no more than some of them. */
 		ok(brute <= width * (1 + 1e-12) && brute > width * (1 - 10. / LEVELS),

@@ -130,7 +130,7 @@ static void same_bytes(struct pool *two)
 		convolve_free(c);
 	}
 	ok(memcmp(y[0], y[1], NX * NY * sizeof(double)) == 0,
-		"one and two threads: same bytes");
+		"one thread and two give the same bytes");
 	fft_free(x);
 	fft_free(y[0]);
 	fft_free(y[1]);

@@ -30,15 +30,15 @@ static void check_poisson(void)
 	double low, high;
 
 	weighted_interval(&s, 1, 0.95, &low, &high);
-	near(low, 0, 0, "nothing seen: from 0");
-	near(high, -log(0.025), 1e-9, "to -ln 0.025");
+	near(low, 0, 0, "without events the lower limit is 0");
+	near(high, -log(0.025), 1e-9, "without events the upper limit is -ln 0.025");
 	for (int i = 0; i < 5; i++)
 		weighted_add(&s, 1);
 	weighted_interval(&s, 1, 0.95, &low, &high);
-	near(low, 1.62348639, 1e-7, "five events: Garwood's lower end");
-	near(high, 11.66833208, 1e-7, "and upper end");
+	near(low, 1.62348639, 1e-7, "five events have the lower limit of Garwood");
+	near(high, 11.66833208, 1e-7, "five events have the upper limit of Garwood");
 	weighted_interval(&s, INFINITY, 0.95, &low, &high);
-	ok(isinf(high), "what could weigh anything has no upper end");
+	ok(isinf(high), "unbounded weights have no upper limit");
 }
 
 /* Sums of weights w^3, w uniform, whose mean is known. */
@@ -68,15 +68,17 @@ static void check_detection(void)
 {
 	struct detection d = { 100e-6, 5, 3 };
 
-	near(detection_probability(&d, 100e-6), 0.5, 1e-15, "d50 is seen half the time");
+	near(detection_probability(&d, 100e-6), 0.5, 1e-15,
+		"a particle of size d50 is detected half the time");
 	near(detection_diameter(&d, 0.9) / 100e-6, cbrt((5 + 1.2815515655) / 5), 1e-9,
 		"d90 / d50 is the cube root of (T + 1.28) / T");
 	near(detection_probability(&d, detection_diameter(&d, 0.3)), 0.3, 1e-12,
-		"size and probability are inverse");
+		"size and probability are inverse functions");
 	near(detection_threshold(10e-3, 1.34 / 3600), 5, 1e-3,
 		"10 ms pulses: 1.34 false alarms per hour at 5 sigma");
-	near(detection_threshold(10e-3, .0055 / 3600), 6, 2e-3, "and 0.0055 at 6");
-	ok(isnan(detection_threshold(1, 2)), "more alarms than pulses: no threshold");
+	near(detection_threshold(10e-3, .0055 / 3600), 6, 2e-3,
+		"10 ms pulses: 0.0055 false alarms per hour at 6 sigma");
+	ok(isnan(detection_threshold(1, 2)), "more alarms than pulses have no threshold");
 }
 
 static void check_codes(void)
@@ -91,7 +93,7 @@ static void check_codes(void)
 	}
 	ok(bad == 0, "a scale number ends with its limit: %d do not", bad);
 	near(iso4406_code(2000e6), 18, 0, "2000 per ml is 18");
-	near(iso4406_code(0), 0, 0, "none is 0");
+	near(iso4406_code(0), 0, 0, "no particle has the scale number 0");
 	for (int s = 0; s < AS4059_SIZES; s++)
 		for (int k = 0; k < AS4059_CLASSES; k++)
 			bad += k > 7 && fabs(as4059_limit(s, k) / as4059_limit(s, k - 1) -
@@ -125,8 +127,8 @@ static void check_lines(void)
 	near(held / RUNS, 0.9, 0.025,
 		"intervals of 90 % hold the slope in as many cases");
 	near(lack / RUNS, 0.1, 0.025, "a straight line is refused at 10 % in as many");
-	near(slope / RUNS, 0.1, 0.025, "and so is the true slope");
-	ok(line_fit(x, y, 2, 0.9, &l) != 0, "two points are no line");
+	near(slope / RUNS, 0.1, 0.025, "the true slope is refused as often as stated");
+	ok(line_fit(x, y, 2, 0.9, &l) != 0, "two points have no interval");
 }
 
 /* Stretches: the bound holds for any particles with the same sums of d^6 and d^12. */
@@ -164,7 +166,7 @@ static void check_stretches(void)
 		}
 	}
 	ok(bad == 0, "no stretch has more particles than its bound: %d have", bad);
-	ok(close > 500, "and the bound means something: within 4 times in %d of 2000",
+	ok(close > 500, "the bound is within a factor of 4 in %d of 2000 sections",
 		close);
 	classes_clear(c);
 	classes_add_stretch(c, 10, NAN);
@@ -172,8 +174,7 @@ static void check_stretches(void)
 		struct class_count out;
 
 		classes_count(c, 1, &out);
-		ok(isinf(out.number.high),
-			"a stretch of which nothing is known has none");
+		ok(isinf(out.number.high), "a section without estimate has no bound");
 	}
 	classes_free(c);
 }
@@ -204,8 +205,9 @@ static void check_blind(void)
 	}
 	for (int k = 0; k < 2; k++) {
 		near(mean[k], 20, 0.6,
-			"numbers are right on average where some are missed");
-		ok(held[k] >= 870, "and their intervals of 90 %% hold: %.0f of 1000",
+			"numbers are unbiased if some particles are missed");
+		ok(held[k] >= 870,
+			"90 %% intervals contain the number in %.0f of 1000 cases",
 			held[k]);
 	}
 	classes_free(c);

@@ -50,8 +50,8 @@ static void test_balance(enum wear_rule rule, const char *name)
 		lost -= h[i] * 2e-12;
 	for (size_t i = 0; i < step.count; i++)
 		particles += step.particle[i].volume;
-	near(lost / step.volume, 1, 1e-12, "the surface has lost the volume worn off");
-	near(particles / step.volume, 1, 1e-12, "the particles have it");
+	near(lost / step.volume, 1, 1e-12, "the surface has lost the worn volume");
+	near(particles / step.volume, 1, 1e-12, "the particles have the worn volume");
 	debris_free(d);
 }
 
@@ -76,7 +76,8 @@ static void test_rules(void)
 		outside += less < 1e-9 * h[WEAR_COLUMN][i];
 		fewer += less > -1e-9 * h[WEAR_POTENTIAL][i];
 	}
-	ok(outside == 0 && fewer > 0, "columns lose no more than what fails, some less");
+	ok(outside == 0 && fewer > 0,
+		"columns lose at most the failed material, some less");
 }
 
 /* Depths are equal but for rounding, and as many columns are worn. */
@@ -105,21 +106,21 @@ static void test_symmetry(void)
 	debris_step(e, g, q, &step);
 	for (int i = 0; i < CELLS; i++)
 		bad += differs(h[i], g[i % NX * NY + i / NX]);
-	ok(bad == 0 && step.count > 0, "x and y change places: the same wear");
+	ok(bad == 0 && step.count > 0, "exchanging x and y gives the same wear");
 	memset(g, 0, sizeof(g));
 	for (int i = 0; i < CELLS; i++)
 		q[(NY - 1 - i / NX) * NX + i % NX] = p[i];
 	debris_step(d, g, q, &step);
 	for (int i = 0; i < CELLS; i++)
 		bad += differs(h[i], g[(NY - 1 - i / NX) * NX + i % NX]);
-	ok(bad == 0, "mirrored across the shear: the same wear");
+	ok(bad == 0, "a scene mirrored across the shear gives the same wear");
 	memset(g, 0, sizeof(g));
 	for (int i = 0; i < CELLS; i++)
 		q[i / NX * NX + NX - 1 - i % NX] = p[i];
 	debris_step(d, g, q, &step);
 	for (int i = 0; i < CELLS; i++)
 		bad += h[i] != g[i / NX * NX + NX - 1 - i % NX];
-	ok(bad > 0, "mirrored along the shear: another");
+	ok(bad > 0, "a scene mirrored along the shear gives another wear");
 	debris_free(d);
 	debris_free(e);
 }
@@ -262,20 +263,22 @@ static void test_refusals(void)
 	int changed = 0;
 
 	p[300] = -1;
-	ok(debris_step(d, h, p, &step) == DEBRIS_PULL, "a pressure below zero");
+	ok(debris_step(d, h, p, &step) == DEBRIS_PULL, "a negative pressure is refused");
 	p[300] = NAN;
-	ok(debris_step(d, h, p, &step) == DEBRIS_NUMBERS, "a pressure that is no number");
+	ok(debris_step(d, h, p, &step) == DEBRIS_NUMBERS,
+		"a pressure that is not a number is refused");
 	p[300] = 1e30;
-	ok(debris_step(d, h, p, &step) == DEBRIS_DEEP, "material without strength");
+	ok(debris_step(d, h, p, &step) == DEBRIS_DEEP,
+		"material without strength is refused");
 	for (int i = 0; i < CELLS; i++)
 		changed += h[i] != 0;
-	ok(changed == 0, "leave the surface as it was");
+	ok(changed == 0, "refusals do not change the surface");
 	p[300] = 1e9;
 	ok(debris_step(d, h, p, &step) == DEBRIS_OK && step.count == 1,
-		"and the next step sound");
+		"the step after a refusal is right");
 	debris_free(d);
 	par.yield = 0;
-	ok(!debris_new(&par), "no yield stress");
+	ok(!debris_new(&par), "a yield stress of zero is refused");
 }
 
 int main(void)

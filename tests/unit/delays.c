@@ -58,14 +58,14 @@ static void check_sums(void)
 	struct delayloss_par par = { 3, DELAYLOSS_SQUARED };
 
 	near(delayloss_sums(&par, 1, 3, a, b, slope), 3 * 16.0 / 9, 1e-12,
-		"(3-20), squared");
+		"the squared loss (3-20) is right");
 	par.penalty = DELAYLOSS_ABSOLUTE;
 	near(delayloss_sums(&par, 1, 3, a, b, slope), 3 * 4.0 / 3, 1e-12,
-		"(3-20), absolute");
+		"the absolute loss (3-20) is right");
 	par.lambda = 0;
 	near(delayloss_sums(&par, 2, 3, a, b, slope), 0.5, 1e-12,
-		"mean over two samples");
-	near(slope[3], 1, 1e-6, "slope of the squared sum");
+		"the loss is the mean over samples");
+	near(slope[3], 1, 1e-6, "the gradient of the squared sum is right");
 }
 
 /* The four levels drawn, within four standard errors of 1e5 draws. */
@@ -80,7 +80,8 @@ static void check_levels(void)
 	near(l.constant_sorted, 1 / 24.0, 1e-15, "1/24");
 	near(l.sorted_ordered, 1 / 8.0, 1e-15, "1/8");
 	near(l.draw, 1 / 6.0, 1e-15, "1/6");
-	near(delaylevels(1).constant_sorted, 1 / 12.0, 1e-15, "one source has one order");
+	near(delaylevels(1).constant_sorted, 1 / 12.0, 1e-15,
+		"with one source both orders agree");
 	for (int i = 0; i < N; i++) {
 		network_real label[3], any[3], mean[3] = { 0.25, 0.5, 0.75 },
 					       same[3] = { 0.5, 0.5, 0.5 };
@@ -176,9 +177,9 @@ static void check_orders_of_labels(void)
 		rising = rising && sorted[0] <= sorted[1] && sorted[1] <= sorted[2];
 		differs += memcmp(drawn, arrival, sizeof drawn) != 0;
 	}
-	ok(same, "the order of the labels does not touch the signal");
-	ok(rising, "sorted labels rise");
-	ok(differs > 30, "arrival order is another one, %d of 50", differs);
+	ok(same, "the order of the labels does not change the signal");
+	ok(rising, "sorted labels are ascending");
+	ok(differs > 30, "the order of arrivals differs, %d of 50", differs);
 }
 
 static void check_noise(void)

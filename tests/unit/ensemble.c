@@ -16,9 +16,9 @@ static struct ensemble *make(const struct ensemble_par *par, long mark)
 		ensemble_add(e, &particles[i]);
 	if (mark)
 		ensemble_took_place(e, mark, 2);
-	ok(ensemble_close(e) == ENSEMBLE_OK, "closed");
+	ok(ensemble_close(e) == ENSEMBLE_OK, "the ensemble is closed");
 	ok(ensemble_told(e) == (mark && mark != 2 && mark != 7 ? 3 : 2),
-		"realisations told of");
+		"realisations with rows are counted");
 	return e;
 }
 
@@ -32,20 +32,22 @@ static void test_sums(void)
 	const struct sketch *x = ensemble_diameters(e);
 
 	ok(ensemble_par(e)->realisations == 2 && ensemble_par(e)->last == 3,
-		"what 0 stands for");
-	near(third->count.mean, 1.5, 0, "mean count of the diameters that count");
-	near(sqrt(running_variance(&third->count)), sqrt(0.5), 1e-15, "its deviation");
+		"the default of 0 is replaced");
+	near(third->count.mean, 1.5, 0, "the mean count includes the selected diameters");
+	near(sqrt(running_variance(&third->count)), sqrt(0.5), 1e-15,
+		"the standard deviation of the count is right");
 	near(third->total_volume.mean, (18 + 13) / 2., 0,
 		"volumes of all steps, whatever the diameter");
-	near(ensemble_step(e, 1)->count.mean, 0, 0, "diameters outside do not count");
+	near(ensemble_step(e, 1)->count.mean, 0, 0,
+		"diameters outside the limits do not count");
 	near(ensemble_step(e, 2)->count.n, 2, 0, "a step without particles took place");
 	near(ensemble_step(e, 2)->total_volume.mean, (16 + 1) / 2., 0,
-		"and has the volumes so far");
-	near(third->total_count, 3, 0, "particles so far");
+		"a step without particles keeps the cumulative volume");
+	near(third->total_count, 3, 0, "particles are accumulated");
 	ok(x->n == 3 && x->value[0] == 20 && x->value[1] == 30 && x->value[2] == 40,
 		"diameters that count, in order");
 	ok(ensemble_step_diameters(e, 1)->n == 0 && ensemble_step_diameters(e, 3)->n == 3,
-		"and by step");
+		"selected diameters are stored by step");
 	near(ensemble_volume(e)->mean, (18 + 13) / 2. / 3, 1e-15,
 		"mean volume of a realisation per step");
 	ensemble_free(e);
@@ -62,11 +64,12 @@ static void test_partial(void)
 	struct ensemble *e = make(&par, 4);
 	const struct ensemble_step *third = ensemble_step(e, 3);
 
-	near(ensemble_step(e, 2)->count.n, 1, 0, "a step told of without particles");
-	near(ensemble_step(e, 2)->count.mean, 0, 0, "has none");
+	near(ensemble_step(e, 2)->count.n, 1, 0, "a step without particles is accepted");
+	near(ensemble_step(e, 2)->count.mean, 0, 0,
+		"a step without particles has no particles");
 	near(ensemble_step(e, 5)->count.n, 0, 0, "steps after the last one");
 	near(third->count.n, 2, 0, "realisations a step took place in");
-	near(third->total_count, 5, 0, "particles so far");
+	near(third->total_count, 5, 0, "particles are accumulated");
 	near(third->volume.mean, 7, 1e-15, "mean volume");
 	near(third->total_volume.mean, (18 + 13) / 2., 1e-14, "mean volume so far");
 	/* Two steps each of 2 and 7, one of 4. */
@@ -144,8 +147,9 @@ static void test_large(void)
 	estimate_all(e, out);
 	/* The classes are narrower than 1e-4: see sketch.h. */
 	near(out[ESTIMATE_SHAPE].value / w.shape.value, 1, 1e-7,
-		"the shape hardly changes");
-	near(out[ESTIMATE_SCALE].value / w.scale.value, 1, 1e-8, "nor does the scale");
+		"merging hardly changes the shape");
+	near(out[ESTIMATE_SCALE].value / w.scale.value, 1, 1e-8,
+		"merging hardly changes the scale");
 	plain = (out[ESTIMATE_SHAPE].high - out[ESTIMATE_SHAPE].low) / 2;
 	ok(estimate_bootstrap(e, 1, 200, out) == 0, "bootstrap of groups");
 	/* Independent particles: the interval of the likelihood; 200 draws of 256 groups
@@ -153,7 +157,7 @@ static void test_large(void)
 	near((out[ESTIMATE_SHAPE].high - out[ESTIMATE_SHAPE].low) / 2 / plain, 1, 0.3,
 		"interval of independent diameters");
 	near((out[ESTIMATE_SHAPE].high + out[ESTIMATE_SHAPE].low) / 2, w.shape.value,
-		plain, "around the value");
+		plain, "the interval contains the value");
 	ensemble_free(e);
 }
 

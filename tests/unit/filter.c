@@ -133,7 +133,7 @@ static void test_resampling(enum resampling scheme, const char *name)
 	}
 	draw_free(d);
 	ok(rising, "%s: ancestors rise", name);
-	ok(count[7] == 0, "%s: no weight, no copies", name);
+	ok(count[7] == 0, "%s: an ancestor without weight has no copies", name);
 	/* Five standard errors of a multinomial count, sqrt(N w (1 - w) / DRAWS). */
 	ok(worst < 0.05, "%s: unbiased, worst %.3f", name, worst);
 	if (scheme == RESAMPLE_SYSTEMATIC)
@@ -156,7 +156,7 @@ static void test_weights(void)
 		"weights that underflow stay finite");
 	ok(filter_ess(f) >= 1 && filter_mean(f) > 1.5, "the nearest particle survives");
 	filter_predict(f, mean, 1);
-	near(filter_ess(f), 500, 1e-9, "resampled after it");
+	near(filter_ess(f), 500, 1e-9, "the filter is resampled after it");
 	filter_free(f);
 	free(mean);
 	draw_free(d);
@@ -208,9 +208,9 @@ static void test_normals(void)
 		tail += fabs(z[i]) > 3.5;
 	}
 	/* Each within five standard errors. */
-	near(m1, 0, 5e-3, "mean of normals");
-	near(m2, 1, 5 * sqrt(2) * 1e-3, "variance");
-	near(m4, 3, 5 * sqrt(96) * 1e-3, "fourth moment");
+	near(m1, 0, 5e-3, "the mean of normals is 0");
+	near(m2, 1, 5 * sqrt(2) * 1e-3, "the variance of normals is 1");
+	near(m4, 3, 5 * sqrt(96) * 1e-3, "the fourth moment of normals is 3");
 	near(beyond / N, 0.15865525393, 5 * 3.7e-4, "share above one");
 	near(tail / N, 4.6525816e-4, 5 * 2.2e-5, "share beyond the base layer");
 	free(z);

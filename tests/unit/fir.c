@@ -56,7 +56,7 @@ static void test_edges(void)
 	for (int k = 0; k <= 40; k++)
 		sum += fabs(h[k]);
 	ok(fabs(h[20] - 1) < 1e-15 && fabs(sum - 1) < 1e-14,
-		"the whole band is no filter");
+		"the whole band gives the identity");
 	ok(fir_design(&odd, h) < 0, "an odd order cannot be scaled at half the rate");
 	/* kaiser_beta() of scipy 1.10 */
 	near(fir_kaiser_beta(80), 7.857259999999999, 1e-13, "Kaiser's beta at 80 dB");
@@ -162,9 +162,10 @@ static void test_words(void)
 	}
 	rest = fir_parse(chain, 44100.0 / 7, &got);
 	ok(rest && strcmp(rest, text) == 0 && got.window == FIR_BLACKMAN,
-		"a chain: the first");
+		"the first filter of a chain is read");
 	rest = rest ? fir_parse(rest, 44100.0 / 7, &got) : NULL;
-	ok(rest && !*rest && got.window == FIR_KAISER, "and the second");
+	ok(rest && !*rest && got.window == FIR_KAISER,
+		"the second filter of a chain is read");
 	fir_print(&all, 48000, text);
 	rest = fir_parse(text, 48000, &got);
 	ok(rest && !*rest && got.low == 0 && got.high == 0.5 && got.order == 1000000,

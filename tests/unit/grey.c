@@ -101,7 +101,8 @@ static void test_plain_series(void)
 		x[k] = 2;
 	g = fit(x, 10);
 	near(grey_forecast(&g, 1, 1), 2, 1e-15, "constant series goes on as it is");
-	near(grey_forecast(&g, 1000, 1), 2, 1e-15, "for ever");
+	near(grey_forecast(&g, 1000, 1), 2, 1e-15,
+		"the constant continues for any horizon");
 	for (int k = 0; k < 60; k++)
 		x[k] = 2 + 1e-12 * ((k * 7) % 5 - 2);
 	g = fit(x, 10);
@@ -118,7 +119,8 @@ static void test_plain_series(void)
 	for (int k = 0; k < 60; k++)
 		x[k] = k < 3 ? pow(10, 100 * k) : 0;
 	g = fit(x, 4);
-	ok(isfinite(grey_forecast(&g, 1, 1)), "exploding series gives a finite forecast");
+	ok(isfinite(grey_forecast(&g, 1, 1)),
+		"a diverging series gives a finite forecast");
 	memset(x, 0, sizeof x);
 	g = fit(x, 5);
 	near(grey_forecast(&g, 1, 1), 0, 0, "zero series");

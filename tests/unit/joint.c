@@ -58,13 +58,13 @@ static void test_clean(struct joint *j, const struct joint_scene *s)
 	near(worst_t, 0, 1e-4, "arrivals are exact");
 	near(worst_delta, 0, 1e-4, "delays are exact");
 	near(worst_a, 0, 1e-5, "amplitudes are exact");
-	ok(r.chi2 < 1e-3, "nothing is left");
+	ok(r.chi2 < 1e-3, "the residual is zero");
 	for (int i = 0; i < 3; i++)
 		joint_add(s, &truth[i], -1, y[0], y[1], N);
 	worst_t = 0;
 	for (int i = 0; i < N; i++)
 		worst_t = fmax(worst_t, fabs(y[0][i]) + fabs(y[1][i]));
-	near(worst_t, 0, 1e-12 * 1300, "joint_add takes away what it added");
+	near(worst_t, 0, 1e-12 * 1300, "joint_add subtracts what it added");
 }
 
 /* The inverse of the normal matrix of one pulse against the closed form for the sine:
@@ -85,7 +85,7 @@ static void test_bound(struct joint *j, const struct joint_scene *tied)
 	near(sqrt(var), sqrt(50.0) / acos(-1) / p.a * sqrt(1 + 1 / (0.909 * 0.909)),
 		2e-3 * 0.1, "standard error of the delay is the Cramer-Rao bound");
 	near(sqrt(found.cov[5]) / p.a, sqrt(2.0 / 100 / (1 + 0.909 * 0.909)) / p.a, 1e-6,
-		"standard error of the amplitude too");
+		"the standard error of the amplitude is the Cramer-Rao bound");
 }
 
 /* Random scenes of m pulses at 30 dB, at least 10 samples apart. */
@@ -166,7 +166,7 @@ static void test_misuse(struct joint *j, const struct joint_scene *good)
 	ok(joint_fit(j, &s, y, y, 0, p, &m, &r) == JOINT_DOMAIN,
 		"no samples are refused");
 	ok(joint_fit(j, &s, y, y, N, p, &m, &r) == JOINT_OK && m == 0 && r.chi2 == 0,
-		"silence has no pulses");
+		"silence contains no pulses");
 }
 
 int main(void)

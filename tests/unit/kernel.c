@@ -194,7 +194,8 @@ int main(void)
 	}
 	near(kernel_patch(1, 1, 0, 0), 4 * asinh(1), 1e-15,
 		"under its own square cell: 4 asinh 1");
-	near(kernel_patch(2, 1, -6, 3) / kernel_patch(2, 1, 6, 3), 1, 1e-15, "even");
+	near(kernel_patch(2, 1, -6, 3) / kernel_patch(2, 1, 6, 3), 1, 1e-15,
+		"the coefficients are even");
 	near(kernel_modulus(210e9, 0.3, 210e9, 0.3) / (210e9 / 1.82), 1, 1e-15,
 		"two like steels: E / 1.82");
 	near(kernel_modulus(210e9, 0.3, INFINITY, 0.3) / (210e9 / 0.91), 1, 1e-15,

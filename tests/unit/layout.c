@@ -83,8 +83,11 @@ static void compare_with_differences(enum pulse_shape shape, const char *name)
 	ok(fabs(b.time / unit / sqrt(mean[0]) - 1) < 1e-3,
 		"%s: the arrival is as uncertain as finite differences tell", name);
 	ok(fabs(b.velocity / p.velocity / sqrt(mean[1]) - 1) < 1e-3,
-		"%s: so is the velocity", name);
-	ok(fabs(b.amplitude / sqrt(mean[2]) - 1) < 1e-3, "%s: and the amplitude", name);
+		"%s: the standard error of the velocity agrees with finite differences",
+		name);
+	ok(fabs(b.amplitude / sqrt(mean[2]) - 1) < 1e-3,
+		"%s: the standard error of the amplitude agrees with finite differences",
+		name);
 	ok(fabs(c.time / b.time - 1) < 1e-4 && fabs(c.velocity / b.velocity - 1) < 1e-4 &&
 			fabs(c.diameter / b.diameter - 1) < 1e-4,
 		"%s: integrals and sums agree to 1e-4 (%.1e)", name,
@@ -118,8 +121,8 @@ static void compare_with_formula(void)
 		ok(fabs(b.velocity / p.velocity / formula - 1) < 1e-12,
 			"the closed form is that of the page, %d coils over %g m",
 			row[i].coils, row[i].coil[row[i].coils - 1]);
-		ok(fabs(formula / row[i].want - 1) < 5e-3, "and the reference value %.3g",
-			row[i].want);
+		ok(fabs(formula / row[i].want - 1) < 5e-3,
+			"the closed form has the reference value %.3g", row[i].want);
 	}
 }
 
@@ -133,7 +136,8 @@ static void check_traffic(void)
 	near(traffic_window(&t), 0.05 / v, 1e-15,
 		"equal particles fall into a window of twice the spread");
 	near(traffic_unique(&t, 0.25 * traffic_window(&t)), exp(-100 * 0.25 * 0.05 / v),
-		1e-15, "and are paired with exp(-2 arrivals spacing spread / v)");
+		1e-15,
+		"equal particles are matched with exp(-2 arrivals spacing spread / v)");
 	t.pipe.profile = PIPE_LAMINAR;
 	t.spread = 0;
 	/* the wall is at 0.99 R, where the velocity is 2 U (1 - 0.99^2) */

@@ -209,9 +209,10 @@ static void test_disturbances(void)
 	near(plain, 41, 4, "a straight series as it is");
 	near(median_life(60, burst, 0, 0), plain, 1,
 		"six outliers in a row move no life");
-	near(median_life(60, as_it_is, 80, 58), plain, 1, "nor does a halt of 0.8 lives");
+	near(median_life(60, as_it_is, 80, 58), plain, 1,
+		"a halt of 0.8 lives does not change the life");
 	near(median_life(56, burst, 0, 0), plain + 4, 2,
-		"nor do outliers at the very end");
+		"outliers at the very end do not change the life");
 	/* back by 0.4 at row 50: at the rate of 0.01 a row 40 rows more are left; the
 	 * regime may change in them, hence less */
 	ok(median_life(60, repair, 0, 0) > plain + 15 &&
@@ -256,8 +257,8 @@ static void test_fleet(void)
 				bank_weight(b, BANK_OTHER));
 		bank_free(b);
 	}
-	ok(fabs(median(life, DRAWS) - 72) < 0.7 * alone, "nearer than without: %.0f",
-		alone);
+	ok(fabs(median(life, DRAWS) - 72) < 0.7 * alone,
+		"the error with a fleet is smaller: %.0f", alone);
 	bank_chances_free(chances);
 	fleet_free(f);
 	draw_free(d);

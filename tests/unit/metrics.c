@@ -92,11 +92,11 @@ static void check_sums(void)
 		"what comes after the end, or is no prediction, is not counted");
 	s = metrics_get(m);
 	ok(s.n == 3, "three were counted");
-	near(s.bias, 15, 1e-14, "bias");
+	near(s.bias, 15, 1e-14, "the bias is right");
 	near(s.rmse, sqrt((900 + 225) / 3.), 1e-14, "root mean square error");
 	near(s.accuracy, (0.7 + 0.8125 + 1) / 3, 1e-15, "cumulative relative accuracy");
 	near(s.alpha_lambda, 2 / 3., 1e-15, "alpha-lambda share");
-	near(s.coverage, 2 / 3., 1e-15, "coverage");
+	near(s.coverage, 2 / 3., 1e-15, "the coverage is right");
 	near(s.crps, (30 + 15 + 1) / 3., 1e-14, "mean CRPS");
 	near(s.horizon, 80, 0, "prognostic horizon starts where the band is kept");
 	metrics_free(m);

@@ -116,12 +116,13 @@ static void check_training(void)
 		}
 		error = fabs(w[0] - 2) + fabs(w[1] + 1) + fabs(w[2] - 0.5);
 		ok(error < 2e-5, "%s finds the line, error %.1g", name[k], error);
-		ok(memcmp(again, w, sizeof again) == 0, "%s twice: the same bytes",
+		ok(memcmp(again, w, sizeof again) == 0, "%s twice gives the same bytes",
 			name[k]);
 		network_start(net, 5, 0);
 		memcpy(again, w, sizeof again);
 		network_start(net, 5, 1);
-		ok(memcmp(again, w, sizeof again) != 0, "another repetition: others");
+		ok(memcmp(again, w, sizeof again) != 0,
+			"another repetition gives other weights");
 		network_free(net);
 	}
 }

@@ -56,17 +56,17 @@ int main(void)
 	}
 	/* standard deviations of the mean powers: sqrt(1, 2, 15, 96, 945) / sqrt(total)
 	 */
-	near(sum[0] / total, 0, 4 * sqrt(1 / total), "mean");
-	near(sum[1] / total, 1, 4 * sqrt(2 / total), "second moment");
-	near(sum[2] / total, 0, 4 * sqrt(15 / total), "third moment");
-	near(sum[3] / total, 3, 4 * sqrt(96 / total), "fourth moment");
+	near(sum[0] / total, 0, 4 * sqrt(1 / total), "the mean is 0");
+	near(sum[1] / total, 1, 4 * sqrt(2 / total), "the second moment is 1");
+	near(sum[2] / total, 0, 4 * sqrt(15 / total), "the third moment is 0");
+	near(sum[3] / total, 3, 4 * sqrt(96 / total), "the fourth moment is 3");
 	near(product / PAIRS, 0, 4 / sqrt(PAIRS), "the two of a pair are independent");
 	for (int k = 0; k < 5; k++) {
 		double s = sigmas(beyond[k], total, erfc(far[k] / sqrt(2)));
 
 		ok(fabs(s) < 4, "share beyond %.2f: %.1f sigma off", far[k], s);
 	}
-	ok(fabs(sigmas(high, beyond[2], 0.5)) < 4, "both tails alike");
+	ok(fabs(sigmas(high, beyond[2], 0.5)) < 4, "both tails have the same share");
 	for (int k = 0; k < BINS; k++)
 		chi2 += pow(bin[k] - total / BINS, 2) / (total / BINS);
 	/* 199 degrees of freedom: mean 199, standard deviation 20 */

@@ -10,12 +10,12 @@ static void check_rates(void)
 	struct observed *mean = observed_new(RATE_MEAN), *last = observed_new(RATE_LAST);
 	double t[] = { 10, 11, 13, 13, 17 }, h[] = { 1, 2, 3, 4, 6 };
 
-	ok(isnan(observed_rate(mean)), "no rate of nothing");
+	ok(isnan(observed_rate(mean)), "no observation gives no rate");
 	for (int i = 0; i < 5; i++) {
 		observed_add(mean, t[i], h[i], h[i]);
 		observed_add(last, t[i], h[i], h[i]);
 		if (i == 0)
-			ok(isnan(observed_rate(mean)), "nor of one observation");
+			ok(isnan(observed_rate(mean)), "one observation gives no rate");
 		if (i == 3)
 			near(observed_rate(last), 1, 0,
 				"the same time: from the time before");
@@ -27,7 +27,7 @@ static void check_rates(void)
 		"the latest is known");
 	observed_begin(mean, 20, 7);
 	observed_add(mean, 22, 8, 8);
-	near(observed_rate(mean), 0.5, 0, "a new beginning");
+	near(observed_rate(mean), 0.5, 0, "the rates can be restarted");
 	observed_free(mean);
 	observed_free(last);
 }

@@ -284,13 +284,13 @@ static void test_pose(void)
 	}
 	ok(bad == 0, "bars of 14 directions are one particle each");
 	ok(out == 0, "their dips are from 0 to pi/2");
-	ok(off < 0.03, "and their directions those of the bars, in cubes to %.3f", off);
+	ok(off < 0.03, "their directions are those of the bars, in cubes to %.3f", off);
 	ok(mirrored == 0,
 		"mirrored bars have mirrored directions and the same shape (%d do not)",
 		mirrored);
 	ok(far == 0, "a bar has the same row 1000 cells further (%d have not)", far);
 	ok(over == 0,
-		"and across the border of a periodic grid, its centroid on the grid (%d have not)",
+		"a bar has the same row across the border of a periodic grid, with its centroid on the grid (%d have not)",
 		over);
 }
 
@@ -349,8 +349,8 @@ static void test_endless(void)
 	ok(scan(ps, 24, 16, 2, par.dz, ring, &p) == 1 && p->endless && isnan(p->x),
 		"a ring about the grid is endless");
 	near(p->y, 3.5, 1e-15, "across itself it has a centroid");
-	near(p->area, 2 * 24 * 3, 0, "and its surface is that of one period");
-	ok(p->low[1] == 3 && p->high[1] == 4, "and it has two sides");
+	near(p->area, 2 * 24 * 3, 0, "its surface is that of one period");
+	ok(p->low[1] == 3 && p->high[1] == 4, "its surface has two sides");
 	particles_free(ps);
 	par.periodic = 0;
 	ps = particles_new(&par);

@@ -20,7 +20,8 @@ static void by_hand(void)
 		"cells on either side of a periodic edge are one patch");
 	near(a[0].load, 4, 1e-15, "load of a patch is p dx dy");
 	near(a[0].perimeter, 4 * 2 + 2 * 0.5, 1e-15, "perimeter of two cells in a row");
-	near(a[0].x, (0.5 * 1 - 0.5 * 3) / 4 * 2 + 8, 1e-15, "its centre is in the grid");
+	near(a[0].x, (0.5 * 1 - 0.5 * 3) / 4 * 2 + 8, 1e-15,
+		"the centre of a periodic patch is in the grid");
 	near(a[1].peak, 5, 1e-15, "largest pressure of a patch");
 	near(a[1].y, 0.75, 1e-15, "centre of a cell");
 	free(a);

@@ -59,7 +59,8 @@ static void test_series(void)
 			worst_im = fmax(worst_im, fabs(b.im / cimag(want) - 1));
 		}
 	ok(worst < 1e-13, "the field equation by series: %.1g of the moment", worst);
-	ok(worst_im < 1e-12, "and its imaginary part (%.1g)", worst_im);
+	ok(worst_im < 1e-12, "the field equation confirms the imaginary part (%.1g)",
+		worst_im);
 }
 
 static void test_limits(void)

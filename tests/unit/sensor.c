@@ -100,7 +100,7 @@ static void test_diameter_error(void)
 		"error of the diameter where voltage and time err together");
 	near(sensor_diameter_error(d, ra, rt, -1),
 		sensor_diameter(1e11, 12 / (1 + rt), 0.7 * (1 - ra)) - d, 1e-5 * d * rt,
-		"and where they err against each other");
+		"the error of the diameter is right for opposite errors");
 }
 
 static void test_pipe(enum pipe_profile profile, double top)
@@ -121,7 +121,7 @@ static void test_pipe(enum pipe_profile profile, double top)
 	}
 	near(sum / 1e-3, 1, 1e-8, "the profile carries the flow");
 	near(pipe_flow_share(&pipe, 0.005), 1, 1e-15,
-		"all of the flow is inside the wall");
+		"all of the flow is inside the pipe");
 	for (double u = 0.01; u < 1; u += 0.01) {
 		double r = pipe_position(&pipe, 0.00495, u), h = 1e-8;
 		double slope =

@@ -26,7 +26,8 @@ static void test_weibull(void)
 		scaled[i] = sizes[i] * 1e-6;
 	weibull_fit(scaled, NULL, 10, 0, INFINITY, 0.95, &w);
 	near(w.shape.value, 2.200002120499429, 1e-12, "shape does not know the unit");
-	near(w.scale.value, 55.74214415993261e-6, 1e-17, "scale does");
+	near(w.scale.value, 55.74214415993261e-6, 1e-17,
+		"the scale is proportional to the unit");
 }
 
 static void test_truncated(void)
@@ -43,7 +44,7 @@ static void test_truncated(void)
 		sum += weibull_density(&w, 10 + (i + 0.5) * 0.01) * 0.01;
 	near(sum, 1, 1e-6, "cut off: density integrates to one");
 	ok(weibull_density(&w, 9) == 0 && weibull_density(&w, 71) == 0,
-		"and is 0 outside");
+		"the truncated density is 0 outside");
 	ok(weibull_fit(sizes, NULL, 10, 20, 70, 0.95, &w) == WEIBULL_NONE,
 		"values outside are refused");
 	ok(weibull_fit(sizes, NULL, 1, 0, INFINITY, 0.95, &w) == WEIBULL_NONE,
@@ -71,7 +72,8 @@ static void test_narrow(void)
 			1e-10 + 1e-15 / spread[k], "scale");
 		ok(weibull_fit(x, NULL, 10, 0.9e-5, 1, 0.95, &v) == WEIBULL_OK,
 			"the same, cut off far away");
-		near(v.shape.value / w.shape.value, 1, 1e-6, "has the same shape");
+		near(v.shape.value / w.shape.value, 1, 1e-6,
+			"a distribution truncated far away has the same shape");
 	}
 	for (int i = 0; i < 10; i++)
 		for (int k = 0; k < (int)weight[i]; k++)
@@ -81,7 +83,7 @@ static void test_narrow(void)
 	near(w.shape.high / v.shape.high, 1, 1e-12, "weights are repeated values");
 	near(weibull_distance(&w, sizes, weight, 10) /
 			weibull_distance(&v, twice, NULL, n),
-		1, 1e-12, "also for the distance");
+		1, 1e-12, "weights are repeated values for the distance too");
 }
 
 /* In 95 % of samples the interval holds the truth; with so many values and 1000 samples

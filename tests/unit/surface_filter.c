@@ -45,16 +45,17 @@ static void check_ends(void)
 	for (int i = 0; i < L; i++)
 		z[i] = (i - 128) / 64.0;
 	surface_gauss(L, 1, 1, 1, z, CUT, FILTER_MEAN, out);
-	near(out[L - 1] - z[L - 1], -.14462, 5e-6, "the mean bends a plane at the rim");
+	near(out[L - 1] - z[L - 1], -.14462, 5e-6,
+		"the mean distorts a plane at the edge");
 	surface_gauss(L, 1, 1, 1, z, CUT, FILTER_LINE, out);
-	near(out[L - 1] - z[L - 1], 0, 1e-13, "the line does not");
+	near(out[L - 1] - z[L - 1], 0, 1e-13, "the line reproduces a plane at the edge");
 	for (int i = 0; i < L; i++)
 		z[i] = pow((i - 128) / 64.0, 2);
 	surface_gauss(L, 1, 1, 1, z, CUT, FILTER_MEAN, out);
-	near(z[128] - out[128], -.03512, 5e-6, "mean and line lift a parabola");
+	near(z[128] - out[128], -.03512, 5e-6, "mean and line distort a parabola");
 	surface_gauss(L, 1, 1, 1, z, CUT, FILTER_PARABOLA, out);
-	near(z[128] - out[128], 0, 1e-13, "the parabola leaves it in the middle");
-	near(z[L - 1] - out[L - 1], 0, 1e-12, "and at the rim");
+	near(z[128] - out[128], 0, 1e-13, "the parabola is reproduced in the middle");
+	near(z[L - 1] - out[L - 1], 0, 1e-12, "the parabola is reproduced at the edge");
 }
 
 /* In two directions: a plane stays under order 1, x^2 y^2 under order 2. */
@@ -84,7 +85,8 @@ static void check_areal(void)
 	near(out[0] * NX * NY, 1, 1e-9, "around and around a long filter gives the mean");
 	near(sum * NX * NY, 1, 1e-12, "a filter that repeats keeps the mean");
 	surface_gauss(NX, NY, 1, 2, z, 0.1, FILTER_MEAN, out);
-	ok(memcmp(z, out, NX * NY * sizeof *z) == 0, "less than a pixel changes nothing");
+	ok(memcmp(z, out, NX * NY * sizeof *z) == 0,
+		"a filter shorter than a pixel changes nothing");
 }
 
 static void check_form(void)
@@ -109,7 +111,8 @@ static void check_form(void)
 	worst = 0;
 	for (int i = 0; i < NX * NY; i++)
 		worst = fmax(worst, fabs(z[i]));
-	ok(worst < 1e-18, "so is a paraboloid of revolution: %.1e m", worst);
+	ok(worst < 1e-18, "a paraboloid of revolution is removed completely: %.1e m",
+		worst);
 	for (int i = 0; i < NX * NY; i++)
 		z[i] = philox_uniform(3, 0, RNG_NOISE, (uint64_t)i);
 	memcpy(left, z, sizeof left);
@@ -129,9 +132,9 @@ static void check_form(void)
 		sq = now;
 	}
 	surface_form(NX, NY, 1e-5, 2e-5, FORM_POLY6, z);
-	near(surface_sq(NX, NY, z) / sq, 1, 1e-13, "a second time there is nothing left");
+	near(surface_sq(NX, NY, z) / sq, 1, 1e-13, "a second removal finds no form");
 	ok(surface_form(2, 20, 1, 1, FORM_POLY2, z) == NUM_DOMAIN,
-		"two columns have no parabola");
+		"two columns are too few for a parabola");
 }
 
 static void check_core(void)
@@ -151,7 +154,7 @@ static void check_core(void)
 	for (int i = 0; i < MANY; i++)
 		h[i] = i * 1e-9;
 	surface_core(MANY, h, &c);
-	near(c.sk / (1e-9 * MANY), 1, 1e-9, "uniform heights are core alone");
+	near(c.sk / (1e-9 * MANY), 1, 1e-9, "uniform heights have only a core");
 	near(c.spk + c.svk, 0, 1e-12, "without peaks and valleys");
 	memset(h, 0, MANY * sizeof *h);
 	surface_core(MANY, h, &c);
@@ -160,7 +163,7 @@ static void check_core(void)
 	for (int i = 0; i < MANY; i++)
 		h[i] = i < MANY / 2;
 	surface_core(MANY, h, &c);
-	near(c.sk, 0, 1e-12, "a step: no core");
+	near(c.sk, 0, 1e-12, "a step has no core");
 	/* the curve is linear between the middles of its points: half a point more */
 	near(c.svk, 2, 3e-5, "a valley of half the surface, as a triangle twice as deep");
 	surface_core(4, h, &c);
