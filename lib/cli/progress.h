@@ -4,8 +4,8 @@
  * is a terminal.  Programs of one pipeline have a line each, in their order; the line is
  * erased at the end.
  */
-#ifndef SHELL_PROGRESS_H
-#define SHELL_PROGRESS_H
+#ifndef CLI_PROGRESS_H
+#define CLI_PROGRESS_H
 
 /* done of total of what, such as "steps"; total <= 0: unknown, tells done alone.  Cheap
  * to call often. */
