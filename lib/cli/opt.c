@@ -1,6 +1,7 @@
 #include "cli/opt.h"
 #include "cli/files.h"
 #include "cli/msg.h"
+#include "cli/program.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
 #include <ctype.h>
@@ -509,7 +510,7 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 
 	files_start();
 	prog = program;
-	msg_name(program->name);
+	program_set_name(program->name);
 	check_stack();
 	stats_start();
 	gather(program->opts);
@@ -583,6 +584,15 @@ char *opt_cmd(const char *upstream, const char *extra)
 	for (char **p = operand; !upstream && *p; p++)
 		if (strcmp(*p, "-") != 0)
 			append_word(&cmd, *p);
+	return cmd;
+}
+
+char *opt_cmd_side(const char *upstream, const char *option)
+{
+	char *extra = xprintf("--%s /dev/fd/3 3>&1 >/dev/null", option);
+	char *cmd = opt_cmd(upstream, extra);
+
+	free(extra);
 	return cmd;
 }
 

@@ -1,5 +1,5 @@
 #include "cli/progress.h"
-#include "cli/msg.h"
+#include "cli/program.h"
 #include <dirent.h>
 #include <limits.h>
 #include <stdio.h>
@@ -82,9 +82,12 @@ static const char *duration(double seconds, char text[32])
 {
 	double h = seconds / 3600;
 
-	snprintf(text, 32, seconds < 100 ? "%.0f s" : h < 2 ? "%.0f min" : "%.1f h",
+	snprintf(text, 32,
+		seconds < 100 ? "%.0f s"
+		: h < 2       ? "%.0f min"
+			      : "%.1f h",
 		seconds < 100 ? seconds
-		: h < 2	      ? seconds / 60
+		: h < 2       ? seconds / 60
 			      : h);
 	return text;
 }
@@ -104,11 +107,11 @@ static void draw(const char *what, double done, double total)
 		find_line();
 	drawn = t;
 	if (total > 0 && done > 0 && done <= total)
-		snprintf(text, sizeof text, "%s: %.0f %%, %s left", msg_program(),
+		snprintf(text, sizeof text, "%s: %.0f %%, %s left", program_name(),
 			100 * done / total,
 			duration((t - started) * (total - done) / done, left));
 	else
-		snprintf(text, sizeof text, "%s: %.0f %s, %s", msg_program(), done, what,
+		snprintf(text, sizeof text, "%s: %.0f %s, %s", program_name(), done, what,
 			duration(t - started, left));
 	put(text);
 }
