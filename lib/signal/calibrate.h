@@ -1,18 +1,19 @@
 /* calibrate.h - what a two-sensor record says about the instrument
  *
- * From the beginning of a record: lag of the second sensor, interfering tones, noise of
- * either channel, shape and duration of the pulses, ratio of the gains, range of the
+ * From the beginning of a record: gaps, interfering tones, spectrum of the noise, lag of
+ * the second sensor, duration and form of the pulses, ratio of the gains, range of the
  * velocities.  Whatever the caller knows is taken as given.
  *
- * The order is: tones from the periodogram; noise from the fourth difference; lag from
- * the cross-correlation; duration from the lag at which the autocorrelation is lowest
- * (which superposition does not change); then joint fits of the clearest sections under
- * each shape, with duration and gain chosen by least chi-square, and a correction of the
- * shape where all pulses ask for it.
+ * All of it is one model, estimated by turns: a record is pulses of one form plus noise
+ * of a spectrum.  Where nothing happens gives a first spectrum; what is whitened by it
+ * shows clear pulses (start.h), whose common form is learned (learn.h); what they leave
+ * gives the spectrum anew, and that their form.  In the end half of the clear pulses tell
+ * how well the form learned from the others describes them.
  */
 #ifndef SIGNAL_CALIBRATE_H
 #define SIGNAL_CALIBRATE_H
 
+#include "signal/gaps.h"
 #include "signal/joint.h"
 #include "signal/sensor.h"
 #include "signal/shape.h"
@@ -37,33 +38,37 @@ struct calibrate_par {
 };
 
 struct calibration {
-	long shift;         /* samples channel 2 is moved back by */
-	double correlation; /* of the channels at that lag */
+	struct gaps gaps[2];
+	long shift; /* samples channel 2 is moved back by */
 	int tones;
 	double omega[TONES_MAX];
-	size_t tone_hop;              /* samples between two fits of the tones */
-	double tone_power[TONES_MAX]; /* on channel 1, units of noise^2 */
-	double tone_variance;       /* of a coefficient from one hop to the next, units of
-				       noise^2 */
-	struct whitening whitening; /* of filtered records; else without taps */
-	double mean[2];             /* of the channels, taken off before that */
-	double noise[2];            /* standard deviations, before any filter */
-	double rest[2]; /* of these, power left by the pulses the shape was fitted to */
-	struct shape *shape;
-	int pulse;             /* which of enum pulse_shape, ... */
-	int corrected;         /* ... 1: with what all pulses had besides */
-	double duration, gain; /* as above */
+	size_t tone_hop;      /* samples between two fits of the tones */
+	double tone_variance; /* of a coefficient from one hop to the next, units of
+				 noise^2 */
+	struct whitening whitening[2]; /* of filtered or coloured records; else no taps */
+	double mean[2];                /* of the channels, taken off before that */
+	double noise[2];               /* standard deviations of what is white then */
+	struct shape *plain;           /* the pulse in the record, max |p| = 1, ... */
+	struct shape *shape[2];        /* ... and as either whitened channel has it */
+	int pulse;             /* which of enum pulse_shape, or CALIBRATE_ANY_PULSE: a
+				* form of its own */
+	int through;           /* 1: the pulse has passed what has coloured the noise */
+	double duration, gain; /* as above; gain < 0 where one sensor is reversed */
 	double transit;        /* samples between the sensors; INFINITY if unknown */
 	double delta_min, delta_max; /* samples around shift */
+	double delta_var;            /* of the delays of what was learned from */
 	double drop, drop_near;      /* thresholds of joint.h */
-	double misfit;               /* of joint.h: how far the shape can be trusted */
-	int events;                  /* pulses the shape was fitted to */
-	int suspect;                 /* 1: taken for white, which its noise is not */
-	int guessed;                 /* 1: whitened by what its own noise tells */
-	int attempts;                /* times all this was learned until it was settled */
-	int dense;                   /* 1: pulses throughout, hardly any of them clear */
-	double chi2;                 /* of these, per degree of freedom */
-	double price; /* the same with so much for each pulse, to choose by */
+	double level;                /* noise power over what was thought, and ... */
+	double error; /* ... error of the form over the form, from pulses that it was not
+		       * learned from */
+	double error_least; /* its standard error, ... */
+	double error_floor; /* ... and what the noise in the form makes of it */
+	int events;         /* pulses the form was learned from */
+	int negatives;      /* 1: pulses of both signs among them */
+	int reversed;       /* 1: most begin with their negative lobe */
+	int attempts;       /* times the form was learned */
+	int dense;          /* 1: pulses throughout, hardly any of them clear */
+	double chi2;        /* of these, per degree of freedom: the median */
 };
 
 enum calibrate_status {
@@ -71,11 +76,13 @@ enum calibrate_status {
 	CALIBRATE_MEMORY,
 	CALIBRATE_SILENT_1, /* channel 1 is constant */
 	CALIBRATE_SILENT_2,
-	CALIBRATE_NO_LAG, /* the channels have nothing in common */
-	CALIBRATE_FAR,    /* the lag given is as long as the record */
-	CALIBRATE_NARROW, /* the filter has left a band narrower than half the pulse's */
-	CALIBRATE_FAST,   /* pulses of fewer than 8 samples */
-	CALIBRATE_SLOW    /* pulses longer than half the record */
+	CALIBRATE_NO_LAG,  /* the channels have nothing in common */
+	CALIBRATE_FAR,     /* the lag given is as long as the record */
+	CALIBRATE_NARROW,  /* the filter has left a band narrower than half the pulse's */
+	CALIBRATE_FAST,    /* pulses of fewer than 8 samples */
+	CALIBRATE_SLOW,    /* pulses longer than half the record */
+	CALIBRATE_SWAPPED, /* pulses come to channel 2 first */
+	CALIBRATE_TOGETHER /* pulses come to both channels at once */
 };
 
 /* x1, x2: n >= 64 finite samples.  On CALIBRATE_OK *c is filled; free it with
@@ -83,6 +90,9 @@ enum calibrate_status {
 enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct calibration *c);
 void calibration_clear(struct calibration *c);
+
+/* Gives c the whitened shapes of its plain pulse.  Returns 0 when out of memory. */
+int calibration_set_shapes(struct calibration *c);
 
 /* The scene of joint.h with all that was learned: max_pulses is left to the caller. Tones
  * where the pulse has no power are left out, once they are known to be steady. */

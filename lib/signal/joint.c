@@ -2,14 +2,17 @@
 #include "signal/joint_state.h"
 #include <stdlib.h>
 
-/* Matched filter of the residual on every stride-th sample, per channel. */
-static size_t filter_residual(struct joint *j, const struct joint_scene *s, size_t stride)
+/* Matched filter of the residual on every stride-th sample, per channel, for pulses that
+ * last T. */
+static size_t filter_residual(
+	struct joint *j, const struct joint_scene *s, double T, size_t stride)
 {
 	size_t len, points = (j->n + stride - 1) / stride;
-	long first = shape_support(s->shape, 0, s->duration, &len);
 
-	shape_sample(s->shape, 0, s->duration, first, len, j->scratch, NULL, NULL);
-	for (int c = 0; c < 2; c++)
+	for (int c = 0; c < 2; c++) {
+		long first = shape_support(s->shape[c], 0, T, &len);
+
+		shape_sample(s->shape[c], 0, T, first, len, j->scratch, NULL, NULL);
 		for (size_t k = 0; k < points; k++) {
 			long from = (long)(k * stride) + first,
 			     skip = from < 0 ? -from : 0;
@@ -23,46 +26,75 @@ static size_t filter_residual(struct joint *j, const struct joint_scene *s, size
 						  (size_t)(end - from - skip))
 					: 0;
 		}
+	}
 	return points;
+}
+
+static int tried_before(const struct joint_scene *s, const struct candidate *tried, int n,
+	double t, double delta)
+{
+	for (int i = 0; i < n; i++)
+		if (fabs(t - tried[i].t) < 0.15 * s->duration &&
+			fabs(delta - tried[i].delta) < 0.15 * s->duration)
+			return 1;
+	return 0;
+}
+
+/* The same among pulses with delays from lo to hi, for which one duration will do. */
+static void search_delays(struct joint *j, const struct joint_scene *s, double delta_lo,
+	double delta_hi, const struct candidate *tried, int ntried,
+	struct candidate *best)
+{
+	size_t stride = s->duration >= 48 ? (size_t)(s->duration / 24) : 1;
+	double T = pulse_duration(s, 0.5 * (delta_lo + delta_hi)), g = s->gain;
+	double norm = sqrt(s->duration / T / unit_energy(s));
+	size_t points = filter_residual(j, s, T, stride);
+	long lo = (long)floor(delta_lo / (double)stride);
+	long hi = (long)ceil(delta_hi / (double)stride);
+
+	for (long k = 0; k < (long)points; k++)
+		for (long l = k + lo < 0 ? -k : lo; l <= hi && k + l < (long)points;
+			l++) {
+			double z = (j->filter[0][k] + g * j->filter[1][k + l]) * norm;
+			double worth = z < 0 ? z * z - s->negative : z * z;
+			double t = (double)(k * (long)stride),
+			       delta = (double)(l * (long)stride);
+
+			if (worth <= best->z2 || tried_before(s, tried, ntried, t, delta))
+				continue;
+			best->z2 = worth;
+			best->t = t;
+			best->delta = clamp(delta, s->delta_min, s->delta_max);
+			best->a = z * norm;
+		}
+}
+
+int joint_bank(const struct joint_scene *s)
+{
+	static const double step = 0.26; /* of log T, see joint.h */
+	double lo = pulse_duration(s, s->delta_min), hi = pulse_duration(s, s->delta_max);
+	double count = ceil(log(hi / lo) / step);
+
+	return count > 1 ? (int)count : 1;
 }
 
 /* The pulse that would take most chi-square away, outside the spots tried before. */
 static struct candidate search(struct joint *j, const struct joint_scene *s,
 	const struct candidate *tried, int ntried)
 {
-	size_t stride = s->duration >= 48 ? (size_t)(s->duration / 24) : 1;
-	size_t points;
-	double z = 0, g = s->gain, norm = 1 / sqrt(unit_energy(s));
-	long lo = (long)floor(s->delta_min / (double)stride);
-	long hi = (long)ceil(s->delta_max / (double)stride);
 	struct candidate best = { 0 };
+	int bank = joint_bank(s);
+	double ratio =
+		pow(pulse_duration(s, s->delta_max) / pulse_duration(s, s->delta_min),
+			1.0 / bank);
+	double lo = s->delta_min, hi;
 
 	joint_project(j);
-	points = filter_residual(j, s, stride);
 	j->searches++;
-	for (long k = 0; k < (long)points; k++) {
-		for (long l = k + lo < 0 ? -k : lo; l <= hi && k + l < (long)points;
-			l++) {
-			double here = (j->filter[0][k] + g * j->filter[1][k + l]) * norm;
-			int old = 0;
-
-			if (here <= z)
-				continue;
-			for (int i = 0; i < ntried && !old; i++)
-				old = fabs((double)(k * (long)stride) - tried[i].t) <
-					      0.15 * s->duration &&
-				      fabs((double)(l * (long)stride) - tried[i].delta) <
-					      0.15 * s->duration;
-			if (old)
-				continue;
-			z = here;
-			best.t = (double)(k * (long)stride);
-			best.delta = clamp(
-				(double)(l * (long)stride), s->delta_min, s->delta_max);
-		}
+	for (int b = 0; b < bank; b++, lo = hi) {
+		hi = b + 1 < bank ? (s->transit + lo) * ratio - s->transit : s->delta_max;
+		search_delays(j, s, lo, hi, tried, ntried, &best);
 	}
-	best.z2 = z * z;
-	best.a = z * norm;
 	return best;
 }
 
@@ -85,7 +117,9 @@ static void finish(struct joint *j, const struct joint_scene *s,
 	result->chi2 = chi2;
 	for (int b = j->slow; b < j->basis; b++)
 		taken += 2 * j->share[b];
-	result->dof = (long)((1 - s->lost) * 2 * (double)j->n - taken + 0.5) - PAR * m;
+	result->dof = (long)((1 - s->lost) * (2 * (double)j->n - (double)j->left_out) -
+			      taken + 0.5) -
+		      PAR * m;
 	if (result->dof < 1)
 		result->dof = 1;
 	result->full = full;
@@ -100,6 +134,9 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 	enum { TRIES = 3 + JOINT_PULSES_MAX / 8 };
 	enum joint_status status = joint_start(j, s, y1, y2, n, pulses, *m);
 	struct candidate tried[TRIES];
+	/* Twice what crowds of two pulses per duration take; what is no pulse takes all.
+	 */
+	double budget = 1000 + 250 * (double)n / s->duration;
 	int failed = 0;
 	double chi2;
 
@@ -107,7 +144,7 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 		return status;
 	chi2 = joint_fit_all(j, s, pulses, *m);
 	do {
-		while (failed < 3 + *m / 8 && *m < s->max_pulses) {
+		while (failed < 3 + *m / 8 && *m < s->max_pulses && j->work < budget) {
 			struct candidate c = search(j, s, tried, failed);
 
 			if (c.z2 < 0.3 * s->drop_near)
@@ -118,14 +155,31 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 				tried[failed++] = c;
 		}
 		chi2 = joint_fit_all(j, s, pulses, *m);
-	} while (joint_split_pulses(j, s, pulses, m, &chi2));
-	joint_swap_pulses(j, s, pulses, *m, &chi2);
-	joint_merge_pulses(j, s, pulses, m, &chi2);
-	joint_prune(j, s, pulses, m, &chi2);
-	chi2 = joint_fit_all(j, s, pulses, *m);
+	} while (j->work < budget && joint_split_pulses(j, s, pulses, m, &chi2));
+	if (j->work < budget) {
+		joint_swap_pulses(j, s, pulses, *m, &chi2);
+		joint_merge_pulses(j, s, pulses, m, &chi2);
+		joint_prune(j, s, pulses, m, &chi2);
+		chi2 = joint_fit_all(j, s, pulses, *m);
+	}
 	finish(j, s, pulses, *m, chi2,
-		*m == s->max_pulses && search(j, s, NULL, 0).z2 > s->drop, result);
+		(j->work >= budget || *m == s->max_pulses) &&
+			search(j, s, NULL, 0).z2 > s->drop,
+		result);
 	return JOINT_OK;
+}
+
+double joint_amplitude(struct joint *j, const struct joint_scene *s,
+	const struct joint_pulse *pulse, int c, double *se)
+{
+	const struct column *col = &j->col[JOINT_PULSES_MAX][c];
+	double hh;
+
+	joint_make_columns(j, s, JOINT_PULSES_MAX, pulse);
+	hh = dot(col->d[2], col->d[2], col->n);
+	*se = hh > 0 ? 1 / sqrt(hh) : INFINITY;
+	return hh > 0 ? pulse->a + dot(col->d[2], j->r[c] + col->first, col->n) / hh
+		      : pulse->a;
 }
 
 enum joint_status joint_refine(struct joint *j, const struct joint_scene *s,

@@ -33,18 +33,22 @@
 enum { JOINT_TONES_MAX = 32, JOINT_BASELINE_MAX = 32, JOINT_PULSES_MAX = 64 };
 
 struct joint_scene {
-	const struct shape *shape;
-	double duration; /* T of a particle with delta = 0 */
-	double transit;  /* from sensor to sensor at delta = 0; INFINITY: one T */
-	double gain;     /* g > 0 */
+	const struct shape *shape[2]; /* on either channel; both scale with T */
+	double duration;              /* T of a particle with delta = 0 */
+	double transit; /* from sensor to sensor at delta = 0; INFINITY: one T */
+	double gain;    /* g, not 0; negative where one sensor is reversed */
 	double delta_min, delta_max; /* range of delta */
 	double drop;                 /* chi-square a pulse must take away ... */
-	double drop_near; /* ... where it overlaps others: the search is narrower */
-	double misfit;    /* and this share of the energy it overlaps */
+	double drop_near; /* ... where it overlaps others: the search is narrower, */
+	double misfit;    /* plus this share of the energy it overlaps, ... */
+	double negative;  /* ... plus this where its amplitude is negative and it stands
+			   * alone; not 0: none that overlaps others is */
 	int max_pulses;   /* at most JOINT_PULSES_MAX */
 	int offset;       /* 1: a constant is fitted too */
 	int tones;
 	double omega[JOINT_TONES_MAX]; /* rad per sample */
+	/* Samples that say nothing (not 0), of either channel; NULL: none. */
+	const unsigned char *bad[2];
 	/* Variance of each tone's cosine and sine about zero, known beforehand (tones
 	 * that were taken from the record leave little); INFINITY: they may be anything.
 	 */
@@ -63,9 +67,9 @@ struct joint_pulse {
 
 struct joint_result {
 	double chi2;
-	long dof;      /* samples less parameters, at least 1 */
-	int full;      /* 1: max_pulses reached and there were more */
-	long steps;    /* Levenberg-Marquardt steps tried */
+	long dof;   /* samples less parameters, at least 1 */
+	int full;   /* 1: max_pulses or an end of patience reached, and there were more */
+	long steps; /* Levenberg-Marquardt steps tried */
 	long searches; /* matched-filter searches */
 };
 
@@ -86,8 +90,17 @@ enum joint_status joint_refine(struct joint *joint, const struct joint_scene *sc
 	const double *y1, const double *y2, size_t n, struct joint_pulse *pulses, int m,
 	struct joint_result *result);
 
+/* Durations that the search goes through so that none of the range is out by more than 14
+ * %, which costs a sine pulse a twentieth of its matched filter. */
+int joint_bank(const struct joint_scene *scene);
+
 /* Residual of the last fit, channel 0 or 1, n samples, tones and offset removed. */
 const double *joint_residual(const struct joint *joint, int channel);
+
+/* Amplitude of a pulse as channel c alone has it, by what the last fit left there, and
+ * its standard error; INFINITY where the channel says nothing of it. */
+double joint_amplitude(struct joint *joint, const struct joint_scene *scene,
+	const struct joint_pulse *pulse, int c, double *se);
 
 /* Adds sign times one pulse to y1[0..n) and y2[0..n) (either may be NULL). */
 void joint_add(const struct joint_scene *scene, const struct joint_pulse *pulse,

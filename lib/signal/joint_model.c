@@ -168,12 +168,19 @@ void joint_project(struct joint *j)
 	}
 }
 
+void joint_blank(const struct joint *j, int c, long first, size_t n, double *x)
+{
+	for (size_t k = 0; j->bad[c] && k < n; k++)
+		if (j->bad[c][first + (long)k])
+			x[k] = 0;
+}
+
 /* The part of a pulse on channel c inside the n samples. */
 static long pulse_window(const struct joint_scene *s, const struct joint_pulse *p, int c,
 	size_t n, size_t *len)
 {
 	double T = pulse_duration(s, p->delta);
-	long first = shape_support(s->shape, p->t + (c ? p->delta : 0), T, len);
+	long first = shape_support(s->shape[c], p->t + (c ? p->delta : 0), T, len);
 	long last = first + (long)*len;
 
 	if (first < 0)
@@ -191,8 +198,9 @@ void joint_subtract(struct joint *j, const struct joint_scene *s,
 		size_t len;
 		long first = pulse_window(s, p, c, j->n, &len);
 
-		shape_sample(s->shape, p->t + (c ? p->delta : 0),
+		shape_sample(s->shape[c], p->t + (c ? p->delta : 0),
 			pulse_duration(s, p->delta), first, len, j->scratch, NULL, NULL);
+		joint_blank(j, c, first, len, j->scratch);
 		if (len)
 			add_scaled(j->e[c] + first, -sign * p->a * (c ? s->gain : 1),
 				j->scratch, len);
@@ -211,8 +219,11 @@ void joint_make_columns(
 		col->first = pulse_window(s, p, c, j->n, &col->n);
 		by_t = col->d[c];
 		by_T = col->d[1 - c];
-		shape_sample(s->shape, p->t + (c ? p->delta : 0), T, col->first, col->n,
-			col->d[2], by_t, by_T);
+		shape_sample(s->shape[c], p->t + (c ? p->delta : 0), T, col->first,
+			col->n, col->d[2], by_t, by_T);
+		joint_blank(j, c, col->first, col->n, col->d[2]);
+		joint_blank(j, c, col->first, col->n, by_t);
+		joint_blank(j, c, col->first, col->n, by_T);
 		/* T grows with t2 and falls with t1. */
 		for (size_t k = 0; k < col->n; k++) {
 			double lengthen = by_T[k] * stretch;
@@ -228,10 +239,10 @@ void joint_make_columns(
 static int scene_is_sane(
 	const struct joint_scene *s, const struct joint_pulse *pulses, int m)
 {
-	if (!s->shape || !(s->duration >= 4) || !(s->transit > 0) || !(s->gain > 0) ||
-		!(s->delta_min <= s->delta_max) || !(s->drop >= 0) ||
-		!(s->drop_near >= 0) || !(s->tone_variance >= 0) || s->tones < 0 ||
-		!(s->low >= 0) || !(s->lost >= 0) || !(s->lost < 1) ||
+	if (!s->shape[0] || !s->shape[1] || !(s->duration >= 4) || !(s->transit > 0) ||
+		s->gain == 0 || !isfinite(s->gain) || !(s->delta_min <= s->delta_max) ||
+		!(s->drop >= 0) || !(s->drop_near >= 0) || !(s->tone_variance >= 0) ||
+		s->tones < 0 || !(s->low >= 0) || !(s->lost >= 0) || !(s->lost < 1) ||
 		s->tones > JOINT_TONES_MAX || s->max_pulses < 0 ||
 		s->max_pulses > JOINT_PULSES_MAX || m < 0 || m > s->max_pulses)
 		return 0;
@@ -255,16 +266,23 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	if (!scene_is_sane(s, pulses, m) || n == 0)
 		return JOINT_DOMAIN;
 	longest = s->delta_max + 0.1 * (s->delta_max - s->delta_min);
-	support =
-		(size_t)(2 * shape_reach(s->shape) * pulse_duration(s, fmax(longest, 0)) +
-			 0.4 * s->duration) +
-		4;
+	support = (size_t)(2 * scene_reach(s) * pulse_duration(s, fmax(longest, 0)) +
+			   0.4 * s->duration) +
+		  4;
 	if (!reserve_samples(j, n) || !reserve_columns(j, support))
 		return JOINT_MEMORY;
 	j->n = n;
 	j->steps = j->searches = 0;
+	j->work = 0;
 	memcpy(j->e[0], y1, n * sizeof(double));
 	memcpy(j->e[1], y2, n * sizeof(double));
+	j->left_out = 0;
+	for (int c = 0; c < 2; c++) {
+		j->bad[c] = s->bad[c];
+		joint_blank(j, c, 0, n, j->e[c]);
+		for (size_t i = 0; j->bad[c] && i < n; i++)
+			j->left_out += j->bad[c][i] != 0;
+	}
 	make_basis(j, s);
 	for (int i = 0; i < m; i++)
 		joint_subtract(j, s, &pulses[i], 1);
@@ -288,7 +306,7 @@ void joint_add(const struct joint_scene *s, const struct joint_pulse *p, double 
 
 		for (size_t done = 0; y && done < len; done += chunk) {
 			chunk = len - done < 64 ? len - done : 64;
-			shape_sample(s->shape, t0, T, first + (long)done, chunk, part,
+			shape_sample(s->shape[c], t0, T, first + (long)done, chunk, part,
 				NULL, NULL);
 			add_scaled(y + first + (long)done,
 				sign * p->a * (c ? s->gain : 1), part, chunk);

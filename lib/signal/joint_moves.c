@@ -7,7 +7,7 @@
 static int neighbours(const struct joint_scene *s, const struct joint_pulse *pulses,
 	int m, int i, double reach, int *set)
 {
-	double near = reach * s->duration * 2 * shape_reach(s->shape);
+	double near = reach * s->duration * 2 * scene_reach(s);
 	int count = 0;
 
 	for (int k = 0; k < m; k++)
@@ -49,7 +49,12 @@ static int worth(const struct joint_scene *s, const struct joint_pulse *pulses, 
 	int i, double before, double after)
 {
 	double energy = energy_near(s, pulses, m, i);
-	double need = energy > 0 ? fmax(s->drop_near, s->misfit * energy) : s->drop;
+	double need = energy > 0 ? s->drop_near + s->misfit * energy : s->drop;
+
+	/* Pulses of both signs build any form: where negative ones are rare, none
+	 * overlap. */
+	if (pulses[i].a < 0 && s->negative > 0)
+		need = energy > 0 ? INFINITY : need + s->negative;
 
 	return before - after > need;
 }
@@ -106,11 +111,12 @@ static double split_score(struct joint *j, const struct joint_scene *s,
 
 		if (first < 0 || first + (long)n > (long)j->n || n > j->support)
 			return 0;
-		shape_sample(s->shape, t0 - shift, T, first, n, x, NULL, NULL);
-		shape_sample(s->shape, t0 + shift, T, first, n, part, NULL, NULL);
+		shape_sample(s->shape[c], t0 - shift, T, first, n, x, NULL, NULL);
+		shape_sample(s->shape[c], t0 + shift, T, first, n, part, NULL, NULL);
 		add_scaled(x, 1, part, n);
-		shape_sample(s->shape, t0, T, first, n, part, NULL, NULL);
+		shape_sample(s->shape[c], t0, T, first, n, part, NULL, NULL);
 		add_scaled(x, -2, part, n);
+		joint_blank(j, c, first, n, x);
 		x2 += g * g * dot(x, x, n);
 		xr += g * dot(x, j->r[c] + first, n);
 		for (int u = 0; u < PAR; u++) {
@@ -127,7 +133,7 @@ static double split_score(struct joint *j, const struct joint_scene *s,
 				h[v][w] -= h[u][w] * h[v][u] / h[u][u];
 		x2 -= h[u][PAR] * h[u][PAR] / h[u][u];
 	}
-	return x2 > 0 ? xr / sqrt(x2) : 0;
+	return x2 > 0 ? (pulse->a < 0 ? -xr : xr) / sqrt(x2) : 0;
 }
 
 /* Tries pulse i as two; 1 if it was worth it, else everything is as before. */
@@ -279,6 +285,7 @@ void joint_merge_pulses(struct joint *j, const struct joint_scene *s,
 	for (int i = 0; i < *m; i++)
 		for (int k = i + 1; k < *m; k++)
 			if (fabs(pulses[k].t - pulses[i].t) < near &&
+				pulses[k].a * pulses[i].a > 0 &&
 				try_merge(j, s, pulses, m, i, k, chi2))
 				k = i;
 }

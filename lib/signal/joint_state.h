@@ -32,6 +32,8 @@ struct joint {
 	double *memory;          /* columns of all pulses */
 	double *scratch;         /* three of support */
 	double *filter[2];       /* matched filter on the coarse grid */
+	const unsigned char *bad[2]; /* samples left out, or NULL */
+	long left_out;
 	struct column col[JOINT_PULSES_MAX + 1][2];   /* as the pulses are */
 	struct column trial[JOINT_PULSES_MAX + 1][2]; /* as they were before a step */
 	double *h; /* NPAR * NPAR: normal matrix or its Cholesky factor */
@@ -42,6 +44,7 @@ struct joint {
 	double *bq;              /* NPAR * basis: Q^T J */
 	double gradient[NPAR], diagonal[NPAR], move[NPAR];
 	long steps, searches;
+	double work; /* pulses moved, a step each */
 };
 
 /* A pulse to try, and the chi-square it should take away. */
@@ -77,6 +80,12 @@ static inline double clamp(double x, double lo, double hi)
 	return x < lo ? lo : x > hi ? hi : x;
 }
 
+/* The longer of the supports on either channel, in durations. */
+static inline double scene_reach(const struct joint_scene *s)
+{
+	return fmax(shape_reach(s->shape[0]), shape_reach(s->shape[1]));
+}
+
 static inline double pulse_duration(const struct joint_scene *s, double delta)
 {
 	return s->duration * (1 + delta / s->transit);
@@ -85,7 +94,8 @@ static inline double pulse_duration(const struct joint_scene *s, double delta)
 /* Energy of a pulse of amplitude 1 on both channels. */
 static inline double unit_energy(const struct joint_scene *s)
 {
-	return s->duration * shape_energy(s->shape) * (1 + s->gain * s->gain);
+	return s->duration * (shape_energy(s->shape[0]) +
+				     s->gain * s->gain * shape_energy(s->shape[1]));
 }
 
 /* joint_model.c: the record less pulses, and what it is made of */
@@ -94,6 +104,8 @@ static inline double unit_energy(const struct joint_scene *s)
 enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	const double *y1, const double *y2, size_t n, const struct joint_pulse *pulses,
 	int m);
+/* Clears x[0 .. n), which begin at sample first of channel c, where samples are left out. */
+void joint_blank(const struct joint *j, int c, long first, size_t n, double *x);
 /* Energy of e and its part along the basis, from scratch. */
 void joint_measure(struct joint *j);
 double joint_chi_square(const struct joint *j);

@@ -123,12 +123,12 @@ static struct joint_pulse moved(const struct joint_scene *s,
 {
 	struct joint_pulse p = *old;
 	double step = 0.25 * s->duration, span = s->delta_max - s->delta_min;
-	double reach = 0.9 * shape_reach(s->shape) * s->duration;
+	double reach = 0.9 * scene_reach(s) * s->duration;
 	double t2 = old->t + old->delta + clamp(move[1], -step, step);
 
 	p.t = clamp(old->t + clamp(move[0], -step, step), -reach, (double)n + reach);
 	p.delta = clamp(t2 - p.t, s->delta_min - 0.1 * span, s->delta_max + 0.1 * span);
-	p.a = clamp(old->a + move[2], 0.1 * old->a, 10 * old->a);
+	p.a = old->a * clamp(1 + move[2] / old->a, 0.1, 10);
 	return p;
 }
 
@@ -203,6 +203,7 @@ double joint_fit_set(struct joint *j, const struct joint_scene *s,
 			make_normal(j, set, m);
 		fresh = 1;
 		j->steps++;
+		j->work += m;
 		if (!factorise(j, PAR * m, lambda)) {
 			lambda = lambda * 10 + 1e-3;
 			continue;

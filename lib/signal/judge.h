@@ -1,9 +1,10 @@
 /* judge.h - what is to be thought of the pulses that a joint fit has found
  *
- * A fit whose chi-square per degree of freedom is what noise leaves holds for all its
- * pulses.  Where it is more, each pulse is judged by the residual under it: a hidden
- * neighbour of one is no reason to doubt those a duration away.  Where too many are
- * doubted, or more were there than are looked for, the stretch is unresolved.
+ * A fit whose chi-square is what noise leaves, and the error of the pulses' form, holds
+ * for all its pulses.  Where it is more, each pulse is judged by the residual under it: a
+ * hidden neighbour of one is no reason to doubt those a duration away.  No pulse is
+ * believed that the channels do not agree on.  Where too many are doubted, or more were
+ * there than are looked for, the stretch is unresolved.
  */
 #ifndef SIGNAL_JUDGE_H
 #define SIGNAL_JUDGE_H
@@ -18,10 +19,16 @@ struct judgement {
 };
 
 /* The first done of the m pulses of the last fit, which are those that arrive before
- * boundary; only the samples before it count.  n: length of what was fitted; model_holds:
- * 0 if even clear pulses of this record do not fit. */
-void judge(const struct joint *joint, const struct joint_scene *scene, size_t n,
-	const struct joint_pulse *pulses, int m, int done, double boundary,
-	int model_holds, const struct joint_result *r, struct judgement *out);
+ * boundary; only the samples before it count.  n: length of what was fitted; error: of
+ * the pulses' form, over the form. */
+void judge(struct joint *joint, const struct joint_scene *scene, size_t n,
+	const struct joint_pulse *pulses, int m, int done, double boundary, double error,
+	const struct joint_result *r, struct judgement *out);
+
+/* Do the delays of m > 1 pulses tell that they are no parts of one object, which would
+ * share its velocity (*told)?  Returns the probability that particles do not, if their
+ * delays have the variance spread2. */
+double judge_velocities(
+	const struct joint_pulse *pulses, int m, double spread2, int *told);
 
 #endif

@@ -39,3 +39,12 @@ double robust_noise(const double *x, size_t n, int order, double *work)
 		variance *= (double)(order + k) / k;
 	return 1.482602218505602 * robust_median(work, left) / sqrt(variance);
 }
+
+double robust_least(const double *x, size_t n)
+{
+	double least = INFINITY;
+
+	for (size_t i = 0; i < n; i++)
+		least = fmin(least, x[i]);
+	return least;
+}

@@ -6,6 +6,7 @@
 
 /* Median (upper of the two middle values); 0 for n = 0.  Reorders x. */
 double robust_median(double *x, size_t n);
+double robust_least(const double *x, size_t n); /* INFINITY for n = 0 */
 /* The value that a share of x lies below. */
 double robust_quantile(double *x, size_t n, double share);
 

@@ -10,10 +10,16 @@ enum { OCTAVES = 24 };
 /* Standard deviations of the noise that the rest of a pulse stays below. */
 static const double hidden = 0.2;
 
-struct sections {
-	double *filter; /* the pulse, scaled to unit energy */
+struct filter {
+	double *tap; /* a pulse, scaled to unit energy */
 	size_t len;
-	long first; /* place of filter[0] relative to the pulse */
+	long first; /* place of tap[0] relative to the pulse */
+};
+
+struct sections {
+	int bank; /* durations */
+	struct filter *filter[2];
+	long reach; /* of the longest filter before its pulse */
 	long stride;
 	long margin[OCTAVES + 1]; /* of a trigger below 2^k standard deviations */
 	double threshold;
@@ -25,43 +31,83 @@ struct sections {
 
 /* A pulse whose trigger is z has the amplitude z / sqrt(its energy at amplitude 1).  A
  * weak trigger may be the flank of a strong pulse: a hundredth always counts. */
-static void set_margins(
-	struct sections *s, const struct shape *shape, double duration, double slack)
+static void set_margins(struct sections *s, const struct joint_scene *scene)
 {
-	double least = hidden * sqrt(duration * shape_energy(shape));
+	double longest =
+		scene->duration * (1 + fmax(scene->delta_max, 0) / scene->transit);
+	double slack = fmax(scene->delta_max, -scene->delta_min);
 
-	for (int k = 0; k <= OCTAVES; k++) {
-		double reach = shape_reach_above(shape, fmin(ldexp(least, -k), 0.01));
+	for (int c = 0; c < 2; c++) {
+		const struct shape *shape = scene->shape[c];
+		double least = hidden * sqrt(scene->duration * shape_energy(shape));
 
-		s->margin[k] = (long)(1.2 * reach * duration + slack);
+		for (int k = 0; k <= OCTAVES; k++) {
+			double reach =
+				shape_reach_above(shape, fmin(ldexp(least, -k), 0.01));
+			long margin = (long)(1.2 * reach * longest + slack);
+
+			s->margin[k] = margin > s->margin[k] ? margin : s->margin[k];
+		}
 	}
 }
 
-struct sections *sections_new(
-	const struct shape *shape, double duration, double threshold, double slack)
+static int set_filter(struct filter *f, const struct shape *shape, double T)
 {
-	struct sections *s;
 	double energy = 0;
 
-	if (!(duration >= 4))
+	f->first = shape_support(shape, 0, T, &f->len);
+	f->tap = malloc(f->len * sizeof *f->tap);
+	if (!f->tap)
+		return 0;
+	shape_sample(shape, 0, T, f->first, f->len, f->tap, NULL, NULL);
+	for (size_t i = 0; i < f->len; i++)
+		energy += f->tap[i] * f->tap[i];
+	for (size_t i = 0; i < f->len; i++)
+		f->tap[i] /= sqrt(energy);
+	return 1;
+}
+
+/* One filter per duration of the bank, each in the middle of its part of the range. */
+static int set_filters(struct sections *s, const struct joint_scene *scene)
+{
+	double lo = 1 + scene->delta_min / scene->transit;
+	double hi = 1 + scene->delta_max / scene->transit;
+
+	for (int c = 0; c < 2; c++) {
+		s->filter[c] = calloc((size_t)s->bank, sizeof *s->filter[c]);
+		for (int b = 0; s->filter[c] && b < s->bank; b++) {
+			double T = s->bank > 1 ? scene->duration * lo *
+							 pow(hi / lo, (b + 0.5) / s->bank)
+					       : scene->duration;
+
+			if (!set_filter(&s->filter[c][b], scene->shape[c], T))
+				return 0;
+			if (-s->filter[c][b].first > s->reach)
+				s->reach = -s->filter[c][b].first;
+		}
+		if (!s->filter[c])
+			return 0;
+	}
+	return 1;
+}
+
+struct sections *sections_new(const struct joint_scene *scene, double threshold)
+{
+	struct sections *s;
+
+	if (!(scene->duration >= 4))
 		return NULL;
 	s = calloc(1, sizeof *s);
 	if (!s)
 		return NULL;
-	s->first = shape_support(shape, 0, duration, &s->len);
-	s->stride = duration >= 48 ? (long)(duration / 24) : 1;
-	set_margins(s, shape, duration, slack);
+	s->bank = joint_bank(scene);
+	s->stride = scene->duration >= 48 ? (long)(scene->duration / 24) : 1;
+	set_margins(s, scene);
 	s->threshold = threshold;
-	s->filter = malloc(s->len * sizeof *s->filter);
-	if (!s->filter) {
+	if (!set_filters(s, scene)) {
 		sections_free(s);
 		return NULL;
 	}
-	shape_sample(shape, 0, duration, s->first, s->len, s->filter, NULL, NULL);
-	for (size_t i = 0; i < s->len; i++)
-		energy += s->filter[i] * s->filter[i];
-	for (size_t i = 0; i < s->len; i++)
-		s->filter[i] /= sqrt(energy);
 	return s;
 }
 
@@ -69,7 +115,11 @@ void sections_free(struct sections *s)
 {
 	if (!s)
 		return;
-	free(s->filter);
+	for (int c = 0; c < 2; c++) {
+		for (int b = 0; s->filter[c] && b < s->bank; b++)
+			free(s->filter[c][b].tap);
+		free(s->filter[c]);
+	}
 	free(s->queue);
 	free(s);
 }
@@ -83,26 +133,39 @@ long sections_reach(const struct sections *s)
 {
 	long margin = s->margin[OCTAVES];
 
-	return (-s->first > margin ? -s->first : margin) + 1;
+	return (s->reach > margin ? s->reach : margin) + 1;
 }
 
-static double filter_at(const struct sections *s, const double *y, size_t n, long long at)
+static double filter_at(const struct filter *f, const double *y, size_t n, long long at)
 {
-	long long from = at + s->first;
-	size_t begin = from < 0 ? (size_t)-from : 0, end = s->len, i;
+	long long from = at + f->first;
+	size_t begin = from < 0 ? (size_t)-from : 0, end = f->len, i;
 	double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
 
 	if (from + (long long)end > (long long)n)
 		end = (long long)n > from ? (size_t)((long long)n - from) : 0;
 	for (i = begin; i + 4 <= end; i += 4) {
-		s0 += s->filter[i] * y[from + (long long)i];
-		s1 += s->filter[i + 1] * y[from + (long long)i + 1];
-		s2 += s->filter[i + 2] * y[from + (long long)i + 2];
-		s3 += s->filter[i + 3] * y[from + (long long)i + 3];
+		s0 += f->tap[i] * y[from + (long long)i];
+		s1 += f->tap[i + 1] * y[from + (long long)i + 1];
+		s2 += f->tap[i + 2] * y[from + (long long)i + 2];
+		s3 += f->tap[i + 3] * y[from + (long long)i + 3];
 	}
 	for (; i < end; i++)
-		s0 += s->filter[i] * y[from + (long long)i];
+		s0 += f->tap[i] * y[from + (long long)i];
 	return (s0 + s1) + (s2 + s3);
+}
+
+/* The largest of all filters on both channels. */
+static double loudest(const struct sections *s, const double *y1, const double *y2,
+	size_t n, long long at)
+{
+	double z = 0;
+
+	for (int b = 0; b < s->bank; b++) {
+		z = fmax(z, fabs(filter_at(&s->filter[0][b], y1, n, at)));
+		z = fmax(z, fabs(filter_at(&s->filter[1][b], y2, n, at)));
+	}
+	return z;
 }
 
 static int reserve(struct sections *s)
@@ -147,8 +210,7 @@ void sections_scan(struct sections *s, const double *y1, const double *y2, long 
 	size_t n, long long limit)
 {
 	for (; s->next < limit; s->next += s->stride) {
-		double z = fmax(filter_at(s, y1, n, s->next - base),
-			filter_at(s, y2, n, s->next - base));
+		double z = loudest(s, y1, y2, n, s->next - base);
 
 		if (z > s->threshold)
 			add_trigger(s, s->next, z);

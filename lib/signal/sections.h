@@ -1,6 +1,6 @@
 /* sections.h - stretches of a two-sensor record where pulses are
  *
- * One pass of a matched filter, on a grid of 1/24 of the pulse duration, over either
+ * One pass of matched filters, on a grid of 1/24 of the pulse duration, over either
  * channel (noise of variance 1).  Wherever it exceeds the threshold a pulse may be, which
  * reaches as far as it can be told from the noise; stretches whose pulses could overlap
  * are one section.
@@ -8,7 +8,7 @@
 #ifndef SIGNAL_SECTIONS_H
 #define SIGNAL_SECTIONS_H
 
-#include "signal/shape.h"
+#include "signal/joint.h"
 #include <stddef.h>
 
 struct section {
@@ -18,10 +18,9 @@ struct section {
 
 struct sections;
 
-/* threshold in standard deviations of the matched filter; slack in samples is kept on
- * either side besides what the pulses need.  NULL: duration < 4 or no memory. */
-struct sections *sections_new(
-	const struct shape *shape, double duration, double threshold, double slack);
+/* For the pulses of a scene, of either sign and all durations; threshold in standard
+ * deviations of the matched filter.  NULL: duration < 4 or no memory. */
+struct sections *sections_new(const struct joint_scene *scene, double threshold);
 void sections_free(struct sections *s);
 
 /* Leaves out the samples before this one. */

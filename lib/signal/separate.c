@@ -1,5 +1,6 @@
 /* separate.c - see separate.h */
 #include "signal/separate.h"
+#include "signal/foreign.h"
 #include "signal/judge.h"
 #include "signal/sections.h"
 #include "signal/tape.h"
@@ -17,6 +18,8 @@ struct separate {
 	struct joint *joint;
 	struct masks *masks;
 	struct joint_scene scene;
+	double reach; /* samples that a pulse takes on either side of its arrival, ... */
+	double near;  /* ... and those where it has more than a hundredth of its height */
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
 	int carried;    /* pulses of the last window that the next one starts from */
 	long long span; /* longest window in this section; 0: as given */
@@ -29,7 +32,9 @@ struct separate {
 	size_t count, given, capacity;
 	double *source;
 	struct separate_counters counters;
-	enum separate_status reason; /* why nothing could be learned */
+	int refused;                  /* pulses are of no common form */
+	double unconfirmed, expected; /* groups of which no velocities tell; by chance */
+	enum separate_status reason;  /* why nothing could be learned */
 	long long bad_frame;
 	int bad_channel;
 };
@@ -66,6 +71,11 @@ const struct calibration *separate_calibration(const struct separate *s)
 	return s->calibrated ? &s->cal : NULL;
 }
 
+int separate_refused(const struct separate *s)
+{
+	return s->refused;
+}
+
 const struct separate_counters *separate_counters(const struct separate *s)
 {
 	return &s->counters;
@@ -84,6 +94,8 @@ int separate_next(struct separate *s, struct particle *p)
 		return 0;
 	}
 	*p = s->queue[s->given++];
+	*(p->verdict < SEPARATE_MISFIT ? &s->counters.believed : &s->counters.doubted) +=
+		1;
 	return 1;
 }
 
@@ -106,7 +118,8 @@ static enum separate_status calibrate_now(struct separate *s)
 {
 	static const enum separate_status of[] = { SEPARATE_OK, SEPARATE_MEMORY,
 		SEPARATE_SILENT_1, SEPARATE_SILENT_2, SEPARATE_NO_LAG, SEPARATE_FAR,
-		SEPARATE_NARROW, SEPARATE_FAST, SEPARATE_SLOW };
+		SEPARATE_NARROW, SEPARATE_FAST, SEPARATE_SLOW, SEPARATE_SWAPPED,
+		SEPARATE_TOGETHER };
 	const struct calibration *c = &s->cal;
 	enum calibrate_status status;
 	double reach;
@@ -120,23 +133,29 @@ static enum separate_status calibrate_now(struct separate *s)
 	if (status != CALIBRATE_OK)
 		return of[status];
 	s->calibrated = 1;
-	s->done = s->tape[0].begin + c->whitening.edge;
+	s->done = s->tape[0].begin + (c->whitening[0].edge > c->whitening[1].edge
+						     ? c->whitening[0].edge
+						     : c->whitening[1].edge);
 	calibration_scene(c, &s->scene);
+	s->refused = c->error > SEPARATE_ERROR;
 	s->scene.max_pulses = JOINT_PULSES_MAX;
-	reach = 2 * shape_reach(c->shape) * c->duration;
+	s->reach = fmax(shape_reach(c->shape[0]), shape_reach(c->shape[1])) * c->duration;
+	s->near = fmax(shape_reach_above(c->shape[0], 0.01),
+			  shape_reach_above(c->shape[1], 0.01)) *
+		  c->duration;
+	reach = 2 * s->reach;
 	if (s->par.window < (size_t)(6 * reach))
 		s->par.window = s->par.window ? (size_t)(6 * reach)
 					      : (size_t)(reach + 23 * c->duration);
 	/* What a baseline has to follow in a window must not be too much. */
-	if (c->whitening.low * 2 * (double)s->par.window > JOINT_BASELINE_MAX)
+	if (c->whitening[0].low * 2 * (double)s->par.window > JOINT_BASELINE_MAX)
 		s->par.window = (size_t)fmax(
-			3 * reach, JOINT_BASELINE_MAX / (2 * c->whitening.low));
-	if (!tape_start(&s->tape[0], c) || !tape_start(&s->tape[1], c))
+			3 * reach, JOINT_BASELINE_MAX / (2 * c->whitening[0].low));
+	if (!tape_start(&s->tape[0], c, 0) || !tape_start(&s->tape[1], c, 1))
 		return SEPARATE_MEMORY;
 	/* Equal pulses on both channels reach the threshold of a pair at 1 / sqrt 2 of
 	 * it. */
-	s->sections = sections_new(c->shape, c->duration, 0.65 * sqrt(c->drop),
-		fmax(c->delta_max, -c->delta_min));
+	s->sections = sections_new(&s->scene, 0.65 * sqrt(c->drop));
 	if (s->sections)
 		sections_skip(s->sections, s->done);
 	s->joint = joint_new();
@@ -146,10 +165,10 @@ static enum separate_status calibrate_now(struct separate *s)
 			.duration = c->duration,
 			.delta_min = c->delta_min,
 			.delta_max = c->delta_max,
-			.gain_max = 2 * s->scene.gain,
+			.gain_max = 2 * fabs(s->scene.gain),
 			.peak_share = 0.3,
 			.sources = s->par.sources,
-			.shape = c->shape };
+			.shape = c->plain };
 
 		s->masks = masks_new(&mp);
 		if (!s->masks)
@@ -199,6 +218,48 @@ static int emit_pulse(struct separate *s, const struct joint_pulse *p, long long
 	return 1;
 }
 
+static void look_at(struct separate *s, long long from, long long to, struct foreign *f)
+{
+	const double *const y[2] = { s->tape[0].x, s->tape[1].x };
+	const unsigned char *const bad[2] = { s->tape[0].bad, s->tape[1].bad };
+	const long long begin[2] = { s->tape[0].begin, s->tape[1].begin };
+	const size_t n[2] = { (size_t)(s->tape[0].clean - begin[0]),
+		(size_t)(s->tape[1].clean - begin[1]) };
+
+	foreign_look(y, bad, begin, n, from, to, s->cal.shift, s->cal.duration, f);
+}
+
+/* Row for what is no particle in [from, to) of channel 1, unless channel 1 has seen it
+ * elsewhere. */
+static int emit_foreign(struct separate *s, long long from, long long to, double chi2)
+{
+	static const enum separate_verdict of[] = { [FOREIGN_CLIPPED] =
+							    SEPARATE_SATURATED,
+		[FOREIGN_COMMON] = SEPARATE_COMMON,
+		[FOREIGN_IMPULSE] = SEPARATE_IMPULSE,
+		[FOREIGN_MOVING] = SEPARATE_BUBBLE,
+		[FOREIGN_TRANSIENT] = SEPARATE_TRANSIENT };
+	struct particle *p;
+	struct foreign f;
+
+	look_at(s, from, to, &f);
+	if (f.kind == FOREIGN_NOTHING)
+		return 1;
+	p = queue_particle(s);
+	if (!p)
+		return 0;
+	p->section = s->number;
+	p->sources = 0;
+	p->t1 = f.at;
+	p->amplitude = f.peak * s->cal.noise[0];
+	p->t2 = p->t1_se = p->t2_se = p->delay_se = p->amplitude_se = p->correlation =
+		NAN;
+	p->chi2 = chi2;
+	p->verdict = of[f.kind];
+	s->counters.foreign++;
+	return 1;
+}
+
 static int report_section(struct separate *s, long long from, long long to, int sources,
 	double chi2, enum separate_verdict verdict, const double *source)
 {
@@ -243,7 +304,7 @@ static int draw_pulses(struct separate *s, int m, size_t n)
 static double choose_cut(const struct separate *s, int m, size_t n)
 {
 	double lo = 0.4 * (double)n, widest = -1, cut = 0;
-	double hi = (double)n - 2.2 * shape_reach(s->cal.shape) * s->cal.duration;
+	double hi = (double)n - 2.2 * s->reach;
 
 	for (int i = 0; i <= m; i++) {
 		double from = i ? s->pulse[i - 1].t : 0,
@@ -264,7 +325,7 @@ static double choose_cut(const struct separate *s, int m, size_t n)
 /* More pulses than this in n samples are not looked for. */
 static int most_pulses(const struct separate *s, size_t n)
 {
-	double most = 4 + 3 * (double)n / s->cal.duration;
+	double most = 6 + 3 * fmax((double)n - 2 * s->near, 0) / s->cal.duration;
 
 	if (s->par.sources)
 		return s->par.sources;
@@ -287,7 +348,7 @@ static enum separate_status dense_section(
 	if (!p)
 		return SEPARATE_MEMORY;
 	campbell_estimate(channel_1(s, from), channel_2(s, from), (size_t)(to - from),
-		s->cal.shape, s->cal.duration, s->scene.gain, &c);
+		s->cal.shape[0], s->cal.duration, s->scene.gain, &c);
 	campbell_scale(&c, noise);
 	p->section = s->number;
 	p->sources =
@@ -307,13 +368,49 @@ static enum separate_status dense_section(
 	return SEPARATE_OK;
 }
 
-/* Gives out the first done of the m pulses fitted to [from, to). */
+/* A group whose velocities do not tell its pulses apart may be one object of another
+ * form. So are some groups of particles, by chance; more than that are not believed. */
+static void check_velocities(struct separate *s, int m, int done, struct judgement *j)
+{
+	enum { LARGEST = 8 };
+	int told;
+
+	if (m < 2 || m > LARGEST || done < m || isinf(s->cal.transit) ||
+		j->stretch != SEPARATE_OVERLAP)
+		return;
+	s->expected += judge_velocities(s->pulse, m, s->cal.delta_var, &told);
+	s->unconfirmed += !told;
+	if (told || s->unconfirmed <= s->expected + 2 * sqrt(s->expected) + 1)
+		return;
+	s->unconfirmed--;
+	for (int i = 0; i < done; i++)
+		j->pulse[i] = SEPARATE_MISFIT;
+	j->stretch = SEPARATE_MISFIT;
+}
+
+/* Gives out the first done of the m pulses fitted to [from, to); neighbours that do not
+ * fit are one event. */
 static enum separate_status give_pulses(struct separate *s, long long from, long long to,
 	int m, int done, const struct judgement *j)
 {
-	for (int i = 0; i < done; i++)
-		if (!emit_pulse(s, &s->pulse[i], from, m, j->chi2, j->pulse[i]))
+	double half = 0.75 * s->cal.duration;
+
+	for (int i = 0; i < done; i++) {
+		double begin = s->pulse[i].t - half, end;
+
+		if (j->pulse[i] < SEPARATE_MISFIT) {
+			if (!emit_pulse(s, &s->pulse[i], from, m, j->chi2, j->pulse[i]))
+				return SEPARATE_MEMORY;
+			continue;
+		}
+		end = s->pulse[i].t + half;
+		while (i + 1 < done && j->pulse[i + 1] >= SEPARATE_MISFIT &&
+			s->pulse[i + 1].t - half < end + half)
+			end = s->pulse[++i].t + half;
+		if (!emit_foreign(
+			    s, from + (long long)begin, from + (long long)end, j->chi2))
 			return SEPARATE_MEMORY;
+	}
 	if (!s->par.on_section)
 		return SEPARATE_OK;
 	if (s->par.want_sources && !draw_pulses(s, done, (size_t)(to - from)))
@@ -323,13 +420,60 @@ static enum separate_status give_pulses(struct separate *s, long long from, long
 	return SEPARATE_OK;
 }
 
+/* One row for a section that is no particle throughout. */
+static enum separate_status foreign_section(
+	struct separate *s, long long from, long long to, double chi2)
+{
+	if (!emit_foreign(s, from, to, chi2))
+		return SEPARATE_MEMORY;
+	report_section(s, from, to, 0, chi2, SEPARATE_MISFIT, NULL);
+	return SEPARATE_OK;
+}
+
+/* Masks what stands alone and far out of the residual of [from, from + n): impulses of a
+ * few samples.  Returns their number, 0 where they are too many to be that. */
+static int mask_impulses(struct separate *s, long long from, size_t n)
+{
+	enum { IMPULSE = 8 };
+	size_t longest = (size_t)fmax(2, s->cal.duration / 32);
+	double count = 0;
+
+	for (int pass = 0; pass < 2; pass++) {
+		for (int c = 0; c < 2; c++) {
+			const double *r = joint_residual(s->joint, c);
+			double *y = c ? channel_2(s, from) : channel_1(s, from);
+			struct tape *t = &s->tape[c];
+			unsigned char *bad = t->bad + (y - t->x);
+
+			for (size_t i = 0; i < n; i++) {
+				size_t end = i;
+
+				while (end < n && fabs(r[end]) > 4.5)
+					end++;
+				for (size_t k = i; k < end && end - i <= longest; k++) {
+					count += !pass;
+					if (pass) {
+						bad[k] |= IMPULSE;
+						y[k] = 0;
+					}
+				}
+				i = end > i ? end : i;
+			}
+		}
+		if (count > 0.08 * (double)n)
+			return 0;
+	}
+	s->counters.impulses += count;
+	return (int)count;
+}
+
 /* Takes the first done of m pulses out of the record and carries the others into the
  * next window; returns its first sample. */
 static long long cut_section(
 	struct separate *s, long long from, double boundary, int m, int done)
 {
 	size_t rest = (size_t)(ready(s) - from);
-	double reach = shape_reach(s->cal.shape) * s->cal.duration;
+	double reach = s->reach;
 	long long start = from + (long long)floor(boundary - reach + s->cal.delta_min);
 
 	for (int i = 0; i < done; i++)
@@ -348,8 +492,11 @@ static long long cut_section(
 /* Samples: in shorter windows the pulses cut by their ends would be most. */
 static double shortest_window(const struct separate *s)
 {
-	return fmax(10, 6 * shape_reach(s->cal.shape)) * s->cal.duration;
+	return fmax(10 * s->cal.duration, 6 * s->reach);
 }
+
+/* Durations that too many pulses must fill to be a crowd, and not one event. */
+static const double CROWD_LENGTH = 8;
 
 /* Windows that stay unresolved one after the other until what is left is given up. */
 enum { PATIENCE = 3 };
@@ -364,23 +511,50 @@ static enum separate_status fit_section(
 	size_t n = (size_t)(to - from);
 	double boundary;
 	struct judgement judgement;
-	int m = s->carried, done = 0, unresolved, shorter;
+	int m = s->carried, carried, done = 0, unresolved, shorter;
 
+	if (!cut && !s->continuing && !isinf(s->cal.transit)) {
+		struct foreign f;
+
+		look_at(s, from, to, &f);
+		if (f.kind == FOREIGN_COMMON || f.kind == FOREIGN_NOTHING) {
+			*next = to;
+			return foreign_section(s, from, to, NAN);
+		}
+	}
 	s->scene.max_pulses = most_pulses(s, n);
 	if (m > s->scene.max_pulses)
 		m = s->scene.max_pulses;
+	s->scene.bad[0] = s->tape[0].bad + (from - s->tape[0].begin);
+	s->scene.bad[1] = s->tape[1].bad + (from + s->cal.shift - s->tape[1].begin);
+	carried = m;
 	if (joint_fit(s->joint, &s->scene, channel_1(s, from), channel_2(s, from), n,
 		    s->pulse, &m, &r) != JOINT_OK)
 		return SEPARATE_MEMORY;
 	s->counters.fits++;
+	if (r.chi2 > (double)r.dof + 5 * sqrt(2 * (double)r.dof) &&
+		mask_impulses(s, from, n)) {
+		m = carried < m ? carried : m;
+		if (joint_fit(s->joint, &s->scene, channel_1(s, from), channel_2(s, from),
+			    n, s->pulse, &m, &r) != JOINT_OK)
+			return SEPARATE_MEMORY;
+		s->counters.fits++;
+	}
 	s->counters.steps += (double)r.steps;
 	s->counters.searches += (double)r.searches;
 	boundary = cut ? choose_cut(s, m, n) : INFINITY;
 	while (done < m && s->pulse[done].t < boundary)
 		done++;
-	judge(s->joint, &s->scene, n, s->pulse, m, done, boundary,
-		s->cal.chi2 < 4 || s->cal.dense, &r, &judgement);
+	judge(s->joint, &s->scene, n, s->pulse, m, done, boundary, s->cal.error, &r,
+		&judgement);
+	check_velocities(s, m, done, &judgement);
 	unresolved = judgement.stretch == SEPARATE_UNRESOLVED && !s->par.sources;
+	if (unresolved && !cut && !s->continuing &&
+		(double)n < 2 * s->reach + CROWD_LENGTH * s->cal.duration) {
+		s->carried = 0;
+		*next = to;
+		return foreign_section(s, from, to, judgement.chi2);
+	}
 	shorter = unresolved && r.full && (double)n > 2 * shortest_window(s);
 	if (shorter)
 		s->span = (to - from) / 2;
@@ -473,7 +647,7 @@ static int is_crowded(struct separate *s, long long from, long long to)
 	struct campbell c;
 
 	campbell_estimate(channel_1(s, from), channel_2(s, from), (size_t)(to - from),
-		s->cal.shape, s->cal.duration, s->scene.gain, &c);
+		s->cal.shape[0], s->cal.duration, s->scene.gain, &c);
 	return (c.rate - c.rate_se) * s->cal.duration > CROWD;
 }
 
@@ -531,8 +705,11 @@ static enum separate_status work(struct separate *s)
 			s->counters.sections++;
 		}
 		next = to;
-		s->dense |= cut && s->crowded && s->par.method == SEPARATE_FIT;
-		if (s->dense)
+		s->dense |=
+			cut && s->crowded && s->par.method == SEPARATE_FIT && !s->refused;
+		if (s->refused)
+			status = foreign_section(s, from, to, NAN);
+		else if (s->dense)
 			status = dense_section(s, from, to);
 		else if (s->par.method == SEPARATE_MASKS)
 			status = mask_section(s, from, to);
@@ -598,7 +775,7 @@ enum separate_status separate_push(struct separate *s, const double *x, size_t n
 			s->bad_channel = (int)(i % 2);
 			return SEPARATE_NOT_FINITE;
 		}
-	if (!tape_append(&s->tape[0], x, n) || !tape_append(&s->tape[1], x + 1, n))
+	if (!tape_append(&s->tape[0], x, 2, n) || !tape_append(&s->tape[1], x + 1, 2, n))
 		return SEPARATE_MEMORY;
 	s->counters.samples += (double)n;
 	if (!s->calibrated)

@@ -26,6 +26,11 @@
 #include "signal/masks.h"
 #include <stddef.h>
 
+/* Error of the pulses' form, over the form, beyond which nothing is told apart by it:
+ * over 3 such errors, squared, a pulse's neighbours must stand out of its energy
+ * (joint.h, misfit): at 0.08 by 2 %, of an amplitude of 1/7 of it. */
+#define SEPARATE_ERROR 0.08
+
 /* Samples that nothing can be learned from fewer of. */
 enum { SEPARATE_SHORTEST = 64 };
 
@@ -33,10 +38,17 @@ enum separate_method { SEPARATE_FIT, SEPARATE_MASKS };
 
 /* How far a row may be trusted. */
 enum separate_verdict {
-	SEPARATE_ALONE,     /* one pulse in its section */
-	SEPARATE_OVERLAP,   /* several, told apart */
-	SEPARATE_MISFIT,    /* chi-square too large: the model does not describe it */
-	SEPARATE_UNRESOLVED /* too dense: a row stands for sources particles or more */
+	SEPARATE_ALONE,      /* one pulse in its section */
+	SEPARATE_OVERLAP,    /* several, told apart */
+	SEPARATE_NONFERROUS, /* as believable as these, of the other sign */
+	SEPARATE_MISFIT,     /* the model does not describe it */
+	SEPARATE_UNRESOLVED, /* too dense: a row stands for sources particles */
+	/* One row for an event that is no particle, see foreign.h. */
+	SEPARATE_SATURATED,
+	SEPARATE_COMMON,
+	SEPARATE_IMPULSE,
+	SEPARATE_BUBBLE,
+	SEPARATE_TRANSIENT
 };
 
 struct particle {
@@ -87,7 +99,9 @@ enum separate_status {
 	SEPARATE_FAR,    /* the lag given is as long as what is learned from */
 	SEPARATE_NARROW, /* a filter has left too little of the pulses */
 	SEPARATE_FAST,
-	SEPARATE_SLOW
+	SEPARATE_SLOW,
+	SEPARATE_SWAPPED,  /* pulses come to channel 2 first */
+	SEPARATE_TOGETHER, /* pulses come to both channels at once */
 };
 
 /* Work done and left out so far. */
@@ -98,6 +112,8 @@ struct separate_counters {
 	double fits, steps, searches;
 	double masks, masks_skipped; /* sections demixed, and those that need not be */
 	double unresolved;
+	double believed, doubted; /* rows alone, overlap or nonferrous, and others */
+	double foreign, impulses; /* events that are no particles; samples masked */
 };
 
 struct separate;
@@ -113,6 +129,8 @@ int separate_next(struct separate *s, struct particle *p);
 
 const struct calibration *separate_calibration(
 	const struct separate *s); /* NULL: not yet */
+/* 1: the pulses are of no common form, and no row is to be believed. */
+int separate_refused(const struct separate *s);
 const struct separate_counters *separate_counters(const struct separate *s);
 /* Frame and channel (0, 1) that made it fail with NOT_FINITE. */
 long long separate_bad_sample(const struct separate *s, int *channel);

@@ -137,9 +137,11 @@ static void filter_at(const struct shape *shape, double T, const double *tap, in
 }
 
 struct shape *shape_filter(
-	const struct shape *shape, double T, const double *tap, int half)
+	const struct shape *shape, double T, const double *tap, int half, double cut)
 {
-	int reach = (int)ceil((shape->reach + half / T) * STEPS), keep = reach;
+	static const double one = 1;
+	int reach = (int)ceil((shape->reach + (half = tap ? half : 0) / T) * STEPS),
+	    keep = reach;
 	size_t points = 2 * (size_t)reach + 1,
 	       support = (size_t)(2 * shape->reach * T) + 2;
 	double *value = malloc((2 * points + 2 * support) * sizeof *value);
@@ -148,6 +150,8 @@ struct shape *shape_filter(
 
 	if (!value)
 		return NULL;
+	if (!tap)
+		tap = &one;
 	slope = value + points;
 	work = slope + points;
 	for (size_t i = 0; i < points; i++) {
@@ -155,8 +159,8 @@ struct shape *shape_filter(
 			&value[i], &slope[i]);
 		peak = fmax(peak, fabs(value[i]));
 	}
-	while (keep > STEPS / 2 && fabs(value[reach - keep]) < 2e-3 * peak &&
-		fabs(value[reach + keep]) < 2e-3 * peak)
+	while (keep > 8 && fabs(value[reach - keep]) < cut * peak &&
+		fabs(value[reach + keep]) < cut * peak)
 		keep--;
 	out = shape_alloc((double)keep / STEPS, 2 * keep);
 	for (int i = 0; out && i < 2 * keep; i++) {
@@ -166,48 +170,6 @@ struct shape *shape_filter(
 			slope[k + 1] / STEPS);
 	}
 	free(value);
-	if (out)
-		shape_integrate(out);
-	return out;
-}
-
-/* more at s, between its points by cubic Hermite polynomials with central differences. */
-static double more_at(const double *more, int half, double step, double s)
-{
-	double x = s / step + half, u = x - floor(x), v0, v1, m0, m1;
-	int k = (int)floor(x);
-
-	if (k < 0 || k >= 2 * half)
-		return 0;
-	v0 = more[k];
-	v1 = more[k + 1];
-	m0 = 0.5 * (v1 - (k > 0 ? more[k - 1] : 0));
-	m1 = 0.5 * ((k + 2 <= 2 * half ? more[k + 2] : 0) - v0);
-	return v0 + u * (m0 + u * (3 * (v1 - v0) - 2 * m0 - m1 +
-					  u * (2 * (v0 - v1) + m0 + m1)));
-}
-
-struct shape *shape_correct(
-	const struct shape *shape, const double *more, int half, double step)
-{
-	double h = shape->step;
-	int wider = (int)fmax(ceil((half * step - shape->reach) / h), 0);
-	struct shape *out =
-		shape_alloc(shape->reach + wider * h, shape->cells + 2 * wider);
-
-	for (int i = 0; out && i < out->cells; i++) {
-		static const double nothing[4];
-		const double *c = i >= wider && i < wider + shape->cells
-					  ? shape->cubic + 4 * (i - wider)
-					  : nothing;
-		double s = i * h - out->reach, d[4];
-
-		for (int k = 0; k < 4; k++)
-			d[k] = more_at(more, half, step, s + (k - 1) * h);
-		set_cell(out, i, c[0] + d[1], c[1] + 0.5 * (d[2] - d[0]),
-			c[0] + c[1] + c[2] + c[3] + d[2],
-			c[1] + 2 * c[2] + 3 * c[3] + 0.5 * (d[3] - d[1]));
-	}
 	if (out)
 		shape_integrate(out);
 	return out;

@@ -19,14 +19,11 @@ struct shape *shape_new(enum pulse_shape pulse);
  * between them (slopes by central differences); it is scaled to max |p| = 1.  NULL
  * where half < 2, reach <= 0, a value is not finite, all are zero or memory is short. */
 struct shape *shape_from_values(const double *value, int half, double reach);
-/* What a pulse of duration T becomes in a filter of symmetric taps -half .. half, cut
- * where it stays below 2e-3 of its peak; its peak is no longer 1.  NULL: no memory. */
+/* What a pulse of duration T becomes in a filter of symmetric taps -half .. half (NULL:
+ * none), cut where it stays below this share of its peak, which is no longer 1.  NULL: no
+ * memory. */
 struct shape *shape_filter(
-	const struct shape *shape, double T, const double *tap, int half);
-/* The pulse with more[k] added at s = k step, -half <= k <= half, and linearly between;
- * it reaches that far at least.  NULL: no memory. */
-struct shape *shape_correct(
-	const struct shape *shape, const double *more, int half, double step);
+	const struct shape *shape, double T, const double *tap, int half, double cut);
 void shape_free(struct shape *shape);
 
 double shape_reach(const struct shape *shape); /* p(s) = 0 for |s| >= reach */

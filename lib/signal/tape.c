@@ -1,30 +1,39 @@
 /* tape.c - see tape.h */
 #include "signal/tape.h"
 #include "signal/fir.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Beside those of gaps.h: near a gap, once filtered. */
+enum { SMEARED = 4 };
 
 void tape_clear(struct tape *t)
 {
 	free(t->x);
+	free(t->bad);
 	free(t->piece);
 	fir_free(t->whiten);
 	memset(t, 0, sizeof *t);
 }
 
-int tape_append(struct tape *t, const double *x, size_t n)
+int tape_append(struct tape *t, const double *x, size_t stride, size_t n)
 {
 	if (t->n + n > t->capacity) {
 		size_t capacity = 2 * t->capacity > t->n + n ? 2 * t->capacity : t->n + n;
 		double *more = realloc(t->x, capacity * sizeof *more);
+		unsigned char *bad = more ? realloc(t->bad, capacity) : NULL;
 
-		if (!more)
+		if (more)
+			t->x = more;
+		if (!bad)
 			return 0;
-		t->x = more;
+		t->bad = bad;
 		t->capacity = capacity;
 	}
 	for (size_t i = 0; i < n; i++)
-		t->x[t->n + i] = x[2 * i];
+		t->x[t->n + i] = x[stride * i];
+	memset(t->bad + t->n, 0, n);
 	t->n += n;
 	return 1;
 }
@@ -32,6 +41,7 @@ int tape_append(struct tape *t, const double *x, size_t n)
 void tape_drop(struct tape *t, size_t n)
 {
 	memmove(t->x, t->x + n, (t->n - n) * sizeof *t->x);
+	memmove(t->bad, t->bad + n, t->n - n);
 	t->n -= n;
 	t->begin += (long long)n;
 	if (t->clean < t->begin)
@@ -47,9 +57,9 @@ void tape_forget(struct tape *t, long long keep)
 	tape_drop(t, old > t->n ? t->n : old);
 }
 
-int tape_start(struct tape *t, const struct calibration *c)
+int tape_start(struct tape *t, const struct calibration *c, int channel)
 {
-	const struct whitening *w = &c->whitening;
+	const struct whitening *w = &c->whitening[channel];
 	size_t taps = 2 * (size_t)w->half + 1;
 
 	t->fed = t->white = t->clean;
@@ -63,7 +73,37 @@ int tape_start(struct tape *t, const struct calibration *c)
 static void scale(struct tape *t, long long from, long long to, double noise)
 {
 	for (long long i = from - t->begin; i < to - t->begin; i++)
-		t->x[i] /= noise;
+		t->x[i] = t->bad[i] ? 0 : t->x[i] / noise;
+}
+
+/* Looks for gaps in what has come in but is not yet filtered. */
+static void mark(struct tape *t, const struct gaps *g)
+{
+	size_t from = t->marked > t->begin ? (size_t)(t->marked - t->begin) : 0;
+
+	if (from < t->n)
+		t->clipped += (double)gaps_mark(g, t->x, from, t->n, t->bad);
+	t->marked = t->begin + (long long)t->n;
+}
+
+/* A gap spoils as much on either side as the filter reaches. */
+static void smear(struct tape *t, long long from, long long to, int edge)
+{
+	long long last = -1;
+
+	for (int pass = 0; pass < 2; pass++) {
+		long long i = pass ? to - 1 : from, end = pass ? from - 1 : to;
+
+		last = -1;
+		for (; i != end; i += pass ? -1 : 1) {
+			unsigned char *bad = &t->bad[i - t->begin];
+
+			if (*bad & (GAPS_HELD | GAPS_CLIPPED))
+				last = i;
+			else if (last >= 0 && llabs(i - last) <= edge)
+				*bad |= SMEARED;
+		}
+	}
 }
 
 /* Takes tones from what has come in and divides by the noise.  Tones are fitted around
@@ -101,6 +141,8 @@ static int clean(struct tape *t, const struct calibration *c, double noise, int 
 		}
 		if (!t->started)
 			memcpy(t->coefficient, after, sizeof after);
+		for (int k = 1; t->started && k <= 2 * c->tones; k++, t->count++)
+			t->squares += pow(after[k] - t->coefficient[k], 2);
 		tones_remove(t->x + (t->clean - t->begin), (size_t)(until - t->clean),
 			(double)t->clean, c->tones, c->omega, t->at, t->coefficient,
 			(double)middle, after);
@@ -114,19 +156,28 @@ static int clean(struct tape *t, const struct calibration *c, double noise, int 
 
 /* Undoes the filter in whole blocks, so that the bits do not depend on how the record
  * came in; what is written lags behind what is read. */
-static void whiten(struct tape *t, const struct whitening *w, double mean, int ended)
+static void whiten(struct tape *t, const struct calibration *c, int channel, int ended)
 {
-	long long end = t->begin + (long long)t->n, last = end - w->edge, block;
+	const struct whitening *w = &c->whitening[channel];
+	long long end = t->begin + (long long)t->n, last, block;
 
+	/* What comes next may show that the last samples are held. */
+	if (!ended)
+		end -= (long long)c->gaps[channel].run;
+	last = end - w->edge;
 	if (!t->whiten) {
-		t->white = end;
+		for (; t->white < end; t->white++)
+			t->x[t->white - t->begin] -= c->mean[channel];
 		return;
 	}
+	smear(t, t->smeared > t->begin ? t->smeared : t->begin, end, w->edge);
+	t->smeared = end - w->edge > t->begin ? end - w->edge : t->begin;
 	block = (long long)fir_block(t->whiten);
 	while (ended ? t->white < last : t->fed + block <= end) {
 		for (long long i = 0; i < block; i++)
-			t->piece[i] =
-				t->fed + i < end ? t->x[t->fed + i - t->begin] - mean : 0;
+			t->piece[i] = t->fed + i < end ? t->x[t->fed + i - t->begin] -
+								 c->mean[channel]
+						       : 0;
 		fir_run(t->whiten, t->piece, (size_t)block);
 		for (long long i = 0; i < block; i++) {
 			long long at = t->fed + i - w->half;
@@ -142,6 +193,7 @@ static void whiten(struct tape *t, const struct whitening *w, double mean, int e
 
 int tape_prepare(struct tape *t, const struct calibration *c, int channel, int ended)
 {
-	whiten(t, &c->whitening, c->mean[channel], ended);
+	mark(t, &c->gaps[channel]);
+	whiten(t, c, channel, ended);
 	return clean(t, c, c->noise[channel], ended);
 }

@@ -14,27 +14,32 @@
  * clean are free of tones, too, and in units of the noise. */
 struct tape {
 	double *x;
+	unsigned char *bad; /* as long; see gaps.h, and where the filter smears it */
 	size_t n, capacity;
+	long long marked; /* samples before this one are looked at for gaps */
+	double clipped;   /* samples, so far */
 	long long begin, white, clean;
 	struct fir *whiten; /* NULL where there is nothing to undo; has taken in ... */
 	long long fed;      /* ... the samples before this one */
 	double *piece;      /* a block of it */
 	double at;          /* where the coefficients hold */
 	double coefficient[2 * TONES_MAX + 1];
+	long long smeared; /* samples before this one are looked at for what gaps spoil */
+	double squares, count; /* of changes of the coefficients from hop to hop */
 	int started;
 };
 
 void tape_clear(struct tape *t);
 
-/* Appends n samples, every second of x.  Returns 0 when out of memory. */
-int tape_append(struct tape *t, const double *x, size_t n);
+/* Appends n samples, every stride-th of x.  Returns 0 when out of memory. */
+int tape_append(struct tape *t, const double *x, size_t stride, size_t n);
 /* Forgets the n oldest samples. */
 void tape_drop(struct tape *t, size_t n);
 /* Forgets what lies before sample keep, now and then. */
 void tape_forget(struct tape *t, long long keep);
 
 /* From here on, samples can be made ready.  Returns 0 when out of memory. */
-int tape_start(struct tape *t, const struct calibration *c);
+int tape_start(struct tape *t, const struct calibration *c, int channel);
 /* Makes ready what can be of what has come in; all of it if the record has ended.
  * Returns 0 when out of memory. */
 int tape_prepare(struct tape *t, const struct calibration *c, int channel, int ended);

@@ -8,13 +8,6 @@
 
 static const double least_power = 2.5e-5; /* (1/200)^2 */
 
-/* The same for measured power, where leakage from other frequencies sets an end. */
-static const double least_measured = 5e-3;
-
-/* Rise of measured power over two of its frequencies, from the first on, that is too
- * steep to be known: of what is below nothing can be made good. */
-static const double steep = 0.18;
-
 /* Share that is kept of frequencies from 0 at edge lost to 1 at edge whole. */
 static double taper(double f, double lost, double whole)
 {
@@ -128,18 +121,13 @@ static void whitening_gains(struct whitening *w, const double *power, size_t n,
 
 /* What the taps leave of a pulse and of the noise. */
 static int look_through(struct whitening *w, const double *power, double unit, size_t n,
-	enum whiten_kind kind, double *gain, double *seen)
+	double *gain, double *seen)
 {
-	size_t lowest = (size_t)ceil(w->low * 2 * (double)(n - 1));
-
 	if (!gain_of_taps(w->tap, w->half, n, gain))
 		return 0;
 	for (size_t k = 0; k < n; k++)
 		w->band += gain[k] * gain[k] * power[k] / unit *
 			   (k == 0 || k == n - 1 ? 0.5 : 1) / (double)(n - 1);
-	if (kind == WHITEN_COLOURED) /* the baseline is fitted along: leave it in */
-		for (size_t k = 0; k < n; k++)
-			seen[k] = gain[k < lowest ? lowest : k];
 	if (!taps_of_gain(seen, n, w->half, w->seen))
 		return 0;
 	trim(w->seen, &w->seen_half);
@@ -160,8 +148,8 @@ static int edge_of_taps(const double *tap, int half)
 	return edge;
 }
 
-int whitening_make(struct whitening *w, const double *power, size_t n, double unit,
-	int half, enum whiten_kind kind)
+int whitening_make(
+	struct whitening *w, const double *power, size_t n, double unit, int half)
 {
 	double *gain = malloc(2 * n * sizeof *gain);
 	int ok;
@@ -174,7 +162,7 @@ int whitening_make(struct whitening *w, const double *power, size_t n, double un
 	if (ok) {
 		whitening_gains(w, power, n, unit, gain, gain + n);
 		ok = taps_of_gain(gain, n, half, w->tap) &&
-		     look_through(w, power, unit, n, kind, gain, gain + n);
+		     look_through(w, power, unit, n, gain, gain + n);
 		w->edge = edge_of_taps(w->tap, half);
 	}
 	free(gain);
@@ -183,35 +171,42 @@ int whitening_make(struct whitening *w, const double *power, size_t n, double un
 	return ok;
 }
 
-int whitening_of_noise(
-	struct whitening *w, const double *power, size_t n, enum whiten_kind kind)
+/* Gains are interpolated so that the taps do not wrap around. */
+int whitening_of_noise(struct whitening *w, const double *power, size_t n, double unit)
 {
-	enum { FINER = 8 };
-	size_t fine = FINER * (n - 1) + 1, first = 0;
-	double *between = malloc(fine * sizeof *between), most = 0;
-	int ok;
+	enum { FINER = 4 };
+	size_t fine = FINER * (n - 1) + 1;
+	double *gain = malloc(2 * fine * sizeof *gain), *between = gain + fine;
+	int half = (int)(n - 1), ok;
 
 	memset(w, 0, sizeof *w);
-	if (!between)
-		return 0;
-	for (size_t k = 0; k < n; k++)
-		most = fmax(most, power[k]);
-	if (n > 3 && power[1] < steep * power[3])
-		first = 2;
-	for (size_t k = 0; k < fine; k++) {
+	w->high = 0.5;
+	w->half = w->seen_half = half;
+	w->tap = malloc((2 * (size_t)half + 1) * sizeof *w->tap);
+	w->seen = malloc((2 * (size_t)half + 1) * sizeof *w->seen);
+	ok = gain && w->tap && w->seen;
+	for (size_t k = 0; ok && k < fine; k++) {
 		size_t from = k / FINER, to = from + 1 < n ? from + 1 : from;
 		double part = (double)(k % FINER) / FINER;
-		double least = 1e-12 * most;
 
-		if (from < first || power[from] < least_measured * most)
-			between[k] = 0;
-		else
-			between[k] = pow(power[from], 1 - part) *
-				     pow(fmax(power[to], least), part);
+		between[k] = pow(power[from], 1 - part) * pow(power[to], part);
+		gain[k] = sqrt(unit / between[k]);
 	}
-	ok = whitening_make(w, between, fine, most, (int)(2 * n), kind);
-	free(between);
-	return ok;
+	ok = ok && taps_of_gain(gain, fine, half, w->tap) &&
+	     gain_of_taps(w->tap, half, fine, gain);
+	for (size_t k = 0; ok && k < fine; k++)
+		w->band += gain[k] * gain[k] * between[k] / unit *
+			   (k == 0 || k == fine - 1 ? 0.5 : 1) / (double)(fine - 1);
+	free(gain);
+	if (!ok) {
+		whitening_clear(w);
+		return 0;
+	}
+	trim(w->tap, &w->half);
+	memcpy(w->seen, w->tap, (2 * (size_t)w->half + 1) * sizeof *w->tap);
+	w->seen_half = w->half;
+	w->edge = edge_of_taps(w->tap, w->half);
+	return 1;
 }
 
 int whitening_of_filter(struct whitening *w, const double *tap, size_t taps)
@@ -238,7 +233,7 @@ int whitening_of_filter(struct whitening *w, const double *tap, size_t taps)
 		for (size_t k = 0; k < n; k++)
 			power[k] = creal(spectrum[k]) * creal(spectrum[k]) +
 				   cimag(spectrum[k]) * cimag(spectrum[k]);
-		ok = whitening_make(w, power, n, 1, (int)(6 * taps), WHITEN_FILTERED);
+		ok = whitening_make(w, power, n, 1, (int)(6 * taps));
 	}
 	free(power);
 	if (fft)

@@ -7,8 +7,8 @@
  * ones make pulses smoother (shape_filter() with the taps in seen); lost low ones take a
  * slow baseline from them, which has to be fitted along (joint.h).
  *
- * Noise that was coloured before it met the pulses is made white by the same taps, but
- * a pulse has then passed these taps and no others.
+ * Noise whose colour was measured is made white likewise, but nothing is taken for lost;
+ * a pulse has then passed these taps.
  *
  * Frequencies are in cycles per sample.
  */
@@ -16,11 +16,6 @@
 #define SIGNAL_WHITEN_H
 
 #include <stddef.h>
-
-enum whiten_kind {
-	WHITEN_FILTERED, /* pulses and noise went through a filter of linear phase */
-	WHITEN_COLOURED  /* the noise alone has a colour */
-};
 
 struct whitening {
 	int half;    /* taps on either side of the middle */
@@ -35,12 +30,10 @@ struct whitening {
 
 /* power[k] of the noise at frequency k / (2 (n - 1)), k < n; unit > 0: that of the white
  * noise to be made of it; half < n: length of the taps.  Returns 0 out of memory. */
-int whitening_make(struct whitening *w, const double *power, size_t n, double unit,
-	int half, enum whiten_kind kind);
-/* The same for noise whose power is known at n frequencies only, smooth between them;
- * unit is its largest. */
-int whitening_of_noise(
-	struct whitening *w, const double *power, size_t n, enum whiten_kind kind);
+int whitening_make(
+	struct whitening *w, const double *power, size_t n, double unit, int half);
+/* The same for measured power > 0, smooth between its n frequencies. */
+int whitening_of_noise(struct whitening *w, const double *power, size_t n, double unit);
 /* The inverse of a symmetric filter of n taps. */
 int whitening_of_filter(struct whitening *w, const double *tap, size_t n);
 void whitening_clear(struct whitening *w);

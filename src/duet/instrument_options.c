@@ -155,7 +155,7 @@ void instrument_note(const struct calibration *c, double rate)
 {
 	note("align %g s, pulse %s of %g s%s, gain %g, noise %g and %g V, %d lines, learned from "
 	     "%d pulses",
-		(double)c->shift / rate, pulses[c->pulse + 1], c->duration / rate,
-		c->corrected ? ", corrected" : "", c->gain, c->noise[0], c->noise[1],
-		c->tones, c->events);
+		(double)c->shift / rate,
+		c->pulse < 0 ? "of its own" : pulses[c->pulse + 1], c->duration / rate,
+		"", c->gain, c->noise[0], c->noise[1], c->tones, c->events);
 }

@@ -171,5 +171,5 @@ int main(int argc, char **argv)
 	found_close(&out);
 	signal_close(in);
 	free(cmd);
-	return shell_done(doubtful ? EXIT_NOCONV : 0);
+	return shell_done(doubtful || out.doubtful ? EXIT_NOCONV : 0);
 }

@@ -22,6 +22,11 @@ static void check_status(
 		[SEPARATE_FAST] = "no pulse of at least 8 samples found: give "
 				  "--pulse-duration or sample faster",
 		[SEPARATE_SLOW] = "pulses as long as the record: --learn from more of it",
+		[SEPARATE_SWAPPED] =
+			"pulses come to channel 2 first: are the sensors swapped?",
+		[SEPARATE_TOGETHER] =
+			"pulses come to both channels at once, which no particle "
+			"does: give --align 0 if they are aligned",
 	};
 	int channel;
 	long long frame = separate_bad_sample(s, &channel);
@@ -60,8 +65,12 @@ static void report(const struct separate *s, double rate)
 
 static int put_ready(struct separate *s, struct found *out)
 {
+	const struct calibration *c = separate_calibration(s);
 	struct particle p;
 	int any = 0;
+
+	if (c && !out->told)
+		found_instrument(out, c);
 
 	for (; separate_next(s, &p); any = 1)
 		found_particle(out, &p);
@@ -91,6 +100,7 @@ void separate_record(
 	put_ready(s, out);
 	check_status(status, s, signal_name(in));
 	report(s, (double)out->rate);
+	out->doubtful = separate_refused(s);
 	separate_free(s);
 }
 

@@ -7,7 +7,8 @@
 
 enum { SOURCES_SHOWN = 8 };
 
-static const char *const verdicts[] = { "alone", "overlap", "misfit", "unresolved" };
+static const char *const verdicts[] = { "alone", "overlap", "nonferrous", "misfit",
+	"unresolved", "saturated", "common-mode", "impulse", "bubble", "transient" };
 
 void found_open(struct found *out, const struct signal_format *format, const char *cmd)
 {
@@ -41,13 +42,29 @@ static void put_row(struct table_out *t, const double *row, int n, const char *w
 	table_end_row(t);
 }
 
+void found_instrument(struct found *out, const struct calibration *c)
+{
+	double limit = SEPARATE_ERROR;
+
+	out->told = 1;
+	table_comment(out->particles, "model",
+		"%s: pulses are of one form to %.2g of it, limit %g",
+		c->error > limit ? "refused" : "holds", c->error, limit);
+	if (c->reversed)
+		table_comment(out->particles, "polarity", "reversed");
+	if (c->error > limit)
+		warn("the pulses are of no common form (%.2g of it differs): no row is "
+		     "believable",
+			c->error);
+}
+
 void found_particle(struct found *out, const struct particle *p)
 {
 	double rate = (double)out->rate, delay = (p->t2 - p->t1) / rate;
 	double delay_se = p->delay_se / rate,
 	       velocity = delay > 0 ? out->spacing / delay : NAN;
-	double d = sensor_diameter(out->kappa, velocity, p->amplitude);
-	double ra = p->amplitude_se / p->amplitude, rt = delay_se / delay;
+	double d = sensor_diameter(out->kappa, velocity, fabs(p->amplitude));
+	double ra = p->amplitude_se / fabs(p->amplitude), rt = delay_se / delay;
 	double d_se = sensor_diameter_error(d, ra, rt, p->correlation);
 	int one = p->verdict != SEPARATE_UNRESOLVED;
 	const double row[16] = { one ? (double)out->count++ : NAN, p->t1 / rate,

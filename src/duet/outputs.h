@@ -17,10 +17,14 @@ struct found {
 	long long drawn; /* frames of separated signals written */
 	double *frames;  /* of the separated signals, from frame drawn on */
 	size_t held;
+	int told;     /* 1: the keys are written */
+	int doubtful; /* 1: no row is believable */
 };
 
 /* Opens what is wanted; the fields down to kappa are the caller's. */
 void found_open(struct found *out, const struct signal_format *format, const char *cmd);
+/* Keys of the table that tell what was learned; before any row. */
+void found_instrument(struct found *out, const struct calibration *c);
 void found_particle(struct found *out, const struct particle *p);
 /* A peak of one sensor, 1 or 2; delay: of the mean particle, s, nan if unknown. */
 void found_peak(struct found *out, const struct peak *p, int sensor, double delay);

@@ -54,8 +54,7 @@ duet noise.au >found.tsv 2>said
 within "noise alone" "no particle, one warning" 1 0 \
 	"$(($(column particle found.tsv | wc -l) + $(wc -l <said)))"
 awk '{ print $1, $1 }' frames.txt | au 10000 2 >twice.au
-duet twice.au >found.tsv
-within "the same channel twice (lag 0)" "20 particles" 20 0 "$(column particle found.tsv | wc -l)"
+refused "the same channel twice" 1 'both channels at once' duet twice.au
 awk '{ for (i = 1; i <= 2; i++) if ($i > 0.5) $i = 0.5; else if ($i < -0.5) $i = -0.5
 	print $1, $2 }' frames.txt | au 10000 2 >clipped.au
 duet clipped.au >found.tsv

@@ -9,7 +9,8 @@ enum { N = 700, SCENES = 120 };
 
 static struct joint_scene make_scene(const struct shape *shape)
 {
-	return (struct joint_scene){ .shape = shape,
+	return (struct joint_scene){ .shape = { shape, shape },
+		.negative = INFINITY,
 		.duration = 100,
 		.transit = 196.35,
 		.gain = 0.909,
@@ -155,9 +156,9 @@ static void test_misuse(struct joint *j, const struct joint_scene *good)
 	struct joint_result r;
 	int m = 0;
 
-	s.gain = -1;
+	s.gain = 0;
 	ok(joint_fit(j, &s, y, y, N, p, &m, &r) == JOINT_DOMAIN,
-		"negative gain is refused");
+		"no gain is refused");
 	s = *good;
 	s.delta_min = -300;
 	ok(joint_fit(j, &s, y, y, N, p, &m, &r) == JOINT_DOMAIN,

@@ -1,6 +1,5 @@
 /* Parts of the separation: table of the pulse, STFT, masks, tones, lag, peaks, noise */
 #include "num/philox.h"
-#include "signal/align.h"
 #include "signal/calibrate.h"
 #include "signal/count.h"
 #include "signal/masks.h"
@@ -184,13 +183,16 @@ static void test_tone_values(void)
 
 static void test_small(void)
 {
-	static double x[N], work[N], r[101];
+	static double x[N], work[N];
 	struct peak peak;
 	struct count *count = count_new(0.5);
 	struct sections *s;
 	struct section section;
 	struct shape *shape = shape_new(PULSE_SINE);
-	double lag;
+	struct joint_scene scene = {
+		.shape = { shape, shape }, .duration = 100, .transit = INFINITY, .gain = 1
+	};
+
 	int peaks = 0;
 
 	for (int i = 0; i < N; i++)
@@ -206,20 +208,13 @@ static void test_small(void)
 	near(robust_median(work, 7), '4', 0, "median");
 	memset(x, 0, sizeof x);
 	shape_sample(shape, 1000.25, 100, 900, 200, x + 900, NULL, NULL);
-	shape_sample(shape, 1037.5, 100, 900, 250, work, NULL, NULL);
-	memset(work + 250, 0, sizeof work - 250 * sizeof *work);
-	lag = align_lag(x + 900, work, 3000, 500, r);
-	near(lag, 37.25, 0.01, "lag by cross-correlation, between samples");
-	align_autocorrelation(x, x, N, 100, r);
-	ok(r[50] < r[48] && r[50] < r[52],
-		"a sine pulse is least like itself half its length on");
 	for (int i = 0; i < N; i++)
 		if (count_sample(count, 2 * x[i], &peak))
 			peaks++;
 	ok(peaks == 1 && count_end(count, &peak) == 0, "one pulse, one peak");
 	near(peak.t, 975.25, 0.01, "its place");
 	near(peak.height, 2, 1e-4, "its height");
-	s = sections_new(shape, 100, 3, 0);
+	s = sections_new(&scene, 3);
 	sections_scan(s, x, x, 0, N, N);
 	sections_end(s);
 	ok(sections_first(s, &section) && section.begin < 950 && section.end > 1050 &&
@@ -245,16 +240,16 @@ static void test_sections(void)
 {
 	static double x[N];
 	struct shape *shape = shape_new(PULSE_LORENTZ);
-	struct sections *s = sections_new(shape, 100, 5, 0);
+	struct joint_scene scene = {
+		.shape = { shape, shape }, .duration = 100, .transit = 200, .gain = 1
+	};
+	struct sections *s = sections_new(&scene, 5);
 	struct section first, second;
 	const double strong[2] = { 10, 2000 };
 
 	near(shape_reach_above(shape, 0.01), 1.07, 0.01, "where a tail is a hundredth");
 	near(shape_reach_above(shape, 0), shape_reach(shape), 1e-9, "and where it ends");
 	for (int k = 0; k < 2; k++) {
-		struct joint_scene scene = {
-			.shape = shape, .duration = 100, .transit = 200, .gain = 1
-		};
 		struct joint_pulse weak = { .t = 1000, .a = 5 },
 				   other = { .t = 1450, .a = strong[k] };
 
@@ -262,7 +257,7 @@ static void test_sections(void)
 		joint_add(&scene, &weak, 1, x, NULL, N);
 		joint_add(&scene, &other, 1, x, NULL, N);
 		sections_free(s);
-		s = sections_new(shape, 100, 5, 0);
+		s = sections_new(&scene, 5);
 		for (long long upto = 0; upto < N; upto += 100)
 			sections_scan(s, x, x, 0, N, upto);
 		sections_end(s);

@@ -1,9 +1,9 @@
 /* Undoing a filter: gains, noise and pulses before and after; the spectrum of noise */
 #include "signal/whiten.h"
 #include "num/normals.h"
-#include "signal/colour.h"
 #include "signal/fir.h"
 #include "signal/joint.h"
+#include "signal/noise.h"
 #include "signal/quiet.h"
 #include "tap.h"
 #include <stdlib.h>
@@ -68,7 +68,7 @@ static void test_gain(const struct whitening *w, const double *h, size_t taps)
 static void test_noise(const struct whitening *w, const double *h, size_t taps)
 {
 	enum { BINS = SEGMENT / 2 + 1 };
-	double power[2][BINS], sum = 0, squares = 0, noise[2], error;
+	double power[2][BINS], sum = 0, squares = 0, error;
 	size_t skip = taps + (size_t)w->half, n = N - 2 * skip;
 	int quiets, bins = 0;
 
@@ -88,9 +88,6 @@ static void test_noise(const struct whitening *w, const double *h, size_t taps)
 	 * the neighbouring bins. */
 	error = sqrt(1.056 * 1.94 / ((double)quiets * bins));
 	near(sum / bins, 1, 4 * error, "the noise is white again, of variance 1");
-	colour_level(y[0] + skip, y[1] + skip, n, w, noise);
-	/* A median of half the bins each, and those at the edges are less. */
-	near(hypot(noise[0], noise[1]) / sqrt(2), 1, 4 * error, "colour_level() says so");
 	for (size_t i = skip; i < skip + n; i++)
 		squares += y[0][i] * y[0][i] + y[1][i] * y[1][i];
 	/* The squares of noise in a band have 2 band n degrees of freedom per two
@@ -104,7 +101,7 @@ static void test_pulse(const struct whitening *w, const double *h, size_t taps)
 {
 	static double x[PULSE], want[PULSE];
 	struct shape *gauss = shape_new(PULSE_GAUSS);
-	struct shape *seen = shape_filter(gauss, 100, w->seen, w->seen_half);
+	struct shape *seen = shape_filter(gauss, 100, w->seen, w->seen_half, 2e-3);
 	double worst = 0, peak = 0;
 
 	shape_sample(gauss, 4096.3, 100, 0, PULSE, x, NULL, NULL);
@@ -129,10 +126,10 @@ static void test_baseline(const struct whitening *w, const double *h, size_t tap
 	static double x[2][PULSE];
 	const size_t begin = (PULSE - LENGTH) / 2;
 	struct shape *gauss = shape_new(PULSE_GAUSS);
-	struct shape *seen = shape_filter(gauss, 100, w->seen, w->seen_half);
+	struct shape *seen = shape_filter(gauss, 100, w->seen, w->seen_half, 2e-3);
 	struct joint_pulse truth = { .t = PULSE / 2.0 + 0.3, .delta = 3.1, .a = 1000 };
 	struct joint_pulse found = { .t = LENGTH / 2.0, .delta = 2, .a = 800 };
-	struct joint_scene s = { .shape = gauss,
+	struct joint_scene s = { .shape = { gauss, gauss },
 		.duration = 100,
 		.transit = INFINITY,
 		.gain = 0.9,
@@ -149,7 +146,7 @@ static void test_baseline(const struct whitening *w, const double *h, size_t tap
 		pass_filter(h, taps, x[c], PULSE);
 		whitening_apply(w, x[c], PULSE);
 	}
-	s.shape = seen;
+	s.shape[0] = s.shape[1] = seen;
 	s.low = w->low;
 	joint_refine(j, &s, x[0] + begin, x[1] + begin, LENGTH, &found, 1, &r);
 	/* What the cut at 2e-3 of the peak leaves is even about the pulse and the same on
@@ -224,61 +221,51 @@ static void colour(double *x, size_t n, double a)
 static void test_colour(void)
 {
 	enum { LITTLE = 20480, TIMES = 100 };
-	double power[COLOUR_BINS], noise[2] = { 1, 2 }, a = 0.7, worst = 0, squares = 0;
-	double mean = 0, most = 0, scatter;
-	size_t skip;
+	static struct noise noise;
+	double level[2] = { 1, 2 }, a = 0.7, worst = 0, squares = 0, mean = 0, scatter;
 	struct whitening w;
+	size_t skip;
 	int white = 0;
 
-	/* 39 segments: sums of 32 bins, 22 of them independent, scatter by 2.4 %, and 1.3
-	 * is nine times that from end to end. */
 	for (unsigned k = 0; k < TIMES; k++) {
 		make_noise(y[0], LITTLE, 1, 2 * k);
 		make_noise(y[1], LITTLE, 2, 2 * k + 1);
-		white += colour_power(y[0], y[1], LITTLE, noise, power) == 1 &&
-			 colour_is_white(power, 0);
+		noise_measure(&noise, y[0], y[1], LITTLE);
+		white += noise.white[0] && noise.white[1];
 	}
+	/* Five deviations at 512 lags of two channels: 3e-4 a record. */
 	ok(white == TIMES, "white noise is white: %d of %d", white, TIMES);
 	for (unsigned c = 0; c < 2; c++) {
-		make_noise(y[c], N, noise[c], c);
+		make_noise(y[c], N, level[c], c);
 		colour(y[c], N, a);
 	}
-	ok(colour_power(y[0], y[1], N, noise, power) == 1 && !colour_is_white(power, 0),
+	ok(noise_measure(&noise, y[0], y[1], N) && !noise.white[0] && !noise.white[1],
 		"low-passed noise is not");
-	for (int k = 0; k < COLOUR_BINS; k++) {
+	for (int k = 0; k < NOISE_BINS; k++) {
 		double want = (1 - a * a) / (1 - 2 * a * cos(acos(-1) * k / 512) + a * a);
-		double off = power[k] / want - 1;
+		double off = noise.power[0][k] / want - 1;
 
-		mean += off / COLOUR_BINS;
-		squares += off * off / COLOUR_BINS;
+		mean += off / NOISE_BINS;
+		squares += off * off / NOISE_BINS;
 		worst = fmax(worst, fabs(off));
-		most = fmax(most, power[k]);
 	}
-	/* Autocorrelations are whole up to lag 256 and fade to lag 512, of 2 N samples:
-	 * 2 (256 + 3/8 256) / (2 N).  513 bins of which two in three are independent: the
-	 * scatter is known to 4 %, and none is five times as far off. */
-	scatter = sqrt(352.0 / N);
-	near(sqrt(squares) / scatter, 1, 0.16, "its power is |H|^2 within its scatter");
-	ok(worst < 5 * scatter, "at every frequency (%.2f)", worst / scatter);
-	/* The mean is that of 2 N samples with 1 degree of freedom each. */
-	near(mean, 0, 4 / sqrt(N), "and in the mean");
-	ok(whitening_of_noise(&w, power, COLOUR_BINS, WHITEN_COLOURED),
-		"noise has an inverse");
+	/* Autocorrelations beyond the last that says something, a^k below five
+	 * deviations, are left out: the scatter is less than that of 352 whole ones. */
+	scatter = sqrt(352.0 / N * 2);
+	ok(sqrt(squares) < 0.5 * scatter,
+		"its power is |H|^2 to %.3f of that of a periodogram",
+		sqrt(squares) / scatter);
+	ok(worst < 2 * scatter, "at every frequency (%.2f)", worst / scatter);
+	near(mean, 0, 6 / sqrt(N), "and in the mean");
+	ok(noise_whitening(&noise, 0, &w), "noise has an inverse");
 	ok(w.low == 0 && w.high == 0.5, "nothing is lost");
 	near(w.band, 1, 1e-3, "all is band");
 	skip = (size_t)w.half;
-	for (unsigned c = 0; c < 2; c++) {
-		noise[c] *= sqrt(most);
+	for (unsigned c = 0; c < 2; c++)
 		whitening_apply(&w, y[c], N);
-	}
-	ok(colour_power(y[0] + skip, y[1] + skip, N - 2 * skip, noise, power) == 1 &&
-			colour_is_white(power, 0),
+	ok(noise_measure(&noise, y[0] + skip, y[1] + skip, N - 2 * skip) &&
+			noise.white[0] && noise.white[1],
 		"which makes it white");
-	mean = 0;
-	for (int k = 0; k < COLOUR_BINS; k++)
-		mean += power[k] / COLOUR_BINS;
-	/* The inverse was learned from this very noise: its scatter is gone. */
-	near(mean, 1, 4 / sqrt(N), "and of the largest power");
 	test_pulse(&w, &(double){ 1 }, 1);
 	whitening_clear(&w);
 }
