@@ -420,7 +420,7 @@ static enum calibrate_status settle(
 	double before = c->gain * c->noise[0] / c->noise[1];
 
 	if (c->events == 0 && isnan(par->duration))
-		return CALIBRATE_NO_LAG;
+		return CALIBRATE_HOPELESS;
 	undo_colour(r, c);
 	c->gain = before * c->noise[1] / c->noise[0];
 	for (int k = 0; k < 2; k++)
@@ -453,15 +453,38 @@ static int rings(struct calibration *c, int *ok)
 	return reach > LONGEST;
 }
 
+/* Pulses everywhere, and none of them to learn from: as much as shot noise needs
+ * (campbell.h), by a sine pulse. */
+static enum calibrate_status settle_crowd(
+	const struct calibrate_par *par, double duration, struct calibration *c)
+{
+	shape_free(c->plain);
+	c->plain = shape_new(par->pulse == CALIBRATE_ANY_PULSE ? PULSE_SINE : par->pulse);
+	c->pulse = par->pulse == CALIBRATE_ANY_PULSE ? PULSE_SINE : par->pulse;
+	c->duration = duration;
+	c->through = c->events = 0;
+	c->error = INFINITY;
+	c->error_least = c->error_floor = 0;
+	c->level = 1;
+	c->dense = 1;
+	if (!c->plain || !calibration_set_shapes(c))
+		return CALIBRATE_MEMORY;
+	set_range(par, c);
+	set_thresholds(par, c);
+	return CALIBRATE_OK;
+}
+
 static enum calibrate_status learn_record(
 	const struct calibrate_par *par, struct record *r, struct calibration *c)
 {
 	enum { ROUNDS = 2 };
 	enum calibrate_status status = make_white(par, r, c);
 	int rounds = ROUNDS, ok = 1;
+	double duration;
 
 	if (status == CALIBRATE_OK)
 		status = find_start(par, r, c);
+	duration = c->duration;
 	if (status == CALIBRATE_OK && !par->filter && rings(c, &ok))
 		status = CALIBRATE_NARROW;
 	if (status == CALIBRATE_OK && !ok)
@@ -481,6 +504,8 @@ static enum calibrate_status learn_record(
 		set_range(par, c);
 		status = learn_pulse(par, r->y, r->bad, r->length, round, r->learning, c);
 	}
+	if (status == CALIBRATE_HOPELESS && r->noise.quiets == 0)
+		return settle_crowd(par, duration, c);
 	return status == CALIBRATE_OK ? settle(par, r, c) : status;
 }
 
@@ -495,6 +520,8 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 		return CALIBRATE_SILENT_1;
 	if (is_constant(x2, n))
 		return CALIBRATE_SILENT_2;
+	if (isnan(par->lag) && memcmp(x1, x2, n * sizeof *x1) == 0)
+		return CALIBRATE_TOGETHER;
 	r.work = malloc(2 * n * sizeof *r.work);
 	r.learning = calloc(1, sizeof *r.learning);
 	if (r.learning)

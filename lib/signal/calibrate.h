@@ -21,6 +21,10 @@
 #include "signal/whiten.h"
 #include <stddef.h>
 
+/* Error of the pulses' form, over the form, beyond which nothing is told apart by it:
+ * groups of three with an echo, taken for pulses without, leave 0.034. */
+#define CALIBRATE_ERROR 0.03
+
 enum { CALIBRATE_ANY_PULSE = -1, CALIBRATE_FIND_TONES = -1 };
 
 /* What is known; NAN, -1 where it is to be found. */
@@ -82,7 +86,8 @@ enum calibrate_status {
 	CALIBRATE_FAST,    /* pulses of fewer than 8 samples */
 	CALIBRATE_SLOW,    /* pulses longer than half the record */
 	CALIBRATE_SWAPPED, /* pulses come to channel 2 first */
-	CALIBRATE_TOGETHER /* pulses come to both channels at once */
+	CALIBRATE_TOGETHER, /* pulses come to both channels at once */
+	CALIBRATE_HOPELESS  /* no form of pulses was found by the work allowed for that */
 };
 
 /* x1, x2: n >= 64 finite samples.  On CALIBRATE_OK *c is filled; free it with

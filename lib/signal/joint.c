@@ -13,6 +13,7 @@ static size_t filter_residual(
 		long first = shape_support(s->shape[c], 0, T, &len);
 
 		shape_sample(s->shape[c], 0, T, first, len, j->scratch, NULL, NULL);
+		j->operations += (double)points * (double)len;
 		for (size_t k = 0; k < points; k++) {
 			long from = (long)(k * stride) + first,
 			     skip = from < 0 ? -from : 0;
@@ -52,6 +53,7 @@ static void search_delays(struct joint *j, const struct joint_scene *s, double d
 	long lo = (long)floor(delta_lo / (double)stride);
 	long hi = (long)ceil(delta_hi / (double)stride);
 
+	j->operations += 4 * (double)points * (double)(hi - lo + 1);
 	for (long k = 0; k < (long)points; k++)
 		for (long l = k + lo < 0 ? -k : lo; l <= hi && k + l < (long)points;
 			l++) {
@@ -134,9 +136,8 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 	enum { TRIES = 3 + JOINT_PULSES_MAX / 8 };
 	enum joint_status status = joint_start(j, s, y1, y2, n, pulses, *m);
 	struct candidate tried[TRIES];
-	/* Twice what crowds of two pulses per duration take; what is no pulse takes all.
-	 */
-	double budget = 1000 + 250 * (double)n / s->duration;
+	double most = j->operations + (s->work > 0 ? s->work : JOINT_WORK) *
+					      ((double)n + 8 * s->duration);
 	int failed = 0;
 	double chi2;
 
@@ -144,7 +145,8 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 		return status;
 	chi2 = joint_fit_all(j, s, pulses, *m);
 	do {
-		while (failed < 3 + *m / 8 && *m < s->max_pulses && j->work < budget) {
+		while (failed < 3 + *m / 8 && *m < s->max_pulses &&
+			j->operations < most) {
 			struct candidate c = search(j, s, tried, failed);
 
 			if (c.z2 < 0.3 * s->drop_near)
@@ -155,15 +157,15 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 				tried[failed++] = c;
 		}
 		chi2 = joint_fit_all(j, s, pulses, *m);
-	} while (j->work < budget && joint_split_pulses(j, s, pulses, m, &chi2));
-	if (j->work < budget) {
+	} while (j->operations < most && joint_split_pulses(j, s, pulses, m, &chi2));
+	if (j->operations < most) {
 		joint_swap_pulses(j, s, pulses, *m, &chi2);
 		joint_merge_pulses(j, s, pulses, m, &chi2);
 		joint_prune(j, s, pulses, m, &chi2);
 		chi2 = joint_fit_all(j, s, pulses, *m);
 	}
 	finish(j, s, pulses, *m, chi2,
-		(j->work >= budget || *m == s->max_pulses) &&
+		(j->operations >= most || *m == s->max_pulses) &&
 			search(j, s, NULL, 0).z2 > s->drop,
 		result);
 	return JOINT_OK;

@@ -98,6 +98,7 @@ static void add_to_basis(struct joint *j, double (*wave)(double), double w, doub
 
 	for (size_t i = 0; i < n; i++)
 		v[i] = wave(w * ((double)i - (double)n / 2));
+	j->operations += (double)n * (4 * j->basis + 20);
 	norm = dot(v, v, n);
 	for (int pass = 0; pass < 2; pass++)
 		for (int b = 0; b < j->basis; b++)
@@ -138,6 +139,7 @@ static void make_basis(struct joint *j, const struct joint_scene *s)
 void joint_measure(struct joint *j)
 {
 	j->energy = 0;
+	j->operations += 2 * (double)j->n * (1 + j->basis);
 	for (int c = 0; c < 2; c++) {
 		j->energy += dot(j->e[c], j->e[c], j->n);
 		for (int b = 0; b < j->basis; b++)
@@ -219,6 +221,8 @@ void joint_make_columns(
 		col->first = pulse_window(s, p, c, j->n, &col->n);
 		by_t = col->d[c];
 		by_T = col->d[1 - c];
+		/* a value and two derivatives: some ten each */
+		j->operations += 30 * (double)col->n;
 		shape_sample(s->shape[c], p->t + (c ? p->delta : 0), T, col->first,
 			col->n, col->d[2], by_t, by_T);
 		joint_blank(j, c, col->first, col->n, col->d[2]);
@@ -273,7 +277,6 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 		return JOINT_MEMORY;
 	j->n = n;
 	j->steps = j->searches = 0;
-	j->work = 0;
 	memcpy(j->e[0], y1, n * sizeof(double));
 	memcpy(j->e[1], y2, n * sizeof(double));
 	j->left_out = 0;
@@ -287,6 +290,11 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	for (int i = 0; i < m; i++)
 		joint_subtract(j, s, &pulses[i], 1);
 	return JOINT_OK;
+}
+
+double joint_operations(const struct joint *j)
+{
+	return j->operations;
 }
 
 const double *joint_residual(const struct joint *j, int channel)

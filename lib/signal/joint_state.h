@@ -44,7 +44,7 @@ struct joint {
 	double *bq;              /* NPAR * basis: Q^T J */
 	double gradient[NPAR], diagonal[NPAR], move[NPAR];
 	long steps, searches;
-	double work; /* pulses moved, a step each */
+	double operations; /* multiplications, about, since joint_new() */
 };
 
 /* A pulse to try, and the chi-square it should take away. */
@@ -104,7 +104,8 @@ static inline double unit_energy(const struct joint_scene *s)
 enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	const double *y1, const double *y2, size_t n, const struct joint_pulse *pulses,
 	int m);
-/* Clears x[0 .. n), which begin at sample first of channel c, where samples are left out. */
+/* Clears x[0 .. n), which begin at sample first of channel c, where samples are left out.
+ */
 void joint_blank(const struct joint *j, int c, long first, size_t n, double *x);
 /* Energy of e and its part along the basis, from scratch. */
 void joint_measure(struct joint *j);

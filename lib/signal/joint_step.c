@@ -3,7 +3,7 @@
 #include <string.h>
 
 /* J_i^T J_k of two pulses, added to block. */
-static int add_block(const struct joint *j, int i, int k, double block[PAR][PAR])
+static int add_block(struct joint *j, int i, int k, double block[PAR][PAR])
 {
 	int touch = 0;
 
@@ -16,6 +16,7 @@ static int add_block(const struct joint *j, int i, int k, double block[PAR][PAR]
 		if (end <= first)
 			continue;
 		touch = 1;
+		j->operations += PAR * PAR * (double)(end - first);
 		for (int u = 0; u < PAR; u++)
 			for (int v = 0; v < (i == k ? u + 1 : PAR); v++)
 				block[u][v] += dot(x->d[u] + (first - x->first),
@@ -40,6 +41,7 @@ static void make_normal(struct joint *j, const int *set, int m)
 				const struct column *col = &j->col[i][c];
 
 				g += dot(col->d[u], j->e[c] + col->first, col->n);
+				j->operations += (double)col->n * (1 + j->basis);
 				for (int b = 0; b < j->basis; b++) {
 					double part = dot(col->d[u],
 						j->q + (size_t)b * j->n + col->first,
@@ -78,6 +80,7 @@ static void make_normal(struct joint *j, const int *set, int m)
 /* Cholesky of h + lambda diag(h) within the profile; 0 where not positive definite. */
 static int factorise(struct joint *j, int np, double lambda)
 {
+	j->operations += pow(np, 3) / 6;
 	for (int i = 0; i < np; i++) {
 		double *row = j->factor + (size_t)i * (size_t)np, pivot;
 
@@ -139,6 +142,7 @@ static void add_column(struct joint *j, int i, double factor)
 		const struct column *col = &j->col[i][c];
 		double *e = j->e[c] + col->first;
 
+		j->operations += (double)col->n * (3 + j->basis);
 		j->energy -= dot(e, e, col->n);
 		add_scaled(e, factor, col->d[2], col->n);
 		j->energy += dot(e, e, col->n);
@@ -203,7 +207,6 @@ double joint_fit_set(struct joint *j, const struct joint_scene *s,
 			make_normal(j, set, m);
 		fresh = 1;
 		j->steps++;
-		j->work += m;
 		if (!factorise(j, PAR * m, lambda)) {
 			lambda = lambda * 10 + 1e-3;
 			continue;

@@ -10,8 +10,9 @@
 /* Stretches with one pulse that a free form can be learned from. */
 enum { ENOUGH = 5, MANY = 20 };
 
-/* Error of a form, over the form, that pulses may still be told apart with. */
-static const double TOLERABLE = 0.03;
+/* Multiplications per sample of a fit under a form that is one of several: what nine of
+ * ten fits under the right one take (joint.h). */
+static const double QUICK = 20000;
 
 /* Share of a pulse's energy that a form far from its own may leave. */
 static const double ROUGH = 0.05;
@@ -24,6 +25,11 @@ static const double SURE = 0.15;
 
 /* Deviations of chi-square that noise does not reach. */
 static const double BEYOND = 5;
+
+/* Multiplications per sample that one round of learning may take, and the samples that it
+ * may take them for in any case: what it learns from is as much in a short record.  A
+ * crowd of 50 particles a second takes 20 000, one of long tails 120 000 of 2.5 s. */
+static const double WORK = 50000, AT_LEAST = 37000;
 
 /* --- stretches */
 
@@ -194,6 +200,7 @@ static int fit_one(struct learning *l, struct stretch *s, int search)
 				  &s->m, &r)
 			: joint_refine(l->joint, &l->scene, s->y[0], s->y[1], s->n,
 				  s->pulse, s->m, &r);
+	l->failed |= status == JOINT_DOMAIN;
 	if (status != JOINT_OK)
 		return 0;
 	s->chi2 = r.chi2;
@@ -288,7 +295,8 @@ static int fit_all(struct learning *l, int search)
 	for (int i = 0; i < l->count; i++) {
 		struct stretch *s = &l->stretch[i];
 
-		if (!fit_one(l, s, search))
+		l->failed |= joint_operations(l->joint) > l->limit;
+		if (l->failed || !fit_one(l, s, search))
 			return 0;
 		price += s->chi2 + 2 * l->scene.drop_near * s->m;
 		dof += s->dof;
@@ -366,6 +374,7 @@ static int update_free(
 		template_add(t, &l->scene, s->y[0], s->y[1], s->n, s->pulse, s->m);
 	}
 	plain = template_solve(t, &scale, &shift);
+	l->failed |= !plain;
 	if (!plain || !use_shape(l, c, plain))
 		return 0;
 	for (int i = 0; i < l->count; i++)
@@ -672,10 +681,10 @@ static int choose_form(const struct calibrate_par *par, struct learning *l,
 
 /* --- crowds: the best of the pulses of sensor.h by joint fits */
 
-static int try_crowd(const struct calibrate_par *par, struct learning *l,
-	struct calibration *c, int pulse, double duration, struct state *best)
+/* Under one of these forms, as it is at first: what the pulses found by it cost. */
+static int try_crowd(struct learning *l, struct calibration *c, int pulse,
+	double duration, struct state *best)
 {
-	enum { ROUNDS = 2 };
 	struct shape *plain = shape_new((enum pulse_shape)pulse);
 
 	if (!plain)
@@ -684,9 +693,19 @@ static int try_crowd(const struct calibrate_par *par, struct learning *l,
 	c->duration = duration;
 	l->scene.duration = duration;
 	l->scene.misfit = ROUGH;
-	if (!use_shape(l, c, plain) || !fit_all(l, 1))
-		return 0;
-	for (int k = 0; k < ROUNDS && l->price < 3 * best->cost; k++) {
+	l->scene.work = QUICK;
+	return use_shape(l, c, plain) && fit_all(l, 1) &&
+	       (!(l->price < best->cost) || save(l, c, l->price, best));
+}
+
+/* Duration and gain of the best of them. */
+static int settle_crowd(
+	const struct calibrate_par *par, struct learning *l, struct calibration *c)
+{
+	enum { ROUNDS = 2 };
+	int ok = 1;
+
+	for (int k = 0; ok && k < ROUNDS; k++) {
 		for (int i = 0; i < l->count; i++)
 			l->stretch[i].foreign = 0;
 		for (int turn = 0; turn < 2 && isnan(par->duration); turn++)
@@ -694,10 +713,9 @@ static int try_crowd(const struct calibrate_par *par, struct learning *l,
 		if (isnan(par->gain))
 			update_gain(l, c);
 		l->scene.misfit *= 0.1;
-		if (!fit_all(l, 1))
-			return 0;
+		ok = fit_all(l, 1);
 	}
-	return l->price < best->cost ? save(l, c, l->price, best) : 1;
+	return ok;
 }
 
 /* Duration and gain by turns with the pulses of some pieces of a crowd: the closer they
@@ -712,6 +730,7 @@ static int converge(const struct calibrate_par *par, struct learning *l,
 	l->pieces = 1;
 	l->scene.misfit = 1e-3;
 	ok = ok && fit_all(l, 1);
+	l->scene.misfit = 2e-4;
 	for (int k = 0; ok && k < ROUNDS && fabs(c->duration / before - 1) > 3e-4; k++) {
 		before = c->duration;
 		judge_stretches(l, -1, &level, &error2, &se);
@@ -719,8 +738,9 @@ static int converge(const struct calibrate_par *par, struct learning *l,
 			update_duration(l, c);
 		if (isnan(par->gain))
 			update_gain(l, c);
+		/* A form as good as it was finds the same pulses. */
+		ok = fit_all(l, l->scene.misfit > 1e-4 || k % 3 == 2);
 		l->scene.misfit = 1e-4;
-		ok = fit_all(l, 1);
 	}
 	return ok;
 }
@@ -737,7 +757,9 @@ static int learn_crowd(const struct calibrate_par *par, struct learning *l,
 	if (ok)
 		best->cost = INFINITY;
 	ok = ok && pick(l, y, bad, n, 8, 1);
-	for (int k = 0; ok && k < 3; k++)
+	for (int k = 0; ok && k < 3 && !(best->cost < 2); k++) {
+		double before = best->cost;
+
 		for (int p = PULSE_SINE; ok && p <= PULSE_LORENTZ; p++) {
 			struct shape *plain = shape_new((enum pulse_shape)p);
 			double duration = isnan(par->duration) && plain
@@ -745,12 +767,16 @@ static int learn_crowd(const struct calibrate_par *par, struct learning *l,
 						  : par->duration;
 
 			shape_free(plain);
-			if ((k > 0 && (!isnan(par->duration) || best->cost < 2)) ||
+			if ((k > 0 && !isnan(par->duration)) ||
 				(par->pulse != CALIBRATE_ANY_PULSE && p != par->pulse) ||
 				duration < 8)
 				continue;
-			ok = try_crowd(par, l, c, p, duration, best);
+			ok = try_crowd(l, c, p, duration, best);
 		}
+		if (ok && best->cost < before)
+			ok = restore(l, c, best) && settle_crowd(par, l, c) &&
+			     (!(l->price < best->cost) || save(l, c, l->price, best));
+	}
 	if (ok && !best->plain)
 		l->count = 0; /* nothing at all */
 	else
@@ -895,8 +921,8 @@ static int learn_more(const struct calibrate_par *par, struct learning *l,
 		if (l->count)
 			judge_stretches(l, -1, &level, &error2, &se);
 		use_scene(l, c, LEARN_PULSES);
-		l->scene.misfit =
-			fmax(misfit, 3 * fmin(error2 + 2 * se, TOLERABLE * TOLERABLE));
+		l->scene.misfit = fmax(misfit,
+			3 * fmin(error2 + 2 * se, CALIBRATE_ERROR * CALIBRATE_ERROR));
 		misfit *= 0.2;
 		ok = pick(l, y, bad, n, 24, 0) && fit_all(l, 1);
 		if (!ok || l->count < ENOUGH)
@@ -963,6 +989,8 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, double *const
 	int ok = first != NULL, lone = 0;
 
 	c->attempts++;
+	l->limit = joint_operations(l->joint) + WORK * ((double)n + AT_LEAST);
+	l->failed = 0;
 	if (!again)
 		c->through = l->crowded = l->pieces = 0;
 	l->scene.negative = l->pieces ? INFINITY : 0;
@@ -979,8 +1007,9 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, double *const
 			ok = learn_more(par, l, y, bad, n, c, 0);
 		ok = ok && conclude(l, c);
 	}
-	if (ok && !again && !(c->error < TOLERABLE)) {
-		/* Perhaps none of them stands alone. */
+	if (ok && !again &&
+		!(c->error < CALIBRATE_ERROR && (l->crowded || c->chi2 < FITS))) {
+		/* Perhaps none of them stands alone, or close pairs are taken for one. */
 		struct state *before = calloc(1, sizeof *before);
 		double error = c->error;
 		int events = l->count;
@@ -994,16 +1023,18 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, double *const
 		if (ok && l->count)
 			ok = learn_rough(par, l, y, bad, n, c) && conclude(l, c);
 		l->crowded = 1;
-		if (ok && !(c->error < error) && events) {
+		if ((ok || l->failed) && !(c->error < error) && events) {
 			ok = restore(l, c, before);
 			l->count = events;
 			c->error = error;
-			l->crowded = 0;
+			l->crowded = l->failed = 0;
 		}
 		if (before)
 			shape_free(before->plain);
 		free(before);
 	}
+	if (!ok && l->failed)
+		return CALIBRATE_HOPELESS;
 	if (ok && l->count == 0) {
 		struct shape *sine = shape_new(
 			par->pulse == CALIBRATE_ANY_PULSE ? PULSE_SINE : par->pulse);

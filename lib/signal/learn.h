@@ -33,6 +33,8 @@ struct learning {
 	int count;
 	int crowded;  /* 1: lone pulses were too few, and others served, too */
 	int pieces;   /* 1: even these were too few: some cut pulses through */
+	double limit; /* of joint_operations() in this round */
+	int failed;   /* 1: reached, or nothing to learn from, before a form was found */
 	double price; /* chi-square and what each pulse must take away, per degree */
 };
 

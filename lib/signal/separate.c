@@ -119,7 +119,7 @@ static enum separate_status calibrate_now(struct separate *s)
 	static const enum separate_status of[] = { SEPARATE_OK, SEPARATE_MEMORY,
 		SEPARATE_SILENT_1, SEPARATE_SILENT_2, SEPARATE_NO_LAG, SEPARATE_FAR,
 		SEPARATE_NARROW, SEPARATE_FAST, SEPARATE_SLOW, SEPARATE_SWAPPED,
-		SEPARATE_TOGETHER };
+		SEPARATE_TOGETHER, SEPARATE_HOPELESS };
 	const struct calibration *c = &s->cal;
 	enum calibrate_status status;
 	double reach;
@@ -137,7 +137,7 @@ static enum separate_status calibrate_now(struct separate *s)
 						     ? c->whitening[0].edge
 						     : c->whitening[1].edge);
 	calibration_scene(c, &s->scene);
-	s->refused = c->error > SEPARATE_ERROR;
+	s->refused = c->error > CALIBRATE_ERROR;
 	s->scene.max_pulses = JOINT_PULSES_MAX;
 	s->reach = fmax(shape_reach(c->shape[0]), shape_reach(c->shape[1])) * c->duration;
 	s->near = fmax(shape_reach_above(c->shape[0], 0.01),
@@ -430,13 +430,19 @@ static enum separate_status foreign_section(
 	return SEPARATE_OK;
 }
 
-/* Masks what stands alone and far out of the residual of [from, from + n): impulses of a
- * few samples.  Returns their number, 0 where they are too many to be that. */
-static int mask_impulses(struct separate *s, long long from, size_t n)
+/* Masks what stands alone and out of the residual of [from, from + n), above a share of
+ * its largest value: impulses of a few samples.  Returns their number, 0 where they are
+ * too many to be that. */
+static int mask_impulses(struct separate *s, long long from, size_t n, double share)
 {
 	enum { IMPULSE = 8 };
 	size_t longest = (size_t)fmax(2, s->cal.duration / 32);
-	double count = 0;
+	double count = 0, level = 0;
+
+	for (int c = 0; c < 2; c++)
+		for (size_t i = 0; i < n; i++)
+			level = fmax(level, share * fabs(joint_residual(s->joint, c)[i]));
+	level = fmax(level, 4.5);
 
 	for (int pass = 0; pass < 2; pass++) {
 		for (int c = 0; c < 2; c++) {
@@ -448,7 +454,7 @@ static int mask_impulses(struct separate *s, long long from, size_t n)
 			for (size_t i = 0; i < n; i++) {
 				size_t end = i;
 
-				while (end < n && fabs(r[end]) > 4.5)
+				while (end < n && fabs(r[end]) > level)
 					end++;
 				for (size_t k = i; k < end && end - i <= longest; k++) {
 					count += !pass;
@@ -465,6 +471,58 @@ static int mask_impulses(struct separate *s, long long from, size_t n)
 	}
 	s->counters.impulses += count;
 	return (int)count;
+}
+
+/* Pulses that fill an impulse: does the largest of m alone, a few samples left out, do as
+ * well as noise does?  Then it is the only one. */
+static int rather_impulses(struct separate *s, long long from, size_t n, int *m,
+	struct joint_result *r, int *ok)
+{
+	double *y[2] = { channel_1(s, from), channel_2(s, from) };
+	unsigned char *bad[2] = { s->tape[0].bad + (y[0] - s->tape[0].x),
+		s->tape[1].bad + (y[1] - s->tape[1].x) };
+	double *keep = malloc(2 * n * (sizeof *keep + 1));
+	unsigned char *kept = (unsigned char *)(keep + 2 * n);
+	struct joint_pulse largest = s->pulse[0];
+	struct joint_result one;
+	double before = s->counters.impulses;
+	int good = 0;
+
+	*ok = keep != NULL;
+	for (int i = 1; i < *m; i++)
+		if (fabs(s->pulse[i].a) > fabs(largest.a))
+			largest = s->pulse[i];
+	for (int c = 0; *ok && c < 2; c++) {
+		memcpy(keep + (size_t)c * n, y[c], n * sizeof *keep);
+		memcpy(kept + (size_t)c * n, bad[c], n);
+	}
+	/* Once and again, since the fit is drawn to impulses: the largest come first. */
+	for (int pass = 0; *ok && !good && pass < 4; pass++) {
+		*ok = joint_refine(s->joint, &s->scene, y[0], y[1], n, &largest, 1,
+			      &one) == JOINT_OK;
+		if (!*ok || !mask_impulses(s, from, n, 0.3))
+			break;
+		*ok = joint_refine(s->joint, &s->scene, y[0], y[1], n, &largest, 1,
+			      &one) == JOINT_OK;
+		good = one.chi2 < (double)one.dof + 5 * sqrt(2 * (double)one.dof);
+	}
+	if (*ok && good) {
+		s->pulse[0] = largest;
+		*m = 1;
+		*r = one;
+	} else if (*ok) {
+		for (int c = 0; c < 2; c++) {
+			memcpy(y[c], keep + (size_t)c * n, n * sizeof *keep);
+			memcpy(bad[c], kept + (size_t)c * n, n);
+		}
+		s->counters.impulses = before;
+		*ok = joint_refine(s->joint, &s->scene, y[0], y[1], n, s->pulse, *m,
+			      &one) == JOINT_OK;
+		r->chi2 = one.chi2;
+		r->dof = one.dof;
+	}
+	free(keep);
+	return good;
 }
 
 /* Takes the first done of m pulses out of the record and carries the others into the
@@ -533,12 +591,19 @@ static enum separate_status fit_section(
 		return SEPARATE_MEMORY;
 	s->counters.fits++;
 	if (r.chi2 > (double)r.dof + 5 * sqrt(2 * (double)r.dof) &&
-		mask_impulses(s, from, n)) {
+		mask_impulses(s, from, n, 0)) {
 		m = carried < m ? carried : m;
 		if (joint_fit(s->joint, &s->scene, channel_1(s, from), channel_2(s, from),
 			    n, s->pulse, &m, &r) != JOINT_OK)
 			return SEPARATE_MEMORY;
 		s->counters.fits++;
+	}
+	if (!cut && !s->continuing && m > 1) {
+		int ok;
+
+		s->counters.fits += rather_impulses(s, from, n, &m, &r, &ok);
+		if (!ok)
+			return SEPARATE_MEMORY;
 	}
 	s->counters.steps += (double)r.steps;
 	s->counters.searches += (double)r.searches;
@@ -708,7 +773,8 @@ static enum separate_status work(struct separate *s)
 		s->dense |=
 			cut && s->crowded && s->par.method == SEPARATE_FIT && !s->refused;
 		if (s->refused)
-			status = foreign_section(s, from, to, NAN);
+			status = s->cal.dense ? dense_section(s, from, to)
+					      : foreign_section(s, from, to, NAN);
 		else if (s->dense)
 			status = dense_section(s, from, to);
 		else if (s->par.method == SEPARATE_MASKS)
@@ -750,7 +816,7 @@ static enum separate_status learn(struct separate *s)
 
 		first = 0;
 		if (status != SEPARATE_OK && status != SEPARATE_NO_LAG &&
-			status != SEPARATE_FAST)
+			status != SEPARATE_FAST && status != SEPARATE_HOPELESS)
 			return status;
 		if (s->calibrated)
 			break;

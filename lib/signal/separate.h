@@ -26,11 +26,6 @@
 #include "signal/masks.h"
 #include <stddef.h>
 
-/* Error of the pulses' form, over the form, beyond which nothing is told apart by it:
- * over 3 such errors, squared, a pulse's neighbours must stand out of its energy
- * (joint.h, misfit): at 0.08 by 2 %, of an amplitude of 1/7 of it. */
-#define SEPARATE_ERROR 0.08
-
 /* Samples that nothing can be learned from fewer of. */
 enum { SEPARATE_SHORTEST = 64 };
 
@@ -102,6 +97,7 @@ enum separate_status {
 	SEPARATE_SLOW,
 	SEPARATE_SWAPPED,  /* pulses come to channel 2 first */
 	SEPARATE_TOGETHER, /* pulses come to both channels at once */
+	SEPARATE_HOPELESS  /* no form of pulses was found by the work allowed for that */
 };
 
 /* Work done and left out so far. */

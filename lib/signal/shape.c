@@ -122,15 +122,18 @@ static void filter_at(const struct shape *shape, double T, const double *tap, in
 	double s, double *work, double *value, double *slope)
 {
 	size_t n;
-	long first = shape_support(shape, -s * T, T, &n);
+	long first = shape_support(shape, -s * T, T, &n), last = first + (long)n - 1;
 
 	*value = *slope = 0;
+	first = first < -half ? -half : first;
+	last = last > half ? half : last;
+	if (last < first)
+		return;
+	n = (size_t)(last - first + 1);
 	shape_sample(shape, -s * T, T, first, n, work, work + n, NULL);
 	for (size_t i = 0; i < n; i++) {
 		long k = first + (long)i;
 
-		if (k < -half || k > half)
-			continue;
 		*value += tap[half + k] * work[i];
 		*slope -= tap[half + k] * work[n + i] * T; /* by t0 is - 1/T by s */
 	}

@@ -27,6 +27,9 @@ static void check_status(
 		[SEPARATE_TOGETHER] =
 			"pulses come to both channels at once, which no particle "
 			"does: give --align 0 if they are aligned",
+		[SEPARATE_HOPELESS] =
+			"nothing learned: the pulses are of no common form, or "
+			"too many at once",
 	};
 	int channel;
 	long long frame = separate_bad_sample(s, &channel);

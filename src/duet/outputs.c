@@ -44,15 +44,21 @@ static void put_row(struct table_out *t, const double *row, int n, const char *w
 
 void found_instrument(struct found *out, const struct calibration *c)
 {
-	double limit = SEPARATE_ERROR;
+	double limit = CALIBRATE_ERROR;
 
 	out->told = 1;
-	table_comment(out->particles, "model",
-		"%s: pulses are of one form to %.2g of it, limit %g",
-		c->error > limit ? "refused" : "holds", c->error, limit);
+	if (isinf(c->error))
+		table_comment(
+			out->particles, "model", "refused: no form of pulses was found");
+	else
+		table_comment(out->particles, "model",
+			"%s: pulses are of one form to %.2g of it, limit %g",
+			c->error > limit ? "refused" : "holds", c->error, limit);
 	if (c->reversed)
 		table_comment(out->particles, "polarity", "reversed");
-	if (c->error > limit)
+	if (isinf(c->error))
+		warn("no common form of the pulses was found: no row is believable");
+	else if (c->error > limit)
 		warn("the pulses are of no common form (%.2g of it differs): no row is "
 		     "believable",
 			c->error);
