@@ -9,6 +9,7 @@
 #	make check-long   the longer checks; make check-all: both; make check-cluster: under Slurm
 #	make bench        error against run time; one domain: make bench-contact
 #	make extremes-contact  the table of extreme scenes of a domain
+#	make thesis       every item of the thesis beside ours, on one page; make thesis-quick
 #	make matrix       duet on a matrix of instruments: rows wrong, found, errors, time
 #	make lint asan fuzz    linters, sanitizers, fuzzers
 #	make uninstall dist clean
@@ -28,9 +29,11 @@ DATADIR ?= $(PREFIX)/share
 MANDIR ?= $(DATADIR)/man
 DOCDIR ?= $(DATADIR)/doc/wearpipe
 
-# -ffp-contract=off: the same bytes from every build of one compiler.  Names are hidden
+# The same bytes for every family of processors: no contraction, and no vectors made of
+# single operations, where GCC contracts what it was told not to (vfmaddsub in a product of
+# complex numbers).  Names are hidden
 # but for those that include/wearpipe/ declares.
-STD = -std=c11 -D_XOPEN_SOURCE=700 -ffp-contract=off -fPIC -fvisibility=hidden
+STD = -std=c11 -D_XOPEN_SOURCE=700 -ffp-contract=off -fno-tree-slp-vectorize -fPIC -fvisibility=hidden
 WARN = -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes $(CONVERSION)
 CONVERSION = -Wconversion -Wsign-conversion
 B = build
@@ -39,10 +42,11 @@ Q = $(if $(V),,@)
 say = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),@:,@printf '  %-4s %s\n' $(1) '$(2)')
 
 # The outer libraries of each program; what it uses of lib/ the linker takes from one archive.
-PROGRAMS = roughgen bemcontact debrisgen debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal surfimport sigconvert wear-volume
+PROGRAMS = roughgen bemcontact debrisgen debrisfit debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal surfimport sigconvert wear-volume
 roughgen_LIBS = fftw
 bemcontact_LIBS = fftw
 debrisgen_LIBS = fftw
+debrisfit_LIBS = fftw
 debrisstat_LIBS = gsl
 bpfilter_LIBS = fftw
 duet_LIBS = fftw
@@ -238,6 +242,11 @@ demo:
 	@$(MAKE) --no-print-directory all
 	@$(MAKE) --no-print-directory -C examples/demo \
 		SURFACE="$(if $(filter /%,$(SURFACE)),,$(SURFACE:%=$(CURDIR)/))$(SURFACE)"
+
+# Every experiment of the thesis, and build/thesis/full/index.html or .../quick/...
+.PHONY: thesis thesis-quick
+thesis thesis-quick: all $(UNITS)
+	+@MAKE="$(MAKE)" scripts/thesis $(if $(filter thesis,$@),full,quick)
 
 # Those that print their options.
 COMPLETED = $(BUILT) wearplot wearwatch

@@ -16,7 +16,7 @@ for p in $programs; do
 	case $p in
 	roughgen) needed='--measure' ;;
 	bemcontact) needed='--load 1N --estar 1GPa' ;;
-	debrisgen) needed='--yield 355MPa' ;;
+	debrisgen | debrisfit) needed='--yield 355MPa' ;;
 	rwl) needed='--wear no-such-file --threshold-gap 1um' ;;
 	delaynet) needed='--task score' ;;
 	abrade) needed='--gap 1um --hardness 1GPa --friction 0' ;;

@@ -42,7 +42,8 @@ records -o nrrd plain.nrrd >ours.nrrd
 records -o nrrd ours.nrrd >again.nrrd
 same 'a record that is read and written has the same bytes' ours.nrrd again.nrrd
 is 'the header is a multiple of 1024 bytes' "$(($(wc -c <ours.nrrd) % 1024))" 96
-records -o gsf plain.nrrd >plain.gsf 2>err || true
+ok 'a plane field is written as GSF' records -o gsf plain.nrrd
+mv out plain.gsf
 is 'GSF keeps the spacing' "$(records plain.gsf | grep '^1' | cut -f 8,9,12)" "$(printf '1e-06\t2e-06\t11')"
 ramp >plain.raw
 ok 'headerless samples are read' records --raw 4x3 --pixel 2um plain.raw
@@ -167,6 +168,8 @@ is 'a header line cannot be forged' "$({ header 'key:=a\nsizes: 1 1 1'; ramp; } 
 fails 'more than 1000 keys' 1 'more than 1000 keys' records keys.nrrd
 { header 'k1:=1' 'k2:=2'; ramp; } >keys.nrrd
 fails 'limits can be lowered' 1 'more than 1 keys' env WEARPIPE_LIMITS=keys=1 records keys.nrrd
+fails 'the limit of a record can be lowered' 1 'bytes of samples are too many' env WEARPIPE_LIMITS=bytes=4 records keys.nrrd
+fails 'that of a header' 1 'header' env WEARPIPE_LIMITS=header=30 records keys.nrrd
 
 # Other tools, where they are installed
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then

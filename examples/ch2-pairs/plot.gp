@@ -10,12 +10,19 @@ set style fill solid 0.3
 set output "fig13.png"
 set title "Figure 13: wear volume, mean and standard deviation of the pairs"
 set ylabel "cumulative volume, 10^{-12} m^3"; set yrange [0:*]
+first = real(system("awk -F '\t' '$1 == 1 { print $6 * 1e12 }' 50N.bystep"))
 plot "50N.bystep" using "step":(column("cumulative_volume")*1e12):(column("cumulative_volume_sd")*1e12) \
 		with yerrorlines lw 2 lc rgb blue title "50 N", \
      "100N.bystep" using "step":(column("cumulative_volume")*1e12):(column("cumulative_volume_sd")*1e12) \
 		with yerrorlines lw 2 lc rgb red title "100 N", \
+     0.72*first*x with lines lw 2 lc rgb grey title "Archard's law from step 1, distance times 0.72", \
      2.135*x with lines dt 2 lc rgb blue title "thesis at 50 N over 100", \
      3.6107*x with lines dt 2 lc rgb red title "thesis at 100 N over 100"
+set output "fig13-late.png"
+set title "Figure 13 gone on to step 30: each pair at 50 N"
+set xtics 5
+plot "late.lines" using 1:($2*1e12) with lines lc rgb blue
+set xtics 1
 
 set output "fig14.png"
 set title "Figure 14: real contact area, mean and standard deviation of the pairs"

@@ -51,6 +51,8 @@ set output "fig11.png"
 set title "Figure 11: roughness over that of the first surface"
 set xlabel "step"; set ylabel "relative roughness"; set key bottom right
 set datafile commentschars "#"
-plot "column-steps.tsv" using "step":"relative_roughness" with linespoints lw 2 pt 7 title "column rule (2-12)", \
-     "potential-steps.tsv" using "step":"relative_roughness" with linespoints lw 2 pt 5 title "whole set (2-11)", \
+first(y) = column("realisation") == 0 ? column(y) : NaN
+plot "column-steps.tsv" using (first("step")):(first("relative_roughness")) with linespoints lw 2 pt 7 title "column rule (2-12)", \
+     "whole-steps.tsv" using (first("step")):(first("relative_roughness")) with linespoints lw 2 pt 5 title "whole set (2-11)", \
+     "hard-steps.tsv" using (first("step")):(first("relative_roughness")) with linespoints lw 2 pt 9 title "column rule, hardness 3 yield", \
      1.0015 with lines dt 2 lc rgb "#7f7f7f" title "thesis: settles at 1.0015"

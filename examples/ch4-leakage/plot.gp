@@ -5,6 +5,18 @@ set xlabel "time, h"; set ylabel "return oil flow, L/min"
 set datafile separator "\t"
 grey = "#888888"; blue = "#2b3a67"; red = "#b23a48"; gold = "#c98a1b"
 
+set output "fig50.png"
+set title "Figure 50: return oil flow of three synthetic pumps"
+plot for [k=1:3] sprintf("pump-%d.tsv", k) using "t":"y" with lines title sprintf("pump %d", k)
+
+set output "fig51.png"
+set title "Figure 51: four points, and how models of first and second order go on"
+set xlabel "step"; set ylabel "state"; set xrange [-0.5:4.5]
+plot "sketch.tsv" using "t":"y" with linespoints pt 7 lc rgb grey title "so far", \
+	"sketch-ahead.tsv" using "t":"first" with linespoints pt 6 lc rgb red title "first order", \
+	"sketch-ahead.tsv" using "t":"second" with linespoints pt 6 lc rgb blue title "second order"
+set xlabel "time, h"; set ylabel "return oil flow, L/min"; set xrange [*:*]
+
 set output "fig54.png"
 set title "Figure 54: return oil flow of the synthetic pump"
 plot flow using "t":"y" with lines lc rgb blue, limit with lines dt 2 lc rgb red title "failure"

@@ -43,3 +43,18 @@ plot band using (column("t")*h):(column("q05")*h):(column("q95")*h) with filledc
 	band using (column("t")*h):(column("grey")*h) with lines lc rgb gold title "grey model", \
 	"filter.tsv" using (column("t")*h):(column("q50")*h) with lines lc rgb "#3a8f5c" title "fragments and filters, median", \
 	truth(x) lw 2 lc rgb red title "truth"
+
+# Figure 66: dry sliding by Archard's law, the volume of the plate by the hour
+set output "fig66.png"
+set title "Figure 66 (b): volume of the plate, dry and by the fragments"
+set xlabel "time, h"; set ylabel "volume, mm^3"; set xrange [0:eol]; set yrange [0:*]; set key top left
+k = real(system("sed -n 's/^# archard: //p' life.tsv"))
+force = 2346.3e-6 * (0.45 * 21.15e6 + 0.1 * 10.575e6)
+rate = real(system("awk -F '\t' '/^#/ { next } !/^[-0-9]/ { for (i = 1; i <= NF; i++) c[$i] = i; next } { s += $c[\"mean\"] / $c[\"step_time\"]; n++ } END { print s / n }' rates.tsv"))
+plot k / 1.065e9 * force * 20.94 * x * 3600 * 1e9 lw 2 lc rgb "black" title sprintf("Archard, K = %.1e", k), \
+	rate * x * 3600 * 1e9 lw 2 lc rgb blue title "fragments, mean"
+set output "fig64-field.png"
+set title "Pressure of the valve plate by angle, and the thesis' two halves"
+set xlabel "angle, degrees"; set ylabel "pressure, MPa"; set xrange [0:360]
+plot "field.tsv" using "angle":"pressure" with lines lw 2 lc rgb blue title "field", \
+	(x < 180 ? 21 : 0.15) with steps dt 2 lc rgb grey title "two halves"

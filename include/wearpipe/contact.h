@@ -2,8 +2,8 @@
  *
  * Solves g >= 0, p >= 0, p g = 0 per cell for the gap g = K p - h - approach of two
  * elastic half-spaces with combined height h (row-major, m); with a hardness the
- * pressure stops there.  Pressure is in Pa, positive in compression.  The same bytes for
- * any number of threads; plans and memory are kept over calls.
+ * pressure is limited to it.  Pressure is in Pa, positive in compression.  The result is
+ * byte-identical for any number of threads; plans and memory are kept between calls.
  *
  *	struct wp_contact_par par = { 32, 32, 1e-6, 1e-6, 115e9, 0, 0, 1e-8, 1 };
  *	struct wp_contact *c = wp_contact_new(&par, NULL);
@@ -15,7 +15,7 @@
  *	printf("contact area ratio %g\n", r.area);
  *	wp_contact_free(c);
  *
- * Vollebregt, J. Optim. Theory Appl. 160 (2014) 293; Stanley and Kato, J. Tribol. 119
+ * Vollebregt, J. Optim.  Theory Appl. 160 (2014) 293; Stanley and Kato, J. Tribol. 119
  * (1997) 481 (periodic).
  */
 #ifndef WEARPIPE_CONTACT_H
@@ -34,8 +34,8 @@ struct wp_contact_par {
 	double dx, dy;    /* cell size, m */
 	double estar;     /* contact modulus, Pa */
 	double hardness;  /* largest pressure, Pa; 0: none */
-	int periodic;     /* 1: the surface repeats; 0: free of load around the grid */
-	double tolerance; /* relative duality gap to reach */
+	int periodic;     /* 1: periodic; 0: no load outside the grid */
+	double tolerance; /* relative duality gap at which the iteration stops */
 	int threads;      /* >= 1 */
 };
 
@@ -43,10 +43,10 @@ struct wp_contact_result {
 	double pressure;    /* mean, Pa */
 	double load;        /* N */
 	double approach;    /* of the flat past height 0, m */
-	double indentation; /* approach from first touch, m */
+	double indentation; /* approach from first contact, m */
 	double area;        /* loaded cells over all cells */
 	double energy;      /* elastic, J */
-	double gap;         /* relative duality gap reached: bounds the excess energy */
+	double gap; /* relative duality gap of the result: bounds the excess energy */
 	long iterations;
 };
 
@@ -54,13 +54,13 @@ WP_API struct wp_contact *wp_contact_new(
 	const struct wp_contact_par *par, enum wp_status *status);
 WP_API void wp_contact_free(struct wp_contact *c);
 
-/* Presses the bodies with a mean pressure (Pa).  p (nx * ny): on entry a first guess of
- * any scale, zeros for none; on return the pressure.  gap (nx * ny, m) and result may be
- * NULL. */
+/* Solves the contact for a mean pressure (Pa). p (nx * ny): on entry an initial guess of
+ * any scale, or zeros; on return the pressure.  gap (nx * ny, m) and result may be NULL.
+ */
 WP_API enum wp_status wp_contact_press(struct wp_contact *c, const double *height,
 	double pressure, double *p, double *gap, struct wp_contact_result *result);
 
-/* The same with the approach given, m. */
+/* The same for a given approach, m. */
 WP_API enum wp_status wp_contact_approach(struct wp_contact *c, const double *height,
 	double approach, double *p, double *gap, struct wp_contact_result *result);
 

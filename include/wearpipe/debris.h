@@ -1,7 +1,7 @@
 /* debris.h - wear particles: material under a sliding contact whose stress exceeds yield
  *
- * One step takes the pressure of a contact, finds the von Mises stress below it, removes
- * the material that fails, and returns its connected pieces.  Fields are row-major.
+ * One step computes the von Mises stress below the pressure of a contact, removes the
+ * material that fails, and returns its connected pieces.  Fields are row-major.
  *
  *	struct wp_debris_par par = { 32, 32, 8e-6, 8e-6, 0, 0, 0.3, 0.3, 355e6, 0, 1 };
  *	struct wp_debris *d = wp_debris_new(&par, NULL);
@@ -28,15 +28,16 @@ extern "C" {
 struct wp_debris;
 
 struct wp_debris_par {
-	int nx, ny;    /* cells */
-	double dx, dy; /* cell size, m */
-	double cell;   /* material falls in cells so deep, m; 0: its depth is interpolated
-			*/
-	int periodic;  /* as the contact was solved */
+	int nx, ny;      /* cells */
+	double dx, dy;   /* cell size, m */
+	double cell;     /* height of the cells removed, m; 0: the depth is interpolated
+			  */
+	int periodic;    /* as the contact was solved */
 	double poisson;  /* of the worn body */
 	double friction; /* coefficient; shear along +x */
 	double yield;    /* Pa */
-	int potential;   /* 1: all that fails is lost; 0: what fails from the surface down
+	int potential;   /* 1: all that fails is removed; 0: only what fails from the
+			  * surface down
 			  */
 	int threads;     /* >= 1 */
 };
@@ -44,7 +45,8 @@ struct wp_debris_par {
 struct wp_particle {
 	double columns, volume; /* number of columns of the grid, m3 */
 	double diameter;        /* of the sphere of this volume, m */
-	double length, width;   /* Feret diameters, m: largest, and largest across it */
+	double length, width;   /* Feret diameters, m: the largest, and the largest
+				   perpendicular to it */
 	double solidity;        /* volume over that of the convex hull */
 	double x, y, z;         /* centroid, m; z down from the surface */
 };
@@ -53,8 +55,8 @@ WP_API struct wp_debris *wp_debris_new(
 	const struct wp_debris_par *par, enum wp_status *status);
 WP_API void wp_debris_free(struct wp_debris *d);
 
-/* Lowers height (m) where material is lost under the pressure (Pa, >= 0).  *particle is
- * valid until the next call; largest first. */
+/* Lowers height (m) where material is removed under the pressure (Pa, >= 0).  *particle
+ * is valid until the next call; largest first. */
 WP_API enum wp_status wp_debris_wear(struct wp_debris *d, double *height,
 	const double *pressure, const struct wp_particle **particle, size_t *count);
 

@@ -28,13 +28,13 @@ struct wp_filter;
 WP_API enum wp_status wp_filter_taps(
 	int order, double low, double high, double rate, double *taps);
 
-/* A filter of n taps for interleaved frames of so many channels. */
+/* A filter of n taps for interleaved frames of this number of channels. */
 WP_API struct wp_filter *wp_filter_new(
 	const double *taps, size_t n, int channels, enum wp_status *status);
 WP_API void wp_filter_free(struct wp_filter *f);
 
-/* Filters frames in place, zeros before the first call; calls go on where the last one
- * ended.  Symmetric taps delay by (n - 1) / 2 frames. */
+/* Filters frames in place; samples before the first call are zero, and each call
+ * continues where the last one ended.  Symmetric taps delay by (n - 1) / 2 frames. */
 WP_API enum wp_status wp_filter_run(struct wp_filter *f, double *x, size_t frames);
 
 #ifdef __cplusplus

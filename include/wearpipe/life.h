@@ -1,8 +1,8 @@
 /* life.h - the distribution of the time until a degradation series reaches its threshold
  *
- * Observations are taken one by one; after at least four of them the remaining life is
- * known by draws, from which quantiles are read.  The future may change its rate: see
- * aopf(1).
+ * Observations are passed one by one; after at least four of them the remaining life is
+ * sampled, and quantiles are computed from the samples.  The wear rate may change in the
+ * future: see aopf(1).
  *
  *	struct wp_life *l = wp_life_new(5.0, 1, 500, 1, NULL);
  *	const double level[3] = { 0.05, 0.5, 0.95 };
@@ -28,19 +28,19 @@ extern "C" {
 
 struct wp_life;
 
-/* direction: +1 where the threshold is reached from below, -1 from above.  draws: of the
- * remaining life, >= 1.  WP_DOMAIN or WP_NO_MEMORY. */
+/* direction: +1 if the threshold is reached from below, -1 from above. draws: number of
+ * samples of the remaining life, >= 1.  WP_DOMAIN or WP_NO_MEMORY. */
 WP_API struct wp_life *wp_life_new(double threshold, int direction, int draws,
 	uint64_t seed, enum wp_status *status);
 WP_API void wp_life_free(struct wp_life *l);
 
-/* Takes an observation at time t; t rises.  y NAN: missing.  WP_NUMBERS where t is not
- * finite or y infinite, WP_DOMAIN where t does not rise. */
+/* Passes an observation at time t, which must be ascending. y NAN: missing. WP_NUMBERS if
+ * t is not finite or y is infinite, WP_DOMAIN if t is not ascending. */
 WP_API enum wp_status wp_life_observe(struct wp_life *l, double t, double y);
 
-/* Quantiles of the time left from the last observation, at n levels from 0 to 1;
- * INFINITY where that much mass never crosses.  never (may be NULL): mass that does not.
- * WP_IMPOSSIBLE below four observations. */
+/* Quantiles of the remaining life from the last observation, at n levels from 0 to 1;
+ * INFINITY if the threshold is not reached at that level. never (may be NULL):
+ * probability that it is never reached. WP_IMPOSSIBLE below four observations. */
 WP_API enum wp_status wp_life_quantiles(
 	struct wp_life *l, const double *level, double *quantile, int n, double *never);
 

@@ -1,4 +1,4 @@
-/* status.h - how the functions of the library say what went wrong
+/* status.h - error codes of the functions of the library
  *
  * Functions that make an object return NULL and store the reason in *status, which may
  * be NULL; all others return it.  WP_OK is 0.

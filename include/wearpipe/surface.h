@@ -1,7 +1,7 @@
 /* surface.h - rough surfaces with a given spectrum, and areal parameters of heights
  *
- * Heights are row-major, z[iy * nx + ix], in metres, and grow towards the other body.
- * Realisation k is a function of the parameters and k alone.
+ * Heights are row-major, z[iy * nx + ix], in metres, positive towards the other body.
+ * Realisation k depends only on the parameters and k.
  *
  *	struct wp_surface_par par = { 64, 64, 1e-3, 1e-3, WP_SURFACE_GAUSS, 0.8e-6,
  *		1e-4, 1e-4, 0, 0, 0, 1 };
@@ -56,7 +56,7 @@ WP_API void wp_surface_free(struct wp_surface *s);
 WP_API enum wp_status wp_surface_heights(
 	struct wp_surface *s, uint32_t realisation, double *z);
 
-/* Parameters of ISO 25178-2; nan where there are too few points. */
+/* Parameters of ISO 25178-2; nan if there are too few points. */
 struct wp_roughness {
 	double sa, sq, ssk, sku, sp, sv, sz; /* heights, m; ssk, sku: 1 */
 	double sdq, sdr;                     /* rms slope; developed area ratio */

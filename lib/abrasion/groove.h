@@ -1,9 +1,9 @@
 /* groove.h - grooves along x cut into heights on a grid
  *
  * Heights along the groove are lowered by the mean depth of the groove over each cell,
- * so that the removed volume does not depend on the grid.  A part of it may be pushed
- * aside: two ridges, each half as wide as the groove, take it up.  The grid repeats:
- * what leaves it on one side comes in on the other.
+ * so that the removed volume does not depend on the grid.  A part of it may be displaced
+ * into two ridges, each half as wide as the groove. The grid is periodic: a groove that
+ * leaves it continues on the opposite side.
  *
  *	struct groove g = { .x = 0, .y = 5e-5, .length = 1e-3, .diameter = 1e-5,
  *		.depth = 1e-6, .cut = 0.5 };

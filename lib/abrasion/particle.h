@@ -1,19 +1,20 @@
 /* particle.h - a hard particle between two sliding surfaces
  *
- * A rigid sphere of diameter d in a gap h < d sinks d - h into the two bodies, x into
+ * A rigid sphere of diameter d in a gap h < d indents the two bodies by d - h, x into
  * body 1 and y into body 2, so that the loads on both sides are equal:
  *
  *	H1 c(x) = H2 c(y) = F / pi,   c(x) = d x - x^2 below d / 2, d^2 / 4 above,
  *
- * for pi c(x) is the area of the impression and a body's hardness is the pressure in it.
- * On a body on which the particle slides, only its front half carries load, and half of
- * the hardness is used.  It is held by the softer body and slides on the harder one,
- * where the groove resists less (H times its section; so wherever neither body would be
- * grooved deeper than the radius), and on both half the way where they are equally hard.
+ * because pi c(x) is the area of the impression and the hardness of a body is the
+ * pressure in it. On a body on which the particle slides, only its front half carries
+ * load, and half of the hardness is used.  It is held by the softer body and slides on
+ * the harder one, where the groove offers less resistance (H times its section; this
+ * holds if no groove is deeper than the radius); if both are equally hard, it slides
+ * half the distance on each.
  *
- * Whether it slides or rolls is told by its shape, a spheroid of the given aspect ratio
- * k: on its way round the lines of the two normal forces come up to (k - 1/k) / 2 gaps
- * apart, and friction turns it over only as long as that is below the coefficient.
+ * Its shape, a spheroid of aspect ratio k, determines whether it slides or rolls: when
+ * it turns, the lines of action of the two normal forces are up to (k - 1/k) / 2 gaps
+ * apart, and friction turns it only if this is below the coefficient.
  *
  * Fluid forces, elastic deflection, heat and fracture of the particle are left out.
  *

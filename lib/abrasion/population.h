@@ -1,4 +1,4 @@
-/* population.h - the particles of an oil whose cleanliness code is known
+/* population.h - the particles of an oil of known cleanliness code
  *
  * The number of particles larger than d per volume, N(d), is known at three diameters;
  * between them and beyond the last ln N is linear in ln d.  Particles smaller than the
@@ -32,8 +32,7 @@ double population_diameter(const struct population *p, double n);
 enum num_status population_draw(const struct population *p, double volume, double least,
 	uint64_t seed, uint32_t realisation, size_t most, double **list, size_t *n);
 
-/* What the particles in the gap do on average, spheres as many in the gap's volume as in
- * the oil. */
+/* Mean effect of the particles in the gap: spheres with the concentration of the oil. */
 struct population_mean {
 	double pressure;   /* that they carry, Pa */
 	double section[2]; /* of their grooves, per area: depth grooved per length slid */
@@ -44,8 +43,8 @@ struct population_mean {
 void population_mean(const struct population *p, const struct abrasion_par *par, size_t n,
 	struct population_mean *m);
 
-/* The widest gap at which they carry a pressure; NAN if they carry it at none, *most
- * is what they carry at most.  The gap of par is not used. */
+/* The widest gap at which they carry a pressure; NAN if there is none. *most is the
+ * largest pressure they carry.  The gap of par is not used. */
 double population_gap(const struct population *p, const struct abrasion_par *par,
 	double pressure, size_t n, double *most);
 

@@ -1,9 +1,9 @@
 /* classes.h - particles of one period sorted into classes of size
  *
- * What a sensor saw is weighted by 1 over the probability of seeing it; stretches that
- * are not resolved are known by the number and diameter of equal particles with the same
+ * A detected particle has the weight 1 over its probability of detection; unresolved
+ * sections are described by the number and diameter of equal particles with the same
  * sums of d^6 and d^12 (of the second and fourth power of the pulses).  By Markov's
- * inequality no more than N min((d_eq / d)^6, (d_eq / d)^12) particles of the stretch
+ * inequality no more than N min((d_eq / d)^6, (d_eq / d)^12) particles of the section
  * are larger than d, and the sum of d^3 over these is at most N d_eq^3 (d_eq / d)^3.
  *
  *	struct classes *c = classes_new(edges, n, &par);
@@ -21,7 +21,7 @@ struct classes_par {
 	double confidence;
 };
 
-/* A value and the ends of its interval. */
+/* A value and the limits of its interval. */
 struct counted {
 	double value, low, high;
 };
@@ -35,15 +35,15 @@ struct class_count {
 
 struct classes;
 
-/* n classes from edge[k] to edge[k + 1], the last without an upper end.  NULL when out of
- * memory. */
+/* n classes from edge[k] to edge[k + 1], the last without an upper limit.  NULL when out
+ * of memory. */
 struct classes *classes_new(const double *edge, int n, const struct classes_par *par);
 void classes_free(struct classes *c);
 void classes_clear(struct classes *c);
 
-/* A particle; doubtful ones count for the upper end alone. */
+/* Adds a particle; doubtful ones count only for the upper limit. */
 void classes_add(struct classes *c, double diameter, int sure);
-/* A stretch of so many equal particles; a diameter of NAN: nothing is known of it. */
+/* Adds an unresolved section of equal particles; diameter NAN: unknown. */
 void classes_add_stretch(struct classes *c, double number, double diameter);
 
 /* Class k, or all particles of class k and above. */

@@ -1,9 +1,9 @@
 /* interval.h - confidence intervals of sums over the events of a Poisson process
  *
- * Events that count w each, one or different ones.  The interval of their expected sum is
- * that of Fay and Feuer, Stat. Med. 16 (1997) 791: a gamma distribution with the mean and
- * variance of what was seen, for the upper end with one more event of the largest weight.
- * With equal weights it is the exact interval of a Poisson count (Garwood 1936).
+ * Each event has a weight w. The interval of the expected sum is that of Fay and Feuer,
+ * Stat. Med. 16 (1997) 791: a gamma distribution with the mean and variance of the
+ * observed sum, for the upper limit with one more event of the largest weight. With
+ * equal weights it is the exact interval of a Poisson count (Garwood 1936).
  *
  *	struct weighted s = { 0 };
  *	for (i = 0; i < n; i++)
@@ -19,8 +19,8 @@ struct weighted {
 
 void weighted_add(struct weighted *s, double w);
 
-/* largest: the most that an event that was not seen could weigh; INFINITY makes the upper
- * end infinite. */
+/* largest: the largest possible weight of an unobserved event; INFINITY makes the upper
+ * limit infinite. */
 void weighted_interval(const struct weighted *s, double largest, double confidence,
 	double *low, double *high);
 

@@ -1,4 +1,4 @@
-/* line.h - a straight line through points, with what is not known of it
+/* line.h - a least-squares line through points, with its uncertainty
  *
  *	struct line l;
  *	if (line_fit(x, y, n, 0.95, &l) == 0)
@@ -17,19 +17,19 @@ struct line {
 	double t;                       /* Student's t of the confidence */
 };
 
-/* Student's t: the interval of this confidence is as many standard errors either way. */
+/* Student's t: half-width of the interval of this confidence in standard errors. */
 double line_t(double confidence, size_t degrees);
 
 /* Least squares.  NUM_DOMAIN with fewer than three points or a single x. */
 enum num_status line_fit(
 	const double *x, const double *y, size_t n, double confidence, struct line *l);
 
-/* Probability of a line that scatters more about the means of groups of equal x than the
- * points within them, if it were straight (F test); points ordered by x.  NAN with fewer
- * than three groups or one point each. */
+/* Lack-of-fit test: p-value of the hypothesis that the means of groups of equal x lie on
+ * a line (F test); points ordered by x.  NAN with fewer than three groups or one point
+ * each. */
 double line_lack_of_fit(const double *x, const double *y, size_t n, const struct line *l);
 
-/* Probability of a slope at least this far from want, if that were the true one. */
+/* p-value of the hypothesis that the true slope is want. */
 double line_slope_p(const struct line *l, size_t n, double want);
 
 #endif

@@ -205,6 +205,12 @@ static enum num_status drop_inside(
 	return NUM_OK;
 }
 
+int hull_thin(struct hull *h, struct hull_point *point, size_t *count)
+{
+	return drop_inside(h, point, count, 1) || drop_inside(h, point, count, 0) ? -1
+										  : 0;
+}
+
 /* Four points that span space as the first faces; 0 if there are none. */
 static int start(struct hull *h, size_t count, int corner[4])
 {
@@ -298,7 +304,7 @@ enum hull_status hull_build(struct hull *h, struct hull_point *point, size_t cou
 
 	if (too_large(point, count))
 		return HULL_LARGE;
-	if (drop_inside(h, point, &count, 1) || drop_inside(h, point, &count, 0) ||
+	if (hull_thin(h, point, &count) ||
 		room_for(&h->point, &h->point_room, count, sizeof *p))
 		return HULL_MEMORY;
 	p = h->point;

@@ -38,6 +38,9 @@ struct hull_edge {
 struct hull *hull_new(void); /* NULL when out of memory */
 void hull_free(struct hull *h);
 
+/* Drops points that cannot be corners of the hull; the rest is sorted.  -1 when out of
+ * memory. */
+int hull_thin(struct hull *h, struct hull_point *point, size_t *count);
 /* Builds the hull of the points, and sorts them. */
 enum hull_status hull_build(struct hull *h, struct hull_point *point, size_t count);
 

@@ -21,6 +21,8 @@ enum { X, Y, Z };
  * with the square of the number of corners of a hull; columns are no finer than their
  * spacing either. */
 enum { STEPS = 64 };
+/* Corners in memory before the first are dropped: 12 bytes each. */
+enum { CORNERS = 1 << 16 };
 
 /* A stretch on its way. */
 struct piece {
@@ -296,18 +298,24 @@ static void measure_moments(const struct particles *ps, const struct extent *e,
 	out->dip = atan2(fabs(axis[0][Z]), hypot(axis[0][X], axis[0][Y]));
 }
 
-/* Corners of the body, depths in steps of unit. */
+/* Corners of the body, depths in steps of unit; count of them.  Those that cannot be
+ * corners of the hull are dropped whenever they fill their memory. */
 static enum num_status put_corners(
-	struct particles *ps, const struct extent *e, double unit)
+	struct particles *ps, const struct extent *e, double unit, size_t *count)
 {
-	size_t n = 0;
+	size_t n = 0, full = CORNERS;
 
-	if (room_for(&ps->corner, &ps->corner_room, 8 * ps->members, sizeof *ps->corner))
-		return NUM_MEMORY;
 	for (size_t i = 0; i < ps->members; i++) {
 		const struct piece *p = &ps->piece[ps->body[i]];
 		int at[2];
 
+		if (n + 8 > full) {
+			if (hull_thin(ps->hull, ps->corner, &n))
+				return NUM_MEMORY;
+			full = n > full / 2 ? 2 * full : full;
+		}
+		if (room_for(&ps->corner, &ps->corner_room, n + 8, sizeof *ps->corner))
+			return NUM_MEMORY;
 		column_of(ps, p, at);
 		for (int k = 0; k < 8; k++) {
 			double z = (k & 4 ? p->bottom : p->top) - e->top;
@@ -319,6 +327,7 @@ static enum num_status put_corners(
 			} };
 		}
 	}
+	*count = n;
 	return NUM_OK;
 }
 
@@ -329,12 +338,13 @@ static enum num_status measure_hull(
 	       unit = ps->par.dz > 0 ? ps->par.dz : range / STEPS;
 	const double step[3] = { ps->par.dx, ps->par.dy, unit };
 	enum hull_status status = HULL_LARGE;
+	size_t corners;
 
 	p->length = p->width = p->aspect = p->convexity = NAN;
 	if (!p->endless && range / unit <= HULL_SPAN) {
-		if (put_corners(ps, e, unit))
+		if (put_corners(ps, e, unit, &corners))
 			return NUM_MEMORY;
-		status = hull_build(ps->hull, ps->corner, 8 * ps->members);
+		status = hull_build(ps->hull, ps->corner, corners);
 	}
 	if (status == HULL_LARGE)
 		return NUM_OK;

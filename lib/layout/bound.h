@@ -1,4 +1,4 @@
-/* bound.h - how well a row of coils can measure a particle: the Cramer-Rao bound
+/* bound.h - the Cramer-Rao bound of a particle measured by a row of coils
  *
  * Coil m at the position x_m along the pipe gives A p((t - t0 - x_m / v) / T) with
  * T = zone / v and p of signal/sensor.h, in white noise of the same rms on every coil.

@@ -1,11 +1,11 @@
-/* search.h - where to put a given number of coils
+/* search.h - the best positions of a given number of coils
  *
  * The standard error of the velocity is smallest if the sum of squares of the positions
  * is largest, with half of the coils at either end; matching requires short distances
- * between coils.  A pulse is paired from each place to the next: over the first way
- * within the window of the traffic, or what the width of the first pulse leaves of it;
- * over later ones within three standard errors on either side of what the coils so far
- * have measured.
+ * between coils.  A pulse is matched from each position to the next: at the second coil
+ * within the window of the traffic, narrowed by the duration of the first pulse; at
+ * later coils within three standard errors on either side of the prediction of the coils
+ * so far.
  *
  *	struct layout_par par = { .bound = { ... }, .traffic = { ... } };
  *	layout_judge(&par, coil, 2, &judged);
@@ -37,8 +37,8 @@ void layout_judge(
 	const struct layout_par *par, const double *coil, int coils, struct layout *out);
 
 /* The best of coils >= 2 within extent, the first at 0, whose by_width is not below
- * least: first of all layouts on a grid of so many steps, then by moving coils by half
- * the step again and again.  NUM_DOMAIN where no layout of the grid is good enough. */
+ * least: first over all layouts on a grid of this many steps, then by repeatedly moving
+ * coils by half the step.  NUM_DOMAIN where no layout of the grid is good enough. */
 enum num_status layout_search(const struct layout_par *par, int coils, double extent,
 	double least, int steps, double *coil, struct layout *out);
 

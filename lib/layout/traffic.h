@@ -3,12 +3,12 @@
  * Particles arrive as a Poisson process, spread over the section of the pipe in
  * proportion to the flow.  None comes nearer to the wall than 1 % of the radius.
  *
- * A pulse stands alone if no other overlaps it at its coil: other pulses last as long as
- * their particles take, so that the probability is the mean of
- * exp(-arrivals (T + mean T)); exp(-2 arrivals T) where all are alike.
+ * A pulse is isolated if no other overlaps it at its coil. Durations of pulses differ
+ * with the velocity, so the probability is the mean of exp(-arrivals (T + mean T));
+ * exp(-2 arrivals T) if all are equal.
  *
- * A pulse is paired rightly if no other arrives at the second coil in the window where
- * it is expected: exp(-arrivals times the width of the window).
+ * A pulse is matched correctly if no other arrives at the second coil within its search
+ * window: exp(-arrivals times the width of the window).
  */
 #ifndef LAYOUT_TRAFFIC_H
 #define LAYOUT_TRAFFIC_H

@@ -492,19 +492,19 @@ void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *
 }
 
 /* Histories of the particles laid side by side, newest state at place 0 of the ring. */
-struct paths {
+struct tracks {
 	int p, newest;
 	double noise;
 	double *x;       /* [p][N] */
 	uint32_t *index; /* of those that have not crossed */
 };
 
-static double *path_lag(const struct paths *s, size_t n, int lag)
+static double *track_lag(const struct tracks *s, size_t n, int lag)
 {
 	return s->x + (size_t)((s->newest - lag + s->p) % s->p) * n;
 }
 
-static int start_paths(struct adaptive *a, struct paths *s)
+static int start_tracks(struct adaptive *a, struct tracks *s)
 {
 	size_t n = a->par.filter.particles;
 	int changed;
@@ -518,24 +518,24 @@ static int start_paths(struct adaptive *a, struct paths *s)
 		const double *x = filter_lag(a->filter, lag, a->index, &changed);
 
 		for (size_t i = 0; i < n; i++)
-			path_lag(s, n, lag)[i] = x[a->index[i]];
+			track_lag(s, n, lag)[i] = x[a->index[i]];
 	}
 	return 1;
 }
 
 /* One step of the first live paths of index; those that cross leave the list.  Returns
  * how many are left. */
-static size_t step_paths(struct adaptive *a, struct paths *s, size_t live, double process,
-	double limit, int direction, double time, double *life)
+static size_t step_paths(struct adaptive *a, struct tracks *s, size_t live,
+	double process, double limit, int direction, double time, double *life)
 {
 	size_t n = a->par.filter.particles, left = 0;
-	double gap = a->mean_gap, *old = path_lag(s, n, 0), *x;
+	double gap = a->mean_gap, *old = track_lag(s, n, 0), *x;
 
 	for (int k = 0; k < s->p - 1; k++)
-		a->lag[k] = (struct lag){ path_lag(s, n, k), NULL, n, gap };
+		a->lag[k] = (struct lag){ track_lag(s, n, k), NULL, n, gap };
 	forecast(a, s->p - 1, gap, s->noise, s->index, live, a->mean);
 	s->newest = (s->newest + 1) % s->p;
-	x = path_lag(s, n, 0);
+	x = track_lag(s, n, 0);
 	for (size_t k = 0; k < live; k++) {
 		uint32_t i = s->index[k];
 
@@ -552,7 +552,7 @@ static size_t step_paths(struct adaptive *a, struct paths *s, size_t live, doubl
 int adaptive_lives(
 	struct adaptive *a, double threshold, int direction, int steps, double *life)
 {
-	struct paths s = { .p = order_chosen(a->order) };
+	struct tracks s = { .p = order_chosen(a->order) };
 	double noise = observation_noise(a), process, limit = threshold / a->scale;
 	size_t n = a->par.filter.particles, left = 0;
 	int good;
@@ -563,9 +563,9 @@ int adaptive_lives(
 		return 0;
 	s.noise = noise;
 	process = process_noise(a, s.p, noise, a->mean_gap);
-	good = start_paths(a, &s);
+	good = start_tracks(a, &s);
 	for (size_t i = 0; good && i < n; i++) {
-		int crossed = direction * (path_lag(&s, n, 0)[i] - limit) >= 0;
+		int crossed = direction * (track_lag(&s, n, 0)[i] - limit) >= 0;
 
 		life[i] = crossed ? 0 : INFINITY;
 		if (!crossed)

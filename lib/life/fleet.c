@@ -15,7 +15,7 @@ enum {
  * but an alien unit must be outweighed by some twenty rows that speak against it. */
 static const double KINSHIP = 4;
 
-struct path {
+struct unit {
 	int rows;
 	double t[3], y[3]; /* last rows, newest first; y times the direction */
 	double first, last;
@@ -27,7 +27,7 @@ struct path {
 struct fleet {
 	double threshold;
 	int direction;
-	struct path *path;
+	struct unit *path;
 	int units;
 	struct bank_shape *shape;
 	double *grid; /* ages and levels of the shapes */
@@ -71,12 +71,7 @@ const struct bank_shape *fleet_shapes(const struct fleet *f, int *n)
 	return f->shape;
 }
 
-static double median3(double a, double b, double c)
-{
-	return fmax(fmin(a, b), fmin(fmax(a, b), c));
-}
-
-static int grow(struct path *p)
+static int grow(struct unit *p)
 {
 	int room = p->room ? 2 * p->room : 64;
 	double *age = realloc(p->age, (size_t)room * sizeof *age), *level;
@@ -93,7 +88,7 @@ static int grow(struct path *p)
 }
 
 /* Adds a step where it leads higher, and later; 0: no memory. */
-static int rise(struct path *p, double age, double level)
+static int rise(struct unit *p, double age, double level)
 {
 	if (p->n > 0 && (level <= p->level[p->n - 1] || age <= p->age[p->n - 1]))
 		return 1;
@@ -104,25 +99,25 @@ static int rise(struct path *p, double age, double level)
 	return 1;
 }
 
-static struct path *path_of(struct fleet *f, int unit)
+static struct unit *path_of(struct fleet *f, int unit)
 {
 	struct bank_par par = { .threshold = f->threshold, .direction = f->direction };
 
 	if (unit >= f->units) {
-		struct path *p = realloc(f->path, ((size_t)unit + 1) * sizeof *p);
+		struct unit *p = realloc(f->path, ((size_t)unit + 1) * sizeof *p);
 
 		if (!p)
 			return NULL;
 		f->path = p;
 		while (f->units <= unit)
-			f->path[f->units++] = (struct path){ .bank = bank_new(&par) };
+			f->path[f->units++] = (struct unit){ .bank = bank_new(&par) };
 	}
 	return f->path[unit].bank ? &f->path[unit] : NULL;
 }
 
 int fleet_add(struct fleet *f, int unit, double t, double y)
 {
-	struct path *p = path_of(f, unit);
+	struct unit *p = path_of(f, unit);
 
 	if (!p)
 		return 0;
@@ -138,11 +133,11 @@ int fleet_add(struct fleet *f, int unit, double t, double y)
 	p->y[0] = f->direction * y;
 	if (p->rows < SMOOTHED)
 		return rise(p, t - p->first, p->y[0]);
-	return rise(p, p->t[1] - p->first, median3(p->y[0], p->y[1], p->y[2]));
+	return rise(p, p->t[1] - p->first, median_of_three(p->y[0], p->y[1], p->y[2]));
 }
 
 /* Carries a unit on to the threshold by what its own bank foresees; 0: no memory. */
-static int carry_on(const struct fleet *f, struct path *p)
+static int carry_on(const struct fleet *f, struct unit *p)
 {
 	struct bank_chances *chances = bank_chances_new(DRAWS, 0);
 	double end = f->direction * f->threshold, from = p->level[p->n - 1], life[DRAWS];
@@ -162,7 +157,7 @@ static int carry_on(const struct fleet *f, struct path *p)
 }
 
 /* Age at a level between the ends of a path. */
-static double age_at(const struct path *p, double level)
+static double age_at(const struct unit *p, double level)
 {
 	int k = 1;
 
@@ -173,7 +168,7 @@ static double age_at(const struct path *p, double level)
 }
 
 /* The path on even levels up to the threshold; 0 where it has no length. */
-static int lay_out(const struct path *p, double end, double *age, double *level)
+static int lay_out(const struct unit *p, double end, double *age, double *level)
 {
 	double from, to;
 
@@ -197,7 +192,7 @@ int fleet_build(struct fleet *f, int *failed, int *carried_on)
 	if (!f->shape || !f->grid)
 		return -1;
 	for (int i = 0; i < f->units; i++) {
-		struct path *p = &f->path[i];
+		struct unit *p = &f->path[i];
 		double *age = f->grid + (size_t)f->shapes * 2 * LEVELS,
 		       *level = age + LEVELS;
 		int reached;

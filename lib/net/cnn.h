@@ -1,23 +1,23 @@
-/* cnn.h - a network's first look at a section of overlapping pulses
+/* cnn.h - a convolutional network that estimates the pulses of a section
  *
  * Input is a section of the two-sensor record as joint.h describes it,
  *
  *	y1(n) = sum_i a_i p((n - t_i) / T_i) + noise
  *	y2(n) = sum_i g a_i p((n - t_i - delta_i) / T_i) + noise,
  *
- * with 1 to CNN_SOURCES pulses and delta_i within reach of middle; output is how many
- * pulses there are and t_i, delta_i, a_i of each in order of arrival.  The section is
- * laid on a grid of CNN_PER_PULSE points per duration about its centre of energy, so
- * that one network serves any sampling rate, amplitude and gain.  The two channels of
+ * with 1 to CNN_SOURCES pulses and delta_i within reach of middle; the output is the
+ * number of pulses and t_i, delta_i, a_i of each in order of arrival. The section is
+ * resampled to a grid of CNN_PER_PULSE points per duration about its centre of energy,
+ * so that one network serves any sampling rate, amplitude and gain.  The two channels of
  * the grid are
  *
  *	y1 / scale   and   (y2(n + middle) / g - y1) / scale / (2 pi reach / T),
  *
- * scale being the largest |y1| there: what tells the delays is not left to a small
- * difference of large numbers, and the noise in the second channel tells the network how
- * much the section says beside what was known before.
+ * where scale is the largest |y1|. The delays are thus not a small difference of large
+ * numbers, and the noise of the second channel shows the network how much information
+ * the section adds to the prior.
  *
- * The outputs are one number per count (the largest names it), then for a count of one,
+ * The outputs are one number per count (the largest selects it), then for a count of one,
  * two, ... in turn the pulses' (t - centre) / T, (delta - middle) / reach and
  * cbrt(a / scale).
  *
@@ -56,7 +56,7 @@ struct cnn_pulse {
 	double t, delta, a; /* samples from y1[0], samples, units of y1 */
 };
 
-/* How a section was laid on the grid. */
+/* How a section was resampled to the grid. */
 struct cnn_frame {
 	double centre, duration, scale, middle, reach;
 };
@@ -70,8 +70,8 @@ int cnn_suits(const struct network *net);
  * as that. */
 int cnn_lay(const struct cnn_section *section, network_real *x, struct cnn_frame *frame);
 
-/* Number of pulses and the pulses of one row of outputs; sources = 0: as many as the
- * network finds. */
+/* Number of pulses and the pulses of one row of outputs; sources = 0: the number
+ * estimated by the network. */
 int cnn_pulses(const network_real *output, const struct cnn_frame *frame, int sources,
 	struct cnn_pulse *pulse);
 

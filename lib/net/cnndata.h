@@ -2,10 +2,10 @@
  *
  * 1 to CNN_SOURCES pulses of sensor.h, amplitudes a and arrivals t at random, in white
  * noise on both channels; times in samples, CNNDATA_DURATION to the duration of a pulse.
- * Each particle's own velocity sets its delay and its duration alike,
+ * The velocity of each particle determines both its delay and its duration,
  * T_i = T (1 + delta_i / transit).  Arrivals are uniform in a span of half a duration per
- * pulse, at least a spacing apart.  The labels stand in order of arrival, which gives
- * each output one meaning.
+ * pulse, at least a spacing apart.  The labels are in order of arrival, which gives each
+ * output a unique meaning.
  */
 #ifndef NET_CNNDATA_H
 #define NET_CNNDATA_H
@@ -31,7 +31,7 @@ struct cnndata_par {
 	uint64_t seed;
 };
 
-/* The sections the shipped network is trained with. */
+/* The sections with which the installed network is trained. */
 struct cnndata_par cnndata_default(void);
 
 /* A section with its truth. */
@@ -49,8 +49,8 @@ void cnndata_section(
 	const struct cnndata_par *par, uint32_t i, struct cnndata_section *out);
 
 /* Inputs and target of a section: its count, then for each pulse three outputs as in
- * cnn.h, then their variances: what noise and prior leave open for a pulse that stands
- * alone (Cramer-Rao), which is what an error is measured by. */
+ * cnn.h, then their variances: the posterior variance of an isolated pulse (Cramer-Rao
+ * bound and prior), by which squared errors are divided. */
 void cnndata_target(
 	const struct cnndata_section *s, network_real *x, network_real *target);
 
@@ -59,10 +59,10 @@ void cnndata_target(
 #define CNNDATA_COUNT 3.0
 network_loss cnndata_loss;
 
-/* What a network makes of sections first, first + 1, ...: share of them whose count it
- * finds, and with the count given root mean square errors of arrival and delay, in
- * durations, and of the diameter, relative; alone is the Cramer-Rao bound of the delay
- * for sine pulses that stand alone. */
+/* Scores of a network on sections first, first + 1, ...: share of correct counts and,
+ * with the count given, root mean square errors of arrival and delay, in durations, and
+ * of the diameter, relative; alone is the Cramer-Rao bound of the delay for isolated sine
+ * pulses. */
 struct cnndata_score {
 	double count_right, arrival, delay, alone, size;
 };

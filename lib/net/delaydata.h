@@ -1,12 +1,12 @@
-/* delaydata.h - the simulated sections that the thesis trains its delay networks on
+/* delaydata.h - the simulated sections with which the thesis trains its delay networks
  *
  * "Each of the particles is described as a sine section with period from pi/2 to 3pi/2.
  * The sine sections with random amplitude and phase are superimposed to be the first
  * aliasing signal.  Modify the amplitude and phase of each sine sections and add them
- * together to get the second" (3.3.1), 500 points each, three sources.  That leaves
- * much open; each choice is a member here, and the defaults of delaynet(1) are one
- * reading. Only that the delays are uniform in (0, 1) follows from the levels of the
- * printed scores.
+ * together to get the second" (3.3.1), 500 points each, three sources.  This leaves much
+ * open; each choice is a member of the struct, and the defaults of delaynet(1) are one
+ * interpretation. Only that the delays are uniform in (0, 1) follows from the levels of
+ * the printed scores.
  *
  * A source is s(x) = A w((x - x0)), with x running over [0, span); the second channel is
  * g s(x - unit * delay), delay uniform in (0, 1).  The labels are the delays.
@@ -46,8 +46,8 @@ struct delaydata_par {
 };
 
 /* Sample i of the set: x[2 * points] (first channel, then second) and delay[sources].
- * Stream (seed, i, RNG_NETWORK); the noise has draws of its own, so that a noisy set is
- * the clean one plus noise. */
+ * Stream (seed, i, RNG_NETWORK); the noise uses separate random numbers, so that a noisy
+ * set is the clean one plus noise. */
 void delaydata_sample(const struct delaydata_par *par, uint32_t i, network_real *x,
 	network_real *delay);
 

@@ -1,9 +1,9 @@
-/* delayloss.h - losses and scores of a set of delays whose order means nothing
+/* delayloss.h - losses and scores of an unordered set of delays
  *
- * The outputs of a delay network are a set: any order of the same delays is as right as
- * another.  In one dimension the order that makes the summed squared difference of two
- * sets least pairs both in order of size, so the minimum over all n! orders that (3-21)
- * asks for needs one sort.
+ * The outputs of a delay network are a set: any permutation of the delays is equally
+ * correct. In one dimension the permutation with the smallest sum of squared differences
+ * pairs both sets in sorted order, so the minimum over all n! permutations in (3-21)
+ * needs one sort.
  */
 #ifndef NET_DELAYLOSS_H
 #define NET_DELAYLOSS_H
@@ -45,8 +45,8 @@ void delayscore_add(struct delayscore *score, const struct delayloss_par *par, i
 	int width, const network_real *output, const network_real *label);
 void delayscore_finish(struct delayscore *score);
 
-/* Mean squared errors that need no data, for width independent labels uniform in
- * (0, 1): levels every result must be held against. */
+/* Mean squared errors of predictors without data, for width independent labels uniform in
+ * (0, 1), for comparison with every result. */
 struct delaylevels {
 	double constant;        /* output 1/2: 1/12 */
 	double constant_sorted; /* means of the sorted labels, against sorted: 1/24 for 3

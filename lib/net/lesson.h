@@ -1,7 +1,7 @@
-/* lesson.h - what a network is trained with: samples of one kind, with their loss
+/* lesson.h - training samples of one kind, with their loss
  *
- * A lesson gives network_train() its samples, counted from first; those of a set that is
- * gone through many times can be kept in memory.
+ * A lesson provides the samples of network_train(), counted from first; a set that is
+ * used many times can be kept in memory.
  */
 #ifndef NET_LESSON_H
 #define NET_LESSON_H

@@ -110,6 +110,8 @@ static void slope(const struct sample *m, const double p[2], double g[2])
 /* Curvature (11, 12, 22) by central differences of the gradient. */
 static void curvature(const struct sample *m, const double p[2], double h[3])
 {
+	/* About the cube root of the rounding unit, where the error of the difference,
+	 * d^2, and its rounding, unit / d, are alike: 1e-10 of the curvature. */
 	static const double d = 1e-5;
 	double up[2], down[2], q[2];
 
@@ -127,7 +129,9 @@ static void curvature(const struct sample *m, const double p[2], double h[3])
 }
 
 /* Newton's step; where the curvature is not that of a minimum, or hardly so, the missing
- * is added in all directions. */
+ * is added in all directions.  How much is added changes the number of steps alone, for
+ * descend() takes none that leads up and ends where the slope vanishes: a thousandth of
+ * the curvature bounds the step where that is singular. */
 static void newton_step(const double g[2], const double h[3], double step[2])
 {
 	double middle = 0.5 * (h[0] + h[2]), radius = hypot(0.5 * (h[0] - h[2]), h[1]);
@@ -142,10 +146,17 @@ static void newton_step(const double g[2], const double h[3], double step[2])
 /* Minimum from p on, with steps of at most a half that never lead up. */
 static int descend(const struct sample *m, double p[2], double h[3])
 {
+	/* The logarithm of the shape, or that of the scale over its width: e^20 from the
+	 * start is a power law, whose likelihood has no maximum on the way.  Steps of
+	 * half a unit cross that in 40; 500 leave room for steps that were halved. Where
+	 * the slope is 1e-7 the value exceeds its minimum by some 1e-14, its rounding;
+	 * Newton's step from there leaves the square of the slope. */
+	enum { STEPS = 500, FAR = 20 };
+	static const double flat = 1e-7, longest = 0.5;
 	double here = minus_log(m, p[0], p[1]), g[2], step[2], start = p[0];
 
-	for (int i = 0; i < 500 && fabs(p[0] - start) < 20 &&
-			fabs(p[1]) < 20 * fmax(m->stretch, 1);
+	for (int i = 0; i < STEPS && fabs(p[0] - start) < FAR &&
+			fabs(p[1]) < FAR * fmax(m->stretch, 1);
 		i++) {
 		double size, there, steep;
 
@@ -154,12 +165,12 @@ static int descend(const struct sample *m, double p[2], double h[3])
 		steep = hypot(g[0], g[1]);
 		newton_step(g, h, step);
 		/* Nearer the value of the function shows no difference: the last step. */
-		if (steep < 1e-7) {
+		if (steep < flat) {
 			p[0] += step[0];
 			p[1] += step[1];
 			return h[0] > 0 && h[0] * h[2] > h[1] * h[1] ? 0 : -1;
 		}
-		size = fmin(1, 0.5 / hypot(step[0], step[1]));
+		size = fmin(1, longest / hypot(step[0], step[1]));
 		there = minus_log(m, p[0] + size * step[0], p[1] + size * step[1]);
 		while (!(there <= here) && size > 1e-12) {
 			size /= 2;
@@ -342,8 +353,14 @@ static struct estimate t_interval(
 	return e;
 }
 
-/* Golden-section search around the best of a grid of exponents; -1 if that is at an end
- * of the grid. */
+/* Exponents that are told apart from a logarithm and from a step: over a decade of x, x^b
+ * differs from 1 + b ln x by b^2 / 2 (ln 10)^2, 3e-4 at the least of these, and at the
+ * most of them, 20, a point at half the largest x lies 1e-6 of the rise above the first.
+ */
+static const double LEAST_EXPONENT = 0.01, EXPONENTS = 2000; /* most over least */
+
+/* Golden-section search around the best of a grid of exponents, to less than the 1e-8
+ * that rounding leaves of the place of a minimum; -1 if that is at an end of the grid. */
 static double best_exponent(const double *x, const double *y, size_t n, double unit)
 {
 	static const double golden = 0.6180339887498949;
@@ -351,8 +368,9 @@ static double best_exponent(const double *x, const double *y, size_t n, double u
 	int at = 0, count = 120;
 
 	for (int i = 0; i <= count; i++) {
-		double f = linear_fit(x, y, n, 0.01 * pow(2000, (double)i / count), unit,
-			&factor, &offset);
+		double f = linear_fit(x, y, n,
+			LEAST_EXPONENT * pow(EXPONENTS, (double)i / count), unit, &factor,
+			&offset);
 
 		if (f < best) {
 			best = f;
@@ -361,8 +379,8 @@ static double best_exponent(const double *x, const double *y, size_t n, double u
 	}
 	if (at == 0 || at == count)
 		return -1;
-	a = 0.01 * pow(2000, (double)(at - 1) / count);
-	b = 0.01 * pow(2000, (double)(at + 1) / count);
+	a = LEAST_EXPONENT * pow(EXPONENTS, (double)(at - 1) / count);
+	b = LEAST_EXPONENT * pow(EXPONENTS, (double)(at + 1) / count);
 	c = b - golden * (b - a);
 	d = a + golden * (b - a);
 	fc = linear_fit(x, y, n, c, unit, &factor, &offset);

@@ -8,8 +8,8 @@
 
 #include "num/status.h"
 
-/* Parameters of ISO 25178-2, heights taken from their mean; nan if a surface has
- * too few points for one. */
+/* Parameters of ISO 25178-2 of heights minus their mean; nan if a surface has too few
+ * points for a parameter. */
 struct surface_parameters {
 	double sa, sq, ssk, sku, sp, sv, sz;
 	/* Root mean square gradient; what stands for the derivatives differs: */

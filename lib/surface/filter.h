@@ -1,11 +1,11 @@
 /* filter.h - areal Gaussian filters (ISO 16610-61), form removal, power spectrum
  *
- * The Gaussian filter of nesting index c passes half of the amplitude of waves of length
- * c, 2^-(c / l)^2 of those of length l: an S-filter is what it passes, an L-filter what
- * is left.  Near the rim a polynomial of order p in either direction is fitted with the
- * Gaussian weights to what is there, and its value taken: order 0 is the mean, order 1
- * leaves planes and order 2 paraboloids as they are up to the rim.  Order 2 has another
- * transmission, (1 + pi a^2 f^2) exp(-pi a^2 f^2), with a such that half is passed at c.
+ * The Gaussian filter of nesting index c transmits half of the amplitude of waves of
+ * length c, and 2^-(c / l)^2 for length l. An S-filter is its output, an L-filter the
+ * residual.  Near the edges a polynomial of order p in either direction is fitted with
+ * the Gaussian weights to the samples inside: order 0 is the mean, order 1 reproduces
+ * planes and order 2 paraboloids up to the edge.  The transmission of order 2 is (1 + pi
+ * a^2 f^2) exp(-pi a^2 f^2), with a chosen so that it is half at c.
  *
  *	surface_gauss(nx, ny, dx, dy, z, 8e-6, FILTER_MEAN, smooth);
  */
@@ -21,11 +21,11 @@ enum filter_ends {
 	FILTER_PERIODIC  /* the surface repeats */
 };
 
-/* Fills out with what the filter passes; z and out may be the same. */
+/* Fills out with the output of the filter; z and out may be the same. */
 enum num_status surface_gauss(int nx, int ny, double dx, double dy, const double *z,
 	double nesting, enum filter_ends ends, double *out);
 
-/* Products of an odd number of points in the sums of a filter: what it costs. */
+/* Number of products in the sums of a filter: its work. */
 double surface_gauss_products(
 	int nx, int ny, double dx, double dy, double nesting, enum filter_ends ends);
 
@@ -51,9 +51,9 @@ struct ring {
 	double waves; /* of both signs; power times waves over the area is the variance */
 };
 
-/* Rings from k = 1 on, at most (int)hypot(nx, ny) + 2 of them, go to ring; *rings is how
- * many.  The mean is taken off; with a window the heights are
- * multiplied by a Hann window along both sides, whose mean square is divided out. */
+/* Writes the rings from k = 1 on, at most (int)hypot(nx, ny) + 2, to ring; *rings is
+ * their number. The mean is subtracted; with a window the heights are multiplied by a
+ * Hann window along both sides, whose mean square is divided out. */
 enum num_status surface_spectrum(int nx, int ny, double dx, double dy, const double *z,
 	int window, struct ring *ring, int *rings);
 

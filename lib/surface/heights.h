@@ -2,8 +2,8 @@
  *
  * A set of n heights with mean 0, variance 1 and prescribed skewness and kurtosis:
  * the quantiles (i + 1/2) / n of the distribution of Johnson's system (Biometrika 36,
- * 1949: unbounded, lognormal or bounded, whichever holds the pair) whose set of n
- * quantiles has these moments.  ranking_impose() lays the set over a surface in the
+ * 1949: unbounded, lognormal or bounded, whichever contains the pair) whose set of n
+ * quantiles has these moments.  ranking_impose() assigns the set to a surface in the
  * order of its heights.
  */
 #ifndef SURFACE_HEIGHTS_H
@@ -21,9 +21,6 @@ enum heights_status {
 /* Fills sorted[n], ascending.  Kurtosis is 3 for the normal distribution. */
 enum heights_status heights_sorted(
 	size_t n, double skewness, double kurtosis, double *sorted);
-
-/* Quantile of the standard normal distribution, 0 < p < 1. */
-double normal_quantile(double p);
 
 /* Memory for ordering n numbers. */
 struct ranking;

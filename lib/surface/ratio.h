@@ -1,10 +1,9 @@
 /* ratio.h - the material ratio curve and the Sk family (ISO 25178-2, ISO 13565-2)
  *
- * Heights in descending order over the share of the surface above them.  Where a secant
- * over 40 % of it is least steep (the first of equal ones) a straight line is fitted to
- * the points, least squares along the heights; it goes from Sk above at 0 to 0 at 100 %.
- * The peaks above its upper end and the valleys below its lower end are turned into
- * triangles of equal area.
+ * The curve shows heights in descending order over the share of the surface above them. A
+ * least-squares line is fitted to the 40 % of it with the least steep secant (the first
+ * of equal ones); the line decreases by Sk from 0 to 100 %. The peaks above its upper end
+ * and the valleys below its lower end are replaced by triangles of equal area.
  */
 #ifndef SURFACE_RATIO_H
 #define SURFACE_RATIO_H

@@ -1,10 +1,9 @@
 /* rough.h - an ensemble of rough surfaces of given roughness
  *
- * Realisation k is a function of the parameters and k alone.  Its heights come from
- * the spectrum, are given other moments than normal ones where wanted, and are scaled
- * to a roughness that is exact or drawn; a second, independent surface may be added,
- * which makes the equivalent surface of a pair (Greenwood and Tripp, Proc. Inst. Mech.
- * Eng. 185, 1970).
+ * Realisation k is a function of the parameters and k alone.  Its heights come from the
+ * spectrum, are given non-Gaussian moments on request, and are scaled to a roughness
+ * that is exact or drawn; a second, independent surface may be added, which makes the
+ * equivalent surface of a pair (Greenwood and Tripp, Proc. Inst. Mech. Eng. 185, 1970).
  *
  *	struct rough_par par = { .spectrum = { ... }, .kind = ROUGH_SQ,
  *		.target = { 78e-6, 82e-6 }, .kurtosis = 3, .seed = 1 };
@@ -71,7 +70,7 @@ enum rough_status rough_surface(
 /* The spectrum behind it, NULL if all surfaces are flat. */
 const struct spectrum *rough_spectrum(const struct rough *r);
 
-/* The roughness number index of a realisation: 0 the surface, 1 the second. */
+/* The roughness of a realisation; index: 0 first surface, 1 second. */
 double rough_draw(const struct rough_range *range, uint64_t seed, uint32_t realisation,
 	uint64_t index);
 

@@ -1,14 +1,14 @@
 /* spectrum.h - rough surfaces with a prescribed power spectrum
  *
  * The digital filter in Fourier space (Hu and Tonder, Int. J. Mach. Tools Manuf. 32,
- * 1992; Garcia and Stoll, Phys. Rev. Lett. 52, 1984): every wave gets the square root
- * of its power times a complex normal number.  The surface is periodic, its height
- * distribution normal, its mean zero.
+ * 1992; Garcia and Stoll, Phys. Rev. Lett. 52, 1984): the coefficient of every wave is
+ * the square root of its power times a complex normal deviate.  The surface is periodic,
+ * its height distribution normal, its mean zero.
  *
- * The number of the wave with kx periods along x and ky along y is a function of
- * (seed, realisation, kx, ky) alone, and the waves are evaluated at the cell centres
- * ((ix + 1/2) dx, (iy + 1/2) dy).  So a finer grid on the same area samples the same
- * waves and adds shorter ones, and the work may be shared out in any way.
+ * The deviate of the wave with kx periods along x and ky along y is a function of (seed,
+ * realisation, kx, ky) alone, and the waves are evaluated at the cell centres ((ix +
+ * 1/2) dx, (iy + 1/2) dy).  A finer grid on the same area therefore samples the same
+ * waves and adds shorter ones, and the work can be divided in any way.
  *
  *	struct spectrum_par par = { .nx = 512, .ny = 512, .lx = 1e-3, .ly = 1e-3,
  *		.kind = SPECTRUM_GAUSS, .corr_x = 1e-4, .corr_y = 1e-4 };
@@ -74,7 +74,7 @@ enum num_status spectrum_slope(struct spectrum *s, const double *z, double *slop
  * the power of the mean, which is not drawn and 0 here, sum to 1. */
 double spectrum_power(const struct spectrum *s, int kx, int ky);
 
-/* Waves that are drawn, and waves the bounds leave out. */
+/* Number of waves drawn, and of waves excluded by the bounds. */
 long spectrum_waves(const struct spectrum *s);
 long spectrum_waves_skipped(const struct spectrum *s);
 

@@ -1,6 +1,6 @@
-/* surface.h - heights on a grid: preparing measured ones, crowns, mean heights
+/* surface.h - heights on a grid: processing of measured heights, crowns, mean heights
  *
- * Heights z[iy * nx + ix], in metres, stand for cells of dx by dy; nothing is assumed
+ * Heights z[iy * nx + ix], in metres, are those of cells of dx by dy; nothing is assumed
  * to be periodic.  Missing samples are nan.
  *
  *	surface_level(nx, ny, z);
@@ -17,8 +17,8 @@
 /* Missing samples. */
 size_t surface_missing(int nx, int ny, const double *z);
 
-/* Replaces missing samples by the solution of Laplace's equation on the grid, the
- * known ones fixed, no slope across the rim.  At least one sample must be known.
+/* Replaces missing samples by the solution of Laplace's equation on the grid with fixed
+ * known samples and no slope across the edge.  At least one sample must be known.
  * *iterations counts conjugate-gradient steps, *residual receives the residual over the
  * first one; above SURFACE_FILLED the iteration stopped before it converged. */
 #define SURFACE_FILLED 1e-13
@@ -28,12 +28,12 @@ enum num_status surface_fill(
 /* Subtracts the least-squares plane. */
 void surface_level(int nx, int ny, double *z);
 
-/* Cuts mx by my samples, from (x0, y0) on, out of rows of nx. */
+/* Extracts mx by my samples, from (x0, y0) on, from rows of nx. */
 void surface_crop(int nx, const double *z, int x0, int y0, int mx, int my, double *out);
 
-/* Brings heights to mx by my samples of the same area: the mean over the new cell
+/* Resamples heights to mx by my samples of the same area: the mean over the new cell
  * where it is larger than the old one, cubic convolution (Keys, IEEE Trans. ASSP 29,
- * 1981; third order, straight lines exact up to the rim) where it is smaller. */
+ * 1981; third order, straight lines exact up to the edge) where it is smaller. */
 enum num_status surface_resample(
 	int nx, int ny, const double *z, int mx, int my, double *out);
 

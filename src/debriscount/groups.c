@@ -9,7 +9,7 @@
 struct group {
 	char *name;
 	struct classes *classes;
-	struct history history;
+	struct rate_history history;
 };
 
 struct groups {
@@ -102,7 +102,7 @@ void groups_free(struct groups *g)
 	for (size_t i = 0; i < g->n; i++) {
 		free(g->group[i].name);
 		classes_free(g->group[i].classes);
-		history_free(&g->group[i].history);
+		rate_history_free(&g->group[i].history);
 	}
 	free(g->group);
 	free(g);

@@ -170,7 +170,7 @@ static void put_code_row(struct report *r, const struct classes *c, const char *
 	table_end_row(r->table);
 }
 
-static void put_trend(struct report *r, const struct history *h, const char *group,
+static void put_trend(struct report *r, const struct rate_history *h, const char *group,
 	double begin, double end)
 {
 	size_t n = window && h->n > (size_t)window ? (size_t)window : h->n;
@@ -198,7 +198,7 @@ static void put_trend(struct report *r, const struct history *h, const char *gro
 
 /* Remembers a period; only the trend needs more than the last. */
 static void remember(
-	const struct report *r, struct history *h, double time, const double rate[2])
+	const struct report *r, struct rate_history *h, double time, const double rate[2])
 {
 	double **column[3] = { &h->time, &h->rate[0], &h->rate[1] };
 	const double value[3] = { time, rate[0], rate[1] };
@@ -219,7 +219,7 @@ static void remember(
 	h->n = at + 1;
 }
 
-void report_period(struct report *r, struct history *h, const char *group,
+void report_period(struct report *r, struct rate_history *h, const char *group,
 	const struct classes *c, double begin, double end, int whole)
 {
 	double per_hour = end > begin ? hour / (end - begin) : NAN, rate[2], watched;
@@ -255,7 +255,7 @@ void report_close(struct report *r)
 	free(r);
 }
 
-void history_free(struct history *h)
+void rate_history_free(struct rate_history *h)
 {
 	free(h->time);
 	free(h->rate[0]);

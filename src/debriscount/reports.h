@@ -24,7 +24,7 @@ struct report_par {
 };
 
 /* What is remembered of the periods of one group. */
-struct history {
+struct rate_history {
 	double *time, *rate[2]; /* middle of each period, h; particles and kg per hour */
 	size_t n, room[3];
 	int alarm;
@@ -36,10 +36,10 @@ struct report;
 void report_check(enum report_kind output, int periods);
 struct report *report_open(const struct report_par *par);
 /* Rows of one period of a group. */
-void report_period(struct report *r, struct history *h, const char *group,
+void report_period(struct report *r, struct rate_history *h, const char *group,
 	const struct classes *c, double begin, double end, int whole);
 void report_flush(struct report *r);
 void report_close(struct report *r);
-void history_free(struct history *h);
+void rate_history_free(struct rate_history *h);
 
 #endif

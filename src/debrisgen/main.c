@@ -6,6 +6,7 @@
 #include "common/contact_options.h"
 #include "io/fields.h"
 #include "outputs.h"
+#include "quick.h"
 #include "wear_steps.h"
 #include <math.h>
 
@@ -216,12 +217,13 @@ int main(int argc, char **argv)
 	run.wearing = wearing_open(run.in, steps);
 	while (fields_read(run.in, &r)) {
 		if (!run.out)
-			run.out = worn_open(r.cmd, wearing_richardson());
+			run.out = worn_open(r.cmd, wearing_richardson(), quick_asked());
 		wear_record(&run, &r);
 	}
 	progress_clear();
 	warn_of_edge(&run);
-	wearing_warn(run.wearing);
+	if (!wearing_warn(run.wearing))
+		run.status = EXIT_NOCONV;
 	worn_close(run.out);
 	wearing_close(run.wearing);
 	fields_close(run.in);

@@ -52,6 +52,8 @@ static const char summary_units[] = "1 1 m N 1 Pa 1 m3 1 m m m 1 Pa m3 m3 1 1 1 
 #define GRID_COLUMNS                                                                \
 	" volume_2h volume_4h particles_2h particles_4h order volume_extrapolated " \
 	"volume_grid_error"
+#define GUESS_COLUMNS " volume_low volume_high exact"
+#define GUESS_UNITS " m3 m3 1"
 #define GRID_UNITS " m3 m3 1 1 1 m3 m3"
 
 /* A stream of records; the last is held back until it is known whether another one
@@ -112,17 +114,30 @@ static char *cmd_of(const char *upstream, const char *option)
 	return cmd;
 }
 
-struct worn *worn_open(const char *upstream, int richardson)
+struct worn *worn_open(const char *upstream, int richardson, int surrogate)
 {
 	struct worn *w = xcalloc(1, sizeof *w);
 	char *cmd = cmd_of(upstream, NULL), *summary = cmd_of(upstream, "--summary");
 
-	w->particles = table_create(NULL, cmd, particle_units, particle_columns);
-	if (summary_path) {
+	{
 		char *units =
-			xprintf("%s%s", summary_units, richardson ? GRID_UNITS : "");
+			xprintf("%s%s", particle_units, surrogate ? GUESS_UNITS : "");
 		char *columns =
-			xprintf("%s%s", summary_columns, richardson ? GRID_COLUMNS : "");
+			xprintf("%s%s", particle_columns, surrogate ? GUESS_COLUMNS : "");
+
+		w->particles = table_create(NULL, cmd, units, columns);
+		free(units);
+		free(columns);
+	}
+	if (summary_path) {
+		char *units = xprintf("%s%s", summary_units,
+			richardson  ? GRID_UNITS
+			: surrogate ? GUESS_UNITS
+				    : "");
+		char *columns = xprintf("%s%s", summary_columns,
+			richardson  ? GRID_COLUMNS
+			: surrogate ? GUESS_COLUMNS
+				    : "");
 
 		w->summary = table_create(summary_path, summary, units, columns);
 		free(units);
@@ -169,7 +184,7 @@ void worn_begin(
 }
 
 static void put_particles(struct table_out *t, long realisation, long step, int body,
-	const struct debris_step *lost)
+	const struct debris_step *lost, const struct quick_volumes *volumes)
 {
 	for (size_t i = 0; i < lost->count; i++) {
 		const struct particle *p = &lost->particle[i];
@@ -177,9 +192,15 @@ static void put_particles(struct table_out *t, long realisation, long step, int 
 			(double)p->columns, p->volume, p->diameter, p->aspect, p->x, p->y,
 			p->z, p->length, p->width, p->elongation, p->convexity, p->area,
 			p->azimuth, p->dip, p->low[0], p->high[0], p->low[1], p->high[1],
-			p->low[2], p->high[2] };
+			p->low[2], p->high[2], p->volume, p->volume, 1 };
+		enum { GUESS = 3, PLAIN = sizeof(row) / sizeof *row - GUESS };
 
-		table_put_row(t, row, sizeof(row) / sizeof *row);
+		if (volumes && !volumes->exact) {
+			row[PLAIN] = volumes->particle[i].low;
+			row[PLAIN + 1] = volumes->particle[i].high;
+			row[PLAIN + 2] = 0;
+		}
+		table_put_row(t, row, volumes ? PLAIN + GUESS : PLAIN);
 	}
 	table_flush(t);
 }
@@ -244,7 +265,12 @@ static void put_summary(struct table_out *t, struct coefficients *coefficients,
 		worn_roughness(c) / c->sq, fmax(first->wear.stress, second->wear.stress),
 		first->volume, second->volume, coefficient, k[0], k[1], k[2], 0, 0, 0, 0,
 		0, 0, 0 };
-	enum { GRID = 7, PLAIN = sizeof(row) / sizeof *row - GRID };
+	enum {
+		GRID = 7,
+		PLAIN = sizeof(row) / sizeof *row - GRID,
+		DEPTH = 11,
+		ROUGHNESS
+	};
 
 	if (s->grid) {
 		const struct grid_error *g = s->grid;
@@ -253,7 +279,17 @@ static void put_summary(struct table_out *t, struct coefficients *coefficients,
 
 		memcpy(row + PLAIN, more, sizeof more);
 	}
-	table_put_row(t, row, s->grid ? PLAIN + GRID : PLAIN);
+	if (s->volumes) {
+		int exact = s->volumes->exact;
+
+		row[PLAIN] = exact ? volume : s->volumes->total.low;
+		row[PLAIN + 1] = exact ? volume : s->volumes->total.high;
+		row[PLAIN + 2] = exact;
+	}
+	/* a surrogate knows neither depths nor the surface that is left */
+	if (s->volumes && !s->volumes->exact)
+		row[DEPTH] = row[ROUGHNESS] = NAN;
+	table_put_row(t, row, s->grid ? PLAIN + GRID : s->volumes ? PLAIN + 3 : PLAIN);
 	table_flush(t);
 }
 
@@ -362,9 +398,10 @@ static void put_stress(
 
 void worn_put(struct worn *w, const struct worn_surface *c, const struct worn_step *s)
 {
-	put_particles(w->particles, c->r->realisation, s->number, 1, s->lost);
+	put_particles(w->particles, c->r->realisation, s->number, 1, s->lost, s->volumes);
 	if (s->second)
-		put_particles(w->particles, c->r->realisation, s->number, 2, s->second);
+		put_particles(
+			w->particles, c->r->realisation, s->number, 2, s->second, NULL);
 	if (w->summary)
 		put_summary(w->summary, &w->coefficients, c, s);
 	if (w->counter.out && s->counterface)

@@ -5,6 +5,7 @@
 #include "cli/opt.h"
 #include "debris/debris.h"
 #include "io/fields.h"
+#include "quick.h"
 
 extern struct opt worn_rows[]; /* for OPT_TABLE: the files besides the particles */
 
@@ -34,6 +35,7 @@ struct worn_step {
 	const struct debris_step *lost, *second; /* NULL: the counterface is not worn */
 	const struct record *counterface;        /* worn so far; NULL: there is none */
 	const struct grid_error *grid;           /* NULL: not asked for */
+	const struct quick_volumes *volumes;     /* NULL: no surrogate */
 	double length;                           /* slid in this step, m */
 	double hardness;                         /* of Archard's coefficient, Pa */
 	struct stress *stress;                   /* below the contact */
@@ -43,8 +45,8 @@ struct worn_step {
 struct worn;
 
 /* upstream: the pipeline that made what is read, NULL if unknown; richardson: the summary
- * has columns for steps on coarser grids. */
-struct worn *worn_open(const char *upstream, int richardson);
+ * has columns for steps on coarser grids; surrogate: there are columns for intervals. */
+struct worn *worn_open(const char *upstream, int richardson, int surrogate);
 /* Under what the particles were torn off, which rwl needs; NAN: not known. */
 struct worn_conditions {
 	double area;     /* of the grid, m2 */

@@ -5,6 +5,7 @@
 #include "contact/solver.h"
 #include "counterface.h"
 #include "grid_error.h"
+#include "quick.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,6 +48,7 @@ struct opt wearing_rows[] = {
 	{ 0, "richardson", OPT_FLAG, UNIT_NONE, &richardson, 0, 0, NULL,
 		"repeat each step on two coarser grids and extrapolate the volume", NULL,
 		0 },
+	OPT_TABLE(quick_rows),
 	OPT_HEADING("Sliding pair"),
 	OPT_TABLE(counterface_rows),
 	{ 0, "wears", OPT_WORD, UNIT_NONE, &wears, 0, 0, "first|second|both",
@@ -84,9 +86,24 @@ static void check_pair(void)
 		die(EXIT_USAGE, "--poisson: want 0 to 0.5 for a body that wears");
 }
 
+/* A surrogate knows volumes below the footprints of one surface, and no depths. */
+static void check_surrogate(void)
+{
+	static const char *const without[] = { "depth-step", "removal", "criterion",
+		"full-sum", "richardson", "counterface", "law", "surface", "stress",
+		"counter-surface", NULL };
+
+	if (!quick_asked())
+		return;
+	for (int k = 0; without[k]; k++)
+		if (opt_given(without[k]))
+			die(EXIT_USAGE, "--surrogate excludes --%s", without[k]);
+}
+
 void wearing_check(void)
 {
 	check_pair();
+	check_surrogate();
 	if (richardson && (counterface_check() || law == ARCHARD))
 		die(EXIT_USAGE, "--richardson requires wear of one body by stress");
 	if (!yield.n && law == STRESS)
@@ -115,6 +132,7 @@ struct wearing {
 	struct stress_work seen;     /* counted already */
 	/* Of a sliding pair: NULL without. */
 	struct counterface *counterface;
+	struct quick *quick; /* NULL without a surrogate */
 	struct debris *second;
 	struct debris_step second_lost;
 	struct stress_work second_seen;
@@ -135,6 +153,11 @@ struct wearing *wearing_open(const struct fields_in *in, long steps)
 		die(EXIT_RUN, "cannot start %ld threads:", press.threads);
 	if (counterface_check())
 		w->counterface = counterface_open(shear);
+	if (quick_asked()) {
+		if (steps > 1)
+			die(EXIT_USAGE, "--surrogate knows one step: want --steps 1");
+		w->quick = quick_open();
+	}
 	return w;
 }
 
@@ -155,6 +178,7 @@ void wearing_close(struct wearing *w)
 	debris_free(w->second);
 	contact_free(w->contact);
 	counterface_close(w->counterface);
+	quick_close(w->quick);
 	pool_free(w->pool);
 	free(w->other);
 	free(w->pair);
@@ -218,6 +242,12 @@ void wearing_prepare(struct wearing *w, const struct record *r)
 		.pool = w->pool };
 	w->seen = (struct stress_work){ 0 };
 	w->debris = debris_new(&w->par);
+	if (w->quick && w->par.stress.periodic)
+		die(EXIT_USAGE,
+			"%s: record %ld is periodic: --surrogate is for free surfaces",
+			fields_name(w->in), fields_count(w->in));
+	if (w->quick)
+		quick_prepare(w->quick, &w->par.stress);
 	if (w->debris && solves(w, w->steps))
 		w->contact = contact_new(&pressing);
 	if (w->counterface)
@@ -249,11 +279,12 @@ static double rms_slope(const struct record *r, const double *h)
 	return n > 0 ? sqrt(sum / n) : 0;
 }
 
-void wearing_warn(const struct wearing *w)
+int wearing_warn(const struct wearing *w)
 {
 	if (w->steepest > 0.2)
 		warn("%s: the pair reaches an rms slope of %.2g (step %ld), above 0.2, the limit of half-space theory: specify --hardness",
 			fields_name(w->in), w->steepest, w->steep_step);
+	return !w->quick || quick_report(w->quick, fields_name(w->in));
 }
 
 /* The equivalent surface in a step: the surface plus the part of the counterface above
@@ -335,9 +366,14 @@ static void refuse(const struct wearing *w, enum debris_status status, long step
 static void wear_by_stress(struct wearing *w, const struct worn_surface *c, long step)
 {
 	debris_contact(w->debris, c->p, &w->lost);
-	if (is_worn(FIRST)) {
+	if (w->quick && quick_step(w->quick, debris_stress(w->debris), c->p, yield.v[0],
+				c->r->realisation, &w->lost)) {
+		count_work(&w->lost, stress_work(debris_stress(w->debris)), &w->seen);
+	} else if (is_worn(FIRST)) {
 		refuse(w, debris_step(w->debris, c->h, c->p, &w->lost), step);
 		count_work(&w->lost, stress_work(debris_stress(w->debris)), &w->seen);
+		if (w->quick)
+			quick_take(w->quick, &w->lost);
 	} else if (stress_load(debris_stress(w->debris), c->p)) {
 		refuse(w, DEBRIS_NUMBERS, step);
 	}
@@ -453,6 +489,7 @@ struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c,
 		.counterface = w->counterface ? counterface_record(w->counterface) : NULL,
 		.hardness = hardness_of(w),
 		.grid = richardson ? &w->grid : NULL,
+		.volumes = w->quick ? quick_volumes(w->quick) : NULL,
 		.stress = debris_stress(w->debris),
 		.dz = w->par.cell > 0 ? w->par.cell : w->par.stress.dx,
 		.offset = w->par.offset };

@@ -33,8 +33,9 @@ int wearing_solves(const struct wearing *w, long run);
 struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c,
 	double target, double distance, long step, int *solved);
 
-/* Warns of what the pairs so far were too steep for. */
-void wearing_warn(const struct wearing *w);
+/* Warns of what the pairs so far were too steep for, and of a surrogate; 0 where an audit
+ * of it failed. */
+int wearing_warn(const struct wearing *w);
 
 double wearing_friction(void);
 int wearing_richardson(void); /* whether steps are repeated on coarser grids */

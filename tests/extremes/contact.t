@@ -29,7 +29,9 @@ error() { calc "($2) ? sqrt((($1) / ($2) - 1) ^ 2) : sqrt(($1) ^ 2)"; }
 # accurate SCENE EXPECTATION ERROR LIMIT: also wants status 0
 accurate() {
 	line="$1 | $2 | area $(key area | cut -c 1-6), $(key iterations) iterations | $(printf %.1e "$3")"
-	if [ "$status" = 0 ] && [ "$(calc "($3) <= ($4)")" = 1 ]; then
+	# nan would be a variable of awk, and 0
+	case $3 in [0-9]*) within=$(calc "($3) <= ($4)") ;; *) within=0 ;; esac
+	if [ "$status" = 0 ] && [ "$within" = 1 ]; then
 		pass "$line"
 	else
 		fail "$line" "status $status, error $3, limit $4" "$(head -2 err)"
@@ -44,6 +46,20 @@ refused() {
 	else
 		fail "$line" "want status $3, one line with: $4" "$(head -3 err)"
 	fi
+}
+
+# The error of out.nrrd by sums that share nothing with the solver: the relative duality gap
+# of its pressure, or 1 where the gap it wrote differs from u - h - approach by more than
+# rounding leaves, some 1e-15 a term.
+${CC:-cc} -O2 -o complementarity "$top/tests/extremes/complementarity.c" -lm || exit 1
+residual() {
+	for f in height pressure gap; do
+		values $f >$f.values
+	done
+	# shellcheck disable=SC2046 # numbers are words
+	paste height.values pressure.values gap.values | ./complementarity "$(key boundary)" \
+		$(sed -n 's/^sizes: [0-9]* //p; s/^spacings: [^ ]* //p; /^$/q' out.nrrd 2>/dev/null) \
+		"$(key estar)" "$(key approach)" "$(key hardness)" | awk '{ print $1 <= 1e-12 && $2 ~ /^[0-9]/ ? $2 : 1 }'
 }
 
 # Values of a field as text
@@ -64,14 +80,14 @@ heights 64 64 "$rough"
 last=0
 for p in 1e2 1e5 1e7 1e8 1e9 1e10 1e11 1e13; do
 	solve --pixel 1um --estar 100GPa --boundary periodic --pressure ${p}Pa
-	accurate "periodic, mean pressure ${p%e*}e$((${p#*e} - 11)) E*" "converged, more area than before" \
-		"$(calc "$(key area) < $last ? 1 : $(key certificate)")" 1e-8
+	accurate "periodic, mean pressure ${p%e*}e$((${p#*e} - 11)) E*" "solved, by direct sums; more area than before" \
+		"$(calc "$(key area) < $last ? 1 : $(residual)")" 1.01e-8
 	last=$(key area)
 done
 is "periodic, 100 E* | full contact | area $last | -" "$last" 1
 for p in 1e2 1e7 1e9 1e13; do
 	solve --pixel 1um --estar 100GPa --pressure ${p}Pa
-	accurate "free, mean pressure ${p%e*}e$((${p#*e} - 11)) E*" "converged" "$(key certificate)" 1e-8
+	accurate "free, mean pressure ${p%e*}e$((${p#*e} - 11)) E*" "solved, by direct sums" "$(residual)" 1.01e-8
 done
 
 # Stiffness: pressures scale with it, shapes do not change
@@ -108,7 +124,7 @@ accurate "all stresses x 1e-9" "units alone change" "$(error "$(key approach)" "
 is "lengths and stresses scaled | the same cells in contact | area $(key area) | -" "$(key area)" "$area"
 heights 64 64 "$rough"
 solve --pixel 1pm --estar 100GPa --pressure 100GPa
-accurate "rms slope 5e5 (pixel 1 pm)" "converged" "$(key certificate)" 1e-8
+accurate "rms slope 5e5 (pixel 1 pm)" "solved, by direct sums" "$(residual)" 1.01e-8
 
 # Aspect of cells: a wave along x, cells 100 times as long as wide and the reverse
 for d in "1e-6 1e-4" "1e-4 1e-6"; do
@@ -122,9 +138,9 @@ for d in "1e-6 1e-4" "1e-4 1e-6"; do
 	status=$?
 	accurate "cells of $d m, a wave" "area (2/pi) asin sqrt 0.3 to a cell" \
 		"$(calc "sqrt(($(key area) - 0.369010119565545) ^ 2)")" 0.008
-	bemcontact --estar 100GPa --pressure 100MPa wave.nrrd >out.nrrd 2>err
+	bemcontact --fields height,pressure,gap --estar 100GPa --pressure 100MPa wave.nrrd >out.nrrd 2>err
 	status=$?
-	accurate "cells of $d m, free" "converged" "$(key certificate)" 1e-8
+	accurate "cells of $d m, free" "solved, by direct sums" "$(residual)" 1.01e-8
 done
 
 # Shapes
@@ -133,21 +149,21 @@ solve --pixel 1um --estar 100GPa --boundary periodic --pressure 1GPa
 accurate "flat, periodic" "pressure even everywhere" \
 	"$(values pressure | awk '{ d = $1 / 1e9 - 1; if (d < 0) d = -d; if (d > m) m = d } END { print m + 0 }')" 1e-8
 solve --pixel 1um --estar 100GPa --pressure 1GPa
-accurate "flat, free: a punch" "converged; full contact" "$(calc "$(key area) == 1 ? $(key certificate) : 1")" 1e-8
+accurate "flat, free: a punch" "solved, by direct sums; full contact" "$(calc "$(key area) == 1 ? $(residual) : 1")" 1.01e-8
 heights 48 48 '$x < 24 ? 1e-6 : 0'
 solve --pixel 1um --estar 100GPa --pressure 10MPa
 accurate "step edge, light" "the upper half alone" "$(calc "sqrt(($(key area) - 0.5) ^ 2)")" 1e-9
 solve --pixel 1um --estar 100GPa --pressure 10GPa --boundary periodic
-accurate "step edge, pressed in" "converged; all but the foot of the step" \
-	"$(calc "($(key area) > 0.5) * ($(key area) < 1) ? $(key certificate) : 1")" 1e-8
+accurate "step edge, pressed in" "solved, by direct sums; all but the foot of the step" \
+	"$(calc "($(key area) > 0.5) * ($(key area) < 1) ? $(residual) : 1")" 1.01e-8
 heights 48 48 '1e-6 * noise()'
 for b in free periodic; do
 	solve --pixel 1um --estar 100GPa --pressure 1GPa --boundary $b
-	accurate "white noise, $b" "converged" "$(key certificate)" 1e-8
+	accurate "white noise, $b" "solved, by direct sums" "$(residual)" 1.01e-8
 done
 heights 64 64 '(($x + $y) & 1) * 1e-7'
 solve --pixel 1um --estar 100GPa --pressure 1GPa --boundary periodic
-accurate "checkerboard" "converged" "$(key certificate)" 1e-8
+accurate "checkerboard" "solved, by direct sums" "$(residual)" 1.01e-8
 
 # Grids
 for g in "1 1" "1 97" "97 1" "2 2" "3 5" "31 37" "61 61" "127 2" "400 4" "4 400"; do
@@ -155,7 +171,7 @@ for g in "1 1" "1 97" "97 1" "2 2" "3 5" "31 37" "61 61" "127 2" "400 4" "4 400"
 	heights $g "$rough"
 	for b in free periodic; do
 		solve --pixel 1um --estar 100GPa --pressure 500MPa --boundary $b
-		accurate "grid $size, $b" "converged" "$(key certificate)" 1e-8
+		accurate "grid $size, $b" "solved, by direct sums" "$(residual)" 1.01e-8
 	done
 done
 
@@ -164,7 +180,7 @@ heights 64 64 "$rough"
 for h in 1.000001 1.01 2; do
 	solve --pixel 1um --estar 100GPa --pressure 1GPa --hardness "$(calc "$h * 1e9")Pa"
 	accurate "hardness $h x mean pressure" "area at least load / hardness" \
-		"$(calc "$(key area) * $h < 1 - 1e-9 ? 1 : $(key certificate)")" 1e-8
+		"$(calc "$(key area) * $h < 1 - 1e-9 ? 1 : $(residual)")" 1.01e-8
 done
 solve --pixel 1um --estar 100GPa --pressure 1GPa --hardness 1GPa
 refused "hardness at the mean pressure" "refused" 1 'not below the hardness'
@@ -205,7 +221,7 @@ done
 # Precision
 for b in free periodic; do
 	solve --pixel 1um --estar 100GPa --pressure 500MPa --tolerance 1e-13 --boundary $b
-	accurate "tolerance 1e-13, $b" "reached" "$(key certificate)" 1e-13
+	accurate "tolerance 1e-13, $b" "reached" "$(residual)" 1.01e-13
 	solve --pixel 1um --estar 100GPa --pressure 500MPa --tolerance 1e-16 --boundary $b
 	line="tolerance 1e-16, $b | reached, or exit 3 within 400 iterations"
 	line="$line | exit $status, $(key iterations) iterations | $(key certificate)"

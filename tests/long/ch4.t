@@ -1,8 +1,7 @@
 #!/bin/sh
-# Chapter 4: the experiments run, the 90 % intervals of rwl hold nine truths in ten, and
+# Chapter 4: the 90 % intervals of rwl hold nine truths in ten, and
 # a million rows pass in constant memory
 . "$(dirname "$0")/../tap.sh"
-bin=${BIN:-$top/bin}
 
 # within NAME VALUE LOW HIGH
 within() {
@@ -12,22 +11,6 @@ within() {
 		fail "$1" "got:  $2" "want: $3 to $4"
 	fi
 }
-
-# --- the experiments; UNITS and FRAGMENTS as small as they go
-mkdir flow plate
-ok "ch4-leakage runs" make -s -C "$top/examples/ch4-leakage" BIN="$bin" OUT="$work/flow" UNITS=10 \
-	"$work/flow/numbers.tsv"
-number() { awk -F '\t' -v q="$2" '$2 == q { print $5 }' "$1"; }
-# white noise of 0.062 and its forecast: above 0.062^2, below twice that at order 30
-within "one-step error near order 30, (L/min)^2" \
-	"$(number flow/numbers.tsv "mean square error near order 30")" 0.0042 0.0077
-within "the filter's error at order 20 over the grey model's" \
-	"$(awk '$1 == 20 { print $3 / $2 }' flow/orders.tsv)" 0.7 1.0
-ok "ch4-wear-life runs" make -s -C "$top/examples/ch4-wear-life" BIN="$bin" OUT="$work/plate" \
-	FRAGMENTS=5 PRESSURES="0.15 21" "$work/plate/numbers.tsv"
-within "hours at which the 90 % interval holds the truth" \
-	"$(number plate/numbers.tsv "90 % interval holds the truth")" 0.6 1
-within "relative accuracy" "$(sed -n 's/^# relative_accuracy: //p' plate/life.tsv)" 0.7 1
 
 # --- coverage.  Each unit: an ensemble of 30 fragments (lognormal, spread 0.4) and a
 # truth: a plate of countless fragments wears their true mean; a plate that is one

@@ -1,0 +1,76 @@
+/* surrogate.h - volumes of wear particles from their footprints, with intervals that hold
+ *
+ * The depth below one cell of a footprint times its area is the volume but for a factor,
+ * whose logarithm is a quadratic function of the features of the footprint
+ * (footprint.h), fitted by least squares.  Intervals are conformal: shares of particles
+ * and of surfaces that the fit has not seen lie within them, whatever the distribution of
+ * its errors, as long as scenes are drawn as those of the fit were.  Outside the range of
+ * the features of the fit nothing is said.
+ *
+ *	struct surrogate s;
+ *	if (surrogate_fit(sample, n, &s, &report) == SURROGATE_OK)
+ *		inside = surrogate_guess(&s, footprint, count, 0.9, guess, &total);
+ */
+#ifndef DEBRIS_SURROGATE_H
+#define DEBRIS_SURROGATE_H
+
+#include "debris/footprint.h"
+
+enum {
+	SURROGATE_TERMS = 1 + FOOTPRINT_FEATURES +
+			  FOOTPRINT_FEATURES * (FOOTPRINT_FEATURES + 1) / 2,
+	SURROGATE_CLASSES = 5, /* of footprints, by cells: 1, 2-3, 4-15, 16-63, more */
+	SURROGATE_SCORES = 512 /* of each kind at most: as many quantiles of more */
+};
+
+struct surrogate {
+	double low[FOOTPRINT_FEATURES], high[FOOTPRINT_FEATURES]; /* range of the fit */
+	double mean[FOOTPRINT_FEATURES], scale[FOOTPRINT_FEATURES];
+	double coefficient[SURROGATE_TERMS];
+	double deviation[SURROGATE_CLASSES]; /* of the logarithm */
+	double factor[SURROGATE_CLASSES];    /* mean over median of a volume */
+	/* Ascending: ln of true over guessed volume, over its deviation, of what was held
+	 * back for it. */
+	int particles, totals;
+	double particle[SURROGATE_SCORES], total[SURROGATE_SCORES];
+};
+
+/* A particle of the full model. */
+struct surrogate_sample {
+	long surface; /* number; those of one stand together */
+	struct footprint footprint;
+	double volume; /* m3 */
+};
+
+/* Of the surfaces that neither the fit nor its intervals have seen. */
+struct surrogate_report {
+	long fitted, calibrated, checked; /* surfaces */
+	long within;      /* of the checked, whose total the 90 % interval holds */
+	double rms, most; /* of ln of true over guessed totals */
+	double width;     /* mean half width of ln of those intervals */
+};
+
+struct surrogate_guess {
+	double volume, low, high; /* m3 */
+};
+
+enum surrogate_status {
+	SURROGATE_OK,
+	SURROGATE_FEW, /* samples: fewer than three for each coefficient, or surfaces:
+			* fewer than 100 */
+	SURROGATE_MEMORY
+};
+
+/* Of five surfaces that follow each other two are fitted to, two make the intervals, and
+ * one is checked. */
+enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_t n,
+	struct surrogate *s, struct surrogate_report *report);
+
+/* Volumes of the particles of a surface and of all of them, with intervals of this level
+ * (equal tails).  0 where a footprint lies outside the range of the fit, or the scores
+ * are too few for the level: nothing is said then. */
+int surrogate_guess(const struct surrogate *s, const struct footprint *footprint,
+	size_t count, double level, struct surrogate_guess *guess,
+	struct surrogate_guess *total);
+
+#endif

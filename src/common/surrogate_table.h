@@ -1,0 +1,18 @@
+/* surrogate_table.h - a surrogate of the debris model as a table: debrisfit, debrisgen
+ *
+ * Columns kind, first, second and value: low, high, mean and scale of a feature; the
+ * coefficient of a product of two features, 1 standing for none; deviation and factor of
+ * a class of footprints; the scores of particles and totals, ascending.
+ */
+#ifndef SURROGATE_TABLE_H
+#define SURROGATE_TABLE_H
+
+#include "debris/surrogate.h"
+
+/* Writes to standard output. */
+void surrogate_write(const struct surrogate *s, const struct surrogate_report *report,
+	const char *cmd);
+/* Dies where the file is not what it should be. */
+void surrogate_read(const char *path, struct surrogate *s);
+
+#endif

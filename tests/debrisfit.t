@@ -1,0 +1,84 @@
+#!/bin/sh
+# debrisfit and debrisgen --surrogate: footprints are exact, volumes within their intervals
+. "$(dirname "$0")/tap.sh"
+
+# contacts SEED COUNT: surfaces of 32 x 32 cells under load
+contacts() {
+	roughgen --points 32 --length 0.25mm --sq 1um --corr 10um --crown auto --seed "$1" --count "$2" |
+		bemcontact --pressure 50MPa --young 210GPa
+}
+contacts 1 130 >fitted.nrrd
+debrisfit --yield 250MPa:500MPa --friction 0:0.5 --stats stats fitted.nrrd >surrogate.tsv
+is 'a surrogate is fitted' "$? $(column surfaces stats)" '0 130'
+
+contacts 9 30 >hidden.nrrd
+debrisgen --yield 355MPa --friction 0.3 --summary full.steps hidden.nrrd >full.tsv
+debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0 --stats stats \
+	--summary quick.steps hidden.nrrd >quick.tsv 2>said
+is 'other surfaces are estimated' "$?" 0
+near 'most of them' "$(column surfaces_estimated stats)" 30 12
+is 'as many particles are found on each as by the full model' "$(column particles quick.steps | cksum)" \
+	"$(column particles full.steps | cksum)"
+# outlines, in any order
+outlines() {
+	awk -F '\t' '/^#/ { next } !n { for (i = 1; i <= NF; i++) c[$i] = i; n = 1; next }
+		{ printf "%s %s %.9g %.9g %.9g %.9g\n", $c["realisation"], $c["columns"], $c["x_low"], $c["x_high"], $c["y_low"],
+			$c["y_high"] }' "$1" | sort
+}
+outlines full.tsv >want
+outlines quick.tsv >got
+same 'of the same cells and outlines' got want
+paste full.steps quick.steps | awk -F '\t' '/^#/ { next }
+	!n { for (i = 1; i <= NF; i++) { if ($i == "volume" && !v) v = i; if ($i == "volume_low") low = i
+		if ($i == "volume_high") high = i; if ($i == "exact") e = i } n = 1; next }
+	!$e { all++; held += $low <= $v && $v <= $high } END { print held / all }' >held
+near 'intervals of 90 % hold the total volumes' "$(cat held)" 0.9 0.15
+paste full.steps quick.steps | awk -F '\t' '/^#/ { next }
+	!n { for (i = 1; i <= NF; i++) if ($i == "volume") c[++k] = i; n = 1; next }
+	{ full += $c[1]; quick += $c[2] } END { print quick / full }' >ratio
+near 'the volume of all surfaces is right within 10 %' "$(cat ratio)" 1 0.1
+is 'what is not known of a particle is nan' "$(column exact quick.tsv | paste - quick.tsv 2>/dev/null | wc -l | awk '{ print ($1 > 0) }') $(
+	awk -F '\t' '/^#/ { next } !n { for (i = 1; i <= NF; i++) c[$i] = i; n = 1; next }
+		!$c["exact"] && ($c["length"] != "nan" || $c["z"] != "nan") { bad++ } END { print bad + 0 }' quick.tsv)" '1 0'
+is 'estimates are below their upper and above their lower ends' "$(awk -F '\t' '/^#/ { next }
+	!n { for (i = 1; i <= NF; i++) c[$i] = i; n = 1; next }
+	!($c["volume_low"] <= $c["volume"] && $c["volume"] <= $c["volume_high"]) { bad++ } END { print bad + 0 }' quick.tsv)" 0
+
+# Units: lengths four times as long, stresses ten times as large.
+roughgen --points 32 --length 1mm --sq 4um --corr 40um --crown auto --seed 9 --count 30 |
+	bemcontact --pressure 500MPa --young 2100GPa |
+	debrisgen --yield 3550MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0 --summary large.steps >large.tsv 2>/dev/null
+near 'scaled surfaces lose scaled volumes' "$(column volume large.steps | awk '{ v += $1 } END { print v / 64 * 1e13 }')" \
+	"$(column volume quick.steps | awk '{ v += $1 } END { print v * 1e13 }')" 1e-4
+
+# Outside the range of the fit the full model runs and says so.
+contacts 5 6 >few.nrrd
+debrisgen --yield 355MPa --friction 2 --surrogate surrogate.tsv --audit 0 --stats stats few.nrrd >far.tsv 2>said
+debrisgen --yield 355MPa --friction 2 few.nrrd >far.full 2>/dev/null
+is 'beyond the friction of the fit nothing is estimated' "$(column surfaces_estimated stats) $(column surfaces_outside stats)" '0 6'
+is 'and the volumes are those of the full model' "$(column volume far.tsv | cksum)" "$(column volume far.full | cksum)"
+like 'which is said' "$(cat said)" '6 surfaces outside the range of surrogate.tsv'
+debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 0 --stats stats few.nrrd >/dev/null 2>said
+is 'no interval is narrow enough for a width of 0' "$(column surfaces_estimated stats)" 0
+
+# Audits: sound, and of a surrogate whose factor is wrong by half.
+debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0.3 --stats stats hidden.nrrd >/dev/null 2>said
+is 'an audit of a sound surrogate passes' $? 0
+near 'on the share that was asked for' "$(column surfaces_audited stats)" 8 5
+awk -F '\t' -v OFS='\t' '/^#/ { next } $1 == "factor" { $4 *= 1.5 } { print }' surrogate.tsv >wrong.tsv
+debrisgen --yield 355MPa --friction 0.3 --surrogate wrong.tsv --width 10 --audit 0.3 hidden.nrrd >/dev/null 2>said
+is 'that of a wrong one does not' $? 3
+like 'and says so' "$(cat said)" 'audited volumes lie within their intervals'
+
+fails 'too few surfaces' 1 'are too few' sh -c 'contacts() { roughgen --points 32 --length 0.25mm --sq 1um --corr 30um --count 5 |
+	bemcontact --pressure 50MPa --young 210GPa; }; contacts | debrisfit --yield 355MPa'
+fails 'no yield stress' 2 'want --yield' debrisfit hidden.nrrd
+grep -v '^coefficient' surrogate.tsv | grep -v '^#' >part.tsv
+fails 'a part of a surrogate' 1 'no whole surrogate' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd
+fails 'another table' 1 "no column 'kind'\|kind" debrisgen --yield 355MPa --surrogate full.tsv hidden.nrrd
+fails 'depths of a surrogate' 2 'surrogate excludes --surface' debrisgen --yield 355MPa --surrogate surrogate.tsv --surface x hidden.nrrd
+fails 'steps of a surrogate' 2 'one step' debrisgen --yield 355MPa --young 210GPa --surrogate surrogate.tsv --steps 2 hidden.nrrd
+roughgen --points 32 --length 0.25mm --sq 1um --corr 30um | bemcontact --pressure 50MPa --young 210GPa --boundary periodic >periodic.nrrd
+fails 'a periodic surface' 2 'is periodic' debrisgen --yield 355MPa --surrogate surrogate.tsv periodic.nrrd
+fails 'a fit to a periodic surface' 1 'is periodic' debrisfit --yield 355MPa periodic.nrrd
+done_testing
