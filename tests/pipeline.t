@@ -69,8 +69,27 @@ debrisstat particles >fits 2>err
 sensorsim --uniform 80um:150um --number 5 --duration 100ms --truth truth >heard
 sensorsim --uniform 80um:150um --number 5 --duration 100ms --truth - >alone
 bpfilter --order 50 heard >filtered
-duet heard >found
-for f in surfaces contacts particles summary worn stress fits truth alone heard filtered found; do
+duet --separated separated --sections sections heard >found
+duet --method duet --histogram histogram heard >masked 2>err
+bpfilter --response --order 50 >response
+bpfilter --taps --order 50 >taps
+sigconvert --start 2026-11-22T03:04Z heard >begun
+sigconvert --output text heard >recording
+wear-volume --period 10ms found >wear 2>err
+aopf --particles 20 --threshold 1e-10 wear >state 2>err
+debriscount --duration 100ms found >counts 2>err
+roughgen --measure surfaces >roughness
+debrisgen --yield 355MPa --friction 0.3 contacts >shed 2>err
+abrade --load 10mN --hardness 4GPa --friction 0.1 --slide 5um --surface surfaces --particles carried \
+	--summary loads shed >grooved 2>err
+layout --coils 0,25cm --snr 30dB --arrivals 100 >layouts
+rwl --new --wear particles --step-time 1h --threshold-gap 11um --count 20 --rates rates >lives 2>err
+delaynet --task data --columns 8 --count 3 --truth delays >lessons
+records surfaces >listed
+records --output table contacts >points
+for f in surfaces contacts particles summary worn stress fits truth alone heard filtered found separated sections \
+	histogram masked response taps begun recording wear state counts roughness grooved carried loads layouts \
+	lives rates lessons delays points; do
 	records --replay "$f" >"$f.again" 2>err
 	same "$f: replay reproduces it" "$f" "$f.again"
 done

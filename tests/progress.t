@@ -17,7 +17,7 @@ done
 END
 # lines: what the terminal got, split where the cursor is moved
 lines() {
-	tr '\r\033' '\n\n' <typescript
+	tr '\r' '\n' <typescript | tr '\033' '\n'
 }
 script -qec 'sh slowly | bpfilter --order 20 >filtered' typescript >/dev/null 2>&1
 like 'a program tells what it has read' "$(lines)" '^bpfilter: [0-9]* MB, [1-9][0-9]* s$'

@@ -168,6 +168,8 @@ is 'a header line cannot be forged' "$({ header 'key:=a\nsizes: 1 1 1'; ramp; } 
 fails 'more than 1000 keys' 1 'more than 1000 keys' records keys.nrrd
 { header 'k1:=1' 'k2:=2'; ramp; } >keys.nrrd
 fails 'limits can be lowered' 1 'more than 1 keys' env WEARPIPE_LIMITS=keys=1 records keys.nrrd
+fails 'the limit of a record can be lowered' 1 'bytes of samples are too many' env WEARPIPE_LIMITS=bytes=4 records keys.nrrd
+fails 'that of a header' 1 'header' env WEARPIPE_LIMITS=header=30 records keys.nrrd
 
 # Other tools, where they are installed
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then

@@ -586,6 +586,15 @@ char *opt_cmd(const char *upstream, const char *extra)
 	return cmd;
 }
 
+char *opt_cmd_side(const char *upstream, const char *option)
+{
+	char *extra = xprintf("--%s /dev/fd/3 3>&1 >/dev/null", option);
+	char *cmd = opt_cmd(upstream, extra);
+
+	free(extra);
+	return cmd;
+}
+
 int shell_done(int status)
 {
 	errno = 0;

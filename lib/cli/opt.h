@@ -110,6 +110,10 @@ const char *opt_reads(void);
  * recorded only where upstream is NULL, since otherwise upstream rebuilds the input. */
 char *opt_cmd(const char *upstream, const char *extra);
 
+/* The same for what --option FILE writes beside the standard output: a pipeline that puts
+ * it there.  The option itself must be unrecorded. */
+char *opt_cmd_side(const char *upstream, const char *option);
+
 /* Last call of main: writes --stats, checks that standard output was written
  * whole, and returns status (or leaves with EXIT_RUN). */
 int shell_done(int status);

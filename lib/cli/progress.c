@@ -82,9 +82,12 @@ static const char *duration(double seconds, char text[32])
 {
 	double h = seconds / 3600;
 
-	snprintf(text, 32, seconds < 100 ? "%.0f s" : h < 2 ? "%.0f min" : "%.1f h",
+	snprintf(text, 32,
+		seconds < 100 ? "%.0f s"
+		: h < 2       ? "%.0f min"
+			      : "%.1f h",
 		seconds < 100 ? seconds
-		: h < 2	      ? seconds / 60
+		: h < 2       ? seconds / 60
 			      : h);
 	return text;
 }

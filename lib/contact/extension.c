@@ -8,6 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* On the scenes of tests/unit/exact.c and at 256 x 256, 5 to 60 %, 10 to 40 steps and 256
+ * to 4096 coarsest cells take as many iterations within two of 10 to 20, but 4096 half as
+ * many more under a hardness. */
 enum {
 	LEVELS = 30,
 	COARSEST = 1024, /* cells to solve on */
@@ -271,7 +274,8 @@ static double tie(double width, double weight)
 {
 	double root = sqrt(weight);
 
-	/* A cell that is all contact: tied as if a fiftieth of its width were not. */
+	/* A cell that is all contact: tied as if a fiftieth of its width were not.  A
+	 * tenth to a two-hundredth takes as many iterations within one. */
 	return root / (2 * asinh(1) / M_PI * width * fmax(1 - root, 0.02));
 }
 

@@ -221,7 +221,8 @@ static int is_in_range(const struct contact *c, double size)
 	return isfinite(size * size * stiffest * (double)c->n);
 }
 
-/* Pressures need to be no better than what interpolation loses. */
+/* Pressures need to be no better than what interpolation loses: 0.1 to 1e-3 take 60 to 70
+ * transforms alike (256 x 256 at 5 to 60 %, free at 9 %), 1e-3 the most. */
 static const double coarse_tolerance = 1e-2;
 
 /* An initial guess from the coarser grids; 0 if they have none. */

@@ -234,6 +234,8 @@ int contact_carries(const struct contact *c, double sum)
 
 int contact_stalls(struct contact *c, double certificate)
 {
+	/* Four rounds of gradient.c without a gain; Polonsky and Keer's loop, which takes
+	 * some twenty times the iterations, waits longer. */
 	const long patience = c->par.solver == CONTACT_PK ? 500 : 100;
 
 	if (certificate < 0.9 * c->best) {

@@ -51,7 +51,7 @@ char *header_line(struct place *at, size_t *header_size)
 
 void check_sizes(const struct place *at, const double *sizes, int n)
 {
-	double all = 8;
+	double all = 8, most = (double)input_limit("bytes", (size_t)1e15);
 
 	for (int i = 0; i < n; i++) {
 		if (!(sizes[i] >= 1 && sizes[i] <= 1e9) || sizes[i] != floor(sizes[i]))
@@ -60,7 +60,7 @@ void check_sizes(const struct place *at, const double *sizes, int n)
 				at->name, at->record, sizes[i]);
 		all *= sizes[i];
 	}
-	if (all > 1e15)
+	if (all > most)
 		die(EXIT_RUN, "%s: record %ld: %g bytes of samples are too many",
 			at->name, at->record, all);
 }

@@ -354,11 +354,11 @@ static size_t finish_promised(struct signal_in *in, double *x)
 static void check_end(const struct signal_in *in)
 {
 	size_t rest = in->end - in->begin;
+	unsigned long long got = in->total - in->left + rest;
 
 	if (in->total != UINT64_MAX && in->left > 0)
 		ends_miss("%s: want %llu bytes of samples, got %llu", in->name,
-			(unsigned long long)in->total,
-			(unsigned long long)(in->total - in->left + rest));
+			(unsigned long long)in->total, got);
 	else if (rest > 0 && !file_followed())
 		ends_miss("%s: the stream ends inside a frame: want %zu bytes, got %zu",
 			in->name, in->frame, rest);

@@ -1,5 +1,6 @@
 #include "num/fft.h"
 #include <fftw3.h>
+#include <limits.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -53,13 +54,28 @@ static void destroy(fftw_plan forward, fftw_plan inverse)
 	pthread_mutex_unlock(&planner);
 }
 
+/* 1 where a planner for lines of nx and ny points finds memory: FFTW ends the process
+ * where it does not.  Its tables for one length take some 64 bytes a point at most
+ * (rotations of each factor, and a padded convolution for a large prime), its search some
+ * 100 kB. */
+static int planner_fits(size_t nx, size_t ny)
+{
+	void *room;
+
+	if (nx > INT_MAX || ny > INT_MAX)
+		return 0;
+	room = malloc(((size_t)1 << 20) + 128 * (nx + ny));
+	free(room);
+	return room != NULL;
+}
+
 struct fft *fft_new(size_t nx, size_t ny)
 {
 	struct fft *fft = calloc(1, sizeof *fft);
 	double *x = fft_alloc(nx * ny);
 	double complex *spectrum = fft_alloc_complex((nx / 2 + 1) * ny);
 
-	if (fft && x && spectrum) {
+	if (fft && x && spectrum && planner_fits(nx, ny)) {
 		pthread_mutex_lock(&planner);
 		fft->forward = fftw_plan_dft_r2c_2d(
 			(int)ny, (int)nx, x, spectrum, FFTW_ESTIMATE);
@@ -102,7 +118,7 @@ struct fft_line *fft_line_new(size_t n)
 	struct fft_line *line = calloc(1, sizeof *line);
 	double complex *a = fft_alloc_complex(n), *b = fft_alloc_complex(n);
 
-	if (line && a && b) {
+	if (line && a && b && planner_fits(n, 0)) {
 		pthread_mutex_lock(&planner);
 		line->forward =
 			fftw_plan_dft_1d((int)n, a, b, FFTW_FORWARD, FFTW_ESTIMATE);

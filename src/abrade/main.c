@@ -231,7 +231,8 @@ int main(int argc, char **argv)
 	struct abrasion_par par;
 	struct source *source;
 	long realisation;
-	char *cmd;
+	const char *upstream;
+	char *cmd, *side;
 
 	check_options(argc - operand);
 	par = parameters();
@@ -241,11 +242,16 @@ int main(int argc, char **argv)
 		gap = mean_gap(&par);
 	source = population ? particles_drawn(population, area, gap, (uint64_t)seed)
 			    : particles_read(argv[operand]);
-	cmd = opt_cmd(particles_upstream(source), NULL);
+	upstream = particles_upstream(source);
+	cmd = surface_path ? opt_cmd_side(upstream, "particles")
+			   : opt_cmd(upstream, NULL);
+	side = opt_cmd_side(upstream, "summary");
 	if (!surface_path || particles_path)
 		table = table_create(particles_path, cmd, "1 1 m N m m 1 m3 m3", columns);
+	free(cmd);
+	cmd = opt_cmd(upstream, NULL);
 	if (summary_path)
-		summary = table_create(summary_path, cmd,
+		summary = table_create(summary_path, side,
 			"1 m N Pa 1 1 1 1 1 1 1 1 m3 m3 1 1 Pa 1 1",
 			"realisation gap load pressure particles free rejected "
 			"rolls grooves embeds yields buried volume1 volume2 "
@@ -255,12 +261,13 @@ int main(int argc, char **argv)
 		run_realisation(&in, realisation);
 	if (surface_path)
 		scratches_cut(surface_path, slide, cutting, (uint64_t)seed,
-			particles_apart(source));
+			particles_apart(source), cmd);
 	particles_close(source);
 	if (table)
 		table_done(table);
 	if (summary)
 		table_done(summary);
 	free(cmd);
+	free(side);
 	return shell_done(doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
 }

@@ -33,7 +33,8 @@ static double way(const struct scratch *s, double length)
 	return whole > 0 ? length * s->section / whole : 0;
 }
 
-void scratches_cut(const char *path, double length, double cut, uint64_t seed, int apart)
+void scratches_cut(const char *path, double length, double cut, uint64_t seed, int apart,
+	const char *cmd)
 {
 	struct fields_in *in = fields_open(path, NULL);
 	struct fields_out *out = NULL;
@@ -42,7 +43,6 @@ void scratches_cut(const char *path, double length, double cut, uint64_t seed, i
 	while (fields_read(in, &r)) {
 		double *z = record_need(&r, "height", 1, in), lx = r.nx * r.dx,
 		       ly = r.ny * r.dy;
-		char *cmd;
 
 		if (r.nz != 1)
 			die(EXIT_RUN, "%s: record %ld: %d layers, want a plane field",
@@ -66,9 +66,8 @@ void scratches_cut(const char *path, double length, double cut, uint64_t seed, i
 		for (int k = r.nfields - 1; k >= 0; k--)
 			if (z != r.data[k])
 				record_drop(&r, r.name[k]);
-		cmd = opt_cmd(r.cmd, NULL);
 		free(r.cmd);
-		r.cmd = cmd;
+		r.cmd = xstrdup(cmd);
 		if (!out)
 			out = fields_create(NULL);
 		fields_write(out, &r, fields_more(in));

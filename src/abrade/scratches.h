@@ -7,7 +7,8 @@
 /* One groove, to be cut into the surface of its realisation. */
 void scratches_add(long realisation, double diameter, double depth, double section);
 /* Reads heights, cuts the grooves of their realisation (of all realisations if apart is
- * 0) at random positions and writes the fields to standard output. */
-void scratches_cut(const char *path, double length, double cut, uint64_t seed, int apart);
+ * 0) at random positions and writes the fields, with this cmd, to standard output. */
+void scratches_cut(const char *path, double length, double cut, uint64_t seed, int apart,
+	const char *cmd);
 
 #endif

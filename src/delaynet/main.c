@@ -155,12 +155,13 @@ static void apply_network(const char *path)
 static void write_data(void)
 {
 	char *cmd = opt_cmd(NULL, NULL), *number = xprintf("%ld", lessons.seed);
+	char *side = opt_cmd_side(NULL, "truth");
 	struct signal_format format = {
 		.rate = RATE, .channels = 2, .cmd = cmd, .seed = number
 	};
 	struct signal_out *out = signal_create(NULL, &format);
 	struct table_out *t =
-		truth_file ? create_delays(truth_file, cmd, (int)lessons.sources) : NULL;
+		truth_file ? create_delays(truth_file, side, (int)lessons.sources) : NULL;
 	struct delaydata_par par = lessons_sines();
 	size_t points = (size_t)lessons.points;
 	network_real *x = xcalloc(2 * points, sizeof *x), delay[DELAYS_MAX];
@@ -181,6 +182,7 @@ static void write_data(void)
 	free(x);
 	free(frame);
 	free(number);
+	free(side);
 	free(cmd);
 }
 

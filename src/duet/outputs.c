@@ -1,5 +1,6 @@
 #include "outputs.h"
 #include "cli/msg.h"
+#include "cli/opt.h"
 #include "signal/sensor.h"
 #include <math.h>
 #include <stdlib.h>
@@ -9,10 +10,20 @@ enum { SOURCES_SHOWN = 8 };
 
 static const char *const verdicts[] = { "alone", "overlap", "misfit", "unresolved" };
 
+static struct table_out *side_table(const char *path, const struct signal_format *format,
+	const char *option, const char *units, const char *columns)
+{
+	char *cmd = opt_cmd_side(format->cmd, option);
+	struct table_out *t = table_create(path, cmd, units, columns);
+
+	free(cmd);
+	return t;
+}
+
 void found_open(struct found *out, const struct signal_format *format, const char *cmd)
 {
-	struct signal_format many = { format->rate, SOURCES_SHOWN, 0, (char *)cmd, NULL,
-		NULL, NULL, format->start };
+	struct signal_format many = { format->rate, SOURCES_SHOWN, 0, NULL, NULL, NULL,
+		NULL, format->start };
 
 	out->rate = format->rate;
 	out->particles = table_create(NULL, cmd, "1 s s m V s m/s s s m V s m/s 1 1 1 1",
@@ -23,15 +34,18 @@ void found_open(struct found *out, const struct signal_format *format, const cha
 	if (format->start)
 		table_comment(out->particles, "start", "%s", format->start);
 	if (out->sections)
-		out->section_rows = table_create(out->sections, cmd,
+		out->section_rows = side_table(out->sections, format, "sections",
 			"1 s s 1 1 V V V2 V2 V4 V4 1 1",
 			"section begin end sources sources_se amplitude amplitude_se square square_se "
 			"fourth fourth_se chi2 verdict");
 	if (out->histogram)
-		out->weights = table_create(out->histogram, cmd, "1 1 s 1",
+		out->weights = side_table(out->histogram, format, "histogram", "1 1 s 1",
 			"section attenuation delay weight");
-	if (out->separated)
+	if (out->separated) {
+		many.cmd = opt_cmd_side(format->cmd, "separated");
 		out->sources = signal_create(out->separated, &many);
+		free(many.cmd);
+	}
 }
 
 /* A row of n numbers and a verdict. */

@@ -174,10 +174,14 @@ struct output {
  * has not stands without a value. */
 static void put_keys(struct output *o, const struct record *r)
 {
-	if (r->cmd || keys_get(&o->told, "cmd"))
-		table_comment(o->table, "cmd", "%s", r->cmd ? r->cmd : "");
-	if (r->cmd)
-		keys_set(&o->told, "cmd", r->cmd);
+	char *cmd =
+		r->cmd && !field ? opt_cmd(r->cmd, NULL) : xstrdup(r->cmd ? r->cmd : "");
+
+	if (*cmd || keys_get(&o->told, "cmd"))
+		table_comment(o->table, "cmd", "%s", cmd);
+	if (*cmd)
+		keys_set(&o->told, "cmd", cmd);
+	free(cmd);
 	for (int i = 0; i < o->told.n; i++)
 		if (strcmp(o->told.key[i], "cmd") != 0 && !record_get(r, o->told.key[i]))
 			table_comment(o->table, o->told.key[i], "%s", "");

@@ -155,6 +155,16 @@ static void fill(const struct source *s, struct record *r, const char *units)
 	}
 }
 
+/* The pipeline of the record, without the turn into a table, which is undone. */
+static char *without_table(const char *cmd)
+{
+	static const char turn[] = " | records --output table";
+	size_t n = strlen(cmd), m = sizeof turn - 1;
+
+	return xprintf(
+		"%.*s", (int)(n > m && !strcmp(cmd + n - m, turn) ? n - m : n), cmd);
+}
+
 static void take_keys(const struct source *s, struct record *r)
 {
 	for (int i = 0; i < s->keys.n; i++) {
@@ -163,7 +173,7 @@ static void take_keys(const struct source *s, struct record *r)
 		if (!strcmp(key, "units") || !*value)
 			continue;
 		if (!strcmp(key, "cmd"))
-			r->cmd = xstrdup(value);
+			r->cmd = without_table(value);
 		else
 			record_set(r, key, "%s", value);
 	}

@@ -129,8 +129,11 @@ static struct paths *draw_paths(struct partition *p)
 
 static void write_rates(const struct paths *e, const char *cmd)
 {
-	struct table_out *out = table_create(
-		rates_file, cmd, "1 m3 m3 s 1", "path mean step_sd step_time large_step");
+	char *side = xprintf("%s --rates /dev/fd/3 3>&1 >/dev/null", cmd);
+	struct table_out *out = table_create(rates_file, side, "1 m3 m3 s 1",
+		"path mean step_sd step_time large_step");
+
+	free(side);
 
 	for (long i = 0; i < count; i++) {
 		const struct path *path = paths_get(e, i);

@@ -21,7 +21,7 @@ struct recording {
 	struct signal_in *signal;
 	struct text_in *text;
 	struct table_in *table;
-	double row; /* of the table */
+	long long row; /* of the table */
 	SNDFILE *sound;
 	const char *name;
 	struct signal_format format;
@@ -33,6 +33,7 @@ struct recording_out {
 	struct table_out *table;
 	SNDFILE *sound;
 	FILE *file; /* that libsndfile writes, which goes back to its header */
+	int failed; /* a write to it did, which libsndfile does not always tell */
 	int channels;
 	double frame, rate;
 };
@@ -79,8 +80,47 @@ static size_t sound_read(struct recording *r, double *x, size_t frames)
 	return (size_t)n;
 }
 
+static sf_count_t file_length(void *context)
+{
+	FILE *f = ((struct recording_out *)context)->file;
+	off_t here = ftello(f), end;
+
+	if (fseeko(f, 0, SEEK_END))
+		return -1;
+	end = ftello(f);
+	return fseeko(f, here, SEEK_SET) ? -1 : end;
+}
+
+static sf_count_t file_seek(sf_count_t offset, int whence, void *context)
+{
+	FILE *f = ((struct recording_out *)context)->file;
+
+	return fseeko(f, offset, whence) ? -1 : ftello(f);
+}
+
+static sf_count_t file_read(void *bytes, sf_count_t n, void *context)
+{
+	return (sf_count_t)fread(
+		bytes, 1, (size_t)n, ((struct recording_out *)context)->file);
+}
+
+static sf_count_t file_write(const void *bytes, sf_count_t n, void *context)
+{
+	struct recording_out *o = context;
+	size_t put = fwrite(bytes, 1, (size_t)n, o->file);
+
+	o->failed |= put != (size_t)n;
+	return (sf_count_t)put;
+}
+
+static sf_count_t file_tell(void *context)
+{
+	return ftello(((struct recording_out *)context)->file);
+}
+
 static void sound_create(struct recording_out *o, const struct signal_format *format)
 {
+	SF_VIRTUAL_IO io = { file_length, file_seek, file_read, file_write, file_tell };
 	SF_INFO info = { .samplerate = (int)format->rate, .channels = format->channels };
 
 	if (format->rate != info.samplerate)
@@ -93,7 +133,7 @@ static void sound_create(struct recording_out *o, const struct signal_format *fo
 	o->file = tmpfile();
 	if (!o->file)
 		die(EXIT_RUN, "no temporary file:");
-	o->sound = sf_open_fd(fileno(o->file), SFM_WRITE, &info, SF_FALSE);
+	o->sound = sf_open_virtual(&io, SFM_WRITE, &info, o);
 	if (!o->sound)
 		die(EXIT_RUN, "%d channels at %g Hz: %s", format->channels, format->rate,
 			sf_strerror(NULL));
@@ -119,12 +159,14 @@ static void sound_done(struct recording_out *o)
 	static char block[1 << 16];
 	size_t n;
 
-	if (sf_close(o->sound))
-		die(EXIT_RUN, "the recording could not be finished");
+	if (sf_close(o->sound) || fflush(o->file) || o->failed)
+		die(EXIT_RUN, "the recording could not be finished: temporary file:");
 	rewind(o->file);
 	while ((n = fread(block, 1, sizeof block, o->file)) > 0)
 		if (fwrite(block, 1, n, stdout) != n)
 			die(EXIT_RUN, "standard output:");
+	if (ferror(o->file))
+		die(EXIT_RUN, "temporary file:");
 	fclose(o->file);
 }
 #else
@@ -223,9 +265,10 @@ static size_t table_read(struct recording *r, double *x, size_t frames)
 	for (; n < frames && table_next(r->table); n++, r->row++) {
 		double time = table_number(r->table, 0);
 
-		if (!(fabs(time * r->format.rate - r->row) < 0.5))
+		if (!(fabs(time * r->format.rate - (double)r->row) < 0.5))
 			die(EXIT_RUN, "%s: line %ld: time %g s, want %g s", r->name,
-				table_line(r->table), time, r->row / r->format.rate);
+				table_line(r->table), time,
+				(double)r->row / r->format.rate);
 		for (int c = 0; c < r->format.channels; c++)
 			*x++ = table_number(r->table, c + 1);
 	}

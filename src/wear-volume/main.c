@@ -76,12 +76,13 @@ static double volume_of(const struct table_in *t, const struct columns *c, long 
 	return many * sphere * d * d * d;
 }
 
-static void put_until(struct table_out *out, double time, double volume, double *rows)
+static void put_until(struct table_out *out, double time, double volume, long long *rows)
 {
-	double before = *rows;
+	long long before = *rows;
 
-	for (; time >= (*rows + 1) * period; ++*rows) {
-		const double row[2] = { (*rows + 1) * period * time_scale, volume };
+	for (; time >= (double)(*rows + 1) * period; ++*rows) {
+		const double row[2] = { (double)(*rows + 1) * period * time_scale,
+			volume };
 
 		table_put_row(out, row, 2);
 	}
@@ -92,8 +93,9 @@ static void put_until(struct table_out *out, double time, double volume, double 
 static void sum_rows(struct table_in *t, struct table_out *out)
 {
 	struct columns c = find_columns(t);
-	double before = -INFINITY, rows = 0, volume = 0;
+	double before = -INFINITY, volume = 0;
 	long part = -1, without = 0;
+	long long rows = 0;
 
 	while (table_next(t)) {
 		double time = time_of(t, c.time, before);
@@ -104,7 +106,7 @@ static void sum_rows(struct table_in *t, struct table_out *out)
 			die(EXIT_RUN,
 				"%s: line %ld: another record begins: sum each for itself",
 				table_name(t), table_line(t));
-		if (time / period - rows > rows_most)
+		if (time / period - (double)rows > rows_most)
 			die(EXIT_RUN,
 				"%s: line %ld: %s %g is more than ten million --period "
 				"behind the row above",
@@ -114,7 +116,7 @@ static void sum_rows(struct table_in *t, struct table_out *out)
 		put_until(out, time, volume, &rows);
 		volume += volume_of(t, &c, &without);
 	}
-	stats_set("rows", rows);
+	stats_set("rows", (double)rows);
 	stats_set("particles_without_diameter", (double)without);
 	if (without > 0)
 		warn("%s: rows ignored because they have no diameter: %ld", table_name(t),

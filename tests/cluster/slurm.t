@@ -114,11 +114,12 @@ join
 same 'the joined array has the bytes of a single process' joined whole
 
 # Killed with SIGKILL at random moments: all that runs of the jobs
+command="sleep 0.3; $surfaces --first \$FIRST --count \$COUNT | $rest"
 wrong=
-for k in $(seq "${KILLS:-5}"); do
+for k in $(seq "${KILLS:-20}"); do
 	rm -rf parts
 	job=$(submit)
-	sleep "$(awk -v s="$k" 'BEGIN { srand(s); print 4 * rand() }')"
+	sleep "$(awk -v s="$k" 'BEGIN { srand(s); print 2.5 * rand() }')"
 	scancel --signal=KILL --full "$job"
 	scancel "$job"
 	waits "$ended"
@@ -130,5 +131,5 @@ for k in $(seq "${KILLS:-5}"); do
 	join || wrong="$wrong $k:$(tail -n 1 err)"
 	cmp -s joined whole || wrong="$wrong $k:differs"
 done
-is "killed at ${KILLS:-5} moments and submitted again" "$wrong" ''
+is "killed at ${KILLS:-20} moments and submitted again" "$wrong" ''
 done_testing

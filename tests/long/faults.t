@@ -22,6 +22,14 @@ awk 'BEGIN { print "t\ty"; for (i = 0; i < 30; i++) print i "\t" 1 + i / 50 }' >
 printf 'volume\n1.1e-15\n1.4e-15\n0.9e-15\n1.2e-15\n' >wear
 delaynet --columns 8 --layers 3:relu --count 20 --epochs 2 --batch 10 >net
 delaynet --task data --columns 8 --count 3 >sections
+{
+	printf 'time1\tdiameter\tamplitude\tdelay\tvelocity\tverdict\n'
+	awk 'BEGIN { for (i = 1; i <= 12; i++) printf "%g\t%g\t%g\t0.02\t12.5\talone\n", i / 2, 1e-4, 1 + i / 1000 }'
+} >found
+sed 's/1e-04/1.2e-4/; s/0.0001\t/0.00012\t/' found | awk -F '\t' -v OFS='\t' 'NR > 1 { $3 *= 1.728 } { print }' >larger
+printf '1 2 3\n4 5 6\n7 8 9\n' >matrix
+sigconvert --output text signal | grep -v '^#' | head -n 40 >recording
+records --output table surfaces >points
 
 # broken: what a run did that it should not have done; empty where all is well
 broken() {
@@ -83,6 +91,28 @@ $call $at of $n: $what"
 	all=0
 	faults=
 }
+# limited COMMAND...: with less and less memory, FFTW's planner included
+limited() {
+	odd=
+	"$@" >out.whole 2>err.whole </dev/null
+	normal=$?
+	for kb in 200000 120000 80000 60000 50000 40000 32000 26000 22000 19000 17000 15000 13500 12500 11500 10500 9500; do
+		# shellcheck disable=SC3045
+		(ulimit -v $kb && "$@" >out 2>err </dev/null) 2>shell
+		got=$?
+		# below this the loader itself fails
+		! grep -q 'shared libraries\|cannot map\|oader' err shell || continue
+		sides=
+		what=$(broken)
+		[ -z "$what" ] || odd="$odd
+$kb kB: $what"
+	done
+	is "$1: little memory is told or does no harm" "$odd" ''
+}
+limited roughgen --points 128 --length 10um --sq 0.1um --corr 3um
+limited bemcontact --pressure 50MPa --young 210GPa surfaces
+limited debrisgen --yield 355MPa --friction 0.3 contacts
+limited bpfilter --order 2000 signal
 all=0
 faults=
 scene '' roughgen --points 16 --length 10um --sq 0.1um --corr 3um --count 2 --threads 2
@@ -98,6 +128,18 @@ scene '' aopf --particles 20 --threshold 2 series
 scene '' rwl --new --wear wear --step-time 1h --threshold-gap 11um --count 20
 scene '' delaynet --columns 8 --layers 3:relu --count 20 --epochs 2 --batch 10
 scene '' delaynet --task apply --network net sections
+scene '' wear-volume found
+scene '' debriscount --classes 50um,110um --duration 7s found
+scene '' ballcal --balls found:100um --balls larger:120um --noise 5mV --pulse-duration 10ms
+scene 'side1 side2' abrade --load 10mN --hardness 4GPa --friction 0.1 --slide 5um --surface surfaces \
+	--particles side1 --summary side2 particles
+scene '' layout --coils 0,25cm --snr 30dB --arrivals 100 --spread 2.5%
+scene '' surfimport --pixel 1um --height-unit 1um matrix
+scene '' sigconvert recording
+scene '' sigconvert --output text signal
+# WAV and not FLAC: libFLAC does not look whether it got memory.
+! sigconvert --output wav signal >wav 2>err || scene '' sigconvert --output wav signal
+scene '' records --output nrrd points
 scene '' records --output nrrd surfaces
 scene '' records --join particles particles
 done_testing

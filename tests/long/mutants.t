@@ -55,4 +55,22 @@ scene series aopf --particles 20 --threshold 2
 scene wear rwl --new --wear - --step-time 1h --threshold-gap 11um --count 20
 scene net delaynet --task score --columns 8 --count 5
 scene sections delaynet --task apply --network net
+
+# Every stream that was once read wrongly, or crashed a reader, is kept: it is read or
+# refused in one line.
+odd=
+for f in "$top"/tests/fuzz/corpus/fields/* "$top"/tests/fuzz/corpus/signals/* "$top"/tests/fuzz/corpus/tables/*; do
+	for action in --check '--output nrrd'; do
+		# shellcheck disable=SC2086 # an option and its word
+		timeout 20 records $action "$f" >out 2>err
+		got=$?
+		case $got in
+		0 | 3) ;;
+		1) [ "$(wc -l <err)" = 1 ] || odd="$odd ${f##*/}:$(wc -l <err) lines" ;;
+		*) odd="$odd ${f##*/}:$got" ;;
+		esac
+		! grep -q "$(printf '\033')" out err || odd="$odd ${f##*/}:escape"
+	done
+done
+is 'every stream of the corpus is read or refused' "$odd" ''
 done_testing
