@@ -1,5 +1,6 @@
 #include "cli/msg.h"
 #include "cli/escape.h"
+#include "cli/program.h"
 #include "cli/progress.h"
 #include <errno.h>
 #include <stdarg.h>
@@ -9,18 +10,6 @@
 #include <string.h>
 
 int verbose;
-
-static const char *program = "wearpipe";
-
-void msg_name(const char *name)
-{
-	program = name;
-}
-
-const char *msg_program(void)
-{
-	return program;
-}
 
 static void say(const char *format, va_list ap)
 {
@@ -34,9 +23,9 @@ static void say(const char *format, va_list ap)
 	vsnprintf(text, sizeof text, format, ap);
 	escape_to(line, text);
 	if (length && format[length - 1] == ':')
-		fprintf(stderr, "%s: %s %s\n", program, line, strerror(reason));
+		fprintf(stderr, "%s: %s %s\n", program_name(), line, strerror(reason));
 	else
-		fprintf(stderr, "%s: %s\n", program, line);
+		fprintf(stderr, "%s: %s\n", program_name(), line);
 }
 
 void die(int status, const char *format, ...)

@@ -16,10 +16,6 @@ enum {
 	EXIT_NOCONV = 3 /* did not converge; the best result was written */
 };
 
-/* Name put before every message; opt_parse() sets it. */
-void msg_name(const char *program);
-const char *msg_program(void);
-
 /* Level of -v: 0 silent, 1 a line per record, 2 more. */
 extern int verbose;
 

@@ -1,6 +1,7 @@
 #include "cli/opt.h"
 #include "cli/files.h"
 #include "cli/msg.h"
+#include "cli/program.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
 #include <ctype.h>
@@ -509,7 +510,7 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 
 	files_start();
 	prog = program;
-	msg_name(program->name);
+	program_set_name(program->name);
 	check_stack();
 	stats_start();
 	gather(program->opts);

@@ -1,5 +1,5 @@
 #include "cli/progress.h"
-#include "cli/msg.h"
+#include "cli/program.h"
 #include <dirent.h>
 #include <limits.h>
 #include <stdio.h>
@@ -107,11 +107,11 @@ static void draw(const char *what, double done, double total)
 		find_line();
 	drawn = t;
 	if (total > 0 && done > 0 && done <= total)
-		snprintf(text, sizeof text, "%s: %.0f %%, %s left", msg_program(),
+		snprintf(text, sizeof text, "%s: %.0f %%, %s left", program_name(),
 			100 * done / total,
 			duration((t - started) * (total - done) / done, left));
 	else
-		snprintf(text, sizeof text, "%s: %.0f %s, %s", msg_program(), done, what,
+		snprintf(text, sizeof text, "%s: %.0f %s, %s", program_name(), done, what,
 			duration(t - started, left));
 	put(text);
 }

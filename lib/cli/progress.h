@@ -4,11 +4,11 @@
  * is a terminal.  Programs of one pipeline have a line each, in their order; the line is
  * erased at the end.
  */
-#ifndef SHELL_PROGRESS_H
-#define SHELL_PROGRESS_H
+#ifndef CLI_PROGRESS_H
+#define CLI_PROGRESS_H
 
-/* done of total of what, such as "steps"; total <= 0: unknown, tells done alone.  Cheap to
- * call often. */
+/* done of total of what, such as "steps"; total <= 0: unknown, tells done alone.  Cheap
+ * to call often. */
 void progress(const char *what, double done, double total);
 /* Bytes that were read of the input, which tell of programs that call nothing else. */
 void progress_read(double bytes, double total);

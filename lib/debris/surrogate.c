@@ -341,7 +341,7 @@ enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_
 		enum part p = part_of(place);
 
 		end = surface_end(sample, n, i);
-		memset(part + i, p, end - i);
+		memset(part + i, (int)p, end - i);
 		fitted += p == FIT ? end - i : 0;
 		report->fitted += p == FIT;
 		report->calibrated += p == CALIBRATE;

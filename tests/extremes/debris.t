@@ -3,19 +3,8 @@
 # A description reads: scene | expectation | outcome | error
 . "$(dirname "$0")/../tap.sh"
 
-# scene NAME EXPECTATION WANT TOLERANCE GOT: a number within its relative tolerance
-scene() {
-	error=$(awk -v g="$5" -v w="$3" 'BEGIN { if (g !~ /^[-+]?[0-9.]/) print "none"
-		else { d = (g - w) / (w == 0 ? 1 : w); printf "%.1e", d < 0 ? -d : d } }')
-	near "$1 | $2 | $5 | $error" "$error" 0 "$4"
-}
-
-# refused NAME PATTERN COMMAND...
-refused() {
-	name=$1
-	shift
-	fails "$name | refused in one line | $1 | none" 1 "$@"
-}
+# shellcheck source=tests/extremes/scenes.sh
+. "${test_file%/*}/scenes.sh"
 
 # One loaded cell of side 1 um and 1 GPa in the middle of 9 x 9.
 roughgen -n 9 -L 9um --sq 0 --crown 9um | bemcontact -F 1mN --estar 1000TPa >cell.nrrd
@@ -31,15 +20,15 @@ below() {
 # Below the middle of the pyramid of pressure of one cell (sums over 10^4 parts of it,
 # extrapolated); from far away a point load: 3/2pi + (1 - 2 nu)/4pi over z^2.
 # Near the surface the values are those at z = 0 and a term in z/h.
-scene "one cell, z/h = 1e-6" "0.2 p under the middle" 0.2e9 2e-4 "$(below 1e-12m)"
-scene "one cell, z/h = 0.5" "0.436438 p" 436438093 3e-5 "$(below 0.5um)"
-scene "one cell, z/h = 5" "0.0196142 p" 19614181 2e-5 "$(below 5um)"
+relative "one cell, z/h = 1e-6" "0.2 p under the middle" 0.2e9 2e-4 "$(below 1e-12m)"
+relative "one cell, z/h = 0.5" "0.436438 p" 436438093 3e-5 "$(below 0.5um)"
+relative "one cell, z/h = 5" "0.0196142 p" 19614181 2e-5 "$(below 5um)"
 far() { awk -v z="$1" 'BEGIN { printf "%.17g", 1e9 * (1.5 + 0.1) / 3.14159265358979324 / z ^ 2 }'; }
-scene "one cell, z/h = 1e3" "a point load" "$(far 1e3)" 1e-6 "$(below 1mm)"
-scene "one cell, z/h = 1e4" "a point load" "$(far 1e4)" 1e-7 "$(below 10mm)"
-scene "mu = 5, on the surface" "sqrt(0.2^2 + 3 5^2) p" 8662563131.083085 1e-5 "$(below 1e-12m -u 5)"
-scene "nu = 0.5, on the surface" "a hydrostatic patch: 0, in Pa" 0 5e4 "$(below 1e-12m --poisson 0.5)"
-scene "nu = 0, on the surface" "sxx = syy = -p/2: 0.5 p" 0.5e9 1e-4 "$(below 1e-12m --poisson 0)"
+relative "one cell, z/h = 1e3" "a point load" "$(far 1e3)" 1e-6 "$(below 1mm)"
+relative "one cell, z/h = 1e4" "a point load" "$(far 1e4)" 1e-7 "$(below 10mm)"
+relative "mu = 5, on the surface" "sqrt(0.2^2 + 3 5^2) p" 8662563131.083085 1e-5 "$(below 1e-12m -u 5)"
+relative "nu = 0.5, on the surface" "a hydrostatic patch: 0, in Pa" 0 5e4 "$(below 1e-12m --poisson 0.5)"
+relative "nu = 0, on the surface" "sxx = syy = -p/2: 0.5 p" 0.5e9 1e-4 "$(below 1e-12m --poisson 0)"
 
 # The same scene in other units.
 cells() {
@@ -62,9 +51,9 @@ debrisgen -Y 1e30 -S st cell.nrrd >t
 is "nothing fails | no particle | $(grep -vc '^[#r]' t) rows, $(column layers st) layers searched | 0" \
 	"$(grep -vc '^[#r]' t) $(column layers st)" "0 1"
 roughgen -n 9 -L 9um --sq 0 --crown 9um | bemcontact -F 1N --estar 1000TPa >crushed.nrrd
-refused "everything fails" "deeper than ten times" debrisgen --yield 1MPa crushed.nrrd
+refused "everything fails" 1 "deeper than ten times" debrisgen --yield 1MPa crushed.nrrd
 roughgen -n 32 -L 1mm --sq 1nm -l 200um | bemcontact --pressure 1GPa -E 210GPa --boundary periodic >flat.nrrd
-refused "everything fails, periodic" "deeper than ten times" debrisgen --stop-area 1 -Y 1MPa --boundary periodic flat.nrrd
+refused "everything fails, periodic" 1 "deeper than ten times" debrisgen --stop-area 1 -Y 1MPa --boundary periodic flat.nrrd
 debrisgen --stop-area 1 -Y 600MPa --boundary periodic flat.nrrd >t 2>err
 is "periodic, yield just above the confined mean 4/7 p | no particle | $(grep -vc '^[#r]' t) rows | 0" \
 	"$(grep -vc '^[#r]' t) $(cat err)" "0 "
@@ -79,7 +68,7 @@ debrisgen -u 0.3 -Y "$(times_peak 1.000000000001)" cell.nrrd >t
 is "yield 1e-12 above the largest stress | no particle | $(grep -vc '^[#r]' t) rows | 0" \
 	"$(grep -vc '^[#r]' t)" 0
 debrisgen -u 0.3 -Y "$(times_peak 0.999999999999)" --depth-step 10um cell.nrrd >t
-scene "yield 1e-12 below it" "one cell, 12.41 um across" \
+relative "yield 1e-12 below it" "one cell, 12.41 um across" \
 	"$(awk 'BEGIN { printf "%.17g", (6 * 10 / 3.14159265358979324) ^ (1 / 3) * 1e-6 }')" 1e-6 "$(column diameter t)"
 
 # Thin, long and odd grids.
@@ -87,7 +76,7 @@ for n in 1x64 64x1 7x131; do
 	nx=${n%x*} ny=${n#*x}
 	roughgen -n $n -L "$(awk -v x="$nx" -v y="$ny" 'BEGIN { print x "um" "x" y "um" }')" -q 0.1um -l 5um |
 		bemcontact --pressure 50MPa -E 210GPa | debrisgen -Y 355MPa -u 0.3 --summary s.tsv 2>err >t
-	scene "$n cells" "particles have the volume worn off" \
+	relative "$n cells" "particles have the volume worn off" \
 		"$(column volume t | awk '{ s += $1 } END { printf "%.17g", s }')" 1e-12 "$(column volume s.tsv)"
 done
 roughgen -n 16 -L 1mmx10um -q 0.1um -l 8um | bemcontact -F 1N -E 210GPa |
@@ -98,8 +87,8 @@ ok "cells 1:100 | a table | $(grep -vc '^[#r]' t) particles | none" test -s t
 roughgen -n 64 -L 1mm --sq 0 --crown 50um | bemcontact -F 50N -E 210GPa >ball.nrrd
 volume() { debrisgen -Y 355MPa -u 0.3 --layer mid --depth-step "$1" --summary s.tsv ball.nrrd >t && column volume s.tsv; }
 fine=$(volume 2um)
-scene "cells 8 times flatter" "the volume of 2 um steps" "$fine" 0.01 "$(volume 1um)"
-scene "cells twice as tall, eight deep" "the volume of 2 um steps" "$fine" 0.2 "$(volume 31.25um)"
+relative "cells 8 times flatter" "the volume of 2 um steps" "$fine" 0.01 "$(volume 1um)"
+relative "cells twice as tall, eight deep" "the volume of 2 um steps" "$fine" 0.2 "$(volume 31.25um)"
 
 if [ -x "$top/build/unit/particles_large" ]; then
 	"$top/build/unit/particles_large" >large

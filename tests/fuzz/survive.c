@@ -2,6 +2,7 @@
  * instead of ending the process.  What a refused stream had taken is not given back. */
 #include "survive.h"
 #include "cli/msg.h"
+#include "cli/program.h"
 #include "cli/stats.h"
 #include <stdarg.h>
 #include <stdio.h>
@@ -12,7 +13,7 @@
 jmp_buf refused;
 int verbose;
 
-void msg_name(const char *program)
+void program_set_name(const char *program)
 {
 	(void)program;
 }

@@ -69,7 +69,7 @@ for f in "$top"/tests/fuzz/corpus/fields/* "$top"/tests/fuzz/corpus/signals/* "$
 		1) [ "$(wc -l <err)" = 1 ] || odd="$odd ${f##*/}:$(wc -l <err) lines" ;;
 		*) odd="$odd ${f##*/}:$got" ;;
 		esac
-		! grep -q "$(printf '\033')" out err || odd="$odd ${f##*/}:escape"
+		! grep -q "$(printf '\033')" err || odd="$odd ${f##*/}:escape"
 	done
 done
 is 'every stream of the corpus is read or refused' "$odd" ''
