@@ -181,9 +181,10 @@ column rul_q50 out | tail -1 >r
 near "the recursion continues an exponential" "$(cat r)" "$(awk 'BEGIN { print log(2.8 / 1.5) / 0.01 - 39 }')" 2
 
 # Each model on the series it is made for, without noise: the end is at t = 100.
-for shape in 'linear t / 100' 'exponential 0.3 * (exp(log(1 + 1 / 0.3) * t / 100) - 1)' \
+for shape in 'linear t / 100' 'exponential 0.12 * (exp(log(1 + 1 / 0.12) * t / 100) - 1)' \
 	'power 0.3 * ((1 - (1 - (1 + 1 / 0.3) ^ -0.5) * t / 100) ^ -2 - 1)' \
-	'rate -log(1 - (1 - exp(-3)) * t / 100) / 3' 'average t / 100'; do
+	'rate -log(1 - (1 - exp(-3)) * t / 100) / 3' \
+	'saturating (1 - 0.2 ^ (t / 100)) / 0.8' 'average t / 100'; do
 	model=${shape%% *}
 	awk "BEGIN { print \"t\\ty\"; for (t = 0; t < 51; t++) printf \"%d\\t%.15g\\n\", t, ${shape#* } }" >one.tsv
 	aopf -y 1 --direction up --model "$model" one.tsv | column rul_q50 /dev/stdin | tail -1 >r

@@ -118,7 +118,7 @@ near "5 % of the paths wear less than the limit of Student" \
 	"$(column mean rates.tsv | sort -g | sed -n 200p)" "$(calc "$mean * exp(-1.75305 * $error)")" \
 	"$(calc "0.01 * $mean")"
 near "5 % of the paths wear more than the limit with the second-order term" "$(column mean rates.tsv | sort -g | sed -n 3800p)" \
-	"$(calc "$mean * exp(1.75305 * $error + (1.75305 * $error)^2 / 2)")" "$(calc "0.01 * $mean")"
+	"$(calc "$mean * exp(1.75305 * $error + 1.2 * (1.75305 * $error)^2)")" "$(calc "0.01 * $mean")"
 ok "with --parts 1 a class wears like one fragment" rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um -c 4000 --parts 1
 rising "with --parts 1 the scatter is larger" "$(calc "1.3 * $(cell spread.out 1 q95)")" "$(cell out 1 q95)"
 ok "--wear-rate last samples a rate in every step" rwl --new --wear spread.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um -c 4000 --parts 1 --wear-rate last

@@ -17,12 +17,13 @@
  * (Chen, Liu, J. R. Stat. Soc. B 62 (2000) 493).  The lightest make room for new ones.
  *
  * Lines and particles are averaged by the logarithm of their one-step predictive
- * densities, which fades with age as j / k and counts for at most twenty rows: rows are
- * not independent given a wrong model (Raftery, Karny, Ettler, Technometrics 52 (2010)
- *52; Grunwald, van Ommen, Bayesian Analysis 12 (2017) 1069).
+ * densities, which fades with age as j / k; n rows count as sqrt(16 n), since they are
+ *not independent given a wrong model (Raftery, Karny, Ettler, Technometrics 52 (2010) 52;
+ * Grunwald, van Ommen, Bayesian Analysis 12 (2017) 1069).
  *
  * The future has regime changes too: after a time J with P(J > x) = (a / (a + x))^c at
- *age a (what has gone on for long goes on for long) the rate begins to grow, or falls.
+ * age a (what has gone on for long goes on for long) the rate begins to grow, or falls:
+ * more often so in coordinates in which it has been falling.
  *
  * What happens to machines: a row that all lines find surprising is held back.  It is
  * dropped as an outlier when a later row is in order; when three in a row lie on the
@@ -49,12 +50,14 @@ enum bank_family {
 	BANK_EXPONENTIAL = 2,
 	BANK_POWER = 4,
 	BANK_RATE = 8,
-	BANK_OTHER = 16, /* the caller's coordinates */
-	BANK_ALL = 31
+	BANK_SATURATING = 16,
+	BANK_OTHER = 32, /* the caller's coordinates */
+	BANK_ALL = 63
 };
 
-/* g(D) = e^{par D} where scale is 0, else (1 + D / scale)^par; or, where there is a path,
- * dD over the age at which another unit had D. */
+/* g(D) = e^{par D} where scale is 0, else (1 + D / scale)^par; (1 + scale D) (1 - par D)
+ * of BANK_SATURATING, par < 1; or, where there is a path, dD over the age at which
+ * another unit had D. */
 struct bank_shape {
 	unsigned family;
 	double scale, par;

@@ -101,11 +101,3 @@ void draw_normals(struct draw *d, double *z, size_t n)
 	for (size_t i = 0; i < n; i++)
 		z[i] = normal(d);
 }
-
-double chi2_from_normal(double freedom, double z)
-{
-	double spread = 2 / (9 * freedom), root = 1 - spread + sqrt(spread) * z;
-
-	root = fmax(root, 0.1);
-	return freedom * root * root * root;
-}

@@ -21,8 +21,4 @@ void draw_normals(struct draw *draw, double *z, size_t n);
 double draw_normal(struct draw *draw);
 double draw_uniform(struct draw *draw); /* in (0, 1) */
 
-/* Chi-square deviate made of a standard normal one (Wilson, Hilferty, PNAS 17 (1931)
- * 684), kept above 0; within 2 % of its quantiles from three degrees of freedom on. */
-double chi2_from_normal(double freedom, double z);
-
 #endif

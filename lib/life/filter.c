@@ -1,6 +1,7 @@
 /* filter.c - see filter.h */
 #include "life/filter.h"
 #include "num/lanes.h"
+#include "num/student.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -228,8 +229,7 @@ static double log_constant(const struct filter *f, double noise)
 	double nu = f->par.freedom;
 
 	if (nu > 0)
-		return lgamma(0.5 * (nu + 1)) - lgamma(0.5 * nu) - 0.5 * log(nu * M_PI) -
-		       log(noise);
+		return student_log_constant(nu) - log(noise);
 	return -0.5 * log(2 * M_PI) - log(noise);
 }
 

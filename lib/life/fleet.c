@@ -71,11 +71,6 @@ const struct bank_shape *fleet_shapes(const struct fleet *f, int *n)
 	return f->shape;
 }
 
-static double median3(double a, double b, double c)
-{
-	return fmax(fmin(a, b), fmin(fmax(a, b), c));
-}
-
 static int grow(struct unit *p)
 {
 	int room = p->room ? 2 * p->room : 64;
@@ -138,7 +133,7 @@ int fleet_add(struct fleet *f, int unit, double t, double y)
 	p->y[0] = f->direction * y;
 	if (p->rows < SMOOTHED)
 		return rise(p, t - p->first, p->y[0]);
-	return rise(p, p->t[1] - p->first, median3(p->y[0], p->y[1], p->y[2]));
+	return rise(p, p->t[1] - p->first, median_of_three(p->y[0], p->y[1], p->y[2]));
 }
 
 /* Carries a unit on to the threshold by what its own bank foresees; 0: no memory. */

@@ -1,6 +1,7 @@
 #include "life/forecast.h"
 #include "life/bank.h"
 #include "life/remaining.h"
+#include "num/select.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -85,11 +86,6 @@ void forecast_free(struct forecast *f)
 	free(f);
 }
 
-static double median3(const double *x)
-{
-	return fmax(fmin(x[0], x[1]), fmin(fmax(x[0], x[1]), x[2]));
-}
-
 /* The bank takes a row.  Its coordinates begin at the median of the first three values on
  * the good side of the limit. */
 static void follow(struct forecast *f, double t, double y, double threshold)
@@ -98,7 +94,7 @@ static void follow(struct forecast *f, double t, double y, double threshold)
 
 	if (f->starts < 3 && y < threshold) {
 		f->start[f->starts++] = y;
-		base = median3(f->start);
+		base = median_of_three(f->start[0], f->start[1], f->start[2]);
 		if (f->starts == 3 && base > 0)
 			f->other.scale = base / (threshold - base);
 		else if (f->starts == 3)

@@ -5,14 +5,9 @@
 void grey_add(struct grey *g, double x, double gap)
 {
 	if (g->n > 0) {
-		double rows = g->n, share = g->oldest * gap;
-		double du = g->tail + share / 2 - g->mean_u, dx = g->oldest - g->mean_x;
+		double share = g->oldest * gap;
 
-		g->mean_u += du / rows;
-		g->mean_x += dx / rows;
-		g->suu += du * (g->tail + share / 2 - g->mean_u);
-		g->sux += du * (g->oldest - g->mean_x);
-		g->sxx += dx * (g->oldest - g->mean_x);
+		regression_add(&g->fit, g->tail + share / 2, g->oldest);
 		g->tail += share;
 		g->span += gap;
 	}
@@ -22,12 +17,15 @@ void grey_add(struct grey *g, double x, double gap)
 
 double grey_rate(const struct grey *g)
 {
-	return g->suu > 0 && isfinite(g->suu) && isfinite(g->sux) ? g->sux / g->suu : 0;
+	return g->fit.xx > 0 && isfinite(g->fit.xx) && isfinite(g->fit.xy)
+		       ? g->fit.xy / g->fit.xx
+		       : 0;
 }
 
 double grey_level(const struct grey *g)
 {
-	return g->n > 1 ? g->mean_x + grey_rate(g) * (g->tail - g->mean_u) : g->oldest;
+	return g->n > 1 ? g->fit.mean_y + grey_rate(g) * (g->tail - g->fit.mean_x)
+			: g->oldest;
 }
 
 double grey_control(const struct grey *g)
@@ -37,14 +35,14 @@ double grey_control(const struct grey *g)
 
 double grey_residual(const struct grey *g)
 {
-	double sum = g->sxx - grey_rate(g) * g->sux;
+	double sum = g->fit.yy - grey_rate(g) * g->fit.xy;
 
 	return g->n > 3 && sum > 0 ? sum / (g->n - 3) : 0;
 }
 
 double grey_rate_error(const struct grey *g)
 {
-	return g->suu > 0 ? sqrt(grey_residual(g) / g->suu) : 0;
+	return g->fit.xx > 0 ? sqrt(grey_residual(g) / g->fit.xx) : 0;
 }
 
 double grey_level_error(const struct grey *g)

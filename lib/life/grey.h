@@ -20,6 +20,7 @@
 #define LIFE_GREY_H
 
 #include "num/lanes.h"
+#include "num/running.h"
 
 enum { GREY_ORDER_MIN = 4 }; /* fewest points of a fit */
 
@@ -29,8 +30,7 @@ struct grey {
 	double oldest;         /* the last one taken */
 	double span;           /* steps from it to the newest */
 	double tail;           /* integral of the points newer than it */
-	double mean_u, mean_x; /* over the n - 1 intervals */
-	double suu, sux, sxx;  /* centred sums */
+	struct regression fit; /* of x on u over the n - 1 intervals */
 };
 
 /* Takes the next older point, gap steps before the one taken last (the gap of the
@@ -47,7 +47,7 @@ double grey_control(const struct grey *g);
 /* Mean squared residual of the fit; 0 below four points. */
 double grey_residual(const struct grey *g);
 /* Standard error of a, and of c for a given a (they are uncorrelated at that
- * representation: c = mean + a (tail - mean_u)). */
+ * representation: c = mean of x + a (tail - mean of u)). */
 double grey_rate_error(const struct grey *g);
 double grey_level_error(const struct grey *g);
 

@@ -13,7 +13,7 @@ struct moment {
 struct sums {
 	double scale, unit; /* of values and times: the first value, the first interval */
 	double oldest, span, integral;
-	double mean_z, mean_x, szz, szx, sxx;
+	struct regression fit;
 };
 
 struct observed {
@@ -47,7 +47,7 @@ void observed_begin(struct observed *o, double t, double gap)
 static void add_sums(struct observed *o, double dt, double value)
 {
 	struct sums *s = &o->sums;
-	double gap, x, z, dz, dx, rows = (double)o->points;
+	double gap, x;
 
 	if (o->points++ == 0) {
 		*s = (struct sums){ .scale = value != 0 ? fabs(value) : 1 };
@@ -58,14 +58,7 @@ static void add_sums(struct observed *o, double dt, double value)
 		s->unit = dt;
 	gap = dt / s->unit;
 	x = value / s->scale;
-	z = s->integral + x * gap / 2;
-	dz = z - s->mean_z;
-	dx = x - s->mean_x;
-	s->mean_z += dz / rows;
-	s->mean_x += dx / rows;
-	s->szz += dz * (z - s->mean_z);
-	s->szx += dz * (x - s->mean_x);
-	s->sxx += dx * (x - s->mean_x);
+	regression_add(&s->fit, s->integral + x * gap / 2, x);
 	s->integral += x * gap;
 	s->span += gap;
 }
@@ -121,11 +114,8 @@ double observed_grey(const struct observed *o, double threshold)
 		.oldest = s->oldest,
 		.span = s->span,
 		.tail = s->integral,
-		.mean_u = s->integral - s->mean_z,
-		.mean_x = s->mean_x,
-		.suu = s->szz,
-		.sux = -s->szx,
-		.sxx = s->sxx };
+		.fit = { s->fit.n, s->integral - s->fit.mean_x, s->fit.mean_y, s->fit.xx,
+			-s->fit.xy, s->fit.yy } };
 	double now, rate;
 
 	if (o->points < GREY_ORDER_MIN)

@@ -2,6 +2,7 @@
 #include "life/paths.h"
 #include "life/remaining.h"
 #include "num/rng.h"
+#include "num/select.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -75,13 +76,6 @@ const struct path *paths_get(const struct paths *e, long i)
 	return e->path ? &e->path[i] : NULL;
 }
 
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
 void paths_rate(const struct paths *e, double *mean, double *sd)
 {
 	size_t n = (size_t)e->par.count;
@@ -95,7 +89,7 @@ void paths_rate(const struct paths *e, double *mean, double *sd)
 		return;
 	for (size_t i = 0; i < n; i++)
 		rate[i] = e->path[i].wear.mean / (e->par.area * e->path[i].step_time);
-	qsort(rate, n, sizeof *rate, ascending);
+	sort_numbers(rate, n);
 	*mean = rate[n / 2];
 	/* Never certain: an ensemble without spread has but one realisation. */
 	*sd = fmax(

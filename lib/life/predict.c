@@ -2,6 +2,7 @@
 #include "life/predict.h"
 #include "life/grey.h"
 #include "life/history.h"
+#include "num/select.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -21,7 +22,7 @@ struct predict {
 struct predict *predict_new(const struct predict_par *par)
 {
 	static const unsigned families[] = { BANK_ALL, BANK_LINEAR, BANK_EXPONENTIAL,
-		BANK_POWER, BANK_RATE, 0, 0 };
+		BANK_POWER, BANK_RATE, BANK_SATURATING, 0, 0 };
 	struct predict *p = calloc(1, sizeof *p);
 	struct bank_par bank = { .threshold = par->threshold,
 		.direction = par->direction,
@@ -125,8 +126,8 @@ static int draw_grey(struct predict *p, double *life)
 		double rate_z = bank_chance_normal(p->par.chances, i, 0),
 		       level_z = bank_chance_normal(p->par.chances, i, 1);
 		double rate = grey_rate(&g) + grey_rate_error(&g) * rate_z;
-		double level = g.mean_x + grey_level_error(&g) * level_z +
-			       rate * (g.tail - g.mean_u);
+		double level = g.fit.mean_y + grey_level_error(&g) * level_z +
+			       rate * (g.tail - g.fit.mean_x);
 
 		life[i] = grey_crossing(
 			p, level, rate, g.span + p->now.last - t[n - 1], gap);
@@ -148,13 +149,6 @@ static int draw_lives(struct predict *p, double *life)
 	return 1;
 }
 
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
 int predict_life(struct predict *p, double *life)
 {
 	double horizon = p->par.horizon;
@@ -168,7 +162,7 @@ int predict_life(struct predict *p, double *life)
 	for (int i = 0; i < n; i++)
 		if (!(life[i] <= horizon))
 			life[i] = INFINITY;
-	qsort(life, (size_t)n, sizeof *life, ascending);
+	sort_numbers(life, (size_t)n);
 	return 1;
 }
 

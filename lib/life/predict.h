@@ -22,6 +22,7 @@ enum predict_model {
 	PREDICT_EXPONENTIAL,
 	PREDICT_POWER,
 	PREDICT_RATE,
+	PREDICT_SATURATING,
 	PREDICT_GREY,   /* GM(1,1) through all filtered states */
 	PREDICT_LITERAL /* particles go on step by step, see adaptive_lives() */
 };

@@ -1,5 +1,6 @@
 /* remaining.c - see remaining.h */
 #include "life/remaining.h"
+#include "num/select.h"
 #include <gsl/gsl_randist.h>
 #include <math.h>
 #include <stdlib.h>
@@ -68,13 +69,6 @@ double remaining_large(long step, double step_time, double t)
 	return step < 1 ? INFINITY : fmax((double)step * step_time - t, 0);
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
 struct remaining_summary remaining_sum_up(double *sample, size_t n, double horizon)
 {
 	double mean = 0;
@@ -83,7 +77,7 @@ struct remaining_summary remaining_sum_up(double *sample, size_t n, double horiz
 	for (size_t i = 0; i < n; i++)
 		if (!(sample[i] <= horizon))
 			sample[i] = INFINITY;
-	qsort(sample, n, sizeof *sample, compare_numbers);
+	sort_numbers(sample, n);
 	/* Running mean: no overflow at 1e300. */
 	for (; failed < n && isfinite(sample[failed]); failed++)
 		mean += (sample[failed] - mean) / (double)(failed + 1);

@@ -1,4 +1,6 @@
 #include "num/select.h"
+#include <math.h>
+#include <stdlib.h>
 
 enum { SHORT = 16 };
 
@@ -72,4 +74,21 @@ static void select_between(
 void select_ranks(double *v, size_t n, const size_t *rank, size_t count)
 {
 	select_between(v, 0, (ptrdiff_t)n - 1, rank, count);
+}
+
+static int ascending(const void *a, const void *b)
+{
+	double x = *(const double *)a, y = *(const double *)b;
+
+	return (x > y) - (x < y);
+}
+
+void sort_numbers(double *v, size_t n)
+{
+	qsort(v, n, sizeof *v, ascending);
+}
+
+double median_of_three(double a, double b, double c)
+{
+	return fmax(fmin(a, b), fmin(fmax(a, b), c));
 }

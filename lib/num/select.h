@@ -9,4 +9,8 @@
  * Expected work n log(count).  No NAN. */
 void select_ranks(double *v, size_t n, const size_t *rank, size_t count);
 
+/* Ascending order; INFINITY may be among them, NAN not. */
+void sort_numbers(double *v, size_t n);
+double median_of_three(double a, double b, double c);
+
 #endif

@@ -30,3 +30,9 @@ double student_two_sided(double share, long freedom)
 	}
 	return 0.5 * (low + high);
 }
+
+double student_log_constant(double freedom)
+{
+	return lgamma(0.5 * (freedom + 1)) - lgamma(0.5 * freedom) -
+	       0.5 * log(freedom * M_PI);
+}

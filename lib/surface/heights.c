@@ -1,28 +1,11 @@
 /* heights.c - heights of given skewness and kurtosis */
 #include "surface/heights.h"
+#include "num/deviates.h"
 #include "num/status.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* ---- the normal distribution ---- */
-
-double normal_quantile(double p)
-{
-	double tail = p < 0.5 ? p : 1 - p, t = sqrt(-2 * log(tail)), x;
-
-	/* Rational start (Hastings 1955, sheet 68), then Halley's steps on erfc. */
-	x = t - (2.515517 + t * (0.802853 + t * 0.010328)) /
-			(1 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
-	for (int i = 0; i < 3; i++) {
-		double error = 0.5 * erfc(x / sqrt(2)) - tail;
-		double u = -error * sqrt(2 * M_PI) * exp(x * x / 2);
-
-		x -= u / (1 + x * u / 2);
-	}
-	return p < 0.5 ? -x : x;
-}
 
 /* ---- Johnson's system ---- */
 

@@ -22,9 +22,6 @@ enum heights_status {
 enum heights_status heights_sorted(
 	size_t n, double skewness, double kurtosis, double *sorted);
 
-/* Quantile of the standard normal distribution, 0 < p < 1. */
-double normal_quantile(double p);
-
 /* Memory for ordering n numbers. */
 struct ranking;
 struct ranking *ranking_new(size_t n); /* NULL without memory */

@@ -18,7 +18,7 @@ enum { UP, DOWN, AUTO };
 enum { GREY = PREDICT_GREY };
 static const char *const directions[] = { "up", "down", "auto", NULL };
 static const char *const models[] = { "average", "linear", "exponential", "power", "rate",
-	"grey", "literal", NULL };
+	"saturating", "grey", "literal", NULL };
 static const char *const skips[] = { "auto", NULL };
 
 struct outlook_options outlook_options = { .threshold = NAN };
@@ -52,7 +52,7 @@ struct opt outlook_end_rows[] = { OPT_HEADING("End of life"),
 
 struct opt outlook_model_rows[] = { OPT_HEADING("Prediction"),
 	{ 0, "model", OPT_WORD, UNIT_NONE, &model, 0, 0,
-		"average|linear|exponential|power|rate|grey|literal", "long-term model",
+		"average|linear|exponential|power|rate|saturating|grey|literal", "long-term model",
 		models, 0 },
 	{ 0, "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, DBL_MAX, "T",
 		"longest remaining life; 0: ten times the time so far", NULL, 0 },
@@ -90,7 +90,8 @@ static const struct {
 	const char *name;
 	enum bank_family family;
 } weighed[] = { { "linear", BANK_LINEAR }, { "exponential", BANK_EXPONENTIAL },
-	{ "power", BANK_POWER }, { "rate", BANK_RATE }, { "fleet", BANK_OTHER },
+	{ "power", BANK_POWER }, { "rate", BANK_RATE },
+	{ "saturating", BANK_SATURATING }, { "fleet", BANK_OTHER },
 	{ "changed", BANK_ALL } };
 
 enum { WEIGHED = sizeof weighed / sizeof *weighed };

@@ -3,7 +3,7 @@
 #include "cli/stats.h"
 #include "common/time_unit.h"
 #include "io/quantities.h"
-#include "life/slope.h"
+#include "num/running.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,7 +72,7 @@ void state_open(struct state *s, const char *file, const struct pair *pair)
 	for (enum pair_quantity q = PAIR_LEAKAGE;
 		q <= PAIR_DEBRIS && s->quantity == PAIR_AUTO && s->value_column < 0; q++)
 		if (table_find(t, columns[q]) >= 0)
-			s->quantity = q;
+			s->quantity = (enum pair_quantity)q;
 	if (s->quantity == PAIR_AUTO)
 		s->quantity = PAIR_LEAKAGE;
 	s->filtered = s->value_column >= 0 && s->quantity != PAIR_DEBRIS;
@@ -145,15 +145,15 @@ int state_next(struct state *s)
 
 double state_slope(const char *file, const struct pair *pair, double skip)
 {
-	struct slope line = { 0 };
+	struct regression line = { 0 };
 	struct state s;
 	double slope;
 
 	state_open(&s, file, pair);
 	while (state_next(&s))
 		if (!isnan(s.gap) && s.t - s.first_t >= skip)
-			slope_add(&line, s.t, s.gap);
-	slope = slope_get(&line);
+			regression_add(&line, s.t, s.gap);
+	slope = regression_slope(&line);
 	if (!(slope > 0) || !isfinite(slope))
 		die(EXIT_RUN, "%s: the unit for the calibration does not wear", file);
 	table_close(s.table);

@@ -19,7 +19,7 @@
 
 /* Values of the options. */
 extern struct state_options {
-	int quantity;
+	enum pair_quantity quantity;
 	const char *unit;
 	double error; /* in that unit */
 } state_options;

@@ -2,11 +2,13 @@
  *
  * usage: build/long/lives [PATHS]
  *
- * The first ten kinds are those on whose like the constants of the bank were chosen, with
+ * The first 13 kinds are those on whose like the constants of the bank were chosen, with
  * other seeds here; the rest only judge: other shapes, other sampling, heavy tails,
  * correlated noise, outliers, rounded, missing and repeated values.  Wear that slows down
- * (logarithm, sigmoid) is a known limit: the bank expects it to go on or to turn.  Each
- * path has a random length, noise, offset, range, direction and unit of time. */
+ * without a sign of it so far (a sudden fall of the rate, a late turn of an S) is a known
+ * limit.  Each path has a random length, noise, offset, range, direction and unit of
+ * time.
+ */
 #include "../unit/tap.h"
 #include "life/bank.h"
 #include "life/draw.h"
@@ -156,6 +158,35 @@ static double stairs(double t)
 	return (step + fmin(1, (t * n - step) / p[1])) / n;
 }
 
+static double hill(double t)
+{
+	double c = pow(p[1], p[0]), x = pow(t, p[0]);
+
+	return x / (x + c) * (1 + c);
+}
+
+static double saturating(double t)
+{
+	return expm1(-p[0] * t) / expm1(-p[0]);
+}
+
+static double fall(double t)
+{
+	return (fmin(t, p[0]) + p[1] * fmax(0, t - p[0])) / (p[0] + p[1] * (1 - p[0]));
+}
+
+static double tangent(double t)
+{
+	return tanh(p[0] * t) / tanh(p[0]);
+}
+
+static double gompertz(double t)
+{
+	double low = exp(-p[0]), high = exp(-p[0] * exp(-p[1]));
+
+	return (exp(-p[0] * exp(-p[1] * t)) - low) / (high - low);
+}
+
 /* Processes: the next damage after dt from damage d at time t. */
 
 static double wiener(double d, double t, double dt)
@@ -173,6 +204,12 @@ static double gamma_process(double d, double t, double dt)
 static double faster_wiener(double d, double t, double dt)
 {
 	return d + (0.3 + 1.4 * t) * dt + p[0] * sqrt(dt) * draw_normal(dice);
+}
+
+static double slower_wiener(double d, double t, double dt)
+{
+	return d - 1.05 * p[1] * exp(-p[1] * t) / expm1(-p[1]) * dt +
+	       p[0] * sqrt(dt) * draw_normal(dice);
 }
 
 static double gamma_knee(double d, double t, double dt)
@@ -203,17 +240,25 @@ static const struct kind {
 		{ { 0.1, 0.3 }, { 0.05, 0.15 }, { 0.2, 0.4 }, { 0.08, 0.15 } }, 0,
 		{ 0.8, 0.8, 0.8 } },
 	{ "bearing", bearing, NULL, { { 0.03, 0.15 } }, 0, { 0.8, 0.8, 0.8 } },
-	{ "power", power, NULL, { { 1.5, 4 } }, 1, { 0.8, 0.8, 0.8 } },
+	{ "Hill", hill, NULL, { { 1.5, 4 }, { 0.35, 0.8 } }, 0, { 0.6, 0.6, 0.8 } },
+	{ "saturating", saturating, NULL, { { 1, 4 } }, 0, { 0.85, 0.85, 0.85 } },
+	{ "fall", fall, NULL, { { 0.2, 0.7 }, { 0.15, 0.6 } }, 0, { 0.25, 0.6, 0.9 } },
+	{ "power", power, NULL, { { 1.5, 4 } }, 1, { 0.8, 0.8, 0.7 } },
 	{ "steep", steep, NULL, { { 0.2, 0.6 }, { 0.3, 0.85 }, { 1.5, 6 } }, 1,
 		{ 0.8, 0.8, 0.8 } },
 	{ "two knees", two_knees, NULL,
 		{ { 0.2, 0.4 }, { 0.5, 0.8 }, { 0.4, 2.5 }, { 1, 7 } }, 1,
 		{ 0.8, 0.8, 0.8 } },
-	{ "logarithm", logarithm, NULL, { { 3, 50 } }, 1, { 0.3, 0.6, 0.8 } },
+	{ "logarithm", logarithm, NULL, { { 3, 50 } }, 1, { 0.8, 0.8, 0.8 } },
 	{ "season", season, NULL, { { 0.01, 0.04 }, { 10, 80 } }, 1, { 0.8, 0.8, 0.8 } },
-	{ "sigmoid", sigmoid, NULL, { { 4, 12 }, { 0.4, 0.8 } }, 1, { 0.7, 0.5, 0.4 } },
+	{ "sigmoid", sigmoid, NULL, { { 4, 12 }, { 0.4, 0.8 } }, 1, { 0.75, 0.6, 0.55 } },
 	{ "stairs", stairs, NULL, { { 8, 30 }, { 0.1, 0.9 } }, 1, { 0.8, 0.8, 0.8 } },
 	{ "Wiener, ever faster", NULL, faster_wiener, { { 0.05, 0.25 } }, 1,
+		{ 0.8, 0.8, 0.8 } },
+	{ "low power", power, NULL, { { 0.3, 0.8 } }, 1, { 0.8, 0.8, 0.8 } },
+	{ "hyperbolic tangent", tangent, NULL, { { 1, 2.2 } }, 1, { 0.7, 0.7, 0.8 } },
+	{ "Gompertz", gompertz, NULL, { { 2, 6 }, { 3, 6 } }, 1, { 0.3, 0.4, 0.6 } },
+	{ "Wiener, ever slower", NULL, slower_wiener, { { 0.03, 0.12 }, { 0.7, 2.5 } }, 1,
 		{ 0.8, 0.8, 0.8 } },
 	{ "gamma with a knee", NULL, gamma_knee, { { 20, 200 }, { 0.4, 0.8 } }, 1,
 		{ 0.8, 0.8, 0.8 } },

@@ -2,8 +2,8 @@
  * on. */
 #include "life/forecast.h"
 #include "life/remaining.h"
-#include "life/slope.h"
 #include "num/rng.h"
+#include "num/running.h"
 #include "tap.h"
 #include <gsl/gsl_randist.h>
 
@@ -29,23 +29,23 @@ static void test_pair(void)
 	near(pair_limit(&p), 14e-6, 1e-18, "the first threshold reached counts");
 	near(pair_gap(&p, PAIR_VOLUME, 4e-9), 12e-6, 1e-18,
 		"the gap follows from the worn volume");
-	for (int q = PAIR_LEAKAGE; q <= PAIR_DEBRIS; q++)
+	for (enum pair_quantity q = PAIR_LEAKAGE; q <= PAIR_DEBRIS; q++)
 		near(pair_gap(&p, q, pair_value(&p, q, 13e-6)), 13e-6, 1e-17,
 			"volume and gap are inverse functions");
 }
 
 static void test_slope(void)
 {
-	struct slope s = { 0 };
+	struct regression s = { 0 };
 
-	slope_add(&s, 1, 2);
-	ok(!isfinite(slope_get(&s)), "one point gives no slope");
-	slope_add(&s, 2, 5);
-	slope_add(&s, 4, 11);
-	near(slope_get(&s), 3, 1e-14, "points on a line have its slope");
-	slope_add(&s, 5, 10);
+	regression_add(&s, 1, 2);
+	ok(!isfinite(regression_slope(&s)), "one point gives no slope");
+	regression_add(&s, 2, 5);
+	regression_add(&s, 4, 11);
+	near(regression_slope(&s), 3, 1e-14, "points on a line have its slope");
+	regression_add(&s, 5, 10);
 	/* sum (t - 3) (y - 7) / sum (t - 3)^2 = (10 + 2 + 4 + 6) / 10 */
-	near(slope_get(&s), 2.2, 1e-14,
+	near(regression_slope(&s), 2.2, 1e-14,
 		"points near a line have the least-squares slope");
 }
 
@@ -175,7 +175,7 @@ static void test_coverage(void)
 	static const char *const names[] = { "linear leakage", "linear gap",
 		"gamma process of the gap" };
 
-	for (int truth = LINEAR_LEAKAGE; truth <= GAMMA_GAP; truth++)
+	for (enum truth truth = LINEAR_LEAKAGE; truth <= GAMMA_GAP; truth++)
 		for (int by_gap = 0; by_gap < 2; by_gap++) {
 			double error = 0, one;
 			int held = 0;

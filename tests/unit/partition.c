@@ -94,6 +94,8 @@ static double draw_volume(int law, gsl_rng *rng)
 		return gsl_ran_gamma(rng, 0.5, 2);
 	case 4:
 		return exp(gsl_ran_gaussian(rng, 1) - 0.5);
+	case 5:
+		return exp(1.5 * gsl_ran_gaussian(rng, 1) - 1.125);
 	default:
 		return gsl_rng_uniform(rng) < 0.3 ? 0 : gsl_ran_gamma(rng, 4, 0.25 / 0.7);
 	}
@@ -129,19 +131,21 @@ static double coverage(int law, int k)
 	return (double)held / ENSEMBLES;
 }
 
-/* Measured with 20000 ensembles: 0.86 (lognormal, sigma 1, 10 of them) to 0.94; sampling
+/* Measured with 2000 ensembles: 0.88 (lognormal, sigma 1, 10 of them) to 0.94, and 0.84
+ * to 0.89 for the lognormal law of sigma 1.5, which did not choose the constant; sampling
  * error of 1000 ensembles of 100 draws: 0.012. */
 static void check_coverage(void)
 {
 	static const char *const laws[] = { "normal", "uniform", "exponential",
-		"gamma of shape 0.5", "lognormal of sigma 1", "gamma with zeros" };
+		"gamma of shape 0.5", "lognormal of sigma 1", "lognormal of sigma 1.5",
+		"gamma with zeros" };
 	static const int counts[] = { 3, 5, 10 };
 
-	for (int law = 0; law < 6; law++)
+	for (int law = 0; law < 7; law++)
 		for (int k = 0; k < 3; k++) {
 			double c = coverage(law, counts[k]);
 
-			ok(c > 0.84 && c < 0.965,
+			ok(c > (law == 5 ? 0.81 : 0.85) && c < 0.965,
 				"%s volumes, %d of them: 90 %% intervals hold the mean "
 				"in %.3f",
 				laws[law], counts[k], c);
