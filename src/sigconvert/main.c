@@ -40,7 +40,8 @@ static const struct opt opts[] = {
 	{ 0, "time", OPT_TEXT, UNIT_NONE, &time_column, 0, 0, "NAME",
 		"text: column of the times (default time or t)", NULL, 0 },
 	{ 0, "start", OPT_TEXT, UNIT_NONE, &start, 0, 0, "TIME",
-		"moment of the first sample in ISO 8601, if the input has none", NULL, 0 },
+		"moment of the first sample in ISO 8601, if the input has none", NULL,
+		0 },
 	{ 0, "skip-lines", OPT_INT, UNIT_COUNT, &skip, 0, 1000000, "N",
 		"text: number of lines before the heading", NULL, 0 },
 	{ 0, "scale", OPT_NUM, UNIT_NONE, &scale, -1e300, 1e300, "K",
@@ -66,7 +67,8 @@ static void check_options(void)
 	if (scale == 0)
 		die(EXIT_USAGE, "--scale must not be 0");
 	if (start && !moment_parse(start, &moment))
-		die(EXIT_USAGE, "--start %s: expected a moment like 2026-11-22T03:04:05.5Z",
+		die(EXIT_USAGE,
+			"--start %s: expected a moment like 2026-11-22T03:04:05.5Z",
 			start);
 }
 

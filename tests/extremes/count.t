@@ -32,9 +32,11 @@ is "1e11 particles in a millilitre | beyond the table | >28/>28/0 | none" "$(
 particles 3 1e-12 >atoms.tsv
 scene "particles of 1 pm" "their mass" 1 1e-6 "$(cell kg_per_hour --duration 1h --density 1000kg/m3 atoms.tsv |
 	awk '{ printf "%.9f", $1 / (3 * 3.14159265359 / 6 * 1e-33) }')"
+particles 3 1e-2 >balls.tsv
+scene "particles of 1 cm" "their mass" 1 1e-6 "$(cell kg_per_hour --duration 1h --density 1000kg/m3 balls.tsv |
+	awk '{ printf "%.9f", $1 / (3 * 3.14159265359 / 6 * 1e-3) }')"
 particles 3 1e6 >moons.tsv
-scene "particles of 1000 km" "their mass" 1 1e-6 "$(cell kg_per_hour --duration 1h --density 1000kg/m3 moons.tsv |
-	awk '{ printf "%.9f", $1 / (3 * 3.14159265359 / 6 * 1e21) }')"
+refused "particles of 1000 km" 1 'want metres' debriscount --duration 1h moons.tsv
 particles 2 1e-6 >blind.tsv
 scene "particles that are seen in one of 1e6 cases" "each stands for as many" 1 1e-5 "$(
 	cell number --duration 1h --d50 1m --detection-threshold 4.753424 blind.tsv | awk '{ printf "%.6f", $1 / 2e6 }')"
