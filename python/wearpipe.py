@@ -1,4 +1,4 @@
-"""Rough contact, wear particles, filters and remaining wear life for numpy.
+"""Rough contact, stress, wear particles, filters and remaining wear life for numpy.
 
 A thin layer over the shared library libwearpipe.so.0 by ctypes: arrays in, arrays out, SI
 units, the same numbers as the programs.  The library is looked for in the folder that
@@ -184,6 +184,41 @@ def wear(heights, pressure, spacing, yield_stress, friction=0.0, poisson=0.3, ce
         return worn, flat.copy().view(kind)
     finally:
         _debris_free(d)
+
+
+# --- stress
+
+_StressPar = _struct(("nx", c_int), ("ny", c_int), ("dx", c_double), ("dy", c_double),
+                     ("periodic", c_int), ("poisson", c_double), ("friction", c_double),
+                     ("threads", c_int))
+_stress_new = _function("wp_stress_new", c_void_p, POINTER(_StressPar), POINTER(c_int))
+_stress_free = _function("wp_stress_free", None, c_void_p)
+_stress_load = _function("wp_stress_load", c_int, c_void_p, _array)
+_stress_mises = _function("wp_stress_mises", c_int, c_void_p, c_double, _array)
+_stress_tensor = _function("wp_stress_tensor", c_int, c_void_p, c_double, _array)
+
+
+def stress(pressure, spacing, depths, friction=0.0, poisson=0.3, periodic=False, tensor=False,
+           threads=1):
+    """The von Mises stress (Pa) below a pressure [iy, ix] at each of the depths (m), as
+    [depth, iy, ix]; with tensor=True the components xx yy zz xy xz yz, tension positive, as
+    [depth, component, iy, ix]."""
+    pressure = _field(pressure)
+    dx, dy = (spacing, spacing) if np.isscalar(spacing) else spacing
+    ny, nx = pressure.shape
+    par = _StressPar(nx, ny, dx, dy, periodic, poisson, friction, threads)
+    status = c_int()
+    s = _made(_stress_new(byref(par), byref(status)), status)
+    try:
+        _check(_stress_load(s, pressure))
+        depths = np.atleast_1d(np.asarray(depths, dtype=np.float64))
+        shape = (len(depths), 6, ny, nx) if tensor else (len(depths), ny, nx)
+        found = np.zeros(shape)
+        for layer, depth in zip(found, depths):
+            _check((_stress_tensor if tensor else _stress_mises)(s, depth, layer))
+        return found
+    finally:
+        _stress_free(s)
 
 
 # --- filters

@@ -19,7 +19,7 @@ PYTHONDONTWRITEBYTECODE=1
 export WEARPIPE_LIBRARY PYTHONPATH PYTHONDONTWRITEBYTECODE
 
 roughgen -n 32 -L 1mm -q 0.8um -l 100um | bemcontact --pressure 50MPa --estar 115GPa |
-	debrisgen -Y 355MPa -u 0.3 --surface worn.nrrd >particles.tsv
+	debrisgen -Y 355MPa -u 0.3 --surface worn.nrrd --stress stress.nrrd --stress-layers 2 >particles.tsv
 roughgen -n 32 -L 1mm -q 0.8um -l 100um | bemcontact --pressure 50MPa --estar 115GPa --fields height,pressure >c.nrrd
 cat >check.py <<'E2'
 import numpy as np, wearpipe
@@ -35,6 +35,12 @@ r = wearpipe.roughness(z, dx)
 print("sq %.6g" % r.sq)
 worn, particles = wearpipe.wear(z, p, dx, 355e6, friction=0.3)
 print("volume %.9g %.9g" % (particles["volume"].sum(), (z - worn).sum() * dx * dx))
+raw = open("stress.nrrd", "rb").read()
+below = np.frombuffer(raw, "<f8", 2 * 32 * 32, raw.index(b"\n\n") + 2).reshape(2, 32, 32)
+mises = wearpipe.stress(p, dx, [0, dx], friction=0.3)
+t = wearpipe.stress(p, dx, dx, friction=0.3, tensor=True)[0]
+by_hand = np.sqrt(0.5 * ((t[0] - t[1])**2 + (t[1] - t[2])**2 + (t[2] - t[0])**2) + 3 * (t[3]**2 + t[4]**2 + t[5]**2))
+print("stress %.3g %.3g" % (np.abs(mises / below - 1).max(), np.abs(by_hand / mises[1] - 1).max()))
 x = np.zeros(401); x[100] = 1
 h = wearpipe.taps(200, 70, 130, 10e3)
 print("filter %.3g" % np.abs(wearpipe.bandpass(x, 70, 130, 10e3)[100:301] - h).max())
@@ -42,7 +48,8 @@ t = np.arange(60.0)
 low, median, high = wearpipe.remaining_life(t, 0.1 * t + 0.01 * np.sin(17 * t), 10.0)
 print("life", low < median < high, abs(median - 41) < 4)
 for wrong in (lambda: wearpipe.press(z, dx, -1, 115e9), lambda: wearpipe.surface(0, 1e-3),
-              lambda: wearpipe.remaining_life([0, 1], [0, 1], 5.0)):
+              lambda: wearpipe.remaining_life([0, 1], [0, 1], 5.0),
+              lambda: wearpipe.stress(p, dx, -1.0)):
     try:
         wrong(); print("accepted")
     except wearpipe.Error as e:
@@ -59,7 +66,9 @@ near 'the load is the mean pressure times the area, 50 N' "$(got load)" 50 1e-4
 near 'Sq is the requested value' "$(got sq)" 8e-07 1e-12
 worn=$(column volume particles.tsv | awk '{ s += $1 } END { printf "%.9g", s }')
 is 'the particles are those of debrisgen and have the volume that the surface lost' "$(got volume)" "$worn $worn"
+is 'the von Mises stress is that of debrisgen --stress, and that of the tensor' \
+	"$(got stress | awk '{ print ($1 < 1e-9 && $2 < 1e-12) }')" 1
 is 'the response to an impulse is the taps' "$(got filter | awk '{ print ($1 < 1e-15) }')" 1
 is 'the remaining life of a straight line is right' "$(got life)" 'True True'
-is 'an impossible input raises an exception' "$(grep -c refused got)" 3
+is 'an impossible input raises an exception' "$(grep -c refused got)" 4
 done_testing

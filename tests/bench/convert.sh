@@ -38,7 +38,7 @@ all() {
 	records --output text heights.nrrd | grep -v '^#' | grep . >exact.txt
 	for digits in 2 3 4 6 9; do
 		awk -v d=$digits '{ for (i = 1; i <= NF; i++) printf "%.*g%s", d, $i, i < NF ? "\t" : "\n" }' exact.txt >there.txt
-		surfimport --format text --pixel 1.953125um --height-unit m --stats s1 there.txt >back.nrrd
+		surfimport --format text --pixel 1.953125um --height-unit 1m --stats s1 there.txt >back.nrrd
 		records --output text --stats s2 back.nrrd | grep -v '^#' | grep . | paste -d '\n' exact.txt - |
 			awk 'NR % 2 { split($0, a); next } { for (i = 1; i <= NF; i++) { e = $i - a[i]; s += e * e; v += a[i] * a[i] } }
 				END { print sqrt(s / v) }' >e
