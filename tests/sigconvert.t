@@ -117,6 +117,9 @@ near "the noise of quiet sections is estimated to 6 %" "$(column level channels.
 is "the noise of a dead channel is estimated" "$(column level channels.tsv | tail -n 1)" 0
 
 if sigconvert --output wav a.au >a.wav 2>err; then
+	sleep 1
+	sigconvert --output wav a.au >later.wav
+	same "WAV does not tell the time of day" a.wav later.wav
 	sigconvert --output text a.wav >w.tsv
 	is "WAV in float64 reads back to the last bit" "$(rows a.tsv)" "$(rows w.tsv)"
 	sigconvert --from sound --output text <a.wav >w.tsv

@@ -62,7 +62,8 @@ static void take_cell(
 {
 	const struct stress_par *s = &f->par;
 	size_t nx = (size_t)s->nx;
-	double x = (double)(at % nx) * s->dx, y = (double)(at / nx) * s->dy;
+	size_t row = at / nx;
+	double x = (double)(at % nx) * s->dx, y = (double)row * s->dy;
 	double v = f->value[at], p = pressure[at];
 
 	f->queue[r->cells++] = at;
@@ -113,8 +114,9 @@ static void flood(struct footprints *f, struct footprint *r, size_t first,
 	r->y /= (double)r->cells;
 	/* a cell has a spread of its own */
 	for (size_t i = 0; i < r->cells; i++) {
+		size_t row = f->queue[i] / nx;
 		double u = ((double)(f->queue[i] % nx) + 0.5) * s->dx - r->x,
-		       v = ((double)(f->queue[i] / nx) + 0.5) * s->dy - r->y;
+		       v = ((double)row + 0.5) * s->dy - r->y;
 
 		r->spread += u * u + v * v;
 	}

@@ -18,13 +18,13 @@
  * and for t < 0, where the volumes not seen are the large ones, 1.2 (t e)^2 more; never
  * less than M / 100, so that a mean life exists.  The square is the next term of the
  * expansion in 1/sqrt(K) for volumes whose skewness is 7.2 times their coefficient of
- * variation: the factor is a sixth of that.  It is 3 for the inverse Gaussian law, 4.7 for
- * the lognormal law of sigma 1 and 11.5 for that of sigma 1.5.  An interval of 90 % holds
- * the mean in 88 to 94 % of the ensembles of 3 to 30 realisations, for normal, uniform,
- * gamma (shape 0.5 to 4) and lognormal (sigma 1) volumes, in 83 to 89 % for sigma 1.5, in
- * 78 to 87 % for sigma 2; resampling them with replacement gives 50 to 64 % with three
- * (tests/unit/partition.c).  A tail as heavy as that of a Pareto law of index 1.5 is not
- * seen in a few volumes: 68 to 73 %.
+ * variation; the factor is a sixth of that.  The inverse Gaussian law has 3 times, the
+ * lognormal law of sigma 1 has 4.7 and that of sigma 1.5 has 11.5.  An interval of 90 %
+ * holds the mean in 88 to 94 % of the ensembles of 3 to 30 realisations, for normal,
+ * uniform, gamma (shape 0.5 to 4) and lognormal (sigma 1) volumes, in 83 to 89 % for
+ * sigma 1.5 and in 78 to 87 % for sigma 2; resampling them with replacement gives 50 to
+ * 64 % with three (tests/unit/partition.c).  A tail as heavy as that of a Pareto law of
+ * index 1.5 is not seen in a few volumes: 68 to 73 %.
  *
  * A step of the component, and one unit against the next, scatter about the mean because
  * a component is a sum of parts that wear independently: as many as fragments fit,

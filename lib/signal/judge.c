@@ -70,3 +70,49 @@ void judge(const struct joint *joint, const struct joint_scene *s, size_t n,
 	if (r->full)
 		out->stretch = SEPARATE_UNRESOLVED;
 }
+
+/* Chi-square of one common delay of all pulses. */
+static double common_delay(const struct joint_pulse *p, int m)
+{
+	double w = 0, wx = 0, sum = 0;
+
+	for (int i = 0; i < m; i++) {
+		double var = p[i].cov[0] - 2 * p[i].cov[1] + p[i].cov[2];
+
+		w += 1 / var;
+		wx += p[i].delta / var;
+	}
+	for (int i = 0; i < m; i++)
+		sum += (p[i].delta - wx / w) * (p[i].delta - wx / w) /
+		       (p[i].cov[0] - 2 * p[i].cov[1] + p[i].cov[2]);
+	return sum;
+}
+
+/* Probability that chi-square of k degrees of freedom is below x: the series of the
+ * incomplete gamma function. */
+static double chi_square_below(double x, int k)
+{
+	double a = 0.5 * k, term = 1 / a, sum = 0;
+
+	x /= 2;
+	for (int i = 1; i < 500 && term > 1e-12 * sum; i++) {
+		sum += term;
+		term *= x / (a + i);
+	}
+	return fmin(sum * exp(-x + a * log(x) - lgamma(a)), 1);
+}
+
+double judge_velocities(const struct joint_pulse *p, int m, double spread2, int *told)
+{
+	/* One object gives more than that with probability 1.6e-3 (m = 2) to 1e-3. */
+	double need = 10 + 2 * (m - 2), var = 0;
+
+	for (int i = 0; i < m; i++)
+		var += (p[i].cov[0] - 2 * p[i].cov[1] + p[i].cov[2]) / m;
+	if (!isfinite(var) || !(var > 0)) {
+		*told = 1;
+		return 0;
+	}
+	*told = common_delay(p, m) >= need;
+	return chi_square_below(need / (1 + spread2 / var), m - 1);
+}

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { COMPANION_CELLS = 32 }; /* of two durations to either side */
+
 struct separate {
 	struct separate_par par;
 	struct calibration cal;
@@ -29,6 +31,9 @@ struct separate {
 	size_t count, given, capacity;
 	double *source;
 	struct separate_counters counters;
+	double companions[COMPANION_CELLS], fitted; /* weak ones by distance; sections */
+	double untold,
+		expected; /* groups that no velocities tell apart; so many by chance */
 	enum separate_status reason; /* why nothing could be learned */
 	long long bad_frame;
 	int bad_channel;
@@ -196,6 +201,8 @@ static int emit_pulse(struct separate *s, const struct joint_pulse *p, long long
 	out->correlation = (p->cov[4] - p->cov[3]) / sqrt(delay_var * p->cov[5]);
 	out->chi2 = chi2;
 	out->verdict = verdict;
+	s->counters.rows++;
+	s->counters.misfits += verdict == SEPARATE_MISFIT;
 	return 1;
 }
 
@@ -307,6 +314,61 @@ static enum separate_status dense_section(
 	return SEPARATE_OK;
 }
 
+/* A group whose velocities do not tell its pulses apart may be one object of another
+ * form.  So are some groups of particles, by chance; where there are more than that, by
+ * two deviations of their number and one, none is believed. */
+static void check_velocities(struct separate *s, int m, int done, struct judgement *j)
+{
+	enum { LARGEST = 8 }; /* larger ones are told by chance alone */
+	int told;
+
+	if (m < 2 || m > LARGEST || done < m || isinf(s->cal.transit) ||
+		j->stretch != SEPARATE_OVERLAP)
+		return;
+	s->expected += judge_velocities(s->pulse, m, s->cal.delta_var, &told);
+	s->untold += !told;
+	if (told || s->untold <= s->expected + 2 * sqrt(s->expected) + 1)
+		return;
+	s->counters.untold++;
+	for (int i = 0; i < done; i++)
+		j->pulse[i] = SEPARATE_MISFIT;
+	j->stretch = SEPARATE_MISFIT;
+}
+
+/* A weak pulse that again and again stands at one distance from a strong one, at its
+ * velocity as far as can be told, is what the form of the strong one lacks.  Weak: less
+ * than half as high; at one distance: within an eighth of a duration; again and again: in
+ * more than four sections and a tenth of them, where chance, which has 32 places to
+ * choose from and velocities to give away, does not come near. */
+static void check_companions(struct separate *s, int m, struct judgement *j)
+{
+	const struct joint_pulse *p = s->pulse, *main = p;
+	int doubt = 0;
+
+	s->fitted++;
+	for (int i = 1; i < m; i++)
+		if (p[i].a > main->a)
+			main = &p[i];
+	for (int i = 0; i < m; i++) {
+		double place = (p[i].t - main->t) / s->cal.duration;
+		double var = p[i].cov[0] - 2 * p[i].cov[1] + p[i].cov[2] + main->cov[0] -
+			     2 * main->cov[1] + main->cov[2];
+		int cell = (int)floor((place + 2) * COMPANION_CELLS / 4);
+
+		if (&p[i] == main || !(p[i].a < 0.5 * main->a) || cell < 0 ||
+			cell >= COMPANION_CELLS ||
+			pow(p[i].delta - main->delta, 2) > 10 * var)
+			continue;
+		doubt |= ++s->companions[cell] > 4 + 0.1 * s->fitted;
+	}
+	if (!doubt || j->stretch == SEPARATE_UNRESOLVED)
+		return;
+	s->counters.untold++;
+	for (int i = 0; i < m; i++)
+		j->pulse[i] = SEPARATE_MISFIT;
+	j->stretch = SEPARATE_MISFIT;
+}
+
 /* Gives out the first done of the m pulses fitted to [from, to). */
 static enum separate_status give_pulses(struct separate *s, long long from, long long to,
 	int m, int done, const struct judgement *j)
@@ -380,6 +442,10 @@ static enum separate_status fit_section(
 		done++;
 	judge(s->joint, &s->scene, n, s->pulse, m, done, boundary,
 		s->cal.chi2 < 4 || s->cal.dense, &r, &judgement);
+	if (!cut && !s->continuing && m > 0) {
+		check_velocities(s, m, done, &judgement);
+		check_companions(s, m, &judgement);
+	}
 	unresolved = judgement.stretch == SEPARATE_UNRESOLVED && !s->par.sources;
 	shorter = unresolved && r.full && (double)n > 2 * shortest_window(s);
 	if (shorter)

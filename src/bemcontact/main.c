@@ -183,7 +183,7 @@ void put_row(const struct task *t, const double *height, const struct contact_re
 {
 	double stiffness = NAN;
 
-	if (table_wanted())
+	if (t->other)
 		stiffness = find_stiffness(t, height, p, s->pressure);
 	tables_put(t->r, &t->par, s, p, stiffness, converged, last);
 }

@@ -104,9 +104,10 @@ static size_t learned_samples(double rate)
 	return n;
 }
 
-static void separate_all(struct signal_in *in, struct found *out)
+static int separate_all(struct signal_in *in, struct found *out)
 {
 	double rate = (double)out->rate;
+	int doubtful;
 	struct separate_par par = { .method = method == METHOD_FIT ? SEPARATE_FIT
 								   : SEPARATE_MASKS,
 		.learn = learned_samples(rate),
@@ -124,8 +125,9 @@ static void separate_all(struct signal_in *in, struct found *out)
 		if (isnan(learn) && par.window < par.learn)
 			par.learn = par.window;
 	}
-	separate_record(in, out, &par);
+	doubtful = separate_record(in, out, &par);
 	free(par.known.filter);
+	return doubtful;
 }
 
 static void count_all(struct signal_in *in, struct found *out)
@@ -167,7 +169,7 @@ int main(int argc, char **argv)
 				opt_given("hop") ? (size_t)hop : 0,
 				sources.word < 0 ? (int)sources.value : 0);
 	else
-		separate_all(in, &out);
+		doubtful = separate_all(in, &out);
 	found_close(&out);
 	signal_close(in);
 	free(cmd);

@@ -48,6 +48,8 @@ static void report(const struct separate *s, double rate)
 	stats_set("sections", c->sections);
 	stats_set("sections_single", c->singles);
 	stats_set("sections_unresolved", c->unresolved);
+	stats_set("misfits", c->misfits);
+	stats_set("groups_doubted", c->untold);
 	stats_set("fits", c->fits);
 	stats_set("fit_steps", c->steps);
 	stats_set("searches", c->searches);
@@ -68,11 +70,26 @@ static int put_ready(struct separate *s, struct found *out)
 	return any;
 }
 
-void separate_record(
+/* A tenth of the rows, and more than two, that fit no particle are more than a few odd
+ * ones: then the pulses are not what was learned, and other rows may be wrong, too. */
+static int is_doubtful(const struct separate *s, const char *name)
+{
+	const struct separate_counters *c = separate_counters(s);
+
+	if (c->misfits <= 2 || 10 * c->misfits <= c->rows)
+		return 0;
+	warn("%s: %.0f of %.0f pulses fit no particle (misfit): the others are doubtful, "
+	     "too",
+		name, c->misfits, c->rows);
+	return 1;
+}
+
+int separate_record(
 	struct signal_in *in, struct found *out, const struct separate_par *par)
 {
 	static double x[2 * BLOCK];
 	struct separate *s = separate_new(par);
+	int doubtful;
 	enum separate_status status;
 	size_t n;
 
@@ -91,7 +108,9 @@ void separate_record(
 	put_ready(s, out);
 	check_status(status, s, signal_name(in));
 	report(s, (double)out->rate);
+	doubtful = is_doubtful(s, signal_name(in));
 	separate_free(s);
+	return doubtful;
 }
 
 static struct count *start_count(

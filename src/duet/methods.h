@@ -5,7 +5,7 @@
 #include "outputs.h"
 
 /* Sections, each taken apart by fit or masks. */
-void separate_record(
+int separate_record(
 	struct signal_in *in, struct found *out, const struct separate_par *par);
 
 struct count_par {

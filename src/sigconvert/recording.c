@@ -137,6 +137,8 @@ static void sound_create(struct recording_out *o, const struct signal_format *fo
 	if (!o->sound)
 		die(EXIT_RUN, "%d channels at %g Hz: %s", format->channels, format->rate,
 			sf_strerror(NULL));
+	/* that chunk holds the time of day: the same input makes the same bytes */
+	sf_command(o->sound, SFC_SET_ADD_PEAK_CHUNK, NULL, SF_FALSE);
 	sf_command(o->sound, SFC_SET_CLIPPING, NULL, SF_TRUE);
 }
 
