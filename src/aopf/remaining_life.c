@@ -52,8 +52,8 @@ struct opt outlook_end_rows[] = { OPT_HEADING("End of life"),
 
 struct opt outlook_model_rows[] = { OPT_HEADING("Prediction"),
 	{ 0, "model", OPT_WORD, UNIT_NONE, &model, 0, 0,
-		"average|linear|exponential|power|rate|saturating|grey|literal", "long-term model",
-		models, 0 },
+		"average|linear|exponential|power|rate|saturating|grey|literal",
+		"long-term model", models, 0 },
 	{ 0, "horizon", OPT_NUM, UNIT_TIME, &horizon, 0, DBL_MAX, "T",
 		"longest remaining life; 0: ten times the time so far", NULL, 0 },
 	{ 0, "after", OPT_NUM, UNIT_TIME, &after, -DBL_MAX, DBL_MAX, "T",
@@ -90,9 +90,8 @@ static const struct {
 	const char *name;
 	enum bank_family family;
 } weighed[] = { { "linear", BANK_LINEAR }, { "exponential", BANK_EXPONENTIAL },
-	{ "power", BANK_POWER }, { "rate", BANK_RATE },
-	{ "saturating", BANK_SATURATING }, { "fleet", BANK_OTHER },
-	{ "changed", BANK_ALL } };
+	{ "power", BANK_POWER }, { "rate", BANK_RATE }, { "saturating", BANK_SATURATING },
+	{ "fleet", BANK_OTHER }, { "changed", BANK_ALL } };
 
 enum { WEIGHED = sizeof weighed / sizeof *weighed };
 

@@ -2,8 +2,8 @@
  *
  *	particles ROWS [PER]    PER rows a realisation (default 1000), in ten steps
  *
- * Sizes follow a Weibull distribution of shape 2; the random numbers are those of a linear
- * congruential generator, the same everywhere.
+ * Sizes follow a Weibull distribution of shape 2; the random numbers are those of a
+ *linear congruential generator, the same everywhere.
  */
 #include <math.h>
 #include <stdint.h>
@@ -12,7 +12,8 @@
 
 int main(int argc, char **argv)
 {
-	long rows = argc > 1 ? atol(argv[1]) : 1000, per = argc > 2 ? atol(argv[2]) : 1000;
+	long rows = argc > 1 ? atol(argv[1]) : 1000,
+	     per = argc > 2 ? atol(argv[2]) : 1000;
 	uint64_t state = 1;
 	enum { SIZES = 4096 };
 	static char size[SIZES][64];

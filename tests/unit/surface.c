@@ -1,7 +1,7 @@
 /* Preparing and measuring heights against surfaces whose parameters are known. */
 #include "surface/surface.h"
-#include "surface/areal.h"
 #include "num/deviates.h"
+#include "surface/areal.h"
 #include "surface/heights.h"
 #include "surface/spectrum.h"
 #include "tap.h"

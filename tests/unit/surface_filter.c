@@ -1,7 +1,7 @@
 /* surface_filter - Gaussian filters, form, material ratio and spectrum against closed
  * forms */
-#include "num/philox.h"
 #include "num/deviates.h"
+#include "num/philox.h"
 #include "surface/filter.h"
 #include "surface/heights.h"
 #include "surface/ratio.h"
