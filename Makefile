@@ -189,7 +189,7 @@ LONG_TESTS = tests/long/*.t $(LONG_UNITS)
 check: all $(UNITS) $(MATRIX)
 	@BIN="$(abspath $(BIN))" tests/run $(TESTS)
 
-check-long: all $(LONG_UNITS) $(BENCH_BINS) $(MATRIX)
+check-long: all $(UNITS) $(LONG_UNITS) $(BENCH_BINS) $(MATRIX)
 	@BIN="$(abspath $(BIN))" tests/run $(LONG_TESTS)
 
 check-all: all $(UNITS) $(LONG_UNITS) $(BENCH_BINS) $(MATRIX)
