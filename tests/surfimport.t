@@ -3,9 +3,12 @@
 # with them
 . "$(dirname "$0")/tap.sh"
 
-# heights FILE: all samples of a stream in metres, parted by blanks
+# heights FILE: all samples of a stream in metres to 12 digits, separated by blanks.  A unit
+# that is multiplied with a whole number rounds in the last digit.
 heights() {
-	records -o text "$1" | grep -v '^#' | tr '\t\n' '  ' | sed -e 's/  */ /g' -e 's/ $//'
+	records -o text "$1" | awk '!/^#/ { for (i = 1; i <= NF; i++) {
+		out = out (out == "" ? "" : " ") ($i == "nan" ? $i : sprintf("%.12g", $i)) } }
+		END { print out }'
 }
 # list COLUMN FILE
 list() {
