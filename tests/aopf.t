@@ -263,4 +263,14 @@ fails "a unit that is not there" 1 "no column 'unit'" aopf --unit unit exp.tsv
 awk 'BEGIN { print "t\ty"; for (i = 0; i < 30; i++) print i "\t" (i % 2 ? "" : "-") "1.7e308" }' >enormous.tsv
 ok 'values that overflow fit no family of models' aopf -y 5 enormous.tsv
 near 'values that overflow give no crossing' "$(awk '$1 == 29 { print $NF }' out)" 1 1e-9
+# A series that starts at a known moment.
+{
+	printf '# start: 2026-01-02T03:04:05Z\nt\ty\n'
+	i=0
+	for y in 0.1 0.11 0.12 0.13 0.14 0.15; do
+		printf '%s\t%s\n' "$i" "$y"
+		i=$((i + 3600))
+	done
+} >started.tsv
+is "the start of a series is carried to the lives" "$(aopf --threshold 0.3 started.tsv 2>err | grep '^# start')" "# start: 2026-01-02T03:04:05Z"
 done_testing

@@ -281,4 +281,14 @@ fails "scores of samples" 2 '--eol scores the summary' rwl --samples --eol 10h g
 fails "outlet below inlet" 2 'outlet pressure' rwl --ports 21MPa:1MPa gap.tsv
 fails "a unit that does not wear" 1 'minus2.tsv.*does not wear' sh -c \
 	'printf "t\tgap\n0\t2e-5\n1\t1e-5\n" >minus2.tsv; rwl --new --wear even.tsv --calibrate minus2.tsv'
+# A series that starts at a known moment.
+{
+	printf '# start: 2026-01-02T03:04:05Z\nt\tleakage\n'
+	i=0
+	for y in 1.1e-5 1.2e-5 1.3e-5 1.4e-5 1.5e-5 1.6e-5; do
+		printf '%s\t%s\n' "$i" "$y"
+		i=$((i + 3600))
+	done
+} >started.tsv
+is "the start of a series is carried to the lives" "$(rwl started.tsv 2>err | grep '^# start')" "# start: 2026-01-02T03:04:05Z"
 done_testing

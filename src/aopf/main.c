@@ -140,6 +140,7 @@ static char *column_units(const char *read)
 
 static struct sink open_sink(const struct series *in)
 {
+	const char *start = table_key(series_table(in), "start");
 	char *cmd = opt_cmd(table_key(series_table(in), "cmd"), NULL),
 	     *units = column_units(table_key(series_table(in), "units")),
 	     *names = column_names();
@@ -154,6 +155,8 @@ static struct sink open_sink(const struct series *in)
 	} else {
 		out.table = table_create(NULL, cmd, units, names);
 		table_comment(out.table, "seed", "%ld", filtering.seed);
+		if (start)
+			table_comment(out.table, "start", "%s", start);
 	}
 	free(cmd);
 	free(units);

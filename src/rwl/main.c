@@ -212,8 +212,10 @@ static char *record_cmd(const struct state *s, int operand)
 	return cmd;
 }
 
-static struct lifetable *open_table(const char *cmd, char **made_by, const char *assumed)
+static struct lifetable *open_table(
+	const struct state *s, const char *cmd, char **made_by, const char *assumed)
 {
+	const char *start = s->table ? table_key(s->table, "start") : NULL;
 	struct lifetable_par par = { .levels = &levels,
 		.samples = samples,
 		.grey = grey,
@@ -224,6 +226,8 @@ static struct lifetable *open_table(const char *cmd, char **made_by, const char 
 		.horizon = horizon };
 	struct lifetable *t = lifetable_open(cmd, &par);
 
+	if (start)
+		table_comment(lifetable_out(t), "start", "%s", start);
 	if (assumed)
 		table_comment(lifetable_out(t), "assumed", "%s", assumed);
 	for (int k = 0; k < wear_files.n; k++)
@@ -277,7 +281,7 @@ int main(int argc, char **argv)
 	cmd = record_cmd(&s, argv[i] != NULL);
 	if (rates_file)
 		write_rates(e, cmd);
-	out = open_table(cmd, made_by, assumed);
+	out = open_table(&s, cmd, made_by, assumed);
 	f = new_forecast(e, s.quantity);
 	if (new) {
 		forecast_foresee(f);
