@@ -287,9 +287,11 @@ enum weibull_status weibull_fit(const double *x, const double *weight, size_t n,
 	if (!y)
 		return WEIBULL_MEMORY;
 	for (size_t i = 0; i < n; i++) {
-		/* Nearly equal values: their differences have all the digits there are.
-		 */
-		y[i] = log1p((x[i] - unit) / unit);
+		double away = (x[i] - unit) / unit;
+
+		/* Nearly equal values differ by all the digits there are; of values far
+		 * below the mean the difference keeps none. */
+		y[i] = fabs(away) < 0.5 ? log1p(away) : log(x[i] / unit);
 		m.mean_log += y[i] * weight_of(weight, i) / m.count;
 	}
 	m.log = y;

@@ -51,6 +51,21 @@ static void test_truncated(void)
 		"one value is refused");
 }
 
+/* The powers of a Weibull sample are one of a smaller shape, here over 22 decades. */
+static void test_wide(void)
+{
+	double x[10];
+	struct weibull w;
+
+	for (int i = 0; i < 10; i++)
+		x[i] = pow(sizes[i], 25);
+	ok(weibull_fit(x, NULL, 10, 0, INFINITY, 0.95, &w) == WEIBULL_OK,
+		"values over 22 decades are fitted");
+	near(w.shape.value * 25, 2.200002120499429, 1e-11, "shape of a wide sample");
+	near(log(w.scale.value) / 25, log(55.74214415993261), 1e-12,
+		"scale of a wide sample");
+}
+
 /* The same sample, narrow: the logarithms of the values scale, and so does the shape. */
 static void test_narrow(void)
 {
@@ -165,6 +180,7 @@ int main(void)
 {
 	test_weibull();
 	test_truncated();
+	test_wide();
 	test_narrow();
 	test_coverage(INFINITY, 60);
 	test_coverage(280, 400);
