@@ -39,7 +39,7 @@ if command -v setsid >/dev/null; then
 		setsid --wait sh -c 'echo $$ >group; exec wearwatch "$@"' sh "$@" --no-pictures --state killed \
 			--alarm-life 20h,5h --follow growing.au 2>/dev/null &
 		p=$!
-		{ sleep "$(awk -v k=$kills 'BEGIN { srand(k + 1); print 0.2 + 3 * rand() * (1 + k / 5) }')"; kill -KILL "-$(cat group)"; } 2>/dev/null &
+		{ sleep "$(awk -v k=$kills 'BEGIN { srand(k + 1); print 0.2 + rand() * (1 + k / 5) }')"; kill -KILL "-$(cat group)"; } 2>/dev/null &
 		q=$!
 		wait $p
 		status=$?
