@@ -504,7 +504,7 @@ static double *track_lag(const struct tracks *s, size_t n, int lag)
 	return s->x + (size_t)((s->newest - lag + s->p) % s->p) * n;
 }
 
-static int start_tracks(struct adaptive *a, struct tracks *s)
+static enum num_status start_tracks(struct adaptive *a, struct tracks *s)
 {
 	size_t n = a->par.filter.particles;
 	int changed;
@@ -512,7 +512,7 @@ static int start_tracks(struct adaptive *a, struct tracks *s)
 	s->x = malloc((size_t)s->p * n * sizeof *s->x);
 	s->index = malloc(n * sizeof *s->index);
 	if (!s->x || !s->index)
-		return 0;
+		return NUM_MEMORY;
 	s->newest = s->p - 1;
 	for (int lag = 0; lag < s->p; lag++) {
 		const double *x = filter_lag(a->filter, lag, a->index, &changed);
@@ -520,7 +520,7 @@ static int start_tracks(struct adaptive *a, struct tracks *s)
 		for (size_t i = 0; i < n; i++)
 			track_lag(s, n, lag)[i] = x[a->index[i]];
 	}
-	return 1;
+	return NUM_OK;
 }
 
 /* One step of the first live paths of index; those that cross leave the list.  Returns
@@ -549,32 +549,32 @@ static size_t step_paths(struct adaptive *a, struct tracks *s, size_t live,
 	return left;
 }
 
-int adaptive_lives(
+enum num_status adaptive_lives(
 	struct adaptive *a, double threshold, int direction, int steps, double *life)
 {
 	struct tracks s = { .p = order_chosen(a->order) };
 	double noise = observation_noise(a), process, limit = threshold / a->scale;
 	size_t n = a->par.filter.particles, left = 0;
-	int good;
+	enum num_status status;
 
 	if (s.p > filter_depth(a->filter))
 		s.p = filter_depth(a->filter);
 	if (s.p < GREY_ORDER_MIN)
-		return 0;
+		return NUM_DOMAIN;
 	s.noise = noise;
 	process = process_noise(a, s.p, noise, a->mean_gap);
-	good = start_tracks(a, &s);
-	for (size_t i = 0; good && i < n; i++) {
+	status = start_tracks(a, &s);
+	for (size_t i = 0; status == NUM_OK && i < n; i++) {
 		int crossed = direction * (track_lag(&s, n, 0)[i] - limit) >= 0;
 
 		life[i] = crossed ? 0 : INFINITY;
 		if (!crossed)
 			s.index[left++] = (uint32_t)i;
 	}
-	for (int k = 0; good && k < steps && left > 0; k++)
+	for (int k = 0; status == NUM_OK && k < steps && left > 0; k++)
 		left = step_paths(
 			a, &s, left, process, limit, direction, k * a->mean_gap, life);
 	free(s.x);
 	free(s.index);
-	return good ? 1 : -1;
+	return status;
 }

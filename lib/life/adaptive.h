@@ -20,6 +20,7 @@
 
 #include "life/filter.h"
 #include "life/order.h"
+#include "num/status.h"
 
 struct adaptive_par {
 	struct filter_par filter; /* depth is set from the order */
@@ -50,8 +51,8 @@ void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *
 /* The literal recursion (4-21): every particle goes on step by step by its own model,
  * refitted to its last states, with process noise, at the mean gap of the rows.  Fills
  * life[N] with the time from the last row to its first passage of the threshold (linear
- * within a step), INFINITY beyond steps.  0: no model yet, -1: no memory. */
-int adaptive_lives(
+ * within a step), INFINITY beyond steps.  NUM_DOMAIN: no model yet. */
+enum num_status adaptive_lives(
 	struct adaptive *a, double threshold, int direction, int steps, double *life);
 const struct order *adaptive_order(const struct adaptive *a);
 const struct filter *adaptive_filter(const struct adaptive *a);

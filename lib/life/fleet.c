@@ -71,7 +71,7 @@ const struct bank_shape *fleet_shapes(const struct fleet *f, int *n)
 	return f->shape;
 }
 
-static int grow(struct unit *p)
+static enum num_status grow(struct unit *p)
 {
 	int room = p->room ? 2 * p->room : 64;
 	double *age = realloc(p->age, (size_t)room * sizeof *age), *level;
@@ -82,21 +82,21 @@ static int grow(struct unit *p)
 	if (level)
 		p->level = level;
 	if (!level)
-		return 0;
+		return NUM_MEMORY;
 	p->room = room;
-	return 1;
+	return NUM_OK;
 }
 
-/* Adds a step where it leads higher, and later; 0: no memory. */
-static int rise(struct unit *p, double age, double level)
+/* Adds a step where it leads higher, and later. */
+static enum num_status rise(struct unit *p, double age, double level)
 {
 	if (p->n > 0 && (level <= p->level[p->n - 1] || age <= p->age[p->n - 1]))
-		return 1;
-	if (p->n == p->room && !grow(p))
-		return 0;
+		return NUM_OK;
+	if (p->n == p->room && grow(p))
+		return NUM_MEMORY;
 	p->age[p->n] = age;
 	p->level[p->n++] = level;
-	return 1;
+	return NUM_OK;
 }
 
 static struct unit *path_of(struct fleet *f, int unit)
@@ -115,12 +115,12 @@ static struct unit *path_of(struct fleet *f, int unit)
 	return f->path[unit].bank ? &f->path[unit] : NULL;
 }
 
-int fleet_add(struct fleet *f, int unit, double t, double y)
+enum num_status fleet_add(struct fleet *f, int unit, double t, double y)
 {
 	struct unit *p = path_of(f, unit);
 
 	if (!p)
-		return 0;
+		return NUM_MEMORY;
 	if (p->rows++ == 0)
 		p->first = t;
 	p->last = t;
@@ -136,24 +136,24 @@ int fleet_add(struct fleet *f, int unit, double t, double y)
 	return rise(p, p->t[1] - p->first, median_of_three(p->y[0], p->y[1], p->y[2]));
 }
 
-/* Carries a unit on to the threshold by what its own bank foresees; 0: no memory. */
-static int carry_on(const struct fleet *f, struct unit *p)
+/* Carries a unit on to the threshold by what its own bank foresees. */
+static enum num_status carry_on(const struct fleet *f, struct unit *p)
 {
 	struct bank_chances *chances = bank_chances_new(DRAWS, 0);
 	double end = f->direction * f->threshold, from = p->level[p->n - 1], life[DRAWS];
 	size_t middle = DRAWS / 2;
-	int good = chances != NULL;
+	enum num_status status = chances ? NUM_OK : NUM_MEMORY;
 
-	for (int k = 1; good && k <= AHEAD && bank_ready(p->bank); k++) {
+	for (int k = 1; status == NUM_OK && k <= AHEAD && bank_ready(p->bank); k++) {
 		double level = from + (end - from) * k / AHEAD;
 
 		bank_draw(p->bank, chances, p->last, f->direction * level, life);
 		select_ranks(life, DRAWS, &middle, 1);
 		if (isfinite(life[middle]))
-			good = rise(p, p->last - p->first + life[middle], level);
+			status = rise(p, p->last - p->first + life[middle], level);
 	}
 	bank_chances_free(chances);
-	return good;
+	return status;
 }
 
 /* Age at a level between the ends of a path. */
@@ -181,7 +181,7 @@ static int lay_out(const struct unit *p, double end, double *age, double *level)
 	return to > from && age[LEVELS - 1] > 0;
 }
 
-int fleet_build(struct fleet *f, int *failed, int *carried_on)
+enum num_status fleet_build(struct fleet *f, int *failed, int *carried_on)
 {
 	double end = f->direction * f->threshold;
 	size_t units = (size_t)f->units;
@@ -190,7 +190,7 @@ int fleet_build(struct fleet *f, int *failed, int *carried_on)
 	f->shape = calloc(units + 1, sizeof *f->shape);
 	f->grid = calloc(units + 1, 2 * LEVELS * sizeof *f->grid);
 	if (!f->shape || !f->grid)
-		return -1;
+		return NUM_MEMORY;
 	for (int i = 0; i < f->units; i++) {
 		struct unit *p = &f->path[i];
 		double *age = f->grid + (size_t)f->shapes * 2 * LEVELS,
@@ -198,13 +198,13 @@ int fleet_build(struct fleet *f, int *failed, int *carried_on)
 		int reached;
 
 		/* No median waits for rows that will not come. */
-		if (p->rows == 0 || !rise(p, p->t[0] - p->first, p->y[0]))
-			return -1;
+		if (p->rows == 0 || rise(p, p->t[0] - p->first, p->y[0]))
+			return NUM_MEMORY;
 		if (p->n < 2)
 			continue; /* shows no wear */
 		reached = p->level[p->n - 1] >= end;
-		if (!reached && !carry_on(f, p))
-			return -1;
+		if (!reached && carry_on(f, p))
+			return NUM_MEMORY;
 		if (!lay_out(p, end, age, level))
 			continue;
 		f->shape[f->shapes++] = (struct bank_shape){
@@ -215,5 +215,5 @@ int fleet_build(struct fleet *f, int *failed, int *carried_on)
 	}
 	for (int i = 0; i < f->shapes; i++)
 		f->shape[i].log_prior = KINSHIP - log(f->shapes);
-	return f->shapes;
+	return NUM_OK;
 }

@@ -15,15 +15,16 @@
 #define LIFE_FLEET_H
 
 #include "life/bank.h"
+#include "num/status.h"
 
 struct fleet;
 
 struct fleet *fleet_new(double threshold, int direction); /* NULL: no memory */
 void fleet_free(struct fleet *f);
-int fleet_add(struct fleet *f, int unit, double t, double y); /* 0: no memory */
-/* After the last row.  Returns the number of units that make a coordinate, -1: no memory;
- * failed, carried_on: how many of them reached the threshold, how many did not. */
-int fleet_build(struct fleet *f, int *failed, int *carried_on);
+enum num_status fleet_add(struct fleet *f, int unit, double t, double y);
+/* After the last row.  failed, carried_on: how many of the units that make a coordinate
+ * reached the threshold, and how many did not. */
+enum num_status fleet_build(struct fleet *f, int *failed, int *carried_on);
 int fleet_units(const struct fleet *f);
 const struct bank_shape *fleet_shapes(const struct fleet *f, int *n);
 

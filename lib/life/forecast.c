@@ -28,7 +28,7 @@ struct forecast {
  * other coordinates stand for wear that ages: without them intervals of 90 % held 42 to
  * 82 % of the ends of gaps that open as the square root of time, with them 96 to 100 %.
  */
-static int open_bank(struct forecast *f)
+static enum num_status open_bank(struct forecast *f)
 {
 	const struct forecast_par *par = &f->par;
 	double limit = pair_limit(&par->pair);
@@ -45,7 +45,7 @@ static int open_bank(struct forecast *f)
 		bank.n_more = 1;
 	}
 	f->bank = bank_new(&bank);
-	return f->bank ? 0 : -1;
+	return f->bank ? NUM_OK : NUM_MEMORY;
 }
 
 struct forecast *forecast_new(struct paths *paths, const struct forecast_par *par)
@@ -125,7 +125,8 @@ static const double *passages(
 	return f->later;
 }
 
-long forecast_add(struct forecast *f, double t, double value, double gap, double error)
+enum num_status forecast_add(
+	struct forecast *f, double t, double value, double gap, double error)
 {
 	const struct forecast_par *par = &f->par;
 	struct pair *pair = &f->par.pair;
@@ -137,12 +138,12 @@ long forecast_add(struct forecast *f, double t, double value, double gap, double
 	run_in = t - f->first_t < f->par.skip;
 	later = f->rows == 1 || t > observed_time(f->observed);
 	if (isnan(gap))
-		return -1;
+		return NUM_OK;
 	if (isnan(pair->gap_new))
 		pair->gap_new = gap;
 	if (par->rule == RATE_FILTER && !f->bank && isfinite(pair_limit(pair)) &&
 		open_bank(f))
-		return -2;
+		return NUM_MEMORY;
 	passage = passages(f, t, f->by_gap ? gap : value, run_in, later);
 	if (run_in || (f->par.skip > 0 && observed_count(f->observed) == 0))
 		observed_begin(f->observed, t, gap);
@@ -153,7 +154,7 @@ long forecast_add(struct forecast *f, double t, double value, double gap, double
 	if (f->par.grey)
 		f->grey = observed_grey(
 			f->observed, pair_value(pair, f->par.quantity, pair_limit(pair)));
-	return f->n;
+	return NUM_OK;
 }
 
 void forecast_foresee(struct forecast *f)

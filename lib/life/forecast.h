@@ -16,6 +16,7 @@
 
 #include "life/pair.h"
 #include "life/paths.h"
+#include "num/status.h"
 
 struct forecast_par {
 	struct pair pair; /* gap_new NAN: the first gap observed */
@@ -46,9 +47,10 @@ struct forecast;
 struct forecast *forecast_new(struct paths *paths, const struct forecast_par *par);
 void forecast_free(struct forecast *f);
 
-/* The next row observed: value as read, the gap it tells and the error of that.  Returns
- * the number of samples of a prediction; -1 where gap is NAN, -2 when out of memory. */
-long forecast_add(struct forecast *f, double t, double value, double gap, double error);
+/* The next row observed: value as read, the gap it tells and the error of that.  A gap of
+ * NAN is no observation: NUM_OK, and the prediction stays as it was. */
+enum num_status forecast_add(
+	struct forecast *f, double t, double value, double gap, double error);
 /* Instead of it, for a new pair that was not observed yet. */
 void forecast_foresee(struct forecast *f);
 

@@ -110,9 +110,9 @@ static int compare_weighted(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/* CRPS of unsorted samples; NAN when out of memory. */
-static double crps_unsorted(struct metrics *m, const double *sample, const double *weight,
-	size_t n, double truth)
+/* CRPS of unsorted samples. */
+static enum num_status crps_unsorted(struct metrics *m, const double *sample,
+	const double *weight, size_t n, double truth, double *crps)
 {
 	double *x;
 
@@ -121,7 +121,7 @@ static double crps_unsorted(struct metrics *m, const double *sample, const doubl
 		struct weighted *more = realloc(m->scratch, 2 * n * sizeof *more);
 
 		if (!more)
-			return NAN;
+			return NUM_MEMORY;
 		m->scratch = more;
 		m->capacity = n;
 	}
@@ -133,18 +133,20 @@ static double crps_unsorted(struct metrics *m, const double *sample, const doubl
 		x[i] = m->scratch[i].x;
 		x[n + i] = m->scratch[i].w;
 	}
-	return metric_crps(x, x + n, n, truth, m->par.limit);
+	*crps = metric_crps(x, x + n, n, truth, m->par.limit);
+	return NUM_OK;
 }
 
-int metrics_add(struct metrics *m, double t, double point, double lower, double upper,
-	const double *sample, const double *weight, size_t n, struct metrics_row *row)
+enum num_status metrics_add(struct metrics *m, double t, double point, double lower,
+	double upper, const double *sample, const double *weight, size_t n,
+	struct metrics_row *row)
 {
 	double truth = m->par.eol - t, wide = m->par.alpha * fabs(m->par.eol);
 	struct metrics_row r = { .truth = truth };
 	double mass_horizon;
 
 	if (!(truth > 0) || isnan(point))
-		return 0;
+		return NUM_DOMAIN;
 	if (!sample || n == 0) {
 		sample = &point;
 		weight = NULL;
@@ -156,9 +158,8 @@ int metrics_add(struct metrics *m, double t, double point, double lower, double 
 		truth * (1 + m->par.alpha));
 	r.inside = r.mass >= m->par.beta;
 	r.covered = lower <= truth && truth <= upper;
-	r.crps = crps_unsorted(m, sample, weight, n, truth);
-	if (isnan(r.crps))
-		return -1;
+	if (crps_unsorted(m, sample, weight, n, truth, &r.crps))
+		return NUM_MEMORY;
 	mass_horizon = mass_within(sample, weight, n, truth - wide, truth + wide);
 	if (mass_horizon < m->par.beta)
 		m->since = NAN;
@@ -178,7 +179,7 @@ int metrics_add(struct metrics *m, double t, double point, double lower, double 
 	m->covered += (size_t)r.covered;
 	if (row)
 		*row = r;
-	return 1;
+	return NUM_OK;
 }
 
 struct metrics_sum metrics_get(const struct metrics *m)

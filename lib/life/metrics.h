@@ -18,6 +18,7 @@
 #ifndef LIFE_METRICS_H
 #define LIFE_METRICS_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 /* Quantile of n >= 1 ascending samples, linear between order statistics at
@@ -72,10 +73,11 @@ void metrics_free(struct metrics *m);
 /* Adds the prediction made at t; times must not fall.  sample may be NULL (n = 0):
  * the point stands for all of them.  Samples need not be sorted.  row may be NULL.
  * An infinite point (a median where most samples never fail) has no error that could be
- * averaged: it is counted apart, and judged by its samples and interval.  Returns 1, 0
- * when t >= eol or the point is NAN (nothing is counted), -1 when out of memory. */
-int metrics_add(struct metrics *m, double t, double point, double lower, double upper,
-	const double *sample, const double *weight, size_t n, struct metrics_row *row);
+ * averaged: it is counted apart, and judged by its samples and interval.  NUM_DOMAIN
+ * when t >= eol or the point is NAN: nothing is counted. */
+enum num_status metrics_add(struct metrics *m, double t, double point, double lower,
+	double upper, const double *sample, const double *weight, size_t n,
+	struct metrics_row *row);
 struct metrics_sum metrics_get(const struct metrics *m);
 
 #endif

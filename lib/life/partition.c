@@ -111,19 +111,20 @@ static void merge_groups(struct class *c)
 	c->per_group *= 2;
 }
 
-static int group_sizes(struct class *c, const struct realisation_cell *cell, size_t n)
+static enum num_status group_sizes(
+	struct class *c, const struct realisation_cell *cell, size_t n)
 {
 	size_t group = c->nhistories / c->per_group;
 
 	if (room_for(&c->group_cell, &c->cell_room, c->ncells + n, sizeof *c->group_cell))
-		return -1;
+		return NUM_MEMORY;
 	for (size_t i = 0; i < n; i++)
 		c->group_cell[c->ncells++] = (struct group_cell){ group, cell[i].step,
 			cell[i].count, cell[i].large };
 	if (group + 1 >= GROUPS_MOST ||
 		(c->ncells > GROUP_CELLS && group + 1 > GROUPS_LEAST))
 		merge_groups(c);
-	return 0;
+	return NUM_OK;
 }
 
 /* Takes all that one realisation did; its cells are sorted by step. */
@@ -160,12 +161,13 @@ static enum num_status take_history(
 	return NUM_OK;
 }
 
-int partition_class(struct partition *p, int sparse, double pressure, double area)
+enum partition_status partition_class(
+	struct partition *p, int sparse, double pressure, double area, int *index)
 {
 	struct class *c = &p->class[p->nclasses];
 
 	if (p->nclasses == PARTITION_CLASSES_MAX)
-		return -1;
+		return PARTITION_MANY;
 	*c = (struct class){ .owner = p,
 		.sparse = sparse,
 		.pressure = pressure,
@@ -173,7 +175,10 @@ int partition_class(struct partition *p, int sparse, double pressure, double are
 		.last_realisation = -1,
 		.per_group = 1 };
 	c->reader = realisations_new(REALISATIONS_ROOM, take_history, c);
-	return c->reader ? p->nclasses++ : -1;
+	if (!c->reader)
+		return PARTITION_MEMORY;
+	*index = p->nclasses++;
+	return PARTITION_OK;
 }
 
 static enum partition_status reading(

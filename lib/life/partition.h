@@ -31,7 +31,8 @@
  * unless told fewer.
  *
  *	struct partition *p = partition_new(2346.3e-6, 1, 0);
- *	int c = partition_class(p, 0, 21e6, -1);
+ *	int c;
+ *	partition_class(p, 0, 21e6, -1, &c);
  *	partition_fragment(p, c, realisation, step, volume, count, large);
  *	...
  *	if (partition_close(p, 1e-8, 0.1) == PARTITION_OK)
@@ -51,6 +52,7 @@ struct partition;
 enum partition_status {
 	PARTITION_OK,
 	PARTITION_MEMORY,
+	PARTITION_MANY,     /* more than PARTITION_CLASSES_MAX classes */
 	PARTITION_EMPTY,    /* a class without fragments */
 	PARTITION_AREA,     /* classes cover more than the component */
 	PARTITION_PRESSURE, /* several classes need different pressures above 0 */
@@ -64,13 +66,14 @@ enum partition_status {
 struct partition *partition_new(double area, long first_step, int sizes);
 void partition_free(struct partition *p);
 
-/* A class; returns its index, or -1 beyond the last place or when out of memory.  sparse:
- * steps and realisations that are not told of, up to the largest told of, shed nothing
- * (particle tables); otherwise they were not simulated.  pressure: nominal, Pa, NAN for
- * "the one there is".  area: m2, < 0 for "as the default has it": when no class has an
- * area, the lowest and the highest share what the zone leaves; otherwise a class without
- * one only guides the zone. */
-int partition_class(struct partition *p, int sparse, double pressure, double area);
+/* A class; *index is what the caller names it by from here on.  sparse: steps and
+ * realisations that are not told of, up to the largest told of, shed nothing (particle
+ * tables); otherwise they were not simulated.  pressure: nominal, Pa, NAN for "the one
+ * there is".  area: m2, < 0 for "as the default has it": when no class has an area, the
+ * lowest and the highest share what the zone leaves; otherwise a class without one only
+ * guides the zone. */
+enum partition_status partition_class(
+	struct partition *p, int sparse, double pressure, double area, int *index);
 
 /* What one realisation did in one step (from 1): volume worn (m3), particles, and those
  * of at least the critical size.  Calls for the same realisation and step add up when

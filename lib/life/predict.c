@@ -110,7 +110,7 @@ static double grey_crossing(
 	return time >= 0 ? time : INFINITY; /* also NAN: a sign that never changes */
 }
 
-static int draw_grey(struct predict *p, double *life)
+static enum num_status draw_grey(struct predict *p, double *life)
 {
 	const double *t, *x;
 	int n = history_get(p->history, &t, &x);
@@ -118,7 +118,7 @@ static int draw_grey(struct predict *p, double *life)
 	double gap;
 
 	if (n < GREY_ORDER_MIN)
-		return 0;
+		return NUM_DOMAIN;
 	gap = (t[n - 1] - t[0]) / (n - 1);
 	for (int k = n; k-- > 0;)
 		grey_add(&g, x[k], k + 1 < n ? t[k + 1] - t[k] : 0);
@@ -132,11 +132,11 @@ static int draw_grey(struct predict *p, double *life)
 		life[i] = grey_crossing(
 			p, level, rate, g.span + p->now.last - t[n - 1], gap);
 	}
-	return 1;
+	return NUM_OK;
 }
 
-/* Fills life[]; 0 while there are too few rows, -1: no memory. */
-static int draw_lives(struct predict *p, double *life)
+/* Fills life[]; NUM_DOMAIN while there are too few rows. */
+static enum num_status draw_lives(struct predict *p, double *life)
 {
 	if (p->history)
 		return draw_grey(p, life);
@@ -144,18 +144,19 @@ static int draw_lives(struct predict *p, double *life)
 		return adaptive_lives(p->par.adaptive, p->par.threshold - p->par.zero,
 			p->par.direction, LITERAL_STEPS, life);
 	if (!bank_ready(p->bank))
-		return 0;
+		return NUM_DOMAIN;
 	bank_draw(p->bank, p->par.chances, p->now.last, p->par.threshold, life);
-	return 1;
+	return NUM_OK;
 }
 
-int predict_life(struct predict *p, double *life)
+enum num_status predict_life(struct predict *p, double *life)
 {
 	double horizon = p->par.horizon;
-	int drawn = draw_lives(p, life), n = predict_draws(p);
+	enum num_status status = draw_lives(p, life);
+	int n = predict_draws(p);
 
-	if (drawn <= 0)
-		return drawn;
+	if (status != NUM_OK)
+		return status;
 	if (!(horizon > 0))
 		horizon =
 			p->par.n_paths > 0 ? INFINITY : 10 * (p->now.last - p->now.first);
@@ -163,7 +164,7 @@ int predict_life(struct predict *p, double *life)
 		if (!(life[i] <= horizon))
 			life[i] = INFINITY;
 	sort_numbers(life, (size_t)n);
-	return 1;
+	return NUM_OK;
 }
 
 double predict_replacement(const double *life, int n, double age, double ratio)

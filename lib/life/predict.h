@@ -7,7 +7,7 @@
  *
  *	struct predict *p = predict_new(&par);
  *	predict_add(p, t, y, state);
- *	if (predict_life(p, life))
+ *	if (predict_life(p, life) == NUM_OK)
  *		median = metric_quantile(life, n, 0.5);
  */
 #ifndef LIFE_PREDICT_H
@@ -52,9 +52,9 @@ void predict_add(struct predict *p, double t, double y, double state);
 void predict_restart(struct predict *p);
 int predict_draws(const struct predict *p);
 /* Fills life[draws] with times left from the last row, ascending, INFINITY beyond the
- * horizon; 0 below four rows, -1 when out of memory.  The threshold counts as reached
+ * horizon; NUM_DOMAIN below four rows.  The threshold counts as reached
  * once the model stands beyond it: 0 left. */
-int predict_life(struct predict *p, double *life);
+enum num_status predict_life(struct predict *p, double *life);
 /* The bank, for its weights, counts and events; NULL for the other models. */
 struct bank *predict_bank(struct predict *p);
 
