@@ -40,6 +40,14 @@ ballcal --balls 1.tsv:1mm --balls off.tsv:2mm --balls 4.tsv:4mm --exponent 5 >ca
 is "a size that does not fit the power law is marked by status 3" "$? $(grep -c 'no power law' err)" "3 1"
 ballcal --balls 2.tsv:2mm --exponent 5 >cal.tsv 2>err
 is "one size determines the constant but not the exponent" "$? $(value sizes) $(value exponent)" "0 1 "
+for d in 1 2 4; do
+	awk 'NR == 1 { print "# units: mV m/s 1"; print; next } { $1 *= 1000; print }' OFS='\t' $d.tsv >mV$d.tsv
+done
+ballcal --balls 1.tsv:1mm --balls 2.tsv:2mm --balls 4.tsv:4mm --exponent 5 >cal.tsv
+want=$(value calibration)
+ballcal --balls mV1.tsv:1mm --balls mV2.tsv:2mm --balls mV4.tsv:4mm --exponent 5 >cal.tsv
+near "amplitudes are converted from the units of the table" "$(value calibration | awk '{ print $1 * 1e-15 }')" \
+	"$(echo "$want" | awk '{ print $1 * 1e-15 }')" 1e-6
 
 fails "no balls" 2 '\--balls is missing' ballcal
 fails "balls without a diameter" 2 'want FILE:D' ballcal --balls 1.tsv

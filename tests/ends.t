@@ -129,4 +129,9 @@ ok 'the end mark is written when a live signal stops' records --check live
 
 fails 'a line longer than can be held' 1 'table: line [0-9]*: longer than 100 bytes' \
 	env WEARPIPE_LIMITS=line=100 records --check table
+printf 't\ty\n0\t1\n1\t2\n' >short
+fails 'a first line that is too long' 1 'short: line 1: longer than 2 bytes' \
+	env WEARPIPE_LIMITS=line=2 debriscount short
+fails 'a first line of a recording that is too long' 1 'short: line 1: longer than 2 bytes' \
+	env WEARPIPE_LIMITS=line=2 sigconvert --from text --rate 100 short
 done_testing

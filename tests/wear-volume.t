@@ -22,6 +22,9 @@ wear-volume --period 2s --time-scale 3600 crowd.tsv >volume.tsv 2>err
 is 'period and time scale determine the times' "$(column t volume.tsv | tr '\n' ' ')$(spheres volume.tsv)" \
 	"7200 14400 2.000000 42.000000 "
 ok 'the table has its end mark' records --check volume.tsv
+printf '# units: ms um\ntime1\tdiameter\n500\t1000\n1500\t1000\n' >um.tsv
+wear-volume um.tsv >volume.tsv
+is 'times and diameters are converted from the units of the table' "$(spheres volume.tsv)" "1.000000 "
 
 printf 'time1\tdiameter\tverdict\n0.5\t1e-3\talone\n0.6\t1e-3\tmisfit\n1.5\t1e-3\talone\n' >doubt.tsv
 wear-volume doubt.tsv >volume.tsv 2>err

@@ -2,6 +2,7 @@
 #include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/progress.h"
+#include "io/kinds.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -139,16 +140,18 @@ size_t input_read(struct input *in, void *bytes, size_t n)
 size_t input_line(struct input *in, char **line, size_t *room, size_t most)
 {
 	size_t n = 0;
+	int over = 0;
 
-	while (input_peek(in) >= 0) {
+	while (!over && input_peek(in) >= 0) {
 		const unsigned char *from = in->buffer + in->begin, *newline;
 		size_t piece = in->end - in->begin;
 
 		newline = memchr(from, '\n', piece);
 		if (newline)
 			piece = (size_t)(newline - from) + 1;
-		if (piece > most - n)
-			return most + 1;
+		over = piece > most - n;
+		if (over)
+			piece = most - n;
 		if (n + piece + 1 > *room) {
 			*room = 2 * (n + piece + 1);
 			*line = xrealloc(*line, *room, 1);
@@ -160,6 +163,19 @@ size_t input_line(struct input *in, char **line, size_t *room, size_t most)
 		if (newline)
 			break;
 	}
+	return over ? most + 1 : n;
+}
+
+size_t input_text_line(
+	struct input *in, char **line, size_t *room, size_t most, long *number)
+{
+	size_t n = input_line(in, line, room, most);
+
+	if (n > 0 && ++*number == 1)
+		kind_refuse(in->name, *line, n < most ? n : most, KIND_TABLE);
+	if (n > most)
+		die(EXIT_RUN, "%s: line %ld: longer than %zu bytes", in->name, *number,
+			most);
 	return n;
 }
 

@@ -32,8 +32,12 @@ size_t input_read(struct input *in, void *bytes, size_t n);
 size_t input_some(struct input *in, void *bytes, size_t n);
 /* A line with its newline, which only the last may lack, and a NUL behind it, in memory
  * that grows; returns its length, 0 at the end, most + 1 if it is longer than most
- * bytes. */
+ * bytes: then the first most of them are there. */
 size_t input_line(struct input *in, char **line, size_t *room, size_t most);
+/* The same for the lines of a text, whose number it counts from 1: dies where the line is
+ * longer, and where the first begins a stream of another kind. */
+size_t input_text_line(
+	struct input *in, char **line, size_t *room, size_t most, long *number);
 /* Bytes that a regular file still holds; UINT64_MAX if unknown. */
 uint64_t input_left(const struct input *in);
 

@@ -9,7 +9,6 @@
 #include "io/ends.h"
 #include "io/input.h"
 #include "io/keys.h"
-#include "io/kinds.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -106,15 +105,10 @@ static const char byte_order_mark[] = "\xef\xbb\xbf";
 /* The next line with its newline; returns its length, 0 at the end. */
 static size_t read_line(struct table_in *t)
 {
-	size_t n = input_line(t->in, &t->line, &t->room, t->most);
+	size_t n = input_text_line(t->in, &t->line, &t->room, t->most, &t->number);
 
 	if (n == 0)
 		return 0;
-	if (t->number++ == 0)
-		kind_refuse(t->name, t->line, n, KIND_TABLE);
-	if (n > t->most)
-		die(EXIT_RUN, "%s: line %ld: longer than %zu bytes", t->name, t->number,
-			t->most);
 	if (t->line[n - 1] == '\n')
 		return n;
 	if (file_followed())

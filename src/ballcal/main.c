@@ -5,6 +5,7 @@
 #include "common/verdicts.h"
 #include "count/detection.h"
 #include "count/line.h"
+#include "io/quantities.h"
 #include "io/tables.h"
 #include "num/room.h"
 #include <math.h>
@@ -77,8 +78,8 @@ static void read_balls(struct pulses *p, const char *text)
 
 	if (table_columns(t) == 0)
 		die(EXIT_RUN, "%s: no table", table_name(t));
-	ca = table_need(t, "amplitude");
-	cv = table_need(t, "velocity");
+	ca = table_need_quantity(t, "amplitude", UNIT_VOLTAGE);
+	cv = table_need_quantity(t, "velocity", UNIT_SPEED);
 	cw = table_find(t, "verdict");
 	for (; more; more = table_next(t)) {
 		double a, v;

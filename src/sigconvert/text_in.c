@@ -1,6 +1,5 @@
 #include "cli/msg.h"
 #include "cli/unit.h"
-#include "io/kinds.h"
 #include "moment.h"
 #include "recording.h"
 #include <ctype.h>
@@ -41,15 +40,10 @@ struct text_in {
 /* The next line, without its newline; 0 at the end. */
 static int any_line(struct text_in *t)
 {
-	size_t n = input_line(t->in, &t->line, &t->room, t->most);
+	size_t n = input_text_line(t->in, &t->line, &t->room, t->most, &t->number);
 
 	if (n == 0)
 		return 0;
-	if (t->number++ == 0)
-		kind_refuse(t->name, t->line, n, KIND_TABLE);
-	if (n > t->most)
-		die(EXIT_RUN, "%s: line %ld: longer than %zu bytes", t->name, t->number,
-			t->most);
 	while (n > 0 && strchr("\r\n", t->line[n - 1]))
 		t->line[--n] = '\0';
 	if (n != strlen(t->line))

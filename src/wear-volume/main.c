@@ -3,6 +3,7 @@
 #include "cli/opt.h"
 #include "cli/stats.h"
 #include "common/verdicts.h"
+#include "io/quantities.h"
 #include "io/tables.h"
 #include <math.h>
 #include <stdlib.h>
@@ -28,13 +29,14 @@ struct columns {
 	int time, diameter, verdict, sources;
 };
 
-static struct columns find_columns(const struct table_in *t)
+static struct columns find_columns(struct table_in *t)
 {
-	struct columns c = { table_find(t, "time1"), table_need(t, "diameter"),
-		table_find(t, "verdict"), table_find(t, "sources") };
+	struct columns c = { table_find_quantity(t, "time1", UNIT_TIME),
+		table_need_quantity(t, "diameter", UNIT_LENGTH), table_find(t, "verdict"),
+		table_find(t, "sources") };
 
 	if (c.time < 0)
-		c.time = table_find(t, "t");
+		c.time = table_find_quantity(t, "t", UNIT_TIME);
 	if (c.time < 0)
 		c.time = table_need(t, "time1");
 	return c;
