@@ -5,7 +5,8 @@
 #include <math.h>
 
 /* Iterations between checks whether the energy falls.  No scene of tests/unit/exact.c and
- * hardness.c goes more than 7 iterations without lowering the certificate by a tenth. */
+ * hardness.c goes more than 7 iterations without lowering the optimality gap by a tenth.
+ */
 enum { PATIENCE = 25 };
 
 /* The gradient taken off, shifted, within the bounds: every cell takes part. */

@@ -27,7 +27,7 @@ struct separate {
 	int continuing; /* the next window belongs to the same section */
 	long number;
 	long long done; /* samples before this one are worked off */
-	struct particle *queue;
+	struct transit *queue;
 	size_t count, given, capacity;
 	double *source;
 	struct separate_counters counters;
@@ -82,7 +82,7 @@ long long separate_bad_sample(const struct separate *s, int *channel)
 	return s->bad_frame;
 }
 
-int separate_next(struct separate *s, struct particle *p)
+int separate_next(struct separate *s, struct transit *p)
 {
 	if (s->given == s->count) {
 		s->given = s->count = 0;
@@ -92,11 +92,11 @@ int separate_next(struct separate *s, struct particle *p)
 	return 1;
 }
 
-static struct particle *queue_particle(struct separate *s)
+static struct transit *queue_transit(struct separate *s)
 {
 	if (s->count == s->capacity) {
 		size_t capacity = s->capacity ? 2 * s->capacity : 64;
-		struct particle *more = realloc(s->queue, capacity * sizeof *more);
+		struct transit *more = realloc(s->queue, capacity * sizeof *more);
 
 		if (!more)
 			return NULL;
@@ -184,7 +184,7 @@ static long long ready(const struct separate *s)
 static int emit_pulse(struct separate *s, const struct joint_pulse *p, long long from,
 	int sources, double chi2, enum separate_verdict verdict)
 {
-	struct particle *out = queue_particle(s);
+	struct transit *out = queue_transit(s);
 	double delay_var = p->cov[0] - 2 * p->cov[1] + p->cov[2], noise = s->cal.noise[0];
 
 	if (!out)
@@ -282,7 +282,7 @@ static int most_pulses(const struct separate *s, size_t n)
 static enum separate_status dense_section(
 	struct separate *s, long long from, long long to)
 {
-	struct particle *p = queue_particle(s);
+	struct transit *p = queue_transit(s);
 	struct separate_section out = { .number = s->number,
 		.begin = from,
 		.end = to,
@@ -507,7 +507,7 @@ static enum separate_status mask_section(struct separate *s, long long from, lon
 	s->counters.masks += m > 1;
 	s->counters.masks_skipped += m == 1;
 	for (int k = 0; k < m; k++) {
-		struct particle *p = queue_particle(s);
+		struct transit *p = queue_transit(s);
 		double *x = s->source + (size_t)k * n, t, a;
 
 		if (!p)

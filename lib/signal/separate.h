@@ -39,7 +39,8 @@ enum separate_verdict {
 	SEPARATE_UNRESOLVED /* too dense: a row stands for sources particles or more */
 };
 
-struct particle {
+/* One particle on its way past both sensors, as the record tells it. */
+struct transit {
 	long section;     /* from 1 */
 	int sources;      /* particles in this section (or window of it) */
 	double t1, t2;    /* arrival at either sensor, samples from the start */
@@ -111,7 +112,7 @@ enum separate_status separate_push(struct separate *s, const double *x, size_t n
 /* NO_LAG and FAST from separate_end() only: there was nothing to learn from. */
 enum separate_status separate_end(struct separate *s);
 /* The next particle in order of section and arrival; 0 where none is ready. */
-int separate_next(struct separate *s, struct particle *p);
+int separate_next(struct separate *s, struct transit *p);
 
 const struct calibration *separate_calibration(
 	const struct separate *s); /* NULL: not yet */

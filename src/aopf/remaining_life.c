@@ -6,10 +6,10 @@
 #include "filter_options.h"
 #include "io/quantities.h"
 #include "io/series.h"
-#include "life/fleet.h"
-#include "life/metrics.h"
-#include "life/predict.h"
-#include "life/runin.h"
+#include "life/prior/fleet.h"
+#include "life/score/metrics.h"
+#include "life/trend/predict.h"
+#include "life/trend/runin.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -146,7 +146,8 @@ void outlook_check(int bare)
 static void read_fleet(const struct series *like, const char *unit_column)
 {
 	struct series *in = series_open(fleet_file, unit_column);
-	int good, failed, carried_on, n;
+	enum num_status status;
+	int failed, carried_on, n;
 	char y[UNIT_WORD];
 
 	table_unit_word(series_table(like), series_value_column(like), y);
@@ -154,14 +155,16 @@ static void read_fleet(const struct series *like, const char *unit_column)
 		table_ratio(series_table(in), series_time_column(in), timeunit_word()),
 		table_ratio(series_table(in), series_value_column(in), y));
 	fleet = fleet_new(outlook_options.threshold, direction == UP ? 1 : -1);
-	good = fleet != NULL;
-	while (good && series_next(in))
+	status = fleet ? NUM_OK : NUM_MEMORY;
+	while (status == NUM_OK && series_next(in))
 		if (!isnan(series_value(in)))
-			good = fleet_add(fleet, series_unit(in), series_time(in),
+			status = fleet_add(fleet, series_unit(in), series_time(in),
 				series_value(in));
-	n = good ? fleet_build(fleet, &failed, &carried_on) : -1;
-	if (n < 0)
+	if (status == NUM_OK)
+		status = fleet_build(fleet, &failed, &carried_on);
+	if (status != NUM_OK)
 		die(EXIT_RUN, "no memory for the fleet");
+	fleet_shapes(fleet, &n);
 	if (n == 0)
 		die(EXIT_RUN, "%s: none of %d units shows any wear to compare with",
 			fleet_file, series_units(in));
@@ -357,13 +360,14 @@ static void put_draws(struct outlook *o, const double *life, int n, double *cell
 
 static void foresee(struct outlook *o, double *cell)
 {
-	int n = predict_draws(o->predict), drawn;
+	int n = predict_draws(o->predict);
+	enum num_status status;
 	double *life = malloc((size_t)n * sizeof *life);
 
-	drawn = life ? predict_life(o->predict, life) : -1;
-	if (drawn < 0)
+	status = life ? predict_life(o->predict, life) : NUM_MEMORY;
+	if (status == NUM_MEMORY)
 		die(EXIT_RUN, "no memory for %d paths", n);
-	if (drawn > 0)
+	if (status == NUM_OK)
 		put_draws(o, life, n, cell);
 	free(life);
 }

@@ -14,7 +14,7 @@
 
 #include "cli/opt.h"
 #include "io/series.h"
-#include "life/adaptive.h"
+#include "life/particle/adaptive.h"
 #include "num/state.h"
 
 /* Values of the options. */

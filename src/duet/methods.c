@@ -62,7 +62,7 @@ static void report(const struct separate *s, double rate)
 
 static int put_ready(struct separate *s, struct found *out)
 {
-	struct particle p;
+	struct transit p;
 	int any = 0;
 
 	for (; separate_next(s, &p); any = 1)

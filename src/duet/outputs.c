@@ -57,7 +57,7 @@ static void put_row(struct table_out *t, const double *row, int n, const char *w
 	table_end_row(t);
 }
 
-void found_particle(struct found *out, const struct particle *p)
+void found_particle(struct found *out, const struct transit *p)
 {
 	double rate = (double)out->rate, delay = (p->t2 - p->t1) / rate;
 	double delay_se = p->delay_se / rate,
