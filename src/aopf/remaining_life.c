@@ -5,10 +5,10 @@
 #include "common/time_unit.h"
 #include "filter_options.h"
 #include "io/series.h"
-#include "life/fleet.h"
-#include "life/metrics.h"
-#include "life/predict.h"
-#include "life/runin.h"
+#include "life/prior/fleet.h"
+#include "life/score/metrics.h"
+#include "life/trend/predict.h"
+#include "life/trend/runin.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>

@@ -13,7 +13,7 @@
 #define OUTLOOK_H
 
 #include "cli/opt.h"
-#include "life/adaptive.h"
+#include "life/particle/adaptive.h"
 #include "num/state.h"
 
 /* Values of the options. */
