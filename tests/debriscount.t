@@ -125,7 +125,7 @@ fails "a trend without periods" 2 'requires --period' debriscount --output trend
 fails "an alarm that clears above its level" 2 'CLEAR not above LEVEL' debriscount --alarm 1:2 six.tsv
 fails "a volume by the period" 2 'requires --flow' debriscount --volume 1L --period 1s six.tsv
 fails "no times to part periods by" 1 'no column of times' debriscount --period 1s bottle.tsv
-fails "an empty stream" 1 'no table' debriscount
+fails "an empty stream" 1 'empty, want table' debriscount
 head -n 1 six.tsv >none.tsv
 fails "no particle and no duration" 1 'with --duration' debriscount none.tsv
 debriscount --duration 1h none.tsv >none.out
