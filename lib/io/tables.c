@@ -503,11 +503,23 @@ void table_close(struct table_in *t)
 
 /* Writer */
 
+static int words(const char *s)
+{
+	int n = 0;
+
+	for (; *(s += strspn(s, " \t")); s += strcspn(s, " \t"))
+		n++;
+	return n;
+}
+
 struct table_out *table_create(
 	const char *path, const char *cmd, const char *units, const char *columns)
 {
 	struct table_out *t = xcalloc(1, sizeof *t);
 
+	if (units && words(units) != words(columns))
+		die(EXIT_RUN, "%d units for %d columns: %s", words(units), words(columns),
+			columns);
 	t->f = file_create(path, &t->name);
 	t->head = xstrdup(promise);
 	if (cmd)
