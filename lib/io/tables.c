@@ -388,8 +388,11 @@ int table_need(const struct table_in *t, const char *column)
 {
 	int i = table_find(t, column);
 
-	if (i < 0 && t->ncolumns == 0)
+	if (i < 0 && t->ncolumns == 0 && !strncmp(opt_reads(), "table", 5))
 		die(EXIT_RUN, "%s: empty, want %s", t->name, opt_reads());
+	if (i < 0 && t->ncolumns == 0)
+		die(EXIT_RUN, "%s: empty, want a table with the column '%s'", t->name,
+			column);
 	if (i < 0)
 		die(EXIT_RUN, "%s: no column '%s' among %s%s", t->name, column,
 			list_columns(t), converter(t));
