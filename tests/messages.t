@@ -23,11 +23,11 @@ fails "an empty table" 1 '/dev/null: empty, want' rwl --new --wear /dev/null --s
 
 # Tables of other programs.
 printf 't;y\n0;1\n' >semicolon
-fails "semicolons" 1 "no column 'y' among 't;y': a TAB parts columns, not a semicolon" aopf --threshold 1 semicolon
+fails "semicolons" 1 "no column 'y' among 't;y': 'sigconvert --output table' makes a table of it" aopf --threshold 1 semicolon
 printf 't\ty\n0,5\t1\n' >comma
-fails "decimal commas" 1 "line 2: t: '0,5' is not a number: write decimals with a point" aopf --threshold 1 comma
+fails "decimal commas" 1 "line 2: t: '0,5' is not a number: 'sigconvert --output table' reads decimal commas" aopf --threshold 1 comma
 printf 'Time [h]\tFlow [L/min]\n0\t1\n' >named
-fails "the columns there are are named" 1 "no column 'y' among 'Time \[h\]' 'Flow \[L/min\]'" aopf --threshold 1 named
+fails "the columns there are are named" 1 "no column 'y' among 'Time \[h\]' 'Flow \[L/min\]': 'sigconvert --output table' makes" aopf --threshold 1 named
 
 # Units.
 fails "a unit with wrong capitals" 2 'young 210Gpa: did you mean GPa?' bemcontact --young 210Gpa --pressure 1MPa s.nrrd

@@ -115,7 +115,7 @@ static inline lane_mask are_free(const struct contact *c, lanes p)
 	add_pass(s, &t)
 
 /* The residual of the active cells, which are free or should become free because of their
- * gap, and the sums of contact_certify(). */
+ * gap, and the sums of contact_optimality_sums(). */
 static inline void set_cells(const struct contact *c, size_t i, int n, struct pass *t)
 {
 	lanes p = lanes_load(c->p + i, n);
@@ -326,11 +326,11 @@ static void renew_gap(struct contact *c, struct state *state)
 	state->drift = 0;
 }
 
-static double certify(struct contact *c)
+static double optimality_gap(struct contact *c)
 {
 	struct sweep s = contact_sweep(c, set_residual);
 
-	return c->result.certificate = contact_certificate(c, &s);
+	return c->result.optimality_gap = contact_optimality_gap(c, &s);
 }
 
 /* A step along the gradient, and from then on as from the start. */
@@ -350,15 +350,15 @@ enum contact_status contact_solve_bccg(struct contact *c)
 	c->tau = 0.5;
 	renew_gap(c, &state);
 	for (long k = 0;; k++) {
-		double certificate = certify(c), slope;
+		double relative = optimality_gap(c), slope;
 
-		if (certificate <= c->tolerance && !state.exact) {
+		if (relative <= c->tolerance && !state.exact) {
 			renew_gap(c, &state);
-			certificate = certify(c);
+			relative = optimality_gap(c);
 		}
-		if (certificate <= c->tolerance && state.exact)
+		if (relative <= c->tolerance && state.exact)
 			return CONTACT_OK;
-		if (k == c->par.max_iterations || contact_stalls(c, certificate))
+		if (k == c->par.max_iterations || contact_stalls(c, relative))
 			break;
 		c->result.iterations++;
 		if (contact_lingers(c)) {
@@ -388,5 +388,6 @@ enum contact_status contact_solve_bccg(struct contact *c)
 			renew_gap(c, &state);
 	}
 	renew_gap(c, &state);
-	return certify(c) <= c->tolerance && state.exact ? CONTACT_OK : CONTACT_NOCONV;
+	return optimality_gap(c) <= c->tolerance && state.exact ? CONTACT_OK
+								: CONTACT_NOCONV;
 }

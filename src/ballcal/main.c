@@ -76,8 +76,6 @@ static void read_balls(struct pulses *p, const char *text)
 	int more = table_next(t), ca, cv, cw;
 	size_t before = p->n;
 
-	if (table_columns(t) == 0)
-		die(EXIT_RUN, "%s: no table", table_name(t));
 	ca = table_need_quantity(t, "amplitude", UNIT_VOLTAGE);
 	cv = table_need_quantity(t, "velocity", UNIT_SPEED);
 	cw = table_find(t, "verdict");

@@ -113,7 +113,7 @@ static void put_results(struct record *r, const struct contact_par *par,
 	if (par->hardness > 0)
 		record_set(r, "plastic_area", "%.17g", s->plastic);
 	record_set(r, "energy", "%.17g", s->energy);
-	record_set(r, "certificate", "%.3g", s->certificate);
+	record_set(r, "optimality_gap", "%.3g", s->optimality_gap);
 	record_set(r, "iterations", "%ld", s->iterations);
 	record_set(r, "converged", "%s", converged ? "yes" : "no");
 }
@@ -125,7 +125,7 @@ void count_work(const struct contact_result *s, int warm)
 	stats_add("iterations", (double)s->iterations);
 	stats_add("transforms", (double)s->transforms);
 	stats_add("transforms_all_grids", s->work);
-	stats_max("certificate", s->certificate);
+	stats_max("optimality_gap", s->optimality_gap);
 }
 
 enum contact_status press_to(const struct task *t, const double *height,
@@ -197,12 +197,12 @@ static int solve_step(const struct task *t, double target, int warm, int last,
 
 	*found = *contact_result(t->c);
 	count_work(found, warm);
-	note("%s: record %ld: area %.4g, approach %.6g m, certificate %.2g, %ld iterations",
-		t->name, t->number, found->area, found->approach, found->certificate,
+	note("%s: record %ld: area %.4g, approach %.6g m, optimality gap %.2g, %ld iterations",
+		t->name, t->number, found->area, found->approach, found->optimality_gap,
 		found->iterations);
 	if (status == CONTACT_NOCONV)
-		warn("%s: record %ld: not converged: certificate %.2g after %ld iterations",
-			t->name, t->number, found->certificate, found->iterations);
+		warn("%s: record %ld: not converged: optimality gap %.2g after %ld iterations",
+			t->name, t->number, found->optimality_gap, found->iterations);
 	if (last)
 		put_results(t->r, &t->par, found, status == CONTACT_OK);
 	put_row(t, t->h, found, t->p, status == CONTACT_OK, last);

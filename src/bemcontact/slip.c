@@ -67,8 +67,8 @@ int slip_solve(const struct task *t, const struct contact_result *normal, double
 			"%s: record %ld: --tangential %g N slips: friction bears %g N",
 			t->name, t->number, tangential, friction * normal->load);
 	if (status == CONTACT_NOCONV)
-		warn("%s: record %ld: part that sticks not converged: certificate %.2g",
-			t->name, t->number, contact_result(t->c)->certificate);
+		warn("%s: record %ld: part that sticks not converged: optimality gap %.2g",
+			t->name, t->number, contact_result(t->c)->optimality_gap);
 	count_work(contact_result(t->c), 1);
 	record_set(t->r, "friction", "%.17g", friction);
 	record_set(t->r, "tangential_load", "%.17g", found.load);

@@ -79,7 +79,7 @@ static struct particle particle_of(
 		.width = NAN,
 		.aspect = NAN,
 		.elongation = NAN,
-		.convexity = NAN,
+		.solidity = NAN,
 		.area = NAN,
 		.azimuth = NAN,
 		.dip = NAN,

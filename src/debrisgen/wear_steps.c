@@ -328,7 +328,7 @@ int wearing_press(
 	if (status == CONTACT_NOCONV)
 		warn("%s: realisation %ld, step %ld: contact not solved to %g, only to %.2g",
 			fields_name(w->in), c->r->realisation, step, press.tolerance,
-			found->certificate);
+			found->optimality_gap);
 	stats_add("contact_iterations", (double)found->iterations);
 	stats_add("contact_transforms", (double)found->transforms);
 	return status == CONTACT_OK;

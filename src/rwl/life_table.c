@@ -2,8 +2,8 @@
 #include "cli/msg.h"
 #include "common/quantile_columns.h"
 #include "io/tables.h"
-#include "life/metrics.h"
-#include "life/remaining.h"
+#include "life/pair/remaining.h"
+#include "life/score/metrics.h"
 #include <math.h>
 #include <stdlib.h>
 

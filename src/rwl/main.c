@@ -2,7 +2,7 @@
 #include "cli/msg.h"
 #include "cli/stats.h"
 #include "fragments.h"
-#include "life/remaining.h"
+#include "life/pair/remaining.h"
 #include "life_table.h"
 #include "observations.h"
 #include "pump_options.h"

@@ -1,7 +1,7 @@
 /* A unit whose gap opens evenly: lives in closed form; the pair and the slope it rests
  * on. */
-#include "life/forecast.h"
-#include "life/remaining.h"
+#include "life/pair/forecast.h"
+#include "life/pair/remaining.h"
 #include "num/rng.h"
 #include "num/running.h"
 #include "tap.h"

@@ -1,11 +1,11 @@
 /* Order selection, noise, run-in, history, damage models and fleet comparison. */
-#include "life/adaptive.h"
-#include "life/bank.h"
-#include "life/fleet.h"
-#include "life/grey.h"
-#include "life/history.h"
-#include "life/noise.h"
-#include "life/runin.h"
+#include "life/grey/grey.h"
+#include "life/grey/noise.h"
+#include "life/particle/adaptive.h"
+#include "life/prior/fleet.h"
+#include "life/trend/bank.h"
+#include "life/trend/history.h"
+#include "life/trend/runin.h"
 #include "tap.h"
 #include <stdlib.h>
 

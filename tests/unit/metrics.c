@@ -1,5 +1,5 @@
 /* metrics - scores of predictions against closed forms */
-#include "life/metrics.h"
+#include "life/score/metrics.h"
 #include "tap.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_math.h>

@@ -1,5 +1,5 @@
 /* partition - sums over classes and zone, draws of the mean, large particles */
-#include "life/partition.h"
+#include "life/prior/partition.h"
 #include "num/rng.h"
 #include "tap.h"
 #include <gsl/gsl_randist.h>

@@ -1,4 +1,4 @@
-#include "life/pair.h"
+#include "life/pair/pair.h"
 #include <math.h>
 
 double pair_gap(const struct pair *p, enum pair_quantity quantity, double value)

@@ -1,5 +1,5 @@
 /* leakage.c - see leakage.h */
-#include "life/leakage.h"
+#include "life/pair/leakage.h"
 #include <math.h>
 #include <stddef.h>
 

@@ -18,8 +18,8 @@
 #ifndef LIFE_ADAPTIVE_H
 #define LIFE_ADAPTIVE_H
 
-#include "life/filter.h"
-#include "life/order.h"
+#include "life/grey/order.h"
+#include "life/particle/filter.h"
 #include "num/status.h"
 
 struct adaptive_par {

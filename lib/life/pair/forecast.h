@@ -14,8 +14,8 @@
 #ifndef LIFE_FORECAST_H
 #define LIFE_FORECAST_H
 
-#include "life/pair.h"
-#include "life/paths.h"
+#include "life/pair/pair.h"
+#include "life/prior/paths.h"
 #include "num/status.h"
 
 struct forecast_par {

@@ -1,6 +1,6 @@
 /* order.c - see order.h */
-#include "life/order.h"
-#include "life/grey.h"
+#include "life/grey/order.h"
+#include "life/grey/grey.h"
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>

@@ -10,7 +10,7 @@
 #ifndef LIFE_RESAMPLE_H
 #define LIFE_RESAMPLE_H
 
-#include "life/draw.h"
+#include "life/particle/draw.h"
 #include <stddef.h>
 #include <stdint.h>
 

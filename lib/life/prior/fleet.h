@@ -14,7 +14,7 @@
 #ifndef LIFE_FLEET_H
 #define LIFE_FLEET_H
 
-#include "life/bank.h"
+#include "life/trend/bank.h"
 #include "num/status.h"
 
 struct fleet;

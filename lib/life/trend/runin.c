@@ -1,5 +1,5 @@
 /* runin.c - see runin.h */
-#include "life/runin.h"
+#include "life/trend/runin.h"
 #include <math.h>
 
 /* A finished block; 1 where it is the lowest after an excursion. */

@@ -1,6 +1,6 @@
 /* observed.c - see observed.h */
-#include "life/observed.h"
-#include "life/grey.h"
+#include "life/pair/observed.h"
+#include "life/grey/grey.h"
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>

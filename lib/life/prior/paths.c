@@ -1,6 +1,6 @@
 /* paths.c - see paths.h */
-#include "life/paths.h"
-#include "life/remaining.h"
+#include "life/prior/paths.h"
+#include "life/pair/remaining.h"
 #include "num/rng.h"
 #include "num/select.h"
 #include <math.h>

@@ -1,5 +1,5 @@
 /* filter.c - see filter.h */
-#include "life/filter.h"
+#include "life/particle/filter.h"
 #include "num/lanes.h"
 #include "num/student.h"
 #include <math.h>

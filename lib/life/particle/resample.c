@@ -1,5 +1,5 @@
 /* resample.c - see resample.h */
-#include "life/resample.h"
+#include "life/particle/resample.h"
 #include <math.h>
 
 /* Teeth in [0, sum) against the running sum of the weights, less the copies that were

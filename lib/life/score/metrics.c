@@ -1,5 +1,5 @@
 /* metrics.c - see metrics.h */
-#include "life/metrics.h"
+#include "life/score/metrics.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>

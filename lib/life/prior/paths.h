@@ -12,8 +12,8 @@
 #ifndef LIFE_PATHS_H
 #define LIFE_PATHS_H
 
-#include "life/observed.h"
-#include "life/partition.h"
+#include "life/pair/observed.h"
+#include "life/prior/partition.h"
 #include <stdint.h>
 
 struct paths_par {

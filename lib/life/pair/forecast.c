@@ -1,6 +1,6 @@
-#include "life/forecast.h"
-#include "life/bank.h"
-#include "life/remaining.h"
+#include "life/pair/forecast.h"
+#include "life/pair/remaining.h"
+#include "life/trend/bank.h"
 #include "num/select.h"
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* partition.c - see partition.h */
-#include "life/partition.h"
+#include "life/prior/partition.h"
 #include "num/realisations.h"
 #include "num/room.h"
 #include "num/running.h"

@@ -21,7 +21,7 @@
 #ifndef LIFE_FILTER_H
 #define LIFE_FILTER_H
 
-#include "life/resample.h"
+#include "life/particle/resample.h"
 
 struct filter_par {
 	size_t particles; /* N >= 1 */

@@ -1,5 +1,5 @@
 /* remaining.c - see remaining.h */
-#include "life/remaining.h"
+#include "life/pair/remaining.h"
 #include "num/select.h"
 #include <gsl/gsl_randist.h>
 #include <math.h>

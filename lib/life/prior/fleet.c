@@ -1,5 +1,5 @@
 /* fleet.c - see fleet.h */
-#include "life/fleet.h"
+#include "life/prior/fleet.h"
 #include "num/select.h"
 #include <math.h>
 #include <stdlib.h>

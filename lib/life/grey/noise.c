@@ -1,5 +1,5 @@
 /* noise.c - see noise.h */
-#include "life/noise.h"
+#include "life/grey/noise.h"
 #include "num/select.h"
 #include <math.h>
 #include <stdlib.h>

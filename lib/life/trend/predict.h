@@ -13,8 +13,8 @@
 #ifndef LIFE_PREDICT_H
 #define LIFE_PREDICT_H
 
-#include "life/adaptive.h"
-#include "life/bank.h"
+#include "life/particle/adaptive.h"
+#include "life/trend/bank.h"
 
 enum predict_model {
 	PREDICT_AVERAGE, /* all coordinates, see bank.h */

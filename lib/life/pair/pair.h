@@ -8,7 +8,7 @@
 #ifndef LIFE_PAIR_H
 #define LIFE_PAIR_H
 
-#include "life/leakage.h"
+#include "life/pair/leakage.h"
 
 enum pair_quantity {
 	PAIR_AUTO, /* not known yet */

@@ -1,7 +1,7 @@
 /* adaptive.c - see adaptive.h */
-#include "life/adaptive.h"
-#include "life/grey.h"
-#include "life/noise.h"
+#include "life/particle/adaptive.h"
+#include "life/grey/grey.h"
+#include "life/grey/noise.h"
 #include "num/lanes.h"
 #include <math.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
 /* history.c - see history.h */
-#include "life/history.h"
+#include "life/trend/history.h"
 #include <stdlib.h>
 
 struct history {

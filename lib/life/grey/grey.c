@@ -1,5 +1,5 @@
 /* grey.c - see grey.h */
-#include "life/grey.h"
+#include "life/grey/grey.h"
 #include <math.h>
 
 void grey_add(struct grey *g, double x, double gap)
