@@ -211,9 +211,8 @@ int main(int argc, char **argv)
 
 	check_options();
 	t = table_open(argv[operand]);
+	table_need(t, "diameter");
 	more = table_next(t);
-	if (table_columns(t) == 0)
-		die(EXIT_RUN, "%s: no table", table_name(t));
 	par = parameters();
 	par.cmd = opt_cmd(table_upstream(t), NULL);
 	groups = groups_new(&par);

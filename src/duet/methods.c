@@ -22,6 +22,11 @@ static void check_status(
 		[SEPARATE_FAST] = "no pulse of at least 8 samples found: give "
 				  "--pulse-duration or sample faster",
 		[SEPARATE_SLOW] = "pulses as long as the record: --learn from more of it",
+		[SEPARATE_TONES] =
+			"--lines: too many, or too near each other, to be told "
+			"apart in so short a record",
+		[SEPARATE_WIDE] = "the transit times lie too far apart: give a smaller "
+				  "--spread",
 	};
 	int channel;
 	long long frame = separate_bad_sample(s, &channel);
@@ -113,16 +118,23 @@ int separate_record(
 	return doubtful;
 }
 
-static struct count *start_count(
-	const struct count_par *par, const double *x, size_t n, int channels)
+static struct count *start_count(const struct count_par *par, const double *x, size_t n,
+	int channels, const char *name)
 {
 	double *work = xcalloc(n, sizeof *work);
 	double level = isnan(par->floor)
 			       ? count_level(x + par->sensor - 1, n, channels, work)
 			       : par->floor;
+	struct count *c;
 
 	free(work);
-	return count_new(level);
+	if (!(level > 0))
+		die(EXIT_RUN, "%s: channel %d is constant: give --floor", name,
+			par->sensor);
+	c = count_new(level);
+	if (!c)
+		die(EXIT_RUN, "no memory");
+	return c;
 }
 
 void count_record(struct signal_in *in, struct found *out, const struct count_par *par)
@@ -142,9 +154,8 @@ void count_record(struct signal_in *in, struct found *out, const struct count_pa
 				die(EXIT_RUN,
 					"%s: channel %d, frame %lld: not a finite number",
 					signal_name(in), par->sensor, frame);
-			if (!c && !(c = start_count(par, x, n, channels)))
-				die(EXIT_RUN, "%s: channel %d is constant: give --floor",
-					signal_name(in), par->sensor);
+			if (!c)
+				c = start_count(par, x, n, channels, signal_name(in));
 			if (count_sample(c, y, &p))
 				found_peak(out, &p, par->sensor, par->delay);
 		}
