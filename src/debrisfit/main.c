@@ -17,7 +17,7 @@ static struct opt_list yield, friction = { 1, { 0 } }, poisson = { 1, { 0.3 } };
 static const struct opt opts[] = {
 	{ 'Y', "yield", OPT_LIST, UNIT_PRESSURE, &yield, 1e-30, 1e30, "LO[:HI]",
 		"yield stress, or range of it", NULL, 0 },
-	{ 'u', "friction", OPT_LIST, UNIT_NONE, &friction, 0, 1e6, "LO[:HI]",
+	{ 'u', "friction", OPT_LIST, UNIT_FRACTION, &friction, 0, 1e6, "LO[:HI]",
 		"friction coefficient, or range of it", NULL, 0 },
 	{ 0, "poisson", OPT_LIST, UNIT_NONE, &poisson, 0, 0.5, "LO[:HI]",
 		"Poisson's ratio, or range of it", NULL, 0 },
