@@ -693,3 +693,12 @@ enum separate_status separate_end(struct separate *s)
 		return status;
 	return s->calibrated ? work(s) : s->reason;
 }
+
+/* A tenth of the rows, and more than two, that fit no particle are more than a few odd
+ * ones: then the pulses are not what was learned, and other rows may be wrong, too. */
+int separate_doubtful(const struct separate *s)
+{
+	const struct separate_counters *c = &s->counters;
+
+	return c->misfits > 2 && 10 * c->misfits > c->rows + c->unresolved;
+}

@@ -120,6 +120,8 @@ int separate_next(struct separate *s, struct transit *p);
 const struct calibration *separate_calibration(
 	const struct separate *s); /* NULL: not yet */
 const struct separate_counters *separate_counters(const struct separate *s);
+/* So many pulses that fit no particle that the others are doubtful, too. */
+int separate_doubtful(const struct separate *s);
 /* Frame and channel (0, 1) that made it fail with NOT_FINITE. */
 long long separate_bad_sample(const struct separate *s, int *channel);
 

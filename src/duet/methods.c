@@ -75,13 +75,11 @@ static int put_ready(struct separate *s, struct found *out)
 	return any;
 }
 
-/* A tenth of the rows, and more than two, that fit no particle are more than a few odd
- * ones: then the pulses are not what was learned, and other rows may be wrong, too. */
 static int is_doubtful(const struct separate *s, const char *name)
 {
 	const struct separate_counters *c = separate_counters(s);
 
-	if (c->misfits <= 2 || 10 * c->misfits <= c->rows)
+	if (!separate_doubtful(s))
 		return 0;
 	warn("%s: %.0f of %.0f pulses fit no particle (misfit): the others are doubtful, "
 	     "too",
