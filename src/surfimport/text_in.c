@@ -74,7 +74,7 @@ static void find_separator(struct text *t, const char *sample)
 	}
 }
 
-static int is_gap(const char *s)
+int is_gap(const char *s)
 {
 	static const char *const words[] = { "", "nan", "NaN", "NAN", "NA", "BAD", "bad",
 		"***", "---", "-", "null", NULL };
