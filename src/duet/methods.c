@@ -49,7 +49,7 @@ static void report(const struct separate *s, double rate)
 	stats_set("sections_single", c->singles);
 	stats_set("sections_unresolved", c->unresolved);
 	stats_set("misfits", c->misfits);
-	stats_set("groups_doubted", c->untold);
+	stats_set("misfits_by_velocity", c->foreign);
 	stats_set("fits", c->fits);
 	stats_set("fit_steps", c->steps);
 	stats_set("searches", c->searches);
@@ -76,7 +76,7 @@ static int is_doubtful(const struct separate *s, const char *name)
 {
 	const struct separate_counters *c = separate_counters(s);
 
-	if (c->misfits <= 2 || 10 * c->misfits <= c->rows)
+	if (c->misfits <= 2 || 10 * c->misfits <= c->rows + c->unresolved)
 		return 0;
 	warn("%s: %.0f of %.0f pulses fit no particle (misfit): the others are doubtful, "
 	     "too",
