@@ -388,8 +388,11 @@ int table_need(const struct table_in *t, const char *column)
 {
 	int i = table_find(t, column);
 
-	if (i < 0 && t->ncolumns == 0)
+	if (i < 0 && t->ncolumns == 0 && !strncmp(opt_reads(), "table", 5))
 		die(EXIT_RUN, "%s: empty, want %s", t->name, opt_reads());
+	if (i < 0 && t->ncolumns == 0)
+		die(EXIT_RUN, "%s: empty, want a table with the column '%s'", t->name,
+			column);
 	if (i < 0)
 		die(EXIT_RUN, "%s: no column '%s' among %s%s", t->name, column,
 			list_columns(t), converter(t));
@@ -503,11 +506,23 @@ void table_close(struct table_in *t)
 
 /* Writer */
 
+static int words(const char *s)
+{
+	int n = 0;
+
+	for (; *(s += strspn(s, " \t")); s += strcspn(s, " \t"))
+		n++;
+	return n;
+}
+
 struct table_out *table_create(
 	const char *path, const char *cmd, const char *units, const char *columns)
 {
 	struct table_out *t = xcalloc(1, sizeof *t);
 
+	if (units && words(units) != words(columns))
+		die(EXIT_RUN, "%d units for %d columns: %s", words(units), words(columns),
+			columns);
 	t->f = file_create(path, &t->name);
 	t->head = xstrdup(promise);
 	if (cmd)

@@ -68,6 +68,8 @@ struct separate *separate_new(const struct separate_par *par)
 		free(s);
 		return NULL;
 	}
+	if (s->par.most_pulses <= 0 || s->par.most_pulses > JOINT_PULSES_MAX)
+		s->par.most_pulses = JOINT_PULSES_MAX;
 	return s;
 }
 
@@ -207,7 +209,7 @@ static enum separate_status calibrate_now(struct separate *s)
 {
 	static const enum separate_status of[] = { SEPARATE_OK, SEPARATE_MEMORY,
 		SEPARATE_SILENT_1, SEPARATE_SILENT_2, SEPARATE_NO_LAG, SEPARATE_FAR,
-		SEPARATE_NARROW, SEPARATE_FAST, SEPARATE_SLOW };
+		SEPARATE_NARROW, SEPARATE_FAST, SEPARATE_SLOW, SEPARATE_TONES };
 	const struct calibration *c = &s->cal;
 	enum calibrate_status status;
 	double reach;
@@ -220,6 +222,10 @@ static enum separate_status calibrate_now(struct separate *s)
 	status = calibrate(&s->par.known, s->tape[0].x, s->tape[1].x, n, &s->cal);
 	if (status != CALIBRATE_OK)
 		return of[status];
+	if (!(c->duration >= SECTIONS_SHORTEST)) {
+		calibration_clear(&s->cal);
+		return SEPARATE_FAST;
+	}
 	s->calibrated = 1;
 	s->done = s->tape[0].begin + c->whitening.edge;
 	calibration_scene(c, &s->scene);
@@ -414,8 +420,8 @@ static int most_pulses(const struct separate *s, size_t n)
 	double most = 4 + 3 * (double)n / s->cal.duration;
 
 	if (s->par.sources)
-		return s->par.sources;
-	return most < JOINT_PULSES_MAX ? (int)most : JOINT_PULSES_MAX;
+		most = s->par.sources;
+	return (int)fmin(most, s->par.most_pulses);
 }
 
 /* Shot noise of [from, to): one row. */
@@ -522,14 +528,16 @@ static enum separate_status fit_section(
 	size_t n = (size_t)(to - from);
 	double boundary;
 	struct judgement judgement;
+	enum joint_status status;
 	int m = s->carried, done = 0, unresolved, shorter;
 
 	s->scene.max_pulses = most_pulses(s, n);
 	if (m > s->scene.max_pulses)
 		m = s->scene.max_pulses;
-	if (joint_fit(s->joint, &s->scene, channel_1(s, from), channel_2(s, from), n,
-		    s->pulse, &m, &r) != JOINT_OK)
-		return SEPARATE_MEMORY;
+	status = joint_fit(s->joint, &s->scene, channel_1(s, from), channel_2(s, from), n,
+		s->pulse, &m, &r);
+	if (status != JOINT_OK)
+		return status == JOINT_MEMORY ? SEPARATE_MEMORY : SEPARATE_WIDE;
 	s->counters.fits++;
 	s->counters.steps += (double)r.steps;
 	s->counters.searches += (double)r.searches;
@@ -662,9 +670,10 @@ static enum separate_status work(struct separate *s)
 			     is_crowded(s, s->done, limit < upto ? limit : upto);
 		s->looked = 1;
 	}
-	sections_scan(s->sections, channel_1(s, s->done), channel_2(s, s->done), s->done,
-		(size_t)(limit - s->done),
-		s->ended ? limit : limit - sections_reach(s->sections));
+	if (!sections_scan(s->sections, channel_1(s, s->done), channel_2(s, s->done),
+		    s->done, (size_t)(limit - s->done),
+		    s->ended ? limit : limit - sections_reach(s->sections)))
+		return SEPARATE_MEMORY;
 	if (s->ended)
 		sections_end(s->sections);
 	while (sections_first(s->sections, &section)) {
@@ -791,4 +800,13 @@ enum separate_status separate_end(struct separate *s)
 	if (status != SEPARATE_OK)
 		return status;
 	return s->calibrated ? work(s) : s->reason;
+}
+
+/* A tenth of the rows, and more than two, that fit no particle are more than a few odd
+ * ones: then the pulses are not what was learned, and other rows may be wrong, too. */
+int separate_doubtful(const struct separate *s)
+{
+	const struct separate_counters *c = &s->counters;
+
+	return c->misfits > 2 && 10 * c->misfits > c->rows + c->unresolved;
 }

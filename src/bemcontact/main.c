@@ -231,6 +231,25 @@ static int solve_after(const struct task *t, const struct contact_result *full)
 	return converged & unload_solve(t, full, residual);
 }
 
+/* Says once what is possible, but hardly what was meant. */
+static void doubt(const struct contact_par *par, double pressure)
+{
+	static int said;
+
+	if (said || !(pressure > 0))
+		return;
+	said = 1;
+	if (pressure < 1e3 && !isnan(press.pressure))
+		warn("--pressure %g Pa hardly presses: is %gMPa meant?", press.pressure,
+			press.pressure);
+	else if (pressure > 0.1 * par->estar)
+		warn("the mean pressure of %.3g GPa is above a tenth of the contact "
+		     "modulus of %.3g GPa: no solid is elastic there",
+			1e-9 * pressure, 1e-9 * par->estar);
+	else
+		said = 0;
+}
+
 /* Solves one record in place; returns 1 if it converged. */
 static int solve_record(struct record *r, const struct fields_in *in, struct pool *pool)
 {
@@ -264,6 +283,7 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 	if (u)
 		contact_displacement(t.c, t.p, u);
 	converged &= solve_after(&t, &found);
+	doubt(&t.par, found.pressure);
 	free(own_gap);
 	free(t.other);
 	return converged;

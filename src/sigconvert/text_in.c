@@ -152,18 +152,20 @@ static int find(const struct text_in *t, const char *name)
 }
 
 /* What a heading is called in a table. */
-static char *name_of(const char *heading)
+static char *name_of(const char *heading, int lower)
 {
 	char *name = xstrdup(*heading ? heading : "-");
 
 	for (char *s = name; *s; s++)
-		*s = strchr(" \t:", *s) ? '_' : (char)tolower((unsigned char)*s);
+		*s = strchr(" \t:", *s) ? '_'
+		     : lower            ? (char)tolower((unsigned char)*s)
+					: *s;
 	return name;
 }
 
 static void take(struct text_in *t, int cell, const char *name)
 {
-	t->name_of[t->format.channels] = name ? xstrdup(name) : name_of(t->heading[cell]);
+	t->name_of[t->format.channels] = name_of(name ? name : t->heading[cell], !name);
 	t->taken[t->format.channels++] = cell;
 }
 
