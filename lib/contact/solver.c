@@ -1,4 +1,5 @@
 #include "contact/solver.h"
+#include "contact/balance.h"
 #include "contact/bccg.h"
 #include "contact/grids.h"
 #include "contact/pk.h"
@@ -154,6 +155,7 @@ void contact_free(struct contact *c)
 	contact_free(c->coarse);
 	transfer_done(&c->transfer);
 	extension_free(c->extension);
+	balance_free(c->balance);
 	convolve_free(c->periodic);
 	mlms_free(c->mlms);
 	convolve_free(c->plane);
