@@ -18,6 +18,7 @@ struct entry {
 struct report {
 	struct separate_section section;
 	struct campbell dense;
+	double *source;
 	size_t first, rows; /* of the queue */
 };
 
@@ -84,7 +85,7 @@ void separate_free(struct separate *s)
 	for (int c = 0; c < 2; c++)
 		tape_clear(&s->tape[c]);
 	for (size_t i = 0; i < s->reports; i++)
-		free((double *)s->report[i].section.source);
+		free(s->report[i].source);
 	free(s->report);
 	validation_free(s->validation);
 	free(s->queue);
@@ -134,7 +135,7 @@ static struct entry *queue_entry(struct separate *s)
 	return &s->queue[s->count++];
 }
 
-/* The section is reported with its rows, the last of the queue; takes over source. */
+/* The section is reported with its rows, the last of the queue, and the sources drawn. */
 static int queue_report(
 	struct separate *s, const struct separate_section *section, size_t rows)
 {
@@ -156,6 +157,8 @@ static int queue_report(
 	r->section = *section;
 	if (section->dense)
 		r->dense = *section->dense;
+	r->source = s->source;
+	s->source = NULL;
 	r->first = s->count - rows;
 	r->rows = rows;
 	return 1;
@@ -168,12 +171,13 @@ static void give_reports(struct separate *s)
 
 		if (r->section.dense)
 			r->section.dense = &r->dense;
+		r->section.source = r->source;
 		for (size_t k = r->first; k < r->first + r->rows; k++)
 			if (s->queue[k].evidence.doubted &&
 				r->section.verdict != SEPARATE_UNRESOLVED)
 				r->section.verdict = SEPARATE_MISFIT;
 		s->par.on_section(s->par.context, &r->section);
-		free((double *)r->section.source);
+		free(r->source);
 	}
 	s->reports = 0;
 }
@@ -478,12 +482,8 @@ static enum separate_status give_pulses(struct separate *s, long long from, long
 		if (!emit_pulse(s, &s->pulse[i], from, m, j->chi2, j->pulse[i]))
 			return SEPARATE_MEMORY;
 	compare_pulses(s, done);
-	if (s->par.want_sources) {
-		if (!draw_pulses(s, done, (size_t)(to - from)))
-			return SEPARATE_MEMORY;
-		out.source = s->source;
-		s->source = NULL;
-	}
+	if (s->par.want_sources && !draw_pulses(s, done, (size_t)(to - from)))
+		return SEPARATE_MEMORY;
 	return queue_report(s, &out, (size_t)done) ? SEPARATE_OK : SEPARATE_MEMORY;
 }
 
