@@ -10,7 +10,7 @@
 
 static double started = -1, drawn; /* seconds; drawn 0 while no line is shown */
 static int terminal = -1;
-static int due; /* what is counted has changed: draw at once */
+static int due;             /* what is counted has changed: draw at once */
 static const char *counted; /* what progress() counts, NULL: nothing */
 static double count, count_total;
 static double used, input_size, worked; /* bytes; worked: nothing of them is left to do */
