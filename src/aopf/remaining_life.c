@@ -5,6 +5,7 @@
 #include "common/time_unit.h"
 #include "filter_options.h"
 #include "io/series.h"
+#include "life/passage/passage.h"
 #include "life/prior/fleet.h"
 #include "life/score/metrics.h"
 #include "life/trend/predict.h"
