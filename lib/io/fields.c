@@ -120,6 +120,11 @@ int fields_more(struct fields_in *in)
 	return promised(in) || input_peek(in->at.in) >= 0;
 }
 
+int fields_last(const struct fields_in *in)
+{
+	return in->at.mark.number > 0 && in->at.mark.last;
+}
+
 /* Records of a stream of ours are numbered from 1. */
 static void check_mark(const struct fields_in *in, struct mark before)
 {
@@ -160,7 +165,9 @@ int fields_read(struct fields_in *in, struct record *r)
 		return 1;
 	}
 	if (in->at.record == 0)
-		die(EXIT_RUN, "%s: no record", in->at.name);
+		die(EXIT_RUN, "%s: empty, want %s", in->at.name,
+			strstr(opt_reads(), "fields") ? strstr(opt_reads(), "fields")
+						      : "fields");
 	if (promised(in) && !file_followed())
 		die(EXIT_RUN,
 			"%s: the stream ends after record %ld, which announces another: its writer did not finish",

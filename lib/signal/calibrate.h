@@ -55,7 +55,6 @@ struct calibration {
 	double duration, gain; /* as above */
 	double transit;        /* samples between the sensors; INFINITY if unknown */
 	double delta_min, delta_max; /* samples around shift */
-	double delta_var;            /* of the delays of what was learned from */
 	double drop, drop_near;      /* thresholds of joint.h */
 	double misfit;               /* of joint.h: how far the shape can be trusted */
 	int events;                  /* pulses the shape was fitted to */
@@ -76,7 +75,8 @@ enum calibrate_status {
 	CALIBRATE_FAR,    /* the lag given is as long as the record */
 	CALIBRATE_NARROW, /* the filter has left a band narrower than half the pulse's */
 	CALIBRATE_FAST,   /* pulses of fewer than 8 samples */
-	CALIBRATE_SLOW    /* pulses longer than half the record */
+	CALIBRATE_SLOW,   /* pulses longer than half the record */
+	CALIBRATE_TONES /* too many lines, or lines too near each other, for the record */
 };
 
 /* x1, x2: n >= 64 finite samples.  On CALIBRATE_OK *c is filled; free it with

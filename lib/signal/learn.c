@@ -26,12 +26,12 @@ double learn_lowest_lag(const double *r, size_t max_lag)
 	return low < max_lag && r[low] < 0 ? (double)low : 0;
 }
 
-/* The same of one pulse, as a share of its duration. */
+/* The same of one pulse, as a share of its duration; NAN when out of memory. */
 static double shape_lowest_lag(const struct shape *shape)
 {
 	enum { T = 100, LAGS = 100 };
 	size_t n = (size_t)(2 * shape_reach(shape) * T) + 2;
-	double *p = calloc(n + LAGS, sizeof *p), r[LAGS + 1] = { 0 }, low = 0.5;
+	double *p = calloc(n + LAGS, sizeof *p), r[LAGS + 1] = { 0 }, low = NAN;
 
 	if (p) {
 		shape_sample(shape, shape_reach(shape) * T, T, 0, n, p, NULL, NULL);
@@ -110,7 +110,7 @@ int learn_set_shape(struct calibration *c, int pulse)
 double learn_duration(int pulse, double low)
 {
 	struct shape *plain = shape_new((enum pulse_shape)pulse);
-	double duration = plain ? low / shape_lowest_lag(plain) : 0;
+	double duration = plain ? low / shape_lowest_lag(plain) : NAN;
 
 	shape_free(plain);
 	return duration;
@@ -130,7 +130,7 @@ static enum calibrate_status try_shape(const struct calibrate_par *par,
 	double chi2;
 
 	c->duration = duration;
-	if (!learn_set_shape(c, pulse))
+	if (isnan(duration) || !learn_set_shape(c, pulse))
 		return CALIBRATE_MEMORY;
 	examples_pick(ex, y1, y2, n, EXAMPLES_MAX / 2, c);
 	if (ex->count == 0)
@@ -184,7 +184,6 @@ static void learn_range(
 	const struct calibrate_par *par, const struct examples *ex, struct calibration *c)
 {
 	double lo = INFINITY, hi = -INFINITY, margin;
-	double sum = 0, squares = 0, noise = 0, events = 0;
 
 	for (int i = 0; i < ex->count; i++)
 		for (int k = 0; k < ex->example[i].m; k++) {
@@ -192,13 +191,7 @@ static void learn_range(
 
 			lo = fmin(lo, p->delta);
 			hi = fmax(hi, p->delta);
-			sum += p->delta;
-			squares += p->delta * p->delta;
-			noise += p->cov[0] - 2 * p->cov[1] + p->cov[2];
-			events++;
 		}
-	c->delta_var =
-		events > 0 ? fmax((squares - sum * sum / events - noise) / events, 0) : 0;
 	margin = fmax(0.5 * (hi - lo), 0.02 * c->duration);
 	if (isnan(par->spread) && c->events >= RANGE_EVENTS) {
 		c->delta_min = fmax(c->delta_min, lo - margin);
@@ -270,6 +263,8 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, const double 
 	if (status == CALIBRATE_OK && ex.count && wants_correction(par, &ex, c) &&
 		!correct_shape(&ex, c))
 		status = CALIBRATE_MEMORY;
+	if (status == CALIBRATE_OK)
+		status = ex.status;
 	c->events = examples_pulses(&ex);
 	memcpy(c->rest, ex.rest, sizeof c->rest);
 	c->misfit = fmax(c->misfit, ex.share);

@@ -4,6 +4,7 @@
 #include "common/quantile_columns.h"
 #include "common/time_unit.h"
 #include "filter_options.h"
+#include "io/quantities.h"
 #include "io/series.h"
 #include "life/passage/passage.h"
 #include "life/prior/fleet.h"
@@ -143,12 +144,17 @@ void outlook_check(int bare)
 			model >= GREY ? "--model grey and literal" : "--skip auto");
 }
 
-static void read_fleet(const char *unit_column)
+static void read_fleet(const struct series *like, const char *unit_column)
 {
 	struct series *in = series_open(fleet_file, unit_column);
 	enum num_status status;
 	int failed, carried_on, n;
+	char y[UNIT_WORD];
 
+	table_unit_word(series_table(like), series_value_column(like), y);
+	series_scale(in,
+		table_ratio(series_table(in), series_time_column(in), timeunit_word()),
+		table_ratio(series_table(in), series_value_column(in), y));
 	fleet = fleet_new(outlook_options.threshold, direction == UP ? 1 : -1);
 	status = fleet ? NUM_OK : NUM_MEMORY;
 	while (status == NUM_OK && series_next(in))
@@ -175,6 +181,7 @@ static void read_events(const char *unit_column)
 	int t = table_need(in, "t"), what = table_need(in, "event"),
 	    unit = table_find(in, unit_column);
 
+	table_set_scale(in, t, table_ratio(in, t, timeunit_word()));
 	while (table_next(in)) {
 		struct event *e;
 		const char *word = table_text(in, what);
@@ -195,17 +202,24 @@ static void read_events(const char *unit_column)
 	table_close(in);
 }
 
-void outlook_open(const char *unit_column)
+void outlook_open(struct series *in, const char *unit_column)
 {
+	static const char *const timed[] = { "skip", "horizon", "after", "mission",
+		"alarm" };
 	const char *unit = unit_column ? unit_column : "unit";
+	int needed = 0;
 
+	for (size_t i = 0; i < sizeof timed / sizeof *timed; i++)
+		needed |= opt_given(timed[i]);
+	timeunit_settle(series_table(in), series_time_column(in), needed);
+	series_scale(in, 1, 1); /* units that change within the table are an error */
 	if (isnan(outlook_options.threshold))
 		return;
 	chances = bank_chances_new(DRAWS, (uint64_t)filtering.seed);
 	if (!chances)
 		die(EXIT_RUN, "no memory");
 	if (fleet_file)
-		read_fleet(unit);
+		read_fleet(in, unit);
 	if (events_file)
 		read_events(unit);
 }

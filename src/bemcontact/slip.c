@@ -12,7 +12,7 @@ struct opt slip_rows[] = {
 	{ 0, "tangential", OPT_NUM, UNIT_FORCE, &tangential, 0, 1e30, "T",
 		"tangential load, along x, on top of the normal one: partial slip", 0,
 		0 },
-	{ 'u', "friction", OPT_NUM, UNIT_NONE, &friction, 1e-12, 1e6, "MU",
+	{ 'u', "friction", OPT_NUM, UNIT_FRACTION, &friction, 1e-12, 1e6, "MU",
 		"friction coefficient: the largest shear over pressure", 0, 0 },
 	OPT_END,
 };

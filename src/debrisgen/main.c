@@ -10,6 +10,10 @@
 #include "wear_steps.h"
 #include <math.h>
 
+/* Share of the load on the outermost cells that is worth a warning: what they carry in
+ * full contact of 80 x 80 cells. */
+static const double EDGE_LOAD = 0.05;
+
 static long steps = 1;
 static double stop_area = 0.8, amplification = 1;
 
@@ -106,7 +110,7 @@ static int check_contact(struct run *run, struct scene *c, long step)
 	struct debris_step s;
 
 	wearing_contact(run->wearing, &c->now, &s);
-	if (s.edge_load > 0.05)
+	if (s.edge_load > EDGE_LOAD)
 		run->edge.steps++;
 	if (s.edge_load > run->edge.most) {
 		run->edge.most = s.edge_load;
@@ -171,6 +175,7 @@ static struct worn_conditions conditions_of(const struct scene *c)
 /* Wears one surface step by step. */
 static void wear_record(struct run *run, struct record *r)
 {
+	int last = fields_last(run->in);
 	struct scene c = { 0 };
 	struct worn_conditions conditions;
 
@@ -178,7 +183,7 @@ static void wear_record(struct run *run, struct record *r)
 	conditions = conditions_of(&c);
 	worn_begin(run->out, r, &conditions);
 	for (long k = 1; k <= steps; k++) {
-		progress("steps", (double)(k - 1), (double)steps);
+		progress_within((double)(k - 1) / (double)steps, last);
 		if (wearing_solves(run->wearing, k) &&
 			!wearing_press(run->wearing, &c.now, c.target, c.done + k))
 			run->status = EXIT_NOCONV;
@@ -219,6 +224,7 @@ int main(int argc, char **argv)
 		if (!run.out)
 			run.out = worn_open(r.cmd, wearing_richardson(), quick_asked());
 		wear_record(&run, &r);
+		progress_within(1, 0);
 	}
 	progress_clear();
 	warn_of_edge(&run);

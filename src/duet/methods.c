@@ -22,6 +22,11 @@ static void check_status(
 		[SEPARATE_FAST] = "no pulse of at least 8 samples found: give "
 				  "--pulse-duration or sample faster",
 		[SEPARATE_SLOW] = "pulses as long as the record: --learn from more of it",
+		[SEPARATE_TONES] =
+			"--lines: too many, or too near each other, to be told "
+			"apart in so short a record",
+		[SEPARATE_WIDE] = "the transit times lie too far apart: give a smaller "
+				  "--spread",
 	};
 	int channel;
 	long long frame = separate_bad_sample(s, &channel);
@@ -49,7 +54,7 @@ static void report(const struct separate *s, double rate)
 	stats_set("sections_single", c->singles);
 	stats_set("sections_unresolved", c->unresolved);
 	stats_set("misfits", c->misfits);
-	stats_set("groups_doubted", c->untold);
+	stats_set("misfits_by_velocity", c->foreign);
 	stats_set("fits", c->fits);
 	stats_set("fit_steps", c->steps);
 	stats_set("searches", c->searches);
@@ -70,17 +75,19 @@ static int put_ready(struct separate *s, struct found *out)
 	return any;
 }
 
-/* A tenth of the rows, and more than two, that fit no particle are more than a few odd
- * ones: then the pulses are not what was learned, and other rows may be wrong, too. */
-static int is_doubtful(const struct separate *s, const char *name)
+/* Says so, and so does the table. */
+static int is_doubtful(const struct separate *s, struct found *out, const char *name)
 {
 	const struct separate_counters *c = separate_counters(s);
+	double rows = c->rows + c->unresolved;
 
-	if (c->misfits <= 2 || 10 * c->misfits <= c->rows)
+	if (!separate_doubtful(s))
 		return 0;
-	warn("%s: %.0f of %.0f pulses fit no particle (misfit): the others are doubtful, "
+	warn("%s: %.0f of %.0f rows fit no particle (misfit): the others are doubtful, "
 	     "too",
-		name, c->misfits, c->rows);
+		name, c->misfits, rows);
+	table_comment(out->particles, "doubtful", "%.0f of %.0f rows fit no particle",
+		c->misfits, rows);
 	return 1;
 }
 
@@ -108,21 +115,28 @@ int separate_record(
 	put_ready(s, out);
 	check_status(status, s, signal_name(in));
 	report(s, (double)out->rate);
-	doubtful = is_doubtful(s, signal_name(in));
+	doubtful = is_doubtful(s, out, signal_name(in));
 	separate_free(s);
 	return doubtful;
 }
 
-static struct count *start_count(
-	const struct count_par *par, const double *x, size_t n, int channels)
+static struct count *start_count(const struct count_par *par, const double *x, size_t n,
+	int channels, const char *name)
 {
 	double *work = xcalloc(n, sizeof *work);
 	double level = isnan(par->floor)
 			       ? count_level(x + par->sensor - 1, n, channels, work)
 			       : par->floor;
+	struct count *c;
 
 	free(work);
-	return count_new(level);
+	if (!(level > 0))
+		die(EXIT_RUN, "%s: channel %d is constant: give --floor", name,
+			par->sensor);
+	c = count_new(level);
+	if (!c)
+		die(EXIT_RUN, "no memory");
+	return c;
 }
 
 void count_record(struct signal_in *in, struct found *out, const struct count_par *par)
@@ -142,9 +156,8 @@ void count_record(struct signal_in *in, struct found *out, const struct count_pa
 				die(EXIT_RUN,
 					"%s: channel %d, frame %lld: not a finite number",
 					signal_name(in), par->sensor, frame);
-			if (!c && !(c = start_count(par, x, n, channels)))
-				die(EXIT_RUN, "%s: channel %d is constant: give --floor",
-					signal_name(in), par->sensor);
+			if (!c)
+				c = start_count(par, x, n, channels, signal_name(in));
 			if (count_sample(c, y, &p))
 				found_peak(out, &p, par->sensor, par->delay);
 		}

@@ -23,13 +23,13 @@ static size_t whole_grid(const struct stress_par *par, struct stress_span *span)
 {
 	for (int y = 0; y < par->ny; y++)
 		span[y] = (struct stress_span){ y, 0, par->nx };
-	return par->ny;
+	return (size_t)par->ny;
 }
 
 /* Hertz pressure p0 = a = 1 on n x n cells of side h, at their centres. */
 static double *hertz(int n, double h)
 {
-	double *p = calloc((size_t)n * n, sizeof *p);
+	double *p = calloc((size_t)n * (size_t)n, sizeof *p);
 
 	for (int i = 0; i < n * n; i++) {
 		double x = (i % n + 0.5 - 0.5 * n) * h, y = (i / n + 0.5 - 0.5 * n) * h;
@@ -53,8 +53,9 @@ static double axis_mises(double Z, double nu, double mu)
 static double hertz_error(int n, double mu, double *surface)
 {
 	struct stress_par par = plain(n, n, mu);
-	double *p = hertz(n, 4. / n), *m = malloc((size_t)n * n * sizeof *m), error = 0;
-	struct stress_span *span = malloc(n * sizeof *span);
+	double *p = hertz(n, 4. / n), *m = malloc((size_t)n * (size_t)n * sizeof *m),
+	       error = 0;
+	struct stress_span *span = malloc((size_t)n * sizeof *span);
 	struct stress *s;
 
 	par.dx = par.dy = 4. / n;
@@ -64,9 +65,10 @@ static double hertz_error(int n, double mu, double *surface)
 		double e;
 
 		stress_at(s, 0.05 * k, span, whole_grid(&par, span), m);
-		e = k ? fabs(m[(size_t)n * n / 2] - axis_mises(0.05 * k, 0.3, mu)) : 0;
+		e = k ? fabs(m[(size_t)n * (size_t)n / 2] - axis_mises(0.05 * k, 0.3, mu))
+		      : 0;
 		if (k == 0)
-			*surface = m[(size_t)n * n / 2];
+			*surface = m[(size_t)n * (size_t)n / 2];
 		if (k >= 10)
 			error = fmax(error, e);
 	}
@@ -85,13 +87,14 @@ static void test_hertz(void)
 	fine = hertz_error(129, 0.3, &surface);
 	/* The element widens a load by h^2 / 6, against h^2 / 12 of a cell. */
 	ok(fine < 2e-4,
-		"Hertz with friction: von Mises on the axis from a/2 on, 129 points: %.1e p0",
+		"Hertz with friction: the von Mises stress on the axis from a/2 on is right at 129 points to %.1e p0",
 		fine);
 	ok(coarse / fine > 3.3,
 		"the stress converges with the square of the spacing: %.1e, %.1e", coarse,
 		fine);
 	/* Under the middle sxx = syy = -(1 + 2 nu)/2, szz = -1, sxz = -mu. */
-	near(surface, sqrt(0.04 + 3 * 0.09), 2e-3, "surface in the middle");
+	near(surface, sqrt(0.04 + 3 * 0.09), 2e-3,
+		"the stress in the middle of the surface is right");
 }
 
 /* The surface of a Hertz contact with friction, radius a = 1 and p0 = 1, within 0.9 a:
@@ -126,8 +129,8 @@ static double *pressed(int n, double h)
 		.tolerance = 1e-10,
 		.max_iterations = 1000 };
 	struct contact *c = contact_new(&par);
-	double *p = calloc((size_t)n * n, sizeof *p);
-	double *height = malloc((size_t)n * n * sizeof *height);
+	double *p = calloc((size_t)n * (size_t)n, sizeof *p);
+	double *height = malloc((size_t)n * (size_t)n * sizeof *height);
 
 	/* p0 = 2 E* a / (pi R), load = 2 / 3 pi p0 a^2. */
 	for (int i = 0; i < n * n; i++) {
@@ -147,8 +150,8 @@ static double surface_error(int cells, double mu, double within, int solved)
 	int n = 2 * cells + 8;
 	struct stress_par par = plain(n, n, mu);
 	double h = 1. / cells, *p = solved ? pressed(n, h) : hertz(n, h),
-	       *m = malloc((size_t)n * n * sizeof *m);
-	struct stress_span *span = malloc(n * sizeof *span);
+	       *m = malloc((size_t)n * (size_t)n * sizeof *m);
+	struct stress_span *span = malloc((size_t)n * sizeof *span);
 	struct stress *s;
 	double error = 0;
 
@@ -176,16 +179,16 @@ static void test_surface_order(double mu)
 
 	/* Cells of constant pressure would leave 0.13 mu h / a. */
 	ok(e40 < 2e-4 * (1 + mu) && e10 / e40 > (mu > 0 ? 12 : 8),
-		"surface, friction %g: second order within 0.6 a: %.1e, %.1e p0", mu, e10,
-		e40);
+		"the stress on the surface at friction %g is of second order within 0.6 a: %.1e, %.1e p0",
+		mu, e10, e40);
 	/* A root that is sampled at the centres of cells misplaces h^1.5 of load at the
 	 * edge; the pressure that the cells solve for does not. */
-	ok(rim < 4e-4 + 1.4e-3 * mu, "within 0.9 a the error on the surface is %.1e p0",
+	ok(rim < 4e-4 + 1.4e-3 * mu, "the error on the surface within 0.9 a is %.1e p0",
 		rim);
 	pressed20 = surface_error(20, mu, 0.9, 1);
 	pressed80 = surface_error(80, mu, 0.9, 1);
 	ok(pressed80 < 3e-5 + 9e-5 * mu && pressed20 / pressed80 > 11.5,
-		"with a solved pressure it is of second order there: %.1e, %.1e",
+		"with a solved pressure the stress on the surface is of second order: %.1e, %.1e",
 		pressed20, pressed80);
 }
 
@@ -211,7 +214,8 @@ static void test_hertz_peak(void)
 				z = 0.01 * k;
 			}
 	}
-	near(most, 0.65975605, 2e-4, "mu = 0.3: largest stress below the surface");
+	near(most, 0.65975605, 2e-4,
+		"at mu = 0.3 the largest stress below the surface is right");
 	near(x, 0.3188, h, "the largest stress is ahead of the centre");
 	near(z, 0.4282, 0.01, "the largest stress is at the reference depth");
 	stress_at(s, 0, &row, 1, m);
@@ -219,9 +223,10 @@ static void test_hertz_peak(void)
 	trail = m[NODES / 2 * NODES + NODES / 2 - 64];
 	lead = m[NODES / 2 * NODES + NODES / 2 + 64];
 	ok(trail > 1.8 * lead,
-		"surface: the trailing edge (%.3f) is the worse one (%.3f)", trail, lead);
-	near(trail, 0.65399507, 0.05, "trailing edge");
-	near(lead, 0.327516568, 0.04, "leading edge");
+		"on the surface the stress is larger at the trailing edge (%.3f) than at the leading one (%.3f)",
+		trail, lead);
+	near(trail, 0.65399507, 0.05, "the stress at the trailing edge is right");
+	near(lead, 0.327516568, 0.04, "the stress at the leading edge is right");
 	stress_free(s);
 	free(m);
 	free(p);
@@ -233,10 +238,10 @@ static double coarse_error(
 	struct stress_par par, double share, const struct stress_criterion *criterion)
 {
 	static const double depth[] = { 0, 1, 7, 9.99, 10, 14, 20, 40 };
-	size_t n = (size_t)par.nx * par.ny;
+	size_t n = (size_t)par.nx * (size_t)par.ny;
 	double *p = malloc(3 * n * sizeof *p), *a = p + n, *b = a + n, error = 0;
 	double side = fmax(par.dx, par.dy), most = 0;
-	struct stress_span *span = malloc(par.ny * sizeof *span);
+	struct stress_span *span = malloc((size_t)par.ny * sizeof *span);
 	struct stress *s, *full;
 
 	par.criterion = criterion;
@@ -244,8 +249,8 @@ static double coarse_error(
 	par.method = STRESS_FULL;
 	full = stress_new(&par);
 	for (size_t i = 0; i < n; i++) {
-		double x = 2 * M_PI * (double)(i % par.nx) / 50,
-		       y = 2 * M_PI * (double)(i / par.nx) / 50;
+		double x = 2 * M_PI * (double)(i % (size_t)par.nx) / 50,
+		       y = 2 * M_PI * (double)(i / (size_t)par.nx) / 50;
 		double h = cos(2 * x + 3 * y + 1) + cos(7 * x - 2 * y) + cos(5 * y) +
 			   0.5 * cos(13 * x + 11 * y + 2) + 0.3 * cos(21 * x - 17 * y);
 
@@ -284,7 +289,7 @@ static void test_coarse(void)
 		par.dy = k & 1 ? 1e-6 : 1.7e-6;
 		error = coarse_error(par, share, NULL);
 		ok(error < 1e-4,
-			"%s, %s, shear along %c: coarse sums within %.1e of p_max",
+			"%s, %s, shear along %c: coarse sums are within %.1e of p_max",
 			par.periodic ? "periodic" : "free", dense[k & 1], "xy"[par.axis],
 			error);
 	}
@@ -292,7 +297,8 @@ static void test_coarse(void)
 		struct stress_par par = plain(120, 120, 0.4);
 		double error = coarse_error(par, 1, &stress_tresca_criterion);
 
-		ok(error < 1e-4, "the same by Tresca's criterion: within %.1e", error);
+		ok(error < 1e-4, "coarse sums by Tresca's criterion are within %.1e",
+			error);
 		par = plain(80, 40, 0.2);
 		par.dy = 30;
 		error = coarse_error(par, 1, NULL);
@@ -309,7 +315,9 @@ static void test_criteria(void)
 		double t[6], v[STRESS_DEVIATOR], p[3], a, b, c, norm = 0;
 
 		for (int i = 0; i < 6; i++)
-			t[i] = 2 * philox_uniform(7, 0, RNG_NOISE, 6 * k + i) - 1;
+			t[i] = 2 * philox_uniform(
+					   7, 0, RNG_NOISE, (uint64_t)(6 * k + i)) -
+			       1;
 		v[DEV_X] = t[STRESS_XX] - t[STRESS_ZZ],
 		v[DEV_Y] = t[STRESS_YY] - t[STRESS_ZZ];
 		v[DEV_XY] = t[STRESS_XY], v[DEV_XZ] = t[STRESS_XZ],
@@ -327,9 +335,10 @@ static void test_criteria(void)
 		over = fmax(over, stress_tresca_criterion.value(v) /
 					  (stress_tresca_criterion.norm * norm));
 	}
-	near(mises, 0, 1e-14, "von Mises: the three differences of principal stresses");
-	near(tresca, 0, 1e-14, "Tresca: the largest difference");
-	ok(over <= 1 && over > 0.98, "their bounds by the norm hold (%.4f)", over);
+	near(mises, 0, 1e-14,
+		"von Mises' stress follows from the three differences of principal stresses");
+	near(tresca, 0, 1e-14, "Tresca's stress is the largest difference");
+	ok(over <= 1 && over > 0.98, "the bounds of both by the norm hold (%.4f)", over);
 }
 
 /* One loaded cell: its pyramid by quadrature of uniformly loaded cells that shrink to
@@ -367,8 +376,9 @@ static void test_element(void)
 		far = fmax(far, fabs(g.shear[DEV_X] / f.shear[DEV_X] - 1));
 	}
 	/* Parts of 1/60 of the side replace slopes by steps. */
-	ok(error < 3e-4, "element: within %.1e of a sum over 14400 parts of it", error);
-	ok(far > 0 && far < 1e-3, "a distant element is a point load (%.1e)", far);
+	ok(error < 3e-4,
+		"a loaded element is within %.1e of a sum over 14400 parts of it", error);
+	ok(far > 0 && far < 1e-3, "a distant element acts as a point load (%.1e)", far);
 }
 
 /* No node outside the spans reaches the limit. */
@@ -383,7 +393,7 @@ static void test_reach(double mu)
 	double nodes = 0, kept = 0, failed = 0;
 
 	for (int k = 0; k < 40; k++)
-		p[(int)(SIDE * SIDE * philox_uniform(5, 0, RNG_NOISE, k))] = 1;
+		p[(int)(SIDE * SIDE * philox_uniform(5, 0, RNG_NOISE, (uint64_t)k))] = 1;
 	stress_load(s, p);
 	for (int layer = 0; layer < 6; layer++) {
 		static unsigned char in[SIDE * SIDE];
@@ -392,7 +402,7 @@ static void test_reach(double mu)
 		memset(in, 0, sizeof(in));
 		for (size_t i = 0; i < n; i++) {
 			memset(in + span[i].y * SIDE + span[i].begin, 1,
-				span[i].end - span[i].begin);
+				(size_t)(span[i].end - span[i].begin));
 			kept += span[i].end - span[i].begin;
 		}
 		stress_at(s, layer, all, whole_grid(&par, all), m);
@@ -403,9 +413,10 @@ static void test_reach(double mu)
 		nodes += SIDE * SIDE;
 	}
 	ok(missed == 0 && failed > 0 && kept < nodes,
-		"mu %g: no node over the limit is passed over (%.0f over, %.0f of %.0f searched)",
+		"mu %g: the search omits no node over the limit (%.0f over, %.0f of %.0f searched)",
 		mu, failed, kept, nodes);
-	ok(stress_reach(s, 1000, 0.2, span) == 0, "far below there is nothing to search");
+	ok(stress_reach(s, 1000, 0.2, span) == 0,
+		"far below the surface no node is searched");
 	stress_free(s);
 	free(span);
 }
@@ -433,7 +444,7 @@ static void test_periodic(void)
 		error = fmax(error, fabs(t[(int)n + i] - (-0.3 / 0.7 - 0.6 * e * c)));
 		error = fmax(error, fabs(t[2 * (int)n + i] - (-1 - (1 + q * z) * e * c)));
 	}
-	near(error, 0, 1e-14, "periodic: a wave of pressure");
+	near(error, 0, 1e-14, "the stress of a periodic wave of pressure is right");
 	stress_free(s);
 }
 
@@ -449,7 +460,7 @@ static void test_periodic_free(double mu, int axis)
 	struct stress *s;
 
 	for (size_t i = 0; i < n; i++) {
-		double x = i % SIDE - MID, y = (double)(i / SIDE) - MID;
+		double x = (double)(i % SIDE) - MID, y = (double)(i / SIDE) - MID;
 
 		p[i] = exp(-(x * x + y * y) / 32);
 	}
@@ -462,7 +473,7 @@ static void test_periodic_free(double mu, int axis)
 	}
 	for (int c = 0; c < 6; c++)
 		for (int k = -6; k <= 6; k++) {
-			size_t at = c * n + (MID + k) * SIDE + MID + 4;
+			size_t at = (size_t)c * n + (size_t)(MID + k) * SIDE + MID + 4;
 
 			error = fmax(error, fabs(a[at] - b[at]));
 			most = fmax(most, fabs(a[at]));
@@ -470,7 +481,7 @@ static void test_periodic_free(double mu, int axis)
 	/* The images' mean pressure is 100 / 128^2 = 0.006 of the peak; cells against
 	 * points are 1/100 of it apart. */
 	ok(error < 0.012 && most > 0.3,
-		"periodic and free agree near a patch, mu %g along %c: %.1e", mu,
+		"periodic and free sums agree near a patch, mu %g along %c: %.1e", mu,
 		"xy"[axis], error);
 	free(a);
 	free(p);
@@ -489,7 +500,8 @@ static void test_periodic_reach(void)
 	par.periodic = 1;
 	s = stress_new(&par);
 	for (int k = 0; k < 12; k++)
-		p[(int)(SIDE * SIDE * philox_uniform(6, 0, RNG_NOISE, k))] = 1 + k;
+		p[(int)(SIDE * SIDE * philox_uniform(6, 0, RNG_NOISE, (uint64_t)k))] =
+			1 + k;
 	stress_load(s, p);
 	for (int layer = 0; layer < 60; layer++) {
 		stress_at(s, layer, all, whole_grid(&par, all), m);
@@ -499,7 +511,7 @@ static void test_periodic_reach(void)
 			end = layer;
 	}
 	ok(last > 2 && end >= last && end < 59,
-		"periodic: nodes over the limit down to layer %d, searched down to %d",
+		"periodic: all layers with nodes over the limit, down to %d, are searched, down to %d",
 		last, end);
 	stress_free(s);
 }
@@ -513,15 +525,15 @@ static void test_refusals(void)
 	p[5] = NAN;
 	ok(stress_load(s, p) == NUM_DOMAIN, "a pressure that is not a number is refused");
 	p[5] = 0;
-	ok(stress_load(s, p) == 0, "zero load is accepted");
+	ok(stress_load(s, p) == 0, "a load of zero is accepted");
 	{
 		struct stress_span span[64];
 
-		ok(stress_reach(s, 0, 1, span) == 0, "zero load needs no node");
+		ok(stress_reach(s, 0, 1, span) == 0, "a load of zero needs no node");
 	}
 	stress_free(s);
 	par.nu = 0.6;
-	ok(!stress_new(&par), "Poisson's ratio over one half");
+	ok(!stress_new(&par), "a Poisson's ratio above one half is refused");
 }
 
 int main(void)
