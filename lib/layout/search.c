@@ -40,7 +40,7 @@ struct search {
 	int coils;
 	double extent, least;
 	double best[LAYOUT_COILS];
-	double error; /* of the velocity, of the best */
+	double error; /* error of the velocity of the best layout */
 	long judged;
 };
 
@@ -70,7 +70,7 @@ static void try_all(struct search *s, double *coil, int k, int from, int steps)
 	}
 }
 
-/* Moves the coils i to j, which stay in order, by step. */
+/* Moves the coils i to j by step if they stay in order. */
 static int move(struct search *s, int i, int j, double step)
 {
 	double coil[LAYOUT_COILS];

@@ -23,10 +23,10 @@ struct ensemble {
 	int clash;
 	long culprit;
 	double particles, told;
-	size_t steps; /* up to the last told of */
+	size_t steps; /* up to the last one with rows */
 	struct ensemble_step *step;
 	size_t step_room;
-	struct ensemble_step after; /* of a step after all those told of */
+	struct ensemble_step after; /* of a step after the last one with rows */
 	struct running volume, diameter;
 	struct sketch diameters, *step_diameters;
 	struct ensemble_group *group;
@@ -34,7 +34,7 @@ struct ensemble {
 	size_t groups, places;
 };
 
-/* The step becomes one of those there are: nothing happened in it so far. */
+/* Extends the steps to this one; it has no particles so far. */
 static enum num_status reach_step(struct ensemble *e, size_t step)
 {
 	if (step > e->step_room) {
@@ -73,7 +73,7 @@ static uint64_t mix(uint64_t x)
 	return x ^ x >> 33;
 }
 
-/* The group of a realisation: of its own as long as there are any left. */
+/* The group of a realisation: its own as long as groups are free. */
 static struct ensemble_group *group_of(struct ensemble *e, long realisation)
 {
 	uint64_t hash = mix((uint64_t)realisation);
@@ -89,7 +89,7 @@ static struct ensemble_group *group_of(struct ensemble *e, long realisation)
 	return &e->group[e->groups - 1];
 }
 
-/* What one realisation did in one step. */
+/* Volume and particles of one realisation in one step. */
 static enum num_status take_step(struct ensemble *e, struct ensemble_group *g,
 	const struct realisation_cell *cell, double volume_before)
 {
