@@ -269,7 +269,7 @@ static size_t share(size_t n, size_t most)
 	return each > most ? most : each < VALUES_LEAST ? VALUES_LEAST : each;
 }
 
-static enum num_status add_diameter(struct ensemble *e, const struct shed *p)
+static enum num_status add_diameter(struct ensemble *e, const struct particle_row *p)
 {
 	if (p->step < e->par.first || (e->par.last && p->step > e->par.last))
 		return NUM_OK;
@@ -285,7 +285,7 @@ static enum num_status add_diameter(struct ensemble *e, const struct shed *p)
 	return NUM_OK;
 }
 
-enum ensemble_status ensemble_add(struct ensemble *e, const struct shed *p)
+enum ensemble_status ensemble_add(struct ensemble *e, const struct particle_row *p)
 {
 	int counts = p->diameter >= e->par.low && p->diameter <= e->par.high;
 	struct realisation_cell cell = { p->realisation, p->step, p->part, p->volume,
@@ -359,7 +359,7 @@ long ensemble_culprit(const struct ensemble *e)
 	return e->culprit;
 }
 
-size_t ensemble_told(const struct ensemble *e)
+size_t ensemble_reported(const struct ensemble *e)
 {
 	return (size_t)e->told;
 }

@@ -140,7 +140,7 @@ static enum num_status bootstrap_open(
 static double draw_groups(struct bootstrap *b)
 {
 	size_t n = b->groups;
-	double per_group = (double)ensemble_told(b->e) / (double)n, drawn = 0;
+	double per_group = (double)ensemble_reported(b->e) / (double)n, drawn = 0;
 	double empty = round(ensemble_empty(b->e) / per_group);
 	unsigned int picks = (unsigned int)n;
 
