@@ -38,6 +38,13 @@ picture 'an envelope keeps a spike of one frame' '3' spike.au
 printf 't\ty\n0\t1\n3600\t2\n7200\t3\n' >series.tsv
 picture 'a series is drawn over time' 'observed' series.tsv
 picture 'with its threshold' 'threshold' --end 5 series.tsv
+printf '# units: h L/min\nt\ty\n0\t1\n3600\t2\n7200\t3\n' >hours.tsv
+picture 'hours stay hours' 'y, L/min.*time, h' hours.tsv
+is 'up to the last' "$(tr -d '\n' <p.svg | sed 's/<[^>]*>/ /g' | grep -c ' 8000 ')" 1
+printf '# units: s m3\nt\ty\n0\t0\n36000\t4e-11\n72000\t9e-11\n' >volume.tsv
+picture 'a volume is shown in cubic millimetres' '0.09.*y, mm3.*time, h' --end 9e-11 volume.tsv
+printf '# units: s m3/s\nt\ty\n0\t1e-5\n7200\t5e-5\n' >flow.tsv
+picture 'a flow is shown in litres a minute' 'y, L/min' flow.tsv
 printf 't\tq05\tq50\tq95\n0\t8\t10\t12\n1\t7\t9\t11\n' >life.tsv
 picture 'lives have a band, a median and the truth' 'band.*median.*true' --truth 10 life.tsv
 printf 'error\tseconds\n1e-3\t1\n1e-4\t2\n' >cost.tsv
