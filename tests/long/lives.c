@@ -1,9 +1,9 @@
-/* Lives of simulated units of many kinds, as the bank foretells them.
+/* Lives of simulated units of many kinds, as predicted by the bank.
  *
  * usage: build/long/lives [PATHS]
  *
  * The first 13 kinds and the sigmoid are those on whose like the constants of the bank
- * were chosen, with other seeds here; the rest only judge: other shapes, other sampling,
+ * were chosen, with other seeds here; the rest only test: other shapes, other sampling,
  * heavy tails, correlated noise, outliers, rounded, missing and repeated values.  Each
  * path has a random length, noise, offset, range, direction and unit of time.
  */
@@ -251,7 +251,7 @@ static const struct kind {
 	double (*curve)(double t);
 	double (*process)(double d, double t, double dt);
 	double range[5][2]; /* of the parameters */
-	int held;           /* 1: only judges */
+	int held;           /* 1: only tests */
 } kinds[] = {
 	{ "linear", linear, NULL, { { 0 } }, 0 },
 	{ "Wiener", NULL, wiener, { { 0.05, 0.25 } }, 0 },
@@ -326,7 +326,7 @@ static void draw_path(const struct kind *k, struct series *s)
 	}
 }
 
-/* What a recorder makes of it: noise and faults, in some unit. */
+/* The recorded series: with noise and faults, in some unit. */
 static void record(const struct kind *k, struct series *s)
 {
 	double noise = k->held ? between(0.002, 0.04) : between(0.005, 0.02), e = 0;
