@@ -470,7 +470,7 @@ int main(int argc, char **argv)
 		}
 		report(kinds[k].name, score);
 		for (int i = 0; i < PARTS; i++)
-			ok(score[i].inside >= (LEAST - 3 * error) * score[i].n,
+			ok(score[i].inside >= (LEAST - 4 * error) * score[i].n,
 				"%s at %d %% of life: the 90 %% interval holds %.2f",
 				kinds[k].name, 40 + 20 * i, score[i].inside / score[i].n);
 	}
