@@ -124,6 +124,18 @@ at_most "counting, sensor 2: peaks a quarter of a pulse (2.5 ms) from the arriva
 		d = d < 0 ? -d : d; most = d > most ? d : most } END { print most }')" 1e-3
 is "counting, sensor 2: all of them" "$(column time2 c.tsv | wc -l)" 200
 
+# Of noisier or shorter pulses the masks find more sources than there are: these are marked.
+sensorsim --uniform 80um:120um --number 20 --duration 4s --gap 20ms --snr 30dB \
+	--lag 0.2ms:0.5ms --rate 2500Hz --seed 5 --truth truth.tsv >few.au
+duet --method duet --window 16 few.au >masks.tsv 2>err
+is "masks: doubtful, exit status 3" $? 3
+at_least "masks: more sources than particles" "$(column verdict masks.tsv | grep -c misfit)" 3
+grep -v misfit masks.tsv >believed.tsv
+at_most "masks: those that no pulse stands beside are marked" "$(score false truth.tsv believed.tsv)" 1
+at_least "masks: the particles are not" "$(score matched truth.tsv believed.tsv)" 18
+fails "masks: a window too short to see a pulse is refused" 1 "pulses of 25 samples want a --window" \
+	duet --method duet --window 8 few.au
+
 # Work left out.
 duet --stats stats.tsv --method duet s.au >/dev/null
 at_most "masks: lone pulses are not demixed" "$(column_of demixings <stats.tsv)" 2

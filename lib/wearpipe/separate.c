@@ -80,6 +80,7 @@ static enum wp_status outcome(struct wp_separate *s, enum separate_status status
 		[SEPARATE_FAST] = "no pulse of at least 8 samples",
 		[SEPARATE_SLOW] = "pulses as long as what is learned from",
 		[SEPARATE_TONES] = "lines too near each other",
+		[SEPARATE_WINDOW] = "a window shorter than half a pulse",
 		[SEPARATE_WIDE] = "transit times too far apart",
 	};
 

@@ -38,6 +38,10 @@ static void check_status(
 		warn("%s: nothing in common of both channels to learn from: no particle, or "
 		     "give --align and --pulse-duration",
 			name);
+	else if (status == SEPARATE_WINDOW)
+		die(EXIT_RUN,
+			"%s: pulses of %.0f samples want a --window of at least half of that",
+			name, separate_calibration(s)->duration);
 	else if (status != SEPARATE_OK)
 		die(EXIT_RUN, "%s: %s", name, why[status]);
 }
