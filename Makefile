@@ -129,7 +129,7 @@ $(B)/src/records/replay.o: ALL_CPPFLAGS += -DWEARPIPE_PROGRAMS='"$(PROGRAMS)"'
 $(B)/src/records/replay.o: Makefile
 
 # Not clean yet of implicit conversions.
-$(B)/lib/signal/%.o $(B)/src/duet/%.o $(B)/tests/%.o: CONVERSION =
+$(B)/lib/signal/%.o $(B)/src/duet/%.o: CONVERSION =
 
 $(B)/%.o: %.c
 	@mkdir -p $(@D)

@@ -13,6 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Level of the tests of the exponent and of the fit. */
+static const double UNLIKELY = 0.01;
+
 static struct opt_texts balls;
 static double exponent = 3, confidence = 0.95, noise = NAN, duration = NAN;
 static double alarms = 1.0 / 3600, velocity = NAN;
@@ -174,11 +177,11 @@ int main(int argc, char **argv)
 	lack = fitted ? line_lack_of_fit(x, y, p.n, &l) : NAN;
 	if (fitted)
 		slope_p = line_slope_p(&l, p.n, exponent);
-	doubtful = slope_p < 0.01 || lack < 0.01;
-	if (slope_p < 0.01)
+	doubtful = slope_p < UNLIKELY || lack < UNLIKELY;
+	if (slope_p < UNLIKELY)
 		warn("the exponent is %.3g, not %g: p = %.2g", l.slope, exponent,
 			slope_p);
-	if (lack < 0.01)
+	if (lack < UNLIKELY)
 		warn("no power law fits all balls: p = %.2g", lack);
 	snprintf(unit, sizeof unit, "V.s/m^%g", exponent + 1);
 	t = table_create(NULL, opt_cmd(NULL, NULL), "1 unit unit unit 1",

@@ -4,7 +4,6 @@
 #include "cli/text.h"
 #include "contact/patches.h"
 #include "io/tables.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -110,9 +109,8 @@ void tables_put(const struct record *r, const struct contact_par *par,
 
 	if (!table && !(patches && last))
 		return;
-	list = contact_patches(&grid, pressure, &n);
-	if (!list && errno)
-		die(EXIT_RUN, "the patches of a contact:");
+	if (contact_patches(&grid, pressure, &list, &n) != NUM_OK)
+		die(EXIT_RUN, "out of memory");
 	for (size_t i = 0; i < n; i++)
 		perimeter += list[i].perimeter;
 	if (patches && last)

@@ -100,8 +100,8 @@ static void take_record(const struct fields_in *in, const struct record *r, long
 				? "material fails deeper than ten times the grid is long"
 			: status == DEBRIS_MEMORY ? "out of memory"
 						  : "pressure below zero or not finite");
-	n = footprints_find(f, debris_stress(d), pressure, par.yield, &list);
-	if (n == (size_t)-1)
+	if (footprints_find(f, debris_stress(d), pressure, par.yield, &list, &n) !=
+		NUM_OK)
 		die(EXIT_RUN, "out of memory");
 	add_samples(in, surface, r->nx, &step, list, n);
 	footprints_free(f);

@@ -169,7 +169,7 @@ static void compare(const char *scene, const struct contact_par *par, double mea
 		double y = ((double)(i / nx) + 0.5) * par->dy - 0.5;
 
 		sum[0] += q ? fabs(p[i] - q[i]) / mean : NAN;
-		sum[1] += q ? (p[i] > 0) - (q[i] > 0) : NAN;
+		sum[1] += q ? (double)((p[i] > 0) - (q[i] > 0)) : NAN;
 		sum[2] += fabs(p[i] - exact_pressure(scene, mean, x, y)) / mean;
 	}
 	for (int k = 0; k < 3; k++)

@@ -12,17 +12,18 @@ typedef int (*shape)(double x, double y, double z);
 static size_t find(struct particles *ps, const unsigned char *mask, int nx, int ny,
 	int nz, double dz, const struct particle **list)
 {
-	size_t columns = (size_t)nx * ny, count = 0, n;
-	struct stretch *s = malloc((columns * nz + 1) * sizeof *s);
+	size_t columns = (size_t)nx * (size_t)ny, count = 0, n;
+	struct stretch *s = malloc((columns * (size_t)nz + 1) * sizeof *s);
 
 	/* In the order of layers, as a search from the surface down finds them. */
 	for (int z = 0; z < nz; z++)
 		for (size_t i = 0; i < columns; i++) {
 			int end = z;
 
-			if (!mask[z * columns + i] || (z && mask[(z - 1) * columns + i]))
+			if (!mask[(size_t)z * columns + i] ||
+				(z && mask[(size_t)(z - 1) * columns + i]))
 				continue;
-			while (end < nz && mask[end * columns + i])
+			while (end < nz && mask[(size_t)end * columns + i])
 				end++;
 			s[count++] = (struct stretch){ i, z * dz, end * dz };
 		}
@@ -35,7 +36,7 @@ static size_t find(struct particles *ps, const unsigned char *mask, int nx, int 
 static size_t scan(struct particles *ps, int nx, int ny, int nz, double dz, shape in,
 	const struct particle **list)
 {
-	unsigned char *mask = malloc((size_t)nx * ny * nz);
+	unsigned char *mask = malloc((size_t)nx * (size_t)ny * (size_t)nz);
 	size_t n;
 
 	for (int z = 0; z < nz; z++)
@@ -439,7 +440,7 @@ static void test_periodic(void)
 /* Against a flood fill on random sets, all connectivities. */
 static size_t flood(unsigned char *c, int nx, int ny, int nz, int corners, int periodic)
 {
-	int *stack = malloc(sizeof *stack * nx * ny * nz);
+	int *stack = malloc(sizeof *stack * (size_t)nx * (size_t)ny * (size_t)nz);
 	size_t count = 0;
 
 	for (int i = 0; i < nx * ny * nz; i++) {
@@ -495,12 +496,12 @@ static void test_random(void)
 			.periodic = trial / 2 % 2 };
 		struct particles *ps = particles_new(&par);
 		const struct particle *p;
-		unsigned char *c = malloc(nx * ny * nz);
+		unsigned char *c = malloc((size_t)(nx * ny * nz));
 		size_t n, nodes = 0, sum = 0;
 
 		for (int i = 0; i < nx * ny * nz; i++) {
 			state = state * 1664525 + 1013904223;
-			c[i] = (state >> 16) % 10 < 3u + trial % 4;
+			c[i] = (state >> 16) % 10 < 3u + (unsigned)trial % 4;
 			nodes += c[i];
 		}
 		n = find(ps, c, nx, ny, nz, 1, &p);
