@@ -19,7 +19,7 @@ static long window = 64, hop, sensor = 1;
 static struct opt_choice sources = { 0, 0 };
 static double kappa = M_PI / 4 * 1e11; /* as sensorsim(1) */
 static double spacing = 0.25, learn = NAN, latency = NAN, floor_height = NAN;
-static const char *separated, *histogram, *sections;
+static const char *separated, *histogram, *sections, *detectable;
 static const char *const methods[] = { "fit", "duet", "count", NULL };
 static const char *const automatic[] = { "auto", NULL };
 
@@ -55,6 +55,9 @@ static const struct opt opts[] = { OPT_HEADING("Method"),
 		"write the weighted histograms as a table (duet)", 0, 1 },
 	{ 0, "sections", OPT_TEXT, UNIT_NONE, &sections, 0, 0, "FILE",
 		"write one row per section", 0, 1 },
+	{ 0, "detectable", OPT_TEXT, UNIT_NONE, &detectable, 0, 0, "FILE",
+		"write the probability of detection by amplitude as a table (fit)", 0,
+		1 },
 	OPT_END };
 
 static const struct prog prog = { "duet",
@@ -77,6 +80,8 @@ static void check_options(void)
 		die(EXIT_USAGE, "--sensor and --floor need --method count");
 	if (method == METHOD_COUNT && (separated || sections))
 		die(EXIT_USAGE, "--method count knows no sections and separates nothing");
+	if (method != METHOD_FIT && detectable)
+		die(EXIT_USAGE, "--detectable needs --method fit");
 	if (window % 2)
 		die(EXIT_USAGE, "--window %ld: want an even number of samples", window);
 	if (!opt_given("hop"))
@@ -156,6 +161,7 @@ int main(int argc, char **argv)
 	struct found out = { .separated = separated,
 		.histogram = histogram,
 		.sections = sections,
+		.detectable = detectable,
 		.spacing = spacing,
 		.kappa = kappa };
 	char *cmd;

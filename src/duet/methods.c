@@ -116,6 +116,7 @@ int separate_record(
 	check_status(status, s, signal_name(in));
 	report(s, (double)out->rate);
 	doubtful = is_doubtful(s, signal_name(in));
+	found_detectable(out, separate_calibration(s));
 	separate_free(s);
 	return doubtful;
 }
@@ -124,9 +125,9 @@ static struct count *start_count(const struct count_par *par, const double *x, s
 	int channels, const char *name)
 {
 	double *work = xcalloc(n, sizeof *work);
-	double level = isnan(par->floor)
-			       ? count_level(x + par->sensor - 1, n, channels, work)
-			       : par->floor;
+	double level = isnan(par->floor) ? count_level(x + par->sensor - 1, n,
+						   (size_t)channels, work)
+					 : par->floor;
 	struct count *c;
 
 	free(work);
