@@ -511,6 +511,7 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 	files_start();
 	prog = program;
 	program_set_name(program->name);
+	progress_begin();
 	check_stack();
 	stats_start();
 	gather(program->opts);

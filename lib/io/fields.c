@@ -120,6 +120,11 @@ int fields_more(struct fields_in *in)
 	return promised(in) || input_peek(in->at.in) >= 0;
 }
 
+int fields_last(const struct fields_in *in)
+{
+	return in->at.mark.number > 0 && in->at.mark.last;
+}
+
 /* Records of a stream of ours are numbered from 1. */
 static void check_mark(const struct fields_in *in, struct mark before)
 {

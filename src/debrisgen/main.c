@@ -175,6 +175,7 @@ static struct worn_conditions conditions_of(const struct scene *c)
 /* Wears one surface step by step. */
 static void wear_record(struct run *run, struct record *r)
 {
+	int last = fields_last(run->in);
 	struct scene c = { 0 };
 	struct worn_conditions conditions;
 
@@ -182,7 +183,7 @@ static void wear_record(struct run *run, struct record *r)
 	conditions = conditions_of(&c);
 	worn_begin(run->out, r, &conditions);
 	for (long k = 1; k <= steps; k++) {
-		progress("steps", (double)(k - 1), (double)steps);
+		progress_within((double)(k - 1) / (double)steps, last);
 		if (wearing_solves(run->wearing, k) &&
 			!wearing_press(run->wearing, &c.now, c.target, c.done + k))
 			run->status = EXIT_NOCONV;
@@ -223,6 +224,7 @@ int main(int argc, char **argv)
 		if (!run.out)
 			run.out = worn_open(r.cmd, wearing_richardson(), quick_asked());
 		wear_record(&run, &r);
+		progress_within(1, 0);
 	}
 	progress_clear();
 	warn_of_edge(&run);

@@ -1,6 +1,7 @@
 /* debrisstat - statistics of wear particles: fits, steps, sizes, shapes */
 #include "cli/msg.h"
 #include "cli/opt.h"
+#include "cli/progress.h"
 #include "cli/stats.h"
 #include "io/quantities.h"
 #include "io/tables.h"
@@ -193,6 +194,11 @@ static void read_particles(struct ensemble *e, const char *path, char **cmd)
 	table_close(t);
 }
 
+static void tell(long done, long draws)
+{
+	progress("draws", (double)done, (double)draws);
+}
+
 static struct ensemble *new_ensemble(void)
 {
 	struct ensemble_par par = { .realisations = (double)realisations,
@@ -205,7 +211,8 @@ static struct ensemble *new_ensemble(void)
 		.per_step = growth,
 		.confidence = confidence,
 		.by_step = output == STEPS,
-		.groups = output == FITS && (bootstrap || other_path) ? GROUPS : 0 };
+		.groups = output == FITS && (bootstrap || other_path) ? GROUPS : 0,
+		.told = tell };
 	struct ensemble *e = ensemble_new(&par);
 
 	if (!e)

@@ -1,6 +1,7 @@
 /* sensorsim - the signal of wear particles in a pipe past two inductive sensors */
 #include "cli/msg.h"
 #include "cli/opt.h"
+#include "cli/progress.h"
 #include "cli/stats.h"
 #include "io/signals.h"
 #include "io/tables.h"
@@ -166,6 +167,8 @@ static void run(struct traffic *f, struct table_out *t, struct signal_out *out)
 		scene_next(f->scene, x, n);
 		signal_write(out, x, n);
 		frames += (double)n;
+		if (!isnan(source_duration))
+			progress("s", frames / rate, source_duration);
 		stats_max("particles_pending", (double)scene_pending(f->scene));
 	} while (n > 0);
 	stats_set("frames", frames);

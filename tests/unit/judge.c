@@ -37,7 +37,7 @@ int main(void)
 			}
 			deviation = sqrt(expected * (1 - expected / TRIALS)) + 1;
 			ok(fabs(untold - expected) < 4 * deviation,
-				"%d pulses, delays scatter by %g: %g of %d groups untold, %g due",
+				"%d pulses, delays scatter by %g: %g of %d groups are accepted, %g expected",
 				m, spread[k], untold, TRIALS, expected);
 		}
 	return tap_done();
