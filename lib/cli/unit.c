@@ -197,6 +197,13 @@ const char *unit_meant(const char *text, enum unit unit)
 	char *rest;
 
 	strtod(text, &rest);
+	if (rest == text && strlen(text) < sizeof meant - 1 &&
+		suffix_scale(text, strlen(text), unit) > 0) {
+		snprintf(meant, sizeof meant, "1%s", text);
+		return meant;
+	}
+	if (rest == text)
+		return NULL;
 	for (size_t i = 0; i < NSPELLINGS; i++) {
 		if (spellings[i].unit != unit)
 			continue;

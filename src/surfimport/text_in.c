@@ -74,7 +74,7 @@ static void find_separator(struct text *t, const char *sample)
 	}
 }
 
-static int is_gap(const char *s)
+int is_gap(const char *s)
 {
 	static const char *const words[] = { "", "nan", "NaN", "NAN", "NA", "BAD", "bad",
 		"***", "---", "-", "null", NULL };
@@ -222,7 +222,7 @@ static double unit_of(const struct text *t, int from_end)
 static void profile_read(const struct text *t, const struct told *told, struct record *r)
 {
 	double dx, dy, unit, x_unit, *z;
-	size_t n = (size_t)t->rows, w = (size_t)t->columns;
+	size_t n = (size_t)t->rows, w = (size_t)t->columns, first;
 	const double *x = t->value + w - 2;
 
 	if (t->columns < 2 || t->rows < 2)
@@ -239,12 +239,52 @@ static void profile_read(const struct text *t, const struct told *told, struct r
 			die(EXIT_RUN,
 				"%s: row %zu: position %g, want %g: positions must be equally spaced",
 				t->c->name, i + 1, x[i * w], x[0] + (double)i * dx);
+	first = dx < 0 ? n - 1 : 0; /* from the lowest position on */
 	dx = fabs(dx) * x_unit;
 	dy = dx;
 	settle_pixel(t->c, told, &dx, &dy);
 	z = new_heights(t->c, (double)n, 1, dx, dx, r);
-	for (size_t i = 0; i < n; i++)
-		z[i] = x[i * w + 1] == told->missing ? NAN : x[i * w + 1] * unit;
+	for (size_t i = 0; i < n; i++) {
+		double height = x[(first ? first - i : i) * w + 1];
+
+		z[i] = height == told->missing ? NAN : height * unit;
+	}
+}
+
+/* 1 if no number of the column is less, or none is more, than the one above, and not all
+ * are the same. */
+static int is_sorted(const struct text *t, int column)
+{
+	const double *x = t->value + column;
+	long up = 0, down = 0;
+
+	for (long i = 1; i < t->rows; i++) {
+		double step = x[i * t->columns] - x[(i - 1) * t->columns];
+
+		up += step > 0;
+		down += step < 0;
+		if (isnan(step))
+			return 0;
+	}
+	return (up > 0) != (down > 0);
+}
+
+/* Two columns or three of which one is sorted are no matrix of heights: eight random rows
+ * are so by a chance of 2 / 8!. */
+static void refuse_points(const struct text *t)
+{
+	if (t->columns > 3 || t->columns < 2 || t->rows < 8)
+		return;
+	if (t->columns == 2 && is_sorted(t, 0))
+		die(EXIT_RUN,
+			"%s: two columns, positions and heights, are no matrix: --profile "
+			"reads them",
+			t->c->name);
+	if (t->columns == 3 && (is_sorted(t, 0) || is_sorted(t, 1)))
+		die(EXIT_RUN,
+			"%s: three columns look like points x, y, z: want a matrix of heights, "
+			"or --profile for the last two",
+			t->c->name);
 }
 
 void text_read(const struct content *c, const struct told *told, struct record *r)
@@ -259,6 +299,7 @@ void text_read(const struct content *c, const struct told *told, struct record *
 	if (told->profile) {
 		profile_read(&t, told, r);
 	} else {
+		refuse_points(&t);
 		settle_pixel(c, told, &dx, &dy);
 		unit = settle_unit(c, told, NAN);
 		z = new_heights(c, t.columns, (double)t.rows, dx, dy, r);
