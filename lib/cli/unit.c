@@ -214,7 +214,7 @@ const char *unit_meant(const char *text, enum unit unit)
 			snprintf(name, sizeof name, "%s%s", k ? prefixes[k - 1].text : "",
 				spellings[i].text);
 			n = capitals(rest, name);
-			if (n >= 0 && n < least) {
+			if (n > 0 && n < least) {
 				least = n;
 				memcpy(meant, name, sizeof meant);
 			}

@@ -85,6 +85,8 @@ static void check_options(int operands)
 {
 	if (isnan(gap) == isnan(load))
 		die(EXIT_USAGE, "specify either --gap H or --load F");
+	if (gap >= 1e-2)
+		warn("--gap %g m: is %gum meant?", gap, gap);
 	if (!hardness.n)
 		die(EXIT_USAGE, "--hardness is missing: H1[,H2] in Pa");
 	if (isnan(friction))

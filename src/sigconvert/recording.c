@@ -299,6 +299,12 @@ struct recording *recording_open(const char *path, const struct recording_par *p
 		table_begin(r, in);
 	else
 		r->text = text_open(in, par);
+	if (takes_columns(par) && !r->text && r->from != FROM_RAW)
+		die(EXIT_USAGE, "--%s is for text",
+			par->columns ? "columns"
+			: par->time  ? "time"
+			: par->skip  ? "skip-lines"
+				     : "rate");
 	if (r->text)
 		r->format = *text_format(r->text);
 	if (r->signal)
