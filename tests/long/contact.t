@@ -8,14 +8,6 @@ key() { strings -n 3 "$2" | sed -n "s/^$1:=//p"; }
 
 mean() { awk '{ s += $1 } END { print s / NR }'; }
 
-# at_most NAME VALUE LIMIT
-at_most() {
-	if awk -v v="$2" -v l="$3" 'BEGIN { exit !(v + 0 == v && v <= l) }'; then
-		pass "$1: $2, at most $3"
-	else
-		fail "$1: $2, want at most $3"
-	fi
-}
 
 # Area against load by Green's function molecular dynamics (Campana and Mueser): Hurst 0.8,
 # rms gradient 0.2766, two decades of wavelengths.  Realisations differ by some per cent.
