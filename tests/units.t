@@ -55,9 +55,10 @@ for f in spectrum contacts patches surrogate response layouts scored delays appl
 	told $f.tsv
 done
 # Programs that write a table write one above.
-tables=' roughgen bemcontact debrisgen debrisfit debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade debriscount ballcal sigconvert wear-volume '
+tables='roughgen bemcontact debrisgen debrisfit debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade'
+tables="$tables debriscount ballcal sigconvert wear-volume"
 sed -n 's/^PROGRAMS = //p' "$top/Makefile" | tr ' ' '\n' | while read -r p; do
-	case "$tables surfimport " in
+	case " $tables surfimport " in
 	*" $p "*) ;;
 	*) echo "$p" ;;
 	esac

@@ -88,7 +88,7 @@ static void append_word(char **text, const char *word)
 	free(q);
 }
 
-/* What parts the members of a list; NUL where there is but one. */
+/* The separator of the members of a list; NUL if it has one member. */
 static char separator_of(const struct opt *o)
 {
 	for (const char *p = ":x,"; *p; p++)
@@ -97,7 +97,7 @@ static char separator_of(const struct opt *o)
 	return '\0';
 }
 
-/* Numbers are in this unit; fractions are not in per cent. */
+/* The unit of the numbers; fractions are not in per cent. */
 static const char *unit_shown(enum unit unit)
 {
 	return unit == UNIT_FRACTION ? "" : unit_name(unit);
@@ -566,7 +566,7 @@ static void check_operands(int argc, char **argv)
 			prog->name, prog->operands, prog->name);
 }
 
-/* A stack that is too small would end in a crash. */
+/* A stack that is too small would overflow. */
 static void check_stack(void)
 {
 	enum { WANT = 256 }; /* kB; the deepest calls take about 100 */

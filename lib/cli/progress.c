@@ -8,14 +8,14 @@
 #include <time.h>
 #include <unistd.h>
 
-static double started = -1, drawn; /* seconds; drawn 0 while no line is shown */
+static double started = -1, drawn; /* seconds; drawn is 0 while no line is shown */
 static int terminal = -1;
 static int due;             /* what is counted has changed: draw at once */
 static const char *counted; /* what progress() counts, NULL: nothing */
 static double count, count_total;
 static double used, input_size, worked; /* bytes; worked: nothing of them is left to do */
 static double within = 1;               /* share of the bytes in between that is done */
-static int line, lines = 1;             /* of this program and of all in its pipeline */
+static int line, lines = 1; /* number of this program, and of all in its pipeline */
 
 static double now(void)
 {
@@ -25,7 +25,7 @@ static double now(void)
 	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* The directory of a program's file, "" where the system does not tell. */
+/* The directory of a program's file, "" where the system does not provide it. */
 static void folder_of(const char *process, char folder[PATH_MAX])
 {
 	char path[300], *slash;
@@ -39,7 +39,7 @@ static void folder_of(const char *process, char folder[PATH_MAX])
 		*slash = '\0';
 }
 
-/* Programs of the suite in the same process group stand in one pipeline. */
+/* Programs of the suite in the same process group belong to one pipeline. */
 static void find_line(void)
 {
 	char mine[PATH_MAX], other[PATH_MAX];
@@ -62,8 +62,8 @@ static void find_line(void)
 		closedir(all);
 }
 
-/* Puts the text into the line of this program, all at once, lest others write between:
- * makes room below, goes down, and comes back. */
+/* Writes the text into the line of this program in one call, so that no other program
+ * writes in between: makes room below, moves down, and returns. */
 static void put(const char *text)
 {
 	char all[512];

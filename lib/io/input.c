@@ -14,7 +14,7 @@
 enum { BUFFER = 1 << 16 };
 
 struct input {
-	FILE *f; /* holds the descriptor; what is read goes past it */
+	FILE *f; /* holds the descriptor; reads bypass its buffer */
 	int fd;
 	int regular, whole;
 	double size, taken; /* bytes: of a regular file, else 0; read so far */

@@ -24,7 +24,7 @@ static const struct {
 	{ "%PDF", KIND_OTHER, "a PDF document", "" },
 };
 
-/* Text up to the first newline, or all that there is. */
+/* Text up to the first newline, or all of it. */
 static int is_text(const unsigned char *b, size_t n)
 {
 	for (size_t i = 0; i < n && b[i] != '\n'; i++)

@@ -212,7 +212,7 @@ struct stress_work stress_work(const struct stress *s)
 		w.split_layers, w.coarse_layers, s->nodes };
 }
 
-/* What nodes can fail */
+/* Nodes that may fail */
 
 /* Distance between two ranges of cells, from node centre to the edge of the elements of
  * loaded cells, which reach over half of the next. */
@@ -278,7 +278,7 @@ size_t stress_reach(struct stress *s, double z, double limit, struct stress_span
 	size_t count = 0;
 
 	limit /= s->unit;
-	/* What held at a smaller depth holds: the bound falls with depth. */
+	/* A bound that held at a smaller depth still holds: it falls with depth. */
 	if (!(z >= s->held_depth && limit >= s->held_limit))
 		memset(s->held, 0, (size_t)s->bx * (size_t)s->by * sizeof *s->held);
 	s->held_depth = z;

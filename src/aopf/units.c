@@ -35,7 +35,7 @@ struct units {
 	unsigned char *place;
 };
 
-/* At the start of the file, and of each place in it. */
+/* At the start of the file, and of each slot in it. */
 struct head {
 	char magic[16];
 	uint64_t options, size;
@@ -155,7 +155,8 @@ void unit_step(struct machine *u, const struct outlook_row *in, double *cell)
 	u->rows++;
 	u->last = in->t;
 	if (u->filter) {
-		adaptive_step(u->filter, in->t, in->y - zero, &row);
+		if (adaptive_step(u->filter, in->t, in->y - zero, &row) != NUM_OK)
+			die(EXIT_RUN, "no memory for the particles");
 		*cell++ = row.grey + zero;
 		*cell++ = row.prediction + zero;
 		*cell++ = row.state + zero;
@@ -233,7 +234,7 @@ static uint64_t check_of(const struct units *units)
 		units->place + sizeof p, units->size, checksum(&p, sizeof p, BASIS));
 }
 
-/* Reads a place; 1 if it is whole. */
+/* Reads a slot; 1 if it is complete. */
 static int read_place(
 	struct units *units, FILE *f, int number, int which, struct place *p)
 {
@@ -267,6 +268,8 @@ static int resume_unit(struct units *units, FILE *f, int number)
 	u->last = place[newer].last;
 	s.at = units->place + sizeof place[0];
 	pass(u, &s);
+	if (s.failed)
+		die(EXIT_RUN, "no memory for unit %s", u->name);
 	return 1;
 }
 
@@ -312,7 +315,8 @@ void units_keep(struct units *units, const char *path, const char *options)
 
 	make_room(units, (size_t)h.size);
 	units->path = path;
-	/* A state to resume from stays until this one holds as much. */
+	/* Written beside the state to resume from, which is replaced once this one is
+	 * complete. */
 	units->file = open(fresh, O_RDWR | O_CREAT | O_TRUNC, 0666);
 	if (units->file < 0)
 		die(EXIT_RUN, "%s:", fresh);

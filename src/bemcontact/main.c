@@ -114,7 +114,7 @@ static void put_results(struct record *r, const struct contact_par *par,
 {
 	press_record(r, par);
 	if (par->kernel) {
-		/* No contact modulus presses this again. */
+		/* The key of the contact modulus does not apply to this kernel. */
 		record_set(r, "estar", "nan");
 		record_set(r, "coating", "%.17g", coating.thickness);
 	}
@@ -229,7 +229,7 @@ static double *field_of(struct record *r, enum field f, const char *unit)
 	return fields & 1 << f ? record_add(r, field_names[f], unit) : NULL;
 }
 
-/* What follows the contact under all of the load; returns 1 if it converged. */
+/* Slip and unloading after the contact under the full load; returns 1 if it converged. */
 static int solve_after(const struct task *t, const struct contact_result *full)
 {
 	double *shear = field_of(t->r, SHEAR, "Pa"),
@@ -246,7 +246,7 @@ static int solve_after(const struct task *t, const struct contact_result *full)
 	return converged & unload_solve(t, full, residual);
 }
 
-/* Says once what is possible, but hardly what was meant. */
+/* Warns once of values that are possible but unlikely to be meant. */
 static void doubt(const struct contact_par *par, double pressure)
 {
 	static int said;
@@ -308,7 +308,7 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 	return converged;
 }
 
-/* Leaves the wanted fields only. */
+/* Keeps only the wanted fields. */
 static void drop_fields(struct record *r)
 {
 	for (int i = r->nfields - 1; i >= 0; i--) {

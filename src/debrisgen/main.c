@@ -45,7 +45,7 @@ struct edge {
 	double most;
 };
 
-/* What the program goes through its records with. */
+/* The state of a run over all records. */
 struct run {
 	struct edge edge;
 	struct fields_in *in;
@@ -54,7 +54,7 @@ struct run {
 	int status;
 };
 
-/* One surface on its way through the steps. */
+/* One surface during its steps. */
 struct scene {
 	struct worn_surface now;
 	double target; /* mean pressure, or approach */

@@ -21,7 +21,8 @@ static double bin = 10e-6, confidence = 0.95, depth = 1e-6;
 static long realisations, bootstrap, seed = 1;
 static const char *summary_path, *other_path;
 
-/* Groups of realisations that --bootstrap draws; up to so many, each is one. */
+/* Groups of realisations that --bootstrap draws; up to this number each realisation is a
+ * group. */
 enum { GROUPS = 512 };
 
 static const struct opt opts[] = {
@@ -92,20 +93,20 @@ static void check(struct ensemble *e, enum ensemble_status status)
 			ensemble_culprit(e));
 	case ENSEMBLE_MORE:
 		die(EXIT_RUN, "--realisations %ld, but the table has %zu", realisations,
-			ensemble_told(e));
+			ensemble_reported(e));
 	case ENSEMBLE_MEMORY:
 		no_memory();
 	}
 }
 
-static int counts(const struct shed *s)
+static int counts(const struct particle_row *s)
 {
 	return s->diameter >= diameters.v[0] && s->diameter <= diameters.v[1] &&
 	       (range.n == 0 || (s->step >= (long)range.v[0] &&
 					s->step <= (long)range.v[range.n - 1]));
 }
 
-static void classify(const struct shed *s, double aspect)
+static void classify(const struct particle_row *s, double aspect)
 {
 	int k = 0;
 
@@ -188,12 +189,13 @@ static void read_particles(
 	ca = table_need(t, "aspect");
 	open_summary(&summary);
 	for (; more; more = table_next(t)) {
-		struct shed s = { table_whole(t, cr, 0, 1e15), table_whole(t, cs, 1, 1e6),
-			table_positive(t, cd), table_positive(t, cv), table_part(t) };
+		struct particle_row s = { table_whole(t, cr, 0, 1e15),
+			table_whole(t, cs, 1, 1e6), table_positive(t, cd),
+			table_positive(t, cv), table_part(t) };
 
 		read_summary(&summary, e, s.realisation);
 		check(e, ensemble_add(e, &s));
-		/* A particle around a periodic grid has no shape. */
+		/* A particle that is endless on a periodic grid has no shape. */
 		classify(&s, isnan(table_number(t, ca)) ? NAN : table_positive(t, ca));
 	}
 	read_summary(&summary, e, LONG_MAX);
@@ -242,7 +244,7 @@ static void put_quantity(
 	table_end_row(t);
 }
 
-/* Of enum estimate_quantity. */
+/* Names of enum estimate_quantity. */
 static const char *const names[] = { "weibull_shape", "weibull_scale", "weibull_mean",
 	"ks_distance", "mean_diameter", "power_factor", "power_exponent", "power_offset",
 	"volume_per_step" };
@@ -471,9 +473,9 @@ int main(int argc, char **argv)
 	e = new_ensemble();
 	read_particles(e, argv[first], &study, &cmd);
 	check(e, ensemble_close(e));
-	if (bootstrap && ensemble_told(e) < 2)
+	if (bootstrap && ensemble_reported(e) < 2)
 		die(EXIT_RUN, "--bootstrap requires at least two realisations, got %zu",
-			ensemble_told(e));
+			ensemble_reported(e));
 	stats_add("particles", ensemble_particles(e));
 	stats_add("realisations", ensemble_par(e)->realisations);
 	stats_add("diameters_merged",

@@ -114,7 +114,7 @@ static struct spectrum_par spectrum(void)
 	return p;
 }
 
-/* Values that are possible, but hardly what was meant. */
+/* Warns of values that are possible but unlikely to be meant. */
 static void doubt(const struct rough_par *par)
 {
 	const struct spectrum_par *p = &par->spectrum;

@@ -77,7 +77,7 @@ static void take(const struct content *c, size_t at, size_t stride, enum sample_
 		}
 }
 
-/* ---- what the file and the command line say ---- */
+/* ---- properties from the file and the command line ---- */
 
 double unit_named(const char *name, size_t length)
 {
@@ -205,7 +205,7 @@ static void npy_read(const struct content *c, const struct told *told, struct re
 	settle_pixel(c, told, &dx, &dy);
 	unit = settle_unit(c, told, NAN);
 	if (strncmp(fortran, "True", 4) == 0) {
-		/* columns one after another: read as rows and turned */
+		/* column-major order: read as rows and transposed */
 		struct record turned = { 0 };
 		double *z;
 

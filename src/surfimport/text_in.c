@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* UTF-16, as spreadsheets write it, to bytes: what is not Latin-1 becomes '?'. */
+/* UTF-16, as spreadsheets write it, to bytes: a character beyond Latin-1 becomes '?'. */
 static char *plain(const struct content *c)
 {
 	const unsigned char *b = (const unsigned char *)c->data;
@@ -41,11 +41,11 @@ struct text {
 	size_t n, room;
 	int columns;
 	long rows, line;
-	char *header; /* the last line that is no row of numbers */
+	char *header; /* the last line that is not a row of numbers */
 };
 
-/* What parts the cells: a semicolon or TAB, if there is one; a comma unless blanks part
- * numbers with decimal commas. */
+/* The separator of cells: a semicolon or TAB, if there is one; a comma unless blanks
+ * separate numbers with decimal commas. */
 static void find_separator(struct text *t, const char *sample)
 {
 	const char *comma = strchr(sample, ',');
@@ -55,7 +55,7 @@ static void find_separator(struct text *t, const char *sample)
 		       : comma                ? ','
 					      : ' ';
 	t->comma = (t->separator == ';' || t->separator == '\t') && comma;
-	/* 1,25 2,50: blanks part what would else be a cell of two numbers */
+	/* 1,25 2,50: a blank separates what would otherwise be a cell of two numbers */
 	if (t->separator == ',' && !strchr(sample, '.')) {
 		const char *s = sample;
 		int inner = 0, spaced = 0;
@@ -85,7 +85,7 @@ int is_gap(const char *s)
 	return 0;
 }
 
-/* One cell; 0 if it is no number. */
+/* Reads one cell; 0 if it is not a number. */
 static int cell(const struct text *t, char *s, double *v)
 {
 	char *end = s + strlen(s);
@@ -114,7 +114,7 @@ static void keep(struct text *t, double v)
 	t->value[t->n++] = v;
 }
 
-/* Reads a row; returns its cells, -1 if one is no number. */
+/* Reads a row; returns the number of cells, -1 if one is not a number. */
 static int read_row(struct text *t, char *line)
 {
 	size_t before = t->n;
@@ -134,7 +134,7 @@ static int read_row(struct text *t, char *line)
 		}
 		if (next)
 			*next++ = '\0';
-		/* a separator at the end of the line parts nothing */
+		/* a separator at the end of the line separates nothing */
 		if (!next && !*s && n > 0)
 			break;
 		if (!cell(t, s, &v)) {

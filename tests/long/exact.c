@@ -21,7 +21,7 @@ int main(void)
 		{ 64, 1024, CONTACT_PERIODIC, PATCHES, -0.3, 6e8, 0, 22 },
 		{ 128, 128, CONTACT_PERIODIC, PATCHES, 0.2, 0, 1, 18 },
 		{ 128, 128, CONTACT_FREE, PATCHES, 1, 0, 1000, 16 },
-		/* Of the same kinds, but not those that the solver was tuned by. */
+		/* Scenes of the same kinds as those that tuned the solver, but others. */
 		{ 48, 5000, CONTACT_PERIODIC, NOISE, 0.6, 0, 0, 75 },
 		{ 5000, 5, CONTACT_PERIODIC, PATCHES, 0.6, 0, 0, 40 },
 		{ 20, 3000, CONTACT_FREE, NOISE, 0.1, 0, 0, 42 },

@@ -4,10 +4,10 @@
 #include "tap.h"
 
 /* Realisations 7 and 2, out of order; diameter and volume as easy numbers. */
-static const struct shed particles[] = { { 7, 1, 10, 1, 0 }, { 2, 3, 20, 2, 0 },
+static const struct particle_row particles[] = { { 7, 1, 10, 1, 0 }, { 2, 3, 20, 2, 0 },
 	{ 7, 3, 30, 4, 0 }, { 7, 3, 40, 8, 0 }, { 2, 1, 50, 16, 0 } };
 
-/* mark: realisation of which step 2 is told; 0: none. */
+/* mark: realisation of which step 2 is stated; 0: none. */
 static struct ensemble *make(const struct ensemble_par *par, long mark)
 {
 	struct ensemble *e = ensemble_new(par);
@@ -17,7 +17,7 @@ static struct ensemble *make(const struct ensemble_par *par, long mark)
 	if (mark)
 		ensemble_took_place(e, mark, 2);
 	ok(ensemble_close(e) == ENSEMBLE_OK, "the ensemble is closed");
-	ok(ensemble_told(e) == (mark && mark != 2 && mark != 7 ? 3 : 2),
+	ok(ensemble_reported(e) == (mark && mark != 2 && mark != 7 ? 3 : 2),
 		"realisations with rows are counted");
 	return e;
 }
@@ -112,12 +112,12 @@ static void test_refusals(void)
 
 	for (int i = 0; i < 5; i++)
 		ensemble_add(e, &particles[i]);
-	ok(ensemble_close(e) == ENSEMBLE_MORE && ensemble_told(e) == 2,
+	ok(ensemble_close(e) == ENSEMBLE_MORE && ensemble_reported(e) == 2,
 		"more realisations than stated are refused");
 	ensemble_free(e);
 	e = ensemble_new(&par);
 	for (long part = 0; part < 2; part++)
-		ensemble_add(e, &(struct shed){ 3, 1, 1, 1, part });
+		ensemble_add(e, &(struct particle_row){ 3, 1, 1, 1, part });
 	ok(ensemble_close(e) == ENSEMBLE_CLASH && ensemble_culprit(e) == 3,
 		"a realisation in two parts is refused");
 	ensemble_free(e);
@@ -138,7 +138,7 @@ static void test_large(void)
 	double plain;
 
 	for (long i = 0; i < N; i++) {
-		struct shed s = {
+		struct particle_row s = {
 			.realisation = 1000000 - i / EACH, .step = 1 + i % 4, .volume = 1
 		};
 

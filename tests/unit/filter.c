@@ -8,7 +8,7 @@
 enum { STEPS = 400 };
 static const double DRIFT = 0.02, PROCESS = 0.1, NOISE = 0.2;
 
-/* A drifting random walk seen with noise. */
+/* A drifting random walk observed with noise. */
 struct walk {
 	double x[STEPS], y[STEPS];
 };
@@ -48,7 +48,7 @@ static double kalman(const struct walk *w, double *evidence)
 	return sqrt(sum / STEPS);
 }
 
-/* The same of the particle filter. */
+/* The same quantities of the particle filter. */
 static double particles(const struct walk *w, const struct filter_par *par,
 	double missing, double *evidence)
 {

@@ -149,7 +149,7 @@ static int same_band(const struct fir_band *a, const struct fir_band *b)
 	       fabs(a->high / b->high - 1) < 3e-16;
 }
 
-/* Bands in words and back. */
+/* Bands to text and back. */
 static void test_words(void)
 {
 	char text[FIR_TEXT], chain[2 * FIR_TEXT + 3] = "";

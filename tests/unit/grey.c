@@ -116,7 +116,7 @@ static void test_plain_series(void)
 	g = fit(x, 10);
 	near(grey_forecast(&g, 1, 1), 2, 1e-11,
 		"a nearly constant series is continued as a constant");
-	/* An exponential of ratio q has a = -2 (q - 1) / (q + 1): to rounding. */
+	/* An exponential of ratio q has a = -2 (q - 1) / (q + 1) up to rounding. */
 	for (int k = 0; k < 60; k++)
 		x[k] = 3 * pow(1.02, k);
 	g = fit(x, 60);

@@ -1,4 +1,4 @@
-/* Joint fit of pulses: exact on clean scenes, at the Cramer-Rao bound on noisy ones */
+/* Joint fit of pulses: exact without noise, at the Cramer-Rao bound with noise */
 #include "signal/joint.h"
 #include "num/philox.h"
 #include "tap.h"

@@ -8,7 +8,7 @@
 
 enum { N = 2000 };
 
-/* CRPS by the energy form E|X - y| - E|X - X'| / 2, independent of the code's way. */
+/* CRPS by the energy form E|X - y| - E|X - X'| / 2, independent of the implementation. */
 static double crps_energy(const double *x, const double *w, size_t n, double y)
 {
 	double total = 0, near_y = 0, apart = 0;
@@ -112,7 +112,7 @@ static void check_sums(void)
 	ok(metrics_new(&par) == NULL, "an alpha of zero is refused");
 }
 
-/* A median that never fails must not make the mean errors of all others infinite. */
+/* An infinite median must not make the mean errors of the others infinite. */
 static void check_infinite(void)
 {
 	struct metrics_par par = { .eol = 100, .alpha = 0.2, .beta = 0.5, .limit = 1000 };

@@ -1,4 +1,4 @@
-/* Two and three voices told apart in a whole record, by what they are made of. */
+/* Two and three sources separated in a whole record by their spectra. */
 #include "signal/mixture.h"
 #include "tap.h"
 #include <stdlib.h>

@@ -163,7 +163,7 @@ static void check_divergence(void)
 	network_free(net);
 }
 
-/* Eight numbers made of two: an auto-encoder of two units can carry them. */
+/* Eight numbers made from two: an auto-encoder of two units can represent them. */
 static void take_plane(void *context, long i, network_real *x, network_real *target)
 {
 	(void)context;
@@ -182,8 +182,8 @@ static void keep_loss(void *context, long epoch, double loss)
 	last_loss = loss;
 }
 
-/* Without sparsity the plane is carried through; with it the mean activation is held
- * near the level wanted, but still varies with the samples. */
+/* Without sparsity the plane is reconstructed; with it the mean activation stays near the
+ * wanted level, but still varies with the samples. */
 static void check_pretraining(void)
 {
 	struct network_layer layer[] = { { NETWORK_DENSE, NETWORK_SIGMOID, .units = 6 },
@@ -280,7 +280,7 @@ static void check_file(void)
 		fclose(f);
 	}
 	ok(n == 0, "every truncation of the file is refused");
-	/* Any byte changed: refused, or read as another network, but never worse. */
+	/* A file with any byte changed is refused or read as another network. */
 	for (size_t i = 0; i < strlen(text); i++)
 		for (const char *c = "9-x \n#\177"; *c; c++) {
 			FILE *f;

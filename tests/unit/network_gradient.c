@@ -40,7 +40,7 @@ static double value(struct network *net, const struct scene *s, const real *x,
 		net, x, target, BATCH, s->loss, context, &s->penalty, scratch);
 }
 
-/* Every weight of a layer moved alone; the largest error over the largest slope. */
+/* Changes every weight of a layer alone; the largest error over the largest slope. */
 static void check(const struct scene *s)
 {
 	struct network *net = network_new(s->input, s->layer, s->layers, BATCH);

@@ -322,7 +322,7 @@ static void test_order(void)
 	particles_free(ps);
 }
 
-/* Stripes that wind about a torus: slope 3 periods of x for one of y, then a ring. */
+/* Stripes that wind about a torus: 3 periods of x for one of y, then a straight ridge. */
 static int stripe(double x, double y, double z)
 {
 	(void)z;
@@ -397,7 +397,7 @@ static int checker(double x, double y, double z)
 	return ((int)x + (int)y + (int)z) % 2;
 }
 
-/* Corner neighbours of a layer are parted or joined as asked. */
+/* Corner neighbours of a layer are separated or joined as requested. */
 static void test_corners(void)
 {
 	struct particles_par par = { .nx = 31, .ny = 17, .dx = 1, .dy = 1, .dz = 1 };

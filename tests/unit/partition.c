@@ -161,7 +161,7 @@ static void check_coverage(void)
 		}
 }
 
-/* With many realisations the draws scatter as a mean does: variance / n. */
+/* With many realisations the draws scatter like a mean: variance / n. */
 static void check_draws(void)
 {
 	enum { N = 4000 };
@@ -274,7 +274,7 @@ static void check_order(void)
 	near(w.mean, 24.5 + 2, 1e-12,
 		"rows in the order of steps are grouped by realisation");
 	partition_free(p);
-	/* More of them, so that the first realisations were handed on. */
+	/* More rows, so that the first realisations have been passed on. */
 	p = partition_new(fragment, 1, 0);
 	add_class(p, 1, NAN, -1);
 	for (int s = 1; s <= 2 && status == PARTITION_OK; s++)
