@@ -5,10 +5,21 @@ set datafile separator "\t"
 grey = "#888888"; blue = "#2b3a67"; red = "#b23a48"; gold = "#c98a1b"
 
 set output "fig64.png"
-set title "Figure 64: wear of fragments of 100 um by step"
+set title "Figure 64 (a): wear of fragments of 100 um by step"
 set xlabel "fragment and step"; set ylabel "volume, um^3"; set logscale y; set yrange [0.1:3e4]; set format y "10^{%T}"
 plot for [p in "21 5 1 0.15"] p.".steps" using 0:(column("volume")*1e18) with points pt 7 ps 0.5 title p." MPa"
 unset logscale y; set format y "%g"; set yrange [0:*]
+
+set output "fig64-distribution.png"
+set title "Figure 64 (b): distribution of the wear of a step"
+set xlabel "volume, um^3"; set ylabel "share of the steps, %"; set logscale x; set format x "10^{%T}"
+set boxwidth 0.9 relative; set style fill transparent solid 0.4 noborder
+# classes of a fifth of a decade; steps without wear are left out
+do for [p in "21 0.15"] { stats p.".steps" using (column("volume")*1e18) name "N".(p eq "21" ? "a" : "b") nooutput }
+class(v) = v > 0 ? 10 ** (0.2 * (floor(log10(v) / 0.2) + 0.5)) : NaN
+plot "21.steps" using (class(column("volume")*1e18)):(100.0/Na_records) smooth frequency with boxes lc rgb blue title "21 MPa", \
+	"0.15.steps" using (class(column("volume")*1e18)):(100.0/Nb_records) smooth frequency with boxes lc rgb gold title "0.15 MPa"
+unset logscale x; set format x "%g"
 
 set output "fig65.png"
 set title "Figure 65: wear of the plate per step"
