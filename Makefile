@@ -129,7 +129,7 @@ $(B)/src/records/replay.o: ALL_CPPFLAGS += -DWEARPIPE_PROGRAMS='"$(PROGRAMS)"'
 $(B)/src/records/replay.o: Makefile
 
 # Not clean yet of implicit conversions.
-$(B)/lib/signal/%.o $(B)/src/duet/%.o $(B)/tests/%.o: CONVERSION =
+$(B)/lib/signal/%.o $(B)/src/duet/%.o: CONVERSION =
 
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
@@ -192,8 +192,9 @@ check: all $(UNITS) $(MATRIX)
 check-long: all $(UNITS) $(LONG_UNITS) $(BENCH_BINS) $(MATRIX)
 	@BIN="$(abspath $(BIN))" tests/run $(LONG_TESTS)
 
+# The long tests come first, so that the short ones fill both cores at the end.
 check-all: all $(UNITS) $(LONG_UNITS) $(BENCH_BINS) $(MATRIX)
-	@BIN="$(abspath $(BIN))" tests/run $(TESTS) $(LONG_TESTS)
+	@BIN="$(abspath $(BIN))" tests/run $(LONG_TESTS) $(TESTS)
 
 # A Slurm cluster of one node, started for the test; wants slurm-wlm and munge.
 check-cluster: all

@@ -1,4 +1,5 @@
-"""Rough contact, stress, wear particles, filters and remaining wear life for numpy.
+"""Rough contact, stress, wear particles, filters, separation and remaining wear life for
+numpy.
 
 A thin layer over the shared library libwearpipe.so.0 by ctypes: arrays in, arrays out, SI
 units, the same numbers as the programs.  The library is looked for in the folder that
@@ -11,6 +12,7 @@ WEARPIPE_LIBRARY names, beside an installed prefix, and where the system looks.
 import ctypes
 import ctypes.util
 import os
+import warnings
 from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_long, c_size_t, c_uint32, c_uint64, c_void_p
 from types import SimpleNamespace
 
@@ -248,6 +250,54 @@ def bandpass(record, low, high, rate, order=200):
         return out
     finally:
         _filter_free(f)
+
+
+# --- particles in a record
+
+_SEPARATE = ("delay", "pulse_duration", "gain", "spacing", "calibration", "false_alarm", "learn")
+_SeparatePar = _struct(("rate", c_double), *[(name, c_double) for name in _SEPARATE])
+_TRANSIT = ("time1", "time2", "diameter", "amplitude", "delay", "velocity", "time1_se",
+            "time2_se", "diameter_se", "amplitude_se", "delay_se", "velocity_se", "section",
+            "sources", "chi2")
+_VERDICTS = ("alone", "overlap", "misfit", "unresolved")
+_Transit = _struct(*[(name, c_double) for name in _TRANSIT], ("verdict", c_int))
+_separate_new = _function("wp_separate_new", c_void_p, POINTER(_SeparatePar), POINTER(c_int))
+_separate_free = _function("wp_separate_free", None, c_void_p)
+_separate_push = _function("wp_separate_push", c_int, c_void_p, _array, c_size_t)
+_separate_end = _function("wp_separate_end", c_int, c_void_p)
+_separate_next = _function("wp_separate_next", c_int, c_void_p, POINTER(_Transit))
+_separate_reason = _function("wp_separate_reason", c_char_p, c_void_p)
+
+
+def separate(record, rate, **known):
+    """The wear particles in a record [frame, channel] (V) of two inductive sensors, sampled
+    at rate (Hz), as duet finds them: a structured array with the columns of its table.  What
+    is known may be given: delay and pulse_duration (s), gain, spacing (m), calibration
+    (V s/m4), false_alarm (per sample), learn (s).  Warns where the result is doubtful."""
+    record = np.ascontiguousarray(record, dtype=np.float64)
+    if record.ndim != 2 or record.shape[1] != 2:
+        raise ValueError("want a record [frame, 2]")
+    if set(known) - set(_SEPARATE):
+        raise TypeError("want some of " + ", ".join(_SEPARATE))
+    status = c_int()
+    s = _made(_separate_new(byref(_SeparatePar(rate, **known)), byref(status)), status)
+    rows, p = [], _Transit()
+
+    def step(result):
+        if result == _NOT_CONVERGED:
+            warnings.warn(_separate_reason(s).decode(), stacklevel=3)
+        elif result != _OK:
+            raise Error(_separate_reason(s).decode())
+        while _separate_next(s, byref(p)):
+            rows.append(tuple(getattr(p, name) for name in _TRANSIT) + (_VERDICTS[p.verdict],))
+
+    try:
+        for at in range(0, len(record), 65536):
+            step(_separate_push(s, record[at:at + 65536], len(record[at:at + 65536])))
+        step(_separate_end(s))
+        return np.array(rows, [(name, np.float64) for name in _TRANSIT] + [("verdict", "U10")])
+    finally:
+        _separate_free(s)
 
 
 # --- lives

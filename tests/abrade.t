@@ -104,5 +104,5 @@ fails "a table without a surface to leave standard output to" 2 '\--surface is g
 printf 'diameter\taspect\n1e-6\t0.5\n' >flat.tsv
 fails "an aspect below one" 1 'line 2: aspect is 0.5, want 1 or more' abrade --gap 1um $p flat.tsv
 fails "no column of diameters" 1 "no column 'diameter'" abrade --gap 1um $p st
-fails "an empty stream" 1 'no table' abrade --gap 1um $p
+fails "an empty stream" 1 'empty, want table' abrade --gap 1um $p
 done_testing

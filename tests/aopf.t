@@ -41,6 +41,44 @@ is "the effective sample size is between 1 and N" "$(cat bad)" 0
 printf '# units: h L/min\nt\ty\n0\t1\n' >unit.tsv
 is "every column has a unit" "$(aopf -y 2 unit.tsv | sed -n 's/^# units: //p')" \
 	"h L/min L/min L/min L/min 1 1 h h h 1"
+is "also beside a column of machines" "$(printf '# units: 1 h L/min\nunit\tt\ty\nA\t0\t1\n' | aopf --unit unit --threshold 2 | sed -n 's/^# units: //p')" \
+	"1 h L/min L/min L/min L/min 1 1 h h h 1"
+is "and where the input states none" "$(grep -v '^#' unit.tsv | aopf --threshold 2 --time-unit h | sed -n 's/^# units: //p')" \
+	"h 1 1 1 1 1 1 h h h 1"
+# Times of options are those of the table, whether it states its unit or --time-unit does.
+awk 'BEGIN { print "t\ty"; for (t = 0; t < 60; t++) print t "\t" 1 + t / 100 + (t % 3) / 300 }' >bare.tsv
+{ echo '# units: h L/min'; cat bare.tsv; } >told.tsv
+decide='--threshold 1.8 --mission 18h --alarm 60h,20h --skip 5h --horizon 200h'
+# rows FILE: a table without its comments
+rows() { grep -v '^#' "$1"; }
+# shellcheck disable=SC2086 # options
+{
+	aopf $decide told.tsv >told.out
+	aopf $decide --time-unit h bare.tsv >bare.out
+}
+is "options convert to the unit of the table" "$(rows told.out | cksum)" "$(rows bare.out | cksum)"
+is "a mission may fail" "$(column p_failure told.out | awk '$1 > 0 && $1 < 1' | wc -l | awk '{ print ($1 > 0) }')" 1
+fails "two units of time" 2 "time-unit min contradicts '# units:' of told.tsv, h" aopf --threshold 2 --time-unit min told.tsv
+printf '# units: cycle Ah\nt\ty\n0\t1\n' >cycles.tsv
+is "times may be cycles" "$(aopf cycles.tsv | sed -n 's/^# units: //p')" "cycle Ah Ah Ah Ah 1 1"
+fails "hours of cycles" 1 "column 't' is in 'cycle', want s, min, h or d" aopf --threshold 2 --mission 1h cycles.tsv
+awk 'BEGIN { print "# units: 1 min mL/min\nunit\tt\ty"; for (t = 0; t < 101; t++) print "A\t" t * 60 "\t" 1000 + t * 11 }' >fleet.tsv
+awk 'BEGIN { print "# units: 1 h L/min\nunit\tt\ty"; for (t = 0; t < 101; t++) print "A\t" t "\t" (1000 + t * 11) / 1000 }' >same.tsv
+for f in fleet same; do
+	aopf --threshold 2 --direction up --fleet $f.tsv told.tsv >$f.out
+done
+is "a fleet in other units is converted" "$(rows fleet.out | awk 'END { printf "%.5g", $9 }')" "$(rows same.out | awk 'END { printf "%.5g", $9 }')"
+sed 's/mL/um/' fleet.tsv >wrong.tsv
+fails "a fleet of another quantity" 1 "wrong.tsv: column 'y' is in 'um/min', want 'L/min'" \
+	aopf --threshold 2 --direction up --fleet wrong.tsv told.tsv
+printf 't\tevent\n20\trepair\n' >hours.tsv
+printf '# units: min 1\nt\tevent\n1200\trepair\n' >minutes.tsv
+for f in hours minutes; do
+	aopf --threshold 2 --events $f.tsv told.tsv >$f.out
+done
+is "events in other units are converted" "$(rows minutes.out | cksum)" "$(rows hours.out | cksum)"
+aopf --threshold 2 --save saved told.tsv >out
+fails "a saved state of another unit" 1 'saved: saved with other options' aopf --threshold 2 --resume saved bare.tsv
 
 # Rows come out as rows go in.
 rise 40 2 >short.tsv

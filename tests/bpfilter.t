@@ -60,12 +60,12 @@ frames prompt.au >b
 near "--latency changes the result only by rounding" "$(worst a b)" 0 2e-15
 
 # what is done is written at once where a latency is wanted
-mkfifo live
-(
-	head -c 24000 three.au
-	sleep 2
-) | bpfilter --latency 5ms >live &
-is "--latency writes output before the input ends" "$(timeout 1 head -c 20000 live | wc -c)" 20000
+mkfifo open live
+bpfilter --latency 5ms <open >live &
+exec 8>open
+head -c 24000 three.au >&8
+is "--latency writes output before the input ends" "$(timeout 60 head -c 20000 live | wc -c)" 20000
+exec 8>&-
 wait
 
 # lines: gone to the last digits where they keep their amplitude, hardly any harm to pulses

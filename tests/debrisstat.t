@@ -133,7 +133,7 @@ is "other realisations form a larger ensemble" "$(debrisstat both.tsv | sed -n '
 
 head -n 2 growth.tsv | debrisstat >fits.tsv
 is "a table without rows has no fit" "$(fit weibull_shape 2) $(fit particles 2)" "nan 0"
-fails "an empty stream" 1 "no table" debrisstat
+fails "an empty stream" 1 "empty, want table" debrisstat
 printf 'realisation\tstep\tdiameter\tvolume\n' >t
 fails "a missing column" 1 "aspect" debrisstat t
 printf 'realisation\tstep\tdiameter\tvolume\taspect\n0\t1\tnan\t1\t1\n' >t

@@ -58,6 +58,12 @@ is "dense, white: learned once" "$(column_of calibrations <stats.tsv)" 1
 sensorsim --uniform 90um:110um --number 40 --burst 2 --span 3ms --gap 1.5ms --period 0.1s \
 	--duration 2.2s --snr 30dB --lag 0.2ms:0.5ms --truth twins.tsv >twins.au
 duet twins.au >found.tsv
+for most in 0 1 2; do
+	WEARPIPE_LIMITS=pulses=$most duet twins.au >few && column verdict few | sort | uniq -c >few.$most
+done
+is "what exceeds the limit of pulses is one unresolved row" "$(awk '{ print $1, $2 }' few.1)" "20 unresolved"
+is "a limit below one is one" "$(cat few.0)" "$(cat few.1)"
+is "pulses up to the limit are found" "$(awk '{ print $1, $2 }' few.2)" "40 overlap"
 is "twins: both of each pair" "$(score matched twins.tsv found.tsv)" 40
 is "twins: no third" "$(score false twins.tsv found.tsv)" 0
 duet --method count twins.au >counted.tsv

@@ -64,7 +64,7 @@ fi
 cd "$usr/include/wearpipe" || exit
 for h in *.h; do
 	{
-		printf '#include <stdio.h>\n#include <stdlib.h>\n#include <string.h>\n'
+		printf '#include <stdio.h>\n#include <math.h>\n#include <stdlib.h>\n#include <string.h>\n'
 		echo "#include <wearpipe/$h>"
 		printf 'int main(void)\n{\n'
 		awk '/\*\// { exit } /^ \*\t/ { sub(/^ \*\t/, "\t"); print }' "$h"

@@ -19,15 +19,20 @@ fails "a field for a signal" 1 's.nrrd: this is a field (NRRD), want signal' bpf
 fails "WAV tells how to convert it" 1 's.wav: this is WAV audio, want signal: sox IN .* converts it' bpfilter s.wav
 fails "a surface without pressure tells who makes it" 1 "no field 'pressure', want .* from bemcontact" \
 	debrisgen --yield 355MPa s.nrrd
+bemcontact --pressure 1MPa --young 210GPa s.nrrd >contact.nrrd
+fails "an empty file for a surrogate" 1 "/dev/null: empty, want a table with the column 'kind'" \
+	debrisgen --yield 355MPa --surrogate /dev/null contact.nrrd
+fails "an empty file for fields" 1 '/dev/null: empty, want fields: height' bemcontact --pressure 1MPa --young 210GPa /dev/null
+fails "an empty file for a signal" 1 '/dev/null: empty, want a signal' duet /dev/null
 fails "an empty table" 1 '/dev/null: empty, want' rwl --new --wear /dev/null --step-time 1h
 
 # Tables of other programs.
 printf 't;y\n0;1\n' >semicolon
-fails "semicolons" 1 "no column 'y' among 't;y': a TAB parts columns, not a semicolon" aopf --threshold 1 semicolon
+fails "semicolons" 1 "no column 'y' among 't;y': 'sigconvert --output table' makes a table of it" aopf --threshold 1 semicolon
 printf 't\ty\n0,5\t1\n' >comma
-fails "decimal commas" 1 "line 2: t: '0,5' is not a number: write decimals with a point" aopf --threshold 1 comma
+fails "decimal commas" 1 "line 2: t: '0,5' is not a number: 'sigconvert --output table' reads decimal commas" aopf --threshold 1 comma
 printf 'Time [h]\tFlow [L/min]\n0\t1\n' >named
-fails "the columns there are are named" 1 "no column 'y' among 'Time \[h\]' 'Flow \[L/min\]'" aopf --threshold 1 named
+fails "the columns there are are named" 1 "no column 'y' among 'Time \[h\]' 'Flow \[L/min\]': 'sigconvert --output table' makes" aopf --threshold 1 named
 
 # Units.
 fails "a unit with wrong capitals" 2 'young 210Gpa: did you mean GPa?' bemcontact --young 210Gpa --pressure 1MPa s.nrrd
@@ -49,5 +54,16 @@ doubted "a surface of a metre" '--length 1 m: .* is 1mm meant?' metre
 doubted "waves shorter than the spacing" '--corr 1e-06 m is below the spacing of 1.25e-06 m' white
 doubted "a body softer than jelly" '--young 210 Pa .* is 210GPa meant?' soft
 doubted "a yield stress of jelly" '--yield 355 Pa .* is 355MPa meant?' weak
+light() { bemcontact --young 210GPa --pressure 21 s.nrrd; }
+crushed() { bemcontact --young 210GPa --pressure 50GPa s.nrrd; }
+steep() { roughgen --points 8 --length 10um --corr 3um --sq 1; }
+hard() { bemcontact --young 210GPa --pressure 1MPa s.nrrd | debrisgen --yield 355GPa; }
+sticky() { bemcontact --young 210GPa --pressure 1MPa s.nrrd | debrisgen --yield 355MPa --friction 30; }
+doubted "a pressure of some pascals" '--pressure 21 Pa hardly presses: is 21MPa meant?' light
+doubted "a pressure beyond elasticity" 'mean pressure of 50 GPa is above a tenth of the contact modulus of 115 GPa' crushed
+doubted "heights of a metre" 'heights of 1 m exceed the correlation length of 3e-06 m' steep
+doubted "a yield stress beyond that of any solid" '--yield 3.55e+11 Pa is stronger than any solid' hard
+doubted "a friction coefficient in per cent without the sign" '--friction 30: is 30% meant?' sticky
+ok "a friction coefficient in per cent" sh -c "bemcontact --young 210GPa --pressure 1MPa s.nrrd | debrisgen --yield 355MPa --friction 30%"
 is "ordinary values give no warning" "$(plain 2>&1 >/dev/null)" ""
 done_testing

@@ -21,6 +21,9 @@ export WEARPIPE_LIBRARY PYTHONPATH PYTHONDONTWRITEBYTECODE
 roughgen -n 32 -L 1mm -q 0.8um -l 100um | bemcontact --pressure 50MPa --estar 115GPa |
 	debrisgen -Y 355MPa -u 0.3 --surface worn.nrrd --stress stress.nrrd --stress-layers 2 >particles.tsv
 roughgen -n 32 -L 1mm -q 0.8um -l 100um | bemcontact --pressure 50MPa --estar 115GPa --fields height,pressure >c.nrrd
+sensorsim --uniform 80um:120um --number 12 --duration 2s --snr 30dB --lag 0.2ms:0.5ms >s.au
+duet s.au >duet.tsv
+sigconvert --output text s.au >s.txt
 cat >check.py <<'E2'
 import numpy as np, wearpipe
 dx = 1e-3 / 32
@@ -44,6 +47,21 @@ print("stress %.3g %.3g" % (np.abs(mises / below - 1).max(), np.abs(by_hand / mi
 x = np.zeros(401); x[100] = 1
 h = wearpipe.taps(200, 70, 130, 10e3)
 print("filter %.3g" % np.abs(wearpipe.bandpass(x, 70, 130, 10e3)[100:301] - h).max())
+record = np.array([[float(c) for c in line.split()[-2:]] for line in open("s.txt") if line[0] in "-.0123456789"])
+table = [line.rstrip("\n").split("\t") for line in open("duet.tsv") if line[0] != "#"]
+found = wearpipe.separate(record, 10e3)
+same = [np.array_equal(found[name], [float(row[k]) for row in table[1:]], equal_nan=True)
+        for k, name in enumerate(table[0][:-1]) if name != "particle"]
+print("separation", len(found) == len(table) - 1 > 0, all(same), list(found["verdict"]) == [row[-1] for row in table[1:]])
+import warnings
+with warnings.catch_warnings(record=True) as said:
+    warnings.simplefilter("always")
+    noise = wearpipe.separate(np.random.default_rng(1).normal(size=(8192, 2)), 10e3)
+    print("quiet", len(noise), [str(w.message)[:38] for w in said])
+try:
+    wearpipe.separate(np.zeros((4096, 2)), 10e3)
+except wearpipe.Error as e:
+    print("dead", e)
 t = np.arange(60.0)
 low, median, high = wearpipe.remaining_life(t, 0.1 * t + 0.01 * np.sin(17 * t), 10.0)
 print("life", low < median < high, abs(median - 41) < 4)
@@ -69,6 +87,9 @@ is 'the particles are those of debrisgen and have the volume that the surface lo
 is 'the von Mises stress is that of debrisgen --stress, and that of the tensor' \
 	"$(got stress | awk '{ print ($1 < 1e-9 && $2 < 1e-12) }')" 1
 is 'the response to an impulse is the taps' "$(got filter | awk '{ print ($1 < 1e-15) }')" 1
+is 'the particles in a record are those of duet to the last bit' "$(got separation)" 'True True True'
+is 'a record without particles gives none and a warning' "$(got quiet)" "0 ['the channels have nothing in common: n']"
+is 'a dead sensor is named' "$(got dead)" 'channel 1 is constant: a dead sensor'
 is 'the remaining life of a straight line is right' "$(got life)" 'True True'
 is 'an impossible input raises an exception' "$(grep -c refused got)" 4
 done_testing

@@ -204,8 +204,8 @@ fails "a crop outside" 1 'record 1: --crop 30:0:11:5 is not within 40 x 30' \
 	roughgen --crop 30:0:11:5 s
 fails "raw without pixel" 2 'go together' roughgen --raw 3x3 s
 fails "a file that is not there" 1 'nowhere: No such file' roughgen nowhere
-fails "nothing to measure" 1 'standard input: no record$' roughgen --measure
-fails "an empty file" 1 '/dev/null: no record$' roughgen /dev/null
+fails "nothing to measure" 1 'standard input: empty, want' roughgen --measure
+fails "an empty file" 1 '/dev/null: empty, want' roughgen /dev/null
 printf '\0\0\0\0\0\0\370\177\0\0\0\0\0\0\0\0' >nan.f64
 fails "a missing sample" 1 'record 1: height is .*nan' roughgen --raw 2x1 --pixel 1um nan.f64
 is "nothing is written before a refusal" "$(wc -c <out)" 0

@@ -145,12 +145,52 @@ fails "no headings" 1 'want a line of headings' sigconvert --skip-lines 2 plain.
 printf 't\tu\n0\t1\n1\t2\n2\t3\n5\t4\n' >gap.tsv
 fails "samples that are missing" 1 'line 5: time 5 s, want 3 s' sigconvert --rate 1Hz gap.tsv
 printf 't\tu\n0\t1\n1\tx\n' >word.tsv
-fails "a word among samples" 1 'line 3: not a number' sigconvert word.tsv
+fails "a word among samples" 1 'line 3: u: .x. is not a number' sigconvert word.tsv
 printf 't\tu\n0\t1\n1\n' >short.tsv
 fails "a short row" 1 'line 3: want 2 cells, got 1' sigconvert short.tsv
 printf 'Time [kg]\tu\n0\t1\n1\t1\n' >kg.tsv
-fails "times in kilograms" 1 'want a unit of time' sigconvert --time Time kg.tsv
+fails "times in kilograms" 1 "times in 'kg', want s, min, h or d" sigconvert --time Time kg.tsv
 fails "raw without a rate" 2 'requires --rate and --channels' sigconvert --from raw a.raw
 fails "channels of what is not raw" 2 'requires --from raw' sigconvert --channels 2 a.au
 fails "half a frame of raw" 1 'a.raw' sh -c 'head -c 40 a.raw >h; mv h a.raw; sigconvert --from raw --rate 1 --channels 2 a.raw'
+printf 'Day;u\n22.11.2026 03:04;1\n22.11.2026 03:05;2\n' >day.csv
+fails "a date that is not in ISO 8601" 1 "line 2: '22.11.2026 03:04' is not a time, want a number or a moment like" \
+	sigconvert --time Day day.csv
+
+# Tables: rows at any times, with the units of the headings, for aopf and rwl.
+# body FILE: a table without its first, command and last line
+body() {
+	grep -v -e '^# stream' -e '^# cmd' -e '^# end' "$1" | tr '\t\n' ' |'
+}
+printf '\357\273\277Time [h];Flow, main [l/min];Temp (C);Remark\r\n0,0;1,50;40;new\r\n20,5;1,52;;ok\r\n40;1,54;41,5;ok\r\n60;1,58;42;ok\r\n80;1,60;42;ok\r\n' >pump.csv
+sigconvert --output table --columns 'Flow, main' pump.csv >pump.tsv
+is "a CSV of unequal times becomes a series" "$(body pump.tsv)" \
+	'# units: h l/min|t y|0 1.5|20.5 1.52|40 1.54|60 1.58|80 1.6|'
+sigconvert --output table --columns 'flow, main;temp' pump.csv >two.tsv
+is "several columns keep their names, in lower case" "$(body two.tsv)" \
+	'# units: h l/min C|t flow,_main temp|0 1.5 40|20.5 1.52 nan|40 1.54 41.5|60 1.58 42|80 1.6 42|'
+sigconvert --output table --columns 'leakage=2;unit=Remark' pump.csv >named.tsv
+is "columns are renamed, and units are text" "$(body named.tsv | cut -d '|' -f 2-4)" 't leakage unit|0 1.5 new|20.5 1.52 ok'
+printf 'When,Flow\n2026-11-22 23:00,1\n2026-11-23 00:00:30,2\n' | sigconvert --output table --time When >when.tsv
+is "moments become seconds, and the first is the start" "$(body when.tsv)" \
+	'# units: s 1|# start: 2026-11-22T23:00:00|t y|0 1|3630 2|'
+printf 'Diameter [um]\n50\n60\n80\n90\n' | sigconvert --output table >sizes.tsv
+near "a table without times is converted by its reader" \
+	"$(debriscount --classes 10um,70um sizes.tsv >counts.tsv && column number counts.tsv | tr -d '\n')" 22 0
+aopf --threshold 2.8 --mission 100h pump.tsv >life.tsv
+is "aopf keeps the units" "$(sed -n 's/^# units: //p' life.tsv)" 'h l/min l/min l/min l/min 1 1 h h h 1 1'
+sigconvert --output table --columns 'leakage=flow, main' pump.csv | rwl --wear-rate filter - >rest.tsv 2>err
+printf 't leakage\n0 1.5\n20.5 1.52\n40 1.54\n60 1.58\n80 1.6\n' |
+	rwl --wear-rate filter --time-unit h --state-unit L/min - >want.tsv 2>err
+is "rwl converts them" "$(body rest.tsv)" "$(body want.tsv)"
+fails "a column of words" 1 "line 2: Remark: 'new' is not a number" sigconvert --output table pump.csv
+fails "a column that is not there is named with those that are" 1 "no column 'Leak' among 'Time' 'Flow, main' 'Temp' 'Remark'" \
+	sigconvert --output table --columns Leak pump.csv
+printf 'Time,Flow\n0,1.234,5\n' >thousand.csv
+fails "a separator of thousands" 1 'line 2: want 2 cells, got 3' sigconvert --output table thousand.csv
+printf 'Time;Flow\n0;1.234,5\n' >thousand.csv
+fails "a separator of thousands in a CSV with semicolons" 1 "line 2: Flow: '1.234,5' is not a number" sigconvert --output table thousand.csv
+printf 'Time;Flow\n' >empty.csv
+fails "headings alone" 1 'no row below the headings' sigconvert --output table empty.csv
+fails "a rate for a table" 2 'table converts text: no --rate' sigconvert --output table --rate 1Hz pump.csv
 done_testing

@@ -39,8 +39,8 @@ refuse 'a number with a unit' "bad: line 3: y: '2um' is not a number" 't\ty\n0\t
 refuse 'too few cells' 'bad: line 3: want 2 cells, got 1' 't\ty\n0\t1\n1\n'
 refuse 'too many cells' 'bad: line 3: want 2 cells, got 3' 't\ty\n0\t1\n1\t2\t3\n'
 refuse 'a cell too many behind one column' 'bad: line 3: want 1 cells, got 2' 'y\n1\n2\t3\n'
-refuse 'commas' "bad: no column .y. among .*: a TAB parts columns, not a comma" 't,y\n0,1\n1,2\n'
-refuse 'commas and blanks' "bad: no column .y. among .*: a TAB parts" 't, y, z\n0, 1, 2\n'
+refuse 'commas' "bad: no column .y. among .*: 'sigconvert --output table' makes a table of it" 't,y\n0,1\n1,2\n'
+refuse 'commas and blanks' "bad: no column .y. among .*: 'sigconvert --output table' makes" 't, y, z\n0, 1, 2\n'
 refuse 'a last line cut off' 'bad: line 3: no newline at the end: the table is truncated' 't\ty\n0\t1\n1\t2'
 refuse 'a NUL byte' 'bad: line 3: NUL byte' 't\ty\n0\t1\n1\t\0002\n'
 

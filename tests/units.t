@@ -25,6 +25,45 @@ rwl --grey --eol 1000h --levels 0.1,0.9 flow.tsv >scores.tsv 2>err
 aopf --threshold 2.8 flow.tsv >prognosis.tsv 2>err
 printf 'diameter\n1e-4\n' | sensorsim --duration 5s --noise 5mV --truth truth.tsv >signal.au
 duet --sections sections.tsv signal.au >found.tsv 2>err
+roughgen --spectrum surfaces.nrrd >spectrum.tsv
+bemcontact --pressure 21MPa --young 210GPa --table contacts.tsv --patches patches.tsv surfaces.nrrd >contact.nrrd
+roughgen --points 32 --length 0.25mm --sq 1um --corr 10um --crown auto --count 130 |
+	bemcontact --pressure 50MPa --young 210GPa | debrisfit --yield 250MPa:500MPa --friction 0:0.5 >surrogate.tsv
+bpfilter --band 70:130 --order 20 --rate 1kHz --response >response.tsv
+layout --coils 0,25cm --snr 40dB --arrivals 100 >layouts.tsv
+delaynet --columns 40 --layers 6 --count 200 --batch 20 --epochs 3 >small.net
+delaynet --task score --columns 40 --count 50 small.net >scored.tsv
+delaynet --task data --columns 40 --count 5 --truth delays.tsv >examples.au
+delaynet --task apply --network small.net examples.au >applied.tsv
+printf 'unit\tt\ty\nA\t0\t1\nA\t1\t2\nA\t2\t2\nA\t3\t3\nA\t4\t3\n' >fleet.tsv
+aopf --unit unit --threshold 9 --mission 3s --cost-ratio 2 --alarm 2s --weights fleet.tsv >outlook.tsv 2>err
+aopf fleet.tsv >filtered.tsv
+awk 'BEGIN { print "time1\tdiameter\tmaterial"; for (t = 0; t < 60; t++) print t "\t1e-4\tsteel" }' >shed.tsv
+wear-volume --period 10s shed.tsv >volume.tsv
+debriscount --classes 50um,80um --period 10s --flow 10L/min --by material shed.tsv >classes.tsv 2>err
+debriscount --output codes --volume 1mL shed.tsv >codes.tsv 2>err
+debriscount --output trend --period 10s --classes 50um shed.tsv >trend.tsv 2>err
+abrade --gap 9um --hardness 2GPa,6GPa --friction 0.1 --summary worn.tsv shed.tsv >scratches.tsv
+awk 'BEGIN { print "amplitude\tvelocity"; for (i = 0; i < 9; i++) print 1 + i / 100 "\t2" }' >balls.tsv
+ballcal --balls balls.tsv:100um --noise 1mV --pulse-duration 1ms >sensor.tsv 2>err
+sigconvert --output channels signal.au >channels.tsv
+sigconvert --output text signal.au >samples.tsv
+printf 'Time [h];Flow [L/min]\n0;1,5\n2;1,6\n' | sigconvert --output table >logged.tsv
+debrisstat --compare particles.tsv particles.tsv >compared.tsv 2>err
+for f in spectrum contacts patches surrogate response layouts scored delays applied outlook filtered volume \
+	classes codes trend worn scratches sensor channels samples logged compared; do
+	told $f.tsv
+done
+# Programs that write a table write one above.
+tables='roughgen bemcontact debrisgen debrisfit debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade
+	debriscount ballcal sigconvert wear-volume'
+for p in $(sed -n 's/^PROGRAMS = //p' "$top/Makefile"); do
+	case " $(echo $tables) surfimport " in
+	*" $p "*) ;;
+	*) echo "$p" ;;
+	esac
+done >unknown
+is "no program is left out" "$(cat unknown)" ""
 for f in areal particles summary steps fits sizes aspects list points taps rates life samples scores truth sections found; do
 	told $f.tsv
 done

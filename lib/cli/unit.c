@@ -18,6 +18,7 @@ static const struct spelling {
 	{ UNIT_AREA, "m2", 1, 2 },
 	{ UNIT_VOLUME, "m3", 1, 3 },
 	{ UNIT_VOLUME, "L", 1e-3, 1 },
+	{ UNIT_VOLUME, "l", 1e-3, 1 },
 	{ UNIT_PRESSURE, "Pa", 1, 1 },
 	{ UNIT_PRESSURE, "bar", 1e5, 0 },
 	{ UNIT_FORCE, "N", 1, 1 },
@@ -33,6 +34,9 @@ static const struct spelling {
 	{ UNIT_FLOW, "L/min", 1e-3 / 60, 1 },
 	{ UNIT_FLOW, "L/s", 1e-3, 1 },
 	{ UNIT_FLOW, "L/h", 1e-3 / 3600, 1 },
+	{ UNIT_FLOW, "l/min", 1e-3 / 60, 1 },
+	{ UNIT_FLOW, "l/s", 1e-3, 1 },
+	{ UNIT_FLOW, "l/h", 1e-3 / 3600, 1 },
 	{ UNIT_SPEED, "m/s", 1, 1 },
 	{ UNIT_VISCOSITY, "Pa.s", 1, 1 },
 	{ UNIT_ANGLE, "rad", 1, 1 },
@@ -118,7 +122,9 @@ static double prefix_scale(char prefix)
 const char *quantity_text(double value, enum unit unit, char text[NUMBER_TEXT])
 {
 	const struct spelling *s =
-		unit == UNIT_FRACTION || !(fabs(value) > 0) ? NULL : shown_spelling(unit);
+		unit == UNIT_FRACTION || !(fabs(value) > 0) || isinf(value)
+			? NULL
+			: shown_spelling(unit);
 	char prefix[2] = "";
 	double scale = s ? s->scale : 1;
 

@@ -4,10 +4,6 @@
 #include "contact/gradient.h"
 #include <math.h>
 
-/* Iterations between checks whether the energy falls.  No scene of tests/unit/exact.c and
- * hardness.c goes more than 7 iterations without lowering the certificate by a tenth. */
-enum { PATIENCE = 25 };
-
 /* The gradient taken off, shifted, within the bounds: every cell takes part. */
 static void project_step(void *context, size_t begin, size_t end, struct sweep *s)
 {
@@ -70,13 +66,13 @@ void contact_gradient_step(struct contact *c)
 
 int contact_lingers(const struct contact *c)
 {
-	return c->since % PATIENCE == 0;
+	return c->since % GRADIENT_ROUND == 0;
 }
 
 int contact_gradient_due(struct contact *c, const struct sweep *s)
 {
 	double energy = contact_energy(c, s);
-	int steps = energy < c->energy ? 1 : PATIENCE;
+	int steps = energy < c->energy ? 1 : GRADIENT_ROUND;
 
 	c->energy = fmin(energy, c->energy);
 	return steps;

@@ -4,11 +4,16 @@
 
 #include "contact/state.h"
 
+/* Iterations without a fall of the optimality gap by a tenth between checks whether the
+ * energy falls.  Of the 2600 random problems of contact_stalls() all but six fall by a
+ * tenth within 17, and those six do after the steps that this check makes. */
+enum { GRADIENT_ROUND = 25 };
+
 /* One step of the projected gradient, which always lowers the energy and
  * keeps the load, or restores it.  contact_gap() is to follow. */
 void contact_gradient_step(struct contact *c);
-/* How many such steps to take: now and then one, while the certificate does not fall, and
- * more where the energy has not fallen either.  s: sums just after contact_gap(). */
+/* How many such steps to take: now and then one, while the optimality gap does not fall,
+ * and more where the energy has not fallen either.  s: sums just after contact_gap(). */
 int contact_gradient_due(struct contact *c, const struct sweep *s);
 /* 1 when it is time to ask that. */
 int contact_lingers(const struct contact *c);

@@ -1,6 +1,5 @@
 #include "contact/patches.h"
 #include "num/status.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -91,35 +90,34 @@ static struct contact_patch *grow(struct contact_patch *list, size_t n)
 	return more;
 }
 
-struct contact_patch *contact_patches(
-	const struct patch_grid *grid, const double *pressure, size_t *n)
+enum num_status contact_patches(const struct patch_grid *grid, const double *pressure,
+	struct contact_patch **list, size_t *n)
 {
 	size_t cells = (size_t)grid->nx * (size_t)grid->ny;
 	struct search s = { .grid = grid,
 		.p = pressure,
 		.seen = calloc(cells, 1),
 		.stack = calloc(cells, sizeof *s.stack) };
-	struct contact_patch *list = NULL;
 	int failed = !s.seen || !s.stack;
 
+	*list = NULL;
 	*n = 0;
 	for (size_t i = 0; !failed && i < cells; i++) {
 		if (!(pressure[i] > 0) || s.seen[i])
 			continue;
-		list = grow(list, *n);
-		failed = !list;
-		if (list)
-			list[(*n)++] = find_patch(&s, i);
+		*list = grow(*list, *n);
+		failed = !*list;
+		if (*list)
+			(*list)[(*n)++] = find_patch(&s, i);
 	}
 	free(s.seen);
 	free(s.stack);
 	if (failed) {
-		free(list);
-		list = NULL;
+		free(*list);
+		*list = NULL;
 		*n = 0;
 	}
-	errno = failed ? ENOMEM : 0;
-	return list;
+	return failed ? NUM_MEMORY : NUM_OK;
 }
 
 double contact_corrected_area(

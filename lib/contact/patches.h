@@ -29,11 +29,10 @@ struct contact_patch {
 	double x, y;      /* centre of the load from the grid's corner, m */
 };
 
-/* Finds the patches of a pressure, in the order of their first cells.  Returns their
- * number and a new array for free(); NULL and 0 if there are none, with errno ENOMEM
- * when out of memory, 0 otherwise. */
-struct contact_patch *contact_patches(
-	const struct patch_grid *grid, const double *pressure, size_t *n);
+/* Finds the patches of a pressure, in the order of their first cells: *list is a new
+ * array for free(), NULL if there are none. */
+enum num_status contact_patches(const struct patch_grid *grid, const double *pressure,
+	struct contact_patch **list, size_t *n);
 
 /* The corrected area for this counted area and perimeter; not below 0. */
 double contact_corrected_area(

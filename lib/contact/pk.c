@@ -93,14 +93,14 @@ enum contact_status contact_solve_pk(struct contact *c)
 		struct sweep s;
 
 		contact_gap(c);
-		s = contact_certify(c);
+		s = contact_optimality_sums(c);
 		moment = s.sum[2];
-		c->result.certificate = contact_certificate(c, &s);
-		if (c->result.certificate <= c->tolerance &&
+		c->result.optimality_gap = contact_optimality_gap(c, &s);
+		if (c->result.optimality_gap <= c->tolerance &&
 			(c->control == CONTACT_APPROACH || contact_carries(c, s.sum[1])))
 			return CONTACT_OK;
 		if (k == c->par.max_iterations ||
-			contact_stalls(c, c->result.certificate))
+			contact_stalls(c, c->result.optimality_gap))
 			return CONTACT_NOCONV;
 		c->result.iterations++;
 		if (c->cap < INFINITY && contact_lingers(c))

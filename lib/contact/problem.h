@@ -68,7 +68,7 @@ struct contact_result {
 	 * contribute.  With a hardness it is the gap of the problem with bounded pressure
 	 * if that is smaller; for a given approach it applies to the approach minus the
 	 * deepest overlap, which is at most C W / sum p. */
-	double certificate;
+	double optimality_gap;
 	long iterations; /* on the given grid */
 	long transforms; /* Fourier transforms on the given grid, padded or not */
 	double work; /* transforms on all grids, weighted by size, in units of those of

@@ -82,9 +82,9 @@ void contact_gap(struct contact *c);
 void contact_find_approach(struct contact *c);
 /* Sums for the duality gap: sum p g, sum p, sum of g^2 over free cells (for other uses),
  * and over cells with g < 0 sum p g and sum g; the maximum is the deepest overlap. */
-struct sweep contact_certify(struct contact *c);
+struct sweep contact_optimality_sums(struct contact *c);
 /* The relative duality gap from these sums. */
-double contact_certificate(struct contact *c, const struct sweep *s);
+double contact_optimality_gap(struct contact *c, const struct sweep *s);
 /* The energy that the solution minimises, sum p u / 2 - sum p h, from the same sums
  * immediately after contact_gap(). */
 double contact_energy(const struct contact *c, const struct sweep *s);
@@ -113,6 +113,6 @@ double contact_share_load(struct contact *c, contact_pass *pass, double missing,
 	double rate, double slack, struct sweep *s);
 /* 1 if the duality gap has not decreased for many calls, because only rounding errors
  * remain or the method fails. */
-int contact_stalls(struct contact *c, double certificate);
+int contact_stalls(struct contact *c, double optimality_gap);
 
 #endif

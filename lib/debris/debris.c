@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double DEEPEST = 10; /* sides of the grid */
+/* Sides of the grid.  There the load of a free grid is a point load: its stress, at most
+ * 3 / (2 pi 100), is a two-hundredth of the mean pressure. */
+static const double DEEPEST = 10;
 
 struct debris {
 	struct debris_par par;

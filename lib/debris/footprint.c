@@ -201,22 +201,23 @@ static void describe(const struct footprints *f, struct footprint *r, double yie
 	x[FOOTPRINT_DEPTH] = log(r->depth / sqrt(r->area));
 }
 
-size_t footprints_find(struct footprints *f, struct stress *stress,
-	const double *pressure, double yield, const struct footprint **list)
+enum num_status footprints_find(struct footprints *f, struct stress *stress,
+	const double *pressure, double yield, const struct footprint **list,
+	size_t *count)
 {
 	size_t n = (size_t)f->par.nx * (size_t)f->par.ny, spans;
 
 	f->count = 0;
-	*list = f->list;
+	*count = 0;
 	memset(f->value, 0, n * sizeof *f->value);
 	spans = stress_reach(stress, 0, yield, f->span);
 	if (stress_at(stress, 0, f->span, spans, f->value))
-		return (size_t)-1;
+		return NUM_MEMORY;
 	for (size_t i = 0; i < n; i++) {
 		if (!(f->value[i] > yield))
 			continue;
 		if (room_for(&f->list, &f->room, f->count + 1, sizeof *f->list))
-			return (size_t)-1;
+			return NUM_MEMORY;
 		flood(f, &f->list[f->count++], i, pressure, yield);
 	}
 	point_sum_load(f->below, pressure);
@@ -224,5 +225,6 @@ size_t footprints_find(struct footprints *f, struct stress *stress,
 	for (size_t i = 0; i < f->count; i++)
 		describe(f, &f->list[i], yield);
 	*list = f->list;
-	return f->count;
+	*count = f->count;
+	return NUM_OK;
 }

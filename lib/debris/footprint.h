@@ -8,6 +8,7 @@
 #ifndef DEBRIS_FOOTPRINT_H
 #define DEBRIS_FOOTPRINT_H
 
+#include "num/status.h"
 #include "stress/stress.h"
 #include <stddef.h>
 
@@ -51,8 +52,9 @@ struct footprints *footprints_new(const struct stress_par *par); /* NULL: no mem
 void footprints_free(struct footprints *f);
 
 /* Regions under the pressure, largest first, then in order of their first cells; *list is
- * valid until the next call.  Returns their number, (size_t)-1 when out of memory. */
-size_t footprints_find(struct footprints *f, struct stress *stress,
-	const double *pressure, double yield, const struct footprint **list);
+ * valid until the next call. */
+enum num_status footprints_find(struct footprints *f, struct stress *stress,
+	const double *pressure, double yield, const struct footprint **list,
+	size_t *count);
 
 #endif

@@ -205,10 +205,11 @@ static enum num_status drop_inside(
 	return NUM_OK;
 }
 
-int hull_thin(struct hull *h, struct hull_point *point, size_t *count)
+enum num_status hull_thin(struct hull *h, struct hull_point *point, size_t *count)
 {
-	return drop_inside(h, point, count, 1) || drop_inside(h, point, count, 0) ? -1
-										  : 0;
+	enum num_status status = drop_inside(h, point, count, 1);
+
+	return status == NUM_OK ? drop_inside(h, point, count, 0) : status;
 }
 
 /* Four points that span space as the first faces; 0 if there are none. */

@@ -13,6 +13,7 @@
 #ifndef CONTACT_HULL_H
 #define CONTACT_HULL_H
 
+#include "num/status.h"
 #include <stddef.h>
 #include <stdint.h>
 
@@ -38,9 +39,8 @@ struct hull_edge {
 struct hull *hull_new(void); /* NULL when out of memory */
 void hull_free(struct hull *h);
 
-/* Drops points that cannot be corners of the hull; the rest is sorted.  -1 when out of
- * memory. */
-int hull_thin(struct hull *h, struct hull_point *point, size_t *count);
+/* Drops points that cannot be corners of the hull; the rest is sorted. */
+enum num_status hull_thin(struct hull *h, struct hull_point *point, size_t *count);
 /* Builds the hull of the points, and sorts them. */
 enum hull_status hull_build(struct hull *h, struct hull_point *point, size_t count);
 

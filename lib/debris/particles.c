@@ -340,7 +340,7 @@ static enum num_status measure_hull(
 	enum hull_status status = HULL_LARGE;
 	size_t corners;
 
-	p->length = p->width = p->aspect = p->convexity = NAN;
+	p->length = p->width = p->aspect = p->solidity = NAN;
 	if (!p->endless && range / unit <= HULL_SPAN) {
 		if (put_corners(ps, e, unit, &corners))
 			return NUM_MEMORY;
@@ -352,8 +352,8 @@ static enum num_status measure_hull(
 		chords_measure(ps->chords, ps->hull, step, &p->length, &p->width))
 		return NUM_MEMORY;
 	p->aspect = p->length / p->width;
-	p->convexity = 6 * p->volume /
-		       (hull_volume6(ps->hull) * (ps->par.dx * ps->par.dy * unit));
+	p->solidity = 6 * p->volume /
+		      (hull_volume6(ps->hull) * (ps->par.dx * ps->par.dy * unit));
 	return NUM_OK;
 }
 

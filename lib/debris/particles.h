@@ -42,7 +42,7 @@ struct particle {
 	double aspect;     /* length / width */
 	double elongation; /* 1 - sqrt(second / first principal moment): 0 round, 1 needle
 			    */
-	double convexity;  /* solidity (ISO 9276-6): volume / volume of the convex hull */
+	double solidity;   /* ISO 9276-6: volume / volume of the convex hull */
 	double area;       /* of the exposed faces, m2 (1.5 x that of a smooth sphere) */
 	/* Longest principal axis: from +x towards +y, (-pi/2, pi/2], and up from the
 	 * plane of the layers, [0, pi/2]; nan if the two first moments are equal. */
@@ -52,7 +52,7 @@ struct particle {
 	int first[2];           /* first column in order of y and x: the address */
 	/* 1 if the body connects to itself across a periodic grid (an infinite ridge).
 	 * Columns, volume, diameter and area are then those of one period; length to
-	 * convexity, the direction, and the centroid along the infinite axis are nan. */
+	 * solidity, the direction, and the centroid along the infinite axis are nan. */
 	int endless;
 };
 

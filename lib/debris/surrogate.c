@@ -79,15 +79,15 @@ static enum part part_of(long place)
 
 /* Features that hardly vary in the samples are left alone: a scale of 1 makes them small.
  * The ridge keeps what they are worth undetermined at nought. */
-static void fit_coefficients(const struct surrogate_sample *sample, const char *part,
-	size_t n, struct surrogate *s)
+static enum num_status fit_coefficients(const struct surrogate_sample *sample,
+	const char *part, size_t n, struct surrogate *s)
 {
 	static const double RIDGE = 1e-3;
 	double(*a)[TERMS] = calloc(TERMS, sizeof *a), *b = s->coefficient;
 	double term[TERMS];
 
 	if (!a)
-		return;
+		return NUM_MEMORY;
 	memset(b, 0, sizeof s->coefficient);
 	for (size_t i = 0; i < n; i++) {
 		const struct footprint *f = &sample[i].footprint;
@@ -108,6 +108,7 @@ static void fit_coefficients(const struct surrogate_sample *sample, const char *
 		a[j][j] += RIDGE * a[0][0] / 1000;
 	solve(a, b);
 	free(a);
+	return NUM_OK;
 }
 
 static void find_deviations(const struct surrogate_sample *sample, const char *part,
@@ -329,6 +330,7 @@ enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_
 	double *score = malloc((n + 1) * sizeof *score);
 	size_t fitted = 0, end;
 	long place = 0;
+	enum num_status memory = NUM_OK;
 
 	memset(s, 0, sizeof *s);
 	memset(report, 0, sizeof *report);
@@ -351,8 +353,8 @@ enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_
 		find_range(sample, part, n, s);
 		for (int c = 0; c < SURROGATE_CLASSES; c++)
 			s->deviation[c] = 1;
-		for (int pass = 0; pass < PASSES; pass++) {
-			fit_coefficients(sample, part, n, s);
+		for (int pass = 0; pass < PASSES && memory == NUM_OK; pass++) {
+			memory = fit_coefficients(sample, part, n, s);
 			find_deviations(sample, part, n, s);
 		}
 		calibrate(sample, part, n, s, score);
@@ -360,5 +362,7 @@ enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_
 	}
 	free(part);
 	free(score);
+	if (memory != NUM_OK)
+		return SURROGATE_MEMORY;
 	return place >= LEAST && fitted >= 3 * TERMS ? SURROGATE_OK : SURROGATE_FEW;
 }

@@ -160,7 +160,7 @@ int fields_read(struct fields_in *in, struct record *r)
 		return 1;
 	}
 	if (in->at.record == 0)
-		die(EXIT_RUN, "%s: no record", in->at.name);
+		die(EXIT_RUN, "%s: empty, want %s", in->at.name, opt_reads());
 	if (promised(in) && !file_followed())
 		die(EXIT_RUN,
 			"%s: the stream ends after record %ld, which announces another: its writer did not finish",

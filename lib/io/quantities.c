@@ -1,6 +1,7 @@
 #include "io/quantities.h"
 #include "cli/msg.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,11 +24,9 @@ double table_quantity(const struct table_in *t, const char *key, enum unit unit)
 	return value;
 }
 
-double table_scale(const struct table_in *t, int column, enum unit unit)
+const char *table_unit_word(const struct table_in *t, int column, char word[UNIT_WORD])
 {
-	const char *units = table_key(t, "units"), *end, *wrong;
-	char *one;
-	double scale;
+	const char *units = table_key(t, "units");
 	size_t n;
 
 	for (int i = 0; units && i < column; i++) {
@@ -35,15 +34,43 @@ double table_scale(const struct table_in *t, int column, enum unit unit)
 		units += strspn(units, " \t");
 	}
 	n = units && column >= 0 ? strcspn(units, " \t") : 0;
-	if (n == 0 || (n == 1 && *units == '1'))
+	snprintf(word, UNIT_WORD, "%.*s", n ? (int)n : 1, n ? units : "1");
+	return word;
+}
+
+double table_scale(const struct table_in *t, int column, enum unit unit)
+{
+	char word[UNIT_WORD], one[UNIT_WORD + 1];
+	const char *end, *wrong;
+	double scale;
+
+	if (!strcmp(table_unit_word(t, column, word), "1"))
 		return NAN;
-	one = xprintf("1%.*s", (int)n, units);
+	snprintf(one, sizeof one, "1%s", word);
 	wrong = unit_parse(one, unit, "", &scale, &end);
-	free(one);
 	if (wrong)
-		die(EXIT_RUN, "%s: column '%s' is in '%.*s', want %s", table_name(t),
-			table_column_name(t, column), (int)n, units, unit_name(unit));
+		die(EXIT_RUN, "%s: column '%s' is in '%s', want %s", table_name(t),
+			table_column_name(t, column), word, unit_name(unit));
 	return scale;
+}
+
+double table_ratio(const struct table_in *t, int column, const char *to)
+{
+	char from[UNIT_WORD], one[2][UNIT_WORD + 1];
+	double scale[2];
+	const char *end;
+
+	table_unit_word(t, column, from);
+	if (!strcmp(from, to) || !strcmp(from, "1") || !strcmp(to, "1"))
+		return 1;
+	snprintf(one[0], sizeof one[0], "1%s", from);
+	snprintf(one[1], sizeof one[1], "1%s", to);
+	for (int unit = UNIT_LENGTH; unit < UNIT_ANY; unit++)
+		if (!unit_parse(one[0], (enum unit)unit, "", &scale[0], &end) &&
+			!unit_parse(one[1], (enum unit)unit, "", &scale[1], &end))
+			return scale[0] / scale[1];
+	die(EXIT_RUN, "%s: column '%s' is in '%s', want '%s'", table_name(t),
+		table_column_name(t, column), from, to);
 }
 
 int table_find_quantity(struct table_in *t, const char *column, enum unit unit)

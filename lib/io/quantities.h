@@ -9,9 +9,18 @@
  * it is something else than a number of this unit. */
 double table_quantity(const struct table_in *t, const char *key, enum unit unit);
 
+/* The unit of a column as the "# units:" line writes it, at most 31 bytes; "1" where it
+ * names none. */
+enum { UNIT_WORD = 32 };
+const char *table_unit_word(const struct table_in *t, int column, char word[UNIT_WORD]);
+
 /* What one of the numbers of a column is in SI, by the "# units:" line; NAN if that line
  * has no unit for the column, or 1.  Dies where it is not a unit of this kind. */
 double table_scale(const struct table_in *t, int column, enum unit unit);
+
+/* Factor that converts the numbers of a column to a unit; 1 where the column has none or
+ * the unit is "1".  Dies where the units are of different kinds. */
+double table_ratio(const struct table_in *t, int column, const char *unit);
 
 /* table_need() and table_find() for a column that is read in SI: its numbers are
  * converted where the "# units:" line gives another unit of this kind. */

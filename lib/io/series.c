@@ -110,7 +110,24 @@ int series_units(const struct series *s)
 	return s->n;
 }
 
-const struct table_in *series_table(const struct series *s)
+int series_time_column(const struct series *s)
+{
+	return s->t;
+}
+
+int series_value_column(const struct series *s)
+{
+	return s->y;
+}
+
+void series_scale(struct series *s, double time, double value)
+{
+	if (s->t >= 0)
+		table_set_scale(s->table, s->t, time);
+	table_set_scale(s->table, s->y, value);
+}
+
+struct table_in *series_table(const struct series *s)
 {
 	return s->table;
 }

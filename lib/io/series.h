@@ -22,7 +22,12 @@ double series_value(const struct series *s); /* NAN: missing */
 int series_unit(const struct series *s);     /* 0, 1, ... in order of appearance */
 const char *series_unit_name(const struct series *s); /* "" without a unit column */
 int series_units(const struct series *s);             /* units so far */
-const struct table_in *series_table(const struct series *s);
+/* The columns of times and values, -1 if times are row numbers. */
+int series_time_column(const struct series *s);
+int series_value_column(const struct series *s);
+/* From then on times, or values, are multiplied with the scale. */
+void series_scale(struct series *s, double time, double value);
+struct table_in *series_table(const struct series *s);
 void series_close(struct series *s);
 
 #endif

@@ -153,6 +153,8 @@ static void read_header(struct signal_in *in)
 
 	if (got < HEADER_MIN || memcmp(b, ".snd", 4) != 0)
 		kind_refuse(in->name, b, got, KIND_SIGNAL);
+	if (got == 0)
+		die(EXIT_RUN, "%s: empty, want a signal", in->name);
 	if (got < HEADER_MIN)
 		die(EXIT_RUN, "%s: want an AU header of at least %d bytes, got %zu",
 			in->name, HEADER_MIN, got);

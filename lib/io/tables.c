@@ -360,15 +360,13 @@ int table_find(const struct table_in *t, const char *column)
 	return found;
 }
 
-/* What is wrong with a header whose columns are separated by other characters. */
-static const char *wrong_separator(const struct table_in *t)
+/* What to do with a header of another program, as "Flow [L/min]" or "t;y". */
+static const char *converter(const struct table_in *t)
 {
-	for (int i = 0; i < t->ncolumns; i++) {
-		if (strchr(t->column[i], ';'))
-			return ": a TAB parts columns, not a semicolon";
-		if (*t->blanks == ' ' && strchr(t->column[i], ','))
-			return ": a TAB parts columns, not a comma";
-	}
+	for (int i = 0; i < t->ncolumns; i++)
+		if (strpbrk(t->column[i], ";[(") ||
+			(*t->blanks == ' ' && strchr(t->column[i], ',')))
+			return ": 'sigconvert --output table' makes a table of it";
 	return "";
 }
 
@@ -390,11 +388,14 @@ int table_need(const struct table_in *t, const char *column)
 {
 	int i = table_find(t, column);
 
-	if (i < 0 && t->ncolumns == 0)
+	if (i < 0 && t->ncolumns == 0 && !strncmp(opt_reads(), "table", 5))
 		die(EXIT_RUN, "%s: empty, want %s", t->name, opt_reads());
+	if (i < 0 && t->ncolumns == 0)
+		die(EXIT_RUN, "%s: empty, want a table with the column '%s'", t->name,
+			column);
 	if (i < 0)
 		die(EXIT_RUN, "%s: no column '%s' among %s%s", t->name, column,
-			list_columns(t), wrong_separator(t));
+			list_columns(t), converter(t));
 	return i;
 }
 
@@ -448,7 +449,7 @@ double table_number(const struct table_in *t, int column)
 		die(EXIT_RUN, "%s: line %ld: %s: '%.40s' is not a number%s", t->name,
 			t->number, t->column[column], t->cell[column],
 			is_comma_decimal(t->cell[column])
-				? ": write decimals with a point"
+				? ": 'sigconvert --output table' reads decimal commas"
 				: "");
 	return t->scale ? v * t->scale[column] : v;
 }
@@ -505,11 +506,23 @@ void table_close(struct table_in *t)
 
 /* Writer */
 
+static int words(const char *s)
+{
+	int n = 0;
+
+	for (; *(s += strspn(s, " \t")); s += strcspn(s, " \t"))
+		n++;
+	return n;
+}
+
 struct table_out *table_create(
 	const char *path, const char *cmd, const char *units, const char *columns)
 {
 	struct table_out *t = xcalloc(1, sizeof *t);
 
+	if (units && words(units) != words(columns))
+		die(EXIT_RUN, "%d units for %d columns: %s", words(units), words(columns),
+			columns);
 	t->f = file_create(path, &t->name);
 	t->head = xstrdup(promise);
 	if (cmd)

@@ -59,7 +59,8 @@ long table_whole(const struct table_in *t, int column, double least, double most
 const char *table_text(const struct table_in *t, int column);
 void table_close(struct table_in *t);
 
-/* columns: names separated by blanks, "t y state".  cmd and units may be NULL. */
+/* columns: names separated by blanks, "t y state"; units: one for each column, "1" for
+ * plain numbers and text.  cmd may be NULL, and units where they follow as a comment. */
 struct table_out *table_create(
 	const char *path, const char *cmd, const char *units, const char *columns);
 /* One more "# key: value" line, unless the key has this value already; before the first

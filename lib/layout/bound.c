@@ -47,6 +47,7 @@ static void invert(const struct fisher *f, double offset, double variance[4])
 	va = f->va - f->tv * f->ta / f->tt;
 	aa = f->aa - f->ta * f->ta / f->tt;
 	det = vv * aa - va * va;
+	/* Rounding of the sums over STEPS. */
 	if (!(det > 1e-13 * vv * aa))
 		return;
 	/* of ln v, ln A, ln d and of the arrival t + offset ln v */

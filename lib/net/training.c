@@ -65,6 +65,7 @@ static double step_length(const struct network_training *par, const struct desce
 static void update(const struct network_training *par, struct descent *d)
 {
 	double rate = step_length(par, d);
+	/* Adam with the constants of Kingma and Ba (arXiv:1412.6980). */
 	const real keep = (real)0.9, keep_square = (real)0.999;
 	real step, guard;
 

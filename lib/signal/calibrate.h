@@ -76,7 +76,8 @@ enum calibrate_status {
 	CALIBRATE_FAR,    /* the lag given is as long as the record */
 	CALIBRATE_NARROW, /* the filter has left a band narrower than half the pulse's */
 	CALIBRATE_FAST,   /* pulses of fewer than 8 samples */
-	CALIBRATE_SLOW    /* pulses longer than half the record */
+	CALIBRATE_SLOW,   /* pulses longer than half the record */
+	CALIBRATE_TONES /* too many lines, or lines too near each other, for the record */
 };
 
 /* x1, x2: n >= 64 finite samples.  On CALIBRATE_OK *c is filled; free it with

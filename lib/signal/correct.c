@@ -39,8 +39,7 @@ static void mean_residual(struct examples *ex, double *more, double *weight, int
 		struct example *e = &ex->example[i];
 		struct joint_result result;
 
-		if (joint_refine(ex->joint, &ex->scene, e->y1, e->y2, e->n, e->pulse,
-			    e->m, &result) != JOINT_OK)
+		if (!examples_refine(ex, e, e->pulse, &result))
 			continue;
 		for (int p = 0; p < 2 * e->m; p++) {
 			const struct joint_pulse *pulse = &e->pulse[p / 2];

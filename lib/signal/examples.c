@@ -42,13 +42,18 @@ static void pick_sections(struct examples *ex, const double *y1, const double *y
 	double T = c->duration, loud[EXAMPLES_MAX] = { 0 };
 	double slack = fmax(c->delta_max, -c->delta_min);
 	long margin = (long)(1.2 * shape_reach_above(c->shape, 0.01) * T + slack);
-	struct sections *s = sections_new(c->shape, T, 5, slack);
+	struct sections *s;
 	struct section section;
 
 	ex->count = 0;
-	if (!s)
+	if (!(T >= SECTIONS_SHORTEST))
 		return;
-	sections_scan(s, y1, y2, 0, n, (long long)n);
+	s = sections_new(c->shape, T, 5, slack);
+	if (!s || !sections_scan(s, y1, y2, 0, n, (long long)n)) {
+		ex->status = CALIBRATE_MEMORY;
+		sections_free(s);
+		return;
+	}
 	sections_end(s);
 	while (sections_first(s, &section)) {
 		long long begin = section.begin > 0 ? section.begin : 0;
@@ -76,6 +81,21 @@ void examples_pick(struct examples *ex, const double *y1, const double *y2, size
 		pick_sections(ex, y1, y2, n, most, 1, c);
 }
 
+/* Did a fit succeed?  Notes it where memory was short. */
+static int succeeded(struct examples *ex, enum joint_status status)
+{
+	if (status == JOINT_MEMORY)
+		ex->status = CALIBRATE_MEMORY;
+	return status == JOINT_OK;
+}
+
+int examples_refine(struct examples *ex, const struct example *e,
+	struct joint_pulse *pulse, struct joint_result *result)
+{
+	return succeeded(ex, joint_refine(ex->joint, &ex->scene, e->y1, e->y2, e->n,
+				     pulse, e->m, result));
+}
+
 double examples_chi2(struct examples *ex, int keep)
 {
 	double sum = 0;
@@ -88,8 +108,7 @@ double examples_chi2(struct examples *ex, int keep)
 		if (e->spoiled)
 			continue;
 		memcpy(pulse, e->pulse, sizeof pulse);
-		if (joint_refine(ex->joint, &ex->scene, e->y1, e->y2, e->n, pulse, e->m,
-			    &result) != JOINT_OK)
+		if (!examples_refine(ex, e, pulse, &result))
 			return INFINITY;
 		if (keep)
 			memcpy(e->pulse, pulse, sizeof pulse);
@@ -182,8 +201,8 @@ double examples_fit(struct examples *ex, double misfit)
 		double energy;
 
 		e->m = 0;
-		if (joint_fit(ex->joint, &ex->scene, e->y1, e->y2, e->n, e->pulse, &e->m,
-			    &result) != JOINT_OK)
+		if (!succeeded(ex, joint_fit(ex->joint, &ex->scene, e->y1, e->y2, e->n,
+					   e->pulse, &e->m, &result)))
 			return INFINITY;
 		energy = fmax(example_energy(ex, e), 1);
 		ex->energy += energy;

@@ -37,6 +37,8 @@ struct examples {
 	double price;   /* their chi-square and twice the threshold for each pulse, per
 			   degree */
 	double rest[2]; /* power of either channel's residual, that of its noise 1 */
+	/* CALIBRATE_MEMORY once anything below had none: it all tells nothing then. */
+	enum calibrate_status status;
 };
 
 /* The clearest short sections of y1, y2[0 .. n), aligned, at most most of them; pieces of
@@ -46,12 +48,18 @@ void examples_pick(struct examples *ex, const double *y1, const double *y2, size
 
 /* Finds the pulses of all examples anew, one that overlaps others taking away this share
  * of their energy or more.  Returns the median of their chi-square per degree of freedom,
- * which a few examples with hidden pulses do not spoil; INFINITY when out of memory. */
+ * which a few examples with hidden pulses do not spoil; INFINITY where one cannot be
+ * fitted. */
 double examples_fit(struct examples *ex, double misfit);
 
 /* Chi-square of all that are not spoiled with their pulses refined under the present
  * scene; the pulses themselves stay unless keep. */
 double examples_chi2(struct examples *ex, int keep);
+
+/* Refines pulse[0 .. e->m) of one under the present scene; 0 where that cannot be done.
+ */
+int examples_refine(struct examples *ex, const struct example *e,
+	struct joint_pulse *pulse, struct joint_result *result);
 
 int examples_pulses(const struct examples *ex); /* number of them in all */
 /* Are there as many as are looked for?  Then they tell little. */

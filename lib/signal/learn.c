@@ -26,12 +26,12 @@ double learn_lowest_lag(const double *r, size_t max_lag)
 	return low < max_lag && r[low] < 0 ? (double)low : 0;
 }
 
-/* The same of one pulse, as a share of its duration. */
+/* The same of one pulse, as a share of its duration; NAN when out of memory. */
 static double shape_lowest_lag(const struct shape *shape)
 {
 	enum { T = 100, LAGS = 100 };
 	size_t n = (size_t)(2 * shape_reach(shape) * T) + 2;
-	double *p = calloc(n + LAGS, sizeof *p), r[LAGS + 1] = { 0 }, low = 0.5;
+	double *p = calloc(n + LAGS, sizeof *p), r[LAGS + 1] = { 0 }, low = NAN;
 
 	if (p) {
 		shape_sample(shape, shape_reach(shape) * T, T, 0, n, p, NULL, NULL);
@@ -110,7 +110,7 @@ int learn_set_shape(struct calibration *c, int pulse)
 double learn_duration(int pulse, double low)
 {
 	struct shape *plain = shape_new((enum pulse_shape)pulse);
-	double duration = plain ? low / shape_lowest_lag(plain) : 0;
+	double duration = plain ? low / shape_lowest_lag(plain) : NAN;
 
 	shape_free(plain);
 	return duration;
@@ -130,7 +130,7 @@ static enum calibrate_status try_shape(const struct calibrate_par *par,
 	double chi2;
 
 	c->duration = duration;
-	if (!learn_set_shape(c, pulse))
+	if (isnan(duration) || !learn_set_shape(c, pulse))
 		return CALIBRATE_MEMORY;
 	examples_pick(ex, y1, y2, n, EXAMPLES_MAX / 2, c);
 	if (ex->count == 0)
@@ -270,6 +270,8 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, const double 
 	if (status == CALIBRATE_OK && ex.count && wants_correction(par, &ex, c) &&
 		!correct_shape(&ex, c))
 		status = CALIBRATE_MEMORY;
+	if (status == CALIBRATE_OK)
+		status = ex.status;
 	c->events = examples_pulses(&ex);
 	memcpy(c->rest, ex.rest, sizeof c->rest);
 	c->misfit = fmax(c->misfit, ex.share);

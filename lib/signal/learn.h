@@ -14,7 +14,8 @@
 /* Lag at which an autocorrelation is lowest, before it rises clearly; 0 where there is
  * none up to max_lag. */
 double learn_lowest_lag(const double *r, size_t max_lag);
-/* Duration of a pulse whose autocorrelation is lowest at this lag. */
+/* Duration of a pulse whose autocorrelation is lowest at this lag; NAN when out of
+ * memory. */
 double learn_duration(int pulse, double low);
 /* Gives c this pulse, as the whitened record has it at the present duration.  Returns 0
  * when out of memory. */

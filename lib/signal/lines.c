@@ -1,7 +1,6 @@
 /* lines.c - takes narrow lines out of a stream */
 #include "signal/lines.h"
 #include "signal/tones.h"
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -74,15 +73,15 @@ static int clean_channel(struct lines *l, size_t c, size_t total, size_t cleaned
 	size_t nc = (size_t)l->channels, window = total < 2 * l->hop ? total : 2 * l->hop;
 	double start = l->start - (double)l->older + (double)(total - window);
 	struct fit next = { start + 0.5 * (double)window, { 0 } };
+	enum tones_status status;
 
 	take_channel(l, c, total - window, window);
-	errno = 0;
-	if (!tones_fit(l->channel, window, start, l->count, l->omega, next.coefficient,
-		    NULL, NULL)) {
-		if (errno == ENOMEM)
-			return 0;
+	status = tones_fit(l->channel, window, start, l->count, l->omega,
+		next.coefficient, NULL, NULL);
+	if (status == TONES_MEMORY)
+		return 0;
+	if (status == TONES_SHORT)
 		memcpy(next.coefficient, l->last[c].coefficient, sizeof next.coefficient);
-	}
 	next.coefficient[0] = 0; /* the offset stays */
 	if (l->windows == 0)
 		l->last[c] = next;

@@ -4,10 +4,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Matched filter of y[0 .. n) at every eighth of a duration; returns the number of
- * points, 0 when out of memory. */
-static size_t filter_points(
-	const struct calibration *c, const double *y, size_t n, double *out)
+/* Matched filter of y[0 .. n) at every eighth of a duration, at *points points; returns 0
+ * when out of memory. */
+static int filter_points(const struct calibration *c, const double *y, size_t n,
+	double *out, size_t *points)
 {
 	double T = c->duration;
 	size_t len, count = 0, stride = (size_t)(T / 8);
@@ -23,23 +23,30 @@ static size_t filter_points(
 		}
 	}
 	free(p);
-	return count;
+	*points = count;
+	return p != NULL;
 }
 
-double matched_coherence(const struct calibration *c, const double *y1, const double *y2,
-	size_t n, double *r, double *level)
+int matched_coherence(const struct calibration *c, const double *y1, const double *y2,
+	size_t n, double *r, double *coherence, double *level)
 {
 	enum { BLOCK = 16 }; /* points: two durations */
 	double *z = malloc((n + 2) * sizeof *z), xy = 0, xx = 0, yy = 0, limit, count = 0;
-	size_t points, blocks;
+	size_t points, second, blocks;
 
-	if (!z)
+	*coherence = *level = 0;
+	if (!z || !filter_points(c, y1, n, z, &points)) {
+		free(z);
 		return 0;
-	points = filter_points(c, y1, n, z);
+	}
 	/* A point per eighth of a duration of at least 8 samples: two channels fit in n.
 	 */
-	points = points < n / 2 && filter_points(c, y2, n, z + n / 2) == points ? points
-										: 0;
+	if (points >= n / 2)
+		points = 0;
+	else if (!filter_points(c, y2, n, z + n / 2, &second)) {
+		free(z);
+		return 0;
+	}
 	blocks = points / BLOCK;
 	for (size_t b = 0; b < blocks; b++) {
 		r[b] = 0;
@@ -61,16 +68,22 @@ double matched_coherence(const struct calibration *c, const double *y1, const do
 			? sqrt((xx + yy) / count / (c->duration * shape_energy(c->shape)))
 			: 0;
 	free(z);
-	return xx > 0 && yy > 0 ? xy / sqrt(xx * yy) : 0;
+	if (xx > 0 && yy > 0)
+		*coherence = xy / sqrt(xx * yy);
+	return 1;
 }
 
-double matched_noise(const struct calibration *c, const double *y, size_t n, double *work)
+int matched_noise(const struct calibration *c, const double *y, size_t n, double *work,
+	double *noise)
 {
-	size_t count = filter_points(c, y, n, work);
+	size_t count;
 
+	if (!filter_points(c, y, n, work, &count))
+		return 0;
 	for (size_t i = 0; i < count; i++)
 		work[i] = fabs(work[i]);
-	return count ? 1.482602218505602 * robust_median(work, count) /
-			       sqrt(c->duration * shape_energy(c->shape))
-		     : 1;
+	*noise = count ? 1.482602218505602 * robust_median(work, count) /
+				 sqrt(c->duration * shape_energy(c->shape))
+		       : 1;
+	return 1;
 }

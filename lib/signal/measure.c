@@ -35,13 +35,14 @@ double measure_lost(const struct calibration *c)
 
 /* Takes tones (and the mean) from a whole record; *change receives the mean square change
  * of their coefficients from hop to hop, INFINITY where there is but one, power[k] that
- * of tone k.  Returns 0 when out of memory. */
-static int take_tones(const struct calibration *c, double *x, size_t n, double *change,
-	double power[TONES_MAX])
+ * of tone k. */
+static enum calibrate_status take_tones(const struct calibration *c, double *x, size_t n,
+	double *change, double power[TONES_MAX])
 {
 	double before[2 * TONES_MAX + 1], after[2 * TONES_MAX + 1], at = 0;
 	size_t hop = c->tone_hop < n ? c->tone_hop : n;
 	double squares = 0, count = 0, hops = 0;
+	enum tones_status status;
 
 	memset(power, 0, sizeof(double) * TONES_MAX);
 	for (size_t middle = hop / 2, done = 0; done < n; middle += hop) {
@@ -50,11 +51,13 @@ static int take_tones(const struct calibration *c, double *x, size_t n, double *
 
 		if (from + hop > n) /* the last stretch keeps its length */
 			from = n - hop;
-		if (!tones_fit(x + (from > done ? from : done),
-			    to - (from > done ? from : done),
-			    (double)(from > done ? from : done), c->tones, c->omega,
-			    after, NULL, NULL))
-			return 0;
+		status = tones_fit(x + (from > done ? from : done),
+			to - (from > done ? from : done),
+			(double)(from > done ? from : done), c->tones, c->omega, after,
+			NULL, NULL);
+		if (status != TONES_OK)
+			return status == TONES_MEMORY ? CALIBRATE_MEMORY
+						      : CALIBRATE_TONES;
 		if (done == 0)
 			memcpy(before, after, sizeof before);
 		for (int k = 1; k <= 2 * c->tones; k++)
@@ -76,7 +79,7 @@ static int take_tones(const struct calibration *c, double *x, size_t n, double *
 	*change = count > 0 ? squares / count : INFINITY;
 	for (int k = 0; k < c->tones; k++)
 		power[k] /= hops;
-	return 1;
+	return CALIBRATE_OK;
 }
 
 static double variance(const double *x, size_t n)
@@ -156,13 +159,13 @@ static int measure_noise(
 	return 1;
 }
 
-static int has_colour(const double *y1, const double *y2, size_t n, struct look *look)
+static enum calibrate_status look_for_colour(const struct record *rec, struct look *look)
 {
 	static const double one[2] = { 1, 1 };
+	int known = colour_power(rec->y1, rec->y2, rec->n, one, look->power);
 
-	look->coloured = colour_power(y1, y2, n, one, look->power) == 1 &&
-			 !colour_is_white(look->power, 0);
-	return look->coloured;
+	look->coloured = known == 1 && !colour_is_white(look->power, 0);
+	return known < 0 ? CALIBRATE_MEMORY : CALIBRATE_OK;
 }
 
 static enum calibrate_status find_tones(
@@ -170,6 +173,7 @@ static enum calibrate_status find_tones(
 {
 	enum { ENOUGH = 16384 };
 	size_t n = rec->n, some = n < ENOUGH ? n : ENOUGH, from = (n - some) / 2;
+	enum calibrate_status status;
 
 	if (par->tones != CALIBRATE_FIND_TONES) {
 		c->tones = par->tones;
@@ -180,12 +184,14 @@ static enum calibrate_status find_tones(
 			return CALIBRATE_MEMORY;
 		c->tones = tones_confirm(rec->y1 + from, rec->y2 + from, some,
 			1 - measure_lost(c), c->tones, c->omega);
+		if (c->tones < 0)
+			return CALIBRATE_MEMORY;
 	}
 	c->tone_hop = n < 8192 ? n : 4096;
-	return take_tones(c, rec->y1, n, &rec->change[0], c->tone_power) &&
-			       take_tones(c, rec->y2, n, &rec->change[1], rec->power2)
-		       ? CALIBRATE_OK
-		       : CALIBRATE_MEMORY;
+	status = take_tones(c, rec->y1, n, &rec->change[0], c->tone_power);
+	return status == CALIBRATE_OK
+		       ? take_tones(c, rec->y2, n, &rec->change[1], rec->power2)
+		       : status;
 }
 
 static enum calibrate_status find_lag(
@@ -241,7 +247,7 @@ static enum calibrate_status find_duration(const struct calibrate_par *par,
 	c->pulse = par->pulse == CALIBRATE_ANY_PULSE ? PULSE_SINE : par->pulse;
 	c->duration =
 		isnan(par->duration) ? learn_duration(c->pulse, rec->low) : par->duration;
-	if (!learn_set_shape(c, c->pulse))
+	if (isnan(c->duration) || !learn_set_shape(c, c->pulse))
 		return CALIBRATE_MEMORY;
 	if (c->whitening.tap &&
 		(c->whitening.high - c->whitening.low) * c->duration < NARROW)
@@ -313,12 +319,16 @@ static enum calibrate_status learn_with_noise(
 
 /* Why do the pulses not fit?  Even where it is most quiet both sensors see the same, or
  * the noise is what it should be there: too many pulses. */
-static int is_dense(const struct record *rec, const struct calibration *c)
+static enum calibrate_status look_for_crowd(
+	const struct record *rec, const struct calibration *c, int *dense)
 {
-	double level = 0, coherence = matched_coherence(
-				  c, rec->y1, rec->y2, rec->n, rec->work, &level);
+	double level, coherence;
 
-	return coherence > 0.6 || (level < 1.5 && !c->whitening.tap);
+	if (!matched_coherence(
+		    c, rec->y1, rec->y2, rec->n, rec->work, &coherence, &level))
+		return CALIBRATE_MEMORY;
+	*dense = coherence > 0.6 || (level < 1.5 && !c->whitening.tap);
+	return CALIBRATE_OK;
 }
 
 /* Or neither the shape nor white noise will do: the record was filtered.  What counts
@@ -326,9 +336,11 @@ static int is_dense(const struct record *rec, const struct calibration *c)
 static enum calibrate_status learn_filtered(
 	const struct calibrate_par *par, struct record *rec, struct calibration *c)
 {
-	double n1 = matched_noise(c, rec->y1, rec->n, rec->work);
-	double n2 = matched_noise(c, rec->y2, rec->n, rec->work);
+	double n1, n2;
 
+	if (!matched_noise(c, rec->y1, rec->n, rec->work, &n1) ||
+		!matched_noise(c, rec->y2, rec->n, rec->work, &n2))
+		return CALIBRATE_MEMORY;
 	scale_noise(rec, c, n1, n2);
 	c->misfit = FILTERED_MISFIT;
 	return learn(par, rec, c);
@@ -341,12 +353,13 @@ static enum calibrate_status judge(
 
 	if (c->events == 0 && isnan(par->duration))
 		return CALIBRATE_NO_LAG;
-	if (c->chi2 > BAD_FIT && is_dense(rec, c)) {
-		c->dense = 1;
+	if (c->chi2 > BAD_FIT)
+		status = look_for_crowd(rec, c, &c->dense);
+	if (c->dense)
 		set_range(par, c);
-	} else if (c->chi2 > BAD_FIT && !c->whitening.tap && !c->suspect) {
+	else if (status == CALIBRATE_OK && c->chi2 > BAD_FIT && !c->whitening.tap &&
+		 !c->suspect)
 		status = learn_filtered(par, rec, c);
-	}
 	set_thresholds(par, c);
 	return status;
 }
@@ -372,8 +385,11 @@ enum calibrate_status measure(const struct calibrate_par *par, double *y1, doubl
 	c->gain = isnan(par->gain) ? first_gain(&rec, c) : par->gain;
 	c->misfit = isinf(c->transit) ? UNKNOWN_MISFIT : 0;
 	normalise(&rec, c);
-	if (!c->whitening.tap)
-		c->suspect = has_colour(rec.y1, rec.y2, rec.n, look);
-	status = learn_with_noise(par, &rec, c);
+	if (!c->whitening.tap) {
+		status = look_for_colour(&rec, look);
+		c->suspect = look->coloured;
+	}
+	if (status == CALIBRATE_OK)
+		status = learn_with_noise(par, &rec, c);
 	return status == CALIBRATE_OK ? judge(par, &rec, c) : status;
 }

@@ -43,7 +43,7 @@ struct sections *sections_new(
 	struct sections *s;
 	double energy = 0;
 
-	if (!(duration >= 4))
+	if (!(duration >= SECTIONS_SHORTEST))
 		return NULL;
 	s = calloc(1, sizeof *s);
 	if (!s)
@@ -121,8 +121,8 @@ static int reserve(struct sections *s)
 }
 
 /* A trigger of z standard deviations at sample at, which is later than all before it.
- * What it reaches becomes one section with it. */
-static void add_trigger(struct sections *s, long long at, double z)
+ * What it reaches becomes one section with it.  Returns 0 when out of memory. */
+static int add_trigger(struct sections *s, long long at, double z)
 {
 	int octave = z < ldexp(1, OCTAVES) ? ilogb(fmax(z, 1)) + 1 : OCTAVES;
 	long long begin = at - s->margin[octave], end = at + s->margin[octave];
@@ -133,29 +133,27 @@ static void add_trigger(struct sections *s, long long at, double z)
 		begin = last->begin < begin ? last->begin : begin;
 		end = last->end > end ? last->end : end;
 	}
-	if (!reserve(s)) { /* out of memory: one long section instead of two */
-		if (s->count)
-			begin = s->queue[--s->count].begin;
-		else
-			return;
-	}
+	if (!reserve(s))
+		return 0;
 	begin = begin < s->taken ? s->taken : begin;
 	s->queue[s->count++] = (struct section){ begin, end, 1 };
+	return 1;
 }
 
-void sections_scan(struct sections *s, const double *y1, const double *y2, long long base,
+int sections_scan(struct sections *s, const double *y1, const double *y2, long long base,
 	size_t n, long long limit)
 {
 	for (; s->next < limit; s->next += s->stride) {
 		double z = fmax(filter_at(s, y1, n, s->next - base),
 			filter_at(s, y2, n, s->next - base));
 
-		if (z > s->threshold)
-			add_trigger(s, s->next, z);
+		if (z > s->threshold && !add_trigger(s, s->next, z))
+			return 0;
 	}
 	for (int i = 0; i < s->count; i++)
 		if (s->queue[i].end + s->margin[OCTAVES] < s->next)
 			s->queue[i].open = 0;
+	return 1;
 }
 
 int sections_first(const struct sections *s, struct section *section)

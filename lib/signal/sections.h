@@ -16,10 +16,13 @@ struct section {
 	int open;             /* 1: it still goes on beyond end */
 };
 
+/* Samples that a pulse has to last. */
+enum { SECTIONS_SHORTEST = 4 };
+
 struct sections;
 
 /* threshold in standard deviations of the matched filter; slack in samples is kept on
- * either side besides what the pulses need.  NULL: duration < 4 or no memory. */
+ * either side besides what the pulses need.  NULL: no memory, or duration too short. */
 struct sections *sections_new(
 	const struct shape *shape, double duration, double threshold, double slack);
 void sections_free(struct sections *s);
@@ -31,8 +34,9 @@ void sections_skip(struct sections *s, long long upto);
 long sections_reach(const struct sections *s);
 
 /* Scans the record, held as y1, y2[0 .. n) from sample base on, up to sample limit (not
- * included); samples outside what is held count as zero.  Each point is scanned once. */
-void sections_scan(struct sections *s, const double *y1, const double *y2, long long base,
+ * included); samples outside what is held count as zero.  Each point is scanned once.
+ * Returns 0 when out of memory. */
+int sections_scan(struct sections *s, const double *y1, const double *y2, long long base,
 	size_t n, long long limit);
 
 /* The first section: 1 and *section, or 0 where there is none.  It stays until taken. */

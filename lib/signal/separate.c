@@ -27,7 +27,7 @@ struct separate {
 	int continuing; /* the next window belongs to the same section */
 	long number;
 	long long done; /* samples before this one are worked off */
-	struct particle *queue;
+	struct transit *queue;
 	size_t count, given, capacity;
 	double *source;
 	struct separate_counters counters;
@@ -48,6 +48,8 @@ struct separate *separate_new(const struct separate_par *par)
 	s->par = *par;
 	if (s->par.learn < SEPARATE_SHORTEST)
 		s->par.learn = SEPARATE_SHORTEST;
+	if (s->par.most_pulses <= 0 || s->par.most_pulses > JOINT_PULSES_MAX)
+		s->par.most_pulses = JOINT_PULSES_MAX;
 	return s;
 }
 
@@ -82,7 +84,7 @@ long long separate_bad_sample(const struct separate *s, int *channel)
 	return s->bad_frame;
 }
 
-int separate_next(struct separate *s, struct particle *p)
+int separate_next(struct separate *s, struct transit *p)
 {
 	if (s->given == s->count) {
 		s->given = s->count = 0;
@@ -92,11 +94,11 @@ int separate_next(struct separate *s, struct particle *p)
 	return 1;
 }
 
-static struct particle *queue_particle(struct separate *s)
+static struct transit *queue_transit(struct separate *s)
 {
 	if (s->count == s->capacity) {
 		size_t capacity = s->capacity ? 2 * s->capacity : 64;
-		struct particle *more = realloc(s->queue, capacity * sizeof *more);
+		struct transit *more = realloc(s->queue, capacity * sizeof *more);
 
 		if (!more)
 			return NULL;
@@ -111,7 +113,7 @@ static enum separate_status calibrate_now(struct separate *s)
 {
 	static const enum separate_status of[] = { SEPARATE_OK, SEPARATE_MEMORY,
 		SEPARATE_SILENT_1, SEPARATE_SILENT_2, SEPARATE_NO_LAG, SEPARATE_FAR,
-		SEPARATE_NARROW, SEPARATE_FAST, SEPARATE_SLOW };
+		SEPARATE_NARROW, SEPARATE_FAST, SEPARATE_SLOW, SEPARATE_TONES };
 	const struct calibration *c = &s->cal;
 	enum calibrate_status status;
 	double reach;
@@ -124,6 +126,10 @@ static enum separate_status calibrate_now(struct separate *s)
 	status = calibrate(&s->par.known, s->tape[0].x, s->tape[1].x, n, &s->cal);
 	if (status != CALIBRATE_OK)
 		return of[status];
+	if (!(c->duration >= SECTIONS_SHORTEST)) {
+		calibration_clear(&s->cal);
+		return SEPARATE_FAST;
+	}
 	s->calibrated = 1;
 	s->done = s->tape[0].begin + c->whitening.edge;
 	calibration_scene(c, &s->scene);
@@ -184,7 +190,7 @@ static long long ready(const struct separate *s)
 static int emit_pulse(struct separate *s, const struct joint_pulse *p, long long from,
 	int sources, double chi2, enum separate_verdict verdict)
 {
-	struct particle *out = queue_particle(s);
+	struct transit *out = queue_transit(s);
 	double delay_var = p->cov[0] - 2 * p->cov[1] + p->cov[2], noise = s->cal.noise[0];
 
 	if (!out)
@@ -274,15 +280,15 @@ static int most_pulses(const struct separate *s, size_t n)
 	double most = 4 + 3 * (double)n / s->cal.duration;
 
 	if (s->par.sources)
-		return s->par.sources;
-	return most < JOINT_PULSES_MAX ? (int)most : JOINT_PULSES_MAX;
+		most = s->par.sources;
+	return (int)fmin(most, s->par.most_pulses);
 }
 
 /* Shot noise of [from, to): one row. */
 static enum separate_status dense_section(
 	struct separate *s, long long from, long long to)
 {
-	struct particle *p = queue_particle(s);
+	struct transit *p = queue_transit(s);
 	struct separate_section out = { .number = s->number,
 		.begin = from,
 		.end = to,
@@ -426,14 +432,16 @@ static enum separate_status fit_section(
 	size_t n = (size_t)(to - from);
 	double boundary;
 	struct judgement judgement;
+	enum joint_status status;
 	int m = s->carried, done = 0, unresolved, shorter;
 
 	s->scene.max_pulses = most_pulses(s, n);
 	if (m > s->scene.max_pulses)
 		m = s->scene.max_pulses;
-	if (joint_fit(s->joint, &s->scene, channel_1(s, from), channel_2(s, from), n,
-		    s->pulse, &m, &r) != JOINT_OK)
-		return SEPARATE_MEMORY;
+	status = joint_fit(s->joint, &s->scene, channel_1(s, from), channel_2(s, from), n,
+		s->pulse, &m, &r);
+	if (status != JOINT_OK)
+		return status == JOINT_MEMORY ? SEPARATE_MEMORY : SEPARATE_WIDE;
 	s->counters.fits++;
 	s->counters.steps += (double)r.steps;
 	s->counters.searches += (double)r.searches;
@@ -507,7 +515,7 @@ static enum separate_status mask_section(struct separate *s, long long from, lon
 	s->counters.masks += m > 1;
 	s->counters.masks_skipped += m == 1;
 	for (int k = 0; k < m; k++) {
-		struct particle *p = queue_particle(s);
+		struct transit *p = queue_transit(s);
 		double *x = s->source + (size_t)k * n, t, a;
 
 		if (!p)
@@ -565,9 +573,10 @@ static enum separate_status work(struct separate *s)
 			     is_crowded(s, s->done, limit < upto ? limit : upto);
 		s->looked = 1;
 	}
-	sections_scan(s->sections, channel_1(s, s->done), channel_2(s, s->done), s->done,
-		(size_t)(limit - s->done),
-		s->ended ? limit : limit - sections_reach(s->sections));
+	if (!sections_scan(s->sections, channel_1(s, s->done), channel_2(s, s->done),
+		    s->done, (size_t)(limit - s->done),
+		    s->ended ? limit : limit - sections_reach(s->sections)))
+		return SEPARATE_MEMORY;
 	if (s->ended)
 		sections_end(s->sections);
 	while (sections_first(s->sections, &section)) {
@@ -683,4 +692,13 @@ enum separate_status separate_end(struct separate *s)
 	if (status != SEPARATE_OK)
 		return status;
 	return s->calibrated ? work(s) : s->reason;
+}
+
+/* A tenth of the rows, and more than two, that fit no particle are more than a few odd
+ * ones: then the pulses are not what was learned, and other rows may be wrong, too. */
+int separate_doubtful(const struct separate *s)
+{
+	const struct separate_counters *c = &s->counters;
+
+	return c->misfits > 2 && 10 * c->misfits > c->rows + c->unresolved;
 }

@@ -39,7 +39,8 @@ enum separate_verdict {
 	SEPARATE_UNRESOLVED /* too dense: a row stands for sources particles or more */
 };
 
-struct particle {
+/* One particle on its way past both sensors, as the record tells it. */
+struct transit {
 	long section;     /* from 1 */
 	int sources;      /* particles in this section (or window of it) */
 	double t1, t2;    /* arrival at either sensor, samples from the start */
@@ -67,9 +68,10 @@ struct separate_section {
 struct separate_par {
 	enum separate_method method;
 	struct calibrate_par known;
-	size_t learn;  /* samples held back to calibrate, at least SEPARATE_SHORTEST */
-	size_t window; /* longest section worked off at once; 0: 24 durations */
-	int sources;   /* exactly so many in each section; 0: find out */
+	size_t learn;    /* samples held back to calibrate, at least SEPARATE_SHORTEST */
+	size_t window;   /* longest section worked off at once; 0: 24 durations */
+	int sources;     /* exactly so many in each section; 0: find out */
+	int most_pulses; /* of a window, if fewer than JOINT_PULSES_MAX; 0: so many */
 	size_t mask_window, mask_hop; /* of the masks, samples */
 	int want_sources;             /* fill separate_section.source */
 	void (*on_section)(void *context, const struct separate_section *section);
@@ -87,7 +89,9 @@ enum separate_status {
 	SEPARATE_FAR,    /* the lag given is as long as what is learned from */
 	SEPARATE_NARROW, /* a filter has left too little of the pulses */
 	SEPARATE_FAST,
-	SEPARATE_SLOW
+	SEPARATE_SLOW,
+	SEPARATE_TONES, /* the lines given cannot be told from each other */
+	SEPARATE_WIDE   /* pulses may last too long, or no time, within the spread */
 };
 
 /* Work done and left out so far. */
@@ -111,11 +115,13 @@ enum separate_status separate_push(struct separate *s, const double *x, size_t n
 /* NO_LAG and FAST from separate_end() only: there was nothing to learn from. */
 enum separate_status separate_end(struct separate *s);
 /* The next particle in order of section and arrival; 0 where none is ready. */
-int separate_next(struct separate *s, struct particle *p);
+int separate_next(struct separate *s, struct transit *p);
 
 const struct calibration *separate_calibration(
 	const struct separate *s); /* NULL: not yet */
 const struct separate_counters *separate_counters(const struct separate *s);
+/* So many pulses that fit no particle that the others are doubtful, too. */
+int separate_doubtful(const struct separate *s);
 /* Frame and channel (0, 1) that made it fail with NOT_FINITE. */
 long long separate_bad_sample(const struct separate *s, int *channel);
 

@@ -84,6 +84,7 @@ static int clean(struct tape *t, const struct calibration *c, double noise, int 
 		long long from = middle - hop > t->clean ? middle - hop : t->clean,
 			  until = middle;
 		double after[2 * TONES_MAX + 1];
+		enum tones_status status;
 
 		if (t->clean == end || (middle + hop > end && !ended))
 			return 1;
@@ -92,13 +93,13 @@ static int clean(struct tape *t, const struct calibration *c, double noise, int 
 			middle = end - hop / 2 > t->clean ? end - hop / 2 : end;
 			from = t->clean;
 		}
-		if (!tones_fit(t->x + (from - t->begin),
-			    (size_t)((middle + hop < end ? middle + hop : end) - from),
-			    (double)from, c->tones, c->omega, after, NULL, NULL)) {
-			if (!t->started)
-				return 0;
-			memcpy(after, t->coefficient, sizeof after); /* a short rest */
-		}
+		status = tones_fit(t->x + (from - t->begin),
+			(size_t)((middle + hop < end ? middle + hop : end) - from),
+			(double)from, c->tones, c->omega, after, NULL, NULL);
+		if (status == TONES_MEMORY)
+			return 0;
+		if (status == TONES_SHORT) /* a short rest */
+			memcpy(after, t->coefficient, sizeof after);
 		if (!t->started)
 			memcpy(t->coefficient, after, sizeof after);
 		tones_remove(t->x + (t->clean - t->begin), (size_t)(until - t->clean),

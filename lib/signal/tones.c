@@ -342,8 +342,8 @@ static double mark_quiet(
 	return median;
 }
 
-int tones_fit(const double *x, size_t n, double start, int tones, const double *omega,
-	double *coefficient, double *deviation, double *variance)
+enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
+	const double *omega, double *coefficient, double *deviation, double *variance)
 {
 	enum { PASSES = 4 };
 	size_t terms = 1 + 2 * (size_t)tones, runs = (n + RUN - 1) / RUN,
@@ -353,7 +353,7 @@ int tones_fit(const double *x, size_t n, double start, int tones, const double *
 	double *y = calloc(room, sizeof *y); /* x, filled up with zeros */
 	double *rest = malloc(3 * room * sizeof *rest), level = 0;
 	unsigned char *mask = calloc(room, 1);
-	int good = term && y && rest && mask && n > 4 * terms;
+	int memory = term && y && rest && mask, good = memory && n > 4 * terms;
 
 	memset(coefficient, 0, sizeof(double) * terms);
 	if (good) {
@@ -385,7 +385,7 @@ int tones_fit(const double *x, size_t n, double start, int tones, const double *
 	free(y);
 	free(rest);
 	free(mask);
-	return good;
+	return good ? TONES_OK : memory ? TONES_SHORT : TONES_MEMORY;
 }
 
 /* Power of tone k over what noise gives it: chi-square with two degrees of freedom. */
@@ -403,11 +403,13 @@ int tones_confirm(const double *y1, const double *y2, size_t n, double band, int
 	double *omega)
 {
 	double c[2][TERMS_MAX], v[2][TERMS_MAX], d[2];
+	enum tones_status status = TONES_OK;
 	int kept = 0;
 
-	if (tones == 0 || !tones_fit(y1, n, 0, tones, omega, c[0], &d[0], v[0]) ||
-		!tones_fit(y2, n, 0, tones, omega, c[1], &d[1], v[1]))
-		return tones;
+	for (int i = 0; i < 2 && tones && status == TONES_OK; i++)
+		status = tones_fit(i ? y2 : y1, n, 0, tones, omega, c[i], &d[i], v[i]);
+	if (tones == 0 || status != TONES_OK)
+		return status == TONES_MEMORY ? -1 : tones;
 	for (int k = 0; k < tones; k++)
 		if (significance(c[0], v[0], d[0], k) * band > 40 ||
 			significance(c[1], v[1], d[1], k) * band > 40)

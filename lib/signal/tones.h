@@ -12,6 +12,12 @@
 
 enum { TONES_MAX = 16 };
 
+enum tones_status {
+	TONES_OK,
+	TONES_MEMORY,
+	TONES_SHORT /* too few samples to tell the tones from each other */
+};
+
 /* Frequencies, rad per sample and rising, that stand out of the summed periodogram of
  * both channels (n samples each, n >= 1024, Hann window): lines at least 40 times the
  * median of the 64 bins on either side, which white noise exceeds with probability
@@ -24,15 +30,14 @@ int tones_find(const double *y1, const double *y2, size_t n, int max, double *om
  * with t the index counted from the same origin for all stretches.  Stretches in which
  * the rest is livelier than usual are left out of further passes, so that pulses do not
  * bend it.  *deviation (may be NULL) is the usual root mean square of the rest,
- * variance[k] (may be NULL) that of coefficient k in units of its square.  Returns 0 when
- * out of memory (errno is ENOMEM) or for too short a stretch. */
-int tones_fit(const double *x, size_t n, double start, int tones, const double *omega,
-	double *coefficient, double *deviation, double *variance);
+ * variance[k] (may be NULL) that of coefficient k in units of its square. */
+enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
+	const double *omega, double *coefficient, double *deviation, double *variance);
 
 /* Drops tones that a robust fit does not see: a regular train of pulses has lines too,
  * but they vanish with the pulses.  Kept are those whose power exceeds what noise gives
- * with probability 2e-9, if it has this share of all frequencies.  Returns their number.
- */
+ * with probability 2e-9, if it has this share of all frequencies; all where the stretch
+ * is too short to tell.  Returns their number, or -1 when out of memory. */
 int tones_confirm(const double *y1, const double *y2, size_t n, double band, int tones,
 	double *omega);
 

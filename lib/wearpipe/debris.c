@@ -93,9 +93,8 @@ enum wp_status wp_debris_wear(struct wp_debris *d, double *height, const double 
 	for (size_t i = 0; i < step.count; i++) {
 		const struct particle *p = &step.particle[i];
 
-		d->particle[i] =
-			(struct wp_particle){ (double)p->columns, p->volume, p->diameter,
-				p->length, p->width, p->convexity, p->x, p->y, p->z };
+		d->particle[i] = (struct wp_particle){ (double)p->columns, p->volume,
+			p->diameter, p->length, p->width, p->solidity, p->x, p->y, p->z };
 	}
 	*particle = d->particle;
 	*count = step.count;

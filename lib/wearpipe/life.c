@@ -1,5 +1,5 @@
-#include "life/bank.h"
-#include "life/metrics.h"
+#include "life/score/metrics.h"
+#include "life/trend/bank.h"
 #include "report.h"
 #include <math.h>
 #include <stdlib.h>

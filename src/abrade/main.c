@@ -32,7 +32,7 @@ static const struct opt opts[] = {
 		"hardness of the two bodies", NULL, 0 },
 	{ 0, "abrasive-hardness", OPT_NUM, UNIT_PRESSURE, &abrasive, 1, 1e15, "H",
 		"hardness of the particles (default rigid)", NULL, 0 },
-	{ 'u', "friction", OPT_NUM, UNIT_NONE, &friction, 0, 10, "MU",
+	{ 'u', "friction", OPT_NUM, UNIT_FRACTION, &friction, 0, 10, "MU",
 		"friction coefficient between particles and bodies", NULL, 0 },
 	OPT_HEADING("Motion"),
 	{ 0, "inlet", OPT_NUM, UNIT_LENGTH, &inlet, 1e-9, 1e6, "R",

@@ -98,8 +98,6 @@ struct source *particles_read(const char *path)
 	struct table_in *t = table_open(path);
 	int more = table_next(t), cd, ca, cr;
 
-	if (table_columns(t) == 0)
-		die(EXIT_RUN, "%s: no table", table_name(t));
 	cd = table_need_quantity(t, "diameter", UNIT_LENGTH);
 	ca = table_find(t, "aspect");
 	cr = table_find(t, "realisation");

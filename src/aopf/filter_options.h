@@ -3,7 +3,7 @@
 #define FILTERING_H
 
 #include "cli/opt.h"
-#include "life/adaptive.h"
+#include "life/particle/adaptive.h"
 
 /* Values of the options. */
 extern struct filtering {

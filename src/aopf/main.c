@@ -3,7 +3,9 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "common/time_unit.h"
 #include "filter_options.h"
+#include "io/quantities.h"
 #include "io/series.h"
 #include "num/pool.h"
 #include "units.h"
@@ -121,13 +123,13 @@ static char *column_names(void)
 	return all;
 }
 
-/* Units of the columns written, when the input says "T Y"; NULL otherwise. */
-static char *column_units(const char *read)
+/* Units of the columns written. */
+static char *column_units(const struct series *in)
 {
-	char t[32], y[32], more, *filtered, *units, *all;
+	const char *t = timeunit_word();
+	char y[UNIT_WORD], *filtered, *units, *all;
 
-	if (!read || strchr(read, ':') || sscanf(read, "%31s %31s %c", t, y, &more) != 2)
-		return NULL;
+	table_unit_word(series_table(in), series_value_column(in), y);
 	filtered = bare ? xstrdup("") : xprintf(" %s %s %s 1 1", y, y, y);
 	units = xprintf("%s%s %s%s", unit_column ? "1 " : "", t, y, filtered);
 	free(filtered);
@@ -142,8 +144,7 @@ static struct sink open_sink(const struct series *in)
 {
 	const char *start = table_key(series_table(in), "start");
 	char *cmd = opt_cmd(table_key(series_table(in), "cmd"), NULL),
-	     *units = column_units(table_key(series_table(in), "units")),
-	     *names = column_names();
+	     *units = column_units(in), *names = column_names();
 	struct sink out = { 0 };
 
 	if (json) {
@@ -237,6 +238,9 @@ static void read_rows(
 	int clock = clock_column ? table_need(series_table(in), clock_column) : -1;
 	long before = 0;
 
+	if (clock >= 0)
+		table_set_scale(series_table(in), clock,
+			table_ratio(series_table(in), clock, timeunit_word()));
 	b.item = xcalloc(room, sizeof *b.item);
 	b.cell = xcalloc(room, (size_t)(b.cells ? b.cells : 1) * sizeof *b.cell);
 	b.first = xcalloc(room, sizeof *b.first);
@@ -277,21 +281,23 @@ int main(int argc, char **argv)
 	struct pool *pool = NULL;
 	struct series *in;
 	struct sink out;
-	char *options;
+	char *options, *in_units;
 
 	filtering_check();
 	outlook_check(bare);
 	if (threads > 1 && !(pool = pool_new((int)threads)))
 		die(EXIT_RUN, "no %ld threads", threads);
-	outlook_open(unit_column);
+	in = series_open(argv[operand], unit_column);
+	outlook_open(in, unit_column);
 	units = units_new(bare);
-	options = opt_cmd("", NULL);
+	in_units = column_units(in);
+	options = opt_cmd("", in_units);
+	free(in_units);
 	if (resume_file)
 		units_resume(units, resume_file, options);
 	if (save_file)
 		units_keep(units, save_file, options);
 	free(options);
-	in = series_open(argv[operand], unit_column);
 	out = open_sink(in);
 	read_rows(in, units, pool, &out);
 	alarm = units_alarm(units);

@@ -4,11 +4,12 @@
 #include "common/quantile_columns.h"
 #include "common/time_unit.h"
 #include "filter_options.h"
+#include "io/quantities.h"
 #include "io/series.h"
-#include "life/fleet.h"
-#include "life/metrics.h"
-#include "life/predict.h"
-#include "life/runin.h"
+#include "life/prior/fleet.h"
+#include "life/score/metrics.h"
+#include "life/trend/predict.h"
+#include "life/trend/runin.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -142,20 +143,28 @@ void outlook_check(int bare)
 			model >= GREY ? "--model grey and literal" : "--skip auto");
 }
 
-static void read_fleet(const char *unit_column)
+static void read_fleet(const struct series *like, const char *unit_column)
 {
 	struct series *in = series_open(fleet_file, unit_column);
-	int good, failed, carried_on, n;
+	enum num_status status;
+	int failed, carried_on, n;
+	char y[UNIT_WORD];
 
+	table_unit_word(series_table(like), series_value_column(like), y);
+	series_scale(in,
+		table_ratio(series_table(in), series_time_column(in), timeunit_word()),
+		table_ratio(series_table(in), series_value_column(in), y));
 	fleet = fleet_new(outlook_options.threshold, direction == UP ? 1 : -1);
-	good = fleet != NULL;
-	while (good && series_next(in))
+	status = fleet ? NUM_OK : NUM_MEMORY;
+	while (status == NUM_OK && series_next(in))
 		if (!isnan(series_value(in)))
-			good = fleet_add(fleet, series_unit(in), series_time(in),
+			status = fleet_add(fleet, series_unit(in), series_time(in),
 				series_value(in));
-	n = good ? fleet_build(fleet, &failed, &carried_on) : -1;
-	if (n < 0)
+	if (status == NUM_OK)
+		status = fleet_build(fleet, &failed, &carried_on);
+	if (status != NUM_OK)
 		die(EXIT_RUN, "no memory for the fleet");
+	fleet_shapes(fleet, &n);
 	if (n == 0)
 		die(EXIT_RUN, "%s: none of %d units shows any wear to compare with",
 			fleet_file, series_units(in));
@@ -171,6 +180,7 @@ static void read_events(const char *unit_column)
 	int t = table_need(in, "t"), what = table_need(in, "event"),
 	    unit = table_find(in, unit_column);
 
+	table_set_scale(in, t, table_ratio(in, t, timeunit_word()));
 	while (table_next(in)) {
 		struct event *e;
 		const char *word = table_text(in, what);
@@ -191,17 +201,24 @@ static void read_events(const char *unit_column)
 	table_close(in);
 }
 
-void outlook_open(const char *unit_column)
+void outlook_open(struct series *in, const char *unit_column)
 {
+	static const char *const timed[] = { "skip", "horizon", "after", "mission",
+		"alarm" };
 	const char *unit = unit_column ? unit_column : "unit";
+	int needed = 0;
 
+	for (size_t i = 0; i < sizeof timed / sizeof *timed; i++)
+		needed |= opt_given(timed[i]);
+	timeunit_settle(series_table(in), series_time_column(in), needed);
+	series_scale(in, 1, 1); /* units that change within the table are an error */
 	if (isnan(outlook_options.threshold))
 		return;
 	chances = bank_chances_new(DRAWS, (uint64_t)filtering.seed);
 	if (!chances)
 		die(EXIT_RUN, "no memory");
 	if (fleet_file)
-		read_fleet(unit);
+		read_fleet(in, unit);
 	if (events_file)
 		read_events(unit);
 }
@@ -343,13 +360,14 @@ static void put_draws(struct outlook *o, const double *life, int n, double *cell
 
 static void foresee(struct outlook *o, double *cell)
 {
-	int n = predict_draws(o->predict), drawn;
+	int n = predict_draws(o->predict);
+	enum num_status status;
 	double *life = malloc((size_t)n * sizeof *life);
 
-	drawn = life ? predict_life(o->predict, life) : -1;
-	if (drawn < 0)
+	status = life ? predict_life(o->predict, life) : NUM_MEMORY;
+	if (status == NUM_MEMORY)
 		die(EXIT_RUN, "no memory for %d paths", n);
-	if (drawn > 0)
+	if (status == NUM_OK)
 		put_draws(o, life, n, cell);
 	free(life);
 }

@@ -1,6 +1,6 @@
 /* remaining_life.h - the life that a unit has left: options of aopf, and its columns
  *
- *	outlook_open(unit_column);
+ *	outlook_open(series, unit_column);
  *	struct outlook *o = outlook_new(filter);
  *	for each row
  *		outlook_step(o, &in, &row, cell);
@@ -13,7 +13,8 @@
 #define OUTLOOK_H
 
 #include "cli/opt.h"
-#include "life/adaptive.h"
+#include "io/series.h"
+#include "life/particle/adaptive.h"
 #include "num/state.h"
 
 /* Values of the options. */
@@ -29,9 +30,9 @@ extern struct opt outlook_end_rows[], outlook_model_rows[], outlook_plant_rows[]
 /* Dies where options contradict one another; bare: there is no filter. */
 void outlook_check(int bare);
 
-/* Reads the fleet and the events, if there are any; the column identifies units, or
- * "unit" if it is NULL. */
-void outlook_open(const char *unit_column);
+/* Takes the unit of time of the series, and reads the fleet and the events, if there are
+ * any, into its units; the column identifies units, or "unit" if it is NULL. */
+void outlook_open(struct series *in, const char *unit_column);
 void outlook_close(void);
 
 /* A row of the input. */

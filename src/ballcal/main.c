@@ -9,8 +9,12 @@
 #include "io/tables.h"
 #include "num/room.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Level of the tests of the exponent and of the fit. */
+static const double UNLIKELY = 0.01;
 
 static struct opt_texts balls;
 static double exponent = 3, confidence = 0.95, noise = NAN, duration = NAN;
@@ -76,8 +80,6 @@ static void read_balls(struct pulses *p, const char *text)
 	int more = table_next(t), ca, cv, cw;
 	size_t before = p->n;
 
-	if (table_columns(t) == 0)
-		die(EXIT_RUN, "%s: no table", table_name(t));
 	ca = table_need_quantity(t, "amplitude", UNIT_VOLTAGE);
 	cv = table_need_quantity(t, "velocity", UNIT_SPEED);
 	cw = table_find(t, "verdict");
@@ -107,26 +109,31 @@ static int by_diameter(const void *a, const void *b)
 	return x < y ? -1 : x > y;
 }
 
-static void put(
-	struct table_out *t, const char *name, double value, double low, double high)
+static void put(struct table_out *t, const char *name, const char *unit, double value,
+	double low, double high)
 {
 	table_put_text(t, name);
-	table_put_row(t, (double[]){ value, low, high }, 3);
+	table_put(t, value);
+	table_put(t, low);
+	table_put(t, high);
+	table_put_text(t, unit);
+	table_end_row(t);
 }
 
 /* A quantity whose logarithm has this half interval. */
-static void put_log(struct table_out *t, const char *name, double ln, double half)
+static void put_log(
+	struct table_out *t, const char *name, const char *unit, double ln, double half)
 {
-	put(t, name, exp(ln), exp(ln - half), exp(ln + half));
+	put(t, name, unit, exp(ln), exp(ln - half), exp(ln + half));
 }
 
 static void put_smallest(struct table_out *t, double ln_k, double half, double speed)
 {
 	struct detection d = { 1, detection_threshold(duration, alarms), exponent };
 	double ln50 = (log(d.threshold * noise / speed) - ln_k) / exponent;
-	put(t, "threshold", d.threshold, NAN, NAN);
-	put_log(t, "d50", ln50, half / exponent);
-	put_log(t, "d90", ln50 + log(detection_diameter(&d, 0.9)), half / exponent);
+	put(t, "threshold", "1", d.threshold, NAN, NAN);
+	put_log(t, "d50", "m", ln50, half / exponent);
+	put_log(t, "d90", "m", ln50 + log(detection_diameter(&d, 0.9)), half / exponent);
 }
 
 int main(int argc, char **argv)
@@ -136,6 +143,7 @@ int main(int argc, char **argv)
 	struct line l;
 	double *x, *y, sizes = 1, ln_k = 0, deviation = 0, half, lack, slope_p = NAN;
 	int fitted, doubtful;
+	char unit[40]; /* of amplitude over velocity and diameter to the exponent */
 
 	opt_parse(&prog, argc, argv);
 	if (!balls.n)
@@ -169,23 +177,25 @@ int main(int argc, char **argv)
 	lack = fitted ? line_lack_of_fit(x, y, p.n, &l) : NAN;
 	if (fitted)
 		slope_p = line_slope_p(&l, p.n, exponent);
-	doubtful = slope_p < 0.01 || lack < 0.01;
-	if (slope_p < 0.01)
+	doubtful = slope_p < UNLIKELY || lack < UNLIKELY;
+	if (slope_p < UNLIKELY)
 		warn("the exponent is %.3g, not %g: p = %.2g", l.slope, exponent,
 			slope_p);
-	if (lack < 0.01)
+	if (lack < UNLIKELY)
 		warn("no power law fits all balls: p = %.2g", lack);
-	t = table_create(NULL, opt_cmd(NULL, NULL), NULL, "quantity value low high");
-	put(t, "pulses", (double)p.n, NAN, NAN);
-	put(t, "sizes", sizes, NAN, NAN);
-	put_log(t, "calibration", ln_k, half);
-	put(t, "scatter", deviation, NAN, NAN);
+	snprintf(unit, sizeof unit, "V.s/m^%g", exponent + 1);
+	t = table_create(NULL, opt_cmd(NULL, NULL), "1 unit unit unit 1",
+		"quantity value low high unit");
+	put(t, "pulses", "1", (double)p.n, NAN, NAN);
+	put(t, "sizes", "1", sizes, NAN, NAN);
+	put_log(t, "calibration", unit, ln_k, half);
+	put(t, "scatter", "1", deviation, NAN, NAN);
 	if (fitted) {
 		double wide = l.t * l.slope_se;
 
-		put(t, "exponent", l.slope, l.slope - wide, l.slope + wide);
-		put(t, "exponent_p", slope_p, NAN, NAN);
-		put(t, "lack_of_fit_p", lack, NAN, NAN);
+		put(t, "exponent", "1", l.slope, l.slope - wide, l.slope + wide);
+		put(t, "exponent_p", "1", slope_p, NAN, NAN);
+		put(t, "lack_of_fit_p", "1", lack, NAN, NAN);
 	}
 	if (!isnan(noise))
 		put_smallest(t, ln_k, half,

@@ -113,7 +113,7 @@ static void put_results(struct record *r, const struct contact_par *par,
 	if (par->hardness > 0)
 		record_set(r, "plastic_area", "%.17g", s->plastic);
 	record_set(r, "energy", "%.17g", s->energy);
-	record_set(r, "certificate", "%.3g", s->certificate);
+	record_set(r, "optimality_gap", "%.3g", s->optimality_gap);
 	record_set(r, "iterations", "%ld", s->iterations);
 	record_set(r, "converged", "%s", converged ? "yes" : "no");
 }
@@ -125,7 +125,7 @@ void count_work(const struct contact_result *s, int warm)
 	stats_add("iterations", (double)s->iterations);
 	stats_add("transforms", (double)s->transforms);
 	stats_add("transforms_all_grids", s->work);
-	stats_max("certificate", s->certificate);
+	stats_max("optimality_gap", s->optimality_gap);
 }
 
 enum contact_status press_to(const struct task *t, const double *height,
@@ -197,12 +197,12 @@ static int solve_step(const struct task *t, double target, int warm, int last,
 
 	*found = *contact_result(t->c);
 	count_work(found, warm);
-	note("%s: record %ld: area %.4g, approach %.6g m, certificate %.2g, %ld iterations",
-		t->name, t->number, found->area, found->approach, found->certificate,
+	note("%s: record %ld: area %.4g, approach %.6g m, optimality gap %.2g, %ld iterations",
+		t->name, t->number, found->area, found->approach, found->optimality_gap,
 		found->iterations);
 	if (status == CONTACT_NOCONV)
-		warn("%s: record %ld: not converged: certificate %.2g after %ld iterations",
-			t->name, t->number, found->certificate, found->iterations);
+		warn("%s: record %ld: not converged: optimality gap %.2g after %ld iterations",
+			t->name, t->number, found->optimality_gap, found->iterations);
 	if (last)
 		put_results(t->r, &t->par, found, status == CONTACT_OK);
 	put_row(t, t->h, found, t->p, status == CONTACT_OK, last);
@@ -229,6 +229,25 @@ static int solve_after(const struct task *t, const struct contact_result *full)
 		free(own);
 	}
 	return converged & unload_solve(t, full, residual);
+}
+
+/* Says once what is possible, but hardly what was meant. */
+static void doubt(const struct contact_par *par, double pressure)
+{
+	static int said;
+
+	if (said || !(pressure > 0))
+		return;
+	said = 1;
+	if (pressure < 1e3 && !isnan(press.pressure))
+		warn("--pressure %g Pa hardly presses: is %gMPa meant?", press.pressure,
+			press.pressure);
+	else if (pressure > 0.1 * par->estar)
+		warn("the mean pressure of %.3g GPa is above a tenth of the contact "
+		     "modulus of %.3g GPa: no solid is elastic there",
+			1e-9 * pressure, 1e-9 * par->estar);
+	else
+		said = 0;
 }
 
 /* Solves one record in place; returns 1 if it converged. */
@@ -264,6 +283,7 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 	if (u)
 		contact_displacement(t.c, t.p, u);
 	converged &= solve_after(&t, &found);
+	doubt(&t.par, found.pressure);
 	free(own_gap);
 	free(t.other);
 	return converged;

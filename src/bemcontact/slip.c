@@ -12,7 +12,7 @@ struct opt slip_rows[] = {
 	{ 0, "tangential", OPT_NUM, UNIT_FORCE, &tangential, 0, 1e30, "T",
 		"tangential load, along x, on top of the normal one: partial slip", 0,
 		0 },
-	{ 'u', "friction", OPT_NUM, UNIT_NONE, &friction, 1e-12, 1e6, "MU",
+	{ 'u', "friction", OPT_NUM, UNIT_FRACTION, &friction, 1e-12, 1e6, "MU",
 		"friction coefficient: the largest shear over pressure", 0, 0 },
 	OPT_END,
 };
@@ -67,8 +67,8 @@ int slip_solve(const struct task *t, const struct contact_result *normal, double
 			"%s: record %ld: --tangential %g N slips: friction bears %g N",
 			t->name, t->number, tangential, friction * normal->load);
 	if (status == CONTACT_NOCONV)
-		warn("%s: record %ld: part that sticks not converged: certificate %.2g",
-			t->name, t->number, contact_result(t->c)->certificate);
+		warn("%s: record %ld: part that sticks not converged: optimality gap %.2g",
+			t->name, t->number, contact_result(t->c)->optimality_gap);
 	count_work(contact_result(t->c), 1);
 	record_set(t->r, "friction", "%.17g", friction);
 	record_set(t->r, "tangential_load", "%.17g", found.load);

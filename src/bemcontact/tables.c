@@ -4,7 +4,6 @@
 #include "cli/text.h"
 #include "contact/patches.h"
 #include "io/tables.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -51,7 +50,7 @@ void tables_open(const char *upstream)
 		"1 N Pa m m 1 1 N/m 1 m Pa Pa Pa Pa Pa 1 J 1 1 1",
 		"realisation load mean_pressure approach indentation area corrected_area "
 		"stiffness patches perimeter contact_pressure p10 p50 p90 peak plastic_area "
-		"energy certificate iterations converged");
+		"energy optimality_gap iterations converged");
 	patches = open_table(patches_path, upstream, "--patches", "1 1 m2 m2 m N Pa m m",
 		"realisation cells area corrected_area perimeter load peak x y");
 }
@@ -91,7 +90,7 @@ static void put_contact(const struct record *r, const struct patch_grid *grid,
 		(double)n, perimeter,
 		found->area > 0 ? found->pressure / found->area : NAN, quantile[0],
 		quantile[1], quantile[2], quantile[3], found->plastic, found->energy,
-		found->certificate, (double)found->iterations, converged };
+		found->optimality_gap, (double)found->iterations, converged };
 
 	follow_cmd(table, r, "--table");
 	table_put_row(table, row, sizeof(row) / sizeof *row);
@@ -110,9 +109,8 @@ void tables_put(const struct record *r, const struct contact_par *par,
 
 	if (!table && !(patches && last))
 		return;
-	list = contact_patches(&grid, pressure, &n);
-	if (!list && errno)
-		die(EXIT_RUN, "the patches of a contact:");
+	if (contact_patches(&grid, pressure, &list, &n) != NUM_OK)
+		die(EXIT_RUN, "out of memory");
 	for (size_t i = 0; i < n; i++)
 		perimeter += list[i].perimeter;
 	if (patches && last)

@@ -1,18 +1,51 @@
 #include "time_unit.h"
+#include "cli/msg.h"
+#include "io/quantities.h"
+#include <math.h>
 #include <stddef.h>
+#include <stdio.h>
+#include <string.h>
 
 static const char *const words[] = { "s", "min", "h", "d", NULL };
 static const double seconds[] = { 1, 60, 3600, 86400 };
 
 static int unit;
+static double told = NAN;
+static char told_word[UNIT_WORD] = "1";
 
 struct opt timeunit_rows[] = {
 	{ 0, "time-unit", OPT_WORD, UNIT_NONE, &unit, 0, 0, "s|min|h|d",
-		"unit of the times read", words, 0 },
+		"unit of the times read, if they do not name it", words, 0 },
 	OPT_END,
 };
 
+void timeunit_settle(const struct table_in *t, int column, int needed)
+{
+	char one[UNIT_WORD + 1];
+	const char *end;
+
+	if (!strcmp(table_unit_word(t, column, told_word), "1"))
+		return;
+	snprintf(one, sizeof one, "1%s", told_word);
+	if (unit_parse(one, UNIT_TIME, "", &told, &end)) {
+		told = NAN;
+		if (needed)
+			die(EXIT_RUN, "%s: column '%s' is in '%s', want s, min, h or d",
+				table_name(t), table_column_name(t, column), told_word);
+	} else if (opt_given("time-unit") && fabs(seconds[unit] / told - 1) > 1e-9) {
+		die(EXIT_USAGE, "--time-unit %s contradicts '# units:' of %s, %s",
+			words[unit], table_name(t), told_word);
+	}
+}
+
 double timeunit(void)
 {
-	return seconds[unit];
+	return isnan(told) ? seconds[unit] : told;
+}
+
+const char *timeunit_word(void)
+{
+	return strcmp(told_word, "1") != 0 ? told_word
+	       : opt_given("time-unit")    ? words[unit]
+					   : "1";
 }

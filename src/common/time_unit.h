@@ -3,10 +3,16 @@
 #define TIMEUNIT_H
 
 #include "cli/opt.h"
+#include "io/tables.h"
 
 extern struct opt timeunit_rows[]; /* for OPT_TABLE */
 
-/* In seconds; 1 if it was not given. */
+/* Takes the unit of the column from the "# units:" line, if that names one.  Dies where
+ * the option contradicts it, or, if times are needed, where it is not a unit of time. */
+void timeunit_settle(const struct table_in *t, int column, int needed);
+
+/* In seconds; 1 if neither table nor option told. */
 double timeunit(void);
+const char *timeunit_word(void); /* "1" then */
 
 #endif

@@ -3,6 +3,7 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "common/periods.h"
 #include "common/verdicts.h"
 #include "groups.h"
 #include "io/quantities.h"
@@ -12,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { EXIT_ALARM = 4, MOST_EMPTY = 100000 };
+enum { EXIT_ALARM = 4 };
 
 /* The bores of debris sensors are millimetres to a few centimetres wide (layout(1) takes
  * up to this one); a larger particle is one in another unit. */
@@ -166,12 +167,12 @@ static double count_rows(struct table_in *t, struct groups *groups)
 				"%s: line %ld: a particle at %g s, after --duration "
 				"%g s",
 				table_name(t), table_line(t), time, duration);
-		if (time - end > MOST_EMPTY * period)
+		if ((time - end) / period > PERIODS_MOST)
 			die(EXIT_RUN,
 				"%s: line %ld: %s is %g s, more than %d periods after the "
 				"particle before: --period or the unit of time is wrong",
 				table_name(t), table_line(t), table_column_name(t, ct),
-				time, MOST_EMPTY);
+				time, PERIODS_MOST);
 		for (; time >= end; begin = end, end += period)
 			groups_report(groups, begin, end, 1);
 		late += time < begin;
@@ -210,9 +211,8 @@ int main(int argc, char **argv)
 
 	check_options();
 	t = table_open(argv[operand]);
+	table_need(t, "diameter");
 	more = table_next(t);
-	if (table_columns(t) == 0)
-		die(EXIT_RUN, "%s: no table", table_name(t));
 	par = parameters();
 	par.cmd = opt_cmd(table_upstream(t), NULL);
 	groups = groups_new(&par);

@@ -10,6 +10,10 @@
 
 static const double hour = 3600;
 
+/* Least probability of detection of a size that has a code: codes step by a factor of
+ * two, of which a tenth of the particles missed is 0.15. */
+static const double SEEN = 0.9;
+
 static double flow = NAN, volume = NAN;
 static long window;
 
@@ -136,7 +140,7 @@ static void put_codes(struct report *r, const struct class_count *n, double oil_
 			&r->par.classes.detection, r->par.edge[sizes[k]]);
 		char one[16];
 
-		if (seen < 0.9)
+		if (seen < SEEN)
 			snprintf(one, sizeof one, "-");
 		else if (iso && iso4406_code(number) < ISO4406_CODES)
 			snprintf(one, sizeof one, "%d", iso4406_code(number));

@@ -17,7 +17,7 @@ static struct opt_list yield, friction = { 1, { 0 } }, poisson = { 1, { 0.3 } };
 static const struct opt opts[] = {
 	{ 'Y', "yield", OPT_LIST, UNIT_PRESSURE, &yield, 1e-30, 1e30, "LO[:HI]",
 		"yield stress, or range of it", NULL, 0 },
-	{ 'u', "friction", OPT_LIST, UNIT_NONE, &friction, 0, 1e6, "LO[:HI]",
+	{ 'u', "friction", OPT_LIST, UNIT_FRACTION, &friction, 0, 1e6, "LO[:HI]",
 		"friction coefficient, or range of it", NULL, 0 },
 	{ 0, "poisson", OPT_LIST, UNIT_NONE, &poisson, 0, 0.5, "LO[:HI]",
 		"Poisson's ratio, or range of it", NULL, 0 },
@@ -100,8 +100,8 @@ static void take_record(const struct fields_in *in, const struct record *r, long
 				? "material fails deeper than ten times the grid is long"
 			: status == DEBRIS_MEMORY ? "out of memory"
 						  : "pressure below zero or not finite");
-	n = footprints_find(f, debris_stress(d), pressure, par.yield, &list);
-	if (n == (size_t)-1)
+	if (footprints_find(f, debris_stress(d), pressure, par.yield, &list, &n) !=
+		NUM_OK)
 		die(EXIT_RUN, "out of memory");
 	add_samples(in, surface, r->nx, &step, list, n);
 	footprints_free(f);

@@ -19,7 +19,8 @@ static int wear_coarser(const struct worn_surface *c, struct contact_par pressin
 	struct debris_step lost;
 	struct contact *contact;
 	struct debris *debris;
-	enum contact_status status = CONTACT_NUMBERS;
+	enum debris_status worn = DEBRIS_NUMBERS;
+	enum contact_status status;
 
 	pressing.nx = wear.stress.nx = r->nx / factor;
 	pressing.ny = wear.stress.ny = r->ny / factor;
@@ -33,8 +34,11 @@ static int wear_coarser(const struct worn_surface *c, struct contact_par pressin
 			pressing.ny);
 	*volume = *particles = NAN;
 	status = contact_solve(contact, h, control, target, p, NULL);
-	if ((status == CONTACT_OK || status == CONTACT_NOCONV) &&
-		debris_step(debris, h, p, &lost) == DEBRIS_OK) {
+	if (status == CONTACT_OK || status == CONTACT_NOCONV)
+		worn = debris_step(debris, h, p, &lost);
+	if (worn == DEBRIS_MEMORY)
+		die(EXIT_RUN, "out of memory");
+	if (worn == DEBRIS_OK) {
 		*volume = lost.volume;
 		*particles = (double)lost.count;
 	}

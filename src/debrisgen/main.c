@@ -10,6 +10,10 @@
 #include "wear_steps.h"
 #include <math.h>
 
+/* Share of the load on the outermost cells that is worth a warning: what they carry in
+ * full contact of 80 x 80 cells. */
+static const double EDGE_LOAD = 0.05;
+
 static long steps = 1;
 static double stop_area = 0.8, amplification = 1;
 
@@ -106,7 +110,7 @@ static int check_contact(struct run *run, struct scene *c, long step)
 	struct debris_step s;
 
 	wearing_contact(run->wearing, &c->now, &s);
-	if (s.edge_load > 0.05)
+	if (s.edge_load > EDGE_LOAD)
 		run->edge.steps++;
 	if (s.edge_load > run->edge.most) {
 		run->edge.most = s.edge_load;

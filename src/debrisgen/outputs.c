@@ -39,7 +39,7 @@ struct opt worn_rows[] = {
 
 static const char particle_columns[] =
 	"realisation step body particle columns volume diameter aspect x y z length width elongation "
-	"convexity area azimuth dip x_low x_high y_low y_high z_low z_high";
+	"solidity area azimuth dip x_low x_high y_low y_high z_low z_high";
 static const char particle_units[] =
 	"1 1 1 1 1 m3 m 1 m m m m m 1 1 m2 rad rad m m m m m m";
 static const char summary_columns[] =
@@ -190,7 +190,7 @@ static void put_particles(struct table_out *t, long realisation, long step, int 
 		const struct particle *p = &lost->particle[i];
 		double row[] = { (double)realisation, (double)step, body, (double)(i + 1),
 			(double)p->columns, p->volume, p->diameter, p->aspect, p->x, p->y,
-			p->z, p->length, p->width, p->elongation, p->convexity, p->area,
+			p->z, p->length, p->width, p->elongation, p->solidity, p->area,
 			p->azimuth, p->dip, p->low[0], p->high[0], p->low[1], p->high[1],
 			p->low[2], p->high[2], p->volume, p->volume, 1 };
 		enum { GUESS = 3, PLAIN = sizeof(row) / sizeof *row - GUESS };

@@ -79,7 +79,7 @@ static struct particle particle_of(
 		.width = NAN,
 		.aspect = NAN,
 		.elongation = NAN,
-		.convexity = NAN,
+		.solidity = NAN,
 		.area = NAN,
 		.azimuth = NAN,
 		.dip = NAN,
@@ -113,8 +113,7 @@ int quick_step(struct quick *q, struct stress *stress, const double *pressure,
 
 	if (stress_load(stress, pressure))
 		die(EXIT_RUN, "pressure beyond the range of numbers");
-	n = footprints_find(q->footprints, stress, pressure, yield, &list);
-	if (n == (size_t)-1)
+	if (footprints_find(q->footprints, stress, pressure, yield, &list, &n) != NUM_OK)
 		die(EXIT_RUN, "out of memory");
 	if (n > q->room) {
 		q->room = 2 * n;

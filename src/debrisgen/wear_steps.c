@@ -30,7 +30,7 @@ struct opt wearing_rows[] = {
 		"yield stress of the worn body and of the counterface", NULL, 0 },
 	{ 0, "criterion", OPT_WORD, UNIT_NONE, &criterion, 0, 0, "von-mises|tresca",
 		"equivalent stress", criteria, 0 },
-	{ 'u', "friction", OPT_NUM, UNIT_NONE, &friction, 0, 1e6, "MU",
+	{ 'u', "friction", OPT_NUM, UNIT_FRACTION, &friction, 0, 1e6, "MU",
 		"friction coefficient: shear over pressure", NULL, 0 },
 	{ 0, "depth-step", OPT_NUM, UNIT_LENGTH, &depth_step, 1e-30, 1e30, "H",
 		"remove whole cells of this height; by default the depth is continuous",
@@ -115,6 +115,10 @@ void wearing_check(void)
 	if (yield.v[0] < 1e5)
 		warn("--yield %g Pa is weaker than any solid surface: is %gMPa meant?",
 			yield.v[0], yield.v[0]);
+	if (yield.v[0] > 1e11 && law == STRESS)
+		warn("--yield %g Pa is stronger than any solid", yield.v[0]);
+	if (friction > 5)
+		warn("--friction %g: is %g%% meant?", friction, friction);
 	if (press.poisson.v[0] < 0)
 		die(EXIT_USAGE, "--poisson %g: want 0 to 0.5 for the worn body",
 			press.poisson.v[0]);
@@ -328,7 +332,7 @@ int wearing_press(
 	if (status == CONTACT_NOCONV)
 		warn("%s: realisation %ld, step %ld: contact not solved to %g, only to %.2g",
 			fields_name(w->in), c->r->realisation, step, press.tolerance,
-			found->certificate);
+			found->optimality_gap);
 	stats_add("contact_iterations", (double)found->iterations);
 	stats_add("contact_transforms", (double)found->transforms);
 	return status == CONTACT_OK;

@@ -171,8 +171,6 @@ static void read_particles(struct ensemble *e, const char *path, char **cmd)
 	int cr, cs, cd, cv, ca;
 	struct summary summary;
 
-	if (table_columns(t) == 0)
-		die(EXIT_RUN, "%s: no table", table_name(t));
 	cr = table_need(t, "realisation");
 	cs = table_need(t, "step");
 	cd = table_need_quantity(t, "diameter", UNIT_LENGTH);

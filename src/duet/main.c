@@ -3,6 +3,7 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "instrument_options.h"
+#include "io/input.h"
 #include "io/signals.h"
 #include "methods.h"
 #include "whole_record.h"
@@ -104,6 +105,13 @@ static size_t learned_samples(double rate)
 	return n;
 }
 
+static int most_pulses(void)
+{
+	size_t most = input_limit("pulses", JOINT_PULSES_MAX);
+
+	return most ? (int)most : 1;
+}
+
 static int separate_all(struct signal_in *in, struct found *out)
 {
 	double rate = (double)out->rate;
@@ -112,6 +120,7 @@ static int separate_all(struct signal_in *in, struct found *out)
 								   : SEPARATE_MASKS,
 		.learn = learned_samples(rate),
 		.sources = sources.word < 0 ? (int)sources.value : 0,
+		.most_pulses = most_pulses(),
 		.mask_window = (size_t)window,
 		.mask_hop = (size_t)hop,
 		.want_sources = separated != NULL,

@@ -22,6 +22,11 @@ static void check_status(
 		[SEPARATE_FAST] = "no pulse of at least 8 samples found: give "
 				  "--pulse-duration or sample faster",
 		[SEPARATE_SLOW] = "pulses as long as the record: --learn from more of it",
+		[SEPARATE_TONES] =
+			"--lines: too many, or too near each other, to be told "
+			"apart in so short a record",
+		[SEPARATE_WIDE] = "the transit times lie too far apart: give a smaller "
+				  "--spread",
 	};
 	int channel;
 	long long frame = separate_bad_sample(s, &channel);
@@ -62,7 +67,7 @@ static void report(const struct separate *s, double rate)
 
 static int put_ready(struct separate *s, struct found *out)
 {
-	struct particle p;
+	struct transit p;
 	int any = 0;
 
 	for (; separate_next(s, &p); any = 1)
@@ -70,13 +75,11 @@ static int put_ready(struct separate *s, struct found *out)
 	return any;
 }
 
-/* A tenth of the rows, and more than two, that fit no particle are more than a few odd
- * ones: then the pulses are not what was learned, and other rows may be wrong, too. */
 static int is_doubtful(const struct separate *s, const char *name)
 {
 	const struct separate_counters *c = separate_counters(s);
 
-	if (c->misfits <= 2 || 10 * c->misfits <= c->rows)
+	if (!separate_doubtful(s))
 		return 0;
 	warn("%s: %.0f of %.0f pulses fit no particle (misfit): the others are doubtful, "
 	     "too",
@@ -113,16 +116,23 @@ int separate_record(
 	return doubtful;
 }
 
-static struct count *start_count(
-	const struct count_par *par, const double *x, size_t n, int channels)
+static struct count *start_count(const struct count_par *par, const double *x, size_t n,
+	int channels, const char *name)
 {
 	double *work = xcalloc(n, sizeof *work);
 	double level = isnan(par->floor)
 			       ? count_level(x + par->sensor - 1, n, channels, work)
 			       : par->floor;
+	struct count *c;
 
 	free(work);
-	return count_new(level);
+	if (!(level > 0))
+		die(EXIT_RUN, "%s: channel %d is constant: give --floor", name,
+			par->sensor);
+	c = count_new(level);
+	if (!c)
+		die(EXIT_RUN, "no memory");
+	return c;
 }
 
 void count_record(struct signal_in *in, struct found *out, const struct count_par *par)
@@ -142,9 +152,8 @@ void count_record(struct signal_in *in, struct found *out, const struct count_pa
 				die(EXIT_RUN,
 					"%s: channel %d, frame %lld: not a finite number",
 					signal_name(in), par->sensor, frame);
-			if (!c && !(c = start_count(par, x, n, channels)))
-				die(EXIT_RUN, "%s: channel %d is constant: give --floor",
-					signal_name(in), par->sensor);
+			if (!c)
+				c = start_count(par, x, n, channels, signal_name(in));
 			if (count_sample(c, y, &p))
 				found_peak(out, &p, par->sensor, par->delay);
 		}

@@ -2,6 +2,7 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "signal/sensor.h"
+#include "signal/sizing.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,18 +58,15 @@ static void put_row(struct table_out *t, const double *row, int n, const char *w
 	table_end_row(t);
 }
 
-void found_particle(struct found *out, const struct particle *p)
+void found_particle(struct found *out, const struct transit *p)
 {
-	double rate = (double)out->rate, delay = (p->t2 - p->t1) / rate;
-	double delay_se = p->delay_se / rate,
-	       velocity = delay > 0 ? out->spacing / delay : NAN;
-	double d = sensor_diameter(out->kappa, velocity, p->amplitude);
-	double ra = p->amplitude_se / p->amplitude, rt = delay_se / delay;
-	double d_se = sensor_diameter_error(d, ra, rt, p->correlation);
 	int one = p->verdict != SEPARATE_UNRESOLVED;
-	const double row[16] = { one ? (double)out->count++ : NAN, p->t1 / rate,
-		p->t2 / rate, d, p->amplitude, delay, velocity, p->t1_se / rate,
-		p->t2_se / rate, d_se, p->amplitude_se, delay_se, velocity * rt,
+	struct sizing s;
+
+	sizing_of(p, (double)out->rate, out->spacing, out->kappa, &s);
+	const double row[16] = { one ? (double)out->count++ : NAN, s.time[0], s.time[1],
+		s.diameter, s.amplitude, s.delay, s.velocity, s.time_se[0], s.time_se[1],
+		s.diameter_se, s.amplitude_se, s.delay_se, s.velocity_se,
 		(double)p->section, (double)p->sources, p->chi2 };
 
 	put_row(out->particles, row, 16, verdicts[p->verdict]);

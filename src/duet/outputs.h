@@ -21,7 +21,7 @@ struct found {
 
 /* Opens what is wanted; the fields down to kappa are the caller's. */
 void found_open(struct found *out, const struct signal_format *format, const char *cmd);
-void found_particle(struct found *out, const struct particle *p);
+void found_particle(struct found *out, const struct transit *p);
 /* A peak of one sensor, 1 or 2; delay: of the mean particle, s, nan if unknown. */
 void found_peak(struct found *out, const struct peak *p, int sensor, double delay);
 /* separate_par.on_section, with a struct found for its context. */

@@ -198,7 +198,8 @@ static void put_layout(
 	free(where);
 }
 
-/* A grid whose layouts are at most 300000; a given number of steps is not changed. */
+/* A grid whose layouts are at most 300000, about a second of search; a given number of
+ * steps is not changed. */
 static int grid_steps(void)
 {
 	int n = 64;

@@ -132,6 +132,8 @@ static struct table_out *create_table(const struct record *r)
 		free(columns);
 		columns = longer;
 		longer = xprintf("%s %s", units, *r->unit[k] ? r->unit[k] : "1");
+		for (char *s = longer + strlen(units) + 1; *s; s++)
+			*s = *s == ' ' || *s == '\t' ? '_' : *s;
 		free(units);
 		units = longer;
 	}

@@ -115,8 +115,10 @@ static struct spectrum_par spectrum(void)
 }
 
 /* Values that are possible, but hardly what was meant. */
-static void doubt(const struct spectrum_par *p)
+static void doubt(const struct rough_par *par)
 {
+	const struct spectrum_par *p = &par->spectrum;
+	double shortest = fmin(p->corr_x, p->corr_y);
 	double dx = p->lx / p->nx, dy = p->ly / p->ny;
 
 	if (length.v[0] >= 0.1)
@@ -125,7 +127,11 @@ static void doubt(const struct spectrum_par *p)
 	if (corr.n && (p->corr_x < dx || p->corr_y < dy))
 		warn("--corr %g m is below the spacing of %g m: the heights are hardly "
 		     "correlated; use more --points",
-			fmin(p->corr_x, p->corr_y), fmax(dx, dy));
+			shortest, fmax(dx, dy));
+	else if (isnan(hurst) && par->kind != ROUGH_SLOPE && par->target.high > shortest)
+		warn("heights of %g m exceed the correlation length of %g m: slopes are "
+		     "above 45 degrees, where half-space theory does not hold",
+			par->target.high, shortest);
 }
 
 struct generated *generated_open(int threads)
@@ -150,7 +156,7 @@ struct generated *generated_open(int threads)
 	if (!g->rough)
 		die(status == ROUGH_IMPOSSIBLE ? EXIT_USAGE : EXIT_RUN, "%s",
 			problem[status]);
-	doubt(&g->par.spectrum);
+	doubt(&g->par);
 	waves = rough_spectrum(g->rough);
 	stats_set("waves", waves ? (double)spectrum_waves(waves) : 0);
 	stats_set("waves_skipped", waves ? (double)spectrum_waves_skipped(waves) : 0);

@@ -131,6 +131,7 @@ static void read_wear(
 	struct wear w = { .file = file };
 	struct physics told;
 	long part;
+	enum partition_status status;
 
 	file[strcspn(file, ":")] = '\0';
 	if (rest)
@@ -155,8 +156,12 @@ static void read_wear(
 	w.diameter = isnan(pump.critical_size)
 			     ? -1
 			     : table_need_quantity(w.table, "diameter", UNIT_LENGTH);
-	w.class =
-		partition_class(p, table_find(w.table, "particle") >= 0, pressure, area);
+	status = partition_class(
+		p, table_find(w.table, "particle") >= 0, pressure, area, &w.class);
+	if (status == PARTITION_MANY)
+		die(EXIT_USAGE, "--wear: want at most %d tables", PARTITION_CLASSES_MAX);
+	if (status != PARTITION_OK)
+		die(EXIT_RUN, "out of memory");
 	part = table_part(w.table);
 	for (long row = 0; table_next(w.table); row++) {
 		if (table_part(w.table) != part)
@@ -219,6 +224,7 @@ int fragments_close(struct partition *p, const struct opt_texts *files)
 	case PARTITION_AREA:
 		die(EXIT_USAGE, "--wear: the areas add up to more than --area %g m2",
 			pump.pair.area);
+	case PARTITION_MANY:
 	case PARTITION_MEMORY:
 		die(EXIT_RUN, "out of memory");
 	}

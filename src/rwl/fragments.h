@@ -3,7 +3,7 @@
 #define FRAGMENTS_H
 
 #include "cli/opt.h"
-#include "life/partition.h"
+#include "life/prior/partition.h"
 
 /* Every file is a class; see pump_options.h for the areas and for what counts as large.
  * Nominal pressure, area and sliding distance of a step are read from the tables if these

@@ -2,8 +2,8 @@
 #include "cli/msg.h"
 #include "common/quantile_columns.h"
 #include "io/tables.h"
-#include "life/metrics.h"
-#include "life/remaining.h"
+#include "life/pair/remaining.h"
+#include "life/score/metrics.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -106,15 +106,17 @@ static void put_scores(
 		.accuracy = NAN,
 		.mass = NAN,
 		.crps = NAN };
-	int counted = 0;
+	enum num_status status = NUM_DOMAIN;
+	int counted;
 
 	if (row->n > 0)
-		counted = metrics_add(t->metrics, time, quantile(row, 0.5),
+		status = metrics_add(t->metrics, time, quantile(row, 0.5),
 			quantile(row, levels->v[0]),
 			quantile(row, levels->v[levels->n - 1]), row->life, NULL,
 			(size_t)row->n, &r);
-	if (counted < 0)
+	if (status == NUM_MEMORY)
 		die(EXIT_RUN, "out of memory");
+	counted = status == NUM_OK;
 	table_put(t->out, r.truth);
 	table_put(t->out, r.error);
 	table_put(t->out, r.accuracy);

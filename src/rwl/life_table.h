@@ -4,7 +4,7 @@
 #define LIFETABLE_H
 
 #include "cli/opt.h"
-#include "life/forecast.h"
+#include "life/pair/forecast.h"
 
 struct lifetable_par {
 	const struct opt_list *levels; /* of the quantiles */

@@ -2,7 +2,7 @@
 #include "cli/msg.h"
 #include "cli/stats.h"
 #include "fragments.h"
-#include "life/remaining.h"
+#include "life/pair/remaining.h"
 #include "life_table.h"
 #include "observations.h"
 #include "pump_options.h"
@@ -184,15 +184,18 @@ static void check_life(const struct lifetable *out, double time)
 static void follow(struct state *s, struct lifetable *out, struct forecast *f)
 {
 	while (state_next(s)) {
-		long n = forecast_add(f, s->t, s->value, s->gap, s->gap_error);
+		struct forecast_row row;
 
-		if (n == -2)
+		if (forecast_add(f, s->t, s->value, s->gap, s->gap_error) != NUM_OK)
 			die(EXIT_RUN, "out of memory");
-		if (n >= 0) {
+		row = forecast_at(f, s->t);
+		if (!isnan(s->gap)) {
+			long n = row.n;
+
 			stats_add("paths", n > 1 ? (double)n : 0);
 			stats_add("paths_skipped", n > 1 ? 0 : (double)count);
 		}
-		lifetable_put(out, s->t, forecast_at(f, s->t));
+		lifetable_put(out, s->t, row);
 		check_life(out, s->t);
 		stats_add("rows", 1);
 	}

@@ -15,7 +15,7 @@
 
 #include "cli/opt.h"
 #include "io/tables.h"
-#include "life/pair.h"
+#include "life/pair/pair.h"
 
 /* Values of the options. */
 extern struct state_options {

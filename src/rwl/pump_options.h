@@ -4,7 +4,7 @@
 #define PUMP_H
 
 #include "cli/opt.h"
-#include "life/pair.h"
+#include "life/pair/pair.h"
 
 /* Values of the options; nan if not given. */
 extern struct pump {

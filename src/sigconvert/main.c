@@ -12,11 +12,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCK = 4096, CHANNELS = TO_FLAC + 1 };
+enum { BLOCK = 4096, CHANNELS = TO_FLAC + 1, TABLE };
 
 static const char *const in_words[] = { "auto", "au", "text", "raw", "sound", NULL };
 static const char *const out_words[] = { "au", "text", "raw", "wav", "flac", "channels",
-	NULL };
+	"table", NULL };
 
 static int from, to;
 static struct opt_list rate = { 0 };
@@ -28,15 +28,17 @@ static const struct opt opts[] = {
 	{ 0, "from", OPT_WORD, UNIT_NONE, &from, 0, 0, "auto|au|text|raw|sound",
 		"input format; auto: recognised by the first bytes of a file", in_words,
 		0 },
-	{ 'o', "output", OPT_WORD, UNIT_NONE, &to, 0, 0, "au|text|raw|wav|flac|channels",
-		"output format, or a table of the channels", out_words, 0 },
+	{ 'o', "output", OPT_WORD, UNIT_NONE, &to, 0, 0,
+		"au|text|raw|wav|flac|channels|table",
+		"output format; channels: describes them; table: rows at any times",
+		out_words, 0 },
 	{ 'r', "rate", OPT_LIST, UNIT_FREQUENCY, &rate, RATE_LEAST, RATE_MOST, "F",
 		"text and raw: sampling rate (default from the times)", NULL, 0 },
 	{ 0, "channels", OPT_INT, UNIT_COUNT, &channels, 1, 1024, "N",
 		"raw: number of channels of interleaved little-endian float64", NULL, 0 },
 	{ 0, "columns", OPT_TEXT, UNIT_NONE, &columns, 0, 0, "NAME;NAME",
-		"text: columns to read, by heading without its unit, or by number", NULL,
-		0 },
+		"text: columns to read, by heading without its unit, or by number; table: NEW=NAME renames",
+		NULL, 0 },
 	{ 0, "time", OPT_TEXT, UNIT_NONE, &time_column, 0, 0, "NAME",
 		"text: column of the times (default time or t)", NULL, 0 },
 	{ 0, "start", OPT_TEXT, UNIT_NONE, &start, 0, 0, "TIME",
@@ -64,12 +66,25 @@ static void check_options(void)
 		die(EXIT_USAGE, "--from raw requires --rate and --channels");
 	if (from != FROM_RAW && channels)
 		die(EXIT_USAGE, "--channels requires --from raw");
+	if (to == TABLE && (rate.n || opt_given("scale") || from == FROM_RAW))
+		die(EXIT_USAGE, "--output table converts text: no --%s",
+			rate.n             ? "rate"
+			: from == FROM_RAW ? "from raw"
+					   : "scale");
 	if (scale == 0)
 		die(EXIT_USAGE, "--scale must not be 0");
 	if (start && !moment_parse(start, &moment))
 		die(EXIT_USAGE,
 			"--start %s: expected a moment like 2026-11-22T03:04:05.5Z",
 			start);
+}
+
+static void convert_table(const char *path, const struct recording_par *par)
+{
+	struct text_in *in = text_open(input_open(path), par);
+
+	stats_set("rows", text_to_table(in, start));
+	text_close(in);
 }
 
 int main(int argc, char **argv)
@@ -81,7 +96,8 @@ int main(int argc, char **argv)
 		.columns = columns,
 		.time = time_column,
 		.start = start,
-		.skip = skip };
+		.skip = skip,
+		.table = to == TABLE };
 	struct recording *in;
 	struct recording_out *out = NULL;
 	struct channels *table = NULL;
@@ -90,6 +106,10 @@ int main(int argc, char **argv)
 	size_t n;
 
 	check_options();
+	if (to == TABLE) {
+		convert_table(argv[operand], &par);
+		return shell_done(EXIT_SUCCESS);
+	}
 	in = recording_open(argv[operand], &par);
 	format = *recording_format(in);
 	format.cmd = opt_cmd(format.cmd, NULL);

@@ -26,6 +26,7 @@ struct recording_par {
 	const char *columns, *time; /* headings; NULL: all, "time" or "t" */
 	const char *start;          /* moment of the first sample; NULL: not told */
 	long skip;                  /* lines before the heading */
+	int table; /* text is for a table: there is no rate, and NAME=HEADING renames */
 };
 
 struct recording;
@@ -47,6 +48,8 @@ void recording_done(struct recording_out *o);
 struct text_in;
 struct text_in *text_open(struct input *in, const struct recording_par *par);
 const struct signal_format *text_format(const struct text_in *t);
+/* Writes all rows to a table on standard output; returns their number. */
+double text_to_table(struct text_in *t, const char *start);
 size_t text_read(struct text_in *t, double *x, size_t frames);
 void text_close(struct text_in *t);
 

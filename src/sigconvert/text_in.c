@@ -1,5 +1,8 @@
 #include "cli/msg.h"
+#include "cli/opt.h"
+#include "cli/text.h"
 #include "cli/unit.h"
+#include "io/tables.h"
 #include "moment.h"
 #include "recording.h"
 #include <ctype.h>
@@ -22,8 +25,10 @@ struct text_in {
 	char separator;
 	int commas; /* decimal commas are possible */
 	int cells;
-	char **heading;
-	int *taken; /* cells of the channels */
+	char **heading, **cell; /* names of the columns, and the present row */
+	char **unit;            /* of each cell's heading, NULL: none */
+	int *taken;             /* cells of the channels */
+	char **name_of;         /* the channels */
 	double *scale;
 	int time; /* cell, -1: none */
 	int rate; /* the same */
@@ -146,38 +151,67 @@ static int find(const struct text_in *t, const char *name)
 	return -1;
 }
 
-static void take(struct text_in *t, int cell)
+/* What a heading is called in a table. */
+static char *name_of(const char *heading, int lower)
 {
+	char *name = xstrdup(*heading ? heading : "-");
+
+	for (char *s = name; *s; s++)
+		*s = strchr(" \t:", *s) ? '_'
+		     : lower            ? (char)tolower((unsigned char)*s)
+					: *s;
+	return name;
+}
+
+static void take(struct text_in *t, int cell, const char *name)
+{
+	t->name_of[t->format.channels] = name_of(name ? name : t->heading[cell], !name);
 	t->taken[t->format.channels++] = cell;
+}
+
+static _Noreturn void no_column(const struct text_in *t, const char *name)
+{
+	struct text all = { 0 };
+
+	for (int i = 0; i < t->cells && i < 12; i++)
+		text_add(&all, "%s'%.40s'", i ? " " : "", t->heading[i]);
+	die(EXIT_RUN, "%s: no column '%s' among %s", t->name, name, all.s);
 }
 
 static void choose(struct text_in *t, const struct recording_par *par)
 {
 	char *list = par->columns ? xstrdup(par->columns) : NULL, *rest = list;
+	int renamed = 0;
 
 	t->time = par->time ? find(t, par->time) : find(t, "time");
 	if (t->time < 0 && !par->time)
 		t->time = find(t, "t");
 	if (par->time && t->time < 0)
-		die(EXIT_RUN, "%s: no column '%s'", t->name, par->time);
+		no_column(t, par->time);
 	t->rate = t->time < 0 ? find(t, "rate") : -1;
 	for (int i = 0; !list && i < t->cells; i++)
 		if (i != t->time && i != t->rate)
-			take(t, i);
+			take(t, i, NULL);
 	while (rest && *rest) {
-		char *name = rest, *end = strchr(rest, ';');
+		char *name = rest, *end = strchr(rest, ';'), *equals;
 		int cell;
 
 		rest = end ? end + 1 : NULL;
 		if (end)
 			*end = '\0';
-		cell = find(t, trimmed(name));
+		equals = par->table ? strchr(name, '=') : NULL;
+		if (equals)
+			*equals = '\0';
+		cell = find(t, trimmed(equals ? equals + 1 : name));
 		if (cell < 0)
-			die(EXIT_RUN, "%s: no column '%s'", t->name, name);
+			no_column(t, trimmed(equals ? equals + 1 : name));
 		if (t->format.channels == t->cells)
 			die(EXIT_USAGE, "--columns: the table has only %d", t->cells);
-		take(t, cell);
+		renamed = equals != NULL;
+		take(t, cell, equals ? trimmed(name) : NULL);
 	}
+	if (t->time >= 0 && t->format.channels == 1 && !renamed)
+		strcpy(t->name_of[0], "y"); /* as in every series */
 	free(list);
 	if (!t->format.channels)
 		die(EXIT_RUN, "%s: no column other than the times", t->name);
@@ -185,18 +219,17 @@ static void choose(struct text_in *t, const struct recording_par *par)
 
 /* Scales to SI by the units of the headings; those that are not known stay as they are.
  */
-static void scale_units(struct text_in *t, char **unit)
+static void scale_units(struct text_in *t)
 {
-	char *units = xstrdup("");
+	char *units = xstrdup(""), **unit = t->unit;
 
-	t->time_scale = 1;
 	if (t->time >= 0 && unit[t->time]) {
 		char *one = xprintf("1%s", unit[t->time]);
 		const char *end,
 			*wrong = unit_parse(one, UNIT_TIME, "", &t->time_scale, &end);
 
 		if (wrong)
-			die(EXIT_RUN, "%s: times in '%s', want a unit of time", t->name,
+			die(EXIT_RUN, "%s: times in '%s', want s, min, h or d", t->name,
 				unit[t->time]);
 		free(one);
 	}
@@ -230,10 +263,10 @@ static double last_digit(const char *s)
 
 /* A moment, which counts from that of the first row, or a number of the heading's unit.
  */
-static double read_time(struct text_in *t, char *cell, const char *line)
+static double read_time(struct text_in *t, char *cell)
 {
 	struct moment m;
-	double time = NAN, digit = 0;
+	double time = NAN, value, digit = 0;
 
 	if ((t->absolute || t->nahead == 0) && moment_parse(cell, &m)) {
 		const char *fraction = strpbrk(cell, ".,");
@@ -243,12 +276,15 @@ static double read_time(struct text_in *t, char *cell, const char *line)
 		t->absolute = 1;
 		time = moment_between(&t->start, &m);
 		digit = fraction ? last_digit(fraction) : 1;
-	} else if (!t->absolute && number(t, cell, &time)) {
-		time *= t->time_scale;
+	} else if (!t->absolute && number(t, cell, &value)) {
+		time = value * t->time_scale;
 		digit = last_digit(cell) * t->time_scale;
 	}
 	if (!isfinite(time))
-		die(EXIT_RUN, "%s: line %ld: no time: %.40s", t->name, t->number, line);
+		die(EXIT_RUN,
+			"%s: line %ld: '%.40s' is not a time, want a number or a moment "
+			"like 2026-11-22T03:04:05",
+			t->name, t->number, cell);
 	digit = fmax(digit, 4e-16 * fabs(time));
 	if (t->rows == 0 && (t->nahead == 0 || digit < t->resolution))
 		t->resolution = digit;
@@ -256,44 +292,55 @@ static double read_time(struct text_in *t, char *cell, const char *line)
 }
 
 /* A column that tells the rate holds the same number in every row. */
-static void check_rate(struct text_in *t, char *cell, const char *line)
+static void check_rate(struct text_in *t, char *cell)
 {
 	double rate;
 
 	if (!number(t, cell, &rate) || !(rate > 0) || !isfinite(rate))
-		die(EXIT_RUN, "%s: line %ld: no rate: %.40s", t->name, t->number, line);
+		die(EXIT_RUN, "%s: line %ld: '%.40s' is not a rate in hertz", t->name,
+			t->number, cell);
 	if (t->format.rate > 0 && rate != t->format.rate)
 		die(EXIT_RUN, "%s: line %ld: rate %g after %g", t->name, t->number, rate,
 			t->format.rate);
 	t->format.rate = rate;
 }
 
-/* Takes one row into time and channels; 0 at the end. */
-static int read_row(struct text_in *t, double *row)
+/* Cuts the next line into cells; 0 at the end. */
+static int read_cells(struct text_in *t)
 {
-	char **cell;
-	char *copy;
+	char **cell = t->cell;
 	int n;
 
 	if (!next_line(t))
 		return 0;
-	cell = xcalloc((size_t)t->cells + 1, sizeof *cell);
-	copy = xstrdup(t->line);
 	n = cut(t, t->line, cell, t->cells + 1);
 	if (n != t->cells && !(n == t->cells + 1 && !*cell[n - 1]))
 		die(EXIT_RUN, "%s: line %ld: want %d cells, got %d", t->name, t->number,
 			t->cells, n);
-	row[0] = t->time < 0 ? NAN : read_time(t, cell[t->time], copy);
+	return 1;
+}
+
+static double read_number(struct text_in *t, int c)
+{
+	char *cell = t->cell[t->taken[c]];
+	double value;
+
+	if (!number(t, cell, &value))
+		die(EXIT_RUN, "%s: line %ld: %s: '%.40s' is not a number", t->name,
+			t->number, t->heading[t->taken[c]], cell);
+	return value;
+}
+
+/* Takes one row into time and channels; 0 at the end. */
+static int read_row(struct text_in *t, double *row)
+{
+	if (!read_cells(t))
+		return 0;
+	row[0] = t->time < 0 ? NAN : read_time(t, t->cell[t->time]);
 	if (t->rate >= 0)
-		check_rate(t, cell[t->rate], copy);
-	for (int c = 0; c < t->format.channels; c++) {
-		if (!number(t, cell[t->taken[c]], &row[1 + c]))
-			die(EXIT_RUN, "%s: line %ld: not a number: %.40s", t->name,
-				t->number, copy);
-		row[1 + c] *= t->scale[c];
-	}
-	free(copy);
-	free(cell);
+		check_rate(t, t->cell[t->rate]);
+	for (int c = 0; c < t->format.channels; c++)
+		row[1 + c] = read_number(t, c) * t->scale[c];
 	return 1;
 }
 
@@ -392,7 +439,9 @@ static void learn_rate(struct text_in *t, const struct recording_par *par)
 	if (isnan(rate))
 		rate = told_rate(t);
 	if (isnan(rate))
-		die(EXIT_RUN, "%s: no column of times: specify --rate", t->name);
+		die(EXIT_RUN,
+			"%s: no column 'time' or 't': specify --rate, or --time NAME",
+			t->name);
 	if (!(rate >= RATE_LEAST && rate <= RATE_MOST))
 		die(EXIT_RUN, "%s: %g samples per second, want %g to %g", t->name, rate,
 			RATE_LEAST, RATE_MOST);
@@ -408,7 +457,7 @@ static void learn_rate(struct text_in *t, const struct recording_par *par)
 struct text_in *text_open(struct input *in, const struct recording_par *par)
 {
 	struct text_in *t = xcalloc(1, sizeof *t);
-	char **unit, *copy;
+	char *copy;
 	double v;
 	int numbers = 1;
 
@@ -421,15 +470,20 @@ struct text_in *text_open(struct input *in, const struct recording_par *par)
 				par->skip);
 	if (!next_line(t))
 		die(EXIT_RUN, "%s: no row", t->name);
-	t->separator = strchr(t->line, '\t')  ? '\t'
-		       : strchr(t->line, ';') ? ';'
-		       : strchr(t->line, ',') ? ','
-					      : ' ';
+	/* "Diameter [um]" alone is one column. */
+	t->separator = strchr(t->line, '\t')   ? '\t'
+		       : strchr(t->line, ';')  ? ';'
+		       : strchr(t->line, ',')  ? ','
+		       : strstr(t->line, " [") ? '\n'
+		       : strstr(t->line, " (") ? '\n'
+					       : ' ';
 	t->commas = t->separator != ',';
 	t->heading = xcalloc(strlen(t->line) + 2, sizeof *t->heading);
 	copy = xstrdup(t->line);
 	t->cells = cut(t, copy, t->heading, (int)strlen(t->line) + 1);
-	unit = xcalloc((size_t)t->cells + 1, sizeof *unit);
+	t->cell = xcalloc((size_t)t->cells + 1, sizeof *t->cell);
+	t->unit = xcalloc((size_t)t->cells + 1, sizeof *t->unit);
+	t->name_of = xcalloc((size_t)t->cells + 1, sizeof *t->name_of);
 	t->taken = xcalloc((size_t)t->cells + 1, sizeof *t->taken);
 	t->scale = xcalloc((size_t)t->cells + 1, sizeof *t->scale);
 	for (int i = 0; i < t->cells; i++) {
@@ -442,12 +496,82 @@ struct text_in *text_open(struct input *in, const struct recording_par *par)
 		die(EXIT_RUN, "%s: line %ld: want a line of headings", t->name,
 			t->number);
 	for (int i = 0; i < t->cells; i++)
-		unit[i] = unit_of(t->heading[i]);
+		t->unit[i] = unit_of(t->heading[i]);
 	choose(t, par);
-	scale_units(t, unit);
+	t->time_scale = 1;
+	if (par->table)
+		return t;
+	scale_units(t);
 	learn_rate(t, par);
-	free(unit);
 	return t;
+}
+
+/* ---- as a table, without a rate ---- */
+
+static const char *unit_word(char *unit)
+{
+	for (char *s = unit; s && *s; s++)
+		if (strchr(" \t", *s))
+			*s = '_';
+	return unit && *unit ? unit : "1";
+}
+
+static struct table_out *create_table(struct text_in *t, const char *start)
+{
+	struct text columns = { 0 }, units = { 0 };
+	char *cmd = opt_cmd(NULL, NULL), moment[MOMENT_TEXT];
+	struct table_out *out;
+
+	if (t->absolute && start)
+		die(EXIT_USAGE, "--start %s: the times are moments", start);
+	if (t->absolute)
+		start = moment_text(&t->start, moment);
+	if (t->time >= 0) {
+		text_add(&columns, "t ");
+		text_add(&units, "%s ", t->absolute ? "s" : unit_word(t->unit[t->time]));
+	}
+	for (int c = 0; c < t->format.channels; c++) {
+		text_add(&columns, "%s%s", c ? " " : "", t->name_of[c]);
+		text_add(&units, "%s%s", c ? " " : "", unit_word(t->unit[t->taken[c]]));
+	}
+	out = table_create(NULL, cmd, units.s, columns.s);
+	if (start)
+		table_comment(out, "start", "%s", start);
+	free(columns.s);
+	free(units.s);
+	free(cmd);
+	return out;
+}
+
+static int is_text(const char *name)
+{
+	return !strcmp(name, "unit") || !strcmp(name, "event");
+}
+
+double text_to_table(struct text_in *t, const char *start)
+{
+	struct table_out *out = NULL;
+	double rows = 0;
+
+	while (read_cells(t)) {
+		double time = t->time < 0 ? NAN : read_time(t, t->cell[t->time]);
+
+		if (!out)
+			out = create_table(t, start);
+		if (t->time >= 0)
+			table_put(out, time);
+		for (int c = 0; c < t->format.channels; c++)
+			if (is_text(t->name_of[c]))
+				table_put_text(out, t->cell[t->taken[c]]);
+			else
+				table_put(out, read_number(t, c));
+		table_end_row(out);
+		rows++;
+	}
+	if (!out)
+		die(EXIT_RUN, "%s: no row below the headings", t->name);
+	table_done(out);
+	return rows;
 }
 
 const struct signal_format *text_format(const struct text_in *t)
@@ -476,6 +600,11 @@ void text_close(struct text_in *t)
 {
 	input_close(t->in);
 	free(t->ahead);
+	for (int c = 0; c < t->format.channels; c++)
+		free(t->name_of[c]);
+	free(t->name_of);
+	free(t->unit);
+	free(t->cell);
 	free(t->taken);
 	free(t->scale);
 	free(t->heading);

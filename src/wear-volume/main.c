@@ -2,6 +2,7 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "common/periods.h"
 #include "common/verdicts.h"
 #include "io/quantities.h"
 #include "io/tables.h"
@@ -9,7 +10,6 @@
 #include <stdlib.h>
 
 static const double sphere = 0.52359877559829887; /* pi / 6 */
-static const double rows_most = 1e7;              /* between two particles */
 static double period = 1, time_scale = 1;
 
 static const struct opt opts[] = {
@@ -108,12 +108,12 @@ static void sum_rows(struct table_in *t, struct table_out *out)
 			die(EXIT_RUN,
 				"%s: line %ld: another record begins: sum each for itself",
 				table_name(t), table_line(t));
-		if (time / period - (double)rows > rows_most)
+		if (time / period - (double)rows > PERIODS_MOST)
 			die(EXIT_RUN,
-				"%s: line %ld: %s %g is more than ten million --period "
-				"behind the row above",
+				"%s: line %ld: %s %g is more than %d periods after the "
+				"particle before: --period or the unit of time is wrong",
 				table_name(t), table_line(t),
-				table_column_name(t, c.time), time);
+				table_column_name(t, c.time), time, PERIODS_MOST);
 		before = time;
 		put_until(out, time, volume, &rows);
 		volume += volume_of(t, &c, &without);

@@ -142,15 +142,19 @@ int main(int argc, char **argv)
 				par.size[0] = 0.8;
 				par.size[1] = 1.15;
 				for (long i = 0; i < sections; i++) {
-					cnndata_section(&par, 1000000000u + i, s);
+					cnndata_section(
+						&par, 1000000000u + (uint32_t)i, s);
 					whiten(s);
-					work_section(net, joint, shape, s, method, &t);
+					work_section(net, joint, shape, s,
+						(enum method)method, &t);
 				}
 				printf("%s\t%d\t%d\t%ld\t%.4f\t%.4g\t%.4g\t%.4g\t%.3g\t%.3g\n",
 					names[method], n, snr, sections,
-					t.found / sections, sqrt(t.time / t.pulses),
-					sqrt(t.delay / t.pulses), sqrt(t.size / t.pulses),
-					t.seconds / sections, t.searches / sections);
+					t.found / (double)sections,
+					sqrt(t.time / t.pulses), sqrt(t.delay / t.pulses),
+					sqrt(t.size / t.pulses),
+					t.seconds / (double)sections,
+					t.searches / (double)sections);
 				fflush(stdout);
 			}
 	free(s);

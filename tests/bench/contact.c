@@ -169,7 +169,7 @@ static void compare(const char *scene, const struct contact_par *par, double mea
 		double y = ((double)(i / nx) + 0.5) * par->dy - 0.5;
 
 		sum[0] += q ? fabs(p[i] - q[i]) / mean : NAN;
-		sum[1] += q ? (p[i] > 0) - (q[i] > 0) : NAN;
+		sum[1] += q ? (double)((p[i] > 0) - (q[i] > 0)) : NAN;
 		sum[2] += fabs(p[i] - exact_pressure(scene, mean, x, y)) / mean;
 	}
 	for (int k = 0; k < 3; k++)
@@ -218,9 +218,9 @@ int main(int argc, char **argv)
 	q = read_pressure(argc > 6 ? argv[6] : NULL, cells);
 	compare(argv[1], &par, mean, p, q, error);
 	printf("%s\t%d\t%g\t%s\t%g\t%.3g\t%.3g\t%.3g\t%.3g\t%.5f\t%.4f\t%.4f\t%ld\t%ld\t%.1f\t%.1f\n",
-		argv[1], par.nx, mean, argv[4], par.tolerance, r->certificate, error[0],
-		error[1], error[2], r->area, setup, solve, r->iterations, r->transforms,
-		r->work, memory);
+		argv[1], par.nx, mean, argv[4], par.tolerance, r->optimality_gap,
+		error[0], error[1], error[2], r->area, setup, solve, r->iterations,
+		r->transforms, r->work, memory);
 	contact_free(c);
 	fft_free(h);
 	fft_free(p);

@@ -6,7 +6,7 @@
 # free      rough paraboloid on a free surface
 # hertz     paraboloid, wave: closed forms, whose error is that of the grid
 #
-# certificate     sum p (g - min g) / sum p (u - u0) reached: see bemcontact(1)
+# optimality_gap  sum p (g - min g) / sum p (u - u0) reached: see bemcontact(1)
 # pressure_error  mean |p - reference| over the mean pressure; reference: tolerance 1e-12
 # area_error      area less that of the reference
 # exact_error     mean |p - closed form| over the mean pressure
@@ -34,7 +34,7 @@ curves() {
 }
 
 all() {
-	printf 'scene\tn\tpressure\tsolver\ttolerance\tcertificate\tpressure_error\tarea_error\t'
+	printf 'scene\tn\tpressure\tsolver\ttolerance\toptimality_gap\tpressure_error\tarea_error\t'
 	printf 'exact_error\tarea\tsetup_seconds\tseconds\titerations\ttransforms\twork\tmemory_mb\n'
 	for n in $grids; do
 		for p in 0.0025 0.01 0.036; do

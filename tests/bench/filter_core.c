@@ -2,7 +2,7 @@
  * Prints particles, steps, seconds, particle-steps per second, root mean square error
  * over that of the Kalman filter, and the root mean square difference from its mean over
  * its standard deviation. */
-#include "life/filter.h"
+#include "life/particle/filter.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

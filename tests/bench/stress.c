@@ -42,12 +42,12 @@ static struct stress_par grid(int n, double side)
 /* Hertz pressure p0 = a = 1 at the cell centres. */
 static double *hertz(const struct stress_par *par)
 {
-	size_t n = (size_t)par->nx * par->ny;
+	size_t n = (size_t)par->nx * (size_t)par->ny;
 	double *p = calloc(n, sizeof *p);
 
 	for (size_t i = 0; i < n; i++) {
-		double x = ((int)(i % par->nx) + 0.5 - 0.5 * par->nx) * par->dx;
-		double y = ((int)(i / par->nx) + 0.5 - 0.5 * par->ny) * par->dy;
+		double x = ((int)(i % (size_t)par->nx) + 0.5 - 0.5 * par->nx) * par->dx;
+		double y = ((int)(i / (size_t)par->nx) + 0.5 - 0.5 * par->ny) * par->dy;
 
 		p[i] = sqrt(fmax(0, 1 - x * x - y * y));
 	}
@@ -56,10 +56,10 @@ static double *hertz(const struct stress_par *par)
 
 static size_t whole(const struct stress_par *par, struct stress_span **span)
 {
-	*span = malloc(par->ny * sizeof(**span));
+	*span = malloc((size_t)par->ny * sizeof(**span));
 	for (int y = 0; y < par->ny; y++)
 		(*span)[y] = (struct stress_span){ y, 0, par->nx };
-	return par->ny;
+	return (size_t)par->ny;
 }
 
 /* On the axis below a Hertz contact with friction. */
@@ -76,7 +76,8 @@ static double axis_mises(double Z, double nu, double mu)
 static void bench_grid(int n)
 {
 	struct stress_par par = grid(n, 4);
-	double *p = hertz(&par), *m = malloc(sizeof *m * n * n), error = 0, time;
+	double *p = hertz(&par), *m = malloc(sizeof *m * (size_t)n * (size_t)n),
+	       error = 0, time;
 	struct stress_span *span;
 	size_t count = whole(&par, &span);
 	struct stress *s = stress_new(&par);
@@ -85,8 +86,8 @@ static void bench_grid(int n)
 	stress_load(s, p);
 	for (int k = 10; k <= 30; k++) {
 		stress_at(s, 0.05 * k, span, count, m);
-		error = fmax(error,
-			fabs(m[(size_t)n * n / 2] - axis_mises(0.05 * k, 0.3, 0.3)));
+		error = fmax(error, fabs(m[(size_t)n * (size_t)n / 2] -
+					    axis_mises(0.05 * k, 0.3, 0.3)));
 	}
 	row("hertz", "free", n, error, (seconds() - time) / 21);
 	stress_free(s);
@@ -110,10 +111,11 @@ static void bench_padding(double factor)
 	wide.nx = wide.ny = side;
 	wide.periodic = 1;
 	wcount = whole(&wide, &wspan);
-	q = calloc((size_t)side * side, sizeof *q);
-	w = malloc((size_t)side * side * sizeof *w);
+	q = calloc((size_t)side * (size_t)side, sizeof *q);
+	w = malloc((size_t)side * (size_t)side * sizeof *w);
 	for (int y = 0; y < N; y++)
-		memcpy(q + (size_t)(y + at) * side + at, p + y * N, N * sizeof *p);
+		memcpy(q + (size_t)(y + at) * (size_t)side + at, p + y * N,
+			N * sizeof *p);
 	stress_load(s, p);
 	ws = stress_new(&wide);
 	time = seconds();
@@ -122,8 +124,9 @@ static void bench_padding(double factor)
 		stress_at(s, 0.05 * k, span, count, m);
 		stress_at(ws, 0.05 * k, wspan, wcount, w);
 		for (int i = 0; i < N * N; i++)
-			error = fmax(error,
-				fabs(m[i] - w[(size_t)(i / N + at) * side + i % N + at]));
+			error = fmax(
+				error, fabs(m[i] - w[(size_t)(i / N + at) * (size_t)side +
+							   (size_t)(i % N + at)]));
 	}
 	row("padding", "periodic", factor, error, (seconds() - time) / 3);
 	stress_free(s);
@@ -141,17 +144,17 @@ static void bench_padding(double factor)
 static void bench_way(int n, double depth, double share)
 {
 	struct stress_par par = grid(n, n);
-	double *p = calloc((size_t)n * n, sizeof *p), *m[2], time[2], error = 0;
+	double *p = calloc((size_t)n * (size_t)n, sizeof *p), *m[2], time[2], error = 0;
 	struct stress_span *span;
 	size_t count = whole(&par, &span);
 	char scene[64];
 
 	for (int k = 0; k < n * n; k++)
-		p[k] = philox_uniform(1, 0, RNG_NOISE, k) < share;
+		p[k] = philox_uniform(1, 0, RNG_NOISE, (uint64_t)k) < share;
 	for (int way = 0; way < 2; way++) {
 		struct stress *s;
 
-		m[way] = calloc((size_t)n * n, sizeof(**m));
+		m[way] = calloc((size_t)n * (size_t)n, sizeof(**m));
 		par.method = way ? STRESS_FULL : STRESS_COARSE;
 		s = stress_new(&par);
 		stress_load(s, p);

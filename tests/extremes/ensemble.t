@@ -47,7 +47,7 @@ scene 'shape 50: all nearly equal' 'the shape' 50 0.002 "$(fitted weibull_shape 
 weibull 2000 2e-4 0.3 | debrisstat >fits
 scene 'shape 0.3: diameters over 15 decades' 'the shape' 0.3 0.002 "$(fitted weibull_shape fits)"
 weibull 2000 2e-4 0.2 | debrisstat >fits
-told 'shape 0.2: diameters over 22 decades' 'counted, not fitted' '2000 nan' "$(fitted particles fits) $(fitted weibull_shape fits)"
+scene 'shape 0.2: diameters over 22 decades' 'the shape' 0.2 0.002 "$(fitted weibull_shape fits)"
 weibull 1 2e-4 2 | debrisstat >fits
 told 'one particle' 'counted, not fitted' '1 nan' "$(fitted particles fits) $(fitted weibull_shape fits)"
 awk 'BEGIN { print "realisation\tstep\tvolume\tdiameter\taspect"; for (i = 0; i < 50; i++) print i "\t1\t1e-15\t1e-5\t1" }' |

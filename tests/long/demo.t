@@ -36,7 +36,7 @@ fi
 } >probe.html
 for width in 400 800 1400; do
 	"$browser" --headless --no-sandbox --disable-gpu --disable-quic --no-first-run \
-		--disable-background-networking --disable-component-update --disable-sync \
+		--disable-background-networking --disable-component-update --disable-sync --disable-dev-shm-usage \
 		--user-data-dir="$work/profile" --enable-logging=stderr --window-size=$width,900 \
 		--dump-dom "file://$work/probe.html" >dom 2>log
 	is "$width pixels wide: all pictures are drawn, nothing is wider" \

@@ -18,6 +18,8 @@ roughgen --points 16 --length 10um --sq 0.1um --corr 3um --count 2 >surfaces
 bemcontact --pressure 50MPa --young 210GPa surfaces >contacts
 debrisgen --yield 355MPa --friction 0.3 contacts >particles 2>/dev/null
 sensorsim --uniform 80um:150um --number 10 --duration 200ms --noise 5mV --truth truth >signal
+sensorsim --uniform 80um:150um --number 10 --duration 500ms --noise 5mV --pump 30mV --seed 3 |
+	bpfilter --band 0:800Hz --order 200 >hum
 awk 'BEGIN { print "t\ty"; for (i = 0; i < 30; i++) print i "\t" 1 + i / 50 }' >series
 printf 'volume\n1.1e-15\n1.4e-15\n0.9e-15\n1.2e-15\n' >wear
 delaynet --columns 8 --layers 3:relu --count 20 --epochs 2 --batch 10 >net
@@ -54,10 +56,7 @@ broken() {
 scene() {
 	sides=$1
 	shift
-	calls='malloc calloc realloc'
-	# Not yet: the learning of duet takes a fit without memory for a bad fit.
-	[ "$1" != duet ] || calls=
-	for call in $calls strdup read write fwrite fopen fclose fflush open_memstream pthread_create; do
+	for call in malloc calloc realloc strdup read write fwrite fopen fclose fflush open_memstream pthread_create; do
 		FAULT_CALL=$call FAULT_COUNT=count LD_PRELOAD=./shim.so "$@" >out.whole 2>err.whole </dev/null
 		normal=$?
 		for f in $sides; do mv "$f" "$f.whole"; done
@@ -124,6 +123,9 @@ scene '' debrisstat particles
 scene 'side1' sensorsim --uniform 80um:150um --number 10 --duration 200ms --noise 5mV --truth side1
 scene '' bpfilter --order 100 --lines 50 signal
 scene 'side1 side2' duet --separated side1 --sections side2 signal
+scene 'side1' duet --histogram side1 --method duet hum
+scene '' duet --method count signal
+scene 'side1' duet --method duet --align 0 --separated side1 signal
 scene '' aopf --particles 20 --threshold 2 series
 scene '' rwl --new --wear wear --step-time 1h --threshold-gap 11um --count 20
 scene '' delaynet --columns 8 --layers 3:relu --count 20 --epochs 2 --batch 10

@@ -10,8 +10,8 @@
  * time.
  */
 #include "../unit/tap.h"
-#include "life/bank.h"
-#include "life/draw.h"
+#include "life/particle/draw.h"
+#include "life/trend/bank.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -154,7 +154,7 @@ static void check_way_back(void)
 		cnn_lay(&s->section, x, &f);
 		out[s->sources - 1] = 1;
 		memcpy(out + cnn_head(s->sources), target + 1,
-			3 * s->sources * sizeof *target);
+			3 * (size_t)s->sources * sizeof *target);
 		right = right && cnn_pulses(out, &f, 0, p) == s->sources;
 		for (int k = 0; k < s->sources; k++) {
 			worst = fmax(worst, fabs(p[k].t - s->pulse[k].t));

@@ -71,8 +71,8 @@ static void solve_one(int k, struct outcome *o)
 	if (contact_solve(c, h, CONTACT_PRESSURE, mean, p, NULL) == CONTACT_OK)
 		o->solved++;
 	else
-		printf("# problem %d: %dx%d, certificate %g after %ld iterations\n", k,
-			par.nx, par.ny, contact_result(c)->certificate,
+		printf("# problem %d: %dx%d, optimality gap %g after %ld iterations\n", k,
+			par.nx, par.ny, contact_result(c)->optimality_gap,
 			contact_result(c)->iterations);
 	energy = contact_result(c)->energy;
 	o->iterations += contact_result(c)->iterations;

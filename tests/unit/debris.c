@@ -28,10 +28,13 @@ static void press(double *p, int seed)
 {
 	memset(p, 0, CELLS * sizeof *p);
 	for (int k = 0; k < 25; k++) {
-		int x = 6 + (int)(28 * philox_uniform(seed, 0, RNG_NOISE, 3 * k));
-		int y = 6 + (int)(16 * philox_uniform(seed, 0, RNG_NOISE, 3 * k + 1));
+		int x = 6 + (int)(28 * philox_uniform((uint64_t)seed, 0, RNG_NOISE,
+					       3 * (uint64_t)k));
+		int y = 6 + (int)(16 * philox_uniform((uint64_t)seed, 0, RNG_NOISE,
+					       3 * (uint64_t)k + 1));
 
-		p[y * NX + x] = 1e9 * philox_uniform(seed, 0, RNG_NOISE, 3 * k + 2);
+		p[y * NX + x] = 1e9 * philox_uniform((uint64_t)seed, 0, RNG_NOISE,
+					      3 * (uint64_t)k + 2);
 	}
 }
 
@@ -211,8 +214,8 @@ static void test_history(void)
  */
 static double hertz_volume(int n, double cell, double offset, enum wear_rule rule)
 {
-	double *p = calloc((size_t)n * n, sizeof *p),
-	       *h = calloc((size_t)n * n, sizeof *h);
+	double *p = calloc((size_t)n * (size_t)n, sizeof *p),
+	       *h = calloc((size_t)n * (size_t)n, sizeof *h);
 	struct debris_par par = { .yield = 0.25,
 		.rule = rule,
 		.cell = cell,

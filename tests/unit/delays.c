@@ -5,9 +5,9 @@
 #include "tap.h"
 #include <string.h>
 
-static double uniform(uint64_t i)
+static double uniform(long i)
 {
-	return philox_uniform(3, 0, RNG_NETWORK, i);
+	return philox_uniform(3, 0, RNG_NETWORK, (uint64_t)i);
 }
 
 /* Least squared difference over all 24 orders, by trying them. */
@@ -38,8 +38,8 @@ static void check_orders(void)
 		struct delayscore score = { 0 };
 
 		for (int i = 0; i < 4; i++) {
-			a[i] = s % 5 ? uniform(8 * s + i) : 0.5;
-			b[i] = uniform(8 * s + 4 + i);
+			a[i] = (network_real)(s % 5 ? uniform(8 * s + i) : 0.5);
+			b[i] = (network_real)uniform(8 * s + 4 + i);
 		}
 		delayscore_add(&score, &par, 1, 4, a, b);
 		delayscore_finish(&score);
@@ -87,8 +87,8 @@ static void check_levels(void)
 					       same[3] = { 0.5, 0.5, 0.5 };
 
 		for (int k = 0; k < 3; k++) {
-			label[k] = uniform(1000 + 6 * i + k);
-			any[k] = uniform(1003 + 6 * i + k);
+			label[k] = (network_real)uniform(1000 + 6 * i + k);
+			any[k] = (network_real)uniform(1003 + 6 * i + k);
 		}
 		delayscore_add(&half, &par, 1, 3, same, label);
 		delayscore_add(&sorted, &par, 1, 3, mean, label);
@@ -141,7 +141,7 @@ static void check_shift(void)
 		delaydata_sample(&par, i, x, delay);
 		/* A half wave without jumps: its centre of mass moves with it. */
 		for (int p = 0; p < 2000; p++) {
-			c[p / 1000] += x[p] * (p % 1000);
+			c[p / 1000] += x[p] * (network_real)(p % 1000);
 			m[p / 1000] += x[p];
 		}
 		if (m[0] < 0.5)

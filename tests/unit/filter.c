@@ -1,6 +1,6 @@
 /* The particle filter against the Kalman filter, and resampling against its definition.
  */
-#include "life/filter.h"
+#include "life/particle/filter.h"
 #include "tap.h"
 #include <stdlib.h>
 #include <string.h>

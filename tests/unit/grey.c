@@ -1,5 +1,5 @@
 /* The grey model against the textbook and against 60-digit arithmetic. */
-#include "life/grey.h"
+#include "life/grey/grey.h"
 #include "tap.h"
 #include <stdint.h>
 #include <stdlib.h>

@@ -153,12 +153,12 @@ static void hardness_solve(int k, enum contact_solver solver, struct hardness_ou
 	if (status == CONTACT_OK && gap < 2e-8)
 		o->solved++;
 	else
-		printf("# scene %d: %dx%d, %s, load %.17g cells, certificate %g after %ld "
+		printf("# scene %d: %dx%d, %s, load %.17g cells, optimality gap %g after %ld "
 		       "iterations, gap %g\n",
 			k, s.par.nx, s.par.ny,
 			s.par.boundary == CONTACT_FREE ? "free" : "periodic",
 			s.mean / s.par.hardness * s.par.nx * s.par.ny,
-			contact_result(c)->certificate, contact_result(c)->iterations,
+			contact_result(c)->optimality_gap, contact_result(c)->iterations,
 			gap);
 	o->worst = fmax(o->worst, gap);
 	if (contact_result(c)->iterations > o->most)

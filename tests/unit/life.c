@@ -1,11 +1,11 @@
 /* Order selection, noise, run-in, history, damage models and fleet comparison. */
-#include "life/adaptive.h"
-#include "life/bank.h"
-#include "life/fleet.h"
-#include "life/grey.h"
-#include "life/history.h"
-#include "life/noise.h"
-#include "life/runin.h"
+#include "life/grey/grey.h"
+#include "life/grey/noise.h"
+#include "life/particle/adaptive.h"
+#include "life/prior/fleet.h"
+#include "life/trend/bank.h"
+#include "life/trend/history.h"
+#include "life/trend/runin.h"
 #include "tap.h"
 #include <stdlib.h>
 
@@ -229,7 +229,7 @@ static void test_fleet(void)
 	struct bank_par par = { .threshold = 0, .direction = -1 };
 	struct bank *b;
 	double life[DRAWS], alone = 0;
-	int failed, carried_on;
+	int failed, carried_on, shapes;
 
 	for (int k = 0; k <= 104; k++)
 		fleet_add(f, 0, 7 + k, 1 - k * k / 1e4 + 0.005 * draw_normal(d));
@@ -237,8 +237,9 @@ static void test_fleet(void)
 		fleet_add(f, 1, k, 1 - k * k / 1.7e4 + 0.005 * draw_normal(d));
 	for (int k = 0; k < 50; k++)
 		fleet_add(f, 2, k, 1);
-	ok(fleet_build(f, &failed, &carried_on) == 2 && failed == 1 && carried_on == 1 &&
-			fleet_units(f) == 3,
+	ok(fleet_build(f, &failed, &carried_on) == NUM_OK && failed == 1 &&
+			carried_on == 1 && fleet_units(f) == 3 &&
+			fleet_shapes(f, &shapes) && shapes == 2,
 		"a unit that failed, one that is carried on, one that shows no wear");
 	for (int with = 0; with <= 1; with++) {
 		if (with)

@@ -1,5 +1,5 @@
 /* metrics - scores of predictions against closed forms */
-#include "life/metrics.h"
+#include "life/score/metrics.h"
 #include "tap.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_math.h>
@@ -77,18 +77,19 @@ static void check_sums(void)
 	struct metrics_sum s;
 	double pair[2] = { 12, 8 };
 
-	ok(metrics_add(m, 0, 130, 90, 140, NULL, NULL, 0, &row) == 1 && !row.inside &&
-			row.covered,
+	ok(metrics_add(m, 0, 130, 90, 140, NULL, NULL, 0, &row) == NUM_OK &&
+			!row.inside && row.covered,
 		"30 %% late is outside the cone of 20 %%");
 	near(row.accuracy, 0.7, 1e-15, "relative accuracy");
-	ok(metrics_add(m, 20, 95, 85, 99, NULL, NULL, 0, &row) == 1 && row.inside &&
+	ok(metrics_add(m, 20, 95, 85, 99, NULL, NULL, 0, &row) == NUM_OK && row.inside &&
 			!row.covered,
 		"15 of 80 late is inside");
-	ok(metrics_add(m, 90, 10, 8, 12, pair, NULL, 2, &row) == 1, "samples are taken");
+	ok(metrics_add(m, 90, 10, 8, 12, pair, NULL, 2, &row) == NUM_OK,
+		"samples are taken");
 	near(row.crps, 0.25 * 4, 1e-15, "their order does not matter");
 	near(row.mass, 1, 0, "both are within 20 %% of 10");
-	ok(metrics_add(m, 100, 1, 0, 1, NULL, NULL, 0, NULL) == 0 &&
-			metrics_add(m, 95, NAN, 0, 1, NULL, NULL, 0, NULL) == 0,
+	ok(metrics_add(m, 100, 1, 0, 1, NULL, NULL, 0, NULL) == NUM_DOMAIN &&
+			metrics_add(m, 95, NAN, 0, 1, NULL, NULL, 0, NULL) == NUM_DOMAIN,
 		"what comes after the end, or is no prediction, is not counted");
 	s = metrics_get(m);
 	ok(s.n == 3, "three were counted");

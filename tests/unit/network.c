@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double uniform(uint64_t i)
+static double uniform(long i)
 {
-	return 2 * philox_uniform(11, 0, RNG_NETWORK, i) - 1;
+	return 2 * philox_uniform(11, 0, RNG_NETWORK, (uint64_t)i) - 1;
 }
 
 /* A convolution with stride written out as sums, against the network. */
@@ -24,9 +24,9 @@ static void check_convolution(void)
 
 	network_start(net, 1, 0);
 	for (size_t i = 0; i < network_weight_count(net); i++)
-		w[i] += 0.1 * uniform(i);
+		w[i] += (network_real)(0.1 * uniform((long)i));
 	for (int i = 0; i < 2 * C * H * W; i++)
-		x[i] = uniform(1000 + i);
+		x[i] = (network_real)uniform(1000 + i);
 	ok(network_outputs(net) == F * H * OW, "convolution: %d outputs", F * H * OW);
 	y = network_forward(net, x, 2);
 	for (int o = 0; o < 2 * F * H * OW; o++) {
@@ -68,11 +68,11 @@ static void check_cascade(void)
 		{ NETWORK_CASCADE, NETWORK_TANH, .units = 1 },
 		{ NETWORK_DENSE, NETWORK_LINEAR, .units = 1 } };
 	struct network *net = network_new((struct network_shape){ 1, 1, 2 }, layer, 3, 1);
-	network_real *w = network_weights(net), x[2] = { 0.3, -0.8 };
+	network_real *w = network_weights(net), x[2] = { 0.3f, -0.8f };
 	double a, b, c, want;
 
 	for (size_t i = 0; i < network_weight_count(net); i++)
-		w[i] = uniform(i);
+		w[i] = (network_real)uniform((long)i);
 	a = tanh(x[0] * w[0] + x[1] * w[2] + w[4]);
 	b = tanh(x[0] * w[1] + x[1] * w[3] + w[5]);
 	c = tanh(x[0] * w[6] + x[1] * w[7] + a * w[8] + b * w[9] + w[10]);
@@ -85,9 +85,9 @@ static void check_cascade(void)
 static void take_line(void *context, long i, network_real *x, network_real *target)
 {
 	(void)context;
-	x[0] = uniform(2 * i);
-	x[1] = uniform(2 * i + 1);
-	target[0] = 2 * x[0] - x[1] + 0.5;
+	x[0] = (network_real)uniform(2 * i);
+	x[1] = (network_real)uniform(2 * i + 1);
+	target[0] = (network_real)(2 * x[0] - x[1] + 0.5);
 }
 
 static void check_training(void)
@@ -166,7 +166,8 @@ static void take_plane(void *context, long i, network_real *x, network_real *tar
 {
 	(void)context;
 	for (int k = 0; k < 8; k++)
-		x[k] = 0.3 * (uniform(2 * i) * cos(k) + uniform(2 * i + 1) * sin(k));
+		x[k] = (network_real)(0.3 * (uniform(2 * i) * cos(k) +
+						    uniform(2 * i + 1) * sin(k)));
 	target[0] = 0;
 }
 

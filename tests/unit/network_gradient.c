@@ -46,8 +46,8 @@ static void check(const struct scene *s)
 	struct network *net = network_new(s->input, s->layer, s->layers, BATCH);
 	struct delayloss_par par = { .lambda = 0.7 };
 	size_t count = network_weight_count(net);
-	real *x = malloc(BATCH * network_inputs(net) * sizeof(real));
-	real *target = malloc(BATCH * network_outputs(net) * sizeof(real));
+	real *x = malloc(BATCH * (size_t)network_inputs(net) * sizeof(real));
+	real *target = malloc(BATCH * (size_t)network_outputs(net) * sizeof(real));
 	real *slope = malloc(count * sizeof(real)),
 	     *scratch = malloc(count * sizeof(real));
 	real *weight = network_weights(net);
@@ -57,8 +57,8 @@ static void check(const struct scene *s)
 	/* Biases off zero, so that their use before the activation counts. */
 	for (size_t w = 0; w < count; w++)
 		weight[w] += 0.02 * (uniform(5000 + w) - 0.5);
-	fill(x, BATCH * network_inputs(net), 100000);
-	fill(target, BATCH * network_outputs(net), 200000);
+	fill(x, BATCH * (size_t)network_inputs(net), 100000);
+	fill(target, BATCH * (size_t)network_outputs(net), 200000);
 	value(net, s, x, target, &par, slope);
 	for (size_t w = 0; w < count; w++) {
 		double keep = weight[w], up, down;

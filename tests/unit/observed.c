@@ -1,6 +1,6 @@
 /* observed - rates of the observations, and the grey model of all of them */
-#include "life/observed.h"
-#include "life/grey.h"
+#include "life/pair/observed.h"
+#include "life/grey/grey.h"
 #include "tap.h"
 
 enum { N = 20000 };

@@ -12,17 +12,18 @@ typedef int (*shape)(double x, double y, double z);
 static size_t find(struct particles *ps, const unsigned char *mask, int nx, int ny,
 	int nz, double dz, const struct particle **list)
 {
-	size_t columns = (size_t)nx * ny, count = 0, n;
-	struct stretch *s = malloc((columns * nz + 1) * sizeof *s);
+	size_t columns = (size_t)nx * (size_t)ny, count = 0, n;
+	struct stretch *s = malloc((columns * (size_t)nz + 1) * sizeof *s);
 
 	/* In the order of layers, as a search from the surface down finds them. */
 	for (int z = 0; z < nz; z++)
 		for (size_t i = 0; i < columns; i++) {
 			int end = z;
 
-			if (!mask[z * columns + i] || (z && mask[(z - 1) * columns + i]))
+			if (!mask[(size_t)z * columns + i] ||
+				(z && mask[(size_t)(z - 1) * columns + i]))
 				continue;
-			while (end < nz && mask[end * columns + i])
+			while (end < nz && mask[(size_t)end * columns + i])
 				end++;
 			s[count++] = (struct stretch){ i, z * dz, end * dz };
 		}
@@ -35,7 +36,7 @@ static size_t find(struct particles *ps, const unsigned char *mask, int nx, int 
 static size_t scan(struct particles *ps, int nx, int ny, int nz, double dz, shape in,
 	const struct particle **list)
 {
-	unsigned char *mask = malloc((size_t)nx * ny * nz);
+	unsigned char *mask = malloc((size_t)nx * (size_t)ny * (size_t)nz);
 	size_t n;
 
 	for (int z = 0; z < nz; z++)
@@ -74,7 +75,7 @@ static void test_box(void)
 	near(p->length, sqrt(14 * 14 + 9 + 1), 1e-12, "box: largest diameter");
 	near(p->width, sqrt(3 * 3 + 1), 0.2,
 		"box: perpendicular diameter, its slant aside");
-	near(p->convexity, 1, 1e-14, "box: convexity");
+	near(p->solidity, 1, 1e-14, "box: solidity");
 	near(p->elongation, 1 - 3. / 14, 1e-12,
 		"box: elongation from its two longest sides");
 	near(p->azimuth, 0, 1e-12, "box: azimuth");
@@ -134,8 +135,8 @@ static void test_ball(void)
 	near(p->elongation, 0, 1e-9, "ball: elongation");
 	near(p->area / (4 * M_PI * R * R), 1.5, 0.03,
 		"ball: exposed faces are 3/2 of the sphere");
-	ok(p->convexity < 1 && p->convexity > 0.9, "ball: convexity %g, below 1",
-		p->convexity);
+	ok(p->solidity < 1 && p->solidity > 0.9, "ball: solidity %g, below 1",
+		p->solidity);
 	near(p->x, R + 1, 1e-9, "ball: centroid");
 	particles_free(ps);
 }
@@ -236,7 +237,7 @@ static int same_shape(const struct particle *a, const struct particle *b)
 	return a->columns == b->columns && same(a->volume, b->volume) &&
 	       same(a->area, b->area) && same(a->length, b->length) &&
 	       same(a->width, b->width) && same(a->aspect, b->aspect) &&
-	       same(a->elongation, b->elongation) && same(a->convexity, b->convexity) &&
+	       same(a->elongation, b->elongation) && same(a->solidity, b->solidity) &&
 	       same(a->dip, b->dip);
 }
 
@@ -340,7 +341,7 @@ static void test_endless(void)
 
 	ok(scan(ps, 24, 16, 1, par.dz, stripe, &p) == 1 && p->endless && p->columns == 64,
 		"a stripe that winds about a periodic grid is endless");
-	ok(isnan(p->length) && isnan(p->width) && isnan(p->convexity) &&
+	ok(isnan(p->length) && isnan(p->width) && isnan(p->solidity) &&
 			isnan(p->azimuth) && isnan(p->elongation) && isnan(p->x) &&
 			isnan(p->y) && p->volume == 64,
 		"it has a volume for each period and no shape");
@@ -379,7 +380,7 @@ static void test_fork(void)
 		"arms that meet below are one particle");
 	near(cells(&p[0], &par), 7 + 7 + 7, 0, "fork: cells");
 	near(cells(&p[1], &par), 7, 0, "free arm: cells");
-	near(p[0].convexity, 21. / 56, 1e-14, "fork: convexity");
+	near(p[0].solidity, 21. / 56, 1e-14, "fork: solidity");
 	near(p[0].area,
 		2 * (7 * 8 - 5 * 7) + 2 * 8 + 4 * 7 - 2 * 7 + 5 * 2 + 2 * 2 + 2 * 7 - 14,
 		0, "fork: surface");
@@ -429,7 +430,7 @@ static void test_periodic(void)
 	near(cells(p, &par), 40, 0, "periodic: cells");
 	near(p->length, sqrt(25 + 16 + 4), 1e-12, "periodic: largest diameter");
 	near(p->area, 2 * (20 + 8 + 10), 1e-12, "periodic: surface");
-	near(p->convexity, 1, 1e-12, "periodic: convexity");
+	near(p->solidity, 1, 1e-12, "periodic: solidity");
 	near(p->x, 9.5, 1e-12, "periodic: centroid x");
 	near(p->y, 7, 1e-12, "periodic: centroid y");
 	near(p->low[0], 7, 1e-12, "periodic: bounding box");
@@ -439,7 +440,7 @@ static void test_periodic(void)
 /* Against a flood fill on random sets, all connectivities. */
 static size_t flood(unsigned char *c, int nx, int ny, int nz, int corners, int periodic)
 {
-	int *stack = malloc(sizeof *stack * nx * ny * nz);
+	int *stack = malloc(sizeof *stack * (size_t)nx * (size_t)ny * (size_t)nz);
 	size_t count = 0;
 
 	for (int i = 0; i < nx * ny * nz; i++) {
@@ -495,20 +496,20 @@ static void test_random(void)
 			.periodic = trial / 2 % 2 };
 		struct particles *ps = particles_new(&par);
 		const struct particle *p;
-		unsigned char *c = malloc(nx * ny * nz);
+		unsigned char *c = malloc((size_t)(nx * ny * nz));
 		size_t n, nodes = 0, sum = 0;
 
 		for (int i = 0; i < nx * ny * nz; i++) {
 			state = state * 1664525 + 1013904223;
-			c[i] = (state >> 16) % 10 < 3u + trial % 4;
+			c[i] = (state >> 16) % 10 < 3u + (unsigned)trial % 4;
 			nodes += c[i];
 		}
 		n = find(ps, c, nx, ny, nz, 1, &p);
 		for (size_t i = 0; i < n; i++) {
 			sum += (size_t)round(p[i].volume);
-			bad += !(p[i].endless ? isnan(p[i].length)
-					      : p[i].length > 0 &&
-							p[i].convexity <= 1 + 1e-12);
+			bad += !(p[i].endless
+					 ? isnan(p[i].length)
+					 : p[i].length > 0 && p[i].solidity <= 1 + 1e-12);
 		}
 		bad += sum != nodes ||
 		       n != flood(c, nx, ny, nz, trial % 2, trial / 2 % 2);

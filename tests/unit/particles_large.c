@@ -33,9 +33,9 @@ int main(void)
 	ok(n == 1 && fabs(p->volume / want - 1) < 1e-12,
 		"1e7 cells in one particle | volume %g m3 | %g m3 | %.1e", want,
 		p->volume, fabs(p->volume / want - 1));
-	ok(fabs(p->convexity - 1) < 1e-12,
-		"1e7 cells in one particle | convexity 1 | %g | %.1e", p->convexity,
-		fabs(p->convexity - 1));
+	ok(fabs(p->solidity - 1) < 1e-12,
+		"1e7 cells in one particle | solidity 1 | %g | %.1e", p->solidity,
+		fabs(p->solidity - 1));
 	ok(fabs(p->z / (LAYERS * 0.5e-6) - 1) < 1e-12,
 		"1e7 cells in one particle | centroid 80 um deep | %g m | %.1e", p->z,
 		fabs(p->z / (LAYERS * 0.5e-6) - 1));

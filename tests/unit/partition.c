@@ -1,5 +1,5 @@
 /* partition - sums over classes and zone, draws of the mean, large particles */
-#include "life/partition.h"
+#include "life/prior/partition.h"
 #include "num/rng.h"
 #include "tap.h"
 #include <gsl/gsl_randist.h>
@@ -33,12 +33,20 @@ static void check_power_mean(void)
 		"linear where one class does not wear");
 }
 
+static int add_class(struct partition *p, int sparse, double pressure, double share)
+{
+	int index = -1;
+
+	if (partition_class(p, sparse, pressure, share, &index) != PARTITION_OK)
+		ok(0, "a class is added");
+	return index;
+}
+
 /* Two classes, three realisations of two steps each. */
 static struct partition *two_classes(double area1, double area2, long first_step)
 {
 	struct partition *p = partition_new(area, first_step, 1);
-	int high = partition_class(p, 0, 21e6, area1),
-	    low = partition_class(p, 0, 1e6, area2);
+	int high = add_class(p, 0, 21e6, area1), low = add_class(p, 0, 1e6, area2);
 
 	for (int r = 0; r < 3; r++)
 		for (int s = 1; s <= 2; s++) {
@@ -114,7 +122,7 @@ static double coverage(int law, int k)
 		int below = 0;
 
 		rng_reset(rng, 3, (uint32_t)i, RNG_LIFE);
-		partition_class(p, 0, NAN, -1);
+		add_class(p, 0, NAN, -1);
 		for (int r = 0; r < k; r++)
 			partition_fragment(p, 0, r, 1, draw_volume(law, rng), 0, 0);
 		partition_close(p, fragment, 0);
@@ -161,7 +169,7 @@ static void check_draws(void)
 	struct partition_wear w, all;
 	double mean = 0, square = 0, want;
 
-	partition_class(p, 0, NAN, -1);
+	add_class(p, 0, NAN, -1);
 	for (int r = 0; r < 400; r++)
 		for (int s = 1; s <= 4; s++)
 			partition_fragment(
@@ -199,7 +207,7 @@ static void check_sparse_draws(void)
 	double mean;
 	int none = 0;
 
-	partition_class(p, 1, NAN, -1);
+	add_class(p, 1, NAN, -1);
 	partition_fragment(p, 0, 0, 1, 1, 1, 1);
 	partition_fragment(p, 0, 4000000000000, 1, 1, 1, 1);
 	ok(partition_close(p, fragment, 0) == PARTITION_OK, "two of 4e12 realisations");
@@ -226,7 +234,7 @@ static void check_groups(void)
 	struct partition_wear w;
 	int first = 0;
 
-	partition_class(p, 0, NAN, -1);
+	add_class(p, 0, NAN, -1);
 	for (int r = 0; r < R; r++) {
 		partition_fragment(p, 0, r, 1, 1, 1, r % 10 == 3);
 		partition_fragment(p, 0, r, 2, 1, 1, r % 10 != 3);
@@ -253,7 +261,7 @@ static void check_order(void)
 	enum partition_status status = PARTITION_OK;
 
 	/* Rows by steps instead of realisations, fewer than there is room for. */
-	partition_class(p, 1, NAN, -1);
+	add_class(p, 1, NAN, -1);
 	for (int s = 1; s <= 3; s++)
 		for (int r = 0; r < 50; r++)
 			partition_fragment(p, 0, r, s, r + s, 1, 0);
@@ -263,7 +271,7 @@ static void check_order(void)
 	partition_free(p);
 	/* More of them, so that the first realisations were handed on. */
 	p = partition_new(fragment, 1, 0);
-	partition_class(p, 1, NAN, -1);
+	add_class(p, 1, NAN, -1);
 	for (int s = 1; s <= 2 && status == PARTITION_OK; s++)
 		for (int r = 0; r < 600000 && status == PARTITION_OK; r++)
 			status = partition_fragment(p, 0, r, s, 1, 1, 0);
@@ -279,7 +287,7 @@ static void check_sparse(void)
 	struct partition_wear w;
 
 	/* Realisations 0..3 and steps 1..2; only two cells hold particles. */
-	partition_class(p, 1, NAN, -1);
+	add_class(p, 1, NAN, -1);
 	partition_fragment(p, 0, 0, 1, 2, 1, 0);
 	partition_fragment(p, 0, 0, 1, 4, 1, 1);
 	partition_fragment(p, 0, 3, 2, 8, 1, 1);
@@ -300,7 +308,7 @@ static void check_sparse(void)
 static void check_refusals(void)
 {
 	struct partition *p = two_classes(-1, -1, 1);
-	int c = partition_class(p, 0, 21e6, -1);
+	int c = add_class(p, 0, 21e6, -1);
 
 	ok(partition_close(p, fragment, 0.1) == PARTITION_EMPTY &&
 			partition_culprit(p) == c,
@@ -311,7 +319,7 @@ static void check_refusals(void)
 		"more area than there is");
 	partition_free(p);
 	p = two_classes(-1, -1, 1);
-	c = partition_class(p, 0, 1e6, -1);
+	c = add_class(p, 0, 1e6, -1);
 	partition_fragment(p, c, 0, 1, 1, 0, 0);
 	ok(partition_close(p, fragment, 0.1) == PARTITION_PRESSURE, "a pressure twice");
 	partition_free(p);
@@ -326,6 +334,12 @@ static void check_refusals(void)
 	p = two_classes(-1, -1, 3);
 	ok(partition_close(p, fragment, 0.1) == PARTITION_EMPTY,
 		"no step left after running-in");
+	partition_free(p);
+	p = partition_new(area, 1, 0);
+	for (int k = 0; k < PARTITION_CLASSES_MAX; k++)
+		add_class(p, 0, 1e6 * (k + 1), -1);
+	ok(partition_class(p, 0, 1e9, -1, &c) == PARTITION_MANY,
+		"a class beyond the last place is refused");
 	partition_free(p);
 }
 

@@ -1,5 +1,5 @@
 /* remaining - first passages, thresholds and the rate followed through noise */
-#include "life/remaining.h"
+#include "life/pair/remaining.h"
 #include "num/rng.h"
 #include "tap.h"
 #include <gsl/gsl_cdf.h>

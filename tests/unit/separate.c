@@ -16,7 +16,7 @@ struct pulse {
 	double stretch; /* of its duration, less 1 */
 };
 
-static struct particle found[2 * MOST];
+static struct transit found[2 * MOST];
 
 static double uniform(uint64_t i, double lo, double hi)
 {

@@ -114,10 +114,10 @@ static void test_coverage(double high, int n)
 		struct weibull w;
 
 		for (int j = 0; j < n; j++)
-			x[j] = s *
-			       pow(-log1p(-cut * philox_uniform(7, i, RNG_BOOTSTRAP, j)),
-				       1 / k);
-		if (weibull_fit(x, NULL, n, 0, high, 0.95, &w))
+			x[j] = s * pow(-log1p(-cut * philox_uniform(7, (uint32_t)i,
+							     RNG_BOOTSTRAP, (uint64_t)j)),
+					   1 / k);
+		if (weibull_fit(x, NULL, (size_t)n, 0, high, 0.95, &w))
 			continue;
 		fits++;
 		shapes += w.shape.low < k && k < w.shape.high;

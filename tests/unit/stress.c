@@ -23,13 +23,13 @@ static size_t whole_grid(const struct stress_par *par, struct stress_span *span)
 {
 	for (int y = 0; y < par->ny; y++)
 		span[y] = (struct stress_span){ y, 0, par->nx };
-	return par->ny;
+	return (size_t)par->ny;
 }
 
 /* Hertz pressure p0 = a = 1 on n x n cells of side h, at their centres. */
 static double *hertz(int n, double h)
 {
-	double *p = calloc((size_t)n * n, sizeof *p);
+	double *p = calloc((size_t)n * (size_t)n, sizeof *p);
 
 	for (int i = 0; i < n * n; i++) {
 		double x = (i % n + 0.5 - 0.5 * n) * h, y = (i / n + 0.5 - 0.5 * n) * h;
@@ -53,8 +53,9 @@ static double axis_mises(double Z, double nu, double mu)
 static double hertz_error(int n, double mu, double *surface)
 {
 	struct stress_par par = plain(n, n, mu);
-	double *p = hertz(n, 4. / n), *m = malloc((size_t)n * n * sizeof *m), error = 0;
-	struct stress_span *span = malloc(n * sizeof *span);
+	double *p = hertz(n, 4. / n), *m = malloc((size_t)n * (size_t)n * sizeof *m),
+	       error = 0;
+	struct stress_span *span = malloc((size_t)n * sizeof *span);
 	struct stress *s;
 
 	par.dx = par.dy = 4. / n;
@@ -64,9 +65,10 @@ static double hertz_error(int n, double mu, double *surface)
 		double e;
 
 		stress_at(s, 0.05 * k, span, whole_grid(&par, span), m);
-		e = k ? fabs(m[(size_t)n * n / 2] - axis_mises(0.05 * k, 0.3, mu)) : 0;
+		e = k ? fabs(m[(size_t)n * (size_t)n / 2] - axis_mises(0.05 * k, 0.3, mu))
+		      : 0;
 		if (k == 0)
-			*surface = m[(size_t)n * n / 2];
+			*surface = m[(size_t)n * (size_t)n / 2];
 		if (k >= 10)
 			error = fmax(error, e);
 	}
@@ -126,8 +128,8 @@ static double *pressed(int n, double h)
 		.tolerance = 1e-10,
 		.max_iterations = 1000 };
 	struct contact *c = contact_new(&par);
-	double *p = calloc((size_t)n * n, sizeof *p);
-	double *height = malloc((size_t)n * n * sizeof *height);
+	double *p = calloc((size_t)n * (size_t)n, sizeof *p);
+	double *height = malloc((size_t)n * (size_t)n * sizeof *height);
 
 	/* p0 = 2 E* a / (pi R), load = 2 / 3 pi p0 a^2. */
 	for (int i = 0; i < n * n; i++) {
@@ -147,8 +149,8 @@ static double surface_error(int cells, double mu, double within, int solved)
 	int n = 2 * cells + 8;
 	struct stress_par par = plain(n, n, mu);
 	double h = 1. / cells, *p = solved ? pressed(n, h) : hertz(n, h),
-	       *m = malloc((size_t)n * n * sizeof *m);
-	struct stress_span *span = malloc(n * sizeof *span);
+	       *m = malloc((size_t)n * (size_t)n * sizeof *m);
+	struct stress_span *span = malloc((size_t)n * sizeof *span);
 	struct stress *s;
 	double error = 0;
 
@@ -233,10 +235,10 @@ static double coarse_error(
 	struct stress_par par, double share, const struct stress_criterion *criterion)
 {
 	static const double depth[] = { 0, 1, 7, 9.99, 10, 14, 20, 40 };
-	size_t n = (size_t)par.nx * par.ny;
+	size_t n = (size_t)par.nx * (size_t)par.ny;
 	double *p = malloc(3 * n * sizeof *p), *a = p + n, *b = a + n, error = 0;
 	double side = fmax(par.dx, par.dy), most = 0;
-	struct stress_span *span = malloc(par.ny * sizeof *span);
+	struct stress_span *span = malloc((size_t)par.ny * sizeof *span);
 	struct stress *s, *full;
 
 	par.criterion = criterion;
@@ -244,8 +246,8 @@ static double coarse_error(
 	par.method = STRESS_FULL;
 	full = stress_new(&par);
 	for (size_t i = 0; i < n; i++) {
-		double x = 2 * M_PI * (double)(i % par.nx) / 50,
-		       y = 2 * M_PI * (double)(i / par.nx) / 50;
+		double x = 2 * M_PI * (double)(i % (size_t)par.nx) / 50,
+		       y = 2 * M_PI * (double)(i / (size_t)par.nx) / 50;
 		double h = cos(2 * x + 3 * y + 1) + cos(7 * x - 2 * y) + cos(5 * y) +
 			   0.5 * cos(13 * x + 11 * y + 2) + 0.3 * cos(21 * x - 17 * y);
 
@@ -309,7 +311,9 @@ static void test_criteria(void)
 		double t[6], v[STRESS_DEVIATOR], p[3], a, b, c, norm = 0;
 
 		for (int i = 0; i < 6; i++)
-			t[i] = 2 * philox_uniform(7, 0, RNG_NOISE, 6 * k + i) - 1;
+			t[i] = 2 * philox_uniform(
+					   7, 0, RNG_NOISE, (uint64_t)(6 * k + i)) -
+			       1;
 		v[DEV_X] = t[STRESS_XX] - t[STRESS_ZZ],
 		v[DEV_Y] = t[STRESS_YY] - t[STRESS_ZZ];
 		v[DEV_XY] = t[STRESS_XY], v[DEV_XZ] = t[STRESS_XZ],
@@ -383,7 +387,7 @@ static void test_reach(double mu)
 	double nodes = 0, kept = 0, failed = 0;
 
 	for (int k = 0; k < 40; k++)
-		p[(int)(SIDE * SIDE * philox_uniform(5, 0, RNG_NOISE, k))] = 1;
+		p[(int)(SIDE * SIDE * philox_uniform(5, 0, RNG_NOISE, (uint64_t)k))] = 1;
 	stress_load(s, p);
 	for (int layer = 0; layer < 6; layer++) {
 		static unsigned char in[SIDE * SIDE];
@@ -392,7 +396,7 @@ static void test_reach(double mu)
 		memset(in, 0, sizeof(in));
 		for (size_t i = 0; i < n; i++) {
 			memset(in + span[i].y * SIDE + span[i].begin, 1,
-				span[i].end - span[i].begin);
+				(size_t)(span[i].end - span[i].begin));
 			kept += span[i].end - span[i].begin;
 		}
 		stress_at(s, layer, all, whole_grid(&par, all), m);
@@ -449,7 +453,7 @@ static void test_periodic_free(double mu, int axis)
 	struct stress *s;
 
 	for (size_t i = 0; i < n; i++) {
-		double x = i % SIDE - MID, y = (double)(i / SIDE) - MID;
+		double x = (double)(i % SIDE) - MID, y = (double)(i / SIDE) - MID;
 
 		p[i] = exp(-(x * x + y * y) / 32);
 	}
@@ -462,7 +466,7 @@ static void test_periodic_free(double mu, int axis)
 	}
 	for (int c = 0; c < 6; c++)
 		for (int k = -6; k <= 6; k++) {
-			size_t at = c * n + (MID + k) * SIDE + MID + 4;
+			size_t at = (size_t)c * n + (size_t)(MID + k) * SIDE + MID + 4;
 
 			error = fmax(error, fabs(a[at] - b[at]));
 			most = fmax(most, fabs(a[at]));
@@ -489,7 +493,8 @@ static void test_periodic_reach(void)
 	par.periodic = 1;
 	s = stress_new(&par);
 	for (int k = 0; k < 12; k++)
-		p[(int)(SIDE * SIDE * philox_uniform(6, 0, RNG_NOISE, k))] = 1 + k;
+		p[(int)(SIDE * SIDE * philox_uniform(6, 0, RNG_NOISE, (uint64_t)k))] =
+			1 + k;
 	stress_load(s, p);
 	for (int layer = 0; layer < 60; layer++) {
 		stress_at(s, layer, all, whole_grid(&par, all), m);

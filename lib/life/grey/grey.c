@@ -1,0 +1,70 @@
+/* grey.c - see grey.h */
+#include "life/grey/grey.h"
+#include <math.h>
+
+void grey_add(struct grey *g, double x, double gap)
+{
+	if (g->n > 0) {
+		double share = g->oldest * gap;
+
+		regression_add(&g->fit, g->tail + share / 2, g->oldest);
+		g->tail += share;
+		g->span += gap;
+	}
+	g->oldest = x;
+	g->n++;
+}
+
+double grey_rate(const struct grey *g)
+{
+	return g->fit.xx > 0 && isfinite(g->fit.xx) && isfinite(g->fit.xy)
+		       ? g->fit.xy / g->fit.xx
+		       : 0;
+}
+
+double grey_level(const struct grey *g)
+{
+	return g->n > 1 ? g->fit.mean_y + grey_rate(g) * (g->tail - g->fit.mean_x)
+			: g->oldest;
+}
+
+double grey_control(const struct grey *g)
+{
+	return grey_level(g) + grey_rate(g) * g->oldest;
+}
+
+double grey_residual(const struct grey *g)
+{
+	double sum = g->fit.yy - grey_rate(g) * g->fit.xy;
+
+	return g->n > 3 && sum > 0 ? sum / (g->n - 3) : 0;
+}
+
+double grey_rate_error(const struct grey *g)
+{
+	return g->fit.xx > 0 ? sqrt(grey_residual(g) / g->fit.xx) : 0;
+}
+
+double grey_level_error(const struct grey *g)
+{
+	return g->n > 1 ? sqrt(grey_residual(g) / (g->n - 1)) : 0;
+}
+
+static double clamp(double x, double limit)
+{
+	return x > limit ? limit : x < -limit ? -limit : x;
+}
+
+/* Growth beyond e^600 is as good as for ever; the clamps keep it finite. */
+double grey_curve(double level, double rate, double t, double gap)
+{
+	double a = clamp(rate * gap, 600), mean;
+
+	mean = fabs(a) > GREY_SERIES ? expm1(a) / a : grey_mean_exp(lanes_all(a))[0];
+	return level * mean * lanes_exp(lanes_all(clamp(-rate * t, 600)))[0];
+}
+
+double grey_forecast(const struct grey *g, double h, double gap)
+{
+	return grey_curve(grey_level(g), grey_rate(g), g->span + h, gap);
+}

@@ -1,0 +1,71 @@
+/* noise.c - see noise.h */
+#include "life/grey/noise.h"
+#include "num/select.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+	WINDOW = 256, /* residuals kept */
+	PERIOD = 8    /* rows between two looks at a full window */
+};
+
+struct noise {
+	double y[2], gap; /* the two last observations and the gap between them */
+	long rows;
+	double residual[WINDOW], sorted[WINDOW];
+	double scale;
+};
+
+struct noise *noise_new(void)
+{
+	return calloc(1, sizeof(struct noise));
+}
+
+void noise_free(struct noise *n)
+{
+	free(n);
+}
+
+void noise_pass(struct noise *n, struct state *s)
+{
+	state_move(s, n, sizeof *n);
+}
+
+/* The median says nothing where most residuals vanish, as with rounded values: then the
+ * root mean square does. */
+static double spread(struct noise *n, int count)
+{
+	double median, sum = 0;
+	size_t middle[2] = { (size_t)(count - 1) / 2, (size_t)count / 2 };
+
+	memcpy(n->sorted, n->residual, (size_t)count * sizeof *n->sorted);
+	select_ranks(n->sorted, (size_t)count, middle, 2);
+	median = 0.5 * (n->sorted[middle[0]] + n->sorted[middle[1]]);
+	for (int i = 0; i < count; i++)
+		sum += n->residual[i] * n->residual[i];
+	return median > 0 ? 1.4826 * median : sqrt(sum / count);
+}
+
+void noise_add(struct noise *n, double y, double gap)
+{
+	if (n->rows >= 2 && gap > 0) {
+		double w = gap / (gap + n->gap);
+		double line = w * n->y[0] + (1 - w) * y;
+		long k = n->rows - 2;
+
+		n->residual[k % WINDOW] =
+			fabs(n->y[1] - line) / sqrt(1 + w * w + (1 - w) * (1 - w));
+		if (k < WINDOW || k % PERIOD == 0)
+			n->scale = spread(n, k + 1 < WINDOW ? (int)k + 1 : WINDOW);
+	}
+	n->y[0] = n->y[1];
+	n->y[1] = y;
+	n->gap = gap;
+	n->rows++;
+}
+
+double noise_scale(const struct noise *n)
+{
+	return n->scale;
+}

@@ -1,0 +1,86 @@
+/* remaining.c - see remaining.h */
+#include "life/pair/remaining.h"
+#include "num/select.h"
+#include <gsl/gsl_randist.h>
+#include <math.h>
+#include <stdlib.h>
+
+double remaining_constant(double left, double rate)
+{
+	if (!(left > 0))
+		return 0;
+	return rate > 0 ? left / rate : INFINITY;
+}
+
+double remaining_draw_rate(double mean, double variance, gsl_rng *rng)
+{
+	if (!(variance > 0) || !(mean > 0))
+		return mean;
+	return gsl_ran_gamma(rng, mean * mean / variance, variance / mean);
+}
+
+/* Shapes beyond these are beyond doubt: a relative scatter of 1e-7 of the passage. */
+static const double shape_max = 1e14;
+
+double remaining_gamma(double left, double mean, double variance, gsl_rng *rng)
+{
+	double shape, scale, low = 0, high, worn = 0, next;
+
+	if (!(left > 0))
+		return 0;
+	if (!(mean > 0))
+		return INFINITY;
+	shape = mean * mean / variance; /* of one unit of time */
+	scale = variance / mean;
+	high = left / mean;
+	if (!(variance > 0) || !(shape * high < shape_max))
+		return high;
+	if (!(shape > 0) || !isfinite(scale))
+		return INFINITY; /* all wear comes in jumps that are never seen */
+	/* next: worn at high */
+	next = gsl_ran_gamma(rng, shape * high, scale);
+	while (next < left) {
+		if (!isfinite(2 * high))
+			return INFINITY;
+		worn = next;
+		next += gsl_ran_gamma(rng, shape * high, scale);
+		low = high;
+		high *= 2;
+	}
+	/* worn at low is below left, next at high is not */
+	while (high - low > 1e-6 * high) {
+		double half = (high - low) / 2;
+		double part = gsl_ran_beta(rng, shape * half, shape * half);
+		double middle = worn + (next - worn) * part;
+
+		if (middle < left) {
+			worn = middle;
+			low += half;
+		} else {
+			next = middle;
+			high -= half;
+		}
+	}
+	return high;
+}
+
+double remaining_large(long step, double step_time, double t)
+{
+	return step < 1 ? INFINITY : fmax((double)step * step_time - t, 0);
+}
+
+struct remaining_summary remaining_sum_up(double *sample, size_t n, double horizon)
+{
+	double mean = 0;
+	size_t failed = 0;
+
+	for (size_t i = 0; i < n; i++)
+		if (!(sample[i] <= horizon))
+			sample[i] = INFINITY;
+	sort_numbers(sample, n);
+	/* Running mean: no overflow at 1e300. */
+	for (; failed < n && isfinite(sample[failed]); failed++)
+		mean += (sample[failed] - mean) / (double)(failed + 1);
+	return (struct remaining_summary){ failed ? mean : NAN,
+		(double)(n - failed) / (double)n };
+}

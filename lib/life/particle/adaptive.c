@@ -1,0 +1,580 @@
+/* adaptive.c - see adaptive.h */
+#include "life/particle/adaptive.h"
+#include "life/grey/grey.h"
+#include "life/grey/noise.h"
+#include "num/lanes.h"
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { RECENT = 4, SETTLED = 8 };
+enum { MONITOR = 20 };                 /* rows of the innovation monitor */
+static const double MONITOR_LIMIT = 4; /* of the mean squared innovation */
+static const double MONITOR_CLIP = 16; /* so that one outlier is not a drift */
+static const double MEMORY = 0.05;     /* weight of the newest innovation */
+
+/* A past row of all particles: their states and the gap after them. */
+struct lag {
+	const double *x;
+	const uint32_t *ancestor; /* of those after it; NULL: of the same place */
+	size_t count;             /* of x */
+	double gap;
+};
+
+/* The sums of the grey fits of two particles, x about a centre, u the integral of the
+ * states from the oldest on. */
+struct sums {
+	lanes tail, u, x, uu, ux;
+};
+
+struct adaptive {
+	struct adaptive_par par;
+	struct draw *draw, *draw_paths;
+	struct filter *filter;
+	struct order *order;
+	struct noise *noise;
+	struct lag *lag;    /* [depth] */
+	uint32_t *index;    /* [N] */
+	double *mean;       /* [N] prior means */
+	struct sums *sums;  /* [N / 2] */
+	double *past, *gap; /* rings of the last rows: values and gaps before */
+	double *line_up;    /* past in order */
+	double scale;       /* from here on the state, see adaptive_pass(): power of two
+			     * that values are divided by, of the first but 0 */
+	int scaled;
+	long rows;
+	double time;
+	double observed, observed_time, observed_gap; /* the last observation */
+	double mean_gap;
+	int newest, filled;
+	double missed[RECENT]; /* last squared errors of the grey model, a ring */
+	long misses;
+	double process;             /* sigma_u */
+	double innovation, carried; /* running mean squares */
+	double z2[MONITOR];
+	int nz;
+	int outlier; /* the last observation was taken for one */
+	unsigned long restarts, outliers;
+};
+
+static double *column(struct adaptive *a)
+{
+	return calloc(a->par.filter.particles, sizeof(double));
+}
+
+struct adaptive *adaptive_new(const struct adaptive_par *par)
+{
+	struct adaptive *a = calloc(1, sizeof *a);
+	size_t depth = (size_t)par->order.largest;
+
+	if (!a)
+		return NULL;
+	a->par = *par;
+	a->scale = 1;
+	a->par.filter.depth = par->order.largest;
+	a->draw = draw_new(par->seed, par->realisation, RNG_FILTER);
+	a->draw_paths = draw_new(par->seed, par->realisation, RNG_PREDICT);
+	a->filter = a->draw ? filter_new(&a->par.filter, a->draw) : NULL;
+	a->order = order_new(&par->order);
+	a->noise = noise_new();
+	a->lag = calloc(depth, sizeof *a->lag);
+	a->index = calloc(par->filter.particles, sizeof *a->index);
+	a->mean = column(a);
+	a->sums = calloc((par->filter.particles + 1) / 2, sizeof *a->sums);
+	a->past = calloc(depth, sizeof *a->past);
+	a->gap = calloc(depth, sizeof *a->gap);
+	a->line_up = calloc(depth, sizeof *a->line_up);
+	if (!a->draw_paths || !a->filter || !a->order || !a->noise || !a->lag ||
+		!a->index || !a->mean || !a->sums || !a->past || !a->gap || !a->line_up) {
+		adaptive_free(a);
+		return NULL;
+	}
+	return a;
+}
+
+void adaptive_free(struct adaptive *a)
+{
+	if (!a)
+		return;
+	draw_free(a->draw);
+	draw_free(a->draw_paths);
+	filter_free(a->filter);
+	order_free(a->order);
+	noise_free(a->noise);
+	free(a->lag);
+	free(a->index);
+	free(a->mean);
+	free(a->sums);
+	free(a->past);
+	free(a->gap);
+	free(a->line_up);
+	free(a);
+}
+
+void adaptive_pass(struct adaptive *a, struct state *s)
+{
+	size_t depth = (size_t)a->par.filter.depth,
+	       from = offsetof(struct adaptive, scale);
+
+	draw_pass(a->draw, s);
+	draw_pass(a->draw_paths, s);
+	filter_pass(a->filter, s);
+	order_pass(a->order, s);
+	noise_pass(a->noise, s);
+	state_move(s, a->past, depth * sizeof *a->past);
+	state_move(s, a->gap, depth * sizeof *a->gap);
+	state_move(s, (unsigned char *)a + from, sizeof *a - from);
+}
+
+const struct order *adaptive_order(const struct adaptive *a)
+{
+	return a->order;
+}
+
+const struct filter *adaptive_filter(const struct adaptive *a)
+{
+	return a->filter;
+}
+
+unsigned long adaptive_restarts(const struct adaptive *a)
+{
+	return a->restarts;
+}
+
+unsigned long adaptive_outliers(const struct adaptive *a)
+{
+	return a->outliers;
+}
+
+/* The sums go on by a state at a gap after the one before. */
+static inline void add_state(struct sums *s, lanes x, double gap, double centre)
+{
+	lanes part = x * gap, u = s->tail + 0.5 * part, off = x - centre;
+
+	s->u += u;
+	s->x += off;
+	s->uu += u * u;
+	s->ux += u * off;
+	s->tail += part;
+}
+
+/* The states of a stretch of lags, oldest first, join the sums of each of n of them. */
+static void add_stretch(struct sums *sums, const struct lag *newest, int count,
+	double centre, const uint32_t *index, size_t n)
+{
+	for (size_t i = 0; i < n; i += 2) {
+		size_t a = i, b = i + 1 < n ? i + 1 : i;
+		struct sums s = sums[i / 2];
+
+		if (index) {
+			a = index[a];
+			b = index[b];
+		}
+		for (int k = count; k-- > 0;)
+			add_state(&s, (lanes){ newest[k].x[a], newest[k].x[b] },
+				newest[k].gap, centre);
+		sums[i / 2] = s;
+	}
+}
+
+static struct sums pick_sums(const struct sums *sums, size_t a, size_t b)
+{
+	const struct sums *s = &sums[a / 2], *t = &sums[b / 2];
+	size_t i = a % 2, j = b % 2;
+
+	return (struct sums){ { s->tail[i], t->tail[j] }, { s->u[i], t->u[j] },
+		{ s->x[i], t->x[j] }, { s->uu[i], t->uu[j] }, { s->ux[i], t->ux[j] } };
+}
+
+/* Hands the sums of ancestors, which rise, to their n descendants, in place. */
+static void hand_down(struct sums *sums, const uint32_t *ancestor, size_t n)
+{
+	for (size_t i = (n + 1) / 2; i-- > 0;)
+		sums[i] = pick_sums(sums, ancestor[2 * i],
+			ancestor[2 * i + 1 < n ? 2 * i + 1 : 2 * i]);
+}
+
+/* What the grey curve through these states makes of the interval h after the newest, span
+ * after the oldest.  An exponential through states that cannot be told from 0 means
+ * nothing: these stay at their mean. */
+static lanes forecast_pair(const struct sums *s, double n, double centre, double span,
+	double h, double noise)
+{
+	lanes u = s->u / n, x = s->x / n, uu = s->uu - s->u * u, ux = s->ux - s->u * x,
+	      middle = centre + x;
+	lanes rate = lanes_if(uu > 0, -ux / lanes_pick(uu > 0, uu, lanes_all(1)));
+
+	return lanes_pick(lanes_abs(middle) > 3 * noise,
+		grey_curve_lanes(middle + rate * u, rate, span + h, h), middle);
+}
+
+/* The same for n particles, those in index where there is one.  Histories that have an
+ * ancestor in common share its sums. */
+static void forecast(struct adaptive *a, int count, double h, double noise,
+	const uint32_t *index, size_t n, double *mean)
+{
+	const struct lag *lag = a->lag;
+	const lanes zero = { 0, 0 };
+	double span = 0, centre = lag[0].x[0];
+
+	for (size_t i = 0; i < (n + 1) / 2; i++)
+		a->sums[i] = (struct sums){ zero, zero, zero, zero, zero };
+	for (int from = count; from > 0;) {
+		int to = from - 1;
+
+		while (to > 0 && !lag[to].ancestor)
+			to--;
+		add_stretch(a->sums, lag + to, from - to, centre, index,
+			index ? n : lag[to].count);
+		if (lag[to].ancestor)
+			hand_down(a->sums, lag[to].ancestor,
+				to > 0 ? lag[to - 1].count : n);
+		from = to;
+	}
+	for (int k = 0; k < count; k++)
+		span += lag[k].gap;
+	for (size_t i = 0; i < n; i += 2)
+		lanes_store(mean + i,
+			forecast_pair(&a->sums[i / 2], count, centre, span, h, noise),
+			n - i < 2 ? 1 : 2);
+}
+
+/* Prior mean of every particle: the grey forecast of its own last p states.  The oldest
+ * of the window only opens the first interval (see grey.h). */
+static void forecast_particles(struct adaptive *a, int p, double h, double noise)
+{
+	int depth = a->par.filter.depth;
+
+	for (int k = 0; k < p - 1; k++) {
+		struct lag *lag = &a->lag[k];
+
+		lag->x = filter_states(a->filter, k, &lag->ancestor, &lag->count);
+		lag->gap = a->gap[(a->newest - k + depth) % depth];
+	}
+	forecast(a, p - 1, h, noise, NULL, a->par.filter.particles, a->mean);
+}
+
+static void hold_particles(struct adaptive *a)
+{
+	int changed;
+	const double *x = filter_lag(a->filter, 0, a->index, &changed);
+
+	for (size_t i = 0; i < a->par.filter.particles; i++)
+		a->mean[i] = x[a->index[i]];
+}
+
+/* Remembers a value for a restart and the gap before it. */
+static void push_past(struct adaptive *a, double y, double gap)
+{
+	int depth = a->par.filter.depth;
+
+	a->newest = (a->newest + 1) % depth;
+	a->filled += a->filled < depth;
+	a->past[a->newest] = y;
+	a->gap[a->newest] = gap;
+}
+
+static void start_particles(struct adaptive *a, double noise)
+{
+	int depth = a->par.filter.depth;
+
+	for (int k = 0; k < a->filled; k++)
+		a->line_up[k] = a->past[(a->newest - a->filled + 1 + k + depth) % depth];
+	filter_start(a->filter, a->line_up, a->filled, sqrt(3) * noise);
+	a->nz = 0;
+}
+
+/* sigma_v in scaled units; never 0, which no weight could bear. */
+static double observation_noise(const struct adaptive *a)
+{
+	double least = 1e-9 * (1 + fabs(a->past[a->newest]));
+	double s = isnan(a->par.noise) ? noise_scale(a->noise) : a->par.noise / a->scale;
+
+	return s > least ? s : least;
+}
+
+/* Process noise below which a filter of that order follows itself away from the data:
+ * half of sigma_v up to order 40, rising to sigma_v at 60. */
+static double process_floor(int order, double noise)
+{
+	return noise * (order <= 40 ? 0.5 : order >= 60 ? 1 : 0.5 + (order - 40) / 40.0);
+}
+
+/* The second largest of the last squared errors of the grey model of the observations:
+ * one outlier has no say in it. */
+static double missed_lately(const struct adaptive *a)
+{
+	double largest = 0, second = 0;
+
+	for (int k = 0; k < RECENT; k++) {
+		double e = a->missed[k];
+
+		if (e > largest) {
+			second = largest;
+			largest = e;
+		} else if (e > second) {
+			second = e;
+		}
+	}
+	return second;
+}
+
+/* What that model has lately missed by, beyond three standard deviations of noise. */
+static double model_error(const struct adaptive *a, double noise)
+{
+	return sqrt(fmax(0, missed_lately(a) - 9 * noise * noise));
+}
+
+/* An observation that is twenty times farther from the forecast, and from the observation
+ * before it, than noise and model have lately been is taken for an outlier; not so after
+ * a longer gap, nor twice running: then it is the series that has moved. */
+static int is_outlier(
+	struct adaptive *a, double y, double gap, double forecast, double noise)
+{
+	double usual = fmax(noise * noise, missed_lately(a));
+	double miss = fmin(fabs(y - forecast), fabs(y - a->observed));
+
+	a->outlier = !a->outlier && a->misses >= SETTLED && gap <= 2 * a->observed_gap &&
+		     miss * miss > 400 * usual;
+	a->outliers += (unsigned long)a->outlier;
+	return a->outlier;
+}
+
+static double process_noise(const struct adaptive *a, int order, double noise, double gap)
+{
+	double steps = a->mean_gap > 0 ? gap / a->mean_gap : 1,
+	       s = a->par.process / a->scale;
+
+	if (isnan(a->par.process))
+		s = fmax(a->process,
+			fmax(process_floor(order, noise), model_error(a, noise)));
+	return s * sqrt(fmin(16, fmax(1, steps)));
+}
+
+/* Excess of the mean squared innovation over what noise and the spread of the particles
+ * account for. */
+static void learn_process(
+	struct adaptive *a, double e, double variance, double process, double noise)
+{
+	double expected = variance + noise * noise, excess;
+	double e2 = fmin(e * e, MONITOR_CLIP * expected);
+
+	if (!(a->innovation > 0)) {
+		a->innovation = expected;
+		a->carried = expected - process * process;
+	}
+	a->innovation += MEMORY * (e2 - a->innovation);
+	a->carried += MEMORY * (expected - process * process - a->carried);
+	excess = a->innovation - a->carried;
+	a->process = excess > 0 ? sqrt(excess) : 0;
+}
+
+/* 1 when the particles have lost the observations. */
+static int monitor(struct adaptive *a, double e, double variance)
+{
+	double sum = 0;
+
+	a->z2[a->nz++ % MONITOR] = fmin(e * e / variance, MONITOR_CLIP);
+	if (a->nz < MONITOR)
+		return 0;
+	for (int i = 0; i < MONITOR; i++)
+		sum += a->z2[i];
+	if (a->nz == 2 * MONITOR)
+		a->nz = MONITOR;
+	return sum > MONITOR * MONITOR_LIMIT;
+}
+
+static void observe(struct adaptive *a, double y, double gap, double process,
+	struct adaptive_row *row)
+{
+	double noise = observation_noise(a), variance = filter_variance(a->filter);
+	double e = y - row->prediction, own;
+
+	filter_update(a->filter, y, noise);
+	row->state = filter_mean(a->filter);
+	row->ess = filter_ess(a->filter);
+	push_past(a, y, gap);
+	if (row->order == 0) { /* too few points for a model: begin from all of them */
+		start_particles(a, noise);
+		row->state = filter_mean(a->filter);
+		return;
+	}
+	learn_process(a, e, variance, process, noise);
+	/* Particles that have scattered must not excuse themselves. */
+	own = noise * noise + process * process;
+	if (monitor(a, e, noise * noise + fmin(variance, 4 * own))) {
+		start_particles(a, noise);
+		row->state = filter_mean(a->filter);
+		a->restarts++;
+	}
+}
+
+/* Zeros do not mind the scale, so it may be learned after them. */
+static void learn_scale(struct adaptive *a, double y)
+{
+	int exponent;
+
+	if (a->scaled || isnan(y) || y == 0)
+		return;
+	frexp(y, &exponent);
+	a->scale = ldexp(1, exponent < -1000 ? -1000 : exponent);
+	a->scaled = 1;
+}
+
+/* The first row with a value. */
+static void begin(struct adaptive *a, double t, double y, struct adaptive_row *row)
+{
+	y /= a->scale;
+	order_add(a->order, y, 0);
+	noise_add(a->noise, y, 0);
+	push_past(a, y, 0);
+	start_particles(a, observation_noise(a));
+	a->observed_time = t;
+	row->state = filter_mean(a->filter);
+	row->ess = filter_ess(a->filter);
+}
+
+static void advance(struct adaptive *a, double t, double y, struct adaptive_row *row)
+{
+	double gap = t - a->time, noise = observation_noise(a), process;
+	int order = order_chosen(a->order);
+
+	if (order > filter_depth(a->filter))
+		order = filter_depth(a->filter);
+	if (order < GREY_ORDER_MIN)
+		order = 0;
+	row->order = order;
+	row->grey = order_forecast(a->order, t - a->observed_time);
+	process = process_noise(a, order, noise, gap);
+	if (order > 0)
+		forecast_particles(a, order, gap, noise);
+	else
+		hold_particles(a);
+	filter_predict(a->filter, a->mean, process);
+	row->prediction = row->state = filter_mean(a->filter);
+	row->ess = filter_ess(a->filter);
+	a->mean_gap += (gap - a->mean_gap) / fmin((double)a->rows, 50);
+	if (isnan(y)) {
+		push_past(a, row->prediction, gap);
+		return;
+	}
+	y /= a->scale;
+	if (is_outlier(a, y, t - a->observed_time, row->grey, noise)) {
+		push_past(a, row->prediction, gap);
+		return;
+	}
+	a->missed[a->misses++ % RECENT] = (y - row->grey) * (y - row->grey);
+	order_add(a->order, y, t - a->observed_time);
+	noise_add(a->noise, y, t - a->observed_time);
+	a->observed_gap = t - a->observed_time;
+	a->observed_time = t;
+	a->observed = y;
+	observe(a, y, gap, process, row);
+}
+
+void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *row)
+{
+	*row = (struct adaptive_row){ NAN, NAN, NAN, NAN, NAN, 0 };
+	learn_scale(a, y);
+	if (a->rows > 0)
+		advance(a, t, y, row);
+	else if (!isnan(y))
+		begin(a, t, y, row);
+	else
+		return;
+	a->time = t;
+	a->rows++;
+	row->noise = observation_noise(a) * a->scale;
+	row->grey *= a->scale;
+	row->prediction *= a->scale;
+	row->state *= a->scale;
+}
+
+/* Histories of the particles laid side by side, newest state at place 0 of the ring. */
+struct tracks {
+	int p, newest;
+	double noise;
+	double *x;       /* [p][N] */
+	uint32_t *index; /* of those that have not crossed */
+};
+
+static double *track_lag(const struct tracks *s, size_t n, int lag)
+{
+	return s->x + (size_t)((s->newest - lag + s->p) % s->p) * n;
+}
+
+static enum num_status start_tracks(struct adaptive *a, struct tracks *s)
+{
+	size_t n = a->par.filter.particles;
+	int changed;
+
+	s->x = malloc((size_t)s->p * n * sizeof *s->x);
+	s->index = malloc(n * sizeof *s->index);
+	if (!s->x || !s->index)
+		return NUM_MEMORY;
+	s->newest = s->p - 1;
+	for (int lag = 0; lag < s->p; lag++) {
+		const double *x = filter_lag(a->filter, lag, a->index, &changed);
+
+		for (size_t i = 0; i < n; i++)
+			track_lag(s, n, lag)[i] = x[a->index[i]];
+	}
+	return NUM_OK;
+}
+
+/* One step of the first live paths of index; those that cross leave the list.  Returns
+ * how many are left. */
+static size_t step_paths(struct adaptive *a, struct tracks *s, size_t live,
+	double process, double limit, int direction, double time, double *life)
+{
+	size_t n = a->par.filter.particles, left = 0;
+	double gap = a->mean_gap, *old = track_lag(s, n, 0), *x;
+
+	for (int k = 0; k < s->p - 1; k++)
+		a->lag[k] = (struct lag){ track_lag(s, n, k), NULL, n, gap };
+	forecast(a, s->p - 1, gap, s->noise, s->index, live, a->mean);
+	s->newest = (s->newest + 1) % s->p;
+	x = track_lag(s, n, 0);
+	for (size_t k = 0; k < live; k++) {
+		uint32_t i = s->index[k];
+
+		x[i] = a->mean[k] + process * draw_normal(a->draw_paths);
+		if (direction * (x[i] - limit) >= 0)
+			life[i] =
+				time + gap * fmax(0, (limit - old[i]) / (x[i] - old[i]));
+		else
+			s->index[left++] = i;
+	}
+	return left;
+}
+
+enum num_status adaptive_lives(
+	struct adaptive *a, double threshold, int direction, int steps, double *life)
+{
+	struct tracks s = { .p = order_chosen(a->order) };
+	double noise = observation_noise(a), process, limit = threshold / a->scale;
+	size_t n = a->par.filter.particles, left = 0;
+	enum num_status status;
+
+	if (s.p > filter_depth(a->filter))
+		s.p = filter_depth(a->filter);
+	if (s.p < GREY_ORDER_MIN)
+		return NUM_DOMAIN;
+	s.noise = noise;
+	process = process_noise(a, s.p, noise, a->mean_gap);
+	status = start_tracks(a, &s);
+	for (size_t i = 0; status == NUM_OK && i < n; i++) {
+		int crossed = direction * (track_lag(&s, n, 0)[i] - limit) >= 0;
+
+		life[i] = crossed ? 0 : INFINITY;
+		if (!crossed)
+			s.index[left++] = (uint32_t)i;
+	}
+	for (int k = 0; status == NUM_OK && k < steps && left > 0; k++)
+		left = step_paths(
+			a, &s, left, process, limit, direction, k * a->mean_gap, life);
+	free(s.x);
+	free(s.index);
+	return status;
+}

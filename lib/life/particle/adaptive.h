@@ -1,0 +1,62 @@
+/* adaptive.h - the adaptive-order particle filter of a degradation series
+ *
+ * Li, Wang, Shi, Ma, Chinese Journal of Aeronautics 31 (2018) 941; Li's thesis, 4.1.3:
+ * each particle carries its own past, a grey model of the chosen order is fitted to the
+ * past of each and moves it on, and the observation weighs them.  Departures, so that
+ * the filter does not follow itself away from the data: histories are genealogies, the
+ * process noise has a floor that grows with the order and is no less than what the grey
+ * model itself has lately missed by, and an innovation monitor starts the particles anew
+ * from the observations when their mean squared standardised innovation over twenty rows
+ * exceeds four.  An observation twenty times farther off than usual is passed over once.
+ *
+ *	struct adaptive *a = adaptive_new(&par);
+ *	while (read(&t, &y)) {       (y may be NAN: predict only)
+ *		adaptive_step(a, t, y, &row);
+ *		print(row.state);
+ *	}
+ */
+#ifndef LIFE_ADAPTIVE_H
+#define LIFE_ADAPTIVE_H
+
+#include "life/grey/order.h"
+#include "life/particle/filter.h"
+#include "num/status.h"
+
+struct adaptive_par {
+	struct filter_par filter; /* depth is set from the order */
+	struct order_par order;
+	double process; /* sigma_u; NAN: from the innovations */
+	double noise;   /* sigma_v; NAN: from second differences */
+	uint64_t seed;
+	uint32_t realisation;
+};
+
+struct adaptive_row {
+	double grey;       /* forecast of this observation by the grey model of the
+			    * observations before it; NAN at the first */
+	double prediction; /* forecast by the filter */
+	double state;      /* weighted mean after the observation, if there was one */
+	double noise;      /* sigma_v in use */
+	double ess;        /* effective sample size before resampling */
+	int order;         /* of the model that made prediction; 0: none yet */
+};
+
+struct adaptive;
+
+struct adaptive *adaptive_new(const struct adaptive_par *par); /* NULL: no memory */
+void adaptive_free(struct adaptive *a);
+void adaptive_pass(struct adaptive *a, struct state *s);
+/* Takes the next row; t must rise.  Any finite y will do. */
+void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *row);
+/* The literal recursion (4-21): every particle goes on step by step by its own model,
+ * refitted to its last states, with process noise, at the mean gap of the rows.  Fills
+ * life[N] with the time from the last row to its first passage of the threshold (linear
+ * within a step), INFINITY beyond steps.  NUM_DOMAIN: no model yet. */
+enum num_status adaptive_lives(
+	struct adaptive *a, double threshold, int direction, int steps, double *life);
+const struct order *adaptive_order(const struct adaptive *a);
+const struct filter *adaptive_filter(const struct adaptive *a);
+unsigned long adaptive_outliers(const struct adaptive *a); /* passed over */
+unsigned long adaptive_restarts(const struct adaptive *a); /* by the monitor */
+
+#endif

@@ -1,0 +1,103 @@
+/* draw.c - see draw.h */
+#include "life/particle/draw.h"
+#include "num/ziggurat.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { WORDS = 4 * PHILOX_ROW };
+
+struct draw {
+	uint32_t counter[4], key[2];
+	uint32_t word[4][PHILOX_ROW]; /* of one counter after another */
+	unsigned used;                /* of the 4 PHILOX_ROW words */
+	struct ziggurat layers;
+};
+
+struct draw *draw_new(uint64_t seed, uint32_t realisation, enum rng_purpose purpose)
+{
+	struct draw *d = calloc(1, sizeof *d);
+
+	if (!d)
+		return NULL;
+	d->key[0] = (uint32_t)seed;
+	d->key[1] = (uint32_t)(seed >> 32);
+	d->counter[2] = realisation;
+	d->counter[3] = purpose;
+	d->used = WORDS;
+	ziggurat_make(&d->layers);
+	return d;
+}
+
+void draw_free(struct draw *draw)
+{
+	free(draw);
+}
+
+void draw_pass(struct draw *d, struct state *s)
+{
+	state_move(s, d->counter, sizeof d->counter);
+	state_move(s, d->word, sizeof d->word);
+	state_move(s, &d->used, sizeof d->used);
+}
+
+static inline uint32_t next_word(struct draw *d)
+{
+	unsigned k;
+
+	if (d->used == WORDS) {
+		philox4x32_row(d->counter, d->key, d->word);
+		d->counter[0] += PHILOX_ROW;
+		d->counter[1] += d->counter[0] < PHILOX_ROW;
+		d->used = 0;
+	}
+	k = d->used++;
+	return d->word[k % 4][k / 4];
+}
+
+double draw_uniform(struct draw *d)
+{
+	uint64_t high = next_word(d);
+
+	return ((double)((high << 32 | next_word(d)) >> 12) + 0.5) * 0x1p-52;
+}
+
+static double draw_tail(struct draw *d)
+{
+	double x;
+
+	do {
+		double u = draw_uniform(d);
+
+		x = ziggurat_tail(u, draw_uniform(d));
+	} while (x == 0);
+	return x;
+}
+
+/* Where the first word does not settle it. */
+static double draw_rest(struct draw *d, unsigned layer, double x)
+{
+	if (layer == 0)
+		return copysign(draw_tail(d), x);
+	return ziggurat_under(&d->layers, layer, x, draw_uniform(d)) ? x : draw_normal(d);
+}
+
+/* Seven bits choose the layer, the others are the signed place in it. */
+static inline double normal(struct draw *d)
+{
+	uint32_t w = next_word(d), layer = w % ZIGGURAT_LAYERS;
+	double u = ((double)(int32_t)(w - layer) + 0.5 * ZIGGURAT_LAYERS) * 0x1p-31;
+	double x = u * d->layers.edge[layer];
+
+	return fabs(u) < d->layers.inner[layer] ? x : draw_rest(d, layer, x);
+}
+
+double draw_normal(struct draw *d)
+{
+	return normal(d);
+}
+
+void draw_normals(struct draw *d, double *z, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		z[i] = normal(d);
+}

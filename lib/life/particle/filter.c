@@ -1,0 +1,306 @@
+/* filter.c - see filter.h */
+#include "life/particle/filter.h"
+#include "num/lanes.h"
+#include "num/student.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Log weights below it, relative to the largest, weigh nothing. */
+static const double LEAST = -700;
+
+/* One remembered step. */
+struct step {
+	double *x;
+	size_t count;       /* of those that have descendants today */
+	uint32_t *ancestor; /* of the states after it, where it was resampled */
+	int resampled;
+};
+
+struct filter {
+	struct filter_par par;
+	struct draw *draw;
+	struct step *ring;
+	int newest, filled;
+	double *log_weight, *weight;
+	uint32_t *kept;
+	double sum; /* of weight */
+	double mean, ess;
+	unsigned long resamplings;
+};
+
+struct filter *filter_new(const struct filter_par *par, struct draw *draw)
+{
+	struct filter *f = calloc(1, sizeof *f);
+	size_t n = par->particles;
+	int good;
+
+	if (!f)
+		return NULL;
+	f->par = *par;
+	f->draw = draw;
+	f->ring = calloc((size_t)par->depth, sizeof *f->ring);
+	f->log_weight = calloc(n, sizeof *f->log_weight);
+	f->weight = calloc(n, sizeof *f->weight);
+	f->kept = calloc(n, sizeof *f->kept);
+	good = f->ring && f->log_weight && f->weight && f->kept;
+	for (int k = 0; good && k < par->depth; k++) {
+		f->ring[k].x = calloc(n, sizeof *f->ring[k].x);
+		f->ring[k].ancestor = calloc(n, sizeof *f->ring[k].ancestor);
+		good = f->ring[k].x && f->ring[k].ancestor;
+	}
+	if (!good) {
+		filter_free(f);
+		return NULL;
+	}
+	return f;
+}
+
+void filter_free(struct filter *f)
+{
+	if (!f)
+		return;
+	for (int k = 0; f->ring && k < f->par.depth; k++) {
+		free(f->ring[k].x);
+		free(f->ring[k].ancestor);
+	}
+	free(f->ring);
+	free(f->log_weight);
+	free(f->weight);
+	free(f->kept);
+	free(f);
+}
+
+void filter_pass(struct filter *f, struct state *s)
+{
+	size_t n = f->par.particles;
+
+	for (int k = 0; k < f->par.depth; k++) {
+		state_move(s, f->ring[k].x, n * sizeof *f->ring[k].x);
+		state_move(s, f->ring[k].ancestor, n * sizeof *f->ring[k].ancestor);
+		state_move(s, &f->ring[k].resampled, sizeof f->ring[k].resampled);
+		state_move(s, &f->ring[k].count, sizeof f->ring[k].count);
+	}
+	state_move(s, &f->newest, sizeof f->newest);
+	state_move(s, &f->filled, sizeof f->filled);
+	state_move(s, f->log_weight, n * sizeof *f->log_weight);
+	state_move(s, f->weight, n * sizeof *f->weight);
+	state_move(s, &f->sum, sizeof f->sum);
+	state_move(s, &f->mean, sizeof f->mean);
+	state_move(s, &f->ess, sizeof f->ess);
+	state_move(s, &f->resamplings, sizeof f->resamplings);
+}
+
+int filter_depth(const struct filter *f)
+{
+	return f->filled;
+}
+
+static struct step *push_step(struct filter *f)
+{
+	f->newest = (f->newest + 1) % f->par.depth;
+	if (f->filled < f->par.depth)
+		f->filled++;
+	f->ring[f->newest].resampled = 0;
+	f->ring[f->newest].count = f->par.particles;
+	return &f->ring[f->newest];
+}
+
+static void weigh_equally(struct filter *f)
+{
+	for (size_t i = 0; i < f->par.particles; i++) {
+		f->log_weight[i] = 0;
+		f->weight[i] = 1;
+	}
+	f->sum = f->ess = (double)f->par.particles;
+}
+
+static double weighted_mean(const struct filter *f)
+{
+	const double *x = f->ring[f->newest].x;
+	double sum = 0;
+
+	for (size_t i = 0; i < f->par.particles; i++)
+		sum += f->weight[i] * x[i];
+	return sum / f->sum;
+}
+
+void filter_start(struct filter *f, const double *past, int count, double spread)
+{
+	f->filled = 0;
+	for (int k = 0; k < count; k++) {
+		struct step *s = push_step(f);
+
+		for (size_t i = 0; i < f->par.particles; i++)
+			s->x[i] = past[k] + spread * (2 * draw_uniform(f->draw) - 1);
+	}
+	weigh_equally(f);
+	f->mean = weighted_mean(f);
+}
+
+const double *filter_lag(const struct filter *f, int lag, uint32_t *index, int *changed)
+{
+	const struct step *s = &f->ring[(f->newest - lag + f->par.depth) % f->par.depth];
+	size_t n = f->par.particles;
+	int first = lag == 0;
+
+	if (s->resampled && first)
+		memcpy(index, s->ancestor, n * sizeof *index);
+	else if (s->resampled)
+		for (size_t i = 0; i < n; i++)
+			index[i] = s->ancestor[index[i]];
+	else if (first)
+		for (size_t i = 0; i < n; i++)
+			index[i] = (uint32_t)i;
+	*changed = first || s->resampled;
+	return s->x;
+}
+
+const double *filter_states(
+	const struct filter *f, int lag, const uint32_t **ancestor, size_t *count)
+{
+	const struct step *s = &f->ring[(f->newest - lag + f->par.depth) % f->par.depth];
+
+	*ancestor = s->resampled ? s->ancestor : NULL;
+	*count = s->count;
+	return s->x;
+}
+
+void filter_predict(struct filter *f, const double *mean, double sigma)
+{
+	double *x, moment = 0;
+
+	if (f->ring[f->newest].resampled)
+		weigh_equally(f);
+	x = push_step(f)->x;
+	draw_normals(f->draw, x, f->par.particles);
+	for (size_t i = 0; i < f->par.particles; i++) {
+		x[i] = mean[i] + sigma * x[i];
+		moment += f->weight[i] * x[i];
+	}
+	f->mean = moment / f->sum;
+}
+
+double filter_mean(const struct filter *f)
+{
+	return f->mean;
+}
+
+double filter_variance(const struct filter *f)
+{
+	const double *x = f->ring[f->newest].x;
+	double sum = 0;
+
+	for (size_t i = 0; i < f->par.particles; i++)
+		sum += f->weight[i] * (x[i] - f->mean) * (x[i] - f->mean);
+	return sum / f->sum;
+}
+
+double filter_ess(const struct filter *f)
+{
+	return f->ess;
+}
+
+unsigned long filter_resamplings(const struct filter *f)
+{
+	return f->resamplings;
+}
+
+/* Adds the log-likelihood of y; returns the largest log-weight. */
+static double weigh(struct filter *f, double y, double noise)
+{
+	const double *x = f->ring[f->newest].x;
+	double *lw = f->log_weight, top = -INFINITY, nu = f->par.freedom,
+	       scale = 1 / noise;
+	size_t n = f->par.particles;
+
+	for (size_t i = 0; i < n; i++) {
+		double z = (y - x[i]) * scale;
+
+		lw[i] -= nu > 0 ? 0.5 * (nu + 1) * log1p(z * z / nu) : 0.5 * z * z;
+		top = lw[i] > top ? lw[i] : top;
+	}
+	return top;
+}
+
+/* log of the constant of the likelihood */
+static double log_constant(const struct filter *f, double noise)
+{
+	double nu = f->par.freedom;
+
+	if (nu > 0)
+		return student_log_constant(nu) - log(noise);
+	return -0.5 * log(2 * M_PI) - log(noise);
+}
+
+/* Numbers the distinct ones of n ancestors, which rise, anew from 0, and lists what they
+ * were.  Returns how many there are. */
+static size_t renumber(uint32_t *ancestor, size_t n, uint32_t *kept)
+{
+	size_t m = 0;
+
+	for (size_t i = 0; i < n; i++) {
+		uint32_t old = ancestor[i];
+
+		if (m == 0 || old != kept[m - 1])
+			kept[m++] = old;
+		ancestor[i] = (uint32_t)(m - 1);
+	}
+	return m;
+}
+
+/* Drops the states that have no descendants since the newest step was resampled. */
+static void prune(struct filter *f)
+{
+	size_t n = 0;
+
+	for (int lag = 0; lag < f->filled; lag++) {
+		struct step *s =
+			&f->ring[(f->newest - lag + f->par.depth) % f->par.depth];
+
+		if (s->resampled) {
+			for (size_t i = 0; i < n; i++)
+				s->ancestor[i] = s->ancestor[f->kept[i]];
+			n = renumber(s->ancestor, lag ? n : s->count, f->kept);
+		}
+		if (n == s->count)
+			return;
+		for (size_t i = 0; i < n; i++)
+			s->x[i] = s->x[f->kept[i]];
+		s->count = n;
+	}
+}
+
+double filter_update(struct filter *f, double y, double noise)
+{
+	struct step *s = &f->ring[f->newest];
+	double before = f->sum, top = weigh(f, y, noise), sum, squares, moment;
+	lanes sums[3] = { { 0 } };
+	size_t n = f->par.particles;
+
+	for (size_t i = 0; i < n; i += 2) {
+		int width = n - i < 2 ? 1 : 2;
+		lanes lw = lanes_load(f->log_weight + i, width) - top;
+		lanes w =
+			lanes_if(lw > LEAST, lanes_exp(lanes_max(lw, lanes_all(LEAST))));
+
+		lanes_store(f->log_weight + i, lw, width);
+		lanes_store(f->weight + i, w, width);
+		lanes_add(&sums[0], w, width);
+		lanes_add(&sums[1], w * w, width);
+		lanes_add(&sums[2], w * lanes_load(s->x + i, width), width);
+	}
+	sum = sums[0][0] + sums[0][1];
+	squares = sums[1][0] + sums[1][1];
+	moment = sums[2][0] + sums[2][1];
+	f->sum = sum;
+	f->ess = sum * sum / squares;
+	f->mean = moment / sum;
+	if (f->par.share >= 1 || f->ess < f->par.share * (double)n) {
+		resample(f->par.scheme, f->draw, f->weight, f->sum, n, s->ancestor);
+		s->resampled = 1;
+		f->resamplings++;
+		prune(f);
+	}
+	return log_constant(f, noise) + top + log(f->sum / before);
+}

@@ -1,0 +1,71 @@
+/* filter.h - bootstrap particle filter of a scalar state that remembers its past
+ *
+ * State model x_k = mean(x_{k-1}, x_{k-2}, ...) + N(0, sigma^2), observation
+ * y_k = x_k + noise.  The caller computes the means from the histories of the
+ * particles; the filter adds the noise, weighs in logarithms, and resamples when the
+ * effective sample size falls below a share of N (Gordon, Salmond, Smith 1993; Li's
+ * thesis, eq. 4-9 to 4-19).  Histories are genealogies: each step keeps those of its
+ * states that have descendants and, where it was resampled, which they are.
+ *
+ *	struct filter *f = filter_new(&par, draw);
+ *	filter_start(f, first, 4, spread);
+ *	for each observation {
+ *		const double *x = filter_lag(f, 0, NULL, index);
+ *		for (i = 0; i < n; i++)
+ *			mean[i] = x[index[i]] + drift;
+ *		filter_predict(f, mean, sigma);
+ *		filter_update(f, y, noise);    (not for a missing one)
+ *		state = filter_mean(f);
+ *	}
+ */
+#ifndef LIFE_FILTER_H
+#define LIFE_FILTER_H
+
+#include "life/particle/resample.h"
+
+struct filter_par {
+	size_t particles; /* N >= 1 */
+	int depth;        /* states remembered, >= 1 */
+	enum resampling scheme;
+	double share;   /* resample when ESS < share N; 1: always */
+	double freedom; /* of Student-t observation noise; 0: Gaussian */
+};
+
+struct filter;
+
+/* draw stays the caller's.  NULL when out of memory. */
+struct filter *filter_new(const struct filter_par *par, struct draw *draw);
+void filter_free(struct filter *f);
+void filter_pass(struct filter *f, struct state *s);
+
+/* (Re)starts with count <= depth past values, oldest first, each particle's uniform
+ * within +- spread of them, and equal weights. */
+void filter_start(struct filter *f, const double *past, int count, double spread);
+
+/* States remembered so far, <= depth. */
+int filter_depth(const struct filter *f);
+
+/* The states of step k - lag and, in index[N], which of them belongs to each present
+ * particle.  Call with lag 0 first (index is filled), then with each next lag in turn
+ * (index is carried on).  Returns 1 where index changed, 0 where it stayed. */
+const double *filter_lag(const struct filter *f, int lag, uint32_t *index, int *changed);
+
+/* The same without the walk: the count states of step k - lag that have descendants, and
+ * which of them each state of the step after it comes from, ascending; NULL: the one of
+ * the same place. */
+const double *filter_states(
+	const struct filter *f, int lag, const uint32_t **ancestor, size_t *count);
+
+/* Moves to the next step: states mean[N] plus normal noise. */
+void filter_predict(struct filter *f, const double *mean, double sigma);
+/* Weighted mean and variance of the states of the present step. */
+double filter_mean(const struct filter *f);
+double filter_variance(const struct filter *f);
+/* Weighs by y with observation noise of scale noise > 0 and then resamples if need be.
+ * filter_mean() and filter_ess() afterwards are those before resampling.  Returns the
+ * log of the evidence, log mean(p(y|x)). */
+double filter_update(struct filter *f, double y, double noise);
+double filter_ess(const struct filter *f);
+unsigned long filter_resamplings(const struct filter *f);
+
+#endif

@@ -1,0 +1,219 @@
+/* fleet.c - see fleet.h */
+#include "life/prior/fleet.h"
+#include "num/select.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum {
+	SMOOTHED = 20, /* rows before medians of three are taken */
+	LEVELS = 24,   /* of a path */
+	AHEAD = 7,     /* of them to the threshold, for a unit that has not reached it */
+	DRAWS = 200    /* of their ages */
+};
+
+/* Log prior of all paths together over the coordinates of the bank: kinship is likely,
+ * but an alien unit must be outweighed by some twenty rows that speak against it. */
+static const double KINSHIP = 4;
+
+struct unit {
+	int rows;
+	double t[3], y[3]; /* last rows, newest first; y times the direction */
+	double first, last;
+	struct bank *bank;
+	double *age, *level; /* rising */
+	int n, room;
+};
+
+struct fleet {
+	double threshold;
+	int direction;
+	struct unit *path;
+	int units;
+	struct bank_shape *shape;
+	double *grid; /* ages and levels of the shapes */
+	int shapes;
+};
+
+struct fleet *fleet_new(double threshold, int direction)
+{
+	struct fleet *f = calloc(1, sizeof *f);
+
+	if (!f)
+		return NULL;
+	f->threshold = threshold;
+	f->direction = direction;
+	return f;
+}
+
+void fleet_free(struct fleet *f)
+{
+	if (!f)
+		return;
+	for (int i = 0; i < f->units; i++) {
+		free(f->path[i].age);
+		free(f->path[i].level);
+		bank_free(f->path[i].bank);
+	}
+	free(f->path);
+	free(f->shape);
+	free(f->grid);
+	free(f);
+}
+
+int fleet_units(const struct fleet *f)
+{
+	return f->units;
+}
+
+const struct bank_shape *fleet_shapes(const struct fleet *f, int *n)
+{
+	*n = f->shapes;
+	return f->shape;
+}
+
+static enum num_status grow(struct unit *p)
+{
+	int room = p->room ? 2 * p->room : 64;
+	double *age = realloc(p->age, (size_t)room * sizeof *age), *level;
+
+	if (age)
+		p->age = age;
+	level = age ? realloc(p->level, (size_t)room * sizeof *level) : NULL;
+	if (level)
+		p->level = level;
+	if (!level)
+		return NUM_MEMORY;
+	p->room = room;
+	return NUM_OK;
+}
+
+/* Adds a step where it leads higher, and later. */
+static enum num_status rise(struct unit *p, double age, double level)
+{
+	if (p->n > 0 && (level <= p->level[p->n - 1] || age <= p->age[p->n - 1]))
+		return NUM_OK;
+	if (p->n == p->room && grow(p))
+		return NUM_MEMORY;
+	p->age[p->n] = age;
+	p->level[p->n++] = level;
+	return NUM_OK;
+}
+
+static struct unit *path_of(struct fleet *f, int unit)
+{
+	struct bank_par par = { .threshold = f->threshold, .direction = f->direction };
+
+	if (unit >= f->units) {
+		struct unit *p = realloc(f->path, ((size_t)unit + 1) * sizeof *p);
+
+		if (!p)
+			return NULL;
+		f->path = p;
+		while (f->units <= unit)
+			f->path[f->units++] = (struct unit){ .bank = bank_new(&par) };
+	}
+	return f->path[unit].bank ? &f->path[unit] : NULL;
+}
+
+enum num_status fleet_add(struct fleet *f, int unit, double t, double y)
+{
+	struct unit *p = path_of(f, unit);
+
+	if (!p)
+		return NUM_MEMORY;
+	if (p->rows++ == 0)
+		p->first = t;
+	p->last = t;
+	bank_add(p->bank, t, y);
+	for (int k = 2; k > 0; k--) {
+		p->t[k] = p->t[k - 1];
+		p->y[k] = p->y[k - 1];
+	}
+	p->t[0] = t;
+	p->y[0] = f->direction * y;
+	if (p->rows < SMOOTHED)
+		return rise(p, t - p->first, p->y[0]);
+	return rise(p, p->t[1] - p->first, median_of_three(p->y[0], p->y[1], p->y[2]));
+}
+
+/* Carries a unit on to the threshold by what its own bank foresees. */
+static enum num_status carry_on(const struct fleet *f, struct unit *p)
+{
+	struct bank_chances *chances = bank_chances_new(DRAWS, 0);
+	double end = f->direction * f->threshold, from = p->level[p->n - 1], life[DRAWS];
+	size_t middle = DRAWS / 2;
+	enum num_status status = chances ? NUM_OK : NUM_MEMORY;
+
+	for (int k = 1; status == NUM_OK && k <= AHEAD && bank_ready(p->bank); k++) {
+		double level = from + (end - from) * k / AHEAD;
+
+		bank_draw(p->bank, chances, p->last, f->direction * level, life);
+		select_ranks(life, DRAWS, &middle, 1);
+		if (isfinite(life[middle]))
+			status = rise(p, p->last - p->first + life[middle], level);
+	}
+	bank_chances_free(chances);
+	return status;
+}
+
+/* Age at a level between the ends of a path. */
+static double age_at(const struct unit *p, double level)
+{
+	int k = 1;
+
+	while (k < p->n - 1 && p->level[k] < level)
+		k++;
+	return p->age[k - 1] + (p->age[k] - p->age[k - 1]) * (level - p->level[k - 1]) /
+				       (p->level[k] - p->level[k - 1]);
+}
+
+/* The path on even levels up to the threshold; 0 where it has no length. */
+static int lay_out(const struct unit *p, double end, double *age, double *level)
+{
+	double from, to;
+
+	from = p->level[0];
+	to = fmin(end, p->level[p->n - 1]);
+	for (int k = 0; k < LEVELS; k++) {
+		level[k] = from + (to - from) * k / (LEVELS - 1);
+		age[k] = age_at(p, level[k]);
+	}
+	return to > from && age[LEVELS - 1] > 0;
+}
+
+enum num_status fleet_build(struct fleet *f, int *failed, int *carried_on)
+{
+	double end = f->direction * f->threshold;
+	size_t units = (size_t)f->units;
+
+	*failed = *carried_on = 0;
+	f->shape = calloc(units + 1, sizeof *f->shape);
+	f->grid = calloc(units + 1, 2 * LEVELS * sizeof *f->grid);
+	if (!f->shape || !f->grid)
+		return NUM_MEMORY;
+	for (int i = 0; i < f->units; i++) {
+		struct unit *p = &f->path[i];
+		double *age = f->grid + (size_t)f->shapes * 2 * LEVELS,
+		       *level = age + LEVELS;
+		int reached;
+
+		/* No median waits for rows that will not come. */
+		if (p->rows == 0 || rise(p, p->t[0] - p->first, p->y[0]))
+			return NUM_MEMORY;
+		if (p->n < 2)
+			continue; /* shows no wear */
+		reached = p->level[p->n - 1] >= end;
+		if (!reached && carry_on(f, p))
+			return NUM_MEMORY;
+		if (!lay_out(p, end, age, level))
+			continue;
+		f->shape[f->shapes++] = (struct bank_shape){
+			.family = BANK_OTHER, .age = age, .level = level, .n = LEVELS
+		};
+		*failed += reached;
+		*carried_on += !reached;
+	}
+	for (int i = 0; i < f->shapes; i++)
+		f->shape[i].log_prior = KINSHIP - log(f->shapes);
+	return NUM_OK;
+}

@@ -1,0 +1,163 @@
+/* paths.c - see paths.h */
+#include "life/prior/paths.h"
+#include "life/pair/remaining.h"
+#include "num/rng.h"
+#include "num/select.h"
+#include <math.h>
+#include <stdlib.h>
+
+struct paths {
+	struct paths_par par;
+	struct path *path; /* NULL without fragments */
+	double mean;       /* of the component per step, by all fragments */
+	gsl_rng *rng;
+};
+
+/* The draws of path i, in this order. */
+static void draw_path(struct paths *e, struct partition *partition, long i)
+{
+	const struct paths_par *par = &e->par;
+	struct path *path = &e->path[i];
+
+	rng_reset(e->rng, par->seed, par->first + (uint32_t)i, RNG_BOOTSTRAP);
+	partition_replicate(partition, par->parts, e->rng, &path->wear);
+	if (!isnan(par->critical))
+		path->large_step =
+			partition_large(partition, par->critical, par->cumulative);
+	/* By (4-28) the scatter is in every step instead. */
+	if (par->rule != RATE_LAST)
+		path->wear.mean = remaining_draw_rate(
+			path->wear.mean, path->wear.life_variance, e->rng);
+	path->step_time = par->step_time;
+	if (par->nslopes) {
+		unsigned long unit =
+			gsl_rng_uniform_int(e->rng, (unsigned long)par->nslopes);
+
+		path->step_time = e->mean / par->area / par->slope[unit];
+	}
+}
+
+struct paths *paths_new(const struct paths_par *par, struct partition *partition)
+{
+	struct paths *e = calloc(1, sizeof *e);
+	struct partition_wear all;
+
+	if (!e)
+		return NULL;
+	e->par = *par;
+	e->rng = rng_new(par->seed, 0, RNG_BOOTSTRAP);
+	if (partition)
+		e->path = calloc((size_t)par->count, sizeof *e->path);
+	if (!e->rng || (partition && !e->path)) {
+		paths_free(e);
+		return NULL;
+	}
+	if (!partition)
+		return e;
+	partition_estimate(partition, par->parts, &all);
+	e->mean = all.mean;
+	for (long i = 0; i < par->count; i++)
+		draw_path(e, partition, i);
+	return e;
+}
+
+void paths_free(struct paths *e)
+{
+	if (!e)
+		return;
+	if (e->rng)
+		gsl_rng_free(e->rng);
+	free(e->path);
+	free(e);
+}
+
+const struct path *paths_get(const struct paths *e, long i)
+{
+	return e->path ? &e->path[i] : NULL;
+}
+
+void paths_rate(const struct paths *e, double *mean, double *sd)
+{
+	size_t n = (size_t)e->par.count;
+	double *rate;
+
+	*mean = *sd = 0;
+	if (!e->path || isnan(e->path[0].step_time))
+		return;
+	rate = malloc(n * sizeof *rate);
+	if (!rate)
+		return;
+	for (size_t i = 0; i < n; i++)
+		rate[i] = e->path[i].wear.mean / (e->par.area * e->path[i].step_time);
+	sort_numbers(rate, n);
+	*mean = rate[n / 2];
+	/* Never certain: an ensemble without spread has but one realisation. */
+	*sd = fmax(
+		(rate[(size_t)(0.841 * (double)n)] - rate[(size_t)(0.159 * (double)n)]) /
+			2,
+		1e-6 * *mean);
+	free(rate);
+}
+
+/* Time for path i to open the gap by left, in steps of tau. */
+static double wear_out(struct paths *e, long i, double left, double tau)
+{
+	const struct partition_wear *w = &e->path[i].wear;
+
+	if (left <= 0)
+		return 0;
+	left *= e->par.area;
+	if (e->par.rule == RATE_MEAN)
+		return tau * remaining_constant(left, w->mean);
+	rng_reset(e->rng, e->par.seed, e->par.first + (uint32_t)i, RNG_LIFE);
+	return tau * remaining_gamma(left, w->mean, w->step_variance, e->rng);
+}
+
+/* Error of the state on path i, in standard errors. */
+static double draw_error(const struct paths *e, long i)
+{
+	double z[2];
+
+	philox_normal2(e->par.seed, e->par.first + (uint32_t)i, RNG_PREDICT, 1, z);
+	return z[0];
+}
+
+long paths_predict(struct paths *e, const struct observed *o, const double *passage,
+	double limit, double gap_error, double *life)
+{
+	double left = limit - observed_gap(o), rate = observed_rate(o);
+	int filtered = e->par.rule == RATE_FILTER;
+	double scaled = INFINITY; /* step time by which the mean wears as observed */
+
+	if (left <= 0 && !(gap_error > 0)) {
+		life[0] = 0;
+		return 1;
+	}
+	if (filtered ? !passage
+		     : isnan(rate) && (!e->path || isnan(e->path[0].step_time)))
+		return 0;
+	if (!filtered && !e->path && !(gap_error > 0)) {
+		life[0] = remaining_constant(left, rate);
+		return 1;
+	}
+	if (rate > 0)
+		scaled = e->mean / (e->par.area * rate);
+	for (long i = 0; i < e->par.count; i++) {
+		double here = left, tau = scaled;
+
+		if (gap_error > 0)
+			here -= gap_error * draw_error(e, i);
+		if (e->path && !isnan(e->path[i].step_time))
+			tau = e->path[i].step_time;
+		if (filtered)
+			life[i] = passage[i];
+		else if (e->path)
+			life[i] = wear_out(e, i, here, tau);
+		else
+			life[i] = remaining_constant(here, rate);
+		if (e->path && !isnan(e->par.critical))
+			life[i] = fmin(life[i], remaining_large(e->path[i].large_step,
+							tau, observed_time(o)));
+	}
+	return e->par.count;
+}

@@ -1,0 +1,83 @@
+/* metrics.h - how good predictions of remaining life were, once the end is known
+ *
+ * A prediction made at time t is a set of samples of the remaining life (equal or
+ * given weights) or just a point and an interval.  With the true end of life T the
+ * truth is r = T - t.  Any unit of time will do, the same one throughout.
+ *
+ *	struct metrics_par par = { .eol = 1186, .alpha = 0.2, .beta = 0.5 };
+ *	struct metrics *m = metrics_new(&par);
+ *	metrics_add(m, t, mean, q05, q95, sample, NULL, n, NULL);
+ *	struct metrics_sum sum = metrics_get(m);
+ *	metrics_free(m);
+ *
+ * Definitions follow Saxena, Celaya, Saha, Saha, Goebel, "Metrics for offline
+ * evaluation of prognostic performance", IJPHM 1 (2010), with accuracies relative
+ * to the remaining life (relative to the end of life they flatter early
+ * predictions), and Gneiting, Raftery, JASA 102 (2007) for the CRPS.
+ */
+#ifndef LIFE_METRICS_H
+#define LIFE_METRICS_H
+
+#include "num/status.h"
+#include <stddef.h>
+
+/* Quantile of n >= 1 ascending samples, linear between order statistics at
+ * (n - 1) level; the last ones may be INFINITY ("never"). */
+double metric_quantile(const double *sorted, size_t n, double level);
+
+/* Continuous ranked probability score, the integral of (F(x) - [x >= truth])^2 over
+ * x <= limit: 0 is perfect, |error| for a single sample.  sorted: n >= 1 ascending
+ * samples; weight: theirs, summing to any positive value, or NULL for equal ones.
+ * Samples may be INFINITY, which needs a finite limit for a finite score. */
+double metric_crps(
+	const double *sorted, const double *weight, size_t n, double truth, double limit);
+
+struct metrics_par {
+	double eol;   /* true end of life, on the axis of t */
+	double alpha; /* half-width of the accuracy cone, share: 0.2 */
+	double beta;  /* probability that must lie inside it: 0.5 */
+	double limit; /* upper end of the CRPS integral; 0: none */
+};
+
+/* One prediction. */
+struct metrics_row {
+	double truth;    /* eol - t */
+	double error;    /* point - truth; > 0 is late */
+	double accuracy; /* relative accuracy 1 - |error| / truth, at most 1 */
+	double mass;     /* probability within (1 +- alpha) truth */
+	int inside;      /* alpha-lambda test: mass >= beta */
+	int covered;     /* lower <= truth <= upper */
+	double crps;     /* |error| where there are no samples */
+};
+
+/* All predictions made before the end of life; NAN where there were none. */
+struct metrics_sum {
+	size_t n;
+	size_t infinite; /* of these, whose point is INFINITY; not in the next four */
+	double bias, mae, rmse; /* mean error, mean |error|, root mean square error */
+	double accuracy;        /* cumulative relative accuracy: mean of accuracy */
+	double alpha_lambda;    /* share of predictions inside the cone */
+	double horizon;         /* prognostic horizon: eol - t of the first prediction
+				 * from which on probability >= beta lies within
+				 * truth +- alpha eol; 0 where the last one fails */
+	double coverage;        /* share of intervals that hold the truth */
+	double crps;
+};
+
+struct metrics;
+
+/* NULL if a parameter is out of range (errno EDOM) or memory is short. */
+struct metrics *metrics_new(const struct metrics_par *par);
+void metrics_free(struct metrics *m);
+
+/* Adds the prediction made at t; times must not fall.  sample may be NULL (n = 0):
+ * the point stands for all of them.  Samples need not be sorted.  row may be NULL.
+ * An infinite point (a median where most samples never fail) has no error that could be
+ * averaged: it is counted apart, and judged by its samples and interval.  NUM_DOMAIN
+ * when t >= eol or the point is NAN: nothing is counted. */
+enum num_status metrics_add(struct metrics *m, double t, double point, double lower,
+	double upper, const double *sample, const double *weight, size_t n,
+	struct metrics_row *row);
+struct metrics_sum metrics_get(const struct metrics *m);
+
+#endif

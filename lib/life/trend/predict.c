@@ -1,0 +1,190 @@
+/* predict.c - see predict.h */
+#include "life/trend/predict.h"
+#include "life/grey/grey.h"
+#include "life/trend/history.h"
+#include "num/select.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { LITERAL_STEPS = 1000 }; /* of the literal model: beyond them nothing crosses */
+
+struct predict {
+	struct predict_par par;
+	struct history *history; /* of states, for the grey model; else NULL */
+	struct bank *bank;       /* for the others; else NULL */
+	double scale;            /* power of two near the threshold, for the grey model */
+	struct progress {
+		long rows;
+		double first, last; /* times */
+	} now;
+};
+
+struct predict *predict_new(const struct predict_par *par)
+{
+	static const unsigned families[] = { BANK_ALL, BANK_LINEAR, BANK_EXPONENTIAL,
+		BANK_POWER, BANK_RATE, BANK_SATURATING, 0, 0 };
+	struct predict *p = calloc(1, sizeof *p);
+	struct bank_par bank = { .threshold = par->threshold,
+		.direction = par->direction,
+		.families = families[par->model] | (par->n_paths > 0 ? BANK_OTHER : 0),
+		.steady = par->model != PREDICT_AVERAGE,
+		.more = par->paths,
+		.n_more = par->n_paths };
+	int exponent = 0;
+
+	if (!p)
+		return NULL;
+	frexp(par->threshold - par->zero, &exponent);
+	p->scale = ldexp(1, exponent);
+	p->par = *par;
+	if (par->model == PREDICT_GREY)
+		p->history = history_new();
+	else if (par->model != PREDICT_LITERAL)
+		p->bank = bank_new(&bank);
+	if (!p->history && !p->bank && par->model != PREDICT_LITERAL) {
+		free(p);
+		return NULL;
+	}
+	return p;
+}
+
+void predict_free(struct predict *p)
+{
+	if (!p)
+		return;
+	history_free(p->history);
+	bank_free(p->bank);
+	free(p);
+}
+
+void predict_pass(struct predict *p, struct state *s)
+{
+	state_move(s, &p->now, sizeof p->now);
+	if (p->history)
+		history_pass(p->history, s);
+	if (p->bank)
+		bank_pass(p->bank, s);
+}
+
+void predict_add(struct predict *p, double t, double y, double state)
+{
+	if (p->now.rows++ == 0)
+		p->now.first = t;
+	p->now.last = t;
+	if (p->history)
+		history_add(p->history, t, (state - p->par.zero) / p->scale);
+	if (p->bank)
+		bank_add(p->bank, t, y);
+}
+
+void predict_restart(struct predict *p)
+{
+	if (p->history)
+		history_clear(p->history);
+	if (p->bank)
+		bank_clear(p->bank);
+}
+
+int predict_draws(const struct predict *p)
+{
+	return p->par.model == PREDICT_LITERAL ? p->par.draws
+					       : bank_chances_count(p->par.chances);
+}
+
+struct bank *predict_bank(struct predict *p)
+{
+	return p->bank;
+}
+
+/* Time from span on until the curve of means over a gap reaches the threshold. */
+static double grey_crossing(
+	const struct predict *p, double level, double rate, double span, double gap)
+{
+	double now = grey_curve(level, rate, span, gap),
+	       limit = (p->par.threshold - p->par.zero) / p->scale;
+	double time;
+
+	if (p->par.direction * (now - limit) >= 0)
+		return 0;
+	time = -log(limit / now) / rate;
+	return time >= 0 ? time : INFINITY; /* also NAN: a sign that never changes */
+}
+
+static enum num_status draw_grey(struct predict *p, double *life)
+{
+	const double *t, *x;
+	int n = history_get(p->history, &t, &x);
+	struct grey g = { 0 };
+	double gap;
+
+	if (n < GREY_ORDER_MIN)
+		return NUM_DOMAIN;
+	gap = (t[n - 1] - t[0]) / (n - 1);
+	for (int k = n; k-- > 0;)
+		grey_add(&g, x[k], k + 1 < n ? t[k + 1] - t[k] : 0);
+	for (int i = 0; i < predict_draws(p); i++) {
+		double rate_z = bank_chance_normal(p->par.chances, i, 0),
+		       level_z = bank_chance_normal(p->par.chances, i, 1);
+		double rate = grey_rate(&g) + grey_rate_error(&g) * rate_z;
+		double level = g.fit.mean_y + grey_level_error(&g) * level_z +
+			       rate * (g.tail - g.fit.mean_x);
+
+		life[i] = grey_crossing(
+			p, level, rate, g.span + p->now.last - t[n - 1], gap);
+	}
+	return NUM_OK;
+}
+
+/* Fills life[]; NUM_DOMAIN while there are too few rows. */
+static enum num_status draw_lives(struct predict *p, double *life)
+{
+	if (p->history)
+		return draw_grey(p, life);
+	if (!p->bank)
+		return adaptive_lives(p->par.adaptive, p->par.threshold - p->par.zero,
+			p->par.direction, LITERAL_STEPS, life);
+	if (!bank_ready(p->bank))
+		return NUM_DOMAIN;
+	bank_draw(p->bank, p->par.chances, p->now.last, p->par.threshold, life);
+	return NUM_OK;
+}
+
+enum num_status predict_life(struct predict *p, double *life)
+{
+	double horizon = p->par.horizon;
+	enum num_status status = draw_lives(p, life);
+	int n = predict_draws(p);
+
+	if (status != NUM_OK)
+		return status;
+	if (!(horizon > 0))
+		horizon =
+			p->par.n_paths > 0 ? INFINITY : 10 * (p->now.last - p->now.first);
+	for (int i = 0; i < n; i++)
+		if (!(life[i] <= horizon))
+			life[i] = INFINITY;
+	sort_numbers(life, (size_t)n);
+	return NUM_OK;
+}
+
+double predict_replacement(const double *life, int n, double age, double ratio)
+{
+	double best = INFINITY, at = INFINITY, area = 0, before = 0;
+
+	/* cost per time of a replacement just before the i-th failure */
+	for (int i = 0; i < n && isfinite(life[i]); i++) {
+		double failed = (double)i / n, cost;
+
+		area += (1 - failed) * (life[i] - before);
+		before = life[i];
+		cost = (1 + (ratio - 1) * failed) / (age + area);
+		if (cost < best) {
+			best = cost;
+			at = life[i];
+		}
+	}
+	/* and of none at all */
+	if (n > 0 && isfinite(life[n - 1]) && ratio / (age + area) <= best)
+		at = INFINITY;
+	return at;
+}

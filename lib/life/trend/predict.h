@@ -1,0 +1,66 @@
+/* predict.h - when a degradation series will first reach its threshold
+ *
+ * A long-term model takes the series so far and is carried on to the threshold; the
+ * distribution of the time left comes from draws (the same random numbers at every row,
+ * so that successive rows differ by their data alone).  Mass that does not get there
+ * before the horizon is reported as such.
+ *
+ *	struct predict *p = predict_new(&par);
+ *	predict_add(p, t, y, state);
+ *	if (predict_life(p, life) == NUM_OK)
+ *		median = metric_quantile(life, n, 0.5);
+ */
+#ifndef LIFE_PREDICT_H
+#define LIFE_PREDICT_H
+
+#include "life/particle/adaptive.h"
+#include "life/trend/bank.h"
+
+enum predict_model {
+	PREDICT_AVERAGE, /* all coordinates, see bank.h */
+	PREDICT_LINEAR,  /* one family of them */
+	PREDICT_EXPONENTIAL,
+	PREDICT_POWER,
+	PREDICT_RATE,
+	PREDICT_SATURATING,
+	PREDICT_GREY,   /* GM(1,1) through all filtered states */
+	PREDICT_LITERAL /* particles go on step by step, see adaptive_lives() */
+};
+
+struct predict_par {
+	enum predict_model model;
+	double threshold;
+	int direction;  /* +1: failed at or above the threshold, -1: at or below */
+	double zero;    /* of the grey model */
+	double horizon; /* longest time ahead; 0: ten times the time elapsed */
+	const struct bank_shape *paths; /* of earlier units, the caller's */
+	int n_paths;
+	struct adaptive *adaptive; /* the filter of the literal model, the caller's */
+	int draws;                 /* of the literal model: its particles */
+	const struct bank_chances *chances; /* of the others, the caller's */
+};
+
+struct predict;
+
+struct predict *predict_new(const struct predict_par *par); /* NULL: no memory */
+void predict_free(struct predict *p);
+void predict_pass(struct predict *p, struct state *s);
+/* Takes a row: the observation, NAN where it is missing, and the filtered state (of the
+ * grey model alone). */
+void predict_add(struct predict *p, double t, double y, double state);
+/* Forgets all rows: they were run-in. */
+void predict_restart(struct predict *p);
+int predict_draws(const struct predict *p);
+/* Fills life[draws] with times left from the last row, ascending, INFINITY beyond the
+ * horizon; NUM_DOMAIN below four rows.  The threshold counts as reached
+ * once the model stands beyond it: 0 left. */
+enum num_status predict_life(struct predict *p, double *life);
+/* The bank, for its weights, counts and events; NULL for the other models. */
+struct bank *predict_bank(struct predict *p);
+
+/* The time at which a unit of this age is best replaced in advance, where a failure costs
+ * ratio times as much (age replacement: Barlow, Hunter, Operations Research 8 (1960) 90),
+ * from n ascending lives; INFINITY: never. */
+double predict_replacement(const double *life, int n, double age, double ratio);
+
+#endif
