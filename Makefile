@@ -215,6 +215,9 @@ matrix: all $(MATRIX)
 extremes-%: all
 	@sh tests/extremes/$*.t | sed -n 's/^\(not ok\|ok\) [0-9]* - /\1 | /p'
 # Those of the contact include solutions that are known.
+extremes-signal: all
+	@{ sh tests/extremes/signal.t; sh tests/long/crowded.t; } | \
+		sed -n 's/^\(not ok\|ok\) [0-9]* - /\1 | /p'
 extremes-contact: all $(B)/long/exact
 	@{ sh tests/extremes/contact.t; $(B)/long/exact; } | \
 		sed -n 's/^\(not ok\|ok\) [0-9]* - /\1 | /p'

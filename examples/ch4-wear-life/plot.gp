@@ -12,14 +12,12 @@ unset logscale y; set format y "%g"; set yrange [0:*]
 
 set output "fig64-distribution.png"
 set title "Figure 64 (b): distribution of the wear of a step"
-set xlabel "volume, um^3"; set ylabel "share of the steps, %"; set logscale x; set format x "10^{%T}"
-set boxwidth 0.9 relative; set style fill transparent solid 0.4 noborder
-# classes of a fifth of a decade; steps without wear are left out
-do for [p in "21 0.15"] { stats p.".steps" using (column("volume")*1e18) name "N".(p eq "21" ? "a" : "b") nooutput }
-class(v) = v > 0 ? 10 ** (0.2 * (floor(log10(v) / 0.2) + 0.5)) : NaN
-plot "21.steps" using (class(column("volume")*1e18)):(100.0/Na_records) smooth frequency with boxes lc rgb blue title "21 MPa", \
-	"0.15.steps" using (class(column("volume")*1e18)):(100.0/Nb_records) smooth frequency with boxes lc rgb gold title "0.15 MPa"
-unset logscale x; set format x "%g"
+set xlabel "volume, um^3"; set ylabel "share of the steps, %"; set format x "10^{%g}"
+set boxwidth 0.09; set style fill solid 0.5 noborder
+# classes of a tenth of a decade; steps without wear are in none
+classes(p) = sprintf("< awk -F '\t' '/^#/ { next } !/^[-0-9]/ { for (i = 1; i <= NF; i++) if ($i == \"volume\") k = i; next } { n++ } $k > 0 { c[int(10 * (log($k) / log(10) + 18) + 1000) - 1000]++ } END { for (x in c) print (x + 0.5) / 10 \"\t\" 100 * c[x] / n }' %s.steps | sort -g", p)
+plot for [p in "21 0.15"] classes(p) using 1:2 with boxes lc rgb (p eq "21" ? blue : gold) title p." MPa"
+set format x "%g"
 
 set output "fig65.png"
 set title "Figure 65: wear of the plate per step"
