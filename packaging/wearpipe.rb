@@ -7,17 +7,21 @@ class Wearpipe < Formula
 
   depends_on "pkgconf" => :build
   depends_on "fftw"
+  depends_on "gnuplot"
   depends_on "gsl"
-  depends_on "gnuplot" => :recommended
+  depends_on "libsndfile"
 
   def install
-    system "make", "all"
+    system "make", "all", "build/install/wearpipe", "build/install/_wearpipe", "build/install/wearpipe.fish"
     bin.install Dir["bin/*"]
     man1.install Dir["man/*.1"]
     man5.install Dir["man/*.5"]
     man7.install Dir["man/*.7"]
+    bash_completion.install "build/install/wearpipe"
+    zsh_completion.install "build/install/_wearpipe"
+    fish_completion.install "build/install/wearpipe.fish"
     pkgshare.install "share/arrivals.net"
-    doc.install "README.md", "CHANGELOG.md"
+    doc.install "README.md", "CHANGELOG.md", "LICENSE", "doc/tutorials", "examples"
   end
 
   test do

@@ -118,6 +118,24 @@ near "the lower limit is that of Student" "$(row volume_per_step 8)" \
 is "the number of realisations for a significant difference is right" "$(row volume_per_step 10)" 10
 near "the ratio of lives is the inverse of that of the volumes" "$(awk "BEGIN { print $(row life 8) * $(row volume_per_step 9) }")" 1 1e-6
 is "every quantity has its unit" "$(cut -f 11 against.tsv | grep -v '^#' | tr '\n' ' ')" "unit m3 m 1 m m 1 "
+# Life: 1e-6 m of 2e-8 m2 at 2.5e-12 m3 in 3 mm, against 1e-8 m2 at 5e-12 m3 in 1 mm.
+{ printf '# nominal_area: 2e-8 m2\n# step_distance: 3 mm\n'; cat one.tsv; } >slid1.tsv
+{ printf '# nominal_area: 1e-8 m2\n# step_distance: 1 mm\n'; cat two.tsv; } >slid2.tsv
+debrisstat --compare slid2.tsv slid1.tsv >against.tsv
+near "life is the distance in which 1 um is worn off" "$(row life 2 | awk '{ print $1 * 1e6 }')" 24 1e-9
+near "that of the other study" "$(row life 3 | awk '{ print $1 * 1e6 }')" 2 1e-9
+near "lives differ" "$(row life 4 | awk '{ print $1 * 1e6 }')" -22 1e-9
+rising "with an interval" "$(row life 5)" "$(row life 4)" "$(row life 6)"
+near "the ratio of lives counts areas and distances" "$(row life 7)" 0.083333333 1e-8
+is "life is a distance" "$(row life 11)" m
+is "and so many realisations would tell" "$(row life 10)" "$(awk 'BEGIN {
+	print int(2.926407 ^ 2 * 2 * (5 / 3) / 2.5 ^ 2 / log(12) ^ 2) + 1 }' | awk '{ print $1 < 2 ? 2 : $1 }')"
+debrisstat --compare slid2.tsv --depth 2um slid1.tsv >against.tsv
+near "life is proportional to the depth" "$(row life 2 | awk '{ print $1 * 1e6 }')" 48 1e-9
+sed 1d slid1.tsv >unknown.tsv
+debrisstat --compare slid2.tsv unknown.tsv >against.tsv
+is "without an area there is no life" "$(row life 2) $(row life 4)" "nan nan"
+fails "a depth without a comparison" 2 'depth requires --compare' debrisstat --depth 1um one.tsv
 debrisstat --compare one.tsv one.tsv >against.tsv
 is "a study does not differ from itself" "$(row volume_per_step 7) $(row volume_per_step 10)" "1 inf"
 fails "studies are compared by their fits" 2 '--compare excludes --output' debrisstat --compare two.tsv --output sizes one.tsv

@@ -17,13 +17,6 @@ at_least() {
 		fail "$1" "got:  $2" "want: at least $3"
 	fi
 }
-at_most() {
-	if awk -v x="$2" -v y="$3" 'BEGIN { exit !(x != "nan" && x + 0 <= y) }'; then
-		pass "$1"
-	else
-		fail "$1" "got:  $2" "want: at most $3"
-	fi
-}
 
 sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 20ms --snr 30dB \
 	--lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv >s.au

@@ -15,8 +15,11 @@ fails "a table for a field" 1 't.tsv: this is text, want fields: height' bemcont
 fails "a signal for a field" 1 's.au: this is a signal (AU), want fields: height' \
 	bemcontact --pressure 1MPa --young 210GPa s.au
 fails "a table for a signal" 1 't.tsv: this is text, want signal' bpfilter t.tsv
+fails "text tells what converts it to a signal" 1 't.tsv: this is text, want signal: .*: sigconvert converts it' duet t.tsv
+fails "text tells what converts it to a field" 1 't.tsv: this is text, want fields: .*: surfimport converts heights' \
+	bemcontact --pressure 1MPa --young 210GPa t.tsv
 fails "a field for a signal" 1 's.nrrd: this is a field (NRRD), want signal' bpfilter s.nrrd
-fails "WAV tells how to convert it" 1 's.wav: this is WAV audio, want signal: sox IN .* converts it' bpfilter s.wav
+fails "WAV tells how to convert it" 1 's.wav: this is WAV audio, want signal: sigconvert converts it' bpfilter s.wav
 fails "a surface without pressure tells who makes it" 1 "no field 'pressure', want .* from bemcontact" \
 	debrisgen --yield 355MPa s.nrrd
 bemcontact --pressure 1MPa --young 210GPa s.nrrd >contact.nrrd
@@ -41,6 +44,15 @@ fails "a unit of another quantity" 2 "'210um' has the wrong unit" bemcontact --y
 fails "a blank before the unit" 2 "'mm' is taken for a file, which is not there; a unit" roughgen --length 1 mm
 is "a file of that name is read as a file" "$(cp s.nrrd mm; roughgen --sq 1um mm | records - | grep -c height)" 1
 
+fails "an option with two letters exchanged" 2 '\--lenght: no such option: did you mean --length?' roughgen --lenght 1mm
+fails "an option with a letter too few" 2 '\--pressre=1MPa: no such option: did you mean --pressure?' bemcontact --pressre=1MPa s.nrrd
+fails "an option like no other" 2 '\--zigzag: no such option; see roughgen --help' roughgen --zigzag
+fails "a decimal comma" 2 '\--sq 0,8um: write decimals with a point' roughgen --sq 0,8um
+fails "and in a single number" 2 '\--estar 1,5GPa: write decimals with a point' bemcontact --pressure 1MPa --estar 1,5GPa s.nrrd
+fails "a comma for a cross" 2 "'0.5um,0.5um' has the wrong unit, want D" surfimport --pixel 0.5um,0.5um --height-unit 1um s.nrrd
+fails "a negative load" 2 '\--load -50N: want at least 0' bemcontact --load -50N --young 210GPa s.nrrd
+fails "a table for a surface to be measured" 1 't.tsv: this is text, want fields: height' roughgen --measure t.tsv
+
 # Possible, but hardly meant: said, and done.
 doubted() {
 	is "$1 gives a warning" "$("$3" 2>&1 >/dev/null | grep -c -e "$2")" 1
@@ -59,6 +71,14 @@ crushed() { bemcontact --young 210GPa --pressure 50GPa s.nrrd; }
 steep() { roughgen --points 8 --length 10um --corr 3um --sq 1; }
 hard() { bemcontact --young 210GPa --pressure 1MPa s.nrrd | debrisgen --yield 355GPa; }
 sticky() { bemcontact --young 210GPa --pressure 1MPa s.nrrd | debrisgen --yield 355MPa --friction 30; }
+coarse() { sensorsim --uniform 50um:150um --number 2 --duration 1s --rate 10Hz; }
+loud() { sensorsim --uniform 50um:150um --number 2 --duration 1s --noise 5; }
+flood() { printf 't\tleakage\n0\t2e-5\n1\t3e-5\n' | rwl --threshold-leakage 2.8; }
+abyss() { printf 'diameter\n1e-5\n' | abrade --gap 1 --hardness 2GPa --friction 0.1; }
+doubted "a rate too low for the pulses" '--rate 10 Hz: a pulse of 0.01 s has fewer than four samples' coarse
+doubted "noise of some volts" '--noise 5 V: .* is 5mV meant?' loud
+doubted "a leakage of cubic metres" '--threshold-leakage 2.8 m3/s: is 2.8L/min meant?' flood
+doubted "a gap of a metre" '--gap 1 m: is 1um meant?' abyss
 doubted "a pressure of some pascals" '--pressure 21 Pa hardly presses: is 21MPa meant?' light
 doubted "a pressure beyond elasticity" 'mean pressure of 50 GPa is above a tenth of the contact modulus of 115 GPa' crushed
 doubted "heights of a metre" 'heights of 1 m exceed the correlation length of 3e-06 m' steep

@@ -29,4 +29,26 @@ like 'the second program of a pipeline writes a line below the first' "$(lines |
 same 'and the output is that of no terminal' filtered quiet
 script -qec 'roughgen --points 512 --length 1mm --sq 1um --corr 50um --count 200 | head -c 400000000 >/dev/null' typescript >/dev/null 2>&1
 like 'work whose size is known tells its share and the time left' "$(lines)" '^roughgen: [0-9]* %, [0-9]* s left$'
+
+# share NAME PROGRAM COMMAND: the program tells its share.  The reader of its output, or the
+# writer of its input, waits for longer than the second after which a line is shown.
+share() {
+	script -qec "$3" typescript >/dev/null 2>&1
+	like "$1" "$(lines)" "^$2: [0-9]* %, [0-9]* s left$"
+}
+awk 'BEGIN { print "t\ty"; for (t = 0; t < 3000; t++) print t "\t" 1 + t / 1000 }' >series.tsv
+share 'a series of known size has a share' aopf 'aopf series.tsv | { sleep 1.5; cat; } >out'
+share 'a record of known duration has a share' sensorsim \
+	'sensorsim --uniform 80um:150um --number 4 --duration 20s | { sleep 1.5; cat; } >out'
+roughgen --points 64 --length 1mm --sq 1um --corr 50um --crown auto --count 4 |
+	bemcontact --pressure 1MPa --young 210GPa >four.nrrd
+share 'contacts of a stream of known size have a share' bemcontact \
+	'bemcontact --pressure 2MPa --young 210GPa four.nrrd | { sleep 1.5; cat; } >out'
+share 'the last contact of a pipe has a share' bemcontact \
+	'{ head -c 100000 four.nrrd; sleep 1.5; tail -c +100001 four.nrrd; } | bemcontact --pressure 2MPa --young 210GPa >out'
+share 'wear of several surfaces has a share' debrisgen \
+	'mkfifo worn; { sleep 1.5; cat; } <worn >out & debrisgen --yield 355MPa --young 210GPa --surface worn --steps 3 four.nrrd >rows; wait'
+debrisgen --yield 355MPa --friction 0.3 four.nrrd >particles.tsv 2>err
+share 'a bootstrap has a share' debrisstat \
+	'{ head -n 6 particles.tsv; sleep 1.5; tail -n +7 particles.tsv; } | debrisstat --bootstrap 50 >out'
 done_testing

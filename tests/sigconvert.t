@@ -152,6 +152,8 @@ printf 'Time [kg]\tu\n0\t1\n1\t1\n' >kg.tsv
 fails "times in kilograms" 1 "times in 'kg', want s, min, h or d" sigconvert --time Time kg.tsv
 fails "raw without a rate" 2 'requires --rate and --channels' sigconvert --from raw a.raw
 fails "channels of what is not raw" 2 'requires --from raw' sigconvert --channels 2 a.au
+fails "a column of a signal" 2 '\--columns is for text' sigconvert --columns u a.au
+fails "a rate that the signal states" 2 '\--rate is for text' sigconvert --rate 100Hz a.au
 fails "half a frame of raw" 1 'a.raw' sh -c 'head -c 40 a.raw >h; mv h a.raw; sigconvert --from raw --rate 1 --channels 2 a.raw'
 printf 'Day;u\n22.11.2026 03:04;1\n22.11.2026 03:05;2\n' >day.csv
 fails "a date that is not in ISO 8601" 1 "line 2: '22.11.2026 03:04' is not a time, want a number or a moment like" \

@@ -46,7 +46,7 @@ au 24 4294967295 7 8000 2 >empty.au
 ok 'a signal without samples is read' sh -c 'bpfilter --band 0:4000 --order 2 empty.au >out.au'
 
 fails 'a header cut off' 1 'want an AU header of at least 24 bytes, got 6' sh -c 'head -c 6 double.au | bpfilter'
-fails 'another format' 1 "this is WAV audio, want signal: sox" sh -c 'printf RIFFxxxxxxxxxxxxxxxxxxxxxxxx | bpfilter'
+fails 'another format' 1 "this is WAV audio, want signal: sigconvert" sh -c 'printf RIFFxxxxxxxxxxxxxxxxxxxxxxxx | bpfilter'
 # refuse NAME PATTERN HEADER...
 refuse() {
 	name=$1

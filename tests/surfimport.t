@@ -221,4 +221,41 @@ fails "raw without a size" 2 'requires --size' surfimport --format raw noise
 fails "a size without raw" 2 'are for --format raw' surfimport --size 2x2 noise
 roughgen -n 4 >n.nrrd
 fails "a stream of ours" 1 'roughgen reads it' surfimport n.nrrd
+
+# Files that say one thing and hold another.
+altered() {
+	sed "$3" a.sdf >altered.sdf
+	fails "$1" 1 "$2" surfimport altered.sdf
+}
+altered "an SDF file with more heights than points" "more than 2 heights: 'BAD" 's/NumProfiles = 2/NumProfiles = 1/'
+altered "heights with decimal commas" 'more than 4 heights' 's/^1 2/1,5 2,5/'
+altered "a word for a height" "'abc' among the heights" 's/BAD/abc/'
+altered "an inverted scale" 'units of -1e-06 m, want a positive' 's/Zscale = /Zscale = -/'
+altered "a scale of nothing" 'units of 0 m, want a positive' 's/Zscale = 1e-6/Zscale = 0/'
+altered "half a point" '2.5 x 2 samples' 's/NumPoints = 2/NumPoints = 2.5/'
+altered "a scale that is no number" "Xscale is 'one', want a number" 's/Xscale = 1e-6/Xscale = one/'
+altered "compressed text" 'compressed' 's/^Zscale/Compression = 1\nZscale/'
+cat i.npy i.npy >two.npy
+fails "two arrays in a file" 1 'more than the 3 x 2 samples' surfimport --pixel 1um --height-unit 1um two.npy
+sed 's/<i2/|i1/' i.npy | head -c 86 >bytes.npy
+surfimport --pixel 1um --height-unit 1um bytes.npy >b.nrrd
+is "integers of one byte are read" "$(heights b.nrrd)" "1e-06 0 2e-06 0 3e-06 0"
+{
+	printf '\223NUMPY\001\000'
+	le16 70
+	printf "%-69s\n" "{'descr': '<i8', 'fortran_order': False, 'shape': (1, 2), }"
+	le32 5 0 4294967293 4294967295
+} >long.npy
+surfimport --pixel 1um --height-unit 1um long.npy >b.nrrd
+is "integers of eight bytes are read" "$(heights b.nrrd)" "5e-06 -3e-06"
+awk 'BEGIN { for (i = 0; i < 9; i++) print i * 0.5, i % 3 }' >places.txt
+fails "positions and heights for a matrix" 1 'positions and heights, are no matrix: --profile' \
+	surfimport --pixel 1um --height-unit 1um places.txt
+awk 'BEGIN { for (i = 0; i < 4; i++) for (j = 0; j < 4; j++) print i, j, i * j }' >points.txt
+fails "points for a matrix" 1 'three columns look like points x, y, z' surfimport --pixel 1um --height-unit 1um points.txt
+sort -r -n places.txt >back.txt
+surfimport --profile --height-unit 1um places.txt >b.nrrd
+surfimport --profile --height-unit 1um back.txt >c.nrrd
+is "a profile measured backwards is turned" "$(heights c.nrrd)" "$(heights b.nrrd)"
+fails "a unit for a length" 2 'height-unit um: did you mean 1um?' surfimport --height-unit um tab.txt
 done_testing

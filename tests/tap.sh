@@ -4,6 +4,7 @@
 #	is NAME GOT WANT           equal strings
 #	like NAME GOT PATTERN      GOT matches a basic regular expression
 #	near NAME GOT WANT TOL     |got - want| <= tol
+#	at_most NAME GOT LIMIT     got <= limit, and got is a number
 #	rising NAME NUMBER...      numbers, none below the one before (nan is no number)
 #	ok NAME COMMAND...         command succeeds
 #	fails INPUT STATUS PATTERN COMMAND...
@@ -72,6 +73,14 @@ near() {
 	fi
 }
 
+at_most() {
+	if awk -v g="$2" -v l="$3" 'BEGIN { exit !(g ~ /^[-+]?[0-9.]/ && g + 0 <= l + 0) }'; then
+		pass "$1"
+	else
+		fail "$1" "got:  $2" "want: at most $3"
+	fi
+}
+
 rising() {
 	name=$1
 	shift
@@ -114,11 +123,12 @@ same() {
 	if cmp "$2" "$3" >err 2>&1; then pass "$1"; else fail "$1" "$(cat err)"; fi
 }
 
-# column NAME FILE: the values of one column of a table
+# column NAME FILE: the values of one column of a table, or a word where there is no table
 column() {
 	awk -F '\t' -v c="$1" '/^#/ { next }
 	!seen { for (i = 1; i <= NF; i++) if ($i == c) k = i; seen = 1; next }
-	k { print $k }' "$2"
+	k { print $k }
+	END { if (!seen) print "no table" }' "$2"
 }
 
 done_testing() {

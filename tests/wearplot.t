@@ -38,6 +38,13 @@ picture 'an envelope keeps a spike of one frame' '3' spike.au
 printf 't\ty\n0\t1\n3600\t2\n7200\t3\n' >series.tsv
 picture 'a series is drawn over time' 'observed' series.tsv
 picture 'with its threshold' 'threshold' --end 5 series.tsv
+printf '# units: h L/min\nt\ty\n0\t1\n3600\t2\n7200\t3\n' >hours.tsv
+picture 'hours stay hours' 'y, L/min.*time, h' hours.tsv
+is 'up to the last' "$(tr -d '\n' <p.svg | sed 's/<[^>]*>/ /g' | grep -c ' 8000 ')" 1
+printf '# units: s m3\nt\ty\n0\t0\n36000\t4e-11\n72000\t9e-11\n' >volume.tsv
+picture 'a volume is shown in cubic millimetres' '0.09.*y, mm3.*time, h' --end 9e-11 volume.tsv
+printf '# units: s m3/s\nt\ty\n0\t1e-5\n7200\t5e-5\n' >flow.tsv
+picture 'a flow is shown in litres a minute' 'y, L/min' flow.tsv
 printf 't\tq05\tq50\tq95\n0\t8\t10\t12\n1\t7\t9\t11\n' >life.tsv
 picture 'lives have a band, a median and the truth' 'band.*median.*true' --truth 10 life.tsv
 printf 'error\tseconds\n1e-3\t1\n1e-4\t2\n' >cost.tsv
@@ -55,7 +62,7 @@ fails 'a signal that was cut off' 1 '^wearplot: torn.au: ' wearplot torn.au
 sed '$d' truth.tsv >torn.tsv
 fails 'a table that was cut off' 1 '^wearplot: torn.tsv: ' wearplot torn.tsv
 fails 'a missing file' 1 'none.tsv: cannot be read' wearplot none.tsv
-fails 'a field that is not there' 1 'no such field' wearplot --field gap contact.nrrd
+fails 'a field that is not there' 1 'want a field of this list: height, pressure' wearplot --field gap contact.nrrd
 fails 'a record that is not there' 1 'contact.nrrd' wearplot --record 3 contact.nrrd
 fails 'another ending' 2 'ends in .svg or .png' wearplot --output x.gif contact.nrrd
 fails 'a size without a height' 2 'want WxH' wearplot --size 900 contact.nrrd

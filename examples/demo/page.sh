@@ -67,7 +67,7 @@ area carry all of it." --field pressure
 	picture worn worn.nrrd "The surface after wear. Material whose stress exceeded the yield \
 stress has left as particles."
 	picture particles truth.tsv "Particles put into the oil and particles found in the record, by \
-size. The two lines should coincide, since the separation knows neither number nor sizes." --found found.tsv
+size. The two lines should coincide, although the separation knows neither number nor sizes." --found found.tsv
 	if [ -e raw.au ]; then
 		picture signal raw.au "A piece of the record of the two sensors. Mains and pump disturb \
 it, and pulses overlap; triangles mark the particles found." --from "$begin" --to "$last" --found found.tsv

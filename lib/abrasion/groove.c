@@ -2,9 +2,9 @@
 #include "abrasion/particle.h"
 #include <math.h>
 
-/* One groove seen along its way. */
+/* One groove, seen along its direction. */
 struct profile {
-	double r, depth, half; /* half: of its width */
+	double r, depth, half; /* half: half of its width */
 	double ridge;          /* height of the ridges */
 };
 
@@ -18,7 +18,7 @@ static double groove_integral(const struct profile *p, double u)
 	return u < 0 ? -s : s;
 }
 
-/* The same of the ridges: parabolas from half to 2 half. */
+/* The same integral of the ridges: parabolas from half to 2 half. */
 static double ridge_integral(const struct profile *p, double u)
 {
 	double w = p->half, t = (fmin(fmax(fabs(u), w), 2 * w) - 1.5 * w) / (0.5 * w);

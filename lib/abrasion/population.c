@@ -12,7 +12,8 @@ static double slope(const struct population *p, int k)
 	       log(p->diameter[k + 1] / p->diameter[k]);
 }
 
-/* The line through all points, with what is beyond largest. */
+/* The value of the line through all points, which includes the particles beyond largest.
+ */
 static double line(const struct population *p, double d)
 {
 	int k = d > p->diameter[1];
@@ -82,8 +83,8 @@ void population_mean(const struct population *p, const struct abrasion_par *par,
 	}
 }
 
-/* Fewer particles are in a narrow gap, so that what they carry has a largest value: the
- * first gap from above that will do is looked for in steps and then halved. */
+/* A narrow gap holds fewer particles, so the load has a maximum over the gap: the widest
+ * gap that carries the load is bracketed from above in steps and then bisected. */
 double population_gap(const struct population *p, const struct abrasion_par *par,
 	double pressure, size_t n, double *most)
 {

@@ -57,7 +57,7 @@ static void open_closed(int fd, int flags)
 	if (fcntl(fd, F_GETFD) >= 0 || errno != EBADF)
 		return;
 	if (open("/dev/null", flags) != fd)
-		exit(EXIT_RUN); /* and nowhere to say why */
+		exit(EXIT_RUN); /* standard error is closed, too */
 }
 
 void files_start(void)

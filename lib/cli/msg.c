@@ -13,7 +13,7 @@ int verbose;
 
 static void say(const char *format, va_list ap)
 {
-	/* No memory is taken: it may be what the message is about. */
+	/* Allocates no memory: the message may be about that. */
 	static char text[4096], line[4 * sizeof text];
 	int reason = errno;
 	size_t length = strlen(format);

@@ -88,7 +88,7 @@ static void append_word(char **text, const char *word)
 	free(q);
 }
 
-/* What parts the members of a list; NUL where there is but one. */
+/* The separator of the members of a list; NUL if it has one member. */
 static char separator_of(const struct opt *o)
 {
 	for (const char *p = ":x,"; *p; p++)
@@ -97,7 +97,7 @@ static char separator_of(const struct opt *o)
 	return '\0';
 }
 
-/* Numbers are in this unit; fractions are not in per cent. */
+/* The unit of the numbers; fractions are not in per cent. */
 static const char *unit_shown(enum unit unit)
 {
 	return unit == UNIT_FRACTION ? "" : unit_name(unit);
@@ -198,10 +198,22 @@ static void check_range(const struct opt *o, const char *text, double value)
 {
 	char least[NUMBER_TEXT], most[NUMBER_TEXT];
 
+	if (value < o->min && o->max >= 1e15)
+		die(EXIT_USAGE, "--%s %s: want at least %s", o->word, text,
+			quantity_text(o->min, o->unit, least));
 	if (value < o->min || value > o->max)
 		die(EXIT_USAGE, "--%s %s: want %s to %s", o->word, text,
 			quantity_text(o->min, o->unit, least),
 			quantity_text(o->max, o->unit, most));
+}
+
+/* "1,5" */
+static int has_decimal_comma(const char *text)
+{
+	const char *comma = strchr(text, ',');
+
+	return comma && comma > text && isdigit((unsigned char)comma[-1]) &&
+	       isdigit((unsigned char)comma[1]);
 }
 
 static double parse_number(const struct opt *o, const char *text)
@@ -213,6 +225,8 @@ static double parse_number(const struct opt *o, const char *text)
 	if (wrong && unit_meant(text, o->unit))
 		die(EXIT_USAGE, "--%s %s: did you mean %s?", o->word, text,
 			unit_meant(text, o->unit));
+	if (wrong && has_decimal_comma(text))
+		die(EXIT_USAGE, "--%s %s: write decimals with a point", o->word, text);
 	if (wrong)
 		die(EXIT_USAGE, "--%s %s: '%s' %s%s%s", o->word, text, text, wrong,
 			*unit_shown(o->unit) ? ", want " : "", unit_shown(o->unit));
@@ -222,7 +236,11 @@ static double parse_number(const struct opt *o, const char *text)
 
 const char *opt_reads(void)
 {
-	return prog ? prog->reads : "another stream";
+	static const char otherwise[] = "nothing, or ";
+	const char *reads = prog ? prog->reads : "another stream";
+
+	return strncmp(reads, otherwise, strlen(otherwise)) ? reads
+							    : reads + strlen(otherwise);
 }
 
 /* "mm" after "--length 1": a unit, not a file. */
@@ -298,6 +316,9 @@ static void parse_list(const struct opt *o, const char *text)
 		if (wrong && unit_meant(s, o->unit))
 			die(EXIT_USAGE, "--%s %s: did you mean %s?", o->word, text,
 				unit_meant(s, o->unit));
+		if (wrong && *separator != ',' && has_decimal_comma(s))
+			die(EXIT_USAGE, "--%s %s: write decimals with a point", o->word,
+				text);
 		if (wrong)
 			die(EXIT_USAGE, "--%s %s: '%s' %s, want %s%s%s", o->word, text, s,
 				wrong, o->arg, *unit_shown(o->unit) ? " in " : "",
@@ -457,6 +478,58 @@ static void getopt_tables(char *letters, struct option *words)
 	*letters = '\0';
 }
 
+static int smaller(int a, int b)
+{
+	return a < b ? a : b;
+}
+
+/* Letters to insert, delete, change or exchange with the next to make b of a, at most
+ * most + 1 of them. */
+static int distance(const char *a, const char *b, int most)
+{
+	int least;
+
+	while (*a && *a == *b) {
+		a++;
+		b++;
+	}
+	if (!*a && !*b)
+		return 0;
+	if (most == 0)
+		return 1;
+	least = 1 + (*a && *b ? distance(a + 1, b + 1, most - 1) : most);
+	if (*a)
+		least = smaller(least, 1 + distance(a + 1, b, most - 1));
+	if (*b)
+		least = smaller(least, 1 + distance(a, b + 1, most - 1));
+	if (*a && *b && a[0] == b[1] && a[1] == b[0])
+		least = smaller(least, 1 + distance(a + 2, b + 2, most - 1));
+	return least;
+}
+
+/* The word of the option that is most like "--word" or "--word=value", if one of them is
+ * by two letters or less. */
+static const char *likely_option(const char *text)
+{
+	char word[32] = "";
+	const char *likely = NULL;
+	int best = 3;
+
+	if (strncmp(text, "--", 2) == 0)
+		snprintf(
+			word, sizeof word, "%.*s", (int)strcspn(text + 2, "="), text + 2);
+	for (int i = 0; strlen(word) > 3 && i < nrows; i++) {
+		int d = rows[i]->kind == OPT_GROUP ? best
+						   : distance(word, rows[i]->word, 2);
+
+		if (d < best) {
+			best = d;
+			likely = rows[i]->word;
+		}
+	}
+	return likely;
+}
+
 static _Noreturn void misuse(int problem, char **argv)
 {
 	char *shown = optopt >= LETTERLESS
@@ -469,6 +542,9 @@ static _Noreturn void misuse(int problem, char **argv)
 	if (problem == ':')
 		die(EXIT_USAGE, "%s: needs an argument; see %s --help", shown,
 			prog->name);
+	if (likely_option(shown))
+		die(EXIT_USAGE, "%s: no such option: did you mean --%s?", shown,
+			likely_option(shown));
 	die(EXIT_USAGE, "%s: no such option; see %s --help", shown, prog->name);
 }
 
@@ -490,7 +566,7 @@ static void check_operands(int argc, char **argv)
 			prog->name, prog->operands, prog->name);
 }
 
-/* A stack that is too small would end in a crash. */
+/* A stack that is too small would overflow. */
 static void check_stack(void)
 {
 	enum { WANT = 256 }; /* kB; the deepest calls take about 100 */
@@ -511,6 +587,7 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 	files_start();
 	prog = program;
 	program_set_name(program->name);
+	progress_begin();
 	check_stack();
 	stats_start();
 	gather(program->opts);

@@ -8,9 +8,14 @@
 #include <time.h>
 #include <unistd.h>
 
-static double started = -1, drawn; /* seconds; drawn 0 while no line is shown */
-static int terminal = -1, told;    /* progress() was called */
-static int line, lines = 1;        /* of this program and of all in its pipeline */
+static double started = -1, drawn; /* seconds; drawn is 0 while no line is shown */
+static int terminal = -1;
+static int due;             /* what is counted has changed: draw at once */
+static const char *counted; /* what progress() counts, NULL: nothing */
+static double count, count_total;
+static double used, input_size, worked; /* bytes; worked: nothing of them is left to do */
+static double within = 1;               /* share of the bytes in between that is done */
+static int line, lines = 1; /* number of this program, and of all in its pipeline */
 
 static double now(void)
 {
@@ -20,7 +25,7 @@ static double now(void)
 	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* The directory of a program's file, "" where the system does not tell. */
+/* The directory of a program's file, "" where the system does not provide it. */
 static void folder_of(const char *process, char folder[PATH_MAX])
 {
 	char path[300], *slash;
@@ -34,7 +39,7 @@ static void folder_of(const char *process, char folder[PATH_MAX])
 		*slash = '\0';
 }
 
-/* Programs of the suite in the same process group stand in one pipeline. */
+/* Programs of the suite in the same process group belong to one pipeline. */
 static void find_line(void)
 {
 	char mine[PATH_MAX], other[PATH_MAX];
@@ -57,8 +62,8 @@ static void find_line(void)
 		closedir(all);
 }
 
-/* Puts the text into the line of this program, all at once, lest others write between:
- * makes room below, goes down, and comes back. */
+/* Writes the text into the line of this program in one call, so that no other program
+ * writes in between: makes room below, moves down, and returns. */
 static void put(const char *text)
 {
 	char all[512];
@@ -92,21 +97,33 @@ static const char *duration(double seconds, char text[32])
 	return text;
 }
 
-static void draw(const char *what, double done, double total)
+static void draw(void)
 {
+	double t = now(), done = count, total = count_total;
+	const char *what = counted;
 	char text[256], left[32];
-	double t = now();
 
 	if (terminal < 0)
 		terminal = isatty(STDERR_FILENO);
 	if (started < 0)
 		started = t;
-	if (!terminal || t - started < 1 || t - drawn < 0.2)
+	if (!terminal || t - started < 1 || (t - drawn < 0.2 && !due))
 		return;
+	due = 0;
+	if (!(total > 0) && input_size > 0) {
+		done = worked + within * (used - worked);
+		total = input_size;
+	}
+	if (!what) {
+		what = "MB";
+		done = total > 0 ? done : 1e-6 * used;
+	}
 	if (drawn == 0 && line == 0 && lines == 1)
 		find_line();
 	drawn = t;
-	if (total > 0 && done > 0 && done <= total)
+	if (total > 0 && done > 0 && done < 0.01 * total)
+		snprintf(text, sizeof text, "%s: 0 %%", program_name());
+	else if (total > 0 && done > 0 && done <= total)
 		snprintf(text, sizeof text, "%s: %.0f %%, %s left", program_name(),
 			100 * done / total,
 			duration((t - started) * (total - done) / done, left));
@@ -116,16 +133,38 @@ static void draw(const char *what, double done, double total)
 	put(text);
 }
 
+void progress_begin(void)
+{
+	started = now();
+}
+
 void progress(const char *what, double done, double total)
 {
-	told = 1;
-	draw(what, done, total);
+	due |= counted != what;
+	counted = what;
+	count = done;
+	count_total = total;
+	draw();
 }
 
 void progress_read(double bytes, double total)
 {
-	if (!told)
-		draw("MB", total > 0 ? bytes : 1e-6 * bytes, total);
+	if (bytes < used || total != input_size) /* another input */
+		worked = 0;
+	used = bytes;
+	input_size = total;
+	draw();
+}
+
+void progress_within(double share, int last)
+{
+	within = share;
+	due |= last && input_size != used;
+	if (last)
+		input_size = used;
+	draw();
+	if (share >= 1)
+		worked = used;
 }
 
 void progress_clear(void)

@@ -2,16 +2,22 @@
  *
  * "debrisgen: 45 %, 12 s left", for work of over a second and only where standard error
  * is a terminal.  Programs of one pipeline have a line each, in their order; the line is
- * erased at the end.
+ * erased at the end.  The share is that of the bytes read, if their number is known, or
+ * what the program says.
  */
 #ifndef CLI_PROGRESS_H
 #define CLI_PROGRESS_H
 
-/* done of total of what, such as "steps"; total <= 0: unknown, tells done alone.  Cheap
- * to call often. */
+/* The time that has passed counts from here, or else from the first of the others. */
+void progress_begin(void);
+/* done of total of what, such as "epochs"; total <= 0: unknown, shows the share of the
+ * input, or done.  Cheap to call often. */
 void progress(const char *what, double done, double total);
-/* Bytes that were read of the input, which tell of programs that call nothing else. */
+/* Bytes of the input that were used. */
 void progress_read(double bytes, double total);
+/* Share, 0 to 1, of the work on what was read since this was last called with 1; last:
+ * nothing more will be read. */
+void progress_within(double share, int last);
 /* Erases the line; messages call it themselves. */
 void progress_clear(void);
 

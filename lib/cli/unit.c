@@ -98,7 +98,7 @@ static double suffix_scale(const char *text, size_t length, enum unit unit)
 	return 0;
 }
 
-/* The unit in which a person reads a quantity, where that is not the SI unit. */
+/* The unit in which a quantity is shown, where that is not the SI unit. */
 static const struct spelling *shown_spelling(enum unit unit)
 {
 	const char *text = unit == UNIT_FLOW            ? "L/min"
@@ -152,7 +152,8 @@ const char *unit_parse(const char *text, enum unit unit, const char *stop, doubl
 	size_t length;
 	double scale = 1;
 
-	/* strtod also takes blanks, nan, inf and hexadecimal; we do not. */
+	/* strtod also accepts blanks, nan, inf and hexadecimal numbers; options do not.
+	 */
 	if (!isdigit((unsigned char)text[strspn(text, "+-.")]) ||
 		strspn(text, "+-") > 1 ||
 		strncmp(text + strspn(text, "+-"), "0x", 2) == 0 ||
@@ -176,8 +177,7 @@ const char *unit_parse(const char *text, enum unit unit, const char *stop, doubl
 	return NULL;
 }
 
-/* Letters of a that differ from those of b by more than capitals: -1; else by capitals.
- */
+/* Number of letters of a and b that differ in case; -1 if any differ otherwise. */
 static int capitals(const char *a, const char *b)
 {
 	int n = 0;
@@ -197,6 +197,13 @@ const char *unit_meant(const char *text, enum unit unit)
 	char *rest;
 
 	strtod(text, &rest);
+	if (rest == text && strlen(text) < sizeof meant - 1 &&
+		suffix_scale(text, strlen(text), unit) > 0) {
+		snprintf(meant, sizeof meant, "1%s", text);
+		return meant;
+	}
+	if (rest == text)
+		return NULL;
 	for (size_t i = 0; i < NSPELLINGS; i++) {
 		if (spellings[i].unit != unit)
 			continue;
@@ -207,7 +214,7 @@ const char *unit_meant(const char *text, enum unit unit)
 			snprintf(name, sizeof name, "%s%s", k ? prefixes[k - 1].text : "",
 				spellings[i].text);
 			n = capitals(rest, name);
-			if (n >= 0 && n < least) {
+			if (n > 0 && n < least) {
 				least = n;
 				memcpy(meant, name, sizeof meant);
 			}

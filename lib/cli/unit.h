@@ -41,8 +41,8 @@ const char *unit_parse(const char *text, enum unit unit, const char *stop, doubl
 	const char **end);
 
 /* Where the unit behind the number of text differs from one that suits by nothing but
- * capitals: the one that is meant ("GPa" for "210Gpa"), valid until the next call; else
- * NULL. */
+ * capitals: the one that is meant ("GPa" for "210Gpa"); for a unit without a number, one
+ * of it ("1um" for "um"); else NULL.  Valid until the next call. */
 const char *unit_meant(const char *text, enum unit unit);
 
 /* Shortest decimal of 15 to 17 digits that reads back as the same number, or "nan". */

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The realisations that a pipeline makes. */
+/* The realisations that a pipeline generates. */
 struct numbers {
-	const char *at;         /* " --first A --count B" in it; NULL if there is none */
-	const char *after;      /* ... and what follows */
+	const char *at; /* " --first A --count B" in the command; NULL if there is none */
+	const char *after;      /* the rest of the command */
 	long long first, count; /* A and B */
 };
 
@@ -24,7 +24,8 @@ static const char *read_number(const char *cmd, const char *word, long long *num
 	return digits > 0 && digits < 18 ? cmd + n + digits : NULL;
 }
 
-/* Those of the first command of the pipeline, which makes what the others read. */
+/* The realisations of the first command of the pipeline, which generates the input of the
+ * others. */
 static struct numbers find_numbers(const char *cmd)
 {
 	const char *pipe = strstr(cmd, " | ");

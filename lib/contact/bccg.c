@@ -16,10 +16,12 @@
  * inverse: that needs a residual continued beyond the contact so that its image there
  * vanishes, see extension.h. */
 #include "contact/bccg.h"
+#include "contact/balance.h"
 #include "contact/gradient.h"
 #include "num/fft.h"
 #include "num/lanes.h"
 #include "num/status.h"
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -77,6 +79,9 @@ enum num_status contact_make_preconditioner(
 	c->inverse = convolve_alloc(c->periodic);
 	c->active = malloc(c->n);
 	if (!c->extension || !c->inverse || !c->active)
+		return NUM_MEMORY;
+	c->balance = balance_new(&c->par);
+	if (!c->balance && errno == ENOMEM)
 		return NUM_MEMORY;
 	convolve_size(c->periodic, &mx, &my);
 	box.lx = (double)mx * c->par.dx;
@@ -242,6 +247,7 @@ struct state {
 	double bounded;   /* cells that the step takes to a bound */
 	int plain;        /* steps along the gradient to go */
 	int forced;       /* the step is to restore the load, whatever the energy */
+	int uphill;       /* a balanced step led uphill: balance no more */
 	int crowded;      /* the active cells cannot carry more, or less */
 	int exact;        /* gap and load have just been computed */
 };
@@ -253,6 +259,34 @@ static void precondition(struct contact *c)
 	c->result.work += c->par.boundary == CONTACT_FREE ? 0.5 : 2;
 }
 
+/* The bounded step along the direction in image that carries what is missing; the last
+ * pass is that of s.  Returns the load that is still missing. */
+static double share_step(struct contact *c, double missing, struct sweep *s)
+{
+	if (c->control != CONTACT_PRESSURE)
+		return 0;
+	return contact_share_load(c, shift_step, missing, c->tau, load_slack, s);
+}
+
+/* The same, in the squares of a strip as well. */
+static double bound_step(
+	struct contact *c, struct state *state, double missing, struct sweep *s)
+{
+	double shift = c->shift, rest;
+
+	if (!c->balance || state->uphill || !balance_direction(c->balance, c, s->sum[2]))
+		return share_step(c, missing, s);
+	*s = contact_sweep(c, shift_step);
+	rest = share_step(c, missing, s);
+	if (s->sum[0] < 0)
+		return rest;
+	state->uphill = 1;
+	balance_undo(c->balance, c);
+	c->shift = shift;
+	*s = contact_sweep(c, shift_step);
+	return share_step(c, missing, s);
+}
+
 /* Direction and bounded step from the residual.  The direction is made conjugate to
  * the last step; with a given load the step makes up for what is missing.  Returns the
  * slope of the energy along the step. */
@@ -260,7 +294,7 @@ static double find_step(struct contact *c, struct state *state)
 {
 	int load_given = c->control == CONTACT_PRESSURE;
 	double missing = c->target * (double)c->n - state->sum;
-	double count, mean, limit, rest = 0;
+	double count, mean, limit, rest;
 	struct sweep s;
 
 	c->result.work += extension_apply(c->extension, c->active, c->residual);
@@ -273,8 +307,7 @@ static double find_step(struct contact *c, struct state *state)
 	c->shift = load_given ? (missing / c->tau + s.sum[0] - c->beta * s.sum[3]) / count
 			      : 0;
 	s = contact_sweep(c, turn_step);
-	if (load_given)
-		rest = contact_share_load(c, shift_step, missing, c->tau, load_slack, &s);
+	rest = bound_step(c, state, missing, &s);
 	state->bounded = count - s.sum[3];
 	limit = fmax(load_slack * s.sum[2], 1e-12 * c->target * (double)c->n);
 	state->crowded = c->cap < INFINITY && fabs(rest) > limit;

@@ -39,6 +39,10 @@ struct contact_par {
 	double tolerance; /* relative duality gap at which the iteration stops */
 	long max_iterations;
 	struct pool *pool; /* borrowed; NULL: one thread */
+	/* Called in each iteration with an estimate of the share that is done; or NULL.
+	 */
+	void (*told)(void *context, double share);
+	void *context;
 };
 
 enum contact_status {

@@ -1,4 +1,5 @@
 #include "contact/solver.h"
+#include "contact/balance.h"
 #include "contact/bccg.h"
 #include "contact/grids.h"
 #include "contact/pk.h"
@@ -134,6 +135,7 @@ static enum num_status make_coarse(struct contact *c)
 
 	if (!contact_can_coarsen(&c->par, &par))
 		return NUM_OK;
+	par.told = NULL;
 	c->coarse = new_grid(&par, c);
 	if (!c->coarse || transfer_make(&c->transfer, &c->par, &par) != 0)
 		return NUM_MEMORY;
@@ -154,6 +156,7 @@ void contact_free(struct contact *c)
 	contact_free(c->coarse);
 	transfer_done(&c->transfer);
 	extension_free(c->extension);
+	balance_free(c->balance);
 	convolve_free(c->periodic);
 	mlms_free(c->mlms);
 	convolve_free(c->plane);

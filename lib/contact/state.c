@@ -244,6 +244,10 @@ int contact_stalls(struct contact *c, double optimality_gap)
 	const double fall = 0.9;
 	const long patience = 4 * GRADIENT_ROUND;
 
+	/* The gap falls geometrically, from about 1. */
+	if (c->par.told)
+		c->par.told(c->par.context,
+			fmin(fmax(log(optimality_gap) / log(c->tolerance), 0), 1));
 	if (optimality_gap < fall * c->best) {
 		c->best = optimality_gap;
 		c->since = 0;

@@ -30,6 +30,7 @@ struct contact {
 	double *residual;            /* g on the contact, then preconditioned */
 	unsigned char *active;       /* 1 for cells that contribute to the residual */
 	struct extension *extension; /* of the residual beyond the contact */
+	struct balance *balance;     /* of the loads along a strip, or NULL */
 	struct contact *coarse;      /* grid of half as many cells each way, or NULL */
 	struct transfer transfer;    /* to coarse */
 	double *coarse_height, *coarse_pressure; /* parts of residual */

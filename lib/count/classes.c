@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is known of one class, twice: of sure rows, and with the doubtful. */
+/* Sums of one class: of the certain rows, and with the doubtful ones. */
 struct class
 {
 	struct weighted number[2], volume[2];
@@ -14,11 +14,12 @@ struct class
 struct classes {
 	struct classes_par par;
 	int n;
-	double *edge;        /* n + 1, the last INFINITY */
-	double *most;        /* upper bound of what stretches hold above an edge */
-	double *most_volume; /* of its volume */
+	double *edge; /* n + 1, the last INFINITY */
+	double *most; /* upper bound of the particles above an edge in unresolved sections
+		       */
+	double *most_volume; /* upper bound of their volume */
 	struct class *class;
-	int unknown; /* a stretch without a diameter was there */
+	int unknown; /* an unresolved section had no diameter */
 };
 
 static double ball(double d)
@@ -109,7 +110,7 @@ static void count(const struct classes *c, int first, int last, struct class_cou
 {
 	struct weighted number[2] = { { 0 } }, volume[2] = { { 0 } };
 	double lower = c->edge[first], upper = c->edge[last + 1], low, high;
-	/* The least likely to be seen, and the largest. */
+	/* The diameter that is least likely to be detected, and the largest one. */
 	double weight = 1 / detection_probability(&c->par.detection, lower);
 	double heavy = ball(upper) / detection_probability(&c->par.detection, upper);
 

@@ -17,7 +17,7 @@ static const double as_low[AS4059_SIZES][7] = {
 static const double as_top[AS4059_SIZES] = { 3200000, 1245584, 221584, 39184, 6784,
 	1024 };
 
-/* A count divided by a volume may miss a limit by rounding. */
+/* A count divided by a volume may differ from a limit by rounding. */
 static const double rounding = 1e-12;
 
 double iso4406_limit(int code)

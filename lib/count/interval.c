@@ -36,7 +36,7 @@ void weighted_interval(const struct weighted *s, double largest, double confiden
 {
 	double tail = 0.5 * (1 - confidence), w = fmax(largest, s->largest);
 
-	/* Weights too large to be squared leave no interval. */
+	/* Weights whose square overflows have no interval. */
 	if (!isfinite(s->squares))
 		*low = 0;
 	else

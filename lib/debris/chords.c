@@ -40,7 +40,7 @@ static double distance2(const double a[3], const double b[3])
 }
 
 /* The farthest two of count points, if farther than least (squared); the square of their
- * distance.  Points too near the middle to be one of them are passed over. */
+ * distance. Points too near the middle to be one of them are skipped. */
 static double farthest(double (*p)[3], size_t count, double least, size_t end[2])
 {
 	double middle[3] = { 0, 0, 0 }, reach = 0;
@@ -105,9 +105,9 @@ static size_t section(struct chords *c, double level)
 	return count;
 }
 
-/* Longest chord at right angles to the longest of all.  Between two corners the section's
- * corners move evenly, so that its diameter is a convex function of height: the largest
- * is found at the height of a corner. */
+/* Longest chord perpendicular to the longest of all.  Between two corners of the hull the
+ * corners of the section move linearly with height, so its diameter is a convex function
+ * of height: the largest is at the height of a corner. */
 static double widest(struct chords *c, const double along[3])
 {
 	double most = 0;

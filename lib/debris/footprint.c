@@ -11,7 +11,7 @@ const char *const footprint_names[FOOTPRINT_FEATURES] = { "cells", "mean_stress"
 	"neighbours", "friction", "poisson", "depth" };
 
 /* The root of strength over stress at the depth found is 1 within CLOSE, which is less
- * than the model of the loss is off; secants meet it in two or three. */
+ * than the error of the model of the loss; secants reach it in two or three steps. */
 enum { STEPS = 12 };
 static const double CLOSE = 0.02;
 
@@ -112,7 +112,7 @@ static void flood(struct footprints *f, struct footprint *r, size_t first,
 	r->load *= s->dx * s->dy;
 	r->x /= (double)r->cells;
 	r->y /= (double)r->cells;
-	/* a cell has a spread of its own */
+	/* the spread of a single cell */
 	for (size_t i = 0; i < r->cells; i++) {
 		size_t row = f->queue[i] / nx;
 		double u = ((double)(f->queue[i] % nx) + 0.5) * s->dx - r->x,

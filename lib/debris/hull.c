@@ -143,7 +143,7 @@ static int compare_y(const void *a, const void *b)
 	return compare(a, b, 1);
 }
 
-/* Which way a path in a plane turns at q: > 0 to the left. */
+/* Direction in which a path in a plane turns at q: > 0 to the left. */
 static int64_t turn(const struct hull_point *p, const struct hull_point *q,
 	const struct hull_point *r, int axis)
 {

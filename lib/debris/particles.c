@@ -24,7 +24,7 @@ enum { STEPS = 64 };
 /* Corners in memory before the first are dropped: 12 bytes each. */
 enum { CORNERS = 1 << 16 };
 
-/* A stretch on its way. */
+/* A stretch with its position during the search. */
 struct piece {
 	double top, bottom;
 	int x, y;      /* column, on the grid */
@@ -40,7 +40,7 @@ struct particles {
 	size_t *body; /* pieces of the present body, in the order reached */
 	size_t members, body_room;
 	double area;  /* of its exposed sides */
-	int winds[2]; /* it goes round along x, y */
+	int winds[2]; /* the body is endless along x, y */
 	struct hull *hull;
 	struct chords *chords;
 	struct hull_point *corner;
@@ -149,8 +149,8 @@ static int onto_grid(int *at, int n, int periodic, int *period)
 	return !over || periodic;
 }
 
-/* Reaches what overlaps a piece in the column at (dx, dy) from it; returns how much of
- * its height does. */
+/* Adds the pieces of the column at (dx, dy) from a piece that overlap it; returns the
+ * height of the overlap. */
 static double reach_column(struct particles *ps, const struct piece *p, int dx, int dy)
 {
 	int x = p->x + dx, y = p->y + dy, period[2] = { p->period[X], p->period[Y] };
@@ -278,9 +278,9 @@ static void measure_moments(const struct particles *ps, const struct extent *e,
 		m[4] += share * x * z;
 		m[5] += share * y * z;
 	}
-	/* Sums of so many terms are right to their square root of units of the last
-	 * place, and the terms to some more; products less than that are none, so that
-	 * bodies along the axes have whole directions. */
+	/* Sums of n terms have a rounding error of some sqrt(n) units in the last place.
+	 * Products below that are set to 0, so that bodies along the axes have exact
+	 * directions. */
 	for (int k = 3; k < 6; k++) {
 		double most = sqrt(m[k == 5] * m[k == 3 ? 1 : 2]);
 

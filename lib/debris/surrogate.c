@@ -6,7 +6,7 @@
 
 enum { FEATURES = FOOTPRINT_FEATURES, TERMS = SURROGATE_TERMS, PASSES = 3, LEAST = 100 };
 enum part { FIT, CALIBRATE, CHECK };
-static const double SURE = 0.9; /* level of the report */
+static const double SURE = 0.9; /* confidence level of the report */
 
 static int class_of(size_t cells)
 {
@@ -77,8 +77,8 @@ static enum part part_of(long place)
 	return place % 5 < 2 ? FIT : place % 5 < 4 ? CALIBRATE : CHECK;
 }
 
-/* Features that hardly vary in the samples are left alone: a scale of 1 makes them small.
- * The ridge keeps what they are worth undetermined at nought. */
+/* Features that hardly vary in the samples keep a scale of 1, which makes them small. The
+ * ridge sets coefficients that the samples do not determine to zero. */
 static enum num_status fit_coefficients(const struct surrogate_sample *sample,
 	const char *part, size_t n, struct surrogate *s)
 {
@@ -184,8 +184,8 @@ static int keep_scores(double *all, size_t n, double *kept)
 	return most;
 }
 
-/* Conformal bounds of equal tails: the k-th score from either end, k = floor of half the
- * rest times one more than there are. */
+/* Conformal bounds with equal tails: the k-th score from either end, k = floor((1 -
+ * level) / 2 (n + 1)). */
 static int bounds(const double *score, int n, double level, double *low, double *high)
 {
 	int k = (int)floor(0.5 * (1 - level) * (n + 1) + 1e-9);
@@ -259,7 +259,8 @@ static size_t surface_end(const struct surrogate_sample *sample, size_t n, size_
 	return end;
 }
 
-/* Of a surface: ln of true over guessed total, and the deviation of the latter. */
+/* For a surface: ln of the true over the predicted total, and the deviation of the
+ * prediction. */
 static double total_error(const struct surrogate *s, const struct surrogate_sample *x,
 	size_t n, double *deviation)
 {

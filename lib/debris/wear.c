@@ -62,9 +62,9 @@ static double depth_of(const struct wear_par *p, long layer)
 	return layer ? p->spacing * FIRST * exp2(0.5 * (double)(layer - 1)) : 0;
 }
 
-/* Strength over stress, to the half: it grows in proportion to the depth below a load
- * that is far away, so that little is left to interpolate.  Bounded where there is no
- * stress. */
+/* Square root of strength over stress.  It grows in proportion to the depth below a
+ * distant load, which makes it nearly linear for the interpolation.  Bounded where there
+ * is no stress. */
 static double reserve(const struct wear *w, int ago, size_t at)
 {
 	return sqrt(w->par->yield / fmax(w->value[ago][at], 1e-6 * w->par->yield));
@@ -167,8 +167,8 @@ static enum num_status take_layer(struct wear *w, long layer)
 	return NUM_OK;
 }
 
-/* Spans of open columns: what greater depths may lose under the column rule.  They lie
- * within the spans so far. */
+/* Spans of open columns: the cells that greater depths may lose under the column rule.
+ * They lie within the spans so far. */
 static enum num_status follow(struct wear *w)
 {
 	size_t old = w->nspans;

@@ -16,14 +16,14 @@ struct fields_in {
 	struct place at;
 	struct raw_layout raw;
 	int is_raw;
-	long unmarked; /* records that did not say whether another one follows */
+	long unmarked; /* records that do not state whether another one follows */
 };
 
 struct fields_out {
 	FILE *f;
 	const char *name;
 	long records; /* of the stream that is being written */
-	int open;     /* another record was promised */
+	int open;     /* another record was announced */
 };
 
 double *record_need(
@@ -82,7 +82,7 @@ static void read_raw(struct fields_in *in, struct record *r)
 	samples_read(&in->at, r, (struct samples){ 0, 0 });
 }
 
-/* By the first line, which is behind the reader then. */
+/* Recognises the format by the first line, which has been read then. */
 static const struct format {
 	int (*is)(const char *magic);
 	void (*read)(struct place *at, struct record *r);
@@ -109,7 +109,7 @@ static void read_formatted(struct fields_in *in, struct record *r)
 	free(magic);
 }
 
-/* A record that promised another one came. */
+/* A record arrived that announces another one. */
 static int promised(const struct fields_in *in)
 {
 	return in->at.mark.number > 0 && !in->at.mark.last;
@@ -120,7 +120,12 @@ int fields_more(struct fields_in *in)
 	return promised(in) || input_peek(in->at.in) >= 0;
 }
 
-/* Records of a stream of ours are numbered from 1. */
+int fields_last(const struct fields_in *in)
+{
+	return in->at.mark.number > 0 && in->at.mark.last;
+}
+
+/* Records of a stream with an end mark are numbered from 1. */
 static void check_mark(const struct fields_in *in, struct mark before)
 {
 	const struct mark *mark = &in->at.mark;

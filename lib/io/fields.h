@@ -40,6 +40,8 @@ struct fields_in *fields_from(struct input *in); /* takes ownership of an open i
 int fields_marked(const struct fields_in *in);
 /* 1 if a record follows, or is promised. */
 int fields_more(struct fields_in *in);
+/* 1 if the last record stated that it is the last one; does not wait for the input. */
+int fields_last(const struct fields_in *in);
 /* Fills r, whose old contents are freed or reused; 0 at the end of the stream.  A stream
  * without any record dies: what should have written it failed. */
 int fields_read(struct fields_in *in, struct record *r);

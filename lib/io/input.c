@@ -14,7 +14,7 @@
 enum { BUFFER = 1 << 16 };
 
 struct input {
-	FILE *f; /* holds the descriptor; what is read goes past it */
+	FILE *f; /* holds the descriptor; reads bypass its buffer */
 	int fd;
 	int regular, whole;
 	double size, taken; /* bytes: of a regular file, else 0; read so far */
@@ -57,6 +57,13 @@ static int waits(const struct input *in)
 	return file_followed() && in->regular && !in->whole;
 }
 
+/* What is in the buffer is still to be used. */
+static void tell(const struct input *in)
+{
+	progress_read(in->taken - (double)(in->end - in->begin),
+		file_followed() ? 0 : in->size);
+}
+
 static size_t read_some(struct input *in, void *bytes, size_t n)
 {
 	static const struct timespec pause = { 0, 50000000 };
@@ -66,7 +73,7 @@ static size_t read_some(struct input *in, void *bytes, size_t n)
 		got = read(in->fd, bytes, n);
 		if (got > 0) {
 			in->taken += (double)got;
-			progress_read(in->taken, file_followed() ? 0 : in->size);
+			tell(in);
 		}
 		if (got > 0 || (got == 0 && !waits(in)))
 			return (size_t)got;
@@ -163,6 +170,7 @@ size_t input_line(struct input *in, char **line, size_t *room, size_t most)
 		if (newline)
 			break;
 	}
+	tell(in);
 	return over ? most + 1 : n;
 }
 

@@ -3,7 +3,7 @@
 #include "cli/opt.h"
 #include <string.h>
 
-static const char sox[] = ": sox IN -e floating-point -b 64 OUT.au converts it";
+static const char converted[] = ": sigconvert converts it";
 
 static const struct {
 	const char *begin;
@@ -14,17 +14,17 @@ static const struct {
 	{ "NRRD000", KIND_FIELD, "a field (NRRD)", "" },
 	{ "Gwyddion Simple Field", KIND_FIELD, "a field (GSF)", "" },
 	{ ".snd", KIND_SIGNAL, "a signal (AU)", "" },
-	{ "RIFF", KIND_OTHER, "WAV audio", sox },
-	{ "fLaC", KIND_OTHER, "FLAC audio", sox },
-	{ "\x1f\x8b", KIND_OTHER, "compressed by gzip", "" },
-	{ "PK\x03\x04", KIND_OTHER, "a zip archive", "" },
-	{ "\x93NUMPY", KIND_OTHER, "a numpy array", "" },
+	{ "RIFF", KIND_OTHER, "WAV audio", converted },
+	{ "fLaC", KIND_OTHER, "FLAC audio", converted },
+	{ "\x1f\x8b", KIND_OTHER, "compressed by gzip", ": gunzip first" },
+	{ "PK\x03\x04", KIND_OTHER, "a zip archive", ": surfunzip reads .x3p and .plux" },
+	{ "\x93NUMPY", KIND_OTHER, "a numpy array", ": surfimport converts heights" },
 	{ "\x89PNG", KIND_OTHER, "a picture", "" },
 	{ "GIF8", KIND_OTHER, "a picture", "" },
 	{ "%PDF", KIND_OTHER, "a PDF document", "" },
 };
 
-/* Text up to the first newline, or all that there is. */
+/* Text up to the first newline, or all of it. */
 static int is_text(const unsigned char *b, size_t n)
 {
 	for (size_t i = 0; i < n && b[i] != '\n'; i++)
@@ -50,6 +50,9 @@ void kind_refuse(const char *name, const void *bytes, size_t n, enum stream_kind
 	if (!text && is_text(bytes, n)) {
 		kind = KIND_TABLE;
 		text = "text";
+		hint = wanted == KIND_SIGNAL  ? converted
+		       : wanted == KIND_FIELD ? ": surfimport converts heights"
+					      : "";
 	}
 	if (text && kind != wanted)
 		die(EXIT_RUN, "%s: this is %s, want %s%s", name, text, opt_reads(), hint);

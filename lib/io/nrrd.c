@@ -26,8 +26,8 @@ struct header {
 	char units[AXES][16];
 	int list_first; /* kinds say that axis 0 is a list */
 	int raw;
-	int endian; /* 0 not said, 1 little, 2 big */
-	int type;   /* 0 not said, 4 float, 8 double */
+	int endian; /* 0 not stated, 1 little, 2 big */
+	int type;   /* 0 not stated, 4 float, 8 double */
 	char *fields;
 };
 
@@ -327,7 +327,7 @@ void nrrd_read(struct place *at, struct record *r)
 	samples_read(at, r, (struct samples){ h.type == 4, h.endian == 2 });
 }
 
-/* Value of a key: escaped, and without the ": " that ParaView's reader trips over. */
+/* Value of a key: escaped, and without ": ", which ParaView's reader cannot parse. */
 static void write_key(struct text *t, const char *key, const char *value)
 {
 	char before = '=';

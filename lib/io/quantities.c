@@ -78,7 +78,7 @@ int table_find_quantity(struct table_in *t, const char *column, enum unit unit)
 	int found = table_find(t, column);
 	double scale = table_scale(t, found, unit);
 
-	/* Also where no unit is named: units that a later part names differ from it. */
+	/* Also where no unit is given: a unit given in a later part differs from it. */
 	if (found >= 0)
 		table_set_scale(t, found, isnan(scale) ? 1 : scale);
 	return found;

@@ -13,7 +13,7 @@ struct unit_seen {
 struct series {
 	struct table_in *table;
 	int t, y, u; /* columns, -1 if absent */
-	int n, unit; /* units so far, the present one */
+	int n, unit; /* number of units so far, and the present one */
 	struct unit_seen *seen;
 	double time, value;
 };
@@ -32,7 +32,7 @@ struct series *series_open(const char *path, const char *unit)
 	}
 	if (s->y < 0)
 		s->y = table_need(s->table, "y");
-	/* Beside others, y without t may be a coordinate. */
+	/* If there are other columns, y without t may be a coordinate. */
 	if (s->t < 0 && table_columns(s->table) > 1 + (unit != NULL))
 		table_need(s->table, "t");
 	s->u = unit ? table_need(s->table, unit) : -1;
@@ -41,7 +41,7 @@ struct series *series_open(const char *path, const char *unit)
 
 static int find_unit(struct series *s, const char *name)
 {
-	/* most often it is the unit of the row before, or the one that came after it */
+	/* usually the unit of the row before, or the one after that */
 	for (int i = s->n > 0 ? s->unit : 0, k = 0; k < s->n; k++, i = (i + 1) % s->n)
 		if (strcmp(s->seen[i].name, name) == 0)
 			return i;

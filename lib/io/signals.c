@@ -43,9 +43,9 @@ struct signal_in {
 	size_t width, frame;  /* bytes per sample, per frame */
 	uint64_t left, total; /* bytes of data still declared; UINT64_MAX: unknown */
 	int promised;         /* the last frame is an end */
-	uint32_t checksum;    /* of the bytes handed out, where an end is promised */
-	uint64_t frames;      /* handed out */
-	int done;             /* nothing more to hand out */
+	uint32_t checksum; /* checksum of the bytes returned, where an end is announced */
+	uint64_t frames;   /* handed out */
+	int done;          /* no more frames to return */
 	unsigned char buffer[BUFFER];
 	size_t begin, end; /* unread bytes of buffer */
 };
@@ -56,11 +56,11 @@ struct signal_out {
 	int channels, single;
 	uint32_t checksum;
 	uint64_t frames;
-	unsigned char buffer[BUFFER]; /* what a pipe holds */
+	unsigned char buffer[BUFFER]; /* capacity of a pipe */
 };
 
-/* A subnormal number, which every tool takes for silence: a bit that marks it, the lowest
- * bits of the count of frames and those of the checksum of all bytes before. */
+/* A subnormal number, which every tool treats as silence: a bit that marks it, the lowest
+ * bits of the number of frames, and those of the checksum of all bytes before. */
 static void make_end(unsigned char *b, int single, uint64_t frames, uint32_t checksum)
 {
 	if (single) {
@@ -71,7 +71,7 @@ static void make_end(unsigned char *b, int single, uint64_t frames, uint32_t che
 	bytes_put_u32_big(b + 4, checksum);
 }
 
-/* Reads what is there, at least one byte; 0 at the end. */
+/* Reads the bytes available, at least one; 0 at the end. */
 static size_t fill(struct signal_in *in)
 {
 	size_t n;
@@ -117,7 +117,7 @@ static char *annotated(const char *text, const char *key)
 	return NULL;
 }
 
-/* The header has room for whole numbers: others stand in the annotation, too. */
+/* The header has room only for whole numbers: other rates are also in the annotation. */
 static uint32_t whole_rate(double rate)
 {
 	return rate < 1 ? 1 : (uint32_t)(rate + 0.5);
@@ -278,7 +278,7 @@ static void decode(
 	}
 }
 
-/* Hands out n frames of the buffer. */
+/* Returns n frames of the buffer. */
 static void take(struct signal_in *in, double *x, size_t n)
 {
 	const unsigned char *b = in->buffer + in->begin;
@@ -292,7 +292,7 @@ static void take(struct signal_in *in, double *x, size_t n)
 		in->left -= n * in->frame;
 }
 
-/* Frames that the buffer has to hand out: one that may be the end is held back. */
+/* Frames of the buffer that can be returned: one that may be the end is kept. */
 static size_t ready(const struct signal_in *in)
 {
 	uint64_t bytes = in->end - in->begin;
@@ -302,8 +302,7 @@ static size_t ready(const struct signal_in *in)
 	return (size_t)(bytes / in->frame) - (in->promised && bytes >= in->frame);
 }
 
-/* 1 if the frame left over is the end that was promised; torn says whether it is one
- * at all. */
+/* 1 if the last frame is the end mark; torn: whether it has the form of one at all. */
 static int is_end(const struct signal_in *in, int *torn)
 {
 	const unsigned char *b = in->buffer + in->begin;
@@ -319,7 +318,7 @@ static int is_end(const struct signal_in *in, int *torn)
 	return same;
 }
 
-/* Reads on; what may be the end of a signal that is followed is taken for that. */
+/* Reads more; under --follow a frame that may be the end mark is treated as one. */
 static size_t fill_past(struct signal_in *in)
 {
 	int torn;
@@ -329,8 +328,8 @@ static size_t fill_past(struct signal_in *in)
 	return fill(in);
 }
 
-/* At the end of the bytes of a signal that promised an end: what remains is that, or a
- * last frame of a signal that was cut off, which is handed out. */
+/* At the end of the bytes of a signal with an end mark: the last frame is the mark, or a
+ * frame of a truncated signal, which is returned. */
 static size_t finish_promised(struct signal_in *in, double *x)
 {
 	size_t rest = in->end - in->begin, n = 0;
@@ -366,7 +365,7 @@ static void check_end(const struct signal_in *in)
 			in->name, in->frame, rest);
 }
 
-/* All declared bytes were handed out, or less than a frame of them is left. */
+/* All declared bytes were returned, or less than a frame of them is left. */
 static void check_declared(struct signal_in *in)
 {
 	if (in->left > 0)
@@ -428,7 +427,7 @@ void signal_close(struct signal_in *in)
 	free(in);
 }
 
-/* A line for each thing that is known. */
+/* One line for each property that is known. */
 static char *annotation(const struct signal_format *format)
 {
 	char rate[NUMBER_TEXT];

@@ -28,19 +28,19 @@ struct table_in {
 	long number; /* of that line, from 1 */
 	int ncolumns;
 	char **column; /* names */
-	double *scale; /* what table_number() multiplies with, NULL for 1 */
+	double *scale; /* factor of table_number(), NULL for 1 */
 	char **cell;
-	const char *blanks; /* what parts the cells */
-	int headed;         /* the names stand in the table */
-	int pending;        /* the row read ahead by table_open() is still to come */
-	struct keys keys;   /* of comment lines */
+	const char *blanks; /* separator of the cells */
+	int headed;         /* the table has a line of names */
+	int pending; /* the row read ahead by table_open() has not been returned yet */
+	struct keys keys; /* of comment lines */
 	table_comment_taker *take;
 	void *context; /* of take */
 	struct upstream upstream;
 	long part;
 	int promised;      /* an end must come */
-	int unmarked;      /* a header or row came where no end was promised */
-	long rows;         /* since the promise */
+	int unmarked;      /* a header or row came where no end was announced */
+	long rows;         /* since the announcement */
 	uint32_t checksum; /* of the lines since then */
 };
 
@@ -68,7 +68,7 @@ static char *trim(char *s)
 	return s + strspn(s, " \t");
 }
 
-/* Comments are free text, but what begins with a single word and a colon is a key. */
+/* Comments are free text; one that begins with a single word and a colon is a key. */
 static void keep_key(struct table_in *t, char *comment)
 {
 	char *colon = strchr(comment, ':'), *value;
@@ -99,7 +99,7 @@ static void keep_key(struct table_in *t, char *comment)
 	}
 }
 
-/* UTF-8 has none, but spreadsheets begin a file with it. */
+/* A byte order mark, which spreadsheets write at the beginning of UTF-8 files. */
 static const char byte_order_mark[] = "\xef\xbb\xbf";
 
 /* The next line with its newline; returns its length, 0 at the end. */
@@ -117,7 +117,7 @@ static size_t read_line(struct table_in *t)
 		t->name, t->number);
 }
 
-/* A table that promises an end begins. */
+/* A table that announces an end begins. */
 static void begin_promised(struct table_in *t)
 {
 	if (t->promised)
@@ -153,7 +153,7 @@ static void check_end(struct table_in *t)
 	input_whole(t->in, 1);
 }
 
-/* Minds promise, checksum and end; 1 if the line is one for the reader. */
+/* Processes announcement, checksum and end; 1 if the line is for the caller. */
 static int mind_end(struct table_in *t, size_t n)
 {
 	if (strcmp(t->line, promise) == 0)
@@ -360,7 +360,7 @@ int table_find(const struct table_in *t, const char *column)
 	return found;
 }
 
-/* What to do with a header of another program, as "Flow [L/min]" or "t;y". */
+/* Advice for a header of another program, such as "Flow [L/min]" or "t;y". */
 static const char *converter(const struct table_in *t)
 {
 	for (int i = 0; i < t->ncolumns; i++)
@@ -582,7 +582,7 @@ void table_comment(struct table_out *t, const char *key, const char *format, ...
 		return;
 	}
 	if (before && strcmp(key, "cmd") == 0)
-		write_head(t); /* with the first pipeline, even where it made no row */
+		write_head(t); /* with the first pipeline, even if it wrote no row */
 	keys_set(&t->told, key, escaped);
 	line = xprintf("# %s: %s\n", key, escaped);
 	if (t->columns || !t->ncolumns) {

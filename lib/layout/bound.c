@@ -3,7 +3,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { STEPS = 4096 }; /* of the integrals: 1e-12 for the Gaussian, which is smooth */
+enum {
+	STEPS = 4096
+}; /* of the integrals: error 1e-12 for the Gaussian, which is smooth */
 
 void bound_energies(enum pulse_shape shape, double energy[3])
 {
@@ -16,7 +18,8 @@ void bound_energies(enum pulse_shape shape, double energy[3])
 		energy[2] = M_PI * M_PI / 6 + 0.25;
 		return;
 	}
-	/* Trapezoids in u, s = reach sinh(8 u) / sinh(8): fine at the lobes. */
+	/* Trapezoidal rule in u, s = reach sinh(8 u) / sinh(8), which is dense at the
+	 * lobes. */
 	h = 2.0 / STEPS;
 	for (int i = 1; i < STEPS; i++) {
 		double u = -1 + i * h, s = reach * sinh(8 * u) / sinh(8.0);
@@ -34,7 +37,8 @@ struct fisher {
 	double tt, tv, vv, ta, va, aa;
 };
 
-/* Variances from it; offset: of the first coil from the mean position, in zones. */
+/* Variances from the Fisher matrix; offset: of the first coil from the mean position, in
+ * zones. */
 static void invert(const struct fisher *f, double offset, double variance[4])
 {
 	double vv, va, aa, det;
@@ -94,7 +98,7 @@ void bound_closed(
 	f.vv = c * (coils * e[2] + spread * e[1]);
 	f.va = -c * coils * e[0] / 2;
 	f.aa = c * coils * e[0];
-	/* A particle that is faster arrives earlier at the first coil. */
+	/* A faster particle arrives earlier at the first coil. */
 	invert(&f, -(coil[0] - middle) / par->zone, variance);
 	put(par, variance, b);
 }
@@ -110,7 +114,8 @@ static void add_coil(const struct bound_par *par, double t0, double T, double x,
 
 	pulse_sample(par->shape, t0, T, first, n, p, by_t0, by_T);
 	for (size_t i = 0; i < n; i++) {
-		/* by the arrival over T, by ln v (which moves t0 by -x T and T by -T) */
+		/* derivatives by the arrival over T, and by ln v (which moves t0 by -x T
+		 * and T by -T) */
 		double t = by_t0[i] * T, v = -x * t - by_T[i] * T;
 
 		f->tt += square * t * t;

@@ -6,7 +6,7 @@
 enum { HALVINGS = 30 };             /* of the step: 1e-9 of the extent */
 static const double deviations = 3; /* of a window to either side */
 
-void layout_judge(
+void layout_evaluate(
 	const struct layout_par *par, const double *coil, int coils, struct layout *out)
 {
 	double window = traffic_window(&par->traffic), first = 0, width = 0;
@@ -40,16 +40,16 @@ struct search {
 	int coils;
 	double extent, least;
 	double best[LAYOUT_COILS];
-	double error; /* of the velocity, of the best */
-	long judged;
+	double error; /* error of the velocity of the best layout */
+	long evaluated;
 };
 
 static int try(struct search *s, const double *coil)
 {
 	struct layout found;
 
-	s->judged++;
-	layout_judge(s->par, coil, s->coils, &found);
+	s->evaluated++;
+	layout_evaluate(s->par, coil, s->coils, &found);
 	if (found.by_width < s->least || !(found.bound.velocity < s->error))
 		return 0;
 	s->error = found.bound.velocity;
@@ -70,7 +70,7 @@ static void try_all(struct search *s, double *coil, int k, int from, int steps)
 	}
 }
 
-/* Moves the coils i to j, which stay in order, by step. */
+/* Moves the coils i to j by step if they stay in order. */
 static int move(struct search *s, int i, int j, double step)
 {
 	double coil[LAYOUT_COILS];
@@ -108,7 +108,7 @@ enum num_status layout_search(const struct layout_par *par, int coils, double ex
 		step /= 2;
 	}
 	memcpy(coil, s.best, (size_t)coils * sizeof *coil);
-	layout_judge(par, coil, coils, out);
-	out->judged = s.judged;
+	layout_evaluate(par, coil, coils, out);
+	out->evaluated = s.evaluated;
 	return NUM_OK;
 }

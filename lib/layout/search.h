@@ -8,8 +8,8 @@
  * so far.
  *
  *	struct layout_par par = { .bound = { ... }, .traffic = { ... } };
- *	layout_judge(&par, coil, 2, &judged);
- *	layout_search(&par, 3, 0.5, 0.9, 32, coil, &judged);
+ *	layout_evaluate(&par, coil, 2, &evaluated);
+ *	layout_search(&par, 3, 0.5, 0.9, 32, coil, &evaluated);
  */
 #ifndef LAYOUT_SEARCH_H
 #define LAYOUT_SEARCH_H
@@ -27,13 +27,13 @@ struct layout {
 	struct bound bound; /* closed form */
 	double unique;      /* probability of an unambiguous match */
 	double by_width;    /* the same where the first pulse's width is made use of */
-	long judged;        /* layouts looked at */
+	long evaluated;     /* layouts looked at */
 };
 
 enum { LAYOUT_COILS = 16 };
 
 /* Positions ascend from the first; at most LAYOUT_COILS. */
-void layout_judge(
+void layout_evaluate(
 	const struct layout_par *par, const double *coil, int coils, struct layout *out);
 
 /* The best of coils >= 2 within extent, the first at 0, whose by_width is not below

@@ -1,4 +1,4 @@
-/* cnn.c - a network's first look at a section of overlapping pulses */
+/* cnn.c - a network's first estimate of a section of overlapping pulses */
 #include "net/cnn.h"
 #include <math.h>
 

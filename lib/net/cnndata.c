@@ -38,8 +38,8 @@ static unsigned of_pulse(int k)
 	return ARRIVALS + OF_PULSES * (unsigned)k;
 }
 
-/* Rising arrivals with the spacing kept: that much is taken from the span beforehand and
- * put back between sorted uniform numbers, which leaves them uniform. */
+/* Ascending arrivals with the least spacing: the spacings are subtracted from the span
+ * and added between sorted uniform numbers, which keeps them uniform. */
 static void draw_arrivals(const struct cnndata_par *par, uint32_t i, int n, double *t)
 {
 	double space = par->spacing * CNNDATA_DURATION;
@@ -83,7 +83,7 @@ void cnndata_section(
 		       exp(draw(par, i, 1, log(par->reach[0]), log(par->reach[1])));
 	double gain = draw(par, i, 2, par->gain[0], par->gain[1]);
 	double t[CNN_SOURCES], edge = CNNDATA_DURATION / 2.0 + reach;
-	/* What surrounds the pulses, and where samples fall, is left to chance. */
+	/* The margins around the pulses and the phase of the samples are random. */
 	double begin = edge + draw(par, i, 4, 0, CNNDATA_DURATION / 2.0);
 	double end = edge + draw(par, i, 5, 0, CNNDATA_DURATION / 2.0);
 
@@ -136,7 +136,7 @@ void cnndata_target(
 		value[0] = (network_real)((p->t - f.centre) / f.duration);
 		value[1] = (network_real)((p->delta - f.middle) / f.reach);
 		value[2] = (network_real)cbrt(p->a / f.scale);
-		/* With a floor under what a network of this size can tell. */
+		/* With a floor at the accuracy that a network of this size can reach. */
 		variance[0] = (network_real)(t + 5e-3 * 5e-3);
 		variance[1] = (network_real)(1 / (1 / delta + 3) + 0.02 * 0.02);
 		variance[2] = (network_real)(value[2] * value[2] * (size + 0.01 * 0.01));

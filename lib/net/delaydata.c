@@ -32,7 +32,7 @@ static void draw_source(
 	s->amplitude = between(par->amplitude, u[1]);
 	s->gain = between(par->gain, u[2]);
 	s->delay = u[3];
-	/* Anywhere that leaves both channels whole. */
+	/* Arrivals that leave the pulse complete in both channels. */
 	s->begin = fmax(par->span - s->length - par->unit, 0) * u[4];
 }
 

@@ -147,7 +147,7 @@ struct reader {
 	char *why;
 };
 
-/* The next line that is no comment, without its newline; NULL with why at the end. */
+/* The next line that is not a comment, without its newline; NULL with why at the end. */
 static char *next_line(struct reader *r, const char *want)
 {
 	do {

@@ -75,7 +75,7 @@ static void update(const struct network_training *par, struct descent *d)
 			d->weight[w] = (real)(d->weight[w] - rate * d->gradient[w]);
 		return;
 	}
-	/* The two corrections of the start are taken into the step and the guard. */
+	/* The two bias corrections are included in the step and the guard. */
 	guard = (real)sqrt(1 - pow(keep_square, (double)d->steps));
 	step = (real)(rate * guard / (1 - pow(keep, (double)d->steps)));
 	guard = (real)(guard * 1e-8);
@@ -156,7 +156,7 @@ enum network_status network_train(struct network *net, const struct network_trai
 	return status;
 }
 
-/* Samples of an auto-encoder: what the layers before it give, as input and target. */
+/* Samples of an auto-encoder: the output of the layers before it is input and target. */
 struct encoder {
 	struct network *net;
 	int layer, inputs;

@@ -13,11 +13,12 @@ enum {
 };
 
 struct convolve {
-	size_t nx, ny;  /* field */
-	size_t mx, my;  /* transform: periodic nx, ny; padded at least twice that */
-	int padded_y;   /* columns are padded */
-	int wrapped;    /* periodic, but in a padded direction */
-	int bridged;    /* beyond the field x goes on linearly, back to its beginning */
+	size_t nx, ny; /* field */
+	size_t mx, my; /* transform: periodic nx, ny; padded at least twice that */
+	int padded_y;  /* columns are padded */
+	int wrapped;   /* periodic, but in a padded direction */
+	int bridged; /* beyond the field x is interpolated linearly back to its beginning
+		      */
 	size_t lx, ly;  /* kept coefficients mx / 2 + 1; length of column transforms */
 	size_t stride;  /* coefficients from row to row of work */
 	size_t column;  /* coefficients from column to column of a scratch buffer */
@@ -244,7 +245,7 @@ static double quarter_value(const void *context, size_t ix, size_t iy)
 	return q->scale * q->value[iy * q->stride + ix];
 }
 
-/* By way of the values of one period. */
+/* From the values of one period. */
 static enum num_status wrapped_spectrum(const struct convolve *c, double *kernel,
 	double (*factor)(const void *context, size_t kx, size_t ky), const void *context)
 {
@@ -284,7 +285,7 @@ static size_t smaller(size_t a, size_t b)
 	return a < b ? a : b;
 }
 
-/* How far across a bridge of n cells cell i lies. */
+/* Position of cell i across a bridge of n cells, from 0 to 1. */
 static double bridge(size_t i, size_t n)
 {
 	return (double)(i + 1) / (double)(n + 1);
@@ -300,7 +301,7 @@ static void forward_rows(void *context, size_t job, int worker)
 		double first = c->x[iy * c->nx], last = c->x[(iy + 1) * c->nx - 1];
 
 		memcpy(row, c->x + iy * c->nx, c->nx * sizeof *row);
-		/* The inverse of an earlier row may have left something there. */
+		/* The inverse transform of an earlier row may have written there. */
 		for (size_t ix = c->nx; ix < c->mx; ix++)
 			row[ix] = c->bridged
 					  ? last + (first - last) * bridge(ix - c->nx,

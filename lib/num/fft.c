@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* FFTW's planner is the one part of it that is not safe among threads. */
+/* FFTW's planner is its only part that is not thread-safe. */
 static pthread_mutex_t planner = PTHREAD_MUTEX_INITIALIZER;
 
 struct fft {

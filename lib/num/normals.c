@@ -59,7 +59,8 @@ static double draw_tail(const struct normals *n, uint64_t place)
 	return x;
 }
 
-/* Goes on where the first word fell outside the inner box of its layer; which = 0, 1. */
+/* Continues where the first word fell outside the inner box of its layer; which = 0, 1.
+ */
 static double settle(
 	const struct normals *n, uint64_t word, uint64_t index, uint64_t which)
 {
@@ -82,7 +83,7 @@ static double settle(
 	}
 }
 
-/* The number that a random word stands for; which = 0, 1 of the pair. */
+/* The deviate of a random word; which = 0, 1 of the pair. */
 static inline double number(
 	const struct normals *n, uint64_t word, uint64_t index, uint64_t which)
 {

@@ -12,7 +12,7 @@ struct range {
 struct realisations {
 	struct realisation_cell *cell;
 	size_t n, room, most;
-	struct range *done; /* handed on, ascending and apart from one another */
+	struct range *done; /* passed on: ranges that ascend and do not touch */
 	size_t ndone;
 	realisations_take *take;
 	void *to;
@@ -97,7 +97,7 @@ static enum realisations_status note_done(struct realisations *r, size_t count)
 	return REALISATIONS_OK;
 }
 
-/* Hands on all realisations but keep, whose cells stay. */
+/* Passes on all realisations except keep, whose cells stay. */
 static enum realisations_status hand_on(struct realisations *r, int all, long keep)
 {
 	size_t kept = 0, count;

@@ -55,7 +55,6 @@ struct calibration {
 	double duration, gain; /* as above */
 	double transit;        /* samples between the sensors; INFINITY if unknown */
 	double delta_min, delta_max; /* samples around shift */
-	double delta_var;            /* of the delays of what was learned from */
 	double drop, drop_near;      /* thresholds of joint.h */
 	double misfit;               /* of joint.h: how far the shape can be trusted */
 	int events;                  /* pulses the shape was fitted to */

@@ -61,6 +61,11 @@ struct joint_pulse {
 	double cov[6];
 };
 
+static inline double joint_delay_variance(const struct joint_pulse *p)
+{
+	return p->cov[0] - 2 * p->cov[1] + p->cov[2];
+}
+
 struct joint_result {
 	double chi2;
 	long dof;      /* samples less parameters, at least 1 */
@@ -85,6 +90,10 @@ enum joint_status joint_fit(struct joint *joint, const struct joint_scene *scene
 enum joint_status joint_refine(struct joint *joint, const struct joint_scene *scene,
 	const double *y1, const double *y2, size_t n, struct joint_pulse *pulses, int m,
 	struct joint_result *result);
+
+/* Covariances of the delays of the m pulses of the last fit, with all else that was
+ * fitted free, in cov[m * m].  Returns m, 0 where they are not to be had. */
+int joint_delay_covariance(const struct joint *joint, double *cov);
 
 /* Residual of the last fit, channel 0 or 1, n samples, tones and offset removed. */
 const double *joint_residual(const struct joint *joint, int channel);

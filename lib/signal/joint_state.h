@@ -42,6 +42,7 @@ struct joint {
 	double *bq;              /* NPAR * basis: Q^T J */
 	double gradient[NPAR], diagonal[NPAR], move[NPAR];
 	long steps, searches;
+	int inverted; /* pulses whose normal matrix is in factor; 0: it was singular */
 };
 
 /* A pulse to try, and the chi-square it should take away. */

@@ -253,6 +253,7 @@ void joint_fill_covariance(
 	}
 	make_normal(j, set, m);
 	good = factorise(j, np, 0);
+	j->inverted = good ? m : 0;
 	for (int i = 0; i < m; i++)
 		for (int u = 0, k = 0; u < PAR; u++) {
 			if (good) {
@@ -263,4 +264,20 @@ void joint_fill_covariance(
 			for (int v = 0; v <= u; v++)
 				pulses[i].cov[k++] = good ? x[PAR * i + v] : INFINITY;
 		}
+}
+
+int joint_delay_covariance(const struct joint *j, double *cov)
+{
+	double x[NPAR];
+	int m = j->inverted;
+
+	for (int i = 0; i < m; i++) {
+		memset(x, 0, sizeof(double) * (size_t)(PAR * m));
+		x[PAR * i] = -1;
+		x[PAR * i + 1] = 1;
+		solve(j, PAR * m, PAR * i, x);
+		for (int k = 0; k < m; k++)
+			cov[i * m + k] = x[PAR * k + 1] - x[PAR * k];
+	}
+	return m;
 }

@@ -24,10 +24,4 @@ void judge(const struct joint *joint, const struct joint_scene *scene, size_t n,
 	const struct joint_pulse *pulses, int m, int done, double boundary,
 	int model_holds, const struct joint_result *r, struct judgement *out);
 
-/* Do the delays of m > 1 pulses tell that they are no parts of one object, which would
- * share its velocity (*told)?  Returns the probability that those of particles do not, if
- * their delays have the variance spread2. */
-double judge_velocities(
-	const struct joint_pulse *pulses, int m, double spread2, int *told);
-
 #endif

@@ -184,7 +184,6 @@ static void learn_range(
 	const struct calibrate_par *par, const struct examples *ex, struct calibration *c)
 {
 	double lo = INFINITY, hi = -INFINITY, margin;
-	double sum = 0, squares = 0, noise = 0, events = 0;
 
 	for (int i = 0; i < ex->count; i++)
 		for (int k = 0; k < ex->example[i].m; k++) {
@@ -192,13 +191,7 @@ static void learn_range(
 
 			lo = fmin(lo, p->delta);
 			hi = fmax(hi, p->delta);
-			sum += p->delta;
-			squares += p->delta * p->delta;
-			noise += p->cov[0] - 2 * p->cov[1] + p->cov[2];
-			events++;
 		}
-	c->delta_var =
-		events > 0 ? fmax((squares - sum * sum / events - noise) / events, 0) : 0;
 	margin = fmax(0.5 * (hi - lo), 0.02 * c->duration);
 	if (isnan(par->spread) && c->events >= RANGE_EVENTS) {
 		c->delta_min = fmax(c->delta_min, lo - margin);

@@ -3,11 +3,24 @@
 #include "signal/judge.h"
 #include "signal/sections.h"
 #include "signal/tape.h"
+#include "signal/validate.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { COMPANION_CELLS = 32 }; /* of two durations to either side */
+/* A row that may not have been judged yet. */
+struct entry {
+	struct transit row;
+	struct evidence evidence;
+};
+
+/* A section to be reported once its rows are judged. */
+struct report {
+	struct separate_section section;
+	struct campbell dense;
+	double *source;
+	size_t first, rows; /* of the queue */
+};
 
 struct separate {
 	struct separate_par par;
@@ -24,16 +37,19 @@ struct separate {
 	long long span; /* longest window in this section; 0: as given */
 	int failures;   /* windows unresolved, one after the other */
 	int dense;      /* the rest of this section is not taken apart */
+	int strange;    /* ... though it is short */
 	int continuing; /* the next window belongs to the same section */
 	long number;
 	long long done; /* samples before this one are worked off */
-	struct transit *queue;
-	size_t count, given, capacity;
+	struct entry *queue;
+	size_t count, judged, given, capacity;
+	struct report *report;
+	size_t reports, report_capacity;
+	struct validation *validation;
+	long long hold; /* rows of what lies before are judged together */
+	int holding, group;
 	double *source;
 	struct separate_counters counters;
-	double companions[COMPANION_CELLS], fitted; /* weak ones by distance; sections */
-	double untold,
-		expected; /* groups that no velocities tell apart; so many by chance */
 	enum separate_status reason; /* why nothing could be learned */
 	long long bad_frame;
 	int bad_channel;
@@ -48,6 +64,11 @@ struct separate *separate_new(const struct separate_par *par)
 	s->par = *par;
 	if (s->par.learn < SEPARATE_SHORTEST)
 		s->par.learn = SEPARATE_SHORTEST;
+	s->validation = validation_new();
+	if (!s->validation) {
+		free(s);
+		return NULL;
+	}
 	if (s->par.most_pulses <= 0 || s->par.most_pulses > JOINT_PULSES_MAX)
 		s->par.most_pulses = JOINT_PULSES_MAX;
 	return s;
@@ -63,6 +84,10 @@ void separate_free(struct separate *s)
 	masks_free(s->masks);
 	for (int c = 0; c < 2; c++)
 		tape_clear(&s->tape[c]);
+	for (size_t i = 0; i < s->reports; i++)
+		free(s->report[i].source);
+	free(s->report);
+	validation_free(s->validation);
 	free(s->queue);
 	free(s->source);
 	free(s);
@@ -86,19 +111,20 @@ long long separate_bad_sample(const struct separate *s, int *channel)
 
 int separate_next(struct separate *s, struct transit *p)
 {
-	if (s->given == s->count) {
-		s->given = s->count = 0;
+	if (s->given == s->judged) {
+		if (s->given == s->count)
+			s->given = s->judged = s->count = 0;
 		return 0;
 	}
-	*p = s->queue[s->given++];
+	*p = s->queue[s->given++].row;
 	return 1;
 }
 
-static struct transit *queue_transit(struct separate *s)
+static struct entry *queue_entry(struct separate *s)
 {
 	if (s->count == s->capacity) {
 		size_t capacity = s->capacity ? 2 * s->capacity : 64;
-		struct transit *more = realloc(s->queue, capacity * sizeof *more);
+		struct entry *more = realloc(s->queue, capacity * sizeof *more);
 
 		if (!more)
 			return NULL;
@@ -107,6 +133,80 @@ static struct transit *queue_transit(struct separate *s)
 	}
 	memset(&s->queue[s->count], 0, sizeof *s->queue);
 	return &s->queue[s->count++];
+}
+
+/* The section is reported with its rows, the last of the queue, and the sources drawn. */
+static int queue_report(
+	struct separate *s, const struct separate_section *section, size_t rows)
+{
+	struct report *r;
+
+	if (!s->par.on_section)
+		return 1;
+	if (s->reports == s->report_capacity) {
+		size_t capacity = s->report_capacity ? 2 * s->report_capacity : 16;
+		struct report *more = realloc(s->report, capacity * sizeof *more);
+
+		if (!more)
+			return 0;
+		s->report = more;
+		s->report_capacity = capacity;
+	}
+	r = &s->report[s->reports++];
+	memset(r, 0, sizeof *r);
+	r->section = *section;
+	if (section->dense)
+		r->dense = *section->dense;
+	r->source = s->source;
+	s->source = NULL;
+	r->first = s->count - rows;
+	r->rows = rows;
+	return 1;
+}
+
+static void give_reports(struct separate *s)
+{
+	for (size_t i = 0; i < s->reports; i++) {
+		struct report *r = &s->report[i];
+
+		if (r->section.dense)
+			r->section.dense = &r->dense;
+		r->section.source = r->source;
+		for (size_t k = r->first; k < r->first + r->rows; k++)
+			if (s->queue[k].evidence.doubted &&
+				r->section.verdict != SEPARATE_UNRESOLVED)
+				r->section.verdict = SEPARATE_MISFIT;
+		s->par.on_section(s->par.context, &r->section);
+		free(r->source);
+	}
+	s->reports = 0;
+}
+
+/* Judges the rows held back, which are given out from now on. */
+static enum separate_status judge_rows(struct separate *s)
+{
+	size_t n = s->count - s->judged;
+	struct evidence *e = malloc((n ? n : 1) * sizeof *e);
+
+	if (!e)
+		return SEPARATE_MEMORY;
+	for (size_t i = 0; i < n; i++)
+		e[i] = s->queue[s->judged + i].evidence;
+	validation_judge(s->validation, e, n);
+	for (size_t i = 0; i < n; i++) {
+		struct entry *q = &s->queue[s->judged + i];
+
+		q->evidence.doubted = e[i].doubted;
+		s->counters.misfits += e[i].doubted;
+		if (!e[i].doubted || q->row.verdict == SEPARATE_UNRESOLVED)
+			continue;
+		s->counters.foreign += q->evidence.fits;
+		q->row.verdict = SEPARATE_MISFIT;
+	}
+	free(e);
+	s->judged = s->count;
+	give_reports(s);
+	return SEPARATE_OK;
 }
 
 static enum separate_status calibrate_now(struct separate *s)
@@ -150,6 +250,8 @@ static enum separate_status calibrate_now(struct separate *s)
 		fmax(c->delta_max, -c->delta_min));
 	if (s->sections)
 		sections_skip(s->sections, s->done);
+	s->hold = s->tape[0].begin + (long long)n;
+	s->holding = s->par.method == SEPARATE_FIT;
 	s->joint = joint_new();
 	if (s->par.method == SEPARATE_MASKS) {
 		struct masks_par mp = { .window = s->par.mask_window,
@@ -190,10 +292,11 @@ static long long ready(const struct separate *s)
 static int emit_pulse(struct separate *s, const struct joint_pulse *p, long long from,
 	int sources, double chi2, enum separate_verdict verdict)
 {
-	struct transit *out = queue_transit(s);
-	double delay_var = p->cov[0] - 2 * p->cov[1] + p->cov[2], noise = s->cal.noise[0];
+	struct entry *entry = queue_entry(s);
+	struct transit *out = &entry->row;
+	double delay_var = joint_delay_variance(p), noise = s->cal.noise[0];
 
-	if (!out)
+	if (!entry)
 		return 0;
 	out->section = s->number;
 	out->sources = sources;
@@ -207,9 +310,50 @@ static int emit_pulse(struct separate *s, const struct joint_pulse *p, long long
 	out->correlation = (p->cov[4] - p->cov[3]) / sqrt(delay_var * p->cov[5]);
 	out->chi2 = chi2;
 	out->verdict = verdict;
+	entry->evidence = (struct evidence){ .group = s->group,
+		.fits = verdict != SEPARATE_MISFIT,
+		.delay = p->delta,
+		.var = isinf(s->cal.transit) || !isfinite(delay_var) ? 0 : delay_var,
+		.amplitude = p->a };
 	s->counters.rows++;
-	s->counters.misfits += verdict == SEPARATE_MISFIT;
 	return 1;
+}
+
+/* The larger pulse nearest to pulse i that overlaps it, or -1. */
+static int larger_neighbour(const struct separate *s, int m, int i)
+{
+	const struct joint_pulse *p = s->pulse;
+	double nearest = 2 * s->cal.duration;
+	int found = -1;
+
+	for (int k = 0; k < m; k++)
+		if (p[k].a > p[i].a && fabs(p[k].t - p[i].t) < nearest) {
+			nearest = fabs(p[k].t - p[i].t);
+			found = k;
+		}
+	return found;
+}
+
+/* What the last m rows, of one fit, tell of each other. */
+static void compare_pulses(struct separate *s, int m)
+{
+	double cov[JOINT_PULSES_MAX * JOINT_PULSES_MAX];
+	struct entry *entry = s->queue + s->count - m;
+	const struct joint_pulse *p = s->pulse;
+	int all = joint_delay_covariance(s->joint, cov);
+
+	for (int i = 0; i < m && all >= m && !isinf(s->cal.transit); i++) {
+		struct evidence *e = &entry[i].evidence;
+		int k = larger_neighbour(s, m, i);
+
+		if (k < 0)
+			continue;
+		e->partner = k - i;
+		e->apart = p[i].delta - p[k].delta;
+		e->apart_var = cov[i * all + i] + cov[k * all + k] - 2 * cov[i * all + k];
+		e->place = (p[i].t - p[k].t) / s->cal.duration;
+		e->height = p[i].a / p[k].a;
+	}
 }
 
 static int report_section(struct separate *s, long long from, long long to, int sources,
@@ -288,7 +432,8 @@ static int most_pulses(const struct separate *s, size_t n)
 static enum separate_status dense_section(
 	struct separate *s, long long from, long long to)
 {
-	struct transit *p = queue_transit(s);
+	struct entry *entry = queue_entry(s);
+	struct transit *p = &entry->row;
 	struct separate_section out = { .number = s->number,
 		.begin = from,
 		.end = to,
@@ -297,7 +442,7 @@ static enum separate_status dense_section(
 	double noise = s->cal.noise[0], length = (double)(to - from);
 	struct campbell c;
 
-	if (!p)
+	if (!entry)
 		return SEPARATE_MEMORY;
 	campbell_estimate(channel_1(s, from), channel_2(s, from), (size_t)(to - from),
 		s->cal.shape, s->cal.duration, s->scene.gain, &c);
@@ -313,82 +458,33 @@ static enum separate_status dense_section(
 	p->delay_se = p->correlation = p->chi2 = NAN;
 	p->verdict = SEPARATE_UNRESOLVED;
 	s->counters.unresolved++;
+	entry->evidence.group = ++s->group;
+	entry->evidence.fits = !s->strange;
+	s->strange = 0;
 	out.sources = p->sources;
 	out.dense = &c;
-	if (s->par.on_section)
-		s->par.on_section(s->par.context, &out);
-	return SEPARATE_OK;
-}
-
-/* A group whose velocities do not tell its pulses apart may be one object of another
- * form.  So are some groups of particles, by chance; where there are more than that, by
- * two deviations of their number and one, none is believed. */
-static void check_velocities(struct separate *s, int m, int done, struct judgement *j)
-{
-	enum { LARGEST = 8 }; /* larger ones are told by chance alone */
-	int told;
-
-	if (m < 2 || m > LARGEST || done < m || isinf(s->cal.transit) ||
-		j->stretch != SEPARATE_OVERLAP)
-		return;
-	s->expected += judge_velocities(s->pulse, m, s->cal.delta_var, &told);
-	s->untold += !told;
-	if (told || s->untold <= s->expected + 2 * sqrt(s->expected) + 1)
-		return;
-	s->counters.untold++;
-	for (int i = 0; i < done; i++)
-		j->pulse[i] = SEPARATE_MISFIT;
-	j->stretch = SEPARATE_MISFIT;
-}
-
-/* A weak pulse that again and again stands at one distance from a strong one, at its
- * velocity as far as can be told, is what the form of the strong one lacks.  Weak: less
- * than half as high; at one distance: within an eighth of a duration; again and again: in
- * more than four sections and a tenth of them, where chance, which has 32 places to
- * choose from and velocities to give away, does not come near. */
-static void check_companions(struct separate *s, int m, struct judgement *j)
-{
-	const struct joint_pulse *p = s->pulse, *main = p;
-	int doubt = 0;
-
-	s->fitted++;
-	for (int i = 1; i < m; i++)
-		if (p[i].a > main->a)
-			main = &p[i];
-	for (int i = 0; i < m; i++) {
-		double place = (p[i].t - main->t) / s->cal.duration;
-		double var = p[i].cov[0] - 2 * p[i].cov[1] + p[i].cov[2] + main->cov[0] -
-			     2 * main->cov[1] + main->cov[2];
-		int cell = (int)floor((place + 2) * COMPANION_CELLS / 4);
-
-		if (&p[i] == main || !(p[i].a < 0.5 * main->a) || cell < 0 ||
-			cell >= COMPANION_CELLS ||
-			pow(p[i].delta - main->delta, 2) > 10 * var)
-			continue;
-		doubt |= ++s->companions[cell] > 4 + 0.1 * s->fitted;
-	}
-	if (!doubt || j->stretch == SEPARATE_UNRESOLVED)
-		return;
-	s->counters.untold++;
-	for (int i = 0; i < m; i++)
-		j->pulse[i] = SEPARATE_MISFIT;
-	j->stretch = SEPARATE_MISFIT;
+	return queue_report(s, &out, 1) ? SEPARATE_OK : SEPARATE_MEMORY;
 }
 
 /* Gives out the first done of the m pulses fitted to [from, to). */
 static enum separate_status give_pulses(struct separate *s, long long from, long long to,
 	int m, int done, const struct judgement *j)
 {
+	struct separate_section out = { .number = s->number,
+		.begin = from,
+		.end = to,
+		.sources = done,
+		.chi2 = j->chi2,
+		.verdict = j->stretch };
+
+	s->group++;
 	for (int i = 0; i < done; i++)
 		if (!emit_pulse(s, &s->pulse[i], from, m, j->chi2, j->pulse[i]))
 			return SEPARATE_MEMORY;
-	if (!s->par.on_section)
-		return SEPARATE_OK;
+	compare_pulses(s, done);
 	if (s->par.want_sources && !draw_pulses(s, done, (size_t)(to - from)))
 		return SEPARATE_MEMORY;
-	report_section(s, from, to, done, j->chi2, j->stretch,
-		s->par.want_sources ? s->source : NULL);
-	return SEPARATE_OK;
+	return queue_report(s, &out, (size_t)done) ? SEPARATE_OK : SEPARATE_MEMORY;
 }
 
 /* Takes the first done of m pulses out of the record and carries the others into the
@@ -450,10 +546,6 @@ static enum separate_status fit_section(
 		done++;
 	judge(s->joint, &s->scene, n, s->pulse, m, done, boundary,
 		s->cal.chi2 < 4 || s->cal.dense, &r, &judgement);
-	if (!cut && !s->continuing && m > 0) {
-		check_velocities(s, m, done, &judgement);
-		check_companions(s, m, &judgement);
-	}
 	unresolved = judgement.stretch == SEPARATE_UNRESOLVED && !s->par.sources;
 	shorter = unresolved && r.full && (double)n > 2 * shortest_window(s);
 	if (shorter)
@@ -461,6 +553,8 @@ static enum separate_status fit_section(
 	else
 		s->failures = unresolved ? s->failures + 1 : 0;
 	s->dense = unresolved && !shorter && (!cut || s->failures == PATIENCE);
+	/* In a short section it is not their number that resists. */
+	s->strange = s->dense && !cut && !s->continuing && !r.full;
 	if (shorter || s->dense) {
 		s->carried = 0;
 		*next = from;
@@ -515,11 +609,14 @@ static enum separate_status mask_section(struct separate *s, long long from, lon
 	s->counters.masks += m > 1;
 	s->counters.masks_skipped += m == 1;
 	for (int k = 0; k < m; k++) {
-		struct transit *p = queue_transit(s);
+		struct entry *entry = queue_entry(s);
+		struct transit *p = &entry->row;
 		double *x = s->source + (size_t)k * n, t, a;
 
-		if (!p)
+		if (!entry)
 			return SEPARATE_MEMORY;
+		entry->evidence.fits = 1;
+		entry->evidence.group = ++s->group;
 		for (size_t i = 0; i < n; i++)
 			x[i] *= s->cal.noise[0];
 		measure_pulse(x, n, &t, &a);
@@ -605,6 +702,11 @@ static enum separate_status work(struct separate *s)
 			s->number++;
 			s->counters.sections++;
 		}
+		if (s->holding && from >= s->hold) {
+			s->holding = 0;
+			if (judge_rows(s) != SEPARATE_OK)
+				return SEPARATE_MEMORY;
+		}
 		next = to;
 		s->dense |= cut && s->crowded && s->par.method == SEPARATE_FIT;
 		if (s->dense)
@@ -613,6 +715,8 @@ static enum separate_status work(struct separate *s)
 			status = mask_section(s, from, to);
 		else
 			status = fit_section(s, from, to, cut, &next);
+		if (status == SEPARATE_OK && !s->holding)
+			status = judge_rows(s);
 		if (status != SEPARATE_OK)
 			return status;
 		s->counters.active += (double)(next - from);
@@ -633,6 +737,10 @@ static enum separate_status work(struct separate *s)
 		s->done = 0;
 	for (int c = 0; c < 2; c++)
 		tape_forget(&s->tape[c], s->done);
+	if (s->holding && (s->ended || s->done >= s->hold)) {
+		s->holding = 0;
+		return judge_rows(s);
+	}
 	return SEPARATE_OK;
 }
 

@@ -100,8 +100,8 @@ struct separate_counters {
 	double samples, active;   /* frames in all, and in sections */
 	double sections, singles; /* sections, and those with one pulse */
 	double fits, steps, searches;
-	double rows, misfits;        /* of pulses fitted, and those that do not fit */
-	double untold;               /* groups doubted since they share a velocity */
+	double rows, misfits; /* of pulses fitted, and those doubted, dense ones too */
+	double foreign;       /* doubted by their velocities, though they fit */
 	double masks, masks_skipped; /* sections demixed, and those that need not be */
 	double unresolved;
 };

@@ -23,10 +23,10 @@ struct ensemble {
 	int clash;
 	long culprit;
 	double particles, told;
-	size_t steps; /* up to the last told of */
+	size_t steps; /* up to the last one with rows */
 	struct ensemble_step *step;
 	size_t step_room;
-	struct ensemble_step after; /* of a step after all those told of */
+	struct ensemble_step after; /* of a step after the last one with rows */
 	struct running volume, diameter;
 	struct sketch diameters, *step_diameters;
 	struct ensemble_group *group;
@@ -34,7 +34,7 @@ struct ensemble {
 	size_t groups, places;
 };
 
-/* The step becomes one of those there are: nothing happened in it so far. */
+/* Extends the steps to this one; it has no particles so far. */
 static enum num_status reach_step(struct ensemble *e, size_t step)
 {
 	if (step > e->step_room) {
@@ -73,7 +73,7 @@ static uint64_t mix(uint64_t x)
 	return x ^ x >> 33;
 }
 
-/* The group of a realisation: of its own as long as there are any left. */
+/* The group of a realisation: its own as long as groups are free. */
 static struct ensemble_group *group_of(struct ensemble *e, long realisation)
 {
 	uint64_t hash = mix((uint64_t)realisation);
@@ -89,7 +89,7 @@ static struct ensemble_group *group_of(struct ensemble *e, long realisation)
 	return &e->group[e->groups - 1];
 }
 
-/* What one realisation did in one step. */
+/* Volume and particles of one realisation in one step. */
 static enum num_status take_step(struct ensemble *e, struct ensemble_group *g,
 	const struct realisation_cell *cell, double volume_before)
 {
@@ -269,7 +269,7 @@ static size_t share(size_t n, size_t most)
 	return each > most ? most : each < VALUES_LEAST ? VALUES_LEAST : each;
 }
 
-static enum num_status add_diameter(struct ensemble *e, const struct shed *p)
+static enum num_status add_diameter(struct ensemble *e, const struct particle_row *p)
 {
 	if (p->step < e->par.first || (e->par.last && p->step > e->par.last))
 		return NUM_OK;
@@ -285,7 +285,7 @@ static enum num_status add_diameter(struct ensemble *e, const struct shed *p)
 	return NUM_OK;
 }
 
-enum ensemble_status ensemble_add(struct ensemble *e, const struct shed *p)
+enum ensemble_status ensemble_add(struct ensemble *e, const struct particle_row *p)
 {
 	int counts = p->diameter >= e->par.low && p->diameter <= e->par.high;
 	struct realisation_cell cell = { p->realisation, p->step, p->part, p->volume,
@@ -359,7 +359,7 @@ long ensemble_culprit(const struct ensemble *e)
 	return e->culprit;
 }
 
-size_t ensemble_told(const struct ensemble *e)
+size_t ensemble_reported(const struct ensemble *e)
 {
 	return (size_t)e->told;
 }

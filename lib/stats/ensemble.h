@@ -23,7 +23,7 @@
 struct ensemble;
 
 /* One wear particle. */
-struct shed {
+struct particle_row {
 	long realisation, step; /* from 0; from 1 */
 	double diameter, volume;
 	long part; /* of the table; a realisation is in one part */
@@ -48,6 +48,7 @@ struct ensemble_par {
 	int by_step;         /* keep the diameters of every step separately */
 	int groups; /* largest number of groups of realisations for a bootstrap; each
 		       realisation is a group if there are no more */
+	void (*told)(long done, long draws); /* called in a bootstrap; or NULL */
 };
 
 /* One step over the realisations it took place in. */
@@ -70,14 +71,15 @@ struct ensemble_group {
 struct ensemble *ensemble_new(const struct ensemble_par *par); /* NULL: out of memory */
 void ensemble_free(struct ensemble *e);
 
-enum ensemble_status ensemble_add(struct ensemble *e, const struct shed *particle);
+enum ensemble_status ensemble_add(
+	struct ensemble *e, const struct particle_row *particle);
 /* A step that took place, with or without particles. */
 enum ensemble_status ensemble_took_place(struct ensemble *e, long realisation, long step);
 /* Once; the functions below are for closed ensembles. */
 enum ensemble_status ensemble_close(struct ensemble *e);
 /* The realisation that ENSEMBLE_APART and ENSEMBLE_CLASH are about. */
 long ensemble_culprit(const struct ensemble *e);
-size_t ensemble_told(const struct ensemble *e); /* realisations with rows */
+size_t ensemble_reported(const struct ensemble *e); /* realisations with rows */
 
 /* As given, with 0 replaced by the values it stands for. */
 const struct ensemble_par *ensemble_par(const struct ensemble *e);

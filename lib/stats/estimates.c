@@ -140,7 +140,7 @@ static enum num_status bootstrap_open(
 static double draw_groups(struct bootstrap *b)
 {
 	size_t n = b->groups;
-	double per_group = (double)ensemble_told(b->e) / (double)n, drawn = 0;
+	double per_group = (double)ensemble_reported(b->e) / (double)n, drawn = 0;
 	double empty = round(ensemble_empty(b->e) / per_group);
 	unsigned int picks = (unsigned int)n;
 
@@ -184,7 +184,7 @@ static void sum_growth(struct bootstrap *b, double drawn)
 		so_far = growth[k] += so_far;
 }
 
-/* Of a draw that has so many realisations. */
+/* Estimates of a draw with this number of realisations. */
 static enum num_status draw_estimates(
 	struct bootstrap *b, double drawn, struct estimate out[ESTIMATES])
 {
@@ -247,6 +247,8 @@ static double *draw_all(const struct ensemble *e, uint64_t seed, long draws,
 		for (int q = 0; status == 0 && q < ESTIMATES; q++)
 			draw[q * draws + i] =
 				one[q].value + (value[q].value - each[q].value);
+		if (ensemble_par(e)->told)
+			ensemble_par(e)->told(i + 1, draws);
 	}
 	bootstrap_free(&b);
 	if (status == 0)
@@ -345,7 +347,8 @@ struct estimate_contrast estimate_compare(const double value[2], const double er
 	wide = hypot(log_error[0], log_error[1]);
 	if (wide > 0) {
 		double half = wide * welch_t(log_error, realisations, confidence);
-		/* Of the normal law: the interval's end, and nine of ten beyond it. */
+		/* For the normal law: the end of the interval, plus the quantile of a
+		 * power of nine in ten. */
 		double far = gsl_cdf_ugaussian_Pinv(0.5 + 0.5 * confidence) +
 			     gsl_cdf_ugaussian_Pinv(0.9);
 		double one = log_error[0] * log_error[0] * realisations[0] +

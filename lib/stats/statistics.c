@@ -146,7 +146,7 @@ static void newton_step(const double g[2], const double h[3], double step[2])
 	step[1] = (h[1] * g[0] - a * g[1]) / det;
 }
 
-/* Minimum from p on, with steps of at most a half that never lead up. */
+/* Minimum from p on, with steps of at most a half that never increase the value. */
 static int descend(const struct sample *m, double p[2], double h[3])
 {
 	/* The logarithm of the shape, or that of the scale over its width: e^20 from the
@@ -238,7 +238,7 @@ static struct estimate log_interval(
 	return e;
 }
 
-/* On values over their mean. */
+/* For values divided by their mean. */
 static enum weibull_status fit_scaled(
 	struct sample *m, double unit, double confidence, struct weibull *w)
 {

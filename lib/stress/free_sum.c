@@ -8,12 +8,12 @@
 #include <string.h>
 
 enum {
-	INNER = 8,         /* points to the radius of the window left to finer points */
+	INNER = 8,         /* points to the radius of the window that finer points sum */
 	OUTER = 2 * INNER, /* to that of the next */
 	RADIUS =
 		2 * INNER, /* cells to the radius of the innermost, on every other cell */
 	REACH = RADIUS +
-		1,  /* of the part that is summed on the cells: the element adds one */
+		1,  /* radius of the part summed on the cells; the element adds one */
 	SMALL = 32, /* sides up to this are summed in full, which is no slower */
 	COARSEST = 6 * OUTER /* points per side up to which a window does not save time */
 };
@@ -22,7 +22,8 @@ enum {
  * the largest pressure at 5, 2e-4 at 4 (tests/bench/stress.c). */
 static const double SMOOTH = 5;
 
-/* The elongation of cells up to which the window, round in cells, parts near from far. */
+/* The elongation of cells up to which the window, round in cells, separates near from
+ * far. */
 static const double OBLONG = 2;
 
 struct box {

@@ -81,7 +81,7 @@ static enum num_status line_new(struct line *l, const struct lattice_axis *axis)
 		int start = (int)floor(t) - SIDE;
 
 		l->start[i] = start;
-		/* Whole spacings repeat themselves. */
+		/* Offsets by whole spacings have the same weights. */
 		if (!axis->wrap && i >= (int)axis->spacing) {
 			const int same = i - (int)axis->spacing;
 

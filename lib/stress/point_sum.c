@@ -7,7 +7,7 @@
 enum { BLOCK = 8 };
 static const double FAR = 3; /* sides of a block */
 static const double NEAR =
-	1.25; /* cells: farther elements are points within some percent */
+	1.25; /* cells: farther elements act as points within some percent */
 
 struct block {
 	double load, x, y; /* sum of pressures and their centroid, m */

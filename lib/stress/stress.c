@@ -29,6 +29,7 @@ struct stress {
 	int loaded;       /* some cell is */
 	int side, bx, by; /* cells to a block's side, blocks */
 	struct block *blocks;
+	double *row_load, load; /* of each row of blocks, and of all */
 	char *held; /* of the blocks: no node can fail at held_depth and below */
 	double held_depth, held_limit;
 	double point; /* largest equivalent stress times distance^2 */
@@ -104,13 +105,15 @@ struct stress *stress_new(const struct stress_par *par)
 	s->bx = (par->nx + s->side - 1) / s->side;
 	s->by = (par->ny + s->side - 1) / s->side;
 	s->blocks = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->blocks);
+	s->row_load = calloc((size_t)s->by, sizeof *s->row_load);
 	s->held = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->held);
 	s->pressure = malloc(n * sizeof *s->pressure);
 	if (par->periodic)
 		s->wave = wave_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
 	else
 		s->free = free_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
-	if (!s->blocks || !s->held || !s->pressure || (!s->wave && !s->free)) {
+	if (!s->blocks || !s->row_load || !s->held || !s->pressure ||
+		(!s->wave && !s->free)) {
 		stress_free(s);
 		errno = ENOMEM;
 		return NULL;
@@ -126,6 +129,7 @@ void stress_free(struct stress *s)
 	free_sum_free(s->free);
 	wave_sum_free(s->wave);
 	free(s->blocks);
+	free(s->row_load);
 	free(s->held);
 	free(s->pressure);
 	free(s);
@@ -185,6 +189,14 @@ enum num_status stress_load(struct stress *s, const double *pressure)
 			s->total += p * area * unit;
 			add_to_block(s, (int)x, (int)y, fabs(p) * area);
 		}
+	s->load = 0;
+	for (int j = 0; j < s->by; j++) {
+		s->row_load[j] = 0;
+		for (int i = 0; i < s->bx; i++)
+			s->row_load[j] +=
+				s->blocks[(size_t)j * (size_t)s->bx + (size_t)i].load;
+		s->load += s->row_load[j];
+	}
 	if (s->wave)
 		wave_sum_load(s->wave, s->pressure);
 	else
@@ -200,7 +212,7 @@ struct stress_work stress_work(const struct stress *s)
 		w.split_layers, w.coarse_layers, s->nodes };
 }
 
-/* What nodes can fail */
+/* Nodes that may fail */
 
 /* Distance between two ranges of cells, from node centre to the edge of the elements of
  * loaded cells, which reach over half of the next. */
@@ -211,23 +223,47 @@ static double apart(int a0, int a1, int b0, int b1, double size)
 	return cells ? (cells - 1) * size : 0;
 }
 
-static int block_may_fail(const struct stress *s, int bx, int by, double z, double limit)
+/* What the loads of row j of the blocks may add in block bx, by. */
+static double bound_row(const struct stress *s, int bx, int by, int j, double z)
 {
+	const struct block *b = &s->blocks[(size_t)j * (size_t)s->bx];
 	int x0 = bx * s->side, y0 = by * s->side, last = s->side - 1;
 	double sum = 0;
 
-	for (size_t i = 0; i < (size_t)s->bx * (size_t)s->by; i++) {
-		const struct block *b = &s->blocks[i];
+	for (int i = 0; i < s->bx; i++, b++) {
 		double away_x, away_y;
 
 		if (b->load == 0)
 			continue;
 		away_x = apart(x0, x0 + last, b->x0, b->x1, s->par.dx);
 		away_y = apart(y0, y0 + last, b->y0, b->y1, s->par.dy);
-		/* Infinite (and so true) where the node may lie on the load. */
+		/* Infinite where the node may lie on the load. */
 		sum += b->load * s->point / (away_x * away_x + away_y * away_y + z * z);
+	}
+	return sum;
+}
+
+/* Row by row from the block, until the sum exceeds the limit or what is left, as if all
+ * of it were in the next rows, cannot make it. */
+static int block_may_fail(const struct stress *s, int bx, int by, double z, double limit)
+{
+	double sum = 0, rest = s->load;
+
+	for (int d = 0; d < s->by; d++) {
+		double away = d * s->side * s->par.dy;
+
+		for (int side = 0; side < (d > 0 ? 2 : 1); side++) {
+			int j = side ? by - d : by + d;
+
+			if (j < 0 || j >= s->by)
+				continue;
+			sum += bound_row(s, bx, by, j, z);
+			rest -= s->row_load[j];
+		}
 		if (sum > limit)
 			return 1;
+		if (sum + fmax(rest, 0) * s->point / (away * away + z * z) <= limit)
+			return 0;
 	}
 	return 0;
 }
@@ -242,7 +278,7 @@ size_t stress_reach(struct stress *s, double z, double limit, struct stress_span
 	size_t count = 0;
 
 	limit /= s->unit;
-	/* What held at a smaller depth holds: the bound falls with depth. */
+	/* A bound that held at a smaller depth still holds: it falls with depth. */
 	if (!(z >= s->held_depth && limit >= s->held_limit))
 		memset(s->held, 0, (size_t)s->bx * (size_t)s->by * sizeof *s->held);
 	s->held_depth = z;

@@ -6,8 +6,8 @@
 
 enum { N = STRESS_COMPONENTS };
 
-/* What the closed forms are made of at a corner (x, y), for the roles of x and y as
- * given: nothing here cancels where y < 0 and R + y is small. */
+/* Terms of the closed forms at a corner (x, y), for the roles of x and y as given,
+ * without cancellation where y < 0 and R + y is small. */
 struct half {
 	double q;   /* x z / (R (R + y)) */
 	double w;   /* z^2 / (R (R + y)) */

@@ -73,7 +73,7 @@ void wave_sum_load(struct wave_sum *s, const double *pressure)
 	s->work.transforms++;
 }
 
-/* Stress on a grid of points from the waves that it carries. */
+/* Stress on a grid of points from the waves that it can represent. */
 struct carry {
 	const struct wave_sum *s;
 	int mx, my; /* points */
@@ -126,7 +126,7 @@ static void carry_row(void *context, size_t row, int worker)
 		       other = (size_t)(g->my - j) * (size_t)columns + (size_t)i;
 		double complex v[STRESS_NUMBERS], x, y;
 
-		/* The shortest waves of a coarser grid have no sense of direction. */
+		/* The shortest waves of a coarser grid represent both directions. */
 		if ((!all_x && 2 * i == g->mx) || (!all_y && 2 * j == g->my)) {
 			for (int c = 0; c < g->numbers; c++) {
 				g->spectrum[c][to] = 0;
@@ -159,7 +159,7 @@ static int points_for(int cells, double size, double z, int full)
 	double spacing = z / (SMOOTH * size);
 	size_t points;
 
-	/* Interpolation takes longer than the transforms it would save before that. */
+	/* With fewer points interpolation takes longer than the transforms it saves. */
 	if (full || spacing < 2)
 		return cells;
 	points = fft_good_size((size_t)fmax(FEWEST, ceil(cells / spacing)));
@@ -228,7 +228,7 @@ enum num_status wave_sum_at(struct wave_sum *s, double z, const struct stress_wa
 		pool_run(s->pool, (size_t)y.points / 2 + 1, carry_row, &carry);
 	for (int c = 0; !status && c < want->numbers; c++) {
 		fft_inverse(fft, spectrum[c], plane);
-		/* The spectrum has done its work and is large enough. */
+		/* The memory of the spectrum is free here and large enough. */
 		field[c] = (double *)spectrum[c];
 		memcpy(field[c], plane, n * sizeof *plane);
 	}

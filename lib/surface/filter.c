@@ -20,12 +20,12 @@ static const double least = 1e-12; /* weight over the largest that is left out *
 /* The filter along one direction. */
 struct kernel {
 	int n, reach, order, periodic;
-	int mean; /* longer than the longest wave that repeats: only the mean is left */
+	int mean;       /* longer than the period: only the mean passes */
 	double *weight; /* [reach + 1], by distance */
 	double *row;    /* [2 reach + 1]: of one point, divided by their sum */
 };
 
-/* 1 if waves that repeat along the line pass with less than 5e-13. */
+/* 1 if every periodic wave of the line passes with less than 5e-13. */
 static int is_mean(double step, double nesting, int n)
 {
 	return width(FILTER_PERIODIC) * nesting > 3 * n * step;
@@ -35,7 +35,7 @@ static int reach_of(double step, double nesting, enum filter_ends ends, int n)
 {
 	double reach = width(ends) * nesting * sqrt(-log(least) / M_PI) / step;
 
-	/* Beyond the line there is nothing, unless it repeats. */
+	/* Beyond the line there are no points, unless it is periodic. */
 	if (ends != FILTER_PERIODIC)
 		return (int)fmin(reach, n - 1);
 	return is_mean(step, nesting, n) ? n / 2 : (int)reach;
@@ -89,7 +89,7 @@ static void local_polynomial(int order, const double *m, double *c)
 	}
 }
 
-/* Weights of the neighbours from -below to above in the value at one point. */
+/* Weights of the neighbours from -below to above for the value at one point. */
 static void point_weights(struct kernel *k, int below, int above)
 {
 	double m[2 * TERMS - 1] = { 0 }, c[TERMS] = { 0 };
@@ -140,7 +140,7 @@ static void filter_lines(struct kernel *k, const double *in, double *out, size_t
 			below = i < k->reach ? i : k->reach;
 			above = k->n - 1 - i < k->reach ? k->n - 1 - i : k->reach;
 		}
-		/* In the middle all points have the same weights. */
+		/* Away from the ends all points have the same weights. */
 		if (below < k->reach || above < k->reach || !shared || shared < 0) {
 			point_weights(k, below, above);
 			shared = below == k->reach && above == k->reach;
@@ -170,7 +170,7 @@ enum num_status surface_gauss(int nx, int ny, double dx, double dy, const double
 	if (half && !kernel_make(&kx, nx, dx, nesting, ends) &&
 		!kernel_make(&ky, ny, dy, nesting, ends)) {
 		filter_lines(&ky, z, half, (size_t)nx, 1, nx);
-		/* Rows one by one keep to the cache. */
+		/* One row at a time fits in the cache. */
 		for (int iy = 0; iy < ny; iy++)
 			filter_lines(&kx, half + (size_t)iy * (size_t)nx,
 				out + (size_t)iy * (size_t)nx, 1, 1, 1);
@@ -203,7 +203,7 @@ static enum num_status orthonormal(int n, int degree, double *p)
 
 			q[i] = k ? x * q[i - n] : 1;
 		}
-		/* twice: the first time leaves rounding */
+		/* twice, because rounding remains after the first time */
 		for (int turn = 0; turn < 2; turn++)
 			for (int j = 0; j < k; j++) {
 				const double *r = p + (size_t)j * (size_t)n;
@@ -266,7 +266,7 @@ enum num_status surface_form(
 	size_t terms = (size_t)degree + 1;
 	double *px = malloc(terms * (size_t)nx * sizeof *px);
 	double *py = malloc(terms * (size_t)ny * sizeof *py);
-	/* A profile has a form along itself alone. */
+	/* A profile has a form only along its direction. */
 	int along_x = nx > 1 ? degree : 0, along_y = ny > 1 ? degree : 0;
 	enum num_status status = px && py ? NUM_OK : NUM_MEMORY;
 

@@ -11,7 +11,7 @@
 
 enum family { LOGNORMAL, UNBOUNDED, BOUNDED };
 
-/* Normal numbers y with weights that sum to 1, to take moments with. */
+/* Normal deviates y with weights that sum to 1, for the moments. */
 struct normals {
 	size_t n;
 	double *y, *weight; /* weight NULL: all alike */
@@ -68,8 +68,8 @@ static struct moments take_moments(const struct johnson *j, const struct normals
 
 /* ---- fitting ---- */
 
-/* All searches bisect: moments of truncated sets are monotone but not smooth friends
- * of Newton's method far from the solution. */
+/* All searches bisect: the moments of truncated sets are monotone, but Newton's method
+ * need not converge far from the solution. */
 /* 2^-60 of the interval is less than the rounding of its middle. */
 enum { BISECTIONS = 60 };
 

@@ -13,7 +13,7 @@ static int descending(const void *a, const void *b)
 	return (x < y) - (x > y);
 }
 
-/* First of the places where m steps lead down least. */
+/* The first position where m steps descend least. */
 static size_t flattest(const double *z, size_t n, size_t m)
 {
 	size_t best = 0;
@@ -24,14 +24,15 @@ static size_t flattest(const double *z, size_t n, size_t m)
 	return best;
 }
 
-/* Area of the curve above a level, and the share at which it gets there; z descends, each
- * point stands for 1/n of the surface, and the curve is linear between their middles. */
+/* Area of the curve above a level, and the share at which it reaches the level; z
+ * descends, each point represents 1/n of the surface, and the curve is linear between the
+ * middles of the points. */
 static double above(const double *z, size_t n, double level, int sign, double *share)
 {
 	double area = 0;
 	size_t k = 0;
 
-	/* from below, the same curve turned over */
+	/* from below: the same curve upside down */
 	for (; k < n; k++) {
 		double h = sign * ((sign > 0 ? z[k] : z[n - 1 - k]) - level);
 

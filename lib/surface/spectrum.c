@@ -29,7 +29,7 @@ static double gauss_power(double c, int n, int k)
 	double sum = 0;
 
 	if (n == 1)
-		return 1; /* a profile: the other direction has no say */
+		return 1; /* a profile: the other direction does not matter */
 	if (c * c * M_PI >= 1) {
 		for (int m = -TERMS; m <= TERMS; m++) {
 			double u = M_PI * c * (m + (double)k / n);
@@ -69,7 +69,7 @@ static enum num_status add_gauss(struct spectrum *s, double weight, double cx, d
 static enum num_status add_exponential(struct spectrum *s, double cx, double cy)
 {
 	enum { PER_UNIT = 8, FIRST = -40 * PER_UNIT, LAST = 5 * PER_UNIT / 2 };
-	const double white = 0.12; /* exp(-1 / white^2) is nothing */
+	const double white = 0.12; /* exp(-1 / white^2) is negligible */
 	double noise = 0, c = cx > cy ? cx : cy;
 
 	for (int i = FIRST; i <= LAST; i++) {
@@ -112,7 +112,8 @@ static void add_affine(struct spectrum *s)
 
 /* ---- construction ---- */
 
-/* How many coefficients of the full transform stand behind column kx and row ky >= 0. */
+/* Number of coefficients of the full transform that column kx and row ky >= 0 represent.
+ */
 static int multiplicity(const struct spectrum *s, int kx, int ky)
 {
 	int x = kx == 0 || 2 * kx == s->par.nx ? 1 : 2;
@@ -121,7 +122,7 @@ static int multiplicity(const struct spectrum *s, int kx, int ky)
 	return x * y;
 }
 
-/* Whether the bounds on wavelength let a wave pass. */
+/* Whether a wave is within the bounds on wavelength. */
 static int within_bounds(const struct spectrum *s, int kx, int ky)
 {
 	const double slack =
@@ -132,8 +133,8 @@ static int within_bounds(const struct spectrum *s, int kx, int ky)
 	       (s->par.cutoff == 0 || q * s->par.cutoff <= 1 + slack);
 }
 
-/* Applies the bounds, makes the power sum to 1 and takes its root.  Waves so weak that
- * they cannot change a digit of the heights are left out. */
+/* Applies the bounds, normalises the power to 1 and takes its root.  Waves too weak to
+ * change a digit of the heights are omitted. */
 static enum spectrum_status finish_power(struct spectrum *s)
 {
 	const double negligible = 1e-40; /* of the strongest wave: 1e-20 of its height */
@@ -161,7 +162,7 @@ static enum spectrum_status finish_power(struct spectrum *s)
 				multiplicity(s, kx, ky);
 			*power = sqrt(*power / sum);
 		}
-	s->skipped--; /* the mean is no wave */
+	s->skipped--; /* the mean is not a wave */
 	return SPECTRUM_OK;
 }
 
@@ -186,7 +187,7 @@ static enum spectrum_status check(const struct spectrum_par *p)
 			       : SPECTRUM_DOMAIN;
 	if (!positive(p->corr_x) || !positive(p->corr_y))
 		return SPECTRUM_DOMAIN;
-	/* A side of one point has no waves: any length will do. */
+	/* A side of one point has no waves: any length is valid. */
 	if ((p->nx > 1 && p->corr_x > p->lx) || (p->ny > 1 && p->corr_y > p->ly))
 		return SPECTRUM_TOO_LONG;
 	return SPECTRUM_OK;

@@ -207,8 +207,8 @@ static double sample(const double *z, size_t stride, int n, int i)
 	return z[(size_t)i * stride];
 }
 
-/* Cubic convolution at position x (in samples, 0 at the first); beyond the first and
- * last sample the end pieces go on. */
+/* Cubic convolution at position x (in samples, 0 at the first); the end pieces continue
+ * beyond the first and last sample. */
 static double interpolate(const double *z, size_t stride, int n, double x)
 {
 	int i = (int)floor(x);
@@ -308,7 +308,7 @@ double surface_mean(int nx, int ny, const double *z)
 	double n = (double)nx * ny;
 	double mean = sum_rows(nx, ny, z, deviation, 0) / n;
 
-	/* The rounding of a mean far from 0 is taken out by a second sum. */
+	/* A second sum removes the rounding of a mean far from 0. */
 	return mean + sum_rows(nx, ny, z, deviation, mean) / n;
 }
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <wearpipe/contact.h>
 
-/* More than any contact needs that converges at all. */
+/* More than any contact needs that converges. */
 enum { MAX_ITERATIONS = 10000 };
 
 struct wp_contact {

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { CLASSES = 1000 }; /* of the sizes of an oil: 1e-5 of pressure and wear */
+enum { CLASSES = 1000 }; /* of the sizes of an oil: errors of 1e-5 in pressure and wear */
 
 static const char *const motions[] = { "moment", "groove", "roll", NULL };
 static const char *const mode_names[] = { "free", "rejected", "rolls", "grooves",
@@ -85,6 +85,8 @@ static void check_options(int operands)
 {
 	if (isnan(gap) == isnan(load))
 		die(EXIT_USAGE, "specify either --gap H or --load F");
+	if (gap >= 1e-2)
+		warn("--gap %g m: is %gum meant?", gap, gap);
 	if (!hardness.n)
 		die(EXIT_USAGE, "--hardness is missing: H1[,H2] in Pa");
 	if (isnan(friction))
@@ -128,7 +130,7 @@ static double find_gap(
 	return found;
 }
 
-/* The gap of an oil, at which its particles carry the load on average. */
+/* The gap at which the particles of an oil carry the load on average. */
 static double mean_gap(const struct abrasion_par *par)
 {
 	double most, found;

@@ -36,7 +36,7 @@ struct source {
 	size_t rows, room, at;
 	int apart;
 	char *upstream;
-	double *diameter, *aspect; /* of the realisation at hand */
+	double *diameter, *aspect; /* of the present realisation */
 	size_t held;
 	/* drawn */
 	const struct population *population;

@@ -211,7 +211,7 @@ void outlook_open(struct series *in, const char *unit_column)
 	for (size_t i = 0; i < sizeof timed / sizeof *timed; i++)
 		needed |= opt_given(timed[i]);
 	timeunit_settle(series_table(in), series_time_column(in), needed);
-	series_scale(in, 1, 1); /* units that change within the table are an error */
+	series_scale(in, 1, 1); /* a unit that changes within the table is an error */
 	if (isnan(outlook_options.threshold))
 		return;
 	chances = bank_chances_new(DRAWS, (uint64_t)filtering.seed);
@@ -247,7 +247,7 @@ void outlook_free(struct outlook *o)
 	free(o);
 }
 
-/* Prediction begins with the first value, which may tell the direction. */
+/* Prediction begins with the first value, which may determine the direction. */
 static void start(struct outlook *o)
 {
 	struct predict_par par = {
@@ -268,7 +268,7 @@ static void start(struct outlook *o)
 		die(EXIT_RUN, "no memory for the prediction");
 }
 
-/* A state that is saved before the first value still has room for all of it. */
+/* A state saved before the first value has its full size. */
 void outlook_pass(struct outlook *o, struct state *s)
 {
 	state_move(s, &o->now, sizeof o->now);
@@ -306,7 +306,7 @@ static void learn(struct outlook *o, const struct outlook_row *in,
 	struct outlook_state *now = &o->now;
 
 	if (now->rows > 0 && in->clock <= now->clock) {
-		now->standing++; /* no time that wears has passed */
+		now->standing++; /* no time of wear has passed */
 		return;
 	}
 	now->clock = in->clock;

@@ -35,7 +35,7 @@ struct units {
 	unsigned char *place;
 };
 
-/* At the start of the file, and of each place in it. */
+/* At the start of the file, and of each slot in it. */
 struct head {
 	char magic[16];
 	uint64_t options, size;
@@ -233,7 +233,7 @@ static uint64_t check_of(const struct units *units)
 		units->place + sizeof p, units->size, checksum(&p, sizeof p, BASIS));
 }
 
-/* Reads a place; 1 if it is whole. */
+/* Reads a slot; 1 if it is complete. */
 static int read_place(
 	struct units *units, FILE *f, int number, int which, struct place *p)
 {
@@ -312,7 +312,8 @@ void units_keep(struct units *units, const char *path, const char *options)
 
 	make_room(units, (size_t)h.size);
 	units->path = path;
-	/* A state to resume from stays until this one holds as much. */
+	/* Written beside the state to resume from, which is replaced once this one is
+	 * complete. */
 	units->file = open(fresh, O_RDWR | O_CREAT | O_TRUNC, 0666);
 	if (units->file < 0)
 		die(EXIT_RUN, "%s:", fresh);

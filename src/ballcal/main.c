@@ -120,7 +120,7 @@ static void put(struct table_out *t, const char *name, const char *unit, double 
 	table_end_row(t);
 }
 
-/* A quantity whose logarithm has this half interval. */
+/* Prints a quantity whose logarithm has this half interval. */
 static void put_log(
 	struct table_out *t, const char *name, const char *unit, double ln, double half)
 {

@@ -1,6 +1,7 @@
 /* bemcontact - pressure between rough elastic bodies pressed together */
 #include "cli/msg.h"
 #include "cli/opt.h"
+#include "cli/progress.h"
 #include "cli/stats.h"
 #include "common/contact_options.h"
 #include "common/raw_layout.h"
@@ -79,6 +80,18 @@ static void check_options(void)
 	unload_check();
 }
 
+/* The part of a record's work that the present solution is. */
+static struct {
+	double from, length;
+	int last; /* no record follows */
+} part;
+
+static void tell(void *context, double share)
+{
+	(void)context;
+	progress_within(part.from + part.length * share, part.last);
+}
+
 /* The solver for a record; the last one is kept while grid and material stay. */
 static struct contact *solver_for(const struct record *r, const struct contact_par *par,
 	const char *name, long number)
@@ -101,7 +114,7 @@ static void put_results(struct record *r, const struct contact_par *par,
 {
 	press_record(r, par);
 	if (par->kernel) {
-		/* No contact modulus presses this again. */
+		/* The key of the contact modulus does not apply to this kernel. */
 		record_set(r, "estar", "nan");
 		record_set(r, "coating", "%.17g", coating.thickness);
 	}
@@ -195,6 +208,8 @@ static int solve_step(const struct task *t, double target, int warm, int last,
 	enum contact_status status =
 		press_to(t, t->h, press_control(), target, t->p, t->gap);
 
+	part.from += part.length;
+	part.length = 0;
 	*found = *contact_result(t->c);
 	count_work(found, warm);
 	note("%s: record %ld: area %.4g, approach %.6g m, optimality gap %.2g, %ld iterations",
@@ -214,7 +229,7 @@ static double *field_of(struct record *r, enum field f, const char *unit)
 	return fields & 1 << f ? record_add(r, field_names[f], unit) : NULL;
 }
 
-/* What follows the contact under all of the load; returns 1 if it converged. */
+/* Slip and unloading after the contact under the full load; returns 1 if it converged. */
 static int solve_after(const struct task *t, const struct contact_result *full)
 {
 	double *shear = field_of(t->r, SHEAR, "Pa"),
@@ -231,7 +246,7 @@ static int solve_after(const struct task *t, const struct contact_result *full)
 	return converged & unload_solve(t, full, residual);
 }
 
-/* Says once what is possible, but hardly what was meant. */
+/* Warns once of values that are possible but unlikely to be meant. */
 static void doubt(const struct contact_par *par, double pressure)
 {
 	static int said;
@@ -260,6 +275,7 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 	struct contact_result found = { 0 };
 
 	t.par = press_par(r, pool);
+	t.par.told = tell;
 	t.par.kernel = coating.thickness > 0 ? &coated : NULL;
 	t.c = solver_for(r, &t.par, t.name, t.number);
 	t.h = record_need(r, "height", 1, in);
@@ -275,11 +291,14 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 		t.other = xcalloc(cells, sizeof *t.other);
 	if (press_control() == CONTACT_APPROACH)
 		from = -highest(&t);
-	for (long k = 1; k <= sweep; k++)
+	for (long k = 1; k <= sweep; k++) {
+		part.from = (double)(k - 1) / (double)sweep;
+		part.length = 1 / (double)sweep;
 		converged &= solve_step(&t,
 			k < sweep ? from + (target - from) * (double)k / (double)sweep
 				  : target,
 			warm || k > 1, k == sweep, &found);
+	}
 	if (u)
 		contact_displacement(t.c, t.p, u);
 	converged &= solve_after(&t, &found);
@@ -289,7 +308,7 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 	return converged;
 }
 
-/* Leaves the wanted fields only. */
+/* Keeps only the wanted fields. */
 static void drop_fields(struct record *r)
 {
 	for (int i = r->nfields - 1; i >= 0; i--) {
@@ -321,12 +340,14 @@ int main(int argc, char **argv)
 	while (fields_read(in, &r)) {
 		char *cmd = opt_cmd(r.cmd, NULL);
 
+		part.last = fields_last(in);
 		if (!solve_record(&r, in, pool))
 			status = EXIT_NOCONV;
 		drop_fields(&r);
 		free(r.cmd);
 		r.cmd = cmd;
 		fields_write(out, &r, fields_more(in));
+		progress_within(1, part.last);
 	}
 	fields_done(out);
 	tables_done();

@@ -25,7 +25,7 @@ int unload_wanted(void)
 	return steps > 0;
 }
 
-/* Back to no load over the surface as it has flowed. */
+/* Unloads the plastically deformed surface completely. */
 static int take_off(
 	const struct task *t, const struct contact_result *full, const double *height)
 {

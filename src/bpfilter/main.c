@@ -156,14 +156,14 @@ static void check_samples(
 		isfinite(x[i]) ? "too large to filter" : "not a finite number");
 }
 
-/* From the input to the output: lines out, filter, first frames dropped. */
+/* The steps from input to output: removal of lines, filter, first frames dropped. */
 struct chain {
 	struct lines *lines; /* NULL: none */
 	struct fir *fir;
 	size_t step; /* frames to read at a time */
 	size_t skip; /* frames still to be dropped */
 	size_t channels;
-	double *piece; /* what the filter works on, a block of it */
+	double *piece; /* a block of the input of the filter */
 	struct signal_out *out;
 };
 

@@ -93,7 +93,7 @@ static void put_counted(struct table_out *t, struct counted c, double scale)
 	table_put(t, c.high * scale);
 }
 
-/* Of oil in a period, m3; nan if it is not known. */
+/* Volume of oil in a period, m3; nan if it is not known. */
 static double oil(double begin, double end)
 {
 	return isnan(volume) ? flow * (end - begin) : volume;

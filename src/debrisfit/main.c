@@ -133,6 +133,7 @@ int main(int argc, char **argv)
 			cmd = opt_cmd(r.cmd, NULL);
 		progress("surfaces", (double)surfaces, 0);
 		take_record(in, &r, surfaces++);
+		progress_within(1, 0);
 	}
 	progress_clear();
 	status = surrogate_fit(sample, count, &s, &report);

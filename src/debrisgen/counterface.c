@@ -30,7 +30,7 @@ struct counterface {
 	double *given;        /* its heights as read */
 	double *height;       /* of the record */
 	int nx, ny;           /* of the grid below it */
-	long cells;           /* moved in a step */
+	long cells;           /* sliding distance of a step */
 };
 
 int counterface_check(void)
@@ -143,7 +143,7 @@ static long start(const struct counterface *c, long step)
 	return own - grid - moved;
 }
 
-/* Place on it of cell (x, y) of the grid. */
+/* Index on the counterface of cell (x, y) of the grid. */
 static size_t place(const struct counterface *c, long from, int x, int y)
 {
 	const struct record *r = &c->record;

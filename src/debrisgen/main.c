@@ -45,7 +45,7 @@ struct edge {
 	double most;
 };
 
-/* What the program goes through its records with. */
+/* The state of a run over all records. */
 struct run {
 	struct edge edge;
 	struct fields_in *in;
@@ -54,7 +54,7 @@ struct run {
 	int status;
 };
 
-/* One surface on its way through the steps. */
+/* One surface during its steps. */
 struct scene {
 	struct worn_surface now;
 	double target; /* mean pressure, or approach */
@@ -175,6 +175,7 @@ static struct worn_conditions conditions_of(const struct scene *c)
 /* Wears one surface step by step. */
 static void wear_record(struct run *run, struct record *r)
 {
+	int last = fields_last(run->in);
 	struct scene c = { 0 };
 	struct worn_conditions conditions;
 
@@ -182,7 +183,7 @@ static void wear_record(struct run *run, struct record *r)
 	conditions = conditions_of(&c);
 	worn_begin(run->out, r, &conditions);
 	for (long k = 1; k <= steps; k++) {
-		progress("steps", (double)(k - 1), (double)steps);
+		progress_within((double)(k - 1) / (double)steps, last);
 		if (wearing_solves(run->wearing, k) &&
 			!wearing_press(run->wearing, &c.now, c.target, c.done + k))
 			run->status = EXIT_NOCONV;
@@ -223,6 +224,7 @@ int main(int argc, char **argv)
 		if (!run.out)
 			run.out = worn_open(r.cmd, wearing_richardson(), quick_asked());
 		wear_record(&run, &r);
+		progress_within(1, 0);
 	}
 	progress_clear();
 	warn_of_edge(&run);

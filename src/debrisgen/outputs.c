@@ -56,7 +56,7 @@ static const char summary_units[] = "1 1 m N 1 Pa 1 m3 1 m m m 1 Pa m3 m3 1 1 1 
 #define GUESS_UNITS " m3 m3 1"
 #define GRID_UNITS " m3 m3 1 1 1 m3 m3"
 
-/* A stream of records; the last is held back until it is known whether another one
+/* A stream of records; the last one is kept until it is known whether another one
  * follows. */
 struct held_fields {
 	struct fields_out *out; /* NULL: not wanted */
@@ -76,7 +76,7 @@ struct worn {
 	struct coefficients coefficients;
 };
 
-/* Takes the record over. */
+/* Takes ownership of the record. */
 static void held_put(struct held_fields *f, const struct record *r)
 {
 	if (f->last.nfields)
@@ -286,7 +286,7 @@ static void put_summary(struct table_out *t, struct coefficients *coefficients,
 		row[PLAIN + 1] = exact ? volume : s->volumes->total.high;
 		row[PLAIN + 2] = exact;
 	}
-	/* a surrogate knows neither depths nor the surface that is left */
+	/* a surrogate gives neither depths nor the worn surface */
 	if (s->volumes && !s->volumes->exact)
 		row[DEPTH] = row[ROUGHNESS] = NAN;
 	table_put_row(t, row, s->grid ? PLAIN + GRID : s->volumes ? PLAIN + 3 : PLAIN);
@@ -365,7 +365,7 @@ static void put_stress(
 	static const int part[] = { MISES, HYDROSTATIC, PRINCIPAL, PRINCIPAL, PRINCIPAL,
 		TENSOR, TENSOR, TENSOR, TENSOR, TENSOR, TENSOR };
 	size_t n = grid_size(r->nx, r->ny);
-	/* As deep as was searched. */
+	/* Down to the depth that was searched. */
 	long count = stress_layers ? stress_layers
 				   : 1 + (long)ceil(fmax(0, s->lost->wear.depth / s->dz -
 								    s->offset));

@@ -68,7 +68,7 @@ void quick_prepare(struct quick *q, const struct stress_par *par)
 		die(EXIT_RUN, "out of memory");
 }
 
-/* Of a particle what its footprint tells. */
+/* The properties of a particle that follow from its footprint. */
 static struct particle particle_of(
 	const struct footprint *f, const struct surrogate_guess *guess)
 {
@@ -166,7 +166,7 @@ const struct quick_volumes *quick_volumes(const struct quick *q)
 	return &q->volumes;
 }
 
-/* Probability of at most k of n where each is there with probability p. */
+/* Probability of at most k of n events of probability p. */
 static double at_most(long k, long n, double p)
 {
 	double sum = 0;

@@ -61,7 +61,7 @@ struct opt wearing_rows[] = {
 	OPT_END,
 };
 
-/* Of a body, 0 or 1; one value is that of both. */
+/* The value of body 0 or 1; a single value holds for both. */
 static double of_body(const struct opt_list *list, int body)
 {
 	return list->v[body < list->n ? body : 0];
@@ -86,7 +86,7 @@ static void check_pair(void)
 		die(EXIT_USAGE, "--poisson: want 0 to 0.5 for a body that wears");
 }
 
-/* A surrogate knows volumes below the footprints of one surface, and no depths. */
+/* A surrogate gives the volumes below the footprints of one surface, but no depths. */
 static void check_surrogate(void)
 {
 	static const char *const without[] = { "depth-step", "removal", "criterion",
@@ -131,7 +131,7 @@ struct wearing {
 	struct debris *debris;
 	struct debris_par par;
 	struct contact *contact;     /* NULL if a single step needs none */
-	struct contact_par pressing; /* the contact's problem */
+	struct contact_par pressing; /* parameters of the contact */
 	struct debris_step lost;     /* in the last step */
 	struct stress_work seen;     /* counted already */
 	/* Of a sliding pair: NULL without. */
@@ -366,7 +366,7 @@ static void refuse(const struct wearing *w, enum debris_status status, long step
 			: "out of memory");
 }
 
-/* Takes off what fails under the pressure of c. */
+/* Removes the material that fails under the pressure of c. */
 static void wear_by_stress(struct wearing *w, const struct worn_surface *c, long step)
 {
 	debris_contact(w->debris, c->p, &w->lost);
@@ -402,7 +402,8 @@ static long archard_parts(const struct wearing *w, double distance)
 	return (long)fmin(1e9, fmax(1, ceil(k * distance / limit)));
 }
 
-/* Takes the same from a body for every part of the distance; the volume, m3. */
+/* Removes the same depths from a body for every part of the distance; returns the volume,
+ * m3. */
 static double wear_part(double *height, const double *p, size_t n, double rate,
 	double distance, double area, double *deepest)
 {

@@ -1,6 +1,7 @@
 /* debrisstat - statistics of wear particles: fits, steps, sizes, shapes */
 #include "cli/msg.h"
 #include "cli/opt.h"
+#include "cli/progress.h"
 #include "cli/stats.h"
 #include "io/quantities.h"
 #include "io/tables.h"
@@ -16,11 +17,12 @@ static const char *const growths[] = { "cumulative", "step", NULL };
 static int output, growth, truncated;
 static struct opt_list diameters = { 2, { 0, INFINITY } }, range;
 static struct opt_list edges = { 8, { 1, 1.25, 1.5, 2, 3, 5, 8, 13 } };
-static double bin = 10e-6, confidence = 0.95;
+static double bin = 10e-6, confidence = 0.95, depth = 1e-6;
 static long realisations, bootstrap, seed = 1;
 static const char *summary_path, *other_path;
 
-/* Groups of realisations that --bootstrap draws; up to so many, each is one. */
+/* Groups of realisations that --bootstrap draws; up to this number each realisation is a
+ * group. */
 enum { GROUPS = 512 };
 
 static const struct opt opts[] = {
@@ -54,6 +56,8 @@ static const struct opt opts[] = {
 	{ 0, "compare", OPT_TEXT, UNIT_NONE, &other_path, 0, 0, "FILE",
 		"compare with the table of another study: differences and ratios", NULL,
 		0 },
+	{ 0, "depth", OPT_NUM, UNIT_LENGTH, &depth, 1e-15, 1, "H",
+		"of --compare: mean depth of wear that ends the life", NULL, 0 },
 	{ 0, "summary", OPT_TEXT, UNIT_NONE, &summary_path, 0, 0, "FILE",
 		"summary of debrisgen, which lists steps without particles", NULL, 0 },
 	OPT_END,
@@ -89,20 +93,20 @@ static void check(struct ensemble *e, enum ensemble_status status)
 			ensemble_culprit(e));
 	case ENSEMBLE_MORE:
 		die(EXIT_RUN, "--realisations %ld, but the table has %zu", realisations,
-			ensemble_told(e));
+			ensemble_reported(e));
 	case ENSEMBLE_MEMORY:
 		no_memory();
 	}
 }
 
-static int counts(const struct shed *s)
+static int counts(const struct particle_row *s)
 {
 	return s->diameter >= diameters.v[0] && s->diameter <= diameters.v[1] &&
 	       (range.n == 0 || (s->step >= (long)range.v[0] &&
 					s->step <= (long)range.v[range.n - 1]));
 }
 
-static void classify(const struct shed *s, double aspect)
+static void classify(const struct particle_row *s, double aspect)
 {
 	int k = 0;
 
@@ -164,7 +168,14 @@ static void read_summary(struct summary *s, struct ensemble *e, long realisation
 				 e, s->at, table_whole(s->table, s->step, 1, 1e6)));
 }
 
-static void read_particles(struct ensemble *e, const char *path, char **cmd)
+/* What a table states of its study; nan: nothing. */
+struct study {
+	double area;     /* nominal, m2 */
+	double distance; /* slid in a step, m */
+};
+
+static void read_particles(
+	struct ensemble *e, const char *path, struct study *study, char **cmd)
 {
 	struct table_in *t = table_open(path);
 	int more = table_next(t);
@@ -178,19 +189,27 @@ static void read_particles(struct ensemble *e, const char *path, char **cmd)
 	ca = table_need(t, "aspect");
 	open_summary(&summary);
 	for (; more; more = table_next(t)) {
-		struct shed s = { table_whole(t, cr, 0, 1e15), table_whole(t, cs, 1, 1e6),
-			table_positive(t, cd), table_positive(t, cv), table_part(t) };
+		struct particle_row s = { table_whole(t, cr, 0, 1e15),
+			table_whole(t, cs, 1, 1e6), table_positive(t, cd),
+			table_positive(t, cv), table_part(t) };
 
 		read_summary(&summary, e, s.realisation);
 		check(e, ensemble_add(e, &s));
-		/* A particle around a periodic grid has no shape. */
+		/* A particle that is endless on a periodic grid has no shape. */
 		classify(&s, isnan(table_number(t, ca)) ? NAN : table_positive(t, ca));
 	}
 	read_summary(&summary, e, LONG_MAX);
 	if (summary.table)
 		table_close(summary.table);
+	study->area = table_quantity(t, "nominal_area", UNIT_AREA);
+	study->distance = table_quantity(t, "step_distance", UNIT_LENGTH);
 	*cmd = opt_cmd(table_upstream(t), NULL);
 	table_close(t);
+}
+
+static void tell(long done, long draws)
+{
+	progress("draws", (double)done, (double)draws);
 }
 
 static struct ensemble *new_ensemble(void)
@@ -205,7 +224,8 @@ static struct ensemble *new_ensemble(void)
 		.per_step = growth,
 		.confidence = confidence,
 		.by_step = output == STEPS,
-		.groups = output == FITS && (bootstrap || other_path) ? GROUPS : 0 };
+		.groups = output == FITS && (bootstrap || other_path) ? GROUPS : 0,
+		.told = tell };
 	struct ensemble *e = ensemble_new(&par);
 
 	if (!e)
@@ -224,7 +244,7 @@ static void put_quantity(
 	table_end_row(t);
 }
 
-/* Of enum estimate_quantity. */
+/* Names of enum estimate_quantity. */
 static const char *const names[] = { "weibull_shape", "weibull_scale", "weibull_mean",
 	"ks_distance", "mean_diameter", "power_factor", "power_exponent", "power_offset",
 	"volume_per_step" };
@@ -253,12 +273,12 @@ static void print_fits(const struct ensemble *e, const char *cmd)
 }
 
 /* Reads the other study with the same options. */
-static struct ensemble *read_other(void)
+static struct ensemble *read_other(struct study *study)
 {
 	struct ensemble *e = new_ensemble();
 	char *cmd;
 
-	read_particles(e, other_path, &cmd);
+	read_particles(e, other_path, study, &cmd);
 	check(e, ensemble_close(e));
 	free(cmd);
 	return e;
@@ -281,22 +301,36 @@ static void put_contrast(struct table_out *t, const char *name, const double val
 	table_end_row(t);
 }
 
-/* Life at equal thresholds and equal steps goes as the inverse of the volume. */
-static void put_life(struct table_out *t, const struct estimate_contrast *volume)
+/* Sliding distance, or number of steps, in which --depth is worn off the nominal area;
+ * where the area is not known, life only has a ratio, that at equal areas and steps. */
+static void put_life(struct table_out *t, const struct study study[2],
+	const double volume[2], const double log_error[2], const double n[2])
 {
-	struct estimate_contrast life = *volume;
+	int areas = study[0].area > 0 && study[1].area > 0;
+	int distances = areas && study[0].distance > 0 && study[1].distance > 0;
+	double life[2], error[2];
+	struct estimate_contrast c;
 
-	life.difference = (struct estimate){ NAN, NAN, NAN };
-	life.ratio = (struct estimate){ 1 / volume->ratio.value, 1 / volume->ratio.high,
-		1 / volume->ratio.low };
-	put_contrast(t, "life", (double[]){ NAN, NAN }, &life, "1");
+	for (int i = 0; i < 2; i++) {
+		life[i] = depth * (areas ? study[i].area : 1) / volume[i];
+		life[i] *= distances ? study[i].distance : 1;
+		error[i] = life[i] * log_error[i];
+	}
+	c = estimate_compare(life, error, log_error, n, confidence);
+	if (!areas) {
+		c.difference = (struct estimate){ NAN, NAN, NAN };
+		life[0] = life[1] = NAN;
+	}
+	put_contrast(t, "life", life, &c, distances ? "m" : "1");
 }
 
-static void print_comparison(const struct ensemble *e, const char *cmd)
+static void print_comparison(
+	const struct ensemble *e, const struct study *mine, const char *cmd)
 {
 	static const int shown[] = { ESTIMATE_VOLUME_STEP, ESTIMATE_MEAN_DIAMETER,
 		ESTIMATE_SHAPE, ESTIMATE_SCALE, ESTIMATE_WEIBULL_MEAN };
-	struct ensemble *other = read_other();
+	struct study study[2] = { *mine, { NAN, NAN } };
+	struct ensemble *other = read_other(&study[1]);
 	const struct ensemble *both[] = { e, other };
 	struct table_out *t = table_create(NULL, cmd,
 		"1 unit unit unit unit unit 1 1 1 1 1",
@@ -304,7 +338,7 @@ static void print_comparison(const struct ensemble *e, const char *cmd)
 		"ratio_low ratio_high realisations unit");
 	double error[2][ESTIMATES], log_error[2][ESTIMATES], n[2];
 	struct estimate value[2][ESTIMATES];
-	struct estimate_contrast volume;
+	const int worn = ESTIMATE_VOLUME_STEP;
 
 	for (int i = 0; i < 2; i++) {
 		n[i] = ensemble_par(both[i])->realisations;
@@ -325,10 +359,9 @@ static void print_comparison(const struct ensemble *e, const char *cmd)
 			(double[]){ log_error[0][q], log_error[1][q] }, n, confidence);
 
 		put_contrast(t, names[q], v, &c, units[q]);
-		if (q == ESTIMATE_VOLUME_STEP)
-			volume = c;
 	}
-	put_life(t, &volume);
+	put_life(t, study, (double[]){ value[0][worn].value, value[1][worn].value },
+		(double[]){ log_error[0][worn], log_error[1][worn] }, n);
 	table_done(t);
 	ensemble_free(other);
 }
@@ -411,6 +444,8 @@ static void check_options(void)
 	if (other_path && (output != FITS || summary_path || realisations))
 		die(EXIT_USAGE,
 			"--compare excludes --output, --summary and --realisations");
+	if (!other_path && opt_given("depth"))
+		die(EXIT_USAGE, "--depth requires --compare");
 	if (other_path && !bootstrap)
 		bootstrap = 400;
 	if (other_path && !opt_given("confidence"))
@@ -430,22 +465,23 @@ int main(int argc, char **argv)
 	static void (*const print[])(const struct ensemble *,
 		const char *) = { print_fits, print_steps, print_sizes, print_aspects };
 	int first = opt_parse(&prog, argc, argv);
+	struct study study;
 	struct ensemble *e;
 	char *cmd;
 
 	check_options();
 	e = new_ensemble();
-	read_particles(e, argv[first], &cmd);
+	read_particles(e, argv[first], &study, &cmd);
 	check(e, ensemble_close(e));
-	if (bootstrap && ensemble_told(e) < 2)
+	if (bootstrap && ensemble_reported(e) < 2)
 		die(EXIT_RUN, "--bootstrap requires at least two realisations, got %zu",
-			ensemble_told(e));
+			ensemble_reported(e));
 	stats_add("particles", ensemble_particles(e));
 	stats_add("realisations", ensemble_par(e)->realisations);
 	stats_add("diameters_merged",
 		ensemble_diameter(e)->n - (double)ensemble_diameters(e)->n);
 	if (other_path)
-		print_comparison(e, cmd);
+		print_comparison(e, &study, cmd);
 	else
 		print[output](e, cmd);
 	ensemble_free(e);

@@ -24,8 +24,7 @@ struct opt arrivals_rows[] = {
 	OPT_END,
 };
 
-/* The stretch of the record that is held: frames first to first + n, one array per
- * channel. */
+/* The part of the record in memory: frames first to first + n, one array per channel. */
 struct stretch {
 	struct signal_in *in;
 	double *y[2];
@@ -46,7 +45,7 @@ int arrivals_refused(void)
 	return refused > 0;
 }
 
-/* Forgets all before frame from and reads up to frame to. */
+/* Drops all frames before from and reads up to frame to. */
 static void move_stretch(struct stretch *s, long long from, long long to)
 {
 	enum { BLOCK = 4096 };

@@ -191,7 +191,7 @@ int main(int argc, char **argv)
 	int i = opt_parse(&prog, argc, argv);
 
 #ifdef WITH_OPENBLAS
-	/* Its threads share out sums in another order. */
+	/* With several threads OpenBLAS adds in another order. */
 	openblas_set_num_threads(1);
 #endif
 	check_options();

@@ -54,7 +54,7 @@ struct opt learning_rows[] = { OPT_HEADING("Network and training"),
 		0.999999, "P", "sparsity proportion: target mean activation", NULL, 0 },
 	OPT_END };
 
-/* For the report: what is going on, and for how long. */
+/* For the report: the present phase of the training and its number of epochs. */
 static const char *phase;
 static long phase_epochs;
 

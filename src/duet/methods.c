@@ -54,7 +54,7 @@ static void report(const struct separate *s, double rate)
 	stats_set("sections_single", c->singles);
 	stats_set("sections_unresolved", c->unresolved);
 	stats_set("misfits", c->misfits);
-	stats_set("groups_doubted", c->untold);
+	stats_set("misfits_by_velocity", c->foreign);
 	stats_set("fits", c->fits);
 	stats_set("fit_steps", c->steps);
 	stats_set("searches", c->searches);
@@ -75,15 +75,19 @@ static int put_ready(struct separate *s, struct found *out)
 	return any;
 }
 
-static int is_doubtful(const struct separate *s, const char *name)
+/* Says so, and so does the table. */
+static int is_doubtful(const struct separate *s, struct found *out, const char *name)
 {
 	const struct separate_counters *c = separate_counters(s);
+	double rows = c->rows + c->unresolved;
 
 	if (!separate_doubtful(s))
 		return 0;
-	warn("%s: %.0f of %.0f pulses fit no particle (misfit): the others are doubtful, "
+	warn("%s: %.0f of %.0f rows fit no particle (misfit): the others are doubtful, "
 	     "too",
-		name, c->misfits, c->rows);
+		name, c->misfits, rows);
+	table_comment(out->particles, "doubtful", "%.0f of %.0f rows fit no particle",
+		c->misfits, rows);
 	return 1;
 }
 
@@ -111,7 +115,7 @@ int separate_record(
 	put_ready(s, out);
 	check_status(status, s, signal_name(in));
 	report(s, (double)out->rate);
-	doubtful = is_doubtful(s, signal_name(in));
+	doubtful = is_doubtful(s, out, signal_name(in));
 	separate_free(s);
 	return doubtful;
 }

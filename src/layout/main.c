@@ -10,7 +10,8 @@
 #include <string.h>
 
 enum { PHASES = 16, SUMMED = 4096 };
-static const double found = 5.7; /* deviations: what duet wants of a lone pulse */
+static const double found =
+	5.7; /* deviations: detection threshold of duet for a lone pulse */
 
 enum method { AUTO, CLOSED, SUM };
 static const char *const methods[] = { "auto", "closed", "sum", NULL };
@@ -168,11 +169,11 @@ static void put_layout(
 {
 	double samples = par->bound.zone / par->bound.velocity * par->bound.rate;
 	char *where = xstrdup("");
-	struct layout judged;
+	struct layout evaluated;
 
-	layout_judge(par, coil, n, &judged);
+	layout_evaluate(par, coil, n, &evaluated);
 	if (method == SUM || (method == AUTO && samples < SUMMED)) {
-		if (bound_sampled(&par->bound, coil, n, PHASES, &judged.bound))
+		if (bound_sampled(&par->bound, coil, n, PHASES, &evaluated.bound))
 			die(EXIT_RUN, "out of memory: a pulse has %g samples", samples);
 		stats_add("samples_summed", floor(samples) * n * PHASES);
 	} else {
@@ -189,10 +190,10 @@ static void put_layout(
 	table_put_text(t, where);
 	const double row[] = { coil[n - 1] - coil[0], par->bound.zone,
 		worst_zone(coil, n), par->bound.velocity, samples, par->bound.snr,
-		detection(par, samples, n), judged.bound.time, judged.bound.velocity,
-		judged.bound.diameter * diameter, par->traffic.arrivals,
-		traffic_alone(&par->traffic, par->bound.zone), judged.unique,
-		judged.by_width };
+		detection(par, samples, n), evaluated.bound.time,
+		evaluated.bound.velocity, evaluated.bound.diameter * diameter,
+		par->traffic.arrivals, traffic_alone(&par->traffic, par->bound.zone),
+		evaluated.unique, evaluated.by_width };
 	table_put_row(t, row, (int)(sizeof row / sizeof *row));
 	stats_add("layouts", 1);
 	free(where);
@@ -241,7 +242,7 @@ int main(int argc, char **argv)
 			die(EXIT_RUN,
 				"no layout of %ld coils has p_unique_width of %g or more",
 				best, least);
-		stats_add("layouts_searched", (double)of.judged);
+		stats_add("layouts_searched", (double)of.evaluated);
 		put_layout(t, &par, coil, (int)best);
 	}
 	table_done(t);

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Comments of the head, as "key: value", in their order. */
+/* Comments of the header, as "key: value", in their order. */
 struct head {
 	int n;
 	char **key, **value;

@@ -163,7 +163,7 @@ static void check_fields(char **first, const struct record *r, const struct sour
 	*first = names;
 }
 
-/* What is written, and what has been. */
+/* The output, and the keys written to it so far. */
 struct output {
 	struct fields_out *fields;
 	struct table_out *table;
@@ -172,8 +172,8 @@ struct output {
 	long records;
 };
 
-/* The keys of a record stand before its rows; one that the record before had and this one
- * has not stands without a value. */
+/* The keys of a record precede its rows; a key that only the record before had is written
+ * without a value. */
 static void put_keys(struct output *o, const struct record *r)
 {
 	char *cmd =
@@ -246,7 +246,7 @@ static void open_output(struct output *o)
 			"record realisation field unit nx ny nz dx dy min mean max");
 }
 
-/* Seen before anything is written: half an output would look whole. */
+/* Checked before anything is written: half an output would look complete. */
 static void check_plane(const struct record *r, struct source *in)
 {
 	if (r->nfields != 1 || r->nz > 1 || pick.n > 1 ||
@@ -315,7 +315,7 @@ static int next_record(struct source *in, struct record *r)
 	return (!may_be_empty || source_more(in)) && source_read(in, r);
 }
 
-/* What --raw and --fields say. */
+/* The values of --raw and --fields. */
 static const struct raw_layout *layout(void)
 {
 	static struct raw_layout raw;

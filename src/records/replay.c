@@ -16,7 +16,7 @@
 
 enum { WORDS_MAX = 512, STAGES_MAX = 64 };
 
-/* The text of a pipeline and how far it was read. */
+/* The text of a pipeline and the position of the reader. */
 struct parser {
 	const char *name; /* of the stream */
 	const char *s;
@@ -107,7 +107,7 @@ static pid_t start(void (*run)(void *), void *context, int in, int out)
 	_exit(127);
 }
 
-/* One program, its words and where its output goes. */
+/* One program, its arguments and the destination of its output. */
 struct command {
 	char *word[WORDS_MAX + 1];
 	int side; /* descriptor 3 is the output, standard output goes nowhere */
@@ -194,7 +194,7 @@ static void run_group(void *context)
 	_exit(status);
 }
 
-/* Statuses of all stages; the first that is not 0 counts. */
+/* Collects the statuses of all stages; the first that is not 0 counts. */
 static int wait_for(const pid_t *stage, int n)
 {
 	int status = 0, s;
@@ -312,7 +312,7 @@ struct whole {
 	struct parser at;
 };
 
-/* All is looked at before anything is run. */
+/* The whole pipeline is checked before anything is run. */
 static void check_whole(struct parser p)
 {
 	for (;;) {

@@ -11,13 +11,13 @@ struct source {
 	struct table_in *table;
 	int row; /* one of the next record was read */
 	long count;
-	struct keys keys; /* comments so far, those of the next record among them */
+	struct keys keys; /* comments so far, including those of the next record */
 	int nfields;
 	double *value; /* of the record: x, y, z and fields, row by row */
 	size_t rows, room;
 };
 
-/* A comment without a value takes back what the record before had. */
+/* A comment without a value removes the key of the record before. */
 static void take_comment(void *context, const char *key, const char *value)
 {
 	struct source *s = context;
@@ -75,7 +75,7 @@ static void keep_row(struct source *s)
 	s->rows++;
 }
 
-/* Axis 0 to 2 of a row. */
+/* Coordinate 0 to 2 of a row. */
 static double position(const struct source *s, size_t row, int axis)
 {
 	return s->value[row * ((size_t)s->nfields + 3) + (size_t)axis];
@@ -98,7 +98,7 @@ static int near(double a, double b, double step)
 	return fabs(a - b) <= 1e-6 * step;
 }
 
-/* Sizes and spacings, and every point where they have it. */
+/* Determines sizes and spacings, and checks that every point lies on the grid. */
 static void settle_grid(const struct source *s, struct record *r, long line)
 {
 	size_t nx = run(s, 1), plane = run(s, 2), i = 0;
@@ -155,7 +155,7 @@ static void fill(const struct source *s, struct record *r, const char *units)
 	}
 }
 
-/* The pipeline of the record, without the turn into a table, which is undone. */
+/* The pipeline of the record without its conversion into a table, which is reverted. */
 static char *without_table(const char *cmd)
 {
 	static const char turn[] = " | records --output table";
@@ -179,7 +179,7 @@ static void take_keys(const struct source *s, struct record *r)
 	}
 }
 
-/* The rows up to the one that has the place of the first again. */
+/* Reads the rows up to the next one at the position of the first. */
 static int read_table(struct source *s, struct record *r)
 {
 	const char *units;

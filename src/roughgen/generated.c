@@ -114,7 +114,7 @@ static struct spectrum_par spectrum(void)
 	return p;
 }
 
-/* Values that are possible, but hardly what was meant. */
+/* Warns of values that are possible but unlikely to be meant. */
 static void doubt(const struct rough_par *par)
 {
 	const struct spectrum_par *p = &par->spectrum;
@@ -122,7 +122,7 @@ static void doubt(const struct rough_par *par)
 	double dx = p->lx / p->nx, dy = p->ly / p->ny;
 
 	if (length.v[0] >= 0.1)
-		warn("--length %g m: in metres without a unit: is %gmm meant?",
+		warn("--length %g m: numbers without a unit are metres: is %gmm meant?",
 			length.v[0], length.v[0]);
 	if (corr.n && (p->corr_x < dx || p->corr_y < dy))
 		warn("--corr %g m is below the spacing of %g m: the heights are hardly "

@@ -127,7 +127,7 @@ static void print_spectrum(const struct record *r, const double *z)
 	free(ring);
 }
 
-/* Crowns a surface, on top of the crown it had, and writes it out; more: another one
+/* Adds a crown to a surface, on top of the one it had, and writes it; more: another one
  * follows. */
 static void finish(struct record *r, double had, int more)
 {

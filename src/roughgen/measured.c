@@ -46,8 +46,8 @@ struct opt measured_rows[] = {
 
 struct measured {
 	struct fields_in *in;
-	struct record read; /* as it came */
-	int piped;          /* no file that the command line could name again */
+	struct record read; /* the record as read */
+	int piped;          /* not a file that the command line could name again */
 };
 
 struct measured *measured_open(const char *path)
@@ -86,7 +86,7 @@ static void new_record(
 	record_copy_keys(s, r);
 }
 
-/* Takes the heights of r, cropped, into a record that holds nothing else. */
+/* Moves the cropped heights of r into a record without other fields. */
 static void take_heights(
 	const struct fields_in *in, const struct record *r, struct record *s)
 {
@@ -136,8 +136,8 @@ static void fill_holes(const struct fields_in *in, struct record *s)
 	stats_add("iterations", steps);
 }
 
-/* Puts the crown of a whole surface aside and returns its drop; that of a piece cut
- * out of one stays, as part of its heights. */
+/* Removes the crown of a whole surface and returns its drop; the crown of a cropped piece
+ * stays, as part of its heights. */
 static double take_crown(struct record *s)
 {
 	double drop = record_get_number(s, "crown");
@@ -173,7 +173,7 @@ static void filter_heights(const char *word, double nesting, int high, struct re
 	free(smooth);
 }
 
-/* Cuts off what the ends of the filters have touched: half a nesting index. */
+/* Crops the borders affected by the ends of the filters: half a nesting index. */
 static void crop_ends(const struct fields_in *in, struct record *s)
 {
 	double border = 0.5 * fmax(s_filter, l_filter);

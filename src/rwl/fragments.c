@@ -64,7 +64,7 @@ static void read_row(struct partition *p, const struct wear *w, long row)
 	stats_add("fragments_read", 1);
 }
 
-/* What a table states about its fragments; NAN: nothing. */
+/* Properties of the fragments that a table states; NAN: not stated. */
 struct physics {
 	double area, pressure, distance;
 };
@@ -76,7 +76,7 @@ static struct physics physics_of(const struct table_in *t)
 		table_quantity(t, "step_distance", UNIT_LENGTH) };
 }
 
-/* Digits may be lost on the way. */
+/* The values may have been rounded in between. */
 static int differ(double a, double b)
 {
 	return fabs(a - b) > 1e-3 * fmax(fabs(a), fabs(b));

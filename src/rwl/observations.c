@@ -122,7 +122,7 @@ int state_next(struct state *s)
 		die(EXIT_RUN, "%s: line %ld: time %g s is not ascending", table_name(t),
 			table_line(t), time);
 	if (value < 0 && s->filtered)
-		value = 0; /* a filter's idea of nothing worn */
+		value = 0; /* the filtered state of an unworn pair may be below 0 */
 	if (value < 0 || isinf(value))
 		die(EXIT_RUN, "%s: line %ld: %g is not a %s", table_name(t),
 			table_line(t), value, quantities[s->quantity]);

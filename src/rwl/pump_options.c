@@ -77,6 +77,12 @@ void pump_check(void)
 	wrong = leakage_check(&p->leakage);
 	if (wrong)
 		die(EXIT_USAGE, "%s", wrong);
+	if (p->threshold_leakage > 0.1)
+		warn("--threshold-leakage %g m3/s: is %gL/min meant?",
+			p->threshold_leakage, p->threshold_leakage);
+	if (p->threshold_gap >= 1e-2)
+		warn("--threshold-gap %g m: is %gum meant?", p->threshold_gap,
+			p->threshold_gap);
 	if (isnan(p->threshold_gap) && isnan(p->threshold_leakage) &&
 		isnan(p->threshold_volume) && isnan(pump.critical_size))
 		p->threshold_leakage = 2.8e-3 / 60;

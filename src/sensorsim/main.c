@@ -1,6 +1,7 @@
 /* sensorsim - the signal of wear particles in a pipe past two inductive sensors */
 #include "cli/msg.h"
 #include "cli/opt.h"
+#include "cli/progress.h"
 #include "cli/stats.h"
 #include "io/signals.h"
 #include "io/tables.h"
@@ -45,7 +46,7 @@ struct traffic {
 	struct scene *scene;
 	struct passage particle;
 	struct disturbance event;
-	int particles, events; /* is there a next one? */
+	int particles, events; /* whether there is a next one */
 	double count;
 };
 
@@ -98,8 +99,8 @@ static void put_event(struct table_out *t, const struct disturbance *e)
 		disturbance_names[e->kind]);
 }
 
-/* Passes on what has its time1 before the given one: to the scene, unless it is the truth
- * alone that is wanted, and to the truth, unless NULL. */
+/* Passes the events with a time1 before the given one to the scene, unless only the truth
+ * is wanted, and to the truth, unless NULL. */
 static void pass_traffic(
 	struct traffic *f, double before, int truth_alone, struct table_out *t)
 {
@@ -128,7 +129,7 @@ static void pass_traffic(
 	}
 }
 
-/* Frames of the next piece: a whole one, or what is left of the record. */
+/* Frames of the next piece: a complete one, or the rest of the record. */
 static size_t piece(const struct scene *scene, double rate, double frames, int more)
 {
 	int open_ended = isnan(source_duration);
@@ -166,6 +167,8 @@ static void run(struct traffic *f, struct table_out *t, struct signal_out *out)
 		scene_next(f->scene, x, n);
 		signal_write(out, x, n);
 		frames += (double)n;
+		if (!isnan(source_duration))
+			progress("s", frames / rate, source_duration);
 		stats_max("particles_pending", (double)scene_pending(f->scene));
 	} while (n > 0);
 	stats_set("frames", frames);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Standard deviations of the flow's drift at most. */
+/* Maximum drift of the flow in standard deviations. */
 enum { DRIFT_MOST = 3 };
 
 double source_duration = NAN;
@@ -54,18 +54,19 @@ struct opt source_rows[] = {
 	OPT_END,
 };
 
-/* Where particles come from: a table, or random numbers. */
+/* The source of particles: a table, or random numbers. */
 struct source {
 	struct stream stream;
 	struct arrivals *arrivals; /* NULL: the table has times */
-	struct table_in *table;    /* NULL: all is drawn, or was read into diameters */
+	struct table_in *table; /* NULL: particles are drawn, or the table was read into
+				   diameters */
 	int time_column, diameter_column, velocity_column, material_column, kind_column;
 	double *diameters; /* of a table without times */
 	const struct material **materials;
-	const struct material *material; /* of the particle handed out last */
+	const struct material *material; /* of the particle returned last */
 	struct normals *normals;         /* of the drift of the flow */
 	struct wander drift;
-	uint64_t count; /* particles handed out */
+	uint64_t count; /* particles returned */
 	char *cmd;      /* pipeline that made the table; NULL: none */
 	double slowest;
 };
@@ -105,7 +106,8 @@ static double particle_rate(double flow)
 				    : flow * concentration / (density * M_PI / 6 * cube);
 }
 
-/* When and how many: the window leaves room for whole pulses at both sensors. */
+/* Arrival times and number: the window leaves room for complete pulses at both sensors.
+ */
 static void make_arrivals(struct source *s, uint64_t n)
 {
 	double mean = pipe_mean_velocity(&s->stream.pipe),
@@ -154,7 +156,7 @@ static int next_line(struct source *s)
 	return 0;
 }
 
-/* By its column, or drawn for particle i. */
+/* From its column, or drawn for particle i. */
 static const struct material *read_material(const struct source *s, uint64_t i)
 {
 	const struct material *m;
@@ -169,7 +171,8 @@ static const struct material *read_material(const struct source *s, uint64_t i)
 	return m;
 }
 
-/* A table without times is read whole; its particles arrive in the order of the rows. */
+/* A table without times is read completely; its particles arrive in the order of the
+ * rows. */
 static void read_diameters(struct source *s)
 {
 	uint64_t n = 0, room = 0;
@@ -226,7 +229,7 @@ struct source *source_open(const char *path, uint64_t seed, uint32_t realisation
 	return s;
 }
 
-/* The drift is cut where it would stop the flow. */
+/* The drift is limited where it would stop the flow. */
 static void drift_flow(struct source *s, struct passage *p)
 {
 	double z;

@@ -125,6 +125,12 @@ void sensors_check(void)
 	if (corner > rate / 2)
 		die(EXIT_USAGE, "--corner %g Hz is above half the rate, %g Hz", corner,
 			rate / 2);
+	if (rate * sensors_pulse() < 4)
+		warn("--rate %g Hz: a pulse of %.3g s has fewer than four samples", rate,
+			sensors_pulse());
+	if (noise >= 1 && !coil.n && !opt_given("gain"))
+		warn("--noise %g V: numbers without a unit are volts: is %gmV meant?",
+			noise, noise);
 	check_lines("mains", &mains, mains_frequency, 2);
 	check_lines("pump", &pump, pump_frequency, 1);
 }

@@ -20,7 +20,7 @@ struct channel {
 	double number, sum, missing;
 	double last; /* value of the present run */
 	long run;
-	/* of the present stretch, by Welford's recurrence */
+	/* of the present segment, by Welford's recurrence */
 	long n;
 	double mean, square;
 	struct sketch levels;
@@ -101,7 +101,8 @@ void channels_add(struct channels *c, const double *x, size_t frames)
 	c->frames += (double)frames;
 }
 
-/* Lower decile of the stretches; that of all samples where there is no whole stretch. */
+/* Lower decile of the segments; that of all samples where there is no complete segment.
+ */
 static double level_of(struct channel *c)
 {
 	double tenth = 0, level = NAN;

@@ -86,7 +86,7 @@ int moment_parse(const char *s, struct moment *m)
 	return zone_of(s, m->zone);
 }
 
-/* Seconds that the clock of the zone is ahead. */
+/* Offset of the time zone, s. */
 static long long ahead(const char *zone)
 {
 	long long seconds;
@@ -111,7 +111,7 @@ const char *moment_text(const struct moment *m, char text[MOMENT_TEXT])
 	int rest = (int)(m->second - days * 86400), month = 1, n;
 	char fraction[NUMBER_TEXT];
 
-	year += days / 366; /* not beyond it, for moments after 1970 */
+	year += days / 366; /* at most the true year, for moments after 1970 */
 	year -= days < 0;
 	while (days_of(year + 1, 1, 1) <= days)
 		year++;

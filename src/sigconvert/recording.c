@@ -32,8 +32,8 @@ struct recording_out {
 	struct signal_out *signal;
 	struct table_out *table;
 	SNDFILE *sound;
-	FILE *file; /* that libsndfile writes, which goes back to its header */
-	int failed; /* a write to it did, which libsndfile does not always tell */
+	FILE *file; /* that libsndfile writes; it seeks back to the header */
+	int failed; /* a write failed, which libsndfile does not always report */
 	int channels;
 	double frame, rate;
 };
@@ -41,7 +41,7 @@ struct recording_out {
 /* ---- sound files ---- */
 
 #ifdef WITH_SNDFILE
-/* libsndfile seeks: the input is put aside first. */
+/* libsndfile seeks: the input is copied to a temporary file first. */
 static FILE *put_aside(struct input *in)
 {
 	static char block[1 << 16];
@@ -137,7 +137,8 @@ static void sound_create(struct recording_out *o, const struct signal_format *fo
 	if (!o->sound)
 		die(EXIT_RUN, "%d channels at %g Hz: %s", format->channels, format->rate,
 			sf_strerror(NULL));
-	/* that chunk holds the time of day: the same input makes the same bytes */
+	/* without that chunk, which holds the time of day, the same input gives the same
+	 * bytes */
 	sf_command(o->sound, SFC_SET_ADD_PEAK_CHUNK, NULL, SF_FALSE);
 	sf_command(o->sound, SFC_SET_CLIPPING, NULL, SF_TRUE);
 }
@@ -299,6 +300,12 @@ struct recording *recording_open(const char *path, const struct recording_par *p
 		table_begin(r, in);
 	else
 		r->text = text_open(in, par);
+	if (takes_columns(par) && !r->text && r->from != FROM_RAW)
+		die(EXIT_USAGE, "--%s is for text",
+			par->columns ? "columns"
+			: par->time  ? "time"
+			: par->skip  ? "skip-lines"
+				     : "rate");
 	if (r->text)
 		r->format = *text_format(r->text);
 	if (r->signal)

@@ -34,7 +34,7 @@ struct text_in {
 	int rate; /* the same */
 	double time_scale, step, first;
 	double resolution; /* of the times as they are written, s */
-	int absolute;      /* they are moments, counted from the first */
+	int absolute;      /* they are dates, counted from the first */
 	struct moment start;
 	double *ahead; /* rows read to learn the rate: times and channels */
 	size_t nahead, at;
@@ -111,8 +111,8 @@ static int number(const struct text_in *t, char *s, double *v)
 	return end != s && !*end;
 }
 
-/* The unit in "Flow [L/min]" or "u (mV)", cut off its heading; NULL if there is none.
- */
+/* The unit in "Flow [L/min]" or "u (mV)", removed from the heading; NULL if there is
+ * none. */
 static char *unit_of(char *heading)
 {
 	size_t n = strlen(heading);
@@ -151,7 +151,7 @@ static int find(const struct text_in *t, const char *name)
 	return -1;
 }
 
-/* What a heading is called in a table. */
+/* The name of a heading in a table. */
 static char *name_of(const char *heading, int lower)
 {
 	char *name = xstrdup(*heading ? heading : "-");
@@ -211,14 +211,13 @@ static void choose(struct text_in *t, const struct recording_par *par)
 		take(t, cell, equals ? trimmed(name) : NULL);
 	}
 	if (t->time >= 0 && t->format.channels == 1 && !renamed)
-		strcpy(t->name_of[0], "y"); /* as in every series */
+		strcpy(t->name_of[0], "y"); /* as in all series */
 	free(list);
 	if (!t->format.channels)
 		die(EXIT_RUN, "%s: no column other than the times", t->name);
 }
 
-/* Scales to SI by the units of the headings; those that are not known stay as they are.
- */
+/* Scales to SI by the units of the headings; columns of unknown units are not changed. */
 static void scale_units(struct text_in *t)
 {
 	char *units = xstrdup(""), **unit = t->unit;
@@ -261,8 +260,7 @@ static double last_digit(const char *s)
 	return pow(10, (exponent ? strtod(exponent + 1, NULL) : 0) - (double)digits);
 }
 
-/* A moment, which counts from that of the first row, or a number of the heading's unit.
- */
+/* A date, counted from that of the first row, or a number in the unit of the heading. */
 static double read_time(struct text_in *t, char *cell)
 {
 	struct moment m;
@@ -291,7 +289,7 @@ static double read_time(struct text_in *t, char *cell)
 	return time;
 }
 
-/* A column that tells the rate holds the same number in every row. */
+/* A column of the rate has the same number in every row. */
 static void check_rate(struct text_in *t, char *cell)
 {
 	double rate;
@@ -357,7 +355,7 @@ static void check_time(struct text_in *t, double time)
 	t->rows++;
 }
 
-/* How far the times read ahead lie off those of a rate at most. */
+/* Largest deviation of the times read ahead from those of a rate. */
 static double deviation(const struct text_in *t, double rate)
 {
 	size_t width = (size_t)t->format.channels + 1;
@@ -402,7 +400,7 @@ static double simplest_rate(const struct text_in *t, double rate)
 	return rate;
 }
 
-/* The rate that the times read ahead tell; NAN if there are none. */
+/* The rate of the times read ahead; NAN if there are none. */
 static double told_rate(const struct text_in *t)
 {
 	size_t width = (size_t)t->format.channels + 1;

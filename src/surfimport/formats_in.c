@@ -10,7 +10,7 @@ enum { SIDE_MAX = 65536 };
 
 /* ---- bytes ---- */
 
-static const size_t width_of[] = { 8, 4, 4, 2, 2, 1 };
+static const size_t width_of[] = { 8, 4, 4, 2, 2, 1, 8, 4, 1 };
 
 static double sample_at(const char *data, enum sample_type type, int big_endian)
 {
@@ -35,6 +35,10 @@ static double sample_at(const char *data, enum sample_type type, int big_endian)
 		return bits < 0x80000000 ? (double)bits : (double)bits - 4294967296.0;
 	case INT16:
 		return bits < 0x8000 ? (double)bits : (double)bits - 65536;
+	case INT8:
+		return bits < 0x80 ? (double)bits : (double)bits - 256;
+	case INT64: /* of two's complement */
+		return bits >> 63 ? -(double)(~bits + 1) : (double)bits;
 	default:
 		return (double)bits;
 	}
@@ -73,7 +77,7 @@ static void take(const struct content *c, size_t at, size_t stride, enum sample_
 		}
 }
 
-/* ---- what the file and the command line say ---- */
+/* ---- properties from the file and the command line ---- */
 
 double unit_named(const char *name, size_t length)
 {
@@ -123,13 +127,19 @@ double settle_unit(const struct content *c, const struct told *told, double from
 	if (!isnan(from_file) && !isnan(told->unit) && differ(told->unit, from_file))
 		die(EXIT_RUN, "%s: heights are in units of %g m, not --height-unit %g m",
 			c->name, from_file, told->unit);
-	return isnan(from_file) ? told->unit : from_file;
+	if (isnan(from_file))
+		from_file = told->unit;
+	if (!(from_file > 0) || isinf(from_file))
+		die(EXIT_RUN, "%s: heights in units of %g m, want a positive length",
+			c->name, from_file);
+	return from_file;
 }
 
 double *new_heights(const struct content *c, double nx, double ny, double dx, double dy,
 	struct record *r)
 {
-	if (!(nx >= 1 && ny >= 1 && nx <= SIDE_MAX && ny <= SIDE_MAX))
+	if (!(nx >= 1 && ny >= 1 && nx <= SIDE_MAX && ny <= SIDE_MAX) ||
+		nx != floor(nx) || ny != floor(ny))
 		die(EXIT_RUN, "%s: %g x %g samples, want 1 to %d each way", c->name, nx,
 			ny, SIDE_MAX);
 	if (!(dx > 0 && dx < 1e3 && dy > 0 && dy < 1e3))
@@ -153,7 +163,9 @@ static const char *entry(const char *header, const char *key)
 
 static void npy_read(const struct content *c, const struct told *told, struct record *r)
 {
-	static const char *const types[] = { "f8", "f4", "i4", "i2", "u2", "u1" };
+	enum { TYPES = 9 };
+	static const char *const types[TYPES] = { "f8", "f4", "i4", "i2", "u2", "u1",
+		"i8", "u4", "i1" };
 	double dx = NAN, dy = NAN, unit, nx = 0, ny = 0, missing = told->missing;
 	size_t length, at;
 	const char *descr, *shape, *fortran;
@@ -164,7 +176,7 @@ static void npy_read(const struct content *c, const struct told *told, struct re
 	length = (size_t)number(c, 8, UINT16);
 	at = 10;
 	if (c->data[6] >= 2) {
-		length = (size_t)number(c, 8, INT32);
+		length = (size_t)number(c, 8, UINT32);
 		at = 12;
 	}
 	need(c, at + length, "an npy header");
@@ -176,18 +188,24 @@ static void npy_read(const struct content *c, const struct told *told, struct re
 	if (!descr || strlen(descr) < 5 || !shape || !fortran)
 		die(EXIT_RUN, "%s: the npy header has no descr, shape or fortran_order",
 			c->name);
-	while (type < 6 && strncmp(descr + 2, types[type], 2) != 0)
+	while (type < TYPES && strncmp(descr + 2, types[type], 2) != 0)
 		type++;
-	if (*descr != '\'' || type == 6 || !strchr("<>|", descr[1]) || descr[4] != '\'')
-		die(EXIT_RUN, "%s: samples of type %.6s, want f8, f4, i4, i2, u2 or u1",
-			c->name, descr);
+	if (*descr != '\'' || type == TYPES || !strchr("<>|", descr[1]) ||
+		descr[4] != '\'')
+		die(EXIT_RUN,
+			"%s: samples of type %.*s, want f8, f4, i8, i4, i2, i1, u4, u2 or u1",
+			c->name, (int)strcspn(descr, ",}"), descr);
 	if (sscanf(shape, "(%lf, %lf%c", &ny, &nx, &close) != 3 || close != ')')
 		die(EXIT_RUN, "%s: an array of shape %.*s, want two dimensions", c->name,
 			(int)strcspn(shape, ")") + 1, shape);
+	if (nx >= 0 && ny >= 0 &&
+		nx * ny * (double)width_of[type] + 1 < (double)(c->size - at - length))
+		die(EXIT_RUN, "%s: more than the %g x %g samples of its header", c->name,
+			nx, ny);
 	settle_pixel(c, told, &dx, &dy);
 	unit = settle_unit(c, told, NAN);
 	if (strncmp(fortran, "True", 4) == 0) {
-		/* columns one after another: read as rows and turned */
+		/* column-major order: read as rows and transposed */
 		struct record turned = { 0 };
 		double *z;
 
@@ -210,8 +228,8 @@ static void npy_read(const struct content *c, const struct told *told, struct re
 
 /* ---- SDF, ISO 25178-71 ---- */
 
-/* The number behind "Name =" in the header of the text form. */
-static double sdf_key(const struct content *c, const char *key)
+/* What stands behind "Name =" in the header of the text form; NULL if that is missing. */
+static const char *sdf_key(const struct content *c, const char *key)
 {
 	const char *at = c->data;
 
@@ -225,15 +243,48 @@ static double sdf_key(const struct content *c, const char *key)
 			continue;
 		s += n + strspn(s + n, " \t");
 		if (*s == '=')
-			return strtod(s + 1, NULL);
+			return s + 1 + strspn(s + 1, " \t");
 	}
-	die(EXIT_RUN, "%s: no %s in the header", c->name, key);
+	return NULL;
+}
+
+static double sdf_number(const struct content *c, const char *key)
+{
+	const char *at = sdf_key(c, key);
+	double value;
+	char *end;
+
+	if (!at)
+		die(EXIT_RUN, "%s: no %s in the header", c->name, key);
+	value = strtod(at, &end);
+	if (end == at || !strchr(" \t\r\n", *end))
+		die(EXIT_RUN, "%s: %s is '%.*s', want a number", c->name, key,
+			(int)strcspn(at, "\r\n"), at);
+	return value;
+}
+
+/* A height, or a word for none; dies at anything else. */
+static double sdf_height(const struct content *c, const char **at)
+{
+	size_t n = strcspn(*at, " \t\r\n,");
+	char word[32], *end;
+	double v = strtod(*at, &end);
+
+	snprintf(word, sizeof word, "%.*s", n < sizeof word ? (int)n : 31, *at);
+	if (end != *at + n) {
+		v = NAN;
+		if (n >= sizeof word || !is_gap(word))
+			die(EXIT_RUN, "%s: '%s' among the heights, want a number or BAD",
+				c->name, word);
+	}
+	*at += n;
+	return v;
 }
 
 static void sdf_text(const struct content *c, const struct told *told, struct record *r)
 {
-	double dx = sdf_key(c, "Xscale"), dy = sdf_key(c, "Yscale");
-	double unit = settle_unit(c, told, sdf_key(c, "Zscale")), *z;
+	double dx = sdf_number(c, "Xscale"), dy = sdf_number(c, "Yscale");
+	double unit = settle_unit(c, told, sdf_number(c, "Zscale")), *z;
 	const char *at = c->data;
 	size_t n;
 
@@ -241,32 +292,32 @@ static void sdf_text(const struct content *c, const struct told *told, struct re
 		at = strchr(at, '\n') ? strchr(at, '\n') + 1 : NULL;
 	if (!at)
 		die(EXIT_RUN, "%s: no line of * after the header", c->name);
+	if (sdf_key(c, "Compression") && sdf_number(c, "Compression") != 0)
+		die(EXIT_RUN, "%s: the samples are compressed", c->name);
 	settle_pixel(c, told, &dx, &dy);
-	z = new_heights(c, sdf_key(c, "NumPoints"), sdf_key(c, "NumProfiles"), dx, dy, r);
+	z = new_heights(
+		c, sdf_number(c, "NumPoints"), sdf_number(c, "NumProfiles"), dx, dy, r);
 	at++;
 	n = (size_t)r->nx * (size_t)r->ny;
 	for (size_t i = 0; i < n; i++) {
-		char *end;
 		double v;
 
 		at += strspn(at, " \t\r\n,");
 		if (!*at || *at == '*')
 			die(EXIT_RUN, "%s: want %zu heights, got %zu", c->name, n, i);
-		v = strtod(at, &end);
-		if (end == at) { /* BAD, or dashes */
-			v = NAN;
-			end += strcspn(at, " \t\r\n,");
-		}
+		v = sdf_height(c, &at);
 		*z++ = v == told->missing ? NAN : v * unit;
-		at = end;
 	}
+	at += strspn(at, " \t\r\n,");
+	if (*at && *at != '*')
+		die(EXIT_RUN, "%s: more than %zu heights: '%.12s'", c->name, n, at);
 }
 
 static void sdf_binary(const struct content *c, const struct told *told, struct record *r)
 {
 	enum { HEADER = 81 };
-	static const int types[] = { UINT8, UINT16, -1, FLOAT32, -1, INT16, INT32,
-		FLOAT64 };
+	static const enum sample_type types[] = { UINT8, UINT16, UINT32, FLOAT32, INT8,
+		INT16, INT32, FLOAT64 };
 	double dx, dy, unit, missing = told->missing;
 	int type;
 
@@ -277,9 +328,8 @@ static void sdf_binary(const struct content *c, const struct told *told, struct 
 	type = c->data[79];
 	if (c->data[78])
 		die(EXIT_RUN, "%s: the samples are compressed", c->name);
-	if (type < 0 || type > 7 || types[type] < 0)
-		die(EXIT_RUN, "%s: samples of type %d, want 0, 1, 3, 5, 6 or 7", c->name,
-			type);
+	if (type < 0 || type > 7)
+		die(EXIT_RUN, "%s: samples of type %d, want 0 to 7", c->name, type);
 	settle_pixel(c, told, &dx, &dy);
 	new_heights(c, number(c, 42, UINT16), number(c, 44, UINT16), dx, dy, r);
 	/* the smallest integer represents a missing sample */
@@ -287,7 +337,7 @@ static void sdf_binary(const struct content *c, const struct told *told, struct 
 		missing = -32768;
 	if (isnan(missing) && types[type] == INT32)
 		missing = -2147483648.0;
-	take(c, HEADER, 0, (enum sample_type)types[type], 0, unit, missing, r);
+	take(c, HEADER, 0, types[type], 0, unit, missing, r);
 }
 
 static void sdf_read(const struct content *c, const struct told *told, struct record *r)

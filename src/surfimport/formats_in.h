@@ -10,7 +10,7 @@
 #include <stddef.h>
 
 enum in_format { IN_AUTO, IN_TEXT, IN_NPY, IN_SDF, IN_SUR, IN_AL3D, IN_RAW };
-enum sample_type { FLOAT64, FLOAT32, INT32, INT16, UINT16, UINT8 };
+enum sample_type { FLOAT64, FLOAT32, INT32, INT16, UINT16, UINT8, INT64, UINT32, INT8 };
 
 struct content {
 	const char *name;
@@ -33,6 +33,9 @@ void formats_read(const struct content *c, const struct told *told, struct recor
 
 /* For the readers. */
 void text_read(const struct content *c, const struct told *told, struct record *r);
+
+/* 1 if the text is a mark of a missing sample, such as BAD. */
+int is_gap(const char *text);
 
 /* A unit of length by its name, "um", "microns", in m; NAN if it is none. */
 double unit_named(const char *name, size_t length);

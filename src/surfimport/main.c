@@ -12,7 +12,7 @@
 static const char *const format_words[] = { "auto", "text", "npy", "sdf", "sur", "al3d",
 	"raw", NULL };
 static const char *const type_words[] = { "float64", "float32", "int32", "int16",
-	"uint16", "uint8", NULL };
+	"uint16", "uint8", "int64", "uint32", "int8", NULL };
 
 static int format, type, profile, big_endian;
 static struct opt_list pixel, size;
@@ -38,8 +38,8 @@ static const struct opt opts[] = {
 	{ 0, "size", OPT_LIST, UNIT_COUNT, &size, 1, 65536, "NXxNY",
 		"raw: samples along x and y", NULL, 0 },
 	{ 0, "type", OPT_WORD, UNIT_NONE, &type, 0, 0,
-		"float64|float32|int32|int16|uint16|uint8", "raw: type of a sample",
-		type_words, 0 },
+		"float64|float32|int32|int16|uint16|uint8|int64|uint32|int8",
+		"raw: type of a sample", type_words, 0 },
 	{ 0, "big-endian", OPT_FLAG, UNIT_NONE, &big_endian, 0, 0, NULL,
 		"raw: samples are big-endian", NULL, 0 },
 	{ 0, "skip", OPT_NUM, UNIT_COUNT, &skip, 0, 1e15, "N",

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* UTF-16, as spreadsheets write it, to bytes: what is not Latin-1 becomes '?'. */
+/* UTF-16, as spreadsheets write it, to bytes: a character beyond Latin-1 becomes '?'. */
 static char *plain(const struct content *c)
 {
 	const unsigned char *b = (const unsigned char *)c->data;
@@ -41,11 +41,11 @@ struct text {
 	size_t n, room;
 	int columns;
 	long rows, line;
-	char *header; /* the last line that is no row of numbers */
+	char *header; /* the last line that is not a row of numbers */
 };
 
-/* What parts the cells: a semicolon or TAB, if there is one; a comma unless blanks part
- * numbers with decimal commas. */
+/* The separator of cells: a semicolon or TAB, if there is one; a comma unless blanks
+ * separate numbers with decimal commas. */
 static void find_separator(struct text *t, const char *sample)
 {
 	const char *comma = strchr(sample, ',');
@@ -55,7 +55,7 @@ static void find_separator(struct text *t, const char *sample)
 		       : comma                ? ','
 					      : ' ';
 	t->comma = (t->separator == ';' || t->separator == '\t') && comma;
-	/* 1,25 2,50: blanks part what would else be a cell of two numbers */
+	/* 1,25 2,50: a blank separates what would otherwise be a cell of two numbers */
 	if (t->separator == ',' && !strchr(sample, '.')) {
 		const char *s = sample;
 		int inner = 0, spaced = 0;
@@ -74,7 +74,7 @@ static void find_separator(struct text *t, const char *sample)
 	}
 }
 
-static int is_gap(const char *s)
+int is_gap(const char *s)
 {
 	static const char *const words[] = { "", "nan", "NaN", "NAN", "NA", "BAD", "bad",
 		"***", "---", "-", "null", NULL };
@@ -85,7 +85,7 @@ static int is_gap(const char *s)
 	return 0;
 }
 
-/* One cell; 0 if it is no number. */
+/* Reads one cell; 0 if it is not a number. */
 static int cell(const struct text *t, char *s, double *v)
 {
 	char *end = s + strlen(s);
@@ -114,7 +114,7 @@ static void keep(struct text *t, double v)
 	t->value[t->n++] = v;
 }
 
-/* Reads a row; returns its cells, -1 if one is no number. */
+/* Reads a row; returns the number of cells, -1 if one is not a number. */
 static int read_row(struct text *t, char *line)
 {
 	size_t before = t->n;
@@ -134,7 +134,7 @@ static int read_row(struct text *t, char *line)
 		}
 		if (next)
 			*next++ = '\0';
-		/* a separator at the end of the line parts nothing */
+		/* a separator at the end of the line separates nothing */
 		if (!next && !*s && n > 0)
 			break;
 		if (!cell(t, s, &v)) {
@@ -222,7 +222,7 @@ static double unit_of(const struct text *t, int from_end)
 static void profile_read(const struct text *t, const struct told *told, struct record *r)
 {
 	double dx, dy, unit, x_unit, *z;
-	size_t n = (size_t)t->rows, w = (size_t)t->columns;
+	size_t n = (size_t)t->rows, w = (size_t)t->columns, first;
 	const double *x = t->value + w - 2;
 
 	if (t->columns < 2 || t->rows < 2)
@@ -239,12 +239,52 @@ static void profile_read(const struct text *t, const struct told *told, struct r
 			die(EXIT_RUN,
 				"%s: row %zu: position %g, want %g: positions must be equally spaced",
 				t->c->name, i + 1, x[i * w], x[0] + (double)i * dx);
+	first = dx < 0 ? n - 1 : 0; /* from the lowest position on */
 	dx = fabs(dx) * x_unit;
 	dy = dx;
 	settle_pixel(t->c, told, &dx, &dy);
 	z = new_heights(t->c, (double)n, 1, dx, dx, r);
-	for (size_t i = 0; i < n; i++)
-		z[i] = x[i * w + 1] == told->missing ? NAN : x[i * w + 1] * unit;
+	for (size_t i = 0; i < n; i++) {
+		double height = x[(first ? first - i : i) * w + 1];
+
+		z[i] = height == told->missing ? NAN : height * unit;
+	}
+}
+
+/* 1 if no number of the column is less, or none is more, than the one above, and not all
+ * are the same. */
+static int is_sorted(const struct text *t, int column)
+{
+	const double *x = t->value + column;
+	long up = 0, down = 0;
+
+	for (long i = 1; i < t->rows; i++) {
+		double step = x[i * t->columns] - x[(i - 1) * t->columns];
+
+		up += step > 0;
+		down += step < 0;
+		if (isnan(step))
+			return 0;
+	}
+	return (up > 0) != (down > 0);
+}
+
+/* Two columns or three of which one is sorted are no matrix of heights: eight random rows
+ * are so by a chance of 2 / 8!. */
+static void refuse_points(const struct text *t)
+{
+	if (t->columns > 3 || t->columns < 2 || t->rows < 8)
+		return;
+	if (t->columns == 2 && is_sorted(t, 0))
+		die(EXIT_RUN,
+			"%s: two columns, positions and heights, are no matrix: --profile "
+			"reads them",
+			t->c->name);
+	if (t->columns == 3 && (is_sorted(t, 0) || is_sorted(t, 1)))
+		die(EXIT_RUN,
+			"%s: three columns look like points x, y, z: want a matrix of heights, "
+			"or --profile for the last two",
+			t->c->name);
 }
 
 void text_read(const struct content *c, const struct told *told, struct record *r)
@@ -259,6 +299,7 @@ void text_read(const struct content *c, const struct told *told, struct record *
 	if (told->profile) {
 		profile_read(&t, told, r);
 	} else {
+		refuse_points(&t);
 		settle_pixel(c, told, &dx, &dy);
 		unit = settle_unit(c, told, NAN);
 		z = new_heights(c, t.columns, (double)t.rows, dx, dy, r);

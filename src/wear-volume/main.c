@@ -42,7 +42,7 @@ static struct columns find_columns(struct table_in *t)
 	return c;
 }
 
-/* Time of the present row, which is not before that of the row above. */
+/* Time of the present row, which must not precede that of the row above. */
 static double time_of(const struct table_in *t, int column, double before)
 {
 	double time = table_number(t, column);

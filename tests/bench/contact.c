@@ -120,7 +120,7 @@ static double now(void)
 {
 	struct timespec t;
 
-	/* One thread: its own time, whatever else the machine does. */
+	/* Processor time of the only thread, independent of other load. */
 	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
 	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }

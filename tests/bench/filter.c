@@ -1,9 +1,7 @@
-/* filter.c - FIR filters at work: rounding error against time, over taps and block
- *
- * Prints rows "scene taps block points error seconds": error is the largest difference
- * to the same sum in long double on samples of rms 1, over the rms of the output;
- * seconds of processor time are for 1e6 samples of one channel, the median of five.
- */
+/* filter.c - FIR filters: rounding error against time, over taps and block * Prints rows
+ * "scene taps block points error seconds": error is the largest difference to the same
+ * sum in long double on samples of rms 1, over the rms of the output; seconds of
+ * processor time are for 1e6 samples of one channel, the median of five. */
 #include "signal/fir.h"
 #include <math.h>
 #include <stdio.h>

@@ -38,7 +38,7 @@ static void fill_disc(double *x, int n, double fill)
 	}
 }
 
-/* The quickest of some calls of the Fourier convolution. */
+/* The fastest of several calls of the Fourier convolution. */
 static double *by_fourier(int n, double fill, const double *x)
 {
 	double start = now(), setup, best = INFINITY;

@@ -3,25 +3,7 @@
 # accurate, or refused in one line.
 # A description reads: scene | expectation | outcome | error
 . "$(dirname "$0")/../tap.sh"
-
-# scene NAME EXPECTATION WANT TOLERANCE GOT: a number within its relative tolerance
-scene() {
-	error=$(awk -v g="$5" -v w="$3" 'BEGIN { if (g !~ /^[-+]?[0-9.]/) print "none"
-		else { d = (g - w) / (w == 0 ? 1 : w); printf "%.1e", d < 0 ? -d : d } }')
-	near "$1 | $2 | $5 | $error" "$error" 0 "$4"
-}
-
-# told NAME EXPECTATION WANT GOT: a word as it must be
-told() {
-	is "$1 | $2 | $4 | none" "$4" "$3"
-}
-
-# refused NAME PATTERN COMMAND...
-refused() {
-	name=$1
-	shift
-	fails "$name | refused in one line | $1 | none" 1 "$@"
-}
+. "$top/tests/extremes/scenes.sh"
 
 # fitted QUANTITY FILE
 fitted() {
@@ -37,36 +19,36 @@ weibull() {
 weibull 2000 2e-4 2.718 | debrisstat >fits
 shape=$(fitted weibull_shape fits)
 # 2000 quantiles of a law fit it but for their grain at the ends
-scene 'Weibull of shape 2.718 and scale 200 um' 'the shape' 2.718 0.002 "$shape"
+relative 'Weibull of shape 2.718 and scale 200 um' 'the shape' 2.718 0.002 "$shape"
 for unit in 1e-12 1e-7 1; do
 	weibull 2000 "$(awk -v u=$unit 'BEGIN { print 200 * u }')" 2.718 | debrisstat >fits
-	scene "diameters of the order of $unit m" 'the same shape' "$shape" 1e-9 "$(fitted weibull_shape fits)"
+	relative "diameters of the order of $unit m" 'the same shape' "$shape" 1e-9 "$(fitted weibull_shape fits)"
 done
 weibull 2000 2e-4 50 | debrisstat >fits
-scene 'shape 50: all nearly equal' 'the shape' 50 0.002 "$(fitted weibull_shape fits)"
+relative 'shape 50: all nearly equal' 'the shape' 50 0.002 "$(fitted weibull_shape fits)"
 weibull 2000 2e-4 0.3 | debrisstat >fits
-scene 'shape 0.3: diameters over 15 decades' 'the shape' 0.3 0.002 "$(fitted weibull_shape fits)"
+relative 'shape 0.3: diameters over 15 decades' 'the shape' 0.3 0.002 "$(fitted weibull_shape fits)"
 weibull 2000 2e-4 0.2 | debrisstat >fits
-scene 'shape 0.2: diameters over 22 decades' 'the shape' 0.2 0.002 "$(fitted weibull_shape fits)"
+relative 'shape 0.2: diameters over 22 decades' 'the shape' 0.2 0.002 "$(fitted weibull_shape fits)"
 weibull 1 2e-4 2 | debrisstat >fits
-told 'one particle' 'counted, not fitted' '1 nan' "$(fitted particles fits) $(fitted weibull_shape fits)"
+exactly 'one particle' 'counted, not fitted' '1 nan' "$(fitted particles fits) $(fitted weibull_shape fits)"
 awk 'BEGIN { print "realisation\tstep\tvolume\tdiameter\taspect"; for (i = 0; i < 50; i++) print i "\t1\t1e-15\t1e-5\t1" }' |
 	debrisstat >fits
-told 'fifty equal particles' 'counted, not fitted' '50 nan' "$(fitted particles fits) $(fitted weibull_shape fits)"
+exactly 'fifty equal particles' 'counted, not fitted' '50 nan' "$(fitted particles fits) $(fitted weibull_shape fits)"
 weibull 100000 2e-4 2.718 | debrisstat --bootstrap 20 >fits
-scene '100 000 particles, 20 bootstraps' 'the shape' 2.718 0.001 "$(fitted weibull_shape fits)"
+relative '100 000 particles, 20 bootstraps' 'the shape' 2.718 0.001 "$(fitted weibull_shape fits)"
 printf 'realisation\tstep\tvolume\tdiameter\taspect\n0\t1\t1e-15\t-1e-5\t1\n' >negative
-refused 'a diameter below zero' 'diameter' debrisstat negative
+refused 'a diameter below zero' 1 'diameter' debrisstat negative
 
 # --- records
 roughgen --points 1 --sq 0 >point.nrrd
-told 'a field of one point' 'one record of 1 x 1' '1 1' "$(records point.nrrd | awk -F '\t' '/^1\t/ { print $5, $6 }')"
+exactly 'a field of one point' 'one record of 1 x 1' '1 1' "$(records point.nrrd | awk -F '\t' '/^1\t/ { print $5, $6 }')"
 roughgen --points 4096x16 --length 4096umx16um --sq 1um --corr 10um >strip.nrrd
-told 'a strip of 4096 x 16' 'its sides' '4096 16' "$(records strip.nrrd | awk -F '\t' '/^1\t/ { print $5, $6 }')"
+exactly 'a strip of 4096 x 16' 'its sides' '4096 16' "$(records strip.nrrd | awk -F '\t' '/^1\t/ { print $5, $6 }')"
 roughgen --points 8 --sq 1um --count 1000 >many.nrrd
-told 'a thousand records' 'the thousandth alone' '1 64' "$(records --pick 1000 --output text many.nrrd | awk '!/^#/ && NF { n += NF } END { print 1, n }')"
+exactly 'a thousand records' 'the thousandth alone has 64 heights' 64 "$(records --pick 1000 --output text many.nrrd | awk '!/^#/ && NF { n += NF } END { print n + 0 }')"
 head -c 700 many.nrrd >cut.nrrd
-refused 'a stream cut off in a record' 'cut off\|ends\|wanted\|want' records --check cut.nrrd
+refused 'a stream cut off in a record' 1 'cut off\|ends\|wanted\|want' records --check cut.nrrd
 
 # --- thirty steps on one surface: what the particles have is what the surface has lost
 roughgen --points 64 --length 1mm --sq 0.8um --corr 50um --crown auto --seed 3 >start.nrrd
@@ -74,7 +56,7 @@ bemcontact --load 20N --young 210GPa start.nrrd |
 	debrisgen --yield 355MPa --friction 0.3 --steps 30 --stop-area 1 --surface worn.nrrd --summary steps.tsv >particles.tsv 2>/dev/null
 height() { records --field height "$1" | awk -F '\t' '/^[0-9]/ { m = $11 } END { print m }'; }
 lost=$(awk -v a="$(height start.nrrd)" -v b="$(height worn.nrrd)" 'BEGIN { printf "%.12g", (a - b) * 1e-6 }')
-scene 'thirty wear steps' 'the surface has lost what the particles have' "$lost" 1e-9 \
+relative 'thirty wear steps' 'the surface has lost what the particles have' "$lost" 1e-9 \
 	"$(column volume particles.tsv | awk '{ s += $1 } END { printf "%.12g", s }')"
-scene 'thirty wear steps' 'all of them' 30 0 "$(column step steps.tsv | tail -n 1)"
+relative 'thirty wear steps' 'all of them' 30 0 "$(column step steps.tsv | tail -n 1)"
 done_testing

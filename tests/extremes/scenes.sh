@@ -1,12 +1,17 @@
 # shellcheck shell=sh
-# scenes.sh - what scenes at the edge are told with; read it after tap.sh.  A description
-# reads: scene | expectation | outcome | error
+# scenes.sh - what the tables of extreme scenes are written with; read it after tap.sh.  A
+# description reads: scene | expectation | outcome | error
+
+# outcome NAME EXPECTATION OUTCOME ERROR LIMIT: an error measured elsewhere, at most LIMIT
+outcome() {
+	near "$1 | $2 | $3 | $4" "$4" 0 "$5"
+}
 
 # scene NAME EXPECTATION WANT TOLERANCE GOT: a number within its tolerance
 scene() {
 	error=$(awk -v g="$5" -v w="$3" 'BEGIN { if (g !~ /^[-+]?[0-9.]/) print "none"
 		else { d = g - w; printf "%.1e", d < 0 ? -d : d } }')
-	near "$1 | $2 | $5 | $error" "$error" 0 "$4"
+	outcome "$1" "$2" "$5" "$error" "$4"
 }
 
 # relative NAME EXPECTATION WANT TOLERANCE GOT: within its tolerance times what is wanted,
@@ -14,7 +19,12 @@ scene() {
 relative() {
 	error=$(awk -v g="$5" -v w="$3" 'BEGIN { if (g !~ /^[-+]?[0-9.]/) print "none"
 		else { d = (g - w) / (w == 0 ? 1 : w); printf "%.1e", d < 0 ? -d : d } }')
-	near "$1 | $2 | $5 | $error" "$error" 0 "$4"
+	outcome "$1" "$2" "$5" "$error" "$4"
+}
+
+# exactly NAME EXPECTATION WANT GOT: equal text, such as inf or nan
+exactly() {
+	is "$1 | $2 | $4 | 0" "$4" "$3"
 }
 
 # refused NAME STATUS PATTERN COMMAND...

@@ -28,7 +28,7 @@ int main(int argc, char **argv)
 
 	state = 0x9e3779b97f4a7c15u * (argc > 1 ? strtoull(argv[1], NULL, 10) + 1 : 1);
 	for (size_t k = 1 + below(4); k > 0 && n > 0; k--) {
-		/* more often in the head, where the text is */
+		/* more often in the header, which is text */
 		size_t at = below(below(2) ? n : n < 600 ? n : 600), m;
 		const char *w;
 

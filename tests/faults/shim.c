@@ -1,11 +1,8 @@
-/* shim.c - a library to preload that lets the n-th call of a function fail
- *
- *	FAULT_CALL=malloc FAULT_AT=7 LD_PRELOAD=shim.so program    the seventh fails
- *	FAULT_CALL=malloc FAULT_COUNT=file LD_PRELOAD=...          how many there are
- *
- * Calls count from the start of main().  What fails does so as the manual of the function
- * has it, with ENOMEM, EIO, ENOSPC or EAGAIN.
- */
+/* shim.c - a library to preload that lets the n-th call of a function fail *
+ * FAULT_CALL=malloc FAULT_AT=7 LD_PRELOAD=shim.so program the seventh fails
+ * FAULT_CALL=malloc FAULT_COUNT=file LD_PRELOAD=... how many there are * Calls count from
+ * the start of main(). A failing call behaves as documented for the function, with
+ * ENOMEM, EIO, ENOSPC or EAGAIN. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -57,7 +54,7 @@ __attribute__((destructor)) static void stop(void)
 	}
 }
 
-/* 1 where this call is to fail. */
+/* 1 if this call must fail. */
 static int fails(const char *name)
 {
 	if (inside || !wanted || strcmp(name, wanted) != 0)
@@ -136,7 +133,7 @@ size_t fwrite(const void *b, size_t size, size_t n, FILE *f)
 {
 	REAL(size_t, fwrite, const void *, size_t, size_t, FILE *)
 	if (fails("fwrite")) {
-		f->_flags |= 0x20; /* what ferror() looks at in glibc */
+		f->_flags |= 0x20; /* the flag that ferror() tests in glibc */
 		errno = ENOSPC;
 		return 0;
 	}

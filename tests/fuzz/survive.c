@@ -1,5 +1,5 @@
-/* survive.c - messages and allocation for fuzzing: die() goes back to the target
- * instead of ending the process.  What a refused stream had taken is not given back. */
+/* survive.c - messages and allocation for fuzzing: die() goes back to the target instead
+ * of ending the process. The memory of a refused stream is not freed. */
 #include "survive.h"
 #include "cli/msg.h"
 #include "cli/program.h"

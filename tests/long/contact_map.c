@@ -1,4 +1,4 @@
-/* A measured contact map with counts known from elsewhere. */
+/* A measured contact map with independently known counts. */
 #include "../unit/tap.h"
 #include "debris/particles.h"
 #include <stdio.h>

@@ -1,14 +1,10 @@
-/* Lives of simulated units of many kinds, as the bank foretells them.
- *
- * usage: build/long/lives [PATHS]
- *
- * The first 13 kinds are those on whose like the constants of the bank were chosen, with
- * other seeds here; the rest only judge: other shapes, other sampling, heavy tails,
- * correlated noise, outliers, rounded, missing and repeated values.  Wear that slows down
- * without a sign of it so far (a sudden fall of the rate, a late turn of an S) is a known
- * limit.  Each path has a random length, noise, offset, range, direction and unit of
- * time.
- */
+/* Lives of simulated units of many kinds, as predicted by the bank. * usage:
+ * build/long/lives [PATHS] * The first 13 kinds are those on whose like the constants of
+ * the bank were chosen, with other seeds here; the rest only judge: other shapes, other
+ * sampling, heavy tails, correlated noise, outliers, rounded, missing and repeated
+ * values. Wear that slows down without a sign of it so far (a sudden fall of the rate, a
+ * late turn of an S) is a known limit. Each path has a random length, noise, offset,
+ * range, direction and unit of time. */
 #include "../unit/tap.h"
 #include "life/particle/draw.h"
 #include "life/trend/bank.h"
@@ -222,7 +218,7 @@ static const struct kind {
 	double (*curve)(double t);
 	double (*process)(double d, double t, double dt);
 	double range[5][2];  /* of the parameters */
-	int held;            /* 1: only judges */
+	int held;            /* 1: only tests */
 	double least[PARTS]; /* coverage wanted at 40, 60, 80 % */
 } kinds[] = {
 	{ "linear", linear, NULL, { { 0 } }, 0, { 0.85, 0.85, 0.85 } },
@@ -297,7 +293,7 @@ static void draw_path(const struct kind *k, struct series *s)
 	}
 }
 
-/* What a recorder makes of it: noise and faults, in some unit. */
+/* The recorded series: with noise and faults, in some unit. */
 static void record(const struct kind *k, struct series *s)
 {
 	double noise = k->held ? between(0.002, 0.04) : between(0.005, 0.02), e = 0;

@@ -2,6 +2,20 @@
 # The Debian packages build from the committed tree, pass lintian and hold what they should
 . "$(dirname "$0")/../tap.sh"
 
+formula=$top/packaging/wearpipe.rb
+if command -v ruby >/dev/null; then
+	ok 'the Homebrew formula is Ruby' ruby -c "$formula"
+else
+	skip 'the Homebrew formula is Ruby' 'no ruby'
+fi
+is 'the formula names files that exist' "$(sed -n '/def install/,/^  end/p' "$formula" | grep -o '"[^"]*"' | tr -d '"' |
+	grep -v -e '^make$' -e '^all$' -e '^build/' | while read -r f; do
+		set -- "$top"/$f
+		[ -e "$1" ] || echo "$f"
+	done)" ''
+for p in fftw gsl gnuplot libsndfile; do
+	is "scripts/deps and the formula need $p" "$(grep -c "depends_on \"$p\"" "$formula") $(grep -c " $p\$" "$top/scripts/deps")" '1 1'
+done
 if ! command -v dh >/dev/null || ! command -v lintian >/dev/null || ! git -C "$top" rev-parse 2>/dev/null; then
 	skip 'Debian packages' 'no debhelper, lintian or git tree'
 	done_testing

@@ -54,7 +54,7 @@ static void check_squeeze(void)
 	}
 	/* near the middle of the sphere c is flat, and bisection knows x to 1e-8 only */
 	ok(worst < 1e-7,
-		"depths and loads of 20000 particles are those of bisection: %.1e",
+		"depths and loads of 20000 particles agree with bisection to %.1e",
 		worst);
 	/* D / d of 1e-9: no digit is lost in the difference */
 	abrasion_squeeze(1, 1 - 1e-9, 2, 6, &load);
@@ -108,7 +108,7 @@ static void check_modes(void)
 		"below an aspect of 1.344 it rolls at a friction of 0.3");
 	abrasion_particle(&par, 10e-6, limit * 1.001, &a);
 	ok(a.mode == ABRASION_GROOVES && a.section[0] == 0 && a.section[1] > 0,
-		"above, it grooves the harder body and is held by the softer one");
+		"above that aspect it grooves the harder body and is held by the softer one");
 	near(a.depth[1] + a.depth[0], 1e-6, 1e-20, "both depths add up to the overlap");
 	near(M_PI * 2e9 * capped(a.depth[0], 10e-6) /
 			(M_PI / 2 * 6e9 * capped(a.depth[1], 10e-6)),
@@ -257,11 +257,12 @@ static void check_population(void)
 		if (fabs(population_diameter(&p, population_larger(&p, d)) / d - 1) >
 			1e-12)
 			above++;
-	ok(above == 0, "number and diameter are inverse functions");
+	ok(above == 0,
+		"the number above a diameter and the diameter above which there is a number are inverse functions");
 	near(population_larger(&p, 4e-6) - population_larger(&p, 6e-6), 2.5e9 - 6.4e8, 1,
 		"the numbers of the code are reproduced");
 	ok(population_draw(&p, volume, 5e-6, 3, 0, 10000000, &list, &n) == 0,
-		"particles are drawn");
+		"particles are drawn without an error");
 	for (size_t i = 0; i < n; i++) {
 		struct abrasion a;
 

@@ -76,10 +76,10 @@ int main(void)
 	make_record(0, N, shape, y1, y2, sums);
 	campbell_estimate(y1, y2, N, shape, 100, 0.9, &c);
 	near(c.square, sums[0], 3 * c.square_se,
-		"sum of squares within three standard errors");
+		"the sum of squares is right within three standard errors");
 	near(c.fourth, sums[1], 3 * c.fourth_se,
-		"the sum of fourth powers is within three standard errors");
-	ok(c.square_se < 0.03 * sums[0], "squares to 3 %%");
+		"the sum of fourth powers is right within three standard errors");
+	ok(c.square_se < 0.03 * sums[0], "the sum of squares is right to 3 %%");
 	ok(c.rate - 3 * c.rate_se < rate, "the equal number is not an upper bound");
 	near(c.rate, sums[0] * sums[0] / sums[1], 3 * c.rate_se,
 		"the equal number is right");
@@ -90,7 +90,7 @@ int main(void)
 	d = c;
 	campbell_scale(&d, 2);
 	near(d.square, 4 * c.square, 1e-12 * d.square,
-		"other units give the same result");
+		"the result does not depend on the units");
 	test_errors(shape);
 	free(y1);
 	free(y2);

@@ -123,7 +123,8 @@ static void test_random(void)
 		/* The levels miss the height of the corner by half a step at the most, on
 		 * which the width changes by no more than some of them. */
 		ok(brute <= width * (1 + 1e-12) && brute > width * (1 - 10. / LEVELS),
-			"random points: width %g, by brute force %g", width, brute);
+			"the width %g of random points is %g by brute force", width,
+			brute);
 	}
 }
 

@@ -43,21 +43,23 @@ static void check_invariance(void)
 	struct cnn_frame f;
 
 	draw_scene(100, 1, 1, 0, y1, y2);
-	ok(cnn_lay(&s, want, &f), "a section is laid");
-	near(f.scale, 0.99, 0.02, "scale is the peak");
+	ok(cnn_lay(&s, want, &f), "a section is put on the grid");
+	near(f.scale, 0.99, 0.02, "the scale is the peak of the section");
 	draw_scene(100, 1, 7, 0, y1, y2);
 	cnn_lay(&s, got, &f);
-	ok(difference(got, want) < 1e-5, "seven times the voltage, the same grid");
+	ok(difference(got, want) < 1e-5, "seven times the voltage gives the same grid");
 	draw_scene(100, 0.5, 1, 0, y1, y2);
 	s.gain = 0.5;
 	cnn_lay(&s, got, &f);
-	ok(difference(got, want) < 2e-2, "half the gain, %.2g apart",
+	ok(difference(got, want) < 2e-2,
+		"half the gain on a channel gives the same grid within %.2g",
 		difference(got, want));
 	s.gain = 1;
 	draw_scene(200, 1, 1, 0, y1, y2);
 	s = (struct cnn_section){ y1, y2, 1000, 200, 1, 0, 6 };
 	cnn_lay(&s, got, &f);
-	ok(difference(got, want) < 3e-2, "twice the rate, %.2g apart",
+	ok(difference(got, want) < 3e-2,
+		"twice the sampling rate gives the same grid within %.2g",
 		difference(got, want));
 	/* A delay that all share is taken off; the centre of energy moves by half of it.
 	 */
@@ -68,7 +70,8 @@ static void check_invariance(void)
 	s.y2 = y2 + 4;
 	s.n = 496;
 	cnn_lay(&s, want, &f);
-	ok(difference(got, want) < 1e-3, "where a section is cut does not matter, %.2g",
+	ok(difference(got, want) < 1e-3,
+		"the grid does not depend on where the section is cut, within %.2g",
 		difference(got, want));
 }
 
@@ -79,18 +82,18 @@ static void check_refusals(void)
 	struct cnn_frame f;
 	struct cnn_section s = { y1, y2, 500, 100, 1, 0, 3 };
 
-	ok(!cnn_lay(&s, x, &f), "silence is refused");
+	ok(!cnn_lay(&s, x, &f), "a section of zeros is refused");
 	draw_scene(100, 1, 1, 0, y1, y2);
 	s.n = 513;
-	ok(!cnn_lay(&s, x, &f), "longer than 5.12 durations is refused");
+	ok(!cnn_lay(&s, x, &f), "a section longer than 5.12 durations is refused");
 	s.n = 500;
 	s.reach = 26;
 	ok(!cnn_lay(&s, x, &f), "delays beyond the trained reach are refused");
 	s.reach = 3;
 	s.duration = 10;
-	ok(!cnn_lay(&s, x, &f), "too coarse a sampling is refused");
+	ok(!cnn_lay(&s, x, &f), "a sampling that is too coarse is refused");
 	s.duration = NAN;
-	ok(!cnn_lay(&s, x, &f), "no duration is refused");
+	ok(!cnn_lay(&s, x, &f), "a pulse duration of zero is refused");
 }
 
 /* Sections hold what they say: pulses by formula, order, spacing, noise. */
@@ -127,11 +130,12 @@ static void check_sections(void)
 			}
 		}
 	}
-	ok(worst < 1e-11, "sections are the sum of their pulses, to %.1g", worst);
-	ok(ordered, "arrivals in order, a tenth of a duration apart");
-	near(sqrt(squares / count), 0.1, 4 * 0.1 / sqrt(2 * count), "noise of 20 dB");
+	ok(worst < 1e-11, "sections are the sums of their pulses to %.1g", worst);
+	ok(ordered, "arrivals ascend and are a tenth of a duration apart");
+	near(sqrt(squares / count), 0.1, 4 * 0.1 / sqrt(2 * count),
+		"the noise is that of 20 dB");
 	ok(counts[1] > 25 && counts[2] > 25 && counts[3] > 25 && counts[4] > 25,
-		"one to four pulses");
+		"sections have one to four pulses");
 	free(s);
 }
 
@@ -162,7 +166,7 @@ static void check_way_back(void)
 			worst = fmax(worst, fabs(p[k].a - s->pulse[k].a));
 		}
 	}
-	ok(right && worst < 1e-4, "from pulses to targets and back, %.1g apart", worst);
+	ok(right && worst < 1e-4, "targets give back the pulses to %.1g", worst);
 	free(s);
 }
 

@@ -59,18 +59,21 @@ static void hertz(int n, enum contact_solver solver, double e_peak, double e_app
 			inside++;
 		}
 	}
-	ok(fabs(peak / p0 - 1) < e_peak, "Hertz %d %s: peak off by %.2e", n,
+	ok(fabs(peak / p0 - 1) < e_peak,
+		"Hertz on %d cells, %s: the error of the peak pressure is %.2e", n,
 		solver_name[solver], peak / p0 - 1);
 	ok(fabs(contact_result(c)->approach / (a * a / radius) - 1) < e_approach,
-		"Hertz %d %s: approach off by %.2e", n, solver_name[solver],
-		contact_result(c)->approach / (a * a / radius) - 1);
+		"Hertz on %d cells, %s: the error of the approach is %.2e", n,
+		solver_name[solver], contact_result(c)->approach / (a * a / radius) - 1);
 	ok(sum / (double)inside < e_mean,
-		"Hertz %d %s: pressure off by %.2e p0 on average", n, solver_name[solver],
-		sum / (double)inside);
-	near(contact_result(c)->load, load, 1e-12 * load, "the load is the wanted one");
+		"Hertz on %d cells, %s: the mean error of the pressure is %.2e p0", n,
+		solver_name[solver], sum / (double)inside);
+	near(contact_result(c)->load, load, 1e-12 * load,
+		"the solution carries the prescribed load");
 	/* Energy of a Hertz contact is 2/5 F delta. */
 	ok(fabs(contact_result(c)->energy / (0.4 * load * a * a / radius) - 1) < 3e-4,
-		"Hertz %d %s: energy 2/5 F delta to %.1e", n, solver_name[solver],
+		"Hertz on %d cells, %s: the energy is 2/5 F delta to %.1e", n,
+		solver_name[solver],
 		contact_result(c)->energy / (0.4 * load * a * a / radius) - 1);
 	contact_free(c);
 	fft_free(h);
@@ -102,10 +105,11 @@ static void westergaard(enum contact_solver solver)
 		worst_peak = fmax(worst_peak, fabs(peak * sin(half) / (2 * mean) - 1));
 	}
 	/* Half a cell at each end of the contact, and one for the staircase. */
-	ok(worst_area <= 2.0 / N, "Westergaard %s: area off by %.1e", solver_name[solver],
-		worst_area);
-	ok(worst_peak < 1e-3, "Westergaard %s: peak off by %.1e", solver_name[solver],
-		worst_peak);
+	ok(worst_area <= 2.0 / N,
+		"Westergaard, %s: the error of the contact area is %.1e",
+		solver_name[solver], worst_area);
+	ok(worst_peak < 1e-3, "Westergaard, %s: the error of the peak pressure is %.1e",
+		solver_name[solver], worst_peak);
 	/* Above p* the contact is full and p = mean + p* cos exactly. */
 	memset(p, 0, N * sizeof *p);
 	contact_solve(c, h, CONTACT_PRESSURE, 1.5 * M_PI, p, NULL);
@@ -113,8 +117,8 @@ static void westergaard(enum contact_solver solver)
 	for (int i = 0; i < N; i++)
 		worst_peak = fmax(worst_peak, fabs(p[i] / M_PI - 1.5 - h[i]));
 	ok(worst_peak < 1e-4 && contact_result(c)->area == 1,
-		"full contact %s: pressure off by %.1e p*", solver_name[solver],
-		worst_peak);
+		"full contact, %s: the error of the pressure is %.1e p*",
+		solver_name[solver], worst_peak);
 	contact_free(c);
 	fft_free(h);
 	fft_free(p);
@@ -140,8 +144,8 @@ static void wavy(enum contact_solver solver)
 		worst = fmax(worst, fabs(contact_result(c)->area - reference[k][1]));
 	}
 	/* A ring of cells: perimeter / N is about 0.04 here, a part of it is on. */
-	ok(worst < 0.012, "wavy surface %s: area off by %.4f", solver_name[solver],
-		worst);
+	ok(worst < 0.012, "wavy surface, %s: the error of the contact area is %.4f",
+		solver_name[solver], worst);
 	contact_free(c);
 	fft_free(h);
 	fft_free(p);
@@ -159,13 +163,16 @@ static void by_hand(enum contact_solver solver)
 	par.estar = 4;
 	c = contact_new(&par);
 	ok(contact_solve(c, h, CONTACT_PRESSURE, 3, p, g) == CONTACT_OK && p[0] == 3,
-		"one cell %s: takes the load", solver_name[solver]);
-	near(contact_result(c)->approach, k0 * 3 - 0.5, 1e-15, "approach is u - h");
-	near(contact_result(c)->indentation, k0 * 3, 1e-15, "indentation is u");
-	near(contact_result(c)->load, 12, 1e-14, "load is p dx dy");
+		"one cell, %s: it carries the load", solver_name[solver]);
+	near(contact_result(c)->approach, k0 * 3 - 0.5, 1e-15,
+		"the approach of one cell is u - h");
+	near(contact_result(c)->indentation, k0 * 3, 1e-15,
+		"the indentation of one cell is u");
+	near(contact_result(c)->load, 12, 1e-14, "the load of one cell is p dx dy");
 	p[0] = 0;
 	contact_solve(c, h, CONTACT_APPROACH, 0.25, p, g);
-	near(p[0], 0.75 / k0, 1e-8, "approach drives: p = (h + approach) / K");
+	near(p[0], 0.75 / k0, 1e-8,
+		"under a given approach the pressure of one cell is (h + approach) / K");
 	contact_free(c);
 
 	par.nx = 2;
@@ -173,14 +180,16 @@ static void by_hand(enum contact_solver solver)
 	h[1] = 0.4;
 	p[0] = p[1] = 0;
 	contact_solve(c, h, CONTACT_PRESSURE, 1, p, g);
-	near(p[0] - p[1], 0.1 / (k0 - k1), 1e-8, "two cells: the higher carries more");
-	near(p[0] + p[1], 2, 1e-15, "two cells: sum");
+	near(p[0] - p[1], 0.1 / (k0 - k1), 1e-8,
+		"of two cells the higher one carries more");
+	near(p[0] + p[1], 2, 1e-15, "two cells carry the load together");
 	h[1] = -1;
 	p[0] = p[1] = 0;
 	contact_solve(c, h, CONTACT_PRESSURE, 0.5, p, g);
-	ok(fabs(p[0] - 1) < 1e-15 && p[1] == 0, "two cells: the low one stays off");
+	ok(fabs(p[0] - 1) < 1e-15 && p[1] == 0,
+		"of two cells the low one does not touch under a light load");
 	near(g[1], 1.5 - (k0 - k1), 1e-14,
-		"its gap is the step less what the other sank");
+		"the gap of the low cell is the step minus the difference of the displacements");
 	contact_free(c);
 }
 
@@ -203,18 +212,21 @@ static void controls(enum contact_solver solver, enum contact_boundary boundary)
 	approach = contact_result(c)->approach;
 	for (int i = 0; i < CELLS; i++)
 		worst = fmax(worst, fabs(p[i] * g[i]) / 0.02);
-	ok(worst < 1e-6, "%s %s: p g = 0 to %.1e", solver_name[solver], name, worst);
+	ok(worst < 1e-6, "%s, %s: pressure times gap is 0 to %.1e", solver_name[solver],
+		name, worst);
 	status = contact_solve(c, h, CONTACT_APPROACH, approach, q, g);
 	ok(status == CONTACT_OK && fabs(contact_result(c)->pressure / 0.02 - 1) < 1e-5,
-		"%s %s: the approach gives the load back, %.1e off", solver_name[solver],
-		name, contact_result(c)->pressure / 0.02 - 1);
+		"%s, %s: the approach found gives the load within %.1e",
+		solver_name[solver], name, contact_result(c)->pressure / 0.02 - 1);
 	memcpy(q, p, CELLS * sizeof *p);
 	status = contact_solve(c, h, CONTACT_PRESSURE, 0.02, q, NULL);
 	ok(status == CONTACT_OK && contact_result(c)->iterations <= 1,
-		"%s %s: a solution as first guess is taken", solver_name[solver], name);
+		"%s, %s: a solution as the first guess needs no iteration",
+		solver_name[solver], name);
 	status = contact_solve(c, h, CONTACT_APPROACH, -1, q, g);
 	ok(status == CONTACT_OK && contact_result(c)->load == 0,
-		"%s %s: out of reach, no load", solver_name[solver], name);
+		"%s, %s: an approach that does not reach the surface gives no load",
+		solver_name[solver], name);
 	contact_free(c);
 
 	par.hardness = 0.1;
@@ -228,11 +240,12 @@ static void controls(enum contact_solver solver, enum contact_boundary boundary)
 	ok(status == CONTACT_OK && peak == 0.1 && contact_result(c)->plastic > 0,
 		"%s %s: %.0f %% of the cells stop at the hardness", solver_name[solver],
 		name, 100 * contact_result(c)->plastic);
-	ok(overlap < 1e-6, "%s %s: no overlap but where plastic, %.1e",
+	ok(overlap < 1e-6, "%s, %s: only cells at the hardness overlap, %.1e",
 		solver_name[solver], name, overlap);
-	near(contact_result(c)->pressure, 0.02, 1e-14, "the load is kept");
+	near(contact_result(c)->pressure, 0.02, 1e-14,
+		"cells at the hardness do not change the load");
 	ok(contact_solve(c, h, CONTACT_PRESSURE, 0.1, q, g) == CONTACT_OVERLOAD,
-		"mean pressure at the hardness is refused");
+		"a mean pressure at the hardness is refused");
 	contact_free(c);
 	fft_free(h);
 	fft_free(p);

@@ -101,9 +101,11 @@ int main(void)
 
 	for (int k = 0; k < PROBLEMS; k++)
 		solve_one(k, &o);
-	ok(o.solved == PROBLEMS, "%d of %d random problems solved, %.1f iterations each",
+	ok(o.solved == PROBLEMS,
+		"%d of %d random problems are solved in %.1f iterations on average",
 		o.solved, PROBLEMS, (double)o.iterations / PROBLEMS);
 	ok(o.compared > PROBLEMS / 2 && o.worst < 1e-6,
-		"%d have the energy of the other solver, to %.1e", o.compared, o.worst);
+		"both solvers find the same energy in %d problems, to %.1e", o.compared,
+		o.worst);
 	return tap_done();
 }

@@ -105,7 +105,8 @@ static void bridged(void)
 	for (size_t i = 0; i < (size_t)N * N; i++)
 		worst = fmax(worst, fabs(x[i] - 2));
 	ok(mx == 125 && my == 125 && worst < 1e-14,
-		"bridged 121 to %zux%zu keeps a constant: error %.1e", mx, my, worst);
+		"interpolation from 121 to %zux%zu points keeps a constant: error %.1e",
+		mx, my, worst);
 	fft_free(k);
 	fft_free(x);
 	convolve_free(c);
@@ -151,7 +152,9 @@ int main(void)
 		e = worst_error(nx, ny, CONVOLVE_PADDED, i % 2 ? two : NULL);
 		ok(e < 1e-14, "padded %zux%zu equals the sum: error %.1e", nx, ny, e);
 		e = spectrum_error(nx, ny);
-		ok(e < 5e-13, "periodic %zux%zu by its spectrum: error %.1e", nx, ny, e);
+		ok(e < 5e-13,
+			"periodic %zux%zu given by its spectrum equals the sum: error %.1e",
+			nx, ny, e);
 	}
 	bridged();
 	same_bytes(two);

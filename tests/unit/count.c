@@ -58,10 +58,12 @@ static void check_coverage(double mean)
 		above += low > expected;
 	}
 	/* 5 % on either side, sd 0.34 %; the upper end is conservative by design */
-	ok(below / RUNS < 0.05 + 0.011, "mean %g: the upper end is too low in %.2f %%",
-		mean, 100 * below / RUNS);
-	ok(above / RUNS < 0.05 + 0.011, "mean %g: the lower end is too high in %.2f %%",
-		mean, 100 * above / RUNS);
+	ok(below / RUNS < 0.05 + 0.011,
+		"mean %g: the upper end is below the mean in %.2f %% of the cases", mean,
+		100 * below / RUNS);
+	ok(above / RUNS < 0.05 + 0.011,
+		"mean %g: the lower end is above the mean in %.2f %% of the cases", mean,
+		100 * above / RUNS);
 }
 
 static void check_detection(void)
@@ -71,13 +73,13 @@ static void check_detection(void)
 	near(detection_probability(&d, 100e-6), 0.5, 1e-15,
 		"a particle of size d50 is detected half the time");
 	near(detection_diameter(&d, 0.9) / 100e-6, cbrt((5 + 1.2815515655) / 5), 1e-9,
-		"d90 / d50 is the cube root of (T + 1.28) / T");
+		"the ratio d90 / d50 is the cube root of (T + 1.28) / T");
 	near(detection_probability(&d, detection_diameter(&d, 0.3)), 0.3, 1e-12,
 		"size and probability are inverse functions");
 	near(detection_threshold(10e-3, 1.34 / 3600), 5, 1e-3,
-		"10 ms pulses: 1.34 false alarms per hour at 5 sigma");
+		"pulses of 10 ms have 1.34 false alarms per hour at 5 sigma");
 	near(detection_threshold(10e-3, .0055 / 3600), 6, 2e-3,
-		"10 ms pulses: 0.0055 false alarms per hour at 6 sigma");
+		"pulses of 10 ms have 0.0055 false alarms per hour at 6 sigma");
 	ok(isnan(detection_threshold(1, 2)), "more alarms than pulses have no threshold");
 }
 
@@ -91,17 +93,20 @@ static void check_codes(void)
 		/* the table doubles, rounded to 5 % */
 		bad += k > 0 && fabs(iso4406_limit(k) / iso4406_limit(k - 1) - 2) > 0.1;
 	}
-	ok(bad == 0, "a scale number ends with its limit: %d do not", bad);
-	near(iso4406_code(2000e6), 18, 0, "2000 per ml is 18");
+	ok(bad == 0, "each scale number includes its upper limit: %d do not", bad);
+	near(iso4406_code(2000e6), 18, 0,
+		"2000 particles per ml have the scale number 18");
 	near(iso4406_code(0), 0, 0, "no particle has the scale number 0");
 	for (int s = 0; s < AS4059_SIZES; s++)
 		for (int k = 0; k < AS4059_CLASSES; k++)
 			bad += k > 7 && fabs(as4059_limit(s, k) / as4059_limit(s, k - 1) -
 						2) > 0.01;
-	ok(bad == 0, "classes of AS4059 double");
-	near(as4059_limit(0, 14), 3200000e4, 0, "class 12A is 3.2 million per 100 ml");
-	near(as4059_limit(3, 7), 306e4, 0, "class 5D is 306 per 100 ml");
-	near(as4059_class(5, 1.5e4), 5, 0, "1.5 per 100 ml above 70 um is class 3");
+	ok(bad == 0, "the limits of the classes of AS4059 double");
+	near(as4059_limit(0, 14), 3200000e4, 0,
+		"the limit of class 12A is 3.2 million per 100 ml");
+	near(as4059_limit(3, 7), 306e4, 0, "the limit of class 5D is 306 per 100 ml");
+	near(as4059_class(5, 1.5e4), 5, 0,
+		"1.5 particles per 100 ml above 70 um are class 3");
 }
 
 static void check_lines(void)
@@ -125,9 +130,11 @@ static void check_lines(void)
 	}
 	/* sd 0.7 % */
 	near(held / RUNS, 0.9, 0.025,
-		"intervals of 90 % hold the slope in as many cases");
-	near(lack / RUNS, 0.1, 0.025, "a straight line is refused at 10 % in as many");
-	near(slope / RUNS, 0.1, 0.025, "the true slope is refused as often as stated");
+		"intervals of 90 % contain the slope in 90 % of the cases");
+	near(lack / RUNS, 0.1, 0.025,
+		"the test of fit at 10 % rejects a straight line in 10 % of the cases");
+	near(slope / RUNS, 0.1, 0.025,
+		"the test of the slope rejects the true one as often as stated");
 	ok(line_fit(x, y, 2, 0.9, &l) != 0, "two points have no interval");
 }
 
@@ -165,7 +172,7 @@ static void check_stretches(void)
 			close += out.number.high < 5 + 4 * above[k];
 		}
 	}
-	ok(bad == 0, "no stretch has more particles than its bound: %d have", bad);
+	ok(bad == 0, "no section has more particles than its bound: %d have", bad);
 	ok(close > 500, "the bound is within a factor of 4 in %d of 2000 sections",
 		close);
 	classes_clear(c);

@@ -48,7 +48,8 @@ static void test_balance(enum wear_rule rule, const char *name)
 	press(p, 1);
 	enum debris_status status = debris_step(d, h, p, &step);
 
-	ok(status == DEBRIS_OK && step.count > 1, "%s: %zu particles", name, step.count);
+	ok(status == DEBRIS_OK && step.count > 1, "%s: %zu particles come loose", name,
+		step.count);
 	for (int i = 0; i < CELLS; i++)
 		lost -= h[i] * 2e-12;
 	for (size_t i = 0; i < step.count; i++)
@@ -80,7 +81,7 @@ static void test_rules(void)
 		fewer += less > -1e-9 * h[WEAR_POTENTIAL][i];
 	}
 	ok(outside == 0 && fewer > 0,
-		"columns lose at most the failed material, some less");
+		"columns lose at most the material that failed, and some lose less");
 }
 
 /* Depths are equal but for rounding, and as many columns are worn. */
@@ -206,7 +207,7 @@ static void test_history(void)
 		bad += memcmp(h, g, sizeof(h)) != 0;
 		debris_free(e);
 	}
-	ok(bad == 0, "six surfaces in a row and each alone: the same bits");
+	ok(bad == 0, "six surfaces in a row give the same bits as each alone");
 	debris_free(d);
 }
 
@@ -250,10 +251,10 @@ static void test_depth(enum wear_rule rule, const char *name)
 	       cells = hertz_volume(45, h / 16, 0.5, rule);
 
 	near(cells / grid, 1, 0.006, name);
-	ok(fabs(fine / grid - 1) < 0.02, "twice the points change it by %.2g %%",
+	ok(fabs(fine / grid - 1) < 0.02, "half the spacing changes the volume by %.2g %%",
 		100 * (fine / grid - 1));
 	ok(top / grid > 1.02 && top / grid < 1.06,
-		"cells as high as the spacing take half a layer too much (%.3f)",
+		"cells as high as the spacing overestimate the volume by half a layer (%.3f)",
 		top / grid);
 }
 
@@ -275,10 +276,10 @@ static void test_refusals(void)
 		"material without strength is refused");
 	for (int i = 0; i < CELLS; i++)
 		changed += h[i] != 0;
-	ok(changed == 0, "refusals do not change the surface");
+	ok(changed == 0, "a refused step does not change the surface");
 	p[300] = 1e9;
 	ok(debris_step(d, h, p, &step) == DEBRIS_OK && step.count == 1,
-		"the step after a refusal is right");
+		"the step after a refused one is right");
 	debris_free(d);
 	par.yield = 0;
 	ok(!debris_new(&par), "a yield stress of zero is refused");

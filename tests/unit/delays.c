@@ -47,8 +47,8 @@ static void check_orders(void)
 		worst = fmax(worst, fabs(delayloss_unordered(NULL, 1, 4, a, b, slope) -
 					    try_orders(a, b)));
 	}
-	ok(worst < 1e-15, "(3-21) by sorting equals the least over all orders, to %.1g",
-		worst);
+	ok(worst < 1e-15,
+		"loss (3-21) by sorting equals the least over all orders to %.1g", worst);
 }
 
 /* By hand: outputs 1 2 3, labels 1 1 4: sums 6 and 6, variances 2/3 and 2. */
@@ -76,10 +76,12 @@ static void check_levels(void)
 	struct delayloss_par par = { 1, DELAYLOSS_SQUARED };
 	struct delayscore half = { 0 }, sorted = { 0 }, draw = { 0 };
 
-	near(l.constant, 1 / 12.0, 1e-15, "1/12");
-	near(l.constant_sorted, 1 / 24.0, 1e-15, "1/24");
-	near(l.sorted_ordered, 1 / 8.0, 1e-15, "1/8");
-	near(l.draw, 1 / 6.0, 1e-15, "1/6");
+	near(l.constant, 1 / 12.0, 1e-15, "the loss of a constant is 1/12");
+	near(l.constant_sorted, 1 / 24.0, 1e-15,
+		"the loss of sorted constants against sorted labels is 1/24");
+	near(l.sorted_ordered, 1 / 8.0, 1e-15,
+		"the loss of sorted constants against unsorted labels is 1/8");
+	near(l.draw, 1 / 6.0, 1e-15, "the loss of random delays is 1/6");
 	near(delaylevels(1).constant_sorted, 1 / 12.0, 1e-15,
 		"with one source both orders agree");
 	for (int i = 0; i < N; i++) {
@@ -97,13 +99,16 @@ static void check_levels(void)
 	delayscore_finish(&half);
 	delayscore_finish(&sorted);
 	delayscore_finish(&draw);
-	near(half.ordered, l.constant, 4 * half.ordered_se, "constant, drawn");
+	near(half.ordered, l.constant, 4 * half.ordered_se,
+		"the loss of the constant agrees with drawn samples");
 	near(sorted.unordered, l.constant_sorted, 4 * sorted.unordered_se,
-		"sorted, drawn");
+		"the loss of sorted constants agrees with drawn samples");
 	near(sorted.sorted, l.constant_sorted, 4 * sorted.unordered_se,
-		"same by position");
-	near(sorted.ordered, l.sorted_ordered, 4 * sorted.ordered_se, "unsorted, drawn");
-	near(draw.ordered, l.draw, 4 * draw.ordered_se, "random, drawn");
+		"the loss of sorted constants by position is the same");
+	near(sorted.ordered, l.sorted_ordered, 4 * sorted.ordered_se,
+		"the loss of sorted constants against unsorted labels agrees with drawn samples");
+	near(draw.ordered, l.draw, 4 * draw.ordered_se,
+		"the loss of random delays agrees with drawn samples");
 }
 
 /* The scene of section 3.3. */
@@ -179,7 +184,7 @@ static void check_orders_of_labels(void)
 	}
 	ok(same, "the order of the labels does not change the signal");
 	ok(rising, "sorted labels are ascending");
-	ok(differs > 30, "the order of arrivals differs, %d of 50", differs);
+	ok(differs > 30, "the order of arrivals differs in %d of 50 samples", differs);
 }
 
 static void check_noise(void)

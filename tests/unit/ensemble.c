@@ -4,10 +4,10 @@
 #include "tap.h"
 
 /* Realisations 7 and 2, out of order; diameter and volume as easy numbers. */
-static const struct shed particles[] = { { 7, 1, 10, 1, 0 }, { 2, 3, 20, 2, 0 },
+static const struct particle_row particles[] = { { 7, 1, 10, 1, 0 }, { 2, 3, 20, 2, 0 },
 	{ 7, 3, 30, 4, 0 }, { 7, 3, 40, 8, 0 }, { 2, 1, 50, 16, 0 } };
 
-/* mark: realisation of which step 2 is told; 0: none. */
+/* mark: realisation of which step 2 is stated; 0: none. */
 static struct ensemble *make(const struct ensemble_par *par, long mark)
 {
 	struct ensemble *e = ensemble_new(par);
@@ -17,7 +17,7 @@ static struct ensemble *make(const struct ensemble_par *par, long mark)
 	if (mark)
 		ensemble_took_place(e, mark, 2);
 	ok(ensemble_close(e) == ENSEMBLE_OK, "the ensemble is closed");
-	ok(ensemble_told(e) == (mark && mark != 2 && mark != 7 ? 3 : 2),
+	ok(ensemble_reported(e) == (mark && mark != 2 && mark != 7 ? 3 : 2),
 		"realisations with rows are counted");
 	return e;
 }
@@ -37,19 +37,20 @@ static void test_sums(void)
 	near(sqrt(running_variance(&third->count)), sqrt(0.5), 1e-15,
 		"the standard deviation of the count is right");
 	near(third->total_volume.mean, (18 + 13) / 2., 0,
-		"volumes of all steps, whatever the diameter");
+		"the volumes of all steps include every diameter");
 	near(ensemble_step(e, 1)->count.mean, 0, 0,
 		"diameters outside the limits do not count");
-	near(ensemble_step(e, 2)->count.n, 2, 0, "a step without particles took place");
+	near(ensemble_step(e, 2)->count.n, 2, 0,
+		"a step without particles counts as a step");
 	near(ensemble_step(e, 2)->total_volume.mean, (16 + 1) / 2., 0,
 		"a step without particles keeps the cumulative volume");
-	near(third->total_count, 3, 0, "particles are accumulated");
+	near(third->total_count, 3, 0, "the particles of all steps so far are summed");
 	ok(x->n == 3 && x->value[0] == 20 && x->value[1] == 30 && x->value[2] == 40,
-		"diameters that count, in order");
+		"the selected diameters are in ascending order");
 	ok(ensemble_step_diameters(e, 1)->n == 0 && ensemble_step_diameters(e, 3)->n == 3,
 		"selected diameters are stored by step");
 	near(ensemble_volume(e)->mean, (18 + 13) / 2. / 3, 1e-15,
-		"mean volume of a realisation per step");
+		"the mean volume of a realisation per step is right");
 	ensemble_free(e);
 }
 
@@ -67,14 +68,16 @@ static void test_partial(void)
 	near(ensemble_step(e, 2)->count.n, 1, 0, "a step without particles is accepted");
 	near(ensemble_step(e, 2)->count.mean, 0, 0,
 		"a step without particles has no particles");
-	near(ensemble_step(e, 5)->count.n, 0, 0, "steps after the last one");
-	near(third->count.n, 2, 0, "realisations a step took place in");
-	near(third->total_count, 5, 0, "particles are accumulated");
-	near(third->volume.mean, 7, 1e-15, "mean volume");
-	near(third->total_volume.mean, (18 + 13) / 2., 1e-14, "mean volume so far");
+	near(ensemble_step(e, 5)->count.n, 0, 0,
+		"steps after the last one are missing values");
+	near(third->count.n, 2, 0, "the realisations with a step are counted");
+	near(third->total_count, 5, 0, "the particles of all steps so far are summed");
+	near(third->volume.mean, 7, 1e-15, "the mean volume is right");
+	near(third->total_volume.mean, (18 + 13) / 2., 1e-14,
+		"the mean volume of all steps so far is right");
 	/* Two steps each of 2 and 7, one of 4. */
 	near(ensemble_volume(e)->mean, (9 + 6.5 + 0) / 3, 1e-14,
-		"volumes per step that took place");
+		"volumes are divided by the steps that took place");
 	ensemble_free(e);
 }
 
@@ -89,13 +92,16 @@ static void test_estimates(void)
 
 	ensemble_groups(e, &n);
 	ok(n == 2, "each realisation is a group");
-	ok(estimate_all(e, all) == 0, "estimates");
-	near(all[ESTIMATE_MEAN_DIAMETER].value, 30, 1e-14, "mean diameter");
-	near(all[ESTIMATE_VOLUME_STEP].value, 31 / 6., 1e-14, "volume per step");
-	ok(estimate_bootstrap(e, 1, 200, all) == 0, "bootstrap");
+	ok(estimate_all(e, all) == 0, "the estimates are computed");
+	near(all[ESTIMATE_MEAN_DIAMETER].value, 30, 1e-14, "the mean diameter is right");
+	near(all[ESTIMATE_VOLUME_STEP].value, 31 / 6., 1e-14,
+		"the volume per step is right");
+	ok(estimate_bootstrap(e, 1, 200, all) == 0, "the bootstrap succeeds");
 	/* Draws: 7 twice, 2 twice, or both. */
-	near(all[ESTIMATE_VOLUME_STEP].low, 13 / 3., 1e-14, "the lowest draw");
-	near(all[ESTIMATE_VOLUME_STEP].high, 6, 1e-14, "the highest draw");
+	near(all[ESTIMATE_VOLUME_STEP].low, 13 / 3., 1e-14,
+		"the lowest draw is the lowest value");
+	near(all[ESTIMATE_VOLUME_STEP].high, 6, 1e-14,
+		"the highest draw is the highest value");
 	ensemble_free(e);
 }
 
@@ -106,14 +112,14 @@ static void test_refusals(void)
 
 	for (int i = 0; i < 5; i++)
 		ensemble_add(e, &particles[i]);
-	ok(ensemble_close(e) == ENSEMBLE_MORE && ensemble_told(e) == 2,
-		"more realisations than said");
+	ok(ensemble_close(e) == ENSEMBLE_MORE && ensemble_reported(e) == 2,
+		"more realisations than stated are refused");
 	ensemble_free(e);
 	e = ensemble_new(&par);
 	for (long part = 0; part < 2; part++)
-		ensemble_add(e, &(struct shed){ 3, 1, 1, 1, part });
+		ensemble_add(e, &(struct particle_row){ 3, 1, 1, 1, part });
 	ok(ensemble_close(e) == ENSEMBLE_CLASH && ensemble_culprit(e) == 3,
-		"a realisation in two parts");
+		"a realisation in two parts is refused");
 	ensemble_free(e);
 }
 
@@ -132,7 +138,7 @@ static void test_large(void)
 	double plain;
 
 	for (long i = 0; i < N; i++) {
-		struct shed s = {
+		struct particle_row s = {
 			.realisation = 1000000 - i / EACH, .step = 1 + i % 4, .volume = 1
 		};
 
@@ -141,8 +147,8 @@ static void test_large(void)
 			pow(-log(philox_uniform(5, 0, RNG_BOOTSTRAP, (uint64_t)i)), 0.4);
 		ensemble_add(e, &s);
 	}
-	ok(ensemble_close(e) == ENSEMBLE_OK, "300000 particles");
-	ok(ensemble_diameters(e)->n <= SKETCH_MOST, "diameters are merged");
+	ok(ensemble_close(e) == ENSEMBLE_OK, "300000 particles are counted");
+	ok(ensemble_diameters(e)->n <= SKETCH_MOST, "near diameters are merged");
 	weibull_fit(x, NULL, N, 0, INFINITY, 0.9, &w);
 	estimate_all(e, out);
 	/* The classes are narrower than 1e-4: see sketch.h. */
@@ -151,13 +157,13 @@ static void test_large(void)
 	near(out[ESTIMATE_SCALE].value / w.scale.value, 1, 1e-8,
 		"merging hardly changes the scale");
 	plain = (out[ESTIMATE_SHAPE].high - out[ESTIMATE_SHAPE].low) / 2;
-	ok(estimate_bootstrap(e, 1, 200, out) == 0, "bootstrap of groups");
+	ok(estimate_bootstrap(e, 1, 200, out) == 0, "the bootstrap of groups succeeds");
 	/* Independent particles: the interval of the likelihood; 200 draws of 256 groups
 	 * give its width to about 10 %, taken three times. */
 	near((out[ESTIMATE_SHAPE].high - out[ESTIMATE_SHAPE].low) / 2 / plain, 1, 0.3,
-		"interval of independent diameters");
+		"the bootstrap has the width of the interval of independent diameters");
 	near((out[ESTIMATE_SHAPE].high + out[ESTIMATE_SHAPE].low) / 2, w.shape.value,
-		plain, "the interval contains the value");
+		plain, "the bootstrap interval contains the value");
 	ensemble_free(e);
 }
 

@@ -8,7 +8,7 @@
 enum { STEPS = 400 };
 static const double DRIFT = 0.02, PROCESS = 0.1, NOISE = 0.2;
 
-/* A drifting random walk seen with noise. */
+/* A drifting random walk observed with noise. */
 struct walk {
 	double x[STEPS], y[STEPS];
 };
@@ -48,7 +48,7 @@ static double kalman(const struct walk *w, double *evidence)
 	return sqrt(sum / STEPS);
 }
 
-/* The same of the particle filter. */
+/* The same quantities of the particle filter. */
 static double particles(const struct walk *w, const struct filter_par *par,
 	double missing, double *evidence)
 {
@@ -94,10 +94,12 @@ static void test_kalman(enum resampling scheme, double share, const char *name)
 		got += b * b;
 		worst = fmax(worst, fabs(log_got - log_best));
 	}
-	ok(fabs(sqrt(got / best) - 1) < 0.02, "%s: error %.4f of the Kalman filter's",
-		name, sqrt(got / best));
+	ok(fabs(sqrt(got / best) - 1) < 0.02,
+		"%s: the mean is within %.4f of the Kalman filter's error", name,
+		sqrt(got / best));
 	/* The standard deviation of the log evidence is about sqrt(STEPS / N) = 0.45. */
-	ok(worst < 2.5, "%s: log evidence within %.2f", name, worst);
+	ok(worst < 2.5, "%s: the log evidence is within %.2f of the Kalman filter's",
+		name, worst);
 }
 
 /* Ancestors rise, and over many draws particle i is taken n w_i times on the mean. */
@@ -132,12 +134,13 @@ static void test_resampling(enum resampling scheme, const char *name)
 		worst = fmax(worst, fabs(count[i] / DRAWS - want));
 	}
 	draw_free(d);
-	ok(rising, "%s: ancestors rise", name);
+	ok(rising, "%s: the ancestors ascend", name);
 	ok(count[7] == 0, "%s: an ancestor without weight has no copies", name);
 	/* Five standard errors of a multinomial count, sqrt(N w (1 - w) / DRAWS). */
-	ok(worst < 0.05, "%s: unbiased, worst %.3f", name, worst);
+	ok(worst < 0.05, "%s: the resampling is unbiased, worst deviation %.3f", name,
+		worst);
 	if (scheme == RESAMPLE_SYSTEMATIC)
-		ok(most <= 1, "%s: copies within one of n w", name);
+		ok(most <= 1, "%s: the number of copies is within one of n w", name);
 }
 
 static void test_weights(void)
@@ -148,7 +151,7 @@ static void test_weights(void)
 	double *mean = calloc(500, sizeof *mean), past = 0, evidence;
 
 	filter_start(f, &past, 1, 1);
-	near(filter_ess(f), 500, 1e-9, "equal weights at the start");
+	near(filter_ess(f), 500, 1e-9, "the weights are equal at the start");
 	filter_predict(f, mean, 1);
 	/* 1e6 standard deviations away: exp() of every weight is 0 */
 	evidence = filter_update(f, 1e3, 1e-3);
@@ -156,7 +159,8 @@ static void test_weights(void)
 		"weights that underflow stay finite");
 	ok(filter_ess(f) >= 1 && filter_mean(f) > 1.5, "the nearest particle survives");
 	filter_predict(f, mean, 1);
-	near(filter_ess(f), 500, 1e-9, "the filter is resampled after it");
+	near(filter_ess(f), 500, 1e-9,
+		"the filter resamples after the collapse of the weights");
 	filter_free(f);
 	free(mean);
 	draw_free(d);
@@ -188,7 +192,7 @@ static void test_genealogy(void)
 		for (int i = 0; i < 64; i++)
 			good &= x[index[i]] == mean[i];
 	}
-	ok(good, "without noise every particle equals its ancestor");
+	ok(good, "without process noise every particle equals its ancestor");
 	filter_free(f);
 	draw_free(d);
 }
@@ -211,8 +215,10 @@ static void test_normals(void)
 	near(m1, 0, 5e-3, "the mean of normals is 0");
 	near(m2, 1, 5 * sqrt(2) * 1e-3, "the variance of normals is 1");
 	near(m4, 3, 5 * sqrt(96) * 1e-3, "the fourth moment of normals is 3");
-	near(beyond / N, 0.15865525393, 5 * 3.7e-4, "share above one");
-	near(tail / N, 4.6525816e-4, 5 * 2.2e-5, "share beyond the base layer");
+	near(beyond / N, 0.15865525393, 5 * 3.7e-4,
+		"the share of normals above one is right");
+	near(tail / N, 4.6525816e-4, 5 * 2.2e-5,
+		"the share of normals beyond the base layer is right");
 	free(z);
 	draw_free(d);
 }
@@ -234,10 +240,12 @@ int main(void)
 	b = particles(&w, &par, 0, &evidence);
 	par.freedom = 1e5;
 	ok(fabs(particles(&w, &par, 0, &evidence) / b - 1) < 0.01,
-		"Student-t of many degrees is the Gaussian");
+		"the Student-t weight of many degrees of freedom is the Gaussian one");
 	par.freedom = 0;
 	a = particles(&w, &par, 0.2, &evidence);
-	ok(a > b && a < 2 * b, "a fifth missing: error %.3f, with all %.3f", a, b);
+	ok(a > b && a < 2 * b,
+		"with a fifth of the rows missing the error is %.3f, with all %.3f", a,
+		b);
 	test_weights();
 	test_genealogy();
 	test_normals();

@@ -23,7 +23,7 @@ static void test_taps(void)
 	double low, high, beta, tap, worst = 0;
 	int order, scale, k, rows = 0;
 
-	if (!ok(in != NULL, "tests/data/firwin.tsv is there"))
+	if (!ok(in != NULL, "the reference table tests/data/firwin.tsv can be read"))
 		return;
 	while (fgets(line, sizeof line, in)) {
 		double *h;
@@ -56,12 +56,14 @@ static void test_edges(void)
 	for (int k = 0; k <= 40; k++)
 		sum += fabs(h[k]);
 	ok(fabs(h[20] - 1) < 1e-15 && fabs(sum - 1) < 1e-14,
-		"the whole band gives the identity");
+		"the whole band gives the identity filter");
 	ok(fir_design(&odd, h) < 0, "an odd order cannot be scaled at half the rate");
 	/* kaiser_beta() of scipy 1.10 */
-	near(fir_kaiser_beta(80), 7.857259999999999, 1e-13, "Kaiser's beta at 80 dB");
-	near(fir_kaiser_beta(40), 3.3953210522614574, 1e-13, "Kaiser's beta at 40 dB");
-	near(fir_kaiser_beta(10), 0, 0, "Kaiser's beta at 10 dB");
+	near(fir_kaiser_beta(80), 7.857259999999999, 1e-13,
+		"Kaiser's beta at 80 dB is right");
+	near(fir_kaiser_beta(40), 3.3953210522614574, 1e-13,
+		"Kaiser's beta at 40 dB is right");
+	near(fir_kaiser_beta(10), 0, 0, "Kaiser's beta at 10 dB is right");
 }
 
 static double level(const double *h, double f)
@@ -84,16 +86,19 @@ static void test_response(void)
 	fir_design(&band, h);
 	for (size_t i = 0; i < sizeof want / sizeof *want; i++)
 		worst = fmax(worst, fabs(level(h, want[i][0]) - want[i][1]));
-	ok(worst <= 0.0501, "levels of the 200-order Hamming band 70-130 Hz (%.3f dB)",
+	ok(worst <= 0.0501,
+		"the levels of the Hamming band 70-130 Hz of order 200 are right (%.3f dB)",
 		worst);
 	fir_response(h, 201, 0.01, 100, &re, &im);
-	ok(fabs(re - 1) < 1e-13 && fabs(im) < 1e-13, "gain 1 and phase 0 in the middle");
+	ok(fabs(re - 1) < 1e-13 && fabs(im) < 1e-13,
+		"the middle of the band has gain 1 and phase 0");
 	fir_response(h, 201, 0.0123, 0, &re, &im);
 	near(remainder(atan2(im, re) + 2 * M_PI * 1.23, 2 * M_PI), 0, 1e-12,
-		"the delay is half the order");
+		"the delay of the filter is half its order");
 	band.scale = 0;
 	fir_design(&band, h);
-	near(level(h, 100), -4.57, 0.005, "unscaled: -4.57 dB in the middle");
+	near(level(h, 100), -4.57, 0.005,
+		"without scaling the middle of the band is at -4.57 dB");
 }
 
 /* Two channels through any split, against the sum itself.  Samples are below 1; rounding
@@ -126,7 +131,8 @@ static void test_stream(int order, size_t block, size_t nframes)
 				sum += h[k] * x[2 * (i - k) + c];
 			worst = fmax(worst, fabs(sum - y[2 * i + c]));
 		}
-	ok(worst < 5e-15, "order %d, %zu frames in blocks of at most %zu (%s): %.1g",
+	ok(worst < 5e-15,
+		"order %d, %zu frames in blocks of at most %zu (%s): the convolution is right to %.1g",
 		order, nframes, fir_block(fir),
 		fir_transform(fir) ? "transform" : "direct", worst);
 	fir_free(fir);
@@ -143,7 +149,7 @@ static int same_band(const struct fir_band *a, const struct fir_band *b)
 	       fabs(a->high / b->high - 1) < 3e-16;
 }
 
-/* Bands in words and back. */
+/* Bands to text and back. */
 static void test_words(void)
 {
 	char text[FIR_TEXT], chain[2 * FIR_TEXT + 3] = "";
@@ -169,7 +175,7 @@ static void test_words(void)
 	fir_print(&all, 48000, text);
 	rest = fir_parse(text, 48000, &got);
 	ok(rest && !*rest && got.low == 0 && got.high == 0.5 && got.order == 1000000,
-		"the widest band and the longest: %s", text);
+		"the longest description of a band is complete: %s", text);
 	fir_print(&(struct fir_band){ 1000000, 1.0 / 3e9, 0.4 / 3, FIR_BLACKMAN,
 			  -1.0 / 3e-290, 0 },
 		1.0 / 3, text);
@@ -197,7 +203,8 @@ static void test_nonsense(void)
 	struct fir_band band;
 
 	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-		ok(!fir_parse(bad[i], 1e4, &band), "refused: '%s'", bad[i]);
+		ok(!fir_parse(bad[i], 1e4, &band), "the description '%s' is refused",
+			bad[i]);
 }
 
 int main(void)

@@ -26,7 +26,7 @@ static void test_pair(void)
 	ok(isinf(pair_limit(&p)), "without a threshold there is no limit");
 	p.threshold_gap = 15e-6;
 	p.threshold_volume = 8e-9;
-	near(pair_limit(&p), 14e-6, 1e-18, "the first threshold reached counts");
+	near(pair_limit(&p), 14e-6, 1e-18, "the threshold that is reached first counts");
 	near(pair_gap(&p, PAIR_VOLUME, 4e-9), 12e-6, 1e-18,
 		"the gap follows from the worn volume");
 	for (enum pair_quantity q = PAIR_LEAKAGE; q <= PAIR_DEBRIS; q++)
@@ -83,7 +83,8 @@ static void test_forecast(void)
 	forecast_add(f, 0, 5e-6, 5e-6, 0);
 	forecast_add(f, 100, 10e-6, 10e-6, 0);
 	forecast_add(f, 200, 11e-6, 11e-6, 0);
-	near(forecast_at(f, 200).life[0], 400, 1e-9, "run-in left out of the rate");
+	near(forecast_at(f, 200).life[0], 400, 1e-9,
+		"run-in does not count for the rate");
 	forecast_free(f);
 
 	par.skip = 0;
@@ -187,10 +188,10 @@ static void test_coverage(void)
 				error += one / 100;
 			}
 			ok(held >= 85,
-				"%s, seen as %s: 90 %% intervals hold %d of 100 ends",
+				"%s, observed as %s: 90 %% intervals contain %d of 100 ends of life",
 				names[truth], by_gap ? "gap" : "leakage", held);
 			ok(error < (truth == GAMMA_GAP ? 0.13 : 0.08),
-				"mean error of the median: %.1f %% of the life",
+				"the mean error of the median is %.1f %% of the life",
 				100 * error);
 		}
 }

@@ -21,7 +21,8 @@ static void test_golden(void)
 	char line[2000], *tail, *text;
 	int rows = 0;
 
-	if (!ok(f && fgets(line, sizeof line, f), "golden table is there"))
+	if (!ok(f && fgets(line, sizeof line, f),
+		    "the reference table of GM(1,1) can be read"))
 		return;
 	while (fgets(line, sizeof line, f)) {
 		double a, b, want[3], x[64];
@@ -37,10 +38,13 @@ static void test_golden(void)
 		for (; k < n; k++, text = tail + 1)
 			x[k] = strtod(text, &tail);
 		g = fit(x, n);
-		near(grey_rate(&g), a, 1e-12 * fabs(a) + 1e-13, "a");
-		near(grey_control(&g), b, 1e-11 * fabs(b), "b");
+		near(grey_rate(&g), a, 1e-12 * fabs(a) + 1e-13,
+			"the coefficient a is that of the reference");
+		near(grey_control(&g), b, 1e-11 * fabs(b),
+			"the coefficient b is that of the reference");
 		for (int h = 1; h <= 3; h++)
-			near(grey_forecast(&g, h, 1), want[h - 1], 1e-11, "forecast");
+			near(grey_forecast(&g, h, 1), want[h - 1], 1e-11,
+				"the forecast is that of the reference");
 	}
 	fclose(f);
 }
@@ -66,7 +70,7 @@ static void test_long(void)
 	char line[400];
 	int rows = 0;
 
-	if (!ok(f && x, "60-digit table is there")) {
+	if (!ok(f && x, "the reference table of 60 digits can be read")) {
 		free(x);
 		return;
 	}
@@ -85,11 +89,14 @@ static void test_long(void)
 	}
 	fclose(f);
 	free(x);
-	ok(rows == 60, "60 rows compared");
-	ok(worst[0] < 1e-14, "orders 4 to 60 after up to 1e6 rows: %.2g < 1e-14",
+	ok(rows == 60, "the reference table has 60 rows");
+	ok(worst[0] < 1e-14,
+		"orders 4 to 60 after up to 1e6 rows have an error of %.2g < 1e-14",
 		worst[0]);
-	ok(worst[1] < 1e-12, "windows of all rows, up to 1e6: %.2g < 1e-12", worst[1]);
-	ok(worst_b < 1e-11, "b: %.2g < 1e-11", worst_b);
+	ok(worst[1] < 1e-12,
+		"windows of all rows, up to 1e6, have an error of %.2g < 1e-12",
+		worst[1]);
+	ok(worst_b < 1e-11, "the error of b is %.2g < 1e-11", worst_b);
 }
 
 static void test_plain_series(void)
@@ -100,22 +107,26 @@ static void test_plain_series(void)
 	for (int k = 0; k < 60; k++)
 		x[k] = 2;
 	g = fit(x, 10);
-	near(grey_forecast(&g, 1, 1), 2, 1e-15, "constant series goes on as it is");
+	near(grey_forecast(&g, 1, 1), 2, 1e-15,
+		"a constant series is continued as a constant");
 	near(grey_forecast(&g, 1000, 1), 2, 1e-15,
 		"the constant continues for any horizon");
 	for (int k = 0; k < 60; k++)
 		x[k] = 2 + 1e-12 * ((k * 7) % 5 - 2);
 	g = fit(x, 10);
-	near(grey_forecast(&g, 1, 1), 2, 1e-11, "nearly constant series");
-	/* An exponential of ratio q has a = -2 (q - 1) / (q + 1): to rounding. */
+	near(grey_forecast(&g, 1, 1), 2, 1e-11,
+		"a nearly constant series is continued as a constant");
+	/* An exponential of ratio q has a = -2 (q - 1) / (q + 1) up to rounding. */
 	for (int k = 0; k < 60; k++)
 		x[k] = 3 * pow(1.02, k);
 	g = fit(x, 60);
-	near(grey_rate(&g), -2 * 0.02 / 2.02, 1e-14, "rate of a growing exponential");
+	near(grey_rate(&g), -2 * 0.02 / 2.02, 1e-14,
+		"the rate of a growing exponential is right");
 	for (int k = 0; k < 60; k++)
 		x[k] = 3 * pow(0.97, k);
 	g = fit(x, 40);
-	near(grey_rate(&g), 2 * 0.03 / 1.97, 1e-14, "rate of a falling exponential");
+	near(grey_rate(&g), 2 * 0.03 / 1.97, 1e-14,
+		"the rate of a falling exponential is right");
 	for (int k = 0; k < 60; k++)
 		x[k] = k < 3 ? pow(10, 100 * k) : 0;
 	g = fit(x, 4);
@@ -123,7 +134,7 @@ static void test_plain_series(void)
 		"a diverging series gives a finite forecast");
 	memset(x, 0, sizeof x);
 	g = fit(x, 5);
-	near(grey_forecast(&g, 1, 1), 0, 0, "zero series");
+	near(grey_forecast(&g, 1, 1), 0, 0, "a series of zeros is continued with zeros");
 	/* Scale invariance is exact for powers of two. */
 	for (int k = 0; k < 20; k++)
 		x[k] = 1 + 0.1 * k + 0.05 * (k % 3);
@@ -151,9 +162,9 @@ static void test_gaps(void)
 	x[0] = 1;
 	for (int k = 12; k-- > 0;)
 		grey_add(&g, x[k], k < 11 ? gap[k + 1] : 0);
-	near(grey_rate(&g), -rate, 1e-4 * rate, "rate from unequal gaps");
+	near(grey_rate(&g), -rate, 1e-4 * rate, "the rate from unequal gaps is right");
 	near(grey_forecast(&g, 3, 3), (exp(rate * (t + 3)) - exp(rate * t)) / (3 * rate),
-		1e-4, "forecast of a longer interval");
+		1e-4, "the forecast over a longer interval is right");
 }
 
 int main(void)

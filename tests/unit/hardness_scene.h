@@ -179,8 +179,7 @@ static inline void hardness_scan(int first, int last)
 		for (int k = first; k < last; k++)
 			hardness_solve(k, (enum contact_solver)solver, &o);
 		ok(o.solved == last - first,
-			"%s solver solves %d of %d scenes with a hardness, gap at most "
-			"%.1e of the elastic work, %ld iterations at most",
+			"%s solver solves %d of %d scenes with a hardness; the gap is at most %.1e of the elastic work, with at most %ld iterations",
 			name[solver], o.solved, last - first, o.worst, o.most);
 	}
 }

@@ -1,4 +1,4 @@
-/* Joint fit of pulses: exact on clean scenes, at the Cramer-Rao bound on noisy ones */
+/* Joint fit of pulses: exact without noise, at the Cramer-Rao bound with noise */
 #include "signal/joint.h"
 #include "num/philox.h"
 #include "tap.h"
@@ -46,8 +46,9 @@ static void test_clean(struct joint *j, const struct joint_scene *s)
 	memset(y, 0, sizeof y);
 	for (int i = 0; i < 3; i++)
 		joint_add(s, &truth[i], 1, y[0], y[1], N);
-	ok(joint_fit(j, s, y[0], y[1], N, found, &m, &r) == JOINT_OK, "clean scene fits");
-	if (!ok(m == 3, "three pulses found"))
+	ok(joint_fit(j, s, y[0], y[1], N, found, &m, &r) == JOINT_OK,
+		"a scene without noise is fitted");
+	if (!ok(m == 3, "three pulses are found"))
 		return;
 	for (int i = 0; i < 3; i++) {
 		worst_t = fmax(worst_t, fabs(found[i].t - truth[i].t));
@@ -55,9 +56,9 @@ static void test_clean(struct joint *j, const struct joint_scene *s)
 		worst_a = fmax(worst_a, fabs(found[i].a / truth[i].a - 1));
 	}
 	/* Chi-square stops falling at 1e-4 of sigma^2: a hundredth of the bounds. */
-	near(worst_t, 0, 1e-4, "arrivals are exact");
-	near(worst_delta, 0, 1e-4, "delays are exact");
-	near(worst_a, 0, 1e-5, "amplitudes are exact");
+	near(worst_t, 0, 1e-4, "the arrivals are exact");
+	near(worst_delta, 0, 1e-4, "the delays are exact");
+	near(worst_a, 0, 1e-5, "the amplitudes are exact");
 	ok(r.chi2 < 1e-3, "the residual is zero");
 	for (int i = 0; i < 3; i++)
 		joint_add(s, &truth[i], -1, y[0], y[1], N);
@@ -83,7 +84,7 @@ static void test_bound(struct joint *j, const struct joint_scene *tied)
 	joint_refine(j, &s, y[0], y[1], N, &found, 1, &r);
 	var = found.cov[0] - 2 * found.cov[1] + found.cov[2];
 	near(sqrt(var), sqrt(50.0) / acos(-1) / p.a * sqrt(1 + 1 / (0.909 * 0.909)),
-		2e-3 * 0.1, "standard error of the delay is the Cramer-Rao bound");
+		2e-3 * 0.1, "the standard error of the delay is the Cramer-Rao bound");
 	near(sqrt(found.cov[5]) / p.a, sqrt(2.0 / 100 / (1 + 0.909 * 0.909)) / p.a, 1e-6,
 		"the standard error of the amplitude is the Cramer-Rao bound");
 }
@@ -137,14 +138,16 @@ static void test_noisy(struct joint *j, const struct joint_scene *s, int m, int 
 			all++;
 		}
 	}
-	ok(right >= SCENES - 2, "%d pulses, %d tones: count right in %d of %d", m, tones,
-		right, SCENES);
+	ok(right >= SCENES - 2, "%d pulses and %d tones: the count is right in %d of %d",
+		m, tones, right, SCENES);
 	/* The ratio of m * SCENES errors scatters by 1 / sqrt(2 m SCENES). */
 	ok(squares < bound * pow(1.1 + 2.5 / sqrt(2.0 * all), 2),
-		"delay error over the bound: %.3f", sqrt(squares / bound));
-	ok(inside > 0.6 * all && inside < 0.76 * all, "%.0f %% within one standard error",
+		"the error of the delay over the bound is %.3f", sqrt(squares / bound));
+	ok(inside > 0.6 * all && inside < 0.76 * all,
+		"%.0f %% of the delays are within one standard error",
 		100.0 * inside / all);
-	ok(sqrt(size / all) < 0.006, "size error %.2f %%", 100 * sqrt(size / all));
+	ok(sqrt(size / all) < 0.006, "the error of the size is %.2f %%",
+		100 * sqrt(size / all));
 }
 
 static void test_misuse(struct joint *j, const struct joint_scene *good)
@@ -161,12 +164,12 @@ static void test_misuse(struct joint *j, const struct joint_scene *good)
 	s = *good;
 	s.delta_min = -300;
 	ok(joint_fit(j, &s, y, y, N, p, &m, &r) == JOINT_DOMAIN,
-		"delays before the particle came are refused");
+		"a delay range that precedes the particle is refused");
 	s = *good;
 	ok(joint_fit(j, &s, y, y, 0, p, &m, &r) == JOINT_DOMAIN,
-		"no samples are refused");
+		"a scene without samples is refused");
 	ok(joint_fit(j, &s, y, y, N, p, &m, &r) == JOINT_OK && m == 0 && r.chi2 == 0,
-		"silence contains no pulses");
+		"a scene of zeros contains no pulses");
 }
 
 int main(void)

@@ -163,11 +163,14 @@ static void coated(void)
 		same = fmax(same,
 			fabs(kernel.wave(&c, 1) / (2 * (1 - c.poisson * c.poisson)) - 1));
 	}
-	ok(worst < 1e-9, "coating: the wave factor of the layered equations, to %.1e",
+	ok(worst < 1e-9,
+		"the wave factor of a coating solves the layered equations to %.1e",
 		worst);
 	ok(deep < 1e-12, "a thick coating is a half-space of its own, to %.1e", deep);
-	ok(thin < 1e-6, "a thin one is the half-space below, to %.1e", thin);
-	ok(same < 1e-14, "a coating of the same material is none, to %.1e", same);
+	ok(thin < 1e-6, "a thin coating is the half-space below, to %.1e", thin);
+	ok(same < 1e-14,
+		"a coating of the substrate's material makes no difference, to %.1e",
+		same);
 }
 
 int main(void)
@@ -181,7 +184,7 @@ int main(void)
 
 		worst = fmax(worst, fabs(got / golden[k].i - 1));
 	}
-	ok(worst < 2e-15, "Love coefficients of reference: relative error %.1e", worst);
+	ok(worst < 2e-15, "the coefficients are Love's: relative error %.1e", worst);
 	for (size_t k = 0; k < sizeof(aspects) / sizeof(aspects[0]); k++) {
 		double a = aspects[k], e = worst_along(a, 1, 1, 0, 50);
 
@@ -189,21 +192,23 @@ int main(void)
 		e = fmax(e, worst_along(a, 1, 1, 1, 50));
 		e = fmax(e, worst_along(1, a, 1, 0, 500));
 		ok(e < 4e-15,
-			"cells 1:%g: relative error %.1e along rows, columns, diagonal",
+			"the coefficients of cells 1:%g are right along rows, columns and the diagonal: relative error %.1e",
 			a, e);
 	}
 	near(kernel_patch(1, 1, 0, 0), 4 * asinh(1), 1e-15,
-		"under its own square cell: 4 asinh 1");
+		"the coefficient under its own square cell is 4 asinh 1");
 	near(kernel_patch(2, 1, -6, 3) / kernel_patch(2, 1, 6, 3), 1, 1e-15,
-		"the coefficients are even");
+		"the coefficients are even in x and y");
 	near(kernel_modulus(210e9, 0.3, 210e9, 0.3) / (210e9 / 1.82), 1, 1e-15,
-		"two like steels: E / 1.82");
+		"the contact modulus of two like steels is E / 1.82");
 	near(kernel_modulus(210e9, 0.3, INFINITY, 0.3) / (210e9 / 0.91), 1, 1e-15,
-		"against a rigid body: E / 0.91");
+		"the contact modulus against a rigid body is E / 0.91");
 	near(kernel_modulus(1, 0, 1e6, 0), 1 / (1 + 1e-6), 1e-15,
-		"a million times stiffer");
-	near(kernel_periodic(4, 3, 4), 0.1, 1e-17, "periodic: 2 / (E* |q|)");
-	near(kernel_periodic(4, 0, 0), 0, 0, "periodic: mean displacement zero");
+		"a body a million times stiffer acts as a rigid one");
+	near(kernel_periodic(4, 3, 4), 0.1, 1e-17,
+		"the periodic wave factor is 2 / (E* |q|)");
+	near(kernel_periodic(4, 0, 0), 0, 0,
+		"the mean displacement of a periodic grid is zero");
 	coated();
 	return tap_done();
 }

@@ -81,7 +81,8 @@ static void compare_with_differences(enum pulse_shape shape, const char *name)
 	/* 400 samples a pulse; a sample at the jump of the slope of the sine counts 1/400
 	 */
 	ok(fabs(b.time / unit / sqrt(mean[0]) - 1) < 1e-3,
-		"%s: the arrival is as uncertain as finite differences tell", name);
+		"%s: the standard error of the arrival agrees with finite differences",
+		name);
 	ok(fabs(b.velocity / p.velocity / sqrt(mean[1]) - 1) < 1e-3,
 		"%s: the standard error of the velocity agrees with finite differences",
 		name);
@@ -159,8 +160,7 @@ static void check_search(void)
 	ok(layout_search(&par, 4, 0.1, 0, 32, coil, &of) == 0 && coil[1] == 0 &&
 			coil[2] == 0.1 && coil[3] == 0.1,
 		"without a bound on pairing half the coils stand at either end");
-	ok(layout_search(&par, 2, 10, 0.95, 64, coil, &of) == 0,
-		"two coils find a place");
+	ok(layout_search(&par, 2, 10, 0.95, 64, coil, &of) == 0, "two coils are placed");
 	/* p = exp(-arrivals D 6 sd(1/v)), sd from the width of the first pulse */
 	{
 		struct bound b;
@@ -168,9 +168,10 @@ static void check_search(void)
 		bound_closed(&par.bound, coil, 1, &b);
 		far = -log(0.95) / (100 * 6 * b.velocity / (12.73 * 12.73));
 	}
-	near(coil[1] / far, 1, 1e-6, "as far apart as pairing by width allows");
+	near(coil[1] / far, 1, 1e-6,
+		"the coils are as far apart as pairing by width allows");
 	ok(layout_search(&par, 2, 10, 1, 64, coil, &of) == 0 && coil[1] == 0,
-		"where pairing must be certain they stand in one place");
+		"where pairing must be certain the coils stand in one place");
 }
 
 int main(void)

@@ -25,12 +25,13 @@ static void test_noise(void)
 		noise_add(n, y, gap);
 		t += gap;
 	}
-	near(noise_scale(n), 0.107, 0.02, "noise from second differences, with outliers");
+	near(noise_scale(n), 0.107, 0.02,
+		"second differences give the noise in spite of outliers");
 	noise_free(n);
 	n = noise_new();
 	for (int k = 0; k < 10; k++)
 		noise_add(n, 3 + 2.0 * k, 1);
-	near(noise_scale(n), 0, 1e-12, "none on a straight line");
+	near(noise_scale(n), 0, 1e-12, "a straight line has no noise");
 	noise_free(n);
 	draw_free(d);
 }
@@ -49,10 +50,12 @@ static void test_history(void)
 	for (int k = 100; k < 100003; k++)
 		history_add(h, k, 2.0 * k);
 	n = history_get(h, &t, &x);
-	ok(n <= HISTORY_MAX && n >= HISTORY_MAX / 4, "a long one in %d groups", n);
+	ok(n <= HISTORY_MAX && n >= HISTORY_MAX / 4,
+		"a long history is kept in %d groups", n);
 	for (int k = 0; k < n; k++)
 		sum += fabs(x[k] - 2 * t[k]);
-	ok(sum < 1e-6 && t[0] == 0.5 * (t[1] - t[0] - 1), "of equal means");
+	ok(sum < 1e-6 && t[0] == 0.5 * (t[1] - t[0] - 1),
+		"the groups have the means of their rows");
 	history_free(h);
 }
 
@@ -73,8 +76,9 @@ static void test_orders(void)
 	for (int k = 200; k-- > 200 - order_chosen(o);)
 		grey_add(&g, y[k], 1);
 	near(order_forecast(o, 1), grey_forecast(&g, 1, 1), 1e-13,
-		"forecast of the chosen order");
-	ok(order_chosen(o) > 10, "white noise wants a high order: %d", order_chosen(o));
+		"the forecast is that of the chosen order");
+	ok(order_chosen(o) > 10, "white noise leads to a high order: %d",
+		order_chosen(o));
 	par.rule = ORDER_ALL;
 	all = order_new(&par);
 	par.range_low = 4;
@@ -86,7 +90,7 @@ static void test_orders(void)
 	}
 	ok(order_skipped(ranged) > 0 &&
 			order_tried(ranged) + order_skipped(ranged) == order_tried(all),
-		"what the range leaves out is counted");
+		"the orders that the range leaves out are counted");
 	order_free(o);
 	order_free(all);
 	order_free(ranged);
@@ -107,7 +111,7 @@ static void test_runin(void)
 			last = k;
 		}
 	}
-	ok(risen == 0, "what only rises has no run-in");
+	ok(risen == 0, "a series that only rises has no run-in");
 	ok(bumped > 0 && last > 55 && last < 100, "a bump about row 40 ends by row %d",
 		last);
 }
@@ -158,9 +162,10 @@ static void test_straight_wear(void)
 	/* Least squares: sd of the passage at 100 from 60 rows, sigma / slope times
 	 * sqrt(1 / n + (100 - 29.5)^2 / Sxx) = 0.54; shorter memories and Wiener noise in
 	 * the bank may cost a factor of two. */
-	ok(sqrt(squares / runs) < 1.1, "error %.2f of lives", sqrt(squares / runs));
+	ok(sqrt(squares / runs) < 1.1, "the error is %.2f of the lives",
+		sqrt(squares / runs));
 	ok(inside / runs > 0.85 && inside / runs < 0.99,
-		"the 90 %% interval holds %.0f %%", 100 * inside / runs);
+		"the 90 %% interval contains %.0f %% of the lives", 100 * inside / runs);
 	free(life);
 	bank_chances_free(chances);
 	draw_free(d);
@@ -206,9 +211,9 @@ static void test_disturbances(void)
 {
 	double plain = median_life(60, as_it_is, 0, 0);
 
-	near(plain, 41, 4, "a straight series as it is");
+	near(plain, 41, 4, "a straight series has the life of its line");
 	near(median_life(60, burst, 0, 0), plain, 1,
-		"six outliers in a row move no life");
+		"six outliers in a row do not change the life");
 	near(median_life(60, as_it_is, 80, 58), plain, 1,
 		"a halt of 0.8 lives does not change the life");
 	near(median_life(56, burst, 0, 0), plain + 4, 2,
@@ -240,7 +245,7 @@ static void test_fleet(void)
 	ok(fleet_build(f, &failed, &carried_on) == NUM_OK && failed == 1 &&
 			carried_on == 1 && fleet_units(f) == 3 &&
 			fleet_shapes(f, &shapes) && shapes == 2,
-		"a unit that failed, one that is carried on, one that shows no wear");
+		"a fleet distinguishes a unit that failed, one that is continued and one that shows no wear");
 	for (int with = 0; with <= 1; with++) {
 		if (with)
 			par.more = fleet_shapes(f, &par.n_more);
@@ -251,7 +256,7 @@ static void test_fleet(void)
 		if (!with)
 			alone = fabs(median(life, DRAWS) - 72);
 		else
-			near(median(life, DRAWS), 72, 8, "life with a fleet of two");
+			near(median(life, DRAWS), 72, 8, "a fleet of two gives the life");
 		if (with)
 			ok(bank_weight(b, BANK_OTHER) > 0.5,
 				"the fleet has most of the weight: %.2f",
@@ -293,11 +298,11 @@ static void test_adaptive(void)
 			n++;
 		}
 	}
-	ok(same, "the same seed, the same states");
+	ok(same, "the same seed gives the same states");
 	ok(filtered < 0.5 * observed,
-		"the filter takes out half of the noise and more: %.2f",
+		"the filter removes more than half of the noise: %.2f",
 		filtered / observed);
-	ok(adaptive_restarts(a) == 0 && n > 400, "without a restart");
+	ok(adaptive_restarts(a) == 0 && n > 400, "the filter does not restart");
 	adaptive_free(a);
 	adaptive_free(b);
 	draw_free(d);

@@ -8,7 +8,7 @@
 
 enum { N = 2000 };
 
-/* CRPS by the energy form E|X - y| - E|X - X'| / 2, independent of the code's way. */
+/* CRPS by the energy form E|X - y| - E|X - X'| / 2, independent of the implementation. */
 static double crps_energy(const double *x, const double *w, size_t n, double y)
 {
 	double total = 0, near_y = 0, apart = 0;
@@ -31,41 +31,46 @@ static void check_crps(void)
 	double never[3] = { 1, 2, INFINITY };
 
 	near(metric_crps(&(double){ 7 }, NULL, 1, 10, INFINITY), 3, 1e-15,
-		"CRPS of one sample is its absolute error");
+		"the CRPS of one sample is its absolute error");
 	for (int i = 0; i < 5; i++)
 		near(metric_crps(s, w, 5, truth[i], INFINITY),
 			crps_energy(s, w, 5, truth[i]), 1e-13,
-			"CRPS of weighted samples equals its energy form");
+			"the CRPS of weighted samples equals its energy form");
 	for (int i = 0; i < N; i++)
 		x[i] = (i + 0.5) / N;
 	/* Midpoint samples of U(0, 1): the step function differs by 1 / (12 N^2). */
 	near(metric_crps(x, NULL, N, 0.3, INFINITY), (0.027 + 0.343) / 3, 1e-6,
-		"CRPS of a uniform forecast");
+		"the CRPS of a uniform forecast is right");
 	for (int i = 0; i < N; i++)
 		x[i] = 5 + 2 * gsl_cdf_ugaussian_Pinv((i + 0.5) / N);
 	near(metric_crps(x, NULL, N, 6, INFINITY),
 		2 * (0.5 * (2 * gsl_cdf_ugaussian_P(0.5) - 1) +
 			    2 * gsl_ran_ugaussian_pdf(0.5) - 1 / sqrt(M_PI)),
-		1e-4, "CRPS of a normal forecast");
+		1e-4, "the CRPS of a normal forecast is right");
 	/* 1 to 2: (1/3 - 0)^2, 2 to 5: (2/3)^2 before the truth, 5 to 10: (1/3)^2 after.
 	 */
 	near(metric_crps(never, NULL, 3, 5, 10), 1 / 9. + 3 * 4 / 9. + 5 / 9., 1e-14,
-		"CRPS with mass that never fails, up to the limit");
+		"the CRPS with mass that never fails is right up to the limit");
 	ok(isinf(metric_crps(never, NULL, 3, 5, INFINITY)),
-		"CRPS with mass that never fails is infinite without a limit");
+		"the CRPS with mass that never fails is infinite without a limit");
 	near(metric_crps(&(double){ 1e300 }, NULL, 1, -1e300, INFINITY), 2e300, 1e285,
-		"CRPS at 1e300");
+		"the CRPS of samples of 1e300 is right");
 }
 
 static void check_quantile(void)
 {
 	double x[5] = { 1, 2, 4, 8, INFINITY };
 
-	near(metric_quantile(x, 5, 0.5), 4, 0, "median of an odd number");
-	near(metric_quantile(x, 4, 0.5), 3, 0, "median of an even number");
-	near(metric_quantile(x, 5, 0.75), 8, 0, "a level that meets a sample");
-	ok(isinf(metric_quantile(x, 5, 0.8)), "a quantile among those that never fail");
-	near(metric_quantile(x, 1, 0.95), 1, 0, "quantile of one sample");
+	near(metric_quantile(x, 5, 0.5), 4, 0,
+		"the median of an odd number of samples is the middle one");
+	near(metric_quantile(x, 4, 0.5), 3, 0,
+		"the median of an even number of samples is the mean of two");
+	near(metric_quantile(x, 5, 0.75), 8, 0,
+		"a level that meets a sample gives that sample");
+	ok(isinf(metric_quantile(x, 5, 0.8)),
+		"a quantile among samples that never fail is infinite");
+	near(metric_quantile(x, 1, 0.95), 1, 0,
+		"every quantile of one sample is that sample");
 }
 
 /* Point predictions of life 100: late by 30 at t = 0, by 15 at 20, by 3 at 90. */
@@ -79,33 +84,35 @@ static void check_sums(void)
 
 	ok(metrics_add(m, 0, 130, 90, 140, NULL, NULL, 0, &row) == NUM_OK &&
 			!row.inside && row.covered,
-		"30 %% late is outside the cone of 20 %%");
-	near(row.accuracy, 0.7, 1e-15, "relative accuracy");
+		"a prediction 30 %% late is outside the cone of 20 %%");
+	near(row.accuracy, 0.7, 1e-15, "the relative accuracy is right");
 	ok(metrics_add(m, 20, 95, 85, 99, NULL, NULL, 0, &row) == NUM_OK && row.inside &&
 			!row.covered,
-		"15 of 80 late is inside");
+		"a prediction late by 15 of 80 is inside the cone");
 	ok(metrics_add(m, 90, 10, 8, 12, pair, NULL, 2, &row) == NUM_OK,
-		"samples are taken");
-	near(row.crps, 0.25 * 4, 1e-15, "their order does not matter");
-	near(row.mass, 1, 0, "both are within 20 %% of 10");
+		"samples are accepted");
+	near(row.crps, 0.25 * 4, 1e-15, "the order of the samples does not matter");
+	near(row.mass, 1, 0, "both samples are within 20 %% of 10");
 	ok(metrics_add(m, 100, 1, 0, 1, NULL, NULL, 0, NULL) == NUM_DOMAIN &&
 			metrics_add(m, 95, NAN, 0, 1, NULL, NULL, 0, NULL) == NUM_DOMAIN,
-		"what comes after the end, or is no prediction, is not counted");
+		"predictions after the end of life and missing ones are not counted");
 	s = metrics_get(m);
-	ok(s.n == 3, "three were counted");
+	ok(s.n == 3, "three predictions are counted");
 	near(s.bias, 15, 1e-14, "the bias is right");
-	near(s.rmse, sqrt((900 + 225) / 3.), 1e-14, "root mean square error");
-	near(s.accuracy, (0.7 + 0.8125 + 1) / 3, 1e-15, "cumulative relative accuracy");
-	near(s.alpha_lambda, 2 / 3., 1e-15, "alpha-lambda share");
+	near(s.rmse, sqrt((900 + 225) / 3.), 1e-14,
+		"the root mean square error is right");
+	near(s.accuracy, (0.7 + 0.8125 + 1) / 3, 1e-15,
+		"the cumulative relative accuracy is right");
+	near(s.alpha_lambda, 2 / 3., 1e-15, "the alpha-lambda share is right");
 	near(s.coverage, 2 / 3., 1e-15, "the coverage is right");
-	near(s.crps, (30 + 15 + 1) / 3., 1e-14, "mean CRPS");
-	near(s.horizon, 80, 0, "prognostic horizon starts where the band is kept");
+	near(s.crps, (30 + 15 + 1) / 3., 1e-14, "the mean CRPS is right");
+	near(s.horizon, 80, 0, "the prognostic horizon starts where the band is kept");
 	metrics_free(m);
 	par.alpha = 0;
-	ok(metrics_new(&par) == NULL, "alpha of zero is refused");
+	ok(metrics_new(&par) == NULL, "an alpha of zero is refused");
 }
 
-/* A median that never fails must not make the mean errors of all others infinite. */
+/* An infinite median must not make the mean errors of the others infinite. */
 static void check_infinite(void)
 {
 	struct metrics_par par = { .eol = 100, .alpha = 0.2, .beta = 0.5, .limit = 1000 };
@@ -116,12 +123,17 @@ static void check_infinite(void)
 	metrics_add(m, 20, 90, 70, 100, NULL, NULL, 0, NULL);
 	metrics_add(m, 40, 50, 40, 55, NULL, NULL, 0, NULL);
 	s = metrics_get(m);
-	ok(s.n == 3 && s.infinite == 1, "the infinite median is counted");
-	near(s.bias, 0, 1e-15, "bias of the finite ones");
-	near(s.mae, 10, 1e-15, "mean absolute error of the finite ones");
-	near(s.accuracy, 1 - (10 / 80. + 10 / 60.) / 2, 1e-15, "their relative accuracy");
-	near(s.coverage, 2 / 3., 1e-15, "intervals of all three are judged");
-	near(s.crps, (900 + 10 + 10) / 3., 1e-12, "so are their scores");
+	ok(s.n == 3 && s.infinite == 1,
+		"the prediction with an infinite median is counted");
+	near(s.bias, 0, 1e-15, "the bias is that of the finite predictions");
+	near(s.mae, 10, 1e-15,
+		"the mean absolute error is that of the finite predictions");
+	near(s.accuracy, 1 - (10 / 80. + 10 / 60.) / 2, 1e-15,
+		"the relative accuracy is that of the finite predictions");
+	near(s.coverage, 2 / 3., 1e-15,
+		"the coverage includes the prediction with an infinite median");
+	near(s.crps, (900 + 10 + 10) / 3., 1e-12,
+		"the CRPS includes the prediction with an infinite median");
 	metrics_free(m);
 }
 

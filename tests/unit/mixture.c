@@ -1,4 +1,4 @@
-/* Two and three voices told apart in a whole record, by what they are made of. */
+/* Two and three sources separated in a whole record by their spectra. */
 #include "signal/mixture.h"
 #include "tap.h"
 #include <stdlib.h>
@@ -54,7 +54,7 @@ static void try_mixture(int voices, const double *a, const double *delta, double
 	for (int i = 0; i < N; i += 999)
 		mixture_push(m, x + 2 * i, (size_t)(N - i < 999 ? N - i : 999));
 	count = mixture_find(m, source);
-	ok(count == voices, "%d voices are found", voices);
+	ok(count == voices, "%d sources are found", voices);
 	mixture_separate(m, y);
 	for (int k = 0; k < count && count == voices; k++) {
 		int best = 0;
@@ -63,11 +63,13 @@ static void try_mixture(int voices, const double *a, const double *delta, double
 			if (fabs(source[j].delta - delta[k]) <
 				fabs(source[best].delta - delta[k]))
 				best = j;
-		near(source[best].delta, delta[k], 0.1, "its delay");
-		near(source[best].attenuation, a[k], 0.05, "its attenuation");
+		near(source[best].delta, delta[k], 0.1,
+			"the delay of each source is right");
+		near(source[best].attenuation, a[k], 0.05,
+			"the attenuation of each source is right");
 		/* one channel throughout: the whole of it against the whole voice */
 		ok(sdr(y + best * N, s + k * N) > least,
-			"voice %d: %.1f dB, mixed %.1f dB", k,
+			"source %d is separated: %.1f dB, mixed %.1f dB", k,
 			sdr(y + best * N, s + k * N), -10 * log10(voices - 1));
 	}
 	for (int i = 0; i < N; i++) {
@@ -80,7 +82,7 @@ static void try_mixture(int voices, const double *a, const double *delta, double
 		whole += x[2 * i] * x[2 * i];
 	}
 	ok(worst < 1e-12 * sqrt(whole), "the sources add up to channel 1 (%.1g)", worst);
-	near(energy / whole, 1, 1e-12, "and have all of its energy");
+	near(energy / whole, 1, 1e-12, "the sources have all of the energy of channel 1");
 	mixture_free(m);
 	free(x);
 	free(s);
@@ -97,11 +99,11 @@ static void test_edges(void)
 	ok(!mixture_new(&(struct mixture_par){ 63, 16, 0 }) &&
 			!mixture_new(&(struct mixture_par){ 64, 33, 0 }) &&
 			!mixture_new(&(struct mixture_par){ 64, 16, 17 }),
-		"sizes that cannot be");
+		"impossible sizes are refused");
 	m = mixture_new(&par);
 	ok(mixture_find(m, source) == 0, "an empty record has no sources");
 	mixture_push(m, x, 1);
-	ok(mixture_find(m, source) == 0, "silence has no sources");
+	ok(mixture_find(m, source) == 0, "a record of zeros has no sources");
 	mixture_free(m);
 }
 

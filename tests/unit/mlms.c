@@ -61,7 +61,8 @@ static void same_bytes(struct pool *two)
 		x[i] = cos(i);
 	mlms_apply(m, x, y);
 	mlms_apply(t, x, z);
-	ok(memcmp(y, z, N * N * sizeof *y) == 0, "one and two threads: same bytes");
+	ok(memcmp(y, z, N * N * sizeof *y) == 0,
+		"one thread and two give the same bytes");
 	mlms_free(m);
 	mlms_free(t);
 	fft_free(x);
@@ -80,13 +81,15 @@ int main(void)
 		double e = worst_error(
 			sizes[i][0], sizes[i][1], 8, 18, 1, i % 2 ? two : NULL);
 
-		ok(e < 1e-7, "%zux%zu: error %.1e", sizes[i][0], sizes[i][1], e);
+		ok(e < 1e-7, "%zux%zu: the error is %.1e", sizes[i][0], sizes[i][1], e);
 	}
-	ok(worst_error(64, 64, 8, 18, 2, NULL) < 1e-6, "cells twice as long as wide");
+	ok(worst_error(64, 64, 8, 18, 2, NULL) < 1e-6,
+		"cells twice as long as wide are as accurate");
 	for (int order = 4; order <= 10; order += 2) {
 		double e = worst_error(64, 64, order, 2 * order + 2, 1, NULL);
 
-		ok(e < last / 5, "order %d, reach %d: error %.1e, far below the last",
+		ok(e < last / 5,
+			"order %d and reach %d: the error %.1e is far below the last",
 			order, 2 * order + 2, e);
 		last = e;
 	}

@@ -27,7 +27,8 @@ static void check_convolution(void)
 		w[i] += (network_real)(0.1 * uniform((long)i));
 	for (int i = 0; i < 2 * C * H * W; i++)
 		x[i] = (network_real)uniform(1000 + i);
-	ok(network_outputs(net) == F * H * OW, "convolution: %d outputs", F * H * OW);
+	ok(network_outputs(net) == F * H * OW, "the convolution has %d outputs",
+		F * H * OW);
 	y = network_forward(net, x, 2);
 	for (int o = 0; o < 2 * F * H * OW; o++) {
 		int s = o / (F * H * OW), f = o / (H * OW) % F, r = o / OW % H,
@@ -44,7 +45,7 @@ static void check_convolution(void)
 		}
 		worst = fmax(worst, fabs(sum - y[o]));
 	}
-	ok(worst < 2e-6, "convolution equals its sum, worst difference %.1g", worst);
+	ok(worst < 2e-6, "the convolution equals its sum, worst difference %.1g", worst);
 	network_free(net);
 }
 
@@ -57,7 +58,7 @@ static void check_pool(void)
 	const network_real *y = network_forward(net, x, 1);
 
 	ok(network_outputs(net) == 3 && y[0] == 5 && y[1] == -1 && y[2] == -7,
-		"pool 2x2 of five columns: 5 -1 -7, the last window cut");
+		"pooling 2x2 of five columns gives 5 -1 -7, the last window being cut");
 	network_free(net);
 }
 
@@ -77,7 +78,8 @@ static void check_cascade(void)
 	b = tanh(x[0] * w[1] + x[1] * w[3] + w[5]);
 	c = tanh(x[0] * w[6] + x[1] * w[7] + a * w[8] + b * w[9] + w[10]);
 	want = x[0] * w[11] + x[1] * w[12] + a * w[13] + b * w[14] + c * w[15] + w[16];
-	near(network_forward(net, x, 1)[0], want, 1e-6, "cascade-forward formula");
+	near(network_forward(net, x, 1)[0], want, 1e-6,
+		"the cascade-forward layers follow their formula");
 	network_free(net);
 }
 
@@ -110,14 +112,14 @@ static void check_training(void)
 		for (int run = 0; run < 2; run++) {
 			network_start(net, 5, 0);
 			ok(network_train(net, &par, take_line, NULL) == NETWORK_OK,
-				"%s: done", name[k]);
+				"%s: the training succeeds", name[k]);
 			if (run == 0)
 				memcpy(again, w, sizeof again);
 		}
 		error = fabs(w[0] - 2) + fabs(w[1] + 1) + fabs(w[2] - 0.5);
 		ok(error < 2e-5, "%s finds the line, error %.1g", name[k], error);
-		ok(memcmp(again, w, sizeof again) == 0, "%s twice gives the same bytes",
-			name[k]);
+		ok(memcmp(again, w, sizeof again) == 0,
+			"%s: a second training gives the same bytes", name[k]);
 		network_start(net, 5, 0);
 		memcpy(again, w, sizeof again);
 		network_start(net, 5, 1);
@@ -139,8 +141,8 @@ static void check_adam_step(void)
 	network_real *w = network_weights(net);
 
 	network_train(net, &par, take_line, NULL);
-	near(w[0], 1e-3, 1e-8, "first step of Adam up");
-	near(w[1], -1e-3, 1e-8, "first step of Adam down");
+	near(w[0], 1e-3, 1e-8, "the first step of Adam upwards is the learning rate");
+	near(w[1], -1e-3, 1e-8, "the first step of Adam downwards is the learning rate");
 	network_free(net);
 }
 
@@ -157,11 +159,11 @@ static void check_divergence(void)
 		network_new((struct network_shape){ 1, 1, 2 }, &layer, 1, 8);
 
 	ok(network_train(net, &par, take_line, NULL) == NETWORK_DIVERGED,
-		"too long a step is told as divergence");
+		"a step that is too long is reported as divergence");
 	network_free(net);
 }
 
-/* Eight numbers made of two: an auto-encoder of two units can carry them. */
+/* Eight numbers made from two: an auto-encoder of two units can represent them. */
 static void take_plane(void *context, long i, network_real *x, network_real *target)
 {
 	(void)context;
@@ -180,8 +182,8 @@ static void keep_loss(void *context, long epoch, double loss)
 	last_loss = loss;
 }
 
-/* Without sparsity the plane is carried through; with it the mean activation is held
- * near the level wanted, but still varies with the samples. */
+/* Without sparsity the plane is reconstructed; with it the mean activation stays near the
+ * wanted level, but still varies with the samples. */
 static void check_pretraining(void)
 {
 	struct network_layer layer[] = { { NETWORK_DENSE, NETWORK_SIGMOID, .units = 6 },
@@ -201,7 +203,7 @@ static void check_pretraining(void)
 
 		par.penalty = (struct network_penalty){ 0, 0, sparse ? 4 : 0, 0.05 };
 		ok(network_pretrain(net, 0, &par, take_plane, NULL) == NETWORK_OK,
-			"pre-training done");
+			"the pre-training succeeds");
 		for (long i = 0; i < 100; i++) {
 			take_plane(NULL, i, x, t);
 			network_forward(net, x, 1);
@@ -214,14 +216,14 @@ static void check_pretraining(void)
 		}
 		if (sparse)
 			ok(fabs(mean - 0.05) < 0.02 && square - mean * mean > 1e-5,
-				"sparse: mean activation %.3f near 0.05, deviation %.2g",
+				"sparse pre-training: the mean activation %.3f is near 0.05, deviation %.2g",
 				mean, sqrt(square - mean * mean));
 		else
 			ok(mean > 0.1 && last_loss < 0.03 / 50,
-				"not sparse: mean activation %.3f, %.2g of 0.03 not carried",
+				"plain pre-training: the mean activation is %.3f and %.2g of 0.03 is not reconstructed",
 				mean, last_loss);
 	}
-	ok(w[6 * 9] == last, "pre-training leaves the layers behind alone");
+	ok(w[6 * 9] == last, "pre-training does not change the layers behind");
 	network_free(net);
 }
 
@@ -231,7 +233,7 @@ static struct network *round_trip(
 	FILE *f = fmemopen(text, size, "w");
 	struct network *back;
 
-	netfile_write(f, net, "delays", "make it");
+	netfile_write(f, net, "the delays are read back", "make it");
 	fclose(f);
 	f = fmemopen(text, strlen(text), "r");
 	back = netfile_read(f, 1, file);
@@ -250,20 +252,21 @@ static void check_file(void)
 	struct netfile file;
 	size_t bytes = network_weight_count(net) * sizeof(network_real);
 
-	ok(n == 5, "five layers");
+	ok(n == 5, "the network has five layers");
 	network_start(net, 1, 0);
 	network_weights(net)[0] = 1.17549435e-38F;
 	back = round_trip(net, text, sizeof text, &file);
 	if (ok(back != NULL, "a file is read back")) {
 		ok(memcmp(network_weights(net), network_weights(back), bytes) == 0,
-			"with the same weights, bit by bit");
-		ok(strcmp(file.purpose, "delays") == 0 &&
+			"the weights are read back bit by bit");
+		ok(strcmp(file.purpose, "the delays are read back") == 0 &&
 				strcmp(file.cmd, "make it") == 0,
 			"purpose and command");
 		free(file.cmd);
 		network_free(back);
 		back = round_trip(net, copy, sizeof copy, &file);
-		ok(strcmp(text, copy) == 0, "and written as the same bytes");
+		ok(strcmp(text, copy) == 0,
+			"the network is written again as the same bytes");
 		free(file.cmd);
 		network_free(back);
 	}
@@ -276,8 +279,8 @@ static void check_file(void)
 		network_free(back);
 		fclose(f);
 	}
-	ok(n == 0, "every beginning of it is refused");
-	/* Any byte changed: refused, or read as another network, but never worse. */
+	ok(n == 0, "every truncation of the file is refused");
+	/* A file with any byte changed is refused or read as another network. */
 	for (size_t i = 0; i < strlen(text); i++)
 		for (const char *c = "9-x \n#\177"; *c; c++) {
 			FILE *f;
@@ -291,7 +294,7 @@ static void check_file(void)
 			network_free(back);
 			fclose(f);
 		}
-	ok(n > 100, "a changed byte is refused or read, %d refused", n);
+	ok(n > 100, "a file with a changed byte is refused or read, %d refused", n);
 	network_free(net);
 }
 
@@ -309,16 +312,17 @@ static void check_refusals(void)
 	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
 		*why = '\0';
 		ok(netfile_parse_layers(bad[i], NETWORK_TANH, layer, why) == 0 && *why,
-			"layers '%.20s' refused: %s", bad[i], why);
+			"the layers '%.20s' are refused: %s", bad[i], why);
 	}
 	ok(!network_new((struct network_shape){ 1, 2, 500 }, &huge, 1, 1),
-		"too many weights");
-	ok(!network_new((struct network_shape){ 1, 0, 500 }, &huge, 1, 1), "no rows");
+		"a network with too many weights is refused");
+	ok(!network_new((struct network_shape){ 1, 0, 500 }, &huge, 1, 1),
+		"an input without rows is refused");
 	ok(!network_new((struct network_shape){ 1 << 20, 1, 1 }, &wide, 1, 1),
-		"a window of more values than an int counts");
+		"a window of more values than an int counts is refused");
 	wide.width = wide.height = 1000;
 	ok(!network_new((struct network_shape){ 1, 4000, 4000 }, &wide, 1, 1),
-		"windows that together are too much");
+		"layers that together are too large are refused");
 }
 
 int main(void)

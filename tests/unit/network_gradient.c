@@ -40,7 +40,7 @@ static double value(struct network *net, const struct scene *s, const real *x,
 		net, x, target, BATCH, s->loss, context, &s->penalty, scratch);
 }
 
-/* Every weight of a layer moved alone; the largest error over the largest slope. */
+/* Changes every weight of a layer alone; the largest error over the largest slope. */
 static void check(const struct scene *s)
 {
 	struct network *net = network_new(s->input, s->layer, s->layers, BATCH);
@@ -72,8 +72,8 @@ static void check(const struct scene *s)
 		largest = fmax(largest, fabs(slope[w]));
 	}
 	ok(largest > 1e-4 && worst < 2e-8 * fmax(largest, 1),
-		"%s: %zu derivatives, largest %.2g, worst error %.1g", s->name, count,
-		largest, worst);
+		"%s: %zu derivatives agree with differences, largest %.2g, worst error %.1g",
+		s->name, count, largest, worst);
 	free(x);
 	free(target);
 	free(slope);
@@ -106,8 +106,9 @@ static void check_arrivals(void)
 		worst = fmax(worst,
 			fabs((up - down) / (2 * h) - slope[i]) / fmax(fabs(slope[i]), 1));
 	}
-	ok(worst < 1e-7, "loss of arrivals: %d derivatives, worst error %.1g", ALL,
-		worst);
+	ok(worst < 1e-7,
+		"%d derivatives of the loss of arrivals agree with differences, worst error %.1g",
+		ALL, worst);
 }
 
 int main(void)

@@ -26,7 +26,7 @@ static void test_many(const struct normals *n)
 		normals_pair(n, first + i, z);
 		differ += z[0] != pairs[2 * i] || z[1] != pairs[2 * i + 1];
 	}
-	ok(differ == 0, "many at once are those one by one");
+	ok(differ == 0, "many deviates at once equal those drawn one by one");
 }
 
 int main(void)
@@ -60,17 +60,20 @@ int main(void)
 	near(sum[1] / total, 1, 4 * sqrt(2 / total), "the second moment is 1");
 	near(sum[2] / total, 0, 4 * sqrt(15 / total), "the third moment is 0");
 	near(sum[3] / total, 3, 4 * sqrt(96 / total), "the fourth moment is 3");
-	near(product / PAIRS, 0, 4 / sqrt(PAIRS), "the two of a pair are independent");
+	near(product / PAIRS, 0, 4 / sqrt(PAIRS),
+		"the two deviates of a pair are independent");
 	for (int k = 0; k < 5; k++) {
 		double s = sigmas(beyond[k], total, erfc(far[k] / sqrt(2)));
 
-		ok(fabs(s) < 4, "share beyond %.2f: %.1f sigma off", far[k], s);
+		ok(fabs(s) < 4, "the share beyond %.2f is right within %.1f sigma",
+			far[k], s);
 	}
 	ok(fabs(sigmas(high, beyond[2], 0.5)) < 4, "both tails have the same share");
 	for (int k = 0; k < BINS; k++)
 		chi2 += pow(bin[k] - total / BINS, 2) / (total / BINS);
 	/* 199 degrees of freedom: mean 199, standard deviation 20 */
-	ok(chi2 > 119 && chi2 < 279, "chi squared of %d equal bins: %.0f", BINS, chi2);
+	ok(chi2 > 119 && chi2 < 279, "the chi-square of %d equal bins is %.0f", BINS,
+		chi2);
 	normals_pair(n, 123456789, a);
 	normals_pair(n, 5, b);
 	normals_pair(n, 123456789, b);

@@ -31,7 +31,7 @@ static void test_philox(void)
 	for (int i = 0; i < 3; i++) {
 		philox4x32(known[i].counter, known[i].key, out);
 		ok(!memcmp(out, known[i].want, sizeof out),
-			"Philox4x32-10 known answer %d", i + 1);
+			"Philox4x32-10 gives the known answer %d", i + 1);
 	}
 }
 
@@ -53,7 +53,7 @@ static void test_philox_row(void)
 			counter[1] += ++counter[0] == 0;
 		}
 	}
-	ok(differ == 0, "a row of blocks is the blocks one by one");
+	ok(differ == 0, "a row of blocks equals the blocks one by one");
 }
 
 static void test_rng(void)
@@ -86,8 +86,8 @@ static void test_rng(void)
 		square += z * z;
 	}
 	/* Four standard errors: 4 / sqrt(N) and 4 sqrt(2 / N). */
-	near(sum / N, 0, 0.009, "mean of GSL's normal deviates");
-	near(square / N, 1, 0.0127, "variance of GSL's normal deviates");
+	near(sum / N, 0, 0.009, "the mean of GSL's normal deviates is 0");
+	near(square / N, 1, 0.0127, "the variance of GSL's normal deviates is 1");
 	gsl_rng_free(a);
 	gsl_rng_free(b);
 	gsl_rng_free(c);
@@ -107,10 +107,11 @@ static void test_addressed(void)
 		cross += z[0] * z[1];
 		uniform += philox_uniform(7, 0, RNG_SURFACE, i);
 	}
-	near(sum / (2 * N), 0, 0.009, "mean of addressed normal deviates");
-	near(square / (2 * N), 1, 0.0127, "variance of addressed normal deviates");
-	near(cross / N, 0, 0.0127, "the two of a pair are uncorrelated");
-	near(uniform / N, 0.5, 0.00366, "mean of addressed uniform deviates");
+	near(sum / (2 * N), 0, 0.009, "the mean of addressed normal deviates is 0");
+	near(square / (2 * N), 1, 0.0127,
+		"the variance of addressed normal deviates is 1");
+	near(cross / N, 0, 0.0127, "the two deviates of a pair are uncorrelated");
+	near(uniform / N, 0.5, 0.00366, "the mean of addressed uniform deviates is 1/2");
 }
 
 static void mark(void *context, size_t i, int worker)
@@ -153,11 +154,11 @@ static void test_fft(size_t nx, size_t ny)
 					 ((double)(kx * (i % nx)) / (double)nx +
 						 (double)(ky * (i / nx)) / (double)ny));
 	near(cabs(s[ky * (nx / 2 + 1) + kx] - direct), 0, 1e-11,
-		"a coefficient by its definition");
+		"a Fourier coefficient is that of the definition");
 	fft_inverse(fft, s, y);
 	for (size_t i = 0; i < n; i++)
 		worst = fmax(worst, fabs(y[i] / (double)n - x[i]));
-	near(worst, 0, 1e-14, "forward and inverse give the data back");
+	near(worst, 0, 1e-14, "forward and inverse transform give the data back");
 	fft_free(x);
 	fft_free(y);
 	fft_free(s);
@@ -179,7 +180,7 @@ static void test_room(void)
 	had = room;
 	ok(room_for(&x, &room, SIZE_MAX / 4, sizeof *x) == NUM_MEMORY && x == before &&
 			room == had,
-		"more than there can be is refused, the array stays");
+		"a size beyond all memory is refused and the array is kept");
 	free(x);
 }
 
@@ -216,7 +217,7 @@ static void test_select(void)
 		for (int i = 0; i < n; i++)
 			good &= v[i] == sorted[i];
 	}
-	ok(good, "ranks as in a sorted list, and nothing lost");
+	ok(good, "selected ranks are those of a sorted list, and no value is lost");
 	gsl_rng_free(rng);
 }
 
@@ -235,7 +236,7 @@ int main(void)
 	test_fft(1, 9);
 	ok(fft_good_size(1) == 1 && fft_good_size(11) == 12 &&
 			fft_good_size(121) == 125 && fft_good_size(2047) == 2048,
-		"good sizes have the factors 2, 3, 5 and 7 only");
+		"good sizes have only the factors 2, 3, 5 and 7");
 	test_select();
 	return tap_done();
 }

@@ -18,13 +18,14 @@ static void check_rates(void)
 			ok(isnan(observed_rate(mean)), "one observation gives no rate");
 		if (i == 3)
 			near(observed_rate(last), 1, 0,
-				"the same time: from the time before");
+				"observations at the same time take the rate from the time before");
 	}
-	near(observed_rate(mean), 5 / 7., 1e-15, "all over its time");
-	near(observed_rate(last), 0.5, 0, "the last over its time");
+	near(observed_rate(mean), 5 / 7., 1e-15,
+		"the mean rate is the whole wear over its time");
+	near(observed_rate(last), 0.5, 0, "the last rate is the last wear over its time");
 	ok(observed_count(last) == 5 && observed_gap(last) == 6 &&
 			observed_time(last) == 17,
-		"the latest is known");
+		"the latest observation is returned");
 	observed_begin(mean, 20, 7);
 	observed_add(mean, 22, 8, 8);
 	near(observed_rate(mean), 0.5, 0, "the rates can be restarted");
@@ -60,7 +61,7 @@ static void check_grey(const char *what, double level, double unit)
 					fabs(observed_grey(o, 3 * level) / want - 1));
 		}
 	}
-	ok(worst < 1e-9, "%s: forward and backward sums agree: %.1e", what, worst);
+	ok(worst < 1e-9, "%s: forward and backward sums agree to %.1e", what, worst);
 	observed_free(o);
 }
 
@@ -77,7 +78,7 @@ int main(void)
 		observed_add(o, i, 2, 2);
 	}
 	ok(isinf(observed_grey(o, 3)) && observed_grey(o, 2) == 0,
-		"a constant stays where it is");
+		"a constant is continued as a constant");
 	observed_free(o);
 	return tap_done();
 }

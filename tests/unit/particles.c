@@ -68,25 +68,27 @@ static void test_box(void)
 
 	/* 7 x 3 x 2 cells: 14 x 3 x 1 in length. */
 	ok(scan(ps, 16, 12, 6, par.dz, box, &p) == 1, "a box is one particle");
-	near(cells(p, &par), 42, 0, "box: cells");
-	near(p->volume, 42, 0, "box: volume");
-	near(p->diameter, cbrt(6 * 42 / M_PI), 1e-14, "box: equivalent diameter");
-	near(p->area, 2 * (14 * 3 + 14 + 3), 1e-12, "box: surface");
-	near(p->length, sqrt(14 * 14 + 9 + 1), 1e-12, "box: largest diameter");
+	near(cells(p, &par), 42, 0, "box: the number of cells is right");
+	near(p->volume, 42, 0, "box: the volume is right");
+	near(p->diameter, cbrt(6 * 42 / M_PI), 1e-14,
+		"box: the equivalent diameter is right");
+	near(p->area, 2 * (14 * 3 + 14 + 3), 1e-12, "box: the area is that of its faces");
+	near(p->length, sqrt(14 * 14 + 9 + 1), 1e-12,
+		"box: the length is the largest Feret diameter");
 	near(p->width, sqrt(3 * 3 + 1), 0.2,
-		"box: perpendicular diameter, its slant aside");
-	near(p->solidity, 1, 1e-14, "box: solidity");
+		"box: the width is the largest chord perpendicular to it");
+	near(p->solidity, 1, 1e-14, "box: the solidity is 1");
 	near(p->elongation, 1 - 3. / 14, 1e-12,
-		"box: elongation from its two longest sides");
-	near(p->azimuth, 0, 1e-12, "box: azimuth");
-	near(p->dip, 0, 1e-12, "box: dip");
-	near(p->x, 13, 1e-12, "box: centroid x");
-	near(p->y, 3.5, 1e-12, "box: centroid y");
-	near(p->z, 1, 1e-12, "box: centroid z");
+		"box: the elongation follows from its two longest sides");
+	near(p->azimuth, 0, 1e-12, "box: the azimuth is right");
+	near(p->dip, 0, 1e-12, "box: the dip is right");
+	near(p->x, 13, 1e-12, "box: the centroid is right in x");
+	near(p->y, 3.5, 1e-12, "box: the centroid is right in y");
+	near(p->z, 1, 1e-12, "box: the centroid is right in z");
 	ok(p->low[0] == 6 && p->high[0] == 20 && p->low[1] == 2 && p->high[1] == 5 &&
 			p->low[2] == 0.5 && p->high[2] == 1.5,
-		"box: bounding box");
-	ok(p->first[0] == 3 && p->first[1] == 2, "box: address");
+		"box: the bounding box is right");
+	ok(p->first[0] == 3 && p->first[1] == 2, "box: the address is its first column");
 	particles_free(ps);
 }
 
@@ -102,13 +104,13 @@ static void test_cube(void)
 	const struct particle *p;
 
 	scan(ps, 5, 5, 1, par.dz, cube, &p);
-	near(p->length, sqrt(3), 1e-15, "cube: largest diameter is the space diagonal");
+	near(p->length, sqrt(3), 1e-15, "cube: the length is the space diagonal");
 	/* Half-way along its diagonal its section is a regular hexagon of side 1/sqrt(2);
 	 * the corners lie at a third and two thirds, with triangles of side sqrt(2). */
-	near(p->width, sqrt(2), 1e-15, "cube: largest perpendicular diameter");
-	near(p->aspect, sqrt(1.5), 1e-15, "cube: aspect ratio");
-	near(p->elongation, 0, 1e-12, "cube: elongation");
-	ok(isnan(p->azimuth) && isnan(p->dip), "cube: no direction");
+	near(p->width, sqrt(2), 1e-15, "cube: the width is the diagonal of a face");
+	near(p->aspect, sqrt(1.5), 1e-15, "cube: the aspect ratio is right");
+	near(p->elongation, 0, 1e-12, "cube: the elongation is 0");
+	ok(isnan(p->azimuth) && isnan(p->dip), "cube: the direction is missing");
 	particles_free(ps);
 }
 
@@ -129,15 +131,15 @@ static void test_ball(void)
 
 	ok(scan(ps, n, n, n, par.dz, ball, &p) == 1, "a ball is one particle");
 	/* Cells stand out by up to half a diagonal: 0.87 of the radius 20. */
-	near(p->diameter, 2 * R, 0.1, "ball: equivalent diameter");
-	near(p->length, 2 * R, 1.8, "ball: largest diameter");
-	near(p->aspect, 1, 0.02, "ball: aspect ratio");
-	near(p->elongation, 0, 1e-9, "ball: elongation");
+	near(p->diameter, 2 * R, 0.1, "ball: the equivalent diameter is right");
+	near(p->length, 2 * R, 1.8, "ball: the length is the diameter");
+	near(p->aspect, 1, 0.02, "ball: the aspect ratio is 1");
+	near(p->elongation, 0, 1e-9, "ball: the elongation is 0");
 	near(p->area / (4 * M_PI * R * R), 1.5, 0.03,
-		"ball: exposed faces are 3/2 of the sphere");
-	ok(p->solidity < 1 && p->solidity > 0.9, "ball: solidity %g, below 1",
+		"ball: the exposed faces are 3/2 of the sphere");
+	ok(p->solidity < 1 && p->solidity > 0.9, "ball: the solidity %g is below 1",
 		p->solidity);
-	near(p->x, R + 1, 1e-9, "ball: centroid");
+	near(p->x, R + 1, 1e-9, "ball: the centroid is the centre");
 	particles_free(ps);
 }
 
@@ -159,13 +161,14 @@ static void test_rod(void)
 	const struct particle *p;
 
 	ok(scan(ps, 60, 60, 40, par.dz, rod, &p) == 1, "a slanted rod is one particle");
-	near(p->azimuth, 0.6, 0.01, "rod: azimuth");
-	near(p->dip, 0.4, 0.01, "rod: dip");
+	near(p->azimuth, 0.6, 0.01, "rod: the azimuth is right");
+	near(p->dip, 0.4, 0.01, "rod: the dip is right");
 	/* Length 48, width 6: the diagonal and a cell more. */
-	near(p->length, 48.4, 1.5, "rod: largest diameter");
-	ok(p->aspect > 6.5 && p->aspect < 8, "rod: aspect ratio %g", p->aspect);
+	near(p->length, 48.4, 1.5, "rod: the length is right");
+	ok(p->aspect > 6.5 && p->aspect < 8,
+		"rod: the aspect ratio %g is between 6.5 and 8", p->aspect);
 	/* Moments 48^2/12 and 3^2/4. */
-	near(p->elongation, 1 - sqrt(9. / 4 / 192), 0.01, "rod: elongation");
+	near(p->elongation, 1 - sqrt(9. / 4 / 192), 0.01, "rod: the elongation is right");
 	particles_free(ps);
 }
 
@@ -289,7 +292,7 @@ static void test_pose(void)
 	ok(mirrored == 0,
 		"mirrored bars have mirrored directions and the same shape (%d do not)",
 		mirrored);
-	ok(far == 0, "a bar has the same row 1000 cells further (%d have not)", far);
+	ok(far == 0, "a bar 1000 cells further has the same row (%d have not)", far);
 	ok(over == 0,
 		"a bar has the same row across the border of a periodic grid, with its centroid on the grid (%d have not)",
 		over);
@@ -319,7 +322,7 @@ static void test_order(void)
 	particles_free(ps);
 }
 
-/* Stripes that wind about a torus: slope 3 periods of x for one of y, then a ring. */
+/* Stripes that wind about a torus: 3 periods of x for one of y, then a straight ridge. */
 static int stripe(double x, double y, double z)
 {
 	(void)z;
@@ -344,19 +347,21 @@ static void test_endless(void)
 	ok(isnan(p->length) && isnan(p->width) && isnan(p->solidity) &&
 			isnan(p->azimuth) && isnan(p->elongation) && isnan(p->x) &&
 			isnan(p->y) && p->volume == 64,
-		"it has a volume for each period and no shape");
+		"an endless stripe has a volume per period and no shape");
 	ok(p->low[0] == 0 && p->high[0] == 24 && p->low[1] == 0 && p->high[1] == 16,
-		"its bounding box is the grid");
+		"the bounding box of an endless stripe is the grid");
 	ok(scan(ps, 24, 16, 2, par.dz, ring, &p) == 1 && p->endless && isnan(p->x),
-		"a ring about the grid is endless");
-	near(p->y, 3.5, 1e-15, "across itself it has a centroid");
-	near(p->area, 2 * 24 * 3, 0, "its surface is that of one period");
-	ok(p->low[1] == 3 && p->high[1] == 4, "its surface has two sides");
+		"a straight ridge across the grid is endless");
+	near(p->y, 3.5, 1e-15, "an endless ridge has a centroid across its direction");
+	near(p->area, 2 * 24 * 3, 0,
+		"the area of an endless ridge is that of one period");
+	ok(p->low[1] == 3 && p->high[1] == 4,
+		"the bounding box of an endless ridge has its width");
 	particles_free(ps);
 	par.periodic = 0;
 	ps = particles_new(&par);
 	ok(scan(ps, 24, 16, 2, par.dz, ring, &p) == 1 && !p->endless,
-		"on a free grid it is a bar");
+		"on a free grid the same cells are a bar");
 	particles_free(ps);
 }
 
@@ -377,13 +382,13 @@ static void test_fork(void)
 	const struct particle *p;
 
 	ok(scan(ps, 12, 8, 8, par.dz, fork, &p) == 2,
-		"arms that meet below are one particle");
-	near(cells(&p[0], &par), 7 + 7 + 7, 0, "fork: cells");
-	near(cells(&p[1], &par), 7, 0, "free arm: cells");
-	near(p[0].solidity, 21. / 56, 1e-14, "fork: solidity");
+		"arms that meet below the surface are one particle");
+	near(cells(&p[0], &par), 7 + 7 + 7, 0, "fork: the number of cells is right");
+	near(cells(&p[1], &par), 7, 0, "free arm: the number of cells is right");
+	near(p[0].solidity, 21. / 56, 1e-14, "fork: the solidity is right");
 	near(p[0].area,
 		2 * (7 * 8 - 5 * 7) + 2 * 8 + 4 * 7 - 2 * 7 + 5 * 2 + 2 * 2 + 2 * 7 - 14,
-		0, "fork: surface");
+		0, "fork: the area is right");
 	particles_free(ps);
 }
 
@@ -392,7 +397,7 @@ static int checker(double x, double y, double z)
 	return ((int)x + (int)y + (int)z) % 2;
 }
 
-/* Corner neighbours of a layer are parted or joined as asked. */
+/* Corner neighbours of a layer are separated or joined as requested. */
 static void test_corners(void)
 {
 	struct particles_par par = { .nx = 31, .ny = 17, .dx = 1, .dy = 1, .dz = 1 };
@@ -401,12 +406,12 @@ static void test_corners(void)
 	size_t n = scan(ps, 31, 17, 9, par.dz, checker, &p);
 
 	ok(n == 31 * 17 * 9 / 2, "a checkerboard falls into single cells");
-	ok(cells(&p[n - 1], &par) == 1, "each of one cell");
+	ok(cells(&p[n - 1], &par) == 1, "each particle of a checkerboard has one cell");
 	particles_free(ps);
 	par.corners = 1;
 	ps = particles_new(&par);
 	ok(scan(ps, 31, 17, 1, par.dz, checker, &p) == 1,
-		"joined over corners it is one");
+		"joined over corners a checkerboard is one particle");
 	particles_free(ps);
 }
 
@@ -426,14 +431,14 @@ static void test_periodic(void)
 
 	/* 5 x 4 cells around the corner of the grid: from 7 to 12 and from 5 to 9. */
 	ok(scan(ps, 10, 8, 2, par.dz, wrapped, &p) == 1,
-		"periodic: one particle over the corner");
-	near(cells(p, &par), 40, 0, "periodic: cells");
-	near(p->length, sqrt(25 + 16 + 4), 1e-12, "periodic: largest diameter");
-	near(p->area, 2 * (20 + 8 + 10), 1e-12, "periodic: surface");
-	near(p->solidity, 1, 1e-12, "periodic: solidity");
-	near(p->x, 9.5, 1e-12, "periodic: centroid x");
-	near(p->y, 7, 1e-12, "periodic: centroid y");
-	near(p->low[0], 7, 1e-12, "periodic: bounding box");
+		"periodic: a body over the corner of the grid is one particle");
+	near(cells(p, &par), 40, 0, "periodic: the number of cells is right");
+	near(p->length, sqrt(25 + 16 + 4), 1e-12, "periodic: the length is right");
+	near(p->area, 2 * (20 + 8 + 10), 1e-12, "periodic: the area is right");
+	near(p->solidity, 1, 1e-12, "periodic: the solidity is 1");
+	near(p->x, 9.5, 1e-12, "periodic: the centroid is right in x");
+	near(p->y, 7, 1e-12, "periodic: the centroid is right in y");
+	near(p->low[0], 7, 1e-12, "periodic: the bounding box is right");
 	particles_free(ps);
 }
 
@@ -558,11 +563,12 @@ static void test_map(void)
 			nodes += p[i].volume;
 			largest = fmax(largest, p[i].volume);
 		}
-		ok(n == want && n > 100, "contact map: %zu patches, want %zu%s%s", n,
-			want, par.corners ? ", over corners" : "",
+		ok(n == want && n > 100,
+			"contact map: %zu patches are found, want %zu%s%s", n, want,
+			par.corners ? ", over corners" : "",
 			par.periodic ? ", over borders" : "");
 		ok(nodes == cells && largest > 100,
-			"contact map: all cells, up to %g in a patch", largest);
+			"contact map: all cells belong to patches of up to %g", largest);
 		particles_free(ps);
 	}
 }

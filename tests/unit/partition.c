@@ -27,10 +27,11 @@ static void check_power_mean(void)
 
 		near(partition_power_mean(1e6, 2, 20e6, y1) /
 				mean_by_midpoints(1e6, 2, 20e6, y1),
-			1, 1e-7, "mean of a power law between two pressures");
+			1, 1e-7,
+			"the mean of a power law between two pressures is right");
 	}
 	near(partition_power_mean(1, 0, 3, 4), 2, 0,
-		"linear where one class does not wear");
+		"the law is linear where one class does not wear");
 }
 
 static int add_class(struct partition *p, int sparse, double pressure, double share)
@@ -62,29 +63,30 @@ static void check_estimate(void)
 	struct partition_wear w, one;
 	double mh = 15.5, ml = 1.1, zone;
 
-	ok(partition_close(p, fragment, 0.1) == PARTITION_OK, "two classes close");
+	ok(partition_close(p, fragment, 0.1) == PARTITION_OK, "two classes are closed");
 	partition_estimate(p, 0, &w);
 	zone = partition_power_mean(1e6, ml, 21e6, mh);
-	near(w.mean, 45 * mh + 45 * ml + 10 * zone, 1e-9, "wear of the component");
+	near(w.mean, 45 * mh + 45 * ml + 10 * zone, 1e-9,
+		"the wear of the component is right");
 	/* Only the zone keeps both classes from adding up by hand: take it away. */
 	partition_free(p);
 	p = two_classes(-1, -1, 2);
 	partition_close(p, fragment, 0);
 	partition_estimate(p, 0, &w);
 	partition_estimate(p, 1, &one);
-	near(w.mean, 50 * 17 + 50 * 1.1, 1e-9, "steps before the first do not count");
+	near(w.mean, 50 * 17 + 50 * 1.1, 1e-9, "steps before the first one do not count");
 	near(w.life_variance, 50 * 1 + 50 * 0.01, 1e-9,
-		"independent fragments: variance of one times their number");
+		"the variance of independent fragments is that of one times their number");
 	near(one.life_variance, 2500 * 1 + 2500 * 0.01, 1e-7,
-		"one part: variance of one times their number squared");
+		"the variance of a single part is that of one fragment times their number squared");
 	near(w.step_variance, w.life_variance, 1e-9,
-		"one step: unit and step are the same");
+		"with one step the variance of a unit is that of a step");
 	partition_free(p);
 	p = two_classes(0.3e-6, 0.2e-6, 1);
 	partition_close(p, fragment, 0.1);
 	partition_estimate(p, 0, &w);
 	near(w.mean, 30 * mh + 20 * ml + 50 * zone, 1e-9,
-		"the zone is what given areas leave");
+		"the zone has the area that the classes leave");
 	partition_free(p);
 }
 
@@ -154,13 +156,12 @@ static void check_coverage(void)
 			double c = coverage(law, counts[k]);
 
 			ok(c > (law == 5 ? 0.81 : 0.85) && c < 0.965,
-				"%s volumes, %d of them: 90 %% intervals hold the mean "
-				"in %.3f",
+				"%s, %d volumes: 90 %% intervals contain the mean in %.3f of the ensembles",
 				laws[law], counts[k], c);
 		}
 }
 
-/* With many realisations the draws scatter as a mean does: variance / n. */
+/* With many realisations the draws scatter like a mean: variance / n. */
 static void check_draws(void)
 {
 	enum { N = 4000 };
@@ -175,7 +176,7 @@ static void check_draws(void)
 			partition_fragment(
 				p, 0, r, s, 1 + (r * 7 % 25) * 0.1 + s * 0.01, 0, 0);
 	ok(partition_close(p, fragment, 0.1) == PARTITION_OK,
-		"one class without a pressure");
+		"one class needs no pressure");
 	partition_estimate(p, 0, &all);
 	for (int i = 0; i < N; i++) {
 		double d;
@@ -189,9 +190,9 @@ static void check_draws(void)
 	/* 100 fragments of variance s^2 in the estimate by 400: (100)^2 s^2 / 400;
 	 * all.life_variance is 100 s^2.  Sampling errors at 4 sigma. */
 	want = 100 * all.life_variance / 400;
-	near(mean, 0, 4 * sqrt(want / N), "draws have no bias");
+	near(mean, 0, 4 * sqrt(want / N), "the draws are unbiased");
 	near(square / want, 1, 4 * sqrt(2. / N),
-		"their variance is that of a mean of 400");
+		"the variance of the draws is that of a mean of 400");
 	gsl_rng_free(rng);
 	partition_free(p);
 }
@@ -210,15 +211,16 @@ static void check_sparse_draws(void)
 	add_class(p, 1, NAN, -1);
 	partition_fragment(p, 0, 0, 1, 1, 1, 1);
 	partition_fragment(p, 0, 4000000000000, 1, 1, 1, 1);
-	ok(partition_close(p, fragment, 0) == PARTITION_OK, "two of 4e12 realisations");
+	ok(partition_close(p, fragment, 0) == PARTITION_OK,
+		"two rows in 4e12 realisations are accepted");
 	near(partition_count(p, 0, &mean) / 4000000000001., 1, 1e-15,
-		"those that shed nothing are counted");
+		"realisations without particles are counted");
 	for (int i = 0; i < N; i++) {
 		partition_replicate(p, 0, rng, &w);
 		none += partition_large(p, 0.5, 1) == 0;
 	}
 	near((double)none / N, exp(-2), 4 * sqrt(0.135 * 0.865 / N),
-		"none of them is drawn in exp(-2) of the replicates");
+		"neither row is drawn in exp(-2) of the replicates");
 	gsl_rng_free(rng);
 	partition_free(p);
 }
@@ -239,17 +241,18 @@ static void check_groups(void)
 		partition_fragment(p, 0, r, 1, 1, 1, r % 10 == 3);
 		partition_fragment(p, 0, r, 2, 1, 1, r % 10 != 3);
 	}
-	ok(partition_close(p, fragment, 0) == PARTITION_OK, "20000 realisations");
+	ok(partition_close(p, fragment, 0) == PARTITION_OK,
+		"20000 realisations are accepted");
 	partition_estimate(p, 0, &w);
 	ok(partition_large(p, 0.0999, 0) == 1 && partition_large(p, 0.1001, 0) == 2,
-		"groups keep counts");
-	near(w.step_variance, 0, 1e-12, "equal volumes do not scatter");
+		"groups keep the counts of particles");
+	near(w.step_variance, 0, 1e-12, "equal volumes have no variance");
 	for (int i = 0; i < N; i++) {
 		partition_replicate(p, 0, rng, &w);
 		first += partition_large(p, 0.1, 0) == 1;
 	}
 	ok(first > 0.4 * N && first < 0.6 * N,
-		"half of the replicates have the share of large particles");
+		"half of the replicates reach the share of large particles");
 	gsl_rng_free(rng);
 	partition_free(p);
 }
@@ -265,11 +268,13 @@ static void check_order(void)
 	for (int s = 1; s <= 3; s++)
 		for (int r = 0; r < 50; r++)
 			partition_fragment(p, 0, r, s, r + s, 1, 0);
-	ok(partition_close(p, fragment, 0) == PARTITION_OK, "rows in the order of steps");
+	ok(partition_close(p, fragment, 0) == PARTITION_OK,
+		"rows in the order of steps are accepted");
 	partition_estimate(p, 0, &w);
-	near(w.mean, 24.5 + 2, 1e-12, "are put together by realisation");
+	near(w.mean, 24.5 + 2, 1e-12,
+		"rows in the order of steps are grouped by realisation");
 	partition_free(p);
-	/* More of them, so that the first realisations were handed on. */
+	/* More rows, so that the first realisations have been passed on. */
 	p = partition_new(fragment, 1, 0);
 	add_class(p, 1, NAN, -1);
 	for (int s = 1; s <= 2 && status == PARTITION_OK; s++)
@@ -277,7 +282,7 @@ static void check_order(void)
 			status = partition_fragment(p, 0, r, s, 1, 1, 0);
 	if (status == PARTITION_OK)
 		status = partition_close(p, fragment, 0);
-	ok(status == PARTITION_APART, "unless they stand too far apart for memory");
+	ok(status == PARTITION_APART, "rows too far apart for memory are refused");
 	partition_free(p);
 }
 
@@ -291,17 +296,20 @@ static void check_sparse(void)
 	partition_fragment(p, 0, 0, 1, 2, 1, 0);
 	partition_fragment(p, 0, 0, 1, 4, 1, 1);
 	partition_fragment(p, 0, 3, 2, 8, 1, 1);
-	ok(partition_close(p, fragment, 0) == PARTITION_OK, "a particle table");
+	ok(partition_close(p, fragment, 0) == PARTITION_OK,
+		"a table of particles is accepted");
 	partition_estimate(p, 0, &w);
-	near(w.mean, 14 / 8., 1e-15, "realisations without particles shed nothing");
+	near(w.mean, 14 / 8., 1e-15, "realisations without particles have no volume");
 	near(w.step_variance, (36 + 64 - 14 * 14 / 8.) / 7, 1e-13,
-		"variance over all steps");
+		"the variance of a step is that over all steps");
 	near(w.life_variance, (36 + 64 - 14 * 14 / 4.) / 3 / 4, 1e-13,
-		"variance over realisations of their mean over both steps");
-	ok(partition_large(p, 0.5, 1) == 1, "half of the first particles are large");
-	ok(partition_large(p, 0.6, 1) == 2, "two of three after step 2");
-	ok(partition_large(p, 0.7, 1) == 0, "never 70 %% of all");
-	ok(partition_large(p, 0.7, 0) == 2, "but 100 %% of those of step 2");
+		"the variance of a life is that of the means of realisations");
+	ok(partition_large(p, 0.5, 1) == 1, "half of the particles of step 1 are large");
+	ok(partition_large(p, 0.6, 1) == 2,
+		"two of three particles are large after step 2");
+	ok(partition_large(p, 0.7, 1) == 0, "the large particles are never 70 %% of all");
+	ok(partition_large(p, 0.7, 0) == 2,
+		"the large particles are 100 %% of those of step 2");
 	partition_free(p);
 }
 
@@ -312,28 +320,29 @@ static void check_refusals(void)
 
 	ok(partition_close(p, fragment, 0.1) == PARTITION_EMPTY &&
 			partition_culprit(p) == c,
-		"a class without fragments");
+		"a class without fragments is refused");
 	partition_free(p);
 	p = two_classes(0.9e-6, 0.2e-6, 1);
 	ok(partition_close(p, fragment, 0.1) == PARTITION_AREA,
-		"more area than there is");
+		"classes larger than the component are refused");
 	partition_free(p);
 	p = two_classes(-1, -1, 1);
 	c = add_class(p, 0, 1e6, -1);
 	partition_fragment(p, c, 0, 1, 1, 0, 0);
-	ok(partition_close(p, fragment, 0.1) == PARTITION_PRESSURE, "a pressure twice");
+	ok(partition_close(p, fragment, 0.1) == PARTITION_PRESSURE,
+		"a pressure that occurs twice is refused");
 	partition_free(p);
 	p = two_classes(-1, -1, 1);
 	ok(partition_fragment(p, 1, 2, 2, 1, 0, 0) == PARTITION_TWICE,
-		"a step twice running");
+		"a step twice in succession is refused");
 	partition_fragment(p, 0, 0, 1, 1, 0, 0);
 	ok(partition_close(p, fragment, 0.1) == PARTITION_TWICE &&
 			partition_culprit(p) == 0,
-		"a step twice apart");
+		"a step twice in rows apart is refused");
 	partition_free(p);
 	p = two_classes(-1, -1, 3);
 	ok(partition_close(p, fragment, 0.1) == PARTITION_EMPTY,
-		"no step left after running-in");
+		"fragments without a step after running-in are refused");
 	partition_free(p);
 	p = partition_new(area, 1, 0);
 	for (int k = 0; k < PARTITION_CLASSES_MAX; k++)

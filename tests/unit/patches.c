@@ -19,19 +19,22 @@ static void by_hand(void)
 	ok(contact_patches(&g, p, &a, &n) == NUM_OK && n == 2 && a[0].cells == 2 &&
 			a[1].cells == 1,
 		"cells on either side of a periodic edge are one patch");
-	near(a[0].load, 4, 1e-15, "load of a patch is p dx dy");
-	near(a[0].perimeter, 4 * 2 + 2 * 0.5, 1e-15, "perimeter of two cells in a row");
+	near(a[0].load, 4, 1e-15, "the load of a patch is p dx dy");
+	near(a[0].perimeter, 4 * 2 + 2 * 0.5, 1e-15,
+		"the perimeter of two cells in a row is right");
 	near(a[0].x, (0.5 * 1 - 0.5 * 3) / 4 * 2 + 8, 1e-15,
 		"the centre of a periodic patch is in the grid");
-	near(a[1].peak, 5, 1e-15, "largest pressure of a patch");
-	near(a[1].y, 0.75, 1e-15, "centre of a cell");
+	near(a[1].peak, 5, 1e-15, "the peak of a patch is its largest pressure");
+	near(a[1].y, 0.75, 1e-15,
+		"the centre of a patch of one cell is that of the cell");
 	free(a);
 	g.periodic = 0;
 	ok(contact_patches(&g, p, &a, &n) == NUM_OK && n == 3,
-		"on a free grid they are two");
+		"on a free grid the cells at the edges are two patches");
 	free(a);
 	contact_quantiles(p, 12, part, q, 3);
-	ok(q[0] == 1 && q[1] == 3 && q[2] == 5, "quantiles over the cells in contact");
+	ok(q[0] == 1 && q[1] == 3 && q[2] == 5,
+		"the quantiles are those of the cells in contact");
 }
 
 /* Area of a Hertz contact wherever it lies on the grid: counted, and corrected. */
@@ -71,7 +74,7 @@ static void hertz_area(void)
 		corrected += (contact_corrected_area(&g, area, rim) / exact - 1) / PLACES;
 	}
 	ok(counted > 0.01 && fabs(corrected) < 0.25 * counted,
-		"Hertz: area counted %+.3f %%, corrected for the perimeter %+.3f %%",
+		"Hertz: the counted area is off by %+.3f %%, corrected for the perimeter by %+.3f %%",
 		100 * counted, 100 * corrected);
 	contact_free(c);
 	fft_free(h);

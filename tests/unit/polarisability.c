@@ -38,8 +38,10 @@ static void test_golden(void)
 		struct polarisability b = sphere_polarisability(
 			row[i].a, row[i].f, row[i].mu, row[i].sigma);
 
-		near(b.re / row[i].re, 1, 1e-12, "golden: real part");
-		near(b.im / row[i].im, 1, 1e-12, "golden: imaginary part");
+		near(b.re / row[i].re, 1, 1e-12,
+			"the real part is that of the reference");
+		near(b.im / row[i].im, 1, 1e-12,
+			"the imaginary part is that of the reference");
 	}
 }
 
@@ -58,7 +60,9 @@ static void test_series(void)
 			worst = fmax(worst, cabs(b.re + I * b.im - want) / cabs(want));
 			worst_im = fmax(worst_im, fabs(b.im / cimag(want) - 1));
 		}
-	ok(worst < 1e-13, "the field equation by series: %.1g of the moment", worst);
+	ok(worst < 1e-13,
+		"a series solution of the field equation gives the moment to %.1g",
+		worst);
 	ok(worst_im < 1e-12, "the field equation confirms the imaginary part (%.1g)",
 		worst_im);
 }
@@ -69,17 +73,20 @@ static void test_limits(void)
 	double a = 1e-5, f = 1e3, sigma = 5e7, s = M_PI * f * mu0 * sigma * a * a;
 	double least = 0, value[3] = { 0 }, jump = 0;
 
-	near(b.re, 2 * 149 / 152.0, 1e-15, "static field: 2 (mu - 1) / (mu + 2)");
-	ok(b.im == 0, "static field: in phase");
+	near(b.re, 2 * 149 / 152.0, 1e-15,
+		"in a static field the polarisability is 2 (mu - 1) / (mu + 2)");
+	ok(b.im == 0, "in a static field the moment is in phase");
 	b = sphere_polarisability(a, f, 1, sigma);
-	near(b.im / (-2 * s / 15), 1, 1e-6, "slow currents: -(2/15) s");
-	near(b.re / (-8 * s * s / 315), 1, 1e-6, "slow currents: -(8/315) s^2");
+	near(b.im / (-2 * s / 15), 1, 1e-6,
+		"slow currents give an imaginary part of -(2/15) s");
+	near(b.re / (-8 * s * s / 315), 1, 1e-6,
+		"slow currents give a real part of -(8/315) s^2");
 	b = sphere_polarisability(1, 1e12, 1, 6e7);
-	near(b.re, -1, 1e-6, "fast currents: -1");
+	near(b.re, -1, 1e-6, "fast currents give -1");
 	/* 2.40922 is where the imaginary part of a non-magnetic sphere is least. */
 	for (double r = 2.3; r < 2.5; r += 1e-3)
 		least = fmin(least, sphere_polarisability(r, 1 / (M_PI * mu0), 1, 1).im);
-	near(least, -0.355146, 1e-6, "the largest loss");
+	near(least, -0.355146, 1e-6, "the largest loss is right");
 	/* from the fraction to the closed form at s = 400 */
 	for (int i = 0; i < 2000; i++) {
 		b = sphere_polarisability(19.9 + 1e-4 * i, 1 / (M_PI * mu0), 1, 1);
@@ -90,21 +97,24 @@ static void test_limits(void)
 		if (i > 1)
 			jump = fmax(jump, fabs(value[2] - 2 * value[1] + value[0]));
 	}
-	ok(jump < 1e-11, "no jump where the form changes (%.1g)", jump);
+	ok(jump < 1e-11,
+		"the polarisability is continuous where the formula changes (%.1g)",
+		jump);
 }
 
 static void test_materials(void)
 {
 	struct polarisability b = material_response(material_find("ferrous"), 1e-4, 1e5);
 
-	ok(b.re == 1 && b.im == 0, "ferrous is the law of the cube of the diameter");
+	ok(b.re == 1 && b.im == 0, "ferrous particles follow the cube of the diameter");
 	b = material_response(material_find("copper"), 1e-4, 1e5);
 	near(b.im, -7.6315414178458e-3 / 2, 1e-14, "copper has half its polarisability");
-	ok(!material_find("cheese") && !material_at(-1) && !material_at(1000),
+	ok(!material_find("an unknown material is not found") && !material_at(-1) &&
+			!material_at(1000),
 		"other names are none");
 	for (int i = 0; material_at(i); i++)
-		ok(material_find(material_at(i)->name) == material_at(i), "%s is found",
-			material_at(i)->name);
+		ok(material_find(material_at(i)->name) == material_at(i),
+			"the material %s is found", material_at(i)->name);
 	/* The size of a non-ferrous particle that looks as large as 100 um of ferrous:
 	 * d^5 = 60 d_F^3 / (pi f mu0 sigma) while its currents are slow; here they are
 	 * not quite, and the law is 0.2 % off. */

@@ -33,8 +33,9 @@ static void check_gamma(double left, double mean, double variance)
 			worst, fmax(fabs(f - (double)i / N), fabs(f - (i + 1.) / N)));
 	}
 	/* 1.95 / sqrt(N) is exceeded once in 1000. */
-	ok(worst < 1.95 / sqrt(N), "passage of %g at %g +- %g: distance %.4f", left, mean,
-		sqrt(variance), worst);
+	ok(worst < 1.95 / sqrt(N),
+		"the passage of %g at %g +- %g has the gamma distribution: distance %.4f",
+		left, mean, sqrt(variance), worst);
 	gsl_rng_free(rng);
 }
 
@@ -44,30 +45,35 @@ static void check_passages(void)
 	double a[4] = { 3, INFINITY, 1, 50 };
 	struct remaining_summary s;
 
-	near(remaining_constant(6, 2), 3, 0, "time at a constant rate");
+	near(remaining_constant(6, 2), 3, 0, "the time at a constant rate is right");
 	ok(isinf(remaining_constant(6, 0)) && isinf(remaining_constant(6, -1)),
-		"no wear, no failure");
+		"without wear there is no failure");
 	ok(remaining_constant(0, 2) == 0 && remaining_constant(-1, 0) == 0,
 		"a threshold that is reached leaves nothing");
 	check_gamma(50, 1, 1);
 	check_gamma(1, 1, 4);
 	check_gamma(0.3, 1, 0.25);
 	check_gamma(1e-14, 1e-15, 1e-32);
-	near(remaining_gamma(50, 2, 0, rng), 25, 0, "no variance: the constant rate");
-	near(remaining_gamma(1e6, 1, 1e-12, rng), 1e6, 1e-3, "law of large numbers");
+	near(remaining_gamma(50, 2, 0, rng), 25, 0,
+		"without variance the passage is that of the constant rate");
+	near(remaining_gamma(1e6, 1, 1e-12, rng), 1e6, 1e-3,
+		"for many steps the passage is that of the mean rate");
 	ok(remaining_gamma(0, 1, 1, rng) == 0 && isinf(remaining_gamma(1, 0, 1, rng)) &&
 			isinf(remaining_gamma(INFINITY, 1, 1, rng)),
-		"reached, and never");
-	ok(remaining_gamma(1, 1e-200, 1e200, rng) >= 0, "a shape that underflows ends");
-	near(remaining_large(3, 10, 12), 18, 0, "large particles at the end of step 3");
+		"a passage is 0 where the threshold is reached and infinite where there is no wear");
+	ok(remaining_gamma(1, 1e-200, 1e200, rng) >= 0,
+		"a shape that underflows does not loop");
+	near(remaining_large(3, 10, 12), 18, 0,
+		"large particles fail the unit at the end of step 3");
 	ok(remaining_large(3, 10, 31) == 0 && isinf(remaining_large(0, 10, 0)),
-		"passed, and never");
+		"a step that has passed leaves 0, and one that never comes infinity");
 	s = remaining_sum_up(a, 4, 40);
 	ok(s.mean == 2 && s.p_no_failure == 0.5 && a[0] == 1 && isinf(a[2]) &&
 			isinf(a[3]),
-		"beyond the horizon is no failure");
+		"samples beyond the horizon are no failure");
 	a[0] = a[1] = 1.5e308;
-	ok(remaining_sum_up(a, 2, INFINITY).mean == 1.5e308, "means do not overflow");
+	ok(remaining_sum_up(a, 2, INFINITY).mean == 1.5e308,
+		"the mean of large samples does not overflow");
 	gsl_rng_free(rng);
 }
 

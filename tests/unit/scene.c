@@ -31,18 +31,20 @@ static void test_bursts(void)
 		bad += x < 0 || x > 0.3 || (i % 4 && t[i] - t[i - 1] < 0.05 - 1e-12);
 		mean[i % 4] += x / (n / 4);
 	}
-	ok(n == 20000 && !bad, "bursts: within their span and never closer than the gap");
+	ok(n == 20000 && !bad,
+		"bursts are within their span and never closer than the gap");
 	/* k-th smallest of four on [0, 0.15], and k gaps; standard error 0.0005 */
 	for (int k = 0; k < 4; k++)
 		near(mean[k], 0.15 * (k + 1) / 5 + 0.05 * k, 0.002,
-			"mean place in the burst");
+			"the mean place in the burst is its middle");
 	par.number = 10;
 	n = all(&par, t);
-	ok(n == 10 && t[9] < 2.8 + 1e-12, "a last burst that is not full");
+	ok(n == 10 && t[9] < 2.8 + 1e-12, "a last burst may be incomplete");
 	par = (struct arrivals_par){ 1, 0, 0, 5, 0, 1, 0, 0.4, 0.1 };
 	all(&par, t);
-	near(t[4] - t[0], 0.4, 1e-15, "no freedom: exactly one gap apart");
-	near(t[0], 1, 1e-15, "no freedom: the first one at the start");
+	near(t[4] - t[0], 0.4, 1e-15,
+		"without freedom particles are exactly one gap apart");
+	near(t[0], 1, 1e-15, "without freedom the first particle is at the start");
 }
 
 static void test_poisson(void)
@@ -59,8 +61,9 @@ static void test_poisson(void)
 		square += (double)n * n;
 	}
 	/* mean = variance = 100; standard errors 0.22 and 3.2 */
-	near(sum / 2000, 100, 0.9, "Poisson: mean number");
-	near(square / 2000 - sum * sum / 4e6, 100, 13, "Poisson: variance of the number");
+	near(sum / 2000, 100, 0.9, "Poisson: the mean number is right");
+	near(square / 2000 - sum * sum / 4e6, 100, 13,
+		"Poisson: the variance of the number is right");
 	for (uint32_t r = 0; r < 200; r++) {
 		struct arrivals_par par = { 1, r, 50, UINT64_MAX, 0, 0, 0, 2, 0.015 };
 		int n = all(&par, t);
@@ -89,9 +92,10 @@ static void test_draws(void)
 		mean += p.diameter / 20000;
 		cube += pow(p.diameter / 1e-4, 3) / 20000;
 	}
-	ok(!bad, "drawn particles keep to their ranges, and the transit is the spacing");
-	near(mean, 100e-6, 1e-6, "mean diameter");
-	near(cube, 1.25, 0.03, "mean volume of diameters from 0.5 to 1.5");
+	ok(!bad,
+		"drawn particles are within their ranges, and the transit follows from the spacing");
+	near(mean, 100e-6, 1e-6, "the mean diameter is right");
+	near(cube, 1.25, 0.03, "the mean volume of diameters from 0.5 to 1.5 is right");
 }
 
 /* One scene in pieces of a given size. */
@@ -136,7 +140,7 @@ static void test_pieces(void)
 		render(piece[k], 5000, x);
 		for (size_t i = 0; i < 2 * 5000; i++)
 			worst = fmax(worst, fabs(x[i] - whole[i]));
-		ok(worst < 2e-13, "pieces of %zu frames: the same signal (%.1g)",
+		ok(worst < 2e-13, "pieces of %zu frames give the same signal (%.1g)",
 			piece[k], worst);
 	}
 }
@@ -166,8 +170,9 @@ static void test_memory(void)
 	/* one sine period of 100 samples and amplitude kappa v d^3: half the square times
 	 * 100, at two sensors; the last particles are still on their way */
 	near(energy / 1000 / 100 / pow(7.85e10 * 12.7e-12, 2), 1, 0.005,
-		"energy of the pulses");
-	near(scene_end(s), 9.99 + 0.026 + 0.005, 1e-9, "end of the last pulse");
+		"the energy of the pulses is right");
+	near(scene_end(s), 9.99 + 0.026 + 0.005, 1e-9,
+		"the end of the last pulse is right");
 	scene_free(s);
 }
 

@@ -34,13 +34,13 @@ static void test_shape(enum pulse_shape shape)
 		if (fabs(fabs(s) - pulse_reach(shape)) > 2 * h)
 			worst_slope = fmax(worst_slope, fabs(d - pulse_slope(shape, s)));
 	}
-	near(top, 1, 1e-8, "peak is 1");
-	ok(odd == 0, "%s: odd in time", name[shape]);
+	near(top, 1, 1e-8, "the peak is 1");
+	ok(odd == 0, "%s: the pulse is odd in time", name[shape]);
 	ok(pulse_value(shape, -0.1) > 0, "%s: the first lobe is positive", name[shape]);
-	near(worst_slope, 0, 2e-6, "slope is the derivative");
+	near(worst_slope, 0, 2e-6, "the slope is the derivative");
 	ok(pulse_value(shape, pulse_reach(shape)) == 0 &&
 			fabs(pulse_value(shape, pulse_reach(shape) * (1 - 1e-12))) < 1e-6,
-		"%s: nothing to speak of is cut off", name[shape]);
+		"%s: the part that is cut off is negligible", name[shape]);
 }
 
 static void test_sample(enum pulse_shape shape, double t0, double T)
@@ -61,8 +61,8 @@ static void test_sample(enum pulse_shape shape, double t0, double T)
 		worst_T = fmax(worst_T, fabs(by_T[i] * T + s * pulse_slope(shape, s)));
 	}
 	ok(worst < 1e-14 && worst_t < 1e-13 && worst_T < 1e-13,
-		"%s: samples at t0 = %g, T = %g (%.1g %.1g %.1g)", name[shape], t0, T,
-		worst, worst_t, worst_T);
+		"%s: sampled values and derivatives at t0 = %g, T = %g are right (%.1g %.1g %.1g)",
+		name[shape], t0, T, worst, worst_t, worst_T);
 	ok(p[0] == 0 && p[n - 1] == 0, "%s: the support holds the whole pulse",
 		name[shape]);
 }
@@ -87,7 +87,7 @@ static void test_equation(enum pulse_shape shape)
 	ok(worst < 1e-6, "%s: the pulse is (3-1) with the stated l(x) (%.1g)",
 		name[shape], worst);
 	near(sensor_diameter(sensor_kappa(&c, shape), v, peak) / d, 1, 1e-14,
-		"diameter from voltage");
+		"the diameter follows from the voltage");
 }
 
 static void test_diameter_error(void)
@@ -97,7 +97,7 @@ static void test_diameter_error(void)
 	/* Errors that always come together move d as the formula moves it. */
 	near(sensor_diameter_error(d, ra, rt, 1),
 		sensor_diameter(1e11, 12 / (1 + rt), 0.7 * (1 + ra)) - d, 1e-5 * d * rt,
-		"error of the diameter where voltage and time err together");
+		"the error of the diameter is right where voltage and time err together");
 	near(sensor_diameter_error(d, ra, rt, -1),
 		sensor_diameter(1e11, 12 / (1 + rt), 0.7 * (1 - ra)) - d, 1e-5 * d * rt,
 		"the error of the diameter is right for opposite errors");
@@ -109,9 +109,10 @@ static void test_pipe(enum pipe_profile profile, double top)
 	double mean = pipe_mean_velocity(&pipe), sum = 0, worst = 0;
 	int n = 200000;
 
-	near(mean, 12.732395447351628, 1e-12, "60 L/min in 1 cm flow at 12.73 m/s");
+	near(mean, 12.732395447351628, 1e-12,
+		"60 L/min in a pipe of 1 cm flow at 12.73 m/s");
 	near(pipe_velocity(&pipe, 0) / mean, top, 1e-12,
-		"velocity on the axis over the mean");
+		"the velocity on the axis over the mean is right");
 	/* the flow is the integral of the velocity; substitution for the steep wall */
 	for (int i = 0; i < n; i++) {
 		double y = pow((i + 0.5) / n, 3), r = 0.005 * (1 - y);
@@ -136,7 +137,7 @@ static void test_pipe(enum pipe_profile profile, double top)
 				1) *
 				1e-6);
 	}
-	ok(worst < 1e-12, "positions follow the flow (%.1g)", worst);
+	ok(worst < 1e-12, "drawn positions follow the flow (%.1g)", worst);
 }
 
 int main(void)

@@ -68,7 +68,7 @@ static int separate(const struct pulse *p, int m, size_t n, double sigma, double
 			echo);
 	}
 	ok(separate_push(s, x, n) == SEPARATE_OK && separate_end(s) == SEPARATE_OK,
-		"%d pulses in noise %g", m, sigma);
+		"%d pulses in noise %g are found", m, sigma);
 	while (count < 2 * MOST && separate_next(s, &found[count]))
 		count++;
 	separate_free(s);
@@ -136,7 +136,8 @@ static void test_own_shape(void)
 	count = separate(p, m, 25000, 0.0316, 0.2);
 	ok(count == m, "pulses with an echo: %d found of %d", count, m);
 	good = matched(p, m, count, 5, &rms);
-	ok(good == m && rms < 0.18, "each of them, delays to %.3f samples", rms);
+	ok(good == m && rms < 0.18,
+		"each pulse is found once, with delays right to %.3f samples", rms);
 }
 
 /* Pairs 5 samples apart, a twentieth of T, at 40 dB: the bound is 0.06 samples at a = 1
@@ -150,9 +151,11 @@ static void test_pairs(void)
 	for (int i = 0; i < 80; i++)
 		p[i] = pulse_at(500 + 400 * (i / 2) + 5 * (i % 2), (uint64_t)i);
 	count = separate(p, 80, 17000, 0.01, 0);
-	ok(count == 80, "pairs 5 samples apart: %d found of 80", count);
+	ok(count == 80, "%d of 80 pairs 5 samples apart are found", count);
 	good = matched(p, 80, count, 2, &rms);
-	ok(good == 80 && rms < 0.12, "both of each, delays to %.3f samples", rms);
+	ok(good == 80 && rms < 0.12,
+		"both pulses of each pair are found, with delays right to %.3f samples",
+		rms);
 }
 
 /* One long section of pulses some 90 samples apart; one of them lasts half as long again.

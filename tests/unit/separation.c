@@ -44,8 +44,8 @@ static void test_shape(enum pulse_shape pulse, const char *name)
 		if (fabs(i - t0) < end)
 			worst_T = fmax(worst_T, fabs((up[i] - p[i]) / h - by_T[i]));
 	/* Difference quotients: curvature h / 2 (2 pi / T)^2 and rounding 1e-16 / h. */
-	near(worst_t, 0, 2e-6, "its derivative by arrival");
-	near(worst_T, 0, 2e-6, "its derivative by duration");
+	near(worst_t, 0, 2e-6, "the derivative of a pulse by its arrival is right");
+	near(worst_T, 0, 2e-6, "the derivative of a pulse by its duration is right");
 	shape_free(s);
 }
 
@@ -62,7 +62,7 @@ static void test_stft(void)
 	stft_inverse(s, y, n, back);
 	for (size_t i = 0; i < n; i++)
 		worst = fmax(worst, fabs(back[i] - x[i]));
-	near(worst, 0, 1e-13, "STFT and back");
+	near(worst, 0, 1e-13, "the STFT and its inverse give the signal back");
 	ok(!stft_new(63, 32) && !stft_new(64, 65), "odd windows and gaps are refused");
 	free(y);
 	stft_free(s);
@@ -98,18 +98,19 @@ static void test_masks(void)
 		for (int i = 0; i < 600; i++)
 			y2[i] += 0.909 * p[i];
 	}
-	ok(masks_find(m, y1, y2, 600, source) == 2, "two peaks in the histogram");
+	ok(masks_find(m, y1, y2, 600, source) == 2, "the histogram has two peaks");
 	first = source[0].delta < source[1].delta ? 0 : 1;
-	near(source[first].delta, 2.121, 0.35, "delay of the first");
-	near(source[1 - first].delta, 4.545, 0.35, "delay of the second");
-	near(source[0].attenuation, 0.909, 0.03, "attenuation");
+	near(source[first].delta, 2.121, 0.35, "the delay of the first peak is right");
+	near(source[1 - first].delta, 4.545, 0.35,
+		"the delay of the second peak is right");
+	near(source[0].attenuation, 0.909, 0.03, "the attenuation is right");
 	masks_separate(m, first, x);
 	for (int i = 0; i < 600; i++) {
 		left += i < 290 ? (x[i] - y1[i]) * (x[i] - y1[i]) : x[i] * x[i];
 		energy += i < 290 ? y1[i] * y1[i] : 0;
 	}
 	ok(left < 0.1 * energy,
-		"its mask keeps the first pulse and drops the second (%.1f dB)",
+		"the mask of the first peak keeps the first pulse and drops the second (%.1f dB)",
 		10 * log10(energy / left));
 	masks_free(m);
 	shape_free(shape);
@@ -126,15 +127,15 @@ static void test_tones(void)
 			0.05 * normal((uint64_t)i);
 		y2[i] = 0.1 * sin(w[0] * i) + 0.05 * normal(N + (uint64_t)i);
 	}
-	ok(tones_find(y1, y2, N, TONES_MAX, omega) == 2, "two tones found");
+	ok(tones_find(y1, y2, N, TONES_MAX, omega) == 2, "two tones are found");
 	/* Resolution 1 / N; a tenth of it is easily reached at this level. */
-	near(omega[0], w[0], 0.1 * 2 * acos(-1) / N, "first frequency");
-	near(omega[1], w[1], 0.1 * 2 * acos(-1) / N, "second frequency");
+	near(omega[0], w[0], 0.1 * 2 * acos(-1) / N, "the first frequency is right");
+	near(omega[1], w[1], 0.1 * 2 * acos(-1) / N, "the second frequency is right");
 	for (int i = 0; i < N; i++)
 		x[i] = y1[i] = 0.3 + 0.5 * cos(w[0] * i + 1) + 0.2 * sin(w[1] * i);
 	for (int i = 1000; i < 1400; i++) /* a tenth of the record is something else */
 		x[i] += 3;
-	ok(tones_fit(x, N, 0, 2, w, c, NULL, NULL) == TONES_OK, "tones fitted");
+	ok(tones_fit(x, N, 0, 2, w, c, NULL, NULL) == TONES_OK, "the tones are fitted");
 	tones_remove(x, N, 0, 2, w, 0, c, N, c);
 	for (int i = 0; i < N; i++)
 		worst = fmax(worst, fabs(x[i] - (i >= 1000 && i < 1400 ? 3 : 0)));
@@ -143,7 +144,7 @@ static void test_tones(void)
 		y1[i] = (i % 250 < 50 ? sin(2 * acos(-1) * (i % 250) / 50) : 0) +
 			0.05 * normal((uint64_t)i);
 	ok(tones_find(y1, y1, N, TONES_MAX, omega) > 2, "a train of pulses has lines");
-	ok(tones_confirm(y1, y1, N, 1, 3, omega) == 0, "but no tones");
+	ok(tones_confirm(y1, y1, N, 1, 3, omega) == 0, "a train of pulses has no tones");
 }
 
 /* A tone of cosine c and sine s taken from silence, against direct evaluation.  The
@@ -178,7 +179,8 @@ static void test_tone_values(void)
 			}
 		}
 		/* what tones.h states; half of it may be the reference's */
-		ok(worst <= 1e-15, "tones at index %.0f: %.1e off", start[k], worst);
+		ok(worst <= 1e-15, "tones at index %.0f are right within %.1e", start[k],
+			worst);
 	}
 }
 
@@ -196,44 +198,45 @@ static void test_small(void)
 	for (int i = 0; i < N; i++)
 		x[i] = 2 * normal((uint64_t)i) + 50 * sin(0.01 * i);
 	/* N normal numbers: the median scatters by 1.2 / sqrt N. */
-	near(robust_noise(x, N, 4, work), 2, 0.15, "noise under a slow signal");
+	near(robust_noise(x, N, 4, work), 2, 0.15,
+		"the noise under a slow signal is right");
 	for (int i = 0; i < N; i++)
 		x[i] = i % 2 ? 3 + 0.1 * normal((uint64_t)i) : 1e3;
 	near(count_level(x + 1, N / 2, 2, work), 0.5, 0.05,
-		"level to count from: five deviations of one channel, whatever its mean");
+		"the level to count from is five deviations of one channel, whatever its mean");
 	for (int i = 0; i < 7; i++)
 		work[i] = "4361725"[i];
-	near(robust_median(work, 7), '4', 0, "median");
+	near(robust_median(work, 7), '4', 0, "the median is right");
 	memset(x, 0, sizeof x);
 	shape_sample(shape, 1000.25, 100, 900, 200, x + 900, NULL, NULL);
 	shape_sample(shape, 1037.5, 100, 900, 250, work, NULL, NULL);
 	memset(work + 250, 0, sizeof work - 250 * sizeof *work);
 	lag = align_lag(x + 900, work, 3000, 500, r);
-	near(lag, 37.25, 0.01, "lag by cross-correlation, between samples");
+	near(lag, 37.25, 0.01, "cross-correlation gives the lag between samples");
 	align_autocorrelation(x, x, N, 100, r);
 	ok(r[50] < r[48] && r[50] < r[52],
 		"a sine pulse is least like itself half its length on");
 	for (int i = 0; i < N; i++)
 		if (count_sample(count, 2 * x[i], &peak))
 			peaks++;
-	ok(peaks == 1 && count_end(count, &peak) == 0, "one pulse, one peak");
-	near(peak.t, 975.25, 0.01, "its place");
-	near(peak.height, 2, 1e-4, "its height");
+	ok(peaks == 1 && count_end(count, &peak) == 0, "one pulse has one peak");
+	near(peak.t, 975.25, 0.01, "the place of the peak is right");
+	near(peak.height, 2, 1e-4, "the height of the peak is right");
 	s = sections_new(shape, 100, 3, 0);
 	sections_scan(s, x, x, 0, N, N);
 	sections_end(s);
 	ok(sections_first(s, &section) && section.begin < 950 && section.end > 1050 &&
 			section.end < 1300,
-		"one section around it");
+		"one section contains the pulse");
 	sections_take(s, section.end);
-	ok(!sections_first(s, &section), "and no other");
+	ok(!sections_first(s, &section), "there is no other section");
 	/* Gaussian field: at 1e-9 per sample the threshold is near 33, and falls with
 	 * rate. */
 	near(calibrate_drop(1e-9, shape, 100, 1, 20), 33, 3,
-		"threshold of a false alarm");
+		"the threshold of a false alarm rate is right");
 	ok(calibrate_drop(1e-6, shape, 100, 1, 20) <
 			calibrate_drop(1e-9, shape, 100, 1, 20),
-		"more false alarms, lower threshold");
+		"more false alarms give a lower threshold");
 	sections_free(s);
 	count_free(count);
 	shape_free(shape);
@@ -249,8 +252,10 @@ static void test_sections(void)
 	struct section first, second;
 	const double strong[2] = { 10, 2000 };
 
-	near(shape_reach_above(shape, 0.01), 1.07, 0.01, "where a tail is a hundredth");
-	near(shape_reach_above(shape, 0), shape_reach(shape), 1e-9, "and where it ends");
+	near(shape_reach_above(shape, 0.01), 1.07, 0.01,
+		"a pulse falls to a hundredth where stated");
+	near(shape_reach_above(shape, 0), shape_reach(shape), 1e-9,
+		"a pulse ends where stated");
 	for (int k = 0; k < 2; k++) {
 		struct joint_scene scene = {
 			.shape = shape, .duration = 100, .transit = 200, .gain = 1
@@ -267,15 +272,15 @@ static void test_sections(void)
 			sections_scan(s, x, x, 0, N, upto);
 		sections_end(s);
 		ok(sections_first(s, &first) && first.begin < 900 && !first.open,
-			"a section from the weak pulse on");
+			"a section begins with the weak pulse");
 		sections_take(s, first.end);
 		if (k == 0)
 			ok(first.end < 1200 && sections_first(s, &second) &&
 					second.begin > first.end && second.end > 1550,
-				"and one of another weak one");
+				"another weak pulse has a section");
 		else
 			ok(first.end > 1900 && !sections_first(s, &second),
-				"with the strong one in it");
+				"the section contains the strong pulse");
 	}
 	sections_free(s);
 	shape_free(shape);
@@ -283,9 +288,9 @@ static void test_sections(void)
 
 int main(void)
 {
-	test_shape(PULSE_SINE, "sine pulse from its table");
-	test_shape(PULSE_GAUSS, "Gaussian pulse from its table");
-	test_shape(PULSE_LORENTZ, "Lorentzian pulse from its table");
+	test_shape(PULSE_SINE, "the table of the sine pulse gives the pulse");
+	test_shape(PULSE_GAUSS, "the table of the Gaussian pulse gives the pulse");
+	test_shape(PULSE_LORENTZ, "the table of the Lorentzian pulse gives the pulse");
 	test_stft();
 	test_masks();
 	test_tones();

@@ -62,7 +62,7 @@ static void test_units(void)
 
 		ok(!message && fabs(v - good[i].want) <= 1e-15 * fabs(good[i].want) &&
 				!*end,
-			"%s is %g %s", good[i].text, good[i].want,
+			"'%s' is read as %g %s", good[i].text, good[i].want,
 			unit_name(good[i].unit));
 	}
 	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
@@ -83,7 +83,7 @@ static void test_number_text(void)
 
 	for (size_t i = 0; i < sizeof values / sizeof *values; i++)
 		same &= strtod(number_text(values[i], text), NULL) == values[i];
-	ok(same, "numbers read back as they were");
+	ok(same, "numbers are read back as they were written");
 	ok(!strcmp(number_text(0.1, text), "0.1"), "and are as short as can be");
 	ok(!strcmp(number_text(NAN, text), "nan"), "a missing value is nan");
 }

@@ -85,11 +85,11 @@ static void cattaneo(int n, double part, double e_shear, double e_stick, double 
 
 	ok(contact_solve(b.c, b.h, CONTACT_PRESSURE, load / area, b.p, NULL) ==
 			CONTACT_OK,
-		"a ball of %d cells is pressed", n);
+		"a ball of %d cells is solved", n);
 	normal = *contact_result(b.c);
 	ok(contact_slip(b.c, b.h, b.p, &normal, mu, part * mu * load / area,
 		   slip_compliance(&steel), b.q, &found) == CONTACT_OK,
-		"and bears %g of its friction", part);
+		"a ball under %g of its friction is solved", part);
 	near(found.load, part * mu * load, 1e-10 * load, "the shear adds up to the load");
 	for (size_t i = 0; i < b.cells; i++) {
 		double r2 = -2 * b.radius * b.h[i];
@@ -102,13 +102,14 @@ static void cattaneo(int n, double part, double e_shear, double e_stick, double 
 		inside++;
 	}
 	ok(over <= 1e-9, "friction bounds the shear");
-	near(sum / inside, 0, e_shear, "the shear is Mindlin's on average");
+	near(sum / inside, 0, e_shear,
+		"the mean error of the shear to Mindlin's is small");
 	stick = M_PI * b.a * b.a * rest * rest / area;
-	near(found.stick / stick, 1, e_stick, "and so is the part that sticks");
+	near(found.stick / stick, 1, e_stick, "the part that sticks is Mindlin's");
 	/* Johnson, 7.42 */
 	moved = 3 * mu * load / (16 * b.a) * 2 * (2 - steel.poisson[0]) / g *
 		(1 - rest * rest);
-	near(found.displacement / moved, 1, e_moved, "and the displacement");
+	near(found.displacement / moved, 1, e_moved, "the displacement is Mindlin's");
 	ball_free(&b);
 }
 
@@ -137,7 +138,7 @@ static void wave(double load, double part)
 	normal = *contact_result(c);
 	contact_slip(c, h, p, &normal, mu, part * mu * load * full, 1, q, &found);
 	ok(fabs(found.stick - want) <= 1. / N + 1e-12,
-		"%g of the friction of a wave under %g of full contact: sticks to a cell",
+		"a wave under %g of its friction and %g of full contact sticks as expected, to a cell",
 		part, load);
 	contact_free(c);
 }
@@ -155,14 +156,14 @@ static void limits(void)
 	normal = *contact_result(b.c);
 	contact_slip(b.c, b.h, b.p, &normal, mu, 0, 1, b.q, &none);
 	ok(none.displacement == 0 && none.load == 0 && none.stick == normal.area,
-		"without a tangential load all sticks");
+		"without a tangential load the whole contact sticks");
 	contact_slip(b.c, b.h, b.p, &normal, mu, mu * normal.pressure, 1, b.q, &all);
 	near(all.displacement, mu * normal.indentation, 1e-12 * normal.indentation,
-		"at the limit nothing sticks, after mu times the indentation");
-	ok(all.stick == 0, "no cell at all");
+		"at the limit of friction the displacement is mu times the indentation");
+	ok(all.stick == 0, "at the limit of friction no cell sticks");
 	ok(contact_slip(b.c, b.h, b.p, &normal, mu, 1.001 * mu * mean, 1, b.q, &all) ==
 			CONTACT_OVERLOAD,
-		"more than friction bears is refused");
+		"a load above the limit of friction is refused");
 	ok(slip_uncoupled(&steel) && slip_uncoupled(&soft) && !slip_uncoupled(&rigid),
 		"steel on steel and rubber on a rigid body do not couple, steel on a rigid one does");
 	near(slip_compliance(&steel), 1.7 / 1.4, 1e-14,
@@ -210,16 +211,16 @@ static void unloading(void)
 	memcpy(full, b.p, b.cells * sizeof(*full));
 	a = sqrt(contact_result(b.c)->area * 9 * b.a * b.a / M_PI);
 	flow = contact_unloaded(b.cells, b.h, b.p, gap, hardness, low);
-	ok(flow.depth > 0, "a ball at the hardness flows");
+	ok(flow.depth > 0, "a ball at the hardness deforms plastically");
 	back = path(&b, low, load, -1, STEPS, gap, &stiffness);
 	near((loading + back) / (hardness * flow.sum * b.par.dx * b.par.dy), 1, 1e-4,
-		"what the loop takes is hardness times the volume that flows");
+		"the work of the loop is hardness times the displaced volume");
 	near(stiffness / (2 * modulus() * a), 1, 1e-2,
-		"it is let go at 2 E* a, as any round contact");
+		"the unloading stiffness is 2 E* a, as of any round contact");
 	contact_solve(b.c, low, CONTACT_PRESSURE, load / (9 * b.a * b.a), b.p, NULL);
 	for (size_t i = 0; i < b.cells; i++)
 		change = fmax(change, fabs(b.p[i] - full[i]));
-	near(change / hardness, 0, 1e-8, "pressed again it bears the same pressure");
+	near(change / hardness, 0, 1e-8, "reloading gives the same pressure");
 	ball_free(&b);
 	fft_free(gap);
 	fft_free(low);

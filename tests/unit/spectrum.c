@@ -72,7 +72,8 @@ static void check_correlation(
 
 			worst = fmax(worst, fabs(got - want));
 		}
-	ok(worst < 1e-12, "%s correlation, lengths %g and %g on %d x %d: error %.1e",
+	ok(worst < 1e-12,
+		"%s correlation, lengths %g and %g on %d x %d, holds: error %.1e",
 		kind == SPECTRUM_GAUSS ? "Gaussian" : "exponential", cx, cy, nx, ny,
 		worst);
 	spectrum_free(s);
@@ -94,7 +95,8 @@ static void check_variance(void)
 		sum += z[5 * N + 2] * z[5 * N + 2];
 	}
 	/* Standard error of a variance: sqrt(2 / MANY) = 2.2 %; four of them. */
-	near(sum / MANY, want, 0.09 * want, "variance at a point over 4000 realisations");
+	near(sum / MANY, want, 0.09 * want,
+		"the variance at a point over 4000 realisations is 1");
 	spectrum_free(s);
 }
 
@@ -132,7 +134,7 @@ static void check_refinement(void)
 			power = fmax(power, cabs(ca));
 		}
 	ok(worst < 1e-13 * power * N,
-		"512 and 1024 points: the same long waves, to %.1e of the largest",
+		"512 and 1024 points have the same long waves, to %.1e of the largest",
 		worst / power);
 	/* Means of 2 x 2 fine cells against coarse samples: they differ by the curvature
 	 * within a cell, (q dx)^2 / 16 with q about 2 / 0.05: 4e-4. */
@@ -146,7 +148,7 @@ static void check_refinement(void)
 			rms += a[iy * N + ix] * a[iy * N + ix];
 		}
 	ok(sqrt(mean / rms) < 2e-3,
-		"512 and 1024 points: heights agree cell by cell, rms %.1e",
+		"heights of 512 and 1024 points agree cell by cell, rms %.1e",
 		sqrt(mean / rms));
 	free(a);
 	free(b);
@@ -181,10 +183,11 @@ static void check_threefold(void)
 			worst = fmax(worst, fabs(b[(3 * iy + 1) * 3 * N + 3 * ix + 1] -
 						    a[iy * N + ix]));
 	near(worst, 0, 1e-13,
-		"threefold refinement: heights at common centres are equal");
-	near(again / slope, 1, 1e-13, "threefold refinement: rms slope is equal");
-	ok(spectrum_slope(fine, b, &measured) == NUM_OK, "heights have a rms slope");
-	near(measured / slope, 1, 1e-12, "rms slope from heights as from waves");
+		"a threefold refinement keeps the heights at common centres");
+	near(again / slope, 1, 1e-13, "a threefold refinement keeps the rms slope");
+	ok(spectrum_slope(fine, b, &measured) == NUM_OK,
+		"the rms slope of heights is computed");
+	near(measured / slope, 1, 1e-12, "the rms slope of heights is that of the waves");
 	ok(spectrum_waves(coarse) == spectrum_waves(fine),
 		"the cut-off leaves the same waves");
 	free(b);
@@ -207,13 +210,13 @@ static void check_affine(void)
 
 	spectrum_make(&par, &s);
 	near(spectrum_power(s, 32, 0) / spectrum_power(s, 16, 0), pow(2, -3.6), 1e-14,
-		"self-affine: power falls as q^-2(1+H)");
+		"self-affine: the power falls as q^-2(1+H)");
 	near(spectrum_power(s, 4, 0) / spectrum_power(s, 8, 0), 1, 1e-14,
-		"self-affine: constant above the roll-off wavelength");
+		"self-affine: the power is constant above the roll-off wavelength");
 	ok(spectrum_power(s, 3, 0) == 0 && spectrum_power(s, 33, 0) == 0,
-		"self-affine: nothing longer than longest, shorter than cut-off");
+		"self-affine: no wave is longer than the longest or shorter than the cut-off");
 	ok(spectrum_waves(s) + spectrum_waves_skipped(s) == 128 * 128 - 1,
-		"waves drawn and left out make up the grid");
+		"drawn and excluded waves make up the grid");
 	spectrum_free(s);
 }
 
@@ -242,7 +245,7 @@ static void check_profiles(void)
 		want += exp(-fabs(m + 0.125) / 0.1);
 	}
 	near(correlation(along_x, 64, 1, 8, 0), want / zero, 1e-12,
-		"a profile's correlation");
+		"the correlation of a profile is right");
 	spectrum_surface(along_x, NULL, 1, 0, RNG_SURFACE, a, NULL);
 	spectrum_surface(along_y, NULL, 1, 0, RNG_SURFACE, b, NULL);
 	for (int i = 0; i < 64; i++)
@@ -265,7 +268,8 @@ static void check_refusals(void)
 
 	par = good;
 	par.corr_x = NAN;
-	ok(spectrum_make(&par, &s) == SPECTRUM_DOMAIN && !s, "nan length is refused");
+	ok(spectrum_make(&par, &s) == SPECTRUM_DOMAIN && !s,
+		"a length of nan is refused");
 	par = good;
 	par.corr_y = 1.5;
 	ok(spectrum_make(&par, &s) == SPECTRUM_TOO_LONG && !s,
@@ -273,7 +277,7 @@ static void check_refusals(void)
 	par = good;
 	par.cutoff = 2;
 	ok(spectrum_make(&par, &s) == SPECTRUM_EMPTY && !s,
-		"a cut-off above the side leaves nothing");
+		"a cut-off above the side leaves no waves");
 	par = good;
 	par.nx = par.ny = 1;
 	ok(spectrum_make(&par, &s) == SPECTRUM_EMPTY && !s, "one point has no waves");

@@ -10,22 +10,24 @@ static void test_weibull(void)
 	struct weibull w;
 	double scaled[10];
 
-	ok(weibull_fit(sizes, NULL, 10, 0, INFINITY, 0.95, &w) == 0, "Weibull fit");
+	ok(weibull_fit(sizes, NULL, 10, 0, INFINITY, 0.95, &w) == 0,
+		"the Weibull fit succeeds");
 	/* scipy.stats.weibull_min, maximum polished; intervals from its curvature. */
-	near(w.shape.value, 2.200002120499429, 1e-12, "shape");
-	near(w.scale.value, 55.74214415993261, 1e-11, "scale");
-	near(w.shape.low, 1.3451048, 1e-5, "shape: lower end");
-	near(w.shape.high, 3.5982395, 1e-5, "shape: upper end");
-	near(w.scale.low, 41.431386, 1e-4, "scale: lower end");
-	near(w.scale.high, 74.995962, 1e-4, "scale: upper end");
+	near(w.shape.value, 2.200002120499429, 1e-12, "the shape is right");
+	near(w.scale.value, 55.74214415993261, 1e-11, "the scale is right");
+	near(w.shape.low, 1.3451048, 1e-5, "the lower end of the shape is right");
+	near(w.shape.high, 3.5982395, 1e-5, "the upper end of the shape is right");
+	near(w.scale.low, 41.431386, 1e-4, "the lower end of the scale is right");
+	near(w.scale.high, 74.995962, 1e-4, "the upper end of the scale is right");
 	near(weibull_distance(&w, sizes, NULL, 10), 0.08237637732554093, 1e-12,
-		"Kolmogorov-Smirnov distance");
+		"the Kolmogorov-Smirnov distance is right");
 	near(w.mean, 55.74214415993261 * tgamma(1 + 1 / 2.200002120499429), 1e-10,
-		"mean");
+		"the mean is right");
 	for (int i = 0; i < 10; i++)
 		scaled[i] = sizes[i] * 1e-6;
 	weibull_fit(scaled, NULL, 10, 0, INFINITY, 0.95, &w);
-	near(w.shape.value, 2.200002120499429, 1e-12, "shape does not know the unit");
+	near(w.shape.value, 2.200002120499429, 1e-12,
+		"the shape does not depend on the unit");
 	near(w.scale.value, 55.74214415993261e-6, 1e-17,
 		"the scale is proportional to the unit");
 }
@@ -36,17 +38,17 @@ static void test_truncated(void)
 	double sum = 0;
 
 	ok(weibull_fit(sizes, NULL, 8, 10, 70, 0.95, &w) == 0,
-		"Weibull fit, cut off at both ends");
+		"the fit of a Weibull law truncated at both ends succeeds");
 	/* scipy: minimum of the negative log likelihood by simplex. */
-	near(w.shape.value, 1.61333481, 1e-5, "cut off: shape");
-	near(w.scale.value, 65.86291035, 1e-3, "cut off: scale");
+	near(w.shape.value, 1.61333481, 1e-5, "the shape of the truncated law is right");
+	near(w.scale.value, 65.86291035, 1e-3, "the scale of the truncated law is right");
 	for (int i = 0; i < 6000; i++)
 		sum += weibull_density(&w, 10 + (i + 0.5) * 0.01) * 0.01;
-	near(sum, 1, 1e-6, "cut off: density integrates to one");
+	near(sum, 1, 1e-6, "the density of the truncated law integrates to one");
 	ok(weibull_density(&w, 9) == 0 && weibull_density(&w, 71) == 0,
 		"the truncated density is 0 outside");
 	ok(weibull_fit(sizes, NULL, 10, 20, 70, 0.95, &w) == WEIBULL_NONE,
-		"values outside are refused");
+		"values outside the limits are refused");
 	ok(weibull_fit(sizes, NULL, 1, 0, INFINITY, 0.95, &w) == WEIBULL_NONE,
 		"one value is refused");
 }
@@ -61,9 +63,10 @@ static void test_wide(void)
 		x[i] = pow(sizes[i], 25);
 	ok(weibull_fit(x, NULL, 10, 0, INFINITY, 0.95, &w) == WEIBULL_OK,
 		"values over 22 decades are fitted");
-	near(w.shape.value * 25, 2.200002120499429, 1e-11, "shape of a wide sample");
+	near(w.shape.value * 25, 2.200002120499429, 1e-11,
+		"the shape of a wide sample is right");
 	near(log(w.scale.value) / 25, log(55.74214415993261), 1e-12,
-		"scale of a wide sample");
+		"the scale of a wide sample is right");
 }
 
 /* The same sample, narrow: the logarithms of the values scale, and so does the shape. */
@@ -78,15 +81,16 @@ static void test_narrow(void)
 		for (int i = 0; i < 10; i++)
 			x[i] = 1e-5 * (1 + expm1(spread[k] * log(sizes[i])));
 		ok(weibull_fit(x, NULL, 10, 0, INFINITY, 0.95, &w) == WEIBULL_OK,
-			"values within %g of each other", spread[k]);
+			"values within %g of each other are fitted", spread[k]);
 		/* Values are rounded to 1e-16 of themselves. */
 		near(w.shape.value * spread[k] / 2.200002120499429, 1,
-			1e-12 + 1e-14 / spread[k], "shape");
-		near(w.shape.low * spread[k] / 1.3451048, 1, 1e-5, "shape: lower end");
+			1e-12 + 1e-14 / spread[k], "the shape is right");
+		near(w.shape.low * spread[k] / 1.3451048, 1, 1e-5,
+			"the lower end of the shape is right");
 		near(log(w.scale.value / 1e-5) / spread[k] / log(55.74214415993261), 1,
-			1e-10 + 1e-15 / spread[k], "scale");
+			1e-10 + 1e-15 / spread[k], "the scale is right");
 		ok(weibull_fit(x, NULL, 10, 0.9e-5, 1, 0.95, &v) == WEIBULL_OK,
-			"the same, cut off far away");
+			"a law truncated far away is fitted");
 		near(v.shape.value / w.shape.value, 1, 1e-6,
 			"a distribution truncated far away has the same shape");
 	}
@@ -95,10 +99,10 @@ static void test_narrow(void)
 			twice[n++] = sizes[i];
 	weibull_fit(sizes, weight, 10, 0, INFINITY, 0.95, &w);
 	weibull_fit(twice, NULL, n, 0, INFINITY, 0.95, &v);
-	near(w.shape.high / v.shape.high, 1, 1e-12, "weights are repeated values");
+	near(w.shape.high / v.shape.high, 1, 1e-12, "weights act as repeated values");
 	near(weibull_distance(&w, sizes, weight, 10) /
 			weibull_distance(&v, twice, NULL, n),
-		1, 1e-12, "weights are repeated values for the distance too");
+		1, 1e-12, "weights act as repeated values for the distance too");
 }
 
 /* In 95 % of samples the interval holds the truth; with so many values and 1000 samples
@@ -123,10 +127,10 @@ static void test_coverage(double high, int n)
 		shapes += w.shape.low < k && k < w.shape.high;
 		scales += w.scale.low < s && s < w.scale.high;
 	}
-	ok(fits > SAMPLES * 0.99, "samples below %g: %d of %d fitted", high, fits,
+	ok(fits > SAMPLES * 0.99, "samples below %g: %d of %d are fitted", high, fits,
 		SAMPLES);
-	near((double)shapes / fits, 0.95, 0.025, "intervals hold the true shape");
-	near((double)scales / fits, 0.95, 0.025, "intervals hold the true scale");
+	near((double)shapes / fits, 0.95, 0.025, "the intervals contain the true shape");
+	near((double)scales / fits, 0.95, 0.025, "the intervals contain the true scale");
 }
 
 static void test_power(void)
@@ -139,23 +143,23 @@ static void test_power(void)
 		x[i] = i + 1;
 		y[i] = 41.29 * pow(x[i], 1.383) - 70.29;
 	}
-	ok(power_fit(x, y, 10, 0.95, &p) == 0, "power law fit");
-	near(p.factor.value, 41.29, 1e-5, "exact data: factor");
-	near(p.exponent.value, 1.383, 1e-7, "exact data: exponent");
-	near(p.offset.value, -70.29, 1e-5, "exact data: offset");
+	ok(power_fit(x, y, 10, 0.95, &p) == 0, "the power law fit succeeds");
+	near(p.factor.value, 41.29, 1e-5, "exact data give the factor");
+	near(p.exponent.value, 1.383, 1e-7, "exact data give the exponent");
+	near(p.offset.value, -70.29, 1e-5, "exact data give the offset");
 	for (int i = 0; i < 10; i++)
 		y[i] += noise[i];
 	power_fit(x, y, 10, 0.95, &p);
 	/* scipy.optimize.curve_fit and Student's t. */
-	near(p.factor.value, 41.3563153, 1e-5, "factor");
-	near(p.exponent.value, 1.38214599, 1e-7, "exponent");
-	near(p.offset.value, -70.16895311, 1e-5, "offset");
-	near(p.exponent.low, 1.361261369, 1e-6, "exponent: lower end");
-	near(p.factor.high, 43.46696679, 1e-4, "factor: upper end");
-	near(p.offset.low, -75.80598225, 1e-4, "offset: lower end");
+	near(p.factor.value, 41.3563153, 1e-5, "the factor is right");
+	near(p.exponent.value, 1.38214599, 1e-7, "the exponent is right");
+	near(p.offset.value, -70.16895311, 1e-5, "the offset is right");
+	near(p.exponent.low, 1.361261369, 1e-6, "the lower end of the exponent is right");
+	near(p.factor.high, 43.46696679, 1e-4, "the upper end of the factor is right");
+	near(p.offset.low, -75.80598225, 1e-4, "the lower end of the offset is right");
 	ok(power_fit(x, y, 2, 0.95, &p) == NUM_DOMAIN, "two points are refused");
 	ok(power_fit(x, y, 3, 0.95, &p) == 0 && isnan(p.factor.low),
-		"three give no interval");
+		"three points give no interval");
 }
 
 static void test_samples(void)
@@ -167,13 +171,14 @@ static void test_samples(void)
 	for (int i = 0; i < 4; i++)
 		running_add(&t, x[i]);
 	e = sample_mean(&t, 0.95);
-	near(e.value, 2.5, 0, "mean");
-	near(sqrt(running_variance(&t)), sqrt(5. / 3), 1e-15, "standard deviation");
+	near(e.value, 2.5, 0, "the mean is right");
+	near(sqrt(running_variance(&t)), sqrt(5. / 3), 1e-15,
+		"the standard deviation is right");
 	/* Student's t of three degrees of freedom: 3.182446. */
 	near(e.high, 2.5 + 3.182446305284263 * sqrt(5. / 12), 1e-9,
-		"interval of the mean");
-	near(sample_quantile(x, 4, 0.5), 2.5, 0, "median");
-	near(sample_quantile(x, 4, 1), 4, 0, "largest");
+		"the interval of the mean is right");
+	near(sample_quantile(x, 4, 0.5), 2.5, 0, "the median is right");
+	near(sample_quantile(x, 4, 1), 4, 0, "the largest value is right");
 }
 
 int main(void)

@@ -87,13 +87,14 @@ static void test_hertz(void)
 	fine = hertz_error(129, 0.3, &surface);
 	/* The element widens a load by h^2 / 6, against h^2 / 12 of a cell. */
 	ok(fine < 2e-4,
-		"Hertz with friction: von Mises on the axis from a/2 on, 129 points: %.1e p0",
+		"Hertz with friction: the von Mises stress on the axis from a/2 on is right at 129 points to %.1e p0",
 		fine);
 	ok(coarse / fine > 3.3,
 		"the stress converges with the square of the spacing: %.1e, %.1e", coarse,
 		fine);
 	/* Under the middle sxx = syy = -(1 + 2 nu)/2, szz = -1, sxz = -mu. */
-	near(surface, sqrt(0.04 + 3 * 0.09), 2e-3, "surface in the middle");
+	near(surface, sqrt(0.04 + 3 * 0.09), 2e-3,
+		"the stress in the middle of the surface is right");
 }
 
 /* The surface of a Hertz contact with friction, radius a = 1 and p0 = 1, within 0.9 a:
@@ -178,16 +179,16 @@ static void test_surface_order(double mu)
 
 	/* Cells of constant pressure would leave 0.13 mu h / a. */
 	ok(e40 < 2e-4 * (1 + mu) && e10 / e40 > (mu > 0 ? 12 : 8),
-		"surface, friction %g: second order within 0.6 a: %.1e, %.1e p0", mu, e10,
-		e40);
+		"the stress on the surface at friction %g is of second order within 0.6 a: %.1e, %.1e p0",
+		mu, e10, e40);
 	/* A root that is sampled at the centres of cells misplaces h^1.5 of load at the
 	 * edge; the pressure that the cells solve for does not. */
-	ok(rim < 4e-4 + 1.4e-3 * mu, "within 0.9 a the error on the surface is %.1e p0",
+	ok(rim < 4e-4 + 1.4e-3 * mu, "the error on the surface within 0.9 a is %.1e p0",
 		rim);
 	pressed20 = surface_error(20, mu, 0.9, 1);
 	pressed80 = surface_error(80, mu, 0.9, 1);
 	ok(pressed80 < 3e-5 + 9e-5 * mu && pressed20 / pressed80 > 11.5,
-		"with a solved pressure it is of second order there: %.1e, %.1e",
+		"with a solved pressure the stress on the surface is of second order: %.1e, %.1e",
 		pressed20, pressed80);
 }
 
@@ -213,7 +214,8 @@ static void test_hertz_peak(void)
 				z = 0.01 * k;
 			}
 	}
-	near(most, 0.65975605, 2e-4, "mu = 0.3: largest stress below the surface");
+	near(most, 0.65975605, 2e-4,
+		"at mu = 0.3 the largest stress below the surface is right");
 	near(x, 0.3188, h, "the largest stress is ahead of the centre");
 	near(z, 0.4282, 0.01, "the largest stress is at the reference depth");
 	stress_at(s, 0, &row, 1, m);
@@ -221,9 +223,10 @@ static void test_hertz_peak(void)
 	trail = m[NODES / 2 * NODES + NODES / 2 - 64];
 	lead = m[NODES / 2 * NODES + NODES / 2 + 64];
 	ok(trail > 1.8 * lead,
-		"surface: the trailing edge (%.3f) is the worse one (%.3f)", trail, lead);
-	near(trail, 0.65399507, 0.05, "trailing edge");
-	near(lead, 0.327516568, 0.04, "leading edge");
+		"on the surface the stress is larger at the trailing edge (%.3f) than at the leading one (%.3f)",
+		trail, lead);
+	near(trail, 0.65399507, 0.05, "the stress at the trailing edge is right");
+	near(lead, 0.327516568, 0.04, "the stress at the leading edge is right");
 	stress_free(s);
 	free(m);
 	free(p);
@@ -286,7 +289,7 @@ static void test_coarse(void)
 		par.dy = k & 1 ? 1e-6 : 1.7e-6;
 		error = coarse_error(par, share, NULL);
 		ok(error < 1e-4,
-			"%s, %s, shear along %c: coarse sums within %.1e of p_max",
+			"%s, %s, shear along %c: coarse sums are within %.1e of p_max",
 			par.periodic ? "periodic" : "free", dense[k & 1], "xy"[par.axis],
 			error);
 	}
@@ -294,7 +297,8 @@ static void test_coarse(void)
 		struct stress_par par = plain(120, 120, 0.4);
 		double error = coarse_error(par, 1, &stress_tresca_criterion);
 
-		ok(error < 1e-4, "the same by Tresca's criterion: within %.1e", error);
+		ok(error < 1e-4, "coarse sums by Tresca's criterion are within %.1e",
+			error);
 		par = plain(80, 40, 0.2);
 		par.dy = 30;
 		error = coarse_error(par, 1, NULL);
@@ -331,9 +335,10 @@ static void test_criteria(void)
 		over = fmax(over, stress_tresca_criterion.value(v) /
 					  (stress_tresca_criterion.norm * norm));
 	}
-	near(mises, 0, 1e-14, "von Mises: the three differences of principal stresses");
-	near(tresca, 0, 1e-14, "Tresca: the largest difference");
-	ok(over <= 1 && over > 0.98, "their bounds by the norm hold (%.4f)", over);
+	near(mises, 0, 1e-14,
+		"von Mises' stress follows from the three differences of principal stresses");
+	near(tresca, 0, 1e-14, "Tresca's stress is the largest difference");
+	ok(over <= 1 && over > 0.98, "the bounds of both by the norm hold (%.4f)", over);
 }
 
 /* One loaded cell: its pyramid by quadrature of uniformly loaded cells that shrink to
@@ -371,8 +376,9 @@ static void test_element(void)
 		far = fmax(far, fabs(g.shear[DEV_X] / f.shear[DEV_X] - 1));
 	}
 	/* Parts of 1/60 of the side replace slopes by steps. */
-	ok(error < 3e-4, "element: within %.1e of a sum over 14400 parts of it", error);
-	ok(far > 0 && far < 1e-3, "a distant element is a point load (%.1e)", far);
+	ok(error < 3e-4,
+		"a loaded element is within %.1e of a sum over 14400 parts of it", error);
+	ok(far > 0 && far < 1e-3, "a distant element acts as a point load (%.1e)", far);
 }
 
 /* No node outside the spans reaches the limit. */
@@ -407,9 +413,10 @@ static void test_reach(double mu)
 		nodes += SIDE * SIDE;
 	}
 	ok(missed == 0 && failed > 0 && kept < nodes,
-		"mu %g: no node over the limit is passed over (%.0f over, %.0f of %.0f searched)",
+		"mu %g: the search omits no node over the limit (%.0f over, %.0f of %.0f searched)",
 		mu, failed, kept, nodes);
-	ok(stress_reach(s, 1000, 0.2, span) == 0, "far below there is nothing to search");
+	ok(stress_reach(s, 1000, 0.2, span) == 0,
+		"far below the surface no node is searched");
 	stress_free(s);
 	free(span);
 }
@@ -437,7 +444,7 @@ static void test_periodic(void)
 		error = fmax(error, fabs(t[(int)n + i] - (-0.3 / 0.7 - 0.6 * e * c)));
 		error = fmax(error, fabs(t[2 * (int)n + i] - (-1 - (1 + q * z) * e * c)));
 	}
-	near(error, 0, 1e-14, "periodic: a wave of pressure");
+	near(error, 0, 1e-14, "the stress of a periodic wave of pressure is right");
 	stress_free(s);
 }
 
@@ -474,7 +481,7 @@ static void test_periodic_free(double mu, int axis)
 	/* The images' mean pressure is 100 / 128^2 = 0.006 of the peak; cells against
 	 * points are 1/100 of it apart. */
 	ok(error < 0.012 && most > 0.3,
-		"periodic and free agree near a patch, mu %g along %c: %.1e", mu,
+		"periodic and free sums agree near a patch, mu %g along %c: %.1e", mu,
 		"xy"[axis], error);
 	free(a);
 	free(p);
@@ -504,7 +511,7 @@ static void test_periodic_reach(void)
 			end = layer;
 	}
 	ok(last > 2 && end >= last && end < 59,
-		"periodic: nodes over the limit down to layer %d, searched down to %d",
+		"periodic: all layers with nodes over the limit, down to %d, are searched, down to %d",
 		last, end);
 	stress_free(s);
 }
@@ -518,15 +525,15 @@ static void test_refusals(void)
 	p[5] = NAN;
 	ok(stress_load(s, p) == NUM_DOMAIN, "a pressure that is not a number is refused");
 	p[5] = 0;
-	ok(stress_load(s, p) == 0, "zero load is accepted");
+	ok(stress_load(s, p) == 0, "a load of zero is accepted");
 	{
 		struct stress_span span[64];
 
-		ok(stress_reach(s, 0, 1, span) == 0, "zero load needs no node");
+		ok(stress_reach(s, 0, 1, span) == 0, "a load of zero needs no node");
 	}
 	stress_free(s);
 	par.nu = 0.6;
-	ok(!stress_new(&par), "Poisson's ratio over one half");
+	ok(!stress_new(&par), "a Poisson's ratio above one half is refused");
 }
 
 int main(void)

@@ -25,7 +25,7 @@ static void check_table(const char *path, int sheared)
 	double error = 0, mises = 0;
 
 	if (!f) {
-		ok(0, "%s is there", path);
+		ok(0, "the reference table %s can be read", path);
 		return;
 	}
 	while (fgets(line, sizeof(line), f)) {
@@ -43,8 +43,8 @@ static void check_table(const char *path, int sheared)
 	}
 	fclose(f);
 	ok(rows == 20, "%s has 20 points", path);
-	near(error, 0, 3e-15, "six components, absolute error in units of the load");
-	near(mises, 0, 3e-15, "von Mises stress");
+	near(error, 0, 3e-15, "the six components have the values of the reference");
+	near(mises, 0, 3e-15, "the von Mises stress has the value of the reference");
 }
 
 /* Divergence of the stress by central differences of order four. */
@@ -76,7 +76,7 @@ static void check_equilibrium(void)
 				most = fmax(most, fabs(divergence(row, 1.1 * cos(k),
 							  0.9 * sin(3 * k),
 							  0.2 + 0.05 * k, sheared)));
-	near(most, 0, 1e-8, "stress is in equilibrium (divergence by differences)");
+	near(most, 0, 1e-8, "the stress is in equilibrium (divergence by differences)");
 }
 
 static void check_principal(void)
@@ -90,16 +90,20 @@ static void check_principal(void)
 	     s[5] * s[5];
 	i3 = s[0] * s[1] * s[2] + 2 * s[3] * s[4] * s[5] - s[0] * s[5] * s[5] -
 	     s[1] * s[4] * s[4] - s[2] * s[3] * s[3];
-	near(p[0] + p[1] + p[2], i1, 1e-14, "principal stresses: first invariant");
-	near(p[0] * p[1] + p[1] * p[2] + p[2] * p[0], i2, 1e-13, "second invariant");
-	near(p[0] * p[1] * p[2], i3, 1e-13, "third invariant");
-	ok(p[0] >= p[1] && p[1] >= p[2], "largest first");
+	near(p[0] + p[1] + p[2], i1, 1e-14,
+		"the principal stresses have the first invariant");
+	near(p[0] * p[1] + p[1] * p[2] + p[2] * p[0], i2, 1e-13,
+		"the principal stresses have the second invariant");
+	near(p[0] * p[1] * p[2], i3, 1e-13,
+		"the principal stresses have the third invariant");
+	ok(p[0] >= p[1] && p[1] >= p[2], "the principal stresses descend");
 	stress_principal(sphere, p);
-	ok(p[0] == 2 && p[1] == 2 && p[2] == 2, "equal principal stresses");
+	ok(p[0] == 2 && p[1] == 2 && p[2] == 2, "equal principal stresses are found");
 	stress_principal(shear, p);
-	near(p[0], 1, 1e-15, "pure shear: tension");
-	near(p[2], -1, 1e-15, "pure shear: compression");
-	near(stress_von_mises(shear), sqrt(3), 1e-15, "pure shear: von Mises");
+	near(p[0], 1, 1e-15, "pure shear has a principal tension");
+	near(p[2], -1, 1e-15, "pure shear has a principal compression");
+	near(stress_von_mises(shear), sqrt(3), 1e-15,
+		"the von Mises stress of pure shear is right");
 }
 
 /* A patch seen from far away is a point load; both loads at once. */
@@ -113,7 +117,7 @@ static void check_point(void)
 		sum[c] = r * r * (n[c] + 0.25 * s[c]);
 	/* The patch differs from a point by (size / distance)^2 ~ 1e-6 and rounding 1e-9.
 	 */
-	near(worst(sum, p), 0, 1e-6, "point load is the limit of the patch");
+	near(worst(sum, p), 0, 1e-6, "a point load is the limit of a patch");
 }
 
 int main(void)

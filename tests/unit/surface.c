@@ -29,20 +29,22 @@ static void check_sine(void)
 	for (int iy = 0; iy < NY; iy++)
 		for (int ix = 0; ix < NX; ix++)
 			z[iy * NX + ix] = 5e-3 + a * sin(q * (ix + 0.5));
-	ok(surface_measure(NX, NY, d, d, z, &p) == NUM_OK, "a sine is measured");
-	near(p.sq / a, sqrt(0.5), 1e-10, "sine: Sq = A / sqrt 2");
-	near(p.ssk, 0, 1e-9, "sine: Ssk = 0");
-	near(p.sku, 1.5, 1e-9, "sine: Sku = 3 / 2");
-	near(p.sp / a, sin(q * 3.5), 1e-9, "sine: Sp is the highest sample");
-	near(p.sz - p.sp - p.sv, 0, 1e-20, "Sz = Sp + Sv");
+	ok(surface_measure(NX, NY, d, d, z, &p) == NUM_OK,
+		"the parameters of a sine are computed");
+	near(p.sq / a, sqrt(0.5), 1e-10, "Sq of a sine is A / sqrt 2");
+	near(p.ssk, 0, 1e-9, "Ssk of a sine is 0");
+	near(p.sku, 1.5, 1e-9, "Sku of a sine is 3 / 2");
+	near(p.sp / a, sin(q * 3.5), 1e-9, "Sp of a sine is the highest sample");
+	near(p.sz - p.sp - p.sv, 0, 1e-20, "Sz is Sp + Sv");
 	/* Derivatives of a sine by a formula are exact ones times a factor: sin(q) for
 	 * the central difference, (45 sin q - 9 sin 2q + sin 3q) / 30 for the seven
 	 * points. */
 	k = (45 * sin(q) - 9 * sin(2 * q) + sin(3 * q)) / 30;
 	near(p.sdq_central / (a / d * rms_cosine(NX, 1, q)), sin(q), 1e-9,
-		"sine: Sdq, central");
-	near(p.sdq_iso7 / (a / d * rms_cosine(NX, 3, q)), k, 1e-9, "sine: Sdq, iso7");
-	near(k / q, 1, pow(q, 6) / 100, "seven points: sixth order");
+		"Sdq of a sine by central differences is right");
+	near(p.sdq_iso7 / (a / d * rms_cosine(NX, 3, q)), k, 1e-9,
+		"Sdq of a sine by seven points is right");
+	near(k / q, 1, pow(q, 6) / 100, "differences of seven points are of sixth order");
 	/* Slopes along x only: Sdr is the excess length of the polygon. */
 	{
 		double sum = 0;
@@ -52,10 +54,9 @@ static void check_sine(void)
 
 			sum += sqrt(1 + s * s) - 1;
 		}
-		near(p.sdr, sum / (NX - 1), 1e-9,
-			"sine: Sdr is the length of the polygon");
+		near(p.sdr, sum / (NX - 1), 1e-9, "Sdr of a sine is that of the polygon");
 	}
-	ok(isnan(p.corr_y), "sine along x: no correlation length along y");
+	ok(isnan(p.corr_y), "a sine along x has no correlation length along y");
 }
 
 /* A tilted plane: all slopes equal, area sqrt(1 + s^2), nothing left after levelling. */
@@ -69,14 +70,15 @@ static void check_plane(void)
 		for (int ix = 0; ix < NX; ix++)
 			z[iy * NX + ix] = 3 + 0.3 * (ix * 2e-6) - 0.4 * (iy * 1e-6);
 	surface_measure(NX, NY, 2e-6, 1e-6, z, &p);
-	near(p.sdq, 0.5, 1e-8, "plane: Sdq");
-	near(p.sdq_cell, 0.5, 1e-8, "plane: Sdq by cells");
-	near(p.sdq_2x2, 0.5, 1e-8, "plane: Sdq by 2 x 2");
-	near(p.sdq_central, 0.5, 1e-8, "plane: Sdq, central");
-	near(p.sdq_iso7, 0.5, 1e-8, "plane: Sdq, iso7");
-	near(p.sdr, sqrt(1.25) - 1, 1e-8, "plane: Sdr");
+	near(p.sdq, 0.5, 1e-8, "Sdq of a plane is its slope");
+	near(p.sdq_cell, 0.5, 1e-8, "Sdq of a plane by cells is its slope");
+	near(p.sdq_2x2, 0.5, 1e-8, "Sdq of a plane of 2 x 2 points is its slope");
+	near(p.sdq_central, 0.5, 1e-8,
+		"Sdq of a plane by central differences is its slope");
+	near(p.sdq_iso7, 0.5, 1e-8, "Sdq of a plane by seven points is its slope");
+	near(p.sdr, sqrt(1.25) - 1, 1e-8, "Sdr of a plane is right");
 	surface_level(NX, NY, z);
-	near(surface_sq(NX, NY, z), 0, 1e-15, "plane: nothing is left after levelling");
+	near(surface_sq(NX, NY, z), 0, 1e-15, "levelling leaves nothing of a plane");
 }
 
 /* Small slopes, where Sdr = Sdq_cell^2 / 2 must survive rounding. */
@@ -90,7 +92,7 @@ static void check_small(void)
 		z[i] = 1e-9 * sin(1.3 * (i % N)) * cos(0.7 * (i / N));
 	surface_measure(N, N, 1, 1, z, &p);
 	ok(fabs(p.sdr / (0.5 * p.sdq_cell * p.sdq_cell) - 1) < 0.05,
-		"slopes of 1e-9: Sdr is half of Sdq squared, not lost");
+		"for slopes of 1e-9 Sdr is half of Sdq squared and not lost");
 }
 
 static void check_fill(void)
@@ -114,19 +116,19 @@ static void check_fill(void)
 			worst = fmax(
 				worst, fabs(z[iy * NX + ix] -
 					       (1 + ix * ix - iy * iy + 0.5 * ix * iy)));
-	near(worst, 0, 1e-9, "fill: a discrete harmonic function is restored");
+	near(worst, 0, 1e-9, "filling restores a discrete harmonic function");
 	/* A hole at the rim has no slope across it: one known column spreads. */
 	for (int i = 0; i < NX * NY; i++)
 		z[i] = i % NX ? NAN : 4;
 	surface_fill(NX, NY, z, &steps, &residual);
-	near(z[NX * NY - 1], 4, 1e-9, "fill: constant beyond the last known column");
-	ok(residual <= SURFACE_FILLED, "fill: the residual is returned (%.1e)", residual);
+	near(z[NX * NY - 1], 4, 1e-9,
+		"filling continues the last known column as a constant");
+	ok(residual <= SURFACE_FILLED, "filling returns the residual (%.1e)", residual);
 	/* The numbers leave the range of doubles: no result, and the residual says so. */
 	for (int i = 0; i < NX * NY; i++)
 		z[i] = i % NX ? NAN : i % 2 ? 1e300 : -1e300;
 	surface_fill(NX, NY, z, &steps, &residual);
-	ok(!(residual <= SURFACE_FILLED),
-		"fill: an iteration that fails is not passed off as a result");
+	ok(!(residual <= SURFACE_FILLED), "filling reports an iteration that fails");
 }
 
 static double cubic_error(int n)
@@ -160,17 +162,17 @@ static void check_resample(void)
 			worst = fmax(worst, fabs(fine[iy * 3 * NX + ix] -
 						    (2 + 0.25 * (ix + 0.5) / 3 -
 							    0.5 * (iy + 0.5) / 2)));
-	near(worst, 0, 1e-14, "finer: a plane stays a plane up to the rim");
+	near(worst, 0, 1e-14, "refining keeps a plane up to the rim");
 	surface_resample(NX, NY, z, 4, 5, coarse);
 	near(coarse[4 * 2 + 1], 2 + 0.25 * 4.5 - 0.5 * 5, 1e-14,
-		"coarser: mean over the new cell");
+		"coarsening averages over the new cell");
 	near(surface_mean(4, 5, coarse), surface_mean(NX, NY, z), 1e-14,
-		"coarser: mean is kept");
+		"coarsening keeps the mean");
 	surface_resample(NX, NY, z, 5, 7, fine);
 	near(surface_mean(5, 7, fine), surface_mean(NX, NY, z), 1e-14,
-		"coarser by a broken ratio: mean is kept");
+		"coarsening by a fractional ratio keeps the mean");
 	order = log2(cubic_error(40) / cubic_error(80));
-	ok(order > 2.8, "finer: order of convergence %.2f, want 3", order);
+	ok(order > 2.8, "refining converges with order %.2f, want 3", order);
 }
 
 static void check_crown(void)
@@ -179,13 +181,13 @@ static void check_crown(void)
 	double *z = calloc(N * 51, sizeof *z);
 
 	surface_crown(N, 51, 1e-3, 2e-3, 7, z);
-	near(z[25 * N + 50], 0, 1e-15, "crown: 0 in the middle");
+	near(z[25 * N + 50], 0, 1e-15, "a crown is 0 in the middle");
 	near(z[0],
 		-7 * (pow(50e-3, 2) + pow(50e-3, 2)) / (pow(50.5e-3, 2) + pow(51e-3, 2)),
-		1e-12, "crown: the drop at the corner of the area");
+		1e-12, "a crown has its drop at the corner of the area");
 	near((z[25 * N + 60] + z[25 * N + 40]) / pow(10e-3, 2),
 		(z[30 * N + 50] + z[20 * N + 50]) / pow(10e-3, 2), 1e-9,
-		"crown: equal curvature in both directions");
+		"a crown has equal curvature in both directions");
 	free(z);
 }
 
@@ -207,12 +209,15 @@ static void check_correlation(void)
 	spectrum_surface(s, NULL, 1, 0, RNG_SURFACE, z, NULL);
 	surface_measure(N, N, 1.0 / N, 1.0 / N, z, &p);
 	/* About 1600 independent patches: 2.5 %; twice that. */
-	near(p.corr_x / 0.02, 1, 0.05, "measured correlation length along x");
-	near(p.corr_y / 0.01, 1, 0.05, "measured correlation length along y");
-	near(p.sal / (0.01 * sqrt(log(5))), 1, 0.06, "Sal of a Gaussian correlation");
-	near(p.str, 0.5, 0.05, "Str of lengths 1 : 2");
+	near(p.corr_x / 0.02, 1, 0.05,
+		"the measured correlation length along x is right");
+	near(p.corr_y / 0.01, 1, 0.05,
+		"the measured correlation length along y is right");
+	near(p.sal / (0.01 * sqrt(log(5))), 1, 0.06,
+		"Sal of a Gaussian correlation is right");
+	near(p.str, 0.5, 0.05, "Str of lengths 1 : 2 is 1/2");
 	near(p.sdq_iso7 / p.sq, sqrt(2 * (1 / pow(0.02, 2) + 1 / pow(0.01, 2))), 6,
-		"Sdq of a Gaussian correlation");
+		"Sdq of a Gaussian correlation is right");
 	free(z);
 	spectrum_free(s);
 }
@@ -232,8 +237,8 @@ static void check_moments(size_t n, double skewness, double kurtosis)
 	}
 	ok(status == HEIGHTS_OK && ascending && fabs(m1) < 1e-9 && fabs(m2 - 1) < 1e-9 &&
 			fabs(m3 - skewness) < 2e-6 && fabs(m4 - kurtosis) < 2e-6,
-		"%zu heights: skewness %g, kurtosis %g; errors %.1e, %.1e", n, skewness,
-		kurtosis, m3 - skewness, m4 - kurtosis);
+		"%zu heights have skewness %g and kurtosis %g; errors %.1e, %.1e", n,
+		skewness, kurtosis, m3 - skewness, m4 - kurtosis);
 	free(z);
 }
 
@@ -245,15 +250,17 @@ static void check_heights(void)
 		{ -5, 60 } };
 	double z[16];
 
-	near(normal_quantile(0.975), 1.959963984540054, 1e-14, "97.5 % quantile");
-	near(normal_quantile(1e-10), -6.361340902404056, 1e-12, "1e-10 quantile");
+	near(normal_quantile(0.975), 1.959963984540054, 1e-14,
+		"the quantile at 97.5 % is right");
+	near(normal_quantile(1e-10), -6.361340902404056, 1e-12,
+		"the quantile at 1e-10 is right");
 	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
 		check_moments(65536, pairs[i][0], pairs[i][1]);
 	check_moments(100, 0.5, 3.2);
 	ok(heights_sorted(16, 1, 1.9, z) == HEIGHTS_IMPOSSIBLE,
-		"below skewness^2 + 1: refused");
+		"a kurtosis below skewness^2 + 1 is refused");
 	ok(heights_sorted(16, 0, 50, z) == HEIGHTS_TOO_FEW,
-		"16 points, kurtosis 50: refused");
+		"a kurtosis of 50 is refused for 16 points");
 }
 
 static void check_ranking(void)
@@ -264,7 +271,8 @@ static void check_ranking(void)
 	struct ranking *r = ranking_new(7);
 
 	ranking_impose(r, sorted, z);
-	ok(memcmp(z, want, sizeof want) == 0, "ranking: signs, tiny, huge, equal values");
+	ok(memcmp(z, want, sizeof want) == 0,
+		"ranking orders signs, tiny, huge and equal values");
 	ranking_free(r);
 }
 

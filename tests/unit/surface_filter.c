@@ -31,11 +31,12 @@ static void check_transmission(void)
 		double w = ratio[i] * CUT, f = 1 / ratio[i];
 
 		near(passed(w, FILTER_MEAN), exp2(-f * f), 1e-9,
-			"order 0 passes 2^-(c/l)^2");
+			"a filter of order 0 passes 2^-(c/l)^2");
 		near(passed(w, FILTER_PARABOLA), (1 + x * f * f) * exp(-x * f * f), 1e-9,
-			"order 2 passes (1 + pi a^2 f^2) exp(-pi a^2 f^2)");
+			"a filter of order 2 passes (1 + pi a^2 f^2) exp(-pi a^2 f^2)");
 	}
-	near(passed(CUT, FILTER_LINE), 0.5, 1e-9, "order 1 is order 0 away from the rim");
+	near(passed(CUT, FILTER_LINE), 0.5, 1e-9,
+		"a filter of order 1 equals order 0 away from the rim");
 }
 
 /* Four nesting indices, 64 points each: what the rim does to planes and parabolas. */
@@ -70,21 +71,22 @@ static void check_areal(void)
 	surface_gauss(NX, NY, 1, 2, z, 12, FILTER_LINE, out);
 	for (int i = 0; i < NX * NY; i++)
 		worst = fmax(worst, fabs(out[i] - z[i]));
-	ok(worst < 1e-11, "a twisted plane stays under order 1: %.1e", worst);
+	ok(worst < 1e-11, "order 1 keeps a twisted plane to %.1e", worst);
 	for (int i = 0; i < NX * NY; i++)
 		z[i] = 1e-4 * pow(i % NX, 2) * pow(i / NX, 2);
 	surface_gauss(NX, NY, 1, 2, z, 12, FILTER_PARABOLA, out);
 	worst = 0;
 	for (int i = 0; i < NX * NY; i++)
 		worst = fmax(worst, fabs(out[i] - z[i]));
-	ok(worst < 1e-9, "x^2 y^2 under order 2: %.1e", worst);
+	ok(worst < 1e-9, "order 2 keeps x^2 y^2 to %.1e", worst);
 	for (int i = 0; i < NX * NY; i++)
 		z[i] = i == 17 * NX + 2;
 	surface_gauss(NX, NY, 1, 2, z, 1000, FILTER_PERIODIC, out);
 	for (int i = 0; i < NX * NY; i++)
 		sum += out[i] / (NX * NY);
-	near(out[0] * NX * NY, 1, 1e-9, "around and around a long filter gives the mean");
-	near(sum * NX * NY, 1, 1e-12, "a filter that repeats keeps the mean");
+	near(out[0] * NX * NY, 1, 1e-9,
+		"a periodic filter much longer than the surface gives the mean");
+	near(sum * NX * NY, 1, 1e-12, "a periodic filter keeps the mean");
 	surface_gauss(NX, NY, 1, 2, z, 0.1, FILTER_MEAN, out);
 	ok(memcmp(z, out, NX * NY * sizeof *z) == 0,
 		"a filter shorter than a pixel changes nothing");
@@ -104,7 +106,8 @@ static void check_form(void)
 	surface_form(NX, NY, 1e-5, 2e-5, FORM_POLY2, z);
 	for (int i = 0; i < NX * NY; i++)
 		worst = fmax(worst, fabs(z[i]));
-	ok(worst < 1e-18, "a quadratic form is removed whole: %.1e m is left", worst);
+	ok(worst < 1e-18, "a quadratic form is removed completely: %.1e m is left",
+		worst);
 	/* without x y, whose part along the others is that of the plane alone */
 	for (int i = 0; i < NX * NY; i++)
 		z[i] = out[i] - 10 * 1e-5 * (i % NX) * 2e-5 * (i / NX);
@@ -147,26 +150,28 @@ static void check_core(void)
 	for (int i = 0; i < MANY; i++)
 		h[(i * 7919L) % MANY] = normal_quantile((i + 0.5) / MANY);
 	surface_core(MANY, h, &c);
-	near(c.sk, 2.5739561080, 1e-5, "normal heights: Sk over Sq");
-	near(c.smr1, .0990510, 1e-6, "Smr1");
-	near(c.smr2, 1 - .0990510, 1e-6, "Smr2");
-	near(c.spk, .9450307, 3e-5, "Spk, whose tail has 1e5 points");
-	near(c.svk, .9450307, 3e-5, "Svk");
+	near(c.sk, 2.5739561080, 1e-5, "Sk over Sq of normal heights is right");
+	near(c.smr1, .0990510, 1e-6, "Smr1 of normal heights is right");
+	near(c.smr2, 1 - .0990510, 1e-6, "Smr2 of normal heights is right");
+	near(c.spk, .9450307, 3e-5, "Spk of normal heights is right");
+	near(c.svk, .9450307, 3e-5, "Svk of normal heights is right");
 	for (int i = 0; i < MANY; i++)
 		h[i] = i * 1e-9;
 	surface_core(MANY, h, &c);
 	near(c.sk / (1e-9 * MANY), 1, 1e-9, "uniform heights have only a core");
-	near(c.spk + c.svk, 0, 1e-12, "without peaks and valleys");
+	near(c.spk + c.svk, 0, 1e-12, "uniform heights have no peaks and valleys");
 	memset(h, 0, MANY * sizeof *h);
 	surface_core(MANY, h, &c);
-	ok(c.sk == 0 && c.spk == 0 && c.svk == 0, "a flat surface has none of either");
+	ok(c.sk == 0 && c.spk == 0 && c.svk == 0,
+		"a flat surface has neither core nor peaks");
 	/* half of it at 0, half 1 higher, a step between: the flat part is the core */
 	for (int i = 0; i < MANY; i++)
 		h[i] = i < MANY / 2;
 	surface_core(MANY, h, &c);
 	near(c.sk, 0, 1e-12, "a step has no core");
 	/* the curve is linear between the middles of its points: half a point more */
-	near(c.svk, 2, 3e-5, "a valley of half the surface, as a triangle twice as deep");
+	near(c.svk, 2, 3e-5,
+		"a valley of half the surface counts as a triangle twice as deep");
 	surface_core(4, h, &c);
 	ok(isnan(c.sk), "four points have no core");
 	free(h);
@@ -194,7 +199,8 @@ static void check_spectrum(void)
 	near(ring[5].power * ring[5].waves / area, 0.5, 1e-12,
 		"a wave has half its square in its ring");
 	/* 6 periods along the 48 um of the shorter side: ring 6 */
-	near(ring[5].frequency * dx * NX, 6, 0.3, "at its frequency");
+	near(ring[5].frequency * dx * NX, 6, 0.3,
+		"the ring of the wave is at its frequency");
 	surface_spectrum(NX, NY, dx, dy, z, 1, ring, &n);
 	sum = 0;
 	for (int k = 0; k < n; k++)
@@ -210,7 +216,7 @@ static void check_spectrum(void)
 		sharp = ring[15].power;
 		surface_spectrum(NX, NY, dx, dy, z, 1, ring, &n);
 		smooth = ring[15].power;
-		ok(smooth < 1e-3 * sharp, "and the jump at the rim out: %.1e",
+		ok(smooth < 1e-3 * sharp, "a window suppresses the jump at the rim: %.1e",
 			smooth / sharp);
 	}
 }

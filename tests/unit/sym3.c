@@ -56,11 +56,11 @@ int main(void)
 				       (close && k < 3);
 			check(m, &equation, &normal, &bad);
 		}
-		ok(equation < 2e-15, "%s: A v = lambda v to %.1e",
+		ok(equation < 2e-15, "%s: A v = lambda v holds to %.1e",
 			close ? "close eigenvalues" : "20000 random matrices", equation);
-		ok(normal < 2e-15, "the vectors are orthonormal to %.1e", normal);
+		ok(normal < 2e-15, "the eigenvectors are orthonormal to %.1e", normal);
 		ok(bad == 0,
-			"values fall, and the largest component is positive (%d are not)",
+			"the eigenvalues descend and the largest component of each vector is positive (%d are not)",
 			bad);
 	}
 	return tap_done();

@@ -59,9 +59,10 @@ static void test_gain(const struct whitening *w, const double *h, size_t taps)
 		else if (f < 0.75 * w->low || f > 1.3 * w->high)
 			outside = fmax(outside, fabs(gain));
 	}
-	ok(inside < 1e-3, "gain 1 from %.4f to %.4f (%.1e off)", w->low, w->high, inside);
+	ok(inside < 1e-3, "the gain is 1 from %.4f to %.4f (error %.1e)", w->low, w->high,
+		inside);
 	/* Side lobes of the filter, below 1/200, and what cut taps let through. */
-	ok(outside < 1e-4, "nothing elsewhere (%.1e)", outside);
+	ok(outside < 1e-4, "the gain is zero elsewhere (%.1e)", outside);
 }
 
 /* White noise through filter and inverse. */
@@ -87,16 +88,17 @@ static void test_noise(const struct whitening *w, const double *h, size_t taps)
 	/* Half-overlapping Hann windows: 1.056 for the neighbouring segments, 1.94 for
 	 * the neighbouring bins. */
 	error = sqrt(1.056 * 1.94 / ((double)quiets * bins));
-	near(sum / bins, 1, 4 * error, "the noise is white again, of variance 1");
+	near(sum / bins, 1, 4 * error, "whitened noise is white and of variance 1");
 	colour_level(y[0] + skip, y[1] + skip, n, w, noise);
 	/* A median of half the bins each, and those at the edges are less. */
-	near(hypot(noise[0], noise[1]) / sqrt(2), 1, 4 * error, "colour_level() says so");
+	near(hypot(noise[0], noise[1]) / sqrt(2), 1, 4 * error,
+		"colour_level() gives the whitened noise a level of 1");
 	for (size_t i = skip; i < skip + n; i++)
 		squares += y[0][i] * y[0][i] + y[1][i] * y[1][i];
 	/* The squares of noise in a band have 2 band n degrees of freedom per two
 	 * channels. */
 	near(squares / (2 * (double)n) / w->band, 1, 4 / sqrt(w->band * (double)n),
-		"its variance is that of the band");
+		"the variance of the noise is that of the band");
 }
 
 /* A pulse through filter and inverse; T = 100 has its peak at 0.01. */
@@ -116,7 +118,8 @@ static void test_pulse(const struct whitening *w, const double *h, size_t taps)
 		peak = fmax(peak, fabs(want[i]));
 	}
 	/* The shape is cut at 2e-3, its taps at 2e-4. */
-	ok(worst < 2.2e-3 * peak, "a pulse is what shape_filter() makes of it (%.1e)",
+	ok(worst < 2.2e-3 * peak,
+		"a whitened pulse is what shape_filter() makes of it (%.1e)",
 		worst / peak);
 	shape_free(gauss);
 	shape_free(seen);
@@ -154,15 +157,18 @@ static void test_baseline(const struct whitening *w, const double *h, size_t tap
 	joint_refine(j, &s, x[0] + begin, x[1] + begin, LENGTH, &found, 1, &r);
 	/* What the cut at 2e-3 of the peak leaves is even about the pulse and the same on
 	 * both channels: it hardly moves the pulse, but its amplitude a little. */
-	near(found.t + (double)begin, truth.t, 1e-5, "a pulse less its baseline: time");
-	near(found.delta, truth.delta, 1e-4, "its delay");
-	near(found.a / truth.a, 1, 3e-4, "its amplitude");
-	ok(r.chi2 < 1e-5 * truth.a * truth.a * 100, "nothing is left (%.1e)",
+	near(found.t + (double)begin, truth.t, 1e-5,
+		"a pulse minus its baseline has the right time");
+	near(found.delta, truth.delta, 1e-4,
+		"a pulse minus its baseline has the right delay");
+	near(found.a / truth.a, 1, 3e-4,
+		"a pulse minus its baseline has the right amplitude");
+	ok(r.chi2 < 1e-5 * truth.a * truth.a * 100, "the fit leaves no residual (%.1e)",
 		r.chi2 / (truth.a * truth.a * 100));
 	s.low = 0;
 	joint_refine(j, &s, x[0] + begin, x[1] + begin, LENGTH, &found, 1, &r);
 	ok(r.chi2 > 1e-3 * truth.a * truth.a * 100,
-		"which it would be with the baseline");
+		"without the baseline in the model the fit leaves a residual");
 	joint_free(j);
 	shape_free(gauss);
 	shape_free(seen);
@@ -175,7 +181,7 @@ static void test_filter(const struct fir_band *band, const char *name)
 	struct whitening w;
 
 	fir_design(band, h);
-	if (ok(whitening_of_filter(&w, h, taps), "%s: there is an inverse", name)) {
+	if (ok(whitening_of_filter(&w, h, taps), "%s: the filter has an inverse", name)) {
 		test_gain(&w, h, taps);
 		test_noise(&w, h, taps);
 		if (w.low > 0)
@@ -208,8 +214,9 @@ static void test_quiet(int spacing, int burst, const char *what)
 			sum[c] += power[c][k] / (BINS - 1);
 	error = sqrt(1.056 * 1.94 / ((double)quiets * (BINS - 1)));
 	near(sum[0] / 0.09, 1, 4 * error, what);
-	near(sum[1] / 4, 1, 4 * error, "and on the other channel");
-	ok(power[0][0] == power[0][1], "frequency 0 has the power of its neighbour");
+	near(sum[1] / 4, 1, 4 * error, "the power of the other channel is right too");
+	ok(power[0][0] == power[0][1],
+		"the power at frequency 0 is that of its neighbour");
 }
 
 /* y(i) = a y(i - 1) + x(i) with power (1 - a^2) / (1 - 2 a cos w + a^2). */
@@ -238,13 +245,14 @@ static void test_colour(void)
 		white += colour_power(y[0], y[1], LITTLE, noise, power) == 1 &&
 			 colour_is_white(power, 0);
 	}
-	ok(white == TIMES, "white noise is white: %d of %d", white, TIMES);
+	ok(white == TIMES, "the whiteness test accepts white noise: %d of %d", white,
+		TIMES);
 	for (unsigned c = 0; c < 2; c++) {
 		make_noise(y[c], N, noise[c], c);
 		colour(y[c], N, a);
 	}
 	ok(colour_power(y[0], y[1], N, noise, power) == 1 && !colour_is_white(power, 0),
-		"low-passed noise is not");
+		"the whiteness test rejects low-passed noise");
 	for (int k = 0; k < COLOUR_BINS; k++) {
 		double want = (1 - a * a) / (1 - 2 * a * cos(acos(-1) * k / 512) + a * a);
 		double off = power[k] / want - 1;
@@ -258,14 +266,16 @@ static void test_colour(void)
 	 * 2 (256 + 3/8 256) / (2 N).  513 bins of which two in three are independent: the
 	 * scatter is known to 4 %, and none is five times as far off. */
 	scatter = sqrt(352.0 / N);
-	near(sqrt(squares) / scatter, 1, 0.16, "its power is |H|^2 within its scatter");
-	ok(worst < 5 * scatter, "at every frequency (%.2f)", worst / scatter);
+	near(sqrt(squares) / scatter, 1, 0.16,
+		"the measured power of filtered noise is |H|^2 within its scatter");
+	ok(worst < 5 * scatter, "the measured power is right at every frequency (%.2f)",
+		worst / scatter);
 	/* The mean is that of 2 N samples with 1 degree of freedom each. */
-	near(mean, 0, 4 / sqrt(N), "and in the mean");
+	near(mean, 0, 4 / sqrt(N), "the measured power is right in the mean");
 	ok(whitening_of_noise(&w, power, COLOUR_BINS, WHITEN_COLOURED),
-		"noise has an inverse");
-	ok(w.low == 0 && w.high == 0.5, "nothing is lost");
-	near(w.band, 1, 1e-3, "all is band");
+		"the noise spectrum has an inverse");
+	ok(w.low == 0 && w.high == 0.5, "no frequency is lost");
+	near(w.band, 1, 1e-3, "the band is the whole spectrum");
 	skip = (size_t)w.half;
 	for (unsigned c = 0; c < 2; c++) {
 		noise[c] *= sqrt(most);
@@ -273,12 +283,13 @@ static void test_colour(void)
 	}
 	ok(colour_power(y[0] + skip, y[1] + skip, N - 2 * skip, noise, power) == 1 &&
 			colour_is_white(power, 0),
-		"which makes it white");
+		"the inverse makes the noise white");
 	mean = 0;
 	for (int k = 0; k < COLOUR_BINS; k++)
 		mean += power[k] / COLOUR_BINS;
 	/* The inverse was learned from this very noise: its scatter is gone. */
-	near(mean, 1, 4 / sqrt(N), "and of the largest power");
+	near(mean, 1, 4 / sqrt(N),
+		"the whitened noise has the mean power of the largest line");
 	test_pulse(&w, &(double){ 1 }, 1);
 	whitening_clear(&w);
 }
@@ -293,11 +304,13 @@ int main(void)
 		"20-1500 Hz, 2001 taps");
 	test_filter(&(struct fir_band){ 200, 0, 0.05, FIR_HANN, 0, 1 },
 		"below 500 Hz, 201 taps");
-	test_quiet(0, 0, "white noise has its variance at all frequencies");
-	test_quiet(10000, 3000, "with pulses in 30 % of the record, in bursts");
-	test_quiet(1000, 300, "evenly");
+	test_quiet(0, 0, "the power of white noise is its variance at all frequencies");
+	test_quiet(10000, 3000,
+		"the power of the noise is right with bursts of pulses in 30 % of the record");
+	test_quiet(1000, 300,
+		"the power of the noise is right with pulses spread over 30 % of the record");
 	ok(quiet_spectrum(y[0], y[1], 255, 256, y[0] + 1000, y[1] + 1000) == 0,
-		"a record shorter than a segment tells nothing");
+		"a record shorter than a segment gives no spectrum");
 	test_colour();
 	return tap_done();
 }

@@ -1,0 +1,49 @@
+/* validate.h - are the pulses of a record particles, by what all of them have in common?
+ *
+ * Pulses are fitted until the record is described, so that chi-square tells little where
+ * the record holds anything else than particles: that is filled by several pulses.  Their
+ * velocities, which no fit forces, tell.  Particles have those of the flow, each its own:
+ *
+ *	- parts of one object, of another form than the pulse learned, share its velocity.
+ *	  The difference of two delays over its standard error, z, is normal with variance
+ *	  2 for parts and 1 + 2 s^2 / var for particles, where s^2 is the variance of
+ *	  the delays of the flow; the share of parts among all pairs is that of greatest
+ *	  likelihood, and a pair is doubted if it is more likely one object than two;
+ *	- pulses that fill what is no object have any velocity: a group is doubted where
+ *the sum of squares of its deviations is beyond five deviations of chi-square;
+ *	- a weak pulse that recurs at one distance from a strong one is what the form of
+ *the strong one lacks.
+ *
+ * s^2 is that of pulses that stand alone, which no group is part of.  Where more than
+ *half of the rows are doubted, the record is not what was learned, and no row is
+ *believed. What is judged together, such as all of the stretch that was learned from, is
+ *first taken in as a whole; later rows are judged by themselves and the last ones before.
+ */
+#ifndef SIGNAL_VALIDATE_H
+#define SIGNAL_VALIDATE_H
+
+#include <stddef.h>
+
+/* One row: a pulse, or a stretch that was not taken apart. */
+struct evidence {
+	int group;               /* rows of one fit have the same number, from 1 */
+	int fits;                /* 0: chi-square tells already that it is none */
+	double delay, var;       /* in samples; var 0: nothing is known of it */
+	double amplitude;        /* over its standard error */
+	int partner;             /* rows to the larger pulse it overlaps; 0: none */
+	double apart, apart_var; /* delay less that of the partner */
+	double place, height;    /* of arrival, in durations, and amplitude: the same */
+	int doubted;             /* told by validation_judge() */
+};
+
+struct validation;
+struct validation *validation_new(void); /* NULL: no memory */
+void validation_free(struct validation *v);
+
+/* Takes in n rows, groups undivided and in order, and judges them. */
+void validation_judge(struct validation *v, struct evidence *e, size_t n);
+
+/* Share of parts of one object among overlapping pulses of late. */
+double validation_parts(const struct validation *v);
+
+#endif

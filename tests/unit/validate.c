@@ -1,0 +1,157 @@
+/* Rows judged by their velocities: particles, parts of one object, and what is neither */
+#include "signal/validate.h"
+#include "num/philox.h"
+#include "tap.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ALONE = 40, PAIRS = 100, ROWS = ALONE + 2 * PAIRS };
+
+static const double SPREAD = 1.5; /* of the delays, samples */
+
+static double normal(uint64_t i)
+{
+	double z[2];
+
+	philox_normal2(11, 0, RNG_NOISE, i, z);
+	return z[0];
+}
+
+/* Pulses alone, and pairs of which a share are parts of one object; shift: of the delays
+ * of pairs beside those of the flow.  error: standard error of a delay. */
+static void draw(
+	struct evidence *e, double share, double shift, double error, uint64_t seed)
+{
+	memset(e, 0, ROWS * sizeof *e);
+	for (uint64_t i = 0; i < ROWS; i++) {
+		uint64_t pair = i < ALONE ? i : ALONE + (i - ALONE) / 2;
+		int second = i >= ALONE && (i - ALONE) % 2;
+		int part = i >= ALONE && (double)(pair - ALONE) < share * PAIRS;
+		double own = SPREAD * normal(seed + (part ? 4 * pair : 4 * i + 1));
+
+		e[i] = (struct evidence){ .group = (int)pair + 1,
+			.fits = 1,
+			.delay = own + error * normal(seed + 4 * i + 2),
+			.var = error * error,
+			.amplitude = second ? 10 : 20 };
+		if (i >= ALONE)
+			e[i].delay += second ? shift : -shift;
+		if (!second)
+			continue;
+		e[i].partner = -1;
+		e[i].apart = e[i].delay - e[i - 1].delay;
+		e[i].apart_var = 2 * error * error;
+		e[i].place = 0.3 + 0.02 * (double)pair; /* nowhere in particular */
+		e[i].height = 0.5;
+	}
+}
+
+/* Share of the rows from .. to that are doubted. */
+static double doubted(const struct evidence *e, int from, int to)
+{
+	double sum = 0;
+
+	for (int i = from; i < to; i++)
+		sum += e[i].doubted;
+	return sum / (to - from);
+}
+
+static void test_share(double share, double error, uint64_t seed)
+{
+	static struct evidence e[ROWS];
+	struct validation *v = validation_new();
+	int parts = ALONE + (int)(2 * share * PAIRS + 0.5);
+	double real, found = 0, others;
+
+	draw(e, share, 0, error, seed);
+	validation_judge(v, e, ROWS);
+	real = validation_parts(v);
+	if (share > 0)
+		found = doubted(e, ALONE, parts);
+	others = doubted(e, parts, ROWS);
+	if (share == 0)
+		ok(real == 0 && others == 0 && doubted(e, 0, ALONE) == 0,
+			"no parts, error %g: no row is doubted", error);
+	else
+		/* Of the others those are doubted whose velocities differ by less than
+		 * some two standard errors: 2.8 error / (2.1 sqrt(2 pi) SPREAD / 2). */
+		ok(fabs(real - share) < 0.15 && found > 0.9 && others < 0.3,
+			"%g parts, error %g: found as %.2f, %.2f of them doubted and %.2f "
+			"of the others",
+			share, error, real, found, others);
+	validation_free(v);
+}
+
+static void test_whole_record(void)
+{
+	static struct evidence e[ROWS];
+	struct validation *v = validation_new();
+
+	draw(e, 0.95, 0, 0.1, 70000);
+	validation_judge(v, e, ROWS);
+	ok(doubted(e, 0, ROWS) == 1, "where most rows are parts, no row is believed");
+	draw(e, 0, 0, 0.1, 80000);
+	for (int k = 0; k < 3; k++)
+		validation_judge(v, e, ROWS);
+	ok(doubted(e, 0, ROWS) == 0, "and they are again once all is well");
+	validation_free(v);
+}
+
+static void test_other_velocities(void)
+{
+	static struct evidence e[ROWS];
+	struct validation *v = validation_new();
+	int few = ALONE + 20;
+
+	draw(e, 0, 20, 0.1, 90000);
+	for (int i = few; i < ROWS; i++)
+		e[i] = (struct evidence){ .group = 1000 + i,
+			.fits = 1,
+			.delay = SPREAD * normal(100000 + (uint64_t)i),
+			.var = 0.01,
+			.amplitude = 20 };
+	validation_judge(v, e, ROWS);
+	ok(doubted(e, ALONE, few) == 1 && doubted(e, 0, ALONE) == 0 &&
+			doubted(e, few, ROWS) == 0,
+		"groups with velocities that the flow has not are doubted, others not");
+	validation_free(v);
+}
+
+/* A twentieth as high, its velocity unknown, at one distance in one group of three. */
+static void test_recurring(void)
+{
+	static struct evidence e[ROWS];
+	struct validation *v = validation_new();
+
+	draw(e, 0, 0, 0.1, 120000);
+	for (int i = ALONE + 1; i < ROWS; i += 2) {
+		e[i].apart_var = 1e4;
+		e[i].height = 0.05;
+		e[i].place = i % 3 ? 0.3 + 0.015 * (i - ALONE) / 2 : -0.7;
+	}
+	validation_judge(v, e, ROWS);
+	for (int i = ALONE + 1; i < ROWS; i += 2)
+		if (i % 3 == 0 && !e[i].doubted) {
+			ok(0, "a weak pulse that recurs at one distance is doubted");
+			validation_free(v);
+			return;
+		}
+	ok(1, "a weak pulse that recurs at one distance is doubted");
+	validation_free(v);
+}
+
+int main(void)
+{
+	for (uint64_t seed = 0; seed < 5; seed++) {
+		test_share(0, 0.1, 2000 * seed);
+		test_share(0, 0.5, 2000 * seed + 10000);
+		test_share(0, 2, 2000 * seed + 20000);
+		test_share(0.3, 0.1, 2000 * seed + 30000);
+		test_share(0.4, 0.2, 2000 * seed + 40000);
+	}
+	test_whole_record();
+	test_other_velocities();
+	test_recurring();
+	return tap_done();
+}
