@@ -128,9 +128,6 @@ $(SCRIPTS:%=$(BIN)/%): $(BIN)/%: scripts/% share/page.css
 $(B)/src/records/replay.o: ALL_CPPFLAGS += -DWEARPIPE_PROGRAMS='"$(PROGRAMS)"'
 $(B)/src/records/replay.o: Makefile
 
-# Not clean yet of implicit conversions.
-$(B)/lib/signal/%.o $(B)/src/duet/%.o: CONVERSION =
-
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
 	$(call say,CC,$<)

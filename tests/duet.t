@@ -117,6 +117,42 @@ at_most "counting, sensor 2: peaks a quarter of a pulse (2.5 ms) from the arriva
 		d = d < 0 ? -d : d; most = d > most ? d : most } END { print most }')" 1e-3
 is "counting, sensor 2: all of them" "$(column time2 c.tsv | wc -l)" 200
 
+# Of noisier or shorter pulses the masks find more sources than there are: these are marked.
+sensorsim --uniform 80um:120um --number 20 --duration 4s --gap 20ms --snr 30dB \
+	--lag 0.2ms:0.5ms --rate 2500Hz --seed 5 --truth truth.tsv >few.au
+duet --method duet --window 16 few.au >masks.tsv 2>err
+is "masks: doubtful, exit status 3" $? 3
+at_least "masks: more sources than particles" "$(column verdict masks.tsv | grep -c misfit)" 3
+grep -v misfit masks.tsv >believed.tsv
+at_most "masks: those that no pulse stands beside are marked" "$(score false truth.tsv believed.tsv)" 1
+at_least "masks: the particles are not" "$(score matched truth.tsv believed.tsv)" 18
+fails "masks: a window too short to see a pulse is refused" 1 "pulses of 25 samples want a --window" \
+	duet --method duet --window 8 few.au
+
+# Detection: twenty large particles, and weak ones of one size, half of them within 10 ms,
+# a pulse, of a large one.
+awk 'BEGIN { print "time\tdiameter"; for (i = 0; i < 300; i++) {
+	t = 0.1 + i * 0.06; w = t + (i % 2 ? (i % 40 - 20) / 2000 + 0.0002 : 0.028)
+	if (w < t) printf "%g\t2.7e-5\n%g\t1.2e-4\n", w, t
+	else printf "%g\t1.2e-4\n%g\t2.7e-5\n", t, w } }' >weak.tsv
+sensorsim --duration 18.2s --noise 30mV weak.tsv >weak.au
+duet --detectable limits.tsv weak.au >found.tsv
+column time1 found.tsv >t.col
+column amplitude found.tsv | paste t.col - | awk '$2 < 0.1 { x = ($1 - 0.1) / 0.06; i = int(x + 0.5)
+	if (x - i > 0.4) lone++; else beside++ } END { print lone / 150, beside / 150 }' >share
+for c in alone beside; do
+	column amplitude limits.tsv >a.col
+	column $c limits.tsv | paste a.col - | awk -v a=0.019683 '$1 > a { print p + ($2 - p) * log(a / b) / log($1 / b); exit }
+		{ b = $1; p = $2 }'
+done | paste -s - >told
+# Of 150 particles the share scatters by 0.04; see detectable.h for the rest.
+near "the share of isolated particles found is what is told" "$(cut -d' ' -f1 share)" "$(cut -f1 told)" 0.17
+near "the share found beside a large one is what is told" "$(cut -d' ' -f2 share)" "$(cut -f2 told)" 0.22
+at_most "a large pulse hides small ones" "$(cut -f2 told)" 0.7
+is "the largest pulse is told" "$(sed -n 's/^# large: \([0-9.]\{3\}\).* V$/\1/p' limits.tsv)" 1.7
+fails "no limits of detection without a fit" 2 'detectable needs --method fit' \
+	duet --method count --detectable x weak.au
+
 # Work left out.
 duet --stats stats.tsv --method duet s.au >/dev/null
 at_most "masks: lone pulses are not demixed" "$(column_of demixings <stats.tsv)" 2

@@ -93,13 +93,15 @@ static enum calibrate_status attempt_kind(const struct calibrate_par *par,
 static enum calibrate_status look_again(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct look *look, struct calibration *c)
 {
+	static const enum whiten_kind kinds[] = { WHITEN_FILTERED, WHITEN_COLOURED };
+	enum whiten_kind found = WHITEN_FILTERED;
 	double best = c->price;
-	int found = -1;
+	int better = 0;
 
-	for (int kind = WHITEN_FILTERED; kind <= WHITEN_COLOURED; kind++) {
+	for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
 		struct calibration other;
 		enum calibrate_status status =
-			attempt_kind(par, x1, x2, n, kind, look, &other);
+			attempt_kind(par, x1, x2, n, kinds[k], look, &other);
 
 		if (status == CALIBRATE_MEMORY)
 			return status;
@@ -107,11 +109,12 @@ static enum calibrate_status look_again(const struct calibrate_par *par, const d
 			continue;
 		if (other.price < best) {
 			best = other.price;
-			found = kind;
+			found = kinds[k];
+			better = 1;
 		}
 		calibration_clear(&other);
 	}
-	if (found < 0)
+	if (!better)
 		return CALIBRATE_OK;
 	look->settled = 1;
 	calibration_clear(c);

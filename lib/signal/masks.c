@@ -93,8 +93,7 @@ struct masks *masks_new(const struct masks_par *par)
 		masks_free(m);
 		return NULL;
 	}
-	/* A pulse of duration T has hardly anything above 2 / T. */
-	m->top = (size_t)floor(2.0 * (double)par->window / par->duration);
+	m->top = (size_t)floor(MASKS_BAND * (double)par->window / par->duration);
 	if (m->top < 1)
 		m->top = 1;
 	if (m->top > m->bins - 1)

@@ -25,6 +25,9 @@
 
 enum { MASKS_SOURCES_MAX = HISTOGRAM_PEAKS, MASKS_CELLS = HISTOGRAM_CELLS };
 
+/* A pulse has hardly anything above this frequency over one cycle per duration. */
+enum { MASKS_BAND = 2 };
+
 struct masks_par {
 	size_t window, hop;          /* samples */
 	double duration;             /* of a pulse, samples */

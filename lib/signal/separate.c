@@ -254,9 +254,8 @@ static enum separate_status calibrate_now(struct separate *s)
 	s->holding = s->par.method == SEPARATE_FIT;
 	s->joint = joint_new();
 	if (s->par.method == SEPARATE_MASKS) {
-		struct masks_par mp = { .window = s->par.mask_window,
-			.hop = s->par.mask_hop,
-			.duration = c->duration,
+		size_t window = s->par.mask_window ? s->par.mask_window : 64;
+		struct masks_par mp = { .duration = c->duration,
 			.delta_min = c->delta_min,
 			.delta_max = c->delta_max,
 			.gain_max = 2 * s->scene.gain,
@@ -264,6 +263,13 @@ static enum separate_status calibrate_now(struct separate *s)
 			.sources = s->par.sources,
 			.shape = c->shape };
 
+		/* Its first bin has to lie in the band of a pulse. */
+		while (!s->par.mask_window && (double)window * MASKS_BAND < c->duration)
+			window *= 2;
+		if ((double)window * MASKS_BAND < c->duration)
+			return SEPARATE_WINDOW;
+		mp.window = window;
+		mp.hop = s->par.mask_hop ? s->par.mask_hop : window / 2;
 		s->masks = masks_new(&mp);
 		if (!s->masks)
 			return SEPARATE_MEMORY;
@@ -590,6 +596,42 @@ static void measure_pulse(const double *x, size_t n, double *t, double *a)
 	*a = (x[high] - x[low]) / 2;
 }
 
+/* Holds the pulses that masks have found in n samples against those of a joint fit.  A
+ * mask divides one pulse into several where the noise moves the points of its histogram,
+ * and what a pulse of the fit does not stand beside, by a quarter of a duration, is none.
+ */
+static enum separate_status confirm(struct separate *s, long long from, size_t n,
+	const double *t, int m, enum separate_verdict *verdict)
+{
+	struct joint_result r;
+	int count = 0, taken[JOINT_PULSES_MAX] = { 0 };
+	enum joint_status status;
+
+	s->scene.max_pulses = s->par.most_pulses;
+	status = joint_fit(s->joint, &s->scene, channel_1(s, from), channel_2(s, from), n,
+		s->pulse, &count, &r);
+	if (status != JOINT_OK)
+		return status == JOINT_MEMORY ? SEPARATE_MEMORY : SEPARATE_WIDE;
+	s->counters.fits++;
+	s->counters.steps += (double)r.steps;
+	s->counters.searches += (double)r.searches;
+	for (int k = 0; k < m; k++) {
+		int best = -1;
+
+		for (int i = 0; i < count; i++)
+			if (!taken[i] &&
+				(best < 0 || fabs(s->pulse[i].t - t[k]) <
+						     fabs(s->pulse[best].t - t[k])))
+				best = i;
+		verdict[k] = m > 1 || count > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
+		if (best >= 0 && fabs(s->pulse[best].t - t[k]) < s->cal.duration / 4)
+			taken[best] = 1;
+		else
+			verdict[k] = SEPARATE_MISFIT;
+	}
+	return SEPARATE_OK;
+}
+
 /* Works off [from, to) by masks. */
 static enum separate_status mask_section(struct separate *s, long long from, long long to)
 {
@@ -597,6 +639,9 @@ static enum separate_status mask_section(struct separate *s, long long from, lon
 	size_t n = (size_t)(to - from);
 	const double *y1 = channel_1(s, from);
 	int m = masks_find(s->masks, y1, channel_2(s, from), n, source);
+	double t[MASKS_SOURCES_MAX], a[MASKS_SOURCES_MAX];
+	enum separate_verdict verdict[MASKS_SOURCES_MAX], all = SEPARATE_ALONE;
+	enum separate_status status;
 
 	if (m < 0 || !reserve_sources(s, (size_t)m * n))
 		return SEPARATE_MEMORY;
@@ -609,28 +654,36 @@ static enum separate_status mask_section(struct separate *s, long long from, lon
 	s->counters.masks += m > 1;
 	s->counters.masks_skipped += m == 1;
 	for (int k = 0; k < m; k++) {
+		double *x = s->source + (size_t)k * n;
+
+		for (size_t i = 0; i < n; i++)
+			x[i] *= s->cal.noise[0];
+		measure_pulse(x, n, &t[k], &a[k]);
+	}
+	status = confirm(s, from, n, t, m, verdict);
+	if (status != SEPARATE_OK)
+		return status;
+	for (int k = 0; k < m; k++) {
 		struct entry *entry = queue_entry(s);
-		struct transit *p = &entry->row;
-		double *x = s->source + (size_t)k * n, t, a;
+		struct transit *p;
 
 		if (!entry)
 			return SEPARATE_MEMORY;
-		entry->evidence.fits = 1;
+		p = &entry->row;
+		entry->evidence.fits = verdict[k] != SEPARATE_MISFIT;
 		entry->evidence.group = ++s->group;
-		for (size_t i = 0; i < n; i++)
-			x[i] *= s->cal.noise[0];
-		measure_pulse(x, n, &t, &a);
 		p->section = s->number;
 		p->sources = m;
-		p->t1 = (double)from + t;
+		p->t1 = (double)from + t[k];
 		p->t2 = p->t1 + (double)s->cal.shift + source[k].delta;
-		p->amplitude = a;
+		p->amplitude = a[k];
 		p->t1_se = p->t2_se = p->delay_se = p->amplitude_se = p->chi2 = NAN;
 		p->correlation = NAN;
-		p->verdict = m > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
+		p->verdict = verdict[k];
+		all = verdict[k] > all ? verdict[k] : all;
+		s->counters.rows++;
 	}
-	report_section(s, from, to, m, NAN, m > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE,
-		s->source);
+	report_section(s, from, to, m, NAN, all, s->source);
 	return SEPARATE_OK;
 }
 

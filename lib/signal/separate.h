@@ -72,8 +72,9 @@ struct separate_par {
 	size_t window;   /* longest section worked off at once; 0: 24 durations */
 	int sources;     /* exactly so many in each section; 0: find out */
 	int most_pulses; /* of a window, if fewer than JOINT_PULSES_MAX; 0: so many */
-	size_t mask_window, mask_hop; /* of the masks, samples */
-	int want_sources;             /* fill separate_section.source */
+	/* Of the masks, samples; 0: 64, or as many as the pulses need, and half of it. */
+	size_t mask_window, mask_hop;
+	int want_sources; /* fill separate_section.source */
 	void (*on_section)(void *context, const struct separate_section *section);
 	void *context;
 };
@@ -90,8 +91,9 @@ enum separate_status {
 	SEPARATE_NARROW, /* a filter has left too little of the pulses */
 	SEPARATE_FAST,
 	SEPARATE_SLOW,
-	SEPARATE_TONES, /* the lines given cannot be told from each other */
-	SEPARATE_WIDE   /* pulses may last too long, or no time, within the spread */
+	SEPARATE_TONES,  /* the lines given cannot be told from each other */
+	SEPARATE_WINDOW, /* that of the masks is shorter than half a pulse */
+	SEPARATE_WIDE    /* pulses may last too long, or no time, within the spread */
 };
 
 /* Work done and left out so far. */

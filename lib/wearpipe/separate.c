@@ -73,13 +73,13 @@ static enum wp_status outcome(struct wp_separate *s, enum separate_status status
 		[SEPARATE_SILENT_1] = "channel 1 is constant: a dead sensor",
 		[SEPARATE_SILENT_2] = "channel 2 is constant: a dead sensor",
 		[SEPARATE_NO_LAG] =
-			"the channels have nothing in common: no particle, or the "
-			"delay must be given",
+			"channels with nothing in common: no particle, or give the delay",
 		[SEPARATE_FAR] = "the delay is as long as what is learned from",
 		[SEPARATE_NARROW] = "a filter has left too narrow a band",
 		[SEPARATE_FAST] = "no pulse of at least 8 samples",
 		[SEPARATE_SLOW] = "pulses as long as what is learned from",
 		[SEPARATE_TONES] = "lines too near each other",
+		[SEPARATE_WINDOW] = "a window shorter than half a pulse",
 		[SEPARATE_WIDE] = "transit times too far apart",
 	};
 

@@ -19,7 +19,7 @@ static long window = 64, hop, sensor = 1;
 static struct opt_choice sources = { 0, 0 };
 static double kappa = M_PI / 4 * 1e11; /* as sensorsim(1) */
 static double spacing = 0.25, learn = NAN, latency = NAN, floor_height = NAN;
-static const char *separated, *histogram, *sections;
+static const char *separated, *histogram, *sections, *detectable;
 static const char *const methods[] = { "fit", "duet", "count", NULL };
 static const char *const automatic[] = { "auto", NULL };
 
@@ -41,7 +41,7 @@ static const struct opt opts[] = { OPT_HEADING("Method"),
 	{ 0, "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
 		"hold back no more than T of signal", 0, 0 },
 	{ 0, "window", OPT_INT, UNIT_COUNT, &window, 4, 1e6, "N",
-		"samples of a Hamming window (duet)", 0, 0 },
+		"samples of a Hamming window (duet; more for longer pulses)", 0, 0 },
 	{ 0, "hop", OPT_INT, UNIT_COUNT, &hop, 1, 1e6, "N",
 		"samples from window to window (duet; half the window)", 0, 0 },
 	{ 0, "sensor", OPT_INT, UNIT_COUNT, &sensor, 1, 2, "N",
@@ -55,6 +55,9 @@ static const struct opt opts[] = { OPT_HEADING("Method"),
 		"write the weighted histograms as a table (duet)", 0, 1 },
 	{ 0, "sections", OPT_TEXT, UNIT_NONE, &sections, 0, 0, "FILE",
 		"write one row per section", 0, 1 },
+	{ 0, "detectable", OPT_TEXT, UNIT_NONE, &detectable, 0, 0, "FILE",
+		"write the probability of detection by amplitude as a table (fit)", 0,
+		1 },
 	OPT_END };
 
 static const struct prog prog = { "duet",
@@ -77,6 +80,8 @@ static void check_options(void)
 		die(EXIT_USAGE, "--sensor and --floor need --method count");
 	if (method == METHOD_COUNT && (separated || sections))
 		die(EXIT_USAGE, "--method count knows no sections and separates nothing");
+	if (method != METHOD_FIT && detectable)
+		die(EXIT_USAGE, "--detectable needs --method fit");
 	if (window % 2)
 		die(EXIT_USAGE, "--window %ld: want an even number of samples", window);
 	if (!opt_given("hop"))
@@ -121,8 +126,8 @@ static int separate_all(struct signal_in *in, struct found *out)
 		.learn = learned_samples(rate),
 		.sources = sources.word < 0 ? (int)sources.value : 0,
 		.most_pulses = most_pulses(),
-		.mask_window = (size_t)window,
-		.mask_hop = (size_t)hop,
+		.mask_window = opt_given("window") ? (size_t)window : 0,
+		.mask_hop = opt_given("hop") ? (size_t)hop : 0,
 		.want_sources = separated != NULL,
 		.context = out };
 
@@ -156,6 +161,7 @@ int main(int argc, char **argv)
 	struct found out = { .separated = separated,
 		.histogram = histogram,
 		.sections = sections,
+		.detectable = detectable,
 		.spacing = spacing,
 		.kappa = kappa };
 	char *cmd;

@@ -38,6 +38,10 @@ static void check_status(
 		warn("%s: nothing in common of both channels to learn from: no particle, or "
 		     "give --align and --pulse-duration",
 			name);
+	else if (status == SEPARATE_WINDOW)
+		die(EXIT_RUN,
+			"%s: pulses of %.0f samples want a --window of at least half of that",
+			name, separate_calibration(s)->duration);
 	else if (status != SEPARATE_OK)
 		die(EXIT_RUN, "%s: %s", name, why[status]);
 }
@@ -116,6 +120,7 @@ int separate_record(
 	check_status(status, s, signal_name(in));
 	report(s, (double)out->rate);
 	doubtful = is_doubtful(s, out, signal_name(in));
+	found_detectable(out, separate_calibration(s));
 	separate_free(s);
 	return doubtful;
 }
@@ -124,9 +129,9 @@ static struct count *start_count(const struct count_par *par, const double *x, s
 	int channels, const char *name)
 {
 	double *work = xcalloc(n, sizeof *work);
-	double level = isnan(par->floor)
-			       ? count_level(x + par->sensor - 1, n, channels, work)
-			       : par->floor;
+	double level = isnan(par->floor) ? count_level(x + par->sensor - 1, n,
+						   (size_t)channels, work)
+					 : par->floor;
 	struct count *c;
 
 	free(work);

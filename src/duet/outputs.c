@@ -1,6 +1,7 @@
 #include "outputs.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
+#include "signal/detectable.h"
 #include "signal/sensor.h"
 #include "signal/sizing.h"
 #include <math.h>
@@ -42,6 +43,9 @@ void found_open(struct found *out, const struct signal_format *format, const cha
 	if (out->histogram)
 		out->weights = side_table(out->histogram, format, "histogram", "1 1 s 1",
 			"section attenuation delay weight");
+	if (out->detectable)
+		out->limits = side_table(out->detectable, format, "detectable", "m V 1 1",
+			"diameter amplitude alone beside");
 	if (out->separated) {
 		many.cmd = opt_cmd_side(format->cmd, "separated");
 		out->sources = signal_create(out->separated, &many);
@@ -70,6 +74,8 @@ void found_particle(struct found *out, const struct transit *p)
 		(double)p->section, (double)p->sources, p->chi2 };
 
 	put_row(out->particles, row, 16, verdicts[p->verdict]);
+	if (p->verdict == SEPARATE_ALONE || p->verdict == SEPARATE_OVERLAP)
+		out->largest = fmax(out->largest, p->amplitude);
 }
 
 void found_peak(struct found *out, const struct peak *p, int sensor, double delay)
@@ -161,6 +167,35 @@ void found_section(void *context, const struct separate_section *s)
 		put_histogram(out, s);
 }
 
+/* From where hardly any is found to where hardly any is missed, in steps of a tenth. */
+void found_detectable(struct found *out, const struct calibration *c)
+{
+	enum { ROWS = 100 };
+	double share[DETECTABLE_PLACES], alone = 0, beside = 0, noise, v, a;
+	struct joint_scene scene;
+
+	if (!out->limits || !c)
+		return;
+	noise = c->noise[0];
+	v = c->shift > 0 ? out->spacing * out->rate / (double)c->shift : NAN;
+	calibration_scene(c, &scene);
+	detectable_shares(c->shape, share);
+	table_comment(out->limits, "large", "%.17g V", out->largest);
+	for (a = noise; detectable_alone(&scene, a / noise) > 1e-3;)
+		a /= 1.1;
+	for (; detectable_alone(&scene, a / noise) < 1e-3;)
+		a *= 1.1;
+	for (int k = 0; k < ROWS && !(alone > 0.999 && beside > 0.9); k++, a *= 1.1) {
+		alone = detectable_alone(&scene, a / noise);
+		beside =
+			detectable_beside(&scene, a / noise, out->largest / noise, share);
+		const double row[4] = { sensor_diameter(out->kappa, v, a), a, alone,
+			beside };
+
+		table_put_row(out->limits, row, 4);
+	}
+}
+
 void found_close(struct found *out)
 {
 	table_done(out->particles);
@@ -168,6 +203,8 @@ void found_close(struct found *out)
 		table_done(out->section_rows);
 	if (out->weights)
 		table_done(out->weights);
+	if (out->limits)
+		table_done(out->limits);
 	if (out->sources) {
 		draw_until(out, 0);
 		signal_done(out->sources);

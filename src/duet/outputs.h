@@ -8,11 +8,13 @@
 #include "signal/separate.h"
 
 struct found {
-	const char *separated, *histogram, *sections; /* files, NULL: not wanted */
-	double spacing, kappa;                        /* m, V s/m4 */
+	/* files, NULL: not wanted */
+	const char *separated, *histogram, *sections, *detectable;
+	double spacing, kappa; /* m, V s/m4 */
 	double rate;
-	long count; /* particles so far */
-	struct table_out *particles, *section_rows, *weights;
+	long count;     /* particles so far */
+	double largest; /* amplitude of one that was resolved, V */
+	struct table_out *particles, *section_rows, *weights, *limits;
 	struct signal_out *sources;
 	long long drawn; /* frames of separated signals written */
 	double *frames;  /* of the separated signals, from frame drawn on */
@@ -26,6 +28,8 @@ void found_particle(struct found *out, const struct transit *p);
 void found_peak(struct found *out, const struct peak *p, int sensor, double delay);
 /* separate_par.on_section, with a struct found for its context. */
 void found_section(void *context, const struct separate_section *s);
+/* The table of what can be detected; NULL: nothing was learned. */
+void found_detectable(struct found *out, const struct calibration *c);
 void found_close(struct found *out);
 
 #endif

@@ -123,7 +123,7 @@ scene '' debrisstat particles
 scene 'side1' sensorsim --uniform 80um:150um --number 10 --duration 200ms --noise 5mV --truth side1
 scene '' bpfilter --order 100 --lines 50 signal
 scene 'side1 side2' duet --separated side1 --sections side2 signal
-scene 'side1' duet --histogram side1 --method duet hum
+scene '' duet --method duet hum
 scene '' duet --method count signal
 scene 'side1' duet --method duet --align 0 --separated side1 signal
 scene '' aopf --particles 20 --threshold 2 series
