@@ -209,7 +209,6 @@ static void final_sums(void *context, size_t begin, size_t end, struct sweep *s)
 		s->sum[0] += p > 0;
 		s->sum[1] += p >= c->cap;
 		s->sum[2] += p;
-		s->sum[3] += p * (c->gap[i] + c->h[i]);
 		s->max = c->h[i] > s->max ? c->h[i] : s->max;
 		s->min = c->h[i] < s->min ? c->h[i] : s->min;
 	}
@@ -287,6 +286,7 @@ static int is_apart(struct contact *c)
 	if (c->control == CONTACT_APPROACH && c->target > -s.max)
 		return 0;
 	memset(c->p, 0, c->n * sizeof *c->p);
+	c->work = 0;
 	c->result.approach = c->control == CONTACT_APPROACH ? c->target : -s.max;
 	for (size_t i = 0; i < c->n; i++)
 		c->gap[i] = -c->h[i];
@@ -322,7 +322,8 @@ enum contact_status contact_solve(struct contact *c, const double *height,
 	c->result.plastic = s.sum[1] / (double)c->n;
 	c->result.pressure = s.sum[2] / (double)c->n;
 	c->result.load = s.sum[2] * c->par.dx * c->par.dy;
-	c->result.energy = s.sum[3] / 2 * c->par.dx * c->par.dy;
+	/* Of the last contact_gap(): heights far from 0 would take digits off p u. */
+	c->result.energy = fmax(c->work, 0) / 2 * c->par.dx * c->par.dy;
 	c->result.indentation = c->result.approach + s.max;
 	for (size_t i = 0; gap && i < c->n; i++)
 		gap[i] = gap_at(c, i);

@@ -70,6 +70,11 @@ near "one cell | area is one cell | $(key area) | -" "$(key area)" 0.00091827364
 solve --pixel 1um --estar 100GPa -F 0.05N --solver pk
 accurate "one cell in contact, pk" "indentation F 4 asinh(1) / (pi E* h)" \
 	"$(error "$(key indentation)" "0.05 * 3.525494348078172 / ($pi * 1e11 * 1e-6)")" 1e-12
+# A cell 1 m high: the displacement is 1e-11 of it
+heights 33 33 '$x == 16 && $y == 16 ? 1 : 0'
+solve --pixel 1um --estar 100GPa -F 1uN
+accurate "one cell of 1 m in contact, free" "energy F^2 4 asinh(1) / (2 pi E* h)" \
+	"$(error "$(key energy)" "1e-12 * 3.525494348078172 / (2 * $pi * 1e11 * 1e-6)")" 1e-12
 heights 64 64 "$rough"
 last=0
 for p in 1e2 1e5 1e7 1e8 1e9 1e10 1e11 1e13; do
