@@ -153,6 +153,22 @@ is "the largest pulse is told" "$(sed -n 's/^# large: \([0-9.]\{3\}\).* V$/\1/p'
 fails "no limits of detection without a fit" 2 'detectable needs --method fit' \
 	duet --method count --detectable x weak.au
 
+# A live record: rows come before a second of it has, though its end is far away.
+awk 'BEGIN { print "time\tdiameter"; for (i = 0; i < 35; i++) printf "%g\t%g\n", 0.05 + 0.08 * i, 8e-5 + i % 7 * 6e-6 }' |
+	sensorsim --duration 3s --snr 30dB --lag 0.2ms:0.5ms >live.au
+{
+	head -c 150000 live.au # 0.93 s
+	waited=0
+	until grep -q alone live.tsv || [ $waited = 600 ]; do
+		sleep 0.1
+		waited=$((waited + 1))
+	done
+	cp live.tsv first.tsv
+	tail -c +150001 live.au
+} | duet --latency 1s >live.tsv
+at_least "live: the first rows come within a second of signal" "$(grep -c alone first.tsv)" 1
+is "live: they are those of the whole record" "$(cat first.tsv)" "$(head -n "$(wc -l <first.tsv)" live.tsv)"
+
 # Work left out.
 duet --stats stats.tsv --method duet s.au >/dev/null
 at_most "masks: lone pulses are not demixed" "$(column_of demixings <stats.tsv)" 2

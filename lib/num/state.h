@@ -23,6 +23,7 @@ struct state {
 	unsigned char *at; /* NULL: only count */
 	int load;          /* 1: from there into the object */
 	size_t size;       /* so far */
+	int failed;        /* 1: no memory to load into */
 };
 
 static inline void state_move(struct state *s, void *part, size_t size)
@@ -31,6 +32,14 @@ static inline void state_move(struct state *s, void *part, size_t size)
 		memcpy(part, s->at + s->size, size);
 	else if (s->at)
 		memcpy(s->at + s->size, part, size);
+	s->size += size;
+}
+
+/* Leaves out a stretch, of zeros. */
+static inline void state_skip(struct state *s, size_t size)
+{
+	if (s->at && !s->load)
+		memset(s->at + s->size, 0, size);
 	s->size += size;
 }
 

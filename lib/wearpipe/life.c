@@ -1,3 +1,4 @@
+#include "life/passage/passage.h"
 #include "life/score/metrics.h"
 #include "life/trend/bank.h"
 #include "report.h"

@@ -155,7 +155,8 @@ void unit_step(struct machine *u, const struct outlook_row *in, double *cell)
 	u->rows++;
 	u->last = in->t;
 	if (u->filter) {
-		adaptive_step(u->filter, in->t, in->y - zero, &row);
+		if (adaptive_step(u->filter, in->t, in->y - zero, &row) != NUM_OK)
+			die(EXIT_RUN, "no memory for the particles");
 		*cell++ = row.grey + zero;
 		*cell++ = row.prediction + zero;
 		*cell++ = row.state + zero;
@@ -267,6 +268,8 @@ static int resume_unit(struct units *units, FILE *f, int number)
 	u->last = place[newer].last;
 	s.at = units->place + sizeof place[0];
 	pass(u, &s);
+	if (s.failed)
+		die(EXIT_RUN, "no memory for unit %s", u->name);
 	return 1;
 }
 

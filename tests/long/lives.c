@@ -1,12 +1,15 @@
-/* Lives of simulated units of many kinds, as predicted by the bank. * usage:
- * build/long/lives [PATHS] * The first 13 kinds are those on whose like the constants of
- * the bank were chosen, with other seeds here; the rest only judge: other shapes, other
- * sampling, heavy tails, correlated noise, outliers, rounded, missing and repeated
- * values. Wear that slows down without a sign of it so far (a sudden fall of the rate, a
- * late turn of an S) is a known limit. Each path has a random length, noise, offset,
- * range, direction and unit of time. */
+/* Lives of simulated units of many kinds, as predicted by the bank.
+ *
+ * usage: build/long/lives [PATHS]
+ *
+ * The first 13 kinds and the sigmoid are those on whose like the constants of the bank
+ * were chosen, with other seeds here; the rest only test: other shapes, other sampling,
+ * heavy tails, correlated noise, outliers, rounded, missing and repeated values.  Each
+ * path has a random length, noise, offset, range, direction and unit of time.
+ */
 #include "../unit/tap.h"
 #include "life/particle/draw.h"
+#include "life/passage/passage.h"
 #include "life/trend/bank.h"
 #include <math.h>
 #include <stdio.h>
@@ -14,6 +17,11 @@
 #include <string.h>
 
 enum { ROWS = 4000, DRAWS = 500, PARTS = 3 };
+
+/* The coverage wanted of every kind at 40, 60 and 80 % of life.  A fall of the rate that
+ * has not begun, or the late turn of an S, shows in no row so far: of these even a law of
+ * the future that is right on the whole covers less than it says. */
+static const double LEAST = 0.8;
 
 static struct draw *dice;
 
@@ -213,51 +221,76 @@ static double gamma_knee(double d, double t, double dt)
 	return d + gamma_deviate(p[0] * dt) / p[0] * (t < p[1] ? 0.6 : 3);
 }
 
+static double weibull(double t)
+{
+	return expm1(-pow(t / p[1], p[0])) / expm1(-pow(1 / p[1], p[0]));
+}
+
+/* Rates 1, p[2] and p[2] p[3]. */
+static double two_falls(double t)
+{
+	double at = fmin(t, p[0]) + p[2] * (fmax(fmin(t, p[1]), p[0]) - p[0]) +
+		    p[2] * p[3] * fmax(0, t - p[1]);
+
+	return at / (p[0] + p[2] * (p[1] - p[0]) + p[2] * p[3] * (1 - p[1]));
+}
+
+/* A steady part, and one that grows from nothing to everything towards the end. */
+static double late(double t)
+{
+	return p[0] * t + (1 - p[0]) * pow(t, p[1]);
+}
+
+static double gamma_fall(double d, double t, double dt)
+{
+	return d + gamma_deviate(p[0] * dt) / p[0] * (t < p[1] ? 1.6 : p[2]);
+}
+
 static const struct kind {
 	const char *name;
 	double (*curve)(double t);
 	double (*process)(double d, double t, double dt);
-	double range[5][2];  /* of the parameters */
-	int held;            /* 1: only tests */
-	double least[PARTS]; /* coverage wanted at 40, 60, 80 % */
+	double range[5][2]; /* of the parameters */
+	int held;           /* 1: only tests */
 } kinds[] = {
-	{ "linear", linear, NULL, { { 0 } }, 0, { 0.85, 0.85, 0.85 } },
-	{ "Wiener", NULL, wiener, { { 0.05, 0.25 } }, 0, { 0.8, 0.85, 0.85 } },
-	{ "gamma", NULL, gamma_process, { { 20, 200 } }, 0, { 0.8, 0.85, 0.85 } },
-	{ "crack", crack, NULL, { { 1.2, 1.8 }, { 0.1, 0.4 } }, 0, { 0.85, 0.85, 0.85 } },
-	{ "exponential", exponential, NULL, { { 2, 4 } }, 0, { 0.85, 0.85, 0.85 } },
-	{ "root", root, NULL, { { 0 } }, 0, { 0.85, 0.85, 0.85 } },
+	{ "linear", linear, NULL, { { 0 } }, 0 },
+	{ "Wiener", NULL, wiener, { { 0.05, 0.25 } }, 0 },
+	{ "gamma", NULL, gamma_process, { { 20, 200 } }, 0 },
+	{ "crack", crack, NULL, { { 1.2, 1.8 }, { 0.1, 0.4 } }, 0 },
+	{ "exponential", exponential, NULL, { { 2, 4 } }, 0 },
+	{ "root", root, NULL, { { 0 } }, 0 },
 	{ "three phases", three_phases, NULL,
 		{ { 0.05, 0.15 }, { 0.02, 0.08 }, { 0.3, 0.5 }, { 0.65, 0.8 },
 			{ 1.5, 4 } },
-		0, { 0.8, 0.8, 0.8 } },
-	{ "knee", knee, NULL, { { 0.6, 0.8 }, { 0.3, 0.5 } }, 0, { 0.8, 0.8, 0.8 } },
+		0 },
+	{ "knee", knee, NULL, { { 0.6, 0.8 }, { 0.3, 0.5 } }, 0 },
 	{ "bathtub", bathtub, NULL,
-		{ { 0.1, 0.3 }, { 0.05, 0.15 }, { 0.2, 0.4 }, { 0.08, 0.15 } }, 0,
-		{ 0.8, 0.8, 0.8 } },
-	{ "bearing", bearing, NULL, { { 0.03, 0.15 } }, 0, { 0.8, 0.8, 0.8 } },
-	{ "Hill", hill, NULL, { { 1.5, 4 }, { 0.35, 0.8 } }, 0, { 0.6, 0.6, 0.8 } },
-	{ "saturating", saturating, NULL, { { 1, 4 } }, 0, { 0.85, 0.85, 0.85 } },
-	{ "fall", fall, NULL, { { 0.2, 0.7 }, { 0.15, 0.6 } }, 0, { 0.25, 0.6, 0.9 } },
-	{ "power", power, NULL, { { 1.5, 4 } }, 1, { 0.8, 0.8, 0.7 } },
-	{ "steep", steep, NULL, { { 0.2, 0.6 }, { 0.3, 0.85 }, { 1.5, 6 } }, 1,
-		{ 0.8, 0.8, 0.8 } },
+		{ { 0.1, 0.3 }, { 0.05, 0.15 }, { 0.2, 0.4 }, { 0.08, 0.15 } }, 0 },
+	{ "bearing", bearing, NULL, { { 0.03, 0.15 } }, 0 },
+	{ "Hill", hill, NULL, { { 1.5, 4 }, { 0.35, 0.8 } }, 0 },
+	{ "saturating", saturating, NULL, { { 1, 4 } }, 0 },
+	{ "fall", fall, NULL, { { 0.2, 0.7 }, { 0.15, 0.6 } }, 0 },
+	{ "power", power, NULL, { { 1.5, 4 } }, 1 },
+	{ "steep", steep, NULL, { { 0.2, 0.6 }, { 0.3, 0.85 }, { 1.5, 6 } }, 1 },
 	{ "two knees", two_knees, NULL,
-		{ { 0.2, 0.4 }, { 0.5, 0.8 }, { 0.4, 2.5 }, { 1, 7 } }, 1,
-		{ 0.8, 0.8, 0.8 } },
-	{ "logarithm", logarithm, NULL, { { 3, 50 } }, 1, { 0.8, 0.8, 0.8 } },
-	{ "season", season, NULL, { { 0.01, 0.04 }, { 10, 80 } }, 1, { 0.8, 0.8, 0.8 } },
-	{ "sigmoid", sigmoid, NULL, { { 4, 12 }, { 0.4, 0.8 } }, 1, { 0.75, 0.6, 0.55 } },
-	{ "stairs", stairs, NULL, { { 8, 30 }, { 0.1, 0.9 } }, 1, { 0.8, 0.8, 0.8 } },
-	{ "Wiener, ever faster", NULL, faster_wiener, { { 0.05, 0.25 } }, 1,
-		{ 0.8, 0.8, 0.8 } },
-	{ "low power", power, NULL, { { 0.3, 0.8 } }, 1, { 0.8, 0.8, 0.8 } },
-	{ "hyperbolic tangent", tangent, NULL, { { 1, 2.2 } }, 1, { 0.7, 0.7, 0.8 } },
-	{ "Gompertz", gompertz, NULL, { { 2, 6 }, { 3, 6 } }, 1, { 0.3, 0.4, 0.6 } },
-	{ "Wiener, ever slower", NULL, slower_wiener, { { 0.03, 0.12 }, { 0.7, 2.5 } }, 1,
-		{ 0.8, 0.8, 0.8 } },
-	{ "gamma with a knee", NULL, gamma_knee, { { 20, 200 }, { 0.4, 0.8 } }, 1,
-		{ 0.8, 0.8, 0.8 } },
+		{ { 0.2, 0.4 }, { 0.5, 0.8 }, { 0.4, 2.5 }, { 1, 7 } }, 1 },
+	{ "logarithm", logarithm, NULL, { { 3, 50 } }, 1 },
+	{ "season", season, NULL, { { 0.01, 0.04 }, { 10, 80 } }, 1 },
+	{ "sigmoid", sigmoid, NULL, { { 4, 12 }, { 0.4, 0.8 } }, 1 },
+	{ "stairs", stairs, NULL, { { 8, 30 }, { 0.1, 0.9 } }, 1 },
+	{ "Wiener, ever faster", NULL, faster_wiener, { { 0.05, 0.25 } }, 1 },
+	{ "low power", power, NULL, { { 0.3, 0.8 } }, 1 },
+	{ "hyperbolic tangent", tangent, NULL, { { 1, 2.2 } }, 1 },
+	{ "Gompertz", gompertz, NULL, { { 2, 6 }, { 3, 6 } }, 1 },
+	{ "Wiener, ever slower", NULL, slower_wiener, { { 0.03, 0.12 }, { 0.7, 2.5 } },
+		1 },
+	{ "gamma with a knee", NULL, gamma_knee, { { 20, 200 }, { 0.4, 0.8 } }, 1 },
+	{ "Weibull", weibull, NULL, { { 1.5, 4 }, { 0.45, 0.9 } }, 1 },
+	{ "two falls", two_falls, NULL,
+		{ { 0.15, 0.4 }, { 0.45, 0.8 }, { 0.3, 0.7 }, { 0.3, 0.7 } }, 1 },
+	{ "late", late, NULL, { { 0.2, 0.6 }, { 5, 12 } }, 1 },
+	{ "gamma with a fall", NULL, gamma_fall,
+		{ { 20, 200 }, { 0.2, 0.5 }, { 0.3, 0.9 } }, 1 },
 };
 
 enum { KINDS = sizeof kinds / sizeof *kinds };
@@ -419,6 +452,8 @@ static void report(const char *name, struct score score[PARTS])
 int main(int argc, char **argv)
 {
 	int paths = argc > 1 ? atoi(argv[1]) : 200;
+	/* standard error of the coverage of so many paths */
+	double error = sqrt(LEAST * (1 - LEAST) / paths);
 	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
 	static struct series s;
 	static struct score score[PARTS];
@@ -435,7 +470,7 @@ int main(int argc, char **argv)
 		}
 		report(kinds[k].name, score);
 		for (int i = 0; i < PARTS; i++)
-			ok(score[i].inside >= kinds[k].least[i] * score[i].n,
+			ok(score[i].inside >= (LEAST - 4 * error) * score[i].n,
 				"%s at %d %% of life: the 90 %% interval holds %.2f",
 				kinds[k].name, 40 + 20 * i, score[i].inside / score[i].n);
 	}

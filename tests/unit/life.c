@@ -2,6 +2,7 @@
 #include "life/grey/grey.h"
 #include "life/grey/noise.h"
 #include "life/particle/adaptive.h"
+#include "life/passage/passage.h"
 #include "life/prior/fleet.h"
 #include "life/trend/bank.h"
 #include "life/trend/history.h"
@@ -226,6 +227,28 @@ static void test_disturbances(void)
 }
 
 /* y = 1 - (t / T)^2 falls to 0; an earlier unit tells the shape at once. */
+/* Even wear to 80 % of the threshold under noise of 5 %: an observation must not tell the
+ * variance of its own noise, or coordinates with a bend there gain weight with every row.
+ */
+static void test_noise_favours_no_bend(void)
+{
+	struct bank_par par = { .threshold = 1, .direction = 1 };
+	struct draw *d = draw_new(3, 0, RNG_NOISE);
+	double sum = 0;
+
+	for (int series = 0; series < 8; series++) {
+		struct bank *b = bank_new(&par);
+
+		for (int k = 0; k < 800; k++)
+			bank_add(b, k, k / 1000.0 + 0.05 * draw_normal(d));
+		sum += bank_weight(b, BANK_SATURATING);
+		bank_free(b);
+	}
+	ok(sum / 8 < 0.2, "noise on even wear favours no bent coordinate: weight %.3f",
+		sum / 8);
+	draw_free(d);
+}
+
 static void test_fleet(void)
 {
 	struct fleet *f = fleet_new(0, -1);
@@ -316,6 +339,7 @@ int main(void)
 	test_runin();
 	test_straight_wear();
 	test_disturbances();
+	test_noise_favours_no_bend();
 	test_fleet();
 	test_adaptive();
 	return tap_done();

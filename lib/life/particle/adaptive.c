@@ -9,6 +9,7 @@
 #include <string.h>
 
 enum { RECENT = 4, SETTLED = 8 };
+enum { BLOCK = 256 };                  /* particles at a time */
 enum { MONITOR = 20 };                 /* rows of the innovation monitor */
 static const double MONITOR_LIMIT = 4; /* of the mean squared innovation */
 static const double MONITOR_CLIP = 16; /* so that one outlier is not a drift */
@@ -18,8 +19,8 @@ static const double MEMORY = 0.05;     /* weight of the newest innovation */
 struct lag {
 	const double *x;
 	const uint32_t *ancestor; /* of those after it; NULL: of the same place */
-	size_t count;             /* of x */
 	double gap;
+	size_t first, n; /* of x, what is left of the ancestors of a block */
 };
 
 /* The sums of the grey fits of two particles, x about a centre, u the integral of the
@@ -37,7 +38,6 @@ struct adaptive {
 	struct lag *lag;    /* [depth] */
 	uint32_t *index;    /* [N] */
 	double *mean;       /* [N] prior means */
-	struct sums *sums;  /* [N / 2] */
 	double *past, *gap; /* rings of the last rows: values and gaps before */
 	double *line_up;    /* past in order */
 	double scale;       /* from here on the state, see adaptive_pass(): power of two
@@ -81,12 +81,11 @@ struct adaptive *adaptive_new(const struct adaptive_par *par)
 	a->lag = calloc(depth, sizeof *a->lag);
 	a->index = calloc(par->filter.particles, sizeof *a->index);
 	a->mean = column(a);
-	a->sums = calloc((par->filter.particles + 1) / 2, sizeof *a->sums);
 	a->past = calloc(depth, sizeof *a->past);
 	a->gap = calloc(depth, sizeof *a->gap);
 	a->line_up = calloc(depth, sizeof *a->line_up);
 	if (!a->draw_paths || !a->filter || !a->order || !a->noise || !a->lag ||
-		!a->index || !a->mean || !a->sums || !a->past || !a->gap || !a->line_up) {
+		!a->index || !a->mean || !a->past || !a->gap || !a->line_up) {
 		adaptive_free(a);
 		return NULL;
 	}
@@ -105,7 +104,6 @@ void adaptive_free(struct adaptive *a)
 	free(a->lag);
 	free(a->index);
 	free(a->mean);
-	free(a->sums);
 	free(a->past);
 	free(a->gap);
 	free(a->line_up);
@@ -159,12 +157,12 @@ static inline void add_state(struct sums *s, lanes x, double gap, double centre)
 	s->tail += part;
 }
 
-/* The states of a stretch of lags, oldest first, join the sums of each of n of them. */
+/* The states from first on of a stretch of lags, oldest lag first, join n sums. */
 static void add_stretch(struct sums *sums, const struct lag *newest, int count,
-	double centre, const uint32_t *index, size_t n)
+	double centre, const uint32_t *index, size_t first, size_t n)
 {
 	for (size_t i = 0; i < n; i += 2) {
-		size_t a = i, b = i + 1 < n ? i + 1 : i;
+		size_t a = first + i, b = i + 1 < n ? a + 1 : a;
 		struct sums s = sums[i / 2];
 
 		if (index) {
@@ -187,12 +185,12 @@ static struct sums pick_sums(const struct sums *sums, size_t a, size_t b)
 		{ s->x[i], t->x[j] }, { s->uu[i], t->uu[j] }, { s->ux[i], t->ux[j] } };
 }
 
-/* Hands the sums of ancestors, which rise, to their n descendants, in place. */
-static void hand_down(struct sums *sums, const uint32_t *ancestor, size_t n)
+/* Hands the sums of ancestors from first on, which rise, to n descendants, in place. */
+static void hand_down(struct sums *sums, const uint32_t *ancestor, size_t first, size_t n)
 {
 	for (size_t i = (n + 1) / 2; i-- > 0;)
-		sums[i] = pick_sums(sums, ancestor[2 * i],
-			ancestor[2 * i + 1 < n ? 2 * i + 1 : 2 * i]);
+		sums[i] = pick_sums(sums, ancestor[2 * i] - first,
+			ancestor[2 * i + 1 < n ? 2 * i + 1 : 2 * i] - first);
 }
 
 /* What the grey curve through these states makes of the interval h after the newest, span
@@ -209,35 +207,56 @@ static lanes forecast_pair(const struct sums *s, double n, double centre, double
 		grey_curve_lanes(middle + rate * u, rate, span + h, h), middle);
 }
 
-/* The same for n particles, those in index where there is one.  Histories that have an
- * ancestor in common share its sums. */
-static void forecast(struct adaptive *a, int count, double h, double noise,
-	const uint32_t *index, size_t n, double *mean)
+/* The means of n <= BLOCK particles from first on. */
+static void forecast_block(struct lag *lag, int count, double span, double h,
+	double noise, const uint32_t *index, size_t first, size_t n, double *mean)
 {
-	const struct lag *lag = a->lag;
-	const lanes zero = { 0, 0 };
-	double span = 0, centre = lag[0].x[0];
+	struct sums sums[BLOCK / 2] = { 0 };
+	double centre = lag[0].x[0];
+	size_t from = first, those = n;
 
-	for (size_t i = 0; i < (n + 1) / 2; i++)
-		a->sums[i] = (struct sums){ zero, zero, zero, zero, zero };
-	for (int from = count; from > 0;) {
-		int to = from - 1;
+	for (int k = 0; k < count; k++) {
+		const uint32_t *ancestor = lag[k].ancestor;
+
+		if (ancestor) {
+			those = ancestor[from + those - 1] - ancestor[from] + 1;
+			from = ancestor[from];
+		}
+		lag[k].first = from;
+		lag[k].n = those;
+	}
+	for (int end = count; end > 0;) {
+		int to = end - 1;
 
 		while (to > 0 && !lag[to].ancestor)
 			to--;
-		add_stretch(a->sums, lag + to, from - to, centre, index,
-			index ? n : lag[to].count);
+		add_stretch(sums, lag + to, end - to, centre, index, lag[to].first,
+			lag[to].n);
 		if (lag[to].ancestor)
-			hand_down(a->sums, lag[to].ancestor,
-				to > 0 ? lag[to - 1].count : n);
-		from = to;
+			hand_down(sums,
+				lag[to].ancestor + (to > 0 ? lag[to - 1].first : first),
+				lag[to].first, to > 0 ? lag[to - 1].n : n);
+		end = to;
 	}
-	for (int k = 0; k < count; k++)
-		span += lag[k].gap;
 	for (size_t i = 0; i < n; i += 2)
 		lanes_store(mean + i,
-			forecast_pair(&a->sums[i / 2], count, centre, span, h, noise),
+			forecast_pair(&sums[i / 2], count, centre, span, h, noise),
 			n - i < 2 ? 1 : 2);
+}
+
+/* The same for n particles, those in index where there is one.  Histories that have an
+ * ancestor in common share its sums.  By blocks, whose sums stay in the cache: what is
+ * left of the ancestors of successive particles are successive states. */
+static void forecast(struct adaptive *a, int count, double h, double noise,
+	const uint32_t *index, size_t n, double *mean)
+{
+	double span = 0;
+
+	for (int k = 0; k < count; k++)
+		span += a->lag[k].gap;
+	for (size_t i = 0; i < n; i += BLOCK)
+		forecast_block(a->lag, count, span, h, noise, index, i,
+			n - i < BLOCK ? n - i : BLOCK, mean + i);
 }
 
 /* Prior mean of every particle: the grey forecast of its own last p states.  The oldest
@@ -249,7 +268,7 @@ static void forecast_particles(struct adaptive *a, int p, double h, double noise
 	for (int k = 0; k < p - 1; k++) {
 		struct lag *lag = &a->lag[k];
 
-		lag->x = filter_states(a->filter, k, &lag->ancestor, &lag->count);
+		lag->x = filter_states(a->filter, k, &lag->ancestor);
 		lag->gap = a->gap[(a->newest - k + depth) % depth];
 	}
 	forecast(a, p - 1, h, noise, NULL, a->par.filter.particles, a->mean);
@@ -275,14 +294,14 @@ static void push_past(struct adaptive *a, double y, double gap)
 	a->gap[a->newest] = gap;
 }
 
-static void start_particles(struct adaptive *a, double noise)
+static enum num_status start_particles(struct adaptive *a, double noise)
 {
 	int depth = a->par.filter.depth;
 
 	for (int k = 0; k < a->filled; k++)
 		a->line_up[k] = a->past[(a->newest - a->filled + 1 + k + depth) % depth];
-	filter_start(a->filter, a->line_up, a->filled, sqrt(3) * noise);
 	a->nz = 0;
+	return filter_start(a->filter, a->line_up, a->filled, sqrt(3) * noise);
 }
 
 /* sigma_v in scaled units; never 0, which no weight could bear. */
@@ -385,29 +404,30 @@ static int monitor(struct adaptive *a, double e, double variance)
 	return sum > MONITOR * MONITOR_LIMIT;
 }
 
-static void observe(struct adaptive *a, double y, double gap, double process,
+static enum num_status observe(struct adaptive *a, double y, double gap, double process,
 	struct adaptive_row *row)
 {
 	double noise = observation_noise(a), variance = filter_variance(a->filter);
 	double e = y - row->prediction, own;
+	int lost;
 
 	filter_update(a->filter, y, noise);
 	row->state = filter_mean(a->filter);
 	row->ess = filter_ess(a->filter);
 	push_past(a, y, gap);
 	if (row->order == 0) { /* too few points for a model: begin from all of them */
-		start_particles(a, noise);
-		row->state = filter_mean(a->filter);
-		return;
+		lost = 1;
+	} else {
+		learn_process(a, e, variance, process, noise);
+		/* Particles that have scattered must not excuse themselves. */
+		own = noise * noise + process * process;
+		lost = monitor(a, e, noise * noise + fmin(variance, 4 * own));
+		a->restarts += (unsigned long)lost;
 	}
-	learn_process(a, e, variance, process, noise);
-	/* Particles that have scattered must not excuse themselves. */
-	own = noise * noise + process * process;
-	if (monitor(a, e, noise * noise + fmin(variance, 4 * own))) {
-		start_particles(a, noise);
-		row->state = filter_mean(a->filter);
-		a->restarts++;
-	}
+	if (lost && start_particles(a, noise) != NUM_OK)
+		return NUM_MEMORY;
+	row->state = lost ? filter_mean(a->filter) : row->state;
+	return NUM_OK;
 }
 
 /* Zeros do not mind the scale, so it may be learned after them. */
@@ -423,19 +443,23 @@ static void learn_scale(struct adaptive *a, double y)
 }
 
 /* The first row with a value. */
-static void begin(struct adaptive *a, double t, double y, struct adaptive_row *row)
+static enum num_status begin(
+	struct adaptive *a, double t, double y, struct adaptive_row *row)
 {
 	y /= a->scale;
 	order_add(a->order, y, 0);
 	noise_add(a->noise, y, 0);
 	push_past(a, y, 0);
-	start_particles(a, observation_noise(a));
 	a->observed_time = t;
+	if (start_particles(a, observation_noise(a)) != NUM_OK)
+		return NUM_MEMORY;
 	row->state = filter_mean(a->filter);
 	row->ess = filter_ess(a->filter);
+	return NUM_OK;
 }
 
-static void advance(struct adaptive *a, double t, double y, struct adaptive_row *row)
+static enum num_status advance(
+	struct adaptive *a, double t, double y, struct adaptive_row *row)
 {
 	double gap = t - a->time, noise = observation_noise(a), process;
 	int order = order_chosen(a->order);
@@ -451,18 +475,19 @@ static void advance(struct adaptive *a, double t, double y, struct adaptive_row 
 		forecast_particles(a, order, gap, noise);
 	else
 		hold_particles(a);
-	filter_predict(a->filter, a->mean, process);
+	if (filter_predict(a->filter, a->mean, process) != NUM_OK)
+		return NUM_MEMORY;
 	row->prediction = row->state = filter_mean(a->filter);
 	row->ess = filter_ess(a->filter);
 	a->mean_gap += (gap - a->mean_gap) / fmin((double)a->rows, 50);
 	if (isnan(y)) {
 		push_past(a, row->prediction, gap);
-		return;
+		return NUM_OK;
 	}
 	y /= a->scale;
 	if (is_outlier(a, y, t - a->observed_time, row->grey, noise)) {
 		push_past(a, row->prediction, gap);
-		return;
+		return NUM_OK;
 	}
 	a->missed[a->misses++ % RECENT] = (y - row->grey) * (y - row->grey);
 	order_add(a->order, y, t - a->observed_time);
@@ -470,25 +495,29 @@ static void advance(struct adaptive *a, double t, double y, struct adaptive_row 
 	a->observed_gap = t - a->observed_time;
 	a->observed_time = t;
 	a->observed = y;
-	observe(a, y, gap, process, row);
+	return observe(a, y, gap, process, row);
 }
 
-void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *row)
+enum num_status adaptive_step(
+	struct adaptive *a, double t, double y, struct adaptive_row *row)
 {
+	enum num_status status;
+
 	*row = (struct adaptive_row){ NAN, NAN, NAN, NAN, NAN, 0 };
 	learn_scale(a, y);
 	if (a->rows > 0)
-		advance(a, t, y, row);
+		status = advance(a, t, y, row);
 	else if (!isnan(y))
-		begin(a, t, y, row);
+		status = begin(a, t, y, row);
 	else
-		return;
+		return NUM_OK;
 	a->time = t;
 	a->rows++;
 	row->noise = observation_noise(a) * a->scale;
 	row->grey *= a->scale;
 	row->prediction *= a->scale;
 	row->state *= a->scale;
+	return status;
 }
 
 /* Histories of the particles laid side by side, newest state at place 0 of the ring. */
@@ -532,7 +561,7 @@ static size_t step_paths(struct adaptive *a, struct tracks *s, size_t live,
 	double gap = a->mean_gap, *old = track_lag(s, n, 0), *x;
 
 	for (int k = 0; k < s->p - 1; k++)
-		a->lag[k] = (struct lag){ track_lag(s, n, k), NULL, n, gap };
+		a->lag[k] = (struct lag){ .x = track_lag(s, n, k), .gap = gap };
 	forecast(a, s->p - 1, gap, s->noise, s->index, live, a->mean);
 	s->newest = (s->newest + 1) % s->p;
 	x = track_lag(s, n, 0);

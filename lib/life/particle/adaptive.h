@@ -46,8 +46,10 @@ struct adaptive;
 struct adaptive *adaptive_new(const struct adaptive_par *par); /* NULL: no memory */
 void adaptive_free(struct adaptive *a);
 void adaptive_pass(struct adaptive *a, struct state *s);
-/* Takes the next row; t must rise.  Any finite y will do. */
-void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *row);
+/* Takes the next row; t must rise.  Any finite y will do.  After NUM_MEMORY the filter is
+ * of no more use. */
+enum num_status adaptive_step(
+	struct adaptive *a, double t, double y, struct adaptive_row *row);
 /* The literal recursion (4-21): every particle goes on step by step by its own model,
  * refitted to its last states, with process noise, at the mean gap of the rows.  Fills
  * life[N] with the time from the last row to its first passage of the threshold (linear

@@ -22,6 +22,7 @@
 #define LIFE_FILTER_H
 
 #include "life/particle/resample.h"
+#include "num/status.h"
 
 struct filter_par {
 	size_t particles; /* N >= 1 */
@@ -39,8 +40,10 @@ void filter_free(struct filter *f);
 void filter_pass(struct filter *f, struct state *s);
 
 /* (Re)starts with count <= depth past values, oldest first, each particle's uniform
- * within +- spread of them, and equal weights. */
-void filter_start(struct filter *f, const double *past, int count, double spread);
+ * within +- spread of them, and equal weights.  Out of memory, this and filter_predict()
+ * leave the filter as it was or, of several values, with fewer. */
+enum num_status filter_start(
+	struct filter *f, const double *past, int count, double spread);
 
 /* States remembered so far, <= depth. */
 int filter_depth(const struct filter *f);
@@ -50,14 +53,13 @@ int filter_depth(const struct filter *f);
  * (index is carried on).  Returns 1 where index changed, 0 where it stayed. */
 const double *filter_lag(const struct filter *f, int lag, uint32_t *index, int *changed);
 
-/* The same without the walk: the count states of step k - lag that have descendants, and
- * which of them each state of the step after it comes from, ascending; NULL: the one of
- * the same place. */
-const double *filter_states(
-	const struct filter *f, int lag, const uint32_t **ancestor, size_t *count);
+/* The same without the walk: the states of step k - lag that have descendants, and which
+ * of them each state of the step after it comes from, ascending without a gap from 0;
+ * NULL: the one of the same place. */
+const double *filter_states(const struct filter *f, int lag, const uint32_t **ancestor);
 
 /* Moves to the next step: states mean[N] plus normal noise. */
-void filter_predict(struct filter *f, const double *mean, double sigma);
+enum num_status filter_predict(struct filter *f, const double *mean, double sigma);
 /* Weighted mean and variance of the states of the present step. */
 double filter_mean(const struct filter *f);
 double filter_variance(const struct filter *f);

@@ -55,7 +55,7 @@ struct partition {
 	int nclasses, culprit;
 	long culprit_realisation;
 	long steps;
-	double *shed; /* particles, and large ones, [class][step] */
+	double *particles; /* particles, and large ones, [class][step] */
 };
 
 struct partition *partition_new(double area, long first_step, int sizes)
@@ -79,7 +79,7 @@ void partition_free(struct partition *p)
 		free(p->class[c].group_cell);
 		free(p->class[c].times);
 	}
-	free(p->shed);
+	free(p->particles);
 	free(p);
 }
 
@@ -327,9 +327,9 @@ enum partition_status partition_close(
 			return PARTITION_PRESSURE;
 	}
 	if (p->sizes) {
-		p->shed = calloc(
-			2 * (size_t)p->nclasses * (size_t)p->steps, sizeof *p->shed);
-		if (!p->shed)
+		p->particles = calloc(
+			2 * (size_t)p->nclasses * (size_t)p->steps, sizeof *p->particles);
+		if (!p->particles)
 			return PARTITION_MEMORY;
 	}
 	return share_area(p, transition);
@@ -486,7 +486,7 @@ void partition_replicate(
 }
 
 /* Particles and large ones that one fragment of a class sheds in each step. */
-static void shed(const struct class *c, double *count, double *large)
+static void add_particles(const struct class *c, double *count, double *large)
 {
 	for (size_t i = 0; i < c->ncells; i++) {
 		const struct group_cell *k = &c->group_cell[i];
@@ -512,12 +512,12 @@ static double whole(const struct partition *p, const double *per_class, long ste
 long partition_large(struct partition *p, double probability, int cumulative)
 {
 	size_t n = (size_t)p->nclasses * (size_t)p->steps;
-	double *count = p->shed, *large = count + n, all = 0, all_large = 0;
+	double *count = p->particles, *large = count + n, all = 0, all_large = 0;
 
 	for (size_t i = 0; i < 2 * n; i++)
-		p->shed[i] = 0;
+		p->particles[i] = 0;
 	for (int c = 0; c < p->nclasses; c++)
-		shed(&p->class[c], count + c * p->steps, large + c * p->steps);
+		add_particles(&p->class[c], count + c * p->steps, large + c * p->steps);
 	for (long s = 0; s < p->steps; s++) {
 		all = (cumulative ? all : 0) + whole(p, count, s);
 		all_large = (cumulative ? all_large : 0) + whole(p, large, s);

@@ -8,22 +8,19 @@
  * runs with two kinds of noise, on the observation alone or as much again per mean gap on
  * the damage (a Wiener process), and with three memories, observation j of k weighing
  * (j / k)^0, (j / k)^1 or (j / k)^3 through a discount.  The variance of the noise is
- * unknown, so that predictions are Student-t.  Innovations beyond three standard
- * deviations are cut to that.
+ * unknown, so that predictions are Student-t.  The slope of h is taken where the line
+ * expects the observation, not where it fell, or noise alone would favour coordinates
+ * with a bend.  Innovations beyond three standard deviations are cut to that.
  *
  * Regime changes: as the age grows, particles are born from the present lines by their
- * weight, whose rate from then on grows as e^{g (t - onset)}, or has jumped; each is a
- * Kalman filter of its own, so that this is a Rao-Blackwellised particle filter
+ * weight, whose rate from then on grows as e^{g (t - onset)}, or has risen or fallen.
+ * Each is a Kalman filter of its own, so that this is a Rao-Blackwellised particle filter
  * (Chen, Liu, J. R. Stat. Soc. B 62 (2000) 493).  The lightest make room for new ones.
  *
  * Lines and particles are averaged by the logarithm of their one-step predictive
- * densities, which fades with age as j / k; n rows count as sqrt(16 n), since they are
- *not independent given a wrong model (Raftery, Karny, Ettler, Technometrics 52 (2010) 52;
- * Grunwald, van Ommen, Bayesian Analysis 12 (2017) 1069).
- *
- * The future has regime changes too: after a time J with P(J > x) = (a / (a + x))^c at
- * age a (what has gone on for long goes on for long) the rate begins to grow, or falls:
- * more often so in coordinates in which it has been falling.
+ * densities, which fades with age as j / k; n rows count as sqrt(18 n), since they are
+ * not independent given a wrong model (Raftery, Karny, Ettler, Technometrics 52 (2010)
+ * 52; Grunwald, van Ommen, Bayesian Analysis 12 (2017) 1069).
  *
  * What happens to machines: a row that all lines find surprising is held back.  It is
  * dropped as an outlier when a later row is in order; when three in a row lie on the
@@ -32,12 +29,11 @@
  * of more than five mean ones the machine may have stood: what the observation after it
  * tells decides.
  *
- *	struct bank_chances *chances = bank_chances_new(500, seed);
  *	struct bank *b = bank_new(&par);
  *	for each row
  *		bank_add(b, t, y);              (y NAN: missing)
  *	if (bank_ready(b))
- *		bank_draw(b, chances, t, par.threshold, life);
+ *		bank_draw(b, chances, t, par.threshold, life);   (life/passage/passage.h)
  */
 #ifndef LIFE_BANK_H
 #define LIFE_BANK_H
@@ -55,12 +51,12 @@ enum bank_family {
 	BANK_ALL = 63
 };
 
-/* g(D) = e^{par D} where scale is 0, else (1 + D / scale)^par; (1 + scale D) (1 - par D)
- * of BANK_SATURATING, par < 1; or, where there is a path, dD over the age at which
- * another unit had D. */
+/* g(D) = e^{par D} where scale is 0, else (1 + D / scale)^par; of BANK_SATURATING
+ * (1 + scale D)^power (1 - par D), par < 1, power 1 or 1/2; or, where there is a path, dD
+ * over the age at which another unit had D. */
 struct bank_shape {
 	unsigned family;
-	double scale, par;
+	double scale, par, power;
 	double log_prior;
 	const double *age, *level; /* [n] of a path, rising; level is direction times y */
 	int n;                     /* 0: no path, else 2 or more */
@@ -78,15 +74,6 @@ struct bank_par {
 
 enum { BANK_START = 4 }; /* observations before there is a prediction */
 
-struct bank;
-struct bank_chances; /* random numbers, shared by all units of a run */
-
-struct bank_chances *bank_chances_new(int draws, uint64_t seed); /* NULL: no memory */
-void bank_chances_free(struct bank_chances *chances);
-int bank_chances_count(const struct bank_chances *chances);
-/* Normal deviate k < 8 of a draw. */
-double bank_chance_normal(const struct bank_chances *chances, int draw, int k);
-
 /* par is copied; its shapes stay the caller's.  NULL: no memory. */
 struct bank *bank_new(const struct bank_par *par);
 void bank_free(struct bank *b);
@@ -103,12 +90,6 @@ enum bank_event {
 	BANK_LOAD    /* the rate is new, the level as before */
 };
 void bank_event(struct bank *b, enum bank_event event);
-
-/* Draws bank_chances_count() times from now on (>= the last t) to the first passage of
- * the level, unsorted; INFINITY: never.  The same chances at every row make smooth
- * successions. */
-void bank_draw(struct bank *b, const struct bank_chances *chances, double now,
-	double level, double *life);
 
 /* Weighted mean of y and of dy/dt at the last row. */
 void bank_state(const struct bank *b, double *y, double *rate);

@@ -1,6 +1,7 @@
 /* predict.c - see predict.h */
 #include "life/trend/predict.h"
 #include "life/grey/grey.h"
+#include "life/passage/passage.h"
 #include "life/trend/history.h"
 #include "num/select.h"
 #include <math.h>
@@ -183,8 +184,6 @@ double predict_replacement(const double *life, int n, double age, double ratio)
 			at = life[i];
 		}
 	}
-	/* and of none at all */
-	if (n > 0 && isfinite(life[n - 1]) && ratio / (age + area) <= best)
-		at = INFINITY;
-	return at;
+	/* Where the cost still falls at the last failure, none is advised. */
+	return at == before ? INFINITY : at;
 }

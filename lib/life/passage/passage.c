@@ -1,0 +1,238 @@
+/* passage.c - see passage.h */
+#include "life/passage/passage.h"
+#include "life/trend/lines.h"
+#include "num/deviates.h"
+#include "num/philox.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { CHANCES = 8 }; /* uniform numbers of one draw */
+
+/* A rate of damage that would take so many ages is none, and growth of nothing is
+ * nothing. */
+static const double NOTHING = 3e3;
+/* Hazard of a change of regime on the path of another unit, and of all n of them. */
+static const double KIN_HAZARD = 0.3;
+
+/* Changes of regime to come, by whether the rate falls, keeps or rises in a coordinate:
+ * hazard c, share of falls, and median growth in units of one over the age. */
+static const struct future {
+	double hazard, falls, growth;
+} future[] = { { 1.2, 0.3, 4.2 }, { 1.2, 0.21, 1.8 }, { 1.4, 0.025, 2 } };
+
+enum { FUTURES = sizeof future / sizeof *future };
+
+static const double GROWTH_SD = 3.4; /* of its logarithm */
+/* Mean and sd of the logarithm of what a fall makes the rest of the life longer by. */
+static const double FALL = 1.1, FALL_SD = 0.59;
+
+struct bank_chances {
+	int n;
+	struct chance {
+		double u[CHANCES];                  /* uniform */
+		double z[CHANCES];                  /* the normal deviates of them */
+		double turn[FUTURES], growth, fall; /* of the next regime by them, times
+						     * in ages */
+	} draw[];
+};
+
+/* Evenly spread in all dimensions: an additive recurrence with the powers of the root of
+ * x^(d + 1) = x + 1, moved by the seed.  Any stretch of it is spread evenly too, so that
+ * the draws of one model are. */
+struct bank_chances *bank_chances_new(int draws, uint64_t seed)
+{
+	struct bank_chances *c = malloc(sizeof *c + (size_t)draws * sizeof c->draw[0]);
+	double root = 1, step = 1;
+
+	if (!c)
+		return NULL;
+	c->n = draws;
+	for (int k = 0; k < 60; k++)
+		root = pow(1 + root, 1.0 / (CHANCES + 1));
+	for (int k = 0; k < CHANCES; k++) {
+		double start = philox_uniform(seed, 0, RNG_PREDICT, (uint64_t)k);
+
+		step /= root;
+		for (int i = 0; i < draws; i++) {
+			double u = start + (i + 1) * step;
+
+			u = fmin(1 - 1e-12, fmax(1e-12, u - floor(u)));
+			c->draw[i].u[k] = u;
+			c->draw[i].z[k] = normal_quantile(u);
+		}
+	}
+	for (int i = 0; i < draws; i++) {
+		struct chance *d = &c->draw[i];
+
+		for (int k = 0; k < FUTURES; k++)
+			d->turn[k] = pow(d->u[5], -1 / future[k].hazard) - 1;
+		d->growth = exp(GROWTH_SD * d->z[7]);
+		d->fall = exp(FALL + FALL_SD * d->z[7]);
+	}
+	return c;
+}
+
+void bank_chances_free(struct bank_chances *c)
+{
+	free(c);
+}
+
+int bank_chances_count(const struct bank_chances *c)
+{
+	return c->n;
+}
+
+double bank_chance_normal(const struct bank_chances *c, int draw, int k)
+{
+	return c->draw[draw].z[k];
+}
+
+/* What the draws of one line share. */
+struct crossing {
+	double h, v, phh, phv, pvv; /* now; covariances in units of the noise */
+	double limit;               /* h of the level to be passed */
+	double straight;            /* the way there if the damage kept its rate */
+	double variance, freedom;   /* of the noise, with autocorrelation; of chi^2 */
+	double wiener;              /* variance of h per unit of time */
+	double growth;              /* of the rate already */
+	const struct future *future;
+	double hazard; /* of a path of another unit; 0: that of the future */
+};
+
+/* What is known of the rate beforehand, as an observation of v. */
+static void heed_prior(double mean, double sd, struct crossing *p)
+{
+	double f, e = mean - p->v;
+
+	if (!(sd > 0))
+		return;
+	f = p->pvv + sd * sd / p->variance;
+	p->h += p->phv / f * e;
+	p->v += p->pvv / f * e;
+	p->phh -= p->phv / f * p->phv;
+	p->phv -= p->pvv / f * p->phv;
+	p->pvv -= p->pvv / f * p->pvv;
+}
+
+static const struct future *future_of(const struct bank_shape *s)
+{
+	if (s->n > 0 || (s->par == 0 && s->family != BANK_SATURATING))
+		return &future[1];
+	return &future[s->par < 0 || s->family == BANK_SATURATING ? 0 : 2];
+}
+
+static struct crossing prepare(
+	const struct bank *b, const struct line *l, double ahead, double target)
+{
+	struct place here = place_of(b, l->shape, b->level),
+		     there = place_of(b, l->shape, target);
+	double correlation = fmin(0.95, fmax(0, l->lagged / l->sum)), s, scale;
+	struct line now = *l;
+	struct crossing p = { .limit = there.h,
+		.straight = (target - b->level) * here.slope,
+		.growth = l->growth,
+		.future = future_of(shape_of(b, l->shape)),
+		.hazard = shape_of(b, l->shape)->n > 0 ? KIN_HAZARD / b->par.n_more : 0 };
+
+	now.kind = 0;
+	project(b, &now, &here, ahead, 1);
+	s = grown(l, b->age + ahead);
+	p.h = now.h;
+	p.v = s * now.v;
+	p.phh = now.phh;
+	p.phv = s * now.phv;
+	p.pvv = s * s * now.pvv;
+	p.freedom = freedom_of(b, l);
+	p.variance = l->sum / p.freedom;
+	/* The noise is constant in D; take it half way to the level. */
+	if (l->kind >= MEMORIES)
+		p.wiener = p.variance * here.slope * there.slope / b->gap;
+	p.variance *= (1 + correlation) / (1 - correlation);
+	scale = b->unit / b->range * here.slope;
+	heed_prior(b->par.rate_mean * scale, b->par.rate_sd * fabs(scale), &p);
+	if (shape_of(b, l->shape)->n > 0)
+		heed_prior(1, PACE, &p);
+	return p;
+}
+
+/* Normal deviate given that it is above -m, as by drawing until one is; NAN where none of
+ * 32 would be. */
+static double normal_above(double m, const struct chance *c)
+{
+	double u = c->u[1], above, none;
+
+	if (m > 8) /* always */
+		return -c->z[1];
+	above = 0.5 * erfc(-m / sqrt(2));
+	none = pow(1 - above, 32);
+
+	if (u < none)
+		return NAN;
+	u = fmax(1e-12, (u - none) / (1 - none));
+	return -normal_quantile(u * above);
+}
+
+/* Time to the passage if the regime changes once. */
+static double change(
+	const struct crossing *p, double time, double age, const struct chance *c)
+{
+	double turn = p->hazard > 0 ? pow(c->u[5], -1 / p->hazard) - 1
+				    : c->turn[p->future - future];
+	double j = age * turn, rest = time - j, g;
+
+	if (!(rest > 0))
+		return time;
+	if (c->u[6] < p->future->falls)
+		return j + rest * c->fall;
+	g = p->future->growth * c->growth / age;
+	return j + log1p(g * rest) / g;
+}
+
+static double draw_life(const struct bank *b, const struct crossing *p, double age,
+	const struct chance *c)
+{
+	double sd = sqrt(p->variance * p->freedom / chi_square(p->freedom, c->z[0]));
+	double z = normal_above(p->v / (sd * sqrt(p->pvv)), c), v, h, time;
+
+	v = p->v + sd * sqrt(p->pvv) * z;
+	if (!(v > 0)) /* damage does not heal */
+		return INFINITY;
+	h = p->h + sd * p->phv / sqrt(p->pvv) * z +
+	    sd * sqrt(fmax(0, p->phh - p->phv * p->phv / p->pvv)) * c->z[2];
+	time = (p->limit - h) / v;
+	if (time <= 0)
+		return 0;
+	if (p->wiener > 0 && isfinite(time))
+		time = inverse_gaussian(
+			time, p->wiener * time / (v * v), c->z[3], c->u[4]);
+	if (!isfinite(time) || b->par.steady)
+		return time;
+	if (p->straight > v * NOTHING * age)
+		return INFINITY;
+	if (p->growth > 0)
+		return log1p(p->growth * time) / p->growth;
+	return change(p, time, age, c);
+}
+
+void bank_draw(struct bank *b, const struct bank_chances *c, double now, double level,
+	double *life)
+{
+	double ahead = (now - b->idle - b->last) / b->unit, reached = 0;
+	double target = damage_of(b, level);
+	int drawn = 0;
+
+	for (int i = 0; i < b->lines; i++) {
+		struct crossing p;
+
+		reached += b->line[i].weight;
+		if (!(reached * c->n > drawn + 0.5))
+			continue;
+		p = prepare(b, &b->line[i], ahead, target);
+		for (; drawn < c->n && reached * c->n > drawn + 0.5; drawn++)
+			life[drawn] = b->unit *
+				      draw_life(b, &p, b->age + ahead, &c->draw[drawn]);
+	}
+	/* No line has a weight where the data overflow. */
+	for (; drawn < c->n; drawn++)
+		life[drawn] = drawn ? life[drawn - 1] : INFINITY;
+}

@@ -1,0 +1,34 @@
+/* passage.h - when the lines of a bank will first reach a level
+ *
+ * Each draw takes a line or particle by its weight, its level, rate and noise from what
+ *is known of them (Student-t), and the first passage of the level: exact for a line, an
+ * inverse Gaussian time where the damage itself wanders.
+ *
+ * The regime may change once more: after a time J with P(J > x) = (a / (a + x))^c at age
+ * a (what has gone on for long goes on for long) the rate begins to grow as
+ * e^{g (t - J)}, or falls and stays so.  Hazard, growth and share of falls depend on
+ * whether the rate falls, keeps or rises in the coordinate as it is.
+ *
+ *	struct bank_chances *chances = bank_chances_new(500, seed);
+ *	bank_draw(b, chances, now, level, life);
+ */
+#ifndef LIFE_PASSAGE_H
+#define LIFE_PASSAGE_H
+
+#include "life/trend/bank.h"
+
+struct bank_chances; /* random numbers, shared by all units of a run */
+
+struct bank_chances *bank_chances_new(int draws, uint64_t seed); /* NULL: no memory */
+void bank_chances_free(struct bank_chances *chances);
+int bank_chances_count(const struct bank_chances *chances);
+/* Normal deviate k < 8 of a draw. */
+double bank_chance_normal(const struct bank_chances *chances, int draw, int k);
+
+/* Draws bank_chances_count() times from now on (>= the last t) to the first passage of
+ * the level, unsorted; INFINITY: never.  The same chances at every row make smooth
+ * successions. */
+void bank_draw(struct bank *b, const struct bank_chances *chances, double now,
+	double level, double *life);
+
+#endif
