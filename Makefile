@@ -211,6 +211,10 @@ matrix: all $(MATRIX)
 # The table of extreme scenes of one domain: make extremes-contact
 extremes-%: all
 	@sh tests/extremes/$*.t | sed -n 's/^\(not ok\|ok\) [0-9]* - /\1 | /p'
+# Those of the signal include crowded records.
+extremes-signal: all
+	@{ sh tests/extremes/signal.t; sh tests/long/crowded.t; } | \
+		sed -n 's/^\(not ok\|ok\) [0-9]* - /\1 | /p'
 # Those of the contact include solutions that are known.
 extremes-contact: all $(B)/long/exact
 	@{ sh tests/extremes/contact.t; $(B)/long/exact; } | \

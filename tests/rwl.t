@@ -78,13 +78,14 @@ near "the rate is that of 8 particles in one second (4-28)" "$(cell out 3 mean)"
 {
 	printf 'time1\tdiameter\tsources\tverdict\n'
 	printf '%s\n' '0.5 1e-3 1 alone' '1.5 1e-3 2 overlap' '2.5 2e-3 5 unresolved' '3.5 nan 3 unresolved' \
-		'4.5 1e-3 0 unresolved' '4.5 1e-3 1 alone' '5.5 1e-3 1 alone' | tr ' ' '\t'
+		'4.5 1e-3 0 unresolved' '4.5 1e-3 1 alone' '5 9e-3 1 misfit' '5.5 1e-3 1 alone' | tr ' ' '\t'
 } >crowd.tsv
 # 44 spheres of 1 mm in the 5.5 s since nothing was worn
 ok "unresolved particles are counted as their sources" rwl --threshold-volume 1e-7m3 --stats crowd.stats crowd.tsv
-near "the life follows from all particles" "$(cell out 7 mean)" \
+near "the life follows from all particles" "$(cell out 8 mean)" \
 	"$(calc "(1e-7 - 44 * 0.523598775598e-9) / (44 * 0.523598775598e-9 / 5.5)")" 1e-7
-is "a particle without diameter is reported" "$(column particles_without_diameter crowd.stats): $(cat err)" \
+is "a doubtful particle is left out and reported" "$(column rows_doubtful crowd.stats): $(grep -c "1 rows are doubtful" err)" "1: 1"
+is "a particle without diameter is reported" "$(column particles_without_diameter crowd.stats): $(grep ignored err)" \
 	"1: rwl: crowd.tsv: rows ignored because they have no diameter: 1"
 
 # Large particles: 1 of 4 in step 1, 3 of 5 in step 2.

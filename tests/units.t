@@ -55,10 +55,10 @@ for f in spectrum contacts patches surrogate response layouts scored delays appl
 	told $f.tsv
 done
 # Programs that write a table write one above.
-tables='roughgen bemcontact debrisgen debrisfit debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade
-	debriscount ballcal sigconvert wear-volume'
-for p in $(sed -n 's/^PROGRAMS = //p' "$top/Makefile"); do
-	case " $(echo $tables) surfimport " in
+tables='roughgen bemcontact debrisgen debrisfit debrisstat sensorsim bpfilter duet delaynet aopf rwl records layout abrade'
+tables="$tables debriscount ballcal sigconvert wear-volume"
+sed -n 's/^PROGRAMS = //p' "$top/Makefile" | tr ' ' '\n' | while read -r p; do
+	case " $tables surfimport " in
 	*" $p "*) ;;
 	*) echo "$p" ;;
 	esac

@@ -5,10 +5,19 @@ set datafile separator "\t"
 grey = "#888888"; blue = "#2b3a67"; red = "#b23a48"; gold = "#c98a1b"
 
 set output "fig64.png"
-set title "Figure 64: wear of fragments of 100 um by step"
+set title "Figure 64 (a): wear of fragments of 100 um by step"
 set xlabel "fragment and step"; set ylabel "volume, um^3"; set logscale y; set yrange [0.1:3e4]; set format y "10^{%T}"
 plot for [p in "21 5 1 0.15"] p.".steps" using 0:(column("volume")*1e18) with points pt 7 ps 0.5 title p." MPa"
 unset logscale y; set format y "%g"; set yrange [0:*]
+
+set output "fig64-distribution.png"
+set title "Figure 64 (b): distribution of the wear of a step"
+set xlabel "volume, um^3"; set ylabel "share of the steps, %"; set format x "10^{%g}"
+set boxwidth 0.09; set style fill solid 0.5 noborder
+# classes of a tenth of a decade; steps without wear are in none
+classes(p) = sprintf("< awk -F '\t' '/^#/ { next } !/^[-0-9]/ { for (i = 1; i <= NF; i++) if ($i == \"volume\") k = i; next } { n++ } $k > 0 { c[int(10 * (log($k) / log(10) + 18) + 1000) - 1000]++ } END { for (x in c) print (x + 0.5) / 10 \"\t\" 100 * c[x] / n }' %s.steps | sort -g", p)
+plot for [p in "21 0.15"] classes(p) using 1:2 with boxes lc rgb (p eq "21" ? blue : gold) title p." MPa"
+set format x "%g"
 
 set output "fig65.png"
 set title "Figure 65: wear of the plate per step"

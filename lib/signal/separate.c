@@ -251,6 +251,8 @@ static enum separate_status calibrate_now(struct separate *s)
 	if (s->sections)
 		sections_skip(s->sections, s->done);
 	s->hold = s->tape[0].begin + (long long)n;
+	if (isnan(s->par.known.spread) && !isinf(c->transit))
+		validation_range(s->validation, c->delta_min, c->delta_max);
 	s->holding = s->par.method == SEPARATE_FIT;
 	s->joint = joint_new();
 	if (s->par.method == SEPARATE_MASKS) {

@@ -34,8 +34,9 @@ struct pair {
 struct validation {
 	struct delay delay[LATELY];
 	struct pair pair[LATELY];
-	unsigned char doubted[LATELY];
+	unsigned char doubted[LATELY], at_edge[LATELY];
 	size_t delays, pairs, rows; /* taken in so far */
+	double middle, half;        /* of the range of delays; half 0: not known */
 	double mean, var, margin;   /* of the delays; on the safe side */
 	double parts;               /* share of them among pairs; 0: none for certain */
 	double recurring[PLACES], groups;
@@ -54,6 +55,12 @@ void validation_free(struct validation *v)
 double validation_parts(const struct validation *v)
 {
 	return v->parts;
+}
+
+void validation_range(struct validation *v, double least, double most)
+{
+	v->middle = 0.5 * (least + most);
+	v->half = 0.5 * (most - least);
 }
 
 static size_t held(size_t count)
@@ -141,6 +148,14 @@ static int is_impossible(const struct validation *v, const struct evidence *e, s
 		if (e[i].var > 0)
 			sum += pow(e[i].delay - v->mean, 2) / (v->margin + 2 * e[i].var);
 	return cbrt(sum / (double)m) > 1 - spread + BEYOND * sqrt(spread);
+}
+
+/* Is the delay, known to a tenth of the range, in the outer tenth of it at either side?
+ * A range is learned to be twice as wide as that of the particles seen. */
+static int is_at_edge(const struct validation *v, const struct evidence *e)
+{
+	return v->half > 0 && e->var > 0 && sqrt(e->var) < 0.2 * v->half &&
+	       fabs(e->delay - v->middle) > 0.8 * v->half;
 }
 
 /* --- parts of one object */
@@ -245,7 +260,7 @@ static void judge_group(const struct validation *v, struct evidence *e, size_t m
 	int impossible = is_impossible(v, e, m);
 
 	for (size_t i = 0; i < m; i++)
-		e[i].doubted = impossible || !e[i].fits;
+		e[i].doubted = impossible || !e[i].fits || is_at_edge(v, &e[i]);
 	for (size_t i = 0; i < m; i++)
 		if (is_part(v, &e[i]) || recurs(v, &e[i])) {
 			e[i].doubted = 1;
@@ -253,16 +268,21 @@ static void judge_group(const struct validation *v, struct evidence *e, size_t m
 		}
 }
 
-/* More than half of the rows of late. */
+/* More than half of the rows of late doubted, or a tenth at the edge? */
 static int fails(struct validation *v, const struct evidence *e, size_t n)
 {
-	size_t sum = 0;
+	size_t sum = 0, edge = 0, rows;
 
-	for (size_t i = 0; i < n; i++)
-		v->doubted[v->rows++ % LATELY] = (unsigned char)e[i].doubted;
-	for (size_t i = 0; i < held(v->rows); i++)
+	for (size_t i = 0; i < n; i++) {
+		v->doubted[v->rows % LATELY] = (unsigned char)e[i].doubted;
+		v->at_edge[v->rows++ % LATELY] = (unsigned char)is_at_edge(v, &e[i]);
+	}
+	rows = held(v->rows);
+	for (size_t i = 0; i < rows; i++) {
 		sum += v->doubted[i];
-	return held(v->rows) >= FEW && 2 * sum > held(v->rows);
+		edge += v->at_edge[i];
+	}
+	return rows >= FEW && (2 * sum > rows || (edge > 2 && 10 * edge > rows));
 }
 
 void validation_judge(struct validation *v, struct evidence *e, size_t n)

@@ -9,15 +9,19 @@
  *	  2 for parts and 1 + 2 s^2 / var for particles, where s^2 is the variance of
  *	  the delays of the flow; the share of parts among all pairs is that of greatest
  *	  likelihood, and a pair is doubted if it is more likely one object than two;
- *	- pulses that fill what is no object have any velocity: a group is doubted where
- *the sum of squares of its deviations is beyond five deviations of chi-square;
- *	- a weak pulse that recurs at one distance from a strong one is what the form of
- *the strong one lacks.
+ *	- pulses that fill what is no object have any velocity: a group is doubted
+ *	  where the sum of squares of its deviations is beyond five deviations of
+ *	  chi-square, and a pulse where its delay is at the edge of the range searched;
+ *	- a weak pulse that recurs at one distance from a strong one is what the form
+ *	  of the strong one lacks.
  *
- * s^2 is that of pulses that stand alone, which no group is part of.  Where more than
- *half of the rows are doubted, the record is not what was learned, and no row is
- *believed. What is judged together, such as all of the stretch that was learned from, is
- *first taken in as a whole; later rows are judged by themselves and the last ones before.
+ * s^2 is that of pulses that stand alone, which no group is part of.
+ *
+ * Where more than half of the rows are doubted, or more than a tenth have delays at the
+ * edge of the range, the record is not what was learned, and no row is believed.
+ *
+ * What is judged together, such as all of the stretch that was learned from, is first
+ * taken in as a whole; later rows are judged by themselves and the last ones before.
  */
 #ifndef SIGNAL_VALIDATE_H
 #define SIGNAL_VALIDATE_H
@@ -39,6 +43,9 @@ struct evidence {
 struct validation;
 struct validation *validation_new(void); /* NULL: no memory */
 void validation_free(struct validation *v);
+
+/* Range of the delays that are searched, learned to be wider than that of particles. */
+void validation_range(struct validation *v, double least, double most);
 
 /* Takes in n rows, groups undivided and in order, and judges them. */
 void validation_judge(struct validation *v, struct evidence *e, size_t n);

@@ -173,8 +173,11 @@ static double count_rows(struct table_in *t, struct groups *groups)
 				"particle before: --period or the unit of time is wrong",
 				table_name(t), table_line(t), table_column_name(t, ct),
 				time, PERIODS_MOST);
-		for (; time >= end; begin = end, end += period)
+		while (time >= end) {
 			groups_report(groups, begin, end, 1);
+			begin = end;
+			end += period;
+		}
 		late += time < begin;
 		last = fmax(last, time);
 		c = groups_at(groups, cb >= 0 ? table_text(t, cb) : "");

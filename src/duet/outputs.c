@@ -185,7 +185,7 @@ void found_detectable(struct found *out, const struct calibration *c)
 		a /= 1.1;
 	for (; detectable_alone(&scene, a / noise) < 1e-3;)
 		a *= 1.1;
-	for (int k = 0; k < ROWS && !(alone > 0.999 && beside > 0.9); k++, a *= 1.1) {
+	for (int k = 0; k < ROWS && !(alone > 0.999 && beside > 0.9); k++) {
 		alone = detectable_alone(&scene, a / noise);
 		beside =
 			detectable_beside(&scene, a / noise, out->largest / noise, share);
@@ -193,6 +193,7 @@ void found_detectable(struct found *out, const struct calibration *c)
 			beside };
 
 		table_put_row(out->limits, row, 4);
+		a *= 1.1;
 	}
 }
 

@@ -2,6 +2,7 @@
 #include "cli/msg.h"
 #include "cli/stats.h"
 #include "common/time_unit.h"
+#include "common/verdicts.h"
 #include "io/quantities.h"
 #include "num/running.h"
 #include <math.h>
@@ -21,7 +22,7 @@ struct opt state_rows[] = { { 0, "quantity", OPT_WORD, UNIT_NONE, &state_options
 		"unit of the state if not SI, such as L/min", 0, 0 },
 	{ 0, "state-error", OPT_NUM, UNIT_NONE, &state_options.error, 0, 1e300, "SD",
 		"standard error of the state, in its unit", 0, 0 },
-	OPT_TABLE(timeunit_rows), OPT_END };
+	OPT_TABLE(timeunit_rows), OPT_TABLE(verdict_rows), OPT_END };
 
 /* Units of time and value: the table's own, or those of the options, or SI. */
 static void settle_units(struct state *s)
@@ -91,10 +92,10 @@ void state_open(struct state *s, const char *file, const struct pair *pair)
 static double add_debris(struct state *s, double diameter)
 {
 	struct table_in *t = s->table;
-	double many = 1;
+	enum verdict verdict = verdict_of(t, s->verdict_column);
+	double many = verdict != VERDICT_DOUBTFUL;
 
-	if (s->verdict_column >= 0 && s->sources_column >= 0 &&
-		!strcmp(table_text(t, s->verdict_column), "unresolved"))
+	if (verdict == VERDICT_UNRESOLVED && s->sources_column >= 0)
 		many = (double)table_whole(t, s->sources_column, 0, 1e15);
 	return s->debris += many * sphere * diameter * diameter * diameter;
 }
@@ -108,6 +109,8 @@ int state_next(struct state *s)
 		if (s->passed)
 			warn("%s: rows ignored because they have no diameter: %ld",
 				table_name(t), s->passed);
+		if (s->quantity == PAIR_DEBRIS)
+			verdict_report();
 		return 0;
 	}
 	time = table_number(t, s->time_column) * s->time_scale;

@@ -257,6 +257,7 @@ static void check_heights(void)
 	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
 		check_moments(65536, pairs[i][0], pairs[i][1]);
 	check_moments(100, 0.5, 3.2);
+	check_moments(6, 0, 1.7);
 	ok(heights_sorted(16, 1, 1.9, z) == HEIGHTS_IMPOSSIBLE,
 		"a kurtosis below skewness^2 + 1 is refused");
 	ok(heights_sorted(16, 0, 50, z) == HEIGHTS_TOO_FEW,

@@ -141,6 +141,32 @@ static void test_recurring(void)
 	validation_free(v);
 }
 
+/* Delays anywhere in the range that is searched: one in five is at its edge. */
+static void test_edge(void)
+{
+	static struct evidence e[ROWS];
+	struct validation *v = validation_new();
+
+	validation_range(v, -6, 6);
+	draw(e, 0, 0, 0.1, 140000);
+	validation_judge(v, e, ROWS);
+	ok(doubted(e, 0, ROWS) < 0.02, "a range that no velocity fills: no row doubted");
+	validation_free(v);
+	v = validation_new();
+	validation_range(v, -6, 6);
+	memset(e, 0, sizeof e);
+	for (int i = 0; i < ROWS; i++)
+		e[i] = (struct evidence){ .group = i + 1,
+			.fits = 1,
+			.delay =
+				12 * philox_uniform(17, 0, RNG_PARTICLE, (uint64_t)i) - 6,
+			.var = 0.01,
+			.amplitude = 20 };
+	validation_judge(v, e, ROWS);
+	ok(doubted(e, 0, ROWS) == 1, "velocities throughout the range: no row believed");
+	validation_free(v);
+}
+
 int main(void)
 {
 	for (uint64_t seed = 0; seed < 5; seed++) {
@@ -153,5 +179,6 @@ int main(void)
 	test_whole_record();
 	test_other_velocities();
 	test_recurring();
+	test_edge();
 	return tap_done();
 }

@@ -74,7 +74,7 @@ const struct bank_shape *fleet_shapes(const struct fleet *f, int *n)
 
 static enum num_status grow(struct unit *p)
 {
-	int room = p->room ? 2 * p->room : 64;
+	int room = p->n < 32 ? 64 : 2 * p->n;
 	double *age = realloc(p->age, (size_t)room * sizeof *age), *level;
 
 	if (age)
