@@ -558,20 +558,20 @@ static size_t step_paths(struct adaptive *a, struct tracks *s, size_t live,
 	double process, double limit, int direction, double time, double *life)
 {
 	size_t n = a->par.filter.particles, left = 0;
-	double gap = a->mean_gap, *old = track_lag(s, n, 0), *x;
+	double gap = a->mean_gap, *old = track_lag(s, n, 0), *now;
 
 	for (int k = 0; k < s->p - 1; k++)
 		a->lag[k] = (struct lag){ .x = track_lag(s, n, k), .gap = gap };
 	forecast(a, s->p - 1, gap, s->noise, s->index, live, a->mean);
 	s->newest = (s->newest + 1) % s->p;
-	x = track_lag(s, n, 0);
+	now = track_lag(s, n, 0);
 	for (size_t k = 0; k < live; k++) {
 		uint32_t i = s->index[k];
 
-		x[i] = a->mean[k] + process * draw_normal(a->draw_paths);
-		if (direction * (x[i] - limit) >= 0)
-			life[i] =
-				time + gap * fmax(0, (limit - old[i]) / (x[i] - old[i]));
+		now[i] = a->mean[k] + process * draw_normal(a->draw_paths);
+		if (direction * (now[i] - limit) >= 0)
+			life[i] = time +
+				  gap * fmax(0, (limit - old[i]) / (now[i] - old[i]));
 		else
 			s->index[left++] = i;
 	}
