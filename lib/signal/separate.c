@@ -301,11 +301,12 @@ static int emit_pulse(struct separate *s, const struct joint_pulse *p, long long
 	int sources, double chi2, enum separate_verdict verdict)
 {
 	struct entry *entry = queue_entry(s);
-	struct transit *out = &entry->row;
+	struct transit *out;
 	double delay_var = joint_delay_variance(p), noise = s->cal.noise[0];
 
 	if (!entry)
 		return 0;
+	out = &entry->row;
 	out->section = s->number;
 	out->sources = sources;
 	out->t1 = (double)from + p->t;
@@ -441,7 +442,7 @@ static enum separate_status dense_section(
 	struct separate *s, long long from, long long to)
 {
 	struct entry *entry = queue_entry(s);
-	struct transit *p = &entry->row;
+	struct transit *p;
 	struct separate_section out = { .number = s->number,
 		.begin = from,
 		.end = to,
@@ -452,6 +453,7 @@ static enum separate_status dense_section(
 
 	if (!entry)
 		return SEPARATE_MEMORY;
+	p = &entry->row;
 	campbell_estimate(channel_1(s, from), channel_2(s, from), (size_t)(to - from),
 		s->cal.shape, s->cal.duration, s->scene.gain, &c);
 	campbell_scale(&c, noise);

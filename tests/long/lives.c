@@ -20,7 +20,8 @@ enum { ROWS = 4000, DRAWS = 500, PARTS = 3 };
 
 /* The coverage wanted of every kind at 40, 60 and 80 % of life.  A fall of the rate that
  * has not begun, or the late turn of an S, shows in no row so far: of these even a law of
- * the future that is right on the whole covers less than it says. */
+ * the future that is right on the whole covers less than it says.  A kind fails four
+ * standard errors below it, so that no other rounding decides. */
 static const double LEAST = 0.8;
 
 static struct draw *dice;
