@@ -49,6 +49,10 @@ share 'the last contact of a pipe has a share' bemcontact \
 share 'wear of several surfaces has a share' debrisgen \
 	'mkfifo worn; { sleep 1.5; cat; } <worn >out & debrisgen --yield 355MPa --young 210GPa --surface worn --steps 3 four.nrrd >rows; wait'
 debrisgen --yield 355MPa --friction 0.3 four.nrrd >particles.tsv 2>err
+share 'the sources of a mixture have a share' duet \
+	'sh slowly | duet --method duet --align 0 --separated sources.au >out'
+share 'the paths of an ensemble have a share' rwl \
+	'{ head -n 6 particles.tsv; sleep 1.5; tail -n +7 particles.tsv; } | rwl --new --wear - --step-time 1h --count 3000000 --area 1mm2 >out'
 share 'a bootstrap has a share' debrisstat \
 	'{ head -n 6 particles.tsv; sleep 1.5; tail -n +7 particles.tsv; } | debrisstat --bootstrap 50 >out'
 done_testing

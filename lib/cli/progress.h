@@ -11,7 +11,7 @@
 /* The time that has passed counts from here, or else from the first of the others. */
 void progress_begin(void);
 /* done of total of what, such as "epochs"; total <= 0: unknown, shows the share of the
- * input, or done.  Cheap to call often. */
+ * input, or done; what NULL: that of the input again.  Cheap to call often. */
 void progress(const char *what, double done, double total);
 /* Bytes of the input that were used. */
 void progress_read(double bytes, double total);

@@ -19,7 +19,8 @@ struct mixture {
 	struct mixture_par par;
 	struct fft *fft;
 	size_t bins, n, room;
-	double *x; /* frames of two */
+	long passed; /* windows transformed */
+	double *x;   /* frames of two */
 	struct histogram histogram;
 	double reach, lost; /* share of the weight beyond it */
 	int count;
@@ -108,6 +109,11 @@ static long transform(struct mixture *m, size_t f)
 	size_t w = m->par.window;
 	long first = (long)(f * m->par.hop) - (long)(w - 1);
 
+	/* Once in every pass, and for the separation. */
+	if (m->par.told)
+		m->par.told(m->passed, (REACHES + ROUNDS + 1) * (long)windows(m));
+	m->passed++;
+
 	for (int c = 0; c < 2; c++) {
 		for (size_t i = 0; i < w; i++) {
 			long at = first + (long)i;
@@ -181,8 +187,10 @@ static void count_all(struct mixture *m)
 			count_window(m, &all, &beyond);
 		}
 		m->lost = all > 0 ? beyond / all : 0;
-		if (m->lost <= BEYOND)
+		if (m->lost <= BEYOND) {
+			m->passed += (REACHES - 1 - r) * (long)windows(m);
 			return;
+		}
 	}
 }
 

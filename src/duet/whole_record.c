@@ -1,5 +1,6 @@
 #include "whole_record.h"
 #include "cli/msg.h"
+#include "cli/progress.h"
 #include "cli/stats.h"
 #include "signal/mixture.h"
 #include <math.h>
@@ -7,6 +8,11 @@
 #include <string.h>
 
 enum { BLOCK = 4096, SHOWN = 8 };
+
+static void tell(long done, long windows)
+{
+	progress("windows", (double)done, (double)windows);
+}
 
 static struct mixture *read_record(struct signal_in *in, const struct mixture_par *par)
 {
@@ -77,7 +83,9 @@ static void put_sources(struct found *out, struct mixture *m, int count)
 int whole_record(
 	struct signal_in *in, struct found *out, size_t window, size_t hop, int sources)
 {
-	struct mixture_par par = { .window = window, .hop = hop, .sources = sources };
+	struct mixture_par par = {
+		.window = window, .hop = hop, .sources = sources, .told = tell
+	};
 	struct mixture_source source[MIXTURE_SOURCES];
 	struct mixture *m;
 	int count, doubtful;

@@ -1,5 +1,6 @@
 /* rwl - remaining wear life from fragments' wear and the state observed */
 #include "cli/msg.h"
+#include "cli/progress.h"
 #include "cli/stats.h"
 #include "fragments.h"
 #include "life/pair/remaining.h"
@@ -98,6 +99,11 @@ static void settle(void)
 			"--step-time, --speed and --calibrate exclude one another");
 }
 
+static void tell(long done, long paths)
+{
+	progress("paths", (double)done, (double)paths);
+}
+
 static struct paths *draw_paths(struct partition *p)
 {
 	int sizes = !isnan(pump.critical_size);
@@ -112,7 +118,8 @@ static struct paths *draw_paths(struct partition *p)
 		.cumulative = !pump.per_step,
 		.step_time = step_time,
 		.slope = slope,
-		.nslopes = calibrations.n };
+		.nslopes = calibrations.n,
+		.told = tell };
 	struct paths *e;
 
 	for (int i = 0; i < calibrations.n; i++)
@@ -120,6 +127,7 @@ static struct paths *draw_paths(struct partition *p)
 	e = paths_new(&par, p);
 	if (!e)
 		die(EXIT_RUN, "out of memory");
+	progress(NULL, 0, 0);
 	if (p) {
 		stats_add("replicates", (double)count);
 		stats_add(sizes ? "sizes" : "sizes_skipped", (double)count);

@@ -40,7 +40,7 @@ static void try_mixture(int voices, const double *a, const double *delta, double
 	double *x = calloc(2 * N, sizeof *x), *s = calloc((size_t)voices * N, sizeof *s);
 	double *y = calloc((size_t)voices * N, sizeof *y), worst = 0, energy = 0,
 	       whole = 0;
-	struct mixture_par par = { 1024, 256, 0 };
+	struct mixture_par par = { .window = 1024, .hop = 256 };
 	struct mixture *m = mixture_new(&par);
 	struct mixture_source source[MIXTURE_SOURCES];
 	int count;
@@ -91,14 +91,15 @@ static void try_mixture(int voices, const double *a, const double *delta, double
 
 static void test_edges(void)
 {
-	struct mixture_par par = { 64, 16, 0 };
+	struct mixture_par par = { .window = 64, .hop = 16 };
 	struct mixture *m;
 	struct mixture_source source[MIXTURE_SOURCES];
 	double x[2] = { 0 };
 
-	ok(!mixture_new(&(struct mixture_par){ 63, 16, 0 }) &&
-			!mixture_new(&(struct mixture_par){ 64, 33, 0 }) &&
-			!mixture_new(&(struct mixture_par){ 64, 16, 17 }),
+	ok(!mixture_new(&(struct mixture_par){ .window = 63, .hop = 16 }) &&
+			!mixture_new(&(struct mixture_par){ .window = 64, .hop = 33 }) &&
+			!mixture_new(&(struct mixture_par){
+				.window = 64, .hop = 16, .sources = 17 }),
 		"impossible sizes are refused");
 	m = mixture_new(&par);
 	ok(mixture_find(m, source) == 0, "an empty record has no sources");

@@ -56,8 +56,11 @@ struct paths *paths_new(const struct paths_par *par, struct partition *partition
 		return e;
 	partition_estimate(partition, par->parts, &all);
 	e->mean = all.mean;
-	for (long i = 0; i < par->count; i++)
+	for (long i = 0; i < par->count; i++) {
 		draw_path(e, partition, i);
+		if (par->told)
+			par->told(i + 1, par->count);
+	}
 	return e;
 }
 

@@ -29,6 +29,7 @@ struct paths_par {
 	const double
 		*slope; /* gap per s of earlier units, of which each path draws one */
 	int nslopes;
+	void (*told)(long done, long paths); /* called while they are drawn; or NULL */
 };
 
 struct path {
