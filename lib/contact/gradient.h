@@ -4,11 +4,6 @@
 
 #include "contact/state.h"
 
-/* Iterations without a fall of the optimality gap by a tenth between checks whether the
- * energy falls.  Of the 2600 random problems of contact_stalls() all but six fall by a
- * tenth within 17, and those six do after the steps that this check makes. */
-enum { GRADIENT_ROUND = 25 };
-
 /* One step of the projected gradient, which always lowers the energy and
  * keeps the load, or restores it.  contact_gap() is to follow. */
 void contact_gradient_step(struct contact *c);

@@ -1,5 +1,4 @@
 #include "contact/state.h"
-#include "contact/gradient.h"
 #include "num/fft.h"
 #include <float.h>
 #include <math.h>

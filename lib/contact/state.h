@@ -10,6 +10,11 @@
 #include "num/sweep.h"
 #include <math.h>
 
+/* Iterations without a fall of the optimality gap by a tenth between checks whether the
+ * energy falls.  Of the 2600 random problems of contact_stalls() all but six fall by a
+ * tenth within 17, and those six do after the steps that this check makes. */
+enum { GRADIENT_ROUND = 25 };
+
 struct contact {
 	struct contact_par par;
 	size_t n;               /* cells */
