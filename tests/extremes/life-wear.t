@@ -87,7 +87,11 @@ done
 relative "two points" "9 h" 32400 1e-9 "$(last mean --threshold-gap 20um two.tsv)"
 exactly "two points, filter" "no prediction" nan "$(last mean --threshold-gap 20um --wear-rate filter two.tsv)"
 relative "observations stop" "the last prediction ages: 9 h - 4 h" 18000 1e-9 "$(last mean --threshold-gap 20um gone.tsv)"
-relative "step of 5 um, then 79 points, filter" "0.01 um/h from 7.19 um: 281 h" 281 0.3 \
+rwl --threshold-gap 10um --wear-rate filter step.tsv >out 2>err
+exactly "step of 5 um, then 79 points, filter" "0.01 um/h from 7.19 um: 281 h is in the interval of 90 %" yes \
+	"$(echo "$(column q05 out | tail -n 1) $(column q95 out | tail -n 1)" | awk '{ print ($1 < 281 * 3600 && ($2 == "inf" || $2 + 0 > 281 * 3600)) ? "yes" : "no" }')"
+series $(awk 'BEGIN { for (i = 0; i < 200; i++) print 1 + i * 0.01 + (i > 40) * 5 }') >step.tsv
+relative "step of 5 um, then 159 points, filter" "0.01 um/h from 7.99 um: 201 h" 201 0.3 \
 	"$(last q50 --threshold-gap 10um --wear-rate filter step.tsv | awk '{ print $1 / 3600 }')"
 relative "a spike of 1 cm, then 39 points, filter" "0.05 um/h from 15.95 um: 81 h" 81 0.1 \
 	"$(last q50 --threshold-gap 20um --wear-rate filter spike.tsv | awk '{ print $1 / 3600 }')"
