@@ -49,7 +49,7 @@ static enum calibrate_status attempt(const struct calibrate_par *par, const doub
 			status = CALIBRATE_MEMORY;
 	}
 	if (status == CALIBRATE_OK)
-		status = measure(par, work + edge, work + n + edge, n - 2 * edge,
+		status = measure(par, x1 + edge, work + edge, work + n + edge, n - 2 * edge,
 			work + 2 * n, look, c);
 	free(work);
 	if (status != CALIBRATE_OK)
@@ -130,7 +130,8 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 {
 	struct calibrate_par fewer = *par;
 	struct whitening w = { .tap = NULL };
-	struct look other_look = { .attempts = look->attempts };
+	struct look other_look = { .attempts = look->attempts,
+		.events = look->found.events };
 	struct calibration other;
 	enum calibrate_status status;
 
@@ -169,7 +170,20 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 	if (par->filter &&
 		whitening_of_filter(&w, par->filter, par->filter_taps) != NUM_OK)
 		return CALIBRATE_MEMORY;
+	look.first = !par->filter && par->pulse == CALIBRATE_ANY_PULSE &&
+		     isnan(par->duration);
 	status = attempt(par, x1, x2, n, &w, c, &look);
+	if (status == CALIBRATE_COLOURED) {
+		status = attempt_kind(par, x1, x2, n, WHITEN_COLOURED, &look, c);
+		if (status == CALIBRATE_MEMORY)
+			return status;
+		if (status == CALIBRATE_OK && c->measured && c->chi2 < DOUBTFUL)
+			return status;
+		calibration_clear(c);
+		look.first = 0;
+		status = attempt(par, x1, x2, n, &w, c, &look);
+	}
+	look.first = 0;
 	if (status == CALIBRATE_OK && par->tones == CALIBRATE_FIND_TONES && !w.tap)
 		status = try_fewer_tones(par, x1, x2, n, &look, c);
 	if (status == CALIBRATE_OK && look.coloured && !c->dense && !is_white(c, &look))

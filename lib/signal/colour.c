@@ -8,6 +8,9 @@
 
 enum { LONGEST = 2 * (COLOUR_BINS - 1), QUIETS = 16 };
 
+/* Standard deviations that the scatter of 400 lags hardly exceeds. */
+static const double SCATTER = 4;
+
 /* Power of the whitened noise over that of white noise. */
 static double level(const struct whitening *w, double *power, size_t segment)
 {
@@ -43,19 +46,39 @@ enum num_status colour_level(const double *y1, const double *y2, size_t n,
 	return status;
 }
 
-/* Autocorrelation of a Hann window of n points at this lag, 1 at lag 0. */
-static double window_autocorrelation(size_t n, size_t lag)
+/* Autocorrelation of a power of a Hann window of n points at this lag, 1 at lag 0. */
+static double window_autocorrelation(size_t n, size_t lag, int power)
 {
 	double sum = 0, all = 0, turn = 2 * M_PI / (double)n;
 
 	for (size_t i = 0; i < n; i++) {
-		double here = 0.5 - 0.5 * cos(turn * ((double)i + 0.5));
+		double here = pow(0.5 - 0.5 * cos(turn * ((double)i + 0.5)), power);
 
 		all += here * here;
 		if (i + lag < n)
-			sum += here * (0.5 - 0.5 * cos(turn * ((double)(i + lag) + 0.5)));
+			sum += here *
+			       pow(0.5 - 0.5 * cos(turn * ((double)(i + lag) + 0.5)),
+				       power);
 	}
 	return sum / all;
+}
+
+/* Twice the lag beyond which the autocorrelation of a periodogram of that many points is
+ * as small as in the last quarter up to last, where it is nothing but scatter; last at
+ * most.  What is beyond would only roughen the spectrum, and a filter made of it would
+ * ring.  The variance of the scatter of a lag is as the overlap of the squared window. */
+static size_t last_lag(const double *r, size_t points, size_t last)
+{
+	double square = 0;
+	size_t from = 3 * last / 4, k = from;
+
+	for (size_t i = from; i < last; i++)
+		square += r[i] * r[i] /
+			  (window_autocorrelation(points, i, 2) * (double)(last - from));
+	while (k > 8 && r[k] * r[k] < SCATTER * SCATTER * square *
+					      window_autocorrelation(points, k, 2))
+		k--;
+	return 2 * k < last ? 2 * k : last;
 }
 
 /* Takes from a mean periodogram what the window did to it: the autocorrelation is divided
@@ -72,11 +95,12 @@ static enum num_status sharpen(double *power, size_t bins)
 		for (size_t k = 0; k < bins; k++)
 			spectrum[k] = power[k] / (double)points;
 		fft_inverse(fft, spectrum, r);
-		for (size_t k = 0; k <= last; k++) {
+		last = last_lag(r, points, last);
+		for (size_t k = 0; k <= points / 2; k++) {
 			double u = 2 * (double)k / (double)last - 1;
-			double keep = u <= 0 ? 1 : 0.5 + 0.5 * cos(M_PI * u);
+			double keep = u <= 0 ? 1 : u < 1 ? 0.5 + 0.5 * cos(M_PI * u) : 0;
 
-			r[k] *= keep / window_autocorrelation(points, k);
+			r[k] *= keep / window_autocorrelation(points, k, 1);
 			r[k ? points - k : 0] = r[k];
 		}
 		fft_forward(fft, r, spectrum);

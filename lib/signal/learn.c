@@ -97,6 +97,7 @@ enum num_status learn_set_shape(struct calibration *c, int pulse)
 
 	shape_free(c->shape);
 	c->pulse = pulse;
+	c->measured = c->reversed = 0;
 	c->shape = plain;
 	if (plain && c->whitening.tap) {
 		c->shape = shape_filter(plain, fmax(c->duration, 8), c->whitening.seen,
@@ -116,6 +117,18 @@ enum num_status learn_duration(int pulse, double low, double *duration)
 	*duration = low / lag;
 	shape_free(plain);
 	return status;
+}
+
+/* Takes the pulse found in the record. */
+static void take_template(struct calibration *c, struct template *found)
+{
+	shape_free(c->shape);
+	c->shape = found->shape;
+	found->shape = NULL;
+	c->pulse = found->pulse;
+	c->reversed = found->reversed;
+	c->duration = found->duration;
+	c->measured = 1;
 }
 
 /* What describes some clear examples best so far. */
@@ -223,7 +236,7 @@ static enum calibrate_status converge(
 		step = fmin(fmax(3 * moved, 0.002), 0.02);
 		c->duration = ex->scene.duration;
 		c->gain = ex->scene.gain * c->noise[1] / c->noise[0];
-		if (c->whitening.tap && moved > 1e-3) {
+		if (c->whitening.tap && moved > 1e-3 && !c->measured) {
 			if (learn_set_shape(c, c->pulse) != NUM_OK)
 				return CALIBRATE_MEMORY;
 			ex->scene.shape = c->shape;
@@ -253,12 +266,16 @@ static int wants_correction(
 
 /* Shape, duration, gain and range of delays by joint fits. */
 enum calibrate_status learn_pulse(const struct calibrate_par *par, const double *y1,
-	const double *y2, size_t n, double low, struct calibration *c)
+	const double *y2, size_t n, double low, struct template *found,
+	struct calibration *c)
 {
 	struct examples ex = { .joint = joint_new(), .misfit = c->misfit };
-	enum calibrate_status status =
-		ex.joint ? learn_shape(par, &ex, y1, y2, n, low, c) : CALIBRATE_MEMORY;
+	enum calibrate_status status = ex.joint ? CALIBRATE_OK : CALIBRATE_MEMORY;
 
+	if (found && found->shape)
+		take_template(c, found);
+	else if (ex.joint)
+		status = learn_shape(par, &ex, y1, y2, n, low, c);
 	if (status == CALIBRATE_OK) {
 		examples_pick(&ex, y1, y2, n, EXAMPLES_MAX, c);
 		scene_of(c, &ex.scene);

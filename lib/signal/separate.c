@@ -212,7 +212,7 @@ static enum separate_status judge_rows(struct separate *s)
 static enum separate_status calibrate_now(struct separate *s)
 {
 	static const enum separate_status of[] = { SEPARATE_OK, SEPARATE_MEMORY,
-		SEPARATE_SILENT_1, SEPARATE_SILENT_2, SEPARATE_NO_LAG, SEPARATE_FAR,
+		SEPARATE_NO_LAG, SEPARATE_SILENT_1, SEPARATE_SILENT_2, SEPARATE_NO_LAG, SEPARATE_FAR,
 		SEPARATE_NARROW, SEPARATE_FAST, SEPARATE_SLOW, SEPARATE_TONES };
 	const struct calibration *c = &s->cal;
 	enum calibrate_status status;

@@ -223,6 +223,15 @@ struct shape *shape_correct(
 	return out;
 }
 
+void shape_scale(struct shape *shape, double factor)
+{
+	for (int i = 0; i < 4 * shape->cells; i++)
+		shape->cubic[i] *= factor;
+	shape->energy *= factor * factor;
+	shape->slope_energy *= factor * factor;
+	shape->fourth *= factor * factor * factor * factor;
+}
+
 void shape_free(struct shape *shape)
 {
 	if (!shape)

@@ -27,6 +27,8 @@ struct shape *shape_filter(
  * it reaches that far at least.  NULL: no memory. */
 struct shape *shape_correct(
 	const struct shape *shape, const double *more, int half, double step);
+/* Multiplies all values. */
+void shape_scale(struct shape *shape, double factor);
 void shape_free(struct shape *shape);
 
 double shape_reach(const struct shape *shape); /* p(s) = 0 for |s| >= reach */
