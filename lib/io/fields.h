@@ -1,7 +1,7 @@
 /* fields.h - streams of field records (height, pressure, ...) on a regular grid
  *
  * Writes NRRD as described in wearpipe-streams(5).  Reads that, plain 2-D NRRD (one
- *field, float or double, either endian), Gwyddion Simple Field, and headerless little-
+ * field, float or double, either endian), Gwyddion Simple Field, and headerless little-
  * endian float64 when a raw layout is given.  A stream holds any number of records; an
  * incomplete one ends the program with a message that names file and record.
  *

@@ -1,16 +1,16 @@
 /* convolve.h - convolution of plane fields with even kernels, by fast Fourier transform
  *
- * y = k * x for nx * ny real fields and a kernel even in both directions, whose
- * spectrum is then real and even: only its quarter is stored.  Periodic, or linear
+ * y = k * x for nx * ny real fields and a kernel even in both directions, whose spectrum
+ * is then real and even: only its quarter is stored.  Periodic, or linear
  * (CONVOLVE_PADDED: as if x were surrounded by zeros) at any grid size.  Where n has a
  * prime factor above 31, for which FFTW is slow, a periodic convolution is computed as
- *the linear one with the kernel summed over all periods.
+ * the linear one with the kernel summed over all periods.
  *
  * The rows are transformed first; then a few columns at a time are copied out,
- * transformed, multiplied and transformed back while they are in cache; then the rows
- * are transformed back.  A padded column is never formed: with half of its 2 n points
- *zero, its even and odd coefficients are two transforms of n points (the odd ones after a
- *twist by exp(-i pi j / n)), and only the n wanted points are transformed back.
+ * transformed, multiplied and transformed back while they are in cache; then the rows are
+ * transformed back.  A padded column is never formed: with half of its 2 n points zero,
+ * its even and odd coefficients are two transforms of n points (the odd ones after a
+ * twist by exp(-i pi j / n)), and only the n wanted points are transformed back.
  *
  *	struct convolve *c = convolve_new(nx, ny, CONVOLVE_PADDED, pool);
  *	double *k = convolve_alloc(c);

@@ -19,7 +19,7 @@ struct shape *shape_new(enum pulse_shape pulse);
  * between them (slopes by central differences); it is scaled to max |p| = 1.  NULL
  * with errno EDOM (half < 2, reach <= 0, a value not finite, all zero) or ENOMEM. */
 struct shape *shape_from_values(const double *value, int half, double reach);
-/* What a pulse of duration T becomes in a filter of symmetric taps -half .. half, cut
+/* A pulse of duration T filtered by symmetric taps -half .. half, cut
  * where it stays below 2e-3 of its peak; its peak is no longer 1.  NULL: no memory. */
 struct shape *shape_filter(
 	const struct shape *shape, double T, const double *tap, int half);
