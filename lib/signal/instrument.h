@@ -7,7 +7,7 @@
 #ifndef SIGNAL_INSTRUMENT_H
 #define SIGNAL_INSTRUMENT_H
 
-#include "signal/calibrate.h"
+#include "signal/calibration.h"
 #include "signal/validate.h"
 #include <stddef.h>
 
