@@ -8,7 +8,7 @@
 #ifndef SIGNAL_LEARN_H
 #define SIGNAL_LEARN_H
 
-#include "signal/calibrate.h"
+#include "signal/calibration.h"
 #include <stddef.h>
 
 /* Lag at which an autocorrelation is lowest, before it rises clearly; 0 where there is

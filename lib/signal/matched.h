@@ -5,7 +5,7 @@
 #ifndef SIGNAL_MATCHED_H
 #define SIGNAL_MATCHED_H
 
-#include "signal/calibrate.h"
+#include "signal/calibration.h"
 #include <stddef.h>
 
 /* *coherence: correlation of the filtered channels over the quietest tenth of the record:

@@ -28,11 +28,6 @@ struct record {
 	double change[2], power2[TONES_MAX]; /* of tones, see take_tones() */
 };
 
-double measure_lost(const struct calibration *c)
-{
-	return c->whitening.tap ? 1 - fmin(c->whitening.band, 1) : 0;
-}
-
 /* Takes tones (and the mean) from a whole record; *change receives the mean square change
  * of their coefficients from hop to hop, INFINITY where there is but one, power[k] that
  * of tone k. */
@@ -183,7 +178,7 @@ static enum calibrate_status find_tones(
 		if (c->tones < 0)
 			return CALIBRATE_MEMORY;
 		c->tones = tones_confirm(rec->y1 + from, rec->y2 + from, some,
-			1 - measure_lost(c), c->tones, c->omega);
+			1 - calibration_lost(c), c->tones, c->omega);
 		if (c->tones < 0)
 			return CALIBRATE_MEMORY;
 	}

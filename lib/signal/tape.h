@@ -7,7 +7,7 @@
 #ifndef SIGNAL_TAPE_H
 #define SIGNAL_TAPE_H
 
-#include "signal/calibrate.h"
+#include "signal/calibration.h"
 #include <stddef.h>
 
 /* Samples from index begin on: those before white have their filter undone, those before

@@ -6,7 +6,7 @@
 #include "filter_options.h"
 #include "io/quantities.h"
 #include "io/series.h"
-#include "life/passage/passage.h"
+#include "life/trend/passage.h"
 #include "life/prior/fleet.h"
 #include "life/score/metrics.h"
 #include "life/trend/predict.h"
