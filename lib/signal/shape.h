@@ -27,7 +27,14 @@ struct shape *shape_filter(
  * it reaches that far at least.  NULL: no memory. */
 struct shape *shape_correct(
 	const struct shape *shape, const double *more, int half, double step);
+/* From what shape_cells() and shape_cubic() tell of another; NULL: no memory, or
+ * cells < 1 or reach <= 0. */
+struct shape *shape_from_cubic(double reach, int cells, const double *cubic);
 void shape_free(struct shape *shape);
+
+/* Cells of the grid, and four coefficients of each. */
+int shape_cells(const struct shape *shape);
+const double *shape_cubic(const struct shape *shape);
 
 double shape_reach(const struct shape *shape); /* p(s) = 0 for |s| >= reach */
 /* Least grid point from which on |p| stays below level. */

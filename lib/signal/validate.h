@@ -45,6 +45,16 @@ struct validation;
 struct validation *validation_new(void); /* NULL: no memory */
 void validation_free(struct validation *v);
 
+/* Delays of the particles so far: their mean, variance and a bound of it, from count of
+ * them; count 0: nothing is known. */
+struct flow {
+	double mean, var, margin, count;
+};
+
+/* Told beforehand: holds until enough are seen. */
+void validation_tell_flow(struct validation *v, const struct flow *flow);
+void validation_flow(const struct validation *v, struct flow *flow);
+
 /* Range of the delays that are searched, learned to be wider than that of particles. */
 void validation_range(struct validation *v, double least, double most);
 
