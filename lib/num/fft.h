@@ -10,7 +10,7 @@
 #include <complex.h>
 #include <stddef.h>
 
-/* re + i im; what CMPLX() of C11 should do, which clang does not have from glibc. */
+/* re + i im, as CMPLX() of C11, which glibc does not offer to clang. */
 static inline double complex fft_complex(double re, double im)
 {
 	union {

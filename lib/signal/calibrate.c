@@ -45,7 +45,7 @@ static enum calibrate_status attempt(const struct calibrate_par *par, const doub
 		c->mean[k] = mean(y, n);
 		for (size_t i = 0; i < n; i++)
 			y[i] -= c->mean[k];
-		if (!whitening_apply(w, y, n))
+		if (whitening_apply(w, y, n) != NUM_OK)
 			status = CALIBRATE_MEMORY;
 	}
 	if (status == CALIBRATE_OK)
@@ -64,7 +64,7 @@ static enum calibrate_status attempt_kind(const struct calibrate_par *par,
 	struct whitening w;
 
 	look->kind = kind;
-	if (!whitening_of_noise(&w, look->power, COLOUR_BINS, kind))
+	if (whitening_of_noise(&w, look->power, COLOUR_BINS, kind) != NUM_OK)
 		return CALIBRATE_MEMORY;
 	return attempt(par, x1, x2, n, &w, c, look);
 }
@@ -166,7 +166,8 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 		return CALIBRATE_SILENT_1;
 	if (is_constant(x2, n))
 		return CALIBRATE_SILENT_2;
-	if (par->filter && !whitening_of_filter(&w, par->filter, par->filter_taps))
+	if (par->filter &&
+		whitening_of_filter(&w, par->filter, par->filter_taps) != NUM_OK)
 		return CALIBRATE_MEMORY;
 	status = attempt(par, x1, x2, n, &w, c, &look);
 	if (status == CALIBRATE_OK && par->tones == CALIBRATE_FIND_TONES && !w.tap)

@@ -1,7 +1,9 @@
 /* shape.c - see shape.h */
 #include "signal/shape.h"
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { STEPS = 256 }; /* grid steps per duration for the pulses of sensor.h */
 
@@ -95,15 +97,24 @@ struct shape *shape_from_values(const double *value, int half, double reach)
 	double peak = 0;
 	int cells = 2 * half;
 
-	if (half < 2 || !(reach > 0) || !isfinite(reach))
+	if (half < 2 || !(reach > 0) || !isfinite(reach)) {
+		errno = EDOM;
 		return NULL;
+	}
 	for (int i = 0; i <= cells; i++) {
-		if (!isfinite(value[i]))
+		if (!isfinite(value[i])) {
+			errno = EDOM;
 			return NULL;
+		}
 		if (fabs(value[i]) > peak)
 			peak = fabs(value[i]);
 	}
-	if (peak == 0 || !(shape = shape_alloc(reach, cells)))
+	if (peak == 0) {
+		errno = EDOM;
+		return NULL;
+	}
+	shape = shape_alloc(reach, cells);
+	if (!shape)
 		return NULL;
 	for (int i = 0; i < cells; i++) {
 		double before = i > 0 ? value[i - 1] : 0,
@@ -211,6 +222,27 @@ struct shape *shape_correct(
 	if (out)
 		shape_integrate(out);
 	return out;
+}
+
+struct shape *shape_from_cubic(double reach, int cells, const double *cubic)
+{
+	struct shape *shape = reach > 0 ? shape_alloc(reach, cells) : NULL;
+
+	if (!shape)
+		return NULL;
+	memcpy(shape->cubic, cubic, 4 * (size_t)cells * sizeof *cubic);
+	shape_integrate(shape);
+	return shape;
+}
+
+int shape_cells(const struct shape *shape)
+{
+	return shape->cells;
+}
+
+const double *shape_cubic(const struct shape *shape)
+{
+	return shape->cubic;
 }
 
 void shape_free(struct shape *shape)

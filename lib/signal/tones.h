@@ -2,12 +2,13 @@
  *
  * A tone is a frequency; its amplitude and phase are found by least squares over a
  * stretch of record, together with the others and a constant.  Cosines and sines are
- * within 1e-15 of the true ones up to index 1e10 and beyond, though few are computed as
- * such: the others follow by the addition theorem.
+ * exact to 1e-15 up to index 1e10 and beyond; most of them are computed by the addition
+ * theorem.
  */
 #ifndef SIGNAL_TONES_H
 #define SIGNAL_TONES_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 enum { TONES_MAX = 16 };
@@ -21,27 +22,27 @@ enum tones_status {
 /* Frequencies, rad per sample and rising, that stand out of the summed periodogram of
  * both channels (n samples each, n >= 1024, Hann window): lines at least 40 times the
  * median of the 64 bins on either side, which white noise exceeds with probability
- * 2^-40 per bin.  At most max are returned, the strongest.  Returns their number, or
- * -1 when out of memory. */
-int tones_find(const double *y1, const double *y2, size_t n, int max, double *omega);
+ * 2^-40 per bin; the strongest max of them, *tones in all. */
+enum num_status tones_find(
+	const double *y1, const double *y2, size_t n, int max, double *omega, int *tones);
 
 /* Least squares of a constant and tones over x[0..n), whose first sample has index
  * start: coefficient[0] the constant, [1 + 2 k] of cos(omega k t), [2 + 2 k] of sin,
  * with t the index counted from the same origin for all stretches.  Stretches in which
- * the rest is livelier than usual are left out of further passes, so that pulses do not
- * bend it.  *deviation (may be NULL) is the usual root mean square of the rest,
+ * the residual is larger than usual are excluded from further passes, so that pulses do
+ * not bias it.  *deviation (may be NULL) is the usual root mean square of the residual,
  * variance[k] (may be NULL) that of coefficient k in units of its square. */
 enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
 	const double *omega, double *coefficient, double *deviation, double *variance);
 
-/* Drops tones that a robust fit does not see: a regular train of pulses has lines too,
- * but they vanish with the pulses.  Kept are those whose power exceeds what noise gives
- * with probability 2e-9, if it has this share of all frequencies; all where the stretch
- * is too short to tell.  Returns their number, or -1 when out of memory. */
-int tones_confirm(const double *y1, const double *y2, size_t n, double band, int tones,
-	double *omega);
+/* Drops tones that a robust fit does not confirm: a regular train of pulses has lines,
+ * too, but a fit without the pulses does not see them.  Keeps tones whose power noise of
+ * this share of all frequencies exceeds with probability 2e-9; keeps all if the stretch
+ * is too short to separate them. */
+enum num_status tones_confirm(const double *y1, const double *y2, size_t n, double band,
+	int *tones, double *omega);
 
-/* Takes tones from x[0..n): coefficients run linearly from those at index at_a
+/* Subtracts tones from x[0..n): coefficients change linearly from those at index at_a
  * (from) to those at index at_b (to). */
 void tones_remove(double *x, size_t n, double start, int tones, const double *omega,
 	double at_a, const double *from, double at_b, const double *to);
