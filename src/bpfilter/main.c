@@ -134,6 +134,7 @@ static void check_samples(
 	const double *x, size_t nframes, int channels, double frame, const char *name)
 {
 	enum { LANES = 8 };
+	/* Sums in a block exceed the samples by less: there are at most 1e6 taps. */
 	const double headroom = 1e20;
 	size_t n = nframes * (size_t)channels, i, place;
 	double bad[LANES] = { 0 }, sum = 0;
