@@ -155,6 +155,45 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 	return CALIBRATE_OK;
 }
 
+/* Share of its energy in which a pulse made white may differ from a known one without its
+ * filter. */
+static const double KNOWN = 0.01;
+
+/* Noise and pulses of a record were filtered alike if what made the noise white has made
+ * the pulse a known one.  Its size is then that of before the filter. */
+static enum calibrate_status try_filtered(const struct calibrate_par *par,
+	const double *x1, const double *x2, size_t n, struct look *look,
+	struct calibration *c)
+{
+	struct template white = { .shape = c->shape, .duration = c->duration };
+	struct calibrate_par known = *par;
+	struct calibration other;
+	struct whitening w;
+	enum calibrate_status status;
+	double left;
+
+	if (whitening_of_noise(&w, look->power, COLOUR_BINS, WHITEN_FILTERED) != NUM_OK)
+		return CALIBRATE_MEMORY;
+	status = template_known(&white, w.seen, w.seen_half, &known.pulse, &left) == NUM_OK
+			 ? CALIBRATE_OK
+			 : CALIBRATE_MEMORY;
+	whitening_clear(&w);
+	if (status != CALIBRATE_OK || left > KNOWN)
+		return status;
+	look->first = 0;
+	look->settled = 1;
+	status = attempt_kind(&known, x1, x2, n, WHITEN_FILTERED, look, &other);
+	if (status != CALIBRATE_OK)
+		return status == CALIBRATE_MEMORY ? status : CALIBRATE_OK;
+	if (other.chi2 < DOUBTFUL) {
+		calibration_clear(c);
+		*c = other;
+	} else {
+		calibration_clear(&other);
+	}
+	return CALIBRATE_OK;
+}
+
 enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct calibration *c)
 {
@@ -178,7 +217,7 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 		if (status == CALIBRATE_MEMORY)
 			return status;
 		if (status == CALIBRATE_OK && c->measured && c->chi2 < DOUBTFUL)
-			return status;
+			return try_filtered(par, x1, x2, n, &look, c);
 		calibration_clear(c);
 		look.first = 0;
 		status = attempt(par, x1, x2, n, &w, c, &look);

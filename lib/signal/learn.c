@@ -264,15 +264,18 @@ static int wants_correction(
 	       !(c->whitening.tap && c->suspect) && correct_doubtful(ex, c);
 }
 
-/* Shape, duration, gain and range of delays by joint fits. */
-enum calibrate_status learn_pulse(const struct calibrate_par *par, const double *y1,
+/* Chi-square per degree of freedom up to which a pulse describes its record. */
+static const double DESCRIBED = 1.2;
+
+/* By the pulse taken from the record, or else by those of sensor.h. */
+static enum calibrate_status learn_by(const struct calibrate_par *par, const double *y1,
 	const double *y2, size_t n, double low, struct template *found,
 	struct calibration *c)
 {
 	struct examples ex = { .joint = joint_new(), .misfit = c->misfit };
 	enum calibrate_status status = ex.joint ? CALIBRATE_OK : CALIBRATE_MEMORY;
 
-	if (found && found->shape)
+	if (found)
 		take_template(c, found);
 	else if (ex.joint)
 		status = learn_shape(par, &ex, y1, y2, n, low, c);
@@ -293,5 +296,30 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, const double 
 	c->corrected = ex.corrected;
 	learn_range(par, &ex, c);
 	joint_free(ex.joint);
+	return status;
+}
+
+/* Shape, duration, gain and range of delays by joint fits.  A pulse taken from groups of
+ * pulses that are nearly alike does not describe them; then the known ones may. */
+enum calibrate_status learn_pulse(const struct calibrate_par *par, const double *y1,
+	const double *y2, size_t n, double low, struct template *found,
+	struct calibration *c)
+{
+	struct calibration known = *c;
+	enum calibrate_status status;
+
+	if (!found || !found->shape)
+		return learn_by(par, y1, y2, n, low, NULL, c);
+	known.shape = NULL;
+	status = learn_by(par, y1, y2, n, low, found, c);
+	if (status != CALIBRATE_OK || c->chi2 < DESCRIBED)
+		return status;
+	status = learn_by(par, y1, y2, n, low, NULL, &known);
+	if (status == CALIBRATE_OK && known.price < c->price) {
+		shape_free(c->shape);
+		*c = known;
+	} else {
+		shape_free(known.shape);
+	}
 	return status;
 }

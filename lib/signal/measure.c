@@ -362,7 +362,8 @@ static enum calibrate_status learn_with_noise(
 			fmin(c->rest[0], c->rest[1]) >= 0.75)
 			break;
 		scale_noise(rec, c, sqrt(c->rest[0]), sqrt(c->rest[1]));
-		status = find_template(par, rec, found, c);
+		if (found->events)
+			status = find_template(par, rec, found, c);
 		if (status == CALIBRATE_OK)
 			status = learn(par, rec, found, c);
 	}
@@ -457,7 +458,7 @@ enum calibrate_status measure(const struct calibrate_par *par, const double *raw
 		status = look_for_colour(&rec, look);
 		c->suspect = look->coloured;
 	}
-	if (status == CALIBRATE_OK)
+	if (status == CALIBRATE_OK && (look->first || !c->whitening.tap))
 		status = find_template(par, &rec, &look->found, c);
 	if (status == CALIBRATE_OK && look->first && look->coloured &&
 		look->found.events == 0)

@@ -309,7 +309,7 @@ static int refine(struct search *s, int best)
 							    5 / sqrt(2 * s->half + 1);
 			count += e->like;
 		}
-		if (count < TEMPLATE_LEAST)
+		if (count < TEMPLATE_LEAST || 2 * count < s->count)
 			return 0;
 		average(s);
 	}
@@ -510,6 +510,43 @@ void template_clear(struct template *t)
 {
 	shape_free(t->shape);
 	t->shape = NULL;
+}
+
+enum num_status template_known(const struct template *t, const double *tap, int half,
+	int *pulse, double *left)
+{
+	int reach = (int)ceil(shape_reach(t->shape) * t->duration);
+	size_t n = 2 * (size_t)reach + 1;
+	double *p = malloc(2 * n * sizeof *p);
+	struct search s = { .half = reach, .p = p };
+	enum num_status status = p ? NUM_OK : NUM_MEMORY;
+
+	*left = 2;
+	if (p)
+		shape_sample(t->shape, 0, t->duration, -reach, n, p, NULL, NULL);
+	for (int k = PULSE_SINE; status == NUM_OK && k <= PULSE_LORENTZ; k++) {
+		struct shape *plain = shape_new((enum pulse_shape)k);
+
+		for (double T = 0.7 * t->duration; plain && T < 1.4 * t->duration; T *= 1.03) {
+			struct shape *seen = shape_filter(plain, T, tap, half);
+			double shift, rest;
+			int reversed;
+
+			if (!seen)
+				break;
+			rest = try_match(&s, reach, seen, T, p + n, &shift, &reversed);
+			if (!reversed && rest < *left) {
+				*left = rest;
+				*pulse = k;
+			}
+			shape_free(seen);
+		}
+		if (!plain)
+			status = NUM_MEMORY;
+		shape_free(plain);
+	}
+	free(p);
+	return status;
 }
 
 double template_peak(const struct template *t, const double *x1, size_t n)
