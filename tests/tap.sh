@@ -33,15 +33,22 @@ cd "$work" || exit 1
 tests=0
 bad=0
 
+# The description of a test from its name; scenes.sh has another.
+describe() {
+	described=$1
+}
+
 pass() {
 	tests=$((tests + 1))
-	echo "ok $tests - $1${suffix:-}"
+	describe "$1"
+	echo "ok $tests - $described${suffix:-}"
 }
 
 fail() {
 	tests=$((tests + 1))
 	bad=$((bad + 1))
-	echo "not ok $tests - $1${suffix:-}"
+	describe "$1"
+	echo "not ok $tests - $described${suffix:-}"
 	line=$(grep -nF -m 1 -e "$1" "$test_file" | cut -d: -f1)
 	echo "# at ${test_file#"$top"/}${line:+:$line}"
 	shift
@@ -106,7 +113,7 @@ fails() {
 	"$@" >out 2>err </dev/null
 	got=$?
 	# status 3 is a doubtful result, not a refusal
-	[ "$want" = 3 ] || suffix=': refused in one line'
+	[ "$want" = 3 ] || suffix=': the program refuses it in one line'
 	if [ "$got" != "$want" ]; then
 		fail "$name" "$*: exit status $got, want $want" "$(head -5 err)"
 	elif [ "$(wc -l <err)" != 1 ]; then
