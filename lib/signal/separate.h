@@ -36,7 +36,8 @@ enum separate_verdict {
 	SEPARATE_ALONE,     /* one pulse in its section */
 	SEPARATE_OVERLAP,   /* several, told apart */
 	SEPARATE_MISFIT,    /* chi-square too large: the model does not describe it */
-	SEPARATE_UNRESOLVED /* too dense: a row stands for sources particles or more */
+	SEPARATE_UNRESOLVED, /* too dense: a row stands for sources particles or more */
+	SEPARATE_MERGED      /* as large as several that arrive together: coincide.h */
 };
 
 /* One particle on its way past both sensors, as the record tells it. */
@@ -104,6 +105,7 @@ struct separate_counters {
 	double fits, steps, searches;
 	double rows, misfits; /* of pulses fitted, and those doubted, dense ones too */
 	double foreign;       /* doubted by their velocities, though they fit */
+	double merged;        /* rows that may be several particles each */
 	double masks, masks_skipped; /* sections demixed, and those that need not be */
 	double unresolved;
 };

@@ -17,6 +17,9 @@
  *
  * s^2 is that of pulses that stand alone, which no group is part of.
  *
+ * A pulse as large as two particles that arrive together would be is merged, see
+ * coincide.h.
+ *
  * Where more than half of the rows are doubted, or more than a tenth have delays at the
  * edge of the range, the record is not what was learned, and no row is believed.
  *
@@ -26,6 +29,7 @@
 #ifndef SIGNAL_VALIDATE_H
 #define SIGNAL_VALIDATE_H
 
+#include "signal/shape.h"
 #include <stddef.h>
 
 /* One row: a pulse, or a stretch that was not taken apart. */
@@ -33,11 +37,13 @@ struct evidence {
 	int group;               /* rows of one fit have the same number, from 1 */
 	int fits;                /* 0: chi-square tells already that it is none */
 	double delay, var;       /* in samples; var 0: nothing is known of it */
-	double amplitude;        /* over its standard error */
+	double amplitude;        /* over the noise */
 	int partner;             /* rows to the larger pulse it overlaps; 0: none */
 	double apart, apart_var; /* delay less that of the partner */
 	double place, height;    /* of arrival, in durations, and amplitude: the same */
-	int doubted;             /* told by validation_judge() */
+	double time, reach;      /* in durations: of arrival, and see coincide.h; reach 0:
+				    nothing is known of it */
+	int doubted, merged;     /* told by validation_judge() */
 };
 
 struct validation;
@@ -46,6 +52,12 @@ void validation_free(struct validation *v);
 
 /* Range of the delays that are searched, learned to be wider than that of particles. */
 void validation_range(struct validation *v, double least, double most);
+
+/* The pulses; 0: no memory. */
+int validation_shape(struct validation *v, const struct shape *shape, double duration);
+/* Distance, in durations, up to which a pulse of this energy may be two; see coincide.h.
+ */
+double validation_reach(const struct validation *v, double energy, double need);
 
 /* Takes in n rows, groups undivided and in order, and judges them. */
 void validation_judge(struct validation *v, struct evidence *e, size_t n);
