@@ -141,5 +141,9 @@ grep -v '^#' um.tsv >bare.tsv
 fails "a diameter of 50 metres" 1 'line 2: diameter is 50 m, want metres' debriscount bare.tsv
 printf 'diameter\ttime1\n1e-6\t5\n1e-6\t1e15\n' >far.tsv
 fails "a time without end of periods before it" 1 'more than 10000000 periods' debriscount --period 2s far.tsv
+fails "a duration without end of periods after the last particle" 2 'more than 10000000 periods after the last particle' \
+	debriscount --period 2s --duration 1e12s six.tsv
+printf '# units: 0mm\ndiameter\n50\n' >zero.tsv
+fails "a unit that begins with a digit" 1 "column 'diameter' is in '0mm', want m" debriscount zero.tsv
 fails "a record after a record" 1 'another record begins' sh -c 'cat six.tsv six.tsv | debriscount --period 100s'
 done_testing

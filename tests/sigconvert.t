@@ -193,6 +193,16 @@ fails "a separator of thousands" 1 'line 2: want 2 cells, got 3' sigconvert --ou
 printf 'Time;Flow\n0;1.234,5\n' >thousand.csv
 fails "a separator of thousands in a CSV with semicolons" 1 "line 2: Flow: '1.234,5' is not a number" sigconvert --output table thousand.csv
 printf 'Time;Flow\n' >empty.csv
+printf 'Time;Flow\n0;1\n2026-11-22 23:00;2\n' >mixed.csv
+fails "a date below a number of seconds" 1 "line 3: '2026-11-22 23:00' is not a time" sigconvert --output table mixed.csv
+printf 'time [s];T [K];u\n0;1;2\n1;3;4\n' >twice.csv
+fails "a second column 't' beside the times" 1 "column 'T' would be called 't' as the times are" sigconvert --output table twice.csv
+sigconvert --output table --columns 'kelvin=T;u' twice.csv >renamed.tsv
+is "a column renamed no longer collides with the times" "$(body renamed.tsv)" '# units: s K 1|t kelvin u|0 1 2|1 3 4|'
+printf 'time;A;a\n0;1;2\n' >same.csv
+fails "two columns that differ by capitals" 1 "two columns are called 'a'" sigconvert --output table same.csv
+printf 'time [2s],u [0mV]\n0,1\n1,3\n' >digit.csv
+fails "a unit of time that begins with a digit" 1 "times in '2s', want s, min, h or d" sigconvert digit.csv
 fails "headings alone" 1 'no row below the headings' sigconvert --output table empty.csv
 fails "a rate for a table" 2 'table converts text: no --rate' sigconvert --output table --rate 1Hz pump.csv
 done_testing

@@ -539,12 +539,14 @@ static _Noreturn void misuse(int problem, char **argv)
 		      : optopt ? xprintf("-%c", optopt)
 			       : xstrdup(argv[optind - 1]);
 
+	const char *likely;
+
 	if (problem == ':')
 		die(EXIT_USAGE, "%s: needs an argument; see %s --help", shown,
 			prog->name);
-	if (likely_option(shown))
-		die(EXIT_USAGE, "%s: no such option: did you mean --%s?", shown,
-			likely_option(shown));
+	likely = likely_option(shown);
+	if (likely)
+		die(EXIT_USAGE, "%s: no such option: did you mean --%s?", shown, likely);
 	die(EXIT_USAGE, "%s: no such option; see %s --help", shown, prog->name);
 }
 

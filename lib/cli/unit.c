@@ -98,6 +98,11 @@ static double suffix_scale(const char *text, size_t length, enum unit unit)
 	return 0;
 }
 
+double unit_scale(const char *text, enum unit unit)
+{
+	return suffix_scale(text, strlen(text), unit);
+}
+
 /* The unit in which a quantity is shown, where that is not the SI unit. */
 static const struct spelling *shown_spelling(enum unit unit)
 {
@@ -198,7 +203,7 @@ const char *unit_meant(const char *text, enum unit unit)
 
 	strtod(text, &rest);
 	if (rest == text && strlen(text) < sizeof meant - 1 &&
-		suffix_scale(text, strlen(text), unit) > 0) {
+		unit_scale(text, unit) > 0) {
 		snprintf(meant, sizeof meant, "1%s", text);
 		return meant;
 	}

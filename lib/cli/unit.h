@@ -40,6 +40,9 @@ const char *unit_name(enum unit unit);
 const char *unit_parse(const char *text, enum unit unit, const char *stop, double *value,
 	const char **end);
 
+/* What one of the unit is in SI: 1e-3 for "mm"; 0 if text is not a unit of this kind. */
+double unit_scale(const char *text, enum unit unit);
+
 /* Where the unit behind the number of text differs from one that suits by nothing but
  * capitals: the one that is meant ("GPa" for "210Gpa"); for a unit without a number, one
  * of it ("1um" for "um"); else NULL.  Valid until the next call. */

@@ -20,6 +20,7 @@ static double quantile(double p, double mean, double variance)
 		low = high;
 		high *= 2;
 	}
+	/* A shape much below 1 has quantiles down to the smallest number, 2^-1074. */
 	for (int k = 0; k < 1100 && high - low > 1e-14 * high; k++) {
 		double middle = 0.5 * (low + high);
 

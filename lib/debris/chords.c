@@ -8,13 +8,22 @@
 
 enum { X, Y, Z };
 
+/* A corner at its height along the longest chord, and the first of its rising edges. */
+struct level {
+	double height;
+	size_t corner, rising;
+};
+
 struct chords {
 	const struct hull_edge *edge; /* the hull's */
 	size_t edges, corners;
 	double (*corner)[3]; /* of the hull, m */
-	double *height;      /* of the corners along the longest chord */
+	struct level *level; /* of the corners, by height, and one behind them */
+	double *height;      /* of the corners */
+	size_t *rising;      /* edges by their lower corner, in the order of level */
+	size_t *crossed;     /* edges that a section may cross */
 	double (*cut)[3];    /* corners of a section */
-	size_t corner_room, height_room, cut_room;
+	size_t corner_room, level_room, height_room, rising_room, crossed_room, cut_room;
 };
 
 struct chords *chords_new(void)
@@ -27,7 +36,10 @@ void chords_free(struct chords *c)
 	if (!c)
 		return;
 	free(c->corner);
+	free(c->level);
 	free(c->height);
+	free(c->rising);
+	free(c->crossed);
 	free(c->cut);
 	free(c);
 }
@@ -83,26 +95,66 @@ static double longest(const struct chords *c, double along[3])
 	return most;
 }
 
-/* Corners, in c->cut, of the section at a height along the longest chord. */
-static size_t section(struct chords *c, double level)
+static int by_height(const void *a, const void *b)
 {
-	size_t count = 0;
+	const struct level *p = a, *q = b;
 
-	for (size_t i = 0; i < c->corners; i++)
-		if (c->height[i] == level)
-			memcpy(c->cut[count++], c->corner[i], sizeof *c->cut);
+	if (p->height != q->height)
+		return p->height < q->height ? -1 : 1;
+	return p->corner < q->corner ? -1 : 1;
+}
+
+/* Corners in the order of their heights along the longest chord, with the edges that rise
+ * from each.  Edges at one height belong to none. */
+static void sort_levels(struct chords *c, const double along[3])
+{
+	size_t *count = c->crossed, sum = 0; /* of each corner; free until the sweep */
+
+	for (size_t i = 0; i < c->corners; i++) {
+		const double *p = c->corner[i];
+
+		c->height[i] = p[X] * along[X] + p[Y] * along[Y] + p[Z] * along[Z];
+		c->level[i] = (struct level){ c->height[i], i, 0 };
+		count[i] = 0;
+	}
+	qsort(c->level, c->corners, sizeof *c->level, by_height);
 	for (size_t i = 0; i < c->edges; i++) {
 		const struct hull_edge *e = &c->edge[i];
-		const double *p = c->corner[e->from], *q = c->corner[e->to];
-		double a = c->height[e->from] - level, b = c->height[e->to] - level;
+		double a = c->height[e->from], b = c->height[e->to];
 
-		if (!((a < 0 && b > 0) || (a > 0 && b < 0)))
-			continue;
-		for (int k = X; k <= Z; k++)
-			c->cut[count][k] = p[k] + (q[k] - p[k]) * (a / (a - b));
-		count++;
+		if (a != b)
+			count[a < b ? e->from : e->to]++;
 	}
-	return count;
+	for (size_t i = 0; i < c->corners; i++) {
+		size_t corner = c->level[i].corner;
+
+		c->level[i].rising = sum;
+		sum += count[corner];
+		count[corner] = c->level[i].rising;
+	}
+	c->level[c->corners] = (struct level){ INFINITY, 0, sum };
+	for (size_t i = 0; i < c->edges; i++) {
+		const struct hull_edge *e = &c->edge[i];
+		double a = c->height[e->from], b = c->height[e->to];
+
+		if (a != b)
+			c->rising[count[a < b ? e->from : e->to]++] = i;
+	}
+}
+
+/* Puts the point of an edge at a height into c->cut[count]; 0 if the edge ends there or
+ * below. */
+static int cross(struct chords *c, size_t edge, double level, size_t count)
+{
+	const struct hull_edge *e = &c->edge[edge];
+	const double *p = c->corner[e->from], *q = c->corner[e->to];
+	double a = c->height[e->from] - level, b = c->height[e->to] - level;
+
+	if (a <= 0 && b <= 0)
+		return 0;
+	for (int k = X; k <= Z; k++)
+		c->cut[count][k] = p[k] + (q[k] - p[k]) * (a / (a - b));
+	return 1;
 }
 
 /* Longest chord perpendicular to the longest of all.  Between two corners of the hull the
@@ -111,15 +163,26 @@ static size_t section(struct chords *c, double level)
 static double widest(struct chords *c, const double along[3])
 {
 	double most = 0;
-	size_t end[2];
+	size_t crossed = 0, end[2];
 
-	for (size_t i = 0; i < c->corners; i++) {
-		const double *p = c->corner[i];
+	sort_levels(c, along);
+	for (size_t i = 0, next; i < c->corners; i = next) {
+		double level = c->level[i].height;
+		size_t count = 0, kept = 0;
 
-		c->height[i] = p[X] * along[X] + p[Y] * along[Y] + p[Z] * along[Z];
+		for (next = i; c->level[next].height == level; next++)
+			memcpy(c->cut[count++], c->corner[c->level[next].corner],
+				sizeof *c->cut);
+		for (size_t k = 0; k < crossed; k++)
+			if (cross(c, c->crossed[k], level, count)) {
+				c->crossed[kept++] = c->crossed[k];
+				count++;
+			}
+		crossed = kept;
+		most = farthest(c->cut, count, most, end);
+		for (size_t k = c->level[i].rising; k < c->level[next].rising; k++)
+			c->crossed[crossed++] = c->rising[k];
 	}
-	for (size_t i = 0; i < c->corners; i++)
-		most = farthest(c->cut, section(c, c->height[i]), most, end);
 	return sqrt(most);
 }
 
@@ -131,7 +194,11 @@ enum num_status chords_measure(struct chords *c, const struct hull *h,
 
 	c->edge = hull_edges(h, &c->edges);
 	if (room_for(&c->corner, &c->corner_room, c->corners, sizeof *c->corner) ||
+		room_for(&c->level, &c->level_room, c->corners + 1, sizeof *c->level) ||
 		room_for(&c->height, &c->height_room, c->corners, sizeof *c->height) ||
+		room_for(&c->rising, &c->rising_room, c->edges, sizeof *c->rising) ||
+		room_for(&c->crossed, &c->crossed_room, c->corners + c->edges,
+			sizeof *c->crossed) ||
 		room_for(&c->cut, &c->cut_room, c->corners + c->edges, sizeof *c->cut))
 		return NUM_MEMORY;
 	for (size_t i = 0; i < c->corners; i++)

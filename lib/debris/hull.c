@@ -143,6 +143,11 @@ static int compare_y(const void *a, const void *b)
 	return compare(a, b, 1);
 }
 
+static int compare_z(const void *a, const void *b)
+{
+	return compare(a, b, 2);
+}
+
 /* Direction in which a path in a plane turns at q: > 0 to the left. */
 static int64_t turn(const struct hull_point *p, const struct hull_point *q,
 	const struct hull_point *r, int axis)
@@ -178,14 +183,15 @@ static size_t plane_hull(
 }
 
 /* Drops repeated points and those that are no corners of the hull of their plane across
- * an axis, x or y, which cannot be corners of the body.  Bodies made of cells have many.
- */
+ * an axis, which cannot be corners of the body.  Bodies made of cells have many. */
 static enum num_status drop_inside(
 	struct hull *h, struct hull_point *point, size_t *count, int axis)
 {
+	static int (*const order[3])(const void *, const void *) = { compare_x, compare_y,
+		compare_z };
 	size_t kept = 0, first = 0, unique = 0;
 
-	qsort(point, *count, sizeof *point, axis ? compare_y : compare_x);
+	qsort(point, *count, sizeof *point, order[axis]);
 	for (size_t i = 0; i < *count; i++)
 		if (!unique || compare(&point[unique - 1], &point[i], axis))
 			point[unique++] = point[i];
@@ -209,6 +215,7 @@ enum num_status hull_thin(struct hull *h, struct hull_point *point, size_t *coun
 {
 	enum num_status status = drop_inside(h, point, count, 1);
 
+	status = status == NUM_OK ? drop_inside(h, point, count, 2) : status;
 	return status == NUM_OK ? drop_inside(h, point, count, 0) : status;
 }
 

@@ -20,14 +20,11 @@ static double number(const struct place *at, const char *key, const char *text)
 	return v;
 }
 
-static double unit_scale(const struct place *at, const char *unit)
+static double length_scale(const struct place *at, const char *unit)
 {
-	char text[32];
-	double scale;
-	const char *end;
+	double scale = unit_scale(unit, UNIT_LENGTH);
 
-	snprintf(text, sizeof text, "1%s", unit);
-	if (unit_parse(text, UNIT_LENGTH, "", &scale, &end))
+	if (scale <= 0)
 		die(EXIT_RUN, "%s: record %ld: unit '%.20s' is not a length", at->name,
 			at->record, unit);
 	return scale;
@@ -88,9 +85,9 @@ void gsf_read(struct place *at, struct record *r)
 		else if (!strcmp(line, "YReal"))
 			real[1] = number(at, line, value);
 		else if (!strcmp(line, "XYUnits"))
-			xy = unit_scale(at, value);
+			xy = length_scale(at, value);
 		else if (!strcmp(line, "ZUnits"))
-			z = unit_scale(at, value);
+			z = length_scale(at, value);
 		free(line);
 	}
 	if (!(sizes[0] > 0 && sizes[1] > 0 && real[0] > 0 && real[1] > 0))

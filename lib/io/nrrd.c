@@ -258,12 +258,10 @@ static void check_header(const struct place *at, struct header *h)
 static double spacing(const struct place *at, const struct header *h, int axis)
 {
 	double scale = 1, s = h->spacings[axis];
-	char text[24];
-	const char *end;
 
 	if (h->nunits > axis && *h->units[axis]) {
-		snprintf(text, sizeof text, "1%s", h->units[axis]);
-		if (unit_parse(text, UNIT_LENGTH, "", &scale, &end))
+		scale = unit_scale(h->units[axis], UNIT_LENGTH);
+		if (scale <= 0)
 			die(EXIT_RUN,
 				"%s: record %ld: unit '%s' of axis %d is not a length",
 				at->name, at->record, h->units[axis], axis);

@@ -40,15 +40,13 @@ const char *table_unit_word(const struct table_in *t, int column, char word[UNIT
 
 double table_scale(const struct table_in *t, int column, enum unit unit)
 {
-	char word[UNIT_WORD], one[UNIT_WORD + 1];
-	const char *end, *wrong;
+	char word[UNIT_WORD];
 	double scale;
 
 	if (!strcmp(table_unit_word(t, column, word), "1"))
 		return NAN;
-	snprintf(one, sizeof one, "1%s", word);
-	wrong = unit_parse(one, unit, "", &scale, &end);
-	if (wrong)
+	scale = unit_scale(word, unit);
+	if (scale <= 0)
 		die(EXIT_RUN, "%s: column '%s' is in '%s', want %s", table_name(t),
 			table_column_name(t, column), word, unit_name(unit));
 	return scale;
@@ -56,19 +54,18 @@ double table_scale(const struct table_in *t, int column, enum unit unit)
 
 double table_ratio(const struct table_in *t, int column, const char *to)
 {
-	char from[UNIT_WORD], one[2][UNIT_WORD + 1];
-	double scale[2];
-	const char *end;
+	char from[UNIT_WORD];
 
 	table_unit_word(t, column, from);
 	if (!strcmp(from, to) || !strcmp(from, "1") || !strcmp(to, "1"))
 		return 1;
-	snprintf(one[0], sizeof one[0], "1%s", from);
-	snprintf(one[1], sizeof one[1], "1%s", to);
-	for (int unit = UNIT_LENGTH; unit < UNIT_ANY; unit++)
-		if (!unit_parse(one[0], (enum unit)unit, "", &scale[0], &end) &&
-			!unit_parse(one[1], (enum unit)unit, "", &scale[1], &end))
-			return scale[0] / scale[1];
+	for (int unit = UNIT_LENGTH; unit < UNIT_ANY; unit++) {
+		double a = unit_scale(from, (enum unit)unit),
+		       b = unit_scale(to, (enum unit)unit);
+
+		if (a > 0 && b > 0)
+			return a / b;
+	}
 	die(EXIT_RUN, "%s: column '%s' is in '%s', want '%s'", table_name(t),
 		table_column_name(t, column), from, to);
 }

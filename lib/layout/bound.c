@@ -3,9 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum {
-	STEPS = 4096
-}; /* of the integrals: error 1e-12 for the Gaussian, which is smooth */
+/* Steps of the integrals: error 1e-12 for the Gaussian, which is smooth. */
+enum { STEPS = 4096 };
 
 void bound_energies(enum pulse_shape shape, double energy[3])
 {
@@ -51,7 +50,7 @@ static void invert(const struct fisher *f, double offset, double variance[4])
 	va = f->va - f->tv * f->ta / f->tt;
 	aa = f->aa - f->ta * f->ta / f->tt;
 	det = vv * aa - va * va;
-	/* Rounding of the sums over STEPS. */
+	/* Below the rounding of 4096 terms, 1e-13, the determinant is 0. */
 	if (!(det > 1e-13 * vv * aa))
 		return;
 	/* of ln v, ln A, ln d and of the arrival t + offset ln v */

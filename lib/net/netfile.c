@@ -7,7 +7,7 @@
 
 static const char *const activations[] = { "linear", "tanh", "sigmoid", "relu" };
 
-/* Reads a whole number 1 ... 2^20 at *s and moves on; 0 if there is none. */
+/* Number from 1 to 2^20 at *s, which moves behind it; 0 if there is none. */
 static int take_number(const char **s)
 {
 	char *end;
@@ -23,84 +23,86 @@ static int take_number(const char **s)
 	return (int)n;
 }
 
-static int take_window(const char **s, struct network_layer *l)
+static enum num_status take_window(const char **s, struct network_layer *l)
 {
 	l->width = take_number(s);
 	if (!l->width || (**s != 'x' && **s != '*'))
-		return 0;
+		return NUM_DOMAIN;
 	++*s;
 	l->height = take_number(s);
-	return l->height > 0;
+	return l->height > 0 ? NUM_OK : NUM_DOMAIN;
 }
 
-static int take_activation(const char *s, enum network_activation *activation)
+static enum num_status take_activation(const char *s, enum network_activation *activation)
 {
 	for (unsigned i = 0; i < sizeof activations / sizeof *activations; i++)
 		if (strcmp(s, activations[i]) == 0) {
 			*activation = (enum network_activation)i;
-			return 1;
+			return NUM_OK;
 		}
-	return 0;
+	return NUM_DOMAIN;
 }
 
-static int parse_layer(const char *s, struct network_layer *l)
+static enum num_status parse_layer(const char *s, struct network_layer *l)
 {
 	if (strncmp(s, "pool", 4) == 0) {
 		s += 4;
 		l->kind = NETWORK_POOL;
-		return take_window(&s, l) && !*s;
+		return take_window(&s, l) == NUM_OK && !*s ? NUM_OK : NUM_DOMAIN;
 	}
 	l->units = take_number(&s);
 	if (!l->units)
-		return 0;
+		return NUM_DOMAIN;
 	l->kind = NETWORK_DENSE;
 	if (strncmp(s, "conv", 4) == 0) {
 		s += 4;
 		l->kind = NETWORK_CONV;
 		l->stride = 1;
-		if (!take_window(&s, l))
-			return 0;
+		if (take_window(&s, l) != NUM_OK)
+			return NUM_DOMAIN;
 		if (*s == '/') {
 			s++;
 			l->stride = take_number(&s);
 		}
 		if (!l->stride)
-			return 0;
+			return NUM_DOMAIN;
 	} else if (*s == '+') {
 		s++;
 		l->kind = NETWORK_CASCADE;
 	}
-	return !*s || (*s == ':' && take_activation(s + 1, &l->activation));
+	if (!*s)
+		return NUM_OK;
+	return *s == ':' ? take_activation(s + 1, &l->activation) : NUM_DOMAIN;
 }
 
-int netfile_parse_layers(const char *text, enum network_activation activation,
-	struct network_layer *layer, char why[NETFILE_TEXT])
+enum num_status netfile_parse_layers(const char *text, enum network_activation activation,
+	struct network_layer *layer, int *count, char why[NETFILE_TEXT])
 {
 	char word[48];
 	size_t n;
-	int count = 0;
 
+	*count = 0;
 	for (text += strspn(text, " \t\n"); *text;
 		text += n + strspn(text + n, " \t\n")) {
 		n = strcspn(text, " \t\n");
 		snprintf(word, sizeof word, "%.*s", (int)n, text);
-		if (count == NETWORK_LAYERS_MAX) {
+		if (*count == NETWORK_LAYERS_MAX) {
 			snprintf(why, NETFILE_TEXT, "more than %d layers",
 				NETWORK_LAYERS_MAX);
-			return 0;
+			return NUM_DOMAIN;
 		}
-		layer[count] = (struct network_layer){ .activation = activation };
-		if (n >= sizeof word || !parse_layer(word, &layer[count++])) {
+		layer[*count] = (struct network_layer){ .activation = activation };
+		if (n >= sizeof word || parse_layer(word, &layer[(*count)++]) != NUM_OK) {
 			snprintf(why, NETFILE_TEXT,
 				"'%s' is no layer: want like 50, 50+, 10conv30x2 or "
 				"pool2x2",
 				word);
-			return 0;
+			return NUM_DOMAIN;
 		}
 	}
-	if (count == 0)
+	if (*count == 0)
 		snprintf(why, NETFILE_TEXT, "no layers");
-	return count;
+	return *count ? NUM_OK : NUM_DOMAIN;
 }
 
 static void write_layer(FILE *f, const struct network_layer *l)
@@ -119,7 +121,7 @@ static void write_layer(FILE *f, const struct network_layer *l)
 	fprintf(f, ":%s", activations[l->activation]);
 }
 
-int netfile_write(FILE *f, struct network *net, const char *purpose, const char *cmd)
+void netfile_write(FILE *f, struct network *net, const char *purpose, const char *cmd)
 {
 	struct network_shape in = network_input(net);
 	const network_real *w = network_weights(net);
@@ -136,7 +138,6 @@ int netfile_write(FILE *f, struct network *net, const char *purpose, const char 
 	for (size_t i = 0; i < n; i++)
 		fprintf(f, "%.9g%c", w[i], i % 8 == 7 || i == n - 1 ? '\n' : ' ');
 	fprintf(f, "end\n");
-	return ferror(f) ? -1 : 0;
 }
 
 struct reader {
@@ -189,23 +190,23 @@ static char *next_value(struct reader *r, const char *word)
 	return s + n + 1;
 }
 
-static int read_weights(struct reader *r, struct network *net)
+static enum num_status read_weights(struct reader *r, struct network *net)
 {
 	network_real *w = network_weights(net);
 	size_t n = network_weight_count(net), i = 0;
 	char *s = next_value(r, "weights"), *end;
 
 	if (!s)
-		return 0;
+		return NUM_DOMAIN;
 	if (strtoull(s, &end, 10) != n || *end) {
 		snprintf(r->why, NETFILE_TEXT, "the layers have %zu weights, got '%.20s'",
 			n, s);
-		return 0;
+		return NUM_DOMAIN;
 	}
 	while (i < n) {
 		s = next_line(r, "weights");
 		if (!s)
-			return 0;
+			return NUM_DOMAIN;
 		for (; i < n && *(s += strspn(s, " \t")); s = end) {
 			w[i++] = (network_real)strtod(s, &end);
 			if (end == s || (*end && *end != ' ' && *end != '\t') ||
@@ -213,33 +214,33 @@ static int read_weights(struct reader *r, struct network *net)
 				snprintf(r->why, NETFILE_TEXT,
 					"weight %zu: want a finite number, got '%.20s'",
 					i, s);
-				return 0;
+				return NUM_DOMAIN;
 			}
 		}
 	}
 	if (s[strspn(s, " \t")]) {
 		snprintf(r->why, NETFILE_TEXT, "more than %zu weights", n);
-		return 0;
+		return NUM_DOMAIN;
 	}
 	s = next_line(r, "'end'");
 	if (s && strcmp(s, "end") != 0) {
 		snprintf(r->why, NETFILE_TEXT,
 			"want 'end' after the weights, got '%.40s'", s);
-		return 0;
+		return NUM_DOMAIN;
 	}
-	return s != NULL;
+	return s ? NUM_OK : NUM_DOMAIN;
 }
 
-static int read_input(const char *s, struct network_shape *shape)
+static enum num_status read_input(const char *s, struct network_shape *shape)
 {
 	shape->channels = take_number(&s);
 	if (!shape->channels || *s++ != ' ')
-		return 0;
+		return NUM_DOMAIN;
 	shape->height = take_number(&s);
 	if (!shape->height || *s++ != ' ')
-		return 0;
+		return NUM_DOMAIN;
 	shape->width = take_number(&s);
-	return shape->width && !*s;
+	return shape->width && !*s ? NUM_OK : NUM_DOMAIN;
 }
 
 static struct network *read_network(struct reader *r, int batch)
@@ -264,14 +265,14 @@ static struct network *read_network(struct reader *r, int batch)
 	s = next_value(r, "input");
 	if (!s)
 		return NULL;
-	if (!read_input(s, &input)) {
+	if (read_input(s, &input) != NUM_OK) {
 		snprintf(r->why, NETFILE_TEXT,
 			"want 'input CHANNELS ROWS COLUMNS', got '%.40s'", s);
 		return NULL;
 	}
 	s = next_value(r, "layers");
-	layers = s ? netfile_parse_layers(s, NETWORK_LINEAR, layer, r->why) : 0;
-	if (!layers)
+	if (!s ||
+		netfile_parse_layers(s, NETWORK_LINEAR, layer, &layers, r->why) != NUM_OK)
 		return NULL;
 	net = network_new(input, layer, layers, batch);
 	if (!net) {
@@ -279,7 +280,7 @@ static struct network *read_network(struct reader *r, int batch)
 			errno == EDOM ? "too large" : "out of memory");
 		return NULL;
 	}
-	if (!read_weights(r, net)) {
+	if (read_weights(r, net) != NUM_OK) {
 		network_free(net);
 		return NULL;
 	}

@@ -3,7 +3,7 @@
  *	struct point *point = NULL;
  *	size_t room = 0, count = 0;
  *	if (room_for(&point, &room, count + 1, sizeof *point))
- *		return -1;
+ *		return NUM_MEMORY;
  *	point[count++] = p;
  */
 #ifndef NUM_ROOM_H
@@ -12,8 +12,8 @@
 #include "num/status.h"
 #include <stddef.h>
 
-/* Sees to it that the array whose pointer stands at *array has room for want elements;
- * what is in it stays.  Where there is no memory all is as before. */
+/* Grows the array whose pointer is *array to at least want elements, keeping those in it.
+ * On NUM_MEMORY nothing has changed. */
 enum num_status room_for(void *array, size_t *room, size_t want, size_t size);
 
 #endif

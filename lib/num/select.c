@@ -2,6 +2,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Shorter parts are sorted by insertion.  4 to 32 take the same time for sorting a
+ * million numbers, their median and the medians of 100 at a time; 64 takes 1.5 times as
+ * long for the last. */
 enum { SHORT = 16 };
 
 static void insert_all(double *v, ptrdiff_t low, ptrdiff_t high)

@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* Correlation sum_n x(n) y(n + lag) at lags 0 .. max_lag. */
-static int correlate(
+static enum num_status correlate(
 	const double *x, const double *y, size_t n, size_t max_lag, double *r)
 {
 	size_t size = fft_good_size(n + max_lag + 1);
@@ -13,9 +13,9 @@ static int correlate(
 	double *pad = fft_alloc(size);
 	double complex *fx = fft_alloc_complex(size / 2 + 1);
 	double complex *fy = fft_alloc_complex(size / 2 + 1);
-	int good = fft && pad && fx && fy;
+	enum num_status status = fft && pad && fx && fy ? NUM_OK : NUM_MEMORY;
 
-	if (good) {
+	if (status == NUM_OK) {
 		memcpy(pad, x, n * sizeof *x);
 		fft_forward(fft, pad, fx);
 		memset(pad, 0, size * sizeof *pad);
@@ -30,7 +30,7 @@ static int correlate(
 	fft_free(fx);
 	fft_free(fy);
 	fft_done(fft);
-	return good;
+	return status;
 }
 
 static double energy(const double *x, size_t n)
@@ -42,43 +42,47 @@ static double energy(const double *x, size_t n)
 	return sum;
 }
 
-double align_lag(
-	const double *y1, const double *y2, size_t n, size_t max_lag, double *peak)
+enum num_status align_lag(const double *y1, const double *y2, size_t n, size_t max_lag,
+	double *lag, double *peak)
 {
-	double e1 = energy(y1, n), e2 = energy(y2, n), lag = -1, bend;
+	double e1 = energy(y1, n), e2 = energy(y2, n), bend;
+	enum num_status status = NUM_MEMORY;
 	size_t best = 0;
 	double *r;
 
 	if (max_lag >= n)
 		max_lag = n - 1;
 	if (e1 == 0 || e2 == 0)
-		return -2;
+		return NUM_DOMAIN;
 	r = fft_alloc(max_lag + 2);
-	if (r && correlate(y1, y2, n, max_lag, r)) {
+	if (r)
+		status = correlate(y1, y2, n, max_lag, r);
+	if (status == NUM_OK) {
 		for (size_t k = 1; k <= max_lag; k++)
 			if (r[k] > r[best])
 				best = k;
-		lag = (double)best;
+		*lag = (double)best;
 		*peak = r[best] / sqrt(e1 * e2);
 		bend = best > 0 && best < max_lag
 			       ? r[best - 1] - 2 * r[best] + r[best + 1]
 			       : 0;
 		if (bend < 0)
-			lag += 0.5 * (r[best - 1] - r[best + 1]) / bend;
+			*lag += 0.5 * (r[best - 1] - r[best + 1]) / bend;
 	}
 	fft_free(r);
-	return lag;
+	return status;
 }
 
-int align_autocorrelation(
+enum num_status align_autocorrelation(
 	const double *y1, const double *y2, size_t n, size_t max_lag, double *r)
 {
 	double *part = fft_alloc(max_lag + 1);
-	int good = part && correlate(y1, y1, n, max_lag, r) &&
-		   correlate(y2, y2, n, max_lag, part);
+	enum num_status status = part ? correlate(y1, y1, n, max_lag, r) : NUM_MEMORY;
 
-	for (size_t k = 0; good && k <= max_lag; k++)
+	if (status == NUM_OK)
+		status = correlate(y2, y2, n, max_lag, part);
+	for (size_t k = 0; status == NUM_OK && k <= max_lag; k++)
 		r[k] += part[k];
 	fft_free(part);
-	return good;
+	return status;
 }

@@ -6,18 +6,18 @@
 #ifndef SIGNAL_ALIGN_H
 #define SIGNAL_ALIGN_H
 
+#include "num/status.h"
 #include <stddef.h>
 
-/* Lag in [0, max_lag] of y2 behind y1 (n samples each), with a parabola through the
- * largest value and its neighbours.  *peak receives the correlation there as a share of
- * what two equal signals would have, in [-1, 1].  Returns -1 when out of memory, -2
- * where either channel is zero throughout. */
-double align_lag(
-	const double *y1, const double *y2, size_t n, size_t max_lag, double *peak);
+/* *lag in [0, max_lag]: of y2 behind y1 (n samples each), by a parabola through the
+ * largest value and its neighbours.  *peak: the correlation coefficient there, in
+ * [-1, 1].  NUM_DOMAIN if either channel is zero throughout. */
+enum num_status align_lag(const double *y1, const double *y2, size_t n, size_t max_lag,
+	double *lag, double *peak);
 
 /* Autocorrelation summed over both channels at lags 0 .. max_lag < n, for the length of
- * pulses.  Returns 0 when out of memory. */
-int align_autocorrelation(
+ * pulses. */
+enum num_status align_autocorrelation(
 	const double *y1, const double *y2, size_t n, size_t max_lag, double *r);
 
 #endif

@@ -5,25 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-double calibrate_drop(double rate, const struct shape *shape, double duration,
-	double gain, double width)
-{
-	double lambda =
-		shape_slope_energy(shape) / shape_energy(shape) / (duration * duration);
-	double area = width * lambda * gain / (1 + gain * gain) / pow(2 * M_PI, 1.5);
-	double edge = sqrt(lambda) / (2 * M_PI), lo = 1, hi = 40;
-
-	while (hi - lo > 1e-6) {
-		double u = (lo + hi) / 2;
-
-		if ((area * u + edge) * exp(-u * u / 2) > rate)
-			lo = u;
-		else
-			hi = u;
-	}
-	return hi * hi;
-}
-
 static int is_constant(const double *x, size_t n)
 {
 	for (size_t i = 1; i < n; i++)
@@ -64,7 +45,7 @@ static enum calibrate_status attempt(const struct calibrate_par *par, const doub
 		c->mean[k] = mean(y, n);
 		for (size_t i = 0; i < n; i++)
 			y[i] -= c->mean[k];
-		if (!whitening_apply(w, y, n))
+		if (whitening_apply(w, y, n) != NUM_OK)
 			status = CALIBRATE_MEMORY;
 	}
 	if (status == CALIBRATE_OK)
@@ -83,7 +64,7 @@ static enum calibrate_status attempt_kind(const struct calibrate_par *par,
 	struct whitening w;
 
 	look->kind = kind;
-	if (!whitening_of_noise(&w, look->power, COLOUR_BINS, kind))
+	if (whitening_of_noise(&w, look->power, COLOUR_BINS, kind) != NUM_OK)
 		return CALIBRATE_MEMORY;
 	return attempt(par, x1, x2, n, &w, c, look);
 }
@@ -185,7 +166,8 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 		return CALIBRATE_SILENT_1;
 	if (is_constant(x2, n))
 		return CALIBRATE_SILENT_2;
-	if (par->filter && !whitening_of_filter(&w, par->filter, par->filter_taps))
+	if (par->filter &&
+		whitening_of_filter(&w, par->filter, par->filter_taps) != NUM_OK)
 		return CALIBRATE_MEMORY;
 	status = attempt(par, x1, x2, n, &w, c, &look);
 	if (status == CALIBRATE_OK && par->tones == CALIBRATE_FIND_TONES && !w.tap)
@@ -194,31 +176,4 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 		status = look_again(par, x1, x2, n, &look, c);
 	c->attempts = look.attempts;
 	return status;
-}
-
-void calibration_clear(struct calibration *c)
-{
-	shape_free(c->shape);
-	c->shape = NULL;
-	whitening_clear(&c->whitening);
-}
-
-void calibration_scene(const struct calibration *c, struct joint_scene *scene)
-{
-	*scene = (struct joint_scene){ .shape = c->shape,
-		.duration = c->duration,
-		.transit = c->transit,
-		.gain = c->gain * c->noise[0] / c->noise[1],
-		.delta_min = c->delta_min,
-		.delta_max = c->delta_max,
-		.drop = c->drop,
-		.drop_near = c->drop_near,
-		.misfit = c->misfit,
-		.offset = 1,
-		.tone_variance = c->tone_variance,
-		.low = c->whitening.low,
-		.lost = measure_lost(c) };
-	for (int k = 0; k < c->tones; k++)
-		if (c->omega[k] * c->duration < 8 * M_PI || isinf(c->tone_variance))
-			scene->omega[scene->tones++] = c->omega[k];
 }

@@ -49,14 +49,14 @@ void coincide_free(struct coincide *c)
 
 /* --- what a fit cannot tell */
 
-int coincide_shape(struct coincide *c, const struct shape *shape)
+enum num_status coincide_shape(struct coincide *c, const struct shape *shape)
 {
 	enum { T = 2 * (STEPS - 1) }; /* a step is one sample, and so is half of two */
 	size_t n = (size_t)(2 * shape_reach(shape) * T) + 2;
 	double *p = calloc(n + T, sizeof *p), r[STEPS] = { 0 };
 
 	if (!p)
-		return 0;
+		return NUM_MEMORY;
 	shape_sample(shape, shape_reach(shape) * T, T, 0, n, p, NULL, NULL);
 	for (size_t k = 0; k < STEPS; k++)
 		for (size_t i = 0; i < n; i++)
@@ -67,7 +67,7 @@ int coincide_shape(struct coincide *c, const struct shape *shape)
 		c->left[k] = 0.5 + 0.5 * r[k] / r[0] - half * half;
 	}
 	free(p);
-	return 1;
+	return NUM_OK;
 }
 
 double coincide_reach(const struct coincide *c, double energy, double need)

@@ -23,14 +23,15 @@
 #ifndef SIGNAL_COINCIDE_H
 #define SIGNAL_COINCIDE_H
 
-#include "signal/joint.h"
+#include "num/status.h"
+#include "signal/shape.h"
 
 struct coincide;
 struct coincide *coincide_new(void); /* NULL: no memory */
 void coincide_free(struct coincide *c);
 
-/* The shape of the pulses, for coincide_reach().  0: no memory. */
-int coincide_shape(struct coincide *c, const struct shape *shape);
+/* The shape of the pulses, for coincide_reach(). */
+enum num_status coincide_shape(struct coincide *c, const struct shape *shape);
 /* Distance, in durations, up to which one pulse may be two, each of amplitude 1 / 2, if
  * a second one must take away need and the one has this energy, in units of chi-square.
  */

@@ -19,24 +19,28 @@ static double level(const struct whitening *w, double *power, size_t segment)
 	return robust_median(power + from, to - from + 1);
 }
 
-int colour_level(const double *y1, const double *y2, size_t n, const struct whitening *w,
-	double noise[2])
+enum num_status colour_level(const double *y1, const double *y2, size_t n,
+	const struct whitening *w, double noise[2])
 {
 	double least = 4 / (w->high - w->low);
 	double *power = malloc((LONGEST + 2) * sizeof *power);
-	int quiets = power ? 0 : -1;
+	enum num_status status = power ? NUM_OK : NUM_MEMORY;
+	int quiets = 0;
 
-	for (size_t segment = LONGEST; quiets >= 0 && quiets < QUIETS; segment /= 2) {
+	for (size_t segment = LONGEST; status == NUM_OK && quiets < QUIETS;
+		segment /= 2) {
 		double *other = power + segment / 2 + 1;
 
 		if (segment < 64 || (segment < LONGEST && (double)segment < least))
 			break;
-		quiets = quiet_spectrum(y1, y2, n, segment, power, other);
+		status = quiet_spectrum(y1, y2, n, segment, power, other, &quiets);
+		if (status != NUM_OK)
+			break;
 		noise[0] = sqrt(level(w, power, segment));
 		noise[1] = sqrt(level(w, other, segment));
 	}
 	free(power);
-	return quiets >= 0;
+	return status;
 }
 
 /* Autocorrelation of a Hann window of n points at this lag, 1 at lag 0. */
@@ -56,15 +60,15 @@ static double window_autocorrelation(size_t n, size_t lag)
 
 /* Takes from a mean periodogram what the window did to it: the autocorrelation is divided
  * by that of the window, and cut softly at half its length. */
-static int sharpen(double *power, size_t bins)
+static enum num_status sharpen(double *power, size_t bins)
 {
 	size_t points = 2 * (bins - 1), last = points / 2;
 	struct fft *fft = fft_new(points, 1);
 	double complex *spectrum = fft_alloc_complex(bins);
 	double *r = fft_alloc(points);
-	int ok = fft && spectrum && r;
+	enum num_status status = fft && spectrum && r ? NUM_OK : NUM_MEMORY;
 
-	if (ok) {
+	if (status == NUM_OK) {
 		for (size_t k = 0; k < bins; k++)
 			spectrum[k] = power[k] / (double)points;
 		fft_inverse(fft, spectrum, r);
@@ -82,23 +86,25 @@ static int sharpen(double *power, size_t bins)
 	fft_done(fft);
 	fft_free(spectrum);
 	fft_free(r);
-	return ok;
+	return status;
 }
 
-int colour_power(const double *y1, const double *y2, size_t n, const double noise[2],
-	double power[COLOUR_BINS])
+enum num_status colour_power(const double *y1, const double *y2, size_t n,
+	const double noise[2], double power[COLOUR_BINS])
 {
 	double *part = malloc(2 * COLOUR_BINS * sizeof *part);
-	int quiets =
-		part ? quiet_spectrum(y1, y2, n, LONGEST, part, part + COLOUR_BINS) : -1;
+	int quiets = 0;
+	enum num_status status = part ? quiet_spectrum(y1, y2, n, LONGEST, part,
+						part + COLOUR_BINS, &quiets)
+				      : NUM_MEMORY;
 
 	for (int k = 0; quiets > 0 && k < COLOUR_BINS; k++)
 		power[k] = 0.5 * (part[k] / (noise[0] * noise[0]) +
 					 part[COLOUR_BINS + k] / (noise[1] * noise[1]));
 	free(part);
-	if (quiets < 0 || (quiets >= QUIETS && !sharpen(power, COLOUR_BINS)))
-		return -1;
-	return quiets >= QUIETS;
+	if (status != NUM_OK)
+		return status;
+	return quiets >= QUIETS ? sharpen(power, COLOUR_BINS) : NUM_DOMAIN;
 }
 
 int colour_is_white(const double power[COLOUR_BINS], double from)

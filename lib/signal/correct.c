@@ -97,8 +97,8 @@ int correct_doubtful(struct examples *ex, struct calibration *c)
 /* Adds to the shape again and again what the pulses have in common.  At first a pulse
  * that overlaps another must be a large one, lest two of a wrong shape stand for one.
  * There is no use in it once more pulses than most are found, or suddenly more is left.
- * Returns 0 when out of memory. */
-static int improve_shape(struct examples *ex, struct calibration *c, int most)
+ */
+static enum num_status improve_shape(struct examples *ex, struct calibration *c, int most)
 {
 	enum { ROUNDS = 20 };
 	int half = (int)((shape_reach(c->shape) + 0.75) * c->duration);
@@ -120,31 +120,31 @@ static int improve_shape(struct examples *ex, struct calibration *c, int most)
 		better = shape_correct(c->shape, more, half, 1 / c->duration);
 		if (!better) {
 			free(more);
-			return 0;
+			return NUM_MEMORY;
 		}
 		if (c->shape != first)
 			shape_free(c->shape);
 		ex->scene.shape = c->shape = better;
 	}
 	free(more);
-	return more != NULL;
+	return more ? NUM_OK : NUM_MEMORY;
 }
 
-int correct_shape(struct examples *ex, struct calibration *c)
+enum num_status correct_shape(struct examples *ex, struct calibration *c)
 {
 	double before = cost(ex), share = ex->share;
 	struct shape *first = c->shape;
-	int ok;
+	enum num_status status;
 
 	ex->corrected = 1;
-	ok = improve_shape(ex, c, examples_pulses(ex));
+	status = improve_shape(ex, c, examples_pulses(ex));
 	c->chi2 = examples_fit(ex, ex->share);
 	/* Where the noise may be what is wrong, the correction must make all well. */
 	if (before - cost(ex) > CORRECTION && (!c->suspect || c->chi2 < 1.2)) {
 		c->price = ex->price;
 		if (c->shape != first)
 			shape_free(first);
-		return ok;
+		return status;
 	}
 	if (c->shape != first)
 		shape_free(c->shape);
@@ -152,5 +152,5 @@ int correct_shape(struct examples *ex, struct calibration *c)
 	ex->corrected = 0;
 	ex->share = share;
 	c->chi2 = examples_fit(ex, share);
-	return ok;
+	return status;
 }

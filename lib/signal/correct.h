@@ -13,7 +13,7 @@
 int correct_doubtful(struct examples *ex, struct calibration *c);
 
 /* Gives the shape of c what the pulses have in common, if that describes the examples
- * better; else all stays.  Returns 0 when out of memory. */
-int correct_shape(struct examples *ex, struct calibration *c);
+ * better; else all stays. */
+enum num_status correct_shape(struct examples *ex, struct calibration *c);
 
 #endif

@@ -1,6 +1,7 @@
 /* count.c - see count.h */
 #include "signal/count.h"
 #include "signal/robust.h"
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -27,8 +28,13 @@ double count_level(const double *x, size_t n, size_t stride, double *work)
 
 struct count *count_new(double level)
 {
-	struct count *c = level > 0 ? calloc(1, sizeof *c) : NULL;
+	struct count *c;
 
+	if (!(level > 0)) {
+		errno = EDOM;
+		return NULL;
+	}
+	c = calloc(1, sizeof *c);
 	if (c)
 		c->level = level;
 	return c;

@@ -18,7 +18,8 @@ struct peak {
 double count_level(const double *x, size_t n, size_t stride, double *work);
 
 struct count;
-struct count *count_new(double level); /* NULL: level <= 0 or no memory */
+/* level > 0.  NULL with errno EDOM or ENOMEM. */
+struct count *count_new(double level);
 void count_free(struct count *count);
 
 /* One more sample; 1 where a peak is now known for sure. */

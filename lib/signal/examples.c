@@ -49,7 +49,7 @@ static void pick_sections(struct examples *ex, const double *y1, const double *y
 	if (!(T >= SECTIONS_SHORTEST))
 		return;
 	s = sections_new(c->shape, T, 5, slack);
-	if (!s || !sections_scan(s, y1, y2, 0, n, (long long)n)) {
+	if (!s || sections_scan(s, y1, y2, 0, n, (long long)n) != NUM_OK) {
 		ex->status = CALIBRATE_MEMORY;
 		sections_free(s);
 		return;

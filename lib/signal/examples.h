@@ -6,7 +6,7 @@
 #ifndef SIGNAL_EXAMPLES_H
 #define SIGNAL_EXAMPLES_H
 
-#include "signal/calibrate.h"
+#include "signal/calibration.h"
 #include <stddef.h>
 
 enum { EXAMPLES_MAX = 16, EXAMPLE_PULSES = 16 };

@@ -59,7 +59,7 @@ static double ideal(double f, double m)
 	return x == 0 ? 2 * f : 2 * f * (sin(x) / x);
 }
 
-int fir_design(const struct fir_band *band, double *h)
+enum num_status fir_design(const struct fir_band *band, double *h)
 {
 	double middle = 0.5 * (band->low + band->high), sum = 0;
 
@@ -74,12 +74,12 @@ int fir_design(const struct fir_band *band, double *h)
 		sum += h[k] * cos(2 * M_PI * middle * m);
 	}
 	if (!band->scale)
-		return 0;
+		return NUM_OK;
 	if (middle == 0.5 && band->order % 2)
-		return -1;
+		return NUM_DOMAIN;
 	for (int k = 0; k <= band->order; k++)
 		h[k] /= sum;
-	return 0;
+	return NUM_OK;
 }
 
 static const char *const window_names[] = { [FIR_HAMMING] = "hamming",

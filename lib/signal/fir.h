@@ -19,6 +19,7 @@
 #ifndef SIGNAL_FIR_H
 #define SIGNAL_FIR_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 /* Hamming 0.54 0.46; Hann 0.5 0.5; Blackman 0.42 0.5 0.08; Kaiser by beta. */
@@ -33,9 +34,9 @@ struct fir_band {
 		      * half the rate where high = 0.5); 0: as the window leaves it */
 };
 
-/* Fills h[order + 1].  Returns 0, or -1 where the band cannot be scaled: an odd order
- * has a zero at half the rate, whatever the taps. */
-int fir_design(const struct fir_band *band, double *h);
+/* Fills h[order + 1].  NUM_DOMAIN if the band cannot be scaled: a filter of odd order has
+ * a zero at half the rate. */
+enum num_status fir_design(const struct fir_band *band, double *h);
 
 /* The band in words, edges in the unit of rate, and back from them: "70:130 200 hamming 0
  * scaled".  What follows behind " | ", a filter passed before or after, stays: a chain

@@ -9,7 +9,7 @@
 #define SIGNAL_JUDGE_H
 
 #include "signal/joint.h"
-#include "signal/separate.h"
+#include "signal/verdict.h"
 
 struct judgement {
 	double chi2; /* per degree of freedom */

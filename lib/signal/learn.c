@@ -26,22 +26,22 @@ double learn_lowest_lag(const double *r, size_t max_lag)
 	return low < max_lag && r[low] < 0 ? (double)low : 0;
 }
 
-/* The same of one pulse, as a share of its duration; NAN when out of memory. */
-static double shape_lowest_lag(const struct shape *shape)
+/* *lag: the same of one pulse, as a share of its duration. */
+static enum num_status shape_lowest_lag(const struct shape *shape, double *lag)
 {
 	enum { T = 100, LAGS = 100 };
 	size_t n = (size_t)(2 * shape_reach(shape) * T) + 2;
-	double *p = calloc(n + LAGS, sizeof *p), r[LAGS + 1] = { 0 }, low = NAN;
+	double *p = calloc(n + LAGS, sizeof *p), r[LAGS + 1] = { 0 };
 
-	if (p) {
-		shape_sample(shape, shape_reach(shape) * T, T, 0, n, p, NULL, NULL);
-		for (int k = 0; k <= LAGS; k++)
-			for (size_t i = 0; i < n; i++)
-				r[k] += p[i] * p[i + (size_t)k];
-		low = learn_lowest_lag(r, LAGS) / T;
-	}
+	if (!p)
+		return NUM_MEMORY;
+	shape_sample(shape, shape_reach(shape) * T, T, 0, n, p, NULL, NULL);
+	for (int k = 0; k <= LAGS; k++)
+		for (size_t i = 0; i < n; i++)
+			r[k] += p[i] * p[i + (size_t)k];
+	*lag = learn_lowest_lag(r, LAGS) / T;
 	free(p);
-	return low;
+	return NUM_OK;
 }
 
 /* Moves *parameter by a factor to the least chi-square: parabolas through three points
@@ -91,7 +91,7 @@ static void tune(
 }
 
 /* Takes this pulse, as the whitened record has it at the present duration. */
-int learn_set_shape(struct calibration *c, int pulse)
+enum num_status learn_set_shape(struct calibration *c, int pulse)
 {
 	struct shape *plain = shape_new((enum pulse_shape)pulse);
 
@@ -103,17 +103,19 @@ int learn_set_shape(struct calibration *c, int pulse)
 			c->whitening.seen_half);
 		shape_free(plain);
 	}
-	return c->shape != NULL;
+	return c->shape ? NUM_OK : NUM_MEMORY;
 }
 
 /* Duration of a pulse whose autocorrelation is lowest at this lag. */
-double learn_duration(int pulse, double low)
+enum num_status learn_duration(int pulse, double low, double *duration)
 {
 	struct shape *plain = shape_new((enum pulse_shape)pulse);
-	double duration = plain ? low / shape_lowest_lag(plain) : NAN;
+	double lag = NAN;
+	enum num_status status = plain ? shape_lowest_lag(plain, &lag) : NUM_MEMORY;
 
+	*duration = low / lag;
 	shape_free(plain);
-	return duration;
+	return status;
 }
 
 /* What describes some clear examples best so far. */
@@ -130,7 +132,7 @@ static enum calibrate_status try_shape(const struct calibrate_par *par,
 	double chi2;
 
 	c->duration = duration;
-	if (isnan(duration) || !learn_set_shape(c, pulse))
+	if (learn_set_shape(c, pulse) != NUM_OK)
 		return CALIBRATE_MEMORY;
 	examples_pick(ex, y1, y2, n, EXAMPLES_MAX / 2, c);
 	if (ex->count == 0)
@@ -161,10 +163,13 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 
 	for (int k = 0; k < (c->whitening.tap ? 1 : 3) && status == CALIBRATE_OK; k++)
 		for (int p = PULSE_SINE; p <= PULSE_LORENTZ; p++) {
-			double duration = isnan(par->duration)
-						  ? factor[k] * learn_duration(p, low)
-						  : par->duration;
+			double duration = par->duration;
 
+			if (isnan(duration)) {
+				if (learn_duration(p, low, &duration) != NUM_OK)
+					return CALIBRATE_MEMORY;
+				duration *= factor[k];
+			}
 			if (best.chi2 <= (k ? 2 : 1.1) || status != CALIBRATE_OK)
 				break;
 			if ((k == 0 || isnan(par->duration)) &&
@@ -174,7 +179,7 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 		}
 	c->duration = best.duration;
 	c->gain = best.gain;
-	if (status == CALIBRATE_OK && !learn_set_shape(c, best.pulse))
+	if (status == CALIBRATE_OK && learn_set_shape(c, best.pulse) != NUM_OK)
 		status = CALIBRATE_MEMORY;
 	return status;
 }
@@ -219,7 +224,7 @@ static enum calibrate_status converge(
 		c->duration = ex->scene.duration;
 		c->gain = ex->scene.gain * c->noise[1] / c->noise[0];
 		if (c->whitening.tap && moved > 1e-3) {
-			if (!learn_set_shape(c, c->pulse))
+			if (learn_set_shape(c, c->pulse) != NUM_OK)
 				return CALIBRATE_MEMORY;
 			ex->scene.shape = c->shape;
 		}
@@ -261,7 +266,7 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, const double 
 			status = converge(par, &ex, c);
 	}
 	if (status == CALIBRATE_OK && ex.count && wants_correction(par, &ex, c) &&
-		!correct_shape(&ex, c))
+		correct_shape(&ex, c) != NUM_OK)
 		status = CALIBRATE_MEMORY;
 	if (status == CALIBRATE_OK)
 		status = ex.status;

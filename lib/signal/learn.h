@@ -8,18 +8,17 @@
 #ifndef SIGNAL_LEARN_H
 #define SIGNAL_LEARN_H
 
-#include "signal/calibrate.h"
+#include "num/status.h"
+#include "signal/calibration.h"
 #include <stddef.h>
 
 /* Lag at which an autocorrelation is lowest, before it rises clearly; 0 where there is
  * none up to max_lag. */
 double learn_lowest_lag(const double *r, size_t max_lag);
-/* Duration of a pulse whose autocorrelation is lowest at this lag; NAN when out of
- * memory. */
-double learn_duration(int pulse, double low);
-/* Gives c this pulse, as the whitened record has it at the present duration.  Returns 0
- * when out of memory. */
-int learn_set_shape(struct calibration *c, int pulse);
+/* *duration: of a pulse whose autocorrelation is lowest at this lag, samples. */
+enum num_status learn_duration(int pulse, double low, double *duration);
+/* Gives c this pulse, as the whitened record has it at the present duration. */
+enum num_status learn_set_shape(struct calibration *c, int pulse);
 /* Fills shape, duration, gain, range of delays, chi2, price, rest and events of c from
  * y1, y2[0 .. n), aligned and in units of the noise; low: lag as above, of these. */
 enum calibrate_status learn_pulse(const struct calibrate_par *par, const double *y1,

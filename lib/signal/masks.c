@@ -2,6 +2,7 @@
 #include "signal/masks.h"
 #include "signal/histogram.h"
 #include "signal/stft.h"
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -76,8 +77,10 @@ struct masks *masks_new(const struct masks_par *par)
 
 	if (!(par->duration >= 4) || !(par->delta_min < par->delta_max) ||
 		!(par->gain_max > 0) || par->sources < 0 ||
-		par->sources > MASKS_SOURCES_MAX || !par->shape)
+		par->sources > MASKS_SOURCES_MAX || !par->shape) {
+		errno = EDOM;
 		return NULL;
+	}
 	m = calloc(1, sizeof *m);
 	if (!m)
 		return NULL;
@@ -161,15 +164,16 @@ static int find_peaks(struct masks *m, struct masks_source *source)
 	return n;
 }
 
-int masks_find(struct masks *m, const double *y1, const double *y2, size_t n,
-	struct masks_source source[MASKS_SOURCES_MAX])
+enum num_status masks_find(struct masks *m, const double *y1, const double *y2, size_t n,
+	struct masks_source source[MASKS_SOURCES_MAX], int *sources)
 {
 	if (!reserve(m, n))
-		return -1;
+		return NUM_MEMORY;
 	stft_forward(m->stft, y1, n, m->y1);
 	stft_forward(m->stft, y2, n, m->y2);
 	fill_histogram(m);
-	return find_peaks(m, source);
+	*sources = find_peaks(m, source);
+	return NUM_OK;
 }
 
 /* Bin 0 and the bins above the band carry no delay: they go with bin 1 of their frame. */

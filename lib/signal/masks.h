@@ -19,6 +19,7 @@
 #ifndef SIGNAL_MASKS_H
 #define SIGNAL_MASKS_H
 
+#include "num/status.h"
 #include "signal/histogram.h"
 #include "signal/shape.h"
 #include <stddef.h>
@@ -44,13 +45,13 @@ struct masks_source {
 };
 
 struct masks;
-struct masks *masks_new(const struct masks_par *par); /* NULL: bad sizes, no memory */
+/* NULL with errno EDOM (bad sizes) or ENOMEM. */
+struct masks *masks_new(const struct masks_par *par);
 void masks_free(struct masks *masks);
 
-/* Finds the sources of y1[0..n), y2[0..n) (aligned).  Returns their number, largest
- * weight first, or -1 when out of memory. */
-int masks_find(struct masks *masks, const double *y1, const double *y2, size_t n,
-	struct masks_source source[MASKS_SOURCES_MAX]);
+/* Finds the *sources sources of y1[0..n), y2[0..n) (aligned), largest weight first. */
+enum num_status masks_find(struct masks *masks, const double *y1, const double *y2,
+	size_t n, struct masks_source source[MASKS_SOURCES_MAX], int *sources);
 
 /* What source k of the last masks_find() puts on sensor 1: x[0..n). */
 void masks_separate(struct masks *masks, int k, double *x);

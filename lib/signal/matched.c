@@ -27,8 +27,8 @@ static int filter_points(const struct calibration *c, const double *y, size_t n,
 	return p != NULL;
 }
 
-int matched_coherence(const struct calibration *c, const double *y1, const double *y2,
-	size_t n, double *r, double *coherence, double *level)
+enum num_status matched_coherence(const struct calibration *c, const double *y1,
+	const double *y2, size_t n, double *r, double *coherence, double *level)
 {
 	enum { BLOCK = 16 }; /* points: two durations */
 	double *z = malloc((n + 2) * sizeof *z), xy = 0, xx = 0, yy = 0, limit, count = 0;
@@ -37,7 +37,7 @@ int matched_coherence(const struct calibration *c, const double *y1, const doubl
 	*coherence = *level = 0;
 	if (!z || !filter_points(c, y1, n, z, &points)) {
 		free(z);
-		return 0;
+		return NUM_MEMORY;
 	}
 	/* A point per eighth of a duration of at least 8 samples: two channels fit in n.
 	 */
@@ -45,7 +45,7 @@ int matched_coherence(const struct calibration *c, const double *y1, const doubl
 		points = 0;
 	else if (!filter_points(c, y2, n, z + n / 2, &second)) {
 		free(z);
-		return 0;
+		return NUM_MEMORY;
 	}
 	blocks = points / BLOCK;
 	for (size_t b = 0; b < blocks; b++) {
@@ -70,20 +70,20 @@ int matched_coherence(const struct calibration *c, const double *y1, const doubl
 	free(z);
 	if (xx > 0 && yy > 0)
 		*coherence = xy / sqrt(xx * yy);
-	return 1;
+	return NUM_OK;
 }
 
-int matched_noise(const struct calibration *c, const double *y, size_t n, double *work,
-	double *noise)
+enum num_status matched_noise(const struct calibration *c, const double *y, size_t n,
+	double *work, double *noise)
 {
 	size_t count;
 
 	if (!filter_points(c, y, n, work, &count))
-		return 0;
+		return NUM_MEMORY;
 	for (size_t i = 0; i < count; i++)
 		work[i] = fabs(work[i]);
 	*noise = count ? 1.482602218505602 * robust_median(work, count) /
 				 sqrt(c->duration * shape_energy(c->shape))
 		       : 1;
-	return 1;
+	return NUM_OK;
 }

@@ -5,19 +5,19 @@
 #ifndef SIGNAL_MATCHED_H
 #define SIGNAL_MATCHED_H
 
-#include "signal/calibrate.h"
+#include "num/status.h"
+#include "signal/calibration.h"
 #include <stddef.h>
 
 /* *coherence: correlation of the filtered channels over the quietest tenth of the record:
  * noise has none, pulses that are always there have much.  *level is the root mean square
- * there, 1 for white noise.  Returns 0 when out of memory. */
-int matched_coherence(const struct calibration *c, const double *y1, const double *y2,
-	size_t n, double *work, double *coherence, double *level);
+ * there, 1 for white noise. */
+enum num_status matched_coherence(const struct calibration *c, const double *y1,
+	const double *y2, size_t n, double *work, double *coherence, double *level);
 
 /* *noise: standard deviation of white noise that would have the same effect on the
- * matched filter as the noise there is; for records that have been filtered before.
- * Returns 0 when out of memory. */
-int matched_noise(const struct calibration *c, const double *y, size_t n, double *work,
-	double *noise);
+ * matched filter as the noise there is; for records that have been filtered before. */
+enum num_status matched_noise(const struct calibration *c, const double *y, size_t n,
+	double *work, double *noise);
 
 #endif

@@ -28,11 +28,6 @@ struct record {
 	double change[2], power2[TONES_MAX]; /* of tones, see take_tones() */
 };
 
-double measure_lost(const struct calibration *c)
-{
-	return c->whitening.tap ? 1 - fmin(c->whitening.band, 1) : 0;
-}
-
 /* Takes tones (and the mean) from a whole record; *change receives the mean square change
  * of their coefficients from hop to hop, INFINITY where there is but one, power[k] that
  * of tone k. */
@@ -139,14 +134,14 @@ static double chance_correlation(const double *r, size_t n)
 	return fmin(6 * sqrt(sum / (double)n), 0.5);
 }
 
-static int measure_noise(
+static enum num_status measure_noise(
 	struct calibration *c, const double *y1, const double *y2, size_t n, double *work)
 {
 	size_t shift = (size_t)c->shift;
 
-	if (c->whitening.tap &&
-		!colour_level(y1, y2 + shift, n - shift, &c->whitening, c->noise))
-		return 0;
+	if (c->whitening.tap && colour_level(y1, y2 + shift, n - shift, &c->whitening,
+					c->noise) != NUM_OK)
+		return NUM_MEMORY;
 	for (int k = 0; k < 2; k++) {
 		const double *y = k ? y2 : y1;
 		double least = 1e-6 * sqrt(variance(y, n));
@@ -156,16 +151,16 @@ static int measure_noise(
 		if (!(c->noise[k] > least))
 			c->noise[k] = least;
 	}
-	return 1;
+	return NUM_OK;
 }
 
 static enum calibrate_status look_for_colour(const struct record *rec, struct look *look)
 {
 	static const double one[2] = { 1, 1 };
-	int known = colour_power(rec->y1, rec->y2, rec->n, one, look->power);
+	enum num_status status = colour_power(rec->y1, rec->y2, rec->n, one, look->power);
 
-	look->coloured = known == 1 && !colour_is_white(look->power, 0);
-	return known < 0 ? CALIBRATE_MEMORY : CALIBRATE_OK;
+	look->coloured = status == NUM_OK && !colour_is_white(look->power, 0);
+	return status == NUM_MEMORY ? CALIBRATE_MEMORY : CALIBRATE_OK;
 }
 
 static enum calibrate_status find_tones(
@@ -179,12 +174,10 @@ static enum calibrate_status find_tones(
 		c->tones = par->tones;
 		memcpy(c->omega, par->omega, sizeof c->omega);
 	} else {
-		c->tones = tones_find(rec->y1, rec->y2, n, TONES_MAX, c->omega);
-		if (c->tones < 0)
-			return CALIBRATE_MEMORY;
-		c->tones = tones_confirm(rec->y1 + from, rec->y2 + from, some,
-			1 - measure_lost(c), c->tones, c->omega);
-		if (c->tones < 0)
+		if (tones_find(rec->y1, rec->y2, n, TONES_MAX, c->omega, &c->tones) !=
+				NUM_OK ||
+			tones_confirm(rec->y1 + from, rec->y2 + from, some,
+				1 - calibration_lost(c), &c->tones, c->omega) != NUM_OK)
 			return CALIBRATE_MEMORY;
 	}
 	c->tone_hop = n < 8192 ? n : 4096;
@@ -199,13 +192,19 @@ static enum calibrate_status find_lag(
 {
 	double lag = par->lag, last = (double)rec->n - 16;
 
-	if (isnan(lag))
-		lag = align_lag(rec->y1, rec->y2, rec->n, rec->n / 2, &c->correlation);
-	else if (lag < last)
+	enum num_status status;
+
+	if (isnan(lag)) {
+		status = align_lag(
+			rec->y1, rec->y2, rec->n, rec->n / 2, &lag, &c->correlation);
+		if (status != NUM_OK)
+			return status == NUM_MEMORY ? CALIBRATE_MEMORY : CALIBRATE_NO_LAG;
+	} else if (lag < last) {
 		c->correlation =
 			correlation_at(rec->y1, rec->y2, rec->n, (size_t)(lag + 0.5));
+	}
 	if (lag < 0)
-		return lag == -1 ? CALIBRATE_MEMORY : CALIBRATE_NO_LAG;
+		return CALIBRATE_NO_LAG;
 	if (!(lag < last))
 		return isnan(par->lag) ? CALIBRATE_NO_LAG : CALIBRATE_FAR;
 	c->shift = (long)floor(lag + 0.5);
@@ -219,7 +218,8 @@ static enum calibrate_status check_lag(
 {
 	if (rec->n > 4096 && c->correlation < 6 / sqrt((double)rec->n))
 		return CALIBRATE_NO_LAG; /* whatever the autocorrelation */
-	if (!align_autocorrelation(rec->y1, rec->y2, rec->n, rec->n / 4, rec->work))
+	if (align_autocorrelation(rec->y1, rec->y2, rec->n, rec->n / 4, rec->work) !=
+		NUM_OK)
 		return CALIBRATE_MEMORY;
 	return c->correlation < chance_correlation(rec->work, rec->n) ? CALIBRATE_NO_LAG
 								      : CALIBRATE_OK;
@@ -237,7 +237,8 @@ static enum calibrate_status find_duration(const struct calibrate_par *par,
 {
 	double length = (double)rec->n + (double)c->shift;
 
-	if (!align_autocorrelation(rec->y1, rec->y2, rec->n, rec->n / 4, rec->work))
+	if (align_autocorrelation(rec->y1, rec->y2, rec->n, rec->n / 4, rec->work) !=
+		NUM_OK)
 		return CALIBRATE_MEMORY;
 	rec->low = learn_lowest_lag(rec->work, rec->n / 4);
 	if (!c->whitening.tap)
@@ -245,9 +246,10 @@ static enum calibrate_status find_duration(const struct calibrate_par *par,
 	else if (look->coloured && look->kind == WHITEN_COLOURED)
 		rec->low = look->low; /* whitening has changed the pulses */
 	c->pulse = par->pulse == CALIBRATE_ANY_PULSE ? PULSE_SINE : par->pulse;
-	c->duration =
-		isnan(par->duration) ? learn_duration(c->pulse, rec->low) : par->duration;
-	if (isnan(c->duration) || !learn_set_shape(c, c->pulse))
+	c->duration = par->duration;
+	if ((isnan(c->duration) &&
+		    learn_duration(c->pulse, rec->low, &c->duration) != NUM_OK) ||
+		learn_set_shape(c, c->pulse) != NUM_OK)
 		return CALIBRATE_MEMORY;
 	if (c->whitening.tap &&
 		(c->whitening.high - c->whitening.low) * c->duration < NARROW)
@@ -324,8 +326,8 @@ static enum calibrate_status look_for_crowd(
 {
 	double level, coherence;
 
-	if (!matched_coherence(
-		    c, rec->y1, rec->y2, rec->n, rec->work, &coherence, &level))
+	if (matched_coherence(
+		    c, rec->y1, rec->y2, rec->n, rec->work, &coherence, &level) != NUM_OK)
 		return CALIBRATE_MEMORY;
 	*dense = coherence > 0.6 || (level < 1.5 && !c->whitening.tap);
 	return CALIBRATE_OK;
@@ -338,8 +340,8 @@ static enum calibrate_status learn_filtered(
 {
 	double n1, n2;
 
-	if (!matched_noise(c, rec->y1, rec->n, rec->work, &n1) ||
-		!matched_noise(c, rec->y2, rec->n, rec->work, &n2))
+	if (matched_noise(c, rec->y1, rec->n, rec->work, &n1) != NUM_OK ||
+		matched_noise(c, rec->y2, rec->n, rec->work, &n2) != NUM_OK)
 		return CALIBRATE_MEMORY;
 	scale_noise(rec, c, n1, n2);
 	c->misfit = FILTERED_MISFIT;
@@ -372,7 +374,7 @@ enum calibrate_status measure(const struct calibrate_par *par, double *y1, doubl
 
 	if (status == CALIBRATE_OK)
 		status = find_lag(par, &rec, c);
-	if (status == CALIBRATE_OK && !measure_noise(c, y1, y2, n, work))
+	if (status == CALIBRATE_OK && measure_noise(c, y1, y2, n, work) != NUM_OK)
 		status = CALIBRATE_MEMORY;
 	if (status == CALIBRATE_OK && (isnan(par->duration) || isnan(par->lag)))
 		status = check_lag(&rec, c);

@@ -5,7 +5,7 @@
 #ifndef SIGNAL_MEASURE_H
 #define SIGNAL_MEASURE_H
 
-#include "signal/calibrate.h"
+#include "signal/calibration.h"
 #include "signal/colour.h"
 #include <stddef.h>
 
@@ -23,8 +23,5 @@ struct look {
  * y2[0 .. n), which it spoils; work holds n. */
 enum calibrate_status measure(const struct calibrate_par *par, double *y1, double *y2,
 	size_t n, double *work, struct look *look, struct calibration *c);
-
-/* Share of the noise that filter and whitening have taken. */
-double measure_lost(const struct calibration *c);
 
 #endif

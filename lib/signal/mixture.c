@@ -2,6 +2,7 @@
 #include "signal/mixture.h"
 #include "num/fft.h"
 #include <complex.h>
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,8 +37,10 @@ struct mixture *mixture_new(const struct mixture_par *par)
 	size_t w = par->window;
 
 	if (w < 4 || w % 2 || par->hop < 1 || par->hop > w / 2 || par->sources < 0 ||
-		par->sources > MIXTURE_SOURCES)
+		par->sources > MIXTURE_SOURCES) {
+		errno = EDOM;
 		return NULL;
+	}
 	m = calloc(1, sizeof *m);
 	if (!m)
 		return NULL;
@@ -76,20 +79,20 @@ void mixture_free(struct mixture *m)
 	free(m);
 }
 
-int mixture_push(struct mixture *m, const double *x, size_t n)
+enum num_status mixture_push(struct mixture *m, const double *x, size_t n)
 {
 	if (m->n + n > m->room) {
 		size_t room = 2 * (m->n + n);
 		double *more = realloc(m->x, 2 * room * sizeof *more);
 
 		if (!more)
-			return 0;
+			return NUM_MEMORY;
 		m->x = more;
 		m->room = room;
 	}
 	memcpy(m->x + 2 * m->n, x, 2 * n * sizeof *x);
 	m->n += n;
-	return 1;
+	return NUM_OK;
 }
 
 size_t mixture_frames(const struct mixture *m)
@@ -312,12 +315,12 @@ static double cover(const struct mixture *m, size_t at)
 	return sum;
 }
 
-int mixture_separate(struct mixture *m, double *x)
+enum num_status mixture_separate(struct mixture *m, double *x)
 {
 	int *owner = calloc(m->bins, sizeof *owner);
 
 	if (!owner)
-		return 0;
+		return NUM_MEMORY;
 	memset(x, 0, (size_t)m->count * m->n * sizeof *x);
 	for (size_t f = 0; f < windows(m); f++) {
 		long first = transform(m, f);
@@ -334,5 +337,5 @@ int mixture_separate(struct mixture *m, double *x)
 			x[(size_t)k * m->n + i] /= all;
 	}
 	free(owner);
-	return 1;
+	return NUM_OK;
 }

@@ -26,6 +26,7 @@
 #ifndef SIGNAL_MIXTURE_H
 #define SIGNAL_MIXTURE_H
 
+#include "num/status.h"
 #include "signal/histogram.h"
 #include <stddef.h>
 
@@ -45,19 +46,19 @@ struct mixture_source {
 };
 
 struct mixture;
-struct mixture *mixture_new(
-	const struct mixture_par *par); /* NULL: bad sizes, no memory */
+/* NULL with errno EDOM (bad sizes) or ENOMEM. */
+struct mixture *mixture_new(const struct mixture_par *par);
 void mixture_free(struct mixture *m);
 
-/* n frames of two finite channels, interleaved; 0: no memory. */
-int mixture_push(struct mixture *m, const double *x, size_t n);
+/* n frames of two finite channels, interleaved. */
+enum num_status mixture_push(struct mixture *m, const double *x, size_t n);
 size_t mixture_frames(const struct mixture *m);
 
 /* The sources of all that was pushed, largest share first: their number, 0 where both
  * channels have nothing in common or are silent. */
 int mixture_find(struct mixture *m, struct mixture_source source[MIXTURE_SOURCES]);
-/* What each puts on channel 1: x[k * frames + i]; 0: no memory. */
-int mixture_separate(struct mixture *m, double *x);
+/* What each puts on channel 1: x[k * frames + i]. */
+enum num_status mixture_separate(struct mixture *m, double *x);
 
 /* 1 if delays of more than 16 samples, which cannot be told, had a share in the record.
  */

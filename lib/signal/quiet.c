@@ -80,42 +80,44 @@ static int is_quiet(const double *power[2], double *const spectrum[2], size_t bi
 	return 1;
 }
 
-int quiet_spectrum(const double *y1, const double *y2, size_t n, size_t segment,
-	double *power1, double *power2)
+enum num_status quiet_spectrum(const double *y1, const double *y2, size_t n,
+	size_t segment, double *power1, double *power2, int *quiets)
 {
 	size_t bins = segment / 2, count = n / bins > 1 ? n / bins - 1 : 0;
 	double *power = malloc((2 * count * bins + count + 1) * sizeof *power);
 	double *part[2], *spectrum[2] = { power1 + 1, power2 + 1 };
 	char *quiet = malloc(count + 1);
-	int quiets = 0;
+	enum num_status status = power && quiet ? NUM_OK : NUM_MEMORY;
 
-	if (!power || !quiet || count == 0 ||
-		!transform(y1, segment, count, part[0] = power) ||
+	*quiets = 0;
+	if (status != NUM_OK || count == 0)
+		goto done;
+	if (!transform(y1, segment, count, part[0] = power) ||
 		!transform(y2, segment, count, part[1] = power + count * bins)) {
-		quiets = count == 0 ? 0 : -1;
+		status = NUM_MEMORY;
 		goto done;
 	}
 	for (int c = 0; c < 2; c++)
 		quartile_spectrum(
 			part[c], bins, count, power + 2 * count * bins, spectrum[c]);
 	for (int pass = 0; pass < PASSES; pass++) {
-		quiets = 0;
+		*quiets = 0;
 		for (size_t i = 0; i < count; i++) {
 			const double *here[2] = { part[0] + i * bins,
 				part[1] + i * bins };
 
 			quiet[i] = (char)is_quiet(here, spectrum, bins);
-			quiets += quiet[i];
+			*quiets += quiet[i];
 		}
-		if (quiets == 0)
+		if (*quiets == 0)
 			break;
 		for (int c = 0; c < 2; c++)
-			mean_spectrum(part[c], bins, count, quiet, quiets, spectrum[c]);
+			mean_spectrum(part[c], bins, count, quiet, *quiets, spectrum[c]);
 	}
 	power1[0] = power1[1];
 	power2[0] = power2[1];
 done:
 	free(power);
 	free(quiet);
-	return quiets;
+	return status;
 }

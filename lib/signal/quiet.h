@@ -8,12 +8,13 @@
 #ifndef SIGNAL_QUIET_H
 #define SIGNAL_QUIET_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 /* power1, power2[k], 0 < k <= segment / 2: of y1, y2[0 .. n) at frequency k / segment,
- * v for white noise of variance v; those at 0 are those at 1.  segment: even.  Returns
- * the number of quiet segments, 0 where there is no telling, -1 when out of memory. */
-int quiet_spectrum(const double *y1, const double *y2, size_t n, size_t segment,
-	double *power1, double *power2);
+ * v for white noise of variance v; those at 0 are those at 1.  segment: even.
+ * *quiets: number of quiet segments; 0: the spectra are unknown. */
+enum num_status quiet_spectrum(const double *y1, const double *y2, size_t n,
+	size_t segment, double *power1, double *power2, int *quiets);
 
 #endif

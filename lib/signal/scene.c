@@ -143,29 +143,29 @@ int scene_receive(struct scene *s, const struct passage *p, double peak[2])
 	return s->par.saturation > 0 && most * r > s->par.saturation;
 }
 
-int scene_pass(struct scene *s, const struct passage *p)
+enum num_status scene_pass(struct scene *s, const struct passage *p)
 {
 	double half = pulse_reach(s->par.shape) * s->par.length / p->velocity;
 	void *list = s->list;
 
 	if (!reserve(&list, s->count, &s->room, sizeof *s->list))
-		return 0;
+		return NUM_MEMORY;
 	s->list = list;
 	s->list[s->count++] = receive(s, p);
 	s->end = fmax(s->end, fmax(p->time[0], p->time[1]) + half);
-	return 1;
+	return NUM_OK;
 }
 
-int scene_disturb(struct scene *s, const struct disturbance *event)
+enum num_status scene_disturb(struct scene *s, const struct disturbance *event)
 {
 	void *list = s->event;
 
 	if (!reserve(&list, s->events, &s->event_room, sizeof *s->event))
-		return 0;
+		return NUM_MEMORY;
 	s->event = list;
 	s->event[s->events++] = *event;
 	s->end = fmax(s->end, event->end);
-	return 1;
+	return NUM_OK;
 }
 
 /* Samples of one frame, and which of them is of this sensor, in quadrature or not. */

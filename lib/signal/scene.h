@@ -18,6 +18,7 @@
 #ifndef SIGNAL_SCENE_H
 #define SIGNAL_SCENE_H
 
+#include "num/status.h"
 #include "signal/disturbance.h"
 #include "signal/passage.h"
 #include <stdint.h>
@@ -58,11 +59,10 @@ struct scene;
 struct scene *scene_new(const struct scene_par *par);
 void scene_free(struct scene *scene);
 
-/* Notes a particle; 0 when out of memory, else 1.  Parts of its pulses that lie before
- * the present frame are lost. */
-int scene_pass(struct scene *scene, const struct passage *p);
-/* Notes an event, likewise. */
-int scene_disturb(struct scene *scene, const struct disturbance *event);
+/* Adds a particle.  Parts of its pulses that lie before the present frame are lost. */
+enum num_status scene_pass(struct scene *scene, const struct passage *p);
+/* Adds an event, likewise. */
+enum num_status scene_disturb(struct scene *scene, const struct disturbance *event);
 /* What the sensors make of a particle, as scene_pass() does, without noting it: peaks at
  * sensor 1 in phase and in quadrature, V.  Returns 1 if its pulse alone reaches the
  * saturation at either sensor.  Particles must come in order of time[0]. */

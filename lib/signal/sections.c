@@ -1,5 +1,6 @@
 /* sections.c - see sections.h */
 #include "signal/sections.h"
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,8 +44,10 @@ struct sections *sections_new(
 	struct sections *s;
 	double energy = 0;
 
-	if (!(duration >= SECTIONS_SHORTEST))
+	if (!(duration >= SECTIONS_SHORTEST)) {
+		errno = EDOM;
 		return NULL;
+	}
 	s = calloc(1, sizeof *s);
 	if (!s)
 		return NULL;
@@ -140,20 +143,20 @@ static int add_trigger(struct sections *s, long long at, double z)
 	return 1;
 }
 
-int sections_scan(struct sections *s, const double *y1, const double *y2, long long base,
-	size_t n, long long limit)
+enum num_status sections_scan(struct sections *s, const double *y1, const double *y2,
+	long long base, size_t n, long long limit)
 {
 	for (; s->next < limit; s->next += s->stride) {
 		double z = fmax(filter_at(s, y1, n, s->next - base),
 			filter_at(s, y2, n, s->next - base));
 
 		if (z > s->threshold && !add_trigger(s, s->next, z))
-			return 0;
+			return NUM_MEMORY;
 	}
 	for (int i = 0; i < s->count; i++)
 		if (s->queue[i].end + s->margin[OCTAVES] < s->next)
 			s->queue[i].open = 0;
-	return 1;
+	return NUM_OK;
 }
 
 int sections_first(const struct sections *s, struct section *section)

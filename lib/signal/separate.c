@@ -248,7 +248,7 @@ static enum separate_status calibrate_now(struct separate *s)
 	if (c->whitening.low * 2 * (double)s->par.window > JOINT_BASELINE_MAX)
 		s->par.window = (size_t)fmax(
 			3 * reach, JOINT_BASELINE_MAX / (2 * c->whitening.low));
-	if (!tape_start(&s->tape[0], c) || !tape_start(&s->tape[1], c))
+	if (tape_start(&s->tape[0], c) != NUM_OK || tape_start(&s->tape[1], c) != NUM_OK)
 		return SEPARATE_MEMORY;
 	/* Equal pulses on both channels reach the threshold of a pair at 1 / sqrt 2 of
 	 * it. */
@@ -260,7 +260,7 @@ static enum separate_status calibrate_now(struct separate *s)
 	if (isnan(s->par.known.spread) && !isinf(c->transit))
 		validation_range(s->validation, c->delta_min, c->delta_max);
 	s->holding = s->par.method == SEPARATE_FIT;
-	if (!validation_shape(s->validation, c->shape, c->duration))
+	if (validation_shape(s->validation, c->shape, c->duration) != NUM_OK)
 		return SEPARATE_MEMORY;
 	s->joint = joint_new();
 	if (s->par.method == SEPARATE_MASKS) {
@@ -670,12 +670,13 @@ static enum separate_status mask_section(struct separate *s, long long from, lon
 	struct masks_source source[MASKS_SOURCES_MAX];
 	size_t n = (size_t)(to - from);
 	const double *y1 = channel_1(s, from);
-	int m = masks_find(s->masks, y1, channel_2(s, from), n, source);
+	int m;
 	double t[MASKS_SOURCES_MAX], a[MASKS_SOURCES_MAX];
 	enum separate_verdict verdict[MASKS_SOURCES_MAX], all = SEPARATE_ALONE;
 	enum separate_status status;
 
-	if (m < 0 || !reserve_sources(s, (size_t)m * n))
+	if (masks_find(s->masks, y1, channel_2(s, from), n, source, &m) != NUM_OK ||
+		!reserve_sources(s, (size_t)m * n))
 		return SEPARATE_MEMORY;
 	/* A single source needs no demixing. */
 	if (m == 1)
@@ -740,7 +741,7 @@ static enum separate_status work(struct separate *s)
 	struct section section;
 
 	for (int c = 0; c < 2; c++)
-		if (!tape_prepare(&s->tape[c], &s->cal, c, s->ended))
+		if (tape_prepare(&s->tape[c], &s->cal, c, s->ended) != NUM_OK)
 			return SEPARATE_MEMORY;
 	limit = ready(s);
 	if (limit <= s->done)
@@ -755,9 +756,9 @@ static enum separate_status work(struct separate *s)
 			     is_crowded(s, s->done, limit < upto ? limit : upto);
 		s->looked = 1;
 	}
-	if (!sections_scan(s->sections, channel_1(s, s->done), channel_2(s, s->done),
+	if (sections_scan(s->sections, channel_1(s, s->done), channel_2(s, s->done),
 		    s->done, (size_t)(limit - s->done),
-		    s->ended ? limit : limit - sections_reach(s->sections)))
+		    s->ended ? limit : limit - sections_reach(s->sections)) != NUM_OK)
 		return SEPARATE_MEMORY;
 	if (s->ended)
 		sections_end(s->sections);
@@ -866,7 +867,8 @@ enum separate_status separate_push(struct separate *s, const double *x, size_t n
 			s->bad_channel = (int)(i % 2);
 			return SEPARATE_NOT_FINITE;
 		}
-	if (!tape_append(&s->tape[0], x, n) || !tape_append(&s->tape[1], x + 1, n))
+	if (tape_append(&s->tape[0], x, n) != NUM_OK ||
+		tape_append(&s->tape[1], x + 1, n) != NUM_OK)
 		return SEPARATE_MEMORY;
 	s->counters.samples += (double)n;
 	if (!s->calibrated)

@@ -24,21 +24,13 @@
 #include "signal/campbell.h"
 #include "signal/joint.h"
 #include "signal/masks.h"
+#include "signal/verdict.h"
 #include <stddef.h>
 
 /* Samples that nothing can be learned from fewer of. */
 enum { SEPARATE_SHORTEST = 64 };
 
 enum separate_method { SEPARATE_FIT, SEPARATE_MASKS };
-
-/* How far a row may be trusted. */
-enum separate_verdict {
-	SEPARATE_ALONE,     /* one pulse in its section */
-	SEPARATE_OVERLAP,   /* several, told apart */
-	SEPARATE_MISFIT,    /* chi-square too large: the model does not describe it */
-	SEPARATE_UNRESOLVED, /* too dense: a row stands for sources particles or more */
-	SEPARATE_MERGED      /* as large as several that arrive together: coincide.h */
-};
 
 /* One particle on its way past both sensors, as the record tells it. */
 struct transit {

@@ -1,5 +1,6 @@
 /* shape.c - see shape.h */
 #include "signal/shape.h"
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -95,15 +96,24 @@ struct shape *shape_from_values(const double *value, int half, double reach)
 	double peak = 0;
 	int cells = 2 * half;
 
-	if (half < 2 || !(reach > 0) || !isfinite(reach))
+	if (half < 2 || !(reach > 0) || !isfinite(reach)) {
+		errno = EDOM;
 		return NULL;
+	}
 	for (int i = 0; i <= cells; i++) {
-		if (!isfinite(value[i]))
+		if (!isfinite(value[i])) {
+			errno = EDOM;
 			return NULL;
+		}
 		if (fabs(value[i]) > peak)
 			peak = fabs(value[i]);
 	}
-	if (peak == 0 || !(shape = shape_alloc(reach, cells)))
+	if (peak == 0) {
+		errno = EDOM;
+		return NULL;
+	}
+	shape = shape_alloc(reach, cells);
+	if (!shape)
 		return NULL;
 	for (int i = 0; i < cells; i++) {
 		double before = i > 0 ? value[i - 1] : 0,

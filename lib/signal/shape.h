@@ -17,7 +17,7 @@ struct shape *shape_new(enum pulse_shape pulse);
 
 /* Any other pulse: value[0 .. 2 half] at s = -reach .. reach in equal steps, smooth
  * between them (slopes by central differences); it is scaled to max |p| = 1.  NULL
- * where half < 2, reach <= 0, a value is not finite, all are zero or memory is short. */
+ * with errno EDOM (half < 2, reach <= 0, a value not finite, all zero) or ENOMEM. */
 struct shape *shape_from_values(const double *value, int half, double reach);
 /* What a pulse of duration T becomes in a filter of symmetric taps -half .. half, cut
  * where it stays below 2e-3 of its peak; its peak is no longer 1.  NULL: no memory. */

@@ -1,6 +1,7 @@
 /* stft.c - see stft.h */
 #include "signal/stft.h"
 #include "num/fft.h"
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,8 +17,10 @@ struct stft *stft_new(size_t window, size_t hop)
 {
 	struct stft *s;
 
-	if (window < 4 || window % 2 || hop < 1 || hop > window)
+	if (window < 4 || window % 2 || hop < 1 || hop > window) {
+		errno = EDOM;
 		return NULL;
+	}
 	s = calloc(1, sizeof *s);
 	if (!s)
 		return NULL;

@@ -12,7 +12,7 @@
 
 struct stft;
 
-/* window even, 4 or more; 1 <= hop <= window.  NULL: bad sizes or no memory. */
+/* window even, 4 or more; 1 <= hop <= window.  NULL with errno EDOM or ENOMEM. */
 struct stft *stft_new(size_t window, size_t hop);
 void stft_free(struct stft *stft);
 

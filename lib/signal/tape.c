@@ -12,21 +12,21 @@ void tape_clear(struct tape *t)
 	memset(t, 0, sizeof *t);
 }
 
-int tape_append(struct tape *t, const double *x, size_t n)
+enum num_status tape_append(struct tape *t, const double *x, size_t n)
 {
 	if (t->n + n > t->capacity) {
 		size_t capacity = 2 * t->capacity > t->n + n ? 2 * t->capacity : t->n + n;
 		double *more = realloc(t->x, capacity * sizeof *more);
 
 		if (!more)
-			return 0;
+			return NUM_MEMORY;
 		t->x = more;
 		t->capacity = capacity;
 	}
 	for (size_t i = 0; i < n; i++)
 		t->x[t->n + i] = x[2 * i];
 	t->n += n;
-	return 1;
+	return NUM_OK;
 }
 
 void tape_drop(struct tape *t, size_t n)
@@ -47,17 +47,17 @@ void tape_forget(struct tape *t, long long keep)
 	tape_drop(t, old > t->n ? t->n : old);
 }
 
-int tape_start(struct tape *t, const struct calibration *c)
+enum num_status tape_start(struct tape *t, const struct calibration *c)
 {
 	const struct whitening *w = &c->whitening;
 	size_t taps = 2 * (size_t)w->half + 1;
 
 	t->fed = t->white = t->clean;
 	if (!w->tap)
-		return 1;
+		return NUM_OK;
 	t->whiten = fir_new(w->tap, taps, 1, taps > 1024 ? taps : 1024);
 	t->piece = t->whiten ? malloc(fir_block(t->whiten) * sizeof *t->piece) : NULL;
-	return t->piece != NULL;
+	return t->piece ? NUM_OK : NUM_MEMORY;
 }
 
 static void scale(struct tape *t, long long from, long long to, double noise)
@@ -69,14 +69,15 @@ static void scale(struct tape *t, long long from, long long to, double noise)
 /* Takes tones from what has come in and divides by the noise.  Tones are fitted around
  * the middle of every hop, over two hops, and run linearly in between; they depend on
  * the record alone, not on how it came in. */
-static int clean(struct tape *t, const struct calibration *c, double noise, int ended)
+static enum num_status clean(
+	struct tape *t, const struct calibration *c, double noise, int ended)
 {
 	long long end = t->white, hop = (long long)c->tone_hop;
 
 	if (c->tones == 0) {
 		scale(t, t->clean, end, noise);
 		t->clean = end;
-		return 1;
+		return NUM_OK;
 	}
 	for (;;) {
 		long long middle =
@@ -87,7 +88,7 @@ static int clean(struct tape *t, const struct calibration *c, double noise, int 
 		enum tones_status status;
 
 		if (t->clean == end || (middle + hop > end && !ended))
-			return 1;
+			return NUM_OK;
 		if (middle + hop > end) { /* the last one reaches to the end */
 			until = end;
 			middle = end - hop / 2 > t->clean ? end - hop / 2 : end;
@@ -97,7 +98,7 @@ static int clean(struct tape *t, const struct calibration *c, double noise, int 
 			(size_t)((middle + hop < end ? middle + hop : end) - from),
 			(double)from, c->tones, c->omega, after, NULL, NULL);
 		if (status == TONES_MEMORY)
-			return 0;
+			return NUM_MEMORY;
 		if (status == TONES_SHORT) /* a short rest */
 			memcpy(after, t->coefficient, sizeof after);
 		if (!t->started)
@@ -141,7 +142,8 @@ static void whiten(struct tape *t, const struct whitening *w, double mean, int e
 	}
 }
 
-int tape_prepare(struct tape *t, const struct calibration *c, int channel, int ended)
+enum num_status tape_prepare(
+	struct tape *t, const struct calibration *c, int channel, int ended)
 {
 	whiten(t, &c->whitening, c->mean[channel], ended);
 	return clean(t, c, c->noise[channel], ended);

@@ -7,7 +7,8 @@
 #ifndef SIGNAL_TAPE_H
 #define SIGNAL_TAPE_H
 
-#include "signal/calibrate.h"
+#include "num/status.h"
+#include "signal/calibration.h"
 #include <stddef.h>
 
 /* Samples from index begin on: those before white have their filter undone, those before
@@ -26,17 +27,18 @@ struct tape {
 
 void tape_clear(struct tape *t);
 
-/* Appends n samples, every second of x.  Returns 0 when out of memory. */
-int tape_append(struct tape *t, const double *x, size_t n);
+/* Appends n samples: x[0], x[2], x[4] ... */
+enum num_status tape_append(struct tape *t, const double *x, size_t n);
 /* Forgets the n oldest samples. */
 void tape_drop(struct tape *t, size_t n);
 /* Forgets what lies before sample keep, now and then. */
 void tape_forget(struct tape *t, long long keep);
 
-/* From here on, samples can be made ready.  Returns 0 when out of memory. */
-int tape_start(struct tape *t, const struct calibration *c);
-/* Makes ready what can be of what has come in; all of it if the record has ended.
- * Returns 0 when out of memory. */
-int tape_prepare(struct tape *t, const struct calibration *c, int channel, int ended);
+/* Starts the preparation, with what was learned of the record. */
+enum num_status tape_start(struct tape *t, const struct calibration *c);
+/* Prepares all samples that can be prepared without later ones; all samples if the record
+ * has ended. */
+enum num_status tape_prepare(
+	struct tape *t, const struct calibration *c, int channel, int ended);
 
 #endif

@@ -92,15 +92,17 @@ static int pick_lines(const double *power, size_t n, int max, double *omega)
 	return count;
 }
 
-int tones_find(const double *y1, const double *y2, size_t n, int max, double *omega)
+enum num_status tones_find(
+	const double *y1, const double *y2, size_t n, int max, double *omega, int *tones)
 {
 	struct fft *fft;
 	double *work, *power;
 	double complex *spectrum;
-	int count = -1;
+	enum num_status status = NUM_MEMORY;
 
+	*tones = 0;
 	if (n < 1024)
-		return 0;
+		return NUM_OK;
 	while (fft_good_size(n) != n || n % 2)
 		n--;
 	fft = fft_new(n, 1);
@@ -110,14 +112,15 @@ int tones_find(const double *y1, const double *y2, size_t n, int max, double *om
 	if (fft && work && power && spectrum) {
 		add_periodogram(fft, y1, n, work, spectrum, power);
 		add_periodogram(fft, y2, n, work, spectrum, power);
-		count = pick_lines(power, n, max > TONES_MAX ? TONES_MAX : max, omega);
+		*tones = pick_lines(power, n, max > TONES_MAX ? TONES_MAX : max, omega);
+		status = NUM_OK;
 	}
 	fft_free(work);
 	fft_free(power);
 	fft_free(spectrum);
 	if (fft)
 		fft_done(fft);
-	return count;
+	return status;
 }
 
 /* Terms (a constant, then cosine and sine of each tone) of a run of samples from index 0
@@ -399,22 +402,23 @@ static double significance(
 	return sum / (deviation * deviation);
 }
 
-int tones_confirm(const double *y1, const double *y2, size_t n, double band, int tones,
-	double *omega)
+enum num_status tones_confirm(const double *y1, const double *y2, size_t n, double band,
+	int *tones, double *omega)
 {
 	double c[2][TERMS_MAX], v[2][TERMS_MAX], d[2];
 	enum tones_status status = TONES_OK;
 	int kept = 0;
 
-	for (int i = 0; i < 2 && tones && status == TONES_OK; i++)
-		status = tones_fit(i ? y2 : y1, n, 0, tones, omega, c[i], &d[i], v[i]);
-	if (tones == 0 || status != TONES_OK)
-		return status == TONES_MEMORY ? -1 : tones;
-	for (int k = 0; k < tones; k++)
+	for (int i = 0; i < 2 && *tones && status == TONES_OK; i++)
+		status = tones_fit(i ? y2 : y1, n, 0, *tones, omega, c[i], &d[i], v[i]);
+	if (*tones == 0 || status != TONES_OK)
+		return status == TONES_MEMORY ? NUM_MEMORY : NUM_OK;
+	for (int k = 0; k < *tones; k++)
 		if (significance(c[0], v[0], d[0], k) * band > 40 ||
 			significance(c[1], v[1], d[1], k) * band > 40)
 			omega[kept++] = omega[k];
-	return kept;
+	*tones = kept;
+	return NUM_OK;
 }
 
 void tones_remove(double *x, size_t n, double start, int tones, const double *omega,

@@ -8,6 +8,7 @@
 #ifndef SIGNAL_TONES_H
 #define SIGNAL_TONES_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 enum { TONES_MAX = 16 };
@@ -21,9 +22,9 @@ enum tones_status {
 /* Frequencies, rad per sample and rising, that stand out of the summed periodogram of
  * both channels (n samples each, n >= 1024, Hann window): lines at least 40 times the
  * median of the 64 bins on either side, which white noise exceeds with probability
- * 2^-40 per bin.  At most max are returned, the strongest.  Returns their number, or
- * -1 when out of memory. */
-int tones_find(const double *y1, const double *y2, size_t n, int max, double *omega);
+ * 2^-40 per bin; the strongest max of them, *tones in all. */
+enum num_status tones_find(
+	const double *y1, const double *y2, size_t n, int max, double *omega, int *tones);
 
 /* Least squares of a constant and tones over x[0..n), whose first sample has index
  * start: coefficient[0] the constant, [1 + 2 k] of cos(omega k t), [2 + 2 k] of sin,
@@ -34,12 +35,12 @@ int tones_find(const double *y1, const double *y2, size_t n, int max, double *om
 enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
 	const double *omega, double *coefficient, double *deviation, double *variance);
 
-/* Drops tones that a robust fit does not see: a regular train of pulses has lines too,
- * but they vanish with the pulses.  Kept are those whose power exceeds what noise gives
- * with probability 2e-9, if it has this share of all frequencies; all where the stretch
- * is too short to tell.  Returns their number, or -1 when out of memory. */
-int tones_confirm(const double *y1, const double *y2, size_t n, double band, int tones,
-	double *omega);
+/* Drops tones that a robust fit does not confirm: a regular train of pulses has lines,
+ * too, but a fit without the pulses does not see them.  Keeps tones whose power noise of
+ * this share of all frequencies exceeds with probability 2e-9; keeps all if the stretch
+ * is too short to separate them. */
+enum num_status tones_confirm(const double *y1, const double *y2, size_t n, double band,
+	int *tones, double *omega);
 
 /* Takes tones from x[0..n): coefficients run linearly from those at index at_a
  * (from) to those at index at_b (to). */

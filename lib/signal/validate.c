@@ -67,7 +67,8 @@ void validation_free(struct validation *v)
 	free(v);
 }
 
-int validation_shape(struct validation *v, const struct shape *shape, double duration)
+enum num_status validation_shape(
+	struct validation *v, const struct shape *shape, double duration)
 {
 	v->duration = duration;
 	return coincide_shape(v->coincide, shape);

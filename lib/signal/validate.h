@@ -29,6 +29,7 @@
 #ifndef SIGNAL_VALIDATE_H
 #define SIGNAL_VALIDATE_H
 
+#include "num/status.h"
 #include "signal/shape.h"
 #include <stddef.h>
 
@@ -53,8 +54,9 @@ void validation_free(struct validation *v);
 /* Range of the delays that are searched, learned to be wider than that of particles. */
 void validation_range(struct validation *v, double least, double most);
 
-/* The pulses; 0: no memory. */
-int validation_shape(struct validation *v, const struct shape *shape, double duration);
+/* The pulses. */
+enum num_status validation_shape(
+	struct validation *v, const struct shape *shape, double duration);
 /* Distance, in durations, up to which a pulse of this energy may be two; see coincide.h.
  */
 double validation_reach(const struct validation *v, double energy, double need);

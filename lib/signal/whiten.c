@@ -160,8 +160,8 @@ static int edge_of_taps(const double *tap, int half)
 	return edge;
 }
 
-int whitening_make(struct whitening *w, const double *power, size_t n, double unit,
-	int half, enum whiten_kind kind)
+enum num_status whitening_make(struct whitening *w, const double *power, size_t n,
+	double unit, int half, enum whiten_kind kind)
 {
 	double *gain = malloc(2 * n * sizeof *gain);
 	int ok;
@@ -180,20 +180,20 @@ int whitening_make(struct whitening *w, const double *power, size_t n, double un
 	free(gain);
 	if (!ok)
 		whitening_clear(w);
-	return ok;
+	return ok ? NUM_OK : NUM_MEMORY;
 }
 
-int whitening_of_noise(
+enum num_status whitening_of_noise(
 	struct whitening *w, const double *power, size_t n, enum whiten_kind kind)
 {
 	enum { FINER = 8 };
 	size_t fine = FINER * (n - 1) + 1, first = 0;
 	double *between = malloc(fine * sizeof *between), most = 0;
-	int ok;
+	enum num_status status;
 
 	memset(w, 0, sizeof *w);
 	if (!between)
-		return 0;
+		return NUM_MEMORY;
 	for (size_t k = 0; k < n; k++)
 		most = fmax(most, power[k]);
 	if (n > 3 && power[1] < steep * power[3])
@@ -209,12 +209,12 @@ int whitening_of_noise(
 			between[k] = pow(power[from], 1 - part) *
 				     pow(fmax(power[to], least), part);
 	}
-	ok = whitening_make(w, between, fine, most, (int)(2 * n), kind);
+	status = whitening_make(w, between, fine, most, (int)(2 * n), kind);
 	free(between);
-	return ok;
+	return status;
 }
 
-int whitening_of_filter(struct whitening *w, const double *tap, size_t taps)
+enum num_status whitening_of_filter(struct whitening *w, const double *tap, size_t taps)
 {
 	/* An inverse is longer than the filter: near the edges the gain is steep. */
 	size_t points = fft_good_size(24 * taps + 64), n;
@@ -222,7 +222,7 @@ int whitening_of_filter(struct whitening *w, const double *tap, size_t taps)
 	struct fft *fft;
 	double complex *spectrum;
 	double *x;
-	int ok;
+	enum num_status status;
 
 	points += points % 2;
 	n = points / 2 + 1;
@@ -230,22 +230,22 @@ int whitening_of_filter(struct whitening *w, const double *tap, size_t taps)
 	fft = fft_new(points, 1);
 	spectrum = fft_alloc_complex(n);
 	x = fft_alloc(points);
-	ok = power && fft && spectrum && x;
+	status = power && fft && spectrum && x ? NUM_OK : NUM_MEMORY;
 	memset(w, 0, sizeof *w);
-	if (ok) {
+	if (status == NUM_OK) {
 		memcpy(x, tap, taps * sizeof *tap);
 		fft_forward(fft, x, spectrum);
 		for (size_t k = 0; k < n; k++)
 			power[k] = creal(spectrum[k]) * creal(spectrum[k]) +
 				   cimag(spectrum[k]) * cimag(spectrum[k]);
-		ok = whitening_make(w, power, n, 1, (int)(6 * taps), WHITEN_FILTERED);
+		status = whitening_make(w, power, n, 1, (int)(6 * taps), WHITEN_FILTERED);
 	}
 	free(power);
 	if (fft)
 		fft_done(fft);
 	fft_free(spectrum);
 	fft_free(x);
-	return ok;
+	return status;
 }
 
 void whitening_clear(struct whitening *w)
@@ -255,7 +255,7 @@ void whitening_clear(struct whitening *w)
 	w->tap = w->seen = NULL;
 }
 
-int whitening_apply(const struct whitening *w, double *x, size_t n)
+enum num_status whitening_apply(const struct whitening *w, double *x, size_t n)
 {
 	struct fir *fir = fir_new(w->tap, 2 * (size_t)w->half + 1, 1, 0);
 	size_t block = fir ? fir_block(fir) : 0, delay = (size_t)w->half;
@@ -273,5 +273,5 @@ int whitening_apply(const struct whitening *w, double *x, size_t n)
 	block = fir && piece;
 	fir_free(fir);
 	free(piece);
-	return block != 0;
+	return block ? NUM_OK : NUM_MEMORY;
 }

@@ -15,6 +15,7 @@
 #ifndef SIGNAL_WHITEN_H
 #define SIGNAL_WHITEN_H
 
+#include "num/status.h"
 #include <stddef.h>
 
 enum whiten_kind {
@@ -34,18 +35,18 @@ struct whitening {
 };
 
 /* power[k] of the noise at frequency k / (2 (n - 1)), k < n; unit > 0: that of the white
- * noise to be made of it; half < n: length of the taps.  Returns 0 out of memory. */
-int whitening_make(struct whitening *w, const double *power, size_t n, double unit,
-	int half, enum whiten_kind kind);
+ * noise to be made of it; half < n: length of the taps. */
+enum num_status whitening_make(struct whitening *w, const double *power, size_t n,
+	double unit, int half, enum whiten_kind kind);
 /* The same for noise whose power is known at n frequencies only, smooth between them;
  * unit is its largest. */
-int whitening_of_noise(
+enum num_status whitening_of_noise(
 	struct whitening *w, const double *power, size_t n, enum whiten_kind kind);
 /* The inverse of a symmetric filter of n taps. */
-int whitening_of_filter(struct whitening *w, const double *tap, size_t n);
+enum num_status whitening_of_filter(struct whitening *w, const double *tap, size_t n);
 void whitening_clear(struct whitening *w);
 
-/* Whitens x[0..n) in place, zeros before and behind.  Returns 0 out of memory. */
-int whitening_apply(const struct whitening *w, double *x, size_t n);
+/* Whitens x[0..n) in place, with zeros before and after it. */
+enum num_status whitening_apply(const struct whitening *w, double *x, size_t n);
 
 #endif

@@ -61,6 +61,7 @@ static enum num_status merge(struct sketch *s, size_t most)
 
 	if (sketch_sort(s))
 		return NUM_MEMORY;
+	/* The first ratio joins values that differ by rounding. */
 	while (merged(s, ratio) > most / 2)
 		ratio = 1 + fmax(2 * (ratio - 1), 1e-12);
 	for (size_t i = 0; i < s->n; i++) {

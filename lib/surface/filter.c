@@ -15,7 +15,9 @@ static double width(enum filter_ends ends)
 }
 
 enum { TERMS = 3 };
-static const double least = 1e-12; /* weight over the largest that is left out */
+/* Weight over the largest from which on weights are left out: together these change the
+ * output by less than 1e-12 of the heights. */
+static const double least = 1e-12;
 
 /* The filter along one direction. */
 struct kernel {
@@ -84,7 +86,8 @@ static void local_polynomial(int order, const double *m, double *c)
 
 		for (int j = i + 1; j < n; j++)
 			sum -= a[i][j] * c[j];
-		/* fewer points than terms: the polynomial has a lower order */
+		/* Fewer points than terms leave a pivot of rounding, some 1e-16 of the
+		 * moment: the polynomial has a lower order. */
 		c[i] = a[i][i] > 1e-13 * fmax(m[2 * i], 1e-300) ? sum / a[i][i] : 0;
 	}
 }
@@ -217,6 +220,8 @@ static enum num_status orthonormal(int n, int degree, double *p)
 		for (int i = 0; i < n; i++)
 			norm += q[i] * q[i];
 		norm = sqrt(norm);
+		/* Rounding leaves some 1e-16 of a polynomial that depends on the others.
+		 */
 		if (!(norm > 1e-10))
 			return NUM_DOMAIN;
 		for (int i = 0; i < n; i++)

@@ -76,7 +76,7 @@ static double dot(size_t n, const double *a, const double *b)
  * than that of the unknowns in exact arithmetic; twice that leaves room for rounding. */
 static int solve_holes(struct holes *h, const double *z, double *residual)
 {
-	double rr, first, most = 2 * (double)h->n + 100;
+	double rr, first, most = 2 * (double)h->n;
 	int step;
 
 	laplacian(h, h->x, z, h->r);

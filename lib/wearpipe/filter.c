@@ -16,7 +16,7 @@ enum wp_status wp_filter_taps(
 	if (order < 1 || !(rate > 0) || !(band.low >= 0) || !(band.high > band.low) ||
 		!(band.high <= 0.5))
 		return WP_DOMAIN;
-	return fir_design(&band, taps) == 0 ? WP_OK : WP_IMPOSSIBLE;
+	return fir_design(&band, taps) == NUM_OK ? WP_OK : WP_IMPOSSIBLE;
 }
 
 struct wp_filter *wp_filter_new(

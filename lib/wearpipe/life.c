@@ -1,4 +1,4 @@
-#include "life/passage/passage.h"
+#include "life/trend/passage.h"
 #include "life/score/metrics.h"
 #include "life/trend/bank.h"
 #include "report.h"

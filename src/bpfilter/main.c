@@ -89,7 +89,7 @@ static double *make_taps(double fs, const char *name)
 	if (band.high > 0.5)
 		die(EXIT_RUN, "%s: --band ends at %g Hz, above half the rate of %g Hz",
 			name, edges.v[1], fs);
-	if (fir_design(&band, h) < 0)
+	if (fir_design(&band, h) != NUM_OK)
 		die(EXIT_USAGE,
 			"a high-pass of odd --order %ld has no gain at half the rate: "
 			"use an even order or --no-scale",
@@ -134,6 +134,7 @@ static void check_samples(
 	const double *x, size_t nframes, int channels, double frame, const char *name)
 {
 	enum { LANES = 8 };
+	/* Sums in a block exceed the samples by less: there are at most 1e6 taps. */
 	const double headroom = 1e20;
 	size_t n = nframes * (size_t)channels, i, place;
 	double bad[LANES] = { 0 }, sum = 0;

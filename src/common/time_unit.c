@@ -21,14 +21,13 @@ struct opt timeunit_rows[] = {
 
 void timeunit_settle(const struct table_in *t, int column, int needed)
 {
-	char one[UNIT_WORD + 1];
-	const char *end;
+	double scale;
 
 	if (!strcmp(table_unit_word(t, column, told_word), "1"))
 		return;
-	snprintf(one, sizeof one, "1%s", told_word);
-	if (unit_parse(one, UNIT_TIME, "", &told, &end)) {
-		told = NAN;
+	scale = unit_scale(told_word, UNIT_TIME);
+	told = scale > 0 ? scale : NAN;
+	if (isnan(told)) {
 		if (needed)
 			die(EXIT_RUN, "%s: column '%s' is in '%s', want s, min, h or d",
 				table_name(t), table_column_name(t, column), told_word);

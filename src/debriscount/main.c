@@ -229,6 +229,11 @@ int main(int argc, char **argv)
 		warn("the record is taken to end with its last particle, at %g s; "
 		     "--duration tells better",
 			last);
+	if ((duration - last) / period > PERIODS_MOST)
+		die(EXIT_USAGE,
+			"--duration %g s is more than %d periods after the last particle: "
+			"--period or the unit of time is wrong",
+			duration, PERIODS_MOST);
 	groups_finish(groups, period, duration, time_column(t) >= 0 ? last : NAN);
 	verdict_report();
 	table_close(t);

@@ -82,10 +82,11 @@ static struct network *new_network(const struct lesson *l)
 	struct network_layer layer[NETWORK_LAYERS_MAX];
 	struct network *net;
 	char why[NETFILE_TEXT];
-	int n = netfile_parse_layers(learning.layers,
-		(enum network_activation)learning.activation, layer, why);
+	int n;
 
-	if (n == 0)
+	if (netfile_parse_layers(learning.layers,
+		    (enum network_activation)learning.activation, layer, &n,
+		    why) != NUM_OK)
 		die(EXIT_USAGE, "--layers: %s", why);
 	if (n >= NETWORK_LAYERS_MAX)
 		die(EXIT_USAGE, "--layers: want at most %d", NETWORK_LAYERS_MAX - 1);
@@ -143,7 +144,8 @@ void learning_train(void)
 	stats_set("weights", (double)network_weight_count(net));
 	stats_set("samples", (double)(learning.fresh ? lessons.count * learning.epochs
 						     : lessons.count));
-	if (netfile_write(stdout, net, l.purpose, cmd))
+	netfile_write(stdout, net, l.purpose, cmd);
+	if (ferror(stdout))
 		die(EXIT_RUN, "standard output:");
 	free(cmd);
 	lesson_drop(&l);

@@ -29,7 +29,7 @@ static struct mixture *read_record(struct signal_in *in, const struct mixture_pa
 					"%s: channel %zu, frame %zu: not a finite number",
 					signal_name(in), i % 2 + 1,
 					mixture_frames(m) + i / 2);
-		if (!mixture_push(m, x, n))
+		if (mixture_push(m, x, n) != NUM_OK)
 			die(EXIT_RUN, "%s: no memory to hold the record",
 				signal_name(in));
 	}
@@ -67,7 +67,7 @@ static void put_sources(struct found *out, struct mixture *m, int count)
 	size_t n = mixture_frames(m);
 	double *x = xcalloc((size_t)count * n + 1, sizeof *x);
 
-	if (!mixture_separate(m, x))
+	if (mixture_separate(m, x) != NUM_OK)
 		die(EXIT_RUN, "no memory");
 	for (size_t i = 0; i < n; i++) {
 		double frame[SHOWN] = { 0 };

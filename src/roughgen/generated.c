@@ -121,6 +121,7 @@ static void doubt(const struct rough_par *par)
 	double shortest = fmin(p->corr_x, p->corr_y);
 	double dx = p->lx / p->nx, dy = p->ly / p->ny;
 
+	/* Areal instruments measure no field of 100 mm. */
 	if (length.v[0] >= 0.1)
 		warn("--length %g m: numbers without a unit are metres: is %gmm meant?",
 			length.v[0], length.v[0]);

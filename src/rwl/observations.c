@@ -32,14 +32,10 @@ static void settle_units(struct state *s)
 	enum unit unit = units[s->quantity];
 	double told = table_scale(s->table, s->value_column, unit), asked = NAN;
 	double time = table_scale(s->table, s->time_column, UNIT_TIME);
-	const char *wrong, *end;
 
 	if (state_options.unit) {
-		char *one = xprintf("1%s", state_options.unit);
-
-		wrong = unit_parse(one, unit, "", &asked, &end);
-		free(one);
-		if (wrong)
+		asked = unit_scale(state_options.unit, unit);
+		if (asked <= 0)
 			die(EXIT_USAGE, "--state-unit %s: is not a unit of %s, want %s",
 				state_options.unit, quantities[s->quantity],
 				unit_name(unit));

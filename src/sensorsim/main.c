@@ -104,14 +104,14 @@ static void put_event(struct table_out *t, const struct disturbance *e)
 static void pass_traffic(
 	struct traffic *f, double before, int truth_alone, struct table_out *t)
 {
-	int room = 1;
+	enum num_status status = NUM_OK;
 
 	for (;;) {
 		if (is_particle_next(f) && f->particle.time[0] <= before) {
 			if (t)
 				put_particle(t, f);
 			if (!truth_alone)
-				room = scene_pass(f->scene, &f->particle);
+				status = scene_pass(f->scene, &f->particle);
 			f->count++;
 			next_particle(f);
 		} else if (!is_particle_next(f) && f->events &&
@@ -119,12 +119,12 @@ static void pass_traffic(
 			if (t)
 				put_event(t, &f->event);
 			if (!truth_alone)
-				room = scene_disturb(f->scene, &f->event);
+				status = scene_disturb(f->scene, &f->event);
 			next_event(f);
 		} else {
 			return;
 		}
-		if (!room)
+		if (status != NUM_OK)
 			die(EXIT_RUN, "no memory");
 	}
 }

@@ -128,7 +128,7 @@ static char *unit_of(char *heading)
 	*open = '\0';
 	for (; open > heading && open[-1] == ' '; open--)
 		open[-1] = '\0';
-	return unit;
+	return *unit ? unit : NULL;
 }
 
 static int same(const char *a, const char *b)
@@ -223,28 +223,22 @@ static void scale_units(struct text_in *t)
 	char *units = xstrdup(""), **unit = t->unit;
 
 	if (t->time >= 0 && unit[t->time]) {
-		char *one = xprintf("1%s", unit[t->time]);
-		const char *end,
-			*wrong = unit_parse(one, UNIT_TIME, "", &t->time_scale, &end);
-
-		if (wrong)
+		t->time_scale = unit_scale(unit[t->time], UNIT_TIME);
+		if (t->time_scale <= 0)
 			die(EXIT_RUN, "%s: times in '%s', want s, min, h or d", t->name,
 				unit[t->time]);
-		free(one);
 	}
 	for (int c = 0; c < t->format.channels; c++) {
-		const char *name = unit[t->taken[c]], *end;
-		char *one = xprintf("1%s", name ? name : ""), *longer;
+		const char *name = unit[t->taken[c]];
+		double volts = name ? unit_scale(name, UNIT_VOLTAGE) : 0;
+		char *longer;
 
-		t->scale[c] = 1;
-		if (name && unit_parse(one, UNIT_VOLTAGE, "", &t->scale[c], &end) == NULL)
+		if (volts > 0)
 			name = "V";
-		else
-			t->scale[c] = 1;
+		t->scale[c] = volts > 0 ? volts : 1;
 		longer = xprintf("%s%s%s", units, c ? " " : "", name ? name : "1");
 		free(units);
 		units = longer;
-		free(one);
 	}
 	t->format.units = units;
 }
@@ -266,7 +260,7 @@ static double read_time(struct text_in *t, char *cell)
 	struct moment m;
 	double time = NAN, value, digit = 0;
 
-	if ((t->absolute || t->nahead == 0) && moment_parse(cell, &m)) {
+	if ((t->absolute || (t->nahead == 0 && t->rows == 0)) && moment_parse(cell, &m)) {
 		const char *fraction = strpbrk(cell, ".,");
 
 		if (!t->absolute)
@@ -511,7 +505,27 @@ static const char *unit_word(char *unit)
 	for (char *s = unit; s && *s; s++)
 		if (strchr(" \t", *s))
 			*s = '_';
-	return unit && *unit ? unit : "1";
+	return unit ? unit : "1";
+}
+
+/* Two columns of one name could not be told apart. */
+static void check_names(const struct text_in *t)
+{
+	for (int c = 0; c < t->format.channels; c++) {
+		int same_as_time = t->time >= 0 && !strcmp(t->name_of[c], "t");
+
+		for (int k = 0; k < c && !same_as_time; k++)
+			if (!strcmp(t->name_of[c], t->name_of[k]))
+				die(EXIT_RUN,
+					"%s: two columns are called '%s': rename one "
+					"with --columns 'NEW=NAME'",
+					t->name, t->name_of[c]);
+		if (same_as_time)
+			die(EXIT_RUN,
+				"%s: column '%s' would be called 't' as the times are: "
+				"rename it with --columns 'NEW=NAME'",
+				t->name, t->heading[t->taken[c]]);
+	}
 }
 
 static struct table_out *create_table(struct text_in *t, const char *start)
@@ -520,6 +534,7 @@ static struct table_out *create_table(struct text_in *t, const char *start)
 	char *cmd = opt_cmd(NULL, NULL), moment[MOMENT_TEXT];
 	struct table_out *out;
 
+	check_names(t);
 	if (t->absolute && start)
 		die(EXIT_USAGE, "--start %s: the times are moments", start);
 	if (t->absolute)
@@ -549,7 +564,6 @@ static int is_text(const char *name)
 double text_to_table(struct text_in *t, const char *start)
 {
 	struct table_out *out = NULL;
-	double rows = 0;
 
 	while (read_cells(t)) {
 		double time = t->time < 0 ? NAN : read_time(t, t->cell[t->time]);
@@ -564,12 +578,12 @@ double text_to_table(struct text_in *t, const char *start)
 			else
 				table_put(out, read_number(t, c));
 		table_end_row(out);
-		rows++;
+		t->rows++;
 	}
 	if (!out)
 		die(EXIT_RUN, "%s: no row below the headings", t->name);
 	table_done(out);
-	return rows;
+	return (double)t->rows;
 }
 
 const struct signal_format *text_format(const struct text_in *t)

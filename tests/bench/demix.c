@@ -81,7 +81,8 @@ static void bench(const struct joint_scene *s, struct joint *joint, struct masks
 		memcpy(part[0], y[0], sizeof part[0]);
 		memcpy(part[1], y[0], sizeof part[1]);
 		mixed[k] = best_pair(truth, part);
-		n = masks_find(masks, y[0], y[1], N, source);
+		if (masks_find(masks, y[0], y[1], N, source, &n) != NUM_OK)
+			n = 0;
 		for (int i = 0; i < 2; i++)
 			if (i < n)
 				masks_separate(masks, i, part[i]);

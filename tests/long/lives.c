@@ -9,7 +9,7 @@
  */
 #include "../unit/tap.h"
 #include "life/particle/draw.h"
-#include "life/passage/passage.h"
+#include "life/trend/passage.h"
 #include "life/trend/bank.h"
 #include <math.h>
 #include <stdio.h>

@@ -108,7 +108,7 @@ static void test_reach(void)
 	double pair[N], one[N], other[N], reach, ratio;
 	double pair2 = 0, cross = 0, one2 = 0;
 
-	ok(coincide_shape(c, shape), "a shape is taken in");
+	ok(coincide_shape(c, shape) == NUM_OK, "a shape is taken in");
 	reach = coincide_reach(c, T * shape_energy(shape), 1e-3 * T * shape_energy(shape));
 	shape_sample(shape, 1.5 * T - 0.5 * reach * T, T, 0, N, pair, NULL, NULL);
 	shape_sample(shape, 1.5 * T + 0.5 * reach * T, T, 0, N, other, NULL, NULL);

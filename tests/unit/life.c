@@ -2,7 +2,7 @@
 #include "life/grey/grey.h"
 #include "life/grey/noise.h"
 #include "life/particle/adaptive.h"
-#include "life/passage/passage.h"
+#include "life/trend/passage.h"
 #include "life/prior/fleet.h"
 #include "life/trend/bank.h"
 #include "life/trend/history.h"

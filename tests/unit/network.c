@@ -246,13 +246,15 @@ static void check_file(void)
 	static const char *const layers = "3conv4x2/2:relu pool2x1 5+:tanh 4:sigmoid 2";
 	struct network_layer layer[NETWORK_LAYERS_MAX];
 	char why[NETFILE_TEXT], text[8192] = "", copy[8192] = "";
-	int n = netfile_parse_layers(layers, NETWORK_LINEAR, layer, why);
+	int n;
+	enum num_status status =
+		netfile_parse_layers(layers, NETWORK_LINEAR, layer, &n, why);
 	struct network *net = network_new((struct network_shape){ 1, 2, 9 }, layer, n, 1),
 		       *back;
 	struct netfile file;
 	size_t bytes = network_weight_count(net) * sizeof(network_real);
 
-	ok(n == 5, "the network has five layers");
+	ok(status == NUM_OK && n == 5, "the network has five layers");
 	network_start(net, 1, 0);
 	network_weights(net)[0] = 1.17549435e-38F;
 	back = round_trip(net, text, sizeof text, &file);
@@ -308,10 +310,13 @@ static void check_refusals(void)
 		.kind = NETWORK_CONV, .units = 1, .width = 4096, .height = 4096
 	};
 	char why[NETFILE_TEXT];
+	int n;
 
 	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
 		*why = '\0';
-		ok(netfile_parse_layers(bad[i], NETWORK_TANH, layer, why) == 0 && *why,
+		ok(netfile_parse_layers(bad[i], NETWORK_TANH, layer, &n, why) ==
+					NUM_DOMAIN &&
+				*why,
 			"the layers '%.20s' are refused: %s", bad[i], why);
 	}
 	ok(!network_new((struct network_shape){ 1, 2, 500 }, &huge, 1, 1),

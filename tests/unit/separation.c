@@ -84,7 +84,7 @@ static void test_masks(void)
 	struct masks *m = masks_new(&par);
 	struct masks_source source[MASKS_SOURCES_MAX];
 	double y1[600], y2[600], p[600], x[600], left = 0, energy = 0;
-	int first;
+	int first, sources;
 
 	memset(y1, 0, sizeof y1);
 	memset(y2, 0, sizeof y2);
@@ -98,7 +98,8 @@ static void test_masks(void)
 		for (int i = 0; i < 600; i++)
 			y2[i] += 0.909 * p[i];
 	}
-	ok(masks_find(m, y1, y2, 600, source) == 2, "the histogram has two peaks");
+	ok(masks_find(m, y1, y2, 600, source, &sources) == NUM_OK && sources == 2,
+		"the histogram has two peaks");
 	first = source[0].delta < source[1].delta ? 0 : 1;
 	near(source[first].delta, 2.121, 0.35, "the delay of the first peak is right");
 	near(source[1 - first].delta, 4.545, 0.35,
@@ -120,6 +121,7 @@ static void test_tones(void)
 {
 	static double y1[N], y2[N], x[N];
 	double omega[TONES_MAX], c[2 * TONES_MAX + 1], worst = 0;
+	int tones;
 	double w[2] = { 2 * acos(-1) * 0.00503, 2 * acos(-1) * 0.2 };
 
 	for (int i = 0; i < N; i++) {
@@ -127,7 +129,8 @@ static void test_tones(void)
 			0.05 * normal((uint64_t)i);
 		y2[i] = 0.1 * sin(w[0] * i) + 0.05 * normal(N + (uint64_t)i);
 	}
-	ok(tones_find(y1, y2, N, TONES_MAX, omega) == 2, "two tones are found");
+	ok(tones_find(y1, y2, N, TONES_MAX, omega, &tones) == NUM_OK && tones == 2,
+		"two tones are found");
 	/* Resolution 1 / N; a tenth of it is easily reached at this level. */
 	near(omega[0], w[0], 0.1 * 2 * acos(-1) / N, "the first frequency is right");
 	near(omega[1], w[1], 0.1 * 2 * acos(-1) / N, "the second frequency is right");
@@ -143,8 +146,10 @@ static void test_tones(void)
 	for (int i = 0; i < N; i++) /* a pulse every 250 samples: lines without a tone */
 		y1[i] = (i % 250 < 50 ? sin(2 * acos(-1) * (i % 250) / 50) : 0) +
 			0.05 * normal((uint64_t)i);
-	ok(tones_find(y1, y1, N, TONES_MAX, omega) > 2, "a train of pulses has lines");
-	ok(tones_confirm(y1, y1, N, 1, 3, omega) == 0, "a train of pulses has no tones");
+	ok(tones_find(y1, y1, N, TONES_MAX, omega, &tones) == NUM_OK && tones > 2,
+		"a train of pulses has lines");
+	ok(tones_confirm(y1, y1, N, 1, &tones, omega) == NUM_OK && tones == 0,
+		"a train of pulses has no tones");
 }
 
 /* A tone of cosine c and sine s taken from silence, against direct evaluation.  The
@@ -186,7 +191,7 @@ static void test_tone_values(void)
 
 static void test_small(void)
 {
-	static double x[N], work[N], r[101];
+	static double x[N], work[N], r[101], silence[3000];
 	struct peak peak;
 	struct count *count = count_new(0.5);
 	struct sections *s;
@@ -211,8 +216,11 @@ static void test_small(void)
 	shape_sample(shape, 1000.25, 100, 900, 200, x + 900, NULL, NULL);
 	shape_sample(shape, 1037.5, 100, 900, 250, work, NULL, NULL);
 	memset(work + 250, 0, sizeof work - 250 * sizeof *work);
-	lag = align_lag(x + 900, work, 3000, 500, r);
+	ok(align_lag(x + 900, work, 3000, 500, &lag, r) == NUM_OK,
+		"two records of one pulse have a lag");
 	near(lag, 37.25, 0.01, "cross-correlation gives the lag between samples");
+	ok(align_lag(x + 900, silence, 3000, 500, &lag, r) == NUM_DOMAIN,
+		"a silent channel has no lag");
 	align_autocorrelation(x, x, N, 100, r);
 	ok(r[50] < r[48] && r[50] < r[52],
 		"a sine pulse is least like itself half its length on");

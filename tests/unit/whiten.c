@@ -78,7 +78,7 @@ static void test_noise(const struct whitening *w, const double *h, size_t taps)
 		pass_filter(h, taps, y[c], N);
 		whitening_apply(w, y[c], N);
 	}
-	quiets = quiet_spectrum(y[0] + skip, y[1] + skip, n, SEGMENT, power[0], power[1]);
+	quiet_spectrum(y[0] + skip, y[1] + skip, n, SEGMENT, power[0], power[1], &quiets);
 	for (int k = 0; k < BINS; k++)
 		/* A Hann window leaks two bins far. */
 		if (k >= w->low * SEGMENT + 2 && k <= w->high * SEGMENT - 2) {
@@ -181,7 +181,8 @@ static void test_filter(const struct fir_band *band, const char *name)
 	struct whitening w;
 
 	fir_design(band, h);
-	if (ok(whitening_of_filter(&w, h, taps), "%s: the filter has an inverse", name)) {
+	if (ok(whitening_of_filter(&w, h, taps) == NUM_OK,
+		    "%s: the filter has an inverse", name)) {
 		test_gain(&w, h, taps);
 		test_noise(&w, h, taps);
 		if (w.low > 0)
@@ -208,7 +209,7 @@ static void test_quiet(int spacing, int burst, const char *what)
 			for (int c = 0; c < 2; c++)
 				y[c][i] += (c ? 100 : 15) *
 					   sin(2 * acos(-1) * (i % 100) / 100.0);
-	quiets = quiet_spectrum(y[0], y[1], N, SHORT, power[0], power[1]);
+	quiet_spectrum(y[0], y[1], N, SHORT, power[0], power[1], &quiets);
 	for (int k = 1; k < BINS; k++)
 		for (int c = 0; c < 2; c++)
 			sum[c] += power[c][k] / (BINS - 1);
@@ -242,7 +243,7 @@ static void test_colour(void)
 	for (unsigned k = 0; k < TIMES; k++) {
 		make_noise(y[0], LITTLE, 1, 2 * k);
 		make_noise(y[1], LITTLE, 2, 2 * k + 1);
-		white += colour_power(y[0], y[1], LITTLE, noise, power) == 1 &&
+		white += colour_power(y[0], y[1], LITTLE, noise, power) == NUM_OK &&
 			 colour_is_white(power, 0);
 	}
 	ok(white == TIMES, "the whiteness test accepts white noise: %d of %d", white,
@@ -251,7 +252,8 @@ static void test_colour(void)
 		make_noise(y[c], N, noise[c], c);
 		colour(y[c], N, a);
 	}
-	ok(colour_power(y[0], y[1], N, noise, power) == 1 && !colour_is_white(power, 0),
+	ok(colour_power(y[0], y[1], N, noise, power) == NUM_OK &&
+			!colour_is_white(power, 0),
 		"the whiteness test rejects low-passed noise");
 	for (int k = 0; k < COLOUR_BINS; k++) {
 		double want = (1 - a * a) / (1 - 2 * a * cos(acos(-1) * k / 512) + a * a);
@@ -272,7 +274,7 @@ static void test_colour(void)
 		worst / scatter);
 	/* The mean is that of 2 N samples with 1 degree of freedom each. */
 	near(mean, 0, 4 / sqrt(N), "the measured power is right in the mean");
-	ok(whitening_of_noise(&w, power, COLOUR_BINS, WHITEN_COLOURED),
+	ok(whitening_of_noise(&w, power, COLOUR_BINS, WHITEN_COLOURED) == NUM_OK,
 		"the noise spectrum has an inverse");
 	ok(w.low == 0 && w.high == 0.5, "no frequency is lost");
 	near(w.band, 1, 1e-3, "the band is the whole spectrum");
@@ -281,7 +283,7 @@ static void test_colour(void)
 		noise[c] *= sqrt(most);
 		whitening_apply(&w, y[c], N);
 	}
-	ok(colour_power(y[0] + skip, y[1] + skip, N - 2 * skip, noise, power) == 1 &&
+	ok(colour_power(y[0] + skip, y[1] + skip, N - 2 * skip, noise, power) == NUM_OK &&
 			colour_is_white(power, 0),
 		"the inverse makes the noise white");
 	mean = 0;
@@ -296,6 +298,8 @@ static void test_colour(void)
 
 int main(void)
 {
+	int quiets;
+
 	test_filter(&(struct fir_band){ 200, 0.007, 0.013, FIR_HAMMING, 0, 1 },
 		"70-130 Hz of 10 kHz, 201 taps");
 	test_filter(&(struct fir_band){ 800, 0.007, 0.013, FIR_HAMMING, 0, 1 },
@@ -309,7 +313,9 @@ int main(void)
 		"the power of the noise is right with bursts of pulses in 30 % of the record");
 	test_quiet(1000, 300,
 		"the power of the noise is right with pulses spread over 30 % of the record");
-	ok(quiet_spectrum(y[0], y[1], 255, 256, y[0] + 1000, y[1] + 1000) == 0,
+	ok(quiet_spectrum(y[0], y[1], 255, 256, y[0] + 1000, y[1] + 1000, &quiets) ==
+				NUM_OK &&
+			quiets == 0,
 		"a record shorter than a segment gives no spectrum");
 	test_colour();
 	return tap_done();

@@ -1,6 +1,6 @@
 #include "life/pair/forecast.h"
 #include "life/pair/remaining.h"
-#include "life/passage/passage.h"
+#include "life/trend/passage.h"
 #include "life/trend/bank.h"
 #include "num/select.h"
 #include <math.h>

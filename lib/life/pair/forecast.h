@@ -15,7 +15,7 @@
 #define LIFE_FORECAST_H
 
 #include "life/pair/pair.h"
-#include "life/prior/paths.h"
+#include "life/pair/paths.h"
 #include "num/status.h"
 
 struct forecast_par {

@@ -1,6 +1,6 @@
 /* fleet.c - see fleet.h */
 #include "life/prior/fleet.h"
-#include "life/passage/passage.h"
+#include "life/trend/passage.h"
 #include "num/select.h"
 #include <math.h>
 #include <stdlib.h>

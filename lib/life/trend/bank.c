@@ -1,5 +1,5 @@
 /* bank.c - see bank.h */
-#include "life/trend/lines.h"
+#include "life/trend/bank_state.h"
 #include "num/deviates.h"
 #include "num/philox.h"
 #include "num/select.h"

@@ -33,7 +33,7 @@
  *	for each row
  *		bank_add(b, t, y);              (y NAN: missing)
  *	if (bank_ready(b))
- *		bank_draw(b, chances, t, par.threshold, life);   (life/passage/passage.h)
+ *		bank_draw(b, chances, t, par.threshold, life);   (life/trend/passage.h)
  */
 #ifndef LIFE_BANK_H
 #define LIFE_BANK_H

@@ -1,7 +1,7 @@
 /* predict.c - see predict.h */
 #include "life/trend/predict.h"
 #include "life/grey/grey.h"
-#include "life/passage/passage.h"
+#include "life/trend/passage.h"
 #include "life/trend/history.h"
 #include "num/select.h"
 #include <math.h>

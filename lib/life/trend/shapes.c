@@ -1,5 +1,5 @@
-/* shapes.c - the coordinates of the bank, see bank.h and lines.h */
-#include "life/trend/lines.h"
+/* shapes.c - the coordinates of the bank, see bank.h and bank_state.h */
+#include "life/trend/bank_state.h"
 
 /* The weights, and the constants of the changes of regime in bank.c and passage.c, were
  * chosen together: by random search over half of 31 measured series, the first 13 kinds

@@ -1,5 +1,5 @@
 /* paths.c - see paths.h */
-#include "life/prior/paths.h"
+#include "life/pair/paths.h"
 #include "life/pair/remaining.h"
 #include "num/rng.h"
 #include "num/select.h"

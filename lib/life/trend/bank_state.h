@@ -1,8 +1,8 @@
-/* lines.h - inside of a bank, for its rows (bank.c), its coordinates (shapes.c) and the
- * draws from it (life/passage)
+/* bank_state.h - data of a bank, for its rows (bank.c), its coordinates (shapes.c) and the
+ * draws from it (passage.c)
  */
-#ifndef LIFE_LINES_H
-#define LIFE_LINES_H
+#ifndef LIFE_BANK_STATE_H
+#define LIFE_BANK_STATE_H
 
 #include "life/trend/bank.h"
 #include <math.h>

@@ -1,6 +1,6 @@
 /* passage.c - see passage.h */
-#include "life/passage/passage.h"
-#include "life/trend/lines.h"
+#include "life/trend/passage.h"
+#include "life/trend/bank_state.h"
 #include "num/deviates.h"
 #include "num/philox.h"
 #include <math.h>
