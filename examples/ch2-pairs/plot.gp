@@ -1,4 +1,4 @@
-# Figures 13, 14 and 16 to 19 of chapter 2; pairs is set by the Makefile
+# Figures 11, 13, 14 and 16 to 19 of chapter 2; pairs is set by the Makefile
 set terminal pngcairo size 900,600 font "sans,13"
 set border 3; set tics nomirror; set key top left noautotitle
 set datafile commentschars "#"
@@ -6,6 +6,16 @@ set xlabel "step"; set xtics 1
 blue = "#1f77b4"; red = "#d62728"; grey = "#7f7f7f"
 hundred = 100.0 / pairs
 set style fill solid 0.3
+
+set output "fig11.png"
+set title "Figure 11: roughness over that before wear, first pair"
+set ylabel "relative roughness"; set key bottom left
+first(y) = column("realisation") == 0 ? column(y) : NaN
+plot "column.50N.steps" using (first("step")):(first("relative_roughness")) with linespoints lw 2 pt 7 title "column rule (2-12)", \
+     "whole.50N.steps" using (first("step")):(first("relative_roughness")) with linespoints lw 2 pt 5 title "whole set (2-11)", \
+     "column-hard.50N.steps" using (first("step")):(first("relative_roughness")) with linespoints lw 2 pt 9 title "column rule, hardness 3 yield", \
+     1.0015 with lines dt 2 lc rgb grey title "thesis: settles at 1.0015"
+set key top left
 
 set output "fig13.png"
 set title "Figure 13: wear volume, mean and standard deviation of the pairs"

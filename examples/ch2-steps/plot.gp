@@ -1,4 +1,4 @@
-# Figures 7 to 12 of chapter 2; heights and depths in um
+# Figures 7 to 10 and 12 of chapter 2; heights and depths in um
 set terminal pngcairo size 900,700 font "sans,13"
 set border 3; set tics nomirror; set key noautotitle
 side = 1000.0; n = 128
@@ -44,15 +44,3 @@ do for [step = 1:9] {
 	plot sprintf("removed%d.txt", step) matrix using (x($1)):(x($2)):($3*1e6) with image
 }
 unset multiplot
-
-set terminal pngcairo size 900,600 font "sans,13"
-set size noratio; set xrange [0:*]; set yrange [*:*]; set xtics 1; set ytics autofreq
-set output "fig11.png"
-set title "Figure 11: roughness over that of the first surface"
-set xlabel "step"; set ylabel "relative roughness"; set key bottom right
-set datafile commentschars "#"
-first(y) = column("realisation") == 0 ? column(y) : NaN
-plot "column-steps.tsv" using (first("step")):(first("relative_roughness")) with linespoints lw 2 pt 7 title "column rule (2-12)", \
-     "whole-steps.tsv" using (first("step")):(first("relative_roughness")) with linespoints lw 2 pt 5 title "whole set (2-11)", \
-     "hard-steps.tsv" using (first("step")):(first("relative_roughness")) with linespoints lw 2 pt 9 title "column rule, hardness 3 yield", \
-     1.0015 with lines dt 2 lc rgb "#7f7f7f" title "thesis: settles at 1.0015"

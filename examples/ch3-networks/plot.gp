@@ -10,7 +10,7 @@ set output "fig28.png"
 set title "Figure 28: errors of its delays, 300 samples"
 set xlabel "error of a delay"; set ylabel "delays"; set style fill solid 0.5; set boxwidth 0.045
 bin(x) = 0.05 * floor(x / 0.05) + 0.025
-plot "errors.tsv" using (bin(column("error"))):(1) smooth frequency with boxes notitle
+plot "errors-0.tsv" using (bin(column("error"))):(1) smooth frequency with boxes notitle
 unset title
 set output "fig-seconds.png"
 set datafile commentschars "#"

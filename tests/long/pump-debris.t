@@ -3,7 +3,7 @@
 . "$(dirname "$0")/../tap.sh"
 
 ok "the example runs" make -s -C "$top/examples/pump-debris" table OUT="$work/pump"
-cd "$work/pump" || exit
+cd "$work/pump/seed-1" || exit
 c=$(sed -n 's/^# dirt: \([^ ]*\).*/\1/p' feedback.tsv)
 # OIL = 0.05 m3
 near "without a filter the oil holds all that wore off" \
