@@ -13,14 +13,14 @@ enum {
 /* Width of a bin: an amplitude by a tenth, a diameter by a thirtieth. */
 static const double BIN = 0.1;
 
-/* Expected share of sums among the rows that are taken for single. */
+/* Expected share of sums among the rows that are taken for single, or half a row. */
 static const double SHARE = 0.005;
 
 /* Shape of the gamma distribution of mean one of the factor by which sums are more than
- * expected.  With 1, 10 sums of 388 rows stay believed (tests/matrix/run, dense-100,
- * seed 4), with 2, 4 and 10, 6, 4 and 3; in scene group, seeds 1 and 4, where arrivals
- * keep a distance, 12, 31, 47 and 57 rows of 200 are taken for sums. */
-static const double SURE = 2;
+ * expected.  With 2, 4 and 10, 6, 4 and 3 sums stay believed of the 397 particles of
+ * tests/matrix/run, dense-100, seed 4; in scene group, seeds 1 and 4, where arrivals keep
+ * a distance, 0, 3 and 10 rows of 200 are taken for sums. */
+static const double SURE = 4;
 
 /* Rows in a bin: none, and still with a logarithm. */
 static const double LEAST = 1e-9;
@@ -99,18 +99,12 @@ static int bin(double height)
 	return k > 0 ? k < BINS ? (int)k : BINS - 1 : 0;
 }
 
-/* Pairs of rows: what they tell of pulses that follow others at short distances. */
-struct pairs {
-	double density; /* pulses per duration behind another, where told apart */
-	double missing; /* pairs that this makes expect at shorter distances */
-};
-
-/* By half a duration of distances beyond twice the reach. */
-static struct pairs count_pairs(const struct coincide *c)
+/* Pulses per duration behind another, by half a duration of distances that are told
+ * apart for certain. */
+static double density(const struct coincide *c)
 {
 	size_t n = held(c);
-	double apart = 0, close = 0, distance = 0;
-	struct pairs p;
+	double pairs = 0;
 
 	for (size_t i = 0; i < n; i++) {
 		const struct row *a = &c->row[(c->rows - n + i) % LATELY];
@@ -121,14 +115,10 @@ static struct pairs count_pairs(const struct coincide *c)
 
 			if (d > 0.5)
 				break;
-			apart += d > 0;
-			close += d <= 0;
+			pairs += d > 0;
 		}
-		distance += 2 * a->reach;
 	}
-	p.density = apart / (0.5 * (double)n);
-	p.missing = p.density * distance - close;
-	return p;
+	return pairs / (0.5 * (double)n);
 }
 
 /* Share of pairs within reach on one sensor, their distance being anything, that are so
@@ -225,9 +215,9 @@ static void count_rows(const struct coincide *c, double *count, double *reach)
 }
 
 /* Odds, per unit of reach, of each amplitude to be a sum of two.  How many sums there are
- * is expected from the pairs, but for a factor that is gamma-distributed before the rows
+ * is expected from the density, but for a factor that is gamma-distributed before the rows
  * tell more. */
-static void learn_odds(struct coincide *c, const struct pairs *pairs, double per_row)
+static void learn_odds(struct coincide *c, double per_row)
 {
 	enum { ROUNDS = 40 };
 	double n = (double)held(c), factor = 1, count[BINS], reach[BINS], all[BINS],
@@ -251,13 +241,11 @@ static void learn_odds(struct coincide *c, const struct pairs *pairs, double per
 		if (!(expected > 0))
 			return;
 		if (round > 0)
-			factor = (SURE + n - left) /
-				 (SURE + fmax(expected, pairs->missing));
+			factor = (SURE + n - left) / (SURE + expected);
 		for (int k = 0; k < BINS; k++) {
 			double own = count[k] > 0 ? kernel[0] * weighed[k] / count[k] : 0;
 
-			c->odds[k] = factor * fmax(pairs->missing / expected, 1) *
-				     sum[k] / fmax(single[k] - own, LEAST);
+			c->odds[k] = factor * sum[k] / fmax(single[k] - own, LEAST);
 		}
 	}
 }
@@ -279,7 +267,7 @@ static int ascending(const void *x, const void *y)
 void coincide_learn(struct coincide *c, double spread)
 {
 	double p[LATELY], sum = 0, mean = 0;
-	struct pairs pairs = count_pairs(c);
+	double per_row = density(c);
 	size_t n = held(c), k = 0;
 
 	if (c->rows < c->next)
@@ -287,15 +275,15 @@ void coincide_learn(struct coincide *c, double spread)
 	c->next = c->rows + n / 8 + 1;
 	c->limit = 1;
 	memset(c->odds, 0, sizeof c->odds);
-	if (!(pairs.density > 0))
+	if (!(per_row > 0))
 		return;
 	for (size_t i = 0; i < n; i++)
 		mean += c->row[i].reach / (double)n;
-	learn_odds(c, &pairs, pairs.density * together(mean, spread));
+	learn_odds(c, per_row * together(mean, spread));
 	for (size_t i = 0; i < n; i++)
 		p[i] = probability(c, c->row[i].height, c->row[i].reach);
 	qsort(p, n, sizeof *p, ascending);
-	while (k < n && sum + p[k] <= SHARE * (double)(k + 1))
+	while (k < n && sum + p[k] <= fmax(SHARE * (double)(k + 1), 0.5))
 		sum += p[k++];
 	if (k < n)
 		c->limit = p[k];
