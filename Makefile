@@ -210,15 +210,15 @@ matrix: all $(MATRIX)
 
 # The table of extreme scenes of one domain: make extremes-contact
 extremes-%: all
-	@sh tests/extremes/$*.t | sed -n 's/^\(not ok\|ok\) [0-9]* - /\1 | /p'
+	@sh tests/extremes/$*.t | sed -nEf tests/extremes/rows.sed
 # Those of the signal include crowded records.
 extremes-signal: all
 	@{ sh tests/extremes/signal.t; sh tests/long/crowded.t; } | \
-		sed -n 's/^\(not ok\|ok\) [0-9]* - /\1 | /p'
+		sed -nEf tests/extremes/rows.sed
 # Those of the contact include solutions that are known.
 extremes-contact: all $(B)/long/exact
 	@{ sh tests/extremes/contact.t; $(B)/long/exact; } | \
-		sed -n 's/^\(not ok\|ok\) [0-9]* - /\1 | /p'
+		sed -nEf tests/extremes/rows.sed
 
 lint: all
 	@scripts/lint

@@ -329,4 +329,68 @@ fails "a lag as long as the record" 1 "align is as long as what is learned from"
 fails "method" 2 'method' duet --method best s.au
 fails "odd window" 2 'even' duet --method duet --window 63 s.au
 fails "window without duet" 2 'need --method duet' duet --window 64 s.au
+
+# The instrument is kept: a second run learns nothing, and its rows come at once.
+sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 20ms --snr 30dB --lag 0.2ms:0.5ms \
+	--gain 0.909 --mains 0.2 --seed 4 >rig.au
+ok "an instrument is learned and kept" duet --instrument rig.tsv rig.au
+grep -v '^#' out >first
+ok "a kept instrument is used" duet --instrument rig.tsv --stats stats.tsv rig.au
+grep -v '^#' out >second
+same "the rows of a kept instrument are those of the learned one" first second
+is "with a kept instrument nothing is learned" "$(column_of calibrations <stats.tsv)" 0
+(head -c 320000 rig.au; i=0; until grep -q alone live || [ $i -ge 300 ]; do
+	sleep 0.1; i=$((i + 1)); done; echo $i >waited) | duet --instrument rig.tsv >live 2>err || :
+at_most "rows come 2 s into a live record, of which 6.6 s are learned from" "$(cat waited)" 299
+rm -f passed.tsv
+sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 20ms --snr 30dB --lag 0.2ms:0.5ms |
+	bpfilter --band 20:1000 --order 400 --zero-phase >passed.au
+duet --instrument passed.tsv passed.au | grep -v '^#' >first
+duet --instrument passed.tsv passed.au | grep -v '^#' >second
+same "the same after a filter" first second
+at_least "and particles are found there" "$(column verdict second | grep -c alone)" 59
+
+refuses() {
+	fails "an instrument $1 is refused" 1 "$2" duet --instrument "$work/$3" ${4:-} rig.au
+}
+head -c 5000 rig.tsv >torn.tsv
+head -n 900 rig.tsv >short.tsv
+sed '/^gain/s/0[.]9/0.8/' rig.tsv >edited.tsv
+grep -v '^# end' rig.tsv | grep -v '^# stream' >plain.tsv
+refuses "cut inside a row" 'truncated' torn.tsv
+refuses "cut between rows" 'did not finish' short.tsv
+refuses "with another number" 'damaged' edited.tsv
+refuses "without an end mark" 'no end mark' plain.tsv
+refuses "of other sensors" 'sensors 0.25 m apart' rig.tsv '--spacing 20cm'
+refuses "learned with other options" 'other options' rig.tsv '--gain 1'
+fails "a table of something else is no instrument" 1 "no key 'instrument'" \
+	duet --instrument "$work/truth.tsv" rig.au
+sensorsim --uniform 80um:120um --number 9 --duration 2s --rate 5kHz --noise 30mV >slow.au
+fails "an instrument of another rate is refused" 1 'learned at 10000 Hz, the record has 5000 Hz' \
+	duet --instrument rig.tsv slow.au
+fails "an instrument is for the fit" 2 'needs --method fit' duet --method count --instrument rig.tsv rig.au
+
+# What has changed since is noticed: gain, flow, form, polarity, lines, noise of either channel.
+cp rig.tsv before.tsv
+for change in "--gain 1.2" "--gain 0.909 --flow 63L/min" "--gain 0.909 --zone 90mm" \
+	"--gain 0.909 --phase 180deg" "--gain 0.909 --mains 1,0.4" "--gain 0.909 --noise 40mV" \
+	"--gain 0.909 --noise 24mV"; do
+	sensorsim --uniform 80um:120um --number 40 --duration 7s --gap 20ms --noise 31.6mV \
+		--lag 0.2ms:0.5ms --mains 0.2 $change --seed 6 >changed.au
+	duet --instrument rig.tsv changed.au >found.tsv 2>err
+	echo "$? $(grep -c 'instrument does not fit' err) $(grep -c '^# doubtful' found.tsv) $change"
+done >noticed
+is "a record of another instrument is doubtful, whatever has changed" "$(grep -vc '^3 1 1' noticed)" 0
+same "the file stays as it is" before.tsv rig.tsv
+sensorsim --uniform 80um:120um --number 0 --duration 7s --noise 31.6mV --mains 0.2 >quiet.au
+ok "a record without particles is not another instrument" duet --instrument rig.tsv quiet.au
+is "and has no rows" "$(grep -vc '^#' out)" 1
+rm -f dense.tsv
+duet --instrument dense.tsv long.au >found.tsv 2>err
+is "a doubtful instrument is not kept" "$(ls dense.tsv 2>/dev/null) $(grep -c 'not written' err)" " 1"
+
+# Oil that flows backwards, or sensors the wrong way round.
+sigconvert -o text rig.au >rig.txt
+sigconvert --from text --columns 'channel2;channel1' rig.txt >swapped.au
+fails "swapped sensors are named" 1 'pulses reach channel 2 first' duet swapped.au
 done_testing

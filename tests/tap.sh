@@ -33,15 +33,22 @@ cd "$work" || exit 1
 tests=0
 bad=0
 
+# The description of a test from its name; scenes.sh has another.
+describe() {
+	described=$1
+}
+
 pass() {
 	tests=$((tests + 1))
-	echo "ok $tests - $1${suffix:-}"
+	describe "$1"
+	echo "ok $tests - $described${suffix:-}"
 }
 
 fail() {
 	tests=$((tests + 1))
 	bad=$((bad + 1))
-	echo "not ok $tests - $1${suffix:-}"
+	describe "$1"
+	echo "not ok $tests - $described${suffix:-}"
 	line=$(grep -nF -m 1 -e "$1" "$test_file" | cut -d: -f1)
 	echo "# at ${test_file#"$top"/}${line:+:$line}"
 	shift

@@ -1,4 +1,4 @@
-/* escape.h - text from outside made fit for a line of output, without taking memory */
+/* escape.h - escaping of text from outside for a line of output, without allocation */
 #ifndef CLI_ESCAPE_H
 #define CLI_ESCAPE_H
 

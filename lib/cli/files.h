@@ -1,4 +1,4 @@
-/* files.h - files that are read and written, none of them for two purposes
+/* files.h - files that are read and written, each for one purpose only
  *
  * Every stream is opened here.  A regular file that a program reads, or writes as another
  * output, must not be written: its data would be lost or mixed.  All functions die if a

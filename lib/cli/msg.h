@@ -1,7 +1,7 @@
 /* msg.h - messages, exit statuses and checked allocation
  *
- * The one way a program fails: die() prints a single line "program: what" and
- * leaves.  A format that ends in ':' gets the reason from errno appended, as in
+ * All programs fail in one way: die() prints a single line "program: what" and ends the
+ * program.  A format that ends in ':' gets the reason from errno appended, as in
  * die(EXIT_RUN, "%s:", path)  ->  "bemcontact: surf.nrrd: No such file".
  * Only lib/cli, lib/io and src may call these; the numerics return statuses.
  */
@@ -26,7 +26,7 @@ void warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Prints one line when -v was given. */
 void note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* Memory or death.  count * size is checked for overflow; memory is zeroed. */
+/* These die without memory.  count * size is checked for overflow; memory is zeroed. */
 void *xcalloc(size_t count, size_t size);
 void *xrealloc(void *p, size_t count, size_t size);
 char *xstrdup(const char *s);

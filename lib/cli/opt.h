@@ -99,7 +99,7 @@ int opt_parse(const struct prog *prog, int argc, char **argv);
 
 /* 1 if the option with this word was on the command line. */
 int opt_given(const char *word);
-/* The word of the first of these rows that was, or NULL. */
+/* The word of the first of these rows whose option was given, or NULL. */
 const char *opt_any_given(const struct opt *table);
 
 /* What the program reads, for messages: "fields: height". */
@@ -110,8 +110,8 @@ const char *opt_reads(void);
  * recorded only where upstream is NULL, since otherwise upstream rebuilds the input. */
 char *opt_cmd(const char *upstream, const char *extra);
 
-/* The same for what --option FILE writes beside the standard output: a pipeline that puts
- * it there.  The option itself must be unrecorded. */
+/* The same for the file that --option FILE writes: a pipeline that writes it to standard
+ * output.  The option itself must be unrecorded. */
 char *opt_cmd_side(const char *upstream, const char *option);
 
 /* Last call of main: writes --stats, checks that standard output was written

@@ -1,17 +1,17 @@
-/* progress.h - a line on the terminal that tells how far a program has come
+/* progress.h - a line on the terminal that shows how much of its work a program has done
  *
  * "debrisgen: 45 %, 12 s left", for work of over a second and only where standard error
  * is a terminal.  Programs of one pipeline have a line each, in their order; the line is
  * erased at the end.  The share is that of the bytes read, if their number is known, or
- * what the program says.
+ * that given by the program.
  */
 #ifndef CLI_PROGRESS_H
 #define CLI_PROGRESS_H
 
-/* The time that has passed counts from here, or else from the first of the others. */
+/* Starts the clock, which the first call of another function starts otherwise. */
 void progress_begin(void);
 /* done of total of what, such as "epochs"; total <= 0: unknown, shows the share of the
- * input, or done; what NULL: that of the input again.  Cheap to call often. */
+ * input, or done; what NULL: shows the share of the input again.  Cheap to call often. */
 void progress(const char *what, double done, double total);
 /* Bytes of the input that were used. */
 void progress_read(double bytes, double total);

@@ -9,7 +9,7 @@
 #define COUNT_DETECTION_H
 
 struct detection {
-	double d50;       /* m; 0: everything is seen */
+	double d50;       /* m; 0: every particle is detected */
 	double threshold; /* T, deviations */
 	double exponent;  /* n */
 };

@@ -187,8 +187,8 @@ static size_t plane_hull(
 static enum num_status drop_inside(
 	struct hull *h, struct hull_point *point, size_t *count, int axis)
 {
-	static int (*const order[3])(const void *, const void *) = { compare_x, compare_y,
-		compare_z };
+	static int (*const order[3])(
+		const void *, const void *) = { compare_x, compare_y, compare_z };
 	size_t kept = 0, first = 0, unique = 0;
 
 	qsort(point, *count, sizeof *point, order[axis]);

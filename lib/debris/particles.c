@@ -29,8 +29,16 @@ struct piece {
 	double top, bottom;
 	int x, y;      /* column, on the grid */
 	int period[2]; /* of the frame in which it was reached */
-	int reached;
+	unsigned char reached;
+	/* Whether its top and bottom corners towards -x, +x, -y, +y lie on the neighbour
+	 * there as well: bits of covered_bit(). */
+	unsigned char covered;
 };
+
+static unsigned covered_bit(int axis, int up, int bottom)
+{
+	return 1u << (4 * axis + 2 * up + bottom);
+}
 
 struct particles {
 	struct particles_par par;
@@ -150,13 +158,16 @@ static int onto_grid(int *at, int n, int periodic, int *period)
 }
 
 /* Adds the pieces of the column at (dx, dy) from a piece that overlap it; returns the
- * height of the overlap. */
-static double reach_column(struct particles *ps, const struct piece *p, int dx, int dy)
+ * height of the overlap.  ends: 1 if the top is within one of them, and 2 if the bottom
+ * is. */
+static double reach_column(
+	struct particles *ps, const struct piece *p, int dx, int dy, unsigned *ends)
 {
 	int x = p->x + dx, y = p->y + dy, period[2] = { p->period[X], p->period[Y] };
 	double top = p->top, bottom = p->bottom, shared = 0;
 	size_t column;
 
+	*ends = 0;
 	if (!onto_grid(&x, ps->par.nx, ps->par.periodic, &period[X]) ||
 		!onto_grid(&y, ps->par.ny, ps->par.periodic, &period[Y]))
 		return 0;
@@ -168,9 +179,30 @@ static double reach_column(struct particles *ps, const struct piece *p, int dx, 
 		if (!(overlap > 0))
 			continue;
 		shared += overlap;
+		*ends |= (ps->piece[i].top <= top ? 1u : 0) |
+			 (ps->piece[i].bottom >= bottom ? 2u : 0);
 		reach(ps, i, period);
 	}
 	return shared;
+}
+
+/* Adds the neighbours of a piece along an axis; returns the height of its exposed sides.
+ */
+static double reach_along(struct particles *ps, size_t at, int axis)
+{
+	const struct piece p = ps->piece[at];
+	double exposed = 0;
+
+	for (int up = 0; up <= 1; up++) {
+		int side = up ? 1 : -1;
+		unsigned ends;
+
+		exposed += p.bottom - p.top -
+			   reach_column(ps, &p, axis == X ? side : 0,
+				   axis == Y ? side : 0, &ends);
+		ps->piece[at].covered |= (unsigned char)(ends * covered_bit(axis, up, 0));
+	}
+	return exposed;
 }
 
 /* All pieces of the body of one. */
@@ -183,16 +215,15 @@ static void fill(struct particles *ps, size_t from)
 	ps->winds[X] = ps->winds[Y] = 0;
 	reach(ps, from, home);
 	for (size_t next = 0; next < ps->members; next++) {
-		struct piece p = ps->piece[ps->body[next]];
-		double height = p.bottom - p.top;
+		size_t at = ps->body[next];
+		const struct piece p = ps->piece[at];
+		unsigned ends;
 
-		for (int side = -1; side <= 1; side += 2) {
-			ps->area += (height - reach_column(ps, &p, side, 0)) * ps->par.dy;
-			ps->area += (height - reach_column(ps, &p, 0, side)) * ps->par.dx;
-			if (!ps->par.corners)
-				continue;
-			reach_column(ps, &p, side, -1);
-			reach_column(ps, &p, side, 1);
+		ps->area += reach_along(ps, at, X) * ps->par.dy;
+		ps->area += reach_along(ps, at, Y) * ps->par.dx;
+		for (int side = -1; ps->par.corners && side <= 1; side += 2) {
+			reach_column(ps, &p, side, -1, &ends);
+			reach_column(ps, &p, side, 1, &ends);
 		}
 		ps->area += 2 * ps->par.dx * ps->par.dy;
 	}
@@ -298,8 +329,9 @@ static void measure_moments(const struct particles *ps, const struct extent *e,
 	out->dip = atan2(fabs(axis[0][Z]), hypot(axis[0][X], axis[0][Y]));
 }
 
-/* Corners of the body, depths in steps of unit; count of them.  Those that cannot be
- * corners of the hull are dropped whenever they fill their memory. */
+/* Corners of the body, depths in steps of unit; count of them.  A corner that the
+ * neighbour covers lies between two points of the body and is no corner of the hull.
+ * Others that cannot be are dropped whenever they fill their memory. */
 static enum num_status put_corners(
 	struct particles *ps, const struct extent *e, double unit, size_t *count)
 {
@@ -320,6 +352,9 @@ static enum num_status put_corners(
 		for (int k = 0; k < 8; k++) {
 			double z = (k & 4 ? p->bottom : p->top) - e->top;
 
+			if (p->covered & (covered_bit(X, k & 1, k >> 2) |
+						 covered_bit(Y, k >> 1 & 1, k >> 2)))
+				continue;
 			ps->corner[n++] = (struct hull_point){ {
 				at[X] - e->low[X] + (k & 1),
 				at[Y] - e->low[Y] + (k >> 1 & 1),

@@ -1,4 +1,4 @@
-/* ends.h - end marks of streams: the output of an input without one gets none
+/* ends.h - end marks of streams: output made from an input without one gets none
  *
  * A reader that detects a truncated input only at its end calls ends_miss() after it has
  * returned the complete part.  The writers call ends_check() before the end mark, so that

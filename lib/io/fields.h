@@ -1,9 +1,9 @@
 /* fields.h - streams of field records (height, pressure, ...) on a regular grid
  *
- * Writes NRRD as wearpipe-streams(5) says.  Reads that, plain 2-D NRRD (one field,
- * float or double, either endian), Gwyddion Simple Field, and headerless little-
- * endian float64 when a raw layout is given.  Records follow one another; each is
- * whole or the program dies naming file, record and what was wanted.
+ * Writes NRRD as described in wearpipe-streams(5).  Reads that, plain 2-D NRRD (one
+ * field, float or double, either endian), Gwyddion Simple Field, and headerless little-
+ * endian float64 when a raw layout is given.  A stream holds any number of records; an
+ * incomplete one ends the program with a message that names file and record.
  *
  *	struct fields_in *in = fields_open(path, NULL);
  *	struct record r = { 0 };
@@ -42,8 +42,8 @@ int fields_marked(const struct fields_in *in);
 int fields_more(struct fields_in *in);
 /* 1 if the last record stated that it is the last one; does not wait for the input. */
 int fields_last(const struct fields_in *in);
-/* Fills r, whose old contents are freed or reused; 0 at the end of the stream.  A stream
- * without any record dies: what should have written it failed. */
+/* Fills r, whose old contents are freed or reused; 0 at the end of the stream.  Dies if
+ * the stream has no record: the program that should have written it failed. */
 int fields_read(struct fields_in *in, struct record *r);
 const char *fields_name(const struct fields_in *in); /* for messages: "surf.nrrd" */
 long fields_count(const struct fields_in *in);       /* records read so far */

@@ -41,11 +41,11 @@ void name_fields(const struct place *at, const char *fields, struct record *r, i
  * Dies where the header grows past a mebibyte. */
 char *header_line(struct place *at, size_t *header_size);
 
-/* The line of a header that is its mark begins with the key; its checksum, at the end,
- * covers the record with zeros for its own digits. */
+/* The header line of the mark begins with mark_key; its checksum, at the end, covers the
+ * record with mark_zeros in place of its own digits. */
 extern const char mark_key[], mark_zeros[];
 
-/* Dies unless nx * ny * nz * nfields points make sense. */
+/* Dies unless each size is at least 1 and the record fits into memory. */
 void check_sizes(const struct place *at, const double *sizes, int n);
 
 /* Dies unless the spacing of an axis, in metres, is one that a surface can have. */

@@ -21,21 +21,21 @@ void input_close(struct input *in);
  * the file is the end of the stream, or whether to wait. */
 void input_whole(struct input *in, int whole);
 
-/* The next byte, which peek leaves; -1 at the end. */
+/* The next byte, which input_peek() does not consume; -1 at the end. */
 int input_get(struct input *in);
 int input_peek(struct input *in);
-/* 1 if the next bytes are these, at most 16; they stay. */
+/* 1 if the next bytes are these, at most 16; does not consume them. */
 int input_begins(struct input *in, const char *bytes);
 /* Up to n bytes: fewer only at the end. */
 size_t input_read(struct input *in, void *bytes, size_t n);
-/* What is there, at least one byte; 0 at the end. */
+/* The bytes available, at least one; 0 at the end. */
 size_t input_some(struct input *in, void *bytes, size_t n);
-/* A line with its newline, which only the last may lack, and a NUL behind it, in memory
- * that grows; returns its length, 0 at the end, most + 1 if it is longer than most
- * bytes: then the first most of them are there. */
+/* A line with its newline, which only the last may lack, and a NUL after it, in memory
+ * that grows.  Returns its length, 0 at the end, or most + 1 if it is longer than most
+ * bytes; the first most bytes are stored then. */
 size_t input_line(struct input *in, char **line, size_t *room, size_t most);
-/* The same for the lines of a text, whose number it counts from 1: dies where the line is
- * longer, and where the first begins a stream of another kind. */
+/* The same for the lines of a text, counted from 1 in *number: dies if a line is longer
+ * than most or if the first line begins a stream of another kind. */
 size_t input_text_line(
 	struct input *in, char **line, size_t *room, size_t most, long *number);
 /* Bytes that a regular file still holds; UINT64_MAX if unknown. */

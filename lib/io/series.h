@@ -25,7 +25,7 @@ int series_units(const struct series *s);             /* units so far */
 /* The columns of times and values, -1 if times are row numbers. */
 int series_time_column(const struct series *s);
 int series_value_column(const struct series *s);
-/* From then on times, or values, are multiplied with the scale. */
+/* Multiplies all later times and values by these factors. */
 void series_scale(struct series *s, double time, double value);
 struct table_in *series_table(const struct series *s);
 void series_close(struct series *s);

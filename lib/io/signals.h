@@ -17,8 +17,8 @@ struct signal_format {
 	char *cmd;    /* pipeline that made it; NULL if unknown */
 	char *units;  /* one per channel, "V V"; NULL if unknown */
 	char *seed;   /* NULL if none */
-	char *filter; /* linear-phase filters it passed, as fir_print() has them, with " |
-			 " between; NULL if none */
+	char *filter; /* linear-phase filters applied, as printed by fir_print(),
+			 separated by " | "; NULL if none */
 	char *start;  /* moment of the first frame, ISO 8601; NULL if unknown */
 };
 
@@ -36,12 +36,12 @@ struct signal_in *signal_from(struct input *in); /* takes ownership of an open i
 int signal_marked(const struct signal_in *in);
 const struct signal_format *signal_format(const struct signal_in *in);
 const char *signal_name(const struct signal_in *in);
-/* Reads up to nframes frames; blocks until that many or the end came.  Returns the
- * frames read, 0 at the end.  Where a stream ends too early the whole frames are handed
- * out; the next call, signal_close() or the end of an output dies.  Samples may be nan:
- * the caller decides. */
+/* Reads up to nframes frames; blocks until it has that many or the input ends.  Returns
+ * the number of frames, 0 at the end.  If a stream ends too early its complete frames are
+ * returned; the next call, signal_close() or the end of an output dies.  Samples may be
+ * nan; the caller checks them. */
 size_t signal_read(struct signal_in *in, double *x, size_t nframes);
-/* The same, but returns as soon as at least one frame is there. */
+/* The same, but returns as soon as at least one frame is available. */
 size_t signal_read_some(struct signal_in *in, double *x, size_t nframes);
 void signal_close(struct signal_in *in);
 

@@ -1,7 +1,7 @@
 /* tables.h - tab-separated tables with '#' comment lines and a bare header line
  *
  * Columns are found by name.  A table that follows another in one stream (cat a b)
- * continues it: its own comments and header are taken in stride.
+ * continues it: its comments and header are read as those of the first.
  *
  *	struct table_in *t = table_open(path);
  *	int cd = table_need(t, "diameter"), cr = table_find(t, "realisation");
@@ -20,7 +20,7 @@ struct table_out;
 
 struct table_in *table_open(const char *path); /* NULL or "-": standard input */
 struct table_in *table_from(struct input *in); /* takes ownership of an open input */
-/* The same, handing every comment "# key: value" on but those of ends. */
+/* The same; passes every comment "# key: value" to take, except end marks. */
 typedef void table_comment_taker(void *context, const char *key, const char *value);
 struct table_in *table_with_comments(
 	struct input *in, table_comment_taker *take, void *context);
@@ -30,29 +30,28 @@ int table_marked(const struct table_in *t);
 const char *table_name(const struct table_in *t);
 /* Value of the latest "# key: value" line read so far, NULL if none. */
 const char *table_key(const struct table_in *t, const char *key);
-/* The pipeline that rebuilds all that was read so far, NULL if none is known; valid until
- * the next call.  What is made of a whole table inherits this one. */
+/* The pipeline that rebuilds everything read so far, NULL if unknown; valid until the
+ * next call.  Output made of a whole table records it. */
 const char *table_upstream(struct table_in *t);
-/* Grows where another record or table begins: at a "# cmd:" line, at a further header. */
+/* Number of the part of the stream: a "# cmd:" line and a further header begin a new one.
+ */
 long table_part(const struct table_in *t);
 int table_columns(const struct table_in *t);
 const char *table_column_name(const struct table_in *t, int column);
 int table_find(const struct table_in *t, const char *column); /* -1 if absent */
 int table_need(const struct table_in *t, const char *column); /* dies naming it */
 /* Moves to the next row; 0 at the end.  A row with too few or too many cells, a last line
- * without its newline, or a table of ours without its end kills the program naming file
- * and line. */
+ * without its newline, or a table of wearpipe without its end mark ends the program with
+ * a message that names file and line. */
 int table_next(struct table_in *t);
 long table_line(const struct table_in *t); /* of the present row, from 1 */
 /* Cell as a number; nan, NaN, NA and an empty cell are NAN; anything else that is
  * not a number dies.  A column below 0 gives NAN. */
 double table_number(const struct table_in *t, int column);
-/* From then on table_number() multiplies the cells of the column with scale, and a
- * further
- * "# units:" line with other units dies. */
+/* From then on table_number() multiplies the cells of the column by scale, and dies at a
+ * further "# units:" line with other units. */
 void table_set_scale(struct table_in *t, int column, double scale);
-/* The same, but only numbers above 0, or integers from least to most: anything else dies.
- */
+/* The same for numbers above 0, and for integers from least to most; others die. */
 double table_positive(const struct table_in *t, int column);
 long table_whole(const struct table_in *t, int column, double least, double most);
 /* Cell as text, valid until the next row. */

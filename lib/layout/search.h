@@ -26,8 +26,8 @@ struct layout_par {
 struct layout {
 	struct bound bound; /* closed form */
 	double unique;      /* probability of an unambiguous match */
-	double by_width;    /* the same where the first pulse's width is made use of */
-	long evaluated;     /* layouts looked at */
+	double by_width;    /* the same if the width of the first pulse is used */
+	long evaluated;     /* number of layouts evaluated */
 };
 
 enum { LAYOUT_COILS = 16 };

@@ -16,7 +16,7 @@
 
 #include "net/network.h"
 
-/* The reading of "sine section with period from pi/2 to 3pi/2". */
+/* The interpretation of "sine section with period from pi/2 to 3pi/2". */
 enum delaydata_section {
 	DELAYDATA_LENGTH, /* sin(u) for 0 <= u < a length drawn from the range */
 	DELAYDATA_PERIOD, /* one whole period, of a length drawn from the range */
@@ -35,7 +35,7 @@ struct delaydata_par {
 	double span; /* of x, rad */
 	enum delaydata_section section;
 	double length[2];    /* rad */
-	int endless;         /* 1: the sine goes on outside its section */
+	int endless;         /* 1: the sine continues outside its section */
 	double amplitude[2]; /* A, uniform */
 	double gain[2];      /* g, uniform, per source */
 	double unit;         /* of the delays, rad */

@@ -8,7 +8,7 @@
  *	pool2x2              max pooling, 2 columns by 2 rows
  *
  * '*' may replace 'x'; a missing stride is 1; a missing activation (linear, tanh,
- *sigmoid, relu) is that of the caller.
+ * sigmoid, relu) is that of the caller.
  *
  * A file of weights is text, in this order:
  *
@@ -22,7 +22,7 @@
  *	end
  *
  * Numbers are written with nine digits, so that the same single-precision numbers are
- *read.
+ * read.
  */
 #ifndef NET_NETFILE_H
 #define NET_NETFILE_H

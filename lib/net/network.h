@@ -1,6 +1,6 @@
 /* network.h - small feed-forward networks and their derivatives by back-propagation
  *
- * A network is a chain of layers: dense, cascade (a dense layer that hands on its
+ * A network is a chain of layers: dense, cascade (a dense layer that passes on its
  * input beside its output, so that a chain of them followed by a dense layer is the
  * cascade-forward network), two-dimensional convolution with zero padding to the same
  * size, and max pooling.  Matrix products go through CBLAS; everything else is here.
@@ -97,7 +97,7 @@ typedef double network_loss(const void *context, int n, int width,
 /* Mean over samples and outputs of the squared difference. */
 network_loss network_mse;
 
-/* What is added to the loss: decay / 2 |weights|^2 (not biases), and for the layer
+/* Terms added to the loss: decay / 2 |weights|^2 (not biases), and for the layer
  * sparse_layer (sigmoid) sparse_weight * sum over its units of the Kullback-Leibler
  * distance of its mean activation in the batch from sparse_level (Ng, Sparse
  * autoencoder, 2011). */

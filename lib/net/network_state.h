@@ -1,4 +1,4 @@
-/* network_state.h - inside of struct network: for network*.c only */
+/* network_state.h - members of struct network, for network*.c only */
 #ifndef NET_NETWORK_STATE_H
 #define NET_NETWORK_STATE_H
 

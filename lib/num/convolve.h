@@ -1,16 +1,16 @@
 /* convolve.h - convolution of plane fields with even kernels, by fast Fourier transform
  *
- * y = k * x for nx * ny real fields and a kernel even in both directions, whose
- * spectrum is then real and even: only its quarter is stored.  Periodic, or linear
+ * y = k * x for nx * ny real fields and a kernel even in both directions, whose spectrum
+ * is then real and even: only its quarter is stored.  Periodic, or linear
  * (CONVOLVE_PADDED: as if x were surrounded by zeros) at any grid size.  Where n has a
- * prime factor beyond what Fourier transforms like, a periodic convolution is done as the
- * linear one with the kernel of all periods.
+ * prime factor above 31, for which FFTW is slow, a periodic convolution is computed as
+ * the linear one with the kernel summed over all periods.
  *
  * The rows are transformed first; then a few columns at a time are copied out,
- * transformed, multiplied and transformed back while they sit in cache; then the rows
- * again.  A padded column is never formed: with half of its 2 n points zero, its even
- * and odd coefficients are two transforms of n points (the odd ones after a twist by
- * exp(-i pi j / n)), and only the n wanted points are transformed back.
+ * transformed, multiplied and transformed back while they are in cache; then the rows are
+ * transformed back.  A padded column is never formed: with half of its 2 n points zero,
+ * its even and odd coefficients are two transforms of n points (the odd ones after a
+ * twist by exp(-i pi j / n)), and only the n wanted points are transformed back.
  *
  *	struct convolve *c = convolve_new(nx, ny, CONVOLVE_PADDED, pool);
  *	double *k = convolve_alloc(c);
@@ -29,8 +29,8 @@
 enum convolve_kind {
 	CONVOLVE_PERIODIC,
 	CONVOLVE_PADDED,
-	/* Periodic over fft_good_size(n) cells, x going on linearly across those that are
-	 * added: for kernels that need not be exact. */
+	/* Periodic over fft_good_size(n) cells; x is interpolated linearly over the added
+	 * cells.  For kernels that need not be exact. */
 	CONVOLVE_BRIDGED
 };
 
@@ -41,12 +41,12 @@ struct convolve;
 struct convolve *convolve_new(
 	size_t nx, size_t ny, enum convolve_kind kind, struct pool *pool);
 /* The same with most of the scratch memory of another, if that is large enough; the
- * lender must stay, and not be at work at the same time.  NULL lends nothing. */
+ * lender must outlive it and must not be used at the same time.  NULL: no lender. */
 struct convolve *convolve_borrow(size_t nx, size_t ny, enum convolve_kind kind,
 	struct pool *pool, const struct convolve *lender);
 void convolve_free(struct convolve *c);
 
-/* Points of the transform each way. */
+/* Points of the transform in each direction. */
 void convolve_size(const struct convolve *c, size_t *mx, size_t *my);
 
 /* Scratch memory that is free between the calls, and how many doubles there are. */

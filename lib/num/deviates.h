@@ -1,7 +1,6 @@
-/* deviates.h - random numbers of a law, made of uniform or standard normal ones
+/* deviates.h - random numbers of a distribution from uniform or standard normal ones
  *
- * For draws that change smoothly with the parameters of the law: the same u or z is the
- * same place in it.
+ * They change smoothly with the parameters of the distribution if u or z stays the same.
  */
 #ifndef NUM_DEVIATES_H
 #define NUM_DEVIATES_H

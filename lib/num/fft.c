@@ -109,6 +109,104 @@ void fft_done(struct fft *fft)
 	free(fft);
 }
 
+struct fft_plane {
+	size_t ny, columns;           /* columns: nx / 2 + 1 */
+	size_t points, width, height; /* strides of rows of points, of coefficients, and
+				       * of columns */
+	fftw_plan row_forward, row_inverse, columns_forward, columns_inverse;
+};
+
+/* Every row and column begins as aligned as the plane. */
+static size_t round_up(size_t n, size_t to)
+{
+	return (n + to - 1) / to * to;
+}
+
+size_t fft_plane_stride(const struct fft_plane *p)
+{
+	return p->points;
+}
+
+size_t fft_plane_size(const struct fft_plane *p)
+{
+	size_t rows = p->ny * p->width, columns = p->columns * p->height;
+
+	return rows > columns ? rows : columns;
+}
+
+/* All columns at once, from rows to columns or back. */
+static fftw_plan plan_columns(
+	const struct fft_plane *p, double complex *from, double complex *to, int inverse)
+{
+	const int n = (int)p->ny, width = (int)p->width, height = (int)p->height;
+
+	return fftw_plan_many_dft(1, &n, (int)p->columns, from, NULL, inverse ? 1 : width,
+		inverse ? height : 1, to, NULL, inverse ? width : 1, inverse ? 1 : height,
+		inverse ? FFTW_BACKWARD : FFTW_FORWARD, FFTW_ESTIMATE);
+}
+
+struct fft_plane *fft_plane_new(size_t nx, size_t ny)
+{
+	struct fft_plane *p = calloc(1, sizeof *p);
+	double *x = NULL;
+	double complex *a = NULL, *b = NULL;
+
+	if (!p)
+		return NULL;
+	p->ny = ny;
+	p->columns = nx / 2 + 1;
+	p->points = round_up(nx, 8);
+	p->width = round_up(p->columns, 4);
+	p->height = round_up(ny, 4);
+	x = fft_alloc(p->points);
+	a = fft_alloc_complex(fft_plane_size(p));
+	b = fft_alloc_complex(fft_plane_size(p));
+	if (x && a && b && planner_fits(nx, ny) && fft_plane_size(p) <= INT_MAX) {
+		pthread_mutex_lock(&planner);
+		p->row_forward = fftw_plan_dft_r2c_1d((int)nx, x, a, FFTW_ESTIMATE);
+		p->row_inverse = fftw_plan_dft_c2r_1d((int)nx, a, x, FFTW_ESTIMATE);
+		p->columns_forward = plan_columns(p, a, b, 0);
+		p->columns_inverse = plan_columns(p, a, b, 1);
+		pthread_mutex_unlock(&planner);
+	}
+	fft_free(x);
+	fft_free(a);
+	fft_free(b);
+	if (p->row_forward && p->row_inverse && p->columns_forward && p->columns_inverse)
+		return p;
+	fft_plane_done(p);
+	return NULL;
+}
+
+void fft_plane_forward(const struct fft_plane *p, double *x, size_t first, size_t end,
+	double complex *spectrum, double complex *work)
+{
+	memset(work, 0, first * p->width * sizeof *work);
+	memset(work + end * p->width, 0, (p->ny - end) * p->width * sizeof *work);
+	for (size_t y = first; y < end; y++)
+		fftw_execute_dft_r2c(
+			p->row_forward, x + y * p->points, work + y * p->width);
+	fftw_execute_dft(p->columns_forward, work, spectrum);
+}
+
+void fft_plane_inverse(const struct fft_plane *p, double complex *spectrum, double *x,
+	size_t first, size_t end, double complex *work)
+{
+	fftw_execute_dft(p->columns_inverse, spectrum, work);
+	for (size_t y = first; y < end; y++)
+		fftw_execute_dft_c2r(
+			p->row_inverse, work + y * p->width, x + y * p->points);
+}
+
+void fft_plane_done(struct fft_plane *p)
+{
+	if (!p)
+		return;
+	destroy(p->row_forward, p->row_inverse);
+	destroy(p->columns_forward, p->columns_inverse);
+	free(p);
+}
+
 struct fft_line {
 	fftw_plan forward, inverse;
 };

@@ -10,7 +10,7 @@
 #include <complex.h>
 #include <stddef.h>
 
-/* re + i im; what CMPLX() of C11 should do, which clang does not have from glibc. */
+/* re + i im, as CMPLX() of C11, which glibc does not offer to clang. */
 static inline double complex fft_complex(double re, double im)
 {
 	union {
@@ -36,6 +36,23 @@ struct fft *fft_new(size_t nx, size_t ny);
 void fft_forward(const struct fft *fft, double *x, double complex *spectrum);
 void fft_inverse(const struct fft *fft, double complex *spectrum, double *x);
 void fft_done(struct fft *fft);
+
+/* Real transform of ny rows of nx points, rows fft_plane_stride() apart, to and from
+ * nx / 2 + 1 columns of coefficients, one after another.  Rows and columns are
+ * transformed one by one, which FFTW's own plan for small planes takes up to twice as
+ * long for, and rows that are zero or not wanted are left out.  work has room for a
+ * spectrum, fft_plane_size() coefficients; the inverse destroys its input. */
+struct fft_plane;
+struct fft_plane *fft_plane_new(size_t nx, size_t ny);
+size_t fft_plane_stride(const struct fft_plane *plane);
+size_t fft_plane_size(const struct fft_plane *plane);
+/* Rows [first, end) of x; the others are taken as zero. */
+void fft_plane_forward(const struct fft_plane *plane, double *x, size_t first, size_t end,
+	double complex *spectrum, double complex *work);
+/* Only rows [first, end) of x. */
+void fft_plane_inverse(const struct fft_plane *plane, double complex *spectrum, double *x,
+	size_t first, size_t end, double complex *work);
+void fft_plane_done(struct fft_plane *plane);
 
 /* Complex transform of one line of n points, from one array to another, each from
  * fft_alloc_complex() or a multiple of four points into such memory. */

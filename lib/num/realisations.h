@@ -29,26 +29,26 @@ enum realisations_status {
 	REALISATIONS_OK,
 	REALISATIONS_MEMORY,
 	REALISATIONS_AGAIN, /* a realisation occurs again after it was passed on */
-	REALISATIONS_STOP   /* take gave up */
+	REALISATIONS_STOP   /* take did not return NUM_OK */
 };
 
-/* Receives all cells of a realisation by ascending step, several of one step where its
- * rows did not follow one another; not 0: give up. */
+/* Receives all cells of a realisation by ascending step; a step whose rows were not
+ * consecutive has several.  Any status but NUM_OK stops the reading. */
 typedef enum num_status realisations_take(
 	void *to, const struct realisation_cell *cell, size_t n);
 
 struct realisations;
 
-/* room: cells kept before realisations are handed on; NULL when out of memory. */
+/* room: cells kept before realisations are passed on; NULL when out of memory. */
 struct realisations *realisations_new(size_t room, realisations_take *take, void *to);
 void realisations_free(struct realisations *r);
 
-/* Rows of the same realisation, step and part that follow one another are summed up. */
+/* Consecutive rows of the same realisation, step and part are summed. */
 enum realisations_status realisations_add(
 	struct realisations *r, const struct realisation_cell *row);
 /* Passes on the remaining realisations; call once, after the last row. */
 enum realisations_status realisations_end(struct realisations *r);
-/* The realisation a status other than REALISATIONS_MEMORY is about. */
+/* The realisation that REALISATIONS_AGAIN or REALISATIONS_STOP refers to. */
 long realisations_culprit(const struct realisations *r);
 
 #endif

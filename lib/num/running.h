@@ -1,4 +1,4 @@
-/* running.h - mean, variance and regression of values that come one by one */
+/* running.h - mean, variance and regression of values given one by one */
 #ifndef NUM_RUNNING_H
 #define NUM_RUNNING_H
 
@@ -8,7 +8,7 @@ struct running {
 };
 
 void running_add(struct running *r, double x);
-/* The same value so often; nothing for times <= 0. */
+/* Adds the same value several times; adds nothing if times <= 0. */
 void running_repeat(struct running *r, double x, double times);
 double running_variance(const struct running *r); /* over n - 1; NAN below two values */
 

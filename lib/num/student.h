@@ -5,8 +5,8 @@
 /* The t with P(|T| <= t) = share, 0 < share < 1, for freedom >= 1 degrees of freedom. */
 double student_two_sided(double share, long freedom);
 
-/* log of the density at 0 for scale 1: that at t is (1 + t^2 / freedom)^(-(freedom + 1) /
- * 2) of it. */
+/* Log of the density at t = 0 for scale 1; the density at t is this density times
+ * (1 + t^2 / freedom)^(-(freedom + 1) / 2). */
 double student_log_constant(double freedom);
 
 #endif

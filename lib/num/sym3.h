@@ -3,11 +3,11 @@
  * Cyclic Jacobi rotations: accurate to the last bits of the largest eigenvalue, also
  * where eigenvalues coincide.
  */
-#ifndef CONTACT_SYM3_H
-#define CONTACT_SYM3_H
+#ifndef NUM_SYM3_H
+#define NUM_SYM3_H
 
-/* m holds xx yy zz xy xz yz.  value[] falls; vector[k] is the unit vector of value[k],
- * with its largest component positive.  vector may be NULL. */
+/* m holds xx yy zz xy xz yz.  value[] descends; vector[k] is the unit eigenvector of
+ * value[k], with its largest component positive.  vector may be NULL. */
 void sym3_eigen(const double m[6], double value[3], double vector[3][3]);
 
 #endif

@@ -1,4 +1,4 @@
-/* align.h - by how much the second sensor lags behind the first
+/* align.h - the lag of the second sensor behind the first
  *
  * The lag at which the cross-correlation of the two channels is largest is the transit
  * time of the mean particle, weighted by the energy of its pulse.

@@ -1,14 +1,14 @@
-/* calibrate.h - what a two-sensor record says about the instrument
+/* calibrate.h - parameters of the instrument learned from a two-sensor record
  *
  * From the beginning of a record: lag of the second sensor, interfering tones, noise of
  * either channel, shape and duration of the pulses, ratio of the gains, range of the
- * velocities.  Whatever the caller knows is taken as given.
+ * velocities.  Values known by the caller are not changed.
  *
  * The order is: tones from the periodogram; noise from the fourth difference; lag from
  * the cross-correlation; duration from the lag at which the autocorrelation is lowest
  * (which superposition does not change); then joint fits of the clearest sections under
  * each shape, with duration and gain chosen by least chi-square, and a correction of the
- * shape where all pulses ask for it.
+ * shape if all pulses have a common residual.
  */
 #ifndef SIGNAL_CALIBRATE_H
 #define SIGNAL_CALIBRATE_H

@@ -63,6 +63,7 @@ enum calibrate_status {
 	CALIBRATE_SILENT_1, /* channel 1 is constant */
 	CALIBRATE_SILENT_2,
 	CALIBRATE_NO_LAG, /* the channels have nothing in common */
+	CALIBRATE_SWAPPED, /* particles pass sensor 2 first */
 	CALIBRATE_FAR,    /* the lag given is as long as the record */
 	CALIBRATE_NARROW, /* the filter has left a band narrower than half the pulse's */
 	CALIBRATE_FAST,   /* pulses of fewer than 8 samples */

@@ -1,6 +1,6 @@
-/* campbell.h - what a record too dense to be taken apart says about its particles
+/* campbell.h - number and size of the particles of a record too dense to be separated
  *
- * Pulses that arrive at random, rate of them per sample, make shot noise whose cumulants
+ * Pulses that arrive at random, rate of them per sample, are shot noise whose cumulants
  * are (Campbell's theorem, Rice 1944)
  *
  *	k2 = rate E[a^2] T integral p^2 ds,    k4 = rate E[a^4] T integral p^4 ds
@@ -28,8 +28,8 @@ struct campbell {
 };
 
 /* From y1, y2[0 .. n), in units of the noise of y1 (gain: of channel 2 over 1 in these
- * units).  Standard errors are those of a jackknife over stretches that are long against
- * the pulse; INFINITY where n is shorter than 32 durations. */
+ * units).  Standard errors are those of a jackknife over stretches much longer than
+ * the pulse; INFINITY if n is shorter than 32 durations. */
 void campbell_estimate(const double *y1, const double *y2, size_t n,
 	const struct shape *shape, double duration, double gain, struct campbell *c);
 

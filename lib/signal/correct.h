@@ -1,19 +1,20 @@
-/* correct.h - a pulse that is not quite one of those of sensor.h
+/* correct.h - correction of a pulse that differs from those of sensor.h
  *
- * What the residuals around all pulses of the examples have in common is no noise: it
- * belongs to the shape.
+ * The mean residual around all pulses of the examples is not noise but an error of the
+ * shape.
  */
 #ifndef SIGNAL_CORRECT_H
 #define SIGNAL_CORRECT_H
 
 #include "signal/examples.h"
 
-/* Where only large pulses may be told apart, does anything stay, or are there fewer than
- * else?  That may be the shape's fault.  Ends with the examples fitted as at the end. */
+/* 1 if, with only large pulses allowed to overlap others, a significant chi-square
+ * remains or pulses vanish: the shape may be wrong.  On return the examples are fitted as
+ * before.
+ */
 int correct_doubtful(struct examples *ex, struct calibration *c);
 
-/* Gives the shape of c what the pulses have in common, if that describes the examples
- * better; else all stays. */
+/* Adds the mean residual to the shape of c if that describes the examples better. */
 enum num_status correct_shape(struct examples *ex, struct calibration *c);
 
 #endif

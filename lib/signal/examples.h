@@ -1,5 +1,5 @@
-/* examples.h - clear short stretches of a record, fitted again and again while its pulse
- * is learned; for learn.c and correct.c only
+/* examples.h - clear short sections of a record to which its pulse is fitted; for learn.c
+ * and correct.c only
  *
  * All is in units of the noise.
  */
@@ -18,26 +18,27 @@ struct example {
 	struct joint_pulse pulse[EXAMPLE_PULSES];
 	int m;
 	int lone;    /* 1: hardly longer than one pulse */
-	int spoiled; /* 1: leaves so much more than the others that it must hide something
-		      */
+	int spoiled; /* 1: its residual is so much larger than those of the others that it
+			contains other events */
 };
 
 struct examples {
 	struct joint *joint;
-	struct joint_scene scene; /* as the instrument is taken to be now */
+	struct joint_scene scene; /* present parameters of the instrument */
 	struct example example[EXAMPLES_MAX];
 	int count;
-	int pieces;     /* 1: some may cut pulses through */
-	double misfit;  /* of joint.h, at the end */
-	double share;   /* of a pulse's energy that the shape may leave, found so far */
-	double dof;     /* of all examples, ... */
+	int pieces;    /* 1: some may cut pulses through */
+	double misfit; /* of joint.h, at the end */
+	double share; /* of the energy of a pulse that the shape may miss, found so far */
+	double dof;   /* of all examples, ... */
 	double excess;  /* ... their chi-square beyond it, and ... */
 	double energy;  /* ... that of their pulses */
 	int corrected;  /* 1: the shape is one of twenty parameters, else of two */
 	double price;   /* their chi-square and twice the threshold for each pulse, per
 			   degree */
 	double rest[2]; /* power of either channel's residual, that of its noise 1 */
-	/* CALIBRATE_MEMORY once anything below had none: it all tells nothing then. */
+	/* CALIBRATE_MEMORY once a function was out of memory; the results are invalid
+	 * then. */
 	enum calibrate_status status;
 };
 
@@ -46,10 +47,10 @@ struct examples {
 void examples_pick(struct examples *ex, const double *y1, const double *y2, size_t n,
 	int most, const struct calibration *c);
 
-/* Finds the pulses of all examples anew, one that overlaps others taking away this share
- * of their energy or more.  Returns the median of their chi-square per degree of freedom,
- * which a few examples with hidden pulses do not spoil; INFINITY where one cannot be
- * fitted. */
+/* Finds the pulses of all examples anew; one that overlaps others must reduce chi-square
+ * by this share of their energy.  Returns the median of their chi-square per degree of
+ * freedom, which a few examples with hidden pulses do not spoil; INFINITY where one
+ * cannot be fitted. */
 double examples_fit(struct examples *ex, double misfit);
 
 /* Chi-square of all that are not spoiled with their pulses refined under the present
@@ -62,7 +63,7 @@ int examples_refine(struct examples *ex, const struct example *e,
 	struct joint_pulse *pulse, struct joint_result *result);
 
 int examples_pulses(const struct examples *ex); /* number of them in all */
-/* Are there as many as are looked for?  Then they tell little. */
+/* 1 if the largest number of pulses was found: there may be more. */
 int examples_full(const struct examples *ex);
 
 #endif

@@ -31,7 +31,7 @@ struct fir_band {
 	enum fir_window window;
 	double beta; /* of the Kaiser window */
 	int scale;   /* 1: gain 1 at the middle of the band (at 0 where low = 0, at
-		      * half the rate where high = 0.5); 0: as the window leaves it */
+		      * half the rate where high = 0.5); 0: unscaled */
 };
 
 /* Fills h[order + 1].  NUM_DOMAIN if the band cannot be scaled: a filter of odd order has
@@ -39,9 +39,9 @@ struct fir_band {
 enum num_status fir_design(const struct fir_band *band, double *h);
 
 /* The band in words, edges in the unit of rate, and back from them: "70:130 200 hamming 0
- * scaled".  What follows behind " | ", a filter passed before or after, stays: a chain
- * is undone one by one.  fir_parse() returns where it stopped, NULL where the text is
- * none of these. */
+ * scaled".  Text after " | " is another filter of a chain, whose filters are
+ * parsed one by one.  fir_parse() returns the position where it stopped, NULL if the text
+ * is not a band. */
 enum { FIR_TEXT = 128 };
 void fir_print(const struct fir_band *band, double rate, char text[FIR_TEXT]);
 const char *fir_parse(const char *text, double rate, struct fir_band *band);
@@ -50,26 +50,26 @@ const char *fir_parse(const char *text, double rate, struct fir_band *band);
 double fir_kaiser_beta(double attenuation);
 
 /* Response of n taps at frequency f over the rate: sum h[k] exp(-2 pi i f (k - shift)).
- * shift = 0 for the filter as it runs, (n - 1) / 2 once its delay is taken out. */
+ * shift = 0 for the filter as it runs, (n - 1) / 2 with its delay removed. */
 void fir_response(const double *h, size_t n, double f, double shift, double *real,
 	double *imaginary);
 
-/* A filter at work on interleaved frames, x[frame * channels + c], with zeros before the
+/* A filter for interleaved frames, x[frame * channels + c], with zeros before the
  * first.  Long filters run by overlap-save with Fourier transforms, short ones directly,
  * by an estimate of the cost.  Memory and time per frame do not depend on the length of
  * the stream. */
 struct fir;
 
-/* block: the most frames per call, 0 to let the filter choose what is fastest.  NULL when
+/* block: largest number of frames per call; 0: the fastest.  NULL when
  * out of memory. */
 struct fir *fir_new(const double *h, size_t n, int channels, size_t block);
 void fir_free(struct fir *fir);
 
 size_t fir_block(const struct fir *fir);
-/* Points of its transform; 0 where it works directly. */
+/* Points of its transform; 0 for direct convolution. */
 size_t fir_transform(const struct fir *fir);
-/* Blocks of one channel filtered so far, and those left out because all samples that
- * reach into them are zero, and so is what comes out. */
+/* Blocks of one channel filtered so far, and those omitted because input and output
+ * are zero. */
 double fir_blocks(const struct fir *fir);
 double fir_blocks_left_out(const struct fir *fir);
 

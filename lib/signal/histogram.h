@@ -1,8 +1,8 @@
-/* histogram.h - a weighted histogram of two quantities, and the peaks that share it out
+/* histogram.h - a weighted histogram of two quantities, divided among its peaks
  *
  * Cells are counted by rows; cell (i, j) has the number i * HISTOGRAM_CELLS + j.  It is
  * smoothed, its peaks are sources, and each cell belongs to the peak that is reached by
- * always going to its highest neighbour.
+ * moving to the highest neighbour repeatedly.
  */
 #ifndef SIGNAL_HISTOGRAM_H
 #define SIGNAL_HISTOGRAM_H

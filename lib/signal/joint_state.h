@@ -1,4 +1,5 @@
-/* joint_state.h - what the parts of the joint fit share; for lib/signal/joint*.c only */
+/* joint_state.h - data shared by the parts of the joint fit, for lib/signal/joint*.c only
+ */
 #ifndef SIGNAL_JOINT_STATE_H
 #define SIGNAL_JOINT_STATE_H
 
@@ -11,7 +12,7 @@ enum {
 	BASIS_MAX = 2 * (JOINT_TONES_MAX + JOINT_BASELINE_MAX) + 1
 };
 
-/* What one pulse puts on one channel, and its derivatives by (t, t + delta, a). */
+/* One pulse on one channel: its derivatives by (t, t + delta, a). */
 struct column {
 	long first;
 	size_t n;
@@ -22,13 +23,12 @@ struct joint {
 	size_t capacity; /* samples */
 	size_t support;  /* samples one pulse may touch */
 	size_t n;
-	double *e[2];            /* record less pulses, tones still in it */
+	double *e[2];            /* record minus pulses, with tones */
 	double *r[2];            /* e without tones and offset */
 	int basis;               /* orthonormal vectors spanning tones and offset, ... */
 	int slow;                /* ... the first of them the baseline */
 	double *q;               /* basis * n */
-	double share[BASIS_MAX]; /* of each that is projected out: 1 if nothing is known
-				  */
+	double share[BASIS_MAX]; /* of each vector that is projected out; 1: unknown */
 	double *memory;          /* columns of all pulses */
 	double *scratch;         /* three of support */
 	double *filter[2];       /* matched filter on the coarse grid */
@@ -45,7 +45,7 @@ struct joint {
 	int inverted; /* pulses whose normal matrix is in factor; 0: it was singular */
 };
 
-/* A pulse to try, and the chi-square it should take away. */
+/* A pulse to try, and the expected reduction of chi-square. */
 struct candidate {
 	double t, delta, a, z2;
 };
@@ -89,9 +89,9 @@ static inline double unit_energy(const struct joint_scene *s)
 	return s->duration * shape_energy(s->shape) * (1 + s->gain * s->gain);
 }
 
-/* joint_model.c: the record less pulses, and what it is made of */
+/* joint_model.c: the record minus pulses, and its parts */
 
-/* Takes in the record and the m pulses known of it. */
+/* Stores the record and its m known pulses. */
 enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	const double *y1, const double *y2, size_t n, const struct joint_pulse *pulses,
 	int m);
@@ -121,19 +121,20 @@ void joint_fill_covariance(
 
 /* joint_moves.c: *chi2 is kept up to date */
 
-/* Tries one more pulse at c; 1 if it was worth it, else everything is as before. */
+/* Tries one more pulse at c; 0 if chi-square does not fall enough: nothing has changed.
+ */
 int joint_try_pulse(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int *m, const struct candidate *c, double *chi2);
 /* Splits pulses that look like two; returns how many were split. */
 int joint_split_pulses(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int *m, double *chi2);
-/* Lets pulses exchange their arrivals at the second sensor where that is better. */
+/* Exchanges arrivals of pulses at the second sensor if that reduces chi-square. */
 void joint_swap_pulses(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int m, double *chi2);
 /* Merges pulses so close that they may be one that was split in vain. */
 void joint_merge_pulses(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int *m, double *chi2);
-/* Takes out pulses that the others can do without, least significant first. */
+/* Removes insignificant pulses, the least significant first. */
 void joint_prune(struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses,
 	int *m, double *chi2);
 

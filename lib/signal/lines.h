@@ -1,10 +1,10 @@
-/* lines.h - takes narrow lines (mains, pump) out of a stream
+/* lines.h - removal of narrow lines (mains, pump) from a stream
  *
  * Amplitude and phase of every line are found by least squares over a window of two hops
  * that moves on by one, and run linearly from the middle of one window to that of the
- * next; so they may change slowly, and pulses that are short against the window hardly
- * touch them (see tones.h, which also leaves outliers out).  A line that keeps its
- * amplitude goes to the last digits.  The output lags the input by at most two hops.
+ * next; so they may change slowly, and pulses much shorter than the window hardly
+ * affect them (tones.h also excludes outliers).  A line of constant amplitude is removed
+ * to rounding.  The output lags the input by at most two hops.
  *
  *	struct lines *lines = lines_new(2, omega, channels, 10000);
  *	do {
@@ -26,10 +26,10 @@ struct lines;
 struct lines *lines_new(int count, const double *omega, int channels, size_t hop);
 void lines_free(struct lines *lines);
 
-/* Takes the next n frames, x[frame * channels + c]: hop of them, fewer (or none) at the
+/* Reads the next n frames, x[frame * channels + c]: hop of them, fewer (or none) at the
  * end of the stream and only there.  Returns the frames that are now clean and their
- * number, two hops at most, valid until the next call; NULL when out of memory.  A whole
- * stream too short for a fit (16 samples per line) comes back as it went in. */
+ * number, two hops at most, valid until the next call; NULL when out of memory.  A
+ * stream that is too short for a fit (16 samples per line) is returned unchanged. */
 const double *lines_run(struct lines *lines, const double *x, size_t n, size_t *clean);
 
 #endif

@@ -1,20 +1,22 @@
-/* masks.h - degenerate unmixing (DUET): sources told apart by attenuation and delay
+/* masks.h - degenerate unmixing (DUET): sources separated by attenuation and delay
  *
- * Thesis (3-6) to (3-18), repaired where it must be:
+ * Thesis (3-6) to (3-18), with a sign corrected:
  *
  *	(3-15) a(tau, w) = |Y2 / Y1|
- *	(3-16) delta(tau, w) = -angle(Y2 / Y1) / w'      (the minus sign is missing in
- *print) (3-18) weight |Y1 Y2|
  *
- * Bin 0 has no phase and is left out, as are bins above the band of the pulse.  A
- * pulse is wider than a bin, so that the phase of a bin turns slower or faster than the
- * frequency w of its middle says: w' is that of one pulse of the expected shape under
- * the same windows (with 64 samples and a 100-sample pulse, 0.56 w in bin 1).  Peaks of
- * the smoothed histogram are sources; each cell belongs to the peak reached by always
- * going to its highest neighbour, and the mask (3-17) of a source holds the bins of the
+ *	(3-16) delta(tau, w) = -angle(Y2 / Y1) / w'      (the thesis lacks the minus sign)
+ *
+ *	(3-18) weight |Y1 Y2|
+ *
+ * Bin 0 has no phase and is omitted, as are bins above the band of the pulse.  A pulse is
+ * wider than a bin, so that the phase of a bin turns slower or faster than the frequency
+ * w of its middle says: w' is that of one pulse of the expected shape under the same
+ * windows (with 64 samples and a 100-sample pulse, 0.56 w in bin 1).  Peaks of the
+ * smoothed histogram are sources; each cell belongs to the peak reached by moving to the
+ * highest neighbour repeatedly, and the mask (3-17) of a source holds the bins of the
  * time-frequency plane whose cell belongs to it.
  *
- * Pulses that overlap share their bins, and no mask can part those: see duet(1).
+ * Pulses that overlap share bins, which masks cannot separate: see duet(1).
  */
 #ifndef SIGNAL_MASKS_H
 #define SIGNAL_MASKS_H
@@ -53,7 +55,7 @@ void masks_free(struct masks *masks);
 enum num_status masks_find(struct masks *masks, const double *y1, const double *y2,
 	size_t n, struct masks_source source[MASKS_SOURCES_MAX], int *sources);
 
-/* What source k of the last masks_find() puts on sensor 1: x[0..n). */
+/* Signal of source k of the last masks_find() at sensor 1: x[0..n). */
 void masks_separate(struct masks *masks, int k, double *x);
 
 /* Weighted histogram of the last masks_find(): MASKS_CELLS * MASKS_CELLS, attenuation

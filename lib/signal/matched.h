@@ -1,4 +1,4 @@
-/* matched.h - what the matched filter of the pulse tells about a record as a whole
+/* matched.h - statistics of a whole record after the matched filter of its pulse
  *
  * y1, y2 hold n aligned samples in units of the noise, work n more.
  */
@@ -10,7 +10,7 @@
 #include <stddef.h>
 
 /* *coherence: correlation of the filtered channels over the quietest tenth of the record:
- * noise has none, pulses that are always there have much.  *level is the root mean square
+ * 0 for noise, large for pulses without pauses.  *level is the root mean square
  * there, 1 for white noise. */
 enum num_status matched_coherence(const struct calibration *c, const double *y1,
 	const double *y2, size_t n, double *work, double *coherence, double *level);

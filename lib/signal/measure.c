@@ -225,6 +225,32 @@ static enum calibrate_status check_lag(
 								      : CALIBRATE_OK;
 }
 
+/* Is sensor 2 the first that particles pass?  Looked for where the lag found explains
+ * less than half of what the channels hold. */
+static enum calibrate_status find_reverse(
+	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
+{
+	struct calibration back = *c;
+	double lag;
+
+	if (!isnan(par->lag) || c->correlation > 0.5)
+		return CALIBRATE_OK;
+	if (align_lag(rec->y2, rec->y1, rec->n, rec->n / 2, &lag, &back.correlation) !=
+		NUM_OK)
+		return CALIBRATE_MEMORY; /* neither channel is zero throughout */
+	if (lag < 1 || back.correlation <= c->correlation)
+		return CALIBRATE_OK;
+	switch (check_lag(rec, &back)) {
+	case CALIBRATE_OK:
+		return CALIBRATE_SWAPPED;
+	case CALIBRATE_MEMORY:
+		return CALIBRATE_MEMORY;
+	default:
+		return CALIBRATE_OK;
+	}
+}
+
+
 /* The second channel moves back. */
 static void align(struct record *rec, const struct calibration *c)
 {
@@ -376,6 +402,8 @@ enum calibrate_status measure(const struct calibrate_par *par, double *y1, doubl
 		status = find_lag(par, &rec, c);
 	if (status == CALIBRATE_OK && measure_noise(c, y1, y2, n, work) != NUM_OK)
 		status = CALIBRATE_MEMORY;
+	if (status == CALIBRATE_OK)
+		status = find_reverse(par, &rec, c);
 	if (status == CALIBRATE_OK && (isnan(par->duration) || isnan(par->lag)))
 		status = check_lag(&rec, c);
 	if (status != CALIBRATE_OK)

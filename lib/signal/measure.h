@@ -1,6 +1,6 @@
 /* measure.h - the instrument measured from a record, once (see calibrate.h)
  *
- * Whatever is known or assumed of the filter the record has passed has been undone.
+ * Known or assumed filters of the record have been undone before.
  */
 #ifndef SIGNAL_MEASURE_H
 #define SIGNAL_MEASURE_H
@@ -9,7 +9,7 @@
 #include "signal/colour.h"
 #include <stddef.h>
 
-/* What a first look at the record tells about its noise. */
+/* Results of a first look at the noise of the record. */
 struct look {
 	int attempts;
 	int coloured;

@@ -1,21 +1,19 @@
-/* mixture.h - sources of a whole record of two channels, told apart by attenuation and
- *delay
+/* mixture.h - separation of the sources of a record by attenuation and delay
  *
- * DUET for what it was invented for: sources that are sparse in time and frequency, like
- * talkers, each of which reaches the second channel weaker by a and later by delta,
+ * DUET for sources that are sparse in time and frequency, such as speech, each of which
+ * reaches the second channel weaker by a and later by delta,
  *
  *	x1 = sum of s_k,   X2(w) = sum of a_k exp(-i w delta_k) S_k(w)
  *
  * (Yilmaz, Rickard: Blind separation of speech mixtures via time-frequency masking, IEEE
- * Trans. Signal Process. 52, 2004).  Peaks of the histogram of a - 1/a and delta,
- *weighted by |X1 X2|, over the frequencies at which no delay in question turns the phase
- *by more than half a turn, are the sources; a_k and delta_k follow by least squares over
- *the points of the plane that are theirs; each point goes to the source that makes it
- *most likely,
+ * Trans. Signal Process. 52, 2004).  The sources are peaks of the histogram of a - 1/a
+ * and delta, weighted by |X1 X2|, over the frequencies at which no delay searched turns
+ * the phase by more than half a turn; a_k and delta_k are fitted by least squares to the
+ * points of each source; each point is assigned to the most likely source,
  *
  *	least |a_k exp(-i w delta_k) X1 - X2|^2 / (1 + a_k^2),
  *
- * so that the sources add up to channel 1.  The record is held: 16 bytes a frame.
+ * so that the sources add up to channel 1.  The record is kept: 16 bytes a frame.
  *
  *	struct mixture *m = mixture_new(&par);
  *	while ((n = read(x)) > 0)
@@ -57,11 +55,10 @@ size_t mixture_frames(const struct mixture *m);
 /* The sources of all that was pushed, largest share first: their number, 0 where both
  * channels have nothing in common or are silent. */
 int mixture_find(struct mixture *m, struct mixture_source source[MIXTURE_SOURCES]);
-/* What each puts on channel 1: x[k * frames + i]. */
+/* Signal of each source on channel 1: x[k * frames + i]. */
 enum num_status mixture_separate(struct mixture *m, double *x);
 
-/* 1 if delays of more than 16 samples, which cannot be told, had a share in the record.
- */
+/* 1 if the record has delays of more than 16 samples, which are ambiguous. */
 int mixture_is_far(const struct mixture *m);
 
 /* Weights of the histogram of mixture_find(), by rows of the attenuation; the middle of

@@ -1,4 +1,4 @@
-/* passage.h - which particles pass the sensors, and when
+/* passage.h - random particles and the times at which they pass the sensors
  *
  * Arrivals come in bursts of a given number of particles, burst b within
  * [start + b period, start + b period + span], at random but never closer than gap; a
@@ -6,8 +6,8 @@
  * bursts all particles share one window.  Or they come as a Poisson process of a given
  * rate with gap as dead time, until the window is over.
  *
- * Everything drawn for particle i depends on (seed, realisation, i) and on the arrival
- * before it alone.  SI units.
+ * The numbers of particle i depend only on (seed, realisation, i) and on the arrival
+ * before it.  SI units.
  *
  *	struct arrivals *a = arrivals_new(&par);
  *	struct passage p;
@@ -53,7 +53,7 @@ struct passage {
 	double response[2];
 };
 
-/* What the particles are drawn from. */
+/* Distribution of the particles. */
 struct stream {
 	uint64_t seed;
 	uint32_t realisation;
@@ -64,7 +64,9 @@ struct stream {
 	int by_volume;      /* 1: uniform in volume, 0: in diameter */
 };
 
-/* Nearest a centre comes to the wall: its radius, but no less than 1 % of the pipe's. */
+/* Smallest distance of a centre from the wall: its radius, but at least 1 % of the
+ * pipe's.
+ */
 double passage_clearance(const struct stream *stream, double diameter);
 /* Slowest velocity that passage_draw() and passage_carry() can give. */
 double passage_slowest(const struct stream *stream);

@@ -1,23 +1,26 @@
-/* polarisability.h - the magnetic moment of a conducting, permeable sphere in an
- *alternating field
+/* polarisability.h - magnetic moment of a conducting sphere in an alternating field
  *
  * A sphere of radius a, relative permeability mu and conductivity sigma in a uniform
- *field H0 exp(i w t) has the moment m = 2 pi a^3 beta H0,
+ * field H0 exp(i w t) has the moment m = 2 pi a^3 beta H0,
  *
- *	beta = (2 (mu - 1) + u) / (mu + 2 - u),   u = x^2 / (5 - x^2 / (7 - x^2 / (9 -
- *...))), x = (1 - i) a / delta,   delta = (pi f mu0 mu sigma)^(-1/2)
+ *	beta = (2 (mu - 1) + u) / (mu + 2 - u)
+ *
+ *	u = x^2 / (5 - x^2 / (7 - x^2 / (9 - ...)))
+ *
+ *	x = (1 - i) a / delta,   delta = (pi f mu0 mu sigma)^(-1/2)
  *
  * (Wait, J. R.: A conducting sphere in a time varying magnetic field, Geophysics 16,
- *1951, with x cot x as a continued fraction, in which nothing cancels).  delta is the
- *skin depth.
+ * 1951, with x cot x as a continued fraction, in which nothing cancels).  delta is the
+ * skin depth.
  *
  *	slow or no currents   2 (mu - 1) / (mu + 2): at most 2, in phase
  *	mu = 1, slow          -(2 i / 15) s - (8 / 315) s^2,  s = (a / delta)^2
  *	fast                  -1
  *
- * So a ferrous particle gives a pulse as its volume, a non-ferrous one below its skin
- *depth as f sigma d^5, late by a quarter of a turn.  Accurate to 1e-13 of |beta|, and so
- *is the imaginary part of itself, for a / delta from 1e-8 to 1e8.  SI units.
+ * The pulse of a ferrous particle is proportional to its volume; that of a non-ferrous
+ * one smaller than the skin depth is proportional to f sigma d^5 and late by a quarter of
+ * a turn.  The error is below 1e-13 of |beta|, that of the imaginary part below 1e-13 of
+ * itself, for a / delta from 1e-8 to 1e8.  SI units.
  */
 #ifndef SIGNAL_POLARISABILITY_H
 #define SIGNAL_POLARISABILITY_H

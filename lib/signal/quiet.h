@@ -2,8 +2,8 @@
  *
  * The record is cut into half-overlapping segments under a Hann window.  A first
  * spectrum is the lower quartile of each frequency over all segments, which pulses in up
- * to half of them bend but little; then, a few times over, the mean of those segments
- * whose power nowhere stands out of the last one.
+ * to half of them change little; then, repeated a few times, the mean of the segments
+ * whose power nowhere exceeds the last spectrum significantly.
  */
 #ifndef SIGNAL_QUIET_H
 #define SIGNAL_QUIET_H

@@ -1,11 +1,11 @@
-/* scene.h - the signal of two sensors, made piece by piece
+/* scene.h - simulation of the signal of two sensors, piece by piece
  *
- * Adds the pulses of particles, events that are none, white or coloured noise, slow drift
+ * Adds the pulses of particles, disturbances, white or coloured noise, slow drift
  * and the lines of mains and pump, and limits the sum.  A demodulator gives each sensor a
  * channel in phase with the pulses of ferrous particles and, if asked for, one in
  * quadrature with noise, drift and phases of lines of its own.  Each pulse touches its
- *own samples only, and memory holds no more than the particles now between the sensors; a
- *stream may go on for days.
+ * own samples only, and memory holds only the particles now between the sensors; a stream
+ * may last for days.
  *
  *	struct scene *scene = scene_new(&par);
  *	while (...) {
@@ -63,14 +63,14 @@ void scene_free(struct scene *scene);
 enum num_status scene_pass(struct scene *scene, const struct passage *p);
 /* Adds an event, likewise. */
 enum num_status scene_disturb(struct scene *scene, const struct disturbance *event);
-/* What the sensors make of a particle, as scene_pass() does, without noting it: peaks at
+/* Response of the sensors to a particle, without adding it: peaks at
  * sensor 1 in phase and in quadrature, V.  Returns 1 if its pulse alone reaches the
  * saturation at either sensor.  Particles must come in order of time[0]. */
 int scene_receive(struct scene *scene, const struct passage *p, double peak[2]);
 /* The next frames of both sensors, or of four channels. */
 void scene_next(struct scene *scene, double *x, size_t nframes);
 
-/* Moment after which the particles noted so far leave no trace, s. */
+/* Time after which the particles added so far have no effect, s. */
 double scene_end(const struct scene *scene);
 /* Samples that were touched by pulses so far, both sensors. */
 double scene_touched(const struct scene *scene);

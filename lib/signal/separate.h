@@ -22,6 +22,7 @@
 
 #include "signal/calibrate.h"
 #include "signal/campbell.h"
+#include "signal/instrument.h"
 #include "signal/joint.h"
 #include "signal/masks.h"
 #include "signal/verdict.h"
@@ -67,7 +68,9 @@ struct separate_par {
 	int most_pulses; /* of a window, if fewer than JOINT_PULSES_MAX; 0: so many */
 	/* Of the masks, samples; 0: 64, or as many as the pulses need, and half of it. */
 	size_t mask_window, mask_hop;
-	int want_sources; /* fill separate_section.source */
+	struct instrument *kept; /* learned before, with known: its cal is taken over;
+				    NULL: learn */
+	int want_sources;        /* fill separate_section.source */
 	void (*on_section)(void *context, const struct separate_section *section);
 	void *context;
 };
@@ -80,6 +83,7 @@ enum separate_status {
 	SEPARATE_SILENT_1,
 	SEPARATE_SILENT_2,
 	SEPARATE_NO_LAG,
+	SEPARATE_SWAPPED, /* particles pass sensor 2 first */
 	SEPARATE_FAR,    /* the lag given is as long as what is learned from */
 	SEPARATE_NARROW, /* a filter has left too little of the pulses */
 	SEPARATE_FAST,
@@ -99,7 +103,7 @@ struct separate_counters {
 	double foreign;       /* doubted by their velocities, though they fit */
 	double merged;        /* rows that may be several particles each */
 	double masks, masks_skipped; /* sections demixed, and those that need not be */
-	double unresolved;
+	double unresolved, dense; /* rows, and the samples these stand for */
 };
 
 struct separate;
@@ -115,9 +119,20 @@ int separate_next(struct separate *s, struct transit *p);
 
 const struct calibration *separate_calibration(
 	const struct separate *s); /* NULL: not yet */
+/* What was learned, to keep, and what the rows so far tell of it; its arrays remain those
+ * of s.  0: not yet, some rows of what is learned from are still to be judged. */
+int separate_instrument(const struct separate *s, struct instrument *view);
+/* Noise of both channels over that of the kept instrument, by up to par.learn samples. */
+void separate_noise(const struct separate *s, double share[2]);
 const struct separate_counters *separate_counters(const struct separate *s);
-/* So many pulses that fit no particle that the others are doubtful, too. */
-int separate_doubtful(const struct separate *s);
+/* Why all rows are doubtful. */
+enum separate_doubt {
+	SEPARATE_BELIEVED,  /* they are not */
+	SEPARATE_FOREIGN,   /* so many pulses fit no particle that the others may not */
+	SEPARATE_NOISE,     /* the noise is not that of the kept instrument */
+	SEPARATE_CROWD /* more than half is unresolved, unlike its record */
+};
+enum separate_doubt separate_doubtful(const struct separate *s);
 /* Frame and channel (0, 1) that made it fail with NOT_FINITE. */
 long long separate_bad_sample(const struct separate *s, int *channel);
 

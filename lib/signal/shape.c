@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { STEPS = 256 }; /* grid steps per duration for the pulses of sensor.h */
 
@@ -221,6 +222,27 @@ struct shape *shape_correct(
 	if (out)
 		shape_integrate(out);
 	return out;
+}
+
+struct shape *shape_from_cubic(double reach, int cells, const double *cubic)
+{
+	struct shape *shape = reach > 0 ? shape_alloc(reach, cells) : NULL;
+
+	if (!shape)
+		return NULL;
+	memcpy(shape->cubic, cubic, 4 * (size_t)cells * sizeof *cubic);
+	shape_integrate(shape);
+	return shape;
+}
+
+int shape_cells(const struct shape *shape)
+{
+	return shape->cells;
+}
+
+const double *shape_cubic(const struct shape *shape)
+{
+	return shape->cubic;
 }
 
 void shape_free(struct shape *shape)

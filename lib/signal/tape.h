@@ -1,8 +1,8 @@
-/* tape.h - one channel of a record while it comes in, made ready for pulses to be sought:
- * its filter undone, tones taken off, in units of its noise
+/* tape.h - preparation of one channel of a record as it arrives: its filter is undone,
+ * tones are removed, and it is scaled to units of its noise
  *
- * A tape that is all zero is an empty one.  What comes out depends on the record alone,
- * not on how it came in.
+ * A zeroed tape is empty.  The result does not depend on the sizes of the pieces in which
+ * the record arrives.
  */
 #ifndef SIGNAL_TAPE_H
 #define SIGNAL_TAPE_H
@@ -11,16 +11,16 @@
 #include "signal/calibration.h"
 #include <stddef.h>
 
-/* Samples from index begin on: those before white have their filter undone, those before
- * clean are free of tones, too, and in units of the noise. */
+/* Samples from index begin on: the filter is undone in those before white; those before
+ * clean are also free of tones and in units of the noise. */
 struct tape {
 	double *x;
 	size_t n, capacity;
 	long long begin, white, clean;
-	struct fir *whiten; /* NULL where there is nothing to undo; has taken in ... */
+	struct fir *whiten; /* NULL if there is no filter to undo; it has read ... */
 	long long fed;      /* ... the samples before this one */
 	double *piece;      /* a block of it */
-	double at;          /* where the coefficients hold */
+	double at;          /* index at which the coefficients hold */
 	double coefficient[2 * TONES_MAX + 1];
 	int started;
 };
@@ -29,9 +29,9 @@ void tape_clear(struct tape *t);
 
 /* Appends n samples: x[0], x[2], x[4] ... */
 enum num_status tape_append(struct tape *t, const double *x, size_t n);
-/* Forgets the n oldest samples. */
+/* Drops the n oldest samples. */
 void tape_drop(struct tape *t, size_t n);
-/* Forgets what lies before sample keep, now and then. */
+/* Drops samples before keep once there are many. */
 void tape_forget(struct tape *t, long long keep);
 
 /* Starts the preparation, with what was learned of the record. */

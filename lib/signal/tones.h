@@ -2,8 +2,8 @@
  *
  * A tone is a frequency; its amplitude and phase are found by least squares over a
  * stretch of record, together with the others and a constant.  Cosines and sines are
- * within 1e-15 of the true ones up to index 1e10 and beyond, though few are computed as
- * such: the others follow by the addition theorem.
+ * exact to 1e-15 up to index 1e10 and beyond; most of them are computed by the addition
+ * theorem.
  */
 #ifndef SIGNAL_TONES_H
 #define SIGNAL_TONES_H
@@ -29,8 +29,8 @@ enum num_status tones_find(
 /* Least squares of a constant and tones over x[0..n), whose first sample has index
  * start: coefficient[0] the constant, [1 + 2 k] of cos(omega k t), [2 + 2 k] of sin,
  * with t the index counted from the same origin for all stretches.  Stretches in which
- * the rest is livelier than usual are left out of further passes, so that pulses do not
- * bend it.  *deviation (may be NULL) is the usual root mean square of the rest,
+ * the residual is larger than usual are excluded from further passes, so that pulses do
+ * not bias it.  *deviation (may be NULL) is the usual root mean square of the residual,
  * variance[k] (may be NULL) that of coefficient k in units of its square. */
 enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
 	const double *omega, double *coefficient, double *deviation, double *variance);
@@ -42,7 +42,7 @@ enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
 enum num_status tones_confirm(const double *y1, const double *y2, size_t n, double band,
 	int *tones, double *omega);
 
-/* Takes tones from x[0..n): coefficients run linearly from those at index at_a
+/* Subtracts tones from x[0..n): coefficients change linearly from those at index at_a
  * (from) to those at index at_b (to). */
 void tones_remove(double *x, size_t n, double start, int tones, const double *omega,
 	double at_a, const double *from, double at_b, const double *to);

@@ -39,6 +39,8 @@ struct validation {
 	size_t delays, pairs, rows; /* taken in so far */
 	double middle, half;        /* of the range of delays; half 0: not known */
 	double mean, var, margin;   /* of the delays; on the safe side */
+	double known;               /* delays these are from */
+	struct flow told;
 	double parts;               /* share of them among pairs; 0: none for certain */
 	double recurring[PLACES], groups;
 	double duration;
@@ -88,6 +90,17 @@ void validation_range(struct validation *v, double least, double most)
 {
 	v->middle = 0.5 * (least + most);
 	v->half = 0.5 * (most - least);
+}
+
+void validation_tell_flow(struct validation *v, const struct flow *flow)
+{
+	v->told = *flow;
+}
+
+void validation_flow(const struct validation *v, struct flow *flow)
+{
+	*flow = v->known > 0 ? (struct flow){ v->mean, v->var, v->margin, v->known }
+			     : v->told;
 }
 
 static size_t held(size_t count)
@@ -142,8 +155,15 @@ static void learn_flow(struct validation *v)
 		if (v->delay[i].alone || alone < FEW)
 			x[n++] = v->delay[i].value;
 	v->var = INFINITY;
-	if (n < FEW)
+	v->known = 0;
+	if (n < FEW) {
+		if (v->told.count > 0) {
+			v->mean = v->told.mean;
+			v->var = v->told.var;
+			v->margin = v->told.margin;
+		}
 		return;
+	}
 	memcpy(y, x, n * sizeof *x);
 	v->mean = robust_median(y, n);
 	for (size_t i = 0; i < n; i++)
@@ -158,6 +178,7 @@ static void learn_flow(struct validation *v)
 		sum += off * off - d->var;
 		count++;
 	}
+	v->known = count;
 	v->var = fmax(sum / count, 0);
 	/* Three deviations of this estimate. */
 	v->margin = fmax(v->var, scale * scale) * (1 + 3 * sqrt(2 / count));

@@ -1,8 +1,9 @@
-/* validate.h - are the pulses of a record particles, by what all of them have in common?
+/* validate.h - test whether the pulses of a record are particles, by their velocities
  *
- * Pulses are fitted until the record is described, so that chi-square tells little where
- * the record holds anything else than particles: that is filled by several pulses.  Their
- * velocities, which no fit forces, tell.  Particles have those of the flow, each its own:
+ * Pulses are fitted until they describe the record, so that chi-square does not reveal
+ * events that are not particles: several pulses are fitted to them.  The velocities
+ * reveal them, because the fit does not restrict these.  Each particle has a velocity of
+ * the flow:
  *
  *	- parts of one object, of another form than the pulse learned, share its velocity.
  *	  The difference of two delays over its standard error, z, is normal with variance
@@ -12,8 +13,8 @@
  *	- pulses that fill what is no object have any velocity: a group is doubted
  *	  where the sum of squares of its deviations is beyond five deviations of
  *	  chi-square, and a pulse where its delay is at the edge of the range searched;
- *	- a weak pulse that recurs at one distance from a strong one is what the form
- *	  of the strong one lacks.
+ *	- a weak pulse that recurs at one distance from a strong one is an error of the
+ *	  shape of the strong one.
  *
  * s^2 is that of pulses that stand alone, which no group is part of.
  *
@@ -23,8 +24,8 @@
  * Where more than half of the rows are doubted, or more than a tenth have delays at the
  * edge of the range, the record is not what was learned, and no row is believed.
  *
- * What is judged together, such as all of the stretch that was learned from, is first
- * taken in as a whole; later rows are judged by themselves and the last ones before.
+ * Rows that are judged together, such as those of the stretch used for calibration, are
+ * all stored first; later rows are judged with the last ones before them.
  */
 #ifndef SIGNAL_VALIDATE_H
 #define SIGNAL_VALIDATE_H
@@ -33,23 +34,32 @@
 #include "signal/shape.h"
 #include <stddef.h>
 
-/* One row: a pulse, or a stretch that was not taken apart. */
+/* One row: a pulse, or a stretch that was not separated. */
 struct evidence {
 	int group;               /* rows of one fit have the same number, from 1 */
-	int fits;                /* 0: chi-square tells already that it is none */
-	double delay, var;       /* in samples; var 0: nothing is known of it */
+	int fits;                /* 0: doubted already by chi-square */
+	double delay, var;       /* in samples; var 0: unknown */
 	double amplitude;        /* over the noise */
 	int partner;             /* rows to the larger pulse it overlaps; 0: none */
 	double apart, apart_var; /* delay less that of the partner */
 	double place, height;    /* of arrival, in durations, and amplitude: the same */
-	double time, reach;      /* in durations: of arrival, and see coincide.h; reach 0:
-				    nothing is known of it */
-	int doubted, merged;     /* told by validation_judge() */
+	double time, reach;      /* in durations: of arrival, see coincide.h; 0: unknown */
+	int doubted, merged;     /* set by validation_judge() */
 };
 
 struct validation;
 struct validation *validation_new(void); /* NULL: no memory */
 void validation_free(struct validation *v);
+
+/* Delays of the particles so far: their mean, variance and a bound of it, from count of
+ * them; count 0: nothing is known. */
+struct flow {
+	double mean, var, margin, count;
+};
+
+/* Told beforehand: holds until enough are seen. */
+void validation_tell_flow(struct validation *v, const struct flow *flow);
+void validation_flow(const struct validation *v, struct flow *flow);
 
 /* Range of the delays that are searched, learned to be wider than that of particles. */
 void validation_range(struct validation *v, double least, double most);
@@ -64,7 +74,7 @@ double validation_reach(const struct validation *v, double energy, double need);
 /* Takes in n rows, groups undivided and in order, and judges them. */
 void validation_judge(struct validation *v, struct evidence *e, size_t n);
 
-/* Share of parts of one object among overlapping pulses of late. */
+/* Share of parts of one object among the last overlapping pulses. */
 double validation_parts(const struct validation *v);
 
 #endif

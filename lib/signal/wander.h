@@ -1,7 +1,7 @@
 /* wander.h - a pair of slow random processes
  *
  * Two independent Ornstein-Uhlenbeck processes of variance 1 and correlation exp(-t /
- *time), exact at knots and straight between them.  Times may only rise.
+ * time), exact at knots and linear between them.  Times must not decrease.
  *
  *	struct wander w;
  *	wander_start(&w, normals, place, 10.0);

@@ -1,14 +1,14 @@
-/* whiten.h - undo the filter that a record has been through, as far as its noise allows
+/* whiten.h - inversion of the filter applied to a record, as far as its noise allows
  *
  * White noise that has passed a filter of gain |H(f)| has the power |H|^2 at each
- * frequency; dividing by |H| makes it white again.  If the filter was one of linear
- * phase, that also gives every pulse its form back.  Where |H| is below 1/200 of its
- * largest value nothing is left to be made good: those frequencies are lost.  Lost high
- * ones make pulses smoother (shape_filter() with the taps in seen); lost low ones take a
- * slow baseline from them, which has to be fitted along (joint.h).
+ * frequency; dividing by |H| makes it white again.  If the filter has linear
+ * phase, that also restores the shape of every pulse.  Frequencies where |H| is below
+ * 1/200 of its largest value are lost.  Lost high frequencies make pulses smoother
+ * (shape_filter() with the taps in seen); lost low ones remove a slow baseline, which
+ * must be fitted as well (joint.h).
  *
- * Noise that was coloured before it met the pulses is made white by the same taps, but
- * a pulse has then passed these taps and no others.
+ * Noise that was coloured before the pulses were added to it is made white by the same
+ * taps; the pulses have then passed these taps only.
  *
  * Frequencies are in cycles per sample.
  */
@@ -27,10 +27,10 @@ struct whitening {
 	int half;    /* taps on either side of the middle */
 	double *tap; /* 2 half + 1, symmetric: from the record to white noise */
 	int seen_half;
-	double *seen; /* 2 seen_half + 1, symmetric: what a pulse went through in all */
-	int edge; /* samples at either end of a record that are not what they should be,
-		     for want of those beyond: these have over 1 % of the taps' energy */
-	double low, high; /* what lies between is kept; 0 and 0.5: everything */
+	double *seen; /* 2 seen_half + 1, symmetric: all filters that a pulse passed */
+	int edge; /* samples at either end of a record that are wrong because those beyond
+		     it are missing, which have over 1 % of the energy of the taps */
+	double low, high; /* band that is kept; 0 and 0.5: everything */
 	double band;      /* variance of the noise made white, 1 at all frequencies */
 };
 

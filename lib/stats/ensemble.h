@@ -8,10 +8,10 @@
  *		estimate_all(e, out);
  *	ensemble_free(e);
  *
- * One pass over the particles, in any order as long as the rows of a realisation stand
- * together or the table is short (num/realisations.h); memory grows with the steps but
- * not with the particles or the realisations.  Diameters are kept one by one up to
- * SKETCH_MOST of them, beyond in classes of nearly equal ones (sketch.h).  SI units.
+ * One pass over the particles, in any order as long as the rows of a realisation are
+ * contiguous or the table is short (num/realisations.h); memory grows with the steps but
+ * not with the particles or the realisations.  Up to SKETCH_MOST diameters are kept
+ * one by one, more in classes of nearly equal ones (sketch.h).  SI units.
  */
 #ifndef CONTACT_ENSEMBLE_H
 #define CONTACT_ENSEMBLE_H
@@ -42,7 +42,7 @@ struct ensemble_par {
 	long first, last;    /* steps that count; last 0: up to the last with a row */
 	int partial;         /* 1: only steps with a row took place, else all of them */
 	double low, high;    /* diameters that count */
-	int truncated;       /* distributions are cut off at low and high */
+	int truncated;       /* distributions are truncated at low and high */
 	int per_step;        /* growth: particles of a step, not all so far */
 	double confidence;   /* of intervals */
 	int by_step;         /* keep the diameters of every step separately */
@@ -77,7 +77,7 @@ enum ensemble_status ensemble_add(
 enum ensemble_status ensemble_took_place(struct ensemble *e, long realisation, long step);
 /* Once; the functions below are for closed ensembles. */
 enum ensemble_status ensemble_close(struct ensemble *e);
-/* The realisation that ENSEMBLE_APART and ENSEMBLE_CLASH are about. */
+/* The realisation that ENSEMBLE_APART or ENSEMBLE_CLASH refers to. */
 long ensemble_culprit(const struct ensemble *e);
 size_t ensemble_reported(const struct ensemble *e); /* realisations with rows */
 

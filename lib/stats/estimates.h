@@ -1,10 +1,10 @@
-/* estimates.h - what an ensemble of wear particles tells: fits, their intervals, steps
+/* estimates.h - fits to an ensemble of wear particles, with intervals
  *
  *	struct estimate out[ESTIMATES];
  *	if (estimate_all(e, out) == 0)
  *		printf("%g\n", out[ESTIMATE_SHAPE].value);
  *
- * nan: there is no such value.
+ * nan: the value does not exist.
  */
 #ifndef CONTACT_ESTIMATES_H
 #define CONTACT_ESTIMATES_H
@@ -54,7 +54,7 @@ struct estimate_contrast {
 struct estimate_contrast estimate_compare(const double value[2], const double error[2],
 	const double log_error[2], const double realisations[2], double confidence);
 
-/* The Weibull distribution of diameters, cut off as the ensemble has it. */
+/* The Weibull distribution of diameters, truncated as the ensemble states. */
 enum weibull_status estimate_weibull(
 	const struct ensemble *e, const struct sketch *diameters, struct weibull *w);
 

@@ -1,7 +1,7 @@
 /* sketch.h - positive values of a sample of any size in bounded memory
  *
  * All values are kept until there are more than most; then neighbours whose ratio is
- * nearly 1 become one value, their mean, with the weight of all of them.  The ratio is
+ * nearly 1 are replaced by their mean, with the weight of all of them.  The ratio is
  * the least that halves their number: of a million values over a decade, kept as 65536,
  * it is 1 + 7e-5, and a sum of k-th powers changes by less than (7e-5 k)^2 / 8.
  *
@@ -22,7 +22,7 @@ enum { SKETCH_MOST = 1 << 17 };
 struct sketch {
 	size_t n, room;
 	double *value, *weight;
-	double ratio; /* widest of the values made one, 1: none was */
+	double ratio; /* largest ratio of values that were joined; 1: none were */
 };
 
 /* x > 0; most >= 4. */

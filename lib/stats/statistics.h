@@ -20,7 +20,7 @@ struct estimate {
 struct weibull {
 	struct estimate shape, scale;
 	double mean;      /* of the distribution: s Gamma(1 + 1/k) */
-	double low, high; /* where it is cut off */
+	double low, high; /* limits of truncation */
 };
 
 enum weibull_status {
@@ -32,13 +32,13 @@ enum weibull_status {
 };
 
 /* Maximum likelihood for n values x > 0, each of them weight[i] times (NULL: once).
- * Where values below low or above high could not be seen, the density is that of the
- * distribution cut off there; 0 and INFINITY for a whole one.  Intervals from the
+ * If values below low or above high could not be observed, the density is that of the
+ * distribution truncated there; 0 and INFINITY: not truncated.  Intervals from the
  * curvature of the likelihood in the logarithms of the parameters.  w is set only where
  * the fit succeeds. */
 enum weibull_status weibull_fit(const double *x, const double *weight, size_t n,
 	double low, double high, double confidence, struct weibull *w);
-double weibull_density(const struct weibull *w, double x); /* cut off as fitted */
+double weibull_density(const struct weibull *w, double x); /* truncated as fitted */
 /* Kolmogorov-Smirnov: largest |empirical - fitted| distribution of n ascending values,
  * each weight[i] times (NULL: once). */
 double weibull_distance(

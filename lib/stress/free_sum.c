@@ -210,6 +210,26 @@ static enum num_status new_fields(double **field, int count, size_t n)
 	return NUM_OK;
 }
 
+/* Sums of a window into fields with rows of stride. */
+struct keep {
+	double *const *field;
+	size_t stride;
+	int numbers;
+};
+
+static void keep_part(void *context, const struct stress_part *part, int worker)
+{
+	const struct keep *k = context;
+	size_t width = (size_t)(part->x1 - part->x0);
+
+	(void)worker;
+	for (int c = 0; part->number && c < k->numbers; c++)
+		for (int y = part->y0; y < part->y1; y++)
+			memcpy(k->field[c] + (size_t)y * k->stride + part->x0,
+				part->number[c] + (size_t)(y - part->y0) * part->stride,
+				width * sizeof **k->field);
+}
+
 /* The full sum. */
 
 struct hand_over {
@@ -237,6 +257,7 @@ static enum num_status sum_full(
 {
 	struct hand_over hand = { NULL, b, want };
 	double *field[STRESS_NUMBERS];
+	struct keep keep = { field, (size_t)b->wx, want->numbers };
 	struct window w = { .mx = b->wx,
 		.my = b->wy,
 		.reach_x = b->wx - 1,
@@ -244,8 +265,8 @@ static enum num_status sum_full(
 		.load = corner(s, b),
 		.load_stride = (size_t)s->nx,
 		.numbers = want->numbers,
-		.out = field,
-		.stride = (size_t)b->wx };
+		.take = keep_part,
+		.context = &keep };
 	enum num_status status;
 
 	if (new_fields(field, want->numbers, (size_t)b->wx * (size_t)b->wy))
@@ -257,26 +278,6 @@ static enum num_status sum_full(
 	free_fields(field, want->numbers);
 	s->work.full_layers++;
 	return status;
-}
-
-/* The part inside the innermost window, on the cells of the box. */
-static enum num_status sum_near(struct free_sum *s, double z,
-	const struct stress_want *want, const struct box *b, double *const *field)
-{
-	struct window w = { .mx = b->wx,
-		.my = b->wy,
-		.reach_x = REACH,
-		.reach_y = REACH,
-		.load = corner(s, b),
-		.load_stride = (size_t)s->nx,
-		.numbers = want->numbers,
-		.out = field,
-		.stride = (size_t)b->wx,
-		.want = want,
-		.x0 = b->x0,
-		.y0 = b->y0 };
-
-	return convolve(s, ELEMENT_INNER, z, 1, &w);
 }
 
 /* Levels */
@@ -328,6 +329,7 @@ static enum num_status sum_level(
 	int mx = l->x.points, my = l->y.points;
 	enum num_status status;
 	struct level next;
+	struct keep keep = { l->field, (size_t)mx, l->numbers };
 	struct window w = { .mx = mx,
 		.my = my,
 		.reach_x = mx - 1,
@@ -335,8 +337,8 @@ static enum num_status sum_level(
 		.load = l->load,
 		.load_stride = (size_t)mx,
 		.numbers = l->numbers,
-		.out = l->field,
-		.stride = (size_t)mx };
+		.take = keep_part,
+		.context = &keep };
 
 	if (mx <= COARSEST && my <= COARSEST)
 		return convolve(s, outer ? POINT_OUTER : POINT, z, cells, &w);
@@ -362,16 +364,47 @@ static enum num_status sum_coarse(struct free_sum *s, double z, int cells,
 		return NUM_MEMORY;
 	status = sum_level(s, z, cells, 0, &l);
 	if (!status)
-		status = lattice_gather(l.lattice, l.field, NULL, 0, b->x0, b->y0, want);
+		status = lattice_gather(l.lattice, l.field, b->x0, b->y0, want);
 	level_free(&l);
 	s->work.coarse_layers++;
+	return status;
+}
+
+static void add_near(void *context, const struct stress_part *part, int worker)
+{
+	lattice_gather_part(context, part, worker);
+}
+
+/* The part inside the innermost window, on the cells of the box, added to that of a
+ * level. */
+static enum num_status sum_near(struct free_sum *s, double z,
+	const struct stress_want *want, const struct box *b, const struct level *l)
+{
+	struct lattice_gather *gather =
+		lattice_gather_new(l->lattice, l->field, b->x0, b->y0, want);
+	struct window w = { .mx = b->wx,
+		.my = b->wy,
+		.reach_x = REACH,
+		.reach_y = REACH,
+		.load = corner(s, b),
+		.load_stride = (size_t)s->nx,
+		.numbers = want->numbers,
+		.want = want,
+		.x0 = b->x0,
+		.y0 = b->y0,
+		.take = add_near,
+		.context = gather };
+	enum num_status status = NUM_MEMORY;
+
+	if (gather)
+		status = convolve(s, ELEMENT_INNER, z, 1, &w);
+	lattice_gather_free(gather);
 	return status;
 }
 
 static enum num_status sum_split(
 	struct free_sum *s, double z, const struct stress_want *want, const struct box *b)
 {
-	double *near[STRESS_NUMBERS];
 	struct level l;
 	enum num_status status;
 
@@ -379,14 +412,8 @@ static enum num_status sum_split(
 		    want->numbers))
 		return NUM_MEMORY;
 	status = sum_level(s, z, 2, 1, &l);
-	if (!status && !(status = new_fields(
-				 near, want->numbers, (size_t)b->wx * (size_t)b->wy))) {
-		status = sum_near(s, z, want, b, near);
-		if (!status)
-			status = lattice_gather(l.lattice, l.field, near, (size_t)b->wx,
-				b->x0, b->y0, want);
-		free_fields(near, want->numbers);
-	}
+	if (!status)
+		status = sum_near(s, z, want, b, &l);
 	level_free(&l);
 	s->work.split_layers++;
 	return status;

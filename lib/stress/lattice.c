@@ -1,10 +1,12 @@
 #include "stress/lattice.h"
+#include "num/lanes.h"
 #include "num/status.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* ORDER: also in sum_points() and sum_rows(). */
 enum { ORDER = 8, SIDE = ORDER / 2 - 1 };
 
 struct line {
@@ -126,6 +128,18 @@ void lattice_done(struct lattice *l)
 	free(l);
 }
 
+/* row += w from, for count points */
+static void add_row(const double *from, double w, double *row, size_t count)
+{
+	size_t i = 0;
+
+	for (; i + 1 < count; i += 2)
+		lanes_store(
+			row + i, lanes_load(row + i, 2) + w * lanes_load(from + i, 2), 2);
+	if (i < count)
+		row[i] += w * from[i];
+}
+
 /* A row of cells onto a row of points; 0 if all are zero. */
 static int spread_row(
 	const struct line *l, const double *cell, int element, double *restrict row)
@@ -161,17 +175,15 @@ enum num_status lattice_spread(const struct lattice *l, const double *cell, size
 		if (!spread_row(&l->x, cell + (size_t)y * stride, element, row))
 			continue;
 		for (int j = 0; j < ORDER; j++, to += points)
-			for (size_t i = 0; i < points; i++)
-				to[i] += wy[j] * row[i];
+			add_row(row, wy[j], to, points);
 	}
 	free(row);
 	return NUM_OK;
 }
 
-struct gather {
+struct lattice_gather {
 	const struct lattice *l;
-	double *const *field, *const *more;
-	size_t stride;
+	double *const *field;
 	int x0, y0;
 	const struct stress_want *want;
 	double *scratch; /* for each worker and number, a row of points and of cells */
@@ -185,87 +197,189 @@ static int wrapped(const struct lattice_axis *a, int i)
 	return a->wrap ? ((i % n) + n) % n : i;
 }
 
+/* Point i, or i and i + 1, of eight rows together. */
+static inline lanes sum_rows(
+	const double *const f[ORDER], const double *w, int i, const int n)
+{
+	return w[0] * lanes_load(f[0] + i, n) + w[1] * lanes_load(f[1] + i, n) +
+	       w[2] * lanes_load(f[2] + i, n) + w[3] * lanes_load(f[3] + i, n) +
+	       w[4] * lanes_load(f[4] + i, n) + w[5] * lanes_load(f[5] + i, n) +
+	       w[6] * lanes_load(f[6] + i, n) + w[7] * lanes_load(f[7] + i, n);
+}
+
 /* The points of a row of cells: those of eight rows together. */
 static void combine_rows(const struct lattice *l, const double *field, int y, int from,
 	int to, double *row)
 {
 	const struct line *lx = &l->x, *ly = &l->y;
 	size_t points = (size_t)lx->axis.points;
+	const double *f[ORDER], *w = ly->gather[y];
 
-	memset(row, 0, (size_t)(to - from) * sizeof *row);
-	for (int j = 0; j < ORDER; j++) {
-		const double *f =
-			field + (size_t)wrapped(&ly->axis, ly->start[y] + j) * points;
-		double w = ly->gather[y][j];
+	for (int j = 0; j < ORDER; j++)
+		f[j] = field + (size_t)wrapped(&ly->axis, ly->start[y] + j) * points;
+	if (lx->axis.wrap) {
+		for (int i = from; i < to; i++) {
+			int at = wrapped(&lx->axis, i);
 
-		if (lx->axis.wrap)
-			for (int i = from; i < to; i++)
-				row[i - from] += w * f[wrapped(&lx->axis, i)];
-		else
-			for (int i = from; i < to; i++)
-				row[i - from] += w * f[i];
+			row[i - from] = 0;
+			for (int j = 0; j < ORDER; j++)
+				row[i - from] += w[j] * f[j][at];
+		}
+		return;
+	}
+	for (; from + 1 < to; from += 2, row += 2)
+		lanes_store(row, sum_rows(f, w, from, 2), 2);
+	if (from < to)
+		lanes_store(row, sum_rows(f, w, from, 1), 1);
+}
+
+/* A cell, or that and the one a spacing on, from the points of its row. */
+static inline lanes sum_points(const double *p, const double *w, const int n)
+{
+	return w[0] * lanes_load(p, n) + w[1] * lanes_load(p + 1, n) +
+	       w[2] * lanes_load(p + 2, n) + w[3] * lanes_load(p + 3, n) +
+	       w[4] * lanes_load(p + 4, n) + w[5] * lanes_load(p + 5, n) +
+	       w[6] * lanes_load(p + 6, n) + w[7] * lanes_load(p + 7, n);
+}
+
+/* Cells begin to end - 1 of a row, from its points after the first from.  Cells a whole
+ * spacing apart have the same weights. */
+static void interpolate(
+	const struct line *l, int begin, int end, const double *row, int from, double *to)
+{
+	int step = l->axis.wrap ? end - begin : (int)l->axis.spacing;
+
+	for (int first = begin; first < end && first < begin + step; first++) {
+		const double *w = l->gather[first];
+		int x = first;
+
+		for (; x + step < end; x += 2 * step) {
+			lanes sum = sum_points(row + (l->start[x] - from), w, 2);
+
+			to[x - begin] = sum[0];
+			to[x + step - begin] = sum[1];
+		}
+		if (x < end)
+			to[x - begin] = sum_points(row + (l->start[x] - from), w, 1)[0];
 	}
 }
 
-static double interpolate(const struct line *l, int cell, const double *row)
+struct lattice_gather *lattice_gather_new(const struct lattice *l, double *const *field,
+	int x0, int y0, const struct stress_want *want)
 {
-	const double *p = row + l->start[cell], *w = l->gather[cell];
-	double sum = 0;
+	struct lattice_gather *g = malloc(sizeof *g);
 
-	for (int k = 0; k < ORDER; k++)
-		sum += w[k] * p[k];
-	return sum;
+	if (!g)
+		return NULL;
+	*g = (struct lattice_gather){ l, field, x0, y0, want, NULL, 0 };
+	g->room = (size_t)l->x.axis.points + ORDER +
+		  (size_t)want->numbers * (size_t)l->x.axis.cells;
+	g->scratch = malloc(g->room * (size_t)pool_threads(l->pool) * sizeof *g->scratch);
+	if (g->scratch)
+		return g;
+	free(g);
+	return NULL;
 }
 
-static void gather_span(void *context, size_t job, int worker)
+void lattice_gather_free(struct lattice_gather *g)
 {
-	const struct gather *g = context;
+	if (!g)
+		return;
+	free(g->scratch);
+	free(g);
+}
+
+/* Nodes of one span; part: sums to be added, or NULL. */
+static void gather_span(const struct lattice_gather *g, const struct stress_span *span,
+	const struct stress_part *part, int worker)
+{
 	const struct line *lx = &g->l->x;
-	const struct stress_span *span = &g->want->span[job];
-	double *scratch = g->scratch + (size_t)worker * g->room;
-	double *row = scratch, *at = scratch + lx->axis.points + ORDER;
+	double *row = g->scratch + (size_t)worker * g->room;
+	double *at = row + lx->axis.points + ORDER;
 	const double *number[STRESS_NUMBERS] = { NULL };
 	int begin = span->begin - g->x0, end = span->end - g->x0, y = span->y - g->y0;
 	int from = lx->start[begin], to = lx->start[end - 1] + ORDER;
 
-	for (int c = 0; c < g->want->numbers; c++) {
-		const double *more = g->more ? g->more[c] + (size_t)y * g->stride : NULL;
-
+	for (int c = 0; c < g->want->numbers; c++, at += end - begin) {
 		number[c] = at;
 		combine_rows(g->l, g->field[c], y, from, to, row);
-		for (int x = begin; x < end; x++, at++) {
-			*at = interpolate(lx, x, row - from) + (more ? more[x] : 0);
+		interpolate(lx, begin, end, row, from, at);
+		if (part && part->number) {
+			const double *more = part->number[c] +
+					     (size_t)(y - part->y0) * part->stride +
+					     (begin - part->x0);
+
+			for (int x = 0; x < end - begin; x++)
+				at[x] += more[x];
 		}
 	}
 	g->want->put(g->want->context, span, number);
 }
 
-enum num_status lattice_gather(const struct lattice *l, double *const *field,
-	double *const *more, size_t stride, int x0, int y0,
-	const struct stress_want *want)
+/* The first span that is not before a row. */
+static size_t first_span(const struct stress_want *want, int y)
 {
-	struct gather g = { l, field, more, stride, x0, y0, want, NULL, 0 };
+	size_t low = 0, high = want->count;
 
-	g.room = (size_t)l->x.axis.points + ORDER +
-		 (size_t)want->numbers * (size_t)l->x.axis.cells;
-	g.scratch = malloc(g.room * (size_t)pool_threads(l->pool) * sizeof *g.scratch);
-	if (!g.scratch)
+	while (low < high) {
+		size_t middle = (low + high) / 2;
+
+		if (want->span[middle].y < y)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return low;
+}
+
+void lattice_gather_part(
+	const struct lattice_gather *g, const struct stress_part *part, int worker)
+{
+	const struct stress_want *want = g->want;
+	int left = part->x0 + g->x0, right = part->x1 + g->x0, top = part->y1 + g->y0;
+
+	for (size_t i = first_span(want, part->y0 + g->y0);
+		i < want->count && want->span[i].y < top; i++) {
+		struct stress_span s = want->span[i];
+
+		s.begin = s.begin > left ? s.begin : left;
+		s.end = s.end < right ? s.end : right;
+		if (s.begin < s.end)
+			gather_span(g, &s, part, worker);
+	}
+}
+
+static void gather_job(void *context, size_t job, int worker)
+{
+	const struct lattice_gather *g = context;
+
+	gather_span(g, &g->want->span[job], NULL, worker);
+}
+
+enum num_status lattice_gather(const struct lattice *l, double *const *field, int x0,
+	int y0, const struct stress_want *want)
+{
+	struct lattice_gather *g = lattice_gather_new(l, field, x0, y0, want);
+
+	if (!g)
 		return NUM_MEMORY;
-	pool_run(l->pool, want->count, gather_span, &g);
-	free(g.scratch);
+	pool_run(l->pool, want->count, gather_job, g);
+	lattice_gather_free(g);
 	return NUM_OK;
 }
 
 enum num_status lattice_refine(const struct lattice *l, const double *field, double *cell)
 {
-	double *row = malloc((size_t)l->x.axis.points * sizeof *row);
+	int points = l->x.axis.points, cells = l->x.axis.cells;
+	double *row = malloc((size_t)(points + cells) * sizeof *row), *at = row + points;
 
 	if (!row)
 		return NUM_MEMORY;
 	for (int y = 0; y < l->y.axis.cells; y++) {
-		combine_rows(l, field, y, 0, l->x.axis.points, row);
-		for (int x = 0; x < l->x.axis.cells; x++)
-			*cell++ += interpolate(&l->x, x, row);
+		combine_rows(l, field, y, 0, points, row);
+		interpolate(&l->x, 0, cells, row, 0, at);
+		for (int x = 0; x < cells; x++)
+			*cell++ += at[x];
 	}
 	free(row);
 	return NUM_OK;

@@ -44,10 +44,17 @@ enum num_status lattice_refine(
 	const struct lattice *l, const double *field, double *cell);
 
 /* Interpolates field[c][points of y][points of x] at the requested nodes, whose
- * coordinates are relative to (x0, y0), and adds more[c] (may be NULL), given on the
- * cells from (x0, y0) on with rows of stride. */
-enum num_status lattice_gather(const struct lattice *l, double *const *field,
-	double *const *more, size_t stride, int x0, int y0,
-	const struct stress_want *want);
+ * coordinates are relative to (x0, y0). */
+enum num_status lattice_gather(const struct lattice *l, double *const *field, int x0,
+	int y0, const struct stress_want *want);
+
+/* The same for the nodes of a part at a time, whose sums are added.  The parts cover the
+ * cells and may be taken by several threads at once. */
+struct lattice_gather;
+struct lattice_gather *lattice_gather_new(const struct lattice *l, double *const *field,
+	int x0, int y0, const struct stress_want *want); /* NULL: no memory */
+void lattice_gather_part(
+	const struct lattice_gather *g, const struct stress_part *part, int worker);
+void lattice_gather_free(struct lattice_gather *g);
 
 #endif

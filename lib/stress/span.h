@@ -10,18 +10,27 @@ struct stress_span {
 	int y, begin, end;
 };
 
-/* Receives the stress components of a span, number[c][x - begin].  Called once for each
- * span, in any order and from any thread. */
+/* Receives the stress components of a span or of a part of one, number[c][x - begin], in
+ * any order and from any thread; the parts cover every span once. */
 typedef void stress_put(void *context, const struct stress_span *span,
 	const double *const number[STRESS_NUMBERS]);
 
-/* The request: count spans, the first numbers components of STRESS_NUMBERS. */
+/* The request: count spans, row by row and in each from left to right, and the first
+ * numbers components of STRESS_NUMBERS. */
 struct stress_want {
 	const struct stress_span *span;
 	size_t count;
 	int numbers;
 	stress_put *put;
 	void *context;
+};
+
+/* Sums at a rectangle of nodes, number[c][(y - y0) * stride + x - x0]; number NULL: all
+ * are zero. */
+struct stress_part {
+	int x0, y0, x1, y1; /* x1 and y1 exclusive */
+	const double *const *number;
+	size_t stride;
 };
 
 #endif

@@ -199,7 +199,7 @@ static enum num_status hand_over(struct wave_sum *s, double *const *field,
 		return NUM_OK;
 	}
 	l = lattice_new(x, y, s->pool);
-	status = l ? lattice_gather(l, field, NULL, 0, 0, 0, want) : NUM_MEMORY;
+	status = l ? lattice_gather(l, field, 0, 0, want) : NUM_MEMORY;
 	lattice_done(l);
 	s->work.coarse_layers++;
 	return status;

@@ -1,12 +1,14 @@
 #include "stress/window.h"
 #include "num/fft.h"
+#include "num/lanes.h"
 #include "num/status.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Points to the side of a tile.  Sums for 512 x 512 cells with a reach of 17 take
- * TILESWEEP */
+/* Points to the side of a tile.  A wear step of debrisgen on 512 x 512 cells, 9 % of them
+ * loaded, potential rule, takes 1.07 s of processor time with 128, and 1.40, 1.16, 1.24,
+ * 1.46, 1.48 s with 96, 112, 160, 192, 256 (least of five runs each). */
 enum { TILE = 128 };
 
 /* Tiles along an axis: count of them, each of so many nodes, on so many points. */
@@ -18,10 +20,11 @@ struct cut {
 struct tiling {
 	const struct window *w;
 	struct cut x, y;
-	struct fft *fft;
-	size_t room, spectrum; /* points and coefficients, that arrays stay aligned */
-	double *plane;         /* one for each worker */
-	double complex *image, *product;
+	struct fft_plane *fft;
+	size_t stride, room, spectrum; /* of the points; coefficients */
+	/* For each worker: */
+	double *load, *plane; /* loads; the sums of all numbers */
+	double complex *image, *product, *work;
 	double complex *kernel[STRESS_NUMBERS];
 	unsigned char *wanted;
 	double *transforms; /* of each tile */
@@ -32,20 +35,20 @@ struct tiling {
 static struct cut cut_axis(int m, int reach)
 {
 	int nodes = TILE - 2 * reach;
-	struct cut c = { 1, m, 0, fft_good_size((size_t)m + (size_t)reach) };
+	struct cut c = { 1, m, 0, 8 * fft_good_size((size_t)(m + reach + 7) / 8) };
 
 	if (c.points <= TILE || nodes < TILE / 2)
 		return c;
 	c.count = (m + nodes - 1) / nodes;
 	c.nodes = (m + c.count - 1) / c.count;
 	c.lead = reach;
-	c.points = fft_good_size((size_t)c.nodes + 2 * (size_t)reach);
+	c.points = TILE;
 	return c;
 }
 
 /* A kernel on the plane, negative offsets wrapped around.  On a line of symmetry what
  * is odd across it vanishes. */
-static void put_kernel(struct tiling *t, enum stress_number number)
+static void put_kernel(struct tiling *t, enum stress_number number, double scale)
 {
 	const struct influence_par *par = t->w->par;
 	const struct influence *kernel = t->w->kernel;
@@ -56,10 +59,11 @@ static void put_kernel(struct tiling *t, enum stress_number number)
 		int odd = ((m & 1) && influence_odd(number, 0)) ^
 			  ((m >> 1) && influence_odd(number, 1));
 
-		normal[m] = odd ? -1 : 1;
-		shear[m] = (odd ^ (par->axis ? m >> 1 : m & 1)) ? -par->mu : par->mu;
+		normal[m] = odd ? -scale : scale;
+		shear[m] = (odd ^ (par->axis ? m >> 1 : m & 1)) ? -par->mu * scale
+								: par->mu * scale;
 	}
-	memset(t->plane, 0, px * py * sizeof *t->plane);
+	memset(t->plane, 0, t->room * sizeof *t->plane);
 	for (int j = 0; j <= t->w->reach_y; j++)
 		for (int i = 0; i <= t->w->reach_x; i++, kernel++) {
 			double n = kernel->normal[number], s = kernel->shear[number];
@@ -69,7 +73,7 @@ static void put_kernel(struct tiling *t, enum stress_number number)
 				size_t x = (m & 1) && i ? px - (size_t)i : (size_t)i;
 				size_t y = (m >> 1) && j ? py - (size_t)j : (size_t)j;
 
-				t->plane[y * px + x] +=
+				t->plane[y * t->stride + x] +=
 					share * (normal[m] * n + shear[m] * s);
 			}
 		}
@@ -85,53 +89,77 @@ static int larger(int a, int b)
 	return a > b ? a : b;
 }
 
-/* The loads within reach of a tile whose first node is (x0, y0); 0 if there are none. */
-static int put_loads(const struct tiling *t, int x0, int y0, double *plane)
+/* The loads within reach of a tile whose first node is (x0, y0), on rows first to last of
+ * the plane; 0 if there are none. */
+static int put_loads(
+	const struct tiling *t, int x0, int y0, double *plane, size_t *first, size_t *end)
 {
 	const struct window *w = t->w;
 	int left = x0 - t->x.lead, low = y0 - t->y.lead, any = 0;
-	int begin = larger(left, 0), end = smaller(left + (int)t->x.points, w->mx);
+	int begin = larger(left, 0), stop = smaller(left + (int)t->x.points, w->mx);
+	int bottom = larger(low, 0), top = smaller(low + (int)t->y.points, w->my);
 
-	memset(plane, 0, t->x.points * t->y.points * sizeof *plane);
-	for (int y = larger(low, 0); y < smaller(low + (int)t->y.points, w->my); y++) {
+	memset(plane, 0, t->room * sizeof *plane);
+	for (int y = bottom; y < top; y++) {
 		const double *from = w->load + (size_t)y * w->load_stride + begin;
-		double *to = plane + (size_t)(y - low) * t->x.points + (begin - left);
+		double *to = plane + (size_t)(y - low) * t->stride + (begin - left);
 
-		for (int x = 0; x < end - begin; x++) {
+		for (int x = 0; x < stop - begin; x++) {
 			to[x] = from[x];
 			any |= from[x] != 0;
 		}
 	}
+	*first = (size_t)(bottom - low);
+	*end = (size_t)(top - low);
 	return any;
+}
+
+/* The product of complex numbers, without the test for infinite parts of C's. */
+static void multiply(const double complex *a, const double complex *b, double complex *to,
+	size_t count)
+{
+	const double *u = (const double *)a, *v = (const double *)b;
+	double *w = (double *)to;
+
+	for (size_t i = 0; i < 2 * count; i += 2) {
+		lanes p = lanes_load(u + i, 2), r = { v[i], v[i] },
+		      q = { -v[i + 1], v[i + 1] }, swapped = { p[1], p[0] };
+
+		lanes_store(w + i, p * r + swapped * q, 2);
+	}
 }
 
 static void sum_tile(void *context, size_t tile, int worker)
 {
 	const struct tiling *t = context;
 	const struct window *w = t->w;
-	double *plane = t->plane + (size_t)worker * t->room;
-	double complex *image = t->image + (size_t)worker * t->spectrum,
-		       *product = t->product + (size_t)worker * t->spectrum;
-	int x0 = (int)(tile % (size_t)t->x.count) * t->x.nodes,
-	    y0 = (int)(tile / (size_t)t->x.count) * t->y.nodes;
-	int nx = smaller(t->x.nodes, w->mx - x0), ny = smaller(t->y.nodes, w->my - y0);
+	size_t at = (size_t)worker, first, end, lead = (size_t)t->y.lead;
+	double *load = t->load + at * t->room,
+	       *plane = t->plane + at * t->room * (size_t)w->numbers;
+	double complex *image = t->image + at * t->spectrum,
+		       *product = t->product + at * t->spectrum,
+		       *work = t->work + at * t->spectrum;
+	const double *number[STRESS_NUMBERS] = { NULL };
+	struct stress_part part = { .x0 = (int)(tile % (size_t)t->x.count) * t->x.nodes,
+		.y0 = (int)(tile / (size_t)t->x.count) * t->y.nodes,
+		.stride = t->stride };
 
-	if ((t->wanted && !t->wanted[tile]) || !put_loads(t, x0, y0, plane))
+	part.x1 = smaller(part.x0 + t->x.nodes, w->mx);
+	part.y1 = smaller(part.y0 + t->y.nodes, w->my);
+	if (t->wanted && !t->wanted[tile])
 		return;
-	fft_forward(t->fft, plane, image);
-	for (int c = 0; c < w->numbers; c++) {
-		const double *from =
-			plane + (size_t)t->y.lead * t->x.points + (size_t)t->x.lead;
-		double *to = w->out[c] + (size_t)y0 * w->stride + x0;
-
-		for (size_t i = 0; i < t->spectrum; i++)
-			product[i] = t->kernel[c][i] * image[i];
-		fft_inverse(t->fft, product, plane);
-		for (int y = 0; y < ny; y++)
-			memcpy(to + (size_t)y * w->stride, from + (size_t)y * t->x.points,
-				(size_t)nx * sizeof *to);
+	if (put_loads(t, part.x0, part.y0, load, &first, &end)) {
+		fft_plane_forward(t->fft, load, first, end, image, work);
+		for (int c = 0; c < w->numbers; c++, plane += t->room) {
+			multiply(image, t->kernel[c], product, t->spectrum);
+			fft_plane_inverse(t->fft, product, plane, lead,
+				lead + (size_t)(part.y1 - part.y0), work);
+			number[c] = plane + lead * t->stride + t->x.lead;
+		}
+		part.number = number;
+		t->transforms[tile] = 1 + w->numbers;
 	}
-	t->transforms[tile] = 1 + w->numbers;
+	w->take(w->context, &part, worker);
 }
 
 /* Marks the tiles of wanted nodes. */
@@ -155,19 +183,23 @@ static enum num_status prepare(struct tiling *t)
 	size_t points = t->x.points * t->y.points,
 	       tiles = (size_t)t->x.count * (size_t)t->y.count,
 	       workers = (size_t)pool_threads(w->pool);
-	double scale = 1. / (double)points;
 
-	t->room = (points + 7) / 8 * 8;
-	t->spectrum = ((t->x.points / 2 + 1) * t->y.points + 3) / 4 * 4;
-	t->plane = fft_alloc(workers * t->room);
+	t->fft = fft_plane_new(t->x.points, t->y.points);
+	if (!t->fft)
+		return NUM_MEMORY;
+	t->stride = fft_plane_stride(t->fft);
+	t->room = t->stride * t->y.points;
+	t->spectrum = fft_plane_size(t->fft);
+	t->load = fft_alloc(workers * t->room);
+	t->plane = fft_alloc(workers * t->room * (size_t)w->numbers);
 	t->image = fft_alloc_complex(workers * t->spectrum);
 	t->product = fft_alloc_complex(workers * t->spectrum);
+	t->work = fft_alloc_complex(workers * t->spectrum);
 	t->transforms = calloc(tiles, sizeof *t->transforms);
-	t->fft = fft_new(t->x.points, t->y.points);
 	if (w->want)
 		t->wanted = calloc(tiles, 1);
-	if (!t->plane || !t->image || !t->product || !t->transforms || !t->fft ||
-		(w->want && !t->wanted))
+	if (!t->load || !t->plane || !t->image || !t->product || !t->work ||
+		!t->transforms || (w->want && !t->wanted))
 		return NUM_MEMORY;
 	if (w->want)
 		mark_wanted(t);
@@ -175,10 +207,9 @@ static enum num_status prepare(struct tiling *t)
 		t->kernel[c] = fft_alloc_complex(t->spectrum);
 		if (!t->kernel[c])
 			return NUM_MEMORY;
-		put_kernel(t, (enum stress_number)c);
-		fft_forward(t->fft, t->plane, t->kernel[c]);
-		for (size_t i = 0; i < t->spectrum; i++)
-			t->kernel[c][i] *= scale;
+		put_kernel(t, (enum stress_number)c, 1. / (double)points);
+		fft_plane_forward(
+			t->fft, t->plane, 0, t->y.points, t->kernel[c], t->work);
 	}
 	return NUM_OK;
 }
@@ -197,13 +228,14 @@ enum num_status window_sum(const struct window *w, double *transforms)
 		for (size_t i = 0; i < tiles; i++)
 			*transforms += t.transforms[i];
 	}
+	fft_plane_done(t.fft);
+	fft_free(t.load);
 	fft_free(t.plane);
 	fft_free(t.image);
 	fft_free(t.product);
+	fft_free(t.work);
 	for (int c = 0; c < w->numbers; c++)
 		fft_free(t.kernel[c]);
-	if (t.fft)
-		fft_done(t.fft);
 	free(t.wanted);
 	free(t.transforms);
 	return status;

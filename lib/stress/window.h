@@ -14,6 +14,10 @@
 #include "stress/span.h"
 #include <stddef.h>
 
+/* Receives the sums of a part of the nodes, from any thread.  Parts without loads within
+ * reach come without numbers. */
+typedef void window_take(void *context, const struct stress_part *part, int worker);
+
 struct window {
 	int mx, my, reach_x, reach_y;
 	const struct influence_par *par;
@@ -22,12 +26,12 @@ struct window {
 	const struct influence *kernel;
 	const double *load; /* rows of load_stride */
 	size_t load_stride;
-	int numbers;        /* the first so many of enum stress_number ... */
-	double *const *out; /* ... into these, zero on entry, rows of stride */
-	size_t stride;
+	int numbers; /* the first so many of enum stress_number */
 	/* Nodes wanted, counted from (x0, y0); NULL: all. */
 	const struct stress_want *want;
 	int x0, y0;
+	window_take *take;
+	void *context;
 	struct pool *pool;
 };
 

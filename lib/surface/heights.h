@@ -24,7 +24,7 @@ enum heights_status heights_sorted(
 
 /* Memory for ordering n numbers. */
 struct ranking;
-struct ranking *ranking_new(size_t n); /* NULL without memory */
+struct ranking *ranking_new(size_t n); /* NULL when out of memory */
 void ranking_free(struct ranking *r);
 /* Replaces the k-th smallest of z by sorted[k]; equal values keep their order. */
 void ranking_impose(struct ranking *r, const double *sorted, double *z);

@@ -1,7 +1,7 @@
 /* rough.h - an ensemble of rough surfaces of given roughness
  *
  * Realisation k is a function of the parameters and k alone.  Its heights come from the
- * spectrum, are given non-Gaussian moments on request, and are scaled to a roughness
+ * spectrum, receive non-Gaussian moments on request, and are scaled to a roughness
  * that is exact or drawn; a second, independent surface may be added, which makes the
  * equivalent surface of a pair (Greenwood and Tripp, Proc. Inst. Mech. Eng. 185, 1970).
  *
@@ -48,7 +48,7 @@ enum rough_status {
 	ROUGH_TOO_LONG,   /* a correlation length exceeds the side */
 	ROUGH_EMPTY,      /* no wave of the grid is within the bounds */
 	ROUGH_IMPOSSIBLE, /* kurtosis <= skewness^2 + 1 */
-	ROUGH_TOO_FEW     /* so few points cannot have this skewness and kurtosis */
+	ROUGH_TOO_FEW     /* too few points for this skewness and kurtosis */
 };
 
 /* Work done for one surface, added to what the struct holds. */
@@ -67,7 +67,7 @@ void rough_free(struct rough *r);
 enum rough_status rough_surface(
 	struct rough *r, uint32_t realisation, double *z, struct rough_work *work);
 
-/* The spectrum behind it, NULL if all surfaces are flat. */
+/* Its spectrum, NULL if all surfaces are flat. */
 const struct spectrum *rough_spectrum(const struct rough *r);
 
 /* The roughness of a realisation; index: 0 first surface, 1 second. */

@@ -74,6 +74,7 @@ static enum wp_status outcome(struct wp_separate *s, enum separate_status status
 		[SEPARATE_SILENT_2] = "channel 2 is constant: a dead sensor",
 		[SEPARATE_NO_LAG] =
 			"channels with nothing in common: no particle, or give the delay",
+		[SEPARATE_SWAPPED] = "pulses reach channel 2 first",
 		[SEPARATE_FAR] = "the delay is as long as what is learned from",
 		[SEPARATE_NARROW] = "a filter has left too narrow a band",
 		[SEPARATE_FAST] = "no pulse of at least 8 samples",

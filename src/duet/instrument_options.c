@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct instrument instrument = { .false_alarm = 1e-9 };
+struct instrument_given instrument = { .false_alarm = 1e-9 };
 
 static const char *const pulses[] = { "auto", "sine", "gauss", "lorentz", NULL };
 static const char *const automatic[] = { "auto", NULL };

@@ -6,7 +6,7 @@
 #include "signal/calibrate.h"
 
 /* Values of the options. */
-extern struct instrument {
+extern struct instrument_given {
 	struct opt_choice align, duration, gain, spread;
 	int pulse; /* 0: to be learned; else 1 + enum pulse_shape */
 	struct opt_list lines;

@@ -19,6 +19,7 @@ static long window = 64, hop, sensor = 1;
 static struct opt_choice sources = { 0, 0 };
 static double kappa = M_PI / 4 * 1e11; /* as sensorsim(1) */
 static double spacing = 0.25, learn = NAN, latency = NAN, floor_height = NAN;
+static const char *instrument_file;
 static const char *separated, *histogram, *sections, *detectable;
 static const char *const methods[] = { "fit", "duet", "count", NULL };
 static const char *const automatic[] = { "auto", NULL };
@@ -35,7 +36,11 @@ static const struct opt opts[] = { OPT_HEADING("Method"),
 		"peak voltage over velocity and diameter cubed, V s/m4", 0, 0 },
 	{ 0, "sources", OPT_CHOICE, UNIT_COUNT, &sources, 1, 16, "auto|N",
 		"particles in each section", automatic, 0 },
-	OPT_TABLE(instrument_rows), OPT_HEADING("Working on the record"),
+	OPT_TABLE(instrument_rows),
+	{ 0, "instrument", OPT_TEXT, UNIT_NONE, &instrument_file, 0, 0, "FILE",
+		"use the instrument kept in FILE; if there is none, learn and keep it", 0,
+		0 },
+	OPT_HEADING("Working on the record"),
 	{ 0, "learn", OPT_NUM, UNIT_TIME, &learn, 0, 1e9, "T",
 		"start of the record that the instrument is learned from", 0, 0 },
 	{ 0, "latency", OPT_NUM, UNIT_TIME, &latency, 0, 1e9, "T",
@@ -80,6 +85,8 @@ static void check_options(void)
 		die(EXIT_USAGE, "--sensor and --floor need --method count");
 	if (method == METHOD_COUNT && (separated || sections))
 		die(EXIT_USAGE, "--method count knows no sections and separates nothing");
+	if (method != METHOD_FIT && instrument_file)
+		die(EXIT_USAGE, "--instrument needs --method fit");
 	if (method != METHOD_FIT && detectable)
 		die(EXIT_USAGE, "--detectable needs --method fit");
 	if (window % 2)
@@ -139,7 +146,7 @@ static int separate_all(struct signal_in *in, struct found *out)
 		if (isnan(learn) && par.window < par.learn)
 			par.learn = par.window;
 	}
-	doubtful = separate_record(in, out, &par);
+	doubtful = separate_record(in, out, &par, instrument_file);
 	free(par.known.filter);
 	return doubtful;
 }

@@ -1,9 +1,11 @@
 #include "methods.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "instrument_file.h"
 #include "instrument_options.h"
 #include <math.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 enum { BLOCK = 4096 };
 
@@ -15,6 +17,8 @@ static void check_status(
 		[SEPARATE_SHORT] = "want at least 64 frames to learn from",
 		[SEPARATE_SILENT_1] = "channel 1 is constant: a dead sensor",
 		[SEPARATE_SILENT_2] = "channel 2 is constant: a dead sensor",
+		[SEPARATE_SWAPPED] = "pulses reach channel 2 first: the sensors are "
+				     "swapped, or the oil flows backwards",
 		[SEPARATE_FAR] = "--align is as long as what is learned from: --learn "
 				 "from more of the record",
 		[SEPARATE_NARROW] = "the filter it has passed leaves too narrow a band "
@@ -81,30 +85,61 @@ static int put_ready(struct separate *s, struct found *out)
 }
 
 /* Says so, and so does the table. */
-static int is_doubtful(const struct separate *s, struct found *out, const char *name)
+static int is_doubtful(const struct separate *s, struct found *out, const char *name,
+	const char *kept)
 {
 	const struct separate_counters *c = separate_counters(s);
-	double rows = c->rows + c->unresolved;
+	enum separate_doubt doubt = separate_doubtful(s);
+	double share[2];
+	char *why;
 
-	if (!separate_doubtful(s))
+	if (doubt == SEPARATE_BELIEVED)
 		return 0;
-	warn("%s: %.0f of %.0f rows fit no particle (misfit): the others are doubtful, "
-	     "too",
-		name, c->misfits, rows);
-	table_comment(out->particles, "doubtful", "%.0f of %.0f rows fit no particle",
-		c->misfits, rows);
+	separate_noise(s, share);
+	why = doubt == SEPARATE_FOREIGN ? xprintf("%.0f of %.0f rows fit no particle",
+						  c->misfits, c->rows + c->unresolved)
+	      : doubt == SEPARATE_NOISE
+		      ? xprintf("the noise is %.3g and %.3g times that of the instrument",
+				share[0], share[1])
+		      : xprintf("%.0f %% of it is unresolved, unlike the record of the "
+				"instrument",
+				100 * c->dense / c->samples);
+	if (kept)
+		warn("%s: this instrument does not fit %s: %s", kept, name, why);
+	else
+		warn("%s: %s (misfit): the others are doubtful, too", name, why);
+	table_comment(out->particles, "doubtful", "%s", why);
+	free(why);
 	return 1;
 }
 
-int separate_record(
-	struct signal_in *in, struct found *out, const struct separate_par *par)
+/* Writes what was learned, once it is believed. */
+static void keep(const struct separate *s, const struct instrument_place *place)
+{
+	struct instrument view;
+
+	if (separate_instrument(s, &view) && !separate_doubtful(s))
+		instrument_write(place, &view);
+}
+
+int separate_record(struct signal_in *in, struct found *out,
+	const struct separate_par *given, const char *file)
 {
 	static double x[2 * BLOCK];
-	struct separate *s = separate_new(par);
-	int doubtful;
+	struct separate_par par = *given;
+	struct instrument_place place = { .path = file,
+		.rate = (double)out->rate,
+		.spacing = out->spacing,
+		.known = &par.known };
+	struct instrument kept, view;
+	struct separate *s;
+	int doubtful, learned = 0;
 	enum separate_status status;
 	size_t n;
 
+	if (file && instrument_read(&place, &kept))
+		par.kept = &kept;
+	s = separate_new(&par);
 	if (!s)
 		die(EXIT_RUN, "no memory");
 	while ((n = signal_read_some(in, x, BLOCK)) > 0) {
@@ -115,12 +150,22 @@ int separate_record(
 		check_status(status, s, signal_name(in));
 		if (any)
 			table_flush(out->particles);
+		if (file && !par.kept && !learned &&
+			separate_instrument(s, &view)) {
+			learned = 1;
+			keep(s, &place);
+		}
 	}
 	status = separate_end(s);
 	put_ready(s, out);
 	check_status(status, s, signal_name(in));
+	if (file && !par.kept)
+		keep(s, &place);
+	if (file && access(file, F_OK) != 0)
+		warn("%s: not written: what was learned is doubtful, or nothing was",
+			file);
 	report(s, (double)out->rate);
-	doubtful = is_doubtful(s, out, signal_name(in));
+	doubtful = is_doubtful(s, out, signal_name(in), par.kept ? file : NULL);
 	found_detectable(out, separate_calibration(s));
 	separate_free(s);
 	return doubtful;

@@ -4,9 +4,10 @@
 
 #include "outputs.h"
 
-/* Sections, each taken apart by fit or masks. */
-int separate_record(
-	struct signal_in *in, struct found *out, const struct separate_par *par);
+/* Sections, each taken apart by fit or masks; with the instrument kept in a file (NULL:
+ * none), which is written if it is not there. */
+int separate_record(struct signal_in *in, struct found *out,
+	const struct separate_par *par, const char *file);
 
 struct count_par {
 	int sensor;   /* 1 or 2 */

@@ -1,7 +1,6 @@
 #!/bin/sh
 # Stiff and extreme scenes of debrisstat and records, and thirty wear steps of debrisgen:
 # accurate, or refused in one line.
-# A description reads: scene | expectation | outcome | error
 . "$(dirname "$0")/../tap.sh"
 . "$top/tests/extremes/scenes.sh"
 

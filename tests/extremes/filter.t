@@ -1,6 +1,5 @@
 #!/bin/sh
 # Stiff and extreme scenes of sensorsim and bpfilter: accurate, or refused in one line.
-# A description reads: scene | expectation | outcome | error
 . "$(dirname "$0")/../tap.sh"
 . "$top/tests/extremes/scenes.sh"
 . "$top/tests/au.sh"

@@ -1,6 +1,5 @@
 #!/bin/sh
 # Extreme scenes of layout: accurate, or refused or marked in one line.
-# A description reads: scene | expectation | outcome | error
 . "$(dirname "$0")/../tap.sh"
 . "$top/tests/extremes/scenes.sh"
 

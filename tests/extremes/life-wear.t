@@ -1,6 +1,5 @@
 #!/bin/sh
 # Stiff and extreme scenes of rwl: accurate, or refused in one line.
-# A description reads: scene | expectation | outcome | error
 # shellcheck disable=SC2046,SC2086 # lists of words are meant as such
 . "$(dirname "$0")/../tap.sh"
 . "$top/tests/extremes/scenes.sh"

@@ -1,6 +1,5 @@
 #!/bin/sh
 # Prognosis at the edge: each scene is accurate or refused in one line.
-# Descriptions read "scene | expectation | outcome | error".
 . "$(dirname "$0")/../tap.sh"
 . "$top/tests/extremes/scenes.sh"
 

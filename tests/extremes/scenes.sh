@@ -1,6 +1,19 @@
 # shellcheck shell=sh
-# scenes.sh - what the tables of extreme scenes are written with; read it after tap.sh.  A
-# description reads: scene | expectation | outcome | error
+# scenes.sh - functions for tests of extreme scenes; read it after tap.sh
+#
+# A name reads "scene | expectation | outcome | error", the row of a table; it is printed
+# as a sentence, from which rows.sed makes the row again.
+# shellcheck disable=SC2034 # described is read by tap.sh
+describe() {
+	case $1 in
+	*' | '*' | '*' | '*)
+		rest=${1#*' | '}
+		end=${rest#*' | '}
+		described="the scene \"${1%%' | '*}\" leads to \"${end%%' | '*}\" where \"${rest%%' | '*}\" is expected (error ${end#*' | '})"
+		;;
+	*) described=$1 ;;
+	esac
+}
 
 # outcome NAME EXPECTATION OUTCOME ERROR LIMIT: an error measured elsewhere, at most LIMIT
 outcome() {

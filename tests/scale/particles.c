@@ -3,7 +3,7 @@
  *	particles ROWS [PER]    PER rows a realisation (default 1000), in ten steps
  *
  * Sizes follow a Weibull distribution of shape 2; the random numbers are those of a
- *linear congruential generator, the same everywhere.
+ * linear congruential generator, the same everywhere.
  */
 #include <math.h>
 #include <stdint.h>

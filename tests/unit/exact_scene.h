@@ -186,11 +186,11 @@ static void exact_solve(const struct exact_scene *s)
 		error += fabs(found[i] - p[i]);
 	ok(status == CONTACT_OK && error <= 1e-6 * sum &&
 			contact_result(c)->iterations <= s->iterations,
-		"%dx%d %s, %s on %.0f %%%s%s | the solver finds the chosen pressure in %ld iterations | %ld iterations | %.1e",
+		"the scene \"%dx%d %s, %s on %.0f %%%s%s\" leads to \"%ld iterations\" where \"the solver finds the chosen pressure in %ld iterations\" is expected (error %.1e)",
 		s->nx, s->ny, s->boundary == CONTACT_FREE ? "free" : "periodic",
 		s->shape == NOISE ? "noise" : "patches", 100 * cells / (double)n,
 		s->hardness > 0 ? ", a hardness" : "", s->hole > 0 ? ", a hole" : "",
-		s->iterations, contact_result(c)->iterations, error / sum);
+		contact_result(c)->iterations, s->iterations, error / sum);
 	contact_free(c);
 	fft_free(p);
 	fft_free(gap);

@@ -31,17 +31,17 @@ int main(void)
 		s[count++] = (struct stretch){ i, 0, LAYERS * 1e-6 };
 	particles_find(ps, s, count, &p, &n);
 	ok(n == 1 && fabs(p->volume / want - 1) < 1e-12,
-		"1e7 cells in one particle | volume %g m3 | %g m3 | %.1e", want,
-		p->volume, fabs(p->volume / want - 1));
+		"the scene \"1e7 cells in one particle\" leads to \"%g m3\" where \"volume %g m3\" is expected (error %.1e)",
+		p->volume, want, fabs(p->volume / want - 1));
 	ok(fabs(p->solidity - 1) < 1e-12,
-		"1e7 cells in one particle | solidity 1 | %g | %.1e", p->solidity,
-		fabs(p->solidity - 1));
+		"the scene \"1e7 cells in one particle\" leads to \"%g\" where \"solidity 1\" is expected (error %.1e)",
+		p->solidity, fabs(p->solidity - 1));
 	ok(fabs(p->z / (LAYERS * 0.5e-6) - 1) < 1e-12,
-		"1e7 cells in one particle | centroid 80 um deep | %g m | %.1e", p->z,
-		fabs(p->z / (LAYERS * 0.5e-6) - 1));
+		"the scene \"1e7 cells in one particle\" leads to \"%g m\" where \"centroid 80 um deep\" is expected (error %.1e)",
+		p->z, fabs(p->z / (LAYERS * 0.5e-6) - 1));
 	/* Columns, their corners and their stretches, not the cells. */
 	ok(peak_kb() < 60000,
-		"1e7 cells in one particle | memory of the columns | %ld kB | none",
+		"the scene \"1e7 cells in one particle\" leads to \"%ld kB\" where \"memory of the columns\" is expected (error none)",
 		peak_kb());
 	count = 0;
 	for (size_t i = 0; i < N * N; i++)
@@ -49,10 +49,11 @@ int main(void)
 			s[count++] = (struct stretch){ i, (double)z * 1e-6,
 				(double)(z + 1) * 1e-6 };
 	particles_find(ps, s, count, &p, &n);
-	ok(n == N * N * 4, "checkerboard of single cells | %d particles | %zu | %d",
-		N * N * 4, n, (int)n - N * N * 4);
+	ok(n == N * N * 4,
+		"the scene \"checkerboard of single cells\" leads to \"%zu\" where \"%d particles\" is expected (error %d)",
+		n, N * N * 4, (int)n - N * N * 4);
 	ok(fabs(p[0].volume * 1e18 - 1) < 1e-9 && fabs(p[n - 1].volume * 1e18 - 1) < 1e-9,
-		"checkerboard of single cells | 1 um3 each | %g to %g m3 | 0",
+		"the scene \"checkerboard of single cells\" leads to \"%g to %g m3\" where \"1 um3 each\" is expected (error 0)",
 		p[n - 1].volume, p[0].volume);
 	particles_free(ps);
 	free(s);

@@ -1,7 +1,7 @@
 /* passage.h - when the lines of a bank will first reach a level
  *
  * Each draw takes a line or particle by its weight, its level, rate and noise from what
- *is known of them (Student-t), and the first passage of the level: exact for a line, an
+ * is known of them (Student-t), and the first passage of the level: exact for a line, an
  * inverse Gaussian time where the damage itself wanders.
  *
  * The regime may change once more: after a time J with P(J > x) = (a / (a + x))^c at age
