@@ -41,7 +41,7 @@ is "the effective sample size is between 1 and N" "$(cat bad)" 0
 printf '# units: h L/min\nt\ty\n0\t1\n' >unit.tsv
 is "every column has a unit" "$(aopf -y 2 unit.tsv | sed -n 's/^# units: //p')" \
 	"h L/min L/min L/min L/min 1 1 h h h 1"
-is "also beside a column of machines" "$(printf '# units: 1 h L/min\nunit\tt\ty\nA\t0\t1\n' | aopf --unit unit --threshold 2 | sed -n 's/^# units: //p')" \
+is "a lone y column is found beside a column of machines" "$(printf '# units: 1 h L/min\nunit\tt\ty\nA\t0\t1\n' | aopf --unit unit --threshold 2 | sed -n 's/^# units: //p')" \
 	"1 h L/min L/min L/min L/min 1 1 h h h 1"
 is "and where the input states none" "$(grep -v '^#' unit.tsv | aopf --threshold 2 --time-unit h | sed -n 's/^# units: //p')" \
 	"h 1 1 1 1 1 1 h h h 1"

@@ -14,12 +14,12 @@ for f in surfaces contacts stress; do
 	same "$f: the records of a table have the bytes of the stream" "$f" again
 done
 records --output table <contacts | records --output nrrd >again
-same 'also through pipes' contacts again
+same 'conversion through pipes gives the same bytes' contacts again
 is 'a table of points is listed as its records are' "$(records contacts.tsv | cksum)" "$(records contacts | cksum)"
-is 'and counted' "$(records --output count stress.tsv)" "$(records --output count stress)"
+is 'converted records are counted' "$(records --output count stress.tsv)" "$(records --output count stress)"
 records --output nrrd --pick 2 contacts.tsv >again
 records --output nrrd --pick 2 contacts >want
-same 'and one of them picked' want again
+same 'one converted record is picked' want again
 
 # A key that one record alone has, such as that of a solver that gave up
 roughgen --points 4 --length 1mm --sq 1um --corr 300um --count 2 | sed '0,/^seed:=/s/^seed:=1/seed:=1\nodd:=yes/' |
@@ -47,7 +47,7 @@ spacing=$(records --output table --pick 1 stress | grep -v '^[#r]' | awk '{ x = 
 records --output raw stress >raw
 records --raw "$size" --pixel "$spacing" --fields "$(names stress)" --output nrrd raw >back
 is 'raw layers read back' "$(samples stress | cksum)" "$(samples back | cksum)"
-is 'with their depth' "$(records --output table --pick 1 stress | grep -v '^#' | cut -f 4 | uniq | cksum)" \
+is 'volumes keep their depth' "$(records --output table --pick 1 stress | grep -v '^#' | cut -f 4 | uniq | cksum)" \
 	"$(records --output table --pick 1 back | grep -v '^#' | cut -f 4 | uniq | cksum)"
 records --output text --pick 1 surfaces >matrix
 surfimport --pixel 100um --height-unit 1m matrix | samples - >back

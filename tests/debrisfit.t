@@ -16,7 +16,7 @@ debrisgen --yield 355MPa --friction 0.3 --summary full.steps hidden.nrrd >full.t
 debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0 --stats stats \
 	--summary quick.steps hidden.nrrd >quick.tsv 2>said
 is 'other surfaces are estimated' "$?" 0
-near 'most of them' "$(column surfaces_estimated stats)" 30 12
+near 'the surrogate answers for most of the surfaces' "$(column surfaces_estimated stats)" 30 12
 is 'as many particles are found on each as by the full model' "$(column particles quick.steps | cksum)" \
 	"$(column particles full.steps | cksum)"
 # outlines, in any order
@@ -27,7 +27,7 @@ outlines() {
 }
 outlines full.tsv >want
 outlines quick.tsv >got
-same 'of the same cells and outlines' got want
+same 'the tables have the same cells and outlines' got want
 paste full.steps quick.steps | awk -F '\t' '/^#/ { next }
 	!n { for (i = 1; i <= NF; i++) { if ($i == "volume" && !v) v = i; if ($i == "volume_low") low = i
 		if ($i == "volume_high") high = i; if ($i == "exact") e = i } n = 1; next }

@@ -123,12 +123,12 @@ is "every quantity has its unit" "$(cut -f 11 against.tsv | grep -v '^#' | tr '\
 { printf '# nominal_area: 1e-8 m2\n# step_distance: 1 mm\n'; cat two.tsv; } >slid2.tsv
 debrisstat --compare slid2.tsv slid1.tsv >against.tsv
 near "life is the distance in which 1 um is worn off" "$(row life 2 | awk '{ print $1 * 1e6 }')" 24 1e-9
-near "that of the other study" "$(row life 3 | awk '{ print $1 * 1e6 }')" 2 1e-9
+near "the life in the other study is right" "$(row life 3 | awk '{ print $1 * 1e6 }')" 2 1e-9
 near "lives differ" "$(row life 4 | awk '{ print $1 * 1e6 }')" -22 1e-9
-rising "with an interval" "$(row life 5)" "$(row life 4)" "$(row life 6)"
+rising "the ratio has an interval" "$(row life 5)" "$(row life 4)" "$(row life 6)"
 near "the ratio of lives counts areas and distances" "$(row life 7)" 0.083333333 1e-8
 is "life is a distance" "$(row life 11)" m
-is "and so many realisations would tell" "$(row life 10)" "$(awk 'BEGIN {
+is "the number of realisations that would tell is printed" "$(row life 10)" "$(awk 'BEGIN {
 	print int(2.926407 ^ 2 * 2 * (5 / 3) / 2.5 ^ 2 / log(12) ^ 2) + 1 }' | awk '{ print $1 < 2 ? 2 : $1 }')"
 debrisstat --compare slid2.tsv --depth 2um slid1.tsv >against.tsv
 near "life is proportional to the depth" "$(row life 2 | awk '{ print $1 * 1e6 }')" 48 1e-9

@@ -21,15 +21,15 @@ at_least() {
 sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 20ms --snr 30dB \
 	--lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv >s.au
 ok "fit" sh -c "duet -v s.au >fit.tsv 2>fit.log"
-is "fit: all particles" "$(score matched truth.tsv fit.tsv)" 60
-is "fit: no other" "$(score false truth.tsv fit.tsv)" 0
+is "the fit finds all particles" "$(score matched truth.tsv fit.tsv)" 60
+is "the fit finds no other" "$(score false truth.tsv fit.tsv)" 0
 # The bound at 30 dB: 3.3 sigma / A samples of delay (A from 0.51 to 1.73), 0.11 % of size.
-at_most "fit: delays to 0.14 samples" "$(score delay_rms truth.tsv fit.tsv)" 14e-6
-at_most "fit: sizes to 0.3 %" "$(score size_rms truth.tsv fit.tsv)" 0.003
+at_most "the delays of the fit are right to 0.14 samples" "$(score delay_rms truth.tsv fit.tsv)" 14e-6
+at_most "the sizes of the fit are right to 0.3 %" "$(score size_rms truth.tsv fit.tsv)" 0.003
 at_least "fit: standard errors are not too small" "$(score delay_cover truth.tsv fit.tsv)" 0.5
 at_most "fit: standard errors are not too large" "$(score delay_cover truth.tsv fit.tsv)" 0.85
-ok "gain learned" grep -Eq 'gain 0\.9(0[6-9]|1[0-2])' fit.log
-ok "shape learned" grep -q 'pulse sine' fit.log
+ok "the gain is learned" grep -Eq 'gain 0\.9(0[6-9]|1[0-2])' fit.log
+ok "the shape is learned" grep -q 'pulse sine' fit.log
 near "velocity is spacing over delay" "$(column velocity fit.tsv | head -1)" \
 	"$(column delay fit.tsv | awk 'NR == 1 { printf "%.12g", 0.25 / $1 }')" 1e-6
 
@@ -37,7 +37,7 @@ near "velocity is spacing over delay" "$(column velocity fit.tsv | head -1)" \
 (dd bs=777 2>/dev/null; :) <s.au | duet >blocks.tsv
 sed 1d fit.tsv >a
 sed 1d blocks.tsv >b
-same "the same rows from a pipe of 777-byte blocks" a b
+same "a pipe of 777-byte blocks gives the same rows" a b
 
 # Sections longer than a window, some of them unresolved.
 sensorsim --uniform 50um:150um --number 1200 --duration 10s --snr 30dB --lag 0.2ms:0.5ms >long.au
@@ -45,7 +45,7 @@ duet --stats stats.tsv long.au | sed 1d >a
 (dd bs=5003 2>/dev/null; :) <long.au | duet | sed 1d >b
 same "the same where sections are cut into windows" a b
 # White noise is not guessed at, though hardly anything is quiet between dense pulses.
-is "dense, white: learned once" "$(column_of calibrations <stats.tsv)" 1
+is "a dense white record is learned once" "$(column_of calibrations <stats.tsv)" 1
 
 # Twins 2 ms apart: one peak to the eye.
 sensorsim --uniform 90um:110um --number 40 --burst 2 --span 3ms --gap 1.5ms --period 0.1s \
@@ -57,8 +57,8 @@ done
 is "what exceeds the limit of pulses is one unresolved row" "$(awk '{ print $1, $2 }' few.1)" "20 unresolved"
 is "a limit below one is one" "$(cat few.0)" "$(cat few.1)"
 is "pulses up to the limit are found" "$(awk '{ print $1, $2 }' few.2)" "40 overlap"
-is "twins: both of each pair" "$(score matched twins.tsv found.tsv)" 40
-is "twins: no third" "$(score false twins.tsv found.tsv)" 0
+is "both twins of each pair are found" "$(score matched twins.tsv found.tsv)" 40
+is "no third twin is found" "$(score false twins.tsv found.tsv)" 0
 duet --method count twins.au >counted.tsv
 at_most "twins: counted peaks see one of two" "$(column particle counted.tsv | wc -l)" 25
 
@@ -68,31 +68,31 @@ sensorsim --uniform 90um:110um --number 120 --burst 3 --span 15ms --gap 1ms --pe
 	--start 20ms --snr 30dB --lag 0.2ms:0.5ms --gain 0.909 --pulse lorentz \
 	--truth tails.tsv >tails.au
 duet -v tails.au >found.tsv 2>log
-ok "tails: shape learned" grep -q 'pulse lorentz' log
-ok "tails: no lines" grep -q ' 0 lines' log
-is "tails: all particles" "$(score matched tails.tsv found.tsv)" 120
-is "tails: no other" "$(score false tails.tsv found.tsv)" 0
-at_most "tails: delays at the bound" "$(score delay_ratio tails.tsv found.tsv)" 1.3
+ok "tails: the shape is learned" grep -q 'pulse lorentz' log
+ok "tails: no line is found" grep -q ' 0 lines' log
+is "tails: all particles are found" "$(score matched tails.tsv found.tsv)" 120
+is "tails: no other is found" "$(score false tails.tsv found.tsv)" 0
+at_most "tails: the delay errors are at the bound" "$(score delay_ratio tails.tsv found.tsv)" 1.3
 
 # Mains and pump, found and fitted.
 sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 20ms --snr 30dB \
 	--lag 0.2ms:0.5ms --mains 0.5,0.3 --pump 0.4,0.2 --truth lines.tsv >lines.au
 duet -v lines.au >found.tsv 2>log
-ok "lines: four found" grep -q ' 4 lines' log
-is "lines: all particles" "$(score matched lines.tsv found.tsv)" 60
-is "lines: no other" "$(score false lines.tsv found.tsv)" 0
-at_most "lines: delays to 0.16 samples" "$(score delay_rms lines.tsv found.tsv)" 16e-6
+ok "lines: four are found" grep -q ' 4 lines' log
+is "lines: all particles are found" "$(score matched lines.tsv found.tsv)" 60
+is "lines: no other is found" "$(score false lines.tsv found.tsv)" 0
+at_most "lines: the delays are right to 0.16 samples" "$(score delay_rms lines.tsv found.tsv)" 16e-6
 
 # Masks: isolated pulses come out, with the delay not shrunk to 0.56.
 sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 50ms --snr 40dB \
 	--lag 0.2ms:0.5ms --truth truth.tsv >s.au
 duet --method duet --separated sources.au --histogram hist.tsv s.au >masks.tsv
-is "masks: all particles" "$(score matched truth.tsv masks.tsv)" 60
-at_most "masks: delays of lone pulses to 0.4 samples" "$(score delay_rms truth.tsv masks.tsv)" 40e-6
-ok "masks: a histogram" sh -c "grep -q ^section hist.tsv"
-ok "masks: separated signals" sh -c "test \$(wc -c <sources.au) -gt 1000000"
-ok "counting, sensor 1" sh -c "duet --method count s.au >c.tsv"
-is "counting: lone pulses" "$(column particle c.tsv | wc -l)" 60
+is "masks: all particles are found" "$(score matched truth.tsv masks.tsv)" 60
+at_most "masks: the delays of lone pulses are right to 0.4 samples" "$(score delay_rms truth.tsv masks.tsv)" 40e-6
+ok "masks: the histogram is written" sh -c "grep -q ^section hist.tsv"
+ok "masks: the separated signals are written" sh -c "test \$(wc -c <sources.au) -gt 1000000"
+ok "counting at sensor 1 succeeds" sh -c "duet --method count s.au >c.tsv"
+is "counting finds the 60 lone pulses" "$(column particle c.tsv | wc -l)" 60
 
 # Standard errors: 68 % inside one, give or take 3.5 deviations of 200 draws.
 sensorsim --uniform 80um:120um --number 200 --duration 30s --gap 50ms --snr 30dB \
@@ -106,16 +106,16 @@ for c in time1 time2 delay velocity diameter amplitude; do
 	{ n++; inside += ($1 - $2) ^ 2 < $3 ^ 2 }
 	END { if (inside / n < 0.565 || inside / n > 0.795) print c, inside / n }'
 done >off.txt
-is "standard errors: 68 % inside" "$(cat off.txt)" ""
+is "68 % of the delays are within their standard error" "$(cat off.txt)" ""
 
 # Counted on either sensor: that one has an arrival.
 duet --method count --sensor 2 --align 20ms lone.au >c.tsv
-is "counting, sensor 2: no arrival at sensor 1" "$(column time1 c.tsv | sort -u)" nan
+is "counting at sensor 2 gives no arrival at sensor 1" "$(column time1 c.tsv | sort -u)" nan
 column time2 t.tsv >t.col
-at_most "counting, sensor 2: peaks a quarter of a pulse (2.5 ms) from the arrivals there" \
+at_most "peaks at sensor 2 are a quarter of a pulse (2.5 ms) from the arrivals" \
 	"$(column time2 c.tsv | paste t.col - | awk '{ d = sqrt(($1 - $2) ^ 2) - 2.5e-3
 		d = d < 0 ? -d : d; most = d > most ? d : most } END { print most }')" 1e-3
-is "counting, sensor 2: all of them" "$(column time2 c.tsv | wc -l)" 200
+is "all pulses are counted at sensor 2" "$(column time2 c.tsv | wc -l)" 200
 
 # Of noisier or shorter pulses the masks find more sources than there are: these are marked.
 sensorsim --uniform 80um:120um --number 20 --duration 4s --gap 20ms --snr 30dB \
@@ -176,7 +176,7 @@ at_most "masks: lone pulses are not demixed" "$(column_of demixings <stats.tsv)"
 # Too dense: said so, and the sum of squares is right (1000 per second, A = 1: 1000 V2/s).
 sensorsim --uniform 100um:100um --number 8000 --duration 8s --snr 30dB --truth t.tsv >dense.au
 duet --sections sections.tsv dense.au >dense.tsv
-is "dense: no invented particle" "$(column verdict dense.tsv | sort -u)" unresolved
+is "no particle is invented in a dense record" "$(column verdict dense.tsv | sort -u)" unresolved
 near "dense: the sum of squares" "$(column square sections.tsv |
 	awk "{ s += \$1 } END { print s / NR }")" 1000 200
 
@@ -209,10 +209,10 @@ is "filtered: what duet writes is not" "$(passed separated.au)" ""
 # 1.03).  All sizes share the error of the duration learned from 16 pulses: at most 0.07 %
 # on six records, raw or filtered.
 undone() { # NAME FOUND
-	is "$1: all particles" "$(score matched truth.tsv "$2")" 100
-	is "$1: no other" "$(score false truth.tsv "$2")" 0
-	at_most "$1: delay error over the bound" "$(score delay_ratio truth.tsv "$2")" 1.25
-	near "$1: size bias" "$(score size_bias truth.tsv "$2")" 0 0.002
+	is "$1: all particles are found" "$(score matched truth.tsv "$2")" 100
+	is "$1: no other is found" "$(score false truth.tsv "$2")" 0
+	at_most "$1: the delay error is near the bound" "$(score delay_ratio truth.tsv "$2")" 1.25
+	near "$1: the sizes are unbiased" "$(score size_bias truth.tsv "$2")" 0 0.002
 }
 duet --stats stats.tsv narrow.au >narrow.tsv
 undone "70:130 undone" narrow.tsv
@@ -235,10 +235,10 @@ bpfilter --taps -b 20:1000 --order 1000 >taps.tsv
 bare wide.au | duet --undo taps.tsv >found.tsv
 rows wide.tsv >a
 rows found.tsv >b
-same "the same for 1001 taps" a b
+same "1001 taps give the same" a b
 (dd bs=777 2>/dev/null; :) <wide.au | duet >found.tsv
 rows found.tsv >b
-same "20:1000 undone: the same rows from a pipe of 777-byte blocks" a b
+same "20:1000 undone: a pipe of 777-byte blocks gives the same rows" a b
 sensorsim --uniform 50um:150um --number 120 --duration 1s --snr 30dB --lag 0.2ms:0.5ms |
 	bpfilter --zero-phase >passed.au
 duet passed.au | sed 1d >a
@@ -254,9 +254,9 @@ bpfilter --zero-phase raw.au >narrow.au
 bare narrow.au >bare.au
 duet --stats stats.tsv bare.au >found.tsv
 at_least "70:130 guessed: particles" "$(score matched truth.tsv found.tsv)" 58
-at_most "70:130 guessed: no others" "$(score false truth.tsv found.tsv)" 2
-at_most "70:130 guessed: delay error over the bound" "$(score delay_ratio truth.tsv found.tsv)" 1.3
-near "70:130 guessed: size bias" "$(score size_bias truth.tsv found.tsv)" 0 0.03
+at_most "70:130 guessed: no other is found" "$(score false truth.tsv found.tsv)" 2
+at_most "70:130 guessed: the delay error is near the bound" "$(score delay_ratio truth.tsv found.tsv)" 1.3
+near "70:130 guessed: the sizes are unbiased" "$(score size_bias truth.tsv found.tsv)" 0 0.03
 at_least "70:130 guessed: learned more than once" "$(column_of calibrations <stats.tsv)" 2
 
 # The same for 20:1000, in spite of the header.  Noise alone for 0.2 s between particles shows
@@ -266,10 +266,10 @@ sensorsim --uniform 80um:120um --number 50 --burst 1 --span 50ms --period 0.3s -
 	--duration 17s --snr 20dB --lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv |
 	bpfilter -b 20:1000 --order 1000 --zero-phase >wide.au
 duet --undo none --stats stats.tsv wide.au >found.tsv
-is "20:1000 guessed: all particles" "$(score matched truth.tsv found.tsv)" 50
-is "20:1000 guessed: no other" "$(score false truth.tsv found.tsv)" 0
-at_most "20:1000 guessed: delay error over the bound" "$(score delay_ratio truth.tsv found.tsv)" 1.35
-near "20:1000 guessed: size bias" "$(score size_bias truth.tsv found.tsv)" 0 0.005
+is "20:1000 guessed: all particles are found" "$(score matched truth.tsv found.tsv)" 50
+is "20:1000 guessed: no other is found" "$(score false truth.tsv found.tsv)" 0
+at_most "20:1000 guessed: the delay error is near the bound" "$(score delay_ratio truth.tsv found.tsv)" 1.35
+near "20:1000 guessed: the sizes are unbiased" "$(score size_bias truth.tsv found.tsv)" 0 0.005
 at_least "--undo none does not read the header: learned more than once" \
 	"$(column_of calibrations <stats.tsv)" 2
 
@@ -278,15 +278,15 @@ at_least "--undo none does not read the header: learned more than once" \
 sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 20ms --snr 30dB \
 	--lag 0.2ms:0.5ms --gain 0.909 --corner 1kHz --truth truth.tsv >coloured.au
 duet coloured.au >found.tsv
-is "coloured noise: all particles" "$(score matched truth.tsv found.tsv)" 60
-is "coloured noise: no other" "$(score false truth.tsv found.tsv)" 0
-at_most "coloured noise: delay error over the bound" "$(score delay_ratio truth.tsv found.tsv)" 1.3
+is "coloured noise: all particles are found" "$(score matched truth.tsv found.tsv)" 60
+is "coloured noise: no other is found" "$(score false truth.tsv found.tsv)" 0
+at_most "coloured noise: the delay error is near the bound" "$(score delay_ratio truth.tsv found.tsv)" 1.3
 at_least "coloured noise: standard errors" "$(score delay_cover truth.tsv found.tsv)" 0.5
-near "coloured noise: size bias" "$(score size_bias truth.tsv found.tsv)" 0 0.003
+near "coloured noise: the sizes are unbiased" "$(score size_bias truth.tsv found.tsv)" 0 0.003
 
 # White noise is not guessed at, nor where pulses are close.
 duet --stats stats.tsv twins.au >/dev/null
-is "twins, white: learned once" "$(column_of calibrations <stats.tsv)" 1
+is "twins in white noise are learned once" "$(column_of calibrations <stats.tsv)" 1
 
 # What the header or the table of taps should not say.  All frequencies pass 0:5000.
 bpfilter -b 0:5000 --order 2 twins.au | sed -e 's/wearpipe-streams(5)/anything-streams(5)/' -e 's/^\(filter .*\) hamming/\1 unknown/' >odd.au
@@ -315,7 +315,7 @@ fails "a table that is not there" 1 'none.tsv' duet --undo none.tsv twins.au
 # Silence and bad input.
 sensorsim --uniform 80um:120um --number 0 --duration 10s --noise 1V >noise.au
 duet --align 19.6ms --pulse-duration 10ms noise.au >none.tsv
-is "noise: no particle" "$(grep -vc '^#' none.tsv)" 1
+is "noise has no particle" "$(grep -vc '^#' none.tsv)" 1
 duet noise.au >none.tsv 2>warning
 is "noise: nothing to learn from, no particle" "$(column particle none.tsv | wc -l)" 0
 ok "and that is said" grep -q 'nothing in common' warning
@@ -347,7 +347,7 @@ sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 20ms --snr 30dB -
 	bpfilter --band 20:1000 --order 400 --zero-phase >passed.au
 duet --instrument passed.tsv passed.au | grep -v '^#' >first
 duet --instrument passed.tsv passed.au | grep -v '^#' >second
-same "the same after a filter" first second
+same "a filtered record gives the same" first second
 at_least "and particles are found there" "$(column verdict second | grep -c alone)" 59
 
 refuses() {

@@ -84,6 +84,6 @@ doubted "a pressure beyond elasticity" 'mean pressure of 50 GPa is above a tenth
 doubted "heights of a metre" 'heights of 1 m exceed the correlation length of 3e-06 m' steep
 doubted "a yield stress beyond that of any solid" '--yield 3.55e+11 Pa is stronger than any solid' hard
 doubted "a friction coefficient in per cent without the sign" '--friction 30: is 30% meant?' sticky
-ok "a friction coefficient in per cent" sh -c "bemcontact --young 210GPa --pressure 1MPa s.nrrd | debrisgen --yield 355MPa --friction 30%"
+ok "a friction coefficient in per cent is accepted" sh -c "bemcontact --young 210GPa --pressure 1MPa s.nrrd | debrisgen --yield 355MPa --friction 30%"
 is "ordinary values give no warning" "$(plain 2>&1 >/dev/null)" ""
 done_testing

@@ -20,8 +20,8 @@ is "a circle of rooms is found" \
 # no_circle WHAT FILE
 no_circle() {
 	ok "$1: many modules use each other" [ "$(modules <"$2" | wc -l)" -gt 100 ]
-	is "$1: no circle of modules" "$(modules <"$2" | circles)" ""
-	is "$1: no circle of rooms" "$(rooms <"$2" | circles)" ""
+	is "$1: modules form no circle" "$(modules <"$2" | circles)" ""
+	is "$1: rooms form no circle" "$(rooms <"$2" | circles)" ""
 	is "$1: domains use neither streams nor options" \
 		"$(rooms <"$2" | awk '$1 !~ /^(io|cli)$/ && $2 ~ /^(io|cli)$/')" ""
 }
@@ -36,7 +36,7 @@ is "no source of the library includes one of a program" "$(awk '$2 ~ /\// { prin
 # The objects of this build; those of sources that are gone do not count.
 objects=${BIN:-$top/bin}
 case $objects in */build/*) objects=${objects%/bin} ;; *) objects=$top/build ;; esac
-for f in $(find lib -name '*.c'); do
+find lib -name '*.c' | while read -r f; do
 	o=$objects/${f%.c}.o
 	[ ! -e "$o" ] || echo "$o"
 done | xargs nm -P -A | sed 's|^.*/\(lib/[^:]*\):|\1|' | name >"$work/symbols"

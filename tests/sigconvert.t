@@ -43,17 +43,17 @@ told() {
 		for (i = 0; i < n; i++) printf "%.*f\t%d\n", digits, i * step, i }' >times.tsv
 	sigconvert --output text times.tsv 2>err | sed -n 's/^# rate: //p'
 }
-is "a step of 0.3 s" "$(told 0.3 1 20)" "3.3333333333333335"
-is "44100 Hz, times of nine digits" "$(told 2.2675736961451248e-05 9 300)" 44100
-is "44.1 Hz, times of six digits" "$(told 0.022675736961451248 6 500)" 44.1
-is "10007 Hz, exact times" "$(told 9.993004896572399e-05 15 300)" 10007
-is "10 kHz, times in whole milliseconds" "$(told 1e-4 3 3000)" 10000
-is "a minute" "$(told 60 0 10)" 0.016666666666666666
-is "and none warns" "$(cat err)" ''
+is "a step of 0.3 s gives the rate" "$(told 0.3 1 20)" "3.3333333333333335"
+is "times of nine digits give 44100 Hz" "$(told 2.2675736961451248e-05 9 300)" 44100
+is "times of six digits give 44.1 Hz" "$(told 0.022675736961451248 6 500)" 44.1
+is "exact times give 10007 Hz" "$(told 9.993004896572399e-05 15 300)" 10007
+is "times in whole milliseconds give 10 kHz" "$(told 1e-4 3 3000)" 10000
+is "a step of a minute gives the rate" "$(told 60 0 10)" 0.016666666666666666
+is "regular times cause no warning" "$(cat err)" ''
 told 2.2675736961451248e-05 3 200 >out
 like "times that tell little are said to" "$(cat err)" 'tell no better .* --rate does'
 awk 'BEGIN { print "t\tu"; srand(3); for (i = 0; i < 1000; i++) print i / 100 + 0.001 * rand() "\t" i }' >jitter.tsv
-is "times that jitter by a tenth of a step" "$(sigconvert --output text jitter.tsv | sed -n 's/^# rate: //p')" 100
+is "times that jitter by a tenth of a step give the rate" "$(sigconvert --output text jitter.tsv | sed -n 's/^# rate: //p')" 100
 printf 'Rate [Hz];u [V]\n12,5;1\n12,5;2\n' >rated.csv
 is "a column tells the rate" "$(sigconvert --output text rated.csv | sed -n 's/^# rate: //p')" 12.5
 printf 'Rate;u\n12,5;1\n12;2\n' >rated.csv
@@ -61,11 +61,11 @@ fails "a rate that changes" 1 'line 3: rate 12 after 12.5' sigconvert rated.csv
 
 # A rate that is no whole number, and the moment of the first sample, pass every format.
 sigconvert --rate 44.1Hz --start 2026-11-22T03:04:05.250+01:00 plain.csv --skip-lines 1 >f.au
-is "a fraction of a hertz, and the start" \
+is "a fraction of a hertz and the start are kept" \
 	"$(sigconvert --output text f.au | sed -n -e 's/^# rate: //p' -e 's/^# start: //p' | tr '\n' ' ')" \
 	"44.1 2026-11-22T03:04:05.250+01:00 "
 sigconvert --output text f.au | sigconvert | sigconvert --output text >g.tsv
-is "also through text and pipes" "$(sed -n -e 's/^# rate: //p' -e 's/^# start: //p' g.tsv | tr '\n' ' ')" \
+is "text and pipes keep the start and the rate" "$(sed -n -e 's/^# rate: //p' -e 's/^# start: //p' g.tsv | tr '\n' ' ')" \
 	"44.1 2026-11-22T03:04:05.250+01:00 "
 printf 'When,u\n2026-11-22 23:59:59.500,1\n2026-11-23 00:00:00.000,2\n2026-11-23 00:00:00.500,3\n' >when.csv
 sigconvert --time When when.csv >w.au
@@ -73,7 +73,7 @@ is "moments are times, and tell the start" \
 	"$(sigconvert --output text w.au | sed -n -e 's/^# rate: //p' -e 's/^# start: //p' | tr '\n' ' ')$(samples w.au)" \
 	"2 2026-11-22T23:59:59.5 1 2 3"
 printf 't,u\n2024-02-29T00:30:00+01:00,1\n2024-02-28T23:30:01Z,2\n2024-02-28T23:30:02Z,3\n' >zones.csv
-is "a leap day, and zones that differ" "$(sigconvert --output text zones.csv | sed -n -e 's/^# rate: //p' -e 's/^# start: //p' | tr '\n' ' ')" \
+is "leap days and time zones are converted" "$(sigconvert --output text zones.csv | sed -n -e 's/^# rate: //p' -e 's/^# start: //p' | tr '\n' ' ')" \
 	"1 2024-02-29T00:30:00+01:00 "
 for moment in 2026-02-29T00:00 2026-13-01T00:00 2026-01-01T24:00 2026-01-01 22.11.2026; do
 	fails "a start of $moment" 2 'expected a moment like' sigconvert --start $moment a.au
@@ -84,13 +84,13 @@ bpfilter --order 20 --band 20:200 s.au | tee b.au | duet --pulse-duration 10ms >
 wear-volume --period 100ms found.tsv >volume.tsv 2>err
 is "the start passes bpfilter, duet and wear-volume" \
 	"$(sed -n 's/^# start: //p' found.tsv volume.tsv | tr '\n' ' ')" "2026-11-22T03:00Z 2026-11-22T03:00Z "
-is "and the rate bpfilter" "$(sigconvert --output text b.au | sed -n 's/^# rate: //p')" 1234.5
+is "the rate passes bpfilter" "$(sigconvert --output text b.au | sed -n 's/^# rate: //p')" 1234.5
 
 # What is written as text has an end that its reader checks; numpy reads it as it is.
 head -c -40 a.tsv >torn.tsv
 fails "text that is cut off" 1 'torn.tsv' sigconvert torn.tsv
 sigconvert --from text --columns channel2 a.tsv >d.au
-is "a column of our own text" "$(samples d.au | cut -d ' ' -f 1-3)" "$(grep -v '^[#t]' a.tsv | cut -f 3 | head -n 3 | tr '\n' ' ' | sed 's/ $//')"
+is "a column of text written by sigconvert is read" "$(samples d.au | cut -d ' ' -f 1-3)" "$(grep -v '^[#t]' a.tsv | cut -f 3 | head -n 3 | tr '\n' ' ' | sed 's/ $//')"
 py=python3
 $py -c 'import numpy' 2>/dev/null || py=/usr/bin/python3
 if $py -c 'import numpy' 2>/dev/null; then

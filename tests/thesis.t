@@ -10,10 +10,10 @@ is 'no item comes twice' "$(rows | cut -f 1 | sort | uniq -d)" ''
 is 'the 17, 21 and 32 numbered equations of the chapters are there' \
 	"$(rows | sed -n 's/^equation \([234]-[0-9]*\).*/\1/p' | sort -u | cut -d - -f 1 | sort | uniq -c | awk '{ printf "%s ", $1 }')" \
 	'17 21 32 '
-is '83 equations with the lines of the systems (2-5), (2-8) and (2-9)' "$(rows | grep -c '^equation')" 83
+is 'the page has 83 equations with the lines of the systems (2-5), (2-8) and (2-9)' "$(rows | grep -c '^equation')" 83
 # as they are numbered, from 1 on without a gap
 for kind in figure:68 table:13; do
-	is "all of ${kind#*:} ${kind%:*}s" "$(rows | sed -n "s/^${kind%:*} \([0-9]*\)	.*/\1/p")" "$(seq "${kind#*:}")"
+	is "the page has all of ${kind#*:} ${kind%:*}s" "$(rows | sed -n "s/^${kind%:*} \([0-9]*\)	.*/\1/p")" "$(seq "${kind#*:}")"
 done
 is 'every row has a value or a reason' "$(rows | awk -F '\t' '$4 == "-" && ($10 == "-" || $10 == "") { print $1 }')" ''
 is 'a value is a number' "$(rows | awk -F '\t' '$4 != "-" && $4 !~ /^[-+]?[0-9.]+(e[-+]?[0-9]+)?$/ { print $1, $4 }')" ''
@@ -78,7 +78,7 @@ done
 	printf 'few\tshare\t%s\n' 0 1 0 0
 } >values.tsv
 "$top/examples/results" values.tsv >results.tsv
-is 'the verdicts of the rule' "$("$top/examples/compare" small.tsv e results.tsv | sed 1d | cut -f 10)" 'agrees
+is 'the verdicts follow the rule' "$("$top/examples/compare" small.tsv e results.tsv | sed 1d | cut -f 10)" 'agrees
 agrees
 differs
 agrees under reading: other

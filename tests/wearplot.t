@@ -40,7 +40,7 @@ picture 'a series is drawn over time' 'observed' series.tsv
 picture 'with its threshold' 'threshold' --end 5 series.tsv
 printf '# units: h L/min\nt\ty\n0\t1\n3600\t2\n7200\t3\n' >hours.tsv
 picture 'hours stay hours' 'y, L/min.*time, h' hours.tsv
-is 'up to the last' "$(tr -d '\n' <p.svg | sed 's/<[^>]*>/ /g' | grep -c ' 8000 ')" 1
+is 'the axis reaches the last value' "$(tr -d '\n' <p.svg | sed 's/<[^>]*>/ /g' | grep -c ' 8000 ')" 1
 printf '# units: s m3\nt\ty\n0\t0\n36000\t4e-11\n72000\t9e-11\n' >volume.tsv
 picture 'a volume is shown in cubic millimetres' '0.09.*y, mm3.*time, h' --end 9e-11 volume.tsv
 printf '# units: s m3/s\nt\ty\n0\t1e-5\n7200\t5e-5\n' >flow.tsv

@@ -21,7 +21,7 @@ for n in 20 40 60; do
 			if (d < 0) d = -d
 			if (d > m) m = d } END { print m }'
 	done >strays
-	is "nor of 100 at order $n" "$(awk '!($1 + 0 <= 0.3) || $1 !~ /^[0-9]/' strays | wc -l | tr -d ' ')" 0
+	is "none of 100 runs strays at order $n" "$(awk '!($1 + 0 <= 0.3) || $1 !~ /^[0-9]/' strays | wc -l | tr -d ' ')" 0
 done
 
 # Ends of life at 600 h, true 1186.  The average is early, for the wear may turn: its
@@ -35,9 +35,9 @@ for model in average linear grey; do
 	awk '{ s += $1 } END { print s / NR }' $model.error >$model.mean
 	echo "# $model: mean absolute error $(cat $model.mean) h"
 done
-near "mean error of 100 pumps within 60 h by the straight line" "$(cat linear.mean)" 30 30
+near "the straight line predicts 100 pumps with a mean error within 60 h" "$(cat linear.mean)" 30 30
 paste linear.error grey.error | awk '$1 ~ /^[0-9]/ && $1 + 0 <= $2 + 0' | wc -l >better
-ok "not worse than the grey model for 60 of 100 or more" test "$(cat better)" -ge 60
+ok "the filter is not worse than the grey model for 60 of 100 pumps or more" test "$(cat better)" -ge 60
 near "mean error of the average within a fifth of the life" "$(cat average.mean)" 120 120
 awk -F '\t' '$8 ~ /^[0-9]/ && $1 + $8 <= 1186 && ($10 == "inf" || $10 ~ /^[0-9]/ && $1 + $10 >= 1186)' average.last | wc -l >inside
 ok "the 90 % interval holds 85 or more" test "$(cat inside)" -ge 85

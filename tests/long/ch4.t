@@ -67,7 +67,7 @@ rows() { awk -v n="$1" 'BEGIN { print "t\tgap"; for (i = 0; i < n; i++) print i 
 for n in 10000 1000000; do
 	rows $n | rwl --threshold-gap 20um --wear-rate filter -c 2 --grey --stats stats.$n >out.$n
 done
-is "a million rows out" "$(grep -c '^[0-9]' out.1000000)" 1000000
+is "a million rows are written" "$(grep -c '^[0-9]' out.1000000)" 1000000
 within "memory of a million rows over that of ten thousand" \
 	"$(echo "$(column memory_kb stats.1000000) $(column memory_kb stats.10000)" | awk '{ print $1 / $2 }')" 0.8 1.2
 done_testing

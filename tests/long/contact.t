@@ -17,7 +17,7 @@ for row in "0.001 0.00827 0.1" "0.01 0.0779 0.05" "0.04 0.2846 0.05" "0.113 0.65
 	# shellcheck disable=SC2086 # three words
 	set -- $row
 	bemcontact --estar 1Pa --boundary periodic --pressure "$1Pa" --tolerance 1e-5 rough.nrrd >pressed.nrrd
-	near "area at p/E* $1, to $3" "$(key area pressed.nrrd | mean | awk -v w="$2" '{ print $1 / w }')" \
+	near "the area at p/E* $1 is right to $3" "$(key area pressed.nrrd | mean | awk -v w="$2" '{ print $1 / w }')" \
 		1 "$3"
 done
 
@@ -26,8 +26,8 @@ done
 perl -e 'for $y (0 .. 255) { for $x (0 .. 255) {
 	print pack "d<", -((($x - 127.5) / 64) ** 2 + (($y - 127.5) / 64) ** 2) / 100 } }' >ball.f64
 bemcontact --raw 256x256 --pixel 0.015625m -E 568Pa --poisson 0.42 -F 9.1954N ball.f64 >ball.nrrd
-near "a ball: approach" "$(key approach ball.nrrd)" 0.02 2e-6
-near "a ball: largest pressure" "$(records -o list --field pressure ball.nrrd | column max /dev/stdin)" 4.3905 5e-4
+near "the approach of a ball is right" "$(key approach ball.nrrd)" 0.02 2e-6
+near "the largest pressure of a ball is right" "$(records -o list --field pressure ball.nrrd | column max /dev/stdin)" 4.3905 5e-4
 
 # Strips and primes: the pressure agrees with that of Polonsky and Keer's loop, which shares
 # neither preconditioner nor coarse grids, in far fewer iterations
@@ -38,8 +38,8 @@ for row in "4096x64 60" "64x1024 25" "1024x16 30" "3x2000 30" "509x37 25"; do
 	roughgen --points "$1" --length "${nx}umx${ny}um" --hurst 0.8 --rolloff 64um --cutoff 8um --slope 0.1 -s 3 >strip.nrrd
 	bemcontact --estar 1Pa --boundary periodic --pressure 0.02Pa strip.nrrd >fast.nrrd
 	bemcontact --estar 1Pa --boundary periodic --pressure 0.02Pa --solver pk --tolerance 1e-7 strip.nrrd >slow.nrrd
-	at_most "$1 periodic: iterations" "$(key iterations fast.nrrd)" "$2"
-	near "$1 periodic: the energy of Polonsky and Keer's" "$(awk "BEGIN { print \
+	at_most "$1 periodic: the iterations are few" "$(key iterations fast.nrrd)" "$2"
+	near "$1 periodic: the energy is that of Polonsky and Keer's solver" "$(awk "BEGIN { print \
 		$(key energy fast.nrrd) / $(key energy slow.nrrd) - 1 }")" 0 2e-6
 done
 
@@ -62,8 +62,8 @@ if [ -x "$bench" ]; then
 		# shellcheck disable=SC2086 # five words
 		set -- $row
 		"$bench" "$1" "$2" "$3" bccg 1e-8 >row
-		at_most "$1 $2 under $3: optimality gap" "$(cut -f 6 row)" 1e-8
-		at_most "$1 $2 under $3: transforms" "$(cut -f 15 row)" "$4"
+		at_most "$1 $2 under $3: the optimality gap is small" "$(cut -f 6 row)" 1e-8
+		at_most "$1 $2 under $3: the transforms are few" "$(cut -f 15 row)" "$4"
 		at_most "$1 $2 under $3: doubles per cell" \
 			"$(awk -F '\t' -v z="$none" '{ printf "%.2f", ($16 - z) * 131072 / $2 ^ 2 }' row)" "$5"
 	done

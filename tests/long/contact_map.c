@@ -35,19 +35,20 @@ int main(void)
 			stretch[count++] = (struct stretch){ i, 0, 1 };
 	ps = particles_new(&par);
 	particles_find(ps, stretch, count, &p, &n);
-	ok(n == 123, "contact map: 123 patches over corners and borders (got %zu)", n);
+	ok(n == 123, "the contact map has 123 patches over corners and borders (got %zu)",
+		n);
 	for (size_t i = 0; i < n; i++)
 		cells += (double)p[i].columns;
-	ok(cells == 11412, "contact map: 11412 cells");
+	ok(cells == 11412, "the contact map has 11412 cells");
 	for (int i = 0; i < 5; i++)
 		ok((double)p[i].columns == largest[i],
-			"contact map: patch %d has %g cells", i + 1, largest[i]);
+			"patch %d of the contact map has %g cells", i + 1, largest[i]);
 	particles_free(ps);
 	par.periodic = 0;
 	par.corners = 0;
 	ps = particles_new(&par);
 	particles_find(ps, stretch, count, &p, &n);
-	ok(n == 235, "contact map: 235 patches over sides alone");
+	ok(n == 235, "the contact map has 235 patches over sides alone");
 	particles_free(ps);
 	return tap_done();
 }

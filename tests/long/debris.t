@@ -13,21 +13,21 @@ rough() {
 first() {
 	debrisgen -Y 355MPa -u 0.3 --depth-step 7.8125um --summary s.tsv contact.nrrd >p.tsv 2>warning
 	mean() { column "$1" s.tsv | awk '{ s += $1 } END { print s / NR }'; }
-	near "$1: contact, %" "$(mean contact_fraction | awk '{ print 100 * $1 }')" "$2" \
+	near "$1: the contact is that of the thesis, %" "$(mean contact_fraction | awk '{ print 100 * $1 }')" "$2" \
 		"$(awk -v v="$2" 'BEGIN { print 0.2 * v }')"
-	near "$1: volume, 1e-12 m3" "$(mean volume | awk '{ print 1e12 * $1 }')" "$3" \
+	near "$1: the volume is that of the thesis, 1e-12 m3" "$(mean volume | awk '{ print 1e12 * $1 }')" "$3" \
 		"$(awk -v v="$3" 'BEGIN { print 0.12 * v }')"
-	near "$1: particles" "$(mean particles)" "$4" "$(awk -v v="$4" 'BEGIN { print 0.2 * v + 0.5 }')"
+	near "$1: the number of particles is that of the thesis" "$(mean particles)" "$4" "$(awk -v v="$4" 'BEGIN { print 0.2 * v + 0.5 }')"
 }
 
 rough 80um 100um 320um 50N 20 >contact.nrrd
 first "Sq 80 um, correlation 100 um" 0.153 6.57 1
 # One cluster carries the load: the particle hardly knows the roughness.
-near "largest particle of a single one, um" \
+near "a particle alone on its surface has the expected diameter, um" \
 	"$(awk '/^[#r]/ { next } { n[$1]++; d[$1] = $7 } END { for (r in n) if (n[r] == 1) { s += d[r]; k++ }
 		print 1e6 * s / k }' p.tsv)" 232.7 2
 debrisgen -Y 355MPa -u 0.3 --depth-step 7.8125um --removal potential contact.nrrd >p.tsv 2>warning
-near "of the whole potential set, 307 um in the thesis" \
+near "a particle of the whole potential set has the expected diameter, 307 um in the thesis" \
 	"$(awk '/^[#r]/ { next } { n[$1]++; d[$1] = $7 } END { for (r in n) if (n[r] == 1) { s += d[r]; k++ }
 		print 1e6 * s / k }' p.tsv)" 308.4 2
 rough 80um 50um 320um 50N 20 >contact.nrrd
@@ -44,8 +44,8 @@ rough 80um 100um 320um 50N 10 >contact.nrrd
 debrisgen -Y 355MPa -u 0.3 --depth-step 7.8125um --steps 10 -E 210GPa --summary s.tsv contact.nrrd >p.tsv 2>warning
 near "ten steps: mean volume, 1e-12 m3" \
 	"$(column volume s.tsv | awk '{ s += 1e12 * $1 } END { print s / NR }')" 5.2 0.8
-near "ten steps: particles" "$(column particles s.tsv | awk '{ s += $1 } END { print s / NR * 10 }')" 38 12
-ok "ten steps: relative roughness 0.95 to 1.5" awk '!/^[#r]/ && $2 == 10 && ($13 < 0.95 || $13 > 1.5) { bad = 1 }
+near "ten steps have as many particles as the thesis" "$(column particles s.tsv | awk '{ s += $1 } END { print s / NR * 10 }')" 38 12
+ok "ten steps keep the relative roughness within 0.95 to 1.5" awk '!/^[#r]/ && $2 == 10 && ($13 < 0.95 || $13 > 1.5) { bad = 1 }
 	END { exit bad }' s.tsv
 rough 80um 100um 320um 100N 10 >contact.nrrd
 debrisgen -Y 355MPa -u 0.3 --depth-step 7.8125um --steps 10 -E 210GPa --summary s.tsv contact.nrrd >p.tsv 2>warning
@@ -59,7 +59,7 @@ fragment() {
 	column volume s.tsv | awk -v unit="$2" '{ s += $1 } END { print s / NR / unit }'
 }
 near "fragment at 21 MPa: mean volume, 1e-15 m3" "$(fragment 21MPa 1e-15)" 1.25 0.25
-near "fragment at 21 MPa: particles in six steps" \
+near "six steps of a fragment at 21 MPa have as many particles as the thesis" \
 	"$(column particles s.tsv | awk '{ s += $1 } END { print 6 * s / NR }')" 27.7 12
 near "fragment at 0.15 MPa: mean volume, 1e-18 m3" "$(fragment 0.15MPa 1e-18)" 1.3 0.3
 done_testing

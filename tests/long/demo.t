@@ -17,8 +17,8 @@ if ! command -v gnuplot >/dev/null; then
 	done_testing
 fi
 is 'the page has nine pictures' "$(grep -c '<figure>' "$page")" 9
-is 'each with the command behind it' "$(grep -c '<summary>Command' "$page")" 9
-is 'and no link to elsewhere' "$(grep -cE '(src|href)="?https?:' "$page")" 0
+is 'each figure has its command' "$(grep -c '<summary>Command' "$page")" 9
+is 'the page has no link to elsewhere' "$(grep -cE '(src|href)="?https?:' "$page")" 0
 for browser in chromium chromium-browser google-chrome ''; do
 	[ -z "$browser" ] || ! command -v "$browser" >/dev/null || break
 done
@@ -41,6 +41,6 @@ for width in 400 800 1400; do
 		--dump-dom "file://$work/probe.html" >dom 2>log
 	is "$width pixels wide: all pictures are drawn, nothing is wider" \
 		"$(sed -n 's/.*<title>\(.*\)<\/title>.*/\1/p' dom)" '9 pictures, 0 too wide'
-	is "$width pixels wide: no error on the console" "$(grep 'CONSOLE' log)" ''
+	is "the console has no error at a width of $width pixels" "$(grep 'CONSOLE' log)" ''
 done
 done_testing

@@ -175,7 +175,7 @@ guessed 1 30 0.3 0.95 0.01 -b 20:1000 --order 1000
 # No invented particle in 1e7 samples at 1e-9 per sample (0.01 expected).
 sensorsim --uniform 100um:100um --number 0 --duration 1000s --noise 1V >noise.au
 duet --align 19.6ms --pulse-duration 10ms noise.au >none.tsv
-is "noise: no particle in 1e7 samples" "$(column particle none.tsv | wc -l)" 0
+is "1e7 samples of noise have no particle" "$(column particle none.tsv | wc -l)" 0
 
 # A day of record: constant memory, no drift (a particle every two minutes).
 HOURS=${HOURS:-24}
@@ -183,7 +183,7 @@ sensorsim --uniform 80um:120um --number $((HOURS * 30)) --duration $((HOURS * 36
 	--start 1s --gap 1s --noise 10mV --lag 0.2ms:0.5ms --truth truth.tsv |
 	duet --stats stats.tsv >found.tsv
 "$top/scripts/score" truth.tsv found.tsv >score.tsv
-is "$HOURS hours: all particles" "$(value matched)" $((HOURS * 30))
+is "all particles of $HOURS hours are found" "$(value matched)" $((HOURS * 30))
 # At 1e-9 a sample 0.9 false ones are due in a day; more than 5 with probability 3e-4.
 check "$HOURS hours: no more others than the stated rate gives" "$(value false)" '<=' 5
 check "$HOURS hours: arrivals, s" "$(value time1_rms)" '<=' 5e-6

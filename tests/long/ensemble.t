@@ -14,7 +14,7 @@ run() {
 begin=$(date +%s%N)
 run
 length=$((($(date +%s%N) - begin) / 1000000)) # ms
-same 'undisturbed' joined whole
+same 'an undisturbed ensemble is complete' joined whole
 wrong=
 finished=0
 for k in $(seq 20); do
@@ -35,5 +35,5 @@ for k in $(seq 20); do
 	run || wrong="$wrong $k:$(tail -n 1 err)"
 	cmp -s joined whole || wrong="$wrong $k:resumed-differs"
 done
-is "killed at 20 moments ($finished had finished) and resumed" "$wrong" ''
+is "an ensemble killed at 20 moments ($finished had finished) is resumed" "$wrong" ''
 done_testing

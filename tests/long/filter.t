@@ -13,7 +13,7 @@ last() {
 }
 
 small() {
-	near "$1: less than 40 MB" "$(column memory_kb "$1" | awk '{ print ($1 < 40000) }')" 1 0
+	near "$1 needs less than 40 MB" "$(column memory_kb "$1" | awk '{ print ($1 < 40000) }')" 1 0
 }
 
 # one particle every 10 s, its centre a quarter sample after a frame
@@ -21,7 +21,7 @@ awk 'BEGIN { print "time\tdiameter"
 	for (t = 5; t < 86400; t += 10) printf "%.6f\t1e-4\n", t + 0.000025 }' >day.tsv
 sensorsim --duration 1d -S sim.stats day.tsv |
 	bpfilter -b 0:5000 --zero-phase --order 20 -S filter.stats | last 10000 >end
-near "all frames of a day at 10 kHz" "$(column frames filter.stats)" 864000000 0
+near "all frames of a day at 10 kHz are written" "$(column frames filter.stats)" 864000000 0
 near "each pulse touched its own samples" "$(column pulse_samples sim.stats)" 1728000 20
 small sim.stats
 small filter.stats
@@ -41,7 +41,7 @@ small filter.stats
 for g in 2 7 3; do
 	"$top"/examples/ch3-signals/count $g 1
 done >counts
-is "no peaks without debris" "$(awk '$1 == "count.2.1" { print $3 }' counts)" 0
-near "group 7: peaks as the thesis counted" "$(awk '$1 == "count.7.1" { print $3 }' counts)" 436 40
-near "group 3: peaks as the thesis counted" "$(awk '$1 == "count.3.1" { print $3 }' counts)" 5893 400
+is "there are no peaks without debris" "$(awk '$1 == "count.2.1" { print $3 }' counts)" 0
+near "group 7 has the peaks that the thesis counted" "$(awk '$1 == "count.7.1" { print $3 }' counts)" 436 40
+near "group 3 has the peaks that the thesis counted" "$(awk '$1 == "count.3.1" { print $3 }' counts)" 5893 400
 done_testing

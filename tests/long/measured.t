@@ -31,9 +31,9 @@ check_measured() {
 		{ d = $2 / $1 - 1; if (d < 0) d = -d; if (d > w) w = d; n++ }
 		END { if (n == 11) print w; else print "only " n " values" }')
 	# Ssk near 0 (1e-3) loses three digits of the printed twelve.
-	near "$name$suffix: eleven parameters, relative error" "${worst:-none}" 0 1e-9
+	near "$name$suffix: eleven parameters are right to the relative error" "${worst:-none}" 0 1e-9
 	# Another program's shortest lag, found pixel by pixel.
-	near "$name$suffix: Sal in um, within 1 %" "$(value sal t | awk '{ print $1 * 1e6 }')" \
+	near "$name$suffix: Sal in um is right within 1 %" "$(value sal t | awk '{ print $1 * 1e6 }')" \
 		"$(sed -n 's/^surfalize_um_Sal //p' "$data/$name$suffix.txt")" \
 		"$(sed -n 's/^surfalize_um_Sal //p' "$data/$name$suffix.txt" | awk '{ print $1 / 100 }')"
 }
@@ -48,7 +48,7 @@ done
 roughgen --raw 640x480 --pixel 1.9673303177114576e-07 --fill "$data/film_wyko_opd1.nan.f64" |
 	tail -c 2457600 | od -An -v -w8 -t f8 >filled
 od -An -v -w8 -t f8 "$data/film_wyko_opd1.f64" | paste filled - >both
-near "116 missing samples filled as by Gwyddion, m" "$(awk '
+near "116 missing samples are filled as by Gwyddion, m" "$(awk '
 	{ d = $1 - $2; if (d < 0) d = -d; if (d > w) w = d } END { print w + 0 }' both)" \
 	0 1e-18
 done_testing

@@ -28,7 +28,7 @@ holds() {
 	dpkg-deb -c "$top"/build/deb/"$1"_*.deb | grep -q "$2" && echo yes
 }
 is 'programs are in wearpipe' "$(holds wearpipe usr/bin/roughgen)" yes
-is 'with their pages' "$(holds wearpipe usr/share/man/man1/roughgen.1.gz)" yes
+is 'the packages contain the pages' "$(holds wearpipe usr/share/man/man1/roughgen.1.gz)" yes
 is 'the shared library has a package of its own' "$(holds libwearpipe0 libwearpipe.so.0)" yes
 is 'headers are in the development package' "$(holds libwearpipe-dev usr/include/wearpipe/contact.h)" yes
 done_testing

@@ -16,7 +16,7 @@ for n in 100000 1000000; do
 done
 # 131072 diameters and the sums of up to a million steps are kept apart
 for f in stat life; do
-	near "$f: ten times the particles in less than four megabytes more" \
+	near "$f: ten times the particles need less than four megabytes more" \
 		"$(echo "$(column memory_kb $f.1000000) $(column memory_kb $f.100000)" | awk '{ print ($1 - $2 < 4096) }')" 1 0
 done
 # The generator draws from a Weibull distribution of shape 2 and scale 10 um.
@@ -25,5 +25,5 @@ fitted() {
 }
 head -n 20 fits.1000000 >shown
 near 'the shape that was put in' "$(fitted weibull_shape)" 2 0.01
-near 'and the scale' "$(fitted weibull_scale)" 1e-5 2e-8
+near 'the scale is right' "$(fitted weibull_scale)" 1e-5 2e-8
 done_testing

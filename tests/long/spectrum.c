@@ -92,9 +92,10 @@ static void check_heights(void)
 		last = h;
 	}
 	/* Standard errors: sqrt(6 / n), sqrt(24 / n), 1 / sqrt(n). */
-	near(m3 / pow(m2, 1.5), 0, 4.5 * sqrt(6.0 / MANY), "skewness at a point");
-	near(m4 / (m2 * m2), 3, 4.5 * sqrt(24.0 / MANY), "kurtosis at a point");
-	near(next / m2, 0, 4.5 / sqrt(MANY), "realisations that follow are independent");
+	near(m3 / pow(m2, 1.5), 0, 4.5 * sqrt(6.0 / MANY),
+		"the skewness at a point is 0");
+	near(m4 / (m2 * m2), 3, 4.5 * sqrt(24.0 / MANY), "the kurtosis at a point is 3");
+	near(next / m2, 0, 4.5 / sqrt(MANY), "consecutive realisations are independent");
 	near(pair / m2, 0, 4.5 / sqrt(MANY),
 		"the two surfaces of a pair are independent");
 	spectrum_free(s);
@@ -137,9 +138,10 @@ static void check_range(void)
 		mean += u / 10000;
 		square += u * u / 10000;
 	}
-	near(mean, 0.5, 4.5 / sqrt(12 * 10000), "drawn roughness: mean of a uniform");
+	near(mean, 0.5, 4.5 / sqrt(12 * 10000),
+		"drawn roughness has the mean of a uniform distribution");
 	near(square - mean * mean, 1 / 12.0, 4.5 * sqrt(1.0 / 180 / 10000),
-		"drawn roughness: variance of a uniform");
+		"drawn roughness has the variance of a uniform distribution");
 }
 
 int main(void)

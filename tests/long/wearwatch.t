@@ -75,8 +75,8 @@ hour() {
 	column doubts faults/chunks.tsv | sed -n "$(($1 + 1))p" | sed 's/:[0-9]*//g'
 }
 like 'clipping is doubted in its hour' "$(hour 3)" clipped1
-like 'a dead sensor in its hour' "$(hour 6)" dead2
-like 'exchanged sensors in their hour' "$(hour 9)" swapped
+like 'a dead sensor is reported in its hour' "$(hour 6)" dead2
+like 'exchanged sensors are reported in their hour' "$(hour 9)" swapped
 is 'the hours beside them are not' "$(hour 1) $(hour 5) $(hour 11)" '- - -'
 # The overlap of hour 8 reaches 0.2 s into the exchange: its pulses there pair with none.
 like 'the hour before the exchange is doubted by duet or not at all' "$(hour 8)" '^\(-\|duet\)$'
@@ -109,7 +109,7 @@ for dir in day faults; do
 			"^$(grep -c '<figure>' $dir/index.html) pictures, 0 too wide, 0 nan"
 		is "$dir: there is one of the wear, one of the sizes and, of a day, one of the life" \
 			"$(grep -c '<figure>' $dir/index.html)" $((2 + (${#dir} == 3)))
-		is "$dir, $width pixels wide: no error on the console" "$(grep 'CONSOLE' log)" ''
+		is "the console has no error on $dir at a width of $width pixels" "$(grep 'CONSOLE' log)" ''
 	done
 done
 like 'the title is text and no markup' "$(cat faults/index.html)" '<h1>A &lt;pump&gt; &amp; its debris</h1>'

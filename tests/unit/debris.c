@@ -295,7 +295,8 @@ int main(void)
 	test_history();
 	test_depth(WEAR_COLUMN,
 		"column: cells of 1/16 of the spacing lose the volume interpolated");
-	test_depth(WEAR_POTENTIAL, "potential: and so does all that fails");
+	test_depth(WEAR_POTENTIAL,
+		"potential: cells of 1/16 of the spacing lose all that fails");
 	test_refusals();
 	return tap_done();
 }

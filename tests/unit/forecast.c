@@ -69,7 +69,7 @@ static void test_forecast(void)
 	ok(forecast_add(f, 100, 11e-6, 11e-6, 0) == NUM_OK && forecast_at(f, 100).n == 1,
 		"two rows give the same rate for all paths");
 	row = forecast_at(f, 100);
-	near(row.life[0], 400, 1e-9, "4 um left at 1 um per 100 s");
+	near(row.life[0], 400, 1e-9, "4 um at 1 um per 100 s last 400 s");
 	ok(isinf(row.limit) && isnan(row.grey),
 		"without a horizon the grey model is unlimited");
 	ok(forecast_add(f, 150, NAN, NAN, 0) == NUM_OK && forecast_at(f, 150).n == 1,

@@ -263,7 +263,7 @@ static void check_file(void)
 			"the weights are read back bit by bit");
 		ok(strcmp(file.purpose, "the delays are read back") == 0 &&
 				strcmp(file.cmd, "make it") == 0,
-			"purpose and command");
+			"purpose and command are read back");
 		free(file.cmd);
 		network_free(back);
 		back = round_trip(net, copy, sizeof copy, &file);

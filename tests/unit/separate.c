@@ -182,8 +182,8 @@ static void test_local_doubt(void)
 	}
 	good = matched(p, 120, count, 2, &rms);
 	ok(good >= 117 && doubted > 0 && elsewhere == 0,
-		"one odd pulse: %d of 120 found, doubted %d near it, %d elsewhere", good,
-		doubted, elsewhere);
+		"beside one odd pulse %d of 120 are found, %d near it are doubted, %d elsewhere",
+		good, doubted, elsewhere);
 }
 
 int main(void)

@@ -84,7 +84,8 @@ static void test_number_text(void)
 	for (size_t i = 0; i < sizeof values / sizeof *values; i++)
 		same &= strtod(number_text(values[i], text), NULL) == values[i];
 	ok(same, "numbers are read back as they were written");
-	ok(!strcmp(number_text(0.1, text), "0.1"), "and are as short as can be");
+	ok(!strcmp(number_text(0.1, text), "0.1"),
+		"numbers are written as short as possible");
 	ok(!strcmp(number_text(NAN, text), "nan"), "a missing value is nan");
 }
 

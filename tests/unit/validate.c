@@ -72,12 +72,12 @@ static void test_share(double share, double error, uint64_t seed)
 	others = doubted(e, parts, ROWS);
 	if (share == 0)
 		ok(real == 0 && others == 0 && doubted(e, 0, ALONE) == 0,
-			"no parts, error %g: no row is doubted", error);
+			"without parts no row is doubted at an error of %g", error);
 	else
 		/* Of the others those are doubted whose velocities differ by less than
 		 * some two standard errors: 2.8 error / (2.1 sqrt(2 pi) SPREAD / 2). */
 		ok(fabs(real - share) < 0.15 && found > 0.9 && others < 0.3,
-			"%g parts, error %g: found as %.2f, %.2f of them doubted and %.2f "
+			"a share of parts of %g at an error of %g is found as %.2f; %.2f of them are doubted and %.2f "
 			"of the others",
 			share, error, real, found, others);
 	validation_free(v);
@@ -94,7 +94,7 @@ static void test_whole_record(void)
 	draw(e, 0, 0, 0.1, 80000);
 	for (int k = 0; k < 3; k++)
 		validation_judge(v, e, ROWS);
-	ok(doubted(e, 0, ROWS) == 0, "and they are again once all is well");
+	ok(doubted(e, 0, ROWS) == 0, "rows are believed again when most are particles");
 	validation_free(v);
 }
 
@@ -150,7 +150,8 @@ static void test_edge(void)
 	validation_range(v, -6, 6);
 	draw(e, 0, 0, 0.1, 140000);
 	validation_judge(v, e, ROWS);
-	ok(doubted(e, 0, ROWS) < 0.02, "a range that no velocity fills: no row doubted");
+	ok(doubted(e, 0, ROWS) < 0.02,
+		"no row is doubted if velocities do not fill the range");
 	validation_free(v);
 	v = validation_new();
 	validation_range(v, -6, 6);
@@ -163,7 +164,7 @@ static void test_edge(void)
 			.var = 0.01,
 			.amplitude = 20 };
 	validation_judge(v, e, ROWS);
-	ok(doubted(e, 0, ROWS) == 1, "velocities throughout the range: no row believed");
+	ok(doubted(e, 0, ROWS) == 1, "no row is believed if velocities fill the range");
 	validation_free(v);
 }
 
