@@ -250,7 +250,6 @@ static enum calibrate_status find_reverse(
 	}
 }
 
-
 /* The second channel moves back. */
 static void align(struct record *rec, const struct calibration *c)
 {

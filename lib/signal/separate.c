@@ -232,8 +232,8 @@ static enum separate_status calibrate_now(struct separate *s)
 {
 	static const enum separate_status of[] = { SEPARATE_OK, SEPARATE_MEMORY,
 		SEPARATE_SILENT_1, SEPARATE_SILENT_2, SEPARATE_NO_LAG, SEPARATE_SWAPPED,
-		SEPARATE_FAR,
-		SEPARATE_NARROW, SEPARATE_FAST, SEPARATE_SLOW, SEPARATE_TONES };
+		SEPARATE_FAR, SEPARATE_NARROW, SEPARATE_FAST, SEPARATE_SLOW,
+		SEPARATE_TONES };
 	enum calibrate_status status;
 	size_t n;
 
@@ -770,8 +770,8 @@ static void measure_level(struct separate *s)
 {
 	static const int order = 4;
 	double work[LEVEL_BLOCK];
-	long long clean = s->tape[0].clean < s->tape[1].clean ? s->tape[0].clean
-							      : s->tape[1].clean;
+	long long clean =
+		s->tape[0].clean < s->tape[1].clean ? s->tape[0].clean : s->tape[1].clean;
 
 	while (s->levels < (double)s->par.learn) {
 		long long n = clean - s->level_at;
@@ -781,8 +781,8 @@ static void measure_level(struct separate *s)
 		n = n < LEVEL_BLOCK ? n : LEVEL_BLOCK;
 		for (int c = 0; c < 2; c++) {
 			const struct tape *t = &s->tape[c];
-			double level = robust_noise(t->x + (s->level_at - t->begin),
-				(size_t)n, order, work);
+			double level = robust_noise(
+				t->x + (s->level_at - t->begin), (size_t)n, order, work);
 
 			s->level[c] += (level - s->level[c]) * (double)n /
 				       (s->levels + (double)n);

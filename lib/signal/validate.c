@@ -41,7 +41,7 @@ struct validation {
 	double mean, var, margin;   /* of the delays; on the safe side */
 	double known;               /* delays these are from */
 	struct flow told;
-	double parts;               /* share of them among pairs; 0: none for certain */
+	double parts; /* share of them among pairs; 0: none for certain */
 	double recurring[PLACES], groups;
 	double duration;
 	struct coincide *coincide;

@@ -85,8 +85,8 @@ static int put_ready(struct separate *s, struct found *out)
 }
 
 /* Says so, and so does the table. */
-static int is_doubtful(const struct separate *s, struct found *out, const char *name,
-	const char *kept)
+static int is_doubtful(
+	const struct separate *s, struct found *out, const char *name, const char *kept)
 {
 	const struct separate_counters *c = separate_counters(s);
 	enum separate_doubt doubt = separate_doubtful(s);
@@ -150,8 +150,7 @@ int separate_record(struct signal_in *in, struct found *out,
 		check_status(status, s, signal_name(in));
 		if (any)
 			table_flush(out->particles);
-		if (file && !par.kept && !learned &&
-			separate_instrument(s, &view)) {
+		if (file && !par.kept && !learned && separate_instrument(s, &view)) {
 			learned = 1;
 			keep(s, &place);
 		}

@@ -193,7 +193,8 @@ static void by_hand(enum contact_solver solver)
 	contact_free(c);
 }
 
-/* Pressure stops at the hardness; load and approach as control give one another. */
+/* Pressure stops at the hardness; control by load and control by approach give the same
+ * solution. */
 static void controls(enum contact_solver solver, enum contact_boundary boundary)
 {
 	enum { N = 64, CELLS = N * N };
