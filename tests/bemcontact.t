@@ -75,7 +75,8 @@ fails "unit of another quantity" 2 '--load' bemcontact -F 1MPa --estar 1GPa
 fails "load above the hardness" 1 'h.f64: record 1: mean pressure 2e+08 Pa is not below' \
 	$solve --pressure 200MPa --hardness 200MPa h.f64
 fails "approach beyond full contact" 1 'beyond full contact' $solve --boundary periodic --approach 1mm h.f64
-fails "heights cut short" 1 'record 1' sh -c "head -c 6000 h.f64 | $solve --pressure 1MPa | cat >/dev/null; exit 1"
+head -c 6000 h.f64 >short.f64
+fails "heights cut short" 1 'record 1: want .* bytes, got 6000' $solve --pressure 1MPa short.f64
 printf 'NRRD0004\ntype: double\nendian: little\nencoding: raw\ndimension: 3\nsizes: 1 2 1\nkinds: list domain domain\nspacings: 1 1 1\nfields:=pressure Pa\n\n1234567812345678' >bad.nrrd
 fails "no heights" 1 "height" bemcontact --pressure 1Pa --estar 1GPa bad.nrrd
 # Tables: a ball of radius 1 against the closed forms of Hertz

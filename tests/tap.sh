@@ -1,5 +1,5 @@
 # shellcheck shell=sh
-# tap.sh - what a shell test needs; read it with: . "$(dirname "$0")/tap.sh"
+# tap.sh - functions for shell tests; read it with: . "$(dirname "$0")/tap.sh"
 #
 #	is NAME GOT WANT           equal strings
 #	like NAME GOT PATTERN      GOT matches a basic regular expression

@@ -11,7 +11,10 @@ enum {
 	 * the same time within its scatter with 12, 24 and 48, and 1.6 times it with 96.
 	 */
 	COARSEST = 24,
-	ROWS = 16 /* rows in one job of a thread */
+	/* Rows in one job of a thread.  bemcontact on 512 x 512 free cells, 3 % loaded,
+	 * takes 1.06 s of processor time with 16, and 1.36, 1.17, 1.19, 1.28 s with 1, 4,
+	 * 64 and 256 (least of three runs). */
+	ROWS = 16
 };
 
 typedef double (*kernel_value)(const void *context, size_t ix, size_t iy);

@@ -66,7 +66,8 @@ enum contact_status contact_slip(struct contact *c, const double *height,
 		return status;
 	s = sweep_run(c->par.pool, c->n, subtract, &t);
 	*result = (struct slip_result){ .load = s.sum[0] * c->par.dx * c->par.dy,
-		.displacement = mu * compliance * (normal->approach - c->result.approach),
+		.displacement =
+			mu * compliance * (normal->indentation - c->result.indentation),
 		.stick = s.sum[1] / (double)c->n };
 	return status;
 }

@@ -209,8 +209,6 @@ static void final_sums(void *context, size_t begin, size_t end, struct sweep *s)
 		s->sum[0] += p > 0;
 		s->sum[1] += p >= c->cap;
 		s->sum[2] += p;
-		s->max = c->h[i] > s->max ? c->h[i] : s->max;
-		s->min = c->h[i] < s->min ? c->h[i] : s->min;
 	}
 }
 
@@ -238,7 +236,8 @@ static int guess_pressure(struct contact *c)
 	contact_average_height(c);
 	memset(c->coarse_pressure, 0, coarse->n * sizeof *c->coarse_pressure);
 	coarse->tolerance = fmax(coarse_tolerance, c->tolerance);
-	status = contact_solve(coarse, c->coarse_height, c->control, c->target,
+	status = contact_solve(coarse, c->coarse_height, c->control,
+		c->control == CONTACT_APPROACH ? c->target - c->top : c->target,
 		c->coarse_pressure, NULL);
 	c->result.work += coarse->result.work * (double)coarse->n / (double)c->n;
 	if (status != CONTACT_OK && status != CONTACT_NOCONV)
@@ -246,14 +245,12 @@ static int guess_pressure(struct contact *c)
 	return contact_interpolate_pressure(c) > 0;
 }
 
-static enum contact_status prepare(struct contact *c)
+static enum contact_status prepare(struct contact *c, const struct sweep *s)
 {
-	struct sweep s = contact_sweep(c, survey);
-	double mean = s.sum[0] / (double)c->n, guess = s.sum[1];
-	double touch = -s.max, first;
+	double mean = s->sum[0] / (double)c->n, guess = s->sum[1], first;
 
-	if (!isfinite(s.sum[0]) || !isfinite(guess) || !isfinite(c->target) ||
-		!is_in_range(c, fmax(s.max, -s.min)))
+	if (!isfinite(s->sum[0]) || !isfinite(guess) || !isfinite(c->target) ||
+		!is_in_range(c, fmax(s->max, -s->min)))
 		return CONTACT_NUMBERS;
 	if (c->control == CONTACT_PRESSURE) {
 		if (c->target < 0)
@@ -262,11 +259,10 @@ static enum contact_status prepare(struct contact *c)
 			return CONTACT_OVERLOAD;
 		first = c->target;
 	} else {
-		if (c->par.boundary == CONTACT_PERIODIC && c->target >= -mean &&
-			c->target > touch)
+		if (c->par.boundary == CONTACT_PERIODIC && c->target >= c->top - mean)
 			return CONTACT_TOO_DEEP;
 		/* The pressure that sinks the whole grid by depth. */
-		first = fmin((c->target - touch) / contact_sinking(c, 1), c->cap / 2);
+		first = fmin(c->target / contact_sinking(c, 1), c->cap / 2);
 	}
 	if (guess <= 0 && !guess_pressure(c))
 		contact_fill_empty(c, first);
@@ -278,18 +274,13 @@ static enum contact_status prepare(struct contact *c)
 /* Nothing to solve: no load, or an approach that does not reach the surface. */
 static int is_apart(struct contact *c)
 {
-	struct sweep s;
-
-	if (c->control == CONTACT_PRESSURE && c->target != 0)
-		return 0;
-	s = contact_sweep(c, survey);
-	if (c->control == CONTACT_APPROACH && c->target > -s.max)
+	if (c->control == CONTACT_PRESSURE ? c->target != 0 : !(c->target <= 0))
 		return 0;
 	memset(c->p, 0, c->n * sizeof *c->p);
 	c->work = 0;
-	c->result.approach = c->control == CONTACT_APPROACH ? c->target : -s.max;
+	c->result.approach = c->control == CONTACT_APPROACH ? c->target : 0;
 	for (size_t i = 0; i < c->n; i++)
-		c->gap[i] = -c->h[i];
+		c->gap[i] = c->top - c->h[i];
 	return 1;
 }
 
@@ -303,14 +294,16 @@ enum contact_status contact_solve(struct contact *c, const double *height,
 	c->h = height;
 	c->p = pressure;
 	c->control = control;
-	c->target = target;
+	s = contact_sweep(c, survey);
+	c->top = s.max;
+	c->target = control == CONTACT_APPROACH ? target + c->top : target;
 	c->best = INFINITY;
 	c->energy = INFINITY;
 	c->since = 0;
 	if (is_apart(c)) {
 		status = CONTACT_OK;
 	} else {
-		status = prepare(c);
+		status = prepare(c, &s);
 		if (status == CONTACT_OK)
 			status = c->par.solver == CONTACT_PK ? contact_solve_pk(c)
 							     : contact_solve_bccg(c);
@@ -324,8 +317,10 @@ enum contact_status contact_solve(struct contact *c, const double *height,
 	c->result.load = s.sum[2] * c->par.dx * c->par.dy;
 	/* Of the last contact_gap(): heights far from 0 would take digits off p u. */
 	c->result.energy = fmax(c->work, 0) / 2 * c->par.dx * c->par.dy;
-	c->result.indentation = c->result.approach + s.max;
 	for (size_t i = 0; gap && i < c->n; i++)
 		gap[i] = gap_at(c, i);
+	c->result.indentation = c->result.approach;
+	c->result.approach =
+		control == CONTACT_APPROACH ? target : c->result.indentation - c->top;
 	return status;
 }

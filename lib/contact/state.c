@@ -35,15 +35,15 @@ double contact_multiply(struct contact *c, const double *x, double *y)
 	return convolve_product(c->plane, c->kernel, x, y);
 }
 
-/* The gap for approach 0 from the displacement, which it replaces: its sum and count over
- * free cells, and the least displacement. */
+/* The gap at first contact from the displacement, which it replaces: its sum and count
+ * over free cells, and the least displacement. */
 static void subtract_height(void *context, size_t begin, size_t end, struct sweep *s)
 {
 	const struct contact copy = *(struct contact *)context, *c = &copy;
 	struct sweep t = *s;
 
 	for (size_t i = begin; i < end; i++) {
-		double u = c->gap[i], gap = u - c->h[i];
+		double u = c->gap[i], gap = u - (c->h[i] - c->top);
 		int is = is_free(c, c->p[i]);
 
 		t.sum[0] += is ? gap : 0;

@@ -42,9 +42,12 @@ struct contact {
 
 	/* the problem being solved */
 	const double *h;
+	/* The highest of h.  Gaps and approaches are counted from it: those of cells in
+	 * contact then keep their digits however far all heights are from 0. */
+	double top;
 	double *p;
 	enum contact_control control;
-	double target; /* mean pressure or approach */
+	double target; /* mean pressure, or approach from first contact */
 	double tolerance;
 	double work;  /* sum p u, updated since the last contact_gap() */
 	double least; /* least u at that call, or 0 */

@@ -32,7 +32,6 @@ static enum calibrate_status attempt(const struct calibrate_par *par, const doub
 	size_t edge = n > 8 * (size_t)w->edge ? (size_t)w->edge : 0;
 
 	memset(c, 0, sizeof *c);
-	look->attempts++;
 	c->whitening = *w;
 	c->guessed = look->settled;
 	c->suspect = look->coloured && !look->settled;

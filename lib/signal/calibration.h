@@ -23,7 +23,7 @@ struct calibrate_par {
 	double false_alarm;      /* expected false particles per sample of noise */
 	int tones;               /* number of omega, or CALIBRATE_FIND_TONES */
 	double omega[TONES_MAX]; /* rad per sample */
-	double *filter;          /* symmetric taps of the filter applied to the record, or NULL */
+	double *filter; /* symmetric taps of the filter applied to the record, or NULL */
 	size_t filter_taps;
 };
 
@@ -39,24 +39,25 @@ struct calibration {
 	struct whitening whitening; /* of filtered records; else without taps */
 	double mean[2];             /* of the channels, subtracted before whitening */
 	double noise[2];            /* standard deviations, before any filter */
-	double rest[2]; /* residual power of the fitted pulses over noise^2 */
+	double rest[2];             /* residual power of the fitted pulses over noise^2 */
 	struct shape *shape;
-	int pulse;             /* enum pulse_shape */
-	int measured;          /* 1: shape taken from the record, pulse the nearest of sensor.h */
-	int reversed;          /* 1: that pulse with its sign changed */
-	int corrected;         /* 1: shape corrected by the residual common to all pulses */
+	int pulse;     /* enum pulse_shape */
+	int measured;  /* 1: shape taken from the record, pulse the nearest of sensor.h */
+	int reversed;  /* 1: that pulse with its sign changed */
+	int corrected; /* 1: shape corrected by the residual common to all pulses */
 	double duration, gain; /* as above */
 	double transit;        /* samples between the sensors; INFINITY if unknown */
 	double delta_min, delta_max; /* samples around shift */
 	double drop, drop_near;      /* thresholds of joint.h */
 	double misfit;               /* of joint.h: error of the shape */
 	int events;                  /* pulses to which the shape was fitted */
-	int suspect;                 /* 1: treated as white although the spectrum test failed */
-	int guessed;                 /* 1: whitened by a filter estimated from its noise */
-	int attempts;                /* number of calibrations tried */
-	int dense;                   /* 1: pulses overlap throughout the record */
-	double chi2;                 /* of the fitted pulses, per degree of freedom */
-	double price; /* (chi-square + 2 drop_near per pulse) per degree of freedom; least is best */
+	int suspect;  /* 1: treated as white although the spectrum test failed */
+	int guessed;  /* 1: whitened by a filter estimated from its noise */
+	int attempts; /* number of calibrations tried */
+	int dense;    /* 1: pulses overlap throughout the record */
+	double chi2;  /* of the fitted pulses, per degree of freedom */
+	double price; /* (chi-square + 2 drop_near per pulse) per degree of freedom; least
+			 is best */
 };
 
 enum calibrate_status {
@@ -65,12 +66,12 @@ enum calibrate_status {
 	CALIBRATE_COLOURED, /* of one attempt: the noise is to be made white first */
 	CALIBRATE_SILENT_1, /* channel 1 is constant */
 	CALIBRATE_SILENT_2,
-	CALIBRATE_NO_LAG, /* the channels have nothing in common */
+	CALIBRATE_NO_LAG,  /* the channels have nothing in common */
 	CALIBRATE_SWAPPED, /* particles pass sensor 2 first */
-	CALIBRATE_FAR,    /* the lag given is as long as the record */
-	CALIBRATE_NARROW, /* the filter has left a band narrower than half the pulse's */
-	CALIBRATE_FAST,   /* pulses of fewer than 8 samples */
-	CALIBRATE_SLOW,   /* pulses longer than half the record */
+	CALIBRATE_FAR,     /* the lag given is as long as the record */
+	CALIBRATE_NARROW,  /* the filter has left a band narrower than half the pulse's */
+	CALIBRATE_FAST,    /* pulses of fewer than 8 samples */
+	CALIBRATE_SLOW,    /* pulses longer than half the record */
 	CALIBRATE_TONES /* too many lines, or lines too near each other, for the record */
 };
 

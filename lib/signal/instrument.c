@@ -196,12 +196,12 @@ static enum instrument_status take_arrays(struct values *from, struct calibratio
 /* What no computation may meet in another way. */
 static const char *out_of_range(const struct calibration *c)
 {
-	return c->tone_hop < SHORTEST_HOP ? "tone_hop"
+	return c->tone_hop < SHORTEST_HOP              ? "tone_hop"
 	       : !(c->noise[0] > 0 && c->noise[1] > 0) ? "noise"
-	       : !(c->duration >= 8)		       ? "duration"
-	       : !(c->gain > 0)			       ? "gain"
-	       : !(c->transit > 0)		       ? "transit"
-	       : !(c->delta_min < c->delta_max)	       ? "delta_max"
+	       : !(c->duration >= 8)                   ? "duration"
+	       : !(c->gain > 0)                        ? "gain"
+	       : !(c->transit > 0)                     ? "transit"
+	       : !(c->delta_min < c->delta_max)        ? "delta_max"
 	       : !(c->drop > 0 && c->drop_near > 0)    ? "drop"
 						       : NULL;
 }
@@ -220,8 +220,7 @@ enum instrument_status instrument_restore(struct instrument *in,
 		int count = is_tone(&f[k]) ? in->cal.tones : f[k].count;
 
 		if (f[k].whole)
-			*f[k].whole =
-				take_whole(&from, f[k].name, 0, INT_MAX / 4);
+			*f[k].whole = take_whole(&from, f[k].name, 0, INT_MAX / 4);
 		else if (f[k].longer)
 			*f[k].longer = take_whole(&from, f[k].name, 0, INT_MAX);
 		else if (f[k].size)
@@ -230,8 +229,8 @@ enum instrument_status instrument_restore(struct instrument *in,
 			from.missing = f[k].name;
 		else
 			for (int i = 0; i < count; i++)
-				f[k].real[i] = take(
-					&from, f[k].name, i, -INFINITY, INFINITY);
+				f[k].real[i] =
+					take(&from, f[k].name, i, -INFINITY, INFINITY);
 	}
 	if (!from.missing)
 		from.missing = out_of_range(&in->cal);

@@ -254,7 +254,6 @@ static enum calibrate_status find_reverse(
 	}
 }
 
-
 /* The second channel moves back. */
 static void align(struct record *rec, const struct calibration *c)
 {
@@ -465,6 +464,7 @@ enum calibrate_status measure(const struct calibrate_par *par, const double *raw
 		return CALIBRATE_COLOURED;
 	if (status == CALIBRATE_OK && look->found.events < look->events)
 		status = CALIBRATE_NO_LAG;
+	look->attempts += status == CALIBRATE_OK;
 	if (status == CALIBRATE_OK)
 		status = learn_with_noise(par, &rec, &look->found, c);
 	if (status == CALIBRATE_OK && c->measured && c->whitening.tap)

@@ -84,8 +84,8 @@ enum separate_status {
 	SEPARATE_SILENT_2,
 	SEPARATE_NO_LAG,
 	SEPARATE_SWAPPED, /* particles pass sensor 2 first */
-	SEPARATE_FAR,    /* the lag given is as long as what is learned from */
-	SEPARATE_NARROW, /* a filter has left too little of the pulses */
+	SEPARATE_FAR,     /* the lag given is as long as what is learned from */
+	SEPARATE_NARROW,  /* a filter has left too little of the pulses */
 	SEPARATE_FAST,
 	SEPARATE_SLOW,
 	SEPARATE_TONES,  /* the lines given cannot be told from each other */
@@ -101,8 +101,9 @@ struct separate_counters {
 	double fits, steps, searches;
 	double rows, misfits; /* of pulses fitted, and those doubted, dense ones too */
 	double foreign;       /* doubted by their velocities, though they fit */
+	double merged;        /* rows that may be several particles each */
 	double masks, masks_skipped; /* sections demixed, and those that need not be */
-	double unresolved, dense; /* rows, and the samples these stand for */
+	double unresolved, dense;    /* rows, and the samples these stand for */
 };
 
 struct separate;
@@ -126,10 +127,10 @@ void separate_noise(const struct separate *s, double share[2]);
 const struct separate_counters *separate_counters(const struct separate *s);
 /* Why all rows are doubtful. */
 enum separate_doubt {
-	SEPARATE_BELIEVED,  /* they are not */
-	SEPARATE_FOREIGN,   /* so many pulses fit no particle that the others may not */
-	SEPARATE_NOISE,     /* the noise is not that of the kept instrument */
-	SEPARATE_CROWD /* more than half is unresolved, unlike its record */
+	SEPARATE_BELIEVED, /* they are not */
+	SEPARATE_FOREIGN,  /* so many pulses fit no particle that the others may not */
+	SEPARATE_NOISE,    /* the noise is not that of the kept instrument */
+	SEPARATE_CROWD     /* more than half is unresolved, unlike its record */
 };
 enum separate_doubt separate_doubtful(const struct separate *s);
 /* Frame and channel (0, 1) that made it fail with NOT_FINITE. */

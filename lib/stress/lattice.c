@@ -371,10 +371,11 @@ enum num_status lattice_gather(const struct lattice *l, double *const *field, in
 enum num_status lattice_refine(const struct lattice *l, const double *field, double *cell)
 {
 	int points = l->x.axis.points, cells = l->x.axis.cells;
-	double *row = malloc((size_t)(points + cells) * sizeof *row), *at = row + points;
+	double *row = malloc((size_t)(points + cells) * sizeof *row), *at;
 
 	if (!row)
 		return NUM_MEMORY;
+	at = row + points;
 	for (int y = 0; y < l->y.axis.cells; y++) {
 		combine_rows(l, field, y, 0, points, row);
 		interpolate(&l->x, 0, cells, row, 0, at);

@@ -1,6 +1,6 @@
-#include "life/trend/passage.h"
 #include "life/score/metrics.h"
 #include "life/trend/bank.h"
+#include "life/trend/passage.h"
 #include "report.h"
 #include <math.h>
 #include <stdlib.h>

@@ -246,7 +246,9 @@ static int solve_after(const struct task *t, const struct contact_result *full)
 	return converged & unload_solve(t, full, residual);
 }
 
-/* Warns once of values that are possible but unlikely to be meant. */
+/* Warns once of values that are possible but unlikely to be meant.  A number below 1000
+ * without its unit may be one of MPa, up to 1 GPa; 1 kPa is the weight of 13 mm of steel.
+ * The ideal strength of solids is about a tenth of their modulus. */
 static void doubt(const struct contact_par *par, double pressure)
 {
 	static int said;

@@ -51,8 +51,8 @@ static void describe(struct table_out *t, const struct instrument_place *place,
 	table_comment(t, "pulse", "%.6g s, gain %.6g, from %d pulses",
 		c->duration / place->rate, c->gain, c->events);
 	for (int k = 0; k < c->tones; k++)
-		table_comment(t, "line", "%.6g Hz",
-			c->omega[k] * place->rate / (2 * M_PI));
+		table_comment(
+			t, "line", "%.6g Hz", c->omega[k] * place->rate / (2 * M_PI));
 	if (f->count > 0 && delay > 0)
 		table_comment(t, "velocity",
 			"%.6g +- %.2g m/s of the flow, +- %.2g m/s of a particle, from "
@@ -95,8 +95,9 @@ static const char *key_of(const struct table_in *t, const char *key)
 	const char *value = table_key(t, key);
 
 	if (!value)
-		die(EXIT_RUN, "%s: no instrument of duet --instrument: it has no key "
-			      "'%s'",
+		die(EXIT_RUN,
+			"%s: no instrument of duet --instrument: it has no key "
+			"'%s'",
 			table_name(t), key);
 	return value;
 }

@@ -61,6 +61,7 @@ static void report(const struct separate *s, double rate)
 	stats_set("sections", c->sections);
 	stats_set("sections_single", c->singles);
 	stats_set("sections_unresolved", c->unresolved);
+	stats_set("merged", c->merged);
 	stats_set("misfits", c->misfits);
 	stats_set("misfits_by_velocity", c->foreign);
 	stats_set("fits", c->fits);
@@ -84,8 +85,8 @@ static int put_ready(struct separate *s, struct found *out)
 }
 
 /* Says so, and so does the table. */
-static int is_doubtful(const struct separate *s, struct found *out, const char *name,
-	const char *kept)
+static int is_doubtful(
+	const struct separate *s, struct found *out, const char *name, const char *kept)
 {
 	const struct separate_counters *c = separate_counters(s);
 	enum separate_doubt doubt = separate_doubtful(s);
@@ -149,8 +150,7 @@ int separate_record(struct signal_in *in, struct found *out,
 		check_status(status, s, signal_name(in));
 		if (any)
 			table_flush(out->particles);
-		if (file && !par.kept && !learned &&
-			separate_instrument(s, &view)) {
+		if (file && !par.kept && !learned && separate_instrument(s, &view)) {
 			learned = 1;
 			keep(s, &place);
 		}

@@ -93,6 +93,7 @@ static size_t run(const struct source *s, int axis)
 	return n;
 }
 
+/* Positions may be rounded to a millionth of a step. */
 static int near(double a, double b, double step)
 {
 	return fabs(a - b) <= 1e-6 * step;

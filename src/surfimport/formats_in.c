@@ -97,6 +97,7 @@ double unit_named(const char *name, size_t length)
 	return NAN;
 }
 
+/* Spacings of four digits or more are equal up to rounding. */
 static int differ(double a, double b)
 {
 	return fabs(a - b) > 1e-3 * fabs(b);

@@ -234,6 +234,7 @@ static void profile_read(const struct text *t, const struct told *told, struct r
 	if (isnan(x_unit))
 		x_unit = unit;
 	dx = (x[(n - 1) * w] - x[0]) / (double)(n - 1);
+	/* Positions may be rounded to a 25th of the spacing. */
 	for (size_t i = 0; i < n; i++)
 		if (!(fabs(x[i * w] - x[0] - (double)i * dx) <= 0.02 * fabs(dx)))
 			die(EXIT_RUN,

@@ -1,5 +1,5 @@
-/* Contacts whose solution is known, at full size: how many iterations they may take, and
- * that the pressure found is the one chosen. */
+/* Contacts whose solution is known, at full size: bounds of the iterations and of the
+ * error of the pressure. */
 #include "../unit/exact_scene.h"
 
 int main(void)

@@ -9,8 +9,8 @@
  */
 #include "../unit/tap.h"
 #include "life/particle/draw.h"
-#include "life/trend/passage.h"
 #include "life/trend/bank.h"
+#include "life/trend/passage.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

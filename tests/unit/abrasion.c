@@ -52,7 +52,8 @@ static void check_squeeze(void)
 		worst = fmax(worst, fabs(x - want) / fmin(want, 1 - gap - want + want));
 		worst = fmax(worst, fabs(load / (M_PI * h1 * capped(want, 1)) - 1));
 	}
-	/* near the middle of the sphere c is flat, and bisection knows x to 1e-8 only */
+	/* near the middle of the sphere c is flat, and bisection finds x to 1e-8 only
+	 */
 	ok(worst < 1e-7,
 		"depths and loads of 20000 particles agree with bisection to %.1e",
 		worst);
@@ -166,7 +167,8 @@ static void check_slip(void)
 		most);
 }
 
-/* A load is met by the gap that it came from, with fixed and with changing motion. */
+/* The gap is recovered from the load it carries, with fixed and with changing motion.
+ */
 static void check_gap(void)
 {
 	struct abrasion_par par = { .gap = 6e-6,

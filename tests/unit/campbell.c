@@ -1,4 +1,4 @@
-/* Shot noise: moments of particles too many to tell apart */
+/* Shot noise: moments of particles too many to separate */
 #include "signal/campbell.h"
 #include "num/philox.h"
 #include "tap.h"

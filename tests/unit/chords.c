@@ -120,8 +120,8 @@ static void test_random(void)
 		brute = brute_width(p, POINTS, along);
 		near(length, most, 1e-12 * most,
 			"the length of random points is that of brute force");
-		/* The levels miss the height of the corner by half a step at the most, on
-		 * which the width changes by no more than some of them. */
+		/* The levels miss the height of the corner by half a step at the most,
+		 * which changes the width by a few steps at most. */
 		ok(brute <= width * (1 + 1e-12) && brute > width * (1 - 10. / LEVELS),
 			"the width %g of random points is %g by brute force", width,
 			brute);

@@ -1,4 +1,4 @@
-/* The network's first look: how sections are laid on the grid, and the way back */
+/* Resampling of sections to the grid of the networks, and its inverse */
 #include "net/cnndata.h"
 #include "tap.h"
 #include <stdlib.h>
@@ -61,8 +61,7 @@ static void check_invariance(void)
 	ok(difference(got, want) < 3e-2,
 		"twice the sampling rate gives the same grid within %.2g",
 		difference(got, want));
-	/* A delay that all share is taken off; the centre of energy moves by half of it.
-	 */
+	/* A common delay is subtracted; the centre of energy moves by half of it. */
 	draw_scene(100, 1, 1, 8, y1, y2);
 	s = (struct cnn_section){ y1, y2, 500, 100, 1, 8, 3 };
 	cnn_lay(&s, got, &f);
@@ -96,7 +95,7 @@ static void check_refusals(void)
 	ok(!cnn_lay(&s, x, &f), "a pulse duration of zero is refused");
 }
 
-/* Sections hold what they say: pulses by formula, order, spacing, noise. */
+/* Sections have the stated pulses, order, spacing and noise. */
 static void check_sections(void)
 {
 	struct cnndata_par par = cnndata_default();
@@ -139,7 +138,7 @@ static void check_sections(void)
 	free(s);
 }
 
-/* Targets taken for outputs give back the pulses. */
+/* Targets used as outputs give the pulses back. */
 static void check_way_back(void)
 {
 	struct cnndata_par par = cnndata_default();

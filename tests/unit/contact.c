@@ -193,7 +193,8 @@ static void by_hand(enum contact_solver solver)
 	contact_free(c);
 }
 
-/* Pressure stops at the hardness; load and approach as control give one another. */
+/* Pressure stops at the hardness; control by load and control by approach give the same
+ * solution. */
 static void controls(enum contact_solver solver, enum contact_boundary boundary)
 {
 	enum { N = 64, CELLS = N * N };
@@ -253,6 +254,37 @@ static void controls(enum contact_solver solver, enum contact_boundary boundary)
 	fft_free(g);
 }
 
+/* A ball that sinks in by less than 1e-10 of the height it lies at, both exact in binary
+ * digits: the height above 0 takes no digit of the pressure or of the indentation. */
+static void far_from_zero(enum contact_solver solver, enum contact_boundary boundary)
+{
+	enum { N = 32 };
+	const double unit = 0x1p-60, far = 0x1p-10;
+	struct contact_par par = parameters(N, N, 0x1p-40, boundary, solver);
+	double h[2][N * N], p[2][N * N] = { { 0 } }, approach[2], depth[2];
+	struct contact *c = contact_new(&par);
+
+	for (int i = 0; i < N * N; i++) {
+		h[0][i] = -unit *
+			  (pow(i % N - N / 2, 2) + pow(floor((double)i / N) - N / 2, 2)) *
+			  64;
+		h[1][i] = far + h[0][i];
+	}
+	for (int k = 0; k < 2; k++) {
+		contact_solve(c, h[k], CONTACT_PRESSURE, 1e-3, p[k], NULL);
+		approach[k] = contact_result(c)->approach;
+		depth[k] = contact_result(c)->indentation;
+	}
+	ok(depth[0] > 0 && depth[0] < 1e-10 * far && depth[1] == depth[0] &&
+			!memcmp(p[0], p[1], sizeof p[0]),
+		"%s, %s: a ball at a height %.0e of its indentation has the same pressure and indentation as at 0, to the last digit",
+		solver_name[solver], boundary == CONTACT_FREE ? "free" : "periodic",
+		far / depth[0]);
+	ok(approach[1] == approach[0] - far,
+		"and its approach is that at 0 less the height");
+	contact_free(c);
+}
+
 int main(void)
 {
 	static const enum contact_solver solvers[] = { CONTACT_PK, CONTACT_BCCG };
@@ -265,6 +297,8 @@ int main(void)
 		by_hand(solvers[i]);
 		controls(solvers[i], CONTACT_FREE);
 		controls(solvers[i], CONTACT_PERIODIC);
+		far_from_zero(solvers[i], CONTACT_FREE);
+		far_from_zero(solvers[i], CONTACT_PERIODIC);
 	}
 	return tap_done();
 }

@@ -57,7 +57,7 @@ static double worst_error(
 	return worst / size;
 }
 
-/* What multiplies a wave, at sizes that are transformed as they are and others. */
+/* The factor of a wave, at sizes that are transformed directly and at others. */
 static double wave_factor(const void *context, size_t kx, size_t ky)
 {
 	(void)context;
@@ -89,7 +89,7 @@ static double spectrum_error(size_t nx, size_t ny)
 	return worst;
 }
 
-/* Bridged, what is even and slow is as if the few cells more were part of it. */
+/* The bridged convolution of a slow even field equals that on the enlarged grid. */
 static void bridged(void)
 {
 	enum { N = 121 }; /* of 125 */

@@ -1,5 +1,5 @@
-/* One step of wear: what is lost is what the particles and the surface say, by both
- * rules, whatever was computed before. */
+/* One step of wear: particles and surface agree on the lost volume under both rules,
+ * and previous steps have no influence. */
 #include "debris/debris.h"
 #include "num/philox.h"
 #include "tap.h"
@@ -186,7 +186,7 @@ static void test_periodic_symmetry(void)
 	debris_free(e);
 }
 
-/* What was worn before leaves no trace in the bits. */
+/* Previous surfaces do not change the bits of a result. */
 static void test_history(void)
 {
 	struct debris_par par = plain(WEAR_POTENTIAL);

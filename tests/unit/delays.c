@@ -128,7 +128,7 @@ static struct delaydata_par plain(void)
 	};
 }
 
-/* One source seen whole: its second channel is the first, moved by the delay. */
+/* One complete source: its second channel is the first, shifted by the delay. */
 static void check_shift(void)
 {
 	struct delaydata_par par = plain();

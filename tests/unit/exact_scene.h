@@ -1,7 +1,7 @@
 /* Contacts whose solution is known: a pressure and a gap are chosen, and the height is
  * what makes them the contact, h = K p - g - exact_approach.  K is applied here by plain
  * transforms of its own: 2 / (E* q) for each wave, or Love's closed form zero-padded.
- * Strips, primes, deep holes, hardnesses, by both boundaries; each row tells iterations
+ * Strips, primes, deep holes, hardnesses, by both boundaries; each row states iterations
  * and the error of the pressure, sum |p - p*| / sum p*. */
 #ifndef EXACT_SCENE_H
 #define EXACT_SCENE_H

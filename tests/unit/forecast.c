@@ -1,5 +1,4 @@
-/* A unit whose gap opens evenly: lives in closed form; the pair and the slope it rests
- * on. */
+/* A unit whose gap opens evenly: lives in closed form; pair and slope. */
 #include "life/pair/forecast.h"
 #include "life/pair/remaining.h"
 #include "num/rng.h"
@@ -99,7 +98,7 @@ static void test_forecast(void)
 
 enum truth { LINEAR_LEAKAGE, LINEAR_GAP, GAMMA_GAP };
 
-/* Gap of a pump of truth after k of about rows rows; 10 to 12.3 um, as leakage 1.5 to 2.8
+/* True gap of a pump after row k of about rows; 10 to 12.3 um, as leakage 1.5 to 2.8
  * L/min. */
 static double next_gap(const struct leakage *pump, enum truth truth, int k, int rows,
 	double before, gsl_rng *rng)

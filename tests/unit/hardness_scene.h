@@ -1,6 +1,7 @@
 /* hardness_scene.h - random contacts with a hardness, most of them where load over
  * hardness is a whole number of cells, and an independent bound on the error of a
- * solution */
+ * solution.  Those of a second set have white noise for heights and prime numbers of
+ * cells. */
 #ifndef HARDNESS_SCENE_H
 #define HARDNESS_SCENE_H
 
@@ -10,6 +11,10 @@
 #include "tap.h"
 #include <stdlib.h>
 #include <string.h>
+
+enum hardness_set { HARDNESS_SHAPES, HARDNESS_NOISE, HARDNESS_SETS };
+/* Random numbers of the scenes of a set: those of its first on. */
+enum { HARDNESS_STREAMS = 1 << 20 };
 
 struct hardness_scene {
 	struct contact_par par;
@@ -55,7 +60,14 @@ static double hardness_height(int k, int kind, int nx, int ny, int x, int y)
 	}
 }
 
-static struct hardness_scene hardness_scene(int k)
+static int hardness_prime(int k, uint64_t place)
+{
+	static const int prime[] = { 2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43 };
+
+	return prime[(size_t)(hardness_draw(k, place) * sizeof prime / sizeof *prime)];
+}
+
+static struct hardness_scene hardness_scene(int k, enum hardness_set set)
 {
 	struct hardness_scene s = { .par = { .nx = (int)hardness_range(k, 1, 1, 44),
 					    .ny = (int)hardness_range(k, 2, 2, 44),
@@ -63,10 +75,14 @@ static struct hardness_scene hardness_scene(int k)
 					    .estar = hardness_range(k, 4, 1e8, 1e12),
 					    .tolerance = 1e-8,
 					    .max_iterations = 5000 } };
-	int cells = s.par.nx * s.par.ny;
 	double amplitude = hardness_range(k, 6, 1e-9, 1e-2), loaded;
-	int kind = (int)(9 * hardness_draw(k, 7));
+	int kind = set == HARDNESS_NOISE ? 0 : (int)(9 * hardness_draw(k, 7)), cells;
 
+	if (set == HARDNESS_NOISE) {
+		s.par.nx = hardness_prime(k, 1);
+		s.par.ny = hardness_prime(k, 2);
+	}
+	cells = s.par.nx * s.par.ny;
 	s.par.dy = s.par.dx * (hardness_draw(k, 8) < 0.7 ? 1 : 2.5);
 	s.par.boundary = hardness_draw(k, 5) < 0.5 ? CONTACT_FREE : CONTACT_PERIODIC;
 	s.par.hardness =
@@ -139,9 +155,10 @@ struct hardness_outcome {
 	long most;    /* iterations */
 };
 
-static void hardness_solve(int k, enum contact_solver solver, struct hardness_outcome *o)
+static void hardness_solve(int k, enum hardness_set set, enum contact_solver solver,
+	struct hardness_outcome *o)
 {
-	struct hardness_scene s = hardness_scene(k);
+	struct hardness_scene s = hardness_scene(k + (int)set * HARDNESS_STREAMS, set);
 	double *p = fft_alloc((size_t)s.par.nx * (size_t)s.par.ny), gap;
 	enum contact_status status;
 	struct contact *c;
@@ -168,19 +185,23 @@ static void hardness_solve(int k, enum contact_solver solver, struct hardness_ou
 	fft_free(s.height);
 }
 
-/* Solves scenes first to last - 1 by both solvers. */
+/* Solves scenes first to last - 1 of each set by both solvers. */
 static inline void hardness_scan(int first, int last)
 {
 	static const char *const name[] = { "the default", "Polonsky and Keer's" };
+	static const char *const what[] = { "scenes with a hardness",
+		"scenes of white noise on prime numbers of cells with a hardness" };
 
-	for (int solver = 0; solver < 2; solver++) {
+	for (int i = 0; i < 2 * HARDNESS_SETS; i++) {
 		struct hardness_outcome o = { 0 };
 
 		for (int k = first; k < last; k++)
-			hardness_solve(k, (enum contact_solver)solver, &o);
+			hardness_solve(k, (enum hardness_set)(i / 2),
+				(enum contact_solver)(i % 2), &o);
 		ok(o.solved == last - first,
-			"%s solver solves %d of %d scenes with a hardness; the gap is at most %.1e of the elastic work, with at most %ld iterations",
-			name[solver], o.solved, last - first, o.worst, o.most);
+			"%s solver solves %d of %d %s; the gap is at most %.1e of the elastic work, with at most %ld iterations",
+			name[i % 2], o.solved, last - first, what[i / 2], o.worst,
+			o.most);
 	}
 }
 

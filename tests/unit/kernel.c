@@ -96,9 +96,9 @@ static void eliminate(int n, double a[6][7])
 	}
 }
 
-/* One of the solutions of plane strain that go as a wave along x, of unit wave number:
- * ux = -U sin x, uz = W cos x with W = e^(s z) or z e^(s z), s = -1 or 1, and the U that
- * equilibrium asks for.  col: ux and uz over their waves, sigma_xz, sigma_zz. */
+/* One of the solutions of plane strain that vary as a wave along x, of unit wave
+ * number: ux = -U sin x, uz = W cos x with W = e^(s z) or z e^(s z), s = -1 or 1, and the
+ * U that equilibrium asks for.  col: ux and uz over their waves, sigma_xz, sigma_zz. */
 static void wave_part(double g, double nu, int s, int grows, double z, double col[4])
 {
 	double e = exp(s * z), w = grows ? z : 1, dw = grows ? 1 + s * z : s;

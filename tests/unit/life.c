@@ -2,10 +2,10 @@
 #include "life/grey/grey.h"
 #include "life/grey/noise.h"
 #include "life/particle/adaptive.h"
-#include "life/trend/passage.h"
 #include "life/prior/fleet.h"
 #include "life/trend/bank.h"
 #include "life/trend/history.h"
+#include "life/trend/passage.h"
 #include "life/trend/runin.h"
 #include "tap.h"
 #include <stdlib.h>
@@ -226,10 +226,10 @@ static void test_disturbances(void)
 		"a repair that sets the wear back by 0.4 lengthens the life");
 }
 
-/* y = 1 - (t / T)^2 falls to 0; an earlier unit tells the shape at once. */
-/* Even wear to 80 % of the threshold under noise of 5 %: an observation must not tell the
- * variance of its own noise, or coordinates with a bend there gain weight with every row.
- */
+/* y = 1 - (t / T)^2 falls to 0; an earlier unit determines the shape. */
+/* Even wear to 80 % of the threshold under noise of 5 %: an observation must not set
+ * the variance of its own noise, or coordinates with a bend there gain weight with every
+ * row. */
 static void test_noise_favours_no_bend(void)
 {
 	struct bank_par par = { .threshold = 1, .direction = 1 };
@@ -293,7 +293,8 @@ static void test_fleet(void)
 	draw_free(d);
 }
 
-/* Missing rows move the filter on by its model; the same seed gives the same states. */
+/* Over missing rows the filter predicts by its model; the same seed gives the same
+ * states. */
 static void test_adaptive(void)
 {
 	struct adaptive_par par = { .filter = { 300, 0, RESAMPLE_SYSTEMATIC, 0.5, 0 },

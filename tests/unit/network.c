@@ -1,4 +1,4 @@
-/* Networks: what each layer computes, training towards known answers, files of weights */
+/* Networks: what each layer computes, training to known solutions, files of weights */
 #include "net/netfile.h"
 #include "net/training.h"
 #include "num/philox.h"

@@ -206,7 +206,7 @@ static int bar(double x, double y, double z)
 	return 0;
 }
 
-/* The bar of a pose; everything about it that does not name its place is compared. */
+/* The bar of a pose; all measures except those of its position are compared. */
 static struct particle measured_bar(int nx, int ny, struct pose p)
 {
 	struct particles_par par = { .nx = nx, .ny = ny, .dx = 1.5, .dy = 1, .dz = 0.5 };

@@ -1,4 +1,4 @@
-/* Large sets of cells; descriptions read: scene | expectation | outcome | error */
+/* Large sets of cells: rows of the table of extreme scenes */
 #include "debris/particles.h"
 #include "tap.h"
 

@@ -68,7 +68,7 @@ static void check_estimate(void)
 	zone = partition_power_mean(1e6, ml, 21e6, mh);
 	near(w.mean, 45 * mh + 45 * ml + 10 * zone, 1e-9,
 		"the wear of the component is right");
-	/* Only the zone keeps both classes from adding up by hand: take it away. */
+	/* Only the zone keeps both classes from adding up by hand: remove it. */
 	partition_free(p);
 	p = two_classes(-1, -1, 2);
 	partition_close(p, fragment, 0);

@@ -171,7 +171,7 @@ static void limits(void)
 	ball_free(&b);
 }
 
-/* Pressed in steps and let go; returns the work done on the way. */
+/* Loads in steps and unloads; returns the work done. */
 static double path(struct ball *b, const double *h, double load, double part, int steps,
 	double *gap, double *stiffness)
 {

@@ -1,5 +1,5 @@
-/* The spectrum against the correlation functions it stands for, and what a wave's
- * address promises under refinement. */
+/* The spectrum against its correlation functions, and its waves under refinement of the
+ * grid. */
 #include "surface/spectrum.h"
 #include "num/fft.h"
 #include "tap.h"

@@ -1,5 +1,5 @@
 /* Stress below a surface: Hertz with friction in closed form, sums on coarse points
- * against full ones, periodic waves, what may be left out. */
+ * against full ones, periodic waves, nodes that may be omitted. */
 #include "stress/stress.h"
 #include "contact/solver.h"
 #include "num/philox.h"

@@ -39,7 +39,8 @@ static void check_transmission(void)
 		"a filter of order 1 equals order 0 away from the rim");
 }
 
-/* Four nesting indices, 64 points each: what the rim does to planes and parabolas. */
+/* Four nesting indices, 64 points each: distortion of planes and parabolas at the rim.
+ */
 static void check_ends(void)
 {
 	enum { L = 257 };
@@ -206,7 +207,8 @@ static void check_spectrum(void)
 	for (int k = 0; k < n; k++)
 		sum += ring[k].power * ring[k].waves / area;
 	near(sum, 0.5, 1e-3, "a window keeps the power");
-	/* what jumps at the rim spreads a slope over all waves, less so under a window */
+	/* the jump of a slope at the rim spreads over all waves, less so with a window
+	 */
 	{
 		double sharp, smooth;
 

@@ -1,4 +1,4 @@
-/* tap.h - what a unit test in C needs */
+/* tap.h - functions for unit tests in C */
 #ifndef TAP_H
 #define TAP_H
 

@@ -1,4 +1,4 @@
-/* Rows judged by their velocities: particles, parts of one object, and what is neither */
+/* Rows judged by their velocities: particles, parts of one object, and other events */
 #include "signal/validate.h"
 #include "num/philox.h"
 #include "tap.h"

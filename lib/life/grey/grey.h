@@ -9,7 +9,7 @@
  * O(P) in all, no prefix sum grows with the stream, and nothing is divided by a.
  *
  * Time is in steps (any unit); unequal gaps weigh the integral.  The oldest point of a
- * window opens its first interval, and its own value has no say.
+ * window opens its first interval; its own value is not used.
  *
  *	struct grey g = { 0 };
  *	for (int k = n; k-- > 0;)

@@ -1,4 +1,4 @@
-/* order.h - which order of the grey model forecasts the observations best
+/* order.h - selection of the order of the grey model with the best forecasts
  *
  * Every order from 4 to the largest forecasts each observation from the ones before it
  * (one backward pass, O(1) per order), so the choice depends on the observations alone
@@ -8,9 +8,9 @@
  *   all       the same over all rows so far (the thesis' accumulated error)
  *   insample  smallest mean squared residual of the fit itself
  *   fixed     always the largest order
- * While the trend goes on (the mean of the last ten rows lies farther from the first
+ * While the trend continues (the mean of the last ten rows lies farther from the first
  * observation than that of the ten before) the search may be kept to a range, the thesis'
- * shortcut; what that leaves out is counted.
+ * shortcut; the orders left out are counted.
  */
 #ifndef LIFE_ORDER_H
 #define LIFE_ORDER_H
@@ -23,9 +23,10 @@ struct order_par {
 	enum order_rule rule;
 	int largest;       /* P >= 4, or the fixed order */
 	int window;        /* rows of the error, >= 1 */
-	double hysteresis; /* relative fall of the error that is worth a change */
+	double hysteresis; /* smallest relative decrease of the error that changes the
+			      order */
 	int range_low,
-		range_high; /* searched while the trend goes on; 0, 0: no shortcut */
+		range_high; /* searched while the trend continues; 0, 0: no shortcut */
 };
 
 struct order;

@@ -1,7 +1,7 @@
 #include "life/pair/forecast.h"
 #include "life/pair/remaining.h"
-#include "life/trend/passage.h"
 #include "life/trend/bank.h"
+#include "life/trend/passage.h"
 #include "num/select.h"
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* leakage.h - leakage between valve plate and cylinder block, and the gap it tells
+/* leakage.h - leakage between valve plate and cylinder block, and the gap that causes it
  *
  * Laminar radial flow through the sealing lands of a kidney-shaped port, over the
  * angle alpha0, for parallel faces a gap h apart (Li's thesis, eq. 4-30):
@@ -25,7 +25,7 @@ struct leakage {
  * there: it makes 70 % of 2.8 L/min meet the printed gap of 16.79 um. */
 struct leakage leakage_thesis(void);
 
-/* A phrase naming what is out of range, NULL if all is well. */
+/* A phrase that names the parameter out of range, or NULL. */
 const char *leakage_check(const struct leakage *l);
 
 /* Pump leakage at a gap, m3/s, and its inverse, m; both odd functions. */

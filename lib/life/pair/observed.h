@@ -1,4 +1,5 @@
-/* observed.h - the gap of one unit as it was seen so far, and what that alone foretells
+/* observed.h - observed gaps of one unit, their rate and the grey forecast of their
+ * values
  *
  * Any units of time, gap and value, the same ones throughout.
  *
@@ -12,8 +13,8 @@
 
 /* How the wear rate is found (Li's thesis, 4.2). */
 enum rate_rule {
-	RATE_MEAN,  /* all that was worn over the time it took (4-29) */
-	RATE_LAST,  /* the last wear over the last interval (4-28) */
+	RATE_MEAN,  /* total wear over total time (4-29) */
+	RATE_LAST,  /* wear of the last interval over its length (4-28) */
 	RATE_FILTER /* followed by the bank of bank.h */
 };
 
@@ -22,11 +23,11 @@ struct observed;
 struct observed *observed_new(enum rate_rule rule); /* NULL when out of memory */
 void observed_free(struct observed *o);
 
-/* Where the rates start from, if that is not the first observation; again: they start
- * anew. */
+/* Sets the start of the rates if it is not the first observation; called again, restarts
+ * them. */
 void observed_begin(struct observed *o, double t, double gap);
-/* value: as read; gap: what it tells.  Times must not fall; what comes at the same time
- * replaces what came before. */
+/* value: as read; gap: derived from it.  Times must not decrease; an observation at the
+ * same time replaces the last one. */
 void observed_add(struct observed *o, double t, double value, double gap);
 
 long observed_count(const struct observed *o);
@@ -40,8 +41,8 @@ double observed_rate(const struct observed *o);
 
 /* Time from the latest observation until the grey model GM(1,1) of all values since the
  * beginning reaches the threshold; INFINITY: never; NAN below four values.  The sums of
- * grey.h are kept from the oldest value on, centred, so that a row costs the same however
- * many there were. */
+ * grey.h are kept from the oldest value on, centred, so that the cost of a row does not
+ * depend on their number. */
 double observed_grey(const struct observed *o, double threshold);
 
 #endif

@@ -1,4 +1,4 @@
-/* pair.h - a sliding pair: what is observed of it as a gap, and the gap at which it fails
+/* pair.h - a sliding pair: the gap for an observed value, and the gap at failure
  *
  *	struct pair p = { .leakage = leakage_thesis(), .area = 2346.3e-6,
  *		.gap_new = 10e-6, .threshold_gap = NAN, .threshold_leakage = 2.8e-3 / 60,
@@ -26,7 +26,7 @@ struct pair {
 	double threshold_gap, threshold_leakage, threshold_volume;
 };
 
-/* Gap that a value tells; volumes count from gap 0 where the new one is not known. */
+/* Gap for a value; volumes count from gap 0 if the new gap is unknown. */
 double pair_gap(const struct pair *p, enum pair_quantity quantity, double value);
 /* The inverse. */
 double pair_value(const struct pair *p, enum pair_quantity quantity, double gap);

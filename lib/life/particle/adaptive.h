@@ -2,12 +2,12 @@
  *
  * Li, Wang, Shi, Ma, Chinese Journal of Aeronautics 31 (2018) 941; Li's thesis, 4.1.3:
  * each particle carries its own past, a grey model of the chosen order is fitted to the
- * past of each and moves it on, and the observation weighs them.  Departures, so that
- * the filter does not follow itself away from the data: histories are genealogies, the
- * process noise has a floor that grows with the order and is no less than what the grey
- * model itself has lately missed by, and an innovation monitor starts the particles anew
+ * past of each and predicts its next state, and the observation weighs them.  Departures
+ * that keep the filter from diverging from the data: histories are genealogies, the
+ * process noise has a floor that grows with the order and is no less than the recent
+ * errors of the grey model, and an innovation monitor restarts the particles
  * from the observations when their mean squared standardised innovation over twenty rows
- * exceeds four.  An observation twenty times farther off than usual is passed over once.
+ * exceeds four.  A single observation twenty times farther off than usual is skipped.
  *
  *	struct adaptive *a = adaptive_new(&par);
  *	while (read(&t, &y)) {       (y may be NAN: predict only)
@@ -46,11 +46,11 @@ struct adaptive;
 struct adaptive *adaptive_new(const struct adaptive_par *par); /* NULL: no memory */
 void adaptive_free(struct adaptive *a);
 void adaptive_pass(struct adaptive *a, struct state *s);
-/* Takes the next row; t must rise.  Any finite y will do.  After NUM_MEMORY the filter is
- * of no more use. */
+/* Takes the next row; t must rise.  y is finite or NAN.  After NUM_MEMORY the filter must
+ * not be used. */
 enum num_status adaptive_step(
 	struct adaptive *a, double t, double y, struct adaptive_row *row);
-/* The literal recursion (4-21): every particle goes on step by step by its own model,
+/* The literal recursion (4-21): every particle continues step by step by its own model,
  * refitted to its last states, with process noise, at the mean gap of the rows.  Fills
  * life[N] with the time from the last row to its first passage of the threshold (linear
  * within a step), INFINITY beyond steps.  NUM_DOMAIN: no model yet. */

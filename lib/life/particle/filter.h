@@ -34,7 +34,7 @@ struct filter_par {
 
 struct filter;
 
-/* draw stays the caller's.  NULL when out of memory. */
+/* draw is borrowed.  NULL when out of memory. */
 struct filter *filter_new(const struct filter_par *par, struct draw *draw);
 void filter_free(struct filter *f);
 void filter_pass(struct filter *f, struct state *s);
@@ -50,12 +50,12 @@ int filter_depth(const struct filter *f);
 
 /* The states of step k - lag and, in index[N], which of them belongs to each present
  * particle.  Call with lag 0 first (index is filled), then with each next lag in turn
- * (index is carried on).  Returns 1 where index changed, 0 where it stayed. */
+ * (index is updated).  *changed, unless NULL: 1 if index has changed. */
 const double *filter_lag(const struct filter *f, int lag, uint32_t *index, int *changed);
 
-/* The same without the walk: the states of step k - lag that have descendants, and which
- * of them each state of the step after it comes from, ascending without a gap from 0;
- * NULL: the one of the same place. */
+/* The states of step k - lag that have descendants; *ancestor: the index among them of
+ * the ancestor of each state of the next step, ascending without gaps from 0; NULL: the
+ * same index. */
 const double *filter_states(const struct filter *f, int lag, const uint32_t **ancestor);
 
 /* Moves to the next step: states mean[N] plus normal noise. */
@@ -63,7 +63,7 @@ enum num_status filter_predict(struct filter *f, const double *mean, double sigm
 /* Weighted mean and variance of the states of the present step. */
 double filter_mean(const struct filter *f);
 double filter_variance(const struct filter *f);
-/* Weighs by y with observation noise of scale noise > 0 and then resamples if need be.
+/* Weighs by y with observation noise of scale noise > 0 and then resamples if necessary.
  * filter_mean() and filter_ess() afterwards are those before resampling.  Returns the
  * log of the evidence, log mean(p(y|x)). */
 double filter_update(struct filter *f, double y, double noise);

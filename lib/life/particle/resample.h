@@ -1,9 +1,9 @@
-/* resample.h - choosing ancestors by weight
+/* resample.h - selection of ancestors by weight
  *
- * All schemes are unbiased: particle i is expected n w[i] times.  Ancestors come out in
- * rising order.  Systematic uses one uniform number, stratified one per particle,
- * residual keeps floor(n w) copies and draws the rest independently from what is left,
- * multinomial draws all of them so.
+ * All schemes are unbiased: particle i is expected n w[i] times.  Ancestors are in
+ * ascending order.  Systematic uses one uniform number, stratified one per particle,
+ * residual keeps floor(n w) copies and draws the rest independently from the remainders,
+ * multinomial draws all of them independently.
  * Douc, Cappe, Moulines, "Comparison of resampling schemes for particle filtering",
  * ISPA 2005.
  */

@@ -2,7 +2,7 @@
  *
  * Each earlier unit is reduced to the age at which it first reached a level, on a grid of
  * levels (observations as they are below twenty rows, running medians of three from there
- * on, linear between rows).  A unit that has not reached the threshold is carried on to
+ * on, linear between rows).  A unit that has not reached the threshold is extrapolated to
  * it along the median ages that its own bank predicts.  In the coordinate that a path
  * makes, a unit of the same kind is a straight line with a speed near 1.
  *

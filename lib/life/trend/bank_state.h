@@ -1,5 +1,5 @@
-/* bank_state.h - data of a bank, for its rows (bank.c), its coordinates (shapes.c) and the
- * draws from it (passage.c)
+/* bank_state.h - data of a bank, for its rows (bank.c), its coordinates (shapes.c) and
+ * the draws from it (passage.c)
  */
 #ifndef LIFE_BANK_STATE_H
 #define LIFE_BANK_STATE_H

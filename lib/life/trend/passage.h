@@ -1,11 +1,11 @@
-/* passage.h - when the lines of a bank will first reach a level
+/* passage.h - times at which the lines of a bank first reach a level
  *
- * Each draw takes a line or particle by its weight, its level, rate and noise from what
- * is known of them (Student-t), and the first passage of the level: exact for a line, an
- * inverse Gaussian time where the damage itself wanders.
+ * Each draw selects a line or particle by its weight, draws level, rate and noise from
+ * their Student-t distribution, and computes the first passage of the level: exact for a
+ * line, an inverse Gaussian time if the damage is a Wiener process.
  *
  * The regime may change once more: after a time J with P(J > x) = (a / (a + x))^c at age
- * a (what has gone on for long goes on for long) the rate begins to grow as
+ * a (an old regime lasts long) the rate begins to grow as
  * e^{g (t - J)}, or falls and stays so.  Hazard, growth and share of falls depend on
  * whether the rate falls, keeps or rises in the coordinate as it is.
  *

@@ -1,8 +1,8 @@
 /* predict.c - see predict.h */
 #include "life/trend/predict.h"
 #include "life/grey/grey.h"
-#include "life/trend/passage.h"
 #include "life/trend/history.h"
+#include "life/trend/passage.h"
 #include "num/select.h"
 #include <math.h>
 #include <stdlib.h>

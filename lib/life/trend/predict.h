@@ -1,9 +1,9 @@
 /* predict.h - when a degradation series will first reach its threshold
  *
- * A long-term model takes the series so far and is carried on to the threshold; the
+ * A long-term model is fitted to the series so far and extrapolated to the threshold; the
  * distribution of the time left comes from draws (the same random numbers at every row,
- * so that successive rows differ by their data alone).  Mass that does not get there
- * before the horizon is reported as such.
+ * so that successive rows differ by their data alone).  The probability of not reaching
+ * it before the horizon is reported as INFINITY.
  *
  *	struct predict *p = predict_new(&par);
  *	predict_add(p, t, y, state);
@@ -24,7 +24,7 @@ enum predict_model {
 	PREDICT_RATE,
 	PREDICT_SATURATING,
 	PREDICT_GREY,   /* GM(1,1) through all filtered states */
-	PREDICT_LITERAL /* particles go on step by step, see adaptive_lives() */
+	PREDICT_LITERAL /* particles continue step by step, see adaptive_lives() */
 };
 
 struct predict_par {
@@ -48,7 +48,7 @@ void predict_pass(struct predict *p, struct state *s);
 /* Takes a row: the observation, NAN where it is missing, and the filtered state (of the
  * grey model alone). */
 void predict_add(struct predict *p, double t, double y, double state);
-/* Forgets all rows: they were run-in. */
+/* Drops all rows: they were run-in. */
 void predict_restart(struct predict *p);
 int predict_draws(const struct predict *p);
 /* Fills life[draws] with times left from the last row, ascending, INFINITY beyond the
