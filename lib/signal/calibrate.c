@@ -104,17 +104,13 @@ static enum calibrate_status look_again(const struct calibrate_par *par, const d
 /* Chi-square per degree of freedom of clear pulses that asks for a second look. */
 static const double DOUBTFUL = 1.2;
 
-/* Durations of a pulse times the frequency above which it has hardly any power. */
-static const double PULSE_BAND = 10;
-
 /* Is the noise white after all?  Where hardly anything is quiet, pulses stand for colour.
  * Then they fit as well as in white noise, or tolerably, and noise is white above their
  * band. */
 static int is_white(const struct calibration *c, const struct look *look)
 {
 	return c->chi2 < DOUBTFUL ||
-	       (c->chi2 < 4 && colour_is_white(look->power,
-				       fmin(PULSE_BAND / c->duration, 0.25)));
+	       (c->chi2 < 4 && measure_white_above(look, c->duration));
 }
 
 /* Power of a tone, in units of noise^2, that tails of pulses may be taken for, and the
@@ -159,7 +155,8 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 static const double KNOWN = 0.01;
 
 /* Noise and pulses of a record were filtered alike if what made the noise white has made
- * the pulse a known one.  Its size is then that of before the filter. */
+ * the pulse a known one.  Its size is then that of before the filter.  COLOURED: not to be
+ * told from this pulse. */
 static enum calibrate_status try_filtered(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct look *look,
 	struct calibration *c)
@@ -169,28 +166,57 @@ static enum calibrate_status try_filtered(const struct calibrate_par *par,
 	struct calibration other;
 	struct whitening w;
 	enum calibrate_status status;
-	double left;
+	double left, low;
 
 	if (whitening_of_noise(&w, look->power, COLOUR_BINS, WHITEN_FILTERED) != NUM_OK)
 		return CALIBRATE_MEMORY;
 	status = template_known(&white, w.seen, w.seen_half, &known.pulse, &left) == NUM_OK
 			 ? CALIBRATE_OK
 			 : CALIBRATE_MEMORY;
+	low = w.low;
 	whitening_clear(&w);
 	if (status != CALIBRATE_OK || left > KNOWN)
 		return status;
+	/* Where the low frequencies are lost, a pulse taken from the record lacks them. */
+	if (low > 0)
+		return CALIBRATE_COLOURED;
 	look->first = 0;
 	look->settled = 1;
 	status = attempt_kind(&known, x1, x2, n, WHITEN_FILTERED, look, &other);
 	if (status != CALIBRATE_OK)
 		return status == CALIBRATE_MEMORY ? status : CALIBRATE_OK;
-	if (other.chi2 < DOUBTFUL) {
+	if (other.chi2 < DOUBTFUL && other.price < c->price) {
 		calibration_clear(c);
 		*c = other;
 	} else {
 		calibration_clear(&other);
 	}
 	return CALIBRATE_OK;
+}
+
+/* Makes the noise white and takes the pulse from that record; COLOURED where that does
+ * not describe it. */
+static enum calibrate_status attempt_white(const struct calibrate_par *par,
+	const double *x1, const double *x2, size_t n, struct look *look,
+	struct calibration *c)
+{
+	struct look smooth = *look;
+	enum calibrate_status status;
+
+	if (colour_smooth(smooth.power) != NUM_OK)
+		return CALIBRATE_MEMORY;
+	status = attempt_kind(par, x1, x2, n, WHITEN_COLOURED, &smooth, c);
+	if (status == CALIBRATE_MEMORY)
+		return status;
+	look->attempts = smooth.attempts;
+	if (status == CALIBRATE_OK && c->measured && c->chi2 < DOUBTFUL) {
+		status = try_filtered(par, x1, x2, n, look, c);
+		c->attempts = look->attempts;
+		if (status != CALIBRATE_COLOURED)
+			return status;
+	}
+	calibration_clear(c);
+	return CALIBRATE_COLOURED;
 }
 
 enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
@@ -212,12 +238,9 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 		     isnan(par->duration);
 	status = attempt(par, x1, x2, n, &w, c, &look);
 	if (status == CALIBRATE_COLOURED) {
-		status = attempt_kind(par, x1, x2, n, WHITEN_COLOURED, &look, c);
-		if (status == CALIBRATE_MEMORY)
+		status = attempt_white(par, x1, x2, n, &look, c);
+		if (status != CALIBRATE_COLOURED)
 			return status;
-		if (status == CALIBRATE_OK && c->measured && c->chi2 < DOUBTFUL)
-			return try_filtered(par, x1, x2, n, &look, c);
-		calibration_clear(c);
 		look.first = 0;
 		status = attempt(par, x1, x2, n, &w, c, &look);
 	}

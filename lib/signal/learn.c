@@ -312,7 +312,7 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, const double 
 		return learn_by(par, y1, y2, n, low, NULL, c);
 	known.shape = NULL;
 	status = learn_by(par, y1, y2, n, low, found, c);
-	if (status != CALIBRATE_OK || c->chi2 < DESCRIBED)
+	if (status != CALIBRATE_OK || c->chi2 < DESCRIBED || found->alone)
 		return status;
 	status = learn_by(par, y1, y2, n, low, NULL, &known);
 	if (status == CALIBRATE_OK && known.price < c->price) {

@@ -326,6 +326,8 @@ static enum calibrate_status learn(
 	const struct calibrate_par *par, const struct record *rec, struct template *found,
 	struct calibration *c)
 {
+	if (found && found->alone && !found->shape)
+		return CALIBRATE_NO_LAG;
 	set_range(par, c);
 	set_thresholds(par, c);
 	return learn_pulse(par, rec->y1, rec->y2, rec->n, rec->low, found, c);
@@ -416,6 +418,14 @@ static enum calibrate_status judge(
 	return status;
 }
 
+/* Durations of a pulse times the frequency above which it has hardly any power. */
+static const double PULSE_BAND = 10;
+
+int measure_white_above(const struct look *look, double duration)
+{
+	return colour_is_white(look->power, fmin(PULSE_BAND / duration, 0.25));
+}
+
 /* Amplitudes of a pulse taken from a record made white are those of the record itself. */
 static enum calibrate_status set_peak(const double *raw, size_t n, double *work,
 	const struct template *found, struct calibration *c)
@@ -457,10 +467,11 @@ enum calibrate_status measure(const struct calibrate_par *par, const double *raw
 		status = look_for_colour(&rec, look);
 		c->suspect = look->coloured;
 	}
+	look->found.alone = look->first && c->whitening.tap;
 	if (status == CALIBRATE_OK && (look->first || !c->whitening.tap))
 		status = find_template(par, &rec, &look->found, c);
 	if (status == CALIBRATE_OK && look->first && look->coloured &&
-		look->found.events == 0)
+		look->found.events == 0 && !measure_white_above(look, c->duration))
 		return CALIBRATE_COLOURED;
 	if (status == CALIBRATE_OK && look->found.events < look->events)
 		status = CALIBRATE_NO_LAG;

@@ -23,6 +23,9 @@ struct look {
 	struct template found;  /* the pulse taken from the record */
 };
 
+/* Is the noise white above the band of a pulse of this duration? */
+int measure_white_above(const struct look *look, double duration);
+
 /* Fills the rest of c, whose whitening, mean, guessed and suspect are given, from y1,
  * y2[0 .. n), which it spoils; raw[0 .. n): y1 before it was made white; work holds n. */
 enum calibrate_status measure(const struct calibrate_par *par, const double *raw,

@@ -486,7 +486,7 @@ enum num_status template_find(struct template *t, const double *y1, const double
 	size_t length;
 	enum num_status status;
 
-	memset(t, 0, sizeof *t);
+	*t = (struct template){ .alone = t->alone };
 	s.half = (int)(SIDE * duration);
 	s.coarse_half = s.half / s.q;
 	s.points = n / (size_t)s.q;
@@ -552,15 +552,21 @@ enum num_status template_known(const struct template *t, const double *tap, int 
 double template_peak(const struct template *t, const double *x1, size_t n)
 {
 	double peak = 0, weight = 0;
-	int half = (int)(SIDE * t->duration);
+	int half = (int)(SIDE * t->duration), m = (int)(t->duration / 16) + 1;
 
 	for (int i = 0; i < t->events; i++)
 		weight += t->a[i] * t->a[i];
+	/* Values of a parabola through 2 m + 1 points: those of noise alone would be high. */
 	for (int k = -half; k <= half; k++) {
 		double sum = 0;
 
-		for (int i = 0; i < t->events; i++)
-			sum += t->a[i] * between(x1, n, t->t1[i] + k);
+		for (int q = -m; q <= m; q++) {
+			double share = 3.0 * (3 * m * m + 3 * m - 1 - 5 * q * q) /
+				       ((2.0 * m - 1) * (2 * m + 1) * (2 * m + 3));
+
+			for (int i = 0; i < t->events; i++)
+				sum += share * t->a[i] * between(x1, n, t->t1[i] + k + q);
+		}
 		peak = fmax(peak, fabs(sum) / weight);
 	}
 	return peak;

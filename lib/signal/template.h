@@ -24,6 +24,7 @@ struct template {
 	 * leaves.  Arrivals are those of this pulse. */
 	int pulse, reversed;
 	double left;
+	int alone; /* set by the caller, kept: 1: no known pulse is to be tried instead */
 };
 
 /* y1, y2[0 .. n), aligned to within reach, in units of white noise; duration: a guess
