@@ -48,8 +48,8 @@ static enum calibrate_status attempt(const struct calibrate_par *par, const doub
 			status = CALIBRATE_MEMORY;
 	}
 	if (status == CALIBRATE_OK)
-		status = measure(par, x1 + edge, work + edge, work + n + edge, n - 2 * edge,
-			work + 2 * n, look, c);
+		status = measure(par, x1 + edge, work + edge, work + n + edge,
+			n - 2 * edge, work + 2 * n, look, c);
 	free(work);
 	if (status != CALIBRATE_OK)
 		calibration_clear(c);
@@ -155,8 +155,8 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 static const double KNOWN = 0.01;
 
 /* Noise and pulses of a record were filtered alike if what made the noise white has made
- * the pulse a known one.  Its size is then that of before the filter.  COLOURED: not to be
- * told from this pulse. */
+ * the pulse a known one.  Its size is then that of before the filter.  COLOURED: not to
+ * be told from this pulse. */
 static enum calibrate_status try_filtered(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct look *look,
 	struct calibration *c)
@@ -170,14 +170,16 @@ static enum calibrate_status try_filtered(const struct calibrate_par *par,
 
 	if (whitening_of_noise(&w, look->power, COLOUR_BINS, WHITEN_FILTERED) != NUM_OK)
 		return CALIBRATE_MEMORY;
-	status = template_known(&white, w.seen, w.seen_half, &known.pulse, &left) == NUM_OK
-			 ? CALIBRATE_OK
-			 : CALIBRATE_MEMORY;
+	status =
+		template_known(&white, w.seen, w.seen_half, &known.pulse, &left) == NUM_OK
+			? CALIBRATE_OK
+			: CALIBRATE_MEMORY;
 	low = w.low;
 	whitening_clear(&w);
 	if (status != CALIBRATE_OK || left > KNOWN)
 		return status;
-	/* Where the low frequencies are lost, a pulse taken from the record lacks them. */
+	/* Where the low frequencies are lost, a pulse taken from the record lacks them.
+	 */
 	if (low > 0)
 		return CALIBRATE_COLOURED;
 	look->first = 0;
@@ -234,8 +236,8 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 	if (par->filter &&
 		whitening_of_filter(&w, par->filter, par->filter_taps) != NUM_OK)
 		return CALIBRATE_MEMORY;
-	look.first = !par->filter && par->pulse == CALIBRATE_ANY_PULSE &&
-		     isnan(par->duration);
+	look.first =
+		!par->filter && par->pulse == CALIBRATE_ANY_PULSE && isnan(par->duration);
 	status = attempt(par, x1, x2, n, &w, c, &look);
 	if (status == CALIBRATE_COLOURED) {
 		status = attempt_white(par, x1, x2, n, &look, c);

@@ -215,8 +215,8 @@ static void count_rows(const struct coincide *c, double *count, double *reach)
 }
 
 /* Odds, per unit of reach, of each amplitude to be a sum of two.  How many sums there are
- * is expected from the density, but for a factor that is gamma-distributed before the rows
- * tell more. */
+ * is expected from the density, but for a factor that is gamma-distributed before the
+ * rows tell more. */
 static void learn_odds(struct coincide *c, double per_row)
 {
 	enum { ROUNDS = 40 };

@@ -13,8 +13,8 @@
  *	- how densely pulses follow each other is counted at distances that are told
  *	  apart for certain, and holds for shorter ones, too: the density;
  *	- among n rows, n * density * reach are then expected to be sums of two particles,
- *	  less where their velocities take them apart on the other sensor, and more or fewer
- *	  if the amplitudes say so;
+ *	  less where their velocities take them apart on the other sensor, and more or
+ *fewer if the amplitudes say so;
  *	- the distribution of single amplitudes is that which, with these sums, makes that
  *	  of the rows (expectation and maximisation, kernels on the logarithm);
  *	- each row has a probability of being a sum.  Those least likely to be are single:

@@ -129,8 +129,8 @@ static size_t last_lag(const double *r, size_t points, size_t whole)
 	for (; k > 8; k--) {
 		double v = r[k] * window_autocorrelation(points, k, 0);
 
-		if (v * v > SCATTER * SCATTER * square *
-				    window_autocorrelation(points, k, 1))
+		if (v * v >
+			SCATTER * SCATTER * square * window_autocorrelation(points, k, 1))
 			break;
 	}
 	return 2 * k;

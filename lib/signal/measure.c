@@ -322,9 +322,8 @@ static void scale_noise(struct record *rec, struct calibration *c, double s1, do
 	}
 }
 
-static enum calibrate_status learn(
-	const struct calibrate_par *par, const struct record *rec, struct template *found,
-	struct calibration *c)
+static enum calibrate_status learn(const struct calibrate_par *par,
+	const struct record *rec, struct template *found, struct calibration *c)
 {
 	if (found && found->alone && !found->shape)
 		return CALIBRATE_NO_LAG;
@@ -351,9 +350,8 @@ static enum calibrate_status find_template(const struct calibrate_par *par,
 
 /* Learns the pulse; where the noise was measured in a band, pulses that leave less show
  * that it was too much. */
-static enum calibrate_status learn_with_noise(
-	const struct calibrate_par *par, struct record *rec, struct template *found,
-	struct calibration *c)
+static enum calibrate_status learn_with_noise(const struct calibrate_par *par,
+	struct record *rec, struct template *found, struct calibration *c)
 {
 	enum { ROUNDS = 4 };
 	enum calibrate_status status = learn(par, rec, found, c);
@@ -441,7 +439,8 @@ static enum calibrate_status set_peak(const double *raw, size_t n, double *work,
 }
 
 enum calibrate_status measure(const struct calibrate_par *par, const double *raw,
-	double *y1, double *y2, size_t n, double *work, struct look *look, struct calibration *c)
+	double *y1, double *y2, size_t n, double *work, struct look *look,
+	struct calibration *c)
 {
 	struct record rec = { .y1 = y1, .y2 = y2, .n = n, .work = work };
 	enum calibrate_status status = find_tones(par, &rec, c);

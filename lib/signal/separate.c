@@ -388,7 +388,7 @@ static double merging_reach(const struct separate *s, int m, int i)
 
 	for (int k = 0; k < m; k++)
 		if (k != i && fabs(p[k].t - p[i].t) <
-				       2 * shape_reach(s->cal.shape) * s->cal.duration)
+				      2 * shape_reach(s->cal.shape) * s->cal.duration)
 			overlapped += p[k].a * p[k].a * unit;
 	return validation_reach(s->validation, p[i].a * p[i].a * unit,
 		fmax(s->scene.drop_near, s->scene.misfit * overlapped));

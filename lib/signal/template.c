@@ -27,11 +27,11 @@ struct search {
 	const double *y[2];
 	size_t n;
 	double T, transit, reach;
-	int q;         /* samples per point of the coarse grid */
-	double *z[2];  /* coarse records, noise 1 */
-	size_t points; /* of them */
-	int half;      /* of the template, samples */
-	double *p;     /* 2 half + 1: the template */
+	int q;          /* samples per point of the coarse grid */
+	double *z[2];   /* coarse records, noise 1 */
+	size_t points;  /* of them */
+	int half;       /* of the template, samples */
+	double *p;      /* 2 half + 1: the template */
 	double *coarse; /* the same on the coarse grid */
 	int coarse_half;
 	double scatter; /* standard error of a point of the template */
@@ -161,12 +161,13 @@ static int most_common(struct search *s)
 			long to = (long)(s->event[k].centre / s->q), lag;
 			double value, other, left;
 
-			lag = best_lag(x, s->coarse_half, s->z[0], s->points, to, range,
-				&value);
+			lag = best_lag(
+				x, s->coarse_half, s->z[0], s->points, to, range, &value);
 			other = dot(s->z[0] + to + lag - s->coarse_half,
 				s->z[0] + to + lag - s->coarse_half, length);
 			left = 1 - value * value / (own * other);
-			like += left < ALIKE + 1.5 * (double)length * (1 / own + 1 / other);
+			like += left <
+				ALIKE + 1.5 * (double)length * (1 / own + 1 / other);
 		}
 		if (like > most) {
 			most = like;
@@ -188,8 +189,9 @@ static double between(const double *x, size_t n, double t)
 	b = x[k];
 	c = x[k + 1];
 	d = x[k + 2];
-	return b + u * (c - a / 3 - b / 2 - d / 6 +
-			       u * (0.5 * (a + c) - b + u * ((d - a) / 6 + 0.5 * (b - c))));
+	return b +
+	       u * (c - a / 3 - b / 2 - d / 6 +
+			   u * (0.5 * (a + c) - b + u * ((d - a) / 6 + 0.5 * (b - c))));
 }
 
 /* Arrival and amplitude of an event on one channel by the template, near at. */
@@ -291,18 +293,17 @@ static int refine(struct search *s, int best)
 	int count = 0;
 
 	for (int k = -s->half; k <= s->half; k++)
-		s->p[k + s->half] =
-			s->y[0][(long)s->event[best].centre + k];
+		s->p[k + s->half] = s->y[0][(long)s->event[best].centre + k];
 	for (int round = 0; round < ROUNDS; round++) {
 		coarsen_template(s);
 		count = 0;
 		for (int i = 0; i < s->count; i++) {
 			struct event *e = &s->event[i];
 
-			measure_event(s, e, 0, round ? e->t[0] : e->centre,
-				round ? 0 : s->T);
-			measure_event(s, e, 1, round ? e->t[1] : e->t[0],
-				round ? 0 : s->reach);
+			measure_event(
+				s, e, 0, round ? e->t[0] : e->centre, round ? 0 : s->T);
+			measure_event(
+				s, e, 1, round ? e->t[1] : e->t[0], round ? 0 : s->reach);
 			/* A first template has the noise of one event. */
 			e->like = e->a[0] * e->a[1] > 0 &&
 				  left_over(s, e) < (round ? 1 : 1 + e->a[0] * e->a[0]) +
@@ -339,8 +340,8 @@ static int template_reach(const struct search *s)
 static double try_match(const struct search *s, int reach, const struct shape *shape,
 	double T, double *work, double *shift, int *reversed)
 {
-	double own = dot(s->p + s->half - reach, s->p + s->half - reach,
-		2 * (size_t)reach + 1);
+	double own = dot(
+		s->p + s->half - reach, s->p + s->half - reach, 2 * (size_t)reach + 1);
 	double best = 0, step = T / 64;
 
 	for (double at = -0.75 * T; at <= 0.75 * T; at += step) {
@@ -359,7 +360,8 @@ static double try_match(const struct search *s, int reach, const struct shape *s
 	return 1 - best * best;
 }
 
-static enum num_status match(const struct search *s, int reach, struct template *t, double *shift)
+static enum num_status match(
+	const struct search *s, int reach, struct template *t, double *shift)
 {
 	double *work = malloc((2 * (size_t)reach + 1) * sizeof *work);
 
@@ -391,7 +393,8 @@ static enum num_status match(const struct search *s, int reach, struct template 
 }
 
 /* The template around its arrival, as a shape of duration 1, ends tapered. */
-static enum num_status make_shape(const struct search *s, int reach, double shift, struct template *t)
+static enum num_status make_shape(
+	const struct search *s, int reach, double shift, struct template *t)
 {
 	int half = reach + (int)ceil(fabs(shift)), soft = (int)(s->T / 8) + 1;
 	int blur = (int)(s->T / 40);
@@ -474,8 +477,8 @@ static enum num_status search_template(struct search *s, struct template *t)
 	return NUM_OK;
 }
 
-enum num_status template_find(struct template *t, const double *y1, const double *y2, size_t n,
-	double duration, double transit, double reach)
+enum num_status template_find(struct template *t, const double *y1, const double *y2,
+	size_t n, double duration, double transit, double reach)
 {
 	struct search s = { .y = { y1, y2 },
 		.n = n,
@@ -512,8 +515,8 @@ void template_clear(struct template *t)
 	t->shape = NULL;
 }
 
-enum num_status template_known(const struct template *t, const double *tap, int half,
-	int *pulse, double *left)
+enum num_status template_known(
+	const struct template *t, const double *tap, int half, int *pulse, double *left)
 {
 	int reach = (int)ceil(shape_reach(t->shape) * t->duration);
 	size_t n = 2 * (size_t)reach + 1;
@@ -527,7 +530,8 @@ enum num_status template_known(const struct template *t, const double *tap, int 
 	for (int k = PULSE_SINE; status == NUM_OK && k <= PULSE_LORENTZ; k++) {
 		struct shape *plain = shape_new((enum pulse_shape)k);
 
-		for (double T = 0.7 * t->duration; plain && T < 1.4 * t->duration; T *= 1.03) {
+		for (double T = 0.7 * t->duration; plain && T < 1.4 * t->duration;
+			T *= 1.03) {
 			struct shape *seen = shape_filter(plain, T, tap, half);
 			double shift, rest;
 			int reversed;
@@ -556,7 +560,8 @@ double template_peak(const struct template *t, const double *x1, size_t n)
 
 	for (int i = 0; i < t->events; i++)
 		weight += t->a[i] * t->a[i];
-	/* Values of a parabola through 2 m + 1 points: those of noise alone would be high. */
+	/* Values of a parabola through 2 m + 1 points: those of noise alone would be
+	 * high. */
 	for (int k = -half; k <= half; k++) {
 		double sum = 0;
 

@@ -14,9 +14,10 @@
 
 enum { TEMPLATE_EVENTS = 32, TEMPLATE_LEAST = 6 };
 
-struct template {
+struct template
+{
 	struct shape *shape; /* NULL: there are not enough events that are alike */
-	double duration;     /* samples, of a pulse whose delay is that of the alignment */
+	double duration; /* samples, of a pulse whose delay is that of the alignment */
 	int events;
 	double t1[TEMPLATE_EVENTS], t2[TEMPLATE_EVENTS]; /* arrivals, samples */
 	double a[TEMPLATE_EVENTS];                       /* amplitudes at sensor 1 */
@@ -30,14 +31,14 @@ struct template {
 /* y1, y2[0 .. n), aligned to within reach, in units of white noise; duration: a guess
  * within a factor of two; transit: samples between the sensors, INFINITY if unknown.
  * NUM_MEMORY. */
-enum num_status template_find(struct template *t, const double *y1, const double *y2, size_t n,
-	double duration, double transit, double reach);
+enum num_status template_find(struct template *t, const double *y1, const double *y2,
+	size_t n, double duration, double transit, double reach);
 void template_clear(struct template *t);
 
 /* The pulse of sensor.h that is nearest after symmetric taps -half .. half, and the share
  * of the energy that it leaves; 2 if none of about this duration is of its sign. */
-enum num_status template_known(const struct template *t, const double *tap, int half,
-	int *pulse, double *left);
+enum num_status template_known(
+	const struct template *t, const double *tap, int half, int *pulse, double *left);
 
 /* Peak of the mean of x1[0 .. n), a record of the same events before its noise was made
  * white, for a pulse of amplitude 1. */

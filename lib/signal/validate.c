@@ -342,8 +342,8 @@ static void find_merged(struct validation *v, struct evidence *e, size_t n)
 			coincide_take(v->coincide, e[i].time, e[i].amplitude, e[i].reach);
 	coincide_learn(v->coincide, isinf(v->var) ? 0 : sqrt(v->var) / v->duration);
 	for (size_t i = 0; i < n; i++)
-		e[i].merged = e[i].reach > 0 && coincide_is_sum(v->coincide,
-							e[i].amplitude, e[i].reach);
+		e[i].merged = e[i].reach > 0 &&
+			      coincide_is_sum(v->coincide, e[i].amplitude, e[i].reach);
 }
 
 void validation_judge(struct validation *v, struct evidence *e, size_t n)

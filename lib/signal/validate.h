@@ -43,8 +43,8 @@ struct evidence {
 	int partner;             /* rows to the larger pulse it overlaps; 0: none */
 	double apart, apart_var; /* delay less that of the partner */
 	double place, height;    /* of arrival, in durations, and amplitude: the same */
-	double time, reach;      /* in durations: of arrival, see coincide.h; 0: unknown */
-	int doubted, merged;     /* set by validation_judge() */
+	double time, reach;  /* in durations: of arrival, see coincide.h; 0: unknown */
+	int doubted, merged; /* set by validation_judge() */
 };
 
 struct validation;

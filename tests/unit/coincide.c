@@ -109,7 +109,8 @@ static void test_reach(void)
 	double pair2 = 0, cross = 0, one2 = 0;
 
 	ok(coincide_shape(c, shape) == NUM_OK, "a shape is taken in");
-	reach = coincide_reach(c, T * shape_energy(shape), 1e-3 * T * shape_energy(shape));
+	reach = coincide_reach(
+		c, T * shape_energy(shape), 1e-3 * T * shape_energy(shape));
 	shape_sample(shape, 1.5 * T - 0.5 * reach * T, T, 0, N, pair, NULL, NULL);
 	shape_sample(shape, 1.5 * T + 0.5 * reach * T, T, 0, N, other, NULL, NULL);
 	shape_sample(shape, 1.5 * T, T, 0, N, one, NULL, NULL);

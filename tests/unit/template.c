@@ -1,6 +1,6 @@
 /* template - the pulse of a record, taken from the record itself */
-#include "num/philox.h"
 #include "signal/template.h"
+#include "num/philox.h"
 #include "tap.h"
 #include <math.h>
 #include <stdlib.h>
@@ -16,7 +16,8 @@ static double arrival[PULSES], delay[PULSES], size[PULSES];
 /* A pulse that is none of sensor.h: two lobes of different height and width. */
 static double odd(double s)
 {
-	return exp(-40 * (s + 0.2) * (s + 0.2)) - 0.6 * exp(-15 * (s - 0.25) * (s - 0.25));
+	return exp(-40 * (s + 0.2) * (s + 0.2)) -
+	       0.6 * exp(-15 * (s - 0.25) * (s - 0.25));
 }
 
 static double sine(double s)
@@ -52,13 +53,14 @@ static void make_record(double (*pulse)(double), double sign)
 }
 
 /* Share of its energy in which a shape differs from sign times a pulse of duration T. */
-static double difference(const struct template *t, double (*pulse)(double), double sign,
-	double shift)
+static double difference(
+	const struct template *t, double (*pulse)(double), double sign, double shift)
 {
 	enum { POINTS = 400 };
 	double p[POINTS], xy = 0, xx = 0, yy = 0;
 
-	shape_sample(t->shape, POINTS / 2.0 + shift, t->duration, 0, POINTS, p, NULL, NULL);
+	shape_sample(
+		t->shape, POINTS / 2.0 + shift, t->duration, 0, POINTS, p, NULL, NULL);
 	for (int i = 0; i < POINTS; i++) {
 		double want = sign * pulse((i - POINTS / 2.0) / T);
 
