@@ -28,11 +28,10 @@ extern "C" {
 
 /* How far a row may be trusted. */
 enum wp_verdict {
-	WP_ALONE,      /* one pulse in its section */
-	WP_OVERLAP,    /* several, told apart */
-	WP_MISFIT,     /* not described by the pulse of a particle */
-	WP_UNRESOLVED, /* the row stands for sources particles */
-	WP_MERGED      /* as large as several particles that arrive together */
+	WP_ALONE,     /* one pulse in its section */
+	WP_OVERLAP,   /* several, told apart */
+	WP_MISFIT,    /* not described by the pulse of a particle */
+	WP_UNRESOLVED /* the row stands for sources particles */
 };
 
 /* A particle; standard errors end in _se; NAN where a number is not known. */

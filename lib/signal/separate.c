@@ -209,13 +209,7 @@ static enum separate_status judge_rows(struct separate *s)
 
 		q->evidence.doubted = e[i].doubted;
 		s->counters.misfits += e[i].doubted;
-		if (q->row.verdict == SEPARATE_UNRESOLVED)
-			continue;
-		if (!e[i].doubted && e[i].merged) {
-			q->row.verdict = SEPARATE_MERGED;
-			s->counters.merged++;
-		}
-		if (!e[i].doubted)
+		if (!e[i].doubted || q->row.verdict == SEPARATE_UNRESOLVED)
 			continue;
 		s->counters.foreign += q->evidence.fits;
 		q->row.verdict = SEPARATE_MISFIT;
@@ -280,8 +274,6 @@ static enum separate_status start(struct separate *s, size_t n)
 	s->hold = s->tape[0].begin + (long long)n;
 	if (isnan(s->par.known.spread) && !isinf(c->transit))
 		validation_range(s->validation, c->delta_min, c->delta_max);
-	if (validation_shape(s->validation, c->shape, c->duration) != NUM_OK)
-		return SEPARATE_MEMORY;
 	s->holding = s->par.method == SEPARATE_FIT && n > 0;
 	if (s->par.kept) {
 		validation_tell_flow(s->validation, &s->kept.flow);
@@ -357,8 +349,7 @@ static int emit_pulse(struct separate *s, const struct joint_pulse *p, long long
 		.fits = verdict != SEPARATE_MISFIT,
 		.delay = p->delta,
 		.var = isinf(s->cal.transit) || !isfinite(delay_var) ? 0 : delay_var,
-		.amplitude = p->a,
-		.time = out->t1 / s->cal.duration };
+		.amplitude = p->a };
 	s->counters.rows++;
 	return 1;
 }
@@ -376,22 +367,6 @@ static int larger_neighbour(const struct separate *s, int m, int i)
 			found = k;
 		}
 	return found;
-}
-
-/* How far apart two particles may be that arrive as pulse i of m. */
-static double merging_reach(const struct separate *s, int m, int i)
-{
-	const struct joint_pulse *p = s->pulse;
-	double unit = (1 + s->scene.gain * s->scene.gain) * s->cal.duration *
-		      shape_energy(s->cal.shape);
-	double overlapped = 0.25 * p[i].a * p[i].a * unit;
-
-	for (int k = 0; k < m; k++)
-		if (k != i && fabs(p[k].t - p[i].t) <
-				      2 * shape_reach(s->cal.shape) * s->cal.duration)
-			overlapped += p[k].a * p[k].a * unit;
-	return validation_reach(s->validation, p[i].a * p[i].a * unit,
-		fmax(s->scene.drop_near, s->scene.misfit * overlapped));
 }
 
 /* What the last m rows, of one fit, tell of each other. */
@@ -543,9 +518,6 @@ static enum separate_status give_pulses(struct separate *s, long long from, long
 	for (int i = 0; i < done; i++)
 		if (!emit_pulse(s, &s->pulse[i], from, m, j->chi2, j->pulse[i]))
 			return SEPARATE_MEMORY;
-	for (int i = 0; i < done; i++)
-		s->queue[s->count - (size_t)(done - i)].evidence.reach =
-			s->par.sources ? 0 : merging_reach(s, m, i);
 	compare_pulses(s, done);
 	if (s->par.want_sources && !draw_pulses(s, done, (size_t)(to - from)))
 		return SEPARATE_MEMORY;

@@ -101,7 +101,6 @@ struct separate_counters {
 	double fits, steps, searches;
 	double rows, misfits; /* of pulses fitted, and those doubted, dense ones too */
 	double foreign;       /* doubted by their velocities, though they fit */
-	double merged;        /* rows that may be several particles each */
 	double masks, masks_skipped; /* sections demixed, and those that need not be */
 	double unresolved, dense;    /* rows, and the samples these stand for */
 };

@@ -1,6 +1,5 @@
 /* validate.c - see validate.h */
 #include "signal/validate.h"
-#include "signal/coincide.h"
 #include "signal/robust.h"
 #include <math.h>
 #include <stdlib.h>
@@ -43,42 +42,16 @@ struct validation {
 	struct flow told;
 	double parts; /* share of them among pairs; 0: none for certain */
 	double recurring[PLACES], groups;
-	double duration;
-	struct coincide *coincide;
 };
 
 struct validation *validation_new(void)
 {
-	struct validation *v = calloc(1, sizeof *v);
-
-	if (!v)
-		return NULL;
-	v->coincide = coincide_new();
-	if (!v->coincide) {
-		free(v);
-		return NULL;
-	}
-	return v;
+	return calloc(1, sizeof(struct validation));
 }
 
 void validation_free(struct validation *v)
 {
-	if (!v)
-		return;
-	coincide_free(v->coincide);
 	free(v);
-}
-
-enum num_status validation_shape(
-	struct validation *v, const struct shape *shape, double duration)
-{
-	v->duration = duration;
-	return coincide_shape(v->coincide, shape);
-}
-
-double validation_reach(const struct validation *v, double energy, double need)
-{
-	return coincide_reach(v->coincide, energy, need);
 }
 
 double validation_parts(const struct validation *v)
@@ -333,19 +306,6 @@ static int fails(struct validation *v, const struct evidence *e, size_t n)
 	return rows >= FEW && (2 * sum > rows || (edge > 2 && 10 * edge > rows));
 }
 
-/* --- several particles in one pulse */
-
-static void find_merged(struct validation *v, struct evidence *e, size_t n)
-{
-	for (size_t i = 0; i < n; i++)
-		if (e[i].reach > 0)
-			coincide_take(v->coincide, e[i].time, e[i].amplitude, e[i].reach);
-	coincide_learn(v->coincide, isinf(v->var) ? 0 : sqrt(v->var) / v->duration);
-	for (size_t i = 0; i < n; i++)
-		e[i].merged = e[i].reach > 0 &&
-			      coincide_is_sum(v->coincide, e[i].amplitude, e[i].reach);
-}
-
 void validation_judge(struct validation *v, struct evidence *e, size_t n)
 {
 	take_in(v, e, n);
@@ -356,5 +316,4 @@ void validation_judge(struct validation *v, struct evidence *e, size_t n)
 	if (fails(v, e, n))
 		for (size_t i = 0; i < n; i++)
 			e[i].doubted = 1;
-	find_merged(v, e, n);
 }

@@ -18,9 +18,6 @@
  *
  * s^2 is that of pulses that stand alone, which no group is part of.
  *
- * A pulse as large as two particles that arrive together would be is merged, see
- * coincide.h.
- *
  * Where more than half of the rows are doubted, or more than a tenth have delays at the
  * edge of the range, the record is not what was learned, and no row is believed.
  *
@@ -30,8 +27,6 @@
 #ifndef SIGNAL_VALIDATE_H
 #define SIGNAL_VALIDATE_H
 
-#include "num/status.h"
-#include "signal/shape.h"
 #include <stddef.h>
 
 /* One row: a pulse, or a stretch that was not separated. */
@@ -43,8 +38,7 @@ struct evidence {
 	int partner;             /* rows to the larger pulse it overlaps; 0: none */
 	double apart, apart_var; /* delay less that of the partner */
 	double place, height;    /* of arrival, in durations, and amplitude: the same */
-	double time, reach;  /* in durations: of arrival, see coincide.h; 0: unknown */
-	int doubted, merged; /* set by validation_judge() */
+	int doubted;             /* set by validation_judge() */
 };
 
 struct validation;
@@ -63,13 +57,6 @@ void validation_flow(const struct validation *v, struct flow *flow);
 
 /* Range of the delays that are searched, learned to be wider than that of particles. */
 void validation_range(struct validation *v, double least, double most);
-
-/* The pulses. */
-enum num_status validation_shape(
-	struct validation *v, const struct shape *shape, double duration);
-/* Distance, in durations, up to which a pulse of this energy may be two; see coincide.h.
- */
-double validation_reach(const struct validation *v, double energy, double need);
 
 /* Takes in n rows, groups undivided and in order, and judges them. */
 void validation_judge(struct validation *v, struct evidence *e, size_t n);

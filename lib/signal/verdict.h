@@ -3,11 +3,10 @@
 #define SIGNAL_VERDICT_H
 
 enum separate_verdict {
-	SEPARATE_ALONE,      /* one pulse in its section */
-	SEPARATE_OVERLAP,    /* several overlapping pulses, separated */
-	SEPARATE_MISFIT,     /* chi-square too large: the model does not describe it */
-	SEPARATE_UNRESOLVED, /* too dense: a row stands for sources particles or more */
-	SEPARATE_MERGED      /* as large as several that arrive together: coincide.h */
+	SEPARATE_ALONE,     /* one pulse in its section */
+	SEPARATE_OVERLAP,   /* several overlapping pulses, separated */
+	SEPARATE_MISFIT,    /* chi-square too large: the model does not describe it */
+	SEPARATE_UNRESOLVED /* too dense: a row stands for sources particles or more */
 };
 
 #endif

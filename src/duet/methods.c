@@ -61,7 +61,6 @@ static void report(const struct separate *s, double rate)
 	stats_set("sections", c->sections);
 	stats_set("sections_single", c->singles);
 	stats_set("sections_unresolved", c->unresolved);
-	stats_set("merged", c->merged);
 	stats_set("misfits", c->misfits);
 	stats_set("misfits_by_velocity", c->foreign);
 	stats_set("fits", c->fits);

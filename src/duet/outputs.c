@@ -10,8 +10,7 @@
 
 enum { SOURCES_SHOWN = 8 };
 
-static const char *const verdicts[] = { "alone", "overlap", "misfit", "unresolved",
-	"merged" };
+static const char *const verdicts[] = { "alone", "overlap", "misfit", "unresolved" };
 
 static struct table_out *side_table(const char *path, const struct signal_format *format,
 	const char *option, const char *units, const char *columns)
