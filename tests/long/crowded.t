@@ -2,7 +2,7 @@
 # Particles crowded from 200 to 400 a second, two to four pulses at once: what duet claims is
 # there, and what it cannot tell apart it reports as unresolved.
 . "$(dirname "$0")/../tap.sh"
-. "$(dirname "$0")/../extremes/scenes.sh"
+. "$top/tests/extremes/scenes.sh"
 
 # above NAME EXPECTATION LEAST GOT
 above() {
