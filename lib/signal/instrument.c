@@ -191,10 +191,11 @@ static enum instrument_status take_arrays(struct values *from, struct calibratio
 	return c->shape ? INSTRUMENT_OK : INSTRUMENT_MEMORY;
 }
 
-/* What no computation may meet in another way. */
+/* The first number that no instrument has, or NULL. */
 static const char *out_of_range(const struct calibration *c)
 {
 	return c->tone_hop < SHORTEST_HOP              ? "tone_hop"
+	       : c->pulse > PULSE_LORENTZ              ? "pulse"
 	       : !(c->noise[0] > 0 && c->noise[1] > 0) ? "noise"
 	       : !(c->duration >= 8)                   ? "duration"
 	       : !(c->gain > 0)                        ? "gain"

@@ -32,7 +32,7 @@ enum instrument_status {
 	INSTRUMENT_OK,
 	INSTRUMENT_MEMORY,
 	INSTRUMENT_MISSING, /* *which names a number that is not there or out of range */
-	INSTRUMENT_UNKNOWN  /* *which names one that is nothing of an instrument */
+	INSTRUMENT_UNKNOWN  /* some numbers are no part of an instrument */
 };
 
 /* Those values in any order, each once, into *in, whose cal calibration_clear() frees. */

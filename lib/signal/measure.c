@@ -191,7 +191,6 @@ static enum calibrate_status find_lag(
 	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
 {
 	double lag = par->lag, last = (double)rec->n - 16;
-
 	enum num_status status;
 
 	if (isnan(lag)) {

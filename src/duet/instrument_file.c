@@ -96,7 +96,7 @@ static const char *key_of(const struct table_in *t, const char *key)
 
 	if (!value)
 		die(EXIT_RUN,
-			"%s: no instrument of duet --instrument: it has no key "
+			"%s: not written by duet --instrument: it has no key "
 			"'%s'",
 			table_name(t), key);
 	return value;
@@ -170,7 +170,7 @@ int instrument_read(const struct instrument_place *place, struct instrument *in)
 		die(EXIT_RUN, "%s: '%s' is missing or out of range", table_name(t),
 			which);
 	if (status == INSTRUMENT_UNKNOWN)
-		die(EXIT_RUN, "%s: numbers that are nothing of an instrument",
+		die(EXIT_RUN, "%s: some rows are no part of an instrument",
 			table_name(t));
 	table_close(t);
 	for (size_t i = 0; i < n; i++)
