@@ -23,7 +23,7 @@
 #define LAYOUT_BOUND_H
 
 #include "num/status.h"
-#include "signal/sensor.h"
+#include "signal/pulse/sensor.h"
 
 struct bound_par {
 	enum pulse_shape shape;

@@ -13,7 +13,7 @@
 #ifndef LAYOUT_TRAFFIC_H
 #define LAYOUT_TRAFFIC_H
 
-#include "signal/sensor.h"
+#include "signal/pulse/sensor.h"
 
 struct traffic {
 	struct pipe pipe;

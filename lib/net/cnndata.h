@@ -11,7 +11,7 @@
 #define NET_CNNDATA_H
 
 #include "net/cnn.h"
-#include "signal/sensor.h"
+#include "signal/pulse/sensor.h"
 
 enum {
 	CNNDATA_DURATION = 100,

@@ -1,5 +1,5 @@
 #include "report.h"
-#include "signal/fir.h"
+#include "signal/filter/fir.h"
 #include <stdlib.h>
 #include <wearpipe/filter.h>
 

@@ -1,6 +1,6 @@
-#include "signal/separate.h"
+#include "signal/separate/separate.h"
 #include "report.h"
-#include "signal/sizing.h"
+#include "signal/separate/sizing.h"
 #include <math.h>
 #include <stdlib.h>
 #include <wearpipe/separate.h>

@@ -4,9 +4,9 @@
 #include "cli/stats.h"
 #include "io/signals.h"
 #include "io/tables.h"
-#include "signal/fir.h"
-#include "signal/lines.h"
-#include "signal/tones.h"
+#include "signal/filter/fir.h"
+#include "signal/noise/lines.h"
+#include "signal/noise/tones.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef INSTRUMENT_FILE_H
 #define INSTRUMENT_FILE_H
 
-#include "signal/instrument.h"
+#include "signal/separate/instrument.h"
 
 /* A file, and what must be the same when it is used again. */
 struct instrument_place {

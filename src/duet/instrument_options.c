@@ -1,7 +1,7 @@
 #include "instrument_options.h"
 #include "cli/msg.h"
 #include "io/tables.h"
-#include "signal/fir.h"
+#include "signal/filter/fir.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #define INSTRUMENT_H
 
 #include "cli/opt.h"
-#include "signal/calibrate.h"
+#include "signal/learn/calibrate.h"
 
 /* Values of the options. */
 extern struct instrument_given {

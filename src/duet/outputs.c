@@ -1,9 +1,9 @@
 #include "outputs.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
-#include "signal/detectable.h"
-#include "signal/sensor.h"
-#include "signal/sizing.h"
+#include "signal/detect/detectable.h"
+#include "signal/pulse/sensor.h"
+#include "signal/separate/sizing.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -4,8 +4,8 @@
 
 #include "io/signals.h"
 #include "io/tables.h"
-#include "signal/count.h"
-#include "signal/separate.h"
+#include "signal/detect/count.h"
+#include "signal/separate/separate.h"
 
 struct found {
 	/* files, NULL: not wanted */

@@ -2,7 +2,7 @@
 #include "cli/msg.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
-#include "signal/mixture.h"
+#include "signal/mixture/mixture.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,8 +3,8 @@
 #define MATERIAL_OPTIONS_H
 
 #include "cli/opt.h"
-#include "signal/passage.h"
-#include "signal/polarisability.h"
+#include "signal/pulse/polarisability.h"
+#include "signal/simulate/passage.h"
 
 extern struct opt material_rows[]; /* for OPT_TABLE */
 

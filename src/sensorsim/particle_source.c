@@ -4,7 +4,7 @@
 #include "io/tables.h"
 #include "material_options.h"
 #include "sensor_options.h"
-#include "signal/wander.h"
+#include "signal/simulate/wander.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

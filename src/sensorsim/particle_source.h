@@ -9,7 +9,7 @@
 #define SOURCE_H
 
 #include "cli/opt.h"
-#include "signal/passage.h"
+#include "signal/simulate/passage.h"
 
 /* Of the record, s; nan: until the last pulse is over. */
 extern double source_duration;

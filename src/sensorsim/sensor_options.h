@@ -4,8 +4,8 @@
 #define SENSORS_H
 
 #include "cli/opt.h"
-#include "signal/passage.h"
-#include "signal/scene.h"
+#include "signal/simulate/passage.h"
+#include "signal/simulate/scene.h"
 
 extern struct opt sensors_rows[]; /* for OPT_TABLE */
 

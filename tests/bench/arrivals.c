@@ -7,7 +7,7 @@
  * the mean Fisher bound at the truth. Seconds are of CPU, per section. */
 #include "net/cnndata.h"
 #include "net/netfile.h"
-#include "signal/joint.h"
+#include "signal/fit/joint.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

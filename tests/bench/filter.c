@@ -2,7 +2,7 @@
  * "scene taps block points error seconds": error is the largest difference to the same
  * sum in long double on samples of rms 1, over the rms of the output; seconds of
  * processor time are for 1e6 samples of one channel, the median of five. */
-#include "signal/fir.h"
+#include "signal/filter/fir.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

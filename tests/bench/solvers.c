@@ -15,8 +15,8 @@
  * minima side by side, and every solver ends in another now and then. * usage: solvers
  * [SCENES] */
 #include "num/philox.h"
-#include "signal/joint.h"
-#include "signal/robust.h"
+#include "signal/fit/joint.h"
+#include "signal/noise/robust.h"
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit_nlinear.h>

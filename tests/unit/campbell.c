@@ -1,5 +1,5 @@
 /* Shot noise: moments of particles too many to separate */
-#include "signal/campbell.h"
+#include "signal/detect/campbell.h"
 #include "num/philox.h"
 #include "tap.h"
 #include <stdlib.h>

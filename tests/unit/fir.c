@@ -1,5 +1,5 @@
 /* Taps against scipy's firwin, the response, and streaming against plain convolution. */
-#include "signal/fir.h"
+#include "signal/filter/fir.h"
 #include "tap.h"
 #include <stdlib.h>
 #include <string.h>

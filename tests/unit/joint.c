@@ -1,5 +1,5 @@
 /* Joint fit of pulses: exact without noise, at the Cramer-Rao bound with noise */
-#include "signal/joint.h"
+#include "signal/fit/joint.h"
 #include "num/philox.h"
 #include "tap.h"
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Two and three sources separated in a whole record by their spectra. */
-#include "signal/mixture.h"
+#include "signal/mixture/mixture.h"
 #include "tap.h"
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Arrivals, drawn particles and the signal made piece by piece. */
-#include "signal/scene.h"
+#include "signal/simulate/scene.h"
 #include "tap.h"
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* Pulses, their derivatives, the calibration constant and the pipe against closed forms.
  */
-#include "signal/sensor.h"
+#include "signal/pulse/sensor.h"
 #include "tap.h"
 
 static const char *const name[] = { "sine", "gauss", "lorentz" };

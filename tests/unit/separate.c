@@ -1,8 +1,8 @@
 /* The separation as a whole, on scenes that sensorsim does not make: a pulse of its own
  * form, pairs at given distances, a record too full at one place */
-#include "signal/separate.h"
+#include "signal/separate/separate.h"
 #include "num/philox.h"
-#include "signal/sensor.h"
+#include "signal/pulse/sensor.h"
 #include "tap.h"
 #include <stdlib.h>
 #include <string.h>

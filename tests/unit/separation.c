@@ -1,13 +1,13 @@
 /* Parts of the separation: table of the pulse, STFT, masks, tones, lag, peaks, noise */
 #include "num/philox.h"
-#include "signal/align.h"
-#include "signal/calibrate.h"
-#include "signal/count.h"
-#include "signal/masks.h"
-#include "signal/robust.h"
-#include "signal/sections.h"
-#include "signal/stft.h"
-#include "signal/tones.h"
+#include "signal/detect/align.h"
+#include "signal/detect/count.h"
+#include "signal/detect/sections.h"
+#include "signal/learn/calibrate.h"
+#include "signal/mixture/masks.h"
+#include "signal/mixture/stft.h"
+#include "signal/noise/robust.h"
+#include "signal/noise/tones.h"
 #include "tap.h"
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Rows judged by their velocities: particles, parts of one object, and other events */
-#include "signal/validate.h"
+#include "signal/separate/validate.h"
 #include "num/philox.h"
 #include "tap.h"
 #include <math.h>

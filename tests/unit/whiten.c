@@ -1,10 +1,10 @@
 /* Undoing a filter: gains, noise and pulses before and after; the spectrum of noise */
-#include "signal/whiten.h"
+#include "signal/noise/whiten.h"
 #include "num/normals.h"
-#include "signal/colour.h"
-#include "signal/fir.h"
-#include "signal/joint.h"
-#include "signal/quiet.h"
+#include "signal/filter/fir.h"
+#include "signal/fit/joint.h"
+#include "signal/noise/colour.h"
+#include "signal/noise/quiet.h"
 #include "tap.h"
 #include <stdlib.h>
 #include <string.h>

@@ -1,0 +1,88 @@
+/* align.c - see align.h */
+#include "signal/detect/align.h"
+#include "num/fft.h"
+#include <math.h>
+#include <string.h>
+
+/* Correlation sum_n x(n) y(n + lag) at lags 0 .. max_lag. */
+static enum num_status correlate(
+	const double *x, const double *y, size_t n, size_t max_lag, double *r)
+{
+	size_t size = fft_good_size(n + max_lag + 1);
+	struct fft *fft = fft_new(size, 1);
+	double *pad = fft_alloc(size);
+	double complex *fx = fft_alloc_complex(size / 2 + 1);
+	double complex *fy = fft_alloc_complex(size / 2 + 1);
+	enum num_status status = fft && pad && fx && fy ? NUM_OK : NUM_MEMORY;
+
+	if (status == NUM_OK) {
+		memcpy(pad, x, n * sizeof *x);
+		fft_forward(fft, pad, fx);
+		memset(pad, 0, size * sizeof *pad);
+		memcpy(pad, y, n * sizeof *y);
+		fft_forward(fft, pad, fy);
+		for (size_t k = 0; k <= size / 2; k++)
+			fy[k] *= conj(fx[k]) / (double)size;
+		fft_inverse(fft, fy, pad);
+		memcpy(r, pad, (max_lag + 1) * sizeof *r);
+	}
+	fft_free(pad);
+	fft_free(fx);
+	fft_free(fy);
+	fft_done(fft);
+	return status;
+}
+
+static double energy(const double *x, size_t n)
+{
+	double sum = 0;
+
+	for (size_t i = 0; i < n; i++)
+		sum += x[i] * x[i];
+	return sum;
+}
+
+enum num_status align_lag(const double *y1, const double *y2, size_t n, size_t max_lag,
+	double *lag, double *peak)
+{
+	double e1 = energy(y1, n), e2 = energy(y2, n), bend;
+	enum num_status status = NUM_MEMORY;
+	size_t best = 0;
+	double *r;
+
+	if (max_lag >= n)
+		max_lag = n - 1;
+	if (e1 == 0 || e2 == 0)
+		return NUM_DOMAIN;
+	r = fft_alloc(max_lag + 2);
+	if (r)
+		status = correlate(y1, y2, n, max_lag, r);
+	if (status == NUM_OK) {
+		for (size_t k = 1; k <= max_lag; k++)
+			if (r[k] > r[best])
+				best = k;
+		*lag = (double)best;
+		*peak = r[best] / sqrt(e1 * e2);
+		bend = best > 0 && best < max_lag
+			       ? r[best - 1] - 2 * r[best] + r[best + 1]
+			       : 0;
+		if (bend < 0)
+			*lag += 0.5 * (r[best - 1] - r[best + 1]) / bend;
+	}
+	fft_free(r);
+	return status;
+}
+
+enum num_status align_autocorrelation(
+	const double *y1, const double *y2, size_t n, size_t max_lag, double *r)
+{
+	double *part = fft_alloc(max_lag + 1);
+	enum num_status status = part ? correlate(y1, y1, n, max_lag, r) : NUM_MEMORY;
+
+	if (status == NUM_OK)
+		status = correlate(y2, y2, n, max_lag, part);
+	for (size_t k = 0; status == NUM_OK && k <= max_lag; k++)
+		r[k] += part[k];
+	fft_free(part);
+	return status;
+}

@@ -1,0 +1,39 @@
+/* campbell.h - number and size of the particles of a record too dense to be separated
+ *
+ * Pulses that arrive at random, rate of them per sample, are shot noise whose cumulants
+ * are (Campbell's theorem, Rice 1944)
+ *
+ *	k2 = rate E[a^2] T integral p^2 ds,    k4 = rate E[a^4] T integral p^4 ds
+ *
+ * Gaussian noise adds to k2 its variance, 1 here, and to k4 nothing.  The two give
+ *
+ *	equal number    (rate E[a^2])^2 / (rate E[a^4])
+ *	equal amplitude (E[a^4] / E[a^2])^1/2
+ *
+ * the rate and amplitude of equal particles with these cumulants.  By Cauchy and Schwarz
+ * the true rate is not below the equal one, whatever the distribution of the amplitudes;
+ * with that distribution known, rate = equal number E[a^4] / E[a^2]^2.
+ */
+#ifndef SIGNAL_CAMPBELL_H
+#define SIGNAL_CAMPBELL_H
+
+#include "signal/pulse/shape.h"
+#include <stddef.h>
+
+struct campbell {
+	double square, square_se; /* rate E[a^2], per sample */
+	double fourth, fourth_se; /* rate E[a^4] */
+	double rate, rate_se; /* equal number, per sample; NAN where k4 is not above 0 */
+	double amplitude, amplitude_se; /* equal amplitude; NAN likewise */
+};
+
+/* From y1, y2[0 .. n), in units of the noise of y1 (gain: of channel 2 over 1 in these
+ * units).  Standard errors are those of a jackknife over stretches much longer than
+ * the pulse; INFINITY if n is shorter than 32 durations. */
+void campbell_estimate(const double *y1, const double *y2, size_t n,
+	const struct shape *shape, double duration, double gain, struct campbell *c);
+
+/* The same for amplitudes in other units. */
+void campbell_scale(struct campbell *c, double unit);
+
+#endif

@@ -1,0 +1,106 @@
+/* joint.h - joint fit of all pulses of a section of a two-sensor record
+ *
+ * The record, in samples of white noise of variance 1 on both channels, is
+ *
+ *	y1(n) = sum_i a_i p((n - t_i) / T_i) + tones + noise
+ *	y2(n) = sum_i g a_i p((n - t_i - delta_i) / T_i) + tones + noise
+ *
+ * where T_i = duration (1 + delta_i / transit): a slow particle has a long pulse.  Pulses
+ * are found one by one where the matched filter of the residual is largest, each followed
+ * by a Levenberg-Marquardt fit of it and its neighbours with exact derivatives
+ * (orthogonal matching pursuit with Newton steps: Mamandipoor, Ramasamy, Madhow, IEEE
+ * Trans. Signal Process. 64, 2016), until no further pulse reduces chi-square enough;
+ * then all are fitted together.  Tones and offset are linear and are projected out
+ * exactly, as far as they are not known beforehand.
+ *
+ * The solver uses only samples that pulses touch, and its steps stay within the range of
+ * delta.  To the same chi-square gsl_multifit_nlinear, which needs the whole Jacobian,
+ * takes 4 to 60 times as long, and gsl_multilarge_nlinear with a normal matrix made like
+ * ours 1.1 to 1.7 times (tests/bench/solvers.c).
+ *
+ *	struct joint *j = joint_new();
+ *	int m = 0;
+ *	if (joint_fit(j, &scene, y1, y2, n, pulses, &m, &result) == JOINT_OK)
+ *		...
+ *	joint_free(j);
+ */
+#ifndef SIGNAL_JOINT_H
+#define SIGNAL_JOINT_H
+
+#include "signal/pulse/shape.h"
+#include <stddef.h>
+
+enum { JOINT_TONES_MAX = 32, JOINT_BASELINE_MAX = 32, JOINT_PULSES_MAX = 64 };
+
+struct joint_scene {
+	const struct shape *shape;
+	double duration; /* T of a particle with delta = 0 */
+	double transit;  /* from sensor to sensor at delta = 0; INFINITY: one T */
+	double gain;     /* g > 0 */
+	double delta_min, delta_max; /* range of delta */
+	double drop;                 /* by how much a pulse must reduce chi-square ... */
+	double drop_near; /* ... where it overlaps others: the search is narrower */
+	double misfit;    /* and by this share of the energy it overlaps */
+	int max_pulses;   /* at most JOINT_PULSES_MAX */
+	int offset;       /* 1: a constant is fitted too */
+	int tones;
+	double omega[JOINT_TONES_MAX]; /* rad per sample */
+	/* Prior variance of the cosine and sine of each tone about zero (small after
+	 * tones were removed from the record); INFINITY: unknown. */
+	double tone_variance;
+	/* Of a filtered record (whiten.h): frequencies below low, in cycles per sample,
+	 * are a baseline to be projected out (up to JOINT_BASELINE_MAX in the length of
+	 * the record); lost: share of the variance of the noise that the filter removed.
+	 */
+	double low, lost;
+};
+
+struct joint_pulse {
+	double t, delta, a;
+	/* Inverse Fisher matrix of (t, t + delta, a), lower triangle by rows. */
+	double cov[6];
+};
+
+static inline double joint_delay_variance(const struct joint_pulse *p)
+{
+	return p->cov[0] - 2 * p->cov[1] + p->cov[2];
+}
+
+struct joint_result {
+	double chi2;
+	long dof;      /* samples less parameters, at least 1 */
+	int full;      /* 1: there were more than max_pulses */
+	long steps;    /* Levenberg-Marquardt steps tried */
+	long searches; /* matched-filter searches */
+};
+
+enum joint_status { JOINT_OK, JOINT_MEMORY, JOINT_DOMAIN };
+
+struct joint;
+struct joint *joint_new(void);
+void joint_free(struct joint *joint);
+
+/* Finds pulses; the *m already in pulses (0 to max_pulses) are kept as first guesses.
+ * On return they are sorted by t, with cov.  JOINT_DOMAIN if a parameter of the scene is
+ * out of range. */
+enum joint_status joint_fit(struct joint *joint, const struct joint_scene *scene,
+	const double *y1, const double *y2, size_t n, struct joint_pulse *pulses, int *m,
+	struct joint_result *result);
+
+/* The same without looking for more pulses. */
+enum joint_status joint_refine(struct joint *joint, const struct joint_scene *scene,
+	const double *y1, const double *y2, size_t n, struct joint_pulse *pulses, int m,
+	struct joint_result *result);
+
+/* Covariances of the delays of the m pulses of the last fit, with all else that was
+ * fitted free, in cov[m * m].  Returns m; 0 if the normal matrix is singular. */
+int joint_delay_covariance(const struct joint *joint, double *cov);
+
+/* Residual of the last fit, channel 0 or 1, n samples, tones and offset removed. */
+const double *joint_residual(const struct joint *joint, int channel);
+
+/* Adds sign times one pulse to y1[0..n) and y2[0..n) (either may be NULL). */
+void joint_add(const struct joint_scene *scene, const struct joint_pulse *pulse,
+	double sign, double *y1, double *y2, size_t n);
+
+#endif

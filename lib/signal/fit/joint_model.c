@@ -1,0 +1,297 @@
+/* joint_model.c - what pulses, tones and offset put on the record; see joint_state.h */
+#include "signal/fit/joint_state.h"
+#include <stdlib.h>
+#include <string.h>
+
+struct joint *joint_new(void)
+{
+	struct joint *j = calloc(1, sizeof *j);
+
+	if (!j)
+		return NULL;
+	j->h = malloc(sizeof(double) * NPAR * NPAR);
+	j->factor = malloc(sizeof(double) * NPAR * NPAR);
+	j->bq = malloc(sizeof(double) * NPAR * 2 * BASIS_MAX);
+	if (!j->h || !j->factor || !j->bq) {
+		joint_free(j);
+		return NULL;
+	}
+	return j;
+}
+
+static void free_samples(struct joint *j)
+{
+	for (int c = 0; c < 2; c++) {
+		free(j->e[c]);
+		free(j->r[c]);
+		free(j->filter[c]);
+		j->e[c] = j->r[c] = j->filter[c] = NULL;
+	}
+	free(j->q);
+	j->q = NULL;
+	j->capacity = 0;
+}
+
+void joint_free(struct joint *j)
+{
+	if (!j)
+		return;
+	free_samples(j);
+	free(j->memory);
+	free(j->scratch);
+	free(j->h);
+	free(j->factor);
+	free(j->bq);
+	free(j);
+}
+
+static int reserve_samples(struct joint *j, size_t n)
+{
+	if (n <= j->capacity)
+		return 1;
+	free_samples(j);
+	n += n / 2;
+	for (int c = 0; c < 2; c++) {
+		j->e[c] = malloc(n * sizeof(double));
+		j->r[c] = malloc(n * sizeof(double));
+		j->filter[c] = malloc(n * sizeof(double));
+		if (!j->e[c] || !j->r[c] || !j->filter[c])
+			return 0;
+	}
+	j->q = malloc(n * sizeof(double) * BASIS_MAX);
+	if (!j->q)
+		return 0;
+	j->capacity = n;
+	return 1;
+}
+
+static int reserve_columns(struct joint *j, size_t support)
+{
+	double *at;
+
+	if (support <= j->support)
+		return 1;
+	free(j->memory);
+	free(j->scratch);
+	j->support = 0;
+	j->memory = malloc(support * sizeof(double) * (JOINT_PULSES_MAX + 1) * 4 * PAR);
+	j->scratch = malloc(support * sizeof(double) * PAR);
+	if (!j->memory || !j->scratch)
+		return 0;
+	j->support = support;
+	at = j->memory;
+	for (int i = 0; i <= JOINT_PULSES_MAX; i++)
+		for (int c = 0; c < 2; c++)
+			for (int k = 0; k < PAR; k++, at += 2 * support) {
+				j->col[i][c].d[k] = at;
+				j->trial[i][c].d[k] = at + support;
+			}
+	return 1;
+}
+
+/* Adds cos or sin of w (i - n / 2) to the basis unless it adds nothing, as a tone at half
+ * the rate does twice: modified Gram-Schmidt, done twice. */
+static void add_to_basis(struct joint *j, double (*wave)(double), double w, double share)
+{
+	size_t n = j->n;
+	double *v = j->q + (size_t)j->basis * n, norm, left;
+
+	for (size_t i = 0; i < n; i++)
+		v[i] = wave(w * ((double)i - (double)n / 2));
+	norm = dot(v, v, n);
+	for (int pass = 0; pass < 2; pass++)
+		for (int b = 0; b < j->basis; b++)
+			add_scaled(v, -dot(v, j->q + (size_t)b * n, n),
+				j->q + (size_t)b * n, n);
+	left = dot(v, v, n);
+	if (left <= 1e-8 * norm || left == 0)
+		return;
+	left = 1 / sqrt(left);
+	for (size_t i = 0; i < n; i++)
+		v[i] *= left;
+	j->share[j->basis++] = share;
+}
+
+/* Orthonormal basis of offset, baseline and tones over n samples.  A baseline may be
+ * anything slower than low: waves of up to that frequency that are periodic in 2 n, so
+ * that its ends need not meet. */
+static void make_basis(struct joint *j, const struct joint_scene *s)
+{
+	double n = (double)j->n, w = 0.5 * n * s->tone_variance;
+	double share = isinf(w) ? 1 : w / (1 + w);
+	int slow = (int)fmin(ceil(2 * n * s->low), JOINT_BASELINE_MAX);
+
+	j->basis = 0;
+	for (int k = 1; k <= slow; k++) {
+		add_to_basis(j, cos, M_PI * k / n, 1);
+		add_to_basis(j, sin, M_PI * k / n, 1);
+	}
+	j->slow = j->basis;
+	if (s->offset)
+		add_to_basis(j, cos, 0, 1);
+	for (int k = 0; k < s->tones; k++) {
+		add_to_basis(j, cos, s->omega[k], share);
+		add_to_basis(j, sin, s->omega[k], share);
+	}
+}
+
+void joint_measure(struct joint *j)
+{
+	j->energy = 0;
+	for (int c = 0; c < 2; c++) {
+		j->energy += dot(j->e[c], j->e[c], j->n);
+		for (int b = 0; b < j->basis; b++)
+			j->qe[c][b] = dot(j->q + (size_t)b * j->n, j->e[c], j->n);
+	}
+}
+
+/* Chi-square.  With s^2 the variance of a coefficient known beforehand, the covariance of
+ * the record is 1 + s^2 q q^T, its inverse 1 - share q q^T, share = s^2 / (1 + s^2). */
+double joint_chi_square(const struct joint *j)
+{
+	double chi2 = j->energy;
+
+	for (int c = 0; c < 2; c++)
+		for (int b = 0; b < j->basis; b++)
+			chi2 -= j->share[b] * j->qe[c][b] * j->qe[c][b];
+	return chi2;
+}
+
+void joint_project(struct joint *j)
+{
+	joint_measure(j);
+	for (int c = 0; c < 2; c++) {
+		memcpy(j->r[c], j->e[c], j->n * sizeof(double));
+		for (int b = 0; b < j->basis; b++)
+			add_scaled(j->r[c], -j->share[b] * j->qe[c][b],
+				j->q + (size_t)b * j->n, j->n);
+	}
+}
+
+/* The part of a pulse on channel c inside the n samples. */
+static long pulse_window(const struct joint_scene *s, const struct joint_pulse *p, int c,
+	size_t n, size_t *len)
+{
+	double T = pulse_duration(s, p->delta);
+	long first = shape_support(s->shape, p->t + (c ? p->delta : 0), T, len);
+	long last = first + (long)*len;
+
+	if (first < 0)
+		first = 0;
+	if (last > (long)n)
+		last = (long)n;
+	*len = last > first ? (size_t)(last - first) : 0;
+	return first;
+}
+
+void joint_subtract(struct joint *j, const struct joint_scene *s,
+	const struct joint_pulse *p, double sign)
+{
+	for (int c = 0; c < 2; c++) {
+		size_t len;
+		long first = pulse_window(s, p, c, j->n, &len);
+
+		shape_sample(s->shape, p->t + (c ? p->delta : 0),
+			pulse_duration(s, p->delta), first, len, j->scratch, NULL, NULL);
+		if (len)
+			add_scaled(j->e[c] + first, -sign * p->a * (c ? s->gain : 1),
+				j->scratch, len);
+	}
+}
+
+void joint_make_columns(
+	struct joint *j, const struct joint_scene *s, int i, const struct joint_pulse *p)
+{
+	double T = pulse_duration(s, p->delta), stretch = s->duration / s->transit;
+
+	for (int c = 0; c < 2; c++) {
+		struct column *col = &j->col[i][c];
+		double a = p->a * (c ? s->gain : 1), *by_t, *by_T;
+
+		col->first = pulse_window(s, p, c, j->n, &col->n);
+		by_t = col->d[c];
+		by_T = col->d[1 - c];
+		shape_sample(s->shape, p->t + (c ? p->delta : 0), T, col->first, col->n,
+			col->d[2], by_t, by_T);
+		/* T grows with t2 and falls with t1. */
+		for (size_t k = 0; k < col->n; k++) {
+			double lengthen = by_T[k] * stretch;
+
+			by_t[k] = a * (by_t[k] + (c ? lengthen : -lengthen));
+			by_T[k] = a * (c ? -lengthen : lengthen);
+			if (c)
+				col->d[2][k] *= s->gain;
+		}
+	}
+}
+
+static int scene_is_sane(
+	const struct joint_scene *s, const struct joint_pulse *pulses, int m)
+{
+	if (!s->shape || !(s->duration >= 4) || !(s->transit > 0) || !(s->gain > 0) ||
+		!(s->delta_min <= s->delta_max) || !(s->drop >= 0) ||
+		!(s->drop_near >= 0) || !(s->tone_variance >= 0) || s->tones < 0 ||
+		!(s->low >= 0) || !(s->lost >= 0) || !(s->lost < 1) ||
+		s->tones > JOINT_TONES_MAX || s->max_pulses < 0 ||
+		s->max_pulses > JOINT_PULSES_MAX || m < 0 || m > s->max_pulses)
+		return 0;
+	/* The slack of moved() must keep T positive. */
+	if (s->delta_min - 0.1 * (s->delta_max - s->delta_min) <= -s->transit)
+		return 0;
+	for (int i = 0; i < m; i++)
+		if (!isfinite(pulses[i].t) || !isfinite(pulses[i].delta) ||
+			!isfinite(pulses[i].a))
+			return 0;
+	return 1;
+}
+
+enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
+	const double *y1, const double *y2, size_t n, const struct joint_pulse *pulses,
+	int m)
+{
+	double longest;
+	size_t support;
+
+	if (!scene_is_sane(s, pulses, m) || n == 0)
+		return JOINT_DOMAIN;
+	longest = s->delta_max + 0.1 * (s->delta_max - s->delta_min);
+	support =
+		(size_t)(2 * shape_reach(s->shape) * pulse_duration(s, fmax(longest, 0)) +
+			 0.4 * s->duration) +
+		4;
+	if (!reserve_samples(j, n) || !reserve_columns(j, support))
+		return JOINT_MEMORY;
+	j->n = n;
+	j->steps = j->searches = 0;
+	memcpy(j->e[0], y1, n * sizeof(double));
+	memcpy(j->e[1], y2, n * sizeof(double));
+	make_basis(j, s);
+	for (int i = 0; i < m; i++)
+		joint_subtract(j, s, &pulses[i], 1);
+	return JOINT_OK;
+}
+
+const double *joint_residual(const struct joint *j, int channel)
+{
+	return j->r[channel];
+}
+
+void joint_add(const struct joint_scene *s, const struct joint_pulse *p, double sign,
+	double *y1, double *y2, size_t n)
+{
+	double T = pulse_duration(s, p->delta), part[64];
+
+	for (int c = 0; c < 2; c++) {
+		double *y = c ? y2 : y1, t0 = p->t + (c ? p->delta : 0);
+		size_t len, chunk;
+		long first = pulse_window(s, p, c, n, &len);
+
+		for (size_t done = 0; y && done < len; done += chunk) {
+			chunk = len - done < 64 ? len - done : 64;
+			shape_sample(s->shape, t0, T, first + (long)done, chunk, part,
+				NULL, NULL);
+			add_scaled(y + first + (long)done,
+				sign * p->a * (c ? s->gain : 1), part, chunk);
+		}
+	}
+}

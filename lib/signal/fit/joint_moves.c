@@ -1,0 +1,314 @@
+/* joint_moves.c - one pulse more or less, kept where chi-square bears it out; see
+ * joint_state.h */
+#include "signal/fit/joint_state.h"
+#include <string.h>
+
+/* Pulses whose support on either channel comes near that of pulse i. */
+static int neighbours(const struct joint_scene *s, const struct joint_pulse *pulses,
+	int m, int i, double reach, int *set)
+{
+	double near = reach * s->duration * 2 * shape_reach(s->shape);
+	int count = 0;
+
+	for (int k = 0; k < m; k++)
+		if (fabs(pulses[k].t - pulses[i].t) < near ||
+			fabs(pulses[k].t + pulses[k].delta - pulses[i].t -
+				pulses[i].delta) < near)
+			set[count++] = k;
+	return count;
+}
+
+/* Energy, in units of chi-square, of the pulses that overlap pulse i. */
+static double energy_near(
+	const struct joint_scene *s, const struct joint_pulse *pulses, int m, int i)
+{
+	double sum = 0, unit = unit_energy(s);
+	int set[JOINT_PULSES_MAX];
+	int count = neighbours(s, pulses, m, i, 1, set);
+
+	for (int k = 0; k < count; k++)
+		if (set[k] != i)
+			sum += pulses[set[k]].a * pulses[set[k]].a * unit;
+	return sum;
+}
+
+/* Puts the pulses back as they were in before. */
+static void restore(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int *m, const struct joint_pulse *before, int old)
+{
+	for (int k = 0; k < *m; k++)
+		joint_subtract(j, s, &pulses[k], -1);
+	memcpy(pulses, before, sizeof(*pulses) * (size_t)old);
+	*m = old;
+	for (int k = 0; k < *m; k++)
+		joint_subtract(j, s, &pulses[k], 1);
+}
+
+/* Is pulse i, the last one put in, worth a drop of chi-square from before to after? */
+static int worth(const struct joint_scene *s, const struct joint_pulse *pulses, int m,
+	int i, double before, double after)
+{
+	double energy = energy_near(s, pulses, m, i);
+	double need = energy > 0 ? fmax(s->drop_near, s->misfit * energy) : s->drop;
+
+	return before - after > need;
+}
+
+/* Fits the pulse just put in with those near it; 1 if it was worth it, else everything
+ * is as in before. */
+static int accept_more(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int *m, int i, const struct joint_pulse *before,
+	double *chi2)
+{
+	int set[JOINT_PULSES_MAX];
+	int count = neighbours(s, pulses, *m, i, 0.8, set);
+	double after = joint_fit_set(j, s, pulses, set, count, 30, 0.1);
+
+	if (worth(s, pulses, *m, *m - 1, *chi2, after)) {
+		*chi2 = after;
+		return 1;
+	}
+	restore(j, s, pulses, m, before, *m - 1);
+	return 0;
+}
+
+int joint_try_pulse(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int *m, const struct candidate *c, double *chi2)
+{
+	struct joint_pulse before[JOINT_PULSES_MAX];
+	int i = *m;
+
+	memcpy(before, pulses, sizeof(*pulses) * (size_t)i);
+	pulses[i] = (struct joint_pulse){ .t = c->t, .delta = c->delta, .a = c->a };
+	joint_subtract(j, s, &pulses[i], 1);
+	++*m;
+	joint_fit_set(j, s, pulses, &i, 1, 8, 1);
+	return accept_more(j, s, pulses, m, i, before, chi2);
+}
+
+/* How much, in standard deviations, the residual asks for pulse i to be two pulses a
+ * distance 2 shift apart on both sensors: its projection on p(+) + p(-) - 2 p, made
+ * orthogonal to what moving and scaling pulse i alone can do. */
+static double split_score(struct joint *j, const struct joint_scene *s,
+	const struct joint_pulse *pulse, double shift)
+{
+	struct joint_pulse wide = *pulse;
+	double T = pulse_duration(s, pulse->delta), x2 = 0, xr = 0,
+	       h[PAR][PAR + 1] = { { 0 } };
+
+	joint_make_columns(j, s, JOINT_PULSES_MAX, &wide);
+	for (int c = 0; c < 2; c++) {
+		const struct column *col = &j->col[JOINT_PULSES_MAX][c];
+		double t0 = pulse->t + (c ? pulse->delta : 0), g = c ? s->gain : 1;
+		long first = col->first - (long)shift;
+		size_t n = col->n + 2 * (size_t)shift;
+		double *x = j->scratch, *part = j->scratch + j->support;
+
+		if (first < 0 || first + (long)n > (long)j->n || n > j->support)
+			return 0;
+		shape_sample(s->shape, t0 - shift, T, first, n, x, NULL, NULL);
+		shape_sample(s->shape, t0 + shift, T, first, n, part, NULL, NULL);
+		add_scaled(x, 1, part, n);
+		shape_sample(s->shape, t0, T, first, n, part, NULL, NULL);
+		add_scaled(x, -2, part, n);
+		x2 += g * g * dot(x, x, n);
+		xr += g * dot(x, j->r[c] + first, n);
+		for (int u = 0; u < PAR; u++) {
+			h[u][PAR] += g * dot(x + (col->first - first), col->d[u], col->n);
+			for (int v = 0; v < PAR; v++)
+				h[u][v] += dot(col->d[u], col->d[v], col->n);
+		}
+	}
+	for (int u = 0; u < PAR; u++) { /* eliminate: x2 becomes its Schur complement */
+		if (!(h[u][u] > 0))
+			return 0;
+		for (int v = u + 1; v < PAR; v++)
+			for (int w = PAR; w >= u; w--)
+				h[v][w] -= h[u][w] * h[v][u] / h[u][u];
+		x2 -= h[u][PAR] * h[u][PAR] / h[u][u];
+	}
+	return x2 > 0 ? xr / sqrt(x2) : 0;
+}
+
+/* Tries pulse i as two; 1 if it was worth it, else everything is as before. */
+static int try_split(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int *m, int i, double shift, double *chi2)
+{
+	struct joint_pulse before[JOINT_PULSES_MAX];
+	int pair[2] = { i, *m }, old = *m;
+
+	memcpy(before, pulses, sizeof(*pulses) * (size_t)old);
+	joint_subtract(j, s, &pulses[i], -1);
+	pulses[old] = pulses[i];
+	pulses[i].a = pulses[old].a = pulses[i].a / 2;
+	pulses[i].t -= shift;
+	pulses[old].t += shift;
+	joint_subtract(j, s, &pulses[i], 1);
+	joint_subtract(j, s, &pulses[old], 1);
+	++*m;
+	joint_fit_set(j, s, pulses, pair, 2, 10, 1);
+	return accept_more(j, s, pulses, m, i, before, chi2);
+}
+
+int joint_split_pulses(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int *m, double *chi2)
+{
+	int split = 0;
+
+	joint_project(j);
+	for (int i = 0; i < *m && *m < s->max_pulses; i++) {
+		double best = 2, shift = 0;
+
+		for (int k = 1; k <= 3; k++) {
+			double score = split_score(
+				j, s, &pulses[i], floor(0.06 * k * s->duration));
+
+			if (score > best) {
+				best = score;
+				shift = floor(0.06 * k * s->duration);
+			}
+		}
+		if (shift > 0) {
+			split += try_split(j, s, pulses, m, i, shift, chi2);
+			joint_project(j);
+		}
+	}
+	return split;
+}
+
+/* How far the amplitude of a pulse is from zero, squared, in standard errors; where the
+ * matrix is singular, as it is with pulses too many, in those of a lone pulse. */
+static double significance(const struct joint_scene *s, const struct joint_pulse *p)
+{
+	return isfinite(p->cov[5]) ? p->a * p->a / p->cov[5]
+				   : p->a * p->a * unit_energy(s);
+}
+
+/* Takes pulse k, subtracted no more, off the list and fits those near it; 1 if they can
+ * do without it, else everything is as in before. */
+static int accept_fewer(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int *m, int k, const struct joint_pulse *before,
+	double *chi2)
+{
+	int set[JOINT_PULSES_MAX], count, last = --*m;
+	double after;
+
+	for (int i = k; i < last; i++)
+		pulses[i] = pulses[i + 1];
+	pulses[last] = before[k]; /* for neighbours() and worth() only */
+	count = neighbours(s, pulses, last + 1, last, 0.8, set) - 1;
+	after = joint_fit_set(j, s, pulses, set, count, 30, 0.1);
+	if (worth(s, pulses, last + 1, last, after, *chi2)) {
+		restore(j, s, pulses, m, before, last + 1);
+		return 0;
+	}
+	*chi2 = after;
+	return 1;
+}
+
+/* Takes pulse i out if the others can do without it. */
+static int try_without(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int *m, int i, double *chi2)
+{
+	struct joint_pulse before[JOINT_PULSES_MAX];
+
+	memcpy(before, pulses, sizeof(*pulses) * (size_t)*m);
+	joint_subtract(j, s, &pulses[i], -1);
+	return accept_fewer(j, s, pulses, m, i, before, chi2);
+}
+
+/* Puts one pulse in the place of pulses i and k if that will do. */
+static int try_merge(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int *m, int i, int k, double *chi2)
+{
+	struct joint_pulse before[JOINT_PULSES_MAX];
+	double part = pulses[k].a / (pulses[i].a + pulses[k].a);
+
+	memcpy(before, pulses, sizeof(*pulses) * (size_t)*m);
+	joint_subtract(j, s, &pulses[i], -1);
+	joint_subtract(j, s, &pulses[k], -1);
+	pulses[i].a += pulses[k].a;
+	pulses[i].t += part * (pulses[k].t - pulses[i].t);
+	pulses[i].delta += part * (pulses[k].delta - pulses[i].delta);
+	joint_subtract(j, s, &pulses[i], 1);
+	return accept_fewer(j, s, pulses, m, k, before, chi2);
+}
+
+/* Could pulses p and q be paired the other way round?  Fills their delays then. */
+static int can_swap(const struct joint_scene *s, const struct joint_pulse *p,
+	const struct joint_pulse *q, double delta[2])
+{
+	delta[0] = q->t + q->delta - p->t;
+	delta[1] = p->t + p->delta - q->t;
+	return fmin(delta[0], delta[1]) >= s->delta_min &&
+	       fmax(delta[0], delta[1]) <= s->delta_max;
+}
+
+void joint_swap_pulses(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int m, double *chi2)
+{
+	struct joint_pulse before[JOINT_PULSES_MAX];
+	double delta[2], after;
+	int set[JOINT_PULSES_MAX];
+
+	for (int i = 0; i < m; i++)
+		for (int k = i + 1; k < m; k++) {
+			if (!can_swap(s, &pulses[i], &pulses[k], delta))
+				continue;
+			memcpy(before, pulses, sizeof(*pulses) * (size_t)m);
+			joint_subtract(j, s, &pulses[i], -1);
+			joint_subtract(j, s, &pulses[k], -1);
+			pulses[i].delta = delta[0];
+			pulses[k].delta = delta[1];
+			joint_subtract(j, s, &pulses[i], 1);
+			joint_subtract(j, s, &pulses[k], 1);
+			after = joint_fit_set(j, s, pulses, set,
+				neighbours(s, pulses, m, i, 0.8, set), 30, 0.1);
+			if (after < *chi2)
+				*chi2 = after;
+			else
+				restore(j, s, pulses, &m, before, m);
+		}
+}
+
+void joint_merge_pulses(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int *m, double *chi2)
+{
+	double near = 0.12 * s->duration;
+
+	for (int i = 0; i < *m; i++)
+		for (int k = i + 1; k < *m; k++)
+			if (fabs(pulses[k].t - pulses[i].t) < near &&
+				try_merge(j, s, pulses, m, i, k, chi2))
+				k = i;
+}
+
+void joint_prune(struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses,
+	int *m, double *chi2)
+{
+	enum { TRIES = 4 };
+	int needed[TRIES], tries = 0;
+
+	while (*m > 1 && tries < TRIES) {
+		double least = 6 * s->drop;
+		int worst = -1;
+
+		joint_fill_covariance(j, s, pulses, *m);
+		for (int i = 0; i < *m; i++) {
+			int tried = 0;
+
+			for (int k = 0; k < tries; k++)
+				tried |= needed[k] == i;
+			if (!tried && significance(s, &pulses[i]) < least) {
+				least = significance(s, &pulses[i]);
+				worst = i;
+			}
+		}
+		if (worst < 0)
+			break;
+		if (try_without(j, s, pulses, m, worst, chi2))
+			tries = 0;
+		else
+			needed[tries++] = worst;
+	}
+}

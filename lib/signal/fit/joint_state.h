@@ -1,0 +1,142 @@
+/* joint_state.h - data shared by the parts of the joint fit, for lib/signal/fit/joint*.c
+ * only
+ */
+#ifndef SIGNAL_JOINT_STATE_H
+#define SIGNAL_JOINT_STATE_H
+
+#include "signal/fit/joint.h"
+#include <math.h>
+
+enum {
+	PAR = 3,
+	NPAR = PAR * JOINT_PULSES_MAX,
+	BASIS_MAX = 2 * (JOINT_TONES_MAX + JOINT_BASELINE_MAX) + 1
+};
+
+/* One pulse on one channel: its derivatives by (t, t + delta, a). */
+struct column {
+	long first;
+	size_t n;
+	double *d[PAR];
+};
+
+struct joint {
+	size_t capacity; /* samples */
+	size_t support;  /* samples one pulse may touch */
+	size_t n;
+	double *e[2];            /* record minus pulses, with tones */
+	double *r[2];            /* e without tones and offset */
+	int basis;               /* orthonormal vectors spanning tones and offset, ... */
+	int slow;                /* ... the first of them the baseline */
+	double *q;               /* basis * n */
+	double share[BASIS_MAX]; /* of each vector that is projected out; 1: unknown */
+	double *memory;          /* columns of all pulses */
+	double *scratch;         /* three of support */
+	double *filter[2];       /* matched filter on the coarse grid */
+	struct column col[JOINT_PULSES_MAX + 1][2];   /* as the pulses are */
+	struct column trial[JOINT_PULSES_MAX + 1][2]; /* as they were before a step */
+	double *h; /* NPAR * NPAR: normal matrix or its Cholesky factor */
+	double *factor;
+	int begin[NPAR];         /* first nonzero of each row */
+	double energy;           /* e^T e of both channels, ... */
+	double qe[2][BASIS_MAX]; /* ... and Q^T e: kept up to date by add_column() */
+	double *bq;              /* NPAR * basis: Q^T J */
+	double gradient[NPAR], diagonal[NPAR], move[NPAR];
+	long steps, searches;
+	int inverted; /* pulses whose normal matrix is in factor; 0: it was singular */
+};
+
+/* A pulse to try, and the expected reduction of chi-square. */
+struct candidate {
+	double t, delta, a, z2;
+};
+
+/* Four partial sums in fixed order: fast, and the same bits everywhere. */
+static inline double dot(const double *x, const double *y, size_t n)
+{
+	double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+	size_t i = 0;
+
+	for (; i + 4 <= n; i += 4) {
+		s0 += x[i] * y[i];
+		s1 += x[i + 1] * y[i + 1];
+		s2 += x[i + 2] * y[i + 2];
+		s3 += x[i + 3] * y[i + 3];
+	}
+	for (; i < n; i++)
+		s0 += x[i] * y[i];
+	return (s0 + s1) + (s2 + s3);
+}
+
+static inline void add_scaled(double *y, double factor, const double *x, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		y[i] += factor * x[i];
+}
+
+static inline double clamp(double x, double lo, double hi)
+{
+	return x < lo ? lo : x > hi ? hi : x;
+}
+
+static inline double pulse_duration(const struct joint_scene *s, double delta)
+{
+	return s->duration * (1 + delta / s->transit);
+}
+
+/* Energy of a pulse of amplitude 1 on both channels. */
+static inline double unit_energy(const struct joint_scene *s)
+{
+	return s->duration * shape_energy(s->shape) * (1 + s->gain * s->gain);
+}
+
+/* joint_model.c: the record minus pulses, and its parts */
+
+/* Stores the record and its m known pulses. */
+enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
+	const double *y1, const double *y2, size_t n, const struct joint_pulse *pulses,
+	int m);
+/* Energy of e and its part along the basis, from scratch. */
+void joint_measure(struct joint *j);
+double joint_chi_square(const struct joint *j);
+/* r = e without its tones, as far as they are not known beforehand. */
+void joint_project(struct joint *j);
+/* e less sign times the pulse. */
+void joint_subtract(struct joint *j, const struct joint_scene *s,
+	const struct joint_pulse *p, double sign);
+/* Columns of pulse i as p is. */
+void joint_make_columns(
+	struct joint *j, const struct joint_scene *s, int i, const struct joint_pulse *p);
+
+/* joint_step.c: the fit; pulses must have been subtracted */
+
+/* Levenberg-Marquardt on the m pulses in set, the others held; returns chi-square. */
+double joint_fit_set(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, const int *set, int m, int max_steps,
+	double tolerance);
+double joint_fit_all(
+	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m);
+/* Covariances from the inverse of the undamped normal matrix. */
+void joint_fill_covariance(
+	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m);
+
+/* joint_moves.c: *chi2 is kept up to date */
+
+/* Tries one more pulse at c; 0 if chi-square does not fall enough: nothing has changed.
+ */
+int joint_try_pulse(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int *m, const struct candidate *c, double *chi2);
+/* Splits pulses that look like two; returns how many were split. */
+int joint_split_pulses(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int *m, double *chi2);
+/* Exchanges arrivals of pulses at the second sensor if that reduces chi-square. */
+void joint_swap_pulses(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int m, double *chi2);
+/* Merges pulses so close that they may be one that was split in vain. */
+void joint_merge_pulses(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int *m, double *chi2);
+/* Removes insignificant pulses, the least significant first. */
+void joint_prune(struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses,
+	int *m, double *chi2);
+
+#endif

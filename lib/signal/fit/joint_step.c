@@ -1,0 +1,283 @@
+/* joint_step.c - Levenberg-Marquardt fit of some of the pulses; see joint_state.h */
+#include "signal/fit/joint_state.h"
+#include <string.h>
+
+/* J_i^T J_k of two pulses, added to block. */
+static int add_block(const struct joint *j, int i, int k, double block[PAR][PAR])
+{
+	int touch = 0;
+
+	for (int c = 0; c < 2; c++) {
+		const struct column *x = &j->col[i][c], *y = &j->col[k][c];
+		long first = x->first > y->first ? x->first : y->first;
+		long xend = x->first + (long)x->n, yend = y->first + (long)y->n;
+		long end = xend < yend ? xend : yend;
+
+		if (end <= first)
+			continue;
+		touch = 1;
+		for (int u = 0; u < PAR; u++)
+			for (int v = 0; v < (i == k ? u + 1 : PAR); v++)
+				block[u][v] += dot(x->d[u] + (first - x->first),
+					y->d[v] + (first - y->first),
+					(size_t)(end - first));
+	}
+	return touch;
+}
+
+/* Normal matrix and gradient of the m pulses in set. */
+static void make_normal(struct joint *j, const int *set, int m)
+{
+	int np = PAR * m, nb = 2 * j->basis;
+
+	for (int x = 0; x < m; x++) {
+		int i = set[x];
+
+		for (int u = 0; u < PAR; u++) {
+			double g = 0;
+
+			for (int c = 0; c < 2; c++) {
+				const struct column *col = &j->col[i][c];
+
+				g += dot(col->d[u], j->e[c] + col->first, col->n);
+				for (int b = 0; b < j->basis; b++) {
+					double part = dot(col->d[u],
+						j->q + (size_t)b * j->n + col->first,
+						col->n);
+
+					g -= j->share[b] * part * j->qe[c][b];
+					j->bq[(PAR * x + u) * nb + c * j->basis + b] =
+						sqrt(j->share[b]) * part;
+				}
+			}
+			j->gradient[PAR * x + u] = g;
+			j->begin[PAR * x + u] = nb ? 0 : PAR * x;
+		}
+		for (int y = 0; y <= x; y++) {
+			double block[PAR][PAR] = { { 0 } };
+			int touch = add_block(j, i, set[y], block);
+
+			for (int u = 0; u < PAR; u++) {
+				int row = PAR * x + u;
+
+				if (touch && j->begin[row] > PAR * y)
+					j->begin[row] = PAR * y;
+				for (int v = 0; v < (x == y ? u + 1 : PAR); v++)
+					j->h[row * np + PAR * y + v] =
+						block[u][v] -
+						dot(j->bq + row * nb,
+							j->bq + (PAR * y + v) * nb,
+							(size_t)nb);
+			}
+		}
+	}
+	for (int i = 0; i < np; i++)
+		j->diagonal[i] = j->h[i * np + i];
+}
+
+/* Cholesky of h + lambda diag(h) within the profile; 0 where not positive definite. */
+static int factorise(struct joint *j, int np, double lambda)
+{
+	for (int i = 0; i < np; i++) {
+		double *row = j->factor + (size_t)i * (size_t)np, pivot;
+
+		for (int k = j->begin[i]; k < i; k++) {
+			const double *other = j->factor + (size_t)k * (size_t)np;
+			int from = j->begin[i] > j->begin[k] ? j->begin[i] : j->begin[k];
+
+			row[k] = (j->h[i * np + k] - dot(row + from, other + from,
+							     (size_t)(k - from))) /
+				 other[k];
+		}
+		pivot = j->h[i * np + i] + lambda * j->diagonal[i] -
+			dot(row + j->begin[i], row + j->begin[i],
+				(size_t)(i - j->begin[i]));
+		if (!(pivot > 1e-13 * j->diagonal[i]))
+			return 0;
+		row[i] = sqrt(pivot);
+	}
+	return 1;
+}
+
+/* Solves L L^T x = x in place, from row start on (the rows above are zero). */
+static void solve(const struct joint *j, int np, int start, double *x)
+{
+	for (int i = start; i < np; i++) {
+		const double *row = j->factor + (size_t)i * (size_t)np;
+		int from = j->begin[i] > start ? j->begin[i] : start;
+
+		x[i] = (x[i] - dot(row + from, x + from, (size_t)(i - from))) / row[i];
+	}
+	for (int i = np - 1; i >= 0; i--) {
+		const double *row = j->factor + (size_t)i * (size_t)np;
+
+		x[i] /= row[i];
+		add_scaled(x + j->begin[i], -x[i], row + j->begin[i],
+			(size_t)(i - j->begin[i]));
+	}
+}
+
+/* One step from old along move, kept where pulses make sense. */
+static struct joint_pulse moved(const struct joint_scene *s,
+	const struct joint_pulse *old, const double *move, size_t n)
+{
+	struct joint_pulse p = *old;
+	double step = 0.25 * s->duration, span = s->delta_max - s->delta_min;
+	double reach = 0.9 * shape_reach(s->shape) * s->duration;
+	double t2 = old->t + old->delta + clamp(move[1], -step, step);
+
+	p.t = clamp(old->t + clamp(move[0], -step, step), -reach, (double)n + reach);
+	p.delta = clamp(t2 - p.t, s->delta_min - 0.1 * span, s->delta_max + 0.1 * span);
+	p.a = clamp(old->a + move[2], 0.1 * old->a, 10 * old->a);
+	return p;
+}
+
+/* Adds what the columns of pulse i say it puts on the record. */
+static void add_column(struct joint *j, int i, double factor)
+{
+	for (int c = 0; c < 2; c++) {
+		const struct column *col = &j->col[i][c];
+		double *e = j->e[c] + col->first;
+
+		j->energy -= dot(e, e, col->n);
+		add_scaled(e, factor, col->d[2], col->n);
+		j->energy += dot(e, e, col->n);
+		for (int b = 0; b < j->basis; b++)
+			j->qe[c][b] += factor * dot(j->q + (size_t)b * j->n + col->first,
+							col->d[2], col->n);
+	}
+}
+
+static void swap_columns(struct joint *j, int i)
+{
+	struct column keep[2];
+
+	memcpy(keep, j->col[i], sizeof keep);
+	memcpy(j->col[i], j->trial[i], sizeof keep);
+	memcpy(j->trial[i], keep, sizeof keep);
+}
+
+/* Moves the pulses in set along j->move; their columns before the step go to trial. */
+static void step_forth(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, const int *set, int m, struct joint_pulse *old)
+{
+	for (int x = 0; x < m; x++) {
+		struct joint_pulse *p = &pulses[set[x]];
+
+		old[x] = *p;
+		add_column(j, set[x], p->a);
+		*p = moved(s, &old[x], j->move + PAR * x, j->n);
+		swap_columns(j, set[x]);
+		joint_make_columns(j, s, set[x], p);
+		add_column(j, set[x], -p->a);
+	}
+}
+
+static void step_back(struct joint *j, struct joint_pulse *pulses, const int *set, int m,
+	const struct joint_pulse *old)
+{
+	for (int x = 0; x < m; x++) {
+		add_column(j, set[x], pulses[set[x]].a);
+		swap_columns(j, set[x]);
+		pulses[set[x]] = old[x];
+		add_column(j, set[x], -old[x].a);
+	}
+}
+
+double joint_fit_set(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, const int *set, int m, int max_steps,
+	double tolerance)
+{
+	double lambda = 1e-4, chi2;
+	struct joint_pulse old[JOINT_PULSES_MAX];
+	int fresh = 0;
+
+	joint_measure(j);
+	chi2 = joint_chi_square(j);
+	for (int x = 0; x < m; x++)
+		joint_make_columns(j, s, set[x], &pulses[set[x]]);
+	for (int step = 0; step < max_steps && m > 0; step++) {
+		double after;
+
+		if (!fresh)
+			make_normal(j, set, m);
+		fresh = 1;
+		j->steps++;
+		if (!factorise(j, PAR * m, lambda)) {
+			lambda = lambda * 10 + 1e-3;
+			continue;
+		}
+		memcpy(j->move, j->gradient, sizeof(double) * (size_t)(PAR * m));
+		solve(j, PAR * m, 0, j->move);
+		step_forth(j, s, pulses, set, m, old);
+		after = joint_chi_square(j);
+		if (after < chi2) {
+			double gain = chi2 - after;
+
+			chi2 = after;
+			lambda = lambda > 1e-9 ? lambda / 10 : lambda;
+			fresh = 0;
+			if (gain < tolerance)
+				break;
+			continue;
+		}
+		step_back(j, pulses, set, m, old);
+		after -= chi2;
+		chi2 = joint_chi_square(j);
+		if (after < tolerance || lambda > 1e6)
+			break;
+		lambda = lambda * 10;
+	}
+	return chi2;
+}
+
+double joint_fit_all(
+	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m)
+{
+	int set[JOINT_PULSES_MAX];
+
+	for (int i = 0; i < m; i++)
+		set[i] = i;
+	return joint_fit_set(j, s, pulses, set, m, 50, 1e-4);
+}
+
+void joint_fill_covariance(
+	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m)
+{
+	int set[JOINT_PULSES_MAX] = { 0 }, good, np = PAR * m;
+	double x[NPAR];
+
+	for (int i = 0; i < m; i++) {
+		set[i] = i;
+		joint_make_columns(j, s, i, &pulses[i]);
+	}
+	make_normal(j, set, m);
+	good = factorise(j, np, 0);
+	j->inverted = good ? m : 0;
+	for (int i = 0; i < m; i++)
+		for (int u = 0, k = 0; u < PAR; u++) {
+			if (good) {
+				memset(x, 0, sizeof(double) * (size_t)np);
+				x[PAR * i + u] = 1;
+				solve(j, np, PAR * i + u, x);
+			}
+			for (int v = 0; v <= u; v++)
+				pulses[i].cov[k++] = good ? x[PAR * i + v] : INFINITY;
+		}
+}
+
+int joint_delay_covariance(const struct joint *j, double *cov)
+{
+	double x[NPAR];
+	int m = j->inverted;
+
+	for (int i = 0; i < m; i++) {
+		memset(x, 0, sizeof(double) * (size_t)(PAR * m));
+		x[PAR * i] = -1;
+		x[PAR * i + 1] = 1;
+		solve(j, PAR * m, PAR * i, x);
+		for (int k = 0; k < m; k++)
+			cov[i * m + k] = x[PAR * k + 1] - x[PAR * k];
+	}
+	return m;
+}

@@ -1,0 +1,179 @@
+/* calibrate.c - see calibrate.h */
+#include "signal/learn/calibrate.h"
+#include "signal/learn/measure.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int is_constant(const double *x, size_t n)
+{
+	for (size_t i = 1; i < n; i++)
+		if (x[i] != x[0])
+			return 0;
+	return 1;
+}
+
+static double mean(const double *x, size_t n)
+{
+	double sum = 0;
+
+	for (size_t i = 0; i < n; i++)
+		sum += x[i] / (double)n;
+	return sum;
+}
+
+/* One attempt, on a record made white if w has taps, which it gives to *c. */
+static enum calibrate_status attempt(const struct calibrate_par *par, const double *x1,
+	const double *x2, size_t n, const struct whitening *w, struct calibration *c,
+	struct look *look)
+{
+	double *work = malloc(3 * n * sizeof *work);
+	enum calibrate_status status = work ? CALIBRATE_OK : CALIBRATE_MEMORY;
+	size_t edge = n > 8 * (size_t)w->edge ? (size_t)w->edge : 0;
+
+	memset(c, 0, sizeof *c);
+	look->attempts++;
+	c->whitening = *w;
+	c->guessed = look->settled;
+	c->suspect = look->coloured && !look->settled;
+	for (int k = 0; work && k < 2; k++) {
+		double *y = work + (size_t)k * n;
+
+		memcpy(y, k ? x2 : x1, n * sizeof *work);
+		if (!w->tap)
+			continue;
+		c->mean[k] = mean(y, n);
+		for (size_t i = 0; i < n; i++)
+			y[i] -= c->mean[k];
+		if (whitening_apply(w, y, n) != NUM_OK)
+			status = CALIBRATE_MEMORY;
+	}
+	if (status == CALIBRATE_OK)
+		status = measure(par, work + edge, work + n + edge, n - 2 * edge,
+			work + 2 * n, look, c);
+	free(work);
+	if (status != CALIBRATE_OK)
+		calibration_clear(c);
+	return status;
+}
+
+static enum calibrate_status attempt_kind(const struct calibrate_par *par,
+	const double *x1, const double *x2, size_t n, enum whiten_kind kind,
+	struct look *look, struct calibration *c)
+{
+	struct whitening w;
+
+	look->kind = kind;
+	if (whitening_of_noise(&w, look->power, COLOUR_BINS, kind) != NUM_OK)
+		return CALIBRATE_MEMORY;
+	return attempt(par, x1, x2, n, &w, c, look);
+}
+
+/* Looks again at a record whose noise is not white: filtered, or coloured from the start?
+ * What fits best by itself is done once more, with its pulse corrected. */
+static enum calibrate_status look_again(const struct calibrate_par *par, const double *x1,
+	const double *x2, size_t n, struct look *look, struct calibration *c)
+{
+	static const enum whiten_kind kinds[] = { WHITEN_FILTERED, WHITEN_COLOURED };
+	enum whiten_kind found = WHITEN_FILTERED;
+	double best = c->price;
+	int better = 0;
+
+	for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+		struct calibration other;
+		enum calibrate_status status =
+			attempt_kind(par, x1, x2, n, kinds[k], look, &other);
+
+		if (status == CALIBRATE_MEMORY)
+			return status;
+		if (status != CALIBRATE_OK)
+			continue;
+		if (other.price < best) {
+			best = other.price;
+			found = kinds[k];
+			better = 1;
+		}
+		calibration_clear(&other);
+	}
+	if (!better)
+		return CALIBRATE_OK;
+	look->settled = 1;
+	calibration_clear(c);
+	return attempt_kind(par, x1, x2, n, found, look, c);
+}
+
+/* Chi-square per degree of freedom of clear pulses that asks for a second look. */
+static const double DOUBTFUL = 1.2;
+
+/* Durations of a pulse times the frequency above which it has hardly any power. */
+static const double PULSE_BAND = 10;
+
+/* Is the noise white after all?  Where hardly anything is quiet, pulses stand for colour.
+ * Then they fit as well as in white noise, or tolerably, and noise is white above their
+ * band. */
+static int is_white(const struct calibration *c, const struct look *look)
+{
+	return c->chi2 < DOUBTFUL ||
+	       (c->chi2 < 4 && colour_is_white(look->power,
+				       fmin(PULSE_BAND / c->duration, 0.25)));
+}
+
+/* Power of a tone, in units of noise^2, that tails of pulses may be taken for, and the
+ * share of its power that a line changes by from hop to hop. */
+static const double TAILS = 4, STEADY = 0.3;
+
+/* A regular train of pulses has lines, too, which a robust fit may see: by the tails weak
+ * ones, or for as long as it lasts.  Is the record better described without? */
+static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
+	const double *x1, const double *x2, size_t n, struct look *look,
+	struct calibration *c)
+{
+	struct calibrate_par fewer = *par;
+	struct whitening w = { .tap = NULL };
+	struct look other_look = { .attempts = look->attempts };
+	struct calibration other;
+	enum calibrate_status status;
+
+	fewer.tones = 0;
+	for (int k = 0; k < c->tones; k++)
+		if (c->tone_power[k] > fmax(TAILS, c->tone_variance / STEADY))
+			fewer.omega[fewer.tones++] = c->omega[k];
+	if (fewer.tones == c->tones)
+		return CALIBRATE_OK;
+	status = attempt(&fewer, x1, x2, n, &w, &other, &other_look);
+	look->attempts = other_look.attempts;
+	if (status != CALIBRATE_OK)
+		return status == CALIBRATE_MEMORY ? status : CALIBRATE_OK;
+	if (other.price < c->price) {
+		calibration_clear(c);
+		*c = other;
+		*look = other_look;
+	} else {
+		calibration_clear(&other);
+	}
+	return CALIBRATE_OK;
+}
+
+enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
+	const double *x2, size_t n, struct calibration *c)
+{
+	enum calibrate_status status;
+	struct whitening w = { .tap = NULL };
+	struct look look = { 0 };
+
+	memset(c, 0, sizeof *c);
+	if (is_constant(x1, n))
+		return CALIBRATE_SILENT_1;
+	if (is_constant(x2, n))
+		return CALIBRATE_SILENT_2;
+	if (par->filter &&
+		whitening_of_filter(&w, par->filter, par->filter_taps) != NUM_OK)
+		return CALIBRATE_MEMORY;
+	status = attempt(par, x1, x2, n, &w, c, &look);
+	if (status == CALIBRATE_OK && par->tones == CALIBRATE_FIND_TONES && !w.tap)
+		status = try_fewer_tones(par, x1, x2, n, &look, c);
+	if (status == CALIBRATE_OK && look.coloured && !c->dense && !is_white(c, &look))
+		status = look_again(par, x1, x2, n, &look, c);
+	c->attempts = look.attempts;
+	return status;
+}

@@ -1,0 +1,54 @@
+/* calibration.c - see calibration.h */
+#include "signal/learn/calibration.h"
+#include <math.h>
+
+double calibrate_drop(double rate, const struct shape *shape, double duration,
+	double gain, double width)
+{
+	double lambda =
+		shape_slope_energy(shape) / shape_energy(shape) / (duration * duration);
+	double area = width * lambda * gain / (1 + gain * gain) / pow(2 * M_PI, 1.5);
+	double edge = sqrt(lambda) / (2 * M_PI), lo = 1, hi = 40;
+
+	while (hi - lo > 1e-6) {
+		double u = (lo + hi) / 2;
+
+		if ((area * u + edge) * exp(-u * u / 2) > rate)
+			lo = u;
+		else
+			hi = u;
+	}
+	return hi * hi;
+}
+
+double calibration_lost(const struct calibration *c)
+{
+	return c->whitening.tap ? 1 - fmin(c->whitening.band, 1) : 0;
+}
+
+void calibration_clear(struct calibration *c)
+{
+	shape_free(c->shape);
+	c->shape = NULL;
+	whitening_clear(&c->whitening);
+}
+
+void calibration_scene(const struct calibration *c, struct joint_scene *scene)
+{
+	*scene = (struct joint_scene){ .shape = c->shape,
+		.duration = c->duration,
+		.transit = c->transit,
+		.gain = c->gain * c->noise[0] / c->noise[1],
+		.delta_min = c->delta_min,
+		.delta_max = c->delta_max,
+		.drop = c->drop,
+		.drop_near = c->drop_near,
+		.misfit = c->misfit,
+		.offset = 1,
+		.tone_variance = c->tone_variance,
+		.low = c->whitening.low,
+		.lost = calibration_lost(c) };
+	for (int k = 0; k < c->tones; k++)
+		if (c->omega[k] * c->duration < 8 * M_PI || isinf(c->tone_variance))
+			scene->omega[scene->tones++] = c->omega[k];
+}

@@ -1,0 +1,91 @@
+/* calibration.h - parameters of an instrument: those that the caller knows and those that
+ * calibrate.h has learned from a record
+ */
+#ifndef SIGNAL_CALIBRATION_H
+#define SIGNAL_CALIBRATION_H
+
+#include "signal/fit/joint.h"
+#include "signal/noise/tones.h"
+#include "signal/noise/whiten.h"
+#include "signal/pulse/sensor.h"
+#include "signal/pulse/shape.h"
+#include <stddef.h>
+
+enum { CALIBRATE_ANY_PULSE = -1, CALIBRATE_FIND_TONES = -1 };
+
+/* Known parameters; NAN or -1: to be found. */
+struct calibrate_par {
+	double lag;      /* samples */
+	double duration; /* of a pulse of the mean velocity, samples */
+	double gain;     /* sensor 2 over sensor 1 */
+	int pulse;       /* enum pulse_shape or CALIBRATE_ANY_PULSE */
+	double spread;   /* delays within lag (1 +- spread); NAN: learned, within 0.1 */
+	double false_alarm;      /* expected false particles per sample of noise */
+	int tones;               /* number of omega, or CALIBRATE_FIND_TONES */
+	double omega[TONES_MAX]; /* rad per sample */
+	double *filter; /* symmetric taps of the filter applied to the record, or NULL */
+	size_t filter_taps;
+};
+
+struct calibration {
+	long shift;         /* samples by which channel 2 is moved back */
+	double correlation; /* of the channels at that lag */
+	int tones;
+	double omega[TONES_MAX];
+	size_t tone_hop;              /* samples between two fits of the tones */
+	double tone_power[TONES_MAX]; /* on channel 1, units of noise^2 */
+	double tone_variance;       /* of a coefficient from one hop to the next, units of
+				       noise^2 */
+	struct whitening whitening; /* of filtered records; else without taps */
+	double mean[2];             /* of the channels, subtracted before whitening */
+	double noise[2];            /* standard deviations, before any filter */
+	double rest[2];             /* residual power of the fitted pulses over noise^2 */
+	struct shape *shape;
+	int pulse;     /* enum pulse_shape */
+	int corrected; /* 1: shape corrected by the residual common to all pulses */
+	double duration, gain; /* as above */
+	double transit;        /* samples between the sensors; INFINITY if unknown */
+	double delta_min, delta_max; /* samples around shift */
+	double drop, drop_near;      /* thresholds of joint.h */
+	double misfit;               /* of joint.h: error of the shape */
+	int events;                  /* pulses to which the shape was fitted */
+	int suspect;  /* 1: treated as white although the spectrum test failed */
+	int guessed;  /* 1: whitened by a filter estimated from its noise */
+	int attempts; /* number of calibrations tried */
+	int dense;    /* 1: pulses overlap throughout the record */
+	double chi2;  /* of the fitted pulses, per degree of freedom */
+	double price; /* (chi-square + 2 drop_near per pulse) per degree of freedom; least
+			 is best */
+};
+
+enum calibrate_status {
+	CALIBRATE_OK,
+	CALIBRATE_MEMORY,
+	CALIBRATE_SILENT_1, /* channel 1 is constant */
+	CALIBRATE_SILENT_2,
+	CALIBRATE_NO_LAG,  /* the channels have nothing in common */
+	CALIBRATE_SWAPPED, /* particles pass sensor 2 first */
+	CALIBRATE_FAR,     /* the lag given is as long as the record */
+	CALIBRATE_NARROW,  /* the filter has left a band narrower than half the pulse's */
+	CALIBRATE_FAST,    /* pulses of fewer than 8 samples */
+	CALIBRATE_SLOW,    /* pulses longer than half the record */
+	CALIBRATE_TONES /* too many lines, or lines too near each other, for the record */
+};
+
+void calibration_clear(struct calibration *c);
+
+/* Fills the scene of joint.h; the caller sets max_pulses.  Steady tones at frequencies
+ * where the pulse has no power are left out. */
+void calibration_scene(const struct calibration *c, struct joint_scene *scene);
+
+/* Chi-square a lone pulse must take away so that noise gives at most rate false ones
+ * per sample: the expected number of maxima above u of the matched-filter field over
+ * arrival and delay (Rice's formula in two dimensions; Adler, The Geometry of Random
+ * Fields, 1981), u^2 being the threshold.  width: range of delays in samples. */
+double calibrate_drop(double rate, const struct shape *shape, double duration,
+	double gain, double width);
+
+/* Share of the noise removed by the filter and the whitening. */
+double calibration_lost(const struct calibration *c);
+
+#endif

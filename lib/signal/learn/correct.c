@@ -1,0 +1,156 @@
+/* correct.c - see correct.h */
+#include "signal/learn/correct.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Means of x[0..n) under a Hann window of 2 reach + 1 points, work holding n. */
+static void smooth(double *x, double *work, int n, int reach)
+{
+	memcpy(work, x, (size_t)n * sizeof *x);
+	for (int i = 0; i < n; i++) {
+		x[i] = 0;
+		for (int k = -reach; k <= reach; k++)
+			if (i + k >= 0 && i + k < n)
+				x[i] += work[i + k] * (1 + cos(M_PI * k / (reach + 1))) /
+					(2 * reach + 2);
+	}
+}
+
+/* Half width of the window that smooths a mean residual: a tenth of a duration where
+ * pulses barely stand out, less the more they do, since it blurs the edges of the shape.
+ */
+static int smoothing_reach(const struct examples *ex)
+{
+	double faint = 1e5;
+
+	return (int)(0.1 * ex->scene.duration * fmin(pow(ex->energy / faint, -0.25), 1));
+}
+
+/* Mean residual around the pulses of the examples, sample by sample of the pulse: what
+ * all of them have in common that the shape has not. */
+static void mean_residual(struct examples *ex, double *more, double *weight, int half)
+{
+	double most = 0;
+
+	memset(more, 0, (2 * (size_t)half + 1) * sizeof *more);
+	memset(weight, 0, (2 * (size_t)half + 1) * sizeof *weight);
+	for (int i = 0; i < ex->count; i++) {
+		struct example *e = &ex->example[i];
+		struct joint_result result;
+
+		if (!examples_refine(ex, e, e->pulse, &result))
+			continue;
+		for (int p = 0; p < 2 * e->m; p++) {
+			const struct joint_pulse *pulse = &e->pulse[p / 2];
+			const double *r = joint_residual(ex->joint, p % 2);
+			double stretch = 1 + pulse->delta / ex->scene.transit;
+			double t0 = pulse->t + (p % 2 ? pulse->delta : 0);
+			double a = pulse->a * (p % 2 ? ex->scene.gain : 1);
+
+			for (int k = -half; k <= half; k++) {
+				double t = t0 + k * stretch, u = t - floor(t);
+				size_t at = (size_t)t;
+
+				if (t < 0 || at + 1 >= e->n)
+					continue;
+				more[k + half] += a * ((1 - u) * r[at] + u * r[at + 1]);
+				weight[k + half] += a * a;
+			}
+		}
+	}
+	/* Far from the pulse few examples tell. */
+	for (int k = 0; k <= 2 * half; k++)
+		most = fmax(most, weight[k]);
+	for (int k = 0; k <= 2 * half; k++)
+		more[k] *= weight[k] > 0 ? fmin(fmax(2 * weight[k] / most - 0.5, 0), 1) /
+						   weight[k]
+					 : 0;
+	smooth(more, weight, 2 * half + 1, smoothing_reach(ex));
+}
+
+/* Chi-square that the parameters of a corrected shape have to earn: twenty, one for each
+ * tenth of a duration. */
+static const double CORRECTION = 80;
+
+/* What is left of the examples, with half of what each pulse must take away: a shape that
+ * lets two pulses pass for one is not better for that. */
+static double cost(const struct examples *ex)
+{
+	return ex->excess + 0.5 * ex->scene.drop_near * examples_pulses(ex);
+}
+
+int correct_doubtful(struct examples *ex, struct calibration *c)
+{
+	double share = ex->share;
+	int pulses, rest;
+
+	examples_fit(ex, 0.05);
+	rest = ex->excess > 2 * sqrt(2 * ex->dof);
+	pulses = examples_pulses(ex);
+	ex->share = share;
+	c->chi2 = examples_fit(ex, share);
+	c->price = ex->price;
+	return rest || examples_pulses(ex) > pulses;
+}
+
+/* Adds to the shape again and again what the pulses have in common.  At first a pulse
+ * that overlaps another must be a large one, lest two of a wrong shape stand for one.
+ * There is no use in it once more pulses than most are found, or suddenly more is left.
+ */
+static enum num_status improve_shape(struct examples *ex, struct calibration *c, int most)
+{
+	enum { ROUNDS = 20 };
+	int half = (int)((shape_reach(c->shape) + 0.75) * c->duration);
+	size_t points = 2 * (size_t)half + 1;
+	double *more = malloc(2 * points * sizeof *more);
+	double largest = c->guessed ? 0.3 : 0.03, before = INFINITY;
+	const struct shape *first = c->shape;
+
+	for (int k = 0; more && k < ROUNDS; k++) {
+		struct shape *better;
+		double chi2 = examples_fit(ex, fmax(largest * pow(0.6, k), ex->share));
+
+		if (k > 1 && (examples_pulses(ex) > most || chi2 > 2 * before))
+			break;
+		if (k > 10 && chi2 > 4)
+			break;
+		before = chi2;
+		mean_residual(ex, more, more + points, half);
+		better = shape_correct(c->shape, more, half, 1 / c->duration);
+		if (!better) {
+			free(more);
+			return NUM_MEMORY;
+		}
+		if (c->shape != first)
+			shape_free(c->shape);
+		ex->scene.shape = c->shape = better;
+	}
+	free(more);
+	return more ? NUM_OK : NUM_MEMORY;
+}
+
+enum num_status correct_shape(struct examples *ex, struct calibration *c)
+{
+	double before = cost(ex), share = ex->share;
+	struct shape *first = c->shape;
+	enum num_status status;
+
+	ex->corrected = 1;
+	status = improve_shape(ex, c, examples_pulses(ex));
+	c->chi2 = examples_fit(ex, ex->share);
+	/* Where the noise may be what is wrong, the correction must make all well. */
+	if (before - cost(ex) > CORRECTION && (!c->suspect || c->chi2 < 1.2)) {
+		c->price = ex->price;
+		if (c->shape != first)
+			shape_free(first);
+		return status;
+	}
+	if (c->shape != first)
+		shape_free(c->shape);
+	ex->scene.shape = c->shape = first;
+	ex->corrected = 0;
+	ex->share = share;
+	c->chi2 = examples_fit(ex, share);
+	return status;
+}

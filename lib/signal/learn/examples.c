@@ -1,0 +1,225 @@
+/* examples.c - see examples.h */
+#include "signal/learn/examples.h"
+#include "signal/detect/sections.h"
+#include "signal/noise/robust.h"
+#include <math.h>
+#include <string.h>
+
+/* Keeps y1, y2[from, to) if it is among the most clearest.  loud: merits of those kept.
+ */
+static void offer_example(struct examples *ex, const double *y1, const double *y2,
+	long long from, long long to, int most, double shortest, double *loud)
+{
+	double energy = 0, merit, length = (double)(to - from);
+	int at;
+
+	if (length < 1.5 * shortest / 2)
+		return;
+	for (long long i = from; i < to; i++)
+		energy += y1[i] * y1[i] + y2[i] * y2[i] - 2;
+	/* Loud is good, few pulses are better. */
+	merit = energy * pow(shortest / length, 4);
+	for (at = ex->count; at > 0 && loud[at - 1] < merit; at--)
+		if (at < most) {
+			loud[at] = loud[at - 1];
+			ex->example[at] = ex->example[at - 1];
+		}
+	if (at == most)
+		return;
+	loud[at] = merit;
+	ex->example[at].y1 = y1 + from;
+	ex->example[at].y2 = y2 + from;
+	ex->example[at].n = (size_t)(to - from);
+	ex->example[at].m = ex->example[at].spoiled = 0;
+	ex->example[at].lone = length < 1.4 * shortest;
+	ex->count += ex->count < most;
+}
+
+/* The clearest short sections of the record; of long ones, pieces if allowed. */
+static void pick_sections(struct examples *ex, const double *y1, const double *y2,
+	size_t n, int most, int allow_pieces, const struct calibration *c)
+{
+	double T = c->duration, loud[EXAMPLES_MAX] = { 0 };
+	double slack = fmax(c->delta_max, -c->delta_min);
+	long margin = (long)(1.2 * shape_reach_above(c->shape, 0.01) * T + slack);
+	struct sections *s;
+	struct section section;
+
+	ex->count = 0;
+	if (!(T >= SECTIONS_SHORTEST))
+		return;
+	s = sections_new(c->shape, T, 5, slack);
+	if (!s || sections_scan(s, y1, y2, 0, n, (long long)n) != NUM_OK) {
+		ex->status = CALIBRATE_MEMORY;
+		sections_free(s);
+		return;
+	}
+	sections_end(s);
+	while (sections_first(s, &section)) {
+		long long begin = section.begin > 0 ? section.begin : 0;
+		long long end = section.end < (long long)n ? section.end : (long long)n;
+		long long pieces = 1 + (end - begin) / (6 * margin);
+
+		for (long long k = 0; k < pieces && (pieces == 1 || allow_pieces); k++)
+			offer_example(ex, y1, y2, begin + (end - begin) * k / pieces,
+				begin + (end - begin) * (k + 1) / pieces, most,
+				2 * (double)margin, loud);
+		sections_take(s, section.end);
+	}
+	sections_free(s);
+}
+
+/* Pieces of sections cut through pulses: they serve only where hardly any is short. */
+void examples_pick(struct examples *ex, const double *y1, const double *y2, size_t n,
+	int most, const struct calibration *c)
+{
+	enum { ENOUGH = 4 };
+
+	pick_sections(ex, y1, y2, n, most, 0, c);
+	ex->pieces = ex->count < ENOUGH;
+	if (ex->pieces)
+		pick_sections(ex, y1, y2, n, most, 1, c);
+}
+
+/* Did a fit succeed?  Notes it where memory was short. */
+static int succeeded(struct examples *ex, enum joint_status status)
+{
+	if (status == JOINT_MEMORY)
+		ex->status = CALIBRATE_MEMORY;
+	return status == JOINT_OK;
+}
+
+int examples_refine(struct examples *ex, const struct example *e,
+	struct joint_pulse *pulse, struct joint_result *result)
+{
+	return succeeded(ex, joint_refine(ex->joint, &ex->scene, e->y1, e->y2, e->n,
+				     pulse, e->m, result));
+}
+
+double examples_chi2(struct examples *ex, int keep)
+{
+	double sum = 0;
+
+	for (int i = 0; i < ex->count; i++) {
+		struct example *e = &ex->example[i];
+		struct joint_pulse pulse[EXAMPLE_PULSES];
+		struct joint_result result;
+
+		if (e->spoiled)
+			continue;
+		memcpy(pulse, e->pulse, sizeof pulse);
+		if (!examples_refine(ex, e, pulse, &result))
+			return INFINITY;
+		if (keep)
+			memcpy(e->pulse, pulse, sizeof pulse);
+		sum += result.chi2;
+	}
+	return sum;
+}
+
+int examples_pulses(const struct examples *ex)
+{
+	int sum = 0;
+
+	for (int i = 0; i < ex->count; i++)
+		sum += ex->example[i].m;
+	return sum;
+}
+
+int examples_full(const struct examples *ex)
+{
+	return 10 * examples_pulses(ex) > 9 * EXAMPLE_PULSES * ex->count;
+}
+
+/* Bounds of what is found of a shape's misfit: no more is known of pulses louder than the
+ * examples; what lone pulses leave is misfit, what crowded ones leave is mostly hidden
+ * pulses. */
+static const double LEAST_SHARE = 1e-5, MOST_LONE = 3e-4, MOST_CROWDED = 1e-4;
+
+/* Chi-square, three deviations of it, that the error of one parameter of the shape leaves
+ * in a pulse as loud as all examples together. */
+static const double ERROR = 9;
+
+/* Energy of the pulses of an example, in units of chi-square. */
+static double example_energy(const struct examples *ex, const struct example *e)
+{
+	double unit = ex->scene.duration * shape_energy(ex->scene.shape) *
+		      (1 + ex->scene.gain * ex->scene.gain);
+	double sum = 0;
+
+	for (int k = 0; k < e->m; k++)
+		sum += e->pulse[k].a * e->pulse[k].a * unit;
+	return sum;
+}
+
+/* What the shape leaves, from the share of energy that each example leaves and the
+ * scatter of that.  Lone pulses leave little but that, and not all may be of one form; of
+ * crowded ones most hide others, and only the best tell.  Another pulse cannot take more
+ * away. */
+static void learn_misfit(
+	struct examples *ex, const double *share, const double *scatter, int lone)
+{
+	double work[EXAMPLES_MAX], left, noise;
+	size_t n = (size_t)ex->count;
+
+	memcpy(work, scatter, n * sizeof *work);
+	noise = robust_median(work, n);
+	memcpy(work, share, n * sizeof *work);
+	left = robust_quantile(work, n, lone ? 0.5 : 0.25) -
+	       1.25 * noise / sqrt((double)n);
+	left = fmax(left, 0);
+	ex->share = fmin(2 * left, lone ? MOST_LONE : MOST_CROWDED);
+	ex->share = fmax(ex->share, LEAST_SHARE);
+	ex->share =
+		fmax(ex->share, ERROR * (ex->corrected ? 20 : 2) / fmax(ex->energy, 1));
+	for (size_t i = 0; i < n; i++)
+		ex->example[i].spoiled = share[i] > 4 * left + 4 * scatter[i];
+}
+
+static double square_sum(const double *x, size_t n)
+{
+	double sum = 0;
+
+	for (size_t i = 0; i < n; i++)
+		sum += x[i] * x[i];
+	return sum;
+}
+
+double examples_fit(struct examples *ex, double misfit)
+{
+	double each[EXAMPLES_MAX], rest[2][EXAMPLES_MAX], share[EXAMPLES_MAX],
+		scatter[EXAMPLES_MAX];
+	int lone = 0;
+
+	ex->price = ex->dof = ex->excess = ex->energy = 0;
+	if (ex->count == 0)
+		return INFINITY;
+	ex->scene.misfit = misfit > ex->misfit ? misfit : ex->misfit;
+	for (int i = 0; i < ex->count; i++) {
+		struct example *e = &ex->example[i];
+		struct joint_result result;
+		double energy;
+
+		e->m = 0;
+		if (!succeeded(ex, joint_fit(ex->joint, &ex->scene, e->y1, e->y2, e->n,
+					   e->pulse, &e->m, &result)))
+			return INFINITY;
+		energy = fmax(example_energy(ex, e), 1);
+		ex->energy += energy;
+		lone += e->lone;
+		each[i] = result.chi2 / (double)result.dof;
+		share[i] = (result.chi2 - (double)result.dof) / energy;
+		scatter[i] = sqrt(2 * (double)result.dof) / energy;
+		for (int c = 0; c < 2; c++)
+			rest[c][i] = 2 * square_sum(joint_residual(ex->joint, c), e->n) /
+				     (double)result.dof;
+		ex->price += result.chi2 + 2 * ex->scene.drop_near * e->m;
+		ex->dof += (double)result.dof;
+		ex->excess += result.chi2 - (double)result.dof;
+	}
+	ex->price /= ex->dof > 0 ? ex->dof : 1;
+	for (int c = 0; c < 2; c++)
+		ex->rest[c] = robust_median(rest[c], (size_t)ex->count);
+	learn_misfit(ex, share, scatter, 2 * lone > ex->count);
+	return robust_median(each, (size_t)ex->count);
+}

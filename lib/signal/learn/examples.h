@@ -1,0 +1,69 @@
+/* examples.h - clear short sections of a record to which its pulse is fitted; for learn.c
+ * and correct.c only
+ *
+ * All is in units of the noise.
+ */
+#ifndef SIGNAL_EXAMPLES_H
+#define SIGNAL_EXAMPLES_H
+
+#include "signal/learn/calibration.h"
+#include <stddef.h>
+
+enum { EXAMPLES_MAX = 16, EXAMPLE_PULSES = 16 };
+
+/* A section used to learn the pulse: samples of noise 1 and the pulses found in it. */
+struct example {
+	const double *y1, *y2;
+	size_t n;
+	struct joint_pulse pulse[EXAMPLE_PULSES];
+	int m;
+	int lone;    /* 1: hardly longer than one pulse */
+	int spoiled; /* 1: its residual is so much larger than those of the others that it
+			contains other events */
+};
+
+struct examples {
+	struct joint *joint;
+	struct joint_scene scene; /* present parameters of the instrument */
+	struct example example[EXAMPLES_MAX];
+	int count;
+	int pieces;    /* 1: some may cut pulses through */
+	double misfit; /* of joint.h, at the end */
+	double share; /* of the energy of a pulse that the shape may miss, found so far */
+	double dof;   /* of all examples, ... */
+	double excess;  /* ... their chi-square beyond it, and ... */
+	double energy;  /* ... that of their pulses */
+	int corrected;  /* 1: the shape is one of twenty parameters, else of two */
+	double price;   /* their chi-square and twice the threshold for each pulse, per
+			   degree */
+	double rest[2]; /* power of either channel's residual, that of its noise 1 */
+	/* CALIBRATE_MEMORY once a function was out of memory; the results are invalid
+	 * then. */
+	enum calibrate_status status;
+};
+
+/* The clearest short sections of y1, y2[0 .. n), aligned, at most most of them; pieces of
+ * longer ones where hardly any is short.  The record has to outlive them. */
+void examples_pick(struct examples *ex, const double *y1, const double *y2, size_t n,
+	int most, const struct calibration *c);
+
+/* Finds the pulses of all examples anew; one that overlaps others must reduce chi-square
+ * by this share of their energy.  Returns the median of their chi-square per degree of
+ * freedom, which a few examples with hidden pulses do not spoil; INFINITY where one
+ * cannot be fitted. */
+double examples_fit(struct examples *ex, double misfit);
+
+/* Chi-square of all that are not spoiled with their pulses refined under the present
+ * scene; the pulses themselves stay unless keep. */
+double examples_chi2(struct examples *ex, int keep);
+
+/* Refines pulse[0 .. e->m) of one under the present scene; 0 where that cannot be done.
+ */
+int examples_refine(struct examples *ex, const struct example *e,
+	struct joint_pulse *pulse, struct joint_result *result);
+
+int examples_pulses(const struct examples *ex); /* number of them in all */
+/* 1 if the largest number of pulses was found: there may be more. */
+int examples_full(const struct examples *ex);
+
+#endif

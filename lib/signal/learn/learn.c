@@ -1,0 +1,280 @@
+/* learn.c - see learn.h */
+#include "signal/learn/learn.h"
+#include "signal/learn/correct.h"
+#include "signal/learn/examples.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { RANGE_EVENTS = 12 };
+
+/* Chi-square that says that noise of a suspected colour is not white. */
+static const double HOPELESS = 100;
+
+/* First minimum of the autocorrelation after its smallest value has been passed by a
+ * clear rise; lag in samples, 0 where there is none. */
+double learn_lowest_lag(const double *r, size_t max_lag)
+{
+	size_t low = 1;
+
+	for (size_t k = 2; k <= max_lag; k++) {
+		if (r[k] < r[low])
+			low = k;
+		else if (r[low] < 0 && r[k] > 0.5 * r[low])
+			break;
+	}
+	return low < max_lag && r[low] < 0 ? (double)low : 0;
+}
+
+/* *lag: the same of one pulse, as a share of its duration. */
+static enum num_status shape_lowest_lag(const struct shape *shape, double *lag)
+{
+	enum { T = 100, LAGS = 100 };
+	size_t n = (size_t)(2 * shape_reach(shape) * T) + 2;
+	double *p = calloc(n + LAGS, sizeof *p), r[LAGS + 1] = { 0 };
+
+	if (!p)
+		return NUM_MEMORY;
+	shape_sample(shape, shape_reach(shape) * T, T, 0, n, p, NULL, NULL);
+	for (int k = 0; k <= LAGS; k++)
+		for (size_t i = 0; i < n; i++)
+			r[k] += p[i] * p[i + (size_t)k];
+	*lag = learn_lowest_lag(r, LAGS) / T;
+	free(p);
+	return NUM_OK;
+}
+
+/* Moves *parameter by a factor to the least chi-square: parabolas through three points
+ * on the logarithm, the step shrinking. */
+static void minimise(struct examples *ex, double *parameter, double step, int rounds)
+{
+	double middle = examples_chi2(ex, 1);
+
+	for (int round = 0; round < rounds; round++) {
+		double x = *parameter, below, above, bend, move;
+
+		*parameter = x * exp(-step);
+		below = examples_chi2(ex, 0);
+		*parameter = x * exp(step);
+		above = examples_chi2(ex, 0);
+		bend = below - 2 * middle + above;
+		move = bend > 0 ? 0.5 * (below - above) / bend : below < above ? -1 : 1;
+		if (move > 2)
+			move = 2;
+		if (move < -2)
+			move = -2;
+		*parameter = x * exp(step * move);
+		above = examples_chi2(ex, 0);
+		if (above < middle)
+			middle = examples_chi2(ex, 1);
+		else
+			*parameter = x;
+		step /= 3;
+	}
+}
+
+static void scene_of(const struct calibration *c, struct joint_scene *scene)
+{
+	calibration_scene(c, scene);
+	scene->tones = 0; /* the examples were cleaned */
+	scene->max_pulses = EXAMPLE_PULSES;
+}
+
+/* Duration and gain to least chi-square, unless they are known. */
+static void tune(
+	const struct calibrate_par *par, struct examples *ex, double step, int rounds)
+{
+	if (isnan(par->duration))
+		minimise(ex, &ex->scene.duration, step, rounds);
+	if (isnan(par->gain))
+		minimise(ex, &ex->scene.gain, step, rounds);
+}
+
+/* Takes this pulse, as the whitened record has it at the present duration. */
+enum num_status learn_set_shape(struct calibration *c, int pulse)
+{
+	struct shape *plain = shape_new((enum pulse_shape)pulse);
+
+	shape_free(c->shape);
+	c->pulse = pulse;
+	c->shape = plain;
+	if (plain && c->whitening.tap) {
+		c->shape = shape_filter(plain, fmax(c->duration, 8), c->whitening.seen,
+			c->whitening.seen_half);
+		shape_free(plain);
+	}
+	return c->shape ? NUM_OK : NUM_MEMORY;
+}
+
+/* Duration of a pulse whose autocorrelation is lowest at this lag. */
+enum num_status learn_duration(int pulse, double low, double *duration)
+{
+	struct shape *plain = shape_new((enum pulse_shape)pulse);
+	double lag = NAN;
+	enum num_status status = plain ? shape_lowest_lag(plain, &lag) : NUM_MEMORY;
+
+	*duration = low / lag;
+	shape_free(plain);
+	return status;
+}
+
+/* What describes some clear examples best so far. */
+struct guess {
+	int pulse;
+	double duration, gain, price, chi2;
+};
+
+/* Tries one shape from a duration on; it has to be better by the factor need. */
+static enum calibrate_status try_shape(const struct calibrate_par *par,
+	struct examples *ex, const double *y1, const double *y2, size_t n, int pulse,
+	double duration, double need, struct calibration *c, struct guess *best)
+{
+	double chi2;
+
+	c->duration = duration;
+	if (learn_set_shape(c, pulse) != NUM_OK)
+		return CALIBRATE_MEMORY;
+	examples_pick(ex, y1, y2, n, EXAMPLES_MAX / 2, c);
+	if (ex->count == 0)
+		return CALIBRATE_OK;
+	scene_of(c, &ex->scene);
+	examples_fit(ex, 0.05);
+	if (ex->price > 3 * best->price)
+		return CALIBRATE_OK; /* far off: not worth tuning */
+	tune(par, ex, 0.1, 3);
+	chi2 = examples_fit(ex, 0.003);
+	if (ex->price < need * best->price)
+		*best = (struct guess){ pulse, ex->scene.duration,
+			ex->scene.gain * c->noise[1] / c->noise[0], ex->price, chi2 };
+	return CALIBRATE_OK;
+}
+
+/* Which shape describes some clear examples best, and its rough duration; low: lag of
+ * the lowest autocorrelation, which a train of pulses may hide behind its own.  A wrong
+ * shape needs more pulses for the same record, so that each costs what it must take
+ * away. */
+static enum calibrate_status learn_shape(const struct calibrate_par *par,
+	struct examples *ex, const double *y1, const double *y2, size_t n, double low,
+	struct calibration *c)
+{
+	static const double factor[] = { 1, 0.7, 1.4 };
+	struct guess best = { c->pulse, c->duration, c->gain, INFINITY, INFINITY };
+	enum calibrate_status status = CALIBRATE_OK;
+
+	for (int k = 0; k < (c->whitening.tap ? 1 : 3) && status == CALIBRATE_OK; k++)
+		for (int p = PULSE_SINE; p <= PULSE_LORENTZ; p++) {
+			double duration = par->duration;
+
+			if (isnan(duration)) {
+				if (learn_duration(p, low, &duration) != NUM_OK)
+					return CALIBRATE_MEMORY;
+				duration *= factor[k];
+			}
+			if (best.chi2 <= (k ? 2 : 1.1) || status != CALIBRATE_OK)
+				break;
+			if ((k == 0 || isnan(par->duration)) &&
+				(par->pulse == CALIBRATE_ANY_PULSE || p == par->pulse))
+				status = try_shape(par, ex, y1, y2, n, p, duration,
+					k ? 0.5 : 1, c, &best);
+		}
+	c->duration = best.duration;
+	c->gain = best.gain;
+	if (status == CALIBRATE_OK && learn_set_shape(c, best.pulse) != NUM_OK)
+		status = CALIBRATE_MEMORY;
+	return status;
+}
+
+/* Range of the delays seen, widened by half on either side. */
+static void learn_range(
+	const struct calibrate_par *par, const struct examples *ex, struct calibration *c)
+{
+	double lo = INFINITY, hi = -INFINITY, margin;
+
+	for (int i = 0; i < ex->count; i++)
+		for (int k = 0; k < ex->example[i].m; k++) {
+			const struct joint_pulse *p = &ex->example[i].pulse[k];
+
+			lo = fmin(lo, p->delta);
+			hi = fmax(hi, p->delta);
+		}
+	margin = fmax(0.5 * (hi - lo), 0.02 * c->duration);
+	if (isnan(par->spread) && c->events >= RANGE_EVENTS) {
+		c->delta_min = fmax(c->delta_min, lo - margin);
+		c->delta_max = fmin(c->delta_max, hi + margin);
+	}
+}
+
+/* Duration and gain by turns with the pulses of the examples: the closer they come, the
+ * smaller a pulse may be that is not just a misfit of its neighbour. */
+static enum calibrate_status converge(
+	const struct calibrate_par *par, struct examples *ex, struct calibration *c)
+{
+	enum { ROUNDS = 16 };
+	double step = 0.01, moved, before;
+
+	for (int k = 0; k < ROUNDS; k++) {
+		before = c->chi2;
+		c->chi2 = examples_fit(ex, fmax(0.01 * pow(0.3, k), ex->share));
+		c->price = ex->price;
+		if ((k > 1 || c->whitening.tap) && c->suspect && c->chi2 > HOPELESS)
+			break;
+		tune(par, ex, step, 2);
+		moved = fabs(log(ex->scene.duration / c->duration));
+		step = fmin(fmax(3 * moved, 0.002), 0.02);
+		c->duration = ex->scene.duration;
+		c->gain = ex->scene.gain * c->noise[1] / c->noise[0];
+		if (c->whitening.tap && moved > 1e-3) {
+			if (learn_set_shape(c, c->pulse) != NUM_OK)
+				return CALIBRATE_MEMORY;
+			ex->scene.shape = c->shape;
+		}
+		if (k > 1 &&
+			(examples_full(ex) || (c->chi2 > 10 && c->chi2 > 0.8 * before)))
+			break; /* too dense, or not such pulses: no use */
+		if (k > 2 && moved < 5e-4 && (c->chi2 < 1.2 || c->chi2 > 0.95 * before))
+			break;
+	}
+	return CALIBRATE_OK;
+}
+
+/* Is the shape to be corrected?  One that is given stays, but for what a guessed filter
+ * has done to it; and explanations of a colour are compared by how well plain pulses
+ * suit. */
+static int wants_correction(
+	const struct calibrate_par *par, struct examples *ex, struct calibration *c)
+{
+	if (examples_full(ex))
+		return 0;
+	if (c->guessed)
+		return c->chi2 > 1.1;
+	return par->pulse == CALIBRATE_ANY_PULSE && !ex->pieces &&
+	       !(c->whitening.tap && c->suspect) && correct_doubtful(ex, c);
+}
+
+/* Shape, duration, gain and range of delays by joint fits. */
+enum calibrate_status learn_pulse(const struct calibrate_par *par, const double *y1,
+	const double *y2, size_t n, double low, struct calibration *c)
+{
+	struct examples ex = { .joint = joint_new(), .misfit = c->misfit };
+	enum calibrate_status status =
+		ex.joint ? learn_shape(par, &ex, y1, y2, n, low, c) : CALIBRATE_MEMORY;
+
+	if (status == CALIBRATE_OK) {
+		examples_pick(&ex, y1, y2, n, EXAMPLES_MAX, c);
+		scene_of(c, &ex.scene);
+		if (ex.count)
+			status = converge(par, &ex, c);
+	}
+	if (status == CALIBRATE_OK && ex.count && wants_correction(par, &ex, c) &&
+		correct_shape(&ex, c) != NUM_OK)
+		status = CALIBRATE_MEMORY;
+	if (status == CALIBRATE_OK)
+		status = ex.status;
+	c->events = examples_pulses(&ex);
+	memcpy(c->rest, ex.rest, sizeof c->rest);
+	c->misfit = fmax(c->misfit, ex.share);
+	c->corrected = ex.corrected;
+	learn_range(par, &ex, c);
+	joint_free(ex.joint);
+	return status;
+}

@@ -1,0 +1,27 @@
+/* learn.h - the pulse of a record, learned from the clearest stretches of it
+ *
+ * What calibrate.h does once lag, tones and noise are known: the clearest short sections
+ * are fitted jointly under each shape (examples.h), duration and gain are chosen by least
+ * chi-square, and the shape is given what the residuals of all pulses have in common
+ * where that is more than noise (correct.h).
+ */
+#ifndef SIGNAL_LEARN_H
+#define SIGNAL_LEARN_H
+
+#include "num/status.h"
+#include "signal/learn/calibration.h"
+#include <stddef.h>
+
+/* Lag at which an autocorrelation is lowest, before it rises clearly; 0 where there is
+ * none up to max_lag. */
+double learn_lowest_lag(const double *r, size_t max_lag);
+/* *duration: of a pulse whose autocorrelation is lowest at this lag, samples. */
+enum num_status learn_duration(int pulse, double low, double *duration);
+/* Gives c this pulse, as the whitened record has it at the present duration. */
+enum num_status learn_set_shape(struct calibration *c, int pulse);
+/* Fills shape, duration, gain, range of delays, chi2, price, rest and events of c from
+ * y1, y2[0 .. n), aligned and in units of the noise; low: lag as above, of these. */
+enum calibrate_status learn_pulse(const struct calibrate_par *par, const double *y1,
+	const double *y2, size_t n, double low, struct calibration *c);
+
+#endif

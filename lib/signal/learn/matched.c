@@ -1,0 +1,89 @@
+/* matched.c - see matched.h */
+#include "signal/learn/matched.h"
+#include "signal/noise/robust.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* Matched filter of y[0 .. n) at every eighth of a duration, at *points points; returns 0
+ * when out of memory. */
+static int filter_points(const struct calibration *c, const double *y, size_t n,
+	double *out, size_t *points)
+{
+	double T = c->duration;
+	size_t len, count = 0, stride = (size_t)(T / 8);
+	long first = shape_support(c->shape, 0, T, &len);
+	double *p = malloc(len * sizeof *p);
+
+	if (p && n > len) {
+		shape_sample(c->shape, 0, T, first, len, p, NULL, NULL);
+		for (size_t at = 0; at + len <= n; at += stride, count++) {
+			out[count] = 0;
+			for (size_t i = 0; i < len; i++)
+				out[count] += p[i] * y[at + i];
+		}
+	}
+	free(p);
+	*points = count;
+	return p != NULL;
+}
+
+enum num_status matched_coherence(const struct calibration *c, const double *y1,
+	const double *y2, size_t n, double *r, double *coherence, double *level)
+{
+	enum { BLOCK = 16 }; /* points: two durations */
+	double *z = malloc((n + 2) * sizeof *z), xy = 0, xx = 0, yy = 0, limit, count = 0;
+	size_t points, second, blocks;
+
+	*coherence = *level = 0;
+	if (!z || !filter_points(c, y1, n, z, &points)) {
+		free(z);
+		return NUM_MEMORY;
+	}
+	/* A point per eighth of a duration of at least 8 samples: two channels fit in n.
+	 */
+	if (points >= n / 2)
+		points = 0;
+	else if (!filter_points(c, y2, n, z + n / 2, &second)) {
+		free(z);
+		return NUM_MEMORY;
+	}
+	blocks = points / BLOCK;
+	for (size_t b = 0; b < blocks; b++) {
+		r[b] = 0;
+		for (size_t i = b * BLOCK; i < (b + 1) * BLOCK; i++)
+			r[b] += z[i] * z[i] + z[n / 2 + i] * z[n / 2 + i];
+		r[blocks + b] = r[b];
+	}
+	limit = robust_quantile(r, blocks, 0.1);
+	for (size_t b = 0; b < blocks; b++)
+		for (size_t i = b * BLOCK; r[blocks + b] <= limit && i < (b + 1) * BLOCK;
+			i++) {
+			xy += z[i] * z[n / 2 + i];
+			xx += z[i] * z[i];
+			yy += z[n / 2 + i] * z[n / 2 + i];
+			count += 2;
+		}
+	*level =
+		count > 0
+			? sqrt((xx + yy) / count / (c->duration * shape_energy(c->shape)))
+			: 0;
+	free(z);
+	if (xx > 0 && yy > 0)
+		*coherence = xy / sqrt(xx * yy);
+	return NUM_OK;
+}
+
+enum num_status matched_noise(const struct calibration *c, const double *y, size_t n,
+	double *work, double *noise)
+{
+	size_t count;
+
+	if (!filter_points(c, y, n, work, &count))
+		return NUM_MEMORY;
+	for (size_t i = 0; i < count; i++)
+		work[i] = fabs(work[i]);
+	*noise = count ? 1.482602218505602 * robust_median(work, count) /
+				 sqrt(c->duration * shape_energy(c->shape))
+		       : 1;
+	return NUM_OK;
+}

@@ -1,0 +1,423 @@
+/* measure.c - see measure.h */
+#include "signal/learn/measure.h"
+#include "signal/detect/align.h"
+#include "signal/learn/learn.h"
+#include "signal/learn/matched.h"
+#include "signal/noise/robust.h"
+#include <math.h>
+#include <string.h>
+
+/* Share of a pulse's energy that its shape may leave, see joint.h, where no lag tells how
+ * long a pulse is, and where the shape is that of before a filter. */
+static const double UNKNOWN_MISFIT = 3e-4, FILTERED_MISFIT = 0.15;
+
+/* Chi-square per degree of freedom of pulses that are not understood. */
+static const double BAD_FIT = 2;
+
+/* Band of a filter, over one cycle per duration of a pulse, that tells too little of it:
+ * what it leaves rings on, and others fit into that. */
+static const double NARROW = 0.5;
+
+/* The record while it is measured: aligned from some point on, then in units of the
+ * noise. */
+struct record {
+	double *y1, *y2;
+	size_t n;
+	double *work;                        /* as long */
+	double low;                          /* lag of the lowest autocorrelation */
+	double change[2], power2[TONES_MAX]; /* of tones, see take_tones() */
+};
+
+/* Takes tones (and the mean) from a whole record; *change receives the mean square change
+ * of their coefficients from hop to hop, INFINITY where there is but one, power[k] that
+ * of tone k. */
+static enum calibrate_status take_tones(const struct calibration *c, double *x, size_t n,
+	double *change, double power[TONES_MAX])
+{
+	double before[2 * TONES_MAX + 1], after[2 * TONES_MAX + 1], at = 0;
+	size_t hop = c->tone_hop < n ? c->tone_hop : n;
+	double squares = 0, count = 0, hops = 0;
+	enum tones_status status;
+
+	memset(power, 0, sizeof(double) * TONES_MAX);
+	for (size_t middle = hop / 2, done = 0; done < n; middle += hop) {
+		size_t from = middle > hop ? middle - hop : 0;
+		size_t to = middle + hop < n ? middle + hop : n, until;
+
+		if (from + hop > n) /* the last stretch keeps its length */
+			from = n - hop;
+		status = tones_fit(x + (from > done ? from : done),
+			to - (from > done ? from : done),
+			(double)(from > done ? from : done), c->tones, c->omega, after,
+			NULL, NULL);
+		if (status != TONES_OK)
+			return status == TONES_MEMORY ? CALIBRATE_MEMORY
+						      : CALIBRATE_TONES;
+		if (done == 0)
+			memcpy(before, after, sizeof before);
+		for (int k = 1; k <= 2 * c->tones; k++)
+			power[(k - 1) / 2] += after[k] * after[k] / 2;
+		hops++;
+		for (int k = 1; done > 0 && k <= 2 * c->tones; k++) {
+			squares += (after[k] - before[k]) * (after[k] - before[k]);
+			count++;
+		}
+		until = middle < n ? middle : n;
+		if (middle + hop / 2 >= n)
+			until = n;
+		tones_remove(x + done, until - done, (double)done, c->tones, c->omega, at,
+			before, (double)middle, after);
+		memcpy(before, after, sizeof before);
+		at = (double)middle;
+		done = until;
+	}
+	*change = count > 0 ? squares / count : INFINITY;
+	for (int k = 0; k < c->tones; k++)
+		power[k] /= hops;
+	return CALIBRATE_OK;
+}
+
+static double variance(const double *x, size_t n)
+{
+	double mean = 0, sum = 0;
+
+	for (size_t i = 0; i < n; i++)
+		mean += x[i] / (double)n;
+	for (size_t i = 0; i < n; i++)
+		sum += (x[i] - mean) * (x[i] - mean);
+	return sum / (double)n;
+}
+
+/* Range of the delays as far as it is known. */
+static void set_range(const struct calibrate_par *par, struct calibration *c)
+{
+	double share = isnan(par->spread) ? 0.1 : par->spread;
+	double spread = fmax(share * (double)c->shift, 0.05 * c->duration);
+
+	c->delta_min = -spread;
+	c->delta_max = spread;
+}
+
+static void set_thresholds(const struct calibrate_par *par, struct calibration *c)
+{
+	double gain = c->gain * c->noise[0] / c->noise[1];
+
+	c->drop = calibrate_drop(par->false_alarm, c->shape, c->duration, gain,
+		c->delta_max - c->delta_min);
+	/* Next to a pulse the search is over some 40 cells: 23 means 2e-3 false ones. */
+	c->drop_near = c->drop < 23 ? c->drop : 23;
+}
+
+/* Correlation coefficient of y1 with y2 lag samples later. */
+static double correlation_at(const double *y1, const double *y2, size_t n, size_t lag)
+{
+	double xy = 0, xx = 0, yy = 0;
+
+	for (size_t i = 0; i + lag < n; i++) {
+		xy += y1[i] * y2[i + lag];
+		xx += y1[i] * y1[i];
+		yy += y2[i + lag] * y2[i + lag];
+	}
+	return xx > 0 && yy > 0 ? xy / sqrt(xx * yy) : 0;
+}
+
+/* A correlation that channels with nothing in common do not reach: six of its standard
+ * deviations, by Bartlett's formula from the autocorrelation r at n / 4 lags; half where
+ * the record is too short to tell. */
+static double chance_correlation(const double *r, size_t n)
+{
+	double sum = 1;
+	size_t lags = n / 4 < 4096 ? n / 4 : 4096;
+
+	for (size_t k = 1; k <= lags; k++)
+		sum += 2 * (r[k] / r[0]) * (r[k] / r[0]);
+	return fmin(6 * sqrt(sum / (double)n), 0.5);
+}
+
+static enum num_status measure_noise(
+	struct calibration *c, const double *y1, const double *y2, size_t n, double *work)
+{
+	size_t shift = (size_t)c->shift;
+
+	if (c->whitening.tap && colour_level(y1, y2 + shift, n - shift, &c->whitening,
+					c->noise) != NUM_OK)
+		return NUM_MEMORY;
+	for (int k = 0; k < 2; k++) {
+		const double *y = k ? y2 : y1;
+		double least = 1e-6 * sqrt(variance(y, n));
+
+		if (!c->whitening.tap)
+			c->noise[k] = robust_noise(y, n, 4, work);
+		if (!(c->noise[k] > least))
+			c->noise[k] = least;
+	}
+	return NUM_OK;
+}
+
+static enum calibrate_status look_for_colour(const struct record *rec, struct look *look)
+{
+	static const double one[2] = { 1, 1 };
+	enum num_status status = colour_power(rec->y1, rec->y2, rec->n, one, look->power);
+
+	look->coloured = status == NUM_OK && !colour_is_white(look->power, 0);
+	return status == NUM_MEMORY ? CALIBRATE_MEMORY : CALIBRATE_OK;
+}
+
+static enum calibrate_status find_tones(
+	const struct calibrate_par *par, struct record *rec, struct calibration *c)
+{
+	enum { ENOUGH = 16384 };
+	size_t n = rec->n, some = n < ENOUGH ? n : ENOUGH, from = (n - some) / 2;
+	enum calibrate_status status;
+
+	if (par->tones != CALIBRATE_FIND_TONES) {
+		c->tones = par->tones;
+		memcpy(c->omega, par->omega, sizeof c->omega);
+	} else {
+		if (tones_find(rec->y1, rec->y2, n, TONES_MAX, c->omega, &c->tones) !=
+				NUM_OK ||
+			tones_confirm(rec->y1 + from, rec->y2 + from, some,
+				1 - calibration_lost(c), &c->tones, c->omega) != NUM_OK)
+			return CALIBRATE_MEMORY;
+	}
+	c->tone_hop = n < 8192 ? n : 4096;
+	status = take_tones(c, rec->y1, n, &rec->change[0], c->tone_power);
+	return status == CALIBRATE_OK
+		       ? take_tones(c, rec->y2, n, &rec->change[1], rec->power2)
+		       : status;
+}
+
+static enum calibrate_status find_lag(
+	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
+{
+	double lag = par->lag, last = (double)rec->n - 16;
+	enum num_status status;
+
+	if (isnan(lag)) {
+		status = align_lag(
+			rec->y1, rec->y2, rec->n, rec->n / 2, &lag, &c->correlation);
+		if (status != NUM_OK)
+			return status == NUM_MEMORY ? CALIBRATE_MEMORY : CALIBRATE_NO_LAG;
+	} else if (lag < last) {
+		c->correlation =
+			correlation_at(rec->y1, rec->y2, rec->n, (size_t)(lag + 0.5));
+	}
+	if (lag < 0)
+		return CALIBRATE_NO_LAG;
+	if (!(lag < last))
+		return isnan(par->lag) ? CALIBRATE_NO_LAG : CALIBRATE_FAR;
+	c->shift = (long)floor(lag + 0.5);
+	c->transit = c->shift > 0 ? (double)c->shift : INFINITY;
+	return CALIBRATE_OK;
+}
+
+/* Have the channels more in common than chance gives? */
+static enum calibrate_status check_lag(
+	const struct record *rec, const struct calibration *c)
+{
+	if (rec->n > 4096 && c->correlation < 6 / sqrt((double)rec->n))
+		return CALIBRATE_NO_LAG; /* whatever the autocorrelation */
+	if (align_autocorrelation(rec->y1, rec->y2, rec->n, rec->n / 4, rec->work) !=
+		NUM_OK)
+		return CALIBRATE_MEMORY;
+	return c->correlation < chance_correlation(rec->work, rec->n) ? CALIBRATE_NO_LAG
+								      : CALIBRATE_OK;
+}
+
+/* Is sensor 2 the first that particles pass?  Looked for where the lag found explains
+ * less than half of what the channels hold. */
+static enum calibrate_status find_reverse(
+	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
+{
+	struct calibration back = *c;
+	double lag;
+
+	if (!isnan(par->lag) || c->correlation > 0.5)
+		return CALIBRATE_OK;
+	if (align_lag(rec->y2, rec->y1, rec->n, rec->n / 2, &lag, &back.correlation) !=
+		NUM_OK)
+		return CALIBRATE_MEMORY; /* neither channel is zero throughout */
+	if (lag < 1 || back.correlation <= c->correlation)
+		return CALIBRATE_OK;
+	switch (check_lag(rec, &back)) {
+	case CALIBRATE_OK:
+		return CALIBRATE_SWAPPED;
+	case CALIBRATE_MEMORY:
+		return CALIBRATE_MEMORY;
+	default:
+		return CALIBRATE_OK;
+	}
+}
+
+/* The second channel moves back. */
+static void align(struct record *rec, const struct calibration *c)
+{
+	rec->y2 += c->shift;
+	rec->n -= (size_t)c->shift;
+}
+
+static enum calibrate_status find_duration(const struct calibrate_par *par,
+	struct record *rec, struct calibration *c, struct look *look)
+{
+	double length = (double)rec->n + (double)c->shift;
+
+	if (align_autocorrelation(rec->y1, rec->y2, rec->n, rec->n / 4, rec->work) !=
+		NUM_OK)
+		return CALIBRATE_MEMORY;
+	rec->low = learn_lowest_lag(rec->work, rec->n / 4);
+	if (!c->whitening.tap)
+		look->low = rec->low;
+	else if (look->coloured && look->kind == WHITEN_COLOURED)
+		rec->low = look->low; /* whitening has changed the pulses */
+	c->pulse = par->pulse == CALIBRATE_ANY_PULSE ? PULSE_SINE : par->pulse;
+	c->duration = par->duration;
+	if ((isnan(c->duration) &&
+		    learn_duration(c->pulse, rec->low, &c->duration) != NUM_OK) ||
+		learn_set_shape(c, c->pulse) != NUM_OK)
+		return CALIBRATE_MEMORY;
+	if (c->whitening.tap &&
+		(c->whitening.high - c->whitening.low) * c->duration < NARROW)
+		return CALIBRATE_NARROW;
+	if (!(c->duration >= 8))
+		return CALIBRATE_FAST;
+	return c->duration > 0.5 * length ? CALIBRATE_SLOW : CALIBRATE_OK;
+}
+
+/* First guess of the gain, from what either channel has beside its noise. */
+static double first_gain(const struct record *rec, const struct calibration *c)
+{
+	double v1 = variance(rec->y1, rec->n) - c->noise[0] * c->noise[0];
+	double v2 = variance(rec->y2, rec->n) - c->noise[1] * c->noise[1];
+
+	return v1 > 0 && v2 > 0 ? sqrt(v2 / v1) : 1;
+}
+
+/* Everything in units of the noise. */
+static void normalise(struct record *rec, struct calibration *c)
+{
+	double v1 = c->noise[0] * c->noise[0], v2 = c->noise[1] * c->noise[1];
+
+	for (int k = 0; k < c->tones; k++)
+		c->tone_power[k] /= v1;
+	c->tone_variance = fmax(rec->change[0] / v1, rec->change[1] / v2);
+	for (size_t i = 0; i < rec->n; i++) {
+		rec->y1[i] /= c->noise[0];
+		rec->y2[i] /= c->noise[1];
+	}
+}
+
+/* Multiplies the noise assumed. */
+static void scale_noise(struct record *rec, struct calibration *c, double s1, double s2)
+{
+	c->noise[0] *= s1;
+	c->noise[1] *= s2;
+	for (size_t i = 0; i < rec->n; i++) {
+		rec->y1[i] /= s1;
+		rec->y2[i] /= s2;
+	}
+}
+
+static enum calibrate_status learn(
+	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
+{
+	set_range(par, c);
+	set_thresholds(par, c);
+	return learn_pulse(par, rec->y1, rec->y2, rec->n, rec->low, c);
+}
+
+/* Learns the pulse; where the noise was measured in a band, pulses that leave less show
+ * that it was too much. */
+static enum calibrate_status learn_with_noise(
+	const struct calibrate_par *par, struct record *rec, struct calibration *c)
+{
+	enum { ROUNDS = 4 };
+	enum calibrate_status status = learn(par, rec, c);
+
+	for (int k = 0; c->whitening.tap && k < ROUNDS; k++) {
+		if (status != CALIBRATE_OK || c->events == 0 ||
+			fmin(c->rest[0], c->rest[1]) >= 0.75)
+			break;
+		scale_noise(rec, c, sqrt(c->rest[0]), sqrt(c->rest[1]));
+		status = learn(par, rec, c);
+	}
+	return status;
+}
+
+/* Why do the pulses not fit?  Even where it is most quiet both sensors see the same, or
+ * the noise is what it should be there: too many pulses. */
+static enum calibrate_status look_for_crowd(
+	const struct record *rec, const struct calibration *c, int *dense)
+{
+	double level, coherence;
+
+	if (matched_coherence(
+		    c, rec->y1, rec->y2, rec->n, rec->work, &coherence, &level) != NUM_OK)
+		return CALIBRATE_MEMORY;
+	*dense = coherence > 0.6 || (level < 1.5 && !c->whitening.tap);
+	return CALIBRATE_OK;
+}
+
+/* Or neither the shape nor white noise will do: the record was filtered.  What counts
+ * then is the noise that passes the matched filter. */
+static enum calibrate_status learn_filtered(
+	const struct calibrate_par *par, struct record *rec, struct calibration *c)
+{
+	double n1, n2;
+
+	if (matched_noise(c, rec->y1, rec->n, rec->work, &n1) != NUM_OK ||
+		matched_noise(c, rec->y2, rec->n, rec->work, &n2) != NUM_OK)
+		return CALIBRATE_MEMORY;
+	scale_noise(rec, c, n1, n2);
+	c->misfit = FILTERED_MISFIT;
+	return learn(par, rec, c);
+}
+
+static enum calibrate_status judge(
+	const struct calibrate_par *par, struct record *rec, struct calibration *c)
+{
+	enum calibrate_status status = CALIBRATE_OK;
+
+	if (c->events == 0 && isnan(par->duration))
+		return CALIBRATE_NO_LAG;
+	if (c->chi2 > BAD_FIT)
+		status = look_for_crowd(rec, c, &c->dense);
+	if (c->dense)
+		set_range(par, c);
+	else if (status == CALIBRATE_OK && c->chi2 > BAD_FIT && !c->whitening.tap &&
+		 !c->suspect)
+		status = learn_filtered(par, rec, c);
+	set_thresholds(par, c);
+	return status;
+}
+
+enum calibrate_status measure(const struct calibrate_par *par, double *y1, double *y2,
+	size_t n, double *work, struct look *look, struct calibration *c)
+{
+	struct record rec = { .y1 = y1, .y2 = y2, .n = n, .work = work };
+	enum calibrate_status status = find_tones(par, &rec, c);
+
+	if (status == CALIBRATE_OK)
+		status = find_lag(par, &rec, c);
+	if (status == CALIBRATE_OK && measure_noise(c, y1, y2, n, work) != NUM_OK)
+		status = CALIBRATE_MEMORY;
+	if (status == CALIBRATE_OK)
+		status = find_reverse(par, &rec, c);
+	if (status == CALIBRATE_OK && (isnan(par->duration) || isnan(par->lag)))
+		status = check_lag(&rec, c);
+	if (status != CALIBRATE_OK)
+		return status;
+	align(&rec, c);
+	status = find_duration(par, &rec, c, look);
+	if (status != CALIBRATE_OK)
+		return status;
+	c->gain = isnan(par->gain) ? first_gain(&rec, c) : par->gain;
+	c->misfit = isinf(c->transit) ? UNKNOWN_MISFIT : 0;
+	normalise(&rec, c);
+	if (!c->whitening.tap) {
+		status = look_for_colour(&rec, look);
+		c->suspect = look->coloured;
+	}
+	if (status == CALIBRATE_OK)
+		status = learn_with_noise(par, &rec, c);
+	return status == CALIBRATE_OK ? judge(par, &rec, c) : status;
+}

@@ -1,0 +1,27 @@
+/* measure.h - the instrument measured from a record, once (see calibrate.h)
+ *
+ * Known or assumed filters of the record have been undone before.
+ */
+#ifndef SIGNAL_MEASURE_H
+#define SIGNAL_MEASURE_H
+
+#include "signal/learn/calibration.h"
+#include "signal/noise/colour.h"
+#include <stddef.h>
+
+/* Results of a first look at the noise of the record. */
+struct look {
+	int attempts;
+	int coloured;
+	enum whiten_kind kind; /* tried now */
+	int settled;           /* 1: for the last time */
+	double low;            /* lag of the lowest autocorrelation */
+	double power[COLOUR_BINS];
+};
+
+/* Fills the rest of c, whose whitening, mean, guessed and suspect are given, from y1,
+ * y2[0 .. n), which it spoils; work holds n. */
+enum calibrate_status measure(const struct calibrate_par *par, double *y1, double *y2,
+	size_t n, double *work, struct look *look, struct calibration *c);
+
+#endif

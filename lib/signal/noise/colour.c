@@ -1,0 +1,125 @@
+/* colour.c - see colour.h */
+#include "signal/noise/colour.h"
+#include "num/fft.h"
+#include "signal/noise/quiet.h"
+#include "signal/noise/robust.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { LONGEST = 2 * (COLOUR_BINS - 1), QUIETS = 16 };
+
+/* Power of the whitened noise over that of white noise. */
+static double level(const struct whitening *w, double *power, size_t segment)
+{
+	size_t from = (size_t)(w->low * (double)segment) + 1,
+	       to = (size_t)(w->high * (double)segment);
+
+	if (to < from)
+		from = to = (size_t)(0.5 * (w->low + w->high) * (double)segment + 0.5);
+	return robust_median(power + from, to - from + 1);
+}
+
+enum num_status colour_level(const double *y1, const double *y2, size_t n,
+	const struct whitening *w, double noise[2])
+{
+	double least = 4 / (w->high - w->low);
+	double *power = malloc((LONGEST + 2) * sizeof *power);
+	enum num_status status = power ? NUM_OK : NUM_MEMORY;
+	int quiets = 0;
+
+	for (size_t segment = LONGEST; status == NUM_OK && quiets < QUIETS;
+		segment /= 2) {
+		double *other = power + segment / 2 + 1;
+
+		if (segment < 64 || (segment < LONGEST && (double)segment < least))
+			break;
+		status = quiet_spectrum(y1, y2, n, segment, power, other, &quiets);
+		if (status != NUM_OK)
+			break;
+		noise[0] = sqrt(level(w, power, segment));
+		noise[1] = sqrt(level(w, other, segment));
+	}
+	free(power);
+	return status;
+}
+
+/* Autocorrelation of a Hann window of n points at this lag, 1 at lag 0. */
+static double window_autocorrelation(size_t n, size_t lag)
+{
+	double sum = 0, all = 0, turn = 2 * M_PI / (double)n;
+
+	for (size_t i = 0; i < n; i++) {
+		double here = 0.5 - 0.5 * cos(turn * ((double)i + 0.5));
+
+		all += here * here;
+		if (i + lag < n)
+			sum += here * (0.5 - 0.5 * cos(turn * ((double)(i + lag) + 0.5)));
+	}
+	return sum / all;
+}
+
+/* Takes from a mean periodogram what the window did to it: the autocorrelation is divided
+ * by that of the window, and cut softly at half its length. */
+static enum num_status sharpen(double *power, size_t bins)
+{
+	size_t points = 2 * (bins - 1), last = points / 2;
+	struct fft *fft = fft_new(points, 1);
+	double complex *spectrum = fft_alloc_complex(bins);
+	double *r = fft_alloc(points);
+	enum num_status status = fft && spectrum && r ? NUM_OK : NUM_MEMORY;
+
+	if (status == NUM_OK) {
+		for (size_t k = 0; k < bins; k++)
+			spectrum[k] = power[k] / (double)points;
+		fft_inverse(fft, spectrum, r);
+		for (size_t k = 0; k <= last; k++) {
+			double u = 2 * (double)k / (double)last - 1;
+			double keep = u <= 0 ? 1 : 0.5 + 0.5 * cos(M_PI * u);
+
+			r[k] *= keep / window_autocorrelation(points, k);
+			r[k ? points - k : 0] = r[k];
+		}
+		fft_forward(fft, r, spectrum);
+		for (size_t k = 0; k < bins; k++)
+			power[k] = fmax(creal(spectrum[k]), 0);
+	}
+	fft_done(fft);
+	fft_free(spectrum);
+	fft_free(r);
+	return status;
+}
+
+enum num_status colour_power(const double *y1, const double *y2, size_t n,
+	const double noise[2], double power[COLOUR_BINS])
+{
+	double *part = malloc(2 * COLOUR_BINS * sizeof *part);
+	int quiets = 0;
+	enum num_status status = part ? quiet_spectrum(y1, y2, n, LONGEST, part,
+						part + COLOUR_BINS, &quiets)
+				      : NUM_MEMORY;
+
+	for (int k = 0; quiets > 0 && k < COLOUR_BINS; k++)
+		power[k] = 0.5 * (part[k] / (noise[0] * noise[0]) +
+					 part[COLOUR_BINS + k] / (noise[1] * noise[1]));
+	free(part);
+	if (status != NUM_OK)
+		return status;
+	return quiets >= QUIETS ? sharpen(power, COLOUR_BINS) : NUM_DOMAIN;
+}
+
+int colour_is_white(const double power[COLOUR_BINS], double from)
+{
+	enum { GROUP = 32 };
+	double least = INFINITY, most = 0;
+	int first = (int)fmin(from * LONGEST, LONGEST) + 1;
+
+	for (int k = first; k + GROUP <= COLOUR_BINS; k += GROUP) {
+		double sum = 0;
+
+		for (int i = k; i < k + GROUP; i++)
+			sum += power[i];
+		least = fmin(least, sum);
+		most = fmax(most, sum);
+	}
+	return most < 1.3 * least;
+}

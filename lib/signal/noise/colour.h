@@ -1,0 +1,27 @@
+/* colour.h - the noise of a record: how much where it was made white, and its spectrum
+ * where it is not
+ */
+#ifndef SIGNAL_COLOUR_H
+#define SIGNAL_COLOUR_H
+
+#include "num/status.h"
+#include "signal/noise/whiten.h"
+#include <stddef.h>
+
+enum { COLOUR_BINS = 513 };
+
+/* Standard deviations that the noise of y1, y2[0 .. n), whitened by w, would have if its
+ * band were the whole spectrum; too large if hardly any stretch is quiet. */
+enum num_status colour_level(const double *y1, const double *y2, size_t n,
+	const struct whitening *w, double noise[2]);
+
+/* Spectrum of the noise at COLOUR_BINS frequencies from 0 to half the rate, the mean of
+ * both channels in units of noise^2, smoothed.  NUM_DOMAIN if fewer than
+ * 16 segments are quiet. */
+enum num_status colour_power(const double *y1, const double *y2, size_t n,
+	const double noise[2], double power[COLOUR_BINS]);
+/* 1 if this is the spectrum of white noise, within its scatter, above the frequency from
+ * (per sample). */
+int colour_is_white(const double power[COLOUR_BINS], double from);
+
+#endif

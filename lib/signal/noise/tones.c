@@ -1,0 +1,448 @@
+/* tones.c - see tones.h */
+#include "signal/noise/tones.h"
+#include "num/fft.h"
+#include "signal/noise/robust.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+	SIDE = 64,
+	CLIP = 3,
+	TERMS_MAX = 2 * TONES_MAX + 1,
+	RUN = 64 /* samples for each sine and cosine that is computed */
+};
+
+struct line {
+	double power, omega;
+};
+
+static int by_power(const void *x, const void *y)
+{
+	const struct line *p = x, *q = y;
+
+	return p->power > q->power ? -1 : p->power < q->power;
+}
+
+static int by_omega(const void *x, const void *y)
+{
+	const struct line *p = x, *q = y;
+
+	return p->omega < q->omega ? -1 : p->omega > q->omega;
+}
+
+/* Pulses are clipped to a few times the usual sample, lines and all: unclipped their
+ * spectrum would bury a line that is as strong as they are rare. */
+static void add_periodogram(const struct fft *fft, const double *y, size_t n,
+	double *work, double complex *spectrum, double *power)
+{
+	double mean = 0, limit;
+
+	for (size_t i = 0; i < n; i++)
+		mean += y[i] / (double)n;
+	for (size_t i = 0; i < n; i++)
+		work[i] = fabs(y[i] - mean);
+	limit = CLIP * robust_median(work, n);
+	if (limit <= 0)
+		limit = INFINITY; /* silence but for pulses */
+	for (size_t i = 0; i < n; i++)
+		work[i] = fmax(fmin(y[i] - mean, limit), -limit) *
+			  (0.5 - 0.5 * cos(2 * M_PI * (double)i / (double)n));
+	fft_forward(fft, work, spectrum);
+	for (size_t k = 0; k <= n / 2; k++)
+		power[k] += creal(spectrum[k] * conj(spectrum[k]));
+}
+
+static int pick_lines(const double *power, size_t n, int max, double *omega)
+{
+	enum { KEEP = 256 };
+	struct line line[KEEP] = { { 0, 0 } };
+	double around[2 * SIDE];
+	int count = 0;
+
+	for (size_t k = 3; k + 3 <= n / 2; k++) {
+		size_t from = k > SIDE ? k - SIDE : 0,
+		       to = k + SIDE < n / 2 ? k + SIDE : n / 2;
+		double a, b, c, bend;
+		int m = 0;
+
+		if (power[k] <= power[k - 1] || power[k] < power[k + 1])
+			continue;
+		for (size_t i = from; i < to && m < 2 * SIDE; i++)
+			if (i + 2 < k || i > k + 2)
+				around[m++] = power[i];
+		if (power[k] < 40 * robust_median(around, (size_t)m) || count == KEEP)
+			continue;
+		/* The main lobe of a Hann window is nearly a parabola in the logarithm.
+		 */
+		a = log(power[k - 1]);
+		b = log(power[k]);
+		c = log(power[k + 1]);
+		bend = a - 2 * b + c;
+		line[count].power = power[k];
+		line[count++].omega = 2 * M_PI / (double)n *
+				      ((double)k + (bend < 0 ? 0.5 * (a - c) / bend : 0));
+	}
+	qsort(line, (size_t)count, sizeof *line, by_power);
+	if (count > max)
+		count = max;
+	qsort(line, (size_t)count, sizeof *line, by_omega);
+	for (int i = 0; i < count; i++)
+		omega[i] = line[i].omega;
+	return count;
+}
+
+enum num_status tones_find(
+	const double *y1, const double *y2, size_t n, int max, double *omega, int *tones)
+{
+	struct fft *fft;
+	double *work, *power;
+	double complex *spectrum;
+	enum num_status status = NUM_MEMORY;
+
+	*tones = 0;
+	if (n < 1024)
+		return NUM_OK;
+	while (fft_good_size(n) != n || n % 2)
+		n--;
+	fft = fft_new(n, 1);
+	work = fft_alloc(n);
+	power = fft_alloc(n / 2 + 1);
+	spectrum = fft_alloc_complex(n / 2 + 1);
+	if (fft && work && power && spectrum) {
+		add_periodogram(fft, y1, n, work, spectrum, power);
+		add_periodogram(fft, y2, n, work, spectrum, power);
+		*tones = pick_lines(power, n, max > TONES_MAX ? TONES_MAX : max, omega);
+		status = NUM_OK;
+	}
+	fft_free(work);
+	fft_free(power);
+	fft_free(spectrum);
+	if (fft)
+		fft_done(fft);
+	return status;
+}
+
+/* Terms (a constant, then cosine and sine of each tone) of a run of samples from index 0
+ * on, and their products summed over it.  Those of any other run are the same, each tone
+ * turned by its phase where the run begins. */
+struct basis {
+	int tones, terms;
+	double omega[TONES_MAX];
+	double term[TERMS_MAX][RUN], gram[TERMS_MAX][TERMS_MAX];
+};
+
+static double dot(const double *x, const double *y)
+{
+	double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+
+	for (int i = 0; i < RUN; i += 4) {
+		s0 += x[i] * y[i];
+		s1 += x[i + 1] * y[i + 1];
+		s2 += x[i + 2] * y[i + 2];
+		s3 += x[i + 3] * y[i + 3];
+	}
+	return (s0 + s1) + (s2 + s3);
+}
+
+/* Cosine and sine of omega t.  The product is taken to twice the digits, since its last
+ * one is worth much where t is large. */
+static void cosine_sine(double omega, double t, double *c, double *s)
+{
+	double phase = omega * t, rest = fma(omega, t, -phase);
+	double cp = cos(phase), sp = sin(phase);
+
+	*c = cp - rest * (sp + 0.5 * rest * cp);
+	*s = sp + rest * (cp - 0.5 * rest * sp);
+}
+
+static void make_basis(struct basis *b, int tones, const double *omega)
+{
+	b->tones = tones;
+	b->terms = 1 + 2 * tones;
+	memcpy(b->omega, omega, sizeof(double) * (size_t)tones);
+	for (int i = 0; i < RUN; i++) {
+		b->term[0][i] = 1;
+		for (int k = 0; k < tones; k++)
+			cosine_sine(omega[k], i, &b->term[1 + 2 * k][i],
+				&b->term[2 + 2 * k][i]);
+	}
+	for (int k = 0; k < b->terms; k++)
+		for (int l = 0; l < b->terms; l++)
+			b->gram[k][l] = dot(b->term[k], b->term[l]);
+}
+
+/* Terms of the run from index t on, by the addition theorem. */
+static void make_terms(const struct basis *b, double t, double term[][RUN])
+{
+	memcpy(term[0], b->term[0], sizeof term[0]);
+	for (int k = 0; k < b->tones; k++) {
+		const double *c0 = b->term[1 + 2 * k], *s0 = b->term[2 + 2 * k];
+		double *c = term[1 + 2 * k], *s = term[2 + 2 * k];
+		double ct, st;
+
+		cosine_sine(b->omega[k], t, &ct, &st);
+		for (int i = 0; i < RUN; i++) {
+			c[i] = ct * c0[i] - st * s0[i];
+			s[i] = st * c0[i] + ct * s0[i];
+		}
+	}
+}
+
+/* Sum of the terms of a run times their coefficients. */
+static void sum_terms(
+	double term[][RUN], int terms, const double *coefficient, double *sum)
+{
+	double part[RUN] = { 0 };
+
+	for (int k = 0; k < terms; k++)
+		for (int i = 0; i < RUN; i++)
+			part[i] += coefficient[k] * term[k][i];
+	memcpy(sum, part, sizeof part);
+}
+
+/* Cholesky factor of the symmetric matrix a (lower triangle, rows of TERMS_MAX) in
+ * place; 0 where it is not positive definite. */
+static int factorise(double *a, int n)
+{
+	for (int i = 0; i < n; i++)
+		for (int k = 0; k <= i; k++) {
+			double sum = a[i * TERMS_MAX + k];
+
+			for (int l = 0; l < k; l++)
+				sum -= a[i * TERMS_MAX + l] * a[k * TERMS_MAX + l];
+			if (k < i)
+				a[i * TERMS_MAX + k] = sum / a[k * TERMS_MAX + k];
+			else if (sum > 1e-10 * a[i * TERMS_MAX + i])
+				a[i * TERMS_MAX + i] = sqrt(sum);
+			else
+				return 0;
+		}
+	return 1;
+}
+
+/* Solves L L^T x = b in place. */
+static void substitute(const double *a, double *b, int n)
+{
+	for (int i = 0; i < n; i++) {
+		for (int l = 0; l < i; l++)
+			b[i] -= a[i * TERMS_MAX + l] * b[l];
+		b[i] /= a[i * TERMS_MAX + i];
+	}
+	for (int i = n - 1; i >= 0; i--) {
+		for (int l = i + 1; l < n; l++)
+			b[i] -= a[l * TERMS_MAX + i] * b[l];
+		b[i] /= a[i * TERMS_MAX + i];
+	}
+}
+
+/* Turns every tone's pair of rows by its phase at the first sample of term. */
+static void turn_rows(const struct basis *b, double term[][RUN], double from[][TERMS_MAX],
+	double to[][TERMS_MAX])
+{
+	memcpy(to[0], from[0], sizeof to[0]);
+	for (int k = 1; k < b->terms; k += 2) {
+		double c = term[k][0], s = term[k + 1][0];
+
+		for (int l = 0; l < b->terms; l++) {
+			to[k][l] = c * from[k][l] - s * from[k + 1][l];
+			to[k + 1][l] = s * from[k][l] + c * from[k + 1][l];
+		}
+	}
+}
+
+/* Least squares as it grows: products of terms with each other and with the samples. */
+struct normal {
+	double a[TERMS_MAX * TERMS_MAX], b[TERMS_MAX];
+};
+
+/* Adds a run all of whose samples count. */
+static void add_whole(
+	struct normal *s, struct basis *b, double term[][RUN], const double *x)
+{
+	double once[TERMS_MAX][TERMS_MAX], turned[TERMS_MAX][TERMS_MAX],
+		twice[TERMS_MAX][TERMS_MAX];
+
+	turn_rows(b, term, b->gram, once);
+	for (int k = 0; k < b->terms; k++)
+		for (int l = 0; l < b->terms; l++)
+			turned[k][l] = once[l][k];
+	turn_rows(b, term, turned, twice);
+	for (int k = 0; k < b->terms; k++) {
+		s->b[k] += dot(term[k], x);
+		for (int l = 0; l <= k; l++)
+			s->a[k * TERMS_MAX + l] += twice[k][l];
+	}
+}
+
+/* Adds the samples of a run whose mask is set. */
+static void add_part(struct normal *s, const struct basis *b, double term[][RUN],
+	const double *x, const unsigned char *mask)
+{
+	double part[TERMS_MAX][RUN], y[RUN];
+
+	for (int i = 0; i < RUN; i++)
+		y[i] = mask[i] ? x[i] : 0;
+	for (int k = 0; k < b->terms; k++) {
+		for (int i = 0; i < RUN; i++)
+			part[k][i] = mask[i] ? term[k][i] : 0;
+		s->b[k] += dot(term[k], y);
+		for (int l = 0; l <= k; l++)
+			s->a[k * TERMS_MAX + l] += dot(part[k], term[l]);
+	}
+}
+
+/* Least squares over the samples whose mask is set; on request the variance of each
+ * coefficient in units of that of a sample. */
+static int fit_masked(struct basis *b, double term[][RUN], const double *x,
+	const unsigned char *mask, size_t runs, double *coefficient, double *variance)
+{
+	struct normal s = { { 0 }, { 0 } };
+
+	for (size_t r = 0; r < runs; r++, term += b->terms, x += RUN, mask += RUN)
+		if (!memchr(mask, 0, RUN))
+			add_whole(&s, b, term, x);
+		else if (memchr(mask, 1, RUN))
+			add_part(&s, b, term, x, mask);
+	if (!factorise(s.a, b->terms))
+		return 0;
+	substitute(s.a, s.b, b->terms);
+	memcpy(coefficient, s.b, sizeof(double) * (size_t)b->terms);
+	for (int k = 0; variance && k < b->terms; k++) {
+		double unit[TERMS_MAX] = { 0 };
+
+		unit[k] = 1;
+		substitute(s.a, unit, b->terms);
+		variance[k] = unit[k];
+	}
+	return 1;
+}
+
+/* Marks where the mean square of rest over some neighbours is at most twice its median:
+ * where nothing happens.  Returns that median; work and sorted hold n. */
+static double mark_quiet(
+	const double *rest, size_t n, double *work, double *sorted, unsigned char *mask)
+{
+	size_t half = n / 1024 > 8 ? n / 1024 : 8, count = 0;
+	double sum = 0, median;
+
+	for (size_t i = 0; i < n + half; i++) {
+		if (i < n) {
+			sum += rest[i] * rest[i];
+			count++;
+		}
+		if (i > 2 * half) {
+			sum -= rest[i - 2 * half - 1] * rest[i - 2 * half - 1];
+			count--;
+		}
+		if (i >= half)
+			work[i - half] = sum > 0 ? sum / (double)count : 0;
+	}
+	memcpy(sorted, work, n * sizeof *work);
+	median = robust_median(sorted, n);
+	for (size_t i = 0; i < n; i++)
+		mask[i] = work[i] <= 2 * median;
+	return median;
+}
+
+enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
+	const double *omega, double *coefficient, double *deviation, double *variance)
+{
+	enum { PASSES = 4 };
+	size_t terms = 1 + 2 * (size_t)tones, runs = (n + RUN - 1) / RUN,
+	       room = runs * RUN;
+	struct basis basis;
+	double(*term)[RUN] = malloc(terms * runs * sizeof *term);
+	double *y = calloc(room, sizeof *y); /* x, filled up with zeros */
+	double *rest = malloc(3 * room * sizeof *rest), level = 0;
+	unsigned char *mask = calloc(room, 1);
+	int memory = term && y && rest && mask, good = memory && n > 4 * terms;
+
+	memset(coefficient, 0, sizeof(double) * terms);
+	if (good) {
+		make_basis(&basis, tones, omega);
+		for (size_t r = 0; r < runs; r++)
+			make_terms(&basis, start + (double)(r * RUN), term + r * terms);
+		memcpy(rest, x, n * sizeof *x);
+		coefficient[0] = robust_median(rest, n);
+		memcpy(y, x, n * sizeof *x);
+	}
+	/* At first the rest is the record itself: where tones prevail it is quiet all
+	 * along, where they do not it is quiet between the pulses. */
+	for (int pass = 0; good && pass < PASSES; pass++) {
+		for (size_t r = 0; r < runs; r++)
+			sum_terms(term + r * terms, basis.terms, coefficient,
+				rest + r * RUN);
+		for (size_t i = 0; i < n; i++)
+			rest[i] = x[i] - rest[i];
+		level = mark_quiet(rest, n, rest + room, rest + 2 * room, mask);
+		if (!fit_masked(&basis, term, y, mask, runs, coefficient, variance)) {
+			memset(mask, 1, n);
+			good = fit_masked(
+				&basis, term, y, mask, runs, coefficient, variance);
+		}
+	}
+	if (deviation)
+		*deviation = sqrt(level);
+	free(term);
+	free(y);
+	free(rest);
+	free(mask);
+	return good ? TONES_OK : memory ? TONES_SHORT : TONES_MEMORY;
+}
+
+/* Power of tone k over what noise gives it: chi-square with two degrees of freedom. */
+static double significance(
+	const double *coefficient, const double *variance, double deviation, int k)
+{
+	double sum = 0;
+
+	for (int i = 1 + 2 * k; i <= 2 + 2 * k; i++)
+		sum += coefficient[i] * coefficient[i] / variance[i];
+	return sum / (deviation * deviation);
+}
+
+enum num_status tones_confirm(const double *y1, const double *y2, size_t n, double band,
+	int *tones, double *omega)
+{
+	double c[2][TERMS_MAX], v[2][TERMS_MAX], d[2];
+	enum tones_status status = TONES_OK;
+	int kept = 0;
+
+	for (int i = 0; i < 2 && *tones && status == TONES_OK; i++)
+		status = tones_fit(i ? y2 : y1, n, 0, *tones, omega, c[i], &d[i], v[i]);
+	if (*tones == 0 || status != TONES_OK)
+		return status == TONES_MEMORY ? NUM_MEMORY : NUM_OK;
+	for (int k = 0; k < *tones; k++)
+		if (significance(c[0], v[0], d[0], k) * band > 40 ||
+			significance(c[1], v[1], d[1], k) * band > 40)
+			omega[kept++] = omega[k];
+	*tones = kept;
+	return NUM_OK;
+}
+
+void tones_remove(double *x, size_t n, double start, int tones, const double *omega,
+	double at_a, const double *from, double at_b, const double *to)
+{
+	struct basis basis;
+	double term[TERMS_MAX][RUN], change[TERMS_MAX];
+
+	make_basis(&basis, tones, omega);
+	for (int k = 0; k < basis.terms; k++)
+		change[k] = to[k] - from[k];
+	for (size_t i = 0; i < n; i += RUN) {
+		size_t m = n - i < RUN ? n - i : RUN;
+		double first[RUN], more[RUN];
+
+		make_terms(&basis, start + (double)i, term);
+		sum_terms(term, basis.terms, from, first);
+		sum_terms(term, basis.terms, change, more);
+		for (size_t k = 0; k < m; k++) {
+			double t = start + (double)(i + k),
+			       part = at_b > at_a ? (t - at_a) / (at_b - at_a) : 0;
+
+			part = part < 0 ? 0 : part > 1 ? 1 : part;
+			x[i + k] -= first[k] + part * more[k];
+		}
+	}
+}

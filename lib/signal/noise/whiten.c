@@ -1,0 +1,277 @@
+/* whiten.c - see whiten.h */
+#include "signal/noise/whiten.h"
+#include "num/fft.h"
+#include "signal/filter/fir.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double least_power = 2.5e-5; /* (1/200)^2 */
+
+/* The same for measured power, where leakage from other frequencies sets an end. */
+static const double least_measured = 5e-3;
+
+/* Rise of measured power over two of its frequencies, from the first on, that is too
+ * steep to be known: of what is below nothing can be made good. */
+static const double steep = 0.18;
+
+/* Share that is kept of frequencies from 0 at edge lost to 1 at edge whole. */
+static double taper(double f, double lost, double whole)
+{
+	double u = (f - lost) / (whole - lost);
+
+	return u <= 0 ? 0 : u >= 1 ? 1 : 0.5 - 0.5 * cos(M_PI * u);
+}
+
+/* Bins around the strongest where the power does not fall below the least. */
+static void find_band(const double *power, size_t n, size_t *first, size_t *last)
+{
+	size_t peak = 0;
+
+	for (size_t k = 1; k < n; k++)
+		if (power[k] > power[peak])
+			peak = k;
+	for (*first = peak; *first > 0; --*first)
+		if (power[*first - 1] < least_power * power[peak])
+			break;
+	for (*last = peak; *last + 1 < n; ++*last)
+		if (power[*last + 1] < least_power * power[peak])
+			break;
+}
+
+/* Symmetric taps -half..half of the gain at n frequencies, tapered towards the ends. */
+static int taps_of_gain(const double *gain, size_t n, int half, double *tap)
+{
+	size_t points = 2 * (n - 1);
+	struct fft *fft = fft_new(points, 1);
+	double complex *spectrum = fft_alloc_complex(n);
+	double *x = fft_alloc(points);
+	int ok = fft && spectrum && x;
+
+	if (ok) {
+		for (size_t k = 0; k < n; k++)
+			spectrum[k] = gain[k] / (double)points;
+		fft_inverse(fft, spectrum, x);
+		for (int k = -half; k <= half; k++)
+			tap[k + half] =
+				x[abs(k)] * taper(half + 1 - abs(k), 0, 0.25 * half + 1);
+	}
+	if (fft)
+		fft_done(fft);
+	fft_free(spectrum);
+	fft_free(x);
+	return ok;
+}
+
+/* Gain at n frequencies of symmetric taps -half..half. */
+static int gain_of_taps(const double *tap, int half, size_t n, double *gain)
+{
+	size_t points = 2 * (n - 1);
+	struct fft *fft = fft_new(points, 1);
+	double complex *spectrum = fft_alloc_complex(n);
+	double *x = fft_alloc(points);
+	int ok = fft && spectrum && x;
+
+	if (ok) {
+		for (int k = 0; k <= half; k++)
+			x[k] = x[k ? points - (size_t)k : 0] = tap[half + k];
+		fft_forward(fft, x, spectrum);
+		for (size_t k = 0; k < n; k++)
+			gain[k] = creal(spectrum[k]);
+	}
+	if (fft)
+		fft_done(fft);
+	fft_free(spectrum);
+	fft_free(x);
+	return ok;
+}
+
+/* Drops taps at both ends that do not matter. */
+static void trim(double *tap, int *half)
+{
+	double most = 0;
+	int keep = *half;
+
+	for (int k = 0; k <= 2 * *half; k++)
+		most = fmax(most, fabs(tap[k]));
+	while (keep > 0 && fabs(tap[*half + keep]) < 2e-4 * most)
+		keep--;
+	memmove(tap, tap + (*half - keep), (2 * (size_t)keep + 1) * sizeof *tap);
+	*half = keep;
+}
+
+/* Gains that make the noise white, with soft edges where frequencies are lost, and what
+ * they and the filter leave of a pulse, its baseline apart. */
+static void whitening_gains(struct whitening *w, const double *power, size_t n,
+	double unit, double *gain, double *seen)
+{
+	double step = 0.5 / (double)(n - 1);
+	size_t first, last;
+
+	find_band(power, n, &first, &last);
+	w->low = first ? fmin(1.25 * (double)first,
+				 (double)first + 0.2 * (double)(last - first)) *
+				 step
+		       : 0;
+	w->high = last + 1 < n ? 0.8 * (double)last * step : 0.5;
+	for (size_t k = 0; k < n; k++) {
+		double f = (double)k * step, keep = 1;
+
+		seen[k] = 1;
+		if (first)
+			keep *= taper(f, (double)first * step, w->low);
+		if (last + 1 < n)
+			keep *= seen[k] = taper(f, (double)last * step, w->high);
+		gain[k] = keep > 0 ? keep * sqrt(unit / power[k]) : 0;
+	}
+}
+
+/* What the taps leave of a pulse and of the noise. */
+static int look_through(struct whitening *w, const double *power, double unit, size_t n,
+	enum whiten_kind kind, double *gain, double *seen)
+{
+	size_t lowest = (size_t)ceil(w->low * 2 * (double)(n - 1));
+
+	if (!gain_of_taps(w->tap, w->half, n, gain))
+		return 0;
+	for (size_t k = 0; k < n; k++)
+		w->band += gain[k] * gain[k] * power[k] / unit *
+			   (k == 0 || k == n - 1 ? 0.5 : 1) / (double)(n - 1);
+	if (kind == WHITEN_COLOURED) /* the baseline is fitted along: leave it in */
+		for (size_t k = 0; k < n; k++)
+			seen[k] = gain[k < lowest ? lowest : k];
+	if (!taps_of_gain(seen, n, w->half, w->seen))
+		return 0;
+	trim(w->seen, &w->seen_half);
+	return 1;
+}
+
+static int edge_of_taps(const double *tap, int half)
+{
+	double all = 0, beyond = 0;
+	int edge = half;
+
+	for (int k = 0; k <= 2 * half; k++)
+		all += tap[k] * tap[k];
+	while (edge > 0 && beyond < 0.01 * all) {
+		beyond += 2 * tap[half + edge] * tap[half + edge];
+		edge--;
+	}
+	return edge;
+}
+
+enum num_status whitening_make(struct whitening *w, const double *power, size_t n,
+	double unit, int half, enum whiten_kind kind)
+{
+	double *gain = malloc(2 * n * sizeof *gain);
+	int ok;
+
+	memset(w, 0, sizeof *w);
+	w->half = w->seen_half = half;
+	w->tap = malloc((2 * (size_t)half + 1) * sizeof *w->tap);
+	w->seen = malloc((2 * (size_t)half + 1) * sizeof *w->seen);
+	ok = gain && w->tap && w->seen && unit > 0;
+	if (ok) {
+		whitening_gains(w, power, n, unit, gain, gain + n);
+		ok = taps_of_gain(gain, n, half, w->tap) &&
+		     look_through(w, power, unit, n, kind, gain, gain + n);
+		w->edge = edge_of_taps(w->tap, half);
+	}
+	free(gain);
+	if (!ok)
+		whitening_clear(w);
+	return ok ? NUM_OK : NUM_MEMORY;
+}
+
+enum num_status whitening_of_noise(
+	struct whitening *w, const double *power, size_t n, enum whiten_kind kind)
+{
+	enum { FINER = 8 };
+	size_t fine = FINER * (n - 1) + 1, first = 0;
+	double *between = malloc(fine * sizeof *between), most = 0;
+	enum num_status status;
+
+	memset(w, 0, sizeof *w);
+	if (!between)
+		return NUM_MEMORY;
+	for (size_t k = 0; k < n; k++)
+		most = fmax(most, power[k]);
+	if (n > 3 && power[1] < steep * power[3])
+		first = 2;
+	for (size_t k = 0; k < fine; k++) {
+		size_t from = k / FINER, to = from + 1 < n ? from + 1 : from;
+		double part = (double)(k % FINER) / FINER;
+		double least = 1e-12 * most;
+
+		if (from < first || power[from] < least_measured * most)
+			between[k] = 0;
+		else
+			between[k] = pow(power[from], 1 - part) *
+				     pow(fmax(power[to], least), part);
+	}
+	status = whitening_make(w, between, fine, most, (int)(2 * n), kind);
+	free(between);
+	return status;
+}
+
+enum num_status whitening_of_filter(struct whitening *w, const double *tap, size_t taps)
+{
+	/* An inverse is longer than the filter: near the edges the gain is steep. */
+	size_t points = fft_good_size(24 * taps + 64), n;
+	double *power;
+	struct fft *fft;
+	double complex *spectrum;
+	double *x;
+	enum num_status status;
+
+	points += points % 2;
+	n = points / 2 + 1;
+	power = malloc(n * sizeof *power);
+	fft = fft_new(points, 1);
+	spectrum = fft_alloc_complex(n);
+	x = fft_alloc(points);
+	status = power && fft && spectrum && x ? NUM_OK : NUM_MEMORY;
+	memset(w, 0, sizeof *w);
+	if (status == NUM_OK) {
+		memcpy(x, tap, taps * sizeof *tap);
+		fft_forward(fft, x, spectrum);
+		for (size_t k = 0; k < n; k++)
+			power[k] = creal(spectrum[k]) * creal(spectrum[k]) +
+				   cimag(spectrum[k]) * cimag(spectrum[k]);
+		status = whitening_make(w, power, n, 1, (int)(6 * taps), WHITEN_FILTERED);
+	}
+	free(power);
+	if (fft)
+		fft_done(fft);
+	fft_free(spectrum);
+	fft_free(x);
+	return status;
+}
+
+void whitening_clear(struct whitening *w)
+{
+	free(w->tap);
+	free(w->seen);
+	w->tap = w->seen = NULL;
+}
+
+enum num_status whitening_apply(const struct whitening *w, double *x, size_t n)
+{
+	struct fir *fir = fir_new(w->tap, 2 * (size_t)w->half + 1, 1, 0);
+	size_t block = fir ? fir_block(fir) : 0, delay = (size_t)w->half;
+	double *piece = malloc((block + 1) * sizeof *piece);
+
+	/* What is written lags behind what is read. */
+	for (size_t at = 0; fir && piece && at < n + delay; at += block) {
+		for (size_t i = 0; i < block; i++)
+			piece[i] = at + i < n ? x[at + i] : 0;
+		fir_run(fir, piece, block);
+		for (size_t i = 0; i < block; i++)
+			if (at + i >= delay && at + i < n + delay)
+				x[at + i - delay] = piece[i];
+	}
+	block = fir && piece;
+	fir_free(fir);
+	free(piece);
+	return block ? NUM_OK : NUM_MEMORY;
+}

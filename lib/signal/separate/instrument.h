@@ -1,0 +1,42 @@
+/* instrument.h - what was learned of an instrument, as numbers to keep and to restore
+ *
+ * A record that is separated with a kept instrument (separate.h) gives the rows that it
+ * gives after learning it, without the wait; what the record itself must show, its noise
+ * and the fit of its pulses, is still compared.
+ */
+#ifndef SIGNAL_INSTRUMENT_H
+#define SIGNAL_INSTRUMENT_H
+
+#include "signal/learn/calibration.h"
+#include "signal/separate/validate.h"
+#include <stddef.h>
+
+struct instrument {
+	struct calibration cal;
+	int crowded;          /* long sections hold too many pulses */
+	struct flow flow;     /* delays of particles, samples around cal.shift */
+	double level[2];      /* noise of both channels once clean, near 1 */
+	double level_samples; /* these are known from so many samples */
+};
+
+struct instrument_value {
+	const char *name;
+	int index;
+	double value;
+};
+
+/* All of it; free *value.  Returns their number, 0 out of memory. */
+size_t instrument_values(const struct instrument *in, struct instrument_value **value);
+
+enum instrument_status {
+	INSTRUMENT_OK,
+	INSTRUMENT_MEMORY,
+	INSTRUMENT_MISSING, /* *which names a number that is not there or out of range */
+	INSTRUMENT_UNKNOWN  /* some numbers are no part of an instrument */
+};
+
+/* Those values in any order, each once, into *in, whose cal calibration_clear() frees. */
+enum instrument_status instrument_restore(struct instrument *in,
+	const struct instrument_value *value, size_t n, const char **which);
+
+#endif

@@ -1,0 +1,138 @@
+/* separate.h - a two-sensor record in, particles out, as the record comes
+ *
+ * The first learn samples are held back to calibrate (calibrate.h); where they hold no
+ * particle half of them are passed over, and so on until there is one.  From then on the
+ * record is cleaned, aligned and cut into sections (sections.h); each section is given
+ * to one of the methods: joint fit (joint.h) or masks (masks.h).  Sections longer than
+ * window are worked off in windows, pulses near the end of one being the first guesses
+ * of the next.  Where to cut depends on the record alone, so that the particles are the
+ * same however the record is handed in; memory is bounded by learn and window.
+ *
+ *	struct separate *s = separate_new(&par);
+ *	while ((n = read(x)) > 0 && separate_push(s, x, n) == SEPARATE_OK)
+ *		while (separate_next(s, &p))
+ *			print(&p);
+ *	if (separate_end(s) == SEPARATE_OK)
+ *		while (separate_next(s, &p))
+ *			print(&p);
+ *	separate_free(s);
+ */
+#ifndef SIGNAL_SEPARATE_H
+#define SIGNAL_SEPARATE_H
+
+#include "signal/detect/campbell.h"
+#include "signal/fit/joint.h"
+#include "signal/fit/verdict.h"
+#include "signal/learn/calibrate.h"
+#include "signal/mixture/masks.h"
+#include "signal/separate/instrument.h"
+#include <stddef.h>
+
+/* Samples that nothing can be learned from fewer of. */
+enum { SEPARATE_SHORTEST = 64 };
+
+enum separate_method { SEPARATE_FIT, SEPARATE_MASKS };
+
+/* One particle on its way past both sensors, as the record tells it. */
+struct transit {
+	long section;     /* from 1 */
+	int sources;      /* particles in this section (or window of it) */
+	double t1, t2;    /* arrival at either sensor, samples from the start */
+	double amplitude; /* at sensor 1, units of the record */
+	double t1_se, t2_se, delay_se, amplitude_se;
+	double correlation; /* between the errors of delay and amplitude */
+	double chi2;        /* of the section per degree of freedom */
+	enum separate_verdict verdict;
+};
+
+/* What is known about a section when it is done. */
+struct separate_section {
+	long number;
+	long long begin, end; /* samples of channel 1 */
+	int sources;
+	double chi2;
+	enum separate_verdict verdict;
+	const double *source; /* sources * (end - begin): each on sensor 1; NULL unless
+				 wanted */
+	const struct masks *masks;    /* for its histogram; NULL for a fit */
+	const struct campbell *dense; /* of an unresolved section, else NULL; per sample
+				       * and in units of the record */
+};
+
+struct separate_par {
+	enum separate_method method;
+	struct calibrate_par known;
+	size_t learn;    /* samples held back to calibrate, at least SEPARATE_SHORTEST */
+	size_t window;   /* longest section worked off at once; 0: 24 durations */
+	int sources;     /* exactly so many in each section; 0: find out */
+	int most_pulses; /* of a window, if fewer than JOINT_PULSES_MAX; 0: so many */
+	/* Of the masks, samples; 0: 64, or as many as the pulses need, and half of it. */
+	size_t mask_window, mask_hop;
+	struct instrument *kept; /* learned before, with known: its cal is taken over;
+				    NULL: learn */
+	int want_sources;        /* fill separate_section.source */
+	void (*on_section)(void *context, const struct separate_section *section);
+	void *context;
+};
+
+enum separate_status {
+	SEPARATE_OK,
+	SEPARATE_MEMORY,
+	SEPARATE_SHORT,      /* fewer samples than that */
+	SEPARATE_NOT_FINITE, /* see separate_bad_sample() */
+	SEPARATE_SILENT_1,
+	SEPARATE_SILENT_2,
+	SEPARATE_NO_LAG,
+	SEPARATE_SWAPPED, /* particles pass sensor 2 first */
+	SEPARATE_FAR,     /* the lag given is as long as what is learned from */
+	SEPARATE_NARROW,  /* a filter has left too little of the pulses */
+	SEPARATE_FAST,
+	SEPARATE_SLOW,
+	SEPARATE_TONES,  /* the lines given cannot be told from each other */
+	SEPARATE_WINDOW, /* that of the masks is shorter than half a pulse */
+	SEPARATE_WIDE    /* pulses may last too long, or no time, within the spread */
+};
+
+/* Work done and left out so far. */
+struct separate_counters {
+	double passed_over;       /* before there was anything to learn from */
+	double samples, active;   /* frames in all, and in sections */
+	double sections, singles; /* sections, and those with one pulse */
+	double fits, steps, searches;
+	double rows, misfits; /* of pulses fitted, and those doubted, dense ones too */
+	double foreign;       /* doubted by their velocities, though they fit */
+	double masks, masks_skipped; /* sections demixed, and those that need not be */
+	double unresolved, dense;    /* rows, and the samples these stand for */
+};
+
+struct separate;
+struct separate *separate_new(const struct separate_par *par); /* NULL: no memory */
+void separate_free(struct separate *s);
+
+/* n frames of two channels, interleaved. */
+enum separate_status separate_push(struct separate *s, const double *x, size_t n);
+/* NO_LAG and FAST from separate_end() only: there was nothing to learn from. */
+enum separate_status separate_end(struct separate *s);
+/* The next particle in order of section and arrival; 0 where none is ready. */
+int separate_next(struct separate *s, struct transit *p);
+
+const struct calibration *separate_calibration(
+	const struct separate *s); /* NULL: not yet */
+/* What was learned, to keep, and what the rows so far tell of it; its arrays remain those
+ * of s.  0: not yet, some rows of what is learned from are still to be judged. */
+int separate_instrument(const struct separate *s, struct instrument *view);
+/* Noise of both channels over that of the kept instrument, by up to par.learn samples. */
+void separate_noise(const struct separate *s, double share[2]);
+const struct separate_counters *separate_counters(const struct separate *s);
+/* Why all rows are doubtful. */
+enum separate_doubt {
+	SEPARATE_BELIEVED, /* they are not */
+	SEPARATE_FOREIGN,  /* so many pulses fit no particle that the others may not */
+	SEPARATE_NOISE,    /* the noise is not that of the kept instrument */
+	SEPARATE_CROWD     /* more than half is unresolved, unlike its record */
+};
+enum separate_doubt separate_doubtful(const struct separate *s);
+/* Frame and channel (0, 1) that made it fail with NOT_FINITE. */
+long long separate_bad_sample(const struct separate *s, int *channel);
+
+#endif

@@ -1,0 +1,44 @@
+/* tape.h - preparation of one channel of a record as it arrives: its filter is undone,
+ * tones are removed, and it is scaled to units of its noise
+ *
+ * A zeroed tape is empty.  The result does not depend on the sizes of the pieces in which
+ * the record arrives.
+ */
+#ifndef SIGNAL_TAPE_H
+#define SIGNAL_TAPE_H
+
+#include "num/status.h"
+#include "signal/learn/calibration.h"
+#include <stddef.h>
+
+/* Samples from index begin on: the filter is undone in those before white; those before
+ * clean are also free of tones and in units of the noise. */
+struct tape {
+	double *x;
+	size_t n, capacity;
+	long long begin, white, clean;
+	struct fir *whiten; /* NULL if there is no filter to undo; it has read ... */
+	long long fed;      /* ... the samples before this one */
+	double *piece;      /* a block of it */
+	double at;          /* index at which the coefficients hold */
+	double coefficient[2 * TONES_MAX + 1];
+	int started;
+};
+
+void tape_clear(struct tape *t);
+
+/* Appends n samples: x[0], x[2], x[4] ... */
+enum num_status tape_append(struct tape *t, const double *x, size_t n);
+/* Drops the n oldest samples. */
+void tape_drop(struct tape *t, size_t n);
+/* Drops samples before keep once there are many. */
+void tape_forget(struct tape *t, long long keep);
+
+/* Starts the preparation, with what was learned of the record. */
+enum num_status tape_start(struct tape *t, const struct calibration *c);
+/* Prepares all samples that can be prepared without later ones; all samples if the record
+ * has ended. */
+enum num_status tape_prepare(
+	struct tape *t, const struct calibration *c, int channel, int ended);
+
+#endif

@@ -1,0 +1,319 @@
+/* validate.c - see validate.h */
+#include "signal/separate/validate.h"
+#include "signal/noise/robust.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+	LATELY = 256, /* rows, and pairs, that the present is judged by */
+	FEW = 8,      /* delays that a variance can be told from */
+	PLACES = 32   /* within two durations to either side of a strong pulse */
+};
+
+/* Variance of z of the parts of one object: 1 if the model of the others held for them.
+ */
+static const double PARTS = 2;
+
+/* Twice the logarithm of the likelihood ratio that says that there are parts at all: 3.5
+ * deviations. */
+static const double CERTAIN = 12;
+
+/* Deviations that no group of particles reaches. */
+static const double BEYOND = 5;
+
+struct delay {
+	double value, var;
+	int alone;
+};
+
+struct pair {
+	double z2, ratio; /* of the variances, 2 s^2 / var, over s^2 */
+};
+
+struct validation {
+	struct delay delay[LATELY];
+	struct pair pair[LATELY];
+	unsigned char doubted[LATELY], at_edge[LATELY];
+	size_t delays, pairs, rows; /* taken in so far */
+	double middle, half;        /* of the range of delays; half 0: not known */
+	double mean, var, margin;   /* of the delays; on the safe side */
+	double known;               /* delays these are from */
+	struct flow told;
+	double parts; /* share of them among pairs; 0: none for certain */
+	double recurring[PLACES], groups;
+};
+
+struct validation *validation_new(void)
+{
+	return calloc(1, sizeof(struct validation));
+}
+
+void validation_free(struct validation *v)
+{
+	free(v);
+}
+
+double validation_parts(const struct validation *v)
+{
+	return v->parts;
+}
+
+void validation_range(struct validation *v, double least, double most)
+{
+	v->middle = 0.5 * (least + most);
+	v->half = 0.5 * (most - least);
+}
+
+void validation_tell_flow(struct validation *v, const struct flow *flow)
+{
+	v->told = *flow;
+}
+
+void validation_flow(const struct validation *v, struct flow *flow)
+{
+	*flow = v->known > 0 ? (struct flow){ v->mean, v->var, v->margin, v->known }
+			     : v->told;
+}
+
+static size_t held(size_t count)
+{
+	return count < LATELY ? count : LATELY;
+}
+
+/* Rows from i on that belong to its group. */
+static size_t group_size(const struct evidence *e, size_t i, size_t n)
+{
+	size_t k = i;
+
+	while (k < n && e[k].group == e[i].group)
+		k++;
+	return k - i;
+}
+
+static int fits(const struct evidence *e, size_t m)
+{
+	for (size_t i = 0; i < m; i++)
+		if (!e[i].fits)
+			return 0;
+	return 1;
+}
+
+/* --- the flow */
+
+/* The delay of the largest pulse of a group that fits. */
+static void take_delay(struct validation *v, const struct evidence *e, size_t m)
+{
+	size_t largest = 0;
+
+	for (size_t i = 1; i < m; i++)
+		if (e[i].amplitude > e[largest].amplitude)
+			largest = i;
+	if (!fits(e, m) || !(e[largest].var > 0))
+		return;
+	v->delay[v->delays++ % LATELY] =
+		(struct delay){ e[largest].delay, e[largest].var, m == 1 };
+}
+
+/* Mean and variance of the delays of particles, by those that stand alone if there are
+ * some. */
+static void learn_flow(struct validation *v)
+{
+	double x[LATELY], y[LATELY], scale, sum = 0, count = 0;
+	size_t n = 0, alone = 0;
+
+	for (size_t i = 0; i < held(v->delays); i++)
+		alone += (size_t)v->delay[i].alone;
+	for (size_t i = 0; i < held(v->delays); i++)
+		if (v->delay[i].alone || alone < FEW)
+			x[n++] = v->delay[i].value;
+	v->var = INFINITY;
+	v->known = 0;
+	if (n < FEW) {
+		if (v->told.count > 0) {
+			v->mean = v->told.mean;
+			v->var = v->told.var;
+			v->margin = v->told.margin;
+		}
+		return;
+	}
+	memcpy(y, x, n * sizeof *x);
+	v->mean = robust_median(y, n);
+	for (size_t i = 0; i < n; i++)
+		y[i] = fabs(x[i] - v->mean);
+	scale = 1.482602218505602 * robust_median(y, n);
+	for (size_t i = 0; i < held(v->delays); i++) {
+		const struct delay *d = &v->delay[i];
+		double off = d->value - v->mean;
+
+		if ((!d->alone && alone >= FEW) || fabs(off) > BEYOND * scale)
+			continue;
+		sum += off * off - d->var;
+		count++;
+	}
+	v->known = count;
+	v->var = fmax(sum / count, 0);
+	/* Three deviations of this estimate. */
+	v->margin = fmax(v->var, scale * scale) * (1 + 3 * sqrt(2 / count));
+}
+
+/* Are the velocities of a group other than the flow has?  By the cube root of
+ * chi-square (Wilson and Hilferty, Proc. Natl. Acad. Sci. 17, 1931). */
+static int is_impossible(const struct validation *v, const struct evidence *e, size_t m)
+{
+	double sum = 0, spread = 2 / (9 * (double)m);
+
+	if (m < 2 || isinf(v->var))
+		return 0;
+	for (size_t i = 0; i < m; i++)
+		if (e[i].var > 0)
+			sum += pow(e[i].delay - v->mean, 2) / (v->margin + 2 * e[i].var);
+	return cbrt(sum / (double)m) > 1 - spread + BEYOND * sqrt(spread);
+}
+
+/* Is the delay, known to a tenth of the range, in the outer tenth of it at either side?
+ * A range is learned to be twice as wide as that of the particles seen. */
+static int is_at_edge(const struct validation *v, const struct evidence *e)
+{
+	return v->half > 0 && e->var > 0 && sqrt(e->var) < 0.2 * v->half &&
+	       fabs(e->delay - v->middle) > 0.8 * v->half;
+}
+
+/* --- parts of one object */
+
+static void take_pairs(struct validation *v, const struct evidence *e, size_t m)
+{
+	for (size_t i = 0; i < m; i++)
+		if (e[i].partner && e[i].apart_var > 0)
+			v->pair[v->pairs++ % LATELY] =
+				(struct pair){ e[i].apart * e[i].apart / e[i].apart_var,
+					2 / e[i].apart_var };
+}
+
+/* How much more likely is a pair one object than two, but for how frequent either is? */
+static double likelihood_ratio(const struct validation *v, double z2, double ratio)
+{
+	double two = 1 + ratio * v->var;
+
+	return sqrt(two / PARTS) * exp(fmin(0.5 * z2 * (1 / two - 1 / PARTS), 300));
+}
+
+/* The share of parts of greatest likelihood, by expectation and maximisation. */
+static void learn_parts(struct validation *v)
+{
+	enum { STEPS = 30 };
+	double odds[LATELY], share = 0.3, gain = 0;
+	size_t n = held(v->pairs);
+
+	v->parts = 0;
+	if (isinf(v->var) || n == 0)
+		return;
+	for (size_t i = 0; i < n; i++)
+		odds[i] = likelihood_ratio(v, v->pair[i].z2, v->pair[i].ratio);
+	for (int step = 0; step < STEPS; step++) {
+		double sum = 0;
+
+		for (size_t i = 0; i < n; i++)
+			sum += share * odds[i] / (share * odds[i] + 1 - share);
+		share = fmin(sum / (double)n, 0.99);
+	}
+	for (size_t i = 0; i < n; i++)
+		gain += 2 * log(1 - share + share * odds[i]);
+	if (gain > CERTAIN)
+		v->parts = share;
+}
+
+static int is_part(const struct validation *v, const struct evidence *e)
+{
+	double odds;
+
+	if (!e->partner || !(e->apart_var > 0) || v->parts == 0)
+		return 0;
+	odds = likelihood_ratio(v, e->apart * e->apart / e->apart_var, 2 / e->apart_var);
+	return v->parts * odds > 1 - v->parts;
+}
+
+/* --- weak pulses that recur */
+
+/* Less than half as high, and at its velocity as far as can be told: the place, or -1. */
+static int weak_place(const struct evidence *e)
+{
+	int place = (int)floor((e->place + 2) * PLACES / 4);
+
+	return e->partner && e->height < 0.5 && place >= 0 && place < PLACES &&
+			       e->apart * e->apart <= 10 * e->apart_var
+		       ? place
+		       : -1;
+}
+
+/* In more than four groups and a tenth of them, where chance, which has 32 places to
+ * choose from and velocities to give away, does not come near. */
+static int recurs(const struct validation *v, const struct evidence *e)
+{
+	int place = weak_place(e);
+
+	return place >= 0 && v->recurring[place] > 4 + 0.1 * v->groups;
+}
+
+/* --- all together */
+
+static void take_in(struct validation *v, const struct evidence *e, size_t n)
+{
+	for (size_t i = 0, m; i < n; i += m) {
+		m = group_size(e, i, n);
+		take_delay(v, e + i, m);
+		v->groups++;
+		for (size_t k = i; k < i + m; k++)
+			if (weak_place(&e[k]) >= 0)
+				v->recurring[weak_place(&e[k])]++;
+	}
+	learn_flow(v);
+	for (size_t i = 0, m; i < n; i += m) {
+		m = group_size(e, i, n);
+		if (!is_impossible(v, e + i, m))
+			take_pairs(v, e + i, m);
+	}
+	learn_parts(v);
+}
+
+static void judge_group(const struct validation *v, struct evidence *e, size_t m)
+{
+	int impossible = is_impossible(v, e, m);
+
+	for (size_t i = 0; i < m; i++)
+		e[i].doubted = impossible || !e[i].fits || is_at_edge(v, &e[i]);
+	for (size_t i = 0; i < m; i++)
+		if (is_part(v, &e[i]) || recurs(v, &e[i])) {
+			e[i].doubted = 1;
+			e[(long)i + e[i].partner].doubted = 1;
+		}
+}
+
+/* More than half of the rows of late doubted, or a tenth at the edge? */
+static int fails(struct validation *v, const struct evidence *e, size_t n)
+{
+	size_t sum = 0, edge = 0, rows;
+
+	for (size_t i = 0; i < n; i++) {
+		v->doubted[v->rows % LATELY] = (unsigned char)e[i].doubted;
+		v->at_edge[v->rows++ % LATELY] = (unsigned char)is_at_edge(v, &e[i]);
+	}
+	rows = held(v->rows);
+	for (size_t i = 0; i < rows; i++) {
+		sum += v->doubted[i];
+		edge += v->at_edge[i];
+	}
+	return rows >= FEW && (2 * sum > rows || (edge > 2 && 10 * edge > rows));
+}
+
+void validation_judge(struct validation *v, struct evidence *e, size_t n)
+{
+	take_in(v, e, n);
+	for (size_t i = 0, m; i < n; i += m) {
+		m = group_size(e, i, n);
+		judge_group(v, e + i, m);
+	}
+	if (fails(v, e, n))
+		for (size_t i = 0; i < n; i++)
+			e[i].doubted = 1;
+}
