@@ -154,46 +154,23 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
  * filter. */
 static const double KNOWN = 0.01;
 
-/* Noise and pulses of a record were filtered alike if what made the noise white has made
- * the pulse a known one.  Its size is then that of before the filter.  COLOURED: not to
- * be told from this pulse. */
-static enum calibrate_status try_filtered(const struct calibrate_par *par,
-	const double *x1, const double *x2, size_t n, struct look *look,
-	struct calibration *c)
+/* Has what made the noise white made the pulse a known one, and are the low frequencies
+ * lost?  Then a pulse taken from the record lacks them. */
+static enum calibrate_status lacks_low(
+	const struct look *look, const struct calibration *c, int *lacks)
 {
 	struct template white = { .shape = c->shape, .duration = c->duration };
-	struct calibrate_par known = *par;
-	struct calibration other;
 	struct whitening w;
-	enum calibrate_status status;
-	double left, low;
+	enum num_status status;
+	double left = 1;
+	int pulse;
 
 	if (whitening_of_noise(&w, look->power, COLOUR_BINS, WHITEN_FILTERED) != NUM_OK)
 		return CALIBRATE_MEMORY;
-	status =
-		template_known(&white, w.seen, w.seen_half, &known.pulse, &left) == NUM_OK
-			? CALIBRATE_OK
-			: CALIBRATE_MEMORY;
-	low = w.low;
+	status = template_known(&white, w.seen, w.seen_half, &pulse, &left);
+	*lacks = left <= KNOWN && w.low > 0;
 	whitening_clear(&w);
-	if (status != CALIBRATE_OK || left > KNOWN)
-		return status;
-	/* Where the low frequencies are lost, a pulse taken from the record lacks them.
-	 */
-	if (low > 0)
-		return CALIBRATE_COLOURED;
-	look->first = 0;
-	look->settled = 1;
-	status = attempt_kind(&known, x1, x2, n, WHITEN_FILTERED, look, &other);
-	if (status != CALIBRATE_OK)
-		return status == CALIBRATE_MEMORY ? status : CALIBRATE_OK;
-	if (other.chi2 < DOUBTFUL && other.price < c->price) {
-		calibration_clear(c);
-		*c = other;
-	} else {
-		calibration_clear(&other);
-	}
-	return CALIBRATE_OK;
+	return status == NUM_OK ? CALIBRATE_OK : CALIBRATE_MEMORY;
 }
 
 /* Makes the noise white and takes the pulse from that record; COLOURED where that does
@@ -212,9 +189,11 @@ static enum calibrate_status attempt_white(const struct calibrate_par *par,
 		return status;
 	look->attempts = smooth.attempts;
 	if (status == CALIBRATE_OK && c->measured && c->chi2 < DOUBTFUL) {
-		status = try_filtered(par, x1, x2, n, look, c);
+		int lacks;
+
 		c->attempts = look->attempts;
-		if (status != CALIBRATE_COLOURED)
+		status = lacks_low(look, c, &lacks);
+		if (status != CALIBRATE_OK || !lacks)
 			return status;
 	}
 	calibration_clear(c);
