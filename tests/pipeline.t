@@ -121,7 +121,7 @@ is 'no value contains a colon followed by a blank' \
 	"$(head -c 1024 measured.nrrd | grep -a ':=' | grep -c ': ')" 0
 
 mkdir demo && cd demo || exit
-fails 'the demo names a surface that is not there' 1 '^roughgen: nowhere: No such file' \
+fails 'a demo with a missing surface' 1 '^roughgen: nowhere: No such file' \
 	sh "$top/examples/demo/pipeline.sh" nowhere
 cd "$work" || exit
 done_testing

@@ -90,5 +90,5 @@ not run'
 near 'the interval of a mean is that of Student' "$(awk -F '\t' '$1 == "inside" { print $4 }' results.tsv)" 14.9567 0.001
 # Wilson, 3 of 4
 near 'the interval of a share is that of Wilson' "$(awk -F '\t' '$1 == "most" { print $3 }' results.tsv)" 0.30064 0.001
-fails 'a kind that is none is refused' 1 'no such kind' sh -c "printf 'a\tmedian\t1\n' >bad.tsv && '$top/examples/results' bad.tsv"
+fails 'an unknown kind of result is refused' 1 'no such kind' sh -c "printf 'a\tmedian\t1\n' >bad.tsv && '$top/examples/results' bad.tsv"
 done_testing
