@@ -19,7 +19,7 @@ is 'every row has a value or a reason' "$(rows | awk -F '\t' '$4 == "-" && ($10 
 is 'a value is a number' "$(rows | awk -F '\t' '$4 != "-" && $4 !~ /^[-+]?[0-9.]+(e[-+]?[0-9]+)?$/ { print $1, $4 }')" ''
 is 'a verdict is computed, or one of the list with its reason' "$(rows | awk -F '\t' '
 	$9 == "-" && $6 == "-" || $9 !~ /^(-|print inconsistent|data unpublished|scheme only)$/ || $9 != "-" && $10 == "-" { print $1 }')" ''
-is 'what is computed is compared with a value or is a test' "$(rows | awk -F '\t' '
+is 'every computed row has a value to compare with or is a test' "$(rows | awk -F '\t' '
 	$9 == "-" && $4 == "-" && $6 !~ /^unit\// { print $1 }')" ''
 is 'every experiment is a unit test or a folder with a Makefile' "$(rows | cut -f 6 | sort -u | while read -r e; do
 	case $e in

@@ -37,7 +37,7 @@ picture 'an envelope keeps a spike of one frame' '3' spike.au
 
 printf 't\ty\n0\t1\n3600\t2\n7200\t3\n' >series.tsv
 picture 'a series is drawn over time' 'observed' series.tsv
-picture 'with its threshold' 'threshold' --end 5 series.tsv
+picture 'a series is drawn with its threshold' 'threshold' --end 5 series.tsv
 printf '# units: h L/min\nt\ty\n0\t1\n3600\t2\n7200\t3\n' >hours.tsv
 picture 'hours stay hours' 'y, L/min.*time, h' hours.tsv
 is 'the axis reaches the last value' "$(tr -d '\n' <p.svg | sed 's/<[^>]*>/ /g' | grep -c ' 8000 ')" 1
