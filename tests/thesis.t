@@ -19,7 +19,7 @@ is 'every row has a value or a reason' "$(rows | awk -F '\t' '$4 == "-" && ($10 
 is 'a value is a number' "$(rows | awk -F '\t' '$4 != "-" && $4 !~ /^[-+]?[0-9.]+(e[-+]?[0-9]+)?$/ { print $1, $4 }')" ''
 is 'a verdict is computed, or one of the list with its reason' "$(rows | awk -F '\t' '
 	$9 == "-" && $6 == "-" || $9 !~ /^(-|print inconsistent|data unpublished|scheme only)$/ || $9 != "-" && $10 == "-" { print $1 }')" ''
-is 'what is computed is compared with a value or is a test' "$(rows | awk -F '\t' '
+is 'every computed row has a value to compare with or is a test' "$(rows | awk -F '\t' '
 	$9 == "-" && $4 == "-" && $6 !~ /^unit\// { print $1 }')" ''
 is 'every experiment is a unit test or a folder with a Makefile' "$(rows | cut -f 6 | sort -u | while read -r e; do
 	case $e in
@@ -109,5 +109,5 @@ near 'the interval of a positive quantity is that of its logarithm' "$(awk -F '\
 fails 'a quantity that is not positive is refused' 1 'not above zero' sh -c "printf 'a\tpositive\t0\n' >bad.tsv && '$top/examples/results' bad.tsv"
 # Wilson, 3 of 4
 near 'the interval of a share is that of Wilson' "$(awk -F '\t' '$1 == "most" { print $3 }' results.tsv)" 0.30064 0.001
-fails 'a kind that is none is refused' 1 'no such kind' sh -c "printf 'a\tmedian\t1\n' >bad.tsv && '$top/examples/results' bad.tsv"
+fails 'an unknown kind of result is refused' 1 'no such kind' sh -c "printf 'a\tmedian\t1\n' >bad.tsv && '$top/examples/results' bad.tsv"
 done_testing
