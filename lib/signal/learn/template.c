@@ -348,11 +348,13 @@ static enum num_status check_widths(const struct search *s, int *one)
 	enum { BASE = 4 };
 	size_t n = 2 * (size_t)s->half + 1;
 	double *work = malloc((BASE + 2) * n * sizeof *work);
-	double *d = work + BASE * n, *r = d + n, sum = 0;
+	double *d, *r, sum = 0;
 	int count = 0;
 
 	if (!work)
 		return NUM_MEMORY;
+	d = work + BASE * n;
+	r = d + n;
 	for (int k = -s->half; k <= s->half; k++) {
 		size_t i = (size_t)(k + s->half);
 		double slope = i > 0 && i + 1 < n ? 0.5 * (s->p[i + 1] - s->p[i - 1]) : 0;
