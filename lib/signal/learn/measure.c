@@ -167,12 +167,96 @@ static enum calibrate_status look_for_colour(const struct record *rec, struct lo
 	return status == NUM_MEMORY ? CALIBRATE_MEMORY : CALIBRATE_OK;
 }
 
+/* Tones nearer to each other than gap become one, at their mean. */
+static int merge_tones(int tones, const double *omega, double gap, double *merged)
+{
+	int count = 0;
+
+	for (int k = 0, next; k < tones; k = next) {
+		double sum = omega[k];
+
+		for (next = k + 1; next < tones && omega[next] - omega[next - 1] < gap;
+			next++)
+			sum += omega[next];
+		merged[count++] = sum / (next - k);
+	}
+	return count;
+}
+
+/* Level of the record without these tones, followed from hop to hop: the median, which
+ * pulses hardly change, for as many coefficients as are fitted to two hops. */
+static enum calibrate_status level_without_tones(
+	const struct record *rec, const struct calibration *c, double *level)
+{
+	double share = (2 * c->tones + 1) / (2.0 * (double)c->tone_hop);
+	double change, power[TONES_MAX];
+
+	*level = 0;
+	for (int k = 0; k < 2; k++) {
+		double median;
+		enum calibrate_status status;
+
+		memcpy(rec->work, k ? rec->y2 : rec->y1, rec->n * sizeof *rec->work);
+		status = take_tones(c, rec->work, rec->n, &change, power);
+		if (status != CALIBRATE_OK)
+			return status;
+		for (size_t i = 0; i < rec->n; i++)
+			rec->work[i] = fabs(rec->work[i]);
+		median = robust_median(rec->work, rec->n);
+		*level += median * median * (1 + share) / (1 - share);
+	}
+	return CALIBRATE_OK;
+}
+
+/* Share of the noise that lines may add: of the hops that add no more the longest is
+ * used, which pulses disturb least. */
+static const double LINES = 0.02;
+
+/* Of the slowest tone: longer hops follow no mains, and cost memory. */
+static const double PERIODS = 16;
+
+/* How fast do the lines change?  Their frequencies wander, mains by 0.1 Hz and more, and
+ * a coefficient is that of two hops.  Short hops do not tell close lines apart, such as
+ * the parts into which a long record splits one that wanders. */
+static enum calibrate_status choose_hop(
+	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
+{
+	enum { SHORTEST = 256, HOPS = 16 };
+	struct calibration trial = *c, *t = &trial;
+	double least = INFINITY, level[HOPS];
+	size_t longest = (size_t)fmax(4096, PERIODS * 2 * M_PI / c->omega[0]);
+
+	if (longest > rec->n / 2)
+		longest = rec->n / 2;
+	for (int k = 0; k < HOPS; k++) {
+		double gap = 2 * M_PI / (double)(SHORTEST << k);
+
+		level[k] = INFINITY;
+		t->tone_hop = (size_t)SHORTEST << k;
+		t->tones = merge_tones(c->tones, c->omega, gap, t->omega);
+		if (t->tone_hop > longest || t->omega[0] < gap || par->tones > t->tones)
+			continue;
+		if (level_without_tones(rec, t, &level[k]) == CALIBRATE_MEMORY)
+			return CALIBRATE_MEMORY;
+		least = fmin(least, level[k]);
+	}
+	for (int k = HOPS - 1; k >= 0 && isfinite(least); k--) {
+		if (level[k] > (1 + LINES) * least)
+			continue;
+		c->tone_hop = (size_t)SHORTEST << k;
+		c->tones = merge_tones(
+			c->tones, c->omega, 2 * M_PI / (double)c->tone_hop, c->omega);
+		break;
+	}
+	return CALIBRATE_OK;
+}
+
 static enum calibrate_status find_tones(
 	const struct calibrate_par *par, struct record *rec, struct calibration *c)
 {
 	enum { ENOUGH = 16384 };
 	size_t n = rec->n, some = n < ENOUGH ? n : ENOUGH, from = (n - some) / 2;
-	enum calibrate_status status;
+	enum calibrate_status status = CALIBRATE_OK;
 
 	if (par->tones != CALIBRATE_FIND_TONES) {
 		c->tones = par->tones;
@@ -185,7 +269,10 @@ static enum calibrate_status find_tones(
 			return CALIBRATE_MEMORY;
 	}
 	c->tone_hop = n < 8192 ? n : 4096;
-	status = take_tones(c, rec->y1, n, &rec->change[0], c->tone_power);
+	if (c->tones > 0)
+		status = choose_hop(par, rec, c);
+	if (status == CALIBRATE_OK)
+		status = take_tones(c, rec->y1, n, &rec->change[0], c->tone_power);
 	return status == CALIBRATE_OK
 		       ? take_tones(c, rec->y2, n, &rec->change[1], rec->power2)
 		       : status;

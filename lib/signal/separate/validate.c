@@ -276,9 +276,34 @@ static void take_in(struct validation *v, const struct evidence *e, size_t n)
 	learn_parts(v);
 }
 
+/* Standard deviations that this number of delays does not reach. */
+static const double MANY = 3;
+
+/* Are more delays at a limit of the range than noise takes there? */
+static int too_many_at_limit(
+	const struct validation *v, const struct evidence *e, size_t m)
+{
+	double count = 0, mean = 0, var = 0;
+
+	if (!(v->half > 0) || isinf(v->var))
+		return 0;
+	for (size_t i = 0; i < m; i++) {
+		double sd = sqrt(v->var + e[i].var), off = v->mean - v->middle, p;
+
+		if (!(e[i].var > 0))
+			continue;
+		p = 0.5 * (erfc((v->half - off) / (M_SQRT2 * sd)) +
+				  erfc((v->half + off) / (M_SQRT2 * sd)));
+		mean += p;
+		var += p * (1 - p);
+		count += fabs(e[i].delay - v->middle) > (1 - 1e-6) * v->half;
+	}
+	return count > mean + MANY * sqrt(var);
+}
+
 static void judge_group(const struct validation *v, struct evidence *e, size_t m)
 {
-	int impossible = is_impossible(v, e, m);
+	int impossible = is_impossible(v, e, m) || too_many_at_limit(v, e, m);
 
 	for (size_t i = 0; i < m; i++)
 		e[i].doubted = impossible || !e[i].fits || is_at_edge(v, &e[i]);
