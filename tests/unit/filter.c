@@ -125,7 +125,7 @@ static void test_resampling(enum resampling scheme, const char *name)
 		for (int i = 0; i < N; i++) {
 			int off = abs(copies[i] - (int)(N * weight[i] / sum));
 
-			most = tap_max(most, off);
+			most = off > most ? off : most;
 		}
 	}
 	for (int i = 0; i < N; i++) {
