@@ -57,6 +57,14 @@ fails "a number next to a bound" 2 '^debrisstat: --confidence 0.99991: want 0.01
 	debrisstat --confidence 0.99991 --help
 fails "other bounds have a unit" 2 '^sensorsim: --bore 20: want 1um to 10m$' sensorsim --bore 20
 
+if command -v python3 >/dev/null; then
+	python3 -c 'import pty, sys; sys.exit(pty.spawn(["timeout", "5", "debrisstat"]) >> 8)' >tty </dev/null
+	is "a program without arguments does not wait for a terminal" \
+		"$? $(grep -c 'nothing to read: usage: debrisstat' tty)" "2 1"
+else
+	skip "a program without arguments does not wait for a terminal" "no python3"
+fi
+
 # The same word has the same letter everywhere, and reserved letters keep their meaning.
 for p in $programs; do
 	[ -e "$p.help" ] && sed -n "s/^  -\(.\), --\([a-z0-9-]*\).*/\2 \1 $p/p" "$p.help"
