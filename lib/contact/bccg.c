@@ -21,7 +21,6 @@
 #include "num/fft.h"
 #include "num/lanes.h"
 #include "num/status.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -80,8 +79,7 @@ enum num_status contact_make_preconditioner(
 	c->active = malloc(c->n);
 	if (!c->extension || !c->inverse || !c->active)
 		return NUM_MEMORY;
-	c->balance = balance_new(&c->par);
-	if (!c->balance && errno == ENOMEM)
+	if (balance_new(&c->par, &c->balance))
 		return NUM_MEMORY;
 	convolve_size(c->periodic, &mx, &my);
 	box.lx = (double)mx * c->par.dx;
@@ -109,7 +107,7 @@ static inline lanes within_bounds(const struct contact *c, lanes p)
 
 static inline lane_mask are_free(const struct contact *c, lanes p)
 {
-	return (p > 0.0) & (p < c->cap);
+	return lanes_and(p > 0.0, p < c->cap);
 }
 
 /* Runs a pass for cells begin to end in pairs and a last single one. */
@@ -131,7 +129,8 @@ static inline void set_cells(const struct contact *c, size_t i, int n, struct pa
 	lanes p = lanes_load(c->p + i, n);
 	lanes g = lanes_load(c->gap + i, n) - c->result.approach;
 	lanes below = lanes_min(g, lanes_all(0));
-	lane_mask active = ((p > 0.0) | (g < 0.0)) & ((p < c->cap) | (g > 0.0));
+	lane_mask active =
+		lanes_and(lanes_or(p > 0.0, g < 0.0), lanes_or(p<c->cap, g> 0.0));
 
 	lanes_add(&t->sum[0], p * g, n);
 	lanes_add(&t->sum[1], p, n);
@@ -181,7 +180,8 @@ static inline void bound_cells(
 	lanes_add(&t->sum[0], step * g, n);
 	lanes_add(&t->sum[1], step, n);
 	lanes_add(&t->sum[2], lanes_abs(step), n);
-	lanes_add(&t->sum[3], lanes_if(active & are_free(c, next), lanes_all(1)), n);
+	lanes_add(&t->sum[3],
+		lanes_if(lanes_and(active, are_free(c, next)), lanes_all(1)), n);
 	lanes_store(c->step + i, step, n);
 }
 

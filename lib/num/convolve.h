@@ -6,11 +6,9 @@
  * prime factor above 31, for which FFTW is slow, a periodic convolution is computed as
  * the linear one with the kernel summed over all periods.
  *
- * The rows are transformed first; then a few columns at a time are copied out,
- * transformed, multiplied and transformed back while they are in cache; then the rows are
- * transformed back.  A padded column is never formed: with half of its 2 n points zero,
- * its even and odd coefficients are two transforms of n points (the odd ones after a
- * twist by exp(-i pi j / n)), and only the n wanted points are transformed back.
+ * The rows are transformed first, a few at a time, and stored column by column; then each
+ * column is transformed, multiplied and transformed back while it is in cache; then the
+ * rows are transformed back.
  *
  *	struct convolve *c = convolve_new(nx, ny, CONVOLVE_PADDED, pool);
  *	double *k = convolve_alloc(c);
