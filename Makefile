@@ -89,10 +89,11 @@ COMMON_SRC := $(wildcard src/common/*.c)
 
 # Where a library is missing, the archive goes without the modules that include it, so
 # that programs which do not need it still build.
-missing = $(if $(shell echo '\#include <$(1)>' | $(CC) $(ALL_CPPFLAGS) -E - >/dev/null 2>&1 && echo yes),,$(1))
-MISSING := $(strip $(foreach h,fftw3.h gsl/gsl_cblas.h,$(call missing,$(h))))
+missing = $(if $(shell $(CC) $(ALL_CPPFLAGS) -include $(1) -x c -E /dev/null >/dev/null 2>&1 && echo yes),,$(1))
+MISSING := $(strip $(foreach h,fftw3.h gsl/gsl_cdf.h,$(call missing,$(h))))
 ifneq ($(MISSING),)
-lacks = $(shell $(CC) $(ALL_CPPFLAGS) -MM -MG $(1) | grep -q $(MISSING:%=-e %) && echo $(1))
+lacks = $(shell $(CC) $(ALL_CPPFLAGS) -M -MG $(1) | \
+	grep -q $(foreach h,$(MISSING),-e '[ /]$(firstword $(subst /,/ ,$(h)))') && echo $(1))
 LIB_SRC := $(filter-out $(foreach f,$(LIB_SRC),$(call lacks,$(f))),$(LIB_SRC))
 COMMON_SRC := $(filter-out $(foreach f,$(COMMON_SRC),$(call lacks,$(f))),$(COMMON_SRC))
 endif
@@ -110,7 +111,7 @@ all: libraries $(BUILT:%=$(BIN)/%) $(SCRIPTS:%=$(BIN)/%)
 
 .PHONY: libraries
 libraries:
-	@PKG_CONFIG="$(PKG_CONFIG)" scripts/deps --check
+	@PKG_CONFIG="$(PKG_CONFIG)" CC="$(CC)" CPPFLAGS="$(FFTW_CFLAGS) $(GSL_CFLAGS) $(CPPFLAGS)" scripts/deps --check
 
 define program
 $(BIN)/$(1): $(call objects,$(wildcard src/$(1)/*.c)) $(B)/libcommon.a $(B)/libcli.a $(B)/libwearpipe.a
@@ -177,7 +178,8 @@ $(foreach d,unit long bench,$(eval $(call single,$(d))))
 # The simulator of the matrix of instruments shares no code with the library.
 $(B)/matrix/%: tests/matrix/%.c
 	@mkdir -p $(@D)
-	$(CC) $(STD) $(WARN) $(CFLAGS) -o $@ $< -lm
+	$(call say,LINK,$@)
+	$(Q)$(CC) $(STD) $(WARN) $(CFLAGS) -o $@ $< -lm
 MATRIX = $(B)/matrix/simulate
 
 TESTS = tests/*.t tests/extremes/*.t $(UNITS)
@@ -206,7 +208,7 @@ bench-%: all $(BENCH_BINS)
 SCENE = .
 .PHONY: matrix
 matrix: all $(MATRIX)
-	@PATH=$(abspath $(BIN)):$$PATH tests/matrix/run tests/matrix/scenes.tsv '$(SCENE)'
+	@PATH="$(abspath $(BIN)):$$PATH" tests/matrix/run tests/matrix/scenes.tsv '$(SCENE)'
 
 # The table of extreme scenes of one domain: make extremes-contact
 extremes-%: all

@@ -43,7 +43,7 @@ is "every column has a unit" "$(aopf -y 2 unit.tsv | sed -n 's/^# units: //p')" 
 	"h L/min L/min L/min L/min 1 1 h h h 1"
 is "a lone y column is found beside a column of machines" "$(printf '# units: 1 h L/min\nunit\tt\ty\nA\t0\t1\n' | aopf --unit unit --threshold 2 | sed -n 's/^# units: //p')" \
 	"1 h L/min L/min L/min L/min 1 1 h h h 1"
-is "and where the input states none" "$(grep -v '^#' unit.tsv | aopf --threshold 2 --time-unit h | sed -n 's/^# units: //p')" \
+is "the units of the output follow the options where the input states none" "$(grep -v '^#' unit.tsv | aopf --threshold 2 --time-unit h | sed -n 's/^# units: //p')" \
 	"h 1 1 1 1 1 1 h h h 1"
 # Times of options are those of the table, whether it states its unit or --time-unit does.
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 60; t++) print t "\t" 1 + t / 100 + (t % 3) / 300 }' >bare.tsv
@@ -58,7 +58,7 @@ rows() { grep -v '^#' "$1"; }
 }
 is "options convert to the unit of the table" "$(rows told.out | cksum)" "$(rows bare.out | cksum)"
 is "a mission may fail" "$(column p_failure told.out | awk '$1 > 0 && $1 < 1' | wc -l | awk '{ print ($1 > 0) }')" 1
-fails "two units of time" 2 "time-unit min contradicts '# units:' of told.tsv, h" aopf --threshold 2 --time-unit min told.tsv
+fails "a time unit that contradicts the table" 2 "time-unit min contradicts '# units:' of told.tsv, h" aopf --threshold 2 --time-unit min told.tsv
 printf '# units: cycle Ah\nt\ty\n0\t1\n' >cycles.tsv
 is "times may be cycles" "$(aopf cycles.tsv | sed -n 's/^# units: //p')" "cycle Ah Ah Ah Ah 1 1"
 fails "hours of cycles" 1 "column 't' is in 'cycle', want s, min, h or d" aopf --threshold 2 --mission 1h cycles.tsv
@@ -100,7 +100,7 @@ ok "each row is written as soon as it is read" sh -c '
 awk 'NR > 30 && NR % 5 == 0 { print $1 "\tnan"; next } { print }' rise.tsv >gaps.tsv
 aopf --threshold 2.8 gaps.tsv >gaps.out
 is "a missing observation is nan in the output" "$(column y gaps.out | grep -c nan)" 54
-is "other rows have no nan" "$(awk -F '\t' '/^[0-9]/ && $1 > 5 && $5 == "nan"' gaps.out | wc -l | tr -d ' ')" 0
+is "rows with an observation have no nan" "$(awk -F '\t' '/^[0-9]/ && $1 > 5 && $5 == "nan"' gaps.out | wc -l | tr -d ' ')" 0
 awk -F '\t' '/^[0-9]/ && $2 == "nan" && $4 != $5' gaps.out >bad
 is "the state of a missing row is its prediction" "$(wc -l <bad | tr -d ' ')" 0
 
@@ -145,7 +145,7 @@ near "a filter that diverges is corrected" "$(cat worst)" 0 0.3
 ok "the correction is a restart" test "$(column restarts stray.stats)" -ge 1
 
 # Faults of the record at 80 % of the life of made-up pumps: 5 % of the values missing, one of
-# 50 off by 10 standard deviations, steps of time that vary by 30 %.  The end foretold moves by
+# 50 off by 10 standard deviations, steps of time that vary by 30 %.  The predicted end moves by
 # less than 2 % of the life, for each of 12 pumps.
 for seed in $(seq 12); do
 	for fault in none missing outliers jitter; do
@@ -198,7 +198,7 @@ for k in 1 2 3 4; do
 done >lives
 is "lives are predicted until 1, 2, 3, 4 values persist beyond the threshold" "$(tr '\n' ' ' <lives)" "8 13 14 15 "
 
-# Ten times the 20 steps so far: a line that ends 199 ahead is foretold, one at 201 is not.
+# Ten times the 20 steps so far: an end 199 ahead is predicted, one at 201 is not.
 # One family alone has no changes of regime.
 awk 'BEGIN { print "t\ty"; for (t = 0; t <= 20; t++) print t "\t" t / 100 }' >line.tsv
 near "the end of life within the horizon is predicted" "$(aopf --threshold 2.19 --direction up --model linear line.tsv | column rul_q50 /dev/stdin | tail -1)" 199 0.5
@@ -296,7 +296,7 @@ fails "a missing time" 1 "line 2: time is missing" aopf nant.tsv
 fails "order below four" 2 "order" aopf --order 3 exp.tsv
 fails "levels that fall" 2 "levels" aopf --levels 0.5,0.1 exp.tsv
 fails "half a range" 2 "order-range" aopf --order-range 4 exp.tsv
-fails "a unit that is not there" 1 "no column 'unit'" aopf --unit unit exp.tsv
+fails "a column of units that is missing" 1 "no column 'unit'" aopf --unit unit exp.tsv
 
 awk 'BEGIN { print "t\ty"; for (i = 0; i < 30; i++) print i "\t" (i % 2 ? "" : "-") "1.7e308" }' >enormous.tsv
 ok 'values that overflow fit no family of models' aopf -y 5 enormous.tsv

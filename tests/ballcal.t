@@ -51,7 +51,7 @@ near "amplitudes are converted from the units of the table" "$(value calibration
 
 fails "no balls" 2 '\--balls is missing' ballcal
 fails "balls without a diameter" 2 'want FILE:D' ballcal --balls 1.tsv
-fails "a diameter that is none" 2 'want a diameter' ballcal --balls 1.tsv:5s
+fails "a diameter in seconds" 2 'want a diameter' ballcal --balls 1.tsv:5s
 fails "noise without a duration" 2 'both --noise and --pulse-duration' ballcal --balls 1.tsv:1mm --noise 1V
 fails "more false alarms than pulses" 2 'for any threshold' ballcal --balls 2.tsv:2mm --exponent 5 --noise 1V \
 	--pulse-duration 1s --false-alarms 2Hz 2>err

@@ -106,7 +106,7 @@ is "the stiffness is nan at the largest load of the hardness" "$(column stiffnes
 $ball --table curve.tsv ball.f64 >/dev/null
 sh -c "$(sed -n 's/^# cmd: //p' curve.tsv)" >again.tsv
 same "the recorded command reproduces the table" curve.tsv again.tsv
-# A coating: one of the same material is none, a thick one is the material itself
+# A coating of the same material has no effect, a thick one behaves like its material alone
 layer="bemcontact --raw 32x24 --pixel 2um --boundary periodic --pressure 50MPa h.f64"
 $layer --young 100GPa --poisson 0.3 --tolerance 1e-12 >bare.nrrd
 $layer --young 100GPa --poisson 0.3 --tolerance 1e-12 --coating 3um --coating-young 100GPa >same.nrrd

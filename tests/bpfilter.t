@@ -134,9 +134,9 @@ fails "no such file" 1 'none.au' bpfilter none.au
 seq 100 >text
 fails "text for a signal" 1 'text: this is text, want signal' bpfilter text
 fails "edges the wrong way round" 2 'first edge' bpfilter -b 130:70 impulse.au
-fails "one edge" 2 'band 70: want LO:HI' bpfilter -b 70 impulse.au
-fails "a file that the response does not read" 2 'have no input' bpfilter --response impulse.au
-fails "or the taps" 2 'have no input' bpfilter --taps impulse.au
+fails "a band of one edge" 2 'band 70: want LO:HI' bpfilter -b 70 impulse.au
+fails "a file that --response does not read" 2 'have no input' bpfilter --response impulse.au
+fails "a file that --taps does not read" 2 'have no input' bpfilter --taps impulse.au
 fails "taps and response at once" 2 'exclude one another' bpfilter --response --taps
 fails "edge above half the rate" 1 'impulse.au.*above half the rate' bpfilter -b 70:5001 impulse.au
 fails "odd order with --zero-phase" 2 'even --order' bpfilter --zero-phase --order 201 impulse.au

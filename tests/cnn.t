@@ -29,7 +29,7 @@ for net in small.net "$shipped"; do
 	which=${net##*/}
 	# shellcheck disable=SC2086
 	ok "$which: the network is applied to the sections of duet" \
-		sh -c "$apply --network $net $known --stats st s.au >cnn.tsv"
+		sh -c "$apply --network '$net' $known --stats st s.au >cnn.tsv"
 	is "$which: every section is processed" "$(column sections st) $(column sections_refused st)" \
 		"$(column section sections.tsv | wc -l) 0"
 	is "$which: rows are marked as estimates of a network" "$(column verdict cnn.tsv | sort -u)" guessed

@@ -82,7 +82,7 @@ fails 'a size that no memory holds' 1 'raw' records --raw 1000000000x1000000000x
 fails 'a table of particles' 1 'not of the points of fields' records --output nrrd particles.tsv
 head -c -60 contacts.tsv >cut
 records --output nrrd cut >out 2>err
-is 'a table that is cut off' "$? $(wc -l <err)" '1 1'
+is 'a table that is cut off gives status 1 and one line' "$? $(wc -l <err)" '1 1'
 grep -v '^[#]' surfaces.tsv | sed 5d >rows
 {
 	sed -n '/^#/p; /^realisation/q' surfaces.tsv | grep -v '^# \(stream\|end\)'

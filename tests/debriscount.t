@@ -119,7 +119,7 @@ rising "the counts of duet equal the true counts or their intervals contain them
 
 fails "classes that do not ascend" 2 'is not above' debriscount --classes 2um,1um six.tsv
 fails "classes and a standard" 2 'exclude one another' debriscount --classes 2um --standard iso4406 six.tsv
-fails "half of the detection" 2 'both --d50 and --detection-threshold' debriscount --d50 2um six.tsv
+fails "one of two options for the probability of detection" 2 'both --d50 and --detection-threshold' debriscount --d50 2um six.tsv
 fails "codes of no volume" 2 'requires --flow or --volume' debriscount --output codes six.tsv
 fails "a trend without periods" 2 'requires --period' debriscount --output trend six.tsv
 fails "an alarm that clears above its level" 2 'CLEAR not above LEVEL' debriscount --alarm 1:2 six.tsv

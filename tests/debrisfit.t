@@ -37,7 +37,7 @@ paste full.steps quick.steps | awk -F '\t' '/^#/ { next }
 	!n { for (i = 1; i <= NF; i++) if ($i == "volume") c[++k] = i; n = 1; next }
 	{ full += $c[1]; quick += $c[2] } END { print quick / full }' >ratio
 near 'the volume of all surfaces is right within 10 %' "$(cat ratio)" 1 0.1
-is 'what is not known of a particle is nan' "$(column exact quick.tsv | paste - quick.tsv 2>/dev/null | wc -l | awk '{ print ($1 > 0) }') $(
+is 'unknown columns of an estimated particle are nan' "$(column exact quick.tsv | paste - quick.tsv 2>/dev/null | wc -l | awk '{ print ($1 > 0) }') $(
 	awk -F '\t' '/^#/ { next } !n { for (i = 1; i <= NF; i++) c[$i] = i; n = 1; next }
 		!$c["exact"] && ($c["length"] != "nan" || $c["z"] != "nan") { bad++ } END { print bad + 0 }' quick.tsv)" '1 0'
 is 'estimates are below their upper and above their lower ends' "$(awk -F '\t' '/^#/ { next }
@@ -56,19 +56,19 @@ contacts 5 6 >few.nrrd
 debrisgen --yield 355MPa --friction 2 --surrogate surrogate.tsv --audit 0 --stats stats few.nrrd >far.tsv 2>said
 debrisgen --yield 355MPa --friction 2 few.nrrd >far.full 2>/dev/null
 is 'beyond the friction of the fit nothing is estimated' "$(column surfaces_estimated stats) $(column surfaces_outside stats)" '0 6'
-is 'and the volumes are those of the full model' "$(column volume far.tsv | cksum)" "$(column volume far.full | cksum)"
-like 'which is said' "$(cat said)" '6 surfaces outside the range of surrogate.tsv'
+is 'beyond the friction of the fit the volumes are those of the full model' "$(column volume far.tsv | cksum)" "$(column volume far.full | cksum)"
+like 'surfaces outside the range of the fit are reported' "$(cat said)" '6 surfaces outside the range of surrogate.tsv'
 debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 0 --stats stats few.nrrd >/dev/null 2>said
 is 'no interval is narrow enough for a width of 0' "$(column surfaces_estimated stats)" 0
 
 # Audits: sound, and of a surrogate whose factor is wrong by half.
 debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0.3 --stats stats hidden.nrrd >/dev/null 2>said
 is 'an audit of a sound surrogate passes' $? 0
-near 'on the share that was asked for' "$(column surfaces_audited stats)" 8 5
+near 'the requested share of surfaces is audited' "$(column surfaces_audited stats)" 8 5
 awk -F '\t' -v OFS='\t' '/^#/ { next } $1 == "factor" { $4 *= 1.5 } { print }' surrogate.tsv >wrong.tsv
 debrisgen --yield 355MPa --friction 0.3 --surrogate wrong.tsv --width 10 --audit 0.3 hidden.nrrd >/dev/null 2>said
-is 'that of a wrong one does not' $? 3
-like 'and says so' "$(cat said)" 'audited volumes lie within their intervals'
+is 'an audit of a wrong surrogate fails with status 3' $? 3
+like 'a failed audit is reported' "$(cat said)" 'audited volumes lie within their intervals'
 
 fails 'too few surfaces' 1 'are too few' sh -c 'contacts() { roughgen --points 32 --length 0.25mm --sq 1um --corr 30um --count 5 |
 	bemcontact --pressure 50MPa --young 210GPa; }; contacts | debrisfit --yield 355MPa'

@@ -229,7 +229,7 @@ else
 	skip "teem reads the layers of stress" "no unu"
 fi
 
-# Edge load is told: of 0.5 MPa and INNER MPa on one cell each, the first on the rim.
+# Load at the edge is reported: of 0.5 MPa and INNER MPa on one cell each, the first on the rim.
 loaded() {
 	perl -e 'my ($column, $row, $inner) = @ARGV; binmode STDOUT;
 		print "NRRD0004\ntype: double\nendian: little\nencoding: raw\ndimension: 3\n",
@@ -244,7 +244,7 @@ for cell in '0 2' '4 2' '2 0' '2 4'; do
 	is "load at the edge gives one warning with the remedy" "$(grep -c "worst 20 % (.*): use a larger area" warning)" 1
 done
 loaded 2 0 10 | debrisgen -Y 1GPa --summary summary.tsv 2>warning >t.tsv
-near "less load at the edge is computed" "$(summary edge_load)" 0.047619047619047616 1e-15
+near "a small load at the edge is computed" "$(summary edge_load)" 0.047619047619047616 1e-15
 is "below 5 % of load at the edge there is no warning" "$(cat warning)" ""
 loaded 2 0 2 | debrisgen -Y 1GPa --boundary periodic --summary summary.tsv 2>warning >t.tsv
 is "a periodic surface has no edge" "$(summary edge_load) $(cat warning)" "0 "
@@ -256,7 +256,7 @@ perl -e 'binmode STDOUT; print "NRRD0004\ntype: double\nendian: little\nencoding
 debrisgen --yield 355MPa --friction 0.3 ridge.nrrd >t.tsv 2>err
 is "a particle that crosses a periodic grid gives exit status 3, one warning and no length" \
 	"$? $(grep -c '1 of 1 particles connect to themselves' err) $(column length t.tsv) $(column x t.tsv)" "3 1 nan nan"
-is "such a particle has the columns of one period" "$(column columns t.tsv)" 16
+is "a particle that crosses a periodic grid has the columns of one period" "$(column columns t.tsv)" 16
 
 replay s.nrrd cmd:= >a
 same "the command of a stress field reproduces it" a s.nrrd

@@ -15,12 +15,12 @@ press="--young 210GPa --pressure 20MPa --boundary periodic"
 wear="debrisgen --yield 355MPa --friction 0.3 $press"
 bemcontact $press a.nrrd >start.nrrd
 
-# A flat counterface is none, wherever it slides.
+# A flat counterface changes nothing, wherever it slides.
 $wear --steps 2 --summary none.tsv start.nrrd >none 2>err
 $wear --steps 2 --counterface flat.nrrd --slide 0.125mm --summary flat.tsv start.nrrd >flat 2>err
 near "a flat counterface gives the volume of two steps without one" \
 	"$(ratio "$(total volume flat.tsv)" "$(total volume none.tsv)")" 1 1e-5
-is "a flat counterface gives as many particles" "$(rows flat | wc -l)" "$(rows none | wc -l)"
+is "a flat counterface gives as many particles as none" "$(rows flat | wc -l)" "$(rows none | wc -l)"
 
 # It goes round: whole sides bring it back, and part of a side does not.
 for d in 0.5mm 0 0.125mm; do
@@ -70,7 +70,7 @@ $fresh --steps 4 --wears second --summary s.tsv --counter-surface wl.nrrd a.nrrd
 near "--renew fresh: the long surface loses the volume, and the first body none" \
 	"$(echo "$(mean long.nrrd) $(mean wl.nrrd 4)" | awk '{ printf "%.12g", ($1 - $2) * 1.25e-3 * 0.5e-3 * 1e15 }')" \
 	"$(ratio "$(total volume s.tsv)" 1e-15)" 1e-4
-fails "fresh: the surface ends" 1 "end before step 5" $fresh --steps 5 a.nrrd
+fails "a fresh surface that ends before the last step" 1 "end before step 5" $fresh --steps 5 a.nrrd
 
 # Archard's coefficient: volume times hardness over load and distance, its mean over the
 # steps and their interval.
@@ -115,7 +115,7 @@ ok "slopes beyond the theory give a warning" grep -q "rms slope .* above 0.2, th
 
 fails "a slide that is no whole number of cells" 2 "want a multiple of the cell size" $wear --counterface b.nrrd --slide 7um a.nrrd
 fails "a slide without a counterface" 2 "require --counterface" $wear --slide 0.125mm a.nrrd
-fails "the wear of a body that is not there" 2 "requires --counterface" $wear --wears both start.nrrd
+fails "the wear of a missing second body" 2 "requires --counterface" $wear --wears both start.nrrd
 fails "a counterface of another size" 1 "120x48 cells over 48x48: want as many" $wear --counterface long.nrrd a.nrrd
 roughgen --points 48 --length 1mm --sq 0.4um >wide.nrrd
 fails "a counterface of another spacing" 1 "spacings of" $wear --counterface wide.nrrd a.nrrd

@@ -109,7 +109,7 @@ study 2 >two.tsv
 debrisstat --compare two.tsv one.tsv >against.tsv
 row() { awk -F '\t' -v q="$1" -v c="$2" '$1 == q { print $c }' against.tsv; }
 near "the other study wears twice as much" "$(row volume_per_step 7)" 2 1e-12
-near "its particles are twice as large" "$(row mean_diameter 7)" 2 1e-12
+near "the other study has particles twice as large" "$(row mean_diameter 7)" 2 1e-12
 near "the difference is as large as the first value" "$(row volume_per_step 4)" 2.5e-12 1e-22
 # standard errors sqrt(5 / 3 / 4) / 2.5 of both logarithms; Welch: 6 degrees, t 1.94318 at 95 %
 near "the lower limit is that of Student" "$(row volume_per_step 8)" \
@@ -124,11 +124,11 @@ is "every quantity has its unit" "$(cut -f 11 against.tsv | grep -v '^#' | tr '\
 debrisstat --compare slid2.tsv slid1.tsv >against.tsv
 near "life is the distance in which 1 um is worn off" "$(row life 2 | awk '{ print $1 * 1e6 }')" 24 1e-9
 near "the life in the other study is right" "$(row life 3 | awk '{ print $1 * 1e6 }')" 2 1e-9
-near "lives differ" "$(row life 4 | awk '{ print $1 * 1e6 }')" -22 1e-9
+near "the difference of the lives is right" "$(row life 4 | awk '{ print $1 * 1e6 }')" -22 1e-9
 rising "the ratio has an interval" "$(row life 5)" "$(row life 4)" "$(row life 6)"
 near "the ratio of lives counts areas and distances" "$(row life 7)" 0.083333333 1e-8
 is "life is a distance" "$(row life 11)" m
-is "the number of realisations that would tell is printed" "$(row life 10)" "$(awk 'BEGIN {
+is "the number of realisations that would show a difference in life is printed" "$(row life 10)" "$(awk 'BEGIN {
 	print int(2.926407 ^ 2 * 2 * (5 / 3) / 2.5 ^ 2 / log(12) ^ 2) + 1 }' | awk '{ print $1 < 2 ? 2 : $1 }')"
 debrisstat --compare slid2.tsv --depth 2um slid1.tsv >against.tsv
 near "life is proportional to the depth" "$(row life 2 | awk '{ print $1 * 1e6 }')" 48 1e-9
@@ -145,7 +145,7 @@ fails "one realisation cannot be compared" 1 'at least two realisations of each 
 # Two ensembles in one table must not be added up realisation by realisation.
 fails "the same realisations twice" 1 'realisation 0 stands in two parts' sh -c 'cat growth.tsv growth.tsv | debrisstat'
 grep -v '^#' growth.tsv >bare.tsv
-fails "so without comments" 1 'realisation 0 stands in two parts' sh -c 'cat bare.tsv bare.tsv | debrisstat'
+fails "two equal tables without comments joined" 1 'realisation 0 stands in two parts' sh -c 'cat bare.tsv bare.tsv | debrisstat'
 awk -F '\t' -v OFS='\t' 'NR > 1 { $1 += 2 } 1' bare.tsv | cat bare.tsv - >both.tsv
 is "other realisations form a larger ensemble" "$(debrisstat both.tsv | sed -n 's/^realisations.\([0-9]*\).*/\1/p')" 4
 
@@ -157,7 +157,7 @@ fails "a missing column" 1 "aspect" debrisstat t
 printf 'realisation\tstep\tdiameter\tvolume\taspect\n0\t1\tnan\t1\t1\n' >t
 fails "a missing diameter" 1 "line 2: diameter is nan" debrisstat t
 printf 'realisation\tstep\tdiameter\tvolume\taspect\n0\t1.5\t1\t1\t1\n' >t
-fails "half a step" 1 "line 2: step is 1.5" debrisstat t
+fails "a step that is not an integer" 1 "line 2: step is 1.5" debrisstat t
 fails "diameters turned round" 2 "LO below HI" debrisstat --diameter 2um:1um t
 fails "more realisations than said" 1 "has 2" debrisstat --realisations 1 growth.tsv
 awk '/^[#r]/ || $1 == 0' growth.tsv >s1.tsv

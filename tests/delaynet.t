@@ -85,18 +85,18 @@ fails "delays for arrivals" 1 "want a network for arrivals, got one for delays" 
 fails "five pulses" 2 "at most 4" delaynet --model pulses --sources 5
 fails "apply of arrivals without sections" 2 "requires --sections" delaynet --task apply --model pulses --network tiny.net
 
-fails "layers that are none" 2 "--layers: '5x' is no layer" delaynet --layers 5x
+fails "an unknown kind of layer" 2 "--layers: '5x' is no layer" delaynet --layers 5x
 fails "too many operands" 2 "has no input" delaynet a.net
 fails "apply without a network" 2 "requires --network" delaynet --task apply x.snd
-fails "a network that is not there" 1 "no.net: No such file" delaynet --task score no.net
+fails "a missing network" 1 "no.net: No such file" delaynet --task score no.net
 fails "a signal for a network" 1 "x.snd: line 1:" delaynet --task score x.snd
 head -c 3000 a.net >cut.net
 fails "a network cut short" 1 "cut.net: line [0-9]*: ends early" delaynet --task score cut.net
 sed 's/^input 1 2 40/input 1 2 41/' a.net >bad.net
 fails "weights that do not suit" 1 "bad.net: line 6: the layers have" delaynet --task score bad.net
 sed '8s/^[^ ]*/nan/' a.net >bad.net
-fails "a weight that is none" 1 "bad.net: line 8: weight" delaynet --task score bad.net
-fails "other points" 1 "40 points and 3 delays, but" delaynet --task score a.net
+fails "a weight that is no number" 1 "bad.net: line 8: weight" delaynet --task score bad.net
+fails "a network for another number of points" 1 "40 points and 3 delays, but" delaynet --task score a.net
 head -c 4000 x.snd >cut.snd
 fails "half a section" 1 "cut.snd: section 6: want 40 frames" \
 	delaynet --task apply --network a.net cut.snd

@@ -20,9 +20,9 @@ at_least() {
 
 sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 20ms --snr 30dB \
 	--lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv >s.au
-ok "fit" sh -c "duet -v s.au >fit.tsv 2>fit.log"
+ok "the fit runs" sh -c "duet -v s.au >fit.tsv 2>fit.log"
 is "the fit finds all particles" "$(score matched truth.tsv fit.tsv)" 60
-is "the fit finds no other" "$(score false truth.tsv fit.tsv)" 0
+is "the fit finds no false particle" "$(score false truth.tsv fit.tsv)" 0
 # The bound at 30 dB: 3.3 sigma / A samples of delay (A from 0.51 to 1.73), 0.11 % of size.
 at_most "the delays of the fit are right to 0.14 samples" "$(score delay_rms truth.tsv fit.tsv)" 14e-6
 at_most "the sizes of the fit are right to 0.3 %" "$(score size_rms truth.tsv fit.tsv)" 0.003
@@ -71,7 +71,7 @@ duet -v tails.au >found.tsv 2>log
 ok "tails: the shape is learned" grep -q 'pulse lorentz' log
 ok "tails: no line is found" grep -q ' 0 lines' log
 is "tails: all particles are found" "$(score matched tails.tsv found.tsv)" 120
-is "tails: no other is found" "$(score false tails.tsv found.tsv)" 0
+is "tails: no false particle is found" "$(score false tails.tsv found.tsv)" 0
 at_most "tails: the delay errors are at the bound" "$(score delay_ratio tails.tsv found.tsv)" 1.3
 
 # Mains and pump, found and fitted.
@@ -80,7 +80,7 @@ sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 20ms --snr 30dB \
 duet -v lines.au >found.tsv 2>log
 ok "lines: four are found" grep -q ' 4 lines' log
 is "lines: all particles are found" "$(score matched lines.tsv found.tsv)" 60
-is "lines: no other is found" "$(score false lines.tsv found.tsv)" 0
+is "lines: no false particle is found" "$(score false lines.tsv found.tsv)" 0
 at_most "lines: the delays are right to 0.16 samples" "$(score delay_rms lines.tsv found.tsv)" 16e-6
 
 # Masks: isolated pulses come out, with the delay not shrunk to 0.56.
@@ -124,8 +124,8 @@ duet --method duet --window 16 few.au >masks.tsv 2>err
 is "masks: doubtful, exit status 3" $? 3
 at_least "masks: more sources than particles" "$(column verdict masks.tsv | grep -c misfit)" 3
 grep -v misfit masks.tsv >believed.tsv
-at_most "masks: those that no pulse stands beside are marked" "$(score false truth.tsv believed.tsv)" 1
-at_least "masks: the particles are not" "$(score matched truth.tsv believed.tsv)" 18
+at_most "masks: false rows are marked misfit" "$(score false truth.tsv believed.tsv)" 1
+at_least "masks: true rows are not marked misfit" "$(score matched truth.tsv believed.tsv)" 18
 fails "masks: a window too short to see a pulse is refused" 1 "pulses of 25 samples want a --window" \
 	duet --method duet --window 8 few.au
 
@@ -146,10 +146,10 @@ for c in alone beside; do
 		{ b = $1; p = $2 }'
 done | paste -s - >told
 # Of 150 particles the share scatters by 0.04; see detectable.h for the rest.
-near "the share of isolated particles found is what is told" "$(cut -d' ' -f1 share)" "$(cut -f1 told)" 0.17
-near "the share found beside a large one is what is told" "$(cut -d' ' -f2 share)" "$(cut -f2 told)" 0.22
+near "the share of isolated particles found is the predicted one" "$(cut -d' ' -f1 share)" "$(cut -f1 told)" 0.17
+near "the share found beside a large particle is the predicted one" "$(cut -d' ' -f2 share)" "$(cut -f2 told)" 0.22
 at_most "a large pulse hides small ones" "$(cut -f2 told)" 0.7
-is "the largest pulse is told" "$(sed -n 's/^# large: \([0-9.]\{3\}\).* V$/\1/p' limits.tsv)" 1.7
+is "the largest pulse is reported" "$(sed -n 's/^# large: \([0-9.]\{3\}\).* V$/\1/p' limits.tsv)" 1.7
 fails "no limits of detection without a fit" 2 'detectable needs --method fit' \
 	duet --method count --detectable x weak.au
 
@@ -167,7 +167,7 @@ awk 'BEGIN { print "time\tdiameter"; for (i = 0; i < 35; i++) printf "%g\t%g\n",
 	tail -c +150001 live.au
 } | duet --latency 1s >live.tsv
 at_least "live: the first rows come within a second of signal" "$(grep -c alone first.tsv)" 1
-is "live: they are those of the whole record" "$(cat first.tsv)" "$(head -n "$(wc -l <first.tsv)" live.tsv)"
+is "live: the first rows are those of the whole record" "$(cat first.tsv)" "$(head -n "$(wc -l <first.tsv)" live.tsv)"
 
 # Work left out.
 duet --stats stats.tsv --method duet s.au >/dev/null
@@ -177,7 +177,7 @@ at_most "masks: lone pulses are not demixed" "$(column_of demixings <stats.tsv)"
 sensorsim --uniform 100um:100um --number 8000 --duration 8s --snr 30dB --truth t.tsv >dense.au
 duet --sections sections.tsv dense.au >dense.tsv
 is "no particle is invented in a dense record" "$(column verdict dense.tsv | sort -u)" unresolved
-near "dense: the sum of squares" "$(column square sections.tsv |
+near "dense: the sum of squares is right within 20 %" "$(column square sections.tsv |
 	awk "{ s += \$1 } END { print s / NR }")" 1000 200
 
 # Filtered records.  "filter" in the header is how bpfilter tells what a record has passed.
@@ -198,11 +198,11 @@ sensorsim --uniform 80um:120um --number 100 --start 1s --span 14s --duration 16s
 bpfilter --zero-phase raw.au >narrow.au
 bpfilter -b 20:1000 --order 1000 --zero-phase raw.au >wide.au
 bpfilter -b 0:2000 --window kaiser raw.au | bpfilter -b 30:1000 --order 600 >chain.au
-is "filtered: the header says so" "$(passed narrow.au)" "70:130 200 hamming 0 scaled"
-is "filtered twice: so says the header, causal or not" "$(passed chain.au)" \
+is "the header of a filtered record states the filter" "$(passed narrow.au)" "70:130 200 hamming 0 scaled"
+is "the header of a record filtered twice states both filters" "$(passed chain.au)" \
 	"0:2000 200 kaiser 5.6532600000000004 scaled | 30:1000 600 hamming 0 scaled"
 duet --method duet --separated separated.au wide.au >/dev/null
-is "filtered: what duet writes is not" "$(passed separated.au)" ""
+is "the header of separated signals states no filter" "$(passed separated.au)" ""
 
 # The bound is that of white noise: undoing the filter must cost next to nothing.  The ratio
 # of 100 errors to it scatters by 1 / sqrt 200, so 1.25 is 3.5 deviations (measured 0.93 to
@@ -210,7 +210,7 @@ is "filtered: what duet writes is not" "$(passed separated.au)" ""
 # on six records, raw or filtered.
 undone() { # NAME FOUND
 	is "$1: all particles are found" "$(score matched truth.tsv "$2")" 100
-	is "$1: no other is found" "$(score false truth.tsv "$2")" 0
+	is "$1: no false particle is found" "$(score false truth.tsv "$2")" 0
 	at_most "$1: the delay error is near the bound" "$(score delay_ratio truth.tsv "$2")" 1.25
 	near "$1: the sizes are unbiased" "$(score size_bias truth.tsv "$2")" 0 0.002
 }
@@ -225,7 +225,7 @@ awk -F '\t' -v OFS='\t' 'NR > 3 && $1 != "particle" { $2 -= 0.04; $3 -= 0.04 } 1
 undone "two filters undone" early.tsv
 
 bare narrow.au >bare.au
-is "no header: so says duet" "$(passed bare.au)" ""
+is "duet copies no filter from a record without header" "$(passed bare.au)" ""
 bpfilter --taps >taps.tsv
 duet --undo taps.tsv bare.au >found.tsv
 rows narrow.tsv >a
@@ -235,7 +235,7 @@ bpfilter --taps -b 20:1000 --order 1000 >taps.tsv
 bare wide.au | duet --undo taps.tsv >found.tsv
 rows wide.tsv >a
 rows found.tsv >b
-same "1001 taps give the same" a b
+same "a table of 1001 taps gives the rows of the header" a b
 (dd bs=777 2>/dev/null; :) <wide.au | duet >found.tsv
 rows found.tsv >b
 same "20:1000 undone: a pipe of 777-byte blocks gives the same rows" a b
@@ -245,7 +245,7 @@ duet passed.au | sed 1d >a
 (dd bs=5003 2>/dev/null; :) <passed.au | duet | sed 1d >b
 same "70:130 undone: the same where sections are cut into windows" a b
 
-# Nothing told: the noise of the quiet stretches tells.  How far the scale of the sizes is
+# Without a stated filter the noise of the quiet stretches gives it.  How far the scale of the sizes is
 # off depends on the record: 0.1 to 1.6 % on six of them at 30 dB, with delays 0.89 to 1.24
 # times the bound; none lost a particle.
 sensorsim --uniform 80um:120um --number 60 --start 1s --span 30s --duration 32s --gap 15ms \
@@ -254,7 +254,7 @@ bpfilter --zero-phase raw.au >narrow.au
 bare narrow.au >bare.au
 duet --stats stats.tsv bare.au >found.tsv
 at_least "70:130 guessed: particles" "$(score matched truth.tsv found.tsv)" 58
-at_most "70:130 guessed: no other is found" "$(score false truth.tsv found.tsv)" 2
+at_most "70:130 guessed: no false particle is found" "$(score false truth.tsv found.tsv)" 2
 at_most "70:130 guessed: the delay error is near the bound" "$(score delay_ratio truth.tsv found.tsv)" 1.3
 near "70:130 guessed: the sizes are unbiased" "$(score size_bias truth.tsv found.tsv)" 0 0.03
 at_least "70:130 guessed: learned more than once" "$(column_of calibrations <stats.tsv)" 2
@@ -267,7 +267,7 @@ sensorsim --uniform 80um:120um --number 50 --burst 1 --span 50ms --period 0.3s -
 	bpfilter -b 20:1000 --order 1000 --zero-phase >wide.au
 duet --undo none --stats stats.tsv wide.au >found.tsv
 is "20:1000 guessed: all particles are found" "$(score matched truth.tsv found.tsv)" 50
-is "20:1000 guessed: no other is found" "$(score false truth.tsv found.tsv)" 0
+is "20:1000 guessed: no false particle is found" "$(score false truth.tsv found.tsv)" 0
 at_most "20:1000 guessed: the delay error is near the bound" "$(score delay_ratio truth.tsv found.tsv)" 1.35
 near "20:1000 guessed: the sizes are unbiased" "$(score size_bias truth.tsv found.tsv)" 0 0.005
 at_least "--undo none does not read the header: learned more than once" \
@@ -279,7 +279,7 @@ sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 20ms --snr 30dB \
 	--lag 0.2ms:0.5ms --gain 0.909 --corner 1kHz --truth truth.tsv >coloured.au
 duet coloured.au >found.tsv
 is "coloured noise: all particles are found" "$(score matched truth.tsv found.tsv)" 60
-is "coloured noise: no other is found" "$(score false truth.tsv found.tsv)" 0
+is "coloured noise: no false particle is found" "$(score false truth.tsv found.tsv)" 0
 at_most "coloured noise: the delay error is near the bound" "$(score delay_ratio truth.tsv found.tsv)" 1.3
 at_least "coloured noise: standard errors" "$(score delay_cover truth.tsv found.tsv)" 0.5
 near "coloured noise: the sizes are unbiased" "$(score size_bias truth.tsv found.tsv)" 0 0.003
@@ -290,13 +290,13 @@ is "twins in white noise are learned once" "$(column_of calibrations <stats.tsv)
 
 # What the header or the table of taps should not say.  All frequencies pass 0:5000.
 bpfilter -b 0:5000 --order 2 twins.au | sed -e 's/wearpipe-streams(5)/anything-streams(5)/' -e 's/^\(filter .*\) hamming/\1 unknown/' >odd.au
-is "a filter that is not known" "$(passed odd.au)" "0:5000 2 unknown 0 scaled"
+is "the header keeps an unknown filter" "$(passed odd.au)" "0:5000 2 unknown 0 scaled"
 duet odd.au >found.tsv 2>warning
-is "is warned of, once" "$(wc -l <warning)" 1
-ok "by name" grep -q "not known: '0:5000 2 unknown" warning
+is "an unknown filter gives one warning" "$(wc -l <warning)" 1
+ok "the warning names the unknown filter" grep -q "not known: '0:5000 2 unknown" warning
 rows found.tsv >a
 bare odd.au | duet | grep -v '^#' >b
-same "and the record taken as if nothing were told" a b
+same "a record with an unknown filter is treated as one without header" a b
 taps() { # TAP...
 	{ echo tap; printf '%s\n' "$@"; } >odd.tsv
 }
@@ -310,7 +310,7 @@ echo tap >odd.tsv
 fails "no taps" 1 'odd.tsv: no taps' duet --undo odd.tsv twins.au
 printf 'gain\n1\n' >odd.tsv
 fails "a table without taps" 1 "odd.tsv: no column 'tap'" duet --undo odd.tsv twins.au
-fails "a table that is not there" 1 'none.tsv' duet --undo none.tsv twins.au
+fails "a missing table of taps" 1 'none.tsv' duet --undo none.tsv twins.au
 
 # Silence and bad input.
 sensorsim --uniform 80um:120um --number 0 --duration 10s --noise 1V >noise.au
@@ -318,7 +318,7 @@ duet --align 19.6ms --pulse-duration 10ms noise.au >none.tsv
 is "noise has no particle" "$(grep -vc '^#' none.tsv)" 1
 duet noise.au >none.tsv 2>warning
 is "noise: nothing to learn from, no particle" "$(column particle none.tsv | wc -l)" 0
-ok "and that is said" grep -q 'nothing in common' warning
+ok "a record without common pulses is reported" grep -q 'nothing in common' warning
 head -c 32000 s.au >cut.au
 fails "a record cut inside a frame" 1 'cut' duet "$work/cut.au"
 fails "empty input" 1 . duet /dev/null
@@ -326,7 +326,7 @@ fails "too little to learn from" 1 "10 samples at 10000 Hz, want at least 64" du
 bpfilter -b 95:105 --order 800 s.au >tight.au
 fails "a filter that leaves too little of the pulses" 1 "too narrow a band" duet tight.au
 fails "a lag as long as the record" 1 "align is as long as what is learned from" duet --align 10s s.au
-fails "method" 2 'method' duet --method best s.au
+fails "an unknown method" 2 'method' duet --method best s.au
 fails "odd window" 2 'even' duet --method duet --window 63 s.au
 fails "window without duet" 2 'need --method duet' duet --window 64 s.au
 
@@ -347,8 +347,8 @@ sensorsim --uniform 80um:120um --number 60 --duration 9s --gap 20ms --snr 30dB -
 	bpfilter --band 20:1000 --order 400 --zero-phase >passed.au
 duet --instrument passed.tsv passed.au | grep -v '^#' >first
 duet --instrument passed.tsv passed.au | grep -v '^#' >second
-same "a filtered record gives the same" first second
-at_least "and particles are found there" "$(column verdict second | grep -c alone)" 59
+same "a filtered record and a kept instrument give the same rows" first second
+at_least "a kept instrument finds the particles of a filtered record" "$(column verdict second | grep -c alone)" 59
 
 refuses() {
 	fails "an instrument $1 is refused" 1 "$2" duet --instrument "$work/$3" ${4:-} rig.au
@@ -381,10 +381,10 @@ for change in "--gain 1.2" "--gain 0.909 --flow 63L/min" "--gain 0.909 --zone 90
 	echo "$? $(grep -c 'instrument does not fit' err) $(grep -c '^# doubtful' found.tsv) $change"
 done >noticed
 is "a record of another instrument is doubtful, whatever has changed" "$(grep -vc '^3 1 1' noticed)" 0
-same "the file stays as it is" before.tsv rig.tsv
+same "a doubtful record does not change the file of the instrument" before.tsv rig.tsv
 sensorsim --uniform 80um:120um --number 0 --duration 7s --noise 31.6mV --mains 0.2 >quiet.au
 ok "a record without particles is not another instrument" duet --instrument rig.tsv quiet.au
-is "and has no rows" "$(grep -vc '^#' out)" 1
+is "a record without particles has no rows" "$(grep -vc '^#' out)" 1
 rm -f dense.tsv
 duet --instrument dense.tsv long.au >found.tsv 2>err
 is "a doubtful instrument is not kept" "$(ls dense.tsv 2>/dev/null) $(grep -c 'not written' err)" " 1"

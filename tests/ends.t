@@ -55,7 +55,7 @@ head -c $((2 * record + 300)) fields >cut
 fails 'a cut stream of fields is refused' 1 'record 3' bemcontact --load 1N --estar 100GPa cut
 bemcontact --load 1N --estar 100GPa cut >passed 2>err
 is 'two of three records are processed' "$(grep -ac '^realisation' passed)" 2
-fails 'and the next program knows' 1 'the stream ends after record 2, which announces another' \
+fails 'a stream whose generator failed' 1 'the stream ends after record 2, which announces another' \
 	debrisgen --yield 1MPa passed
 head -c $((2 * record)) fields >cut
 fails 'a cut between two records is seen' 1 'the stream ends after record 2' records cut
@@ -64,7 +64,7 @@ head -c $cut signal >cut
 fails 'a cut signal is refused' 1 'the signal has no end after 930 frames' bpfilter --order 2 cut
 bpfilter --order 2 cut >passed 2>err
 is 'all complete frames are processed' "$(frames passed 2 | wc -l)" 929 # the last stands in for the end
-fails 'and duet knows' 1 'the signal has no end' duet passed
+fails 'a signal whose generator failed' 1 'the signal has no end' duet passed
 sed '$d' table >cut
 fails 'a cut table is refused' 1 "the table ends after 5 rows without its '# end' line" \
 	sensorsim --duration 1s cut

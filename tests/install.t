@@ -1,8 +1,26 @@
 #!/bin/sh
+# make takes flags of the command line and does without libraries that are not needed;
 # make install: programs, manuals, completion, headers and library work from where they lie
 . "$(dirname "$0")/tap.sh"
 
 programs=$(sed -n 's/^PROGRAMS = //p' "$top/Makefile")
+# commands VARIABLE=VALUE... TARGET: what make would run, from the start
+commands() {
+	make -nB V=1 -C "$top" B="$work/build" BIN="$work/bin" "$@" 2>&1
+}
+cat >no-fftw <<EOF
+#!/bin/sh
+case " \$* " in *' -include fftw3.h '*) exit 1 ;; esac
+exec ${CC:-cc} "\$@"
+EOF
+chmod +x no-fftw
+is 'the archive has the sources of a library that is there' \
+	"$(commands "$work/bin/records" | grep -c -e '-c -o .* lib/num/fft\.c$')" 1
+is 'the archive goes without the sources of a library that is missing' \
+	"$(commands CC="$work/no-fftw" "$work/bin/records" | grep -c -e '-c -o .* lib/num/fft\.c$')" 0
+is 'flags of the command line join those of the project' "$(commands PKG_CONFIG=false CPPFLAGS=-DMINE CFLAGS=-O0 \
+	"$work/build/lib/num/fft.o" | grep -c -e ' -Iinclude .* -DMINE -std=c11 .* -Wall .* -O0 ')" 1
+
 root=$work/'a root'
 if ! make -s -C "$top" install DESTDIR="$root" PREFIX=/usr >out 2>err; then
 	fail 'make install' "$(tail -5 err)"

@@ -67,5 +67,5 @@ fails "more coils than there is room for" 2 'more than 16 coils' \
 	layout --coils 0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16 --snr 40dB --arrivals 1
 fails "a second layout that is wrong is found before any output" 2 "want positions" \
 	layout --coils 0,1 --coils x --snr 40dB --arrivals 1
-is "nothing is printed" "$(cat out)" ""
+is "a layout that is wrong prints nothing" "$(cat out)" ""
 done_testing

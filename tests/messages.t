@@ -39,7 +39,7 @@ fails "the columns there are are named" 1 "no column 'y' among 'Time \[h\]' 'Flo
 
 # Units.
 fails "a unit with wrong capitals" 2 'young 210Gpa: did you mean GPa?' bemcontact --young 210Gpa --pressure 1MPa s.nrrd
-fails "one of two" 2 'young 210GPa,70gpa: did you mean GPa?' bemcontact --young 210GPa,70gpa --pressure 1MPa s.nrrd
+fails "one of two units with wrong capitals" 2 'young 210GPa,70gpa: did you mean GPa?' bemcontact --young 210GPa,70gpa --pressure 1MPa s.nrrd
 fails "a unit of another quantity" 2 "'210um' has the wrong unit" bemcontact --young 210um --pressure 1MPa s.nrrd
 fails "a blank before the unit" 2 "'mm' is taken for a file, which is not there; a unit" roughgen --length 1 mm
 is "a file of that name is read as a file" "$(cp s.nrrd mm; roughgen --sq 1um mm | records - | grep -c height)" 1
@@ -48,7 +48,7 @@ fails "an option with two letters exchanged" 2 '\--lenght: no such option: did y
 fails "an option with a letter too few" 2 '\--pressre=1MPa: no such option: did you mean --pressure?' bemcontact --pressre=1MPa s.nrrd
 fails "an option like no other" 2 '\--zigzag: no such option; see roughgen --help' roughgen --zigzag
 fails "a decimal comma" 2 '\--sq 0,8um: write decimals with a point' roughgen --sq 0,8um
-fails "and in a single number" 2 '\--estar 1,5GPa: write decimals with a point' bemcontact --pressure 1MPa --estar 1,5GPa s.nrrd
+fails "a decimal comma in a single number" 2 '\--estar 1,5GPa: write decimals with a point' bemcontact --pressure 1MPa --estar 1,5GPa s.nrrd
 fails "a comma for a cross" 2 "'0.5um,0.5um' has the wrong unit, want D" surfimport --pixel 0.5um,0.5um --height-unit 1um s.nrrd
 fails "a negative load" 2 '\--load -50N: want at least 0' bemcontact --load -50N --young 210GPa s.nrrd
 fails "a table for a surface to be measured" 1 't.tsv: this is text, want fields: height' roughgen --measure t.tsv

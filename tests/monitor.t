@@ -33,7 +33,7 @@ for how in '' '--lives-only --mission 20 --cost-ratio 5 --weights'; do
 done
 fails "a state of other options" 1 "state: saved with other options" \
 	aopf --unit unit --threshold 1 --direction up --resume state three.tsv
-fails "what is no state" 1 "no state saved by aopf" \
+fails "a table instead of a state" 1 "no state saved by aopf" \
 	aopf --unit unit --threshold 1 --resume three.tsv three.tsv
 cp state torn
 printf 'xxxx' | dd of=torn bs=1 seek=3000 conv=notrunc 2>/dev/null
@@ -121,7 +121,7 @@ is "halts are counted" "$(column halts halt.stats)" 1
 aopf --threshold 1 --direction up --lives-only bare.tsv | awk -F '\t' '$1 == 541 { print $4 }' >r
 near "the row after a halt predicts no failure" "$(cat r)" "$(awk -F '\t' '$1 == 41 { print $4 }' whole)" 5
 
-# A repair that is told takes effect at once, one that is not after three rows.
+# A repair in the events takes effect at once, an unreported one after three rows.
 awk -F '\t' 'NR > 1 && $1 >= 60 { $2 -= 0.3 } { print $1 "\t" $2 }' one.tsv >repaired.tsv
 printf 't\tevent\n60\trepair\n' >events.tsv
 aopf --threshold 1 --direction up --lives-only repaired.tsv >untold

@@ -100,16 +100,16 @@ refuse() {
 	printf '# cmd: %s\nx\n1\n' "$2" >hostile
 	fails "$1" 1 "$3" records --replay hostile
 }
-refuse 'another program is not run' 'rm -rf /nowhere' "'rm' is no program of wearpipe"
-refuse 'nor by its path' '/bin/sh -c true' "'/bin/sh' is no program"
-refuse 'nor behind ours' 'roughgen --points 4 | tee stolen' "'tee' is no program"
-refuse 'nor beside ours' 'roughgen --points 4; touch stolen' 'touch'
-refuse 'nor in a substitution' 'roughgen --points $(touch stolen)' 'a special character of the shell'
-refuse 'nor in a group' '{ roughgen --points 4; touch stolen; }' "'touch' is no program"
-refuse 'nothing is redirected' 'roughgen --points 4 >stolen' 'a special character of the shell'
-is 'nothing is executed' "$(ls stolen 2>/dev/null)" ''
+refuse 'a header with another program' 'rm -rf /nowhere' "'rm' is no program of wearpipe"
+refuse 'a header with a program by its path' '/bin/sh -c true' "'/bin/sh' is no program"
+refuse 'a header with another program behind ours' 'roughgen --points 4 | tee stolen' "'tee' is no program"
+refuse 'a header with another program beside ours' 'roughgen --points 4; touch stolen' 'touch'
+refuse 'a header with a substitution' 'roughgen --points $(touch stolen)' 'a special character of the shell'
+refuse 'a header with a group of commands' '{ roughgen --points 4; touch stolen; }' "'touch' is no program"
+refuse 'a header with a redirection' 'roughgen --points 4 >stolen' 'a special character of the shell'
+is 'a replay executes no other program' "$(ls stolen 2>/dev/null)" ''
 printf 'x\n1\n' >silent
-fails 'a stream that does not say how it was made' 1 'no cmd' records --replay silent
+fails 'a stream without a command' 1 'no cmd' records --replay silent
 cd "$work" || exit
 
 # Quoting: an argument that needs it comes back as it was.
@@ -121,7 +121,7 @@ is 'no value contains a colon followed by a blank' \
 	"$(head -c 1024 measured.nrrd | grep -a ':=' | grep -c ': ')" 0
 
 mkdir demo && cd demo || exit
-fails 'the demo names a surface that is not there' 1 '^roughgen: nowhere: No such file' \
+fails 'a demo with a missing surface' 1 '^roughgen: nowhere: No such file' \
 	sh "$top/examples/demo/pipeline.sh" nowhere
 cd "$work" || exit
 done_testing

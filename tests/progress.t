@@ -20,15 +20,15 @@ lines() {
 	tr '\r' '\n' <typescript | tr '\033' '\n'
 }
 script -qec 'sh slowly | bpfilter --order 20 >filtered' typescript >/dev/null 2>&1
-like 'a program tells what it has read' "$(lines)" '^bpfilter: [0-9]* MB, [1-9][0-9]* s$'
-like 'and erases it at the end' "$(lines | grep -v '^$' | grep -v '^Script' | tail -n 1)" '^\[K'
+like 'a program reports how much it has read' "$(lines)" '^bpfilter: [0-9]* MB, [1-9][0-9]* s$'
+like 'a program erases its progress at the end' "$(lines | grep -v '^$' | grep -v '^Script' | tail -n 1)" '^\[K'
 sh slowly | bpfilter --order 20 >quiet 2>err
-is 'not where standard error is no terminal' "$(cat err)" ''
+is 'no progress is written where standard error is no terminal' "$(cat err)" ''
 script -qec 'sh slowly | bpfilter --order 20 | bpfilter --order 30 >twice' typescript >/dev/null 2>&1
 like 'the second program of a pipeline writes a line below the first' "$(lines | tr '\n' '|')" '\[1B|bpfilter: '
-same 'and the output is that of no terminal' filtered quiet
+same 'progress does not change the output' filtered quiet
 script -qec 'roughgen --points 512 --length 1mm --sq 1um --corr 50um --count 200 | head -c 400000000 >/dev/null' typescript >/dev/null 2>&1
-like 'work whose size is known tells its share and the time left' "$(lines)" '^roughgen: [0-9]* %, [0-9]* s left$'
+like 'work of known size reports its share and the time left' "$(lines)" '^roughgen: [0-9]* %, [0-9]* s left$'
 
 # share NAME PROGRAM COMMAND: the program tells its share.  The reader of its output, or the
 # writer of its input, waits for longer than the second after which a line is shown.

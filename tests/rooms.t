@@ -39,7 +39,7 @@ case $objects in */build/*) objects=${objects%/bin} ;; *) objects=$top/build ;; 
 find lib -name '*.c' | while read -r f; do
 	o=$objects/${f%.c}.o
 	[ ! -e "$o" ] || echo "$o"
-done | xargs nm -P -A | sed 's|^.*/\(lib/[^:]*\):|\1|' | name >"$work/symbols"
+done | tr '\n' '\0' | xargs -0 nm -P -A | sed 's|^.*/\(lib/[^:]*\):|\1|' | name >"$work/symbols"
 awk '$3 ~ /[TDBRVW]/ { print $2, $1 }' "$work/symbols" | sort >"$work/defined"
 awk '$3 == "U" { print $2, $1 }' "$work/symbols" | sort >"$work/used"
 join -o 1.2,2.2 "$work/used" "$work/defined" >"$work/calls"

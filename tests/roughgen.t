@@ -203,7 +203,7 @@ fails "a spectrum with file" 2 '--corr: is for generated' roughgen -l 1um s
 fails "a crop outside" 1 'record 1: --crop 30:0:11:5 is not within 40 x 30' \
 	roughgen --crop 30:0:11:5 s
 fails "raw without pixel" 2 'go together' roughgen --raw 3x3 s
-fails "a file that is not there" 1 'nowhere: No such file' roughgen nowhere
+fails "a missing file" 1 'nowhere: No such file' roughgen nowhere
 fails "nothing to measure" 1 'standard input: empty, want' roughgen --measure
 fails "an empty file" 1 '/dev/null: empty, want' roughgen /dev/null
 printf '\0\0\0\0\0\0\370\177\0\0\0\0\0\0\0\0' >nan.f64

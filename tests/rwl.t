@@ -58,7 +58,7 @@ fails "micrometres of a leakage" 2 '--state-unit um: is not a unit of leakage, w
 fails "litres per minute of a gap" 2 '--state-unit L/min: is not a unit of gap, want m' rwl --state-unit L/min gap.tsv
 fails "a unit that contradicts the table" 2 "--state-unit L/h contradicts '# units:' of units.tsv" \
 	rwl --state-unit L/h units.tsv
-fails "a time unit that does" 2 "--time-unit contradicts '# units:' of units.tsv" rwl --time-unit d units.tsv
+fails "a time unit that contradicts the table" 2 "--time-unit contradicts '# units:' of units.tsv" rwl --time-unit d units.tsv
 fails "a table in volts" 1 "volts.tsv: column 'gap' is in 'V', want m" sh -c \
 	"(echo '# units: s V'; cat gap.tsv) >volts.tsv; rwl volts.tsv"
 
@@ -131,7 +131,7 @@ fails "one realisation is doubtful" 3 'single.tsv: a single realisation' \
 	rwl --new --wear single.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um \
 	--area 2346.3mm2 --fragment-area 1e-8m2
 printf 'volume\n0\n0\n0\n' >nothing.tsv
-fails "wear that was never seen is doubtful" 3 'nothing.tsv: none of 3 realisations wore' \
+fails "a table without wear gives a doubtful life" 3 'nothing.tsv: none of 3 realisations wore' \
 	rwl --new --wear nothing.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um \
 	--area 2346.3mm2 --fragment-area 1e-8m2
 
@@ -259,18 +259,18 @@ fails "times that stand still" 1 'twice.tsv: line 3: time 0 s is not ascending' 
 fails "a negative gap" 1 'minus.tsv: line 2: -1e-05 is not a gap' rwl minus.tsv
 fails "text for a number" 1 'text.tsv' rwl text.tsv
 fails "no column of the state" 1 'column.tsv.*leakage' rwl column.tsv
-fails "a step twice" 1 'again.tsv: line 3: realisation 0 has step 1 twice' rwl --new --wear again.tsv --step-time 1h
+fails "a step that occurs twice" 1 'again.tsv: line 3: realisation 0 has step 1 twice' rwl --new --wear again.tsv --step-time 1h
 fails "no fragment" 1 'none.tsv: no fragment' rwl --new --wear none.tsv --step-time 1h
 fails "negative wear" 1 'negative.tsv: line 2: volume' rwl --new --wear negative.tsv --step-time 1h
-fails "half a step" 1 'half.tsv: line 2: step' rwl --new --wear half.tsv --step-time 1h
+fails "a step that is not an integer" 1 'half.tsv: line 2: step' rwl --new --wear half.tsv --step-time 1h
 fails "no step time" 2 '--new requires --step-time' rwl --new --wear even.tsv
 fails "classes without pressures" 2 'each of several tables requires a pressure' rwl --new --wear even.tsv --wear low.tsv --step-time 1h
-fails "a pressure that is none" 2 '--wear even.tsv:21um: the pressure has the wrong unit' rwl --new --wear even.tsv:21um --step-time 1h
-fails "no pressure" 2 'even.tsv:0Pa: want a pressure above 0' rwl --new --wear even.tsv:0Pa --step-time 1h
-fails "a negative one" 2 'even.tsv:-1MPa: want a pressure above 0' rwl --new --wear even.tsv:-1MPa --step-time 1h
-fails "no area" 2 ':0: want an area above 0' rwl --new --wear even.tsv:21MPa:0 --step-time 1h
-fails "a negative one" 2 'mm2: want an area above 0' rwl --new --wear even.tsv:21MPa:-1mm2 --step-time 1h
-fails "more than that" 2 'want FILE' rwl --new --wear even.tsv:21MPa:1mm2:3 --step-time 1h
+fails "a pressure in metres" 2 '--wear even.tsv:21um: the pressure has the wrong unit' rwl --new --wear even.tsv:21um --step-time 1h
+fails "a pressure of zero" 2 'even.tsv:0Pa: want a pressure above 0' rwl --new --wear even.tsv:0Pa --step-time 1h
+fails "a negative pressure" 2 'even.tsv:-1MPa: want a pressure above 0' rwl --new --wear even.tsv:-1MPa --step-time 1h
+fails "an area of zero" 2 ':0: want an area above 0' rwl --new --wear even.tsv:21MPa:0 --step-time 1h
+fails "a negative area" 2 'mm2: want an area above 0' rwl --new --wear even.tsv:21MPa:-1mm2 --step-time 1h
+fails "a class with four parts" 2 'want FILE' rwl --new --wear even.tsv:21MPa:1mm2:3 --step-time 1h
 fails "too much area" 2 'more than --area' rwl --new --wear even.tsv:21MPa:9e3mm2 --step-time 1h
 fails "size without diameters" 1 'even.tsv.*diameter' rwl --new --wear even.tsv --step-time 1h --critical-size 5um
 fails "a unit that does not suit" 2 '--state-unit foo' rwl --state-unit foo gap.tsv

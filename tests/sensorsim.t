@@ -148,13 +148,13 @@ near "a mixture has its shares" "$(column material mixed.tsv | grep -c aluminium
 head -30 mixed.tsv | sensorsim --truth again.tsv --seed 9 >/dev/null
 is "materials of a table are kept" "$(column amplitude again.tsv | head -20)" \
 	"$(column amplitude mixed.tsv | head -20)"
-fails "a material that is none" 2 "no 'cheese'; there are ferrous, steel" \
+fails "an unknown material" 2 "no 'cheese'; there are ferrous, steel" \
 	sensorsim --material cheese one.tsv
-fails "a share that is none" 2 "'x' is not a share" sensorsim --material steel=x one.tsv
+fails "a share that is no number" 2 "'x' is not a share" sensorsim --material steel=x one.tsv
 fails "two ways to name a material" 2 "exclude one another" \
 	sensorsim --material steel --mur 3 one.tsv
 printf 'time\tdiameter\tmaterial\n0.02\t1e-4\tcheese\n' >bad.tsv
-fails "a material of a table that is none" 1 "bad.tsv: line 2: material 'cheese', want one of" \
+fails "an unknown material in a table" 1 "bad.tsv: line 2: material 'cheese', want one of" \
 	sensorsim bad.tsv
 
 # Events that are no particles: each adds what it says, where the truth says it is.
@@ -239,7 +239,7 @@ fails "a window too short" 2 'no room' sensorsim --uniform 1um:2um --number 300 
 fails "a line above half the rate" 2 '^sensorsim: --pump: a line at 4000 Hz is above half the rate, 2500 Hz$' \
 	sensorsim -r 5000 --pump 0.1,0.1 --uniform 1um:1um --number 1 --duration 1
 is "a failed run leaves no stream that looks complete" "$(wc -c <out)" 0
-fails "one of two ways to say how many" 2 'requires one of --number and --concentration' \
+fails "a number and a concentration together" 2 'requires one of --number and --concentration' \
 	sensorsim --uniform 1um:1um --number 1 --concentration 1 --duration 1
 fails "a full disk" 1 'o space' sh -c 'sensorsim --uniform 1um:1um --number 1 --duration 1 >/dev/full'
 

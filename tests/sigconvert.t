@@ -51,7 +51,7 @@ is "times in whole milliseconds give 10 kHz" "$(told 1e-4 3 3000)" 10000
 is "a step of a minute gives the rate" "$(told 60 0 10)" 0.016666666666666666
 is "regular times cause no warning" "$(cat err)" ''
 told 2.2675736961451248e-05 3 200 >out
-like "times that tell little are said to" "$(cat err)" 'tell no better .* --rate does'
+like "times of few digits give a warning" "$(cat err)" 'tell no better .* --rate does'
 awk 'BEGIN { print "t\tu"; srand(3); for (i = 0; i < 1000; i++) print i / 100 + 0.001 * rand() "\t" i }' >jitter.tsv
 is "times that jitter by a tenth of a step give the rate" "$(sigconvert --output text jitter.tsv | sed -n 's/^# rate: //p')" 100
 printf 'Rate [Hz];u [V]\n12,5;1\n12,5;2\n' >rated.csv
@@ -69,7 +69,7 @@ is "text and pipes keep the start and the rate" "$(sed -n -e 's/^# rate: //p' -e
 	"44.1 2026-11-22T03:04:05.250+01:00 "
 printf 'When,u\n2026-11-22 23:59:59.500,1\n2026-11-23 00:00:00.000,2\n2026-11-23 00:00:00.500,3\n' >when.csv
 sigconvert --time When when.csv >w.au
-is "moments are times, and tell the start" \
+is "moments are times and give the start" \
 	"$(sigconvert --output text w.au | sed -n -e 's/^# rate: //p' -e 's/^# start: //p' | tr '\n' ' ')$(samples w.au)" \
 	"2 2026-11-22T23:59:59.5 1 2 3"
 printf 't,u\n2024-02-29T00:30:00+01:00,1\n2024-02-28T23:30:01Z,2\n2024-02-28T23:30:02Z,3\n' >zones.csv
@@ -129,8 +129,8 @@ if sigconvert --output wav a.au >a.wav 2>err; then
 	near "FLAC has 24 bits" "$(grep -v '^#' f.tsv >f; grep -v '^#' a.tsv | paste - f | awk '/^[0-9]/ { d = $2 - $5; d = d < 0 ? -d : d; m = d > m ? d : m }
 		END { printf "%.9f", m }')" 0 1.2e-6
 	printf 't\tu\n0\t0.5\n0.001\t2\n0.002\t-3\n' | sigconvert --from text --output flac --stats st >clip.flac 2>err
-	is "clipping is counted, said and marked: status 3" "$? $(column samples_clipped st) $(grep -c 'clipped' err)" "3 2 1"
-	is "and cuts at full scale" "$(samples clip.flac | awk '{ printf "%.3f %.3f %.3f", $1, $2, $3 }')" "0.500 1.000 -1.000"
+	is "clipping is counted, reported and gives status 3" "$? $(column samples_clipped st) $(grep -c 'clipped' err)" "3 2 1"
+	is "clipping cuts at full scale" "$(samples clip.flac | awk '{ printf "%.3f %.3f %.3f", $1, $2, $3 }')" "0.500 1.000 -1.000"
 	fails "WAV of a fractional rate" 1 '44.1.* Hz: WAV and FLAC want a whole number' sigconvert --output wav f.au
 	head -c 20 a.wav >cut.wav
 	fails "a WAV that is cut off" 1 'cut.wav' sigconvert cut.wav
@@ -140,7 +140,7 @@ else
 fi
 
 fails "no rate and no times" 1 'specify --rate' sigconvert --skip-lines 1 plain.csv
-fails "a column that is not there" 1 "no column 'x'" sigconvert --columns x daq.csv
+fails "a missing column" 1 "no column 'x'" sigconvert --columns x daq.csv
 fails "no headings" 1 'want a line of headings' sigconvert --skip-lines 2 plain.csv
 printf 't\tu\n0\t1\n1\t2\n2\t3\n5\t4\n' >gap.tsv
 fails "samples that are missing" 1 'line 5: time 5 s, want 3 s' sigconvert --rate 1Hz gap.tsv
@@ -186,7 +186,7 @@ printf 't leakage\n0 1.5\n20.5 1.52\n40 1.54\n60 1.58\n80 1.6\n' |
 	rwl --wear-rate filter --time-unit h --state-unit L/min - >want.tsv 2>err
 is "rwl converts them" "$(body rest.tsv)" "$(body want.tsv)"
 fails "a column of words" 1 "line 2: Remark: 'new' is not a number" sigconvert --output table pump.csv
-fails "a column that is not there is named with those that are" 1 "no column 'Leak' among 'Time' 'Flow, main' 'Temp' 'Remark'" \
+fails "a missing column is named with those of the table" 1 "no column 'Leak' among 'Time' 'Flow, main' 'Temp' 'Remark'" \
 	sigconvert --output table --columns Leak pump.csv
 printf 'Time,Flow\n0,1.234,5\n' >thousand.csv
 fails "a separator of thousands" 1 'line 2: want 2 cells, got 3' sigconvert --output table thousand.csv

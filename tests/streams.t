@@ -120,12 +120,12 @@ cp contact.nrrd kept.nrrd
 wear='debrisgen -Y 1GPa'
 fails 'an output that is the input' 2 'contact.nrrd: the same file is read and written' \
 	$wear --surface contact.nrrd contact.nrrd
-fails 'or standard input' 2 'contact.nrrd: the same file is read and written' \
+fails 'standard input as an output' 2 'contact.nrrd: the same file is read and written' \
 	sh -c "$wear --summary ./contact.nrrd <contact.nrrd"
-fails 'or the counters' 2 'contact.nrrd: the same file is read and written' \
+fails 'counters that are written to an input' 2 'contact.nrrd: the same file is read and written' \
 	$wear -S contact.nrrd contact.nrrd
 ln -s contact.nrrd link
-fails 'by another name' 2 'link: the same file is read and written' $wear --stress link contact.nrrd
+fails 'an input under another name as an output' 2 'link: the same file is read and written' $wear --stress link contact.nrrd
 same 'a refused output leaves the input unchanged' contact.nrrd kept.nrrd
 fails 'two outputs that are one file' 2 'x: the same file is written twice' \
 	$wear --surface x --summary x contact.nrrd
@@ -167,9 +167,9 @@ is 'a header line cannot be forged' "$({ header 'key:=a\nsizes: 1 1 1'; ramp; } 
 { header $(seq -f 'key%g:=1' 1001); ramp; } >keys.nrrd
 fails 'more than 1000 keys' 1 'more than 1000 keys' records keys.nrrd
 { header 'k1:=1' 'k2:=2'; ramp; } >keys.nrrd
-fails 'limits can be lowered' 1 'more than 1 keys' env WEARPIPE_LIMITS=keys=1 records keys.nrrd
-fails 'the limit of a record can be lowered' 1 'bytes of samples are too many' env WEARPIPE_LIMITS=bytes=4 records keys.nrrd
-fails 'that of a header' 1 'header' env WEARPIPE_LIMITS=header=30 records keys.nrrd
+fails 'more keys than a lowered limit' 1 'more than 1 keys' env WEARPIPE_LIMITS=keys=1 records keys.nrrd
+fails 'a record above a lowered limit' 1 'bytes of samples are too many' env WEARPIPE_LIMITS=bytes=4 records keys.nrrd
+fails 'a header above a lowered limit' 1 'header' env WEARPIPE_LIMITS=header=30 records keys.nrrd
 
 # Other tools, where they are installed
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then

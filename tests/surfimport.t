@@ -174,11 +174,11 @@ if command -v unzip >/dev/null && command -v xmllint >/dev/null && command -v zi
 	surfunzip s.plux >b.nrrd
 	is "plux with a missing sample is read" "$(heights b.nrrd) $(list dx b.nrrd)" "1e-06 nan 5e-07"
 	fails "a container is named to surfimport's user" 1 'surfunzip reads .x3p' surfimport s.plux
-	fails "what is no container" 1 'is no zip container' surfunzip tab.txt
+	fails "a text as a container" 1 'is no zip container' surfunzip tab.txt
 	zip -q other.zip tab.txt
 	fails "a container of something else" 1 'neither main.xml' surfunzip other.zip
 	fails "no file" 2 'want a file' surfunzip
-	fails "an option that is none" 2 'no such option' surfunzip --nothing x
+	fails "an unknown option" 2 'no such option' surfunzip --nothing x
 else
 	skip "surfunzip can be tested" "no unzip, xmllint or zip"
 fi
@@ -206,7 +206,7 @@ printf '1 2\n3\n' >short.txt
 fails "a short row" 1 'line 2: want 2 heights, got 1' surfimport --pixel 1um --height-unit 1m short.txt
 printf '1 2\n3 x\n' >word.txt
 fails "a word among heights" 1 'line 2: not a row of numbers: 3 x' surfimport --pixel 1um --height-unit 1m word.txt
-fails "nothing at all" 1 'no row of numbers' surfimport --pixel 1um --height-unit 1m
+fails "empty text" 1 'no row of numbers' surfimport --pixel 1um --height-unit 1m
 printf 'nan nan\n' >gone.txt
 fails "every height missing" 1 'every height is missing' surfimport --pixel 1um --height-unit 1m gone.txt
 printf '0,1\n1,2\n5,3\n' >uneven.csv

@@ -2,7 +2,7 @@
 # Every table tells the units of its columns, one for each; records --pretty shows them
 . "$(dirname "$0")/tap.sh"
 
-# told FILE: the number of units is that of the columns
+# told FILE: a table has as many units as columns
 told() {
 	is "$1 states its units" "$(awk -F '\t' '/^# units: / { sub("^# units: ", ""); n = split($0, unit, " "); next }
 		!/^#/ { print n == NF ? "all" : n " of " NF; exit }' "$1")" all

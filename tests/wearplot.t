@@ -37,7 +37,7 @@ picture 'an envelope keeps a spike of one frame' '3' spike.au
 
 printf 't\ty\n0\t1\n3600\t2\n7200\t3\n' >series.tsv
 picture 'a series is drawn over time' 'observed' series.tsv
-picture 'with its threshold' 'threshold' --end 5 series.tsv
+picture 'a series is drawn with its threshold' 'threshold' --end 5 series.tsv
 printf '# units: h L/min\nt\ty\n0\t1\n3600\t2\n7200\t3\n' >hours.tsv
 picture 'hours stay hours' 'y, L/min.*time, h' hours.tsv
 is 'the axis reaches the last value' "$(tr -d '\n' <p.svg | sed 's/<[^>]*>/ /g' | grep -c ' 8000 ')" 1
@@ -62,8 +62,8 @@ fails 'a signal that was cut off' 1 '^wearplot: torn.au: ' wearplot torn.au
 sed '$d' truth.tsv >torn.tsv
 fails 'a table that was cut off' 1 '^wearplot: torn.tsv: ' wearplot torn.tsv
 fails 'a missing file' 1 'none.tsv: cannot be read' wearplot none.tsv
-fails 'a field that is not there' 1 'want a field of this list: height, pressure' wearplot --field gap contact.nrrd
-fails 'a record that is not there' 1 'contact.nrrd' wearplot --record 3 contact.nrrd
+fails 'a missing field' 1 'want a field of this list: height, pressure' wearplot --field gap contact.nrrd
+fails 'a missing record' 1 'contact.nrrd' wearplot --record 3 contact.nrrd
 fails 'another ending' 2 'ends in .svg or .png' wearplot --output x.gif contact.nrrd
 fails 'a size without a height' 2 'want WxH' wearplot --size 900 contact.nrrd
 fails 'an unknown option' 2 'no such option' wearplot --colour contact.nrrd

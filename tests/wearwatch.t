@@ -57,7 +57,7 @@ else
 	skip 'a power failure can be tested' 'no setsid'
 fi
 
-# Sensor 1 is clipped in one hour; an alarm by rate is raised, told once and cleared.
+# Sensor 1 is clipped in one hour; an alarm by rate is raised, reported once and cleared.
 sigconvert --output text hours.au | awk -F '\t' -v OFS='\t' '/^[0-9]/ && $1 >= 2 && $1 < 3 && $2 > 0.3 { $2 = 0.3 }
 	/^[0-9]/ && $1 < 4 { print } !/^[0-9]/ { print }' | sigconvert --from text >clipped.au
 watch --state clipped --alarm-rate 7:2 --on-alarm 'echo "$WEARWATCH_ALARM" >>told' clipped.au 2>said

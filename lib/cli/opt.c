@@ -20,8 +20,9 @@ enum { ROWS_MAX = 128, LETTERLESS = 256 };
 static int verbose_flag, follow;
 static const char *stats_path;
 
+static const struct opt heading[] = { OPT_HEADING("All programs"), OPT_END };
+
 static const struct opt common[] = {
-	OPT_HEADING("All programs"),
 	{ 'S', "stats", OPT_TEXT, UNIT_NONE, &stats_path, 0, 0, "FILE",
 		"write one row of work counters to FILE", 0, 1 },
 	{ 'v', "verbose", OPT_FLAG, UNIT_NONE, &verbose_flag, 0, 0, 0,
@@ -593,6 +594,7 @@ int opt_parse(const struct prog *program, int argc, char **argv)
 	check_stack();
 	stats_start();
 	gather(program->opts);
+	gather(heading);
 	if (strcmp(program->reads, "nothing") != 0)
 		gather(reading);
 	gather(common);

@@ -41,6 +41,7 @@ double inverse_gaussian(double mean, double variance, double z, double u)
 	return u * (mean + x) <= mean ? x : mean / x * mean;
 }
 
+/* From three degrees of freedom on the root is below 0.1 only for z below -3. */
 double chi_square(double freedom, double z)
 {
 	double spread = 2 / (9 * freedom),

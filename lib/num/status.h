@@ -1,6 +1,6 @@
-/* status.h - what a function returns that can only run short of memory or be asked for
- * what it is not defined for; those with more reasons have an enum of their own.  0 is
- * success in all of them. */
+/* status.h - result of a function that fails only without memory or for arguments outside
+ * its domain; functions with more causes have enums of their own.  0 is success in all of
+ * them. */
 #ifndef NUM_STATUS_H
 #define NUM_STATUS_H
 

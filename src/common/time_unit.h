@@ -11,7 +11,7 @@ extern struct opt timeunit_rows[]; /* for OPT_TABLE */
  * the option contradicts it, or, if times are needed, where it is not a unit of time. */
 void timeunit_settle(const struct table_in *t, int column, int needed);
 
-/* In seconds; 1 if neither table nor option told. */
+/* The unit in seconds; 1 if neither table nor option states it. */
 double timeunit(void);
 const char *timeunit_word(void); /* "1" then */
 

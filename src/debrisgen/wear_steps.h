@@ -12,7 +12,7 @@ void wearing_check(void);
 
 struct wearing;
 
-/* For surfaces of in that are worn in so many steps each. */
+/* For surfaces of in that are worn in this many steps each. */
 struct wearing *wearing_open(const struct fields_in *in, long steps);
 void wearing_close(struct wearing *w);
 
@@ -33,8 +33,8 @@ int wearing_solves(const struct wearing *w, long run);
 struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c,
 	double target, double distance, long step, int *solved);
 
-/* Warns of what the pairs so far were too steep for, and of a surrogate; 0 where an audit
- * of it failed. */
+/* Warns if slopes were too steep for the theory or surfaces outside the range of the
+ * surrogate; 0 where an audit of the surrogate failed. */
 int wearing_warn(const struct wearing *w);
 
 double wearing_friction(void);

@@ -12,7 +12,7 @@ struct moment {
 /* "2026-11-22T03:04:05.678Z", with a blank for T, a comma for the point, the seconds left
  * out, or "+01:00" or nothing for the zone.  1 if the text is that. */
 int moment_parse(const char *text, struct moment *m);
-/* Seconds from a to b; NAN if their zones are not both told or both untold. */
+/* Seconds from a to b; NAN if only one of them states its zone. */
 double moment_between(const struct moment *a, const struct moment *b);
 /* With T and point, digits as needed. */
 enum { MOMENT_TEXT = 64 };

@@ -120,7 +120,7 @@ bpfilter --zero-phase -b 20:1000 --order 4000 s.au >filtered.au
 duet filtered.au >found.tsv
 scene "a filter of 4001 taps, its inverse longer than the record" "18 to 20 particles" 20 2 \
 	"$(score matched)"
-scene "a filter of 4001 taps, its inverse longer than the record" "no other" 0 0 "$(score false)"
+scene "a filter of 4001 taps, its inverse longer than the record" "no false particle" 0 0 "$(score false)"
 scene "a filter of 4001 taps, its inverse longer than the record" "delays to 0.06 samples" 0 6e-6 \
 	"$(score delay_rms)"
 bpfilter --zero-phase -b 95:105 --order 800 s.au >filtered.au
@@ -134,16 +134,16 @@ pole() { # SHARE
 }
 for share in 0.5 0.1; do
 	pole $share
-	scene "one-pole low-pass, a = $share, not told" "20 particles" 20 0 "$(score matched)"
-	scene "one-pole low-pass, a = $share, not told" "no other" 0 0 "$(score false)"
-	scene "one-pole low-pass, a = $share, not told" "delays to 0.06 samples" 0 6e-6 \
+	scene "one-pole low-pass, a = $share, filter not stated" "20 particles" 20 0 "$(score matched)"
+	scene "one-pole low-pass, a = $share, filter not stated" "no false particle" 0 0 "$(score false)"
+	scene "one-pole low-pass, a = $share, filter not stated" "delays to 0.06 samples" 0 6e-6 \
 		"$(score delay_rms)"
 done
 pole 0.03
 limit=0.005 # it delays by 1.9 ms
-scene "one-pole low-pass, a = 0.03, not told" "16 to 20 particles" 18 2 "$(score matched)"
-scene "one-pole low-pass, a = 0.03, not told" "no other" 0 0 "$(score false)"
-scene "one-pole low-pass, a = 0.03, not told" "delays to 0.1 samples" 0 1e-5 "$(score delay_rms)"
+scene "one-pole low-pass, a = 0.03, filter not stated" "16 to 20 particles" 18 2 "$(score matched)"
+scene "one-pole low-pass, a = 0.03, filter not stated" "no false particle" 0 0 "$(score false)"
+scene "one-pole low-pass, a = 0.03, filter not stated" "delays to 0.1 samples" 0 1e-5 "$(score delay_rms)"
 limit=
 
 # --- many
@@ -152,7 +152,7 @@ sensorsim --uniform 80um:120um --number 100 --gap 6ms --span 0.8s --duration 1.2
 	--lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv >s.au
 duet s.au >found.tsv
 scene "100 particles in one section, 8 ms apart" "at least 98" 100 2 "$(score matched)"
-scene "100 particles in one section, 8 ms apart" "no other" 0 2 "$(score false)"
+scene "100 particles in one section, 8 ms apart" "no false particle" 0 2 "$(score false)"
 sensorsim --uniform 80um:120um --number 4000 --duration 2s --snr 40dB --truth truth.tsv >s.au
 duet s.au >found.tsv
 scene "2000 particles a second, 20 at once" "unresolved, none invented" 0 0 "$(score found)"

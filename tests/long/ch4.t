@@ -37,8 +37,8 @@ covered() {
 				'/^[0-9]/ { t = 100 * (k == 1 ? a : b); print (t >= $3 && t <= $5) }'
 	done <truths | awk '{ s += $1; n++ } END { printf "%.3f", s / n }'
 }
-within "interval of the mean of countless fragments" "$(covered 0 1)" 0.84 0.95
-within "interval of a plate that wears as one fragment" "$(covered 1 2)" 0.84 0.95
+within "the 90 % interval holds nine in ten lives of plates of countless fragments" "$(covered 0 1)" 0.84 0.95
+within "the 90 % interval holds nine in ten lives of plates that wear as one fragment" "$(covered 1 2)" 0.84 0.95
 
 # --- filters: 100 units of even wear with noise and a passing wander, at 60 % of life
 awk 'function uniform() { state = state * 16807 % 2147483647; return state / 2147483647 }
@@ -57,7 +57,7 @@ BEGIN {
 		printf "%d %.9g\n", unit, 4e-6 / rate - t + 1
 	}
 }' >ends
-within "intervals of the filters" "$(while read -r unit truth; do
+within "the 90 % interval of the rate filter holds nine in ten lives or more" "$(while read -r unit truth; do
 	rwl --wear-rate filter --threshold-gap 14um --count 400 "run$unit.tsv" | grep -v '^#' | tail -1 |
 		awk -F '\t' -v t="$truth" '{ print ($3 ~ /^[0-9]/ && t >= $3 + 0 && ($5 == "inf" || t <= $5 + 0)) }'
 done <ends | awk '{ s += $1; n++ } END { printf "%.3f", s / n }')" 0.85 1
@@ -68,6 +68,6 @@ for n in 10000 1000000; do
 	rows $n | rwl --threshold-gap 20um --wear-rate filter -c 2 --grey --stats stats.$n >out.$n
 done
 is "a million rows are written" "$(grep -c '^[0-9]' out.1000000)" 1000000
-within "memory of a million rows over that of ten thousand" \
+within "a million rows need the memory of ten thousand" \
 	"$(echo "$(column memory_kb stats.1000000) $(column memory_kb stats.10000)" | awk '{ print $1 / $2 }')" 0.8 1.2
 done_testing

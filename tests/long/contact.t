@@ -48,7 +48,7 @@ perl -e 'srand(3); for (1 .. 64 * 4096) { print pack "d<", 1e-6 * sqrt(-2 * log(
 for size in 64x4096 4096x64; do
 	for p in 3e9 30e9 60e9; do
 		bemcontact --raw $size --pixel 1um --estar 100GPa --boundary periodic --pressure ${p}Pa noise.f64 >strip.nrrd
-		at_most "$size of white noise, $(key area strip.nrrd | cut -c 1-4) in contact: iterations" \
+		at_most "$size of white noise, $(key area strip.nrrd | cut -c 1-4) in contact: the iterations are few" \
 			"$(key iterations strip.nrrd)" 50
 	done
 done
@@ -64,10 +64,10 @@ if [ -x "$bench" ]; then
 		"$bench" "$1" "$2" "$3" bccg 1e-8 >row
 		at_most "$1 $2 under $3: the optimality gap is small" "$(cut -f 6 row)" 1e-8
 		at_most "$1 $2 under $3: the transforms are few" "$(cut -f 15 row)" "$4"
-		at_most "$1 $2 under $3: doubles per cell" \
+		at_most "$1 $2 under $3: the doubles per cell are few" \
 			"$(awk -F '\t' -v z="$none" '{ printf "%.2f", ($16 - z) * 131072 / $2 ^ 2 }' row)" "$5"
 	done
 else
-	skip "work and memory" "build/bench/contact is not built: make bench-contact builds it"
+	skip "work and memory are bounded" "build/bench/contact is not built: make bench-contact builds it"
 fi
 done_testing

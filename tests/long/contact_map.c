@@ -24,7 +24,8 @@ int main(void)
 	size_t n;
 
 	if (!f || fread(map, 1, sizeof(map), f) != sizeof(map)) {
-		ok(1, "contact map of 123 patches # SKIP %s is not there", path);
+		ok(1, "the contact map has 123 patches over corners and borders # SKIP %s is not there",
+			path);
 		if (f)
 			fclose(f);
 		return tap_done();

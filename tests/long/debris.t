@@ -22,7 +22,7 @@ first() {
 
 rough 80um 100um 320um 50N 20 >contact.nrrd
 first "Sq 80 um, correlation 100 um" 0.153 6.57 1
-# One cluster carries the load: the particle hardly knows the roughness.
+# One cluster carries the load: the particle hardly depends on the roughness.
 near "a particle alone on its surface has the expected diameter, um" \
 	"$(awk '/^[#r]/ { next } { n[$1]++; d[$1] = $7 } END { for (r in n) if (n[r] == 1) { s += d[r]; k++ }
 		print 1e6 * s / k }' p.tsv)" 232.7 2

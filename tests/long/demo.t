@@ -13,7 +13,7 @@ is 'most intervals of 90 % hold the true remaining life' \
 	"$(word '.* held in \([0-9]* of [0-9]*\) predictions' | awk '{ print ($1 > 0.6 * $3) }')" 1
 page=$work/demo/demo.html
 if ! command -v gnuplot >/dev/null; then
-	skip 'pictures' 'no gnuplot'
+	skip 'the page has nine pictures' 'no gnuplot'
 	done_testing
 fi
 is 'the page has nine pictures' "$(grep -c '<figure>' "$page")" 9
@@ -23,7 +23,7 @@ for browser in chromium chromium-browser google-chrome ''; do
 	[ -z "$browser" ] || ! command -v "$browser" >/dev/null || break
 done
 if [ -z "$browser" ]; then
-	skip 'the page in a browser' 'no Chromium'
+	skip 'all pictures are drawn in a browser' 'no Chromium'
 	done_testing
 fi
 # The page with a script that says, when all is loaded, how many pictures were drawn and by

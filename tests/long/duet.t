@@ -10,9 +10,9 @@ SCENES=${SCENES:-1000}
 
 check() { # NAME VALUE OP LIMIT
 	if awk -v x="$2" -v y="$4" "BEGIN { exit !(x != \"nan\" && x + 0 $3 y) }"; then
-		pass "$1: $2 $3 $4"
+		pass "$1 is $2, $3 $4"
 	else
-		fail "$1" "got:  $2" "want: $3 $4"
+		fail "$1 is $2, $3 $4"
 	fi
 }
 
@@ -56,11 +56,11 @@ scenes() {
 
 judge() { # NAME
 	name=$1
-	check "$name: count right" "$(share right scenes)" '>=' "$count"
-	check "$name: delay error over the bound" "$(value delay_ratio)" '<=' "$limit"
-	check "$name: size error" "$(value size_rms)" '<=' "$size"
-	check "$name: inside one standard error" "$(value delay_cover)" '>=' 0.64
-	check "$name: inside one standard error" "$(value delay_cover)" '<=' 0.74
+	check "$name: the share of right counts" "$(share right scenes)" '>=' "$count"
+	check "$name: the delay error over the bound" "$(value delay_ratio)" '<=' "$limit"
+	check "$name: the size error" "$(value size_rms)" '<=' "$size"
+	check "$name: the share of delays within one standard error" "$(value delay_cover)" '>=' 0.64
+	check "$name: the share of delays within one standard error" "$(value delay_cover)" '<=' 0.74
 }
 
 for m in 1 2 3 4 5 6; do
@@ -84,8 +84,8 @@ scenes 3 30 0.95 1.3 0.005 --pulse lorentz --mains 0.5,0.3 --pump 0.4,0.2
 close_by() { # M SNR COUNT: and how many are false
 	found "$1" "$2" 0.2ms
 	name="$1 particles at $2 dB from 0.2 ms on"
-	check "$name: count right" "$(share right scenes)" '>=' "$3"
-	check "$name: false ones" "$(share false truth)" '<=' 0.002
+	check "$name: the share of right counts" "$(share right scenes)" '>=' "$3"
+	check "$name: the share of false rows" "$(share false truth)" '<=' 0.002
 }
 close_by 2 20 0.88
 close_by 2 30 0.95
@@ -100,8 +100,8 @@ random() { # RATE SNR FOUND
 		--lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv >s.au
 	duet s.au >found.tsv
 	"$top/scripts/score" truth.tsv found.tsv >score.tsv
-	check "$1 a second at $2 dB: found" "$(share matched truth)" '>=' "$3"
-	check "$1 a second at $2 dB: false" "$(share false truth)" '<=' 0.005
+	check "$1 a second at $2 dB: the share of particles found" "$(share matched truth)" '>=' "$3"
+	check "$1 a second at $2 dB: the share of false rows" "$(share false truth)" '<=' 0.005
 }
 random 100 20 0.92
 random 100 30 0.95
@@ -141,7 +141,7 @@ for m in 1 3 6; do
 		done
 	done
 done
-# Nothing told, the filter guessed from what is quiet, which takes longer: 300 scenes at most.
+# The filter is not stated but estimated from quiet stretches, which takes longer: 300 scenes at most.
 # The standard errors, made for a pulse of known form, are not held to.  The goal is a count
 # right in 95 % of scenes and delays within 1.3 times the bound.  Asked for is what came near
 # it on all of two to four records of 60 to 100 scenes, not:
@@ -160,9 +160,9 @@ guessed() { # M SNR PAUSE COUNT SIZE bpfilter-options
 	shift 5
 	filtered "$m" "$snr" "$pause" none "$count" 1.3 "$size" "$@"
 	name="$m particles every $period s at $snr dB through $* guessed"
-	check "$name: count right" "$(share right scenes)" '>=' "$count"
-	check "$name: delay error over the bound" "$(value delay_ratio)" '<=' "$limit"
-	check "$name: size error" "$(value size_rms)" '<=' "$size"
+	check "$name: the share of right counts" "$(share right scenes)" '>=' "$count"
+	check "$name: the delay error over the bound" "$(value delay_ratio)" '<=' "$limit"
+	check "$name: the size error" "$(value size_rms)" '<=' "$size"
 }
 guessed 1 20 0.1 0.95 0.03 -b 0:3000
 guessed 3 20 0.1 0.8 0.05 -b 0:3000
@@ -185,8 +185,8 @@ sensorsim --uniform 80um:120um --number $((HOURS * 30)) --duration $((HOURS * 36
 "$top/scripts/score" truth.tsv found.tsv >score.tsv
 is "all particles of $HOURS hours are found" "$(value matched)" $((HOURS * 30))
 # At 1e-9 a sample 0.9 false ones are due in a day; more than 5 with probability 3e-4.
-check "$HOURS hours: no more others than the stated rate gives" "$(value false)" '<=' 5
-check "$HOURS hours: arrivals, s" "$(value time1_rms)" '<=' 5e-6
-check "$HOURS hours: memory, kB" "$(awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++)
+check "$HOURS hours: the number of false rows" "$(value false)" '<=' 5
+check "$HOURS hours: the rms error of the arrivals in s" "$(value time1_rms)" '<=' 5e-6
+check "$HOURS hours: the memory in kB" "$(awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++)
 	if ($i ~ /memory/) k = i; next } { print $k }' stats.tsv)" '<=' 20000
 done_testing

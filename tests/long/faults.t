@@ -4,12 +4,12 @@
 . "$(dirname "$0")/../tap.sh"
 case ${ASAN_OPTIONS:-} in
 ?*)
-	skip 'faults' 'the sanitizer has an allocator of its own'
+	skip 'every fault is reported or does no harm' 'the sanitizer has an allocator of its own'
 	done_testing
 	;;
 esac
 if ! ${CC:-cc} -shared -fPIC -O1 -o shim.so "$top/tests/faults/shim.c" -ldl 2>err; then
-	skip 'faults' 'no library can be preloaded here'
+	skip 'every fault is reported or does no harm' 'no library can be preloaded here'
 	done_testing
 fi
 most=${FAULTS:-8} # calls of a function that are tried, first, last and spread between
@@ -77,7 +77,7 @@ $call $at of $n: $what"
 		all=$((all + tried))
 		faults="$faults$odd"
 	done
-	is "$1: $all faults are told or do no harm" "$faults" ''
+	is "$1: $all faults are reported or do no harm" "$faults" ''
 	# The smallest stack that is accepted is enough.
 	# shellcheck disable=SC3045 # dash and bash have it
 	(ulimit -s 256 && "$@" >out 2>err </dev/null)
@@ -85,7 +85,7 @@ $call $at of $n: $what"
 	is "$1: a small stack changes nothing" "$(broken)" ""
 	# shellcheck disable=SC3045
 	(ulimit -s 64 && "$@" >out 2>err </dev/null)
-	is "$1: a smaller one is refused" "$? $(cat err)" \
+	is "$1: a smaller stack is refused" "$? $(cat err)" \
 		"1 $1: the stack may have 64 kB, want 256: see ulimit -s"
 	all=0
 	faults=
@@ -106,7 +106,7 @@ limited() {
 		[ -z "$what" ] || odd="$odd
 $kb kB: $what"
 	done
-	is "$1: little memory is told or does no harm" "$odd" ''
+	is "$1: little memory is reported or does no harm" "$odd" ''
 }
 limited roughgen --points 128 --length 10um --sq 0.1um --corr 3um
 limited bemcontact --pressure 50MPa --young 210GPa surfaces

@@ -18,7 +18,7 @@ for p in fftw gsl gnuplot libsndfile; do
 		sh -c "grep -q 'depends_on \"$p\"' '$formula' && grep -q ' $p\$' '$top/scripts/deps'"
 done
 if ! command -v dh >/dev/null || ! command -v lintian >/dev/null || ! git -C "$top" rev-parse 2>/dev/null; then
-	skip 'Debian packages' 'no debhelper, lintian or git tree'
+	skip 'the packages build and lintian finds nothing' 'no debhelper, lintian or git tree'
 	done_testing
 fi
 DEB_BUILD_OPTIONS='nocheck parallel=2'

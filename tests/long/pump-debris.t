@@ -15,6 +15,6 @@ life() {
 rising "its own debris shortens the life, a filter gives some of it back" \
 	"$(life feedback)" "$(life filtered)" "$(life alone)"
 # dw/dt = w0 exp(g t) from the first hour on: w = w0 (exp(g t) - 1) / g
-near "dirt and wear grow as the balance has it" "$(awk -v g="$(sed -n 's/^# growth: \([^ ]*\).*/\1/p' feedback.tsv)" \
+near "dirt and wear grow as the balance of the oil predicts" "$(awk -v g="$(sed -n 's/^# growth: \([^ ]*\).*/\1/p' feedback.tsv)" \
 	'/^400\t/ { printf "%.6f", $2 / (2e-12 * (exp(g * 400) - 1) / g) }' feedback.tsv)" 1 1e-4
 done_testing

@@ -3,7 +3,7 @@
 . "$(dirname "$0")/../tap.sh"
 
 if ! ${CC:-cc} -O2 -o particles "$top/tests/scale/particles.c" -lm 2>err; then
-	skip 'tables of a million particles' 'no compiler'
+	skip 'a million particles need no more memory' 'no compiler'
 	done_testing
 fi
 # A thousand rows a realisation: the number of realisations grows, too.
@@ -24,6 +24,6 @@ fitted() {
 	awk -F '\t' -v name="$1" '$1 == name { print $2 }' fits.1000000
 }
 head -n 20 fits.1000000 >shown
-near 'the shape that was put in' "$(fitted weibull_shape)" 2 0.01
-near 'the scale is right' "$(fitted weibull_scale)" 1e-5 2e-8
+near 'the fitted shape is the one put in' "$(fitted weibull_shape)" 2 0.01
+near 'the fitted scale is the one put in' "$(fitted weibull_scale)" 1e-5 2e-8
 done_testing

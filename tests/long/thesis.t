@@ -11,8 +11,8 @@ left >before
 ok 'every experiment runs and the page is written' env MAKE='make -j 2' OUT="$work/thesis" "$top/scripts/thesis" quick
 left >after
 same 'nothing is left in the source tree' before after
-ok 'a second time nothing is to be done' env OUT="$work/thesis" "$top/scripts/thesis" quick
-is 'no experiment ran again' "$(grep -c ' s$' out)" 0
+ok 'a second call succeeds' env OUT="$work/thesis" "$top/scripts/thesis" quick
+is 'a second call runs no experiment again' "$(grep -c ' s$' out)" 0
 
 # --- An experiment that is cut off stops, and goes on from what is there.
 OUT="$work/cut" "$top/scripts/thesis" quick grid >cut.log 2>&1 &
@@ -21,11 +21,11 @@ until [ -e cut/grid/soft.64.tsv ]; do sleep 0.2; done
 kill $run
 wait $run
 ok 'a signal stops the run' test ! -e cut/grid/done
-ok 'its processor time is kept' test -s cut/grid/seconds
+ok 'the processor time of a stopped experiment is kept' test -s cut/grid/seconds
 ls -i --full-time cut/grid/soft.64.tsv >before
-ok 'it goes on when called again' env OUT="$work/cut" "$top/scripts/thesis" quick grid
+ok 'the next call goes on with a stopped experiment' env OUT="$work/cut" "$top/scripts/thesis" quick grid
 ls -i --full-time cut/grid/soft.64.tsv >after
-same 'what was there is not made anew' before after
+same 'finished files are not made again' before after
 
 # value EXPERIMENT KEY
 value() {
@@ -41,15 +41,15 @@ within() {
 }
 # --- chapter 2.  The cells that a point load of 50 N fails have the volume of a ball of
 # 307.0 um; a single spot of contact comes near it, several stay below.
-within 'whole set, step 1, um' "$(value ch2-steps first_whole)" 250 320
-within 'volume of a step, column rule, m3' "$(value ch2-pairs v50.column)" 1e-12 1.515e-11
-within 'volume of a step at 100 N' "$(value ch2-pairs v100.column)" 1e-12 4.286e-11
+within 'the first particle of the whole set has nearly the diameter of a point load, um' "$(value ch2-steps first_whole)" 250 320
+within 'a step of the column rule wears less than a point load, m3' "$(value ch2-pairs v50.column)" 1e-12 1.515e-11
+within 'a step at 100 N wears less than a point load, m3' "$(value ch2-pairs v100.column)" 1e-12 4.286e-11
 rising 'columns lose less than the whole set' "$(value ch2-pairs v50.column)" "$(value ch2-pairs v50.whole)" 1.515e-11
 within 'twice the load wears 2 to 2^1.5 times as much' "$(value ch2-pairs ratio.column)" 1.9 2.9
 # --- chapter 3
 near 'the joint fit has the first delay that was put in, ms' "$(value ch3-separation a1_delay1.fit)" 0.2121 0.01
-near 'the second is right' "$(value ch3-separation a1_delay2.fit)" 0.4545 0.01
-near 'it finds the four pulses of a2' "$(value ch3-separation a2_found.fit)" 4 0
+near 'the joint fit has the second delay that was put in, ms' "$(value ch3-separation a1_delay2.fit)" 0.4545 0.01
+near 'the joint fit finds the four pulses of a2' "$(value ch3-separation a2_found.fit)" 4 0
 within 'three sources leave what four do not' "$(value ch3-separation a2_left3)" 2 10
 rising 'more particles a second give more counts above 150 um' 0 "$(value ch3-separation above_counted.100)" \
 	"$(value ch3-separation above_counted.300)"
@@ -58,9 +58,9 @@ near 'the pump line is found, Hz' "$(value ch3-signals line_on)" 2000 0
 # three constants of the right sum and spread score 5/36, the constant 1/2 scores 1/12
 within 'networks that learnt little score as constants do' "$(value ch3-networks t4-01.ordered)" 0.07 0.18
 # --- chapter 4.  White noise of 0.062 and its forecast: above its square, below twice that.
-within 'one-step error at order 30, (L/min)^2' "$(value ch4-leakage mse30.grey)" 0.0042 0.0077
+within 'the one-step error at order 30 is that of white noise, (L/min)^2' "$(value ch4-leakage mse30.grey)" 0.0042 0.0077
 within 'intervals of the averaged models hold the end' "$(value ch4-leakage average_holds)" 0.75 1
-within 'hours at which the 90 % interval holds the truth, %' "$(value ch4-wear-life coverage)" 60 100
+within 'the 90 % interval holds the truth in most hours, %' "$(value ch4-wear-life coverage)" 60 100
 rising 'the earlier of two thresholds is no later than one' "$(value ch4-wear-life size_life)" "$(value ch4-wear-life volume_life)"
 
 # --- the page

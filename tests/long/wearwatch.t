@@ -50,9 +50,9 @@ if command -v setsid >/dev/null; then
 	wait
 	is 'a growing file is worked off to its end in spite of kills' "$status $((kills > 5))" '4 1'
 	same 'no row is lost or doubled' killed/chunks.tsv day/chunks.tsv
-	same 'nor is a particle' killed/particles.tsv day/particles.tsv
+	same 'no particle is lost or doubled' killed/particles.tsv day/particles.tsv
 else
-	skip 'power cuts' 'no setsid'
+	skip 'kills neither lose nor double a row' 'no setsid'
 fi
 
 # A live stream of 16-bit samples, as arecord writes it, stopped in the middle of a chunk;
@@ -69,7 +69,7 @@ is 'the stream of 16 bits is as long as wanted' "$(wc -c <pcm.au | tr -d ' ')" $
 head -c 400000 pcm.au | wearwatch "$@" --state faults --no-pictures 2>/dev/null
 is 'the first part of a stream that was stopped is written but doubted, for a fault' "$?" 3
 { head -c 24 pcm.au && tail -c +400001 pcm.au; } | wearwatch "$@" --state faults --title 'A <pump> & its debris' 2>said
-is 'as is the rest' $? 3
+is 'the rest of the stream is written but doubted too' $? 3
 # hour I: what is doubted there, without numbers
 hour() {
 	column doubts faults/chunks.tsv | sed -n "$(($1 + 1))p" | sed 's/:[0-9]*//g'
@@ -77,7 +77,7 @@ hour() {
 like 'clipping is doubted in its hour' "$(hour 3)" clipped1
 like 'a dead sensor is reported in its hour' "$(hour 6)" dead2
 like 'exchanged sensors are reported in their hour' "$(hour 9)" swapped
-is 'the hours beside them are not' "$(hour 1) $(hour 5) $(hour 11)" '- - -'
+is 'the hours beside the faults are not doubted' "$(hour 1) $(hour 5) $(hour 11)" '- - -'
 # The overlap of hour 8 reaches 0.2 s into the exchange: its pulses there pair with none.
 like 'the hour before the exchange is doubted by duet or not at all' "$(hour 8)" '^\(-\|duet\)$'
 near 'the hours without fault are counted as in the whole record' \
@@ -88,7 +88,7 @@ for browser in chromium chromium-browser google-chrome ''; do
 	[ -z "$browser" ] || ! command -v "$browser" >/dev/null || break
 done
 if [ -z "$browser" ] || ! command -v gnuplot >/dev/null; then
-	skip 'the page in a browser' 'no Chromium, or no gnuplot'
+	skip 'all pictures are drawn in a browser' 'no Chromium, or no gnuplot'
 	done_testing
 fi
 for dir in day faults; do
@@ -107,7 +107,7 @@ for dir in day faults; do
 		like "$dir, $width pixels wide: all pictures are drawn, nothing is wider, no cell is void" \
 			"$(sed -n 's/.*<title>\(.*\)<\/title>.*/\1/p' dom)" \
 			"^$(grep -c '<figure>' $dir/index.html) pictures, 0 too wide, 0 nan"
-		is "$dir: there is one of the wear, one of the sizes and, of a day, one of the life" \
+		is "$dir: the page shows the wear, the sizes and, after a day, the life" \
 			"$(grep -c '<figure>' $dir/index.html)" $((2 + (${#dir} == 3)))
 		is "the console has no error on $dir at a width of $width pixels" "$(grep 'CONSOLE' log)" ''
 	done

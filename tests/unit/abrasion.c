@@ -190,7 +190,8 @@ static void check_gap(void)
 	gap = abrasion_gap(&par, d, aspect, 500, load, &carried, &evaluations);
 	near(gap / par.gap, 1, 1e-12,
 		"500 particles carry a load at the gap it came from");
-	near(carried / load, 1, 1e-9, "they carry exactly this load");
+	near(carried / load, 1, 1e-9,
+		"at this gap 500 particles carry exactly this load");
 	ok(evaluations < 500.0 * 60, "particles smaller than the gap are left out: %.0f",
 		evaluations);
 	gap = abrasion_gap(&par, d, aspect, 500, 1e9, &carried, &evaluations);

@@ -281,7 +281,7 @@ static void far_from_zero(enum contact_solver solver, enum contact_boundary boun
 		solver_name[solver], boundary == CONTACT_FREE ? "free" : "periodic",
 		far / depth[0]);
 	ok(approach[1] == approach[0] - far,
-		"and its approach is that at 0 less the height");
+		"the approach of a raised ball is lower by its height");
 	contact_free(c);
 }
 
