@@ -3,7 +3,7 @@
 #	make              build all programs into bin/
 #	make demo         install or name what is missing, build, run the whole pipeline
 #	make check        build and run the tests
-#	make install      PREFIX, DESTDIR, BINDIR, LIBDIR, INCLUDEDIR, MANDIR, DOCDIR
+#	make install      PREFIX, DESTDIR, BINDIR, LIBDIR, INCLUDEDIR, DATADIR, MANDIR, DOCDIR
 #
 #	make bin/duet     one program alone, with the libraries it needs and no others
 #	make check-long   the longer checks; make check-all: both; make check-cluster: under Slurm
@@ -244,8 +244,8 @@ fuzz:
 demo:
 	@scripts/deps
 	@$(MAKE) --no-print-directory all
-	@$(MAKE) --no-print-directory -C examples/demo \
-		SURFACE="$(if $(filter /%,$(SURFACE)),,$(SURFACE:%=$(CURDIR)/))$(SURFACE)"
+	@surface="$(SURFACE)"; case $$surface in '' | /*) ;; *) surface="$(CURDIR)/$$surface" ;; esac; \
+		$(MAKE) --no-print-directory -C examples/demo SURFACE="$$surface"
 
 # Every experiment of the thesis, and build/thesis/full/index.html or .../quick/...
 .PHONY: thesis thesis-quick

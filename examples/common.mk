@@ -5,6 +5,9 @@
 # SIZE is quick or full.  An experiment makes $(OUT)/values.tsv, rows of key, kind and value
 # as ../results wants them, and $(OUT)/figures.done when its figures are drawn.  The results
 # stand beside the numbers of the thesis in a table that all experiments have in common.
+ifneq ($(word 2,$(CURDIR)),)
+$(error the experiments do not run in a path with a blank: $(CURDIR))
+endif
 BIN = $(abspath ../../bin)
 HERE = $(CURDIR)
 SIZE = quick

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The pipeline of the README runs as printed and foretells a life that is right
+# The pipeline of the README runs as printed and predicts the right life
 . "$(dirname "$0")/tap.sh"
 
 sed -n '/^```sh$/,/^```$/p' "$top/README.md" | sed '/^```/d' >pipeline.sh

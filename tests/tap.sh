@@ -5,7 +5,7 @@
 #	like NAME GOT PATTERN      GOT matches a basic regular expression
 #	near NAME GOT WANT TOL     |got - want| <= tol
 #	at_most NAME GOT LIMIT     got <= limit, and got is a number
-#	rising NAME NUMBER...      numbers, none below the one before (nan is no number)
+#	rising NAME NUMBER...      two numbers or more, none below the one before (nan is none)
 #	ok NAME COMMAND...         command succeeds
 #	fails INPUT STATUS PATTERN COMMAND...
 #	                           exits with STATUS, one line on stderr matching PATTERN;
@@ -91,8 +91,12 @@ at_most() {
 rising() {
 	name=$1
 	shift
-	if echo "$@" | awk '{ for (i = 1; i <= NF; i++)
-		if ($i !~ /^[-+]?[0-9.]/ || i > 1 && $i + 0 < $(i - 1) + 0) exit 1 }'; then
+	# A word that is empty is no number either.
+	if printf '%s\n' "${@:-none}" | awk 'NF == 0 { bad = 1 }
+		{ for (i = 1; i <= NF; i++) {
+			if ($i !~ /^[-+]?[0-9.]/ || n++ && $i + 0 < last) bad = 1
+			last = $i + 0 } }
+		END { exit bad || n < 2 }'; then
 		pass "$name"
 	else
 		fail "$name" "got: $*"

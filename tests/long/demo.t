@@ -11,6 +11,12 @@ near 'the volume found is the volume put in, within 1 %' \
 is 'the pair wears out within the record' "$(word 'worn out after \([0-9]*\)\..*' | awk '{ print ($1 > 24 && $1 < 48) }')" 1
 is 'most intervals of 90 % hold the true remaining life' \
 	"$(word '.* held in \([0-9]* of [0-9]*\) predictions' | awk '{ print ($1 > 0.6 * $3) }')" 1
+# One surface gives a life of status 3, with which the demo goes on.
+roughgen --points 64 --length 0.5mm --sq 0.3um --corr 40um >'a surface.nrrd'
+ok 'the demo runs on a measured surface in a path with a blank' make -s -C "$top/examples/demo" BIN="$bin" \
+	OUT="$work/measured" SURFACE="$work/a surface.nrrd"
+is 'the demo of a measured surface ends with the distribution of the life' \
+	"$(column t "$work/measured/life.tsv" | wc -l)" "$(column t "$work/measured/state.tsv" | wc -l)"
 page=$work/demo/demo.html
 if ! command -v gnuplot >/dev/null; then
 	skip 'the page has nine pictures' 'no gnuplot'

@@ -41,7 +41,7 @@ static void check_squeeze(void)
 	near(load, .0441299, 5e-8, "the load it carries is exact");
 	near(abrasion_squeeze(10e-6, 5e-6, 2e9, 6e9, &load), 4.11438e-6, 5e-12,
 		"the depth in a gap of 5 um is exact");
-	near(load, .152152, 5e-7, "its load is exact");
+	near(load, .152152, 5e-7, "the load in a gap of 5 um is exact");
 	for (int i = 0; i < 20000; i++) {
 		double h1 = pow(10, 6 + 4 * uniform(&state));
 		double h2 = pow(10, 6 + 4 * uniform(&state));
@@ -109,7 +109,7 @@ static void check_modes(void)
 		"below an aspect of 1.344 it rolls at a friction of 0.3");
 	abrasion_particle(&par, 10e-6, limit * 1.001, &a);
 	ok(a.mode == ABRASION_GROOVES && a.section[0] == 0 && a.section[1] > 0,
-		"above that aspect it grooves the harder body and is held by the softer one");
+		"above an aspect of 1.344 it grooves the harder body and is held by the softer one");
 	near(a.depth[1] + a.depth[0], 1e-6, 1e-20, "both depths add up to the overlap");
 	near(M_PI * 2e9 * capped(a.depth[0], 10e-6) /
 			(M_PI / 2 * 6e9 * capped(a.depth[1], 10e-6)),

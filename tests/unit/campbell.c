@@ -64,7 +64,8 @@ static void test_errors(const struct shape *shape)
 	/* The scatter is known to 1 / sqrt(2 TIMES) = 9 %. */
 	for (int i = 0; i < 2; i++)
 		near(errors[i] / sqrt(squares[i] - sum[i] * sum[i]), 1, 0.3,
-			i ? "fourth powers" : "squares scatter by their standard error");
+			i ? "fourth powers scatter by their standard error"
+			  : "squares scatter by their standard error");
 }
 
 int main(void)

@@ -163,7 +163,8 @@ static void test_words(void)
 
 		fir_print(&band, 44100.0 / 7, text);
 		rest = fir_parse(text, 44100.0 / 7, &got);
-		ok(rest && !*rest && same_band(&got, &band), "%s", text);
+		ok(rest && !*rest && same_band(&got, &band),
+			"the description '%s' is read back", text);
 		if (w >= 2)
 			strcat(strcat(chain, w == 3 ? " | " : ""), text);
 	}
@@ -180,8 +181,8 @@ static void test_words(void)
 	fir_print(&(struct fir_band){ 1000000, 1.0 / 3e9, 0.4 / 3, FIR_BLACKMAN,
 			  -1.0 / 3e-290, 0 },
 		1.0 / 3, text);
-	ok(strlen(text) + 1 < FIR_TEXT && strstr(text, " plain"), "room for any: %s",
-		text);
+	ok(strlen(text) + 1 < FIR_TEXT && strstr(text, " plain"),
+		"there is room for the longest description: %s", text);
 }
 
 static void test_nonsense(void)

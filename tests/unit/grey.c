@@ -32,7 +32,7 @@ static void test_golden(void)
 		if (!ok(sscanf(line, "%*s %d %lf %lf %*f %*f %lf,%lf,%lf", &n, &a, &b,
 				want, want + 1, want + 2) == 6 &&
 				    n <= 64,
-			    "golden row %d", ++rows))
+			    "row %d of the reference table can be read", ++rows))
 			continue;
 		text = strrchr(line, '\t') + 1;
 		for (; k < n; k++, text = tail + 1)
@@ -46,6 +46,7 @@ static void test_golden(void)
 			near(grey_forecast(&g, h, 1), want[h - 1], 1e-11,
 				"the forecast is that of the reference");
 	}
+	ok(rows == 2, "the reference table has 2 rows");
 	fclose(f);
 }
 

@@ -92,7 +92,7 @@ static void check_sums(void)
 	ok(metrics_add(m, 90, 10, 8, 12, pair, NULL, 2, &row) == NUM_OK,
 		"samples are accepted");
 	near(row.crps, 0.25 * 4, 1e-15, "the order of the samples does not matter");
-	near(row.mass, 1, 0, "both samples are within 20 %% of 10");
+	near(row.mass, 1, 0, "both samples are within 20 % of 10");
 	ok(metrics_add(m, 100, 1, 0, 1, NULL, NULL, 0, NULL) == NUM_DOMAIN &&
 			metrics_add(m, 95, NAN, 0, 1, NULL, NULL, 0, NULL) == NUM_DOMAIN,
 		"predictions after the end of life and missing ones are not counted");

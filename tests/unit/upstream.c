@@ -11,8 +11,9 @@ static void joins(const char *const *part, const char *want)
 	for (int i = 0; part[i]; i++)
 		upstream_add(&u, part[i]);
 	got = upstream_cmd(&u);
-	ok(want && got ? !strcmp(got, want) : want == got, "%s: %s",
-		want ? want : "nothing", got ? got : "nothing");
+	ok(want && got ? !strcmp(got, want) : want == got,
+		"the parts '%s', ... are joined as '%s'", part[0] ? part[0] : "",
+		got ? got : "");
 	upstream_free(&u);
 }
 
