@@ -46,6 +46,10 @@ is "a file of that name is read as a file" "$(cp s.nrrd mm; roughgen --sq 1um mm
 
 fails "an option with two letters exchanged" 2 '\--lenght: no such option: did you mean --length?' roughgen --lenght 1mm
 fails "an option with a letter too few" 2 '\--pressre=1MPa: no such option: did you mean --pressure?' bemcontact --pressre=1MPa s.nrrd
+fails "an option with two letters too many" 2 '\--pressuresd: no such option: did you mean --pressure?' bemcontact --pressuresd 1MPa s.nrrd
+fails "an option with two letters too few" 2 '\--presre: no such option: did you mean --pressure?' bemcontact --presre 1MPa s.nrrd
+fails "an option with two wrong letters" 2 '\--prassare: no such option: did you mean --pressure?' bemcontact --prassare 1MPa s.nrrd
+fails "an option with three wrong letters" 2 '\--prassari: no such option; see bemcontact --help' bemcontact --prassari 1MPa s.nrrd
 fails "an option like no other" 2 '\--zigzag: no such option; see roughgen --help' roughgen --zigzag
 fails "a decimal comma" 2 '\--sq 0,8um: write decimals with a point' roughgen --sq 0,8um
 fails "a decimal comma in a single number" 2 '\--estar 1,5GPa: write decimals with a point' bemcontact --pressure 1MPa --estar 1,5GPa s.nrrd

@@ -51,7 +51,7 @@ is "times in whole milliseconds give 10 kHz" "$(told 1e-4 3 3000)" 10000
 is "a step of a minute gives the rate" "$(told 60 0 10)" 0.016666666666666666
 is "regular times cause no warning" "$(cat err)" ''
 told 2.2675736961451248e-05 3 200 >out
-like "times of few digits give a warning" "$(cat err)" 'tell no better .* --rate does'
+like "times of few digits give a warning" "$(cat err)" 'determine the rate of 40000 Hz only to a relative 0.2: set it by --rate'
 awk 'BEGIN { print "t\tu"; srand(3); for (i = 0; i < 1000; i++) print i / 100 + 0.001 * rand() "\t" i }' >jitter.tsv
 is "times that jitter by a tenth of a step give the rate" "$(sigconvert --output text jitter.tsv | sed -n 's/^# rate: //p')" 100
 printf 'Rate [Hz];u [V]\n12,5;1\n12,5;2\n' >rated.csv

@@ -45,6 +45,14 @@ is 'the header is a multiple of 1024 bytes' "$(($(wc -c <ours.nrrd) % 1024))" 96
 ok 'a plane field is written as GSF' records -o gsf plain.nrrd
 mv out plain.gsf
 is 'GSF keeps the spacing' "$(records plain.gsf | grep '^1' | cut -f 8,9,12)" "$(printf '1e-06\t2e-06\t11')"
+# Heights 1, 2, 3 and 4 nm on two by two samples of 0.5 um, little-endian float32.
+{
+	printf 'Gwyddion Simple Field 1.0\nXRes = 2\nYRes = 2\nXReal = 1\nYReal = 1\nXYUnits = um\nZUnits = nm\n\0\0\0'
+	printf '\0\0\200\077\0\0\0\100\0\0\100\100\0\0\200\100'
+} >units.gsf
+is 'units of GSF are converted in every sample' "$(records -o text units.gsf |
+	awk '!/^#/ { for (i = 1; i <= NF; i++) printf "%.6g ", $i }')" '1e-09 2e-09 3e-09 4e-09 '
+is 'units of the sides of GSF are converted' "$(records units.gsf | grep '^1' | cut -f 8,9)" "$(printf '5e-07\t5e-07')"
 ramp >plain.raw
 ok 'headerless samples are read' records --raw 4x3 --pixel 2um plain.raw
 is 'headerless samples have the given spacing' "$(cell dx) $(cell max)" '2e-06 11'

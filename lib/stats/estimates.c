@@ -43,8 +43,7 @@ static enum num_status estimate_fits(const struct ensemble_par *par,
 		out[ESTIMATE_SCALE] = w->scale;
 		out[ESTIMATE_WEIBULL_MEAN].value = w->mean;
 	}
-	if (b->steps > 0 &&
-		power_fit(b->step, b->growth, b->steps, par->confidence, &p) == 0) {
+	if (power_fit(b->step, b->growth, b->steps, par->confidence, &p) == 0) {
 		out[ESTIMATE_FACTOR] = p.factor;
 		out[ESTIMATE_EXPONENT] = p.exponent;
 		out[ESTIMATE_OFFSET] = p.offset;

@@ -159,7 +159,7 @@ struct wearing *wearing_open(const struct fields_in *in, long steps)
 		w->counterface = counterface_open(shear);
 	if (quick_asked()) {
 		if (steps > 1)
-			die(EXIT_USAGE, "--surrogate knows one step: want --steps 1");
+			die(EXIT_USAGE, "--surrogate describes one step: want --steps 1");
 		w->quick = quick_open();
 	}
 	return w;

@@ -407,9 +407,9 @@ static double told_rate(const struct text_in *t)
 		die(EXIT_RUN, "%s: the times are not ascending", t->name);
 	rate = simplest_rate(t, (double)(t->nahead - 1) / span);
 	if (t->resolution > 1e-3 * span && deviation(t, rate) > 1e-9 * span)
-		warn("%s: the times tell no better than by %.1g of it that the rate is "
-		     "%g Hz: --rate does",
-			t->name, t->resolution / span, rate);
+		warn("%s: the times determine the rate of %g Hz only to a relative %.1g: "
+		     "set it by --rate",
+			t->name, rate, t->resolution / span);
 	return rate;
 }
 

@@ -74,6 +74,9 @@ is 'every figure that has results has a picture' "$(awk -F '\t' '/^figure/ && $9
 	while read -r _ n; do
 		grep -q "<img alt=\"our figure $n\"" $page || echo "figure $n"
 	done)" ''
+for tool in abrade lives layout volumes materials debriscount; do
+	is "there is a picture of what lies beyond the thesis: $tool" "$(grep -c "<img alt=\"$tool\"" $page)" 1
+done
 # The values in examples/results.tsv, which the pages quote, are those that come out; they are
 # of the full form, with more runs.
 is 'nine in ten of the values quoted are within a tenth or their intervals meet' "$(awk -F '\t' '

@@ -41,7 +41,7 @@ static enum num_status open_bank(struct forecast *f)
 	if (f->by_gap || par->quantity == PAIR_LEAKAGE) {
 		f->other = (struct bank_shape){ .family = BANK_OTHER,
 			.par = f->by_gap ? -2 : 2. / 3,
-			.log_prior = 2.5 };
+			.log_prior = 3.3 };
 		bank.more = &f->other;
 		bank.n_more = 1;
 	}

@@ -12,9 +12,12 @@ enum {
 	DRAWS = 200    /* of their ages */
 };
 
-/* Log prior of all paths together over the coordinates of the bank: kinship is likely,
- * but an alien unit must be outweighed by some twenty rows that speak against it. */
-static const double KINSHIP = 4;
+/* Log prior of all paths together over the coordinates of the bank, whose priors add up
+ * to e^4.3.  From 4 over 5 to 5.8 the CRPS of the measured series with a fleet falls
+ * from 3.9 over 3.6 to 3.3 % of life, pooled; with an alien unit, one of twice the life,
+ * the median error of 12 cracks at 40 % of theirs rises from 5.6 over 5.7 to 5.9 %, and
+ * at 6.4 it is the same. */
+static const double KINSHIP = 6.4;
 
 struct unit {
 	int rows;

@@ -15,16 +15,17 @@ static const double NOTHING = 3e3;
 static const double KIN_HAZARD = 0.3;
 
 /* Changes of regime to come, by whether the rate falls, keeps or rises in a coordinate:
- * hazard c, share of falls, and median growth in units of one over the age. */
+ * hazard c, share of falls, and median growth in units of one over the age.  These and
+ * the three below were chosen with the weights of the coordinates, see shapes.c. */
 static const struct future {
 	double hazard, falls, growth;
-} future[] = { { 1.2, 0.3, 4.2 }, { 1.2, 0.19, 1.8 }, { 1.4, 0.025, 2 } };
+} future[] = { { 2.5, 0.24, 3.5 }, { 1.4, 0.15, 1.9 }, { 0.8, 0.033, 1.9 } };
 
 enum { FUTURES = sizeof future / sizeof *future };
 
-static const double GROWTH_SD = 3.4; /* of its logarithm */
+static const double GROWTH_SD = 2.7; /* of its logarithm */
 /* Mean and sd of the logarithm of what a fall makes the rest of the life longer by. */
-static const double FALL = 1.1, FALL_SD = 0.59;
+static const double FALL = 1.4, FALL_SD = 0.45;
 
 struct bank_chances {
 	int n;

@@ -32,7 +32,6 @@ static enum calibrate_status attempt(const struct calibrate_par *par, const doub
 	size_t edge = n > 8 * (size_t)w->edge ? (size_t)w->edge : 0;
 
 	memset(c, 0, sizeof *c);
-	look->attempts++;
 	c->whitening = *w;
 	c->guessed = look->settled;
 	c->suspect = look->coloured && !look->settled;
@@ -49,8 +48,8 @@ static enum calibrate_status attempt(const struct calibrate_par *par, const doub
 			status = CALIBRATE_MEMORY;
 	}
 	if (status == CALIBRATE_OK)
-		status = measure(par, work + edge, work + n + edge, n - 2 * edge,
-			work + 2 * n, look, c);
+		status = measure(par, x1 + edge, work + edge, work + n + edge,
+			n - 2 * edge, work + 2 * n, look, c);
 	free(work);
 	if (status != CALIBRATE_OK)
 		calibration_clear(c);
@@ -105,17 +104,13 @@ static enum calibrate_status look_again(const struct calibrate_par *par, const d
 /* Chi-square per degree of freedom of clear pulses that asks for a second look. */
 static const double DOUBTFUL = 1.2;
 
-/* Durations of a pulse times the frequency above which it has hardly any power. */
-static const double PULSE_BAND = 10;
-
 /* Is the noise white after all?  Where hardly anything is quiet, pulses stand for colour.
  * Then they fit as well as in white noise, or tolerably, and noise is white above their
  * band. */
 static int is_white(const struct calibration *c, const struct look *look)
 {
 	return c->chi2 < DOUBTFUL ||
-	       (c->chi2 < 4 && colour_is_white(look->power,
-				       fmin(PULSE_BAND / c->duration, 0.25)));
+	       (c->chi2 < 4 && measure_white_above(look, c->duration));
 }
 
 /* Power of a tone, in units of noise^2, that tails of pulses may be taken for, and the
@@ -130,7 +125,8 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 {
 	struct calibrate_par fewer = *par;
 	struct whitening w = { .tap = NULL };
-	struct look other_look = { .attempts = look->attempts };
+	struct look other_look = { .attempts = look->attempts,
+		.events = look->found.events };
 	struct calibration other;
 	enum calibrate_status status;
 
@@ -154,6 +150,56 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 	return CALIBRATE_OK;
 }
 
+/* Share of its energy in which a pulse made white may differ from a known one without its
+ * filter. */
+static const double KNOWN = 0.01;
+
+/* Has what made the noise white made the pulse a known one, and are the low frequencies
+ * lost?  Then a pulse taken from the record lacks them. */
+static enum calibrate_status lacks_low(
+	const struct look *look, const struct calibration *c, int *lacks)
+{
+	struct template white = { .shape = c->shape, .duration = c->duration };
+	struct whitening w;
+	enum num_status status;
+	double left = 1;
+	int pulse;
+
+	if (whitening_of_noise(&w, look->power, COLOUR_BINS, WHITEN_FILTERED) != NUM_OK)
+		return CALIBRATE_MEMORY;
+	status = template_known(&white, w.seen, w.seen_half, &pulse, &left);
+	*lacks = left <= KNOWN && w.low > 0;
+	whitening_clear(&w);
+	return status == NUM_OK ? CALIBRATE_OK : CALIBRATE_MEMORY;
+}
+
+/* Makes the noise white and takes the pulse from that record; COLOURED where that does
+ * not describe it. */
+static enum calibrate_status attempt_white(const struct calibrate_par *par,
+	const double *x1, const double *x2, size_t n, struct look *look,
+	struct calibration *c)
+{
+	struct look smooth = *look;
+	enum calibrate_status status;
+
+	if (colour_smooth(smooth.power) != NUM_OK)
+		return CALIBRATE_MEMORY;
+	status = attempt_kind(par, x1, x2, n, WHITEN_COLOURED, &smooth, c);
+	if (status == CALIBRATE_MEMORY)
+		return status;
+	look->attempts = smooth.attempts;
+	if (status == CALIBRATE_OK && c->measured && c->chi2 < DOUBTFUL) {
+		int lacks;
+
+		c->attempts = look->attempts;
+		status = lacks_low(look, c, &lacks);
+		if (status != CALIBRATE_OK || !lacks)
+			return status;
+	}
+	calibration_clear(c);
+	return CALIBRATE_COLOURED;
+}
+
 enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct calibration *c)
 {
@@ -169,7 +215,17 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 	if (par->filter &&
 		whitening_of_filter(&w, par->filter, par->filter_taps) != NUM_OK)
 		return CALIBRATE_MEMORY;
+	look.first =
+		!par->filter && par->pulse == CALIBRATE_ANY_PULSE && isnan(par->duration);
 	status = attempt(par, x1, x2, n, &w, c, &look);
+	if (status == CALIBRATE_COLOURED) {
+		status = attempt_white(par, x1, x2, n, &look, c);
+		if (status != CALIBRATE_COLOURED)
+			return status;
+		look.first = 0;
+		status = attempt(par, x1, x2, n, &w, c, &look);
+	}
+	look.first = 0;
 	if (status == CALIBRATE_OK && par->tones == CALIBRATE_FIND_TONES && !w.tap)
 		status = try_fewer_tones(par, x1, x2, n, &look, c);
 	if (status == CALIBRATE_OK && look.coloured && !c->dense && !is_white(c, &look))

@@ -42,6 +42,8 @@ struct calibration {
 	double rest[2];             /* residual power of the fitted pulses over noise^2 */
 	struct shape *shape;
 	int pulse;     /* enum pulse_shape */
+	int measured;  /* 1: shape taken from the record, pulse the nearest of sensor.h */
+	int reversed;  /* 1: that pulse with its sign changed */
 	int corrected; /* 1: shape corrected by the residual common to all pulses */
 	double duration, gain; /* as above */
 	double transit;        /* samples between the sensors; INFINITY if unknown */
@@ -61,6 +63,7 @@ struct calibration {
 enum calibrate_status {
 	CALIBRATE_OK,
 	CALIBRATE_MEMORY,
+	CALIBRATE_COLOURED, /* of one attempt: the noise is to be made white first */
 	CALIBRATE_SILENT_1, /* channel 1 is constant */
 	CALIBRATE_SILENT_2,
 	CALIBRATE_NO_LAG,  /* the channels have nothing in common */

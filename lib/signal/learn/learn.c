@@ -97,6 +97,7 @@ enum num_status learn_set_shape(struct calibration *c, int pulse)
 
 	shape_free(c->shape);
 	c->pulse = pulse;
+	c->measured = c->reversed = 0;
 	c->shape = plain;
 	if (plain && c->whitening.tap) {
 		c->shape = shape_filter(plain, fmax(c->duration, 8), c->whitening.seen,
@@ -116,6 +117,18 @@ enum num_status learn_duration(int pulse, double low, double *duration)
 	*duration = low / lag;
 	shape_free(plain);
 	return status;
+}
+
+/* Takes the pulse found in the record. */
+static void take_template(struct calibration *c, struct template *found)
+{
+	shape_free(c->shape);
+	c->shape = found->shape;
+	found->shape = NULL;
+	c->pulse = found->pulse;
+	c->reversed = found->reversed;
+	c->duration = found->duration;
+	c->measured = 1;
 }
 
 /* What describes some clear examples best so far. */
@@ -223,7 +236,7 @@ static enum calibrate_status converge(
 		step = fmin(fmax(3 * moved, 0.002), 0.02);
 		c->duration = ex->scene.duration;
 		c->gain = ex->scene.gain * c->noise[1] / c->noise[0];
-		if (c->whitening.tap && moved > 1e-3) {
+		if (c->whitening.tap && moved > 1e-3 && !c->measured) {
 			if (learn_set_shape(c, c->pulse) != NUM_OK)
 				return CALIBRATE_MEMORY;
 			ex->scene.shape = c->shape;
@@ -251,14 +264,21 @@ static int wants_correction(
 	       !(c->whitening.tap && c->suspect) && correct_doubtful(ex, c);
 }
 
-/* Shape, duration, gain and range of delays by joint fits. */
-enum calibrate_status learn_pulse(const struct calibrate_par *par, const double *y1,
-	const double *y2, size_t n, double low, struct calibration *c)
+/* Chi-square per degree of freedom up to which a pulse describes its record. */
+static const double DESCRIBED = 1.2;
+
+/* By the pulse taken from the record, or else by those of sensor.h. */
+static enum calibrate_status learn_by(const struct calibrate_par *par, const double *y1,
+	const double *y2, size_t n, double low, struct template *found,
+	struct calibration *c)
 {
 	struct examples ex = { .joint = joint_new(), .misfit = c->misfit };
-	enum calibrate_status status =
-		ex.joint ? learn_shape(par, &ex, y1, y2, n, low, c) : CALIBRATE_MEMORY;
+	enum calibrate_status status = ex.joint ? CALIBRATE_OK : CALIBRATE_MEMORY;
 
+	if (found)
+		take_template(c, found);
+	else if (ex.joint)
+		status = learn_shape(par, &ex, y1, y2, n, low, c);
 	if (status == CALIBRATE_OK) {
 		examples_pick(&ex, y1, y2, n, EXAMPLES_MAX, c);
 		scene_of(c, &ex.scene);
@@ -276,5 +296,30 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, const double 
 	c->corrected = ex.corrected;
 	learn_range(par, &ex, c);
 	joint_free(ex.joint);
+	return status;
+}
+
+/* Shape, duration, gain and range of delays by joint fits.  A pulse taken from groups of
+ * pulses that are nearly alike does not describe them; then the known ones may. */
+enum calibrate_status learn_pulse(const struct calibrate_par *par, const double *y1,
+	const double *y2, size_t n, double low, struct template *found,
+	struct calibration *c)
+{
+	struct calibration known = *c;
+	enum calibrate_status status;
+
+	if (!found || !found->shape)
+		return learn_by(par, y1, y2, n, low, NULL, c);
+	known.shape = NULL;
+	status = learn_by(par, y1, y2, n, low, found, c);
+	if (status != CALIBRATE_OK || c->chi2 < DESCRIBED || found->alone)
+		return status;
+	status = learn_by(par, y1, y2, n, low, NULL, &known);
+	if (status == CALIBRATE_OK && known.price < c->price) {
+		shape_free(c->shape);
+		*c = known;
+	} else {
+		shape_free(known.shape);
+	}
 	return status;
 }

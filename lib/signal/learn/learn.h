@@ -10,6 +10,7 @@
 
 #include "num/status.h"
 #include "signal/learn/calibration.h"
+#include "signal/learn/template.h"
 #include <stddef.h>
 
 /* Lag at which an autocorrelation is lowest, before it rises clearly; 0 where there is
@@ -20,8 +21,11 @@ enum num_status learn_duration(int pulse, double low, double *duration);
 /* Gives c this pulse, as the whitened record has it at the present duration. */
 enum num_status learn_set_shape(struct calibration *c, int pulse);
 /* Fills shape, duration, gain, range of delays, chi2, price, rest and events of c from
- * y1, y2[0 .. n), aligned and in units of the noise; low: lag as above, of these. */
+ * y1, y2[0 .. n), aligned and in units of the noise; low: lag as above, of these; found:
+ * the pulse taken from these, which is tried first, its shape NULL where there is none.
+ */
 enum calibrate_status learn_pulse(const struct calibrate_par *par, const double *y1,
-	const double *y2, size_t n, double low, struct calibration *c);
+	const double *y2, size_t n, double low, struct template *found,
+	struct calibration *c);
 
 #endif

@@ -18,6 +18,10 @@ static const double BAD_FIT = 2;
  * what it leaves rings on, and others fit into that. */
 static const double NARROW = 0.5;
 
+/* Share of its energy in which a pulse may differ from one of sensor.h that is to be
+ * corrected rather than taken from the record. */
+static const double NEAR = 0.003;
+
 /* The record while it is measured: aligned from some point on, then in units of the
  * noise. */
 struct record {
@@ -317,28 +321,49 @@ static void scale_noise(struct record *rec, struct calibration *c, double s1, do
 	}
 }
 
-static enum calibrate_status learn(
-	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
+static enum calibrate_status learn(const struct calibrate_par *par,
+	const struct record *rec, struct template *found, struct calibration *c)
 {
+	if (found && found->alone && !found->shape)
+		return CALIBRATE_NO_LAG;
 	set_range(par, c);
 	set_thresholds(par, c);
-	return learn_pulse(par, rec->y1, rec->y2, rec->n, rec->low, c);
+	return learn_pulse(par, rec->y1, rec->y2, rec->n, rec->low, found, c);
+}
+
+/* Takes the pulse from the record where nothing is told of it; one of sensor.h that is
+ * as good has fewer parameters. */
+static enum calibrate_status find_template(const struct calibrate_par *par,
+	const struct record *rec, struct template *found, const struct calibration *c)
+{
+	template_clear(found);
+	if (par->pulse != CALIBRATE_ANY_PULSE || !isnan(par->duration))
+		return CALIBRATE_OK;
+	if (template_find(found, rec->y1, rec->y2, rec->n, c->duration, c->transit,
+		    fmax(0.1 * (double)c->shift, 0.05 * c->duration)) != NUM_OK)
+		return CALIBRATE_MEMORY;
+	if (!found->reversed && found->left < NEAR && !c->whitening.tap)
+		template_clear(found);
+	return CALIBRATE_OK;
 }
 
 /* Learns the pulse; where the noise was measured in a band, pulses that leave less show
  * that it was too much. */
-static enum calibrate_status learn_with_noise(
-	const struct calibrate_par *par, struct record *rec, struct calibration *c)
+static enum calibrate_status learn_with_noise(const struct calibrate_par *par,
+	struct record *rec, struct template *found, struct calibration *c)
 {
 	enum { ROUNDS = 4 };
-	enum calibrate_status status = learn(par, rec, c);
+	enum calibrate_status status = learn(par, rec, found, c);
 
 	for (int k = 0; c->whitening.tap && k < ROUNDS; k++) {
 		if (status != CALIBRATE_OK || c->events == 0 ||
 			fmin(c->rest[0], c->rest[1]) >= 0.75)
 			break;
 		scale_noise(rec, c, sqrt(c->rest[0]), sqrt(c->rest[1]));
-		status = learn(par, rec, c);
+		if (found->events)
+			status = find_template(par, rec, found, c);
+		if (status == CALIBRATE_OK)
+			status = learn(par, rec, found, c);
 	}
 	return status;
 }
@@ -369,7 +394,7 @@ static enum calibrate_status learn_filtered(
 		return CALIBRATE_MEMORY;
 	scale_noise(rec, c, n1, n2);
 	c->misfit = FILTERED_MISFIT;
-	return learn(par, rec, c);
+	return learn(par, rec, NULL, c);
 }
 
 static enum calibrate_status judge(
@@ -390,8 +415,31 @@ static enum calibrate_status judge(
 	return status;
 }
 
-enum calibrate_status measure(const struct calibrate_par *par, double *y1, double *y2,
-	size_t n, double *work, struct look *look, struct calibration *c)
+/* Durations of a pulse times the frequency above which it has hardly any power. */
+static const double PULSE_BAND = 10;
+
+int measure_white_above(const struct look *look, double duration)
+{
+	return colour_is_white(look->power, fmin(PULSE_BAND / duration, 0.25));
+}
+
+/* Amplitudes of a pulse taken from a record made white are those of the record itself. */
+static enum calibrate_status set_peak(const double *raw, size_t n, double *work,
+	const struct template *found, struct calibration *c)
+{
+	double change, power[TONES_MAX];
+	enum calibrate_status status;
+
+	memcpy(work, raw, n * sizeof *work);
+	status = take_tones(c, work, n, &change, power);
+	if (status == CALIBRATE_OK)
+		shape_scale(c->shape, c->noise[0] / template_peak(found, work, n));
+	return status;
+}
+
+enum calibrate_status measure(const struct calibrate_par *par, const double *raw,
+	double *y1, double *y2, size_t n, double *work, struct look *look,
+	struct calibration *c)
 {
 	struct record rec = { .y1 = y1, .y2 = y2, .n = n, .work = work };
 	enum calibrate_status status = find_tones(par, &rec, c);
@@ -417,7 +465,19 @@ enum calibrate_status measure(const struct calibrate_par *par, double *y1, doubl
 		status = look_for_colour(&rec, look);
 		c->suspect = look->coloured;
 	}
+	look->found.alone = look->first && c->whitening.tap;
+	if (status == CALIBRATE_OK && (look->first || !c->whitening.tap))
+		status = find_template(par, &rec, &look->found, c);
+	if (status == CALIBRATE_OK && look->first && look->coloured &&
+		look->found.events == 0 && !measure_white_above(look, c->duration))
+		return CALIBRATE_COLOURED;
+	if (status == CALIBRATE_OK && look->found.events < look->events)
+		status = CALIBRATE_NO_LAG;
+	look->attempts += status == CALIBRATE_OK;
 	if (status == CALIBRATE_OK)
-		status = learn_with_noise(par, &rec, c);
+		status = learn_with_noise(par, &rec, &look->found, c);
+	if (status == CALIBRATE_OK && c->measured && c->whitening.tap)
+		status = set_peak(raw, n, work, &look->found, c);
+	template_clear(&look->found);
 	return status == CALIBRATE_OK ? judge(par, &rec, c) : status;
 }

@@ -6,6 +6,7 @@
 #define SIGNAL_MEASURE_H
 
 #include "signal/learn/calibration.h"
+#include "signal/learn/template.h"
 #include "signal/noise/colour.h"
 #include <stddef.h>
 
@@ -17,11 +18,18 @@ struct look {
 	int settled;           /* 1: for the last time */
 	double low;            /* lag of the lowest autocorrelation */
 	double power[COLOUR_BINS];
+	int first;  /* 1: coloured noise is to be made white where no events are alike */
+	int events; /* that must be alike, as they were in another attempt */
+	struct template found; /* the pulse taken from the record */
 };
 
+/* Is the noise white above the band of a pulse of this duration? */
+int measure_white_above(const struct look *look, double duration);
+
 /* Fills the rest of c, whose whitening, mean, guessed and suspect are given, from y1,
- * y2[0 .. n), which it spoils; work holds n. */
-enum calibrate_status measure(const struct calibrate_par *par, double *y1, double *y2,
-	size_t n, double *work, struct look *look, struct calibration *c);
+ * y2[0 .. n), which it spoils; raw[0 .. n): y1 before it was made white; work holds n. */
+enum calibrate_status measure(const struct calibrate_par *par, const double *raw,
+	double *y1, double *y2, size_t n, double *work, struct look *look,
+	struct calibration *c);
 
 #endif

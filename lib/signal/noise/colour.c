@@ -43,17 +43,19 @@ enum num_status colour_level(const double *y1, const double *y2, size_t n,
 	return status;
 }
 
-/* Autocorrelation of a Hann window of n points at this lag, 1 at lag 0. */
-static double window_autocorrelation(size_t n, size_t lag)
+/* Autocorrelation of a Hann window of n points, or of its square, at this lag, 1 at lag
+ * 0. */
+static double window_autocorrelation(size_t n, size_t lag, int squared)
 {
 	double sum = 0, all = 0, turn = 2 * M_PI / (double)n;
 
 	for (size_t i = 0; i < n; i++) {
 		double here = 0.5 - 0.5 * cos(turn * ((double)i + 0.5));
+		double there = 0.5 - 0.5 * cos(turn * ((double)(i + lag) + 0.5));
 
-		all += here * here;
+		all += squared ? here * here * here * here : here * here;
 		if (i + lag < n)
-			sum += here * (0.5 - 0.5 * cos(turn * ((double)(i + lag) + 0.5)));
+			sum += squared ? here * here * there * there : here * there;
 	}
 	return sum / all;
 }
@@ -76,7 +78,7 @@ static enum num_status sharpen(double *power, size_t bins)
 			double u = 2 * (double)k / (double)last - 1;
 			double keep = u <= 0 ? 1 : 0.5 + 0.5 * cos(M_PI * u);
 
-			r[k] *= keep / window_autocorrelation(points, k);
+			r[k] *= keep / window_autocorrelation(points, k, 0);
 			r[k ? points - k : 0] = r[k];
 		}
 		fft_forward(fft, r, spectrum);
@@ -105,6 +107,62 @@ enum num_status colour_power(const double *y1, const double *y2, size_t n,
 	if (status != NUM_OK)
 		return status;
 	return quiets >= QUIETS ? sharpen(power, COLOUR_BINS) : NUM_DOMAIN;
+}
+
+/* Standard deviations that the scatter of some hundred lags hardly exceeds. */
+static const double SCATTER = 4;
+
+/* Twice the last of the first whole lags of an autocorrelation at which it is more than
+ * its scatter, which is that of the later half of them: its variance is as the overlap
+ * of the squared window over the square of that of the window. */
+static size_t last_lag(const double *r, size_t points, size_t whole)
+{
+	double square = 0;
+	size_t k = whole;
+
+	for (size_t i = whole / 2; i < whole; i++) {
+		double v = r[i] * window_autocorrelation(points, i, 0);
+
+		square += 2 * v * v /
+			  (window_autocorrelation(points, i, 1) * (double)whole);
+	}
+	for (; k > 8; k--) {
+		double v = r[k] * window_autocorrelation(points, k, 0);
+
+		if (v * v >
+			SCATTER * SCATTER * square * window_autocorrelation(points, k, 1))
+			break;
+	}
+	return 2 * k;
+}
+
+enum num_status colour_smooth(double power[COLOUR_BINS])
+{
+	size_t points = LONGEST, half = points / 2, last;
+	struct fft *fft = fft_new(points, 1);
+	double complex *spectrum = fft_alloc_complex(COLOUR_BINS);
+	double *r = fft_alloc(points);
+	enum num_status status = fft && spectrum && r ? NUM_OK : NUM_MEMORY;
+
+	if (status == NUM_OK) {
+		for (size_t k = 0; k < COLOUR_BINS; k++)
+			spectrum[k] = power[k] / (double)points;
+		fft_inverse(fft, spectrum, r);
+		last = last_lag(r, points, half / 2);
+		for (size_t k = 0; k <= half; k++) {
+			double u = 2 * (double)k / (double)last - 1;
+
+			r[k] *= u <= 0 ? 1 : u < 1 ? 0.5 + 0.5 * cos(M_PI * u) : 0;
+			r[k ? points - k : 0] = r[k];
+		}
+		fft_forward(fft, r, spectrum);
+		for (size_t k = 0; k < COLOUR_BINS; k++)
+			power[k] = fmax(creal(spectrum[k]), 0);
+	}
+	fft_done(fft);
+	fft_free(spectrum);
+	fft_free(r);
+	return status;
 }
 
 int colour_is_white(const double power[COLOUR_BINS], double from)

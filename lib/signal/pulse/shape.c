@@ -224,6 +224,15 @@ struct shape *shape_correct(
 	return out;
 }
 
+void shape_scale(struct shape *shape, double factor)
+{
+	for (int i = 0; i < 4 * shape->cells; i++)
+		shape->cubic[i] *= factor;
+	shape->energy *= factor * factor;
+	shape->slope_energy *= factor * factor;
+	shape->fourth *= factor * factor * factor * factor;
+}
+
 struct shape *shape_from_cubic(double reach, int cells, const double *cubic)
 {
 	struct shape *shape = reach > 0 ? shape_alloc(reach, cells) : NULL;

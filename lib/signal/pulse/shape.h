@@ -27,6 +27,8 @@ struct shape *shape_filter(
  * it reaches that far at least.  NULL: no memory. */
 struct shape *shape_correct(
 	const struct shape *shape, const double *more, int half, double step);
+/* Multiplies all values. */
+void shape_scale(struct shape *shape, double factor);
 /* From what shape_cells() and shape_cubic() tell of another; NULL: no memory, or
  * cells < 1 or reach <= 0. */
 struct shape *shape_from_cubic(double reach, int cells, const double *cubic);

@@ -32,6 +32,8 @@ static int list(struct instrument *in, struct field *f)
 		{ .name = "mean", .real = c->mean, .count = 2 },
 		{ .name = "noise", .real = c->noise, .count = 2 },
 		{ .name = "pulse", .whole = &c->pulse },
+		{ .name = "measured", .whole = &c->measured },
+		{ .name = "reversed", .whole = &c->reversed },
 		{ .name = "corrected", .whole = &c->corrected },
 		{ .name = "duration", .real = &c->duration, .count = 1 },
 		{ .name = "gain", .real = &c->gain, .count = 1 },

@@ -225,9 +225,9 @@ static enum separate_status start(struct separate *s, size_t n);
 static enum separate_status calibrate_now(struct separate *s)
 {
 	static const enum separate_status of[] = { SEPARATE_OK, SEPARATE_MEMORY,
-		SEPARATE_SILENT_1, SEPARATE_SILENT_2, SEPARATE_NO_LAG, SEPARATE_SWAPPED,
-		SEPARATE_FAR, SEPARATE_NARROW, SEPARATE_FAST, SEPARATE_SLOW,
-		SEPARATE_TONES };
+		SEPARATE_NO_LAG, SEPARATE_SILENT_1, SEPARATE_SILENT_2, SEPARATE_NO_LAG,
+		SEPARATE_SWAPPED, SEPARATE_FAR, SEPARATE_NARROW, SEPARATE_FAST,
+		SEPARATE_SLOW, SEPARATE_TONES };
 	enum calibrate_status status;
 	size_t n;
 

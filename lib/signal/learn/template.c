@@ -1,0 +1,652 @@
+/* template.c - see template.h */
+#include "signal/learn/template.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Points of a duration on the coarse grid where events are compared. */
+enum { COARSE = 32, ROUNDS = 4 };
+
+/* Samples: shorter pulses are not described by them. */
+static const double SHORTEST = 8;
+
+/* Durations on either side of an event that are looked at. */
+static const double SIDE = 2;
+
+/* Share of its energy in which an event may differ from another one of the same kind, by
+ * its velocity and the coarse grid. */
+static const double ALIKE = 0.02;
+
+struct event {
+	double centre, energy;
+	double t[2], a[2]; /* arrival and amplitude, by channel */
+	int like;          /* 1: of the kind that is averaged */
+};
+
+struct search {
+	const double *y[2];
+	size_t n;
+	double T, transit, reach;
+	int q;          /* samples per point of the coarse grid */
+	double *z[2];   /* coarse records, noise 1 */
+	size_t points;  /* of them */
+	int half;       /* of the template, samples */
+	double *p;      /* 2 half + 1: the template */
+	double *coarse; /* the same on the coarse grid */
+	int coarse_half;
+	double scatter; /* standard error of a point of the template */
+	struct event event[TEMPLATE_EVENTS];
+	double merit[TEMPLATE_EVENTS];
+	int count;
+};
+
+static double dot(const double *x, const double *y, size_t n)
+{
+	double sum = 0;
+
+	for (size_t i = 0; i < n; i++)
+		sum += x[i] * y[i];
+	return sum;
+}
+
+static void coarsen(const double *x, size_t n, int q, double *out)
+{
+	for (size_t i = 0; i < n / (size_t)q; i++) {
+		double sum = 0;
+
+		for (int k = 0; k < q; k++)
+			sum += x[i * (size_t)q + (size_t)k];
+		out[i] = sum / sqrt(q);
+	}
+}
+
+/* Keeps the event at [from, to) of the coarse grid if it is among the clearest: loud and
+ * short. */
+static void offer(struct search *s, size_t from, size_t to)
+{
+	double energy = 0, moment = 0, merit, length = (double)(to - from);
+	double margin = SIDE * s->T + s->reach + s->T;
+	struct event e = { 0 };
+	int at;
+
+	for (size_t i = from; i < to; i++) {
+		double v = s->z[0][i] * s->z[0][i] + s->z[1][i] * s->z[1][i] - 2;
+
+		energy += v;
+		moment += v * (double)i;
+	}
+	if (!(energy > 0))
+		return;
+	e.centre = (moment / energy + 0.5) * s->q;
+	e.energy = energy;
+	if (e.centre < margin || e.centre + margin > (double)s->n)
+		return;
+	merit = energy * pow(length, -4);
+	for (at = s->count; at > 0 && s->merit[at - 1] < merit; at--)
+		if (at < TEMPLATE_EVENTS) {
+			s->merit[at] = s->merit[at - 1];
+			s->event[at] = s->event[at - 1];
+		}
+	if (at == TEMPLATE_EVENTS)
+		return;
+	s->merit[at] = merit;
+	s->event[at] = e;
+	s->count += s->count < TEMPLATE_EVENTS;
+}
+
+/* Stretches whose power within a duration stands out of the noise by eight standard
+ * deviations, and not much longer than a pulse. */
+static void find_events(struct search *s)
+{
+	size_t width = (size_t)fmax(floor(s->T / s->q), 4), begin = 0, end = 0;
+	double limit = 2 * (double)width + 8 * sqrt(4 * (double)width), sum = 0;
+	size_t longest = (size_t)(5 * s->T / s->q);
+
+	for (size_t i = 0; i < s->points; i++) {
+		sum += s->z[0][i] * s->z[0][i] + s->z[1][i] * s->z[1][i];
+		if (i >= width)
+			sum -= s->z[0][i - width] * s->z[0][i - width] +
+			       s->z[1][i - width] * s->z[1][i - width];
+		if (i < width || sum < limit)
+			continue;
+		if (end + width / 2 < i) { /* another one begins */
+			if (end > begin && end - begin < longest)
+				offer(s, begin, end);
+			begin = i - width;
+		}
+		end = i + 1;
+	}
+	if (end > begin && end - begin < longest)
+		offer(s, begin, end);
+}
+
+/* Lag of x, 2 half + 1 points around at, within +-range for which it is most like p, its
+ * sign apart; *value: the product. */
+static long best_lag(const double *p, int half, const double *x, size_t n, long at,
+	long range, double *value)
+{
+	long best = 0;
+
+	*value = 0;
+	for (long lag = -range; lag <= range; lag++) {
+		long first = at + lag - half;
+		double v;
+
+		if (first < 0 || first + 2 * half + 1 > (long)n)
+			continue;
+		v = dot(p, x + first, 2 * (size_t)half + 1);
+		if (fabs(v) > fabs(*value)) {
+			*value = v;
+			best = lag;
+		}
+	}
+	return best;
+}
+
+/* The event that most others are like, by channel 1 on the coarse grid; -1 if too few
+ * are. */
+static int most_common(struct search *s)
+{
+	size_t length = 2 * (size_t)s->coarse_half + 1;
+	long range = (long)(s->T / s->q);
+	int best = -1, most = 0;
+
+	for (int i = 0; i < s->count; i++) {
+		long at = (long)(s->event[i].centre / s->q);
+		const double *x = s->z[0] + at - s->coarse_half;
+		double own = dot(x, x, length);
+		int like = 0;
+
+		for (int k = 0; k < s->count; k++) {
+			long to = (long)(s->event[k].centre / s->q), lag;
+			double value, other, left;
+
+			lag = best_lag(
+				x, s->coarse_half, s->z[0], s->points, to, range, &value);
+			other = dot(s->z[0] + to + lag - s->coarse_half,
+				s->z[0] + to + lag - s->coarse_half, length);
+			left = 1 - value * value / (own * other);
+			like += left <
+				ALIKE + 1.5 * (double)length * (1 / own + 1 / other);
+		}
+		if (like > most) {
+			most = like;
+			best = i;
+		}
+	}
+	return most >= TEMPLATE_LEAST ? best : -1;
+}
+
+/* x at t, between its samples by the cubic through the four around. */
+static double between(const double *x, size_t n, double t)
+{
+	double u = t - floor(t), a, b, c, d;
+	long k = (long)floor(t);
+
+	if (k < 1 || k + 2 >= (long)n)
+		return 0;
+	a = x[k - 1];
+	b = x[k];
+	c = x[k + 1];
+	d = x[k + 2];
+	return b +
+	       u * (c - a / 3 - b / 2 - d / 6 +
+			   u * (0.5 * (a + c) - b + u * ((d - a) / 6 + 0.5 * (b - c))));
+}
+
+/* Arrival and amplitude of an event on one channel by the template, near at. */
+static void measure_event(
+	const struct search *s, struct event *e, int channel, double at, double range)
+{
+	const double *y = s->y[channel];
+	double energy = dot(s->p, s->p, 2 * (size_t)s->half + 1), v[3];
+	long middle = (long)(at / s->q + 0.5), lag, near;
+	double move = 0, bend;
+
+	lag = best_lag(s->coarse, s->coarse_half, s->z[channel], s->points, middle,
+		(long)(range / s->q) + 1, &v[0]);
+	near = (middle + lag) * s->q + s->q / 2;
+	near += best_lag(s->p, s->half, y, s->n, near, s->q + 1, &v[1]);
+	if (near - s->half < 1 || near + s->half + 2 > (long)s->n) {
+		e->a[channel] = 0;
+		return;
+	}
+	v[0] = dot(s->p, y + near - 1 - s->half, 2 * (size_t)s->half + 1);
+	v[2] = dot(s->p, y + near + 1 - s->half, 2 * (size_t)s->half + 1);
+	bend = v[0] - 2 * v[1] + v[2];
+	if (fabs(bend) > 0)
+		move = 0.5 * (v[0] - v[2]) / bend;
+	if (fabs(move) > 1)
+		move = 0;
+	e->t[channel] = (double)near + move;
+	e->a[channel] = (v[1] - 0.25 * (v[0] - v[2]) * move) / energy;
+}
+
+/* What the template leaves of an event, a line apart, over what noise would. */
+static double left_over(const struct search *s, const struct event *e)
+{
+	double sum = 0, energy = 0;
+
+	for (int c = 0; c < 2; c++) {
+		double stretch = 1 + (e->t[1] - e->t[0]) / s->transit;
+		double mean = 0, slope = 0, n = 2 * s->half + 1;
+
+		for (int k = -s->half; k <= s->half; k++) {
+			double model = e->a[c] * s->p[k + s->half];
+			double r = between(s->y[c], s->n, e->t[c] + k * stretch) - model;
+
+			sum += r * r;
+			mean += r;
+			slope += k * r;
+			energy += model * model;
+		}
+		sum -= mean * mean / n + slope * slope / (n * (n * n - 1) / 12);
+	}
+	return (sum - ALIKE * energy) / (2 * (2 * s->half + 1));
+}
+
+/* The mean of the events that are alike, each in its own units. */
+static void average(struct search *s)
+{
+	double weight = 0;
+
+	memset(s->p, 0, (2 * (size_t)s->half + 1) * sizeof *s->p);
+	for (int i = 0; i < s->count; i++) {
+		const struct event *e = &s->event[i];
+		double stretch = 1 + (e->t[1] - e->t[0]) / s->transit;
+
+		if (!e->like)
+			continue;
+		for (int c = 0; c < 2; c++) {
+			weight += e->a[c] * e->a[c];
+			for (int k = -s->half; k <= s->half; k++)
+				s->p[k + s->half] +=
+					e->a[c] *
+					between(s->y[c], s->n, e->t[c] + k * stretch);
+		}
+	}
+	for (int k = 0; k <= 2 * s->half; k++)
+		s->p[k] /= weight;
+	s->scatter = 1 / sqrt(weight);
+}
+
+/* The coarse template: of the fine one, at the middles of the coarse points. */
+static void coarsen_template(struct search *s)
+{
+	for (int k = -s->coarse_half; k <= s->coarse_half; k++) {
+		double sum = 0;
+
+		for (int i = 0; i < s->q; i++) {
+			int at = k * s->q + i - s->q / 2 + s->half;
+
+			if (at >= 0 && at <= 2 * s->half)
+				sum += s->p[at];
+		}
+		s->coarse[k + s->coarse_half] = sum / sqrt(s->q);
+	}
+}
+
+/* Averages the events like the one given, and those like their mean, a few times over.
+ * Returns how many they are. */
+static int refine(struct search *s, int best)
+{
+	int count = 0;
+
+	for (int k = -s->half; k <= s->half; k++)
+		s->p[k + s->half] = s->y[0][(long)s->event[best].centre + k];
+	for (int round = 0; round < ROUNDS; round++) {
+		coarsen_template(s);
+		count = 0;
+		for (int i = 0; i < s->count; i++) {
+			struct event *e = &s->event[i];
+
+			measure_event(
+				s, e, 0, round ? e->t[0] : e->centre, round ? 0 : s->T);
+			measure_event(
+				s, e, 1, round ? e->t[1] : e->t[0], round ? 0 : s->reach);
+			/* A first template has the noise of one event. */
+			e->like = e->a[0] * e->a[1] > 0 &&
+				  left_over(s, e) < (round ? 1 : 1 + e->a[0] * e->a[0]) +
+							    5 / sqrt(2 * s->half + 1);
+			count += e->like;
+		}
+		if (count < TEMPLATE_LEAST || 2 * count < s->count)
+			return 0;
+		average(s);
+	}
+	return count;
+}
+
+/* Takes from d its parts along the rows of base, each of which is made orthonormal to
+ * those before it. */
+static void orthogonalise(double *base, int rows, double *d, size_t n)
+{
+	for (int i = 0; i <= rows; i++) {
+		double *x = i < rows ? base + (size_t)i * n : d, square;
+
+		for (int k = 0; k < i; k++) {
+			const double *b = base + (size_t)k * n;
+			double share = dot(b, x, n);
+
+			for (size_t j = 0; j < n; j++)
+				x[j] -= share * b[j];
+		}
+		square = dot(x, x, n);
+		for (size_t j = 0; square > 0 && j < n; j++)
+			x[j] /= sqrt(square);
+	}
+}
+
+/* Standard deviations of chi-square that the widths of one kind of pulse hardly reach. */
+static const double WIDTHS = 5;
+
+/* Have the events one width, within noise?  Pairs of pulses that are nearly one have not:
+ * their distances differ.  The residual of each is projected on the change of the
+ * template with its width, less what offset, slope, amplitude and arrival do. */
+static enum num_status check_widths(const struct search *s, int *one)
+{
+	enum { BASE = 4 };
+	size_t n = 2 * (size_t)s->half + 1;
+	double *work = malloc((BASE + 2) * n * sizeof *work);
+	double *d, *r, sum = 0;
+	int count = 0;
+
+	if (!work)
+		return NUM_MEMORY;
+	d = work + BASE * n;
+	r = d + n;
+	for (int k = -s->half; k <= s->half; k++) {
+		size_t i = (size_t)(k + s->half);
+		double slope = i > 0 && i + 1 < n ? 0.5 * (s->p[i + 1] - s->p[i - 1]) : 0;
+
+		work[i] = 1;
+		work[n + i] = k;
+		work[2 * n + i] = s->p[i];
+		work[3 * n + i] = slope;
+		d[i] = k * slope;
+	}
+	orthogonalise(work, BASE, d, n);
+	for (int i = 0; i < s->count; i++) {
+		const struct event *e = &s->event[i];
+		double stretch = 1 + (e->t[1] - e->t[0]) / s->transit, z = 0, a2 = 0;
+
+		if (!e->like)
+			continue;
+		for (int c = 0; c < 2; c++) {
+			for (int k = -s->half; k <= s->half; k++)
+				r[k + s->half] =
+					between(s->y[c], s->n, e->t[c] + k * stretch);
+			z += e->a[c] * dot(r, d, n);
+			a2 += e->a[c] * e->a[c];
+		}
+		sum += z * z / a2;
+		count++;
+	}
+	*one = sum < count + WIDTHS * sqrt(2.0 * count);
+	free(work);
+	return NUM_OK;
+}
+
+/* Samples from the middle of the template beyond which it is noise. */
+static int template_reach(const struct search *s)
+{
+	int width = (int)(s->T / 8) + 1, reach = s->half;
+
+	for (; reach > width; reach--) {
+		double left = 0, right = 0;
+
+		for (int k = 0; k < width; k++) {
+			left += s->p[s->half - reach + k];
+			right += s->p[s->half + reach - k];
+		}
+		if (fmax(fabs(left), fabs(right)) > 4 * s->scatter * sqrt(width))
+			break;
+	}
+	return reach;
+}
+
+/* Nearest pulse of sensor.h at one duration: the shift and the share of energy it leaves.
+ */
+static double try_match(const struct search *s, int reach, const struct shape *shape,
+	double T, double *work, double *shift, int *reversed)
+{
+	double own = dot(
+		s->p + s->half - reach, s->p + s->half - reach, 2 * (size_t)reach + 1);
+	double best = 0, step = T / 64;
+
+	for (double at = -0.75 * T; at <= 0.75 * T; at += step) {
+		double value;
+		size_t n = 2 * (size_t)reach + 1;
+
+		shape_sample(shape, at, T, -reach, n, work, NULL, NULL);
+		value = dot(work, s->p + s->half - reach, n) /
+			sqrt(own * shape_energy(shape) * T);
+		if (fabs(value) > fabs(best)) {
+			best = value;
+			*shift = at;
+		}
+	}
+	*reversed = best < 0;
+	return 1 - best * best;
+}
+
+static enum num_status match(
+	const struct search *s, int reach, struct template *t, double *shift)
+{
+	double *work = malloc((2 * (size_t)reach + 1) * sizeof *work);
+
+	t->left = 2;
+	for (int pulse = PULSE_SINE; work && pulse <= PULSE_LORENTZ; pulse++) {
+		struct shape *shape = shape_new((enum pulse_shape)pulse);
+
+		if (!shape) {
+			free(work);
+			return NUM_MEMORY;
+		}
+		for (double T = 0.4 * s->T; T < 2.5 * s->T; T *= 1.02) {
+			double at = 0, left;
+			int reversed;
+
+			left = try_match(s, reach, shape, T, work, &at, &reversed);
+			if (left < t->left) {
+				t->left = left;
+				t->pulse = pulse;
+				t->duration = T;
+				t->reversed = reversed;
+				*shift = at;
+			}
+		}
+		shape_free(shape);
+	}
+	free(work);
+	return work ? NUM_OK : NUM_MEMORY;
+}
+
+/* The template around its arrival, as a shape of duration 1, ends tapered. */
+static enum num_status make_shape(
+	const struct search *s, int reach, double shift, struct template *t)
+{
+	int half = reach + (int)ceil(fabs(shift)), soft = (int)(s->T / 8) + 1;
+	int blur = (int)(s->T / 40);
+	double *value = calloc(2 * (size_t)half + 1, sizeof *value);
+
+	for (int k = -half; value && k <= half; k++) {
+		double v = 0, edge;
+
+		for (int i = -blur; i <= blur; i++)
+			v += between(s->p, 2 * (size_t)s->half + 1,
+				     k + i + shift + s->half) *
+			     (1 + cos(M_PI * i / (blur + 1))) / (2 * blur + 2);
+		edge = fmin(1, (reach - fabs(k + shift)) / soft);
+		value[k + half] = edge > 0 ? v * (0.5 - 0.5 * cos(M_PI * edge)) : 0;
+	}
+	if (value)
+		t->shape = shape_from_values(value, half, half / t->duration);
+	free(value);
+	return t->shape ? NUM_OK : NUM_MEMORY;
+}
+
+static double median_of(double *x, int n)
+{
+	for (int i = 1; i < n; i++)
+		for (int k = i; k > 0 && x[k - 1] > x[k]; k--) {
+			double v = x[k];
+
+			x[k] = x[k - 1];
+			x[k - 1] = v;
+		}
+	return n ? 0.5 * (x[(n - 1) / 2] + x[n / 2]) : 0;
+}
+
+/* What the events are in terms of the shape. */
+static void take_events(const struct search *s, double shift, struct template *t)
+{
+	double peak = 0, delay[TEMPLATE_EVENTS];
+
+	for (int k = 0; k <= 2 * s->half; k++)
+		peak = fmax(peak, fabs(s->p[k]));
+	for (int i = 0; i < s->count; i++) {
+		const struct event *e = &s->event[i];
+
+		if (!e->like)
+			continue;
+		t->t1[t->events] = e->t[0] + shift;
+		t->t2[t->events] = e->t[1] + shift;
+		t->a[t->events] = e->a[0] * peak;
+		delay[t->events++] = e->t[1] - e->t[0];
+	}
+	t->duration /= 1 + median_of(delay, t->events) / s->transit;
+}
+
+static enum num_status search_template(struct search *s, struct template *t)
+{
+	double shift = 0;
+	int best, reach, positive = 0, one;
+
+	find_events(s);
+	if (s->count < TEMPLATE_LEAST || (best = most_common(s)) < 0 || !refine(s, best))
+		return NUM_OK;
+	if (check_widths(s, &one) != NUM_OK)
+		return NUM_MEMORY;
+	if (!one)
+		return NUM_OK;
+	for (int i = 0; i < s->count; i++)
+		positive += s->event[i].like ? (s->event[i].a[0] > 0 ? 1 : -1) : 0;
+	if (positive < 0) {
+		for (int k = 0; k <= 2 * s->half; k++)
+			s->p[k] = -s->p[k];
+		for (int i = 0; i < s->count; i++)
+			for (int c = 0; c < 2; c++)
+				s->event[i].a[c] = -s->event[i].a[c];
+	}
+	reach = template_reach(s);
+	if (match(s, reach, t, &shift) != NUM_OK ||
+		make_shape(s, reach, shift, t) != NUM_OK)
+		return NUM_MEMORY;
+	take_events(s, shift, t);
+	if (t->duration < SHORTEST) {
+		template_clear(t);
+		t->events = 0;
+	}
+	return NUM_OK;
+}
+
+enum num_status template_find(struct template *t, const double *y1, const double *y2,
+	size_t n, double duration, double transit, double reach)
+{
+	struct search s = { .y = { y1, y2 },
+		.n = n,
+		.T = duration,
+		.transit = transit,
+		.reach = reach,
+		.q = duration > 2 * COARSE ? (int)(duration / COARSE) : 1 };
+	size_t length;
+	enum num_status status;
+
+	*t = (struct template){ .alone = t->alone };
+	s.half = (int)(SIDE * duration);
+	s.coarse_half = s.half / s.q;
+	s.points = n / (size_t)s.q;
+	length = 2 * (size_t)s.half + 1;
+	if ((double)n < 20 * duration)
+		return NUM_OK;
+	s.z[0] = malloc((2 * s.points + 2 * length) * sizeof *s.z[0]);
+	if (!s.z[0])
+		return NUM_MEMORY;
+	s.z[1] = s.z[0] + s.points;
+	s.p = s.z[1] + s.points;
+	s.coarse = s.p + length;
+	for (int c = 0; c < 2; c++)
+		coarsen(s.y[c], n, s.q, s.z[c]);
+	status = search_template(&s, t);
+	free(s.z[0]);
+	return status;
+}
+
+void template_clear(struct template *t)
+{
+	shape_free(t->shape);
+	t->shape = NULL;
+}
+
+enum num_status template_known(
+	const struct template *t, const double *tap, int half, int *pulse, double *left)
+{
+	int reach = (int)ceil(shape_reach(t->shape) * t->duration);
+	size_t n = 2 * (size_t)reach + 1;
+	double *p = malloc(2 * n * sizeof *p);
+	struct search s = { .half = reach, .p = p };
+	enum num_status status = p ? NUM_OK : NUM_MEMORY;
+
+	*left = 2;
+	if (p)
+		shape_sample(t->shape, 0, t->duration, -reach, n, p, NULL, NULL);
+	for (int k = PULSE_SINE; status == NUM_OK && k <= PULSE_LORENTZ; k++) {
+		struct shape *plain = shape_new((enum pulse_shape)k);
+
+		for (double T = 0.7 * t->duration; plain && T < 1.4 * t->duration;
+			T *= 1.03) {
+			struct shape *seen = shape_filter(plain, T, tap, half);
+			double shift, rest;
+			int reversed;
+
+			if (!seen)
+				break;
+			rest = try_match(&s, reach, seen, T, p + n, &shift, &reversed);
+			if (!reversed && rest < *left) {
+				*left = rest;
+				*pulse = k;
+			}
+			shape_free(seen);
+		}
+		if (!plain)
+			status = NUM_MEMORY;
+		shape_free(plain);
+	}
+	free(p);
+	return status;
+}
+
+double template_peak(const struct template *t, const double *x1, size_t n)
+{
+	double peak = 0, weight = 0;
+	int half = (int)(SIDE * t->duration), m = (int)(t->duration / 16) + 1;
+
+	for (int i = 0; i < t->events; i++)
+		weight += t->a[i] * t->a[i];
+	/* Values of a parabola through 2 m + 1 points: those of noise alone would be
+	 * high. */
+	for (int k = -half; k <= half; k++) {
+		double sum = 0;
+
+		for (int q = -m; q <= m; q++) {
+			double share = 3.0 * (3 * m * m + 3 * m - 1 - 5 * q * q) /
+				       ((2.0 * m - 1) * (2 * m + 1) * (2 * m + 3));
+
+			for (int i = 0; i < t->events; i++)
+				sum += share * t->a[i] * between(x1, n, t->t1[i] + k + q);
+		}
+		peak = fmax(peak, fabs(sum) / weight);
+	}
+	return peak;
+}

@@ -1,0 +1,47 @@
+/* template.h - the pulse of a record, taken from the record itself
+ *
+ * Among the clear events of a record the one with most others like it, within noise, is
+ * taken, and the mean of those, each at its own arrival, size and velocity.  Nothing is
+ * assumed of the shape: what a front-end, a reversed coil or another kind of sensor has
+ * made of it is in it.  Overlapping pulses and foreign events are like few others.
+ */
+#ifndef SIGNAL_TEMPLATE_H
+#define SIGNAL_TEMPLATE_H
+
+#include "num/status.h"
+#include "signal/pulse/shape.h"
+#include <stddef.h>
+
+enum { TEMPLATE_EVENTS = 32, TEMPLATE_LEAST = 6 };
+
+struct template
+{
+	struct shape *shape; /* NULL: there are not enough events that are alike */
+	double duration; /* samples, of a pulse whose delay is that of the alignment */
+	int events;
+	double t1[TEMPLATE_EVENTS], t2[TEMPLATE_EVENTS]; /* arrivals, samples */
+	double a[TEMPLATE_EVENTS];                       /* amplitudes at sensor 1 */
+	/* The pulse of sensor.h that is nearest, and the share of the energy that it
+	 * leaves.  Arrivals are those of this pulse. */
+	int pulse, reversed;
+	double left;
+	int alone; /* set by the caller, kept: 1: no known pulse is to be tried instead */
+};
+
+/* y1, y2[0 .. n), aligned to within reach, in units of white noise; duration: a guess
+ * within a factor of two; transit: samples between the sensors, INFINITY if unknown.
+ * NUM_MEMORY. */
+enum num_status template_find(struct template *t, const double *y1, const double *y2,
+	size_t n, double duration, double transit, double reach);
+void template_clear(struct template *t);
+
+/* The pulse of sensor.h that is nearest after symmetric taps -half .. half, and the share
+ * of the energy that it leaves; 2 if none of about this duration is of its sign. */
+enum num_status template_known(
+	const struct template *t, const double *tap, int half, int *pulse, double *left);
+
+/* Peak of the mean of x1[0 .. n), a record of the same events before its noise was made
+ * white, for a pulse of amplitude 1. */
+double template_peak(const struct template *t, const double *x1, size_t n);
+
+#endif
