@@ -32,9 +32,8 @@ struct convolve {
 	double complex *work;  /* lx columns of ny coefficients */
 	double *buffers;       /* scratch of all threads */
 	const double *kernel;  /* of the call in progress */
-	const double *x;
-	double *y;
-	double *products; /* x y of each job of rows; wanted only for x other than y */
+	const struct convolve_passes *passes;
+	struct sweep *part; /* of each job of rows */
 };
 
 /* Rounds up to whole cache lines of complex numbers, and off large powers of two,
@@ -49,6 +48,11 @@ static size_t pad_stride(size_t n)
 static size_t row_room(const struct convolve *c)
 {
 	return (c->mx + 7) / 8 * 8;
+}
+
+static size_t row_jobs(const struct convolve *c)
+{
+	return (c->ny + ROWS - 1) / ROWS;
 }
 
 struct convolve *convolve_new(
@@ -100,10 +104,10 @@ struct convolve *convolve_borrow(size_t nx, size_t ny, enum convolve_kind kind,
 	c->borrowed = lender && lender->room >= c->room;
 	c->work = c->borrowed ? lender->work : fft_alloc_complex(c->room);
 	c->buffers = fft_alloc((size_t)pool_threads(pool) * c->scratch);
-	c->products = fft_alloc((ny + ROWS - 1) / ROWS);
+	c->part = calloc(row_jobs(c), sizeof *c->part);
 	c->row = fft_new(c->mx, 1);
 	c->line = fft_line_new(c->my);
-	if (!c->work || !c->buffers || !c->products || !c->row || !c->line) {
+	if (!c->work || !c->buffers || !c->part || !c->row || !c->line) {
 		convolve_free(c);
 		return NULL;
 	}
@@ -119,7 +123,7 @@ void convolve_free(struct convolve *c)
 	if (!c->borrowed)
 		fft_free(c->work);
 	fft_free(c->buffers);
-	fft_free(c->products);
+	free(c->part);
 	free(c);
 }
 
@@ -133,12 +137,6 @@ void convolve_size(const struct convolve *c, size_t *mx, size_t *my)
 {
 	*mx = c->mx;
 	*my = c->my;
-}
-
-double *convolve_scratch(const struct convolve *c, size_t *room)
-{
-	*room = 2 * c->room;
-	return (double *)c->work;
 }
 
 double *convolve_alloc(const struct convolve *c)
@@ -304,23 +302,38 @@ static double complex *spectra(const struct convolve *c, int worker)
 	return (double complex *)(buffer(c, worker) + row_room(c));
 }
 
+static int is_zero(const double *row, size_t n)
+{
+	size_t i = 0;
+
+	while (i < n && row[i] == 0)
+		i++;
+	return i == n;
+}
+
 static void forward_rows(void *context, size_t job, int worker)
 {
 	const struct convolve *c = context;
+	const struct convolve_passes *p = c->passes;
 	double *row = buffer(c, worker);
 	double complex *spectrum = spectra(c, worker), *work = c->work + job * ROWS;
 	size_t nx = c->nx, rows = smaller(ROWS, c->ny - job * ROWS), stride = c->stride;
 
 	for (size_t k = 0; k < rows; k++) {
-		const double *x = c->x + (job * ROWS + k) * nx;
-
-		memcpy(row, x, nx * sizeof *row);
+		if (p->x)
+			memcpy(row, p->x + (job * ROWS + k) * nx, nx * sizeof *row);
+		else
+			p->load(p->context, job * ROWS + k, row, worker);
+		if (is_zero(row, nx)) {
+			memset(spectrum + k * stride, 0, c->lx * sizeof *spectrum);
+			continue;
+		}
 		/* The inverse transform of an earlier row may have written there. */
 		for (size_t i = nx; i < c->mx; i++)
-			row[i] = c->bridged
-					 ? x[nx - 1] + (x[0] - x[nx - 1]) *
-							       bridge(i - nx, c->mx - nx)
-					 : 0;
+			row[i] = c->bridged ? row[nx - 1] +
+						      (row[0] - row[nx - 1]) *
+							      bridge(i - nx, c->mx - nx)
+					    : 0;
 		fft_forward(c->row, row, spectrum + k * stride);
 	}
 	for (size_t kx = 0; kx < c->lx; kx++)
@@ -328,41 +341,28 @@ static void forward_rows(void *context, size_t job, int worker)
 			put(&work[kx * c->column + k], get(&spectrum[k * stride + kx]));
 }
 
-/* Products of two arrays, four sums side by side. */
-static void add_products(lanes sum[2], const double *a, const double *b, size_t n)
-{
-	size_t i = 0;
-
-	for (; i + 4 <= n; i += 4) {
-		sum[0] += lanes_load(a + i, 2) * lanes_load(b + i, 2);
-		sum[1] += lanes_load(a + i + 2, 2) * lanes_load(b + i + 2, 2);
-	}
-	for (; i < n; i++)
-		lanes_add(&sum[0], lanes_all(a[i] * b[i]), 1);
-}
-
 static void inverse_rows(void *context, size_t job, int worker)
 {
 	const struct convolve *c = context;
+	const struct convolve_passes *p = c->passes;
 	double *row = buffer(c, worker);
 	double complex *spectrum = spectra(c, worker);
 	const double complex *work = c->work + job * ROWS;
 	size_t nx = c->nx, rows = smaller(ROWS, c->ny - job * ROWS), stride = c->stride;
-	lanes sum[2] = { { 0 } };
+	size_t begin = job * ROWS * nx;
 
 	for (size_t kx = 0; kx < c->lx; kx++)
 		for (size_t k = 0; k < rows; k++)
 			put(&spectrum[k * stride + kx], get(&work[kx * c->column + k]));
 	for (size_t k = 0; k < rows; k++) {
-		size_t at = (job * ROWS + k) * nx;
-
+		if (p->wants && !p->wants(p->context, job * ROWS + k))
+			continue;
 		fft_inverse(c->row, spectrum + k * stride, row);
-		memcpy(c->y + at, row, nx * sizeof *row);
-		if (c->x != c->y)
-			add_products(sum, c->x + at, row, nx);
+		memcpy(p->y + begin + k * nx, row, nx * sizeof *row);
 	}
-	sum[0] += sum[1];
-	c->products[job] = sum[0][0] + sum[0][1];
+	c->part[job] = sweep_start();
+	if (p->pass)
+		p->pass(p->context, begin, begin + rows * nx, &c->part[job]);
 }
 
 static inline void scale(double complex *z, double factor)
@@ -413,28 +413,24 @@ static void convolve_columns(void *context, size_t job, int worker)
 			c->work + kx * c->column, f, e);
 }
 
-static size_t row_jobs(const struct convolve *c)
+struct sweep convolve_run(
+	struct convolve *c, const double *kernel, const struct convolve_passes *passes)
 {
-	return (c->ny + ROWS - 1) / ROWS;
+	struct sweep all = sweep_start();
+
+	c->kernel = kernel;
+	c->passes = passes;
+	pool_run(c->pool, row_jobs(c), forward_rows, c);
+	pool_run(c->pool, (c->lx + COLUMNS - 1) / COLUMNS, convolve_columns, c);
+	pool_run(c->pool, row_jobs(c), inverse_rows, c);
+	for (size_t job = 0; job < row_jobs(c); job++)
+		sweep_add(&all, &c->part[job]);
+	return all;
 }
 
 void convolve_apply(struct convolve *c, const double *kernel, const double *x, double *y)
 {
-	c->kernel = kernel;
-	c->x = x;
-	c->y = y;
-	pool_run(c->pool, row_jobs(c), forward_rows, c);
-	pool_run(c->pool, (c->lx + COLUMNS - 1) / COLUMNS, convolve_columns, c);
-	pool_run(c->pool, row_jobs(c), inverse_rows, c);
-}
+	const struct convolve_passes passes = { .x = x, .y = y };
 
-double convolve_product(
-	struct convolve *c, const double *kernel, const double *x, double *y)
-{
-	double sum = 0;
-
-	convolve_apply(c, kernel, x, y);
-	for (size_t job = 0; job < row_jobs(c); job++)
-		sum += c->products[job];
-	return sum;
+	convolve_run(c, kernel, &passes);
 }
