@@ -35,7 +35,7 @@ paste a "$work/rise.tsv" >/dev/null
 column state out.tsv | awk 'NR > 60 { e = $1 - (1.5 + 1.3 * (NR - 1) / 1186); s += e * e; n++ }
 	END { print sqrt(s / n) }' >rms
 near "states are closer to the truth than observations" "$(cat rms)" 0.03 0.02
-column ess out.tsv | awk '$1 !~ /^[0-9]/ || $1 + 0 < 1 - 1e-9 || $1 + 0 > 300 + 1e-9 { bad = 1 } END { print bad + 0 }' >bad
+column ess out.tsv | awk '$1 !~ /^[0-9]/ || $1 + 0 < 1 - 1e-9 || $1 + 0 > 300 + 1e-9 { bad = 1 } END { print (NR ? bad + 0 : "no rows") }' >bad
 is "the effective sample size is between 1 and N" "$(cat bad)" 0
 
 printf '# units: h L/min\nt\ty\n0\t1\n' >unit.tsv

@@ -5,7 +5,8 @@
 #	                                  (2e-320) are words
 #	frames FILE [CHANNELS]            the doubles of a stream, one frame a line, without
 #	                                  the end of a stream that has one
-#	worst FILE FILE                   largest difference between two lists of numbers
+#	worst FILE FILE                   largest difference between two lists of numbers of
+#	                                  equal length
 
 au() {
 	awk -v rate="$1" -v channels="$2" '
@@ -46,6 +47,7 @@ frames() {
 }
 
 worst() {
-	paste "$1" "$2" | awk '{ d = $1 - $2; if (d < 0) d = -d; if (d > m) m = d }
-		END { printf "%.3g\n", m + 0 }'
+	paste "$1" "$2" | awk 'NF != 2 || $1 $2 ~ /[^-+.0-9e]/ { bad = 1 }
+		{ d = $1 - $2; if (d < 0) d = -d; if (d > m) m = d }
+		END { if (bad || !NR) print "no numbers"; else printf "%.3g\n", m }'
 }

@@ -23,6 +23,8 @@ debriscount --duration 30min --doubtful six.tsv >all.tsv 2>err
 is "doubtful rows are counted with --doubtful" "$(cell rows all.tsv) $(cell doubtful all.tsv)" "7 0"
 debriscount --duration 30min --classes 40um,100um,200um six.tsv >classes.tsv 2>err
 is "particles are counted in their classes" "$(column rows classes.tsv | tr '\n' ' ')" "5 1 0 "
+is "a particle at a limit is in the class above it" \
+	"$(debriscount --duration 30min --classes 50um,120um six.tsv 2>err | column rows /dev/stdin | tr '\n' ' ')" "5 1 "
 is "the last class is open and its upper limit is -ln 0.025" "$(cell high classes.tsv 3) $(cell number_high classes.tsv 3)" "inf 3.68888"
 is "without a density there is no mass" "$(cell kg_per_hour classes.tsv)" nan
 debriscount --duration 30min six.tsv >all.tsv 2>err

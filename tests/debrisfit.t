@@ -42,7 +42,8 @@ is 'unknown columns of an estimated particle are nan' "$(column exact quick.tsv 
 		!$c["exact"] && ($c["length"] != "nan" || $c["z"] != "nan") { bad++ } END { print bad + 0 }' quick.tsv)" '1 0'
 is 'estimates are below their upper and above their lower ends' "$(awk -F '\t' '/^#/ { next }
 	!n { for (i = 1; i <= NF; i++) c[$i] = i; n = 1; next }
-	!($c["volume_low"] <= $c["volume"] && $c["volume"] <= $c["volume_high"]) { bad++ } END { print bad + 0 }' quick.tsv)" 0
+	{ rows++ }
+	!($c["volume_low"] <= $c["volume"] && $c["volume"] <= $c["volume_high"]) { bad++ } END { print (rows ? bad + 0 : "no rows") }' quick.tsv)" 0
 
 # Units: lengths four times as long, stresses ten times as large.
 roughgen --points 32 --length 1mm --sq 4um --corr 40um --crown auto --seed 9 --count 30 |

@@ -98,6 +98,14 @@ near "the volume equals that in the summary of debrisgen" \
 	"$(column volume steps.tsv | awk '{ s += 1e12 * $1 } END { print s * 3 }')" \
 	"$(column volume s.tsv | awk '{ s += 1e12 * $1 } END { print s }')" 1e-9
 
+# Volumes of 1, 10 and 100 (1e-16 m3) in steps 1 to 3 of two realisations.
+awk 'BEGIN { print "realisation\tstep\tvolume\tdiameter\taspect"
+	for (r = 0; r < 2; r++) for (s = 1; s <= 3; s++)
+		print r "\t" s "\t" 10 ^ (s - 17) "\t" 1e-5 * (s + r) "\t1" }' >decades.tsv
+is "--step A:B gives the mean volume of the steps from A to B" "$(for steps in 1 2 3 1:2 2:3 1:3; do
+	debrisstat --step $steps decades.tsv | awk '$1 == "volume_per_step" { printf "%.4g ", $2 / 1e-16 }'
+done)" "1 10 100 5.5 55 37 "
+
 # Two studies: volumes 1 2 3 4 and 2 4 6 8 (1e-12 m3) of one particle each.
 study() {
 	printf 'realisation\tstep\tvolume\tdiameter\taspect\n'

@@ -82,6 +82,12 @@ fails "arrivals for delays" 1 "want a network for delays, got one for arrivals" 
 	delaynet --task score tiny.net
 fails "delays for arrivals" 1 "want a network for arrivals, got one for delays" \
 	delaynet --task score --model pulses a.net
+sed 's/^purpose arrivals/purpose delays/' tiny.net >lying.net
+fails "layers of arrivals for delays" 1 "lying.net: inputs of 2 x 1 x 128 and 34 outputs do not suit delays" \
+	delaynet --task score lying.net
+sed 's/^purpose delays/purpose arrivals/' a.net >lying.net
+fails "layers of delays for arrivals" 1 "lying.net: inputs of 1 x 2 x 40 and 3 outputs do not suit arrivals" \
+	delaynet --task score --model pulses lying.net
 fails "five pulses" 2 "at most 4" delaynet --model pulses --sources 5
 fails "apply of arrivals without sections" 2 "requires --sections" delaynet --task apply --model pulses --network tiny.net
 

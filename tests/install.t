@@ -121,6 +121,10 @@ export PKG_CONFIG_PATH
 if [ -n "${ASAN_OPTIONS:-}" ] || ! command -v pkg-config >/dev/null; then
 	skip 'pkg-config finds the archive' 'not here'
 else
+	sed -e 's|@LIBDIR@|/a b/lib|' -e 's|@INCLUDEDIR@|/a b/include|' -e 's|@VERSION@|1|' \
+		"$top/wearpipe.pc.in" >blank.pc
+	is 'pkg-config quotes a path with a blank' "$(PKG_CONFIG_PATH=$work:$PKG_CONFIG_PATH pkg-config --cflags blank | sed 's/ *$//')" \
+		'-I/a\ b/include'
 	is 'pkg-config states the version' "$(pkg-config --modversion wearpipe)" \
 		"$(sed -n 's/^VERSION = //p' "$top/Makefile")"
 	flags=$(pkg-config --static --libs-only-l wearpipe | sed 's/-lwearpipe//')

@@ -50,7 +50,20 @@ for p in $programs; do
 done
 fails "bounds of a fraction are no percentage" 2 '^debrisstat: --confidence 95: want 0.01 to 0.9999$' \
 	debrisstat --confidence 95
+for c in 0.01 0.9999; do
+	ok "the bound $c of an option is accepted" debrisstat --confidence $c --help
+done
+fails "a number next to a bound" 2 '^debrisstat: --confidence 0.99991: want 0.01 to 0.9999$' \
+	debrisstat --confidence 0.99991 --help
 fails "other bounds have a unit" 2 '^sensorsim: --bore 20: want 1um to 10m$' sensorsim --bore 20
+
+if command -v python3 >/dev/null; then
+	python3 -c 'import pty, sys; sys.exit(pty.spawn(["timeout", "5", "debrisstat"]) >> 8)' >tty </dev/null
+	is "a program without arguments does not wait for a terminal" \
+		"$? $(grep -c 'nothing to read: usage: debrisstat' tty)" "2 1"
+else
+	skip "a program without arguments does not wait for a terminal" "no python3"
+fi
 
 # The same word has the same letter everywhere, and reserved letters keep their meaning.
 for p in $programs; do

@@ -65,6 +65,9 @@ refuse 'a rate of zero' 'rate 0 Hz' 24 0 7 0 1
 fails 'an end inside a frame' 1 'ends inside a frame: want 8 bytes, got 3' bpfilter --band 0:4000 --order 2 odd.au
 { au 24 16 7 8000 1; printf '\077\340\000\000\000\000\000\000'; } >short.au
 fails 'a declared length not held' 1 'want 16 bytes of samples, got 8' bpfilter --band 0:4000 --order 2 short.au
+{ cat short.au; printf 'xyz'; } >shorter.au
+fails 'a declared length that ends inside a frame' 1 'want 16 bytes of samples, got 11' \
+	bpfilter --band 0:4000 --order 2 shorter.au
 { au 24 4294967295 7 8000 1; printf '\177\370\000\000\000\000\000\000'; } >nan.au
 fails 'a sample that is no number' 1 'frame 0, channel 1: sample is not a finite number' bpfilter --band 0:4000 --order 2 nan.au
 

@@ -30,7 +30,7 @@ set xrange [0:800]; set xlabel "time, ms"
 set multiplot layout 2,1
 do for [s in "a1 a2"] {
 	set title "section ".s." at 600 ms"
-	eval sprintf("plot '%s.1.au' binary skip=%d format='%%double%%*double' endian=big using (column(0) / 10):1 with lines lc rgb blue", s, header(s.".1.au"))
+	eval sprintf("plot '%s.1.au' binary skip=%d format='%%double%%*double' endian=big using (column(0) / 10):1 with lines lc rgb blue notitle", s, header(s.".1.au"))
 }
 unset multiplot
 
@@ -48,7 +48,7 @@ eval sources("a2", 48, "fit", "a2.1.fit.au", 4)
 # The histogram of the section is that of the last one in the file; where three or four
 # sources are asked for, its peaks are shared out among them.
 set xrange [*:*]
-set xlabel "delay beyond 19.635 ms, ms"; set ylabel "attenuation"; set zlabel "weight" rotate
+set xlabel "delay beyond 19.635 ms, ms"; set ylabel "attenuation"; set zlabel "weight" rotate offset -3
 set view 55, 30; set hidden3d; set border 31
 do for [n in "41 44 46"] {
 	s = n eq "41" ? "a1" : "a2"

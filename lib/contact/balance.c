@@ -1,6 +1,5 @@
 #include "contact/balance.h"
 #include "contact/state.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +40,7 @@ struct balance {
 	double sign; /* of the shift to add */
 };
 
-struct balance *balance_new(const struct contact_par *par)
+enum num_status balance_new(const struct contact_par *par, struct balance **made)
 {
 	int along_x = par->nx * par->dx > par->ny * par->dy;
 	double width = along_x ? par->ny * par->dy : par->nx * par->dx;
@@ -50,13 +49,13 @@ struct balance *balance_new(const struct contact_par *par)
 	size_t squares = (size_t)(length / width);
 	struct balance *b;
 
-	errno = 0;
+	*made = NULL;
 	if (squares < 3 || cells / squares < NARROWEST ||
 		(along_x ? par->ny : par->nx) < NARROWEST)
-		return NULL;
+		return NUM_OK;
 	b = calloc(1, sizeof *b);
 	if (!b)
-		return NULL;
+		return NUM_MEMORY;
 	b->nx = (size_t)par->nx;
 	b->ny = (size_t)par->ny;
 	b->length = cells;
@@ -65,11 +64,12 @@ struct balance *balance_new(const struct contact_par *par)
 	b->is_periodic = par->boundary == CONTACT_PERIODIC;
 	b->line = calloc(cells, sizeof *b->line);
 	b->square = calloc(squares, sizeof *b->square);
-	if (b->line && b->square)
-		return b;
-	balance_free(b);
-	errno = ENOMEM;
-	return NULL;
+	if (!b->line || !b->square) {
+		balance_free(b);
+		return NUM_MEMORY;
+	}
+	*made = b;
+	return NUM_OK;
 }
 
 void balance_free(struct balance *b)

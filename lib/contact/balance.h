@@ -10,12 +10,13 @@
 #define CONTACT_BALANCE_H
 
 #include "contact/problem.h"
+#include "num/status.h"
 
 struct contact;
 struct balance;
 
-/* errno 0 and NULL if the grid is no strip; NULL and ENOMEM when out of memory. */
-struct balance *balance_new(const struct contact_par *par);
+/* Sets *b to NULL if the grid is no strip. */
+enum num_status balance_new(const struct contact_par *par, struct balance **b);
 void balance_free(struct balance *b);
 
 /* Shifts the direction (image) of the active cells for c->tau and c->shift.  size: of the

@@ -21,9 +21,9 @@
 #include "num/fft.h"
 #include "num/lanes.h"
 #include "num/status.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Of the step, in the sum of pressures.  Per 512 and 1024 at 5 to 60 %, free 512 and a
  * strip (build/bench/contact): 0.02 takes 12 to 14 iterations, 0.05 14 to 17, 0.1 and 0.3
@@ -66,22 +66,20 @@ enum num_status contact_make_preconditioner(
 {
 	const struct convolve *scratch = lender ? lender->periodic : c->plane;
 	struct box box = { .body = &c->body };
-	size_t mx, my, room;
-	double *memory;
+	size_t mx, my;
 
 	c->periodic = convolve_borrow((size_t)c->par.nx, (size_t)c->par.ny,
 		CONVOLVE_BRIDGED, c->par.pool, scratch);
 	if (!c->periodic)
 		return NUM_MEMORY;
-	memory = convolve_scratch(c->periodic, &room);
-	c->extension =
-		extension_new(&c->par, lender ? lender->extension : NULL, memory, room);
+	/* Its levels are in use before the preconditioned residual is written there. */
+	c->extension = extension_new(
+		&c->par, lender ? lender->extension : NULL, c->residual, c->n);
 	c->inverse = convolve_alloc(c->periodic);
 	c->active = malloc(c->n);
 	if (!c->extension || !c->inverse || !c->active)
 		return NUM_MEMORY;
-	c->balance = balance_new(&c->par);
-	if (!c->balance && errno == ENOMEM)
+	if (balance_new(&c->par, &c->balance))
 		return NUM_MEMORY;
 	convolve_size(c->periodic, &mx, &my);
 	box.lx = (double)mx * c->par.dx;
@@ -109,7 +107,7 @@ static inline lanes within_bounds(const struct contact *c, lanes p)
 
 static inline lane_mask are_free(const struct contact *c, lanes p)
 {
-	return (p > 0.0) & (p < c->cap);
+	return lanes_and(p > 0.0, p < c->cap);
 }
 
 /* Runs a pass for cells begin to end in pairs and a last single one. */
@@ -124,14 +122,15 @@ static inline lane_mask are_free(const struct contact *c, lanes p)
 		cells(c, i, 1, &t);                                         \
 	add_pass(s, &t)
 
-/* The residual of the active cells, which are free or should become free because of their
- * gap, and the sums of contact_optimality_sums(). */
-static inline void set_cells(const struct contact *c, size_t i, int n, struct pass *t)
+/* The active cells, which are free or should become free because of their gap, and the
+ * sums of contact_optimality_sums(). */
+static inline void find_cells(const struct contact *c, size_t i, int n, struct pass *t)
 {
 	lanes p = lanes_load(c->p + i, n);
 	lanes g = lanes_load(c->gap + i, n) - c->result.approach;
 	lanes below = lanes_min(g, lanes_all(0));
-	lane_mask active = ((p > 0.0) | (g < 0.0)) & ((p < c->cap) | (g > 0.0));
+	lane_mask active =
+		lanes_and(lanes_or(p > 0.0, g < 0.0), lanes_or(p<c->cap, g> 0.0));
 
 	lanes_add(&t->sum[0], p * g, n);
 	lanes_add(&t->sum[1], p, n);
@@ -140,12 +139,11 @@ static inline void set_cells(const struct contact *c, size_t i, int n, struct pa
 	t->max = lanes_max(t->max, -g);
 	c->active[i] = (unsigned char)-active[0];
 	c->active[i + (size_t)n - 1] = (unsigned char)-active[n - 1];
-	lanes_store(c->residual + i, lanes_if(active, g), n);
 }
 
-static void set_residual(void *context, size_t begin, size_t end, struct sweep *s)
+static void find_active(void *context, size_t begin, size_t end, struct sweep *s)
 {
-	PAIRS(set_cells);
+	PAIRS(find_cells);
 }
 
 /* Sums over the active cells for beta and the means. */
@@ -181,7 +179,8 @@ static inline void bound_cells(
 	lanes_add(&t->sum[0], step * g, n);
 	lanes_add(&t->sum[1], step, n);
 	lanes_add(&t->sum[2], lanes_abs(step), n);
-	lanes_add(&t->sum[3], lanes_if(active & are_free(c, next), lanes_all(1)), n);
+	lanes_add(&t->sum[3],
+		lanes_if(lanes_and(active, are_free(c, next)), lanes_all(1)), n);
 	lanes_store(c->step + i, step, n);
 }
 
@@ -252,11 +251,35 @@ struct state {
 	int exact;        /* gap and load have just been computed */
 };
 
-static void precondition(struct contact *c)
+static void load_residual(void *context, size_t row, double *residual, int worker)
 {
-	convolve_apply(c->periodic, c->inverse, c->residual, c->residual);
+	const struct contact *c = context;
+
+	extension_row(c->extension, row, residual, worker);
+}
+
+static int has_active(void *context, size_t row)
+{
+	const struct contact *c = context;
+	size_t nx = (size_t)c->par.nx;
+
+	return memchr(c->active + row * nx, 1, nx) != NULL;
+}
+
+/* The residual, extended and preconditioned, and the sums of sum_residual(). */
+static struct sweep precondition(struct contact *c)
+{
+	const struct convolve_passes passes = { .load = load_residual,
+		.y = c->residual,
+		.wants = has_active,
+		.pass = sum_residual,
+		.context = c };
+
+	c->result.work +=
+		extension_solve(c->extension, c->active, c->gap, c->result.approach);
 	c->result.transforms += 2;
 	c->result.work += c->par.boundary == CONTACT_FREE ? 0.5 : 2;
+	return convolve_run(c->periodic, c->inverse, &passes);
 }
 
 /* The bounded step along the direction in image that carries what is missing; the last
@@ -295,11 +318,8 @@ static double find_step(struct contact *c, struct state *state)
 	int load_given = c->control == CONTACT_PRESSURE;
 	double missing = c->target * (double)c->n - state->sum;
 	double count, mean, limit, rest;
-	struct sweep s;
+	struct sweep s = precondition(c);
 
-	c->result.work += extension_apply(c->extension, c->active, c->residual);
-	precondition(c);
-	s = contact_sweep(c, sum_residual);
 	count = fmax(s.sum[4], 1);
 	mean = load_given ? s.sum[0] / count : 0;
 	c->beta = state->curvature > 0 ? (s.sum[2] - mean * s.sum[1]) / state->curvature
@@ -323,7 +343,7 @@ static void follow_step(struct contact *c, struct state *state, double slope)
 	state->moved = state->curvature = 0;
 	if (!(slope < 0 || state->forced))
 		return;
-	state->curvature = contact_multiply(c, c->step, c->image);
+	state->curvature = contact_multiply_step(c);
 	if (!(state->curvature > 0)) {
 		state->curvature = 0;
 		return;
@@ -366,7 +386,7 @@ static void renew_gap(struct contact *c, struct state *state)
 
 static double optimality_gap(struct contact *c)
 {
-	struct sweep s = contact_sweep(c, set_residual);
+	struct sweep s = contact_sweep(c, find_active);
 
 	return c->result.optimality_gap = contact_optimality_gap(c, &s);
 }
@@ -403,7 +423,7 @@ enum contact_status contact_solve_bccg(struct contact *c)
 			struct sweep s;
 
 			renew_gap(c, &state);
-			s = contact_sweep(c, set_residual);
+			s = contact_sweep(c, find_active);
 			state.plain = contact_gradient_due(c, &s);
 		}
 		if (state.plain > 0) {

@@ -15,7 +15,8 @@ enum {
 	LEVELS = 30,
 	COARSEST = 1024, /* cells to solve on */
 	STEPS = 20,      /* of conjugate gradients there */
-	ROWS = 16        /* rows in one job */
+	ROWS = 16        /* rows in one job: 4 to 64 take the same time within 3 %
+			  * (1024 x 1024, periodic and free) */
 };
 
 struct level {
@@ -40,7 +41,8 @@ struct extension {
 	/* of the call in progress */
 	int now;
 	const unsigned char *active;
-	double *residual;
+	const double *gap;
+	double approach;
 };
 
 /* |q| */
@@ -68,7 +70,13 @@ static enum num_status make_coarsest(struct extension *e)
 	return convolve_spectrum(e->plane, e->stiffness, wave_number, &l->par);
 }
 
-static enum num_status make_levels(struct extension *e, double *memory, size_t room)
+/* Doubles of an array, whole cache lines. */
+static size_t array_room(const struct level *l)
+{
+	return (l->nx * l->ny + 7) / 8 * 8;
+}
+
+static enum num_status make_levels(struct extension *e, double *memory, size_t most)
 {
 	const struct contact_par *fine = &e->par;
 	size_t cells = 0;
@@ -83,12 +91,12 @@ static enum num_status make_levels(struct extension *e, double *memory, size_t r
 		e->levels++;
 		l->nx = (size_t)l->par.nx;
 		l->ny = (size_t)l->par.ny;
-		cells += l->nx * l->ny;
+		cells += array_room(l);
 		if (transfer_make(&l->from, fine, &l->par) != 0)
 			return NUM_MEMORY;
 		fine = &l->par;
 	}
-	if (2 * cells > room) {
+	if (2 * cells > most) {
 		memory = e->memory = fft_alloc(2 * cells);
 		if (!memory)
 			return NUM_MEMORY;
@@ -97,8 +105,8 @@ static enum num_status make_levels(struct extension *e, double *memory, size_t r
 		struct level *l = &e->own[k];
 
 		l->value = memory;
-		l->weight = l->value + l->nx * l->ny;
-		memory = l->weight + l->nx * l->ny;
+		l->weight = l->value + array_room(l);
+		memory = l->weight + array_room(l);
 	}
 	return e->levels > 0 ? make_coarsest(e) : 0;
 }
@@ -151,20 +159,21 @@ static inline void add_cells(double *to, double w, lanes x, int n)
 	lanes_store(to, lanes_load(to, n) + w * x, n);
 }
 
-/* Adds w times a fine row of the residual, which is 0 if it is not active, and w where
- * it is. */
+/* Adds w times a fine row of the residual, 0 where it is not active, and w where it is.
+ */
 static void add_residual(const struct extension *e, size_t row, double w, double *value,
 	double *weight, size_t n)
 {
-	const double *r = e->residual + row * n;
+	const double *g = e->gap + row * n;
 	const unsigned char *a = e->active + row * n;
 
 	for (size_t x = 0; x < n; x += 2) {
 		int k = x + 1 < n ? 2 : 1;
+		lane_mask active = lanes_flags(a + x, k);
 
-		add_cells(value + x, w, lanes_load(r + x, k), k);
-		add_cells(
-			weight + x, w, lanes_if(lanes_flags(a + x, k), lanes_all(1)), k);
+		add_cells(value + x, w,
+			lanes_if(active, lanes_load(g + x, k) - e->approach), k);
+		add_cells(weight + x, w, lanes_if(active, lanes_all(1)), k);
 	}
 }
 
@@ -234,38 +243,73 @@ static double own_share(double weight)
 	return root / (root + product * (1 - root));
 }
 
-/* Rows of a level from the next coarser one and the cells' own; on the grid itself, for
- * the cells that are not active. */
+/* A row of the next finer cells interpolated from a level: cell x, or that and the next.
+ */
+struct between {
+	const struct axis *axis;
+	const double *row;
+};
+
+/* The rows of a level between which a row of finer cells lies, interpolated. */
+static struct between rows_between(
+	const struct extension *e, const struct level *l, size_t y, int worker)
+{
+	const struct axis *ax = &l->from.x, *ay = &l->from.y;
+	double *row = e->scratch + 2 * (size_t)worker * e->row, share = ay->share[y];
+	const double *low = l->value + ay->low[y] * ax->m;
+	const double *high = l->value + ay->high[y] * ax->m;
+
+	for (size_t x = 0; x < ax->m; x++)
+		row[x] = low[x] + share * (high[x] - low[x]);
+	return (struct between){ ax, row };
+}
+
+static inline lanes around(const struct between *b, size_t x, int n)
+{
+	const struct axis *a = b->axis;
+	size_t last = x + (size_t)n - 1;
+	lanes low = { b->row[a->low[x]], b->row[a->low[last]] };
+	lanes high = { b->row[a->high[x]], b->row[a->high[last]] };
+
+	return low + lanes_load(a->share + x, n) * (high - low);
+}
+
+/* Rows of a level from the next coarser one and the cells' own. */
 static void spread(void *context, size_t job, int worker)
 {
 	struct extension *e = context;
-	const struct level *coarse = &e->level[e->now];
-	const struct axis *ax = &coarse->from.x, *ay = &coarse->from.y;
-	double *between = e->scratch + 2 * (size_t)worker * e->row;
+	const struct level *coarse = &e->level[e->now], *fine = coarse - 1;
 
-	for (size_t y = job * ROWS; y < smaller((job + 1) * ROWS, ay->n); y++) {
-		const double *low = coarse->value + ay->low[y] * ax->m;
-		const double *high = coarse->value + ay->high[y] * ax->m;
-		double share = ay->share[y];
-		double *fine = e->now ? coarse[-1].value : e->residual;
+	for (size_t y = job * ROWS; y < smaller((job + 1) * ROWS, fine->ny); y++) {
+		struct between between = rows_between(e, coarse, y, worker);
+		double *value = fine->value + y * fine->nx;
+		const double *weight = fine->weight + y * fine->nx;
 
-		for (size_t x = 0; x < ax->m; x++)
-			between[x] = low[x] + share * (high[x] - low[x]);
-		fine += y * ax->n;
-		for (size_t x = 0; x < ax->n; x++) {
-			double a = between[ax->low[x]], b = between[ax->high[x]];
-			double around = a + ax->share[x] * (b - a);
+		for (size_t x = 0; x < fine->nx; x++) {
+			double w = weight[x], rest = around(&between, x, 1)[0];
 
-			if (e->now == 0) {
-				fine[x] = e->active[y * ax->n + x] ? fine[x] : around;
-			} else {
-				double w = coarse[-1].weight[y * ax->n + x];
-
-				fine[x] = w > 0 ? around + own_share(w) *
-								   (fine[x] / w - around)
-						: around;
-			}
+			value[x] = w > 0 ? rest + own_share(w) * (value[x] / w - rest)
+					 : rest;
 		}
+	}
+}
+
+void extension_row(const struct extension *e, size_t y, double *row, int worker)
+{
+	size_t nx = (size_t)e->par.nx;
+	const double *gap = e->gap + y * nx;
+	const unsigned char *active = e->active + y * nx;
+	struct between between = { 0 };
+
+	if (e->levels > 0)
+		between = rows_between(e, &e->level[0], y, worker);
+	for (size_t x = 0; x < nx; x += 2) {
+		int n = x + 1 < nx ? 2 : 1;
+		lanes own = lanes_load(gap + x, n) - e->approach;
+		lanes rest = e->levels > 0 ? around(&between, x, n) : lanes_all(0);
+
+		lanes_store(
+			row + x, lanes_pick(lanes_flags(active + x, n), own, rest), n);
 	}
 }
 
@@ -341,18 +385,20 @@ static void run_rows(struct extension *e, size_t rows,
 	pool_run(e->par.pool, (rows + ROWS - 1) / ROWS, job, e);
 }
 
-double extension_apply(struct extension *e, const unsigned char *active, double *residual)
+double extension_solve(struct extension *e, const unsigned char *active,
+	const double *gap, double approach)
 {
 	double work;
 
+	e->active = active;
+	e->gap = gap;
+	e->approach = approach;
 	if (e->levels == 0)
 		return 0;
-	e->active = active;
-	e->residual = residual;
 	for (e->now = 0; e->now < e->levels; e->now++)
 		run_rows(e, e->level[e->now].ny, gather);
 	work = solve_coarsest(e);
-	for (e->now = e->levels - 1; e->now >= 0; e->now--)
+	for (e->now = e->levels - 1; e->now > 0; e->now--)
 		run_rows(e, e->level[e->now].from.y.n, spread);
 	return work / ((double)e->par.nx * (double)e->par.ny);
 }

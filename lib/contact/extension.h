@@ -26,9 +26,11 @@ struct extension *extension_new(const struct contact_par *par,
 	const struct extension *finer, double *memory, size_t room);
 void extension_free(struct extension *e);
 
-/* Fills in the residual, 0 on entry, where the cell is not active.  Returns the work in
+/* Extends the residual, gap less approach, beyond the active cells.  Returns the work in
  * units of transforms of the whole grid. */
-double extension_apply(
-	struct extension *e, const unsigned char *active, double *residual);
+double extension_solve(struct extension *e, const unsigned char *active,
+	const double *gap, double approach);
+/* A row of the extended residual, in the thread worker; the arrays are still those. */
+void extension_row(const struct extension *e, size_t y, double *row, int worker);
 
 #endif

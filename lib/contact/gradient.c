@@ -56,7 +56,7 @@ void contact_gradient_step(struct contact *c)
 	s = contact_sweep(c, project_step);
 	if (load_given)
 		contact_share_load(c, project_step, missing, 1, 1e-14, &s);
-	curvature = contact_multiply(c, c->step, c->image);
+	curvature = contact_multiply_step(c);
 	c->stretch = 1;
 	/* Without a load to restore, no farther than to the least energy. */
 	if (missing == 0 && -s.sum[0] < curvature)

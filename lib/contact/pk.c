@@ -116,7 +116,7 @@ enum contact_status contact_solve_pk(struct contact *c)
 		c->beta = conjugate && last_moment > 0 ? moment / last_moment : 0;
 		last_moment = moment;
 		contact_sweep(c, turn_step);
-		contact_multiply(c, c->step, c->image);
+		contact_multiply_step(c);
 		c->tau = step_length(c, c->tau);
 		s = contact_sweep(c, move_pressure);
 		conjugate = s.sum[0] == 0;

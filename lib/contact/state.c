@@ -1,5 +1,6 @@
 #include "contact/state.h"
 #include "num/fft.h"
+#include "num/lanes.h"
 #include <float.h>
 #include <math.h>
 
@@ -14,29 +15,43 @@ struct sweep contact_sweep(struct contact *c, contact_pass *pass)
 	return sweep_run(c->par.pool, c->n, pass, c);
 }
 
-static void multiply_pairs(void *context, size_t begin, size_t end, struct sweep *s)
+/* y = K x, added to the counters, and a pass over y; y must not be x. */
+static struct sweep multiply(
+	struct contact *c, const double *x, double *y, contact_pass *pass)
 {
-	const double *const *pair = context;
+	const struct convolve_passes passes = {
+		.x = x, .y = y, .pass = pass, .context = c
+	};
 
-	for (size_t i = begin; i < end; i++)
-		s->sum[0] += pair[0][i] * pair[1][i];
-}
-
-double contact_multiply(struct contact *c, const double *x, double *y)
-{
 	if (c->mlms) {
-		const double *pair[2] = { x, y };
-
 		mlms_apply(c->mlms, x, y);
-		return sweep_run(c->par.pool, c->n, multiply_pairs, pair).sum[0];
+		return contact_sweep(c, pass);
 	}
 	c->result.transforms += 2;
 	c->result.work += 2;
-	return convolve_product(c->plane, c->kernel, x, y);
+	return convolve_run(c->plane, c->kernel, &passes);
+}
+
+static void multiply_step(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	const struct contact *c = context;
+	lanes sum = lanes_all(0);
+	size_t i = begin;
+
+	for (; i + 2 <= end; i += 2)
+		sum += lanes_load(c->step + i, 2) * lanes_load(c->image + i, 2);
+	if (i < end)
+		lanes_add(&sum, lanes_all(c->step[i] * c->image[i]), 1);
+	s->sum[0] += sum[0] + sum[1];
+}
+
+double contact_multiply_step(struct contact *c)
+{
+	return multiply(c, c->step, c->image, multiply_step).sum[0];
 }
 
 /* The gap at first contact from the displacement, which it replaces: its sum and count
- * over free cells, and the least displacement. */
+ * over free cells, the work of the pressure, and the least displacement. */
 static void subtract_height(void *context, size_t begin, size_t end, struct sweep *s)
 {
 	const struct contact copy = *(struct contact *)context, *c = &copy;
@@ -48,6 +63,7 @@ static void subtract_height(void *context, size_t begin, size_t end, struct swee
 
 		t.sum[0] += is ? gap : 0;
 		t.sum[1] += is;
+		t.sum[2] += c->p[i] * u;
 		t.min = u < t.min ? u : t.min;
 		c->gap[i] = gap;
 	}
@@ -152,10 +168,9 @@ void contact_find_approach(struct contact *c)
 
 void contact_gap(struct contact *c)
 {
-	struct sweep s;
+	struct sweep s = multiply(c, c->p, c->gap, subtract_height);
 
-	c->work = contact_multiply(c, c->p, c->gap);
-	s = contact_sweep(c, subtract_height);
+	c->work = s.sum[2];
 	c->least = fmin(s.min, 0);
 	set_approach(c, s.sum[0], s.sum[1]);
 }

@@ -32,7 +32,7 @@ struct contact {
 	/* preconditioned solver only */
 	struct convolve *periodic;   /* transforms of the preconditioner */
 	double *inverse;             /* its kernel */
-	double *residual;            /* g on the contact, then preconditioned */
+	double *residual;            /* preconditioned */
 	unsigned char *active;       /* 1 for cells that contribute to the residual */
 	struct extension *extension; /* of the residual beyond the contact */
 	struct balance *balance;     /* of the loads along a strip, or NULL */
@@ -82,8 +82,8 @@ static inline double gap_at(const struct contact *c, size_t i)
 
 typedef void contact_pass(void *context, size_t begin, size_t end, struct sweep *s);
 struct sweep contact_sweep(struct contact *c, contact_pass *pass);
-/* y = K x, added to the counters; y must not be x.  Returns the sum of x y. */
-double contact_multiply(struct contact *c, const double *x, double *y);
+/* The image of the step; returns the sum of their product. */
+double contact_multiply_step(struct contact *c);
 /* Recomputes the gap from the pressure, and the approach. */
 void contact_gap(struct contact *c);
 /* Sets the approach: the given one; or the mean gap of the free cells; or, without free

@@ -136,7 +136,11 @@ void cnndata_target(
 		value[0] = (network_real)((p->t - f.centre) / f.duration);
 		value[1] = (network_real)((p->delta - f.middle) / f.reach);
 		value[2] = (network_real)cbrt(p->a / f.scale);
-		/* With a floor at the accuracy that a network of this size can reach. */
+		/* The floors lie between the errors that the installed network leaves of
+		 * one pulse and of two at 60 dB: .0012 and .0068 durations of arrival,
+		 * .0016 and .019 of size.  After a fiftieth of the training, 0, 1/4, 1
+		 * and 4 times these floors leave errors of size of .25, .099, .091 and
+		 * .099 for pairs at 30 dB. */
 		variance[0] = (network_real)(t + 5e-3 * 5e-3);
 		variance[1] = (network_real)(1 / (1 / delta + 3) + 0.02 * 0.02);
 		variance[2] = (network_real)(value[2] * value[2] * (size + 0.01 * 0.01));

@@ -75,12 +75,10 @@ void lesson_sample(void *context, long i, network_real *x, network_real *target)
 	memcpy(target, l->target + i * l->targets, (size_t)l->targets * sizeof *target);
 }
 
-int lesson_suits(const struct lesson *l, const struct network *net, const char *purpose)
+int lesson_suits(const struct lesson *l, const struct network *net)
 {
 	struct network_shape in = network_input(net);
 
-	if (strcmp(purpose, l->purpose) != 0)
-		return 0;
 	if (l->of_pulses)
 		return cnn_suits(net);
 	return in.channels == 1 && in.height == 2 && network_outputs(net) <= DELAYS_MAX;

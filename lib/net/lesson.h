@@ -37,8 +37,7 @@ void lesson_drop(struct lesson *lesson);
 /* For network_train(); the context is the lesson. */
 network_sample lesson_sample;
 
-/* 1 if the network has the lesson's purpose, inputs and outputs, of any width. */
-int lesson_suits(
-	const struct lesson *lesson, const struct network *net, const char *purpose);
+/* 1 if the network has the lesson's inputs and outputs, of any width. */
+int lesson_suits(const struct lesson *l, const struct network *net);
 
 #endif

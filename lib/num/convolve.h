@@ -6,11 +6,9 @@
  * prime factor above 31, for which FFTW is slow, a periodic convolution is computed as
  * the linear one with the kernel summed over all periods.
  *
- * The rows are transformed first; then a few columns at a time are copied out,
- * transformed, multiplied and transformed back while they are in cache; then the rows are
- * transformed back.  A padded column is never formed: with half of its 2 n points zero,
- * its even and odd coefficients are two transforms of n points (the odd ones after a
- * twist by exp(-i pi j / n)), and only the n wanted points are transformed back.
+ * The rows are transformed first, a few at a time, and stored column by column; then each
+ * column is transformed, multiplied and transformed back while it is in cache; then the
+ * rows are transformed back.
  *
  *	struct convolve *c = convolve_new(nx, ny, CONVOLVE_PADDED, pool);
  *	double *k = convolve_alloc(c);
@@ -24,6 +22,7 @@
 
 #include "num/pool.h"
 #include "num/status.h"
+#include "num/sweep.h"
 #include <stddef.h>
 
 enum convolve_kind {
@@ -49,9 +48,6 @@ void convolve_free(struct convolve *c);
 /* Points of the transform in each direction. */
 void convolve_size(const struct convolve *c, size_t *mx, size_t *my);
 
-/* Scratch memory that is free between the calls, and how many doubles there are. */
-double *convolve_scratch(const struct convolve *c, size_t *room);
-
 /* Room for one kernel, to be freed with fft_free(); NULL when out of memory. */
 double *convolve_alloc(const struct convolve *c);
 
@@ -68,8 +64,22 @@ enum num_status convolve_spectrum(const struct convolve *c, double *kernel,
 
 /* y = kernel * x; y may be x. */
 void convolve_apply(struct convolve *c, const double *kernel, const double *x, double *y);
-/* The same for y other than x; returns the sum of x y, which costs nothing extra. */
-double convolve_product(
-	struct convolve *c, const double *kernel, const double *x, double *y);
+
+/* The same with passes over rows that are in cache: x may be made row by row, and y used
+ * as soon as it is there. */
+struct convolve_passes {
+	const double *x; /* or NULL, and load() fills in row iy */
+	void (*load)(void *context, size_t iy, double *row, int worker);
+	double *y;
+	/* 0 for a row of y that is not wanted and may be left as it is; or NULL. */
+	int (*wants)(void *context, size_t iy);
+	/* Over the cells begin to end - 1 of y, whole rows; each once. */
+	void (*pass)(void *context, size_t begin, size_t end, struct sweep *s);
+	void *context;
+};
+
+/* Returns what the passes sum. */
+struct sweep convolve_run(
+	struct convolve *c, const double *kernel, const struct convolve_passes *passes);
 
 #endif

@@ -14,6 +14,7 @@
 
 typedef double lanes __attribute__((vector_size(16)));
 typedef int64_t lane_mask __attribute__((vector_size(16))); /* -1 for yes, 0 for no */
+typedef int32_t lane_bits __attribute__((vector_size(16)));
 
 static inline lanes lanes_all(double x)
 {
@@ -43,15 +44,28 @@ static inline lane_mask lanes_flags(const unsigned char *flag, int n)
 	return (lane_mask){ -(int64_t)flag[0], -(int64_t)flag[n - 1] };
 }
 
+/* GCC 12 takes 64-bit masks apart where they are combined, not 32-bit ones. */
+static inline lane_mask lanes_and(lane_mask a, lane_mask b)
+{
+	return (lane_mask)((lane_bits)a & (lane_bits)b);
+}
+
+static inline lane_mask lanes_or(lane_mask a, lane_mask b)
+{
+	return (lane_mask)((lane_bits)a | (lane_bits)b);
+}
+
 /* x where yes, 0 elsewhere. */
 static inline lanes lanes_if(lane_mask yes, lanes x)
 {
-	return (lanes)(yes & (lane_mask)x);
+	return (lanes)((lane_bits)yes & (lane_bits)x);
 }
 
 static inline lanes lanes_pick(lane_mask yes, lanes a, lanes b)
 {
-	return (lanes)((yes & (lane_mask)a) | (~yes & (lane_mask)b));
+	lane_bits is = (lane_bits)yes;
+
+	return (lanes)((is & (lane_bits)a) | (~is & (lane_bits)b));
 }
 
 static inline lanes lanes_min(lanes a, lanes b)
@@ -87,6 +101,20 @@ static inline lanes lanes_exp(lanes x)
 	d = 1. / 6 + r4 * (1. / 5040 + r4 * (1. / 39916800));
 	a = 1 + (r * b + r * r * ((c + r * d) + r * r * a));
 	return (lanes)((lane_mask)a + power);
+}
+
+/* Two lanes as a complex number: the product, without the test for infinite parts of C's,
+ * and the conjugate. */
+static inline lanes lanes_complex(lanes a, lanes b)
+{
+	lanes turned = { a[1], a[0] }, part = { -b[1], b[1] };
+
+	return a * b[0] + turned * part;
+}
+
+static inline lanes lanes_conj(lanes a)
+{
+	return (lanes){ a[0], -a[1] };
 }
 
 /* sum += x, lane by lane */

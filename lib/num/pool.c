@@ -1,4 +1,5 @@
 #include "num/pool.h"
+#include <errno.h>
 #include <pthread.h>
 #include <stdlib.h>
 
@@ -66,11 +67,15 @@ struct pool *pool_new(int threads)
 	p->workers = calloc((size_t)threads, sizeof *p->workers);
 	for (int i = 1; p->workers && i < threads; i++) {
 		struct worker *w = &p->workers[i - 1];
+		int reason;
 
 		w->pool = p;
 		w->number = i;
-		if (pthread_create(&w->thread, NULL, serve, w))
+		reason = pthread_create(&w->thread, NULL, serve, w);
+		if (reason) {
+			errno = reason;
 			break;
+		}
 		p->threads++;
 	}
 	if (p->threads < threads) {

@@ -10,7 +10,8 @@
 
 struct pool;
 
-/* threads >= 1; NULL when threads cannot be created.  A pool of 1 starts none. */
+/* threads >= 1; NULL with errno when threads cannot be created.  A pool of 1 starts none.
+ */
 struct pool *pool_new(int threads);
 void pool_free(struct pool *pool);
 int pool_threads(const struct pool *pool); /* 1 for NULL */

@@ -12,13 +12,26 @@ struct task {
 	struct sweep part[SWEEP_CHUNKS];
 };
 
+struct sweep sweep_start(void)
+{
+	return (struct sweep){ .max = -INFINITY, .min = INFINITY };
+}
+
+void sweep_add(struct sweep *all, const struct sweep *part)
+{
+	for (int k = 0; k < SWEEP_SUMS; k++)
+		all->sum[k] += part->sum[k];
+	all->max = part->max > all->max ? part->max : all->max;
+	all->min = part->min < all->min ? part->min : all->min;
+}
+
 static void run_chunk(void *context, size_t i, int worker)
 {
 	struct task *t = context;
 	size_t begin = i * t->chunk, end = begin + t->chunk;
 
 	(void)worker;
-	t->part[i] = (struct sweep){ .max = -INFINITY, .min = INFINITY };
+	t->part[i] = sweep_start();
 	t->pass(t->context, begin, end < t->n ? end : t->n, &t->part[i]);
 }
 
@@ -39,19 +52,13 @@ struct sweep sweep_run(struct pool *pool, size_t n,
 	void *context)
 {
 	struct task t = { .n = n, .pass = pass, .context = context };
-	struct sweep all = { .max = -INFINITY, .min = INFINITY };
+	struct sweep all = sweep_start();
 	size_t chunks;
 
 	t.chunk = chunk_size(n);
 	chunks = (n + t.chunk - 1) / t.chunk;
 	pool_run(pool, chunks, run_chunk, &t);
-	for (size_t i = 0; i < chunks; i++) {
-		for (int k = 0; k < SWEEP_SUMS; k++)
-			all.sum[k] += t.part[i].sum[k];
-		if (t.part[i].max > all.max)
-			all.max = t.part[i].max;
-		if (t.part[i].min < all.min)
-			all.min = t.part[i].min;
-	}
+	for (size_t i = 0; i < chunks; i++)
+		sweep_add(&all, &t.part[i]);
 	return all;
 }

@@ -18,6 +18,10 @@ struct sweep {
 	double min; /* INFINITY at the start */
 };
 
+/* Sums of nothing, and sums of two parts together. */
+struct sweep sweep_start(void);
+void sweep_add(struct sweep *all, const struct sweep *part);
+
 struct sweep sweep_run(struct pool *pool, size_t n,
 	void (*pass)(void *context, size_t begin, size_t end, struct sweep *s),
 	void *context);

@@ -156,8 +156,15 @@ struct network *lessons_network(const char *path, struct netfile *file)
 		die(EXIT_RUN, "%s: line %ld: %s", name, file->line, file->why);
 	if (f != stdin)
 		fclose(f);
-	if (!lesson_suits(&l, net, file->purpose))
+	if (strcmp(l.purpose, file->purpose) != 0)
 		die(EXIT_RUN, "%s: want a network for %s, got one for %s", name,
 			l.purpose, file->purpose);
+	if (!lesson_suits(&l, net)) {
+		struct network_shape in = network_input(net);
+
+		die(EXIT_RUN, "%s: inputs of %d x %d x %d and %d outputs do not suit %s",
+			name, in.channels, in.height, in.width, network_outputs(net),
+			l.purpose);
+	}
 	return net;
 }

@@ -1,10 +1,14 @@
-/* Arrivals of one to four overlapping pulses: a network and the joint fit, against the
- * Cramer-Rao bound. * usage: arrivals NETWORK [SECTIONS] * Sections of cnndata.h:
- * duration 100 samples, delays within +-1.5 samples, amplitudes of cube roots uniform in
- * (0.8, 1.15), spacing at least 10 samples. Errors are root mean squares in samples
- * (delay, arrival) and relative (size), with the number of pulses given; sections in
- * which a fit finds fewer are excluded from its errors and counted in found. The bound is
- * the mean Fisher bound at the truth. Seconds are of CPU, per section. */
+/* arrivals - arrivals of one to four overlapping pulses: a network and the joint fit,
+ * against the Cramer-Rao bound
+ *
+ * usage: arrivals NETWORK [SECTIONS]
+ *
+ * Sections of cnndata.h: duration 100 samples, delays within +-1.5 samples, amplitudes of
+ * cube roots uniform in (0.8, 1.15), spacing at least 10 samples.  Errors are root mean
+ * squares in samples (delay, arrival) and relative (size), with the number of pulses
+ * given; sections in which a fit finds fewer are excluded from its errors and counted in
+ * found.  The bound is the mean Fisher bound at the truth.  Seconds are of CPU, per
+ * section. */
 #include "net/cnndata.h"
 #include "net/netfile.h"
 #include "signal/fit/joint.h"

@@ -1,9 +1,10 @@
-/* demix - separation of two overlapping pulses, in decibels * Scale-invariant ratio of
- * signal to distortion (SI-SDR: Le Roux et al., ICASSP 2019) of each of two pulses, 0.5
- * to 1.5 V at 30 dB, on sensor 1: of the record as it is, of the masks of the thesis, and
- * of the joint fit, by the time between the pulses in samples (they last 100). Median
- * over the scenes. BSS-eval would allow any filter of 512 taps as no distortion, longer
- * than the pulses themselves. */
+/* demix - separation of two overlapping pulses, in decibels
+ *
+ * Scale-invariant ratio of signal to distortion (SI-SDR: Le Roux et al., ICASSP 2019) of
+ * each of two pulses, 0.5 to 1.5 V at 30 dB, on sensor 1: of the record as it is, of the
+ * masks of the thesis, and of the joint fit, by the time between the pulses in samples
+ * (they last 100).  Median over the scenes.  BSS-eval would allow any filter of 512 taps
+ * as no distortion, longer than the pulses themselves. */
 #include "num/philox.h"
 #include "signal/fit/joint.h"
 #include "signal/mixture/masks.h"

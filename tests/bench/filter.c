@@ -1,6 +1,7 @@
-/* filter.c - FIR filters: rounding error against time, over taps and block * Prints rows
- * "scene taps block points error seconds": error is the largest difference to the same
- * sum in long double on samples of rms 1, over the rms of the output; seconds of
+/* filter - FIR filters: rounding error against time, over taps and block
+ *
+ * Prints rows "scene taps block points error seconds": error is the largest difference to
+ * the same sum in long double on samples of rms 1, over the rms of the output; seconds of
  * processor time are for 1e6 samples of one channel, the median of five. */
 #include "signal/filter/fir.h"
 #include <math.h>

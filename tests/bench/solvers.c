@@ -1,19 +1,23 @@
-/* solvers - the joint fit's own Levenberg-Marquardt against those of GSL * Scenes of M
- * pulses, 0.5 to 1.5 V and at least 10 samples apart in 50 samples each, cut as duet cuts
- * them: 90 samples are kept on either side of the outermost. All solvers begin at the
- * same guesses, off by up to 2 samples and a fifth of the amplitude, take derivatives
- * from shape_sample(), give covariances, and stop after a step that lowered chi-square by
- * less than 1e-4, or 50 steps. GSL's memory is taken beforehand. * Solvers: joint is
- * joint_refine(); multifit is gsl_multifit_nlinear, with the whole Jacobian, by
- * Levenberg-Marquardt (lm) or with geodesic acceleration (lmaccel), steps solved by
- * Cholesky or QR; multilarge is gsl_multilarge_nlinear, which is given J^T J, made from
- * the pulses that touch. (Its acceleration wants second derivatives.) * us and ratio:
- * processor time of a fit, and over that of joint; medians. steps: mean number; GSL does
- * not count rejected ones. excess: median of chi-square above the lowest minimum found,
- * iterated to the end. off, most: distance from there of the farthest parameter in
- * standard errors, median and largest; the sine ends in kinks, so that chi-square has
- * minima side by side, and every solver ends in another now and then. * usage: solvers
- * [SCENES] */
+/* solvers - the joint fit's own Levenberg-Marquardt against those of GSL
+ *
+ * usage: solvers [SCENES]
+ *
+ * Scenes of M pulses, 0.5 to 1.5 V and at least 10 samples apart in 50 samples each, cut
+ * as duet cuts them: 90 samples are kept on either side of the outermost.  All solvers
+ * begin at the same guesses, off by up to 2 samples and a fifth of the amplitude, take
+ * derivatives from shape_sample(), give covariances, and stop after a step that lowered
+ * chi-square by less than 1e-4, or 50 steps.  GSL's memory is allocated beforehand.
+ *
+ * Solvers: joint is joint_refine(); multifit is gsl_multifit_nlinear, with the whole
+ * Jacobian, by Levenberg-Marquardt (lm) or with geodesic acceleration (lmaccel), steps
+ * solved by Cholesky or QR; multilarge is gsl_multilarge_nlinear, which is given J^T J,
+ * made from the pulses that touch.  (Its acceleration wants second derivatives.)
+ *
+ * us and ratio: processor time of a fit, and over that of joint; medians.  steps: mean
+ * number; GSL does not count rejected ones.  excess: median of chi-square above the
+ * lowest minimum found, iterated to the end.  off, most: distance from there of the
+ * farthest parameter in standard errors, median and largest; the sine ends in kinks, so
+ * that chi-square has minima side by side, and every solver sometimes ends in another. */
 #include "num/philox.h"
 #include "signal/fit/joint.h"
 #include "signal/noise/robust.h"

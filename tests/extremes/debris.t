@@ -70,25 +70,48 @@ debrisgen -u 0.3 -Y "$(times_peak 0.999999999999)" --depth-step 10um cell.nrrd >
 relative "yield 1e-12 below it" "one cell, 12.41 um across" \
 	"$(awk 'BEGIN { printf "%.17g", (6 * 10 / 3.14159265358979324) ^ (1 / 3) * 1e-6 }')" 1e-6 "$(column diameter t)"
 
+# The volume that direct sums of point loads give under the pressure of a file:
+# worn FILE NX NY DX DY
+${CC:-cc} -O2 -D_XOPEN_SOURCE=700 -o worn "$top/tests/extremes/worn.c" -lm || exit 1
+worn() {
+	file=$1
+	shift
+	records -o text --field pressure "$file" | tr '\t' '\n' | grep '^[-0-9]' |
+		./worn "$@" 0.3 0.3 355e6 | cut -d ' ' -f 1
+}
+
 # Thin, long and odd grids.
 for n in 1x64 64x1 7x131; do
 	nx=${n%x*} ny=${n#*x}
 	roughgen -n $n -L "$(awk -v x="$nx" -v y="$ny" 'BEGIN { print x "um" "x" y "um" }')" -q 0.1um -l 5um |
-		bemcontact --pressure 50MPa -E 210GPa | debrisgen -Y 355MPa -u 0.3 --summary s.tsv 2>err >t
+		bemcontact --pressure 50MPa -E 210GPa >thin.nrrd
+	debrisgen -Y 355MPa -u 0.3 --summary s.tsv thin.nrrd 2>err >t
 	relative "$n cells" "particles have the volume worn off" \
 		"$(column volume t | awk '{ s += $1 } END { printf "%.17g", s }')" 1e-12 "$(column volume s.tsv)"
+	relative "$n cells" "the volume by direct sums" \
+		"$(worn thin.nrrd "$nx" "$ny" 1e-6 1e-6)" 0.02 "$(column volume s.tsv)"
 done
-roughgen -n 16 -L 1mmx10um -q 0.1um -l 8um | bemcontact -F 1N -E 210GPa |
-	debrisgen -Y 355MPa -u 0.3 --depth-step 1um --summary s.tsv 2>err >t
-relative "cells 1:100" "particles have the volume worn off" \
-	"$(column volume t | awk '{ s += $1 } END { printf "%.17g", s }')" 1e-12 "$(column volume s.tsv)"
+roughgen -n 16 -L 1mmx10um -q 0.1um -l 8um | bemcontact -F 1N -E 210GPa >flat.nrrd
+for step in 1um ''; do
+	debrisgen -Y 355MPa -u 0.3 ${step:+--depth-step "$step"} --summary s.tsv flat.nrrd 2>err >t
+	relative "cells 1:100${step:+, $step deep}" "particles have the volume worn off" \
+		"$(column volume t | awk '{ s += $1 } END { printf "%.17g", s }')" 1e-12 "$(column volume s.tsv)"
+done
+relative "cells 1:100" "the volume by direct sums" "$(worn flat.nrrd 16 16 6.25e-5 6.25e-7)" 0.02 "$(column volume s.tsv)"
+for seed in 1 2 3; do
+	roughgen --seed $seed -n 64 -L 0.5mm -q 8um -l 50um --crown 32um | bemcontact -F 20N -E 210GPa >rough.nrrd
+	debrisgen -Y 355MPa -u 0.3 --summary s.tsv rough.nrrd >t
+	relative "rough, seed $seed" "the volume by direct sums" \
+		"$(worn rough.nrrd 64 64 7.8125e-6 7.8125e-6)" 0.01 "$(column volume s.tsv)"
+done
 
-# Depth steps far from the cell's sides: the volume of a smooth contact stays.
+# Depth steps far from the sides of a cell.
 roughgen -n 64 -L 1mm --sq 0 --crown 50um | bemcontact -F 50N -E 210GPa >ball.nrrd
-volume() { debrisgen -Y 355MPa -u 0.3 --layer mid --depth-step "$1" --summary s.tsv ball.nrrd >t && column volume s.tsv; }
-fine=$(volume 2um)
-relative "cells 8 times flatter" "the volume of 2 um steps" "$fine" 0.01 "$(volume 1um)"
-relative "cells twice as tall, eight deep" "the volume of 2 um steps" "$fine" 0.2 "$(volume 31.25um)"
+volume() { debrisgen -Y 355MPa -u 0.3 "$@" --summary s.tsv ball.nrrd >t && column volume s.tsv; }
+exact=$(worn ball.nrrd 64 64 1.5625e-5 1.5625e-5)
+relative "a smooth ball" "the volume by direct sums" "$exact" 0.01 "$(volume)"
+relative "cells 16 times flatter" "the volume by direct sums" "$exact" 1e-4 "$(volume --layer mid --depth-step 1um)"
+relative "cells twice as tall, eight deep" "the volume by direct sums" "$exact" 0.15 "$(volume --layer mid --depth-step 31.25um)"
 
 if [ -x "$top/build/unit/particles_large" ]; then
 	"$top/build/unit/particles_large" >large

@@ -121,7 +121,7 @@ scene "lorentz pulse" "its tails reach 25 durations" 0 1e-6 "$(
 scene "line at half the rate" "alternates" 0 1e-9 "$(
 	sensorsim --uniform 1um:1um --number 0 --duration 1 -r 1000 --mains-frequency 500 --mains 1 >out.au
 	frames out.au 2 | awk 'NR > 1 { d = $1 + old; if (d < 0) d = -d; if (d > m) m = d } { old = $1 }
-		END { print m + 0 }')"
+		END { print (NR > 1 ? m + 0 : "no rows") }')"
 refused "a particle that stands still" 2 'slower than' \
 	sensorsim --uniform 1um:1um --number 1 --duration 1 --lag 10s:20s
 refused "as wide as the pipe" 2 'bore' sensorsim --uniform 1cm:1cm --number 1 --duration 1

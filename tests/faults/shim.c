@@ -1,8 +1,10 @@
-/* shim.c - a library to preload that lets the n-th call of a function fail *
- * FAULT_CALL=malloc FAULT_AT=7 LD_PRELOAD=shim.so program the seventh fails
- * FAULT_CALL=malloc FAULT_COUNT=file LD_PRELOAD=... how many there are * Calls count from
- * the start of main(). A failing call behaves as documented for the function, with
- * ENOMEM, EIO, ENOSPC or EAGAIN. */
+/* shim.c - a library to preload that lets the n-th call of a function fail
+ *
+ *	FAULT_CALL=malloc FAULT_AT=7 LD_PRELOAD=shim.so program     the seventh fails
+ *	FAULT_CALL=malloc FAULT_COUNT=f LD_PRELOAD=shim.so program  f gets their number
+ *
+ * Calls count from the start of main().  A failing call behaves as documented for the
+ * function, with ENOMEM, EIO, ENOSPC or EAGAIN. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

@@ -1,16 +1,28 @@
-/* simulate - records of two sensors with their truth, to evaluate duet * usage: simulate
- * KEY=VALUE ... record=FILE truth=FILE * Shares no code with the library or with
- * sensorsim: pulses, flow, noise and bounds are written down here once more. The keys
- * with their defaults stand in the table below. * The record is a two-channel AU stream
- * of 64-bit floats. The truth is a table of all events by time: * kind particle, bubble,
- * shock, impulse or dropout time1 time2 arrival at either sensor, s delay amplitude time2
- * - time1; largest deflection at sensor 1 as recorded, V, negative where the first lobe
- * is diameter duration of the particle, m, and of its pulse, s begin end of its trace in
- * the record, both sensors, s masked share of its energy in samples that were clipped or
- * dropped time1_bound delay_bound amplitude_bound Cramer-Rao bounds of standard errors,
- * amplitude relative * The bounds are for arrivals, transit times and amplitudes of a
- * particle and all its neighbours within three durations, with pulse shape, filter and
- * noise spectrum known and the duration proportional to the transit time. */
+/* simulate - records of two sensors with their truth, to evaluate duet
+ *
+ * usage: simulate KEY=VALUE ... record=FILE truth=FILE
+ *
+ * Shares no code with the library or with sensorsim: pulses, flow, noise and bounds are
+ * implemented here again.  The table below has the keys with their defaults.
+ *
+ * The record is a two-channel AU stream of 64-bit floats.  The truth is a table of all
+ * events by time:
+ *
+ *	kind         particle, bubble, shock, impulse or dropout
+ *	time1 time2  arrival at either sensor, s
+ *	delay        time2 - time1
+ *	amplitude    largest deflection at sensor 1 as recorded, V; negative if the first
+ *	             lobe is
+ *	diameter     of the particle, m
+ *	duration     of its pulse, s
+ *	begin end    of its trace in the record, both sensors, s
+ *	masked       share of its energy in samples that were clipped or dropped
+ *	time1_bound delay_bound amplitude_bound
+ *	             Cramer-Rao bounds of standard errors, of the amplitude relative
+ *
+ * The bounds are for arrivals, transit times and amplitudes of a particle and all its
+ * neighbours within three durations, with pulse shape, filter and noise spectrum known
+ * and the duration proportional to the transit time. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>

@@ -62,7 +62,7 @@ static double brute_width(double (*p)[3], size_t n, const double along[3])
 
 	for (size_t i = 0; i < n; i++) {
 		low = fmin(low, dot(p[i], along));
-		high = fmax(high, dot(p[i], along));
+		high = tap_max(high, dot(p[i], along));
 	}
 	for (int l = 1; l < LEVELS; l++) {
 		double level = low + (high - low) * l / LEVELS;
@@ -82,7 +82,7 @@ static double brute_width(double (*p)[3], size_t n, const double along[3])
 			}
 		for (size_t i = 0; i < count; i++)
 			for (size_t j = 0; j < i; j++)
-				most = fmax(most, distance(cut[i], cut[j]));
+				most = tap_max(most, distance(cut[i], cut[j]));
 	}
 	return most;
 }

@@ -30,7 +30,7 @@ static double difference(const network_real *a, const network_real *b)
 	double worst = 0;
 
 	for (int i = 0; i < 2 * CNN_POINTS; i++)
-		worst = fmax(worst, fabs((double)a[i] - b[i]));
+		worst = tap_max(worst, fabs((double)a[i] - b[i]));
 	return worst;
 }
 
@@ -121,8 +121,8 @@ static void check_sections(void)
 				      pulse_value(PULSE_SINE, (t - p->delta) / T);
 			}
 			if (i % 2) {
-				worst = fmax(worst, fabs(s->y1[n] - y1));
-				worst = fmax(worst, fabs(s->y2[n] - y2));
+				worst = tap_max(worst, fabs(s->y1[n] - y1));
+				worst = tap_max(worst, fabs(s->y2[n] - y2));
 			} else {
 				squares += pow(s->y1[n] - y1, 2) + pow(s->y2[n] - y2, 2);
 				count += 2;
@@ -160,9 +160,9 @@ static void check_way_back(void)
 			3 * (size_t)s->sources * sizeof *target);
 		right = right && cnn_pulses(out, &f, 0, p) == s->sources;
 		for (int k = 0; k < s->sources; k++) {
-			worst = fmax(worst, fabs(p[k].t - s->pulse[k].t));
-			worst = fmax(worst, fabs(p[k].delta - s->pulse[k].delta));
-			worst = fmax(worst, fabs(p[k].a - s->pulse[k].a));
+			worst = tap_max(worst, fabs(p[k].t - s->pulse[k].t));
+			worst = tap_max(worst, fabs(p[k].delta - s->pulse[k].delta));
+			worst = tap_max(worst, fabs(p[k].a - s->pulse[k].a));
 		}
 	}
 	ok(right && worst < 1e-4, "targets give back the pulses to %.1g", worst);

@@ -53,7 +53,7 @@ static void hertz(int n, enum contact_solver solver, double e_peak, double e_app
 		double r2 = -2 * radius * h[i],
 		       hertz = p0 * sqrt(fmax(1 - r2 / (a * a), 0));
 
-		peak = fmax(peak, p[i]);
+		peak = tap_max(peak, p[i]);
 		if (r2 < a * a) {
 			sum += fabs(p[i] - hertz) / p0;
 			inside++;
@@ -99,10 +99,10 @@ static void westergaard(enum contact_solver solver)
 		memset(p, 0, N * sizeof *p);
 		contact_solve(c, h, CONTACT_PRESSURE, mean, p, NULL);
 		for (int i = 0; i < N; i++)
-			peak = fmax(peak, p[i]);
-		worst_area =
-			fmax(worst_area, fabs(contact_result(c)->area - 2 / M_PI * half));
-		worst_peak = fmax(worst_peak, fabs(peak * sin(half) / (2 * mean) - 1));
+			peak = tap_max(peak, p[i]);
+		worst_area = tap_max(
+			worst_area, fabs(contact_result(c)->area - 2 / M_PI * half));
+		worst_peak = tap_max(worst_peak, fabs(peak * sin(half) / (2 * mean) - 1));
 	}
 	/* Half a cell at each end of the contact, and one for the staircase. */
 	ok(worst_area <= 2.0 / N,
@@ -115,7 +115,7 @@ static void westergaard(enum contact_solver solver)
 	contact_solve(c, h, CONTACT_PRESSURE, 1.5 * M_PI, p, NULL);
 	worst_peak = 0;
 	for (int i = 0; i < N; i++)
-		worst_peak = fmax(worst_peak, fabs(p[i] / M_PI - 1.5 - h[i]));
+		worst_peak = tap_max(worst_peak, fabs(p[i] / M_PI - 1.5 - h[i]));
 	ok(worst_peak < 1e-4 && contact_result(c)->area == 1,
 		"full contact, %s: the error of the pressure is %.1e p*",
 		solver_name[solver], worst_peak);
@@ -141,7 +141,7 @@ static void wavy(enum contact_solver solver)
 
 		memset(p, 0, sizeof *p * N * N);
 		contact_solve(c, h, CONTACT_PRESSURE, mean, p, NULL);
-		worst = fmax(worst, fabs(contact_result(c)->area - reference[k][1]));
+		worst = tap_max(worst, fabs(contact_result(c)->area - reference[k][1]));
 	}
 	/* A ring of cells: perimeter / N is about 0.04 here, a part of it is on. */
 	ok(worst < 0.012, "wavy surface, %s: the error of the contact area is %.4f",
@@ -212,7 +212,7 @@ static void controls(enum contact_solver solver, enum contact_boundary boundary)
 	contact_solve(c, h, CONTACT_PRESSURE, 0.02, p, g);
 	approach = contact_result(c)->approach;
 	for (int i = 0; i < CELLS; i++)
-		worst = fmax(worst, fabs(p[i] * g[i]) / 0.02);
+		worst = tap_max(worst, fabs(p[i] * g[i]) / 0.02);
 	ok(worst < 1e-6, "%s, %s: pressure times gap is 0 to %.1e", solver_name[solver],
 		name, worst);
 	status = contact_solve(c, h, CONTACT_APPROACH, approach, q, g);
@@ -235,8 +235,8 @@ static void controls(enum contact_solver solver, enum contact_boundary boundary)
 	memset(q, 0, CELLS * sizeof *q);
 	status = contact_solve(c, h, CONTACT_PRESSURE, 0.02, q, g);
 	for (int i = 0; i < CELLS; i++) {
-		peak = fmax(peak, q[i]);
-		overlap = fmax(overlap, q[i] < 0.1 ? -g[i] : 0);
+		peak = tap_max(peak, q[i]);
+		overlap = tap_max(overlap, q[i] < 0.1 ? -g[i] : 0);
 	}
 	ok(status == CONTACT_OK && peak == 0.1 && contact_result(c)->plastic > 0,
 		"%s %s: %.0f %% of the cells stop at the hardness", solver_name[solver],

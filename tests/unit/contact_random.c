@@ -86,7 +86,7 @@ static void solve_one(int k, struct outcome *o)
 			o->compared++;
 			/* Full periodic contact of equal heights has no energy at all. */
 			if (contact_result(c)->energy > 1e-12 * mean * amplitude)
-				o->worst = fmax(o->worst, difference);
+				o->worst = tap_max(o->worst, difference);
 		}
 		contact_free(c);
 	}

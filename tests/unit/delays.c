@@ -43,9 +43,9 @@ static void check_orders(void)
 		}
 		delayscore_add(&score, &par, 1, 4, a, b);
 		delayscore_finish(&score);
-		worst = fmax(worst, fabs(score.unordered - try_orders(a, b)));
-		worst = fmax(worst, fabs(delayloss_unordered(NULL, 1, 4, a, b, slope) -
-					    try_orders(a, b)));
+		worst = tap_max(worst, fabs(score.unordered - try_orders(a, b)));
+		worst = tap_max(worst, fabs(delayloss_unordered(NULL, 1, 4, a, b, slope) -
+					       try_orders(a, b)));
 	}
 	ok(worst < 1e-15,
 		"loss (3-21) by sorting equals the least over all orders to %.1g", worst);
@@ -152,8 +152,8 @@ static void check_shift(void)
 		if (m[0] < 0.5)
 			continue;
 		moved++;
-		worst = fmax(worst, fabs(c[1] / m[1] - c[0] / m[0] - 100 * delay[0]));
-		worst = fmax(worst, 20 * fabs(m[1] / m[0] - 0.909));
+		worst = tap_max(worst, fabs(c[1] / m[1] - c[0] / m[0] - 100 * delay[0]));
+		worst = tap_max(worst, 20 * fabs(m[1] / m[0] - 0.909));
 	}
 	ok(moved > 10 && worst < 0.02,
 		"the second channel is 0.909 of the first and later by "
@@ -177,7 +177,7 @@ static void check_orders_of_labels(void)
 		par.order = DELAYDATA_ARRIVAL;
 		delaydata_sample(&par, i, y, arrival);
 		for (int k = 0; k < 1000; k++)
-			sum = fmax(sum, fabs((double)x[k] - y[k]));
+			sum = tap_max(sum, fabs((double)x[k] - y[k]));
 		same = same && sum < 1e-6;
 		rising = rising && sorted[0] <= sorted[1] && sorted[1] <= sorted[2];
 		differs += memcmp(drawn, arrival, sizeof drawn) != 0;

@@ -92,7 +92,7 @@ static void test_kalman(enum resampling scheme, double share, const char *name)
 		b = particles(&w, &par, 0, &log_got);
 		best += a * a;
 		got += b * b;
-		worst = fmax(worst, fabs(log_got - log_best));
+		worst = tap_max(worst, fabs(log_got - log_best));
 	}
 	ok(fabs(sqrt(got / best) - 1) < 0.02,
 		"%s: the mean is within %.4f of the Kalman filter's error", name,
@@ -131,7 +131,7 @@ static void test_resampling(enum resampling scheme, const char *name)
 	for (int i = 0; i < N; i++) {
 		double want = N * weight[i] / sum;
 
-		worst = fmax(worst, fabs(count[i] / DRAWS - want));
+		worst = tap_max(worst, fabs(count[i] / DRAWS - want));
 	}
 	draw_free(d);
 	ok(rising, "%s: the ancestors ascend", name);

@@ -85,8 +85,8 @@ static void test_long(void)
 		rows++;
 		g = fit(x + k - p, p);
 		worst[p > 60] =
-			fmax(worst[p > 60], fabs(grey_forecast(&g, 1, 1) / want - 1));
-		worst_b = fmax(worst_b, fabs(grey_control(&g) / b - 1));
+			tap_max(worst[p > 60], fabs(grey_forecast(&g, 1, 1) / want - 1));
+		worst_b = tap_max(worst_b, fabs(grey_control(&g) / b - 1));
 	}
 	fclose(f);
 	free(x);

@@ -130,7 +130,7 @@ static double hardness_gap(
 		sum += p[i];
 		work += p[i] * g[i];
 		least = fmin(least, g[i]);
-		size = fmax(size, p[i] * (fabs(g[i]) + fabs(s->height[i])));
+		size = tap_max(size, p[i] * (fabs(g[i]) + fabs(s->height[i])));
 		g[i] -= s->height[i];
 		sorted[i] = g[i];
 	}
@@ -177,7 +177,7 @@ static void hardness_solve(int k, enum hardness_set set, enum contact_solver sol
 			s.mean / s.par.hardness * s.par.nx * s.par.ny,
 			contact_result(c)->optimality_gap, contact_result(c)->iterations,
 			gap);
-	o->worst = fmax(o->worst, gap);
+	o->worst = tap_max(o->worst, gap);
 	if (contact_result(c)->iterations > o->most)
 		o->most = contact_result(c)->iterations;
 	contact_free(c);

@@ -51,9 +51,9 @@ static void test_clean(struct joint *j, const struct joint_scene *s)
 	if (!ok(m == 3, "three pulses are found"))
 		return;
 	for (int i = 0; i < 3; i++) {
-		worst_t = fmax(worst_t, fabs(found[i].t - truth[i].t));
-		worst_delta = fmax(worst_delta, fabs(found[i].delta - truth[i].delta));
-		worst_a = fmax(worst_a, fabs(found[i].a / truth[i].a - 1));
+		worst_t = tap_max(worst_t, fabs(found[i].t - truth[i].t));
+		worst_delta = tap_max(worst_delta, fabs(found[i].delta - truth[i].delta));
+		worst_a = tap_max(worst_a, fabs(found[i].a / truth[i].a - 1));
 	}
 	/* Chi-square stops falling at 1e-4 of sigma^2: a hundredth of the bounds. */
 	near(worst_t, 0, 1e-4, "the arrivals are exact");
@@ -64,7 +64,7 @@ static void test_clean(struct joint *j, const struct joint_scene *s)
 		joint_add(s, &truth[i], -1, y[0], y[1], N);
 	worst_t = 0;
 	for (int i = 0; i < N; i++)
-		worst_t = fmax(worst_t, fabs(y[0][i]) + fabs(y[1][i]));
+		worst_t = tap_max(worst_t, fabs(y[0][i]) + fabs(y[1][i]));
 	near(worst_t, 0, 1e-12 * 1300, "joint_add subtracts what it added");
 }
 

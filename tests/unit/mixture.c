@@ -77,7 +77,7 @@ static void try_mixture(int voices, const double *a, const double *delta, double
 
 		for (int k = 0; k < count; k++)
 			sum += y[k * N + i];
-		worst = fmax(worst, fabs(sum - x[2 * i]));
+		worst = tap_max(worst, fabs(sum - x[2 * i]));
 		energy += sum * sum;
 		whole += x[2 * i] * x[2 * i];
 	}

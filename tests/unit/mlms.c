@@ -39,8 +39,8 @@ static double worst_error(
 		for (size_t j = 0; j < nx * ny; j++)
 			sum += x[j] *
 			       k[apart(i / nx, j / nx) * nx + apart(i % nx, j % nx)];
-		worst = fmax(worst, fabs(sum - y[i]));
-		size = fmax(size, fabs(sum));
+		worst = tap_max(worst, fabs(sum - y[i]));
+		size = tap_max(size, fabs(sum));
 	}
 	mlms_free(m);
 	fft_free(x);

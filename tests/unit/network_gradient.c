@@ -68,8 +68,8 @@ static void check(const struct scene *s)
 		weight[w] = keep - h;
 		down = value(net, s, x, target, &par, scratch);
 		weight[w] = keep;
-		worst = fmax(worst, fabs((up - down) / (2 * h) - slope[w]));
-		largest = fmax(largest, fabs(slope[w]));
+		worst = tap_max(worst, fabs((up - down) / (2 * h) - slope[w]));
+		largest = tap_max(largest, fabs(slope[w]));
 	}
 	ok(largest > 1e-4 && worst < 2e-8 * fmax(largest, 1),
 		"%s: %zu derivatives agree with differences, largest %.2g, worst error %.1g",
@@ -103,7 +103,7 @@ static void check_arrivals(void)
 		down = cnndata_loss(
 			NULL, CNN_SOURCES, CNN_OUTPUTS, output, target, scratch);
 		output[i] = keep;
-		worst = fmax(worst,
+		worst = tap_max(worst,
 			fabs((up - down) / (2 * h) - slope[i]) / fmax(fabs(slope[i]), 1));
 	}
 	ok(worst < 1e-7,

@@ -157,7 +157,7 @@ static void test_fft(size_t nx, size_t ny)
 		"a Fourier coefficient is that of the definition");
 	fft_inverse(fft, s, y);
 	for (size_t i = 0; i < n; i++)
-		worst = fmax(worst, fabs(y[i] / (double)n - x[i]));
+		worst = tap_max(worst, fabs(y[i] / (double)n - x[i]));
 	near(worst, 0, 1e-14, "forward and inverse transform give the data back");
 	fft_free(x);
 	fft_free(y);

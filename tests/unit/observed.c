@@ -57,7 +57,7 @@ static void check_grey(const char *what, double level, double unit)
 			       : rate > 0 ? log(3 / now) / rate * spacing
 					  : INFINITY;
 			if (want != observed_grey(o, 3 * level))
-				worst = fmax(worst,
+				worst = tap_max(worst,
 					fabs(observed_grey(o, 3 * level) / want - 1));
 		}
 	}

@@ -260,9 +260,9 @@ static void test_pose(void)
 		q = p;
 		q.cubes = 1;
 		there = measured_bar(40, 40, q);
-		off = fmax(off, acos(cos(there.dip) * cos(p.dip) *
-						cos(there.azimuth - p.azimuth) +
-					sin(there.dip) * sin(fabs(p.dip))));
+		off = tap_max(off, acos(cos(there.dip) * cos(p.dip) *
+						   cos(there.azimuth - p.azimuth) +
+					   sin(there.dip) * sin(fabs(p.dip))));
 		q = p;
 		q.azimuth = -p.azimuth;
 		there = measured_bar(40, 40, q);
@@ -561,7 +561,7 @@ static void test_map(void)
 		n = find(ps, map, NX, NY, 1, 1, &p);
 		for (size_t i = 0; i < n; i++) {
 			nodes += p[i].volume;
-			largest = fmax(largest, p[i].volume);
+			largest = tap_max(largest, p[i].volume);
 		}
 		ok(n == want && n > 100,
 			"contact map: %zu patches are found, want %zu%s%s", n, want,

@@ -29,7 +29,7 @@ static void check_gamma(double left, double mean, double variance)
 		double f = gsl_cdf_gamma_Q(
 			left, x[i] * mean * mean / variance, variance / mean);
 
-		worst = fmax(
+		worst = tap_max(
 			worst, fmax(fabs(f - (double)i / N), fabs(f - (i + 1.) / N)));
 	}
 	/* 1.95 / sqrt(N) is exceeded once in 1000. */

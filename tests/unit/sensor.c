@@ -29,10 +29,11 @@ static void test_shape(enum pulse_shape shape)
 		double d =
 			(pulse_value(shape, s + h) - pulse_value(shape, s - h)) / (2 * h);
 
-		top = fmax(top, p);
-		odd = fmax(odd, fabs(p + pulse_value(shape, -s)));
+		top = tap_max(top, p);
+		odd = tap_max(odd, fabs(p + pulse_value(shape, -s)));
 		if (fabs(fabs(s) - pulse_reach(shape)) > 2 * h)
-			worst_slope = fmax(worst_slope, fabs(d - pulse_slope(shape, s)));
+			worst_slope =
+				tap_max(worst_slope, fabs(d - pulse_slope(shape, s)));
 	}
 	near(top, 1, 1e-8, "the peak is 1");
 	ok(odd == 0, "%s: the pulse is odd in time", name[shape]);
@@ -56,9 +57,9 @@ static void test_sample(enum pulse_shape shape, double t0, double T)
 	for (size_t i = 0; i < n; i++) {
 		double s = ((double)(first + (long)i) - t0) / T;
 
-		worst = fmax(worst, fabs(p[i] - pulse_value(shape, s)));
-		worst_t = fmax(worst_t, fabs(by_t0[i] * T + pulse_slope(shape, s)));
-		worst_T = fmax(worst_T, fabs(by_T[i] * T + s * pulse_slope(shape, s)));
+		worst = tap_max(worst, fabs(p[i] - pulse_value(shape, s)));
+		worst_t = tap_max(worst_t, fabs(by_t0[i] * T + pulse_slope(shape, s)));
+		worst_T = tap_max(worst_T, fabs(by_T[i] * T + s * pulse_slope(shape, s)));
 	}
 	ok(worst < 1e-14 && worst_t < 1e-13 && worst_T < 1e-13,
 		"%s: sampled values and derivatives at t0 = %g, T = %g are right (%.1g %.1g %.1g)",
@@ -82,7 +83,7 @@ static void test_equation(enum pulse_shape shape)
 			(path(shape, x + h, &c) - path(shape, x - h, &c)) / (2 * h);
 		double u = gain * slope / (l * l * l);
 
-		worst = fmax(worst, fabs(u / peak - pulse_value(shape, x / c.length)));
+		worst = tap_max(worst, fabs(u / peak - pulse_value(shape, x / c.length)));
 	}
 	ok(worst < 1e-6, "%s: the pulse is (3-1) with the stated l(x) (%.1g)",
 		name[shape], worst);
@@ -129,10 +130,10 @@ static void test_pipe(enum pipe_profile profile, double top)
 			(pipe_flow_share(&pipe, r + h) - pipe_flow_share(&pipe, r - h)) /
 			(2 * h);
 
-		worst = fmax(worst,
+		worst = tap_max(worst,
 			fabs(pipe_flow_share(&pipe, r) / pipe_flow_share(&pipe, 0.00495) -
 				u));
-		worst = fmax(worst,
+		worst = tap_max(worst,
 			fabs(slope * 1e-3 / (2 * M_PI * r * pipe_velocity(&pipe, r)) -
 				1) *
 				1e-6);

@@ -32,17 +32,17 @@ static void test_shape(enum pulse_shape pulse, const char *name)
 	shape_sample(s, t0, T, 0, 300, p, by_t, by_T);
 	for (int i = 0; i < 300; i++)
 		if (fabs(i - t0) < end)
-			worst = fmax(
+			worst = tap_max(
 				worst, fabs(p[i] - pulse_value(pulse, (i - t0) / T)));
 	near(worst, 0, 2e-7, name);
 	shape_sample(s, t0 + h, T, 0, 300, up, NULL, NULL);
 	for (int i = 0; i < 300; i++)
 		if (fabs(i - t0) < end)
-			worst_t = fmax(worst_t, fabs((up[i] - p[i]) / h - by_t[i]));
+			worst_t = tap_max(worst_t, fabs((up[i] - p[i]) / h - by_t[i]));
 	shape_sample(s, t0, T + h, 0, 300, up, NULL, NULL);
 	for (int i = 0; i < 300; i++)
 		if (fabs(i - t0) < end)
-			worst_T = fmax(worst_T, fabs((up[i] - p[i]) / h - by_T[i]));
+			worst_T = tap_max(worst_T, fabs((up[i] - p[i]) / h - by_T[i]));
 	/* Difference quotients: curvature h / 2 (2 pi / T)^2 and rounding 1e-16 / h. */
 	near(worst_t, 0, 2e-6, "the derivative of a pulse by its arrival is right");
 	near(worst_T, 0, 2e-6, "the derivative of a pulse by its duration is right");
@@ -61,7 +61,7 @@ static void test_stft(void)
 	stft_forward(s, x, n, y);
 	stft_inverse(s, y, n, back);
 	for (size_t i = 0; i < n; i++)
-		worst = fmax(worst, fabs(back[i] - x[i]));
+		worst = tap_max(worst, fabs(back[i] - x[i]));
 	near(worst, 0, 1e-13, "the STFT and its inverse give the signal back");
 	ok(!stft_new(63, 32) && !stft_new(64, 65), "odd windows and gaps are refused");
 	free(y);
@@ -141,7 +141,7 @@ static void test_tones(void)
 	ok(tones_fit(x, N, 0, 2, w, c, NULL, NULL) == TONES_OK, "the tones are fitted");
 	tones_remove(x, N, 0, 2, w, 0, c, N, c);
 	for (int i = 0; i < N; i++)
-		worst = fmax(worst, fabs(x[i] - (i >= 1000 && i < 1400 ? 3 : 0)));
+		worst = tap_max(worst, fabs(x[i] - (i >= 1000 && i < 1400 ? 3 : 0)));
 	near(worst, 0, 1e-9, "a robust fit does not see outliers");
 	for (int i = 0; i < N; i++) /* a pulse every 250 samples: lines without a tone */
 		y1[i] = (i % 250 < 50 ? sin(2 * acos(-1) * (i % 250) / 50) : 0) +
@@ -177,9 +177,9 @@ static void test_tone_values(void)
 				double p = coarse * (start[k] + i),
 				       q = fine * (start[k] + i);
 
-				worst = fmax(worst,
+				worst = tap_max(worst,
 					fabs(x[i] + cos(p) * cos(q) - sin(p) * sin(q)));
-				worst = fmax(worst,
+				worst = tap_max(worst,
 					fabs(y[i] + sin(p) * cos(q) + cos(p) * sin(q)));
 			}
 		}

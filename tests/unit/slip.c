@@ -94,7 +94,7 @@ static void cattaneo(int n, double part, double e_shear, double e_stick, double 
 	for (size_t i = 0; i < b.cells; i++) {
 		double r2 = -2 * b.radius * b.h[i];
 
-		over = fmax(over, b.q[i] / (mu * p0) - b.p[i] / p0);
+		over = tap_max(over, b.q[i] / (mu * p0) - b.p[i] / p0);
 		if (r2 >= b.a * b.a)
 			continue;
 		sum += fabs(b.q[i] / (mu * p0) -
@@ -219,7 +219,7 @@ static void unloading(void)
 		"the unloading stiffness is 2 E* a, as of any round contact");
 	contact_solve(b.c, low, CONTACT_PRESSURE, load / (9 * b.a * b.a), b.p, NULL);
 	for (size_t i = 0; i < b.cells; i++)
-		change = fmax(change, fabs(b.p[i] - full[i]));
+		change = tap_max(change, fabs(b.p[i] - full[i]));
 	near(change / hardness, 0, 1e-8, "reloading gives the same pressure");
 	ball_free(&b);
 	fft_free(gap);

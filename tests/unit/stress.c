@@ -70,7 +70,7 @@ static double hertz_error(int n, double mu, double *surface)
 		if (k == 0)
 			*surface = m[(size_t)n * (size_t)n / 2];
 		if (k >= 10)
-			error = fmax(error, e);
+			error = tap_max(error, e);
 	}
 	stress_free(s);
 	free(span);
@@ -163,7 +163,7 @@ static double surface_error(int cells, double mu, double within, int solved)
 		double x = (i % n + 0.5 - 0.5 * n) * h, y = (i / n + 0.5 - 0.5 * n) * h;
 
 		if (x * x + y * y < within * within)
-			error = fmax(error, fabs(m[i] - surface_mises(x, y, 0.3, mu)));
+			error = tap_max(error, fabs(m[i] - surface_mises(x, y, 0.3, mu)));
 	}
 	stress_free(s);
 	free(span);
@@ -255,7 +255,7 @@ static double coarse_error(
 			   0.5 * cos(13 * x + 11 * y + 2) + 0.3 * cos(21 * x - 17 * y);
 
 		p[i] = fmax(0, h - share);
-		most = fmax(most, p[i]);
+		most = tap_max(most, p[i]);
 	}
 	stress_load(s, p);
 	stress_load(full, p);
@@ -265,7 +265,7 @@ static double coarse_error(
 		stress_at(s, depth[k] * side, span, rows, a);
 		stress_at(full, depth[k] * side, span, rows, b);
 		for (size_t i = 0; i < n; i++)
-			error = fmax(error, fabs(a[i] - b[i]) / most);
+			error = tap_max(error, fabs(a[i] - b[i]) / most);
 	}
 	stress_free(s);
 	stress_free(full);
@@ -327,13 +327,13 @@ static void test_criteria(void)
 			norm += p[i] * p[i];
 		norm = sqrt(norm);
 		a = p[0] - p[1], b = p[1] - p[2], c = p[2] - p[0];
-		mises = fmax(mises, fabs(stress_von_mises_criterion.value(v) -
-					    sqrt((a * a + b * b + c * c) / 2)));
-		tresca = fmax(tresca, fabs(stress_tresca_criterion.value(v) + c));
-		over = fmax(over, stress_von_mises_criterion.value(v) /
-					  (stress_von_mises_criterion.norm * norm));
-		over = fmax(over, stress_tresca_criterion.value(v) /
-					  (stress_tresca_criterion.norm * norm));
+		mises = tap_max(mises, fabs(stress_von_mises_criterion.value(v) -
+					       sqrt((a * a + b * b + c * c) / 2)));
+		tresca = tap_max(tresca, fabs(stress_tresca_criterion.value(v) + c));
+		over = tap_max(over, stress_von_mises_criterion.value(v) /
+					     (stress_von_mises_criterion.norm * norm));
+		over = tap_max(over, stress_tresca_criterion.value(v) /
+					     (stress_tresca_criterion.norm * norm));
 	}
 	near(mises, 0, 1e-14,
 		"von Mises' stress follows from the three differences of principal stresses");
@@ -365,15 +365,15 @@ static void test_element(void)
 				for (int c = 0; c < 6; c++)
 					sum[c] += w * (n[c] + 0.4 * s[c]);
 			}
-		error = fmax(error,
+		error = tap_max(error,
 			fabs(influence_image(&par, &f, DEV_XY, 0, 0) - sum[STRESS_XY]));
-		error = fmax(error,
+		error = tap_max(error,
 			fabs(influence_image(&par, &f, DEV_XZ, 0, 0) - sum[STRESS_XZ]));
-		error = fmax(error, fabs(influence_image(&par, &f, DEV_X, 0, 0) -
-					    (sum[STRESS_XX] - sum[STRESS_ZZ])));
+		error = tap_max(error, fabs(influence_image(&par, &f, DEV_X, 0, 0) -
+					       (sum[STRESS_XX] - sum[STRESS_ZZ])));
 		g = influence_element(&par, 40 + x, y, 30);
 		f = influence_point(&par, 40 + x, y, 30);
-		far = fmax(far, fabs(g.shear[DEV_X] / f.shear[DEV_X] - 1));
+		far = tap_max(far, fabs(g.shear[DEV_X] / f.shear[DEV_X] - 1));
 	}
 	/* Parts of 1/60 of the side replace slopes by steps. */
 	ok(error < 3e-4,
@@ -440,9 +440,10 @@ static void test_periodic(void)
 		double c = cos(q * (i % SIDE)), e = exp(-q * z), n = SIDE * SIDE;
 
 		/* Plane strain (Johnson, Contact Mechanics, 13.1) on a confined mean. */
-		error = fmax(error, fabs(t[i] - (-0.3 / 0.7 - (1 - q * z) * e * c)));
-		error = fmax(error, fabs(t[(int)n + i] - (-0.3 / 0.7 - 0.6 * e * c)));
-		error = fmax(error, fabs(t[2 * (int)n + i] - (-1 - (1 + q * z) * e * c)));
+		error = tap_max(error, fabs(t[i] - (-0.3 / 0.7 - (1 - q * z) * e * c)));
+		error = tap_max(error, fabs(t[(int)n + i] - (-0.3 / 0.7 - 0.6 * e * c)));
+		error = tap_max(
+			error, fabs(t[2 * (int)n + i] - (-1 - (1 + q * z) * e * c)));
 	}
 	near(error, 0, 1e-14, "the stress of a periodic wave of pressure is right");
 	stress_free(s);
@@ -475,8 +476,8 @@ static void test_periodic_free(double mu, int axis)
 		for (int k = -6; k <= 6; k++) {
 			size_t at = (size_t)c * n + (size_t)(MID + k) * SIDE + MID + 4;
 
-			error = fmax(error, fabs(a[at] - b[at]));
-			most = fmax(most, fabs(a[at]));
+			error = tap_max(error, fabs(a[at] - b[at]));
+			most = tap_max(most, fabs(a[at]));
 		}
 	/* The images' mean pressure is 100 / 128^2 = 0.006 of the peak; cells against
 	 * points are 1/100 of it apart. */

@@ -12,7 +12,7 @@ static double worst(const double *a, const double *b)
 	double e = 0;
 
 	for (int c = 0; c < N; c++)
-		e = fmax(e, fabs(a[c] - b[c]));
+		e = tap_max(e, fabs(a[c] - b[c]));
 	return e;
 }
 
@@ -37,8 +37,8 @@ static void check_table(const char *path, int sheared)
 		for (int k = 0; k < 13; k++)
 			v[k] = strtod(at, &at);
 		stress_patch(v[0], v[1], v[2], v[3], v[4], v[5], n, s);
-		error = fmax(error, worst(sheared ? s : n, v + 6));
-		mises = fmax(mises, fabs(stress_von_mises(sheared ? s : n) - v[12]));
+		error = tap_max(error, worst(sheared ? s : n, v + 6));
+		mises = tap_max(mises, fabs(stress_von_mises(sheared ? s : n) - v[12]));
 		rows++;
 	}
 	fclose(f);
@@ -73,9 +73,9 @@ static void check_equilibrium(void)
 	for (int row = 0; row < 3; row++)
 		for (int sheared = 0; sheared < 2; sheared++)
 			for (int k = 0; k < 20; k++)
-				most = fmax(most, fabs(divergence(row, 1.1 * cos(k),
-							  0.9 * sin(3 * k),
-							  0.2 + 0.05 * k, sheared)));
+				most = tap_max(most, fabs(divergence(row, 1.1 * cos(k),
+							     0.9 * sin(3 * k),
+							     0.2 + 0.05 * k, sheared)));
 	near(most, 0, 1e-8, "the stress is in equilibrium (divergence by differences)");
 }
 

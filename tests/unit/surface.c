@@ -113,7 +113,7 @@ static void check_fill(void)
 		"a hole is filled");
 	for (int iy = 0; iy < NY; iy++)
 		for (int ix = 0; ix < NX; ix++)
-			worst = fmax(
+			worst = tap_max(
 				worst, fabs(z[iy * NX + ix] -
 					       (1 + ix * ix - iy * iy + 0.5 * ix * iy)));
 	near(worst, 0, 1e-9, "filling restores a discrete harmonic function");
@@ -142,7 +142,7 @@ static double cubic_error(int n)
 		z[i] = sin(2 * (i + 0.5) / n);
 	surface_resample(n, 1, z, TIMES * n, 1, f);
 	for (int i = 0; i < TIMES * n; i++)
-		worst = fmax(worst, fabs(f[i] - sin(2 * (i + 0.5) / (TIMES * n))));
+		worst = tap_max(worst, fabs(f[i] - sin(2 * (i + 0.5) / (TIMES * n))));
 	free(z);
 	free(f);
 	return worst;
@@ -159,9 +159,9 @@ static void check_resample(void)
 	surface_resample(NX, NY, z, 3 * NX, 2 * NY, fine);
 	for (int iy = 0; iy < 2 * NY; iy++)
 		for (int ix = 0; ix < 3 * NX; ix++)
-			worst = fmax(worst, fabs(fine[iy * 3 * NX + ix] -
-						    (2 + 0.25 * (ix + 0.5) / 3 -
-							    0.5 * (iy + 0.5) / 2)));
+			worst = tap_max(worst, fabs(fine[iy * 3 * NX + ix] -
+						       (2 + 0.25 * (ix + 0.5) / 3 -
+							       0.5 * (iy + 0.5) / 2)));
 	near(worst, 0, 1e-14, "refining keeps a plane up to the rim");
 	surface_resample(NX, NY, z, 4, 5, coarse);
 	near(coarse[4 * 2 + 1], 2 + 0.25 * 4.5 - 0.5 * 5, 1e-14,

@@ -71,14 +71,14 @@ static void check_areal(void)
 		z[i] = 3 + 0.2 * (i % NX) - 0.1 * (i / NX) + 0.01 * (i % NX) * (i / NX);
 	surface_gauss(NX, NY, 1, 2, z, 12, FILTER_LINE, out);
 	for (int i = 0; i < NX * NY; i++)
-		worst = fmax(worst, fabs(out[i] - z[i]));
+		worst = tap_max(worst, fabs(out[i] - z[i]));
 	ok(worst < 1e-11, "order 1 keeps a twisted plane to %.1e", worst);
 	for (int i = 0; i < NX * NY; i++)
 		z[i] = 1e-4 * pow(i % NX, 2) * pow(i / NX, 2);
 	surface_gauss(NX, NY, 1, 2, z, 12, FILTER_PARABOLA, out);
 	worst = 0;
 	for (int i = 0; i < NX * NY; i++)
-		worst = fmax(worst, fabs(out[i] - z[i]));
+		worst = tap_max(worst, fabs(out[i] - z[i]));
 	ok(worst < 1e-9, "order 2 keeps x^2 y^2 to %.1e", worst);
 	for (int i = 0; i < NX * NY; i++)
 		z[i] = i == 17 * NX + 2;
@@ -106,7 +106,7 @@ static void check_form(void)
 	memcpy(out, z, sizeof out);
 	surface_form(NX, NY, 1e-5, 2e-5, FORM_POLY2, z);
 	for (int i = 0; i < NX * NY; i++)
-		worst = fmax(worst, fabs(z[i]));
+		worst = tap_max(worst, fabs(z[i]));
 	ok(worst < 1e-18, "a quadratic form is removed completely: %.1e m is left",
 		worst);
 	/* without x y, whose part along the others is that of the plane alone */
@@ -115,7 +115,7 @@ static void check_form(void)
 	surface_form(NX, NY, 1e-5, 2e-5, FORM_PARABOLOID, z);
 	worst = 0;
 	for (int i = 0; i < NX * NY; i++)
-		worst = fmax(worst, fabs(z[i]));
+		worst = tap_max(worst, fabs(z[i]));
 	ok(worst < 1e-18, "a paraboloid of revolution is removed completely: %.1e m",
 		worst);
 	for (int i = 0; i < NX * NY; i++)
@@ -125,7 +125,7 @@ static void check_form(void)
 	surface_level(NX, NY, left);
 	worst = 0;
 	for (int i = 0; i < NX * NY; i++)
-		worst = fmax(worst, fabs(z[i] - left[i]));
+		worst = tap_max(worst, fabs(z[i] - left[i]));
 	ok(worst < 1e-14, "the plane is that of levelling: %.1e", worst);
 	sq = surface_sq(NX, NY, z);
 	for (enum form f = FORM_PARABOLOID; f <= FORM_POLY6; f++) {

@@ -27,7 +27,7 @@ static void check(const double m[6], double *equation, double *normal, int *bad)
 
 			for (int c = 0; c < 3; c++)
 				sum += a[r][c] * v[i][c];
-			*equation = fmax(*equation, fabs(sum) / scale);
+			*equation = tap_max(*equation, fabs(sum) / scale);
 			most = fabs(v[i][r]) > fabs(most) ? v[i][r] : most;
 		}
 		*bad += !(most > 0);
@@ -36,7 +36,7 @@ static void check(const double m[6], double *equation, double *normal, int *bad)
 
 			for (int c = 0; c < 3; c++)
 				dot += v[i][c] * v[j][c];
-			*normal = fmax(*normal, fabs(dot));
+			*normal = tap_max(*normal, fabs(dot));
 		}
 	}
 }

@@ -41,6 +41,12 @@ static inline int tap_near(const char *file, int line, double got, double want,
 	return good;
 }
 
+/* The larger of the two; nan if one is nan, which fmax() ignores. */
+static inline double tap_max(double a, double b)
+{
+	return a >= b || isnan(a) ? a : b;
+}
+
 /* Last call of main: return tap_done(); */
 static inline int tap_done(void)
 {

@@ -55,9 +55,9 @@ static void test_gain(const struct whitening *w, const double *h, size_t taps)
 
 		/* Edges are at most 0.2 of low and 0.25 of high wide. */
 		if (f >= 1.3 * w->low && f <= w->high)
-			inside = fmax(inside, fabs(gain - 1));
+			inside = tap_max(inside, fabs(gain - 1));
 		else if (f < 0.75 * w->low || f > 1.3 * w->high)
-			outside = fmax(outside, fabs(gain));
+			outside = tap_max(outside, fabs(gain));
 	}
 	ok(inside < 1e-3, "the gain is 1 from %.4f to %.4f (error %.1e)", w->low, w->high,
 		inside);
@@ -114,8 +114,8 @@ static void test_pulse(const struct whitening *w, const double *h, size_t taps)
 	whitening_apply(w, x, PULSE);
 	shape_sample(seen, 4096.3, 100, 0, PULSE, want, NULL, NULL);
 	for (int i = 0; i < PULSE; i++) {
-		worst = fmax(worst, fabs(x[i] - want[i]));
-		peak = fmax(peak, fabs(want[i]));
+		worst = tap_max(worst, fabs(x[i] - want[i]));
+		peak = tap_max(peak, fabs(want[i]));
 	}
 	/* The shape is cut at 2e-3, its taps at 2e-4. */
 	ok(worst < 2.2e-3 * peak,
@@ -261,8 +261,8 @@ static void test_colour(void)
 
 		mean += off / COLOUR_BINS;
 		squares += off * off / COLOUR_BINS;
-		worst = fmax(worst, fabs(off));
-		most = fmax(most, power[k]);
+		worst = tap_max(worst, fabs(off));
+		most = tap_max(most, power[k]);
 	}
 	/* Autocorrelations are whole up to lag 256 and fade to lag 512, of 2 N samples:
 	 * 2 (256 + 3/8 256) / (2 N).  513 bins of which two in three are independent: the

@@ -193,25 +193,35 @@ static void hand_down(struct sums *sums, const uint32_t *ancestor, size_t first,
 			ancestor[2 * i + 1 < n ? 2 * i + 1 : 2 * i] - first);
 }
 
-/* What the grey curve through these states makes of the interval h after the newest, span
+/* What the grey curve through count states makes of the interval h after the newest, span
  * after the oldest.  An exponential through states that cannot be told from 0 means
  * nothing: these stay at their mean. */
-static lanes forecast_pair(const struct sums *s, double n, double centre, double span,
-	double h, double noise)
+static void forecast_pairs(const struct sums *sums, int count, double centre, double span,
+	double h, double noise, size_t n, double *mean)
 {
-	lanes u = s->u / n, x = s->x / n, uu = s->uu - s->u * u, ux = s->ux - s->u * x,
-	      middle = centre + x;
-	lanes rate = lanes_if(uu > 0, -ux / lanes_pick(uu > 0, uu, lanes_all(1)));
+	double share = 1.0 / count;
 
-	return lanes_pick(lanes_abs(middle) > 3 * noise,
-		grey_curve_lanes(middle + rate * u, rate, span + h, h), middle);
+	for (size_t i = 0; i < n; i += 2) {
+		const struct sums *s = &sums[i / 2];
+		lanes u = s->u * share, x = s->x * share, uu = s->uu - s->u * u,
+		      ux = s->ux - s->u * x, middle = centre + x;
+		lanes rate = lanes_if(uu > 0, -ux / lanes_pick(uu > 0, uu, lanes_all(1)));
+
+		lanes_store(mean + i,
+			lanes_pick(lanes_abs(middle) > 3 * noise,
+				grey_curve_lanes(middle + rate * u, rate, span + h, h),
+				middle),
+			n - i < 2 ? 1 : 2);
+	}
 }
 
-/* The means of n <= BLOCK particles from first on. */
+/* The means of n <= BLOCK particles from first on.  Those of one ancestor have the same
+ * history, and one mean. */
 static void forecast_block(struct lag *lag, int count, double span, double h,
 	double noise, const uint32_t *index, size_t first, size_t n, double *mean)
 {
-	struct sums sums[BLOCK / 2] = { 0 };
+	struct sums sums[BLOCK / 2];
+	const uint32_t *parent = lag[0].ancestor;
 	double centre = lag[0].x[0];
 	size_t from = first, those = n;
 
@@ -225,6 +235,8 @@ static void forecast_block(struct lag *lag, int count, double span, double h,
 		lag[k].first = from;
 		lag[k].n = those;
 	}
+	for (size_t i = 0; i < those; i += 2)
+		sums[i / 2] = (struct sums){ 0 };
 	for (int end = count; end > 0;) {
 		int to = end - 1;
 
@@ -232,16 +244,16 @@ static void forecast_block(struct lag *lag, int count, double span, double h,
 			to--;
 		add_stretch(sums, lag + to, end - to, centre, index, lag[to].first,
 			lag[to].n);
-		if (lag[to].ancestor)
-			hand_down(sums,
-				lag[to].ancestor + (to > 0 ? lag[to - 1].first : first),
-				lag[to].first, to > 0 ? lag[to - 1].n : n);
+		if (to > 0)
+			hand_down(sums, lag[to].ancestor + lag[to - 1].first,
+				lag[to].first, lag[to - 1].n);
 		end = to;
 	}
-	for (size_t i = 0; i < n; i += 2)
-		lanes_store(mean + i,
-			forecast_pair(&sums[i / 2], count, centre, span, h, noise),
-			n - i < 2 ? 1 : 2);
+	forecast_pairs(sums, count, centre, span, h, noise, lag[0].n, mean);
+	/* in place: ancestors rise, from 0 in steps of 0 or 1, so that none lies after
+	 * its descendant */
+	for (size_t i = n; parent && i-- > 0;)
+		mean[i] = mean[parent[first + i] - lag[0].first];
 }
 
 /* The same for n particles, those in index where there is one.  Histories that have an

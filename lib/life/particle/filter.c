@@ -303,16 +303,16 @@ static double log_constant(const struct filter *f, double noise)
  * were.  Returns how many there are. */
 static size_t renumber(uint32_t *ancestor, size_t n, uint32_t *kept)
 {
-	size_t m = 0;
+	uint32_t last = ancestor[0], m = 0;
 
 	for (size_t i = 0; i < n; i++) {
 		uint32_t old = ancestor[i];
 
-		if (m == 0 || old != kept[m - 1])
-			kept[m++] = old;
-		ancestor[i] = (uint32_t)(m - 1);
+		m += old != last; /* no branch: it would be mispredicted */
+		kept[m] = last = old;
+		ancestor[i] = m;
 	}
-	return m;
+	return (size_t)m + 1;
 }
 
 /* Drops the states that have no descendants since the newest step was resampled. */
