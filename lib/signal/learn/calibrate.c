@@ -132,7 +132,7 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 
 	fewer.tones = 0;
 	for (int k = 0; k < c->tones; k++)
-		if (c->tone_power[k] > fmax(TAILS, c->tone_variance / STEADY))
+		if (c->tone_power[k] > fmax(TAILS, look->drift / STEADY))
 			fewer.omega[fewer.tones++] = c->omega[k];
 	if (fewer.tones == c->tones)
 		return CALIBRATE_OK;

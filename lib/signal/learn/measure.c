@@ -22,6 +22,9 @@ static const double NARROW = 0.5;
  * corrected rather than taken from the record. */
 static const double NEAR = 0.003;
 
+/* Samples between two fits of lines that hardly change. */
+enum { LONG_HOP = 4096 };
+
 /* The record while it is measured: aligned from some point on, then in units of the
  * noise. */
 struct record {
@@ -30,6 +33,7 @@ struct record {
 	double *work;                        /* as long */
 	double low;                          /* lag of the lowest autocorrelation */
 	double change[2], power2[TONES_MAX]; /* of tones, see take_tones() */
+	double drift;                        /* their change over LONG_HOP, channel 1 */
 };
 
 /* Takes tones (and the mean) from a whole record; *change receives the mean square change
@@ -224,7 +228,7 @@ static enum calibrate_status choose_hop(
 	enum { SHORTEST = 256, HOPS = 16 };
 	struct calibration trial = *c, *t = &trial;
 	double least = INFINITY, level[HOPS];
-	size_t longest = (size_t)fmax(4096, PERIODS * 2 * M_PI / c->omega[0]);
+	size_t longest = (size_t)fmax(LONG_HOP, PERIODS * 2 * M_PI / c->omega[0]);
 
 	if (longest > rec->n / 2)
 		longest = rec->n / 2;
@@ -268,8 +272,13 @@ static enum calibrate_status find_tones(
 				1 - calibration_lost(c), &c->tones, c->omega) != NUM_OK)
 			return CALIBRATE_MEMORY;
 	}
-	c->tone_hop = n < 8192 ? n : 4096;
-	if (c->tones > 0)
+	c->tone_hop = n < 2 * LONG_HOP ? n : LONG_HOP;
+	rec->drift = 0;
+	if (c->tones > 0) {
+		memcpy(rec->work, rec->y1, n * sizeof *rec->work);
+		status = take_tones(c, rec->work, n, &rec->drift, c->tone_power);
+	}
+	if (status == CALIBRATE_OK && c->tones > 0)
 		status = choose_hop(par, rec, c);
 	if (status == CALIBRATE_OK)
 		status = take_tones(c, rec->y1, n, &rec->change[0], c->tone_power);
@@ -548,6 +557,7 @@ enum calibrate_status measure(const struct calibrate_par *par, const double *raw
 	c->gain = isnan(par->gain) ? first_gain(&rec, c) : par->gain;
 	c->misfit = isinf(c->transit) ? UNKNOWN_MISFIT : 0;
 	normalise(&rec, c);
+	look->drift = rec.drift / (c->noise[0] * c->noise[0]);
 	if (!c->whitening.tap) {
 		status = look_for_colour(&rec, look);
 		c->suspect = look->coloured;

@@ -17,6 +17,8 @@ struct look {
 	enum whiten_kind kind; /* tried now */
 	int settled;           /* 1: for the last time */
 	double low;            /* lag of the lowest autocorrelation */
+	double drift;          /* mean square change of lines over some thousand samples,
+				  noise 1 */
 	double power[COLOUR_BINS];
 	int first;  /* 1: coloured noise is to be made white where no events are alike */
 	int events; /* that must be alike, as they were in another attempt */

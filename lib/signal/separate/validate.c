@@ -276,29 +276,34 @@ static void take_in(struct validation *v, const struct evidence *e, size_t n)
 	learn_parts(v);
 }
 
-/* Standard deviations that this number of delays does not reach. */
-static const double MANY = 3;
+/* Probability with which noise alone takes as many delays of a group to the limits. */
+static const double RARELY = 1e-4;
 
-/* Are more delays at a limit of the range than noise takes there? */
+/* Are more delays at a limit of the range than noise takes there?  Their number is taken
+ * for a Poisson one, which has the longer tail. */
 static int too_many_at_limit(
 	const struct validation *v, const struct evidence *e, size_t m)
 {
-	double count = 0, mean = 0, var = 0;
+	double mean = 0, term, tail = 1;
+	int count = 0;
 
 	if (!(v->half > 0) || isinf(v->var))
 		return 0;
 	for (size_t i = 0; i < m; i++) {
-		double sd = sqrt(v->var + e[i].var), off = v->mean - v->middle, p;
+		double sd = sqrt(v->var + e[i].var), off = v->mean - v->middle;
 
 		if (!(e[i].var > 0))
 			continue;
-		p = 0.5 * (erfc((v->half - off) / (M_SQRT2 * sd)) +
-				  erfc((v->half + off) / (M_SQRT2 * sd)));
-		mean += p;
-		var += p * (1 - p);
+		mean += 0.5 * (erfc((v->half - off) / (M_SQRT2 * sd)) +
+				      erfc((v->half + off) / (M_SQRT2 * sd)));
 		count += fabs(e[i].delay - v->middle) > (1 - 1e-6) * v->half;
 	}
-	return count > mean + MANY * sqrt(var);
+	term = exp(-mean);
+	for (int k = 0; k < count; k++) {
+		tail -= term;
+		term *= mean / (k + 1);
+	}
+	return tail < RARELY;
 }
 
 static void judge_group(const struct validation *v, struct evidence *e, size_t m)
