@@ -30,10 +30,10 @@ enum { LONG_HOP = 4096 };
 struct record {
 	double *y1, *y2;
 	size_t n;
-	double *work;                        /* as long */
-	double low;                          /* lag of the lowest autocorrelation */
-	double change[2], power2[TONES_MAX]; /* of tones, see take_tones() */
-	double drift;                        /* their change over LONG_HOP, channel 1 */
+	double *work;     /* as long */
+	double low;       /* lag of the lowest autocorrelation */
+	double change[2]; /* of tones, see take_tones() */
+	double drift;     /* the same over LONG_HOP, channel 1 */
 };
 
 /* Takes tones (and the mean) from a whole record; *change receives the mean square change
@@ -171,20 +171,26 @@ static enum calibrate_status look_for_colour(const struct record *rec, struct lo
 	return status == NUM_MEMORY ? CALIBRATE_MEMORY : CALIBRATE_OK;
 }
 
-/* Tones nearer to each other than gap become one, at their mean. */
+/* Share of its frequency by which a line may wander: ten times what mains do. */
+static const double WANDER = 0.02;
+
+/* Takes the tones from omega, those that wandering may have split into one; 0 if others
+ * are nearer to each other, or to zero, than gap. */
 static int merge_tones(int tones, const double *omega, double gap, double *merged)
 {
-	int count = 0;
+	int count = 0, near = tones > 0 && omega[0] < gap;
 
 	for (int k = 0, next; k < tones; k = next) {
 		double sum = omega[k];
 
-		for (next = k + 1; next < tones && omega[next] - omega[next - 1] < gap;
+		for (next = k + 1; next < tones && omega[next] - omega[next - 1] < gap &&
+				   omega[next] < (1 + WANDER) * omega[k];
 			next++)
 			sum += omega[next];
+		near |= next < tones && omega[next] - omega[next - 1] < gap;
 		merged[count++] = sum / (next - k);
 	}
-	return count;
+	return near ? 0 : count;
 }
 
 /* Level of the record without these tones, followed from hop to hop: the median, which
@@ -238,7 +244,7 @@ static enum calibrate_status choose_hop(
 		level[k] = INFINITY;
 		t->tone_hop = (size_t)SHORTEST << k;
 		t->tones = merge_tones(c->tones, c->omega, gap, t->omega);
-		if (t->tone_hop > longest || t->omega[0] < gap || par->tones > t->tones)
+		if (t->tone_hop > longest || t->tones == 0 || par->tones > t->tones)
 			continue;
 		if (level_without_tones(rec, t, &level[k]) == CALIBRATE_MEMORY)
 			return CALIBRATE_MEMORY;
@@ -260,6 +266,8 @@ static enum calibrate_status find_tones(
 {
 	enum { ENOUGH = 16384 };
 	size_t n = rec->n, some = n < ENOUGH ? n : ENOUGH, from = (n - some) / 2;
+	double power[TONES_MAX];
+	struct calibration t;
 	enum calibrate_status status = CALIBRATE_OK;
 
 	if (par->tones != CALIBRATE_FIND_TONES) {
@@ -275,16 +283,20 @@ static enum calibrate_status find_tones(
 	c->tone_hop = n < 2 * LONG_HOP ? n : LONG_HOP;
 	rec->drift = 0;
 	if (c->tones > 0) {
-		memcpy(rec->work, rec->y1, n * sizeof *rec->work);
-		status = take_tones(c, rec->work, n, &rec->drift, c->tone_power);
-	}
-	if (status == CALIBRATE_OK && c->tones > 0)
+		size_t hop = c->tone_hop;
+
 		status = choose_hop(par, rec, c);
+		if (status != CALIBRATE_OK)
+			return status;
+		memcpy(rec->work, rec->y1, n * sizeof *rec->work);
+		t = *c;
+		t.tone_hop = hop;
+		status = take_tones(&t, rec->work, n, &rec->drift, c->tone_power);
+	}
 	if (status == CALIBRATE_OK)
-		status = take_tones(c, rec->y1, n, &rec->change[0], c->tone_power);
-	return status == CALIBRATE_OK
-		       ? take_tones(c, rec->y2, n, &rec->change[1], rec->power2)
-		       : status;
+		status = take_tones(c, rec->y1, n, &rec->change[0], power);
+	return status == CALIBRATE_OK ? take_tones(c, rec->y2, n, &rec->change[1], power)
+				      : status;
 }
 
 static enum calibrate_status find_lag(
