@@ -1,5 +1,6 @@
 /* calibrate.c - see calibrate.h */
 #include "signal/learn/calibrate.h"
+#include "signal/learn/learn.h"
 #include "signal/learn/measure.h"
 #include <math.h>
 #include <stdlib.h>
@@ -101,15 +102,12 @@ static enum calibrate_status look_again(const struct calibrate_par *par, const d
 	return attempt_kind(par, x1, x2, n, found, look, c);
 }
 
-/* Chi-square per degree of freedom of clear pulses that asks for a second look. */
-static const double DOUBTFUL = 1.2;
-
 /* Is the noise white after all?  Where hardly anything is quiet, pulses stand for colour.
  * Then they fit as well as in white noise, or tolerably, and noise is white above their
  * band. */
 static int is_white(const struct calibration *c, const struct look *look)
 {
-	return c->chi2 < DOUBTFUL ||
+	return learn_describes(c) ||
 	       (c->chi2 < 4 && measure_white_above(look, c->duration));
 }
 
@@ -163,11 +161,10 @@ static enum calibrate_status lacks_low(
 	struct whitening w;
 	enum num_status status;
 	double left = 1;
-	int pulse;
 
 	if (whitening_of_noise(&w, look->power, COLOUR_BINS, WHITEN_FILTERED) != NUM_OK)
 		return CALIBRATE_MEMORY;
-	status = template_known(&white, w.seen, w.seen_half, &pulse, &left);
+	status = template_known(&white, w.seen, w.seen_half, &left);
 	*lacks = left <= KNOWN && w.low > 0;
 	whitening_clear(&w);
 	return status == NUM_OK ? CALIBRATE_OK : CALIBRATE_MEMORY;
@@ -188,13 +185,17 @@ static enum calibrate_status attempt_white(const struct calibrate_par *par,
 	if (status == CALIBRATE_MEMORY)
 		return status;
 	look->attempts = smooth.attempts;
-	if (status == CALIBRATE_OK && c->measured && c->chi2 < DOUBTFUL) {
+	if (status == CALIBRATE_OK && c->measured && learn_describes(c)) {
 		int lacks;
 
 		c->attempts = look->attempts;
 		status = lacks_low(look, c, &lacks);
-		if (status != CALIBRATE_OK || !lacks)
+		if (status == CALIBRATE_OK && !lacks)
 			return status;
+		if (status == CALIBRATE_MEMORY) {
+			calibration_clear(c);
+			return status;
+		}
 	}
 	calibration_clear(c);
 	return CALIBRATE_COLOURED;

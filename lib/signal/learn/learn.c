@@ -264,8 +264,10 @@ static int wants_correction(
 	       !(c->whitening.tap && c->suspect) && correct_doubtful(ex, c);
 }
 
-/* Chi-square per degree of freedom up to which a pulse describes its record. */
-static const double DESCRIBED = 1.2;
+int learn_describes(const struct calibration *c)
+{
+	return c->chi2 < 1.2;
+}
 
 /* By the pulse taken from the record, or else by those of sensor.h. */
 static enum calibrate_status learn_by(const struct calibrate_par *par, const double *y1,
@@ -312,7 +314,7 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, const double 
 		return learn_by(par, y1, y2, n, low, NULL, c);
 	known.shape = NULL;
 	status = learn_by(par, y1, y2, n, low, found, c);
-	if (status != CALIBRATE_OK || c->chi2 < DESCRIBED || found->alone)
+	if (status != CALIBRATE_OK || learn_describes(c) || found->alone)
 		return status;
 	status = learn_by(par, y1, y2, n, low, NULL, &known);
 	if (status == CALIBRATE_OK && known.price < c->price) {

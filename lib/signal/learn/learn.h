@@ -20,6 +20,10 @@ double learn_lowest_lag(const double *r, size_t max_lag);
 enum num_status learn_duration(int pulse, double low, double *duration);
 /* Gives c this pulse, as the whitened record has it at the present duration. */
 enum num_status learn_set_shape(struct calibration *c, int pulse);
+/* Does the pulse describe its record, by chi-square per degree of freedom of clear
+ * pulses?
+ */
+int learn_describes(const struct calibration *c);
 /* Fills shape, duration, gain, range of delays, chi2, price, rest and events of c from
  * y1, y2[0 .. n), aligned and in units of the noise; low: lag as above, of these; found:
  * the pulse taken from these, which is tried first, its shape NULL where there is none.

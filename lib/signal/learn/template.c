@@ -1,5 +1,6 @@
 /* template.c - see template.h */
 #include "signal/learn/template.h"
+#include "num/select.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -486,22 +487,10 @@ static enum num_status make_shape(
 	return t->shape ? NUM_OK : NUM_MEMORY;
 }
 
-static double median_of(double *x, int n)
-{
-	for (int i = 1; i < n; i++)
-		for (int k = i; k > 0 && x[k - 1] > x[k]; k--) {
-			double v = x[k];
-
-			x[k] = x[k - 1];
-			x[k - 1] = v;
-		}
-	return n ? 0.5 * (x[(n - 1) / 2] + x[n / 2]) : 0;
-}
-
 /* What the events are in terms of the shape. */
 static void take_events(const struct search *s, double shift, struct template *t)
 {
-	double peak = 0, delay[TEMPLATE_EVENTS];
+	double peak = 0, delay[TEMPLATE_EVENTS], median;
 
 	for (int k = 0; k <= 2 * s->half; k++)
 		peak = fmax(peak, fabs(s->p[k]));
@@ -515,7 +504,9 @@ static void take_events(const struct search *s, double shift, struct template *t
 		t->a[t->events] = e->a[0] * peak;
 		delay[t->events++] = e->t[1] - e->t[0];
 	}
-	t->duration /= 1 + median_of(delay, t->events) / s->transit;
+	sort_numbers(delay, (size_t)t->events);
+	median = 0.5 * (delay[(t->events - 1) / 2] + delay[t->events / 2]);
+	t->duration /= 1 + median / s->transit;
 }
 
 static enum num_status search_template(struct search *s, struct template *t)
@@ -590,7 +581,7 @@ void template_clear(struct template *t)
 }
 
 enum num_status template_known(
-	const struct template *t, const double *tap, int half, int *pulse, double *left)
+	const struct template *t, const double *tap, int half, double *left)
 {
 	int reach = (int)ceil(shape_reach(t->shape) * t->duration);
 	size_t n = 2 * (size_t)reach + 1;
@@ -613,10 +604,8 @@ enum num_status template_known(
 			if (!seen)
 				break;
 			rest = try_match(&s, reach, seen, T, p + n, &shift, &reversed);
-			if (!reversed && rest < *left) {
-				*left = rest;
-				*pulse = k;
-			}
+			if (!reversed)
+				*left = fmin(*left, rest);
 			shape_free(seen);
 		}
 		if (!plain)

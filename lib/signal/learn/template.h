@@ -35,10 +35,10 @@ enum num_status template_find(struct template *t, const double *y1, const double
 	size_t n, double duration, double transit, double reach);
 void template_clear(struct template *t);
 
-/* The pulse of sensor.h that is nearest after symmetric taps -half .. half, and the share
- * of the energy that it leaves; 2 if none of about this duration is of its sign. */
+/* The share of the energy that the nearest pulse of sensor.h leaves after symmetric taps
+ * -half .. half; 2 if none of about this duration is of its sign. */
 enum num_status template_known(
-	const struct template *t, const double *tap, int half, int *pulse, double *left);
+	const struct template *t, const double *tap, int half, double *left);
 
 /* Peak of the mean of x1[0 .. n), a record of the same events before its noise was made
  * white, for a pulse of amplitude 1. */

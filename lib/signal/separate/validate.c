@@ -276,7 +276,8 @@ static void take_in(struct validation *v, const struct evidence *e, size_t n)
 	learn_parts(v);
 }
 
-/* Probability with which noise alone takes as many delays of a group to the limits. */
+/* Probability with which noise alone takes as many delays of a group to the limits: one
+ * sound group in ten thousand is doubted for it. */
 static const double RARELY = 1e-4;
 
 /* Are more delays at a limit of the range than noise takes there?  Their number is taken
