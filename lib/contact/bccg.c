@@ -130,7 +130,7 @@ static inline void find_cells(const struct contact *c, size_t i, int n, struct p
 	lanes g = lanes_load(c->gap + i, n) - c->result.approach;
 	lanes below = lanes_min(g, lanes_all(0));
 	lane_mask active =
-		lanes_and(lanes_or(p > 0.0, g < 0.0), lanes_or(p<c->cap, g> 0.0));
+		lanes_and(lanes_or(p > 0.0, g < 0.0), lanes_or(g > 0.0, p < c->cap));
 
 	lanes_add(&t->sum[0], p * g, n);
 	lanes_add(&t->sum[1], p, n);
