@@ -4,6 +4,7 @@
 #include "num/status.h"
 #include <complex.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -144,36 +145,85 @@ double *convolve_alloc(const struct convolve *c)
 	return fft_alloc(c->lx * kernel_column(c));
 }
 
-/* Transforms an even field given by its quarter, rows of mx / 2 + 1, in place: rows and
- * columns one by one, each spread to its full length, and the half that symmetry gives
- * back is left out. */
-static enum num_status transform_quarter(double *quarter, size_t mx, size_t my)
-{
-	size_t lx = mx / 2 + 1, ly = my / 2 + 1, longest = mx > my ? mx : my;
-	double *line = fft_alloc(longest);
-	double complex *out = fft_alloc_complex(longest / 2 + 1);
-	struct fft *rows = fft_new(mx, 1), *columns = fft_new(my, 1);
-	enum num_status status = line && out && rows && columns ? NUM_OK : NUM_MEMORY;
+/* Values of an even field in its quarter, rows of mx / 2 + 1. */
+struct even {
+	double *quarter;
+	size_t mx, my, lx, ly;
+	double (*value)(const void *context, size_t ix, size_t iy);
+	const void *context;
+	const struct fft *rows, *columns;
+	double *lines; /* of each thread a line and its transform */
+	size_t room;   /* doubles of both */
+};
 
-	for (size_t y = 0; status == 0 && y < ly; y++) {
-		for (size_t x = 0; x < mx; x++)
-			line[x] = quarter[y * lx + (x < lx ? x : mx - x)];
-		fft_forward(rows, line, out);
-		for (size_t x = 0; x < lx; x++)
-			quarter[y * lx + x] = creal(out[x]);
-	}
-	for (size_t x = 0; status == 0 && x < lx; x++) {
-		for (size_t y = 0; y < my; y++)
-			line[y] = quarter[(y < ly ? y : my - y) * lx + x];
-		fft_forward(columns, line, out);
-		for (size_t y = 0; y < ly; y++)
-			quarter[y * lx + x] = creal(out[y]);
+static void fill_row(void *context, size_t y, int worker)
+{
+	const struct even *e = context;
+
+	(void)worker;
+	for (size_t x = 0; x < e->lx; x++)
+		e->quarter[y * e->lx + x] = e->value(e->context, x, y);
+}
+
+/* A line of the quarter spread to its full length, transformed, and the half of it that
+ * symmetry does not give put back. */
+static void transform_line(const struct even *e, const struct fft *fft, double *from,
+	size_t stride, size_t n, int worker)
+{
+	double *line = e->lines + (size_t)worker * e->room;
+	double complex *out = (double complex *)(line + (n + 7) / 8 * 8);
+
+	for (size_t i = 0; i < n; i++)
+		line[i] = from[(i <= n / 2 ? i : n - i) * stride];
+	fft_forward(fft, line, out);
+	for (size_t i = 0; i <= n / 2; i++)
+		from[i * stride] = creal(out[i]);
+}
+
+static void transform_row(void *context, size_t y, int worker)
+{
+	const struct even *e = context;
+
+	transform_line(e, e->rows, e->quarter + y * e->lx, 1, e->mx, worker);
+}
+
+static void transform_column(void *context, size_t x, int worker)
+{
+	const struct even *e = context;
+
+	transform_line(e, e->columns, e->quarter + x, e->lx, e->my, worker);
+}
+
+/* The transform of an even field from its values, rows and columns one by one; its
+ * quarter, to be freed, or NULL. */
+static double *transform_even(size_t mx, size_t my, struct pool *pool,
+	double (*value)(const void *context, size_t ix, size_t iy), const void *context)
+{
+	struct even e = { .mx = mx,
+		.my = my,
+		.lx = mx / 2 + 1,
+		.ly = my / 2 + 1,
+		.value = value,
+		.context = context };
+	struct fft *rows = fft_new(mx, 1), *columns = fft_new(my, 1);
+
+	e.rows = rows;
+	e.columns = columns;
+	e.room = 2 * ((larger(mx, my) + 7) / 8 * 8) + 8;
+	e.quarter = fft_alloc(e.lx * e.ly);
+	e.lines = fft_alloc((size_t)pool_threads(pool) * e.room);
+	if (e.quarter && e.lines && rows && columns) {
+		pool_run(pool, e.ly, fill_row, &e);
+		pool_run(pool, e.ly, transform_row, &e);
+		pool_run(pool, e.lx, transform_column, &e);
+	} else {
+		fft_free(e.quarter);
+		e.quarter = NULL;
 	}
 	fft_done(rows);
 	fft_done(columns);
-	fft_free(line);
-	fft_free(out);
-	return status;
+	fft_free(e.lines);
+	return e.quarter;
 }
 
 static enum num_status set_kernel(const struct convolve *c, double *kernel,
@@ -181,20 +231,13 @@ static enum num_status set_kernel(const struct convolve *c, double *kernel,
 {
 	size_t height = kernel_column(c);
 	double scale = 1 / ((double)c->mx * (double)c->my);
-	double *quarter = fft_alloc(height * c->lx);
-	enum num_status status = NUM_MEMORY;
+	double *quarter = transform_even(c->mx, c->my, c->pool, value, context);
 
-	if (quarter) {
-		for (size_t iy = 0; iy < height; iy++)
-			for (size_t ix = 0; ix < c->lx; ix++)
-				quarter[iy * c->lx + ix] = value(context, ix, iy);
-		status = transform_quarter(quarter, c->mx, c->my);
-	}
-	for (size_t kx = 0; status == 0 && kx < c->lx; kx++)
+	for (size_t kx = 0; quarter && kx < c->lx; kx++)
 		for (size_t ky = 0; ky < height; ky++)
 			kernel[kx * height + ky] = scale * quarter[ky * c->lx + kx];
 	fft_free(quarter);
-	return status;
+	return quarter ? NUM_OK : NUM_MEMORY;
 }
 
 /* An even kernel of one period, at any offset. */
@@ -239,17 +282,12 @@ static double quarter_value(const void *context, size_t ix, size_t iy)
 static enum num_status wrapped_spectrum(const struct convolve *c, double *kernel,
 	double (*factor)(const void *context, size_t kx, size_t ky), const void *context)
 {
-	size_t lx = c->nx / 2 + 1, ly = c->ny / 2 + 1;
-	double *value = fft_alloc(lx * ly);
-	struct quarter quarter = { value, lx, 1 / ((double)c->nx * (double)c->ny) };
+	double *value = transform_even(c->nx, c->ny, c->pool, factor, context);
+	struct quarter quarter = { value, c->nx / 2 + 1,
+		1 / ((double)c->nx * (double)c->ny) };
 	enum num_status status = NUM_MEMORY;
 
-	if (value) {
-		for (size_t i = 0; i < lx * ly; i++)
-			value[i] = factor(context, i % lx, i / lx);
-		status = transform_quarter(value, c->nx, c->ny);
-	}
-	if (status == 0)
+	if (value)
 		status = convolve_kernel(c, kernel, quarter_value, &quarter);
 	fft_free(value);
 	return status;
@@ -311,6 +349,13 @@ static int is_zero(const double *row, size_t n)
 	return i == n;
 }
 
+/* 1 if a row can be transformed where it is: of the full length, and aligned as the plans
+ * were made for. */
+static int in_place(const struct convolve *c, const double *row)
+{
+	return c->mx == c->nx && (uintptr_t)row % FFT_ALIGNMENT == 0;
+}
+
 static void forward_rows(void *context, size_t job, int worker)
 {
 	const struct convolve *c = context;
@@ -320,14 +365,20 @@ static void forward_rows(void *context, size_t job, int worker)
 	size_t nx = c->nx, rows = smaller(ROWS, c->ny - job * ROWS), stride = c->stride;
 
 	for (size_t k = 0; k < rows; k++) {
-		if (p->x)
-			memcpy(row, p->x + (job * ROWS + k) * nx, nx * sizeof *row);
-		else
+		const double *x = p->x ? p->x + (job * ROWS + k) * nx : row;
+
+		if (!p->x)
 			p->load(p->context, job * ROWS + k, row, worker);
-		if (is_zero(row, nx)) {
+		if (is_zero(x, nx)) {
 			memset(spectrum + k * stride, 0, c->lx * sizeof *spectrum);
 			continue;
 		}
+		if (in_place(c, x)) {
+			fft_forward(c->row, x, spectrum + k * stride);
+			continue;
+		}
+		if (p->x)
+			memcpy(row, x, nx * sizeof *row);
 		/* The inverse transform of an earlier row may have written there. */
 		for (size_t i = nx; i < c->mx; i++)
 			row[i] = c->bridged ? row[nx - 1] +
@@ -350,6 +401,7 @@ static void inverse_rows(void *context, size_t job, int worker)
 	const double complex *work = c->work + job * ROWS;
 	size_t nx = c->nx, rows = smaller(ROWS, c->ny - job * ROWS), stride = c->stride;
 	size_t begin = job * ROWS * nx;
+	double *y;
 
 	for (size_t kx = 0; kx < c->lx; kx++)
 		for (size_t k = 0; k < rows; k++)
@@ -357,8 +409,10 @@ static void inverse_rows(void *context, size_t job, int worker)
 	for (size_t k = 0; k < rows; k++) {
 		if (p->wants && !p->wants(p->context, job * ROWS + k))
 			continue;
-		fft_inverse(c->row, spectrum + k * stride, row);
-		memcpy(p->y + begin + k * nx, row, nx * sizeof *row);
+		y = in_place(c, p->y + begin + k * nx) ? p->y + begin + k * nx : row;
+		fft_inverse(c->row, spectrum + k * stride, y);
+		if (y == row)
+			memcpy(p->y + begin + k * nx, row, nx * sizeof *row);
 	}
 	c->part[job] = sweep_start();
 	if (p->pass)

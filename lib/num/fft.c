@@ -2,6 +2,7 @@
 #include <fftw3.h>
 #include <limits.h>
 #include <pthread.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -91,9 +92,10 @@ struct fft *fft_new(size_t nx, size_t ny)
 	return NULL;
 }
 
-void fft_forward(const struct fft *fft, double *x, double complex *spectrum)
+void fft_forward(const struct fft *fft, const double *x, double complex *spectrum)
 {
-	fftw_execute_dft_r2c(fft->forward, x, spectrum);
+	/* FFTW keeps the input of such a transform, but does not say so in the type. */
+	fftw_execute_dft_r2c(fft->forward, (double *)(uintptr_t)x, spectrum);
 }
 
 void fft_inverse(const struct fft *fft, double complex *spectrum, double *x)

@@ -21,7 +21,9 @@ static inline double complex fft_complex(double re, double im)
 	return u.z;
 }
 
-/* Aligned memory, zeroed; NULL when out of memory. */
+/* Memory for transforms, zeroed; NULL when out of memory.  A transform may use any
+ * address in it that FFT_ALIGNMENT divides. */
+enum { FFT_ALIGNMENT = 64 };
 double *fft_alloc(size_t count);
 double complex *fft_alloc_complex(size_t count);
 void fft_free(void *p);
@@ -33,7 +35,7 @@ size_t fft_good_size(size_t n);
  * ny rows of nx / 2 + 1 coefficients.  The inverse destroys its input. */
 struct fft;
 struct fft *fft_new(size_t nx, size_t ny);
-void fft_forward(const struct fft *fft, double *x, double complex *spectrum);
+void fft_forward(const struct fft *fft, const double *x, double complex *spectrum);
 void fft_inverse(const struct fft *fft, double complex *spectrum, double *x);
 void fft_done(struct fft *fft);
 

@@ -14,6 +14,7 @@
 
 typedef double lanes __attribute__((vector_size(16)));
 typedef int64_t lane_mask __attribute__((vector_size(16))); /* -1 for yes, 0 for no */
+typedef uint64_t lane_words __attribute__((vector_size(16)));
 typedef int32_t lane_bits __attribute__((vector_size(16)));
 
 static inline lanes lanes_all(double x)
@@ -80,7 +81,7 @@ static inline lanes lanes_max(lanes a, lanes b)
 
 static inline lanes lanes_abs(lanes x)
 {
-	return lanes_max(x, -x);
+	return (lanes)((lane_mask)x & INT64_MAX);
 }
 
 /* exp(x) for |x| <= 700, to 1 unit in the last place or two: 2^k times the series of the
@@ -89,7 +90,7 @@ static inline lanes lanes_exp(lanes x)
 {
 	const double shift = 0x1.8p52; /* its last bit counts ones */
 	lanes k = x * M_LOG2E + shift, r, r4, a, b, c, d;
-	lane_mask power = (lane_mask)k << 52;
+	lane_words power = (lane_words)k << 52;
 
 	k -= shift;
 	/* log 2 in two parts, the first of 32 bits */
@@ -100,7 +101,7 @@ static inline lanes lanes_exp(lanes x)
 	c = 0.5 + r4 * (1. / 720 + r4 * (1. / 3628800));
 	d = 1. / 6 + r4 * (1. / 5040 + r4 * (1. / 39916800));
 	a = 1 + (r * b + r * r * ((c + r * d) + r * r * a));
-	return (lanes)((lane_mask)a + power);
+	return (lanes)((lane_words)a + power);
 }
 
 /* Two lanes as a complex number: the product, without the test for infinite parts of C's,

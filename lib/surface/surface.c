@@ -1,5 +1,6 @@
 /* surface.c - see surface.h */
 #include "surface/surface.h"
+#include "num/dot.h"
 #include "num/grid.h"
 #include "num/status.h"
 #include <math.h>
@@ -63,15 +64,6 @@ static void laplacian(const struct holes *h, const double *v, const double *z, d
 	}
 }
 
-static double dot(size_t n, const double *a, const double *b)
-{
-	double sum = 0;
-
-	for (size_t i = 0; i < n; i++)
-		sum += a[i] * b[i];
-	return sum;
-}
-
 /* The number of steps grows with the width of the widest hole in samples, and is no more
  * than that of the unknowns in exact arithmetic; twice that leaves room for rounding. */
 static int solve_holes(struct holes *h, const double *z, double *residual)
@@ -82,19 +74,19 @@ static int solve_holes(struct holes *h, const double *z, double *residual)
 	laplacian(h, h->x, z, h->r);
 	for (size_t k = 0; k < h->n; k++)
 		h->p[k] = h->r[k] = -h->r[k];
-	first = rr = dot(h->n, h->r, h->r);
+	first = rr = dot(h->r, h->r, h->n);
 	for (step = 0; rr > SURFACE_FILLED * SURFACE_FILLED * first && step < most;
 		step++) {
 		double alpha, beta;
 
 		laplacian(h, h->p, NULL, h->q);
-		alpha = rr / dot(h->n, h->p, h->q);
+		alpha = rr / dot(h->p, h->q, h->n);
 		for (size_t k = 0; k < h->n; k++) {
 			h->x[k] += alpha * h->p[k];
 			h->r[k] -= alpha * h->q[k];
 		}
 		beta = rr;
-		rr = dot(h->n, h->r, h->r);
+		rr = dot(h->r, h->r, h->n);
 		beta = rr / beta;
 		for (size_t k = 0; k < h->n; k++)
 			h->p[k] = h->r[k] + beta * h->p[k];
