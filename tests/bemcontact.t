@@ -64,6 +64,7 @@ fails "not converged: status 3" 3 'record 1: not converged: optimality gap .* af
 is "the record states that it did not converge" "$(key converged poor.nrrd)" no
 is "without load there is no pressure and no work" "$($solve --pressure 0Pa -S stats h.f64 >none.nrrd
 	column transforms stats),$(key area none.nrrd)" 0,0
+fails "layers of raw heights" 2 "raw 32x24x2: want NXxNY$" bemcontact --raw 32x24x2 --pixel 1um h.f64
 fails "no load given" 2 'specify one of --load' bemcontact --estar 1GPa
 fails "two loads given" 2 'specify only one of --load' bemcontact --estar 1GPa --pressure 1Pa -F 1N
 fails "no material" 2 'either --estar or --young' bemcontact --pressure 1Pa

@@ -45,6 +45,20 @@ is 'estimates are below their upper and above their lower ends' "$(awk -F '\t' '
 	{ rows++ }
 	!($c["volume_low"] <= $c["volume"] && $c["volume"] <= $c["volume_high"]) { bad++ } END { print (rows ? bad + 0 : "no rows") }' quick.tsv)" 0
 
+# None and one particle: a smooth ball below and above yield.
+ball() { # LOAD: particles and volume, full and surrogate
+	roughgen --points 32 --length 0.25mm --sq 0 --crown 8um | bemcontact --load "$1" --young 210GPa >ball.nrrd
+	debrisgen --yield 355MPa --friction 0.3 --summary ball.full ball.nrrd >/dev/null 2>&1
+	debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0 --summary ball.quick ball.nrrd >/dev/null 2>&1
+	echo "$(column particles ball.full) $(column particles ball.quick) $(column volume ball.full) $(column volume ball.quick)"
+}
+is 'a ball that does not yield loses nothing' "$(ball 1uN)" '0 0 0 0'
+is 'this is certain' "$(column volume_low ball.quick) $(column volume_high ball.quick) $(column exact ball.quick)" '0 0 1'
+ball 4N >one
+is 'a ball that yields loses one particle' "$(cut -d ' ' -f 1,2 one)" '1 1'
+near 'its volume is that of the full model but for what balls differ from rough surfaces' \
+	"$(awk '{ print $4 / $3 }' one)" 1 0.25
+
 # Units: lengths four times as long, stresses ten times as large.
 roughgen --points 32 --length 1mm --sq 4um --corr 40um --crown auto --seed 9 --count 30 |
 	bemcontact --pressure 500MPa --young 2100GPa |

@@ -35,9 +35,48 @@ debrisstat --diameter 0:200um --truncated weibull.tsv >fits.tsv
 near "a truncated fit has the right shape" "$(fit weibull_shape 2)" 2.718 0.02
 near "a truncated fit has the right scale" "$(fit weibull_scale 2)" 200.698e-6 1e-6
 
-# Diameters that are equal to nine digits: the logarithms of Weibull quantiles, scaled by 1e-9.
-awk 'BEGIN { for (i = 0; i < 400; i++) printf "%d 1 %.17g 1\n", i, 100 * (1 + 1e-9 * log(-log(1 - (i + 0.5) / 400))) }' |
-	table >equal.tsv
+# Quantiles of a Weibull distribution whose logarithms lie within a few SPREAD of 100 um: the shape is that of
+# the sample, some 1 / SPREAD, or nan, and never a limit of the search.
+# narrow N SPREAD
+narrow() {
+	awk -v n="$1" -v s="$2" 'BEGIN { for (i = 0; i < n; i++)
+		printf "%d 1 %.17g 1\n", i, 100 * (1 + s * log(-log(1 - (i + 0.5) / n))) }' | table
+}
+# shape FILE SPREAD OPTION...: the shape of the file times the spread
+shape() {
+	file=$1
+	spread=$2
+	shift 2
+	debrisstat "$@" "$file" >fits.tsv
+	awk -v s="$spread" '$1 == "weibull_shape" { print $2 == "nan" ? "nan" : $2 * s }' fits.tsv
+}
+# verdicts WANT TOLERANCE "VALUE...": what each value is, relative to the one wanted
+verdicts() {
+	echo "$3" | awk -v want="$1" -v tolerance="$2" '{ for (i = 1; i <= NF; i++) {
+		off = $i == "nan" ? 0 : $i / want - 1
+		printf "%s ", $i == "nan" ? "nan" : off * off < tolerance ^ 2 ? "right" : $i
+	} }'
+}
+for n in 3 30 1000; do
+	whole=
+	cut=
+	narrow $n 1e-3 >wide.tsv
+	want=$(shape wide.tsv 1e-3)
+	want_cut=$(shape wide.tsv 1e-3 --truncated --diameter 99.95um:1mm)
+	for e in 3 4 5 6 7 8 9 10 11 12 13 14 15; do
+		narrow $n 1e-$e >equal.tsv
+		whole="$whole $(shape equal.tsv 1e-$e)"
+		cut="$cut $(shape equal.tsv 1e-$e --truncated --diameter "$(awk -v e=$e 'BEGIN { printf "%.17g", 100 - 50 * 10 ^ -e }')um:1mm")"
+	done
+	is "$n nearly equal diameters: the shape is that of the spread down to 1e-12, and below it nan" \
+		"$(verdicts "$want" 0.001 "$whole")" \
+		"right right right right right right right right right right nan nan nan "
+	# Rounding of the likelihood hides the maximum of some truncated fits: these are nan.
+	like "$n nearly equal diameters cut off below: the shape is that of the spread, or nan from 1e-7 on" \
+		"$(verdicts "$want_cut" 0.01 "$cut")" \
+		'^right right right right \(\(right\|nan\) \)\{6\}nan nan nan $'
+done
+narrow 400 1e-9 >equal.tsv
 debrisstat equal.tsv >fits.tsv
 near "nearly equal diameters have the shape of their spread" "$(fit weibull_shape 2 | awk '{ print $1 / 1e9 }')" 1 0.02
 rising "the interval of nearly equal diameters contains the shape" "$(fit weibull_shape 3)" 1e9 "$(fit weibull_shape 4)"

@@ -205,6 +205,7 @@ fails "a spectrum with file" 2 '--corr: is for generated' roughgen -l 1um s
 fails "a crop outside" 1 'record 1: --crop 30:0:11:5 is not within 40 x 30' \
 	roughgen --crop 30:0:11:5 s
 fails "raw without pixel" 2 'go together' roughgen --raw 3x3 s
+fails "layers of raw heights" 2 'raw 3x3x1: want NXxNY$' roughgen --raw 3x3x1 --pixel 1um s
 fails "a missing file" 1 'nowhere: No such file' roughgen nowhere
 fails "nothing to measure" 1 'standard input: empty, want' roughgen --measure
 fails "an empty file" 1 '/dev/null: empty, want' roughgen /dev/null

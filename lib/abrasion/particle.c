@@ -83,14 +83,17 @@ static void groove(const struct abrasion_par *par, double d, struct abrasion *a)
 	}
 }
 
-static int rolls(const struct abrasion_par *par, double aspect)
+/* A particle that a body holds beyond its equator does not roll. */
+static int rolls(
+	const struct abrasion_par *par, double d, double aspect, const struct abrasion *a)
 {
 	double mu = par->friction;
 
 	if (par->motion != ABRASION_BY_SHAPE)
 		return par->motion == ABRASION_ALL_ROLL;
 	/* (k - 1/k) / 2 <= mu */
-	return aspect <= mu + sqrt(1 + mu * mu);
+	return aspect <= mu + sqrt(1 + mu * mu) &&
+	       fmax(a->depth[0], a->depth[1]) <= d / 2;
 }
 
 /* A particle that is too soft for one of the bodies does not indent it. */
@@ -108,6 +111,7 @@ static void press_into(
 void abrasion_particle(
 	const struct abrasion_par *par, double d, double aspect, struct abrasion *a)
 {
+	struct abrasion still = { .mode = ABRASION_ROLLS };
 	int marks[2];
 
 	*a = (struct abrasion){ .mode = ABRASION_FREE };
@@ -119,18 +123,17 @@ void abrasion_particle(
 	}
 	for (int k = 0; k < 2; k++)
 		marks[k] = par->abrasive >= abrasion_harder * par->hardness[k];
+	still.depth[0] = abrasion_squeeze(
+		d, par->gap, par->hardness[0], par->hardness[1], &still.load);
+	still.depth[1] = d - par->gap - still.depth[0];
 	if (!marks[0] && !marks[1])
 		a->mode = ABRASION_YIELDS;
 	else if (!marks[0] || !marks[1])
 		press_into(par, d, marks[1], a);
-	else if (rolls(par, aspect)) {
-		a->mode = ABRASION_ROLLS;
-		a->depth[0] = abrasion_squeeze(
-			d, par->gap, par->hardness[0], par->hardness[1], &a->load);
-		a->depth[1] = d - par->gap - a->depth[0];
-	} else {
+	else if (rolls(par, d, aspect, &still))
+		*a = still;
+	else
 		groove(par, d, a);
-	}
 	if (a->mode == ABRASION_YIELDS)
 		a->load = a->depth[0] = a->depth[1] = NAN;
 	if (a->mode == ABRASION_YIELDS || a->mode == ABRASION_BURIED)

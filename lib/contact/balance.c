@@ -19,8 +19,6 @@ enum {
  * alike, with 0.5 up to 84; patches, whose steps hardly need it, take the fewer the
  * higher it is. */
 static const double tolerated = 0.3;
-/* Part of its load that a square may give up in one step. */
-static const double most = 0.5;
 
 struct square {
 	double wanted; /* sum of the unbounded step */
@@ -108,7 +106,7 @@ static void sum_wanted(void *context, size_t k, int worker)
 			load += c->p[i];
 			step += c->active[i] ? c->image[i] + c->shift : 0;
 		}
-	b->square[k] = (struct square){ .wanted = fmax(c->tau * step, -most * load) };
+	b->square[k] = (struct square){ .wanted = fmax(c->tau * step, -load) };
 }
 
 static void sum_bounded(void *context, size_t k, int worker)

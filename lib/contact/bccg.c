@@ -7,10 +7,10 @@
  *
  * The half-space is applied not to the direction but to the step that is left of it
  * when pressures are kept within their bounds, with a step length carried over from
- * the iterations before.  So the gap follows the pressure exactly, whatever cells come
- * and go, and the line search along the step is exact as well; only the cells whose
- * pressure meets a bound between the guessed and the found step length leave a trace,
- * and the gap is recomputed when those add up.
+ * the iterations before.  This step is taken as it is, so the gap follows the pressure
+ * exactly, whatever cells come and go.  The line search along it tells how much farther
+ * or less far it should have gone, which the next direction makes up for; only a step so
+ * long that the energy would rise is cut.
  *
  * The inverse of the half-space restricted to the contact is not the restricted
  * inverse: that needs a residual continued beyond the contact so that its image there
@@ -25,12 +25,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the step, in the sum of pressures.  Per 512 and 1024 at 5 to 60 %, free 512 and a
- * strip (build/bench/contact): 0.02 takes 12 to 14 iterations, 0.05 14 to 17, 0.1 and 0.3
- * more. */
-static const double drift_limit = 0.02;
-/* Of the step, in the same.  On those scenes 0.003 to 0.1 take 11 to 14 iterations alike;
- * each factor of ten takes about one more sweep over the cells per step. */
+/* Of the load, in the sum of the pressures of the step.  0.003 to 0.03 take 53 to 55
+ * transforms (scenes as below), 0.1 and 0.3 60 and 66; each factor of ten takes about one
+ * more sweep over the cells per step. */
 static const double load_slack = 0.03;
 
 /* Step length to begin with, and after a gradient step.  In tests/unit/exact.c,
@@ -43,6 +40,13 @@ static const double FIRST_STEP = 0.5;
  * tenth where such a step is cut to 1/2 or 1/16 in place of 1/4. */
 static const double least_length = 1e-3;
 
+/* Greatest length of a step, in its predicted length (beyond a bounded step the slope is
+ * another), and the power of the length that the next prediction takes over: 2 to 3 and
+ * 0.5 to 0.75 take 53 to 56 transforms alike over periodic and free surfaces of 256 and
+ * 512 cells a side, 1.3 takes 66, 0 and 1 200 and 58; of the scenes of tests/unit/exact.c
+ * strips take twice as many iterations with 2 and 0.5. */
+static const double longest = 2.5, learned = 0.6;
+
 struct box {
 	const struct contact_kernel *body;
 	double lx, ly;
@@ -53,11 +57,12 @@ static double stiffness(const void *context, size_t kx, size_t ky)
 	const struct box *b = context;
 	double q = 2 * M_PI * hypot((double)kx / b->lx, (double)ky / b->ly);
 
-	/* The mean counts only where the approach is given; half the stiffness of the
-	 * longest wave is right for it. */
+	/* The mean counts only where the approach is given.  Over 1/2, 4, 8, 16 and 32
+	 * times the stiffness of the longest wave, 36 periodic contacts of 256 x 256 and
+	 * 300 x 200 cells take 1576, 807, 575, 536 and 653 iterations, and 24 free ones
+	 * 1085, 573, 567, 691 and 922. */
 	if (kx == 0 && ky == 0)
-		return 0.5 /
-		       b->body->wave(b->body->context, 2 * M_PI / fmax(b->lx, b->ly));
+		return 8 / b->body->wave(b->body->context, 2 * M_PI / fmax(b->lx, b->ly));
 	return 1 / b->body->wave(b->body->context, q);
 }
 
@@ -210,24 +215,21 @@ static void shift_step(void *context, size_t begin, size_t end, struct sweep *s)
 	PAIRS(shift_cells);
 }
 
-/* Takes the stretched step, but cells that had come to a bound stay there; sums what
- * that and the bounds changed, the step, the pressure, the gap over free cells and their
- * number, and the work of the old pressure along the step. */
+/* Takes the step; sums it, the pressure, the gap over free cells and their number, and
+ * the work of the old pressure along the step. */
 static inline void take_cells(const struct contact *c, size_t i, int n, struct pass *t)
 {
 	lanes p = lanes_load(c->p + i, n), image = lanes_load(c->image + i, n);
-	lanes step = lanes_load(c->step + i, n), stretched = c->stretch * step;
-	lanes bound = within_bounds(c, p + step), wanted = p + stretched;
+	lanes step = c->stretch * lanes_load(c->step + i, n);
+	lanes next = within_bounds(c, p + step);
 	lanes gap = lanes_load(c->gap + i, n) + c->stretch * image;
-	lanes next = lanes_pick(are_free(c, bound), within_bounds(c, wanted), bound);
 	lane_mask is = are_free(c, next);
 
-	lanes_add(&t->sum[0], lanes_abs(next - wanted), n);
-	lanes_add(&t->sum[1], lanes_abs(stretched), n);
-	lanes_add(&t->sum[2], next, n);
-	lanes_add(&t->sum[3], lanes_if(is, gap), n);
-	lanes_add(&t->sum[4], lanes_if(is, lanes_all(1)), n);
-	lanes_add(&t->sum[5], p * image, n);
+	lanes_add(&t->sum[0], lanes_abs(step), n);
+	lanes_add(&t->sum[1], next, n);
+	lanes_add(&t->sum[2], lanes_if(is, gap), n);
+	lanes_add(&t->sum[3], lanes_if(is, lanes_all(1)), n);
+	lanes_add(&t->sum[4], p * image, n);
 	lanes_store(c->gap + i, gap, n);
 	lanes_store(c->p + i, next, n);
 }
@@ -241,7 +243,7 @@ static void take_step(void *context, size_t begin, size_t end, struct sweep *s)
 struct state {
 	double sum;       /* of the pressures */
 	double curvature; /* step times image; 0: nothing to be conjugate to */
-	double drift;     /* mismatch of gap and pressure, as a sum of pressures */
+	double rest;      /* what the last step lacks, as a part of it */
 	double moved;     /* sum of the last step; 0: it led nowhere */
 	double bounded;   /* cells that the step takes to a bound */
 	int plain;        /* steps along the gradient to go */
@@ -278,6 +280,7 @@ static struct sweep precondition(struct contact *c)
 	c->result.work +=
 		extension_solve(c->extension, c->active, c->gap, c->result.approach);
 	c->result.transforms += 2;
+	/* Two of the grid, which is a quarter of the padded one on a free boundary. */
 	c->result.work += c->par.boundary == CONTACT_FREE ? 0.5 : 2;
 	return convolve_run(c->periodic, c->inverse, &passes);
 }
@@ -324,11 +327,13 @@ static double find_step(struct contact *c, struct state *state)
 	mean = load_given ? s.sum[0] / count : 0;
 	c->beta = state->curvature > 0 ? (s.sum[2] - mean * s.sum[1]) / state->curvature
 				       : 0;
+	c->beta += state->rest / c->tau;
 	c->shift = load_given ? (missing / c->tau + s.sum[0] - c->beta * s.sum[3]) / count
 			      : 0;
 	s = contact_sweep(c, turn_step);
 	rest = bound_step(c, state, missing, &s);
 	state->bounded = count - s.sum[3];
+	/* No less than the rounding of the load. */
 	limit = fmax(load_slack * s.sum[2], 1e-12 * c->target * (double)c->n);
 	state->crowded = c->cap < INFINITY && fabs(rest) > limit;
 	state->forced = load_given && fabs(missing) > s.sum[2] / 2;
@@ -338,9 +343,10 @@ static double find_step(struct contact *c, struct state *state)
 /* Applies the half-space to the step, finds how far to go along it, and goes. */
 static void follow_step(struct contact *c, struct state *state, double slope)
 {
+	double length;
 	struct sweep s;
 
-	state->moved = state->curvature = 0;
+	state->moved = state->curvature = state->rest = 0;
 	if (!(slope < 0 || state->forced))
 		return;
 	state->curvature = contact_multiply_step(c);
@@ -348,25 +354,18 @@ static void follow_step(struct contact *c, struct state *state, double slope)
 		state->curvature = 0;
 		return;
 	}
-	/* Beyond a bounded step the slope is another.  A limit of 4, or none, takes as
-	 * many iterations within 5 % over the scenes of tests/unit/exact.c and at 256 x
-	 * 256; one of 1 two to ten times as many. */
-	c->stretch = -slope / state->curvature;
-	if (state->bounded > 0)
-		c->stretch = fmin(c->stretch, 2);
-	if (state->forced)
-		c->stretch = 1;
+	length = state->forced ? 1 : fmin(-slope / state->curvature, longest);
+	/* Beyond twice the length that is best the energy rises. */
+	c->stretch = length < 0.5 ? length : 1;
+	state->rest = length < 0.5 ? 0 : length - 1;
 	s = contact_sweep(c, take_step);
-	/* Strips of 64 x 4096 to 3 x 10000 take as many iterations with the whole stretch
-	 * in place of its root, within a tenth. */
-	c->tau *= sqrt(c->stretch);
-	state->drift += s.sum[0];
-	state->moved = s.sum[1];
-	state->sum = s.sum[2];
+	c->tau *= pow(length, learned);
+	state->moved = s.sum[0];
+	state->sum = s.sum[1];
 	state->exact = 0;
-	c->work += c->stretch * (2 * s.sum[5] + c->stretch * state->curvature);
-	if (c->control == CONTACT_PRESSURE && s.sum[4] > 0)
-		c->result.approach = s.sum[3] / s.sum[4];
+	c->work += c->stretch * (2 * s.sum[4] + c->stretch * state->curvature);
+	if (c->control == CONTACT_PRESSURE && s.sum[3] > 0)
+		c->result.approach = s.sum[2] / s.sum[3];
 	else
 		contact_find_approach(c);
 }
@@ -381,7 +380,7 @@ static void renew_gap(struct contact *c, struct state *state)
 		state->exact = contact_carries(c, state->sum);
 	}
 	contact_gap(c);
-	state->drift = 0;
+	state->rest = 0;
 }
 
 static double optimality_gap(struct contact *c)
@@ -442,7 +441,7 @@ enum contact_status contact_solve_bccg(struct contact *c)
 			c->tau /= 4;
 		else
 			state.plain = state.moved <= 0;
-		if (state.moved <= 0 || state.drift > drift_limit * state.moved)
+		if (state.moved <= 0)
 			renew_gap(c, &state);
 	}
 	renew_gap(c, &state);

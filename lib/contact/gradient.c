@@ -43,6 +43,8 @@ static void sum_pressure(void *context, size_t begin, size_t end, struct sweep *
 void contact_gradient_step(struct contact *c)
 {
 	int load_given = c->control == CONTACT_PRESSURE;
+	/* Of a sum of as many steps as there are cells. */
+	const double rounding = 1e-14;
 	double missing = 0, curvature;
 	struct sweep s;
 
@@ -55,7 +57,7 @@ void contact_gradient_step(struct contact *c)
 	c->shift = 0;
 	s = contact_sweep(c, project_step);
 	if (load_given)
-		contact_share_load(c, project_step, missing, 1, 1e-14, &s);
+		contact_share_load(c, project_step, missing, 1, rounding, &s);
 	curvature = contact_multiply_step(c);
 	c->stretch = 1;
 	/* Without a load to restore, no farther than to the least energy. */

@@ -41,7 +41,7 @@ struct contact_par {
 	struct pool *pool; /* borrowed; NULL: one thread */
 	/* Called in each iteration with an estimate of the share that is done; or NULL.
 	 */
-	void (*told)(void *context, double share);
+	void (*progress)(void *context, double share);
 	void *context;
 };
 

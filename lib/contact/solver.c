@@ -135,7 +135,7 @@ static enum num_status make_coarse(struct contact *c)
 
 	if (!contact_can_coarsen(&c->par, &par))
 		return NUM_OK;
-	par.told = NULL;
+	par.progress = NULL;
 	c->coarse = new_grid(&par, c);
 	if (!c->coarse || transfer_make(&c->transfer, &c->par, &par) != 0)
 		return NUM_MEMORY;

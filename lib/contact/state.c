@@ -139,8 +139,10 @@ static double gap_of_rank(struct contact *c, double rank)
  * whole, the middle of the interval that serves. */
 static double approach_of_load(struct contact *c)
 {
-	const double rounding = 1e-9; /* of a cell, in load / hardness */
 	double cells = c->target / c->cap * (double)c->n;
+	/* Of the load, the hardness, their ratio and the product: four, and as many of
+	 * the numbers that they were computed from. */
+	double rounding = 8 * DBL_EPSILON * cells;
 	double first = fmax(ceil(cells - rounding), 1);
 	double last = fmin(floor(cells + rounding) + 1, (double)c->n);
 
@@ -259,8 +261,8 @@ int contact_stalls(struct contact *c, double optimality_gap)
 	const long patience = 4 * GRADIENT_ROUND;
 
 	/* The gap falls geometrically, from about 1. */
-	if (c->par.told)
-		c->par.told(c->par.context,
+	if (c->par.progress)
+		c->par.progress(c->par.context,
 			fmin(fmax(log(optimality_gap) / log(c->tolerance), 0), 1));
 	if (optimality_gap < fall * c->best) {
 		c->best = optimality_gap;
@@ -332,6 +334,10 @@ double contact_scale_load(struct contact *c, int gently)
 		c->beta = (load - fixed) / rest;
 		if (fabs(fixed + rest - load) <= 16 * DBL_EPSILON * load)
 			break;
+		/* Of 36 contacts at a hardness, limits of 0.05, 0.25, 0.5, 0.8 and 0.95
+		 * and their inverses take bccg 324, 324, 324, 322 and 318 iterations and
+		 * pk 2042, 2082, 2196, 2587 and 3193; one of pk does not converge from
+		 * 0.8 on. */
 		if (gently && !(c->beta > 0.5 && c->beta < 2))
 			break;
 		if (fixed >= load) {

@@ -2,6 +2,7 @@
 #include "num/room.h"
 #include "num/status.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,7 +29,9 @@ struct chords {
 
 struct chords *chords_new(void)
 {
-	return calloc(1, sizeof(struct chords));
+	struct chords *c = calloc(1, sizeof *c);
+
+	return c;
 }
 
 void chords_free(struct chords *c)
@@ -51,21 +54,29 @@ static double distance2(const double a[3], const double b[3])
 	return u * u + v * v + w * w;
 }
 
-/* The farthest two of count points, if farther than least (squared); the square of their
- * distance. Points too near the middle to be one of them are skipped. */
-static double farthest(double (*p)[3], size_t count, double least, size_t end[2])
+/* Middle of count points, and the distance of the farthest from it, rounded up. */
+static double reach_of(double (*p)[3], size_t count, double middle[3])
 {
-	double middle[3] = { 0, 0, 0 }, reach = 0;
+	double most = 0;
 
+	middle[X] = middle[Y] = middle[Z] = 0;
 	for (size_t i = 0; i < count; i++)
 		for (int k = X; k <= Z; k++)
 			middle[k] += p[i][k] / (double)count;
 	for (size_t i = 0; i < count; i++) {
 		double d = distance2(p[i], middle);
 
-		reach = d > reach ? d : reach;
+		most = d > most ? d : most;
 	}
-	reach = sqrt(reach) * (1 + 1e-12);
+	return sqrt(most) * (1 + 1e-12);
+}
+
+/* The largest distance of two of count points, or least if that is larger (squared).
+ * Points too near the middle to be an end of it are skipped. */
+static double farthest(double (*p)[3], size_t count, double least)
+{
+	double middle[3], reach = reach_of(p, count, middle);
+
 	for (size_t i = 0; i < count; i++) {
 		double most = sqrt(distance2(p[i], middle)) + reach;
 
@@ -74,25 +85,10 @@ static double farthest(double (*p)[3], size_t count, double least, size_t end[2]
 		for (size_t j = 0; j < i; j++) {
 			double d = distance2(p[i], p[j]);
 
-			if (d > least) {
-				least = d;
-				end[0] = i;
-				end[1] = j;
-			}
+			least = d > least ? d : least;
 		}
 	}
 	return least;
-}
-
-/* Largest distance between two corners; along: the unit vector there. */
-static double longest(const struct chords *c, double along[3])
-{
-	size_t end[2] = { 0, 0 };
-	double most = sqrt(farthest(c->corner, c->corners, 0, end));
-
-	for (int k = X; k <= Z; k++)
-		along[k] = (c->corner[end[0]][k] - c->corner[end[1]][k]) / most;
-	return most;
 }
 
 static int by_height(const void *a, const void *b)
@@ -157,13 +153,13 @@ static int cross(struct chords *c, size_t edge, double level, size_t count)
 	return 1;
 }
 
-/* Longest chord perpendicular to the longest of all.  Between two corners of the hull the
- * corners of the section move linearly with height, so its diameter is a convex function
- * of height: the largest is at the height of a corner. */
-static double widest(struct chords *c, const double along[3])
+/* Longest chord perpendicular to a direction, or most if that is longer (squared).
+ * Between two corners of the hull the corners of the section move linearly with height,
+ * so its diameter is a convex function of height: the largest is at the height of a
+ * corner. */
+static double widest(struct chords *c, const double along[3], double most)
 {
-	double most = 0;
-	size_t crossed = 0, end[2];
+	size_t crossed = 0;
 
 	sort_levels(c, along);
 	for (size_t i = 0, next; i < c->corners; i = next) {
@@ -179,18 +175,46 @@ static double widest(struct chords *c, const double along[3])
 				count++;
 			}
 		crossed = kept;
-		most = farthest(c->cut, count, most, end);
+		most = farthest(c->cut, count, most);
 		for (size_t k = c->level[i].rising; k < c->level[next].rising; k++)
 			c->crossed[crossed++] = c->rising[k];
 	}
-	return sqrt(most);
+	return most;
+}
+
+/* Longest chord perpendicular to one of the longest (squared).  On a lattice several are
+ * often equally long, such as mirror images of each other; the order of the corners must
+ * not decide between them.  Squares of equal distances differ by the rounding of three
+ * differences of coordinates, their squares and sums, some ten units in the last place;
+ * 64 are more than that. */
+static double perpendicular(struct chords *c, double longest)
+{
+	double middle[3], reach = reach_of(c->corner, c->corners, middle), most = 0;
+	double least = longest * (1 - 64 * DBL_EPSILON);
+
+	for (size_t i = 0; i < c->corners; i++) {
+		double *p = c->corner[i], away = sqrt(distance2(p, middle)) + reach;
+
+		if (away * away < least)
+			continue;
+		for (size_t j = 0; j < i; j++) {
+			double *q = c->corner[j], d = distance2(p, q), along[3];
+
+			if (d < least)
+				continue;
+			for (int k = X; k <= Z; k++)
+				along[k] = (p[k] - q[k]) / sqrt(d);
+			most = widest(c, along, most);
+		}
+	}
+	return most;
 }
 
 enum num_status chords_measure(struct chords *c, const struct hull *h,
 	const double step[3], double *length, double *width)
 {
 	const struct hull_point *p = hull_points(h, &c->corners);
-	double along[3];
+	double most;
 
 	c->edge = hull_edges(h, &c->edges);
 	if (room_for(&c->corner, &c->corner_room, c->corners, sizeof *c->corner) ||
@@ -204,7 +228,8 @@ enum num_status chords_measure(struct chords *c, const struct hull *h,
 	for (size_t i = 0; i < c->corners; i++)
 		for (int k = X; k <= Z; k++)
 			c->corner[i][k] = ((double)p[i].v[k] - p[0].v[k]) * step[k];
-	*length = longest(c, along);
-	*width = widest(c, along);
+	most = farthest(c->corner, c->corners, 0);
+	*length = sqrt(most);
+	*width = sqrt(perpendicular(c, most));
 	return NUM_OK;
 }

@@ -14,6 +14,10 @@ const char *const footprint_names[FOOTPRINT_FEATURES] = { "cells", "mean_stress"
  * than the error of the model of the loss; secants reach it in two or three steps. */
 enum { STEPS = 12 };
 static const double CLOSE = 0.02;
+/* First guess of the depth over the root of the area.  20 random kinds of surfaces and
+ * four materials (yield stress 250 to 900 MPa, friction 0.05 to 0.5) take 117 600 sums at
+ * 0.3, 102 800 at 0.6, 96 600 at 0.75, 96 700 at 0.9 and 99 900 at 1.2. */
+static const double FIRST = 0.75;
 
 struct footprints {
 	struct stress_par par;
@@ -149,12 +153,13 @@ static double pressed_by_others(const struct footprints *f, const struct footpri
 }
 
 /* Root of strength over stress grows nearly in proportion to the depth: by secants
- * between the bounds known so far. */
+ * between the bounds known so far, from the depth of a Hertz contact of this area on: the
+ * stress is largest half a radius down, at 0.28 of the root of the area. */
 static double depth_below(
 	const struct footprints *f, const struct footprint *r, double yield)
 {
 	double before = 0, root_before = sqrt(yield / r->stress_most), low = 0,
-	       high = INFINITY, z = 0.3 * sqrt(r->area);
+	       high = INFINITY, z = FIRST * sqrt(r->area);
 
 	for (int k = 0; k < STEPS; k++) {
 		double root = sqrt(yield / point_sum_at(f->below, r->most_at, z)), next;

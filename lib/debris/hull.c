@@ -27,7 +27,9 @@ struct hull {
 
 struct hull *hull_new(void)
 {
-	return calloc(1, sizeof(struct hull));
+	struct hull *h = calloc(1, sizeof *h);
+
+	return h;
 }
 
 void hull_free(struct hull *h)

@@ -12,6 +12,7 @@
 #include <float.h>
 #include <limits.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,16 +24,18 @@ enum { X, Y, Z };
 enum { STEPS = 64 };
 /* Corners in memory before the first are dropped: 12 bytes each. */
 enum { CORNERS = 1 << 16 };
+enum { COLUMN_MASK = (1 << 24) - 1 };
 
 /* A stretch with its position during the search. */
 struct piece {
 	double top, bottom;
-	int x, y;      /* column, on the grid */
 	int period[2]; /* of the frame in which it was reached */
-	unsigned char reached;
+	/* Column, on the grid, in few bits: there may be more pieces than cells. */
+	unsigned x : 24, reached : 1;
+	unsigned y : 24;
 	/* Whether its top and bottom corners towards -x, +x, -y, +y lie on the neighbour
 	 * there as well: bits of covered_bit(). */
-	unsigned char covered;
+	unsigned covered : 8;
 };
 
 static unsigned covered_bit(int axis, int up, int bottom)
@@ -42,10 +45,10 @@ static unsigned covered_bit(int axis, int up, int bottom)
 
 struct particles {
 	struct particles_par par;
-	size_t *start; /* of nx * ny + 1: the pieces of a column */
+	uint32_t *start; /* of nx * ny + 1: the pieces of a column */
 	struct piece *piece;
 	size_t piece_room;
-	size_t *body; /* pieces of the present body, in the order reached */
+	uint32_t *body; /* pieces of the present body, in the order reached */
 	size_t members, body_room;
 	double area;  /* of its exposed sides */
 	int winds[2]; /* the body is endless along x, y */
@@ -101,7 +104,8 @@ static enum num_status sort_by_column(
 {
 	size_t columns = (size_t)ps->par.nx * (size_t)ps->par.ny;
 
-	if (room_for(&ps->piece, &ps->piece_room, count + 1, sizeof *ps->piece) ||
+	if (count >= UINT32_MAX ||
+		room_for(&ps->piece, &ps->piece_room, count + 1, sizeof *ps->piece) ||
 		room_for(&ps->body, &ps->body_room, count + 1, sizeof *ps->body))
 		return NUM_MEMORY;
 	memset(ps->start, 0, (columns + 1) * sizeof *ps->start);
@@ -115,8 +119,8 @@ static enum num_status sort_by_column(
 
 		ps->piece[at] = (struct piece){ .top = s[i].top,
 			.bottom = s[i].bottom,
-			.x = (int)(s[i].column % (size_t)ps->par.nx),
-			.y = (int)(s[i].column / (size_t)ps->par.nx) };
+			.x = s[i].column % (size_t)ps->par.nx & COLUMN_MASK,
+			.y = s[i].column / (size_t)ps->par.nx & COLUMN_MASK };
 	}
 	memmove(ps->start + 1, ps->start, columns * sizeof *ps->start);
 	ps->start[0] = 0;
@@ -144,7 +148,7 @@ static void reach(struct particles *ps, size_t at, const int period[2])
 	}
 	p->reached = 1;
 	memcpy(p->period, period, sizeof p->period);
-	ps->body[ps->members++] = at;
+	ps->body[ps->members++] = (uint32_t)at;
 }
 
 /* Brings a coordinate onto the grid; whether there is such a column. */
@@ -163,7 +167,8 @@ static int onto_grid(int *at, int n, int periodic, int *period)
 static double reach_column(
 	struct particles *ps, const struct piece *p, int dx, int dy, unsigned *ends)
 {
-	int x = p->x + dx, y = p->y + dy, period[2] = { p->period[X], p->period[Y] };
+	int x = (int)p->x + dx, y = (int)p->y + dy,
+	    period[2] = { p->period[X], p->period[Y] };
 	double top = p->top, bottom = p->bottom, shared = 0;
 	size_t column;
 
@@ -200,7 +205,7 @@ static double reach_along(struct particles *ps, size_t at, int axis)
 		exposed += p.bottom - p.top -
 			   reach_column(ps, &p, axis == X ? side : 0,
 				   axis == Y ? side : 0, &ends);
-		ps->piece[at].covered |= (unsigned char)(ends * covered_bit(axis, up, 0));
+		ps->piece[at].covered |= ends * covered_bit(axis, up, 0) & 255;
 	}
 	return exposed;
 }
@@ -234,8 +239,8 @@ static void fill(struct particles *ps, size_t from)
 /* Column of a piece in the frame of its body. */
 static void column_of(const struct particles *ps, const struct piece *p, int at[2])
 {
-	at[X] = p->x + p->period[X] * ps->par.nx;
-	at[Y] = p->y + p->period[Y] * ps->par.ny;
+	at[X] = (int)p->x + p->period[X] * ps->par.nx;
+	at[Y] = (int)p->y + p->period[Y] * ps->par.ny;
 }
 
 /* Columns and depths, low[] to high[] exclusive, of the body. */
@@ -436,7 +441,7 @@ static enum num_status measure(struct particles *ps)
 	p = &ps->done[ps->ndone];
 	*p = (struct particle){ .columns = ps->members,
 		.area = ps->area,
-		.first = { first->x, first->y },
+		.first = { (int)first->x, (int)first->y },
 		.endless = ps->winds[X] || ps->winds[Y] };
 	volume = centroid(ps, &e, mean);
 	p->volume = volume * (ps->par.dx * ps->par.dy);

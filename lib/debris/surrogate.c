@@ -131,6 +131,7 @@ static void find_deviations(const struct surrogate_sample *sample, const char *p
 			continue;
 		count[c]++;
 		squares[c] += r * r;
+		/* A volume 20 times the plain one is an outlier of the fit. */
 		sum[c] += exp(fmin(r, 3));
 		all++;
 		all_squares += r * r;

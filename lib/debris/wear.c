@@ -63,8 +63,8 @@ static double depth_of(const struct wear_par *p, long layer)
 }
 
 /* Square root of strength over stress.  It grows in proportion to the depth below a
- * distant load, which makes it nearly linear for the interpolation.  Bounded where there
- * is no stress. */
+ * distant load, which makes it nearly linear for the interpolation.  Bounded, far above
+ * the 1 of failure, where there is no stress. */
 static double reserve(const struct wear *w, int ago, size_t at)
 {
 	return sqrt(w->par->yield / fmax(w->value[ago][at], 1e-6 * w->par->yield));

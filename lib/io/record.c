@@ -47,7 +47,8 @@ void record_new_field(struct record *r, const char *name, const char *unit)
 		die(EXIT_RUN, "more than %d fields in a record", RECORD_FIELDS_MAX);
 	r->name[r->nfields] = xstrdup(name);
 	r->unit[r->nfields] = xstrdup(unit);
-	r->data[r->nfields++] = xcalloc(record_points(r), sizeof(double));
+	r->data[r->nfields] = xcalloc(record_points(r), sizeof **r->data);
+	r->nfields++;
 }
 
 double *record_add(struct record *r, const char *name, const char *unit)

@@ -47,9 +47,9 @@ struct table_in {
 struct table_out {
 	FILE *f;
 	const char *name;
-	char *head;       /* comment lines not yet written */
-	char *columns;    /* header line, NULL once written */
-	struct keys told; /* comments so far */
+	char *head;          /* comment lines not yet written */
+	char *columns;       /* header line, NULL once written */
+	struct keys written; /* comments so far */
 	int ncolumns, ncells;
 	char *row; /* the cells of the present row */
 	size_t length, room;
@@ -576,14 +576,14 @@ void table_comment(struct table_out *t, const char *key, const char *format, ...
 	va_end(ap);
 	escaped = text_escape(value);
 	free(value);
-	before = keys_get(&t->told, key);
+	before = keys_get(&t->written, key);
 	if (before && strcmp(before, escaped) == 0) {
 		free(escaped);
 		return;
 	}
 	if (before && strcmp(key, "cmd") == 0)
 		write_head(t); /* with the first pipeline, even if it wrote no row */
-	keys_set(&t->told, key, escaped);
+	keys_set(&t->written, key, escaped);
 	line = xprintf("# %s: %s\n", key, escaped);
 	if (t->columns || !t->ncolumns) {
 		longer = xprintf("%s%s", t->head, line);
@@ -673,7 +673,7 @@ void table_done(struct table_out *t)
 	if (ferror(t->f) || (t->f != stdout && fclose(t->f)))
 		die(EXIT_RUN, "%s:", t->name);
 	free(t->head);
-	keys_free(&t->told);
+	keys_free(&t->written);
 	free(t->row);
 	free(t);
 }

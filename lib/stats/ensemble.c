@@ -24,7 +24,7 @@ struct ensemble {
 	struct realisations *reader;
 	int clash;
 	long culprit;
-	double particles, told;
+	double particles, reported;
 	size_t steps; /* up to the last one with rows */
 	struct ensemble_step *step;
 	size_t step_room;
@@ -154,7 +154,7 @@ static size_t sum_step(const struct realisation_cell *cell, size_t i, size_t n,
 static void take_volume(
 	struct ensemble *e, struct ensemble_group *g, double volume, double steps)
 {
-	e->told++;
+	e->reported++;
 	if (g)
 		g->realisations++;
 	if (!e->par.partial)
@@ -311,7 +311,7 @@ enum ensemble_status ensemble_took_place(struct ensemble *e, long realisation, l
 /* Realisations without rows have no particles, and all their steps took place. */
 static void add_empty(struct ensemble *e)
 {
-	double n = e->par.realisations - e->told;
+	double n = e->par.realisations - e->reported;
 
 	for (size_t s = 0; s < e->steps; s++) {
 		running_repeat(&e->step[s].count, 0, n);
@@ -339,8 +339,8 @@ enum ensemble_status ensemble_close(struct ensemble *e)
 	if (status != ENSEMBLE_OK)
 		return status;
 	if (!(e->par.realisations > 0))
-		e->par.realisations = e->told;
-	if (e->par.realisations < e->told)
+		e->par.realisations = e->reported;
+	if (e->par.realisations < e->reported)
 		return ENSEMBLE_MORE;
 	if (!e->par.last)
 		e->par.last = (long)e->steps;
@@ -363,7 +363,7 @@ long ensemble_culprit(const struct ensemble *e)
 
 size_t ensemble_reported(const struct ensemble *e)
 {
-	return (size_t)e->told;
+	return (size_t)e->reported;
 }
 
 const struct ensemble_par *ensemble_par(const struct ensemble *e)
@@ -409,5 +409,5 @@ const struct ensemble_group *ensemble_groups(const struct ensemble *e, size_t *n
 
 double ensemble_empty(const struct ensemble *e)
 {
-	return e->par.realisations - e->told;
+	return e->par.realisations - e->reported;
 }

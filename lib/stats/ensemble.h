@@ -48,7 +48,7 @@ struct ensemble_par {
 	int by_step;         /* keep the diameters of every step separately */
 	int groups; /* largest number of groups of realisations for a bootstrap; each
 		       realisation is a group if there are no more */
-	void (*told)(long done, long draws); /* called in a bootstrap; or NULL */
+	void (*progress)(long done, long draws); /* called in a bootstrap; or NULL */
 };
 
 /* One step over the realisations it took place in. */

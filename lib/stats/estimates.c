@@ -246,8 +246,8 @@ static double *draw_all(const struct ensemble *e, uint64_t seed, long draws,
 		for (int q = 0; status == 0 && q < ESTIMATES; q++)
 			draw[q * draws + i] =
 				one[q].value + (value[q].value - each[q].value);
-		if (ensemble_par(e)->told)
-			ensemble_par(e)->told(i + 1, draws);
+		if (ensemble_par(e)->progress)
+			ensemble_par(e)->progress(i + 1, draws);
 	}
 	bootstrap_free(&b);
 	if (status == 0)

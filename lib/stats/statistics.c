@@ -146,8 +146,9 @@ static void newton_step(const double g[2], const double h[3], double step[2])
 	step[1] = (h[1] * g[0] - a * g[1]) / det;
 }
 
-/* Minimum from p on, with steps of at most a half that never increase the value. */
-static int descend(const struct sample *m, double p[2], double h[3])
+/* Minimum from p on, with steps of at most a half that never increase the value;
+ * NUM_DOMAIN if there is none. */
+static enum num_status descend(const struct sample *m, double p[2], double h[3])
 {
 	/* The logarithm of the shape, or that of the scale over its width: e^20 from the
 	 * start is a power law, whose likelihood has no maximum on the way.  Steps of
@@ -171,7 +172,8 @@ static int descend(const struct sample *m, double p[2], double h[3])
 		if (steep < flat) {
 			p[0] += step[0];
 			p[1] += step[1];
-			return h[0] > 0 && h[0] * h[2] > h[1] * h[1] ? 0 : -1;
+			return h[0] > 0 && h[0] * h[2] > h[1] * h[1] ? NUM_OK
+								     : NUM_DOMAIN;
 		}
 		size = fmin(1, longest / hypot(step[0], step[1]));
 		there = minus_log(m, p[0] + size * step[0], p[1] + size * step[1]);
@@ -181,12 +183,12 @@ static int descend(const struct sample *m, double p[2], double h[3])
 				m, p[0] + size * step[0], p[1] + size * step[1]);
 		}
 		if (!(there <= here))
-			return -1;
+			return NUM_DOMAIN;
 		p[0] += size * step[0];
 		p[1] += size * step[1];
 		here = there;
 	}
-	return -1;
+	return NUM_DOMAIN;
 }
 
 static double distribution(const struct weibull *w, double x)

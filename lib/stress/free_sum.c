@@ -165,7 +165,7 @@ static struct influence *kernel_new(
 	struct free_sum *s, enum source source, double z, double cells, int wx, int wy)
 {
 	struct kernel k = { &s->par, source, wx, cells * s->par.dx, cells * s->par.dy, z,
-		malloc((size_t)wx * (size_t)wy * sizeof(struct influence)) };
+		malloc((size_t)wx * (size_t)wy * sizeof *k.value) };
 
 	if (k.value)
 		pool_run(s->pool, (size_t)wy, kernel_row, &k);

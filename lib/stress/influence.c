@@ -81,7 +81,10 @@ static const double gauss_weight[GAUSS] = { 0.11846344252809454376,
 	0.11846344252809454376 };
 
 /* Points that crowd towards the ends of [-1/2, 1/2], x' = 30 t^2 (1 - t)^2, where the
- * stress on the edges of a loaded cell has logarithms and steps. */
+ * stress on the edges of a loaded cell has logarithms and steps.  At the centres of the
+ * cell and its neighbours 8, 12, 16, 24 and 32 of them along a side are off by 3e-3,
+ * 9e-4, 4e-4, 1e-4 and 4e-5 of the pressure on the surface, and by 4e-3, 2e-4, 2e-5, 3e-6
+ * and 9e-7 below it. */
 enum { CROWD = 16 };
 
 static double crowd(int k, double *weight)
@@ -113,6 +116,8 @@ struct influence influence_element(
 {
 	struct influence f = { { 0 }, { 0 } };
 	double side = fmax(p->dx, p->dy), r = sqrt(x * x + y * y + z * z) / side;
+	/* At 1.25 cells and more in place of 1.5 five Gauss points are off by 1e-5 of the
+	 * pressure, from 1.5 on by 1e-6. */
 	int touches = fabs(x) < 1.5 * p->dx && fabs(y) < 1.5 * p->dy && z < side;
 
 	/* Three points leave about 0.06 / r^6 of the stress. */

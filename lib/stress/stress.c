@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Cells to the side of a block, and blocks to that of the grid at most; they decide only
+ * how many nodes a bound excludes, not the result. */
 enum { BLOCK = 8, BLOCKS_SIDE = 64 };
 
 struct block {

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Particles drawn at most, as many rows as in common/periods.h. */
 enum { DRAWN_MOST = 10000000 };
 
 static struct opt_list iso;

@@ -277,7 +277,7 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 	struct contact_result found = { 0 };
 
 	t.par = press_par(r, pool);
-	t.par.told = tell;
+	t.par.progress = tell;
 	t.par.kernel = coating.thickness > 0 ? &coated : NULL;
 	t.c = solver_for(r, &t.par, t.name, t.number);
 	t.h = record_need(r, "height", 1, in);

@@ -3,9 +3,21 @@
 
 static struct opt_list size, pixel;
 
+#define RAW(arg)                                                      \
+	{                                                             \
+		0, "raw", OPT_LIST, UNIT_COUNT, &size, 1, 1e9, arg,   \
+			"read headerless little-endian float64", 0, 0 \
+	}
+
 struct opt raw_rows[] = {
-	{ 0, "raw", OPT_LIST, UNIT_COUNT, &size, 1, 1e9, "NXxNY[xNZ]",
-		"read headerless little-endian float64", 0, 0 },
+	RAW("NXxNY"),
+	{ 0, "pixel", OPT_LIST, UNIT_LENGTH, &pixel, 1e-15, 1e12, "D[xD]",
+		"spacing of --raw along x and y", 0, 0 },
+	OPT_END,
+};
+
+struct opt raw_layer_rows[] = {
+	RAW("NXxNY[xNZ]"),
 	{ 0, "pixel", OPT_LIST, UNIT_LENGTH, &pixel, 1e-15, 1e12, "D[xD[xD]]",
 		"spacing of --raw along x, y and z", 0, 0 },
 	OPT_END,

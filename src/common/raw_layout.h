@@ -1,11 +1,12 @@
-/* raw_layout.h - samples without a header: options of every program that reads heights */
+/* raw_layout.h - samples without a header: options of every program that reads fields */
 #ifndef RAW_H
 #define RAW_H
 
 #include "cli/opt.h"
 #include "io/fields.h"
 
-extern struct opt raw_rows[]; /* for OPT_TABLE */
+/* For OPT_TABLE: of planes, and of fields that may have layers. */
+extern struct opt raw_rows[], raw_layer_rows[];
 
 /* Layout that was given, for fields_open(); NULL if the stream has headers.  Dies
  * where one option lacks the other. */

@@ -228,7 +228,7 @@ static struct ensemble *new_ensemble(void)
 		.confidence = confidence,
 		.by_step = output == STEPS,
 		.groups = output == FITS && (bootstrap || other_path) ? GROUPS : 0,
-		.told = tell };
+		.progress = tell };
 	struct ensemble *e = ensemble_new(&par);
 
 	if (!e)

@@ -9,6 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Phases of the sampling over which the bound is averaged, and samples of a pulse from
+ * which on it is an integral and not a sum: at 10, 100 and 4096 samples the two differ by
+ * 3e-3, 9e-5 and 2e-6. */
 enum { PHASES = 16, SUMMED = 4096 };
 static const double found =
 	5.7; /* deviations: detection threshold of duet for a lone pulse */

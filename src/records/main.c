@@ -43,7 +43,7 @@ static const struct opt opts[] = {
 	{ 0, "pretty", OPT_FLAG, UNIT_NONE, &pretty, 0, 0, NULL,
 		"format a table for reading: units, four digits, aligned columns", NULL,
 		1 },
-	OPT_TABLE(raw_rows),
+	OPT_TABLE(raw_layer_rows),
 	{ 0, "fields", OPT_TEXT, UNIT_NONE, &raw_fields, 0, 0, "NAME UNIT,...",
 		"fields of a point of --raw (default one, height m)", NULL, 1 },
 	OPT_END,
@@ -167,8 +167,8 @@ static void check_fields(char **first, const struct record *r, const struct sour
 struct output {
 	struct fields_out *fields;
 	struct table_out *table;
-	char *names;      /* of the fields of a table */
-	struct keys told; /* of records in it */
+	char *names;         /* of the fields of a table */
+	struct keys written; /* of records in it */
 	long records;
 };
 
@@ -179,17 +179,18 @@ static void put_keys(struct output *o, const struct record *r)
 	char *cmd =
 		r->cmd && !field ? opt_cmd(r->cmd, NULL) : xstrdup(r->cmd ? r->cmd : "");
 
-	if (*cmd || keys_get(&o->told, "cmd"))
+	if (*cmd || keys_get(&o->written, "cmd"))
 		table_comment(o->table, "cmd", "%s", cmd);
 	if (*cmd)
-		keys_set(&o->told, "cmd", cmd);
+		keys_set(&o->written, "cmd", cmd);
 	free(cmd);
-	for (int i = 0; i < o->told.n; i++)
-		if (strcmp(o->told.key[i], "cmd") != 0 && !record_get(r, o->told.key[i]))
-			table_comment(o->table, o->told.key[i], "%s", "");
+	for (int i = 0; i < o->written.n; i++)
+		if (strcmp(o->written.key[i], "cmd") != 0 &&
+			!record_get(r, o->written.key[i]))
+			table_comment(o->table, o->written.key[i], "%s", "");
 	for (int i = 0; i < r->keys.n; i++) {
 		table_comment(o->table, r->keys.key[i], "%s", r->keys.value[i]);
-		keys_set(&o->told, r->keys.key[i], r->keys.value[i]);
+		keys_set(&o->written, r->keys.key[i], r->keys.value[i]);
 	}
 }
 
@@ -304,7 +305,7 @@ static void close_output(struct output *o)
 	if (o->table)
 		table_done(o->table);
 	free(o->names);
-	keys_free(&o->told);
+	keys_free(&o->written);
 }
 
 /* There may be nothing to list or count, but not to convert. */

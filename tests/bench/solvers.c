@@ -18,6 +18,7 @@
  * lowest minimum found, iterated to the end.  off, most: distance from there of the
  * farthest parameter in standard errors, median and largest; the sine ends in kinks, so
  * that chi-square has minima side by side, and every solver sometimes ends in another. */
+#include "num/dot.h"
 #include "num/philox.h"
 #include "signal/fit/joint.h"
 #include "signal/noise/robust.h"
@@ -62,22 +63,6 @@ static double now(void)
 
 	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
 	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static double dot(const double *x, const double *y, size_t n)
-{
-	double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
-	size_t i = 0;
-
-	for (; i + 4 <= n; i += 4) {
-		s0 += x[i] * y[i];
-		s1 += x[i + 1] * y[i + 1];
-		s2 += x[i + 2] * y[i + 2];
-		s3 += x[i + 3] * y[i + 3];
-	}
-	for (; i < n; i++)
-		s0 += x[i] * y[i];
-	return (s0 + s1) + (s2 + s3);
 }
 
 static void sample_pulse(const struct problem *q, const double *x, int c,

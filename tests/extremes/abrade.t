@@ -34,6 +34,8 @@ is "a gap larger than all | nothing touches | free 0 | none" \
 	"$(one mode '10e-6	1' --gap 1m --hardness 2GPa --friction 0) $(one load '10e-6	1' --gap 1m --hardness 2GPa --friction 0)" "free 0"
 is "a needle of aspect 1e6, friction 10 | grooves: 1e6 > 20 | grooves | none" \
 	"$(one mode '10e-6	1e6' --gap 9um --hardness 2GPa --friction 10)" grooves
+is "a sphere held beyond its equator | slides on the harder body | grooves | none" \
+	"$(one mode '20e-6	1' --gap 3um --hardness 1GPa,9GPa --friction 0.1)" grooves
 is "a sphere without friction | rolls: 1 <= 1 | rolls | none" \
 	"$(one mode '10e-6	1' --gap 9um --hardness 2GPa --friction 0)" rolls
 scene "a load of 1e-30 N on one particle" "the gap is its diameter" 1 1e-9 "$(ratio "$(

@@ -27,6 +27,10 @@ solve() {
 
 key() { strings -n 3 "${2:-out.nrrd}" | sed -n "s/^$1:=//p" | head -1; }
 
+# column NAME ROW FILE: of a table
+column() { awk -F '\t' -v name="$1" -v row="$2" '/^#/ { next } !c { for (c = NF; c > 0 && $c != name; c--); next }
+	++n == row { print $c }' "$3"; }
+
 calc() { awk "BEGIN { printf \"%.17g\", $1 }"; }
 
 # error GOT WANT: relative difference
@@ -213,6 +217,62 @@ for at in "20 31" "40 10"; do
 		done
 	done
 done
+
+# A ball of radius R under tangential loads: Hertz, and Cattaneo and Mindlin with the shear
+# modulus G: a = (3 F R / 4 E*)^(1/3), the part of its area that sticks s^2 and the
+# displacement 3 mu F (2 - nu) / (8 G a) (1 - s^2), s = (1 - T / mu F)^(1/3)
+heights 160 160 '-(($x - 79.5) ** 2 + ($y - 79.5) ** 2) * 1e-12 / 2 / 4e-3'
+for share in 1e-4 0.1 0.5 0.9 0.999; do
+	solve --pixel 1um --young 70GPa --poisson 0.2 -F 5N --friction 0.7 --tangential "$(calc "$share * 3.5")N"
+	stick=$(calc "(1 - $share) ^ (2 / 3)")
+	radius=$(calc "(3 * 5 * 4e-3 / 4 / (70e9 / 1.92)) ^ (1 / 3)")
+	accurate "a ball, $share of its friction" "displacement of Cattaneo and Mindlin" "$(error "$(key tangential_displacement)" \
+		"3 * 3.5 * 1.8 / (8 * 70e9 / 2.4 * $radius) * (1 - $stick)")" 1e-3
+	accurate "a ball, $share of its friction" "stick area of Cattaneo and Mindlin, of the contact" \
+		"$(calc "sqrt(($(key stick_area) / $(key area) - $stick) ^ 2)")" 0.01
+done
+refused "a tangential load above the friction" 1 'slips: friction bears 3.5 N' press --pixel 1um --young 70GPa --poisson 0.2 -F 5N --friction 0.7 --tangential 3.6N
+
+# A curve of loads in one run: every row Hertz
+press --pixel 1um --estar 36GPa -F 6N --sweep 6 --table sweep.tsv >out.nrrd 2>err
+status=$?
+for row in 1 2 4 6; do
+	accurate "a ball, row $row of 6 of a sweep" "approach of Hertz" "$(error "$(column indentation $row sweep.tsv)" \
+		"(9 * $row ^ 2 / (16 * 4e-3 * 36e9 ^ 2)) ^ (1 / 3)")" 1e-3
+	accurate "a ball, row $row of 6 of a sweep" "stiffness 2 E* a" "$(error "$(column stiffness $row sweep.tsv)" \
+		"2 * 36e9 * (3 * $row * 4e-3 / 4 / 36e9) ^ (1 / 3)")" 0.01
+done
+
+# Four by three equal bumps far apart: patches by hand, each a twelfth of the load
+heights 160 120 '-((($x % 40) - 19.5) ** 2 + (($y % 40) - 19.5) ** 2) * 1e-12 / 2 / 1e-3'
+press --pixel 1um --estar 36GPa --boundary periodic -F 0.12N --patches patches.tsv >out.nrrd 2>err
+status=$?
+accurate "4 x 3 bumps" "12 patches" "$(calc "sqrt(($(grep -c '^[0-9]' patches.tsv) - 12) ^ 2)")" 0
+for row in 1 7 12; do
+	accurate "4 x 3 bumps, patch $row" "a twelfth of the load" \
+		"$(error "$(column load $row patches.tsv)" 0.01)" 1e-6
+	accurate "4 x 3 bumps, patch $row" "centre on its bump" "$(calc "sqrt(($(column x $row patches.tsv) - (($row - 1) % 4 * 40 + 20) * 1e-6) ^ 2 \
+		+ ($(column y $row patches.tsv) - (int(($row - 1) / 4) * 40 + 20) * 1e-6) ^ 2) / 1e-6")" 1e-6
+	accurate "4 x 3 bumps, patch $row" "area of Hertz" "$(error "$(column corrected_area $row patches.tsv)" \
+		"$pi * (3 * 0.01 * 1e-3 / 4 / 36e9) ^ (2 / 3)")" 0.05
+done
+
+# A layer under a wave of 1 um, pressed flat: amplitude of the pressure at the limits of
+# thickness: of the substrate, of the layer alone, and of confined compression of a thin
+# layer on a rigid base
+heights 64 4 '1e-6 * cos(2 * 3.141592653589793 * $x / 64)'
+q=$(calc "2 * $pi / 64e-6")
+# layer NAME LIMIT STIFFNESS SUBSTRATE THICKNESS YOUNG POISSON
+layer() {
+	solve --pixel 1um --boundary periodic --pressure "$(calc "2e-6 * ($3)")Pa" --young "$4,1e30Pa" --poisson 0.25,0.25 \
+		--coating "$5" --coating-young "$6" --coating-poisson "$7"
+	accurate "a layer of $5, $6 on $4" "$1" "$(error "$(values pressure | awk 'NR == 1 { l = h = $1 }
+		{ if ($1 < l) l = $1; if ($1 > h) h = $1 } END { printf "%.17g", (h - l) / 2 / 1e-6 }')" "$3")" "$2"
+}
+layer "the substrate alone" 1e-5 "100e9 / (1 - 0.0625) * $q / 2" 100GPa 1pm 300GPa 0.2
+layer "the layer alone" 1e-9 "300e9 / (1 - 0.04) * $q / 2" 100GPa 1m 300GPa 0.2
+layer "one material at any thickness" 1e-9 "100e9 / (1 - 0.0625) * $q / 2" 100GPa 10um 100GPa 0.25
+layer "E (1 - nu) / ((1 + nu) (1 - 2 nu) t)" 1e-3 "1e9 * 0.7 / (1.3 * 0.4) / 100e-9" 1e18Pa 100nm 1GPa 0.3
 
 # Precision
 for b in free periodic; do

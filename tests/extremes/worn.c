@@ -1,6 +1,6 @@
 /* worn - the volume worn under a pressure by the column rule, by sums that share nothing
  * with lib/: the point loads of Boussinesq and Cerruti (Johnson, Contact Mechanics, 3.19
- * and 3.76, the shear xy of the first with the 2 x y that rotation requires) are
+ * and 3.76, the shear xy of the first with the 2 x y that equilibrium requires) are
  * integrated over the pressure, which is bilinear between the centres of the cells
  *
  * usage: worn NX NY DX DY POISSON FRICTION YIELD <PRESSURES

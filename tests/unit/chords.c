@@ -158,10 +158,45 @@ static void test_span(void)
 	hull_free(h);
 }
 
+/* Three corners of a tetrahedron are 5, 5 and less apart: the width is the longest chord
+ * perpendicular to either edge of 5, in whatever order and orientation the corners come.
+ */
+static void test_ties(void)
+{
+	static const int corner[4][3] = { { 0, 0, 0 }, { 5, 0, 0 }, { 3, 4, 0 },
+		{ 2, 0, 2 } };
+	const double step[3] = { 1, 1, 1 }, first[3] = { 1, 0, 0 },
+		     second[3] = { 0.6, 0.8, 0 };
+	double p[POINTS][3], want, length, width;
+	int bad = 0;
+
+	for (int i = 0; i < 4; i++)
+		for (int k = 0; k < 3; k++)
+			p[i][k] = corner[i][k];
+	want = tap_max(brute_width(p, 4, first), brute_width(p, 4, second));
+	ok(fabs(brute_width(p, 4, first) - brute_width(p, 4, second)) > 0.1,
+		"the two longest edges have different perpendicular chords");
+	for (int turn = 0; turn < 4 * 8; turn++) {
+		struct hull_point point[4];
+
+		for (int i = 0; i < 4; i++)
+			for (int k = 0; k < 3; k++)
+				point[(i + turn / 8) % 4].v[k] =
+					turn >> k & 1 ? 100 - corner[i][k] : corner[i][k];
+		measure(point, 4, step, &length, &width);
+		/* Sections by brute force are up to 1/LEVELS off a corner. */
+		bad += length != 5 || fabs(width / want - 1) > 2. / LEVELS;
+	}
+	ok(bad == 0,
+		"of two longest edges both count, in any order and mirrored (%d differ)",
+		bad);
+}
+
 int main(void)
 {
 	test_span();
 	test_known();
 	test_random();
+	test_ties();
 	return tap_done();
 }

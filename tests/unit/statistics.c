@@ -174,6 +174,12 @@ static void test_samples(void)
 	near(e.value, 2.5, 0, "the mean is right");
 	near(sqrt(running_variance(&t)), sqrt(5. / 3), 1e-15,
 		"the standard deviation is right");
+	near(running_skewness(&t), 0, 1e-15, "even values have no skewness");
+	running_repeat(&t, 2.5, 2);
+	running_add(&t, 9.5);
+	/* sums of squares and cubes about the mean of 3.5: 47 and 195 */
+	near(running_skewness(&t), 195 / pow(47, 1.5) * sqrt(7 * 6) / 5, 1e-14,
+		"the skewness is that over the largest of seven values");
 	/* Student's t of three degrees of freedom: 3.182446. */
 	near(e.high, 2.5 + 3.182446305284263 * sqrt(5. / 12), 1e-9,
 		"the interval of the mean is right");
