@@ -69,8 +69,7 @@ static struct machine *add_unit(struct units *units, int number, const char *nam
 		u->filter = filtering_new(number);
 	if (!isnan(outlook_options.threshold))
 		u->outlook = outlook_new(u->filter);
-	units->unit =
-		xrealloc(units->unit, (size_t)units->n + 1, sizeof(struct machine *));
+	units->unit = xrealloc(units->unit, (size_t)units->n + 1, sizeof *units->unit);
 	return units->unit[units->n++] = u;
 }
 

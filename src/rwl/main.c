@@ -119,7 +119,7 @@ static struct paths *draw_paths(struct partition *p)
 		.step_time = step_time,
 		.slope = slope,
 		.nslopes = calibrations.n,
-		.told = tell };
+		.progress = tell };
 	struct paths *e;
 
 	for (int i = 0; i < calibrations.n; i++)

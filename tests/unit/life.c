@@ -203,9 +203,20 @@ static double burst(int k, double y)
 	return k >= 50 && k < 56 ? y + 0.2 : y;
 }
 
+static double early_outlier(int k, double y)
+{
+	return k == 3 ? 1e6 : k == 5 ? 10 : y;
+}
+
 static double repair(int k, double y)
 {
 	return k >= 50 ? y - 0.4 : y;
+}
+
+/* The same under a twentieth of the noise: each step of the rate is well beyond it. */
+static double quiet_repair(int k, double y)
+{
+	return repair(k, k / 100.0 + (y - k / 100.0) / 20);
 }
 
 static void test_disturbances(void)
@@ -215,6 +226,8 @@ static void test_disturbances(void)
 	near(plain, 41, 4, "a straight series has the life of its line");
 	near(median_life(60, burst, 0, 0), plain, 1,
 		"six outliers in a row do not change the life");
+	near(median_life(60, early_outlier, 0, 0), plain, 1,
+		"outliers in rows 4 and 6 do not change the life");
 	near(median_life(60, as_it_is, 80, 58), plain, 1,
 		"a halt of 0.8 lives does not change the life");
 	near(median_life(56, burst, 0, 0), plain + 4, 2,
@@ -224,6 +237,8 @@ static void test_disturbances(void)
 	ok(median_life(60, repair, 0, 0) > plain + 15 &&
 			median_life(60, repair, 0, 0) < 85,
 		"a repair that sets the wear back by 0.4 lengthens the life");
+	near(median_life(60, quiet_repair, 0, 0), plain + 40, 6,
+		"a repair in quiet data lengthens the life by what it sets back");
 }
 
 /* y = 1 - (t / T)^2 falls to 0; an earlier unit determines the shape. */

@@ -106,8 +106,18 @@ static double draw_volume(int law, gsl_rng *rng)
 		return exp(gsl_ran_gaussian(rng, 1) - 0.5);
 	case 5:
 		return exp(1.5 * gsl_ran_gaussian(rng, 1) - 1.125);
-	default:
+	case 6:
 		return gsl_rng_uniform(rng) < 0.3 ? 0 : gsl_ran_gamma(rng, 4, 0.25 / 0.7);
+	case 7:
+		return gsl_ran_weibull(rng, 0.5, 0.5);
+	case 8:
+		return gsl_ran_weibull(rng, 2 / sqrt(M_PI), 2);
+	case 9:
+		return gsl_ran_pareto(rng, 1.5, 1) / 3;
+	case 10:
+		return gsl_ran_pareto(rng, 2, 1) / 2;
+	default:
+		return gsl_ran_pareto(rng, 3, 1) / 1.5;
 	}
 }
 
@@ -141,21 +151,24 @@ static double coverage(int law, int k)
 	return (double)held / ENSEMBLES;
 }
 
-/* Measured with 2000 ensembles: 0.88 (lognormal, sigma 1, 10 of them) to 0.94, and 0.84
- * to 0.89 for the lognormal law of sigma 1.5, which did not choose the constant; sampling
- * error of 1000 ensembles of 100 draws: 0.012. */
+/* The constants were not chosen by the Weibull laws.  Measured with 4000 ensembles: see
+ * partition.h; sampling error of 1000 ensembles of 100 draws: 0.012. */
 static void check_coverage(void)
 {
 	static const char *const laws[] = { "normal", "uniform", "exponential",
 		"gamma of shape 0.5", "lognormal of sigma 1", "lognormal of sigma 1.5",
-		"gamma with zeros" };
-	static const int counts[] = { 3, 5, 10 };
+		"gamma with zeros", "Weibull of shape 0.5", "Weibull of shape 2",
+		"Pareto of index 1.5", "Pareto of index 2", "Pareto of index 3" };
+	static const int counts[] = { 3, 5, 10, 30 };
 
-	for (int law = 0; law < 7; law++)
-		for (int k = 0; k < 3; k++) {
+	for (int law = 0; law < 12; law++)
+		for (int k = 0; k < 4; k++) {
 			double c = coverage(law, counts[k]);
 
-			ok(c > (law == 5 ? 0.81 : 0.85) && c < 0.965,
+			ok(c > (law < 9           ? 0.85
+				       : law == 9 ? 0.77
+						  : 0.81) &&
+					c < 0.97,
 				"%s, %d volumes: 90 %% intervals contain the mean in %.3f of the ensembles",
 				laws[law], counts[k], c);
 		}

@@ -8,8 +8,8 @@
  * older point is one update of centred (Welford) sums, so every order up to P costs
  * O(P) in all, no prefix sum grows with the stream, and nothing is divided by a.
  *
- * Time is in steps (any unit); unequal gaps weigh the integral.  The oldest point of a
- * window opens its first interval; its own value is not used.
+ * Time is in steps (any unit); the integral takes unequal gaps into account.  The oldest
+ * point of a window starts the first interval; its own value is not used.
  *
  *	struct grey g = { 0 };
  *	for (int k = n; k-- > 0;)
@@ -72,11 +72,11 @@ static inline lanes grey_mean_exp(lanes a)
 	return even + a * odd;
 }
 
-/* The same two at a time. */
+/* grey_curve() for two models at a time. */
 static inline lanes grey_curve_lanes(lanes level, lanes rate, double t, double gap)
 {
 	lanes a = rate * gap, b = -rate * t;
-	lane_mask far = (lanes_abs(a) > GREY_SERIES) | (lanes_abs(b) > 600);
+	lane_mask far = lanes_max(lanes_abs(a) * (600 / GREY_SERIES), lanes_abs(b)) > 600;
 
 	if (far[0] | far[1])
 		return (lanes){ grey_curve(level[0], rate[0], t, gap),

@@ -19,7 +19,9 @@ struct noise {
 
 struct noise *noise_new(void)
 {
-	return calloc(1, sizeof(struct noise));
+	struct noise *n = calloc(1, sizeof *n);
+
+	return n;
 }
 
 void noise_free(struct noise *n)

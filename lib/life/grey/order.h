@@ -21,8 +21,8 @@ enum order_rule { ORDER_WINDOW, ORDER_INSAMPLE, ORDER_ALL, ORDER_FIXED };
 
 struct order_par {
 	enum order_rule rule;
-	int largest;       /* P >= 4, or the fixed order */
-	int window;        /* rows of the error, >= 1 */
+	int largest;       /* largest order P >= 4, or the fixed order */
+	int window;        /* rows over which errors are averaged, >= 1 */
 	double hysteresis; /* smallest relative decrease of the error that changes the
 			      order */
 	int range_low,

@@ -5,10 +5,11 @@
  *	row = forecast_at(f, t);
  *	forecast_free(f);
  *
- * With RATE_FILTER the observed value is followed by the bank of bank.h, with one more
- * coordinate in which the other one of gap and leakage grows at a constant rate; the rate
- * may change in past and future.  If the step time of the paths is known, the gap is
- * followed, with the rate of the paths as prior.
+ * With RATE_FILTER the bank of bank.h follows the observed value.  It has one more
+ * coordinate: if the value is a leakage, one in which the gap grows at a constant rate,
+ * and otherwise one in which the leakage does.  The rate may change in past and future.
+ * If the step time of the paths is known, the bank follows the gap instead, with the rate
+ * of the paths as prior.
  */
 #ifndef LIFE_FORECAST_H
 #define LIFE_FORECAST_H
@@ -21,15 +22,15 @@ struct forecast_par {
 	struct pair pair; /* gap_new NAN: the first gap observed */
 	enum pair_quantity quantity;
 	int from_new;        /* 1: wear counts from the new pair at time 0 */
-	enum rate_rule rule; /* as that of the paths, as are count, seed and first */
+	enum rate_rule rule; /* rule, count, seed and first: the same as of the paths */
 	long count;
 	uint64_t seed;
 	uint32_t first;
-	int scaled;     /* the paths know how long a step takes */
-	double skip;    /* run-in left out of the rates, s from the first row */
+	int scaled;     /* 1: the paths know how long a step takes */
+	double skip;    /* run-in from the first row on, which the rates leave out, s */
 	double horizon; /* lives beyond this count as no failure; NAN: none, or ten times
 			 * the age for filters without paths */
-	int grey;       /* follow the grey model too */
+	int grey;       /* 1: forecast by the grey model too */
 };
 
 /* The forecast at a time; NAN: unknown. */
@@ -37,20 +38,20 @@ struct forecast_row {
 	double *life; /* n samples, valid until the next call; may be reordered */
 	long n;
 	double limit; /* lives beyond this count as no failure */
-	double grey;  /* life left by the grey model */
+	double grey;  /* remaining life by the grey model */
 };
 
 struct forecast;
 
-/* NULL when out of memory.  par is copied, paths are only used. */
+/* NULL when out of memory.  par is copied; paths must outlive the forecast. */
 struct forecast *forecast_new(struct paths *paths, const struct forecast_par *par);
 void forecast_free(struct forecast *f);
 
-/* Adds a row: value as read, the gap derived from it and its error.  A gap of
- * NAN is no observation: NUM_OK, and the prediction stays as it was. */
+/* Adds a row: the value as read, and the gap derived from it with its standard error.
+ * A gap of NAN is no observation: returns NUM_OK and leaves the prediction as it was. */
 enum num_status forecast_add(
 	struct forecast *f, double t, double value, double gap, double error);
-/* The same for a new pair without observations. */
+/* Makes the forecast for a new pair without observations. */
 void forecast_foresee(struct forecast *f);
 
 /* The forecast at the latest known gap minus the time since then. */

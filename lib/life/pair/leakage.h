@@ -1,7 +1,7 @@
 /* leakage.h - leakage between valve plate and cylinder block, and the gap that causes it
  *
  * Laminar radial flow through the sealing lands of a kidney-shaped port, over the
- * angle alpha0, for parallel faces a gap h apart (Li's thesis, eq. 4-30):
+ * angle alpha0, between parallel faces at a distance h (Li's thesis, eq. 4-30):
  *
  *	Q_bv = alpha0 h^3 dP / (12 mu) [1 / ln(r2/r1) + 1 / ln(r4/r3)]
  *
@@ -18,11 +18,11 @@ struct leakage {
 	double alpha0;    /* angle of the ports under pressure, rad */
 	double drop;      /* outlet less inlet pressure, Pa */
 	double viscosity; /* dynamic, Pa s */
-	double ratio;     /* of this pair in the pump's leakage, (0, 1] */
+	double ratio;     /* share of this pair in the pump's leakage, (0, 1] */
 };
 
 /* The pump of the thesis (tables 10 and 11).  alpha0 = 2.59706 rad is not printed
- * there: it makes 70 % of 2.8 L/min meet the printed gap of 16.79 um. */
+ * there: with it, 70 % of 2.8 L/min give the printed gap of 16.79 um. */
 struct leakage leakage_thesis(void);
 
 /* A phrase that names the parameter out of range, or NULL. */

@@ -1,7 +1,7 @@
 /* observed.h - observed gaps of one unit, their rate and the grey forecast of their
  * values
  *
- * Any units of time, gap and value, the same ones throughout.
+ * Time, gap and value may have any units, which must be the same throughout.
  *
  *	struct observed *o = observed_new(RATE_MEAN);
  *	observed_add(o, t, leakage, gap);
@@ -15,7 +15,7 @@
 enum rate_rule {
 	RATE_MEAN,  /* total wear over total time (4-29) */
 	RATE_LAST,  /* wear of the last interval over its length (4-28) */
-	RATE_FILTER /* followed by the bank of bank.h */
+	RATE_FILTER /* by the bank of bank.h */
 };
 
 struct observed;
@@ -26,17 +26,17 @@ void observed_free(struct observed *o);
 /* Sets the start of the rates if it is not the first observation; called again, restarts
  * them. */
 void observed_begin(struct observed *o, double t, double gap);
-/* value: as read; gap: derived from it.  Times must not decrease; an observation at the
- * same time replaces the last one. */
+/* Adds an observation: the value as read and the gap derived from it.  Times must not
+ * decrease; an observation at the same time as the last one replaces it. */
 void observed_add(struct observed *o, double t, double value, double gap);
 
 long observed_count(const struct observed *o);
-double observed_first(const struct observed *o); /* time of the beginning */
+double observed_first(const struct observed *o); /* time at which rates start */
 double observed_time(const struct observed *o);  /* of the latest observation */
-double observed_gap(const struct observed *o);   /* latest; NAN before any */
+double observed_gap(const struct observed *o);   /* latest; NAN without observations */
 
-/* Rate of the gap by the rule (RATE_FILTER: as RATE_MEAN); NAN while there is no time
- * between observations. */
+/* Rate of the gap by the rule (RATE_FILTER: as RATE_MEAN); NAN while all
+ * observations have the same time. */
 double observed_rate(const struct observed *o);
 
 /* Time from the latest observation until the grey model GM(1,1) of all values since the

@@ -14,8 +14,8 @@ enum pair_quantity {
 	PAIR_AUTO, /* not known yet */
 	PAIR_LEAKAGE,
 	PAIR_GAP,
-	PAIR_VOLUME, /* worn since the pair was new */
-	PAIR_DEBRIS  /* the same, summed up from particles */
+	PAIR_VOLUME, /* volume worn since the pair was new */
+	PAIR_DEBRIS  /* that volume as the sum of particles */
 };
 
 /* SI units.  Thresholds are NAN where there is none; the first one reached counts. */
@@ -28,7 +28,7 @@ struct pair {
 
 /* Gap for a value; volumes count from gap 0 if the new gap is unknown. */
 double pair_gap(const struct pair *p, enum pair_quantity quantity, double value);
-/* The inverse. */
+/* Value for a gap: the inverse of pair_gap(). */
 double pair_value(const struct pair *p, enum pair_quantity quantity, double gap);
 
 /* Gap at failure; INFINITY without a threshold. */

@@ -58,8 +58,8 @@ struct paths *paths_new(const struct paths_par *par, struct partition *partition
 	e->mean = all.mean;
 	for (long i = 0; i < par->count; i++) {
 		draw_path(e, partition, i);
-		if (par->told)
-			par->told(i + 1, par->count);
+		if (par->progress)
+			par->progress(i + 1, par->count);
 	}
 	return e;
 }

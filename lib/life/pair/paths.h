@@ -1,7 +1,8 @@
-/* paths.h - the Monte-Carlo ensemble of units: what each is worn by, how long it lasts
+/* paths.h - Monte-Carlo ensemble of units: the wear of each and its remaining life
  *
  * Path i draws its own replicate of the fragments, its own unit and its own step time
- * from streams (seed, first + i), so that any split of an ensemble is the same numbers.
+ * from streams (seed, first + i), so that any split of an ensemble gives the same
+ * numbers.
  *
  *	struct paths_par par = { .seed = 1, .count = 1000, .step_time = 3600,
  *		.area = 2346.3e-6, .critical = NAN };
@@ -24,39 +25,40 @@ struct paths_par {
 	double area;      /* of the component, m2 */
 	double parts;     /* see partition_estimate() */
 	double critical;  /* share of large particles at failure; NAN: no criterion */
-	int cumulative;   /* of all particles so far, not of one step */
-	double step_time; /* s that a step stands for; NAN: from slopes or the state */
+	int cumulative;   /* 1: the share is of all particles so far, 0: of one step */
+	double step_time; /* duration of a step, s; NAN: from slopes or the state */
 	const double
 		*slope; /* gap per s of earlier units, of which each path draws one */
 	int nslopes;
-	void (*told)(long done, long paths); /* called while they are drawn; or NULL */
+	void (*progress)(long done, long paths); /* called after each draw; or NULL */
 };
 
 struct path {
 	struct partition_wear
-		wear;     /* of the component per step; its mean is this unit's */
+		wear;     /* of the component per step, with the mean of this unit */
 	double step_time; /* NAN: from the state so far */
 	long large_step;  /* first with too many large particles; 0: none */
 };
 
 struct paths;
 
-/* partition is closed, or NULL where nothing is known but observations.  NULL when out
- * of memory.  par is copied, partition only read by this call. */
+/* partition is closed, or NULL if only observations are known.  NULL when out of memory.
+ * par is copied; only this call reads partition. */
 struct paths *paths_new(const struct paths_par *par, struct partition *partition);
 void paths_free(struct paths *e);
 
 const struct path *paths_get(const struct paths *e, long i); /* NULL without partition */
 
-/* What the paths know of the rate of the gap, per s: median, and half of the width of the
- * middle 68 %; sd 0: nothing. */
+/* Rate of the gap over the paths, per s: median, and half of the width of the middle
+ * 68 %; sd is 0 if the paths have no rate. */
 void paths_rate(const struct paths *e, double *mean, double *sd);
 
-/* Life left at the latest observation, until the gap is limit or large particles are
- * too many, as samples in life, which has room for count.  gap_error: standard error of
- * the gap observed.  passage: with RATE_FILTER, count samples of the time to the limit
- * (NULL: not yet known), which know that error.  Returns how many samples there are:
- * count, 1 where all are the same, 0 where nothing can be said yet. */
+/* Remaining life at the latest observation, until the gap reaches limit or the share of
+ * large particles its critical value, as samples in life, which has room for count.
+ * gap_error: standard error of the observed gap.  passage: with RATE_FILTER, count
+ * samples of the time to the limit (NULL: not yet known), which include that error.
+ * Returns the number of samples: count; 1 if all are the same; 0 if there is no
+ * prediction yet. */
 long paths_predict(struct paths *e, const struct observed *o, const double *passage,
 	double limit, double gap_error, double *life);
 

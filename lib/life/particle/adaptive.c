@@ -60,7 +60,9 @@ struct adaptive {
 
 static double *column(struct adaptive *a)
 {
-	return calloc(a->par.filter.particles, sizeof(double));
+	double *values = calloc(a->par.filter.particles, sizeof *values);
+
+	return values;
 }
 
 struct adaptive *adaptive_new(const struct adaptive_par *par)
@@ -157,23 +159,15 @@ static inline void add_state(struct sums *s, lanes x, double gap, double centre)
 	s->tail += part;
 }
 
-/* The states from first on of a stretch of lags, oldest lag first, join n sums. */
-static void add_stretch(struct sums *sums, const struct lag *newest, int count,
-	double centre, const uint32_t *index, size_t first, size_t n)
+/* Those of a pair of particles go on by its states of a stretch of lags, oldest lag
+ * first. */
+static inline struct sums add_stretch(struct sums s, const struct lag *newest, int count,
+	double centre, size_t a, size_t b)
 {
-	for (size_t i = 0; i < n; i += 2) {
-		size_t a = first + i, b = i + 1 < n ? a + 1 : a;
-		struct sums s = sums[i / 2];
-
-		if (index) {
-			a = index[a];
-			b = index[b];
-		}
-		for (int k = count; k-- > 0;)
-			add_state(&s, (lanes){ newest[k].x[a], newest[k].x[b] },
-				newest[k].gap, centre);
-		sums[i / 2] = s;
-	}
+	for (int k = count; k-- > 0;)
+		add_state(&s, (lanes){ newest[k].x[a], newest[k].x[b] }, newest[k].gap,
+			centre);
+	return s;
 }
 
 static struct sums pick_sums(const struct sums *sums, size_t a, size_t b)
@@ -193,39 +187,42 @@ static void hand_down(struct sums *sums, const uint32_t *ancestor, size_t first,
 			ancestor[2 * i + 1 < n ? 2 * i + 1 : 2 * i] - first);
 }
 
-/* What the grey curve through count states makes of the interval h after the newest, span
- * after the oldest.  An exponential through states that cannot be told from 0 means
- * nothing: these stay at their mean. */
-static void forecast_pairs(const struct sums *sums, int count, double centre, double span,
-	double h, double noise, size_t n, double *mean)
+/* A window of states, as the grey curve sees it. */
+struct window {
+	struct lag *lag;
+	int count;
+	double share, centre;
+	double end, ahead; /* of the interval to be forecast: time from the oldest state
+			    * on, and length */
+	double noise;
+};
+
+/* What the grey curve makes of the interval ahead.  An exponential through states that
+ * cannot be told from 0 means nothing: these stay at their mean. */
+static inline lanes forecast_pair(const struct window *w, struct sums s)
 {
-	double share = 1.0 / count;
+	lanes u = s.u * w->share, x = s.x * w->share, uu = s.uu - s.u * u,
+	      ux = s.ux - s.u * x, middle = w->centre + x;
+	lanes rate = lanes_if(uu > 0, -ux / uu);
 
-	for (size_t i = 0; i < n; i += 2) {
-		const struct sums *s = &sums[i / 2];
-		lanes u = s->u * share, x = s->x * share, uu = s->uu - s->u * u,
-		      ux = s->ux - s->u * x, middle = centre + x;
-		lanes rate = lanes_if(uu > 0, -ux / lanes_pick(uu > 0, uu, lanes_all(1)));
-
-		lanes_store(mean + i,
-			lanes_pick(lanes_abs(middle) > 3 * noise,
-				grey_curve_lanes(middle + rate * u, rate, span + h, h),
-				middle),
-			n - i < 2 ? 1 : 2);
-	}
+	return lanes_pick(lanes_abs(middle) > 3 * w->noise,
+		grey_curve_lanes(middle + rate * u, rate, w->end, w->ahead), middle);
 }
 
 /* The means of n <= BLOCK particles from first on.  Those of one ancestor have the same
  * history, and one mean. */
-static void forecast_block(struct lag *lag, int count, double span, double h,
-	double noise, const uint32_t *index, size_t first, size_t n, double *mean)
+static void forecast_block(const struct window *window, const uint32_t *index,
+	size_t first, size_t n, double *mean)
 {
-	struct sums sums[BLOCK / 2];
-	const uint32_t *parent = lag[0].ancestor;
-	double centre = lag[0].x[0];
-	size_t from = first, those = n;
+	const struct window here = *window, *w = &here; /* that no result can change */
 
-	for (int k = 0; k < count; k++) {
+	struct sums sums[BLOCK / 2];
+	struct lag *lag = w->lag;
+	const uint32_t *parent = lag[0].ancestor;
+	size_t from = first, those = n;
+	int end = w->count, to = end;
+
+	for (int k = 0; k < w->count; k++) {
 		const uint32_t *ancestor = lag[k].ancestor;
 
 		if (ancestor) {
@@ -235,21 +232,26 @@ static void forecast_block(struct lag *lag, int count, double span, double h,
 		lag[k].first = from;
 		lag[k].n = those;
 	}
-	for (size_t i = 0; i < those; i += 2)
-		sums[i / 2] = (struct sums){ 0 };
-	for (int end = count; end > 0;) {
-		int to = end - 1;
-
-		while (to > 0 && !lag[to].ancestor)
+	for (; to > 0; end = to) {
+		for (to--; to > 0 && !lag[to].ancestor;)
 			to--;
-		add_stretch(sums, lag + to, end - to, centre, index, lag[to].first,
-			lag[to].n);
+		for (size_t i = 0; i < lag[to].n; i += 2) {
+			size_t a = lag[to].first + i, b = i + 1 < lag[to].n ? a + 1 : a;
+			struct sums s = { 0 };
+
+			if (end < w->count)
+				s = sums[i / 2];
+			s = add_stretch(s, lag + to, end - to, w->centre,
+				index ? index[a] : a, index ? index[b] : b);
+			if (to > 0)
+				sums[i / 2] = s;
+			else
+				lanes_store(mean + i, forecast_pair(w, s), a < b ? 2 : 1);
+		}
 		if (to > 0)
 			hand_down(sums, lag[to].ancestor + lag[to - 1].first,
 				lag[to].first, lag[to - 1].n);
-		end = to;
 	}
-	forecast_pairs(sums, count, centre, span, h, noise, lag[0].n, mean);
 	/* in place: ancestors rise, from 0 in steps of 0 or 1, so that none lies after
 	 * its descendant */
 	for (size_t i = n; parent && i-- > 0;)
@@ -262,13 +264,12 @@ static void forecast_block(struct lag *lag, int count, double span, double h,
 static void forecast(struct adaptive *a, int count, double h, double noise,
 	const uint32_t *index, size_t n, double *mean)
 {
-	double span = 0;
+	struct window w = { a->lag, count, 1.0 / count, a->lag[0].x[0], h, h, noise };
 
 	for (int k = 0; k < count; k++)
-		span += a->lag[k].gap;
+		w.end += a->lag[k].gap;
 	for (size_t i = 0; i < n; i += BLOCK)
-		forecast_block(a->lag, count, span, h, noise, index, i,
-			n - i < BLOCK ? n - i : BLOCK, mean + i);
+		forecast_block(&w, index, i, n - i < BLOCK ? n - i : BLOCK, mean + i);
 }
 
 /* Prior mean of every particle: the grey forecast of its own last p states.  The oldest

@@ -2,12 +2,13 @@
  *
  * Li, Wang, Shi, Ma, Chinese Journal of Aeronautics 31 (2018) 941; Li's thesis, 4.1.3:
  * each particle carries its own past, a grey model of the chosen order is fitted to the
- * past of each and predicts its next state, and the observation weighs them.  Departures
- * that keep the filter from diverging from the data: histories are genealogies, the
- * process noise has a floor that grows with the order and is no less than the recent
+ * past of each and predicts its next state, and the observation weights them.  Departures
+ * from the publication that keep the filter from diverging: histories are genealogies,
+ * the process noise has a floor that grows with the order and is no less than the recent
  * errors of the grey model, and an innovation monitor restarts the particles
  * from the observations when their mean squared standardised innovation over twenty rows
- * exceeds four.  A single observation twenty times farther off than usual is skipped.
+ * exceeds four.  A single observation whose error is twenty times the usual one is
+ * skipped.
  *
  *	struct adaptive *a = adaptive_new(&par);
  *	while (read(&t, &y)) {       (y may be NAN: predict only)
@@ -58,7 +59,7 @@ enum num_status adaptive_lives(
 	struct adaptive *a, double threshold, int direction, int steps, double *life);
 const struct order *adaptive_order(const struct adaptive *a);
 const struct filter *adaptive_filter(const struct adaptive *a);
-unsigned long adaptive_outliers(const struct adaptive *a); /* passed over */
+unsigned long adaptive_outliers(const struct adaptive *a); /* skipped */
 unsigned long adaptive_restarts(const struct adaptive *a); /* by the monitor */
 
 #endif

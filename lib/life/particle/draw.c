@@ -40,18 +40,24 @@ void draw_pass(struct draw *d, struct state *s)
 	state_move(s, &d->used, sizeof d->used);
 }
 
-static inline uint32_t next_word(struct draw *d)
+static inline uint32_t word_at(const struct draw *d, unsigned k)
 {
-	unsigned k;
-
-	if (d->used == WORDS) {
-		philox4x32_row(d->counter, d->key, d->word);
-		d->counter[0] += PHILOX_ROW;
-		d->counter[1] += d->counter[0] < PHILOX_ROW;
-		d->used = 0;
-	}
-	k = d->used++;
 	return d->word[k % 4][k / 4];
+}
+
+static void refill(struct draw *d)
+{
+	philox4x32_row(d->counter, d->key, d->word);
+	d->counter[0] += PHILOX_ROW;
+	d->counter[1] += d->counter[0] < PHILOX_ROW;
+	d->used = 0;
+}
+
+static uint32_t next_word(struct draw *d)
+{
+	if (d->used == WORDS)
+		refill(d);
+	return word_at(d, d->used++);
 }
 
 double draw_uniform(struct draw *d)
@@ -81,23 +87,42 @@ static double draw_rest(struct draw *d, unsigned layer, double x)
 	return ziggurat_under(&d->layers, layer, x, draw_uniform(d)) ? x : draw_normal(d);
 }
 
-/* Seven bits choose the layer, the others are the signed place in it. */
-static inline double normal(struct draw *d)
+/* Fills z from the words at hand; returns how many of n.  Seven bits of a word choose the
+ * layer, the others are the signed place in it. */
+static size_t fill(struct draw *d, double *z, size_t n)
 {
-	uint32_t w = next_word(d), layer = w % ZIGGURAT_LAYERS;
-	double u = ((double)(int32_t)(w - layer) + 0.5 * ZIGGURAT_LAYERS) * 0x1p-31;
-	double x = u * d->layers.edge[layer];
+	unsigned first = d->used;
+	size_t most = WORDS - first < n ? WORDS - first : n;
 
-	return fabs(u) < d->layers.inner[layer] ? x : draw_rest(d, layer, x);
-}
+	for (size_t i = 0; i < most; i++) {
+		uint32_t w = word_at(d, first + (unsigned)i), layer = w % ZIGGURAT_LAYERS;
+		double u =
+			((double)(int32_t)(w - layer) + 0.5 * ZIGGURAT_LAYERS) * 0x1p-31;
 
-double draw_normal(struct draw *d)
-{
-	return normal(d);
+		z[i] = u * d->layers.edge[layer];
+		if (fabs(u) >= d->layers.inner[layer]) {
+			d->used = first + (unsigned)i + 1;
+			z[i] = draw_rest(d, layer, z[i]);
+			return i + 1;
+		}
+	}
+	d->used = first + (unsigned)most;
+	return most;
 }
 
 void draw_normals(struct draw *d, double *z, size_t n)
 {
-	for (size_t i = 0; i < n; i++)
-		z[i] = normal(d);
+	for (size_t i = 0; i < n;) {
+		if (d->used == WORDS)
+			refill(d);
+		i += fill(d, z + i, n - i);
+	}
+}
+
+double draw_normal(struct draw *d)
+{
+	double z;
+
+	draw_normals(d, &z, 1);
+	return z;
 }

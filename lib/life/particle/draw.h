@@ -1,9 +1,8 @@
-/* draw.h - many normal deviates at a time from one Philox stream
+/* draw.h - normal deviates from one Philox stream, many at a time
  *
- * Stream (seed, realisation, purpose) as in num/rng.h, by the ziggurat (num/ziggurat.h),
- * one 32-bit word each with seven bits for the layer and the rest for the place in it.
- * Numbers come one after another, as a filter draws them; num/normals.h has them by
- * address.
+ * Stream (seed, realisation, purpose) as in num/rng.h, by the ziggurat (num/ziggurat.h).
+ * Each deviate uses one 32-bit word: seven bits for the layer, the others for the
+ * position in it.  Numbers are drawn in sequence; num/normals.h draws them by address.
  */
 #ifndef LIFE_DRAW_H
 #define LIFE_DRAW_H

@@ -6,8 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Log weights below it, relative to the largest, weigh nothing. */
-static const double LEAST = -700;
+/* Log-likelihoods within it have an exponential; below it a particle weighs nothing. */
+static const double FAR = 700;
+/* Sum of the weights below which their logarithms are taken.  A particle that has
+ * underflowed by then has less than 1e-200 of it. */
+static const double FADED = 1e-100;
 
 /* One remembered step; its arrays are as long as they need be. */
 struct step {
@@ -23,10 +26,10 @@ struct filter {
 	struct draw *draw;
 	struct step *ring;
 	int newest, filled;
-	double *log_weight, *weight;
+	double *weight, *next; /* next: room for those after an observation */
 	uint32_t *kept;
 	double sum; /* of weight */
-	double mean, ess;
+	double mean, variance, ess;
 	unsigned long resamplings;
 };
 
@@ -40,10 +43,10 @@ struct filter *filter_new(const struct filter_par *par, struct draw *draw)
 	f->par = *par;
 	f->draw = draw;
 	f->ring = calloc((size_t)par->depth, sizeof *f->ring);
-	f->log_weight = calloc(n, sizeof *f->log_weight);
 	f->weight = calloc(n, sizeof *f->weight);
+	f->next = calloc(n, sizeof *f->next);
 	f->kept = calloc(n, sizeof *f->kept);
-	if (!f->ring || !f->log_weight || !f->weight || !f->kept) {
+	if (!f->ring || !f->weight || !f->next || !f->kept) {
 		filter_free(f);
 		return NULL;
 	}
@@ -59,8 +62,8 @@ void filter_free(struct filter *f)
 		free(f->ring[k].ancestor);
 	}
 	free(f->ring);
-	free(f->log_weight);
 	free(f->weight);
+	free(f->next);
 	free(f->kept);
 	free(f);
 }
@@ -129,10 +132,10 @@ void filter_pass(struct filter *f, struct state *s)
 		pass_array(s, step->x, sizeof *step->x, step->count, n);
 		pass_array(s, step->ancestor, sizeof *step->ancestor, ancestors, n);
 	}
-	state_move(s, f->log_weight, n * sizeof *f->log_weight);
 	state_move(s, f->weight, n * sizeof *f->weight);
 	state_move(s, &f->sum, sizeof f->sum);
 	state_move(s, &f->mean, sizeof f->mean);
+	state_move(s, &f->variance, sizeof f->variance);
 	state_move(s, &f->ess, sizeof f->ess);
 	state_move(s, &f->resamplings, sizeof f->resamplings);
 }
@@ -163,20 +166,30 @@ static struct step *push_step(struct filter *f)
 static void weigh_equally(struct filter *f)
 {
 	for (size_t i = 0; i < f->par.particles; i++) {
-		f->log_weight[i] = 0;
 		f->weight[i] = 1;
 	}
 	f->sum = f->ess = (double)f->par.particles;
 }
 
-static double weighted_mean(const struct filter *f)
+/* Mean and variance of the states, whose squares are taken about one of them. */
+static void find_moments(struct filter *f)
 {
 	const double *x = f->ring[f->newest].x;
-	double sum = 0;
+	size_t n = f->par.particles;
+	lanes sums[2] = { { 0 } };
+	double off;
 
-	for (size_t i = 0; i < f->par.particles; i++)
-		sum += f->weight[i] * x[i];
-	return sum / f->sum;
+	for (size_t i = 0; i < n; i += 2) {
+		int width = n - i < 2 ? 1 : 2;
+		lanes d = lanes_load(x + i, width) - x[0],
+		      part = lanes_load(f->weight + i, width) * d;
+
+		lanes_add(&sums[0], part, width);
+		lanes_add(&sums[1], part * d, width);
+	}
+	off = (sums[0][0] + sums[0][1]) / f->sum;
+	f->mean = x[0] + off;
+	f->variance = fmax(0, (sums[1][0] + sums[1][1]) / f->sum - off * off);
 }
 
 enum num_status filter_start(
@@ -192,7 +205,7 @@ enum num_status filter_start(
 			s->x[i] = past[k] + spread * (2 * draw_uniform(f->draw) - 1);
 	}
 	weigh_equally(f);
-	f->mean = weighted_mean(f);
+	find_moments(f);
 	return NUM_OK;
 }
 
@@ -226,19 +239,20 @@ enum num_status filter_predict(struct filter *f, const double *mean, double sigm
 {
 	int resampled = f->ring[f->newest].resampled;
 	struct step *s = push_step(f);
-	double *x, moment = 0;
 
 	if (!s)
 		return NUM_MEMORY;
 	if (resampled)
 		weigh_equally(f);
-	x = s->x;
-	draw_normals(f->draw, x, f->par.particles);
-	for (size_t i = 0; i < f->par.particles; i++) {
-		x[i] = mean[i] + sigma * x[i];
-		moment += f->weight[i] * x[i];
+	draw_normals(f->draw, s->x, f->par.particles);
+	for (size_t i = 0; i < f->par.particles; i += 2) {
+		int width = f->par.particles - i < 2 ? 1 : 2;
+
+		lanes_store(s->x + i,
+			lanes_load(mean + i, width) + sigma * lanes_load(s->x + i, width),
+			width);
 	}
-	f->mean = moment / f->sum;
+	find_moments(f);
 	return NUM_OK;
 }
 
@@ -249,12 +263,7 @@ double filter_mean(const struct filter *f)
 
 double filter_variance(const struct filter *f)
 {
-	const double *x = f->ring[f->newest].x;
-	double sum = 0;
-
-	for (size_t i = 0; i < f->par.particles; i++)
-		sum += f->weight[i] * (x[i] - f->mean) * (x[i] - f->mean);
-	return sum / f->sum;
+	return f->variance;
 }
 
 double filter_ess(const struct filter *f)
@@ -267,26 +276,55 @@ unsigned long filter_resamplings(const struct filter *f)
 	return f->resamplings;
 }
 
-/* Adds the log-likelihood of y; returns the largest log-weight. */
-static double weigh(struct filter *f, double y, double noise)
+/* Of two states, less its constant. */
+static inline lanes log_likelihood(lanes z, double nu)
+{
+	return nu > 0 ? -0.5 * (nu + 1) *
+				(lanes){ log1p(z[0] * z[0] / nu),
+					log1p(z[1] * z[1] / nu) }
+		      : -0.5 * z * z;
+}
+
+/* Logarithm of the largest weight once y has weighed, rounded as in weigh(): far from y
+ * it would otherwise differ from all of them by more than FAR. */
+static double best(const struct filter *f, double y, double noise)
 {
 	const double *x = f->ring[f->newest].x;
-	double *lw = f->log_weight, nu = f->par.freedom, scale = 1 / noise;
-	lanes top = lanes_all(-INFINITY);
+	double top = -INFINITY, nu = f->par.freedom, scale = 1 / noise;
 
-	for (size_t i = 0; i < f->par.particles; i += 2) {
-		int width = f->par.particles - i < 2 ? 1 : 2;
-		lanes z = (y - lanes_load(x + i, width)) * scale, less = 0.5 * z * z, sum;
+	for (size_t i = 0; i < f->par.particles; i++) {
+		double l = log_likelihood(lanes_all((y - x[i]) * scale), nu)[0],
+		       before = log(f->weight[i]);
 
-		if (nu > 0)
-			less = 0.5 * (nu + 1) *
-			       (lanes){ log1p(z[0] * z[0] / nu),
-				       log1p(z[1] * z[1] / nu) };
-		sum = lanes_load(lw + i, width) - less;
-		lanes_store(lw + i, sum, width);
-		top = lanes_max(top, sum);
+		if (before > -FAR)
+			top = fmax(top, before + l);
 	}
-	return fmax(top[0], top[1]);
+	return top;
+}
+
+/* Weights by y over e^top, into next; returns the sum of their squares. */
+static double weigh(struct filter *f, double y, double noise, double top)
+{
+	const double *x = f->ring[f->newest].x;
+	double nu = f->par.freedom, scale = 1 / noise;
+	size_t n = f->par.particles;
+	lanes sums[3] = { { 0 } };
+
+	for (size_t i = 0; i < n; i += 2) {
+		int width = n - i < 2 ? 1 : 2;
+		lanes at = lanes_load(x + i, width),
+		      l = log_likelihood((y - at) * scale, nu) - top;
+		lanes w = lanes_load(f->weight + i, width) *
+			  lanes_if(lanes_abs(l) < FAR, lanes_exp(l));
+
+		lanes_store(f->next + i, w, width);
+		lanes_add(&sums[0], w, width);
+		lanes_add(&sums[1], w * w, width);
+		lanes_add(&sums[2], w * at, width);
+	}
+	f->sum = sums[0][0] + sums[0][1];
+	f->mean = (sums[2][0] + sums[2][1]) / f->sum;
+	return sums[1][0] + sums[1][1];
 }
 
 /* log of the constant of the likelihood */
@@ -342,28 +380,17 @@ static void prune(struct filter *f)
 double filter_update(struct filter *f, double y, double noise)
 {
 	struct step *s = &f->ring[f->newest];
-	double before = f->sum, top = weigh(f, y, noise), sum, squares, moment;
-	lanes sums[3] = { { 0 } };
+	double before = f->sum, top = 0, squares = weigh(f, y, noise, 0), *spent;
 	size_t n = f->par.particles;
 
-	for (size_t i = 0; i < n; i += 2) {
-		int width = n - i < 2 ? 1 : 2;
-		lanes lw = lanes_load(f->log_weight + i, width) - top;
-		lanes w =
-			lanes_if(lw > LEAST, lanes_exp(lanes_max(lw, lanes_all(LEAST))));
-
-		lanes_store(f->log_weight + i, lw, width);
-		lanes_store(f->weight + i, w, width);
-		lanes_add(&sums[0], w, width);
-		lanes_add(&sums[1], w * w, width);
-		lanes_add(&sums[2], w * lanes_load(s->x + i, width), width);
+	if (!(f->sum > FADED)) {
+		top = best(f, y, noise);
+		squares = weigh(f, y, noise, top);
 	}
-	sum = sums[0][0] + sums[0][1];
-	squares = sums[1][0] + sums[1][1];
-	moment = sums[2][0] + sums[2][1];
-	f->sum = sum;
-	f->ess = sum * sum / squares;
-	f->mean = moment / sum;
+	spent = f->weight;
+	f->weight = f->next;
+	f->next = spent;
+	f->ess = f->sum * f->sum / squares;
 	if (f->par.share >= 1 || f->ess < f->par.share * (double)n) {
 		resample(f->par.scheme, f->draw, f->weight, f->sum, n, s->ancestor);
 		s->resampled = 1;

@@ -2,10 +2,10 @@
  *
  * State model x_k = mean(x_{k-1}, x_{k-2}, ...) + N(0, sigma^2), observation
  * y_k = x_k + noise.  The caller computes the means from the histories of the
- * particles; the filter adds the noise, weighs in logarithms, and resamples when the
- * effective sample size falls below a share of N (Gordon, Salmond, Smith 1993; Li's
- * thesis, eq. 4-9 to 4-19).  Histories are genealogies: each step keeps those of its
- * states that have descendants and, where it was resampled, which they are.
+ * particles; the filter adds the noise, computes weights as logarithms, and resamples
+ * when the effective sample size falls below a share of N (Gordon, Salmond, Smith 1993;
+ * Li's thesis, eq. 4-9 to 4-19).  Histories are genealogies: each step keeps those of its
+ * states that have descendants and, after resampling, their indices.
  *
  *	struct filter *f = filter_new(&par, draw);
  *	filter_start(f, first, 4, spread);
@@ -40,8 +40,8 @@ void filter_free(struct filter *f);
 void filter_pass(struct filter *f, struct state *s);
 
 /* (Re)starts with count <= depth past values, oldest first, each particle's uniform
- * within +- spread of them, and equal weights.  Out of memory, this and filter_predict()
- * leave the filter as it was or, of several values, with fewer. */
+ * within +- spread of them, and equal weights.  Without memory, this and filter_predict()
+ * leave the filter unchanged or, if there are several values, with only some of them. */
 enum num_status filter_start(
 	struct filter *f, const double *past, int count, double spread);
 
@@ -63,7 +63,8 @@ enum num_status filter_predict(struct filter *f, const double *mean, double sigm
 /* Weighted mean and variance of the states of the present step. */
 double filter_mean(const struct filter *f);
 double filter_variance(const struct filter *f);
-/* Weighs by y with observation noise of scale noise > 0 and then resamples if necessary.
+/* Weights particles by y with observation noise of scale noise > 0, then resamples if
+ * necessary.
  * filter_mean() and filter_ess() afterwards are those before resampling.  Returns the
  * log of the evidence, log mean(p(y|x)). */
 double filter_update(struct filter *f, double y, double noise);

@@ -1,6 +1,7 @@
 /* resample.c - see resample.h */
 #include "life/particle/resample.h"
 #include <math.h>
+#include <string.h>
 
 /* Teeth in [0, sum) against the running sum of the weights, less the copies that were
  * kept already: weight - kept * unit. */
@@ -31,29 +32,26 @@ static void comb_stratified(
 	}
 }
 
-/* One offset for all teeth: particle i ends at tooth number reached / step - offset,
- * rounded up.  It is written once ahead of knowing, since most particles have one copy.
- */
+/* One offset for all teeth: particle i ends before tooth number reached / step - offset,
+ * rounded up.  The ancestor of a tooth is the number of particles that end before it:
+ * counted and summed up, without a branch that would be mispredicted. */
 static void comb_systematic(
 	const struct comb *c, size_t n, uint32_t *ancestor, double offset)
 {
 	double scale = (double)n / c->sum, reached = 0;
-	size_t k = 0;
+	uint32_t ended = 0;
 
-	for (size_t i = 0; i < n && k < n; i++) {
+	memset(ancestor, 0, n * sizeof *ancestor);
+	for (size_t i = 0; i + 1 < n; i++) {
 		size_t end;
 
 		reached += c->weight[i];
 		end = (size_t)(reached * scale + (1 - offset));
-		ancestor[k] = (uint32_t)i;
-		if (end > n)
-			end = n;
-		for (size_t copy = k + 1; copy < end; copy++)
-			ancestor[copy] = (uint32_t)i;
-		k = end > k ? end : k;
+		if (end < n)
+			ancestor[end]++;
 	}
-	while (k < n) /* rounding of the sum */
-		ancestor[k++] = (uint32_t)(n - 1);
+	for (size_t k = 0; k < n; k++)
+		ancestor[k] = ended += ancestor[k];
 }
 
 /* Ancestors first .. n - 1 by independent uniforms, sorted as they come: from the top

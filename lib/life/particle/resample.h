@@ -1,11 +1,10 @@
 /* resample.h - selection of ancestors by weight
  *
- * All schemes are unbiased: particle i is expected n w[i] times.  Ancestors are in
- * ascending order.  Systematic uses one uniform number, stratified one per particle,
- * residual keeps floor(n w) copies and draws the rest independently from the remainders,
- * multinomial draws all of them independently.
- * Douc, Cappe, Moulines, "Comparison of resampling schemes for particle filtering",
- * ISPA 2005.
+ * All schemes are unbiased: the expected number of copies of particle i is n w[i].
+ * Ancestors are in ascending order.  Systematic uses one uniform number, stratified one
+ * per particle, residual keeps floor(n w) copies and draws the rest independently from
+ * the remainders, multinomial draws all of them independently. Douc, Cappe, Moulines,
+ * "Comparison of resampling schemes for particle filtering", ISPA 2005.
  */
 #ifndef LIFE_RESAMPLE_H
 #define LIFE_RESAMPLE_H

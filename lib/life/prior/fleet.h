@@ -1,10 +1,10 @@
 /* fleet.h - the paths of earlier units as coordinates of a bank
  *
- * Each earlier unit is reduced to the age at which it first reached a level, on a grid of
- * levels (observations as they are below twenty rows, running medians of three from there
- * on, linear between rows).  A unit that has not reached the threshold is extrapolated to
- * it along the median ages that its own bank predicts.  In the coordinate that a path
- * makes, a unit of the same kind is a straight line with a speed near 1.
+ * Each earlier unit is reduced to the ages at which it first reached the levels of a
+ * grid. Units of twenty rows or more are smoothed by running medians of three; values
+ * between rows are linear.  A unit that has not reached the threshold is extrapolated to
+ * it along the median ages that its own bank predicts.  In the coordinate of a path, a
+ * unit that wears like it is a straight line with a slope near 1.
  *
  *	struct fleet *f = fleet_new(threshold, direction);
  *	fleet_add(f, unit, t, y);     (unit: 0, 1, ... in any order, t rising for each)
@@ -22,8 +22,8 @@ struct fleet;
 struct fleet *fleet_new(double threshold, int direction); /* NULL: no memory */
 void fleet_free(struct fleet *f);
 enum num_status fleet_add(struct fleet *f, int unit, double t, double y);
-/* After the last row.  failed, carried_on: how many of the units that make a coordinate
- * reached the threshold, and how many did not. */
+/* Call after the last row.  Of the units that make a coordinate, failed have reached the
+ * threshold and carried_on have not. */
 enum num_status fleet_build(struct fleet *f, int *failed, int *carried_on);
 int fleet_units(const struct fleet *f);
 const struct bank_shape *fleet_shapes(const struct fleet *f, int *n);

@@ -42,7 +42,7 @@ struct class
 	double ngroups, empty_groups; /* with and without particles */
 	double *times;                /* how often each is in the present replicate */
 	/* Of a closed class. */
-	double realisations, error; /* error: relative, of the mean */
+	double realisations, error, skewness; /* error: relative, of the mean */
 	struct moments all, now;
 };
 
@@ -228,7 +228,7 @@ static enum partition_status sum_up(struct partition *p, struct class *c)
 		empty = (double)c->highest - (double)c->lowest + 1 -
 			(double)c->nhistories;
 		running_repeat(&c->volume, 0, empty);
-		c->steps = (struct running){ c->volume.n, steps, 0 };
+		c->steps = (struct running){ .n = c->volume.n, .mean = steps };
 		c->product = 0;
 		running_repeat(&c->cell, 0, c->volume.n * steps - c->cell.n);
 	}
@@ -245,6 +245,7 @@ static enum partition_status sum_up(struct partition *p, struct class *c)
 	c->all.step_variance = c->cell.n > 1 ? running_variance(&c->cell) : 0;
 	if (c->all.mean > 0)
 		c->error = sqrt(c->all.life_variance / c->realisations) / c->all.mean;
+	c->skewness = fmax(0, running_skewness(&c->volume));
 	c->ngroups = ceil((double)c->nhistories / (double)c->per_group);
 	c->empty_groups = empty / (double)c->per_group;
 	if (p->sizes)
@@ -437,15 +438,13 @@ static const double least_draw = 0.01;
 /* A draw of the mean over that observed: see partition.h. */
 static double draw_mean(const struct class *c, gsl_rng *rng)
 {
-	/* The best of 0.5, 0.8 and 1.2 for six laws and 3 to 30 realisations; two others
-	 * judge, see partition.h and tests/unit/partition.c. */
-	const double skewness = 1.2;
+	const double tail = 4, square = 0.6;
 	double t, more;
 
 	if (!(c->error > 0))
 		return 1;
 	t = gsl_ran_tdist(rng, c->realisations - 1) * c->error;
-	more = t < 0 ? skewness * t * t : 0;
+	more = t < 0 ? square * t * t - tail * c->skewness * t : 0;
 	/* Few realisations draw t of any size: no infinite rates, and see least_draw. */
 	return fmax(exp(fmin(more - t, 200)), least_draw);
 }

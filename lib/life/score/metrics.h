@@ -1,8 +1,8 @@
-/* metrics.h - how good predictions of remaining life were, once the end is known
+/* metrics.h - accuracy of predictions of remaining life, given the true end of life
  *
  * A prediction made at time t is a set of samples of the remaining life (equal or
  * given weights) or just a point and an interval.  With the true end of life T the
- * truth is r = T - t.  Any unit of time will do, the same one throughout.
+ * truth is r = T - t.  Any unit of time, the same one throughout.
  *
  *	struct metrics_par par = { .eol = 1186, .alpha = 0.2, .beta = 0.5 };
  *	struct metrics *m = metrics_new(&par);
@@ -35,7 +35,7 @@ double metric_crps(
 struct metrics_par {
 	double eol;   /* true end of life, on the axis of t */
 	double alpha; /* half-width of the accuracy cone, share: 0.2 */
-	double beta;  /* probability that must lie inside it: 0.5 */
+	double beta;  /* least probability inside the cone: 0.5 */
 	double limit; /* upper end of the CRPS integral; 0: none */
 };
 
@@ -53,14 +53,14 @@ struct metrics_row {
 /* All predictions made before the end of life; NAN where there were none. */
 struct metrics_sum {
 	size_t n;
-	size_t infinite; /* of these, whose point is INFINITY; not in the next four */
+	size_t infinite; /* those whose point is INFINITY, left out of the next four */
 	double bias, mae, rmse; /* mean error, mean |error|, root mean square error */
 	double accuracy;        /* cumulative relative accuracy: mean of accuracy */
 	double alpha_lambda;    /* share of predictions inside the cone */
 	double horizon;         /* prognostic horizon: eol - t of the first prediction
-				 * from which on probability >= beta lies within
-				 * truth +- alpha eol; 0 where the last one fails */
-	double coverage;        /* share of intervals that hold the truth */
+				 * from which on all have probability >= beta within
+				 * truth +- alpha eol; 0 if the last one does not */
+	double coverage;        /* share of intervals that contain the truth */
 	double crps;
 };
 
@@ -70,10 +70,10 @@ struct metrics;
 struct metrics *metrics_new(const struct metrics_par *par);
 void metrics_free(struct metrics *m);
 
-/* Adds the prediction made at t; times must not fall.  sample may be NULL (n = 0):
- * the point stands for all of them.  Samples need not be sorted.  row may be NULL.
+/* Adds the prediction made at t; times must not decrease.  If sample is NULL (n = 0),
+ * the point is the only sample.  Samples need not be sorted.  row may be NULL.
  * An infinite point (a median where most samples never fail) has no error that could be
- * averaged: it is counted apart, and judged by its samples and interval.  NUM_DOMAIN
+ * averaged: it is counted separately and scored by its samples and interval.  NUM_DOMAIN
  * when t >= eol or the point is NAN: nothing is counted. */
 enum num_status metrics_add(struct metrics *m, double t, double point, double lower,
 	double upper, const double *sample, const double *weight, size_t n,

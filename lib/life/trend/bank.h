@@ -3,31 +3,34 @@
  * The damage D runs from 0 at the start (the median of the first three observations) to 1
  * at the threshold and grows at the rate dD/dt = v g(D), so that in the coordinate
  * h(D) = int_0^D dD' / g(D') it is a straight line, h = h_0 + v t, whose level and rate a
- * Kalman filter follows over gaps of any length.  A row of a table makes a coordinate
- * (struct bank_shape), and so does the path of an earlier unit (fleet.h).  Each
- * runs with two kinds of noise, on the observation alone or as much again per mean gap on
- * the damage (a Wiener process), and with three memories, observation j of k weighing
- * (j / k)^0, (j / k)^1 or (j / k)^3 through a discount.  The variance of the noise is
- * unknown, so that predictions are Student-t.  The slope of h is taken where the line
- * expects the observation, not where it fell, or noise alone would favour coordinates
- * with a bend.  Innovations beyond three standard deviations are cut to that.
+ * Kalman filter follows over gaps of any length.  Each row of a table defines a
+ * coordinate (struct bank_shape), and so does the path of an earlier unit (fleet.h).
+ * Each coordinate has trends with two kinds of noise: on the observation alone, or also,
+ * with the same variance per mean gap, on the damage (a Wiener process); and with three
+ * memories: a discount gives observation j of k the weight (j / k)^0, (j / k)^1 or
+ * (j / k)^3.  The variance of the noise is unknown, so that predictions are Student-t.
+ * The slope of h is taken at the predicted observation and not at the observed one;
+ * otherwise noise alone would favour curved coordinates.  Innovations are limited to a
+ * Student's t as rare as three standard deviations.
  *
- * Regime changes: as the age grows, particles are born from the present lines by their
- * weight, whose rate from then on grows as e^{g (t - onset)}, or has risen or fallen.
- * Each is a Kalman filter of its own, so that this is a Rao-Blackwellised particle filter
- * (Chen, Liu, J. R. Stat. Soc. B 62 (2000) 493).  The lightest make room for new ones.
+ * Regime changes: as the age grows, particles are drawn from the present trends by their
+ * weight.  From then on their rate grows as e^{g (t - onset)}, or has changed to a higher
+ * or lower one.  Each is a Kalman filter of its own: this is a Rao-Blackwellised particle
+ * filter (Chen, Liu, J. R. Stat. Soc. B 62 (2000) 493).  New particles replace the
+ * lightest.
  *
- * Lines and particles are averaged by the logarithm of their one-step predictive
+ * Trends and particles are averaged by the logarithm of their one-step predictive
  * densities, which fades with age as j / k; n rows count as sqrt(18 n), since they are
  * not independent given a wrong model (Raftery, Karny, Ettler, Technometrics 52 (2010)
  * 52; Grunwald, van Ommen, Bayesian Analysis 12 (2017) 1069).
  *
- * What happens to machines: a row that all lines find surprising is held back.  It is
- * dropped as an outlier when a later row is in order; when three in a row lie on the
- * healthy side (a repair) or eight have been held, the level is learned anew and the
- * rates are kept; when they run away in steps, they are taken as they are.  After a gap
- * of more than five mean ones the machine may have stood: what the observation after it
- * tells decides.
+ * Outliers, repairs and idle times: a row that no trend predicts is held back, beyond a
+ * Student's t as rare as five standard deviations.  If a later row agrees with them,
+ * it is dropped as an outlier.  If three rows running lie on the healthy side (a repair)
+ * or eight have been held, the level is estimated again and the rates are kept.  If the
+ * held rows move away step by step, faster than the rate, they are accepted.  After a gap
+ * of more than five mean gaps the machine may have been idle; the next observation
+ * decides.
  *
  *	struct bank *b = bank_new(&par);
  *	for each row
@@ -68,23 +71,23 @@ struct bank_par {
 	unsigned families;             /* of coordinates; 0: all */
 	const struct bank_shape *more; /* further coordinates, the caller's; NULL: none */
 	int n_more;
-	double rate_mean, rate_sd; /* what is known of dy/dt beforehand; sd 0: nothing */
+	double rate_mean, rate_sd; /* prior of dy/dt; sd 0: none */
 	int steady;                /* 1: no regime changes, neither past nor future */
 };
 
 enum { BANK_START = 4 }; /* observations before there is a prediction */
 
-/* par is copied; its shapes stay the caller's.  NULL: no memory. */
+/* par is copied; its shapes remain the property of the caller.  NULL: no memory. */
 struct bank *bank_new(const struct bank_par *par);
 void bank_free(struct bank *b);
 void bank_clear(struct bank *b); /* forgets all rows */
 
-/* Takes an observation; t rises; y NAN: none.  Those before the first on the good side of
- * the threshold are passed over. */
+/* Adds an observation; t must increase; y NAN: none.  Observations before the first one
+ * on the good side of the threshold are ignored. */
 void bank_add(struct bank *b, double t, double y);
 int bank_ready(const struct bank *b);
 
-/* What is known to have happened before the next row. */
+/* A known event before the next row. */
 enum bank_event {
 	BANK_REPAIR, /* the level is new, the rate as before */
 	BANK_LOAD    /* the rate is new, the level as before */
@@ -93,16 +96,16 @@ void bank_event(struct bank *b, enum bank_event event);
 
 /* Weighted mean of y and of dy/dt at the last row. */
 void bank_state(const struct bank *b, double *y, double *rate);
-/* Share of the weight of a family, changed regimes left out; BANK_ALL: share of changed
- * regimes. */
+/* Share of a family in the weight, without changed regimes; BANK_ALL: share of the
+ * changed regimes. */
 double bank_weight(const struct bank *b, enum bank_family family);
 
-/* What was met so far. */
+/* Events so far. */
 struct bank_counts {
 	unsigned long outliers, shifts, halts, births;
 };
 struct bank_counts bank_counts(const struct bank *b);
 
-void bank_pass(struct bank *b, struct state *s); /* of one with the same par */
+void bank_pass(struct bank *b, struct state *s); /* into a bank with the same par */
 
 #endif

@@ -13,17 +13,17 @@ enum {
 	HELD = 8              /* rows held back at most */
 };
 
-/* One line h + v t.  Covariances are in units of the noise variance. */
-struct line {
+/* A local trend h + v t.  Covariances are in units of the noise variance. */
+struct trend {
 	double h, v, phh, phv, pvv;
-	double sum; /* of squared standardised innovations, discounted */
+	double sum; /* discounted sum of squared standardised innovations */
 	double score;
-	double weight; /* all of them add up to 1 */
+	double weight; /* the weights of all trends sum to 1 */
 	double onset;  /* of the growth, age */
 	float growth;  /* of the rate since then; 0: none */
-	float offset;  /* of the log weight: of a particle at birth */
+	float offset;  /* log weight of a particle when it was drawn */
 	float lagged;  /* sum of products of innovations with the ones before */
-	float before;  /* the last one */
+	float before;  /* the last innovation */
 	unsigned char shape, kind;
 };
 
@@ -33,22 +33,23 @@ struct row {
 
 struct bank {
 	struct bank_par par;
-	int shapes, capacity; /* coordinates; lines */
+	int shapes, capacity; /* coordinates; trends */
 	long rows;            /* taken */
-	double base, range;   /* y at D = 0, signed way to the threshold */
+	double base, range;   /* y at D = 0; from there to the threshold, signed */
 	double unit;          /* of time: the first gap */
 	double first, last;   /* times, less idle */
-	double idle;          /* time it has stood */
+	double idle;          /* total idle time */
 	double age, gap;      /* of the last row, mean gap, in units */
 	double level;         /* D of the last row */
-	double bred;          /* age of the last births */
+	double bred;          /* age at which particles were last drawn */
 	double freedom[MEMORIES], keep[MEMORIES], log_constant[MEMORIES];
+	double cut; /* square of the largest standardised innovation */
 	double scored;
 	struct row held[HELD];
 	int n_held, event;
-	int lines, fixed; /* so many in use; those that are no particles */
+	int trends, fixed; /* trends in use; those of them that are not particles */
 	struct bank_counts counts;
-	struct line line[];
+	struct trend trend[];
 };
 
 /* An observation in a coordinate: h, dh/dD, and the logarithm of that with its
@@ -66,14 +67,14 @@ static inline double squared_slope(struct place p)
 static const double PACE = 0.3; /* sd of the speed of a unit over that of another */
 
 int shapes_in_table(void);
-/* A coordinate of the table, or after them one of the caller's. */
+/* Coordinate i: first those of the table, then those of the caller. */
 const struct bank_shape *shape_of(const struct bank *b, int i);
-/* Below 0 and above 1 a shape goes on straight: none is known there, and an outlier must
- * not look exact where a shape has levelled. */
+/* Below 0 and above 1 a shape continues as a straight line: it is unknown there, and a
+ * flat shape would make outliers look exact. */
 struct place place_of(const struct bank *b, int shape, double damage);
 
-/* Moves a line on by a step, and its covariance with the discount. */
-void project(const struct bank *b, struct line *l, const struct place *p, double step,
+/* Advances a trend by a step, and its covariance with the discount. */
+void project(const struct bank *b, struct trend *tr, const struct place *p, double step,
 	double keep);
 
 static inline double damage_of(const struct bank *b, double y)
@@ -81,15 +82,15 @@ static inline double damage_of(const struct bank *b, double y)
 	return (y - b->base) / b->range;
 }
 
-static inline double freedom_of(const struct bank *b, const struct line *l)
+static inline double freedom_of(const struct bank *b, const struct trend *tr)
 {
-	return b->freedom[l->kind % MEMORIES];
+	return b->freedom[tr->kind % MEMORIES];
 }
 
-/* What the rate has grown by from the onset to an age. */
-static inline double grown(const struct line *l, double age)
+/* Factor by which the rate has grown from the onset to an age. */
+static inline double grown(const struct trend *tr, double age)
 {
-	return l->growth > 0 ? exp(fmin(100, l->growth * (age - l->onset))) : 1;
+	return tr->growth > 0 ? exp(fmin(100, tr->growth * (age - tr->onset))) : 1;
 }
 
 #endif

@@ -11,15 +11,17 @@ enum { CHANCES = 8 }; /* uniform numbers of one draw */
 /* A rate of damage that would take so many ages is none, and growth of nothing is
  * nothing. */
 static const double NOTHING = 3e3;
-/* Hazard of a change of regime on the path of another unit, and of all n of them. */
-static const double KIN_HAZARD = 0.3;
+/* Hazard of a change of regime on the path of another unit, and of all n of them.  With
+ * one unit, coverage at 80 % of the life of 29 measured series and CRPS of all ages: 0.1:
+ * .79, 4.5; 0.3: .83, 4.5; 0.5: .86, 4.6; 1: 1.00, 4.9. */
+static const double KIN_HAZARD = 0.5;
 
 /* Changes of regime to come, by whether the rate falls, keeps or rises in a coordinate:
  * hazard c, share of falls, and median growth in units of one over the age.  These and
  * the three below were chosen with the weights of the coordinates, see shapes.c. */
 static const struct future {
 	double hazard, falls, growth;
-} future[] = { { 2.5, 0.24, 3.5 }, { 1.4, 0.15, 1.9 }, { 0.8, 0.033, 1.9 } };
+} future[] = { { 2.5, 0.24, 3.5 }, { 1.4, 0.15, 1.9 }, { 0.82, 0.033, 1.9 } };
 
 enum { FUTURES = sizeof future / sizeof *future };
 
@@ -88,7 +90,7 @@ double bank_chance_normal(const struct bank_chances *c, int draw, int k)
 	return c->draw[draw].z[k];
 }
 
-/* What the draws of one line share. */
+/* What the draws of one trend share. */
 struct crossing {
 	double h, v, phh, phv, pvv; /* now; covariances in units of the noise */
 	double limit;               /* h of the level to be passed */
@@ -123,35 +125,36 @@ static const struct future *future_of(const struct bank_shape *s)
 }
 
 static struct crossing prepare(
-	const struct bank *b, const struct line *l, double ahead, double target)
+	const struct bank *b, const struct trend *tr, double ahead, double target)
 {
-	struct place here = place_of(b, l->shape, b->level),
-		     there = place_of(b, l->shape, target);
-	double correlation = fmin(0.95, fmax(0, l->lagged / l->sum)), s, scale;
-	struct line now = *l;
+	struct place here = place_of(b, tr->shape, b->level),
+		     there = place_of(b, tr->shape, target);
+	double correlation = fmin(0.95, fmax(0, tr->lagged / tr->sum)), s, scale;
+	struct trend now = *tr;
 	struct crossing p = { .limit = there.h,
 		.straight = (target - b->level) * here.slope,
-		.growth = l->growth,
-		.future = future_of(shape_of(b, l->shape)),
-		.hazard = shape_of(b, l->shape)->n > 0 ? KIN_HAZARD / b->par.n_more : 0 };
+		.growth = tr->growth,
+		.future = future_of(shape_of(b, tr->shape)),
+		.hazard =
+			shape_of(b, tr->shape)->n > 0 ? KIN_HAZARD / b->par.n_more : 0 };
 
 	now.kind = 0;
 	project(b, &now, &here, ahead, 1);
-	s = grown(l, b->age + ahead);
+	s = grown(tr, b->age + ahead);
 	p.h = now.h;
 	p.v = s * now.v;
 	p.phh = now.phh;
 	p.phv = s * now.phv;
 	p.pvv = s * s * now.pvv;
-	p.freedom = freedom_of(b, l);
-	p.variance = l->sum / p.freedom;
+	p.freedom = freedom_of(b, tr);
+	p.variance = tr->sum / p.freedom;
 	/* The noise is constant in D; take it half way to the level. */
-	if (l->kind >= MEMORIES)
+	if (tr->kind >= MEMORIES)
 		p.wiener = p.variance * here.slope * there.slope / b->gap;
 	p.variance *= (1 + correlation) / (1 - correlation);
 	scale = b->unit / b->range * here.slope;
 	heed_prior(b->par.rate_mean * scale, b->par.rate_sd * fabs(scale), &p);
-	if (shape_of(b, l->shape)->n > 0)
+	if (shape_of(b, tr->shape)->n > 0)
 		heed_prior(1, PACE, &p);
 	return p;
 }
@@ -222,18 +225,18 @@ void bank_draw(struct bank *b, const struct bank_chances *c, double now, double 
 	double target = damage_of(b, level);
 	int drawn = 0;
 
-	for (int i = 0; i < b->lines; i++) {
+	for (int i = 0; i < b->trends; i++) {
 		struct crossing p;
 
-		reached += b->line[i].weight;
+		reached += b->trend[i].weight;
 		if (!(reached * c->n > drawn + 0.5))
 			continue;
-		p = prepare(b, &b->line[i], ahead, target);
+		p = prepare(b, &b->trend[i], ahead, target);
 		for (; drawn < c->n && reached * c->n > drawn + 0.5; drawn++)
 			life[drawn] = b->unit *
 				      draw_life(b, &p, b->age + ahead, &c->draw[drawn]);
 	}
-	/* No line has a weight where the data overflow. */
+	/* No trend has a weight where the data overflow. */
 	for (; drawn < c->n; drawn++)
 		life[drawn] = drawn ? life[drawn - 1] : INFINITY;
 }

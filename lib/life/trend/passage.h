@@ -1,13 +1,13 @@
-/* passage.h - times at which the lines of a bank first reach a level
+/* passage.h - times at which the trends of a bank first reach a level
  *
- * Each draw selects a line or particle by its weight, draws level, rate and noise from
+ * Each draw selects a trend or particle by its weight, draws level, rate and noise from
  * their Student-t distribution, and computes the first passage of the level: exact for a
- * line, an inverse Gaussian time if the damage is a Wiener process.
+ * straight line, an inverse Gaussian time if the damage is a Wiener process.
  *
  * The regime may change once more: after a time J with P(J > x) = (a / (a + x))^c at age
- * a (an old regime lasts long) the rate begins to grow as
- * e^{g (t - J)}, or falls and stays so.  Hazard, growth and share of falls depend on
- * whether the rate falls, keeps or rises in the coordinate as it is.
+ * a (an old regime lasts long), the rate begins to grow as e^{g (t - J)}, or drops and
+ * stays at the lower value.  Hazard, growth and share of drops depend on whether the rate
+ * at present falls, is constant or rises in the coordinate.
  *
  *	struct bank_chances *chances = bank_chances_new(500, seed);
  *	bank_draw(b, chances, now, level, life);
@@ -25,9 +25,9 @@ int bank_chances_count(const struct bank_chances *chances);
 /* Normal deviate k < 8 of a draw. */
 double bank_chance_normal(const struct bank_chances *chances, int draw, int k);
 
-/* Draws bank_chances_count() times from now on (>= the last t) to the first passage of
- * the level, unsorted; INFINITY: never.  The same chances at every row make smooth
- * successions. */
+/* Draws bank_chances_count() times from now (>= the last t) to the first passage of the
+ * level, unsorted; INFINITY: never.  With the same chances at every row the results
+ * change smoothly from row to row. */
 void bank_draw(struct bank *b, const struct bank_chances *chances, double now,
 	double level, double *life);
 

@@ -1,9 +1,9 @@
-/* predict.h - when a degradation series will first reach its threshold
+/* predict.h - time at which a degradation series will first reach its threshold
  *
  * A long-term model is fitted to the series so far and extrapolated to the threshold; the
- * distribution of the time left comes from draws (the same random numbers at every row,
- * so that successive rows differ by their data alone).  The probability of not reaching
- * it before the horizon is reported as INFINITY.
+ * distribution of the remaining time comes from draws, with the same random numbers at
+ * every row, so that successive rows differ only by their data.  Draws that do not reach
+ * it before the horizon are INFINITY.
  *
  *	struct predict *p = predict_new(&par);
  *	predict_add(p, t, y, state);
@@ -18,7 +18,7 @@
 
 enum predict_model {
 	PREDICT_AVERAGE, /* all coordinates, see bank.h */
-	PREDICT_LINEAR,  /* one family of them */
+	PREDICT_LINEAR,  /* coordinates of one family */
 	PREDICT_EXPONENTIAL,
 	PREDICT_POWER,
 	PREDICT_RATE,
@@ -45,15 +45,15 @@ struct predict;
 struct predict *predict_new(const struct predict_par *par); /* NULL: no memory */
 void predict_free(struct predict *p);
 void predict_pass(struct predict *p, struct state *s);
-/* Takes a row: the observation, NAN where it is missing, and the filtered state (of the
- * grey model alone). */
+/* Adds a row: the observation, NAN if it is missing, and the filtered state, which only
+ * the grey model uses. */
 void predict_add(struct predict *p, double t, double y, double state);
-/* Drops all rows: they were run-in. */
+/* Drops all rows, which were running-in. */
 void predict_restart(struct predict *p);
 int predict_draws(const struct predict *p);
-/* Fills life[draws] with times left from the last row, ascending, INFINITY beyond the
- * horizon; NUM_DOMAIN below four rows.  The threshold counts as reached
- * once the model stands beyond it: 0 left. */
+/* Fills life[draws] with the remaining times at the last row, ascending, INFINITY beyond
+ * the horizon; NUM_DOMAIN below four rows.  The threshold counts as reached once the
+ * model is beyond it: the remaining time is 0. */
 enum num_status predict_life(struct predict *p, double *life);
 /* The bank, for its weights, counts and events; NULL for the other models. */
 struct bank *predict_bank(struct predict *p);

@@ -3,7 +3,7 @@
 #include <math.h>
 
 /* A finished block; 1 where it is the lowest after an excursion. */
-static int judge(struct runin *r, double mean, double error)
+static int end_block(struct runin *r, double mean, double error)
 {
 	double fall;
 
@@ -33,5 +33,5 @@ int runin_add(struct runin *r, double y, double noise)
 	mean = r->sum / RUNIN_BLOCK;
 	r->sum = 0;
 	r->rows = 0;
-	return judge(r, mean, noise / sqrt(RUNIN_BLOCK));
+	return end_block(r, mean, noise / sqrt(RUNIN_BLOCK));
 }

@@ -1,8 +1,8 @@
-/* runin.h - telling the run-in of a machine from its wear
+/* runin.h - separation of the run-in of a machine from its wear
  *
- * A run-in is an early excursion that goes back: the mean of eight rows falls, against
- * the direction of damage, by more than half of what the highest such mean had risen
- * above the first, and by more than four standard errors.  Life is counted from the
+ * A run-in is an early excursion that returns: the mean of eight rows falls, against the
+ * direction of damage, by more than half of the rise from the first such mean to the
+ * highest, and by more than four standard errors.  Life is counted from the
  * lowest mean after that.  A series that only rises has no run-in, however it bends.
  */
 #ifndef LIFE_RUNIN_H
@@ -20,8 +20,8 @@ struct runin {
 	double since;          /* lowest one after the highest that ended a run-in */
 };
 
-/* Takes an observation and the standard deviation of the noise.  Returns 1 when what came
- * before this row has turned out to be run-in. */
+/* Adds an observation and the standard deviation of the noise.  Returns 1 when the rows
+ * before this one have turned out to be run-in. */
 int runin_add(struct runin *r, double y, double noise);
 
 #endif
