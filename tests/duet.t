@@ -370,9 +370,10 @@ fails "an instrument of another rate is refused" 1 'learned at 10000 Hz, the rec
 	duet --instrument rig.tsv slow.au
 fails "an instrument is for the fit" 2 'needs --method fit' duet --method count --instrument rig.tsv rig.au
 
-# What has changed since is noticed: gain, flow, form, polarity, lines, noise of either channel.
+# What has changed since is noticed: gain, form, polarity, lines, noise of either channel; the flow is
+# followed.
 cp rig.tsv before.tsv
-for change in "--gain 1.2" "--gain 0.909 --flow 63L/min" "--gain 0.909 --zone 90mm" \
+for change in "--gain 1.2" "--gain 0.909 --zone 90mm" \
 	"--gain 0.909 --phase 180deg" "--gain 0.909 --mains 1,0.4" "--gain 0.909 --noise 40mV" \
 	"--gain 0.909 --noise 24mV"; do
 	sensorsim --uniform 80um:120um --number 40 --duration 7s --gap 20ms --noise 31.6mV \
@@ -382,6 +383,15 @@ for change in "--gain 1.2" "--gain 0.909 --flow 63L/min" "--gain 0.909 --zone 90
 done >noticed
 is "a record of another instrument is doubtful, whatever has changed" "$(grep -vc '^3 1 1' noticed)" 0
 same "a doubtful record does not change the file of the instrument" before.tsv rig.tsv
+sensorsim --uniform 80um:120um --number 40 --duration 7s --gap 20ms --noise 31.6mV \
+	--lag 0.2ms:0.5ms --mains 0.2 --gain 0.909 --flow 63L/min --seed 6 --truth faster.tsv >changed.au
+ok "a kept instrument reads a record of another flow" duet --instrument rig.tsv changed.au
+grep -v '^# doubtful' out >found.tsv
+is "a kept instrument follows the flow: particles" "$(score matched faster.tsv found.tsv)" 40
+is "a kept instrument follows the flow: no false particle is found" "$(score false faster.tsv found.tsv)" 0
+at_most "a kept instrument follows the flow: the delay error is near the bound" \
+	"$(score delay_ratio faster.tsv found.tsv)" 1.3
+cp before.tsv rig.tsv
 sensorsim --uniform 80um:120um --number 0 --duration 7s --noise 31.6mV --mains 0.2 >quiet.au
 ok "a record without particles is not another instrument" duet --instrument rig.tsv quiet.au
 is "a record without particles has no rows" "$(grep -vc '^#' out)" 1

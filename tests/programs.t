@@ -69,6 +69,7 @@ fi
 for p in $programs; do
 	[ -e "$p.help" ] && sed -n "s/^  -\(.\), --\([a-z0-9-]*\).*/\2 \1 $p/p" "$p.help"
 done >letters
+at_most "the letters of all programs are read from their help" 100 "$(wc -l <letters | tr -d ' ')"
 is "a word has one letter in the whole suite" \
 	"$(sort -u -k1,2 letters | awk '$1 == w && $2 != l { print w, l, $2, $3 } { w = $1; l = $2 }')" ""
 is "a letter has one word in the whole suite" \

@@ -2,7 +2,8 @@
 # The layers of lib/: no circle of modules or of rooms, domains that neither print nor exit,
 # and a library that does not know its programs
 . "$(dirname "$0")/tap.sh"
-cd "$top" || exit 1
+# not in the tree, where ok leaves what a command prints
+ln -s "$top/lib" "$top/Makefile" . || exit 1
 
 # A module is a source with its header and what x_state.h shares of it; a room is a folder.
 # The inputs are pairs "user used", one a line.
@@ -26,7 +27,7 @@ no_circle() {
 		"$(rooms <"$2" | awk '$1 !~ /^(io|cli)$/ && $2 ~ /^(io|cli)$/')" ""
 }
 
-sources=$(find lib -name '*.[ch]')
+sources=$(find lib/ -name '*.[ch]')
 # shellcheck disable=SC2086
 awk -F '"' '/^#include "/ { print FILENAME, $2 }' $sources | name >"$work/includes"
 no_circle "by #include" "$work/includes"
@@ -36,7 +37,7 @@ is "no source of the library includes one of a program" "$(awk '$2 ~ /\// { prin
 # The objects of this build; those of sources that are gone do not count.
 objects=${BIN:-$top/bin}
 case $objects in */build/*) objects=${objects%/bin} ;; *) objects=$top/build ;; esac
-find lib -name '*.c' | while read -r f; do
+find lib/ -name '*.c' | while read -r f; do
 	o=$objects/${f%.c}.o
 	[ ! -e "$o" ] || echo "$o"
 done | tr '\n' '\0' | xargs -0 nm -P -A | sed 's|^.*/\(lib/[^:]*\):|\1|' | name >"$work/symbols"

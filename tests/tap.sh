@@ -3,14 +3,14 @@
 #
 #	is NAME GOT WANT           equal strings
 #	like NAME GOT PATTERN      GOT matches a basic regular expression
-#	near NAME GOT WANT TOL     |got - want| <= tol
-#	at_most NAME GOT LIMIT     got <= limit, and got is a number
+#	near NAME GOT WANT TOL     |got - want| <= tol, all three numbers
+#	at_most NAME GOT LIMIT     got <= limit, both numbers
 #	rising NAME NUMBER...      two numbers or more, none below the one before (nan is none)
 #	ok NAME COMMAND...         command succeeds
 #	fails INPUT STATUS PATTERN COMMAND...
 #	                           exits with STATUS, one line on stderr matching PATTERN;
 #	                           INPUT names what is refused
-#	same NAME FILE FILE        equal bytes
+#	same NAME FILE FILE        equal bytes, and some
 #	skip NAME WHY
 #	done_testing
 #
@@ -72,7 +72,8 @@ like() {
 
 near() {
 	if awk -v g="$2" -v w="$3" -v t="$4" 'BEGIN {
-		if (g !~ /^[-+]?[0-9.]/) exit 1
+		number = "^[-+]?[0-9.]+([eE][-+]?[0-9]+)?$"
+		if (g !~ number || w !~ number || t !~ number) exit 1
 		d = g - w; if (d < 0) d = -d; exit !(d <= t) }'; then
 		pass "$1"
 	else
@@ -81,7 +82,9 @@ near() {
 }
 
 at_most() {
-	if awk -v g="$2" -v l="$3" 'BEGIN { exit !(g ~ /^[-+]?[0-9.]/ && g + 0 <= l + 0) }'; then
+	if awk -v g="$2" -v l="$3" 'BEGIN {
+		number = "^[-+]?[0-9.]+([eE][-+]?[0-9]+)?$"
+		exit !(g ~ number && l ~ number && g + 0 <= l + 0) }'; then
 		pass "$1"
 	else
 		fail "$1" "got:  $2" "want: at most $3"
@@ -131,7 +134,13 @@ fails() {
 }
 
 same() {
-	if cmp "$2" "$3" >err 2>&1; then pass "$1"; else fail "$1" "$(cat err)"; fi
+	if ! [ -s "$2" ]; then
+		fail "$1" "$2 is empty or missing"
+	elif cmp "$2" "$3" >err 2>&1; then
+		pass "$1"
+	else
+		fail "$1" "$(cat err)"
+	fi
 }
 
 # column NAME FILE: the values of one column of a table, or a word where there is no table

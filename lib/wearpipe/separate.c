@@ -76,6 +76,8 @@ static enum wp_status outcome(struct wp_separate *s, enum separate_status status
 			"channels with nothing in common: no particle, or give the delay",
 		[SEPARATE_SWAPPED] = "pulses reach channel 2 first",
 		[SEPARATE_FAR] = "the delay is as long as what is learned from",
+		[SEPARATE_HARD] = "not described by a reasonable number of pulses",
+		[SEPARATE_AT_ONCE] = "both channels have the same at once",
 		[SEPARATE_NARROW] = "a filter has left too narrow a band",
 		[SEPARATE_FAST] = "no pulse of at least 8 samples",
 		[SEPARATE_SLOW] = "pulses as long as what is learned from",

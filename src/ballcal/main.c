@@ -13,7 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Level of the tests of the exponent and of the fit. */
+/* Level of the tests of the exponent and of the fit: one right calibration in a hundred
+ * is called wrong by each. */
 static const double UNLIKELY = 0.01;
 
 static struct opt_texts balls;

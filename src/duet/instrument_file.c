@@ -18,8 +18,9 @@ static uint32_t add(uint32_t crc, double value)
 }
 
 /* What was given instead of learned. */
-static uint32_t options_of(const struct calibrate_par *par)
+static uint32_t options_of(const struct instrument_place *place)
 {
+	const struct calibrate_par *par = place->known;
 	uint32_t crc = 0;
 
 	crc = add(crc, isnan(par->lag) ? -1 : par->lag);
@@ -33,7 +34,7 @@ static uint32_t options_of(const struct calibrate_par *par)
 		crc = add(crc, par->omega[k]);
 	for (size_t k = 0; par->filter && k < par->filter_taps; k++)
 		crc = add(crc, par->filter[k]);
-	return crc;
+	return isnan(place->angle) ? crc : add(crc, place->angle);
 }
 
 /* --- write */
@@ -73,7 +74,7 @@ void instrument_write(const struct instrument_place *place, const struct instrum
 	table_comment(t, "instrument", "%s", version);
 	table_comment(t, "rate", "%.17g", place->rate);
 	table_comment(t, "spacing", "%.17g", place->spacing);
-	table_comment(t, "options", "%08lx", (unsigned long)options_of(place->known));
+	table_comment(t, "options", "%08lx", (unsigned long)options_of(place));
 	describe(t, place, in);
 	for (size_t i = 0; i < n; i++) {
 		const double cell[2] = { v[i].index, v[i].value };
@@ -117,7 +118,7 @@ static void check_keys(const struct table_in *t, const struct instrument_place *
 	if (spacing != place->spacing)
 		die(EXIT_RUN, "%s: learned with sensors %g m apart, --spacing is %g m",
 			table_name(t), spacing, place->spacing);
-	if (strtoul(key_of(t, "options"), NULL, 16) != options_of(place->known))
+	if (strtoul(key_of(t, "options"), NULL, 16) != options_of(place))
 		die(EXIT_RUN,
 			"%s: learned with other options of the instrument, or through "
 			"another filter",

@@ -8,6 +8,7 @@
 struct instrument_place {
 	const char *path;
 	double rate, spacing;
+	double angle; /* of the first of two components; NAN: there is one */
 	const struct calibrate_par *known;
 };
 

@@ -2,6 +2,7 @@
 #include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
+#include "components.h"
 #include "instrument_options.h"
 #include "io/input.h"
 #include "io/signals.h"
@@ -11,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Frames from which the instrument is learned by default: 6.6 s at 10 kHz, as duet(1)
+ * says. */
 enum { LEARN = 65536 };
 enum { METHOD_FIT, METHOD_DUET, METHOD_COUNT };
 
@@ -36,7 +39,7 @@ static const struct opt opts[] = { OPT_HEADING("Method"),
 		"peak voltage over velocity and diameter cubed, V s/m4", 0, 0 },
 	{ 0, "sources", OPT_CHOICE, UNIT_COUNT, &sources, 1, 16, "auto|N",
 		"particles in each section", automatic, 0 },
-	OPT_TABLE(instrument_rows),
+	OPT_TABLE(instrument_rows), OPT_TABLE(component_rows),
 	{ 0, "instrument", OPT_TEXT, UNIT_NONE, &instrument_file, 0, 0, "FILE",
 		"use the instrument kept in FILE; if there is none, learn and keep it", 0,
 		0 },
@@ -67,7 +70,8 @@ static const struct opt opts[] = { OPT_HEADING("Method"),
 
 static const struct prog prog = { "duet",
 	"Find the wear particles in the record of two inductive sensors.", "[file]",
-	"signal: two channels, V", "table: one row per particle", opts };
+	"signal: two channels, V, or four: I1 Q1 I2 Q2", "table: one row per particle",
+	opts };
 
 /* Channels aligned already and no pulse to look for: a mixture like that of talkers. */
 static int is_mixture(void)
@@ -136,6 +140,7 @@ static int separate_all(struct signal_in *in, struct found *out)
 		.mask_window = opt_given("window") ? (size_t)window : 0,
 		.mask_hop = opt_given("hop") ? (size_t)hop : 0,
 		.want_sources = separated != NULL,
+		.quadrature = out->components,
 		.context = out };
 
 	par.known = instrument_par(rate, signal_format(in)->filter);
@@ -176,9 +181,12 @@ int main(int argc, char **argv)
 
 	check_options();
 	in = signal_open(argv[i], NULL);
-	if (signal_format(in)->channels != 2 && method != METHOD_COUNT)
-		die(EXIT_RUN, "%s: want 2 channels, got %d", signal_name(in),
+	out.components = method == METHOD_FIT && signal_format(in)->channels == 4;
+	if (signal_format(in)->channels != 2 && method != METHOD_COUNT && !out.components)
+		die(EXIT_RUN, "%s: want 2 channels%s, got %d", signal_name(in),
+			method == METHOD_FIT ? " or 4 (I1 Q1 I2 Q2)" : "",
 			signal_format(in)->channels);
+	components_check(method == METHOD_FIT ? signal_format(in)->channels : 2);
 	if (sensor > signal_format(in)->channels)
 		die(EXIT_RUN, "%s: there is no channel %ld", signal_name(in), sensor);
 	cmd = opt_cmd(signal_format(in)->cmd, NULL);

@@ -1,6 +1,7 @@
 #include "methods.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "components.h"
 #include "instrument_file.h"
 #include "instrument_options.h"
 #include <math.h>
@@ -17,8 +18,13 @@ static void check_status(
 		[SEPARATE_SHORT] = "want at least 64 frames to learn from",
 		[SEPARATE_SILENT_1] = "channel 1 is constant: a dead sensor",
 		[SEPARATE_SILENT_2] = "channel 2 is constant: a dead sensor",
+		[SEPARATE_AT_ONCE] =
+			"both channels have the same at once: shocks or crosstalk, no "
+			"particles; give --align 0 if they are aligned",
 		[SEPARATE_SWAPPED] = "pulses reach channel 2 first: the sensors are "
 				     "swapped, or the oil flows backwards",
+		[SEPARATE_HARD] = "what it is learned from is not described by a "
+				  "reasonable number of pulses",
 		[SEPARATE_FAR] = "--align is as long as what is learned from: --learn "
 				 "from more of the record",
 		[SEPARATE_NARROW] = "the filter it has passed leaves too narrow a band "
@@ -62,6 +68,7 @@ static void report(const struct separate *s, double rate)
 	stats_set("sections_single", c->singles);
 	stats_set("sections_unresolved", c->unresolved);
 	stats_set("misfits", c->misfits);
+	stats_set("reversed", c->negative);
 	stats_set("misfits_by_velocity", c->foreign);
 	stats_set("fits", c->fits);
 	stats_set("fit_steps", c->steps);
@@ -100,6 +107,8 @@ static int is_doubtful(
 	      : doubt == SEPARATE_NOISE
 		      ? xprintf("the noise is %.3g and %.3g times that of the instrument",
 				share[0], share[1])
+	      : doubt == SEPARATE_REVERSED
+		      ? xprintf("%.0f of %.0f pulses are reversed", c->negative, c->rows)
 		      : xprintf("%.0f %% of it is unresolved, unlike the record of the "
 				"instrument",
 				100 * c->dense / c->samples);
@@ -121,12 +130,21 @@ static void keep(const struct separate *s, const struct instrument_place *place)
 		instrument_write(place, &view);
 }
 
+static void check_finite(const double *frame, size_t n, long long first, const char *name)
+{
+	for (size_t i = 0; i < 4 * n; i++)
+		if (!isfinite(frame[i]))
+			die(EXIT_RUN, "%s: channel %zu, frame %lld: not a finite number",
+				name, i % 4 + 1, first + (long long)(i / 4));
+}
+
 int separate_record(struct signal_in *in, struct found *out,
 	const struct separate_par *given, const char *file)
 {
-	static double x[2 * BLOCK];
+	static double x[2 * BLOCK], v[2 * BLOCK], frame[4 * BLOCK];
 	struct separate_par par = *given;
 	struct instrument_place place = { .path = file,
+		.angle = out->components ? components_angle() : NAN,
 		.rate = (double)out->rate,
 		.spacing = out->spacing,
 		.known = &par.known };
@@ -134,6 +152,7 @@ int separate_record(struct signal_in *in, struct found *out,
 	struct separate *s;
 	int doubtful, learned = 0;
 	enum separate_status status;
+	long long read = 0;
 	size_t n;
 
 	if (file && instrument_read(&place, &kept))
@@ -141,10 +160,16 @@ int separate_record(struct signal_in *in, struct found *out,
 	s = separate_new(&par);
 	if (!s)
 		die(EXIT_RUN, "no memory");
-	while ((n = signal_read_some(in, x, BLOCK)) > 0) {
+	while ((n = signal_read_some(in, out->components ? frame : x, BLOCK)) > 0) {
 		int any;
 
-		status = separate_push(s, x, n);
+		if (out->components) {
+			check_finite(frame, n, read, signal_name(in));
+			components_split(frame, n, x, v);
+		}
+		status = out->components ? separate_push_quadrature(s, x, v, n)
+					 : separate_push(s, x, n);
+		read += (long long)n;
 		any = put_ready(s, out);
 		check_status(status, s, signal_name(in));
 		if (any)
@@ -170,18 +195,16 @@ int separate_record(struct signal_in *in, struct found *out,
 }
 
 static struct count *start_count(const struct count_par *par, const double *x, size_t n,
-	int channels, const char *name)
+	int channels, size_t channel, const char *name)
 {
 	double *work = xcalloc(n, sizeof *work);
-	double level = isnan(par->floor) ? count_level(x + par->sensor - 1, n,
-						   (size_t)channels, work)
+	double level = isnan(par->floor) ? count_level(x, n, (size_t)channels, work)
 					 : par->floor;
 	struct count *c;
 
 	free(work);
 	if (!(level > 0))
-		die(EXIT_RUN, "%s: channel %d is constant: give --floor", name,
-			par->sensor);
+		die(EXIT_RUN, "%s: channel %zu is constant: give --floor", name, channel);
 	c = count_new(level);
 	if (!c)
 		die(EXIT_RUN, "no memory");
@@ -191,6 +214,8 @@ static struct count *start_count(const struct count_par *par, const double *x, s
 void count_record(struct signal_in *in, struct found *out, const struct count_par *par)
 {
 	int channels = signal_format(in)->channels;
+	/* that in phase, of four */
+	size_t counted = (size_t)(par->sensor - 1) * (channels == 4 ? 2 : 1);
 	double *x = xcalloc(par->learn, sizeof *x * (size_t)channels);
 	struct count *c = NULL;
 	struct peak p;
@@ -199,14 +224,15 @@ void count_record(struct signal_in *in, struct found *out, const struct count_pa
 
 	while ((n = signal_read(in, x, par->learn)) > 0) {
 		for (size_t i = 0; i < n; i++, frame++) {
-			double y = x[i * (size_t)channels + (size_t)par->sensor - 1];
+			double y = x[i * (size_t)channels + counted];
 
 			if (!isfinite(y))
 				die(EXIT_RUN,
-					"%s: channel %d, frame %lld: not a finite number",
-					signal_name(in), par->sensor, frame);
+					"%s: channel %zu, frame %lld: not a finite number",
+					signal_name(in), counted + 1, frame);
 			if (!c)
-				c = start_count(par, x, n, channels, signal_name(in));
+				c = start_count(par, x + counted, n, channels,
+					counted + 1, signal_name(in));
 			if (count_sample(c, y, &p))
 				found_peak(out, &p, par->sensor, par->delay);
 		}

@@ -1,6 +1,7 @@
 #include "outputs.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
+#include "components.h"
 #include "signal/detect/detectable.h"
 #include "signal/pulse/sensor.h"
 #include "signal/separate/sizing.h"
@@ -9,6 +10,10 @@
 #include <string.h>
 
 enum { SOURCES_SHOWN = 8 };
+
+#define COLUMNS                                                                     \
+	"particle time1 time2 diameter amplitude delay velocity time1_se time2_se " \
+	"diameter_se amplitude_se delay_se velocity_se section sources chi2 verdict"
 
 static const char *const verdicts[] = { "alone", "overlap", "misfit", "unresolved" };
 
@@ -28,9 +33,10 @@ void found_open(struct found *out, const struct signal_format *format, const cha
 		NULL, format->start };
 
 	out->rate = format->rate;
-	out->particles = table_create(NULL, cmd, "1 s s m V s m/s s s m V s m/s 1 1 1 1",
-		"particle time1 time2 diameter amplitude delay velocity time1_se time2_se "
-		"diameter_se amplitude_se delay_se velocity_se section sources chi2 verdict");
+	out->particles = table_create(NULL, cmd,
+		out->components ? "1 s s m V s m/s s s m V s m/s 1 1 1 1 rad rad 1 1"
+				: "1 s s m V s m/s s s m V s m/s 1 1 1 1",
+		out->components ? COLUMNS " phase phase_se ferrous class" : COLUMNS);
 	if (format->seed)
 		table_comment(out->particles, "seed", "%s", format->seed);
 	if (format->start)
@@ -53,17 +59,39 @@ void found_open(struct found *out, const struct signal_format *format, const cha
 	}
 }
 
-/* A row of n numbers and a verdict. */
+/* A row of n numbers and a verdict, not ended. */
 static void put_row(struct table_out *t, const double *row, int n, const char *word)
 {
 	for (int i = 0; i < n; i++)
 		table_put(t, row[i]);
 	table_put_text(t, word);
-	table_end_row(t);
 }
 
-void found_particle(struct found *out, const struct transit *p)
+static void put_class(struct table_out *t, const struct transit *p, double diameter)
 {
+	struct component_class class =
+		components_classify(diameter, p->phase, p->phase_se);
+
+	table_put(t, class.phase);
+	table_put(t, p->phase_se);
+	table_put(t, class.ferrous);
+	table_put_text(t, class.name);
+}
+
+/* The whole amplitude where only the first component is known: that of phases 0 and -90
+ * degrees. */
+static struct transit whole(const struct found *out, struct transit p)
+{
+	if (out->components && isnan(p.phase)) {
+		p.amplitude /= components_share();
+		p.amplitude_se /= components_share();
+	}
+	return p;
+}
+
+void found_particle(struct found *out, const struct transit *found)
+{
+	const struct transit every = whole(out, *found), *p = &every;
 	int one = p->verdict != SEPARATE_UNRESOLVED;
 	struct sizing s;
 
@@ -74,8 +102,11 @@ void found_particle(struct found *out, const struct transit *p)
 		(double)p->section, (double)p->sources, p->chi2 };
 
 	put_row(out->particles, row, 16, verdicts[p->verdict]);
+	if (out->components)
+		put_class(out->particles, p, s.diameter);
+	table_end_row(out->particles);
 	if (p->verdict == SEPARATE_ALONE || p->verdict == SEPARATE_OVERLAP)
-		out->largest = fmax(out->largest, p->amplitude);
+		out->largest = fmax(out->largest, fabs(p->amplitude));
 }
 
 void found_peak(struct found *out, const struct peak *p, int sensor, double delay)
@@ -86,6 +117,7 @@ void found_peak(struct found *out, const struct peak *p, int sensor, double dela
 		p->height, delay, v, NAN, NAN, NAN, NAN, NAN, NAN, NAN, 1, NAN };
 
 	put_row(out->particles, row, 16, "counted");
+	table_end_row(out->particles);
 }
 
 /* Writes silence up to sample upto, then what is held. */
@@ -111,9 +143,10 @@ static void draw_sources(struct found *out, const struct separate_section *s)
 	at = s->begin > out->drawn ? (size_t)(s->begin - out->drawn) : 0;
 	end = at + n;
 	if (end > out->held) {
-		out->frames = xrealloc(out->frames, end, SOURCES_SHOWN * sizeof(double));
+		out->frames =
+			xrealloc(out->frames, end, SOURCES_SHOWN * sizeof *out->frames);
 		memset(out->frames + out->held * SOURCES_SHOWN, 0,
-			(end - out->held) * SOURCES_SHOWN * sizeof(double));
+			(end - out->held) * SOURCES_SHOWN * sizeof *out->frames);
 		out->held = end;
 	}
 	for (int k = 0; k < s->sources; k++)
@@ -133,13 +166,16 @@ static void put_section(struct found *out, const struct separate_section *s)
 		.fourth_se = NAN };
 	const struct campbell *c = s->dense ? s->dense : &none;
 	double rate = (double)out->rate;
+	double seen = out->components ? components_share() : 1;
 	const double row[12] = { (double)s->number, (double)s->begin / rate,
 		(double)s->end / rate, s->sources,
-		c->rate_se * (double)(s->end - s->begin), c->amplitude, c->amplitude_se,
-		c->square * rate, c->square_se * rate, c->fourth * rate,
-		c->fourth_se * rate, s->chi2 };
+		c->rate_se * (double)(s->end - s->begin), c->amplitude / seen,
+		c->amplitude_se / seen, c->square * rate / pow(seen, 2),
+		c->square_se * rate / pow(seen, 2), c->fourth * rate / pow(seen, 4),
+		c->fourth_se * rate / pow(seen, 4), s->chi2 };
 
 	put_row(out->section_rows, row, 12, verdicts[s->verdict]);
+	table_end_row(out->section_rows);
 }
 
 static void put_histogram(struct found *out, const struct separate_section *s)
@@ -171,6 +207,8 @@ void found_section(void *context, const struct separate_section *s)
 void found_detectable(struct found *out, const struct calibration *c)
 {
 	enum { ROWS = 100 };
+	/* of an amplitude in the channels that are searched */
+	double seen = out->components ? components_share() : 1;
 	double share[DETECTABLE_PLACES], alone = 0, beside = 0, noise, v, a;
 	struct joint_scene scene;
 
@@ -187,10 +225,10 @@ void found_detectable(struct found *out, const struct calibration *c)
 		a *= 1.1;
 	for (int k = 0; k < ROWS && !(alone > 0.999 && beside > 0.9); k++) {
 		alone = detectable_alone(&scene, a / noise);
-		beside =
-			detectable_beside(&scene, a / noise, out->largest / noise, share);
-		const double row[4] = { sensor_diameter(out->kappa, v, a), a, alone,
-			beside };
+		beside = detectable_beside(
+			&scene, a / noise, seen * out->largest / noise, share);
+		const double row[4] = { sensor_diameter(out->kappa, v, a / seen),
+			a / seen, alone, beside };
 
 		table_put_row(out->limits, row, 4);
 		a *= 1.1;

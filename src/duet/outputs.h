@@ -12,6 +12,7 @@ struct found {
 	const char *separated, *histogram, *sections, *detectable;
 	double spacing, kappa; /* m, V s/m4 */
 	double rate;
+	int components; /* 1: the record has two of either sensor (components.h) */
 	long count;     /* particles so far */
 	double largest; /* amplitude of one that was resolved, V */
 	struct table_out *particles, *section_rows, *weights, *limits;

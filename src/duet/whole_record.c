@@ -84,12 +84,14 @@ int whole_record(
 	struct signal_in *in, struct found *out, size_t window, size_t hop, int sources)
 {
 	struct mixture_par par = {
-		.window = window, .hop = hop, .sources = sources, .told = tell
+		.window = window, .hop = hop, .sources = sources, .progress = tell
 	};
 	struct mixture_source source[MIXTURE_SOURCES];
 	struct mixture *m;
 	int count, doubtful;
 
+	/* The power of two nearest to 64 ms, by ratio: speech is most nearly disjoint in
+	 * windows of 1024 samples at 16 kHz (Yilmaz and Rickard, see mixture.h). */
 	if (!window)
 		for (par.window = 4; (double)par.window < 0.045 * (double)out->rate;)
 			par.window *= 2;

@@ -15,7 +15,5 @@ const struct material *material_draw(
 	uint64_t seed, uint32_t realisation, uint64_t particle);
 /* Sets the response of the particle. */
 void material_respond(const struct material *material, struct passage *p);
-/* "ferrous, steel, ...": fresh memory. */
-char *material_names(void);
 
 #endif

@@ -1,5 +1,6 @@
 #include "particle_source.h"
 #include "cli/msg.h"
+#include "common/materials.h"
 #include "io/quantities.h"
 #include "io/tables.h"
 #include "material_options.h"

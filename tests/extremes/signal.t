@@ -41,7 +41,8 @@ duet noise.au >found.tsv 2>said
 scene "noise alone" "no particle, one warning" 1 0 \
 	"$(($(column particle found.tsv | wc -l) + $(wc -l <said)))"
 awk '{ print $1, $1 }' frames.txt | au 10000 2 >twice.au
-duet twice.au >found.tsv
+refused "the same channel twice, unless it is said to be aligned" 1 'the same at once' duet twice.au
+duet --align 0 twice.au >found.tsv
 scene "the same channel twice (lag 0)" "20 particles" 20 0 "$(column particle found.tsv | wc -l)"
 awk '{ for (i = 1; i <= 2; i++) if ($i > 0.5) $i = 0.5; else if ($i < -0.5) $i = -0.5
 	print $1, $2 }' frames.txt | au 10000 2 >clipped.au
@@ -181,4 +182,25 @@ scene "200 s instead of 20 s" "memory grows by less than a tenth" 1 0.1 \
 	"$(awk -v a="$m1" -v b="$m2" 'BEGIN { print b / a }')"
 scene "200 s" "400 particles" 400 0 "$(score matched)"
 scene "200 s" "arrivals to 0.05 samples" 0 5e-6 "$(score time1_rms)"
+# --- four channels: permeability and skin depth
+# phase DIAMETER NOISE OPTION...: worst error of the phase of 20 particles, rad
+phase() {
+	awk -v d="$1" 'BEGIN { print "time\tdiameter"; for (i = 0; i < 20; i++) print 0.1 + 0.08 * i "\t" d }' >table
+	noise=$2
+	shift 2
+	sensorsim --noise "$noise" --lag 0:0.5ms --quadrature --truth truth.tsv "$@" table >four.au
+	duet four.au >found.tsv 2>err
+	column phase truth.tsv >want
+	column phase found.tsv | paste want - | awk '{ d = $1 - $2; d -= 6.283185307 * sprintf("%.0f", d / 6.283185307)
+		if (d < 0) d = -d; if (!(d <= m)) m = d } END { printf "%.6f", NR == 20 ? m : 9 }'
+}
+scene "mur 1, radius of 1e-4 skin depths" "phase: a quarter of a turn" 0 0.02 "$(
+	phase 100e-6 6.7e-12V --mur 1 --sigma 5.8e7 --excitation 0.01747Hz)"
+scene "mur 1e5, radius of 1e-4 skin depths" "phase of ferrous particles" 0 0.02 "$(
+	phase 100e-6 10mV --mur 1e5 --sigma 5.8e7 --excitation 1.747e-7Hz)"
+scene "mur 1e5, radius of 1e4 skin depths" "its phase" 0 0.02 "$(
+	phase 5e-3 10mV --calibration 1e6 --mur 1e5 --sigma 1e9 --excitation 40.5Hz)"
+scene "mur 1, radius of 1e4 skin depths" "phase: half a turn" 0 0.02 "$(
+	phase 5e-3 5mV --calibration 1e6 --mur 1 --sigma 1e9 --excitation 4.05MHz)"
+scene "mur 1, radius of 1e4 skin depths" "none of 20 is ferrous" 0 0 "$(column class found.tsv | grep -c '^ferrous')"
 done_testing

@@ -47,6 +47,8 @@ broken() {
 		done
 	elif [ $lines = 0 ]; then
 		echo "exit status $got without a word"
+	elif grep -q ': Success$' err; then
+		echo "no reason: $(grep ': Success$' err)"
 	elif [ $lines -gt 1 ] && [ "$(grep -cvxFf err.whole err)" -gt 1 ]; then
 		echo "$lines lines: $(tail -n 1 err)"
 	fi

@@ -7,10 +7,9 @@ command -v gnuplot >/dev/null || {
 	exit
 }
 left() { (cd "$top" && git status --porcelain --ignored -- examples scripts 2>/dev/null); }
-left >before
+before=$(left)
 ok 'every experiment runs and the page is written' env MAKE='make -j 2' OUT="$work/thesis" "$top/scripts/thesis" quick
-left >after
-same 'nothing is left in the source tree' before after
+is 'nothing is left in the source tree' "$(left)" "$before"
 ok 'a second call succeeds' env OUT="$work/thesis" "$top/scripts/thesis" quick
 is 'a second call runs no experiment again' "$(grep -c ' s$' out)" 0
 

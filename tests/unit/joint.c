@@ -172,6 +172,69 @@ static void test_misuse(struct joint *j, const struct joint_scene *good)
 		"a scene of zeros contains no pulses");
 }
 
+/* A pulse of either sign, one of which is saturated: what is hidden does not bias it, and
+ * its errors are those of the samples left. */
+static void test_hidden(struct joint *j, const struct joint_scene *plain)
+{
+	static double y[2][N];
+	static unsigned char hidden[2][N];
+	struct joint_scene s = *plain;
+	struct joint_pulse truth[2] = { { .t = 200.3, .delta = 2.1, .a = 60 },
+		{ .t = 480.7, .delta = 4.5, .a = -50 } };
+	struct joint_pulse found[20], whole[20];
+	struct joint_result r;
+	int m = 0, lost = 0;
+	double off = 0;
+
+	memset(y, 0, sizeof y);
+	for (int i = 0; i < 2; i++)
+		joint_add(&s, &truth[i], 1, y[0], y[1], N);
+	s.signs = 1;
+	ok(joint_fit(j, &s, y[0], y[1], N, whole, &m, &r) == JOINT_OK && m == 2 &&
+			whole[0].a > 0 && whole[1].a < 0,
+		"two pulses of different signs are found");
+	for (int c = 0; c < 2; c++)
+		for (int i = 0; i < N; i++) {
+			hidden[c][i] = fabs(y[c][i]) > 45;
+			lost += hidden[c][i];
+			if (hidden[c][i])
+				y[c][i] = 1000;
+		}
+	for (int c = 0; c < 2; c++)
+		s.hidden[c] = hidden[c];
+	m = 0;
+	ok(joint_fit(j, &s, y[0], y[1], N, found, &m, &r) == JOINT_OK && m == 2,
+		"they are found with %d samples hidden, whatever these are", lost);
+	for (int i = 0; i < 2 && m == 2; i++)
+		off = tap_max(off, fabs(found[i].t - truth[i].t) +
+					   fabs(found[i].delta - truth[i].delta) +
+					   fabs(found[i].a / truth[i].a - 1));
+	near(off, 0, 2e-3, "what is hidden does not move them");
+	ok(found[0].cov[5] > 1.2 * whole[0].cov[5],
+		"the amplitude of a saturated pulse has a larger error");
+	ok(r.dof == 2 * N - lost - 6, "hidden samples are no degrees of freedom");
+}
+
+/* In a section that begins and ends quietly no pulse is put beyond its ends. */
+static void test_quiet(struct joint *j, const struct joint_scene *plain)
+{
+	static double y[2][N];
+	struct joint_scene s = *plain;
+	struct joint_pulse truth = { .t = 20, .delta = 3, .a = 40 }, found[20];
+	struct joint_result r;
+	int m = 0;
+
+	memset(y, 0, sizeof y);
+	joint_add(&s, &truth, 1, y[0], y[1], N);
+	ok(joint_fit(j, &s, y[0], y[1], N, found, &m, &r) == JOINT_OK && m == 1,
+		"a pulse that is cut by the beginning is found");
+	s.quiet[0] = 50;
+	m = 0;
+	ok(joint_fit(j, &s, y[0], y[1], N, found, &m, &r) == JOINT_OK &&
+			(m == 0 || found[0].t >= 50) && r.chi2 > 1000,
+		"no pulse is put into what is quiet");
+}
+
 int main(void)
 {
 	struct shape *shape = shape_new(PULSE_SINE);
@@ -184,6 +247,8 @@ int main(void)
 	test_noisy(j, &s, 2, 0);
 	test_noisy(j, &s, 6, 0);
 	test_noisy(j, &s, 2, 2);
+	test_hidden(j, &s);
+	test_quiet(j, &s);
 	test_misuse(j, &s);
 	joint_free(j);
 	shape_free(shape);

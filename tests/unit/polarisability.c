@@ -1,6 +1,7 @@
 /* The moment of a sphere against golden values, its limits and a solution of the field
  * equation by power series. */
 #include "signal/pulse/polarisability.h"
+#include "signal/pulse/classify.h"
 #include "tap.h"
 #include <complex.h>
 #include <string.h>
@@ -67,6 +68,39 @@ static void test_series(void)
 		worst_im);
 }
 
+/* Wait's form in long doubles: 1 - x cot x = x^2 / (3 - x^2 / (5 - x^2 / (7 - ...))),
+ * backwards from beyond |x|, and beta = (2 mu - Q) / (mu + Q) with Q = x^2 / (1 - x cot
+ * x) - 1. */
+static double complex by_fraction(double ratio, double mu)
+{
+	long double complex square = -2 * I * (long double)ratio * ratio, tail = 0, q;
+
+	for (int k = 2 * (int)(200 + 4 * ratio) + 1; k >= 3; k -= 2)
+		tail = square / (k - tail);
+	q = square / tail - 1;
+	return (double complex)((2 * mu - q) / (mu + q));
+}
+
+static void test_thin_skin(void)
+{
+	double worst = 0, worst_im = 0;
+
+	for (double ratio = 1; ratio < 1.1e4; ratio *= 1.9)
+		for (double mu = 1; mu < 1.1e5; mu *= 10) {
+			double a = 50e-6, sigma = 1e6;
+			double f = ratio * ratio / (M_PI * mu0 * mu * sigma * a * a);
+			double complex want = by_fraction(ratio, mu);
+			struct polarisability b = sphere_polarisability(a, f, mu, sigma);
+
+			worst = tap_max(worst, cabs(b.re + I * b.im - want) / cabs(want));
+			worst_im = tap_max(worst_im, fabs(b.im / cimag(want) - 1));
+		}
+	ok(worst < 1e-12,
+		"up to 1e4 skin depths and mu 1e5 the moment is that of Wait's form (%.1g)",
+		worst);
+	ok(worst_im < 1e-11, "so is its imaginary part (%.1g)", worst_im);
+}
+
 static void test_limits(void)
 {
 	struct polarisability b = sphere_polarisability(1e-4, 0, 150, 5e6);
@@ -122,11 +156,45 @@ static void test_materials(void)
 		"393 um of bronze look like 100 um");
 }
 
+/* A pulse of copper against a ferrous one of the same height, whose phase is 0. */
+static void test_classes(void)
+{
+	const struct material *of[] = { material_find("ferrous"),
+		material_find("copper") };
+	double share[] = { 1, 3 }, f = 2e5, d = 2e-4, se = 0.7;
+	struct polarisability b = material_response(of[1], d, f);
+	double size = d * cbrt(hypot(b.re, b.im)), phase = atan2(b.im, b.re);
+	double like = exp(-0.5 * phase * phase / (se * se));
+
+	near(classify_ferrous(of, share, 2, size, phase, se, f), like / (like + 3), 1e-9,
+		"the probability of a ferrous particle is that of Bayes");
+	near(classify_ferrous(of, share, 2, size, 0, se, f), 1 / (1 + 3 * like), 1e-9,
+		"so is that at the phase of ferrous particles");
+	near(classify_ferrous(of, share, 2, size, phase + 4 * M_PI, se, f),
+		like / (like + 3), 1e-9, "phases are counted modulo a turn");
+	ok(isnan(classify_ferrous(of, share, 2, size, M_PI / 2, 0.1, f)),
+		"a phase of no material has no probability");
+	ok(isnan(classify_ferrous(of, share, 2, 0, 0, 0.1, f)) &&
+			isnan(classify_ferrous(of, share, 2, size, NAN, 0.1, f)) &&
+			isnan(classify_ferrous(of, share, 2, size, 0, NAN, f)),
+		"what is unknown has no probability");
+	share[1] = 0;
+	near(classify_ferrous(of, share, 2, size, 0.1, 0.1, f), 1, 0,
+		"a material without a share does not count");
+	for (double s = 1e-9; s < 2; s *= 10) {
+		double p = classify_ferrous(of, share, 2, s, 0, 0.1, 1e6);
+
+		ok(p == 1, "a size of %g m has a class", s);
+	}
+}
+
 int main(void)
 {
 	test_golden();
 	test_series();
+	test_thin_skin();
 	test_limits();
 	test_materials();
+	test_classes();
 	return tap_done();
 }

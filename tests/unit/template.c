@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const unsigned char *const known[2] = { NULL, NULL }; /* all samples are */
+
 enum { N = 40000, PULSES = 24 };
 
 static const double T = 80, TRANSIT = 200;
@@ -91,7 +93,8 @@ int main(void)
 	struct template t;
 
 	make_record(sine, 1);
-	ok(template_find(&t, y[0], y[1], N, 1.2 * T, TRANSIT, 20) == NUM_OK && t.shape,
+	ok(template_find(&t, y[0], y[1], known, N, 1.2 * T, TRANSIT, 20) == NUM_OK &&
+			t.shape,
 		"a pulse is found in a record of sine pulses");
 	ok(t.events == PULSES, "all pulses are alike (%d)", t.events);
 	ok(t.pulse == PULSE_SINE && !t.reversed && t.left < NOISE,
@@ -109,28 +112,30 @@ int main(void)
 	template_clear(&t);
 
 	make_record(sine, -1);
-	ok(template_find(&t, y[0], y[1], N, T, TRANSIT, 20) == NUM_OK && t.shape &&
+	ok(template_find(&t, y[0], y[1], known, N, T, TRANSIT, 20) == NUM_OK && t.shape &&
 			t.reversed && least_difference(&t, sine, -1) < NOISE,
 		"reversed pulses are found, and are said to be");
 	template_clear(&t);
 
 	make_record(odd, 1);
-	ok(template_find(&t, y[0], y[1], N, 0.8 * T, TRANSIT, 20) == NUM_OK && t.shape,
+	ok(template_find(&t, y[0], y[1], known, N, 0.8 * T, TRANSIT, 20) == NUM_OK &&
+			t.shape,
 		"a pulse that is none of the known ones is found");
 	ok(t.shape && least_difference(&t, odd, 1) < NOISE, "its shape is right");
 	ok(t.left > 0.02, "and is none of the known ones (they leave %.2f)", t.left);
 	template_clear(&t);
 
 	make_record(sine, 0);
-	ok(template_find(&t, y[0], y[1], N, T, TRANSIT, 20) == NUM_OK && !t.shape &&
-			t.events == 0,
+	ok(template_find(&t, y[0], y[1], known, N, T, TRANSIT, 20) == NUM_OK &&
+			!t.shape && t.events == 0,
 		"nothing is found in noise");
 	/* Five events are too few, by TEMPLATE_LEAST. */
 	make_record(sine, 1);
-	ok(template_find(&t, y[0], y[1], 1500 * 5, T, TRANSIT, 20) == NUM_OK && !t.shape,
+	ok(template_find(&t, y[0], y[1], known, 1500 * 5, T, TRANSIT, 20) == NUM_OK &&
+			!t.shape,
 		"five events are too few");
 	make_record(sine, 1);
-	ok(template_find(&t, y[0], y[1], N, 4, TRANSIT, 20) == NUM_OK && !t.shape,
+	ok(template_find(&t, y[0], y[1], known, N, 4, TRANSIT, 20) == NUM_OK && !t.shape,
 		"pulses of fewer than eight samples are not described");
 	template_clear(&t);
 	return tap_done();

@@ -1,5 +1,7 @@
 /* sections.c - see sections.h */
 #include "signal/detect/sections.h"
+#include "num/dot.h"
+#include "num/room.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -18,10 +20,12 @@ struct sections {
 	long stride;
 	long margin[OCTAVES + 1]; /* of a trigger below 2^k standard deviations */
 	double threshold;
+	long aside;      /* samples beyond a section that are known to be in it or not */
 	long long next;  /* point to scan next */
 	long long taken; /* samples before this one are in no section */
 	struct section *queue;
-	int count, capacity;
+	int count;
+	size_t capacity;
 };
 
 /* A pulse whose trigger is z has the amplitude z / sqrt(its energy at amplitude 1).  A
@@ -55,6 +59,7 @@ struct sections *sections_new(
 	s->stride = duration >= 48 ? (long)(duration / 24) : 1;
 	set_margins(s, shape, duration, slack);
 	s->threshold = threshold;
+	s->aside = (long)ceil(shape_reach_above(shape, 0.01) * duration);
 	s->filter = malloc(s->len * sizeof *s->filter);
 	if (!s->filter) {
 		sections_free(s);
@@ -92,40 +97,18 @@ long sections_reach(const struct sections *s)
 static double filter_at(const struct sections *s, const double *y, size_t n, long long at)
 {
 	long long from = at + s->first;
-	size_t begin = from < 0 ? (size_t)-from : 0, end = s->len, i;
-	double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+	size_t begin = from < 0 ? (size_t)-from : 0, end = s->len;
 
 	if (from + (long long)end > (long long)n)
 		end = (long long)n > from ? (size_t)((long long)n - from) : 0;
-	for (i = begin; i + 4 <= end; i += 4) {
-		s0 += s->filter[i] * y[from + (long long)i];
-		s1 += s->filter[i + 1] * y[from + (long long)i + 1];
-		s2 += s->filter[i + 2] * y[from + (long long)i + 2];
-		s3 += s->filter[i + 3] * y[from + (long long)i + 3];
-	}
-	for (; i < end; i++)
-		s0 += s->filter[i] * y[from + (long long)i];
-	return (s0 + s1) + (s2 + s3);
-}
-
-static int reserve(struct sections *s)
-{
-	int capacity = 2 * s->count + 16;
-	struct section *more;
-
-	if (s->queue && s->count < s->capacity)
-		return 1;
-	more = realloc(s->queue, (size_t)capacity * sizeof *more);
-	if (!more)
-		return 0;
-	s->queue = more;
-	s->capacity = capacity;
-	return 1;
+	return begin < end ? dot(s->filter + begin, y + (from + (long long)begin),
+				     end - begin)
+			   : 0;
 }
 
 /* A trigger of z standard deviations at sample at, which is later than all before it.
- * What it reaches becomes one section with it.  Returns 0 when out of memory. */
-static int add_trigger(struct sections *s, long long at, double z)
+ * What it reaches becomes one section with it. */
+static enum num_status add_trigger(struct sections *s, long long at, double z)
 {
 	int octave = z < ldexp(1, OCTAVES) ? ilogb(fmax(z, 1)) + 1 : OCTAVES;
 	long long begin = at - s->margin[octave], end = at + s->margin[octave];
@@ -136,27 +119,40 @@ static int add_trigger(struct sections *s, long long at, double z)
 		begin = last->begin < begin ? last->begin : begin;
 		end = last->end > end ? last->end : end;
 	}
-	if (!reserve(s))
-		return 0;
+	if (room_for(&s->queue, &s->capacity, (size_t)s->count + 1, sizeof *s->queue))
+		return NUM_MEMORY;
 	begin = begin < s->taken ? s->taken : begin;
 	s->queue[s->count++] = (struct section){ begin, end, 1 };
-	return 1;
+	return NUM_OK;
+}
+
+enum num_status sections_scan_quadrature(struct sections *s, const double *const y[2],
+	const double *const v[2], double v_scale, long long base, size_t n,
+	long long limit)
+{
+	for (; s->next < limit; s->next += s->stride) {
+		double z = 0;
+
+		for (int c = 0; c < 2; c++) {
+			z = fmax(z, filter_at(s, y[c], n, s->next - base));
+			if (v)
+				z = fmax(z, v_scale * fabs(filter_at(s, v[c], n,
+							      s->next - base)));
+		}
+		if (z > s->threshold && add_trigger(s, s->next, z))
+			return NUM_MEMORY;
+	}
+	for (int i = 0; i < s->count; i++)
+		if (s->queue[i].end + s->aside + s->margin[OCTAVES] < s->next)
+			s->queue[i].open = 0;
+	return NUM_OK;
 }
 
 enum num_status sections_scan(struct sections *s, const double *y1, const double *y2,
 	long long base, size_t n, long long limit)
 {
-	for (; s->next < limit; s->next += s->stride) {
-		double z = fmax(filter_at(s, y1, n, s->next - base),
-			filter_at(s, y2, n, s->next - base));
-
-		if (z > s->threshold && !add_trigger(s, s->next, z))
-			return NUM_MEMORY;
-	}
-	for (int i = 0; i < s->count; i++)
-		if (s->queue[i].end + s->margin[OCTAVES] < s->next)
-			s->queue[i].open = 0;
-	return NUM_OK;
+	return sections_scan_quadrature(
+		s, (const double *const[]){ y1, y2 }, NULL, 0, base, n, limit);
 }
 
 int sections_first(const struct sections *s, struct section *section)
@@ -165,6 +161,19 @@ int sections_first(const struct sections *s, struct section *section)
 		return 0;
 	*section = s->queue[0];
 	return 1;
+}
+
+long sections_aside(const struct sections *s, int side)
+{
+	long long free = s->aside;
+
+	if (s->count == 0)
+		return 0;
+	if (side == 0 && s->queue[0].begin - s->taken < free)
+		free = s->queue[0].begin - s->taken;
+	if (side == 1 && s->count > 1 && s->queue[1].begin - s->queue[0].end < free)
+		free = s->queue[1].begin - s->queue[0].end;
+	return (long)(free > 0 ? free : 0);
 }
 
 void sections_take(struct sections *s, long long upto)

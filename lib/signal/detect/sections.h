@@ -41,8 +41,17 @@ long sections_reach(const struct sections *s);
 enum num_status sections_scan(struct sections *s, const double *y1, const double *y2,
 	long long base, size_t n, long long limit);
 
+/* The same; a section is also where the filter of v[0] or v[1], times v_scale, exceeds
+ * the threshold with either sign. */
+enum num_status sections_scan_quadrature(struct sections *s, const double *const y[2],
+	const double *const v[2], double v_scale, long long base, size_t n,
+	long long limit);
+
 /* The first section: 1 and *section, or 0 where there is none.  It stays until taken. */
 int sections_first(const struct sections *s, struct section *section);
+/* Samples before (side 0) and behind (1) the first section that are in no section, at
+ * most as many as a pulse reaches. */
+long sections_aside(const struct sections *s, int side);
 /* Drops what lies before sample upto of the first section. */
 void sections_take(struct sections *s, long long upto);
 /* Closes the last section at the end of the record. */

@@ -1,6 +1,7 @@
 /* fir.c - band-pass filters by the window method, run directly or by overlap-save */
 #include "signal/filter/fir.h"
 #include "num/fft.h"
+#include "num/status.h"
 #include <complex.h>
 #include <math.h>
 #include <stdio.h>
@@ -175,7 +176,7 @@ static size_t choose_points(size_t taps, size_t block)
 	return best;
 }
 
-static int make_response(struct fir *fir, const double *h)
+static enum num_status make_response(struct fir *fir, const double *h)
 {
 	size_t half = fir->points / 2 + 1;
 
@@ -183,12 +184,12 @@ static int make_response(struct fir *fir, const double *h)
 	fir->response = fft_alloc_complex(half);
 	fir->spectrum = fft_alloc_complex(half);
 	if (!fir->fft || !fir->response || !fir->spectrum)
-		return -1;
+		return NUM_MEMORY;
 	memcpy(fir->out, h, fir->taps * sizeof *h);
 	fft_forward(fir->fft, fir->out, fir->response);
 	for (size_t k = 0; k < half; k++)
 		fir->response[k] /= (double)fir->points;
-	return 0;
+	return NUM_OK;
 }
 
 struct fir *fir_new(const double *h, size_t n, int channels, size_t block)
@@ -207,7 +208,7 @@ struct fir *fir_new(const double *h, size_t n, int channels, size_t block)
 	fir->past = fft_alloc((size_t)channels * length);
 	fir->out = fft_alloc(length);
 	if (!fir->reversed || !fir->past || !fir->out ||
-		(fir->points && make_response(fir, h) < 0)) {
+		(fir->points && make_response(fir, h))) {
 		fir_free(fir);
 		return NULL;
 	}

@@ -34,19 +34,21 @@ static struct candidate search(struct joint *j, const struct joint_scene *s,
 	size_t points;
 	double z = 0, g = s->gain, norm = 1 / sqrt(unit_energy(s));
 	long lo = (long)floor(s->delta_min / (double)stride);
-	long hi = (long)ceil(s->delta_max / (double)stride);
+	long hi = (long)ceil(s->delta_max / (double)stride), from, to;
 	struct candidate best = { 0 };
 
 	joint_project(j);
 	points = filter_residual(j, s, stride);
 	j->searches++;
-	for (long k = 0; k < (long)points; k++) {
+	from = (long)ceil(fmax(arrival_limit(s, 0, j->n), 0) / (double)stride);
+	to = (long)fmin(arrival_limit(s, 1, j->n) / (double)stride, (double)points - 1);
+	for (long k = from; k <= to; k++) {
 		for (long l = k + lo < 0 ? -k : lo; l <= hi && k + l < (long)points;
 			l++) {
 			double here = (j->filter[0][k] + g * j->filter[1][k + l]) * norm;
 			int old = 0;
 
-			if (here <= z)
+			if ((s->signs ? fabs(here) : here) <= fabs(z))
 				continue;
 			for (int i = 0; i < ntried && !old; i++)
 				old = fabs((double)(k * (long)stride) - tried[i].t) <
@@ -77,7 +79,7 @@ static void finish(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int m, double chi2, int full,
 	struct joint_result *result)
 {
-	double taken = 0; /* the baseline had no noise to take */
+	double visible, taken = 0; /* the baseline had no noise to take */
 
 	qsort(pulses, (size_t)m, sizeof *pulses, by_time);
 	joint_fill_covariance(j, s, pulses, m);
@@ -85,7 +87,8 @@ static void finish(struct joint *j, const struct joint_scene *s,
 	result->chi2 = chi2;
 	for (int b = j->slow; b < j->basis; b++)
 		taken += 2 * j->share[b];
-	result->dof = (long)((1 - s->lost) * 2 * (double)j->n - taken + 0.5) - PAR * m;
+	visible = (double)(joint_visible(j, 0, 0, j->n) + joint_visible(j, 1, 0, j->n));
+	result->dof = (long)((1 - s->lost) * visible - taken + 0.5) - PAR * m;
 	if (result->dof < 1)
 		result->dof = 1;
 	result->full = full;

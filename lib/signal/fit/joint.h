@@ -41,8 +41,12 @@ struct joint_scene {
 	double drop;                 /* by how much a pulse must reduce chi-square ... */
 	double drop_near; /* ... where it overlaps others: the search is narrower */
 	double misfit;    /* and by this share of the energy it overlaps */
-	int max_pulses;   /* at most JOINT_PULSES_MAX */
-	int offset;       /* 1: a constant is fitted too */
+	int signs;        /* 1: amplitudes may be negative too */
+	/* Samples at either end in which no pulse arrives; 0: the record goes on there,
+	 * and pulses may arrive beyond. */
+	double quiet[2];
+	int max_pulses; /* at most JOINT_PULSES_MAX */
+	int offset;     /* 1: a constant is fitted too */
 	int tones;
 	double omega[JOINT_TONES_MAX]; /* rad per sample */
 	/* Prior variance of the cosine and sine of each tone about zero (small after
@@ -53,6 +57,9 @@ struct joint_scene {
 	 * the record); lost: share of the variance of the noise that the filter removed.
 	 */
 	double low, lost;
+	/* Samples that are not known, 1 in these n flags of either channel; NULL: none.
+	 */
+	const unsigned char *hidden[2];
 };
 
 struct joint_pulse {
@@ -96,8 +103,23 @@ enum joint_status joint_refine(struct joint *joint, const struct joint_scene *sc
  * fitted free, in cov[m * m].  Returns m; 0 if the normal matrix is singular. */
 int joint_delay_covariance(const struct joint *joint, double *cov);
 
+/* Samples of pulses computed by all fits so far. */
+double joint_work(const struct joint *joint);
+
+/* Of the only pulse p of the last fit: by which share its amplitude at sensor 2 exceeds
+ * gain times that at sensor 1, and the standard error of this. */
+void joint_gain_error(const struct joint *joint, const struct joint_pulse *p,
+	double *share, double *se);
+
+/* The orthonormal vectors, of as many samples as the last fit had, that are projected out
+ * of its record, and what share of each. */
+const double *joint_basis(const struct joint *joint, int *count, const double **share);
+
 /* Residual of the last fit, channel 0 or 1, n samples, tones and offset removed. */
 const double *joint_residual(const struct joint *joint, int channel);
+
+/* Samples of the last fit in [from, to) of a channel that are not hidden. */
+size_t joint_visible(const struct joint *joint, int channel, size_t from, size_t to);
 
 /* Adds sign times one pulse to y1[0..n) and y2[0..n) (either may be NULL). */
 void joint_add(const struct joint_scene *scene, const struct joint_pulse *pulse,

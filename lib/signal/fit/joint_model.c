@@ -9,9 +9,9 @@ struct joint *joint_new(void)
 
 	if (!j)
 		return NULL;
-	j->h = malloc(sizeof(double) * NPAR * NPAR);
-	j->factor = malloc(sizeof(double) * NPAR * NPAR);
-	j->bq = malloc(sizeof(double) * NPAR * 2 * BASIS_MAX);
+	j->h = malloc(sizeof *j->h * NPAR * NPAR);
+	j->factor = malloc(sizeof *j->factor * NPAR * NPAR);
+	j->bq = malloc(sizeof *j->bq * NPAR * 2 * BASIS_MAX);
 	if (!j->h || !j->factor || !j->bq) {
 		joint_free(j);
 		return NULL;
@@ -27,8 +27,10 @@ static void free_samples(struct joint *j)
 		free(j->filter[c]);
 		j->e[c] = j->r[c] = j->filter[c] = NULL;
 	}
-	free(j->q);
-	j->q = NULL;
+	for (int c = 0; c < 2; c++) {
+		free(j->basis_memory[c]);
+		j->basis_memory[c] = j->q[c] = NULL;
+	}
 	j->capacity = 0;
 }
 
@@ -52,14 +54,14 @@ static int reserve_samples(struct joint *j, size_t n)
 	free_samples(j);
 	n += n / 2;
 	for (int c = 0; c < 2; c++) {
-		j->e[c] = malloc(n * sizeof(double));
-		j->r[c] = malloc(n * sizeof(double));
-		j->filter[c] = malloc(n * sizeof(double));
+		j->e[c] = malloc(n * sizeof *j->e[c]);
+		j->r[c] = malloc(n * sizeof *j->r[c]);
+		j->filter[c] = malloc(n * sizeof *j->filter[c]);
 		if (!j->e[c] || !j->r[c] || !j->filter[c])
 			return 0;
 	}
-	j->q = malloc(n * sizeof(double) * BASIS_MAX);
-	if (!j->q)
+	j->basis_memory[0] = malloc(n * sizeof *j->basis_memory[0] * BASIS_MAX);
+	if (!j->basis_memory[0])
 		return 0;
 	j->capacity = n;
 	return 1;
@@ -74,8 +76,9 @@ static int reserve_columns(struct joint *j, size_t support)
 	free(j->memory);
 	free(j->scratch);
 	j->support = 0;
-	j->memory = malloc(support * sizeof(double) * (JOINT_PULSES_MAX + 1) * 4 * PAR);
-	j->scratch = malloc(support * sizeof(double) * PAR);
+	j->memory =
+		malloc(support * sizeof *j->memory * (JOINT_PULSES_MAX + 1) * 4 * PAR);
+	j->scratch = malloc(support * sizeof *j->scratch * PAR);
 	if (!j->memory || !j->scratch)
 		return 0;
 	j->support = support;
@@ -89,39 +92,62 @@ static int reserve_columns(struct joint *j, size_t support)
 	return 1;
 }
 
-/* Adds cos or sin of w (i - n / 2) to the basis unless it adds nothing, as a tone at half
- * the rate does twice: modified Gram-Schmidt, done twice. */
-static void add_to_basis(struct joint *j, double (*wave)(double), double w, double share)
+/* Makes vector b of q orthonormal to those before it, by modified Gram-Schmidt, done
+ * twice; 0 if nothing of it is left. */
+static int orthonormalise(double *q, int b, size_t n)
 {
-	size_t n = j->n;
-	double *v = j->q + (size_t)j->basis * n, norm, left;
+	double *v = q + (size_t)b * n, norm = dot(v, v, n), left;
 
-	for (size_t i = 0; i < n; i++)
-		v[i] = wave(w * ((double)i - (double)n / 2));
-	norm = dot(v, v, n);
 	for (int pass = 0; pass < 2; pass++)
-		for (int b = 0; b < j->basis; b++)
-			add_scaled(v, -dot(v, j->q + (size_t)b * n, n),
-				j->q + (size_t)b * n, n);
+		for (int k = 0; k < b; k++)
+			add_scaled(
+				v, -dot(v, q + (size_t)k * n, n), q + (size_t)k * n, n);
 	left = dot(v, v, n);
 	if (left <= 1e-8 * norm || left == 0)
-		return;
+		return 0;
 	left = 1 / sqrt(left);
 	for (size_t i = 0; i < n; i++)
 		v[i] *= left;
-	j->share[j->basis++] = share;
+	return 1;
+}
+
+/* Adds cos or sin of w (i - n / 2) to the basis unless it adds nothing, as a tone at half
+ * the rate does twice. */
+static void add_to_basis(struct joint *j, double (*wave)(double), double w, double share)
+{
+	size_t n = j->n;
+	double *v = j->q[0] + (size_t)j->basis * n;
+
+	for (size_t i = 0; i < n; i++)
+		v[i] = wave(w * ((double)i - (double)n / 2));
+	if (orthonormalise(j->q[0], j->basis, n))
+		j->share[j->basis++] = share;
+}
+
+/* The basis of what is visible of a channel; a vector of which nothing is left is zero.
+ */
+static void hide_basis(struct joint *j, int c, double *q)
+{
+	for (int b = 0; b < j->basis; b++) {
+		double *v = q + (size_t)b * j->n;
+
+		joint_hide(j, c, 0, j->n, v);
+		if (!orthonormalise(q, b, j->n))
+			memset(v, 0, j->n * sizeof *v);
+	}
 }
 
 /* Orthonormal basis of offset, baseline and tones over n samples.  A baseline may be
  * anything slower than low: waves of up to that frequency that are periodic in 2 n, so
  * that its ends need not meet. */
-static void make_basis(struct joint *j, const struct joint_scene *s)
+static int make_basis(struct joint *j, const struct joint_scene *s)
 {
 	double n = (double)j->n, w = 0.5 * n * s->tone_variance;
 	double share = isinf(w) ? 1 : w / (1 + w);
 	int slow = (int)fmin(ceil(2 * n * s->low), JOINT_BASELINE_MAX);
 
 	j->basis = 0;
+	j->q[0] = j->q[1] = j->basis_memory[0];
 	for (int k = 1; k <= slow; k++) {
 		add_to_basis(j, cos, M_PI * k / n, 1);
 		add_to_basis(j, sin, M_PI * k / n, 1);
@@ -133,6 +159,18 @@ static void make_basis(struct joint *j, const struct joint_scene *s)
 		add_to_basis(j, cos, s->omega[k], share);
 		add_to_basis(j, sin, s->omega[k], share);
 	}
+	if (!j->hidden[0] && !j->hidden[1])
+		return 1;
+	if (!j->basis_memory[1])
+		j->basis_memory[1] =
+			malloc(j->capacity * sizeof *j->basis_memory[1] * BASIS_MAX);
+	if (!j->basis_memory[1])
+		return 0;
+	j->q[1] = j->basis_memory[1];
+	memcpy(j->q[1], j->q[0], (size_t)j->basis * j->n * sizeof(double));
+	hide_basis(j, 0, j->q[0]);
+	hide_basis(j, 1, j->q[1]);
+	return 1;
 }
 
 void joint_measure(struct joint *j)
@@ -141,7 +179,7 @@ void joint_measure(struct joint *j)
 	for (int c = 0; c < 2; c++) {
 		j->energy += dot(j->e[c], j->e[c], j->n);
 		for (int b = 0; b < j->basis; b++)
-			j->qe[c][b] = dot(j->q + (size_t)b * j->n, j->e[c], j->n);
+			j->qe[c][b] = dot(j->q[c] + (size_t)b * j->n, j->e[c], j->n);
 	}
 }
 
@@ -164,8 +202,26 @@ void joint_project(struct joint *j)
 		memcpy(j->r[c], j->e[c], j->n * sizeof(double));
 		for (int b = 0; b < j->basis; b++)
 			add_scaled(j->r[c], -j->share[b] * j->qe[c][b],
-				j->q + (size_t)b * j->n, j->n);
+				j->q[c] + (size_t)b * j->n, j->n);
 	}
+}
+
+void joint_hide(const struct joint *j, int channel, long first, size_t n, double *x)
+{
+	const unsigned char *hidden = j->hidden[channel];
+
+	for (size_t i = 0; hidden && i < n; i++)
+		if (hidden[first + (long)i])
+			x[i] = 0;
+}
+
+size_t joint_visible(const struct joint *j, int channel, size_t from, size_t to)
+{
+	size_t count = to - from;
+
+	for (size_t i = from; j->hidden[channel] && i < to; i++)
+		count -= j->hidden[channel][i] != 0;
+	return count;
 }
 
 /* The part of a pulse on channel c inside the n samples. */
@@ -193,6 +249,7 @@ void joint_subtract(struct joint *j, const struct joint_scene *s,
 
 		shape_sample(s->shape, p->t + (c ? p->delta : 0),
 			pulse_duration(s, p->delta), first, len, j->scratch, NULL, NULL);
+		joint_hide(j, c, first, len, j->scratch);
 		if (len)
 			add_scaled(j->e[c] + first, -sign * p->a * (c ? s->gain : 1),
 				j->scratch, len);
@@ -213,6 +270,7 @@ void joint_make_columns(
 		by_T = col->d[1 - c];
 		shape_sample(s->shape, p->t + (c ? p->delta : 0), T, col->first, col->n,
 			col->d[2], by_t, by_T);
+		j->work += (double)col->n;
 		/* T grows with t2 and falls with t1. */
 		for (size_t k = 0; k < col->n; k++) {
 			double lengthen = by_T[k] * stretch;
@@ -222,6 +280,8 @@ void joint_make_columns(
 			if (c)
 				col->d[2][k] *= s->gain;
 		}
+		for (int k = 0; k < PAR; k++)
+			joint_hide(j, c, col->first, col->n, col->d[k]);
 	}
 }
 
@@ -265,10 +325,27 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	j->steps = j->searches = 0;
 	memcpy(j->e[0], y1, n * sizeof(double));
 	memcpy(j->e[1], y2, n * sizeof(double));
-	make_basis(j, s);
+	for (int c = 0; c < 2; c++) {
+		j->hidden[c] = s->hidden[c];
+		joint_hide(j, c, 0, n, j->e[c]);
+	}
+	if (!make_basis(j, s))
+		return JOINT_MEMORY;
 	for (int i = 0; i < m; i++)
 		joint_subtract(j, s, &pulses[i], 1);
 	return JOINT_OK;
+}
+
+const double *joint_basis(const struct joint *j, int *count, const double **share)
+{
+	*count = j->basis;
+	*share = j->share;
+	return j->q[0];
+}
+
+double joint_work(const struct joint *j)
+{
+	return j->work;
 }
 
 const double *joint_residual(const struct joint *j, int channel)

@@ -111,6 +111,7 @@ static double split_score(struct joint *j, const struct joint_scene *s,
 		add_scaled(x, 1, part, n);
 		shape_sample(s->shape, t0, T, first, n, part, NULL, NULL);
 		add_scaled(x, -2, part, n);
+		joint_hide(j, c, first, n, x);
 		x2 += g * g * dot(x, x, n);
 		xr += g * dot(x, j->r[c] + first, n);
 		for (int u = 0; u < PAR; u++) {
@@ -127,7 +128,7 @@ static double split_score(struct joint *j, const struct joint_scene *s,
 				h[v][w] -= h[u][w] * h[v][u] / h[u][u];
 		x2 -= h[u][PAR] * h[u][PAR] / h[u][u];
 	}
-	return x2 > 0 ? xr / sqrt(x2) : 0;
+	return x2 > 0 ? copysign(xr, xr * pulse->a) / sqrt(x2) : 0;
 }
 
 /* Tries pulse i as two; 1 if it was worth it, else everything is as before. */
@@ -279,6 +280,7 @@ void joint_merge_pulses(struct joint *j, const struct joint_scene *s,
 	for (int i = 0; i < *m; i++)
 		for (int k = i + 1; k < *m; k++)
 			if (fabs(pulses[k].t - pulses[i].t) < near &&
+				pulses[k].a * pulses[i].a > 0 &&
 				try_merge(j, s, pulses, m, i, k, chi2))
 				k = i;
 }

@@ -4,6 +4,7 @@
 #ifndef SIGNAL_JOINT_STATE_H
 #define SIGNAL_JOINT_STATE_H
 
+#include "num/dot.h"
 #include "signal/fit/joint.h"
 #include <math.h>
 
@@ -24,11 +25,13 @@ struct joint {
 	size_t capacity; /* samples */
 	size_t support;  /* samples one pulse may touch */
 	size_t n;
-	double *e[2];            /* record minus pulses, with tones */
-	double *r[2];            /* e without tones and offset */
-	int basis;               /* orthonormal vectors spanning tones and offset, ... */
-	int slow;                /* ... the first of them the baseline */
-	double *q;               /* basis * n */
+	double *e[2]; /* record minus pulses, with tones */
+	double *r[2]; /* e without tones and offset */
+	int basis;    /* orthonormal vectors spanning tones and offset, ... */
+	int slow;     /* ... the first of them the baseline */
+	double *q[2]; /* of either channel: basis * n; the same if no sample is hidden */
+	double *basis_memory[2];
+	const unsigned char *hidden[2]; /* of the scene */
 	double share[BASIS_MAX]; /* of each vector that is projected out; 1: unknown */
 	double *memory;          /* columns of all pulses */
 	double *scratch;         /* three of support */
@@ -43,6 +46,7 @@ struct joint {
 	double *bq;              /* NPAR * basis: Q^T J */
 	double gradient[NPAR], diagonal[NPAR], move[NPAR];
 	long steps, searches;
+	double work;  /* samples of columns computed, since it is new */
 	int inverted; /* pulses whose normal matrix is in factor; 0: it was singular */
 };
 
@@ -50,23 +54,6 @@ struct joint {
 struct candidate {
 	double t, delta, a, z2;
 };
-
-/* Four partial sums in fixed order: fast, and the same bits everywhere. */
-static inline double dot(const double *x, const double *y, size_t n)
-{
-	double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
-	size_t i = 0;
-
-	for (; i + 4 <= n; i += 4) {
-		s0 += x[i] * y[i];
-		s1 += x[i + 1] * y[i + 1];
-		s2 += x[i + 2] * y[i + 2];
-		s3 += x[i + 3] * y[i + 3];
-	}
-	for (; i < n; i++)
-		s0 += x[i] * y[i];
-	return (s0 + s1) + (s2 + s3);
-}
 
 static inline void add_scaled(double *y, double factor, const double *x, size_t n)
 {
@@ -90,6 +77,15 @@ static inline double unit_energy(const struct joint_scene *s)
 	return s->duration * shape_energy(s->shape) * (1 + s->gain * s->gain);
 }
 
+/* Earliest (side 0) and latest (1) arrival in n samples. */
+static inline double arrival_limit(const struct joint_scene *s, int side, size_t n)
+{
+	double inside = s->quiet[side] > 0 ? fmin(s->quiet[side], 0.5 * (double)n)
+					   : -0.9 * shape_reach(s->shape) * s->duration;
+
+	return side ? (double)n - inside : inside;
+}
+
 /* joint_model.c: the record minus pulses, and its parts */
 
 /* Stores the record and its m known pulses. */
@@ -104,6 +100,8 @@ void joint_project(struct joint *j);
 /* e less sign times the pulse. */
 void joint_subtract(struct joint *j, const struct joint_scene *s,
 	const struct joint_pulse *p, double sign);
+/* Sets the hidden ones of n samples of a channel, from sample first on, to zero. */
+void joint_hide(const struct joint *j, int channel, long first, size_t n, double *x);
 /* Columns of pulse i as p is. */
 void joint_make_columns(
 	struct joint *j, const struct joint_scene *s, int i, const struct joint_pulse *p);

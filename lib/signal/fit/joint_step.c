@@ -42,7 +42,7 @@ static void make_normal(struct joint *j, const int *set, int m)
 				g += dot(col->d[u], j->e[c] + col->first, col->n);
 				for (int b = 0; b < j->basis; b++) {
 					double part = dot(col->d[u],
-						j->q + (size_t)b * j->n + col->first,
+						j->q[c] + (size_t)b * j->n + col->first,
 						col->n);
 
 					g -= j->share[b] * part * j->qe[c][b];
@@ -123,12 +123,14 @@ static struct joint_pulse moved(const struct joint_scene *s,
 {
 	struct joint_pulse p = *old;
 	double step = 0.25 * s->duration, span = s->delta_max - s->delta_min;
-	double reach = 0.9 * shape_reach(s->shape) * s->duration;
 	double t2 = old->t + old->delta + clamp(move[1], -step, step);
 
-	p.t = clamp(old->t + clamp(move[0], -step, step), -reach, (double)n + reach);
+	p.t = clamp(old->t + clamp(move[0], -step, step), arrival_limit(s, 0, n),
+		arrival_limit(s, 1, n));
 	p.delta = clamp(t2 - p.t, s->delta_min - 0.1 * span, s->delta_max + 0.1 * span);
-	p.a = clamp(old->a + move[2], 0.1 * old->a, 10 * old->a);
+	p.a = old->a + move[2];
+	p.a = old->a > 0 ? clamp(p.a, 0.1 * old->a, 10 * old->a)
+			 : clamp(p.a, 10 * old->a, 0.1 * old->a);
 	return p;
 }
 
@@ -143,8 +145,9 @@ static void add_column(struct joint *j, int i, double factor)
 		add_scaled(e, factor, col->d[2], col->n);
 		j->energy += dot(e, e, col->n);
 		for (int b = 0; b < j->basis; b++)
-			j->qe[c][b] += factor * dot(j->q + (size_t)b * j->n + col->first,
-							col->d[2], col->n);
+			j->qe[c][b] +=
+				factor * dot(j->q[c] + (size_t)b * j->n + col->first,
+						 col->d[2], col->n);
 	}
 }
 
@@ -280,4 +283,20 @@ int joint_delay_covariance(const struct joint *j, double *cov)
 			cov[i * m + k] = x[PAR * k + 1] - x[PAR * k];
 	}
 	return m;
+}
+
+void joint_gain_error(
+	const struct joint *j, const struct joint_pulse *p, double *share, double *se)
+{
+	double off[2], var = 0;
+
+	for (int c = 0; c < 2; c++) {
+		const struct column *col = &j->col[0][c];
+		double energy = dot(col->d[2], col->d[2], col->n);
+
+		off[c] = dot(col->d[2], j->r[c] + col->first, col->n) / (p->a * energy);
+		var += 1 / (p->a * p->a * energy);
+	}
+	*share = off[1] - off[0];
+	*se = sqrt(var);
 }

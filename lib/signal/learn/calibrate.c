@@ -34,6 +34,7 @@ static enum calibrate_status attempt(const struct calibrate_par *par, const doub
 
 	memset(c, 0, sizeof *c);
 	c->whitening = *w;
+	c->work = look->work;
 	c->guessed = look->settled;
 	c->suspect = look->coloured && !look->settled;
 	for (int k = 0; work && k < 2; k++) {
@@ -52,6 +53,7 @@ static enum calibrate_status attempt(const struct calibrate_par *par, const doub
 		status = measure(par, x1 + edge, work + edge, work + n + edge,
 			n - 2 * edge, work + 2 * n, look, c);
 	free(work);
+	look->work = c->work;
 	if (status != CALIBRATE_OK)
 		calibration_clear(c);
 	return status;
@@ -124,6 +126,7 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 	struct calibrate_par fewer = *par;
 	struct whitening w = { .tap = NULL };
 	struct look other_look = { .attempts = look->attempts,
+		.work = look->work,
 		.events = look->found.events };
 	struct calibration other;
 	enum calibrate_status status;
@@ -136,6 +139,7 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 		return CALIBRATE_OK;
 	status = attempt(&fewer, x1, x2, n, &w, &other, &other_look);
 	look->attempts = other_look.attempts;
+	look->work = other_look.work;
 	if (status != CALIBRATE_OK)
 		return status == CALIBRATE_MEMORY ? status : CALIBRATE_OK;
 	if (other.price < c->price) {
@@ -185,6 +189,7 @@ static enum calibrate_status attempt_white(const struct calibrate_par *par,
 	if (status == CALIBRATE_MEMORY)
 		return status;
 	look->attempts = smooth.attempts;
+	look->work = smooth.work;
 	if (status == CALIBRATE_OK && c->measured && learn_describes(c)) {
 		int lacks;
 

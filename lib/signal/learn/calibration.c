@@ -21,6 +21,14 @@ double calibrate_drop(double rate, const struct shape *shape, double duration,
 	return hi * hi;
 }
 
+void calibration_widen(double duration, double *least, double *most)
+{
+	double margin = fmax(0.5 * (*most - *least), 0.02 * duration);
+
+	*least -= margin;
+	*most += margin;
+}
+
 double calibration_lost(const struct calibration *c)
 {
 	return c->whitening.tap ? 1 - fmin(c->whitening.band, 1) : 0;

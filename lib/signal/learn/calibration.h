@@ -25,6 +25,8 @@ struct calibrate_par {
 	double omega[TONES_MAX]; /* rad per sample */
 	double *filter; /* symmetric taps of the filter applied to the record, or NULL */
 	size_t filter_taps;
+	/* Flags of the samples of either channel: 1 are not known; NULL: all are. */
+	const unsigned char *hidden[2];
 };
 
 struct calibration {
@@ -50,9 +52,11 @@ struct calibration {
 	double delta_min, delta_max; /* samples around shift */
 	double drop, drop_near;      /* thresholds of joint.h */
 	double misfit;               /* of joint.h: error of the shape */
-	int events;                  /* pulses to which the shape was fitted */
+	int far; /* lone pulses seen near the limits of that range as it was searched */
+	int events;   /* pulses to which the shape was fitted */
 	int suspect;  /* 1: treated as white although the spectrum test failed */
 	int guessed;  /* 1: whitened by a filter estimated from its noise */
+	double work;  /* samples of pulses computed to learn it */
 	int attempts; /* number of calibrations tried */
 	int dense;    /* 1: pulses overlap throughout the record */
 	double chi2;  /* of the fitted pulses, per degree of freedom */
@@ -66,7 +70,9 @@ enum calibrate_status {
 	CALIBRATE_COLOURED, /* of one attempt: the noise is to be made white first */
 	CALIBRATE_SILENT_1, /* channel 1 is constant */
 	CALIBRATE_SILENT_2,
+	CALIBRATE_HARD,    /* it takes too long to describe the record by pulses */
 	CALIBRATE_NO_LAG,  /* the channels have nothing in common */
+	CALIBRATE_AT_ONCE, /* what the channels have in common is at both at once */
 	CALIBRATE_SWAPPED, /* particles pass sensor 2 first */
 	CALIBRATE_FAR,     /* the lag given is as long as the record */
 	CALIBRATE_NARROW,  /* the filter has left a band narrower than half the pulse's */
@@ -87,6 +93,10 @@ void calibration_scene(const struct calibration *c, struct joint_scene *scene);
  * Fields, 1981), u^2 being the threshold.  width: range of delays in samples. */
 double calibrate_drop(double rate, const struct shape *shape, double duration,
 	double gain, double width);
+
+/* Widens the range of the delays seen by half of it on either side, and by at least 0.02
+ * of a duration: that of later ones. */
+void calibration_widen(double duration, double *least, double *most);
 
 /* Share of the noise removed by the filter and the whitening. */
 double calibration_lost(const struct calibration *c);

@@ -15,6 +15,9 @@ static void offer_example(struct examples *ex, const double *y1, const double *y
 
 	if (length < 1.5 * shortest / 2)
 		return;
+	for (int c = 0; c < 2; c++)
+		if (ex->hidden[c] && memchr(ex->hidden[c] + from, 1, (size_t)(to - from)))
+			return;
 	for (long long i = from; i < to; i++)
 		energy += y1[i] * y1[i] + y2[i] * y2[i] - 2;
 	/* Loud is good, few pulses are better. */
@@ -89,6 +92,14 @@ static int succeeded(struct examples *ex, enum joint_status status)
 	return status == JOINT_OK;
 }
 
+/* May more work be done?  Notes it where not. */
+static int may_go_on(struct examples *ex)
+{
+	if (ex->before + joint_work(ex->joint) > ex->most)
+		ex->status = CALIBRATE_HARD;
+	return ex->status == CALIBRATE_OK;
+}
+
 int examples_refine(struct examples *ex, const struct example *e,
 	struct joint_pulse *pulse, struct joint_result *result)
 {
@@ -107,6 +118,8 @@ double examples_chi2(struct examples *ex, int keep)
 
 		if (e->spoiled)
 			continue;
+		if (!may_go_on(ex))
+			return INFINITY;
 		memcpy(pulse, e->pulse, sizeof pulse);
 		if (!examples_refine(ex, e, pulse, &result))
 			return INFINITY;
@@ -201,6 +214,8 @@ double examples_fit(struct examples *ex, double misfit)
 		double energy;
 
 		e->m = 0;
+		if (!may_go_on(ex))
+			return INFINITY;
 		if (!succeeded(ex, joint_fit(ex->joint, &ex->scene, e->y1, e->y2, e->n,
 					   e->pulse, &e->m, &result)))
 			return INFINITY;

@@ -26,6 +26,7 @@ struct examples {
 	struct joint *joint;
 	struct joint_scene scene; /* present parameters of the instrument */
 	struct example example[EXAMPLES_MAX];
+	const unsigned char *hidden[2]; /* flags of samples that are not known, or NULL */
 	int count;
 	int pieces;    /* 1: some may cut pulses through */
 	double misfit; /* of joint.h, at the end */
@@ -37,8 +38,9 @@ struct examples {
 	double price;   /* their chi-square and twice the threshold for each pulse, per
 			   degree */
 	double rest[2]; /* power of either channel's residual, that of its noise 1 */
-	/* CALIBRATE_MEMORY once a function was out of memory; the results are invalid
-	 * then. */
+	double before, most; /* work done before, and the most that may be done */
+	/* CALIBRATE_MEMORY once a function was out of memory, CALIBRATE_HARD once more
+	 * than the most was done; the results are invalid then. */
 	enum calibrate_status status;
 };
 

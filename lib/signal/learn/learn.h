@@ -24,6 +24,10 @@ enum num_status learn_set_shape(struct calibration *c, int pulse);
  * pulses?
  */
 int learn_describes(const struct calibration *c);
+/* Flags of the samples, aligned, that are not known; NULL where the record was made
+ * white, which spreads them. */
+void learn_hidden(const struct calibrate_par *par, const struct calibration *c,
+	const unsigned char *hidden[2]);
 /* Fills shape, duration, gain, range of delays, chi2, price, rest and events of c from
  * y1, y2[0 .. n), aligned and in units of the noise; low: lag as above, of these; found:
  * the pulse taken from these, which is tried first, its shape NULL where there is none.

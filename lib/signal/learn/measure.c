@@ -19,6 +19,10 @@ static const double BAD_FIT = 2;
  * what it leaves rings on, and others fit into that. */
 static const double NARROW = 0.5;
 
+/* Durations of a pulse that a transit time found is at least: coils that do not overlap
+ * are further apart than half the zone of one. */
+static const double APART = 0.5;
+
 /* Share of its energy in which a pulse may differ from one of sensor.h that is to be
  * corrected rather than taken from the record. */
 static const double NEAR = 0.003;
@@ -35,6 +39,7 @@ struct record {
 	double low;       /* lag of the lowest autocorrelation */
 	double change[2]; /* of tones, see take_tones() */
 	double drift;     /* the same over LONG_HOP, channel 1 */
+	double share;     /* of the transit time that delays are searched within */
 };
 
 /* Takes tones (and the mean) from a whole record; *change receives the mean square change
@@ -97,11 +102,17 @@ static double variance(const double *x, size_t n)
 	return sum / (double)n;
 }
 
+/* Shares of the transit time within which delays are searched: in plug flow, and where
+ * they reach to its limits. */
+static const double PLUG = 0.1, WIDE = 0.3;
+
 /* Range of the delays as far as it is known. */
-static void set_range(const struct calibrate_par *par, struct calibration *c)
+static void set_range(
+	const struct calibrate_par *par, double share, struct calibration *c)
 {
-	double share = isnan(par->spread) ? 0.1 : par->spread;
-	double spread = fmax(share * (double)c->shift, 0.05 * c->duration);
+	double spread =
+		fmax((isnan(par->spread) ? share : par->spread) * (double)c->shift,
+			0.05 * c->duration);
 
 	c->delta_min = -spread;
 	c->delta_max = spread;
@@ -397,6 +408,8 @@ static enum calibrate_status find_duration(const struct calibrate_par *par,
 		return CALIBRATE_NARROW;
 	if (!(c->duration >= 8))
 		return CALIBRATE_FAST;
+	if (isnan(par->lag) && (double)c->shift < APART * c->duration)
+		return CALIBRATE_AT_ONCE;
 	return c->duration > 0.5 * length ? CALIBRATE_SLOW : CALIBRATE_OK;
 }
 
@@ -439,23 +452,48 @@ static enum calibrate_status learn(const struct calibrate_par *par,
 {
 	if (found && found->alone && !found->shape)
 		return CALIBRATE_NO_LAG;
-	set_range(par, c);
+	set_range(par, rec->share, c);
 	set_thresholds(par, c);
 	return learn_pulse(par, rec->y1, rec->y2, rec->n, rec->low, found, c);
 }
 
-/* Takes the pulse from the record where nothing is told of it; one of sensor.h that is
- * as good has fewer parameters. */
-static enum calibrate_status find_template(const struct calibrate_par *par,
-	const struct record *rec, struct template *found, const struct calibration *c)
+static int is_known(const struct template *found)
 {
+	return !found->reversed && found->left < NEAR;
+}
+
+/* Takes the pulse from the record where nothing is told of it; one of sensor.h that is
+ * as good has fewer parameters.  Where foreign events have misled the guess of the
+ * duration, such a one is found at another duration. */
+static enum calibrate_status find_template(const struct calibrate_par *par,
+	const struct record *rec, struct template *found, struct calibration *c)
+{
+	static const double factor[] = { 1, 0.5, 0.25, 0.125 };
+	const unsigned char *hidden[2];
+	double reach;
+
+	learn_hidden(par, c, hidden);
 	template_clear(found);
 	if (par->pulse != CALIBRATE_ANY_PULSE || !isnan(par->duration))
 		return CALIBRATE_OK;
-	if (template_find(found, rec->y1, rec->y2, rec->n, c->duration, c->transit,
-		    fmax(0.1 * (double)c->shift, 0.05 * c->duration)) != NUM_OK)
-		return CALIBRATE_MEMORY;
-	if (!found->reversed && found->left < NEAR && !c->whitening.tap)
+	for (size_t k = 0; k < sizeof factor / sizeof *factor; k++) {
+		double T = factor[k] * c->duration;
+
+		if (T < 8)
+			continue;
+		reach = fmax(rec->share * (double)c->shift, 0.05 * T);
+		if (template_find(found, rec->y1, rec->y2, hidden, rec->n, T, c->transit,
+			    reach) != NUM_OK)
+			return CALIBRATE_MEMORY;
+		found->elsewhere = k > 0;
+		if (found->events > 0 && (k == 0 || is_known(found)))
+			break;
+		template_clear(found);
+		found->events = 0;
+	}
+	if (found->events > 0 && found->elsewhere)
+		c->duration = found->duration;
+	if (is_known(found) && !c->whitening.tap)
 		template_clear(found);
 	return CALIBRATE_OK;
 }
@@ -465,8 +503,16 @@ static enum calibrate_status find_template(const struct calibrate_par *par,
 static enum calibrate_status learn_with_noise(const struct calibrate_par *par,
 	struct record *rec, struct template *found, struct calibration *c)
 {
-	enum { ROUNDS = 4 };
+	enum { ROUNDS = 4, SOME = 2 };
 	enum calibrate_status status = learn(par, rec, found, c);
+
+	if (status == CALIBRATE_OK && c->far >= SOME && isnan(par->spread)) {
+		rec->share = WIDE;
+		if (found->events)
+			status = find_template(par, rec, found, c);
+		if (status == CALIBRATE_OK)
+			status = learn(par, rec, found, c);
+	}
 
 	for (int k = 0; c->whitening.tap && k < ROUNDS; k++) {
 		if (status != CALIBRATE_OK || c->events == 0 ||
@@ -510,7 +556,7 @@ static enum calibrate_status learn_filtered(
 	return learn(par, rec, NULL, c);
 }
 
-static enum calibrate_status judge(
+static enum calibrate_status conclude(
 	const struct calibrate_par *par, struct record *rec, struct calibration *c)
 {
 	enum calibrate_status status = CALIBRATE_OK;
@@ -520,7 +566,7 @@ static enum calibrate_status judge(
 	if (c->chi2 > BAD_FIT)
 		status = look_for_crowd(rec, c, &c->dense);
 	if (c->dense)
-		set_range(par, c);
+		set_range(par, PLUG, c);
 	else if (status == CALIBRATE_OK && c->chi2 > BAD_FIT && !c->whitening.tap &&
 		 !c->suspect)
 		status = learn_filtered(par, rec, c);
@@ -554,7 +600,7 @@ enum calibrate_status measure(const struct calibrate_par *par, const double *raw
 	double *y1, double *y2, size_t n, double *work, struct look *look,
 	struct calibration *c)
 {
-	struct record rec = { .y1 = y1, .y2 = y2, .n = n, .work = work };
+	struct record rec = { .y1 = y1, .y2 = y2, .n = n, .work = work, .share = PLUG };
 	enum calibrate_status status = find_tones(par, &rec, c);
 
 	if (status == CALIBRATE_OK)
@@ -593,5 +639,5 @@ enum calibrate_status measure(const struct calibrate_par *par, const double *raw
 	if (status == CALIBRATE_OK && c->measured && c->whitening.tap)
 		status = set_peak(raw, n, work, &look->found, c);
 	template_clear(&look->found);
-	return status == CALIBRATE_OK ? judge(par, &rec, c) : status;
+	return status == CALIBRATE_OK ? conclude(par, &rec, c) : status;
 }

@@ -13,6 +13,7 @@
 /* Results of a first look at the noise of the record. */
 struct look {
 	int attempts;
+	double work; /* samples of pulses computed so far */
 	int coloured;
 	enum whiten_kind kind; /* tried now */
 	int settled;           /* 1: for the last time */

@@ -1,5 +1,6 @@
 /* template.c - see template.h */
 #include "signal/learn/template.h"
+#include "num/dot.h"
 #include "num/select.h"
 #include <math.h>
 #include <stdlib.h>
@@ -26,6 +27,7 @@ struct event {
 
 struct search {
 	const double *y[2];
+	const unsigned char *hidden[2]; /* flags of samples that are not known, or NULL */
 	size_t n;
 	double T, transit, reach;
 	int q;          /* samples per point of the coarse grid */
@@ -41,15 +43,6 @@ struct search {
 	int count;
 };
 
-static double dot(const double *x, const double *y, size_t n)
-{
-	double sum = 0;
-
-	for (size_t i = 0; i < n; i++)
-		sum += x[i] * y[i];
-	return sum;
-}
-
 static void coarsen(const double *x, size_t n, int q, double *out)
 {
 	for (size_t i = 0; i < n / (size_t)q; i++) {
@@ -59,6 +52,17 @@ static void coarsen(const double *x, size_t n, int q, double *out)
 			sum += x[i * (size_t)q + (size_t)k];
 		out[i] = sum / sqrt(q);
 	}
+}
+
+/* Are all samples of [from, to) of the coarse grid known? */
+static int is_known(const struct search *s, size_t from, size_t to)
+{
+	for (int c = 0; c < 2; c++)
+		for (size_t i = from * (size_t)s->q;
+			s->hidden[c] && i < to * (size_t)s->q; i++)
+			if (s->hidden[c][i])
+				return 0;
+	return 1;
 }
 
 /* Keeps the event at [from, to) of the coarse grid if it is among the clearest: loud and
@@ -76,7 +80,7 @@ static void offer(struct search *s, size_t from, size_t to)
 		energy += v;
 		moment += v * (double)i;
 	}
-	if (!(energy > 0))
+	if (!(energy > 0) || !is_known(s, from, to))
 		return;
 	e.centre = (moment / energy + 0.5) * s->q;
 	e.energy = energy;
@@ -543,9 +547,11 @@ static enum num_status search_template(struct search *s, struct template *t)
 }
 
 enum num_status template_find(struct template *t, const double *y1, const double *y2,
-	size_t n, double duration, double transit, double reach)
+	const unsigned char *const hidden[2], size_t n, double duration, double transit,
+	double reach)
 {
 	struct search s = { .y = { y1, y2 },
+		.hidden = { hidden[0], hidden[1] },
 		.n = n,
 		.T = duration,
 		.transit = transit,

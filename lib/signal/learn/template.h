@@ -25,14 +25,17 @@ struct template
 	 * leaves.  Arrivals are those of this pulse. */
 	int pulse, reversed;
 	double left;
+	int elsewhere; /* set by the caller: 1: found at another duration than was guessed
+			*/
 	int alone; /* set by the caller, kept: 1: no known pulse is to be tried instead */
 };
 
 /* y1, y2[0 .. n), aligned to within reach, in units of white noise; duration: a guess
- * within a factor of two; transit: samples between the sensors, INFINITY if unknown.
- * NUM_MEMORY. */
+ * within a factor of two; transit: samples between the sensors, INFINITY if unknown;
+ * hidden: flags of samples that are not known, or NULL.  NUM_MEMORY. */
 enum num_status template_find(struct template *t, const double *y1, const double *y2,
-	size_t n, double duration, double transit, double reach);
+	const unsigned char *const hidden[2], size_t n, double duration, double transit,
+	double reach);
 void template_clear(struct template *t);
 
 /* The share of the energy that the nearest pulse of sensor.h leaves after symmetric taps

@@ -25,14 +25,14 @@ static size_t bin_count(const struct masks *m, size_t n)
 	return stft_frames(m->stft, n) * m->bins;
 }
 
-static int reserve(struct masks *m, size_t n)
+static enum num_status reserve(struct masks *m, size_t n)
 {
 	size_t count = bin_count(m, n);
 
 	m->n = n;
 	m->frames = stft_frames(m->stft, n);
 	if (count <= m->capacity)
-		return 1;
+		return NUM_OK;
 	free(m->y1);
 	free(m->y2);
 	free(m->part);
@@ -42,19 +42,19 @@ static int reserve(struct masks *m, size_t n)
 	m->part = malloc(count * sizeof *m->part);
 	m->cell = malloc(count * sizeof *m->cell);
 	m->capacity = m->y1 && m->y2 && m->part && m->cell ? count : 0;
-	return m->capacity > 0;
+	return m->capacity ? NUM_OK : NUM_MEMORY;
 }
 
 /* Phase per sample of delay of one pulse in each bin, weighted as (3-18). */
-static int calibrate(struct masks *m)
+static enum num_status calibrate(struct masks *m)
 {
 	double T = m->par.duration, shift = T / 50;
 	size_t n = (size_t)(2 * shape_reach(m->par.shape) * T) + 4 * m->par.window;
 	double *x = calloc(2 * n, sizeof *x);
 	double complex *turn = calloc(m->bins, sizeof *turn);
-	int good = x && turn && reserve(m, n);
+	enum num_status status = x && turn ? reserve(m, n) : NUM_MEMORY;
 
-	for (int place = 0; good && place < 16; place++) {
+	for (int place = 0; !status && place < 16; place++) {
 		double t0 = (double)n / 2 + place * (double)m->par.hop / 16;
 
 		shape_sample(m->par.shape, t0, T, 0, n, x, NULL, NULL);
@@ -64,11 +64,11 @@ static int calibrate(struct masks *m)
 		for (size_t i = 0; i < m->frames * m->bins; i++)
 			turn[i % m->bins] += m->y1[i] * conj(m->y2[i]);
 	}
-	for (size_t k = 0; good && k < m->bins; k++)
+	for (size_t k = 0; !status && k < m->bins; k++)
 		m->omega[k] = carg(turn[k]) / shift;
 	free(x);
 	free(turn);
-	return good;
+	return status;
 }
 
 struct masks *masks_new(const struct masks_par *par)
@@ -92,7 +92,7 @@ struct masks *masks_new(const struct masks_par *par)
 	}
 	m->bins = stft_bins(m->stft);
 	m->omega = calloc(m->bins, sizeof *m->omega);
-	if (!m->omega || !calibrate(m)) {
+	if (!m->omega || calibrate(m)) {
 		masks_free(m);
 		return NULL;
 	}
@@ -149,6 +149,7 @@ static void fill_histogram(struct masks *m)
 	}
 }
 
+/* Number of peaks. */
 static int find_peaks(struct masks *m, struct masks_source *source)
 {
 	struct histogram_peak peak[HISTOGRAM_PEAKS];
@@ -167,7 +168,7 @@ static int find_peaks(struct masks *m, struct masks_source *source)
 enum num_status masks_find(struct masks *m, const double *y1, const double *y2, size_t n,
 	struct masks_source source[MASKS_SOURCES_MAX], int *sources)
 {
-	if (!reserve(m, n))
+	if (reserve(m, n))
 		return NUM_MEMORY;
 	stft_forward(m->stft, y1, n, m->y1);
 	stft_forward(m->stft, y2, n, m->y2);

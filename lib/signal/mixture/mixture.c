@@ -113,8 +113,8 @@ static long transform(struct mixture *m, size_t f)
 	long first = (long)(f * m->par.hop) - (long)(w - 1);
 
 	/* Once in every pass, and for the separation. */
-	if (m->par.told)
-		m->par.told(m->passed, (REACHES + ROUNDS + 1) * (long)windows(m));
+	if (m->par.progress)
+		m->par.progress(m->passed, (REACHES + ROUNDS + 1) * (long)windows(m));
 	m->passed++;
 
 	for (int c = 0; c < 2; c++) {

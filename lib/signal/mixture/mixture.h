@@ -34,7 +34,7 @@ struct mixture_par {
 	size_t window,
 		hop; /* of the transform, samples: window even, hop to half of it */
 	int sources; /* how many to find; 0: as many as there are peaks */
-	void (*told)(long done, long windows); /* called as they are transformed; or
+	void (*progress)(long done, long windows); /* called as they are transformed; or
 						  NULL */
 };
 

@@ -1,5 +1,6 @@
 /* lines.c - takes narrow lines out of a stream */
 #include "signal/noise/lines.h"
+#include "num/status.h"
 #include "signal/noise/tones.h"
 #include <stdlib.h>
 #include <string.h>
@@ -67,8 +68,9 @@ static void take_channel(struct lines *l, size_t c, size_t begin, size_t n)
 }
 
 /* Fits the last frames of total kept, a window if there are so many, and cleans the first
- * of those held; 0 when out of memory. */
-static int clean_channel(struct lines *l, size_t c, size_t total, size_t cleaned)
+ * of those held. */
+static enum num_status clean_channel(
+	struct lines *l, size_t c, size_t total, size_t cleaned)
 {
 	size_t nc = (size_t)l->channels, window = total < 2 * l->hop ? total : 2 * l->hop;
 	double start = l->start - (double)l->older + (double)(total - window);
@@ -79,7 +81,7 @@ static int clean_channel(struct lines *l, size_t c, size_t total, size_t cleaned
 	status = tones_fit(l->channel, window, start, l->count, l->omega,
 		next.coefficient, NULL, NULL);
 	if (status == TONES_MEMORY)
-		return 0;
+		return NUM_MEMORY;
 	if (status == TONES_SHORT)
 		memcpy(next.coefficient, l->last[c].coefficient, sizeof next.coefficient);
 	next.coefficient[0] = 0; /* the offset stays */
@@ -91,7 +93,7 @@ static int clean_channel(struct lines *l, size_t c, size_t total, size_t cleaned
 	l->last[c] = next;
 	for (size_t i = 0; i < cleaned; i++)
 		l->clean[i * nc + c] = l->channel[i];
-	return 1;
+	return NUM_OK;
 }
 
 const double *lines_run(struct lines *l, const double *x, size_t n, size_t *clean)
@@ -102,7 +104,7 @@ const double *lines_run(struct lines *l, const double *x, size_t n, size_t *clea
 	if (n > 0)
 		memcpy(l->frames + (l->older + l->held) * nc, x, n * nc * sizeof *x);
 	for (size_t c = 0; cleaned > 0 && c < nc; c++)
-		if (!clean_channel(l, c, total, cleaned))
+		if (clean_channel(l, c, total, cleaned))
 			return NULL;
 	if (cleaned > 0) {
 		/* what was just cleaned is the older hop now */

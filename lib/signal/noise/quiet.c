@@ -13,15 +13,16 @@ enum { GROUP = 8, PASSES = 4 };
 static const double loud = 2.8;
 
 /* Periodograms of count half-overlapping segments: power[i * bins + k - 1] of bin k. */
-static int transform(const double *y, size_t segment, size_t count, double *power)
+static enum num_status transform(
+	const double *y, size_t segment, size_t count, double *power)
 {
 	size_t bins = segment / 2;
 	struct fft *fft = fft_new(segment, 1);
 	double complex *spectrum = fft_alloc_complex(bins + 1);
 	double *x = fft_alloc(segment), scale = 8 / (3 * (double)segment);
-	int ok = fft && spectrum && x;
+	enum num_status status = fft && spectrum && x ? NUM_OK : NUM_MEMORY;
 
-	for (size_t i = 0; ok && i < count; i++) {
+	for (size_t i = 0; !status && i < count; i++) {
 		for (size_t k = 0; k < segment; k++) {
 			double angle = 2 * M_PI * ((double)k + 0.5) / (double)segment;
 
@@ -37,7 +38,7 @@ static int transform(const double *y, size_t segment, size_t count, double *powe
 	fft_done(fft);
 	fft_free(spectrum);
 	fft_free(x);
-	return ok;
+	return status;
 }
 
 /* Lower quartile of each bin, scaled to the mean of the exponential distribution. */
@@ -92,11 +93,13 @@ enum num_status quiet_spectrum(const double *y1, const double *y2, size_t n,
 	*quiets = 0;
 	if (status != NUM_OK || count == 0)
 		goto done;
-	if (!transform(y1, segment, count, part[0] = power) ||
-		!transform(y2, segment, count, part[1] = power + count * bins)) {
-		status = NUM_MEMORY;
+	part[0] = power;
+	part[1] = power + count * bins;
+	status = transform(y1, segment, count, part[0]);
+	if (!status)
+		status = transform(y2, segment, count, part[1]);
+	if (status)
 		goto done;
-	}
 	for (int c = 0; c < 2; c++)
 		quartile_spectrum(
 			part[c], bins, count, power + 2 * count * bins, spectrum[c]);

@@ -1,5 +1,6 @@
 /* tones.c - see tones.h */
 #include "signal/noise/tones.h"
+#include "num/dot.h"
 #include "num/fft.h"
 #include "signal/noise/robust.h"
 #include <math.h>
@@ -132,19 +133,6 @@ struct basis {
 	double term[TERMS_MAX][RUN], gram[TERMS_MAX][TERMS_MAX];
 };
 
-static double dot(const double *x, const double *y)
-{
-	double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
-
-	for (int i = 0; i < RUN; i += 4) {
-		s0 += x[i] * y[i];
-		s1 += x[i + 1] * y[i + 1];
-		s2 += x[i + 2] * y[i + 2];
-		s3 += x[i + 3] * y[i + 3];
-	}
-	return (s0 + s1) + (s2 + s3);
-}
-
 /* Cosine and sine of omega t.  The product is taken to twice the digits, since its last
  * one is worth much where t is large. */
 static void cosine_sine(double omega, double t, double *c, double *s)
@@ -169,7 +157,7 @@ static void make_basis(struct basis *b, int tones, const double *omega)
 	}
 	for (int k = 0; k < b->terms; k++)
 		for (int l = 0; l < b->terms; l++)
-			b->gram[k][l] = dot(b->term[k], b->term[l]);
+			b->gram[k][l] = dot(b->term[k], b->term[l], RUN);
 }
 
 /* Terms of the run from index t on, by the addition theorem. */
@@ -202,8 +190,8 @@ static void sum_terms(
 }
 
 /* Cholesky factor of the symmetric matrix a (lower triangle, rows of TERMS_MAX) in
- * place; 0 where it is not positive definite. */
-static int factorise(double *a, int n)
+ * place; NUM_DOMAIN where it is not positive definite. */
+static enum num_status factorise(double *a, int n)
 {
 	for (int i = 0; i < n; i++)
 		for (int k = 0; k <= i; k++) {
@@ -216,9 +204,9 @@ static int factorise(double *a, int n)
 			else if (sum > 1e-10 * a[i * TERMS_MAX + i])
 				a[i * TERMS_MAX + i] = sqrt(sum);
 			else
-				return 0;
+				return NUM_DOMAIN;
 		}
-	return 1;
+	return NUM_OK;
 }
 
 /* Solves L L^T x = b in place. */
@@ -269,7 +257,7 @@ static void add_whole(
 			turned[k][l] = once[l][k];
 	turn_rows(b, term, turned, twice);
 	for (int k = 0; k < b->terms; k++) {
-		s->b[k] += dot(term[k], x);
+		s->b[k] += dot(term[k], x, RUN);
 		for (int l = 0; l <= k; l++)
 			s->a[k * TERMS_MAX + l] += twice[k][l];
 	}
@@ -286,15 +274,16 @@ static void add_part(struct normal *s, const struct basis *b, double term[][RUN]
 	for (int k = 0; k < b->terms; k++) {
 		for (int i = 0; i < RUN; i++)
 			part[k][i] = mask[i] ? term[k][i] : 0;
-		s->b[k] += dot(term[k], y);
+		s->b[k] += dot(term[k], y, RUN);
 		for (int l = 0; l <= k; l++)
-			s->a[k * TERMS_MAX + l] += dot(part[k], term[l]);
+			s->a[k * TERMS_MAX + l] += dot(part[k], term[l], RUN);
 	}
 }
 
 /* Least squares over the samples whose mask is set; on request the variance of each
- * coefficient in units of that of a sample. */
-static int fit_masked(struct basis *b, double term[][RUN], const double *x,
+ * coefficient in units of that of a sample.  NUM_DOMAIN where these samples do not
+ * determine the coefficients. */
+static enum num_status fit_masked(struct basis *b, double term[][RUN], const double *x,
 	const unsigned char *mask, size_t runs, double *coefficient, double *variance)
 {
 	struct normal s = { { 0 }, { 0 } };
@@ -304,8 +293,8 @@ static int fit_masked(struct basis *b, double term[][RUN], const double *x,
 			add_whole(&s, b, term, x);
 		else if (memchr(mask, 1, RUN))
 			add_part(&s, b, term, x, mask);
-	if (!factorise(s.a, b->terms))
-		return 0;
+	if (factorise(s.a, b->terms))
+		return NUM_DOMAIN;
 	substitute(s.a, s.b, b->terms);
 	memcpy(coefficient, s.b, sizeof(double) * (size_t)b->terms);
 	for (int k = 0; variance && k < b->terms; k++) {
@@ -315,7 +304,7 @@ static int fit_masked(struct basis *b, double term[][RUN], const double *x,
 		substitute(s.a, unit, b->terms);
 		variance[k] = unit[k];
 	}
-	return 1;
+	return NUM_OK;
 }
 
 /* Marks where the mean square of rest over some neighbours is at most twice its median:
@@ -356,10 +345,12 @@ enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
 	double *y = calloc(room, sizeof *y); /* x, filled up with zeros */
 	double *rest = malloc(3 * room * sizeof *rest), level = 0;
 	unsigned char *mask = calloc(room, 1);
-	int memory = term && y && rest && mask, good = memory && n > 4 * terms;
+	enum tones_status status = !term || !y || !rest || !mask ? TONES_MEMORY
+				   : n > 4 * terms               ? TONES_OK
+								 : TONES_SHORT;
 
 	memset(coefficient, 0, sizeof(double) * terms);
-	if (good) {
+	if (!status) {
 		make_basis(&basis, tones, omega);
 		for (size_t r = 0; r < runs; r++)
 			make_terms(&basis, start + (double)(r * RUN), term + r * terms);
@@ -369,17 +360,18 @@ enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
 	}
 	/* At first the rest is the record itself: where tones prevail it is quiet all
 	 * along, where they do not it is quiet between the pulses. */
-	for (int pass = 0; good && pass < PASSES; pass++) {
+	for (int pass = 0; !status && pass < PASSES; pass++) {
 		for (size_t r = 0; r < runs; r++)
 			sum_terms(term + r * terms, basis.terms, coefficient,
 				rest + r * RUN);
 		for (size_t i = 0; i < n; i++)
 			rest[i] = x[i] - rest[i];
 		level = mark_quiet(rest, n, rest + room, rest + 2 * room, mask);
-		if (!fit_masked(&basis, term, y, mask, runs, coefficient, variance)) {
+		if (fit_masked(&basis, term, y, mask, runs, coefficient, variance)) {
 			memset(mask, 1, n);
-			good = fit_masked(
-				&basis, term, y, mask, runs, coefficient, variance);
+			if (fit_masked(
+				    &basis, term, y, mask, runs, coefficient, variance))
+				status = TONES_SHORT;
 		}
 	}
 	if (deviation)
@@ -388,7 +380,7 @@ enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
 	free(y);
 	free(rest);
 	free(mask);
-	return good ? TONES_OK : memory ? TONES_SHORT : TONES_MEMORY;
+	return status;
 }
 
 /* Power of tone k over what noise gives it: chi-square with two degrees of freedom. */

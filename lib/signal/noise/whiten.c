@@ -40,15 +40,15 @@ static void find_band(const double *power, size_t n, size_t *first, size_t *last
 }
 
 /* Symmetric taps -half..half of the gain at n frequencies, tapered towards the ends. */
-static int taps_of_gain(const double *gain, size_t n, int half, double *tap)
+static enum num_status taps_of_gain(const double *gain, size_t n, int half, double *tap)
 {
 	size_t points = 2 * (n - 1);
 	struct fft *fft = fft_new(points, 1);
 	double complex *spectrum = fft_alloc_complex(n);
 	double *x = fft_alloc(points);
-	int ok = fft && spectrum && x;
+	enum num_status status = fft && spectrum && x ? NUM_OK : NUM_MEMORY;
 
-	if (ok) {
+	if (!status) {
 		for (size_t k = 0; k < n; k++)
 			spectrum[k] = gain[k] / (double)points;
 		fft_inverse(fft, spectrum, x);
@@ -60,19 +60,19 @@ static int taps_of_gain(const double *gain, size_t n, int half, double *tap)
 		fft_done(fft);
 	fft_free(spectrum);
 	fft_free(x);
-	return ok;
+	return status;
 }
 
 /* Gain at n frequencies of symmetric taps -half..half. */
-static int gain_of_taps(const double *tap, int half, size_t n, double *gain)
+static enum num_status gain_of_taps(const double *tap, int half, size_t n, double *gain)
 {
 	size_t points = 2 * (n - 1);
 	struct fft *fft = fft_new(points, 1);
 	double complex *spectrum = fft_alloc_complex(n);
 	double *x = fft_alloc(points);
-	int ok = fft && spectrum && x;
+	enum num_status status = fft && spectrum && x ? NUM_OK : NUM_MEMORY;
 
-	if (ok) {
+	if (!status) {
 		for (int k = 0; k <= half; k++)
 			x[k] = x[k ? points - (size_t)k : 0] = tap[half + k];
 		fft_forward(fft, x, spectrum);
@@ -83,7 +83,7 @@ static int gain_of_taps(const double *tap, int half, size_t n, double *gain)
 		fft_done(fft);
 	fft_free(spectrum);
 	fft_free(x);
-	return ok;
+	return status;
 }
 
 /* Drops taps at both ends that do not matter. */
@@ -127,23 +127,23 @@ static void whitening_gains(struct whitening *w, const double *power, size_t n,
 }
 
 /* What the taps leave of a pulse and of the noise. */
-static int look_through(struct whitening *w, const double *power, double unit, size_t n,
-	enum whiten_kind kind, double *gain, double *seen)
+static enum num_status look_through(struct whitening *w, const double *power, double unit,
+	size_t n, enum whiten_kind kind, double *gain, double *seen)
 {
 	size_t lowest = (size_t)ceil(w->low * 2 * (double)(n - 1));
 
-	if (!gain_of_taps(w->tap, w->half, n, gain))
-		return 0;
+	if (gain_of_taps(w->tap, w->half, n, gain))
+		return NUM_MEMORY;
 	for (size_t k = 0; k < n; k++)
 		w->band += gain[k] * gain[k] * power[k] / unit *
 			   (k == 0 || k == n - 1 ? 0.5 : 1) / (double)(n - 1);
 	if (kind == WHITEN_COLOURED) /* the baseline is fitted along: leave it in */
 		for (size_t k = 0; k < n; k++)
 			seen[k] = gain[k < lowest ? lowest : k];
-	if (!taps_of_gain(seen, n, w->half, w->seen))
-		return 0;
+	if (taps_of_gain(seen, n, w->half, w->seen))
+		return NUM_MEMORY;
 	trim(w->seen, &w->seen_half);
-	return 1;
+	return NUM_OK;
 }
 
 static int edge_of_taps(const double *tap, int half)
@@ -164,23 +164,27 @@ enum num_status whitening_make(struct whitening *w, const double *power, size_t 
 	double unit, int half, enum whiten_kind kind)
 {
 	double *gain = malloc(2 * n * sizeof *gain);
-	int ok;
+	enum num_status status;
 
 	memset(w, 0, sizeof *w);
 	w->half = w->seen_half = half;
 	w->tap = malloc((2 * (size_t)half + 1) * sizeof *w->tap);
 	w->seen = malloc((2 * (size_t)half + 1) * sizeof *w->seen);
-	ok = gain && w->tap && w->seen && unit > 0;
-	if (ok) {
+	status = !gain || !w->tap || !w->seen ? NUM_MEMORY
+		 : unit > 0                   ? NUM_OK
+					      : NUM_DOMAIN;
+	if (!status) {
 		whitening_gains(w, power, n, unit, gain, gain + n);
-		ok = taps_of_gain(gain, n, half, w->tap) &&
-		     look_through(w, power, unit, n, kind, gain, gain + n);
+		status = taps_of_gain(gain, n, half, w->tap);
+	}
+	if (!status) {
+		status = look_through(w, power, unit, n, kind, gain, gain + n);
 		w->edge = edge_of_taps(w->tap, half);
 	}
 	free(gain);
-	if (!ok)
+	if (status)
 		whitening_clear(w);
-	return ok ? NUM_OK : NUM_MEMORY;
+	return status;
 }
 
 enum num_status whitening_of_noise(

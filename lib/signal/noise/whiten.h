@@ -34,8 +34,8 @@ struct whitening {
 	double band;      /* variance of the noise made white, 1 at all frequencies */
 };
 
-/* power[k] of the noise at frequency k / (2 (n - 1)), k < n; unit > 0: that of the white
- * noise to be made of it; half < n: length of the taps. */
+/* power[k] of the noise at frequency k / (2 (n - 1)), k < n; unit: that of the white
+ * noise to be made of it, NUM_DOMAIN unless > 0; half < n: length of the taps. */
 enum num_status whitening_make(struct whitening *w, const double *power, size_t n,
 	double unit, int half, enum whiten_kind kind);
 /* The same for noise whose power is known at n frequencies only, smooth between them;

@@ -1,8 +1,12 @@
 /* separate.c - see separate.h */
 #include "signal/separate/separate.h"
+#include "num/room.h"
 #include "signal/detect/sections.h"
-#include "signal/fit/judge.h"
+#include "signal/detect/spikes.h"
+#include "signal/fit/goodness.h"
 #include "signal/noise/robust.h"
+#include "signal/separate/contrasts.h"
+#include "signal/separate/quadrature.h"
 #include "signal/separate/tape.h"
 #include "signal/separate/validate.h"
 #include <math.h>
@@ -23,6 +27,9 @@ struct report {
 	size_t first, rows; /* of the queue */
 };
 
+/* Pulses that stood alone by which the range of delays and the gain are followed. */
+enum { TRACKED = 64, ENOUGH = 12, GAINS = 8 };
+
 struct separate {
 	struct separate_par par;
 	struct calibration cal;
@@ -39,11 +46,24 @@ struct separate {
 	struct masks *masks;
 	struct joint_scene scene;
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
+	struct quadrature quadrature;
+	struct quadrature_pulse both[JOINT_PULSES_MAX]; /* pulse, with both components */
+	int with_both;  /* 1: both is of the present window */
 	int carried;    /* pulses of the last window that the next one starts from */
 	long long span; /* longest window in this section; 0: as given */
 	int failures;   /* windows unresolved, one after the other */
 	int dense;      /* the rest of this section is not taken apart */
 	int strange;    /* ... though it is short */
+	unsigned char *spikes; /* flags of impulses */
+	size_t spike_room;
+	/* Covariances of the delays of pulse, all of them; 0: not known. */
+	double delay_cov[JOINT_PULSES_MAX * JOINT_PULSES_MAX];
+	int all;
+	double delay[TRACKED]; /* of the last pulses that stood alone */
+	size_t delays;
+	double gain_off[GAINS]; /* of such, in standard errors, since it was last set */
+	double gain_sum, gain_weight;
+	int gains;
 	int continuing; /* the next window belongs to the same section */
 	long number;
 	long long done; /* samples before this one are worked off */
@@ -95,12 +115,14 @@ void separate_free(struct separate *s)
 	masks_free(s->masks);
 	for (int c = 0; c < 2; c++)
 		tape_clear(&s->tape[c]);
+	quadrature_clear(&s->quadrature);
 	for (size_t i = 0; i < s->reports; i++)
 		free(s->report[i].source);
 	free(s->report);
 	validation_free(s->validation);
 	free(s->queue);
 	free(s->source);
+	free(s->spikes);
 	free(s);
 }
 
@@ -224,18 +246,36 @@ static enum separate_status start(struct separate *s, size_t n);
 
 static enum separate_status calibrate_now(struct separate *s)
 {
-	static const enum separate_status of[] = { SEPARATE_OK, SEPARATE_MEMORY,
-		SEPARATE_NO_LAG, SEPARATE_SILENT_1, SEPARATE_SILENT_2, SEPARATE_NO_LAG,
-		SEPARATE_SWAPPED, SEPARATE_FAR, SEPARATE_NARROW, SEPARATE_FAST,
-		SEPARATE_SLOW, SEPARATE_TONES };
+	static const enum separate_status of[] = {
+		[CALIBRATE_OK] = SEPARATE_OK,
+		[CALIBRATE_MEMORY] = SEPARATE_MEMORY,
+		[CALIBRATE_COLOURED] = SEPARATE_NO_LAG,
+		[CALIBRATE_SILENT_1] = SEPARATE_SILENT_1,
+		[CALIBRATE_SILENT_2] = SEPARATE_SILENT_2,
+		[CALIBRATE_HARD] = SEPARATE_HARD,
+		[CALIBRATE_NO_LAG] = SEPARATE_NO_LAG,
+		[CALIBRATE_AT_ONCE] = SEPARATE_AT_ONCE,
+		[CALIBRATE_SWAPPED] = SEPARATE_SWAPPED,
+		[CALIBRATE_FAR] = SEPARATE_FAR,
+		[CALIBRATE_NARROW] = SEPARATE_NARROW,
+		[CALIBRATE_FAST] = SEPARATE_FAST,
+		[CALIBRATE_SLOW] = SEPARATE_SLOW,
+		[CALIBRATE_TONES] = SEPARATE_TONES,
+	};
 	enum calibrate_status status;
+	struct calibrate_par known;
 	size_t n;
 
 	if (s->tape[0].n < SEPARATE_SHORTEST)
 		return SEPARATE_NO_LAG;
 	/* Not more than asked for, however much has come in at once. */
 	n = s->tape[0].n < s->par.learn ? s->tape[0].n : s->par.learn;
-	status = calibrate(&s->par.known, s->tape[0].x, s->tape[1].x, n, &s->cal);
+	known = s->par.known;
+	for (int c = 0; c < 2; c++) {
+		tape_review(&s->tape[c]);
+		known.hidden[c] = s->tape[c].hidden;
+	}
+	status = calibrate(&known, s->tape[0].x, s->tape[1].x, n, &s->cal);
 	if (status != CALIBRATE_OK)
 		return of[status];
 	if (!(s->cal.duration >= SECTIONS_SHORTEST)) {
@@ -264,6 +304,8 @@ static enum separate_status start(struct separate *s, size_t n)
 		s->par.window = (size_t)fmax(
 			3 * reach, JOINT_BASELINE_MAX / (2 * c->whitening.low));
 	if (tape_start(&s->tape[0], c) != NUM_OK || tape_start(&s->tape[1], c) != NUM_OK)
+		return SEPARATE_MEMORY;
+	if (s->par.quadrature && quadrature_start(&s->quadrature, c, n) != NUM_OK)
 		return SEPARATE_MEMORY;
 	/* Equal pulses on both channels reach the threshold of a pair at 1 / sqrt 2 of
 	 * it. */
@@ -315,12 +357,49 @@ static double *channel_2(struct separate *s, long long at)
 	return s->tape[1].x + (at + s->cal.shift - s->tape[1].begin);
 }
 
+/* The second components, as channel_1() and channel_2(). */
+static void quadrature_at(struct separate *s, long long at, double *v[2])
+{
+	for (int c = 0; c < 2; c++) {
+		const struct tape *t = &s->quadrature.tape[c];
+
+		v[c] = t->x + (at + (c ? s->cal.shift : 0) - t->begin);
+	}
+}
+
 /* Aligned samples before this one are ready on both channels. */
 static long long ready(const struct separate *s)
 {
 	long long second = s->tape[1].clean - s->cal.shift;
 
 	return s->tape[0].clean < second ? s->tape[0].clean : second;
+}
+
+/* What the second component adds to the row of pulse i. */
+static void tell_phase(
+	const struct separate *s, int i, long long from, struct transit *out)
+{
+	const struct quadrature_pulse *p = &s->both[i];
+	double noise = s->cal.noise[0], size = hypot(p->a, p->b);
+	double ca = p->a / size, cb = p->b / size, along[4];
+	double delay_var = p->cov[0][0] - 2 * p->cov[0][1] + p->cov[1][1];
+
+	for (int k = 0; k < 4; k++)
+		along[k] = ca * p->cov[2][k] + cb * p->cov[3][k];
+	out->t1 = (double)from + p->t;
+	out->t2 = out->t1 + (double)s->cal.shift + p->delta;
+	out->t1_se = sqrt(p->cov[0][0]);
+	out->t2_se = sqrt(p->cov[1][1]);
+	out->delay_se = sqrt(delay_var);
+	out->amplitude = size * noise;
+	out->amplitude_se = sqrt(ca * along[2] + cb * along[3]) * noise;
+	out->correlation =
+		(along[1] - along[0]) * noise / (out->amplitude_se * out->delay_se);
+	/* of a reversed pulse, the opposite of the phase of what it was reversed from */
+	out->phase = s->cal.reversed ? atan2(-p->b, -p->a) : atan2(p->b, p->a);
+	out->phase_se = sqrt(cb * cb * p->cov[2][2] - 2 * ca * cb * p->cov[2][3] +
+				ca * ca * p->cov[3][3]) /
+			size;
 }
 
 static int emit_pulse(struct separate *s, const struct joint_pulse *p, long long from,
@@ -343,6 +422,9 @@ static int emit_pulse(struct separate *s, const struct joint_pulse *p, long long
 	out->delay_se = sqrt(delay_var);
 	out->amplitude_se = sqrt(p->cov[5]) * noise;
 	out->correlation = (p->cov[4] - p->cov[3]) / sqrt(delay_var * p->cov[5]);
+	out->phase = out->phase_se = NAN;
+	if (s->with_both)
+		tell_phase(s, (int)(p - s->pulse), from, out);
 	out->chi2 = chi2;
 	out->verdict = verdict;
 	entry->evidence = (struct evidence){ .group = s->group,
@@ -351,6 +433,7 @@ static int emit_pulse(struct separate *s, const struct joint_pulse *p, long long
 		.var = isinf(s->cal.transit) || !isfinite(delay_var) ? 0 : delay_var,
 		.amplitude = p->a };
 	s->counters.rows++;
+	s->counters.negative += p->a < 0;
 	return 1;
 }
 
@@ -362,7 +445,7 @@ static int larger_neighbour(const struct separate *s, int m, int i)
 	int found = -1;
 
 	for (int k = 0; k < m; k++)
-		if (p[k].a > p[i].a && fabs(p[k].t - p[i].t) < nearest) {
+		if (fabs(p[k].a) > fabs(p[i].a) && fabs(p[k].t - p[i].t) < nearest) {
 			nearest = fabs(p[k].t - p[i].t);
 			found = k;
 		}
@@ -370,12 +453,13 @@ static int larger_neighbour(const struct separate *s, int m, int i)
 }
 
 /* What the last m rows, of one fit, tell of each other. */
-static void compare_pulses(struct separate *s, int m)
+static enum num_status compare_pulses(struct separate *s, int m)
 {
-	double cov[JOINT_PULSES_MAX * JOINT_PULSES_MAX];
+	double delay[JOINT_PULSES_MAX], square[JOINT_PULSES_MAX], var[JOINT_PULSES_MAX];
+	const double *cov = s->delay_cov;
 	struct entry *entry = s->queue + s->count - m;
 	const struct joint_pulse *p = s->pulse;
-	int all = joint_delay_covariance(s->joint, cov);
+	int all = s->all;
 
 	for (int i = 0; i < m && all >= m && !isinf(s->cal.transit); i++) {
 		struct evidence *e = &entry[i].evidence;
@@ -387,8 +471,19 @@ static void compare_pulses(struct separate *s, int m)
 		e->apart = p[i].delta - p[k].delta;
 		e->apart_var = cov[i * all + i] + cov[k * all + k] - 2 * cov[i * all + k];
 		e->place = (p[i].t - p[k].t) / s->cal.duration;
-		e->height = p[i].a / p[k].a;
+		e->height = fabs(p[i].a / p[k].a);
 	}
+	if (m < 2 || all < m || isinf(s->cal.transit))
+		return NUM_OK;
+	for (int i = 0; i < m; i++)
+		delay[i] = p[i].delta;
+	if (contrasts_of(m, delay, cov, all, square, var) != NUM_OK)
+		return NUM_MEMORY;
+	for (int i = 0; i + 1 < m; i++) {
+		entry[i].evidence.contrast2 = square[i];
+		entry[i].evidence.contrast_var = var[i];
+	}
+	return NUM_OK;
 }
 
 static int report_section(struct separate *s, long long from, long long to, int sources,
@@ -486,12 +581,14 @@ static enum separate_status dense_section(
 	p->section = s->number;
 	p->sources =
 		isnan(c.rate) || c.rate * length > 1e9 ? 0 : (int)(c.rate * length + 0.5);
+	if (s->strange && p->sources < 1)
+		p->sources = 1;
 	p->t1 = (double)from + length / 2;
 	p->t2 = p->t1 + (double)s->cal.shift;
 	p->amplitude = c.amplitude;
 	p->amplitude_se = c.amplitude_se;
 	p->t1_se = p->t2_se = length / sqrt(12);
-	p->delay_se = p->correlation = p->chi2 = NAN;
+	p->delay_se = p->correlation = p->chi2 = p->phase = p->phase_se = NAN;
 	p->verdict = SEPARATE_UNRESOLVED;
 	s->counters.unresolved++;
 	s->counters.dense += length;
@@ -505,7 +602,7 @@ static enum separate_status dense_section(
 
 /* Gives out the first done of the m pulses fitted to [from, to). */
 static enum separate_status give_pulses(struct separate *s, long long from, long long to,
-	int m, int done, const struct judgement *j)
+	int m, int done, const struct goodness *j)
 {
 	struct separate_section out = { .number = s->number,
 		.begin = from,
@@ -518,7 +615,8 @@ static enum separate_status give_pulses(struct separate *s, long long from, long
 	for (int i = 0; i < done; i++)
 		if (!emit_pulse(s, &s->pulse[i], from, m, j->chi2, j->pulse[i]))
 			return SEPARATE_MEMORY;
-	compare_pulses(s, done);
+	if (compare_pulses(s, done) != NUM_OK)
+		return SEPARATE_MEMORY;
 	if (s->par.want_sources && !draw_pulses(s, done, (size_t)(to - from)))
 		return SEPARATE_MEMORY;
 	return queue_report(s, &out, (size_t)done) ? SEPARATE_OK : SEPARATE_MEMORY;
@@ -536,6 +634,14 @@ static long long cut_section(
 	for (int i = 0; i < done; i++)
 		joint_add(&s->scene, &s->pulse[i], -1, channel_1(s, from),
 			channel_2(s, from), rest);
+	for (int i = 0; i < done && s->with_both; i++) {
+		const struct quadrature_pulse *b = &s->both[i];
+		struct joint_pulse p = { .t = b->t, .delta = b->delta, .a = b->b };
+		double *v[2];
+
+		quadrature_at(s, from, v);
+		joint_add(&s->scene, &p, -1, v[0], v[1], rest);
+	}
 	if (start <= from)
 		start = from + 1;
 	s->carried = m - done;
@@ -555,58 +661,296 @@ static double shortest_window(const struct separate *s)
 /* Windows that stay unresolved one after the other until what is left is given up. */
 enum { PATIENCE = 3 };
 
+/* One account of a window: its pulses and what is thought of them. */
+struct account {
+	struct joint_pulse pulse[JOINT_PULSES_MAX];
+	int m, done; /* pulses, and those before the boundary */
+	double boundary;
+	struct joint_result r;
+	struct goodness goodness;
+};
+
+/* Samples that the converter has not measured are left out of the fit, but where the
+ * record was made white, which spreads them. */
+static void hide(struct separate *s, long long from, size_t n)
+{
+	for (int c = 0; c < 2; c++) {
+		const struct tape *t = &s->tape[c];
+		const unsigned char *flags =
+			t->hidden + (from + (c ? s->cal.shift : 0) - t->begin);
+
+		s->scene.hidden[c] =
+			!s->cal.whitening.tap && memchr(flags, 1, n) ? flags : NULL;
+	}
+}
+
+/* Hides impulses as well, by s->spikes; 0 if there are none. */
+static int hide_spikes(struct separate *s, long long from, size_t n)
+{
+	size_t found = 0;
+
+	for (int c = 0; c < 2; c++) {
+		const double *y = c ? channel_2(s, from) : channel_1(s, from);
+		const unsigned char *known = s->scene.hidden[c];
+		unsigned char *flags = s->spikes + (size_t)c * n;
+
+		found += spikes_find(y, n, s->cal.duration, flags);
+		for (size_t i = 0; known && i < n; i++)
+			flags[i] |= known[i];
+		s->scene.hidden[c] = flags;
+	}
+	return found > 0;
+}
+
+/* Share of the transit time that delays are searched within where the learned range does
+ * not do. */
+static const double WIDE = 0.3;
+
+/* Share of the transit time that a delay may be less. */
+static const double LEAST = 0.5;
+
+static int is_range_free(const struct separate *s)
+{
+	return isnan(s->par.known.spread) && !isinf(s->cal.transit);
+}
+
+/* Searches a range of delays about the present one that is as wide as may be. */
+static void widen(struct separate *s)
+{
+	double middle = 0.5 * (s->scene.delta_min + s->scene.delta_max);
+	double half = fmax(WIDE * (s->cal.transit + middle), 0.05 * s->cal.duration);
+
+	s->scene.delta_min = fmax(middle - half, -LEAST * s->cal.transit);
+	s->scene.delta_max = middle + half;
+}
+
+/* The range of the last delays, widened by half on either side, as it was learned. */
+static void follow_delay(struct separate *s, double delay)
+{
+	size_t n;
+	double lo = INFINITY, hi = -INFINITY;
+
+	s->delay[s->delays++ % TRACKED] = delay;
+	n = s->delays < TRACKED ? s->delays : TRACKED;
+	for (size_t i = 0; i < n; i++) {
+		lo = fmin(lo, s->delay[i]);
+		hi = fmax(hi, s->delay[i]);
+	}
+	calibration_widen(s->cal.duration, &lo, &hi);
+	if (n < ENOUGH) { /* it was learned from others */
+		lo = fmin(s->scene.delta_min, lo);
+		hi = fmax(s->scene.delta_max, hi);
+	}
+	s->scene.delta_min = fmax(lo, -LEAST * s->cal.transit);
+	s->scene.delta_max = hi;
+	validation_range(s->validation, s->scene.delta_min, s->scene.delta_max);
+}
+
+/* The gain stays until the last GAINS pulses say, by three standard errors of their mean,
+ * that it has changed; then it is theirs. */
+static void follow_gain(struct separate *s, const struct joint_pulse *p)
+{
+	double share, se, sum = 0;
+
+	joint_gain_error(s->joint, p, &share, &se);
+	if (!(se > 0) || isinf(se))
+		return;
+	s->gain_off[s->gains++ % GAINS] = share / se;
+	s->gain_sum += share / (se * se);
+	s->gain_weight += 1 / (se * se);
+	if (s->gains % GAINS)
+		return;
+	for (int i = 0; i < GAINS; i++)
+		sum += s->gain_off[i];
+	if (fabs(sum) > 3 * sqrt(GAINS))
+		s->scene.gain *= 1 + s->gain_sum / s->gain_weight;
+	s->gain_sum = s->gain_weight = 0;
+}
+
+/* What a pulse that stands alone tells of the instrument. */
+static void follow(struct separate *s, const struct account *a)
+{
+	if (a->m != 1 || a->goodness.stretch != SEPARATE_ALONE)
+		return;
+	if (is_range_free(s))
+		follow_delay(s, a->pulse[0].delta);
+	if (isnan(s->par.known.gain))
+		follow_gain(s, &a->pulse[0]);
+}
+
+/* Fits a window from the first a->m pulses of a, and judges the fit. */
+static enum separate_status fit_window(
+	struct separate *s, long long from, size_t n, int cut, struct account *a)
+{
+	enum joint_status status = joint_fit(s->joint, &s->scene, channel_1(s, from),
+		channel_2(s, from), n, a->pulse, &a->m, &a->r);
+
+	if (status != JOINT_OK)
+		return status == JOINT_MEMORY ? SEPARATE_MEMORY : SEPARATE_WIDE;
+	s->counters.fits++;
+	s->counters.steps += (double)a->r.steps;
+	s->counters.searches += (double)a->r.searches;
+	memcpy(s->pulse, a->pulse, sizeof s->pulse);
+	a->boundary = cut ? choose_cut(s, a->m, n) : INFINITY;
+	a->done = 0;
+	while (a->done < a->m && a->pulse[a->done].t < a->boundary)
+		a->done++;
+	goodness_of_fit(s->joint, &s->scene, n, a->pulse, a->m, a->done, a->boundary,
+		s->cal.chi2 < 4 || s->cal.dense, &a->r, &a->goodness);
+	return SEPARATE_OK;
+}
+
+static int is_described(const struct account *a)
+{
+	return a->goodness.stretch < SEPARATE_MISFIT;
+}
+
+/* Pulses of a rival per duration of a pulse.  Three parameters of each describe
+ * anything once they are as many as the values of two channels in the band of a pulse,
+ * up to 1.5 / T: two. */
+static const double MOST = 1;
+
+/* Where pulses do not describe a window: impulses beside the pulses, other velocities,
+ * pulses of either sign, or those with impulses; without more pulses. */
+static enum separate_status try_rivals(
+	struct separate *s, long long from, size_t n, int cut, struct account *a)
+{
+	enum { IMPULSES, VELOCITIES, SIGNS, BOTH, RIVALS };
+	const struct joint_scene plain = s->scene;
+	enum separate_status status = SEPARATE_OK;
+	int found = 0, most, tried;
+
+	most = (int)fmin(a->m, fmax(MOST * (double)n / s->cal.duration, 1));
+	if (cut && a->m > 2 * most)
+		return SEPARATE_OK; /* a crowd */
+	tried = 2 * most < plain.max_pulses ? 2 * most : plain.max_pulses;
+	if (room_for(&s->spikes, &s->spike_room, 2 * n, sizeof *s->spikes))
+		return SEPARATE_MEMORY;
+	for (int k = 0; k < RIVALS && status == SEPARATE_OK && !found; k++) {
+		struct account rival = { .m = 0 };
+
+		s->scene = plain;
+		s->scene.max_pulses = tried;
+		if (k == VELOCITIES && !is_range_free(s))
+			continue;
+		if (k == VELOCITIES)
+			widen(s);
+		s->scene.signs = k >= SIGNS;
+		if ((k == IMPULSES || k == BOTH) &&
+			(s->cal.whitening.tap || !hide_spikes(s, from, n)))
+			continue;
+		status = fit_window(s, from, n, cut, &rival);
+		found = status == SEPARATE_OK && is_described(&rival) && rival.m <= most;
+		if (found)
+			*a = rival;
+	}
+	s->scene = plain;
+	if (found) {
+		s->all = joint_delay_covariance(s->joint, s->delay_cov);
+		follow(s, a);
+	}
+	memcpy(s->pulse, a->pulse, sizeof s->pulse);
+	return status;
+}
+
+/* Fits the m pulses of a window to both components; doubts them if more than noise is
+ * left of the second. */
+static enum separate_status fit_quadrature(
+	struct separate *s, long long from, size_t n, int m, int done, struct goodness *j)
+{
+	const double *x[2] = { channel_1(s, from), channel_2(s, from) };
+	double *v[2];
+	int doubt;
+	enum num_status status;
+
+	s->with_both = 0;
+	if (!s->par.quadrature)
+		return SEPARATE_OK;
+	quadrature_at(s, from, v);
+	status = quadrature_fit(&s->quadrature, s->joint, &s->scene, x,
+		(const double *const[]){ v[0], v[1] }, n, s->pulse, m, j->chi2, s->both,
+		&doubt);
+	if (status == NUM_MEMORY)
+		return SEPARATE_MEMORY;
+	s->with_both = status == NUM_OK;
+	if (!doubt || j->stretch == SEPARATE_UNRESOLVED)
+		return SEPARATE_OK;
+	/* Without a pulse there is no row that could say so. */
+	j->stretch = m > 0 ? SEPARATE_MISFIT : SEPARATE_UNRESOLVED;
+	for (int i = 0; i < done; i++)
+		j->pulse[i] = SEPARATE_MISFIT;
+	return SEPARATE_OK;
+}
+
 /* Works off [from, to) by a joint fit.  With cut, the section goes on: pulses behind
  * the cut are carried into the next window, whose first sample is *next; from again if
  * a shorter one, or shot noise, is to be tried. */
 static enum separate_status fit_section(
 	struct separate *s, long long from, long long to, int cut, long long *next)
 {
-	struct joint_result r;
-	size_t n = (size_t)(to - from);
-	double boundary;
-	struct judgement judgement;
-	enum joint_status status;
-	int m = s->carried, done = 0, unresolved, shorter;
+	struct account a = { .m = s->carried };
+	enum separate_status status;
+	int unresolved, shorter;
+	long before = 0, after = 0;
+	size_t n;
 
-	s->scene.max_pulses = most_pulses(s, n);
-	if (m > s->scene.max_pulses)
-		m = s->scene.max_pulses;
-	status = joint_fit(s->joint, &s->scene, channel_1(s, from), channel_2(s, from), n,
-		s->pulse, &m, &r);
-	if (status != JOINT_OK)
-		return status == JOINT_MEMORY ? SEPARATE_MEMORY : SEPARATE_WIDE;
-	s->counters.fits++;
-	s->counters.steps += (double)r.steps;
-	s->counters.searches += (double)r.searches;
-	boundary = cut ? choose_cut(s, m, n) : INFINITY;
-	while (done < m && s->pulse[done].t < boundary)
-		done++;
-	judge(s->joint, &s->scene, n, s->pulse, m, done, boundary,
-		s->cal.chi2 < 4 || s->cal.dense, &r, &judgement);
-	unresolved = judgement.stretch == SEPARATE_UNRESOLVED && !s->par.sources;
-	shorter = unresolved && r.full && (double)n > 2 * shortest_window(s);
+	/* The quiet samples beside a section tell that no pulse reaches there. */
+	if (!s->par.quadrature) {
+		before = s->continuing ? 0 : sections_aside(s->sections, 0);
+		before = from - s->tape[0].begin < before
+				 ? (long)(from - s->tape[0].begin)
+				 : before;
+		after = cut ? 0 : sections_aside(s->sections, 1);
+		after = ready(s) - to < after ? (long)(ready(s) - to) : after;
+	}
+	n = (size_t)(to - from + before + after);
+	s->scene.max_pulses = most_pulses(s, (size_t)(to - from));
+	s->scene.quiet[0] = (double)before;
+	s->scene.quiet[1] = (double)after;
+	if (!s->par.quadrature)
+		hide(s, from - before, n);
+	if (a.m > s->scene.max_pulses)
+		a.m = s->scene.max_pulses;
+	memcpy(a.pulse, s->pulse, sizeof a.pulse);
+	status = fit_window(s, from - before, n, cut, &a);
+	if (status == SEPARATE_OK)
+		s->all = joint_delay_covariance(s->joint, s->delay_cov);
+	if (status == SEPARATE_OK && s->par.quadrature)
+		status = fit_quadrature(s, from, n, a.m, a.done, &a.goodness);
+	else if (status == SEPARATE_OK && is_described(&a))
+		follow(s, &a);
+	else if (status == SEPARATE_OK && !s->par.sources)
+		status = try_rivals(s, from - before, n, cut, &a);
+	for (int i = 0; i < a.m; i++)
+		s->pulse[i].t -= (double)before;
+	a.boundary -= (double)before;
+	if (status != SEPARATE_OK)
+		return status;
+	unresolved = a.goodness.stretch == SEPARATE_UNRESOLVED && !s->par.sources;
+	shorter = unresolved && (cut || a.r.full) &&
+		  (double)(to - from) > 2 * shortest_window(s);
 	if (shorter)
 		s->span = (to - from) / 2;
 	else
 		s->failures = unresolved ? s->failures + 1 : 0;
 	s->dense = unresolved && !shorter && (!cut || s->failures == PATIENCE);
 	/* In a short section it is not their number that resists. */
-	s->strange = s->dense && !cut && !s->continuing && !r.full;
+	s->strange = s->dense && !cut && !s->continuing && !a.r.full;
 	if (shorter || s->dense) {
 		s->carried = 0;
 		*next = from;
 		return SEPARATE_OK;
 	}
 	if (unresolved) {
-		if (dense_section(s, from, from + (long long)boundary) != SEPARATE_OK)
+		if (dense_section(s, from, from + (long long)a.boundary) != SEPARATE_OK)
 			return SEPARATE_MEMORY;
-	} else if (give_pulses(s, from, to, m, done, &judgement) != SEPARATE_OK) {
+	} else if (give_pulses(s, from, to, a.m, a.done, &a.goodness) != SEPARATE_OK) {
 		return SEPARATE_MEMORY;
 	}
-	s->counters.singles += !cut && m == 1 && !s->continuing;
+	s->counters.singles += !cut && a.m == 1 && !s->continuing;
 	*next = to;
 	if (cut)
-		*next = cut_section(s, from, boundary, m, done);
+		*next = cut_section(s, from, a.boundary, a.m, a.done);
 	else
 		s->carried = 0;
 	return SEPARATE_OK;
@@ -710,7 +1054,7 @@ static enum separate_status mask_section(struct separate *s, long long from, lon
 		p->t2 = p->t1 + (double)s->cal.shift + source[k].delta;
 		p->amplitude = a[k];
 		p->t1_se = p->t2_se = p->delay_se = p->amplitude_se = p->chi2 = NAN;
-		p->correlation = NAN;
+		p->correlation = p->phase = p->phase_se = NAN;
 		p->verdict = verdict[k];
 		all = verdict[k] > all ? verdict[k] : all;
 		s->counters.rows++;
@@ -805,32 +1149,61 @@ int separate_instrument(const struct separate *s, struct instrument *view)
 	return 1;
 }
 
+static enum num_status measure_quadrature(struct separate *s, long long upto)
+{
+	const double *x[2] = { channel_1(s, s->done), channel_2(s, s->done) };
+	double *v[2];
+
+	quadrature_at(s, s->done, v);
+	return quadrature_measure(&s->quadrature, x,
+		(const double *const[]){ v[0], v[1] }, (size_t)(upto - s->done));
+}
+
+static enum num_status scan(struct separate *s, long long limit)
+{
+	const double *y[2] = { channel_1(s, s->done), channel_2(s, s->done) };
+	double *v[2] = { NULL, NULL }, scale = 0;
+
+	if (s->par.quadrature) {
+		quadrature_at(s, s->done, v);
+		scale = 1 / quadrature_noise(&s->quadrature);
+	}
+	return sections_scan_quadrature(s->sections, y,
+		s->par.quadrature ? (const double *const[]){ v[0], v[1] } : NULL, scale,
+		s->done, (size_t)(limit - s->done),
+		s->ended ? limit : limit - sections_reach(s->sections));
+}
+
 /* Works off all sections that are whole. */
 static enum separate_status work(struct separate *s)
 {
-	long long limit, longest;
+	long long limit, longest, keep;
 	struct section section;
 
 	for (int c = 0; c < 2; c++)
 		if (tape_prepare(&s->tape[c], &s->cal, c, s->ended) != NUM_OK)
 			return SEPARATE_MEMORY;
+	if (s->par.quadrature &&
+		quadrature_prepare(&s->quadrature, &s->cal, s->ended) != NUM_OK)
+		return SEPARATE_MEMORY;
 	measure_level(s);
 	limit = ready(s);
 	if (limit <= s->done)
 		return SEPARATE_OK;
-	if (!s->looked) {
+	if (!s->looked || s->par.quadrature > s->quadrature.measured) {
 		/* Always the same stretch, however the record comes in. */
 		long long upto = s->done + (long long)s->par.learn / 2;
 
 		if (limit < upto && !s->ended)
 			return SEPARATE_OK;
-		s->crowded = !s->par.sources &&
-			     is_crowded(s, s->done, limit < upto ? limit : upto);
+		upto = limit < upto ? limit : upto;
+		if (!s->looked)
+			s->crowded = !s->par.sources && is_crowded(s, s->done, upto);
 		s->looked = 1;
+		if (s->par.quadrature && measure_quadrature(s, upto) != NUM_OK)
+			return SEPARATE_MEMORY;
 	}
-	if (sections_scan(s->sections, channel_1(s, s->done), channel_2(s, s->done),
-		    s->done, (size_t)(limit - s->done),
-		    s->ended ? limit : limit - sections_reach(s->sections)) != NUM_OK)
+	if (scan(s, limit) != NUM_OK)
 		return SEPARATE_MEMORY;
 	if (s->ended)
 		sections_end(s->sections);
@@ -893,8 +1266,11 @@ static enum separate_status work(struct separate *s)
 		s->done = section.begin;
 	if (s->done < 0)
 		s->done = 0;
+	keep = (s->done < s->level_at ? s->done : s->level_at) -
+	       sections_reach(s->sections);
 	for (int c = 0; c < 2; c++)
-		tape_forget(&s->tape[c], s->done < s->level_at ? s->done : s->level_at);
+		tape_forget(&s->tape[c], keep);
+	quadrature_forget(&s->quadrature, s->done);
 	if (s->holding && (s->ended || s->done >= s->hold)) {
 		s->holding = 0;
 		return judge_rows(s);
@@ -914,7 +1290,8 @@ static enum separate_status learn(struct separate *s)
 
 		first = 0;
 		if (status != SEPARATE_OK && status != SEPARATE_NO_LAG &&
-			status != SEPARATE_FAST)
+			status != SEPARATE_FAST && status != SEPARATE_HARD &&
+			status != SEPARATE_AT_ONCE)
 			return status;
 		if (s->calibrated)
 			break;
@@ -923,6 +1300,8 @@ static enum separate_status learn(struct separate *s)
 			break;
 		for (int c = 0; c < 2; c++)
 			tape_drop(&s->tape[c], half);
+		if (s->par.quadrature)
+			quadrature_drop(&s->quadrature, half);
 		s->counters.passed_over += (double)half;
 	}
 	return SEPARATE_OK;
@@ -953,6 +1332,12 @@ static enum separate_status check_alive(struct separate *s, const double *x, siz
 
 enum separate_status separate_push(struct separate *s, const double *x, size_t n)
 {
+	return separate_push_quadrature(s, x, NULL, n);
+}
+
+enum separate_status separate_push_quadrature(
+	struct separate *s, const double *x, const double *v, size_t n)
+{
 	enum separate_status status = SEPARATE_OK;
 
 	for (size_t i = 0; i < 2 * n; i++)
@@ -964,6 +1349,8 @@ enum separate_status separate_push(struct separate *s, const double *x, size_t n
 		}
 	if (tape_append(&s->tape[0], x, n) != NUM_OK ||
 		tape_append(&s->tape[1], x + 1, n) != NUM_OK)
+		return SEPARATE_MEMORY;
+	if (v && quadrature_append(&s->quadrature, v, n) != NUM_OK)
 		return SEPARATE_MEMORY;
 	if (s->par.kept)
 		status = check_alive(s, x, n);
@@ -998,6 +1385,8 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 
 	if (s->par.kept && is_other_noise(s))
 		return SEPARATE_NOISE;
+	if (s->par.kept && c->rows > 2 && c->negative > 0.9 * c->rows)
+		return SEPARATE_REVERSED;
 	if (s->par.kept && !s->kept.crowded && 2 * c->dense > c->samples)
 		return SEPARATE_CROWD;
 	return c->misfits > 2 && 10 * c->misfits > c->rows + c->unresolved

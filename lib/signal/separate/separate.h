@@ -41,7 +41,10 @@ struct transit {
 	double amplitude; /* at sensor 1, units of the record */
 	double t1_se, t2_se, delay_se, amplitude_se;
 	double correlation; /* between the errors of delay and amplitude */
-	double chi2;        /* of the section per degree of freedom */
+	/* Of a record of two components (separate_push_quadrature()), rad: then amplitude
+	 * is that of both.  NAN: unknown. */
+	double phase, phase_se;
+	double chi2; /* of the section per degree of freedom */
 	enum separate_verdict verdict;
 };
 
@@ -68,6 +71,7 @@ struct separate_par {
 	int most_pulses; /* of a window, if fewer than JOINT_PULSES_MAX; 0: so many */
 	/* Of the masks, samples; 0: 64, or as many as the pulses need, and half of it. */
 	size_t mask_window, mask_hop;
+	int quadrature;          /* 1: the record has two components; SEPARATE_FIT only */
 	struct instrument *kept; /* learned before, with known: its cal is taken over;
 				    NULL: learn */
 	int want_sources;        /* fill separate_section.source */
@@ -83,6 +87,9 @@ enum separate_status {
 	SEPARATE_SILENT_1,
 	SEPARATE_SILENT_2,
 	SEPARATE_NO_LAG,
+	SEPARATE_HARD, /* too many pulses would be needed to describe what is learned from
+			*/
+	SEPARATE_AT_ONCE, /* both channels have the same at once: no particles */
 	SEPARATE_SWAPPED, /* particles pass sensor 2 first */
 	SEPARATE_FAR,     /* the lag given is as long as what is learned from */
 	SEPARATE_NARROW,  /* a filter has left too little of the pulses */
@@ -100,6 +107,7 @@ struct separate_counters {
 	double sections, singles; /* sections, and those with one pulse */
 	double fits, steps, searches;
 	double rows, misfits; /* of pulses fitted, and those doubted, dense ones too */
+	double negative;      /* of rows, with a negative amplitude */
 	double foreign;       /* doubted by their velocities, though they fit */
 	double masks, masks_skipped; /* sections demixed, and those that need not be */
 	double unresolved, dense;    /* rows, and the samples these stand for */
@@ -111,7 +119,11 @@ void separate_free(struct separate *s);
 
 /* n frames of two channels, interleaved. */
 enum separate_status separate_push(struct separate *s, const double *x, size_t n);
-/* NO_LAG and FAST from separate_end() only: there was nothing to learn from. */
+/* The same with the second component of both (quadrature.h) in v. */
+enum separate_status separate_push_quadrature(
+	struct separate *s, const double *x, const double *v, size_t n);
+/* NO_LAG, HARD, AT_ONCE and FAST from separate_end() only: there was nothing to learn
+ * from. */
 enum separate_status separate_end(struct separate *s);
 /* The next particle in order of section and arrival; 0 where none is ready. */
 int separate_next(struct separate *s, struct transit *p);
@@ -129,6 +141,8 @@ enum separate_doubt {
 	SEPARATE_BELIEVED, /* they are not */
 	SEPARATE_FOREIGN,  /* so many pulses fit no particle that the others may not */
 	SEPARATE_NOISE,    /* the noise is not that of the kept instrument */
+	SEPARATE_REVERSED, /* nine tenths of the pulses are those of the kept instrument
+			      with their sign changed */
 	SEPARATE_CROWD     /* more than half is unresolved, unlike its record */
 };
 enum separate_doubt separate_doubtful(const struct separate *s);

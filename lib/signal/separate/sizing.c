@@ -8,8 +8,8 @@ void sizing_of(const struct transit *p, double rate, double spacing, double kapp
 {
 	double delay = (p->t2 - p->t1) / rate, delay_se = p->delay_se / rate;
 	double velocity = delay > 0 ? spacing / delay : NAN;
-	double ra = p->amplitude_se / p->amplitude, rt = delay_se / delay;
-	double d = sensor_diameter(kappa, velocity, p->amplitude);
+	double ra = p->amplitude_se / fabs(p->amplitude), rt = delay_se / delay;
+	double d = sensor_diameter(kappa, velocity, fabs(p->amplitude));
 
 	*out = (struct sizing){ .time = { p->t1 / rate, p->t2 / rate },
 		.diameter = d,

@@ -7,6 +7,7 @@
 void tape_clear(struct tape *t)
 {
 	free(t->x);
+	free(t->hidden);
 	free(t->piece);
 	fir_free(t->whiten);
 	memset(t, 0, sizeof *t);
@@ -17,21 +18,41 @@ enum num_status tape_append(struct tape *t, const double *x, size_t n)
 	if (t->n + n > t->capacity) {
 		size_t capacity = 2 * t->capacity > t->n + n ? 2 * t->capacity : t->n + n;
 		double *more = realloc(t->x, capacity * sizeof *more);
+		unsigned char *flags;
 
 		if (!more)
 			return NUM_MEMORY;
 		t->x = more;
+		flags = realloc(t->hidden, capacity);
+		if (!flags)
+			return NUM_MEMORY;
+		t->hidden = flags;
 		t->capacity = capacity;
 	}
-	for (size_t i = 0; i < n; i++)
-		t->x[t->n + i] = x[2 * i];
-	t->n += n;
+	for (size_t i = 0; i < n; i++) {
+		size_t lost = converter_next(&t->converter, x[2 * i]);
+
+		t->x[t->n] = x[2 * i];
+		t->hidden[t->n++] = 0;
+		lost = lost < t->n ? lost : t->n; /* others were dropped */
+		memset(t->hidden + t->n - lost, 1, lost);
+	}
 	return NUM_OK;
+}
+
+void tape_review(struct tape *t)
+{
+	for (size_t i = 0; i < t->n; i++)
+		t->hidden[i] |=
+			(unsigned char)converter_saturates(&t->converter, t->x[i]);
 }
 
 void tape_drop(struct tape *t, size_t n)
 {
+	if (n == 0)
+		return;
 	memmove(t->x, t->x + n, (t->n - n) * sizeof *t->x);
+	memmove(t->hidden, t->hidden + n, t->n - n);
 	t->n -= n;
 	t->begin += (long long)n;
 	if (t->clean < t->begin)

@@ -9,12 +9,15 @@
 
 #include "num/status.h"
 #include "signal/learn/calibration.h"
+#include "signal/separate/converter.h"
 #include <stddef.h>
 
 /* Samples from index begin on: the filter is undone in those before white; those before
  * clean are also free of tones and in units of the noise. */
 struct tape {
 	double *x;
+	unsigned char *hidden; /* 1: the converter has not measured this sample */
+	struct converter converter;
 	size_t n, capacity;
 	long long begin, white, clean;
 	struct fir *whiten; /* NULL if there is no filter to undo; it has read ... */
@@ -29,6 +32,8 @@ void tape_clear(struct tape *t);
 
 /* Appends n samples: x[0], x[2], x[4] ... */
 enum num_status tape_append(struct tape *t, const double *x, size_t n);
+/* Hides the samples at the limits that the record has shown only after them. */
+void tape_review(struct tape *t);
 /* Drops the n oldest samples. */
 void tape_drop(struct tape *t, size_t n);
 /* Drops samples before keep once there are many. */

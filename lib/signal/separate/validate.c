@@ -39,6 +39,7 @@ struct validation {
 	double middle, half;        /* of the range of delays; half 0: not known */
 	double mean, var, margin;   /* of the delays; on the safe side */
 	double known;               /* delays these are from */
+	double local; /* variance of a delay by its difference from the next */
 	struct flow told;
 	double parts; /* share of them among pairs; 0: none for certain */
 	double recurring[PLACES], groups;
@@ -46,7 +47,9 @@ struct validation {
 
 struct validation *validation_new(void)
 {
-	return calloc(1, sizeof(struct validation));
+	struct validation *v = calloc(1, sizeof *v);
+
+	return v;
 }
 
 void validation_free(struct validation *v)
@@ -107,12 +110,33 @@ static void take_delay(struct validation *v, const struct evidence *e, size_t m)
 	size_t largest = 0;
 
 	for (size_t i = 1; i < m; i++)
-		if (e[i].amplitude > e[largest].amplitude)
+		if (fabs(e[i].amplitude) > fabs(e[largest].amplitude))
 			largest = i;
 	if (!fits(e, m) || !(e[largest].var > 0))
 		return;
 	v->delay[v->delays++ % LATELY] =
 		(struct delay){ e[largest].delay, e[largest].var, m == 1 };
+}
+
+/* Half the mean square of differences between successive delays, less their errors (von
+ * Neumann), by the median, which for normal ones is 0.4549 of the mean. */
+static double local_variance(const struct validation *v, int alone)
+{
+	double square[LATELY];
+	const struct delay *before = NULL;
+	size_t n = 0, count = held(v->delays);
+
+	for (size_t i = 0; i < count; i++) {
+		const struct delay *d = &v->delay[(v->delays - count + i) % LATELY];
+
+		if (alone && !d->alone)
+			continue;
+		if (before)
+			square[n++] = 0.5 * (pow(d->value - before->value, 2) - d->var -
+						    before->var);
+		before = d;
+	}
+	return fmax(robust_median(square, n) / 0.4549, 0);
 }
 
 /* Mean and variance of the delays of particles, by those that stand alone if there are
@@ -127,13 +151,14 @@ static void learn_flow(struct validation *v)
 	for (size_t i = 0; i < held(v->delays); i++)
 		if (v->delay[i].alone || alone < FEW)
 			x[n++] = v->delay[i].value;
-	v->var = INFINITY;
+	v->var = v->local = INFINITY;
 	v->known = 0;
 	if (n < FEW) {
 		if (v->told.count > 0) {
 			v->mean = v->told.mean;
 			v->var = v->told.var;
 			v->margin = v->told.margin;
+			v->local = v->var;
 		}
 		return;
 	}
@@ -152,6 +177,7 @@ static void learn_flow(struct validation *v)
 		count++;
 	}
 	v->known = count;
+	v->local = local_variance(v, alone >= FEW);
 	v->var = fmax(sum / count, 0);
 	/* Three deviations of this estimate. */
 	v->margin = fmax(v->var, scale * scale) * (1 + 3 * sqrt(2 / count));
@@ -233,6 +259,29 @@ static int is_part(const struct validation *v, const struct evidence *e)
 	return v->parts * odds > 1 - v->parts;
 }
 
+/* Likelihood ratio at which a group is taken for one object: one sound group in a
+ * thousand at most is. */
+static const double ONE = 1000;
+
+/* Is a group one object, by all its delays?  A flow that changes between groups does not
+ * count: local is the scatter from one particle to the next. */
+static int is_one(const struct validation *v, const struct evidence *e, size_t m)
+{
+	double sum = 0, scatter = fmin(v->local, v->var);
+
+	if (!isfinite(scatter))
+		return 0;
+	for (size_t i = 0; i < m; i++)
+		if (e[i].contrast_var > 0) {
+			double one = PARTS * e[i].contrast_var,
+			       many = e[i].contrast_var + scatter;
+
+			sum += 0.5 *
+			       (log(many / one) + e[i].contrast2 * (1 / many - 1 / one));
+		}
+	return sum > log(ONE);
+}
+
 /* --- weak pulses that recur */
 
 /* Less than half as high, and at its velocity as far as can be told: the place, or -1. */
@@ -309,7 +358,8 @@ static int too_many_at_limit(
 
 static void judge_group(const struct validation *v, struct evidence *e, size_t m)
 {
-	int impossible = is_impossible(v, e, m) || too_many_at_limit(v, e, m);
+	int impossible =
+		is_impossible(v, e, m) || too_many_at_limit(v, e, m) || is_one(v, e, m);
 
 	for (size_t i = 0; i < m; i++)
 		e[i].doubted = impossible || !e[i].fits || is_at_edge(v, &e[i]);

@@ -38,7 +38,8 @@ struct evidence {
 	int partner;             /* rows to the larger pulse it overlaps; 0: none */
 	double apart, apart_var; /* delay less that of the partner */
 	double place, height;    /* of arrival, in durations, and amplitude: the same */
-	int doubted;             /* set by validation_judge() */
+	double contrast2, contrast_var; /* of contrasts.h; variance 0: none */
+	int doubted;                    /* set by validation_judge() */
 };
 
 struct validation;

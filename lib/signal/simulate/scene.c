@@ -1,6 +1,7 @@
 /* scene.c - pulses, noise, drift and lines of two sensors */
 #include "signal/simulate/scene.h"
 #include "num/normals.h"
+#include "num/room.h"
 #include "signal/simulate/wander.h"
 #include <math.h>
 #include <stdlib.h>
@@ -99,22 +100,6 @@ void scene_free(struct scene *scene)
 	free(scene);
 }
 
-/* Room for one more of size bytes behind the count that are there; 0: no memory. */
-static int reserve(void **list, size_t count, size_t *room, size_t size)
-{
-	size_t more = *room ? 2 * *room : 64;
-	void *p;
-
-	if (count < *room)
-		return 1;
-	p = realloc(*list, more * size);
-	if (!p)
-		return 0;
-	*list = p;
-	*room = more;
-	return 1;
-}
-
 /* Demodulator and gain of sensor 2 at the time of the particle. */
 static struct pending receive(struct scene *s, const struct passage *p)
 {
@@ -146,11 +131,9 @@ int scene_receive(struct scene *s, const struct passage *p, double peak[2])
 enum num_status scene_pass(struct scene *s, const struct passage *p)
 {
 	double half = pulse_reach(s->par.shape) * s->par.length / p->velocity;
-	void *list = s->list;
 
-	if (!reserve(&list, s->count, &s->room, sizeof *s->list))
+	if (room_for(&s->list, &s->room, s->count + 1, sizeof *s->list))
 		return NUM_MEMORY;
-	s->list = list;
 	s->list[s->count++] = receive(s, p);
 	s->end = fmax(s->end, fmax(p->time[0], p->time[1]) + half);
 	return NUM_OK;
@@ -158,11 +141,8 @@ enum num_status scene_pass(struct scene *s, const struct passage *p)
 
 enum num_status scene_disturb(struct scene *s, const struct disturbance *event)
 {
-	void *list = s->event;
-
-	if (!reserve(&list, s->events, &s->event_room, sizeof *s->event))
+	if (room_for(&s->event, &s->event_room, s->events + 1, sizeof *s->event))
 		return NUM_MEMORY;
-	s->event = list;
 	s->event[s->events++] = *event;
 	s->end = fmax(s->end, event->end);
 	return NUM_OK;

@@ -1,0 +1,53 @@
+/* converter.c - see converter.h */
+#include "signal/separate/converter.h"
+#include <math.h>
+
+/* A limit was seen OFTEN times, and TIMES as often as the next value: quantised to few
+ * steps, the top of a parabola is seen 1 / (sqrt 2 - 1) = 2.4 times as often as the step
+ * below it. */
+static const double OFTEN = 8, TIMES = 4;
+
+/* Probability of a run of equal values that was measured. */
+static const double RARELY = 1e-9;
+
+static void see(struct converter_limit *l, double x)
+{
+	if (l->times == 0 || x > l->value) {
+		l->next = l->value;
+		l->next_times = l->times;
+		l->value = x;
+		l->times = 1;
+	} else if (x == l->value) {
+		l->times++;
+	} else if (l->next_times == 0 || x > l->next) {
+		l->next = x;
+		l->next_times = 1;
+	} else if (x == l->next) {
+		l->next_times++;
+	}
+}
+
+static int is_at(const struct converter_limit *l, double x)
+{
+	return x == l->value && l->times >= OFTEN && l->times > TIMES * l->next_times;
+}
+
+int converter_saturates(const struct converter *c, double x)
+{
+	return is_at(&c->limit[0], x) || is_at(&c->limit[1], -x);
+}
+
+size_t converter_next(struct converter *c, double x)
+{
+	double share = (c->repeats + 1) / (c->samples + 2);
+
+	c->run = c->samples > 0 && x == c->last ? c->run + 1 : 1;
+	c->last = x;
+	c->samples++;
+	see(&c->limit[0], x);
+	see(&c->limit[1], -x);
+	if ((double)(c->run - 1) * log(share) < log(RARELY))
+		return c->run;
+	c->repeats += c->run > 1;
+	return converter_saturates(c, x) ? 1 : 0;
+}

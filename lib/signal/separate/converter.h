@@ -1,0 +1,29 @@
+/* converter.h - samples that a converter has not measured: at its limits, or repeated
+ *
+ * A limit shows as an extreme value that comes back more often than the next one; a
+ * dropout as a run of equal values longer than those of the rest of the record make
+ * likely.  A zeroed converter has seen nothing.
+ */
+#ifndef SIGNAL_CONVERTER_H
+#define SIGNAL_CONVERTER_H
+
+#include <stddef.h>
+
+/* An extreme value and the next one, and how often either was seen. */
+struct converter_limit {
+	double value, times, next, next_times;
+};
+
+struct converter {
+	struct converter_limit limit[2]; /* largest; least, its sign changed */
+	double last, samples, repeats;
+	size_t run; /* samples up to the last one that are equal */
+};
+
+/* Takes in the next sample; returns how many of the last samples, this one included, were
+ * not measured. */
+size_t converter_next(struct converter *c, double x);
+/* Is x a limit, by all that was seen? */
+int converter_saturates(const struct converter *c, double x);
+
+#endif

@@ -1,0 +1,541 @@
+/* quadrature.c - see quadrature.h */
+#include "signal/separate/quadrature.h"
+#include "signal/noise/robust.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Parameters of a pulse: t, t + delta, a, b; and functions of time on a sensor: the
+ * derivatives of a pulse of amplitude 1 by t and by t + delta, and the pulse. */
+enum { T1, T2, A, B, PARAMETERS };
+enum { BY_T1, BY_T2, PULSE, FUNCTIONS };
+
+/* Where a pulse is on a sensor, its functions, and their products with the basis. */
+struct part {
+	long first;
+	size_t n;
+	double *f[FUNCTIONS];
+	double *along[FUNCTIONS];
+};
+
+struct fit {
+	const struct quadrature *q;
+	const struct joint_scene *scene;
+	const double *x[2], *v[2]; /* sensor: the two components */
+	size_t n;
+	int m, basis;
+	const double *vector, *share; /* of the basis of offset, baseline and tones */
+	size_t support;
+	struct part *part;  /* 2 m */
+	double *memory;     /* of their functions and products */
+	double *rest[2][2]; /* sensor, component: the record without pulses */
+	double *left[2][2]; /* their products with the basis */
+	double *normal, *gradient;
+};
+
+void quadrature_clear(struct quadrature *q)
+{
+	for (int c = 0; c < 2; c++)
+		tape_clear(&q->tape[c]);
+}
+
+enum num_status quadrature_append(struct quadrature *q, const double *v, size_t n)
+{
+	for (int c = 0; c < 2; c++)
+		if (tape_append(&q->tape[c], v + c, n) != NUM_OK)
+			return NUM_MEMORY;
+	return NUM_OK;
+}
+
+void quadrature_drop(struct quadrature *q, size_t n)
+{
+	for (int c = 0; c < 2; c++)
+		tape_drop(&q->tape[c], n);
+}
+
+void quadrature_forget(struct quadrature *q, long long keep)
+{
+	for (int c = 0; c < 2; c++)
+		tape_forget(&q->tape[c], keep);
+}
+
+enum num_status quadrature_start(
+	struct quadrature *q, const struct calibration *c, size_t n)
+{
+	for (int k = 0; k < 2; k++) {
+		q->mean[k] = 0;
+		for (size_t i = 0; i < n; i++)
+			q->mean[k] += q->tape[k].x[i] / (double)n;
+		if (tape_start(&q->tape[k], c) != NUM_OK)
+			return NUM_MEMORY;
+	}
+	return NUM_OK;
+}
+
+enum num_status quadrature_prepare(
+	struct quadrature *q, const struct calibration *c, int ended)
+{
+	struct calibration same = *c;
+
+	memcpy(same.mean, q->mean, sizeof same.mean);
+	for (int k = 0; k < 2; k++)
+		if (tape_prepare(&q->tape[k], &same, k, ended) != NUM_OK)
+			return NUM_MEMORY;
+	return NUM_OK;
+}
+
+/* Variances of x, v, x + v and x - v in fourth differences, where pulses are small. */
+enum num_status quadrature_measure(struct quadrature *q, const double *const x[2],
+	const double *const v[2], size_t n)
+{
+	enum { ORDER = 4 };
+	double *sum = malloc((n ? n : 1) * sizeof *sum),
+	       *work = malloc((n ? n : 1) * sizeof *work);
+
+	for (int c = 0; c < 2 && sum && work; c++) {
+		double one = robust_noise(x[c], n, ORDER, work),
+		       two = robust_noise(v[c], n, ORDER, work), plus, minus, r,
+		       determinant;
+
+		if (!(one > 0) || !(two > 0)) /* too short or without noise */
+			one = two = 1;
+		for (size_t i = 0; i < n; i++)
+			sum[i] = x[c][i] / one + v[c][i] / two;
+		plus = robust_noise(sum, n, ORDER, work);
+		for (size_t i = 0; i < n; i++)
+			sum[i] = x[c][i] / one - v[c][i] / two;
+		minus = robust_noise(sum, n, ORDER, work);
+		r = (plus * plus - minus * minus) / (plus * plus + minus * minus);
+		/* equal components: they would tell of their difference without error */
+		r = isfinite(r) ? fmax(fmin(r, 0.99), -0.99) : 0;
+		two /= one;
+		determinant = two * two * (1 - r * r);
+		q->metric[c][0][0] = two * two / determinant;
+		q->metric[c][0][1] = q->metric[c][1][0] = -r * two / determinant;
+		q->metric[c][1][1] = 1 / determinant;
+	}
+	q->measured = sum && work;
+	free(sum);
+	free(work);
+	return q->measured ? NUM_OK : NUM_MEMORY;
+}
+
+double quadrature_noise(const struct quadrature *q)
+{
+	double most = 0;
+
+	for (int c = 0; c < 2; c++) {
+		const double(*m)[2] = q->metric[c];
+
+		most = fmax(
+			most, sqrt(m[0][0] / (m[0][0] * m[1][1] - m[0][1] * m[0][1])));
+	}
+	return most;
+}
+
+static double dot(const double *x, const double *y, size_t n)
+{
+	double sum = 0;
+
+	for (size_t i = 0; i < n; i++)
+		sum += x[i] * y[i];
+	return sum;
+}
+
+static void fit_free(struct fit *f)
+{
+	free(f->part);
+	free(f->memory);
+	for (int c = 0; c < 2; c++)
+		for (int k = 0; k < 2; k++) {
+			free(f->rest[c][k]);
+			free(f->left[c][k]);
+		}
+	free(f->normal);
+	free(f->gradient);
+}
+
+static double duration_of(const struct joint_scene *s, double delta)
+{
+	return s->duration * (1 + delta / s->transit);
+}
+
+static enum num_status fit_reserve(struct fit *f)
+{
+	const struct joint_scene *s = f->scene;
+	double reach = shape_reach(s->shape), longest = s->delta_max + s->duration;
+	size_t m = (size_t)f->m + 1, all = PARAMETERS * m, each,
+	       basis = (size_t)f->basis + 1;
+	double *at;
+
+	f->support = (size_t)(2 * reach * duration_of(s, fmax(longest, 0))) + 4;
+	each = FUNCTIONS * (f->support + basis);
+	f->part = malloc(2 * m * sizeof *f->part);
+	f->memory = malloc(2 * m * each * sizeof *f->memory);
+	f->normal = malloc(2 * all * all * sizeof *f->normal);
+	f->gradient = malloc(2 * all * sizeof *f->gradient);
+	for (int c = 0; c < 2; c++)
+		for (int k = 0; k < 2; k++) {
+			f->rest[c][k] = malloc(f->n * sizeof *f->rest[c][k]);
+			f->left[c][k] = malloc(basis * sizeof *f->left[c][k]);
+			if (!f->rest[c][k] || !f->left[c][k])
+				return NUM_MEMORY;
+		}
+	if (!f->part || !f->memory || !f->normal || !f->gradient)
+		return NUM_MEMORY;
+	at = f->memory;
+	for (size_t i = 0; i < 2 * m; i++)
+		for (int k = 0; k < FUNCTIONS; k++, at += f->support + basis) {
+			f->part[i].f[k] = at;
+			f->part[i].along[k] = at + f->support;
+		}
+	return NUM_OK;
+}
+
+/* Functions of pulse i, as p is, on sensor c.  Its duration grows with the second
+ * arrival and falls with the first. */
+static void make_part(struct fit *f, int i, int c, const struct quadrature_pulse *p)
+{
+	const struct joint_scene *s = f->scene;
+	struct part *part = &f->part[2 * i + c];
+	double t0 = p->t + (c ? p->delta : 0), T = duration_of(s, p->delta);
+	double stretch = s->duration / s->transit, gain = c ? s->gain : 1;
+	long first, last;
+
+	first = shape_support(s->shape, t0, T, &part->n);
+	last = first + (long)part->n;
+	first = first < 0 ? 0 : first;
+	last = last > (long)f->n ? (long)f->n : last;
+	part->first = first;
+	part->n = last > first ? (size_t)(last - first) : 0;
+	if (part->n > f->support)
+		part->n = f->support;
+	shape_sample(s->shape, t0, T, first, part->n, part->f[PULSE], part->f[c],
+		part->f[1 - c]);
+	for (size_t k = 0; k < part->n; k++) {
+		double by_t0 = part->f[c][k], by_T = part->f[1 - c][k] * stretch;
+
+		part->f[BY_T1][k] = gain * (c ? -by_T : by_t0 - by_T);
+		part->f[BY_T2][k] = gain * (c ? by_t0 + by_T : by_T);
+		part->f[PULSE][k] *= gain;
+	}
+	for (int k = 0; k < FUNCTIONS; k++)
+		for (int b = 0; b < f->basis; b++)
+			part->along[k][b] = dot(part->f[k],
+				f->vector + (size_t)b * f->n + first, part->n);
+}
+
+/* The record less the pulses, and chi-square. */
+static double subtract_pulses(struct fit *f, const struct quadrature_pulse *p)
+{
+	double chi2 = 0;
+
+	for (int c = 0; c < 2; c++) {
+		memcpy(f->rest[c][0], f->x[c], f->n * sizeof(double));
+		memcpy(f->rest[c][1], f->v[c], f->n * sizeof(double));
+		for (int i = 0; i < f->m; i++) {
+			const struct part *part = &f->part[2 * i + c];
+
+			for (size_t k = 0; k < part->n; k++) {
+				double value = part->f[PULSE][k];
+
+				f->rest[c][0][(size_t)part->first + k] -= p[i].a * value;
+				f->rest[c][1][(size_t)part->first + k] -= p[i].b * value;
+			}
+		}
+		for (int k = 0; k < 2; k++)
+			for (int b = 0; b < f->basis; b++)
+				f->left[c][k][b] = dot(f->rest[c][k],
+					f->vector + (size_t)b * f->n, f->n);
+		for (int k = 0; k < 2; k++)
+			for (int l = 0; l < 2; l++) {
+				double product = dot(f->rest[c][k], f->rest[c][l], f->n);
+
+				for (int b = 0; b < f->basis; b++)
+					product -= f->share[b] * f->left[c][k][b] *
+						   f->left[c][l][b];
+				chi2 += f->q->metric[c][k][l] * product;
+			}
+	}
+	return chi2;
+}
+
+static double chi_square(struct fit *f, const struct quadrature_pulse *p)
+{
+	for (int i = 0; i < f->m; i++)
+		for (int c = 0; c < 2; c++)
+			make_part(f, i, c, &p[i]);
+	return subtract_pulses(f, p);
+}
+
+/* How parameter k of a pulse moves its two components: a function of time times these. */
+static int component_of(const struct quadrature_pulse *p, int k, double weight[2])
+{
+	weight[0] = k == A ? 1 : k == B ? 0 : p->a;
+	weight[1] = k == A ? 0 : k == B ? 1 : p->b;
+	return k < A ? k : PULSE;
+}
+
+/* Product of function k of x and l of y, without what lies in the basis. */
+static double product(
+	const struct fit *f, const struct part *x, int k, const struct part *y, int l)
+{
+	long first = x->first > y->first ? x->first : y->first;
+	long xend = x->first + (long)x->n, yend = y->first + (long)y->n;
+	long end = xend < yend ? xend : yend;
+	double sum = 0;
+
+	if (end > first)
+		sum = dot(x->f[k] + (first - x->first), y->f[l] + (first - y->first),
+			(size_t)(end - first));
+	for (int b = 0; b < f->basis; b++)
+		sum -= f->share[b] * x->along[k][b] * y->along[l][b];
+	return sum;
+}
+
+static double form(const double metric[2][2], const double u[2], const double w[2])
+{
+	double sum = 0;
+
+	for (int k = 0; k < 2; k++)
+		for (int l = 0; l < 2; l++)
+			sum += u[k] * metric[k][l] * w[l];
+	return sum;
+}
+
+static void make_gradient(struct fit *f, const struct quadrature_pulse *p, int i)
+{
+	for (int k = 0; k < PARAMETERS; k++) {
+		double weight[2], sum = 0;
+		int function = component_of(&p[i], k, weight);
+
+		for (int c = 0; c < 2; c++) {
+			const struct part *part = &f->part[2 * i + c];
+			double along[2];
+
+			for (int l = 0; l < 2; l++) {
+				along[l] = dot(part->f[function],
+					f->rest[c][l] + part->first, part->n);
+				for (int b = 0; b < f->basis; b++)
+					along[l] -= f->share[b] *
+						    part->along[function][b] *
+						    f->left[c][l][b];
+			}
+			sum += form(f->q->metric[c], weight, along);
+		}
+		f->gradient[PARAMETERS * i + k] = sum;
+	}
+}
+
+static void make_block(struct fit *f, const struct quadrature_pulse *p, int i, int j)
+{
+	int all = PARAMETERS * f->m;
+	double of[2][FUNCTIONS][FUNCTIONS];
+
+	for (int c = 0; c < 2; c++)
+		for (int k = 0; k < FUNCTIONS; k++)
+			for (int l = 0; l < FUNCTIONS; l++)
+				of[c][k][l] = product(f, &f->part[2 * i + c], k,
+					&f->part[2 * j + c], l);
+	for (int k = 0; k < PARAMETERS; k++)
+		for (int l = 0; l < PARAMETERS; l++) {
+			double u[2], w[2], sum = 0;
+			int fu = component_of(&p[i], k, u),
+			    fw = component_of(&p[j], l, w);
+
+			for (int c = 0; c < 2; c++)
+				sum += form(f->q->metric[c], u, w) * of[c][fu][fw];
+			f->normal[(PARAMETERS * i + k) * all + PARAMETERS * j + l] = sum;
+		}
+}
+
+/* Cholesky factor of the normal matrix in its place; 0: it is singular. */
+static int factorise(double *a, int n)
+{
+	for (int i = 0; i < n; i++) {
+		double *row = a + (size_t)i * (size_t)n, pivot;
+
+		for (int k = 0; k < i; k++) {
+			const double *other = a + (size_t)k * (size_t)n;
+
+			row[k] = (row[k] - dot(row, other, (size_t)k)) / other[k];
+		}
+		pivot = row[i] - dot(row, row, (size_t)i);
+		if (!(pivot > 1e-13 * row[i]))
+			return 0;
+		row[i] = sqrt(pivot);
+	}
+	return 1;
+}
+
+static void solve(const double *a, int n, double *x)
+{
+	for (int i = 0; i < n; i++) {
+		const double *row = a + (size_t)i * (size_t)n;
+
+		x[i] = (x[i] - dot(row, x, (size_t)i)) / row[i];
+	}
+	for (int i = n - 1; i >= 0; i--) {
+		x[i] /= a[i * n + i];
+		for (int k = 0; k < i; k++)
+			x[k] -= a[i * n + k] * x[i];
+	}
+}
+
+/* Normal matrix, factorised, and gradient of the parts as they are; 0: singular. */
+static int make_normal(struct fit *f, const struct quadrature_pulse *p)
+{
+	for (int i = 0; i < f->m; i++) {
+		make_gradient(f, p, i);
+		for (int j = 0; j <= i; j++)
+			make_block(f, p, i, j);
+	}
+	return factorise(f->normal, PARAMETERS * f->m);
+}
+
+/* The b that fit best at the arrivals found in x. */
+static int guess_quadrature(struct fit *f, struct quadrature_pulse *p)
+{
+	int m = f->m;
+	double *a = f->normal;
+
+	for (int i = 0; i < m; i++) {
+		for (int j = 0; j <= i; j++) {
+			double sum = 0;
+
+			for (int c = 0; c < 2; c++)
+				sum += f->q->metric[c][1][1] *
+				       product(f, &f->part[2 * i + c], PULSE,
+					       &f->part[2 * j + c], PULSE);
+			a[i * m + j] = sum;
+		}
+		make_gradient(f, p, i);
+	}
+	for (int i = 0; i < m; i++)
+		f->gradient[i] = f->gradient[PARAMETERS * i + B];
+	if (!factorise(a, m))
+		return 0;
+	solve(a, m, f->gradient);
+	for (int i = 0; i < m; i++)
+		p[i].b = f->gradient[i];
+	return 1;
+}
+
+/* As far as the joint fit lets pulses go in one step (joint_step.c). */
+static struct quadrature_pulse moved(const struct fit *f,
+	const struct quadrature_pulse *old, const double *step, double scale)
+{
+	const struct joint_scene *s = f->scene;
+	double most = 0.25 * s->duration, span = 0.1 * (s->delta_max - s->delta_min);
+	struct quadrature_pulse p = *old;
+
+	p.t += fmax(fmin(scale * step[T1], most), -most);
+	p.delta += old->t - p.t + fmax(fmin(scale * step[T2], most), -most);
+	p.delta = fmax(fmin(p.delta, s->delta_max + span), s->delta_min - span);
+	p.a += scale * step[A];
+	p.b += scale * step[B];
+	return p;
+}
+
+/* Gauss-Newton steps, halved where chi-square does not fall: from a fit of x alone two
+ * or three are enough. */
+static enum num_status improve(struct fit *f, struct quadrature_pulse *p, double *chi2)
+{
+	enum { STEPS = 8, HALVES = 4 };
+	struct quadrature_pulse trial[JOINT_PULSES_MAX];
+
+	for (int step = 0; step < STEPS; step++) {
+		double after = INFINITY, gain;
+
+		if (!make_normal(f, p))
+			return NUM_DOMAIN;
+		solve(f->normal, PARAMETERS * f->m, f->gradient);
+		for (int k = 0; k < HALVES && !(after < *chi2); k++) {
+			for (int i = 0; i < f->m; i++)
+				trial[i] = moved(f, &p[i], f->gradient + PARAMETERS * i,
+					ldexp(1, -k));
+			after = chi_square(f, trial);
+		}
+		gain = *chi2 - after;
+		if (gain > 0) {
+			memcpy(p, trial, (size_t)f->m * sizeof *p);
+			*chi2 = after;
+		}
+		if (!(gain > 1e-4)) /* deviations of 1e-2 at most */
+			break;
+	}
+	*chi2 = chi_square(f, p);
+	return make_normal(f, p) ? NUM_OK : NUM_DOMAIN;
+}
+
+static void fill_covariance(struct fit *f, struct quadrature_pulse *p)
+{
+	int all = PARAMETERS * f->m;
+	double *x = f->gradient;
+
+	for (int i = 0; i < f->m; i++)
+		for (int k = 0; k < PARAMETERS; k++) {
+			memset(x, 0, (size_t)all * sizeof *x);
+			x[PARAMETERS * i + k] = 1;
+			solve(f->normal, all, x);
+			for (int l = 0; l < PARAMETERS; l++)
+				p[i].cov[k][l] = x[PARAMETERS * i + l];
+		}
+}
+
+/* Chi-square of v given x, which what is left of x does not explain: as in goodness.h
+ * more than noise leaves by five standard deviations and a tenth, and by twice what is
+ * too much in x, whose pulses may be smaller. */
+static int is_doubtful(const struct fit *f, double all, double chi2)
+{
+	double of_x = 0, dof = 2 * (double)f->n * (1 - f->scene->lost) - f->m, v;
+
+	for (int c = 0; c < 2; c++) {
+		of_x += dot(f->rest[c][0], f->rest[c][0], f->n);
+		for (int b = 0; b < f->basis; b++) {
+			of_x -= f->share[b] * f->left[c][0][b] * f->left[c][0][b];
+			dof -= f->share[b];
+		}
+	}
+	dof = fmax(dof, 1);
+	v = (all - of_x) / dof;
+	return v > 1.1 + 2 * fmax(chi2 - 1, 0) + 5 * sqrt(2 / dof);
+}
+
+enum num_status quadrature_fit(const struct quadrature *q, const struct joint *joint,
+	const struct joint_scene *scene, const double *const x[2],
+	const double *const v[2], size_t n, const struct joint_pulse *pulse, int m,
+	double chi2, struct quadrature_pulse *out, int *doubt)
+{
+	struct fit f = { .q = q,
+		.scene = scene,
+		.x = { x[0], x[1] },
+		.v = { v[0], v[1] },
+		.n = n,
+		.m = m };
+	enum num_status status;
+	double all = NAN;
+
+	*doubt = 0;
+	f.vector = joint_basis(joint, &f.basis, &f.share);
+	status = fit_reserve(&f);
+	if (status == NUM_OK) {
+		for (int i = 0; i < m; i++)
+			out[i] = (struct quadrature_pulse){
+				.t = pulse[i].t, .delta = pulse[i].delta, .a = pulse[i].a
+			};
+		all = chi_square(&f, out);
+	}
+	if (status == NUM_OK && m > 0) {
+		status = guess_quadrature(&f, out) ? NUM_OK : NUM_DOMAIN;
+		all = subtract_pulses(&f, out);
+		if (status == NUM_OK)
+			status = improve(&f, out, &all);
+	}
+	if (status == NUM_OK) {
+		fill_covariance(&f, out);
+		*doubt = is_doubtful(&f, all, chi2);
+	}
+	fit_free(&f);
+	return status;
+}

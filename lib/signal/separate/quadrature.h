@@ -1,0 +1,61 @@
+/* quadrature.h - the second component of a demodulated record and the phases of its
+ * pulses
+ *
+ * A demodulator with two outputs gives each sensor a complex signal; its two components,
+ * after a rotation by the caller, are those of the record, x, and v, in quadrature with
+ * it.  In x all pulses are positive, and the joint fit (joint.h) finds them there; in v
+ * pulse k has any amplitude b_k, the same arrivals and the same length.  From the result
+ * of the joint fit Gauss-Newton steps on all four channels lead to the least-squares
+ * estimates of arrivals, a_k and b_k together, with their inverse Fisher matrix.
+ *
+ * The noise of x and v of a sensor may differ in size and may be correlated; both are
+ * measured.
+ */
+#ifndef SIGNAL_QUADRATURE_H
+#define SIGNAL_QUADRATURE_H
+
+#include "signal/fit/joint.h"
+#include "signal/separate/tape.h"
+
+/* Zeroed: empty. */
+struct quadrature {
+	struct tape tape[2];
+	double mean[2];
+	int measured;
+	/* Inverse of the covariance of the noise of (x, v), both in units of the noise of
+	 * x, for each sensor. */
+	double metric[2][2][2];
+};
+
+/* One pulse: its complex amplitude is a + i b, in units of the noise of x. */
+struct quadrature_pulse {
+	double t, delta, a, b;
+	double cov[4][4]; /* of t, t + delta, a, b */
+};
+
+void quadrature_clear(struct quadrature *q);
+/* n frames of two channels, the second component of either sensor. */
+enum num_status quadrature_append(struct quadrature *q, const double *v, size_t n);
+void quadrature_drop(struct quadrature *q, size_t n);
+void quadrature_forget(struct quadrature *q, long long keep);
+/* With what was learned from the first n samples (0: before) of x. */
+enum num_status quadrature_start(
+	struct quadrature *q, const struct calibration *c, size_t n);
+enum num_status quadrature_prepare(
+	struct quadrature *q, const struct calibration *c, int ended);
+/* The noise, from n prepared samples of x and v. */
+enum num_status quadrature_measure(struct quadrature *q, const double *const x[2],
+	const double *const v[2], size_t n);
+
+/* That of v over that of x, of the sensor where it is more. */
+double quadrature_noise(const struct quadrature *q);
+
+/* After a joint fit of the m pulses to n samples of x, with chi2 per degree of freedom:
+ * fits them to x and v.  On return *doubt says whether more is left of v than of x and of
+ * noise.  NUM_DOMAIN: the pulses cannot be told apart; out is undefined then. */
+enum num_status quadrature_fit(const struct quadrature *q, const struct joint *joint,
+	const struct joint_scene *scene, const double *const x[2],
+	const double *const v[2], size_t n, const struct joint_pulse *pulse, int m,
+	double chi2, struct quadrature_pulse *out, int *doubt);
+
+#endif
