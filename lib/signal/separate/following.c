@@ -2,10 +2,6 @@
 #include "signal/separate/separate_state.h"
 #include <math.h>
 
-/* Share of the transit time that delays are searched within where the learned range does
- * not do. */
-static const double WIDE = 0.3;
-
 /* Share of the transit time that a delay may be less. */
 static const double LEAST = 0.5;
 
@@ -17,7 +13,8 @@ int separate_is_range_free(const struct separate *s)
 void separate_widen(struct separate *s)
 {
 	double middle = 0.5 * (s->scene.delta_min + s->scene.delta_max);
-	double half = fmax(WIDE * (s->cal.transit + middle), 0.05 * s->cal.duration);
+	double half =
+		fmax(CALIBRATE_WIDE * (s->cal.transit + middle), 0.05 * s->cal.duration);
 
 	s->scene.delta_min = fmax(middle - half, -LEAST * s->cal.transit);
 	s->scene.delta_max = middle + half;
