@@ -66,7 +66,7 @@ enum separate_status separate_mask_section(
 	enum separate_status status;
 
 	if (masks_find(s->masks, y1, channel_2(s, from), n, source, &m) != NUM_OK ||
-		!separate_reserve_sources(s, (size_t)m * n))
+		separate_reserve_sources(s, (size_t)m * n) != SEPARATE_OK)
 		return SEPARATE_MEMORY;
 	/* A single source needs no demixing. */
 	if (m == 1)

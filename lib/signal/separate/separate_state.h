@@ -120,7 +120,7 @@ static inline long long ready(const struct separate *s)
 /* A new row of the queue, zeroed; NULL: no memory. */
 struct entry *separate_queue_entry(struct separate *s);
 /* The section is reported with its rows, the last of the queue, and the sources drawn. */
-int separate_queue_report(
+enum separate_status separate_queue_report(
 	struct separate *s, const struct separate_section *section, size_t rows);
 /* Judges the rows held back, which are given out from now on. */
 enum separate_status separate_judge_rows(struct separate *s);
@@ -128,10 +128,10 @@ enum separate_status separate_judge_rows(struct separate *s);
 /* rows.c */
 
 /* s->source of so many samples, zeroed. */
-int separate_reserve_sources(struct separate *s, size_t count);
+enum separate_status separate_reserve_sources(struct separate *s, size_t count);
 /* Reports a section at once. */
-int separate_report_section(struct separate *s, long long from, long long to, int sources,
-	double chi2, enum separate_verdict verdict, const double *source);
+void separate_report_section(struct separate *s, long long from, long long to,
+	int sources, double chi2, enum separate_verdict verdict, const double *source);
 /* Shot noise of [from, to): one row. */
 enum separate_status separate_dense_section(
 	struct separate *s, long long from, long long to);
