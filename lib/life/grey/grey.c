@@ -55,7 +55,8 @@ static double clamp(double x, double limit)
 	return x > limit ? limit : x < -limit ? -limit : x;
 }
 
-/* Growth beyond e^600 is as good as for ever; the clamps keep it finite. */
+/* Exponents are limited to 600: the results stay finite, and such growth is beyond any
+ * threshold. */
 double grey_curve(double level, double rate, double t, double gap)
 {
 	double a = clamp(rate * gap, 600), mean;

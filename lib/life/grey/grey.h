@@ -42,24 +42,25 @@ void grey_add(struct grey *g, double x, double gap);
  * for a zero series, and where values over 1e150 (scale them) make squares overflow. */
 double grey_rate(const struct grey *g);
 double grey_level(const struct grey *g);
-/* The textbook's b, with x1 starting at the oldest value. */
+/* Coefficient b of the usual formulation, in which x1 starts at the oldest value. */
 double grey_control(const struct grey *g);
 /* Mean squared residual of the fit; 0 below four points. */
 double grey_residual(const struct grey *g);
-/* Standard error of a, and of c for a given a (they are uncorrelated at that
- * representation: c = mean of x + a (tail - mean of u)). */
+/* Standard error of a, and of c for a given a.  a and c are uncorrelated when c is
+ * written as mean of x + a (tail - mean of u). */
 double grey_rate_error(const struct grey *g);
 double grey_level_error(const struct grey *g);
 
-/* Forecast of the point h steps after the newest, the last gap steps of which are its
- * own interval (h = gap = 1: the next of an even series); finite for finite input. */
+/* Forecast of the point h steps after the newest: the mean over the last gap of these
+ * steps (h = gap = 1: the next point of an evenly spaced series).  Finite for finite
+ * input. */
 double grey_forecast(const struct grey *g, double h, double gap);
 /* The mean of level exp(-rate t) over the gap that ends at t: what grey_forecast() makes
  * of the fitted level and rate at t = span + h. */
 double grey_curve(double level, double rate, double t, double gap);
 
-/* (exp(a) - 1) / a, the mean of exp over [0, a], for |a| <= GREY_SERIES by its series,
- * 1 / 1! + a / 2! + ... (the next term is a^9 / 10!). */
+/* (exp(a) - 1) / a, the mean of exp over [0, a].  For |a| <= GREY_SERIES it is computed
+ * by its series, 1 / 1! + a / 2! + ..., whose first omitted term is a^9 / 10!. */
 static const double GREY_SERIES = 0.1;
 
 static inline lanes grey_mean_exp(lanes a)

@@ -6,17 +6,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Log-likelihoods within it have an exponential; below it a particle weighs nothing. */
+/* Largest distance of a log-likelihood from 0 at which exp() is finite and not 0; a
+ * particle farther below has weight 0. */
 static const double FAR = 700;
-/* Sum of the weights below which their logarithms are taken.  A particle that has
- * underflowed by then has less than 1e-200 of it. */
+/* Sum of the weights below which they are computed as logarithms.  A particle that has
+ * underflowed by then has less than 1e-200 of the sum. */
 static const double FADED = 1e-100;
 
-/* One remembered step; its arrays are as long as they need be. */
+/* One stored step; its arrays are only as long as required. */
 struct step {
 	double *x;
-	size_t count;       /* of those that have descendants today */
-	uint32_t *ancestor; /* of the states after it, where it was resampled */
+	size_t count;       /* states that still have descendants */
+	uint32_t *ancestor; /* of each state of the next step, if that was resampled */
 	int resampled;
 	size_t room, ancestors; /* lengths of the two */
 };
@@ -26,7 +27,7 @@ struct filter {
 	struct draw *draw;
 	struct step *ring;
 	int newest, filled;
-	double *weight, *next; /* next: room for those after an observation */
+	double *weight, *next; /* next: those after */
 	uint32_t *kept;
 	double sum; /* of weight */
 	double mean, variance, ess;
@@ -73,8 +74,8 @@ static struct step *step_at(const struct filter *f, int lag)
 	return &f->ring[(f->newest - lag + f->par.depth) % f->par.depth];
 }
 
-/* An array that has moved, so that the room of one that shrinks stays whole for the next
- * of full length; NULL: no memory. */
+/* Copies an array to new memory, so that the space of a shrinking array stays in one
+ * piece for the next array of full length; NULL: no memory. */
 static void *moved(void *array, size_t bytes, size_t before)
 {
 	void *new = malloc(bytes > 0 ? bytes : 1);
@@ -87,7 +88,7 @@ static void *moved(void *array, size_t bytes, size_t before)
 	return new;
 }
 
-/* Resizes the arrays of a step: so many states, and ancestors of so many after it. */
+/* Resizes the arrays of a step to count states and after ancestors. */
 static enum num_status fit_step(struct step *s, size_t count, size_t after)
 {
 	double *x = moved(s->x, count * sizeof *x, s->room * sizeof *x);
@@ -105,7 +106,8 @@ static enum num_status fit_step(struct step *s, size_t count, size_t after)
 	return x && ancestor ? NUM_OK : NUM_MEMORY;
 }
 
-/* Whatever its length, an array takes the room of n: all states have one size. */
+/* Saves an array in the space of n elements whatever its length, so that all saved states
+ * have one size. */
 static void pass_array(struct state *s, void *array, size_t width, size_t count, size_t n)
 {
 	state_move(s, array, count * width);
@@ -171,7 +173,7 @@ static void weigh_equally(struct filter *f)
 	f->sum = f->ess = (double)f->par.particles;
 }
 
-/* Mean and variance of the states, whose squares are taken about one of them. */
+/* Mean and variance of the states; squares are taken about one of the states. */
 static void find_moments(struct filter *f)
 {
 	const double *x = f->ring[f->newest].x;
@@ -276,7 +278,7 @@ unsigned long filter_resamplings(const struct filter *f)
 	return f->resamplings;
 }
 
-/* Of two states, less its constant. */
+/* Of two states, without its constant. */
 static inline lanes log_likelihood(lanes z, double nu)
 {
 	return nu > 0 ? -0.5 * (nu + 1) *
@@ -285,8 +287,8 @@ static inline lanes log_likelihood(lanes z, double nu)
 		      : -0.5 * z * z;
 }
 
-/* Logarithm of the largest weight once y has weighed, rounded as in weigh(): far from y
- * it would otherwise differ from all of them by more than FAR. */
+/* Logarithm of the largest weight after the observation y, rounded as in weigh(): far
+ * from y it could otherwise differ from all of them by more than FAR. */
 static double best(const struct filter *f, double y, double noise)
 {
 	const double *x = f->ring[f->newest].x;
@@ -302,7 +304,7 @@ static double best(const struct filter *f, double y, double noise)
 	return top;
 }
 
-/* Weights by y over e^top, into next; returns the sum of their squares. */
+/* Weights after y divided by e^top, into next; returns the sum of their squares. */
 static double weigh(struct filter *f, double y, double noise, double top)
 {
 	const double *x = f->ring[f->newest].x;
@@ -337,8 +339,8 @@ static double log_constant(const struct filter *f, double noise)
 	return -0.5 * log(2 * M_PI) - log(noise);
 }
 
-/* Numbers the distinct ones of n ancestors, which rise, anew from 0, and lists what they
- * were.  Returns how many there are. */
+/* Renumbers the distinct values of n ascending ancestors from 0 on, and lists the old
+ * values in kept.  Returns how many there are. */
 static size_t renumber(uint32_t *ancestor, size_t n, uint32_t *kept)
 {
 	uint32_t last = ancestor[0], m = 0;
@@ -346,14 +348,14 @@ static size_t renumber(uint32_t *ancestor, size_t n, uint32_t *kept)
 	for (size_t i = 0; i < n; i++) {
 		uint32_t old = ancestor[i];
 
-		m += old != last; /* no branch: it would be mispredicted */
+		m += old != last; /* without a branch, which would be mispredicted */
 		kept[m] = last = old;
 		ancestor[i] = m;
 	}
 	return (size_t)m + 1;
 }
 
-/* Drops the states that have no descendants since the newest step was resampled. */
+/* Drops the states that have had no descendants since the newest step was resampled. */
 static void prune(struct filter *f)
 {
 	size_t n = 0;
