@@ -5,6 +5,7 @@
 #define SIGNAL_JOINT_STATE_H
 
 #include "num/dot.h"
+#include "num/status.h"
 #include "signal/fit/joint.h"
 #include <math.h>
 

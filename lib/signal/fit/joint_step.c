@@ -75,8 +75,9 @@ static void make_normal(struct joint *j, const int *set, int m)
 		j->diagonal[i] = j->h[i * np + i];
 }
 
-/* Cholesky of h + lambda diag(h) within the profile; 0 where not positive definite. */
-static int factorise(struct joint *j, int np, double lambda)
+/* Cholesky of h + lambda diag(h) within the profile; NUM_DOMAIN where not positive
+ * definite. */
+static enum num_status factorise(struct joint *j, int np, double lambda)
 {
 	for (int i = 0; i < np; i++) {
 		double *row = j->factor + (size_t)i * (size_t)np, pivot;
@@ -93,10 +94,10 @@ static int factorise(struct joint *j, int np, double lambda)
 			dot(row + j->begin[i], row + j->begin[i],
 				(size_t)(i - j->begin[i]));
 		if (!(pivot > 1e-13 * j->diagonal[i]))
-			return 0;
+			return NUM_DOMAIN;
 		row[i] = sqrt(pivot);
 	}
-	return 1;
+	return NUM_OK;
 }
 
 /* Solves L L^T x = x in place, from row start on (the rows above are zero). */
@@ -206,7 +207,7 @@ double joint_fit_set(struct joint *j, const struct joint_scene *s,
 			make_normal(j, set, m);
 		fresh = 1;
 		j->steps++;
-		if (!factorise(j, PAR * m, lambda)) {
+		if (factorise(j, PAR * m, lambda) != NUM_OK) {
 			lambda = lambda * 10 + 1e-3;
 			continue;
 		}
@@ -255,7 +256,7 @@ void joint_fill_covariance(
 		joint_make_columns(j, s, i, &pulses[i]);
 	}
 	make_normal(j, set, m);
-	good = factorise(j, np, 0);
+	good = factorise(j, np, 0) == NUM_OK;
 	j->inverted = good ? m : 0;
 	for (int i = 0; i < m; i++)
 		for (int u = 0, k = 0; u < PAR; u++) {
