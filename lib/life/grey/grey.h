@@ -59,30 +59,45 @@ double grey_forecast(const struct grey *g, double h, double gap);
  * of the fitted level and rate at t = span + h. */
 double grey_curve(double level, double rate, double t, double gap);
 
-/* (exp(a) - 1) / a, the mean of exp over [0, a].  For |a| <= GREY_SERIES it is computed
- * by its series, 1 / 1! + a / 2! + ..., whose first omitted term is a^9 / 10!. */
+/* sinh(x) / x for |x| <= GREY_SERIES by its series, 1 + x^2 / 3! + ..., whose first
+ * omitted term is x^10 / 11!. */
 static const double GREY_SERIES = 0.1;
 
-static inline lanes grey_mean_exp(lanes a)
+static inline lanes grey_mean_exp(lanes x)
 {
-	lanes aa = a * a, even, odd;
+	lanes xx = x * x;
 
-	even = 1 +
-	       aa * (1. / 6 + aa * (1. / 120 + aa * (1. / 5040 + aa * (1. / 362880))));
-	odd = 0.5 + aa * (1. / 24 + aa * (1. / 720 + aa * (1. / 40320)));
-	return even + a * odd;
+	return 1 +
+	       xx * (1. / 6 + xx * (1. / 120 + xx * (1. / 5040 + xx * (1. / 362880))));
+}
+
+/* The interval of a curve: the mean of exp(-rate t) over it is exp(-rate middle) times
+ * sinh(x) / x at x = rate half; by series and within exp()'s range up to that rate. */
+struct grey_interval {
+	double half, middle, largest_rate;
+};
+
+static inline struct grey_interval grey_interval(double t, double gap)
+{
+	double half = 0.5 * gap, middle = t - half;
+
+	return (struct grey_interval){ half, middle,
+		fmin(GREY_SERIES / half, 300 / middle) };
 }
 
 /* grey_curve() for two models at a time. */
-static inline lanes grey_curve_lanes(lanes level, lanes rate, double t, double gap)
+static inline lanes grey_curve_lanes(
+	lanes level, lanes rate, const struct grey_interval *i)
 {
-	lanes a = rate * gap, b = -rate * t;
-	lane_mask far = lanes_max(lanes_abs(a) * (600 / GREY_SERIES), lanes_abs(b)) > 600;
+	lane_mask far = lanes_abs(rate) > i->largest_rate;
 
-	if (far[0] | far[1])
+	if (far[0] | far[1]) {
+		double t = i->middle + i->half, gap = 2 * i->half;
+
 		return (lanes){ grey_curve(level[0], rate[0], t, gap),
 			grey_curve(level[1], rate[1], t, gap) };
-	return level * grey_mean_exp(a) * lanes_exp(b);
+	}
+	return level * grey_mean_exp(rate * i->half) * lanes_exp(rate * -i->middle);
 }
 
 #endif

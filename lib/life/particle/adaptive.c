@@ -194,21 +194,21 @@ struct window {
 	struct lag *lag;
 	int count;
 	double share, centre;
-	double end, ahead; /* the interval to be forecast: its end, as time from the
-			      oldest state, and its length */
-	double noise;
+	struct grey_interval ahead; /* to be forecast, in time from the oldest state on */
+	double least;               /* smallest mean that differs significantly from 0 */
 };
 
-/* Forecast by the grey curve for the interval ahead.  An exponential through states that
- * cannot be distinguished from 0 is meaningless: such states keep their mean. */
-static inline lanes forecast_pair(const struct window *w, struct sums s)
+/* Level and rate of the grey curves of two particles, from their sums.  An exponential
+ * through states that cannot be distinguished from 0 is meaningless: such states keep
+ * their mean. */
+static inline void fit_pair(
+	const struct window *w, struct sums s, lanes *level, lanes *rate)
 {
 	lanes u = s.u * w->share, x = s.x * w->share, uu = s.uu - s.u * u,
 	      ux = s.ux - s.u * x, middle = w->centre + x;
-	lanes rate = lanes_if(uu > 0, -ux / uu);
 
-	return lanes_pick(lanes_abs(middle) > 3 * w->noise,
-		grey_curve_lanes(middle + rate * u, rate, w->end, w->ahead), middle);
+	*rate = lanes_if(lanes_and(uu > 0, lanes_abs(middle) > w->least), -ux / uu);
+	*level = middle + *rate * u;
 }
 
 /* The means of n <= BLOCK particles from first on.  Particles with the same ancestor have
@@ -220,6 +220,7 @@ static void forecast_block(const struct window *window, const uint32_t *index,
 	const struct window here = *window, *w = &here;
 
 	struct sums sums[BLOCK / 2];
+	lanes level[BLOCK / 2], rate[BLOCK / 2];
 	struct lag *lag = w->lag;
 	const uint32_t *parent = lag[0].ancestor;
 	size_t from = first, those = n;
@@ -249,12 +250,17 @@ static void forecast_block(const struct window *window, const uint32_t *index,
 			if (to > 0)
 				sums[i / 2] = s;
 			else
-				lanes_store(mean + i, forecast_pair(w, s), a < b ? 2 : 1);
+				fit_pair(w, s, &level[i / 2], &rate[i / 2]);
 		}
 		if (to > 0)
 			hand_down(sums, lag[to].ancestor + lag[to - 1].first,
 				lag[to].first, lag[to - 1].n);
 	}
+	/* in a loop of its own, so that several exponentials overlap in the processor */
+	for (size_t i = 0; i < lag[0].n; i += 2)
+		lanes_store(mean + i,
+			grey_curve_lanes(level[i / 2], rate[i / 2], &w->ahead),
+			lag[0].n - i < 2 ? 1 : 2);
 	/* in place: the ancestors ascend from 0 in steps of 0 or 1, so that no ancestor
 	 * lies after its descendant */
 	for (size_t i = n; parent && i-- > 0;)
@@ -267,10 +273,16 @@ static void forecast_block(const struct window *window, const uint32_t *index,
 static void forecast(struct adaptive *a, int count, double h, double noise,
 	const uint32_t *index, size_t n, double *mean)
 {
-	struct window w = { a->lag, count, 1.0 / count, a->lag[0].x[0], h, h, noise };
+	struct window w = { .lag = a->lag,
+		.count = count,
+		.share = 1.0 / count,
+		.centre = a->lag[0].x[0],
+		.least = 3 * noise };
+	double end = h;
 
 	for (int k = 0; k < count; k++)
-		w.end += a->lag[k].gap;
+		end += a->lag[k].gap;
+	w.ahead = grey_interval(end, h);
 	for (size_t i = 0; i < n; i += BLOCK)
 		forecast_block(&w, index, i, n - i < BLOCK ? n - i : BLOCK, mean + i);
 }

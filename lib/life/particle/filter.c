@@ -29,7 +29,8 @@ struct filter {
 	int newest, filled;
 	double *weight, *next; /* next: those after */
 	uint32_t *kept;
-	double sum; /* of weight */
+	void *spare[2]; /* arrays of a step, see moved() */
+	double sum;     /* of weight */
 	double mean, variance, ess;
 	unsigned long resamplings;
 };
@@ -66,6 +67,8 @@ void filter_free(struct filter *f)
 	free(f->weight);
 	free(f->next);
 	free(f->kept);
+	free(f->spare[0]);
+	free(f->spare[1]);
 	free(f);
 }
 
@@ -74,26 +77,38 @@ static struct step *step_at(const struct filter *f, int lag)
 	return &f->ring[(f->newest - lag + f->par.depth) % f->par.depth];
 }
 
-/* Copies an array to new memory, so that the space of a shrinking array stays in one
- * piece for the next array of full length; NULL: no memory. */
-static void *moved(void *array, size_t bytes, size_t before)
+/* Copies an array to one of another length; NULL: no memory.  Only the newest step has
+ * arrays of the full length n: the spare one is for the next step. */
+static void *moved(
+	void *array, size_t width, size_t count, size_t before, size_t n, void **spare)
 {
-	void *new = malloc(bytes > 0 ? bytes : 1);
+	int whole = count == n && *spare;
+	void *new;
 
+	if (array && count == before)
+		return array;
+	new = whole ? *spare : malloc(count > 0 ? count * width : 1);
 	if (!new)
 		return NULL;
+	if (whole)
+		*spare = NULL;
 	if (array)
-		memcpy(new, array, bytes < before ? bytes : before);
-	free(array);
+		memcpy(new, array, (count < before ? count : before) * width);
+	if (before == n && !*spare)
+		*spare = array;
+	else
+		free(array);
 	return new;
 }
 
 /* Resizes the arrays of a step to count states and after ancestors. */
-static enum num_status fit_step(struct step *s, size_t count, size_t after)
+static enum num_status fit_step(
+	struct filter *f, struct step *s, size_t count, size_t after)
 {
-	double *x = moved(s->x, count * sizeof *x, s->room * sizeof *x);
+	size_t n = f->par.particles;
+	double *x = moved(s->x, sizeof *x, count, s->room, n, &f->spare[0]);
 	uint32_t *ancestor = moved(
-		s->ancestor, after * sizeof *ancestor, s->ancestors * sizeof *ancestor);
+		s->ancestor, sizeof *ancestor, after, s->ancestors, n, &f->spare[1]);
 
 	if (x) {
 		s->x = x;
@@ -127,7 +142,7 @@ void filter_pass(struct filter *f, struct state *s)
 		state_move(s, &step->resampled, sizeof step->resampled);
 		state_move(s, &step->count, sizeof step->count);
 		ancestors = lag < f->filled && step->resampled ? after : 0;
-		if (s->load && fit_step(step, step->count, ancestors) != NUM_OK)
+		if (s->load && fit_step(f, step, step->count, ancestors) != NUM_OK)
 			s->failed = 1;
 		if (s->failed)
 			return;
@@ -153,10 +168,10 @@ static struct step *push_step(struct filter *f)
 	struct step *before = step_at(f, 0), *s = step_at(f, -1);
 	size_t n = f->par.particles;
 
-	if (fit_step(s, n, n) != NUM_OK)
+	if (fit_step(f, s, n, n) != NUM_OK)
 		return NULL;
 	if (f->filled > 0 && !before->resampled && before != s)
-		fit_step(before, before->count, 0);
+		fit_step(f, before, before->count, 0);
 	f->newest = (f->newest + 1) % f->par.depth;
 	if (f->filled < f->par.depth)
 		f->filled++;
@@ -314,12 +329,18 @@ static double weigh(struct filter *f, double y, double noise, double top)
 
 	for (size_t i = 0; i < n; i += 2) {
 		int width = n - i < 2 ? 1 : 2;
-		lanes at = lanes_load(x + i, width),
-		      l = log_likelihood((y - at) * scale, nu) - top;
+		lanes l =
+			log_likelihood((y - lanes_load(x + i, width)) * scale, nu) - top;
 		lanes w = lanes_load(f->weight + i, width) *
 			  lanes_if(lanes_abs(l) < FAR, lanes_exp(l));
 
 		lanes_store(f->next + i, w, width);
+	}
+	/* in a loop of its own, so that several exponentials overlap in the processor */
+	for (size_t i = 0; i < n; i += 2) {
+		int width = n - i < 2 ? 1 : 2;
+		lanes w = lanes_load(f->next + i, width), at = lanes_load(x + i, width);
+
 		lanes_add(&sums[0], w, width);
 		lanes_add(&sums[1], w * w, width);
 		lanes_add(&sums[2], w * at, width);
@@ -375,7 +396,7 @@ static void prune(struct filter *f)
 			s->x[i] = s->x[f->kept[i]];
 		s->count = n;
 		if (n < s->room / 2 || after < s->ancestors / 2)
-			fit_step(s, n, s->resampled ? after : 0);
+			fit_step(f, s, n, s->resampled ? after : 0);
 	}
 }
 
