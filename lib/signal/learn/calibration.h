@@ -30,7 +30,9 @@ struct calibrate_par {
 };
 
 /* Share of the transit time within which delays are searched where they reach to the
- * limits of a narrower range. */
+ * limits of a narrower range.  0.2, 0.3 and 0.45 find 147, 189 and 230 of 400 particles
+ * in laminar flow, whose records are all doubted, and all of 1200 in turbulent flow with
+ * 8 wrong rows each (scenes as for PLUG in measure.c). */
 #define CALIBRATE_WIDE 0.3
 
 struct calibration {
