@@ -164,7 +164,8 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 	return CALIBRATE_OK;
 }
 
-/* Share of its energy in which a whitened pulse may differ from a known one. */
+/* Share of its energy in which a whitened pulse may differ from a known one; half and
+ * twice of it give the same rows in the records of BAD_FIT in measure.c. */
 static const double KNOWN = 0.01;
 
 /* *lacks: 1 if whitening has made the pulse a known one but the low frequencies are lost;
