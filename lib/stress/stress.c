@@ -246,8 +246,8 @@ static double bound_row(const struct stress *s, int bx, int by, int j, double z)
 	return sum;
 }
 
-/* Row by row from the block, until the sum exceeds the limit or what is left, as if all
- * of it were in the next rows, cannot make it. */
+/* Adds row by row from the block, until the sum exceeds the limit, or cannot reach it
+ * even if the remaining load were all in the next rows. */
 static int block_may_fail(const struct stress *s, int bx, int by, double z, double limit)
 {
 	double sum = 0, rest = s->load;

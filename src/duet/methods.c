@@ -121,7 +121,7 @@ static int is_doubtful(
 	return 1;
 }
 
-/* Writes what was learned, once it is believed. */
+/* Writes the instrument that was learned, once its rows are believed. */
 static void keep(const struct separate *s, const struct instrument_place *place)
 {
 	struct instrument view;

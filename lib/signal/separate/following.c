@@ -2,7 +2,9 @@
 #include "signal/separate/separate_state.h"
 #include <math.h>
 
-/* Share of the transit time that a delay may be less. */
+/* Largest amount by which a delay may fall short of the transit time, as a share of it:
+ * no particle of laminar flow is faster than twice the mean.  In eight laminar records
+ * 0.3, 0.5 and 0.7 find 188, 189 and 139 of 400 particles. */
 static const double LEAST = 0.5;
 
 int separate_is_range_free(const struct separate *s)
@@ -20,7 +22,7 @@ void separate_widen(struct separate *s)
 	s->scene.delta_max = middle + half;
 }
 
-/* The range of the last delays, widened by half on either side, as it was learned. */
+/* The range of the last delays, widened by half of it on either side, as in learning. */
 static void follow_delay(struct separate *s, double delay)
 {
 	size_t n;
@@ -33,7 +35,7 @@ static void follow_delay(struct separate *s, double delay)
 		hi = fmax(hi, s->delay[i]);
 	}
 	calibration_widen(s->cal.duration, &lo, &hi);
-	if (n < ENOUGH) { /* it was learned from others */
+	if (n < ENOUGH) { /* the present range was learned from other pulses */
 		lo = fmin(s->scene.delta_min, lo);
 		hi = fmax(s->scene.delta_max, hi);
 	}
@@ -42,8 +44,8 @@ static void follow_delay(struct separate *s, double delay)
 	validation_range(s->validation, s->scene.delta_min, s->scene.delta_max);
 }
 
-/* The gain stays until the last GAINS pulses say, by three standard errors of their mean,
- * that it has changed; then it is theirs. */
+/* The gain is kept until the mean of the last GAINS pulses differs from it by three
+ * standard errors; then it is set to their mean. */
 static void follow_gain(struct separate *s, const struct joint_pulse *p)
 {
 	double share, se, sum = 0;

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One of these is set. */
+/* Exactly one of the pointers is set. */
 struct field {
 	const char *name;
 	int *whole;
@@ -17,7 +17,7 @@ struct field {
 
 enum { SCALARS = 48, SHORTEST_HOP = 32 };
 
-/* The numbers whose count is fixed, or known from others before them. */
+/* The numbers whose count is fixed or follows from preceding numbers. */
 static int list(struct instrument *in, struct field *f)
 {
 	struct calibration *c = &in->cal;
@@ -116,22 +116,22 @@ enum num_status instrument_values(
 	return NUM_OK;
 }
 
-/* --- back again */
+/* --- reading the numbers */
 
 struct values {
 	const struct instrument_value *v;
 	size_t n, taken;
-	const char *missing; /* the first that was */
+	const char *missing; /* the first missing one */
 };
 
-/* A number once; nan where it is missing or not between least and most. */
+/* A number that must occur once; nan if it is missing or not between least and most. */
 static double take(
 	struct values *from, const char *name, int index, double least, double most)
 {
 	double found = NAN;
 	int times = 0;
 
-	/* They come in the order they are asked for, mostly. */
+	/* Usually they are in the order in which they are read. */
 	for (size_t i = 0; i < from->n && !times; i++) {
 		size_t k = (from->taken + i) % from->n;
 
@@ -195,7 +195,7 @@ static enum instrument_status take_arrays(struct values *from, struct calibratio
 	return c->shape ? INSTRUMENT_OK : INSTRUMENT_MEMORY;
 }
 
-/* The first number that no instrument has, or NULL. */
+/* The first number outside the range of instruments, or NULL. */
 static const char *out_of_range(const struct calibration *c)
 {
 	return c->tone_hop < SHORTEST_HOP              ? "tone_hop"

@@ -1,4 +1,4 @@
-/* judging.c - the queue of rows, and of sections to report: held until they are judged
+/* judging.c - the queue of rows, and of sections to report, which are held until judged
  */
 #include "signal/separate/separate_state.h"
 #include <stdlib.h>

@@ -1,10 +1,10 @@
-/* rows.c - rows and reports of sections that were taken apart, or could not be */
+/* rows.c - rows and reports of sections that were separated, or are unresolved */
 #include "signal/separate/contrasts.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
 #include <stdlib.h>
 
-/* What the second component adds to the row of pulse i. */
+/* Fills in what the row of pulse i has from the second component. */
 static void tell_phase(
 	const struct separate *s, int i, long long from, struct transit *out)
 {
@@ -24,7 +24,7 @@ static void tell_phase(
 	out->amplitude_se = sqrt(ca * along[2] + cb * along[3]) * noise;
 	out->correlation =
 		(along[1] - along[0]) * noise / (out->amplitude_se * out->delay_se);
-	/* of a reversed pulse, the opposite of the phase of what it was reversed from */
+	/* the phase of a reversed pulse is opposite to that of the original */
 	out->phase = s->cal.reversed ? atan2(-p->b, -p->a) : atan2(p->b, p->a);
 	out->phase_se = sqrt(cb * cb * p->cov[2][2] - 2 * ca * cb * p->cov[2][3] +
 				ca * ca * p->cov[3][3]) /
@@ -81,7 +81,7 @@ static int larger_neighbour(const struct separate *s, int m, int i)
 	return found;
 }
 
-/* What the last m rows, of one fit, tell of each other. */
+/* Compares the delays of the last m rows, which are of one fit. */
 static enum num_status compare_pulses(struct separate *s, int m)
 {
 	double delay[JOINT_PULSES_MAX], square[JOINT_PULSES_MAX], var[JOINT_PULSES_MAX];
@@ -138,7 +138,7 @@ enum separate_status separate_reserve_sources(struct separate *s, size_t count)
 	return s->source ? SEPARATE_OK : SEPARATE_MEMORY;
 }
 
-/* Each fitted pulse alone, as sensor 1 would see it. */
+/* Draws each fitted pulse by itself, as sensor 1 would record it. */
 static enum separate_status draw_pulses(struct separate *s, int m, size_t n)
 {
 	if (separate_reserve_sources(s, (size_t)m * n) != SEPARATE_OK)

@@ -1,11 +1,10 @@
-/* window.c - one window of a section: the joint fit of its pulses, and how good it is
- */
+/* window.c - one window of a section: the joint fit of its pulses and its goodness */
 #include "signal/separate/separate_state.h"
 #include <math.h>
 #include <string.h>
 
-/* Where to cut a window of n samples: the widest gap between arrivals in its later
- * half that leaves room for the pulses behind it. */
+/* Position at which a window of n samples is cut: the widest gap between arrivals in its
+ * later half that leaves room for the pulses behind it. */
 static double choose_cut(const struct separate *s, int m, size_t n)
 {
 	double lo = 0.4 * (double)n, widest = -1, cut = 0;
