@@ -359,6 +359,21 @@ static void start(struct bank *b)
 	b->n_held = 0;
 }
 
+/* Drops an outlier among the first three observations, before there is a trend that could
+ * tell it: one that is as far below their median as the threshold is above it. */
+static void drop_outlier(struct bank *b)
+{
+	struct row *r = b->held;
+	double middle = median_of_three(r[0].y, r[1].y, r[2].y);
+	int kept = 0;
+
+	for (int k = 0; k < FIRST; k++)
+		if ((middle - r[k].y) / (b->par.threshold - middle) < 1)
+			r[kept++] = r[k];
+	b->counts.outliers += (unsigned long)(FIRST - kept);
+	b->n_held = kept;
+}
+
 /* Sum over the trends, by weight, of the function of, which gets the observation of a
  * damage as the trend expects it, step after the last row, with its variance and
  * standardised innovation. */
@@ -477,14 +492,43 @@ static double running(struct bank *b, double t, double damage)
 	return b->last + b->gap * b->unit;
 }
 
+/* Where values repeat they have been rounded, and the noise is at least that of rounding
+ * to the least step seen: a quantum over sqrt(12).  Without it a step after equal values
+ * would count as a shift, and the wear as none. */
+static void heed_rounding(struct bank *b, double y)
+{
+	double step = fabs(y - b->before);
+
+	if (b->rows == 0 && b->n_held == 0) {
+		b->quantum = INFINITY;
+		b->repeats = 0;
+	} else if (step == 0) {
+		b->repeats = 1;
+	} else {
+		b->quantum = fmin(b->quantum, step);
+	}
+	b->before = y;
+	if (b->rows == 0 || !b->repeats || isinf(b->quantum))
+		return;
+	step = b->quantum / b->range;
+	for (int i = 0; i < b->trends; i++) {
+		struct trend *tr = &b->trend[i];
+
+		tr->sum = fmax(tr->sum, freedom_of(b, tr) * step * step / 12);
+	}
+}
+
 void bank_add(struct bank *b, double t, double y)
 {
 	if (isnan(y))
 		return;
+	if (b->rows == 0 && !(b->par.direction * (b->par.threshold - y) > 0))
+		return;
+	heed_rounding(b, y);
 	if (b->rows == 0) {
-		if (!(b->par.direction * (b->par.threshold - y) > 0))
-			return;
 		b->held[b->n_held++] = (struct row){ t, y };
+		if (b->n_held == FIRST)
+			drop_outlier(b);
 		if (b->n_held == FIRST)
 			start(b);
 		return;
