@@ -103,6 +103,18 @@ enum joint_status joint_refine(struct joint *joint, const struct joint_scene *sc
  * fitted free, in cov[m * m].  Returns m; 0 if the normal matrix is singular. */
 int joint_delay_covariance(const struct joint *joint, double *cov);
 
+/* Is pulse i of the last fit two that arrive nearly together?  Odds by the share of the
+ * smaller one, joint_share(), for one other arrival per sample; scatter is the standard
+ * deviation of the difference of two delays.  0 if the normal matrix is singular. */
+enum { JOINT_SHARES = 5 };
+static inline double joint_share(int k)
+{
+	return 0.5 * (k + 0.5) / JOINT_SHARES;
+}
+int joint_pair_odds(struct joint *joint, const struct joint_scene *scene,
+	const struct joint_pulse *pulses, int i, double scatter,
+	double odds[JOINT_SHARES]);
+
 /* Samples of pulses computed by all fits so far. */
 double joint_work(const struct joint *joint);
 

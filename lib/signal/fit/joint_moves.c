@@ -86,54 +86,10 @@ int joint_try_pulse(struct joint *j, const struct joint_scene *s,
 	return accept_more(j, s, pulses, m, i, before, chi2);
 }
 
-/* How much, in standard deviations, the residual asks for pulse i to be two pulses a
- * distance 2 shift apart on both sensors: its projection on p(+) + p(-) - 2 p, made
- * orthogonal to what moving and scaling pulse i alone can do. */
-static double split_score(struct joint *j, const struct joint_scene *s,
-	const struct joint_pulse *pulse, double shift)
-{
-	struct joint_pulse wide = *pulse;
-	double T = pulse_duration(s, pulse->delta), x2 = 0, xr = 0,
-	       h[PAR][PAR + 1] = { { 0 } };
-
-	joint_make_columns(j, s, JOINT_PULSES_MAX, &wide);
-	for (int c = 0; c < 2; c++) {
-		const struct column *col = &j->col[JOINT_PULSES_MAX][c];
-		double t0 = pulse->t + (c ? pulse->delta : 0), g = c ? s->gain : 1;
-		long first = col->first - (long)shift;
-		size_t n = col->n + 2 * (size_t)shift;
-		double *x = j->scratch, *part = j->scratch + j->support;
-
-		if (first < 0 || first + (long)n > (long)j->n || n > j->support)
-			return 0;
-		shape_sample(s->shape, t0 - shift, T, first, n, x, NULL, NULL);
-		shape_sample(s->shape, t0 + shift, T, first, n, part, NULL, NULL);
-		add_scaled(x, 1, part, n);
-		shape_sample(s->shape, t0, T, first, n, part, NULL, NULL);
-		add_scaled(x, -2, part, n);
-		joint_hide(j, c, first, n, x);
-		x2 += g * g * dot(x, x, n);
-		xr += g * dot(x, j->r[c] + first, n);
-		for (int u = 0; u < PAR; u++) {
-			h[u][PAR] += g * dot(x + (col->first - first), col->d[u], col->n);
-			for (int v = 0; v < PAR; v++)
-				h[u][v] += dot(col->d[u], col->d[v], col->n);
-		}
-	}
-	for (int u = 0; u < PAR; u++) { /* eliminate: x2 becomes its Schur complement */
-		if (!(h[u][u] > 0))
-			return 0;
-		for (int v = u + 1; v < PAR; v++)
-			for (int w = PAR; w >= u; w--)
-				h[v][w] -= h[u][w] * h[v][u] / h[u][u];
-		x2 -= h[u][PAR] * h[u][PAR] / h[u][u];
-	}
-	return x2 > 0 ? copysign(xr, xr * pulse->a) / sqrt(x2) : 0;
-}
-
-/* Tries pulse i as two; 1 if it was worth it, else everything is as before. */
+/* Tries pulse i as two equal ones by gaps apart, either of which may be the first at
+ * sensor 2; 1 if it was worth it, else everything is as before. */
 static int try_split(struct joint *j, const struct joint_scene *s,
-	struct joint_pulse *pulses, int *m, int i, double shift, double *chi2)
+	struct joint_pulse *pulses, int *m, int i, const double gap[2], double *chi2)
 {
 	struct joint_pulse before[JOINT_PULSES_MAX];
 	int pair[2] = { i, *m }, old = *m;
@@ -142,8 +98,10 @@ static int try_split(struct joint *j, const struct joint_scene *s,
 	joint_subtract(j, s, &pulses[i], -1);
 	pulses[old] = pulses[i];
 	pulses[i].a = pulses[old].a = pulses[i].a / 2;
-	pulses[i].t -= shift;
-	pulses[old].t += shift;
+	pulses[i].t -= gap[0] / 2;
+	pulses[old].t += gap[0] / 2;
+	pulses[i].delta += (gap[0] - gap[1]) / 2;
+	pulses[old].delta -= (gap[0] - gap[1]) / 2;
 	joint_subtract(j, s, &pulses[i], 1);
 	joint_subtract(j, s, &pulses[old], 1);
 	++*m;
@@ -158,21 +116,24 @@ int joint_split_pulses(struct joint *j, const struct joint_scene *s,
 
 	joint_project(j);
 	for (int i = 0; i < *m && *m < s->max_pulses; i++) {
-		double best = 2, shift = 0;
+		double gap[2];
 
-		for (int k = 1; k <= 3; k++) {
-			double score = split_score(
-				j, s, &pulses[i], floor(0.06 * k * s->duration));
+		if (!joint_factorise(j, s, pulses, &i, 1))
+			continue;
+		joint_pair_start(j, s, &pulses[i], &i, 1);
+		/* Shares that differ may be worth more than the equal ones tried here. */
+		if (2 * joint_pair_best(j, &gap[0], &gap[1]) < 0.3 * s->drop_near)
+			continue;
+		for (int side = 0, done = 0; side < 2 && !done; side++) {
+			double apart[2] = { gap[0] * s->duration,
+				(side ? -1 : 1) * gap[1] * s->duration };
 
-			if (score > best) {
-				best = score;
-				shift = floor(0.06 * k * s->duration);
-			}
+			if (gap[0] == 0 && side)
+				break;
+			done = try_split(j, s, pulses, m, i, apart, chi2);
+			split += done;
 		}
-		if (shift > 0) {
-			split += try_split(j, s, pulses, m, i, shift, chi2);
-			joint_project(j);
-		}
+		joint_project(j);
 	}
 	return split;
 }
