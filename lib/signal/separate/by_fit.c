@@ -1,0 +1,155 @@
+/* by_fit.c - sections taken apart by joint fits, window by window */
+#include "signal/separate/separate_state.h"
+#include <math.h>
+#include <string.h>
+
+/* More pulses than this in n samples are not looked for. */
+static int most_pulses(const struct separate *s, size_t n)
+{
+	double most = 4 + 3 * (double)n / s->cal.duration;
+
+	if (s->par.sources)
+		most = s->par.sources;
+	return (int)fmin(most, s->par.most_pulses);
+}
+
+/* Takes the first done of m pulses out of the record and carries the others into the
+ * next window; returns its first sample. */
+static long long cut_section(
+	struct separate *s, long long from, double boundary, int m, int done)
+{
+	size_t rest = (size_t)(ready(s) - from);
+	double reach = shape_reach(s->cal.shape) * s->cal.duration;
+	long long start = from + (long long)floor(boundary - reach + s->cal.delta_min);
+
+	for (int i = 0; i < done; i++)
+		joint_add(&s->scene, &s->pulse[i], -1, channel_1(s, from),
+			channel_2(s, from), rest);
+	for (int i = 0; i < done && s->with_both; i++) {
+		const struct quadrature_pulse *b = &s->both[i];
+		struct joint_pulse p = { .t = b->t, .delta = b->delta, .a = b->b };
+		double *v[2];
+
+		quadrature_at(s, from, v);
+		joint_add(&s->scene, &p, -1, v[0], v[1], rest);
+	}
+	if (start <= from)
+		start = from + 1;
+	s->carried = m - done;
+	for (int i = 0; i < s->carried; i++) {
+		s->pulse[i] = s->pulse[done + i];
+		s->pulse[i].t -= (double)(start - from);
+	}
+	return start;
+}
+
+/* Samples: in shorter windows the pulses cut by their ends would be most. */
+static double shortest_window(const struct separate *s)
+{
+	return fmax(10, 6 * shape_reach(s->cal.shape)) * s->cal.duration;
+}
+
+/* Windows that stay unresolved one after the other until what is left is given up. */
+enum { PATIENCE = 3 };
+
+/* Fits the m pulses of a window to both components; doubts them if more than noise is
+ * left of the second. */
+static enum separate_status fit_quadrature(
+	struct separate *s, long long from, size_t n, int m, int done, struct goodness *j)
+{
+	const double *x[2] = { channel_1(s, from), channel_2(s, from) };
+	double *v[2];
+	int doubt;
+	enum num_status status;
+
+	s->with_both = 0;
+	if (!s->par.quadrature)
+		return SEPARATE_OK;
+	quadrature_at(s, from, v);
+	status = quadrature_fit(&s->quadrature, s->joint, &s->scene, x,
+		(const double *const[]){ v[0], v[1] }, n, s->pulse, m, j->chi2, s->both,
+		&doubt);
+	if (status == NUM_MEMORY)
+		return SEPARATE_MEMORY;
+	s->with_both = status == NUM_OK;
+	if (!doubt || j->stretch == SEPARATE_UNRESOLVED)
+		return SEPARATE_OK;
+	/* Without a pulse there is no row that could say so. */
+	j->stretch = m > 0 ? SEPARATE_MISFIT : SEPARATE_UNRESOLVED;
+	for (int i = 0; i < done; i++)
+		j->pulse[i] = SEPARATE_MISFIT;
+	return SEPARATE_OK;
+}
+
+enum separate_status separate_fit_section(
+	struct separate *s, long long from, long long to, int cut, long long *next)
+{
+	struct account a = { .m = s->carried };
+	enum separate_status status;
+	int unresolved, shorter;
+	long before = 0, after = 0;
+	size_t n;
+
+	/* The quiet samples beside a section tell that no pulse reaches there. */
+	if (!s->par.quadrature) {
+		before = s->continuing ? 0 : sections_aside(s->sections, 0);
+		before = from - s->tape[0].begin < before
+				 ? (long)(from - s->tape[0].begin)
+				 : before;
+		after = cut ? 0 : sections_aside(s->sections, 1);
+		after = ready(s) - to < after ? (long)(ready(s) - to) : after;
+	}
+	n = (size_t)(to - from + before + after);
+	s->scene.max_pulses = most_pulses(s, (size_t)(to - from));
+	s->scene.quiet[0] = (double)before;
+	s->scene.quiet[1] = (double)after;
+	if (!s->par.quadrature)
+		separate_hide(s, from - before, n);
+	if (a.m > s->scene.max_pulses)
+		a.m = s->scene.max_pulses;
+	memcpy(a.pulse, s->pulse, sizeof a.pulse);
+	status = separate_fit_window(s, from - before, n, cut, &a);
+	if (status == SEPARATE_OK)
+		s->all = joint_delay_covariance(s->joint, s->delay_cov);
+	if (status == SEPARATE_OK && s->par.quadrature)
+		status = fit_quadrature(s, from, n, a.m, a.done, &a.goodness);
+	else if (status == SEPARATE_OK && separate_is_described(&a))
+		separate_follow(s, &a);
+	else if (status == SEPARATE_OK && !s->par.sources)
+		status = separate_try_rivals(s, from - before, n, cut, &a);
+	for (int i = 0; i < a.m; i++)
+		s->pulse[i].t -= (double)before;
+	a.boundary -= (double)before;
+	if (status != SEPARATE_OK)
+		return status;
+	unresolved = a.goodness.stretch == SEPARATE_UNRESOLVED && !s->par.sources;
+	shorter = unresolved && (cut || a.r.full) &&
+		  (double)(to - from) > 2 * shortest_window(s);
+	if (shorter)
+		s->span = (to - from) / 2;
+	else
+		s->failures = unresolved ? s->failures + 1 : 0;
+	s->dense = unresolved && !shorter && (!cut || s->failures == PATIENCE);
+	/* In a short section it is not their number that resists. */
+	s->strange = s->dense && !cut && !s->continuing && !a.r.full;
+	if (shorter || s->dense) {
+		s->carried = 0;
+		*next = from;
+		return SEPARATE_OK;
+	}
+	if (unresolved) {
+		if (separate_dense_section(s, from, from + (long long)a.boundary) !=
+			SEPARATE_OK)
+			return SEPARATE_MEMORY;
+	} else if (separate_give_pulses(s, from, to, a.m, a.done, &a.goodness) !=
+		   SEPARATE_OK) {
+		return SEPARATE_MEMORY;
+	}
+	s->counters.singles += !cut && a.m == 1 && !s->continuing;
+	*next = to;
+	if (cut)
+		*next = cut_section(s, from, a.boundary, a.m, a.done);
+	else
+		s->carried = 0;
+	return SEPARATE_OK;
+}

@@ -1,0 +1,111 @@
+/* by_masks.c - sections taken apart by masks */
+#include "signal/separate/separate_state.h"
+#include <math.h>
+#include <string.h>
+
+/* Arrival (zero crossing between the lobes) and amplitude of the one pulse in x. */
+static void measure_pulse(const double *x, size_t n, double *t, double *a)
+{
+	size_t high = 0, low = 0;
+
+	for (size_t i = 1; i < n; i++) {
+		if (x[i] > x[high])
+			high = i;
+		if (x[i] < x[low])
+			low = i;
+	}
+	*t = ((double)high + (double)low) / 2;
+	*a = (x[high] - x[low]) / 2;
+}
+
+/* Holds the pulses that masks have found in n samples against those of a joint fit.  A
+ * mask divides one pulse into several where the noise moves the points of its histogram,
+ * and what a pulse of the fit does not stand beside, by a quarter of a duration, is none.
+ */
+static enum separate_status confirm(struct separate *s, long long from, size_t n,
+	const double *t, int m, enum separate_verdict *verdict)
+{
+	struct joint_result r;
+	int count = 0, taken[JOINT_PULSES_MAX] = { 0 };
+	enum joint_status status;
+
+	s->scene.max_pulses = s->par.most_pulses;
+	status = joint_fit(s->joint, &s->scene, channel_1(s, from), channel_2(s, from), n,
+		s->pulse, &count, &r);
+	if (status != JOINT_OK)
+		return status == JOINT_MEMORY ? SEPARATE_MEMORY : SEPARATE_WIDE;
+	s->counters.fits++;
+	s->counters.steps += (double)r.steps;
+	s->counters.searches += (double)r.searches;
+	for (int k = 0; k < m; k++) {
+		int best = -1;
+
+		for (int i = 0; i < count; i++)
+			if (!taken[i] &&
+				(best < 0 || fabs(s->pulse[i].t - t[k]) <
+						     fabs(s->pulse[best].t - t[k])))
+				best = i;
+		verdict[k] = m > 1 || count > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
+		if (best >= 0 && fabs(s->pulse[best].t - t[k]) < s->cal.duration / 4)
+			taken[best] = 1;
+		else
+			verdict[k] = SEPARATE_MISFIT;
+	}
+	return SEPARATE_OK;
+}
+
+enum separate_status separate_mask_section(
+	struct separate *s, long long from, long long to)
+{
+	struct masks_source source[MASKS_SOURCES_MAX];
+	size_t n = (size_t)(to - from);
+	const double *y1 = channel_1(s, from);
+	int m;
+	double t[MASKS_SOURCES_MAX], a[MASKS_SOURCES_MAX];
+	enum separate_verdict verdict[MASKS_SOURCES_MAX], all = SEPARATE_ALONE;
+	enum separate_status status;
+
+	if (masks_find(s->masks, y1, channel_2(s, from), n, source, &m) != NUM_OK ||
+		!separate_reserve_sources(s, (size_t)m * n))
+		return SEPARATE_MEMORY;
+	/* A single source needs no demixing. */
+	if (m == 1)
+		memcpy(s->source, y1, n * sizeof *y1);
+	for (int k = 0; k < m && m > 1; k++)
+		masks_separate(s->masks, k, s->source + (size_t)k * n);
+	s->counters.singles += m == 1;
+	s->counters.masks += m > 1;
+	s->counters.masks_skipped += m == 1;
+	for (int k = 0; k < m; k++) {
+		double *x = s->source + (size_t)k * n;
+
+		for (size_t i = 0; i < n; i++)
+			x[i] *= s->cal.noise[0];
+		measure_pulse(x, n, &t[k], &a[k]);
+	}
+	status = confirm(s, from, n, t, m, verdict);
+	if (status != SEPARATE_OK)
+		return status;
+	for (int k = 0; k < m; k++) {
+		struct entry *entry = separate_queue_entry(s);
+		struct transit *p;
+
+		if (!entry)
+			return SEPARATE_MEMORY;
+		p = &entry->row;
+		entry->evidence.fits = verdict[k] != SEPARATE_MISFIT;
+		entry->evidence.group = ++s->group;
+		p->section = s->number;
+		p->sources = m;
+		p->t1 = (double)from + t[k];
+		p->t2 = p->t1 + (double)s->cal.shift + source[k].delta;
+		p->amplitude = a[k];
+		p->t1_se = p->t2_se = p->delay_se = p->amplitude_se = p->chi2 = NAN;
+		p->correlation = p->phase = p->phase_se = NAN;
+		p->verdict = verdict[k];
+		all = verdict[k] > all ? verdict[k] : all;
+		s->counters.rows++;
+	}
+	separate_report_section(s, from, to, m, NAN, all, s->source);
+	return SEPARATE_OK;
+}

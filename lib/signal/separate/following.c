@@ -1,0 +1,77 @@
+/* following.c - flow and gain followed by pulses that stand alone */
+#include "signal/separate/separate_state.h"
+#include <math.h>
+
+/* Share of the transit time that delays are searched within where the learned range does
+ * not do. */
+static const double WIDE = 0.3;
+
+/* Share of the transit time that a delay may be less. */
+static const double LEAST = 0.5;
+
+int separate_is_range_free(const struct separate *s)
+{
+	return isnan(s->par.known.spread) && !isinf(s->cal.transit);
+}
+
+void separate_widen(struct separate *s)
+{
+	double middle = 0.5 * (s->scene.delta_min + s->scene.delta_max);
+	double half = fmax(WIDE * (s->cal.transit + middle), 0.05 * s->cal.duration);
+
+	s->scene.delta_min = fmax(middle - half, -LEAST * s->cal.transit);
+	s->scene.delta_max = middle + half;
+}
+
+/* The range of the last delays, widened by half on either side, as it was learned. */
+static void follow_delay(struct separate *s, double delay)
+{
+	size_t n;
+	double lo = INFINITY, hi = -INFINITY;
+
+	s->delay[s->delays++ % TRACKED] = delay;
+	n = s->delays < TRACKED ? s->delays : TRACKED;
+	for (size_t i = 0; i < n; i++) {
+		lo = fmin(lo, s->delay[i]);
+		hi = fmax(hi, s->delay[i]);
+	}
+	calibration_widen(s->cal.duration, &lo, &hi);
+	if (n < ENOUGH) { /* it was learned from others */
+		lo = fmin(s->scene.delta_min, lo);
+		hi = fmax(s->scene.delta_max, hi);
+	}
+	s->scene.delta_min = fmax(lo, -LEAST * s->cal.transit);
+	s->scene.delta_max = hi;
+	validation_range(s->validation, s->scene.delta_min, s->scene.delta_max);
+}
+
+/* The gain stays until the last GAINS pulses say, by three standard errors of their mean,
+ * that it has changed; then it is theirs. */
+static void follow_gain(struct separate *s, const struct joint_pulse *p)
+{
+	double share, se, sum = 0;
+
+	joint_gain_error(s->joint, p, &share, &se);
+	if (!(se > 0) || isinf(se))
+		return;
+	s->gain_off[s->gains++ % GAINS] = share / se;
+	s->gain_sum += share / (se * se);
+	s->gain_weight += 1 / (se * se);
+	if (s->gains % GAINS)
+		return;
+	for (int i = 0; i < GAINS; i++)
+		sum += s->gain_off[i];
+	if (fabs(sum) > 3 * sqrt(GAINS))
+		s->scene.gain *= 1 + s->gain_sum / s->gain_weight;
+	s->gain_sum = s->gain_weight = 0;
+}
+
+void separate_follow(struct separate *s, const struct account *a)
+{
+	if (a->m != 1 || a->goodness.stretch != SEPARATE_ALONE)
+		return;
+	if (separate_is_range_free(s))
+		follow_delay(s, a->pulse[0].delta);
+	if (isnan(s->par.known.gain))
+		follow_gain(s, &a->pulse[0]);
+}

@@ -1,0 +1,103 @@
+/* judging.c - the queue of rows, and of sections to report: held until they are judged
+ */
+#include "signal/separate/separate_state.h"
+#include <stdlib.h>
+#include <string.h>
+
+struct entry *separate_queue_entry(struct separate *s)
+{
+	if (s->count == s->capacity) {
+		size_t capacity = s->capacity ? 2 * s->capacity : 64;
+		struct entry *more = realloc(s->queue, capacity * sizeof *more);
+
+		if (!more)
+			return NULL;
+		s->queue = more;
+		s->capacity = capacity;
+	}
+	memset(&s->queue[s->count], 0, sizeof *s->queue);
+	return &s->queue[s->count++];
+}
+
+int separate_queue_report(
+	struct separate *s, const struct separate_section *section, size_t rows)
+{
+	struct report *r;
+
+	if (!s->par.on_section)
+		return 1;
+	if (s->reports == s->report_capacity) {
+		size_t capacity = s->report_capacity ? 2 * s->report_capacity : 16;
+		struct report *more = realloc(s->report, capacity * sizeof *more);
+
+		if (!more)
+			return 0;
+		s->report = more;
+		s->report_capacity = capacity;
+	}
+	r = &s->report[s->reports++];
+	memset(r, 0, sizeof *r);
+	r->section = *section;
+	if (section->dense)
+		r->dense = *section->dense;
+	r->source = s->source;
+	s->source = NULL;
+	r->first = s->count - rows;
+	r->rows = rows;
+	return 1;
+}
+
+static void give_reports(struct separate *s)
+{
+	for (size_t i = 0; i < s->reports; i++) {
+		struct report *r = &s->report[i];
+
+		if (r->section.dense)
+			r->section.dense = &r->dense;
+		r->section.source = r->source;
+		for (size_t k = r->first; k < r->first + r->rows; k++)
+			if (s->queue[k].evidence.doubted &&
+				r->section.verdict != SEPARATE_UNRESOLVED)
+				r->section.verdict = SEPARATE_MISFIT;
+		s->par.on_section(s->par.context, &r->section);
+		free(r->source);
+	}
+	s->reports = 0;
+}
+
+enum separate_status separate_judge_rows(struct separate *s)
+{
+	size_t n = s->count - s->judged;
+	struct evidence *e = malloc((n ? n : 1) * sizeof *e);
+
+	if (!e)
+		return SEPARATE_MEMORY;
+	for (size_t i = 0; i < n; i++)
+		e[i] = s->queue[s->judged + i].evidence;
+	validation_judge(s->validation, e, n);
+	for (size_t i = 0; i < n; i++) {
+		struct entry *q = &s->queue[s->judged + i];
+
+		q->evidence.doubted = e[i].doubted;
+		s->counters.misfits += e[i].doubted;
+		if (!e[i].doubted || q->row.verdict == SEPARATE_UNRESOLVED)
+			continue;
+		s->counters.foreign += q->evidence.fits;
+		q->row.verdict = SEPARATE_MISFIT;
+	}
+	free(e);
+	s->judged = s->count;
+	give_reports(s);
+	return SEPARATE_OK;
+}
+
+int separate_next(struct separate *s, struct transit *p)
+{
+	if (s->given == s->judged) {
+		if (s->given == s->count)
+			s->given = s->judged = s->count = 0;
+		return 0;
+	}
+	*p = s->queue[s->given++].row;
+	return 1;
+}

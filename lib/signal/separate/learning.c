@@ -1,0 +1,155 @@
+/* learning.c - the instrument of a record: learned from its first samples, or kept */
+#include "signal/detect/spikes.h"
+#include "signal/separate/separate_state.h"
+#include <math.h>
+
+/* With an instrument learned from the n oldest samples, or kept. */
+static enum separate_status start(struct separate *s, size_t n)
+{
+	const struct calibration *c = &s->cal;
+	double reach;
+
+	s->calibrated = 1;
+	s->done = s->level_at = s->tape[0].begin + c->whitening.edge;
+	calibration_scene(c, &s->scene);
+	s->scene.max_pulses = JOINT_PULSES_MAX;
+	reach = 2 * shape_reach(c->shape) * c->duration;
+	if (s->par.window < (size_t)(6 * reach))
+		s->par.window = s->par.window ? (size_t)(6 * reach)
+					      : (size_t)(reach + 23 * c->duration);
+	/* What a baseline has to follow in a window must not be too much. */
+	if (c->whitening.low * 2 * (double)s->par.window > JOINT_BASELINE_MAX)
+		s->par.window = (size_t)fmax(
+			3 * reach, JOINT_BASELINE_MAX / (2 * c->whitening.low));
+	if (tape_start(&s->tape[0], c) != NUM_OK || tape_start(&s->tape[1], c) != NUM_OK)
+		return SEPARATE_MEMORY;
+	if (s->par.quadrature && quadrature_start(&s->quadrature, c, n) != NUM_OK)
+		return SEPARATE_MEMORY;
+	/* Equal pulses on both channels reach the threshold of a pair at 1 / sqrt 2 of
+	 * it. */
+	s->sections = sections_new(c->shape, c->duration, 0.65 * sqrt(c->drop),
+		fmax(c->delta_max, -c->delta_min));
+	if (s->sections)
+		sections_skip(s->sections, s->done);
+	s->hold = s->tape[0].begin + (long long)n;
+	if (isnan(s->par.known.spread) && !isinf(c->transit))
+		validation_range(s->validation, c->delta_min, c->delta_max);
+	s->holding = s->par.method == SEPARATE_FIT && n > 0;
+	if (s->par.kept) {
+		validation_tell_flow(s->validation, &s->kept.flow);
+		s->crowded = s->kept.crowded;
+		s->looked = 1;
+	}
+	s->joint = joint_new();
+	if (s->par.method == SEPARATE_MASKS) {
+		size_t window = s->par.mask_window ? s->par.mask_window : 64;
+		struct masks_par mp = { .duration = c->duration,
+			.delta_min = c->delta_min,
+			.delta_max = c->delta_max,
+			.gain_max = 2 * s->scene.gain,
+			.peak_share = 0.3,
+			.sources = s->par.sources,
+			.shape = c->shape };
+
+		/* Its first bin has to lie in the band of a pulse. */
+		while (!s->par.mask_window && (double)window * MASKS_BAND < c->duration)
+			window *= 2;
+		if ((double)window * MASKS_BAND < c->duration)
+			return SEPARATE_WINDOW;
+		mp.window = window;
+		mp.hop = s->par.mask_hop ? s->par.mask_hop : window / 2;
+		s->masks = masks_new(&mp);
+		if (!s->masks)
+			return SEPARATE_MEMORY;
+	}
+	return s->sections && s->joint ? SEPARATE_OK : SEPARATE_MEMORY;
+}
+
+static enum separate_status calibrate_now(struct separate *s)
+{
+	static const enum separate_status of[] = {
+		[CALIBRATE_OK] = SEPARATE_OK,
+		[CALIBRATE_MEMORY] = SEPARATE_MEMORY,
+		[CALIBRATE_COLOURED] = SEPARATE_NO_LAG,
+		[CALIBRATE_SILENT_1] = SEPARATE_SILENT_1,
+		[CALIBRATE_SILENT_2] = SEPARATE_SILENT_2,
+		[CALIBRATE_HARD] = SEPARATE_HARD,
+		[CALIBRATE_NO_LAG] = SEPARATE_NO_LAG,
+		[CALIBRATE_AT_ONCE] = SEPARATE_AT_ONCE,
+		[CALIBRATE_SWAPPED] = SEPARATE_SWAPPED,
+		[CALIBRATE_FAR] = SEPARATE_FAR,
+		[CALIBRATE_NARROW] = SEPARATE_NARROW,
+		[CALIBRATE_FAST] = SEPARATE_FAST,
+		[CALIBRATE_SLOW] = SEPARATE_SLOW,
+		[CALIBRATE_TONES] = SEPARATE_TONES,
+	};
+	enum calibrate_status status;
+	struct calibrate_par known;
+	size_t n;
+
+	if (s->tape[0].n < SEPARATE_SHORTEST)
+		return SEPARATE_NO_LAG;
+	/* Not more than asked for, however much has come in at once. */
+	n = s->tape[0].n < s->par.learn ? s->tape[0].n : s->par.learn;
+	known = s->par.known;
+	for (int c = 0; c < 2; c++) {
+		tape_review(&s->tape[c]);
+		known.hidden[c] = s->tape[c].hidden;
+	}
+	status = calibrate(&known, s->tape[0].x, s->tape[1].x, n, &s->cal);
+	if (status != CALIBRATE_OK)
+		return of[status];
+	if (!(s->cal.duration >= SECTIONS_SHORTEST)) {
+		calibration_clear(&s->cal);
+		return SEPARATE_FAST;
+	}
+	return start(s, n);
+}
+
+enum separate_status separate_learn(struct separate *s)
+{
+	size_t half = s->par.learn / 2;
+	int first = 1;
+
+	while (!s->calibrated && s->tape[0].n >= (s->ended && first ? 1 : s->par.learn)) {
+		enum separate_status status = calibrate_now(s);
+
+		first = 0;
+		if (status != SEPARATE_OK && status != SEPARATE_NO_LAG &&
+			status != SEPARATE_FAST && status != SEPARATE_HARD &&
+			status != SEPARATE_AT_ONCE)
+			return status;
+		if (s->calibrated)
+			break;
+		s->reason = status;
+		if (s->tape[0].n < s->par.learn)
+			break;
+		for (int c = 0; c < 2; c++)
+			tape_drop(&s->tape[c], half);
+		if (s->par.quadrature)
+			quadrature_drop(&s->quadrature, half);
+		s->counters.passed_over += (double)half;
+	}
+	return SEPARATE_OK;
+}
+
+enum separate_status separate_start_kept(struct separate *s)
+{
+	return s->cal.duration >= SECTIONS_SHORTEST ? start(s, 0) : SEPARATE_FAST;
+}
+
+enum separate_status separate_check_alive(struct separate *s, const double *x, size_t n)
+{
+	double before = s->counters.samples;
+
+	for (size_t i = 0; i < 2 * n && before < (double)s->par.learn; i++) {
+		if (before == 0 && i < 2)
+			s->first[i] = x[i];
+		s->varies[i % 2] |= x[i] != s->first[i % 2];
+	}
+	if (before + (double)n < (double)s->par.learn && !s->ended)
+		return SEPARATE_OK;
+	return !s->varies[0]   ? SEPARATE_SILENT_1
+	       : !s->varies[1] ? SEPARATE_SILENT_2
+			       : SEPARATE_OK;
+}

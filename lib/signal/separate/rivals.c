@@ -1,0 +1,71 @@
+/* rivals.c - other explanations of a window that pulses of one sign do not describe */
+#include "num/room.h"
+#include "signal/detect/spikes.h"
+#include "signal/separate/separate_state.h"
+#include <math.h>
+#include <string.h>
+
+/* Hides impulses as well, by s->spikes; 0 if there are none. */
+static int hide_spikes(struct separate *s, long long from, size_t n)
+{
+	size_t found = 0;
+
+	for (int c = 0; c < 2; c++) {
+		const double *y = c ? channel_2(s, from) : channel_1(s, from);
+		const unsigned char *known = s->scene.hidden[c];
+		unsigned char *flags = s->spikes + (size_t)c * n;
+
+		found += spikes_find(y, n, s->cal.duration, flags);
+		for (size_t i = 0; known && i < n; i++)
+			flags[i] |= known[i];
+		s->scene.hidden[c] = flags;
+	}
+	return found > 0;
+}
+
+/* Pulses of a rival per duration of a pulse.  Three parameters of each describe
+ * anything once they are as many as the values of two channels in the band of a pulse,
+ * up to 1.5 / T: two. */
+static const double MOST = 1;
+
+enum separate_status separate_try_rivals(
+	struct separate *s, long long from, size_t n, int cut, struct account *a)
+{
+	enum { IMPULSES, VELOCITIES, SIGNS, BOTH, RIVALS };
+	const struct joint_scene plain = s->scene;
+	enum separate_status status = SEPARATE_OK;
+	int found = 0, most, tried;
+
+	most = (int)fmin(a->m, fmax(MOST * (double)n / s->cal.duration, 1));
+	if (cut && a->m > 2 * most)
+		return SEPARATE_OK; /* a crowd */
+	tried = 2 * most < plain.max_pulses ? 2 * most : plain.max_pulses;
+	if (room_for(&s->spikes, &s->spike_room, 2 * n, sizeof *s->spikes))
+		return SEPARATE_MEMORY;
+	for (int k = 0; k < RIVALS && status == SEPARATE_OK && !found; k++) {
+		struct account rival = { .m = 0 };
+
+		s->scene = plain;
+		s->scene.max_pulses = tried;
+		if (k == VELOCITIES && !separate_is_range_free(s))
+			continue;
+		if (k == VELOCITIES)
+			separate_widen(s);
+		s->scene.signs = k >= SIGNS;
+		if ((k == IMPULSES || k == BOTH) &&
+			(s->cal.whitening.tap || !hide_spikes(s, from, n)))
+			continue;
+		status = separate_fit_window(s, from, n, cut, &rival);
+		found = status == SEPARATE_OK && separate_is_described(&rival) &&
+			rival.m <= most;
+		if (found)
+			*a = rival;
+	}
+	s->scene = plain;
+	if (found) {
+		s->all = joint_delay_covariance(s->joint, s->delay_cov);
+		separate_follow(s, a);
+	}
+	memcpy(s->pulse, a->pulse, sizeof s->pulse);
+	return status;
+}

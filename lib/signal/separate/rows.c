@@ -1,0 +1,218 @@
+/* rows.c - rows and reports of sections that were taken apart, or could not be */
+#include "signal/separate/contrasts.h"
+#include "signal/separate/separate_state.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* What the second component adds to the row of pulse i. */
+static void tell_phase(
+	const struct separate *s, int i, long long from, struct transit *out)
+{
+	const struct quadrature_pulse *p = &s->both[i];
+	double noise = s->cal.noise[0], size = hypot(p->a, p->b);
+	double ca = p->a / size, cb = p->b / size, along[4];
+	double delay_var = p->cov[0][0] - 2 * p->cov[0][1] + p->cov[1][1];
+
+	for (int k = 0; k < 4; k++)
+		along[k] = ca * p->cov[2][k] + cb * p->cov[3][k];
+	out->t1 = (double)from + p->t;
+	out->t2 = out->t1 + (double)s->cal.shift + p->delta;
+	out->t1_se = sqrt(p->cov[0][0]);
+	out->t2_se = sqrt(p->cov[1][1]);
+	out->delay_se = sqrt(delay_var);
+	out->amplitude = size * noise;
+	out->amplitude_se = sqrt(ca * along[2] + cb * along[3]) * noise;
+	out->correlation =
+		(along[1] - along[0]) * noise / (out->amplitude_se * out->delay_se);
+	/* of a reversed pulse, the opposite of the phase of what it was reversed from */
+	out->phase = s->cal.reversed ? atan2(-p->b, -p->a) : atan2(p->b, p->a);
+	out->phase_se = sqrt(cb * cb * p->cov[2][2] - 2 * ca * cb * p->cov[2][3] +
+				ca * ca * p->cov[3][3]) /
+			size;
+}
+
+static int emit_pulse(struct separate *s, const struct joint_pulse *p, long long from,
+	int sources, double chi2, enum separate_verdict verdict)
+{
+	struct entry *entry = separate_queue_entry(s);
+	struct transit *out;
+	double delay_var = joint_delay_variance(p), noise = s->cal.noise[0];
+
+	if (!entry)
+		return 0;
+	out = &entry->row;
+	out->section = s->number;
+	out->sources = sources;
+	out->t1 = (double)from + p->t;
+	out->t2 = out->t1 + (double)s->cal.shift + p->delta;
+	out->amplitude = p->a * noise;
+	out->t1_se = sqrt(p->cov[0]);
+	out->t2_se = sqrt(p->cov[2]);
+	out->delay_se = sqrt(delay_var);
+	out->amplitude_se = sqrt(p->cov[5]) * noise;
+	out->correlation = (p->cov[4] - p->cov[3]) / sqrt(delay_var * p->cov[5]);
+	out->phase = out->phase_se = NAN;
+	if (s->with_both)
+		tell_phase(s, (int)(p - s->pulse), from, out);
+	out->chi2 = chi2;
+	out->verdict = verdict;
+	entry->evidence = (struct evidence){ .group = s->group,
+		.fits = verdict != SEPARATE_MISFIT,
+		.delay = p->delta,
+		.var = isinf(s->cal.transit) || !isfinite(delay_var) ? 0 : delay_var,
+		.amplitude = p->a };
+	s->counters.rows++;
+	s->counters.negative += p->a < 0;
+	return 1;
+}
+
+/* The larger pulse nearest to pulse i that overlaps it, or -1. */
+static int larger_neighbour(const struct separate *s, int m, int i)
+{
+	const struct joint_pulse *p = s->pulse;
+	double nearest = 2 * s->cal.duration;
+	int found = -1;
+
+	for (int k = 0; k < m; k++)
+		if (fabs(p[k].a) > fabs(p[i].a) && fabs(p[k].t - p[i].t) < nearest) {
+			nearest = fabs(p[k].t - p[i].t);
+			found = k;
+		}
+	return found;
+}
+
+/* What the last m rows, of one fit, tell of each other. */
+static enum num_status compare_pulses(struct separate *s, int m)
+{
+	double delay[JOINT_PULSES_MAX], square[JOINT_PULSES_MAX], var[JOINT_PULSES_MAX];
+	const double *cov = s->delay_cov;
+	struct entry *entry = s->queue + s->count - m;
+	const struct joint_pulse *p = s->pulse;
+	int all = s->all;
+
+	for (int i = 0; i < m && all >= m && !isinf(s->cal.transit); i++) {
+		struct evidence *e = &entry[i].evidence;
+		int k = larger_neighbour(s, m, i);
+
+		if (k < 0)
+			continue;
+		e->partner = k - i;
+		e->apart = p[i].delta - p[k].delta;
+		e->apart_var = cov[i * all + i] + cov[k * all + k] - 2 * cov[i * all + k];
+		e->place = (p[i].t - p[k].t) / s->cal.duration;
+		e->height = fabs(p[i].a / p[k].a);
+	}
+	if (m < 2 || all < m || isinf(s->cal.transit))
+		return NUM_OK;
+	for (int i = 0; i < m; i++)
+		delay[i] = p[i].delta;
+	if (contrasts_of(m, delay, cov, all, square, var) != NUM_OK)
+		return NUM_MEMORY;
+	for (int i = 0; i + 1 < m; i++) {
+		entry[i].evidence.contrast2 = square[i];
+		entry[i].evidence.contrast_var = var[i];
+	}
+	return NUM_OK;
+}
+
+int separate_report_section(struct separate *s, long long from, long long to, int sources,
+	double chi2, enum separate_verdict verdict, const double *source)
+{
+	struct separate_section out = { .number = s->number,
+		.begin = from,
+		.end = to,
+		.sources = sources,
+		.chi2 = chi2,
+		.verdict = verdict,
+		.source = source,
+		.masks = s->masks };
+
+	if (s->par.on_section)
+		s->par.on_section(s->par.context, &out);
+	return 1;
+}
+
+int separate_reserve_sources(struct separate *s, size_t count)
+{
+	free(s->source);
+	s->source = calloc(count ? count : 1, sizeof *s->source);
+	return s->source != NULL;
+}
+
+/* Each fitted pulse alone, as sensor 1 would see it. */
+static int draw_pulses(struct separate *s, int m, size_t n)
+{
+	if (!separate_reserve_sources(s, (size_t)m * n))
+		return 0;
+	for (int i = 0; i < m; i++) {
+		double *x = s->source + (size_t)i * n;
+
+		joint_add(&s->scene, &s->pulse[i], 1, x, NULL, n);
+		for (size_t k = 0; k < n; k++)
+			x[k] *= s->cal.noise[0];
+	}
+	return 1;
+}
+
+enum separate_status separate_dense_section(
+	struct separate *s, long long from, long long to)
+{
+	struct entry *entry = separate_queue_entry(s);
+	struct transit *p;
+	struct separate_section out = { .number = s->number,
+		.begin = from,
+		.end = to,
+		.chi2 = NAN,
+		.verdict = SEPARATE_UNRESOLVED };
+	double noise = s->cal.noise[0], length = (double)(to - from);
+	struct campbell c;
+
+	if (!entry)
+		return SEPARATE_MEMORY;
+	p = &entry->row;
+	campbell_estimate(channel_1(s, from), channel_2(s, from), (size_t)(to - from),
+		s->cal.shape, s->cal.duration, s->scene.gain, &c);
+	campbell_scale(&c, noise);
+	p->section = s->number;
+	p->sources =
+		isnan(c.rate) || c.rate * length > 1e9 ? 0 : (int)(c.rate * length + 0.5);
+	if (s->strange && p->sources < 1)
+		p->sources = 1;
+	p->t1 = (double)from + length / 2;
+	p->t2 = p->t1 + (double)s->cal.shift;
+	p->amplitude = c.amplitude;
+	p->amplitude_se = c.amplitude_se;
+	p->t1_se = p->t2_se = length / sqrt(12);
+	p->delay_se = p->correlation = p->chi2 = p->phase = p->phase_se = NAN;
+	p->verdict = SEPARATE_UNRESOLVED;
+	s->counters.unresolved++;
+	s->counters.dense += length;
+	entry->evidence.group = ++s->group;
+	entry->evidence.fits = !s->strange;
+	s->strange = 0;
+	out.sources = p->sources;
+	out.dense = &c;
+	return separate_queue_report(s, &out, 1) ? SEPARATE_OK : SEPARATE_MEMORY;
+}
+
+enum separate_status separate_give_pulses(struct separate *s, long long from,
+	long long to, int m, int done, const struct goodness *j)
+{
+	struct separate_section out = { .number = s->number,
+		.begin = from,
+		.end = to,
+		.sources = done,
+		.chi2 = j->chi2,
+		.verdict = j->stretch };
+
+	s->group++;
+	for (int i = 0; i < done; i++)
+		if (!emit_pulse(s, &s->pulse[i], from, m, j->chi2, j->pulse[i]))
+			return SEPARATE_MEMORY;
+	if (compare_pulses(s, done) != NUM_OK)
+		return SEPARATE_MEMORY;
+	if (s->par.want_sources && !draw_pulses(s, done, (size_t)(to - from)))
+		return SEPARATE_MEMORY;
+	return separate_queue_report(s, &out, (size_t)done) ? SEPARATE_OK
+							    : SEPARATE_MEMORY;
+}

@@ -1,0 +1,66 @@
+/* window.c - one window of a section: the joint fit of its pulses, and how good it is
+ */
+#include "signal/separate/separate_state.h"
+#include <math.h>
+#include <string.h>
+
+/* Where to cut a window of n samples: the widest gap between arrivals in its later
+ * half that leaves room for the pulses behind it. */
+static double choose_cut(const struct separate *s, int m, size_t n)
+{
+	double lo = 0.4 * (double)n, widest = -1, cut = 0;
+	double hi = (double)n - 2.2 * shape_reach(s->cal.shape) * s->cal.duration;
+
+	for (int i = 0; i <= m; i++) {
+		double from = i ? s->pulse[i - 1].t : 0,
+		       to = i < m ? s->pulse[i].t : (double)n;
+
+		if (from < lo)
+			from = lo;
+		if (to > hi)
+			to = hi;
+		if (to - from > widest) {
+			widest = to - from;
+			cut = (from + to) / 2;
+		}
+	}
+	return cut;
+}
+
+void separate_hide(struct separate *s, long long from, size_t n)
+{
+	for (int c = 0; c < 2; c++) {
+		const struct tape *t = &s->tape[c];
+		const unsigned char *flags =
+			t->hidden + (from + (c ? s->cal.shift : 0) - t->begin);
+
+		s->scene.hidden[c] =
+			!s->cal.whitening.tap && memchr(flags, 1, n) ? flags : NULL;
+	}
+}
+
+enum separate_status separate_fit_window(
+	struct separate *s, long long from, size_t n, int cut, struct account *a)
+{
+	enum joint_status status = joint_fit(s->joint, &s->scene, channel_1(s, from),
+		channel_2(s, from), n, a->pulse, &a->m, &a->r);
+
+	if (status != JOINT_OK)
+		return status == JOINT_MEMORY ? SEPARATE_MEMORY : SEPARATE_WIDE;
+	s->counters.fits++;
+	s->counters.steps += (double)a->r.steps;
+	s->counters.searches += (double)a->r.searches;
+	memcpy(s->pulse, a->pulse, sizeof s->pulse);
+	a->boundary = cut ? choose_cut(s, a->m, n) : INFINITY;
+	a->done = 0;
+	while (a->done < a->m && a->pulse[a->done].t < a->boundary)
+		a->done++;
+	goodness_of_fit(s->joint, &s->scene, n, a->pulse, a->m, a->done, a->boundary,
+		s->cal.chi2 < 4 || s->cal.dense, &a->r, &a->goodness);
+	return SEPARATE_OK;
+}
+
+int separate_is_described(const struct account *a)
+{
+	return a->goodness.stretch < SEPARATE_MISFIT;
+}
