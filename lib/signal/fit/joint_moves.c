@@ -44,12 +44,18 @@ static void restore(struct joint *j, const struct joint_scene *s,
 		joint_subtract(j, s, &pulses[k], 1);
 }
 
+/* By how much chi-square must fall for a pulse next to others of some energy. */
+static double drop_beside(const struct joint_scene *s, double energy)
+{
+	return fmax(s->drop_near, s->misfit * energy);
+}
+
 /* Is pulse i, the last one put in, worth a drop of chi-square from before to after? */
 static int worth(const struct joint_scene *s, const struct joint_pulse *pulses, int m,
 	int i, double before, double after)
 {
 	double energy = energy_near(s, pulses, m, i);
-	double need = energy > 0 ? fmax(s->drop_near, s->misfit * energy) : s->drop;
+	double need = energy > 0 ? drop_beside(s, energy) : s->drop;
 
 	return before - after > need;
 }
@@ -116,13 +122,16 @@ int joint_split_pulses(struct joint *j, const struct joint_scene *s,
 
 	joint_project(j);
 	for (int i = 0; i < *m && *m < s->max_pulses; i++) {
-		double gap[2];
+		double gap[2], half = 0.5 * pulses[i].a;
+		double need = drop_beside(
+			s, energy_near(s, pulses, *m, i) + half * half * unit_energy(s));
 
 		if (!joint_factorise(j, s, pulses, &i, 1))
 			continue;
-		joint_pair_start(j, s, &pulses[i], &i, 1);
-		/* Shares that differ may be worth more than the equal ones tried here. */
-		if (2 * joint_pair_best(j, &gap[0], &gap[1]) < 0.3 * s->drop_near)
+		joint_pair_start(j, s, pulses, i, &i, 1);
+		/* A fit with shares and gaps of their own was worth up to 1.6 times as
+		 * much as that of the table. */
+		if (2 * joint_pair_best(j, &gap[0], &gap[1]) < 0.5 * need)
 			continue;
 		for (int side = 0, done = 0; side < 2 && !done; side++) {
 			double apart[2] = { gap[0] * s->duration,

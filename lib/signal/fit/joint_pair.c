@@ -18,26 +18,28 @@ static double knot(int k)
 }
 
 /* What two equal pulses a gap apart put on channel c beside one at their middle, in x of
- * j->support samples; the first of them, and how many in *n. */
+ * j->support samples; the first of them, and how many in *n.  The one is the third of its
+ * columns. */
 static long make_excess(const struct joint *j, const struct joint_scene *s,
-	const struct joint_pulse *p, int c, double gap, double *x, size_t *n)
+	const struct joint_pulse *p, const struct column *one, int c, double gap,
+	double *x, size_t *n)
 {
 	double T = pulse_duration(s, p->delta), t0 = p->t + (c ? p->delta : 0);
 	double half = 0.5 * p->a * (c ? s->gain : 1), *part = j->scratch;
 	long from = shape_support(s->shape, t0 - gap / 2, T, n), to;
 
 	to = from + (long)*n + (long)gap + 1;
+	from = from < one->first ? from : one->first;
 	from = from < 0 ? 0 : from;
 	to = to > (long)j->n ? (long)j->n : to;
 	to = to - from > (long)j->support ? from + (long)j->support : to;
 	*n = to > from ? (size_t)(to - from) : 0;
 	shape_sample(s->shape, t0 - gap / 2, T, from, *n, x, NULL, NULL);
 	shape_sample(s->shape, t0 + gap / 2, T, from, *n, part, NULL, NULL);
-	add_scaled(x, 1, part, *n);
-	shape_sample(s->shape, t0, T, from, *n, part, NULL, NULL);
-	add_scaled(x, -2, part, *n);
 	for (size_t k = 0; k < *n; k++)
-		x[k] *= half;
+		x[k] = half * (x[k] + part[k]);
+	for (size_t k = 0; k < one->n && one->first - from + (long)k < (long)*n; k++)
+		x[one->first - from + (long)k] -= p->a * one->d[2][k];
 	joint_hide(j, c, from, *n, x);
 	return from;
 }
@@ -56,7 +58,7 @@ static double common(const double *x, long x_first, size_t nx, const double *y,
 }
 
 void joint_pair_start(struct joint *j, const struct joint_scene *s,
-	const struct joint_pulse *p, const int *set, int m)
+	const struct joint_pulse *pulses, int i, const int *set, int m)
 {
 	struct pair_table *t = &j->pair;
 	double seen[PAIR_KNOTS][NPAR];
@@ -68,13 +70,17 @@ void joint_pair_start(struct joint *j, const struct joint_scene *s,
 		int c = a / PAIR_GAPS, k = a % PAIR_GAPS;
 		double *x = j->excess + (size_t)a * j->support;
 
-		first[a] = make_excess(j, s, p, c, knot(k) * s->duration, x, &n[a]);
+		first[a] = 0;
+		n[a] = 0;
+		if (k > 0)
+			first[a] = make_excess(j, s, &pulses[i], &j->col[i][c], c,
+				knot(k) * s->duration, x, &n[a]);
 		t->along[a] = dot(x, j->r[c] + first[a], n[a]);
-		for (int i = 0; i < PAR * m; i++) {
-			const struct column *col = &j->col[set[i / PAR]][c];
+		for (int u = 0; u < PAR * m; u++) {
+			const struct column *col = &j->col[set[u / PAR]][c];
 
-			seen[a][i] = common(
-				col->d[i % PAR], col->first, col->n, x, first[a], n[a]);
+			seen[a][u] = common(
+				col->d[u % PAR], col->first, col->n, x, first[a], n[a]);
 		}
 		joint_reduce(j, PAR * m, seen[a]);
 		for (int b = 0; b <= a; b++) {
@@ -158,7 +164,7 @@ int joint_pair_odds(struct joint *j, const struct joint_scene *s,
 		return 0;
 	for (int k = 0; k < m; k++)
 		set[k] = k;
-	joint_pair_start(j, s, &pulses[i], set, m);
+	joint_pair_start(j, s, pulses, i, set, m);
 	for (int w = 0; w < JOINT_SHARES; w++) {
 		double share = joint_share(w), narrow = 2 * sqrt(share * (1 - share));
 
@@ -178,7 +184,6 @@ int joint_pair_odds(struct joint *j, const struct joint_scene *s,
 				odds[w] += density * width * exp(fmin(ratio, 50));
 			}
 		}
-		odds[w] *= s->duration;
 	}
 	return 1;
 }

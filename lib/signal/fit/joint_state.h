@@ -138,9 +138,9 @@ int joint_factorise(struct joint *j, const struct joint_scene *s,
 
 /* joint_pair.c */
 
-/* Makes the table of pulse p; the factor is that of the m pulses in set. */
+/* Makes the table of pulse i, one of the m in set, whose factor was made. */
 void joint_pair_start(struct joint *j, const struct joint_scene *s,
-	const struct joint_pulse *p, const int *set, int m);
+	const struct joint_pulse *pulses, int i, const int *set, int m);
 /* Logarithm of the likelihood ratio of two equal pulses, by their gaps in durations. */
 double joint_pair_ratio(const struct joint *j, double gap1, double gap2);
 /* Largest of it among the gaps of the table; 0: one pulse is most likely. */

@@ -3,6 +3,7 @@
 #include "signal/separate/separate_state.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* What the second component adds to the row of pulse i. */
 static void tell_phase(
@@ -61,6 +62,11 @@ static int emit_pulse(struct separate *s, const struct joint_pulse *p, long long
 		.delay = p->delta,
 		.var = isinf(s->cal.transit) || !isfinite(delay_var) ? 0 : delay_var,
 		.amplitude = p->a };
+	entry->arrival = (struct arrival){ .group = s->group,
+		.time = ((double)from + p->t) / s->cal.duration,
+		.amplitude = p->a };
+	memcpy(entry->arrival.odds, s->pair_odds[p - s->pulse],
+		sizeof entry->arrival.odds);
 	s->counters.rows++;
 	s->counters.negative += p->a < 0;
 	return 1;

@@ -60,6 +60,20 @@ enum separate_status separate_fit_window(
 	return SEPARATE_OK;
 }
 
+void separate_keep_fit(struct separate *s, const struct account *a)
+{
+	/* The range is twice as wide as that of the delays seen, and two that are spread
+	 * evenly over a range differ by 1 / sqrt 6 of it in root mean square. */
+	double scatter = 0.5 * (s->scene.delta_max - s->scene.delta_min) / sqrt(6);
+
+	s->all = joint_delay_covariance(s->joint, s->delay_cov);
+	for (int i = 0; i < a->m; i++)
+		if (s->par.quadrature || isinf(s->cal.transit) ||
+			!joint_pair_odds(s->joint, &s->scene, a->pulse, i, scatter,
+				s->pair_odds[i]))
+			memset(s->pair_odds[i], 0, sizeof s->pair_odds[i]);
+}
+
 int separate_is_described(const struct account *a)
 {
 	return a->goodness.stretch < SEPARATE_MISFIT;
