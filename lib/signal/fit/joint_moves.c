@@ -92,10 +92,9 @@ int joint_try_pulse(struct joint *j, const struct joint_scene *s,
 	return accept_more(j, s, pulses, m, i, before, chi2);
 }
 
-/* Tries pulse i as two equal ones by gaps apart, either of which may be the first at
- * sensor 2; 1 if it was worth it, else everything is as before. */
+/* Tries pulse i as two equal ones; 1 if it was worth it, else everything is as before. */
 static int try_split(struct joint *j, const struct joint_scene *s,
-	struct joint_pulse *pulses, int *m, int i, const double gap[2], double *chi2)
+	struct joint_pulse *pulses, int *m, int i, double shift, double *chi2)
 {
 	struct joint_pulse before[JOINT_PULSES_MAX];
 	int pair[2] = { i, *m }, old = *m;
@@ -104,10 +103,8 @@ static int try_split(struct joint *j, const struct joint_scene *s,
 	joint_subtract(j, s, &pulses[i], -1);
 	pulses[old] = pulses[i];
 	pulses[i].a = pulses[old].a = pulses[i].a / 2;
-	pulses[i].t -= gap[0] / 2;
-	pulses[old].t += gap[0] / 2;
-	pulses[i].delta += (gap[0] - gap[1]) / 2;
-	pulses[old].delta -= (gap[0] - gap[1]) / 2;
+	pulses[i].t -= shift;
+	pulses[old].t += shift;
 	joint_subtract(j, s, &pulses[i], 1);
 	joint_subtract(j, s, &pulses[old], 1);
 	++*m;
@@ -122,7 +119,7 @@ int joint_split_pulses(struct joint *j, const struct joint_scene *s,
 
 	joint_project(j);
 	for (int i = 0; i < *m && *m < s->max_pulses; i++) {
-		double gap[2], half = 0.5 * pulses[i].a;
+		double gap, half = 0.5 * pulses[i].a;
 		double need = drop_beside(
 			s, energy_near(s, pulses, *m, i) + half * half * unit_energy(s));
 
@@ -131,17 +128,9 @@ int joint_split_pulses(struct joint *j, const struct joint_scene *s,
 		joint_pair_start(j, s, pulses, i, &i, 1);
 		/* A fit with shares and gaps of their own was worth up to 1.6 times as
 		 * much as that of the table. */
-		if (2 * joint_pair_best(j, &gap[0], &gap[1]) < 0.5 * need)
+		if (2 * joint_pair_best(j, &gap) < 0.5 * need)
 			continue;
-		for (int side = 0, done = 0; side < 2 && !done; side++) {
-			double apart[2] = { gap[0] * s->duration,
-				(side ? -1 : 1) * gap[1] * s->duration };
-
-			if (gap[0] == 0 && side)
-				break;
-			done = try_split(j, s, pulses, m, i, apart, chi2);
-			split += done;
-		}
+		split += try_split(j, s, pulses, m, i, gap * s->duration / 2, chi2);
 		joint_project(j);
 	}
 	return split;

@@ -130,24 +130,20 @@ double joint_pair_ratio(const struct joint *j, double gap1, double gap2)
 	return sum;
 }
 
-double joint_pair_best(const struct joint *j, double *gap1, double *gap2)
+double joint_pair_best(const struct joint *j, double *gap)
 {
+	const struct pair_table *t = &j->pair;
 	double best = 0;
 
-	for (int k = 0; k < PAIR_GAPS; k++)
-		for (int l = 0; l < PAIR_GAPS; l++) {
-			int a = k, b = PAIR_GAPS + l;
-			const struct pair_table *t = &j->pair;
-			double ratio = t->along[a] + t->along[b] -
-				       0.5 * (t->gram[a][a] + t->gram[b][b]) -
-				       t->gram[a][b];
+	for (int a = 1, b = PAIR_GAPS + 1; a < PAIR_GAPS; a++, b++) {
+		double ratio = t->along[a] + t->along[b] -
+			       0.5 * (t->gram[a][a] + t->gram[b][b]) - t->gram[a][b];
 
-			if (ratio > best) {
-				best = ratio;
-				*gap1 = knot(k);
-				*gap2 = knot(l);
-			}
+		if (ratio > best) {
+			best = ratio;
+			*gap = knot(a);
 		}
+	}
 	return best;
 }
 

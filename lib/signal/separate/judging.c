@@ -65,7 +65,8 @@ static void give_reports(struct separate *s)
 	s->reports = 0;
 }
 
-/* Doubts those of the n rows not yet judged that may be two particles. */
+/* Doubts those of the n rows not yet judged that may be two particles.  Rows doubted
+ * already tell how often one pulse follows another as well. */
 static enum separate_status judge_pairs(struct separate *s, size_t n)
 {
 	struct entry *q = s->queue + s->judged;
@@ -75,13 +76,15 @@ static enum separate_status judge_pairs(struct separate *s, size_t n)
 	if (!a)
 		return SEPARATE_MEMORY;
 	for (size_t i = 0; i < n; i++)
-		if (q[i].arrival.group && q[i].row.verdict < SEPARATE_MISFIT)
-			a[m++] = q[i].arrival;
+		if (q[i].arrival.group) {
+			a[m] = q[i].arrival;
+			a[m++].doubted = q[i].row.verdict >= SEPARATE_MISFIT;
+		}
 	together_judge(s->together, a, m);
 	m = 0;
 	for (size_t i = 0; i < n; i++)
-		if (q[i].arrival.group && q[i].row.verdict < SEPARATE_MISFIT &&
-			a[m++].doubted) {
+		if (q[i].arrival.group && a[m++].doubted &&
+			q[i].row.verdict < SEPARATE_MISFIT) {
 			q[i].row.verdict = SEPARATE_MISFIT;
 			s->counters.together++;
 		}

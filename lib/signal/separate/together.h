@@ -19,7 +19,9 @@ struct arrival {
 	double time; /* in durations, ascending within a group */
 	double amplitude;
 	double odds[JOINT_SHARES]; /* for one other arrival per duration */
-	int doubted;               /* set by together_judge() */
+	double pair;               /* probability of being one; set by together_judge() */
+	int doubted; /* already, and then its size does not count; or by together_judge()
+		      */
 };
 
 struct together;
