@@ -35,6 +35,16 @@ fails "a state of other options" 1 "state: saved with other options" \
 	aopf --unit unit --threshold 1 --direction up --resume state three.tsv
 fails "a table instead of a state" 1 "no state saved by aopf" \
 	aopf --unit unit --threshold 1 --resume three.tsv three.tsv
+
+# A fleet file may change while its name does not.
+{ printf 'unit\tt\ty\n'; wear 90 92 4 | sed 's/^/old	/'; } >fleet.tsv
+shared() { aopf --unit unit --threshold 1 --direction up --lives-only --fleet fleet.tsv "$@"; }
+shared --save shared.state three.tsv >/dev/null
+ok "a state is resumed with the same fleet" shared --resume shared.state three.tsv
+sed '$s/\t[^\t]*$/\t1.3/' fleet.tsv >other.tsv
+mv other.tsv fleet.tsv
+fails "a state of another fleet" 1 "shared.state: saved with another fleet" \
+	shared --resume shared.state three.tsv
 cp state torn
 printf 'xxxx' | dd of=torn bs=1 seek=3000 conv=notrunc 2>/dev/null
 ok "a truncated state leaves the previous one" \

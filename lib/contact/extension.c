@@ -36,7 +36,7 @@ struct extension {
 	size_t row;             /* doubles in one of them */
 	struct convolve *plane; /* of the coarsest level */
 	double *stiffness;
-	double *gradient, *step, *image; /* there */
+	double *gradient, *step, *image, *ties; /* there */
 
 	/* of the call in progress */
 	int now;
@@ -62,11 +62,12 @@ static enum num_status make_coarsest(struct extension *e)
 	if (!e->plane)
 		return NUM_MEMORY;
 	e->stiffness = convolve_alloc(e->plane);
-	e->gradient = fft_alloc(3 * l->nx * l->ny);
+	e->gradient = fft_alloc(4 * l->nx * l->ny);
 	if (!e->stiffness || !e->gradient)
 		return NUM_MEMORY;
 	e->step = e->gradient + l->nx * l->ny;
 	e->image = e->step + l->nx * l->ny;
+	e->ties = e->image + l->nx * l->ny;
 	return convolve_spectrum(e->plane, e->stiffness, wave_number, &l->par);
 }
 
@@ -342,7 +343,8 @@ static double solve_coarsest(struct extension *e)
 		double w = l->weight[i], own = w > 0 ? l->value[i] / w - mean : 0;
 
 		l->value[i] = own_share(w) * own;
-		e->gradient[i] = tie(width, w) * (l->value[i] - own);
+		e->ties[i] = tie(width, w);
+		e->gradient[i] = e->ties[i] * (l->value[i] - own);
 	}
 	convolve_apply(e->plane, e->stiffness, l->value, e->image);
 	for (size_t i = 0; i < n; i++)
@@ -351,18 +353,17 @@ static double solve_coarsest(struct extension *e)
 		double moment = 0, curvature = 0, slope = 0, length;
 
 		for (size_t i = 0; i < n; i++)
-			moment += e->gradient[i] * e->gradient[i] /
-				  (diagonal + tie(width, l->weight[i]));
+			moment +=
+				e->gradient[i] * e->gradient[i] / (diagonal + e->ties[i]);
 		if (!(moment > 0))
 			break;
 		for (size_t i = 0; i < n; i++)
-			e->step[i] =
-				(k ? moment / last * e->step[i] : 0) -
-				e->gradient[i] / (diagonal + tie(width, l->weight[i]));
+			e->step[i] = (k ? moment / last * e->step[i] : 0) -
+				     e->gradient[i] / (diagonal + e->ties[i]);
 		last = moment;
 		convolve_apply(e->plane, e->stiffness, e->step, e->image);
 		for (size_t i = 0; i < n; i++) {
-			e->image[i] += tie(width, l->weight[i]) * e->step[i];
+			e->image[i] += e->ties[i] * e->step[i];
 			curvature += e->step[i] * e->image[i];
 			slope += e->step[i] * e->gradient[i];
 		}

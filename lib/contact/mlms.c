@@ -111,7 +111,7 @@ static double missing(const struct mlms *m, const double *table, size_t width,
 	return sum;
 }
 
-/* The corrections of one level; 0, or -1 when out of memory. */
+/* The corrections of one level. */
 static enum num_status make_near(
 	struct mlms *m, struct level *l, kernel_value value, const void *context)
 {

@@ -17,8 +17,9 @@ static int divide_up(int a, int b)
 	return (a + b - 1) / b;
 }
 
-/* Shape, fan and number of weights of one layer; 0 if it is out of range. */
-static int size_layer(struct layer *l, size_t *weights)
+/* Shape, fan and number of weights of one layer; NUM_DOMAIN if it is out
+ * of range. */
+static enum num_status size_layer(struct layer *l, size_t *weights)
 {
 	struct network_layer *p = &l->par;
 	int kernel = p->kind == NETWORK_CONV || p->kind == NETWORK_POOL;
@@ -26,9 +27,9 @@ static int size_layer(struct layer *l, size_t *weights)
 	*weights = 0;
 	if (kernel &&
 		(p->width < 1 || p->height < 1 || p->width > 4096 || p->height > 4096))
-		return 0;
+		return NUM_DOMAIN;
 	if (p->kind != NETWORK_POOL && (p->units < 1 || p->units > 1 << 20))
-		return 0;
+		return NUM_DOMAIN;
 	l->inputs = volume(l->in);
 	switch (p->kind) {
 	case NETWORK_DENSE:
@@ -40,11 +41,11 @@ static int size_layer(struct layer *l, size_t *weights)
 		break;
 	case NETWORK_CONV:
 		if ((double)l->in.channels * p->width * p->height > NETWORK_WEIGHTS_MAX)
-			return 0;
+			return NUM_DOMAIN;
 		if (p->stride == 0)
 			p->stride = 1;
 		if (p->stride < 0 || p->stride > 4096)
-			return 0;
+			return NUM_DOMAIN;
 		l->out = (struct network_shape){ p->units, l->in.height,
 			divide_up(l->in.width, p->stride) };
 		l->fan = l->in.channels * p->width * p->height;
@@ -55,17 +56,17 @@ static int size_layer(struct layer *l, size_t *weights)
 			divide_up(l->in.width, p->width) };
 		break;
 	default:
-		return 0;
+		return NUM_DOMAIN;
 	}
 	if ((double)l->out.channels * l->out.height * l->out.width > 1 << 24)
-		return 0;
+		return NUM_DOMAIN;
 	l->outputs = volume(l->out);
 	if (p->kind == NETWORK_CONV &&
 		(double)l->fan * l->out.height * l->out.width > NETWORK_UNFOLDED_MAX)
-		return 0;
+		return NUM_DOMAIN;
 	if (p->kind != NETWORK_POOL)
 		*weights = ((size_t)l->fan + 1) * (size_t)p->units;
-	return *weights <= NETWORK_WEIGHTS_MAX;
+	return *weights <= NETWORK_WEIGHTS_MAX ? NUM_OK : NUM_DOMAIN;
 }
 
 static enum num_status allocate(struct network *net)
@@ -120,7 +121,8 @@ struct network *network_new(struct network_shape input, const struct network_lay
 
 		l->par = layer[i];
 		l->in = i ? net->layer[i - 1].out : input;
-		if (!size_layer(l, &n) || (net->count += n) > NETWORK_WEIGHTS_MAX ||
+		if (size_layer(l, &n) != NUM_OK ||
+			(net->count += n) > NETWORK_WEIGHTS_MAX ||
 			(double)batch * (l->inputs + l->outputs) > 1 << 28) {
 			errno = EDOM;
 			network_free(net);

@@ -226,18 +226,41 @@ static double *transform_even(size_t mx, size_t my, struct pool *pool,
 	return e.quarter;
 }
 
+/* A kernel from its values at wave numbers or from the quarter that holds them, one
+ * column a job. */
+struct columns {
+	const struct convolve *c;
+	double *kernel;
+	double (*factor)(const void *context, size_t kx, size_t ky);
+	const void *context;
+	const double *quarter;
+};
+
+static void fill_column(void *context, size_t kx, int worker)
+{
+	const struct columns *f = context;
+	const struct convolve *c = f->c;
+	size_t height = kernel_column(c);
+	double *column = f->kernel + kx * height;
+	double scale = 1 / ((double)c->mx * (double)c->my);
+
+	(void)worker;
+	for (size_t ky = 0; ky < height; ky++)
+		column[ky] = scale * (f->quarter ? f->quarter[ky * c->lx + kx]
+						 : f->factor(f->context, kx, ky));
+}
+
 static enum num_status set_kernel(const struct convolve *c, double *kernel,
 	double (*value)(const void *context, size_t ix, size_t iy), const void *context)
 {
-	size_t height = kernel_column(c);
-	double scale = 1 / ((double)c->mx * (double)c->my);
 	double *quarter = transform_even(c->mx, c->my, c->pool, value, context);
+	struct columns columns = { .c = c, .kernel = kernel, .quarter = quarter };
 
-	for (size_t kx = 0; quarter && kx < c->lx; kx++)
-		for (size_t ky = 0; ky < height; ky++)
-			kernel[kx * height + ky] = scale * quarter[ky * c->lx + kx];
+	if (!quarter)
+		return NUM_MEMORY;
+	pool_run(c->pool, c->lx, fill_column, &columns);
 	fft_free(quarter);
-	return quarter ? NUM_OK : NUM_MEMORY;
+	return NUM_OK;
 }
 
 /* An even kernel of one period, at any offset. */
@@ -296,15 +319,14 @@ static enum num_status wrapped_spectrum(const struct convolve *c, double *kernel
 enum num_status convolve_spectrum(const struct convolve *c, double *kernel,
 	double (*factor)(const void *context, size_t kx, size_t ky), const void *context)
 {
-	size_t height = kernel_column(c);
-	double scale = 1 / ((double)c->mx * (double)c->my);
+	struct columns columns = {
+		.c = c, .kernel = kernel, .factor = factor, .context = context
+	};
 
 	if (c->wrapped)
 		return wrapped_spectrum(c, kernel, factor, context);
-	for (size_t kx = 0; kx < c->lx; kx++)
-		for (size_t ky = 0; ky < height; ky++)
-			kernel[kx * height + ky] = scale * factor(context, kx, ky);
-	return 0;
+	pool_run(c->pool, c->lx, fill_column, &columns);
+	return NUM_OK;
 }
 
 /* A complex number as two lanes. */

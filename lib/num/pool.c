@@ -1,7 +1,15 @@
 #include "num/pool.h"
 #include <errno.h>
 #include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
+#include <stdint.h>
 #include <stdlib.h>
+
+/* How often a thread that waits asks again before it sleeps; in between it lets other
+ * threads run.  A contact of 256 x 256 cells, with two threads, takes 48 ms where each
+ * job is taken under a lock, and 43, 39, 37 and 37 ms with 0, 20, 100 and 500. */
+enum { PATIENCE = 100 };
 
 struct worker {
 	struct pool *pool;
@@ -12,46 +20,82 @@ struct worker {
 struct pool {
 	int threads;            /* the caller's included */
 	struct worker *workers; /* threads - 1 of them */
-	pthread_mutex_t lock;
-	pthread_cond_t start, finish;
-	unsigned long round; /* counts calls of pool_run() */
-	int running, quit;
+
+	/* The number of the call of pool_run() times 2^32, plus the jobs that nobody has
+	 * taken.  In one word, so that a thread that comes late takes no job of a later
+	 * call for one of its own. */
+	_Atomic uint64_t ticket;
+	_Atomic size_t unfinished; /* jobs */
+	atomic_int quit;
 	void (*job)(void *context, size_t i, int worker);
 	void *context;
-	size_t njobs, next;
+	size_t njobs;
+
+	/* for those that sleep */
+	pthread_mutex_t lock;
+	pthread_cond_t start, finish;
+	int sleepers;
 };
 
-/* Takes jobs until none is left; the lock is held on entry and exit. */
-static void work(struct pool *p, int number)
+static uint32_t round_of(uint64_t ticket)
 {
-	while (p->next < p->njobs) {
-		size_t i = p->next++;
+	return (uint32_t)(ticket >> 32);
+}
 
-		pthread_mutex_unlock(&p->lock);
-		p->job(p->context, i, number);
-		pthread_mutex_lock(&p->lock);
+/* Takes jobs of this round until none is left.  What the round works on is read only with
+ * a job in hand, which keeps pool_run() from returning.  Returns 1 if the last job of all
+ * ended here. */
+static int work(struct pool *p, uint32_t round, int number)
+{
+	uint64_t ticket = atomic_load(&p->ticket);
+	size_t done = 0;
+
+	while (round_of(ticket) == round && (uint32_t)ticket > 0) {
+		if (!atomic_compare_exchange_weak(&p->ticket, &ticket, ticket - 1))
+			continue;
+		p->job(p->context, p->njobs - (uint32_t)ticket, number);
+		done++;
+		ticket = atomic_load(&p->ticket);
 	}
+	return done > 0 && atomic_fetch_sub(&p->unfinished, done) == done;
+}
+
+static int is_called(struct pool *p, uint32_t seen)
+{
+	return round_of(atomic_load(&p->ticket)) != seen || atomic_load(&p->quit);
+}
+
+static int is_finished(struct pool *p)
+{
+	return atomic_load(&p->unfinished) == 0;
 }
 
 static void *serve(void *argument)
 {
 	struct worker *w = argument;
 	struct pool *p = w->pool;
-	unsigned long seen = 0;
+	uint32_t seen = 0;
 
-	pthread_mutex_lock(&p->lock);
 	for (;;) {
-		while (p->round == seen && !p->quit)
-			pthread_cond_wait(&p->start, &p->lock);
-		if (p->quit)
-			break;
-		seen = p->round;
-		work(p, w->number);
-		if (--p->running == 0)
+		for (int k = 0; k < PATIENCE && !is_called(p, seen); k++)
+			sched_yield();
+		if (!is_called(p, seen)) {
+			pthread_mutex_lock(&p->lock);
+			p->sleepers++;
+			while (!is_called(p, seen))
+				pthread_cond_wait(&p->start, &p->lock);
+			p->sleepers--;
+			pthread_mutex_unlock(&p->lock);
+		}
+		if (atomic_load(&p->quit))
+			return NULL;
+		seen = round_of(atomic_load(&p->ticket));
+		if (work(p, seen, w->number)) {
+			pthread_mutex_lock(&p->lock);
 			pthread_cond_signal(&p->finish);
+			pthread_mutex_unlock(&p->lock);
+		}
 	}
-	pthread_mutex_unlock(&p->lock);
-	return NULL;
 }
 
 struct pool *pool_new(int threads)
@@ -90,7 +134,7 @@ void pool_free(struct pool *p)
 	if (!p)
 		return;
 	pthread_mutex_lock(&p->lock);
-	p->quit = 1;
+	atomic_store(&p->quit, 1);
 	pthread_cond_broadcast(&p->start);
 	pthread_mutex_unlock(&p->lock);
 	for (int i = 1; i < p->threads; i++)
@@ -110,21 +154,31 @@ int pool_threads(const struct pool *p)
 void pool_run(struct pool *p, size_t njobs,
 	void (*job)(void *context, size_t i, int worker), void *context)
 {
+	uint32_t round;
+
 	if (pool_threads(p) == 1 || njobs < 2) {
 		for (size_t i = 0; i < njobs; i++)
 			job(context, i, 0);
 		return;
 	}
-	pthread_mutex_lock(&p->lock);
+	round = round_of(atomic_load(&p->ticket)) + 1;
 	p->job = job;
 	p->context = context;
 	p->njobs = njobs;
-	p->next = 0;
-	p->running = p->threads - 1;
-	p->round++;
-	pthread_cond_broadcast(&p->start);
-	work(p, 0);
-	while (p->running > 0)
+	atomic_store(&p->unfinished, njobs);
+	pthread_mutex_lock(&p->lock);
+	atomic_store(&p->ticket, (uint64_t)round << 32 | (uint32_t)njobs);
+	if (p->sleepers > 0)
+		pthread_cond_broadcast(&p->start);
+	pthread_mutex_unlock(&p->lock);
+	if (work(p, round, 0))
+		return;
+	for (int k = 0; k < PATIENCE && !is_finished(p); k++)
+		sched_yield();
+	if (is_finished(p))
+		return;
+	pthread_mutex_lock(&p->lock);
+	while (!is_finished(p))
 		pthread_cond_wait(&p->finish, &p->lock);
 	pthread_mutex_unlock(&p->lock);
 }

@@ -16,8 +16,9 @@ struct pool *pool_new(int threads);
 void pool_free(struct pool *pool);
 int pool_threads(const struct pool *pool); /* 1 for NULL */
 
-/* Calls job(context, i, worker) for i in [0, njobs), in any order, and returns when
- * all are done.  worker in [0, threads) picks scratch memory.  pool NULL: in place. */
+/* Calls job(context, i, worker) for i in [0, njobs), njobs < 2^32, in any order, and
+ * returns when all are done.  worker in [0, threads) picks scratch memory.  pool NULL: in
+ * place. */
 void pool_run(struct pool *pool, size_t njobs,
 	void (*job)(void *context, size_t i, int worker), void *context);
 

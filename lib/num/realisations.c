@@ -51,17 +51,17 @@ static int compare_cells(const void *a, const void *b)
 	return (x->part > y->part) - (x->part < y->part);
 }
 
-/* Appends a range to list, as part of the last one where they touch; 0 if they overlap.
- */
-static int append(struct range *list, size_t *n, struct range next)
+/* Appends a range to list, as part of the last one where they touch; AGAIN if they
+ * overlap. */
+static enum realisations_status append(struct range *list, size_t *n, struct range next)
 {
 	if (*n && next.first <= list[*n - 1].last)
-		return 0;
+		return REALISATIONS_AGAIN;
 	if (*n && next.first == list[*n - 1].last + 1)
 		list[*n - 1].last = next.last;
 	else
 		list[(*n)++] = next;
-	return 1;
+	return REALISATIONS_OK;
 }
 
 /* Notes the realisations of the first count cells, which are sorted. */
@@ -80,7 +80,7 @@ static enum realisations_status note_done(struct realisations *r, size_t count)
 		int old = k == count || (i < r->ndone && r->done[i].first <= number);
 		struct range next = old ? r->done[i] : (struct range){ number, number };
 
-		if (!append(merged, &n, next)) {
+		if (append(merged, &n, next) != REALISATIONS_OK) {
 			r->culprit = next.first;
 			free(merged);
 			return REALISATIONS_AGAIN;

@@ -11,6 +11,7 @@
 #include "life/trend/passage.h"
 #include "life/trend/predict.h"
 #include "life/trend/runin.h"
+#include "num/checksum.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -178,6 +179,20 @@ static void read_fleet(const struct series *like, const char *unit_column)
 	stats_set("fleet_units_carried_on", carried_on);
 	stats_set("fleet_units_left_out", series_units(in) - n);
 	series_close(in);
+}
+
+uint64_t outlook_fleet(void)
+{
+	const struct bank_shape *path;
+	uint64_t sum = CHECKSUM_START;
+	int n = 0;
+
+	path = fleet ? fleet_shapes(fleet, &n) : NULL;
+	for (int i = 0; i < n; i++) {
+		sum = checksum(path[i].age, (size_t)path[i].n * sizeof(double), sum);
+		sum = checksum(path[i].level, (size_t)path[i].n * sizeof(double), sum);
+	}
+	return sum;
 }
 
 static void read_events(const char *unit_column)

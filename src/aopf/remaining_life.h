@@ -16,6 +16,7 @@
 #include "io/series.h"
 #include "life/particle/adaptive.h"
 #include "num/state.h"
+#include <stdint.h>
 
 /* Values of the options. */
 extern struct outlook_options {
@@ -34,6 +35,7 @@ void outlook_check(int bare);
  * any, into its units; the column identifies units, or "unit" if it is NULL. */
 void outlook_open(struct series *in, const char *unit_column);
 void outlook_close(void);
+uint64_t outlook_fleet(void); /* checksum of the paths of the fleet */
 
 /* A row of the input. */
 struct outlook_row {

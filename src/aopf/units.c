@@ -2,6 +2,7 @@
 #include "cli/msg.h"
 #include "cli/stats.h"
 #include "filter_options.h"
+#include "num/checksum.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -38,7 +39,7 @@ struct units {
 /* At the start of the file, and of each slot in it. */
 struct head {
 	char magic[16];
-	uint64_t options, size;
+	uint64_t options, fleet, size;
 };
 
 struct place {
@@ -48,7 +49,7 @@ struct place {
 	double last;
 };
 
-static const char magic[16] = "aopf state 1\n";
+static const char magic[16] = "aopf state 2\n";
 
 struct units *units_new(int bare)
 {
@@ -168,18 +169,6 @@ void unit_step(struct machine *u, const struct outlook_row *in, double *cell)
 
 /* --- on disk ------------------------------------------------------------------------ */
 
-/* FNV-1a */
-static uint64_t checksum(const void *bytes, size_t n, uint64_t sum)
-{
-	const unsigned char *p = bytes;
-
-	for (size_t i = 0; i < n; i++)
-		sum = (sum ^ p[i]) * 0x100000001b3u;
-	return sum;
-}
-
-static const uint64_t BASIS = 0xcbf29ce484222325u;
-
 static void pass(struct machine *u, struct state *s)
 {
 	if (u->filter)
@@ -203,7 +192,8 @@ static size_t state_size(struct units *units)
 static struct head head_of(struct units *units, const char *options)
 {
 	struct head h = { .size = state_size(units),
-		.options = checksum(options, strlen(options), BASIS) };
+		.options = checksum(options, strlen(options), CHECKSUM_START),
+		.fleet = outlook_fleet() };
 
 	memcpy(h.magic, magic, sizeof magic);
 	return h;
@@ -229,8 +219,8 @@ static uint64_t check_of(const struct units *units)
 
 	memcpy(&p, units->place, sizeof p);
 	p.check = 0;
-	return checksum(
-		units->place + sizeof p, units->size, checksum(&p, sizeof p, BASIS));
+	return checksum(units->place + sizeof p, units->size,
+		checksum(&p, sizeof p, CHECKSUM_START));
 }
 
 /* Reads a slot; 1 if it is complete. */
@@ -283,6 +273,9 @@ void units_resume(struct units *units, const char *path, const char *options)
 		die(EXIT_RUN, "%s: no state saved by aopf --save", path);
 	if (h.options != want.options || h.size != want.size)
 		die(EXIT_RUN, "%s: saved with other options, or by another aopf", path);
+	if (h.fleet != want.fleet)
+		die(EXIT_RUN, "%s: saved with another fleet in the file of --fleet",
+			path);
 	make_room(units, (size_t)h.size);
 	while (resume_unit(units, f, units->n))
 		;

@@ -31,7 +31,8 @@ void unit_step(struct machine *u, const struct outlook_row *in, double *cell);
 int unit_cells(int bare);
 int units_alarm(const struct units *units); /* the highest active alarm level */
 
-/* options: those that shape the state; a file made with others is refused. */
+/* options: those that shape the state; a file made with others, or with
+ * another fleet, is refused. */
 void units_resume(struct units *units, const char *path, const char *options);
 void units_keep(struct units *units, const char *path, const char *options);
 /* Writes the state of a unit where units_keep() said. */

@@ -64,11 +64,11 @@ static void describe(struct table_out *t, const struct instrument_place *place,
 void instrument_write(const struct instrument_place *place, const struct instrument *in)
 {
 	struct instrument_value *v;
-	size_t n = instrument_values(in, &v);
+	size_t n;
 	char *fresh = xprintf("%s.new", place->path);
 	struct table_out *t;
 
-	if (!n)
+	if (instrument_values(in, &v, &n) != NUM_OK)
 		die(EXIT_RUN, "no memory");
 	t = table_create(fresh, NULL, "1 1 1", "name index value");
 	table_comment(t, "instrument", "%s", version);

@@ -118,12 +118,12 @@ done
 for l in 1e-6 1e6 1e9; do
 	heights 64 64 "$l * ($rough)"
 	solve --pixel "$(calc "1e-6 * $l")m" --estar 1GPa --pressure 10MPa
-	accurate "all lengths x $l (pixel $(calc "1e-6 * $l") m)" "units alone change" \
+	accurate "all lengths x $l (pixel $(calc "1e-6 * $l") m)" "only the units change" \
 		"$(error "$(key approach)" "$approach * $l")" 1e-11
 done
 heights 64 64 "$rough"
 solve --pixel 1um --estar 1Pa --pressure 0.01Pa
-accurate "all stresses x 1e-9" "units alone change" "$(error "$(key approach)" "$approach")" 1e-11
+accurate "all stresses x 1e-9" "only the units change" "$(error "$(key approach)" "$approach")" 1e-11
 is "lengths and stresses scaled | the same cells in contact | area $(key area) | -" "$(key area)" "$area"
 heights 64 64 "$rough"
 solve --pixel 1pm --estar 100GPa --pressure 100GPa
@@ -149,13 +149,13 @@ done
 # Shapes
 heights 48 48 1e-6
 solve --pixel 1um --estar 100GPa --boundary periodic --pressure 1GPa
-accurate "flat, periodic" "pressure even everywhere" \
+accurate "flat, periodic" "uniform pressure" \
 	"$(values pressure | awk '{ d = $1 / 1e9 - 1; if (d < 0) d = -d; if (d > m) m = d } END { print (NR ? m + 0 : "no rows") }')" 1e-8
 solve --pixel 1um --estar 100GPa --pressure 1GPa
 accurate "flat, free: a punch" "solved, by direct sums; full contact" "$(calc "$(key area) == 1 ? $(residual) : 1")" 1.01e-8
 heights 48 48 '$x < 24 ? 1e-6 : 0'
 solve --pixel 1um --estar 100GPa --pressure 10MPa
-accurate "step edge, light" "the upper half alone" "$(calc "sqrt(($(key area) - 0.5) ^ 2)")" 1e-9
+accurate "step edge, light" "only the upper half in contact" "$(calc "sqrt(($(key area) - 0.5) ^ 2)")" 1e-9
 solve --pixel 1um --estar 100GPa --pressure 10GPa --boundary periodic
 accurate "step edge, pressed in" "solved, by direct sums; all but the foot of the step" \
 	"$(calc "($(key area) > 0.5) * ($(key area) < 1) ? $(residual) : 1")" 1.01e-8

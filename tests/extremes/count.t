@@ -18,10 +18,10 @@ particles() {
 particles 0 1e-6 >none.tsv
 particles 1 100e-6 >one.tsv
 particles 100000 10e-6 >many.tsv
-scene "no particle in a year" "upper end -ln 0.025 a year" 3.68887945 1e-8 "$(cell number_high --duration 365d none.tsv)"
+scene "no particle in a year" "upper limit -ln 0.025 a year" 3.68887945 1e-8 "$(cell number_high --duration 365d none.tsv)"
 scene "no particle" "code 0 of any volume" 0 0 "$(debriscount --output codes --volume 100mL none.tsv --duration 1s |
 	grep -v '^#' | tail -n 1 | cut -f 4 | cut -d / -f 1)"
-scene "one particle" "lower end -ln 0.975" 0.0253178079 1e-9 "$(cell number_low --duration 1h one.tsv)"
+scene "one particle" "lower limit -ln 0.975" 0.0253178079 1e-9 "$(cell number_low --duration 1h one.tsv)"
 scene "100000 particles" "interval near 2 x 1.96 sqrt(n)" 1 2e-3 "$(cell number_high --duration 2d many.tsv >h
 	cell number_low --duration 2d many.tsv >l; paste h l | awk '{ printf "%.6f", ($1 - $2) / (2 * 1.959964 * sqrt(1e5)) }')"
 is "1e6 particles in a millilitre | code 27: to 1.3e6 | 27 | none" "$(
@@ -37,9 +37,9 @@ scene "particles of 1 cm" "their mass" 1 1e-6 "$(cell kg_per_hour --duration 1h 
 particles 3 1e6 >moons.tsv
 refused "particles of 1000 km" 1 'want metres' debriscount --duration 1h moons.tsv
 particles 2 1e-6 >blind.tsv
-scene "particles that are seen in one of 1e6 cases" "each stands for as many" 1 1e-5 "$(
+scene "particles detected with probability 1e-6" "each counts as 1e6" 1 1e-5 "$(
 	cell number --duration 1h --d50 1m --detection-threshold 4.753424 blind.tsv | awk '{ printf "%.6f", $1 / 2e6 }')"
-is "classes below what is seen at all | no upper end | inf | none" \
+is "classes below the detection limit | no upper limit | inf | none" \
 	"$(cell number_high --duration 1h --d50 1mm --detection-threshold 60 --classes 1um one.tsv)" inf
 scene "periods of a nanosecond around one particle" "the rate of that period" 3.6e12 1e4 "$(printf 'time1\tdiameter\n1e-10\t1e-6\n' >now.tsv
 	cell per_hour --period 1e-9s --duration 1e-9s now.tsv)"
@@ -65,7 +65,7 @@ scene "amplitudes of 1e-300 V" "exponent 3" 3 1e-9 "$(awk '$1 == "exponent" { pr
 balls 1 1 1 >same.tsv
 balls 8 8 8 >eight.tsv
 ballcal --balls same.tsv:1m --balls eight.tsv:2m >cal.tsv 2>err
-scene "no scatter at all" "exponent 3, in no doubt" 3 1e-12 "$(awk '$1 == "exponent" { printf "%.15g", $2 }' cal.tsv)"
+scene "no scatter at all" "exponent 3" 3 1e-12 "$(awk '$1 == "exponent" { printf "%.15g", $2 }' cal.tsv)"
 balls 1 0 1 >dead.tsv
 refused "a pulse without amplitude" 1 'amplitude is 0' ballcal --balls dead.tsv:1mm
 done_testing

@@ -55,7 +55,7 @@ bemcontact --load 20N --young 210GPa start.nrrd |
 	debrisgen --yield 355MPa --friction 0.3 --steps 30 --stop-area 1 --surface worn.nrrd --summary steps.tsv >particles.tsv 2>/dev/null
 height() { records --field height "$1" | awk -F '\t' '/^[0-9]/ { m = $11 } END { print m }'; }
 lost=$(awk -v a="$(height start.nrrd)" -v b="$(height worn.nrrd)" 'BEGIN { printf "%.12g", (a - b) * 1e-6 }')
-relative 'thirty wear steps' 'the surface has lost what the particles have' "$lost" 1e-9 \
+relative 'thirty wear steps' 'volume lost by the surface' "$lost" 1e-9 \
 	"$(column volume particles.tsv | awk '{ s += $1 } END { printf "%.12g", s }')"
-relative 'thirty wear steps' 'all of them' 30 0 "$(column step steps.tsv | tail -n 1)"
+relative 'thirty wear steps' '30 steps' 30 0 "$(column step steps.tsv | tail -n 1)"
 done_testing

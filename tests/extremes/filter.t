@@ -41,14 +41,14 @@ for n in 2 20 200 2000 20000; do
 			bpfilter --order "$n" -b 90:110 >out.au
 		frames out.au | tail -1200 | awk '{ s += $1 * $1 } END { printf "%.9f", sqrt(2 * s / NR) }')"
 done
-refused "band upside down" 2 'first edge' bpfilter -b 130:70 in
-refused "band without width" 2 'first edge' bpfilter -b 100:100 in
+refused "band edges in descending order" 2 'first edge' bpfilter -b 130:70 in
+refused "equal band edges" 2 'first edge' bpfilter -b 100:100 in
 repeat 10 0 | au 100 1 >slow.au
 refused "band above half the rate" 1 'above half the rate' bpfilter slow.au
 
 # --- stiff signals
 repeat 5000 0 | au 10000 1 | bpfilter >out.au
-scene "silence" "silence to the last bit" 0 0 "$(frames out.au | awk '$1 != 0' | wc -l)"
+scene "silence" "exactly 0" 0 0 "$(frames out.au | awk '$1 != 0' | wc -l)"
 repeat 5000 1e6 | au 10000 1 | bpfilter >out.au
 dc=$(bpfilter --response --grid 2 | awk -F '\t' '$1 == 0 { printf "%.12g", $2 * 1e6 }')
 scene "constant of 1 MV" "response at 0 Hz" "$dc" 1e-7 "$(frames out.au | tail -1)"
@@ -59,7 +59,7 @@ want=$(awk 'BEGIN { a = atan2(1 / 3, sqrt(8 / 9)); printf "%.9f", (6 * a + 2 * s
 scene "clipped sine" "its fundamental" "$want" 1e-3 \
 	"$(frames out.au | tail -1000 | awk '{ s += $1 * $1 } END { printf "%.9f", sqrt(2 * s / NR) }')"
 awk 'BEGIN { for (i = 0; i < 3000; i++) print sin(i / 9), 0 }' | au 10000 2 | bpfilter >out.au
-scene "one channel dead" "stays dead" 0 0 "$(frames out.au 2 | awk '$2 != 0' | wc -l)"
+scene "one channel dead" "exactly 0" 0 0 "$(frames out.au 2 | awk '$2 != 0' | wc -l)"
 repeat 3000 tiny | au 10000 1 >tiny.au && bpfilter -b 0:130 tiny.au >low.au
 scene "samples below 1e-308" "no crash, nothing large" 0 1e-300 "$(frames low.au | sort -g | tail -1)"
 scene "samples of 1e280" "gain 1 at 0 Hz" 1 1e-13 "$(repeat 3000 1e280 | au 10000 1 |
@@ -89,7 +89,7 @@ scene "a day at 1 kHz" "all frames" 86400000 0 "$(column frames filter.stats)"
 head -c 24 slow.au | cat - last >end.au
 scene "a particle at the end of a day" "no drift in time" 0.309016994374947 1e-7 \
 	"$(frames end.au 2 | sed -n 5001p | cut -f 1)"
-scene "a particle at the end of a day" "its other side" -0.309016994374947 1e-7 \
+scene "a particle at the end of a day" "its second lobe" -0.309016994374947 1e-7 \
 	"$(frames end.au 2 | sed -n 5002p | cut -f 1)"
 
 # --- the simulator's limits
@@ -124,7 +124,7 @@ scene "line at half the rate" "alternates" 0 1e-9 "$(
 		END { print (NR > 1 ? m + 0 : "no rows") }')"
 refused "a particle that stands still" 2 'slower than' \
 	sensorsim --uniform 1um:1um --number 1 --duration 1 --lag 10s:20s
-refused "as wide as the pipe" 2 'bore' sensorsim --uniform 1cm:1cm --number 1 --duration 1
+refused "a particle as wide as the pipe" 2 'bore' sensorsim --uniform 1cm:1cm --number 1 --duration 1
 refused "more particles than room" 2 'no room' sensorsim --uniform 1um:1um --number 1e9 --gap 1us --duration 1
 
 done_testing

@@ -14,7 +14,7 @@ two="--coils 0,25cm --arrivals 100"
 
 scene "snr of 400 dB" "the error of 40 dB times 1e-18" 1.97393 1e-5 \
 	"$(cell se_velocity $two --snr 400dB | awk '{ print $1 * 1e21 }')"
-scene "snr of -100 dB" "marked: status 3" 3 0 "$(layout $two --snr -100dB >out 2>err; echo $?)"
+scene "snr of -100 dB" "status 3" 3 0 "$(layout $two --snr -100dB >out 2>err; echo $?)"
 scene "1e6 particles per ml" "no pulse stands alone" 0 0 \
 	"$(cell p_alone --coils 0,25cm --snr 40dB --per-ml 1e6)"
 scene "no particles" "every pulse stands alone" 1 0 "$(cell p_alone --coils 0 --snr 40dB --per-ml 0)"
@@ -41,10 +41,10 @@ scene "transit times that differ by 99.9 %" "nothing is paired by its delay alon
 scene "the 1/100 law, almost a plug" "alone as in a plug" 1 2e-3 "$(
 	a=$(cell p_alone $two --snr 40dB --profile turbulent --exponent 100)
 	awk -v a="$a" 'BEGIN { printf "%.6f", a / exp(-2) }')"
-scene "8 coils, the best place" "four at either end" 4 0 "$(
+scene "8 coils, best positions" "four at each end" 4 0 "$(
 	layout --best 8 --extent 1m --least-unique 0 --snr 40dB --arrivals 1 >out
 	column coils out | tr ',' '\n' | grep -c '^1$')"
 refused "a rate of 0.1 Hz" 2 'want 1' layout $two --snr 40dB --rate 0.1Hz
 refused "a coil 2 km away" 2 'beyond 1000 m' layout --coils 0,2000 --snr 40dB --arrivals 1
-refused "a coil nowhere" 2 'want positions' layout --coils 0,nan --snr 40dB --arrivals 1
+refused "a coil position that is not a number" 2 'want positions' layout --coils 0,nan --snr 40dB --arrivals 1
 done_testing

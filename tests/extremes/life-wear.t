@@ -63,7 +63,7 @@ relative "pressures that differ in the last digit" "the mean of both classes" 20
 	"$(last mean $new --wear even.tsv:21000000.000000004Pa --wear zero.tsv:21MPa)"
 refused "two classes of one pressure" 2 'each of several tables requires a pressure' rwl $new --wear even.tsv:1Pa --wear zero.tsv:1Pa
 refused "a class at no pressure beside another" 2 'a pressure above 0' rwl $new --wear even.tsv:0Pa --wear zero.tsv:1Pa
-relative "64 classes" "all wear alike: 100 s" 100 1e-9 "$(last mean $new $(
+relative "64 classes" "all wear at the same rate: 100 s" 100 1e-9 "$(last mean $new $(
 	awk 'BEGIN { for (i = 1; i <= 64; i++) print "--wear even.tsv:" i "MPa" }'))"
 
 # --- states
@@ -80,12 +80,12 @@ for rate in mean last filter; do
 	# a rate that cannot be told from 0 may grow, in one path of a thousand
 	relative "constant state, rate $rate" "no failure" 1 0.002 "$(last p_no_failure --threshold-gap 20um --wear-rate $rate constant.tsv)"
 	relative "falling state, rate $rate" "no failure" 1 0.05 "$(last p_no_failure --threshold-gap 20um --wear-rate $rate falling.tsv)"
-	relative "threshold already passed, rate $rate" "nothing left" 0 0 "$(last q95 --threshold-gap 20um --wear-rate $rate passed.tsv)"
-	exactly "not one value, rate $rate" "no prediction" nan "$(last mean --threshold-gap 20um --wear-rate $rate nothing.tsv)"
+	relative "threshold already passed, rate $rate" "remaining life 0" 0 0 "$(last q95 --threshold-gap 20um --wear-rate $rate passed.tsv)"
+	exactly "no values, rate $rate" "no prediction" nan "$(last mean --threshold-gap 20um --wear-rate $rate nothing.tsv)"
 done
 relative "two points" "9 h" 32400 1e-9 "$(last mean --threshold-gap 20um two.tsv)"
 exactly "two points, filter" "no prediction" nan "$(last mean --threshold-gap 20um --wear-rate filter two.tsv)"
-relative "observations stop" "the last prediction ages: 9 h - 4 h" 18000 1e-9 "$(last mean --threshold-gap 20um gone.tsv)"
+relative "observations stop" "the last prediction less the time since: 9 h - 4 h" 18000 1e-9 "$(last mean --threshold-gap 20um gone.tsv)"
 rwl --threshold-gap 10um --wear-rate filter step.tsv >out 2>err
 exactly "step of 5 um, then 79 points, filter" "0.01 um/h from 7.19 um: 281 h is in the interval of 90 %" yes \
 	"$(echo "$(column q05 out | tail -n 1) $(column q95 out | tail -n 1)" | awk '{ print ($1 < 281 * 3600 && ($2 == "inf" || $2 + 0 > 281 * 3600)) ? "yes" : "no" }')"
@@ -116,7 +116,7 @@ printf 't\tleakage\n0\t1e-300\n1\t2e-300\n2\t3e-300\n' >small.tsv
 relative "leakage 1e-300 m3/s" "gap 1e-98, rate as small: a finite or infinite life" 1 0 \
 	"$(last q50 --threshold-gap 20um small.tsv | awk '{ print ($1 == "inf" || $1 + 0 > 0) }')"
 printf 't\tleakage\n0\t1e300\n' >large.tsv
-relative "leakage 1e300 m3/s" "nothing left" 0 0 "$(last q95 large.tsv)"
+relative "leakage 1e300 m3/s" "remaining life 0" 0 0 "$(last q95 large.tsv)"
 printf 't\tgap\n0\tinf\n' >infinite.tsv
 refused "an infinite gap" 1 'is not a gap' rwl infinite.tsv
 printf 't\tgap\nnan\t1\n' >timeless.tsv
@@ -127,14 +127,14 @@ refused "an empty table of fragments" 1 'empty.tsv' rwl $new --wear empty.tsv
 printf 'realisation\tstep\tvolume\n0\t1000001\t1e-15\n' >far.tsv
 refused "step 1000001" 1 'step must be' rwl $new --wear far.tsv
 printf 'realisation\tstep\tvolume\n4294967295\t1000000\t1e-15\n' >far.tsv
-relative "realisation 4294967295, step 1e6" "as any other" 100 1e-9 "$(last mean $new --wear far.tsv)"
+relative "realisation 4294967295, step 1e6" "100 s as for any other" 100 1e-9 "$(last mean $new --wear far.tsv)"
 printf 'realisation\tstep\tvolume\n0\t1\t1e-15' >cut.tsv
 refused "a table cut off in a number" 1 'truncated' rwl $new --wear cut.tsv
 
 # --- scores
 exactly "end of life before the first observation" "no score" nan \
 	"$(rwl --threshold-gap 20um --eol 1e-9s two.tsv | sed -n 's/^# coverage: //p' | sed 's/^-//')"
-relative "levels 0 and 1" "least and largest path" 1 0 "$(rwl $new --wear three.tsv --levels 0,0.5,1 >out
+relative "levels 0 and 1" "shortest and longest life" 1 0 "$(rwl $new --wear three.tsv --levels 0,0.5,1 >out
 	awk -F '\t' '/^[0-9]/ { print ($3 + 0 > 0 && $3 + 0 < $4 + 0 && $5 + 0 > $4 + 0) }' out)"
 
 # --- size

@@ -73,9 +73,9 @@ accurate "threshold 1e300" "no crossing" "$(last p_no_crossing -y 1e300 s)" 1 0.
 accurate "threshold at twice the life" "100 left" "$(last rul_q50 -y 2.99 s)" 100 0.01
 
 series 100 '1 + 0.001 * t' >s
-accurate "noise 1e-12 of what the model errs" "ess >= 1" \
+accurate "noise 1e-12 times the model error" "ess >= 1" \
 	"$(last ess --sigma-v 1e-15 s | awk '{ print ($1 ~ /^[0-9]/ && $1 + 0 >= 1) }')" 1 0
-accurate "noise 1e12 of the series" "ess of the order of N" "$(last ess --sigma-v 1e12 s)" 300 0.5
+accurate "noise 1e12 times the series" "ess of the order of N" "$(last ess --sigma-v 1e12 s)" 300 0.5
 accurate "one particle" "state near the data" "$(last state --particles 1 s)" 1.099 0.05
 accurate "order 1000 of 100 points" "state" "$(last state --order 1000 s)" 1.099 0.01
 
@@ -90,7 +90,7 @@ for scale in 1e-300 1e-12 1e12 1e300; do
 		101 0.15
 	series 100 "1 + 0.001 * t" "$scale" >s
 	case $scale in *300) continue ;; esac
-	accurate "times of $scale" "state does not mind" "$(last state s)" 1.099 1e-3
+	accurate "times of $scale" "the same state" "$(last state s)" 1.099 1e-3
 	accurate "times of $scale, threshold 1.2" "101 left" \
 		"$(last rul_q50 -y 1.2 s | awk -v s=$scale '{ print $1 / s }')" 101 0.01
 done

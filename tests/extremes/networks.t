@@ -35,7 +35,7 @@ x="--columns 40"
 	scene "two columns" "no better than 1/18, no worse than 1/12" 0.0695 0.02 \
 		"$(delaynet --columns 2 --epochs 20 | error ordered --columns 2)"
 	delaynet $x --count 1 --epochs 3000 --layers 4 >one.net
-	scene "one sample" "learnt by heart" 0 1e-6 \
+	scene "one sample" "reproduced exactly" 0 1e-6 \
 		"$(error ordered $x --first 0 --count 1 <one.net)"
 	# Sorted constants leave 1 / (6 (n + 1)) of sixteen delays.
 	scene "sixteen sources, best order" "sorted constants, 1/102" 0.0098 0.002 \
@@ -49,7 +49,7 @@ x="--columns 40"
 	alike "steps of length 0" "the weights drawn" still.net start.net
 	fifteen="1 1 1 1 1 1 1 1 1 1 1 1 1 1 1"
 	delaynet $x --epochs 1 --layers "$fifteen" >deep.net
-	is "fifteen hidden layers of one unit | sixteen with the last | 16 | 0" \
+	is "fifteen hidden layers of one unit | sixteen layers with the output | 16 | 0" \
 		"$(sed -n 's/^layers//p' deep.net | wc -w)" 16
 	refused "sixteen hidden layers" 2 "at most 15" delaynet $x --layers "$fifteen 1"
 	refused "a kernel of 4096 x 4096" 1 "too large" delaynet $x --layers 200conv4096x4096

@@ -91,7 +91,7 @@ scene "equal delays, 2 ms apart" "sizes to 0.3 %" 0 0.003 "$(score size_rms)"
 put 0.1 1e-4 $v 0.2 9e-5 $v 0.3 1.1e-4 $v 0.4 1e-4 $v 0.4 1e-4 $v 0.6 1e-4 $v
 sensorsim --noise 10mV --gain 0.909 p.tsv >s.au
 duet s.au >found.tsv
-scene "two particles side by side" "5 rows: nothing tells them apart" 5 0 \
+scene "two particles side by side" "5 rows: they cannot be distinguished" 5 0 \
 	"$(column particle found.tsv | wc -l)"
 scene "two particles side by side" "one of twice the volume" 1.259921e-4 2e-7 \
 	"$(column diameter found.tsv | sed -n 4p)"
@@ -156,7 +156,7 @@ scene "100 particles in one section, 8 ms apart" "at least 98" 100 2 "$(score ma
 scene "100 particles in one section, 8 ms apart" "no false particle" 0 2 "$(score false)"
 sensorsim --uniform 80um:120um --number 4000 --duration 2s --snr 40dB --truth truth.tsv >s.au
 duet s.au >found.tsv
-scene "2000 particles a second, 20 at once" "unresolved, none invented" 0 0 "$(score found)"
+scene "2000 particles a second, 20 at once" "unresolved, no false particle" 0 0 "$(score found)"
 
 # --- masks
 particles
@@ -164,7 +164,7 @@ refused "masks of 4 samples" 1 'want a --window of at least half' \
 	duet --method duet --window 4 --hop 1 s.au
 duet --method duet --window 100000 s.au >found.tsv
 scene "masks longer than the record" "all 20 found" 20 0 "$(score matched)"
-scene "masks longer than the record" "none invented" 0 0 "$(score false)"
+scene "masks longer than the record" "no false particle" 0 0 "$(score false)"
 
 # --- long: memory does not grow, time does not drift
 memory() { # SECONDS

@@ -90,7 +90,7 @@ roughgen --measure small.nrrd >t
 sq=$(value sq)
 measure "an L-filter of 1000 km" "Sq stays" sq "$sq" 1e-9 --l-filter 1e6 small.nrrd
 measure "an S-filter of 1000 km around a surface that repeats" "Sq = 0" sq 0 1e-21 --s-filter 1e3 --ends periodic small.nrrd
-measure "an S-filter of 1 fm" "Sq stays to the bit" sq "$sq" 0 --s-filter 1e-15 small.nrrd
+measure "an S-filter of 1 fm" "Sq exactly the same" sq "$sq" 0 --s-filter 1e-15 small.nrrd
 measure "one point filtered" "Sq = 0" sq 0 0 --raw 1x1 --pixel 1um --s-filter 1um --ends 2 zero.f64
 roughgen -n 2000x1 -q 1nm -l 20um >line.nrrd
 measure "a profile of 2000 points, poly6" "Sk of some nm" sk 2.5e-9 0.5 --form poly6 line.nrrd

@@ -10,6 +10,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 /* The three known answers published with Random123 (kat_vectors). */
 static void test_philox(void)
@@ -137,6 +138,31 @@ static void test_pool(int threads)
 	pool_free(pool);
 }
 
+/* Rounds of few jobs one after another, and pauses in which the threads fall asleep: a
+ * thread that wakes late finds another round. */
+static void test_short_rounds(int threads)
+{
+	enum { ROUNDS = 20000, MOST = 5 };
+	const struct timespec pause = { .tv_nsec = 1000000 };
+	struct pool *pool = pool_new(threads);
+	unsigned char marks[2][MOST];
+	int wrong = 0;
+
+	for (int round = 0; round < ROUNDS; round++) {
+		size_t jobs = (size_t)(round % (MOST + 1));
+
+		memset(marks[round % 2], 0, MOST);
+		pool_run(pool, jobs, mark, marks[round % 2]);
+		for (size_t i = 0; i < MOST; i++)
+			wrong += marks[round % 2][i] != (i < jobs);
+		if (round % 500 == 0)
+			nanosleep(&pause, NULL);
+	}
+	ok(wrong == 0, "%d threads: all jobs of a short round are done when it returns",
+		threads);
+	pool_free(pool);
+}
+
 static void test_fft(size_t nx, size_t ny)
 {
 	struct fft *fft = fft_new(nx, ny);
@@ -231,6 +257,8 @@ int main(void)
 	test_pool(0);
 	test_pool(1);
 	test_pool(3);
+	test_short_rounds(2);
+	test_short_rounds(5);
 	test_fft(16, 1);
 	test_fft(15, 7);
 	test_fft(1, 9);

@@ -307,6 +307,13 @@ static int equals(double x, double y, double z)
 	       ((int)x == 7 && (int)y == 2 && (int)z == 0);
 }
 
+/* Three equal cells, one below the other. */
+static int shelf(double x, double y, double z)
+{
+	(void)y;
+	return (int)x == 1 && (int)z % 3 == 0;
+}
+
 static void test_order(void)
 {
 	static const int want[4][2] = { { 6, 1 }, { 7, 2 }, { 1, 4 }, { 5, 4 } };
@@ -319,6 +326,10 @@ static void test_order(void)
 		for (int k = 0; k < 2; k++)
 			bad += p[i].first[k] != want[i][k];
 	ok(bad == 0, "equal particles come in order of their first cells");
+	bad = scan(ps, 3, 1, 9, par.dz, shelf, &p) != 3;
+	for (int i = 0; i < 3 && !bad; i++)
+		bad += p[i].low[2] != 3 * i;
+	ok(bad == 0, "equal particles of one column come in order of their depth");
 	particles_free(ps);
 }
 

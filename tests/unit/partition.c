@@ -166,8 +166,8 @@ static void check_coverage(void)
 			double c = coverage(law, counts[k]);
 
 			ok(c > (law < 9           ? 0.85
-				       : law == 9 ? 0.77
-						  : 0.81) &&
+				       : law == 9 ? 0.81
+						  : 0.84) &&
 					c < 0.97,
 				"%s, %d volumes: 90 %% intervals contain the mean in %.3f of the ensembles",
 				laws[law], counts[k], c);

@@ -186,8 +186,35 @@ static void test_local_doubt(void)
 		good, doubted, elsewhere);
 }
 
+/* A filter that lets nothing through has no inverse; that is no lack of memory. */
+static void test_dead_filter(void)
+{
+	enum { FRAMES = 4096, TAPS = 5 };
+	double filter[TAPS] = { 0 }, *x = malloc(2 * FRAMES * sizeof *x);
+	struct separate_par par = { .method = SEPARATE_FIT, .learn = FRAMES };
+	struct separate *s;
+
+	par.known = (struct calibrate_par){ .lag = TRANSIT,
+		.duration = T,
+		.gain = GAIN,
+		.pulse = PULSE_SINE,
+		.spread = 0.1,
+		.false_alarm = 1e-9,
+		.tones = 0,
+		.filter = filter,
+		.filter_taps = TAPS };
+	s = separate_new(&par);
+	for (size_t i = 0; i < FRAMES; i++)
+		philox_normal2(7, 0, RNG_NOISE, i, x + 2 * i);
+	ok(separate_push(s, x, FRAMES) == SEPARATE_NARROW,
+		"a filter that lets nothing through is said to leave too narrow a band");
+	separate_free(s);
+	free(x);
+}
+
 int main(void)
 {
+	test_dead_filter();
 	test_own_shape();
 	test_pairs();
 	test_local_doubt();

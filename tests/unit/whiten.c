@@ -298,6 +298,8 @@ static void test_colour(void)
 
 int main(void)
 {
+	static const double silence[9];
+	struct whitening w;
 	int quiets;
 
 	test_filter(&(struct fir_band){ 200, 0.007, 0.013, FIR_HAMMING, 0, 1 },
@@ -318,5 +320,7 @@ int main(void)
 			quiets == 0,
 		"a record shorter than a segment gives no spectrum");
 	test_colour();
+	ok(whitening_of_noise(&w, silence, 9, WHITEN_COLOURED) == NUM_DOMAIN,
+		"a noise without power cannot be made white");
 	return tap_done();
 }

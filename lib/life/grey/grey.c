@@ -55,13 +55,15 @@ static double clamp(double x, double limit)
 	return x > limit ? limit : x < -limit ? -limit : x;
 }
 
-/* Growth beyond e^600 is as good as for ever; the clamps keep it finite. */
+/* Exponents are limited to 600: the results stay finite, and such growth is beyond any
+ * threshold. */
 double grey_curve(double level, double rate, double t, double gap)
 {
-	double a = clamp(rate * gap, 600), mean;
+	struct grey_interval i = grey_interval(t, gap);
+	double x = clamp(rate * i.half, 300), mean;
 
-	mean = fabs(a) > GREY_SERIES ? expm1(a) / a : grey_mean_exp(lanes_all(a))[0];
-	return level * mean * lanes_exp(lanes_all(clamp(-rate * t, 600)))[0];
+	mean = fabs(x) > GREY_SERIES ? sinh(x) / x : grey_mean_exp(lanes_all(x))[0];
+	return level * mean * lanes_exp(lanes_all(clamp(-rate * i.middle, 300)))[0];
 }
 
 double grey_forecast(const struct grey *g, double h, double gap)

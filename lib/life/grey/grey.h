@@ -42,46 +42,62 @@ void grey_add(struct grey *g, double x, double gap);
  * for a zero series, and where values over 1e150 (scale them) make squares overflow. */
 double grey_rate(const struct grey *g);
 double grey_level(const struct grey *g);
-/* The textbook's b, with x1 starting at the oldest value. */
+/* Coefficient b of the usual formulation, in which x1 starts at the oldest value. */
 double grey_control(const struct grey *g);
 /* Mean squared residual of the fit; 0 below four points. */
 double grey_residual(const struct grey *g);
-/* Standard error of a, and of c for a given a (they are uncorrelated at that
- * representation: c = mean of x + a (tail - mean of u)). */
+/* Standard error of a, and of c for a given a.  a and c are uncorrelated when c is
+ * written as mean of x + a (tail - mean of u). */
 double grey_rate_error(const struct grey *g);
 double grey_level_error(const struct grey *g);
 
-/* Forecast of the point h steps after the newest, the last gap steps of which are its
- * own interval (h = gap = 1: the next of an even series); finite for finite input. */
+/* Forecast of the point h steps after the newest: the mean over the last gap of these
+ * steps (h = gap = 1: the next point of an evenly spaced series).  Finite for finite
+ * input. */
 double grey_forecast(const struct grey *g, double h, double gap);
 /* The mean of level exp(-rate t) over the gap that ends at t: what grey_forecast() makes
  * of the fitted level and rate at t = span + h. */
 double grey_curve(double level, double rate, double t, double gap);
 
-/* (exp(a) - 1) / a, the mean of exp over [0, a], for |a| <= GREY_SERIES by its series,
- * 1 / 1! + a / 2! + ... (the next term is a^9 / 10!). */
+/* sinh(x) / x for |x| <= GREY_SERIES by its series, 1 + x^2 / 3! + ..., whose first
+ * omitted term is x^10 / 11!. */
 static const double GREY_SERIES = 0.1;
 
-static inline lanes grey_mean_exp(lanes a)
+static inline lanes grey_mean_exp(lanes x)
 {
-	lanes aa = a * a, even, odd;
+	lanes xx = x * x;
 
-	even = 1 +
-	       aa * (1. / 6 + aa * (1. / 120 + aa * (1. / 5040 + aa * (1. / 362880))));
-	odd = 0.5 + aa * (1. / 24 + aa * (1. / 720 + aa * (1. / 40320)));
-	return even + a * odd;
+	return 1 +
+	       xx * (1. / 6 + xx * (1. / 120 + xx * (1. / 5040 + xx * (1. / 362880))));
+}
+
+/* The interval of a curve: the mean of exp(-rate t) over it is exp(-rate middle) times
+ * sinh(x) / x at x = rate half; by series and within exp()'s range up to that rate. */
+struct grey_interval {
+	double half, middle, largest_rate;
+};
+
+static inline struct grey_interval grey_interval(double t, double gap)
+{
+	double half = 0.5 * gap, middle = t - half;
+
+	return (struct grey_interval){ half, middle,
+		fmin(GREY_SERIES / half, 300 / middle) };
 }
 
 /* grey_curve() for two models at a time. */
-static inline lanes grey_curve_lanes(lanes level, lanes rate, double t, double gap)
+static inline lanes grey_curve_lanes(
+	lanes level, lanes rate, const struct grey_interval *i)
 {
-	lanes a = rate * gap, b = -rate * t;
-	lane_mask far = lanes_max(lanes_abs(a) * (600 / GREY_SERIES), lanes_abs(b)) > 600;
+	lane_mask far = lanes_abs(rate) > i->largest_rate;
 
-	if (far[0] | far[1])
+	if (far[0] | far[1]) {
+		double t = i->middle + i->half, gap = 2 * i->half;
+
 		return (lanes){ grey_curve(level[0], rate[0], t, gap),
 			grey_curve(level[1], rate[1], t, gap) };
-	return level * grey_mean_exp(a) * lanes_exp(b);
+	}
+	return level * grey_mean_exp(rate * i->half) * lanes_exp(rate * -i->middle);
 }
 
 #endif

@@ -7,7 +7,7 @@
 
 enum {
 	WINDOW = 256, /* residuals kept */
-	PERIOD = 8    /* rows between two looks at a full window */
+	PERIOD = 8    /* rows between two updates of a full window */
 };
 
 struct noise {
@@ -34,8 +34,8 @@ void noise_pass(struct noise *n, struct state *s)
 	state_move(s, n, sizeof *n);
 }
 
-/* The median says nothing where most residuals vanish, as with rounded values: then the
- * root mean square does. */
+/* Where most residuals are 0, as with rounded values, so is their median; the root mean
+ * square is used instead. */
 static double spread(struct noise *n, int count)
 {
 	double median, sum = 0;

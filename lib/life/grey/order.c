@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TREND = 10 }; /* rows of each of the two means that tell the trend */
+/* rows in each of the two means that are compared to detect a trend */
+enum { TREND = 10 };
 
 struct order {
 	struct order_par par;
@@ -17,9 +18,9 @@ struct order {
 	int ring;         /* its size */
 	double *y, *gap;  /* last observations; gap[k] is that before y[k] */
 	struct grey *fit; /* [largest + 1] of the window that ends at the newest */
-	long *since;      /* row from which an order has been scored without a break */
-	double *error;    /* [window][largest + 1] squared errors of the last rows */
-	double *total;    /* [largest + 1] sums over all rows */
+	long *since;   /* row since which an order has been scored without interruption */
+	double *error; /* [window][largest + 1] squared errors of the last rows */
+	double *total; /* [largest + 1] sums over all rows */
 	unsigned long tried, skipped, changes;
 };
 
@@ -111,8 +112,8 @@ static void score(struct order *o, double y, double gap)
 	}
 }
 
-/* The trend goes on: the mean of the last rows lies farther from the first observation
- * than that of those before, on the same side. */
+/* The trend continues: the mean of the last rows lies farther from the first observation
+ * than the mean of the rows before them, on the same side. */
 static int goes_on(const struct order *o)
 {
 	double recent = 0, before = 0;
@@ -172,7 +173,7 @@ static double criterion(const struct order *o, int p, int rows)
 	if (o->par.rule == ORDER_INSAMPLE)
 		return grey_residual(g);
 	if (o->since[p] > o->rows - rows)
-		return INFINITY; /* not scored over all of them */
+		return INFINITY; /* not scored over all of these rows */
 	if (o->par.rule == ORDER_ALL && o->since[p] <= o->par.largest)
 		return o->total[p] / (double)(o->rows - o->since[p]);
 	return recent_error(o, p, rows);

@@ -14,21 +14,21 @@ struct forecast {
 	struct bank *bank; /* NULL unless RATE_FILTER and there is a limit */
 	struct bank_chances *chances;
 	struct bank_shape other; /* coordinate of the bank */
-	int by_gap;              /* it follows the gap, not the value */
+	int by_gap;              /* the bank follows the gap, not the value */
 	double start[3];         /* its first values, which begin the coordinate */
 	int starts;
-	double *life, *later; /* samples at the latest observation, and now */
+	double *life, *later; /* remaining times at the latest observation, and now */
 	long rows, n;
 	double first_t, grey;
 };
 
-/* The value is h or q with q as h^3; steady wear is a straight line in h, and the pumps
- * of the thesis are one in q.  With D = (y - y0) / (limit - y0) the rate in the other
- * coordinate goes as (1 + D / s)^par, s = y0 / (limit - y0).  Its weight beforehand is
- * about that of the straight line and its neighbours in the bank together; the bank's
- * other coordinates stand for wear that ages: without them intervals of 90 % held 42 to
- * 82 % of the ends of gaps that open as the square root of time, with them 96 to 100 %.
- */
+/* The value is h, or q, which goes as h^3.  Steady wear is a straight line in h; the
+ * pumps of the thesis are a straight line in q.  With D = (y - y0) / (limit - y0) the
+ * rate in the other coordinate goes as (1 + D / s)^par, s = y0 / (limit - y0).  The prior
+ * weight of that coordinate is about that of the straight line and its neighbours in the
+ * bank together.  The other coordinates of the bank represent wear that slows down or
+ * accelerates: without them, intervals of 90 % held 42 to 82 % of the ends of gaps that
+ * open as the square root of time, with them 96 to 100 %. */
 static enum num_status open_bank(struct forecast *f)
 {
 	const struct forecast_par *par = &f->par;
@@ -87,8 +87,8 @@ void forecast_free(struct forecast *f)
 	free(f);
 }
 
-/* The bank takes a row.  Its coordinates begin at the median of the first three values on
- * the good side of the limit. */
+/* Gives a row to the bank, whose coordinates begin at the median of the first three
+ * values on the good side of the limit. */
 static void follow(struct forecast *f, double t, double y, double threshold)
 {
 	double base;
@@ -99,7 +99,8 @@ static void follow(struct forecast *f, double t, double y, double threshold)
 		if (f->starts == 3 && base > 0)
 			f->other.scale = base / (threshold - base);
 		else if (f->starts == 3)
-			f->other.par = 0; /* no gap, no law: a straight line once more */
+			f->other.par = 0; /* without a gap the law is unknown: a second
+					     straight line */
 	}
 	bank_add(f->bank, t, y);
 }

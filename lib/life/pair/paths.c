@@ -24,7 +24,7 @@ static void draw_path(struct paths *e, struct partition *partition, long i)
 	if (!isnan(par->critical))
 		path->large_step =
 			partition_large(partition, par->critical, par->cumulative);
-	/* By (4-28) the scatter is in every step instead. */
+	/* With (4-28) every step has this scatter instead. */
 	if (par->rule != RATE_LAST)
 		path->wear.mean = remaining_draw_rate(
 			path->wear.mean, path->wear.life_variance, e->rng);
@@ -94,7 +94,7 @@ void paths_rate(const struct paths *e, double *mean, double *sd)
 		rate[i] = e->path[i].wear.mean / (e->par.area * e->path[i].step_time);
 	sort_numbers(rate, n);
 	*mean = rate[n / 2];
-	/* Never certain: an ensemble without spread has but one realisation. */
+	/* Not 0: an ensemble without scatter may have only one realisation. */
 	*sd = fmax(
 		(rate[(size_t)(0.841 * (double)n)] - rate[(size_t)(0.159 * (double)n)]) /
 			2,
@@ -102,7 +102,7 @@ void paths_rate(const struct paths *e, double *mean, double *sd)
 	free(rate);
 }
 
-/* Time for path i to open the gap by left, in steps of tau. */
+/* Time in which path i opens the gap by left, in steps of tau. */
 static double wear_out(struct paths *e, long i, double left, double tau)
 {
 	const struct partition_wear *w = &e->path[i].wear;

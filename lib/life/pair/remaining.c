@@ -19,7 +19,8 @@ double remaining_draw_rate(double mean, double variance, gsl_rng *rng)
 	return gsl_ran_gamma(rng, mean * mean / variance, variance / mean);
 }
 
-/* Shapes beyond these are beyond doubt: a relative scatter of 1e-7 of the passage. */
+/* Largest shape: the relative scatter of the passage is 1e-7 there, and beyond it is
+ * neglected. */
 static const double shape_max = 1e14;
 
 double remaining_gamma(double left, double mean, double variance, gsl_rng *rng)
@@ -36,8 +37,8 @@ double remaining_gamma(double left, double mean, double variance, gsl_rng *rng)
 	if (!(variance > 0) || !(shape * high < shape_max))
 		return high;
 	if (!(shape > 0) || !isfinite(scale))
-		return INFINITY; /* all wear comes in jumps that are never seen */
-	/* next: worn at high */
+		return INFINITY; /* all wear comes in jumps that almost never happen */
+	/* next: wear at time high */
 	next = gsl_ran_gamma(rng, shape * high, scale);
 	while (next < left) {
 		if (!isfinite(2 * high))
@@ -47,7 +48,7 @@ double remaining_gamma(double left, double mean, double variance, gsl_rng *rng)
 		low = high;
 		high *= 2;
 	}
-	/* worn at low is below left, next at high is not */
+	/* wear at low is below left, wear at high (next) is not */
 	while (high - low > 1e-6 * high) {
 		double half = (high - low) / 2;
 		double part = gsl_ran_beta(rng, shape * half, shape * half);
@@ -78,7 +79,7 @@ struct remaining_summary remaining_sum_up(double *sample, size_t n, double horiz
 		if (!(sample[i] <= horizon))
 			sample[i] = INFINITY;
 	sort_numbers(sample, n);
-	/* Running mean: no overflow at 1e300. */
+	/* A running mean does not overflow at 1e300. */
 	for (; failed < n && isfinite(sample[failed]); failed++)
 		mean += (sample[failed] - mean) / (double)(failed + 1);
 	return (struct remaining_summary){ failed ? mean : NAN,

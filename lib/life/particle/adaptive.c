@@ -12,15 +12,17 @@ enum { RECENT = 4, SETTLED = 8 };
 enum { BLOCK = 256 };                  /* particles at a time */
 enum { MONITOR = 20 };                 /* rows of the innovation monitor */
 static const double MONITOR_LIMIT = 4; /* of the mean squared innovation */
-static const double MONITOR_CLIP = 16; /* so that one outlier is not a drift */
+static const double MONITOR_CLIP = 16; /* limit of one squared innovation, so that a
+					  single outlier does not look like a drift */
 static const double MEMORY = 0.05;     /* weight of the newest innovation */
 
 /* A past row of all particles: their states and the gap after them. */
 struct lag {
 	const double *x;
-	const uint32_t *ancestor; /* of those after it; NULL: of the same place */
+	const uint32_t *ancestor; /* index of the ancestor of each state of the next row;
+				     NULL: the same index */
 	double gap;
-	size_t first, n; /* of x, what is left of the ancestors of a block */
+	size_t first, n; /* of x: the ancestors of the present block */
 };
 
 /* The sums of the grey fits of two particles, x about a centre, u the integral of the
@@ -54,7 +56,7 @@ struct adaptive {
 	double innovation, carried; /* running mean squares */
 	double z2[MONITOR];
 	int nz;
-	int outlier; /* the last observation was taken for one */
+	int outlier; /* the last observation was classified as an outlier */
 	unsigned long restarts, outliers;
 };
 
@@ -147,7 +149,7 @@ unsigned long adaptive_outliers(const struct adaptive *a)
 	return a->outliers;
 }
 
-/* The sums go on by a state at a gap after the one before. */
+/* Adds a state to the sums, at a gap after the state before it. */
 static inline void add_state(struct sums *s, lanes x, double gap, double centre)
 {
 	lanes part = x * gap, u = s->tail + 0.5 * part, off = x - centre;
@@ -159,8 +161,7 @@ static inline void add_state(struct sums *s, lanes x, double gap, double centre)
 	s->tail += part;
 }
 
-/* Those of a pair of particles go on by its states of a stretch of lags, oldest lag
- * first. */
+/* Adds to the sums of two particles their states of several rows, oldest row first. */
 static inline struct sums add_stretch(struct sums s, const struct lag *newest, int count,
 	double centre, size_t a, size_t b)
 {
@@ -179,7 +180,8 @@ static struct sums pick_sums(const struct sums *sums, size_t a, size_t b)
 		{ s->x[i], t->x[j] }, { s->uu[i], t->uu[j] }, { s->ux[i], t->ux[j] } };
 }
 
-/* Hands the sums of ancestors from first on, which rise, to n descendants, in place. */
+/* Copies the sums of the ancestors, which are in ascending order from first on, to their
+ * n descendants, in place. */
 static void hand_down(struct sums *sums, const uint32_t *ancestor, size_t first, size_t n)
 {
 	for (size_t i = (n + 1) / 2; i-- > 0;)
@@ -187,36 +189,38 @@ static void hand_down(struct sums *sums, const uint32_t *ancestor, size_t first,
 			ancestor[2 * i + 1 < n ? 2 * i + 1 : 2 * i] - first);
 }
 
-/* A window of states, as the grey curve sees it. */
+/* A window of states to which the grey curve is fitted. */
 struct window {
 	struct lag *lag;
 	int count;
 	double share, centre;
-	double end, ahead; /* of the interval to be forecast: time from the oldest state
-			    * on, and length */
-	double noise;
+	struct grey_interval ahead; /* to be forecast, in time from the oldest state on */
+	double least;               /* smallest mean that differs significantly from 0 */
 };
 
-/* What the grey curve makes of the interval ahead.  An exponential through states that
- * cannot be told from 0 means nothing: these stay at their mean. */
-static inline lanes forecast_pair(const struct window *w, struct sums s)
+/* Level and rate of the grey curves of two particles, from their sums.  An exponential
+ * through states that cannot be distinguished from 0 is meaningless: such states keep
+ * their mean. */
+static inline void fit_pair(
+	const struct window *w, struct sums s, lanes *level, lanes *rate)
 {
 	lanes u = s.u * w->share, x = s.x * w->share, uu = s.uu - s.u * u,
 	      ux = s.ux - s.u * x, middle = w->centre + x;
-	lanes rate = lanes_if(uu > 0, -ux / uu);
 
-	return lanes_pick(lanes_abs(middle) > 3 * w->noise,
-		grey_curve_lanes(middle + rate * u, rate, w->end, w->ahead), middle);
+	*rate = lanes_if(lanes_and(uu > 0, lanes_abs(middle) > w->least), -ux / uu);
+	*level = middle + *rate * u;
 }
 
-/* The means of n <= BLOCK particles from first on.  Those of one ancestor have the same
- * history, and one mean. */
+/* The means of n <= BLOCK particles from first on.  Particles with the same ancestor have
+ * the same history and the same mean. */
 static void forecast_block(const struct window *window, const uint32_t *index,
 	size_t first, size_t n, double *mean)
 {
-	const struct window here = *window, *w = &here; /* that no result can change */
+	/* a copy that the compiler knows to be constant */
+	const struct window here = *window, *w = &here;
 
 	struct sums sums[BLOCK / 2];
+	lanes level[BLOCK / 2], rate[BLOCK / 2];
 	struct lag *lag = w->lag;
 	const uint32_t *parent = lag[0].ancestor;
 	size_t from = first, those = n;
@@ -246,34 +250,45 @@ static void forecast_block(const struct window *window, const uint32_t *index,
 			if (to > 0)
 				sums[i / 2] = s;
 			else
-				lanes_store(mean + i, forecast_pair(w, s), a < b ? 2 : 1);
+				fit_pair(w, s, &level[i / 2], &rate[i / 2]);
 		}
 		if (to > 0)
 			hand_down(sums, lag[to].ancestor + lag[to - 1].first,
 				lag[to].first, lag[to - 1].n);
 	}
-	/* in place: ancestors rise, from 0 in steps of 0 or 1, so that none lies after
-	 * its descendant */
+	/* in a loop of its own, so that several exponentials overlap in the processor */
+	for (size_t i = 0; i < lag[0].n; i += 2)
+		lanes_store(mean + i,
+			grey_curve_lanes(level[i / 2], rate[i / 2], &w->ahead),
+			lag[0].n - i < 2 ? 1 : 2);
+	/* in place: the ancestors ascend from 0 in steps of 0 or 1, so that no ancestor
+	 * lies after its descendant */
 	for (size_t i = n; parent && i-- > 0;)
 		mean[i] = mean[parent[first + i] - lag[0].first];
 }
 
-/* The same for n particles, those in index where there is one.  Histories that have an
- * ancestor in common share its sums.  By blocks, whose sums stay in the cache: what is
- * left of the ancestors of successive particles are successive states. */
+/* The same for n particles, or for those in index if it is given.  Histories with a
+ * common ancestor share its sums.  Works in blocks whose sums fit in the cache: the
+ * ancestors of successive particles are successive states. */
 static void forecast(struct adaptive *a, int count, double h, double noise,
 	const uint32_t *index, size_t n, double *mean)
 {
-	struct window w = { a->lag, count, 1.0 / count, a->lag[0].x[0], h, h, noise };
+	struct window w = { .lag = a->lag,
+		.count = count,
+		.share = 1.0 / count,
+		.centre = a->lag[0].x[0],
+		.least = 3 * noise };
+	double end = h;
 
 	for (int k = 0; k < count; k++)
-		w.end += a->lag[k].gap;
+		end += a->lag[k].gap;
+	w.ahead = grey_interval(end, h);
 	for (size_t i = 0; i < n; i += BLOCK)
 		forecast_block(&w, index, i, n - i < BLOCK ? n - i : BLOCK, mean + i);
 }
 
-/* Prior mean of every particle: the grey forecast of its own last p states.  The oldest
- * of the window only opens the first interval (see grey.h). */
+/* Prior mean of every particle: the grey forecast from its own last p states.  The oldest
+ * state of the window only starts the first interval (see grey.h). */
 static void forecast_particles(struct adaptive *a, int p, double h, double noise)
 {
 	int depth = a->par.filter.depth;
@@ -296,7 +311,7 @@ static void hold_particles(struct adaptive *a)
 		a->mean[i] = x[a->index[i]];
 }
 
-/* Remembers a value for a restart and the gap before it. */
+/* Stores a value, and the gap before it, for a restart. */
 static void push_past(struct adaptive *a, double y, double gap)
 {
 	int depth = a->par.filter.depth;
@@ -317,7 +332,7 @@ static enum num_status start_particles(struct adaptive *a, double noise)
 	return filter_start(a->filter, a->line_up, a->filled, sqrt(3) * noise);
 }
 
-/* sigma_v in scaled units; never 0, which no weight could bear. */
+/* sigma_v in scaled units; never 0, since a weight divides by it. */
 static double observation_noise(const struct adaptive *a)
 {
 	double least = 1e-9 * (1 + fabs(a->past[a->newest]));
@@ -326,15 +341,15 @@ static double observation_noise(const struct adaptive *a)
 	return s > least ? s : least;
 }
 
-/* Process noise below which a filter of that order follows itself away from the data:
- * half of sigma_v up to order 40, rising to sigma_v at 60. */
+/* Process noise below which a filter of that order follows its own states and not the
+ * data: half of sigma_v up to order 40, rising to sigma_v at 60. */
 static double process_floor(int order, double noise)
 {
 	return noise * (order <= 40 ? 0.5 : order >= 60 ? 1 : 0.5 + (order - 40) / 40.0);
 }
 
-/* The second largest of the last squared errors of the grey model of the observations:
- * one outlier has no say in it. */
+/* The second largest of the last squared errors of the grey model of the observations, so
+ * that a single outlier has no influence. */
 static double missed_lately(const struct adaptive *a)
 {
 	double largest = 0, second = 0;
@@ -352,15 +367,15 @@ static double missed_lately(const struct adaptive *a)
 	return second;
 }
 
-/* What that model has lately missed by, beyond three standard deviations of noise. */
+/* Recent error of that model beyond three standard deviations of the noise. */
 static double model_error(const struct adaptive *a, double noise)
 {
 	return sqrt(fmax(0, missed_lately(a) - 9 * noise * noise));
 }
 
-/* An observation that is twenty times farther from the forecast, and from the observation
- * before it, than noise and model have lately been is taken for an outlier; not so after
- * a longer gap, nor twice running: then it is the series that has moved. */
+/* An observation is classified as an outlier if its distance from the forecast, and from
+ * the observation before it, is twenty times the recent error of noise and model.  Not
+ * after a longer gap and not twice in a row: then the series itself has moved. */
 static int is_outlier(
 	struct adaptive *a, double y, double gap, double forecast, double noise)
 {
@@ -384,8 +399,8 @@ static double process_noise(const struct adaptive *a, int order, double noise, d
 	return s * sqrt(fmin(16, fmax(1, steps)));
 }
 
-/* Excess of the mean squared innovation over what noise and the spread of the particles
- * account for. */
+/* Estimates the process noise from the excess of the mean squared innovation over what
+ * noise and the spread of the particles explain. */
 static void learn_process(
 	struct adaptive *a, double e, double variance, double process, double noise)
 {
@@ -402,7 +417,7 @@ static void learn_process(
 	a->process = excess > 0 ? sqrt(excess) : 0;
 }
 
-/* 1 when the particles have lost the observations. */
+/* 1 if the particles no longer follow the observations. */
 static int monitor(struct adaptive *a, double e, double variance)
 {
 	double sum = 0;
@@ -428,11 +443,12 @@ static enum num_status observe(struct adaptive *a, double y, double gap, double 
 	row->state = filter_mean(a->filter);
 	row->ess = filter_ess(a->filter);
 	push_past(a, y, gap);
-	if (row->order == 0) { /* too few points for a model: begin from all of them */
+	if (row->order == 0) { /* too few points for a model: restart from all of them */
 		lost = 1;
 	} else {
 		learn_process(a, e, variance, process, noise);
-		/* Particles that have scattered must not excuse themselves. */
+		/* The spread of the particles is limited: diverged particles would
+		 * otherwise pass for uncertain ones. */
 		own = noise * noise + process * process;
 		lost = monitor(a, e, noise * noise + fmin(variance, 4 * own));
 		a->restarts += (unsigned long)lost;
@@ -443,7 +459,7 @@ static enum num_status observe(struct adaptive *a, double y, double gap, double 
 	return NUM_OK;
 }
 
-/* Zeros do not mind the scale, so it may be learned after them. */
+/* Zeros are the same in any scale, so the scale may be set after them. */
 static void learn_scale(struct adaptive *a, double y)
 {
 	int exponent;
@@ -533,12 +549,13 @@ enum num_status adaptive_step(
 	return status;
 }
 
-/* Histories of the particles laid side by side, newest state at place 0 of the ring. */
+/* The histories of the particles as arrays side by side, the newest state at place 0 of
+ * the ring. */
 struct tracks {
 	int p, newest;
 	double noise;
 	double *x;       /* [p][N] */
-	uint32_t *index; /* of those that have not crossed */
+	uint32_t *index; /* of the particles that have not crossed */
 };
 
 static double *track_lag(const struct tracks *s, size_t n, int lag)
@@ -565,8 +582,8 @@ static enum num_status start_tracks(struct adaptive *a, struct tracks *s)
 	return NUM_OK;
 }
 
-/* One step of the first live paths of index; those that cross leave the list.  Returns
- * how many are left. */
+/* One step of the first live paths of index; paths that cross are removed.  Returns how
+ * many remain. */
 static size_t step_paths(struct adaptive *a, struct tracks *s, size_t live,
 	double process, double limit, int direction, double time, double *life)
 {

@@ -9,7 +9,7 @@ enum { WORDS = 4 * PHILOX_ROW };
 struct draw {
 	uint32_t counter[4], key[2];
 	uint32_t word[4][PHILOX_ROW]; /* of one counter after another */
-	unsigned used;                /* of the 4 PHILOX_ROW words */
+	unsigned used;                /* words used, of 4 PHILOX_ROW */
 	struct ziggurat layers;
 };
 
@@ -79,7 +79,7 @@ static double draw_tail(struct draw *d)
 	return x;
 }
 
-/* Where the first word does not settle it. */
+/* For the words that do not decide at once. */
 static double draw_rest(struct draw *d, unsigned layer, double x)
 {
 	if (layer == 0)
@@ -87,8 +87,8 @@ static double draw_rest(struct draw *d, unsigned layer, double x)
 	return ziggurat_under(&d->layers, layer, x, draw_uniform(d)) ? x : draw_normal(d);
 }
 
-/* Fills z from the words at hand; returns how many of n.  Seven bits of a word choose the
- * layer, the others are the signed place in it. */
+/* Fills z from the words that are left; returns how many of n.  Seven bits of a word
+ * select the layer, the others are the signed position in it. */
 static size_t fill(struct draw *d, double *z, size_t n)
 {
 	unsigned first = d->used;

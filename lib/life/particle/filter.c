@@ -6,17 +6,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Log-likelihoods within it have an exponential; below it a particle weighs nothing. */
+/* Largest distance of a log-likelihood from 0 at which exp() is finite and not 0; a
+ * particle farther below has weight 0. */
 static const double FAR = 700;
-/* Sum of the weights below which their logarithms are taken.  A particle that has
- * underflowed by then has less than 1e-200 of it. */
+/* Sum of the weights below which they are computed as logarithms.  A particle that has
+ * underflowed by then has less than 1e-200 of the sum. */
 static const double FADED = 1e-100;
 
-/* One remembered step; its arrays are as long as they need be. */
+/* One stored step; its arrays are only as long as required. */
 struct step {
 	double *x;
-	size_t count;       /* of those that have descendants today */
-	uint32_t *ancestor; /* of the states after it, where it was resampled */
+	size_t count;       /* states that still have descendants */
+	uint32_t *ancestor; /* of each state of the next step, if that was resampled */
 	int resampled;
 	size_t room, ancestors; /* lengths of the two */
 };
@@ -26,9 +27,10 @@ struct filter {
 	struct draw *draw;
 	struct step *ring;
 	int newest, filled;
-	double *weight, *next; /* next: room for those after an observation */
+	double *weight, *next; /* next: those after */
 	uint32_t *kept;
-	double sum; /* of weight */
+	void *spare[2]; /* arrays of a step, see moved() */
+	double sum;     /* of weight */
 	double mean, variance, ess;
 	unsigned long resamplings;
 };
@@ -65,6 +67,8 @@ void filter_free(struct filter *f)
 	free(f->weight);
 	free(f->next);
 	free(f->kept);
+	free(f->spare[0]);
+	free(f->spare[1]);
 	free(f);
 }
 
@@ -73,26 +77,38 @@ static struct step *step_at(const struct filter *f, int lag)
 	return &f->ring[(f->newest - lag + f->par.depth) % f->par.depth];
 }
 
-/* An array that has moved, so that the room of one that shrinks stays whole for the next
- * of full length; NULL: no memory. */
-static void *moved(void *array, size_t bytes, size_t before)
+/* Copies an array to one of another length; NULL: no memory.  Only the newest step has
+ * arrays of the full length n: the spare one is for the next step. */
+static void *moved(
+	void *array, size_t width, size_t count, size_t before, size_t n, void **spare)
 {
-	void *new = malloc(bytes > 0 ? bytes : 1);
+	int whole = count == n && *spare;
+	void *new;
 
+	if (array && count == before)
+		return array;
+	new = whole ? *spare : malloc(count > 0 ? count * width : 1);
 	if (!new)
 		return NULL;
+	if (whole)
+		*spare = NULL;
 	if (array)
-		memcpy(new, array, bytes < before ? bytes : before);
-	free(array);
+		memcpy(new, array, (count < before ? count : before) * width);
+	if (before == n && !*spare)
+		*spare = array;
+	else
+		free(array);
 	return new;
 }
 
-/* Resizes the arrays of a step: so many states, and ancestors of so many after it. */
-static enum num_status fit_step(struct step *s, size_t count, size_t after)
+/* Resizes the arrays of a step to count states and after ancestors. */
+static enum num_status fit_step(
+	struct filter *f, struct step *s, size_t count, size_t after)
 {
-	double *x = moved(s->x, count * sizeof *x, s->room * sizeof *x);
+	size_t n = f->par.particles;
+	double *x = moved(s->x, sizeof *x, count, s->room, n, &f->spare[0]);
 	uint32_t *ancestor = moved(
-		s->ancestor, after * sizeof *ancestor, s->ancestors * sizeof *ancestor);
+		s->ancestor, sizeof *ancestor, after, s->ancestors, n, &f->spare[1]);
 
 	if (x) {
 		s->x = x;
@@ -105,7 +121,8 @@ static enum num_status fit_step(struct step *s, size_t count, size_t after)
 	return x && ancestor ? NUM_OK : NUM_MEMORY;
 }
 
-/* Whatever its length, an array takes the room of n: all states have one size. */
+/* Saves an array in the space of n elements whatever its length, so that all saved states
+ * have one size. */
 static void pass_array(struct state *s, void *array, size_t width, size_t count, size_t n)
 {
 	state_move(s, array, count * width);
@@ -125,7 +142,7 @@ void filter_pass(struct filter *f, struct state *s)
 		state_move(s, &step->resampled, sizeof step->resampled);
 		state_move(s, &step->count, sizeof step->count);
 		ancestors = lag < f->filled && step->resampled ? after : 0;
-		if (s->load && fit_step(step, step->count, ancestors) != NUM_OK)
+		if (s->load && fit_step(f, step, step->count, ancestors) != NUM_OK)
 			s->failed = 1;
 		if (s->failed)
 			return;
@@ -151,10 +168,10 @@ static struct step *push_step(struct filter *f)
 	struct step *before = step_at(f, 0), *s = step_at(f, -1);
 	size_t n = f->par.particles;
 
-	if (fit_step(s, n, n) != NUM_OK)
+	if (fit_step(f, s, n, n) != NUM_OK)
 		return NULL;
 	if (f->filled > 0 && !before->resampled && before != s)
-		fit_step(before, before->count, 0);
+		fit_step(f, before, before->count, 0);
 	f->newest = (f->newest + 1) % f->par.depth;
 	if (f->filled < f->par.depth)
 		f->filled++;
@@ -171,7 +188,7 @@ static void weigh_equally(struct filter *f)
 	f->sum = f->ess = (double)f->par.particles;
 }
 
-/* Mean and variance of the states, whose squares are taken about one of them. */
+/* Mean and variance of the states; squares are taken about one of the states. */
 static void find_moments(struct filter *f)
 {
 	const double *x = f->ring[f->newest].x;
@@ -276,7 +293,7 @@ unsigned long filter_resamplings(const struct filter *f)
 	return f->resamplings;
 }
 
-/* Of two states, less its constant. */
+/* Of two states, without its constant. */
 static inline lanes log_likelihood(lanes z, double nu)
 {
 	return nu > 0 ? -0.5 * (nu + 1) *
@@ -285,8 +302,8 @@ static inline lanes log_likelihood(lanes z, double nu)
 		      : -0.5 * z * z;
 }
 
-/* Logarithm of the largest weight once y has weighed, rounded as in weigh(): far from y
- * it would otherwise differ from all of them by more than FAR. */
+/* Logarithm of the largest weight after the observation y, rounded as in weigh(): far
+ * from y it could otherwise differ from all of them by more than FAR. */
 static double best(const struct filter *f, double y, double noise)
 {
 	const double *x = f->ring[f->newest].x;
@@ -302,7 +319,7 @@ static double best(const struct filter *f, double y, double noise)
 	return top;
 }
 
-/* Weights by y over e^top, into next; returns the sum of their squares. */
+/* Weights after y divided by e^top, into next; returns the sum of their squares. */
 static double weigh(struct filter *f, double y, double noise, double top)
 {
 	const double *x = f->ring[f->newest].x;
@@ -312,12 +329,18 @@ static double weigh(struct filter *f, double y, double noise, double top)
 
 	for (size_t i = 0; i < n; i += 2) {
 		int width = n - i < 2 ? 1 : 2;
-		lanes at = lanes_load(x + i, width),
-		      l = log_likelihood((y - at) * scale, nu) - top;
+		lanes l =
+			log_likelihood((y - lanes_load(x + i, width)) * scale, nu) - top;
 		lanes w = lanes_load(f->weight + i, width) *
 			  lanes_if(lanes_abs(l) < FAR, lanes_exp(l));
 
 		lanes_store(f->next + i, w, width);
+	}
+	/* in a loop of its own, so that several exponentials overlap in the processor */
+	for (size_t i = 0; i < n; i += 2) {
+		int width = n - i < 2 ? 1 : 2;
+		lanes w = lanes_load(f->next + i, width), at = lanes_load(x + i, width);
+
 		lanes_add(&sums[0], w, width);
 		lanes_add(&sums[1], w * w, width);
 		lanes_add(&sums[2], w * at, width);
@@ -337,8 +360,8 @@ static double log_constant(const struct filter *f, double noise)
 	return -0.5 * log(2 * M_PI) - log(noise);
 }
 
-/* Numbers the distinct ones of n ancestors, which rise, anew from 0, and lists what they
- * were.  Returns how many there are. */
+/* Renumbers the distinct values of n ascending ancestors from 0 on, and lists the old
+ * values in kept.  Returns how many there are. */
 static size_t renumber(uint32_t *ancestor, size_t n, uint32_t *kept)
 {
 	uint32_t last = ancestor[0], m = 0;
@@ -346,14 +369,14 @@ static size_t renumber(uint32_t *ancestor, size_t n, uint32_t *kept)
 	for (size_t i = 0; i < n; i++) {
 		uint32_t old = ancestor[i];
 
-		m += old != last; /* no branch: it would be mispredicted */
+		m += old != last; /* without a branch, which would be mispredicted */
 		kept[m] = last = old;
 		ancestor[i] = m;
 	}
 	return (size_t)m + 1;
 }
 
-/* Drops the states that have no descendants since the newest step was resampled. */
+/* Drops the states that have had no descendants since the newest step was resampled. */
 static void prune(struct filter *f)
 {
 	size_t n = 0;
@@ -373,7 +396,7 @@ static void prune(struct filter *f)
 			s->x[i] = s->x[f->kept[i]];
 		s->count = n;
 		if (n < s->room / 2 || after < s->ancestors / 2)
-			fit_step(s, n, s->resampled ? after : 0);
+			fit_step(f, s, n, s->resampled ? after : 0);
 	}
 }
 

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Teeth in [0, sum) against the running sum of the weights, less the copies that were
- * kept already: weight - kept * unit. */
+/* Equally spaced points (teeth of a comb) in [0, sum) are compared with the running sum
+ * of the weights, without the copies that were kept before: weight - kept * unit. */
 struct comb {
 	const double *weight;
 	double unit; /* weight of one kept copy; 0 keeps none */
@@ -33,8 +33,8 @@ static void comb_stratified(
 }
 
 /* One offset for all teeth: particle i ends before tooth number reached / step - offset,
- * rounded up.  The ancestor of a tooth is the number of particles that end before it:
- * counted and summed up, without a branch that would be mispredicted. */
+ * rounded up.  The ancestor of a tooth is the number of particles that end before it;
+ * these are counted and summed without a branch, which would be mispredicted. */
 static void comb_systematic(
 	const struct comb *c, size_t n, uint32_t *ancestor, double offset)
 {
@@ -54,8 +54,8 @@ static void comb_systematic(
 		ancestor[k] = ended += ancestor[k];
 }
 
-/* Ancestors first .. n - 1 by independent uniforms, sorted as they come: from the top
- * down, U_(k) = U_(k+1) V^(1/k). */
+/* Ancestors first .. n - 1 by independent uniforms in sorted order: from the top down,
+ * U_(k) = U_(k+1) V^(1/k). */
 static void comb_multinomial(const struct comb *c, size_t n, size_t first,
 	uint32_t *ancestor, struct draw *draw)
 {
@@ -70,8 +70,9 @@ static void comb_multinomial(const struct comb *c, size_t n, size_t first,
 	}
 }
 
-/* Merges the rising list of kept copies, counted anew, with the rising list of drawn
- * ones in ancestor[kept .. n - 1], from the front: the read place stays ahead. */
+/* Merges the ascending list of kept copies, counted anew, with the ascending list of
+ * drawn ones in ancestor[kept .. n - 1], from the front: the position read is always
+ * ahead of the position written. */
 static void merge_kept(const struct comb *c, size_t n, size_t kept, uint32_t *ancestor)
 {
 	size_t put = 0, drawn = kept;

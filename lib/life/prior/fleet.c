@@ -8,15 +8,15 @@
 enum {
 	SMOOTHED = 20, /* rows before medians of three are taken */
 	LEVELS = 24,   /* of a path */
-	AHEAD = 7,     /* of them to the threshold, for a unit that has not reached it */
-	DRAWS = 200    /* of their ages */
+	AHEAD = 7,     /* levels up to the threshold for a unit that has not reached it */
+	DRAWS = 200    /* of the ages at these levels */
 };
 
-/* Log prior of all paths together over the coordinates of the bank, whose priors add up
- * to e^4.3.  From 4 over 5 to 5.8 the CRPS of the measured series with a fleet falls
- * from 3.9 over 3.6 to 3.3 % of life, pooled; with an alien unit, one of twice the life,
- * the median error of 12 cracks at 40 % of theirs rises from 5.6 over 5.7 to 5.9 %, and
- * at 6.4 it is the same. */
+/* Log prior of all paths together, relative to the coordinates of the bank, whose priors
+ * sum to e^4.3.  From 4 over 5 to 5.8 the CRPS of the measured series with a fleet falls
+ * from 3.9 over 3.6 to 3.3 % of life, pooled; with a unit of another kind in the fleet,
+ * whose life is twice as long, the median error of 12 cracks at 40 % of their life rises
+ * from 5.6 over 5.7 to 5.9 %, and at 6.4 it is 5.9 % too. */
 static const double KINSHIP = 6.4;
 
 struct unit {
@@ -34,7 +34,7 @@ struct fleet {
 	struct unit *path;
 	int units;
 	struct bank_shape *shape;
-	double *grid; /* ages and levels of the shapes */
+	double *grid; /* memory of the ages and levels of the shapes */
 	int shapes;
 };
 
@@ -91,7 +91,7 @@ static enum num_status grow(struct unit *p)
 	return NUM_OK;
 }
 
-/* Adds a step where it leads higher, and later. */
+/* Adds a point to the path if both age and level exceed those of the last one. */
 static enum num_status rise(struct unit *p, double age, double level)
 {
 	if (p->n > 0 && (level <= p->level[p->n - 1] || age <= p->age[p->n - 1]))
@@ -140,7 +140,7 @@ enum num_status fleet_add(struct fleet *f, int unit, double t, double y)
 	return rise(p, p->t[1] - p->first, median_of_three(p->y[0], p->y[1], p->y[2]));
 }
 
-/* Carries a unit on to the threshold by what its own bank foresees. */
+/* Extrapolates a unit to the threshold by the median ages that its own bank predicts. */
 static enum num_status carry_on(const struct fleet *f, struct unit *p)
 {
 	struct bank_chances *chances = bank_chances_new(DRAWS, 0);
@@ -171,7 +171,7 @@ static double age_at(const struct unit *p, double level)
 				       (p->level[k] - p->level[k - 1]);
 }
 
-/* The path on even levels up to the threshold; 0 where it has no length. */
+/* The path at evenly spaced levels up to the threshold; 0 if it has no length. */
 static int lay_out(const struct unit *p, double end, double *age, double *level)
 {
 	double from, to;
@@ -201,11 +201,11 @@ enum num_status fleet_build(struct fleet *f, int *failed, int *carried_on)
 		       *level = age + LEVELS;
 		int reached;
 
-		/* No median waits for rows that will not come. */
+		/* The last row has no later neighbour for a median. */
 		if (p->rows == 0 || rise(p, p->t[0] - p->first, p->y[0]))
 			return NUM_MEMORY;
 		if (p->n < 2)
-			continue; /* shows no wear */
+			continue; /* no wear: no path */
 		reached = p->level[p->n - 1] >= end;
 		if (!reached && carry_on(f, p))
 			return NUM_MEMORY;

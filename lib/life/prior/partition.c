@@ -9,9 +9,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* For the sizes realisations are merged, two neighbours into one, when there are so many
- * groups of them, or so many cells and more than the least number of groups.  A mean of
- * groups varies between draws as that of their realisations does. */
+/* For the sizes, realisations are collected in groups.  Two neighbouring groups are
+ * merged into one when there are GROUPS_MOST of them, or more than GROUP_CELLS cells and
+ * more than GROUPS_LEAST groups.  A mean over groups varies between draws like one over
+ * their realisations. */
 enum { GROUPS_MOST = 4096, GROUPS_LEAST = 64, GROUP_CELLS = 1 << 20 };
 
 /* Particles of a group of realisations in one step. */
@@ -32,15 +33,15 @@ struct class
 	double pressure, area; /* own area after partition_close() */
 	struct realisations *reader;
 	long last_realisation, last_step; /* of the row before; -1: none */
-	long lowest, highest;             /* realisations with rows */
-	/* Over realisations: volume and steps that count for the rate. */
+	long lowest, highest;             /* first and last realisation with rows */
+	/* Over realisations: volume, and number of steps that count for the rate. */
 	struct running volume, steps;
 	double product;      /* sum of their products about their means */
 	struct running cell; /* over realisations and steps: volume */
 	struct group_cell *group_cell;
 	size_t ncells, cell_room, nhistories, per_group;
 	double ngroups, empty_groups; /* with and without particles */
-	double *times;                /* how often each is in the present replicate */
+	double *times; /* how often each was drawn for the present replicate */
 	/* Of a closed class. */
 	double realisations, error, skewness; /* error: relative, of the mean */
 	struct moments all, now;
@@ -50,12 +51,12 @@ struct partition {
 	double fragment_area, area, zone;
 	long first_step;
 	int sizes;
-	struct class class[PARTITION_CLASSES_MAX]; /* by rising pressure once closed */
+	struct class class[PARTITION_CLASSES_MAX]; /* in order of pressure once closed */
 	int order[PARTITION_CLASSES_MAX];          /* order[place] = the caller's index */
 	int nclasses, culprit;
 	long culprit_realisation;
 	long steps;
-	double *particles; /* particles, and large ones, [class][step] */
+	double *particles; /* particles and large particles, [class][step] */
 };
 
 struct partition *partition_new(double area, long first_step, int sizes)
@@ -127,7 +128,7 @@ static enum num_status group_sizes(
 	return NUM_OK;
 }
 
-/* Takes all that one realisation did; its cells are sorted by step. */
+/* Takes the whole history of one realisation; its cells are sorted by step. */
 static enum num_status take_history(
 	void *to, const struct realisation_cell *cell, size_t n)
 {
@@ -214,8 +215,8 @@ enum partition_status partition_fragment(struct partition *p, int class, long re
 	return reading(p, c, realisations_add(c->reader, &cell));
 }
 
-/* Moments of what was read.  Realisations and steps of which a particle table does not
- * tell shed nothing. */
+/* Moments of the rows read.  Realisations and steps that are missing from a particle
+ * table shed nothing. */
 static enum partition_status sum_up(struct partition *p, struct class *c)
 {
 	double empty = 0, scatter;
@@ -364,13 +365,14 @@ double partition_power_mean(double p0, double y0, double p1, double y1)
 		return (y0 + y1) / 2;
 	ratio = log(p1 / p0);
 	power = log(y1 / y0) / ratio + 1;
-	/* integral of y0 (p / p0)^(power - 1), as expm1 so that power = 0 is no case */
+	/* integral of y0 (p / p0)^(power - 1); by expm1, so that power = 0 needs no case
+	 * of its own */
 	if (fabs(power * ratio) < 1e-12)
 		return y0 * p0 * ratio / (p1 - p0);
 	return y0 * p0 * expm1(power * ratio) / power / (p1 - p0);
 }
 
-/* Adds the moments of an area that behaves as parts independent ones. */
+/* Adds the moments of an area that wears as so many independent parts. */
 static void add_area(struct partition_wear *wear, const struct moments *m, double area,
 	double fragment, double parts)
 {
@@ -431,27 +433,30 @@ void partition_estimate(struct partition *p, double parts, struct partition_wear
 	integrate(p, parts, wear);
 }
 
-/* Below a hundredth of the mean observed there are no draws: the mean of 1 / m would not
- * exist.  Within the interval of 90 % of three realisations they are above exp(-2.92). */
+/* Draws are limited to a hundredth of the observed mean or more; otherwise the mean of 1
+ * / m would not exist.  The 90 % interval of three realisations lies above exp(-2.92) of
+ * it. */
 static const double least_draw = 0.01;
 
-/* A draw of the mean over that observed: see partition.h. */
+/* A draw of the mean, relative to the observed one: see partition.h. */
 static double draw_mean(const struct class *c, gsl_rng *rng)
 {
-	const double tail = 4, square = 0.6;
-	double t, more;
+	const double tail = 2.8, square = 0.9;
+	double k = c->realisations, t, more;
 
 	if (!(c->error > 0))
 		return 1;
-	t = gsl_ran_tdist(rng, c->realisations - 1) * c->error;
-	more = t < 0 ? square * t * t - tail * c->skewness * t : 0;
-	/* Few realisations draw t of any size: no infinite rates, and see least_draw. */
+	t = gsl_ran_tdist(rng, k - 1) * c->error;
+	more = t < 0 ? square * t * t - tail * c->skewness * t / sqrt(c->error * sqrt(k))
+		     : 0;
+	/* With few realisations t may be of any size: no infinite rates, and see
+	 * least_draw. */
 	return fmax(exp(fmin(more - t, 200)), least_draw);
 }
 
-/* Resamples the groups with replacement.  Only those with particles are drawn one by one;
- * how many they are among all is binomial, or Poisson where the others are too many to
- * be counted. */
+/* Resamples the groups with replacement.  Only groups with particles are drawn one by
+ * one; the number of such draws is binomial, or Poisson if the other groups are too many
+ * to count. */
 static void draw_groups(struct class *c, gsl_rng *rng)
 {
 	size_t n = (size_t)c->ngroups;

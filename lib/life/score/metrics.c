@@ -13,7 +13,8 @@ struct metrics {
 	size_t n, infinite;
 	double error, abs_error, square_error, accuracy, crps;
 	size_t inside, covered;
-	double since; /* time of the first of an unbroken run of good ones; NAN if none */
+	double since; /* start of the present uninterrupted run of good predictions; NAN
+			 if there is none */
 	struct weighted *scratch;
 	size_t capacity;
 };
@@ -31,7 +32,8 @@ double metric_quantile(const double *sorted, size_t n, double level)
 	return sorted[i] + part * (sorted[i + 1] - sorted[i]);
 }
 
-/* Sums rectangles between neighbours: every term is positive, so nothing cancels. */
+/* Sums rectangles between neighbours: every term is positive, so that there is no
+ * cancellation. */
 double metric_crps(
 	const double *sorted, const double *weight, size_t n, double truth, double limit)
 {
@@ -116,7 +118,7 @@ static enum num_status crps_unsorted(struct metrics *m, const double *sample,
 {
 	double *x;
 
-	/* Room for the pairs, then for the two arrays apart. */
+	/* Memory first for the pairs, then for the two separate arrays. */
 	if (n > m->capacity) {
 		struct weighted *more = realloc(m->scratch, 2 * n * sizeof *more);
 

@@ -16,31 +16,31 @@ enum {
 	PARTICLES = 52,
 	BIRTHS = 4,    /* at a time */
 	FIRST = 3,     /* observations whose median is D = 0 */
-	BREEDING = 16, /* rows before the first births and halts */
+	BREEDING = 16, /* rows before particles are drawn and halts recognised */
 	HELD_GOOD = 3  /* rows held back at most on the good side */
 };
 
 static const double memories[MEMORIES] = { 0, 1, 3 }; /* exponent of (j / k) */
 static const double SCORED = 18; /* rows that count in full, see weigh() */
 static const double CUT = 3;     /* of an innovation, see square_at() */
-/* The same of a row that is held back.  With 3 % of outliers and a burst of four, 3.5, 4,
- * 6 and 8 give a CRPS of 24.1, 24.5, 24.6 and 24.2 % of life, 5 gives 24.6 (700 paths of
- * seven kinds of tests/long/lives.c with other seeds, as for HALT). */
+/* The same limit for a row that is held back.  With 3 % of outliers and a burst of four,
+ * limits of 3.5, 4, 6 and 8 give a CRPS of 24.1, 24.5, 24.6 and 24.2 % of life; 5 gives
+ * 24.6 (700 paths of seven kinds of tests/long/lives.c with other seeds, as for HALT). */
 static const double SURPRISE = 5;
-/* Mean gaps beyond which the machine may have stood.  CRPS after halts of 0.02 to 0.5
- * lives: 2.5: 21.2, 5: 22.0, 10: 24.3, never: 46; of kinds of which a third is sampled at
- * random times, 2.5 costs 3 %. */
+/* Length of a gap, in mean gaps, beyond which the machine may have been idle.  CRPS after
+ * idle times of 0.02 to 0.5 lives: 2.5: 21.2, 5: 22.0, 10: 24.3, never: 46.  For kinds of
+ * which a third is sampled at random times, 2.5 increases the CRPS by 3 %. */
 static const double HALT = 5;
-static const double LEAST = 1e-3;  /* prior noise, share of the way to the threshold */
+static const double LEAST = 1e-3;  /* prior noise, share of the range to the threshold */
 static const double DIFFUSE = 1e8; /* prior variance of v over that of the noise */
 
-/* Changes of regime so far, by particles.  As above: hazard +0.6 and -0.7, growth -0.1
- * and +0.7; jumps 0.2 and 0.7: +0.1 and +0.6, with coverage below 0.8 in 9 and 13 of 90
- * cases (present: 9); falls 0.5 and 0.85: -0.1 and +0.1. */
+/* Changes of regime in the past, represented by particles.  Effect on the CRPS as above:
+ * hazard +0.6 and -0.7, growth -0.1 and +0.7; jumps 0.2 and 0.7: +0.1 and +0.6, with
+ * coverage below 0.8 in 9 and 13 of 90 cases (present value: 9); falls 0.5 and 0.85: -0.1
+ * and +0.1. */
 static const struct {
 	double hazard;            /* c */
-	double growth, growth_sd; /* median in units of one over the age, and sd of its
-				   * logarithm */
+	double growth, growth_sd; /* median, 1 / age, and sd of its logarithm */
 	double jumps, falls;      /* share of jumps of the rate; of falls among them */
 	double rise, rise_sd;     /* of a jump, as a share of the rate before */
 	double fall, fall_sd;
@@ -108,9 +108,9 @@ void project(const struct bank *b, struct trend *tr, const struct place *p, doub
 		tr->phh += step / b->gap * squared_slope(*p);
 }
 
-/* An observation as a trend expects it: with the slope where the trend will be, so that
- * the noise does not tell its own variance, and h on the tangent there.  To second order.
- */
+/* An observation in the coordinate of a trend: the slope is taken where the trend will
+ * be, so that the noise has no influence on its own variance, and h lies on the tangent
+ * there.  Accurate to second order. */
 static struct place seen_from(
 	const struct bank *b, const struct trend *tr, const struct place *p, double step)
 {
@@ -135,8 +135,9 @@ static double log_density(const struct bank *b, const struct trend *tr,
 	       0.5 * (freedom + 1) * log1p(z * z / (freedom * variance));
 }
 
-/* The square of Student's t, over that of the noise, that is as rare as a normal deviate
- * (Wallace, Ann. Math. Stat. 30 (1959) 1124): a few rows know little of their noise. */
+/* The square of Student's t, in units of the noise variance, that is as rare as a normal
+ * deviate of this size (Wallace, Ann. Math. Stat. 30 (1959) 1124).  It is larger where
+ * few rows have determined the noise. */
 static double square_at(double deviate, double freedom)
 {
 	double wide = (8 * freedom + 3) / (8 * freedom + 1) * deviate;
@@ -144,7 +145,7 @@ static double square_at(double deviate, double freedom)
 	return freedom * expm1(fmin(600, wide * wide / freedom));
 }
 
-/* One trend takes a row. */
+/* Updates one trend by a row. */
 static void follow(
 	const struct bank *b, struct trend *tr, const struct place *seen, double step)
 {
@@ -167,14 +168,14 @@ static void follow(
 	tr->pvv -= tr->phv / f * tr->phv;
 	tr->phv *= squared_slope(p) / f;
 	tr->phh *= squared_slope(p) / f;
-	if (b->rows < 2) /* two rows make the trend and leave no innovation */
+	if (b->rows < 2) /* two rows determine the trend and leave no innovation */
 		return;
 	tr->sum = tr->sum * keep + z * z + 1e-9 * LEAST * LEAST;
 	tr->lagged = (float)(tr->lagged * keep + z * tr->before);
 	tr->before = (float)z;
 }
 
-/* A path counts for less where the unit's speed on it is not near 1. */
+/* A path has less weight the farther the speed of the unit along it is from 1. */
 static double log_kinship(const struct bank *b, const struct trend *tr)
 {
 	double away = tr->v - 1;
@@ -184,8 +185,8 @@ static double log_kinship(const struct bank *b, const struct trend *tr)
 	return -0.5 * away * away / (PACE * PACE + tr->pvv * tr->sum / freedom_of(b, tr));
 }
 
-/* Brings the weights up to date: n rows count as sqrt(SCORED n), for they are not
- * independent given a wrong model.  A trend that has overflowed has none. */
+/* Updates the weights: n rows count as sqrt(SCORED n), because they are not independent
+ * given a wrong model.  A trend that has overflowed has weight 0. */
 static void weigh(struct bank *b)
 {
 	double share = fmin(1, sqrt(SCORED / fmax(b->scored, 1))), top = -INFINITY,
@@ -216,7 +217,7 @@ static double chance_of_birth(const struct bank *b, int k)
 	return philox_uniform(0, (uint32_t)b->rows, RNG_PREDICT, (uint64_t)k);
 }
 
-/* The rate jumps to so many times what it was. */
+/* Multiplies the rate by times, with a standard deviation of sd times the old rate. */
 static void jump(const struct bank *b, struct trend *tr, double times, double sd)
 {
 	tr->pvv = times * times * tr->pvv +
@@ -225,7 +226,7 @@ static void jump(const struct bank *b, struct trend *tr, double times, double sd
 	tr->v *= times;
 }
 
-/* The particle of a parent whose regime changes now. */
+/* The particle for a change of regime of its parent at the present age. */
 static struct trend child_of(const struct bank *b, const struct trend *parent, int birth)
 {
 	struct trend child = *parent;
@@ -246,7 +247,7 @@ static struct trend child_of(const struct bank *b, const struct trend *parent, i
 	return child;
 }
 
-/* The lightest particle, or a free place. */
+/* An unused place or, if there is none, that of the particle of least weight. */
 static struct trend *room(struct bank *b)
 {
 	struct trend *lightest;
@@ -260,7 +261,7 @@ static struct trend *room(struct bank *b)
 	return lightest;
 }
 
-/* Births, whenever the age has grown by 2 %: regimes that began then. */
+/* Draws new particles, for regimes that begin now, whenever the age has grown by 2 %. */
 static void breed(struct bank *b)
 {
 	double mass, reached = 0;
@@ -279,7 +280,7 @@ static void breed(struct bank *b)
 			(born + chance_of_birth(b, 3 * born)) / BIRTHS < reached) {
 			child[born] = child_of(b, tr, born);
 			child[born].weight = mass / BIRTHS;
-			/* its log weight: the sum of the trends' times the mass */
+			/* the sum of the trends' weights, times the mass */
 			child[born].offset =
 				(float)(tr->offset + log(mass / BIRTHS / tr->weight));
 			born++;
@@ -358,8 +359,9 @@ static void start(struct bank *b)
 	b->n_held = 0;
 }
 
-/* Calls for each trend that has a weight: an observation of a damage, step after the last
- * row, as the trend expects it, with its standardised innovation and variance. */
+/* Sum over the trends, by weight, of the function of, which gets the observation of a
+ * damage as the trend expects it, step after the last row, with its variance and
+ * standardised innovation. */
 static double expect(const struct bank *b, double damage, double step,
 	double (*of)(const struct bank *, const struct trend *, const struct place *,
 		double f, double z))
@@ -400,7 +402,7 @@ static double is_surprised(const struct bank *b, const struct trend *tr,
 	       square_at(SURPRISE, freedom_of(b, tr)) * tr->sum / freedom_of(b, tr);
 }
 
-/* Standard deviation of an observation's damage. */
+/* Standard deviation of the damage of one observation. */
 static double noise_of(const struct bank *b)
 {
 	double sum = 0;
@@ -410,7 +412,8 @@ static double noise_of(const struct bank *b)
 	return sqrt(sum);
 }
 
-/* The level has moved by so much: it is learned anew, the rates are kept. */
+/* The level has jumped to y: widens the covariance of the level by the jump, and keeps
+ * the rates. */
 static void shift(struct bank *b, double y)
 {
 	double damage = damage_of(b, y), away = damage - b->level;
@@ -424,7 +427,7 @@ static void shift(struct bank *b, double y)
 	b->counts.shifts++;
 }
 
-/* 1 when the last step of the damage is well beyond noise and rate. */
+/* 1 if the last step of the damage is well beyond what noise and rate explain. */
 static int is_steep(const struct bank *b, const struct row *r)
 {
 	double y, rate;
@@ -434,7 +437,7 @@ static int is_steep(const struct bank *b, const struct row *r)
 	       2 * noise_of(b);
 }
 
-/* 1 when the rows held back run away in steps. */
+/* 1 if the rows held back move away step by step. */
 static int runs_away(const struct bank *b)
 {
 	const struct row *last = b->held + b->n_held - 1;
@@ -442,7 +445,7 @@ static int runs_away(const struct bank *b)
 	return b->n_held >= 3 && is_steep(b, last) && is_steep(b, last - 1);
 }
 
-/* 1 when the last rows all are healthier than the one before them. */
+/* 1 if the last HELD_GOOD rows are all healthier than the row before them. */
 static int is_repaired(const struct bank *b)
 {
 	for (int k = 1; k <= HELD_GOOD; k++)
@@ -460,8 +463,8 @@ static void release(struct bank *b)
 		take(b, b->held[i].t, b->held[i].y);
 }
 
-/* Time that counts: after a long gap the machine may have stood.  Of few rows, whose rate
- * is not known, the observation after it cannot tell. */
+/* Operating time: after a long gap the machine may have been idle.  While few rows are
+ * known, and with them the rate, the next observation cannot decide. */
 static double running(struct bank *b, double t, double damage)
 {
 	double step = (t - b->last) / b->unit;
@@ -549,7 +552,7 @@ double bank_weight(const struct bank *b, enum bank_family family)
 	return sum;
 }
 
-/* All but the parameters, which are at the front. */
+/* Everything except the parameters, which are at the front. */
 void bank_pass(struct bank *b, struct state *s)
 {
 	size_t from = offsetof(struct bank, rows);

@@ -96,8 +96,8 @@ void bank_event(struct bank *b, enum bank_event event);
 
 /* Weighted mean of y and of dy/dt at the last row. */
 void bank_state(const struct bank *b, double *y, double *rate);
-/* Share of a family in the weight, without changed regimes; BANK_ALL: share of the
- * changed regimes. */
+/* Share of a family in the weight, without the trends whose regime has changed; BANK_ALL:
+ * the share of these. */
 double bank_weight(const struct bank *b, enum bank_family family);
 
 /* Events so far. */
@@ -106,6 +106,7 @@ struct bank_counts {
 };
 struct bank_counts bank_counts(const struct bank *b);
 
-void bank_pass(struct bank *b, struct state *s); /* into a bank with the same par */
+/* Saves, or restores into a bank of the same par. */
+void bank_pass(struct bank *b, struct state *s);
 
 #endif

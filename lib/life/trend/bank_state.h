@@ -37,7 +37,7 @@ struct bank {
 	long rows;            /* taken */
 	double base, range;   /* y at D = 0; from there to the threshold, signed */
 	double unit;          /* of time: the first gap */
-	double first, last;   /* times, less idle */
+	double first, last;   /* times without the idle time */
 	double idle;          /* total idle time */
 	double age, gap;      /* of the last row, mean gap, in units */
 	double level;         /* D of the last row */
@@ -52,13 +52,12 @@ struct bank {
 	struct trend trend[];
 };
 
-/* An observation in a coordinate: h, dh/dD, and the logarithm of that with its
- * derivative. */
+/* An observation in a coordinate: h, dh/dD, ln(dh/dD) and its derivative. */
 struct place {
 	double h, slope, log_slope, bend;
 };
 
-/* The variance of h, in units of that of the damage. */
+/* The factor from the variance of the damage to the variance of h. */
 static inline double squared_slope(struct place p)
 {
 	return p.slope * p.slope;
@@ -73,7 +72,7 @@ const struct bank_shape *shape_of(const struct bank *b, int i);
  * flat shape would make outliers look exact. */
 struct place place_of(const struct bank *b, int shape, double damage);
 
-/* Advances a trend by a step, and its covariance with the discount. */
+/* Advances a trend by a step, and discounts its covariance. */
 void project(const struct bank *b, struct trend *tr, const struct place *p, double step,
 	double keep);
 

@@ -5,7 +5,7 @@
 struct history {
 	double t[HISTORY_MAX + 1], x[HISTORY_MAX + 1];
 	int n;               /* whole groups */
-	long rows, width;    /* rows of each */
+	long rows, width;    /* rows in each group */
 	long held;           /* rows of the unfinished group */
 	double sum_t, sum_x; /* over it */
 };

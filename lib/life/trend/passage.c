@@ -8,17 +8,17 @@
 
 enum { CHANCES = 8 }; /* uniform numbers of one draw */
 
-/* A rate of damage that would take so many ages is none, and growth of nothing is
- * nothing. */
+/* A rate at which the damage would take more than so many ages counts as 0, and the
+ * growth of a rate of 0 too. */
 static const double NOTHING = 3e3;
-/* Hazard of a change of regime on the path of another unit, and of all n of them.  With
- * one unit, coverage at 80 % of the life of 29 measured series and CRPS of all ages: 0.1:
- * .79, 4.5; 0.3: .83, 4.5; 0.5: .86, 4.6; 1: 1.00, 4.9. */
+/* Hazard of a change of regime on the path of another unit, for all n paths together.
+ * With one unit, coverage at 80 % of the life of 29 measured series and CRPS over all
+ * ages: 0.1: .79, 4.5; 0.3: .83, 4.5; 0.5: .86, 4.6; 1: 1.00, 4.9. */
 static const double KIN_HAZARD = 0.5;
 
-/* Changes of regime to come, by whether the rate falls, keeps or rises in a coordinate:
- * hazard c, share of falls, and median growth in units of one over the age.  These and
- * the three below were chosen with the weights of the coordinates, see shapes.c. */
+/* Future changes of regime, where the rate falls, is constant or rises in a coordinate:
+ * hazard c, share of falls, and median growth in units of 1 / age.  These and the three
+ * constants below were chosen with the weights of the coordinates, see shapes.c. */
 static const struct future {
 	double hazard, falls, growth;
 } future[] = { { 2.5, 0.24, 3.5 }, { 1.4, 0.15, 1.9 }, { 0.82, 0.033, 1.9 } };
@@ -26,22 +26,23 @@ static const struct future {
 enum { FUTURES = sizeof future / sizeof *future };
 
 static const double GROWTH_SD = 2.7; /* of its logarithm */
-/* Mean and sd of the logarithm of what a fall makes the rest of the life longer by. */
+/* Mean and sd of the logarithm of the factor by which a fall of the rate lengthens the
+ * rest of the life. */
 static const double FALL = 1.4, FALL_SD = 0.45;
 
 struct bank_chances {
 	int n;
 	struct chance {
-		double u[CHANCES];                  /* uniform */
-		double z[CHANCES];                  /* the normal deviates of them */
-		double turn[FUTURES], growth, fall; /* of the next regime by them, times
-						     * in ages */
+		double u[CHANCES]; /* uniform */
+		double z[CHANCES]; /* the same as normal deviates */
+		/* Of the next change, from u and z: its time in ages, growth and fall. */
+		double turn[FUTURES], growth, fall;
 	} draw[];
 };
 
-/* Evenly spread in all dimensions: an additive recurrence with the powers of the root of
- * x^(d + 1) = x + 1, moved by the seed.  Any stretch of it is spread evenly too, so that
- * the draws of one model are. */
+/* Points that fill the unit cube evenly: an additive recurrence with the powers of the
+ * root of x^(d + 1) = x + 1, shifted by the seed.  Every section of the sequence is even,
+ * too, and so are the draws of each trend. */
 struct bank_chances *bank_chances_new(int draws, uint64_t seed)
 {
 	struct bank_chances *c = malloc(sizeof *c + (size_t)draws * sizeof c->draw[0]);
@@ -90,19 +91,19 @@ double bank_chance_normal(const struct bank_chances *c, int draw, int k)
 	return c->draw[draw].z[k];
 }
 
-/* What the draws of one trend share. */
+/* Values common to all draws of one trend. */
 struct crossing {
 	double h, v, phh, phv, pvv; /* now; covariances in units of the noise */
-	double limit;               /* h of the level to be passed */
-	double straight;            /* the way there if the damage kept its rate */
-	double variance, freedom;   /* of the noise, with autocorrelation; of chi^2 */
-	double wiener;              /* variance of h per unit of time */
-	double growth;              /* of the rate already */
+	double limit;               /* h of the level to be reached */
+	double straight; /* the distance if the rate of the damage stayed constant */
+	double variance, freedom; /* of the noise, with autocorrelation; of chi^2 */
+	double wiener;            /* variance of h per unit of time */
+	double growth;            /* of the rate at present */
 	const struct future *future;
-	double hazard; /* of a path of another unit; 0: that of the future */
+	double hazard; /* for the path of another unit; 0: as in the table of futures */
 };
 
-/* What is known of the rate beforehand, as an observation of v. */
+/* Includes the prior of the rate, as an observation of v. */
 static void heed_prior(double mean, double sd, struct crossing *p)
 {
 	double f, e = mean - p->v;
@@ -148,7 +149,7 @@ static struct crossing prepare(
 	p.pvv = s * s * now.pvv;
 	p.freedom = freedom_of(b, tr);
 	p.variance = tr->sum / p.freedom;
-	/* The noise is constant in D; take it half way to the level. */
+	/* The noise is constant in D: its slope is taken half way to the level. */
 	if (tr->kind >= MEMORIES)
 		p.wiener = p.variance * here.slope * there.slope / b->gap;
 	p.variance *= (1 + correlation) / (1 - correlation);
@@ -159,13 +160,13 @@ static struct crossing prepare(
 	return p;
 }
 
-/* Normal deviate given that it is above -m, as by drawing until one is; NAN where none of
- * 32 would be. */
+/* Normal deviate under the condition that it is above -m, by rejection; NAN if 32 trials
+ * would all fail. */
 static double normal_above(double m, const struct chance *c)
 {
 	double u = c->u[1], above, none;
 
-	if (m > 8) /* always */
+	if (m > 8) /* no trial fails */
 		return -c->z[1];
 	above = 0.5 * erfc(-m / sqrt(2));
 	none = pow(1 - above, 32);
@@ -176,7 +177,7 @@ static double normal_above(double m, const struct chance *c)
 	return -normal_quantile(u * above);
 }
 
-/* Time to the passage if the regime changes once. */
+/* Time to the passage if the regime changes once more. */
 static double change(
 	const struct crossing *p, double time, double age, const struct chance *c)
 {
@@ -236,7 +237,7 @@ void bank_draw(struct bank *b, const struct bank_chances *c, double now, double 
 			life[drawn] = b->unit *
 				      draw_life(b, &p, b->age + ahead, &c->draw[drawn]);
 	}
-	/* No trend has a weight where the data overflow. */
+	/* If the data overflow, no trend has a weight. */
 	for (; drawn < c->n; drawn++)
 		life[drawn] = drawn ? life[drawn - 1] : INFINITY;
 }

@@ -7,7 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { LITERAL_STEPS = 1000 }; /* of the literal model: beyond them nothing crosses */
+/* Of the literal model: a particle that needs more never reaches the threshold. */
+enum { LITERAL_STEPS = 1000 };
 
 struct predict {
 	struct predict_par par;
@@ -97,7 +98,7 @@ struct bank *predict_bank(struct predict *p)
 	return p->bank;
 }
 
-/* Time from span on until the curve of means over a gap reaches the threshold. */
+/* Time after span at which the curve of means over a gap reaches the threshold. */
 static double grey_crossing(
 	const struct predict *p, double level, double rate, double span, double gap)
 {
@@ -108,7 +109,7 @@ static double grey_crossing(
 	if (p->par.direction * (now - limit) >= 0)
 		return 0;
 	time = -log(limit / now) / rate;
-	return time >= 0 ? time : INFINITY; /* also NAN: a sign that never changes */
+	return time >= 0 ? time : INFINITY; /* also for NAN: the sign never changes */
 }
 
 static enum num_status draw_grey(struct predict *p, double *life)
@@ -184,6 +185,6 @@ double predict_replacement(const double *life, int n, double age, double ratio)
 			at = life[i];
 		}
 	}
-	/* Where the cost still falls at the last failure, none is advised. */
+	/* If the cost still falls at the last failure, no replacement is advised. */
 	return at == before ? INFINITY : at;
 }

@@ -48,7 +48,7 @@ void predict_pass(struct predict *p, struct state *s);
 /* Adds a row: the observation, NAN if it is missing, and the filtered state, which only
  * the grey model uses. */
 void predict_add(struct predict *p, double t, double y, double state);
-/* Drops all rows, which were running-in. */
+/* Drops all rows: they were running-in. */
 void predict_restart(struct predict *p);
 int predict_draws(const struct predict *p);
 /* Fills life[draws] with the remaining times at the last row, ascending, INFINITY beyond

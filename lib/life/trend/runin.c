@@ -2,7 +2,7 @@
 #include "life/trend/runin.h"
 #include <math.h>
 
-/* A finished block; 1 where it is the lowest after an excursion. */
+/* Ends a block; 1 if its mean is the lowest after an excursion. */
 static int end_block(struct runin *r, double mean, double error)
 {
 	double fall;

@@ -17,10 +17,10 @@ struct runin {
 	double sum; /* over it */
 	int blocks;
 	double first, highest; /* first and highest block mean, times direction */
-	double since;          /* lowest one after the highest that ended a run-in */
+	double since;          /* lowest one since the highest, if that ended a run-in */
 };
 
-/* Adds an observation and the standard deviation of the noise.  Returns 1 when the rows
+/* Adds an observation with the standard deviation of the noise.  Returns 1 if the rows
  * before this one have turned out to be run-in. */
 int runin_add(struct runin *r, double y, double noise);
 

@@ -59,8 +59,8 @@ const struct bank_shape *shape_of(const struct bank *b, int i)
 	return i < SHAPES ? &table[i] : &b->par.more[i - SHAPES];
 }
 
-/* With w^2 = 1 + scale D, h of the half power is the integral of
- * 2 dw / (scale + par - par w^2). */
+/* With w^2 = 1 + scale D, h for power 1/2 is the integral of 2 dw / (scale + par - par
+ * w^2). */
 static struct place place_where_it_saturates(const struct bank_shape *s, double damage)
 {
 	double up = log1p(damage * s->scale), down = log1p(-damage * s->par);
@@ -76,7 +76,7 @@ static struct place place_where_it_saturates(const struct bank_shape *s, double 
 	return p;
 }
 
-/* Along a path, and straight on beyond its ends. */
+/* Along a path, with straight lines beyond its ends. */
 static void place_on_path(
 	const struct bank *b, const struct bank_shape *s, double damage, struct place *p)
 {

@@ -48,10 +48,10 @@ void joint_free(struct joint *j)
 	free(j);
 }
 
-static int reserve_samples(struct joint *j, size_t n)
+static enum joint_status reserve_samples(struct joint *j, size_t n)
 {
 	if (n <= j->capacity)
-		return 1;
+		return JOINT_OK;
 	free_samples(j);
 	n += n / 2;
 	for (int c = 0; c < 2; c++) {
@@ -59,21 +59,21 @@ static int reserve_samples(struct joint *j, size_t n)
 		j->r[c] = malloc(n * sizeof *j->r[c]);
 		j->filter[c] = malloc(n * sizeof *j->filter[c]);
 		if (!j->e[c] || !j->r[c] || !j->filter[c])
-			return 0;
+			return JOINT_MEMORY;
 	}
 	j->basis_memory[0] = malloc(n * sizeof *j->basis_memory[0] * BASIS_MAX);
 	if (!j->basis_memory[0])
-		return 0;
+		return JOINT_MEMORY;
 	j->capacity = n;
-	return 1;
+	return JOINT_OK;
 }
 
-static int reserve_columns(struct joint *j, size_t support)
+static enum joint_status reserve_columns(struct joint *j, size_t support)
 {
 	double *at;
 
 	if (support <= j->support)
-		return 1;
+		return JOINT_OK;
 	free(j->memory);
 	free(j->scratch);
 	free(j->excess);
@@ -83,7 +83,7 @@ static int reserve_columns(struct joint *j, size_t support)
 	j->scratch = malloc(support * sizeof *j->scratch * PAR);
 	j->excess = malloc(support * sizeof *j->excess * PAIR_KNOTS);
 	if (!j->memory || !j->scratch || !j->excess)
-		return 0;
+		return JOINT_MEMORY;
 	j->support = support;
 	at = j->memory;
 	for (int i = 0; i <= JOINT_PULSES_MAX; i++)
@@ -92,12 +92,12 @@ static int reserve_columns(struct joint *j, size_t support)
 				j->col[i][c].d[k] = at;
 				j->trial[i][c].d[k] = at + support;
 			}
-	return 1;
+	return JOINT_OK;
 }
 
 /* Makes vector b of q orthonormal to those before it, by modified Gram-Schmidt, done
- * twice; 0 if nothing of it is left. */
-static int orthonormalise(double *q, int b, size_t n)
+ * twice; NUM_DOMAIN if nothing of it is left. */
+static enum num_status orthonormalise(double *q, int b, size_t n)
 {
 	double *v = q + (size_t)b * n, norm = dot(v, v, n), left;
 
@@ -107,11 +107,11 @@ static int orthonormalise(double *q, int b, size_t n)
 				v, -dot(v, q + (size_t)k * n, n), q + (size_t)k * n, n);
 	left = dot(v, v, n);
 	if (left <= 1e-8 * norm || left == 0)
-		return 0;
+		return NUM_DOMAIN;
 	left = 1 / sqrt(left);
 	for (size_t i = 0; i < n; i++)
 		v[i] *= left;
-	return 1;
+	return NUM_OK;
 }
 
 /* Adds cos or sin of w (i - n / 2) to the basis unless it adds nothing, as a tone at half
@@ -123,7 +123,7 @@ static void add_to_basis(struct joint *j, double (*wave)(double), double w, doub
 
 	for (size_t i = 0; i < n; i++)
 		v[i] = wave(w * ((double)i - (double)n / 2));
-	if (orthonormalise(j->q[0], j->basis, n))
+	if (orthonormalise(j->q[0], j->basis, n) == NUM_OK)
 		j->share[j->basis++] = share;
 }
 
@@ -135,7 +135,7 @@ static void hide_basis(struct joint *j, int c, double *q)
 		double *v = q + (size_t)b * j->n;
 
 		joint_hide(j, c, 0, j->n, v);
-		if (!orthonormalise(q, b, j->n))
+		if (orthonormalise(q, b, j->n) != NUM_OK)
 			memset(v, 0, j->n * sizeof *v);
 	}
 }
@@ -143,7 +143,7 @@ static void hide_basis(struct joint *j, int c, double *q)
 /* Orthonormal basis of offset, baseline and tones over n samples.  A baseline may be
  * anything slower than low: waves of up to that frequency that are periodic in 2 n, so
  * that its ends need not meet. */
-static int make_basis(struct joint *j, const struct joint_scene *s)
+static enum joint_status make_basis(struct joint *j, const struct joint_scene *s)
 {
 	double n = (double)j->n, w = 0.5 * n * s->tone_variance;
 	double share = isinf(w) ? 1 : w / (1 + w);
@@ -163,17 +163,17 @@ static int make_basis(struct joint *j, const struct joint_scene *s)
 		add_to_basis(j, sin, s->omega[k], share);
 	}
 	if (!j->hidden[0] && !j->hidden[1])
-		return 1;
+		return JOINT_OK;
 	if (!j->basis_memory[1])
 		j->basis_memory[1] =
 			malloc(j->capacity * sizeof *j->basis_memory[1] * BASIS_MAX);
 	if (!j->basis_memory[1])
-		return 0;
+		return JOINT_MEMORY;
 	j->q[1] = j->basis_memory[1];
 	memcpy(j->q[1], j->q[0], (size_t)j->basis * j->n * sizeof(double));
 	hide_basis(j, 0, j->q[0]);
 	hide_basis(j, 1, j->q[1]);
-	return 1;
+	return JOINT_OK;
 }
 
 void joint_measure(struct joint *j)
@@ -312,6 +312,7 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	const double *y1, const double *y2, size_t n, const struct joint_pulse *pulses,
 	int m)
 {
+	enum joint_status status;
 	double longest;
 	size_t support;
 
@@ -322,8 +323,11 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 		(size_t)(2 * shape_reach(s->shape) * pulse_duration(s, fmax(longest, 0)) +
 			 0.4 * s->duration) +
 		4;
-	if (!reserve_samples(j, n) || !reserve_columns(j, support))
-		return JOINT_MEMORY;
+	status = reserve_samples(j, n);
+	if (status == JOINT_OK)
+		status = reserve_columns(j, support);
+	if (status != JOINT_OK)
+		return status;
 	j->n = n;
 	j->steps = j->searches = 0;
 	memcpy(j->e[0], y1, n * sizeof(double));
@@ -332,11 +336,10 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 		j->hidden[c] = s->hidden[c];
 		joint_hide(j, c, 0, n, j->e[c]);
 	}
-	if (!make_basis(j, s))
-		return JOINT_MEMORY;
-	for (int i = 0; i < m; i++)
+	status = make_basis(j, s);
+	for (int i = 0; i < m && status == JOINT_OK; i++)
 		joint_subtract(j, s, &pulses[i], 1);
-	return JOINT_OK;
+	return status;
 }
 
 const double *joint_basis(const struct joint *j, int *count, const double **share)

@@ -123,7 +123,7 @@ int joint_split_pulses(struct joint *j, const struct joint_scene *s,
 		double need = drop_beside(
 			s, energy_near(s, pulses, *m, i) + half * half * unit_energy(s));
 
-		if (!joint_factorise(j, s, pulses, &i, 1))
+		if (joint_factorise(j, s, pulses, &i, 1) != NUM_OK)
 			continue;
 		joint_pair_start(j, s, pulses, i, &i, 1);
 		/* A fit with shares and gaps of their own was worth up to 1.6 times as

@@ -147,7 +147,7 @@ double joint_pair_best(const struct joint *j, double *gap)
 	return best;
 }
 
-int joint_pair_odds(struct joint *j, const struct joint_scene *s,
+void joint_pair_odds(struct joint *j, const struct joint_scene *s,
 	const struct joint_pulse *pulses, int i, double scatter,
 	double odds[JOINT_SHARES])
 {
@@ -156,15 +156,16 @@ int joint_pair_odds(struct joint *j, const struct joint_scene *s,
 	enum { STEPS = 4 };
 	int set[JOINT_PULSES_MAX], m = j->inverted;
 
+	for (int w = 0; w < JOINT_SHARES; w++)
+		odds[w] = 0;
 	if (i >= m)
-		return 0;
+		return;
 	for (int k = 0; k < m; k++)
 		set[k] = k;
 	joint_pair_start(j, s, pulses, i, set, m);
 	for (int w = 0; w < JOINT_SHARES; w++) {
 		double share = joint_share(w), narrow = 2 * sqrt(share * (1 - share));
 
-		odds[w] = 0;
 		for (int k = 1 - PAIR_GAPS; k < PAIR_GAPS; k++) {
 			double gap = k < 0 ? -knot(-k) : knot(k);
 			double width = 0.5 * (knot(abs(k) + 1) - knot(abs(abs(k) - 1)));
@@ -181,5 +182,4 @@ int joint_pair_odds(struct joint *j, const struct joint_scene *s,
 			}
 		}
 	}
-	return 1;
 }

@@ -5,6 +5,7 @@
 #define SIGNAL_JOINT_STATE_H
 
 #include "num/dot.h"
+#include "num/status.h"
 #include "signal/fit/joint.h"
 #include <math.h>
 
@@ -131,9 +132,8 @@ void joint_fill_covariance(
 /* x becomes L^-1 x, by the factor of the last covariance. */
 void joint_reduce(const struct joint *j, int np, double *x);
 
-/* Factor of the normal matrix of the pulses in set, with their columns; 0 if it is
- * singular. */
-int joint_factorise(struct joint *j, const struct joint_scene *s,
+/* Factor of the normal matrix of the pulses in set, with their columns. */
+enum num_status joint_factorise(struct joint *j, const struct joint_scene *s,
 	const struct joint_pulse *pulses, const int *set, int m);
 
 /* joint_pair.c */

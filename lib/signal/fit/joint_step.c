@@ -75,8 +75,9 @@ static void make_normal(struct joint *j, const int *set, int m)
 		j->diagonal[i] = j->h[i * np + i];
 }
 
-/* Cholesky of h + lambda diag(h) within the profile; 0 where not positive definite. */
-static int factorise(struct joint *j, int np, double lambda)
+/* Cholesky of h + lambda diag(h) within the profile; NUM_DOMAIN where not positive
+ * definite. */
+static enum num_status factorise(struct joint *j, int np, double lambda)
 {
 	for (int i = 0; i < np; i++) {
 		double *row = j->factor + (size_t)i * (size_t)np, pivot;
@@ -93,10 +94,10 @@ static int factorise(struct joint *j, int np, double lambda)
 			dot(row + j->begin[i], row + j->begin[i],
 				(size_t)(i - j->begin[i]));
 		if (!(pivot > 1e-13 * j->diagonal[i]))
-			return 0;
+			return NUM_DOMAIN;
 		row[i] = sqrt(pivot);
 	}
-	return 1;
+	return NUM_OK;
 }
 
 /* Solves L L^T x = x in place, from row start on (the rows above are zero). */
@@ -206,7 +207,7 @@ double joint_fit_set(struct joint *j, const struct joint_scene *s,
 			make_normal(j, set, m);
 		fresh = 1;
 		j->steps++;
-		if (!factorise(j, PAR * m, lambda)) {
+		if (factorise(j, PAR * m, lambda) != NUM_OK) {
 			lambda = lambda * 10 + 1e-3;
 			continue;
 		}
@@ -244,7 +245,7 @@ double joint_fit_all(
 	return joint_fit_set(j, s, pulses, set, m, 50, 1e-4);
 }
 
-int joint_factorise(struct joint *j, const struct joint_scene *s,
+enum num_status joint_factorise(struct joint *j, const struct joint_scene *s,
 	const struct joint_pulse *pulses, const int *set, int m)
 {
 	for (int x = 0; x < m; x++)
@@ -261,7 +262,7 @@ void joint_fill_covariance(
 
 	for (int i = 0; i < m; i++)
 		set[i] = i;
-	good = joint_factorise(j, s, pulses, set, m);
+	good = joint_factorise(j, s, pulses, set, m) == NUM_OK;
 	j->inverted = good ? m : 0;
 	for (int i = 0; i < m; i++)
 		for (int u = 0, k = 0; u < PAR; u++) {

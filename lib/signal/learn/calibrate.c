@@ -59,15 +59,25 @@ static enum calibrate_status attempt(const struct calibrate_par *par, const doub
 	return status;
 }
 
+/* What has no power at any frequency leaves no band to make white. */
+static enum calibrate_status of_whitening(enum num_status status)
+{
+	return status == NUM_OK       ? CALIBRATE_OK
+	       : status == NUM_MEMORY ? CALIBRATE_MEMORY
+				      : CALIBRATE_NARROW;
+}
+
 static enum calibrate_status attempt_kind(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, enum whiten_kind kind,
 	struct look *look, struct calibration *c)
 {
 	struct whitening w;
+	enum calibrate_status status =
+		of_whitening(whitening_of_noise(&w, look->power, COLOUR_BINS, kind));
 
 	look->kind = kind;
-	if (whitening_of_noise(&w, look->power, COLOUR_BINS, kind) != NUM_OK)
-		return CALIBRATE_MEMORY;
+	if (status != CALIBRATE_OK)
+		return status;
 	return attempt(par, x1, x2, n, &w, c, look);
 }
 
@@ -163,11 +173,12 @@ static enum calibrate_status lacks_low(
 {
 	struct template white = { .shape = c->shape, .duration = c->duration };
 	struct whitening w;
-	enum num_status status;
+	enum num_status status =
+		whitening_of_noise(&w, look->power, COLOUR_BINS, WHITEN_FILTERED);
 	double left = 1;
 
-	if (whitening_of_noise(&w, look->power, COLOUR_BINS, WHITEN_FILTERED) != NUM_OK)
-		return CALIBRATE_MEMORY;
+	if (status != NUM_OK)
+		return of_whitening(status);
 	status = template_known(&white, w.seen, w.seen_half, &left);
 	*lacks = left <= KNOWN && w.low > 0;
 	whitening_clear(&w);
@@ -209,7 +220,7 @@ static enum calibrate_status attempt_white(const struct calibrate_par *par,
 enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct calibration *c)
 {
-	enum calibrate_status status;
+	enum calibrate_status status = CALIBRATE_OK;
 	struct whitening w = { .tap = NULL };
 	struct look look = { 0 };
 
@@ -218,9 +229,11 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 		return CALIBRATE_SILENT_1;
 	if (is_constant(x2, n))
 		return CALIBRATE_SILENT_2;
-	if (par->filter &&
-		whitening_of_filter(&w, par->filter, par->filter_taps) != NUM_OK)
-		return CALIBRATE_MEMORY;
+	if (par->filter)
+		status = of_whitening(
+			whitening_of_filter(&w, par->filter, par->filter_taps));
+	if (status != CALIBRATE_OK)
+		return status;
 	look.first =
 		!par->filter && par->pulse == CALIBRATE_ANY_PULSE && isnan(par->duration);
 	status = attempt(par, x1, x2, n, &w, c, &look);

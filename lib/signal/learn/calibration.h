@@ -29,6 +29,10 @@ struct calibrate_par {
 	const unsigned char *hidden[2];
 };
 
+/* Share of the transit time within which delays are searched where they reach to the
+ * limits of a narrower range. */
+#define CALIBRATE_WIDE 0.3
+
 struct calibration {
 	long shift;         /* samples by which channel 2 is moved back */
 	double correlation; /* of the channels at that lag */

@@ -39,7 +39,7 @@ static void mean_residual(struct examples *ex, double *more, double *weight, int
 		struct example *e = &ex->example[i];
 		struct joint_result result;
 
-		if (!examples_refine(ex, e, e->pulse, &result))
+		if (examples_refine(ex, e, e->pulse, &result) != JOINT_OK)
 			continue;
 		for (int p = 0; p < 2 * e->m; p++) {
 			const struct joint_pulse *pulse = &e->pulse[p / 2];

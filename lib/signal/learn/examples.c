@@ -84,12 +84,12 @@ void examples_pick(struct examples *ex, const double *y1, const double *y2, size
 		pick_sections(ex, y1, y2, n, most, 1, c);
 }
 
-/* Did a fit succeed?  Notes it where memory was short. */
-static int succeeded(struct examples *ex, enum joint_status status)
+/* The status of a fit, noted where memory was short. */
+static enum joint_status note_memory(struct examples *ex, enum joint_status status)
 {
 	if (status == JOINT_MEMORY)
 		ex->status = CALIBRATE_MEMORY;
-	return status == JOINT_OK;
+	return status;
 }
 
 /* May more work be done?  Notes it where not. */
@@ -100,11 +100,11 @@ static int may_go_on(struct examples *ex)
 	return ex->status == CALIBRATE_OK;
 }
 
-int examples_refine(struct examples *ex, const struct example *e,
+enum joint_status examples_refine(struct examples *ex, const struct example *e,
 	struct joint_pulse *pulse, struct joint_result *result)
 {
-	return succeeded(ex, joint_refine(ex->joint, &ex->scene, e->y1, e->y2, e->n,
-				     pulse, e->m, result));
+	return note_memory(ex, joint_refine(ex->joint, &ex->scene, e->y1, e->y2, e->n,
+				       pulse, e->m, result));
 }
 
 double examples_chi2(struct examples *ex, int keep)
@@ -121,7 +121,7 @@ double examples_chi2(struct examples *ex, int keep)
 		if (!may_go_on(ex))
 			return INFINITY;
 		memcpy(pulse, e->pulse, sizeof pulse);
-		if (!examples_refine(ex, e, pulse, &result))
+		if (examples_refine(ex, e, pulse, &result) != JOINT_OK)
 			return INFINITY;
 		if (keep)
 			memcpy(e->pulse, pulse, sizeof pulse);
@@ -216,8 +216,8 @@ double examples_fit(struct examples *ex, double misfit)
 		e->m = 0;
 		if (!may_go_on(ex))
 			return INFINITY;
-		if (!succeeded(ex, joint_fit(ex->joint, &ex->scene, e->y1, e->y2, e->n,
-					   e->pulse, &e->m, &result)))
+		if (note_memory(ex, joint_fit(ex->joint, &ex->scene, e->y1, e->y2, e->n,
+					    e->pulse, &e->m, &result)))
 			return INFINITY;
 		energy = fmax(example_energy(ex, e), 1);
 		ex->energy += energy;

@@ -59,9 +59,8 @@ double examples_fit(struct examples *ex, double misfit);
  * scene; the pulses themselves stay unless keep. */
 double examples_chi2(struct examples *ex, int keep);
 
-/* Refines pulse[0 .. e->m) of one under the present scene; 0 where that cannot be done.
- */
-int examples_refine(struct examples *ex, const struct example *e,
+/* Refines pulse[0 .. e->m) of one under the present scene. */
+enum joint_status examples_refine(struct examples *ex, const struct example *e,
 	struct joint_pulse *pulse, struct joint_result *result);
 
 int examples_pulses(const struct examples *ex); /* number of them in all */

@@ -4,10 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Matched filter of y[0 .. n) at every eighth of a duration, at *points points; returns 0
- * when out of memory. */
-static int filter_points(const struct calibration *c, const double *y, size_t n,
-	double *out, size_t *points)
+/* Matched filter of y[0 .. n) at every eighth of a duration, at *points points. */
+static enum num_status filter_points(const struct calibration *c, const double *y,
+	size_t n, double *out, size_t *points)
 {
 	double T = c->duration;
 	size_t len, count = 0, stride = (size_t)(T / 8);
@@ -24,7 +23,7 @@ static int filter_points(const struct calibration *c, const double *y, size_t n,
 	}
 	free(p);
 	*points = count;
-	return p != NULL;
+	return p ? NUM_OK : NUM_MEMORY;
 }
 
 enum num_status matched_coherence(const struct calibration *c, const double *y1,
@@ -35,7 +34,7 @@ enum num_status matched_coherence(const struct calibration *c, const double *y1,
 	size_t points, second, blocks;
 
 	*coherence = *level = 0;
-	if (!z || !filter_points(c, y1, n, z, &points)) {
+	if (!z || filter_points(c, y1, n, z, &points) != NUM_OK) {
 		free(z);
 		return NUM_MEMORY;
 	}
@@ -43,7 +42,7 @@ enum num_status matched_coherence(const struct calibration *c, const double *y1,
 	 */
 	if (points >= n / 2)
 		points = 0;
-	else if (!filter_points(c, y2, n, z + n / 2, &second)) {
+	else if (filter_points(c, y2, n, z + n / 2, &second) != NUM_OK) {
 		free(z);
 		return NUM_MEMORY;
 	}
@@ -78,7 +77,7 @@ enum num_status matched_noise(const struct calibration *c, const double *y, size
 {
 	size_t count;
 
-	if (!filter_points(c, y, n, work, &count))
+	if (filter_points(c, y, n, work, &count) != NUM_OK)
 		return NUM_MEMORY;
 	for (size_t i = 0; i < count; i++)
 		work[i] = fabs(work[i]);

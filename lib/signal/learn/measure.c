@@ -103,9 +103,8 @@ static double variance(const double *x, size_t n)
 	return sum / (double)n;
 }
 
-/* Shares of the transit time within which delays are searched: in plug flow, and where
- * they reach to its limits. */
-static const double PLUG = 0.1, WIDE = 0.3;
+/* Share of the transit time within which delays are searched in plug flow. */
+static const double PLUG = 0.1;
 
 /* Range of the delays as far as it is known. */
 static void set_range(
@@ -508,7 +507,7 @@ static enum calibrate_status learn_with_noise(const struct calibrate_par *par,
 	enum calibrate_status status = learn(par, rec, found, c);
 
 	if (status == CALIBRATE_OK && c->far >= SOME && isnan(par->spread)) {
-		rec->share = WIDE;
+		rec->share = CALIBRATE_WIDE;
 		if (found->events)
 			status = find_template(par, rec, found, c);
 		if (status == CALIBRATE_OK)

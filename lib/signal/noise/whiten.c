@@ -163,15 +163,17 @@ static int edge_of_taps(const double *tap, int half)
 enum num_status whitening_make(struct whitening *w, const double *power, size_t n,
 	double unit, int half, enum whiten_kind kind)
 {
-	double *gain = malloc(2 * n * sizeof *gain);
+	double *gain = malloc(2 * n * sizeof *gain), most = 0;
 	enum num_status status;
 
+	for (size_t k = 0; k < n; k++)
+		most = fmax(most, power[k]);
 	memset(w, 0, sizeof *w);
 	w->half = w->seen_half = half;
 	w->tap = malloc((2 * (size_t)half + 1) * sizeof *w->tap);
 	w->seen = malloc((2 * (size_t)half + 1) * sizeof *w->seen);
 	status = !gain || !w->tap || !w->seen ? NUM_MEMORY
-		 : unit > 0                   ? NUM_OK
+		 : unit > 0 && most > 0       ? NUM_OK
 					      : NUM_DOMAIN;
 	if (!status) {
 		whitening_gains(w, power, n, unit, gain, gain + n);

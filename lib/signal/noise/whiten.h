@@ -35,7 +35,8 @@ struct whitening {
 };
 
 /* power[k] of the noise at frequency k / (2 (n - 1)), k < n; unit: that of the white
- * noise to be made of it, NUM_DOMAIN unless > 0; half < n: length of the taps. */
+ * noise to be made of it; half < n: length of the taps.  NUM_DOMAIN unless unit > 0 and
+ * there is power at some frequency. */
 enum num_status whitening_make(struct whitening *w, const double *power, size_t n,
 	double unit, int half, enum whiten_kind kind);
 /* The same for noise whose power is known at n frequencies only, smooth between them;

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* More pulses than this in n samples are not looked for. */
+/* Largest number of pulses that are searched for in n samples. */
 static int most_pulses(const struct separate *s, size_t n)
 {
 	double most = 4 + 3 * (double)n / s->cal.duration;
@@ -13,7 +13,7 @@ static int most_pulses(const struct separate *s, size_t n)
 	return (int)fmin(most, s->par.most_pulses);
 }
 
-/* Takes the first done of m pulses out of the record and carries the others into the
+/* Subtracts the first done of m pulses from the record and carries the others into the
  * next window; returns its first sample. */
 static long long cut_section(
 	struct separate *s, long long from, double boundary, int m, int done)
@@ -43,17 +43,18 @@ static long long cut_section(
 	return start;
 }
 
-/* Samples: in shorter windows the pulses cut by their ends would be most. */
+/* In samples.  In shorter windows, most pulses would be cut by the ends. */
 static double shortest_window(const struct separate *s)
 {
 	return fmax(10, 6 * shape_reach(s->cal.shape)) * s->cal.duration;
 }
 
-/* Windows that stay unresolved one after the other until what is left is given up. */
+/* Consecutive unresolved windows after which the rest of the section is reported as
+ * unresolved. */
 enum { PATIENCE = 3 };
 
-/* Fits the m pulses of a window to both components; doubts them if more than noise is
- * left of the second. */
+/* Fits the m pulses of a window to both components; they are doubted if the residual of
+ * the second exceeds the noise. */
 static enum separate_status fit_quadrature(
 	struct separate *s, long long from, size_t n, int m, int done, struct goodness *j)
 {
@@ -74,7 +75,7 @@ static enum separate_status fit_quadrature(
 	s->with_both = status == NUM_OK;
 	if (!doubt || j->stretch == SEPARATE_UNRESOLVED)
 		return SEPARATE_OK;
-	/* Without a pulse there is no row that could say so. */
+	/* Without a pulse there is no row that could be marked as a misfit. */
 	j->stretch = m > 0 ? SEPARATE_MISFIT : SEPARATE_UNRESOLVED;
 	for (int i = 0; i < done; i++)
 		j->pulse[i] = SEPARATE_MISFIT;
@@ -90,7 +91,8 @@ enum separate_status separate_fit_section(
 	long before = 0, after = 0;
 	size_t n;
 
-	/* The quiet samples beside a section tell that no pulse reaches there. */
+	/* The quiet samples on either side of a section show that no pulse extends there.
+	 */
 	if (!s->par.quadrature) {
 		before = s->continuing ? 0 : sections_aside(s->sections, 0);
 		before = from - s->tape[0].begin < before
@@ -130,7 +132,7 @@ enum separate_status separate_fit_section(
 	else
 		s->failures = unresolved ? s->failures + 1 : 0;
 	s->dense = unresolved && !shorter && (!cut || s->failures == PATIENCE);
-	/* In a short section it is not their number that resists. */
+	/* A short section is not unresolved because of the number of its pulses. */
 	s->strange = s->dense && !cut && !s->continuing && !a.r.full;
 	if (shorter || s->dense) {
 		s->carried = 0;

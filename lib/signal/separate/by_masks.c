@@ -18,10 +18,9 @@ static void measure_pulse(const double *x, size_t n, double *t, double *a)
 	*a = (x[high] - x[low]) / 2;
 }
 
-/* Holds the pulses that masks have found in n samples against those of a joint fit.  A
- * mask divides one pulse into several where the noise moves the points of its histogram,
- * and what a pulse of the fit does not stand beside, by a quarter of a duration, is none.
- */
+/* Compares the pulses that masks have found in n samples with those of a joint fit.  A
+ * mask divides one pulse into several if noise moves the points of its histogram; a pulse
+ * farther than a quarter of a duration from every pulse of the fit is a misfit. */
 static enum separate_status confirm(struct separate *s, long long from, size_t n,
 	const double *t, int m, enum separate_verdict *verdict)
 {
@@ -66,7 +65,7 @@ enum separate_status separate_mask_section(
 	enum separate_status status;
 
 	if (masks_find(s->masks, y1, channel_2(s, from), n, source, &m) != NUM_OK ||
-		!separate_reserve_sources(s, (size_t)m * n))
+		separate_reserve_sources(s, (size_t)m * n) != SEPARATE_OK)
 		return SEPARATE_MEMORY;
 	/* A single source needs no demixing. */
 	if (m == 1)

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Contrast k of x: the mean of the k + 1 before it less the next,
- * of unit length (Helmert). */
+/* Contrast k of x: the mean of the first k + 1 values less the next one, normalised
+ * (Helmert). */
 static double helmert(const double *x, int k)
 {
 	double sum = 0;
@@ -14,7 +14,8 @@ static double helmert(const double *x, int k)
 	return (sum - (k + 1) * x[k + 1]) / sqrt((k + 1.0) * (k + 2));
 }
 
-/* One Jacobi rotation that makes a[p][q] zero, n by n; y turns with it. */
+/* One Jacobi rotation of the n by n matrix a that makes a[p][q] zero; y is rotated with
+ * it. */
 static void rotate(double *a, int n, int p, int q, double *y)
 {
 	double apq = a[p * n + q], theta, t, c, s, yp = y[p];
@@ -43,7 +44,7 @@ static void rotate(double *a, int n, int p, int q, double *y)
 enum num_status contrasts_of(int m, const double *d, const double *cov, int stride,
 	double *square, double *var)
 {
-	enum { SWEEPS = 10 }; /* quadratic convergence: more than a double can use */
+	enum { SWEEPS = 10 }; /* convergence is quadratic: enough for full precision */
 	int n = m - 1;
 	double *half = malloc(sizeof *half * (size_t)(n * m + n * n));
 	double *a;

@@ -2,12 +2,12 @@
 #include "signal/separate/converter.h"
 #include <math.h>
 
-/* A limit was seen OFTEN times, and TIMES as often as the next value: quantised to few
- * steps, the top of a parabola is seen 1 / (sqrt 2 - 1) = 2.4 times as often as the step
- * below it. */
+/* A limit must have been seen OFTEN times, and TIMES as often as the next value: in a
+ * parabola quantised to a few steps, the top occurs 1 / (sqrt 2 - 1) = 2.4 times as often
+ * as the step below it. */
 static const double OFTEN = 8, TIMES = 4;
 
-/* Probability of a run of equal values that was measured. */
+/* Probability below which a run of equal values was not measured. */
 static const double RARELY = 1e-9;
 
 static void see(struct converter_limit *l, double x)

@@ -2,11 +2,8 @@
 #include "signal/separate/separate_state.h"
 #include <math.h>
 
-/* Share of the transit time that delays are searched within where the learned range does
- * not do. */
-static const double WIDE = 0.3;
-
-/* Share of the transit time that a delay may be less. */
+/* Largest amount by which a delay may fall short of the transit time, as a share of it.
+ */
 static const double LEAST = 0.5;
 
 int separate_is_range_free(const struct separate *s)
@@ -17,13 +14,14 @@ int separate_is_range_free(const struct separate *s)
 void separate_widen(struct separate *s)
 {
 	double middle = 0.5 * (s->scene.delta_min + s->scene.delta_max);
-	double half = fmax(WIDE * (s->cal.transit + middle), 0.05 * s->cal.duration);
+	double half =
+		fmax(CALIBRATE_WIDE * (s->cal.transit + middle), 0.05 * s->cal.duration);
 
 	s->scene.delta_min = fmax(middle - half, -LEAST * s->cal.transit);
 	s->scene.delta_max = middle + half;
 }
 
-/* The range of the last delays, widened by half on either side, as it was learned. */
+/* The range of the last delays, widened by half of it on either side, as in learning. */
 static void follow_delay(struct separate *s, double delay)
 {
 	size_t n;
@@ -36,7 +34,7 @@ static void follow_delay(struct separate *s, double delay)
 		hi = fmax(hi, s->delay[i]);
 	}
 	calibration_widen(s->cal.duration, &lo, &hi);
-	if (n < ENOUGH) { /* it was learned from others */
+	if (n < ENOUGH) { /* the present range was learned from other pulses */
 		lo = fmin(s->scene.delta_min, lo);
 		hi = fmax(s->scene.delta_max, hi);
 	}
@@ -45,8 +43,8 @@ static void follow_delay(struct separate *s, double delay)
 	validation_range(s->validation, s->scene.delta_min, s->scene.delta_max);
 }
 
-/* The gain stays until the last GAINS pulses say, by three standard errors of their mean,
- * that it has changed; then it is theirs. */
+/* The gain is kept until the mean of the last GAINS pulses differs from it by three
+ * standard errors; then it is set to their mean. */
 static void follow_gain(struct separate *s, const struct joint_pulse *p)
 {
 	double share, se, sum = 0;

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One of these is set. */
+/* Exactly one of the pointers is set. */
 struct field {
 	const char *name;
 	int *whole;
@@ -17,7 +17,7 @@ struct field {
 
 enum { SCALARS = 48, SHORTEST_HOP = 32 };
 
-/* The numbers whose count is fixed, or known from others before them. */
+/* The numbers whose count is fixed or follows from preceding numbers. */
 static int list(struct instrument *in, struct field *f)
 {
 	struct calibration *c = &in->cal;
@@ -77,59 +77,61 @@ static void put(struct instrument_value *v, size_t *n, const char *name, int i, 
 	v[(*n)++] = (struct instrument_value){ name, i, x };
 }
 
-size_t instrument_values(const struct instrument *in, struct instrument_value **value)
+enum num_status instrument_values(
+	const struct instrument *in, struct instrument_value **value, size_t *n)
 {
 	struct instrument copy = *in;
 	const struct whitening *w = &copy.cal.whitening;
 	const struct shape *shape = copy.cal.shape;
 	struct field f[SCALARS];
 	int fields = list(&copy, f), cells = shape_cells(shape);
-	size_t n = 0, most = 2 * (size_t)(w->half + w->seen_half) + 4 * (size_t)cells +
-			     3 * TONES_MAX + SCALARS;
+	size_t most = 2 * (size_t)(w->half + w->seen_half) + 4 * (size_t)cells +
+		      3 * TONES_MAX + SCALARS;
 	struct instrument_value *v = malloc(most * sizeof *v);
 
 	*value = v;
+	*n = 0;
 	if (!v)
-		return 0;
+		return NUM_MEMORY;
 	for (int k = 0; k < fields; k++) {
 		int count = is_tone(&f[k]) ? copy.cal.tones : f[k].count;
 
 		if (!f[k].real)
-			put(v, &n, f[k].name, 0,
+			put(v, n, f[k].name, 0,
 				f[k].whole    ? *f[k].whole
 				: f[k].longer ? (double)*f[k].longer
 					      : (double)*f[k].size);
 		for (int i = 0; i < count; i++)
-			put(v, &n, f[k].name, i, f[k].real[i]);
+			put(v, n, f[k].name, i, f[k].real[i]);
 	}
 	for (int i = 0; w->tap && i < 2 * w->half + 1; i++)
-		put(v, &n, "white_tap", i, w->tap[i]);
+		put(v, n, "white_tap", i, w->tap[i]);
 	for (int i = 0; w->tap && i < 2 * w->seen_half + 1; i++)
-		put(v, &n, "white_seen", i, w->seen[i]);
-	put(v, &n, "white_taps", 0, w->tap ? 2 * w->half + 1 : 0);
-	put(v, &n, "shape_reach", 0, shape_reach(shape));
-	put(v, &n, "shape_cells", 0, cells);
+		put(v, n, "white_seen", i, w->seen[i]);
+	put(v, n, "white_taps", 0, w->tap ? 2 * w->half + 1 : 0);
+	put(v, n, "shape_reach", 0, shape_reach(shape));
+	put(v, n, "shape_cells", 0, cells);
 	for (int i = 0; i < 4 * cells; i++)
-		put(v, &n, "shape", i, shape_cubic(shape)[i]);
-	return n;
+		put(v, n, "shape", i, shape_cubic(shape)[i]);
+	return NUM_OK;
 }
 
-/* --- back again */
+/* --- reading the numbers */
 
 struct values {
 	const struct instrument_value *v;
 	size_t n, taken;
-	const char *missing; /* the first that was */
+	const char *missing; /* the first missing one */
 };
 
-/* A number once; nan where it is missing or not between least and most. */
+/* A number that must occur once; nan if it is missing or not between least and most. */
 static double take(
 	struct values *from, const char *name, int index, double least, double most)
 {
 	double found = NAN;
 	int times = 0;
 
-	/* They come in the order they are asked for, mostly. */
+	/* Usually they are in the order in which they are read. */
 	for (size_t i = 0; i < from->n && !times; i++) {
 		size_t k = (from->taken + i) % from->n;
 
@@ -193,7 +195,7 @@ static enum instrument_status take_arrays(struct values *from, struct calibratio
 	return c->shape ? INSTRUMENT_OK : INSTRUMENT_MEMORY;
 }
 
-/* The first number that no instrument has, or NULL. */
+/* The first number outside the range of instruments, or NULL. */
 static const char *out_of_range(const struct calibration *c)
 {
 	return c->tone_hop < SHORTEST_HOP              ? "tone_hop"

@@ -7,6 +7,7 @@
 #ifndef SIGNAL_INSTRUMENT_H
 #define SIGNAL_INSTRUMENT_H
 
+#include "num/status.h"
 #include "signal/learn/calibration.h"
 #include "signal/separate/validate.h"
 #include <stddef.h>
@@ -25,8 +26,9 @@ struct instrument_value {
 	double value;
 };
 
-/* All of it; free *value.  Returns their number, 0 out of memory. */
-size_t instrument_values(const struct instrument *in, struct instrument_value **value);
+/* All of it: *n numbers; free *value. */
+enum num_status instrument_values(
+	const struct instrument *in, struct instrument_value **value, size_t *n);
 
 enum instrument_status {
 	INSTRUMENT_OK,

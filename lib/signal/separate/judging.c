@@ -1,4 +1,4 @@
-/* judging.c - the queue of rows, and of sections to report: held until they are judged
+/* judging.c - the queue of rows, and of sections to report, which are held until judged
  */
 #include "signal/separate/separate_state.h"
 #include <stdlib.h>
@@ -19,19 +19,19 @@ struct entry *separate_queue_entry(struct separate *s)
 	return &s->queue[s->count++];
 }
 
-int separate_queue_report(
+enum separate_status separate_queue_report(
 	struct separate *s, const struct separate_section *section, size_t rows)
 {
 	struct report *r;
 
 	if (!s->par.on_section)
-		return 1;
+		return SEPARATE_OK;
 	if (s->reports == s->report_capacity) {
 		size_t capacity = s->report_capacity ? 2 * s->report_capacity : 16;
 		struct report *more = realloc(s->report, capacity * sizeof *more);
 
 		if (!more)
-			return 0;
+			return SEPARATE_MEMORY;
 		s->report = more;
 		s->report_capacity = capacity;
 	}
@@ -44,7 +44,7 @@ int separate_queue_report(
 	s->source = NULL;
 	r->first = s->count - rows;
 	r->rows = rows;
-	return 1;
+	return SEPARATE_OK;
 }
 
 static void give_reports(struct separate *s)

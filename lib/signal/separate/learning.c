@@ -3,7 +3,8 @@
 #include "signal/separate/separate_state.h"
 #include <math.h>
 
-/* With an instrument learned from the n oldest samples, or kept. */
+/* Starts the separation with an instrument learned from the n oldest samples (0: kept).
+ */
 static enum separate_status start(struct separate *s, size_t n)
 {
 	const struct calibration *c = &s->cal;
@@ -17,7 +18,7 @@ static enum separate_status start(struct separate *s, size_t n)
 	if (s->par.window < (size_t)(6 * reach))
 		s->par.window = s->par.window ? (size_t)(6 * reach)
 					      : (size_t)(reach + 23 * c->duration);
-	/* What a baseline has to follow in a window must not be too much. */
+	/* Limits the number of functions that describe the baseline of a window. */
 	if (c->whitening.low * 2 * (double)s->par.window > JOINT_BASELINE_MAX)
 		s->par.window = (size_t)fmax(
 			3 * reach, JOINT_BASELINE_MAX / (2 * c->whitening.low));
@@ -25,8 +26,8 @@ static enum separate_status start(struct separate *s, size_t n)
 		return SEPARATE_MEMORY;
 	if (s->par.quadrature && quadrature_start(&s->quadrature, c, n) != NUM_OK)
 		return SEPARATE_MEMORY;
-	/* Equal pulses on both channels reach the threshold of a pair at 1 / sqrt 2 of
-	 * it. */
+	/* Equal pulses on both channels reach the threshold of a pair when each reaches 1
+	 * / sqrt 2 of it. */
 	s->sections = sections_new(c->shape, c->duration, 0.65 * sqrt(c->drop),
 		fmax(c->delta_max, -c->delta_min));
 	if (s->sections)
@@ -51,7 +52,7 @@ static enum separate_status start(struct separate *s, size_t n)
 			.sources = s->par.sources,
 			.shape = c->shape };
 
-		/* Its first bin has to lie in the band of a pulse. */
+		/* The first bin has to lie in the band of a pulse. */
 		while (!s->par.mask_window && (double)window * MASKS_BAND < c->duration)
 			window *= 2;
 		if ((double)window * MASKS_BAND < c->duration)
@@ -89,7 +90,7 @@ static enum separate_status calibrate_now(struct separate *s)
 
 	if (s->tape[0].n < SEPARATE_SHORTEST)
 		return SEPARATE_NO_LAG;
-	/* Not more than asked for, however much has come in at once. */
+	/* No more than par.learn, even if more has arrived at once. */
 	n = s->tape[0].n < s->par.learn ? s->tape[0].n : s->par.learn;
 	known = s->par.known;
 	for (int c = 0; c < 2; c++) {

@@ -3,7 +3,7 @@
 #include "signal/separate/separate_state.h"
 #include <math.h>
 
-/* Samples that the noise is measured from at once. */
+/* Length of a block whose noise is measured, samples. */
 enum { LEVEL_BLOCK = 4096 };
 
 void separate_measure_level(struct separate *s)
@@ -33,9 +33,9 @@ void separate_measure_level(struct separate *s)
 	s->level_at = clean;
 }
 
-/* Relative standard error of robust_noise() of order 4 from n samples: 1.17 / sqrt(n) of
- * a median of independent ones, whose correlations rho_k in fourth differences (-0.8,
- * 0.4, -0.11, 0.01) leave n / (1 + 2 sum rho_k^2). */
+/* Relative standard error of robust_noise() of order 4 from n samples: that of a median
+ * of independent deviates is 1.17 / sqrt(n); the correlations rho_k of fourth differences
+ * (-0.8, 0.4, -0.11, 0.01) reduce n to n / (1 + 2 sum rho_k^2). */
 static double level_error(double n)
 {
 	return 1.17 * sqrt(2.63 / n);
@@ -49,8 +49,9 @@ void separate_noise(const struct separate *s, double share[2])
 
 int separate_is_other_noise(const struct separate *s)
 {
-	/* A quarter of chi-square: at 1e-9 per sample 25 times more or fewer false
-	 * alarms (a threshold of 33 becomes 26.4), standard errors wrong by an eighth. */
+	/* A change of chi-square by a quarter: with 1e-9 false alarms per sample, 25
+	 * times more or fewer of them (the threshold of 33 becomes 26.4), and standard
+	 * errors wrong by an eighth. */
 	static const double tolerance = 0.118;
 	double share[2], margin;
 

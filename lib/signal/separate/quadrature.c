@@ -349,8 +349,8 @@ static void make_block(struct fit *f, const struct quadrature_pulse *p, int i, i
 		}
 }
 
-/* Cholesky factor of the normal matrix in its place; 0: it is singular. */
-static int factorise(double *a, int n)
+/* Cholesky factor of the normal matrix in its place; NUM_DOMAIN: it is singular. */
+static enum num_status factorise(double *a, int n)
 {
 	for (int i = 0; i < n; i++) {
 		double *row = a + (size_t)i * (size_t)n, pivot;
@@ -362,10 +362,10 @@ static int factorise(double *a, int n)
 		}
 		pivot = row[i] - dot(row, row, (size_t)i);
 		if (!(pivot > 1e-13 * row[i]))
-			return 0;
+			return NUM_DOMAIN;
 		row[i] = sqrt(pivot);
 	}
-	return 1;
+	return NUM_OK;
 }
 
 static void solve(const double *a, int n, double *x)
@@ -382,8 +382,9 @@ static void solve(const double *a, int n, double *x)
 	}
 }
 
-/* Normal matrix, factorised, and gradient of the parts as they are; 0: singular. */
-static int make_normal(struct fit *f, const struct quadrature_pulse *p)
+/* Normal matrix, factorised, and gradient of the parts as they are; NUM_DOMAIN:
+ * singular. */
+static enum num_status make_normal(struct fit *f, const struct quadrature_pulse *p)
 {
 	for (int i = 0; i < f->m; i++) {
 		make_gradient(f, p, i);
@@ -394,7 +395,7 @@ static int make_normal(struct fit *f, const struct quadrature_pulse *p)
 }
 
 /* The b that fit best at the arrivals found in x. */
-static int guess_quadrature(struct fit *f, struct quadrature_pulse *p)
+static enum num_status guess_quadrature(struct fit *f, struct quadrature_pulse *p)
 {
 	int m = f->m;
 	double *a = f->normal;
@@ -413,12 +414,12 @@ static int guess_quadrature(struct fit *f, struct quadrature_pulse *p)
 	}
 	for (int i = 0; i < m; i++)
 		f->gradient[i] = f->gradient[PARAMETERS * i + B];
-	if (!factorise(a, m))
-		return 0;
+	if (factorise(a, m) != NUM_OK)
+		return NUM_DOMAIN;
 	solve(a, m, f->gradient);
 	for (int i = 0; i < m; i++)
 		p[i].b = f->gradient[i];
-	return 1;
+	return NUM_OK;
 }
 
 /* As far as the joint fit lets pulses go in one step (joint_step.c). */
@@ -447,7 +448,7 @@ static enum num_status improve(struct fit *f, struct quadrature_pulse *p, double
 	for (int step = 0; step < STEPS; step++) {
 		double after = INFINITY, gain;
 
-		if (!make_normal(f, p))
+		if (make_normal(f, p) != NUM_OK)
 			return NUM_DOMAIN;
 		solve(f->normal, PARAMETERS * f->m, f->gradient);
 		for (int k = 0; k < HALVES && !(after < *chi2); k++) {
@@ -465,7 +466,7 @@ static enum num_status improve(struct fit *f, struct quadrature_pulse *p, double
 			break;
 	}
 	*chi2 = chi_square(f, p);
-	return make_normal(f, p) ? NUM_OK : NUM_DOMAIN;
+	return make_normal(f, p);
 }
 
 static void fill_covariance(struct fit *f, struct quadrature_pulse *p)
@@ -527,7 +528,7 @@ enum num_status quadrature_fit(const struct quadrature *q, const struct joint *j
 		all = chi_square(&f, out);
 	}
 	if (status == NUM_OK && m > 0) {
-		status = guess_quadrature(&f, out) ? NUM_OK : NUM_DOMAIN;
+		status = guess_quadrature(&f, out);
 		all = subtract_pulses(&f, out);
 		if (status == NUM_OK)
 			status = improve(&f, out, &all);

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Hides impulses as well, by s->spikes; 0 if there are none. */
+/* Excludes impulses from the fit as well, by s->spikes; 0 if there are none. */
 static int hide_spikes(struct separate *s, long long from, size_t n)
 {
 	size_t found = 0;
@@ -38,7 +38,7 @@ enum separate_status separate_try_rivals(
 
 	most = (int)fmin(a->m, fmax(MOST * (double)n / s->cal.duration, 1));
 	if (cut && a->m > 2 * most)
-		return SEPARATE_OK; /* a crowd */
+		return SEPARATE_OK; /* too many pulses for the time */
 	tried = 2 * most < plain.max_pulses ? 2 * most : plain.max_pulses;
 	if (room_for(&s->spikes, &s->spike_room, 2 * n, sizeof *s->spikes))
 		return SEPARATE_MEMORY;

@@ -1,11 +1,11 @@
-/* rows.c - rows and reports of sections that were taken apart, or could not be */
+/* rows.c - rows and reports of sections that were separated, or are unresolved */
 #include "signal/separate/contrasts.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* What the second component adds to the row of pulse i. */
+/* Fills in what the row of pulse i has from the second component. */
 static void tell_phase(
 	const struct separate *s, int i, long long from, struct transit *out)
 {
@@ -25,22 +25,22 @@ static void tell_phase(
 	out->amplitude_se = sqrt(ca * along[2] + cb * along[3]) * noise;
 	out->correlation =
 		(along[1] - along[0]) * noise / (out->amplitude_se * out->delay_se);
-	/* of a reversed pulse, the opposite of the phase of what it was reversed from */
+	/* the phase of a reversed pulse is opposite to that of the original */
 	out->phase = s->cal.reversed ? atan2(-p->b, -p->a) : atan2(p->b, p->a);
 	out->phase_se = sqrt(cb * cb * p->cov[2][2] - 2 * ca * cb * p->cov[2][3] +
 				ca * ca * p->cov[3][3]) /
 			size;
 }
 
-static int emit_pulse(struct separate *s, const struct joint_pulse *p, long long from,
-	int sources, double chi2, enum separate_verdict verdict)
+static enum separate_status emit_pulse(struct separate *s, const struct joint_pulse *p,
+	long long from, int sources, double chi2, enum separate_verdict verdict)
 {
 	struct entry *entry = separate_queue_entry(s);
 	struct transit *out;
 	double delay_var = joint_delay_variance(p), noise = s->cal.noise[0];
 
 	if (!entry)
-		return 0;
+		return SEPARATE_MEMORY;
 	out = &entry->row;
 	out->section = s->number;
 	out->sources = sources;
@@ -69,7 +69,7 @@ static int emit_pulse(struct separate *s, const struct joint_pulse *p, long long
 		sizeof entry->arrival.odds);
 	s->counters.rows++;
 	s->counters.negative += p->a < 0;
-	return 1;
+	return SEPARATE_OK;
 }
 
 /* The larger pulse nearest to pulse i that overlaps it, or -1. */
@@ -87,7 +87,7 @@ static int larger_neighbour(const struct separate *s, int m, int i)
 	return found;
 }
 
-/* What the last m rows, of one fit, tell of each other. */
+/* Compares the delays of the last m rows, which are of one fit. */
 static enum num_status compare_pulses(struct separate *s, int m)
 {
 	double delay[JOINT_PULSES_MAX], square[JOINT_PULSES_MAX], var[JOINT_PULSES_MAX];
@@ -121,8 +121,8 @@ static enum num_status compare_pulses(struct separate *s, int m)
 	return NUM_OK;
 }
 
-int separate_report_section(struct separate *s, long long from, long long to, int sources,
-	double chi2, enum separate_verdict verdict, const double *source)
+void separate_report_section(struct separate *s, long long from, long long to,
+	int sources, double chi2, enum separate_verdict verdict, const double *source)
 {
 	struct separate_section out = { .number = s->number,
 		.begin = from,
@@ -135,21 +135,20 @@ int separate_report_section(struct separate *s, long long from, long long to, in
 
 	if (s->par.on_section)
 		s->par.on_section(s->par.context, &out);
-	return 1;
 }
 
-int separate_reserve_sources(struct separate *s, size_t count)
+enum separate_status separate_reserve_sources(struct separate *s, size_t count)
 {
 	free(s->source);
 	s->source = calloc(count ? count : 1, sizeof *s->source);
-	return s->source != NULL;
+	return s->source ? SEPARATE_OK : SEPARATE_MEMORY;
 }
 
-/* Each fitted pulse alone, as sensor 1 would see it. */
-static int draw_pulses(struct separate *s, int m, size_t n)
+/* Draws each fitted pulse by itself, as sensor 1 would record it. */
+static enum separate_status draw_pulses(struct separate *s, int m, size_t n)
 {
-	if (!separate_reserve_sources(s, (size_t)m * n))
-		return 0;
+	if (separate_reserve_sources(s, (size_t)m * n) != SEPARATE_OK)
+		return SEPARATE_MEMORY;
 	for (int i = 0; i < m; i++) {
 		double *x = s->source + (size_t)i * n;
 
@@ -157,7 +156,7 @@ static int draw_pulses(struct separate *s, int m, size_t n)
 		for (size_t k = 0; k < n; k++)
 			x[k] *= s->cal.noise[0];
 	}
-	return 1;
+	return SEPARATE_OK;
 }
 
 enum separate_status separate_dense_section(
@@ -198,7 +197,7 @@ enum separate_status separate_dense_section(
 	s->strange = 0;
 	out.sources = p->sources;
 	out.dense = &c;
-	return separate_queue_report(s, &out, 1) ? SEPARATE_OK : SEPARATE_MEMORY;
+	return separate_queue_report(s, &out, 1);
 }
 
 enum separate_status separate_give_pulses(struct separate *s, long long from,
@@ -213,12 +212,13 @@ enum separate_status separate_give_pulses(struct separate *s, long long from,
 
 	s->group++;
 	for (int i = 0; i < done; i++)
-		if (!emit_pulse(s, &s->pulse[i], from, m, j->chi2, j->pulse[i]))
+		if (emit_pulse(s, &s->pulse[i], from, m, j->chi2, j->pulse[i]) !=
+			SEPARATE_OK)
 			return SEPARATE_MEMORY;
 	if (compare_pulses(s, done) != NUM_OK)
 		return SEPARATE_MEMORY;
-	if (s->par.want_sources && !draw_pulses(s, done, (size_t)(to - from)))
+	if (s->par.want_sources &&
+		draw_pulses(s, done, (size_t)(to - from)) != SEPARATE_OK)
 		return SEPARATE_MEMORY;
-	return separate_queue_report(s, &out, (size_t)done) ? SEPARATE_OK
-							    : SEPARATE_MEMORY;
+	return separate_queue_report(s, &out, (size_t)done);
 }

@@ -66,11 +66,11 @@ long long separate_bad_sample(const struct separate *s, int *channel)
 	return s->bad_frame;
 }
 
-/* Pulses per duration that are not worth a try. */
+/* Pulses per duration above which long sections are not separated. */
 static const double CROWD = 2.5;
 
-/* Are there too many throughout, by what the voltage of the first stretch tells?  That is
- * the least they can be. */
+/* 1 if there are too many pulses throughout, by Campbell's theorem for the first samples,
+ * which gives a lower bound of their rate. */
 static int is_crowded(struct separate *s, long long from, long long to)
 {
 	struct campbell c;
@@ -117,7 +117,7 @@ static enum num_status scan(struct separate *s, long long limit)
 		s->ended ? limit : limit - sections_reach(s->sections));
 }
 
-/* Works off all sections that are whole. */
+/* Separates all sections that are complete. */
 static enum separate_status work(struct separate *s)
 {
 	long long limit, longest, keep;
@@ -134,7 +134,7 @@ static enum separate_status work(struct separate *s)
 	if (limit <= s->done)
 		return SEPARATE_OK;
 	if (!s->looked || s->par.quadrature > s->quadrature.measured) {
-		/* Always the same stretch, however the record comes in. */
+		/* Always the same samples, whatever the sizes of the pieces passed. */
 		long long upto = s->done + (long long)s->par.learn / 2;
 
 		if (limit < upto && !s->ended)
@@ -194,7 +194,8 @@ static enum separate_status work(struct separate *s)
 		if (status != SEPARATE_OK)
 			return status;
 		s->counters.active += (double)(next - from);
-		if (next == from) { /* the same again, shorter or as shot noise */
+		if (next == from) { /* the same samples again, as a shorter window or as
+				       unresolved */
 			s->continuing = 1;
 			continue;
 		}
@@ -268,8 +269,8 @@ enum separate_status separate_end(struct separate *s)
 	return s->calibrated ? work(s) : s->reason;
 }
 
-/* A tenth of the rows, and more than two, that fit no particle are more than a few odd
- * ones: then the pulses are not what was learned, and other rows may be wrong, too. */
+/* If more than a tenth of the rows, and more than two, fit no particle, the pulses are
+ * not those that were learned, and other rows may be wrong, too. */
 enum separate_doubt separate_doubtful(const struct separate *s)
 {
 	const struct separate_counters *c = &s->counters;

@@ -1,12 +1,12 @@
 /* separate.h - a two-sensor record in, particles out, as the record comes
  *
- * The first learn samples are held back to calibrate (calibrate.h); where they hold no
- * particle half of them are passed over, and so on until there is one.  From then on the
- * record is cleaned, aligned and cut into sections (sections.h); each section is given
- * to one of the methods: joint fit (joint.h) or masks (masks.h).  Sections longer than
- * window are worked off in windows, pulses near the end of one being the first guesses
- * of the next.  Where to cut depends on the record alone, so that the particles are the
- * same however the record is handed in; memory is bounded by learn and window.
+ * The instrument is learned from the first learn samples (calibrate.h); if these contain
+ * no particle, half of them are skipped, and so on until there is one.  From then on the
+ * record is cleaned, aligned and cut into sections (sections.h); each section is
+ * separated by one of the methods: joint fit (joint.h) or masks (masks.h).  Sections
+ * longer than window are separated window by window; pulses near the end of one are the
+ * first guesses of the next.  The cuts depend on the record alone, so that the particles
+ * do not depend on the sizes of the pieces passed; memory is bounded by learn and window.
  *
  *	struct separate *s = separate_new(&par);
  *	while ((n = read(x)) > 0 && separate_push(s, x, n) == SEPARATE_OK)
@@ -28,12 +28,12 @@
 #include "signal/separate/instrument.h"
 #include <stddef.h>
 
-/* Samples that nothing can be learned from fewer of. */
+/* Fewest samples from which an instrument can be learned. */
 enum { SEPARATE_SHORTEST = 64 };
 
 enum separate_method { SEPARATE_FIT, SEPARATE_MASKS };
 
-/* One particle on its way past both sensors, as the record tells it. */
+/* One particle that passes both sensors, as estimated from the record. */
 struct transit {
 	long section;     /* from 1 */
 	int sources;      /* particles in this section (or window of it) */
@@ -68,7 +68,7 @@ struct separate_par {
 	size_t learn;    /* samples held back to calibrate, at least SEPARATE_SHORTEST */
 	size_t window;   /* longest section worked off at once; 0: 24 durations */
 	int sources;     /* exactly so many in each section; 0: find out */
-	int most_pulses; /* of a window, if fewer than JOINT_PULSES_MAX; 0: so many */
+	int most_pulses; /* limit for a window; 0: JOINT_PULSES_MAX */
 	/* Of the masks, samples; 0: 64, or as many as the pulses need, and half of it. */
 	size_t mask_window, mask_hop;
 	int quadrature;          /* 1: the record has two components; SEPARATE_FIT only */
@@ -87,22 +87,21 @@ enum separate_status {
 	SEPARATE_SILENT_1,
 	SEPARATE_SILENT_2,
 	SEPARATE_NO_LAG,
-	SEPARATE_HARD, /* too many pulses would be needed to describe what is learned from
-			*/
+	SEPARATE_HARD,    /* what is learned from is described only by too many pulses */
 	SEPARATE_AT_ONCE, /* both channels have the same at once: no particles */
 	SEPARATE_SWAPPED, /* particles pass sensor 2 first */
 	SEPARATE_FAR,     /* the lag given is as long as what is learned from */
 	SEPARATE_NARROW,  /* a filter has left too little of the pulses */
 	SEPARATE_FAST,
 	SEPARATE_SLOW,
-	SEPARATE_TONES,  /* the lines given cannot be told from each other */
+	SEPARATE_TONES,  /* the lines given cannot be distinguished */
 	SEPARATE_WINDOW, /* that of the masks is shorter than half a pulse */
 	SEPARATE_WIDE    /* pulses may last too long, or no time, within the spread */
 };
 
-/* Work done and left out so far. */
+/* Work done and avoided so far. */
 struct separate_counters {
-	double passed_over;       /* before there was anything to learn from */
+	double passed_over;       /* skipped before the instrument was learned */
 	double samples, active;   /* frames in all, and in sections */
 	double sections, singles; /* sections, and those with one pulse */
 	double fits, steps, searches;
@@ -110,7 +109,8 @@ struct separate_counters {
 	double negative;      /* of rows, with a negative amplitude */
 	double together;      /* doubted because they may be two particles */
 	double foreign;       /* doubted by their velocities, though they fit */
-	double masks, masks_skipped; /* sections demixed, and those that need not be */
+	double masks, masks_skipped; /* sections demixed, and those with one source, which
+					need not be */
 	double unresolved, dense;    /* rows, and the samples these stand for */
 };
 
@@ -134,13 +134,14 @@ const struct calibration *separate_calibration(
 /* What was learned, to keep, and what the rows so far tell of it; its arrays remain those
  * of s.  0: not yet, some rows of what is learned from are still to be judged. */
 int separate_instrument(const struct separate *s, struct instrument *view);
-/* Noise of both channels over that of the kept instrument, by up to par.learn samples. */
+/* Noise of both channels relative to that of the kept instrument, from up to par.learn
+ * samples. */
 void separate_noise(const struct separate *s, double share[2]);
 const struct separate_counters *separate_counters(const struct separate *s);
 /* Why all rows are doubtful. */
 enum separate_doubt {
 	SEPARATE_BELIEVED, /* they are not */
-	SEPARATE_FOREIGN,  /* so many pulses fit no particle that the others may not */
+	SEPARATE_FOREIGN,  /* so many pulses fit no particle that none is believed */
 	SEPARATE_NOISE,    /* the noise is not that of the kept instrument */
 	SEPARATE_REVERSED, /* nine tenths of the pulses are those of the kept instrument
 			      with their sign changed */

@@ -26,19 +26,21 @@ struct report {
 	size_t first, rows; /* of the queue */
 };
 
-/* Pulses that stood alone by which the range of delays and the gain are followed. */
+/* The range of delays follows the last TRACKED pulses that stood alone, once there are
+ * ENOUGH; the gain is checked after every GAINS of them. */
 enum { TRACKED = 64, ENOUGH = 12, GAINS = 8 };
 
 struct separate {
 	struct separate_par par;
 	struct calibration cal;
 	int calibrated, ended;
-	struct instrument kept; /* par.kept, its cal moved to cal */
-	int varies[2];          /* channel: not constant so far */
-	double first[2];        /* samples of a kept instrument's record */
+	struct instrument kept; /* par.kept, whose cal is moved to cal */
+	int varies[2];          /* 1: the channel has not been constant so far */
+	double first[2];        /* first samples of a record with a kept instrument */
 	double level[2], levels;
 	long long level_at;
-	int looked, crowded; /* at the first stretch: too many pulses in long sections */
+	int looked;  /* 1: the first samples have been examined */
+	int crowded; /* 1: long sections hold too many pulses */
 	struct tape tape[2];
 	struct sections *sections;
 	struct joint *joint;
@@ -46,34 +48,35 @@ struct separate {
 	struct joint_scene scene;
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
 	struct quadrature quadrature;
-	struct quadrature_pulse both[JOINT_PULSES_MAX]; /* pulse, with both components */
+	struct quadrature_pulse both[JOINT_PULSES_MAX]; /* pulse, both components */
 	int with_both;  /* 1: both is of the present window */
-	int carried;    /* pulses of the last window that the next one starts from */
+	int carried;    /* pulses of the last window that are first guesses of the next */
 	long long span; /* longest window in this section; 0: as given */
-	int failures;   /* windows unresolved, one after the other */
-	int dense;      /* the rest of this section is not taken apart */
-	int strange;    /* ... though it is short */
+	int failures;   /* consecutive windows that were not resolved */
+	int dense;      /* the rest of this section is one unresolved row */
+	int strange;    /* ... although the section is short */
 	unsigned char *spikes; /* flags of impulses */
 	size_t spike_room;
-	/* Covariances of the delays of pulse, all of them; 0: not known. */
+	/* Covariances of the delays of all (so many) pulses; 0: not known. */
 	double delay_cov[JOINT_PULSES_MAX * JOINT_PULSES_MAX];
 	int all;
 	double pair_odds[JOINT_PULSES_MAX][JOINT_SHARES]; /* of each of them */
 	double delay[TRACKED]; /* of the last pulses that stood alone */
 	size_t delays;
-	double gain_off[GAINS]; /* of such, in standard errors, since it was last set */
+	double gain_off[GAINS]; /* relative deviations of the gain of such pulses, in
+				   standard errors */
 	double gain_sum, gain_weight;
 	int gains;
 	int continuing; /* the next window belongs to the same section */
 	long number;
-	long long done; /* samples before this one are worked off */
+	long long done; /* samples before this one are done */
 	struct entry *queue;
 	size_t count, judged, given, capacity;
 	struct report *report;
 	size_t reports, report_capacity;
 	struct validation *validation;
 	struct together *together;
-	long long hold; /* rows of what lies before are judged together */
+	long long hold; /* rows before this sample are judged together */
 	int holding, group;
 	double *source;
 	struct separate_counters counters;
@@ -82,7 +85,7 @@ struct separate {
 	int bad_channel;
 };
 
-/* One account of a window: its pulses and what is thought of them. */
+/* One explanation of a window: its pulses, and the goodness of their fit. */
 struct account {
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
 	int m, done; /* pulses, and those before the boundary */
@@ -101,7 +104,7 @@ static inline double *channel_2(struct separate *s, long long at)
 	return s->tape[1].x + (at + s->cal.shift - s->tape[1].begin);
 }
 
-/* The second components, as channel_1() and channel_2(). */
+/* The second components, aligned like channel_1() and channel_2(). */
 static inline void quadrature_at(struct separate *s, long long at, double *v[2])
 {
 	for (int c = 0; c < 2; c++) {
@@ -111,7 +114,7 @@ static inline void quadrature_at(struct separate *s, long long at, double *v[2])
 	}
 }
 
-/* Aligned samples before this one are ready on both channels. */
+/* Samples before this one are prepared on both channels, aligned. */
 static inline long long ready(const struct separate *s)
 {
 	long long second = s->tape[1].clean - s->cal.shift;
@@ -123,49 +126,52 @@ static inline long long ready(const struct separate *s)
 
 /* A new row of the queue, zeroed; NULL: no memory. */
 struct entry *separate_queue_entry(struct separate *s);
-/* The section is reported with its rows, the last of the queue, and the sources drawn. */
-int separate_queue_report(
+/* Queues the report of a section with its rows, which are the last of the queue, and the
+ * sources in s->source. */
+enum separate_status separate_queue_report(
 	struct separate *s, const struct separate_section *section, size_t rows);
-/* Judges the rows held back, which are given out from now on. */
+/* Judges the rows held back; separate_next() may then return them. */
 enum separate_status separate_judge_rows(struct separate *s);
 
 /* rows.c */
 
-/* s->source of so many samples, zeroed. */
-int separate_reserve_sources(struct separate *s, size_t count);
+/* Allocates count samples of s->source, all 0. */
+enum separate_status separate_reserve_sources(struct separate *s, size_t count);
 /* Reports a section at once. */
-int separate_report_section(struct separate *s, long long from, long long to, int sources,
-	double chi2, enum separate_verdict verdict, const double *source);
-/* Shot noise of [from, to): one row. */
+void separate_report_section(struct separate *s, long long from, long long to,
+	int sources, double chi2, enum separate_verdict verdict, const double *source);
+/* Queues one row for [from, to), whose pulses are not resolved: rate and amplitude by
+ * Campbell's theorem. */
 enum separate_status separate_dense_section(
 	struct separate *s, long long from, long long to);
-/* Gives out the first done of the m pulses fitted to [from, to). */
+/* Queues rows for the first done of the m pulses fitted to [from, to). */
 enum separate_status separate_give_pulses(struct separate *s, long long from,
 	long long to, int m, int done, const struct goodness *j);
 
 /* learning.c */
 
-/* Learns from the oldest samples held; where they hold no particle, half of them are
- * passed over and the next are tried. */
+/* Learns the instrument from the oldest samples; if they contain no particle, half of
+ * them are skipped and the next are tried. */
 enum separate_status separate_learn(struct separate *s);
-/* Takes a kept instrument for that of the record. */
+/* Uses a kept instrument for the record. */
 enum separate_status separate_start_kept(struct separate *s);
-/* A channel of a kept instrument that stays constant as long as one would learn. */
+/* SILENT if, with a kept instrument, a channel is constant for as long as one would
+ * learn. */
 enum separate_status separate_check_alive(struct separate *s, const double *x, size_t n);
 
 /* noise_level.c; separate_noise() as well */
 
-/* Measures the noise of both channels once they are clean, until as many samples as are
- * learned from have shown it. */
+/* Measures the noise of both channels in the prepared samples, up to as many samples as
+ * are used for learning. */
 void separate_measure_level(struct separate *s);
 int separate_is_other_noise(const struct separate *s);
 
 /* window.c */
 
-/* Samples that the converter has not measured are left out of the fit, except where the
- * record was made white, which spreads them. */
+/* Excludes the samples that the converter has not measured from the fit.  Not if the
+ * record was whitened, which spreads them over others. */
 void separate_hide(struct separate *s, long long from, size_t n);
-/* Fits a window from the first a->m pulses of a, and judges the fit. */
+/* Fits a window, with the first a->m pulses of a as guesses, and judges the fit. */
 enum separate_status separate_fit_window(
 	struct separate *s, long long from, size_t n, int cut, struct account *a);
 /* Keeps of the last fit what the next one overwrites. */
@@ -174,31 +180,33 @@ int separate_is_described(const struct account *a);
 
 /* following.c */
 
-/* Is the range of delays not given? */
+/* 1 if the range of delays is not given by the caller. */
 int separate_is_range_free(const struct separate *s);
-/* Searches a range of delays about the present one that is as wide as may be. */
+/* Widens the range of delays to the widest one, about its present middle. */
 void separate_widen(struct separate *s);
-/* What a pulse that stands alone tells of the instrument. */
+/* Updates the range of delays and the gain by a pulse that stands alone. */
 void separate_follow(struct separate *s, const struct account *a);
 
 /* rivals.c */
 
-/* Where pulses do not describe a window: impulses beside the pulses, other velocities,
- * pulses of either sign, or those with impulses; without more pulses. */
+/* Tries other explanations of a window that pulses of one sign do not describe: impulses
+ * beside the pulses, a wider range of velocities, pulses of both signs, and these with
+ * impulses.  One is accepted if it describes the window with no more pulses than before.
+ */
 enum separate_status separate_try_rivals(
 	struct separate *s, long long from, size_t n, int cut, struct account *a);
 
 /* by_fit.c */
 
-/* Works off [from, to) by a joint fit.  With cut, the section goes on: pulses behind
- * the cut are carried into the next window, whose first sample is *next; from again if
- * a shorter one, or shot noise, is to be tried. */
+/* Separates [from, to) by a joint fit.  With cut the section continues: pulses behind the
+ * cut are carried into the next window, whose first sample is *next.  *next is from if
+ * the same samples are to be tried again, as a shorter window or as unresolved. */
 enum separate_status separate_fit_section(
 	struct separate *s, long long from, long long to, int cut, long long *next);
 
 /* by_masks.c */
 
-/* Works off [from, to) by masks. */
+/* Separates [from, to) by masks. */
 enum separate_status separate_mask_section(
 	struct separate *s, long long from, long long to);
 

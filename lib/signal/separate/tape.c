@@ -34,7 +34,7 @@ enum num_status tape_append(struct tape *t, const double *x, size_t n)
 
 		t->x[t->n] = x[2 * i];
 		t->hidden[t->n++] = 0;
-		lost = lost < t->n ? lost : t->n; /* others were dropped */
+		lost = lost < t->n ? lost : t->n; /* the others are no longer stored */
 		memset(t->hidden + t->n - lost, 1, lost);
 	}
 	return NUM_OK;
@@ -87,9 +87,9 @@ static void scale(struct tape *t, long long from, long long to, double noise)
 		t->x[i] /= noise;
 }
 
-/* Takes tones from what has come in and divides by the noise.  Tones are fitted around
- * the middle of every hop, over two hops, and run linearly in between; they depend on
- * the record alone, not on how it came in. */
+/* Subtracts the tones and divides by the noise.  Tones are fitted around the middle of
+ * every hop, over two hops, with linear interpolation between; they depend on the record
+ * alone, not on the sizes of its pieces. */
 static enum num_status clean(
 	struct tape *t, const struct calibration *c, double noise, int ended)
 {
@@ -110,7 +110,7 @@ static enum num_status clean(
 
 		if (t->clean == end || (middle + hop > end && !ended))
 			return NUM_OK;
-		if (middle + hop > end) { /* the last one reaches to the end */
+		if (middle + hop > end) { /* the last hop extends to the end */
 			until = end;
 			middle = end - hop / 2 > t->clean ? end - hop / 2 : end;
 			from = t->clean;
@@ -120,7 +120,7 @@ static enum num_status clean(
 			(double)from, c->tones, c->omega, after, NULL, NULL);
 		if (status == TONES_MEMORY)
 			return NUM_MEMORY;
-		if (status == TONES_SHORT) /* a short rest */
+		if (status == TONES_SHORT) /* the rest is too short to fit */
 			memcpy(after, t->coefficient, sizeof after);
 		if (!t->started)
 			memcpy(t->coefficient, after, sizeof after);
@@ -135,8 +135,8 @@ static enum num_status clean(
 	}
 }
 
-/* Undoes the filter in whole blocks, so that the bits do not depend on how the record
- * came in; what is written lags behind what is read. */
+/* Undoes the filter in whole blocks, so that the results do not depend on the sizes of
+ * the pieces; output lags behind input. */
 static void whiten(struct tape *t, const struct whitening *w, double mean, int ended)
 {
 	long long end = t->begin + (long long)t->n, last = end - w->edge, block;

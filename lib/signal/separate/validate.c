@@ -6,20 +6,21 @@
 #include <string.h>
 
 enum {
-	LATELY = 256, /* rows, and pairs, that the present is judged by */
-	FEW = 8,      /* delays that a variance can be told from */
-	PLACES = 32   /* within two durations to either side of a strong pulse */
+	LATELY = 256, /* latest rows, and pairs, that are used to judge */
+	FEW = 8,      /* fewest delays for an estimate of the variance */
+	PLACES = 32   /* classes of place within two durations on either side of a strong
+			 pulse */
 };
 
-/* Variance of z of the parts of one object: 1 if the model of the others held for them.
- */
+/* Variance of z for parts of one object; it would be 1 if the model of the shape held for
+ * them. */
 static const double PARTS = 2;
 
-/* Twice the logarithm of the likelihood ratio that says that there are parts at all: 3.5
- * deviations. */
+/* Twice the logarithm of the likelihood ratio above which there are parts of objects at
+ * all: 3.5 deviations. */
 static const double CERTAIN = 12;
 
-/* Deviations that no group of particles reaches. */
+/* Deviations beyond which a group is not one of particles. */
 static const double BEYOND = 5;
 
 struct delay {
@@ -37,11 +38,11 @@ struct validation {
 	unsigned char doubted[LATELY], at_edge[LATELY];
 	size_t delays, pairs, rows; /* taken in so far */
 	double middle, half;        /* of the range of delays; half 0: not known */
-	double mean, var, margin;   /* of the delays; on the safe side */
-	double known;               /* delays these are from */
+	double mean, var, margin;   /* of the delays; margin: an upper bound of var */
+	double known;               /* number of delays they are estimated from */
 	double local; /* variance of a delay by its difference from the next */
 	struct flow told;
-	double parts; /* share of them among pairs; 0: none for certain */
+	double parts; /* share of parts among pairs; 0: not significant */
 	double recurring[PLACES], groups;
 };
 
@@ -84,7 +85,7 @@ static size_t held(size_t count)
 	return count < LATELY ? count : LATELY;
 }
 
-/* Rows from i on that belong to its group. */
+/* Number of rows of the group that begins at row i. */
 static size_t group_size(const struct evidence *e, size_t i, size_t n)
 {
 	size_t k = i;
@@ -104,7 +105,7 @@ static int fits(const struct evidence *e, size_t m)
 
 /* --- the flow */
 
-/* The delay of the largest pulse of a group that fits. */
+/* Adds the delay of the largest pulse of a group that fits. */
 static void take_delay(struct validation *v, const struct evidence *e, size_t m)
 {
 	size_t largest = 0;
@@ -118,8 +119,9 @@ static void take_delay(struct validation *v, const struct evidence *e, size_t m)
 		(struct delay){ e[largest].delay, e[largest].var, m == 1 };
 }
 
-/* Half the mean square of differences between successive delays, less their errors (von
- * Neumann), by the median, which for normal ones is 0.4549 of the mean. */
+/* Half the mean square of differences of successive delays, without their errors (von
+ * Neumann).  It is estimated by the median, which for normal deviates is 0.4549 of the
+ * mean. */
 static double local_variance(const struct validation *v, int alone)
 {
 	double square[LATELY];
@@ -140,7 +142,7 @@ static double local_variance(const struct validation *v, int alone)
 }
 
 /* Mean and variance of the delays of particles, by those that stand alone if there are
- * some. */
+ * any. */
 static void learn_flow(struct validation *v)
 {
 	double x[LATELY], y[LATELY], scale, sum = 0, count = 0;
@@ -183,7 +185,7 @@ static void learn_flow(struct validation *v)
 	v->margin = fmax(v->var, scale * scale) * (1 + 3 * sqrt(2 / count));
 }
 
-/* Are the velocities of a group other than the flow has?  By the cube root of
+/* 1 if the velocities of a group are not those of the flow, by the cube root of
  * chi-square (Wilson and Hilferty, Proc. Natl. Acad. Sci. 17, 1931). */
 static int is_impossible(const struct validation *v, const struct evidence *e, size_t m)
 {
@@ -197,8 +199,9 @@ static int is_impossible(const struct validation *v, const struct evidence *e, s
 	return cbrt(sum / (double)m) > 1 - spread + BEYOND * sqrt(spread);
 }
 
-/* Is the delay, known to a tenth of the range, in the outer tenth of it at either side?
- * A range is learned to be twice as wide as that of the particles seen. */
+/* 1 if the delay lies in the outer tenth of the range on either side, and its error is
+ * below a tenth of the range.  The range is learned to be twice as wide as that of the
+ * particles. */
 static int is_at_edge(const struct validation *v, const struct evidence *e)
 {
 	return v->half > 0 && e->var > 0 && sqrt(e->var) < 0.2 * v->half &&
@@ -216,7 +219,8 @@ static void take_pairs(struct validation *v, const struct evidence *e, size_t m)
 					2 / e[i].apart_var };
 }
 
-/* How much more likely is a pair one object than two, but for how frequent either is? */
+/* Likelihood ratio of a pair being one object and being two, without their frequencies.
+ */
 static double likelihood_ratio(const struct validation *v, double z2, double ratio)
 {
 	double two = 1 + ratio * v->var;
@@ -224,7 +228,7 @@ static double likelihood_ratio(const struct validation *v, double z2, double rat
 	return sqrt(two / PARTS) * exp(fmin(0.5 * z2 * (1 / two - 1 / PARTS), 300));
 }
 
-/* The share of parts of greatest likelihood, by expectation and maximisation. */
+/* Maximum-likelihood estimate of the share of parts, by expectation and maximisation. */
 static void learn_parts(struct validation *v)
 {
 	enum { STEPS = 30 };
@@ -259,12 +263,12 @@ static int is_part(const struct validation *v, const struct evidence *e)
 	return v->parts * odds > 1 - v->parts;
 }
 
-/* Likelihood ratio at which a group is taken for one object: one sound group in a
- * thousand at most is. */
+/* Likelihood ratio above which a group is one object: at most one correct group in a
+ * thousand exceeds it. */
 static const double ONE = 1000;
 
-/* Is a group one object, by all its delays?  A flow that changes between groups does not
- * count: local is the scatter from one particle to the next. */
+/* 1 if a group is one object, by all its delays.  Changes of the flow between groups do
+ * not count: local is the scatter from one particle to the next. */
 static int is_one(const struct validation *v, const struct evidence *e, size_t m)
 {
 	double sum = 0, scatter = fmin(v->local, v->var);
@@ -284,7 +288,8 @@ static int is_one(const struct validation *v, const struct evidence *e, size_t m
 
 /* --- weak pulses that recur */
 
-/* Less than half as high, and at its velocity as far as can be told: the place, or -1. */
+/* Place of a pulse that is less than half as high as its partner and has the same
+ * velocity within the error, or -1. */
 static int weak_place(const struct evidence *e)
 {
 	int place = (int)floor((e->place + 2) * PLACES / 4);
@@ -295,8 +300,8 @@ static int weak_place(const struct evidence *e)
 		       : -1;
 }
 
-/* In more than four groups and a tenth of them, where chance, which has 32 places to
- * choose from and velocities to give away, does not come near. */
+/* 1 if the place occurs in more than four groups and in a tenth of all.  Chance, with 32
+ * places and different velocities, does not reach that. */
 static int recurs(const struct validation *v, const struct evidence *e)
 {
 	int place = weak_place(e);
@@ -304,7 +309,7 @@ static int recurs(const struct validation *v, const struct evidence *e)
 	return place >= 0 && v->recurring[place] > 4 + 0.1 * v->groups;
 }
 
-/* --- all together */
+/* --- judgement */
 
 static void take_in(struct validation *v, const struct evidence *e, size_t n)
 {
@@ -325,12 +330,12 @@ static void take_in(struct validation *v, const struct evidence *e, size_t n)
 	learn_parts(v);
 }
 
-/* Probability with which noise alone takes as many delays of a group to the limits: one
- * sound group in ten thousand is doubted for it. */
+/* Probability that noise alone moves as many delays of a group to the limits: at most one
+ * correct group in ten thousand is doubted for it. */
 static const double RARELY = 1e-4;
 
-/* Are more delays at a limit of the range than noise takes there?  Their number is taken
- * for a Poisson one, which has the longer tail. */
+/* 1 if more delays lie at a limit of the range than noise explains.  Their number is
+ * treated as Poisson distributed, which has the longer tail. */
 static int too_many_at_limit(
 	const struct validation *v, const struct evidence *e, size_t m)
 {
@@ -370,7 +375,8 @@ static void judge_group(const struct validation *v, struct evidence *e, size_t m
 		}
 }
 
-/* More than half of the rows of late doubted, or a tenth at the edge? */
+/* 1 if more than half of the latest rows are doubted, or more than a tenth lie at the
+ * edge. */
 static int fails(struct validation *v, const struct evidence *e, size_t n)
 {
 	size_t sum = 0, edge = 0, rows;

@@ -1,12 +1,11 @@
-/* window.c - one window of a section: the joint fit of its pulses, and how good it is
- */
+/* window.c - one window of a section: the joint fit of its pulses and its goodness */
 #include "signal/noise/robust.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
 #include <string.h>
 
-/* Where to cut a window of n samples: the widest gap between arrivals in its later
- * half that leaves room for the pulses behind it. */
+/* Position at which a window of n samples is cut: the widest gap between arrivals in its
+ * later half that leaves room for the pulses behind it. */
 static double choose_cut(const struct separate *s, int m, size_t n)
 {
 	double lo = 0.4 * (double)n, widest = -1, cut = 0;
@@ -86,10 +85,11 @@ void separate_keep_fit(struct separate *s, const struct account *a)
 
 	s->all = joint_delay_covariance(s->joint, s->delay_cov);
 	for (int i = 0; i < a->m; i++)
-		if (s->par.quadrature || isinf(s->cal.transit) ||
-			!joint_pair_odds(s->joint, &s->scene, a->pulse, i, scatter,
-				s->pair_odds[i]))
+		if (s->par.quadrature || isinf(s->cal.transit))
 			memset(s->pair_odds[i], 0, sizeof s->pair_odds[i]);
+		else
+			joint_pair_odds(s->joint, &s->scene, a->pulse, i, scatter,
+				s->pair_odds[i]);
 }
 
 int separate_is_described(const struct account *a)
