@@ -34,7 +34,7 @@ struct abrasion_par {
 	double abrasive;    /* hardness of the particle, Pa; INFINITY: rigid */
 	double friction;    /* between particle and bodies */
 	double inlet;       /* radius of the ball whose gap to a flat it is, m; INFINITY:
-			     * whatever there is comes in */
+			       particles of any size enter */
 	enum abrasion_motion motion;
 };
 

@@ -24,7 +24,7 @@ struct population {
 /* N(d), for d at or above the first diameter; 0 from largest on. */
 double population_larger(const struct population *p, double d);
 
-/* Diameter at which N is n, n in (0, number[0] - N of what is left out]. */
+/* Diameter at which N is n, for n in (0, number[0] - N of the particles left out]. */
 double population_diameter(const struct population *p, double n);
 
 /* Particles above least in a volume at random, the largest first: a Poisson process

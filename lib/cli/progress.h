@@ -15,8 +15,8 @@ void progress_begin(void);
 void progress(const char *what, double done, double total);
 /* Bytes of the input that were used. */
 void progress_read(double bytes, double total);
-/* Share, 0 to 1, of the work on what was read since this was last called with 1; last:
- * nothing more will be read. */
+/* Share, 0 to 1, of the work on the input read since the last call with 1; last: no more
+ * input will be read. */
 void progress_within(double share, int last);
 /* Erases the line; messages call it themselves. */
 void progress_clear(void);

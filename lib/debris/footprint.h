@@ -1,4 +1,4 @@
-/* footprint.h - regions of a surface that fail, and what the surface alone tells of them
+/* footprint.h - regions of a surface that fail, and their features at the surface
  *
  * Under the column rule material falls from the surface down, so that the bodies torn off
  * are the regions of cells, joined along their sides, whose equivalent stress at the

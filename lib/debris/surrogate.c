@@ -8,8 +8,8 @@
  * rms errors of 9.9, 8.3 and 8.1 % with 1, 3 and 6 passes, 8.5 and 8.3 % where a class
  * has a deviation of its own from 4 and from 10 particles on, and 8.3, 8.3, 8.0 and 16 %
  * with ridges of 1e-6, 1e-3, 1 and 1e3; 54 to 56 of the 60 lie within their intervals of
- * 90 %, which are calibrated whatever is chosen here.  A hundred surfaces leave 40
- * scores, the least for which intervals of 95 % have a score beyond either end. */
+ * 90 %, which are calibrated for any choice made here.  A hundred surfaces leave 40
+ * scores, the fewest for which intervals of 95 % have a score beyond either end. */
 enum { FEATURES = FOOTPRINT_FEATURES, TERMS = SURROGATE_TERMS, PASSES = 3, LEAST = 100 };
 enum part { FIT, CALIBRATE, CHECK };
 static const double SURE = 0.9; /* confidence level of the report */

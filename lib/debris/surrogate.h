@@ -1,11 +1,11 @@
 /* surrogate.h - volumes of wear particles from their footprints, with intervals that hold
  *
- * The depth below one cell of a footprint times its area is the volume but for a factor,
+ * The volume is the depth below one cell of a footprint times its area times a factor,
  * whose logarithm is a quadratic function of the features of the footprint
- * (footprint.h), fitted by least squares.  Intervals are conformal: shares of particles
- * and of surfaces that the fit has not seen lie within them, whatever the distribution of
- * its errors, as long as scenes are drawn as those of the fit were.  Outside the range of
- * the features of the fit nothing is said.
+ * (footprint.h), fitted by least squares.  Intervals are conformal: the stated shares of
+ * particles and surfaces not used in the fit lie within them for any distribution of the
+ * errors, provided that scenes are drawn like those of the fit.  There is no estimate
+ * outside the range of the features of the fit.
  *
  *	struct surrogate s;
  *	if (surrogate_fit(sample, n, &s, &report) == SURROGATE_OK)
@@ -20,7 +20,7 @@ enum {
 	SURROGATE_TERMS = 1 + FOOTPRINT_FEATURES +
 			  FOOTPRINT_FEATURES * (FOOTPRINT_FEATURES + 1) / 2,
 	SURROGATE_CLASSES = 5, /* of footprints, by cells: 1, 2-3, 4-15, 16-63, more */
-	SURROGATE_SCORES = 512 /* of each kind at most: as many quantiles of more */
+	SURROGATE_SCORES = 512 /* at most of each kind; of more, as many quantiles */
 };
 
 struct surrogate {
@@ -29,8 +29,8 @@ struct surrogate {
 	double coefficient[SURROGATE_TERMS];
 	double deviation[SURROGATE_CLASSES]; /* of the logarithm */
 	double factor[SURROGATE_CLASSES];    /* mean over median of a volume */
-	/* Ascending: ln of true over guessed volume, over its deviation, of what was held
-	 * back for it. */
+	/* Ascending: ln(true / estimated volume) / deviation, of the particles and
+	 * surfaces held back for it. */
 	int particles, totals;
 	double particle[SURROGATE_SCORES], total[SURROGATE_SCORES];
 };

@@ -33,10 +33,8 @@ struct wear *wear_new(int nx, int ny)
 		return NULL;
 	w->nx = nx;
 	w->ny = ny;
-	for (int k = 0; k < 3; k++)
-		w->value[k] = malloc(n * sizeof **w->value);
 	w->top = malloc(n * sizeof *w->top);
-	if (!w->value[0] || !w->value[1] || !w->value[2] || !w->top) {
+	if (!w->top) {
 		wear_free(w);
 		return NULL;
 	}
@@ -47,8 +45,6 @@ void wear_free(struct wear *w)
 {
 	if (!w)
 		return;
-	for (int k = 0; k < 3; k++)
-		free(w->value[k]);
 	free(w->top);
 	free(w->span);
 	free(w->stretch);
@@ -225,6 +221,22 @@ static enum wear_status remove_layers(struct wear *w)
 	return WEAR_OK;
 }
 
+/* With memory for the stress, which the search for particles then has for itself. */
+static enum wear_status remove_with_memory(struct wear *w)
+{
+	size_t n = (size_t)w->nx * (size_t)w->ny;
+	double *values = malloc(3 * n * sizeof *values);
+	enum wear_status status;
+
+	if (!values)
+		return WEAR_MEMORY;
+	for (int k = 0; k < 3; k++)
+		w->value[k] = values + (size_t)k * n;
+	status = remove_layers(w);
+	free(values);
+	return status;
+}
+
 enum wear_status wear_remove(struct wear *w, struct stress *stress,
 	const struct wear_par *par, struct wear_result *result)
 {
@@ -240,7 +252,7 @@ enum wear_status wear_remove(struct wear *w, struct stress *stress,
 		w->top[i] = -1;
 	if (room_for(&w->span, &w->span_room, stress_spans_max(stress), sizeof *w->span))
 		return WEAR_MEMORY;
-	status = remove_layers(w);
+	status = remove_with_memory(w);
 	/* All stretches are closed; from here on 0 marks a column that is counted. */
 	for (size_t i = 0; i < w->count; i++) {
 		result->columns += w->top[w->stretch[i].column] != 0;

@@ -1,10 +1,11 @@
 /* series.h - time series of one or more units, row by row
  *
- * A table with the columns t and y; y as the only column, but for that of units, has the
- * row number of its unit, from 0, as time, and a table without a header goes by position.
- * With a unit column the rows of several units may alternate.  Times must be finite and
- * rise for each unit; y may be missing (nan) but not infinite: anything else ends the
- * program with one line that names file, line, unit and what was wrong.
+ * A table with the columns t and y.  If y is the only column except that of units, time
+ * is the row number within the unit, from 0; columns of a table without a header are
+ * identified by position.  With a unit column the rows of several units may alternate.
+ * Times must be finite and ascending for each unit; y may be missing (nan) but not
+ * infinite.  Anything else ends the program with one line that names file, line, unit and
+ * the error.
  */
 #ifndef IO_SERIES_H
 #define IO_SERIES_H

@@ -26,7 +26,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Single precision, but for the test of the derivatives. */
+/* Single precision, except for the test of the derivatives. */
 #ifdef NETWORK_DOUBLE
 typedef double network_real;
 #else

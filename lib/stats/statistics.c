@@ -369,7 +369,7 @@ static const double LEAST_EXPONENT = 0.01, EXPONENTS = 2000; /* most over least 
 /* Golden-section search around the best of a grid of exponents, to a hundredth of
  * the 1e-8 that rounding leaves of the place of a minimum; -1 if that is at an end of the
  * grid.  Of 4000 random sets of 4 to 23 points, 38 of which have several minima, grids
- * of 15 to 120 steps all lead to the one of a grid of 1920, but for those next to an end:
+ * of 15 to 120 steps all lead to the one of a grid of 1920, except those next to an end:
  * 19, 9, 5 and 3 with 15, 30, 60 and 120 steps. */
 static double best_exponent(const double *x, const double *y, size_t n, double unit)
 {

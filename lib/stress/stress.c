@@ -1,4 +1,5 @@
 #include "stress/stress.h"
+#include "num/fft.h"
 #include "num/status.h"
 #include "stress/free_sum.h"
 #include "stress/influence.h"
@@ -26,7 +27,7 @@ struct stress {
 	/* Pressures are scaled by a power of two near the largest one, so that squares
 	 * neither overflow nor underflow. */
 	double unit;
-	double *pressure;
+	double *pressure; /* of the last stress_load(), unless lent to wave */
 	double total;     /* N */
 	int loaded;       /* some cell is */
 	int side, bx, by; /* cells to a block's side, blocks */
@@ -109,7 +110,7 @@ struct stress *stress_new(const struct stress_par *par)
 	s->blocks = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->blocks);
 	s->row_load = calloc((size_t)s->by, sizeof *s->row_load);
 	s->held = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->held);
-	s->pressure = malloc(n * sizeof *s->pressure);
+	s->pressure = fft_alloc(n);
 	if (par->periodic)
 		s->wave = wave_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
 	else
@@ -133,7 +134,7 @@ void stress_free(struct stress *s)
 	free(s->blocks);
 	free(s->row_load);
 	free(s->held);
-	free(s->pressure);
+	fft_free(s->pressure);
 	free(s);
 }
 
@@ -245,8 +246,8 @@ static double bound_row(const struct stress *s, int bx, int by, int j, double z)
 	return sum;
 }
 
-/* Row by row from the block, until the sum exceeds the limit or what is left, as if all
- * of it were in the next rows, cannot make it. */
+/* Adds row by row from the block, until the sum exceeds the limit, or cannot reach it
+ * even if the remaining load were all in the next rows. */
 static int block_may_fail(const struct stress *s, int bx, int by, double z, double limit)
 {
 	double sum = 0, rest = s->load;

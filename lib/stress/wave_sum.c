@@ -18,7 +18,7 @@ struct wave_sum {
 	struct pool *pool;
 	double ux, uy;         /* wave numbers of the longest waves */
 	double complex *image; /* of the pressure, over the number of cells */
-	double *plane;
+	double *plane;         /* the pressure, then scratch memory; borrowed */
 	struct fft *fft;
 	struct sum_work work;
 };
@@ -36,9 +36,8 @@ struct wave_sum *wave_sum_new(
 	s->ux = 2 * M_PI / (nx * par->dx);
 	s->uy = 2 * M_PI / (ny * par->dy);
 	s->image = fft_alloc_complex(((size_t)nx / 2 + 1) * (size_t)ny);
-	s->plane = fft_alloc((size_t)nx * (size_t)ny);
 	s->fft = fft_new((size_t)nx, (size_t)ny);
-	if (!s->image || !s->plane || !s->fft) {
+	if (!s->image || !s->fft) {
 		wave_sum_free(s);
 		return NULL;
 	}
@@ -50,7 +49,6 @@ void wave_sum_free(struct wave_sum *s)
 	if (!s)
 		return;
 	fft_free(s->image);
-	fft_free(s->plane);
 	if (s->fft)
 		fft_done(s->fft);
 	free(s);
@@ -61,13 +59,13 @@ struct sum_work wave_sum_work(const struct wave_sum *s)
 	return s->work;
 }
 
-void wave_sum_load(struct wave_sum *s, const double *pressure)
+void wave_sum_load(struct wave_sum *s, double *pressure)
 {
 	size_t n = (size_t)s->nx * (size_t)s->ny,
 	       k = ((size_t)s->nx / 2 + 1) * (size_t)s->ny;
 
-	memcpy(s->plane, pressure, n * sizeof *s->plane);
-	fft_forward(s->fft, s->plane, s->image);
+	s->plane = pressure;
+	fft_forward(s->fft, pressure, s->image);
 	for (size_t i = 0; i < k; i++)
 		s->image[i] /= (double)n;
 	s->work.transforms++;
@@ -211,14 +209,15 @@ enum num_status wave_sum_at(struct wave_sum *s, double z, const struct stress_wa
 				    s->nx, points_for(s->nx, s->par.dx, z, s->full)),
 			    y = lattice_periodic(
 				    s->ny, points_for(s->ny, s->par.dy, z, s->full));
-	size_t columns = (size_t)x.points / 2 + 1,
-	       n = (size_t)x.points * (size_t)y.points;
+	size_t columns = (size_t)x.points / 2 + 1;
+	int all = x.points == s->nx && y.points == s->ny;
 	double complex *spectrum[STRESS_NUMBERS] = { NULL };
 	struct carry carry = { s, x.points, y.points, lattice_origin(&x),
 		lattice_origin(&y), z, want->numbers, spectrum };
-	double *field[STRESS_NUMBERS] = { NULL }, *plane = fft_alloc(n);
-	struct fft *fft = fft_new((size_t)x.points, (size_t)y.points);
-	enum num_status status = plane && fft ? NUM_OK : NUM_MEMORY;
+	double *field[STRESS_NUMBERS] = { NULL }, *plane = s->plane;
+	struct fft *own = all ? NULL : fft_new((size_t)x.points, (size_t)y.points);
+	struct fft *fft = all ? s->fft : own;
+	enum num_status status = fft ? NUM_OK : NUM_MEMORY;
 
 	for (int c = 0; c < want->numbers; c++) {
 		spectrum[c] = fft_alloc_complex(columns * (size_t)y.points);
@@ -228,19 +227,17 @@ enum num_status wave_sum_at(struct wave_sum *s, double z, const struct stress_wa
 		pool_run(s->pool, (size_t)y.points / 2 + 1, carry_row, &carry);
 	for (int c = 0; !status && c < want->numbers; c++) {
 		fft_inverse(fft, spectrum[c], plane);
-		/* The memory of the spectrum is free here and large enough. */
-		field[c] = (double *)spectrum[c];
-		memcpy(field[c], plane, n * sizeof *plane);
+		field[c] = plane;
+		/* The spectrum is of no more use, and large enough for the next field. */
+		plane = (double *)spectrum[c];
 	}
 	s->work.transforms += want->numbers;
 	s->work.kernel_cells += (double)columns * (y.points / 2 + 1);
-	fft_free(plane);
 	if (!status)
 		status = hand_over(s, field, &x, &y, want);
 	for (int c = 0; c < want->numbers; c++)
 		fft_free(spectrum[c]);
-	if (fft)
-		fft_done(fft);
+	fft_done(own);
 	return status;
 }
 

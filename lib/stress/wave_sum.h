@@ -19,7 +19,9 @@ struct wave_sum *wave_sum_new(
 	const struct influence_par *par, int nx, int ny, int full, struct pool *pool);
 void wave_sum_free(struct wave_sum *s);
 
-void wave_sum_load(struct wave_sum *s, const double *pressure);
+/* Sets the pressure, of fft_alloc(), which is borrowed until the next call and serves as
+ * scratch memory: a whole field less than a copy would take. */
+void wave_sum_load(struct wave_sum *s, double *pressure);
 /* Stress at depth z. */
 enum num_status wave_sum_at(struct wave_sum *s, double z, const struct stress_want *want);
 

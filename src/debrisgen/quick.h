@@ -34,7 +34,8 @@ int quick_step(struct quick *q, struct stress *stress, const double *pressure,
 void quick_take(struct quick *q, const struct debris_step *step);
 const struct quick_volumes *quick_volumes(const struct quick *q);
 
-/* Says what was done; 1, or 0 where intervals held too few of the audited volumes. */
+/* Reports what was done; returns 1, or 0 if intervals contained too few of the audited
+ * volumes. */
 int quick_report(const struct quick *q, const char *name);
 
 #endif

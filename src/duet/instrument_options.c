@@ -41,7 +41,7 @@ double instrument_align(void)
 	return number(&instrument.align);
 }
 
-/* Convolves a[0..*n) with b[0..m) of another filter; a NULL is nothing. */
+/* Convolves a[0..*n) with b[0..m) of another filter; NULL is no filter. */
 static double *cascade(double *a, size_t *n, double *b, size_t m)
 {
 	double *both;

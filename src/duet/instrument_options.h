@@ -10,7 +10,7 @@ extern struct instrument_given {
 	struct opt_choice align, duration, gain, spread;
 	int pulse; /* 0: to be learned; else 1 + enum pulse_shape */
 	struct opt_list lines;
-	const char *undo; /* file of taps, "none", or NULL: as the record has it */
+	const char *undo; /* file of taps, "none", or NULL: as stated in the record */
 	double false_alarm;
 } instrument;
 
@@ -21,7 +21,7 @@ double instrument_align(void);
 /* passed: the filters that the record says it has passed, or NULL.  Dies where lines or
  * filter do not suit the rate.  The filter is the caller's to free. */
 struct calibrate_par instrument_par(double rate, const char *passed);
-/* Tells what was learned. */
+/* Prints the instrument that was learned. */
 void instrument_note(const struct calibration *c, double rate);
 
 #endif

@@ -136,7 +136,7 @@ static void tell_together(const struct separate *s, struct found *out, const cha
 		c->together, c->rows);
 }
 
-/* Writes what was learned, once it is believed. */
+/* Writes the instrument that was learned, once its rows are believed. */
 static void keep(const struct separate *s, const struct instrument_place *place)
 {
 	struct instrument view;

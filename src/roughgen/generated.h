@@ -11,7 +11,7 @@
 #include "cli/opt.h"
 #include "io/fields.h"
 
-/* For OPT_TABLE; what no measured surface goes with. */
+/* For OPT_TABLE: the options that do not apply to measured surfaces. */
 extern struct opt generated_grid_rows[], generated_rows[];
 
 /* Dies where options contradict one another. */

@@ -14,7 +14,7 @@ void sensors_check(void);
 
 double sensors_rate(void); /* Hz */
 struct pipe sensors_pipe(void);
-/* What particles pass, but for their diameters. */
+/* The pipe and sensors that particles pass, without the diameters. */
 struct stream sensors_stream(uint64_t seed, uint32_t realisation);
 /* Time from the first trace of a pulse to its centre. */
 double sensors_half_pulse(double velocity);

@@ -1,8 +1,8 @@
 /* recording.h - signals in the formats of other programs
  *
  * Text: one row per frame, cells separated by TAB, semicolon, comma or blanks; with any
- * but commas decimal commas are read, too.  What sigconvert wrote is a table of ours,
- * which has an end and tells rate, units, start, seed and filters.  Raw: little-endian
+ * but commas decimal commas are read, too.  Text written by sigconvert is a table that
+ * states rate, units, start, seed and filters and has an end line.  Raw: little-endian
  * float64, interleaved.  Sound: the formats of libsndfile, if the program was built with
  * it.
  */

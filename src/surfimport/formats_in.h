@@ -1,7 +1,7 @@
 /* formats_in.h - heights in the formats of instruments and of numpy
  *
  * Each reader takes a whole file in memory, fills a record with the field "height" in
- * metres, missing samples nan, or dies naming the file and what was wanted.
+ * metres, missing samples nan, or dies with a message that names the file and the error.
  */
 #ifndef FORMATS_IN_H
 #define FORMATS_IN_H

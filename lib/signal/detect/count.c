@@ -11,7 +11,7 @@ struct count {
 	double last;                               /* the sample before */
 	int armed;                                 /* a peak is being followed */
 	double top, top_at, top_before, top_after; /* highest sample and its neighbours */
-	double valley; /* lowest since the last peak was given out */
+	double valley; /* lowest since the last peak was returned */
 };
 
 double count_level(const double *x, size_t n, size_t stride, double *work)

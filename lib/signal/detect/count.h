@@ -13,8 +13,8 @@ struct peak {
 			   */
 };
 
-/* A level noise hardly reaches: five robust deviations of every stride-th sample of x, n
- * of them, from their median; work holds n values. */
+/* A level that noise rarely reaches: five robust deviations of every stride-th sample of
+ * x, n of them, from their median; work holds n values. */
 double count_level(const double *x, size_t n, size_t stride, double *work);
 
 struct count;
@@ -22,9 +22,9 @@ struct count;
 struct count *count_new(double level);
 void count_free(struct count *count);
 
-/* One more sample; 1 where a peak is now known for sure. */
+/* Takes one more sample; 1 if a peak is now certain. */
 int count_sample(struct count *count, double x, struct peak *peak);
-/* The end of the record: 1 where a last peak was still open. */
+/* Ends the record; 1 if a last peak was being followed. */
 int count_end(struct count *count, struct peak *peak);
 
 #endif

@@ -12,7 +12,7 @@ static double exceeds(double m, double r)
 	/* sinh(r m) / m, times the density at 0 of both */
 	double slope = m > 1e-6 ? density * sinh(r * m) / m : density * r;
 
-	if (r * m > 300) /* the exponential of the other side is nothing */
+	if (r * m > 300) /* the other exponential is negligible */
 		slope = exp(-(r - m) * (r - m) / 2) / sqrt(2 * M_PI) / m;
 	return fmin(below + above + slope, 1);
 }
@@ -27,8 +27,9 @@ double detectable_alone(const struct joint_scene *s, double a)
 	return exceeds(a * sqrt(unit(s)), sqrt(s->drop));
 }
 
-/* Share of a pulse's energy that another, this share of a duration away, cannot take by
- * its amplitude and its arrival, whose columns are orthogonal. */
+/* Share of the energy of a pulse that remains beside another, this share of a duration
+ * away, after the fit of amplitude and arrival of that one, whose columns are orthogonal.
+ */
 static double left_beside(const struct shape *shape, double away)
 {
 	const double T = 200; /* samples of a duration, enough for its slope */

@@ -19,8 +19,8 @@
 /* An isolated pulse. */
 double detectable_alone(const struct joint_scene *scene, double a);
 
-/* Shares of a pulse's energy that remain beside another, at DETECTABLE_PLACES distances
- * up to a duration. */
+/* Shares of the energy of a pulse that remain beside another one, at DETECTABLE_PLACES
+ * distances up to a duration. */
 enum { DETECTABLE_PLACES = 20 };
 void detectable_shares(const struct shape *shape, double share[DETECTABLE_PLACES]);
 /* A pulse that arrives at any time within a duration of one of amplitude large, at the

@@ -7,10 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A trigger is less than 2^OCTAVES standard deviations, or its margin is the largest. */
+/* Triggers are classified by octaves; from 2^OCTAVES standard deviations on the margin is
+ * the largest. */
 enum { OCTAVES = 24 };
 
-/* Standard deviations of the noise that the rest of a pulse stays below. */
+/* Standard deviations of the noise below which the rest of a pulse is neglected. */
 static const double hidden = 0.2;
 
 struct sections {
@@ -20,7 +21,7 @@ struct sections {
 	long stride;
 	long margin[OCTAVES + 1]; /* of a trigger below 2^k standard deviations */
 	double threshold;
-	long aside;      /* samples beyond a section that are known to be in it or not */
+	long aside;      /* samples beyond a section that are scanned */
 	long long next;  /* point to scan next */
 	long long taken; /* samples before this one are in no section */
 	struct section *queue;
@@ -29,7 +30,8 @@ struct sections {
 };
 
 /* A pulse whose trigger is z has the amplitude z / sqrt(its energy at amplitude 1).  A
- * weak trigger may be the flank of a strong pulse: a hundredth always counts. */
+ * weak trigger may be the flank of a strong pulse: the part of a pulse above a hundredth
+ * of its peak is always included. */
 static void set_margins(
 	struct sections *s, const struct shape *shape, double duration, double slack)
 {
@@ -106,8 +108,8 @@ static double filter_at(const struct sections *s, const double *y, size_t n, lon
 			   : 0;
 }
 
-/* A trigger of z standard deviations at sample at, which is later than all before it.
- * What it reaches becomes one section with it. */
+/* Adds a trigger of z standard deviations at sample at, which is later than all before
+ * it.  Sections within its reach are joined. */
 static enum num_status add_trigger(struct sections *s, long long at, double z)
 {
 	int octave = z < ldexp(1, OCTAVES) ? ilogb(fmax(z, 1)) + 1 : OCTAVES;

@@ -5,15 +5,15 @@
 #include <string.h>
 
 /* Share of a pulse's duration on either side of a sample whose median is compared with
- * it: an impulse is shorter.  The curvature of a sine moves that median by (2 pi / 20)^2
- * / 8 of its height; four times this is left to other pulses. */
+ * it: an impulse is shorter.  The curvature of a sine changes that median by (2 pi /
+ * 20)^2 / 8 of its height; four times this is allowed, for other pulses. */
 static const double SIDE = 0.05, CURVED = 0.05;
 
-/* Deviations that noise does not reach in a window. */
+/* Deviations that noise does not reach in a window of the fit. */
 static const double FAR = 5;
 
-/* Largest of some values a quarter of a duration to either side of sample i, but for
- * those next to it: the height of pulses there. */
+/* Largest of some values within a quarter of a duration of sample i, except those next to
+ * it: the height of pulses there. */
 static double height_near(const double *y, size_t n, size_t i, size_t side)
 {
 	enum { STEPS = 5 };
@@ -36,10 +36,10 @@ size_t spikes_find(const double *y, size_t n, double duration, unsigned char *fl
 
 	memset(flags, 0, n);
 	if (side == 0)
-		return 0; /* no impulse is shorter than such pulses */
+		return 0; /* impulses are not shorter than such pulses */
 
 	for (size_t i = 0; i < n; i++) {
-		/* As many on either side, so that a slope does not count. */
+		/* The same number on either side, so that a slope has no effect. */
 		size_t room = i < n - 1 - i ? i : n - 1 - i;
 		size_t reach = room < side ? room : side;
 		double middle;

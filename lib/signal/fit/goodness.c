@@ -2,8 +2,8 @@
 #include "signal/fit/goodness.h"
 #include <math.h>
 
-/* Chi-square of samples [from, to) of both channels, the second delta later, and in
- * *count how many of them are known. */
+/* Chi-square of samples [from, to) of both channels, the second delta later; *count: how
+ * many of them are known. */
 static double residual_square(const struct joint *joint, double from, double to,
 	double delta, double limit, double *count)
 {
@@ -23,14 +23,14 @@ static double residual_square(const struct joint *joint, double from, double to,
 	return sum;
 }
 
-/* More than noise leaves by this many standard deviations, and by a tenth? */
+/* 1 if chi-square exceeds that of noise by so many standard deviations and by a tenth. */
 static int too_much(double chi2, double dof, double deviations)
 {
 	return chi2 / dof > 1.1 + deviations * sqrt(2 / dof);
 }
 
-/* Is the residual under pulse i more than noise?  Among those of a stretch of which that
- * is known: three deviations. */
+/* 1 if the residual under pulse i exceeds the noise by three deviations; used where that
+ * of the whole stretch does. */
 static int is_misfit(const struct joint *joint, const struct joint_scene *s, size_t n,
 	const struct joint_pulse *pulses, int m, int i)
 {
@@ -46,9 +46,9 @@ static int is_misfit(const struct joint *joint, const struct joint_scene *s, siz
 	return too_much(sum, fmax(dof, 1), 3);
 }
 
-/* Pulses that fill what is none overlap more than half.  Of a whole section, with quiet
- * on either side, those that do so with one that is doubted, or with the next one, are
- * doubted as well. */
+/* Pulses fitted to an event that is not a particle overlap by more than half.  In a whole
+ * section with quiet on either side, pulses that so overlap a doubted one, or the next
+ * one, are doubted as well. */
 static void spread(const struct joint_scene *s, const struct joint_pulse *pulses, int m,
 	enum separate_verdict *verdict)
 {

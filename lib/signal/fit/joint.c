@@ -26,7 +26,7 @@ static size_t filter_residual(struct joint *j, const struct joint_scene *s, size
 	return points;
 }
 
-/* The pulse that would take most chi-square away, outside the spots tried before. */
+/* The pulse that would reduce chi-square most, except near the positions tried before. */
 static struct candidate search(struct joint *j, const struct joint_scene *s,
 	const struct candidate *tried, int ntried)
 {

@@ -1,4 +1,5 @@
-/* joint_model.c - what pulses, tones and offset put on the record; see joint_state.h */
+/* joint_model.c - contributions of pulses, tones and offset to the record; see
+ * joint_state.h */
 #include "signal/fit/joint_state.h"
 #include <stdlib.h>
 #include <string.h>
@@ -114,8 +115,8 @@ static enum num_status orthonormalise(double *q, int b, size_t n)
 	return NUM_OK;
 }
 
-/* Adds cos or sin of w (i - n / 2) to the basis unless it adds nothing, as a tone at half
- * the rate does twice. */
+/* Adds cos or sin of w (i - n / 2) to the basis unless it depends on the vectors there,
+ * as the sine at half the rate does. */
 static void add_to_basis(struct joint *j, double (*wave)(double), double w, double share)
 {
 	size_t n = j->n;
@@ -127,8 +128,8 @@ static void add_to_basis(struct joint *j, double (*wave)(double), double w, doub
 		j->share[j->basis++] = share;
 }
 
-/* The basis of what is visible of a channel; a vector of which nothing is left is zero.
- */
+/* Restricts the basis to the visible samples of a channel; a vector of which nothing is
+ * left is set to zero. */
 static void hide_basis(struct joint *j, int c, double *q)
 {
 	for (int b = 0; b < j->basis; b++) {
@@ -298,7 +299,7 @@ static int scene_is_sane(
 		s->tones > JOINT_TONES_MAX || s->max_pulses < 0 ||
 		s->max_pulses > JOINT_PULSES_MAX || m < 0 || m > s->max_pulses)
 		return 0;
-	/* The slack of moved() must keep T positive. */
+	/* The tolerance of moved() must keep T positive. */
 	if (s->delta_min - 0.1 * (s->delta_max - s->delta_min) <= -s->transit)
 		return 0;
 	for (int i = 0; i < m; i++)

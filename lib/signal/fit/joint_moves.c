@@ -1,4 +1,4 @@
-/* joint_moves.c - one pulse more or less, kept where chi-square bears it out; see
+/* joint_moves.c - adding and removing single pulses, if chi-square justifies it; see
  * joint_state.h */
 #include "signal/fit/joint_state.h"
 #include <string.h>
@@ -32,7 +32,7 @@ static double energy_near(
 	return sum;
 }
 
-/* Puts the pulses back as they were in before. */
+/* Restores the pulses from before. */
 static void restore(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int *m, const struct joint_pulse *before, int old)
 {
@@ -44,13 +44,14 @@ static void restore(struct joint *j, const struct joint_scene *s,
 		joint_subtract(j, s, &pulses[k], 1);
 }
 
-/* By how much chi-square must fall for a pulse next to others of some energy. */
+/* Decrease of chi-square that a pulse next to others of some energy must bring. */
 static double drop_beside(const struct joint_scene *s, double energy)
 {
 	return fmax(s->drop_near, s->misfit * energy);
 }
 
-/* Is pulse i, the last one put in, worth a drop of chi-square from before to after? */
+/* 1 if pulse i, the last one added, is worth a decrease of chi-square from before to
+ * after. */
 static int worth(const struct joint_scene *s, const struct joint_pulse *pulses, int m,
 	int i, double before, double after)
 {
@@ -60,8 +61,8 @@ static int worth(const struct joint_scene *s, const struct joint_pulse *pulses, 
 	return before - after > need;
 }
 
-/* Fits the pulse just put in with those near it; 1 if it was worth it, else everything
- * is as in before. */
+/* Fits the pulse just added with those near it; 1 if it was worth it, otherwise
+ * everything is restored from before. */
 static int accept_more(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int *m, int i, const struct joint_pulse *before,
 	double *chi2)
@@ -92,7 +93,7 @@ int joint_try_pulse(struct joint *j, const struct joint_scene *s,
 	return accept_more(j, s, pulses, m, i, before, chi2);
 }
 
-/* Tries pulse i as two equal ones; 1 if it was worth it, else everything is as before. */
+/* Replaces pulse i by two; 1 if it was worth it, otherwise everything is as before. */
 static int try_split(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int *m, int i, double shift, double *chi2)
 {
@@ -136,16 +137,16 @@ int joint_split_pulses(struct joint *j, const struct joint_scene *s,
 	return split;
 }
 
-/* How far the amplitude of a pulse is from zero, squared, in standard errors; where the
- * matrix is singular, as it is with pulses too many, in those of a lone pulse. */
+/* Squared amplitude of a pulse in units of its variance; if the matrix is singular, as it
+ * is with too many pulses, in units of that of a lone pulse. */
 static double significance(const struct joint_scene *s, const struct joint_pulse *p)
 {
 	return isfinite(p->cov[5]) ? p->a * p->a / p->cov[5]
 				   : p->a * p->a * unit_energy(s);
 }
 
-/* Takes pulse k, subtracted no more, off the list and fits those near it; 1 if they can
- * do without it, else everything is as in before. */
+/* Removes pulse k, which is no longer subtracted, from the list and fits those near it; 1
+ * if it is not needed, otherwise everything is restored from before. */
 static int accept_fewer(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int *m, int k, const struct joint_pulse *before,
 	double *chi2)
@@ -166,7 +167,7 @@ static int accept_fewer(struct joint *j, const struct joint_scene *s,
 	return 1;
 }
 
-/* Takes pulse i out if the others can do without it. */
+/* Removes pulse i if it is not needed. */
 static int try_without(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int *m, int i, double *chi2)
 {
@@ -177,7 +178,7 @@ static int try_without(struct joint *j, const struct joint_scene *s,
 	return accept_fewer(j, s, pulses, m, i, before, chi2);
 }
 
-/* Puts one pulse in the place of pulses i and k if that will do. */
+/* Replaces pulses i and k by one if that is enough. */
 static int try_merge(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int *m, int i, int k, double *chi2)
 {
@@ -194,7 +195,8 @@ static int try_merge(struct joint *j, const struct joint_scene *s,
 	return accept_fewer(j, s, pulses, m, k, before, chi2);
 }
 
-/* Could pulses p and q be paired the other way round?  Fills their delays then. */
+/* 1 if the arrivals of pulses p and q at sensor 2 can be exchanged; fills their delays
+ * then. */
 static int can_swap(const struct joint_scene *s, const struct joint_pulse *p,
 	const struct joint_pulse *q, double delta[2])
 {

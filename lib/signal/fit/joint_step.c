@@ -118,7 +118,7 @@ static void solve(const struct joint *j, int np, int start, double *x)
 	}
 }
 
-/* One step from old along move, kept where pulses make sense. */
+/* One step from old along move, limited to meaningful pulses. */
 static struct joint_pulse moved(const struct joint_scene *s,
 	const struct joint_pulse *old, const double *move, size_t n)
 {
@@ -135,7 +135,8 @@ static struct joint_pulse moved(const struct joint_scene *s,
 	return p;
 }
 
-/* Adds what the columns of pulse i say it puts on the record. */
+/* Adds factor times the contribution of pulse i, given by its columns, to the residual.
+ */
 static void add_column(struct joint *j, int i, double factor)
 {
 	for (int c = 0; c < 2; c++) {
@@ -161,7 +162,8 @@ static void swap_columns(struct joint *j, int i)
 	memcpy(j->trial[i], keep, sizeof keep);
 }
 
-/* Moves the pulses in set along j->move; their columns before the step go to trial. */
+/* Moves the pulses in set along j->move, and stores their columns before the step in
+ * trial. */
 static void step_forth(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, const int *set, int m, struct joint_pulse *old)
 {

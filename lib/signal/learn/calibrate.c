@@ -23,7 +23,7 @@ static double mean(const double *x, size_t n)
 	return sum;
 }
 
-/* One attempt, on a record made white if w has taps, which it gives to *c. */
+/* One attempt, on the record whitened by w if w has taps.  c takes over w. */
 static enum calibrate_status attempt(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, const struct whitening *w, struct calibration *c,
 	struct look *look)
@@ -59,7 +59,7 @@ static enum calibrate_status attempt(const struct calibrate_par *par, const doub
 	return status;
 }
 
-/* What has no power at any frequency leaves no band to make white. */
+/* Noise or a filter without power at any frequency leaves no band. */
 static enum calibrate_status of_whitening(enum num_status status)
 {
 	return status == NUM_OK       ? CALIBRATE_OK
@@ -81,8 +81,9 @@ static enum calibrate_status attempt_kind(const struct calibrate_par *par,
 	return attempt(par, x1, x2, n, &w, c, look);
 }
 
-/* Looks again at a record whose noise is not white: filtered, or coloured from the start?
- * What fits best by itself is done once more, with its pulse corrected. */
+/* Tries both explanations of noise that is not white: it was filtered with the pulses, or
+ * coloured before they were added.  The better one is used once more, with its pulse
+ * corrected. */
 static enum calibrate_status look_again(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct look *look, struct calibration *c)
 {
@@ -114,21 +115,22 @@ static enum calibrate_status look_again(const struct calibrate_par *par, const d
 	return attempt_kind(par, x1, x2, n, found, look, c);
 }
 
-/* Is the noise white after all?  Where hardly anything is quiet, pulses stand for colour.
- * Then they fit as well as in white noise, or tolerably, and noise is white above their
- * band. */
+/* 1 if the noise is white after all.  If little of the record is quiet, the pulses make
+ * it look coloured; they then fit as well as in white noise, or tolerably, and the noise
+ * is white above their band. */
 static int is_white(const struct calibration *c, const struct look *look)
 {
 	return learn_describes(c) ||
 	       (c->chi2 < 4 && measure_white_above(look, c->duration));
 }
 
-/* Power of a tone, in units of noise^2, that tails of pulses may be taken for, and the
- * share of its power that a line changes by from hop to hop. */
+/* Power of a tone, in units of noise^2, below which it may be due to the tails of pulses;
+ * and the share of its power by which a line changes from hop to hop. */
 static const double TAILS = 4, STEADY = 0.3;
 
-/* A regular train of pulses has lines, too, which a robust fit may see: by the tails weak
- * ones, or for as long as it lasts.  Is the record better described without? */
+/* A regular train of pulses has lines, too, which the robust fit may find: weak ones of
+ * their tails, or lines that last only as long as the train.  Uses fewer lines if that
+ * describes the record better. */
 static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct look *look,
 	struct calibration *c)
@@ -162,12 +164,12 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 	return CALIBRATE_OK;
 }
 
-/* Share of its energy in which a pulse made white may differ from a known one without its
- * filter. */
+/* Share of its energy in which a whitened pulse may differ from a known one; half and
+ * twice of it give the same rows in the records of BAD_FIT in measure.c. */
 static const double KNOWN = 0.01;
 
-/* Has what made the noise white made the pulse a known one, and are the low frequencies
- * lost?  Then a pulse taken from the record lacks them. */
+/* *lacks: 1 if whitening has made the pulse a known one but the low frequencies are lost;
+ * a pulse taken from the record then lacks them. */
 static enum calibrate_status lacks_low(
 	const struct look *look, const struct calibration *c, int *lacks)
 {
@@ -185,8 +187,8 @@ static enum calibrate_status lacks_low(
 	return status == NUM_OK ? CALIBRATE_OK : CALIBRATE_MEMORY;
 }
 
-/* Makes the noise white and takes the pulse from that record; COLOURED where that does
- * not describe it. */
+/* Whitens the noise and takes the pulse from that record; COLOURED if the pulse does not
+ * describe it. */
 static enum calibrate_status attempt_white(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct look *look,
 	struct calibration *c)

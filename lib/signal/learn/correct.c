@@ -17,9 +17,9 @@ static void smooth(double *x, double *work, int n, int reach)
 	}
 }
 
-/* Half width of the window that smooths a mean residual: a tenth of a duration where
- * pulses barely stand out, less the more they do, since it blurs the edges of the shape.
- */
+/* Half width of the window that smooths a mean residual: a tenth of a duration for pulses
+ * that barely exceed the noise, and less for clearer ones, since smoothing blurs the
+ * edges of the shape. */
 static int smoothing_reach(const struct examples *ex)
 {
 	double faint = 1e5;
@@ -28,7 +28,7 @@ static int smoothing_reach(const struct examples *ex)
 }
 
 /* Mean residual around the pulses of the examples, sample by sample of the pulse: what
- * all of them have in common that the shape has not. */
+ * they have in common and the shape lacks. */
 static void mean_residual(struct examples *ex, double *more, double *weight, int half)
 {
 	double most = 0;
@@ -59,7 +59,7 @@ static void mean_residual(struct examples *ex, double *more, double *weight, int
 			}
 		}
 	}
-	/* Far from the pulse few examples tell. */
+	/* Far from the pulse few examples contribute. */
 	for (int k = 0; k <= 2 * half; k++)
 		most = fmax(most, weight[k]);
 	for (int k = 0; k <= 2 * half; k++)
@@ -69,12 +69,13 @@ static void mean_residual(struct examples *ex, double *more, double *weight, int
 	smooth(more, weight, 2 * half + 1, smoothing_reach(ex));
 }
 
-/* Chi-square that the parameters of a corrected shape have to earn: twenty, one for each
- * tenth of a duration. */
+/* Least reduction of chi-square for the parameters of a corrected shape: twenty, one for
+ * each tenth of a duration, with 4 (two deviations) each.  In the records of BAD_FIT in
+ * measure.c half of it gives one more wrong row, twice of it the same rows. */
 static const double CORRECTION = 80;
 
-/* What is left of the examples, with half of what each pulse must take away: a shape that
- * lets two pulses pass for one is not better for that. */
+/* Excess chi-square of the examples, plus half the threshold for each pulse: a shape with
+ * which one pulse replaces two is not better for that. */
 static double cost(const struct examples *ex)
 {
 	return ex->excess + 0.5 * ex->scene.drop_near * examples_pulses(ex);
@@ -94,10 +95,9 @@ int correct_doubtful(struct examples *ex, struct calibration *c)
 	return rest || examples_pulses(ex) > pulses;
 }
 
-/* Adds to the shape again and again what the pulses have in common.  At first a pulse
- * that overlaps another must be a large one, lest two of a wrong shape stand for one.
- * There is no use in it once more pulses than most are found, or suddenly more is left.
- */
+/* Adds to the shape repeatedly what the pulses have in common.  At first a pulse that
+ * overlaps another must be a large one, so that two pulses of a wrong shape do not stand
+ * for one.  Ends when more pulses than most are found or the residual suddenly grows. */
 static enum num_status improve_shape(struct examples *ex, struct calibration *c, int most)
 {
 	enum { ROUNDS = 20 };
@@ -139,7 +139,8 @@ enum num_status correct_shape(struct examples *ex, struct calibration *c)
 	ex->corrected = 1;
 	status = improve_shape(ex, c, examples_pulses(ex));
 	c->chi2 = examples_fit(ex, ex->share);
-	/* Where the noise may be what is wrong, the correction must make all well. */
+	/* If the noise may be the cause of the residual, the correction must remove all
+	 * of it. */
 	if (before - cost(ex) > CORRECTION && (!c->suspect || c->chi2 < 1.2)) {
 		c->price = ex->price;
 		if (c->shape != first)

@@ -8,10 +8,8 @@
 
 #include "signal/learn/examples.h"
 
-/* 1 if, with only large pulses allowed to overlap others, a significant chi-square
- * remains or pulses vanish: the shape may be wrong.  On return the examples are fitted as
- * before.
- */
+/* 1 if the shape may be wrong: when only large pulses may overlap others, a significant
+ * chi-square remains or pulses vanish.  On return the examples are fitted as before. */
 int correct_doubtful(struct examples *ex, struct calibration *c);
 
 /* Adds the mean residual to the shape of c if that describes the examples better. */

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Keeps y1, y2[from, to) if it is among the most clearest.  loud: merits of those kept.
- */
+/* Stores y1, y2[from, to) if it is among the most clearest.  loud: merits of the stored
+ * ones. */
 static void offer_example(struct examples *ex, const double *y1, const double *y2,
 	long long from, long long to, int most, double shortest, double *loud)
 {
@@ -20,7 +20,7 @@ static void offer_example(struct examples *ex, const double *y1, const double *y
 			return;
 	for (long long i = from; i < to; i++)
 		energy += y1[i] * y1[i] + y2[i] * y2[i] - 2;
-	/* Loud is good, few pulses are better. */
+	/* Large amplitudes and few pulses are preferred. */
 	merit = energy * pow(shortest / length, 4);
 	for (at = ex->count; at > 0 && loud[at - 1] < merit; at--)
 		if (at < most) {
@@ -72,7 +72,8 @@ static void pick_sections(struct examples *ex, const double *y1, const double *y
 	sections_free(s);
 }
 
-/* Pieces of sections cut through pulses: they serve only where hardly any is short. */
+/* Pieces of sections contain parts of pulses: they are used only if few sections are
+ * short. */
 void examples_pick(struct examples *ex, const double *y1, const double *y2, size_t n,
 	int most, const struct calibration *c)
 {
@@ -84,7 +85,7 @@ void examples_pick(struct examples *ex, const double *y1, const double *y2, size
 		pick_sections(ex, y1, y2, n, most, 1, c);
 }
 
-/* The status of a fit, noted where memory was short. */
+/* Returns the status of a fit, and stores it if memory was short. */
 static enum joint_status note_memory(struct examples *ex, enum joint_status status)
 {
 	if (status == JOINT_MEMORY)
@@ -92,7 +93,7 @@ static enum joint_status note_memory(struct examples *ex, enum joint_status stat
 	return status;
 }
 
-/* May more work be done?  Notes it where not. */
+/* 1 if more work may be done; stores CALIBRATE_HARD if not. */
 static int may_go_on(struct examples *ex)
 {
 	if (ex->before + joint_work(ex->joint) > ex->most)
@@ -144,13 +145,13 @@ int examples_full(const struct examples *ex)
 	return 10 * examples_pulses(ex) > 9 * EXAMPLE_PULSES * ex->count;
 }
 
-/* Bounds of what is found of a shape's misfit: no more is known of pulses louder than the
- * examples; what lone pulses leave is misfit, what crowded ones leave is mostly hidden
- * pulses. */
+/* Bounds of the estimated misfit of a shape: nothing is known of pulses louder than the
+ * examples; the residual of lone pulses is misfit, that of crowded ones is mostly due to
+ * hidden pulses. */
 static const double LEAST_SHARE = 1e-5, MOST_LONE = 3e-4, MOST_CROWDED = 1e-4;
 
-/* Chi-square, three deviations of it, that the error of one parameter of the shape leaves
- * in a pulse as loud as all examples together. */
+/* Chi-square (three deviations) that the error of one parameter of the shape leaves in a
+ * pulse with the energy of all examples together. */
 static const double ERROR = 9;
 
 /* Energy of the pulses of an example, in units of chi-square. */
@@ -165,10 +166,10 @@ static double example_energy(const struct examples *ex, const struct example *e)
 	return sum;
 }
 
-/* What the shape leaves, from the share of energy that each example leaves and the
- * scatter of that.  Lone pulses leave little but that, and not all may be of one form; of
- * crowded ones most hide others, and only the best tell.  Another pulse cannot take more
- * away. */
+/* Estimates the misfit of the shape from the share of energy that each example leaves,
+ * and its scatter.  For lone pulses it is mainly the misfit, but they may have different
+ * forms; most crowded examples contain hidden pulses, and only the best ones count.  A
+ * further pulse cannot reduce this residual. */
 static void learn_misfit(
 	struct examples *ex, const double *share, const double *scatter, int lone)
 {

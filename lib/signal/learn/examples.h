@@ -30,7 +30,8 @@ struct examples {
 	int count;
 	int pieces;    /* 1: some may cut pulses through */
 	double misfit; /* of joint.h, at the end */
-	double share; /* of the energy of a pulse that the shape may miss, found so far */
+	double share; /* share of the energy of a pulse that the shape leaves, as found so
+			 far */
 	double dof;   /* of all examples, ... */
 	double excess;  /* ... their chi-square beyond it, and ... */
 	double energy;  /* ... that of their pulses */
@@ -38,28 +39,28 @@ struct examples {
 	double price;   /* their chi-square and twice the threshold for each pulse, per
 			   degree */
 	double rest[2]; /* power of either channel's residual, that of its noise 1 */
-	double before, most; /* work done before, and the most that may be done */
-	/* CALIBRATE_MEMORY once a function was out of memory, CALIBRATE_HARD once more
-	 * than the most was done; the results are invalid then. */
+	double before, most; /* work done before, and its limit */
+	/* CALIBRATE_MEMORY after a function was out of memory, CALIBRATE_HARD after the
+	 * limit of work was exceeded; the results are invalid then. */
 	enum calibrate_status status;
 };
 
-/* The clearest short sections of y1, y2[0 .. n), aligned, at most most of them; pieces of
- * longer ones where hardly any is short.  The record has to outlive them. */
+/* Selects the clearest short sections of y1, y2[0 .. n), aligned, at most most of them;
+ * if few are short, also pieces of longer ones.  The record must outlive them. */
 void examples_pick(struct examples *ex, const double *y1, const double *y2, size_t n,
 	int most, const struct calibration *c);
 
-/* Finds the pulses of all examples anew; one that overlaps others must reduce chi-square
+/* Finds the pulses of all examples again; one that overlaps others must reduce chi-square
  * by this share of their energy.  Returns the median of their chi-square per degree of
- * freedom, which a few examples with hidden pulses do not spoil; INFINITY where one
+ * freedom, which is robust against a few examples with hidden pulses; INFINITY if one
  * cannot be fitted. */
 double examples_fit(struct examples *ex, double misfit);
 
-/* Chi-square of all that are not spoiled with their pulses refined under the present
- * scene; the pulses themselves stay unless keep. */
+/* Chi-square of all examples that are not spoiled, with their pulses refined under the
+ * present scene; the refined pulses are stored only if keep is 1. */
 double examples_chi2(struct examples *ex, int keep);
 
-/* Refines pulse[0 .. e->m) of one under the present scene. */
+/* Refines pulse[0 .. e->m) of one example under the present scene. */
 enum joint_status examples_refine(struct examples *ex, const struct example *e,
 	struct joint_pulse *pulse, struct joint_result *result);
 

@@ -9,12 +9,13 @@
 
 enum { RANGE_EVENTS = 12 };
 
-/* Samples of pulses computed, some five seconds of processor time: groups of six Lorentz
- * pulses at 30 dB take 7.4e8, of three pulses behind a guessed low-pass 7.7e8; what no
- * pulses describe would take more. */
+/* Limit of the samples of pulses computed, some five seconds of processor time: groups of
+ * six Lorentz pulses at 30 dB take 7.4e8, of three pulses behind a guessed low-pass
+ * 7.7e8; a record that pulses do not describe would take more. */
 static const double MOST = 9e8;
 
-/* Chi-square that says that noise of a suspected colour is not white. */
+/* Chi-square above which noise of a suspected colour is not white; half and twice of it
+ * give the same rows in the records of BAD_FIT in measure.c. */
 static const double HOPELESS = 100;
 
 /* First minimum of the autocorrelation after its smallest value has been passed by a
@@ -86,7 +87,7 @@ static void scene_of(const struct calibration *c, struct joint_scene *scene)
 	scene->max_pulses = EXAMPLE_PULSES;
 }
 
-/* Duration and gain to least chi-square, unless they are known. */
+/* Adjusts duration and gain to the least chi-square, unless they are known. */
 static void tune(
 	const struct calibrate_par *par, struct examples *ex, double step, int rounds)
 {
@@ -125,7 +126,7 @@ enum num_status learn_duration(int pulse, double low, double *duration)
 	return status;
 }
 
-/* Takes the pulse found in the record. */
+/* Uses the pulse found in the record. */
 static void take_template(struct calibration *c, struct template *found)
 {
 	shape_free(c->shape);
@@ -137,7 +138,7 @@ static void take_template(struct calibration *c, struct template *found)
 	c->measured = 1;
 }
 
-/* What describes some clear examples best so far. */
+/* The best description of some clear examples so far. */
 struct guess {
 	int pulse;
 	double duration, gain, price, chi2;
@@ -168,10 +169,10 @@ static enum calibrate_status try_shape(const struct calibrate_par *par,
 	return CALIBRATE_OK;
 }
 
-/* Which shape describes some clear examples best, and its rough duration; low: lag of
- * the lowest autocorrelation, which a train of pulses may hide behind its own.  A wrong
- * shape needs more pulses for the same record, so that each costs what it must take
- * away. */
+/* Finds the shape that describes some clear examples best, and its approximate duration.
+ * low: lag of the lowest autocorrelation, which that of a train of pulses may hide.  A
+ * wrong shape needs more pulses for the same record, so each pulse costs its threshold.
+ */
 static enum calibrate_status learn_shape(const struct calibrate_par *par,
 	struct examples *ex, const double *y1, const double *y2, size_t n, double low,
 	const struct template *hint, struct calibration *c)
@@ -206,7 +207,12 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 	return status;
 }
 
-/* Share of the range beyond which particles of plug flow, of a few per cent, are not. */
+/* Share of the range of delays beyond which there are no particles of plug flow, whose
+ * velocities differ by a few per cent.  With 0.5, 0.7 and 0.85, 3, 8 and 15 of 1200 rows
+ * in turbulent flow are wrong and all are found; lower values widen the range of plug
+ * flow too (scenes turbulent and group-turbulent of tests/matrix/scenes.tsv, seeds 11 to
+ * 18).
+ */
 static const double FAR = 0.7;
 
 /* Range of the delays seen, widened by half on either side. */
@@ -235,8 +241,8 @@ static void learn_range(
 	}
 }
 
-/* Duration and gain by turns with the pulses of the examples: the closer they come, the
- * smaller a pulse may be that is not just a misfit of its neighbour. */
+/* Adjusts duration and gain alternately with the pulses of the examples: the closer they
+ * are, the smaller a pulse may be without being a misfit of its neighbour. */
 static enum calibrate_status converge(
 	const struct calibrate_par *par, struct examples *ex, struct calibration *c)
 {
@@ -261,16 +267,16 @@ static enum calibrate_status converge(
 		}
 		if (k > 1 &&
 			(examples_full(ex) || (c->chi2 > 10 && c->chi2 > 0.8 * before)))
-			break; /* too dense, or not such pulses: no use */
+			break; /* too dense, or other pulses: no use */
 		if (k > 2 && moved < 5e-4 && (c->chi2 < 1.2 || c->chi2 > 0.95 * before))
 			break;
 	}
 	return CALIBRATE_OK;
 }
 
-/* Is the shape to be corrected?  One that is given stays, but for what a guessed filter
- * has done to it; and explanations of a colour are compared by how well plain pulses
- * suit. */
+/* 1 if the shape is to be corrected.  A shape given by the caller is kept, except for the
+ * effect of a guessed filter; explanations of a colour are compared by how well
+ * uncorrected pulses fit. */
 static int wants_correction(
 	const struct calibrate_par *par, struct examples *ex, struct calibration *c)
 {
@@ -296,8 +302,8 @@ void learn_hidden(const struct calibrate_par *par, const struct calibration *c,
 	hidden[1] = use ? par->hidden[1] + c->shift : NULL;
 }
 
-/* By the pulse taken from the record, or else by those of sensor.h, where samples are
- * known. */
+/* Learns by the pulse taken from the record, or else by those of sensor.h, excluding the
+ * samples that are not known. */
 static enum calibrate_status learn_known(const struct calibrate_par *par,
 	const double *y1, const double *y2, size_t n, double low, struct template *found,
 	const struct template *hint, const unsigned char *const hidden[2],
@@ -335,8 +341,8 @@ static enum calibrate_status learn_known(const struct calibrate_par *par,
 	return status;
 }
 
-/* The same, and where there are no impulses, unless the pulses are so short that they are
- * taken for impulses. */
+/* The same, excluding impulses, unless the pulses are so short that they are classified
+ * as impulses. */
 static enum calibrate_status learn_by(const struct calibrate_par *par, const double *y1,
 	const double *y2, size_t n, double low, struct template *found,
 	const struct template *hint, struct calibration *c)
@@ -367,7 +373,8 @@ static enum calibrate_status learn_by(const struct calibrate_par *par, const dou
 }
 
 /* Shape, duration, gain and range of delays by joint fits.  A pulse taken from groups of
- * pulses that are nearly alike does not describe them; then the known ones may. */
+ * nearly equal composition does not describe their pulses; the known shapes are tried
+ * then. */
 enum calibrate_status learn_pulse(const struct calibrate_par *par, const double *y1,
 	const double *y2, size_t n, double low, struct template *found,
 	struct calibration *c)

@@ -18,14 +18,14 @@
 double learn_lowest_lag(const double *r, size_t max_lag);
 /* *duration: of a pulse whose autocorrelation is lowest at this lag, samples. */
 enum num_status learn_duration(int pulse, double low, double *duration);
-/* Gives c this pulse, as the whitened record has it at the present duration. */
+/* Sets the shape of c to this pulse, as filtered by the whitening, at the present
+ * duration. */
 enum num_status learn_set_shape(struct calibration *c, int pulse);
-/* Does the pulse describe its record, by chi-square per degree of freedom of clear
- * pulses?
- */
+/* 1 if the pulse describes its record, by chi-square per degree of freedom of clear
+ * pulses. */
 int learn_describes(const struct calibration *c);
-/* Flags of the samples, aligned, that are not known; NULL where the record was made
- * white, which spreads them. */
+/* Flags of the samples, aligned, that are not known; NULL if the record was whitened,
+ * which spreads them. */
 void learn_hidden(const struct calibrate_par *par, const struct calibration *c,
 	const unsigned char *hidden[2]);
 /* Fills shape, duration, gain, range of delays, chi2, price, rest and events of c from

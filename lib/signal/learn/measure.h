@@ -10,27 +10,28 @@
 #include "signal/noise/colour.h"
 #include <stddef.h>
 
-/* Results of a first look at the noise of the record. */
+/* Results of the first examination of the noise of the record. */
 struct look {
 	int attempts;
 	double work; /* samples of pulses computed so far */
 	int coloured;
-	enum whiten_kind kind; /* tried now */
-	int settled;           /* 1: for the last time */
+	enum whiten_kind kind; /* the kind of colour that is being tried */
+	int settled;           /* 1: this is the last attempt */
 	double low;            /* lag of the lowest autocorrelation */
 	double drift;          /* mean square change of lines over some thousand samples,
 				  noise 1 */
 	double power[COLOUR_BINS];
-	int first;  /* 1: coloured noise is to be made white where no events are alike */
-	int events; /* that must be alike, as they were in another attempt */
+	int first;  /* 1: return COLOURED if the noise is coloured and no events are alike
+		     */
+	int events; /* events that must be alike, as in another attempt */
 	struct template found; /* the pulse taken from the record */
 };
 
-/* Is the noise white above the band of a pulse of this duration? */
+/* 1 if the noise is white above the band of a pulse of this duration. */
 int measure_white_above(const struct look *look, double duration);
 
 /* Fills the rest of c, whose whitening, mean, guessed and suspect are given, from y1,
- * y2[0 .. n), which it spoils; raw[0 .. n): y1 before it was made white; work holds n. */
+ * y2[0 .. n), which are overwritten.  raw[0 .. n): y1 before whitening; work holds n. */
 enum calibrate_status measure(const struct calibrate_par *par, const double *raw,
 	double *y1, double *y2, size_t n, double *work, struct look *look,
 	struct calibration *c);

@@ -9,14 +9,14 @@
 /* Points of a duration on the coarse grid where events are compared. */
 enum { COARSE = 32, ROUNDS = 4 };
 
-/* Samples: shorter pulses are not described by them. */
+/* Duration in samples below which samples do not describe a pulse. */
 static const double SHORTEST = 8;
 
-/* Durations on either side of an event that are looked at. */
+/* Durations on either side of an event that are examined. */
 static const double SIDE = 2;
 
-/* Share of its energy in which an event may differ from another one of the same kind, by
- * its velocity and the coarse grid. */
+/* Share of its energy in which an event may differ from another of the same kind, because
+ * of its velocity and the coarse grid. */
 static const double ALIKE = 0.02;
 
 struct event {
@@ -54,7 +54,7 @@ static void coarsen(const double *x, size_t n, int q, double *out)
 	}
 }
 
-/* Are all samples of [from, to) of the coarse grid known? */
+/* 1 if all samples of [from, to) of the coarse grid are known. */
 static int is_known(const struct search *s, size_t from, size_t to)
 {
 	for (int c = 0; c < 2; c++)
@@ -65,8 +65,8 @@ static int is_known(const struct search *s, size_t from, size_t to)
 	return 1;
 }
 
-/* Keeps the event at [from, to) of the coarse grid if it is among the clearest: loud and
- * short. */
+/* Stores the event at [from, to) of the coarse grid if it is among the clearest, that is,
+ * large and short. */
 static void offer(struct search *s, size_t from, size_t to)
 {
 	double energy = 0, moment = 0, merit, length = (double)(to - from);
@@ -99,8 +99,8 @@ static void offer(struct search *s, size_t from, size_t to)
 	s->count += s->count < TEMPLATE_EVENTS;
 }
 
-/* Stretches whose power within a duration stands out of the noise by eight standard
- * deviations, and not much longer than a pulse. */
+/* Finds the intervals whose power within a duration exceeds the noise by eight standard
+ * deviations and that are not much longer than a pulse. */
 static void find_events(struct search *s)
 {
 	size_t width = (size_t)fmax(floor(s->T / s->q), 4), begin = 0, end = 0;
@@ -125,8 +125,8 @@ static void find_events(struct search *s)
 		offer(s, begin, end);
 }
 
-/* Lag of x, 2 half + 1 points around at, within +-range for which it is most like p, its
- * sign apart; *value: the product. */
+/* Lag of x, 2 half + 1 points around at, within +-range, at which it is most similar to p
+ * except for its sign; *value: the product. */
 static long best_lag(const double *p, int half, const double *x, size_t n, long at,
 	long range, double *value)
 {
@@ -148,8 +148,7 @@ static long best_lag(const double *p, int half, const double *x, size_t n, long 
 	return best;
 }
 
-/* The event that most others are like, by channel 1 on the coarse grid; -1 if too few
- * are. */
+/* The event that most others equal, by channel 1 on the coarse grid; -1 if too few do. */
 static int most_common(struct search *s)
 {
 	size_t length = 2 * (size_t)s->coarse_half + 1;
@@ -182,7 +181,7 @@ static int most_common(struct search *s)
 	return most >= TEMPLATE_LEAST ? best : -1;
 }
 
-/* x at t, between its samples by the cubic through the four around. */
+/* x at t, by the cubic through the four samples around it. */
 static double between(const double *x, size_t n, double t)
 {
 	double u = t - floor(t), a, b, c, d;
@@ -227,7 +226,8 @@ static void measure_event(
 	e->a[channel] = (v[1] - 0.25 * (v[0] - v[2]) * move) / energy;
 }
 
-/* What the template leaves of an event, a line apart, over what noise would. */
+/* Residual power of an event after the template and a straight line, relative to that of
+ * noise. */
 static double left_over(const struct search *s, const struct event *e)
 {
 	double sum = 0, energy = 0;
@@ -250,7 +250,7 @@ static double left_over(const struct search *s, const struct event *e)
 	return (sum - ALIKE * energy) / (2 * (2 * s->half + 1));
 }
 
-/* The mean of the events that are alike, each in its own units. */
+/* Averages the events that are alike, each in its own units. */
 static void average(struct search *s)
 {
 	double weight = 0;
@@ -275,7 +275,7 @@ static void average(struct search *s)
 	s->scatter = 1 / sqrt(weight);
 }
 
-/* The coarse template: of the fine one, at the middles of the coarse points. */
+/* Computes the coarse template: the fine one at the centres of the coarse points. */
 static void coarsen_template(struct search *s)
 {
 	for (int k = -s->coarse_half; k <= s->coarse_half; k++) {
@@ -291,8 +291,8 @@ static void coarsen_template(struct search *s)
 	}
 }
 
-/* Averages the events like the one given, and those like their mean, a few times over.
- * Returns how many they are. */
+/* Averages the events that equal the one given, then those that equal their mean, a few
+ * times.  Returns their number. */
 static int refine(struct search *s, int best)
 {
 	int count = 0;
@@ -322,8 +322,8 @@ static int refine(struct search *s, int best)
 	return count;
 }
 
-/* Takes from d its parts along the rows of base, each of which is made orthonormal to
- * those before it. */
+/* Subtracts from d its components along the rows of base, each of which is made
+ * orthonormal to the rows before it. */
 static void orthogonalise(double *base, int rows, double *d, size_t n)
 {
 	for (int i = 0; i <= rows; i++) {
@@ -342,12 +342,13 @@ static void orthogonalise(double *base, int rows, double *d, size_t n)
 	}
 }
 
-/* Standard deviations of chi-square that the widths of one kind of pulse hardly reach. */
+/* Standard deviations of chi-square above which the widths are not those of one kind of
+ * pulse. */
 static const double WIDTHS = 5;
 
-/* Have the events one width, within noise?  Pairs of pulses that are nearly one have not:
- * their distances differ.  The residual of each is projected on the change of the
- * template with its width, less what offset, slope, amplitude and arrival do. */
+/* *one: 1 if the events have one width within noise.  Pairs of nearly coincident pulses
+ * do not: their distances differ.  The residual of each event is projected on the change
+ * of the template with its width, orthogonal to offset, slope, amplitude and arrival. */
 static enum num_status check_widths(const struct search *s, int *one)
 {
 	enum { BASE = 4 };
@@ -410,8 +411,8 @@ static int template_reach(const struct search *s)
 	return reach;
 }
 
-/* Nearest pulse of sensor.h at one duration: the shift and the share of energy it leaves.
- */
+/* Most similar pulse of sensor.h at one duration: its shift and the share of energy it
+ * leaves. */
 static double try_match(const struct search *s, int reach, const struct shape *shape,
 	double T, double *work, double *shift, int *reversed)
 {
@@ -491,7 +492,7 @@ static enum num_status make_shape(
 	return t->shape ? NUM_OK : NUM_MEMORY;
 }
 
-/* What the events are in terms of the shape. */
+/* Arrivals and amplitudes of the events for the shape. */
 static void take_events(const struct search *s, double shift, struct template *t)
 {
 	double peak = 0, delay[TEMPLATE_EVENTS], median;
@@ -629,8 +630,8 @@ double template_peak(const struct template *t, const double *x1, size_t n)
 
 	for (int i = 0; i < t->events; i++)
 		weight += t->a[i] * t->a[i];
-	/* Values of a parabola through 2 m + 1 points: those of noise alone would be
-	 * high. */
+	/* Values of a parabola through 2 m + 1 points; the largest value would be too
+	 * high because of noise. */
 	for (int k = -half; k <= half; k++) {
 		double sum = 0;
 

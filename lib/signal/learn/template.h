@@ -1,9 +1,10 @@
 /* template.h - the pulse of a record, taken from the record itself
  *
- * Among the clear events of a record the one with most others like it, within noise, is
- * taken, and the mean of those, each at its own arrival, size and velocity.  Nothing is
- * assumed of the shape: what a front-end, a reversed coil or another kind of sensor has
- * made of it is in it.  Overlapping pulses and foreign events are like few others.
+ * Among the clear events of a record, the one that most others equal within noise is
+ * selected, and these are averaged, each at its own arrival, size and velocity.  Nothing
+ * is assumed about the shape: it includes the effects of the front-end, of a reversed
+ * coil or of another kind of sensor.  Overlapping pulses and foreign events equal few
+ * others.
  */
 #ifndef SIGNAL_TEMPLATE_H
 #define SIGNAL_TEMPLATE_H
@@ -21,11 +22,11 @@ struct template
 	int events;
 	double t1[TEMPLATE_EVENTS], t2[TEMPLATE_EVENTS]; /* arrivals, samples */
 	double a[TEMPLATE_EVENTS];                       /* amplitudes at sensor 1 */
-	/* The pulse of sensor.h that is nearest, and the share of the energy that it
+	/* The pulse of sensor.h that is most similar, and the share of the energy that it
 	 * leaves.  Arrivals are those of this pulse. */
 	int pulse, reversed;
 	double left;
-	int elsewhere; /* set by the caller: 1: found at another duration than was guessed
+	int elsewhere; /* set by the caller: 1: found at a duration other than the guess
 			*/
 	int alone; /* set by the caller, kept: 1: no known pulse is to be tried instead */
 };
@@ -38,8 +39,8 @@ enum num_status template_find(struct template *t, const double *y1, const double
 	double reach);
 void template_clear(struct template *t);
 
-/* The share of the energy that the nearest pulse of sensor.h leaves after symmetric taps
- * -half .. half; 2 if none of about this duration is of its sign. */
+/* The share of the energy that the most similar pulse of sensor.h leaves after symmetric
+ * taps -half .. half; 2 if none of about this duration has its sign. */
 enum num_status template_known(
 	const struct template *t, const double *tap, int half, double *left);
 

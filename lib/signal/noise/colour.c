@@ -8,7 +8,7 @@
 
 enum { LONGEST = 2 * (COLOUR_BINS - 1), QUIETS = 16 };
 
-/* Power of the whitened noise over that of white noise. */
+/* Power of the whitened noise relative to white noise. */
 static double level(const struct whitening *w, double *power, size_t segment)
 {
 	size_t from = (size_t)(w->low * (double)segment) + 1,
@@ -60,8 +60,8 @@ static double window_autocorrelation(size_t n, size_t lag, int squared)
 	return sum / all;
 }
 
-/* Takes from a mean periodogram what the window did to it: the autocorrelation is divided
- * by that of the window, and cut softly at half its length. */
+/* Removes the effect of the window from a mean periodogram: the autocorrelation is
+ * divided by that of the window, and truncated smoothly at half its length. */
 static enum num_status sharpen(double *power, size_t bins)
 {
 	size_t points = 2 * (bins - 1), last = points / 2;
@@ -109,12 +109,12 @@ enum num_status colour_power(const double *y1, const double *y2, size_t n,
 	return quiets >= QUIETS ? sharpen(power, COLOUR_BINS) : NUM_DOMAIN;
 }
 
-/* Standard deviations that the scatter of some hundred lags hardly exceeds. */
+/* Standard deviations that the scatter of some hundred lags rarely exceeds. */
 static const double SCATTER = 4;
 
-/* Twice the last of the first whole lags of an autocorrelation at which it is more than
- * its scatter, which is that of the later half of them: its variance is as the overlap
- * of the squared window over the square of that of the window. */
+/* Twice the last of the first whole lags at which an autocorrelation exceeds its scatter,
+ * which is estimated from the later half of them: its variance is proportional to the
+ * overlap of the squared window over the square of that of the window. */
 static size_t last_lag(const double *r, size_t points, size_t whole)
 {
 	double square = 0;

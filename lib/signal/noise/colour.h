@@ -20,8 +20,8 @@ enum num_status colour_level(const double *y1, const double *y2, size_t n,
  * 16 segments are quiet. */
 enum num_status colour_power(const double *y1, const double *y2, size_t n,
 	const double noise[2], double power[COLOUR_BINS]);
-/* Takes from such a spectrum what comes from lags at which the noise is not correlated.
- * It would roughen the spectrum, and a filter made of it would ring. */
+/* Removes from such a spectrum the contribution of lags at which the noise is not
+ * correlated.  It would roughen the spectrum, and a filter made from it would ring. */
 enum num_status colour_smooth(double power[COLOUR_BINS]);
 /* 1 if this is the spectrum of white noise, within its scatter, above the frequency from
  * (per sample). */

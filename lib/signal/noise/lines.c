@@ -1,4 +1,4 @@
-/* lines.c - takes narrow lines out of a stream */
+/* lines.c - removes narrow lines from a stream */
 #include "signal/noise/lines.h"
 #include "num/status.h"
 #include "signal/noise/tones.h"
@@ -67,8 +67,8 @@ static void take_channel(struct lines *l, size_t c, size_t begin, size_t n)
 		l->channel[i] = l->frames[(begin + i) * nc + c];
 }
 
-/* Fits the last frames of total kept, a window if there are so many, and cleans the first
- * of those held. */
+/* Fits the last of the total frames kept, a window of them if there are so many, and
+ * cleans the first of those held. */
 static enum num_status clean_channel(
 	struct lines *l, size_t c, size_t total, size_t cleaned)
 {

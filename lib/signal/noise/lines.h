@@ -21,8 +21,8 @@
 
 struct lines;
 
-/* count frequencies omega, rad per sample, each and all differences at least pi / hop, so
- * that a window can tell them apart.  NULL when out of memory. */
+/* count frequencies omega, rad per sample; each of them and all differences at least pi /
+ * hop, so that a window can resolve them.  NULL when out of memory. */
 struct lines *lines_new(int count, const double *omega, int channels, size_t hop);
 void lines_free(struct lines *lines);
 

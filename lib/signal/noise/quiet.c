@@ -8,8 +8,8 @@
 
 enum { GROUP = 8, PASSES = 4 };
 
-/* Power of GROUP neighbouring bins of both channels, as a share of that of the noise,
- * which is exceeded by noise about once in 1e6. */
+/* Power of GROUP neighbouring bins of both channels, relative to that of the noise, which
+ * noise exceeds about once in 1e6. */
 static const double loud = 2.8;
 
 /* Periodograms of count half-overlapping segments: power[i * bins + k - 1] of bin k. */
@@ -61,7 +61,7 @@ static void mean_spectrum(const double *power, size_t bins, size_t count,
 			spectrum[k] += power[i * bins + k] / quiets;
 }
 
-/* Does no group of bins of this segment stand out of the spectra? */
+/* 1 if no group of bins of this segment exceeds the spectra significantly. */
 static int is_quiet(const double *power[2], double *const spectrum[2], size_t bins)
 {
 	double sum = 0;

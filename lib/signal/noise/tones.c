@@ -32,8 +32,8 @@ static int by_omega(const void *x, const void *y)
 	return p->omega < q->omega ? -1 : p->omega > q->omega;
 }
 
-/* Pulses are clipped to a few times the usual sample, lines and all: unclipped their
- * spectrum would bury a line that is as strong as they are rare. */
+/* Pulses are clipped to a few times the usual sample, which includes the lines:
+ * unclipped, the spectrum of rare strong pulses would hide lines. */
 static void add_periodogram(const struct fft *fft, const double *y, size_t n,
 	double *work, double complex *spectrum, double *power)
 {
@@ -45,7 +45,7 @@ static void add_periodogram(const struct fft *fft, const double *y, size_t n,
 		work[i] = fabs(y[i] - mean);
 	limit = CLIP * robust_median(work, n);
 	if (limit <= 0)
-		limit = INFINITY; /* silence but for pulses */
+		limit = INFINITY; /* silence except for pulses */
 	for (size_t i = 0; i < n; i++)
 		work[i] = fmax(fmin(y[i] - mean, limit), -limit) *
 			  (0.5 - 0.5 * cos(2 * M_PI * (double)i / (double)n));
@@ -125,16 +125,16 @@ enum num_status tones_find(
 }
 
 /* Terms (a constant, then cosine and sine of each tone) of a run of samples from index 0
- * on, and their products summed over it.  Those of any other run are the same, each tone
- * turned by its phase where the run begins. */
+ * on, and the sums of their products.  Those of any other run follow by rotating each
+ * tone by its phase at the beginning of the run. */
 struct basis {
 	int tones, terms;
 	double omega[TONES_MAX];
 	double term[TERMS_MAX][RUN], gram[TERMS_MAX][TERMS_MAX];
 };
 
-/* Cosine and sine of omega t.  The product is taken to twice the digits, since its last
- * one is worth much where t is large. */
+/* Cosine and sine of omega t.  The product is computed with twice the digits, since its
+ * last digits matter for large t. */
 static void cosine_sine(double omega, double t, double *c, double *s)
 {
 	double phase = omega * t, rest = fma(omega, t, -phase);
@@ -224,7 +224,7 @@ static void substitute(const double *a, double *b, int n)
 	}
 }
 
-/* Turns every tone's pair of rows by its phase at the first sample of term. */
+/* Rotates the pair of rows of every tone by its phase at the first sample of term. */
 static void turn_rows(const struct basis *b, double term[][RUN], double from[][TERMS_MAX],
 	double to[][TERMS_MAX])
 {
@@ -239,12 +239,13 @@ static void turn_rows(const struct basis *b, double term[][RUN], double from[][T
 	}
 }
 
-/* Least squares as it grows: products of terms with each other and with the samples. */
+/* The normal equations being accumulated: products of terms with each other and with the
+ * samples. */
 struct normal {
 	double a[TERMS_MAX * TERMS_MAX], b[TERMS_MAX];
 };
 
-/* Adds a run all of whose samples count. */
+/* Adds a run in which all samples count. */
 static void add_whole(
 	struct normal *s, struct basis *b, double term[][RUN], const double *x)
 {
@@ -307,8 +308,9 @@ static enum num_status fit_masked(struct basis *b, double term[][RUN], const dou
 	return NUM_OK;
 }
 
-/* Marks where the mean square of rest over some neighbours is at most twice its median:
- * where nothing happens.  Returns that median; work and sorted hold n. */
+/* Marks the samples at which the mean square of rest over some neighbours is at most
+ * twice its median, that is, the quiet ones.  Returns that median; work and sorted hold
+ * n. */
 static double mark_quiet(
 	const double *rest, size_t n, double *work, double *sorted, unsigned char *mask)
 {
@@ -358,8 +360,8 @@ enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
 		coefficient[0] = robust_median(rest, n);
 		memcpy(y, x, n * sizeof *x);
 	}
-	/* At first the rest is the record itself: where tones prevail it is quiet all
-	 * along, where they do not it is quiet between the pulses. */
+	/* At first the rest is the record itself: it is quiet everywhere if tones
+	 * dominate, otherwise between the pulses. */
 	for (int pass = 0; !status && pass < PASSES; pass++) {
 		for (size_t r = 0; r < runs; r++)
 			sum_terms(term + r * terms, basis.terms, coefficient,
@@ -383,7 +385,7 @@ enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
 	return status;
 }
 
-/* Power of tone k over what noise gives it: chi-square with two degrees of freedom. */
+/* Power of tone k relative to that from noise: chi-square with two degrees of freedom. */
 static double significance(
 	const double *coefficient, const double *variance, double deviation, int k)
 {

@@ -16,13 +16,13 @@ enum { TONES_MAX = 16 };
 enum tones_status {
 	TONES_OK,
 	TONES_MEMORY,
-	TONES_SHORT /* too few samples to tell the tones from each other */
+	TONES_SHORT /* too few samples to resolve the tones */
 };
 
-/* Frequencies, rad per sample and rising, that stand out of the summed periodogram of
- * both channels (n samples each, n >= 1024, Hann window): lines at least 40 times the
- * median of the 64 bins on either side, which white noise exceeds with probability
- * 2^-40 per bin; the strongest max of them, *tones in all. */
+/* Frequencies, rad per sample, ascending, that exceed the summed periodogram of both
+ * channels (n samples each, n >= 1024, Hann window): lines at least 40 times the median
+ * of the 64 bins on either side, which white noise exceeds with probability 2^-40 per
+ * bin; the strongest max of them, *tones in all. */
 enum num_status tones_find(
 	const double *y1, const double *y2, size_t n, int max, double *omega, int *tones);
 

@@ -8,14 +8,14 @@
 
 static const double least_power = 2.5e-5; /* (1/200)^2 */
 
-/* The same for measured power, where leakage from other frequencies sets an end. */
+/* The same for measured power, which is limited by leakage from other frequencies. */
 static const double least_measured = 5e-3;
 
-/* Rise of measured power over two of its frequencies, from the first on, that is too
- * steep to be known: of what is below nothing can be made good. */
+/* Ratio of measured powers two frequencies apart, from the first on, below which the
+ * slope is too steep to be known; the lower frequencies are then lost. */
 static const double steep = 0.18;
 
-/* Share that is kept of frequencies from 0 at edge lost to 1 at edge whole. */
+/* Gain at frequency f, from 0 at the edge lost to 1 at the edge whole. */
 static double taper(double f, double lost, double whole)
 {
 	double u = (f - lost) / (whole - lost);
@@ -23,7 +23,7 @@ static double taper(double f, double lost, double whole)
 	return u <= 0 ? 0 : u >= 1 ? 1 : 0.5 - 0.5 * cos(M_PI * u);
 }
 
-/* Bins around the strongest where the power does not fall below the least. */
+/* The bins around the strongest one in which the power is at least the least one. */
 static void find_band(const double *power, size_t n, size_t *first, size_t *last)
 {
 	size_t peak = 0;
@@ -86,7 +86,7 @@ static enum num_status gain_of_taps(const double *tap, int half, size_t n, doubl
 	return status;
 }
 
-/* Drops taps at both ends that do not matter. */
+/* Drops negligible taps at both ends. */
 static void trim(double *tap, int *half)
 {
 	double most = 0;
@@ -100,8 +100,8 @@ static void trim(double *tap, int *half)
 	*half = keep;
 }
 
-/* Gains that make the noise white, with soft edges where frequencies are lost, and what
- * they and the filter leave of a pulse, its baseline apart. */
+/* Gains that whiten the noise, with smooth edges where frequencies are lost, and the
+ * gains of a pulse, without its baseline, through them and the filter. */
 static void whitening_gains(struct whitening *w, const double *power, size_t n,
 	double unit, double *gain, double *seen)
 {
@@ -126,7 +126,7 @@ static void whitening_gains(struct whitening *w, const double *power, size_t n,
 	}
 }
 
-/* What the taps leave of a pulse and of the noise. */
+/* Computes what the taps leave of a pulse and of the noise. */
 static enum num_status look_through(struct whitening *w, const double *power, double unit,
 	size_t n, enum whiten_kind kind, double *gain, double *seen)
 {
@@ -137,7 +137,7 @@ static enum num_status look_through(struct whitening *w, const double *power, do
 	for (size_t k = 0; k < n; k++)
 		w->band += gain[k] * gain[k] * power[k] / unit *
 			   (k == 0 || k == n - 1 ? 0.5 : 1) / (double)(n - 1);
-	if (kind == WHITEN_COLOURED) /* the baseline is fitted along: leave it in */
+	if (kind == WHITEN_COLOURED) /* the baseline is fitted, so it is kept */
 		for (size_t k = 0; k < n; k++)
 			seen[k] = gain[k < lowest ? lowest : k];
 	if (taps_of_gain(seen, n, w->half, w->seen))
@@ -222,7 +222,8 @@ enum num_status whitening_of_noise(
 
 enum num_status whitening_of_filter(struct whitening *w, const double *tap, size_t taps)
 {
-	/* An inverse is longer than the filter: near the edges the gain is steep. */
+	/* An inverse is longer than the filter, because the gain is steep near the edges.
+	 */
 	size_t points = fft_good_size(24 * taps + 64), n;
 	double *power;
 	struct fft *fft;
@@ -267,7 +268,7 @@ enum num_status whitening_apply(const struct whitening *w, double *x, size_t n)
 	size_t block = fir ? fir_block(fir) : 0, delay = (size_t)w->half;
 	double *piece = malloc((block + 1) * sizeof *piece);
 
-	/* What is written lags behind what is read. */
+	/* Output lags behind input. */
 	for (size_t at = 0; fir && piece && at < n + delay; at += block) {
 		for (size_t i = 0; i < block; i++)
 			piece[i] = at + i < n ? x[at + i] : 0;

@@ -50,7 +50,9 @@ static double shortest_window(const struct separate *s)
 }
 
 /* Consecutive unresolved windows after which the rest of the section is reported as
- * unresolved. */
+ * unresolved.  Of 10404 particles in 20 records (scenes dense, poisson-50, group-25-dB
+ * and group-skew of tests/matrix/scenes.tsv, seeds 11 and 12) 1, 2, 3 and 5 find 4974,
+ * 5100, 5327 and 5383; of the rows 5.7, 5.8, 6.8 and 6.9 % are wrong. */
 enum { PATIENCE = 3 };
 
 /* Fits the m pulses of a window to both components; they are doubted if the residual of

@@ -20,10 +20,10 @@ struct converter {
 	size_t run; /* samples up to the last one that are equal */
 };
 
-/* Takes in the next sample; returns how many of the last samples, this one included, were
+/* Takes the next sample; returns how many of the last samples, including this one, were
  * not measured. */
 size_t converter_next(struct converter *c, double x);
-/* Is x a limit, by all that was seen? */
+/* 1 if x is a limit, by all samples so far. */
 int converter_saturates(const struct converter *c, double x);
 
 #endif

@@ -10,7 +10,7 @@
 enum { T1, T2, A, B, PARAMETERS };
 enum { BY_T1, BY_T2, PULSE, FUNCTIONS };
 
-/* Where a pulse is on a sensor, its functions, and their products with the basis. */
+/* Position of a pulse on a sensor, its functions, and their products with the basis. */
 struct part {
 	long first;
 	size_t n;
@@ -106,7 +106,7 @@ enum num_status quadrature_measure(struct quadrature *q, const double *const x[2
 			sum[i] = x[c][i] / one - v[c][i] / two;
 		minus = robust_noise(sum, n, ORDER, work);
 		r = (plus * plus - minus * minus) / (plus * plus + minus * minus);
-		/* equal components: they would tell of their difference without error */
+		/* limited: the difference of equal components would have no error */
 		r = isfinite(r) ? fmax(fmin(r, 0.99), -0.99) : 0;
 		two /= one;
 		determinant = two * two * (1 - r * r);
@@ -192,8 +192,8 @@ static enum num_status fit_reserve(struct fit *f)
 	return NUM_OK;
 }
 
-/* Functions of pulse i, as p is, on sensor c.  Its duration grows with the second
- * arrival and falls with the first. */
+/* Functions of pulse i for the parameters p on sensor c.  Its duration grows with the
+ * second arrival and decreases with the first. */
 static void make_part(struct fit *f, int i, int c, const struct quadrature_pulse *p)
 {
 	const struct joint_scene *s = f->scene;
@@ -225,7 +225,7 @@ static void make_part(struct fit *f, int i, int c, const struct quadrature_pulse
 				f->vector + (size_t)b * f->n + first, part->n);
 }
 
-/* The record less the pulses, and chi-square. */
+/* Subtracts the pulses from the record; returns chi-square. */
 static double subtract_pulses(struct fit *f, const struct quadrature_pulse *p)
 {
 	double chi2 = 0;
@@ -268,7 +268,8 @@ static double chi_square(struct fit *f, const struct quadrature_pulse *p)
 	return subtract_pulses(f, p);
 }
 
-/* How parameter k of a pulse moves its two components: a function of time times these. */
+/* Effect of parameter k of a pulse on its two components: the function of time that is
+ * returned, times weight. */
 static int component_of(const struct quadrature_pulse *p, int k, double weight[2])
 {
 	weight[0] = k == A ? 1 : k == B ? 0 : p->a;
@@ -394,7 +395,7 @@ static enum num_status make_normal(struct fit *f, const struct quadrature_pulse 
 	return factorise(f->normal, PARAMETERS * f->m);
 }
 
-/* The b that fit best at the arrivals found in x. */
+/* The best b for the arrivals found in x. */
 static enum num_status guess_quadrature(struct fit *f, struct quadrature_pulse *p)
 {
 	int m = f->m;
@@ -422,7 +423,7 @@ static enum num_status guess_quadrature(struct fit *f, struct quadrature_pulse *
 	return NUM_OK;
 }
 
-/* As far as the joint fit lets pulses go in one step (joint_step.c). */
+/* A step, limited as in the joint fit (joint_step.c). */
 static struct quadrature_pulse moved(const struct fit *f,
 	const struct quadrature_pulse *old, const double *step, double scale)
 {
@@ -438,8 +439,8 @@ static struct quadrature_pulse moved(const struct fit *f,
 	return p;
 }
 
-/* Gauss-Newton steps, halved where chi-square does not fall: from a fit of x alone two
- * or three are enough. */
+/* Gauss-Newton steps, halved while chi-square does not decrease; after a fit of x two or
+ * three are enough. */
 static enum num_status improve(struct fit *f, struct quadrature_pulse *p, double *chi2)
 {
 	enum { STEPS = 8, HALVES = 4 };
@@ -484,9 +485,8 @@ static void fill_covariance(struct fit *f, struct quadrature_pulse *p)
 		}
 }
 
-/* Chi-square of v given x, which what is left of x does not explain: as in goodness.h
- * more than noise leaves by five standard deviations and a tenth, and by twice what is
- * too much in x, whose pulses may be smaller. */
+/* 1 if chi-square of v, given x, exceeds that of noise by five standard deviations and a
+ * tenth, as in goodness.h, and by twice the excess in x, whose pulses may be smaller. */
 static int is_doubtful(const struct fit *f, double all, double chi2)
 {
 	double of_x = 0, dof = 2 * (double)f->n * (1 - f->scene->lost) - f->m, v;

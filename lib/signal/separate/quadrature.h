@@ -47,12 +47,12 @@ enum num_status quadrature_prepare(
 enum num_status quadrature_measure(struct quadrature *q, const double *const x[2],
 	const double *const v[2], size_t n);
 
-/* That of v over that of x, of the sensor where it is more. */
+/* Noise of v relative to that of x, of the sensor where it is larger. */
 double quadrature_noise(const struct quadrature *q);
 
 /* After a joint fit of the m pulses to n samples of x, with chi2 per degree of freedom:
- * fits them to x and v.  On return *doubt says whether more is left of v than of x and of
- * noise.  NUM_DOMAIN: the pulses cannot be told apart; out is undefined then. */
+ * fits them to x and v.  *doubt: 1 if the residual of v exceeds that of x and of noise.
+ * NUM_DOMAIN: the pulses cannot be separated; out is undefined then. */
 enum num_status quadrature_fit(const struct quadrature *q, const struct joint *joint,
 	const struct joint_scene *scene, const double *const x[2],
 	const double *const v[2], size_t n, const struct joint_pulse *pulse, int m,

@@ -66,7 +66,9 @@ long long separate_bad_sample(const struct separate *s, int *channel)
 	return s->bad_frame;
 }
 
-/* Pulses per duration above which long sections are not separated. */
+/* Pulses per duration above which long sections are not separated.  1.5 and 4 give the
+ * same rows in eight records of 50 to 400 particles a second (scenes dense and poisson-50
+ * of tests/matrix/scenes.tsv, seed 11). */
 static const double CROWD = 2.5;
 
 /* 1 if there are too many pulses throughout, by Campbell's theorem for the first samples,
@@ -269,6 +271,12 @@ enum separate_status separate_end(struct separate *s)
 	return s->calibrated ? work(s) : s->reason;
 }
 
+/* Share of negative pulses above which the sign of a record is taken to differ from that
+ * of the kept instrument: particles of the other polarity may be a tenth of either.  Of
+ * ten records of 20 particles (tests/matrix/simulate, 30 dB) none with half of them
+ * negative is doubted, 1 with 0.8, 4 with 0.9 and all that are reversed. */
+static const double REVERSED = 0.9;
+
 /* If more than a tenth of the rows, and more than two, fit no particle, the pulses are
  * not those that were learned, and other rows may be wrong, too. */
 enum separate_doubt separate_doubtful(const struct separate *s)
@@ -277,7 +285,7 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 
 	if (s->par.kept && separate_is_other_noise(s))
 		return SEPARATE_NOISE;
-	if (s->par.kept && c->rows > 2 && c->negative > 0.9 * c->rows)
+	if (s->par.kept && c->rows > 2 && c->negative > REVERSED * c->rows)
 		return SEPARATE_REVERSED;
 	if (s->par.kept && !s->kept.crowded && 2 * c->dense > c->samples)
 		return SEPARATE_CROWD;

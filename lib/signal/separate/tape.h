@@ -32,7 +32,8 @@ void tape_clear(struct tape *t);
 
 /* Appends n samples: x[0], x[2], x[4] ... */
 enum num_status tape_append(struct tape *t, const double *x, size_t n);
-/* Hides the samples at the limits that the record has shown only after them. */
+/* Hides the samples at the limits of the converter that only later samples have revealed.
+ */
 void tape_review(struct tape *t);
 /* Drops the n oldest samples. */
 void tape_drop(struct tape *t, size_t n);

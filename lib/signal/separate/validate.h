@@ -10,16 +10,16 @@
  *	  2 for parts and 1 + 2 s^2 / var for particles, where s^2 is the variance of
  *	  the delays of the flow; the share of parts among all pairs is that of greatest
  *	  likelihood, and a pair is doubted if it is more likely one object than two;
- *	- pulses that fill what is no object have any velocity: a group is doubted
- *	  where the sum of squares of its deviations is beyond five deviations of
- *	  chi-square, and a pulse where its delay is at the edge of the range searched;
+ *	- pulses fitted to what is no particle have any velocity: a group is doubted
+ *	  if the sum of squares of its deviations exceeds chi-square by five deviations,
+ *	  and a pulse if its delay is at the edge of the range searched;
  *	- a weak pulse that recurs at one distance from a strong one is an error of the
  *	  shape of the strong one.
  *
  * s^2 is that of pulses that stand alone, which no group is part of.
  *
  * Where more than half of the rows are doubted, or more than a tenth have delays at the
- * edge of the range, the record is not what was learned, and no row is believed.
+ * edge of the range, the record is not like the learned one, and no row is believed.
  *
  * Rows that are judged together, such as those of the stretch used for calibration, are
  * all stored first; later rows are judged with the last ones before them.
@@ -29,13 +29,13 @@
 
 #include <stddef.h>
 
-/* One row: a pulse, or a stretch that was not separated. */
+/* One row: a pulse, or samples that were not separated. */
 struct evidence {
-	int group;               /* rows of one fit have the same number, from 1 */
-	int fits;                /* 0: doubted already by chi-square */
-	double delay, var;       /* in samples; var 0: unknown */
-	double amplitude;        /* over the noise */
-	int partner;             /* rows to the larger pulse it overlaps; 0: none */
+	int group;         /* rows of one fit have the same number, from 1 */
+	int fits;          /* 0: doubted already by chi-square */
+	double delay, var; /* in samples; var 0: unknown */
+	double amplitude;  /* over the noise */
+	int partner; /* distance in rows to the larger pulse that it overlaps; 0: none */
 	double apart, apart_var; /* delay less that of the partner */
 	double place, height;    /* of arrival, in durations, and amplitude: the same */
 	double contrast2, contrast_var; /* of contrasts.h; variance 0: none */
@@ -52,14 +52,14 @@ struct flow {
 	double mean, var, margin, count;
 };
 
-/* Told beforehand: holds until enough are seen. */
+/* Prior knowledge, used until enough delays are known. */
 void validation_tell_flow(struct validation *v, const struct flow *flow);
 void validation_flow(const struct validation *v, struct flow *flow);
 
 /* Range of the delays that are searched, learned to be wider than that of particles. */
 void validation_range(struct validation *v, double least, double most);
 
-/* Takes in n rows, groups undivided and in order, and judges them. */
+/* Adds n rows, in order and with undivided groups, and judges them. */
 void validation_judge(struct validation *v, struct evidence *e, size_t n);
 
 /* Share of parts of one object among the last overlapping pulses. */
