@@ -506,10 +506,10 @@ void bank_add(struct bank *b, double t, double y)
 	}
 }
 
-void bank_event(struct bank *b, enum bank_event event)
+int bank_event(struct bank *b, enum bank_event event)
 {
 	if (b->rows == 0)
-		return;
+		return 0;
 	for (int i = 0; i < b->trends; i++) {
 		struct trend *tr = &b->trend[i];
 		double scale = freedom_of(b, tr) / tr->sum;
@@ -520,6 +520,7 @@ void bank_event(struct bank *b, enum bank_event event)
 		else
 			tr->pvv += tr->v * tr->v * scale;
 	}
+	return 1;
 }
 
 /* --- what is known ------------------------------------------------------------------ */

@@ -92,7 +92,8 @@ enum bank_event {
 	BANK_REPAIR, /* the level is new, the rate as before */
 	BANK_LOAD    /* the rate is new, the level as before */
 };
-void bank_event(struct bank *b, enum bank_event event);
+/* 0: no effect, because fewer than three observations are known. */
+int bank_event(struct bank *b, enum bank_event event);
 
 /* Weighted mean of y and of dy/dt at the last row. */
 void bank_state(const struct bank *b, double *y, double *rate);
