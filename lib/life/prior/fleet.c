@@ -64,11 +64,6 @@ void fleet_free(struct fleet *f)
 	free(f);
 }
 
-int fleet_units(const struct fleet *f)
-{
-	return f->units;
-}
-
 const struct bank_shape *fleet_shapes(const struct fleet *f, int *n)
 {
 	*n = f->shapes;

@@ -442,13 +442,24 @@ static void shift(struct bank *b, double y)
 	b->counts.shifts++;
 }
 
+/* Weighted mean of dD/dt at the last row. */
+static double rate_of(const struct bank *b)
+{
+	double sum = 0;
+
+	for (int i = 0; i < b->trends; i++) {
+		const struct trend *tr = &b->trend[i];
+
+		sum += tr->weight * grown(tr, b->age) * tr->v /
+		       place_of(b, tr->shape, b->level).slope / b->unit;
+	}
+	return sum;
+}
+
 /* 1 if the last step of the damage is well beyond what noise and rate explain. */
 static int is_steep(const struct bank *b, const struct row *r)
 {
-	double y, rate;
-
-	bank_state(b, &y, &rate);
-	return (r[0].y - r[-1].y - rate * (r[0].t - r[-1].t)) / b->range >
+	return (r[0].y - r[-1].y) / b->range - rate_of(b) * (r[0].t - r[-1].t) >
 	       2 * noise_of(b);
 }
 
@@ -568,21 +579,6 @@ int bank_event(struct bank *b, enum bank_event event)
 }
 
 /* --- what is known ------------------------------------------------------------------ */
-
-void bank_state(const struct bank *b, double *y, double *rate)
-{
-	*y = *rate = 0;
-	for (int i = 0; i < b->trends; i++) {
-		const struct trend *tr = &b->trend[i];
-		struct place p = place_of(b, tr->shape, b->level);
-		double slope = p.slope;
-
-		*y += tr->weight *
-		      (b->base + b->range * (b->level + (tr->h - p.h) / slope));
-		*rate += tr->weight * b->range * grown(tr, b->age) * tr->v / slope /
-			 b->unit;
-	}
-}
 
 double bank_weight(const struct bank *b, enum bank_family family)
 {

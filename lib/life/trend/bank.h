@@ -97,8 +97,6 @@ enum bank_event {
 /* 0: no effect, because fewer than three observations are known. */
 int bank_event(struct bank *b, enum bank_event event);
 
-/* Weighted mean of y and of dy/dt at the last row. */
-void bank_state(const struct bank *b, double *y, double *rate);
 /* Share of a family in the weight, without the trends whose regime has changed; BANK_ALL:
  * the share of these. */
 double bank_weight(const struct bank *b, enum bank_family family);
