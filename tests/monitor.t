@@ -33,6 +33,21 @@ for how in '' '--lives-only --mission 20 --cost-ratio 5 --weights'; do
 done
 fails "a state of other options" 1 "state: saved with other options" \
 	aopf --unit unit --threshold 1 --direction up --resume state three.tsv
+# doubtful NAME WANT COMMAND...: the command writes its result, warns once and returns 3
+doubtful() {
+	name=$1 want=$2
+	shift 2
+	"$@" >doubtful.out 2>doubtful.err
+	is "$name: status" $? 3
+	is "$name: warning" "$(cat doubtful.err)" "aopf: $want"
+}
+by_unit() { aopf --unit unit --threshold 1 --direction up "$@"; }
+sed 's/^u\([123]\)/v\1/' three.tsv >others.tsv
+doubtful "a state of other units" "the series has no unit of the saved state, whose first is 'u1'" \
+	by_unit --lives-only --mission 20 --cost-ratio 5 --weights --resume state others.tsv
+awk -F '\t' -v OFS='\t' '$1 == "u2" && $2 == 79 { $3 = 0.5 } { print }' three.tsv >changed.tsv
+fails "a state of another series" 1 "changed.tsv: line 240: u2: y is 0.5, but was .* another series" \
+	by_unit --lives-only --mission 20 --cost-ratio 5 --weights --resume state changed.tsv
 fails "a table instead of a state" 1 "no state saved by aopf" \
 	aopf --unit unit --threshold 1 --resume three.tsv three.tsv
 
@@ -143,6 +158,72 @@ near "the life after an unspecified repair is right three rows later" "$(awk '$1
 printf 't\tevent\n60\tfire\n' >bad.tsv
 fails "an event of another kind" 1 "bad.tsv: line 2: event 'fire', want repair or load" \
 	aopf --threshold 1 --events bad.tsv one.tsv
+
+# Events without effect
+events() {
+	printf "$1" >none.tsv
+	shift
+	aopf --threshold 1 --direction up --lives-only --events none.tsv "$@"
+}
+doubtful "an event of an unknown unit" "none.tsv: line 3: the event has no effect: the series has no unit 'u9'" \
+	events 't\tevent\tunit\n60\trepair\tu1\n60\trepair\tu9\n' --unit unit three.tsv
+doubtful "an event of a unit in a series without units" \
+	"none.tsv: line 2: the event has no effect: the series has no unit 'u1'" \
+	events 't\tevent\tunit\n60\trepair\tu1\n' one.tsv
+doubtful "an event after the last row" \
+	"none.tsv: line 3: the event has no effect: time 69.5 is after the last row of the series" \
+	events 't\tevent\n69\trepair\n69.5\tload\n' one.tsv
+doubtful "events before the third value" \
+	"none.tsv: line 2: the event has no effect: time -5 is not after the third value in use; nor have 1 others" \
+	events 't\tevent\n-5\trepair\n2\tload\n2.5\tload\n' one.tsv
+ok "an event that one of several units reaches is no cause for a warning" \
+	events 't\tevent\n60\trepair\n' --unit unit three.tsv
+printf 't\tevent\n1000\trepair\n' >never.tsv
+ok "an alarm has precedence over events without effect" sh -c \
+	'aopf --threshold 1 --direction up --lives-only --alarm 20,5 --events never.tsv worn.tsv >/dev/null 2>&1; test $? = 4'
+# An event while the clock of wear stands takes effect when it runs again.
+printf 't\tevent\n41.5\trepair\n' >stood.tsv
+awk -F '\t' 'NR == 1 { print "t\thours\ty"; next } { t = $1
+	if (t == 42) print "41\t41\t" y "\n42\t41\t" y
+	else if (t != 41) print t "\t" t "\t" (t > 42 ? $2 - 0.2 : $2)
+	y = $2 }' one.tsv >stands.tsv
+aopf --threshold 1 --direction up --lives-only --clock hours --events stood.tsv --stats stood.stats stands.tsv >stood
+is "an event while the clock stands is not lost" "$(column events stood.stats)" 1
+near "the life after a repair while the clock stood is right" "$(awk '$1 == 43 { print $4 }' stood)" 77 15
+awk -F '\t' -v OFS='\t' 'NR > 30 { $2 -= 20 } { print }' stands.tsv >reset.tsv
+fails "a clock that decreases" 1 "reset.tsv: line 31: operating time 9 comes after 28: it must not decrease" \
+	aopf --threshold 1 --clock hours reset.tsv
+# An event that is reported only after a state was saved
+printf 't\tevent\n30\tload\n' >late.tsv
+head -51 one.tsv | aopf --threshold 1 --direction up --lives-only --events late.tsv --save late.state >/dev/null
+ok "a known event before the saved state" aopf --threshold 1 --direction up --lives-only \
+	--events late.tsv --resume late.state one.tsv
+printf '40\trepair\n' >>late.tsv
+doubtful "an event before the saved state that it does not know" \
+	"late.tsv: 1 events are not after the last row of the saved state and have no effect" \
+	aopf --threshold 1 --direction up --lives-only --events late.tsv --resume late.state one.tsv
+
+# A fleet in operating hours, one unit of which has no value
+awk 'BEGIN { srand(3); print "unit\tt\thours\ty\nidle\t0\t0\tnan"
+	for (h = 0; h <= 100; h++) print "old\t" 10 * h "\t" h "\t" (h / 100) ^ 2 + 0.01 * rand()
+	print "old\t1010\t100\t1" }' >hours.tsv
+awk 'BEGIN { srand(4); print "t\thours\ty"
+	for (h = 0; h <= 50; h++) print 3 * h "\t" h "\t" (h / 100) ^ 2 + 0.01 * rand() }' >worked.tsv
+near "the ages of a fleet are operating hours, too" "$(aopf --threshold 1 --direction up --lives-only \
+	--clock hours --fleet hours.tsv worked.tsv | column rul_q50 /dev/stdin | tail -1)" 50 3
+fails "a fleet whose operating time decreases" 1 "back.tsv: line 40: operating time decreases" sh -c \
+	"awk -F '\t' -v OFS='\t' 'NR == 40 { \$3 = 1 } { print }' hours.tsv >back.tsv
+	aopf --threshold 1 --direction up --lives-only --clock hours --fleet back.tsv worked.tsv"
+
+# Options that nothing would heed
+for o in '--weights' '--clock t' '--direction up' '--persist 2' '--after 3' '--model linear'; do
+	# shellcheck disable=SC2086 # words
+	fails "$o without a threshold" 2 "requires --threshold" aopf $o one.tsv
+done
+fails "an option of the filter without it" 2 "lives-only excludes --particles" \
+	aopf --lives-only --threshold 1 --particles 10 one.tsv
+fails "a fleet for the grey model" 2 "fleet is not for --model grey" \
+	aopf --threshold 1 --direction up --fleet hours.tsv --model grey one.tsv
 
 # Weights of straight wear
 aopf --threshold 1 --direction up --lives-only --weights one.tsv >weights

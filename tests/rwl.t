@@ -282,6 +282,17 @@ fails "scores of samples" 2 '--eol scores the summary' rwl --samples --eol 10h g
 fails "outlet below inlet" 2 'outlet pressure' rwl --ports 21MPa:1MPa gap.tsv
 fails "a unit that does not wear" 1 'minus2.tsv.*does not wear' sh -c \
 	'printf "t\tgap\n0\t2e-5\n1\t1e-5\n" >minus2.tsv; rwl --new --wear even.tsv --calibrate minus2.tsv'
+# Options that nothing would heed
+for o in '--step-time 1h' '--parts 3' '--first-step 4' '--fragment-area 1mm2' '--speed 1m/s' '--critical-size 5um'; do
+	# shellcheck disable=SC2086 # words
+	fails "$o without fragments" 2 "${o%% *} requires --wear" rwl $o gap.tsv
+done
+fails "a share of large particles without their size" 2 '--sizes requires --critical-size' \
+	rwl --sizes step --wear even.tsv --step-time 1h gap.tsv
+for o in '--skip 1h' '--state-error 1' '--grey' '--state-unit um'; do
+	# shellcheck disable=SC2086 # words
+	fails "$o of a new pair" 2 "${o%% *} requires a state" rwl --new --wear even.tsv --step-time 1h $o
+done
 # A series that starts at a known moment.
 {
 	printf '# start: 2026-01-02T03:04:05Z\nt\tleakage\n'

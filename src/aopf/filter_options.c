@@ -75,12 +75,12 @@ struct adaptive *filtering_new(int unit)
 
 void filtering_count(const struct adaptive *a)
 {
-	const struct order *o = adaptive_order(a);
+	struct adaptive_counts c = adaptive_counts(a);
 
-	stats_add("resamplings", (double)filter_resamplings(adaptive_filter(a)));
-	stats_add("outliers", (double)adaptive_outliers(a));
-	stats_add("restarts", (double)adaptive_restarts(a));
-	stats_add("orders", (double)order_tried(o));
-	stats_add("orders_skipped", (double)order_skipped(o));
-	stats_add("order_changes", (double)order_changes(o));
+	stats_add("resamplings", (double)c.resamplings);
+	stats_add("outliers", (double)c.outliers);
+	stats_add("restarts", (double)c.restarts);
+	stats_add("orders", (double)c.order.tried);
+	stats_add("orders_skipped", (double)c.order.skipped);
+	stats_add("order_changes", (double)c.order.changes);
 }

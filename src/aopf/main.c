@@ -249,10 +249,6 @@ static void read_rows(
 		double t = series_time(in);
 
 		item->unit = units_find(units, series_unit(in), series_unit_name(in));
-		if (!unit_takes(item->unit, t)) {
-			before++;
-			continue;
-		}
 		item->in = (struct outlook_row){ t,
 			clock < 0 ? t : table_number(series_table(in), clock),
 			series_value(in), series_unit_name(in) };
@@ -260,6 +256,10 @@ static void read_rows(
 			die(EXIT_RUN, "%s: line %ld: %s is missing or not finite",
 				table_name(series_table(in)),
 				table_line(series_table(in)), clock_column);
+		if (!unit_takes(item->unit, &item->in, series_table(in))) {
+			before++;
+			continue;
+		}
 		b.n++;
 		link_row(&b);
 		if (b.n == b.room)
@@ -276,7 +276,7 @@ static void read_rows(
 
 int main(int argc, char **argv)
 {
-	int operand = opt_parse(&prog, argc, argv), alarm;
+	int operand = opt_parse(&prog, argc, argv), alarm, doubtful;
 	struct units *units;
 	struct pool *pool = NULL;
 	struct series *in;
@@ -288,7 +288,7 @@ int main(int argc, char **argv)
 	if (threads > 1 && !(pool = pool_new((int)threads)))
 		die(EXIT_RUN, "no %ld threads", threads);
 	in = series_open(argv[operand], unit_column);
-	outlook_open(in, unit_column);
+	outlook_open(in, unit_column, clock_column);
 	units = units_new(bare);
 	in_units = column_units(in);
 	options = opt_cmd("", in_units);
@@ -301,10 +301,11 @@ int main(int argc, char **argv)
 	out = open_sink(in);
 	read_rows(in, units, pool, &out);
 	alarm = units_alarm(units);
+	doubtful = units_report(units);
 	units_free(units);
 	pool_free(pool);
 	outlook_close();
 	close_sink(&out);
 	series_close(in);
-	return shell_done(alarm > 0 ? EXIT_ALARM : 0);
+	return shell_done(alarm > 0 ? EXIT_ALARM : doubtful ? EXIT_NOCONV : EXIT_SUCCESS);
 }

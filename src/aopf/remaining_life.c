@@ -110,6 +110,8 @@ static struct event {
 	double t;
 	enum bank_event what;
 	char *unit; /* NULL: all */
+	long line;
+	int known, reached, effective; /* for any unit */
 } * events;
 static int n_events;
 
@@ -120,6 +122,8 @@ struct outlook {
 		int started, direction;
 		struct runin runin;
 		double first, last, clock; /* times */
+		double heeded;             /* events up to this time are done */
+		double early;              /* the last of those without an effect */
 		long rows;
 		long beyond; /* successive values past the threshold */
 		int failed, alarm;
@@ -129,6 +133,9 @@ struct outlook {
 
 void outlook_check(int bare)
 {
+	static const char *const of_lives[] = { "direction", "persist", "skip", "model",
+		"horizon", "after", "levels", "weights", "clock" };
+
 	for (int k = 1; k < levels.n; k++)
 		if (levels.v[k] <= levels.v[k - 1])
 			die(EXIT_USAGE, "--levels: levels must be ascending");
@@ -142,31 +149,49 @@ void outlook_check(int bare)
 		(bare || opt_any_given(outlook_plant_rows)))
 		die(EXIT_USAGE, "--%s requires --threshold",
 			bare ? "lives-only" : opt_any_given(outlook_plant_rows));
-	if ((weights || events_file) && model >= GREY)
+	for (size_t i = 0; i < sizeof of_lives / sizeof *of_lives; i++)
+		if (isnan(outlook_options.threshold) && opt_given(of_lives[i]))
+			die(EXIT_USAGE, "--%s requires --threshold", of_lives[i]);
+	if ((weights || events_file || fleet_file) && model >= GREY)
 		die(EXIT_USAGE, "--%s is not for --model %s",
-			weights ? "weights" : "events", models[model]);
+			weights       ? "weights"
+			: events_file ? "events"
+				      : "fleet",
+			models[model]);
 	if (bare && (model >= GREY || skip.word == 0))
 		die(EXIT_USAGE, "--lives-only excludes %s, which requires the filter",
 			model >= GREY ? "--model grey and literal" : "--skip auto");
+	if (bare && opt_any_given(filtering_rows))
+		die(EXIT_USAGE, "--lives-only excludes --%s, an option of the filter",
+			opt_any_given(filtering_rows));
 }
 
-static void read_fleet(const struct series *like, const char *unit_column)
+/* Ages are operating times if the table of the fleet has the column of the clock. */
+static void read_fleet(
+	const struct series *like, const char *unit_column, const char *clock_column)
 {
 	struct series *in = series_open(fleet_file, unit_column);
+	struct table_in *table = series_table(in);
+	int clock = clock_column ? table_find(table, clock_column) : -1;
 	enum num_status status;
 	int failed, carried_on, n;
 	char y[UNIT_WORD];
 
 	table_unit_word(series_table(like), series_value_column(like), y);
-	series_scale(in,
-		table_ratio(series_table(in), series_time_column(in), timeunit_word()),
-		table_ratio(series_table(in), series_value_column(in), y));
+	series_scale(in, table_ratio(table, series_time_column(in), timeunit_word()),
+		table_ratio(table, series_value_column(in), y));
+	if (clock >= 0)
+		table_set_scale(table, clock, table_ratio(table, clock, timeunit_word()));
 	fleet = fleet_new(outlook_options.threshold, direction == UP ? 1 : -1);
 	status = fleet ? NUM_OK : NUM_MEMORY;
 	while (status == NUM_OK && series_next(in))
 		if (!isnan(series_value(in)))
-			status = fleet_add(fleet, series_unit(in), series_time(in),
+			status = fleet_add(fleet, series_unit(in),
+				clock < 0 ? series_time(in) : table_number(table, clock),
 				series_value(in));
+	if (status == NUM_DOMAIN)
+		die(EXIT_RUN, "%s: line %ld: operating time decreases", fleet_file,
+			table_line(table));
 	if (status == NUM_OK)
 		status = fleet_build(fleet, &failed, &carried_on);
 	if (status != NUM_OK)
@@ -214,7 +239,8 @@ static void read_events(const char *unit_column)
 		e = &events[n_events++];
 		*e = (struct event){ table_number(in, t),
 			repair ? BANK_REPAIR : BANK_LOAD,
-			unit < 0 ? NULL : xstrdup(table_text(in, unit)) };
+			unit < 0 ? NULL : xstrdup(table_text(in, unit)), table_line(in),
+			0, 0, 0 };
 		if (!isfinite(e->t))
 			die(EXIT_RUN, "%s: line %ld: time is missing or not finite",
 				table_name(in), table_line(in));
@@ -222,7 +248,7 @@ static void read_events(const char *unit_column)
 	table_close(in);
 }
 
-void outlook_open(struct series *in, const char *unit_column)
+void outlook_open(struct series *in, const char *unit_column, const char *clock_column)
 {
 	static const char *const timed[] = { "skip", "horizon", "after", "mission",
 		"alarm" };
@@ -239,7 +265,7 @@ void outlook_open(struct series *in, const char *unit_column)
 	if (!chances)
 		die(EXIT_RUN, "no memory");
 	if (fleet_file)
-		read_fleet(in, unit);
+		read_fleet(in, unit, clock_column);
 	if (events_file)
 		read_events(unit);
 }
@@ -258,6 +284,7 @@ struct outlook *outlook_new(struct adaptive *filter)
 	struct outlook *o = xcalloc(1, sizeof *o);
 
 	o->filter = filter;
+	o->now.heeded = o->now.early = -INFINITY;
 	return o;
 }
 
@@ -306,18 +333,24 @@ void outlook_pass(struct outlook *o, struct state *s)
 	predict_pass(o->predict, s);
 }
 
-/* Events since the row before. */
+static int concerns(const struct event *e, const char *unit)
+{
+	return !e->unit || strcmp(e->unit, unit) == 0;
+}
+
+/* Events since the last row in which the clock advanced. */
 static void heed_events(struct outlook *o, const struct outlook_row *in)
 {
 	for (int i = 0; i < n_events; i++) {
 		const struct event *e = &events[i];
 
-		if (e->t > in->t || (o->now.rows > 0 && e->t <= o->now.last) ||
-			(e->unit && strcmp(e->unit, in->unit) != 0))
+		if (e->t > in->t || e->t <= o->now.heeded || !concerns(e, in->unit))
 			continue;
-		bank_event(predict_bank(o->predict), e->what);
+		if (!bank_event(predict_bank(o->predict), e->what))
+			o->now.early = fmax(o->now.early, e->t);
 		o->now.events++;
 	}
+	o->now.heeded = in->t;
 }
 
 /* Passes a row to the long-term model. */
@@ -455,6 +488,55 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 	now->left_out += now->failed || !wanted;
 	if (weights)
 		put_weights(o, cell + life_cells());
+}
+
+int outlook_settle_events(const struct outlook *o, const char *unit)
+{
+	unsigned long due = 0;
+
+	for (int i = 0; i < n_events; i++) {
+		struct event *e = &events[i];
+
+		if (!concerns(e, unit))
+			continue;
+		e->known = 1;
+		e->reached |= e->t <= o->now.heeded;
+		e->effective |= e->t <= o->now.heeded && e->t > o->now.early;
+		due += e->t <= o->now.heeded;
+	}
+	if (due <= o->now.events)
+		return 0;
+	warn("%s: %lu events%s%s are not after the last row of the saved state and have "
+	     "no effect",
+		events_file, due - o->now.events, *unit ? " of unit " : "", unit);
+	return 1;
+}
+
+int outlook_report_events(void)
+{
+	const struct event *first = NULL;
+	int n = 0;
+	char *why, *more;
+
+	for (int i = n_events - 1; i >= 0; i--)
+		if (!events[i].effective) {
+			first = &events[i];
+			n++;
+		}
+	if (n == 0)
+		return 0;
+	if (!first->known)
+		why = xprintf("the series has no unit '%s'", first->unit);
+	else
+		why = xprintf("time %g is %s", first->t,
+			first->reached ? "not after the third value in use"
+				       : "after the last row of the series");
+	more = n > 1 ? xprintf("; nor have %d others", n - 1) : xstrdup("");
+	warn("%s: line %ld: the event has no effect: %s%s", events_file, first->line, why,
+		more);
+	free(why);
+	free(more);
+	return 1;
 }
 
 int outlook_alarm(const struct outlook *o)

@@ -1,6 +1,6 @@
 /* remaining_life.h - the life that a unit has left: options of aopf, and its columns
  *
- *	outlook_open(series, unit_column);
+ *	outlook_open(series, unit_column, clock_column);
  *	struct outlook *o = outlook_new(filter);
  *	for each row
  *		outlook_step(o, &in, &row, cell);
@@ -32,8 +32,9 @@ extern struct opt outlook_end_rows[], outlook_model_rows[], outlook_plant_rows[]
 void outlook_check(int bare);
 
 /* Takes the unit of time of the series, and reads the fleet and the events, if there are
- * any, into its units; the column identifies units, or "unit" if it is NULL. */
-void outlook_open(struct series *in, const char *unit_column);
+ * any, into its units; the first column identifies units, or "unit" if it is NULL, and
+ * the second holds the operating time, unless it is NULL. */
+void outlook_open(struct series *in, const char *unit_column, const char *clock_column);
 void outlook_close(void);
 uint64_t outlook_fleet(void); /* checksum of the paths of the fleet */
 
@@ -53,6 +54,11 @@ void outlook_pass(struct outlook *o, struct state *s);
 void outlook_step(struct outlook *o, const struct outlook_row *in,
 	const struct adaptive_row *filtered, double *cell);
 int outlook_cells(void);
+/* After the last row: tells which events the unit with this name has used.  Warns and
+ * returns 1 if there are events before the saved state that it did not know. */
+int outlook_settle_events(const struct outlook *o, const char *unit);
+/* After all units: warns and returns 1 if an event had no effect on any of them. */
+int outlook_report_events(void);
 int outlook_alarm(const struct outlook *o); /* the active alarm level, 0: none */
 /* Counts the work it did. */
 void outlook_count(struct outlook *o);

@@ -18,7 +18,8 @@ struct machine {
 	char *name;
 	int number; /* in order of appearance, over all runs */
 	long rows;
-	double last; /* time */
+	double last, value; /* time and y of the last row */
+	double clock;       /* of the last row read, which is ahead in a block */
 	int resumed;
 	uint64_t sequence;       /* of the last saved state */
 	struct adaptive *filter; /* NULL if bare */
@@ -46,10 +47,10 @@ struct place {
 	uint64_t sequence, check;
 	char name[NAME];
 	int64_t number, rows;
-	double last;
+	double last, value, clock;
 };
 
-static const char magic[16] = "aopf state 2\n";
+static const char magic[16] = "aopf state 3\n";
 
 struct units *units_new(int bare)
 {
@@ -66,6 +67,7 @@ static struct machine *add_unit(struct units *units, int number, const char *nam
 
 	u->name = xstrdup(name);
 	u->number = number;
+	u->clock = -INFINITY;
 	if (!units->bare)
 		u->filter = filtering_new(number);
 	if (!isnan(outlook_options.threshold))
@@ -113,6 +115,28 @@ int units_alarm(const struct units *units)
 	return most;
 }
 
+int units_report(const struct units *units)
+{
+	int resumed = 0, doubtful = 0;
+
+	for (int i = 0; i < units->n; i++) {
+		const struct machine *u = units->unit[i];
+
+		resumed += u->resumed;
+		if (u->outlook)
+			doubtful |= outlook_settle_events(u->outlook, u->name);
+	}
+	for (int i = 0; i < units->n_input && resumed > 0; i++)
+		if (units->unit[units->of_input[i]]->resumed)
+			resumed = 0;
+	if (resumed > 0 && units->n_input > 0) {
+		warn("the series has no unit of the saved state, whose first is '%s'",
+			units->unit[0]->name);
+		doubtful = 1;
+	}
+	return outlook_report_events() | doubtful;
+}
+
 struct machine *units_find(struct units *units, int number, const char *name)
 {
 	int i = 0;
@@ -136,9 +160,28 @@ int unit_number(const struct machine *u)
 	return u->number;
 }
 
-int unit_takes(const struct machine *u, double t)
+int unit_takes(
+	struct machine *u, const struct outlook_row *in, const struct table_in *from)
 {
-	return !u->resumed || t > u->last;
+	const char *file = table_name(from), *colon = *u->name ? ": " : "";
+	long line = table_line(from);
+
+	if (u->resumed && in->t <= u->last) {
+		if (in->t == u->last && in->y != u->value &&
+			!(isnan(in->y) && isnan(u->value)))
+			die(EXIT_RUN,
+				"%s: line %ld: %s%sy is %g, but was %g when the state was "
+				"saved: another series",
+				file, line, u->name, colon, in->y, u->value);
+		return 0;
+	}
+	if (!(in->clock >= u->clock))
+		die(EXIT_RUN,
+			"%s: line %ld: %s%soperating time %g comes after %g: it must not "
+			"decrease",
+			file, line, u->name, colon, in->clock, u->clock);
+	u->clock = in->clock;
+	return 1;
 }
 
 int unit_cells(int bare)
@@ -154,6 +197,7 @@ void unit_step(struct machine *u, const struct outlook_row *in, double *cell)
 
 	u->rows++;
 	u->last = in->t;
+	u->value = in->y;
 	if (u->filter) {
 		if (adaptive_step(u->filter, in->t, in->y - zero, &row) != NUM_OK)
 			die(EXIT_RUN, "no memory for the particles");
@@ -255,6 +299,8 @@ static int resume_unit(struct units *units, FILE *f, int number)
 	u->sequence = place[newer].sequence;
 	u->rows = (long)place[newer].rows;
 	u->last = place[newer].last;
+	u->value = place[newer].value;
+	u->clock = place[newer].clock;
 	s.at = units->place + sizeof place[0];
 	pass(u, &s);
 	if (s.failed)
@@ -325,7 +371,9 @@ void unit_save(struct units *units, struct machine *u)
 	struct place p = { .sequence = ++u->sequence,
 		.number = u->number,
 		.rows = u->rows,
-		.last = u->last };
+		.last = u->last,
+		.value = u->value,
+		.clock = u->clock };
 	struct state s = { .at = units->place + sizeof p };
 
 	if (units->file < 0)

@@ -24,11 +24,15 @@ void units_free(struct units *units); /* counts the work done, too */
 struct machine *units_find(struct units *units, int number, const char *name);
 
 int unit_number(const struct machine *u);
-/* 0 if the row is not after the last one of a resumed unit. */
-int unit_takes(const struct machine *u, double t);
+/* 0 if the row is not after the last one of a resumed unit.  Dies if it contradicts the
+ * last one; from: the table of the row. */
+int unit_takes(
+	struct machine *u, const struct outlook_row *in, const struct table_in *from);
 /* Fills the cells of a row; different units may step at the same time. */
 void unit_step(struct machine *u, const struct outlook_row *in, double *cell);
 int unit_cells(int bare);
+/* After the last row: warns and returns 1 if events or saved states were of no use. */
+int units_report(const struct units *units);
 int units_alarm(const struct units *units); /* the highest active alarm level */
 
 /* options: those that shape the state; a file made with others, or with

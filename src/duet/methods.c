@@ -68,6 +68,7 @@ static void report(const struct separate *s, double rate)
 	stats_set("sections_single", c->singles);
 	stats_set("sections_unresolved", c->unresolved);
 	stats_set("misfits", c->misfits);
+	stats_set("together", c->together);
 	stats_set("reversed", c->negative);
 	stats_set("misfits_by_velocity", c->foreign);
 	stats_set("fits", c->fits);
@@ -119,6 +120,20 @@ static int is_doubtful(
 	table_comment(out->particles, "doubtful", "%s", why);
 	free(why);
 	return 1;
+}
+
+/* Says how many rows may be two particles each. */
+static void tell_together(const struct separate *s, struct found *out, const char *name)
+{
+	const struct separate_counters *c = separate_counters(s);
+
+	if (c->together == 0)
+		return;
+	warn("%s: %.0f of %.0f rows may be two particles that arrived together (misfit)",
+		name, c->together, c->rows);
+	table_comment(out->particles, "together",
+		"%.0f of %.0f rows may be two particles that arrived together",
+		c->together, c->rows);
 }
 
 /* Writes the instrument that was learned, once its rows are believed. */
@@ -188,6 +203,7 @@ int separate_record(struct signal_in *in, struct found *out,
 		warn("%s: not written: what was learned is doubtful, or nothing was",
 			file);
 	report(s, (double)out->rate);
+	tell_together(s, out, signal_name(in));
 	doubtful = is_doubtful(s, out, signal_name(in), par.kept ? file : NULL);
 	found_detectable(out, separate_calibration(s));
 	separate_free(s);

@@ -106,17 +106,11 @@ static void put_scores(
 		.accuracy = NAN,
 		.mass = NAN,
 		.crps = NAN };
-	enum num_status status = NUM_DOMAIN;
-	int counted;
+	int counted = row->n > 0 && metrics_add(t->metrics, time, quantile(row, 0.5),
+					    quantile(row, levels->v[0]),
+					    quantile(row, levels->v[levels->n - 1]),
+					    row->life, (size_t)row->n, &r) == NUM_OK;
 
-	if (row->n > 0)
-		status = metrics_add(t->metrics, time, quantile(row, 0.5),
-			quantile(row, levels->v[0]),
-			quantile(row, levels->v[levels->n - 1]), row->life, NULL,
-			(size_t)row->n, &r);
-	if (status == NUM_MEMORY)
-		die(EXIT_RUN, "out of memory");
-	counted = status == NUM_OK;
 	table_put(t->out, r.truth);
 	table_put(t->out, r.error);
 	table_put(t->out, r.accuracy);

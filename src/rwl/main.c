@@ -73,17 +73,34 @@ static const struct prog prog = { "rwl",
 	"tables: particles or volumes of fragments (--wear); state",
 	"table: one row per observation time", opts };
 
+/* Dies if one of these options was given. */
+static void exclude(const char *const *word, const char *why)
+{
+	for (; *word; word++)
+		if (opt_given(*word))
+			die(EXIT_USAGE, "--%s %s", *word, why);
+}
+
 /* Dies where options contradict one another. */
 static void settle(void)
 {
+	static const char *const of_fragments[] = { "critical-size", "calibrate", "rates",
+		"speed", "step-time", "parts", "first-step", "fragment-area",
+		"transition", NULL };
+	static const char *const of_sizes[] = { "critical-probability", "sizes", NULL };
+	static const char *const of_state[] = { "state", "quantity", "state-unit",
+		"state-error", "skip", "grey", NULL };
+
 	pump_check();
+	if (wear_files.n == 0)
+		exclude(of_fragments, "requires --wear");
+	if (isnan(pump.critical_size))
+		exclude(of_sizes, "requires --critical-size");
+	if (calibrations.n == 0 && new)
+		exclude(of_state, "requires a state: --new reads none");
 	for (int i = 1; i < levels.n; i++)
 		if (!(levels.v[i] > levels.v[i - 1]))
 			die(EXIT_USAGE, "--levels: levels must be ascending");
-	if (!isnan(pump.critical_size) && wear_files.n == 0)
-		die(EXIT_USAGE, "--critical-size requires --wear");
-	if ((calibrations.n || rates_file || !isnan(speed)) && wear_files.n == 0)
-		die(EXIT_USAGE, "--calibrate, --rates and --speed require --wear");
 	for (int i = 0; i < wear_files.n; i++)
 		if (!new && (!state_file || !strcmp(state_file, "-")) &&
 			!strncmp(wear_files.v[i], "-", strcspn(wear_files.v[i], ":")))

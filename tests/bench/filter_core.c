@@ -22,7 +22,7 @@ static double seconds(void)
 int main(int argc, char **argv)
 {
 	size_t n = argc > 1 ? strtoul(argv[1], NULL, 10) : 10000;
-	int steps = argc > 2 ? atoi(argv[2]) : 1000, changed;
+	int steps = argc > 2 ? atoi(argv[2]) : 1000;
 	struct filter_par par = { n, 2, (enum resampling)(argc > 3 ? atoi(argv[3]) : 0),
 		argc > 4 ? atof(argv[4]) : 0.5, 0 };
 	struct draw *source = draw_new(7, 0, RNG_NOISE), *d = draw_new(1, 0, RNG_FILTER);
@@ -45,7 +45,7 @@ int main(int argc, char **argv)
 		k_x += DRIFT + gain * (y - k_x - DRIFT);
 		k_p *= 1 - gain;
 		start = seconds();
-		states = filter_lag(f, 0, index, &changed);
+		states = filter_lag(f, 0, index);
 		for (size_t i = 0; i < n; i++)
 			mean[i] = states[index[i]] + DRIFT;
 		filter_predict(f, mean, PROCESS);

@@ -56,12 +56,11 @@ static double particles(const struct walk *w, const struct filter_par *par,
 	struct filter *f = filter_new(par, d);
 	uint32_t *index = malloc(par->particles * sizeof *index);
 	double *mean = malloc(par->particles * sizeof *mean), past = 0, sum = 0;
-	int changed;
 
 	*evidence = 0;
 	filter_start(f, &past, 1, sqrt(3) * NOISE);
 	for (int k = 0; k < STEPS; k++) {
-		const double *x = filter_lag(f, 0, index, &changed);
+		const double *x = filter_lag(f, 0, index);
 
 		for (size_t i = 0; i < par->particles; i++)
 			mean[i] = x[index[i]] + DRIFT;
@@ -176,19 +175,19 @@ static void test_genealogy(void)
 	uint32_t index[64];
 	double mean[64], past = 0, carried[64];
 	const double *x;
-	int changed, good = 1;
+	int good = 1;
 
 	filter_start(f, &past, 1, 1);
 	for (int k = 0; k < 6; k++) {
-		x = filter_lag(f, 0, index, &changed);
+		x = filter_lag(f, 0, index);
 		for (int i = 0; i < 64; i++)
 			mean[i] = carried[i] = x[index[i]];
 		filter_predict(f, mean, 0);
 		filter_update(f, 0.3, 0.2);
-		x = filter_lag(f, 0, index, &changed);
+		x = filter_lag(f, 0, index);
 		for (int i = 0; i < 64; i++)
 			mean[i] = x[index[i]];
-		x = filter_lag(f, 1, index, &changed);
+		x = filter_lag(f, 1, index);
 		for (int i = 0; i < 64; i++)
 			good &= x[index[i]] == mean[i];
 	}

@@ -14,6 +14,12 @@ static struct grey fit(const double *x, int n)
 	return g;
 }
 
+/* Coefficient b of the usual formulation, in which x1 starts at the oldest value. */
+static double control_of(const struct grey *g)
+{
+	return grey_level(g) + grey_rate(g) * g->oldest;
+}
+
 /* tests/data/gm11.tsv: a and b to 12 digits, forecasts 1 to 3 steps ahead. */
 static void test_golden(void)
 {
@@ -40,7 +46,7 @@ static void test_golden(void)
 		g = fit(x, n);
 		near(grey_rate(&g), a, 1e-12 * fabs(a) + 1e-13,
 			"the coefficient a is that of the reference");
-		near(grey_control(&g), b, 1e-11 * fabs(b),
+		near(control_of(&g), b, 1e-11 * fabs(b),
 			"the coefficient b is that of the reference");
 		for (int h = 1; h <= 3; h++)
 			near(grey_forecast(&g, h, 1), want[h - 1], 1e-11,
@@ -86,7 +92,7 @@ static void test_long(void)
 		g = fit(x + k - p, p);
 		worst[p > 60] =
 			tap_max(worst[p > 60], fabs(grey_forecast(&g, 1, 1) / want - 1));
-		worst_b = tap_max(worst_b, fabs(grey_control(&g) / b - 1));
+		worst_b = tap_max(worst_b, fabs(control_of(&g) / b - 1));
 	}
 	fclose(f);
 	free(x);

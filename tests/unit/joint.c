@@ -235,6 +235,63 @@ static void test_quiet(struct joint *j, const struct joint_scene *plain)
 		"no pulse is put into what is quiet");
 }
 
+/* The probability of being a pair is right on the average: of pulses that are two in one
+ * scene of two, by a gap of up to a tenth of their duration, those fitted as one are as
+ * many as their probabilities add up to. */
+static void test_pairs(struct joint *j, const struct joint_scene *plain)
+{
+	enum { PAIRS = 400 };
+	static double y[2][N];
+	struct joint_scene s = *plain;
+	struct joint_pulse truth[2], found[20];
+	struct joint_result r;
+	double sum = 0, var = 0, of_pairs = 0, of_lone = 0, scatter = 2, z[2];
+	int two = 0, one = 0;
+
+	s.delta_min = -10;
+	s.delta_max = 15;
+	for (unsigned k = 0; k < PAIRS; k++) {
+		int pair = k % 2, m = 0;
+		double u[4], odds[JOINT_SHARES], p = 0;
+
+		for (unsigned i = 0; i < 4; i++)
+			u[i] = philox_uniform(3, k, RNG_PARTICLE, i);
+		philox_normal2(3, k, RNG_PARTICLE, 9, z);
+		truth[0] = (struct joint_pulse){
+			.t = 300 + u[0], .delta = 2 + scatter * z[0] / M_SQRT2, .a = 20
+		};
+		truth[1] = (struct joint_pulse){ .t = truth[0].t + 20 * (u[1] - 0.5),
+			.delta = 2 + scatter * z[1] / M_SQRT2,
+			.a = 20 };
+		if (pair) {
+			truth[0].a = 20 * (0.25 + 0.25 * u[2]);
+			truth[1].a = 20 - truth[0].a;
+		}
+		memset(y, 0, sizeof y);
+		for (int i = 0; i <= pair; i++)
+			joint_add(&s, &truth[i], 1, y[0], y[1], N);
+		for (unsigned c = 0; c < 2; c++)
+			add_noise(y[c], 5000 + k, c);
+		if (joint_fit(j, &s, y[0], y[1], N, found, &m, &r) != JOINT_OK || m != 1)
+			continue;
+		joint_pair_odds(j, &s, found, 0, scatter, odds);
+		/* One other per 0.2 durations, of any share. */
+		for (int w = 0; w < JOINT_SHARES; w++)
+			p += odds[w] / JOINT_SHARES / 0.2;
+		p /= 1 + p;
+		sum += p;
+		var += p * (1 - p);
+		two += pair;
+		one += !pair;
+		of_pairs += pair ? p : 0;
+		of_lone += pair ? 0 : p;
+	}
+	ok(one == PAIRS / 2 && two > PAIRS / 20, "of %d pairs %d are fitted as one pulse",
+		PAIRS / 2, two);
+	near(sum, two, 3.5 * sqrt(var), "their probabilities add up to their number");
+	ok(of_pairs / two > of_lone / one + 0.1, "a pair is more probable than a pulse");
+}
+
 int main(void)
 {
 	struct shape *shape = shape_new(PULSE_SINE);
@@ -249,6 +306,7 @@ int main(void)
 	test_noisy(j, &s, 2, 2);
 	test_hidden(j, &s);
 	test_quiet(j, &s);
+	test_pairs(j, &s);
 	test_misuse(j, &s);
 	joint_free(j);
 	shape_free(shape);

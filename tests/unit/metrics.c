@@ -9,51 +9,55 @@
 enum { N = 2000 };
 
 /* CRPS by the energy form E|X - y| - E|X - X'| / 2, independent of the implementation. */
-static double crps_energy(const double *x, const double *w, size_t n, double y)
+static double crps_energy(const double *x, size_t n, double y)
 {
-	double total = 0, near_y = 0, apart = 0;
+	double near_y = 0, apart = 0, m = (double)n;
 
-	for (size_t i = 0; i < n; i++)
-		total += w[i];
 	for (size_t i = 0; i < n; i++) {
-		near_y += w[i] / total * fabs(x[i] - y);
+		near_y += fabs(x[i] - y) / m;
 		for (size_t j = 0; j < n; j++)
-			apart += w[i] * w[j] / total / total * fabs(x[i] - x[j]);
+			apart += fabs(x[i] - x[j]) / m / m;
 	}
 	return near_y - apart / 2;
+}
+
+/* Adds a point, whose only sample it is. */
+static enum num_status add_point(struct metrics *m, double t, double point, double lower,
+	double upper, struct metrics_row *row)
+{
+	return metrics_add(m, t, point, lower, upper, &point, 1, row);
 }
 
 static void check_crps(void)
 {
 	static double x[N];
-	double w[5] = { 1, 3, 0.5, 2, 0.25 }, s[5] = { -2, 1, 1, 4, 9 };
+	double s[5] = { -2, 1, 1, 4, 9 };
 	double truth[] = { -5, 1, 3.3, 9, 20 };
 	double never[3] = { 1, 2, INFINITY };
 
-	near(metric_crps(&(double){ 7 }, NULL, 1, 10, INFINITY), 3, 1e-15,
+	near(metric_crps(&(double){ 7 }, 1, 10, INFINITY), 3, 1e-15,
 		"the CRPS of one sample is its absolute error");
 	for (int i = 0; i < 5; i++)
-		near(metric_crps(s, w, 5, truth[i], INFINITY),
-			crps_energy(s, w, 5, truth[i]), 1e-13,
-			"the CRPS of weighted samples equals its energy form");
+		near(metric_crps(s, 5, truth[i], INFINITY), crps_energy(s, 5, truth[i]),
+			1e-13, "the CRPS of samples equals its energy form");
 	for (int i = 0; i < N; i++)
 		x[i] = (i + 0.5) / N;
 	/* Midpoint samples of U(0, 1): the step function differs by 1 / (12 N^2). */
-	near(metric_crps(x, NULL, N, 0.3, INFINITY), (0.027 + 0.343) / 3, 1e-6,
+	near(metric_crps(x, N, 0.3, INFINITY), (0.027 + 0.343) / 3, 1e-6,
 		"the CRPS of a uniform forecast is right");
 	for (int i = 0; i < N; i++)
 		x[i] = 5 + 2 * gsl_cdf_ugaussian_Pinv((i + 0.5) / N);
-	near(metric_crps(x, NULL, N, 6, INFINITY),
+	near(metric_crps(x, N, 6, INFINITY),
 		2 * (0.5 * (2 * gsl_cdf_ugaussian_P(0.5) - 1) +
 			    2 * gsl_ran_ugaussian_pdf(0.5) - 1 / sqrt(M_PI)),
 		1e-4, "the CRPS of a normal forecast is right");
 	/* 1 to 2: (1/3 - 0)^2, 2 to 5: (2/3)^2 before the truth, 5 to 10: (1/3)^2 after.
 	 */
-	near(metric_crps(never, NULL, 3, 5, 10), 1 / 9. + 3 * 4 / 9. + 5 / 9., 1e-14,
+	near(metric_crps(never, 3, 5, 10), 1 / 9. + 3 * 4 / 9. + 5 / 9., 1e-14,
 		"the CRPS with mass that never fails is right up to the limit");
-	ok(isinf(metric_crps(never, NULL, 3, 5, INFINITY)),
+	ok(isinf(metric_crps(never, 3, 5, INFINITY)),
 		"the CRPS with mass that never fails is infinite without a limit");
-	near(metric_crps(&(double){ 1e300 }, NULL, 1, -1e300, INFINITY), 2e300, 1e285,
+	near(metric_crps(&(double){ 1e300 }, 1, -1e300, INFINITY), 2e300, 1e285,
 		"the CRPS of samples of 1e300 is right");
 }
 
@@ -80,21 +84,19 @@ static void check_sums(void)
 	struct metrics *m = metrics_new(&par);
 	struct metrics_row row;
 	struct metrics_sum s;
-	double pair[2] = { 12, 8 };
+	double pair[2] = { 8, 12 };
 
-	ok(metrics_add(m, 0, 130, 90, 140, NULL, NULL, 0, &row) == NUM_OK &&
-			!row.inside && row.covered,
+	ok(add_point(m, 0, 130, 90, 140, &row) == NUM_OK && !row.inside && row.covered,
 		"a prediction 30 %% late is outside the cone of 20 %%");
 	near(row.accuracy, 0.7, 1e-15, "the relative accuracy is right");
-	ok(metrics_add(m, 20, 95, 85, 99, NULL, NULL, 0, &row) == NUM_OK && row.inside &&
-			!row.covered,
+	ok(add_point(m, 20, 95, 85, 99, &row) == NUM_OK && row.inside && !row.covered,
 		"a prediction late by 15 of 80 is inside the cone");
-	ok(metrics_add(m, 90, 10, 8, 12, pair, NULL, 2, &row) == NUM_OK,
+	ok(metrics_add(m, 90, 10, 8, 12, pair, 2, &row) == NUM_OK,
 		"samples are accepted");
-	near(row.crps, 0.25 * 4, 1e-15, "the order of the samples does not matter");
+	near(row.crps, 0.25 * 4, 1e-15, "the CRPS of two samples is right");
 	near(row.mass, 1, 0, "both samples are within 20 % of 10");
-	ok(metrics_add(m, 100, 1, 0, 1, NULL, NULL, 0, NULL) == NUM_DOMAIN &&
-			metrics_add(m, 95, NAN, 0, 1, NULL, NULL, 0, NULL) == NUM_DOMAIN,
+	ok(add_point(m, 100, 1, 0, 1, NULL) == NUM_DOMAIN &&
+			add_point(m, 95, NAN, 0, 1, NULL) == NUM_DOMAIN,
 		"predictions after the end of life and missing ones are not counted");
 	s = metrics_get(m);
 	ok(s.n == 3, "three predictions are counted");
@@ -119,9 +121,9 @@ static void check_infinite(void)
 	struct metrics *m = metrics_new(&par);
 	struct metrics_sum s;
 
-	metrics_add(m, 0, INFINITY, 50, INFINITY, NULL, NULL, 0, NULL);
-	metrics_add(m, 20, 90, 70, 100, NULL, NULL, 0, NULL);
-	metrics_add(m, 40, 50, 40, 55, NULL, NULL, 0, NULL);
+	add_point(m, 0, INFINITY, 50, INFINITY, NULL);
+	add_point(m, 20, 90, 70, 100, NULL);
+	add_point(m, 40, 50, 40, 55, NULL);
 	s = metrics_get(m);
 	ok(s.n == 3 && s.infinite == 1,
 		"the prediction with an infinite median is counted");

@@ -39,7 +39,7 @@ static void draw(
 			e[i].delay += second ? shift : -shift;
 		if (!second)
 			continue;
-		e[i].partner = -1;
+		e[i].larger = e[i].partner = -1;
 		e[i].apart = e[i].delay - e[i - 1].delay;
 		e[i].apart_var = 2 * error * error;
 		e[i].place = 0.3 + 0.02 * (double)pair; /* nowhere in particular */

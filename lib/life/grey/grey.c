@@ -28,11 +28,6 @@ double grey_level(const struct grey *g)
 			: g->oldest;
 }
 
-double grey_control(const struct grey *g)
-{
-	return grey_level(g) + grey_rate(g) * g->oldest;
-}
-
 double grey_residual(const struct grey *g)
 {
 	double sum = g->fit.yy - grey_rate(g) * g->fit.xy;

@@ -42,8 +42,6 @@ void grey_add(struct grey *g, double x, double gap);
  * for a zero series, and where values over 1e150 (scale them) make squares overflow. */
 double grey_rate(const struct grey *g);
 double grey_level(const struct grey *g);
-/* Coefficient b of the usual formulation, in which x1 starts at the oldest value. */
-double grey_control(const struct grey *g);
 /* Mean squared residual of the fit; 0 below four points. */
 double grey_residual(const struct grey *g);
 /* Standard error of a, and of c for a given a.  a and c are uncorrelated when c is

@@ -21,7 +21,7 @@ struct order {
 	long *since;   /* row since which an order has been scored without interruption */
 	double *error; /* [window][largest + 1] squared errors of the last rows */
 	double *total; /* [largest + 1] sums over all rows */
-	unsigned long tried, skipped, changes;
+	struct order_counts counts;
 };
 
 struct order *order_new(const struct order_par *par)
@@ -75,9 +75,7 @@ void order_pass(struct order *o, struct state *s)
 	state_move(s, o->since, orders * sizeof *o->since);
 	state_move(s, o->error, orders * (size_t)o->par.window * sizeof *o->error);
 	state_move(s, o->total, orders * sizeof *o->total);
-	state_move(s, &o->tried, sizeof o->tried);
-	state_move(s, &o->skipped, sizeof o->skipped);
-	state_move(s, &o->changes, sizeof o->changes);
+	state_move(s, &o->counts, sizeof o->counts);
 }
 
 static int lag_place(const struct order *o, int lag)
@@ -202,7 +200,7 @@ static void choose(struct order *o, int low, int high)
 						     : INFINITY;
 	if (o->par.rule != ORDER_WINDOW || least < (1 - o->par.hysteresis) * held ||
 		!(held < INFINITY)) {
-		o->changes += o->chosen > 0;
+		o->counts.changes += o->chosen > 0;
 		o->chosen = best;
 	}
 }
@@ -230,10 +228,10 @@ void order_add(struct order *o, double y, double gap)
 		low = o->par.range_low > low ? o->par.range_low : low;
 		high = o->par.range_high < high ? o->par.range_high : high;
 		low = low < high ? low : high;
-		o->skipped += (unsigned long)(all - (high - low + 1));
+		o->counts.skipped += (unsigned long)(all - (high - low + 1));
 	}
 	fit_orders(o, low, high);
-	o->tried += (unsigned long)(high - low + 1);
+	o->counts.tried += (unsigned long)(high - low + 1);
 	choose(o, low, high);
 }
 
@@ -249,17 +247,7 @@ double order_forecast(const struct order *o, double h)
 	return o->rows > 0 ? o->y[lag_place(o, 0)] : NAN;
 }
 
-unsigned long order_tried(const struct order *o)
+struct order_counts order_counts(const struct order *o)
 {
-	return o->tried;
-}
-
-unsigned long order_skipped(const struct order *o)
-{
-	return o->skipped;
-}
-
-unsigned long order_changes(const struct order *o)
-{
-	return o->changes;
+	return o->counts;
 }

@@ -42,8 +42,10 @@ int order_chosen(const struct order *o); /* 0 below four observations */
 /* The chosen order's forecast h steps ahead from the observations alone; the last one
  * itself below four of them. */
 double order_forecast(const struct order *o, double h);
-unsigned long order_tried(const struct order *o);   /* orders fitted so far */
-unsigned long order_skipped(const struct order *o); /* left out by the range */
-unsigned long order_changes(const struct order *o);
+/* Orders fitted so far, those left out by the range, and changes of the order. */
+struct order_counts {
+	unsigned long tried, skipped, changes;
+};
+struct order_counts order_counts(const struct order *o);
 
 #endif

@@ -60,13 +60,6 @@ struct adaptive {
 	unsigned long restarts, outliers;
 };
 
-static double *column(struct adaptive *a)
-{
-	double *values = calloc(a->par.filter.particles, sizeof *values);
-
-	return values;
-}
-
 struct adaptive *adaptive_new(const struct adaptive_par *par)
 {
 	struct adaptive *a = calloc(1, sizeof *a);
@@ -84,7 +77,7 @@ struct adaptive *adaptive_new(const struct adaptive_par *par)
 	a->noise = noise_new();
 	a->lag = calloc(depth, sizeof *a->lag);
 	a->index = calloc(par->filter.particles, sizeof *a->index);
-	a->mean = column(a);
+	a->mean = calloc(par->filter.particles, sizeof *a->mean);
 	a->past = calloc(depth, sizeof *a->past);
 	a->gap = calloc(depth, sizeof *a->gap);
 	a->line_up = calloc(depth, sizeof *a->line_up);
@@ -129,24 +122,10 @@ void adaptive_pass(struct adaptive *a, struct state *s)
 	state_move(s, (unsigned char *)a + from, sizeof *a - from);
 }
 
-const struct order *adaptive_order(const struct adaptive *a)
+struct adaptive_counts adaptive_counts(const struct adaptive *a)
 {
-	return a->order;
-}
-
-const struct filter *adaptive_filter(const struct adaptive *a)
-{
-	return a->filter;
-}
-
-unsigned long adaptive_restarts(const struct adaptive *a)
-{
-	return a->restarts;
-}
-
-unsigned long adaptive_outliers(const struct adaptive *a)
-{
-	return a->outliers;
+	return (struct adaptive_counts){ filter_resamplings(a->filter), a->outliers,
+		a->restarts, order_counts(a->order) };
 }
 
 /* Adds a state to the sums, at a gap after the state before it. */
@@ -304,8 +283,7 @@ static void forecast_particles(struct adaptive *a, int p, double h, double noise
 
 static void hold_particles(struct adaptive *a)
 {
-	int changed;
-	const double *x = filter_lag(a->filter, 0, a->index, &changed);
+	const double *x = filter_lag(a->filter, 0, a->index);
 
 	for (size_t i = 0; i < a->par.filter.particles; i++)
 		a->mean[i] = x[a->index[i]];
@@ -566,7 +544,6 @@ static double *track_lag(const struct tracks *s, size_t n, int lag)
 static enum num_status start_tracks(struct adaptive *a, struct tracks *s)
 {
 	size_t n = a->par.filter.particles;
-	int changed;
 
 	s->x = malloc((size_t)s->p * n * sizeof *s->x);
 	s->index = malloc(n * sizeof *s->index);
@@ -574,7 +551,7 @@ static enum num_status start_tracks(struct adaptive *a, struct tracks *s)
 		return NUM_MEMORY;
 	s->newest = s->p - 1;
 	for (int lag = 0; lag < s->p; lag++) {
-		const double *x = filter_lag(a->filter, lag, a->index, &changed);
+		const double *x = filter_lag(a->filter, lag, a->index);
 
 		for (size_t i = 0; i < n; i++)
 			track_lag(s, n, lag)[i] = x[a->index[i]];

@@ -57,9 +57,11 @@ enum num_status adaptive_step(
  * within a step), INFINITY beyond steps.  NUM_DOMAIN: no model yet. */
 enum num_status adaptive_lives(
 	struct adaptive *a, double threshold, int direction, int steps, double *life);
-const struct order *adaptive_order(const struct adaptive *a);
-const struct filter *adaptive_filter(const struct adaptive *a);
-unsigned long adaptive_outliers(const struct adaptive *a); /* skipped */
-unsigned long adaptive_restarts(const struct adaptive *a); /* by the monitor */
+/* Events so far; outliers are skipped, restarts are those by the monitor. */
+struct adaptive_counts {
+	unsigned long resamplings, outliers, restarts;
+	struct order_counts order;
+};
+struct adaptive_counts adaptive_counts(const struct adaptive *a);
 
 #endif

@@ -182,9 +182,8 @@ static struct step *push_step(struct filter *f)
 
 static void weigh_equally(struct filter *f)
 {
-	for (size_t i = 0; i < f->par.particles; i++) {
+	for (size_t i = 0; i < f->par.particles; i++)
 		f->weight[i] = 1;
-	}
 	f->sum = f->ess = (double)f->par.particles;
 }
 
@@ -226,21 +225,19 @@ enum num_status filter_start(
 	return NUM_OK;
 }
 
-const double *filter_lag(const struct filter *f, int lag, uint32_t *index, int *changed)
+const double *filter_lag(const struct filter *f, int lag, uint32_t *index)
 {
 	const struct step *s = step_at(f, lag);
 	size_t n = f->par.particles;
-	int first = lag == 0;
 
-	if (s->resampled && first)
+	if (s->resampled && lag == 0)
 		memcpy(index, s->ancestor, n * sizeof *index);
 	else if (s->resampled)
 		for (size_t i = 0; i < n; i++)
 			index[i] = s->ancestor[index[i]];
-	else if (first)
+	else if (lag == 0)
 		for (size_t i = 0; i < n; i++)
 			index[i] = (uint32_t)i;
-	*changed = first || s->resampled;
 	return s->x;
 }
 

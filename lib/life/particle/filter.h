@@ -10,7 +10,7 @@
  *	struct filter *f = filter_new(&par, draw);
  *	filter_start(f, first, 4, spread);
  *	for each observation {
- *		const double *x = filter_lag(f, 0, NULL, index);
+ *		const double *x = filter_lag(f, 0, index);
  *		for (i = 0; i < n; i++)
  *			mean[i] = x[index[i]] + drift;
  *		filter_predict(f, mean, sigma);
@@ -50,8 +50,8 @@ int filter_depth(const struct filter *f);
 
 /* The states of step k - lag and, in index[N], which of them belongs to each present
  * particle.  Call with lag 0 first (index is filled), then with each next lag in turn
- * (index is updated).  *changed, unless NULL: 1 if index has changed. */
-const double *filter_lag(const struct filter *f, int lag, uint32_t *index, int *changed);
+ * (index is updated). */
+const double *filter_lag(const struct filter *f, int lag, uint32_t *index);
 
 /* The states of step k - lag that have descendants; *ancestor: the index among them of
  * the ancestor of each state of the next step, ascending without gaps from 0; NULL: the

@@ -64,11 +64,6 @@ void fleet_free(struct fleet *f)
 	free(f);
 }
 
-int fleet_units(const struct fleet *f)
-{
-	return f->units;
-}
-
 const struct bank_shape *fleet_shapes(const struct fleet *f, int *n)
 {
 	*n = f->shapes;
@@ -125,6 +120,8 @@ enum num_status fleet_add(struct fleet *f, int unit, double t, double y)
 
 	if (!p)
 		return NUM_MEMORY;
+	if (p->rows > 0 && t <= p->last)
+		return t < p->last ? NUM_DOMAIN : NUM_OK;
 	if (p->rows++ == 0)
 		p->first = t;
 	p->last = t;
@@ -201,8 +198,10 @@ enum num_status fleet_build(struct fleet *f, int *failed, int *carried_on)
 		       *level = age + LEVELS;
 		int reached;
 
+		if (p->rows == 0)
+			continue; /* no value */
 		/* The last row has no later neighbour for a median. */
-		if (p->rows == 0 || rise(p, p->t[0] - p->first, p->y[0]))
+		if (rise(p, p->t[0] - p->first, p->y[0]))
 			return NUM_MEMORY;
 		if (p->n < 2)
 			continue; /* no wear: no path */

@@ -21,11 +21,11 @@ struct fleet;
 
 struct fleet *fleet_new(double threshold, int direction); /* NULL: no memory */
 void fleet_free(struct fleet *f);
+/* A row whose t is that of the last one is ignored; NUM_DOMAIN: t decreases. */
 enum num_status fleet_add(struct fleet *f, int unit, double t, double y);
 /* Call after the last row.  Of the units that become coordinates, failed have reached the
  * threshold and carried_on have been extrapolated to it. */
 enum num_status fleet_build(struct fleet *f, int *failed, int *carried_on);
-int fleet_units(const struct fleet *f);
 const struct bank_shape *fleet_shapes(const struct fleet *f, int *n);
 
 #endif

@@ -4,10 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-struct weighted {
-	double x, w;
-};
-
 struct metrics {
 	struct metrics_par par;
 	size_t n, infinite;
@@ -15,8 +11,6 @@ struct metrics {
 	size_t inside, covered;
 	double since; /* start of the present uninterrupted run of good predictions; NAN
 			 if there is none */
-	struct weighted *scratch;
-	size_t capacity;
 };
 
 double metric_quantile(const double *sorted, size_t n, double level)
@@ -34,18 +28,14 @@ double metric_quantile(const double *sorted, size_t n, double level)
 
 /* Sums rectangles between neighbours: every term is positive, so that there is no
  * cancellation. */
-double metric_crps(
-	const double *sorted, const double *weight, size_t n, double truth, double limit)
+double metric_crps(const double *sorted, size_t n, double truth, double limit)
 {
-	double total = 0, below = 0, score = 0,
-	       left = fmin(fmin(sorted[0], truth), limit);
+	double score = 0, left = fmin(fmin(sorted[0], truth), limit);
 
 	truth = fmin(truth, limit);
-	for (size_t i = 0; i < n; i++)
-		total += weight ? weight[i] : 1;
 	for (size_t i = 0; i <= n; i++) {
 		double right = i < n ? fmin(sorted[i], limit) : fmax(truth, left);
-		double f = below / total;
+		double f = (double)i / (double)n;
 
 		if (left < truth) {
 			double end = fmin(right, truth);
@@ -57,26 +47,18 @@ double metric_crps(
 		if (right > left && f < 1)
 			score += (right - left) * (1 - f) * (1 - f);
 		left = right;
-		if (i < n)
-			below += weight ? weight[i] : 1;
 	}
 	return score;
 }
 
-/* Share of the weight on samples within [lower, upper], in any order. */
-static double mass_within(
-	const double *sample, const double *weight, size_t n, double lower, double upper)
+/* Share of the samples within [lower, upper]. */
+static double share_within(const double *sample, size_t n, double lower, double upper)
 {
-	double total = 0, inside = 0;
+	size_t inside = 0;
 
-	for (size_t i = 0; i < n; i++) {
-		double w = weight ? weight[i] : 1;
-
-		total += w;
-		if (sample[i] >= lower && sample[i] <= upper)
-			inside += w;
-	}
-	return inside / total;
+	for (size_t i = 0; i < n; i++)
+		inside += sample[i] >= lower && sample[i] <= upper;
+	return (double)inside / (double)n;
 }
 
 struct metrics *metrics_new(const struct metrics_par *par)
@@ -100,70 +82,25 @@ struct metrics *metrics_new(const struct metrics_par *par)
 
 void metrics_free(struct metrics *m)
 {
-	if (m)
-		free(m->scratch);
 	free(m);
 }
 
-static int compare_weighted(const void *a, const void *b)
-{
-	double x = ((const struct weighted *)a)->x, y = ((const struct weighted *)b)->x;
-
-	return (x > y) - (x < y);
-}
-
-/* CRPS of unsorted samples. */
-static enum num_status crps_unsorted(struct metrics *m, const double *sample,
-	const double *weight, size_t n, double truth, double *crps)
-{
-	double *x;
-
-	/* Memory first for the pairs, then for the two separate arrays. */
-	if (n > m->capacity) {
-		struct weighted *more = realloc(m->scratch, 2 * n * sizeof *more);
-
-		if (!more)
-			return NUM_MEMORY;
-		m->scratch = more;
-		m->capacity = n;
-	}
-	for (size_t i = 0; i < n; i++)
-		m->scratch[i] = (struct weighted){ sample[i], weight ? weight[i] : 1 };
-	qsort(m->scratch, n, sizeof *m->scratch, compare_weighted);
-	x = (double *)(m->scratch + n);
-	for (size_t i = 0; i < n; i++) {
-		x[i] = m->scratch[i].x;
-		x[n + i] = m->scratch[i].w;
-	}
-	*crps = metric_crps(x, x + n, n, truth, m->par.limit);
-	return NUM_OK;
-}
-
 enum num_status metrics_add(struct metrics *m, double t, double point, double lower,
-	double upper, const double *sample, const double *weight, size_t n,
-	struct metrics_row *row)
+	double upper, const double *sample, size_t n, struct metrics_row *row)
 {
 	double truth = m->par.eol - t, wide = m->par.alpha * fabs(m->par.eol);
 	struct metrics_row r = { .truth = truth };
-	double mass_horizon;
 
 	if (!(truth > 0) || isnan(point))
 		return NUM_DOMAIN;
-	if (!sample || n == 0) {
-		sample = &point;
-		weight = NULL;
-		n = 1;
-	}
 	r.error = point - truth;
 	r.accuracy = 1 - fabs(r.error) / truth;
-	r.mass = mass_within(sample, weight, n, truth * (1 - m->par.alpha),
-		truth * (1 + m->par.alpha));
+	r.mass = share_within(
+		sample, n, truth * (1 - m->par.alpha), truth * (1 + m->par.alpha));
 	r.inside = r.mass >= m->par.beta;
 	r.covered = lower <= truth && truth <= upper;
-	if (crps_unsorted(m, sample, weight, n, truth, &r.crps))
-		return NUM_MEMORY;
-	mass_horizon = mass_within(sample, weight, n, truth - wide, truth + wide);
-	if (mass_horizon < m->par.beta)
+	r.crps = metric_crps(sample, n, truth, m->par.limit);
+	if (share_within(sample, n, truth - wide, truth + wide) < m->par.beta)
 		m->since = NAN;
 	else if (isnan(m->since))
 		m->since = t;

@@ -1,12 +1,12 @@
 /* metrics.h - accuracy of predictions of remaining life, given the true end of life
  *
- * A prediction made at time t is a set of samples of the remaining life (equal or
- * given weights) or just a point and an interval.  With the true end of life T the
- * truth is r = T - t.  Any unit of time, the same one throughout.
+ * A prediction made at time t is a set of samples of the remaining life, a point and an
+ * interval.  With the true end of life T the truth is r = T - t.  Any unit of time, the
+ * same one throughout.
  *
  *	struct metrics_par par = { .eol = 1186, .alpha = 0.2, .beta = 0.5 };
  *	struct metrics *m = metrics_new(&par);
- *	metrics_add(m, t, mean, q05, q95, sample, NULL, n, NULL);
+ *	metrics_add(m, t, mean, q05, q95, sample, n, NULL);
  *	struct metrics_sum sum = metrics_get(m);
  *	metrics_free(m);
  *
@@ -27,10 +27,8 @@ double metric_quantile(const double *sorted, size_t n, double level);
 
 /* Continuous ranked probability score, the integral of (F(x) - [x >= truth])^2 over
  * x <= limit: 0 is perfect, |error| for a single sample.  sorted: n >= 1 ascending
- * samples; weight: theirs, summing to any positive value, or NULL for equal ones.
- * Samples may be INFINITY, which needs a finite limit for a finite score. */
-double metric_crps(
-	const double *sorted, const double *weight, size_t n, double truth, double limit);
+ * samples.  Samples may be INFINITY, which needs a finite limit for a finite score. */
+double metric_crps(const double *sorted, size_t n, double truth, double limit);
 
 struct metrics_par {
 	double eol;   /* true end of life, on the axis of t */
@@ -47,7 +45,7 @@ struct metrics_row {
 	double mass;     /* probability within (1 +- alpha) truth */
 	int inside;      /* alpha-lambda test: mass >= beta */
 	int covered;     /* lower <= truth <= upper */
-	double crps;     /* |error| where there are no samples */
+	double crps;
 };
 
 /* All predictions made before the end of life; NAN where there were none. */
@@ -70,14 +68,13 @@ struct metrics;
 struct metrics *metrics_new(const struct metrics_par *par);
 void metrics_free(struct metrics *m);
 
-/* Adds the prediction made at t; times must not decrease.  If sample is NULL (n = 0),
- * the point is the only sample.  Samples need not be sorted.  row may be NULL.
+/* Adds the prediction made at t, n >= 1 ascending samples; times must not decrease.  row
+ * may be NULL.
  * An infinite point (a median where most samples never fail) has no error that could be
  * averaged: it is counted separately and scored by its samples and interval.  NUM_DOMAIN
  * when t >= eol or the point is NAN: nothing is counted. */
 enum num_status metrics_add(struct metrics *m, double t, double point, double lower,
-	double upper, const double *sample, const double *weight, size_t n,
-	struct metrics_row *row);
+	double upper, const double *sample, size_t n, struct metrics_row *row);
 struct metrics_sum metrics_get(const struct metrics *m);
 
 #endif

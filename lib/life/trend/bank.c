@@ -359,6 +359,21 @@ static void start(struct bank *b)
 	b->n_held = 0;
 }
 
+/* Drops an outlier among the first three observations, before there is a trend that could
+ * tell it: one that is as far below their median as the threshold is above it. */
+static void drop_outlier(struct bank *b)
+{
+	struct row *r = b->held;
+	double middle = median_of_three(r[0].y, r[1].y, r[2].y);
+	int kept = 0;
+
+	for (int k = 0; k < FIRST; k++)
+		if ((middle - r[k].y) / (b->par.threshold - middle) < 1)
+			r[kept++] = r[k];
+	b->counts.outliers += (unsigned long)(FIRST - kept);
+	b->n_held = kept;
+}
+
 /* Sum over the trends, by weight, of the function of, which gets the observation of a
  * damage as the trend expects it, step after the last row, with its variance and
  * standardised innovation. */
@@ -427,13 +442,24 @@ static void shift(struct bank *b, double y)
 	b->counts.shifts++;
 }
 
+/* Weighted mean of dD/dt at the last row. */
+static double rate_of(const struct bank *b)
+{
+	double sum = 0;
+
+	for (int i = 0; i < b->trends; i++) {
+		const struct trend *tr = &b->trend[i];
+
+		sum += tr->weight * grown(tr, b->age) * tr->v /
+		       place_of(b, tr->shape, b->level).slope / b->unit;
+	}
+	return sum;
+}
+
 /* 1 if the last step of the damage is well beyond what noise and rate explain. */
 static int is_steep(const struct bank *b, const struct row *r)
 {
-	double y, rate;
-
-	bank_state(b, &y, &rate);
-	return (r[0].y - r[-1].y - rate * (r[0].t - r[-1].t)) / b->range >
+	return (r[0].y - r[-1].y) / b->range - rate_of(b) * (r[0].t - r[-1].t) >
 	       2 * noise_of(b);
 }
 
@@ -477,14 +503,43 @@ static double running(struct bank *b, double t, double damage)
 	return b->last + b->gap * b->unit;
 }
 
+/* Where values repeat they have been rounded, and the noise is at least that of rounding
+ * to the least step seen: a quantum over sqrt(12).  Without it a step after equal values
+ * would count as a shift, and the wear as none. */
+static void heed_rounding(struct bank *b, double y)
+{
+	double step = fabs(y - b->before);
+
+	if (b->rows == 0 && b->n_held == 0) {
+		b->quantum = INFINITY;
+		b->repeats = 0;
+	} else if (step == 0) {
+		b->repeats = 1;
+	} else {
+		b->quantum = fmin(b->quantum, step);
+	}
+	b->before = y;
+	if (b->rows == 0 || !b->repeats || isinf(b->quantum))
+		return;
+	step = b->quantum / b->range;
+	for (int i = 0; i < b->trends; i++) {
+		struct trend *tr = &b->trend[i];
+
+		tr->sum = fmax(tr->sum, freedom_of(b, tr) * step * step / 12);
+	}
+}
+
 void bank_add(struct bank *b, double t, double y)
 {
 	if (isnan(y))
 		return;
+	if (b->rows == 0 && !(b->par.direction * (b->par.threshold - y) > 0))
+		return;
+	heed_rounding(b, y);
 	if (b->rows == 0) {
-		if (!(b->par.direction * (b->par.threshold - y) > 0))
-			return;
 		b->held[b->n_held++] = (struct row){ t, y };
+		if (b->n_held == FIRST)
+			drop_outlier(b);
 		if (b->n_held == FIRST)
 			start(b);
 		return;
@@ -506,10 +561,10 @@ void bank_add(struct bank *b, double t, double y)
 	}
 }
 
-void bank_event(struct bank *b, enum bank_event event)
+int bank_event(struct bank *b, enum bank_event event)
 {
 	if (b->rows == 0)
-		return;
+		return 0;
 	for (int i = 0; i < b->trends; i++) {
 		struct trend *tr = &b->trend[i];
 		double scale = freedom_of(b, tr) / tr->sum;
@@ -520,24 +575,10 @@ void bank_event(struct bank *b, enum bank_event event)
 		else
 			tr->pvv += tr->v * tr->v * scale;
 	}
+	return 1;
 }
 
 /* --- what is known ------------------------------------------------------------------ */
-
-void bank_state(const struct bank *b, double *y, double *rate)
-{
-	*y = *rate = 0;
-	for (int i = 0; i < b->trends; i++) {
-		const struct trend *tr = &b->trend[i];
-		struct place p = place_of(b, tr->shape, b->level);
-		double slope = p.slope;
-
-		*y += tr->weight *
-		      (b->base + b->range * (b->level + (tr->h - p.h) / slope));
-		*rate += tr->weight * b->range * grown(tr, b->age) * tr->v / slope /
-			 b->unit;
-	}
-}
 
 double bank_weight(const struct bank *b, enum bank_family family)
 {

@@ -28,7 +28,9 @@
  * Student's t as rare as five standard deviations.  If a later row agrees with them,
  * it is dropped as an outlier.  If three rows running lie on the healthy side (a repair)
  * or eight have been held, the level is estimated again and the rates are kept.  If the
- * held rows move away step by step, faster than the rate, they are accepted.  After a gap
+ * held rows move away step by step, faster than the rate, they are accepted.  Where
+ * successive values are equal, readings are taken to be rounded to the smallest other
+ * step between two of them, and the noise to be at least that of rounding.  After a gap
  * of more than five mean gaps the machine may have been idle; the next observation
  * decides.
  *
@@ -92,10 +94,9 @@ enum bank_event {
 	BANK_REPAIR, /* the level is new, the rate as before */
 	BANK_LOAD    /* the rate is new, the level as before */
 };
-void bank_event(struct bank *b, enum bank_event event);
+/* 0: no effect, because fewer than three observations are known. */
+int bank_event(struct bank *b, enum bank_event event);
 
-/* Weighted mean of y and of dy/dt at the last row. */
-void bank_state(const struct bank *b, double *y, double *rate);
 /* Share of a family in the weight, without the trends whose regime has changed; BANK_ALL:
  * the share of these. */
 double bank_weight(const struct bank *b, enum bank_family family);

@@ -41,6 +41,9 @@ struct bank {
 	double idle;          /* total idle time */
 	double age, gap;      /* of the last row, mean gap, in units */
 	double level;         /* D of the last row */
+	double before;        /* y of the last row, taken or held back */
+	double quantum;       /* least difference of successive values of y but 0 */
+	int repeats;          /* 1: successive values have been equal */
 	double bred;          /* age at which particles were last drawn */
 	double freedom[MEMORIES], keep[MEMORIES], log_constant[MEMORIES];
 	double cut; /* square of the largest standardised innovation */

@@ -103,6 +103,20 @@ enum joint_status joint_refine(struct joint *joint, const struct joint_scene *sc
  * fitted free, in cov[m * m].  Returns m; 0 if the normal matrix is singular. */
 int joint_delay_covariance(const struct joint *joint, double *cov);
 
+/* Is pulse i of the last fit two that arrive nearly together?  Odds by the share of the
+ * smaller one, for one other arrival per duration; scatter is the standard deviation of
+ * the difference of two delays.  All 0 if the normal matrix is singular.  Shares are the
+ * middles of steps from a quarter, which puts the diameter out by a tenth, to a half. */
+enum { JOINT_SHARES = 3 };
+static const double JOINT_SHARE_STEP = 0.25 / JOINT_SHARES;
+static inline double joint_share(int k)
+{
+	return 0.25 + (k + 0.5) * JOINT_SHARE_STEP;
+}
+void joint_pair_odds(struct joint *joint, const struct joint_scene *scene,
+	const struct joint_pulse *pulses, int i, double scatter,
+	double odds[JOINT_SHARES]);
+
 /* Samples of pulses computed by all fits so far. */
 double joint_work(const struct joint *joint);
 

@@ -42,6 +42,7 @@ void joint_free(struct joint *j)
 	free_samples(j);
 	free(j->memory);
 	free(j->scratch);
+	free(j->excess);
 	free(j->h);
 	free(j->factor);
 	free(j->bq);
@@ -76,11 +77,13 @@ static enum joint_status reserve_columns(struct joint *j, size_t support)
 		return JOINT_OK;
 	free(j->memory);
 	free(j->scratch);
+	free(j->excess);
 	j->support = 0;
 	j->memory =
 		malloc(support * sizeof *j->memory * (JOINT_PULSES_MAX + 1) * 4 * PAR);
 	j->scratch = malloc(support * sizeof *j->scratch * PAR);
-	if (!j->memory || !j->scratch)
+	j->excess = malloc(support * sizeof *j->excess * PAIR_KNOTS);
+	if (!j->memory || !j->scratch || !j->excess)
 		return JOINT_MEMORY;
 	j->support = support;
 	at = j->memory;

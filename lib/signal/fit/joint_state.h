@@ -12,7 +12,9 @@
 enum {
 	PAR = 3,
 	NPAR = PAR * JOINT_PULSES_MAX,
-	BASIS_MAX = 2 * (JOINT_TONES_MAX + JOINT_BASELINE_MAX) + 1
+	BASIS_MAX = 2 * (JOINT_TONES_MAX + JOINT_BASELINE_MAX) + 1,
+	PAIR_GAPS = 12,
+	PAIR_KNOTS = 2 * PAIR_GAPS /* of either channel */
 };
 
 /* One pulse on one channel: its derivatives by (t, t + delta, a). */
@@ -20,6 +22,12 @@ struct column {
 	long first;
 	size_t n;
 	double *d[PAR];
+};
+
+/* Of what two pulses by a gap put on the record beside one: its part along the residual,
+ * and inner products less what the fitted pulses take of them. */
+struct pair_table {
+	double along[PAIR_KNOTS], gram[PAIR_KNOTS][PAIR_KNOTS];
 };
 
 struct joint {
@@ -36,7 +44,9 @@ struct joint {
 	double share[BASIS_MAX]; /* of each vector that is projected out; 1: unknown */
 	double *memory;          /* columns of all pulses */
 	double *scratch;         /* three of support */
-	double *filter[2];       /* matched filter on the coarse grid */
+	double *excess;          /* PAIR_KNOTS of support */
+	struct pair_table pair;
+	double *filter[2]; /* matched filter on the coarse grid */
 	struct column col[JOINT_PULSES_MAX + 1][2];   /* as the pulses are */
 	struct column trial[JOINT_PULSES_MAX + 1][2]; /* as they were before a step */
 	double *h; /* NPAR * NPAR: normal matrix or its Cholesky factor */
@@ -118,6 +128,24 @@ double joint_fit_all(
 /* Covariances from the inverse of the undamped normal matrix. */
 void joint_fill_covariance(
 	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m);
+
+/* x becomes L^-1 x, by the factor of the last covariance. */
+void joint_reduce(const struct joint *j, int np, double *x);
+
+/* Factor of the normal matrix of the pulses in set, with their columns. */
+enum num_status joint_factorise(struct joint *j, const struct joint_scene *s,
+	const struct joint_pulse *pulses, const int *set, int m);
+
+/* joint_pair.c */
+
+/* Makes the table of pulse i, one of the m in set, whose factor was made. */
+void joint_pair_start(struct joint *j, const struct joint_scene *s,
+	const struct joint_pulse *pulses, int i, const int *set, int m);
+/* Logarithm of the likelihood ratio of two equal pulses, by their gaps in durations. */
+double joint_pair_ratio(const struct joint *j, double gap1, double gap2);
+/* Largest of it among the gaps of the table, the same on both channels: gaps that differ
+ * describe a wrong gain as well.  0: one pulse is most likely. */
+double joint_pair_best(const struct joint *j, double *gap);
 
 /* joint_moves.c: *chi2 is kept up to date */
 

@@ -247,18 +247,24 @@ double joint_fit_all(
 	return joint_fit_set(j, s, pulses, set, m, 50, 1e-4);
 }
 
+enum num_status joint_factorise(struct joint *j, const struct joint_scene *s,
+	const struct joint_pulse *pulses, const int *set, int m)
+{
+	for (int x = 0; x < m; x++)
+		joint_make_columns(j, s, set[x], &pulses[set[x]]);
+	make_normal(j, set, m);
+	return factorise(j, PAR * m, 0);
+}
+
 void joint_fill_covariance(
 	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m)
 {
 	int set[JOINT_PULSES_MAX] = { 0 }, good, np = PAR * m;
 	double x[NPAR];
 
-	for (int i = 0; i < m; i++) {
+	for (int i = 0; i < m; i++)
 		set[i] = i;
-		joint_make_columns(j, s, i, &pulses[i]);
-	}
-	make_normal(j, set, m);
-	good = factorise(j, np, 0) == NUM_OK;
+	good = joint_factorise(j, s, pulses, set, m) == NUM_OK;
 	j->inverted = good ? m : 0;
 	for (int i = 0; i < m; i++)
 		for (int u = 0, k = 0; u < PAR; u++) {
@@ -270,6 +276,16 @@ void joint_fill_covariance(
 			for (int v = 0; v <= u; v++)
 				pulses[i].cov[k++] = good ? x[PAR * i + v] : INFINITY;
 		}
+}
+
+void joint_reduce(const struct joint *j, int np, double *x)
+{
+	for (int i = 0; i < np; i++) {
+		const double *row = j->factor + (size_t)i * (size_t)np;
+		int from = j->begin[i];
+
+		x[i] = (x[i] - dot(row + from, x + from, (size_t)(i - from))) / row[i];
+	}
 }
 
 int joint_delay_covariance(const struct joint *j, double *cov)

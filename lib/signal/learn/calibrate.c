@@ -129,8 +129,9 @@ static int is_white(const struct calibration *c, const struct look *look)
 static const double TAILS = 4, STEADY = 0.3;
 
 /* A regular train of pulses has lines, too, which the robust fit may find: weak ones of
- * their tails, or lines that last only as long as the train.  Uses fewer lines if that
- * describes the record better. */
+ * their tails, or lines that last only as long as the train.  Uses fewer lines if with
+ * them the pulses describe the record, and better; two attempts of which neither does say
+ * nothing of the lines. */
 static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct look *look,
 	struct calibration *c)
@@ -154,7 +155,7 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 	look->work = other_look.work;
 	if (status != CALIBRATE_OK)
 		return status == CALIBRATE_MEMORY ? status : CALIBRATE_OK;
-	if (other.price < c->price) {
+	if (other.price < c->price && learn_describes(&other)) {
 		calibration_clear(c);
 		*c = other;
 		*look = other_look;

@@ -114,7 +114,7 @@ enum separate_status separate_fit_section(
 	memcpy(a.pulse, s->pulse, sizeof a.pulse);
 	status = separate_fit_window(s, from - before, n, cut, &a);
 	if (status == SEPARATE_OK)
-		s->all = joint_delay_covariance(s->joint, s->delay_cov);
+		separate_keep_fit(s, &a);
 	if (status == SEPARATE_OK && s->par.quadrature)
 		status = fit_quadrature(s, from, n, a.m, a.done, &a.goodness);
 	else if (status == SEPARATE_OK && separate_is_described(&a))

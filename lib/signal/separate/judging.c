@@ -65,6 +65,33 @@ static void give_reports(struct separate *s)
 	s->reports = 0;
 }
 
+/* Doubts those of the n rows not yet judged that may be two particles.  Rows doubted
+ * already tell how often one pulse follows another as well. */
+static enum separate_status judge_pairs(struct separate *s, size_t n)
+{
+	struct entry *q = s->queue + s->judged;
+	struct arrival *a = malloc((n ? n : 1) * sizeof *a);
+	size_t m = 0;
+
+	if (!a)
+		return SEPARATE_MEMORY;
+	for (size_t i = 0; i < n; i++)
+		if (q[i].arrival.group) {
+			a[m] = q[i].arrival;
+			a[m++].doubted = q[i].row.verdict >= SEPARATE_MISFIT;
+		}
+	together_judge(s->together, a, m);
+	m = 0;
+	for (size_t i = 0; i < n; i++)
+		if (q[i].arrival.group && a[m++].doubted &&
+			q[i].row.verdict < SEPARATE_MISFIT) {
+			q[i].row.verdict = SEPARATE_MISFIT;
+			s->counters.together++;
+		}
+	free(a);
+	return SEPARATE_OK;
+}
+
 enum separate_status separate_judge_rows(struct separate *s)
 {
 	size_t n = s->count - s->judged;
@@ -86,6 +113,8 @@ enum separate_status separate_judge_rows(struct separate *s)
 		q->row.verdict = SEPARATE_MISFIT;
 	}
 	free(e);
+	if (judge_pairs(s, n) != SEPARATE_OK)
+		return SEPARATE_MEMORY;
 	s->judged = s->count;
 	give_reports(s);
 	return SEPARATE_OK;

@@ -67,7 +67,7 @@ enum separate_status separate_try_rivals(
 	}
 	s->scene = plain;
 	if (found) {
-		s->all = joint_delay_covariance(s->joint, s->delay_cov);
+		separate_keep_fit(s, a);
 		separate_follow(s, a);
 	}
 	memcpy(s->pulse, a->pulse, sizeof s->pulse);

@@ -3,6 +3,7 @@
 #include "signal/separate/separate_state.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Fills in what the row of pulse i has from the second component. */
 static void tell_phase(
@@ -61,16 +62,21 @@ static enum separate_status emit_pulse(struct separate *s, const struct joint_pu
 		.delay = p->delta,
 		.var = isinf(s->cal.transit) || !isfinite(delay_var) ? 0 : delay_var,
 		.amplitude = p->a };
+	entry->arrival = (struct arrival){ .group = s->group,
+		.time = ((double)from + p->t) / s->cal.duration,
+		.amplitude = p->a };
+	memcpy(entry->arrival.odds, s->pair_odds[p - s->pulse],
+		sizeof entry->arrival.odds);
 	s->counters.rows++;
 	s->counters.negative += p->a < 0;
 	return SEPARATE_OK;
 }
 
-/* The larger pulse nearest to pulse i that overlaps it, or -1. */
+/* The larger pulse nearest to pulse i in the same fit, or -1. */
 static int larger_neighbour(const struct separate *s, int m, int i)
 {
 	const struct joint_pulse *p = s->pulse;
-	double nearest = 2 * s->cal.duration;
+	double nearest = INFINITY;
 	int found = -1;
 
 	for (int k = 0; k < m; k++)
@@ -96,11 +102,12 @@ static enum num_status compare_pulses(struct separate *s, int m)
 
 		if (k < 0)
 			continue;
-		e->partner = k - i;
+		e->larger = k - i;
 		e->apart = p[i].delta - p[k].delta;
 		e->apart_var = cov[i * all + i] + cov[k * all + k] - 2 * cov[i * all + k];
 		e->place = (p[i].t - p[k].t) / s->cal.duration;
 		e->height = fabs(p[i].a / p[k].a);
+		e->partner = fabs(e->place) < 2 ? k - i : 0;
 	}
 	if (m < 2 || all < m || isinf(s->cal.transit))
 		return NUM_OK;

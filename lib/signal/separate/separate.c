@@ -18,7 +18,8 @@ struct separate *separate_new(const struct separate_par *par)
 		par->kept->cal = s->kept.cal = (struct calibration){ .shift = 0 };
 	}
 	s->validation = validation_new();
-	if (!s->validation) {
+	s->together = together_new();
+	if (!s->validation || !s->together) {
 		separate_free(s);
 		return NULL;
 	}
@@ -42,6 +43,7 @@ void separate_free(struct separate *s)
 		free(s->report[i].source);
 	free(s->report);
 	validation_free(s->validation);
+	together_free(s->together);
 	free(s->queue);
 	free(s->source);
 	free(s->spikes);

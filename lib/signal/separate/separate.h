@@ -107,6 +107,7 @@ struct separate_counters {
 	double fits, steps, searches;
 	double rows, misfits; /* of pulses fitted, and those doubted, dense ones too */
 	double negative;      /* of rows, with a negative amplitude */
+	double together;      /* doubted because they may be two particles */
 	double foreign;       /* doubted by their velocities, though they fit */
 	double masks, masks_skipped; /* sections demixed, and those with one source, which
 					need not be */

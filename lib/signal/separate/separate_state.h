@@ -8,12 +8,14 @@
 #include "signal/separate/quadrature.h"
 #include "signal/separate/separate.h"
 #include "signal/separate/tape.h"
+#include "signal/separate/together.h"
 #include "signal/separate/validate.h"
 
 /* A row that may not have been judged yet. */
 struct entry {
 	struct transit row;
 	struct evidence evidence;
+	struct arrival arrival; /* its group 0: none */
 };
 
 /* A section to be reported once its rows are judged. */
@@ -67,6 +69,7 @@ struct separate {
 	/* Covariances of the delays of all (so many) pulses; 0: not known. */
 	double delay_cov[JOINT_PULSES_MAX * JOINT_PULSES_MAX];
 	int all;
+	double pair_odds[JOINT_PULSES_MAX][JOINT_SHARES]; /* of each of them */
 	double delay[TRACKED]; /* of the last pulses that stood alone */
 	size_t delays;
 	double gain_off[GAINS]; /* relative deviations of the gain of such pulses, in
@@ -81,6 +84,7 @@ struct separate {
 	struct report *report;
 	size_t reports, report_capacity;
 	struct validation *validation;
+	struct together *together;
 	long long hold; /* rows before this sample are judged together */
 	int holding, group;
 	double *source;
@@ -179,6 +183,8 @@ void separate_hide(struct separate *s, long long from, size_t n);
 /* Fits a window, with the first a->m pulses of a as guesses, and judges the fit. */
 enum separate_status separate_fit_window(
 	struct separate *s, long long from, size_t n, int cut, struct account *a);
+/* Keeps of the last fit what the next one overwrites. */
+void separate_keep_fit(struct separate *s, const struct account *a);
 int separate_is_described(const struct account *a);
 
 /* following.c */

@@ -6,10 +6,10 @@
 #include <string.h>
 
 enum {
-	LATELY = 256, /* latest rows, and pairs, that are used to judge */
-	FEW = 8,      /* fewest delays for an estimate of the variance */
-	PLACES = 32   /* classes of place within two durations on either side of a strong
-			 pulse */
+	LATELY = 256,       /* latest rows, and pairs, that are used to judge */
+	FEW = 8,            /* fewest delays for an estimate of the variance */
+	REACH = 6,          /* durations on either side of a strong pulse */
+	PLACES = 16 * REACH /* classes of place within them */
 };
 
 /* Variance of z for parts of one object; it would be 1 if the model of the shape held for
@@ -288,20 +288,20 @@ static int is_one(const struct validation *v, const struct evidence *e, size_t m
 
 /* --- weak pulses that recur */
 
-/* Place of a pulse that is less than half as high as its partner and has the same
- * velocity within the error, or -1. */
+/* Place of a pulse that is less than half as high as the nearest larger one and has the
+ * same velocity within the error, or -1. */
 static int weak_place(const struct evidence *e)
 {
-	int place = (int)floor((e->place + 2) * PLACES / 4);
+	int place = (int)floor((e->place + REACH) * PLACES / (2 * REACH));
 
-	return e->partner && e->height < 0.5 && place >= 0 && place < PLACES &&
+	return e->larger && e->height < 0.5 && place >= 0 && place < PLACES &&
 			       e->apart * e->apart <= 10 * e->apart_var
 		       ? place
 		       : -1;
 }
 
-/* 1 if the place occurs in more than four groups and in a tenth of all.  Chance, with 32
- * places and different velocities, does not reach that. */
+/* 1 if the place occurs in more than four groups and in a tenth of all.  Chance, with so
+ * many places and different velocities, does not reach that. */
 static int recurs(const struct validation *v, const struct evidence *e)
 {
 	int place = weak_place(e);
@@ -371,7 +371,7 @@ static void judge_group(const struct validation *v, struct evidence *e, size_t m
 	for (size_t i = 0; i < m; i++)
 		if (is_part(v, &e[i]) || recurs(v, &e[i])) {
 			e[i].doubted = 1;
-			e[(long)i + e[i].partner].doubted = 1;
+			e[(long)i + e[i].larger].doubted = 1;
 		}
 }
 

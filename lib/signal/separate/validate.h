@@ -35,8 +35,9 @@ struct evidence {
 	int fits;          /* 0: doubted already by chi-square */
 	double delay, var; /* in samples; var 0: unknown */
 	double amplitude;  /* over the noise */
-	int partner; /* distance in rows to the larger pulse that it overlaps; 0: none */
-	double apart, apart_var; /* delay less that of the partner */
+	int larger;        /* distance in rows to the nearest larger pulse; 0: none */
+	int partner;       /* the same if they overlap */
+	double apart, apart_var; /* delay less that of the larger pulse */
 	double place, height;    /* of arrival, in durations, and amplitude: the same */
 	double contrast2, contrast_var; /* of contrasts.h; variance 0: none */
 	int doubted;                    /* set by validation_judge() */

@@ -1,4 +1,5 @@
 /* window.c - one window of a section: the joint fit of its pulses and its goodness */
+#include "signal/noise/robust.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
 #include <string.h>
@@ -57,6 +58,38 @@ enum separate_status separate_fit_window(
 	goodness_of_fit(s->joint, &s->scene, n, a->pulse, a->m, a->done, a->boundary,
 		s->cal.chi2 < 4 || s->cal.dense, &a->r, &a->goodness);
 	return SEPARATE_OK;
+}
+
+/* Standard deviation of the difference of two delays: by those of the window, where they
+ * are eight or more, or by the range that is searched.  That is at least twice as wide as
+ * that of the delays seen, and two that are spread evenly over a range differ by 1 / sqrt
+ * 6 of it in root mean square. */
+static double delay_scatter(const struct separate *s, const struct account *a)
+{
+	double widest = 0.5 * (s->scene.delta_max - s->scene.delta_min) / sqrt(6);
+	double x[JOINT_PULSES_MAX], middle;
+
+	if (a->m < 8)
+		return widest;
+	for (int i = 0; i < a->m; i++)
+		x[i] = a->pulse[i].delta;
+	middle = robust_median(x, (size_t)a->m);
+	for (int i = 0; i < a->m; i++)
+		x[i] = fabs(a->pulse[i].delta - middle);
+	return fmin(widest, M_SQRT2 * 1.482602218505602 * robust_median(x, (size_t)a->m));
+}
+
+void separate_keep_fit(struct separate *s, const struct account *a)
+{
+	double scatter = delay_scatter(s, a);
+
+	s->all = joint_delay_covariance(s->joint, s->delay_cov);
+	for (int i = 0; i < a->m; i++)
+		if (s->par.quadrature || isinf(s->cal.transit))
+			memset(s->pair_odds[i], 0, sizeof s->pair_odds[i]);
+		else
+			joint_pair_odds(s->joint, &s->scene, a->pulse, i, scatter,
+				s->pair_odds[i]);
 }
 
 int separate_is_described(const struct account *a)

@@ -1,0 +1,185 @@
+/* joint_pair.c - is a pulse two that arrive nearly together? see joint_state.h
+ *
+ * Two pulses of shares w and 1 - w a gap tau apart differ from one pulse, beside what
+ * moving and scaling it can do, nearly as two equal ones 2 sqrt(w (1 - w)) tau apart do:
+ * in the second moment of their arrivals.  This excess is tabulated by the gap on either
+ * channel, and what the fitted pulses can take of it is taken off.
+ */
+#include "signal/fit/joint_state.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* The gaps of the table, in durations: from none by a factor of sqrt 2. */
+static double knot(int k)
+{
+	static const double first = 0.0125;
+
+	return k ? first * exp2(0.5 * (k - 1)) : 0;
+}
+
+/* What two equal pulses a gap apart put on channel c beside one at their middle, in x of
+ * j->support samples; the first of them, and how many in *n.  The one is the third of its
+ * columns. */
+static long make_excess(const struct joint *j, const struct joint_scene *s,
+	const struct joint_pulse *p, const struct column *one, int c, double gap,
+	double *x, size_t *n)
+{
+	double T = pulse_duration(s, p->delta), t0 = p->t + (c ? p->delta : 0);
+	double half = 0.5 * p->a * (c ? s->gain : 1), *part = j->scratch;
+	long from = shape_support(s->shape, t0 - gap / 2, T, n), to;
+
+	to = from + (long)*n + (long)gap + 1;
+	from = from < one->first ? from : one->first;
+	from = from < 0 ? 0 : from;
+	to = to > (long)j->n ? (long)j->n : to;
+	to = to - from > (long)j->support ? from + (long)j->support : to;
+	*n = to > from ? (size_t)(to - from) : 0;
+	shape_sample(s->shape, t0 - gap / 2, T, from, *n, x, NULL, NULL);
+	shape_sample(s->shape, t0 + gap / 2, T, from, *n, part, NULL, NULL);
+	for (size_t k = 0; k < *n; k++)
+		x[k] = half * (x[k] + part[k]);
+	for (size_t k = 0; k < one->n && one->first - from + (long)k < (long)*n; k++)
+		x[one->first - from + (long)k] -= p->a * one->d[2][k];
+	joint_hide(j, c, from, *n, x);
+	return from;
+}
+
+/* Inner product of two stretches of one channel. */
+static double common(const double *x, long x_first, size_t nx, const double *y,
+	long y_first, size_t ny)
+{
+	long from = x_first > y_first ? x_first : y_first;
+	long x_end = x_first + (long)nx, y_end = y_first + (long)ny;
+	long end = x_end < y_end ? x_end : y_end;
+
+	return end > from ? dot(x + (from - x_first), y + (from - y_first),
+				    (size_t)(end - from))
+			  : 0;
+}
+
+void joint_pair_start(struct joint *j, const struct joint_scene *s,
+	const struct joint_pulse *pulses, int i, const int *set, int m)
+{
+	struct pair_table *t = &j->pair;
+	double seen[PAIR_KNOTS][NPAR];
+	long first[PAIR_KNOTS];
+	size_t n[PAIR_KNOTS];
+
+	memset(t, 0, sizeof *t);
+	for (int a = 0; a < PAIR_KNOTS; a++) {
+		int c = a / PAIR_GAPS, k = a % PAIR_GAPS;
+		double *x = j->excess + (size_t)a * j->support;
+
+		first[a] = 0;
+		n[a] = 0;
+		if (k > 0)
+			first[a] = make_excess(j, s, &pulses[i], &j->col[i][c], c,
+				knot(k) * s->duration, x, &n[a]);
+		t->along[a] = dot(x, j->r[c] + first[a], n[a]);
+		for (int u = 0; u < PAR * m; u++) {
+			const struct column *col = &j->col[set[u / PAR]][c];
+
+			seen[a][u] = common(
+				col->d[u % PAR], col->first, col->n, x, first[a], n[a]);
+		}
+		joint_reduce(j, PAR * m, seen[a]);
+		for (int b = 0; b <= a; b++) {
+			double shared = 0;
+
+			if (b / PAIR_GAPS == c)
+				shared = common(x, first[a], n[a],
+					j->excess + (size_t)b * j->support, first[b],
+					n[b]);
+			shared -= dot(seen[a], seen[b], (size_t)(PAR * m));
+			t->gram[a][b] = t->gram[b][a] = shared;
+		}
+	}
+}
+
+/* The gap, in durations, between two knots of the table: the first one, and the share of
+ * the second in *part. */
+static int find_knot(double gap, double *part)
+{
+	int k = 0;
+
+	while (k + 2 < PAIR_GAPS && gap > knot(k + 1))
+		k++;
+	*part = fmin((gap - knot(k)) / (knot(k + 1) - knot(k)), 1);
+	return k;
+}
+
+double joint_pair_ratio(const struct joint *j, double gap1, double gap2)
+{
+	const struct pair_table *t = &j->pair;
+	double part[2], weight[4], sum = 0;
+	int at[4], k[2] = { find_knot(gap1, &part[0]), find_knot(gap2, &part[1]) };
+
+	for (int i = 0; i < 4; i++) {
+		int c = i / 2;
+
+		at[i] = c * PAIR_GAPS + k[c] + i % 2;
+		weight[i] = i % 2 ? part[c] : 1 - part[c];
+	}
+	for (int i = 0; i < 4; i++) {
+		double row = 0;
+
+		for (int l = 0; l < 4; l++)
+			row += weight[l] * t->gram[at[i]][at[l]];
+		sum += weight[i] * (t->along[at[i]] - 0.5 * row);
+	}
+	return sum;
+}
+
+double joint_pair_best(const struct joint *j, double *gap)
+{
+	const struct pair_table *t = &j->pair;
+	double best = 0;
+
+	for (int a = 1, b = PAIR_GAPS + 1; a < PAIR_GAPS; a++, b++) {
+		double ratio = t->along[a] + t->along[b] -
+			       0.5 * (t->gram[a][a] + t->gram[b][b]) - t->gram[a][b];
+
+		if (ratio > best) {
+			best = ratio;
+			*gap = knot(a);
+		}
+	}
+	return best;
+}
+
+void joint_pair_odds(struct joint *j, const struct joint_scene *s,
+	const struct joint_pulse *pulses, int i, double scatter,
+	double odds[JOINT_SHARES])
+{
+	/* Steps of the difference of two delays, in standard deviations. */
+	static const double step = 0.6;
+	enum { STEPS = 4 };
+	int set[JOINT_PULSES_MAX], m = j->inverted;
+
+	for (int w = 0; w < JOINT_SHARES; w++)
+		odds[w] = 0;
+	if (i >= m)
+		return;
+	for (int k = 0; k < m; k++)
+		set[k] = k;
+	joint_pair_start(j, s, pulses, i, set, m);
+	for (int w = 0; w < JOINT_SHARES; w++) {
+		double share = joint_share(w), narrow = 2 * sqrt(share * (1 - share));
+
+		for (int k = 1 - PAIR_GAPS; k < PAIR_GAPS; k++) {
+			double gap = k < 0 ? -knot(-k) : knot(k);
+			double width = 0.5 * (knot(abs(k) + 1) - knot(abs(abs(k) - 1)));
+
+			width = k ? width : knot(1);
+			for (int d = -STEPS; d <= STEPS; d++) {
+				double apart = d * step * scatter / s->duration;
+				double density = step * exp(-0.5 * pow(d * step, 2)) /
+						 sqrt(2 * M_PI);
+				double ratio = joint_pair_ratio(j, narrow * fabs(gap),
+					narrow * fabs(gap + apart));
+
+				odds[w] += density * width * exp(fmin(ratio, 50));
+			}
+		}
+	}
+}

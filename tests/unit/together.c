@@ -1,0 +1,114 @@
+/* Rows that may be two particles: by how often pulses follow closely, by their sizes, and
+ * no more of them than have to be */
+#include "signal/separate/together.h"
+#include "num/philox.h"
+#include "tap.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { ROWS = 256 };
+
+static struct arrival row[ROWS];
+
+/* Groups of two rows, apart durations from one another; amplitudes spread by a factor of
+ * exp(spread), and odds. */
+static void make_rows(double apart, double spread, double odds)
+{
+	for (int i = 0; i < ROWS; i++) {
+		double z[2];
+
+		philox_normal2(1, 0, RNG_PARTICLE, (uint64_t)i, z);
+		row[i] = (struct arrival){ .group = 1 + i / 2,
+			.time = 10 * (i / 2) + apart * (i % 2),
+			.amplitude = 20 * exp(spread * z[0]) };
+		for (int k = 0; k < JOINT_SHARES; k++)
+			row[i].odds[k] = odds;
+	}
+}
+
+static int judged(void)
+{
+	struct together *t = together_new();
+	int count = 0;
+
+	if (!t)
+		return -1;
+	together_judge(t, row, ROWS);
+	for (int i = 0; i < ROWS; i++)
+		count += row[i].doubted;
+	together_free(t);
+	return count;
+}
+
+/* Of one half of the rows followed by one pulse within half a duration: one per duration.
+ * Odds of 0.01 for that, times the density of sizes, are below one in a hundred. */
+static void test_how_often(void)
+{
+	make_rows(2, 0.5, 1e6);
+	near(judged(), 0, 0, "where no pulse follows another closely none is doubted");
+	make_rows(0.3, 0.5, 1e6);
+	/* But perhaps the smallest ones, which are no sums of others. */
+	near(judged(), 0.98 * ROWS, 0.021 * ROWS,
+		"where pulses do and all are like pairs, nearly all are doubted");
+	make_rows(0.3, 0.5, 1e-4);
+	near(judged(), 0, 0, "where none is like a pair none is doubted");
+}
+
+/* One in eight looks like a pair, with odds from 1 to 1000: these are doubted, from the
+ * most likely on, until hardly any is left. */
+static void test_fewest(void)
+{
+	double least = INFINITY, most = 0;
+	int doubted;
+
+	make_rows(0.3, 0.01, 1e-3);
+	for (int i = 0; i < ROWS; i += 8)
+		for (int k = 0; k < JOINT_SHARES; k++)
+			row[i].odds[k] = pow(10, 3.0 * i / ROWS);
+	/* All sizes are the same, and a half of one does not occur. */
+	near(judged(), 0, 0, "pulses of one size are no sums of two");
+	make_rows(0.3, 1.5, 1e-3);
+	for (int i = 0; i < ROWS; i++) {
+		row[i].amplitude = i % 2 ? 20 : 10;
+		for (int k = 0; k < JOINT_SHARES && i % 8 == 1; k++)
+			row[i].odds[k] = pow(10, 6.0 * i / ROWS - 3);
+	}
+	doubted = judged();
+	for (int i = 0; i < ROWS; i++) {
+		if (row[i].doubted)
+			least = fmin(least, row[i].odds[0]);
+		else
+			most = fmax(most, row[i].odds[0]);
+	}
+	ok(doubted > 8 && doubted < ROWS / 8, "some of those like pairs are doubted: %d",
+		doubted);
+	ok(least > most, "they are the most likely ones");
+}
+
+/* Half of the rare size is the usual one, but half of the usual one does not occur. */
+static void test_sizes(void)
+{
+	int rare = 0, usual = 0;
+
+	make_rows(0.3, 0.1, 0);
+	for (int i = 0; i < ROWS; i++) {
+		row[i].amplitude *= i % 16 ? 1 : 2;
+		for (int k = 0; k < JOINT_SHARES; k++)
+			row[i].odds[k] = 0.5 + 0.001 * i;
+	}
+	judged();
+	for (int i = 0; i < ROWS; i++) {
+		rare += i % 16 == 0 && row[i].doubted;
+		usual += i % 16 && row[i].doubted;
+	}
+	ok(rare > 10, "pulses of twice the usual size may be pairs: %d of 16", rare);
+	near(usual, 0, 0, "pulses of the usual size are not");
+}
+
+int main(void)
+{
+	test_how_often();
+	test_fewest();
+	test_sizes();
+	return tap_done();
+}
