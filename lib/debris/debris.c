@@ -67,7 +67,7 @@ void debris_contact(
 	const struct debris *d, const double *pressure, struct debris_step *step)
 {
 	const struct stress_par *s = &d->par.stress;
-	double sum = 0, edge = 0, cells = 0;
+	double sum = 0, edge = 0, cells = 0, most = 0;
 
 	memset(step, 0, sizeof *step);
 	for (int y = 0; y < s->ny; y++)
@@ -76,10 +76,11 @@ void debris_contact(
 
 			sum += p;
 			cells += p > 0;
-			step->max_pressure = fmax(step->max_pressure, p);
+			most = p > most ? p : most;
 			if (x == 0 || y == 0 || x == s->nx - 1 || y == s->ny - 1)
 				edge += p;
 		}
+	step->max_pressure = most;
 	step->load = sum * s->dx * s->dy;
 	step->contact = cells / ((double)s->nx * s->ny);
 	step->edge_load = sum > 0 && !s->periodic ? edge / sum : 0;

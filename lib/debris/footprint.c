@@ -10,13 +10,9 @@ const char *const footprint_names[FOOTPRINT_FEATURES] = { "cells", "mean_stress"
 	"largest_stress", "load", "pressure", "contact", "unevenness", "spread",
 	"neighbours", "friction", "poisson", "depth" };
 
-/* The root of strength over stress at the depth found is 1 within CLOSE, which is less
- * than the error of the model of the loss; secants reach it in two or three steps. */
-enum { STEPS = 12 };
-static const double CLOSE = 0.02;
-/* First guess of the depth over the root of the area.  20 random kinds of surfaces and
- * four materials (yield stress 250 to 900 MPa, friction 0.05 to 0.5) take 117 600 sums at
- * 0.3, 102 800 at 0.6, 96 600 at 0.75, 96 700 at 0.9 and 99 900 at 1.2. */
+/* First guess of the depth over the root of the area.  306 contacts of random kinds, worn
+ * at a yield stress of 300 and 700 MPa, take 102, 93, 82, 80, 85 and 96 thousand sums at
+ * 0.3, 0.4, 0.6, 0.75, 0.9 and 1.2. */
 static const double FIRST = 0.75;
 
 struct footprints {
@@ -152,32 +148,35 @@ static double pressed_by_others(const struct footprints *f, const struct footpri
 	return sum;
 }
 
-/* Root of strength over stress grows nearly in proportion to the depth: by secants
- * between the bounds known so far, from the depth of a Hertz contact of this area on: the
- * stress is largest half a radius down, at 0.28 of the root of the area. */
+static double root_at(
+	const struct footprints *f, const struct footprint *r, double yield, int k)
+{
+	double stress = k < 0 ? r->stress_most : point_sum_at(f->below, r->most_at, k);
+
+	return sqrt(yield / stress);
+}
+
+/* Root of strength over stress grows nearly in proportion to the depth: interpolated
+ * between the two depths where it passes 1, from the depth of a Hertz contact of this
+ * area on: the stress is largest half a radius down, at 0.28 of the root of the area. */
 static double depth_below(
 	const struct footprints *f, const struct footprint *r, double yield)
 {
-	double before = 0, root_before = sqrt(yield / r->stress_most), low = 0,
-	       high = INFINITY, z = FIRST * sqrt(r->area);
+	int deep = point_sum_nearest(f->below, FIRST * sqrt(r->area));
+	double low = root_at(f, r, yield, deep), high = low, above;
 
-	for (int k = 0; k < STEPS; k++) {
-		double root = sqrt(yield / point_sum_at(f->below, r->most_at, z)), next;
-
-		if (fabs(root - 1) < CLOSE)
-			break;
-		if (root > 1)
-			high = z;
-		else
-			low = z;
-		next = z - (root - 1) * (z - before) / (root - root_before);
-		before = z;
-		root_before = root;
-		if (!(next > low && next < high))
-			next = isfinite(high) ? 0.5 * (low + high) : 2 * z;
-		z = next;
+	while (high <= 1) {
+		low = high;
+		high = root_at(f, r, yield, ++deep);
 	}
-	return z;
+	for (int k = deep - 1; low > 1; k--) {
+		deep = k + 1;
+		high = low;
+		low = root_at(f, r, yield, k);
+	}
+	above = point_sum_depth(f->below, deep - 1);
+	return above +
+	       (1 - low) / (high - low) * (point_sum_depth(f->below, deep) - above);
 }
 
 static double unevenness(const struct footprint *r)

@@ -4,6 +4,7 @@
 #include "contact/solver.h"
 #include "num/philox.h"
 #include "stress/influence.h"
+#include "stress/point_sum.h"
 #include "stress/stress_kernel.h"
 #include "tap.h"
 
@@ -517,6 +518,62 @@ static void test_periodic_reach(void)
 	stress_free(s);
 }
 
+/* Direct sums below the middles of contacts of one to five cells radius against layers.
+ */
+static void test_points(void)
+{
+	enum { SIDE = 200, BUMPS = 40 };
+	struct stress_par par = plain(SIDE, SIDE, 0.3);
+	double *p = calloc(SIDE * SIDE, sizeof *p), *m = malloc(SIDE * SIDE * sizeof *m);
+	struct stress_span span[SIDE];
+	size_t middle[BUMPS];
+	double all = 0, deep = 0;
+	struct stress *s = stress_new(&par);
+	struct point_sum *points = point_sum_new(&par);
+
+	for (int k = 0; k < BUMPS; k++) {
+		int radius = 1 + k % 5, side = SIDE - 2 * radius - 1;
+		int x = radius +
+			(int)(side * philox_uniform(7, 0, RNG_NOISE, (uint64_t)(2 * k)));
+		int y = radius + (int)(side * philox_uniform(7, 0, RNG_NOISE,
+						      (uint64_t)(2 * k + 1)));
+
+		middle[k] = (size_t)(y * SIDE + x);
+		for (int j = -radius; j <= radius; j++)
+			for (int i = -radius; i <= radius; i++) {
+				double r2 = (double)(i * i + j * j) / (radius * radius);
+				double *at = &p[(y + j) * SIDE + x + i];
+
+				*at = fmax(*at, sqrt(fmax(0, 1 - 0.9 * r2)));
+			}
+	}
+	stress_load(s, p);
+	point_sum_load(points, p);
+	for (int k = 0; point_sum_depth(points, k) < SIDE; k++) {
+		double z = point_sum_depth(points, k);
+
+		stress_at(s, z, span, whole_grid(&par, span), m);
+		for (int i = 0; i < BUMPS; i++) {
+			double error =
+				fabs(point_sum_at(points, middle[i], k) - m[middle[i]]);
+
+			all = tap_max(all, error);
+			if (z >= 8)
+				deep = tap_max(deep, error / m[middle[i]]);
+		}
+	}
+
+	ok(all < 0.06, "direct sums are within %.1e of the largest pressure", all);
+	ok(deep < 0.025, "from 8 cells on they are within %.1e of the stress", deep);
+	ok(point_sum_nearest(points, 1.1 * point_sum_depth(points, 9)) == 9 &&
+			point_sum_nearest(points, 0) == 0,
+		"the nearest of their depths is found");
+	point_sum_free(points);
+	stress_free(s);
+	free(m);
+	free(p);
+}
+
 static void test_refusals(void)
 {
 	struct stress_par par = plain(8, 8, 0.3);
@@ -554,6 +611,7 @@ int main(void)
 	test_periodic_free(0, 0);
 	test_periodic_free(0.5, 0);
 	test_periodic_free(0.5, 1);
+	test_points();
 	test_refusals();
 	return tap_done();
 }
