@@ -215,6 +215,15 @@ fails "a fleet whose operating time decreases" 1 "back.tsv: line 40: operating t
 	"awk -F '\t' -v OFS='\t' 'NR == 40 { \$3 = 1 } { print }' hours.tsv >back.tsv
 	aopf --threshold 1 --direction up --lives-only --clock hours --fleet back.tsv worked.tsv"
 
+# A unit that is in its own fleet, too
+awk '{ print (NR == 1 ? "unit" : "mine") "\t" $0 }' one.tsv >mine.tsv
+{ cat mine.tsv; wear 80 82 5 | sed 's/^/old	/'; wear 120 122 6 | sed 's/^/older	/'; } >with.tsv
+grep -v '^mine' with.tsv >without.tsv
+for f in with without; do
+	aopf --unit unit --threshold 1 --direction up --lives-only --weights --fleet $f.tsv mine.tsv | grep '^mine' >$f
+done
+same "the path of a unit is no evidence for itself" with without
+
 # Options that nothing would heed
 for o in '--weights' '--clock t' '--direction up' '--persist 2' '--after 3' '--model linear'; do
 	# shellcheck disable=SC2086 # words
