@@ -26,8 +26,11 @@ struct state {
 	int failed;        /* 1: no memory to load into */
 };
 
+/* part may be NULL if the size is 0. */
 static inline void state_move(struct state *s, void *part, size_t size)
 {
+	if (size == 0)
+		return;
 	if (s->at && s->load)
 		memcpy(part, s->at + s->size, size);
 	else if (s->at)

@@ -104,6 +104,8 @@ static const struct {
 enum { WEIGHED = sizeof weighed / sizeof *weighed };
 
 static struct fleet *fleet; /* NULL without --fleet */
+static char **fleet_unit;   /* names */
+static int n_fleet_units;
 static struct bank_chances *chances;
 
 static struct event {
@@ -116,6 +118,7 @@ static struct event {
 static int n_events;
 
 struct outlook {
+	const char *unit; /* its name */
 	struct adaptive *filter;
 	struct predict *predict; /* NULL before the first value */
 	struct outlook_state {
@@ -184,11 +187,17 @@ static void read_fleet(
 		table_set_scale(table, clock, table_ratio(table, clock, timeunit_word()));
 	fleet = fleet_new(outlook_options.threshold, direction == UP ? 1 : -1);
 	status = fleet ? NUM_OK : NUM_MEMORY;
-	while (status == NUM_OK && series_next(in))
+	while (status == NUM_OK && series_next(in)) {
+		if (series_units(in) > n_fleet_units) {
+			fleet_unit = xrealloc(fleet_unit, (size_t)n_fleet_units + 1,
+				sizeof *fleet_unit);
+			fleet_unit[n_fleet_units++] = xstrdup(series_unit_name(in));
+		}
 		if (!isnan(series_value(in)))
 			status = fleet_add(fleet, series_unit(in),
 				clock < 0 ? series_time(in) : table_number(table, clock),
 				series_value(in));
+	}
 	if (status == NUM_DOMAIN)
 		die(EXIT_RUN, "%s: line %ld: operating time decreases", fleet_file,
 			table_line(table));
@@ -277,12 +286,16 @@ void outlook_close(void)
 	for (int i = 0; i < n_events; i++)
 		free(events[i].unit);
 	free(events);
+	for (int i = 0; i < n_fleet_units; i++)
+		free(fleet_unit[i]);
+	free(fleet_unit);
 }
 
-struct outlook *outlook_new(struct adaptive *filter)
+struct outlook *outlook_new(const char *unit, struct adaptive *filter)
 {
 	struct outlook *o = xcalloc(1, sizeof *o);
 
+	o->unit = unit;
 	o->filter = filter;
 	o->now.heeded = o->now.early = -INFINITY;
 	return o;
@@ -311,6 +324,9 @@ static void start(struct outlook *o)
 
 	if (fleet)
 		par.paths = fleet_shapes(fleet, &par.n_paths);
+	for (int i = 0; i < n_fleet_units; i++)
+		if (strcmp(fleet_unit[i], o->unit) == 0)
+			par.own = fleet_shape_of(fleet, i);
 	o->predict = predict_new(&par);
 	if (!o->predict)
 		die(EXIT_RUN, "no memory for the prediction");

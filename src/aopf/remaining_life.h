@@ -1,7 +1,7 @@
 /* remaining_life.h - the life that a unit has left: options of aopf, and its columns
  *
  *	outlook_open(series, unit_column, clock_column);
- *	struct outlook *o = outlook_new(filter);
+ *	struct outlook *o = outlook_new(unit, filter);
  *	for each row
  *		outlook_step(o, &in, &row, cell);
  *	outlook_free(o);
@@ -46,7 +46,8 @@ struct outlook_row {
 
 struct outlook;
 
-struct outlook *outlook_new(struct adaptive *filter); /* NULL: there is none */
+/* unit: its name, the caller's.  filter: NULL if there is none. */
+struct outlook *outlook_new(const char *unit, struct adaptive *filter);
 void outlook_free(struct outlook *o);
 void outlook_pass(struct outlook *o, struct state *s);
 /* Learns from a row and fills its outlook_cells() cells; filtered: NULL without a filter.

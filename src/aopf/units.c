@@ -71,7 +71,7 @@ static struct machine *add_unit(struct units *units, int number, const char *nam
 	if (!units->bare)
 		u->filter = filtering_new(number);
 	if (!isnan(outlook_options.threshold))
-		u->outlook = outlook_new(u->filter);
+		u->outlook = outlook_new(u->name, u->filter);
 	units->unit = xrealloc(units->unit, (size_t)units->n + 1, sizeof *units->unit);
 	return units->unit[units->n++] = u;
 }

@@ -324,6 +324,8 @@ int main(int argc, char **argv)
 	forecast_free(f);
 	partition_free(p);
 	paths_free(e);
+	if (s.table)
+		table_close(s.table);
 	for (int k = 0; k < wear_files.n; k++)
 		free(made_by[k]);
 	free(cmd);

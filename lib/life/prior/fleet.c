@@ -26,6 +26,7 @@ struct unit {
 	struct bank *bank;
 	double *age, *level; /* rising */
 	int n, room;
+	int shape; /* from 1; 0: none */
 };
 
 struct fleet {
@@ -68,6 +69,11 @@ const struct bank_shape *fleet_shapes(const struct fleet *f, int *n)
 {
 	*n = f->shapes;
 	return f->shape;
+}
+
+int fleet_shape_of(const struct fleet *f, int unit)
+{
+	return unit < f->units ? f->path[unit].shape : 0;
 }
 
 static enum num_status grow(struct unit *p)
@@ -210,13 +216,14 @@ enum num_status fleet_build(struct fleet *f, int *failed, int *carried_on)
 			return NUM_MEMORY;
 		if (!lay_out(p, end, age, level))
 			continue;
-		f->shape[f->shapes++] = (struct bank_shape){
-			.family = BANK_OTHER, .age = age, .level = level, .n = LEVELS
-		};
+		f->shape[f->shapes++] = (struct bank_shape){ .family = BANK_OTHER,
+			.log_prior = KINSHIP,
+			.age = age,
+			.level = level,
+			.n = LEVELS };
+		p->shape = f->shapes;
 		*failed += reached;
 		*carried_on += !reached;
 	}
-	for (int i = 0; i < f->shapes; i++)
-		f->shape[i].log_prior = KINSHIP - log(f->shapes);
 	return NUM_OK;
 }

@@ -27,5 +27,7 @@ enum num_status fleet_add(struct fleet *f, int unit, double t, double y);
  * threshold and carried_on have been extrapolated to it. */
 enum num_status fleet_build(struct fleet *f, int *failed, int *carried_on);
 const struct bank_shape *fleet_shapes(const struct fleet *f, int *n);
+/* Which of them, from 1, is the path of a unit; 0: none. */
+int fleet_shape_of(const struct fleet *f, int unit);
 
 #endif

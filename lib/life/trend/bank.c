@@ -175,14 +175,16 @@ static void follow(
 	tr->before = (float)z;
 }
 
-/* A path has less weight the farther the speed of the unit along it is from 1. */
+/* A path shares its prior with the others, and has less weight the farther the speed of
+ * the unit along it is from 1. */
 static double log_kinship(const struct bank *b, const struct trend *tr)
 {
 	double away = tr->v - 1;
 
 	if (shape_of(b, tr->shape)->n == 0)
 		return 0;
-	return -0.5 * away * away / (PACE * PACE + tr->pvv * tr->sum / freedom_of(b, tr));
+	return -log(kin_of(b)) -
+	       0.5 * away * away / (PACE * PACE + tr->pvv * tr->sum / freedom_of(b, tr));
 }
 
 /* Updates the weights: n rows count as sqrt(SCORED n), because they are not independent
@@ -327,6 +329,12 @@ static void take(struct bank *b, double t, double y)
 	breed(b);
 }
 
+static int is_used(const struct bank *b, int shape)
+{
+	return b->par.families & shape_of(b, shape)->family &&
+	       (b->par.own == 0 || shape_of(b, shape) != &b->par.more[b->par.own - 1]);
+}
+
 /* The first three observations start all trends. */
 static void start(struct bank *b)
 {
@@ -341,8 +349,7 @@ static void start(struct bank *b)
 	b->gap = 1;
 	b->trends = 0;
 	for (int i = 0; i < b->shapes; i++)
-		for (int k = 0; k < KINDS && b->par.families & shape_of(b, i)->family;
-			k++)
+		for (int k = 0; k < KINDS && is_used(b, i); k++)
 			b->trend[b->trends++] =
 				(struct trend){ .h = place_of(b, i, b->level).h,
 					.phh = squared_slope(place_of(b, i, b->level)),

@@ -62,7 +62,7 @@ enum bank_family {
 struct bank_shape {
 	unsigned family;
 	double scale, par, power;
-	double log_prior;
+	double log_prior;          /* of a path: of all paths together */
 	const double *age, *level; /* [n] of a path, rising; level is direction times y */
 	int n;                     /* 0: no path, else 2 or more */
 };
@@ -73,6 +73,8 @@ struct bank_par {
 	unsigned families;             /* of coordinates; 0: all */
 	const struct bank_shape *more; /* further coordinates, the caller's; NULL: none */
 	int n_more;
+	int own; /* from 1: the one of more that is the path of this very unit, which is
+		  * left out; 0: none */
 	double rate_mean, rate_sd; /* prior of dy/dt; sd 0: none */
 	int steady;                /* 1: no regime changes, neither past nor future */
 };

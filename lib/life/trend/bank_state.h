@@ -79,6 +79,12 @@ struct place place_of(const struct bank *b, int shape, double damage);
 void project(const struct bank *b, struct trend *tr, const struct place *p, double step,
 	double keep);
 
+/* Number of paths of other units. */
+static inline int kin_of(const struct bank *b)
+{
+	return b->par.n_more - (b->par.own > 0);
+}
+
 static inline double damage_of(const struct bank *b, double y)
 {
 	return (y - b->base) / b->range;

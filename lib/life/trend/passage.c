@@ -136,8 +136,7 @@ static struct crossing prepare(
 		.straight = (target - b->level) * here.slope,
 		.growth = tr->growth,
 		.future = future_of(shape_of(b, tr->shape)),
-		.hazard =
-			shape_of(b, tr->shape)->n > 0 ? KIN_HAZARD / b->par.n_more : 0 };
+		.hazard = shape_of(b, tr->shape)->n > 0 ? KIN_HAZARD / kin_of(b) : 0 };
 
 	now.kind = 0;
 	project(b, &now, &here, ahead, 1);

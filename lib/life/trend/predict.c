@@ -31,7 +31,8 @@ struct predict *predict_new(const struct predict_par *par)
 		.families = families[par->model] | (par->n_paths > 0 ? BANK_OTHER : 0),
 		.steady = par->model != PREDICT_AVERAGE,
 		.more = par->paths,
-		.n_more = par->n_paths };
+		.n_more = par->n_paths,
+		.own = par->own };
 	int exponent = 0;
 
 	if (!p)

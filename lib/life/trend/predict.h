@@ -34,7 +34,7 @@ struct predict_par {
 	double zero;    /* of the grey model */
 	double horizon; /* longest time ahead; 0: ten times the time elapsed */
 	const struct bank_shape *paths; /* of earlier units, the caller's */
-	int n_paths;
+	int n_paths, own;               /* see struct bank_par */
 	struct adaptive *adaptive; /* the filter of the literal model, the caller's */
 	int draws;                 /* of the literal model: its particles */
 	const struct bank_chances *chances; /* of the others, the caller's */
