@@ -130,6 +130,14 @@ near "the sum of the shear is the tangential load" "$(records -o text --field sh
 near "half of the friction moves a ball by 1 - 0.5^(2/3) of the displacement at full friction" "$(awk "BEGIN {
 	print $(key tangential_displacement slip.nrrd) / (0.5 * 1.7 / 1.4 * $(key indentation slip.nrrd)) }")" 0.370039 2e-4
 ok "the stick area is smaller than the contact area" [ "$(awk "BEGIN { print ($(key stick_area slip.nrrd) < $(key area slip.nrrd)) }")" = 1 ]
+# Products of decimal numbers that are rounded up and down.
+for pair in '0.02GN 0.5 0.01' '0.007GN 0.7 0.0049' '0.013GN 0.3 0.0039' '0.011GN 0.1 0.0011'; do
+	# shellcheck disable=SC2086 # words
+	set -- $pair
+	$slip --load "$1" -u "$2" --tangential "$3GN" ball.f64 >slip.nrrd
+	is "all of the contact slips at $2 of $1" "$? $(key stick_area slip.nrrd)" "0 0"
+done
+fails "a thousandth of a billionth more than friction bears" 1 'friction bears' $slip --tangential 0.010000000000011GN ball.f64
 fails "more than friction bears" 1 'friction bears 1e+07 N' $slip --tangential 0.02GN ball.f64
 fails "shear without a tangential load" 2 'requires --tangential' \
 	bemcontact --pressure 1Pa --estar 1GPa --fields shear

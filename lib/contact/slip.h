@@ -1,7 +1,8 @@
 /* slip.h - partial slip: a tangential load below friction, after the normal one
  *
  * Bodies in contact under a normal load N that then bear a tangential load T < mu N
- * stick in one part of the contact and slip in the other, where the shear is mu p.  For
+ * stick in one part of the contact and slip in the other, where the shear is mu p; at
+ * T = mu N, but for rounding, all of it slips.  For
  * normal displacements that shear does not disturb (Dundurs' beta = 0, as for equal
  * materials) and a tangential compliance in proportion to the normal one,
  *

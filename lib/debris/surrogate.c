@@ -204,7 +204,7 @@ static int bounds(const double *score, int n, double level, double *low, double 
 	return 1;
 }
 
-/* Volumes, and the deviation of the ln of their total where errors are independent. */
+/* Volumes, and the deviation of their total where errors are independent. */
 static double guess_plain(const struct surrogate *s, const struct footprint *f, size_t n,
 	struct surrogate_guess *guess, double *total)
 {
@@ -220,7 +220,14 @@ static double guess_plain(const struct surrogate *s, const struct footprint *f, 
 		*total += v;
 		square += v * v * s->deviation[c] * s->deviation[c];
 	}
-	return sqrt(square) / *total;
+	return sqrt(square);
+}
+
+/* Of the ln of a total.  What a kind of surfaces has in common does not average out over
+ * many particles. */
+static double total_deviation(const struct surrogate *s, double independent, double total)
+{
+	return hypot(independent / total, s->shared);
 }
 
 int surrogate_guess(const struct surrogate *s, const struct footprint *footprint,
@@ -244,6 +251,7 @@ int surrogate_guess(const struct surrogate *s, const struct footprint *footprint
 	if (count == 0)
 		return 1;
 	deviation = guess_plain(s, footprint, count, guess, &total->volume);
+	deviation = total_deviation(s, deviation, total->volume);
 	for (size_t i = 0; i < count; i++) {
 		int c = class_of(footprint[i].cells);
 		double median = guess[i].volume / s->factor[c];
@@ -278,10 +286,31 @@ static double total_error(const struct surrogate *s, const struct surrogate_samp
 
 		truth += x[i].volume;
 		total += one;
-		square += one * one * sd * sd;
+		square += sd * sd;
 	}
-	*deviation = sqrt(square) / total;
+	*deviation = total_deviation(s, sqrt(square), total);
 	return log(truth / total);
+}
+
+/* The errors of totals beyond those of independent particles. */
+static void find_shared(const struct surrogate_sample *sample, const char *part, size_t n,
+	struct surrogate *s)
+{
+	double excess = 0, count = 0;
+	size_t end;
+
+	s->shared = 0;
+	for (size_t i = 0; i < n; i = end) {
+		double deviation, error;
+
+		end = surface_end(sample, n, i);
+		if (part[i] != FIT)
+			continue;
+		error = total_error(s, sample + i, end - i, &deviation);
+		excess += error * error - deviation * deviation;
+		count++;
+	}
+	s->shared = sqrt(fmax(excess / count, 0));
 }
 
 static void calibrate(const struct surrogate_sample *sample, const char *part, size_t n,
@@ -365,6 +394,7 @@ enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_
 			memory = fit_coefficients(sample, part, n, s);
 			find_deviations(sample, part, n, s);
 		}
+		find_shared(sample, part, n, s);
 		calibrate(sample, part, n, s, score);
 		check(sample, part, n, s, report);
 	}

@@ -29,6 +29,7 @@ struct surrogate {
 	double coefficient[SURROGATE_TERMS];
 	double deviation[SURROGATE_CLASSES]; /* of the logarithm */
 	double factor[SURROGATE_CLASSES];    /* mean over median of a volume */
+	double shared; /* deviation that all particles of a surface have in common */
 	/* Ascending: ln(true / estimated volume) / deviation, of the particles and
 	 * surfaces held back for it. */
 	int particles, totals;

@@ -2,7 +2,8 @@
  *
  * Columns kind, first, second and value: low, high, mean and scale of a feature; the
  * coefficient of a product of two features, 1 standing for none; deviation and factor of
- * a class of footprints; the scores of particles and totals, ascending.
+ * a class of footprints; the shared deviation; the scores of particles and totals,
+ * ascending.
  */
 #ifndef SURROGATE_TABLE_H
 #define SURROGATE_TABLE_H

@@ -1,0 +1,108 @@
+/* Surrogate of the debris model, on made-up particles whose errors are known: those of
+ * single particles, and one that all particles of a surface share. */
+#include "debris/surrogate.h"
+#include "num/philox.h"
+#include "tap.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { FEW = 10, MANY = 1000 };
+
+static double uniform(uint64_t i)
+{
+	return philox_uniform(11, 0, RNG_NOISE, i);
+}
+
+/* About normal: the sum of twelve. */
+static double normal(uint64_t i)
+{
+	double sum = -6;
+
+	for (uint64_t k = 0; k < 12; k++)
+		sum += uniform(12 * i + k);
+	return sum;
+}
+
+/* count particles of a surface, with deviations of their own and of the surface. */
+static void make_surface(
+	struct surrogate_sample *s, size_t count, long number, double own, double shared)
+{
+	uint64_t at = (uint64_t)number << 20;
+	double error = shared * normal(at++);
+
+	for (size_t i = 0; i < count; i++) {
+		struct footprint *f = &s[i].footprint;
+
+		memset(&s[i], 0, sizeof s[i]);
+		s[i].surface = number;
+		f->cells = 1 + (size_t)(100 * uniform(at++));
+		f->area = (double)f->cells;
+		f->depth = 0.5 + uniform(at++);
+		for (int k = 0; k < FOOTPRINT_FEATURES; k++)
+			f->feature[k] = uniform(at++);
+		s[i].volume = f->area * f->depth *
+			      exp(0.3 * f->feature[0] - 0.2 * f->feature[3] + error +
+				      own * normal(at));
+		at++;
+	}
+}
+
+/* Share of surfaces of many particles whose volume lies within its 90 % interval. */
+static double coverage(const struct surrogate *s, double own, double shared)
+{
+	struct surrogate_sample *sample = malloc(MANY * sizeof *sample);
+	struct footprint *list = malloc(MANY * sizeof *list);
+	struct surrogate_guess *guess = malloc(MANY * sizeof *guess), total;
+	double held = 0, tried = 0;
+
+	for (long k = 0; k < 200; k++) {
+		double volume = 0;
+
+		make_surface(sample, MANY, 10000 + k, own, shared);
+		for (size_t i = 0; i < MANY; i++) {
+			list[i] = sample[i].footprint;
+			for (int j = 0; j < FOOTPRINT_FEATURES; j++)
+				list[i].feature[j] = 0.02 + 0.96 * list[i].feature[j];
+			volume += sample[i].volume;
+		}
+		if (!surrogate_guess(s, list, MANY, 0.9, guess, &total))
+			continue;
+		tried++;
+		held += total.low <= volume && volume <= total.high;
+	}
+	free(sample);
+	free(list);
+	free(guess);
+	return held / tried;
+}
+
+static void test_errors(double own, double shared)
+{
+	enum { SURFACES = 500 };
+	struct surrogate_sample *sample = malloc((size_t)SURFACES * FEW * sizeof *sample);
+	struct surrogate_report report;
+	struct surrogate s;
+	double held;
+
+	for (long k = 0; k < SURFACES; k++)
+		make_surface(sample + k * FEW, FEW, k, own, shared);
+	ok(surrogate_fit(sample, (size_t)SURFACES * FEW, &s, &report) == SURROGATE_OK,
+		"a surrogate is fitted to %d surfaces of %d particles", SURFACES, FEW);
+	/* Somewhat less: the deviation of single particles includes a part of it. */
+	ok(s.shared > 0.75 * shared && s.shared < 1.1 * shared,
+		"a deviation of %.2g that a surface has in common is found: %.2g", shared,
+		s.shared);
+	held = coverage(&s, own, shared);
+	ok(held > 0.84 && held < 0.96,
+		"errors of %g and %g in common: intervals of 90 %% hold %.0f %% of the totals of surfaces of %d particles",
+		own, shared, 100 * held, MANY);
+	free(sample);
+}
+
+int main(void)
+{
+	test_errors(0.2, 0.1);
+	test_errors(0.3, 0.2);
+	return tap_done();
+}
