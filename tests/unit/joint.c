@@ -237,8 +237,8 @@ static void test_quiet(struct joint *j, const struct joint_scene *plain)
 
 /* The probability of being a pair is right on the average: of pulses that are two in one
  * scene of two, by a gap of up to a tenth of their duration, those fitted as one are as
- * many as their probabilities add up to. */
-static void test_pairs(struct joint *j, const struct joint_scene *plain)
+ * many as their probabilities add up to, beside lines as well. */
+static void test_pairs(struct joint *j, const struct joint_scene *plain, int tones)
 {
 	enum { PAIRS = 400 };
 	static double y[2][N];
@@ -250,6 +250,9 @@ static void test_pairs(struct joint *j, const struct joint_scene *plain)
 
 	s.delta_min = -10;
 	s.delta_max = 15;
+	s.tones = tones;
+	for (int k = 0; k < tones; k++)
+		s.omega[k] = 0.03 + 0.01 * k;
 	for (unsigned k = 0; k < PAIRS; k++) {
 		int pair = k % 2, m = 0;
 		double u[4], odds[JOINT_SHARES], p = 0;
@@ -286,8 +289,9 @@ static void test_pairs(struct joint *j, const struct joint_scene *plain)
 		of_pairs += pair ? p : 0;
 		of_lone += pair ? 0 : p;
 	}
-	ok(one == PAIRS / 2 && two > PAIRS / 20, "of %d pairs %d are fitted as one pulse",
-		PAIRS / 2, two);
+	ok(one == PAIRS / 2 && two > PAIRS / 20,
+		"with %d lines, of %d pairs %d are fitted as one pulse", tones, PAIRS / 2,
+		two);
 	near(sum, two, 3.5 * sqrt(var), "their probabilities add up to their number");
 	ok(of_pairs / two > of_lone / one + 0.1, "a pair is more probable than a pulse");
 }
@@ -306,7 +310,8 @@ int main(void)
 	test_noisy(j, &s, 2, 2);
 	test_hidden(j, &s);
 	test_quiet(j, &s);
-	test_pairs(j, &s);
+	test_pairs(j, &s, 0);
+	test_pairs(j, &s, 12);
 	test_misuse(j, &s);
 	joint_free(j);
 	shape_free(shape);

@@ -61,9 +61,10 @@ void joint_pair_start(struct joint *j, const struct joint_scene *s,
 	const struct joint_pulse *pulses, int i, const int *set, int m)
 {
 	struct pair_table *t = &j->pair;
-	double seen[PAIR_KNOTS][NPAR];
+	double seen[PAIR_KNOTS][NPAR], along_basis[PAIR_KNOTS][BASIS_MAX];
 	long first[PAIR_KNOTS];
 	size_t n[PAIR_KNOTS];
+	int nb = 2 * j->basis;
 
 	memset(t, 0, sizeof *t);
 	for (int a = 0; a < PAIR_KNOTS; a++) {
@@ -76,11 +77,17 @@ void joint_pair_start(struct joint *j, const struct joint_scene *s,
 			first[a] = make_excess(j, s, &pulses[i], &j->col[i][c], c,
 				knot(k) * s->duration, x, &n[a]);
 		t->along[a] = dot(x, j->r[c] + first[a], n[a]);
+		for (int b = 0; b < j->basis; b++)
+			along_basis[a][b] =
+				sqrt(j->share[b]) *
+				dot(x, j->q[c] + (size_t)b * j->n + first[a], n[a]);
 		for (int u = 0; u < PAR * m; u++) {
 			const struct column *col = &j->col[set[u / PAR]][c];
 
-			seen[a][u] = common(
-				col->d[u % PAR], col->first, col->n, x, first[a], n[a]);
+			seen[a][u] = common(col->d[u % PAR], col->first, col->n, x,
+					     first[a], n[a]) -
+				     dot(along_basis[a], j->bq + u * nb + c * j->basis,
+					     (size_t)j->basis);
 		}
 		joint_reduce(j, PAR * m, seen[a]);
 		for (int b = 0; b <= a; b++) {
@@ -88,8 +95,10 @@ void joint_pair_start(struct joint *j, const struct joint_scene *s,
 
 			if (b / PAIR_GAPS == c)
 				shared = common(x, first[a], n[a],
-					j->excess + (size_t)b * j->support, first[b],
-					n[b]);
+						 j->excess + (size_t)b * j->support,
+						 first[b], n[b]) -
+					 dot(along_basis[a], along_basis[b],
+						 (size_t)j->basis);
 			shared -= dot(seen[a], seen[b], (size_t)(PAR * m));
 			t->gram[a][b] = t->gram[b][a] = shared;
 		}
