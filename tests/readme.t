@@ -4,7 +4,10 @@
 
 sed -n '/^```sh$/,/^```$/p' "$top/README.md" | sed '/^```/d' >pipeline.sh
 ok 'the pipeline of the README runs' sh -e pipeline.sh
-is 'the pipeline of the README gives no warning' "$(cat err)" ''
+# Of some 900 particles about one pair arrives within 0.3 ms, and is fitted as one.
+is 'the pipeline of the README warns of rows that may be pairs alone' \
+	"$(sed '/^duet: signal.au: [1-5] of 90[0-9] rows may be two particles/d
+	/^wear-volume: [1-5] row.* doubtful/d' err)" ''
 worn=$(column volume particles.tsv | awk '{ s += $1 } END { print s }')
 is 'each hour but the last has a row' "$(column t life.tsv | wc -l)" 59
 # Each particle found is known to 1e-4 of its diameter; a small one hides in a large one.

@@ -124,6 +124,12 @@ static double power(double t)
 	return pow(t, p[0]);
 }
 
+/* Read in 20 levels from the start to the threshold, see record(). */
+static double coarse(double t)
+{
+	return power(t);
+}
+
 static double steep(double t)
 {
 	return p[0] * t + (1 - p[0]) * after(t, p[1], p[2]);
@@ -292,6 +298,7 @@ static const struct kind {
 	{ "late", late, NULL, { { 0.2, 0.6 }, { 5, 12 } }, 1 },
 	{ "gamma with a fall", NULL, gamma_fall,
 		{ { 20, 200 }, { 0.2, 0.5 }, { 0.3, 0.9 } }, 1 },
+	{ "20 levels", coarse, NULL, { { 0.8, 2 } }, 1 },
 };
 
 enum { KINDS = sizeof kinds / sizeof *kinds };
@@ -334,7 +341,9 @@ static void record(const struct kind *k, struct series *s)
 	double offset = uniform(-3, 3), range = between(0.05, 20),
 	       unit = between(0.01, 1e4);
 	int fault = k->held ? (int)uniform(0, 8) : 0;
-	double memory = fault == 1 ? 0.8 : 0;
+	double memory = fault == 1 ? 0.8 : 0, levels = k->curve == coarse ? 20
+						       : fault == 4       ? 50
+									  : 0;
 
 	s->direction = uniform(0, 1) < 0.5 ? 1 : -1;
 	range *= s->direction;
@@ -347,8 +356,8 @@ static void record(const struct kind *k, struct series *s)
 		y = s->y[i] + noise * e;
 		if (fault == 3 && uniform(0, 1) < 0.03)
 			y += uniform(-1, 1);
-		if (fault == 4)
-			y = round(y * 50) / 50;
+		if (levels > 0)
+			y = round(y * levels) / levels;
 		if (fault == 5 && i > 0 && uniform(0, 1) < 0.5)
 			s->y[i] = s->y[i - 1]; /* stuck */
 		else

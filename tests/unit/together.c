@@ -1,5 +1,5 @@
-/* Rows that may be two particles: by how often pulses follow closely, by their sizes, and
- * no more of them than have to be */
+/* Rows that may be two particles, or none: by how often pulses follow closely, by their
+ * sizes, and no more of them than have to be */
 #include "signal/separate/together.h"
 #include "num/philox.h"
 #include "tap.h"
@@ -105,10 +105,43 @@ static void test_sizes(void)
 	near(usual, 0, 0, "pulses of the usual size are not");
 }
 
+static void test_weak(void)
+{
+	double time = 0;
+	int weak = 0;
+
+	/* One row in eight has a fiftieth of the size, and follows another. */
+	make_rows(0.3, 0.2, 0);
+	for (int i = 0; i < ROWS; i++) {
+		int beside = i % 8 == 7;
+
+		row[i].group = beside ? row[i - 1].group : 1 + i;
+		row[i].time = beside ? row[i - 1].time + 1.2 : 10 * i;
+		row[i].amplitude *= beside ? 0.02 : 1;
+	}
+	near(judged(), ROWS / 8, 0, "weak rows that only occur beside larger ones are");
+	for (int i = 7; i < ROWS; i += 8)
+		weak += row[i].doubted && row[i].shape > 0.9;
+	near(weak, ROWS / 8, 0, "doubted as errors of the shape of these");
+
+	/* Arrivals at random, one per two durations, one in four as small. */
+	make_rows(0.3, 0.2, 0);
+	for (int i = 0; i < ROWS; i++) {
+		time -= 2 * log(philox_uniform(2, 0, RNG_PARTICLE, (uint64_t)i));
+		row[i].group = 1;
+		row[i].time = time;
+		if (philox_uniform(3, 0, RNG_PARTICLE, (uint64_t)i) < 0.25)
+			row[i].amplitude *= 0.02;
+	}
+	near(judged(), 0, 0.01 * ROWS,
+		"where small ones arrive at random none is doubted");
+}
+
 int main(void)
 {
 	test_how_often();
 	test_fewest();
 	test_sizes();
+	test_weak();
 	return tap_done();
 }

@@ -17,14 +17,9 @@ static double exceeds(double m, double r)
 	return fmin(below + above + slope, 1);
 }
 
-static double unit(const struct joint_scene *s)
-{
-	return s->duration * shape_energy(s->shape) * (1 + s->gain * s->gain);
-}
-
 double detectable_alone(const struct joint_scene *s, double a)
 {
-	return exceeds(a * sqrt(unit(s)), sqrt(s->drop));
+	return exceeds(a * sqrt(joint_energy(s)), sqrt(s->drop));
 }
 
 /* Share of the energy of a pulse that remains beside another, this share of a duration
@@ -58,7 +53,7 @@ void detectable_shares(const struct shape *shape, double share[DETECTABLE_PLACES
 double detectable_beside(const struct joint_scene *s, double a, double large,
 	const double share[DETECTABLE_PLACES])
 {
-	double energy = unit(s), sum = 0;
+	double energy = joint_energy(s), sum = 0;
 	double need = fmax(s->drop, s->misfit * large * large * energy);
 
 	for (int k = 0; k < DETECTABLE_PLACES; k++)

@@ -46,6 +46,13 @@ static int is_misfit(const struct joint *joint, const struct joint_scene *s, siz
 	return too_much(sum, fmax(dof, 1), 3);
 }
 
+/* 1 if a pulse is too small to be found alone.  The threshold is lower beside others,
+ * where the error of their shape can make such a pulse. */
+static int is_faint(const struct joint_scene *s, const struct joint_pulse *p)
+{
+	return p->a * p->a * joint_energy(s) < s->drop;
+}
+
 /* Pulses fitted to an event that is not a particle overlap by more than half.  In a whole
  * section with quiet on either side, pulses that so overlap a doubted one, or the next
  * one, are doubted as well. */
@@ -75,7 +82,7 @@ void goodness_of_fit(const struct joint *joint, const struct joint_scene *s, siz
 	out->chi2 = chi2 / dof;
 	out->stretch = m > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
 	for (int i = 0; i < done; i++)
-		out->pulse[i] = out->stretch;
+		out->pulse[i] = is_faint(s, &pulses[i]) ? SEPARATE_MISFIT : out->stretch;
 	if (too_much(chi2, dof, 5)) {
 		for (int i = 0; i < done; i++)
 			if (!model_holds || m == 1 ||

@@ -32,7 +32,7 @@ static struct candidate search(struct joint *j, const struct joint_scene *s,
 {
 	size_t stride = s->duration >= 48 ? (size_t)(s->duration / 24) : 1;
 	size_t points;
-	double z = 0, g = s->gain, norm = 1 / sqrt(unit_energy(s));
+	double z = 0, g = s->gain, norm = 1 / sqrt(joint_energy(s));
 	long lo = (long)floor(s->delta_min / (double)stride);
 	long hi = (long)ceil(s->delta_max / (double)stride), from, to;
 	struct candidate best = { 0 };

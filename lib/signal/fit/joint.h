@@ -62,6 +62,12 @@ struct joint_scene {
 	const unsigned char *hidden[2];
 };
 
+/* Energy of a pulse of amplitude 1 on both channels, in units of the noise. */
+static inline double joint_energy(const struct joint_scene *s)
+{
+	return s->duration * shape_energy(s->shape) * (1 + s->gain * s->gain);
+}
+
 struct joint_pulse {
 	double t, delta, a;
 	/* Inverse Fisher matrix of (t, t + delta, a), lower triangle by rows. */

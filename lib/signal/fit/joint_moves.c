@@ -22,7 +22,7 @@ static int neighbours(const struct joint_scene *s, const struct joint_pulse *pul
 static double energy_near(
 	const struct joint_scene *s, const struct joint_pulse *pulses, int m, int i)
 {
-	double sum = 0, unit = unit_energy(s);
+	double sum = 0, unit = joint_energy(s);
 	int set[JOINT_PULSES_MAX];
 	int count = neighbours(s, pulses, m, i, 1, set);
 
@@ -122,7 +122,7 @@ int joint_split_pulses(struct joint *j, const struct joint_scene *s,
 	for (int i = 0; i < *m && *m < s->max_pulses; i++) {
 		double gap, half = 0.5 * pulses[i].a;
 		double need = drop_beside(
-			s, energy_near(s, pulses, *m, i) + half * half * unit_energy(s));
+			s, energy_near(s, pulses, *m, i) + half * half * joint_energy(s));
 
 		if (joint_factorise(j, s, pulses, &i, 1) != NUM_OK)
 			continue;
@@ -142,7 +142,7 @@ int joint_split_pulses(struct joint *j, const struct joint_scene *s,
 static double significance(const struct joint_scene *s, const struct joint_pulse *p)
 {
 	return isfinite(p->cov[5]) ? p->a * p->a / p->cov[5]
-				   : p->a * p->a * unit_energy(s);
+				   : p->a * p->a * joint_energy(s);
 }
 
 /* Removes pulse k, which is no longer subtracted, from the list and fits those near it; 1

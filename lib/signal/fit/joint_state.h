@@ -82,12 +82,6 @@ static inline double pulse_duration(const struct joint_scene *s, double delta)
 	return s->duration * (1 + delta / s->transit);
 }
 
-/* Energy of a pulse of amplitude 1 on both channels. */
-static inline double unit_energy(const struct joint_scene *s)
-{
-	return s->duration * shape_energy(s->shape) * (1 + s->gain * s->gain);
-}
-
 /* Earliest (side 0) and latest (1) arrival in n samples. */
 static inline double arrival_limit(const struct joint_scene *s, int side, size_t n)
 {

@@ -157,9 +157,7 @@ static const double ERROR = 9;
 /* Energy of the pulses of an example, in units of chi-square. */
 static double example_energy(const struct examples *ex, const struct example *e)
 {
-	double unit = ex->scene.duration * shape_energy(ex->scene.shape) *
-		      (1 + ex->scene.gain * ex->scene.gain);
-	double sum = 0;
+	double unit = joint_energy(&ex->scene), sum = 0;
 
 	for (int k = 0; k < e->m; k++)
 		sum += e->pulse[k].a * e->pulse[k].a * unit;

@@ -65,8 +65,8 @@ static void give_reports(struct separate *s)
 	s->reports = 0;
 }
 
-/* Doubts those of the n rows not yet judged that may be two particles.  Rows doubted
- * already tell how often one pulse follows another as well. */
+/* Doubts those of the n rows not yet judged that may be two particles, or none.  Rows
+ * doubted already tell how often one pulse follows another as well. */
 static enum separate_status judge_pairs(struct separate *s, size_t n)
 {
 	struct entry *q = s->queue + s->judged;
@@ -86,7 +86,10 @@ static enum separate_status judge_pairs(struct separate *s, size_t n)
 		if (q[i].arrival.group && a[m++].doubted &&
 			q[i].row.verdict < SEPARATE_MISFIT) {
 			q[i].row.verdict = SEPARATE_MISFIT;
-			s->counters.together++;
+			if (a[m - 1].shape > a[m - 1].pair)
+				s->counters.misfits++;
+			else
+				s->counters.together++;
 		}
 	free(a);
 	return SEPARATE_OK;

@@ -14,10 +14,16 @@ static const double SHARE = 0.01;
  * ones may have been fitted as one. */
 static const double NEAR = 0.1, FAR = 0.6;
 
+/* Height over that of the nearest larger pulse, and distance from it in durations, below
+ * which a pulse may be an error of the shape of the larger one: residuals of a shape are
+ * smaller, and decay with the pulse. */
+static const double WEAK = 0.1, BESIDE = 2;
+
 struct together {
 	double size[LATELY];   /* logarithms of amplitudes */
-	int followers[LATELY]; /* pulses between NEAR and FAR behind each */
-	double pair[LATELY];   /* probabilities */
+	int weak[LATELY];      /* beside larger pulses */
+	int followers[LATELY]; /* pulses between NEAR and FAR behind each, not weak */
+	double wrong[LATELY];  /* probabilities */
 	size_t rows, all;      /* taken in so far: not doubted, and all */
 	double density, width; /* followers per duration; of the kernel of sizes */
 	double limit;          /* probability beyond which rows are doubted */
@@ -49,41 +55,63 @@ static int count_followers(const struct arrival *a, size_t i, size_t n)
 
 		if (apart > FAR)
 			break;
-		count += apart > NEAR;
+		count += apart > NEAR && !a[k].weak;
 	}
 	return count;
 }
 
+/* 1 if pulse i is weak beside one of those on one side of it, step 1 or -1. */
+static int is_weak_beside(const struct arrival *a, size_t i, size_t n, int step)
+{
+	for (size_t k = i + (size_t)step;
+		k < n && a[k].group == a[i].group && fabs(a[k].time - a[i].time) < BESIDE;
+		k += (size_t)step)
+		if (fabs(a[i].amplitude) < WEAK * fabs(a[k].amplitude))
+			return 1;
+	return 0;
+}
+
 /* How often pulses follow, and the width of a Gaussian kernel for their sizes (Silverman,
- * Density Estimation, 1986, eq. 3.28). */
+ * Density Estimation, 1986, eq. 3.28).  Rows count as far as they are believed. */
 static void learn(struct together *t)
 {
-	double n = (double)held(t->rows), sum = 0, mean = 0, square = 0;
+	double n = 0, strong = 0, sum = 0, mean = 0, square = 0;
 
 	for (size_t i = 0; i < held(t->all); i++)
 		sum += t->followers[i];
+	for (size_t i = 0; i < held(t->rows); i++) {
+		n += 1 - t->wrong[i];
+		strong += t->weak[i] ? 0 : 1 - t->wrong[i];
+		mean += (1 - t->wrong[i]) * t->size[i];
+	}
+	n = fmax(n, 1);
+	mean /= n;
 	for (size_t i = 0; i < held(t->rows); i++)
-		mean += t->size[i] / n;
-	for (size_t i = 0; i < held(t->rows); i++)
-		square += pow(t->size[i] - mean, 2);
-	t->density = sum / (double)held(t->all) / (FAR - NEAR);
+		square += (1 - t->wrong[i]) * pow(t->size[i] - mean, 2);
+	t->density = n / fmax(strong, 1) * sum / (double)held(t->all) / (FAR - NEAR);
 	t->width = fmax(1.06 * sqrt(square / n) * pow(n, -0.2), 0.01);
 }
 
+static double kernel(const struct together *t, double x)
+{
+	double z = x / t->width;
+
+	return exp(-0.5 * z * z) / (sqrt(2 * M_PI) * t->width);
+}
+
 /* Probability density of the logarithm of the amplitude of one particle: rows count as
- * far as they are no pairs, but for the one that is asked for. */
-static double size_density(const struct together *t, double x, size_t self)
+ * far as they are believed, but for the one that is asked for, which counts as own. */
+static double size_density(const struct together *t, double x, size_t self, double own)
 {
 	double sum = 0, all = 0;
 
 	for (size_t i = 0; i < held(t->rows); i++) {
-		double z = (x - t->size[i]) / t->width, one = 1 - t->pair[i];
+		double one = i == self ? own : 1 - t->wrong[i];
 
-		one = i == self ? 1 : one;
-		sum += one * exp(-0.5 * z * z);
+		sum += one * kernel(t, x - t->size[i]);
 		all += one;
 	}
-	return sum / (sqrt(2 * M_PI) * t->width * all);
+	return all > 0 ? sum / all : 0;
 }
 
 /* Probability that a row is a pair.  With f the density of amplitudes, pairs of sum A and
@@ -96,16 +124,32 @@ static double pair_probability(
 
 	if (t->density == 0)
 		return 0;
-	one = size_density(t, x, self);
+	one = size_density(t, x, self, 1);
 	for (int k = 0; k < JOINT_SHARES; k++) {
 		double w = joint_share(k);
 
 		odds += a->odds[k] * JOINT_SHARE_STEP *
-			size_density(t, x + log(w), self) *
-			size_density(t, x + log(1 - w), self) / (w * (1 - w) * one);
+			size_density(t, x + log(w), self, 1) *
+			size_density(t, x + log(1 - w), self, 1) / (w * (1 - w) * one);
 	}
 	odds *= t->density;
 	return odds / (1 + odds);
+}
+
+/* Probability that a weak row beside a larger one is an error of the shape of that one:
+ * the share by which such rows are more frequent than particles as small are beside
+ * larger ones at random.  Two standard deviations of their number are allowed for. */
+static double shape_probability(const struct together *t, double x, size_t self)
+{
+	double larger = 0, seen = 0, random;
+
+	for (size_t i = 0; i < held(t->rows); i++) {
+		larger += (t->size[i] + log(WEAK) > x) * (1 - t->wrong[i]);
+		seen += t->weak[i] ? kernel(t, x - t->size[i]) : 0;
+	}
+	random = larger * t->density * 2 * BESIDE * size_density(t, x, self, 0);
+	random += 2 * sqrt(random * kernel(t, 0));
+	return fmax(1 - random / seen, 0);
 }
 
 static int by_size(const void *x, const void *y)
@@ -115,15 +159,16 @@ static int by_size(const void *x, const void *y)
 	return (a > b) - (a < b);
 }
 
-/* The largest probability up to which no more than SHARE of the rows are pairs. */
+/* The largest probability, at most a half, up to which no more than SHARE of the rows are
+ * wrong. */
 static double find_limit(const struct together *t)
 {
 	double sorted[LATELY], sum = 0;
 	size_t n = held(t->rows), k = 0;
 
-	memcpy(sorted, t->pair, n * sizeof *sorted);
+	memcpy(sorted, t->wrong, n * sizeof *sorted);
 	qsort(sorted, n, sizeof *sorted, by_size);
-	while (k < n && sum + sorted[k] <= SHARE * (double)(k + 1))
+	while (k < n && sorted[k] <= 0.5 && sum + sorted[k] <= SHARE * (double)(k + 1))
 		sum += sorted[k++];
 	return k == n ? 1 : k ? sorted[k - 1] : 0;
 }
@@ -133,13 +178,17 @@ static double find_limit(const struct together *t)
 enum { PASSES = 4 };
 
 /* The probabilities of the rows from first on. */
-static void tell_pairs(struct together *t, size_t first, struct arrival *a, size_t n)
+static void tell(struct together *t, size_t first, struct arrival *a, size_t n)
 {
 	for (size_t i = 0; i < n; i++)
 		if (!a[i].doubted) {
 			size_t self = first++ % LATELY;
 
-			a[i].pair = t->pair[self] = pair_probability(t, &a[i], self);
+			a[i].pair = pair_probability(t, &a[i], self);
+			a[i].shape = t->weak[self]
+					     ? shape_probability(t, t->size[self], self)
+					     : 0;
+			t->wrong[self] = 1 - (1 - a[i].pair) * (1 - a[i].shape);
 		}
 }
 
@@ -147,19 +196,25 @@ void together_judge(struct together *t, struct arrival *a, size_t n)
 {
 	size_t first = t->rows;
 
+	for (size_t i = 0; i < n; i++)
+		a[i].weak = is_weak_beside(a, i, n, 1) || is_weak_beside(a, i, n, -1);
 	for (size_t i = 0; i < n; i++) {
 		t->followers[t->all++ % LATELY] = count_followers(a, i, n);
 		if (!a[i].doubted) {
-			t->pair[t->rows % LATELY] = 0;
-			t->size[t->rows++ % LATELY] = log(fabs(a[i].amplitude));
+			size_t at = t->rows++ % LATELY;
+
+			t->wrong[at] = 0;
+			t->weak[at] = a[i].weak;
+			t->size[at] = log(fabs(a[i].amplitude));
 		}
 	}
 	if (t->rows == first)
 		return;
-	learn(t);
-	for (int pass = 0; pass < PASSES; pass++)
-		tell_pairs(t, first, a, n);
+	for (int pass = 0; pass < PASSES; pass++) {
+		learn(t);
+		tell(t, first, a, n);
+	}
 	t->limit = find_limit(t);
 	for (size_t i = 0; i < n; i++)
-		a[i].doubted |= a[i].pair > t->limit;
+		a[i].doubted |= 1 - (1 - a[i].pair) * (1 - a[i].shape) > t->limit;
 }

@@ -1,12 +1,16 @@
-/* together.h - rows that may be two particles which arrived nearly together
+/* together.h - rows that may be two particles, or none, by how often particles meet
  *
  * Two pulses that arrive within a few hundredths of a duration are fitted as one: a row
  * of the sum of their amplitudes that no residual betrays.  How likely that is follows
  * from what the residual says (joint_pair_odds() in joint.h), from how often one pulse
  * follows another closely, and from the amplitudes: two that add up to this one, against
- * one of them.  Rows are doubted, the most likely pairs first, until at most one in a
- * hundred of the others is expected to be a pair whose diameter is out by more than a
- * tenth.
+ * one of them.
+ *
+ * Weak pulses beside larger ones may be errors of the shape of these.  They are if there
+ * are more of them than particles as small come to lie beside larger ones at random.
+ *
+ * Rows are doubted, the most likely ones first, until at most one in a hundred of the
+ * others is expected to be none, or a pair whose diameter is out by more than a tenth.
  */
 #ifndef SIGNAL_TOGETHER_H
 #define SIGNAL_TOGETHER_H
@@ -19,7 +23,10 @@ struct arrival {
 	double time; /* in durations, ascending within a group */
 	double amplitude;
 	double odds[JOINT_SHARES]; /* for one other arrival per duration */
-	double pair;               /* probability of being one; set by together_judge() */
+	/* Probabilities of being a pair, and an error of the shape of a larger pulse; set
+	 * by together_judge(). */
+	double pair, shape;
+	int weak;    /* beside a larger one; set by together_judge() */
 	int doubted; /* already, and then its size does not count; or by together_judge()
 		      */
 };
