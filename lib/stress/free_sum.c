@@ -37,6 +37,7 @@ struct free_sum {
 	const double *pressure;
 	int x0, x1, y0, y1; /* of the loads, inclusive; x1 < x0: there are none */
 	struct sum_work work;
+	struct window_kept kept;
 };
 
 struct free_sum *free_sum_new(
@@ -53,6 +54,8 @@ struct free_sum *free_sum_new(
 
 void free_sum_free(struct free_sum *s)
 {
+	if (s)
+		window_forget(&s->kept);
 	free(s);
 }
 
@@ -186,7 +189,7 @@ static enum num_status convolve(
 	w->kernel = kernel;
 	w->pool = s->pool;
 	if (kernel)
-		status = window_sum(w, &transforms);
+		status = window_sum(w, &s->kept, &transforms);
 	free(kernel);
 	s->work.transforms += transforms;
 	return status;

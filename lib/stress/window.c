@@ -174,36 +174,77 @@ static void mark_wanted(struct tiling *t)
 	}
 }
 
-static enum num_status prepare(struct tiling *t)
+void window_forget(struct window_kept *kept)
+{
+	fft_plane_done(kept->fft);
+	fft_free(kept->memory);
+	*kept = (struct window_kept){ 0 };
+}
+
+static enum num_status keep_plan(struct window_kept *kept, size_t nx, size_t ny)
+{
+	if (kept->fft && kept->nx == nx && kept->ny == ny)
+		return NUM_OK;
+	fft_plane_done(kept->fft);
+	kept->fft = fft_plane_new(nx, ny);
+	kept->nx = nx;
+	kept->ny = ny;
+	return kept->fft ? NUM_OK : NUM_MEMORY;
+}
+
+static enum num_status keep_memory(struct window_kept *kept, size_t size)
+{
+	if (size <= kept->size)
+		return NUM_OK;
+	fft_free(kept->memory);
+	kept->memory = fft_alloc(size);
+	kept->size = kept->memory ? size : 0;
+	return kept->memory ? NUM_OK : NUM_MEMORY;
+}
+
+/* Rows and columns are whole cache lines, and so is every part of the memory. */
+static enum num_status share_memory(struct tiling *t, struct window_kept *kept)
+{
+	size_t workers = (size_t)pool_threads(t->w->pool);
+	size_t numbers = (size_t)t->w->numbers;
+	double complex *spectra;
+
+	if (keep_memory(kept, workers * (1 + numbers) * t->room +
+				      2 * (3 * workers + numbers) * t->spectrum))
+		return NUM_MEMORY;
+	t->load = kept->memory;
+	t->plane = t->load + workers * t->room;
+	spectra = (double complex *)(t->plane + workers * numbers * t->room);
+	t->image = spectra;
+	t->product = t->image + workers * t->spectrum;
+	t->work = t->product + workers * t->spectrum;
+	for (size_t c = 0; c < numbers; c++)
+		t->kernel[c] = t->work + (workers + c) * t->spectrum;
+	return NUM_OK;
+}
+
+static enum num_status prepare(struct tiling *t, struct window_kept *kept)
 {
 	const struct window *w = t->w;
 	size_t points = t->x.points * t->y.points,
-	       tiles = (size_t)t->x.count * (size_t)t->y.count,
-	       workers = (size_t)pool_threads(w->pool);
+	       tiles = (size_t)t->x.count * (size_t)t->y.count;
 
-	t->fft = fft_plane_new(t->x.points, t->y.points);
-	if (!t->fft)
+	if (keep_plan(kept, t->x.points, t->y.points))
 		return NUM_MEMORY;
+	t->fft = kept->fft;
 	t->stride = fft_plane_stride(t->fft);
 	t->room = t->stride * t->y.points;
 	t->spectrum = fft_plane_size(t->fft);
-	t->load = fft_alloc(workers * t->room);
-	t->plane = fft_alloc(workers * t->room * (size_t)w->numbers);
-	t->image = fft_alloc_complex(workers * t->spectrum);
-	t->product = fft_alloc_complex(workers * t->spectrum);
-	t->work = fft_alloc_complex(workers * t->spectrum);
+	if (share_memory(t, kept))
+		return NUM_MEMORY;
 	t->transforms = calloc(tiles, sizeof *t->transforms);
 	if (w->want)
 		t->wanted = calloc(tiles, 1);
-	if (!t->load || !t->plane || !t->image || !t->product || !t->work ||
-		!t->transforms || (w->want && !t->wanted))
+	if (!t->transforms || (w->want && !t->wanted))
 		return NUM_MEMORY;
 	if (w->want)
 		mark_wanted(t);
 	for (int c = 0; c < w->numbers; c++) {
-		t->kernel[c] = fft_alloc_complex(t->spectrum);
-		if (!t->kernel[c])
-			return NUM_MEMORY;
 		put_kernel(t, (enum stress_number)c, 1. / (double)points);
 		fft_plane_forward(
 			t->fft, t->plane, 0, t->y.points, t->kernel[c], t->work);
@@ -211,13 +252,14 @@ static enum num_status prepare(struct tiling *t)
 	return NUM_OK;
 }
 
-enum num_status window_sum(const struct window *w, double *transforms)
+enum num_status window_sum(
+	const struct window *w, struct window_kept *kept, double *transforms)
 {
 	struct tiling t = {
 		.w = w, .x = cut_axis(w->mx, w->reach_x), .y = cut_axis(w->my, w->reach_y)
 	};
 	size_t tiles = (size_t)t.x.count * (size_t)t.y.count;
-	enum num_status status = prepare(&t);
+	enum num_status status = prepare(&t, kept);
 
 	if (!status) {
 		pool_run(w->pool, tiles, sum_tile, &t);
@@ -225,14 +267,6 @@ enum num_status window_sum(const struct window *w, double *transforms)
 		for (size_t i = 0; i < tiles; i++)
 			*transforms += t.transforms[i];
 	}
-	fft_plane_done(t.fft);
-	fft_free(t.load);
-	fft_free(t.plane);
-	fft_free(t.image);
-	fft_free(t.product);
-	fft_free(t.work);
-	for (int c = 0; c < w->numbers; c++)
-		fft_free(t.kernel[c]);
 	free(t.wanted);
 	free(t.transforms);
 	return status;

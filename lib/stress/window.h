@@ -35,7 +35,18 @@ struct window {
 	struct pool *pool;
 };
 
+/* Memory and plan of the transforms, kept from one window to the next; all zero at first.
+ */
+struct window_kept {
+	struct fft_plane *fft;
+	size_t nx, ny; /* points that it transforms */
+	double *memory;
+	size_t size; /* doubles */
+};
+
+void window_forget(struct window_kept *kept);
 /* Computes the sums; *transforms receives how many that took. */
-enum num_status window_sum(const struct window *w, double *transforms);
+enum num_status window_sum(
+	const struct window *w, struct window_kept *kept, double *transforms);
 
 #endif
