@@ -35,4 +35,14 @@ for rate in 200 300 400; do
 	is "$scene | delays of what is found to half a sample | $(awk '$2 >= 10 && $5 > m { m = $5 } END { print m + 0 }' records) s | 0" \
 		"$(awk '$2 >= 10 && $5 > 5e-5 { n++ } END { print n + 0 }' records)" 0
 done
+
+# What both channels have in common, a transit time apart, is no noise, however coloured.
+scene="250 particles a second for 4 s at 30 dB, five records"
+for seed in 1 2 3 4 5; do
+	sensorsim --uniform 80um:120um --number 1000 --duration 4s --snr 30dB --seed $seed \
+		--lag 0.2ms:0.5ms --gain 0.909 --truth truth.tsv >s.au
+	duet -v s.au 2>&1 >found.tsv | sed -n 's/.* noise \([0-9.e-]*\) and .*/\1/p'
+done >noise
+is "$scene | the noise learned is that of the sensors within 5 % | $(tr '\n' ' ' <noise)| 0" \
+	"$(awk '$1 > 0.030 && $1 < 0.0333 { n++ } END { print n + 0 }' noise)" 5
 done_testing

@@ -101,7 +101,7 @@ static enum calibrate_status look_again(const struct calibrate_par *par, const d
 			return status;
 		if (status != CALIBRATE_OK)
 			continue;
-		if (other.price < best) {
+		if (other.price < best && !other.dense) {
 			best = other.price;
 			found = kinds[k];
 			better = 1;
@@ -204,7 +204,7 @@ static enum calibrate_status attempt_white(const struct calibrate_par *par,
 		return status;
 	look->attempts = smooth.attempts;
 	look->work = smooth.work;
-	if (status == CALIBRATE_OK && c->measured && learn_describes(c)) {
+	if (status == CALIBRATE_OK && c->measured && !c->dense && learn_describes(c)) {
 		int lacks;
 
 		c->attempts = look->attempts;

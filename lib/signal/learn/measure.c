@@ -537,9 +537,9 @@ static enum calibrate_status learn_with_noise(const struct calibrate_par *par,
 	return status;
 }
 
-/* Finds out why the pulses do not fit.  There are too many of them if even in the
- * quietest part both sensors record the same, or the noise there has the expected level.
- */
+/* Finds out why the pulses do not fit, or whether pulses were taken for coloured noise.
+ * There are too many of them if even in the quietest part both sensors record the same,
+ * or the noise there has the expected level. */
 static enum calibrate_status look_for_crowd(
 	const struct record *rec, const struct calibration *c, int *dense)
 {
@@ -574,7 +574,7 @@ static enum calibrate_status conclude(
 
 	if (c->events == 0 && isnan(par->duration))
 		return CALIBRATE_NO_LAG;
-	if (c->chi2 > BAD_FIT)
+	if (c->chi2 > BAD_FIT || (c->whitening.tap && !par->filter))
 		status = look_for_crowd(rec, c, &c->dense);
 	if (c->dense)
 		set_range(par, PLUG, c);
