@@ -71,6 +71,10 @@ static void report(const struct separate *s, double rate)
 	stats_set("together", c->together);
 	stats_set("reversed", c->negative);
 	stats_set("misfits_by_velocity", c->foreign);
+	stats_set("shocks", c->events[SEPARATE_SHOCK]);
+	stats_set("bubbles", c->events[SEPARATE_BUBBLE]);
+	stats_set("impulses", c->events[SEPARATE_IMPULSE]);
+	stats_set("transients", c->events[SEPARATE_TRANSIENT]);
 	stats_set("fits", c->fits);
 	stats_set("fit_steps", c->steps);
 	stats_set("searches", c->searches);
@@ -134,6 +138,20 @@ static void tell_together(const struct separate *s, struct found *out, const cha
 	table_comment(out->particles, "together",
 		"%.0f of %.0f rows may be two particles that arrived together",
 		c->together, c->rows);
+}
+
+/* Says how many rows are events that are no particles. */
+static void tell_events(const struct separate *s, struct found *out)
+{
+	const double *n = separate_counters(s)->events;
+	double sum = n[SEPARATE_SHOCK] + n[SEPARATE_BUBBLE] + n[SEPARATE_IMPULSE] +
+		     n[SEPARATE_TRANSIENT];
+
+	if (sum > 0)
+		table_comment(out->particles, "events",
+			"%.0f shocks, %.0f bubbles, %.0f impulses, %.0f transients",
+			n[SEPARATE_SHOCK], n[SEPARATE_BUBBLE], n[SEPARATE_IMPULSE],
+			n[SEPARATE_TRANSIENT]);
 }
 
 /* Writes the instrument that was learned, once its rows are believed. */
@@ -204,6 +222,7 @@ int separate_record(struct signal_in *in, struct found *out,
 			file);
 	report(s, (double)out->rate);
 	tell_together(s, out, signal_name(in));
+	tell_events(s, out);
 	doubtful = is_doubtful(s, out, signal_name(in), par.kept ? file : NULL);
 	found_detectable(out, separate_calibration(s));
 	separate_free(s);

@@ -289,7 +289,8 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 		return SEPARATE_REVERSED;
 	if (s->par.kept && !s->kept.crowded && 2 * c->dense > c->samples)
 		return SEPARATE_CROWD;
-	return c->misfits > 2 && 10 * c->misfits > c->rows + c->unresolved
+	return c->misfits > 2 && 10 * c->misfits > c->rows + c->unresolved +
+							   c->events[SEPARATE_TRANSIENT]
 		       ? SEPARATE_FOREIGN
 		       : SEPARATE_BELIEVED;
 }
