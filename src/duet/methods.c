@@ -112,12 +112,18 @@ static int is_doubtful(
 	      : doubt == SEPARATE_NOISE
 		      ? xprintf("the noise is %.3g and %.3g times that of the instrument",
 				share[0], share[1])
+	      : doubt == SEPARATE_COVERED
+		      ? xprintf("events that are no particles cover %.2g %% of it, and "
+				"hide the particles there",
+				100 * c->covered / c->samples)
 	      : doubt == SEPARATE_REVERSED
 		      ? xprintf("%.0f of %.0f pulses are reversed", c->negative, c->rows)
 		      : xprintf("%.0f %% of it is unresolved, unlike the record of the "
 				"instrument",
 				100 * c->dense / c->samples);
-	if (kept)
+	if (doubt == SEPARATE_COVERED)
+		warn("%s: %s", name, why);
+	else if (kept)
 		warn("%s: this instrument does not fit %s: %s", kept, name, why);
 	else
 		warn("%s: %s (misfit): the others are doubtful, too", name, why);
@@ -159,7 +165,10 @@ static void keep(const struct separate *s, const struct instrument_place *place)
 {
 	struct instrument view;
 
-	if (separate_instrument(s, &view) && !separate_doubtful(s))
+	enum separate_doubt doubt = separate_doubtful(s);
+
+	if (separate_instrument(s, &view) &&
+		(doubt == SEPARATE_BELIEVED || doubt == SEPARATE_COVERED))
 		instrument_write(place, &view);
 }
 

@@ -195,6 +195,7 @@ enum separate_status separate_dense_section(
 	s->counters.dense += length;
 	entry->evidence.group = ++s->group;
 	entry->evidence.fits = !s->strange;
+	s->counters.covered += s->strange ? length : 0;
 	s->strange = 0;
 	out.sources = p->sources;
 	out.dense = &c;
@@ -223,6 +224,8 @@ enum separate_status separate_give_event(
 	entry->evidence.group = ++s->group;
 	entry->evidence.fits = p->verdict != SEPARATE_TRANSIENT;
 	s->counters.events[p->verdict]++;
+	if (p->verdict != SEPARATE_IMPULSE)
+		s->counters.covered += (double)(to - from);
 	return separate_queue_report(s, &out, 1);
 }
 

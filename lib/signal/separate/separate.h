@@ -113,6 +113,7 @@ struct separate_counters {
 	double masks, masks_skipped; /* sections demixed, and those with one source, which
 					need not be */
 	double unresolved, dense;    /* rows, and the samples these stand for */
+	double covered; /* samples of events in which no particle would be found */
 };
 
 struct separate;
@@ -146,7 +147,8 @@ enum separate_doubt {
 	SEPARATE_NOISE,    /* the noise is not that of the kept instrument */
 	SEPARATE_REVERSED, /* nine tenths of the pulses are those of the kept instrument
 			      with their sign changed */
-	SEPARATE_CROWD     /* more than half is unresolved, unlike its record */
+	SEPARATE_CROWD,    /* more than half is unresolved, unlike its record */
+	SEPARATE_COVERED   /* particles are lost under events that are none */
 };
 enum separate_doubt separate_doubtful(const struct separate *s);
 /* Frame and channel (0, 1) that made it fail with NOT_FINITE. */
