@@ -1,10 +1,19 @@
 #include "io/crc32.h"
 #include "io/bytes.h"
+#include <pthread.h>
 
 enum { SLICES = 8 }; /* bytes that one step takes */
 
+static const uint32_t polynomial = 0xedb88320u; /* bit 31: the power 0 */
+
 /* table[0][b]: remainder of byte b; table[k][b]: of b followed by k zero bytes. */
 static uint32_t table[SLICES][256];
+static pthread_once_t once = PTHREAD_ONCE_INIT;
+
+static uint32_t times_x(uint32_t a)
+{
+	return a & 1 ? a >> 1 ^ polynomial : a >> 1;
+}
 
 static void make_table(void)
 {
@@ -12,7 +21,7 @@ static void make_table(void)
 		uint32_t r = b;
 
 		for (int bit = 0; bit < 8; bit++)
-			r = r & 1 ? r >> 1 ^ 0xedb88320u : r >> 1;
+			r = times_x(r);
 		table[0][b] = r;
 	}
 	for (int k = 1; k < SLICES; k++)
@@ -27,8 +36,7 @@ uint32_t crc32_add(uint32_t crc, const void *bytes, size_t n)
 {
 	const unsigned char *b = bytes;
 
-	if (!table[0][1])
-		make_table();
+	pthread_once(&once, make_table);
 	crc = ~crc;
 	for (; n >= SLICES; n -= SLICES, b += SLICES) {
 		uint32_t low = crc ^ bytes_u32_little(b), high = bytes_u32_little(b + 4);
@@ -41,4 +49,26 @@ uint32_t crc32_add(uint32_t crc, const void *bytes, size_t n)
 	for (; n > 0; n--)
 		crc = crc >> 8 ^ table[0][(crc ^ *b++) & 255];
 	return ~crc;
+}
+
+/* Product of two polynomials, less multiples of the one of the check. */
+static uint32_t multiply(uint32_t a, uint32_t b)
+{
+	uint32_t product = 0;
+
+	for (; a; a <<= 1, b = times_x(b))
+		if (a >> 31)
+			product ^= b;
+	return product;
+}
+
+uint32_t crc32_join(uint32_t first, uint32_t second, size_t n)
+{
+	uint32_t power = 1u << 23; /* x^8 */
+
+	/* What the first bytes leave is shifted by the bytes that follow. */
+	for (; n > 0; n >>= 1, power = multiply(power, power))
+		if (n & 1)
+			first = multiply(power, first);
+	return first ^ second;
 }

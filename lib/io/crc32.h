@@ -10,5 +10,8 @@
 #include <stdint.h>
 
 uint32_t crc32_add(uint32_t crc, const void *bytes, size_t n);
+/* The check of bytes with that of their first part and that of the n others, each summed
+ * from 0. */
+uint32_t crc32_join(uint32_t first, uint32_t second, size_t n);
 
 #endif

@@ -22,6 +22,7 @@ struct fields_in {
 struct fields_out {
 	FILE *f;
 	const char *name;
+	struct pool *pool;
 	long records; /* of the stream that is being written */
 	int open;     /* another record was announced */
 };
@@ -178,6 +179,11 @@ int fields_marked(const struct fields_in *in)
 	return in->unmarked == 0;
 }
 
+void fields_read_with(struct fields_in *in, struct pool *pool)
+{
+	in->at.pool = pool;
+}
+
 const char *fields_name(const struct fields_in *in)
 {
 	return in->at.name;
@@ -204,9 +210,14 @@ struct fields_out *fields_create(const char *path)
 	return out;
 }
 
+void fields_write_with(struct fields_out *out, struct pool *pool)
+{
+	out->pool = pool;
+}
+
 void fields_write(struct fields_out *out, const struct record *r, int more)
 {
-	nrrd_write(out->f, r, ++out->records, !more);
+	nrrd_write(out->f, r, ++out->records, !more, out->pool);
 	out->open = more;
 	if (fflush(out->f) || ferror(out->f))
 		die(EXIT_RUN, "%s:", out->name);

@@ -21,6 +21,7 @@
 
 #include "io/input.h"
 #include "io/record.h"
+#include "num/pool.h"
 
 /* Headerless input: sizes must be known beforehand. */
 struct raw_layout {
@@ -36,6 +37,8 @@ struct fields_out;
 /* path NULL or "-" is standard input; raw NULL unless the data are headerless. */
 struct fields_in *fields_open(const char *path, const struct raw_layout *raw);
 struct fields_in *fields_from(struct input *in); /* takes ownership of an open input */
+/* Threads to convert and sum samples with; without it the caller does. */
+void fields_read_with(struct fields_in *in, struct pool *pool);
 /* 1 if all records read so far stated whether another one follows. */
 int fields_marked(const struct fields_in *in);
 /* 1 if a record follows, or is promised. */
@@ -51,6 +54,7 @@ void fields_close(struct fields_in *in);
 
 /* path NULL is standard output, which must not be a terminal. */
 struct fields_out *fields_create(const char *path);
+void fields_write_with(struct fields_out *out, struct pool *pool);
 /* Writes and flushes one record with all its fields; more: another record will follow,
  * and a reader that does not find it reports an error.  Values must be finite unless they
  * are missing samples (nan). */

@@ -92,24 +92,94 @@ static double sample(const unsigned char *b, struct samples layout)
 	return layout.big_endian ? bytes_double_big(b) : bytes_double_little(b);
 }
 
+void parts_begin(struct parts *p, size_t points, size_t width)
+{
+	size_t most = (size_t)PARTS * PART_POINTS;
+
+	*p = (struct parts){ .all = points, .width = width };
+	p->bytes = xcalloc(points < most ? points : most, width);
+}
+
+static size_t count_parts(const struct parts *p)
+{
+	return (p->points + PART_POINTS - 1) / PART_POINTS;
+}
+
+size_t parts_next(struct parts *p)
+{
+	size_t most = (size_t)PARTS * PART_POINTS, left;
+
+	p->first += p->points;
+	left = p->all - p->first;
+	p->points = left < most ? left : most;
+	return count_parts(p);
+}
+
+size_t part_points(const struct parts *p, size_t k)
+{
+	size_t left = p->points - k * PART_POINTS;
+
+	return left < PART_POINTS ? left : PART_POINTS;
+}
+
+unsigned char *part_bytes(const struct parts *p, size_t k)
+{
+	return p->bytes + k * PART_POINTS * p->width;
+}
+
+uint32_t parts_sum(const struct parts *p, uint32_t checksum)
+{
+	for (size_t k = 0; k < count_parts(p); k++)
+		checksum = crc32_join(
+			checksum, p->checksum[k], part_points(p, k) * p->width);
+	return checksum;
+}
+
+void parts_end(struct parts *p)
+{
+	free(p->bytes);
+}
+
+struct reading {
+	struct parts parts;
+	struct record *r;
+	struct samples layout;
+};
+
+static void take_part(void *context, size_t k, int worker)
+{
+	struct reading *t = context;
+	const unsigned char *bytes = part_bytes(&t->parts, k);
+	size_t n = part_points(&t->parts, k), width = t->parts.width;
+	size_t step = t->layout.single ? 4 : 8;
+
+	(void)worker;
+	t->parts.checksum[k] = crc32_add(0, bytes, n * width);
+	for (size_t field = 0; field < (size_t)t->r->nfields; field++) {
+		double *to = t->r->data[field] + t->parts.first + k * PART_POINTS;
+
+		for (size_t i = 0; i < n; i++)
+			to[i] = sample(bytes + i * width + field * step, t->layout);
+	}
+}
+
 void samples_read(struct place *at, struct record *r, struct samples layout)
 {
-	size_t width = layout.single ? 4 : 8, nf = (size_t)r->nfields, nx = (size_t)r->nx;
-	size_t row_size = nx * nf * width, rows = (size_t)r->ny * (size_t)r->nz;
-	unsigned char *row = xcalloc(row_size, 1);
+	size_t points = record_points(r), parts;
+	size_t width = (size_t)r->nfields * (layout.single ? 4 : 8);
+	struct reading t = { .r = r, .layout = layout };
+	struct parts *p = &t.parts;
 
-	check_length(at, (uint64_t)row_size * rows);
-	for (size_t iy = 0; iy < rows; iy++) {
-		size_t got = input_read(at->in, row, row_size);
+	check_length(at, (uint64_t)width * points);
+	parts_begin(p, points, width);
+	while ((parts = parts_next(p)) > 0) {
+		size_t got = input_read(at->in, p->bytes, p->points * width);
 
-		at->checksum = crc32_add(at->checksum, row, got);
-		if (got < row_size)
+		if (got < p->points * width)
 			die(EXIT_RUN, "%s: record %ld: want %zu bytes, got %zu", at->name,
-				at->record, row_size * rows, row_size * iy + got);
-		for (size_t k = 0; k < nf; k++)
-			for (size_t ix = 0; ix < nx; ix++)
-				r->data[k][iy * nx + ix] =
-					sample(row + (ix * nf + k) * width, layout);
+				at->record, points * width, p->first * width + got);
+		pool_run(at->pool, parts, take_part, &t);
+		at->checksum = parts_sum(p, at->checksum);
 	}
-	free(row);
+	parts_end(p);
 }

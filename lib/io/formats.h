@@ -5,6 +5,7 @@
 
 #include "io/input.h"
 #include "io/record.h"
+#include "num/pool.h"
 #include <stdint.h>
 
 /* The end mark of a record of wearpipe. */
@@ -17,6 +18,7 @@ struct mark {
 /* Where a reader is, for its messages. */
 struct place {
 	struct input *in;
+	struct pool *pool; /* that shares the work on samples, or NULL */
 	const char *name;  /* of the stream */
 	long record;       /* from 1 */
 	uint32_t checksum; /* of the bytes of this record so far */
@@ -28,6 +30,33 @@ struct samples {
 	int single; /* 4-byte float instead of 8-byte */
 	int big_endian;
 };
+
+/* Samples are converted and summed in parts, several of them in memory at a time:
+ *
+ *	parts_begin(&p, points, width);
+ *	while ((n = parts_next(&p)) > 0) {
+ *		... n jobs: part_points(&p, k) points at part_bytes(&p, k), the first of
+ *them point p.first + k * PART_POINTS of the record; p.checksum[k] checksum =
+ *parts_sum(&p, checksum);
+ *	}
+ *	parts_end(&p);
+ *
+ * Parts of 1024 to 16384 points take the same time. */
+enum { PART_POINTS = 4096, PARTS = 8 };
+
+struct parts {
+	size_t all, first, points; /* of the record; before these parts; in them */
+	size_t width;              /* bytes of a point */
+	unsigned char *bytes;
+	uint32_t checksum[PARTS]; /* of each alone */
+};
+
+void parts_begin(struct parts *p, size_t points, size_t width);
+size_t parts_next(struct parts *p);
+size_t part_points(const struct parts *p, size_t k);
+unsigned char *part_bytes(const struct parts *p, size_t k);
+uint32_t parts_sum(const struct parts *p, uint32_t checksum);
+void parts_end(struct parts *p);
 
 /* Fills all fields of r, whose sizes and names are set; dies where the stream ends
  * before "want N bytes". */

@@ -385,36 +385,74 @@ static struct text make_header(const struct record *r, long number, int last)
 	return t;
 }
 
-/* One row of the grid, the fields of a point side by side. */
-static void make_row(const struct record *r, size_t iy, unsigned char *b)
+struct writing {
+	struct parts parts;
+	const struct record *r;
+};
+
+/* The fields of a point side by side. */
+static void make_part(void *context, size_t k, int worker)
 {
-	for (size_t ix = 0; ix < (size_t)r->nx; ix++)
-		for (int k = 0; k < r->nfields; k++, b += 8)
-			bytes_put_double_little(b, r->data[k][iy * (size_t)r->nx + ix]);
+	const struct writing *t = context;
+	unsigned char *bytes = part_bytes(&t->parts, k);
+	size_t n = part_points(&t->parts, k), width = t->parts.width;
+
+	(void)worker;
+	for (int field = 0; field < t->r->nfields; field++, bytes += 8) {
+		const double *from = t->r->data[field] + t->parts.first + k * PART_POINTS;
+
+		for (size_t i = 0; i < n; i++)
+			bytes_put_double_little(bytes + i * width, from[i]);
+	}
 }
 
-void nrrd_write(FILE *f, const struct record *r, long number, int last)
+static void sum_part(void *context, size_t k, int worker)
 {
-	size_t n = (size_t)r->nx * (size_t)r->nfields * 8;
-	size_t rows = (size_t)r->ny * (size_t)r->nz;
+	struct parts *p = &((struct writing *)context)->parts;
+
+	make_part(context, k, worker);
+	p->checksum[k] = crc32_add(0, part_bytes(p, k), part_points(p, k) * p->width);
+}
+
+/* Adds the checksum of all samples. */
+static uint32_t sum_samples(const struct record *r, uint32_t checksum, struct pool *pool)
+{
+	struct writing t = { .r = r };
+	size_t parts;
+
+	parts_begin(&t.parts, record_points(r), 8 * (size_t)r->nfields);
+	while ((parts = parts_next(&t.parts)) > 0) {
+		pool_run(pool, parts, sum_part, &t);
+		checksum = parts_sum(&t.parts, checksum);
+	}
+	parts_end(&t.parts);
+	return checksum;
+}
+
+static void write_samples(FILE *f, const struct record *r, struct pool *pool)
+{
+	struct writing t = { .r = r };
+	size_t parts;
+
+	parts_begin(&t.parts, record_points(r), 8 * (size_t)r->nfields);
+	while ((parts = parts_next(&t.parts)) > 0) {
+		pool_run(pool, parts, make_part, &t);
+		fwrite(t.parts.bytes, t.parts.width, t.parts.points, f);
+	}
+	parts_end(&t.parts);
+}
+
+void nrrd_write(FILE *f, const struct record *r, long number, int last, struct pool *pool)
+{
 	struct text header = make_header(r, number, last);
-	unsigned char *row = xcalloc(n, 1);
-	uint32_t checksum = crc32_add(0, header.s, header.n);
+	uint32_t checksum = sum_samples(r, crc32_add(0, header.s, header.n), pool);
 	char *digits = header.s + header.n - strlen(mark_zeros);
 
-	for (size_t iy = 0; iy < rows; iy++) {
-		make_row(r, iy, row);
-		checksum = crc32_add(checksum, row, n);
-	}
 	while (memcmp(digits, mark_zeros, strlen(mark_zeros)) != 0)
 		digits--;
 	for (int i = 7; i >= 0; i--, checksum >>= 4)
 		digits[i] = "0123456789abcdef"[checksum & 15];
 	fwrite(header.s, 1, header.n, f);
 	free(header.s);
-	for (size_t iy = 0; iy < rows; iy++) {
-		make_row(r, iy, row);
-		fwrite(row, 1, n, f);
-	}
-	free(row);
+	write_samples(f, r, pool);
 }

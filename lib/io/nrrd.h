@@ -9,7 +9,9 @@
 int nrrd_is(const char *magic);
 /* Starts behind that line and fills an empty record, or dies. */
 void nrrd_read(struct place *at, struct record *r);
-/* number: of the record in its stream, from 1; last: none follows. */
-void nrrd_write(FILE *f, const struct record *r, long number, int last);
+/* number: of the record in its stream, from 1; last: none follows.  pool: shares the work
+ * on samples, or NULL. */
+void nrrd_write(
+	FILE *f, const struct record *r, long number, int last, struct pool *pool);
 
 #endif

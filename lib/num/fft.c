@@ -13,11 +13,20 @@ struct fft {
 	fftw_plan forward, inverse;
 };
 
+/* Zeros of calloc(), which large memory has without being touched: the threads that work
+ * on it share the time that the system needs for its first use.  The address to free
+ * stands before the aligned one. */
 double *fft_alloc(size_t count)
 {
-	double *p = fftw_malloc((count ? count : 1) * sizeof *p);
+	unsigned char *memory = NULL, *aligned;
 
-	return p ? memset(p, 0, count * sizeof *p) : NULL;
+	if (count < (SIZE_MAX - FFT_ALIGNMENT) / sizeof(double))
+		memory = calloc(count * sizeof(double) + FFT_ALIGNMENT, 1);
+	if (!memory)
+		return NULL;
+	aligned = memory + FFT_ALIGNMENT - (uintptr_t)memory % FFT_ALIGNMENT;
+	memcpy(aligned - sizeof memory, &memory, sizeof memory);
+	return (double *)(void *)aligned;
 }
 
 double complex *fft_alloc_complex(size_t count)
@@ -27,7 +36,12 @@ double complex *fft_alloc_complex(size_t count)
 
 void fft_free(void *p)
 {
-	fftw_free(p);
+	void *memory;
+
+	if (!p)
+		return;
+	memcpy(&memory, (unsigned char *)p - sizeof memory, sizeof memory);
+	free(memory);
 }
 
 size_t fft_good_size(size_t n)

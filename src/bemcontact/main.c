@@ -338,6 +338,8 @@ int main(int argc, char **argv)
 		die(EXIT_RUN, "cannot start %ld threads:", press.threads);
 	in = fields_open(argv[first], raw_given());
 	out = fields_create(NULL);
+	fields_read_with(in, pool);
+	fields_write_with(out, pool);
 	tables_open(NULL);
 	while (fields_read(in, &r)) {
 		char *cmd = opt_cmd(r.cmd, NULL);
