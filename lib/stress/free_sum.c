@@ -185,24 +185,26 @@ static int name_of(const struct free_sum *s, enum source source, double z, int c
 	return z == 0 && !s->full ? (int)SOURCES * cells + (int)source : WINDOW_NAMELESS;
 }
 
-/* Convolution of loads with a kernel of the reach that w has: a field for each number. */
-static enum num_status convolve(
-	struct free_sum *s, enum source source, double z, int cells, struct window *w)
+/* Convolution of loads with a kernel of the reach that the window has: a field for each
+ * number. */
+static enum num_status convolve(struct free_sum *s, enum source source, double z,
+	int cells, const struct window *window)
 {
 	struct kernel k = { .sum = s,
 		.source = source,
 		.dx = cells * s->par.dx,
 		.dy = cells * s->par.dy,
 		.z = z };
+	struct window w = *window;
 	enum num_status status;
 	double transforms = 0;
 
-	w->par = &s->par;
-	w->make = make_kernel;
-	w->maker = &k;
-	w->name = name_of(s, source, z, cells);
-	w->pool = s->pool;
-	status = window_sum(w, &s->kept, &transforms);
+	w.par = &s->par;
+	w.make = make_kernel;
+	w.maker = &k;
+	w.name = name_of(s, source, z, cells);
+	w.pool = s->pool;
+	status = window_sum(&w, &s->kept, &transforms);
 	s->work.transforms += transforms;
 	return status;
 }

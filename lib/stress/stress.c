@@ -387,8 +387,9 @@ struct take {
 };
 
 /* The numbers of a node of a span. */
-static inline void node_numbers(const struct take *t, const struct stress_span *span, int x,
-	const double *const number[STRESS_NUMBERS], int numbers, double v[STRESS_NUMBERS])
+static inline void node_numbers(const struct take *t, const struct stress_span *span,
+	int x, const double *const number[STRESS_NUMBERS], int numbers,
+	double v[STRESS_NUMBERS])
 {
 	const struct stress *s = t->s;
 	int known = t->on_surface ? SURFACE_NUMBERS : numbers;
