@@ -251,7 +251,8 @@ static void read_rows(
 		item->unit = units_find(units, series_unit(in), series_unit_name(in));
 		item->in = (struct outlook_row){ t,
 			clock < 0 ? t : table_number(series_table(in), clock),
-			series_value(in), series_unit_name(in) };
+			series_value(in), series_unit_name(in), { 0 } };
+		outlook_read(in, &item->in);
 		if (!isfinite(item->in.clock))
 			die(EXIT_RUN, "%s: line %ld: %s is missing or not finite",
 				table_name(series_table(in)),

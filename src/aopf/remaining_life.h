@@ -15,6 +15,7 @@
 #include "cli/opt.h"
 #include "io/series.h"
 #include "life/particle/adaptive.h"
+#include "life/trend/bank.h"
 #include "num/state.h"
 #include <stdint.h>
 
@@ -42,7 +43,11 @@ uint64_t outlook_fleet(void); /* checksum of the paths of the fleet */
 struct outlook_row {
 	double t, clock, y; /* clock: the time that wears, t unless there is another */
 	const char *unit;   /* its name, "" without one */
+	double load[BANK_LOADS]; /* the covariates since the row before */
 };
+
+/* Reads the covariates of the present row; dies where one is not finite. */
+void outlook_read(const struct series *in, struct outlook_row *row);
 
 struct outlook;
 

@@ -48,11 +48,17 @@ static const struct {
 
 /* --- trends ------------------------------------------------------------------------- */
 
+/* With its tilts. */
+static size_t size_of_trend(const struct bank_par *par)
+{
+	return sizeof(struct trend) + (size_t)par->n_loads * sizeof(struct tilt);
+}
+
 struct bank *bank_new(const struct bank_par *par)
 {
 	int shapes = shapes_in_table() + par->n_more,
 	    capacity = shapes * KINDS + PARTICLES;
-	struct bank *b = calloc(1, sizeof *b + (size_t)capacity * sizeof b->trend[0]);
+	struct bank *b = calloc(1, sizeof *b + (size_t)capacity * size_of_trend(par));
 
 	if (!b)
 		return NULL;
@@ -73,6 +79,7 @@ void bank_clear(struct bank *b)
 {
 	b->rows = 0;
 	b->n_held = 0;
+	b->loaded = 0;
 }
 
 int bank_ready(const struct bank *b)
@@ -152,6 +159,8 @@ static void follow(
 	double keep = b->keep[tr->kind % MEMORIES], f, e, z, limit;
 	struct place p = seen_from(b, tr, seen, step);
 
+	if (b->par.n_loads > 0)
+		project_tilts(b, tr, advance(b, tr, step), keep);
 	project(b, tr, &p, step, keep);
 	f = tr->phh + squared_slope(p);
 	e = p.h - tr->h;
@@ -163,6 +172,8 @@ static void follow(
 	}
 	if (b->rows >= BANK_START - 1)
 		tr->score += log_density(b, tr, &p, f, z);
+	if (b->par.n_loads > 0)
+		correct_tilts(b, tr, f, e, squared_slope(p));
 	tr->h += tr->phh / f * e;
 	tr->v += tr->phv / f * e;
 	tr->pvv -= tr->phv / f * tr->phv;
@@ -179,12 +190,17 @@ static void follow(
  * the unit along it is from 1. */
 static double log_kinship(const struct bank *b, const struct trend *tr)
 {
-	double away = tr->v - 1;
+	double mean[BANK_LOADS], away;
+	struct trend usual;
 
 	if (shape_of(b, tr->shape)->n == 0)
 		return 0;
+	mean_loads(b, mean);
+	usual = at_loads(b, tr, mean);
+	away = usual.v - 1;
 	return -log(kin_of(b)) -
-	       0.5 * away * away / (PACE * PACE + tr->pvv * tr->sum / freedom_of(b, tr));
+	       0.5 * away * away /
+		       (PACE * PACE + usual.pvv * tr->sum / freedom_of(b, tr));
 }
 
 /* Updates the weights: n rows count as sqrt(SCORED n), because they are not independent
@@ -228,11 +244,14 @@ static void jump(const struct bank *b, struct trend *tr, double times, double sd
 	tr->v *= times;
 }
 
-/* The particle for a change of regime of its parent at the present age. */
-static struct trend child_of(const struct bank *b, const struct trend *parent, int birth)
+/* The particle for a change of regime of its parent at the present age, and the factor
+ * of its rate. */
+static struct trend child_of(
+	const struct bank *b, const struct trend *parent, int birth, double *factor)
 {
 	struct trend child = *parent;
-	double s = grown(parent, b->age), u = chance_of_birth(b, 3 * birth + 2);
+	double s = grown(parent, b->age), u = chance_of_birth(b, 3 * birth + 2),
+	       times = 1;
 
 	child.v *= s;
 	child.phv *= s;
@@ -243,9 +262,10 @@ static struct trend child_of(const struct bank *b, const struct trend *parent, i
 		child.growth = (float)(past.growth / b->age *
 				       exp(past.growth_sd * normal_quantile(u)));
 	else if (u < past.falls)
-		jump(b, &child, past.fall, past.fall_sd);
+		jump(b, &child, times = past.fall, past.fall_sd);
 	else
-		jump(b, &child, past.rise, past.rise_sd);
+		jump(b, &child, times = past.rise, past.rise_sd);
+	*factor = s * times;
 	return child;
 }
 
@@ -268,6 +288,9 @@ static void breed(struct bank *b)
 {
 	double mass, reached = 0;
 	struct trend child[BIRTHS];
+	struct tilt tilt[BIRTHS][BANK_LOADS];
+	double factor[BIRTHS];
+	size_t tilts = (size_t)b->par.n_loads * sizeof(struct tilt);
 	int born = 0;
 
 	if (b->par.steady || b->rows < BREEDING || b->age < 1.02 * b->bred)
@@ -280,7 +303,8 @@ static void breed(struct bank *b)
 		reached += tr->weight;
 		while (born < BIRTHS &&
 			(born + chance_of_birth(b, 3 * born)) / BIRTHS < reached) {
-			child[born] = child_of(b, tr, born);
+			child[born] = child_of(b, tr, born, &factor[born]);
+			memcpy(tilt[born], tilts_of(b, tr), tilts);
 			child[born].weight = mass / BIRTHS;
 			/* the sum of the trends' weights, times the mass */
 			child[born].offset =
@@ -288,21 +312,27 @@ static void breed(struct bank *b)
 			born++;
 		}
 	}
-	for (int i = 0; i < born; i++)
-		*room(b) = child[i];
+	for (int i = 0; i < born; i++) {
+		struct trend *tr = room(b);
+
+		*tr = child[i];
+		memcpy(tilts_of(b, tr), tilt[i], tilts);
+		scale_tilts(b, tr, factor[i]);
+	}
 	b->counts.births += (unsigned long)born;
 	weigh(b);
 }
 
 /* --- rows --------------------------------------------------------------------------- */
 
-static void take(struct bank *b, double t, double y)
+static void take(struct bank *b, const struct row *r)
 {
-	double k = (double)b->rows, fade = k / (k + 1), step = (t - b->last) / b->unit,
-	       damage = damage_of(b, y);
+	double k = (double)b->rows, fade = k / (k + 1), step = (r->t - b->last) / b->unit,
+	       damage = damage_of(b, r->y);
 	struct place place;
 	int shape = -1;
 
+	face_loads(b, r);
 	b->cut = square_at(CUT, b->freedom[0]);
 	for (int j = 0; j < MEMORIES; j++) {
 		b->keep[j] = b->rows >= BANK_START - 1 ? k / (k + memories[j]) : 1;
@@ -322,10 +352,13 @@ static void take(struct bank *b, double t, double y)
 		b->scored = b->scored * fade + 1;
 	b->age += step;
 	b->gap = b->age / k;
-	b->last = t;
+	b->last = r->t;
+	for (int i = 0; i < b->par.n_loads; i++)
+		b->load[i].taken = r->sum[i];
 	b->level = damage;
 	b->rows++;
 	weigh(b);
+	bend_loads(b);
 	breed(b);
 }
 
@@ -361,8 +394,14 @@ static void start(struct bank *b)
 	for (int k = 0; k < MEMORIES; k++)
 		b->freedom[k] = 1;
 	b->rows = 1;
+	for (int k = 0; k < b->par.n_loads; k++) {
+		b->load[k].taken = r[0].sum[k];
+		b->load[k].at = 0;
+	}
+	memset(tilts_of(b, b->trend), 0,
+		(size_t)(b->capacity * b->par.n_loads) * sizeof(struct tilt));
 	for (int k = 1; k < FIRST; k++)
-		take(b, r[k].t, r[k].y);
+		take(b, &r[k]);
 	b->n_held = 0;
 }
 
@@ -493,21 +532,27 @@ static void release(struct bank *b)
 
 	b->n_held = 0;
 	for (int i = 0; i < n; i++)
-		take(b, b->held[i].t, b->held[i].y);
+		take(b, &b->held[i]);
 }
 
-/* Operating time: after a long gap the machine may have been idle.  While few rows are
- * known, and with them the rate, the next observation cannot decide. */
-static double running(struct bank *b, double t, double damage)
+/* Takes the idle time out of a row: after a long gap the machine may have been idle.
+ * While few rows are known, and with them the rate, the next observation cannot decide.
+ */
+static void leave_idle_time(struct bank *b, struct row *r)
 {
-	double step = (t - b->last) / b->unit;
+	double step = (r->t - b->last) / b->unit, damage = damage_of(b, r->y), idle;
 
 	if (b->rows < BREEDING || b->n_held > 0 || step <= HALT * b->gap ||
 		expect(b, damage, b->gap, density) <= expect(b, damage, step, density))
-		return t;
-	b->idle += (step - b->gap) * b->unit;
+		return;
+	idle = (step - b->gap) * b->unit;
+	b->idle += idle;
+	r->t -= idle;
+	for (int k = 0; k < b->par.n_loads; k++) {
+		b->load[k].sum -= idle * b->load[k].at;
+		r->sum[k] -= idle * b->load[k].at;
+	}
 	b->counts.halts++;
-	return b->last + b->gap * b->unit;
 }
 
 /* Where values repeat they have been rounded, and the noise is at least that of rounding
@@ -538,28 +583,33 @@ static void heed_rounding(struct bank *b, double y)
 
 void bank_add(struct bank *b, double t, double y)
 {
+	struct row r = { .t = t, .y = y };
+
 	if (isnan(y))
 		return;
 	if (b->rows == 0 && !(b->par.direction * (b->par.threshold - y) > 0))
 		return;
 	heed_rounding(b, y);
+	for (int k = 0; k < b->par.n_loads; k++)
+		r.sum[k] = b->load[k].sum;
 	if (b->rows == 0) {
-		b->held[b->n_held++] = (struct row){ t, y };
+		b->held[b->n_held++] = r;
 		if (b->n_held == FIRST)
 			drop_outlier(b);
 		if (b->n_held == FIRST)
 			start(b);
 		return;
 	}
-	t -= b->idle;
-	t = running(b, t, damage_of(b, y));
-	if (expect(b, damage_of(b, y), (t - b->last) / b->unit, is_surprised) < 0.9) {
+	r.t -= b->idle;
+	face_loads(b, &r);
+	leave_idle_time(b, &r);
+	if (expect(b, damage_of(b, y), (r.t - b->last) / b->unit, is_surprised) < 0.9) {
 		b->counts.outliers += (unsigned long)b->n_held;
 		b->n_held = 0;
-		take(b, t, y);
+		take(b, &r);
 		return;
 	}
-	b->held[b->n_held++] = (struct row){ t, y };
+	b->held[b->n_held++] = r;
 	if (runs_away(b)) {
 		release(b);
 	} else if (b->n_held == HELD || is_repaired(b)) {
@@ -606,5 +656,5 @@ void bank_pass(struct bank *b, struct state *s)
 	size_t from = offsetof(struct bank, rows);
 
 	state_move(s, (unsigned char *)b + from,
-		sizeof *b + (size_t)b->capacity * sizeof b->trend[0] - from);
+		sizeof *b + (size_t)b->capacity * size_of_trend(&b->par) - from);
 }

@@ -19,6 +19,12 @@
  * filter (Chen, Liu, J. R. Stat. Soc. B 62 (2000) 493).  New particles replace the
  * lightest.
  *
+ * Covariates (a load, a temperature) may scale the rate: with x at the row, the rate is
+ * v + sum w_k f_k(x_k), f(x) = (e^{c (x - x_0)} - 1) / c, and every trend estimates its
+ * own w along with h and v.  With two values of x this can be any dependence; in general
+ * it is log-linear, because c follows the mean w / v.  A prior limits the effect, see
+ * loads.c.
+ *
  * Trends and particles are averaged by the logarithm of their one-step predictive
  * densities, which fades with age as j / k; n rows count as sqrt(18 n), since they are
  * not independent given a wrong model (Raftery, Karny, Ettler, Technometrics 52 (2010)
@@ -36,6 +42,7 @@
  *
  *	struct bank *b = bank_new(&par);
  *	for each row
+ *		bank_load(b, t, x);             (only with covariates)
  *		bank_add(b, t, y);              (y NAN: missing)
  *	if (bank_ready(b))
  *		bank_draw(b, chances, t, par.threshold, life);   (life/trend/passage.h)
@@ -67,6 +74,16 @@ struct bank_shape {
 	int n;                     /* 0: no path, else 2 or more */
 };
 
+/* The value of a covariate in the future: its mean so far, its last value, or value. */
+enum bank_future { BANK_MEAN, BANK_LAST, BANK_VALUE };
+
+struct bank_covariate {
+	enum bank_future future;
+	double value;
+};
+
+enum { BANK_LOADS = 4 }; /* covariates at most */
+
 struct bank_par {
 	double threshold;
 	int direction;                 /* +1 reached from below, -1 from above */
@@ -77,6 +94,8 @@ struct bank_par {
 		  * left out; 0: none */
 	double rate_mean, rate_sd; /* prior of dy/dt; sd 0: none */
 	int steady;                /* 1: no regime changes, neither past nor future */
+	const struct bank_covariate *load; /* [n_loads], the caller's */
+	int n_loads;
 };
 
 enum { BANK_START = 4 }; /* observations before there is a prediction */
@@ -85,6 +104,11 @@ enum { BANK_START = 4 }; /* observations before there is a prediction */
 struct bank *bank_new(const struct bank_par *par);
 void bank_free(struct bank *b);
 void bank_clear(struct bank *b); /* forgets all rows */
+
+/* The covariates x[n_loads] since the row before, up to t; call before bank_add(). */
+void bank_load(struct bank *b, double t, const double *x);
+/* The rate at the last value of covariate k over that at its mean so far. */
+double bank_factor(const struct bank *b, int k);
 
 /* Adds an observation; t must increase; y NAN: none.  Observations before the first one
  * on the good side of the threshold are ignored. */

@@ -1,5 +1,5 @@
 /* bank_state.h - data of a bank, for its rows (bank.c), its coordinates (shapes.c) and
- * the draws from it (passage.c)
+ * the covariates (loads.c) and the draws from it (passage.c)
  */
 #ifndef LIFE_BANK_STATE_H
 #define LIFE_BANK_STATE_H
@@ -13,7 +13,8 @@ enum {
 	HELD = 8              /* rows held back at most */
 };
 
-/* A local trend h + v t.  Covariances are in units of the noise variance. */
+/* A local trend h + v t, where v is the rate at the present load.  Covariances are in
+ * units of the noise variance. */
 struct trend {
 	double h, v, phh, phv, pvv;
 	double sum; /* discounted sum of squared standardised innovations */
@@ -27,8 +28,25 @@ struct trend {
 	unsigned char shape, kind;
 };
 
+/* What a trend knows of a covariate: the change w of v with f, its covariances, and the
+ * precision that its prior has at present. */
+struct tilt {
+	double w, phw, pvw, pww[BANK_LOADS], prior;
+};
+
+/* A covariate, as f(x). */
+struct load {
+	double origin, most; /* x_0, and the largest distance from it */
+	double bend;         /* c */
+	double last;         /* f at the last row */
+	double sum;          /* of f times the time, without the idle time */
+	double taken;        /* sum at the last row that was taken */
+	double at;           /* f that the rates of the trends are for */
+};
+
 struct row {
 	double t, y;
+	double sum[BANK_LOADS]; /* of the loads */
 };
 
 struct bank {
@@ -49,10 +67,13 @@ struct bank {
 	double cut; /* square of the largest standardised innovation */
 	double scored;
 	struct row held[HELD];
+	struct load load[BANK_LOADS];
+	int loaded;                    /* 1: the loads have begun */
+	double loaded_from, loaded_to; /* times */
 	int n_held, event;
 	int trends, fixed; /* trends in use; those of them that are not particles */
 	struct bank_counts counts;
-	struct trend trend[];
+	struct trend trend[]; /* [capacity], then struct tilt [capacity][n_loads] */
 };
 
 /* An observation in a coordinate: h, dh/dD, ln(dh/dD) and its derivative. */
@@ -78,6 +99,25 @@ struct place place_of(const struct bank *b, int shape, double damage);
 /* Advances a trend by a step, and discounts its covariance. */
 void project(const struct bank *b, struct trend *tr, const struct place *p, double step,
 	double keep);
+
+/* --- covariates, loads.c --- */
+
+/* The tilts [n_loads] of a trend of the bank. */
+struct tilt *tilts_of(const struct bank *b, const struct trend *tr);
+/* A trend with its rate at other loads f[n_loads]. */
+struct trend at_loads(const struct bank *b, const struct trend *tr, const double *f);
+/* The mean loads so far, and those assumed for the future. */
+void mean_loads(const struct bank *b, double f[BANK_LOADS]);
+void future_loads(const struct bank *b, double f[BANK_LOADS]);
+/* Turns all trends to the mean loads between the last row taken and this one. */
+void face_loads(struct bank *b, const struct row *r);
+/* Advances, corrects by an observation (gain is of the level, over f), scales. */
+void project_tilts(const struct bank *b, struct trend *tr, double along, double keep);
+void correct_tilts(
+	const struct bank *b, struct trend *tr, double f, double e, double noise);
+void scale_tilts(const struct bank *b, struct trend *tr, double times);
+/* Sets the bends to the effects learnt so far. */
+void bend_loads(struct bank *b);
 
 /* Number of paths of other units. */
 static inline int kin_of(const struct bank *b)

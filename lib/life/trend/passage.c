@@ -131,13 +131,16 @@ static struct crossing prepare(
 	struct place here = place_of(b, tr->shape, b->level),
 		     there = place_of(b, tr->shape, target);
 	double correlation = fmin(0.95, fmax(0, tr->lagged / tr->sum)), s, scale;
-	struct trend now = *tr;
+	double load[BANK_LOADS];
+	struct trend now;
 	struct crossing p = { .limit = there.h,
 		.straight = (target - b->level) * here.slope,
 		.growth = tr->growth,
 		.future = future_of(shape_of(b, tr->shape)),
 		.hazard = shape_of(b, tr->shape)->n > 0 ? KIN_HAZARD / kin_of(b) : 0 };
 
+	future_loads(b, load);
+	now = at_loads(b, tr, load);
 	now.kind = 0;
 	project(b, &now, &here, ahead, 1);
 	s = grown(tr, b->age + ahead);

@@ -32,7 +32,9 @@ struct predict *predict_new(const struct predict_par *par)
 		.steady = par->model != PREDICT_AVERAGE,
 		.more = par->paths,
 		.n_more = par->n_paths,
-		.own = par->own };
+		.own = par->own,
+		.load = par->load,
+		.n_loads = par->n_loads };
 	int exponent = 0;
 
 	if (!p)
@@ -69,13 +71,15 @@ void predict_pass(struct predict *p, struct state *s)
 		bank_pass(p->bank, s);
 }
 
-void predict_add(struct predict *p, double t, double y, double state)
+void predict_add(struct predict *p, double t, double y, double state, const double *load)
 {
 	if (p->now.rows++ == 0)
 		p->now.first = t;
 	p->now.last = t;
 	if (p->history)
 		history_add(p->history, t, (state - p->par.zero) / p->scale);
+	if (p->bank && p->par.n_loads > 0)
+		bank_load(p->bank, t, load);
 	if (p->bank)
 		bank_add(p->bank, t, y);
 }

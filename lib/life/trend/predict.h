@@ -35,6 +35,8 @@ struct predict_par {
 	double horizon; /* longest time ahead; 0: ten times the time elapsed */
 	const struct bank_shape *paths; /* of earlier units, the caller's */
 	int n_paths, own;               /* see struct bank_par */
+	const struct bank_covariate *load;
+	int n_loads;
 	struct adaptive *adaptive; /* the filter of the literal model, the caller's */
 	int draws;                 /* of the literal model: its particles */
 	const struct bank_chances *chances; /* of the others, the caller's */
@@ -45,9 +47,9 @@ struct predict;
 struct predict *predict_new(const struct predict_par *par); /* NULL: no memory */
 void predict_free(struct predict *p);
 void predict_pass(struct predict *p, struct state *s);
-/* Adds a row: the observation, NAN if it is missing, and the filtered state, which only
- * the grey model uses. */
-void predict_add(struct predict *p, double t, double y, double state);
+/* Adds a row: the observation, NAN if it is missing, the filtered state, which only
+ * the grey model uses, and the covariates [n_loads] since the row before. */
+void predict_add(struct predict *p, double t, double y, double state, const double *load);
 /* Drops all rows: they were running-in. */
 void predict_restart(struct predict *p);
 int predict_draws(const struct predict *p);

@@ -1,0 +1,116 @@
+#!/bin/sh
+# aopf --covariate: a column that scales the wear rate
+. "$(dirname "$0")/tap.sh"
+
+# wears SEED POWER: wear as the power of a load that is 1, but 2 in every third block of
+# eight rows and from row 80 on, up to the threshold of 1; noise of 1 %.  It ends at 120.
+wears() {
+	awk -v seed="$1" -v p="$2" 'BEGIN { srand(seed); print "t\ty\tload"; for (t = 0; d < 1; t++) {
+		x = t >= 80 || int(t / 8) % 3 == 2 ? 2 : 1
+		if (t > 0) d += x ^ p / (56 + 64 * 2 ^ p)
+		z = 0
+		for (k = 0; k < 12; k++) z += rand()
+		printf "%d\t%.6f\t%g\n", t, d + 0.01 * (z - 6), x } }'
+}
+lives() { aopf --threshold 1 --direction up --lives-only "$@"; }
+# of all paths at row 84, the life ahead of which is 36: mean absolute error of the median,
+# mean width of the interval, and the number of intervals that contain the life
+judge() {
+	awk -F '\t' '$1 == 84 { e = $4 - 36; error += e < 0 ? -e : e; width += $5 - $3
+		hit += $3 <= 36 && 36 <= $5; n++ }
+		END { print error / n, width / n, hit, n }' "$@"
+}
+for p in 0 3; do
+	for s in 1 2 3 4 5 6 7 8; do
+		wears $s $p >path
+		lives path >plain.$p.$s
+		lives --covariate load:2 path >known.$p.$s
+		lives --covariate load:last path >last.$p.$s
+	done
+	for how in plain known last; do judge $how.$p.? >$how.$p; done
+done
+# Where the load scales the wear by 8, the record without it is a mixture of two rates.
+at_most "the error with a covariate" "$(cut -d ' ' -f 1 known.3)" 6
+at_most "four times that error, against the one without" "$(cut -d ' ' -f 1 known.3 | awk '{ print 4 * $1 }')" \
+	"$(cut -d ' ' -f 1 plain.3)"
+at_most "twice the width with a covariate, against that without" \
+	"$(cut -d ' ' -f 2 known.3 | awk '{ print 2 * $1 }')" "$(cut -d ' ' -f 2 plain.3)"
+at_most "intervals with a covariate that miss the life" "$(cut -d ' ' -f 3,4 known.3 | awk '{ print $2 - $1 }')" 1
+at_most "the error if the last load is to stay" "$(cut -d ' ' -f 1 last.3)" 6
+# A load without influence must not harm: 4 % of the life and a tenth of the width at most.
+for how in known last; do
+	near "the error with a load of no influence, $how" "$(cut -d ' ' -f 1 $how.0)" "$(cut -d ' ' -f 1 plain.0)" 4
+	near "the width with a load of no influence over that without, $how" \
+		"$(cat $how.0 plain.0 | awk '{ w[NR] = $2 } END { print w[1] / w[2] }')" 1 0.25
+	at_most "intervals with a load of no influence that miss the life, $how" \
+		"$(cut -d ' ' -f 3,4 $how.0 | awk '{ print $2 - $1 }')" 1
+done
+# The factor: at 96 the mean of x^3 over the record is (56 + 40 * 8) / 96.
+column factor_load known.3.1 >f
+near "the factor of the load" "$(sed -n 97p f)" 2.04 0.3
+wears 1 3 >path
+near "the factor of a load in tons instead of kilograms" \
+	"$(awk 'NR > 1 { $3 = 1e-3 * $3 - 7 } { print $1 "\t" $2 "\t" $3 }' path | lives --covariate load:last | column factor_load /dev/stdin | sed -n 97p)" \
+	"$(sed -n 97p f)" 0.02
+near "a load of 1 from now on gives eight times the life" \
+	"$(lives --covariate load:1 path | awk -F '\t' '$1 == 96 { print $4 }')" 150 50
+is "a load that never changes does not change a life" \
+	"$(awk -F '\t' -v OFS='\t' 'NR > 1 { $3 = 5 } { print }' path | lives --covariate load | grep '^[0-9]' | cut -f 1-6 | cksum)" \
+	"$(lives path | grep '^[0-9]' | cksum)"
+ok "a load that is never the one assumed widens the interval" sh -c '
+	awk -F "\t" -v OFS="\t" "NR > 1 { \$3 = 5 } { print }" path | aopf --threshold 1 --direction up --lives-only --covariate load:9 |
+	awk -F "\t" "\$1 == 96 { wide = \$5 - \$3 } END { exit !(wide > 30) }"'
+
+# Two covariates, of which one counts.
+awk -F '\t' 'NR == 1 { print $0 "\ttemperature"; next } { print $0 "\t" 20 + (NR * 7) % 11 }' path >two.tsv
+lives --covariate load:2 --covariate temperature two.tsv >two
+near "the life with a second covariate" "$(awk -F '\t' '$1 == 96 { print $4 }' two)" 24 5
+near "the factor of a second covariate" "$(awk -F '\t' '$1 == 96 { print $8 }' two)" 1 0.25
+is "a factor for each covariate" "$(grep -v '^#' two | head -1 | cut -f 7- | tr '\t' ' ')" "factor_load factor_temperature"
+is "every column has a unit" "$(sed -n 's/^# units: //p' two | wc -w | tr -d ' ')" 8
+
+# A load-weighted clock says what the covariate learns: the lives in its time, over the rate
+# at the load assumed.
+awk -F '\t' 'NR == 1 { print $0 "\th"; next } { if (NR > 2) h += $3 ^ 3; print $0 "\t" h + 0 }' path >clock.tsv
+near "the life by a clock of the known law" "$(lives --clock h clock.tsv | awk -F '\t' '$1 == 96 { print $4 / 8 }')" \
+	"$(awk -F '\t' '$1 == 96 { print $4 }' known.3.1)" 4
+near "a covariate of a clock that has it already" \
+	"$(lives --clock h --covariate load clock.tsv | awk -F '\t' '$1 == 96 { print $7 }')" 1 0.15
+
+# A monitor: resumed, several units, threads, JSON.
+for u in 1 2 3; do wears $u 3 | awk -v u="u$u" 'NR > 1 && NR < 102 { print u "\t" $0 }'; done | sort -s -n -k 2 >rows
+{ printf 'unit\tt\ty\tload\n'; cat rows; } >fleet.tsv
+run() { lives --unit unit --covariate load:last "$@"; }
+run fleet.tsv >whole
+head -140 fleet.tsv | run --save state >first
+{ head -1 fleet.tsv; tail -n +141 fleet.tsv; } | run --resume state --save state >second
+{ grep '^u[0-9]' first; grep '^u[0-9]' second; } >parts
+grep '^u[0-9]' whole >rows
+same "stopping and resuming does not change the output" parts rows
+run --threads 2 fleet.tsv >side
+same "threads do not change the output" side whole
+wears 2 3 | head -101 >alone.tsv
+lives --covariate load:last alone.tsv | grep '^[0-9]' >alone
+grep '^u2' whole | cut -f 2- >second
+same "a unit among others has the lives it has alone" second alone
+fails "a state of another covariate" 1 "state: saved with other options" \
+	lives --unit unit --covariate load --resume state fleet.tsv
+is "a factor in a line of JSON" "$(run --json fleet.tsv | tail -1 | sed 's/.*"factor_load":\([0-9]*\)\..*/\1/')" \
+	"$(tail -1 rows | cut -f 8 | cut -d . -f 1)"
+{ printf 'unit\tt\ty\n'; wears 9 3 | awk 'NR > 1 { print "old\t" $1 "\t" $2 }'; } >old.tsv
+near "a covariate beside a fleet" \
+	"$(lives --covariate load:2 --fleet old.tsv alone.tsv | awk -F '\t' '$1 == 96 { print $4 }')" 24 8
+
+fails "a covariate that is missing" 1 "hole.tsv: line 31: load is missing or not finite" sh -c \
+	"awk -F '\t' -v OFS='\t' 'NR == 31 { \$3 = \"nan\" } { print }' path >hole.tsv
+	aopf --threshold 1 --covariate load hole.tsv"
+fails "a column that does not exist" 1 "no column 'heat'" lives --covariate heat path
+fails "a future that is no number" 2 "covariate load:high: want mean, last or a number after the colon" \
+	lives --covariate load:high path
+fails "the same covariate twice" 2 "covariate load: given twice" lives --covariate load --covariate load:last path
+fails "more covariates than four" 2 "covariate: 5 columns, want at most 4" \
+	lives --covariate a --covariate b --covariate c --covariate d --covariate e path
+fails "a covariate for the grey model" 2 "covariate is not for --model grey" \
+	aopf --threshold 1 --model grey --covariate load path
+fails "a covariate without a threshold" 2 "covariate requires --threshold" aopf --covariate load path
+done_testing
