@@ -259,7 +259,8 @@ _SeparatePar = _struct(("rate", c_double), *[(name, c_double) for name in _SEPAR
 _TRANSIT = ("time1", "time2", "diameter", "amplitude", "delay", "velocity", "time1_se",
             "time2_se", "diameter_se", "amplitude_se", "delay_se", "velocity_se", "section",
             "sources", "chi2")
-_VERDICTS = ("alone", "overlap", "misfit", "unresolved")
+_VERDICTS = ("alone", "overlap", "misfit", "unresolved", "shock", "bubble",
+             "impulse", "transient")
 _Transit = _struct(*[(name, c_double) for name in _TRANSIT], ("verdict", c_int))
 _separate_new = _function("wp_separate_new", c_void_p, POINTER(_SeparatePar), POINTER(c_int))
 _separate_free = _function("wp_separate_free", None, c_void_p)

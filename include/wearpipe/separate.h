@@ -28,10 +28,15 @@ extern "C" {
 
 /* How far a row may be trusted. */
 enum wp_verdict {
-	WP_ALONE,     /* one pulse in its section */
-	WP_OVERLAP,   /* several, told apart */
-	WP_MISFIT,    /* not described by the pulse of a particle */
-	WP_UNRESOLVED /* the row stands for sources particles */
+	WP_ALONE,      /* one pulse in its section */
+	WP_OVERLAP,    /* several, told apart */
+	WP_MISFIT,     /* not described by the pulse of a particle */
+	WP_UNRESOLVED, /* the row stands for sources particles */
+	/* No particle: */
+	WP_SHOCK,    /* the same at both sensors at once */
+	WP_BUBBLE,   /* a single lobe that passes with the oil */
+	WP_IMPULSE,  /* a few samples */
+	WP_TRANSIENT /* at one sensor only; the time at the other is NAN */
 };
 
 /* A particle; standard errors end in _se; NAN where a number is not known. */

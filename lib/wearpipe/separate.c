@@ -112,7 +112,10 @@ enum wp_status wp_separate_end(struct wp_separate *s)
 
 	if (status != WP_OK || !separate_doubtful(s->separate))
 		return status;
-	s->reason = "many pulses fit no particle (misfit): the others are doubtful, too";
+	s->reason =
+		separate_doubtful(s->separate) == SEPARATE_COVERED
+			? "events that are no particles hide some of them"
+			: "many pulses fit no particle (misfit): the others are doubtful, too";
 	return WP_NOT_CONVERGED;
 }
 

@@ -4,13 +4,23 @@
 #include <string.h>
 
 static int doubtful_too;
-static double doubtful, unresolved;
+static double doubtful, unresolved, foreign;
 
 struct opt verdict_rows[] = {
 	{ 0, "doubtful", OPT_FLAG, UNIT_NONE, &doubtful_too, 0, 0, NULL,
 		"also use rows whose verdict is neither alone nor overlap", NULL, 0 },
 	OPT_END,
 };
+
+static int is_event(const char *word)
+{
+	static const char *const events[] = { "shock", "bubble", "impulse", "transient" };
+
+	for (size_t i = 0; i < sizeof events / sizeof *events; i++)
+		if (strcmp(word, events[i]) == 0)
+			return 1;
+	return 0;
+}
 
 enum verdict verdict_of(const struct table_in *t, int column)
 {
@@ -21,6 +31,10 @@ enum verdict verdict_of(const struct table_in *t, int column)
 	if (strcmp(word, "unresolved") == 0) {
 		unresolved++;
 		return VERDICT_UNRESOLVED;
+	}
+	if (is_event(word)) {
+		foreign++;
+		return VERDICT_FOREIGN;
 	}
 	doubtful++;
 	return doubtful_too ? VERDICT_SURE : VERDICT_DOUBTFUL;
@@ -35,10 +49,14 @@ void verdict_report(void)
 {
 	stats_set("rows_doubtful", doubtful);
 	stats_set("rows_unresolved", unresolved);
+	stats_set("rows_no_particle", foreign);
 	if (doubtful > 0 && !doubtful_too)
 		warn("%.0f rows are doubtful by their verdict and left out; --doubtful "
 		     "takes them in",
 			doubtful);
+	if (foreign > 0)
+		note("%.0f rows are shocks, bubbles, impulses or transients, and no particles",
+			foreign);
 	if (unresolved > 0)
 		warn("%.0f rows are sections that are not resolved into particles",
 			unresolved);

@@ -9,9 +9,11 @@
 extern struct opt verdict_rows[]; /* for OPT_TABLE */
 
 enum verdict {
-	VERDICT_SURE,      /* alone, overlap, or a table without verdicts */
-	VERDICT_DOUBTFUL,  /* any other word: left out, unless --doubtful is given */
-	VERDICT_UNRESOLVED /* a row that represents many */
+	VERDICT_SURE,       /* alone, overlap, or a table without verdicts */
+	VERDICT_DOUBTFUL,   /* any other word: left out, unless --doubtful is given */
+	VERDICT_UNRESOLVED, /* a row that represents many */
+	VERDICT_FOREIGN     /* shock, bubble, impulse, transient: no particle, left out;
+			       it may lack a time */
 };
 
 /* Of the present row; counts what is doubtful.  column may be -1. */

@@ -154,10 +154,13 @@ static double count_rows(struct table_in *t, struct groups *groups)
 		die(EXIT_RUN, "%s: no column of times: --period needs time1, time or t",
 			table_name(t));
 	do {
-		double time = ct >= 0 ? time_of(t, ct) : NAN, d;
 		enum verdict v = verdict_of(t, cv);
+		double time, d;
 		struct classes *c;
 
+		if (v == VERDICT_FOREIGN)
+			continue;
+		time = ct >= 0 ? time_of(t, ct) : NAN;
 		if (table_part(t) != part && !isnan(period))
 			die(EXIT_RUN,
 				"%s: line %ld: another record begins: count each record separately",

@@ -71,6 +71,10 @@ static void report(const struct separate *s, double rate)
 	stats_set("together", c->together);
 	stats_set("reversed", c->negative);
 	stats_set("misfits_by_velocity", c->foreign);
+	stats_set("shocks", c->events[SEPARATE_SHOCK]);
+	stats_set("bubbles", c->events[SEPARATE_BUBBLE]);
+	stats_set("impulses", c->events[SEPARATE_IMPULSE]);
+	stats_set("transients", c->events[SEPARATE_TRANSIENT]);
 	stats_set("fits", c->fits);
 	stats_set("fit_steps", c->steps);
 	stats_set("searches", c->searches);
@@ -108,12 +112,18 @@ static int is_doubtful(
 	      : doubt == SEPARATE_NOISE
 		      ? xprintf("the noise is %.3g and %.3g times that of the instrument",
 				share[0], share[1])
+	      : doubt == SEPARATE_COVERED
+		      ? xprintf("events that are no particles cover %.2g %% of it, and "
+				"hide the particles there",
+				100 * c->covered / c->samples)
 	      : doubt == SEPARATE_REVERSED
 		      ? xprintf("%.0f of %.0f pulses are reversed", c->negative, c->rows)
 		      : xprintf("%.0f %% of it is unresolved, unlike the record of the "
 				"instrument",
 				100 * c->dense / c->samples);
-	if (kept)
+	if (doubt == SEPARATE_COVERED)
+		warn("%s: %s", name, why);
+	else if (kept)
 		warn("%s: this instrument does not fit %s: %s", kept, name, why);
 	else
 		warn("%s: %s (misfit): the others are doubtful, too", name, why);
@@ -136,12 +146,29 @@ static void tell_together(const struct separate *s, struct found *out, const cha
 		c->together, c->rows);
 }
 
+/* Says how many rows are events that are no particles. */
+static void tell_events(const struct separate *s, struct found *out)
+{
+	const double *n = separate_counters(s)->events;
+	double sum = n[SEPARATE_SHOCK] + n[SEPARATE_BUBBLE] + n[SEPARATE_IMPULSE] +
+		     n[SEPARATE_TRANSIENT];
+
+	if (sum > 0)
+		table_comment(out->particles, "events",
+			"%.0f shocks, %.0f bubbles, %.0f impulses, %.0f transients",
+			n[SEPARATE_SHOCK], n[SEPARATE_BUBBLE], n[SEPARATE_IMPULSE],
+			n[SEPARATE_TRANSIENT]);
+}
+
 /* Writes the instrument that was learned, once its rows are believed. */
 static void keep(const struct separate *s, const struct instrument_place *place)
 {
 	struct instrument view;
 
-	if (separate_instrument(s, &view) && !separate_doubtful(s))
+	enum separate_doubt doubt = separate_doubtful(s);
+
+	if (separate_instrument(s, &view) &&
+		(doubt == SEPARATE_BELIEVED || doubt == SEPARATE_COVERED))
 		instrument_write(place, &view);
 }
 
@@ -204,6 +231,7 @@ int separate_record(struct signal_in *in, struct found *out,
 			file);
 	report(s, (double)out->rate);
 	tell_together(s, out, signal_name(in));
+	tell_events(s, out);
 	doubtful = is_doubtful(s, out, signal_name(in), par.kept ? file : NULL);
 	found_detectable(out, separate_calibration(s));
 	separate_free(s);

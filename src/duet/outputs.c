@@ -15,7 +15,8 @@ enum { SOURCES_SHOWN = 8 };
 	"particle time1 time2 diameter amplitude delay velocity time1_se time2_se " \
 	"diameter_se amplitude_se delay_se velocity_se section sources chi2 verdict"
 
-static const char *const verdicts[] = { "alone", "overlap", "misfit", "unresolved" };
+static const char *const verdicts[] = { "alone", "overlap", "misfit", "unresolved",
+	"shock", "bubble", "impulse", "transient" };
 
 static struct table_out *side_table(const char *path, const struct signal_format *format,
 	const char *option, const char *units, const char *columns)
@@ -92,7 +93,7 @@ static struct transit whole(const struct found *out, struct transit p)
 void found_particle(struct found *out, const struct transit *found)
 {
 	const struct transit every = whole(out, *found), *p = &every;
-	int one = p->verdict != SEPARATE_UNRESOLVED;
+	int one = p->verdict < SEPARATE_UNRESOLVED;
 	struct sizing s;
 
 	sizing_of(p, (double)out->rate, out->spacing, out->kappa, &s);

@@ -85,10 +85,9 @@ void state_open(struct state *s, const char *file, const struct pair *pair)
 }
 
 /* Volume of all particles so far, with those of the present row. */
-static double add_debris(struct state *s, double diameter)
+static double add_debris(struct state *s, enum verdict verdict, double diameter)
 {
 	struct table_in *t = s->table;
-	enum verdict verdict = verdict_of(t, s->verdict_column);
 	double many = verdict != VERDICT_DOUBTFUL;
 
 	if (verdict == VERDICT_UNRESOLVED && s->sources_column >= 0)
@@ -100,8 +99,14 @@ int state_next(struct state *s)
 {
 	struct table_in *t = s->table;
 	double time, value, error = state_options.error * s->scale;
+	enum verdict verdict = VERDICT_SURE;
+	int more;
 
-	if (!table_next(t)) {
+	do
+		more = table_next(t);
+	while (more && s->quantity == PAIR_DEBRIS &&
+		(verdict = verdict_of(t, s->verdict_column)) == VERDICT_FOREIGN);
+	if (!more) {
 		if (s->passed)
 			warn("%s: rows ignored because they have no diameter: %ld",
 				table_name(t), s->passed);
@@ -132,7 +137,7 @@ int state_next(struct state *s)
 		s->passed += isnan(value);
 		stats_add("particles_without_diameter", isnan(value));
 		if (!isnan(value))
-			value = add_debris(s, value);
+			value = add_debris(s, verdict, value);
 	}
 	s->value = value;
 	s->gap = pair_gap(s->pair, s->quantity, value);

@@ -58,9 +58,9 @@ static double time_of(const struct table_in *t, int column, double before)
 }
 
 /* Volume of the particles of the present row. */
-static double volume_of(const struct table_in *t, const struct columns *c, long *without)
+static double volume_of(
+	const struct table_in *t, const struct columns *c, enum verdict v, long *without)
 {
-	enum verdict v = verdict_of(t, c->verdict);
 	double d = table_number(t, c->diameter), many = 1;
 
 	if (v == VERDICT_DOUBTFUL)
@@ -100,8 +100,12 @@ static void sum_rows(struct table_in *t, struct table_out *out)
 	long long rows = 0;
 
 	while (table_next(t)) {
-		double time = time_of(t, c.time, before);
+		enum verdict v = verdict_of(t, c.verdict);
+		double time;
 
+		if (v == VERDICT_FOREIGN)
+			continue;
+		time = time_of(t, c.time, before);
 		if (part < 0)
 			part = table_part(t);
 		if (table_part(t) != part)
@@ -116,7 +120,7 @@ static void sum_rows(struct table_in *t, struct table_out *out)
 				table_column_name(t, c.time), time, PERIODS_MOST);
 		before = time;
 		put_until(out, time, volume, &rows);
-		volume += volume_of(t, &c, &without);
+		volume += volume_of(t, &c, v, &without);
 	}
 	stats_set("rows", (double)rows);
 	stats_set("particles_without_diameter", (double)without);

@@ -84,11 +84,23 @@ static enum separate_status fit_quadrature(
 	return SEPARATE_OK;
 }
 
+/* Ends a section with the row of an event found in the n samples that begin at from. */
+static enum separate_status give_event(struct separate *s, long long from, size_t n,
+	long long to, const struct foreign *event, long long *next)
+{
+	s->carried = s->failures = 0;
+	*next = to;
+	return s->same_shock ? SEPARATE_OK
+			     : separate_give_event(s, from, from + (long long)n, event);
+}
+
 enum separate_status separate_fit_section(
 	struct separate *s, long long from, long long to, int cut, long long *next)
 {
 	struct account a = { .m = s->carried };
 	enum separate_status status;
+	struct foreign event = { .verdict = SEPARATE_MISFIT };
+	int whole = !cut && !s->continuing && !s->par.quadrature && !s->par.sources;
 	int unresolved, shorter;
 	long before = 0, after = 0;
 	size_t n;
@@ -115,12 +127,22 @@ enum separate_status separate_fit_section(
 	status = separate_fit_window(s, from - before, n, cut, &a);
 	if (status == SEPARATE_OK)
 		separate_keep_fit(s, &a);
+	if (status == SEPARATE_OK && whole && (a.m > 1 || !separate_is_described(&a)) &&
+		separate_find_foreign(s, from - before, n, &event) != NUM_OK)
+		return SEPARATE_MEMORY;
+	if (status == SEPARATE_OK && verdict_is_foreign(event.verdict))
+		return give_event(s, from - before, n, to, &event, next);
 	if (status == SEPARATE_OK && s->par.quadrature)
 		status = fit_quadrature(s, from, n, a.m, a.done, &a.goodness);
 	else if (status == SEPARATE_OK && separate_is_described(&a))
 		separate_follow(s, &a);
 	else if (status == SEPARATE_OK && !s->par.sources)
 		status = separate_try_rivals(s, from - before, n, cut, &a);
+	if (status == SEPARATE_OK && whole && a.m == 0 && a.impulses) {
+		if (separate_find_impulse(s, from - before, n, &event) != NUM_OK)
+			return SEPARATE_MEMORY;
+		return give_event(s, from - before, n, to, &event, next);
+	}
 	for (int i = 0; i < a.m; i++)
 		s->pulse[i].t -= (double)before;
 	a.boundary -= (double)before;

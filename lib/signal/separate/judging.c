@@ -57,7 +57,7 @@ static void give_reports(struct separate *s)
 		r->section.source = r->source;
 		for (size_t k = r->first; k < r->first + r->rows; k++)
 			if (s->queue[k].evidence.doubted &&
-				r->section.verdict != SEPARATE_UNRESOLVED)
+				r->section.verdict < SEPARATE_UNRESOLVED)
 				r->section.verdict = SEPARATE_MISFIT;
 		s->par.on_section(s->par.context, &r->section);
 		free(r->source);
@@ -110,7 +110,7 @@ enum separate_status separate_judge_rows(struct separate *s)
 
 		q->evidence.doubted = e[i].doubted;
 		s->counters.misfits += e[i].doubted;
-		if (!e[i].doubted || q->row.verdict == SEPARATE_UNRESOLVED)
+		if (!e[i].doubted || q->row.verdict >= SEPARATE_UNRESOLVED)
 			continue;
 		s->counters.foreign += q->evidence.fits;
 		q->row.verdict = SEPARATE_MISFIT;

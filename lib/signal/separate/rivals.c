@@ -62,8 +62,10 @@ enum separate_status separate_try_rivals(
 		status = separate_fit_window(s, from, n, cut, &rival);
 		found = status == SEPARATE_OK && separate_is_described(&rival) &&
 			rival.m <= most;
-		if (found)
+		if (found) {
 			*a = rival;
+			a->impulses = k == IMPULSES || k == BOTH;
+		}
 	}
 	s->scene = plain;
 	if (found) {

@@ -195,9 +195,37 @@ enum separate_status separate_dense_section(
 	s->counters.dense += length;
 	entry->evidence.group = ++s->group;
 	entry->evidence.fits = !s->strange;
+	s->counters.covered += s->strange ? length : 0;
 	s->strange = 0;
 	out.sources = p->sources;
 	out.dense = &c;
+	return separate_queue_report(s, &out, 1);
+}
+
+enum separate_status separate_give_event(
+	struct separate *s, long long from, long long to, const struct foreign *event)
+{
+	struct entry *entry = separate_queue_entry(s);
+	struct transit *p;
+	struct separate_section out = { .number = s->number, .begin = from, .end = to };
+
+	if (!entry)
+		return SEPARATE_MEMORY;
+	p = &entry->row;
+	p->section = s->number;
+	p->sources = 0;
+	p->t1 = (double)from + event->t[0];
+	p->t2 = (double)(from + s->cal.shift) + event->t[1];
+	p->amplitude = event->amplitude * s->cal.noise[isnan(event->t[0])];
+	p->t1_se = p->t2_se = p->delay_se = p->amplitude_se = NAN;
+	p->correlation = p->phase = p->phase_se = NAN;
+	p->chi2 = out.chi2 = event->chi2;
+	p->verdict = out.verdict = event->verdict;
+	entry->evidence.group = ++s->group;
+	entry->evidence.fits = p->verdict != SEPARATE_TRANSIENT;
+	s->counters.events[p->verdict]++;
+	if (p->verdict != SEPARATE_IMPULSE)
+		s->counters.covered += (double)(to - from);
 	return separate_queue_report(s, &out, 1);
 }
 

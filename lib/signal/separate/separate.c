@@ -277,6 +277,10 @@ enum separate_status separate_end(struct separate *s)
  * negative is doubted, 1 with 0.8, 4 with 0.9 and all that are reversed. */
 static const double REVERSED = 0.9;
 
+/* Particles arrive at any time, so that this share of them is lost: a record is believed
+ * to hold 98 % of those that can be found. */
+static const double COVERED = 0.02;
+
 /* If more than a tenth of the rows, and more than two, fit no particle, the pulses are
  * not those that were learned, and other rows may be wrong, too. */
 enum separate_doubt separate_doubtful(const struct separate *s)
@@ -289,7 +293,8 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 		return SEPARATE_REVERSED;
 	if (s->par.kept && !s->kept.crowded && 2 * c->dense > c->samples)
 		return SEPARATE_CROWD;
-	return c->misfits > 2 && 10 * c->misfits > c->rows + c->unresolved
-		       ? SEPARATE_FOREIGN
-		       : SEPARATE_BELIEVED;
+	if (c->misfits > 2 &&
+		10 * c->misfits > c->rows + c->unresolved + c->events[SEPARATE_TRANSIENT])
+		return SEPARATE_FOREIGN;
+	return c->covered > COVERED * c->samples ? SEPARATE_COVERED : SEPARATE_BELIEVED;
 }

@@ -36,7 +36,7 @@ enum separate_method { SEPARATE_FIT, SEPARATE_MASKS };
 /* One particle that passes both sensors, as estimated from the record. */
 struct transit {
 	long section;     /* from 1 */
-	int sources;      /* particles in this section (or window of it) */
+	int sources;      /* particles in this section (or window of it); of an event 0 */
 	double t1, t2;    /* arrival at either sensor, samples from the start */
 	double amplitude; /* at sensor 1, units of the record */
 	double t1_se, t2_se, delay_se, amplitude_se;
@@ -109,9 +109,11 @@ struct separate_counters {
 	double negative;      /* of rows, with a negative amplitude */
 	double together;      /* doubted because they may be two particles */
 	double foreign;       /* doubted by their velocities, though they fit */
+	double events[SEPARATE_VERDICTS]; /* rows of events that are no particles */
 	double masks, masks_skipped; /* sections demixed, and those with one source, which
 					need not be */
 	double unresolved, dense;    /* rows, and the samples these stand for */
+	double covered; /* samples of events in which no particle would be found */
 };
 
 struct separate;
@@ -145,7 +147,8 @@ enum separate_doubt {
 	SEPARATE_NOISE,    /* the noise is not that of the kept instrument */
 	SEPARATE_REVERSED, /* nine tenths of the pulses are those of the kept instrument
 			      with their sign changed */
-	SEPARATE_CROWD     /* more than half is unresolved, unlike its record */
+	SEPARATE_CROWD,    /* more than half is unresolved, unlike its record */
+	SEPARATE_COVERED   /* particles are lost under events that are none */
 };
 enum separate_doubt separate_doubtful(const struct separate *s);
 /* Frame and channel (0, 1) that made it fail with NOT_FINITE. */

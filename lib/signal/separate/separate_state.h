@@ -3,6 +3,7 @@
 #ifndef SIGNAL_SEPARATE_STATE_H
 #define SIGNAL_SEPARATE_STATE_H
 
+#include "signal/detect/foreign.h"
 #include "signal/detect/sections.h"
 #include "signal/fit/goodness.h"
 #include "signal/separate/quadrature.h"
@@ -64,6 +65,8 @@ struct separate {
 	int failures;   /* consecutive windows that were not resolved */
 	int dense;      /* the rest of this section is one unresolved row */
 	int strange;    /* ... although the section is short */
+	long long shock_end;   /* of the last one that began in two sections */
+	int same_shock;        /* the event found is that one */
 	unsigned char *spikes; /* flags of impulses */
 	size_t spike_room;
 	/* Covariances of the delays of all (so many) pulses; 0: not known. */
@@ -99,6 +102,7 @@ struct account {
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
 	int m, done; /* pulses, and those before the boundary */
 	double boundary;
+	int impulses; /* 1: it leaves out impulses */
 	struct joint_result r;
 	struct goodness goodness;
 };
@@ -144,6 +148,10 @@ enum separate_status separate_judge_rows(struct separate *s);
 
 /* rows.c */
 
+/* Queues the row of an event in [from, to) that is no particle, and reports the section.
+ */
+enum separate_status separate_give_event(
+	struct separate *s, long long from, long long to, const struct foreign *event);
 /* Allocates count samples of s->source, all 0. */
 enum separate_status separate_reserve_sources(struct separate *s, size_t count);
 /* Reports a section at once. */
@@ -204,6 +212,15 @@ void separate_follow(struct separate *s, const struct account *a);
  */
 enum separate_status separate_try_rivals(
 	struct separate *s, long long from, size_t n, int cut, struct account *a);
+
+/* foreign_event.c */
+
+/* Names the event in [from, from + n), if it is one that is no particle. */
+enum num_status separate_find_foreign(
+	struct separate *s, long long from, size_t n, struct foreign *event);
+/* The largest impulse in it; only impulses are there. */
+enum num_status separate_find_impulse(
+	struct separate *s, long long from, size_t n, struct foreign *event);
 
 /* by_fit.c */
 

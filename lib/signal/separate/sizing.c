@@ -11,6 +11,9 @@ void sizing_of(const struct transit *p, double rate, double spacing, double kapp
 	double ra = p->amplitude_se / fabs(p->amplitude), rt = delay_se / delay;
 	double d = sensor_diameter(kappa, velocity, fabs(p->amplitude));
 
+	if (verdict_is_foreign(p->verdict))
+		d = NAN;
+
 	*out = (struct sizing){ .time = { p->t1 / rate, p->t2 / rate },
 		.diameter = d,
 		.amplitude = p->amplitude,

@@ -1,0 +1,85 @@
+/* foreign_event.c - sections that hold an event that is no particle */
+#include "signal/separate/separate_state.h"
+#include <math.h>
+
+/* 1 if the pulse has two lobes, so that a bubble, which has one, is no pulse.  Between
+ * the lobes of a particle's pulse half of the distance lies at equal areas. */
+static int has_two_lobes(const struct shape *shape)
+{
+	enum { STEPS = 400 };
+	double reach = shape_reach(shape), T = STEPS / (2 * reach);
+	double value[STEPS], sum = 0, size = 0;
+
+	shape_sample(shape, STEPS / 2, T, 0, STEPS, value, NULL, NULL);
+	for (int i = 0; i < STEPS; i++) {
+		sum += value[i];
+		size += fabs(value[i]);
+	}
+	return fabs(sum) < 0.5 * size;
+}
+
+static struct foreign_stretch stretch_at(
+	const struct separate *s, const double *y1, const double *y2, size_t n)
+{
+	return (struct foreign_stretch){ .y = { y1, y2 },
+		.hidden = { s->scene.hidden[0], s->scene.hidden[1] },
+		.n = n,
+		.shift = (size_t)s->cal.shift,
+		.lost = s->scene.lost,
+		.duration = s->cal.duration };
+}
+
+/* An event at one sensor, in [from, from + n), is part of a shock if the other sensor has
+ * the same at the same time, which is a transit time away in the aligned channels. */
+static enum num_status look_for_other_half(
+	struct separate *s, long long from, size_t n, struct foreign *event)
+{
+	int at_2 = isnan(event->t[0]);
+	long shift = s->cal.shift;
+	long long begin = at_2 ? from + shift : from, end = begin + (long long)n;
+	struct foreign shock;
+	struct foreign_stretch stretch;
+
+	if (shift <= 0 || end > s->tape[0].clean || end > s->tape[1].clean ||
+		begin < s->tape[1].begin)
+		return NUM_OK;
+	stretch = stretch_at(s, channel_1(s, begin), channel_2(s, begin - shift), n);
+	for (int c = 0; c < 2; c++)
+		if (stretch.hidden[c])
+			stretch.hidden[c] =
+				s->tape[c].hidden + (begin - s->tape[c].begin);
+	if (foreign_at_once(&stretch, &shock) != NUM_OK)
+		return NUM_MEMORY;
+	if (shock.verdict != SEPARATE_SHOCK)
+		return NUM_OK;
+	s->same_shock = begin < s->shock_end;
+	s->shock_end = end;
+	shock.t[!at_2] += (double)(at_2 ? shift : -shift);
+	*event = shock;
+	return NUM_OK;
+}
+
+enum num_status separate_find_foreign(
+	struct separate *s, long long from, size_t n, struct foreign *event)
+{
+	struct foreign_stretch stretch =
+		stretch_at(s, channel_1(s, from), channel_2(s, from), n);
+	int lobes = has_two_lobes(s->cal.shape);
+
+	s->same_shock = 0;
+	if (foreign_find(&stretch, lobes ? s->scene.delta_min : INFINITY,
+		    s->scene.delta_max, event) != NUM_OK)
+		return NUM_MEMORY;
+	return event->verdict == SEPARATE_TRANSIENT
+		       ? look_for_other_half(s, from, n, event)
+		       : NUM_OK;
+}
+
+enum num_status separate_find_impulse(
+	struct separate *s, long long from, size_t n, struct foreign *event)
+{
+	struct foreign_stretch stretch =
+		stretch_at(s, channel_1(s, from), channel_2(s, from), n);
+
+	return foreign_impulse(&stretch, event);
+}

@@ -1,0 +1,73 @@
+#!/bin/sh
+# duet names events that are no particles, and what reads its table leaves them out
+. "$(dirname "$0")/tap.sh"
+
+at_least() {
+	ok "$1 ($2)" test "$2" -ge "$3"
+}
+scene="--uniform 80um:120um --number 40 --duration 20s --snr 30dB --lag 0:0.3ms"
+# verdicts TABLE WORD: how many rows have it
+verdicts() { column verdict "$1" | grep -c "^$2$"; }
+# at_event TABLE WORD: rows with this verdict less than 40 ms behind the beginning of such an event
+# at either sensor, or 15 ms from the middle of a bubble
+at_event() {
+	grep -hv '^#' truth.tsv "$1" | awk -F '\t' -v word="$2" '
+		$1 == "particle" { file++; for (i = 1; i <= NF; i++) c[$i] = i; next }
+		file == 1 { if ($c["kind"] == word) { for (i = 1; i <= 2; i++) t[n++] = $c["time" i] } next }
+		$c["verdict"] == word { hit = 0
+			for (i = 0; i < n; i++)
+				for (k = 1; k <= 2; k++) { x = $c["time" k]; if (x != "nan" && x > t[i] - 0.015 && x < t[i] + 0.04) hit = 1 }
+			sum += hit }
+		END { print sum + 0 }'
+}
+
+for kind in bubble shock impulse; do
+	# shellcheck disable=SC2086 # options are words
+	sensorsim $scene --"${kind}s" 0.7 --seed 3 --truth truth.tsv >s.au
+	duet s.au >found.tsv 2>err
+	status=$?
+	case $kind in
+	impulse) is "impulses: the record is believed" "$status: $(cat err)" "0: " ;;
+	*)
+		is "${kind}s: hide particles, so that the record is doubtful" "$status" 3
+		like "${kind}s: it is said" "$(cat err)" \
+			'^duet: s.au: events that are no particles cover [0-9.]* % of it, and hide'
+		;;
+	esac
+	n=$(column kind truth.tsv | grep -c "^$kind$")
+	named=$(verdicts found.tsv "$kind")
+	at_least "${kind}s: two of three are named" "$named" $((2 * n / 3))
+	is "${kind}s: all rows named so are" "$(at_event found.tsv "$kind")" "$named"
+	is "${kind}s: no other event is named" \
+		"$(column verdict found.tsv | grep -c -e shock -e bubble -e impulse -e transient)" "$named"
+	is "${kind}s: have no size" "$(awk -F '\t' -v kind="$kind" '$17 == kind && $4 != "nan"' found.tsv | wc -l)" 0
+	like "${kind}s: are counted at the end of the table" "$(tail -n 3 found.tsv)" \
+		"# events: .*$named ${kind}s"
+	at_least "${kind}s: particles beside them are found" "$(($(verdicts found.tsv alone) + $(verdicts found.tsv overlap)))" 36
+done
+
+# shellcheck disable=SC2086
+sensorsim $scene --bubbles 0.5 --shocks 0.5 --transients 0.2 --seed 5 --truth truth.tsv >s.au
+duet s.au >found.tsv 2>err
+for kind in bubble shock transient; do
+	at_least "$kind among others: named" "$(verdicts found.tsv $kind)" 1
+	is "$kind among others: rightly" "$(at_event found.tsv $kind)" "$(verdicts found.tsv $kind)"
+done
+awk -F '\t' '!/^#/ && $17 != "shock" && $17 != "bubble" && $17 != "impulse" && $17 != "transient"' found.tsv >bare.tsv
+for way in '' --doubtful; do
+	# shellcheck disable=SC2086
+	is "wear-volume $way leaves them out" "$(wear-volume $way found.tsv 2>err | tail -n +4 | grep -v '^#')" \
+		"$(wear-volume $way bare.tsv 2>err | tail -n +4 | grep -v '^#')"
+	# shellcheck disable=SC2086
+	is "debriscount $way leaves them out" "$(debriscount $way --duration 20s found.tsv 2>err | grep -v '^#')" \
+		"$(debriscount $way --duration 20s bare.tsv 2>err | grep -v '^#')"
+done
+is "rwl leaves them out" "$(rwl --observe debris found.tsv 2>err | grep -v '^#')" \
+	"$(rwl --observe debris bare.tsv 2>err | grep -v '^#')"
+
+# shellcheck disable=SC2086
+sensorsim $scene --seed 4 >s.au
+duet s.au >found.tsv
+is "no event is named in a record of particles" \
+	"$(grep -c -e shock -e bubble -e impulse -e transient -e '# events' found.tsv)" 0
+done_testing
