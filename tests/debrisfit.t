@@ -45,6 +45,16 @@ is 'estimates are below their upper and above their lower ends' "$(awk -F '\t' '
 	{ rows++ }
 	!($c["volume_low"] <= $c["volume"] && $c["volume"] <= $c["volume_high"]) { bad++ } END { print (rows ? bad + 0 : "no rows") }' quick.tsv)" 0
 
+# A surface has the same particles alone as after others.
+contacts 10 4 >four.nrrd
+debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0 four.nrrd 2>said |
+	grep -v '^#' | awk -F '\t' '$1 == 3' >together
+contacts 10 4 | records --pick 4 --output nrrd >last.nrrd
+debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0 last.nrrd 2>said |
+	grep -v '^#' | awk -F '\t' '$1 == 3' >alone
+same 'a surface has the same particles alone as after others' together alone
+is 'it has some' "$(awk 'END { print (NR > 0) }' alone)" 1
+
 # None and one particle: a smooth ball below and above yield.
 ball() { # LOAD: particles and volume, full and surrogate
 	roughgen --points 32 --length 0.25mm --sq 0 --crown 8um | bemcontact --load "$1" --young 210GPa >ball.nrrd
@@ -93,6 +103,8 @@ fails 'a part of a surrogate' 1 'no whole surrogate' debrisgen --yield 355MPa --
 fails 'another table' 1 "no column 'kind'\|kind" debrisgen --yield 355MPa --surrogate full.tsv hidden.nrrd
 fails 'depths of a surrogate' 2 'surrogate excludes --surface' debrisgen --yield 355MPa --surrogate surrogate.tsv --surface x hidden.nrrd
 fails 'steps of a surrogate' 2 'one step' debrisgen --yield 355MPa --young 210GPa --surrogate surrogate.tsv --steps 2 hidden.nrrd
+perl -0777 -pe 's/^stream:=.*\n//m; substr($_, -8) = pack "d<", -1e6' last.nrrd >pulled.nrrd
+fails 'a pressure below zero' 1 'pressure below zero' debrisgen --yield 355MPa --surrogate surrogate.tsv pulled.nrrd
 roughgen --points 32 --length 0.25mm --sq 1um --corr 30um | bemcontact --pressure 50MPa --young 210GPa --boundary periodic >periodic.nrrd
 fails 'a periodic surface' 2 'is periodic' debrisgen --yield 355MPa --surrogate surrogate.tsv periodic.nrrd
 fails 'a fit to a periodic surface' 1 'is periodic' debrisfit --yield 355MPa periodic.nrrd

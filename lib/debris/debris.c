@@ -67,47 +67,59 @@ void debris_contact(
 	const struct debris *d, const double *pressure, struct debris_step *step)
 {
 	const struct stress_par *s = &d->par.stress;
-	double sum = 0, edge = 0, cells = 0, most = 0;
+	double sum = 0, edge = 0, most = 0;
+	size_t cells = 0;
 
 	memset(step, 0, sizeof *step);
-	for (int y = 0; y < s->ny; y++)
+	for (int y = 0; y < s->ny; y++) {
+		const double *row = pressure + grid_at(s->nx, 0, y);
+		int inner = y > 0 && y < s->ny - 1;
+
 		for (int x = 0; x < s->nx; x++) {
-			double p = pressure[grid_at(s->nx, x, y)];
+			double p = row[x];
 
 			sum += p;
 			cells += p > 0;
 			most = p > most ? p : most;
-			if (x == 0 || y == 0 || x == s->nx - 1 || y == s->ny - 1)
-				edge += p;
+			edge += inner ? 0 : p;
 		}
+		if (inner)
+			edge += s->nx > 1 ? row[0] + row[s->nx - 1] : row[0];
+	}
 	step->max_pressure = most;
 	step->load = sum * s->dx * s->dy;
-	step->contact = cells / ((double)s->nx * s->ny);
+	step->contact = (double)cells / ((double)s->nx * s->ny);
 	step->edge_load = sum > 0 && !s->periodic ? edge / sum : 0;
+}
+
+enum debris_status debris_load(struct debris *d, const double *pressure)
+{
+	size_t n = (size_t)d->par.stress.nx * (size_t)d->par.stress.ny;
+
+	if (stress_load(d->stress, pressure))
+		return DEBRIS_NUMBERS;
+	for (size_t i = 0; i < n; i++)
+		if (pressure[i] < 0)
+			return DEBRIS_PULL;
+	return DEBRIS_OK;
 }
 
 enum debris_status debris_step(struct debris *d, double *height, const double *pressure,
 	struct debris_step *step)
 {
 	const struct stress_par *s = &d->par.stress;
-	size_t n = (size_t)s->nx * (size_t)s->ny;
 	struct wear_par wear = { .yield = d->par.yield,
 		.rule = d->par.rule,
 		.spacing = fmin(s->dx, s->dy),
 		.cell = d->par.cell,
 		.offset = d->par.offset,
 		.deepest = DEEPEST * fmax(s->nx * s->dx, s->ny * s->dy) };
+	enum debris_status valid = debris_load(d, pressure);
 	enum wear_status status;
 
 	debris_contact(d, pressure, step);
-	for (size_t i = 0; i < n; i++)
-		if (!isfinite(pressure[i]))
-			return DEBRIS_NUMBERS;
-	for (size_t i = 0; i < n; i++)
-		if (pressure[i] < 0)
-			return DEBRIS_PULL;
-	if (stress_load(d->stress, pressure))
-		return DEBRIS_NUMBERS;
+	if (valid != DEBRIS_OK)
+		return valid;
 	status = wear_remove(d->wear, d->stress, &wear, &step->wear);
 	if (status != WEAR_OK)
 		return status == WEAR_DEEP ? DEBRIS_DEEP : DEBRIS_MEMORY;

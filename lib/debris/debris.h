@@ -59,12 +59,15 @@ void debris_free(struct debris *d);
 void debris_contact(
 	const struct debris *d, const double *pressure, struct debris_step *step);
 
+/* Loads the stress with a pressure, as a step does, without wear. */
+enum debris_status debris_load(struct debris *d, const double *pressure);
+
 /* Wears the surface under a pressure (Pa, >= 0): lowers height (m, positive towards the
  * other body) by the loss of each column. */
 enum debris_status debris_step(struct debris *d, double *height, const double *pressure,
 	struct debris_step *step);
 
-/* Stress under the pressure of the last step. */
+/* Stress under the pressure of the last step, or of debris_load(). */
 struct stress *debris_stress(struct debris *d);
 
 #endif

@@ -140,10 +140,10 @@ static double pressed_by_others(const struct footprints *f, const struct footpri
 
 	for (size_t i = 0; i < f->count; i++) {
 		const struct footprint *o = &f->list[i];
-		double u = o->x - r->x, v = o->y - r->y;
+		double u = o->x - r->x, v = o->y - r->y, square = u * u + v * v;
 
 		if (o != r)
-			sum += o->load / fmax(u * u + v * v, r->spread);
+			sum += o->load / (square > r->spread ? square : r->spread);
 	}
 	return sum;
 }
@@ -217,12 +217,18 @@ enum num_status footprints_find(struct footprints *f, struct stress *stress,
 	spans = stress_reach(stress, 0, yield, f->span);
 	if (stress_at(stress, 0, f->span, spans, f->value))
 		return NUM_MEMORY;
-	for (size_t i = 0; i < n; i++) {
-		if (!(f->value[i] > yield))
-			continue;
-		if (room_for(&f->list, &f->room, f->count + 1, sizeof *f->list))
-			return NUM_MEMORY;
-		flood(f, &f->list[f->count++], i, pressure, yield);
+	/* Row by row, and in each from left to right. */
+	for (size_t k = 0; k < spans; k++) {
+		size_t row = (size_t)f->span[k].y * (size_t)f->par.nx;
+
+		for (size_t i = row + (size_t)f->span[k].begin;
+			i < row + (size_t)f->span[k].end; i++) {
+			if (!(f->value[i] > yield))
+				continue;
+			if (room_for(&f->list, &f->room, f->count + 1, sizeof *f->list))
+				return NUM_MEMORY;
+			flood(f, &f->list[f->count++], i, pressure, yield);
+		}
 	}
 	point_sum_load(f->below, pressure);
 	qsort(f->list, f->count, sizeof *f->list, by_size);

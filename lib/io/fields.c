@@ -160,7 +160,7 @@ static void read_record(struct fields_in *in, struct record *r)
 
 int fields_read(struct fields_in *in, struct record *r)
 {
-	record_free(r);
+	record_clear(r);
 	if (input_peek(in->at.in) >= 0) {
 		read_record(in, r);
 		return 1;

@@ -84,12 +84,22 @@ static void check_length(const struct place *at, uint64_t want)
 			at->record, (unsigned long long)want, (unsigned long long)left);
 }
 
-static double sample(const unsigned char *b, struct samples layout)
+/* Every width bytes a sample of the layout. */
+static void take_samples(const unsigned char *bytes, size_t width, size_t n,
+	struct samples layout, double *to)
 {
-	if (layout.single)
-		return (double)bytes_float(
-			layout.big_endian ? bytes_u32_big(b) : bytes_u32_little(b));
-	return layout.big_endian ? bytes_double_big(b) : bytes_double_little(b);
+	if (layout.single && layout.big_endian)
+		for (size_t i = 0; i < n; i++)
+			to[i] = (double)bytes_float(bytes_u32_big(bytes + i * width));
+	else if (layout.single)
+		for (size_t i = 0; i < n; i++)
+			to[i] = (double)bytes_float(bytes_u32_little(bytes + i * width));
+	else if (layout.big_endian)
+		for (size_t i = 0; i < n; i++)
+			to[i] = bytes_double_big(bytes + i * width);
+	else
+		for (size_t i = 0; i < n; i++)
+			to[i] = bytes_double_little(bytes + i * width);
 }
 
 void parts_begin(struct parts *p, size_t points, size_t width)
@@ -155,12 +165,9 @@ static void take_part(void *context, size_t k, int worker)
 
 	(void)worker;
 	t->parts.checksum[k] = crc32_add(0, bytes, n * width);
-	for (size_t field = 0; field < (size_t)t->r->nfields; field++) {
-		double *to = t->r->data[field] + t->parts.first + k * PART_POINTS;
-
-		for (size_t i = 0; i < n; i++)
-			to[i] = sample(bytes + i * width + field * step, t->layout);
-	}
+	for (size_t field = 0; field < (size_t)t->r->nfields; field++)
+		take_samples(bytes + field * step, width, n, t->layout,
+			t->r->data[field] + t->parts.first + k * PART_POINTS);
 }
 
 void samples_read(struct place *at, struct record *r, struct samples layout)

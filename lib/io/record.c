@@ -6,16 +6,47 @@
 #include <stdlib.h>
 #include <string.h>
 
-void record_free(struct record *r)
+static void free_spares(struct record *r)
 {
+	while (r->spares > 0)
+		free(r->spare[--r->spares]);
+}
+
+/* Keeps the memory of a field, or frees it. */
+static void release(struct record *r, double *data)
+{
+	size_t n = record_points(r);
+
+	if (n != r->spare_points)
+		free_spares(r);
+	r->spare_points = n;
+	if (r->spares < RECORD_FIELDS_MAX)
+		r->spare[r->spares++] = data;
+	else
+		free(data);
+}
+
+void record_clear(struct record *r)
+{
+	struct record empty = { 0 };
+
 	for (int i = 0; i < r->nfields; i++) {
 		free(r->name[i]);
 		free(r->unit[i]);
-		free(r->data[i]);
+		release(r, r->data[i]);
 	}
 	keys_free(&r->keys);
 	free(r->cmd);
-	*r = (struct record){ 0 };
+	memcpy(empty.spare, r->spare, sizeof empty.spare);
+	empty.spares = r->spares;
+	empty.spare_points = r->spare_points;
+	*r = empty;
+}
+
+void record_free(struct record *r)
+{
+	record_clear(r);
+	free_spares(r);
 }
 
 void record_init(struct record *r, int nx, int ny, double dx, double dy)
@@ -41,13 +72,27 @@ size_t record_points(const struct record *r)
 	return (size_t)r->nx * (size_t)r->ny * (size_t)r->nz;
 }
 
+static double *new_data(struct record *r)
+{
+	size_t n = record_points(r);
+	double *data;
+
+	if (n != r->spare_points)
+		free_spares(r);
+	if (r->spares == 0)
+		return xcalloc(n, sizeof *data);
+	data = r->spare[--r->spares];
+	memset(data, 0, n * sizeof *data);
+	return data;
+}
+
 void record_new_field(struct record *r, const char *name, const char *unit)
 {
 	if (r->nfields == RECORD_FIELDS_MAX)
 		die(EXIT_RUN, "more than %d fields in a record", RECORD_FIELDS_MAX);
 	r->name[r->nfields] = xstrdup(name);
 	r->unit[r->nfields] = xstrdup(unit);
-	r->data[r->nfields] = xcalloc(record_points(r), sizeof **r->data);
+	r->data[r->nfields] = new_data(r);
 	r->nfields++;
 }
 

@@ -17,11 +17,18 @@ struct record {
 	long realisation; /* from the key, else the place in the stream from 0 */
 	char *cmd;        /* pipeline that rebuilds this record; NULL if unknown */
 	struct keys keys; /* other key:=value pairs, carried through */
+	/* Memory of earlier fields, each of so many points, for the next ones. */
+	double *spare[RECORD_FIELDS_MAX];
+	int spares;
+	size_t spare_points;
 };
 
 /* A record without fields; frees what r held. */
 void record_init(struct record *r, int nx, int ny, double dx, double dy);
 void record_free(struct record *r);
+/* Empties it, but keeps the memory of its fields for the fields of the next record: in a
+ * long stream the system would otherwise clear the same pages for each. */
+void record_clear(struct record *r);
 /* nx ny nz. */
 size_t record_points(const struct record *r);
 /* Index of a field, -1 if absent. */

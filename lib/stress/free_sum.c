@@ -116,11 +116,12 @@ enum source {
 	POINT,         /* of points: all */
 	POINT_INNER,   /* inside the window of OUTER points */
 	POINT_RING,    /* and outside that of INNER points */
-	POINT_OUTER    /* outside that of INNER points */
+	POINT_OUTER,   /* outside that of INNER points */
+	SOURCES
 };
 
 struct kernel {
-	const struct influence_par *par;
+	struct free_sum *sum;
 	enum source source;
 	int wx;
 	double dx, dy, z; /* offsets are multiples of these */
@@ -129,7 +130,7 @@ struct kernel {
 
 static struct influence kernel_value(const struct kernel *k, double x, double y)
 {
-	const struct influence_par *p = k->par;
+	const struct influence_par *p = &k->sum->par;
 	double z = k->z, rx = RADIUS * p->dx, ry = RADIUS * p->dy;
 	struct influence far;
 
@@ -164,33 +165,46 @@ static void kernel_row(void *context, size_t j, int worker)
 			kernel_value(k, i * k->dx, (double)j * k->dy);
 }
 
-static struct influence *kernel_new(
-	struct free_sum *s, enum source source, double z, double cells, int wx, int wy)
+static struct influence *make_kernel(void *context, int reach_x, int reach_y)
 {
-	struct kernel k = { &s->par, source, wx, cells * s->par.dx, cells * s->par.dy, z,
-		malloc((size_t)wx * (size_t)wy * sizeof *k.value) };
+	struct kernel *k = context;
+	size_t rows = (size_t)reach_y + 1;
 
-	if (k.value)
-		pool_run(s->pool, (size_t)wy, kernel_row, &k);
-	s->work.kernel_cells += (double)wx * wy;
-	return k.value;
+	k->wx = reach_x + 1;
+	k->value = malloc((size_t)k->wx * rows * sizeof *k->value);
+	if (k->value)
+		pool_run(k->sum->pool, rows, kernel_row, k);
+	k->sum->work.kernel_cells += (double)k->wx * (double)rows;
+	return k->value;
 }
 
-/* Convolution of loads with a kernel of the reach that w has: a field for each number. */
-static enum num_status convolve(
-	struct free_sum *s, enum source source, double z, double cells, struct window *w)
+/* Every contact needs the kernels of the surface itself; those of all depths would take
+ * much memory. */
+static int name_of(const struct free_sum *s, enum source source, double z, int cells)
 {
-	struct influence *kernel =
-		kernel_new(s, source, z, cells, w->reach_x + 1, w->reach_y + 1);
-	enum num_status status = NUM_MEMORY;
+	return z == 0 && !s->full ? (int)SOURCES * cells + (int)source : WINDOW_NAMELESS;
+}
+
+/* Convolution of loads with a kernel of the reach that the window has: a field for each
+ * number. */
+static enum num_status convolve(struct free_sum *s, enum source source, double z,
+	int cells, const struct window *window)
+{
+	struct kernel k = { .sum = s,
+		.source = source,
+		.dx = cells * s->par.dx,
+		.dy = cells * s->par.dy,
+		.z = z };
+	struct window w = *window;
+	enum num_status status;
 	double transforms = 0;
 
-	w->par = &s->par;
-	w->kernel = kernel;
-	w->pool = s->pool;
-	if (kernel)
-		status = window_sum(w, &s->kept, &transforms);
-	free(kernel);
+	w.par = &s->par;
+	w.make = make_kernel;
+	w.maker = &k;
+	w.name = name_of(s, source, z, cells);
+	w.pool = s->pool;
+	status = window_sum(&w, &s->kept, &transforms);
 	s->work.transforms += transforms;
 	return status;
 }

@@ -1,4 +1,5 @@
 #include "stress/point_sum.h"
+#include "num/lanes.h"
 #include "stress/influence.h"
 
 #include <math.h>
@@ -7,6 +8,7 @@
 
 enum {
 	BLOCK = 8, /* cells to the side of the smallest square */
+	LIST = 64, /* points whose stress is summed together */
 	SIZES = 20,
 	DEPTHS = 9 /* up to NEAR cells: the next one is 2.8 deep */
 };
@@ -32,28 +34,31 @@ struct size {
 	struct square *square;
 };
 
-/* Stress by a cell at this depth, next to it or on it. */
-struct element {
-	int known;
-	double number[STRESS_NUMBERS];
-};
-
 struct point_sum {
 	struct stress_par par;
 	struct influence_par influence;
 	double cell; /* the longer side */
 	const double *pressure;
+	/* Places of the loaded cells in their smallest square, those of square i from
+	 * begin[i] to begin[i + 1]. */
+	unsigned char *place;
+	size_t *begin;
 	struct size size[SIZES];
 	int sizes;
 	struct square *squares; /* of all sizes */
-	struct element element[DEPTHS][3][3];
+	/* Stress by a cell at each depth, next to it or on it. */
+	double element[DEPTHS][3][3][STRESS_NUMBERS];
+	int known[DEPTHS];
 };
 
-/* Where the stress is wanted, and what has been summed of it. */
+/* Where the stress is wanted, what has been summed of it, and points still to be summed:
+ * their offsets along and across the shear, and loads. */
 struct point {
 	int ix, iy, k;
 	double x, y, z;
 	double number[STRESS_NUMBERS];
+	int count;
+	double along[LIST], across[LIST], load[LIST];
 };
 
 static int halves(int n)
@@ -86,8 +91,11 @@ struct point_sum *point_sum_new(const struct stress_par *par)
 		ny = halves(ny);
 	}
 	s->squares = next = calloc(count, sizeof *s->squares);
-	if (!next) {
-		free(s);
+	s->begin =
+		calloc((size_t)s->size->nx * (size_t)s->size->ny + 1, sizeof *s->begin);
+	s->place = calloc((size_t)par->nx * (size_t)par->ny, 1);
+	if (!next || !s->begin || !s->place) {
+		point_sum_free(s);
 		return NULL;
 	}
 	for (int l = 0; l < s->sizes; l++) {
@@ -102,6 +110,8 @@ void point_sum_free(struct point_sum *s)
 	if (!s)
 		return;
 	free(s->squares);
+	free(s->begin);
+	free(s->place);
 	free(s);
 }
 
@@ -117,9 +127,19 @@ int point_sum_nearest(const struct point_sum *s, double z)
 	return k > 0 ? (int)(k + 0.5) : 0;
 }
 
+static int smaller(int a, int b)
+{
+	return a < b ? a : b;
+}
+
 static double centre(int cell, double width)
 {
 	return ((double)cell + 0.5) * width;
+}
+
+static double pressure_at(const struct point_sum *s, int x, int y)
+{
+	return s->pressure[(size_t)y * (size_t)s->par.nx + (size_t)x];
 }
 
 static void add_load(struct square *to, double load, double x, double y)
@@ -138,21 +158,42 @@ static void find_centroids(struct size *size)
 		}
 }
 
-void point_sum_load(struct point_sum *s, const double *pressure)
+/* Lists the loaded cells, and adds them to the squares, which are empty. */
+static void list_cells(struct point_sum *s)
 {
 	const struct stress_par *g = &s->par;
+	const struct size *small = s->size;
+	size_t n = 0;
+
+	for (int square = 0; square < small->nx * small->ny; square++) {
+		int x0 = square % small->nx * BLOCK, y0 = square / small->nx * BLOCK;
+		int wx = smaller(BLOCK, g->nx - x0), wy = smaller(BLOCK, g->ny - y0);
+
+		s->begin[square] = n;
+		for (int y = 0; y < wy; y++)
+			for (int x = 0; x < wx; x++) {
+				double p = pressure_at(s, x0 + x, y0 + y);
+
+				if (!(p > 0))
+					continue;
+				s->place[n++] = (unsigned char)(y * BLOCK + x);
+				add_load(&small->square[square], p, centre(x0 + x, g->dx),
+					centre(y0 + y, g->dy));
+			}
+	}
+	s->begin[small->nx * small->ny] = n;
+}
+
+void point_sum_load(struct point_sum *s, const double *pressure)
+{
 	struct size *small = s->size, *large;
 
-	s->pressure = pressure;
 	for (int l = 0; l < s->sizes; l++)
 		memset(s->size[l].square, 0,
 			(size_t)s->size[l].nx * (size_t)s->size[l].ny *
 				sizeof *s->size[l].square);
-	for (int y = 0; y < g->ny; y++)
-		for (int x = 0; x < g->nx; x++)
-			add_load(&small->square[y / BLOCK * small->nx + x / BLOCK],
-				pressure[(size_t)y * (size_t)g->nx + (size_t)x],
-				centre(x, g->dx), centre(y, g->dy));
+	s->pressure = pressure;
+	list_cells(s);
 	find_centroids(small);
 	for (; small + 1 < s->size + s->sizes; small = large) {
 		large = small + 1;
@@ -166,57 +207,109 @@ void point_sum_load(struct point_sum *s, const double *pressure)
 	}
 }
 
-static void sum_numbers(const struct point_sum *s, const struct influence *f, double load,
-	double number[STRESS_NUMBERS])
+/* Stress of points on the list, two at a time: the sum of pressure and friction as
+ * stress_point() gives it. */
+struct sums {
+	lanes xx, yy, xy, xz, yz; /* x along the shear; xx and yy less zz */
+};
+
+static inline void sum_two(
+	const struct point_sum *s, const struct point *at, int i, int n, struct sums *t)
 {
-	for (int c = 0; c < STRESS_NUMBERS; c++)
-		number[c] += load * (f->normal[c] + s->par.mu * f->shear[c]);
+	double k = 1 - 2 * s->par.nu, mu = s->par.mu, z = at->z;
+	lanes x = lanes_load(at->along + i, n), y = lanes_load(at->across + i, n);
+	lanes p = lanes_load(at->load + i, n), r2 = x * x + y * y + z * z;
+	lanes r = { sqrt(r2[0]), sqrt(r2[1]) }, ir = 1 / r, id = 1 / (r + z);
+	lanes ir3 = ir * ir * ir, h = k * ir * id * id, f = 3 * ir3 * ir * ir;
+	lanes m = h * ir * ir * (2 * r + z) - f * z, l = k * (z * ir3 - ir * id);
+	lanes sm = h * ir * ir * id * (3 * r + z) - f, sk = k * ir3 - h;
+	lanes zz = f * (z + mu * x) * z;
+
+	lanes_add(&t->xx,
+		p * (m * x * x + l + mu * x * (sm * x * x + sk - 2 * h) + zz * z), n);
+	lanes_add(&t->yy, p * (m * y * y + l + mu * x * (sm * y * y + sk) + zz * z), n);
+	lanes_add(&t->xy, p * y * (m * x + mu * (sm * x * x - h)), n);
+	lanes_add(&t->xz, -p * zz * x, n);
+	lanes_add(&t->yz, -p * zz * y, n);
+}
+
+static void sum_list(const struct point_sum *s, struct point *at)
+{
+	double scale = s->par.dx * s->par.dy / (2 * M_PI);
+	int swap = s->par.axis, i = 0;
+	struct sums t = { .xx = lanes_all(0) };
+
+	for (; i + 2 <= at->count; i += 2)
+		sum_two(s, at, i, 2, &t);
+	if (i < at->count)
+		sum_two(s, at, i, 1, &t);
+	at->number[swap ? DEV_Y : DEV_X] += scale * (t.xx[0] + t.xx[1]);
+	at->number[swap ? DEV_X : DEV_Y] += scale * (t.yy[0] + t.yy[1]);
+	at->number[DEV_XY] += scale * (t.xy[0] + t.xy[1]);
+	at->number[swap ? DEV_YZ : DEV_XZ] += scale * (t.xz[0] + t.xz[1]);
+	at->number[swap ? DEV_XZ : DEV_YZ] += scale * (t.yz[0] + t.yz[1]);
+	at->count = 0;
 }
 
 static void add_point(
 	const struct point_sum *s, struct point *at, double load, double x, double y)
 {
-	struct influence f = influence_point(&s->influence, at->x - x, at->y - y, at->z);
+	double u = at->x - x, v = at->y - y;
 
-	sum_numbers(s, &f, load, at->number);
+	if (at->count == LIST)
+		sum_list(s, at);
+	at->along[at->count] = s->par.axis ? v : u;
+	at->across[at->count] = s->par.axis ? u : v;
+	at->load[at->count++] = load;
+}
+
+/* The nine cells on and around the point, from one quarter of them. */
+static void know_elements(struct point_sum *s, int k, double z)
+{
+	for (int j = 0; j <= 1; j++)
+		for (int i = 0; i <= 1; i++) {
+			struct influence f = influence_element(
+				&s->influence, i * s->par.dx, j * s->par.dy, z);
+
+			for (int m = 0; m < 4; m++) {
+				int mx = m & 1, my = m >> 1;
+				double *to = s->element[k][mx ? 1 - i : 1 + i]
+						       [my ? 1 - j : 1 + j];
+
+				for (int c = 0; c < STRESS_NUMBERS; c++)
+					to[c] = influence_image(&s->influence, &f,
+						(enum stress_number)c, mx && i, my && j);
+			}
+		}
+	s->known[k] = 1;
 }
 
 /* A cell that is i, j cells before the point. */
 static void add_element(struct point_sum *s, struct point *at, double load, int i, int j)
 {
-	struct element *e = &s->element[at->k][i + 1][j + 1];
-
-	if (!e->known) {
-		struct influence f = influence_element(
-			&s->influence, i * s->par.dx, j * s->par.dy, at->z);
-
-		sum_numbers(s, &f, 1, e->number);
-		e->known = 1;
-	}
+	if (!s->known[at->k])
+		know_elements(s, at->k, at->z);
 	for (int c = 0; c < STRESS_NUMBERS; c++)
-		at->number[c] += load * e->number[c];
+		at->number[c] += load * s->element[at->k][i + 1][j + 1][c];
 }
 
-/* Cell by cell. */
-static void add_cells(struct point_sum *s, struct point *at, int x0, int y0)
+/* Cell by cell of a smallest square. */
+static void add_cells(struct point_sum *s, struct point *at, int x, int y)
 {
-	const struct stress_par *g = &s->par;
-	int x_end = x0 + BLOCK < g->nx ? x0 + BLOCK : g->nx;
-	int y_end = y0 + BLOCK < g->ny ? y0 + BLOCK : g->ny;
 	double depth = at->z / s->cell;
+	int square = y * s->size->nx + x;
 
-	for (int iy = y0; iy < y_end; iy++)
-		for (int ix = x0; ix < x_end; ix++) {
-			double p = s->pressure[(size_t)iy * (size_t)g->nx + (size_t)ix];
-			int i = at->ix - ix, j = at->iy - iy;
+	for (size_t n = s->begin[square]; n < s->begin[square + 1]; n++) {
+		int ix = x * BLOCK + s->place[n] % BLOCK,
+		    iy = y * BLOCK + s->place[n] / BLOCK;
+		int i = at->ix - ix, j = at->iy - iy;
+		double p = pressure_at(s, ix, iy);
 
-			if (!(p > 0))
-				continue;
-			if (i * i + j * j + depth * depth < NEAR * NEAR)
-				add_element(s, at, p, i, j);
-			else
-				add_point(s, at, p, centre(ix, g->dx), centre(iy, g->dy));
-		}
+		if (i * i + j * j + depth * depth < NEAR * NEAR)
+			add_element(s, at, p, i, j);
+		else
+			add_point(s, at, p, centre(ix, s->par.dx), centre(iy, s->par.dy));
+	}
 }
 
 /* A square of size l, or the smaller ones that it consists of. */
@@ -233,7 +326,7 @@ static void add_square(struct point_sum *s, struct point *at, int l, int x, int 
 		return;
 	}
 	if (l == 0) {
-		add_cells(s, at, x * BLOCK, y * BLOCK);
+		add_cells(s, at, x, y);
 		return;
 	}
 	for (int j = 2 * y; j < 2 * y + 2 && j < s->size[l - 1].ny; j++)
@@ -254,5 +347,6 @@ double point_sum_at(struct point_sum *s, size_t cell, int k)
 	at.x = centre(at.ix, g->dx);
 	at.y = centre(at.iy, g->dy);
 	add_square(s, &at, s->sizes - 1, 0, 0);
+	sum_list(s, &at);
 	return criterion->value(at.number);
 }

@@ -1,5 +1,6 @@
 #include "stress/stress.h"
 #include "num/fft.h"
+#include "num/lanes.h"
 #include "num/status.h"
 #include "stress/free_sum.h"
 #include "stress/influence.h"
@@ -7,6 +8,7 @@
 #include "stress/wave_sum.h"
 
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,12 +29,17 @@ struct stress {
 	/* Pressures are scaled by a power of two near the largest one, so that squares
 	 * neither overflow nor underflow. */
 	double unit;
-	double *pressure; /* of the last stress_load(), unless lent to wave */
-	double total;     /* N */
-	int loaded;       /* some cell is */
-	int side, bx, by; /* cells to a block's side, blocks */
+	double *pressure;    /* of the last stress_load(), unless lent to wave */
+	const double *given; /* the same as the caller has it */
+	double total;        /* N */
+	int loaded;          /* some cell is */
+	int side, bx, by;    /* cells to a block's side, blocks */
 	struct block *blocks;
 	double *row_load, load; /* of each row of blocks, and of all */
+	/* The loaded blocks row by row, those of row j from begin[j] to begin[j + 1]: the
+	 * ranges of their loaded cells, and their loads. */
+	double *low_x, *high_x, *low_y, *high_y, *weight;
+	size_t *begin;
 	char *held; /* of the blocks: no node can fail at held_depth and below */
 	double held_depth, held_limit;
 	double point; /* largest equivalent stress times distance^2 */
@@ -109,18 +116,24 @@ struct stress *stress_new(const struct stress_par *par)
 	s->by = (par->ny + s->side - 1) / s->side;
 	s->blocks = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->blocks);
 	s->row_load = calloc((size_t)s->by, sizeof *s->row_load);
+	s->begin = calloc((size_t)s->by + 1, sizeof *s->begin);
+	s->low_x = calloc(5 * (size_t)s->bx * (size_t)s->by, sizeof *s->low_x);
 	s->held = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->held);
 	s->pressure = fft_alloc(n);
 	if (par->periodic)
 		s->wave = wave_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
 	else
 		s->free = free_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
-	if (!s->blocks || !s->row_load || !s->held || !s->pressure ||
-		(!s->wave && !s->free)) {
+	if (!s->blocks || !s->row_load || !s->begin || !s->low_x || !s->held ||
+		!s->pressure || (!s->wave && !s->free)) {
 		stress_free(s);
 		errno = ENOMEM;
 		return NULL;
 	}
+	s->high_x = s->low_x + (size_t)s->bx * (size_t)s->by;
+	s->low_y = s->high_x + (size_t)s->bx * (size_t)s->by;
+	s->high_y = s->low_y + (size_t)s->bx * (size_t)s->by;
+	s->weight = s->high_y + (size_t)s->bx * (size_t)s->by;
 	s->point = largest_point_stress(s);
 	return s;
 }
@@ -133,6 +146,8 @@ void stress_free(struct stress *s)
 	wave_sum_free(s->wave);
 	free(s->blocks);
 	free(s->row_load);
+	free(s->begin);
+	free(s->low_x);
 	free(s->held);
 	fft_free(s->pressure);
 	free(s);
@@ -160,12 +175,40 @@ static double unit_of(const double *pressure, size_t n)
 	int exponent;
 
 	for (size_t i = 0; i < n; i++) {
-		if (!isfinite(pressure[i]))
+		double p = fabs(pressure[i]);
+
+		if (!(p <= DBL_MAX))
 			return 0;
-		most = fmax(most, fabs(pressure[i]));
+		most = p > most ? p : most;
 	}
 	frexp(most, &exponent);
 	return most > 0 ? ldexp(0.5, exponent) : 1;
+}
+
+static void list_blocks(struct stress *s)
+{
+	size_t n = 0;
+
+	s->load = 0;
+	for (int j = 0; j < s->by; j++) {
+		s->row_load[j] = 0;
+		s->begin[j] = n;
+		for (int i = 0; i < s->bx; i++) {
+			const struct block *b =
+				&s->blocks[(size_t)j * (size_t)s->bx + (size_t)i];
+
+			if (b->load == 0)
+				continue;
+			s->row_load[j] += b->load;
+			s->low_x[n] = b->x0;
+			s->high_x[n] = b->x1;
+			s->low_y[n] = b->y0;
+			s->high_y[n] = b->y1;
+			s->weight[n++] = b->load;
+		}
+		s->load += s->row_load[j];
+	}
+	s->begin[s->by] = n;
 }
 
 enum num_status stress_load(struct stress *s, const double *pressure)
@@ -177,6 +220,7 @@ enum num_status stress_load(struct stress *s, const double *pressure)
 		return NUM_DOMAIN;
 	}
 	s->unit = unit;
+	s->given = pressure;
 	s->total = 0;
 	s->loaded = 0;
 	s->held_depth = INFINITY;
@@ -192,14 +236,7 @@ enum num_status stress_load(struct stress *s, const double *pressure)
 			s->total += p * area * unit;
 			add_to_block(s, (int)x, (int)y, fabs(p) * area);
 		}
-	s->load = 0;
-	for (int j = 0; j < s->by; j++) {
-		s->row_load[j] = 0;
-		for (int i = 0; i < s->bx; i++)
-			s->row_load[j] +=
-				s->blocks[(size_t)j * (size_t)s->bx + (size_t)i].load;
-		s->load += s->row_load[j];
-	}
+	list_blocks(s);
 	if (s->wave)
 		wave_sum_load(s->wave, s->pressure);
 	else
@@ -217,48 +254,54 @@ struct stress_work stress_work(const struct stress *s)
 
 /* Nodes that may fail */
 
-/* Distance between two ranges of cells, from node centre to the edge of the elements of
+/* Distance between ranges of cells, from node centre to the edge of the elements of
  * loaded cells, which reach over half of the next. */
-static double apart(int a0, int a1, int b0, int b1, double size)
+static inline lanes apart(double low, double high, lanes from, lanes to, double size)
 {
-	int cells = b0 > a1 ? b0 - a1 : a0 > b1 ? a0 - b1 : 0;
+	lanes cells = lanes_max(from - high, low - to) - 1;
 
-	return cells ? (cells - 1) * size : 0;
+	return lanes_max(cells, lanes_all(0)) * size;
 }
 
 /* What the loads of row j of the blocks may add in block bx, by. */
 static double bound_row(const struct stress *s, int bx, int by, int j, double z)
 {
-	const struct block *b = &s->blocks[(size_t)j * (size_t)s->bx];
-	int x0 = bx * s->side, y0 = by * s->side, last = s->side - 1;
-	double sum = 0;
+	double x = bx * s->side, y = by * s->side, last = s->side - 1;
+	lanes sum = lanes_all(0);
 
-	for (int i = 0; i < s->bx; i++, b++) {
-		double away_x, away_y;
+	for (size_t i = s->begin[j]; i < s->begin[j + 1]; i += 2) {
+		int n = i + 1 < s->begin[j + 1] ? 2 : 1;
+		lanes away_x = apart(x, x + last, lanes_load(s->low_x + i, n),
+			lanes_load(s->high_x + i, n), s->par.dx);
+		lanes away_y = apart(y, y + last, lanes_load(s->low_y + i, n),
+			lanes_load(s->high_y + i, n), s->par.dy);
 
-		if (b->load == 0)
-			continue;
-		away_x = apart(x0, x0 + last, b->x0, b->x1, s->par.dx);
-		away_y = apart(y0, y0 + last, b->y0, b->y1, s->par.dy);
 		/* Infinite where the node may lie on the load. */
-		sum += b->load * s->point / (away_x * away_x + away_y * away_y + z * z);
+		lanes_add(&sum,
+			lanes_load(s->weight + i, n) * s->point /
+				(away_x * away_x + away_y * away_y + z * z),
+			n);
 	}
-	return sum;
+	return sum[0] + sum[1];
 }
 
 /* Adds row by row from the block, until the sum exceeds the limit, or cannot reach it
- * even if the remaining load were all in the next rows. */
+ * even if the remaining load were all in the next rows.  The block's own load, at no
+ * distance, is often enough. */
 static int block_may_fail(const struct stress *s, int bx, int by, double z, double limit)
 {
+	double own = s->blocks[(size_t)by * (size_t)s->bx + (size_t)bx].load;
 	double sum = 0, rest = s->load;
 
+	if (own > 0 && own * s->point > limit * (z * z))
+		return 1;
 	for (int d = 0; d < s->by; d++) {
 		double away = d * s->side * s->par.dy;
 
 		for (int side = 0; side < (d > 0 ? 2 : 1); side++) {
 			int j = side ? by - d : by + d;
 
-			if (j < 0 || j >= s->by)
+			if (j < 0 || j >= s->by || s->row_load[j] == 0)
 				continue;
 			sum += bound_row(s, bx, by, j, z);
 			rest -= s->row_load[j];
@@ -333,10 +376,34 @@ double stress_deep(const struct stress *s, double z)
 
 /* Sums */
 
+/* The last numbers, from DEV_XZ on, are tractions, which on the surface are those of the
+ * load there. */
+enum { SURFACE_NUMBERS = DEV_XZ };
+
 struct take {
 	const struct stress *s;
 	double *out;
+	int on_surface;
 };
+
+/* The numbers of a node of a span. */
+static inline void node_numbers(const struct take *t, const struct stress_span *span,
+	int x, const double *const number[STRESS_NUMBERS], int numbers,
+	double v[STRESS_NUMBERS])
+{
+	const struct stress *s = t->s;
+	int known = t->on_surface ? SURFACE_NUMBERS : numbers;
+	double p;
+
+	for (int c = 0; c < known; c++)
+		v[c] = number[c][x - span->begin];
+	if (!t->on_surface)
+		return;
+	p = s->given[(size_t)span->y * (size_t)s->par.nx + (size_t)x] / s->unit;
+	v[DEV_XZ] = s->par.axis == 0 ? -s->par.mu * p : 0;
+	v[DEV_YZ] = s->par.axis == 1 ? -s->par.mu * p : 0;
+	v[DEV_ZZ] = -p;
+}
 
 static void take_equivalent(void *context, const struct stress_span *span,
 	const double *const number[STRESS_NUMBERS])
@@ -345,10 +412,9 @@ static void take_equivalent(void *context, const struct stress_span *span,
 	double *out = t->out + (size_t)span->y * (size_t)t->s->par.nx;
 
 	for (int x = span->begin; x < span->end; x++) {
-		double v[STRESS_DEVIATOR];
+		double v[STRESS_NUMBERS];
 
-		for (int c = 0; c < STRESS_DEVIATOR; c++)
-			v[c] = number[c][x - span->begin];
+		node_numbers(t, span, x, number, STRESS_DEVIATOR, v);
 		out[x] = t->s->unit * t->s->criterion->value(v);
 	}
 }
@@ -365,27 +431,34 @@ static void take_tensor(void *context, const struct stress_span *span,
 	const struct take *t = context;
 	size_t nx = (size_t)t->s->par.nx, n = nx * (size_t)t->s->par.ny;
 
-	for (int c = 0; c < STRESS_NUMBERS; c++)
-		for (int x = span->begin; x < span->end; x++) {
-			int k = x - span->begin;
-			double zz = c == DEV_X || c == DEV_Y ? number[DEV_ZZ][k] : 0;
+	for (int x = span->begin; x < span->end; x++) {
+		double v[STRESS_NUMBERS];
 
+		node_numbers(t, span, x, number, STRESS_NUMBERS, v);
+		v[DEV_X] += v[DEV_ZZ];
+		v[DEV_Y] += v[DEV_ZZ];
+		for (int c = 0; c < STRESS_NUMBERS; c++)
 			t->out[place[c] * n + (size_t)span->y * nx + (size_t)x] =
-				t->s->unit * (number[c][k] + zz);
-		}
+				t->s->unit * v[c];
+	}
 }
 
-static enum num_status sum(struct stress *s, double z, const struct stress_want *want)
+static enum num_status sum(struct stress *s, double z, struct stress_want *want)
 {
+	struct take *t = want->context;
+
 	for (size_t i = 0; i < want->count; i++)
 		s->nodes += want->span[i].end - want->span[i].begin;
+	t->on_surface = z == 0;
+	if (t->on_surface)
+		want->numbers = SURFACE_NUMBERS;
 	return s->wave ? wave_sum_at(s->wave, z, want) : free_sum_at(s->free, z, want);
 }
 
 enum num_status stress_at(struct stress *s, double z, const struct stress_span *span,
 	size_t count, double *value)
 {
-	struct take t = { s, value };
+	struct take t = { s, value, 0 };
 	struct stress_want want = { span, count, STRESS_DEVIATOR, take_equivalent, &t };
 
 	if (count > 0 && s->loaded)
@@ -400,7 +473,7 @@ enum num_status stress_tensor(struct stress *s, double z, double *tensor)
 {
 	size_t rows = (size_t)s->par.ny, n = rows * (size_t)s->par.nx;
 	struct stress_span *span = malloc(rows * sizeof *span);
-	struct take t = { s, tensor };
+	struct take t = { s, tensor, 0 };
 	struct stress_want want = { span, rows, STRESS_NUMBERS, take_tensor, &t };
 	enum num_status status = NUM_MEMORY;
 

@@ -11,6 +11,10 @@
  * 1.46, 1.48 s with 96, 112, 160, 192, 256 (least of five runs each). */
 enum { TILE = 128 };
 
+/* Points of a plane up to which transformed kernels are kept: of the windows that
+ * free_sum.c makes on more than a few cells, all. */
+enum { KEPT_POINTS = 256 * 256 };
+
 /* Tiles along an axis: count of them, each of so many nodes, on so many points. */
 struct cut {
 	int count, nodes, lead; /* lead: points before the first node */
@@ -20,6 +24,7 @@ struct cut {
 struct tiling {
 	const struct window *w;
 	struct cut x, y;
+	int reach_x, reach_y; /* of the kernel */
 	struct fft_plane *fft;
 	size_t stride, room, spectrum; /* of the points; coefficients */
 	/* For each worker: */
@@ -28,6 +33,7 @@ struct tiling {
 	double complex *kernel[STRESS_NUMBERS];
 	unsigned char *wanted;
 	double *transforms; /* of each tile */
+	int made;           /* kernels transformed */
 };
 
 /* A single tile needs zeros behind its nodes only, one of many the loads on both sides.
@@ -46,12 +52,19 @@ static struct cut cut_axis(int m, int reach)
 	return c;
 }
 
+/* The largest reach that fits on the plane, if all points are in reach of each other: the
+ * kernel then depends on the plane alone. */
+static int kernel_reach(const struct cut *c, int m, int reach)
+{
+	return c->count == 1 && reach == m - 1 ? (int)c->points / 2 - 1 : reach;
+}
+
 /* A kernel on the plane, negative offsets wrapped around.  On a line of symmetry what
  * is odd across it vanishes. */
-static void put_kernel(struct tiling *t, enum stress_number number, double scale)
+static void put_kernel(struct tiling *t, const struct influence *kernel,
+	enum stress_number number, double scale)
 {
 	const struct influence_par *par = t->w->par;
-	const struct influence *kernel = t->w->kernel;
 	size_t px = t->x.points, py = t->y.points;
 	double normal[4], shear[4]; /* signs of the mirror images, shear times mu */
 
@@ -64,8 +77,8 @@ static void put_kernel(struct tiling *t, enum stress_number number, double scale
 								: par->mu * scale;
 	}
 	memset(t->plane, 0, t->room * sizeof *t->plane);
-	for (int j = 0; j <= t->w->reach_y; j++)
-		for (int i = 0; i <= t->w->reach_x; i++, kernel++) {
+	for (int j = 0; j <= t->reach_y; j++)
+		for (int i = 0; i <= t->reach_x; i++, kernel++) {
 			double n = kernel->normal[number], s = kernel->shear[number];
 			double share = (i ? 1 : 0.5) * (j ? 1 : 0.5);
 
@@ -176,20 +189,33 @@ static void mark_wanted(struct tiling *t)
 
 void window_forget(struct window_kept *kept)
 {
-	fft_plane_done(kept->fft);
+	for (int i = 0; i < WINDOW_KEPT; i++) {
+		fft_plane_done(kept->plan[i].fft);
+		fft_free(kept->spectra[i].memory);
+	}
 	fft_free(kept->memory);
 	*kept = (struct window_kept){ 0 };
 }
 
-static enum num_status keep_plan(struct window_kept *kept, size_t nx, size_t ny)
+/* The plan for a plane: that of an earlier window, or in place of the one that has not
+ * been used for longest. */
+static struct fft_plane *plan_for(struct window_kept *kept, size_t nx, size_t ny)
 {
-	if (kept->fft && kept->nx == nx && kept->ny == ny)
-		return NUM_OK;
-	fft_plane_done(kept->fft);
-	kept->fft = fft_plane_new(nx, ny);
-	kept->nx = nx;
-	kept->ny = ny;
-	return kept->fft ? NUM_OK : NUM_MEMORY;
+	struct window_plan *p = kept->plan;
+
+	for (int i = 0; i < WINDOW_KEPT; i++) {
+		struct window_plan *q = &kept->plan[i];
+
+		if (q->fft && q->nx == nx && q->ny == ny) {
+			q->used = kept->windows;
+			return q->fft;
+		}
+		if (q->used < p->used)
+			p = q;
+	}
+	fft_plane_done(p->fft);
+	*p = (struct window_plan){ fft_plane_new(nx, ny), nx, ny, kept->windows };
+	return p->fft;
 }
 
 static enum num_status keep_memory(struct window_kept *kept, size_t size)
@@ -223,15 +249,78 @@ static enum num_status share_memory(struct tiling *t, struct window_kept *kept)
 	return NUM_OK;
 }
 
+static enum num_status make_kernels(struct tiling *t)
+{
+	const struct window *w = t->w;
+	struct influence *kernel = w->make(w->maker, t->reach_x, t->reach_y);
+	double points = (double)t->x.points * (double)t->y.points;
+
+	if (!kernel)
+		return NUM_MEMORY;
+	for (int c = 0; c < w->numbers; c++) {
+		put_kernel(t, kernel, (enum stress_number)c, 1 / points);
+		fft_plane_forward(
+			t->fft, t->plane, 0, t->y.points, t->kernel[c], t->work);
+	}
+	t->made = w->numbers;
+	free(kernel);
+	return NUM_OK;
+}
+
+static int is_kept(const struct window_spectra *s, const struct tiling *t)
+{
+	return s->memory && s->name == t->w->name && s->numbers == t->w->numbers &&
+	       s->nx == t->x.points && s->ny == t->y.points && s->reach_x == t->reach_x &&
+	       s->reach_y == t->reach_y;
+}
+
+/* The kernels of an earlier window, or new ones in place of those that have not been used
+ * for longest. */
+static enum num_status find_kernels(struct tiling *t, struct window_kept *kept)
+{
+	struct window_spectra *s = kept->spectra;
+	int found = 0;
+
+	for (int i = 0; i < WINDOW_KEPT && !found; i++) {
+		struct window_spectra *q = &kept->spectra[i];
+
+		found = is_kept(q, t);
+		if (found || q->used < s->used)
+			s = q;
+	}
+	if (!found) {
+		fft_free(s->memory);
+		*s = (struct window_spectra){
+			.memory = fft_alloc(2 * (size_t)t->w->numbers * t->spectrum),
+			.nx = t->x.points,
+			.ny = t->y.points,
+			.name = t->w->name,
+			.numbers = t->w->numbers,
+			.reach_x = t->reach_x,
+			.reach_y = t->reach_y
+		};
+		if (!s->memory)
+			return NUM_MEMORY;
+	}
+	s->used = kept->windows;
+	for (int c = 0; c < t->w->numbers; c++)
+		t->kernel[c] = (double complex *)s->memory + (size_t)c * t->spectrum;
+	if (found || !make_kernels(t))
+		return NUM_OK;
+	fft_free(s->memory);
+	*s = (struct window_spectra){ 0 };
+	return NUM_MEMORY;
+}
+
 static enum num_status prepare(struct tiling *t, struct window_kept *kept)
 {
 	const struct window *w = t->w;
-	size_t points = t->x.points * t->y.points,
-	       tiles = (size_t)t->x.count * (size_t)t->y.count;
+	size_t tiles = (size_t)t->x.count * (size_t)t->y.count;
 
-	if (keep_plan(kept, t->x.points, t->y.points))
+	kept->windows++;
+	t->fft = plan_for(kept, t->x.points, t->y.points);
+	if (!t->fft)
 		return NUM_MEMORY;
-	t->fft = kept->fft;
 	t->stride = fft_plane_stride(t->fft);
 	t->room = t->stride * t->y.points;
 	t->spectrum = fft_plane_size(t->fft);
@@ -244,12 +333,9 @@ static enum num_status prepare(struct tiling *t, struct window_kept *kept)
 		return NUM_MEMORY;
 	if (w->want)
 		mark_wanted(t);
-	for (int c = 0; c < w->numbers; c++) {
-		put_kernel(t, (enum stress_number)c, 1. / (double)points);
-		fft_plane_forward(
-			t->fft, t->plane, 0, t->y.points, t->kernel[c], t->work);
-	}
-	return NUM_OK;
+	return w->name != WINDOW_NAMELESS && t->x.points * t->y.points <= KEPT_POINTS
+		       ? find_kernels(t, kept)
+		       : make_kernels(t);
 }
 
 enum num_status window_sum(
@@ -259,11 +345,18 @@ enum num_status window_sum(
 		.w = w, .x = cut_axis(w->mx, w->reach_x), .y = cut_axis(w->my, w->reach_y)
 	};
 	size_t tiles = (size_t)t.x.count * (size_t)t.y.count;
-	enum num_status status = prepare(&t, kept);
+	enum num_status status;
 
+	t.reach_x = w->reach_x;
+	t.reach_y = w->reach_y;
+	if (w->name != WINDOW_NAMELESS) {
+		t.reach_x = kernel_reach(&t.x, w->mx, w->reach_x);
+		t.reach_y = kernel_reach(&t.y, w->my, w->reach_y);
+	}
+	status = prepare(&t, kept);
 	if (!status) {
 		pool_run(w->pool, tiles, sum_tile, &t);
-		*transforms = w->numbers;
+		*transforms = t.made;
 		for (size_t i = 0; i < tiles; i++)
 			*transforms += t.transforms[i];
 	}

@@ -18,12 +18,20 @@
  * reach come without numbers. */
 typedef void window_take(void *context, const struct stress_part *part, int worker);
 
+/* Makes a kernel: the influence at the offsets (i, j), 0 <= i <= reach_x, 0 <= j <=
+ * reach_y, in rows of i; the others follow by symmetry.  Memory to be freed, or NULL. */
+typedef struct influence *window_kernel(void *context, int reach_x, int reach_y);
+
+enum { WINDOW_NAMELESS = -1 };
+
 struct window {
 	int mx, my, reach_x, reach_y;
 	const struct influence_par *par;
-	/* kernel[j * (reach_x + 1) + i] is the influence at the offset (i, j); the others
-	 * follow by symmetry. */
-	const struct influence *kernel;
+	window_kernel *make;
+	void *maker;
+	/* Under which the kernel's transforms are kept for later windows that need the
+	 * same kernel, or WINDOW_NAMELESS. */
+	int name;
 	const double *load; /* rows of load_stride */
 	size_t load_stride;
 	int numbers; /* the first so many of enum stress_number */
@@ -35,11 +43,28 @@ struct window {
 	struct pool *pool;
 };
 
-/* Memory and plan of the transforms, kept from one window to the next; all zero at first.
- */
-struct window_kept {
+/* Memory, plans and transformed kernels, kept from one window to the next; all zero at
+ * first.  A surface needs some three kernels, whose planes vary with the part of the grid
+ * that is loaded. */
+enum { WINDOW_KEPT = 12 };
+
+struct window_plan {
 	struct fft_plane *fft;
 	size_t nx, ny; /* points that it transforms */
+	long used;     /* number of the last window that did; 0: none */
+};
+
+struct window_spectra {
+	double *memory;
+	size_t nx, ny;
+	int name, numbers, reach_x, reach_y;
+	long used;
+};
+
+struct window_kept {
+	struct window_plan plan[WINDOW_KEPT];
+	struct window_spectra spectra[WINDOW_KEPT];
+	long windows;
 	double *memory;
 	size_t size; /* doubles */
 };

@@ -61,20 +61,28 @@ struct scene {
 	long done;     /* steps before the first of this run */
 };
 
-static double choose_target(const struct scene *c, double contact_load)
+static double contact_load(const struct run *run, const struct scene *c)
+{
+	struct debris_step s;
+
+	wearing_contact(run->wearing, &c->now, &s);
+	return s.load;
+}
+
+static double choose_target(const struct run *run, const struct scene *c)
 {
 	const struct record *r = c->now.r;
 	double asked = press_target(r), given = record_get_number(r, "mean_pressure");
 
 	if (!isnan(asked))
 		return asked;
-	return isnan(given) ? contact_load / (r->nx * r->dx * r->ny * r->dy) : given;
+	return isnan(given) ? contact_load(run, c) / (r->nx * r->dx * r->ny * r->dy)
+			    : given;
 }
 
 static void open_scene(struct run *run, struct record *r, struct scene *c)
 {
 	double before = record_get_number(r, "step"), crown, sq;
-	struct debris_step s;
 
 	if (r->nz != 1)
 		die(EXIT_RUN, "%s: record %ld: want plane fields, got %d layers",
@@ -94,10 +102,9 @@ static void open_scene(struct run *run, struct record *r, struct scene *c)
 		record_set(r, "sq", "%.17g", c->now.sq);
 	}
 	wearing_prepare(run->wearing, r);
-	wearing_contact(run->wearing, &c->now, &s);
-	c->target = choose_target(c, s.load);
-	if (c->target == 0 && s.load == 0 && wearing_solves(run->wearing, 1) &&
-		isnan(press.approach))
+	c->target = choose_target(run, c);
+	if (c->target == 0 && wearing_solves(run->wearing, 1) && isnan(press.approach) &&
+		contact_load(run, c) == 0)
 		die(EXIT_USAGE,
 			"%s: record %ld carries no load: specify --load, --pressure or --approach",
 			fields_name(run->in), fields_count(run->in));

@@ -111,8 +111,6 @@ int quick_step(struct quick *q, struct stress *stress, const double *pressure,
 	const struct footprint *list;
 	size_t n;
 
-	if (stress_load(stress, pressure))
-		die(EXIT_RUN, "pressure beyond the range of numbers");
 	if (footprints_find(q->footprints, stress, pressure, yield, &list, &n) != NUM_OK)
 		die(EXIT_RUN, "out of memory");
 	if (n > q->room) {

@@ -25,9 +25,9 @@ void quick_close(struct quick *q);
 
 /* Steps are of grids like this from now on. */
 void quick_prepare(struct quick *q, const struct stress_par *par);
-/* Finds the particles under a pressure from the stress at the surface alone.  Fills step
- * and returns 1, or 0 where the full model is wanted: outside the range of the fit, where
- * the interval is too wide, or to audit. */
+/* Finds the particles under a pressure from the stress at the surface alone, which it
+ * has been loaded with.  Fills step and returns 1, or 0 where the full model is wanted:
+ * outside the range of the fit, where the interval is too wide, or to audit. */
 int quick_step(struct quick *q, struct stress *stress, const double *pressure,
 	double yield, long realisation, struct debris_step *step);
 /* What the full model found instead. */

@@ -370,6 +370,8 @@ static void refuse(const struct wearing *w, enum debris_status status, long step
 static void wear_by_stress(struct wearing *w, const struct worn_surface *c, long step)
 {
 	debris_contact(w->debris, c->p, &w->lost);
+	if (w->quick)
+		refuse(w, debris_load(w->debris, c->p), step);
 	if (w->quick && quick_step(w->quick, debris_stress(w->debris), c->p, yield.v[0],
 				c->r->realisation, &w->lost)) {
 		count_work(&w->lost, stress_work(debris_stress(w->debris)), &w->seen);

@@ -518,6 +518,60 @@ static void test_periodic_reach(void)
 	stress_free(s);
 }
 
+/* The loads of cells at random, 0 on most. */
+static void fill_loads(double *p, size_t n, int stream)
+{
+	for (size_t i = 0; i < n; i++)
+		p[i] = fmax(philox_uniform(11, (uint32_t)stream, RNG_NOISE, i) - 0.7, 0);
+}
+
+/* On the surface the tractions are those of the load; and what is kept of one load and of
+ * one part of the grid does not show in the next. */
+static void test_surface(int axis, int periodic)
+{
+	enum { SIDE = 120, CELLS = SIDE * SIDE };
+	struct stress_par par = plain(SIDE, SIDE, 0.3);
+	double *p = calloc(CELLS, sizeof *p), *few = calloc(CELLS, sizeof *few);
+	double *t = malloc(STRESS_COMPONENTS * CELLS * sizeof *t);
+	double *first = malloc(CELLS * sizeof *first), *m = malloc(CELLS * sizeof *m);
+	struct stress_span span[SIDE];
+	struct stress *s;
+	double worst = 0;
+
+	par.axis = axis;
+	par.periodic = periodic;
+	s = stress_new(&par);
+	fill_loads(p, CELLS, axis);
+	fill_loads(few, SIDE * 50, 2);
+	stress_load(s, p);
+	stress_at(s, 0, span, whole_grid(&par, span), first);
+	stress_tensor(s, 0, t);
+	for (size_t i = 0; i < CELLS; i++) {
+		double xz = t[STRESS_XZ * CELLS + i], yz = t[STRESS_YZ * CELLS + i];
+
+		worst = tap_max(worst, fabs(t[STRESS_ZZ * CELLS + i] + p[i]));
+		worst = tap_max(worst, fabs((axis ? yz : xz) + par.mu * p[i]));
+		worst = tap_max(worst, fabs(axis ? xz : yz));
+	}
+	ok(par.mu != 0 && worst < 1e-15,
+		"axis %d, periodic %d: surface tractions are those of the load to %.1e",
+		axis, periodic, worst);
+	stress_load(s, few);
+	stress_at(s, 0, span, whole_grid(&par, span), m);
+	stress_at(s, 3, span, whole_grid(&par, span), m);
+	stress_load(s, p);
+	stress_at(s, 0, span, whole_grid(&par, span), m);
+	ok(memcmp(m, first, CELLS * sizeof *m) == 0,
+		"axis %d, periodic %d: the same load gives the same bytes after another",
+		axis, periodic);
+	stress_free(s);
+	free(m);
+	free(first);
+	free(t);
+	free(few);
+	free(p);
+}
+
 /* Direct sums below the middles of contacts of one to five cells radius against layers.
  */
 static void test_points(void)
@@ -611,6 +665,8 @@ int main(void)
 	test_periodic_free(0, 0);
 	test_periodic_free(0.5, 0);
 	test_periodic_free(0.5, 1);
+	for (int k = 0; k < 4; k++)
+		test_surface(k & 1, k >> 1);
 	test_points();
 	test_refusals();
 	return tap_done();

@@ -54,7 +54,7 @@ struct bank {
 	int shapes, capacity; /* coordinates; trends */
 	long rows;            /* taken */
 	double base, range;   /* y at D = 0; from there to the threshold, signed */
-	double unit;          /* of time: the first gap */
+	double unit;          /* of time: the mean of the first two gaps */
 	double first, last;   /* times without the idle time */
 	double idle;          /* total idle time */
 	double age, gap;      /* of the last row, mean gap, in units */
