@@ -9,8 +9,9 @@
  * Weak pulses beside larger ones may be errors of the shape of these.  They are if there
  * are more of them than particles as small come to lie beside larger ones at random.
  *
- * Rows are doubted, the most likely ones first, until at most one in two hundred of
- * the others is expected to be none, or a pair whose diameter is out by more than a tenth.
+ * Rows are doubted, the most likely ones first, until at most seven in a thousand of
+ * the others is expected to be none, or a pair whose diameter is out by more than a
+ * tenth.
  */
 #ifndef SIGNAL_TOGETHER_H
 #define SIGNAL_TOGETHER_H
