@@ -117,6 +117,7 @@ static struct bank_chances *chances;
 static struct bank_covariate load[BANK_LOADS];
 static char *load_name[BANK_LOADS];
 static int load_column[BANK_LOADS];
+static double load_least[BANK_LOADS], load_most[BANK_LOADS]; /* in the series */
 
 static struct event {
 	double t;
@@ -315,6 +316,8 @@ void outlook_open(struct series *in, const char *unit_column, const char *clock_
 	for (int k = 0; k < covariates.n; k++) {
 		load_column[k] = table_need(series_table(in), load_name[k]);
 		table_set_scale(series_table(in), load_column[k], 1);
+		load_least[k] = INFINITY;
+		load_most[k] = -INFINITY;
 	}
 	chances = bank_chances_new(DRAWS, (uint64_t)filtering.seed);
 	if (!chances)
@@ -327,6 +330,13 @@ void outlook_open(struct series *in, const char *unit_column, const char *clock_
 
 void outlook_close(void)
 {
+	for (int k = 0; k < covariates.n; k++)
+		if (load[k].future == BANK_VALUE && load_least[k] <= load_most[k] &&
+			fabs(2 * load[k].value - load_least[k] - load_most[k]) >
+				3 * (load_most[k] - load_least[k]))
+			warn("--covariate %s: %g is far from the values in the series, %g "
+			     "to %g",
+				load_name[k], load[k].value, load_least[k], load_most[k]);
 	fleet_free(fleet);
 	bank_chances_free(chances);
 	for (int i = 0; i < n_events; i++)
@@ -348,6 +358,8 @@ void outlook_read(const struct series *in, struct outlook_row *row)
 		if (!isfinite(row->load[k]))
 			die(EXIT_RUN, "%s: line %ld: %s is missing or not finite",
 				table_name(t), table_line(t), load_name[k]);
+		load_least[k] = fmin(load_least[k], row->load[k]);
+		load_most[k] = fmax(load_most[k], row->load[k]);
 	}
 }
 
