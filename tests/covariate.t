@@ -1,5 +1,5 @@
 #!/bin/sh
-# aopf --covariate: a column that scales the wear rate
+# --covariate of aopf and rwl: a column that scales the wear rate
 . "$(dirname "$0")/tap.sh"
 
 # wears SEED POWER: wear as the power of a load that is 1, but 2 in every third block of
@@ -124,4 +124,29 @@ fails "more covariates than four" 2 "covariate: 5 columns, want at most 4" \
 fails "a covariate for the grey model" 2 "covariate is not for --model grey" \
 	aopf --threshold 1 --model grey --covariate load path
 fails "a covariate without a threshold" 2 "covariate requires --threshold" aopf --covariate load path
+# rwl: the same wear as a leakage
+for s in 1 2 3 4; do
+	wears $s 3 | awk -F '\t' 'NR == 1 { print "t\tleakage\tload"; next } { print $1 "\t" 1.5 + 1.3 * $2 "\t" $3 }' >leakage.$s
+done
+leak() { rwl --wear-rate filter --time-unit h --state-unit L/min --threshold-leakage 2.8L/min "$@" 2>/dev/null; }
+for how in '' '--covariate load:last'; do
+	for s in 1 2 3 4; do
+		# shellcheck disable=SC2086 # words
+		leak $how leakage.$s | awk -F '\t' '$1 == 84 * 3600 { e = $4 / 3600 - 36; print e < 0 ? -e : e, ($5 - $3) / 3600 }'
+	done | awk '{ error += $1; width += $2 } END { print error / NR, width / NR, NR }' >"rwl$how"
+done
+is "lives of four leakages" "$(cut -d ' ' -f 3 rwl) $(cut -d ' ' -f 3 "rwl--covariate load:last")" "4 4"
+at_most "the error of rwl with a covariate" "$(cut -d ' ' -f 1 "rwl--covariate load:last")" 8
+at_most "twice that error, against the one without" \
+	"$(awk '{ print 2 * $1 }' "rwl--covariate load:last")" "$(cut -d ' ' -f 1 rwl)"
+at_most "twice the width with a covariate, against that without" \
+	"$(awk '{ print 2 * $2 }' "rwl--covariate load:last")" "$(cut -d ' ' -f 2 rwl)"
+awk -F '\t' 'NR % 4 == 3 { $2 = "nan" } { print $1 "\t" $2 "\t" $3 }' leakage.1 >holes
+near "the life of a leakage with missing values" \
+	"$(leak --covariate load:last holes | awk -F '\t' '$1 == 84 * 3600 { print $4 / 3600 }')" 36 15
+fails "a covariate for a mean rate" 2 "covariate requires --wear-rate filter" \
+	rwl --covariate load --time-unit h --state-unit L/min leakage.1
+fails "a column that rwl does not find" 1 "no column 'heat'" \
+	rwl --wear-rate filter --covariate heat --time-unit h --state-unit L/min leakage.1
+
 done_testing
