@@ -253,6 +253,8 @@ static void test_disturbances(void)
 		"readings in steps that fall back are no wear");
 	near(median_life(60, as_it_is, 80, 58), plain, 1,
 		"a halt of 0.8 lives does not change the life");
+	near(median_life(30, as_it_is, 500, 9), median_life(30, as_it_is, 0, 0), 15,
+		"nor does a halt of five lives after nine rows");
 	near(median_life(56, burst, 0, 0), plain + 4, 2,
 		"outliers at the very end do not change the life");
 	/* back by 0.4 at row 50: at the rate of 0.01 a row 40 rows more are left; the
