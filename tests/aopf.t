@@ -80,6 +80,14 @@ is "events in other units are converted" "$(rows minutes.out | cksum)" "$(rows h
 aopf --threshold 2 --save saved told.tsv >out
 fails "a saved state of another unit" 1 'saved: saved with other options' aopf --threshold 2 --resume saved bare.tsv
 
+# A first or second gap that is far smaller than the others, as of a logger that starts twice
+for at in 1 2; do
+	awk -v at=$at 'BEGIN { print "t\ty"; for (k = 0; k < 12; k++)
+		printf "%.16g\t%.6f\n", k < at ? k : k == at ? k - 1 + 1e-12 : k - 1, 0.1 + (k - (k >= at)) / 50 }' >twice.tsv
+	near "the life after four rows, gap $at being 1e-12" \
+		"$(aopf --threshold 1.1 --direction up --lives-only twice.tsv | column rul_q50 /dev/stdin | sed -n 4p)" 9 2
+done
+
 # Rows come out as rows go in.
 rise 40 2 >short.tsv
 ok "each row is written as soon as it is read" sh -c '

@@ -1,10 +1,9 @@
-/* Order selection, noise, run-in, history, damage models and fleet comparison. */
+/* Order selection, noise, run-in, grey series, damage models and fleet comparison. */
 #include "life/grey/grey.h"
 #include "life/grey/noise.h"
 #include "life/particle/adaptive.h"
 #include "life/prior/fleet.h"
 #include "life/trend/bank.h"
-#include "life/trend/history.h"
 #include "life/trend/passage.h"
 #include "life/trend/runin.h"
 #include "tap.h"
@@ -37,27 +36,27 @@ static void test_noise(void)
 	draw_free(d);
 }
 
-static void test_history(void)
+/* The forward sums of a series are those of all its points taken backward. */
+static void test_grey_series(void)
 {
-	struct history *h = history_new();
-	const double *t, *x;
-	double sum = 0;
-	int n;
+	struct grey_series s = { 0 };
+	struct grey back = { 0 }, g;
+	double t[1000], x[1000];
 
-	for (int k = 0; k < 100; k++)
-		history_add(h, k, 2.0 * k);
-	n = history_get(h, &t, &x);
-	ok(n == 100 && t[42] == 42 && x[42] == 84, "a short history is kept as it is");
-	for (int k = 100; k < 100003; k++)
-		history_add(h, k, 2.0 * k);
-	n = history_get(h, &t, &x);
-	ok(n <= HISTORY_MAX && n >= HISTORY_MAX / 4,
-		"a long history is kept in %d groups", n);
-	for (int k = 0; k < n; k++)
-		sum += fabs(x[k] - 2 * t[k]);
-	ok(sum < 1e-6 && t[0] == 0.5 * (t[1] - t[0] - 1),
-		"the groups have the means of their rows");
-	history_free(h);
+	for (int k = 0; k < 1000; k++) {
+		t[k] = 1e6 + k + 0.3 * sin(k * k);
+		x[k] = exp(1e-3 * k) + 0.1 * sin(3.0 * k * k);
+		grey_append(&s, x[k], k > 0 ? t[k] - t[k - 1] : 0);
+	}
+	for (int k = 999; k >= 0; k--)
+		grey_add(&back, x[k], k < 999 ? t[k + 1] - t[k] : 0);
+	g = grey_of(&s);
+	near(grey_rate(&g), grey_rate(&back), 1e-14,
+		"a series grown forward has the rate");
+	near(grey_forecast(&g, 1, 1), grey_forecast(&back, 1, 1), 1e-11, "and forecast");
+	near(grey_rate_error(&g), grey_rate_error(&back), 1e-15, "and standard errors");
+	near(grey_level_error(&g), grey_level_error(&back), 1e-12, "of rate and level");
+	ok(g.n == 1000 && fabs(g.span - (t[999] - t[0])) < 1e-8, "and length");
 }
 
 /* An alternating series is best forecast by many points; fixed orders stay; window
@@ -373,7 +372,7 @@ static void test_adaptive(void)
 int main(void)
 {
 	test_noise();
-	test_history();
+	test_grey_series();
 	test_orders();
 	test_runin();
 	test_straight_wear();

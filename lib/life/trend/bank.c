@@ -375,7 +375,7 @@ static void start(struct bank *b)
 
 	b->base = median_of_three(r[0].y, r[1].y, r[2].y);
 	b->range = b->par.threshold - b->base;
-	b->unit = r[1].t - r[0].t;
+	b->unit = 0.5 * (r[2].t - r[0].t); /* one of the two gaps may be tiny */
 	b->first = b->last = r[0].t;
 	b->level = damage_of(b, r[0].y);
 	b->idle = b->age = b->bred = b->scored = 0;

@@ -59,6 +59,7 @@ enum separate_status separate_mask_section(
 	struct masks_source source[MASKS_SOURCES_MAX];
 	size_t n = (size_t)(to - from);
 	const double *y1 = channel_1(s, from);
+	double noise = separate_noise_at(s, 0, (double)from);
 	int m;
 	double t[MASKS_SOURCES_MAX], a[MASKS_SOURCES_MAX];
 	enum separate_verdict verdict[MASKS_SOURCES_MAX], all = SEPARATE_ALONE;
@@ -79,7 +80,7 @@ enum separate_status separate_mask_section(
 		double *x = s->source + (size_t)k * n;
 
 		for (size_t i = 0; i < n; i++)
-			x[i] *= s->cal.noise[0];
+			x[i] *= noise;
 		measure_pulse(x, n, &t[k], &a[k]);
 	}
 	status = confirm(s, from, n, t, m, verdict);

@@ -61,8 +61,16 @@ static void follow_gain(struct separate *s, const struct joint_pulse *p)
 	for (int i = 0; i < GAINS; i++)
 		sum += s->gain_off[i];
 	if (fabs(sum) > 3 * sqrt(GAINS))
-		s->scene.gain *= 1 + s->gain_sum / s->gain_weight;
+		s->gain *= 1 + s->gain_sum / s->gain_weight;
 	s->gain_sum = s->gain_weight = 0;
+}
+
+void separate_set_gain(struct separate *s, long long from)
+{
+	double first = following_at(&s->tape[0].noise, (double)from);
+	double second = following_at(&s->tape[1].noise, (double)(from + s->cal.shift));
+
+	s->scene.gain = s->gain * first / second;
 }
 
 void separate_follow(struct separate *s, const struct account *a)

@@ -3,6 +3,29 @@
 #include "signal/separate/separate_state.h"
 #include <math.h>
 
+/* Shortest pulse whose fourth difference is below the noise, at an amplitude of 300
+ * standard deviations: 300 (2 pi / 20)^4 = 3, that of noise is 8. */
+static const double FOLLOWED = 20;
+
+/* The noise is followed in blocks of a sixteenth of what is learned from. */
+static void follow_noise(struct separate *s, size_t n)
+{
+	enum { BLOCKS = 16, SHORTEST = 256 };
+	const struct calibration *c = &s->cal;
+	size_t block = (n ? n : s->par.learn) / BLOCKS;
+	/* Of these, no more is clean before samples beyond them are known. */
+	double known = fmax(
+		0.5 * (double)n, (double)n - 2 * (double)c->tone_hop - c->whitening.edge);
+
+	block = block < FOLLOWING_BLOCK ? block : FOLLOWING_BLOCK;
+	if (block < SHORTEST || c->duration < FOLLOWED || s->par.quadrature ||
+		c->whitening.tap)
+		return;
+	for (int k = 0; k < 2; k++)
+		tape_follow(&s->tape[k], s->done, block, n ? 0 : s->kept.level[k],
+			s->tape[k].begin + (long long)known);
+}
+
 /* Starts the separation with an instrument learned from the n oldest samples (0: kept).
  */
 static enum separate_status start(struct separate *s, size_t n)
@@ -13,6 +36,7 @@ static enum separate_status start(struct separate *s, size_t n)
 	s->calibrated = 1;
 	s->done = s->level_at = s->tape[0].begin + c->whitening.edge;
 	calibration_scene(c, &s->scene);
+	s->gain = s->scene.gain;
 	s->scene.max_pulses = JOINT_PULSES_MAX;
 	reach = 2 * shape_reach(c->shape) * c->duration;
 	if (s->par.window < (size_t)(6 * reach))
@@ -24,6 +48,7 @@ static enum separate_status start(struct separate *s, size_t n)
 			3 * reach, JOINT_BASELINE_MAX / (2 * c->whitening.low));
 	if (tape_start(&s->tape[0], c) != NUM_OK || tape_start(&s->tape[1], c) != NUM_OK)
 		return SEPARATE_MEMORY;
+	follow_noise(s, n);
 	if (s->par.quadrature && quadrature_start(&s->quadrature, c, n) != NUM_OK)
 		return SEPARATE_MEMORY;
 	/* Equal pulses on both channels reach the threshold of a pair when each reaches 1

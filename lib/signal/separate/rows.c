@@ -37,7 +37,8 @@ static enum separate_status emit_pulse(struct separate *s, const struct joint_pu
 {
 	struct entry *entry = separate_queue_entry(s);
 	struct transit *out;
-	double delay_var = joint_delay_variance(p), noise = s->cal.noise[0];
+	double delay_var = joint_delay_variance(p);
+	double noise = separate_noise_at(s, 0, (double)from + p->t);
 
 	if (!entry)
 		return SEPARATE_MEMORY;
@@ -146,16 +147,18 @@ enum separate_status separate_reserve_sources(struct separate *s, size_t count)
 }
 
 /* Draws each fitted pulse by itself, as sensor 1 would record it. */
-static enum separate_status draw_pulses(struct separate *s, int m, size_t n)
+static enum separate_status draw_pulses(
+	struct separate *s, long long from, int m, size_t n)
 {
 	if (separate_reserve_sources(s, (size_t)m * n) != SEPARATE_OK)
 		return SEPARATE_MEMORY;
 	for (int i = 0; i < m; i++) {
 		double *x = s->source + (size_t)i * n;
+		double noise = separate_noise_at(s, 0, (double)from + s->pulse[i].t);
 
 		joint_add(&s->scene, &s->pulse[i], 1, x, NULL, n);
 		for (size_t k = 0; k < n; k++)
-			x[k] *= s->cal.noise[0];
+			x[k] *= noise;
 	}
 	return SEPARATE_OK;
 }
@@ -170,7 +173,8 @@ enum separate_status separate_dense_section(
 		.end = to,
 		.chi2 = NAN,
 		.verdict = SEPARATE_UNRESOLVED };
-	double noise = s->cal.noise[0], length = (double)(to - from);
+	double length = (double)(to - from);
+	double noise = separate_noise_at(s, 0, (double)from + length / 2);
 	struct campbell c;
 
 	if (!entry)
@@ -216,7 +220,8 @@ enum separate_status separate_give_event(
 	p->sources = 0;
 	p->t1 = (double)from + event->t[0];
 	p->t2 = (double)(from + s->cal.shift) + event->t[1];
-	p->amplitude = event->amplitude * s->cal.noise[isnan(event->t[0])];
+	p->amplitude = event->amplitude * separate_noise_at(s, isnan(event->t[0]),
+						  isnan(event->t[0]) ? p->t2 : p->t1);
 	p->t1_se = p->t2_se = p->delay_se = p->amplitude_se = NAN;
 	p->correlation = p->phase = p->phase_se = NAN;
 	p->chi2 = out.chi2 = event->chi2;
@@ -247,7 +252,7 @@ enum separate_status separate_give_pulses(struct separate *s, long long from,
 	if (compare_pulses(s, done) != NUM_OK)
 		return SEPARATE_MEMORY;
 	if (s->par.want_sources &&
-		draw_pulses(s, done, (size_t)(to - from)) != SEPARATE_OK)
+		draw_pulses(s, from, done, (size_t)(to - from)) != SEPARATE_OK)
 		return SEPARATE_MEMORY;
 	return separate_queue_report(s, &out, (size_t)done);
 }

@@ -184,6 +184,7 @@ static enum separate_status work(struct separate *s)
 				return SEPARATE_MEMORY;
 		}
 		next = to;
+		separate_set_gain(s, from);
 		s->dense |= cut && s->crowded && s->par.method == SEPARATE_FIT;
 		if (s->dense)
 			status = separate_dense_section(s, from, to);

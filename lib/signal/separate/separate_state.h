@@ -56,6 +56,7 @@ struct separate {
 	struct joint *joint;
 	struct masks *masks;
 	struct joint_scene scene;
+	double gain; /* of sensor 2, over the noise learned, as followed */
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
 	struct quadrature quadrature;
 	struct quadrature_pulse both[JOINT_PULSES_MAX]; /* pulse, both components */
@@ -135,6 +136,12 @@ static inline long long ready(const struct separate *s)
 	return s->tape[0].clean < second ? s->tape[0].clean : second;
 }
 
+/* Noise of a channel at a sample of it, in units of the record. */
+static inline double separate_noise_at(const struct separate *s, int c, double at)
+{
+	return s->cal.noise[c] * following_at(&s->tape[c].noise, at);
+}
+
 /* judging.c */
 
 /* A new row of the queue, zeroed; NULL: no memory. */
@@ -203,6 +210,9 @@ int separate_is_range_free(const struct separate *s);
 void separate_widen(struct separate *s);
 /* Updates the range of delays and the gain by a pulse that stands alone. */
 void separate_follow(struct separate *s, const struct account *a);
+/* Sets the gain for a section that begins at sample from: pulses are in units of the
+ * noise, which changes at either sensor. */
+void separate_set_gain(struct separate *s, long long from);
 
 /* rivals.c */
 

@@ -1,6 +1,7 @@
 /* tape.c - see tape.h */
 #include "signal/separate/tape.h"
 #include "signal/filter/fir.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -56,7 +57,7 @@ void tape_drop(struct tape *t, size_t n)
 	t->n -= n;
 	t->begin += (long long)n;
 	if (t->clean < t->begin)
-		t->clean = t->begin;
+		t->flat = t->clean = t->begin;
 }
 
 void tape_forget(struct tape *t, long long keep)
@@ -73,7 +74,7 @@ enum num_status tape_start(struct tape *t, const struct calibration *c)
 	const struct whitening *w = &c->whitening;
 	size_t taps = 2 * (size_t)w->half + 1;
 
-	t->fed = t->white = t->clean;
+	t->fed = t->white = t->flat = t->clean;
 	if (!w->tap)
 		return NUM_OK;
 	t->whiten = fir_new(w->tap, taps, 1, taps > 1024 ? taps : 1024);
@@ -96,24 +97,24 @@ static enum num_status clean(
 	long long end = t->white, hop = (long long)c->tone_hop;
 
 	if (c->tones == 0) {
-		scale(t, t->clean, end, noise);
-		t->clean = end;
+		scale(t, t->flat, end, noise);
+		t->flat = end;
 		return NUM_OK;
 	}
 	for (;;) {
 		long long middle =
-			t->started ? (long long)t->at + hop : t->clean + hop / 2;
-		long long from = middle - hop > t->clean ? middle - hop : t->clean,
+			t->started ? (long long)t->at + hop : t->flat + hop / 2;
+		long long from = middle - hop > t->flat ? middle - hop : t->flat,
 			  until = middle;
 		double after[2 * TONES_MAX + 1];
 		enum tones_status status;
 
-		if (t->clean == end || (middle + hop > end && !ended))
+		if (t->flat == end || (middle + hop > end && !ended))
 			return NUM_OK;
 		if (middle + hop > end) { /* the last hop extends to the end */
 			until = end;
-			middle = end - hop / 2 > t->clean ? end - hop / 2 : end;
-			from = t->clean;
+			middle = end - hop / 2 > t->flat ? end - hop / 2 : end;
+			from = t->flat;
 		}
 		status = tones_fit(t->x + (from - t->begin),
 			(size_t)((middle + hop < end ? middle + hop : end) - from),
@@ -124,14 +125,14 @@ static enum num_status clean(
 			memcpy(after, t->coefficient, sizeof after);
 		if (!t->started)
 			memcpy(t->coefficient, after, sizeof after);
-		tones_remove(t->x + (t->clean - t->begin), (size_t)(until - t->clean),
-			(double)t->clean, c->tones, c->omega, t->at, t->coefficient,
+		tones_remove(t->x + (t->flat - t->begin), (size_t)(until - t->flat),
+			(double)t->flat, c->tones, c->omega, t->at, t->coefficient,
 			(double)middle, after);
-		scale(t, t->clean, until, noise);
+		scale(t, t->flat, until, noise);
 		memcpy(t->coefficient, after, sizeof after);
 		t->at = (double)middle;
 		t->started = 1;
-		t->clean = until;
+		t->flat = until;
 	}
 }
 
@@ -163,9 +164,77 @@ static void whiten(struct tape *t, const struct whitening *w, double mean, int e
 	}
 }
 
+void tape_follow(struct tape *t, long long begin, size_t block, double reference,
+	long long learned)
+{
+	t->block = block;
+	t->clean = block > 0 ? begin : t->clean;
+	t->learned = learned;
+	t->noise.reference = reference;
+}
+
+static double measure(const struct tape *t, long long k)
+{
+	size_t at = (size_t)(t->clean - t->begin) + (size_t)k * t->block;
+
+	return following_measure(t->x + at, t->hidden + at, t->block);
+}
+
+/* The fourth difference tells the noise in the band of the pulses if the noise is white:
+ * its measure where the noise was learned is then 1, but for what the noise changed
+ * between those samples and others that it was learned from. */
+static const double WHITE = 0.2;
+
+/* Starts to follow the noise once there are samples to compare with; 0: not yet. */
+static int start_following(struct tape *t, int ended)
+{
+	long long end = t->flat < t->learned ? t->flat : t->learned, blocks;
+	double reference = t->noise.reference, sum = 0;
+
+	if (t->flat < t->learned && !ended)
+		return 0;
+	if (t->flat - t->clean < 2 * (long long)t->block) {
+		t->block = ended ? 0 : t->block;
+		return 0;
+	}
+	blocks = (end - t->clean) / (long long)t->block;
+	for (long long k = 0; reference == 0 && k < blocks; k++)
+		sum += measure(t, k);
+	if (reference == 0)
+		reference = sum / (double)blocks;
+	if (!(fabs(log(reference)) < WHITE))
+		t->block = 0;
+	else
+		following_start(&t->noise, t->clean, t->block, reference, measure(t, 0),
+			measure(t, 1));
+	return t->block > 0;
+}
+
+/* Divides by what the noise has become; in whole blocks, so that it depends on the record
+ * alone. */
+static void follow(struct tape *t, int ended)
+{
+	if (t->block > 0 && t->noise.block == 0 && !start_following(t, ended) &&
+		t->block > 0)
+		return;
+	while (t->block > 0 && t->clean + (long long)t->block <= t->flat) {
+		size_t at = (size_t)(t->clean - t->begin);
+
+		following_take(&t->noise, t->x + at, t->hidden + at);
+		t->clean += (long long)t->block;
+	}
+	if (t->block > 0 && !ended)
+		return;
+	scale(t, t->clean, t->flat, following_at(&t->noise, (double)t->clean));
+	t->clean = t->flat;
+}
+
 enum num_status tape_prepare(
 	struct tape *t, const struct calibration *c, int channel, int ended)
 {
 	whiten(t, &c->whitening, c->mean[channel], ended);
-	return clean(t, c, c->noise[channel], ended);
+	if (clean(t, c, c->noise[channel], ended) != NUM_OK)
+		return NUM_MEMORY;
+	follow(t, ended);
+	return NUM_OK;
 }

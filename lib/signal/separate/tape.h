@@ -9,23 +9,28 @@
 
 #include "num/status.h"
 #include "signal/learn/calibration.h"
+#include "signal/noise/following.h"
 #include "signal/separate/converter.h"
 #include <stddef.h>
 
 /* Samples from index begin on: the filter is undone in those before white; those before
- * clean are also free of tones and in units of the noise. */
+ * flat are also free of tones and in units of the noise learned; those before clean in
+ * units of the noise at their time. */
 struct tape {
 	double *x;
 	unsigned char *hidden; /* 1: the converter has not measured this sample */
 	struct converter converter;
 	size_t n, capacity;
-	long long begin, white, clean;
+	long long begin, white, flat, clean;
 	struct fir *whiten; /* NULL if there is no filter to undo; it has read ... */
 	long long fed;      /* ... the samples before this one */
 	double *piece;      /* a block of it */
 	double at;          /* index at which the coefficients hold */
 	double coefficient[2 * TONES_MAX + 1];
 	int started;
+	struct following noise;
+	size_t block;      /* samples of which the noise is measured; 0: it is constant */
+	long long learned; /* the noise was learned from the samples before this one */
 };
 
 void tape_clear(struct tape *t);
@@ -42,6 +47,10 @@ void tape_forget(struct tape *t, long long keep);
 
 /* Starts the preparation, with what was learned of the record. */
 enum num_status tape_start(struct tape *t, const struct calibration *c);
+/* Follows the noise from sample begin on, in blocks.  reference: noise once clean where
+ * it was learned, or 0 if that is in the samples before learned. */
+void tape_follow(struct tape *t, long long begin, size_t block, double reference,
+	long long learned);
 /* Prepares all samples that can be prepared without later ones; all samples if the record
  * has ended. */
 enum num_status tape_prepare(
