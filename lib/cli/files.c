@@ -78,6 +78,9 @@ FILE *file_open(const char *path, const char **name)
 	int standard = !path || strcmp(path, "-") == 0;
 	FILE *f = standard ? stdin : fopen(path, "rb");
 
+	/* A hint in place of waiting for what nobody types. */
+	if (!path && isatty(STDIN_FILENO))
+		die(EXIT_USAGE, "nothing to read: name a file, or - for what is typed");
 	if (!f)
 		die(EXIT_RUN, "%s:", text_file_name(path));
 	*name = standard ? "standard input" : text_file_name(path);

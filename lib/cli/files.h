@@ -22,7 +22,8 @@ void file_claim_output(void);
 /* --follow: inputs without an end mark are still being written. */
 void file_follow(void);
 int file_followed(void);
-/* To read; path NULL or "-" is standard input. */
+/* To read; path NULL or "-" is standard input, which must not be a terminal unless it is
+ * named. */
 FILE *file_open(const char *path, const char **name);
 /* Opens a file for writing and empties it; path NULL is standard output, and "-" is an
  * error. */

@@ -215,7 +215,7 @@ enum num_status footprints_find(struct footprints *f, struct stress *stress,
 	*count = 0;
 	memset(f->value, 0, n * sizeof *f->value);
 	spans = stress_reach(stress, 0, yield, f->span);
-	if (stress_at(stress, 0, f->span, spans, f->value))
+	if (stress_above(stress, yield, f->span, spans, f->value))
 		return NUM_MEMORY;
 	/* Row by row, and in each from left to right. */
 	for (size_t k = 0; k < spans; k++) {

@@ -11,9 +11,19 @@ struct stress_span {
 };
 
 /* Receives the stress components of a span or of a part of one, number[c][x - begin], in
- * any order and from any thread; the parts cover every span once. */
+ * any order and from any thread; the parts cover every span once, but for nodes that
+ * bounds exclude. */
 typedef void stress_put(void *context, const struct stress_span *span,
 	const double *const number[STRESS_NUMBERS]);
+
+/* Bounds for nodes whose stress is a sum of a near part, number[c][x - begin] (NULL: 0),
+ * and of a far one of at most this equivalent stress: 1 if one of a span may be asked
+ * for. Others need not be received. */
+typedef int stress_may(void *context, const struct stress_span *span,
+	const double *const near[STRESS_NUMBERS], double far);
+
+/* Equivalent stress of these numbers. */
+typedef double stress_size(void *context, const double number[STRESS_NUMBERS]);
 
 /* The request: count spans, row by row and in each from left to right, and the first
  * numbers components of STRESS_NUMBERS. */
@@ -22,6 +32,8 @@ struct stress_want {
 	size_t count;
 	int numbers;
 	stress_put *put;
+	stress_may *may; /* NULL: all nodes are received */
+	stress_size *size;
 	void *context;
 };
 

@@ -384,6 +384,7 @@ struct take {
 	const struct stress *s;
 	double *out;
 	int on_surface;
+	double limit; /* of stress_above() */
 };
 
 /* The numbers of a node of a span. */
@@ -455,11 +456,57 @@ static enum num_status sum(struct stress *s, double z, struct stress_want *want)
 	return s->wave ? wave_sum_at(s->wave, z, want) : free_sum_at(s->free, z, want);
 }
 
+static double equivalent(void *context, const double number[STRESS_NUMBERS])
+{
+	return ((const struct take *)context)->s->criterion->value(number);
+}
+
+/* Whether nodes may exceed the limit, by the norm of their near numbers and tractions. */
+static int may_exceed(void *context, const struct stress_span *span,
+	const double *const near[STRESS_NUMBERS], double far)
+{
+	const struct take *t = context;
+	const struct stress *s = t->s;
+	const double *p = s->given + (size_t)span->y * (size_t)s->par.nx + span->begin;
+	/* Less what rounding may add. */
+	double rest = t->limit / s->unit * (1 - 1e-9) - far, most = 0;
+	double bound = rest / s->criterion->norm, shear = s->par.mu / s->unit;
+
+	for (int x = 0; x < span->end - span->begin; x++) {
+		double xz = shear * p[x], square = 2 * xz * xz;
+
+		if (near[DEV_X])
+			square += near[DEV_X][x] * near[DEV_X][x] +
+				  near[DEV_Y][x] * near[DEV_Y][x] +
+				  2 * near[DEV_XY][x] * near[DEV_XY][x];
+		most = square > most ? square : most;
+	}
+	return !(rest > 0 && most <= bound * bound);
+}
+
+enum num_status stress_above(struct stress *s, double limit,
+	const struct stress_span *span, size_t count, double *value)
+{
+	struct take t = { s, value, 1, limit };
+	struct stress_want want = { .span = span,
+		.count = count,
+		.put = take_equivalent,
+		.may = may_exceed,
+		.size = equivalent,
+		.context = &t };
+
+	return count > 0 && s->loaded ? sum(s, 0, &want) : NUM_OK;
+}
+
 enum num_status stress_at(struct stress *s, double z, const struct stress_span *span,
 	size_t count, double *value)
 {
-	struct take t = { s, value, 0 };
-	struct stress_want want = { span, count, STRESS_DEVIATOR, take_equivalent, &t };
+	struct take t = { .s = s, .out = value };
+	struct stress_want want = { .span = span,
+		.count = count,
+		.numbers = STRESS_DEVIATOR,
+		.put = take_equivalent,
+		.context = &t };
 
 	if (count > 0 && s->loaded)
 		return sum(s, z, &want);
@@ -473,8 +520,12 @@ enum num_status stress_tensor(struct stress *s, double z, double *tensor)
 {
 	size_t rows = (size_t)s->par.ny, n = rows * (size_t)s->par.nx;
 	struct stress_span *span = malloc(rows * sizeof *span);
-	struct take t = { s, tensor, 0 };
-	struct stress_want want = { span, rows, STRESS_NUMBERS, take_tensor, &t };
+	struct take t = { .s = s, .out = tensor };
+	struct stress_want want = { .span = span,
+		.count = rows,
+		.numbers = STRESS_NUMBERS,
+		.put = take_tensor,
+		.context = &t };
 	enum num_status status = NUM_MEMORY;
 
 	if (!span)

@@ -79,6 +79,11 @@ double stress_deep(const struct stress *s, double z);
 enum num_status stress_at(struct stress *s, double z, const struct stress_span *span,
 	size_t count, double *value);
 
+/* The same on the surface, where it may exceed limit; other nodes, which bounds exclude,
+ * are left as they are. */
+enum num_status stress_above(struct stress *s, double limit,
+	const struct stress_span *span, size_t count, double *value);
+
 /* The whole tensor on the whole grid: six fields xx yy zz xy xz yz of nx * ny each, one
  * after another. */
 enum num_status stress_tensor(struct stress *s, double z, double *tensor);

@@ -1,6 +1,7 @@
 #include "remaining_life.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "common/covariates.h"
 #include "common/quantile_columns.h"
 #include "common/time_unit.h"
 #include "filter_options.h"
@@ -32,7 +33,6 @@ static long persist = 3;
 static struct opt_choice skip = { -1, 0 };
 static struct opt_list levels = { 3, { 0.05, 0.5, 0.95 } };
 static const char *fleet_file, *events_file;
-static struct opt_texts covariates;
 static int weights;
 static double mission = NAN, cost_ratio = NAN;
 static struct opt_list alarms;
@@ -67,10 +67,7 @@ struct opt outlook_model_rows[] = { OPT_HEADING("Prediction"),
 		"levels of the quantiles of remaining life", NULL, 0 },
 	{ 0, "fleet", OPT_TEXT, UNIT_NONE, &fleet_file, 0, 0, "FILE",
 		"table of earlier units, failed or not: unit t y", NULL, 0 },
-	{ 0, "covariate", OPT_TEXTS, UNIT_NONE, &covariates, 0, 0,
-		"COLUMN[:mean|:last|:X]",
-		"column that scales the wear rate, and its value in the future", NULL,
-		0 },
+	OPT_TABLE(covariate_rows),
 	{ 0, "weights", OPT_FLAG, UNIT_NONE, &weights, 0, 0, NULL,
 		"add columns with the weight of each family of models", NULL, 0 },
 	OPT_TABLE(timeunit_rows), OPT_END };
@@ -113,11 +110,6 @@ static char **fleet_unit;   /* names */
 static int n_fleet_units;
 static struct bank_chances *chances;
 
-/* Of --covariate. */
-static struct bank_covariate load[BANK_LOADS];
-static char *load_name[BANK_LOADS];
-static int load_column[BANK_LOADS];
-
 static struct event {
 	double t;
 	enum bank_event what;
@@ -144,32 +136,6 @@ struct outlook {
 	} now;
 };
 
-/* Takes COLUMN[:FUTURE] apart. */
-static void read_covariate(int k)
-{
-	const char *text = covariates.v[k], *colon = strrchr(text, ':');
-	char *end;
-
-	load_name[k] = xstrdup(text);
-	if (colon) {
-		load_name[k][colon - text] = '\0';
-		if (strcmp(colon, ":last") == 0) {
-			load[k].future = BANK_LAST;
-		} else if (strcmp(colon, ":mean") != 0) {
-			load[k].future = BANK_VALUE;
-			load[k].value = strtod(colon + 1, &end);
-			if (end == colon + 1 || *end || !isfinite(load[k].value))
-				die(EXIT_USAGE,
-					"--covariate %s: want mean, last or a number "
-					"after the colon",
-					text);
-		}
-	}
-	for (int j = 0; j < k; j++)
-		if (strcmp(load_name[j], load_name[k]) == 0)
-			die(EXIT_USAGE, "--covariate %s: given twice", load_name[k]);
-}
-
 void outlook_check(int bare)
 {
 	static const char *const of_lives[] = { "direction", "persist", "skip", "model",
@@ -191,18 +157,15 @@ void outlook_check(int bare)
 	for (size_t i = 0; i < sizeof of_lives / sizeof *of_lives; i++)
 		if (isnan(outlook_options.threshold) && opt_given(of_lives[i]))
 			die(EXIT_USAGE, "--%s requires --threshold", of_lives[i]);
-	if ((weights || events_file || covariates.n > 0 || fleet_file) && model >= GREY)
+	if ((weights || events_file || covariates_count() > 0 || fleet_file) &&
+		model >= GREY)
 		die(EXIT_USAGE, "--%s is not for --model %s",
-			weights            ? "weights"
-			: events_file      ? "events"
-			: covariates.n > 0 ? "covariate"
-					   : "fleet",
+			weights                  ? "weights"
+			: events_file            ? "events"
+			: covariates_count() > 0 ? "covariate"
+						 : "fleet",
 			models[model]);
-	if (covariates.n > BANK_LOADS)
-		die(EXIT_USAGE, "--covariate: %d columns, want at most %d", covariates.n,
-			(int)BANK_LOADS);
-	for (int k = 0; k < covariates.n; k++)
-		read_covariate(k);
+	covariates_check();
 	if (bare && (model >= GREY || skip.word == 0))
 		die(EXIT_USAGE, "--lives-only excludes %s, which requires the filter",
 			model >= GREY ? "--model grey and literal" : "--skip auto");
@@ -312,10 +275,7 @@ void outlook_open(struct series *in, const char *unit_column, const char *clock_
 	series_scale(in, 1, 1); /* a unit that changes within the table is an error */
 	if (isnan(outlook_options.threshold))
 		return;
-	for (int k = 0; k < covariates.n; k++) {
-		load_column[k] = table_need(series_table(in), load_name[k]);
-		table_set_scale(series_table(in), load_column[k], 1);
-	}
+	covariates_open(series_table(in));
 	chances = bank_chances_new(DRAWS, (uint64_t)filtering.seed);
 	if (!chances)
 		die(EXIT_RUN, "no memory");
@@ -327,6 +287,7 @@ void outlook_open(struct series *in, const char *unit_column, const char *clock_
 
 void outlook_close(void)
 {
+	covariates_close();
 	fleet_free(fleet);
 	bank_chances_free(chances);
 	for (int i = 0; i < n_events; i++)
@@ -335,20 +296,12 @@ void outlook_close(void)
 	for (int i = 0; i < n_fleet_units; i++)
 		free(fleet_unit[i]);
 	free(fleet_unit);
-	for (int k = 0; k < covariates.n; k++)
-		free(load_name[k]);
 }
 
 void outlook_read(const struct series *in, struct outlook_row *row)
 {
-	struct table_in *t = series_table(in);
-
-	for (int k = 0; k < covariates.n; k++) {
-		row->load[k] = table_number(t, load_column[k]);
-		if (!isfinite(row->load[k]))
-			die(EXIT_RUN, "%s: line %ld: %s is missing or not finite",
-				table_name(t), table_line(t), load_name[k]);
-	}
+	if (!isnan(outlook_options.threshold))
+		covariates_read(series_table(in), row->load);
 }
 
 struct outlook *outlook_new(const char *unit, struct adaptive *filter)
@@ -380,8 +333,8 @@ static void start(struct outlook *o)
 		.adaptive = o->filter,
 		.draws = (int)filtering.particles,
 		.chances = chances,
-		.load = load,
-		.n_loads = covariates.n,
+		.load = covariates_future(),
+		.n_loads = covariates_count(),
 	};
 
 	if (fleet)
@@ -517,7 +470,7 @@ static void put_factors(const struct outlook *o, double *cell)
 {
 	const struct bank *b = o->predict ? predict_bank(o->predict) : NULL;
 
-	for (int k = 0; k < covariates.n; k++)
+	for (int k = 0; k < covariates_count(); k++)
 		cell[k] = b && bank_ready(b) ? bank_factor(b, k) : NAN;
 }
 
@@ -536,7 +489,7 @@ static int life_cells(void)
 
 int outlook_cells(void)
 {
-	return life_cells() + covariates.n + (weights ? WEIGHED : 0);
+	return life_cells() + covariates_count() + (weights ? WEIGHED : 0);
 }
 
 void outlook_step(struct outlook *o, const struct outlook_row *in,
@@ -575,7 +528,7 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 	now->left_out += now->failed || !wanted;
 	put_factors(o, cell + life_cells());
 	if (weights)
-		put_weights(o, cell + life_cells() + covariates.n);
+		put_weights(o, cell + life_cells() + covariates_count());
 }
 
 int outlook_settle_events(const struct outlook *o, const char *unit)
@@ -670,8 +623,8 @@ char *outlook_columns(const char *before)
 		names = add_word(names, "", "replace_in");
 	if (alarms.n > 0)
 		names = add_word(names, "", "alarm");
-	for (int k = 0; k < covariates.n; k++)
-		names = add_word(names, "factor_", load_name[k]);
+	for (int k = 0; k < covariates_count(); k++)
+		names = add_word(names, "factor_", covariate_name(k));
 	for (int k = 0; weights && k < WEIGHED; k++)
 		names = add_word(names, "weight_", weighed[k].name);
 	return names;

@@ -2,6 +2,7 @@
 #include "cli/msg.h"
 #include "cli/progress.h"
 #include "cli/stats.h"
+#include "common/covariates.h"
 #include "fragments.h"
 #include "life/pair/remaining.h"
 #include "life_table.h"
@@ -32,6 +33,7 @@ static const struct opt opts[] = { OPT_HEADING("Input"),
 	{ 0, "wear-rate", OPT_WORD, UNIT_NONE, &rule, 0, 0, "mean|last|filter",
 		"wear rate by (4-29), by (4-28), or estimated by Kalman filters", rules,
 		0 },
+	OPT_TABLE(covariate_rows),
 	{ 0, "step-time", OPT_NUM, UNIT_TIME, &step_time, 1e-15, 1e15, "T",
 		"duration of one step of the fragments [from the state so far]", 0, 0 },
 	{ 0, "speed", OPT_NUM, UNIT_SPEED, &speed, 1e-12, 1e6, "V",
@@ -92,6 +94,9 @@ static void settle(void)
 		"state-error", "skip", "grey", NULL };
 
 	pump_check();
+	covariates_check();
+	if (covariates_count() > 0 && rule != RATE_FILTER)
+		die(EXIT_USAGE, "--covariate requires --wear-rate filter");
 	if (wear_files.n == 0)
 		exclude(of_fragments, "requires --wear");
 	if (isnan(pump.critical_size))
@@ -184,7 +189,9 @@ static struct forecast *new_forecast(struct paths *e, enum pair_quantity quantit
 		.scaled = wear_files.n && (calibrations.n || !isnan(step_time)),
 		.skip = skip,
 		.horizon = horizon,
-		.grey = grey };
+		.grey = grey,
+		.load = covariates_future(),
+		.n_loads = covariates_count() };
 	struct forecast *f = forecast_new(e, &par);
 
 	if (!f)
@@ -206,11 +213,14 @@ static void check_life(const struct lifetable *out, double time)
 		life, step_time);
 }
 
-static void follow(struct state *s, struct lifetable *out, struct forecast *f)
+static void follow(struct observations *s, struct lifetable *out, struct forecast *f)
 {
 	while (state_next(s)) {
 		struct forecast_row row;
+		double load[BANK_LOADS] = { 0 };
 
+		covariates_read(s->table, load);
+		forecast_load(f, load);
 		if (forecast_add(f, s->t, s->value, s->gap, s->gap_error) != NUM_OK)
 			die(EXIT_RUN, "out of memory");
 		row = forecast_at(f, s->t);
@@ -228,7 +238,7 @@ static void follow(struct state *s, struct lifetable *out, struct forecast *f)
 
 /* The command line that reproduces the output: the state comes through a pipe if it
  * records its pipeline, else from its file. */
-static char *record_cmd(const struct state *s, int operand)
+static char *record_cmd(const struct observations *s, int operand)
 {
 	const char *upstream = s->table ? table_key(s->table, "cmd") : NULL;
 	char *extra = NULL, *cmd;
@@ -240,8 +250,8 @@ static char *record_cmd(const struct state *s, int operand)
 	return cmd;
 }
 
-static struct lifetable *open_table(
-	const struct state *s, const char *cmd, char **made_by, const char *assumed)
+static struct lifetable *open_table(const struct observations *s, const char *cmd,
+	char **made_by, const char *assumed)
 {
 	const char *start = s->table ? table_key(s->table, "start") : NULL;
 	struct lifetable_par par = { .levels = &levels,
@@ -288,7 +298,7 @@ int main(int argc, char **argv)
 	struct paths *e;
 	struct lifetable *out;
 	struct forecast *f;
-	struct state s = { 0 };
+	struct observations s = { 0 };
 	int i, status = 0;
 
 	pump_init();
@@ -300,6 +310,8 @@ int main(int argc, char **argv)
 		p = read_fragments(made_by);
 	if (!new)
 		state_open(&s, state_file, &pump.pair);
+	if (!new)
+		covariates_open(s.table);
 	assumed = pump_assumed(p != NULL, s.quantity == PAIR_LEAKAGE);
 	if (p && fragments_close(p, &wear_files))
 		status = EXIT_NOCONV;
@@ -319,6 +331,7 @@ int main(int argc, char **argv)
 		follow(&s, out, f);
 	}
 	lifetable_close(out);
+	covariates_close();
 	if (assumed)
 		warn("assumed: %s", assumed);
 	forecast_free(f);

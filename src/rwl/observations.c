@@ -25,7 +25,7 @@ struct opt state_rows[] = { { 0, "quantity", OPT_WORD, UNIT_NONE, &state_options
 	OPT_TABLE(timeunit_rows), OPT_TABLE(verdict_rows), OPT_END };
 
 /* Units of time and value: the table's own, or those of the options, or SI. */
-static void settle_units(struct state *s)
+static void settle_units(struct observations *s)
 {
 	static const enum unit units[] = { UNIT_ANY, UNIT_FLOW, UNIT_LENGTH, UNIT_VOLUME,
 		UNIT_LENGTH };
@@ -50,13 +50,13 @@ static void settle_units(struct state *s)
 	s->time_scale = isnan(time) ? timeunit() : time;
 }
 
-void state_open(struct state *s, const char *file, const struct pair *pair)
+void state_open(struct observations *s, const char *file, const struct pair *pair)
 {
 	static const char *const columns[] = { "", "leakage", "gap", "volume",
 		"diameter" };
 	struct table_in *t = table_open(file);
 
-	*s = (struct state){ .table = t,
+	*s = (struct observations){ .table = t,
 		.quantity = (enum pair_quantity)state_options.quantity,
 		.scale = 1,
 		.pair = pair };
@@ -85,7 +85,7 @@ void state_open(struct state *s, const char *file, const struct pair *pair)
 }
 
 /* Volume of all particles so far, with those of the present row. */
-static double add_debris(struct state *s, enum verdict verdict, double diameter)
+static double add_debris(struct observations *s, enum verdict verdict, double diameter)
 {
 	struct table_in *t = s->table;
 	double many = verdict != VERDICT_DOUBTFUL;
@@ -95,7 +95,7 @@ static double add_debris(struct state *s, enum verdict verdict, double diameter)
 	return s->debris += many * sphere * diameter * diameter * diameter;
 }
 
-int state_next(struct state *s)
+int state_next(struct observations *s)
 {
 	struct table_in *t = s->table;
 	double time, value, error = state_options.error * s->scale;
@@ -150,7 +150,7 @@ int state_next(struct state *s)
 double state_slope(const char *file, const struct pair *pair, double skip)
 {
 	struct regression line = { 0 };
-	struct state s;
+	struct observations s;
 	double slope;
 
 	state_open(&s, file, pair);

@@ -1,7 +1,7 @@
 /* observations.h - the wear of a pair as it was observed: rows of a table turned into
  * gaps
  *
- *	struct state s;
+ *	struct observations s;
  *	state_open(&s, path, &pair);
  *	while (state_next(&s))
  *		... s.t, s.gap ...
@@ -26,7 +26,7 @@ extern struct state_options {
 
 extern struct opt state_rows[]; /* for OPT_TABLE */
 
-struct state {
+struct observations {
 	struct table_in *table;
 	const struct pair *pair;
 	int time_column, value_column;
@@ -42,10 +42,10 @@ struct state {
 	double gap_error;     /* standard error of the gap */
 };
 
-void state_open(struct state *s, const char *file, const struct pair *pair);
+void state_open(struct observations *s, const char *file, const struct pair *pair);
 /* The next row; 0 at the end.  Times must grow, but particles may come together.  A
  * particle that duet calls unresolved counts as its sources. */
-int state_next(struct state *s);
+int state_next(struct observations *s);
 
 /* Slope of the gap over the whole life of an earlier unit from the time skip on, m/s. */
 double state_slope(const char *file, const struct pair *pair, double skip);

@@ -1,10 +1,9 @@
-/* Order selection, noise, run-in, history, damage models and fleet comparison. */
+/* Order selection, noise, run-in, grey series, damage models and fleet comparison. */
 #include "life/grey/grey.h"
 #include "life/grey/noise.h"
 #include "life/particle/adaptive.h"
 #include "life/prior/fleet.h"
 #include "life/trend/bank.h"
-#include "life/trend/history.h"
 #include "life/trend/passage.h"
 #include "life/trend/runin.h"
 #include "tap.h"
@@ -37,27 +36,27 @@ static void test_noise(void)
 	draw_free(d);
 }
 
-static void test_history(void)
+/* The forward sums of a series are those of all its points taken backward. */
+static void test_grey_series(void)
 {
-	struct history *h = history_new();
-	const double *t, *x;
-	double sum = 0;
-	int n;
+	struct grey_series s = { 0 };
+	struct grey back = { 0 }, g;
+	double t[1000], x[1000];
 
-	for (int k = 0; k < 100; k++)
-		history_add(h, k, 2.0 * k);
-	n = history_get(h, &t, &x);
-	ok(n == 100 && t[42] == 42 && x[42] == 84, "a short history is kept as it is");
-	for (int k = 100; k < 100003; k++)
-		history_add(h, k, 2.0 * k);
-	n = history_get(h, &t, &x);
-	ok(n <= HISTORY_MAX && n >= HISTORY_MAX / 4,
-		"a long history is kept in %d groups", n);
-	for (int k = 0; k < n; k++)
-		sum += fabs(x[k] - 2 * t[k]);
-	ok(sum < 1e-6 && t[0] == 0.5 * (t[1] - t[0] - 1),
-		"the groups have the means of their rows");
-	history_free(h);
+	for (int k = 0; k < 1000; k++) {
+		t[k] = 1e6 + k + 0.3 * sin(k * k);
+		x[k] = exp(1e-3 * k) + 0.1 * sin(3.0 * k * k);
+		grey_append(&s, x[k], k > 0 ? t[k] - t[k - 1] : 0);
+	}
+	for (int k = 999; k >= 0; k--)
+		grey_add(&back, x[k], k < 999 ? t[k + 1] - t[k] : 0);
+	g = grey_of(&s);
+	near(grey_rate(&g), grey_rate(&back), 1e-14,
+		"a series grown forward has the rate");
+	near(grey_forecast(&g, 1, 1), grey_forecast(&back, 1, 1), 1e-11, "and forecast");
+	near(grey_rate_error(&g), grey_rate_error(&back), 1e-15, "and standard errors");
+	near(grey_level_error(&g), grey_level_error(&back), 1e-12, "of rate and level");
+	ok(g.n == 1000 && fabs(g.span - (t[999] - t[0])) < 1e-8, "and length");
 }
 
 /* An alternating series is best forecast by many points; fixed orders stay; window
@@ -225,6 +224,11 @@ static double rounded_down(int k, double y)
 	return k < 50 ? rounded(k, y) : rounded(k, y) - 1.0 / 6;
 }
 
+static double overhaul(int k, double y)
+{
+	return k >= 40 ? y - 0.3 : y;
+}
+
 static double repair(int k, double y)
 {
 	return k >= 50 ? y - 0.4 : y;
@@ -254,6 +258,13 @@ static void test_disturbances(void)
 		"readings in steps that fall back are no wear");
 	near(median_life(60, as_it_is, 80, 58), plain, 1,
 		"a halt of 0.8 lives does not change the life");
+	near(median_life(30, as_it_is, 500, 9), median_life(30, as_it_is, 0, 0), 15,
+		"nor does a halt of five lives after nine rows");
+	/* at 0.4 of the way back to 0.1 in a halt of three lives: 89 rows are left */
+	ok(median_life(41, overhaul, 300, 40) > 40,
+		"the first row after an overhaul in a halt is no failure");
+	near(median_life(60, overhaul, 300, 40), 71, 10,
+		"an overhaul in a halt lengthens the life by what it sets back");
 	near(median_life(56, burst, 0, 0), plain + 4, 2,
 		"outliers at the very end do not change the life");
 	/* back by 0.4 at row 50: at the rate of 0.01 a row 40 rows more are left; the
@@ -373,7 +384,7 @@ static void test_adaptive(void)
 int main(void)
 {
 	test_noise();
-	test_history();
+	test_grey_series();
 	test_orders();
 	test_runin();
 	test_straight_wear();

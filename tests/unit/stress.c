@@ -525,6 +525,31 @@ static void fill_loads(double *p, size_t n, int stream)
 		p[i] = fmax(philox_uniform(11, (uint32_t)stream, RNG_NOISE, i) - 0.7, 0);
 }
 
+/* Nodes that bounds leave out are below the limit, the others as they are. */
+static void test_above(
+	struct stress *s, const struct stress_par *par, const double *all, double *some)
+{
+	size_t n = (size_t)par->nx * (size_t)par->ny, above = 0, wrong = 0, out = 0;
+	struct stress_span span[120];
+	double limit = 0;
+
+	for (size_t i = 0; i < n; i++)
+		limit = tap_max(limit, 0.8 * all[i]);
+	for (size_t i = 0; i < n; i++)
+		some[i] = -1;
+	stress_above(s, limit, span, whole_grid(par, span), some);
+	for (size_t i = 0; i < n; i++) {
+		above += all[i] > limit;
+		out += some[i] < 0;
+		wrong += some[i] < 0 ? all[i] > limit : some[i] != all[i];
+	}
+	ok(above > 0 && wrong == 0,
+		"axis %d, periodic %d: all %zu nodes above a limit are found, %zu of %zu left out",
+		par->axis, par->periodic, above, out, n);
+	if (!par->periodic)
+		ok(out > n / 4, "many nodes below it need no sum");
+}
+
 /* On the surface the tractions are those of the load; and what is kept of one load and of
  * one part of the grid does not show in the next. */
 static void test_surface(int axis, int periodic)
@@ -564,6 +589,7 @@ static void test_surface(int axis, int periodic)
 	ok(memcmp(m, first, CELLS * sizeof *m) == 0,
 		"axis %d, periodic %d: the same load gives the same bytes after another",
 		axis, periodic);
+	test_above(s, &par, first, m);
 	stress_free(s);
 	free(m);
 	free(first);

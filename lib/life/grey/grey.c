@@ -1,5 +1,6 @@
 /* grey.c - see grey.h */
 #include "life/grey/grey.h"
+#include <limits.h>
 #include <math.h>
 
 void grey_add(struct grey *g, double x, double gap)
@@ -13,6 +14,27 @@ void grey_add(struct grey *g, double x, double gap)
 	}
 	g->oldest = x;
 	g->n++;
+}
+
+void grey_append(struct grey_series *s, double x, double gap)
+{
+	if (s->n++ == 0) {
+		s->oldest = x;
+		return;
+	}
+	regression_add(&s->fit, s->integral + x * gap / 2, x);
+	s->integral += x * gap;
+	s->span += gap;
+}
+
+struct grey grey_of(const struct grey_series *s)
+{
+	return (struct grey){ .n = (int)fmin((double)s->n, INT_MAX),
+		.oldest = s->oldest,
+		.span = s->span,
+		.tail = s->integral,
+		.fit = { s->fit.n, s->integral - s->fit.mean_x, s->fit.mean_y, s->fit.xx,
+			-s->fit.xy, s->fit.yy } };
 }
 
 double grey_rate(const struct grey *g)

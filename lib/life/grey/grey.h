@@ -37,6 +37,17 @@ struct grey {
  * newest point is not used). */
 void grey_add(struct grey *g, double x, double gap);
 
+/* The same model of a whole series, oldest point first: keeps forward sums, so that a
+ * point costs the same at any length.  gap: since the point before, in steps; that of the
+ * first point is not used.  Zero it to start. */
+struct grey_series {
+	long n;
+	double oldest, span, integral; /* the first point, and sums since then */
+	struct regression fit;         /* of x on the integral up to mid-interval */
+};
+void grey_append(struct grey_series *s, double x, double gap);
+struct grey grey_of(const struct grey_series *s);
+
 /* Development coefficient a, 1/step (negative: growing), and the level c = b - a x1 at
  * the time of the oldest point, so that x(t) = c exp(-a t).  a = 0 below three points,
  * for a zero series, and where values over 1e150 (scale them) make squares overflow. */

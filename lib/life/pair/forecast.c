@@ -15,7 +15,8 @@ struct forecast {
 	struct bank_chances *chances;
 	struct bank_shape other; /* coordinate of the bank */
 	int by_gap;              /* the bank follows the gap, not the value */
-	double start[3];         /* its first values, which begin the coordinate */
+	double load[BANK_LOADS];
+	double start[3]; /* its first values, which begin the coordinate */
 	int starts;
 	double *life, *later; /* remaining times at the latest observation, and now */
 	long rows, n;
@@ -33,7 +34,9 @@ static enum num_status open_bank(struct forecast *f)
 {
 	const struct forecast_par *par = &f->par;
 	double limit = pair_limit(&par->pair);
-	struct bank_par bank = { .direction = 1 };
+	struct bank_par bank = {
+		.direction = 1, .load = par->load, .n_loads = par->n_loads
+	};
 
 	paths_rate(f->paths, &bank.rate_mean, &bank.rate_sd);
 	f->by_gap = bank.rate_sd > 0 || par->quantity == PAIR_GAP;
@@ -127,6 +130,18 @@ static const double *passages(
 	return f->later;
 }
 
+void forecast_load(struct forecast *f, const double load[BANK_LOADS])
+{
+	memcpy(f->load, load, sizeof f->load);
+}
+
+/* Passes the covariates on, also of a row without an observation. */
+static void load_bank(struct forecast *f, double t)
+{
+	if (f->bank && f->par.n_loads > 0)
+		bank_load(f->bank, t, f->load);
+}
+
 enum num_status forecast_add(
 	struct forecast *f, double t, double value, double gap, double error)
 {
@@ -139,13 +154,16 @@ enum num_status forecast_add(
 		f->first_t = t;
 	run_in = t - f->first_t < f->par.skip;
 	later = f->rows == 1 || t > observed_time(f->observed);
-	if (isnan(gap))
+	if (isnan(gap)) {
+		load_bank(f, t);
 		return NUM_OK;
+	}
 	if (isnan(pair->gap_new))
 		pair->gap_new = gap;
 	if (par->rule == RATE_FILTER && !f->bank && isfinite(pair_limit(pair)) &&
 		open_bank(f))
 		return NUM_MEMORY;
+	load_bank(f, t);
 	passage = passages(f, t, f->by_gap ? gap : value, run_in, later);
 	if (run_in || (f->par.skip > 0 && observed_count(f->observed) == 0))
 		observed_begin(f->observed, t, gap);

@@ -16,6 +16,7 @@
 
 #include "life/pair/pair.h"
 #include "life/pair/paths.h"
+#include "life/trend/bank.h"
 #include "num/status.h"
 
 struct forecast_par {
@@ -31,6 +32,8 @@ struct forecast_par {
 	double horizon; /* lives beyond this count as no failure; NAN: none, or ten times
 			 * the age for filters without paths */
 	int grey;       /* 1: forecast by the grey model too */
+	const struct bank_covariate *load; /* [n_loads] with RATE_FILTER, the caller's */
+	int n_loads;
 };
 
 /* The forecast at a time; NAN: unknown. */
@@ -47,6 +50,8 @@ struct forecast;
 struct forecast *forecast_new(struct paths *paths, const struct forecast_par *par);
 void forecast_free(struct forecast *f);
 
+/* The covariates of the next row. */
+void forecast_load(struct forecast *f, const double load[BANK_LOADS]);
 /* Adds a row: the value as read, and the gap derived from it with its standard error.
  * A gap of NAN is no observation: returns NUM_OK and leaves the prediction as it was. */
 enum num_status forecast_add(

@@ -1,7 +1,6 @@
 /* observed.c - see observed.h */
 #include "life/pair/observed.h"
 #include "life/grey/grey.h"
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -9,19 +8,13 @@ struct moment {
 	double t, gap;
 };
 
-/* Regression of the values on z, the integral up to the middle of their intervals. */
-struct sums {
-	double scale, unit; /* of values and times: the first value, the first interval */
-	double oldest, span, integral;
-	struct regression fit;
-};
-
 struct observed {
 	enum rate_rule rule;
 	int begun;
-	long n, points; /* observations, and those at times of their own */
+	long n;
 	struct moment first, before, last;
-	struct sums sums;
+	double scale, unit; /* of values and times: the first value, the first interval */
+	struct grey_series grey; /* of the observations at times of their own */
 };
 
 struct observed *observed_new(enum rate_rule rule)
@@ -46,21 +39,11 @@ void observed_begin(struct observed *o, double t, double gap)
 
 static void add_sums(struct observed *o, double dt, double value)
 {
-	struct sums *s = &o->sums;
-	double gap, x;
-
-	if (o->points++ == 0) {
-		*s = (struct sums){ .scale = value != 0 ? fabs(value) : 1 };
-		s->oldest = value / s->scale;
-		return;
-	}
-	if (o->points == 2)
-		s->unit = dt;
-	gap = dt / s->unit;
-	x = value / s->scale;
-	regression_add(&s->fit, s->integral + x * gap / 2, x);
-	s->integral += x * gap;
-	s->span += gap;
+	if (o->grey.n == 0)
+		o->scale = value != 0 ? fabs(value) : 1;
+	if (o->grey.n <= 1)
+		o->unit = dt > 0 ? dt : 1;
+	grey_append(&o->grey, value / o->scale, dt / o->unit);
 }
 
 void observed_add(struct observed *o, double t, double value, double gap)
@@ -73,7 +56,7 @@ void observed_add(struct observed *o, double t, double value, double gap)
 	if (dt > 0)
 		o->before = o->last;
 	o->last = (struct moment){ t, gap };
-	if (o->points == 0 || dt > 0)
+	if (o->grey.n == 0 || dt > 0)
 		add_sums(o, dt, value);
 	o->n++;
 }
@@ -109,22 +92,16 @@ double observed_rate(const struct observed *o)
 
 double observed_grey(const struct observed *o, double threshold)
 {
-	const struct sums *s = &o->sums;
-	struct grey g = { .n = (int)fmin((double)o->points, INT_MAX),
-		.oldest = s->oldest,
-		.span = s->span,
-		.tail = s->integral,
-		.fit = { s->fit.n, s->integral - s->fit.mean_x, s->fit.mean_y, s->fit.xx,
-			-s->fit.xy, s->fit.yy } };
+	struct grey g = grey_of(&o->grey);
 	double now, rate;
 
-	if (o->points < GREY_ORDER_MIN)
+	if (g.n < GREY_ORDER_MIN)
 		return NAN;
-	now = grey_forecast(&g, 0, s->span / (double)(o->points - 1));
+	now = grey_forecast(&g, 0, g.span / (g.n - 1));
 	rate = -grey_rate(&g);
-	if (now >= threshold / s->scale)
+	if (now >= threshold / o->scale)
 		return 0;
 	if (!(now > 0 && rate > 0))
 		return INFINITY;
-	return log(threshold / s->scale / now) / rate * s->unit;
+	return log(threshold / o->scale / now) / rate * o->unit;
 }

@@ -36,8 +36,9 @@ struct tilt {
 
 /* A covariate, as f(x). */
 struct load {
-	double origin, most; /* x_0, and the largest distance from it */
-	double bend;         /* c */
+	double origin, unit; /* x_0, and the first distance from it */
+	double most;         /* the largest one, in units */
+	double bend;         /* c, per unit */
 	double last;         /* f at the last row */
 	double sum;          /* of f times the time, without the idle time */
 	double taken;        /* sum at the last row that was taken */

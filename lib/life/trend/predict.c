@@ -1,7 +1,6 @@
 /* predict.c - see predict.h */
 #include "life/trend/predict.h"
 #include "life/grey/grey.h"
-#include "life/trend/history.h"
 #include "life/trend/passage.h"
 #include "num/select.h"
 #include <math.h>
@@ -12,12 +11,12 @@ enum { LITERAL_STEPS = 1000 };
 
 struct predict {
 	struct predict_par par;
-	struct history *history; /* of states, for the grey model; else NULL */
-	struct bank *bank;       /* for the others; else NULL */
-	double scale;            /* power of two near the threshold, for the grey model */
+	struct bank *bank; /* NULL for the grey and the literal model */
+	double scale;      /* power of two near the threshold, for the grey model */
 	struct progress {
 		long rows;
-		double first, last; /* times */
+		double first, last;      /* times */
+		struct grey_series grey; /* of states, for the grey model */
 	} now;
 };
 
@@ -42,22 +41,16 @@ struct predict *predict_new(const struct predict_par *par)
 	frexp(par->threshold - par->zero, &exponent);
 	p->scale = ldexp(1, exponent);
 	p->par = *par;
-	if (par->model == PREDICT_GREY)
-		p->history = history_new();
-	else if (par->model != PREDICT_LITERAL)
-		p->bank = bank_new(&bank);
-	if (!p->history && !p->bank && par->model != PREDICT_LITERAL) {
-		free(p);
-		return NULL;
-	}
-	return p;
+	if (par->model >= PREDICT_GREY || (p->bank = bank_new(&bank)))
+		return p;
+	free(p);
+	return NULL;
 }
 
 void predict_free(struct predict *p)
 {
 	if (!p)
 		return;
-	history_free(p->history);
 	bank_free(p->bank);
 	free(p);
 }
@@ -65,19 +58,18 @@ void predict_free(struct predict *p)
 void predict_pass(struct predict *p, struct state *s)
 {
 	state_move(s, &p->now, sizeof p->now);
-	if (p->history)
-		history_pass(p->history, s);
 	if (p->bank)
 		bank_pass(p->bank, s);
 }
 
 void predict_add(struct predict *p, double t, double y, double state, const double *load)
 {
+	if (p->par.model == PREDICT_GREY)
+		grey_append(
+			&p->now.grey, (state - p->par.zero) / p->scale, t - p->now.last);
 	if (p->now.rows++ == 0)
 		p->now.first = t;
 	p->now.last = t;
-	if (p->history)
-		history_add(p->history, t, (state - p->par.zero) / p->scale);
 	if (p->bank && p->par.n_loads > 0)
 		bank_load(p->bank, t, load);
 	if (p->bank)
@@ -86,8 +78,7 @@ void predict_add(struct predict *p, double t, double y, double state, const doub
 
 void predict_restart(struct predict *p)
 {
-	if (p->history)
-		history_clear(p->history);
+	p->now.grey = (struct grey_series){ 0 };
 	if (p->bank)
 		bank_clear(p->bank);
 }
@@ -119,16 +110,10 @@ static double grey_crossing(
 
 static enum num_status draw_grey(struct predict *p, double *life)
 {
-	const double *t, *x;
-	int n = history_get(p->history, &t, &x);
-	struct grey g = { 0 };
-	double gap;
+	struct grey g = grey_of(&p->now.grey);
 
-	if (n < GREY_ORDER_MIN)
+	if (g.n < GREY_ORDER_MIN)
 		return NUM_DOMAIN;
-	gap = (t[n - 1] - t[0]) / (n - 1);
-	for (int k = n; k-- > 0;)
-		grey_add(&g, x[k], k + 1 < n ? t[k + 1] - t[k] : 0);
 	for (int i = 0; i < predict_draws(p); i++) {
 		double rate_z = bank_chance_normal(p->par.chances, i, 0),
 		       level_z = bank_chance_normal(p->par.chances, i, 1);
@@ -136,8 +121,7 @@ static enum num_status draw_grey(struct predict *p, double *life)
 		double level = g.fit.mean_y + grey_level_error(&g) * level_z +
 			       rate * (g.tail - g.fit.mean_x);
 
-		life[i] = grey_crossing(
-			p, level, rate, g.span + p->now.last - t[n - 1], gap);
+		life[i] = grey_crossing(p, level, rate, g.span, g.span / (g.n - 1));
 	}
 	return NUM_OK;
 }
@@ -145,7 +129,7 @@ static enum num_status draw_grey(struct predict *p, double *life)
 /* Fills life[]; NUM_DOMAIN while there are too few rows. */
 static enum num_status draw_lives(struct predict *p, double *life)
 {
-	if (p->history)
+	if (p->par.model == PREDICT_GREY)
 		return draw_grey(p, life);
 	if (!p->bank)
 		return adaptive_lives(p->par.adaptive, p->par.threshold - p->par.zero,
