@@ -224,6 +224,11 @@ static double rounded_down(int k, double y)
 	return k < 50 ? rounded(k, y) : rounded(k, y) - 1.0 / 6;
 }
 
+static double overhaul(int k, double y)
+{
+	return k >= 40 ? y - 0.3 : y;
+}
+
 static double repair(int k, double y)
 {
 	return k >= 50 ? y - 0.4 : y;
@@ -253,6 +258,13 @@ static void test_disturbances(void)
 		"readings in steps that fall back are no wear");
 	near(median_life(60, as_it_is, 80, 58), plain, 1,
 		"a halt of 0.8 lives does not change the life");
+	near(median_life(30, as_it_is, 500, 9), median_life(30, as_it_is, 0, 0), 15,
+		"nor does a halt of five lives after nine rows");
+	/* at 0.4 of the way back to 0.1 in a halt of three lives: 89 rows are left */
+	ok(median_life(41, overhaul, 300, 40) > 40,
+		"the first row after an overhaul in a halt is no failure");
+	near(median_life(60, overhaul, 300, 40), 71, 10,
+		"an overhaul in a halt lengthens the life by what it sets back");
 	near(median_life(56, burst, 0, 0), plain + 4, 2,
 		"outliers at the very end do not change the life");
 	/* back by 0.4 at row 50: at the rate of 0.01 a row 40 rows more are left; the

@@ -16,7 +16,7 @@ enum {
 	PARTICLES = 52,
 	BIRTHS = 4,    /* at a time */
 	FIRST = 3,     /* observations whose median is D = 0 */
-	BREEDING = 16, /* rows before particles are drawn and halts recognised */
+	BREEDING = 16, /* rows before particles are drawn */
 	HELD_GOOD = 3  /* rows held back at most on the good side */
 };
 
@@ -535,15 +535,25 @@ static void release(struct bank *b)
 		take(b, &b->held[i]);
 }
 
-/* Takes the idle time out of a row: after a long gap the machine may have been idle.
- * While few rows are known, and with them the rate, the next observation cannot decide.
- */
+/* 1 if the machine was idle in a long gap of step: running does not explain the
+ * observation, or explains it less well; or it has been repaired, which says nothing
+ * against idleness. */
+static int was_idle(const struct bank *b, double damage, double step)
+{
+	return (damage < b->level && expect(b, damage, b->gap, is_surprised) >= 0.9) ||
+	       expect(b, damage, step, is_surprised) >= 0.9 ||
+	       expect(b, damage, b->gap, density) > expect(b, damage, step, density);
+}
+
+/* Takes the idle time out of a row.  With halts of 0.1 to 0.8 lives after 5 to 16 rows
+ * the CRPS of the first 13 kinds of tests/long/lives.c at 80 % of the rows is 3.6 % of
+ * life; if halts are recognised from the 16th row on only, it is 4.9 %. */
 static void leave_idle_time(struct bank *b, struct row *r)
 {
-	double step = (r->t - b->last) / b->unit, damage = damage_of(b, r->y), idle;
+	double step = (r->t - b->last) / b->unit, idle;
 
-	if (b->rows < BREEDING || b->n_held > 0 || step <= HALT * b->gap ||
-		expect(b, damage, b->gap, density) <= expect(b, damage, step, density))
+	if (!bank_ready(b) || b->n_held > 0 || step <= HALT * b->gap ||
+		!was_idle(b, damage_of(b, r->y), step))
 		return;
 	idle = (step - b->gap) * b->unit;
 	b->idle += idle;
