@@ -76,6 +76,21 @@ static size_t padded(size_t n)
 
 static enum num_status make_coarse(struct contact *c);
 
+/* Each thread writes to what it will work on.  Pages of zeros that are read first would
+ * be copied at their first write, for which the system stops the other threads. */
+static void clear_cells(void *context, size_t begin, size_t end, struct sweep *s)
+{
+	struct contact *c = context;
+	size_t size = (end - begin) * sizeof *c->gap;
+
+	(void)s;
+	memset(c->gap + begin, 0, size);
+	memset(c->step + begin, 0, size);
+	memset(c->image + begin, 0, size);
+	if (c->par.solver == CONTACT_BCCG)
+		memset(c->residual + begin, 0, size);
+}
+
 /* Room for all arrays; two coarse ones fit into the last or nearly so. */
 static size_t room(const struct contact_par *par, size_t n)
 {
@@ -115,6 +130,8 @@ static struct contact *new_grid(
 		c->image = c->step + padded(c->n);
 		c->residual = c->image + padded(c->n);
 	}
+	if (c->memory)
+		contact_sweep(c, clear_cells);
 	if (!c->gap || make_kernel(c, lender) != 0 ||
 		(par->solver == CONTACT_BCCG &&
 			(contact_make_preconditioner(c, lender) != 0 ||

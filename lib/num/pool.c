@@ -17,19 +17,27 @@ struct worker {
 	pthread_t thread;
 };
 
-struct pool {
-	int threads;            /* the caller's included */
-	struct worker *workers; /* threads - 1 of them */
-
+/* The jobs of a thread.  It works on the same part of the data in every call, which its
+ * caches then hold; when it has done them, it helps the others. */
+struct lot {
 	/* The number of the call of pool_run() times 2^32, plus the jobs that nobody has
 	 * taken.  In one word, so that a thread that comes late takes no job of a later
 	 * call for one of its own. */
 	_Atomic uint64_t ticket;
+	size_t end;     /* the number after the last of them */
+	char space[48]; /* a cache line for each */
+};
+
+struct pool {
+	int threads;            /* the caller's included */
+	struct worker *workers; /* threads - 1 of them */
+
+	struct lot *lots;          /* of all threads */
+	_Atomic uint32_t round;    /* number of the call of pool_run() */
 	_Atomic size_t unfinished; /* jobs */
 	atomic_int quit;
 	void (*job)(void *context, size_t i, int worker);
 	void *context;
-	size_t njobs;
 
 	/* for those that sleep */
 	pthread_mutex_t lock;
@@ -42,27 +50,38 @@ static uint32_t round_of(uint64_t ticket)
 	return (uint32_t)(ticket >> 32);
 }
 
-/* Takes jobs of this round until none is left.  What the round works on is read only with
- * a job in hand, which keeps pool_run() from returning.  Returns 1 if the last job of all
- * ended here. */
-static int work(struct pool *p, uint32_t round, int number)
+/* Takes jobs of a lot and this round until none is left; returns their number.  What the
+ * round works on is read only with a job in hand, which keeps pool_run() from returning.
+ */
+static size_t work_off(struct pool *p, struct lot *lot, uint32_t round, int number)
 {
-	uint64_t ticket = atomic_load(&p->ticket);
+	uint64_t ticket = atomic_load(&lot->ticket);
 	size_t done = 0;
 
 	while (round_of(ticket) == round && (uint32_t)ticket > 0) {
-		if (!atomic_compare_exchange_weak(&p->ticket, &ticket, ticket - 1))
+		if (!atomic_compare_exchange_weak(&lot->ticket, &ticket, ticket - 1))
 			continue;
-		p->job(p->context, p->njobs - (uint32_t)ticket, number);
+		p->job(p->context, lot->end - (uint32_t)ticket, number);
 		done++;
-		ticket = atomic_load(&p->ticket);
+		ticket = atomic_load(&lot->ticket);
 	}
+	return done;
+}
+
+/* Its own jobs, then those that are left of the others.  Returns 1 if the last job of all
+ * ended here. */
+static int work(struct pool *p, uint32_t round, int number)
+{
+	size_t done = 0;
+
+	for (int k = 0; k < p->threads; k++)
+		done += work_off(p, &p->lots[(number + k) % p->threads], round, number);
 	return done > 0 && atomic_fetch_sub(&p->unfinished, done) == done;
 }
 
 static int is_called(struct pool *p, uint32_t seen)
 {
-	return round_of(atomic_load(&p->ticket)) != seen || atomic_load(&p->quit);
+	return atomic_load(&p->round) != seen || atomic_load(&p->quit);
 }
 
 static int is_finished(struct pool *p)
@@ -89,7 +108,7 @@ static void *serve(void *argument)
 		}
 		if (atomic_load(&p->quit))
 			return NULL;
-		seen = round_of(atomic_load(&p->ticket));
+		seen = atomic_load(&p->round);
 		if (work(p, seen, w->number)) {
 			pthread_mutex_lock(&p->lock);
 			pthread_cond_signal(&p->finish);
@@ -109,7 +128,8 @@ struct pool *pool_new(int threads)
 	pthread_cond_init(&p->start, NULL);
 	pthread_cond_init(&p->finish, NULL);
 	p->workers = calloc((size_t)threads, sizeof *p->workers);
-	for (int i = 1; p->workers && i < threads; i++) {
+	p->lots = calloc((size_t)threads, sizeof *p->lots);
+	for (int i = 1; p->workers && p->lots && i < threads; i++) {
 		struct worker *w = &p->workers[i - 1];
 		int reason;
 
@@ -143,6 +163,7 @@ void pool_free(struct pool *p)
 	pthread_cond_destroy(&p->start);
 	pthread_cond_destroy(&p->finish);
 	free(p->workers);
+	free(p->lots);
 	free(p);
 }
 
@@ -154,20 +175,28 @@ int pool_threads(const struct pool *p)
 void pool_run(struct pool *p, size_t njobs,
 	void (*job)(void *context, size_t i, int worker), void *context)
 {
+	size_t threads = (size_t)pool_threads(p), begin = 0;
 	uint32_t round;
 
-	if (pool_threads(p) == 1 || njobs < 2) {
+	if (threads == 1 || njobs < 2) {
 		for (size_t i = 0; i < njobs; i++)
 			job(context, i, 0);
 		return;
 	}
-	round = round_of(atomic_load(&p->ticket)) + 1;
+	round = atomic_load(&p->round) + 1;
 	p->job = job;
 	p->context = context;
-	p->njobs = njobs;
 	atomic_store(&p->unfinished, njobs);
 	pthread_mutex_lock(&p->lock);
-	atomic_store(&p->ticket, (uint64_t)round << 32 | (uint32_t)njobs);
+	for (size_t k = 0; k < threads; k++) {
+		struct lot *lot = &p->lots[k];
+
+		lot->end = njobs * (k + 1) / threads;
+		atomic_store(&lot->ticket,
+			(uint64_t)round << 32 | (uint32_t)(lot->end - begin));
+		begin = lot->end;
+	}
+	atomic_store(&p->round, round);
 	if (p->sleepers > 0)
 		pthread_cond_broadcast(&p->start);
 	pthread_mutex_unlock(&p->lock);

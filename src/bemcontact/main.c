@@ -285,6 +285,9 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 		die(EXIT_RUN, "%s: record %ld: want a plane field, got %d layers", t.name,
 			t.number, r->nz);
 	t.p = warm ? record_need(r, "pressure", 1, in) : record_add(r, "pressure", "Pa");
+	/* Written before it is read: see clear_cells() of the solver. */
+	if (!warm)
+		memset(t.p, 0, cells * sizeof *t.p);
 	u = field_of(r, DISPLACEMENT, "m");
 	t.gap = field_of(r, GAP, "m");
 	if (!t.gap && (unload_wanted() || fields & 1 << RESIDUAL))

@@ -5,6 +5,7 @@
  * else in the bank needs only h and v.
  */
 #include "life/trend/bank_state.h"
+#include <string.h>
 
 /* Standard deviation of the effect of a covariate at its largest distance from the first
  * value, as a share of the rate.  Mean CRPS of simulated paths, straight, cracks, roots
@@ -219,13 +220,14 @@ void scale_tilts(const struct bank *b, struct trend *tr, double times)
 	}
 }
 
-/* Weighted means of dD/dt at f = 0, and of its change with each f. */
-static double mean_rate(const struct bank *b, double change[BANK_LOADS])
+/* Weighted means of dD/dt at the mean loads, and of its change with each f. */
+static double mean_rate(
+	const struct bank *b, double mean[BANK_LOADS], double change[BANK_LOADS])
 {
 	double rate = 0;
 
-	for (int k = 0; k < b->par.n_loads; k++)
-		change[k] = 0;
+	mean_loads(b, mean);
+	memset(change, 0, BANK_LOADS * sizeof *change);
 	for (int i = 0; i < b->trends; i++) {
 		const struct trend *tr = &b->trend[i];
 		const struct tilt *tilt = tilts_of(b, tr);
@@ -233,11 +235,11 @@ static double mean_rate(const struct bank *b, double change[BANK_LOADS])
 			       place_of(b, tr->shape, b->level).slope;
 
 		rate += scale * tr->v;
-		for (int k = 0; k < b->par.n_loads; k++) {
+		for (int k = 0; k < b->par.n_loads; k++)
 			change[k] += scale * tilt[k].w;
-			rate -= scale * tilt[k].w * b->load[k].at;
-		}
 	}
+	for (int k = 0; k < b->par.n_loads; k++)
+		rate += change[k] * (mean[k] - b->load[k].at);
 	return rate;
 }
 
@@ -249,23 +251,16 @@ void bend_loads(struct bank *b)
 
 	if (b->par.n_loads == 0)
 		return;
-	rate = mean_rate(b, change);
-	mean_loads(b, mean);
-	for (int k = 0; k < b->par.n_loads; k++)
-		rate += change[k] * mean[k];
+	rate = mean_rate(b, mean, change);
 	for (int k = 0; k < b->par.n_loads && rate > 0; k++)
 		bend(&b->load[k], change[k] * (1 + b->load[k].bend * mean[k]) / rate);
 }
 
 double bank_factor(const struct bank *b, int k)
 {
-	double change[BANK_LOADS], mean[BANK_LOADS], rate, usual;
+	double change[BANK_LOADS], mean[BANK_LOADS],
+		rate = mean_rate(b, mean, change),
+		last = rate + change[k] * (b->load[k].last - mean[k]);
 
-	rate = mean_rate(b, change);
-	mean_loads(b, mean);
-	for (int j = 0; j < b->par.n_loads; j++)
-		rate += change[j] * mean[j];
-	usual = rate;
-	rate += change[k] * (b->load[k].last - mean[k]);
-	return rate > 0 && usual > 0 ? rate / usual : NAN;
+	return rate > 0 && last > 0 ? last / rate : NAN;
 }
