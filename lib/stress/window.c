@@ -366,10 +366,10 @@ static enum num_status find_kernels(struct tiling *t, struct window_kept *kept)
 	size_t spectra = 2 * (size_t)t->w->numbers * t->spectrum, table = 0;
 	int found = 0;
 
-	if (t->x.count > 1 || t->y.count > 1)
+	/* By what the kernels are found: all that are alike have it. */
+	if (4 * (size_t)t->reach_x < t->x.points && 4 * (size_t)t->reach_y < t->y.points)
 		table = (size_t)t->w->numbers * (size_t)(2 * t->reach_x + 1) *
 			(size_t)(2 * t->reach_y + 1);
-
 	for (int i = 0; i < WINDOW_KEPT && !found; i++) {
 		struct window_spectra *q = &kept->spectra[i];
 

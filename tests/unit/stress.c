@@ -660,6 +660,37 @@ static void test_points(void)
 	free(p);
 }
 
+/* A small part of the grid, then all of it: the sums do not depend on those before.  Both
+ * take planes of 128 x 128 points, in one piece and in tiles. */
+static void test_sequence(void)
+{
+	enum { SIDE = 240, PART = 106 };
+	struct stress_par par = plain(SIDE, SIDE, 0.3);
+	double *p = calloc(3 * SIDE * SIDE, sizeof *p), *a = p + SIDE * SIDE,
+	       *b = a + SIDE * SIDE;
+	struct stress_span span[SIDE];
+	struct stress *used = stress_new(&par), *fresh = stress_new(&par);
+	size_t rows;
+
+	whole_grid(&par, span);
+	p[0] = p[PART * SIDE - SIDE + PART - 1] = 1;
+	for (int y = 0; y < PART; y++)
+		span[y].end = PART;
+	stress_load(used, p);
+	stress_at(used, 0, span, PART, a);
+	rows = whole_grid(&par, span);
+	p[150 * SIDE + 170] = p[SIDE * SIDE - 1] = 2;
+	stress_load(used, p);
+	stress_load(fresh, p);
+	stress_at(used, 0, span, rows, a);
+	stress_at(fresh, 0, span, rows, b);
+	ok(memcmp(a, b, SIDE * SIDE * sizeof *a) == 0,
+		"the stress after another sum is that of the first sum");
+	stress_free(used);
+	stress_free(fresh);
+	free(p);
+}
+
 static void test_refusals(void)
 {
 	struct stress_par par = plain(8, 8, 0.3);
@@ -700,6 +731,7 @@ int main(void)
 	for (int k = 0; k < 4; k++)
 		test_surface(k & 1, k >> 1);
 	test_points();
+	test_sequence();
 	test_refusals();
 	return tap_done();
 }
