@@ -99,6 +99,13 @@ fails "a code and a table" 2 'not both' abrade --gap 1um $p --iso 18:16:13 four.
 fails "a code without an area" 2 'requires --area' abrade --gap 1um $p --iso 18:16:13 --largest 70um
 fails "a code without a largest particle" 2 'requires --largest or --inlet' abrade --gap 1um $p --iso 18:16:13 --area 1mm2
 fails "a code that grows" 2 'must not increase with size' abrade --gap 1um $p --iso 13:16:18 --area 1mm2 --largest 70um
+fails "a code that does not tell the sizes above 14 um" 2 'want a lower third number' \
+	abrade --gap 1um $p --iso 18:16:16 --area 1mm2 --largest 70um
+abrade --gap 2um $p --iso 19:19:13 --area 1m2 --largest 50um >equal.tsv
+# 5000 - 5000 (50/6)^(-log(5000/80)/log(14/6)) a millilitre in 2 ml, none of them between 4 and 6 um
+near "a code of equal numbers at 4 and 6 um has none between" \
+	"$(awk '!/^[#r]/ { n++; small += $3 < 5.999e-6 } END { print small ? 0 : n }' equal.tsv)" \
+	"$(awk 'BEGIN { k = log(5000 / 80) / log(14 / 6); print 2 * 5000 * (1 - (50 / 6) ^ -k) }')" 400
 fails "a code where a table is read" 2 'are for --iso' abrade --gap 1um $p --largest 70um four.tsv
 fails "a table without a surface to leave standard output to" 2 '\--surface is given' abrade --gap 1um $p --particles x four.tsv
 printf 'diameter\taspect\n1e-6\t0.5\n' >flat.tsv

@@ -228,14 +228,154 @@ const char *unit_meant(const char *text, enum unit unit)
 	return least < 1000 ? meant : NULL;
 }
 
-const char *number_text(double value, char text[NUMBER_TEXT])
+enum { KEPT = 21, SHORTEST = 15, LONGEST = 17 }; /* decimal digits */
+
+/* A decimal number of that many digits without its sign; the first one stands for
+ * 10^exponent. */
+struct decimal {
+	char digit[KEPT];
+	int exponent;
+};
+
+static struct decimal decimal_of(double value)
 {
-	if (isnan(value))
-		return strcpy(text, "nan");
-	for (int digits = 15; digits <= 17; digits++) {
+	struct decimal d;
+	char text[KEPT + 16];
+
+	snprintf(text, sizeof text, "%.*e", KEPT - 1, fabs(value));
+	d.digit[0] = text[0];
+	memcpy(d.digit + 1, text + 2, KEPT - 1);
+	d.exponent = atoi(text + KEPT + 2);
+	return d;
+}
+
+/* The digits behind the first n, as a number. */
+static double tail_of(const struct decimal *d, int n)
+{
+	double tail = 0;
+
+	for (int i = n; i < KEPT; i++)
+		tail = 10 * tail + (d->digit[i] - '0');
+	return tail;
+}
+
+/* Keeps n digits, the last one larger by up. */
+static void round_decimal(struct decimal *d, int n, int up)
+{
+	int i = n - 1;
+
+	if (!up)
+		return;
+	for (; i >= 0 && d->digit[i] == '9'; i--)
+		d->digit[i] = '0';
+	if (i >= 0) {
+		d->digit[i]++;
+		return;
+	}
+	d->digit[0] = '1';
+	d->exponent++;
+}
+
+/* Rounds to as few digits as denote the value, 15 to 17, and returns how many; 0 where
+ * those kept do not decide.  A number denotes the value if it is nearer than half the
+ * distance of doubles. */
+static int shorten(struct decimal *d, double value)
+{
+	/* All in units of the last digit, which is off by up to a half. */
+	double half, unit = 1e6; /* 10^(KEPT - SHORTEST) */
+	int binary;
+
+	/* Below a power of two the distance is another one. */
+	if (frexp(fabs(value), &binary) == 0.5)
+		return 0;
+	half = ldexp(1, binary - 54) / pow(10, d->exponent - KEPT + 1);
+	for (int n = SHORTEST; n <= LONGEST; n++, unit /= 10) {
+		double tail = tail_of(d, n), off;
+		int up = tail > unit / 2;
+
+		off = up ? unit - tail : tail;
+		if (fabs(tail - unit / 2) <= 1 || fabs(off - half) <= 1 + 1e-6 * half)
+			return 0;
+		if (off < half || n == LONGEST) {
+			round_decimal(d, n, up);
+			return n;
+		}
+	}
+	return 0;
+}
+
+/* As printf() does for %g with n digits. */
+static void write_decimal(const struct decimal *d, int negative, int n, char *to)
+{
+	int plain = d->exponent >= -4 && d->exponent < n, used = n;
+
+	while (used > 1 && d->digit[used - 1] == '0')
+		used--;
+	if (negative)
+		*to++ = '-';
+	if (plain && d->exponent < 0) {
+		*to++ = '0';
+		*to++ = '.';
+		for (int i = d->exponent + 1; i < 0; i++)
+			*to++ = '0';
+	}
+	for (int i = 0; i < used || (plain && i <= d->exponent); i++) {
+		if (i > 0 && i == (plain ? d->exponent + 1 : 1))
+			*to++ = '.';
+		*to++ = i < used ? d->digit[i] : '0';
+	}
+	if (plain)
+		*to = '\0';
+	else
+		sprintf(to, "e%c%02d", d->exponent < 0 ? '-' : '+', abs(d->exponent));
+}
+
+/* A whole number of less than 15 digits. */
+static void write_whole(long long value, char *to)
+{
+	char digits[24];
+	int n = 0;
+
+	if (value < 0) {
+		*to++ = '-';
+		value = -value;
+	}
+	do
+		digits[n++] = (char)('0' + value % 10);
+	while ((value /= 10) > 0);
+	while (n > 0)
+		*to++ = digits[--n];
+	*to = '\0';
+}
+
+/* The same, digit by digit. */
+static void write_slowly(double value, char text[NUMBER_TEXT])
+{
+	for (int digits = SHORTEST; digits <= LONGEST; digits++) {
 		snprintf(text, NUMBER_TEXT, "%.*g", digits, value);
 		if (strtod(text, NULL) == value)
 			break;
+	}
+}
+
+const char *number_text(double value, char text[NUMBER_TEXT])
+{
+	double size = fabs(value);
+
+	if (isnan(value))
+		return strcpy(text, "nan");
+	if (size < 1e14 && size >= 1 && value == floor(value)) {
+		write_whole((long long)value, text);
+	} else if (size > 1e-280 && size < 1e280) { /* powers of ten stay normal */
+		struct decimal d = decimal_of(value);
+		int n = shorten(&d, value);
+
+		if (n > 0)
+			write_decimal(&d, value < 0, n, text);
+		else
+			write_slowly(value, text);
+	} else {
+		write_slowly(value, text);
 	}
 	return text;
 }

@@ -40,6 +40,19 @@ enum num_status line_fit(
 	return NUM_OK;
 }
 
+void line_allow_unequal(const double *x, const double *y, size_t n, struct line *l)
+{
+	double xx = 0, sum = 0;
+
+	for (size_t i = 0; i < n; i++) {
+		double u = x[i] - l->middle, d = y[i] - l->value - l->slope * u;
+
+		xx += u * u;
+		sum += u * u * d * d;
+	}
+	l->slope_se = fmax(l->slope_se, sqrt((double)n / (double)(n - 2) * sum) / xx);
+}
+
 double line_lack_of_fit(const double *x, const double *y, size_t n, const struct line *l)
 {
 	double within = 0, about = 0, groups = 0;

@@ -24,6 +24,10 @@ double line_t(double confidence, size_t degrees);
 enum num_status line_fit(
 	const double *x, const double *y, size_t n, double confidence, struct line *l);
 
+/* Lets the scatter vary with x: slope_se becomes at least the standard error that follows
+ * from the residual of each point (White 1980), for many points. */
+void line_allow_unequal(const double *x, const double *y, size_t n, struct line *l);
+
 /* Lack-of-fit test: p-value of the hypothesis that the means of groups of equal x lie on
  * a line (F test); points ordered by x.  NAN with fewer than three groups or one point
  * each. */

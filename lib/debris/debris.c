@@ -1,5 +1,6 @@
 #include "debris/debris.h"
 #include "num/grid.h"
+#include "num/lanes.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -78,6 +79,8 @@ void debris_contact(
 		for (int x = 0; x < s->nx; x++) {
 			double p = row[x];
 
+			if (p == 0)
+				continue;
 			sum += p;
 			cells += p > 0;
 			most = p > most ? p : most;
@@ -95,13 +98,13 @@ void debris_contact(
 enum debris_status debris_load(struct debris *d, const double *pressure)
 {
 	size_t n = (size_t)d->par.stress.nx * (size_t)d->par.stress.ny;
+	lane_mask pulls = lanes_all(0) < 0;
 
 	if (stress_load(d->stress, pressure))
 		return DEBRIS_NUMBERS;
-	for (size_t i = 0; i < n; i++)
-		if (pressure[i] < 0)
-			return DEBRIS_PULL;
-	return DEBRIS_OK;
+	for (size_t i = 0; i < n; i += 2)
+		pulls = lanes_or(pulls, lanes_load(pressure + i, i + 1 < n ? 2 : 1) < 0);
+	return pulls[0] || pulls[1] ? DEBRIS_PULL : DEBRIS_OK;
 }
 
 enum debris_status debris_step(struct debris *d, double *height, const double *pressure,

@@ -15,7 +15,9 @@ enum {
 	REACH = RADIUS +
 		1,  /* radius of the part summed on the cells; the element adds one */
 	SMALL = 32, /* sides up to this are summed in full, which is no slower */
-	COARSEST = 6 * OUTER /* points per side up to which a window does not save time */
+	COARSEST =
+		6 * OUTER, /* points per side up to which a window does not save time */
+	LEVELS = 20        /* of points, up to 2^20 cells a side */
 };
 
 /* Depth over the distance of points: interpolation through eight of them leaves 2e-5 of
@@ -30,14 +32,23 @@ struct box {
 	int x0, y0, wx, wy;
 };
 
+/* Memory of a level, kept from one layer to the next: taken anew, the system would clear
+ * it every time. */
+struct level_memory {
+	double *values;
+	size_t size; /* doubles */
+};
+
 struct free_sum {
 	struct influence_par par;
 	int nx, ny, full;
 	struct pool *pool;
 	const double *pressure;
+	double scale;       /* of loads over pressures */
 	int x0, x1, y0, y1; /* of the loads, inclusive; x1 < x0: there are none */
 	struct sum_work work;
 	struct window_kept kept;
+	struct level_memory level[LEVELS];
 };
 
 struct free_sum *free_sum_new(
@@ -54,8 +65,11 @@ struct free_sum *free_sum_new(
 
 void free_sum_free(struct free_sum *s)
 {
-	if (s)
-		window_forget(&s->kept);
+	if (!s)
+		return;
+	window_forget(&s->kept);
+	for (int k = 0; k < LEVELS; k++)
+		free(s->level[k].values);
 	free(s);
 }
 
@@ -64,19 +78,26 @@ struct sum_work free_sum_work(const struct free_sum *s)
 	return s->work;
 }
 
-void free_sum_load(struct free_sum *s, const double *pressure)
+void free_sum_load(struct free_sum *s, const double *pressure, double scale)
 {
 	s->pressure = pressure;
+	s->scale = scale;
 	s->x0 = s->nx, s->x1 = -1, s->y0 = s->ny, s->y1 = -1;
-	for (int y = 0; y < s->ny; y++)
-		for (int x = 0; x < s->nx; x++) {
-			if (pressure[(size_t)y * (size_t)s->nx + (size_t)x] == 0)
-				continue;
-			s->x0 = x < s->x0 ? x : s->x0;
-			s->x1 = x > s->x1 ? x : s->x1;
-			s->y0 = y < s->y0 ? y : s->y0;
-			s->y1 = y;
-		}
+	for (int y = 0; y < s->ny; y++) {
+		const double *row = pressure + (size_t)y * (size_t)s->nx;
+		int first = 0, last = s->nx - 1;
+
+		while (first < s->nx && row[first] == 0)
+			first++;
+		if (first == s->nx)
+			continue;
+		while (row[last] == 0)
+			last--;
+		s->x0 = first < s->x0 ? first : s->x0;
+		s->x1 = last > s->x1 ? last : s->x1;
+		s->y0 = y < s->y0 ? y : s->y0;
+		s->y1 = y;
+	}
 }
 
 static int smaller(int a, int b)
@@ -240,11 +261,18 @@ static void keep_part(void *context, const struct stress_part *part, int worker)
 	size_t width = (size_t)(part->x1 - part->x0);
 
 	(void)worker;
-	for (int c = 0; part->number && c < k->numbers; c++)
-		for (int y = part->y0; y < part->y1; y++)
-			memcpy(k->field[c] + (size_t)y * k->stride + part->x0,
-				part->number[c] + (size_t)(y - part->y0) * part->stride,
-				width * sizeof **k->field);
+	for (int c = 0; c < k->numbers; c++)
+		for (int y = part->y0; y < part->y1; y++) {
+			double *to = k->field[c] + (size_t)y * k->stride + part->x0;
+
+			if (part->number)
+				memcpy(to,
+					part->number[c] +
+						(size_t)(y - part->y0) * part->stride,
+					width * sizeof *to);
+			else
+				memset(to, 0, width * sizeof *to);
+		}
 }
 
 /* The full sum. */
@@ -281,6 +309,7 @@ static enum num_status sum_full(
 		.reach_y = b->wy - 1,
 		.load = corner(s, b),
 		.load_stride = (size_t)s->nx,
+		.scale = s->scale,
 		.numbers = want->numbers,
 		.take = keep_part,
 		.context = &keep };
@@ -302,37 +331,42 @@ static enum num_status sum_full(
 struct level {
 	struct lattice_axis x, y;
 	struct lattice *lattice; /* among the cells, or points, of the finer level */
-	double *load;
-	double *field[STRESS_NUMBERS];
-	int numbers;
+	double *load, *field[STRESS_NUMBERS];
+	int depth, numbers; /* depth: 0 for the finest points */
 };
 
-static void level_free(struct level *l)
+/* Memory of n doubles for a level; NULL: none.  Half as much again is not touched until a
+ * larger part of the grid is loaded. */
+static double *level_values(struct level_memory *m, size_t n)
 {
-	free_fields(l->field, l->numbers);
-	free(l->load);
-	lattice_done(l->lattice);
+	if (m->size < n) {
+		free(m->values);
+		m->size = n + n / 2;
+		m->values = malloc(m->size * sizeof *m->values);
+		m->size = m->values ? m->size : 0;
+	}
+	return m->values;
 }
 
-/* Points every so many cells, or finer points, with their loads. */
-static enum num_status level_new(const struct free_sum *s, struct level *l, int mx,
-	int my, int spacing, const double *load, size_t stride, int element, int numbers)
+/* Points every so many cells, or finer points, with their loads.  The fields receive the
+ * sums of a window on all points. */
+static enum num_status level_new(struct free_sum *s, struct level *l, int mx, int my,
+	int spacing, const double *load, size_t stride, double scale, int element)
 {
 	size_t points;
 
-	*l = (struct level){ .x = lattice_free(mx, spacing),
-		.y = lattice_free(my, spacing),
-		.numbers = numbers };
+	l->x = lattice_free(mx, spacing);
+	l->y = lattice_free(my, spacing);
 	points = (size_t)l->x.points * (size_t)l->y.points;
-	l->lattice = lattice_new(&l->x, &l->y, s->pool);
-	l->load = calloc(points, sizeof *l->load);
-	if (!l->lattice || !l->load || new_fields(l->field, numbers, points)) {
-		l->numbers = 0;
-		level_free(l);
+	l->load = level_values(&s->level[l->depth], (1 + (size_t)l->numbers) * points);
+	l->lattice = l->load ? lattice_new(&l->x, &l->y, s->pool) : NULL;
+	if (!l->lattice)
 		return NUM_MEMORY;
-	}
-	if (lattice_spread(l->lattice, load, stride, element, l->load)) {
-		level_free(l);
+	for (int c = 0; c < l->numbers; c++)
+		l->field[c] = l->load + (size_t)(c + 1) * points;
+	memset(l->load, 0, points * sizeof *l->load);
+	if (lattice_spread(l->lattice, load, stride, scale, element, l->load)) {
+		lattice_done(l->lattice);
 		return NUM_MEMORY;
 	}
 	return NUM_OK;
@@ -345,7 +379,7 @@ static enum num_status sum_level(
 {
 	int mx = l->x.points, my = l->y.points;
 	enum num_status status;
-	struct level next;
+	struct level next = { .depth = l->depth + 1, .numbers = l->numbers };
 	struct keep keep = { l->field, (size_t)mx, l->numbers };
 	struct window w = { .mx = mx,
 		.my = my,
@@ -353,6 +387,7 @@ static enum num_status sum_level(
 		.reach_y = my - 1,
 		.load = l->load,
 		.load_stride = (size_t)mx,
+		.scale = 1,
 		.numbers = l->numbers,
 		.take = keep_part,
 		.context = &keep };
@@ -361,28 +396,28 @@ static enum num_status sum_level(
 		return convolve(s, outer ? POINT_OUTER : POINT, z, cells, &w);
 	w.reach_x = w.reach_y = OUTER;
 	if (convolve(s, outer ? POINT_RING : POINT_INNER, z, cells, &w) ||
-		level_new(s, &next, mx, my, 2, l->load, (size_t)mx, 0, l->numbers))
+		level_new(s, &next, mx, my, 2, l->load, (size_t)mx, 1, 0))
 		return NUM_MEMORY;
 	status = sum_level(s, z, 2 * cells, 1, &next);
 	for (int c = 0; !status && c < l->numbers; c++)
 		status = lattice_refine(next.lattice, next.field[c], l->field[c]);
-	level_free(&next);
+	lattice_done(next.lattice);
 	return status;
 }
 
 static enum num_status sum_coarse(struct free_sum *s, double z, int cells,
 	const struct stress_want *want, const struct box *b)
 {
-	struct level l;
+	struct level l = { .numbers = want->numbers };
 	enum num_status status;
 
-	if (level_new(s, &l, b->wx, b->wy, cells, corner(s, b), (size_t)s->nx, 1,
-		    want->numbers))
+	if (level_new(
+		    s, &l, b->wx, b->wy, cells, corner(s, b), (size_t)s->nx, s->scale, 1))
 		return NUM_MEMORY;
 	status = sum_level(s, z, cells, 0, &l);
 	if (!status)
 		status = lattice_gather(l.lattice, l.field, b->x0, b->y0, want);
-	level_free(&l);
+	lattice_done(l.lattice);
 	s->work.coarse_layers++;
 	return status;
 }
@@ -405,6 +440,7 @@ static enum num_status sum_near(struct free_sum *s, double z,
 		.reach_y = REACH,
 		.load = corner(s, b),
 		.load_stride = (size_t)s->nx,
+		.scale = s->scale,
 		.numbers = want->numbers,
 		.want = want,
 		.x0 = b->x0,
@@ -422,16 +458,15 @@ static enum num_status sum_near(struct free_sum *s, double z,
 static enum num_status sum_split(
 	struct free_sum *s, double z, const struct stress_want *want, const struct box *b)
 {
-	struct level l;
+	struct level l = { .numbers = want->numbers };
 	enum num_status status;
 
-	if (level_new(s, &l, b->wx, b->wy, 2, corner(s, b), (size_t)s->nx, 1,
-		    want->numbers))
+	if (level_new(s, &l, b->wx, b->wy, 2, corner(s, b), (size_t)s->nx, s->scale, 1))
 		return NUM_MEMORY;
 	status = sum_level(s, z, 2, 1, &l);
 	if (!status)
 		status = sum_near(s, z, want, b, &l);
-	level_free(&l);
+	lattice_done(l.lattice);
 	s->work.split_layers++;
 	return status;
 }

@@ -146,27 +146,30 @@ static void add_row(const double *from, double w, double *row, size_t count)
 }
 
 /* A row of cells onto a row of points; 0 if all are zero. */
-static int spread_row(
-	const struct line *l, const double *cell, int element, double *restrict row)
+static int spread_row(const struct line *l, const double *cell, double scale, int element,
+	double *restrict row)
 {
-	int any = 0;
+	int x = 0;
 
+	while (x < l->axis.cells && cell[x] == 0)
+		x++;
+	if (x == l->axis.cells)
+		return 0;
 	memset(row, 0, (size_t)l->axis.points * sizeof *row);
-	for (int x = 0; x < l->axis.cells; x++) {
+	for (; x < l->axis.cells; x++) {
 		const double *w = element ? l->spread[x] : l->gather[x];
-		double value = cell[x], *to = row + l->start[x];
+		double value = scale * cell[x], *to = row + l->start[x];
 
 		if (value == 0)
 			continue;
-		any = 1;
 		for (int i = 0; i < ORDER; i++)
 			to[i] += value * w[i];
 	}
-	return any;
+	return 1;
 }
 
 enum num_status lattice_spread(const struct lattice *l, const double *cell, size_t stride,
-	int element, double *load)
+	double scale, int element, double *load)
 {
 	size_t points = (size_t)l->x.axis.points;
 	double *row = malloc(points * sizeof *row);
@@ -177,7 +180,7 @@ enum num_status lattice_spread(const struct lattice *l, const double *cell, size
 		const double *wy = element ? l->y.spread[y] : l->y.gather[y];
 		double *restrict to = load + (size_t)l->y.start[y] * points;
 
-		if (!spread_row(&l->x, cell + (size_t)y * stride, element, row))
+		if (!spread_row(&l->x, cell + (size_t)y * stride, scale, element, row))
 			continue;
 		for (int j = 0; j < ORDER; j++, to += points)
 			add_row(row, wy[j], to, points);

@@ -34,10 +34,10 @@ struct lattice *lattice_new(
 	const struct lattice_axis *x, const struct lattice_axis *y, struct pool *pool);
 void lattice_done(struct lattice *l);
 
-/* Adds the loads of the cells, rows of stride, to load[points of y][points of x];
- * element: they are those of elements. */
+/* Adds scale times the cells, rows of stride, to load[points of y][points of x]; element:
+ * they are loads of elements. */
 enum num_status lattice_spread(const struct lattice *l, const double *cell, size_t stride,
-	int element, double *load);
+	double scale, int element, double *load);
 
 /* Adds the interpolated field to cell[cells of y][cells of x]. */
 enum num_status lattice_refine(

@@ -10,7 +10,7 @@ enum {
 	BLOCK = 8, /* cells to the side of the smallest square */
 	LIST = 64, /* points whose stress is summed together */
 	SIZES = 20,
-	DEPTHS = 9 /* up to NEAR cells: the next one is 2.8 deep */
+	DEPTHS = 9 /* the one below the last that is less than NEAR cells deep */
 };
 /* Sides of a square: farther ones act as points.  From a depth of 8 cells on the stress
  * is off by at most 10, 2.0 and 2.1 % with 2, 3 and 4 (tests/unit/stress.c). */
@@ -51,12 +51,14 @@ struct point_sum {
 	int known[DEPTHS];
 };
 
-/* Where the stress is wanted, what has been summed of it, and points still to be summed:
- * their offsets along and across the shear, and loads. */
+/* Two depths, one below the other, at which the stress is wanted, what has been summed of
+ * it, and points still to be summed: their offsets along and across the shear, and loads.
+ */
 struct point {
 	int ix, iy, k;
-	double x, y, z;
-	double number[STRESS_NUMBERS];
+	double x, y;
+	lanes z;
+	double number[2][STRESS_NUMBERS];
 	int count;
 	double along[LIST], across[LIST], load[LIST];
 };
@@ -120,11 +122,11 @@ double point_sum_depth(const struct point_sum *s, int k)
 	return k < 0 ? 0 : SHALLOWEST * s->cell * pow(RATIO, k);
 }
 
-int point_sum_nearest(const struct point_sum *s, double z)
+int point_sum_above(const struct point_sum *s, double z)
 {
 	double k = log(z / point_sum_depth(s, 0)) / log(RATIO);
 
-	return k > 0 ? (int)(k + 0.5) : 0;
+	return k > 0 ? (int)k : 0;
 }
 
 static int smaller(int a, int b)
@@ -207,47 +209,48 @@ void point_sum_load(struct point_sum *s, const double *pressure)
 	}
 }
 
-/* Stress of points on the list, two at a time: the sum of pressure and friction as
+/* Stress of points on the list at both depths: the sum of pressure and friction as
  * stress_point() gives it. */
 struct sums {
 	lanes xx, yy, xy, xz, yz; /* x along the shear; xx and yy less zz */
 };
 
-static inline void sum_two(
-	const struct point_sum *s, const struct point *at, int i, int n, struct sums *t)
+static inline void sum_one(
+	const struct point_sum *s, const struct point *at, int i, struct sums *t)
 {
-	double k = 1 - 2 * s->par.nu, mu = s->par.mu, z = at->z;
-	lanes x = lanes_load(at->along + i, n), y = lanes_load(at->across + i, n);
-	lanes p = lanes_load(at->load + i, n), r2 = x * x + y * y + z * z;
+	double k = 1 - 2 * s->par.nu, mu = s->par.mu;
+	double x = at->along[i], y = at->across[i], p = at->load[i], xy2 = x * x + y * y;
+	lanes z = at->z, r2 = xy2 + z * z;
 	lanes r = { sqrt(r2[0]), sqrt(r2[1]) }, ir = 1 / r, id = 1 / (r + z);
 	lanes ir3 = ir * ir * ir, h = k * ir * id * id, f = 3 * ir3 * ir * ir;
 	lanes m = h * ir * ir * (2 * r + z) - f * z, l = k * (z * ir3 - ir * id);
 	lanes sm = h * ir * ir * id * (3 * r + z) - f, sk = k * ir3 - h;
 	lanes zz = f * (z + mu * x) * z;
 
-	lanes_add(&t->xx,
-		p * (m * x * x + l + mu * x * (sm * x * x + sk - 2 * h) + zz * z), n);
-	lanes_add(&t->yy, p * (m * y * y + l + mu * x * (sm * y * y + sk) + zz * z), n);
-	lanes_add(&t->xy, p * y * (m * x + mu * (sm * x * x - h)), n);
-	lanes_add(&t->xz, -p * zz * x, n);
-	lanes_add(&t->yz, -p * zz * y, n);
+	t->xx += p * (m * x * x + l + mu * x * (sm * x * x + sk - 2 * h) + zz * z);
+	t->yy += p * (m * y * y + l + mu * x * (sm * y * y + sk) + zz * z);
+	t->xy += p * y * (m * x + mu * (sm * x * x - h));
+	t->xz -= p * zz * x;
+	t->yz -= p * zz * y;
 }
 
 static void sum_list(const struct point_sum *s, struct point *at)
 {
 	double scale = s->par.dx * s->par.dy / (2 * M_PI);
-	int swap = s->par.axis, i = 0;
+	int swap = s->par.axis;
 	struct sums t = { .xx = lanes_all(0) };
 
-	for (; i + 2 <= at->count; i += 2)
-		sum_two(s, at, i, 2, &t);
-	if (i < at->count)
-		sum_two(s, at, i, 1, &t);
-	at->number[swap ? DEV_Y : DEV_X] += scale * (t.xx[0] + t.xx[1]);
-	at->number[swap ? DEV_X : DEV_Y] += scale * (t.yy[0] + t.yy[1]);
-	at->number[DEV_XY] += scale * (t.xy[0] + t.xy[1]);
-	at->number[swap ? DEV_YZ : DEV_XZ] += scale * (t.xz[0] + t.xz[1]);
-	at->number[swap ? DEV_XZ : DEV_YZ] += scale * (t.yz[0] + t.yz[1]);
+	for (int i = 0; i < at->count; i++)
+		sum_one(s, at, i, &t);
+	for (int d = 0; d < 2; d++) {
+		double *to = at->number[d];
+
+		to[swap ? DEV_Y : DEV_X] += scale * t.xx[d];
+		to[swap ? DEV_X : DEV_Y] += scale * t.yy[d];
+		to[DEV_XY] += scale * t.xy[d];
+		to[swap ? DEV_YZ : DEV_XZ] += scale * t.xz[d];
+		to[swap ? DEV_XZ : DEV_YZ] += scale * t.yz[d];
+	}
 	at->count = 0;
 }
 
@@ -264,8 +267,10 @@ static void add_point(
 }
 
 /* The nine cells on and around the point, from one quarter of them. */
-static void know_elements(struct point_sum *s, int k, double z)
+static void know_elements(struct point_sum *s, int k)
 {
+	double z = point_sum_depth(s, k);
+
 	for (int j = 0; j <= 1; j++)
 		for (int i = 0; i <= 1; i++) {
 			struct influence f = influence_element(
@@ -287,16 +292,18 @@ static void know_elements(struct point_sum *s, int k, double z)
 /* A cell that is i, j cells before the point. */
 static void add_element(struct point_sum *s, struct point *at, double load, int i, int j)
 {
-	if (!s->known[at->k])
-		know_elements(s, at->k, at->z);
-	for (int c = 0; c < STRESS_NUMBERS; c++)
-		at->number[c] += load * s->element[at->k][i + 1][j + 1][c];
+	for (int d = 0; d < 2; d++) {
+		if (!s->known[at->k + d])
+			know_elements(s, at->k + d);
+		for (int c = 0; c < STRESS_NUMBERS; c++)
+			at->number[d][c] += load * s->element[at->k + d][i + 1][j + 1][c];
+	}
 }
 
 /* Cell by cell of a smallest square. */
 static void add_cells(struct point_sum *s, struct point *at, int x, int y)
 {
-	double depth = at->z / s->cell;
+	double depth = at->z[0] / s->cell;
 	int square = y * s->size->nx + x;
 
 	for (size_t n = s->begin[square]; n < s->begin[square + 1]; n++) {
@@ -321,7 +328,7 @@ static void add_square(struct point_sum *s, struct point *at, int l, int x, int 
 
 	if (!(q->load > 0))
 		return;
-	if (u * u + v * v + at->z * at->z >= FAR * FAR * size->side * size->side) {
+	if (u * u + v * v + at->z[0] * at->z[0] >= FAR * FAR * size->side * size->side) {
 		add_point(s, at, q->load, q->x, q->y);
 		return;
 	}
@@ -334,7 +341,7 @@ static void add_square(struct point_sum *s, struct point *at, int l, int x, int 
 			add_square(s, at, l - 1, i, j);
 }
 
-double point_sum_at(struct point_sum *s, size_t cell, int k)
+void point_sum_at(struct point_sum *s, size_t cell, int k, double stress[2])
 {
 	const struct stress_par *g = &s->par;
 	const struct stress_criterion *criterion =
@@ -342,11 +349,12 @@ double point_sum_at(struct point_sum *s, size_t cell, int k)
 	struct point at = { .ix = (int)(cell % (size_t)g->nx),
 		.iy = (int)(cell / (size_t)g->nx),
 		.k = k,
-		.z = point_sum_depth(s, k) };
+		.z = { point_sum_depth(s, k), point_sum_depth(s, k + 1) } };
 
 	at.x = centre(at.ix, g->dx);
 	at.y = centre(at.iy, g->dy);
 	add_square(s, &at, s->sizes - 1, 0, 0);
 	sum_list(s, &at);
-	return criterion->value(at.number);
+	for (int d = 0; d < 2; d++)
+		stress[d] = criterion->value(at.number[d]);
 }

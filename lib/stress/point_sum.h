@@ -20,8 +20,9 @@ void point_sum_free(struct point_sum *s);
 void point_sum_load(struct point_sum *s, const double *pressure);
 /* The depths, k = 0, 1, ...; above the first one is the surface, k = -1. */
 double point_sum_depth(const struct point_sum *s, int k);
-int point_sum_nearest(const struct point_sum *s, double z); /* k >= 0 */
-/* Below the centre of a cell (y * nx + x), at depth k >= 0. */
-double point_sum_at(struct point_sum *s, size_t cell, int k);
+/* The last depth that is not below z; 0 where none is. */
+int point_sum_above(const struct point_sum *s, double z);
+/* Below the centre of a cell (y * nx + x), at the depths k >= 0 and k + 1. */
+void point_sum_at(struct point_sum *s, size_t cell, int k, double stress[2]);
 
 #endif

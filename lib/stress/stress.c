@@ -29,8 +29,8 @@ struct stress {
 	/* Pressures are scaled by a power of two near the largest one, so that squares
 	 * neither overflow nor underflow. */
 	double unit;
-	double *pressure;    /* of the last stress_load(), unless lent to wave */
-	const double *given; /* the same as the caller has it */
+	const double *given; /* pressure of the last stress_load() */
+	double *lent;        /* periodic: the same in units, which wave uses */
 	double total;        /* N */
 	int loaded;          /* some cell is */
 	int side, bx, by;    /* cells to a block's side, blocks */
@@ -119,13 +119,13 @@ struct stress *stress_new(const struct stress_par *par)
 	s->begin = calloc((size_t)s->by + 1, sizeof *s->begin);
 	s->low_x = calloc(5 * (size_t)s->bx * (size_t)s->by, sizeof *s->low_x);
 	s->held = calloc((size_t)s->bx * (size_t)s->by, sizeof *s->held);
-	s->pressure = fft_alloc(n);
-	if (par->periodic)
+	if (par->periodic) {
+		s->lent = fft_alloc(n);
 		s->wave = wave_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
-	else
+	} else
 		s->free = free_sum_new(&s->influence, par->nx, par->ny, full, par->pool);
 	if (!s->blocks || !s->row_load || !s->begin || !s->low_x || !s->held ||
-		!s->pressure || (!s->wave && !s->free)) {
+		(par->periodic && !s->lent) || (!s->wave && !s->free)) {
 		stress_free(s);
 		errno = ENOMEM;
 		return NULL;
@@ -149,7 +149,7 @@ void stress_free(struct stress *s)
 	free(s->begin);
 	free(s->low_x);
 	free(s->held);
-	fft_free(s->pressure);
+	fft_free(s->lent);
 	free(s);
 }
 
@@ -168,21 +168,26 @@ static void add_to_block(struct stress *s, int x, int y, double load)
 	b->load += load;
 }
 
-/* Power of two at or below the largest magnitude; 0 if a value is not finite. */
+/* Power of two at or below the largest magnitude, and large enough for its inverse to be
+ * finite; 0 if a value is not finite. */
 static double unit_of(const double *pressure, size_t n)
 {
-	double most = 0;
+	lanes most = lanes_all(0);
+	lane_mask bad = most < 0;
+	double largest;
 	int exponent;
 
-	for (size_t i = 0; i < n; i++) {
-		double p = fabs(pressure[i]);
+	for (size_t i = 0; i < n; i += 2) {
+		lanes p = lanes_abs(lanes_load(pressure + i, i + 1 < n ? 2 : 1));
 
-		if (!(p <= DBL_MAX))
-			return 0;
-		most = p > most ? p : most;
+		bad = lanes_or(bad, ~(p <= DBL_MAX));
+		most = lanes_max(p, most);
 	}
-	frexp(most, &exponent);
-	return most > 0 ? ldexp(0.5, exponent) : 1;
+	if (bad[0] || bad[1])
+		return 0;
+	largest = fmax(most[0], most[1]);
+	frexp(largest, &exponent);
+	return largest > 0 ? fmax(ldexp(0.5, exponent), DBL_MIN) : 1;
 }
 
 static void list_blocks(struct stress *s)
@@ -227,20 +232,23 @@ enum num_status stress_load(struct stress *s, const double *pressure)
 	memset(s->blocks, 0, (size_t)s->bx * (size_t)s->by * sizeof *s->blocks);
 	for (size_t y = 0; y < ny; y++)
 		for (size_t x = 0; x < nx; x++) {
-			double p = pressure[y * nx + x] / unit;
+			double p = pressure[y * nx + x];
 
-			s->pressure[y * nx + x] = p;
 			if (p == 0)
 				continue;
+			p /= unit;
 			s->loaded = 1;
 			s->total += p * area * unit;
 			add_to_block(s, (int)x, (int)y, fabs(p) * area);
 		}
 	list_blocks(s);
-	if (s->wave)
-		wave_sum_load(s->wave, s->pressure);
-	else
-		free_sum_load(s->free, s->pressure);
+	if (s->free) {
+		free_sum_load(s->free, pressure, 1 / unit);
+		return NUM_OK;
+	}
+	for (size_t i = 0; i < nx * ny; i++)
+		s->lent[i] = pressure[i] / unit;
+	wave_sum_load(s->wave, s->lent);
 	return NUM_OK;
 }
 

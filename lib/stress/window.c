@@ -15,6 +15,9 @@ enum { TILE = 128 };
  * free_sum.c makes on more than a few cells, all. */
 enum { KEPT_POINTS = 256 * 256 };
 
+/* Loads of a tile up to which they are summed one by one. */
+enum { FEW = 64 };
+
 /* Tiles along an axis: count of them, each of so many nodes, on so many points. */
 struct cut {
 	int count, nodes, lead; /* lead: points before the first node */
@@ -31,6 +34,8 @@ struct tiling {
 	double *load, *plane; /* loads; the sums of all numbers */
 	double complex *image, *product, *work;
 	double complex *kernel[STRESS_NUMBERS];
+	double *table; /* of each number, (2 reach_y + 1) rows of 2 reach_x + 1; or NULL
+			*/
 	unsigned char *wanted;
 	double *transforms; /* of each tile */
 	int made;           /* kernels transformed */
@@ -102,29 +107,32 @@ static int larger(int a, int b)
 	return a > b ? a : b;
 }
 
-/* The loads within reach of a tile whose first node is (x0, y0), on rows first to last of
- * the plane; 0 if there are none. */
+/* The loads within reach of a tile whose first node is (x0, y0), on rows first to end - 1
+ * of the plane; returns how many there are. */
 static int put_loads(
 	const struct tiling *t, int x0, int y0, double *plane, size_t *first, size_t *end)
 {
 	const struct window *w = t->w;
-	int left = x0 - t->x.lead, low = y0 - t->y.lead, any = 0;
+	int left = x0 - t->x.lead, low = y0 - t->y.lead, count = 0;
 	int begin = larger(left, 0), stop = smaller(left + (int)t->x.points, w->mx);
 	int bottom = larger(low, 0), top = smaller(low + (int)t->y.points, w->my);
 
-	memset(plane, 0, t->room * sizeof *plane);
 	for (int y = bottom; y < top; y++) {
 		const double *from = w->load + (size_t)y * w->load_stride + begin;
-		double *to = plane + (size_t)(y - low) * t->stride + (begin - left);
+		double *row = plane + (size_t)(y - low) * t->stride,
+		       *to = row + (begin - left);
 
+		memset(row, 0, (size_t)(begin - left) * sizeof *row);
 		for (int x = 0; x < stop - begin; x++) {
-			to[x] = from[x];
-			any |= from[x] != 0;
+			to[x] = w->scale * from[x];
+			count += from[x] != 0;
 		}
+		memset(to + (stop - begin), 0,
+			(t->x.points - (size_t)(stop - left)) * sizeof *to);
 	}
 	*first = (size_t)(bottom - low);
 	*end = (size_t)(top - low);
-	return any;
+	return count;
 }
 
 /* The product of complex numbers. */
@@ -137,6 +145,57 @@ static void multiply(const double complex *a, const double complex *b, double co
 	for (size_t i = 0; i < 2 * count; i += 2)
 		lanes_store(w + i,
 			lanes_complex(lanes_load(u + i, 2), lanes_load(v + i, 2)), 2);
+}
+
+/* row += w from */
+static void add_row(double *row, const double *from, double w, int count)
+{
+	int i = 0;
+
+	for (; i + 1 < count; i += 2)
+		lanes_store(
+			row + i, lanes_load(row + i, 2) + w * lanes_load(from + i, 2), 2);
+	if (i < count)
+		row[i] += w * from[i];
+}
+
+/* Adds a load at (x, y), counted from the first node of a part, to one number. */
+static void add_load(const struct tiling *t, const struct stress_part *part, int x, int y,
+	double load, const double *table, double *number)
+{
+	int width = 2 * t->reach_x + 1;
+	int left = larger(x - t->reach_x, 0),
+	    right = smaller(x + t->reach_x + 1, part->x1 - part->x0);
+	int low = larger(y - t->reach_y, 0),
+	    high = smaller(y + t->reach_y + 1, part->y1 - part->y0);
+
+	for (int j = low; j < high; j++)
+		add_row(number + (size_t)j * t->stride + left,
+			table + (j - y + t->reach_y) * width + (left - x + t->reach_x),
+			load, right - left);
+}
+
+/* Sums load by load. */
+static void add_loads(const struct tiling *t, const struct stress_part *part,
+	const double *load, size_t first, size_t end, double *plane)
+{
+	size_t size = (size_t)(2 * t->reach_x + 1) * (size_t)(2 * t->reach_y + 1);
+	size_t at = (size_t)t->y.lead * t->stride + (size_t)t->x.lead;
+
+	for (int c = 0; c < t->w->numbers; c++, plane += t->room) {
+		for (int y = 0; y < part->y1 - part->y0; y++)
+			memset(plane + at + (size_t)y * t->stride, 0,
+				(size_t)(part->x1 - part->x0) * sizeof *plane);
+		for (size_t y = first; y < end; y++)
+			for (size_t x = 0; x < t->x.points; x++) {
+				double p = load[y * t->stride + x];
+
+				if (p != 0)
+					add_load(t, part, (int)x - t->x.lead,
+						(int)y - t->y.lead, p,
+						t->table + (size_t)c * size, plane + at);
+			}
+	}
 }
 
 static void sum_tile(void *context, size_t tile, int worker)
@@ -153,20 +212,28 @@ static void sum_tile(void *context, size_t tile, int worker)
 	struct stress_part part = { .x0 = (int)(tile % (size_t)t->x.count) * t->x.nodes,
 		.y0 = (int)(tile / (size_t)t->x.count) * t->y.nodes,
 		.stride = t->stride };
+	int loads;
 
 	part.x1 = smaller(part.x0 + t->x.nodes, w->mx);
 	part.y1 = smaller(part.y0 + t->y.nodes, w->my);
 	if (t->wanted && !t->wanted[tile])
 		return;
-	if (put_loads(t, part.x0, part.y0, load, &first, &end)) {
+	loads = put_loads(t, part.x0, part.y0, load, &first, &end);
+	if (loads > 0) {
+		part.number = number;
+		for (int c = 0; c < w->numbers; c++)
+			number[c] = plane + (size_t)c * t->room + lead * t->stride +
+				    t->x.lead;
+	}
+	if (loads > 0 && loads <= FEW && t->table) {
+		add_loads(t, &part, load, first, end, plane);
+	} else if (loads > 0) {
 		fft_plane_forward(t->fft, load, first, end, image, work);
 		for (int c = 0; c < w->numbers; c++, plane += t->room) {
 			multiply(image, t->kernel[c], product, t->spectrum);
 			fft_plane_inverse(t->fft, product, plane, lead,
 				lead + (size_t)(part.y1 - part.y0), work);
-			number[c] = plane + lead * t->stride + t->x.lead;
 		}
-		part.number = number;
 		t->transforms[tile] = 1 + w->numbers;
 	}
 	w->take(w->context, &part, worker);
@@ -249,9 +316,24 @@ static enum num_status share_memory(struct tiling *t, struct window_kept *kept)
 	return NUM_OK;
 }
 
+/* The kernel of a number from the plane that put_kernel() filled. */
+static void put_table(const struct tiling *t, double scale, double *table)
+{
+	for (int j = -t->reach_y; j <= t->reach_y; j++) {
+		size_t y = j < 0 ? t->y.points - (size_t)-j : (size_t)j;
+
+		for (int i = -t->reach_x; i <= t->reach_x; i++) {
+			size_t x = i < 0 ? t->x.points - (size_t)-i : (size_t)i;
+
+			*table++ = scale * t->plane[y * t->stride + x];
+		}
+	}
+}
+
 static enum num_status make_kernels(struct tiling *t)
 {
 	const struct window *w = t->w;
+	size_t size = (size_t)(2 * t->reach_x + 1) * (size_t)(2 * t->reach_y + 1);
 	struct influence *kernel = w->make(w->maker, t->reach_x, t->reach_y);
 	double points = (double)t->x.points * (double)t->y.points;
 
@@ -259,6 +341,8 @@ static enum num_status make_kernels(struct tiling *t)
 		return NUM_MEMORY;
 	for (int c = 0; c < w->numbers; c++) {
 		put_kernel(t, kernel, (enum stress_number)c, 1 / points);
+		if (t->table)
+			put_table(t, points, t->table + (size_t)c * size);
 		fft_plane_forward(
 			t->fft, t->plane, 0, t->y.points, t->kernel[c], t->work);
 	}
@@ -279,8 +363,13 @@ static int is_kept(const struct window_spectra *s, const struct tiling *t)
 static enum num_status find_kernels(struct tiling *t, struct window_kept *kept)
 {
 	struct window_spectra *s = kept->spectra;
+	size_t spectra = 2 * (size_t)t->w->numbers * t->spectrum, table = 0;
 	int found = 0;
 
+	/* By what the kernels are found: all that are alike have it. */
+	if (4 * (size_t)t->reach_x < t->x.points && 4 * (size_t)t->reach_y < t->y.points)
+		table = (size_t)t->w->numbers * (size_t)(2 * t->reach_x + 1) *
+			(size_t)(2 * t->reach_y + 1);
 	for (int i = 0; i < WINDOW_KEPT && !found; i++) {
 		struct window_spectra *q = &kept->spectra[i];
 
@@ -290,21 +379,20 @@ static enum num_status find_kernels(struct tiling *t, struct window_kept *kept)
 	}
 	if (!found) {
 		fft_free(s->memory);
-		*s = (struct window_spectra){
-			.memory = fft_alloc(2 * (size_t)t->w->numbers * t->spectrum),
+		*s = (struct window_spectra){ .memory = fft_alloc(spectra + table),
 			.nx = t->x.points,
 			.ny = t->y.points,
 			.name = t->w->name,
 			.numbers = t->w->numbers,
 			.reach_x = t->reach_x,
-			.reach_y = t->reach_y
-		};
+			.reach_y = t->reach_y };
 		if (!s->memory)
 			return NUM_MEMORY;
 	}
 	s->used = kept->windows;
 	for (int c = 0; c < t->w->numbers; c++)
 		t->kernel[c] = (double complex *)s->memory + (size_t)c * t->spectrum;
+	t->table = table ? s->memory + spectra : NULL;
 	if (found || !make_kernels(t))
 		return NUM_OK;
 	fft_free(s->memory);

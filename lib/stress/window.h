@@ -32,8 +32,9 @@ struct window {
 	/* Under which the kernel's transforms are kept for later windows that need the
 	 * same kernel, or WINDOW_NAMELESS. */
 	int name;
-	const double *load; /* rows of load_stride */
+	const double *load; /* times scale, rows of load_stride */
 	size_t load_stride;
+	double scale;
 	int numbers; /* the first so many of enum stress_number */
 	/* Nodes wanted, counted from (x0, y0); NULL: all. */
 	const struct stress_want *want;
@@ -55,7 +56,7 @@ struct window_plan {
 };
 
 struct window_spectra {
-	double *memory;
+	double *memory; /* the spectra of all numbers, then the kernels themselves */
 	size_t nx, ny;
 	int name, numbers, reach_x, reach_y;
 	long used;

@@ -61,10 +61,16 @@ void particles_check(int operands, double area, double inlet)
 		die(EXIT_USAGE,
 			"--iso requires --largest or --inlet: the code does not limit the size of particles");
 	for (int k = 0; k + 1 < ISO4406_SIZES; k++)
-		if (iso.v[k] <= iso.v[k + 1])
+		if (iso.v[k] < iso.v[k + 1])
 			die(EXIT_USAGE,
 				"--iso %.0f:%.0f:%.0f: counts must not increase with size",
 				iso.v[0], iso.v[1], iso.v[2]);
+	/* Beyond 14 um the numbers go on to fall as from 6 to 14 um. */
+	if (iso.v[1] == iso.v[2])
+		die(EXIT_USAGE,
+			"--iso %.0f:%.0f:%.0f: as many particles from 14 um on as from 6 um on "
+			"do not tell their sizes: want a lower third number",
+			iso.v[0], iso.v[1], iso.v[2]);
 }
 
 const struct population *particles_population(double inlet_limit)

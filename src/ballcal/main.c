@@ -175,6 +175,8 @@ int main(int argc, char **argv)
 	deviation = sqrt(deviation / (double)(p.n - 1));
 	half = line_t(confidence, p.n - 1) * deviation / sqrt((double)p.n);
 	fitted = line_fit(x, y, p.n, confidence, &l) == 0;
+	if (fitted) /* small balls scatter more */
+		line_allow_unequal(x, y, p.n, &l);
 	lack = fitted ? line_lack_of_fit(x, y, p.n, &l) : NAN;
 	if (fitted)
 		slope_p = line_slope_p(&l, p.n, exponent);

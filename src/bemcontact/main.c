@@ -268,6 +268,16 @@ static void doubt(const struct contact_par *par, double pressure)
 }
 
 /* Solves one record in place; returns 1 if it converged. */
+/* Written before it is read, and by all threads: see clear_cells() of the solver. */
+static void clear_row(void *context, size_t row, int worker)
+{
+	const struct task *t = context;
+	size_t nx = (size_t)t->r->nx;
+
+	(void)worker;
+	memset(t->p + row * nx, 0, nx * sizeof *t->p);
+}
+
 static int solve_record(struct record *r, const struct fields_in *in, struct pool *pool)
 {
 	struct task t = { .r = r, .name = fields_name(in), .number = fields_count(in) };
@@ -285,9 +295,8 @@ static int solve_record(struct record *r, const struct fields_in *in, struct poo
 		die(EXIT_RUN, "%s: record %ld: want a plane field, got %d layers", t.name,
 			t.number, r->nz);
 	t.p = warm ? record_need(r, "pressure", 1, in) : record_add(r, "pressure", "Pa");
-	/* Written before it is read: see clear_cells() of the solver. */
 	if (!warm)
-		memset(t.p, 0, cells * sizeof *t.p);
+		pool_run(pool, (size_t)r->ny, clear_row, &t);
 	u = field_of(r, DISPLACEMENT, "m");
 	t.gap = field_of(r, GAP, "m");
 	if (!t.gap && (unload_wanted() || fields & 1 << RESIDUAL))

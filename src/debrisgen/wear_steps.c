@@ -264,7 +264,8 @@ void wearing_prepare(struct wearing *w, const struct record *r)
 void wearing_contact(
 	struct wearing *w, const struct worn_surface *c, struct debris_step *s)
 {
-	debris_contact(w->debris, c->p, s);
+	debris_contact(w->debris, c->p, &w->lost);
+	*s = w->lost;
 }
 
 /* Root mean square slope, by differences of neighbours. */
@@ -369,7 +370,6 @@ static void refuse(const struct wearing *w, enum debris_status status, long step
 /* Removes the material that fails under the pressure of c. */
 static void wear_by_stress(struct wearing *w, const struct worn_surface *c, long step)
 {
-	debris_contact(w->debris, c->p, &w->lost);
 	if (w->quick)
 		refuse(w, debris_load(w->debris, c->p), step);
 	if (w->quick && quick_step(w->quick, debris_stress(w->debris), c->p, yield.v[0],
@@ -431,7 +431,6 @@ static int wear_by_archard(struct wearing *w, const struct worn_surface *c, doub
 	long parts = archard_parts(w, distance);
 	int solved = 1;
 
-	debris_contact(w->debris, c->p, &w->lost);
 	w->second_lost = w->lost;
 	if (stress_load(debris_stress(w->debris), c->p))
 		refuse(w, DEBRIS_NUMBERS, step);

@@ -18,7 +18,7 @@ void wearing_close(struct wearing *w);
 
 /* Serves grids like that of r from now on. */
 void wearing_prepare(struct wearing *w, const struct record *r);
-/* Load and contact under the pressure of c. */
+/* Load and contact under the pressure of c, for wearing_step() as well. */
 void wearing_contact(
 	struct wearing *w, const struct worn_surface *c, struct debris_step *s);
 /* Presses c again, from its last pressure, to a mean pressure or approach; 0 if that did

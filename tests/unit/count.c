@@ -138,6 +138,33 @@ static void check_lines(void)
 	ok(line_fit(x, y, 2, 0.9, &l) != 0, "two points have no interval");
 }
 
+/* Points whose scatter is 25, 5 and 1, as that of small balls and large ones. */
+static void check_unequal(void)
+{
+	enum { N = 120, RUNS = 2000 };
+	static const double scatter[] = { 25, 5, 1 };
+	double x[N], y[N], held = 0, plain = 0;
+	struct line l;
+
+	for (int run = 0; run < RUNS; run++) {
+		for (int i = 0; i < N; i++) {
+			double normal[2];
+
+			philox_normal2(6, 0, RNG_NOISE, (uint64_t)(run * N + i), normal);
+			x[i] = i / 40;
+			y[i] = 3 * x[i] + scatter[i / 40] * normal[0];
+		}
+		line_fit(x, y, N, 0.9, &l);
+		plain += fabs(l.slope - 3) < l.t * l.slope_se;
+		line_allow_unequal(x, y, N, &l);
+		held += fabs(l.slope - 3) < l.t * l.slope_se;
+	}
+	near(held / RUNS, 0.9, 0.025,
+		"intervals of 90 % contain the slope in 90 % of the cases with unequal scatter");
+	ok(plain / RUNS < 0.85, "those of equal scatter only in %.0f %%",
+		100 * plain / RUNS);
+}
+
 /* Stretches: the bound holds for any particles with the same sums of d^6 and d^12. */
 static void check_stretches(void)
 {
@@ -229,6 +256,7 @@ int main(void)
 	check_detection();
 	check_codes();
 	check_lines();
+	check_unequal();
 	check_stretches();
 	check_blind();
 	return tap_done();

@@ -1,6 +1,10 @@
 /* Units, quoting of command lines and shortest numbers */
 #include "cli/unit.h"
+#include "num/rng.h"
 #include "tap.h"
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -89,9 +93,42 @@ static void test_number_text(void)
 	ok(!strcmp(number_text(NAN, text), "nan"), "a missing value is nan");
 }
 
+/* The shortest of 15 to 17 digits with which printf() writes the number. */
+static void written_by_printf(double value, char text[NUMBER_TEXT])
+{
+	for (int digits = 15; digits <= 17; digits++) {
+		snprintf(text, NUMBER_TEXT, "%.*g", digits, value);
+		if (strtod(text, NULL) == value)
+			return;
+	}
+}
+
+/* Random numbers of all sizes, whole ones, short decimals, and the neighbours of powers
+ * of two and ten. */
+static void test_shortest(void)
+{
+	char text[NUMBER_TEXT], want[NUMBER_TEXT];
+	long wrong = 0;
+
+	for (uint64_t i = 0; i < 60000; i++) {
+		double u = philox_uniform(3, 0, RNG_NOISE, 2 * i) - 0.5;
+		double e = floor(600 * philox_uniform(3, 0, RNG_NOISE, 2 * i + 1)) - 300;
+		double of[] = { u * pow(10, e), floor(u * 1e16), floor(u * 1e5) / 1e9,
+			nextafter(pow(10, e), u > 0 ? INFINITY : 0),
+			nextafter(ldexp(1, (int)e), u > 0 ? INFINITY : 0),
+			(floor(u * 1e6) + 0.5) * ldexp(1, (int)e / 10) };
+		double value = of[i % (sizeof of / sizeof *of)];
+
+		written_by_printf(value, want);
+		wrong += strcmp(number_text(value, text), want) != 0;
+	}
+	ok(wrong == 0, "60000 numbers have the digits of printf() (%ld do not)", wrong);
+}
+
 int main(void)
 {
 	test_units();
 	test_number_text();
+	test_shortest();
 	return tap_done();
 }
