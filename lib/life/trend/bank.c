@@ -111,7 +111,7 @@ void project(const struct bank *b, struct trend *tr, const struct place *p, doub
 	tr->phh /= keep;
 	tr->phv /= keep;
 	tr->pvv /= keep;
-	if (tr->kind >= MEMORIES)
+	if (wanders(tr))
 		tr->phh += step / b->gap * squared_slope(*p);
 }
 

@@ -136,6 +136,12 @@ static inline double freedom_of(const struct bank *b, const struct trend *tr)
 	return b->freedom[tr->kind % MEMORIES];
 }
 
+/* 1: the damage is a Wiener process. */
+static inline int wanders(const struct trend *tr)
+{
+	return tr->kind >= MEMORIES;
+}
+
 /* Factor by which the rate has grown from the onset to an age. */
 static inline double grown(const struct trend *tr, double age)
 {
