@@ -49,6 +49,21 @@ ballcal --balls mV1.tsv:1mm --balls mV2.tsv:2mm --balls mV4.tsv:4mm --exponent 5
 near "amplitudes are converted from the units of the table" "$(value calibration | awk '{ print $1 * 1e-15 }')" \
 	"$(echo "$want" | awk '{ print $1 * 1e-15 }')" 1e-6
 
+# Errors that the pulses of a table share: 1, -1 and 0.5 % in ln A, beside a scatter of 0.01 %; t of two degrees of
+# freedom times their standard deviation, 0.010408, over the root of 3
+n=0
+for e in 0.01 -0.01 0.005; do
+	n=$((n + 1))
+	awk -v e=$e 'BEGIN { print "amplitude\tvelocity"; for (i = 0; i < 40; i++)
+		printf "%.17g\t1\n", exp(e + 1e-4 * (i % 2 * 2 - 1)) }' >shared$n.tsv
+	awk -v d=$n 'NR == 1 { print; next } { printf "%.17g\t1\n", $1 * d ^ 3 }' shared$n.tsv >size$n.tsv
+done
+ballcal --balls size1.tsv:1mm --balls size2.tsv:2mm --balls size3.tsv:3mm >cal.tsv 2>err
+near "the interval of three tables is that of their means" \
+	"$(awk -v a="$(value calibration 3)" -v b="$(value calibration 4)" 'BEGIN { print log(b / a) / 2 }')" 0.025855 1e-5
+rising "errors that tables share leave the exponent in doubt" 0.05 "$(value exponent_p)" 1
+ballcal --balls shared1.tsv:0.7mm --balls shared2.tsv:0.7mm --balls shared3.tsv:0.7mm >cal.tsv 2>err
+is "three tables of one size do not determine the exponent" "$? $(value sizes) $(value exponent)" "0 1 "
 fails "no balls" 2 '\--balls is missing' ballcal
 fails "balls without a diameter" 2 'want FILE:D' ballcal --balls 1.tsv
 fails "a diameter in seconds" 2 'want a diameter' ballcal --balls 1.tsv:5s

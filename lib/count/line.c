@@ -15,10 +15,12 @@ enum num_status line_fit(
 
 	if (n < 3)
 		return NUM_DOMAIN;
+	/* About the first x: equal ones have no spread by rounding. */
 	for (size_t i = 0; i < n; i++) {
-		mx += x[i] / (double)n;
+		mx += (x[i] - x[0]) / (double)n;
 		my += y[i] / (double)n;
 	}
+	mx += x[0];
 	for (size_t i = 0; i < n; i++) {
 		xx += (x[i] - mx) * (x[i] - mx);
 		xy += (x[i] - mx) * (y[i] - my);

@@ -48,6 +48,7 @@ static const struct prog prog = { "ballcal",
 /* One pulse: logarithms of its ball's diameter and of amplitude over velocity. */
 struct pulse {
 	double diameter, response;
+	int table;
 };
 
 struct pulses {
@@ -73,7 +74,7 @@ static char *split(const char *text, double *diameter)
 	return path;
 }
 
-static void read_balls(struct pulses *p, const char *text)
+static void read_balls(struct pulses *p, const char *text, int table)
 {
 	double diameter;
 	char *path = split(text, &diameter);
@@ -93,7 +94,7 @@ static void read_balls(struct pulses *p, const char *text)
 		v = table_positive(t, cv);
 		if (room_for(&p->pulse, &p->room, p->n + 1, sizeof *p->pulse))
 			die(EXIT_RUN, "out of memory");
-		p->pulse[p->n++] = (struct pulse){ log(diameter), log(a / v) };
+		p->pulse[p->n++] = (struct pulse){ log(diameter), log(a / v), table };
 		p->speed += v;
 	}
 	if (p->n == before)
@@ -108,6 +109,47 @@ static int by_diameter(const void *a, const void *b)
 	       y = ((const struct pulse *)b)->diameter;
 
 	return x < y ? -1 : x > y;
+}
+
+/* Half intervals of the constant and of the exponent, and the p-value of the latter; nan
+ * where there are too few sizes. */
+struct doubt {
+	double constant, slope, slope_p;
+};
+
+/* Pulses of a table may share an error, such as that of the instrument which was
+ * estimated from their record.  From three tables on, their means are observations of
+ * their own, and what they leave in doubt is the least that remains. */
+static void allow_shared(const struct pulses *p, struct doubt *d)
+{
+	size_t tables = (size_t)balls.n;
+	double *x = xcalloc(3 * tables, sizeof *x), *y = x + tables, *n = y + tables;
+	double mean = 0, square = 0;
+	struct line l;
+
+	for (size_t i = 0; i < p->n; i++) {
+		const struct pulse *q = &p->pulse[i];
+
+		x[q->table] += q->diameter;
+		y[q->table] += q->response;
+		n[q->table]++;
+	}
+	for (size_t k = 0; k < tables; k++) {
+		x[k] /= n[k];
+		y[k] /= n[k];
+		mean += (y[k] - exponent * x[k]) / (double)tables;
+	}
+	for (size_t k = 0; k < tables; k++)
+		square += pow(y[k] - exponent * x[k] - mean, 2);
+	d->constant = fmax(d->constant,
+		line_t(confidence, tables - 1) *
+			sqrt(square / (double)(tables - 1) / (double)tables));
+	/* Means of equal diameters differ by rounding. */
+	if (!isnan(d->slope_p) && line_fit(x, y, tables, confidence, &l) == 0) {
+		d->slope = fmax(d->slope, l.t * l.slope_se);
+		d->slope_p = fmax(d->slope_p, line_slope_p(&l, tables, exponent));
+	}
+	free(x);
 }
 
 static void put(struct table_out *t, const char *name, const char *unit, double value,
@@ -142,7 +184,8 @@ int main(int argc, char **argv)
 	struct pulses p = { 0 };
 	struct table_out *t;
 	struct line l;
-	double *x, *y, sizes = 1, ln_k = 0, deviation = 0, half, lack, slope_p = NAN;
+	double *x, *y, sizes = 1, ln_k = 0, deviation = 0, lack;
+	struct doubt doubt = { NAN, NAN, NAN };
 	int fitted, doubtful;
 	char unit[40]; /* of amplitude over velocity and diameter to the exponent */
 
@@ -158,7 +201,7 @@ int main(int argc, char **argv)
 			"--false-alarms %g Hz: too many for any threshold with pulses of %g s",
 			alarms, duration);
 	for (int i = 0; i < balls.n; i++)
-		read_balls(&p, balls.v[i]);
+		read_balls(&p, balls.v[i], i);
 	if (p.n < 3)
 		die(EXIT_RUN, "%zu pulses are too few to estimate their scatter", p.n);
 	qsort(p.pulse, p.n, sizeof *p.pulse, by_diameter);
@@ -173,17 +216,20 @@ int main(int argc, char **argv)
 	for (size_t i = 0; i < p.n; i++)
 		deviation += pow(y[i] - exponent * x[i] - ln_k, 2);
 	deviation = sqrt(deviation / (double)(p.n - 1));
-	half = line_t(confidence, p.n - 1) * deviation / sqrt((double)p.n);
+	doubt.constant = line_t(confidence, p.n - 1) * deviation / sqrt((double)p.n);
 	fitted = line_fit(x, y, p.n, confidence, &l) == 0;
-	if (fitted) /* small balls scatter more */
-		line_allow_unequal(x, y, p.n, &l);
 	lack = fitted ? line_lack_of_fit(x, y, p.n, &l) : NAN;
-	if (fitted)
-		slope_p = line_slope_p(&l, p.n, exponent);
-	doubtful = slope_p < UNLIKELY || lack < UNLIKELY;
-	if (slope_p < UNLIKELY)
+	if (fitted) {
+		line_allow_unequal(x, y, p.n, &l); /* small balls scatter more */
+		doubt.slope = l.t * l.slope_se;
+		doubt.slope_p = line_slope_p(&l, p.n, exponent);
+	}
+	if (balls.n >= 3)
+		allow_shared(&p, &doubt);
+	doubtful = doubt.slope_p < UNLIKELY || lack < UNLIKELY;
+	if (doubt.slope_p < UNLIKELY)
 		warn("the exponent is %.3g, not %g: p = %.2g", l.slope, exponent,
-			slope_p);
+			doubt.slope_p);
 	if (lack < UNLIKELY)
 		warn("no power law fits all balls: p = %.2g", lack);
 	snprintf(unit, sizeof unit, "V.s/m^%g", exponent + 1);
@@ -191,17 +237,16 @@ int main(int argc, char **argv)
 		"quantity value low high unit");
 	put(t, "pulses", "1", (double)p.n, NAN, NAN);
 	put(t, "sizes", "1", sizes, NAN, NAN);
-	put_log(t, "calibration", unit, ln_k, half);
+	put_log(t, "calibration", unit, ln_k, doubt.constant);
 	put(t, "scatter", "1", deviation, NAN, NAN);
 	if (fitted) {
-		double wide = l.t * l.slope_se;
-
-		put(t, "exponent", "1", l.slope, l.slope - wide, l.slope + wide);
-		put(t, "exponent_p", "1", slope_p, NAN, NAN);
+		put(t, "exponent", "1", l.slope, l.slope - doubt.slope,
+			l.slope + doubt.slope);
+		put(t, "exponent_p", "1", doubt.slope_p, NAN, NAN);
 		put(t, "lack_of_fit_p", "1", lack, NAN, NAN);
 	}
 	if (!isnan(noise))
-		put_smallest(t, ln_k, half,
+		put_smallest(t, ln_k, doubt.constant,
 			isnan(velocity) ? p.speed / (double)p.n : velocity);
 	table_done(t);
 	stats_set("pulses", (double)p.n);
