@@ -177,10 +177,8 @@ static double age_at(const struct unit *p, double level)
 /* The path at evenly spaced levels up to the threshold; 0 if it has no length. */
 static int lay_out(const struct unit *p, double end, double *age, double *level)
 {
-	double from, to;
+	double from = p->level[0], to = fmin(end, p->level[p->n - 1]);
 
-	from = p->level[0];
-	to = fmin(end, p->level[p->n - 1]);
 	for (int k = 0; k < LEVELS; k++) {
 		level[k] = from + (to - from) * k / (LEVELS - 1);
 		age[k] = age_at(p, level[k]);

@@ -1,6 +1,12 @@
 /* shapes.c - the coordinates of the bank, see bank.h and bank_state.h */
 #include "life/trend/bank_state.h"
 
+#define SATURATING(s, p, w, prior)                                           \
+	{                                                                    \
+		.family = BANK_SATURATING, .scale = s, .par = p, .power = w, \
+		.log_prior = prior                                           \
+	}
+
 /* The weights and the changes of regime to come (passage.c) were chosen together, as
  * doc/benchmarks.md tells: by random search over every other of 31 measured series, the
  * first 13 kinds of tests/long/lives.c and the sigmoid, 24 to 40 paths of each with other
@@ -20,33 +26,13 @@ static const struct bank_shape table[] = {
 	{ .family = BANK_POWER, .scale = 0.05, .par = -1, .log_prior = 1 },
 	{ .family = BANK_POWER, .scale = 0.3, .par = 1.5, .log_prior = -2.8 },
 	{ .family = BANK_POWER, .scale = 0.3, .par = 2, .log_prior = 3.1 },
-	{ .family = BANK_SATURATING, .par = 0.99, .power = 1, .log_prior = -2 },
-	{ .family = BANK_SATURATING, .par = 0.8, .power = 1, .log_prior = -1.5 },
-	{ .family = BANK_SATURATING,
-		.scale = 10,
-		.par = 0.95,
-		.power = 1,
-		.log_prior = -2 },
-	{ .family = BANK_SATURATING,
-		.scale = 100,
-		.par = 0.99,
-		.power = 1,
-		.log_prior = -1.7 },
-	{ .family = BANK_SATURATING,
-		.scale = 2000,
-		.par = 0.92,
-		.power = 1,
-		.log_prior = 1 },
-	{ .family = BANK_SATURATING,
-		.scale = 10,
-		.par = 0.95,
-		.power = 0.5,
-		.log_prior = -0.6 },
-	{ .family = BANK_SATURATING,
-		.scale = 100,
-		.par = 0.95,
-		.power = 0.5,
-		.log_prior = -0.5 },
+	SATURATING(0, 0.99, 1, -2),
+	SATURATING(0, 0.8, 1, -1.5),
+	SATURATING(10, 0.95, 1, -2),
+	SATURATING(100, 0.99, 1, -1.7),
+	SATURATING(2000, 0.92, 1, 1),
+	SATURATING(10, 0.95, 0.5, -0.6),
+	SATURATING(100, 0.95, 0.5, -0.5),
 };
 
 enum { SHAPES = sizeof table / sizeof *table };
