@@ -3,6 +3,7 @@
 #include "life/grey/noise.h"
 #include "life/particle/adaptive.h"
 #include "life/prior/fleet.h"
+#include "life/score/metrics.h"
 #include "life/trend/bank.h"
 #include "life/trend/passage.h"
 #include "life/trend/runin.h"
@@ -342,6 +343,38 @@ static void test_fleet(void)
 	draw_free(d);
 }
 
+/* Linear wear read in bursts of six: the gaps between them, six mean gaps long, are no
+ * halts. */
+static void test_bursts(void)
+{
+	enum { UNITS = 20 };
+	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
+	struct bank_par par = { .threshold = 1, .direction = 1 };
+	double life[DRAWS], off = 0;
+	int inside = 0;
+
+	for (uint64_t unit = 0; unit < UNITS; unit++) {
+		struct draw *d = draw_new(unit, 0, RNG_NOISE);
+		struct bank *b = bank_new(&par);
+		double t = 0;
+
+		for (int burst = 0; burst < 22; burst++)
+			for (int k = 0; k < 6; k++) {
+				t = 0.03 * burst + 0.0005 * k;
+				bank_add(b, t, t + 0.01 * draw_normal(d));
+			}
+		bank_draw(b, chances, t, 1, life);
+		off += fabs(median(life, DRAWS) - (1 - t)) / UNITS;
+		inside += metric_quantile(life, DRAWS, 0.05) <= 1 - t &&
+			  metric_quantile(life, DRAWS, 0.95) >= 1 - t;
+		bank_free(b);
+		draw_free(d);
+	}
+	ok(off < 0.05, "readings in bursts: the end is %.3f of the life off", off);
+	ok(inside >= 18, "the intervals contain it for %d of 20", inside);
+	bank_chances_free(chances);
+}
+
 /* Over missing rows the filter predicts by its model; the same seed gives the same
  * states. */
 static void test_adaptive(void)
@@ -391,6 +424,7 @@ int main(void)
 	test_disturbances();
 	test_noise_favours_no_bend();
 	test_fleet();
+	test_bursts();
 	test_adaptive();
 	return tap_done();
 }

@@ -19,9 +19,7 @@ struct noise {
 
 struct noise *noise_new(void)
 {
-	struct noise *n = calloc(1, sizeof *n);
-
-	return n;
+	return calloc(1, sizeof(struct noise));
 }
 
 void noise_free(struct noise *n)

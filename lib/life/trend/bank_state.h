@@ -59,6 +59,8 @@ struct bank {
 	double first, last;   /* times without the idle time */
 	double idle;          /* total idle time */
 	double age, gap;      /* of the last row, mean gap, in units */
+	double squares;       /* sum of the squares of all gaps, with halts, units^2 */
+	double longest;       /* of these gaps */
 	double level;         /* D of the last row */
 	double before;        /* y of the last row, taken or held back */
 	double quantum;       /* least difference of successive values of y but 0 */
