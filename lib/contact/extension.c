@@ -30,7 +30,9 @@ struct level {
 };
 
 struct extension {
-	struct contact_par par;
+	struct contact_par par;           /* of the cells that the levels cover */
+	size_t nx, ny;                    /* the grid */
+	size_t mx, my;                    /* and its frame */
 	struct level own[LEVELS], *level; /* level[0]: of half as many cells each way */
 	int levels, borrowed;
 	double *memory;         /* of the levels, unless lent */
@@ -54,6 +56,24 @@ static double wave_number(const void *context, size_t kx, size_t ky)
 
 	return 2 * M_PI *
 	       hypot((double)kx / (par->nx * par->dx), (double)ky / (par->ny * par->dy));
+}
+
+/* On a free boundary opposite edges must not be neighbours.  Where surfaces of rms slope
+ * 0.4 touch the edges at 20 %, 512 x 512 cells take 33 iterations without a frame, 20
+ * with 8 cells, and 17, 16 and 15 with 1/16, 1/8 and 1/4 of the side; a free strip of 3 x
+ * 10000 takes 191 without one, and 98, 69 and 52 with 4, 8 and 16 cells. */
+static size_t framed(size_t n)
+{
+	return fft_fast_size(n + (n > 8 * 16 ? n / 16 : 8));
+}
+
+void extension_size(const struct contact_par *par, size_t *mx, size_t *my)
+{
+	size_t nx = (size_t)par->nx, ny = (size_t)par->ny;
+	int periodic = par->boundary == CONTACT_PERIODIC;
+
+	*mx = periodic ? convolve_good_period(nx) : framed(nx);
+	*my = periodic ? convolve_good_period(ny) : framed(ny);
 }
 
 static enum num_status make_coarsest(struct extension *e)
@@ -121,16 +141,25 @@ struct extension *extension_new(const struct contact_par *par,
 
 	if (!e)
 		return NULL;
-	if (finer && finer->levels > 1) {
+	/* Frames of two grids end in different places. */
+	if (par->boundary == CONTACT_PERIODIC && finer && finer->levels > 1)
 		*e = *finer;
-		e->par = *par;
+	e->par = *par;
+	e->nx = (size_t)par->nx;
+	e->ny = (size_t)par->ny;
+	extension_size(par, &e->mx, &e->my);
+	if (par->boundary == CONTACT_FREE) {
+		e->par.nx = (int)e->mx;
+		e->par.ny = (int)e->my;
+		e->par.boundary = CONTACT_PERIODIC;
+	}
+	if (e->level) {
 		e->level = finer->level + 1;
 		e->levels = finer->levels - 1;
 		e->borrowed = 1;
 		return e;
 	}
-	e->par = *par;
-	e->row = (size_t)par->nx + TRANSFER_TAPS;
+	e->row = e->mx + TRANSFER_TAPS;
 	e->scratch = fft_alloc(2 * (size_t)pool_threads(par->pool) * e->row);
 	if (e->scratch && make_levels(e, memory, room) == 0)
 		return e;
@@ -197,9 +226,10 @@ static void add_level(const struct level *l, size_t row, double w, double *value
 static void add_row(const struct extension *e, size_t row, double w, double *value,
 	double *weight, size_t n)
 {
-	if (e->now == 0)
-		add_residual(e, row, w, value, weight, n);
-	else
+	if (e->now == 0) {
+		if (row < e->ny)
+			add_residual(e, row, w, value, weight, e->nx);
+	} else
 		add_level(&e->level[e->now - 1], row, w, value, weight, n);
 }
 
@@ -297,11 +327,11 @@ static void spread(void *context, size_t job, int worker)
 	}
 }
 
-void extension_row(const struct extension *e, size_t y, double *row, int worker)
+static void extend_row(const struct extension *e, size_t y, double *row, int worker)
 {
-	size_t nx = (size_t)e->par.nx;
-	const double *gap = e->gap + y * nx;
-	const unsigned char *active = e->active + y * nx;
+	const double *gap = e->gap + y * e->nx;
+	const unsigned char *active = e->active + y * e->nx;
+	size_t nx = y < e->ny ? e->nx : 0, all = (size_t)e->par.nx;
 	struct between between = { 0 };
 
 	if (e->levels > 0)
@@ -314,6 +344,33 @@ void extension_row(const struct extension *e, size_t y, double *row, int worker)
 		lanes_store(
 			row + x, lanes_pick(lanes_flags(active + x, n), own, rest), n);
 	}
+	for (size_t x = nx; x < all; x++)
+		row[x] = e->levels > 0 ? around(&between, x, 1)[0] : 0;
+}
+
+/* Position of cell i across n cells, from 0 to 1. */
+static double across(size_t i, size_t n)
+{
+	return (double)(i + 1) / (double)(n + 1);
+}
+
+void extension_row(const struct extension *e, size_t y, double *row, int worker)
+{
+	size_t nx = (size_t)e->par.nx, ny = (size_t)e->par.ny;
+	double *other = e->scratch + (2 * (size_t)worker + 1) * e->row, share;
+
+	if (y < ny) {
+		extend_row(e, y, row, worker);
+	} else {
+		share = across(y - ny, e->my - ny);
+		extend_row(e, y - ny, row, worker);
+		extend_row(e, y + ny - e->my, other, worker);
+		for (size_t x = 0; x < nx; x++)
+			row[x] += share * (other[x] - row[x]);
+	}
+	for (size_t x = nx; x < e->mx; x++)
+		row[x] = row[x - nx] +
+			 across(x - nx, e->mx - nx) * (row[x + nx - e->mx] - row[x - nx]);
 }
 
 /* Conductance by which a coarsest cell is tied to its contact, for its area. */
@@ -403,5 +460,5 @@ double extension_solve(struct extension *e, const unsigned char *active,
 	work = solve_coarsest(e);
 	for (e->now = e->levels - 1; e->now > 0; e->now--)
 		run_rows(e, e->level[e->now].from.y.n, spread);
-	return work / ((double)e->par.nx * (double)e->par.ny);
+	return work / ((double)e->nx * (double)e->ny);
 }
