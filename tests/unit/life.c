@@ -436,6 +436,57 @@ static void test_adaptive(void)
 	draw_free(d);
 }
 
+/* Of 20 quiet series y = x + bend x^2, x = k / 100, at k = 60 on the way to y = 1 + bend:
+ * how many ends are within the 90 % interval of straight lines without changes of the
+ * rate, and its mean width. */
+static int ends_inside(double bend, double *width)
+{
+	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
+	struct bank_par par = { .threshold = 1 + bend,
+		.direction = 1,
+		.families = BANK_LINEAR,
+		.steady = 1 };
+	double life[DRAWS];
+	int inside = 0;
+
+	*width = 0;
+	for (uint64_t seed = 1; seed <= 20; seed++) {
+		struct draw *d = draw_new(seed, 0, RNG_NOISE);
+		struct bank *b = bank_new(&par);
+		double early, late;
+
+		for (int k = 0; k <= 60; k++) {
+			double x = k / 100.0;
+
+			bank_add(b, k, x + bend * x * x + 0.001 * draw_normal(d));
+		}
+		bank_draw(b, chances, 60, par.threshold, life);
+		median(life, DRAWS); /* sorts */
+		early = metric_quantile(life, DRAWS, 0.05);
+		late = metric_quantile(life, DRAWS, 0.95);
+		inside += early <= 40 && 40 <= late;
+		*width += (late - early) / 20;
+		bank_free(b);
+		draw_free(d);
+	}
+	bank_chances_free(chances);
+	return inside;
+}
+
+static void test_drift(void)
+{
+	double straight, bent;
+	int inside = ends_inside(0, &straight);
+
+	ok(inside >= 16 && straight < 1,
+		"straight lines hold %d of 20 ends of straight wear, in %.2f", inside,
+		straight);
+	inside = ends_inside(0.3, &bent);
+	ok(inside >= 16, "of wear that accelerates %d, in %.1f", inside, bent);
+	inside = ends_inside(-0.3, &bent);
+	ok(inside >= 16, "of wear that slows down %d, in %.1f", inside, bent);
+}
+
 int main(void)
 {
 	test_noise();
@@ -445,6 +496,7 @@ int main(void)
 	test_straight_wear();
 	test_disturbances();
 	test_noise_favours_no_bend();
+	test_drift();
 	test_fleet();
 	test_bursts();
 	test_adaptive();
