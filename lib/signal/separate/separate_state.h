@@ -94,6 +94,7 @@ struct separate {
 	double *source;
 	struct separate_counters counters;
 	enum separate_status reason; /* why nothing could be learned */
+	double effort;               /* samples of pulses computed to learn */
 	long long bad_frame;
 	int bad_channel;
 };
