@@ -67,13 +67,10 @@ static size_t framed(size_t n)
 	return fft_fast_size(n + (n > 8 * 16 ? n / 16 : 8));
 }
 
-void extension_size(const struct contact_par *par, size_t *mx, size_t *my)
+void extension_size(const struct extension *e, size_t *mx, size_t *my)
 {
-	size_t nx = (size_t)par->nx, ny = (size_t)par->ny;
-	int periodic = par->boundary == CONTACT_PERIODIC;
-
-	*mx = periodic ? convolve_good_period(nx) : framed(nx);
-	*my = periodic ? convolve_good_period(ny) : framed(ny);
+	*mx = e->mx;
+	*my = e->my;
 }
 
 static enum num_status make_coarsest(struct extension *e)
@@ -134,26 +131,41 @@ static enum num_status make_levels(struct extension *e, double *memory, size_t m
 	return e->levels > 0 ? make_coarsest(e) : 0;
 }
 
+/* 1 if the levels of the next finer grid, but its first, are those of this one. */
+static int shares(const struct contact_par *par, const struct extension *finer)
+{
+	if (!finer || finer->levels < 2)
+		return 0;
+	/* Frames of two grids must end in the same place. */
+	return par->boundary == CONTACT_PERIODIC ||
+	       (finer->nx == 2 * (size_t)par->nx && finer->mx % 2 == 0 &&
+		       finer->ny == 2 * (size_t)par->ny && finer->my % 2 == 0);
+}
+
 struct extension *extension_new(const struct contact_par *par,
 	const struct extension *finer, double *memory, size_t room)
 {
 	struct extension *e = calloc(1, sizeof *e);
+	int shared = shares(par, finer);
 
 	if (!e)
 		return NULL;
-	/* Frames of two grids end in different places. */
-	if (par->boundary == CONTACT_PERIODIC && finer && finer->levels > 1)
+	if (shared)
 		*e = *finer;
 	e->par = *par;
 	e->nx = (size_t)par->nx;
 	e->ny = (size_t)par->ny;
-	extension_size(par, &e->mx, &e->my);
-	if (par->boundary == CONTACT_FREE) {
+	if (par->boundary == CONTACT_PERIODIC) {
+		e->mx = convolve_good_period(e->nx);
+		e->my = convolve_good_period(e->ny);
+	} else {
+		e->mx = shared ? finer->mx / 2 : framed(e->nx);
+		e->my = shared ? finer->my / 2 : framed(e->ny);
 		e->par.nx = (int)e->mx;
 		e->par.ny = (int)e->my;
 		e->par.boundary = CONTACT_PERIODIC;
 	}
-	if (e->level) {
+	if (shared) {
 		e->level = finer->level + 1;
 		e->levels = finer->levels - 1;
 		e->borrowed = 1;

@@ -31,7 +31,7 @@ struct extension *extension_new(const struct contact_par *par,
 	const struct extension *finer, double *memory, size_t room);
 void extension_free(struct extension *e);
 /* Cells with the frame. */
-void extension_size(const struct contact_par *par, size_t *mx, size_t *my);
+void extension_size(const struct extension *e, size_t *mx, size_t *my);
 
 /* Extends the residual, gap less approach, beyond the active cells.  Returns the work in
  * units of transforms of the whole grid. */
