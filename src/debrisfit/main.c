@@ -119,6 +119,7 @@ int main(int argc, char **argv)
 	enum surrogate_status status;
 	long surfaces = 0;
 	char *cmd = NULL;
+	int done = EXIT_SUCCESS;
 
 	if (!yield.n)
 		die(EXIT_USAGE, "want --yield");
@@ -129,6 +130,8 @@ int main(int argc, char **argv)
 		if (around && !strcmp(around, "periodic"))
 			die(EXIT_RUN, "%s: record %ld is periodic: want free surfaces",
 				fields_name(in), fields_count(in));
+		if (!press_given(&r, fields_name(in), fields_count(in)))
+			done = EXIT_NOCONV;
 		if (!cmd)
 			cmd = opt_cmd(r.cmd, NULL);
 		progress("surfaces", (double)surfaces, 0);
@@ -157,5 +160,5 @@ int main(int argc, char **argv)
 	free(cmd);
 	record_free(&r);
 	fields_close(in);
-	return shell_done(EXIT_SUCCESS);
+	return shell_done(done);
 }
