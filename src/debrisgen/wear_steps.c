@@ -404,10 +404,10 @@ static long archard_parts(const struct wearing *w, double distance)
 	return (long)fmin(1e9, fmax(1, ceil(k * distance / limit)));
 }
 
-/* Removes the same depths from a body for every part of the distance; returns the volume,
+/* Removes the depths that a part of the distance wears off a body; returns the volume,
  * m3. */
 static double wear_part(double *height, const double *p, size_t n, double rate,
-	double distance, double area, double *deepest)
+	double distance, double area)
 {
 	double volume = 0;
 
@@ -416,9 +416,17 @@ static double wear_part(double *height, const double *p, size_t n, double rate,
 
 		height[i] -= depth;
 		volume += depth * area;
-		*deepest = fmax(*deepest, depth);
 	}
 	return volume;
+}
+
+static double deepest(const double *before, const double *after, size_t n)
+{
+	double depth = 0;
+
+	for (size_t i = 0; i < n; i++)
+		depth = fmax(depth, before[i] - after[i]);
+	return depth;
 }
 
 /* Wears by k p ds, solving the contact for every part of the distance; 1, or 0 if a
@@ -429,27 +437,32 @@ static int wear_by_archard(struct wearing *w, const struct worn_surface *c, doub
 	size_t n = (size_t)c->r->nx * (size_t)c->r->ny;
 	double area = c->r->dx * c->r->dy;
 	long parts = archard_parts(w, distance);
+	double *before = xcalloc(2 * n, sizeof *before);
 	int solved = 1;
 
 	w->second_lost = w->lost;
 	if (stress_load(debris_stress(w->debris), c->p))
 		refuse(w, DEBRIS_NUMBERS, step);
+	memcpy(before, c->h, n * sizeof *before);
+	if (is_worn(SECOND))
+		memcpy(before + n, w->other, n * sizeof *before);
 	for (long k = 0; k < parts; k++) {
-		double ds = distance / (double)parts, first = 0, second = 0;
+		double ds = distance / (double)parts;
 
 		if (k > 0)
 			solved &= wearing_press(w, c, target, step);
 		if (is_worn(FIRST))
-			w->lost.volume += wear_part(c->h, c->p, n,
-				of_body(&wear_rate, FIRST), ds, area, &first);
+			w->lost.volume += wear_part(
+				c->h, c->p, n, of_body(&wear_rate, FIRST), ds, area);
 		if (is_worn(SECOND)) {
-			w->second_lost.volume += wear_part(w->other, c->p, n,
-				of_body(&wear_rate, SECOND), ds, area, &second);
+			w->second_lost.volume += wear_part(
+				w->other, c->p, n, of_body(&wear_rate, SECOND), ds, area);
 			counterface_return(w->counterface, step, w->other);
 		}
-		w->lost.depth += first;
-		w->second_lost.depth += second;
 	}
+	w->lost.depth = is_worn(FIRST) ? deepest(before, c->h, n) : 0;
+	w->second_lost.depth = is_worn(SECOND) ? deepest(before + n, w->other, n) : 0;
+	free(before);
 	w->lost.wear.stress = w->second_lost.wear.stress = NAN;
 	stats_add("wear_parts", (double)parts);
 	return solved;
