@@ -130,6 +130,7 @@ fails "a counterface of another size" 1 "120x48 cells over 48x48: want as many" 
 roughgen --points 48 --length 1mm --sq 0.4um >wide.nrrd
 fails "a counterface of another spacing" 1 "spacings of" $wear --counterface wide.nrrd a.nrrd
 fails "Archard's law without a rate" 2 "requires --wear-rate" debrisgen --law archard start.nrrd
+fails "a rate that takes days" 2 "would take .* contacts" debrisgen --law archard --wear-rate 1e-5 start.nrrd
 fails "a rate without Archard's law" 2 "requires --law archard" $wear --wear-rate 1e-15 start.nrrd
 fails "no load" 2 "carries no load" debrisgen --yield 355MPa --young 210GPa --counterface b.nrrd a.nrrd
 done_testing

@@ -397,11 +397,18 @@ static void wear_by_stress(struct wearing *w, const struct worn_surface *c, long
 static long archard_parts(const struct wearing *w, double distance)
 {
 	const struct contact_par *p = &w->pressing;
-	double k = is_worn(FIRST) ? of_body(&wear_rate, FIRST) : 0, limit;
+	double k = is_worn(FIRST) ? of_body(&wear_rate, FIRST) : 0, limit, parts;
 
 	k += is_worn(SECOND) ? of_body(&wear_rate, SECOND) : 0;
 	limit = 0.8 * 4 * fmin(p->dx, p->dy) / (sqrt(2) * M_PI * p->estar);
-	return (long)fmin(1e9, fmax(1, ceil(k * distance / limit)));
+	parts = ceil(k * distance / limit);
+	/* days of contacts: rather a rate in another unit than a wish */
+	if (parts > 1e7)
+		die(EXIT_USAGE,
+			"--wear-rate: a step of %g m would take %.0e contacts: want a lower "
+			"rate, in m2/N, or a shorter distance",
+			distance, parts);
+	return (long)fmax(1, parts);
 }
 
 /* Removes the depths that a part of the distance wears off a body; returns the volume,
