@@ -373,7 +373,7 @@ static void wear_by_stress(struct wearing *w, const struct worn_surface *c, long
 	if (w->quick)
 		refuse(w, debris_load(w->debris, c->p), step);
 	if (w->quick && quick_step(w->quick, debris_stress(w->debris), c->p, yield.v[0],
-				c->r->realisation, &w->lost)) {
+				w->pressing.hardness, c->r->realisation, &w->lost)) {
 		count_work(&w->lost, stress_work(debris_stress(w->debris)), &w->seen);
 	} else if (is_worn(FIRST)) {
 		refuse(w, debris_step(w->debris, c->h, c->p, &w->lost), step);
