@@ -241,7 +241,11 @@ double contact_cell_stiffness(const struct contact *c)
 
 double contact_energy(const struct contact *c, const struct sweep *s)
 {
-	return s->sum[0] + c->result.approach * s->sum[1] - c->work / 2;
+	double free_work = s->sum[0] - c->work / 2;
+
+	return c->control == CONTACT_APPROACH
+		       ? free_work
+		       : free_work + c->result.approach * s->sum[1];
 }
 
 int contact_carries(const struct contact *c, double sum)
