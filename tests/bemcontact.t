@@ -34,6 +34,15 @@ for m in "--solver pk" "--multiply mlms" "--multiply mlms --solver pk"; do
 	near "--solver or --multiply $m gives the same pressure" "$(awk "BEGIN { print $(key energy other.nrrd) / $(key energy free.nrrd) - 1 }")" 0 2e-7
 done
 
+# A strip of a wave and noise at a given approach, where no load limits steps that grow
+perl -e 'srand(3); for my $y (1 .. 40) { for my $x (1 .. 1000) { print pack "d<", 5e-7 * (cos($x * 0.006283185307179586) +
+	0.5 * sqrt(-2 * log(1 - rand)) * cos(6.283185307179586 * rand)) } }' >strip.f64
+for a in -0.2um 0.8um; do
+	strip="bemcontact --raw 1000x40 --pixel 1um --estar 100GPa --approach $a strip.f64"
+	$strip >strip.nrrd
+	$strip --solver pk >other.nrrd
+	near "a strip at an approach of $a: --solver pk gives the same load" "$(awk "BEGIN { print $(key load other.nrrd) / $(key load strip.nrrd) - 1 }")" 0 1e-6
+done
 $solve --pressure 200MPa --boundary periodic h.f64 >periodic.nrrd
 near "a periodic surface carries the same load" "$(key load periodic.nrrd)" 0.6144 1e-13
 ok "a periodic boundary gives another pressure" [ "$(key energy periodic.nrrd)" != "$(key energy free.nrrd)" ]

@@ -85,8 +85,9 @@ static int restore_load(struct contact *c)
 }
 
 /* Steps that are watched: with a hardness they can end in a cycle, in which most cells
- * change from one bound to the other.  A step that raises the energy is then shortened to
- * the least energy along it. */
+ * change from one bound to the other; with a given approach no load limits the pressure
+ * of cells that come into contact, and steps can grow without bound.  A step that raises
+ * the energy is shortened to the least energy along it. */
 struct watch {
 	struct contact *c;
 	double *before;       /* pressure before the last step, NULL if not watched */
@@ -139,6 +140,8 @@ static enum contact_status iterate(struct contact *c, struct watch *watch)
 	int conjugate = 0, plain = 0;
 
 	c->tau = contact_cell_stiffness(c);
+	if (c->control == CONTACT_APPROACH)
+		watch_steps(watch);
 	for (long k = 0;; k++) {
 		double moment, tau;
 		struct sweep s;

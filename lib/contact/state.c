@@ -207,6 +207,8 @@ double contact_optimality_gap(struct contact *c, const struct sweep *s)
 
 	if (sum <= 0)
 		return s->max > 0 ? INFINITY : 0;
+	if (!isfinite(work))
+		return INFINITY;
 	/* The gap at the approach that is, and at the highest that lets nothing overlap.
 	 */
 	if (c->control == CONTACT_PRESSURE)
