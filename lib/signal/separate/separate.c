@@ -288,6 +288,8 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 {
 	const struct separate_counters *c = &s->counters;
 
+	if (!s->calibrated)
+		return s->unexplained ? SEPARATE_UNEXPLAINED : SEPARATE_BELIEVED;
 	if (s->par.kept && separate_is_other_noise(s))
 		return SEPARATE_NOISE;
 	if (s->par.kept && c->rows > 2 && c->negative > REVERSED * c->rows)

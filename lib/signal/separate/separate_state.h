@@ -94,6 +94,7 @@ struct separate {
 	double *source;
 	struct separate_counters counters;
 	enum separate_status reason; /* why nothing could be learned */
+	int unexplained; /* 1: although both channels stand out of their noise */
 	long long bad_frame;
 	int bad_channel;
 };
