@@ -73,20 +73,22 @@ enum num_status contact_make_preconditioner(
 	struct box box = { .body = &c->body };
 	size_t mx, my;
 
-	c->periodic = convolve_borrow((size_t)c->par.nx, (size_t)c->par.ny,
-		CONVOLVE_BRIDGED, c->par.pool, scratch);
-	if (!c->periodic)
-		return NUM_MEMORY;
 	/* Its levels are in use before the preconditioned residual is written there. */
 	c->extension = extension_new(
 		&c->par, lender ? lender->extension : NULL, c->residual, c->n);
+	if (!c->extension)
+		return NUM_MEMORY;
+	extension_size(c->extension, &mx, &my);
+	c->periodic = convolve_frame(
+		(size_t)c->par.nx, (size_t)c->par.ny, mx, my, c->par.pool, scratch);
+	if (!c->periodic)
+		return NUM_MEMORY;
 	c->inverse = convolve_alloc(c->periodic);
 	c->active = malloc(c->n);
-	if (!c->extension || !c->inverse || !c->active)
+	if (!c->inverse || !c->active)
 		return NUM_MEMORY;
 	if (balance_new(&c->par, &c->balance))
 		return NUM_MEMORY;
-	convolve_size(c->periodic, &mx, &my);
 	box.lx = (double)mx * c->par.dx;
 	box.ly = (double)my * c->par.dy;
 	return convolve_spectrum(c->periodic, c->inverse, stiffness, &box);

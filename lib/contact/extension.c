@@ -30,7 +30,9 @@ struct level {
 };
 
 struct extension {
-	struct contact_par par;
+	struct contact_par par;           /* of the cells that the levels cover */
+	size_t nx, ny;                    /* the grid */
+	size_t mx, my;                    /* and its frame */
 	struct level own[LEVELS], *level; /* level[0]: of half as many cells each way */
 	int levels, borrowed;
 	double *memory;         /* of the levels, unless lent */
@@ -54,6 +56,21 @@ static double wave_number(const void *context, size_t kx, size_t ky)
 
 	return 2 * M_PI *
 	       hypot((double)kx / (par->nx * par->dx), (double)ky / (par->ny * par->dy));
+}
+
+/* On a free boundary opposite edges must not be neighbours.  Where surfaces of rms slope
+ * 0.4 touch the edges at 20 %, 512 x 512 cells take 33 iterations without a frame, 20
+ * with 8 cells, and 17, 16 and 15 with 1/16, 1/8 and 1/4 of the side; a free strip of 3 x
+ * 10000 takes 191 without one, and 98, 69 and 52 with 4, 8 and 16 cells. */
+static size_t framed(size_t n)
+{
+	return fft_fast_size(n + (n > 8 * 16 ? n / 16 : 8));
+}
+
+void extension_size(const struct extension *e, size_t *mx, size_t *my)
+{
+	*mx = e->mx;
+	*my = e->my;
 }
 
 static enum num_status make_coarsest(struct extension *e)
@@ -114,23 +131,47 @@ static enum num_status make_levels(struct extension *e, double *memory, size_t m
 	return e->levels > 0 ? make_coarsest(e) : 0;
 }
 
+/* 1 if the levels of the next finer grid, but its first, are those of this one. */
+static int shares(const struct contact_par *par, const struct extension *finer)
+{
+	if (!finer || finer->levels < 2)
+		return 0;
+	/* Frames of two grids must end in the same place. */
+	return par->boundary == CONTACT_PERIODIC ||
+	       (finer->nx == 2 * (size_t)par->nx && finer->mx % 2 == 0 &&
+		       finer->ny == 2 * (size_t)par->ny && finer->my % 2 == 0);
+}
+
 struct extension *extension_new(const struct contact_par *par,
 	const struct extension *finer, double *memory, size_t room)
 {
 	struct extension *e = calloc(1, sizeof *e);
+	int shared = shares(par, finer);
 
 	if (!e)
 		return NULL;
-	if (finer && finer->levels > 1) {
+	if (shared)
 		*e = *finer;
-		e->par = *par;
+	e->par = *par;
+	e->nx = (size_t)par->nx;
+	e->ny = (size_t)par->ny;
+	if (par->boundary == CONTACT_PERIODIC) {
+		e->mx = convolve_good_period(e->nx);
+		e->my = convolve_good_period(e->ny);
+	} else {
+		e->mx = shared ? finer->mx / 2 : framed(e->nx);
+		e->my = shared ? finer->my / 2 : framed(e->ny);
+		e->par.nx = (int)e->mx;
+		e->par.ny = (int)e->my;
+		e->par.boundary = CONTACT_PERIODIC;
+	}
+	if (shared) {
 		e->level = finer->level + 1;
 		e->levels = finer->levels - 1;
 		e->borrowed = 1;
 		return e;
 	}
-	e->par = *par;
-	e->row = (size_t)par->nx + TRANSFER_TAPS;
+	e->row = e->mx + TRANSFER_TAPS;
 	e->scratch = fft_alloc(2 * (size_t)pool_threads(par->pool) * e->row);
 	if (e->scratch && make_levels(e, memory, room) == 0)
 		return e;
@@ -197,9 +238,10 @@ static void add_level(const struct level *l, size_t row, double w, double *value
 static void add_row(const struct extension *e, size_t row, double w, double *value,
 	double *weight, size_t n)
 {
-	if (e->now == 0)
-		add_residual(e, row, w, value, weight, n);
-	else
+	if (e->now == 0) {
+		if (row < e->ny)
+			add_residual(e, row, w, value, weight, e->nx);
+	} else
 		add_level(&e->level[e->now - 1], row, w, value, weight, n);
 }
 
@@ -297,11 +339,11 @@ static void spread(void *context, size_t job, int worker)
 	}
 }
 
-void extension_row(const struct extension *e, size_t y, double *row, int worker)
+static void extend_row(const struct extension *e, size_t y, double *row, int worker)
 {
-	size_t nx = (size_t)e->par.nx;
-	const double *gap = e->gap + y * nx;
-	const unsigned char *active = e->active + y * nx;
+	const double *gap = e->gap + y * e->nx;
+	const unsigned char *active = e->active + y * e->nx;
+	size_t nx = y < e->ny ? e->nx : 0, all = (size_t)e->par.nx;
 	struct between between = { 0 };
 
 	if (e->levels > 0)
@@ -314,6 +356,33 @@ void extension_row(const struct extension *e, size_t y, double *row, int worker)
 		lanes_store(
 			row + x, lanes_pick(lanes_flags(active + x, n), own, rest), n);
 	}
+	for (size_t x = nx; x < all; x++)
+		row[x] = e->levels > 0 ? around(&between, x, 1)[0] : 0;
+}
+
+/* Position of cell i across n cells, from 0 to 1. */
+static double across(size_t i, size_t n)
+{
+	return (double)(i + 1) / (double)(n + 1);
+}
+
+void extension_row(const struct extension *e, size_t y, double *row, int worker)
+{
+	size_t nx = (size_t)e->par.nx, ny = (size_t)e->par.ny;
+	double *other = e->scratch + (2 * (size_t)worker + 1) * e->row, share;
+
+	if (y < ny) {
+		extend_row(e, y, row, worker);
+	} else {
+		share = across(y - ny, e->my - ny);
+		extend_row(e, y - ny, row, worker);
+		extend_row(e, y + ny - e->my, other, worker);
+		for (size_t x = 0; x < nx; x++)
+			row[x] += share * (other[x] - row[x]);
+	}
+	for (size_t x = nx; x < e->mx; x++)
+		row[x] = row[x - nx] +
+			 across(x - nx, e->mx - nx) * (row[x + nx - e->mx] - row[x - nx]);
 }
 
 /* Conductance by which a coarsest cell is tied to its contact, for its area. */
@@ -403,5 +472,5 @@ double extension_solve(struct extension *e, const unsigned char *active,
 	work = solve_coarsest(e);
 	for (e->now = e->levels - 1; e->now > 0; e->now--)
 		run_rows(e, e->level[e->now].from.y.n, spread);
-	return work / ((double)e->par.nx * (double)e->par.ny);
+	return work / ((double)e->nx * (double)e->ny);
 }

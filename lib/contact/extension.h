@@ -11,6 +11,11 @@
  * 2 asinh(1) / pi is that of a square.  The correction by the next coarser grid is
  * coupled by the mean |q| of the waves that this grid resolves and the coarser one does
  * not.
+ *
+ * The preconditioner is periodic.  The residual is therefore extended over a frame beyond
+ * the last column and row as well: on a free boundary by the same potential, so that
+ * opposite edges are not neighbours, and on a periodic one whose size is awkward to
+ * transform by the residual of both sides, one blended into the other.
  */
 #ifndef CONTACT_EXTENSION_H
 #define CONTACT_EXTENSION_H
@@ -25,12 +30,15 @@ struct extension;
 struct extension *extension_new(const struct contact_par *par,
 	const struct extension *finer, double *memory, size_t room);
 void extension_free(struct extension *e);
+/* Cells with the frame. */
+void extension_size(const struct extension *e, size_t *mx, size_t *my);
 
 /* Extends the residual, gap less approach, beyond the active cells.  Returns the work in
  * units of transforms of the whole grid. */
 double extension_solve(struct extension *e, const unsigned char *active,
 	const double *gap, double approach);
-/* A row of the extended residual, in the thread worker; the arrays are still those. */
+/* A row of the extended residual and its frame, in the thread worker; the arrays are
+ * still those. */
 void extension_row(const struct extension *e, size_t y, double *row, int worker);
 
 #endif

@@ -19,9 +19,10 @@ static const double FIRST = 0.6;
 
 struct footprints {
 	struct stress_par par;
-	double *value; /* equivalent stress; below the yield stress where none is known */
+	double *value; /* equivalent stress in the spans, else 0 */
 	size_t *queue; /* cells of a region */
 	struct stress_span *span;
+	size_t spans;
 	struct point_sum *below;
 	struct footprint *list;
 	size_t count, room;
@@ -35,7 +36,7 @@ struct footprints *footprints_new(const struct stress_par *par)
 	if (!f)
 		return NULL;
 	f->par = *par;
-	f->value = malloc(n * sizeof *f->value);
+	f->value = calloc(n, sizeof *f->value);
 	f->queue = malloc(n * sizeof *f->queue);
 	f->span = malloc((size_t)par->ny * (((size_t)par->nx + 1) / 2) * sizeof *f->span);
 	f->below = point_sum_new(par);
@@ -231,20 +232,30 @@ static size_t next_failing(const struct footprints *f, size_t i, size_t end, dou
 	return i;
 }
 
+/* The values of the last surface: few cells of a large grid. */
+static void clear_values(struct footprints *f)
+{
+	for (size_t k = 0; k < f->spans; k++) {
+		const struct stress_span *s = &f->span[k];
+
+		memset(f->value + (size_t)s->y * (size_t)f->par.nx + (size_t)s->begin, 0,
+			(size_t)(s->end - s->begin) * sizeof *f->value);
+	}
+	f->spans = 0;
+}
+
 enum num_status footprints_find(struct footprints *f, struct stress *stress,
 	const double *pressure, double yield, const struct footprint **list,
 	size_t *count)
 {
-	size_t n = (size_t)f->par.nx * (size_t)f->par.ny, spans;
-
 	f->count = 0;
 	*count = 0;
-	memset(f->value, 0, n * sizeof *f->value);
-	spans = stress_reach(stress, 0, yield, f->span);
-	if (stress_above(stress, yield, f->span, spans, f->value))
+	clear_values(f);
+	f->spans = stress_reach(stress, 0, yield, f->span);
+	if (stress_above(stress, yield, f->span, f->spans, f->value))
 		return NUM_MEMORY;
 	/* Row by row, and in each from left to right. */
-	for (size_t k = 0; k < spans; k++) {
+	for (size_t k = 0; k < f->spans; k++) {
 		size_t row = (size_t)f->span[k].y * (size_t)f->par.nx;
 
 		size_t end = row + (size_t)f->span[k].end;

@@ -16,12 +16,11 @@ enum {
 };
 
 struct convolve {
-	size_t nx, ny; /* field */
-	size_t mx, my; /* transform: periodic nx, ny; padded at least twice that */
-	int wrapped;   /* periodic, but in a padded direction */
-	int bridged; /* beyond the field x is interpolated linearly back to its beginning
-		      */
-	size_t lx;   /* kept coefficients of a row, mx / 2 + 1 */
+	size_t nx, ny;  /* field */
+	size_t fx, fy;  /* what is given of x: the field, or it and a frame */
+	size_t mx, my;  /* transform: periodic fx, fy; padded at least twice that */
+	int wrapped;    /* periodic, but in a padded direction */
+	size_t lx;      /* kept coefficients of a row, mx / 2 + 1 */
 	size_t stride;  /* coefficients from row to row of a scratch buffer */
 	size_t column;  /* coefficients from column to column of work */
 	size_t scratch; /* doubles per thread */
@@ -30,7 +29,7 @@ struct convolve {
 	struct fft_line *line; /* complex, my points */
 	size_t room;           /* coefficients that fit in work */
 	int borrowed;          /* work belongs to a lender */
-	double complex *work;  /* lx columns of ny coefficients */
+	double complex *work;  /* lx columns of fy coefficients */
 	double *buffers;       /* scratch of all threads */
 	const double *kernel;  /* of the call in progress */
 	const struct convolve_passes *passes;
@@ -56,6 +55,11 @@ static size_t row_jobs(const struct convolve *c)
 	return (c->ny + ROWS - 1) / ROWS;
 }
 
+static size_t given_jobs(const struct convolve *c)
+{
+	return (c->fy + ROWS - 1) / ROWS;
+}
+
 struct convolve *convolve_new(
 	size_t nx, size_t ny, enum convolve_kind kind, struct pool *pool)
 {
@@ -78,33 +82,28 @@ static size_t larger(size_t a, size_t b)
 	return a > b ? a : b;
 }
 
-struct convolve *convolve_borrow(size_t nx, size_t ny, enum convolve_kind kind,
-	struct pool *pool, const struct convolve *lender)
+size_t convolve_good_period(size_t n)
 {
-	struct convolve *c = calloc(1, sizeof *c);
-	int bridged = kind == CONVOLVE_BRIDGED;
-	int padded_x = kind == CONVOLVE_PADDED || (!bridged && is_awkward(nx));
-	int padded_y = kind == CONVOLVE_PADDED || (!bridged && is_awkward(ny));
+	return is_awkward(n) ? fft_fast_size(n) : n;
+}
 
-	if (!c)
-		return NULL;
-	c->wrapped = kind == CONVOLVE_PERIODIC && (padded_x || padded_y);
-	c->bridged = bridged;
-	c->nx = nx;
-	c->ny = ny;
-	c->mx = padded_x || bridged ? fft_good_size(nx) : nx;
-	c->mx *= padded_x ? 2 : 1;
-	c->my = padded_y || bridged ? fft_good_size(ny) : ny;
-	c->my *= padded_y ? 2 : 1;
+/* Points of a transform of n. */
+static size_t points(size_t n, int padded)
+{
+	return padded ? fft_fast_size(2 * n - 1) : n;
+}
+
+/* Memory and plans for the sizes that are set. */
+static struct convolve *prepare(struct convolve *c, const struct convolve *lender)
+{
 	c->lx = c->mx / 2 + 1;
 	c->stride = pad_stride(c->lx);
-	c->column = pad_stride(ny);
+	c->column = pad_stride(c->fy);
 	c->scratch = larger(row_room(c) + 2 * ROWS * c->stride, 4 * pad_stride(c->my));
-	c->pool = pool;
 	c->room = c->lx * c->column;
 	c->borrowed = lender && lender->room >= c->room;
 	c->work = c->borrowed ? lender->work : fft_alloc_complex(c->room);
-	c->buffers = fft_alloc((size_t)pool_threads(pool) * c->scratch);
+	c->buffers = fft_alloc((size_t)pool_threads(c->pool) * c->scratch);
 	c->part = calloc(row_jobs(c), sizeof *c->part);
 	c->row = fft_new(c->mx, 1);
 	c->line = fft_line_new(c->my);
@@ -113,6 +112,39 @@ struct convolve *convolve_borrow(size_t nx, size_t ny, enum convolve_kind kind,
 		return NULL;
 	}
 	return c;
+}
+
+struct convolve *convolve_borrow(size_t nx, size_t ny, enum convolve_kind kind,
+	struct pool *pool, const struct convolve *lender)
+{
+	struct convolve *c = calloc(1, sizeof *c);
+	int padded_x = kind == CONVOLVE_PADDED || is_awkward(nx);
+	int padded_y = kind == CONVOLVE_PADDED || is_awkward(ny);
+
+	if (!c)
+		return NULL;
+	c->wrapped = kind == CONVOLVE_PERIODIC && (padded_x || padded_y);
+	c->nx = c->fx = nx;
+	c->ny = c->fy = ny;
+	c->mx = points(nx, padded_x);
+	c->my = points(ny, padded_y);
+	c->pool = pool;
+	return prepare(c, lender);
+}
+
+struct convolve *convolve_frame(size_t nx, size_t ny, size_t mx, size_t my,
+	struct pool *pool, const struct convolve *lender)
+{
+	struct convolve *c = calloc(1, sizeof *c);
+
+	if (!c)
+		return NULL;
+	c->nx = nx;
+	c->ny = ny;
+	c->mx = c->fx = mx;
+	c->my = c->fy = my;
+	c->pool = pool;
+	return prepare(c, lender);
 }
 
 void convolve_free(struct convolve *c)
@@ -345,12 +377,6 @@ static size_t smaller(size_t a, size_t b)
 	return a < b ? a : b;
 }
 
-/* Position of cell i across a bridge of n cells, from 0 to 1. */
-static double bridge(size_t i, size_t n)
-{
-	return (double)(i + 1) / (double)(n + 1);
-}
-
 /* Scratch memory of a thread, and the spectra of a job's rows in it. */
 static double *buffer(const struct convolve *c, int worker)
 {
@@ -373,9 +399,9 @@ static int is_zero(const double *row, size_t n)
 
 /* 1 if a row can be transformed where it is: of the full length, and aligned as the plans
  * were made for. */
-static int in_place(const struct convolve *c, const double *row)
+static int in_place(const struct convolve *c, size_t n, const double *row)
 {
-	return c->mx == c->nx && (uintptr_t)row % FFT_ALIGNMENT == 0;
+	return c->mx == n && (uintptr_t)row % FFT_ALIGNMENT == 0;
 }
 
 static void forward_rows(void *context, size_t job, int worker)
@@ -384,7 +410,7 @@ static void forward_rows(void *context, size_t job, int worker)
 	const struct convolve_passes *p = c->passes;
 	double *row = buffer(c, worker);
 	double complex *spectrum = spectra(c, worker), *work = c->work + job * ROWS;
-	size_t nx = c->nx, rows = smaller(ROWS, c->ny - job * ROWS), stride = c->stride;
+	size_t nx = c->fx, rows = smaller(ROWS, c->fy - job * ROWS), stride = c->stride;
 
 	for (size_t k = 0; k < rows; k++) {
 		const double *x = p->x ? p->x + (job * ROWS + k) * nx : row;
@@ -395,18 +421,14 @@ static void forward_rows(void *context, size_t job, int worker)
 			memset(spectrum + k * stride, 0, c->lx * sizeof *spectrum);
 			continue;
 		}
-		if (in_place(c, x)) {
+		if (in_place(c, nx, x)) {
 			fft_forward(c->row, x, spectrum + k * stride);
 			continue;
 		}
 		if (p->x)
 			memcpy(row, x, nx * sizeof *row);
 		/* The inverse transform of an earlier row may have written there. */
-		for (size_t i = nx; i < c->mx; i++)
-			row[i] = c->bridged ? row[nx - 1] +
-						      (row[0] - row[nx - 1]) *
-							      bridge(i - nx, c->mx - nx)
-					    : 0;
+		memset(row + nx, 0, (c->mx - nx) * sizeof *row);
 		fft_forward(c->row, row, spectrum + k * stride);
 	}
 	for (size_t kx = 0; kx < c->lx; kx++)
@@ -431,7 +453,7 @@ static void inverse_rows(void *context, size_t job, int worker)
 	for (size_t k = 0; k < rows; k++) {
 		if (p->wants && !p->wants(p->context, job * ROWS + k))
 			continue;
-		y = in_place(c, p->y + begin + k * nx) ? p->y + begin + k * nx : row;
+		y = in_place(c, nx, p->y + begin + k * nx) ? p->y + begin + k * nx : row;
 		fft_inverse(c->row, spectrum + k * stride, y);
 		if (y == row)
 			memcpy(p->y + begin + k * nx, row, nx * sizeof *row);
@@ -462,14 +484,11 @@ static void multiply(double complex *s, const double *k, size_t n)
 static void convolve_column(const struct convolve *c, const double *k, double complex *a,
 	double complex *f, double complex *e)
 {
-	size_t n = c->ny, gap = c->my - n;
+	size_t n = c->fy, gap = c->my - n;
 
 	if (gap > 0) {
 		memcpy(e, a, n * sizeof *a);
-		for (size_t i = 0; i < gap; i++)
-			e[n + i] = c->bridged
-					   ? a[n - 1] + (a[0] - a[n - 1]) * bridge(i, gap)
-					   : 0;
+		memset(e + n, 0, gap * sizeof *e);
 	}
 	fft_line_forward(c->line, gap > 0 ? e : a, f);
 	multiply(f, k, c->my);
@@ -496,7 +515,7 @@ struct sweep convolve_run(
 
 	c->kernel = kernel;
 	c->passes = passes;
-	pool_run(c->pool, row_jobs(c), forward_rows, c);
+	pool_run(c->pool, given_jobs(c), forward_rows, c);
 	pool_run(c->pool, (c->lx + COLUMNS - 1) / COLUMNS, convolve_columns, c);
 	pool_run(c->pool, row_jobs(c), inverse_rows, c);
 	for (size_t job = 0; job < row_jobs(c); job++)

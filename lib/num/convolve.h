@@ -25,13 +25,7 @@
 #include "num/sweep.h"
 #include <stddef.h>
 
-enum convolve_kind {
-	CONVOLVE_PERIODIC,
-	CONVOLVE_PADDED,
-	/* Periodic over fft_good_size(n) cells; x is interpolated linearly over the added
-	 * cells.  For kernels that need not be exact. */
-	CONVOLVE_BRIDGED
-};
+enum convolve_kind { CONVOLVE_PERIODIC, CONVOLVE_PADDED };
 
 struct convolve;
 
@@ -43,7 +37,14 @@ struct convolve *convolve_new(
  * lender must outlive it and must not be used at the same time.  NULL: no lender. */
 struct convolve *convolve_borrow(size_t nx, size_t ny, enum convolve_kind kind,
 	struct pool *pool, const struct convolve *lender);
+/* Periodic over mx * my points, at least as many as those of the field: load() gives the
+ * rows of all these points, and y is wanted in the field only. */
+struct convolve *convolve_frame(size_t nx, size_t ny, size_t mx, size_t my,
+	struct pool *pool, const struct convolve *lender);
 void convolve_free(struct convolve *c);
+
+/* The least number of points from n on that is transformed directly. */
+size_t convolve_good_period(size_t n);
 
 /* Points of the transform in each direction. */
 void convolve_size(const struct convolve *c, size_t *mx, size_t *my);
@@ -57,7 +58,7 @@ enum num_status convolve_kernel(const struct convolve *c, double *kernel,
 	double (*value)(const void *context, size_t ix, size_t iy), const void *context);
 
 /* A kernel by its factors in Fourier space at wavenumber (kx, ky), 0 <= kx <= mx / 2,
- * in cycles per mx points, where mx = nx for periodic ones, or the padded or bridged
+ * in cycles per mx points, where mx = nx for periodic ones, or the padded or framed
  * size. */
 enum num_status convolve_spectrum(const struct convolve *c, double *kernel,
 	double (*factor)(const void *context, size_t kx, size_t ky), const void *context);

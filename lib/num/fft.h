@@ -30,6 +30,9 @@ void fft_free(void *p);
 
 /* Smallest size >= n whose prime factors are 2, 3, 5 and 7 only. */
 size_t fft_good_size(size_t n);
+/* Smallest size >= n that is a power of two times at most two of 3, 5 and 7, and 3 at
+ * most once: half the time a point of other such sizes. */
+size_t fft_fast_size(size_t n);
 
 /* Real transform of ny rows of nx points (ny = 1: one-dimensional) to and from
  * ny rows of nx / 2 + 1 coefficients.  The inverse destroys its input. */

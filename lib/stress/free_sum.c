@@ -44,8 +44,8 @@ struct free_sum {
 	int nx, ny, full;
 	struct pool *pool;
 	const double *pressure;
-	double scale;       /* of loads over pressures */
-	int x0, x1, y0, y1; /* of the loads, inclusive; x1 < x0: there are none */
+	double scale;          /* of loads over pressures */
+	struct stress_box box; /* of the loads */
 	struct sum_work work;
 	struct window_kept kept;
 	struct level_memory level[LEVELS];
@@ -78,26 +78,12 @@ struct sum_work free_sum_work(const struct free_sum *s)
 	return s->work;
 }
 
-void free_sum_load(struct free_sum *s, const double *pressure, double scale)
+void free_sum_load(struct free_sum *s, const double *pressure, double scale,
+	const struct stress_box *box)
 {
 	s->pressure = pressure;
 	s->scale = scale;
-	s->x0 = s->nx, s->x1 = -1, s->y0 = s->ny, s->y1 = -1;
-	for (int y = 0; y < s->ny; y++) {
-		const double *row = pressure + (size_t)y * (size_t)s->nx;
-		int first = 0, last = s->nx - 1;
-
-		while (first < s->nx && row[first] == 0)
-			first++;
-		if (first == s->nx)
-			continue;
-		while (row[last] == 0)
-			last--;
-		s->x0 = first < s->x0 ? first : s->x0;
-		s->x1 = last > s->x1 ? last : s->x1;
-		s->y0 = y < s->y0 ? y : s->y0;
-		s->y1 = y;
-	}
+	s->box = *box;
 }
 
 static int smaller(int a, int b)
@@ -113,7 +99,7 @@ static int larger(int a, int b)
 /* The cells of all loads and all nodes wanted. */
 static struct box box_of(const struct free_sum *s, const struct stress_want *want)
 {
-	int x0 = s->x0, x1 = s->x1, y0 = s->y0, y1 = s->y1;
+	int x0 = s->box.x0, x1 = s->box.x1, y0 = s->box.y0, y1 = s->box.y1;
 
 	for (size_t i = 0; i < want->count; i++) {
 		x0 = smaller(x0, want->span[i].begin);

@@ -161,6 +161,17 @@ static void find_centroids(struct size *size)
 }
 
 /* Lists the loaded cells, and adds them to the squares, which are empty. */
+/* 1 if n cells of a row carry no load. */
+static int is_free(const struct point_sum *s, int x, int y, int n)
+{
+	const double *p = s->pressure + (size_t)y * (size_t)s->par.nx + (size_t)x;
+	lanes most = lanes_all(0);
+
+	for (int i = 0; i < n; i += 2)
+		most = lanes_max(lanes_load(p + i, i + 1 < n ? 2 : 1), most);
+	return !(most[0] > 0) && !(most[1] > 0);
+}
+
 static void list_cells(struct point_sum *s)
 {
 	const struct stress_par *g = &s->par;
@@ -173,7 +184,7 @@ static void list_cells(struct point_sum *s)
 
 		s->begin[square] = n;
 		for (int y = 0; y < wy; y++)
-			for (int x = 0; x < wx; x++) {
+			for (int x = is_free(s, x0, y0 + y, wx) ? wx : 0; x < wx; x++) {
 				double p = pressure_at(s, x0 + x, y0 + y);
 
 				if (!(p > 0))

@@ -5,6 +5,11 @@
 #include "stress/criterion.h"
 #include <stddef.h>
 
+/* Cells x0 to x1 of the rows y0 to y1, inclusive; none if x1 < x0. */
+struct stress_box {
+	int x0, x1, y0, y1;
+};
+
 /* Nodes [begin, end) of row y. */
 struct stress_span {
 	int y, begin, end;

@@ -109,32 +109,80 @@ static int larger(int a, int b)
 	return a > b ? a : b;
 }
 
-/* The loads within reach of a tile whose first node is (x0, y0), on rows first to end - 1
- * of the plane; returns how many there are. */
-static int put_loads(
-	const struct tiling *t, int x0, int y0, double *plane, size_t *first, size_t *end)
+/* The points of a plane on which loads lie that are within reach of a tile. */
+struct extent {
+	int left, low; /* of the window: the first point */
+	int begin, stop, bottom, top;
+};
+
+static struct extent extent_of(const struct tiling *t, int x0, int y0)
 {
 	const struct window *w = t->w;
-	int left = x0 - t->x.lead, low = y0 - t->y.lead, count = 0;
-	int begin = larger(left, 0), stop = smaller(left + (int)t->x.points, w->mx);
-	int bottom = larger(low, 0), top = smaller(low + (int)t->y.points, w->my);
+	int left = x0 - t->x.lead, low = y0 - t->y.lead;
 
-	for (int y = bottom; y < top; y++) {
-		const double *from = w->load + (size_t)y * w->load_stride + begin;
-		double *row = plane + (size_t)(y - low) * t->stride,
-		       *to = row + (begin - left);
+	return (struct extent){ left, low, larger(left, 0),
+		smaller(left + (int)t->x.points, w->mx), larger(low, 0),
+		smaller(low + (int)t->y.points, w->my) };
+}
 
-		memset(row, 0, (size_t)(begin - left) * sizeof *row);
-		for (int x = 0; x < stop - begin; x++) {
-			to[x] = w->scale * from[x];
-			count += from[x] != 0;
-		}
-		memset(to + (stop - begin), 0,
-			(t->x.points - (size_t)(stop - left)) * sizeof *to);
+/* The loads of a tile, if they are few. */
+struct few {
+	int count; /* FEW + 1: there are more */
+	int x[FEW], y[FEW];
+	double load[FEW];
+};
+
+static void add_few(struct few *f, int x, int y, double load)
+{
+	if (load == 0 || f->count > FEW)
+		return;
+	if (f->count < FEW) {
+		f->x[f->count] = x;
+		f->y[f->count] = y;
+		f->load[f->count] = load;
 	}
-	*first = (size_t)(bottom - low);
-	*end = (size_t)(top - low);
-	return count;
+	f->count++;
+}
+
+static void find_few(const struct tiling *t, const struct extent *e, struct few *f)
+{
+	const struct window *w = t->w;
+
+	f->count = 0;
+	for (int y = e->bottom; y < e->top && f->count <= FEW; y++) {
+		const double *row = w->load + (size_t)y * w->load_stride;
+
+		for (int x = e->begin; x < e->stop; x += 2) {
+			int n = x + 1 < e->stop ? 2 : 1;
+			lanes load = lanes_load(row + x, n);
+
+			if (load[0] == 0 && load[1] == 0)
+				continue;
+			add_few(f, x - e->left, y - e->low, w->scale * load[0]);
+			if (n == 2)
+				add_few(f, x + 1 - e->left, y - e->low,
+					w->scale * load[1]);
+		}
+	}
+}
+
+/* Loads on the rows of the plane where any are. */
+static void put_loads(const struct tiling *t, const struct extent *e, double *plane)
+{
+	const struct window *w = t->w;
+
+	for (int y = e->bottom; y < e->top; y++) {
+		const double *from = w->load + (size_t)y * w->load_stride + e->begin;
+		double *row = plane + (size_t)(y - e->low) * t->stride,
+		       *to = row + (e->begin - e->left);
+		int count = e->stop - e->begin;
+
+		memset(row, 0, (size_t)(e->begin - e->left) * sizeof *row);
+		for (int x = 0; x < count; x++)
+			to[x] = w->scale * from[x];
+		memset(to + count, 0,
+			(t->x.points - (size_t)(e->stop - e->left)) * sizeof *to);
+	}
 }
 
 /* The product of complex numbers. */
@@ -179,7 +227,7 @@ static void add_load(const struct tiling *t, const struct stress_part *part, int
 
 /* Sums load by load. */
 static void add_loads(const struct tiling *t, const struct stress_part *part,
-	const double *load, size_t first, size_t end, double *plane)
+	const struct few *few, double *plane)
 {
 	size_t size = (size_t)(2 * t->reach_x + 1) * (size_t)(2 * t->reach_y + 1);
 	size_t at = (size_t)t->y.lead * t->stride + (size_t)t->x.lead;
@@ -188,15 +236,9 @@ static void add_loads(const struct tiling *t, const struct stress_part *part,
 		for (int y = 0; y < part->y1 - part->y0; y++)
 			memset(plane + at + (size_t)y * t->stride, 0,
 				(size_t)(part->x1 - part->x0) * sizeof *plane);
-		for (size_t y = first; y < end; y++)
-			for (size_t x = 0; x < t->x.points; x++) {
-				double p = load[y * t->stride + x];
-
-				if (p != 0)
-					add_load(t, part, (int)x - t->x.lead,
-						(int)y - t->y.lead, p,
-						t->table + (size_t)c * size, plane + at);
-			}
+		for (int i = 0; i < few->count; i++)
+			add_load(t, part, few->x[i] - t->x.lead, few->y[i] - t->y.lead,
+				few->load[i], t->table + (size_t)c * size, plane + at);
 	}
 }
 
@@ -204,7 +246,7 @@ static void sum_tile(void *context, size_t tile, int worker)
 {
 	const struct tiling *t = context;
 	const struct window *w = t->w;
-	size_t at = (size_t)worker, first, end, lead = (size_t)t->y.lead;
+	size_t at = (size_t)worker, lead = (size_t)t->y.lead;
 	double *load = t->load + at * t->room,
 	       *plane = t->plane + at * t->room * (size_t)w->numbers;
 	double complex *image = t->image + at * t->spectrum,
@@ -214,23 +256,27 @@ static void sum_tile(void *context, size_t tile, int worker)
 	struct stress_part part = { .x0 = (int)(tile % (size_t)t->x.count) * t->x.nodes,
 		.y0 = (int)(tile / (size_t)t->x.count) * t->y.nodes,
 		.stride = t->stride };
-	int loads;
+	struct extent e;
+	struct few few;
 
 	part.x1 = smaller(part.x0 + t->x.nodes, w->mx);
 	part.y1 = smaller(part.y0 + t->y.nodes, w->my);
 	if (t->wanted && !t->wanted[tile])
 		return;
-	loads = put_loads(t, part.x0, part.y0, load, &first, &end);
-	if (loads > 0) {
+	e = extent_of(t, part.x0, part.y0);
+	find_few(t, &e, &few);
+	if (few.count > 0) {
 		part.number = number;
 		for (int c = 0; c < w->numbers; c++)
 			number[c] = plane + (size_t)c * t->room + lead * t->stride +
 				    t->x.lead;
 	}
-	if (loads > 0 && loads <= FEW && t->table) {
-		add_loads(t, &part, load, first, end, plane);
-	} else if (loads > 0) {
-		fft_plane_forward(t->fft, load, first, end, image, work);
+	if (few.count > 0 && few.count <= FEW && t->table) {
+		add_loads(t, &part, &few, plane);
+	} else if (few.count > 0) {
+		put_loads(t, &e, load);
+		fft_plane_forward(t->fft, load, (size_t)(e.bottom - e.low),
+			(size_t)(e.top - e.low), image, work);
 		for (int c = 0; c < w->numbers; c++, plane += t->room) {
 			multiply(image, t->kernel[c], product, t->spectrum);
 			fft_plane_inverse(t->fft, product, plane, lead,

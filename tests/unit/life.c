@@ -13,7 +13,7 @@
 static void test_noise(void)
 {
 	struct draw *d = draw_new(1, 0, RNG_NOISE);
-	struct noise *n = noise_new();
+	struct noise n = { 0 };
 	double t = 0;
 
 	/* A quadratic with noise 0.1 at gaps of 0.5 to 1.5; the median of 256 absolute
@@ -23,17 +23,15 @@ static void test_noise(void)
 		double gap = 0.5 + draw_uniform(d);
 		double y = 1e-4 * t * t + 0.1 * draw_normal(d) + (k % 50 == 9 ? 5 : 0);
 
-		noise_add(n, y, gap);
+		noise_add(&n, y, gap);
 		t += gap;
 	}
-	near(noise_scale(n), 0.107, 0.02,
+	near(n.scale, 0.107, 0.02,
 		"second differences give the noise in spite of outliers");
-	noise_free(n);
-	n = noise_new();
+	n = (struct noise){ 0 };
 	for (int k = 0; k < 10; k++)
-		noise_add(n, 3 + 2.0 * k, 1);
-	near(noise_scale(n), 0, 1e-12, "a straight line has no noise");
-	noise_free(n);
+		noise_add(&n, 3 + 2.0 * k, 1);
+	near(n.scale, 0, 1e-12, "a straight line has no noise");
 	draw_free(d);
 }
 
@@ -299,48 +297,72 @@ static void test_noise_favours_no_bend(void)
 	draw_free(d);
 }
 
-/* y = 1 - (t / T)^2 falls to 0; an earlier unit determines the shape. */
-static void test_fleet(void)
+/* The noise of y = 1 - (t / T)^2, which falls to 0 at T. */
+static double fallen(struct draw *d, double t, double end)
 {
-	struct fleet *f = fleet_new(0, -1);
-	struct draw *d = draw_new(2, 0, RNG_NOISE);
+	return 1 - t / end * (t / end) + 0.005 * draw_normal(d);
+}
+
+/* The median life at 48 of a unit with T = 120, with earlier units that determine the
+ * shape or, if there are none, alone. */
+static double median_of_unit(const struct fleet *f, struct draw *d, double *weight)
+{
 	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
 	struct bank_par par = { .threshold = 0, .direction = -1 };
 	struct bank *b;
-	double life[DRAWS], alone = 0;
-	int failed, carried_on, shapes;
+	double life[DRAWS];
 
-	for (int k = 0; k <= 104; k++)
-		fleet_add(f, 0, 7 + k, 1 - k * k / 1e4 + 0.005 * draw_normal(d));
-	for (int k = 0; k <= 100; k++)
-		fleet_add(f, 1, k, 1 - k * k / 1.7e4 + 0.005 * draw_normal(d));
-	for (int k = 0; k < 50; k++)
-		fleet_add(f, 2, k, 1);
-	ok(fleet_build(f, &failed, &carried_on) == NUM_OK && failed == 1 &&
-			carried_on == 1 && fleet_shapes(f, &shapes) && shapes == 2,
-		"a fleet distinguishes a unit that failed, one that is continued and one that shows no wear");
-	for (int with = 0; with <= 1; with++) {
-		if (with)
-			par.more = fleet_shapes(f, &par.n_more);
-		b = bank_new(&par);
-		for (int k = 0; k <= 48; k++)
-			bank_add(b, k, 1 - k * k / 1.44e4 + 0.005 * draw_normal(d));
-		bank_draw(b, chances, 48, 0, life);
-		if (!with)
-			alone = fabs(median(life, DRAWS) - 72);
-		else
-			near(median(life, DRAWS), 72, 8, "a fleet of two gives the life");
-		if (with)
-			ok(bank_weight(b, BANK_OTHER) > 0.5,
-				"the fleet has most of the weight: %.2f",
-				bank_weight(b, BANK_OTHER));
-		bank_free(b);
-	}
-	ok(fabs(median(life, DRAWS) - 72) < 0.7 * alone,
-		"the error with a fleet is smaller: %.0f", alone);
+	if (f)
+		par.more = fleet_shapes(f, &par.n_more);
+	b = bank_new(&par);
+	for (int k = 0; k <= 48; k++)
+		bank_add(b, k, fallen(d, k, 120));
+	bank_draw(b, chances, 48, 0, life);
+	*weight = bank_weight(b, BANK_OTHER);
+	bank_free(b);
 	bank_chances_free(chances);
-	fleet_free(f);
-	draw_free(d);
+	return median(life, DRAWS);
+}
+
+/* Each of 20 fleets has a unit that failed, one that has not and one that does not wear.
+ */
+static void test_fleet(void)
+{
+	enum { FLEETS = 20 };
+	double with = 0, alone = 0, bias = 0, heavy = 0;
+	int told = 0;
+
+	for (uint64_t seed = 1; seed <= FLEETS; seed++) {
+		struct fleet *f = fleet_new(0, -1);
+		struct draw *d = draw_new(seed, 0, RNG_NOISE);
+		double life, weight;
+		int failed, carried_on, shapes;
+
+		for (int k = 0; k <= 104; k++)
+			fleet_add(f, 0, 7 + k, fallen(d, k, 100));
+		for (int k = 0; k <= 100; k++)
+			fleet_add(f, 1, k, fallen(d, k, 130));
+		for (int k = 0; k < 50; k++)
+			fleet_add(f, 2, k, 1);
+		told += fleet_build(f, &failed, &carried_on) == NUM_OK && failed == 1 &&
+			carried_on == 1 && fleet_shapes(f, &shapes) && shapes == 2;
+		alone += fabs(median_of_unit(NULL, d, &weight) - 72) / FLEETS;
+		life = median_of_unit(f, d, &weight);
+		with += fabs(life - 72) / FLEETS;
+		bias += (life - 72) / FLEETS;
+		heavy += weight / FLEETS;
+		fleet_free(f);
+		draw_free(d);
+	}
+	near(told, FLEETS, 0,
+		"a fleet distinguishes a unit that failed, one that is continued and one that shows no wear");
+	printf("# life 72: %.1f off, %+.1f, alone %.1f, weight %.2f\n", with, bias, alone,
+		heavy);
+	ok(with <= 0.1 * 120, "fleets of two give the life within a tenth of it: %.1f",
+		with);
+	ok(with < 0.5 * alone, "the error is less than half of that without: %.1f",
+		alone);
+	ok(heavy > 0.5, "fleets have most of the weight: %.2f", heavy);
 }
 
 /* Linear wear read in bursts of six: the gaps between them, six mean gaps long, are no
@@ -414,6 +436,57 @@ static void test_adaptive(void)
 	draw_free(d);
 }
 
+/* Of 20 quiet series y = x + bend x^2, x = k / 100, at k = 60 on the way to y = 1 + bend:
+ * how many ends are within the 90 % interval of straight lines without changes of the
+ * rate, and its mean width. */
+static int ends_inside(double bend, double *width)
+{
+	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
+	struct bank_par par = { .threshold = 1 + bend,
+		.direction = 1,
+		.families = BANK_LINEAR,
+		.steady = 1 };
+	double life[DRAWS];
+	int inside = 0;
+
+	*width = 0;
+	for (uint64_t seed = 1; seed <= 20; seed++) {
+		struct draw *d = draw_new(seed, 0, RNG_NOISE);
+		struct bank *b = bank_new(&par);
+		double early, late;
+
+		for (int k = 0; k <= 60; k++) {
+			double x = k / 100.0;
+
+			bank_add(b, k, x + bend * x * x + 0.001 * draw_normal(d));
+		}
+		bank_draw(b, chances, 60, par.threshold, life);
+		median(life, DRAWS); /* sorts */
+		early = metric_quantile(life, DRAWS, 0.05);
+		late = metric_quantile(life, DRAWS, 0.95);
+		inside += early <= 40 && 40 <= late;
+		*width += (late - early) / 20;
+		bank_free(b);
+		draw_free(d);
+	}
+	bank_chances_free(chances);
+	return inside;
+}
+
+static void test_drift(void)
+{
+	double straight, bent;
+	int inside = ends_inside(0, &straight);
+
+	ok(inside >= 16 && straight < 1,
+		"straight lines hold %d of 20 ends of straight wear, in %.2f", inside,
+		straight);
+	inside = ends_inside(0.3, &bent);
+	ok(inside >= 16, "of wear that accelerates %d, in %.1f", inside, bent);
+	inside = ends_inside(-0.3, &bent);
+	ok(inside >= 16, "of wear that slows down %d, in %.1f", inside, bent);
+}
+
 int main(void)
 {
 	test_noise();
@@ -423,6 +496,7 @@ int main(void)
 	test_straight_wear();
 	test_disturbances();
 	test_noise_favours_no_bend();
+	test_drift();
 	test_fleet();
 	test_bursts();
 	test_adaptive();

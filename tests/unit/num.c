@@ -265,6 +265,10 @@ int main(void)
 	ok(fft_good_size(1) == 1 && fft_good_size(11) == 12 &&
 			fft_good_size(121) == 125 && fft_good_size(2047) == 2048,
 		"good sizes have only the factors 2, 3, 5 and 7");
+	ok(fft_fast_size(1) == 1 && fft_fast_size(127) == 128 &&
+			fft_fast_size(513) == 560 && fft_fast_size(1018) == 1024 &&
+			fft_fast_size(2049) == 2240,
+		"fast sizes are powers of two times at most two of 3, 5 and 7, 3 once");
 	test_select();
 	return tap_done();
 }

@@ -2,35 +2,9 @@
 #include "life/grey/noise.h"
 #include "num/select.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum {
-	WINDOW = 256, /* residuals kept */
-	PERIOD = 8    /* rows between two updates of a full window */
-};
-
-struct noise {
-	double y[2], gap; /* the two last observations and the gap between them */
-	long rows;
-	double residual[WINDOW], sorted[WINDOW];
-	double scale;
-};
-
-struct noise *noise_new(void)
-{
-	return calloc(1, sizeof(struct noise));
-}
-
-void noise_free(struct noise *n)
-{
-	free(n);
-}
-
-void noise_pass(struct noise *n, struct state *s)
-{
-	state_move(s, n, sizeof *n);
-}
+enum { PERIOD = 8 }; /* rows between two updates of a full window */
 
 /* Where most residuals are 0, as with rounded values, so is their median; the root mean
  * square is used instead. */
@@ -54,18 +28,14 @@ void noise_add(struct noise *n, double y, double gap)
 		double line = w * n->y[0] + (1 - w) * y;
 		long k = n->rows - 2;
 
-		n->residual[k % WINDOW] =
+		n->residual[k % NOISE_WINDOW] =
 			fabs(n->y[1] - line) / sqrt(1 + w * w + (1 - w) * (1 - w));
-		if (k < WINDOW || k % PERIOD == 0)
-			n->scale = spread(n, k + 1 < WINDOW ? (int)k + 1 : WINDOW);
+		if (k < NOISE_WINDOW || k % PERIOD == 0)
+			n->scale = spread(
+				n, k + 1 < NOISE_WINDOW ? (int)k + 1 : NOISE_WINDOW);
 	}
 	n->y[0] = n->y[1];
 	n->y[1] = y;
 	n->gap = gap;
 	n->rows++;
-}
-
-double noise_scale(const struct noise *n)
-{
-	return n->scale;
 }

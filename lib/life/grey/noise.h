@@ -7,16 +7,17 @@
 #ifndef LIFE_NOISE_H
 #define LIFE_NOISE_H
 
-#include "num/state.h"
+enum { NOISE_WINDOW = 256 }; /* residuals kept */
 
-struct noise;
+/* All 0 at first. */
+struct noise {
+	double y[2], gap; /* the two last observations and the gap between them */
+	long rows;
+	double residual[NOISE_WINDOW], sorted[NOISE_WINDOW];
+	double scale; /* standard deviation; 0 below three rows or for an exact line */
+};
 
-struct noise *noise_new(void); /* NULL when out of memory */
-void noise_free(struct noise *n);
-void noise_pass(struct noise *n, struct state *s);
 /* Adds the observation made gap after the last one. */
 void noise_add(struct noise *n, double y, double gap);
-/* Standard deviation; 0 below three observations or for an exact line. */
-double noise_scale(const struct noise *n);
 
 #endif

@@ -10,7 +10,7 @@
 struct forecast {
 	struct forecast_par par;
 	struct paths *paths;
-	struct observed *observed;
+	struct observed observed;
 	struct bank *bank; /* NULL unless RATE_FILTER and there is a limit */
 	struct bank_chances *chances;
 	struct bank_shape other; /* coordinate of the bank */
@@ -61,19 +61,18 @@ struct forecast *forecast_new(struct paths *paths, const struct forecast_par *pa
 	f->par = *par;
 	f->paths = paths;
 	f->grey = NAN;
-	f->observed = observed_new(par->rule);
+	f->observed.rule = par->rule;
 	f->life = calloc((size_t)par->count, sizeof *f->life);
 	f->later = calloc((size_t)par->count, sizeof *f->later);
 	if (par->rule == RATE_FILTER)
 		f->chances = bank_chances_new(
 			(int)par->count, par->seed + par->first * 0x9e3779b97f4a7c15u);
-	if (!f->observed || !f->life || !f->later ||
-		(par->rule == RATE_FILTER && !f->chances)) {
+	if (!f->life || !f->later || (par->rule == RATE_FILTER && !f->chances)) {
 		forecast_free(f);
 		return NULL;
 	}
 	if (par->from_new)
-		observed_begin(f->observed, 0, par->pair.gap_new);
+		observed_begin(&f->observed, 0, par->pair.gap_new);
 	return f;
 }
 
@@ -83,8 +82,6 @@ void forecast_free(struct forecast *f)
 		return;
 	bank_free(f->bank);
 	bank_chances_free(f->chances);
-	if (f->observed)
-		observed_free(f->observed);
 	free(f->life);
 	free(f->later);
 	free(f);
@@ -153,7 +150,7 @@ enum num_status forecast_add(
 	if (f->rows++ == 0)
 		f->first_t = t;
 	run_in = t - f->first_t < f->par.skip;
-	later = f->rows == 1 || t > observed_time(f->observed);
+	later = f->rows == 1 || t > f->observed.last.t;
 	if (isnan(gap)) {
 		load_bank(f, t);
 		return NUM_OK;
@@ -165,22 +162,22 @@ enum num_status forecast_add(
 		return NUM_MEMORY;
 	load_bank(f, t);
 	passage = passages(f, t, f->by_gap ? gap : value, run_in, later);
-	if (run_in || (f->par.skip > 0 && observed_count(f->observed) == 0))
-		observed_begin(f->observed, t, gap);
+	if (run_in || (f->par.skip > 0 && f->observed.n == 0))
+		observed_begin(&f->observed, t, gap);
 	if (!run_in)
-		observed_add(f->observed, t, value, gap);
+		observed_add(&f->observed, t, value, gap);
 	f->n = paths_predict(
-		f->paths, f->observed, passage, pair_limit(pair), error, f->life);
+		f->paths, &f->observed, passage, pair_limit(pair), error, f->life);
 	if (f->par.grey)
-		f->grey = observed_grey(
-			f->observed, pair_value(pair, f->par.quantity, pair_limit(pair)));
+		f->grey = observed_grey(&f->observed,
+			pair_value(pair, f->par.quantity, pair_limit(pair)));
 	return NUM_OK;
 }
 
 void forecast_foresee(struct forecast *f)
 {
 	f->n = paths_predict(
-		f->paths, f->observed, NULL, pair_limit(&f->par.pair), 0, f->life);
+		f->paths, &f->observed, NULL, pair_limit(&f->par.pair), 0, f->life);
 }
 
 static double later_life(double life, double gone)
@@ -191,7 +188,7 @@ static double later_life(double life, double gone)
 struct forecast_row forecast_at(struct forecast *f, double t)
 {
 	const struct forecast_par *par = &f->par;
-	double gone = t - observed_time(f->observed);
+	double gone = t - f->observed.last.t;
 	struct forecast_row row = { f->later, f->n, par->horizon,
 		later_life(f->grey, gone) };
 
@@ -200,7 +197,7 @@ struct forecast_row forecast_at(struct forecast *f, double t)
 		f->later[i] = later_life(f->later[i], gone);
 	if (isnan(row.limit))
 		row.limit = par->rule == RATE_FILTER && !par->scaled
-				    ? 10 * (t - observed_first(f->observed) + par->skip)
+				    ? 10 * (t - f->observed.first.t + par->skip)
 				    : INFINITY;
 	return row;
 }

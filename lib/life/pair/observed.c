@@ -1,35 +1,6 @@
 /* observed.c - see observed.h */
 #include "life/pair/observed.h"
-#include "life/grey/grey.h"
 #include <math.h>
-#include <stdlib.h>
-
-struct moment {
-	double t, gap;
-};
-
-struct observed {
-	enum rate_rule rule;
-	int begun;
-	long n;
-	struct moment first, before, last;
-	double scale, unit; /* of values and times: the first value, the first interval */
-	struct grey_series grey; /* of the observations at times of their own */
-};
-
-struct observed *observed_new(enum rate_rule rule)
-{
-	struct observed *o = calloc(1, sizeof *o);
-
-	if (o)
-		o->rule = rule;
-	return o;
-}
-
-void observed_free(struct observed *o)
-{
-	free(o);
-}
 
 void observed_begin(struct observed *o, double t, double gap)
 {
@@ -59,21 +30,6 @@ void observed_add(struct observed *o, double t, double value, double gap)
 	if (o->grey.n == 0 || dt > 0)
 		add_sums(o, dt, value);
 	o->n++;
-}
-
-long observed_count(const struct observed *o)
-{
-	return o->n;
-}
-
-double observed_first(const struct observed *o)
-{
-	return o->first.t;
-}
-
-double observed_time(const struct observed *o)
-{
-	return o->last.t;
 }
 
 double observed_gap(const struct observed *o)

@@ -3,13 +3,14 @@
  *
  * Time, gap and value may have any units, which must be the same throughout.
  *
- *	struct observed *o = observed_new(RATE_MEAN);
- *	observed_add(o, t, leakage, gap);
- *	rate = observed_rate(o);
- *	observed_free(o);
+ *	struct observed o = { .rule = RATE_MEAN };
+ *	observed_add(&o, t, leakage, gap);
+ *	rate = observed_rate(&o);
  */
 #ifndef LIFE_OBSERVED_H
 #define LIFE_OBSERVED_H
+
+#include "life/grey/grey.h"
 
 /* How the wear rate is found (Li's thesis, 4.2). */
 enum rate_rule {
@@ -18,10 +19,19 @@ enum rate_rule {
 	RATE_FILTER /* by the bank of bank.h */
 };
 
-struct observed;
+struct moment {
+	double t, gap;
+};
 
-struct observed *observed_new(enum rate_rule rule); /* NULL when out of memory */
-void observed_free(struct observed *o);
+struct observed {
+	enum rate_rule rule; /* all else 0 at first */
+	int begun;
+	long n; /* observations */
+	struct moment first, before,
+		last;       /* of the rates; different times but at first */
+	double scale, unit; /* of values and times: the first value, the first interval */
+	struct grey_series grey; /* of the observations at times of their own */
+};
 
 /* Sets the start of the rates if it is not the first observation; called again, restarts
  * them. */
@@ -30,10 +40,7 @@ void observed_begin(struct observed *o, double t, double gap);
  * decrease; an observation at the same time as the last one replaces it. */
 void observed_add(struct observed *o, double t, double value, double gap);
 
-long observed_count(const struct observed *o);
-double observed_first(const struct observed *o); /* time at which rates start */
-double observed_time(const struct observed *o);  /* of the latest observation */
-double observed_gap(const struct observed *o);   /* latest; NAN without observations */
+double observed_gap(const struct observed *o); /* latest; NAN without observations */
 
 /* Rate of the gap by the rule (RATE_FILTER: as RATE_MEAN); NAN while all
  * observations have the same time. */

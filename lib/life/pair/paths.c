@@ -159,8 +159,8 @@ long paths_predict(struct paths *e, const struct observed *o, const double *pass
 		else
 			life[i] = remaining_constant(here, rate);
 		if (e->path && !isnan(e->par.critical))
-			life[i] = fmin(life[i], remaining_large(e->path[i].large_step,
-							tau, observed_time(o)));
+			life[i] = fmin(life[i],
+				remaining_large(e->path[i].large_step, tau, o->last.t));
 	}
 	return e->par.count;
 }

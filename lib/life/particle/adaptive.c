@@ -36,7 +36,6 @@ struct adaptive {
 	struct draw *draw, *draw_paths;
 	struct filter *filter;
 	struct order *order;
-	struct noise *noise;
 	struct lag *lag;    /* [depth] */
 	uint32_t *index;    /* [N] */
 	double *mean;       /* [N] prior means */
@@ -45,6 +44,7 @@ struct adaptive {
 	double scale;       /* from here on the state, see adaptive_pass(): power of two
 			     * that values are divided by, of the first but 0 */
 	int scaled;
+	struct noise noise;
 	long rows;
 	double time;
 	double observed, observed_time, observed_gap; /* the last observation */
@@ -74,15 +74,14 @@ struct adaptive *adaptive_new(const struct adaptive_par *par)
 	a->draw_paths = draw_new(par->seed, par->realisation, RNG_PREDICT);
 	a->filter = a->draw ? filter_new(&a->par.filter, a->draw) : NULL;
 	a->order = order_new(&par->order);
-	a->noise = noise_new();
 	a->lag = calloc(depth, sizeof *a->lag);
 	a->index = calloc(par->filter.particles, sizeof *a->index);
 	a->mean = calloc(par->filter.particles, sizeof *a->mean);
 	a->past = calloc(depth, sizeof *a->past);
 	a->gap = calloc(depth, sizeof *a->gap);
 	a->line_up = calloc(depth, sizeof *a->line_up);
-	if (!a->draw_paths || !a->filter || !a->order || !a->noise || !a->lag ||
-		!a->index || !a->mean || !a->past || !a->gap || !a->line_up) {
+	if (!a->draw_paths || !a->filter || !a->order || !a->lag || !a->index ||
+		!a->mean || !a->past || !a->gap || !a->line_up) {
 		adaptive_free(a);
 		return NULL;
 	}
@@ -97,7 +96,6 @@ void adaptive_free(struct adaptive *a)
 	draw_free(a->draw_paths);
 	filter_free(a->filter);
 	order_free(a->order);
-	noise_free(a->noise);
 	free(a->lag);
 	free(a->index);
 	free(a->mean);
@@ -116,7 +114,6 @@ void adaptive_pass(struct adaptive *a, struct state *s)
 	draw_pass(a->draw_paths, s);
 	filter_pass(a->filter, s);
 	order_pass(a->order, s);
-	noise_pass(a->noise, s);
 	state_move(s, a->past, depth * sizeof *a->past);
 	state_move(s, a->gap, depth * sizeof *a->gap);
 	state_move(s, (unsigned char *)a + from, sizeof *a - from);
@@ -314,7 +311,7 @@ static enum num_status start_particles(struct adaptive *a, double noise)
 static double observation_noise(const struct adaptive *a)
 {
 	double least = 1e-9 * (1 + fabs(a->past[a->newest]));
-	double s = isnan(a->par.noise) ? noise_scale(a->noise) : a->par.noise / a->scale;
+	double s = isnan(a->par.noise) ? a->noise.scale : a->par.noise / a->scale;
 
 	return s > least ? s : least;
 }
@@ -455,7 +452,7 @@ static enum num_status begin(
 {
 	y /= a->scale;
 	order_add(a->order, y, 0);
-	noise_add(a->noise, y, 0);
+	noise_add(&a->noise, y, 0);
 	push_past(a, y, 0);
 	a->observed_time = t;
 	if (start_particles(a, observation_noise(a)) != NUM_OK)
@@ -498,7 +495,7 @@ static enum num_status advance(
 	}
 	a->missed[a->misses++ % RECENT] = (y - row->grey) * (y - row->grey);
 	order_add(a->order, y, t - a->observed_time);
-	noise_add(a->noise, y, t - a->observed_time);
+	noise_add(&a->noise, y, t - a->observed_time);
 	a->observed_gap = t - a->observed_time;
 	a->observed_time = t;
 	a->observed = y;

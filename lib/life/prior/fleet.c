@@ -6,10 +6,9 @@
 #include <stdlib.h>
 
 enum {
-	SMOOTHED = 20, /* rows before medians of three are taken */
-	LEVELS = 24,   /* of a path */
-	AHEAD = 7,     /* levels up to the threshold for a unit that has not reached it */
-	DRAWS = 200    /* of the ages at these levels */
+	LEVELS = 24, /* of a path */
+	AHEAD = 7,   /* levels up to the threshold for a unit that has not reached it */
+	DRAWS = 200  /* of the ages at these levels */
 };
 
 /* Log prior of all paths together, relative to the coordinates of the bank, whose priors
@@ -138,8 +137,8 @@ enum num_status fleet_add(struct fleet *f, int unit, double t, double y)
 	}
 	p->t[0] = t;
 	p->y[0] = f->direction * y;
-	if (p->rows < SMOOTHED)
-		return rise(p, t - p->first, p->y[0]);
+	if (p->rows < 3)
+		return p->rows == 1 ? rise(p, 0, p->y[0]) : NUM_OK;
 	return rise(p, p->t[1] - p->first, median_of_three(p->y[0], p->y[1], p->y[2]));
 }
 

@@ -20,7 +20,6 @@ enum {
 	HELD_GOOD = 3  /* rows held back at most on the good side */
 };
 
-static const double memories[MEMORIES] = { 0, 1, 3 }; /* exponent of (j / k) */
 static const double SCORED = 18; /* rows that count in full, see weigh() */
 static const double CUT = 3;     /* of an innovation, see square_at() */
 /* The same limit for a row that is held back.  With 3 % of outliers and a burst of four,

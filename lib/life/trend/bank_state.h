@@ -13,6 +13,8 @@ enum {
 	HELD = 8              /* rows held back at most */
 };
 
+static const double memories[MEMORIES] = { 0, 1, 3 }; /* exponents of (j / k) */
+
 /* A local trend h + v t, where v is the rate at the present load.  Covariances are in
  * units of the noise variance. */
 struct trend {

@@ -19,17 +19,17 @@ static const double KIN_HAZARD = 0.5;
 /* Future changes of regime, where the rate falls, is constant or rises in a coordinate:
  * hazard c, share of falls, and median growth in units of 1 / age.  These and the three
  * constants below were chosen with the weights of the coordinates, see shapes.c; hazard
- * and growth where the rate is constant or rises, WANDERING and four of the weights were
- * swept again, as doc/benchmarks.md tells. */
+ * and growth where the rate is constant or rises, falls where it is constant, WANDERING
+ * and four of the weights were swept again, as doc/benchmarks.md tells. */
 static const struct future {
 	double hazard, falls, growth;
-} future[] = { { 2.5, 0.24, 3.5 }, { 1.2, 0.15, 3 }, { 0.72, 0.033, 1.9 } };
+} future[] = { { 2.5, 0.24, 3.5 }, { 1.2, 0.18, 3 }, { 0.64, 0.033, 1.9 } };
 
 enum { FUTURES = sizeof future / sizeof *future };
 
 /* Share of falls where the damage is a Wiener process, relative to other wear: its rate
  * seems to fall for a while without any change of regime. */
-static const double WANDERING = 0.5;
+static const double WANDERING = 0.4;
 static const double GROWTH_SD = 2.7; /* of its logarithm */
 /* Mean and sd of the logarithm of the factor by which a fall of the rate lengthens the
  * rest of the life. */
@@ -123,6 +123,45 @@ static void heed_prior(double mean, double sd, struct crossing *p)
 	p->pvv -= p->pvv / f * p->pvv;
 }
 
+/* A straight line that is fitted to a parabola by observations with the weights (j / k)^m
+ * has its rate at the share (m + 2) / (m + 4) of the age. */
+static double share_of_age(const struct trend *tr)
+{
+	double m = memories[tr->kind % MEMORIES];
+
+	return (m + 2) / (m + 4);
+}
+
+/* Relative variance of the mean rate over the time to the passage about that of the
+ * trend: where the coordinate is not quite right, the rate drifts.  The trends of least
+ * and most memory then have the rates of different ages.  That of most memory is the
+ * efficient estimate, so that the noise of their difference is the difference of their
+ * variances; the drift is what Stein's positive part leaves (James, Stein, Proc. 4th
+ * Berkeley Symp. 1 (1961) 361).  It stays below 1 / 3, that of a rate anywhere from 0
+ * to twice the mean.  Particles have no trend of another memory beside them. */
+static double drift(const struct bank *b, const struct trend *tr, double time)
+{
+	int memory = tr->kind % MEMORIES;
+	double mean[BANK_LOADS], change, noise, away;
+	struct trend usual, all, late;
+
+	if (tr >= b->trend + b->fixed)
+		return 0;
+	mean_loads(b, mean);
+	usual = at_loads(b, tr, mean);
+	all = at_loads(b, tr - memory, mean);
+	late = at_loads(b, tr - memory + MEMORIES - 1, mean);
+	if (!(usual.v > 0))
+		return 0;
+	change = late.v - all.v;
+	noise = tr->sum / freedom_of(b, tr) * fmax(0, late.pvv - all.pvv);
+	change *= fmax(0, 1 - noise / (change * change)) / usual.v;
+	away = (1 - share_of_age(tr) + 0.5 * fmin(NOTHING, time / b->age)) /
+	       (share_of_age(&late) - share_of_age(&all));
+	change *= away;
+	return change * change / (1 + 3 * change * change);
+}
+
 /* A power below 0, wear that goes as the root of time, counts as constant: it slows down
  * by a law of its own and not because a regime ends, as of S-shaped curves. */
 static const struct future *future_of(const struct bank_shape *s)
@@ -162,6 +201,9 @@ static struct crossing prepare(
 	if (wanders(tr))
 		p.wiener = p.variance * here.slope * there.slope / b->gap;
 	p.variance *= (1 + correlation) / (1 - correlation);
+	if (p.v > 0)
+		p.pvv += drift(b, tr, fmax(0, (p.limit - p.h) / p.v)) * p.v * p.v /
+			 p.variance;
 	scale = b->unit / b->range * here.slope;
 	heed_prior(b->par.rate_mean * scale, b->par.rate_sd * fabs(scale), &p);
 	if (shape_of(b, tr->shape)->n > 0)

@@ -3,6 +3,8 @@
  * Each draw selects a trend or particle by its weight, draws level, rate and noise from
  * their Student-t distribution, and computes the first passage of the level: exact for a
  * straight line, an inverse Gaussian time if the damage is a Wiener process.
+ * A rate that drifts in its coordinate, as the trends of different memories show, is the
+ * less certain the longer the way is.
  *
  * The regime may change once more: after a time J with P(J > x) = (a / (a + x))^c at age
  * a (an old regime lasts long), the rate begins to grow as e^{g (t - J)}, or drops and

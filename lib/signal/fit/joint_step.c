@@ -16,11 +16,17 @@ static int add_block(const struct joint *j, int i, int k, double block[PAR][PAR]
 		if (end <= first)
 			continue;
 		touch = 1;
-		for (int u = 0; u < PAR; u++)
+		for (int u = 0; u < PAR; u++) {
+			const long at = first - y->first;
+			double part[PAR];
+
+			dot3(x->d[u] + (first - x->first),
+				(const double *[]){
+					y->d[0] + at, y->d[1] + at, y->d[2] + at },
+				(size_t)(end - first), part);
 			for (int v = 0; v < (i == k ? u + 1 : PAR); v++)
-				block[u][v] += dot(x->d[u] + (first - x->first),
-					y->d[v] + (first - y->first),
-					(size_t)(end - first));
+				block[u][v] += part[v];
+		}
 	}
 	return touch;
 }
@@ -33,26 +39,28 @@ static void make_normal(struct joint *j, const int *set, int m)
 	for (int x = 0; x < m; x++) {
 		int i = set[x];
 
-		for (int u = 0; u < PAR; u++) {
-			double g = 0;
+		double *g = j->gradient + PAR * x, part[PAR];
 
-			for (int c = 0; c < 2; c++) {
-				const struct column *col = &j->col[i][c];
+		g[0] = g[1] = g[2] = 0;
+		for (int c = 0; c < 2; c++) {
+			const struct column *col = &j->col[i][c];
+			const double *d[] = { col->d[0], col->d[1], col->d[2] };
 
-				g += dot(col->d[u], j->e[c] + col->first, col->n);
-				for (int b = 0; b < j->basis; b++) {
-					double part = dot(col->d[u],
-						j->q[c] + (size_t)b * j->n + col->first,
-						col->n);
-
-					g -= j->share[b] * part * j->qe[c][b];
+			dot3(j->e[c] + col->first, d, col->n, part);
+			for (int u = 0; u < PAR; u++)
+				g[u] += part[u];
+			for (int b = 0; b < j->basis; b++) {
+				dot3(j->q[c] + (size_t)b * j->n + col->first, d, col->n,
+					part);
+				for (int u = 0; u < PAR; u++) {
+					g[u] -= j->share[b] * part[u] * j->qe[c][b];
 					j->bq[(PAR * x + u) * nb + c * j->basis + b] =
-						sqrt(j->share[b]) * part;
+						sqrt(j->share[b]) * part[u];
 				}
 			}
-			j->gradient[PAR * x + u] = g;
-			j->begin[PAR * x + u] = nb ? 0 : PAR * x;
 		}
+		for (int u = 0; u < PAR; u++)
+			j->begin[PAR * x + u] = nb ? 0 : PAR * x;
 		for (int y = 0; y <= x; y++) {
 			double block[PAR][PAR] = { { 0 } };
 			int touch = add_block(j, i, set[y], block);
@@ -75,27 +83,41 @@ static void make_normal(struct joint *j, const int *set, int m)
 		j->diagonal[i] = j->h[i * np + i];
 }
 
-/* Cholesky of h + lambda diag(h) within the profile; NUM_DOMAIN where not positive
- * definite. */
+/* Cholesky of h + lambda diag(h) within the profile, the rows of a pulse together;
+ * NUM_DOMAIN where not positive definite. */
 static enum num_status factorise(struct joint *j, int np, double lambda)
 {
-	for (int i = 0; i < np; i++) {
-		double *row = j->factor + (size_t)i * (size_t)np, pivot;
+	for (int first = 0; first < np; first += PAR) {
+		double *row = j->factor + (size_t)first * (size_t)np, part[PAR];
+		int begin = j->begin[first];
 
-		for (int k = j->begin[i]; k < i; k++) {
+		for (int k = begin; k < first; k++) {
 			const double *other = j->factor + (size_t)k * (size_t)np;
-			int from = j->begin[i] > j->begin[k] ? j->begin[i] : j->begin[k];
+			int from = begin > j->begin[k] ? begin : j->begin[k];
+			const double *rows[] = { row + from, row + np + from,
+				row + 2 * np + from };
 
-			row[k] = (j->h[i * np + k] - dot(row + from, other + from,
-							     (size_t)(k - from))) /
-				 other[k];
+			dot3(other + from, rows, (size_t)(k - from), part);
+			for (int u = 0; u < PAR; u++)
+				row[u * np + k] =
+					(j->h[(first + u) * np + k] - part[u]) / other[k];
 		}
-		pivot = j->h[i * np + i] + lambda * j->diagonal[i] -
-			dot(row + j->begin[i], row + j->begin[i],
-				(size_t)(i - j->begin[i]));
-		if (!(pivot > 1e-13 * j->diagonal[i]))
-			return NUM_DOMAIN;
-		row[i] = sqrt(pivot);
+		for (int i = first; i < first + PAR; i++, row += np) {
+			double pivot = j->h[i * np + i] + lambda * j->diagonal[i];
+
+			for (int k = first; k < i; k++) {
+				const double *other = row - (i - k) * np;
+
+				row[k] = (j->h[i * np + k] -
+						 dot(row + begin, other + begin,
+							 (size_t)(k - begin))) /
+					 other[k];
+			}
+			pivot -= dot(row + begin, row + begin, (size_t)(i - begin));
+			if (!(pivot > 1e-13 * j->diagonal[i]))
+				return NUM_DOMAIN;
+			row[i] = sqrt(pivot);
+		}
 	}
 	return NUM_OK;
 }
@@ -135,24 +157,6 @@ static struct joint_pulse moved(const struct joint_scene *s,
 	return p;
 }
 
-/* Adds factor times the contribution of pulse i, given by its columns, to the residual.
- */
-static void add_column(struct joint *j, int i, double factor)
-{
-	for (int c = 0; c < 2; c++) {
-		const struct column *col = &j->col[i][c];
-		double *e = j->e[c] + col->first;
-
-		j->energy -= dot(e, e, col->n);
-		add_scaled(e, factor, col->d[2], col->n);
-		j->energy += dot(e, e, col->n);
-		for (int b = 0; b < j->basis; b++)
-			j->qe[c][b] +=
-				factor * dot(j->q[c] + (size_t)b * j->n + col->first,
-						 col->d[2], col->n);
-	}
-}
-
 static void swap_columns(struct joint *j, int i)
 {
 	struct column keep[2];
@@ -162,31 +166,89 @@ static void swap_columns(struct joint *j, int i)
 	memcpy(j->trial[i], keep, sizeof keep);
 }
 
+/* What a step changes, as it was. */
+struct before {
+	struct joint_pulse pulse[JOINT_PULSES_MAX];
+	double energy, qe[2][BASIS_MAX];
+	long from[2], to[2]; /* samples that the pulses touch before or after */
+};
+
+static void find_span(const struct joint *j, const int *set, int m, struct before *old)
+{
+	for (int c = 0; c < 2; c++) {
+		old->from[c] = (long)j->n;
+		old->to[c] = 0;
+		for (int x = 0; x < 2 * m; x++) {
+			const struct column *col =
+				x % 2 ? &j->col[set[x / 2]][c] : &j->trial[set[x / 2]][c];
+			long end = col->first + (long)col->n;
+
+			if (col->n == 0)
+				continue;
+			old->from[c] =
+				col->first < old->from[c] ? col->first : old->from[c];
+			old->to[c] = end > old->to[c] ? end : old->to[c];
+		}
+		if (old->to[c] < old->from[c])
+			old->to[c] = old->from[c];
+	}
+}
+
+/* Adds sign times what these samples of a channel contribute to energy and qe. */
+static void count_span(struct joint *j, int c, long from, long to, double sign)
+{
+	const double *e = j->e[c] + from;
+	size_t n = (size_t)(to - from);
+
+	j->energy += sign * dot(e, e, n);
+	for (int b = 0; b < j->basis; b++)
+		j->qe[c][b] += sign * dot(j->q[c] + (size_t)b * j->n + from, e, n);
+}
+
 /* Moves the pulses in set along j->move, and stores their columns before the step in
  * trial. */
 static void step_forth(struct joint *j, const struct joint_scene *s,
-	struct joint_pulse *pulses, const int *set, int m, struct joint_pulse *old)
+	struct joint_pulse *pulses, const int *set, int m, struct before *old)
 {
 	for (int x = 0; x < m; x++) {
 		struct joint_pulse *p = &pulses[set[x]];
 
-		old[x] = *p;
-		add_column(j, set[x], p->a);
-		*p = moved(s, &old[x], j->move + PAR * x, j->n);
+		old->pulse[x] = *p;
+		*p = moved(s, &old->pulse[x], j->move + PAR * x, j->n);
 		swap_columns(j, set[x]);
 		joint_make_columns(j, s, set[x], p);
-		add_column(j, set[x], -p->a);
+	}
+	find_span(j, set, m, old);
+	old->energy = j->energy;
+	memcpy(old->qe, j->qe, sizeof j->qe);
+	for (int c = 0; c < 2; c++) {
+		memcpy(j->r[c] + old->from[c], j->e[c] + old->from[c],
+			(size_t)(old->to[c] - old->from[c]) * sizeof(double));
+		count_span(j, c, old->from[c], old->to[c], -1);
+		for (int x = 0; x < m; x++) {
+			const struct column *was = &j->trial[set[x]][c];
+			const struct column *is = &j->col[set[x]][c];
+
+			add_scaled(
+				j->e[c] + was->first, old->pulse[x].a, was->d[2], was->n);
+			add_scaled(
+				j->e[c] + is->first, -pulses[set[x]].a, is->d[2], is->n);
+		}
+		count_span(j, c, old->from[c], old->to[c], 1);
 	}
 }
 
 static void step_back(struct joint *j, struct joint_pulse *pulses, const int *set, int m,
-	const struct joint_pulse *old)
+	const struct before *old)
 {
+	for (int c = 0; c < 2; c++)
+		memcpy(j->e[c] + old->from[c], j->r[c] + old->from[c],
+			(size_t)(old->to[c] - old->from[c]) * sizeof(double));
+	j->energy = old->energy;
+	memcpy(j->qe, old->qe, sizeof j->qe);
 	for (int x = 0; x < m; x++) {
-		add_column(j, set[x], pulses[set[x]].a);
 		swap_columns(j, set[x]);
-		pulses[set[x]] = old[x];
-		add_column(j, set[x], -old[x].a);
+		pulses[set[x]] = old->pulse[x];
 	}
 }
 
@@ -195,7 +257,7 @@ double joint_fit_set(struct joint *j, const struct joint_scene *s,
 	double tolerance)
 {
 	double lambda = 1e-4, chi2;
-	struct joint_pulse old[JOINT_PULSES_MAX];
+	struct before old;
 	int fresh = 0;
 
 	joint_measure(j);
@@ -215,7 +277,7 @@ double joint_fit_set(struct joint *j, const struct joint_scene *s,
 		}
 		memcpy(j->move, j->gradient, sizeof(double) * (size_t)(PAR * m));
 		solve(j, PAR * m, 0, j->move);
-		step_forth(j, s, pulses, set, m, old);
+		step_forth(j, s, pulses, set, m, &old);
 		after = joint_chi_square(j);
 		if (after < chi2) {
 			double gain = chi2 - after;
@@ -227,7 +289,7 @@ double joint_fit_set(struct joint *j, const struct joint_scene *s,
 				break;
 			continue;
 		}
-		step_back(j, pulses, set, m, old);
+		step_back(j, pulses, set, m, &old);
 		after -= chi2;
 		chi2 = joint_chi_square(j);
 		if (after < tolerance || lambda > 1e6)

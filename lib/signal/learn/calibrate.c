@@ -207,7 +207,6 @@ static enum calibrate_status attempt_white(const struct calibrate_par *par,
 	if (status == CALIBRATE_OK && c->measured && !c->dense && learn_describes(c)) {
 		int lacks;
 
-		c->attempts = look->attempts;
 		status = lacks_low(look, c, &lacks);
 		if (status == CALIBRATE_OK && !lacks)
 			return status;
@@ -220,14 +219,12 @@ static enum calibrate_status attempt_white(const struct calibrate_par *par,
 	return CALIBRATE_COLOURED;
 }
 
-enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
-	const double *x2, size_t n, struct calibration *c)
+static enum calibrate_status find(const struct calibrate_par *par, const double *x1,
+	const double *x2, size_t n, struct look *look, struct calibration *c)
 {
 	enum calibrate_status status = CALIBRATE_OK;
 	struct whitening w = { .tap = NULL };
-	struct look look = { 0 };
 
-	memset(c, 0, sizeof *c);
 	if (is_constant(x1, n))
 		return CALIBRATE_SILENT_1;
 	if (is_constant(x2, n))
@@ -237,21 +234,33 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 			whitening_of_filter(&w, par->filter, par->filter_taps));
 	if (status != CALIBRATE_OK)
 		return status;
-	look.first =
+	look->first =
 		!par->filter && par->pulse == CALIBRATE_ANY_PULSE && isnan(par->duration);
-	status = attempt(par, x1, x2, n, &w, c, &look);
+	status = attempt(par, x1, x2, n, &w, c, look);
 	if (status == CALIBRATE_COLOURED) {
-		status = attempt_white(par, x1, x2, n, &look, c);
+		status = attempt_white(par, x1, x2, n, look, c);
 		if (status != CALIBRATE_COLOURED)
 			return status;
-		look.first = 0;
-		status = attempt(par, x1, x2, n, &w, c, &look);
+		look->first = 0;
+		status = attempt(par, x1, x2, n, &w, c, look);
 	}
-	look.first = 0;
+	look->first = 0;
 	if (status == CALIBRATE_OK && par->tones == CALIBRATE_FIND_TONES && !w.tap)
-		status = try_fewer_tones(par, x1, x2, n, &look, c);
-	if (status == CALIBRATE_OK && look.coloured && !c->dense && !is_white(c, &look))
-		status = look_again(par, x1, x2, n, &look, c);
+		status = try_fewer_tones(par, x1, x2, n, look, c);
+	if (status == CALIBRATE_OK && look->coloured && !c->dense && !is_white(c, look))
+		status = look_again(par, x1, x2, n, look, c);
+	return status;
+}
+
+enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
+	const double *x2, size_t n, struct calibration *c)
+{
+	struct look look = { 0 };
+	enum calibrate_status status;
+
+	memset(c, 0, sizeof *c);
+	status = find(par, x1, x2, n, &look, c);
 	c->attempts = look.attempts;
+	c->work = look.work;
 	return status;
 }

@@ -9,11 +9,6 @@
 
 enum { RANGE_EVENTS = 12 };
 
-/* Limit of the samples of pulses computed, some five seconds of processor time: groups of
- * six Lorentz pulses at 30 dB take 7.4e8, of three pulses behind a guessed low-pass
- * 7.7e8; a record that pulses do not describe would take more. */
-static const double MOST = 9e8;
-
 /* Chi-square above which noise of a suspected colour is not white; half and twice of it
  * give the same rows in the records of BAD_FIT in measure.c. */
 static const double HOPELESS = 100;
@@ -312,9 +307,10 @@ static enum calibrate_status learn_known(const struct calibrate_par *par,
 	const struct template *hint, const unsigned char *const hidden[2],
 	struct calibration *c)
 {
-	struct examples ex = {
-		.joint = joint_new(), .misfit = c->misfit, .before = c->work, .most = MOST
-	};
+	struct examples ex = { .joint = joint_new(),
+		.misfit = c->misfit,
+		.before = c->work,
+		.most = par->most };
 	enum calibrate_status status = ex.joint ? CALIBRATE_OK : CALIBRATE_MEMORY;
 
 	memcpy(ex.hidden, hidden, sizeof ex.hidden);
@@ -399,6 +395,7 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, const double 
 		*c = known;
 	} else {
 		shape_free(known.shape);
+		c->work = known.work;
 	}
 	return status;
 }

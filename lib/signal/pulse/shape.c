@@ -1,5 +1,6 @@
 /* shape.c - see shape.h */
 #include "signal/pulse/shape.h"
+#include "num/lanes.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -328,20 +329,23 @@ void shape_sample(const struct shape *shape, double t0, double T, long first, si
 	clear_outside(p, begin, end, n);
 	clear_outside(by_t0, begin, end, n);
 	clear_outside(by_T, begin, end, n);
-	for (size_t i = begin; i < end; i++) {
-		double x = x0 + rate * (double)i, u = x - (double)(int)x;
-		const double *c = shape->cubic + 4 * (int)x;
+	for (size_t i = begin; i < end; i += 2) {
+		int m = i + 1 < end ? 2 : 1;
+		lanes at = { (double)i, (double)(i + (size_t)m - 1) };
+		lanes x = x0 + rate * at, u = x - (lanes){ (int)x[0], (int)x[1] };
+		const double *a = shape->cubic + 4 * (int)x[0];
+		const double *b = shape->cubic + 4 * (int)x[1];
+		lanes c1 = { a[1], b[1] }, c2 = { a[2], b[2] }, c3 = { a[3], b[3] },
+		      slope;
 
-		p[i] = c[0] + u * (c[1] + u * (c[2] + u * c[3]));
+		lanes_store(
+			p + i, (lanes){ a[0], b[0] } + u * (c1 + u * (c2 + u * c3)), m);
+		if (!by_t0 && !by_T)
+			continue;
+		slope = -rate * (c1 + u * (2 * c2 + u * 3 * c3));
 		if (by_t0)
-			by_t0[i] = -rate * (c[1] + u * (2 * c[2] + u * 3 * c[3]));
+			lanes_store(by_t0 + i, slope, m);
+		if (by_T)
+			lanes_store(by_T + i, slope * (start + at) / T, m);
 	}
-	if (by_T)
-		for (size_t i = begin; i < end; i++) {
-			double x = x0 + rate * (double)i, u = x - (double)(int)x;
-			const double *c = shape->cubic + 4 * (int)x;
-
-			by_T[i] = -rate * (c[1] + u * (2 * c[2] + u * 3 * c[3])) *
-				  (start + (double)i) / T;
-		}
 }
