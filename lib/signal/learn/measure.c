@@ -536,37 +536,6 @@ static enum calibrate_status find_template(const struct calibrate_par *par,
 	return CALIBRATE_OK;
 }
 
-/* Pulses near the limits of the range of delays from which on it is widened. */
-enum { SOME = 2 };
-
-/* Learns the pulse again with a wider range of delays, which is kept if it describes the
- * record better: a pulse beyond a range that is too narrow takes two within it. */
-static enum calibrate_status learn_wide(const struct calibrate_par *par,
-	struct record *rec, struct template *found, struct calibration *c)
-{
-	struct calibration wide = *c;
-	enum calibrate_status status = CALIBRATE_OK;
-	double before = rec->share;
-
-	wide.shape = NULL;
-	if (learn_set_shape(&wide, c->pulse) != NUM_OK)
-		return CALIBRATE_MEMORY;
-	rec->share = CALIBRATE_WIDE;
-	if (found->events)
-		status = find_template(par, rec, found, &wide);
-	if (status == CALIBRATE_OK)
-		status = learn(par, rec, found, &wide);
-	c->work = wide.work;
-	if (status == CALIBRATE_OK && wide.events > 0 && wide.price < c->price) {
-		shape_free(c->shape);
-		*c = wide;
-		return CALIBRATE_OK;
-	}
-	rec->share = before;
-	shape_free(wide.shape);
-	return status == CALIBRATE_MEMORY ? status : CALIBRATE_OK;
-}
-
 /* Learns the pulse.  If the noise was measured in a band, a residual of the pulses below
  * it shows that the noise was overestimated. */
 static enum calibrate_status learn_with_noise(const struct calibrate_par *par,
@@ -575,8 +544,6 @@ static enum calibrate_status learn_with_noise(const struct calibrate_par *par,
 	enum { ROUNDS = 4 };
 	enum calibrate_status status = learn(par, rec, found, c);
 
-	if (status == CALIBRATE_OK && c->far >= SOME && isnan(par->spread))
-		status = learn_wide(par, rec, found, c);
 	for (int k = 0; c->whitening.tap && k < ROUNDS; k++) {
 		if (status != CALIBRATE_OK || c->events == 0 ||
 			fmin(c->rest[0], c->rest[1]) >= 0.75)
@@ -665,7 +632,11 @@ enum calibrate_status measure(const struct calibrate_par *par, const double *raw
 	double *y1, double *y2, size_t n, double *work, struct look *look,
 	struct calibration *c)
 {
-	struct record rec = { .y1 = y1, .y2 = y2, .n = n, .work = work, .share = PLUG };
+	struct record rec = { .y1 = y1,
+		.y2 = y2,
+		.n = n,
+		.work = work,
+		.share = look->wide ? CALIBRATE_WIDE : PLUG };
 	enum calibrate_status status = find_tones(par, &rec, c);
 
 	if (status == CALIBRATE_OK)
