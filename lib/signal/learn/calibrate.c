@@ -140,6 +140,7 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 	struct whitening w = { .tap = NULL };
 	struct look other_look = { .attempts = look->attempts,
 		.work = look->work,
+		.seen = 1,
 		.wide = look->wide,
 		.events = look->found.events };
 	struct calibration other;

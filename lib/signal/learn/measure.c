@@ -647,7 +647,8 @@ enum calibrate_status measure(const struct calibrate_par *par, const double *raw
 		status = check_band(par, &rec, c);
 	if (status == CALIBRATE_OK)
 		status = find_reverse(par, &rec, c);
-	if (status == CALIBRATE_OK && (isnan(par->duration) || isnan(par->lag)))
+	if (status == CALIBRATE_OK && !look->seen &&
+		(isnan(par->duration) || isnan(par->lag)))
 		status = check_lag(&rec, y1, y2, c);
 	if (status != CALIBRATE_OK)
 		return status;
