@@ -6,6 +6,7 @@
 #include "signal/detect/foreign.h"
 #include "signal/detect/sections.h"
 #include "signal/fit/goodness.h"
+#include "signal/separate/common.h"
 #include "signal/separate/quadrature.h"
 #include "signal/separate/separate.h"
 #include "signal/separate/tape.h"
@@ -56,6 +57,8 @@ struct separate {
 	struct joint *joint;
 	struct masks *masks;
 	struct joint_scene scene;
+	struct joint_scene fitted; /* of the last fit of a window */
+	struct common common;
 	double gain; /* of sensor 2, over the noise learned, as followed */
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
 	struct quadrature quadrature;
@@ -95,7 +98,7 @@ struct separate {
 	struct separate_counters counters;
 	enum separate_status reason; /* why nothing could be learned */
 	int unexplained; /* 1: although both channels stand out of their noise */
-	double effort;               /* samples of pulses computed to learn */
+	double effort;   /* samples of pulses computed to learn */
 	long long bad_frame;
 	int bad_channel;
 };
@@ -197,12 +200,24 @@ int separate_is_other_noise(const struct separate *s);
 /* Excludes the samples that the converter has not measured from the fit.  Not if the
  * record was whitened, which spreads them over others. */
 void separate_hide(struct separate *s, long long from, size_t n);
-/* Fits a window, with the first a->m pulses of a as guesses, and judges the fit. */
-enum separate_status separate_fit_window(
-	struct separate *s, long long from, size_t n, int cut, struct account *a);
+/* Fits a window of n samples of either channel, with the first a->m pulses of a as
+ * guesses, and judges the fit. */
+enum separate_status separate_fit_window(struct separate *s, const double *const y[2],
+	size_t n, int cut, struct account *a);
 /* Keeps of the last fit what the next one overwrites. */
 void separate_keep_fit(struct separate *s, const struct account *a);
 int separate_is_described(const struct account *a);
+
+/* common.c */
+
+/* Measures what the noise of both channels has in common in these samples. */
+enum num_status separate_measure_common(
+	struct separate *s, long long from, long long upto);
+/* Samples on either side of a window that tell its noise; 0: none are needed. */
+long long separate_common_reach(const struct separate *s);
+/* Fits a window that a describes again, without what the noise has in common. */
+enum separate_status separate_fit_without_common(
+	struct separate *s, long long from, size_t n, int cut, struct account *a);
 
 /* following.c */
 

@@ -1,0 +1,274 @@
+/* common.c - see common.h */
+#include "signal/separate/common.h"
+#include "num/dot.h"
+#include "num/room.h"
+#include "signal/noise/robust.h"
+#include "signal/separate/separate_state.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void common_clear(struct common *c)
+{
+	shape_free(c->sharp);
+	free(c->work);
+	memset(c, 0, sizeof *c);
+}
+
+/* Least correlation that is removed: standard errors fall by 2 %. */
+static const double LEAST = 0.2;
+
+/* Standard deviation of x less share times y, summed over blocks, by its fourth
+ * differences; work holds 2 n. */
+static double noise_of(const double *x, const double *y, double share, size_t n,
+	size_t block, double *work)
+{
+	size_t blocks = n / block;
+
+	memset(work, 0, blocks * sizeof *work);
+	for (size_t i = 0; i < blocks * block; i++)
+		work[i / block] += x[i] - share * y[i];
+	return robust_noise(work, blocks, 4, work + blocks);
+}
+
+/* What is left of the noise of x less share times y. */
+static double share_left(const double *x, const double *y, double share, size_t n,
+	size_t block, double *work)
+{
+	double left = noise_of(x, y, share, n, block, work);
+
+	return left / noise_of(x, y, 0, n, block, work);
+}
+
+void common_measure(const double *const x[2], size_t n, double duration, double *work,
+	double found[3])
+{
+	/* Samples of a block.  Its fourth differences extend down to the highest
+	 * frequencies of a pulse, and a pulse of 30 deviations disappears in them. */
+	size_t block = (size_t)fmax(duration / 20, 1);
+	/* By how much the shares left in the two bands may differ.  Their ratio is 1.0 to
+	 * 1.1 for white noise, 1.8 for a difference of successive values and where 200
+	 * pulses a second hide the noise. */
+	static const double same = 1.5;
+	double sum = noise_of(x[0], x[1], -1, n, 1, work);
+	double difference = noise_of(x[0], x[1], 1, n, 1, work);
+	double r = (sum * sum - difference * difference) /
+		   (sum * sum + difference * difference);
+
+	for (int k = 0; k < 2 && fabs(r) >= LEAST; k++) {
+		const double *one = x[k], *other = x[1 - k];
+
+		found[1 + k] = share_left(one, other, r, n, 1, work);
+		if (!(found[1 + k] > 0 && found[1 + k] < 1) ||
+			share_left(one, other, r, n, block, work) > same * found[1 + k])
+			r = 0;
+	}
+	found[0] = fabs(r) >= LEAST ? r : 0;
+}
+
+enum num_status common_set(
+	struct common *c, const double found[3], const struct shape *shape)
+{
+	if (found[0] == 0)
+		return NUM_OK;
+	shape_free(c->sharp);
+	c->sharp = shape_from_cubic(
+		shape_reach(shape), shape_cells(shape), shape_cubic(shape));
+	if (!c->sharp)
+		return NUM_MEMORY;
+	shape_scale(c->sharp, 1 / found[1]);
+	c->correlation = found[0];
+	c->left[0] = found[1];
+	c->left[1] = found[2];
+	return NUM_OK;
+}
+
+enum num_status separate_measure_common(
+	struct separate *s, long long from, long long upto)
+{
+	const double *x[2] = { s->tape[0].x + (from - s->tape[0].begin),
+		s->tape[1].x + (from - s->tape[1].begin) };
+	size_t n = (size_t)(upto - from);
+	double *work, found[3];
+
+	if (s->par.quadrature || isinf(s->cal.transit))
+		return NUM_OK;
+	work = malloc(2 * n * sizeof *work);
+	if (!work)
+		return NUM_MEMORY;
+	common_measure(x, n, s->cal.duration, work, found);
+	free(work);
+	return common_set(&s->common, found, s->cal.shape);
+}
+
+/* Length of a pulse, samples. */
+static long long pulse_length(const struct separate *s)
+{
+	return (long long)(2 * shape_reach(s->cal.shape) * s->cal.duration);
+}
+
+long long separate_common_reach(const struct separate *s)
+{
+	/* Of the quiet samples beside the section, and of pulses that reach into them. */
+	return s->common.correlation == 0 ? 0 : s->cal.shift + 2 * pulse_length(s);
+}
+
+/* Standard deviations of the matched filter that noise alone does not exceed. */
+static const double QUIET = 4;
+
+/* 1 if the matched filter of the samples tells of no pulse; work holds one of them. */
+static int is_quiet(const struct separate *s, const double *x, size_t n, double *work)
+{
+	double T = s->cal.duration, norm = 1 / sqrt(T * shape_energy(s->cal.shape));
+	size_t len;
+	long first = shape_support(s->cal.shape, 0, T, &len);
+	long stride = (long)fmax(T / 16, 1);
+
+	shape_sample(s->cal.shape, 0, T, first, len, work, NULL, NULL);
+	for (long at = first; at + (long)len + first <= (long)n - first; at += stride) {
+		long skip = at < 0 ? -at : 0;
+		long end = at + (long)len < (long)n ? at + (long)len : (long)n;
+
+		if (end > at + skip &&
+			fabs(dot(work + skip, x + at + skip, (size_t)(end - at - skip))) *
+					norm >
+				QUIET)
+			return 0;
+	}
+	return 1;
+}
+
+/* Subtracts pulses, whose times are shifted, from both channels. */
+static void subtract(const struct separate *s, const struct joint_pulse *pulse, int m,
+	double shift, double *const y[2], size_t n)
+{
+	for (int i = 0; i < m; i++) {
+		struct joint_pulse p = pulse[i];
+
+		p.t += shift;
+		joint_add(&s->scene, &p, -1, y[0], y[1], n);
+	}
+}
+
+/* Residual of the other channel during the n samples of channel c that begin at from:
+ * less the pulses of this window and those that are found there.  *noise: in y; NULL: it
+ * is not only noise, or not known. */
+static enum separate_status noise_beside(struct separate *s, long long from, size_t n,
+	int c, const struct account *a, double *y[2], double *work, const double **noise)
+{
+	long long pad = pulse_length(s);
+	long long at = from - pad + (c ? s->cal.shift : -s->cal.shift);
+	size_t length = n + 2 * (size_t)pad;
+	int other = 1 - c;
+
+	*noise = NULL;
+	for (int k = 0; k < 2; k++) {
+		const struct tape *t = &s->tape[k];
+		long long begin = at + (k ? s->cal.shift : 0);
+
+		if (begin < t->begin || begin + (long long)length > t->clean ||
+			memchr(t->hidden + (begin - t->begin), 1, length))
+			return SEPARATE_OK;
+		memcpy(y[k], t->x + (begin - t->begin), length * sizeof(double));
+	}
+	subtract(s, a->pulse, a->m, (double)(from - at), y, length);
+	if (!is_quiet(s, y[other] + pad, n, work)) {
+		struct joint_scene around = s->scene;
+		struct joint_pulse pulse[JOINT_PULSES_MAX];
+		struct joint_result r;
+		enum joint_status status;
+		int m = 0;
+
+		around.hidden[0] = around.hidden[1] = NULL;
+		around.quiet[0] = around.quiet[1] = 0;
+		around.max_pulses = s->par.most_pulses;
+		around.signs = 1;
+		status = joint_fit(s->joint, &around, y[0], y[1], length, pulse, &m, &r);
+		if (status != JOINT_OK)
+			return status == JOINT_MEMORY ? SEPARATE_MEMORY : SEPARATE_WIDE;
+		subtract(s, pulse, m, 0, y, length);
+	}
+	if (is_quiet(s, y[other] + pad, n, work))
+		*noise = y[other] + pad;
+	return SEPARATE_OK;
+}
+
+/* Fits, each of which takes the residual of the one before: what is left of the
+ * difference to the last of such a chain is an eighth where half of the pulses of either
+ * channel overlaps with those of the other. */
+enum { ROUNDS = 3 };
+
+/* The present scene for the pulses of a, none more. */
+static void describe(struct separate *s, const struct account *a)
+{
+	s->scene.max_pulses = a->m;
+	for (int i = 0; i < a->m; i++) {
+		const struct joint_pulse *p = &a->pulse[i];
+
+		s->scene.signs |= p->a < 0;
+		s->scene.delta_min = fmin(s->scene.delta_min, p->delta);
+		s->scene.delta_max = fmax(s->scene.delta_max, p->delta);
+	}
+}
+
+/* One fit of the chain; *removed: 1 if it describes the window with the same number of
+ * pulses, 0 if not or if nothing is known of the noise. */
+static enum separate_status fit_once(struct separate *s, long long from, size_t n,
+	int cut, struct account *a, int *removed)
+{
+	const struct joint_scene plain = s->scene;
+	size_t length = n + 2 * (size_t)pulse_length(s);
+	double *work = s->common.work, *x[2] = { work, work + length };
+	double *y[2] = { work + 2 * length, work + 3 * length }, left[2] = { 1, 1 };
+	int m = a->m;
+	enum separate_status status;
+
+	for (int c = 0; c < 2; c++) {
+		const double *noise;
+
+		memcpy(x[c], c ? channel_2(s, from) : channel_1(s, from),
+			n * sizeof(double));
+		status = noise_beside(s, from, n, c, a, y, work + 4 * length, &noise);
+		if (status != SEPARATE_OK)
+			return status;
+		left[c] = noise ? s->common.left[c] : 1;
+		for (size_t i = 0; noise && i < n; i++)
+			x[c][i] = (x[c][i] - s->common.correlation * noise[i]) / left[c];
+	}
+	*removed = 0;
+	if (left[0] == 1 && left[1] == 1)
+		return SEPARATE_OK;
+	if (left[0] < 1)
+		s->scene.shape = s->common.sharp;
+	s->scene.gain *= left[0] / left[1];
+	status = separate_fit_window(s, (const double *const[]){ x[0], x[1] }, n, cut, a);
+	s->scene = plain;
+	*removed = a->m == m && separate_is_described(a);
+	return status;
+}
+
+enum separate_status separate_fit_without_common(
+	struct separate *s, long long from, size_t n, int cut, struct account *a)
+{
+	const struct joint_scene plain = s->scene;
+	size_t length = n + 2 * (size_t)pulse_length(s);
+	struct account better = *a;
+	enum separate_status status = SEPARATE_OK;
+	int removed = 1;
+
+	if (s->common.correlation == 0 || a->m == 0)
+		return SEPARATE_OK;
+	if (room_for(&s->common.work, &s->common.room, 5 * length, sizeof(double)))
+		return SEPARATE_MEMORY;
+	describe(s, a);
+	for (int k = 0; k < ROUNDS && removed && status == SEPARATE_OK; k++)
+		status = fit_once(s, from, n, cut, &better, &removed);
+	if (status == SEPARATE_OK && removed)
+		*a = better;
+	else if (status == SEPARATE_OK)
+		status = separate_fit_window(s,
+			(const double *const[]){ channel_1(s, from), channel_2(s, from) },
+			n, cut, a);
+	s->scene = plain;
+	return status;
+}
