@@ -1,6 +1,6 @@
 /* The noise that both channels have in common is measured beside pulses, and not removed
  * where it is not the same at all frequencies */
-#include "signal/separate/common.h"
+#include "signal/noise/common.h"
 #include "num/philox.h"
 #include "tap.h"
 #include <math.h>

@@ -73,7 +73,7 @@ static enum separate_status start(struct separate *s, size_t n)
 		validation_tell_flow(s->validation, &s->kept.flow);
 		s->crowded = s->kept.crowded;
 		s->looked = 1;
-		if (common_set(&s->common, s->kept.common, c->shape) != NUM_OK)
+		if (separate_set_common(s, s->kept.common) != NUM_OK)
 			return SEPARATE_MEMORY;
 	}
 	s->joint = joint_new();

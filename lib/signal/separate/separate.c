@@ -36,7 +36,7 @@ void separate_free(struct separate *s)
 	sections_free(s->sections);
 	joint_free(s->joint);
 	masks_free(s->masks);
-	common_clear(&s->common);
+	separate_clear_common(s);
 	for (int c = 0; c < 2; c++)
 		tape_clear(&s->tape[c]);
 	quadrature_clear(&s->quadrature);

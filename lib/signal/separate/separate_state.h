@@ -6,7 +6,6 @@
 #include "signal/detect/foreign.h"
 #include "signal/detect/sections.h"
 #include "signal/fit/goodness.h"
-#include "signal/separate/common.h"
 #include "signal/separate/quadrature.h"
 #include "signal/separate/separate.h"
 #include "signal/separate/tape.h"
@@ -40,6 +39,15 @@ struct report {
  * and 32 give 2, 2, 4 and 14 wrong rows and an error of 1.03, 1.04, 1.05 and 1.14 of the
  * bound. */
 enum { TRACKED = 64, ENOUGH = 12, GAINS = 8 };
+
+/* What both channels have in common (common.h). */
+struct common {
+	double correlation;  /* 0: it is not removed */
+	double left[2];      /* noise of either channel without it, of 1 */
+	struct shape *sharp; /* the pulse in units of left[0] */
+	double *work;
+	size_t room;
+};
 
 struct separate {
 	struct separate_par par;
@@ -208,7 +216,11 @@ enum separate_status separate_fit_window(struct separate *s, const double *const
 void separate_keep_fit(struct separate *s, const struct account *a);
 int separate_is_described(const struct account *a);
 
-/* common.c */
+/* without_common.c */
+
+void separate_clear_common(struct separate *s);
+/* Takes what common_measure() has found. */
+enum num_status separate_set_common(struct separate *s, const double found[3]);
 
 /* Measures what the noise of both channels has in common in these samples. */
 enum num_status separate_measure_common(
