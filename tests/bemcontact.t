@@ -34,6 +34,15 @@ for m in "--solver pk" "--multiply mlms" "--multiply mlms --solver pk"; do
 	near "--solver or --multiply $m gives the same pressure" "$(awk "BEGIN { print $(key energy other.nrrd) / $(key energy free.nrrd) - 1 }")" 0 2e-7
 done
 
+# A strip of a wave and noise at a given approach, where no load limits steps that grow
+perl -e 'srand(3); for my $y (1 .. 40) { for my $x (1 .. 1000) { print pack "d<", 5e-7 * (cos($x * 0.006283185307179586) +
+	0.5 * sqrt(-2 * log(1 - rand)) * cos(6.283185307179586 * rand)) } }' >strip.f64
+for a in -0.2um 0.8um; do
+	strip="bemcontact --raw 1000x40 --pixel 1um --estar 100GPa --approach $a strip.f64"
+	$strip >strip.nrrd
+	$strip --solver pk >other.nrrd
+	near "a strip at an approach of $a: --solver pk gives the same load" "$(awk "BEGIN { print $(key load other.nrrd) / $(key load strip.nrrd) - 1 }")" 0 1e-6
+done
 $solve --pressure 200MPa --boundary periodic h.f64 >periodic.nrrd
 near "a periodic surface carries the same load" "$(key load periodic.nrrd)" 0.6144 1e-13
 ok "a periodic boundary gives another pressure" [ "$(key energy periodic.nrrd)" != "$(key energy free.nrrd)" ]
@@ -104,6 +113,8 @@ near "--sweep with an approach takes equal steps from first contact" "$(column i
 	{ r[NR] = $1 } END { print r[1] / r[2] }')" 0.5 1e-9
 $ball --hardness 0.02001Pa --table curve.tsv ball.f64 >/dev/null
 is "the stiffness is nan at the largest load of the hardness" "$(column stiffness curve.tsv)" nan
+$solve --pressure 30GPa --boundary periodic --table curve.tsv h.f64 >/dev/null
+is "a periodic surface in full contact is infinitely stiff" "$(column area curve.tsv),$(column stiffness curve.tsv)" 1,inf
 $ball --table curve.tsv ball.f64 >/dev/null
 sh -c "$(sed -n 's/^# cmd: //p' curve.tsv)" >again.tsv
 same "the recorded command reproduces the table" curve.tsv again.tsv
@@ -122,6 +133,16 @@ fails "a coating on a free surface" 2 'requires --boundary periodic' \
 	bemcontact --pressure 1Pa --young 1GPa --coating 1um --coating-young 2GPa
 fails "a coating of no material" 2 'requires --young and --coating-young' \
 	bemcontact --pressure 1Pa --estar 1GPa --coating 1um
+# A record that is pressed again keeps no key of the earlier contact.
+$solve --pressure 200MPa --boundary periodic --hardness 400MPa --unload 1 --table curve.tsv h.f64 >flowed.nrrd
+bemcontact --pressure 200MPa --estar 100GPa --hardness 0 flowed.nrrd >again.nrrd
+is "a record pressed again without a hardness states none" \
+	"$(key hardness again.nrrd)$(key plastic_area again.nrrd)$(key flow_depth again.nrrd)" ""
+is "a record pressed again has the boundary of before" "$(key boundary again.nrrd)" periodic
+bemcontact --pressure 200MPa --estar 100GPa same.nrrd >again.nrrd
+is "a record pressed again without a coating states none" "$(key coating again.nrrd)" ""
+fails "multi-level sums of a periodic record" 2 'the record is periodic' \
+	bemcontact --pressure 1Pa --estar 1GPa --multiply mlms periodic.nrrd
 # Partial slip: Cattaneo and Mindlin are in tests/unit/slip.c
 slip="bemcontact --raw 96x96 --pixel 0.010416666666666666m --young 1.82GPa --load 0.02GN -u 0.5"
 $slip --tangential 0.005GN --fields shear,pressure ball.f64 >slip.nrrd

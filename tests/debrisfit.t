@@ -83,6 +83,15 @@ debrisgen --yield 355MPa --friction 2 few.nrrd >far.full 2>/dev/null
 is 'beyond the friction of the fit nothing is estimated' "$(column surfaces_estimated stats) $(column surfaces_outside stats)" '0 6'
 is 'beyond the friction of the fit the volumes are those of the full model' "$(column volume far.tsv | cksum)" "$(column volume far.full | cksum)"
 like 'surfaces outside the range of the fit are reported' "$(cat said)" '6 surfaces outside the range of surrogate.tsv'
+bemcontact --pressure 50MPa --young 210GPa --hardness 1GPa few.nrrd >flowed.nrrd
+debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0 --stats stats flowed.nrrd >far.tsv 2>said
+is 'contacts that flow are not estimated after a fit to elastic ones' "$(column surfaces_estimated stats) $(column surfaces_outside stats)" '0 6'
+bemcontact --pressure 50MPa --young 210GPa --hardness 1TPa few.nrrd >elastic.nrrd
+for h in few elastic; do
+	debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0 --stats stats $h.nrrd >/dev/null 2>said
+	column surfaces_estimated stats >$h.count
+done
+same 'a hardness that is nowhere reached changes nothing' few.count elastic.count
 debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 0 --stats stats few.nrrd >/dev/null 2>said
 is 'no interval is narrow enough for a width of 0' "$(column surfaces_estimated stats)" 0
 

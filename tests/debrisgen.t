@@ -300,6 +300,11 @@ fails "steps without a modulus" 2 "specify --young or --estar" debrisgen -Y 1GPa
 $wear -E 210GPa --steps 2 ball.nrrd | grep -v '^#' >given.tsv
 $wear --steps 2 ball.nrrd | grep -v '^#' >inherited.tsv
 same "the modulus is that of the input unless one is given" given.tsv inherited.tsv
+bemcontact --boundary periodic --pressure 50MPa -E 210GPa --coating 1um --coating-young 90GPa rough.nrrd >coated.nrrd
+fails "the contact of a coated body" 1 "record 1 is the contact of a coated body" debrisgen -Y 1GPa coated.nrrd
+roughgen -n 32 -L 0.5mm -q 8um -l 50um --crown 32um | bemcontact -F 5N -E 210GPa --max-iterations 1 >poor.nrrd 2>err
+fails "a contact that did not converge" 3 "record 1: its contact did not converge" \
+	sh -c 'debrisgen -Y 1GPa poor.nrrd >poor.tsv'
 fails "two loads" 2 "only one of" debrisgen -Y 1GPa -F 1N --pressure 1MPa
 fails "an unknown stress field" 2 "principal|tensor" debrisgen -Y 1GPa --fields foo
 fails "no pressure" 1 "pressure" debrisgen -Y 1GPa rough.nrrd

@@ -108,6 +108,13 @@ for v in 40:1.071 120:1.030; do
 		"$(awk -v v="$(total volume s.tsv)" '{ print sqrt($1 * 12.5e-6 ^ 2 / 3.14159265) / (4 * 0.01 * v / 3.14159265) ^ 0.25 }' cells)" \
 		"${v#*:}" 0.02
 done
+# In other parts of the distance other cells wear most.
+$archard --wear-rate 1e-12 --amplification 1 --summary s.tsv --surface w.nrrd start.nrrd >p
+for f in start w; do
+	records -o text --field height $f.nrrd | tr '\t' '\n' | grep '^[-0-9]' >$f.txt
+done
+near "Archard: the depth of many parts is what the deepest cell has lost, um" "$(column depth s.tsv | awk '{ print 1e6 * $1 }')" \
+	"$(paste start.txt w.txt | awk '{ d = 1e6 * ($1 - $2); if (d > m) m = d } END { print m }')" 1e-5
 
 # Worn into pits the pair leaves the theory of small slopes.
 $wear --steps 6 --counterface b.nrrd --slide 0.125mm --wears both a.nrrd 2>told >p
@@ -116,10 +123,14 @@ ok "slopes beyond the theory give a warning" grep -q "rms slope .* above 0.2, th
 fails "a slide that is no whole number of cells" 2 "want a multiple of the cell size" $wear --counterface b.nrrd --slide 7um a.nrrd
 fails "a slide without a counterface" 2 "require --counterface" $wear --slide 0.125mm a.nrrd
 fails "the wear of a missing second body" 2 "requires --counterface" $wear --wears both start.nrrd
+cat b.nrrd b.nrrd >two.nrrd
+cat a.nrrd a.nrrd a.nrrd >three.nrrd
+fails "two counterfaces for three surfaces" 1 "2 records are fewer" sh -c "$wear --counterface two.nrrd three.nrrd >p"
 fails "a counterface of another size" 1 "120x48 cells over 48x48: want as many" $wear --counterface long.nrrd a.nrrd
 roughgen --points 48 --length 1mm --sq 0.4um >wide.nrrd
 fails "a counterface of another spacing" 1 "spacings of" $wear --counterface wide.nrrd a.nrrd
 fails "Archard's law without a rate" 2 "requires --wear-rate" debrisgen --law archard start.nrrd
+fails "a rate that takes days" 2 "would take .* contacts" debrisgen --law archard --wear-rate 1e-5 start.nrrd
 fails "a rate without Archard's law" 2 "requires --law archard" $wear --wear-rate 1e-15 start.nrrd
 fails "no load" 2 "carries no load" debrisgen --yield 355MPa --young 210GPa --counterface b.nrrd a.nrrd
 done_testing

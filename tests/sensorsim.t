@@ -54,6 +54,8 @@ is "a span without freedom spaces particles equally" "$(cat even)" "0.002000 0.0
 sensorsim --concentration 250mg/L --density 3g/cm3 --uniform 100um:100um --duration 1s -S st --truth - >mass.tsv
 # 1 L/s of 0.25 g/L over 1.5708 ug; the window is 1 s less one transit and one pulse
 near "the concentration determines the number" "$(column time1 mass.tsv | wc -l)" 154436 1600
+is "clean oil carries no particle" "$(timeout 20 sensorsim --concentration 0 --uniform 100um:100um \
+	--duration 1s --truth - | column time1 /dev/stdin | wc -l)" 0
 
 # a truth table is a scene; realisations and seeds differ
 sensorsim --gain 0.909 --snr 30dB --duration 19.95s pairs.tsv >again.au

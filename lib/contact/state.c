@@ -207,6 +207,8 @@ double contact_optimality_gap(struct contact *c, const struct sweep *s)
 
 	if (sum <= 0)
 		return s->max > 0 ? INFINITY : 0;
+	if (!isfinite(work))
+		return INFINITY;
 	/* The gap at the approach that is, and at the highest that lets nothing overlap.
 	 */
 	if (c->control == CONTACT_PRESSURE)
@@ -241,7 +243,11 @@ double contact_cell_stiffness(const struct contact *c)
 
 double contact_energy(const struct contact *c, const struct sweep *s)
 {
-	return s->sum[0] + c->result.approach * s->sum[1] - c->work / 2;
+	double free_work = s->sum[0] - c->work / 2;
+
+	return c->control == CONTACT_APPROACH
+		       ? free_work
+		       : free_work + c->result.approach * s->sum[1];
 }
 
 int contact_carries(const struct contact *c, double sum)

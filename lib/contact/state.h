@@ -94,8 +94,8 @@ void contact_find_approach(struct contact *c);
 struct sweep contact_optimality_sums(struct contact *c);
 /* The relative duality gap from these sums. */
 double contact_optimality_gap(struct contact *c, const struct sweep *s);
-/* The energy that the solution minimises, sum p u / 2 - sum p h, from the same sums
- * immediately after contact_gap(). */
+/* The energy that the solution minimises, sum p u / 2 - sum p h, less approach sum p
+ * where the approach is given; from the same sums immediately after contact_gap(). */
 double contact_energy(const struct contact *c, const struct sweep *s);
 /* Approximate displacement by a uniform pressure on the grid: pi times that of a wave as
  * long as the grid. */

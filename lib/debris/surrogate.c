@@ -148,6 +148,14 @@ static void find_deviations(const struct surrogate_sample *sample, const char *p
 static void find_range(const struct surrogate_sample *sample, const char *part, size_t n,
 	struct surrogate *s)
 {
+	s->flow[0] = INFINITY;
+	s->flow[1] = -INFINITY;
+	for (size_t i = 0; i < n; i++) {
+		if (part[i] != FIT)
+			continue;
+		s->flow[0] = fmin(s->flow[0], sample[i].flow);
+		s->flow[1] = fmax(s->flow[1], sample[i].flow);
+	}
 	for (int k = 0; k < FEATURES; k++) {
 		double count = 0, mean = 0, square = 0;
 
@@ -230,21 +238,37 @@ static double total_deviation(const struct surrogate *s, double independent, dou
 	return hypot(independent / total, s->shared);
 }
 
+double surrogate_flow(const double *pressure, size_t cells, double hardness)
+{
+	double loaded = 0, flows = 0;
+
+	for (size_t i = 0; i < cells; i++) {
+		loaded += pressure[i] > 0;
+		flows += pressure[i] > 0 && hardness > 0 && pressure[i] >= hardness;
+	}
+	return loaded > 0 ? flows / loaded : 0;
+}
+
+static int is_between(double x, double low, double high)
+{
+	double rounding = 1e-9 * (1 + fabs(x));
+
+	return x >= low - rounding && x <= high + rounding;
+}
+
 int surrogate_guess(const struct surrogate *s, const struct footprint *footprint,
-	size_t count, double level, struct surrogate_guess *guess,
+	size_t count, double flow, double level, struct surrogate_guess *guess,
 	struct surrogate_guess *total)
 {
 	double low, high, total_low, total_high, deviation;
 
 	*total = (struct surrogate_guess){ 0 };
+	if (count > 0 && !is_between(flow, s->flow[0], s->flow[1]))
+		return 0;
 	for (size_t i = 0; i < count; i++)
-		for (int k = 0; k < FEATURES; k++) {
-			double x = footprint[i].feature[k];
-			double rounding = 1e-9 * (1 + fabs(x));
-
-			if (!(x >= s->low[k] - rounding && x <= s->high[k] + rounding))
+		for (int k = 0; k < FEATURES; k++)
+			if (!is_between(footprint[i].feature[k], s->low[k], s->high[k]))
 				return 0;
-		}
 	if (!bounds(s->particle, s->particles, level, &low, &high) ||
 		!bounds(s->total, s->totals, level, &total_low, &total_high))
 		return 0;

@@ -5,11 +5,12 @@
  * (footprint.h), fitted by least squares.  Intervals are conformal: the stated shares of
  * particles and surfaces not used in the fit lie within them for any distribution of the
  * errors, provided that scenes are drawn like those of the fit.  There is no estimate
- * outside the range of the features of the fit.
+ * outside the range of the features of the fit, and of the share of a contact that flows:
+ * a limited pressure is more even than its mean and its maximum tell.
  *
  *	struct surrogate s;
  *	if (surrogate_fit(sample, n, &s, &report) == SURROGATE_OK)
- *		inside = surrogate_guess(&s, footprint, count, 0.9, guess, &total);
+ *		inside = surrogate_guess(&s, footprint, count, flow, 0.9, guess, &total);
  */
 #ifndef DEBRIS_SURROGATE_H
 #define DEBRIS_SURROGATE_H
@@ -29,6 +30,7 @@ struct surrogate {
 	double coefficient[SURROGATE_TERMS];
 	double deviation[SURROGATE_CLASSES]; /* of the logarithm */
 	double factor[SURROGATE_CLASSES];    /* mean over median of a volume */
+	double flow[2];                      /* range of the fit */
 	double shared; /* deviation that all particles of a surface have in common */
 	/* Ascending: ln(true / estimated volume) / deviation, of the particles and
 	 * surfaces held back for it. */
@@ -41,6 +43,7 @@ struct surrogate_sample {
 	long surface; /* number; those of one stand together */
 	struct footprint footprint;
 	double volume; /* m3 */
+	double flow;   /* of the surface */
 };
 
 /* Of the surfaces that neither the fit nor its intervals have seen. */
@@ -67,11 +70,14 @@ enum surrogate_status {
 enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_t n,
 	struct surrogate *s, struct surrogate_report *report);
 
+/* Share of the loaded cells of a contact that are at the hardness (0: none). */
+double surrogate_flow(const double *pressure, size_t cells, double hardness);
+
 /* Volumes of the particles of a surface and of all of them, with intervals of this level
  * (equal tails).  0 where a footprint lies outside the range of the fit, or the scores
  * are too few for the level: nothing is said then. */
 int surrogate_guess(const struct surrogate *s, const struct footprint *footprint,
-	size_t count, double level, struct surrogate_guess *guess,
+	size_t count, double flow, double level, struct surrogate_guess *guess,
 	struct surrogate_guess *total);
 
 #endif

@@ -26,6 +26,20 @@ void keys_set(struct keys *keys, const char *key, const char *value)
 	keys->value[i] = xstrdup(value);
 }
 
+void keys_drop(struct keys *keys, const char *key)
+{
+	int i = find(keys, key);
+
+	if (i < 0)
+		return;
+	free(keys->key[i]);
+	free(keys->value[i]);
+	for (keys->n--; i < keys->n; i++) {
+		keys->key[i] = keys->key[i + 1];
+		keys->value[i] = keys->value[i + 1];
+	}
+}
+
 const char *keys_get(const struct keys *keys, const char *key)
 {
 	int i = find(keys, key);

@@ -9,6 +9,7 @@ struct keys {
 
 /* Copies both; a key that is there gets the new value. */
 void keys_set(struct keys *keys, const char *key, const char *value);
+void keys_drop(struct keys *keys, const char *key);
 const char *keys_get(const struct keys *keys, const char *key); /* NULL if absent */
 void keys_free(struct keys *keys);
 

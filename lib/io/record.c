@@ -138,6 +138,11 @@ void record_set(struct record *r, const char *key, const char *format, ...)
 	keys_set(&r->keys, key, value);
 }
 
+void record_drop_key(struct record *r, const char *key)
+{
+	keys_drop(&r->keys, key);
+}
+
 const char *record_get(const struct record *r, const char *key)
 {
 	return keys_get(&r->keys, key);

@@ -14,17 +14,21 @@ static double slowness(const struct traffic *t, double u)
 
 double traffic_alone(const struct traffic *t, double zone)
 {
-	double s[RINGS], mean = 0, sum = 0;
+	double s[RINGS], weight[RINGS], mean = 0, sum = 0;
 
 	if (t->pipe.profile == PIPE_PLUG)
 		return exp(-2 * t->arrivals * zone / pipe_mean_velocity(&t->pipe));
+	/* Narrow near the wall, where the slowness of laminar flow is almost singular. */
 	for (int i = 0; i < RINGS; i++) {
-		s[i] = slowness(t, (i + 0.5) / RINGS);
-		mean += s[i] / RINGS;
+		double rest = 1 - (i + 0.5) / RINGS;
+
+		weight[i] = 2 * rest / RINGS;
+		s[i] = slowness(t, 1 - rest * rest);
+		mean += weight[i] * s[i];
 	}
 	for (int i = 0; i < RINGS; i++)
-		sum += exp(-t->arrivals * zone * (s[i] + mean));
-	return sum / RINGS;
+		sum += weight[i] * exp(-t->arrivals * zone * (s[i] + mean));
+	return sum;
 }
 
 double traffic_window(const struct traffic *t)

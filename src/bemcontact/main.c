@@ -112,6 +112,13 @@ static struct contact *solver_for(const struct record *r, const struct contact_p
 static void put_results(struct record *r, const struct contact_par *par,
 	const struct contact_result *s, int converged)
 {
+	/* What an earlier contact of this record left, and this one may not set again. */
+	static const char *const old[] = { "hardness", "coating", "plastic_area",
+		"friction", "tangential_load", "tangential_displacement", "stick_area",
+		"flow_depth", "flow_volume", NULL };
+
+	for (int k = 0; old[k]; k++)
+		record_drop_key(r, old[k]);
 	press_record(r, par);
 	if (par->kernel) {
 		/* The key of the contact modulus does not apply to this kernel. */
@@ -159,6 +166,15 @@ enum contact_status press_to(const struct task *t, const double *height,
 	return status;
 }
 
+/* A periodic surface in full contact does not approach any further, since the mean of the
+ * displacement is zero: what is left of the difference is rounding, of either sign. */
+static int is_full(const struct task *t)
+{
+	const struct contact_result *s = contact_result(t->c);
+
+	return t->par.boundary == CONTACT_PERIODIC && s->area == 1 && s->plastic == 0;
+}
+
 /* dF / d approach from loads 1 % less and more; nan if these are not solved.  The central
  * difference of a load F ~ approach^1.5 is wrong by 1e-5. */
 static double find_stiffness(
@@ -166,6 +182,7 @@ static double find_stiffness(
 {
 	size_t cells = (size_t)t->par.nx * (size_t)t->par.ny;
 	double area = t->par.nx * t->par.dx * t->par.ny * t->par.dy, approach[2];
+	int full = 1;
 
 	for (int k = 0; k < 2; k++) {
 		double target = pressure * (k ? 1.01 : 0.99);
@@ -177,9 +194,10 @@ static double find_stiffness(
 			CONTACT_OK)
 			return NAN;
 		approach[k] = contact_result(t->c)->approach;
+		full &= is_full(t);
 		stats_add("stiffness_transforms", contact_result(t->c)->work);
 	}
-	return 0.02 * pressure * area / (approach[1] - approach[0]);
+	return full ? INFINITY : 0.02 * pressure * area / (approach[1] - approach[0]);
 }
 
 static double highest(const struct task *t)
@@ -267,7 +285,6 @@ static void doubt(const struct contact_par *par, double pressure)
 		said = 0;
 }
 
-/* Solves one record in place; returns 1 if it converged. */
 /* Written before it is read, and by all threads: see clear_cells() of the solver. */
 static void clear_row(void *context, size_t row, int worker)
 {
@@ -278,6 +295,7 @@ static void clear_row(void *context, size_t row, int worker)
 	memset(t->p + row * nx, 0, nx * sizeof *t->p);
 }
 
+/* Solves one record in place; returns 1 if it converged. */
 static int solve_record(struct record *r, const struct fields_in *in, struct pool *pool)
 {
 	struct task t = { .r = r, .name = fields_name(in), .number = fields_count(in) };

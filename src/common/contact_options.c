@@ -86,6 +86,9 @@ struct contact_par press_par(const struct record *r, struct pool *pool)
 	int periodic = opt_given("boundary") || !around ? press.boundary
 							: strcmp(around, "periodic") == 0;
 
+	if (periodic && press.multiply)
+		die(EXIT_USAGE,
+			"--multiply mlms requires --boundary free, and the record is periodic");
 	return (struct contact_par){ .nx = r->nx,
 		.ny = r->ny,
 		.dx = r->dx,
@@ -98,6 +101,20 @@ struct contact_par press_par(const struct record *r, struct pool *pool)
 		.tolerance = press.tolerance,
 		.max_iterations = press.max_iterations,
 		.pool = pool };
+}
+
+int press_given(const struct record *r, const char *name, long number)
+{
+	const char *converged = record_get(r, "converged");
+
+	if (record_get(r, "coating"))
+		die(EXIT_RUN,
+			"%s: record %ld is the contact of a coated body: want bodies of one material",
+			name, number);
+	if (!converged || strcmp(converged, "no") != 0)
+		return 1;
+	warn("%s: record %ld: its contact did not converge", name, number);
+	return 0;
 }
 
 void press_record(struct record *r, const struct contact_par *par)

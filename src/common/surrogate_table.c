@@ -77,6 +77,7 @@ void surrogate_write(
 	}
 	put_numbered(t, "deviation", s->deviation, SURROGATE_CLASSES);
 	put_numbered(t, "factor", s->factor, SURROGATE_CLASSES);
+	put_numbered(t, "flow", s->flow, 2);
 	put_numbered(t, "shared", &s->shared, 1);
 	put_numbered(t, "particle", s->particle, s->particles);
 	put_numbered(t, "total", s->total, s->totals);
@@ -122,6 +123,8 @@ static double *place_of(const struct table_in *t, struct surrogate *s, const cha
 		return s->deviation + number - 1;
 	if (!strcmp(kind, "factor") && number >= 1 && number <= SURROGATE_CLASSES)
 		return s->factor + number - 1;
+	if (!strcmp(kind, "flow") && number >= 1 && number <= 2)
+		return s->flow + number - 1;
 	if (!strcmp(kind, "shared") && number == 1)
 		return &s->shared;
 	if (!strcmp(kind, "particle") && s->particles < SURROGATE_SCORES)
@@ -162,7 +165,7 @@ void surrogate_read(const char *path, struct surrogate *s)
 		free(b);
 		rows++;
 	}
-	if (rows != 4L * FEATURES + SURROGATE_TERMS + 2L * SURROGATE_CLASSES + 1 +
+	if (rows != 4L * FEATURES + SURROGATE_TERMS + 2L * SURROGATE_CLASSES + 3 +
 			    s->particles + s->totals)
 		die(EXIT_RUN, "%s: %ld rows: no whole surrogate of debrisfit",
 			table_name(t), rows);

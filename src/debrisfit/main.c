@@ -60,7 +60,8 @@ static struct debris_par par_of(const struct record *r, long record)
 }
 
 static void add_samples(const struct fields_in *in, long surface, int nx,
-	const struct debris_step *step, const struct footprint *list, size_t n)
+	const struct debris_step *step, const struct footprint *list, size_t n,
+	double flow)
 {
 	if (n != step->count)
 		die(EXIT_RUN, "%s: record %ld: %zu footprints of %zu particles",
@@ -74,7 +75,7 @@ static void add_samples(const struct fields_in *in, long surface, int nx,
 			if ((size_t)p->first[1] * (size_t)nx + (size_t)p->first[0] ==
 				list[i].first)
 				sample[count++] = (struct surrogate_sample){ surface,
-					list[i], p->volume };
+					list[i], p->volume, flow };
 		}
 }
 
@@ -103,7 +104,9 @@ static void take_record(const struct fields_in *in, const struct record *r, long
 	if (footprints_find(f, debris_stress(d), pressure, par.yield, &list, &n) !=
 		NUM_OK)
 		die(EXIT_RUN, "out of memory");
-	add_samples(in, surface, r->nx, &step, list, n);
+	add_samples(in, surface, r->nx, &step, list, n,
+		surrogate_flow(pressure, (size_t)r->nx * (size_t)r->ny,
+			record_get_number(r, "hardness")));
 	footprints_free(f);
 	debris_free(d);
 	free(height);
@@ -119,6 +122,7 @@ int main(int argc, char **argv)
 	enum surrogate_status status;
 	long surfaces = 0;
 	char *cmd = NULL;
+	int done = EXIT_SUCCESS;
 
 	if (!yield.n)
 		die(EXIT_USAGE, "want --yield");
@@ -129,6 +133,8 @@ int main(int argc, char **argv)
 		if (around && !strcmp(around, "periodic"))
 			die(EXIT_RUN, "%s: record %ld is periodic: want free surfaces",
 				fields_name(in), fields_count(in));
+		if (!press_given(&r, fields_name(in), fields_count(in)))
+			done = EXIT_NOCONV;
 		if (!cmd)
 			cmd = opt_cmd(r.cmd, NULL);
 		progress("surfaces", (double)surfaces, 0);
@@ -157,5 +163,5 @@ int main(int argc, char **argv)
 	free(cmd);
 	record_free(&r);
 	fields_close(in);
-	return shell_done(EXIT_SUCCESS);
+	return shell_done(done);
 }

@@ -79,6 +79,11 @@ static void read_next(struct counterface *c)
 	size_t n;
 
 	if (c->given && !fields_more(c->in)) {
+		if (fields_count(c->in) > 1)
+			die(EXIT_RUN,
+				"%s: %ld records are fewer than those of the input: want one "
+				"for each, or one for all",
+				fields_name(c->in), fields_count(c->in));
 		memcpy(c->height, c->given, samples(&c->record) * sizeof *c->height);
 		return;
 	}

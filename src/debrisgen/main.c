@@ -87,6 +87,9 @@ static void open_scene(struct run *run, struct record *r, struct scene *c)
 	if (r->nz != 1)
 		die(EXIT_RUN, "%s: record %ld: want plane fields, got %d layers",
 			fields_name(run->in), fields_count(run->in), r->nz);
+	if (!wearing_solves(run->wearing, 1) &&
+		!press_given(r, fields_name(run->in), fields_count(run->in)))
+		run->status = EXIT_NOCONV;
 	crown = record_get_number(r, "crown");
 	sq = record_get_number(r, "sq");
 	if (record_find(r, "pressure") < 0 && wearing_solves(run->wearing, 1))

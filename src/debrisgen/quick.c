@@ -29,6 +29,7 @@ static const double UNLIKELY = 0.01;
 struct quick {
 	struct surrogate surrogate;
 	struct footprints *footprints;
+	size_t cells;
 	struct surrogate_guess *guess;
 	struct particle *particle;
 	size_t room;
@@ -64,6 +65,7 @@ void quick_prepare(struct quick *q, const struct stress_par *par)
 {
 	footprints_free(q->footprints);
 	q->footprints = footprints_new(par);
+	q->cells = (size_t)par->nx * (size_t)par->ny;
 	if (!q->footprints)
 		die(EXIT_RUN, "out of memory");
 }
@@ -106,7 +108,7 @@ static int is_wide(const struct surrogate_guess *total)
 }
 
 int quick_step(struct quick *q, struct stress *stress, const double *pressure,
-	double yield, long realisation, struct debris_step *step)
+	double yield, double hardness, long realisation, struct debris_step *step)
 {
 	const struct footprint *list;
 	size_t n;
@@ -120,8 +122,9 @@ int quick_step(struct quick *q, struct stress *stress, const double *pressure,
 	}
 	q->volumes = (struct quick_volumes){ .exact = n == 0, .particle = q->guess };
 	q->audited = 0;
-	if (!surrogate_guess(
-		    &q->surrogate, list, n, level, q->guess, &q->volumes.total)) {
+	if (!surrogate_guess(&q->surrogate, list, n,
+		    surrogate_flow(pressure, q->cells, hardness), level, q->guess,
+		    &q->volumes.total)) {
 		q->outside++;
 		return 0;
 	}

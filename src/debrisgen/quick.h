@@ -29,7 +29,7 @@ void quick_prepare(struct quick *q, const struct stress_par *par);
  * has been loaded with.  Fills step and returns 1, or 0 where the full model is wanted:
  * outside the range of the fit, where the interval is too wide, or to audit. */
 int quick_step(struct quick *q, struct stress *stress, const double *pressure,
-	double yield, long realisation, struct debris_step *step);
+	double yield, double hardness, long realisation, struct debris_step *step);
 /* What the full model found instead. */
 void quick_take(struct quick *q, const struct debris_step *step);
 const struct quick_volumes *quick_volumes(const struct quick *q);

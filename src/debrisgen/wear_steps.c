@@ -373,7 +373,7 @@ static void wear_by_stress(struct wearing *w, const struct worn_surface *c, long
 	if (w->quick)
 		refuse(w, debris_load(w->debris, c->p), step);
 	if (w->quick && quick_step(w->quick, debris_stress(w->debris), c->p, yield.v[0],
-				c->r->realisation, &w->lost)) {
+				w->pressing.hardness, c->r->realisation, &w->lost)) {
 		count_work(&w->lost, stress_work(debris_stress(w->debris)), &w->seen);
 	} else if (is_worn(FIRST)) {
 		refuse(w, debris_step(w->debris, c->h, c->p, &w->lost), step);
@@ -397,17 +397,24 @@ static void wear_by_stress(struct wearing *w, const struct worn_surface *c, long
 static long archard_parts(const struct wearing *w, double distance)
 {
 	const struct contact_par *p = &w->pressing;
-	double k = is_worn(FIRST) ? of_body(&wear_rate, FIRST) : 0, limit;
+	double k = is_worn(FIRST) ? of_body(&wear_rate, FIRST) : 0, limit, parts;
 
 	k += is_worn(SECOND) ? of_body(&wear_rate, SECOND) : 0;
 	limit = 0.8 * 4 * fmin(p->dx, p->dy) / (sqrt(2) * M_PI * p->estar);
-	return (long)fmin(1e9, fmax(1, ceil(k * distance / limit)));
+	parts = ceil(k * distance / limit);
+	/* days of contacts: rather a rate in another unit than a wish */
+	if (parts > 1e7)
+		die(EXIT_USAGE,
+			"--wear-rate: a step of %g m would take %.0e contacts: want a lower "
+			"rate, in m2/N, or a shorter distance",
+			distance, parts);
+	return (long)fmax(1, parts);
 }
 
-/* Removes the same depths from a body for every part of the distance; returns the volume,
+/* Removes the depths that a part of the distance wears off a body; returns the volume,
  * m3. */
 static double wear_part(double *height, const double *p, size_t n, double rate,
-	double distance, double area, double *deepest)
+	double distance, double area)
 {
 	double volume = 0;
 
@@ -416,9 +423,17 @@ static double wear_part(double *height, const double *p, size_t n, double rate,
 
 		height[i] -= depth;
 		volume += depth * area;
-		*deepest = fmax(*deepest, depth);
 	}
 	return volume;
+}
+
+static double deepest(const double *before, const double *after, size_t n)
+{
+	double depth = 0;
+
+	for (size_t i = 0; i < n; i++)
+		depth = fmax(depth, before[i] - after[i]);
+	return depth;
 }
 
 /* Wears by k p ds, solving the contact for every part of the distance; 1, or 0 if a
@@ -429,27 +444,32 @@ static int wear_by_archard(struct wearing *w, const struct worn_surface *c, doub
 	size_t n = (size_t)c->r->nx * (size_t)c->r->ny;
 	double area = c->r->dx * c->r->dy;
 	long parts = archard_parts(w, distance);
+	double *before = xcalloc(2 * n, sizeof *before);
 	int solved = 1;
 
 	w->second_lost = w->lost;
 	if (stress_load(debris_stress(w->debris), c->p))
 		refuse(w, DEBRIS_NUMBERS, step);
+	memcpy(before, c->h, n * sizeof *before);
+	if (is_worn(SECOND))
+		memcpy(before + n, w->other, n * sizeof *before);
 	for (long k = 0; k < parts; k++) {
-		double ds = distance / (double)parts, first = 0, second = 0;
+		double ds = distance / (double)parts;
 
 		if (k > 0)
 			solved &= wearing_press(w, c, target, step);
 		if (is_worn(FIRST))
-			w->lost.volume += wear_part(c->h, c->p, n,
-				of_body(&wear_rate, FIRST), ds, area, &first);
+			w->lost.volume += wear_part(
+				c->h, c->p, n, of_body(&wear_rate, FIRST), ds, area);
 		if (is_worn(SECOND)) {
-			w->second_lost.volume += wear_part(w->other, c->p, n,
-				of_body(&wear_rate, SECOND), ds, area, &second);
+			w->second_lost.volume += wear_part(
+				w->other, c->p, n, of_body(&wear_rate, SECOND), ds, area);
 			counterface_return(w->counterface, step, w->other);
 		}
-		w->lost.depth += first;
-		w->second_lost.depth += second;
 	}
+	w->lost.depth = is_worn(FIRST) ? deepest(before, c->h, n) : 0;
+	w->second_lost.depth = is_worn(SECOND) ? deepest(before + n, w->other, n) : 0;
+	free(before);
 	w->lost.wear.stress = w->second_lost.wear.stress = NAN;
 	stats_add("wear_parts", (double)parts);
 	return solved;

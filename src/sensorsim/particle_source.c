@@ -210,7 +210,10 @@ struct source *source_open(const char *path, uint64_t seed, uint32_t realisation
 		die(EXIT_RUN, "no memory");
 	wander_start(&s->drift, s->normals, (uint64_t)1 << 47, sensors_drift_time());
 	if (uniform.n) {
-		make_arrivals(s, number >= 0 ? (uint64_t)number : UINT64_MAX);
+		/* A rate of 0 stands for a given number, also where the oil is clean. */
+		make_arrivals(s, number >= 0 ? (uint64_t)number
+				 : particle_rate(s->stream.pipe.flow) > 0 ? UINT64_MAX
+									  : 0);
 		return s;
 	}
 	s->table = table_open(path);

@@ -1,7 +1,7 @@
 /* hardness_scene.h - random contacts with a hardness, most of them where load over
  * hardness is a whole number of cells, and an independent bound on the error of a
  * solution.  Those of a second set have white noise for heights and prime numbers of
- * cells. */
+ * cells, those of a third are strips as long as a few waves. */
 #ifndef HARDNESS_SCENE_H
 #define HARDNESS_SCENE_H
 
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum hardness_set { HARDNESS_SHAPES, HARDNESS_NOISE, HARDNESS_SETS };
+enum hardness_set { HARDNESS_SHAPES, HARDNESS_NOISE, HARDNESS_STRIPS, HARDNESS_SETS };
 /* Random numbers of the scenes of a set: those of its first on. */
 enum { HARDNESS_STREAMS = 1 << 20 };
 
@@ -67,7 +67,34 @@ static int hardness_prime(int k, uint64_t place)
 	return prime[(size_t)(hardness_draw(k, place) * sizeof prime / sizeof *prime)];
 }
 
-static struct hardness_scene hardness_scene(int k, enum hardness_set set)
+/* Waves along a strip of 1 to 9 rows, and noise. */
+static struct hardness_scene hardness_strip(int k)
+{
+	struct hardness_scene s = { .par = { .nx = (int)hardness_range(k, 1, 100, 2000),
+					    .ny = (int)(1 + 9 * hardness_draw(k, 2)),
+					    .dx = 1e-6,
+					    .dy = 1e-6,
+					    .estar = 1e11,
+					    .tolerance = 1e-8,
+					    .max_iterations = 5000 } };
+	double amplitude = hardness_range(k, 5, 1e-7, 3e-6),
+	       noise = fmax(0.1, hardness_draw(k, 3));
+	double waves = floor(1 + 3 * hardness_draw(k, 4));
+	int cells = s.par.nx * s.par.ny;
+
+	s.par.boundary = hardness_draw(k, 6) < 0.3 ? CONTACT_FREE : CONTACT_PERIODIC;
+	s.mean = s.par.estar * amplitude / s.par.dx * hardness_range(k, 7, 1e-3, 0.3);
+	s.par.hardness = s.mean * hardness_range(k, 8, 1.1, 22);
+	s.height = fft_alloc((size_t)cells);
+	for (int i = 0; i < cells; i++)
+		s.height[i] =
+			amplitude *
+			(cos(6.283185307179586 * waves * (i % s.par.nx) / s.par.nx) +
+				noise * (4 * hardness_draw(k, 1000 + (uint64_t)i) - 2));
+	return s;
+}
+
+static struct hardness_scene hardness_small(int k, enum hardness_set set)
 {
 	struct hardness_scene s = { .par = { .nx = (int)hardness_range(k, 1, 1, 44),
 					    .ny = (int)hardness_range(k, 2, 2, 44),
@@ -101,6 +128,11 @@ static struct hardness_scene hardness_scene(int k, enum hardness_set set)
 		loaded *= 1 + 1e-13;
 	s.mean = fmin(loaded, cells - 0.5) / cells * s.par.hardness;
 	return s;
+}
+
+static struct hardness_scene hardness_scene(int k, enum hardness_set set)
+{
+	return set == HARDNESS_STRIPS ? hardness_strip(k) : hardness_small(k, set);
 }
 
 static int hardness_order(const void *a, const void *b)
@@ -190,7 +222,8 @@ static inline void hardness_scan(int first, int last)
 {
 	static const char *const name[] = { "the default", "Polonsky and Keer's" };
 	static const char *const what[] = { "scenes with a hardness",
-		"scenes of white noise on prime numbers of cells with a hardness" };
+		"scenes of white noise on prime numbers of cells with a hardness",
+		"scenes of waves along strips with a hardness" };
 
 	for (int i = 0; i < 2 * HARDNESS_SETS; i++) {
 		struct hardness_outcome o = { 0 };

@@ -127,6 +127,27 @@ static void compare_with_formula(void)
 	}
 }
 
+/* The probability of a lone pulse in laminar flow, by a sum over radii. */
+static double alone_in_laminar(const struct traffic *t, double zone)
+{
+	enum { RADII = 100000 };
+	double mean = 0, flow = 0, sum = 0, v = 2 * pipe_mean_velocity(&t->pipe);
+
+	for (int pass = 0; pass < 2; pass++)
+		for (int i = 0; i < RADII; i++) {
+			double r = 0.99 * (i + 0.5) / RADII, here = v * (1 - r * r);
+
+			if (pass == 0) {
+				flow += r * here;
+				mean += r * zone;
+			} else {
+				sum += r * here *
+				       exp(-t->arrivals * (zone / here + mean / flow));
+			}
+		}
+	return sum / flow;
+}
+
 static void check_traffic(void)
 {
 	struct traffic t = { { 0.01, 1e-3, PIPE_PLUG, 7 }, 100, 0.025 };
@@ -144,6 +165,11 @@ static void check_traffic(void)
 	/* the wall is at 0.99 R, where the velocity is 2 U (1 - 0.99^2) */
 	near(traffic_window(&t) * v * 2, 1 / (1 - 0.99 * 0.99) - 1, 1e-9,
 		"a laminar profile spreads transit times from the axis to the wall");
+	for (t.arrivals = 1; t.arrivals < 200; t.arrivals *= 10)
+		ok(fabs(traffic_alone(&t, 0.1273) - alone_in_laminar(&t, 0.1273)) < 1e-5,
+			"pulses in laminar flow are alone as a sum over radii tells, %g per second",
+			t.arrivals);
+	t.arrivals = 100;
 	/* The mean of 1/v over the flow is area / flow whatever the profile, so that
 	 * exp(-x), being convex, can only gain. */
 	ok(traffic_alone(&t, 0.1273) > plug,

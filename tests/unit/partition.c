@@ -116,28 +116,37 @@ static double draw_volume(int law, gsl_rng *rng)
 		return gsl_ran_pareto(rng, 1.5, 1) / 3;
 	case 10:
 		return gsl_ran_pareto(rng, 2, 1) / 2;
+	case 12:
+		return gsl_rng_uniform(rng) < 0.5 ? 0 : gsl_ran_gamma(rng, 4, 0.5);
 	default:
 		return gsl_ran_pareto(rng, 3, 1) / 1.5;
 	}
 }
 
-/* Share of ensembles of k realisations whose interval of 90 % holds the mean; the draws
- * lie within it where at most 95 % of them lie to either side of the truth. */
+/* Share of ensembles of k realisations, of those with any wear, whose interval of 90 %
+ * holds the mean; the draws lie within it where at most 95 % of them lie to either side
+ * of the truth. */
 static double coverage(int law, int k)
 {
 	enum { ENSEMBLES = 1000, DRAWS = 100 };
 	gsl_rng *rng = rng_new(3, 0, RNG_LIFE);
-	int held = 0;
+	int held = 0, worn = 0;
 
 	for (int i = 0; i < ENSEMBLES; i++) {
 		struct partition *p = partition_new(fragment, 1, 0);
+		double sum = 0;
 		int below = 0;
 
 		rng_reset(rng, 3, (uint32_t)i, RNG_LIFE);
 		add_class(p, 0, NAN, -1);
-		for (int r = 0; r < k; r++)
-			partition_fragment(p, 0, r, 1, draw_volume(law, rng), 0, 0);
+		for (int r = 0; r < k; r++) {
+			double volume = draw_volume(law, rng);
+
+			sum += volume;
+			partition_fragment(p, 0, r, 1, volume, 0, 0);
+		}
 		partition_close(p, fragment, 0);
+		worn += sum > 0;
 		for (int d = 0; d < DRAWS; d++) {
 			struct partition_wear w;
 
@@ -148,27 +157,25 @@ static double coverage(int law, int k)
 		partition_free(p);
 	}
 	gsl_rng_free(rng);
-	return (double)held / ENSEMBLES;
+	return (double)held / worn;
 }
 
-/* The constants were not chosen by the Weibull laws.  Measured with 4000 ensembles: see
- * partition.h; sampling error of 1000 ensembles of 100 draws: 0.012. */
+/* Measured with 20 000 ensembles and exact quantiles: see partition.h.  Of 100 draws the
+ * interval is a percent narrower; sampling error of 1000 ensembles: 0.012. */
 static void check_coverage(void)
 {
 	static const char *const laws[] = { "normal", "uniform", "exponential",
 		"gamma of shape 0.5", "lognormal of sigma 1", "lognormal of sigma 1.5",
 		"gamma with zeros", "Weibull of shape 0.5", "Weibull of shape 2",
-		"Pareto of index 1.5", "Pareto of index 2", "Pareto of index 3" };
-	static const int counts[] = { 3, 5, 10, 30 };
+		"Pareto of index 1.5", "Pareto of index 2", "Pareto of index 3",
+		"half zeros" };
+	static const int counts[] = { 3, 4, 5, 10, 30 };
 
-	for (int law = 0; law < 12; law++)
-		for (int k = 0; k < 4; k++) {
+	for (int law = 0; law < 13; law++)
+		for (int k = 0; k < 5; k++) {
 			double c = coverage(law, counts[k]);
 
-			ok(c > (law < 9           ? 0.85
-				       : law == 9 ? 0.81
-						  : 0.84) &&
-					c < 0.97,
+			ok(c > (law == 9 ? 0.83 : 0.85) && c < 0.97,
 				"%s, %d volumes: 90 %% intervals contain the mean in %.3f of the ensembles",
 				laws[law], counts[k], c);
 		}

@@ -66,7 +66,7 @@ static double coverage(const struct surrogate *s, double own, double shared)
 				list[i].feature[j] = 0.02 + 0.96 * list[i].feature[j];
 			volume += sample[i].volume;
 		}
-		if (!surrogate_guess(s, list, MANY, 0.9, guess, &total))
+		if (!surrogate_guess(s, list, MANY, 0, 0.9, guess, &total))
 			continue;
 		tried++;
 		held += total.low <= volume && volume <= total.high;

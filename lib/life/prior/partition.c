@@ -441,14 +441,13 @@ static const double least_draw = 0.01;
 /* A draw of the mean, relative to the observed one: see partition.h. */
 static double draw_mean(const struct class *c, gsl_rng *rng)
 {
-	const double tail = 2.8, square = 0.9;
+	const double tail = 4.7, square = 1.2;
 	double k = c->realisations, t, more;
 
 	if (!(c->error > 0))
 		return 1;
 	t = gsl_ran_tdist(rng, k - 1) * c->error;
-	more = t < 0 ? square * t * t - tail * c->skewness * t / sqrt(c->error * sqrt(k))
-		     : 0;
+	more = t < 0 ? square * t * t - tail * c->skewness * t / sqrt(c->error * k) : 0;
 	/* With few realisations t may be of any size: no infinite rates, and see
 	 * least_draw. */
 	return fmax(exp(fmin(more - t, 200)), least_draw);

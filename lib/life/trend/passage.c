@@ -3,6 +3,7 @@
 #include "life/trend/bank_state.h"
 #include "num/deviates.h"
 #include "num/philox.h"
+#include "num/running.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -23,7 +24,7 @@ static const double KIN_HAZARD = 0.5;
  * and four of the weights were swept again, as doc/benchmarks.md tells. */
 static const struct future {
 	double hazard, falls, growth;
-} future[] = { { 2.5, 0.24, 3.5 }, { 1.2, 0.18, 3 }, { 0.64, 0.033, 1.9 } };
+} future[] = { { 2.5, 0.24, 3.5 }, { 1.2, 0.18, 3 }, { 0.6, 0.033, 1.9 } };
 
 enum { FUTURES = sizeof future / sizeof *future };
 
@@ -35,6 +36,15 @@ static const double GROWTH_SD = 2.7; /* of its logarithm */
  * rest of the life. */
 static const double FALL = 1.4, FALL_SD = 0.45;
 
+/* Beyond the damage that has been reached, the wear may follow another curve than the
+ * coordinate.  This stands for all curves near it, and in quiet data it alone has the
+ * weight, though others may fit as well.  Where the rate of the damage changes by e as an
+ * average over the way, the logarithm of the time has the sd STRAY, and its median is
+ * LEAN less: most wear bends more than its coordinate, because straight coordinates have
+ * more weight.  Both were chosen with the hazard of a rising rate, as doc/benchmarks.md
+ * tells. */
+static const double STRAY = 0.27, LEAN = 0.015;
+
 struct bank_chances {
 	int n;
 	struct chance {
@@ -42,6 +52,9 @@ struct bank_chances {
 		double z[CHANCES]; /* the same as normal deviates */
 		/* Of the next change, from u and z: its time in ages, growth and fall. */
 		double turn[FUTURES], growth, fall;
+		/* Of Laplace's distribution, variance 1, from u[3]: a Wiener process
+		 * takes the square of z[3]. */
+		double stray;
 	} draw[];
 };
 
@@ -77,6 +90,8 @@ struct bank_chances *bank_chances_new(int draws, uint64_t seed)
 			d->turn[k] = pow(d->u[5], -1 / future[k].hazard) - 1;
 		d->growth = exp(GROWTH_SD * d->z[7]);
 		d->fall = exp(FALL + FALL_SD * d->z[7]);
+		d->stray =
+			copysign(log1p(-fabs(2 * d->u[3] - 1)) / sqrt(2), 0.5 - d->u[3]);
 	}
 	return c;
 }
@@ -104,6 +119,7 @@ struct crossing {
 	double variance, freedom; /* of the noise, with autocorrelation; of chi^2 */
 	double wiener;            /* variance of h per unit of time */
 	double growth;            /* of the rate at present */
+	double stray, lean;       /* see STRAY */
 	const struct future *future;
 	double hazard; /* for the path of another unit; 0: as in the table of futures */
 };
@@ -171,8 +187,44 @@ static const struct future *future_of(const struct bank_shape *s)
 	return &future[s->n > 0 || s->par <= 0 ? 1 : 2];
 }
 
-static struct crossing prepare(
-	const struct bank *b, const struct trend *tr, double ahead, double target)
+/* Variance of the logarithm of the time to the passage between the trends. */
+static double spread_of(const struct bank *b, double target)
+{
+	struct running logs = { 0 };
+	double limit = 0;
+	int shape = -1;
+
+	for (int i = 0; i < b->trends; i++) {
+		const struct trend *tr = &b->trend[i];
+		double time;
+
+		if (tr->shape != shape)
+			limit = place_of(b, shape = tr->shape, target).h;
+		time = (limit - tr->h) / (grown(tr, b->age) * tr->v);
+		if (tr->growth > 0)
+			time = log1p(tr->growth * time) / tr->growth;
+		if (time > 0 && isfinite(time))
+			running_repeat(&logs, log(time), tr->weight);
+	}
+	return logs.n > 0 ? logs.square / logs.n : 0;
+}
+
+/* How the time to a level strays because the curve of the damage on the way there is not
+ * known; h: of the present damage.  A straight line does not stray, and what the trends
+ * and their rates leave uncertain is a part of it. */
+static void let_stray(struct crossing *p, double h, double spread)
+{
+	double bend = log(p->straight / (p->limit - h)),
+	       known = spread + p->pvv * p->variance / (p->v * p->v);
+
+	if (!isfinite(bend))
+		return;
+	p->stray = sqrt(fmax(0, STRAY * STRAY * fabs(bend) - known));
+	p->lean = LEAN * bend;
+}
+
+static struct crossing prepare(const struct bank *b, const struct trend *tr, double ahead,
+	double target, double spread)
 {
 	struct place here = place_of(b, tr->shape, b->level),
 		     there = place_of(b, tr->shape, target);
@@ -208,6 +260,8 @@ static struct crossing prepare(
 	heed_prior(b->par.rate_mean * scale, b->par.rate_sd * fabs(scale), &p);
 	if (shape_of(b, tr->shape)->n > 0)
 		heed_prior(1, PACE, &p);
+	else /* the path of another unit is known to its end */
+		let_stray(&p, here.h, spread);
 	return p;
 }
 
@@ -263,6 +317,7 @@ static double draw_life(const struct bank *b, const struct crossing *p, double a
 			time, p->wiener * time / (v * v), c->z[3], c->u[4]);
 	if (!isfinite(time) || b->par.steady)
 		return time;
+	time *= exp(p->stray * c->stray - p->lean);
 	if (p->straight > v * NOTHING * age)
 		return INFINITY;
 	if (p->growth > 0)
@@ -274,7 +329,7 @@ void bank_draw(struct bank *b, const struct bank_chances *c, double now, double 
 	double *life)
 {
 	double ahead = (now - b->idle - b->last) / b->unit, reached = 0;
-	double target = damage_of(b, level);
+	double target = damage_of(b, level), spread = spread_of(b, target);
 	int drawn = 0;
 
 	for (int i = 0; i < b->trends; i++) {
@@ -283,7 +338,7 @@ void bank_draw(struct bank *b, const struct bank_chances *c, double now, double 
 		reached += b->trend[i].weight;
 		if (!(reached * c->n > drawn + 0.5))
 			continue;
-		p = prepare(b, &b->trend[i], ahead, target);
+		p = prepare(b, &b->trend[i], ahead, target, spread);
 		for (; drawn < c->n && reached * c->n > drawn + 0.5; drawn++)
 			life[drawn] = b->unit *
 				      draw_life(b, &p, b->age + ahead, &c->draw[drawn]);

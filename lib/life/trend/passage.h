@@ -4,7 +4,8 @@
  * their Student-t distribution, and computes the first passage of the level: exact for a
  * straight line, an inverse Gaussian time if the damage is a Wiener process.
  * A rate that drifts in its coordinate, as the trends of different memories show, is the
- * less certain the longer the way is.
+ * less certain the longer the way is.  Beyond the damage that has been reached, the wear
+ * may stray from a curved coordinate, unless the trends disagree as much already.
  *
  * The regime may change once more: after a time J with P(J > x) = (a / (a + x))^c at age
  * a (an old regime lasts long), the rate begins to grow as e^{g (t - J)}, or drops and
