@@ -1,6 +1,7 @@
 #include "contact/mlms.h"
 #include "num/fft.h"
 #include "num/status.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,6 +24,7 @@ struct level {
 	size_t nx, ny;
 	int depth_x, depth_y; /* a step here is 2^depth cells of the finest level */
 	int halve_x, halve_y; /* directions in which the next level is coarser */
+	int reach_x, reach_y; /* of the corrections, cells */
 	double *source;       /* finest: the caller's x */
 	double *image;        /* finest: the caller's y */
 	double *half;        /* between the levels: ny rows as long as the next level's */
@@ -32,7 +34,7 @@ struct level {
 };
 
 struct mlms {
-	int order, reach, levels;
+	int order, levels;
 	double weight[ORDER_MAX]; /* Lagrange's, for the middle between two nodes */
 	struct level level[LEVELS_MAX];
 	struct pool *pool;
@@ -87,7 +89,7 @@ static struct nodes nodes_of(const struct mlms *m, int odd)
 }
 
 /* K less its interpolation between a source of some parity and a cell at an offset.
- * table: K at offsets 0..width - 1 of this level. */
+ * table: K at offsets of this level, rows of width. */
 static double missing(const struct mlms *m, const double *table, size_t width,
 	const int odd[4], int dx, int dy)
 {
@@ -115,21 +117,22 @@ static double missing(const struct mlms *m, const double *table, size_t width,
 static enum num_status make_near(
 	struct mlms *m, struct level *l, kernel_value value, const void *context)
 {
-	int reach = m->reach, side = 2 * reach + 1;
-	size_t width = (size_t)reach + 2 * (size_t)m->order, out = 0;
-	double *table = fft_alloc(width * width);
+	size_t width = (size_t)l->reach_x + 2 * (size_t)m->order, out = 0;
+	size_t height = (size_t)l->reach_y + 2 * (size_t)m->order;
+	double *table = fft_alloc(width * height);
 
-	l->near = fft_alloc(4 * (size_t)side * (size_t)side);
+	l->near = fft_alloc(
+		4 * (size_t)(2 * l->reach_x + 1) * (size_t)(2 * l->reach_y + 1));
 	if (!table || !l->near) {
 		fft_free(table);
 		return NUM_MEMORY;
 	}
-	for (size_t i = 0; i < width * width; i++)
+	for (size_t i = 0; i < width * height; i++)
 		table[i] = value(
 			context, (i % width) << l->depth_x, (i / width) << l->depth_y);
 	for (int parity = 0; parity < 4; parity++)
-		for (int dy = -reach; dy <= reach; dy++)
-			for (int dx = -reach; dx <= reach; dx++) {
+		for (int dy = -l->reach_y; dy <= l->reach_y; dy++)
+			for (int dx = -l->reach_x; dx <= l->reach_x; dx++) {
 				int px = parity & 1, py = parity >> 1;
 				int odd[4] = { l->halve_x && px, l->halve_y && py,
 					l->halve_x && ((px + dx) & 1),
@@ -153,8 +156,29 @@ static enum num_status make_coarsest(
 	return NUM_OK;
 }
 
-static enum num_status make_levels(
-	struct mlms *m, size_t nx, size_t ny, kernel_value value, const void *context)
+/* No farther than the grid. */
+static int reach_of(double cells, size_t n)
+{
+	return cells < (double)n ? (int)ceil(cells - 1e-9) : (int)n - 1;
+}
+
+/* Where the cells of a level are twice as long as wide or more, only their short sides
+ * are doubled, as long as these have enough cells. */
+static void choose_coarser(
+	const struct mlms *m, struct level *l, double aspect, double reach)
+{
+	double hx = ldexp(1, l->depth_x), hy = ldexp(aspect, l->depth_y), widest;
+	int x = worth_halving(l->nx, m->order), y = worth_halving(l->ny, m->order);
+
+	l->halve_x = x && !(y && hx >= 2 * hy);
+	l->halve_y = y && !(x && hy >= 2 * hx);
+	widest = fmax(l->halve_x ? hx : 0, l->halve_y ? hy : 0);
+	l->reach_x = reach_of(reach * widest / hx, l->nx);
+	l->reach_y = reach_of(reach * widest / hy, l->ny);
+}
+
+static enum num_status make_levels(struct mlms *m, size_t nx, size_t ny, double aspect,
+	double reach, kernel_value value, const void *context)
 {
 	int depth_x = 0, depth_y = 0;
 
@@ -172,8 +196,7 @@ static enum num_status make_levels(
 			if (!l->source || !l->image)
 				return NUM_MEMORY;
 		}
-		l->halve_x = worth_halving(nx, m->order);
-		l->halve_y = worth_halving(ny, m->order);
+		choose_coarser(m, l, aspect, reach);
 		if (!l->halve_x && !l->halve_y)
 			return make_coarsest(l, value, context);
 		l->begin = calloc(2 * ny, sizeof *l->begin);
@@ -193,18 +216,17 @@ static enum num_status make_levels(
 	return NUM_MEMORY;
 }
 
-struct mlms *mlms_new(size_t nx, size_t ny, int order, int reach, kernel_value value,
-	const void *context, struct pool *pool)
+struct mlms *mlms_new(size_t nx, size_t ny, double aspect, int order, int reach,
+	kernel_value value, const void *context, struct pool *pool)
 {
 	struct mlms *m = calloc(1, sizeof *m);
 
 	if (!m)
 		return NULL;
 	m->order = order < 2 ? 2 : order > ORDER_MAX ? ORDER_MAX : order / 2 * 2;
-	m->reach = reach < 1 ? 1 : reach;
 	m->pool = pool;
 	set_weights(m);
-	if (make_levels(m, nx, ny, value, context) != 0) {
+	if (make_levels(m, nx, ny, aspect, reach < 1 ? 1 : reach, value, context) != 0) {
 		mlms_free(m);
 		return NULL;
 	}
@@ -328,16 +350,18 @@ static void gather_y(void *context, size_t job, int worker)
 }
 
 /* Corrections of a row of sources for a row of cells. */
-static void add_near(const struct mlms *m, const struct level *l, const double *source,
-	size_t ys, double *image, size_t y)
+static void add_near(
+	const struct level *l, const double *source, size_t ys, double *image, size_t y)
 {
-	size_t reach = (size_t)m->reach, side = 2 * reach + 1;
+	size_t reach = (size_t)l->reach_x, side = 2 * reach + 1;
+	size_t over = (size_t)l->reach_y;
 
 	for (size_t x = l->begin[ys]; x < l->end[ys]; x++) {
 		size_t parity = (ys & 1) * 2 + (x & 1);
 		size_t first = x > reach ? x - reach : 0;
 		size_t last = smaller(x + reach + 1, l->nx);
-		const double *near = l->near + (parity * side + reach + y - ys) * side;
+		const double *near =
+			l->near + (parity * (2 * over + 1) + over + y - ys) * side;
 
 		if (source[x] != 0)
 			add_row(image + first, source[x], near + (first + reach - x),
@@ -351,7 +375,7 @@ static void spread(void *context, size_t job, int worker)
 	struct mlms *m = context;
 	struct level *l = &m->level[m->now], *next = l + 1;
 	const double *source = m->now ? l->source : m->x;
-	size_t n = next->nx, reach = (size_t)m->reach, shift = (size_t)m->order / 2 - 1;
+	size_t n = next->nx, reach = (size_t)l->reach_y, shift = (size_t)m->order / 2 - 1;
 
 	(void)worker;
 	for (size_t y = job * ROWS; y < smaller((job + 1) * ROWS, l->ny); y++) {
@@ -373,7 +397,7 @@ static void spread(void *context, size_t job, int worker)
 		else
 			memcpy(image, half, n * sizeof *half);
 		for (size_t ys = first; ys < smaller(y + reach + 1, l->ny); ys++)
-			add_near(m, l, source + ys * l->nx, ys, image, y);
+			add_near(l, source + ys * l->nx, ys, image, y);
 	}
 }
 

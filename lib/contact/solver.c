@@ -51,8 +51,9 @@ static enum num_status make_kernel(struct contact *c, const struct contact *lend
 	int is_free = c->par.boundary == CONTACT_FREE;
 
 	if (c->par.multiply == CONTACT_MLMS) {
-		c->mlms = mlms_new((size_t)c->par.nx, (size_t)c->par.ny, mlms_order,
-			mlms_reach, free_kernel, c, c->par.pool);
+		c->mlms = mlms_new((size_t)c->par.nx, (size_t)c->par.ny,
+			c->par.dy / c->par.dx, mlms_order, mlms_reach, free_kernel, c,
+			c->par.pool);
 		return c->mlms ? NUM_OK : NUM_MEMORY;
 	}
 	c->plane = convolve_borrow((size_t)c->par.nx, (size_t)c->par.ny,

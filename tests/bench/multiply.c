@@ -63,7 +63,7 @@ static void by_levels(
 {
 	size_t cells = (size_t)n * (size_t)n;
 	double start = now(), setup, best = INFINITY, error = 0, size = 0;
-	struct mlms *m = mlms_new((size_t)n, (size_t)n, order, reach, love, NULL, NULL);
+	struct mlms *m = mlms_new((size_t)n, (size_t)n, 1, order, reach, love, NULL, NULL);
 	double *y = fft_alloc(cells);
 
 	setup = now() - start;

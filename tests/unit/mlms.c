@@ -22,7 +22,7 @@ static size_t apart(size_t a, size_t b)
 static double worst_error(
 	size_t nx, size_t ny, int order, int reach, double aspect, struct pool *pool)
 {
-	struct mlms *m = mlms_new(nx, ny, order, reach, love, &aspect, pool);
+	struct mlms *m = mlms_new(nx, ny, aspect, order, reach, love, &aspect, pool);
 	double *x = fft_alloc(nx * ny), *y = fft_alloc(nx * ny), *k = fft_alloc(nx * ny);
 	double worst = 0, size = 0;
 
@@ -54,8 +54,8 @@ static void same_bytes(struct pool *two)
 	enum { N = 90 };
 	double aspect = 1, *x = fft_alloc(N * N), *y = fft_alloc(N * N),
 	       *z = fft_alloc(N * N);
-	struct mlms *m = mlms_new(N, N, 6, 6, love, &aspect, NULL);
-	struct mlms *t = mlms_new(N, N, 6, 6, love, &aspect, two);
+	struct mlms *m = mlms_new(N, N, aspect, 6, 6, love, &aspect, NULL);
+	struct mlms *t = mlms_new(N, N, aspect, 6, 6, love, &aspect, two);
 
 	for (int i = 0; i < N * N; i++)
 		x[i] = cos(i);
@@ -74,6 +74,10 @@ int main(void)
 {
 	static const size_t sizes[][2] = { { 64, 64 }, { 61, 47 }, { 1, 200 }, { 200, 1 },
 		{ 120, 10 }, { 10, 120 }, { 20, 20 }, { 1, 1 } };
+	/* Long cells, grids that are halved in one direction only, and both. */
+	static const double shapes[][3] = { { 64, 64, 2 }, { 64, 64, 0.3 },
+		{ 64, 64, 20 }, { 200, 40, 1 }, { 40, 200, 1 }, { 200, 40, 0.3 },
+		{ 40, 200, 3 }, { 300, 9, 0.78 }, { 100, 40, 7 } };
 	struct pool *two = pool_new(2);
 	double last = 1;
 
@@ -83,8 +87,13 @@ int main(void)
 
 		ok(e < 1e-7, "%zux%zu: the error is %.1e", sizes[i][0], sizes[i][1], e);
 	}
-	ok(worst_error(64, 64, 8, 18, 2, NULL) < 1e-6,
-		"cells twice as long as wide are as accurate");
+	for (size_t i = 0; i < sizeof(shapes) / sizeof(shapes[0]); i++) {
+		double e = worst_error((size_t)shapes[i][0], (size_t)shapes[i][1], 8, 18,
+			shapes[i][2], NULL);
+
+		ok(e < 1e-7, "%gx%g cells of aspect %g: the error is %.1e", shapes[i][0],
+			shapes[i][1], shapes[i][2], e);
+	}
 	for (int order = 4; order <= 10; order += 2) {
 		double e = worst_error(64, 64, order, 2 * order + 2, 1, NULL);
 
