@@ -110,13 +110,19 @@ enum wp_status wp_separate_end(struct wp_separate *s)
 {
 	enum wp_status status = outcome(s, separate_end(s->separate));
 
-	if (status != WP_OK || !separate_doubtful(s->separate))
+	enum separate_doubt doubt = separate_doubtful(s->separate);
+
+	if (status != WP_OK && status != WP_NOT_CONVERGED)
 		return status;
-	s->reason =
-		separate_doubtful(s->separate) == SEPARATE_COVERED
-			? "events that are no particles hide some of them"
-			: "many pulses fit no particle (misfit): the others are doubtful, too";
-	return WP_NOT_CONVERGED;
+	if (doubt == SEPARATE_UNEXPLAINED)
+		s->reason = "both channels stand out of their noise, but have nothing in "
+			    "common";
+	else if (doubt == SEPARATE_COVERED)
+		s->reason = "events that are no particles hide some of them";
+	else if (doubt)
+		s->reason = "many pulses fit no particle (misfit): the others are "
+			    "doubtful, too";
+	return doubt ? WP_NOT_CONVERGED : status;
 }
 
 int wp_separate_next(struct wp_separate *s, struct wp_transit *p)

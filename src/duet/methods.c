@@ -44,7 +44,7 @@ static void check_status(
 	if (status == SEPARATE_NOT_FINITE)
 		die(EXIT_RUN, "%s: channel %d, frame %lld: not a finite number", name,
 			channel + 1, frame);
-	if (status == SEPARATE_NO_LAG)
+	if (status == SEPARATE_NO_LAG && !separate_doubtful(s))
 		warn("%s: nothing in common of both channels to learn from: no particle, or "
 		     "give --align and --pulse-duration",
 			name);
@@ -52,7 +52,7 @@ static void check_status(
 		die(EXIT_RUN,
 			"%s: pulses of %.0f samples want a --window of at least half of that",
 			name, separate_calibration(s)->duration);
-	else if (status != SEPARATE_OK)
+	else if (status != SEPARATE_OK && status != SEPARATE_NO_LAG)
 		die(EXIT_RUN, "%s: %s", name, why[status]);
 }
 
@@ -116,12 +116,15 @@ static int is_doubtful(
 		      ? xprintf("events that are no particles cover %.2g %% of it, and "
 				"hide the particles there",
 				100 * c->covered / c->samples)
+	      : doubt == SEPARATE_UNEXPLAINED
+		      ? xprintf("both channels stand out of their noise, but have nothing "
+				"in common")
 	      : doubt == SEPARATE_REVERSED
 		      ? xprintf("%.0f of %.0f pulses are reversed", c->negative, c->rows)
 		      : xprintf("%.0f %% of it is unresolved, unlike the record of the "
 				"instrument",
 				100 * c->dense / c->samples);
-	if (doubt == SEPARATE_COVERED)
+	if (doubt == SEPARATE_COVERED || doubt == SEPARATE_UNEXPLAINED)
 		warn("%s: %s", name, why);
 	else if (kept)
 		warn("%s: this instrument does not fit %s: %s", kept, name, why);

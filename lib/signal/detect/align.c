@@ -73,6 +73,28 @@ enum num_status align_lag(const double *y1, const double *y2, size_t n, size_t m
 	return status;
 }
 
+enum num_status align_elsewhere(const double *y1, const double *y2, size_t n,
+	size_t max_lag, double lag, double from, double to, double *peak)
+{
+	double e1 = energy(y1, n), e2 = energy(y2, n);
+	enum num_status status = NUM_MEMORY;
+	double *r;
+
+	if (max_lag >= n)
+		max_lag = n - 1;
+	if (e1 == 0 || e2 == 0)
+		return NUM_DOMAIN;
+	r = fft_alloc(max_lag + 1);
+	if (r)
+		status = correlate(y1, y2, n, max_lag, r);
+	*peak = 0;
+	for (size_t k = 0; status == NUM_OK && k <= max_lag; k++)
+		if (fabs((double)k - lag) > from && fabs((double)k - lag) <= to)
+			*peak = fmax(*peak, fabs(r[k]) / sqrt(e1 * e2));
+	fft_free(r);
+	return status;
+}
+
 enum num_status align_autocorrelation(
 	const double *y1, const double *y2, size_t n, size_t max_lag, double *r)
 {

@@ -18,7 +18,8 @@ static const double UNKNOWN_MISFIT = 3e-4, FILTERED_MISFIT = 0.15;
 static const double BAD_FIT = 2;
 
 /* Least bandwidth of a filter, in cycles per duration of a pulse: with less, pulses ring
- * and other pulses are fitted to the ringing. */
+ * and other pulses are fitted to the ringing, and the correlation of the channels repeats
+ * like that of a line. */
 static const double NARROW = 0.5;
 
 /* Least transit time, in durations of a pulse.  Events that reach both channels together
@@ -107,12 +108,10 @@ static double variance(const double *x, size_t n)
 }
 
 /* Share of the transit time within which delays are searched in plug flow, whose
- * velocities differ by a few per cent.  0.05, 0.1, 0.15 and 0.2 find 701, 800, 800 and
- * 800 of 800 particles in groups in turbulent flow, with 0, 8, 12 and 1 wrong rows, and
- * 104, 189, 259 and 300 of 400 in laminar flow, where all records but one at 0.15 are
- * doubted (scenes group-turbulent and laminar of tests/matrix/scenes.tsv, seeds 11 to
- * 18); over 45 records of all profiles the error of delays is 1.01 of its bound with 0.05
- * and 0.1 and 1.02 with 0.2. */
+ * velocities differ by a few per cent.  With 0.05, 0.1 and 0.2 the rows that look right
+ * are 793, 795 and 786 of 800 in groups in plug flow, all of 800 in turbulent flow and
+ * 156, 156 and 158 of 400 in laminar flow, none of them wrong (scenes group,
+ * group-turbulent and laminar of tests/matrix/scenes.tsv, seeds 11 to 18). */
 static const double PLUG = 0.1;
 
 /* Range of the delays as far as it is known. */
@@ -148,19 +147,6 @@ static double correlation_at(const double *y1, const double *y2, size_t n, size_
 		yy += y2[i + lag] * y2[i + lag];
 	}
 	return xx > 0 && yy > 0 ? xy / sqrt(xx * yy) : 0;
-}
-
-/* A correlation that channels with nothing in common do not reach: six of its standard
- * deviations, by Bartlett's formula from the autocorrelation r at n / 4 lags; half where
- * the record is too short to tell. */
-static double chance_correlation(const double *r, size_t n)
-{
-	double sum = 1;
-	size_t lags = n / 4 < 4096 ? n / 4 : 4096;
-
-	for (size_t k = 1; k <= lags; k++)
-		sum += 2 * (r[k] / r[0]) * (r[k] / r[0]);
-	return fmin(6 * sqrt(sum / (double)n), 0.5);
 }
 
 static enum num_status measure_noise(
@@ -349,17 +335,61 @@ static enum calibrate_status find_lag(
 	return CALIBRATE_OK;
 }
 
-/* NO_LAG if the channels correlate no more than independent ones. */
-static enum calibrate_status check_lag(
+/* NARROW if a filter has left too little of the pulses, which are about twice as long as
+ * the lag of their lowest autocorrelation. */
+static enum calibrate_status check_band(const struct calibrate_par *par,
 	const struct record *rec, const struct calibration *c)
 {
-	if (rec->n > 4096 && c->correlation < 6 / sqrt((double)rec->n))
-		return CALIBRATE_NO_LAG; /* whatever the autocorrelation */
+	double duration = par->duration;
+
+	if (!c->whitening.tap)
+		return CALIBRATE_OK;
 	if (align_autocorrelation(rec->y1, rec->y2, rec->n, rec->n / 4, rec->work) !=
 		NUM_OK)
 		return CALIBRATE_MEMORY;
-	return c->correlation < chance_correlation(rec->work, rec->n) ? CALIBRATE_NO_LAG
-								      : CALIBRATE_OK;
+	if (isnan(duration))
+		duration = 2 * learn_lowest_lag(rec->work, rec->n / 4);
+	return (c->whitening.high - c->whitening.low) * duration < NARROW
+		       ? CALIBRATE_NARROW
+		       : CALIBRATE_OK;
+}
+
+/* By how much the correlation at the transit time exceeds that at other lags.  In 150
+ * records of noise without particles, coloured or with lines that wander, the ratio was
+ * at most 1.44; in those of tests/matrix/scenes.tsv with particles, seeds 51001 to 51104,
+ * at least 2.1. */
+static const double ALONE = 1.7;
+
+/* Range of the lags at which a line in the noise repeats its correlation, in lags of the
+ * lowest autocorrelation, which are half periods of the line; a pulse is shorter. */
+static const double NEAREST = 1.5, FARTHEST = 4;
+
+/* Share of the transit time by which the fastest and the slowest particle may differ. */
+static const double VARIES = 0.3;
+
+/* NO_LAG if y1 correlates with a later y2 no more than channels of noise do, whatever its
+ * spectrum: in units of 1 / sqrt(n), and compared with other lags.  Regular trains of
+ * pulses, which repeat their correlation farther away, have at least half of their power
+ * in common, as has noise at few lags only if it has lines. */
+static enum calibrate_status check_lag(const struct record *rec, const double *y1,
+	const double *y2, const struct calibration *c)
+{
+	size_t n = rec->n;
+	double lag = (double)c->shift, low, near, far;
+
+	if (n > 4096 && c->correlation < 6 / sqrt((double)n))
+		return CALIBRATE_NO_LAG;
+	if (align_autocorrelation(y1, y2, n, n / 4, rec->work) != NUM_OK)
+		return CALIBRATE_MEMORY;
+	low = learn_lowest_lag(rec->work, n / 4);
+	if (align_elsewhere(y1, y2, n, n / 2, lag, NEAREST * low, FARTHEST * low,
+		    &near) != NUM_OK ||
+		align_elsewhere(y1, y2, n, n / 2, lag, fmax(NEAREST * low, VARIES * lag),
+			INFINITY, &far) != NUM_OK)
+		return CALIBRATE_MEMORY;
+	if (c->correlation < 0.5)
+		near = fmax(near, far);
+	return c->correlation < ALONE * near ? CALIBRATE_NO_LAG : CALIBRATE_OK;
 }
 
 /* SWAPPED if particles pass sensor 2 first.  Tested only if the lag found explains less
@@ -377,7 +407,8 @@ static enum calibrate_status find_reverse(
 		return CALIBRATE_MEMORY; /* neither channel is zero throughout */
 	if (lag < 1 || back.correlation <= c->correlation)
 		return CALIBRATE_OK;
-	switch (check_lag(rec, &back)) {
+	back.shift = (long)floor(lag + 0.5);
+	switch (check_lag(rec, rec->y2, rec->y1, &back)) {
 	case CALIBRATE_OK:
 		return CALIBRATE_SWAPPED;
 	case CALIBRATE_MEMORY:
@@ -413,9 +444,6 @@ static enum calibrate_status find_duration(const struct calibrate_par *par,
 		    learn_duration(c->pulse, rec->low, &c->duration) != NUM_OK) ||
 		learn_set_shape(c, c->pulse) != NUM_OK)
 		return CALIBRATE_MEMORY;
-	if (c->whitening.tap &&
-		(c->whitening.high - c->whitening.low) * c->duration < NARROW)
-		return CALIBRATE_NARROW;
 	if (!(c->duration >= 8))
 		return CALIBRATE_FAST;
 	if (isnan(par->lag) && (double)c->shift < APART * c->duration)
@@ -513,16 +541,8 @@ static enum calibrate_status find_template(const struct calibrate_par *par,
 static enum calibrate_status learn_with_noise(const struct calibrate_par *par,
 	struct record *rec, struct template *found, struct calibration *c)
 {
-	enum { ROUNDS = 4, SOME = 2 };
+	enum { ROUNDS = 4 };
 	enum calibrate_status status = learn(par, rec, found, c);
-
-	if (status == CALIBRATE_OK && c->far >= SOME && isnan(par->spread)) {
-		rec->share = CALIBRATE_WIDE;
-		if (found->events)
-			status = find_template(par, rec, found, c);
-		if (status == CALIBRATE_OK)
-			status = learn(par, rec, found, c);
-	}
 
 	for (int k = 0; c->whitening.tap && k < ROUNDS; k++) {
 		if (status != CALIBRATE_OK || c->events == 0 ||
@@ -612,7 +632,11 @@ enum calibrate_status measure(const struct calibrate_par *par, const double *raw
 	double *y1, double *y2, size_t n, double *work, struct look *look,
 	struct calibration *c)
 {
-	struct record rec = { .y1 = y1, .y2 = y2, .n = n, .work = work, .share = PLUG };
+	struct record rec = { .y1 = y1,
+		.y2 = y2,
+		.n = n,
+		.work = work,
+		.share = look->wide ? CALIBRATE_WIDE : PLUG };
 	enum calibrate_status status = find_tones(par, &rec, c);
 
 	if (status == CALIBRATE_OK)
@@ -620,9 +644,12 @@ enum calibrate_status measure(const struct calibrate_par *par, const double *raw
 	if (status == CALIBRATE_OK && measure_noise(c, y1, y2, n, work) != NUM_OK)
 		status = CALIBRATE_MEMORY;
 	if (status == CALIBRATE_OK)
+		status = check_band(par, &rec, c);
+	if (status == CALIBRATE_OK)
 		status = find_reverse(par, &rec, c);
-	if (status == CALIBRATE_OK && (isnan(par->duration) || isnan(par->lag)))
-		status = check_lag(&rec, c);
+	if (status == CALIBRATE_OK && !look->seen &&
+		(isnan(par->duration) || isnan(par->lag)))
+		status = check_lag(&rec, y1, y2, c);
 	if (status != CALIBRATE_OK)
 		return status;
 	align(&rec, c);

@@ -23,6 +23,8 @@ struct look {
 	double power[COLOUR_BINS];
 	int first;  /* 1: return COLOURED if the noise is coloured and no events are alike
 		     */
+	int seen;   /* 1: another attempt told particles from noise */
+	int wide;   /* 1: search the delays of turbulent flow, else of plug flow */
 	int events; /* events that must be alike, as in another attempt */
 	struct template found; /* the pulse taken from the record */
 };

@@ -124,7 +124,12 @@ enum separate_status separate_fit_section(
 	if (a.m > s->scene.max_pulses)
 		a.m = s->scene.max_pulses;
 	memcpy(a.pulse, s->pulse, sizeof a.pulse);
-	status = separate_fit_window(s, from - before, n, cut, &a);
+	status = separate_fit_window(s,
+		(const double *const[]){
+			channel_1(s, from - before), channel_2(s, from - before) },
+		n, cut, &a);
+	if (status == SEPARATE_OK && separate_is_described(&a))
+		status = separate_fit_without_common(s, from - before, n, cut, &a);
 	if (status == SEPARATE_OK)
 		separate_keep_fit(s, &a);
 	if (status == SEPARATE_OK && whole && (a.m > 1 || !separate_is_described(&a)) &&

@@ -61,6 +61,7 @@ static int list(struct instrument *in, struct field *f)
 		{ .name = "flow_count", .real = &in->flow.count, .count = 1 },
 		{ .name = "level", .real = in->level, .count = 2 },
 		{ .name = "level_samples", .real = &in->level_samples, .count = 1 },
+		{ .name = "common", .real = in->common, .count = 3 },
 	};
 
 	memcpy(f, all, sizeof all);
@@ -196,8 +197,11 @@ static enum instrument_status take_arrays(struct values *from, struct calibratio
 }
 
 /* The first number outside the range of instruments, or NULL. */
-static const char *out_of_range(const struct calibration *c)
+static const char *out_of_range(const struct instrument *in)
 {
+	const struct calibration *c = &in->cal;
+	const double *common = in->common;
+
 	return c->tone_hop < SHORTEST_HOP              ? "tone_hop"
 	       : c->pulse > PULSE_LORENTZ              ? "pulse"
 	       : !(c->noise[0] > 0 && c->noise[1] > 0) ? "noise"
@@ -206,7 +210,10 @@ static const char *out_of_range(const struct calibration *c)
 	       : !(c->transit > 0)                     ? "transit"
 	       : !(c->delta_min < c->delta_max)        ? "delta_max"
 	       : !(c->drop > 0 && c->drop_near > 0)    ? "drop"
-						       : NULL;
+	       : common[0] != 0 &&
+			       !(fabs(common[0]) < 1 && common[1] > 0 && common[2] > 0)
+		       ? "common"
+		       : NULL;
 }
 
 enum instrument_status instrument_restore(struct instrument *in,
@@ -236,7 +243,7 @@ enum instrument_status instrument_restore(struct instrument *in,
 					take(&from, f[k].name, i, -INFINITY, INFINITY);
 	}
 	if (!from.missing)
-		from.missing = out_of_range(&in->cal);
+		from.missing = out_of_range(in);
 	status = from.missing ? INSTRUMENT_MISSING : take_arrays(&from, &in->cal);
 	if (status == INSTRUMENT_OK && from.taken != n)
 		status = INSTRUMENT_UNKNOWN;

@@ -1,7 +1,9 @@
 /* learning.c - the instrument of a record: learned from its first samples, or kept */
+#include "signal/detect/bursts.h"
 #include "signal/detect/spikes.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
+#include <stdlib.h>
 
 /* Shortest pulse whose fourth difference is below the noise, at an amplitude of 300
  * standard deviations: 300 (2 pi / 20)^4 = 3, that of noise is 8. */
@@ -71,6 +73,8 @@ static enum separate_status start(struct separate *s, size_t n)
 		validation_tell_flow(s->validation, &s->kept.flow);
 		s->crowded = s->kept.crowded;
 		s->looked = 1;
+		if (separate_set_common(s, s->kept.common) != NUM_OK)
+			return SEPARATE_MEMORY;
 	}
 	s->joint = joint_new();
 	if (s->par.method == SEPARATE_MASKS) {
@@ -142,6 +146,19 @@ static enum separate_status calibrate_now(struct separate *s)
 	return start(s, n);
 }
 
+/* Notes whether the first n samples, of which nothing could be learned, are noise. */
+static enum separate_status look_for_bursts(struct separate *s, size_t n)
+{
+	double *work = malloc(n * sizeof *work);
+
+	if (!work)
+		return SEPARATE_MEMORY;
+	s->unexplained |= bursts_found(s->tape[0].x, n, work) &&
+			  bursts_found(s->tape[1].x, n, work);
+	free(work);
+	return SEPARATE_OK;
+}
+
 enum separate_status separate_learn(struct separate *s)
 {
 	size_t half = s->par.learn / 2;
@@ -158,6 +175,10 @@ enum separate_status separate_learn(struct separate *s)
 		if (s->calibrated)
 			break;
 		s->reason = status;
+		if (look_for_bursts(s,
+			    s->tape[0].n < s->par.learn ? s->tape[0].n : s->par.learn) !=
+			SEPARATE_OK)
+			return SEPARATE_MEMORY;
 		if (s->tape[0].n < s->par.learn)
 			break;
 		for (int c = 0; c < 2; c++)

@@ -37,6 +37,7 @@ enum separate_status separate_try_rivals(
 {
 	enum { IMPULSES, VELOCITIES, SIGNS, BOTH, RIVALS };
 	const struct joint_scene plain = s->scene;
+	const double *const y[2] = { channel_1(s, from), channel_2(s, from) };
 	enum separate_status status = SEPARATE_OK;
 	int found = 0, most, tried;
 
@@ -59,7 +60,7 @@ enum separate_status separate_try_rivals(
 		if ((k == IMPULSES || k == BOTH) &&
 			(s->cal.whitening.tap || !hide_spikes(s, from, n)))
 			continue;
-		status = separate_fit_window(s, from, n, cut, &rival);
+		status = separate_fit_window(s, y, n, cut, &rival);
 		found = status == SEPARATE_OK && separate_is_described(&rival) &&
 			rival.m <= most;
 		if (found) {
@@ -68,7 +69,9 @@ enum separate_status separate_try_rivals(
 		}
 	}
 	s->scene = plain;
-	if (found) {
+	if (found && !a->impulses)
+		status = separate_fit_without_common(s, from, n, cut, a);
+	if (found && status == SEPARATE_OK) {
 		separate_keep_fit(s, a);
 		separate_follow(s, a);
 	}

@@ -36,6 +36,7 @@ void separate_free(struct separate *s)
 	sections_free(s->sections);
 	joint_free(s->joint);
 	masks_free(s->masks);
+	separate_clear_common(s);
 	for (int c = 0; c < 2; c++)
 		tape_clear(&s->tape[c]);
 	quadrature_clear(&s->quadrature);
@@ -89,7 +90,9 @@ int separate_instrument(const struct separate *s, struct instrument *view)
 	*view = (struct instrument){ .cal = s->cal,
 		.crowded = s->crowded,
 		.level = { s->level[0], s->level[1] },
-		.level_samples = s->levels };
+		.level_samples = s->levels,
+		.common = {
+			s->common.correlation, s->common.left[0], s->common.left[1] } };
 	validation_flow(s->validation, &view->flow);
 	return 1;
 }
@@ -144,6 +147,8 @@ static enum separate_status work(struct separate *s)
 		upto = limit < upto ? limit : upto;
 		if (!s->looked)
 			s->crowded = !s->par.sources && is_crowded(s, s->done, upto);
+		if (!s->looked && separate_measure_common(s, s->done, upto) != NUM_OK)
+			return SEPARATE_MEMORY;
 		s->looked = 1;
 		if (s->par.quadrature && measure_quadrature(s, upto) != NUM_OK)
 			return SEPARATE_MEMORY;
@@ -164,7 +169,8 @@ static enum separate_status work(struct separate *s)
 		cut = to - from > longest;
 		if (cut)
 			to = from + longest;
-		if (!s->ended && (to > limit || sections_scanned(s->sections) < to))
+		if (!s->ended && (to + separate_common_reach(s) > limit ||
+					 sections_scanned(s->sections) < to))
 			break;
 		if (!cut && section.open)
 			break;
@@ -214,7 +220,7 @@ static enum separate_status work(struct separate *s)
 	if (s->done < 0)
 		s->done = 0;
 	keep = (s->done < s->level_at ? s->done : s->level_at) -
-	       sections_reach(s->sections);
+	       sections_reach(s->sections) - separate_common_reach(s);
 	for (int c = 0; c < 2; c++)
 		tape_forget(&s->tape[c], keep);
 	quadrature_forget(&s->quadrature, s->done);
@@ -288,6 +294,8 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 {
 	const struct separate_counters *c = &s->counters;
 
+	if (!s->calibrated)
+		return s->unexplained ? SEPARATE_UNEXPLAINED : SEPARATE_BELIEVED;
 	if (s->par.kept && separate_is_other_noise(s))
 		return SEPARATE_NOISE;
 	if (s->par.kept && c->rows > 2 && c->negative > REVERSED * c->rows)

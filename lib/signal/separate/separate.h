@@ -142,13 +142,14 @@ void separate_noise(const struct separate *s, double share[2]);
 const struct separate_counters *separate_counters(const struct separate *s);
 /* Why all rows are doubtful. */
 enum separate_doubt {
-	SEPARATE_BELIEVED, /* they are not */
-	SEPARATE_FOREIGN,  /* so many pulses fit no particle that none is believed */
-	SEPARATE_NOISE,    /* the noise is not that of the kept instrument */
-	SEPARATE_REVERSED, /* nine tenths of the pulses are those of the kept instrument
-			      with their sign changed */
-	SEPARATE_CROWD,    /* more than half is unresolved, unlike its record */
-	SEPARATE_COVERED   /* particles are lost under events that are none */
+	SEPARATE_BELIEVED,   /* they are not */
+	SEPARATE_FOREIGN,    /* so many pulses fit no particle that none is believed */
+	SEPARATE_NOISE,      /* the noise is not that of the kept instrument */
+	SEPARATE_REVERSED,   /* nine tenths of the pulses are those of the kept instrument
+				with their sign changed */
+	SEPARATE_CROWD,      /* more than half is unresolved, unlike its record */
+	SEPARATE_COVERED,    /* particles are lost under events that are none */
+	SEPARATE_UNEXPLAINED /* nothing could be learned, but the record is not noise */
 };
 enum separate_doubt separate_doubtful(const struct separate *s);
 /* Frame and channel (0, 1) that made it fail with NOT_FINITE. */

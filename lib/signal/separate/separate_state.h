@@ -40,6 +40,15 @@ struct report {
  * bound. */
 enum { TRACKED = 64, ENOUGH = 12, GAINS = 8 };
 
+/* What both channels have in common (common.h). */
+struct common {
+	double correlation;  /* 0: it is not removed */
+	double left[2];      /* noise of either channel without it, of 1 */
+	struct shape *sharp; /* the pulse in units of left[0] */
+	double *work;
+	size_t room;
+};
+
 struct separate {
 	struct separate_par par;
 	struct calibration cal;
@@ -56,6 +65,8 @@ struct separate {
 	struct joint *joint;
 	struct masks *masks;
 	struct joint_scene scene;
+	struct joint_scene fitted; /* of the last fit of a window */
+	struct common common;
 	double gain; /* of sensor 2, over the noise learned, as followed */
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
 	struct quadrature quadrature;
@@ -94,7 +105,8 @@ struct separate {
 	double *source;
 	struct separate_counters counters;
 	enum separate_status reason; /* why nothing could be learned */
-	double effort;               /* samples of pulses computed to learn */
+	int unexplained; /* 1: although both channels stand out of their noise */
+	double effort;   /* samples of pulses computed to learn */
 	long long bad_frame;
 	int bad_channel;
 };
@@ -196,12 +208,28 @@ int separate_is_other_noise(const struct separate *s);
 /* Excludes the samples that the converter has not measured from the fit.  Not if the
  * record was whitened, which spreads them over others. */
 void separate_hide(struct separate *s, long long from, size_t n);
-/* Fits a window, with the first a->m pulses of a as guesses, and judges the fit. */
-enum separate_status separate_fit_window(
-	struct separate *s, long long from, size_t n, int cut, struct account *a);
+/* Fits a window of n samples of either channel, with the first a->m pulses of a as
+ * guesses, and judges the fit. */
+enum separate_status separate_fit_window(struct separate *s, const double *const y[2],
+	size_t n, int cut, struct account *a);
 /* Keeps of the last fit what the next one overwrites. */
 void separate_keep_fit(struct separate *s, const struct account *a);
 int separate_is_described(const struct account *a);
+
+/* without_common.c */
+
+void separate_clear_common(struct separate *s);
+/* Takes what common_measure() has found. */
+enum num_status separate_set_common(struct separate *s, const double found[3]);
+
+/* Measures what the noise of both channels has in common in these samples. */
+enum num_status separate_measure_common(
+	struct separate *s, long long from, long long upto);
+/* Samples on either side of a window that tell its noise; 0: none are needed. */
+long long separate_common_reach(const struct separate *s);
+/* Fits a window that a describes again, without what the noise has in common. */
+enum separate_status separate_fit_without_common(
+	struct separate *s, long long from, size_t n, int cut, struct account *a);
 
 /* following.c */
 

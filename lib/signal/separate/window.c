@@ -39,14 +39,15 @@ void separate_hide(struct separate *s, long long from, size_t n)
 	}
 }
 
-enum separate_status separate_fit_window(
-	struct separate *s, long long from, size_t n, int cut, struct account *a)
+enum separate_status separate_fit_window(struct separate *s, const double *const y[2],
+	size_t n, int cut, struct account *a)
 {
-	enum joint_status status = joint_fit(s->joint, &s->scene, channel_1(s, from),
-		channel_2(s, from), n, a->pulse, &a->m, &a->r);
+	enum joint_status status =
+		joint_fit(s->joint, &s->scene, y[0], y[1], n, a->pulse, &a->m, &a->r);
 
 	if (status != JOINT_OK)
 		return status == JOINT_MEMORY ? SEPARATE_MEMORY : SEPARATE_WIDE;
+	s->fitted = s->scene;
 	s->counters.fits++;
 	s->counters.steps += (double)a->r.steps;
 	s->counters.searches += (double)a->r.searches;
@@ -88,7 +89,7 @@ void separate_keep_fit(struct separate *s, const struct account *a)
 		if (s->par.quadrature || isinf(s->cal.transit))
 			memset(s->pair_odds[i], 0, sizeof s->pair_odds[i]);
 		else
-			joint_pair_odds(s->joint, &s->scene, a->pulse, i, scatter,
+			joint_pair_odds(s->joint, &s->fitted, a->pulse, i, scatter,
 				s->pair_odds[i]);
 }
 

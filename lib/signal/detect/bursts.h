@@ -1,0 +1,15 @@
+/* bursts.h - does a record stand out of its noise anywhere? whatever the shape of what
+ * does
+ */
+#ifndef SIGNAL_BURSTS_H
+#define SIGNAL_BURSTS_H
+
+#include <stddef.h>
+
+/* 1 if second differences of the means of 4, 8, 16 ... of the samples y[0 .. n) somewhere
+ * exceed those of Gaussian noise of the same level nearby.  The noise may be coloured,
+ * its level and that of the record may drift, and it may hold steady lines.  What
+ * lasts longer than a hundredth of n samples is not found.  work holds n. */
+int bursts_found(const double *y, size_t n, double *work);
+
+#endif
