@@ -199,7 +199,7 @@ static void make_channel_basis(struct joint *j, const struct joint_scene *s, int
 	j->basis = 0;
 	if (!free_tones && s->tones > 0)
 		add_known_tones(j, s, c, BASIS_MAX - 2 * slow - 1);
-	known = j->basis;
+	known = j->knots = j->basis;
 	for (int k = 0; k < 2 * slow; k++)
 		draw_wave(j, c, j->basis++, k % 2 ? sin : cos,
 			M_PI * (k / 2 + 1) / (double)j->n, 0, 0);
@@ -318,6 +318,21 @@ void joint_subtract(struct joint *j, const struct joint_scene *s,
 	}
 }
 
+/* Time that a sample of a pulse takes for each tone vector it touches, over that without:
+ * three products of 0.2 ns, against 12 ns. */
+static const double TONE_WORK = 0.05;
+
+/* Vectors of tones at knots that touch a column. */
+static int tones_beside(const struct joint *j, int c, const struct column *col)
+{
+	int count = 0;
+
+	for (int b = 0; b < j->knots; b++)
+		count += (long)j->from[c][b] < col->first + (long)col->n &&
+			 (long)j->to[c][b] > col->first;
+	return count;
+}
+
 void joint_make_columns(
 	struct joint *j, const struct joint_scene *s, int i, const struct joint_pulse *p)
 {
@@ -332,7 +347,7 @@ void joint_make_columns(
 		by_T = col->d[1 - c];
 		shape_sample(s->shape, p->t + (c ? p->delta : 0), T, col->first, col->n,
 			col->d[2], by_t, by_T);
-		j->work += (double)col->n;
+		j->work += (double)col->n * (1 + TONE_WORK * tones_beside(j, c, col));
 		/* T grows with t2 and falls with t1. */
 		for (size_t k = 0; k < col->n; k++) {
 			double lengthen = by_T[k] * stretch;

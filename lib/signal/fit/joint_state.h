@@ -38,8 +38,8 @@ struct joint {
 	double *r[2]; /* e without tones and offset */
 	/* Vectors q of tones, baseline and offset: the inverse of the covariance of a
 	 * channel is 1 - sum q q^T. */
-	int basis;
-	double taken; /* degrees of freedom that they take, without the baseline's */
+	int basis, knots; /* the first knots of them are of tones at knots */
+	double taken;     /* degrees of freedom that they take, without the baseline's */
 	double *q[2]; /* of either channel: basis * n; the same if no sample is hidden */
 	size_t from[2][BASIS_MAX], to[2][BASIS_MAX]; /* samples that are not 0 */
 	double *basis_memory[2];

@@ -15,6 +15,9 @@ static const double FOLLOWED = 20;
  * record, some second of processor time per second of 10 kHz, for what is tried later. */
 static const double EFFORT = 9e8, EFFORT_PER_SAMPLE = 9000;
 
+/* Share of the work allowed for a record that learning may take. */
+static const double LEARNING = 0.65;
+
 /* The noise is followed in blocks of a sixteenth of what is learned from. */
 static void follow_noise(struct separate *s, size_t n)
 {
@@ -132,9 +135,11 @@ static enum separate_status calibrate_now(struct separate *s)
 		tape_review(&s->tape[c]);
 		known.hidden[c] = s->tape[c].hidden;
 	}
-	known.most = fmax(EFFORT, EFFORT_PER_SAMPLE *
-					  (double)(s->tape[0].begin + (long long)n)) -
-		     s->effort;
+	known.most = fmax(
+		EFFORT, EFFORT_PER_SAMPLE * (double)(s->tape[0].begin + (long long)n));
+	if (s->par.work > 0)
+		known.most = fmin(known.most, LEARNING * s->par.work);
+	known.most -= s->effort;
 	status = calibrate(&known, s->tape[0].x, s->tape[1].x, n, &s->cal);
 	s->effort += s->cal.work;
 	if (status != CALIBRATE_OK)
