@@ -131,7 +131,7 @@ static int most_pulses(void)
 /* Samples of pulses that are computed in a second of processor time, of a slow machine;
  * the share of the length of a record that this may take, of which the rest of the work
  * takes less than a tenth more; and seconds that are always allowed. */
-static const double SPEED = 8e7, SHARE = 0.75, ALWAYS = 1;
+static const double SPEED = 8e7, SHARE = 0.75, ALWAYS = 3;
 
 /* Work allowed for a record; 0: its length is not known. */
 static double allowed_work(const struct signal_in *in)

@@ -16,7 +16,7 @@ static const double FOLLOWED = 20;
 static const double EFFORT = 9e8, EFFORT_PER_SAMPLE = 9000;
 
 /* Share of the work allowed for a record that learning may take. */
-static const double LEARNING = 0.65;
+static const double LEARNING = 0.8;
 
 /* The noise is followed in blocks of a sixteenth of what is learned from. */
 static void follow_noise(struct separate *s, size_t n)
