@@ -232,7 +232,7 @@ enum num_status wave_sum_at(struct wave_sum *s, double z, const struct stress_wa
 		plane = (double *)spectrum[c];
 	}
 	s->work.transforms += want->numbers;
-	s->work.kernel_cells += (double)columns * (y.points / 2 + 1);
+	s->work.kernel_cells += (double)columns * (double)((size_t)y.points / 2 + 1);
 	if (!status)
 		status = hand_over(s, field, &x, &y, want);
 	for (int c = 0; c < want->numbers; c++)
