@@ -8,8 +8,8 @@
  * are summed directly.  Within reach times the longest spacing from which it is
  * interpolated the error is corrected on each level, in either direction.  Long cells are
  * first halved along their short sides alone.  The work is one pass over the non-zero
- *sources, with (2 reach + 1)^2 additions for each, and a few passes over the cells.  The
- *error decreases with order (of the interpolation) and reach.
+ * sources, with (2 reach + 1)^2 additions for each, and a few passes over the cells.  The
+ * error decreases with order (of the interpolation) and reach.
  *
  * Brandt, Lubrecht, J. Comput. Phys. 90 (1990) 348-370; Polonsky, Keer, Wear 231 (1999)
  * 206-219.

@@ -42,57 +42,70 @@ static double energy(const double *x, size_t n)
 	return sum;
 }
 
+/* The correlation at lags 0 .. *max_lag, which becomes less than n, in units of *scale;
+ * NULL with *status where there is none. */
+static double *correlate_channels(const double *y1, const double *y2, size_t n,
+	size_t *max_lag, double *scale, enum num_status *status)
+{
+	double e1 = energy(y1, n), e2 = energy(y2, n), *r;
+
+	if (*max_lag >= n)
+		*max_lag = n - 1;
+	*scale = sqrt(e1 * e2);
+	*status = NUM_DOMAIN;
+	if (e1 == 0 || e2 == 0)
+		return NULL;
+	r = fft_alloc(*max_lag + 1);
+	*status = r ? correlate(y1, y2, n, *max_lag, r) : NUM_MEMORY;
+	if (*status == NUM_OK)
+		return r;
+	fft_free(r);
+	return NULL;
+}
+
 enum num_status align_lag(const double *y1, const double *y2, size_t n, size_t max_lag,
 	double *lag, double *peak)
 {
-	double e1 = energy(y1, n), e2 = energy(y2, n), bend;
-	enum num_status status = NUM_MEMORY;
+	double scale, bend;
+	enum num_status status;
+	double *r = correlate_channels(y1, y2, n, &max_lag, &scale, &status);
 	size_t best = 0;
-	double *r;
 
-	if (max_lag >= n)
-		max_lag = n - 1;
-	if (e1 == 0 || e2 == 0)
-		return NUM_DOMAIN;
-	r = fft_alloc(max_lag + 2);
-	if (r)
-		status = correlate(y1, y2, n, max_lag, r);
-	if (status == NUM_OK) {
-		for (size_t k = 1; k <= max_lag; k++)
-			if (r[k] > r[best])
-				best = k;
-		*lag = (double)best;
-		*peak = r[best] / sqrt(e1 * e2);
-		bend = best > 0 && best < max_lag
-			       ? r[best - 1] - 2 * r[best] + r[best + 1]
-			       : 0;
-		if (bend < 0)
-			*lag += 0.5 * (r[best - 1] - r[best + 1]) / bend;
-	}
+	if (!r)
+		return status;
+	for (size_t k = 1; k <= max_lag; k++)
+		if (r[k] > r[best])
+			best = k;
+	*lag = (double)best;
+	*peak = r[best] / scale;
+	bend = best > 0 && best < max_lag ? r[best - 1] - 2 * r[best] + r[best + 1] : 0;
+	if (bend < 0)
+		*lag += 0.5 * (r[best - 1] - r[best + 1]) / bend;
 	fft_free(r);
-	return status;
+	return NUM_OK;
 }
 
 enum num_status align_elsewhere(const double *y1, const double *y2, size_t n,
-	size_t max_lag, double lag, double from, double to, double *peak)
+	size_t max_lag, double lag, int ranges, const struct align_range *range,
+	double *peak)
 {
-	double e1 = energy(y1, n), e2 = energy(y2, n);
-	enum num_status status = NUM_MEMORY;
-	double *r;
+	double scale;
+	enum num_status status;
+	double *r = correlate_channels(y1, y2, n, &max_lag, &scale, &status);
 
-	if (max_lag >= n)
-		max_lag = n - 1;
-	if (e1 == 0 || e2 == 0)
-		return NUM_DOMAIN;
-	r = fft_alloc(max_lag + 1);
-	if (r)
-		status = correlate(y1, y2, n, max_lag, r);
-	*peak = 0;
-	for (size_t k = 0; status == NUM_OK && k <= max_lag; k++)
-		if (fabs((double)k - lag) > from && fabs((double)k - lag) <= to)
-			*peak = fmax(*peak, fabs(r[k]) / sqrt(e1 * e2));
+	if (!r)
+		return status;
+	for (int i = 0; i < ranges; i++) {
+		peak[i] = 0;
+		for (size_t k = 0; k <= max_lag; k++) {
+			double apart = fabs((double)k - lag);
+
+			if (apart > range[i].more && apart <= range[i].most)
+				peak[i] = fmax(peak[i], fabs(r[k]) / scale);
+		}
+	}
 	fft_free(r);
-	return status;
+	return NUM_OK;
 }
 
 enum num_status align_autocorrelation(

@@ -15,10 +15,16 @@
 enum num_status align_lag(const double *y1, const double *y2, size_t n, size_t max_lag,
 	double *lag, double *peak);
 
-/* *peak: the largest absolute correlation coefficient at lags in [0, max_lag] that differ
- * from lag by more than from and at most to; 0 if there are none.  Errors as above. */
+struct align_range {
+	double more, most;
+};
+
+/* peak[i]: the largest absolute correlation coefficient at lags in [0, max_lag] that
+ * differ from lag by more than range[i].more and at most range[i].most; 0 if there are
+ * none.  Errors as above. */
 enum num_status align_elsewhere(const double *y1, const double *y2, size_t n,
-	size_t max_lag, double lag, double from, double to, double *peak);
+	size_t max_lag, double lag, int ranges, const struct align_range *range,
+	double *peak);
 
 /* Autocorrelation summed over both channels at lags 0 .. max_lag < n, for the length of
  * pulses. */

@@ -375,21 +375,22 @@ static enum calibrate_status check_lag(const struct record *rec, const double *y
 	const double *y2, const struct calibration *c)
 {
 	size_t n = rec->n;
-	double lag = (double)c->shift, low, near, far;
+	double lag = (double)c->shift, low, peak[2];
+	struct align_range range[2];
 
 	if (n > 4096 && c->correlation < 6 / sqrt((double)n))
 		return CALIBRATE_NO_LAG;
 	if (align_autocorrelation(y1, y2, n, n / 4, rec->work) != NUM_OK)
 		return CALIBRATE_MEMORY;
 	low = learn_lowest_lag(rec->work, n / 4);
-	if (align_elsewhere(y1, y2, n, n / 2, lag, NEAREST * low, FARTHEST * low,
-		    &near) != NUM_OK ||
-		align_elsewhere(y1, y2, n, n / 2, lag, fmax(NEAREST * low, VARIES * lag),
-			INFINITY, &far) != NUM_OK)
+	range[0] = (struct align_range){ NEAREST * low, FARTHEST * low };
+	range[1] = (struct align_range){ fmax(NEAREST * low, VARIES * lag), INFINITY };
+	if (align_elsewhere(y1, y2, n, n / 2, lag, c->correlation < 0.5 ? 2 : 1, range,
+		    peak) != NUM_OK)
 		return CALIBRATE_MEMORY;
 	if (c->correlation < 0.5)
-		near = fmax(near, far);
-	return c->correlation < ALONE * near ? CALIBRATE_NO_LAG : CALIBRATE_OK;
+		peak[0] = fmax(peak[0], peak[1]);
+	return c->correlation < ALONE * peak[0] ? CALIBRATE_NO_LAG : CALIBRATE_OK;
 }
 
 /* SWAPPED if particles pass sensor 2 first.  Tested only if the lag found explains less
