@@ -399,6 +399,30 @@ rm -f dense.tsv
 duet --instrument dense.tsv long.au >found.tsv 2>err
 is "a doubtful instrument is not kept" "$(ls dense.tsv 2>/dev/null) $(grep -c 'not written' err)" " 1"
 
+# Pulses of thousands of samples are found in means of samples: the same errors, the same rows whatever
+# the pipe, a kept instrument, and the phases of four channels.
+sensorsim --uniform 80um:120um --number 30 --duration 4s --rate 400kHz --gap 20ms --snr 30dB \
+	--lag 0.2ms:0.5ms --truth fast-truth.tsv >fast.au
+duet --instrument fast-rig.tsv --stats stats.tsv fast.au >fast.tsv
+is "all pulses of 4000 samples are found" "$(score matched fast-truth.tsv fast.tsv)" 30
+is "pulses of 4000 samples: no false particle is found" "$(score false fast-truth.tsv fast.tsv)" 0
+at_most "pulses of 4000 samples: the delay error is near the bound" \
+	"$(score delay_ratio fast-truth.tsv fast.tsv)" 1.3
+is "work is counted in samples of the record" "$(column_of samples <stats.tsv)" 1600000
+duet --instrument fast-rig.tsv fast.au >kept.tsv
+grep -v '^#' fast.tsv >a
+grep -v '^#' kept.tsv >b
+same "a kept instrument reads means as well" a b
+(dd bs=5003 2>/dev/null; :) <fast.au | duet | grep -v '^#' >b
+same "blocks of 5003 bytes give the same rows" a b
+duet --sections sections.tsv fast.au >/dev/null
+column begin sections.tsv >a
+column end sections.tsv | paste a - >ranges
+column time1 fast.tsv >a
+column section fast.tsv | paste a - >b
+awk 'NR == FNR { from[NR] = $1; to[NR] = $2; next } $1 < from[$2] || $1 > to[$2]' ranges b >outside
+is "sections enclose the arrivals of their particles" "$(wc -l <b) $(wc -l <outside)" "30 0"
+
 # Oil that flows backwards, or sensors the wrong way round.
 sigconvert -o text rig.au >rig.txt
 sigconvert --from text --columns 'channel2;channel1' rig.txt >swapped.au

@@ -42,6 +42,11 @@ layout --coils 0,25cm --snr 40dB --arrivals 100 --spread 2.439% --flow 58.535L/m
 near "as many pulses have a unique candidate as in the simulation" "$(column p_unique p.tsv)" \
 	"$(chance 'b[j] > a[i] + 0.019635 && b[j] < a[i] + 0.020617')" 0.02
 
+# sd(t) = T / (snr sqrt(2 n) pi): 100 samples of 10 ms at 40 dB
+layout --coils 0,25cm --snr 40dB --arrivals 1e4 --profile plug >plug.tsv
+near "particles of one velocity are confused within the error of their delays" "$(column p_unique plug.tsv)" \
+	"$(awk 'BEGIN { printf "%.12f", exp(-1e4 * 6 * sqrt(2) * 0.01 / (100 * sqrt(200) * 3.14159265358979)) }')" 1e-9
+
 layout --best 4 --extent 1m --least-unique 0 --snr 40dB --arrivals 100 --spread 10% >best.tsv
 is "without a bound on matching half of the coils are at either end" "$(column coils best.tsv)" "0,0,1,1"
 layout --best 3 --extent 1m --least-unique 0.99 --snr 30dB --arrivals 100 --spread 10% --stats s >best.tsv

@@ -6,28 +6,44 @@
 enum { HALVINGS = 30 };             /* of the step: 1e-9 of the extent */
 static const double deviations = 3; /* of a window to either side: 99.7 % of arrivals */
 
+/* Variance of the arrival at a position beyond the coils that determine it, s2. */
+static double predicted_variance(const struct layout_par *par, const double *coil,
+	int coils, const struct bound *b, double at)
+{
+	double slowness = b->velocity / (par->bound.velocity * par->bound.velocity);
+	double mean = 0;
+
+	for (int k = 0; k < coils; k++)
+		mean += coil[k] / coils;
+	/* The arrival at the mean position is independent of the velocity. */
+	return b->time * b->time +
+	       (pow(at - mean, 2) - pow(coil[0] - mean, 2)) * slowness * slowness;
+}
+
 void layout_evaluate(
 	const struct layout_par *par, const double *coil, int coils, struct layout *out)
 {
-	double window = traffic_window(&par->traffic), first = 0, width = 0;
-	double narrow = window;
+	double window = traffic_window(&par->traffic), first = 0, width = 0, single;
+	struct bound b;
 	int next;
 
+	bound_closed(&par->bound, coil, 1, &b);
+	single = b.time * b.time;
 	for (int k = 0; k < coils; k = next) {
-		double way, sd;
-		struct bound b;
+		double all, narrow;
 
 		for (next = k + 1; next < coils && !(coil[next] > coil[k]);)
 			next++;
 		if (next == coils)
 			break;
-		/* Information of the coils so far on the slowness, s/m. */
-		way = coil[next] - coil[k];
+		/* From the coils so far; both arrivals are measured. */
 		bound_closed(&par->bound, coil, next, &b);
-		sd = b.velocity / (par->bound.velocity * par->bound.velocity);
-		narrow = fmin(window, 2 * deviations * sd);
-		first += way * (k == 0 ? window : narrow);
-		width += way * narrow;
+		narrow = 2 * deviations *
+			 sqrt(predicted_variance(par, coil, next, &b, coil[next]) +
+				 single);
+		all = (coil[next] - coil[k]) * window + 2 * deviations * sqrt(2 * single);
+		first += k == 0 ? all : fmin(all, narrow);
+		width += fmin(all, narrow);
 	}
 	bound_closed(&par->bound, coil, coils, &out->bound);
 	out->unique = traffic_unique(&par->traffic, first);

@@ -4,8 +4,9 @@
  * is largest, with half of the coils at either end; matching requires short distances
  * between coils.  A pulse is matched from each position to the next: at the second coil
  * within the window of the traffic, narrowed by the duration of the first pulse; at
- * later coils within three standard errors on either side of the prediction of the coils
- * so far.
+ * later coils within the prediction of the coils so far.  A window extends three standard
+ * errors to either side: two particles of equal velocity whose arrivals differ by less
+ * cannot be told apart.
  *
  *	struct layout_par par = { .bound = { ... }, .traffic = { ... } };
  *	layout_evaluate(&par, coil, 2, &evaluated);

@@ -25,7 +25,8 @@ struct traffic {
 /* Mean over the particles of exp(-arrivals (T + mean T)), T = zone / v. */
 double traffic_alone(const struct traffic *t, double zone);
 
-/* Width of the window of transit times over a distance of 1 m, s. */
+/* Width of the window of transit times over a distance of 1 m, s; errors of measurement
+ * are not included. */
 double traffic_window(const struct traffic *t);
 
 /* Probability that no other particle arrives within a window of this width, s. */

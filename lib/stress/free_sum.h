@@ -6,7 +6,7 @@
  * whose radius doubles from level to level: the part inside a window is summed at short
  * range on the points, the rest on points twice as far apart.  Near the surface the
  * innermost window is summed on the cells.  Work and memory are proportional to the
- * number of cells.  The error is below 3e-4 of the largest pressure, typically 3e-5
+ * number of cells.  The error is below 5e-6 of the largest pressure
  * (tests/unit/stress.c).
  *
  * The full sum over all cells is for small grids, for elongated cells, and for

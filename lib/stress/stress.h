@@ -30,7 +30,7 @@
 
 struct stress;
 
-/* Sums on points as coarse as the depth allows (free_sum.h, wave_sum.h: within 3e-4 of
+/* Sums on points as coarse as the depth allows (free_sum.h, wave_sum.h: within 5e-6 of
  * the largest pressure), or on all cells, for verification. */
 enum stress_method { STRESS_COARSE, STRESS_FULL };
 

@@ -39,7 +39,9 @@ struct wp_separate *wp_separate_new(
 		s->par.spacing = 0.25;
 	if (par->calibration == 0)
 		s->par.calibration = M_PI / 4 * 1e11;
-	inner.learn = par->learn > 0 ? (size_t)(par->learn * par->rate) : 65536;
+	inner.learn = (size_t)(par->learn * par->rate);
+	if (par->learn > 0 && inner.learn == 0)
+		inner.learn = 1;
 	inner.known = (struct calibrate_par){ .lag = or_nan(par->delay * par->rate),
 		.duration = or_nan(par->pulse_duration * par->rate),
 		.gain = or_nan(par->gain),

@@ -45,15 +45,15 @@ static void describe(struct table_out *t, const struct instrument_place *place,
 {
 	const struct calibration *c = &in->cal;
 	const struct flow *f = &in->flow;
-	double delay = ((double)c->shift + f->mean) / place->rate;
-	double v = place->spacing / delay, spread = sqrt(f->var) / place->rate / delay;
+	double rate = place->rate / in->ratio;
+	double delay = ((double)c->shift + f->mean) / rate;
+	double v = place->spacing / delay, spread = sqrt(f->var) / rate / delay;
 
 	table_comment(t, "noise", "%.6g V, %.6g V", c->noise[0], c->noise[1]);
-	table_comment(t, "pulse", "%.6g s, gain %.6g, from %d pulses",
-		c->duration / place->rate, c->gain, c->events);
+	table_comment(t, "pulse", "%.6g s, gain %.6g, from %d pulses", c->duration / rate,
+		c->gain, c->events);
 	for (int k = 0; k < c->tones; k++)
-		table_comment(
-			t, "line", "%.6g Hz", c->omega[k] * place->rate / (2 * M_PI));
+		table_comment(t, "line", "%.6g Hz", c->omega[k] * rate / (2 * M_PI));
 	if (f->count > 0 && delay > 0)
 		table_comment(t, "velocity",
 			"%.6g +- %.2g m/s of the flow, +- %.2g m/s of a particle, from "

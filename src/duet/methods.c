@@ -58,12 +58,13 @@ static void check_status(
 
 static void report(const struct separate *s, double rate)
 {
+	double ratio = separate_ratio(s);
 	const struct separate_counters *c = separate_counters(s);
 	const struct calibration *known = separate_calibration(s);
 
-	stats_set("samples", c->samples);
-	stats_set("samples_passed_over", c->passed_over);
-	stats_set("samples_active", c->active);
+	stats_set("samples", ratio * c->samples);
+	stats_set("samples_passed_over", ratio * c->passed_over);
+	stats_set("samples_active", ratio * c->active);
 	stats_set("sections", c->sections);
 	stats_set("sections_single", c->singles);
 	stats_set("sections_unresolved", c->unresolved);
@@ -82,7 +83,7 @@ static void report(const struct separate *s, double rate)
 	stats_set("demixings_skipped", c->masks_skipped);
 	stats_set("calibrations", known ? known->attempts : 0);
 	if (known)
-		instrument_note(known, rate);
+		instrument_note(known, rate / ratio);
 }
 
 static int put_ready(struct separate *s, struct found *out)
@@ -241,7 +242,7 @@ int separate_record(struct signal_in *in, struct found *out,
 	tell_together(s, out, signal_name(in));
 	tell_events(s, out);
 	doubtful = is_doubtful(s, out, signal_name(in), par.kept ? file : NULL);
-	found_detectable(out, separate_calibration(s));
+	found_detectable(out, separate_calibration(s), separate_ratio(s));
 	separate_free(s);
 	return doubtful;
 }

@@ -205,7 +205,7 @@ void found_section(void *context, const struct separate_section *s)
 }
 
 /* From where hardly any is found to where hardly any is missed, in steps of a tenth. */
-void found_detectable(struct found *out, const struct calibration *c)
+void found_detectable(struct found *out, const struct calibration *c, int ratio)
 {
 	enum { ROWS = 100 };
 	/* of an amplitude in the channels that are searched */
@@ -216,7 +216,7 @@ void found_detectable(struct found *out, const struct calibration *c)
 	if (!out->limits || !c)
 		return;
 	noise = c->noise[0];
-	v = c->shift > 0 ? out->spacing * out->rate / (double)c->shift : NAN;
+	v = c->shift > 0 ? out->spacing * out->rate / ratio / (double)c->shift : NAN;
 	calibration_scene(c, &scene);
 	detectable_shares(c->shape, share);
 	table_comment(out->limits, "large", "%.17g V", out->largest);

@@ -30,7 +30,8 @@ void found_peak(struct found *out, const struct peak *p, int sensor, double dela
 /* separate_par.on_section, with a struct found for its context. */
 void found_section(void *context, const struct separate_section *s);
 /* The table of what can be detected; NULL: nothing was learned. */
-void found_detectable(struct found *out, const struct calibration *c);
+/* ratio: see separate.h */
+void found_detectable(struct found *out, const struct calibration *c, int ratio);
 void found_close(struct found *out);
 
 #endif

@@ -176,6 +176,43 @@ static void check_traffic(void)
 		"with the same mean transit time the fast ones are alone more often");
 }
 
+/* Without differences of velocity only the errors of the two arrivals confuse particles.
+ * sd(t) = T / (snr sqrt(2 n) pi) for a sine of n samples. */
+static void check_equal_velocities(const struct layout_par *given)
+{
+	struct layout_par par = *given;
+	const double coil[] = { 0, 0.25, 0.5 };
+	double T = par.bound.zone / par.bound.velocity;
+	double sd = T / (par.bound.snr * sqrt(2 * par.bound.rate * T) * M_PI);
+	struct layout of, two;
+
+	par.traffic.spread = 0;
+	layout_evaluate(&par, coil, 2, &of);
+	near(of.unique, exp(-100 * 6 * sqrt(2) * sd), 1e-12,
+		"equal velocities: the window of a match is six standard errors of the delay");
+	near(of.by_width / of.unique, 1, 1e-12,
+		"equal velocities: the width of the pulse narrows nothing");
+	par.traffic.arrivals = 1e6;
+	layout_evaluate(&par, coil, 2, &of);
+	ok(of.unique < 1e-10, "equal velocities: crowds are not matched (%.1e)",
+		of.unique);
+	par = *given;
+	layout_evaluate(&par, coil, 2, &two);
+	layout_evaluate(&par, coil, 3, &of);
+	/* Delay and widths of two pulses: the mean position is D/2 and sd(t) / sqrt(2).
+	 */
+	{
+		double D = 0.25, s, w;
+		struct bound b;
+
+		bound_closed(&par.bound, coil, 2, &b);
+		s = b.velocity / (par.bound.velocity * par.bound.velocity);
+		w = 6 * sqrt(sd * sd / 2 + pow(1.5 * D * s, 2) + sd * sd);
+		near(of.by_width / two.by_width, exp(-100 * w), 1e-12,
+			"the third coil is searched within the prediction of the first two");
+	}
+}
+
 static void check_search(void)
 {
 	struct layout_par par = { { PULSE_SINE, 0.1273, 12.73, 10e3, 31.6 },
@@ -187,15 +224,19 @@ static void check_search(void)
 			coil[2] == 0.1 && coil[3] == 0.1,
 		"without a bound on pairing half the coils stand at either end");
 	ok(layout_search(&par, 2, 10, 0.95, 64, coil, &of) == 0, "two coils are placed");
-	/* p = exp(-arrivals D 6 sd(1/v)), sd from the width of the first pulse */
+	/* p = exp(-arrivals w), w = 6 sqrt(2 sd(t)^2 + (D sd(1/v))^2), both errors from
+	 * the first pulse. */
 	{
+		double w = -log(0.95) / 100 / 6, sd;
 		struct bound b;
 
 		bound_closed(&par.bound, coil, 1, &b);
-		far = -log(0.95) / (100 * 6 * b.velocity / (12.73 * 12.73));
+		sd = b.velocity / (12.73 * 12.73);
+		far = sqrt(w * w - 2 * b.time * b.time) / sd;
 	}
 	near(coil[1] / far, 1, 1e-6,
 		"the coils are as far apart as pairing by width allows");
+	check_equal_velocities(&par);
 	ok(layout_search(&par, 2, 10, 1, 64, coil, &of) == 0 && coil[1] == 0,
 		"where pairing must be certain the coils stand in one place");
 }

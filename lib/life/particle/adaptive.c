@@ -10,11 +10,10 @@
 
 enum { RECENT = 4, SETTLED = 8 };
 enum { BLOCK = 256 };                  /* particles at a time */
-enum { MONITOR = 20 };                 /* rows of the innovation monitor */
+enum { MONITOR = 20 };                 /* rows of the innovation monitor and of means */
 static const double MONITOR_LIMIT = 4; /* of the mean squared innovation */
 static const double MONITOR_CLIP = 16; /* limit of one squared innovation, so that a
 					  single outlier does not look like a drift */
-static const double MEMORY = 0.05;     /* weight of the newest innovation */
 
 /* A past row of all particles: their states and the gap after them. */
 struct lag {
@@ -330,14 +329,8 @@ static double missed_lately(const struct adaptive *a)
 	double largest = 0, second = 0;
 
 	for (int k = 0; k < RECENT; k++) {
-		double e = a->missed[k];
-
-		if (e > largest) {
-			second = largest;
-			largest = e;
-		} else if (e > second) {
-			second = e;
-		}
+		second = fmax(second, fmin(a->missed[k], largest));
+		largest = fmax(largest, a->missed[k]);
 	}
 	return second;
 }
@@ -386,8 +379,8 @@ static void learn_process(
 		a->innovation = expected;
 		a->carried = expected - process * process;
 	}
-	a->innovation += MEMORY * (e2 - a->innovation);
-	a->carried += MEMORY * (expected - process * process - a->carried);
+	a->innovation += (e2 - a->innovation) / MONITOR;
+	a->carried += (expected - process * process - a->carried) / MONITOR;
 	excess = a->innovation - a->carried;
 	a->process = excess > 0 ? sqrt(excess) : 0;
 }

@@ -12,21 +12,19 @@ enum { CHANCES = 8 }; /* uniform numbers of one draw */
 /* A rate at which the damage would take more than so many ages counts as 0, and the
  * growth of a rate of 0 too. */
 static const double NOTHING = 3e3;
-/* Hazard of a change of regime on the path of another unit, for all n paths together.
- * With one unit, coverage at 80 % of the life of 29 measured series and CRPS over all
- * ages: 0.1: .79, 4.5; 0.3: .83, 4.5; 0.5: .86, 4.6; 1: 1.00, 4.9. */
-static const double KIN_HAZARD = 0.5;
 
-/* Future changes of regime, where the rate falls, is constant or rises in a coordinate:
- * hazard c, share of falls, and median growth in units of 1 / age.  These and the three
- * constants below were chosen with the weights of the coordinates, see shapes.c; hazard
- * and growth where the rate is constant or rises, falls where it is constant, WANDERING
- * and four of the weights were swept again, as doc/benchmarks.md tells. */
+/* Future changes of regime, where the rate falls, is constant or rises in a coordinate,
+ * and on the paths of other units, for all of them together: hazard c, share of falls,
+ * and median growth in units of 1 / age.  These and the three constants below were chosen
+ * with the weights of the coordinates, see shapes.c; hazard and growth where the rate is
+ * constant or rises, falls where it is constant, WANDERING and five of the weights were
+ * swept again, as doc/benchmarks.md tells.  With one other unit, hazards of 0.1, 0.3, 0.5
+ * and 1 cover .79, .83, .86 and 1.00 at 80 % of the life of 29 measured series, with a
+ * CRPS over all ages of 4.5, 4.5, 4.6 and 4.9. */
 static const struct future {
 	double hazard, falls, growth;
-} future[] = { { 2.5, 0.24, 3.5 }, { 1.2, 0.18, 3 }, { 0.6, 0.033, 1.9 } };
-
-enum { FUTURES = sizeof future / sizeof *future };
+} future[] = { { 2.5, 0.24, 3.5 }, { 1.2, 0.18, 3 }, { 0.55, 0.033, 1.5 },
+	{ 0.5, 0.18, 3 } };
 
 /* Share of falls where the damage is a Wiener process, relative to other wear: its rate
  * seems to fall for a while without any change of regime. */
@@ -41,17 +39,18 @@ static const double FALL = 1.4, FALL_SD = 0.45;
  * weight, though others may fit as well.  Where the rate of the damage changes by e as an
  * average over the way, the logarithm of the time has the sd STRAY, and its median is
  * LEAN less: most wear bends more than its coordinate, because straight coordinates have
- * more weight.  Both were chosen with the hazard of a rising rate, as doc/benchmarks.md
+ * more weight.  Both were chosen with the future of a rising rate, as doc/benchmarks.md
  * tells. */
-static const double STRAY = 0.27, LEAN = 0.015;
+static const double STRAY = 0.22, LEAN = 0.03;
 
 struct bank_chances {
 	int n;
 	struct chance {
 		double u[CHANCES]; /* uniform */
 		double z[CHANCES]; /* the same as normal deviates */
-		/* Of the next change, from u and z: its time in ages, growth and fall. */
-		double turn[FUTURES], growth, fall;
+		/* Of the next change, from u and z: its time as a standard exponential
+		 * deviate of the logarithm of the age, growth and fall. */
+		double late, growth, fall;
 		/* Of Laplace's distribution, variance 1, from u[3]: a Wiener process
 		 * takes the square of z[3]. */
 		double stray;
@@ -86,8 +85,7 @@ struct bank_chances *bank_chances_new(int draws, uint64_t seed)
 	for (int i = 0; i < draws; i++) {
 		struct chance *d = &c->draw[i];
 
-		for (int k = 0; k < FUTURES; k++)
-			d->turn[k] = pow(d->u[5], -1 / future[k].hazard) - 1;
+		d->late = -log(d->u[5]);
 		d->growth = exp(GROWTH_SD * d->z[7]);
 		d->fall = exp(FALL + FALL_SD * d->z[7]);
 		d->stray =
@@ -121,7 +119,7 @@ struct crossing {
 	double growth;            /* of the rate at present */
 	double stray, lean;       /* see STRAY */
 	const struct future *future;
-	double hazard; /* for the path of another unit; 0: as in the table of futures */
+	double hazard;
 };
 
 /* Includes the prior of the rate, as an observation of v. */
@@ -184,7 +182,7 @@ static const struct future *future_of(const struct bank_shape *s)
 {
 	if (s->family == BANK_SATURATING)
 		return &future[0];
-	return &future[s->n > 0 || s->par <= 0 ? 1 : 2];
+	return &future[s->n > 0 ? 3 : s->par <= 0 ? 1 : 2];
 }
 
 /* Variance of the logarithm of the time to the passage between the trends. */
@@ -234,9 +232,10 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 	struct crossing p = { .limit = there.h,
 		.straight = (target - b->level) * here.slope,
 		.growth = tr->growth,
-		.future = future_of(shape_of(b, tr->shape)),
-		.hazard = shape_of(b, tr->shape)->n > 0 ? KIN_HAZARD / kin_of(b) : 0 };
+		.future = future_of(shape_of(b, tr->shape)) };
 
+	/* paths of other units share the changes */
+	p.hazard = p.future->hazard / (shape_of(b, tr->shape)->n > 0 ? kin_of(b) : 1);
 	future_loads(b, load);
 	now = at_loads(b, tr, load);
 	now.kind = 0;
@@ -286,9 +285,7 @@ static double normal_above(double m, const struct chance *c)
 static double change(
 	const struct crossing *p, double time, double age, const struct chance *c)
 {
-	double turn = p->hazard > 0 ? pow(c->u[5], -1 / p->hazard) - 1
-				    : c->turn[p->future - future];
-	double j = age * turn, rest = time - j, g;
+	double j = age * expm1(c->late / p->hazard), rest = time - j, g;
 
 	if (!(rest > 0))
 		return time;

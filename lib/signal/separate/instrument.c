@@ -54,6 +54,7 @@ static int list(struct instrument *in, struct field *f)
 		{ .name = "white_low", .real = &w->low, .count = 1 },
 		{ .name = "white_high", .real = &w->high, .count = 1 },
 		{ .name = "white_band", .real = &w->band, .count = 1 },
+		{ .name = "ratio", .whole = &in->ratio },
 		{ .name = "crowded", .whole = &in->crowded },
 		{ .name = "flow_mean", .real = &in->flow.mean, .count = 1 },
 		{ .name = "flow_variance", .real = &in->flow.var, .count = 1 },
@@ -202,7 +203,8 @@ static const char *out_of_range(const struct instrument *in)
 	const struct calibration *c = &in->cal;
 	const double *common = in->common;
 
-	return c->tone_hop < SHORTEST_HOP              ? "tone_hop"
+	return in->ratio < 1                           ? "ratio"
+	       : c->tone_hop < SHORTEST_HOP            ? "tone_hop"
 	       : c->pulse > PULSE_LORENTZ              ? "pulse"
 	       : !(c->noise[0] > 0 && c->noise[1] > 0) ? "noise"
 	       : !(c->duration >= 8)                   ? "duration"

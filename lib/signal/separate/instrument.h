@@ -14,6 +14,7 @@
 
 struct instrument {
 	struct calibration cal;
+	int ratio;            /* of separate_ratio(), whose samples these are */
 	int crowded;          /* long sections hold too many pulses */
 	struct flow flow;     /* delays of particles, samples around cal.shift */
 	double level[2];      /* noise of both channels once clean, near 1 */

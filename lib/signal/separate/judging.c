@@ -47,6 +47,20 @@ enum separate_status separate_queue_report(
 	return SEPARATE_OK;
 }
 
+/* From means to samples of the record. */
+static void spread_out(
+	struct separate_section *section, struct campbell *dense, int ratio)
+{
+	section->begin *= ratio;
+	section->end *= ratio;
+	dense->square /= ratio;
+	dense->square_se /= ratio;
+	dense->fourth /= ratio;
+	dense->fourth_se /= ratio;
+	dense->rate /= ratio;
+	dense->rate_se /= ratio;
+}
+
 static void give_reports(struct separate *s)
 {
 	for (size_t i = 0; i < s->reports; i++) {
@@ -55,6 +69,7 @@ static void give_reports(struct separate *s)
 		if (r->section.dense)
 			r->section.dense = &r->dense;
 		r->section.source = r->source;
+		spread_out(&r->section, &r->dense, s->ratio);
 		for (size_t k = r->first; k < r->first + r->rows; k++)
 			if (s->queue[k].evidence.doubted &&
 				r->section.verdict < SEPARATE_UNRESOLVED)
@@ -131,5 +146,11 @@ int separate_next(struct separate *s, struct transit *p)
 		return 0;
 	}
 	*p = s->queue[s->given++].row;
+	/* A mean belongs to the middle of its samples. */
+	p->t1 = p->t1 * s->ratio + 0.5 * (s->ratio - 1);
+	p->t2 = p->t2 * s->ratio + 0.5 * (s->ratio - 1);
+	p->t1_se *= s->ratio;
+	p->t2_se *= s->ratio;
+	p->delay_se *= s->ratio;
 	return 1;
 }

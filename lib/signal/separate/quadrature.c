@@ -48,6 +48,21 @@ enum num_status quadrature_append(struct quadrature *q, const double *v, size_t 
 	return NUM_OK;
 }
 
+enum num_status quadrature_average(struct quadrature *q, size_t ratio)
+{
+	for (int c = 0; c < 2; c++) {
+		struct tape mean;
+		enum num_status status =
+			tape_average(&q->tape[c], q->tape[c].n, ratio, &mean);
+
+		if (status != NUM_OK)
+			return status;
+		tape_clear(&q->tape[c]);
+		q->tape[c] = mean;
+	}
+	return NUM_OK;
+}
+
 void quadrature_drop(struct quadrature *q, size_t n)
 {
 	for (int c = 0; c < 2; c++)

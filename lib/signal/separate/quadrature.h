@@ -36,6 +36,8 @@ struct quadrature_pulse {
 void quadrature_clear(struct quadrature *q);
 /* n frames of two channels, the second component of either sensor. */
 enum num_status quadrature_append(struct quadrature *q, const double *v, size_t n);
+/* Replaces its samples by the means of each ratio of them (tape.h). */
+enum num_status quadrature_average(struct quadrature *q, size_t ratio);
 void quadrature_drop(struct quadrature *q, size_t n);
 void quadrature_forget(struct quadrature *q, long long keep);
 /* With what was learned from the first n samples (0: before) of x. */

@@ -10,10 +10,15 @@ struct separate *separate_new(const struct separate_par *par)
 	if (!s)
 		return NULL;
 	s->par = *par;
+	s->default_learn = par->learn == 0;
+	s->par.learn = s->default_learn ? SEPARATE_LEARN : par->learn;
 	if (s->par.learn < SEPARATE_SHORTEST)
 		s->par.learn = SEPARATE_SHORTEST;
+	s->ratio = 1;
 	if (par->kept) {
 		s->kept = *par->kept;
+		s->ratio = s->kept.ratio;
+		separate_average(s, s->ratio);
 		s->cal = s->kept.cal;
 		par->kept->cal = s->kept.cal = (struct calibration){ .shift = 0 };
 	}
@@ -61,6 +66,11 @@ const struct separate_counters *separate_counters(const struct separate *s)
 	return &s->counters;
 }
 
+int separate_ratio(const struct separate *s)
+{
+	return s->ratio;
+}
+
 long long separate_bad_sample(const struct separate *s, int *channel)
 {
 	*channel = s->bad_channel;
@@ -88,6 +98,7 @@ int separate_instrument(const struct separate *s, struct instrument *view)
 	if (!s->calibrated || s->holding || !s->looked)
 		return 0;
 	*view = (struct instrument){ .cal = s->cal,
+		.ratio = s->ratio,
 		.crowded = s->crowded,
 		.level = { s->level[0], s->level[1] },
 		.level_samples = s->levels,
@@ -243,8 +254,8 @@ enum separate_status separate_push_quadrature(
 
 	for (size_t i = 0; i < 2 * n; i++)
 		if (!isfinite(x[i])) {
-			s->bad_frame =
-				(long long)s->counters.samples + (long long)(i / 2);
+			s->bad_frame = (long long)(s->counters.samples * s->ratio) +
+				       (long long)(i / 2);
 			s->bad_channel = (int)(i % 2);
 			return SEPARATE_NOT_FINITE;
 		}
@@ -255,7 +266,7 @@ enum separate_status separate_push_quadrature(
 		return SEPARATE_MEMORY;
 	if (s->par.kept)
 		status = separate_check_alive(s, x, n);
-	s->counters.samples += (double)n;
+	s->counters.samples += (double)n / s->ratio;
 	if (!s->calibrated && status == SEPARATE_OK)
 		status = s->par.kept ? separate_start_kept(s) : separate_learn(s);
 	if (status != SEPARATE_OK)

@@ -31,6 +31,9 @@
 /* Fewest samples from which an instrument can be learned. */
 enum { SEPARATE_SHORTEST = 64 };
 
+/* Samples from which it is learned unless told otherwise. */
+enum { SEPARATE_LEARN = 65536 };
+
 enum separate_method { SEPARATE_FIT, SEPARATE_MASKS };
 
 /* One particle that passes both sensors, as estimated from the record. */
@@ -65,7 +68,8 @@ struct separate_section {
 struct separate_par {
 	enum separate_method method;
 	struct calibrate_par known;
-	size_t learn;    /* samples held back to calibrate, at least SEPARATE_SHORTEST */
+	size_t learn;    /* samples held back to calibrate, at least SEPARATE_SHORTEST;
+			    0: SEPARATE_LEARN */
 	size_t window;   /* longest section worked off at once; 0: 24 durations */
 	int sources;     /* exactly so many in each section; 0: find out */
 	int most_pulses; /* limit for a window; 0: JOINT_PULSES_MAX */
@@ -123,6 +127,11 @@ struct separate_counters {
 struct separate;
 struct separate *separate_new(const struct separate_par *par); /* NULL: no memory */
 void separate_free(struct separate *s);
+
+/* Samples of the record in one of those that are separated: 1, or more if the pulses are
+ * so long that means of samples are separated.  Counters and calibration are in units of
+ * these. */
+int separate_ratio(const struct separate *s);
 
 /* n frames of two channels, interleaved. */
 enum separate_status separate_push(struct separate *s, const double *x, size_t n);

@@ -52,14 +52,17 @@ struct common {
 struct separate {
 	struct separate_par par;
 	struct calibration cal;
+	int default_learn; /* 1: par.learn is SEPARATE_LEARN */
 	int calibrated, ended;
 	struct instrument kept; /* par.kept, whose cal is moved to cal */
 	int varies[2];          /* 1: the channel has not been constant so far */
 	double first[2];        /* first samples of a record with a kept instrument */
 	double level[2], levels;
 	long long level_at;
-	int looked;  /* 1: the first samples have been examined */
-	int crowded; /* 1: long sections hold too many pulses */
+	int looked;     /* 1: the first samples have been examined */
+	int crowded;    /* 1: long sections hold too many pulses */
+	int ratio;      /* samples of the record in one of tape */
+	size_t awaited; /* samples of tape to learn from means */
 	struct tape tape[2];
 	struct sections *sections;
 	struct joint *joint;
@@ -195,6 +198,27 @@ enum separate_status separate_start_kept(struct separate *s);
 /* SILENT if, with a kept instrument, a channel is constant for as long as one would
  * learn. */
 enum separate_status separate_check_alive(struct separate *s, const double *x, size_t n);
+
+/* averaging.c */
+
+/* Samples of a pulse above which means are separated. */
+enum { SEPARATE_LONG = 256 };
+/* The least power of 2, or most, that leaves at most limit of a duration. */
+int separate_ratio_of(double duration, int limit, int most);
+/* *ratio: samples to average if the pulses are as long as the autocorrelation of the
+ * first samples suggests. */
+enum num_status separate_guess_ratio(const struct separate *s, int *ratio);
+/* par.learn, of means. */
+size_t separate_learned_means(const struct separate *s, int ratio);
+/* The means of the n oldest samples; separate_clear_tapes() frees them, also on failure.
+ */
+enum num_status separate_average_tapes(
+	const struct tape tape[2], size_t n, int ratio, struct tape mean[2]);
+void separate_clear_tapes(struct tape pair[2]);
+/* Converts what is known in samples to means. */
+void separate_convert(struct separate *s, int ratio);
+/* Has the samples of a record that has not begun averaged. */
+void separate_average(struct separate *s, int ratio);
 
 /* noise_level.c; separate_noise() as well */
 

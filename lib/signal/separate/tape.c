@@ -14,30 +14,83 @@ void tape_clear(struct tape *t)
 	memset(t, 0, sizeof *t);
 }
 
+static enum num_status reserve(struct tape *t, size_t n)
+{
+	size_t capacity = 2 * t->capacity > t->n + n ? 2 * t->capacity : t->n + n;
+	double *more;
+	unsigned char *flags;
+
+	if (t->n + n <= t->capacity)
+		return NUM_OK;
+	more = realloc(t->x, capacity * sizeof *more);
+	if (!more)
+		return NUM_MEMORY;
+	t->x = more;
+	flags = realloc(t->hidden, capacity);
+	if (!flags)
+		return NUM_MEMORY;
+	t->hidden = flags;
+	t->capacity = capacity;
+	return NUM_OK;
+}
+
+static void put(struct tape *t, double x, int hidden)
+{
+	t->x[t->n] = x;
+	t->hidden[t->n++] = (unsigned char)hidden;
+}
+
+/* Adds a sample to the mean; lost: so many of the last ones are not measured. */
+static void put_part(struct tape *t, double x, size_t lost)
+{
+	t->sum += x;
+	t->lost |= lost > 0;
+	t->parts++;
+	if (lost > t->parts) { /* in means before this one */
+		size_t means = (lost - t->parts - 1) / t->ratio + 1;
+
+		means = means < t->n ? means : t->n;
+		memset(t->hidden + t->n - means, 1, means);
+	}
+	if (t->parts < t->ratio)
+		return;
+	put(t, t->sum / (double)t->ratio, t->lost);
+	t->parts = 0;
+	t->sum = t->lost = 0;
+}
+
 enum num_status tape_append(struct tape *t, const double *x, size_t n)
 {
-	if (t->n + n > t->capacity) {
-		size_t capacity = 2 * t->capacity > t->n + n ? 2 * t->capacity : t->n + n;
-		double *more = realloc(t->x, capacity * sizeof *more);
-		unsigned char *flags;
-
-		if (!more)
-			return NUM_MEMORY;
-		t->x = more;
-		flags = realloc(t->hidden, capacity);
-		if (!flags)
-			return NUM_MEMORY;
-		t->hidden = flags;
-		t->capacity = capacity;
-	}
+	if (reserve(t, t->ratio ? n / t->ratio + 1 : n) != NUM_OK)
+		return NUM_MEMORY;
 	for (size_t i = 0; i < n; i++) {
 		size_t lost = converter_next(&t->converter, x[2 * i]);
 
-		t->x[t->n] = x[2 * i];
-		t->hidden[t->n++] = 0;
+		if (t->ratio) {
+			put_part(t, x[2 * i], lost);
+			continue;
+		}
+		put(t, x[2 * i], 0);
 		lost = lost < t->n ? lost : t->n; /* the others are no longer stored */
 		memset(t->hidden + t->n - lost, 1, lost);
 	}
+	return NUM_OK;
+}
+
+enum num_status tape_average(
+	const struct tape *t, size_t n, size_t ratio, struct tape *mean)
+{
+	size_t skip = (ratio - (size_t)t->begin % ratio) % ratio;
+
+	memset(mean, 0, sizeof *mean);
+	mean->ratio = ratio;
+	mean->converter = t->converter;
+	mean->begin = (t->begin + (long long)skip) / (long long)ratio;
+	mean->flat = mean->clean = mean->begin;
+	if (reserve(mean, n / ratio + 1) != NUM_OK)
+		return NUM_MEMORY;
+	for (size_t i = skip; i < n; i++)
+		put_part(mean, t->x[i], t->hidden[i]);
 	return NUM_OK;
 }
 

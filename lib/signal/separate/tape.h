@@ -21,6 +21,10 @@ struct tape {
 	unsigned char *hidden; /* 1: the converter has not measured this sample */
 	struct converter converter;
 	size_t n, capacity;
+	size_t ratio; /* samples of the record averaged into one; 0: not averaged */
+	size_t parts; /* of the next one, so far: */
+	double sum;
+	int lost; /* 1: the converter has not measured all of them */
 	long long begin, white, flat, clean;
 	struct fir *whiten; /* NULL if there is no filter to undo; it has read ... */
 	long long fed;      /* ... the samples before this one */
@@ -33,8 +37,13 @@ struct tape {
 
 void tape_clear(struct tape *t);
 
-/* Appends n samples: x[0], x[2], x[4] ... */
+/* Appends n samples: x[0], x[2], x[4] ...; averaged, if t is. */
 enum num_status tape_append(struct tape *t, const double *x, size_t n);
+/* A tape with the means of every ratio of the n oldest samples of t, the first with an
+ * index divisible by ratio, and with its converter; t must be neither averaged nor
+ * started.  Means of white noise are white. */
+enum num_status tape_average(
+	const struct tape *t, size_t n, size_t ratio, struct tape *mean);
 /* Hides the samples at the limits of the converter that only later samples have revealed.
  */
 void tape_review(struct tape *t);

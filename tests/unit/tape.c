@@ -1,0 +1,76 @@
+/* Means of the samples of a channel: values, indices, and samples that were not measured
+ */
+#include "signal/separate/tape.h"
+#include "num/philox.h"
+#include "tap.h"
+#include <math.h>
+
+enum { N = 4000, RATIO = 16, DROPPED = 37, STILL = 1000, STANDS = 70 };
+
+static double x[2 * N]; /* of one of two channels */
+
+/* Noise, which stands still for STANDS samples from STILL on. */
+static void draw(void)
+{
+	double z[2];
+
+	for (uint64_t i = 0; i < N; i++) {
+		philox_normal2(3, 0, RNG_NOISE, i, z);
+		x[2 * i] = 5 + (i < STILL || i >= STILL + STANDS ? z[0] : 0);
+	}
+}
+
+static int are_equal(const struct tape *a, const struct tape *b)
+{
+	for (size_t i = 0; i < a->n && i < b->n; i++)
+		if (a->x[i] != b->x[i] || a->hidden[i] != b->hidden[i])
+			return 0;
+	return a->n == b->n && a->begin == b->begin;
+}
+
+int main(void)
+{
+	struct tape fine = { NULL }, mean = { NULL }, direct = { .ratio = RATIO };
+	double largest = 0, sum = 0;
+	int hidden = 0;
+
+	draw();
+	if (tape_append(&fine, x, N) != NUM_OK ||
+		tape_average(&fine, N, RATIO, &mean) != NUM_OK)
+		return 1;
+	ok(mean.n == N / RATIO && mean.begin == 0, "there is one mean of 16 samples");
+	for (size_t k = 0; k < mean.n; k++) {
+		double m = 0;
+
+		for (size_t i = 0; i < RATIO; i++)
+			m += x[2 * (RATIO * k + i)] / RATIO;
+		largest = fmax(largest, fabs(mean.x[k] - m));
+		if (!mean.hidden[k])
+			sum += (mean.x[k] - 5) * (mean.x[k] - 5) * RATIO;
+		hidden += mean.hidden[k];
+	}
+	ok(largest < 1e-14, "they are the means of these samples");
+	/* 245 means: a standard error of 9 %. */
+	ok(fabs(sum / (double)mean.n - 1) < 0.3,
+		"noise falls as the root of their number");
+	ok(hidden == 5 && mean.hidden[STILL / RATIO] &&
+			mean.hidden[(STILL + STANDS - 1) / RATIO],
+		"a mean with a sample that was not measured is hidden, and no other");
+
+	/* Piece by piece; the run is found only after some of its means are there. */
+	for (size_t at = 0; at < N; at += 7)
+		if (tape_append(&direct, x + 2 * at, at + 7 < N ? 7 : N - at) != NUM_OK)
+			return 1;
+	ok(are_equal(&mean, &direct), "samples averaged as they arrive give the same");
+
+	tape_drop(&fine, DROPPED);
+	tape_clear(&mean);
+	if (tape_average(&fine, fine.n, RATIO, &mean) != NUM_OK)
+		return 1;
+	ok(mean.begin == DROPPED / RATIO + 1, "the first mean has a whole index");
+	ok(mean.x[0] == direct.x[mean.begin], "it is that of the same samples");
+	tape_clear(&fine);
+	tape_clear(&mean);
+	tape_clear(&direct);
+	return tap_done();
+}
