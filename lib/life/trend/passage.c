@@ -48,8 +48,7 @@ struct bank_chances {
 	struct chance {
 		double u[CHANCES]; /* uniform */
 		double z[CHANCES]; /* the same as normal deviates */
-		/* Of the next change, from u and z: its time as a standard exponential
-		 * deviate of the logarithm of the age, growth and fall. */
+		/* Of the next change: time, exponential in log age, growth and fall. */
 		double late, growth, fall;
 		/* Of Laplace's distribution, variance 1, from u[3]: a Wiener process
 		 * takes the square of z[3]. */
@@ -234,7 +233,6 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 		.growth = tr->growth,
 		.future = future_of(shape_of(b, tr->shape)) };
 
-	/* paths of other units share the changes */
 	p.hazard = p.future->hazard / (shape_of(b, tr->shape)->n > 0 ? kin_of(b) : 1);
 	future_loads(b, load);
 	now = at_loads(b, tr, load);

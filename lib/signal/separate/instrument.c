@@ -103,7 +103,7 @@ enum num_status instrument_values(
 				f[k].whole    ? *f[k].whole
 				: f[k].longer ? (double)*f[k].longer
 					      : (double)*f[k].size);
-		for (int i = 0; i < count; i++)
+		for (int i = 0; f[k].real && i < count; i++)
 			put(v, n, f[k].name, i, f[k].real[i]);
 	}
 	for (int i = 0; w->tap && i < 2 * w->half + 1; i++)

@@ -1,20 +1,14 @@
 /* judging.c - the queue of rows, and of sections to report, which are held until judged
  */
+#include "num/room.h"
 #include "signal/separate/separate_state.h"
 #include <stdlib.h>
 #include <string.h>
 
 struct entry *separate_queue_entry(struct separate *s)
 {
-	if (s->count == s->capacity) {
-		size_t capacity = s->capacity ? 2 * s->capacity : 64;
-		struct entry *more = realloc(s->queue, capacity * sizeof *more);
-
-		if (!more)
-			return NULL;
-		s->queue = more;
-		s->capacity = capacity;
-	}
+	if (room_for(&s->queue, &s->capacity, s->count + 1, sizeof *s->queue))
+		return NULL;
 	memset(&s->queue[s->count], 0, sizeof *s->queue);
 	return &s->queue[s->count++];
 }
@@ -26,15 +20,8 @@ enum separate_status separate_queue_report(
 
 	if (!s->par.on_section)
 		return SEPARATE_OK;
-	if (s->reports == s->report_capacity) {
-		size_t capacity = s->report_capacity ? 2 * s->report_capacity : 16;
-		struct report *more = realloc(s->report, capacity * sizeof *more);
-
-		if (!more)
-			return SEPARATE_MEMORY;
-		s->report = more;
-		s->report_capacity = capacity;
-	}
+	if (room_for(&s->report, &s->report_capacity, s->reports + 1, sizeof *s->report))
+		return SEPARATE_MEMORY;
 	r = &s->report[s->reports++];
 	memset(r, 0, sizeof *r);
 	r->section = *section;
