@@ -178,7 +178,6 @@ static enum separate_status learn_from_means(
 	struct separate *s, int ratio, double *duration)
 {
 	struct tape fine[2] = { s->tape[0], s->tape[1] }, mean[2];
-	double effort = s->effort;
 	size_t n;
 	enum separate_status status;
 
@@ -206,7 +205,6 @@ static enum separate_status learn_from_means(
 	separate_clear_tapes(mean);
 	memcpy(s->tape, fine, sizeof fine);
 	s->ratio = 1;
-	s->effort = effort;
 	return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
 }
 
@@ -229,8 +227,6 @@ static enum separate_status calibrate_now(struct separate *s)
 		!s->par.want_sources && separate_guess_ratio(s, &ratio) != NUM_OK)
 		return SEPARATE_MEMORY;
 	if (ratio > 1 && !again) {
-		double effort = s->effort;
-
 		status = learn_from(s, n, FIRST);
 		if (status == SEPARATE_OK && s->cal.duration <= SEPARATE_LONG)
 			return start(s, n);
@@ -238,7 +234,6 @@ static enum separate_status calibrate_now(struct separate *s)
 			calibration_clear(&s->cal);
 		if (status == SEPARATE_MEMORY)
 			return status;
-		s->effort = effort;
 	}
 	means = (size_t)ratio * separate_learned_means(s, ratio);
 	if (ratio > 1 && !s->ended && s->tape[0].n < means) {
