@@ -365,15 +365,6 @@ static void check_end(const struct signal_in *in)
 			in->name, in->frame, rest);
 }
 
-double signal_left(const struct signal_in *in)
-{
-	uint64_t left = input_left(in->in), bytes = left + in->end - in->begin;
-
-	if (left == UINT64_MAX)
-		return INFINITY;
-	return (double)(bytes < in->left ? bytes : in->left) / (double)in->frame;
-}
-
 /* All declared bytes were returned, or less than a frame of them is left. */
 static void check_declared(struct signal_in *in)
 {

@@ -36,8 +36,6 @@ struct signal_in *signal_from(struct input *in); /* takes ownership of an open i
 int signal_marked(const struct signal_in *in);
 const struct signal_format *signal_format(const struct signal_in *in);
 const char *signal_name(const struct signal_in *in);
-/* Frames still to be read of a file that is not followed; INFINITY: not known. */
-double signal_left(const struct signal_in *in);
 /* Reads up to nframes frames; blocks until it has that many or the input ends.  Returns
  * the number of frames, 0 at the end.  If a stream ends too early its complete frames are
  * returned; the next call, signal_close() or the end of an output dies.  Samples may be

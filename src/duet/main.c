@@ -125,19 +125,6 @@ static int most_pulses(void)
 	return most ? (int)most : 1;
 }
 
-/* Samples of pulses that are computed in a second of processor time, of a slow machine;
- * the share of the length of a record that this may take, of which the rest of the work
- * takes less than a tenth more; and seconds that are always allowed. */
-static const double SPEED = 8e7, SHARE = 0.75, ALWAYS = 3;
-
-/* Work allowed for a record; 0: its length is not known. */
-static double allowed_work(const struct signal_in *in)
-{
-	double seconds = signal_left(in) / signal_format(in)->rate;
-
-	return isinf(seconds) ? 0 : SPEED * fmax(SHARE * seconds, ALWAYS);
-}
-
 static int separate_all(struct signal_in *in, struct found *out)
 {
 	double rate = (double)out->rate;
@@ -147,7 +134,6 @@ static int separate_all(struct signal_in *in, struct found *out)
 		.learn = isnan(learn) ? 0 : learned_samples(rate),
 		.sources = sources.word < 0 ? (int)sources.value : 0,
 		.most_pulses = most_pulses(),
-		.work = allowed_work(in),
 		.mask_window = opt_given("window") ? (size_t)window : 0,
 		.mask_hop = opt_given("hop") ? (size_t)hop : 0,
 		.want_sources = separated != NULL,

@@ -117,10 +117,6 @@ static int is_doubtful(
 		      ? xprintf("events that are no particles cover %.2g %% of it, and "
 				"hide the particles there",
 				100 * c->covered / c->samples)
-	      : doubt == SEPARATE_SKIPPED
-		      ? xprintf("describing %.2g %% of it by pulses would take longer than "
-				"it lasts",
-				100 * c->skipped / c->samples)
 	      : doubt == SEPARATE_UNEXPLAINED
 		      ? xprintf("both channels stand out of their noise, but have nothing "
 				"in common")
@@ -129,8 +125,7 @@ static int is_doubtful(
 		      : xprintf("%.0f %% of it is unresolved, unlike the record of the "
 				"instrument",
 				100 * c->dense / c->samples);
-	if (doubt == SEPARATE_COVERED || doubt == SEPARATE_SKIPPED ||
-		doubt == SEPARATE_UNEXPLAINED)
+	if (doubt == SEPARATE_COVERED || doubt == SEPARATE_UNEXPLAINED)
 		warn("%s: %s", name, why);
 	else if (kept)
 		warn("%s: this instrument does not fit %s: %s", kept, name, why);

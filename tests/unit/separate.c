@@ -194,68 +194,6 @@ static void test_local_doubt(void)
 		good, doubted, elsewhere, clear);
 }
 
-/* Work that is allowed to learn from a record, or to describe it once the instrument is
- * known, is not exceeded by much: the rest is one unresolved row for each section. */
-static void test_work(void)
-{
-	enum { FRAMES = 20000 };
-	static double x[2 * FRAMES];
-	struct separate_par par = { .method = SEPARATE_FIT, .learn = FRAMES };
-	struct separate *first, *second;
-	struct instrument kept;
-	struct transit row;
-	int rows = 0, unresolved = 0;
-
-	par.known = (struct calibrate_par){ .lag = NAN,
-		.duration = NAN,
-		.gain = NAN,
-		.pulse = CALIBRATE_ANY_PULSE,
-		.spread = NAN,
-		.false_alarm = 1e-9,
-		.tones = 0 };
-	for (size_t i = 0; i < FRAMES; i++) {
-		philox_normal2(7, 1, RNG_NOISE, i, x + 2 * i);
-		x[2 * i] *= 0.01;
-		x[2 * i + 1] *= 0.01;
-	}
-	for (int i = 0; i < 40; i++) {
-		struct pulse p = pulse_at(500 + 450 * i, (uint64_t)i);
-
-		add(x, FRAMES, p.t, T, p.a, 0);
-		add(x + 1, FRAMES, p.t + TRANSIT + p.delay, T, GAIN * p.a, 0);
-	}
-	par.work = 1;
-	first = separate_new(&par);
-	ok(separate_push(first, x, FRAMES) == SEPARATE_OK &&
-			separate_end(first) == SEPARATE_HARD,
-		"an instrument is not learned with more work than allowed");
-	separate_free(first);
-	par.work = 0;
-	first = separate_new(&par);
-	ok(separate_push(first, x, FRAMES) == SEPARATE_OK &&
-			separate_end(first) == SEPARATE_OK &&
-			separate_doubtful(first) == SEPARATE_BELIEVED &&
-			separate_counters(first)->rows == 40 &&
-			separate_instrument(first, &kept),
-		"without a limit it is, and all pulses are found");
-	par.work = 1;
-	par.kept = &kept;
-	second = separate_new(&par);
-	ok(separate_push(second, x, FRAMES) == SEPARATE_OK &&
-			separate_end(second) == SEPARATE_OK,
-		"a record is read to its end with less work than it takes");
-	while (separate_next(second, &row)) {
-		rows++;
-		unresolved += row.verdict == SEPARATE_UNRESOLVED;
-	}
-	ok(rows == 40 && unresolved == 39, "of %d rows %d are unresolved", rows,
-		unresolved);
-	ok(separate_doubtful(second) == SEPARATE_SKIPPED &&
-			separate_counters(second)->skipped > 0,
-		"and the record is doubtful");
-	separate_free(second); /* with what is kept, which was the first one's */
-}
-
 /* A filter that lets nothing through has no inverse; that is no lack of memory. */
 static void test_dead_filter(void)
 {
@@ -288,6 +226,5 @@ int main(void)
 	test_own_shape();
 	test_pairs();
 	test_local_doubt();
-	test_work();
 	return tap_done();
 }

@@ -74,18 +74,11 @@ static void mean_residual(struct examples *ex, double *more, double *weight, int
  * measure.c half of it gives one more wrong row, twice of it the same rows. */
 static const double CORRECTION = 80;
 
-/* Excess chi-square of the examples that judge, plus half the threshold for each of their
- * pulses: a shape with which one pulse replaces two is not better for that. */
+/* Excess chi-square of the examples, plus half the threshold for each pulse: a shape with
+ * which one pulse replaces two is not better for that. */
 static double cost(const struct examples *ex)
 {
-	double sum = 0;
-
-	for (int i = 0; i < ex->count; i++) {
-		const struct example *e = &ex->example[i];
-
-		sum += e->judges ? e->excess + 0.5 * ex->scene.drop_near * e->m : 0;
-	}
-	return sum;
+	return ex->excess + 0.5 * ex->scene.drop_near * examples_pulses(ex);
 }
 
 int correct_doubtful(struct examples *ex, struct calibration *c)
@@ -139,14 +132,10 @@ static enum num_status improve_shape(struct examples *ex, struct calibration *c,
 
 enum num_status correct_shape(struct examples *ex, struct calibration *c)
 {
-	double before, share = ex->share;
+	double before = cost(ex), share = ex->share;
 	struct shape *first = c->shape;
 	enum num_status status;
 
-	/* Other events may look more like the corrected pulse than the pulses do. */
-	for (int i = 0; i < ex->count; i++)
-		ex->example[i].judges = !ex->example[i].spoiled;
-	before = cost(ex);
 	ex->corrected = 1;
 	status = improve_shape(ex, c, examples_pulses(ex));
 	c->chi2 = examples_fit(ex, ex->share);

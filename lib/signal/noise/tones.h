@@ -42,42 +42,9 @@ enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
 enum num_status tones_confirm(const double *y1, const double *y2, size_t n, double band,
 	int *tones, double *omega);
 
-/* Subtracts tones from x[0..n): coefficients change linearly, from those at index at_a
- * (from) to those at index at_b (to); equal indices: they are to. */
+/* Subtracts tones from x[0..n): coefficients change linearly from those at index at_a
+ * (from) to those at index at_b (to). */
 void tones_remove(double *x, size_t n, double start, int tones, const double *omega,
 	double at_a, const double *from, double at_b, const double *to);
-
-/* Tones followed through a record: their coefficients are fitted at knots, a hop apart,
- * over a hop on either side, and change linearly from knot to knot. */
-struct tones_track {
-	int tones;
-	double omega[TONES_MAX];
-	long long start, flat; /* first sample, and the first that still has tones */
-	long long hop;
-	int knots;         /* so far; 0: nothing is known */
-	int fits;          /* of them, those whose samples resolve the tones */
-	double at, before; /* indices of the last two knots ... */
-	double coefficient[3][1 + 2 * TONES_MAX]; /* ... and coefficients of three */
-	/* Sums over the knots of the power of each tone, and of the squares of the first
-	 * and second differences of all cosines and sines. */
-	double power[TONES_MAX], step, bend;
-};
-
-void tones_track_start(struct tones_track *t, int tones, const double *omega,
-	long long start, size_t hop);
-
-/* Subtracts tones and offset from the samples that can be cleaned without those from
- * index end on; all, if the record has ended.  x[0] is the sample of index begin.
- * TONES_MEMORY. */
-enum tones_status tones_track_run(
-	struct tones_track *t, double *x, long long begin, long long end, int ended);
-
-/* Mean square change of a coefficient from knot to knot; INFINITY: not known. */
-double tones_track_change(const struct tones_track *t);
-
-/* Variance of what the lines between knots leave of a coefficient: half the mean square
- * of the second differences, in which the errors of neighbours, which have half of their
- * samples in common, have 6 - 8 / 2 times their variance.  INFINITY: not known. */
-double tones_track_left(const struct tones_track *t);
 
 #endif

@@ -94,12 +94,6 @@ static enum separate_status give_event(struct separate *s, long long from, size_
 			     : separate_give_event(s, from, from + (long long)n, event);
 }
 
-/* 1 if the work allowed for the record has been done. */
-static int is_work_done(const struct separate *s)
-{
-	return s->par.work > 0 && s->effort + joint_work(s->joint) > s->par.work;
-}
-
 enum separate_status separate_fit_section(
 	struct separate *s, long long from, long long to, int cut, long long *next)
 {
@@ -111,13 +105,6 @@ enum separate_status separate_fit_section(
 	long before = 0, after = 0;
 	size_t n;
 
-	if (is_work_done(s)) {
-		s->counters.skipped += (double)(to - from);
-		s->carried = 0;
-		s->dense = 1;
-		*next = from;
-		return SEPARATE_OK;
-	}
 	/* The quiet samples on either side of a section show that no pulse extends there.
 	 */
 	if (!s->par.quadrature) {
@@ -132,9 +119,6 @@ enum separate_status separate_fit_section(
 	s->scene.max_pulses = most_pulses(s, (size_t)(to - from));
 	s->scene.quiet[0] = (double)before;
 	s->scene.quiet[1] = (double)after;
-	for (int c = 0; c < 2; c++)
-		s->scene.tone_knot[c] = (double)(s->tape[c].tones.start - from + before -
-						 (c ? s->cal.shift : 0));
 	if (!s->par.quadrature)
 		separate_hide(s, from - before, n);
 	if (a.m > s->scene.max_pulses)
@@ -144,8 +128,6 @@ enum separate_status separate_fit_section(
 		(const double *const[]){
 			channel_1(s, from - before), channel_2(s, from - before) },
 		n, cut, &a);
-	if (status == SEPARATE_OK && separate_is_described(&a) && !s->par.quadrature)
-		status = separate_try_wider(s, from - before, n, cut, &a);
 	if (status == SEPARATE_OK && separate_is_described(&a))
 		status = separate_fit_without_common(s, from - before, n, cut, &a);
 	if (status == SEPARATE_OK)

@@ -16,9 +16,6 @@ static const double FOLLOWED = 20;
  * record, some second of processor time per second of 10 kHz, for what is tried later. */
 static const double EFFORT = 9e8, EFFORT_PER_SAMPLE = 9000;
 
-/* Share of the work allowed for a record that learning may take. */
-static const double LEARNING = 0.8;
-
 /* The noise is followed in blocks of a sixteenth of what is learned from. */
 static void follow_noise(struct separate *s, size_t n)
 {
@@ -147,11 +144,9 @@ static enum separate_status learn_from(struct separate *s, size_t n, double shar
 	for (int c = 0; c < 2; c++)
 		tape_review(&s->tape[c]);
 	known = known_of(s);
-	known.most = fmax(
-		EFFORT, EFFORT_PER_SAMPLE * (double)(s->tape[0].begin + (long long)n));
-	if (s->par.work > 0)
-		known.most = fmin(known.most, LEARNING * s->par.work);
-	known.most = share * (known.most - s->effort);
+	known.most = share * (fmax(EFFORT, EFFORT_PER_SAMPLE * (double)(s->tape[0].begin +
+									(long long)n)) -
+				     s->effort);
 	status = calibrate(&known, s->tape[0].x, s->tape[1].x, n, &s->cal);
 	s->effort += s->cal.work;
 	if (status != CALIBRATE_OK)
@@ -170,6 +165,10 @@ static size_t lesser(size_t a, size_t b)
 /* Least duration of a pulse, in means, if other components of the record are longer: the
  * more of these is learned from, the better. */
 enum { SHORT = 32 };
+
+/* Fewest pulses that are believed to be long: a transit time, a duration and a gain are
+ * learned from them, and a baseline that drifts looks like one or two. */
+enum { PULSES = 3 };
 
 /* Separates means from now on, if an instrument can be learned from them whose pulses
  * are not too short; otherwise s is as before.  *duration: of a pulse, in means; 0: not
@@ -192,7 +191,7 @@ static enum separate_status learn_from_means(
 	status = learn_from(s, n, 1);
 	if (status == SEPARATE_OK)
 		*duration = s->cal.duration;
-	if (*duration >= SHORT) {
+	if (*duration >= SHORT && s->cal.events >= PULSES) {
 		separate_clear_tapes(fine);
 		separate_convert(s, ratio);
 		if (s->par.quadrature &&

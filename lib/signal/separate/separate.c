@@ -307,8 +307,6 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 
 	if (!s->calibrated)
 		return s->unexplained ? SEPARATE_UNEXPLAINED : SEPARATE_BELIEVED;
-	if (c->skipped > COVERED * c->samples)
-		return SEPARATE_SKIPPED;
 	if (s->par.kept && separate_is_other_noise(s))
 		return SEPARATE_NOISE;
 	if (s->par.kept && c->rows > 2 && c->negative > REVERSED * c->rows)

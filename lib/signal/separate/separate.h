@@ -79,9 +79,6 @@ struct separate_par {
 	struct instrument *kept; /* learned before, with known: its cal is taken over;
 				    NULL: learn */
 	int want_sources;        /* fill separate_section.source */
-	/* Samples of pulses that may be computed for the record; 0: no limit but that of
-	 * learning.  Some 8e7 take a second of processor time. */
-	double work;
 	void (*on_section)(void *context, const struct separate_section *section);
 	void *context;
 };
@@ -121,7 +118,6 @@ struct separate_counters {
 					need not be */
 	double unresolved, dense;    /* rows, and the samples these stand for */
 	double covered; /* samples of events in which no particle would be found */
-	double skipped; /* samples of sections that there was no time for */
 };
 
 struct separate;
@@ -162,7 +158,6 @@ enum separate_doubt {
 				with their sign changed */
 	SEPARATE_CROWD,      /* more than half is unresolved, unlike its record */
 	SEPARATE_COVERED,    /* particles are lost under events that are none */
-	SEPARATE_SKIPPED,    /* describing it would take too much time */
 	SEPARATE_UNEXPLAINED /* nothing could be learned, but the record is not noise */
 };
 enum separate_doubt separate_doubtful(const struct separate *s);

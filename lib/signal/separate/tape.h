@@ -29,7 +29,9 @@ struct tape {
 	struct fir *whiten; /* NULL if there is no filter to undo; it has read ... */
 	long long fed;      /* ... the samples before this one */
 	double *piece;      /* a block of it */
-	struct tones_track tones;
+	double at;          /* index at which the coefficients hold */
+	double coefficient[2 * TONES_MAX + 1];
+	int started;
 	struct following noise;
 	size_t block;      /* samples of which the noise is measured; 0: it is constant */
 	long long learned; /* the noise was learned from the samples before this one */
