@@ -131,6 +131,12 @@ double joint_work(const struct joint *joint);
 void joint_gain_error(const struct joint *joint, const struct joint_pulse *p,
 	double *share, double *se);
 
+/* By which share its duration exceeds that of the scene at its delay, and the standard
+ * error of this, everything else of it being free; INFINITY if it cannot be told, as
+ * where the transit time is unknown. */
+void joint_duration_error(const struct joint *joint, const struct joint_scene *scene,
+	const struct joint_pulse *p, double *share, double *se);
+
 /* The orthonormal vectors, of as many samples as the last fit had, that are projected out
  * of its record, and what share of each. */
 const double *joint_basis(const struct joint *joint, int *count, const double **share);

@@ -381,3 +381,33 @@ void joint_gain_error(
 	*share = off[1] - off[0];
 	*se = sqrt(var);
 }
+
+/* A slow particle has a long pulse: on either channel the derivative by the arrival at
+ * the other sensor is that by the duration. */
+void joint_duration_error(const struct joint *j, const struct joint_scene *s,
+	const struct joint_pulse *p, double *share, double *se)
+{
+	double scale = s->transit + p->delta;
+	double along = 0, square = 0, with[PAR] = { 0 };
+
+	*share = 0;
+	*se = INFINITY;
+	if (isinf(s->transit) || j->inverted != 1)
+		return;
+	for (int c = 0; c < 2; c++) {
+		const struct column *col = &j->col[0][c];
+		const double *v = col->d[1 - c];
+		double factor = c ? -scale : scale;
+
+		along += factor * dot(v, j->r[c] + col->first, col->n);
+		square += factor * factor * dot(v, v, col->n);
+		for (int u = 0; u < PAR; u++)
+			with[u] += factor * dot(v, col->d[u], col->n);
+	}
+	joint_reduce(j, PAR, with);
+	square -= dot(with, with, PAR);
+	if (!(square > 0))
+		return;
+	*share = along / square;
+	*se = 1 / sqrt(square);
+}

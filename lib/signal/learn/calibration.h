@@ -59,14 +59,15 @@ struct calibration {
 	double delta_min, delta_max; /* samples around shift */
 	double drop, drop_near;      /* thresholds of joint.h */
 	double misfit;               /* of joint.h: error of the shape */
-	int far;     /* pulses near the limits of the range of delays that was searched */
-	int events;  /* pulses to which the shape was fitted */
-	int suspect; /* 1: treated as white although the spectrum test failed */
-	int guessed; /* 1: whitened by a filter estimated from its noise */
-	double work; /* samples of pulses computed to learn it, or in vain */
-	int attempts; /* number of calibrations tried */
-	int dense;    /* 1: pulses overlap throughout the record */
-	double chi2;  /* of the fitted pulses, per degree of freedom */
+	int far;    /* pulses near the limits of the range of delays that was searched */
+	int events; /* pulses to which the shape was fitted, and ... */
+	double energy; /* ... their energy, noise 1 */
+	int suspect;   /* 1: treated as white although the spectrum test failed */
+	int guessed;   /* 1: whitened by a filter estimated from its noise */
+	double work;   /* samples of pulses computed to learn it, or in vain */
+	int attempts;  /* number of calibrations tried */
+	int dense;     /* 1: pulses overlap throughout the record */
+	double chi2;   /* of the fitted pulses, per degree of freedom */
 	double price; /* (chi-square + 2 drop_near per pulse) per degree of freedom; least
 			 is best */
 };

@@ -332,6 +332,7 @@ static enum calibrate_status learn_known(const struct calibrate_par *par,
 	if (ex.joint)
 		c->work += joint_work(ex.joint);
 	c->events = examples_pulses(&ex);
+	c->energy = ex.energy;
 	memcpy(c->rest, ex.rest, sizeof c->rest);
 	c->misfit = fmax(c->misfit, ex.share);
 	c->corrected = ex.corrected;

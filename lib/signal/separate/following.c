@@ -1,4 +1,4 @@
-/* following.c - flow and gain followed by pulses that stand alone */
+/* following.c - flow, gain and duration followed by pulses that stand alone */
 #include "signal/separate/separate_state.h"
 #include <math.h>
 
@@ -65,6 +65,21 @@ static void follow_gain(struct separate *s, const struct joint_pulse *p)
 	s->gain_sum = s->gain_weight = 0;
 }
 
+/* The duration is the mean of what was learned and of what the pulses since then tell,
+ * weighted by their energies, which is inverse to the variances.  A pulse that
+ * contradicts it by five standard errors is of another kind. */
+static void follow_duration(struct separate *s, const struct joint_pulse *p)
+{
+	double share, se;
+
+	joint_duration_error(s->joint, &s->scene, p, &share, &se);
+	if (isinf(se) || fabs(share) > 5 * se)
+		return;
+	s->energy += p->a * p->a * joint_energy(&s->scene);
+	s->scene.duration *=
+		1 + share * p->a * p->a * joint_energy(&s->scene) / s->energy;
+}
+
 void separate_set_gain(struct separate *s, long long from)
 {
 	double first = following_at(&s->tape[0].noise, (double)from);
@@ -81,4 +96,6 @@ void separate_follow(struct separate *s, const struct account *a)
 		follow_delay(s, a->pulse[0].delta);
 	if (isnan(s->par.known.gain))
 		follow_gain(s, &a->pulse[0]);
+	if (isnan(s->par.known.duration))
+		follow_duration(s, &a->pulse[0]);
 }

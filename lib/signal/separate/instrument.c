@@ -44,6 +44,7 @@ static int list(struct instrument *in, struct field *f)
 		{ .name = "drop_near", .real = &c->drop_near, .count = 1 },
 		{ .name = "misfit", .real = &c->misfit, .count = 1 },
 		{ .name = "events", .whole = &c->events },
+		{ .name = "energy", .real = &c->energy, .count = 1 },
 		{ .name = "suspect", .whole = &c->suspect },
 		{ .name = "guessed", .whole = &c->guessed },
 		{ .name = "dense", .whole = &c->dense },
@@ -206,6 +207,7 @@ static const char *out_of_range(const struct instrument *in)
 	       : c->pulse > PULSE_LORENTZ              ? "pulse"
 	       : !(c->noise[0] > 0 && c->noise[1] > 0) ? "noise"
 	       : !(c->duration >= 8)                   ? "duration"
+	       : !(c->energy >= 0)                     ? "energy"
 	       : !(c->gain > 0)                        ? "gain"
 	       : !(c->transit > 0)                     ? "transit"
 	       : !(c->delta_min < c->delta_max)        ? "delta_max"

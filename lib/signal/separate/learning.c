@@ -45,6 +45,7 @@ static enum separate_status start(struct separate *s, size_t n)
 	s->done = s->level_at = s->tape[0].begin + c->whitening.edge;
 	calibration_scene(c, &s->scene);
 	s->gain = s->scene.gain;
+	s->energy = c->energy;
 	s->scene.max_pulses = JOINT_PULSES_MAX;
 	reach = 2 * shape_reach(c->shape) * c->duration;
 	if (s->par.window < (size_t)(6 * reach))

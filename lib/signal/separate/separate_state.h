@@ -67,7 +67,8 @@ struct separate {
 	struct joint_scene scene;
 	struct joint_scene fitted; /* of the last fit of a window */
 	struct common common;
-	double gain; /* of sensor 2, over the noise learned, as followed */
+	double gain;   /* of sensor 2, over the noise learned, as followed */
+	double energy; /* of the pulses that tell the duration so far */
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
 	struct quadrature quadrature;
 	struct quadrature_pulse both[JOINT_PULSES_MAX]; /* pulse, both components */
@@ -237,7 +238,7 @@ enum separate_status separate_fit_without_common(
 int separate_is_range_free(const struct separate *s);
 /* Widens the range of delays to the widest one, about its present middle. */
 void separate_widen(struct separate *s);
-/* Updates the range of delays and the gain by a pulse that stands alone. */
+/* Updates the range of delays, the gain and the duration by a pulse that stands alone. */
 void separate_follow(struct separate *s, const struct account *a);
 /* Sets the gain for a section that begins at sample from: pulses are in units of the
  * noise, which changes at either sensor. */
