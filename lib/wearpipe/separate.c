@@ -39,7 +39,8 @@ struct wp_separate *wp_separate_new(
 		s->par.spacing = 0.25;
 	if (par->calibration == 0)
 		s->par.calibration = M_PI / 4 * 1e11;
-	inner.learn = par->learn > 0 ? (size_t)(par->learn * par->rate) : 65536;
+	inner.learn = par->learn > 0 ? (size_t)(par->learn * par->rate) : SEPARATE_LEARN;
+	inner.early = par->learn > 0 ? 0 : SEPARATE_EARLY;
 	inner.known = (struct calibrate_par){ .lag = or_nan(par->delay * par->rate),
 		.duration = or_nan(par->pulse_duration * par->rate),
 		.gain = or_nan(par->gain),

@@ -12,9 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Frames from which the instrument is learned by default: 6.6 s at 10 kHz, as duet(1)
- * says. */
-enum { LEARN = 65536 };
 enum { METHOD_FIT, METHOD_DUET, METHOD_COUNT };
 
 static int method = METHOD_FIT;
@@ -113,7 +110,7 @@ static size_t to_samples(double time, double rate)
 
 static size_t learned_samples(double rate)
 {
-	size_t n = isnan(learn) ? LEARN : to_samples(learn, rate);
+	size_t n = isnan(learn) ? SEPARATE_LEARN : to_samples(learn, rate);
 
 	if (n < SEPARATE_SHORTEST)
 		die(EXIT_RUN, "--learn %g s: %zu samples at %g Hz, want at least %d",
@@ -135,6 +132,7 @@ static int separate_all(struct signal_in *in, struct found *out)
 	struct separate_par par = { .method = method == METHOD_FIT ? SEPARATE_FIT
 								   : SEPARATE_MASKS,
 		.learn = learned_samples(rate),
+		.early = isnan(learn) && isnan(latency) ? SEPARATE_EARLY : 0,
 		.sources = sources.word < 0 ? (int)sources.value : 0,
 		.most_pulses = most_pulses(),
 		.mask_window = opt_given("window") ? (size_t)window : 0,

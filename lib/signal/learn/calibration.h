@@ -48,7 +48,8 @@ struct calibration {
 	struct whitening whitening; /* of filtered records; else without taps */
 	double mean[2];             /* of the channels, subtracted before whitening */
 	double noise[2];            /* standard deviations, before any filter */
-	double rest[2];             /* residual power of the fitted pulses over noise^2 */
+	double common[3]; /* what the noise of both has in common, see common.h */
+	double rest[2];   /* residual power of the fitted pulses over noise^2 */
 	struct shape *shape;
 	int pulse;     /* enum pulse_shape */
 	int measured;  /* 1: shape taken from the record, pulse the nearest of sensor.h */
@@ -60,6 +61,7 @@ struct calibration {
 	double drop, drop_near;      /* thresholds of joint.h */
 	double misfit;               /* of joint.h: error of the shape */
 	int far;    /* pulses near the limits of the range of delays that was searched */
+	int lone;   /* isolated pulses among the events */
 	int events; /* pulses to which the shape was fitted, and ... */
 	double energy; /* ... their energy, noise 1 */
 	int suspect;   /* 1: treated as white although the spectrum test failed */

@@ -4,8 +4,10 @@
 #include "signal/detect/align.h"
 #include "signal/learn/learn.h"
 #include "signal/learn/matched.h"
+#include "signal/noise/common.h"
 #include "signal/noise/robust.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Share of the energy of a pulse that its shape may leave, see joint.h: if no lag
@@ -588,14 +590,32 @@ static enum calibrate_status learn_filtered(
 	return learn(par, rec, NULL, c);
 }
 
+/* Measures the noise that reaches both sensors at the same time. */
+static enum calibrate_status find_common(const struct record *rec, struct calibration *c)
+{
+	size_t shift = (size_t)c->shift;
+	double *work;
+
+	if (isinf(c->transit) || rec->n <= shift)
+		return CALIBRATE_OK;
+	work = malloc(2 * (rec->n - shift) * sizeof *work);
+	if (!work)
+		return CALIBRATE_MEMORY;
+	common_measure((const double *const[]){ rec->y1 + shift, rec->y2 },
+		rec->n - shift, c->duration, work, c->common);
+	free(work);
+	return CALIBRATE_OK;
+}
+
 static enum calibrate_status conclude(
 	const struct calibrate_par *par, struct record *rec, struct calibration *c)
 {
-	enum calibrate_status status = CALIBRATE_OK;
+	enum calibrate_status status = find_common(rec, c);
 
 	if (c->events == 0 && isnan(par->duration))
 		return CALIBRATE_NO_LAG;
-	if (c->chi2 > BAD_FIT || (c->whitening.tap && !par->filter))
+	if (status == CALIBRATE_OK &&
+		(c->chi2 > BAD_FIT || (c->whitening.tap && !par->filter)))
 		status = look_for_crowd(rec, c, &c->dense);
 	if (c->dense)
 		set_range(par, PLUG, c);

@@ -13,7 +13,7 @@
 
 /* Blocks that are remembered: the longest stretch whose rows are still to be written has
  * far fewer. */
-enum { FOLLOWING_KEPT = 256, FOLLOWING_BLOCK = 4096 };
+enum { FOLLOWING_KEPT = 256, FOLLOWING_BLOCK = 2048 };
 
 struct following {
 	size_t block;     /* samples, at most FOLLOWING_BLOCK; 0: the noise is constant */

@@ -66,18 +66,21 @@ static void follow_gain(struct separate *s, const struct joint_pulse *p)
 }
 
 /* The duration is the mean of what was learned and of what the pulses since then tell,
- * weighted by their energies, which is inverse to the variances.  A pulse that
- * contradicts it by five standard errors is of another kind. */
+ * GAINS at a time, weighted by their energies, which is inverse to the variances.  A
+ * pulse that contradicts it by five standard errors is of another kind. */
 static void follow_duration(struct separate *s, const struct joint_pulse *p)
 {
-	double share, se;
+	double energy = p->a * p->a * joint_energy(&s->scene), share, se;
 
 	joint_duration_error(s->joint, &s->scene, p, &share, &se);
 	if (isinf(se) || fabs(share) > 5 * se)
 		return;
-	s->energy += p->a * p->a * joint_energy(&s->scene);
-	s->scene.duration *=
-		1 + share * p->a * p->a * joint_energy(&s->scene) / s->energy;
+	s->energy += energy;
+	s->duration_sum += share * energy;
+	if (++s->durations % GAINS)
+		return;
+	s->scene.duration *= 1 + s->duration_sum / s->energy;
+	s->duration_sum = 0;
 }
 
 void separate_set_gain(struct separate *s, long long from)

@@ -62,7 +62,7 @@ static int list(struct instrument *in, struct field *f)
 		{ .name = "flow_count", .real = &in->flow.count, .count = 1 },
 		{ .name = "level", .real = in->level, .count = 2 },
 		{ .name = "level_samples", .real = &in->level_samples, .count = 1 },
-		{ .name = "common", .real = in->common, .count = 3 },
+		{ .name = "common", .real = c->common, .count = 3 },
 	};
 
 	memcpy(f, all, sizeof all);
@@ -103,7 +103,7 @@ enum num_status instrument_values(
 				f[k].whole    ? *f[k].whole
 				: f[k].longer ? (double)*f[k].longer
 					      : (double)*f[k].size);
-		for (int i = 0; i < count; i++)
+		for (int i = 0; f[k].real && i < count; i++)
 			put(v, n, f[k].name, i, f[k].real[i]);
 	}
 	for (int i = 0; w->tap && i < 2 * w->half + 1; i++)
@@ -201,7 +201,7 @@ static enum instrument_status take_arrays(struct values *from, struct calibratio
 static const char *out_of_range(const struct instrument *in)
 {
 	const struct calibration *c = &in->cal;
-	const double *common = in->common;
+	const double *common = c->common;
 
 	return c->tone_hop < SHORTEST_HOP              ? "tone_hop"
 	       : c->pulse > PULSE_LORENTZ              ? "pulse"

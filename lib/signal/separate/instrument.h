@@ -18,9 +18,6 @@ struct instrument {
 	struct flow flow;     /* delays of particles, samples around cal.shift */
 	double level[2];      /* noise of both channels once clean, near 1 */
 	double level_samples; /* these are known from so many samples */
-	/* Correlation of the noise of both channels, 0 if it is not removed, and what
-	 * removing it leaves of the noise of either. */
-	double common[3];
 };
 
 struct instrument_value {

@@ -1,8 +1,10 @@
 /* learning.c - the instrument of a record: learned from its first samples, or kept */
 #include "signal/detect/bursts.h"
 #include "signal/detect/spikes.h"
+#include "signal/learn/learn.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 /* Shortest pulse whose fourth difference is below the noise, at an amplitude of 300
@@ -15,12 +17,12 @@ static const double FOLLOWED = 20;
  * record, some second of processor time per second of 10 kHz, for what is tried later. */
 static const double EFFORT = 9e8, EFFORT_PER_SAMPLE = 9000;
 
-/* The noise is followed in blocks of a sixteenth of what is learned from. */
+/* The noise is followed in blocks of a sixteenth of what is to be learned from. */
 static void follow_noise(struct separate *s, size_t n)
 {
 	enum { BLOCKS = 16, SHORTEST = 256 };
 	const struct calibration *c = &s->cal;
-	size_t block = (n ? n : s->par.learn) / BLOCKS;
+	size_t block = (n > s->par.early ? n : s->par.learn) / BLOCKS;
 	/* Of these, no more is clean before samples beyond them are known. */
 	double known = fmax(
 		0.5 * (double)n, (double)n - 2 * (double)c->tone_hop - c->whitening.edge);
@@ -55,7 +57,9 @@ static enum separate_status start(struct separate *s, size_t n)
 	if (c->whitening.low * 2 * (double)s->par.window > JOINT_BASELINE_MAX)
 		s->par.window = (size_t)fmax(
 			3 * reach, JOINT_BASELINE_MAX / (2 * c->whitening.low));
-	if (tape_start(&s->tape[0], c) != NUM_OK || tape_start(&s->tape[1], c) != NUM_OK)
+	if (tape_start(&s->tape[0], c) != NUM_OK ||
+		tape_start(&s->tape[1], c) != NUM_OK ||
+		separate_start_common(s) != NUM_OK)
 		return SEPARATE_MEMORY;
 	follow_noise(s, n);
 	if (s->par.quadrature && quadrature_start(&s->quadrature, c, n) != NUM_OK)
@@ -66,7 +70,11 @@ static enum separate_status start(struct separate *s, size_t n)
 		fmax(c->delta_max, -c->delta_min));
 	if (s->sections)
 		sections_skip(s->sections, s->done);
-	s->hold = s->tape[0].begin + (long long)n;
+	s->learned = n ? n : s->par.learn;
+	s->told = s->tape[0].begin + (long long)s->par.learn;
+	/* Of an early instrument, the first rows come at once: an eighth of the samples
+	 * is left for the transit time and the reach of a pulse. */
+	s->hold = s->tape[0].begin + (long long)(n == s->par.early ? n - n / 8 : n);
 	if (isnan(s->par.known.spread) && !isinf(c->transit))
 		validation_range(s->validation, c->delta_min, c->delta_max);
 	s->holding = s->par.method == SEPARATE_FIT && n > 0;
@@ -74,8 +82,6 @@ static enum separate_status start(struct separate *s, size_t n)
 		validation_tell_flow(s->validation, &s->kept.flow);
 		s->crowded = s->kept.crowded;
 		s->looked = 1;
-		if (separate_set_common(s, s->kept.common) != NUM_OK)
-			return SEPARATE_MEMORY;
 	}
 	s->joint = joint_new();
 	if (s->par.method == SEPARATE_MASKS) {
@@ -102,7 +108,26 @@ static enum separate_status start(struct separate *s, size_t n)
 	return s->sections && s->joint ? SEPARATE_OK : SEPARATE_MEMORY;
 }
 
-static enum separate_status calibrate_now(struct separate *s)
+/* Fewest isolated pulses of an early instrument.  Each of its parameters adds to the
+ * variance of a row at most the mth part of what the row itself knows of it if m pulses
+ * tell it: 8 % of the standard error for six, until the parameter has been followed. */
+enum { EARLY = 6 };
+
+/* 1 if pulses of a known shape in white noise describe all that an early instrument is
+ * learned from, and nothing had to be guessed.  Nor is it early where noise is common to
+ * both channels: without it the rows would have smaller errors than the instrument.
+ * Chi-square compares the noise in the band of the pulses with that in its fourth
+ * differences: it is too small or too large where the noise is not white, for which there
+ * are too few samples to test its spectrum. */
+static int is_clear(const struct calibration *c)
+{
+	return c->lone >= EARLY && learn_describes(c) && c->chi2 > 1 / 1.2 &&
+	       c->far == 0 && c->tones == 0 && c->common[0] == 0 && !c->dense &&
+	       !c->suspect && !c->measured && !c->corrected && !c->whitening.tap;
+}
+
+/* Learns from the n oldest samples. */
+static enum separate_status calibrate_now(struct separate *s, size_t n)
 {
 	static const enum separate_status of[] = {
 		[CALIBRATE_OK] = SEPARATE_OK,
@@ -120,15 +145,12 @@ static enum separate_status calibrate_now(struct separate *s)
 		[CALIBRATE_SLOW] = SEPARATE_SLOW,
 		[CALIBRATE_TONES] = SEPARATE_TONES,
 	};
+	const int early = n == s->par.early;
+	struct calibrate_par known = s->par.known;
 	enum calibrate_status status;
-	struct calibrate_par known;
-	size_t n;
 
-	if (s->tape[0].n < SEPARATE_SHORTEST)
+	if (n < SEPARATE_SHORTEST)
 		return SEPARATE_NO_LAG;
-	/* No more than par.learn, even if more has arrived at once. */
-	n = s->tape[0].n < s->par.learn ? s->tape[0].n : s->par.learn;
-	known = s->par.known;
 	for (int c = 0; c < 2; c++) {
 		tape_review(&s->tape[c]);
 		known.hidden[c] = s->tape[c].hidden;
@@ -136,15 +158,20 @@ static enum separate_status calibrate_now(struct separate *s)
 	known.most = fmax(EFFORT, EFFORT_PER_SAMPLE *
 					  (double)(s->tape[0].begin + (long long)n)) -
 		     s->effort;
+	if (early) /* a quarter of a second of work that may be in vain */
+		known.most = EFFORT_PER_SAMPLE / 4 * (double)n;
 	status = calibrate(&known, s->tape[0].x, s->tape[1].x, n, &s->cal);
-	s->effort += s->cal.work;
+	s->effort += early ? 0 : s->cal.work;
 	if (status != CALIBRATE_OK)
 		return of[status];
-	if (!(s->cal.duration >= SECTIONS_SHORTEST)) {
-		calibration_clear(&s->cal);
-		return SEPARATE_FAST;
-	}
-	return start(s, n);
+	if (early && !is_clear(&s->cal))
+		status = CALIBRATE_NO_LAG;
+	else if (!(s->cal.duration >= SECTIONS_SHORTEST))
+		status = CALIBRATE_FAST;
+	if (status == CALIBRATE_OK)
+		return start(s, n);
+	calibration_clear(&s->cal);
+	return of[status];
 }
 
 /* Notes whether the first n samples, of which nothing could be learned, are noise. */
@@ -160,25 +187,40 @@ static enum separate_status look_for_bursts(struct separate *s, size_t n)
 	return SEPARATE_OK;
 }
 
+/* 1 if this failure to learn is one of the samples, of which later ones may do. */
+static int is_of_samples(enum separate_status status)
+{
+	return status == SEPARATE_NO_LAG || status == SEPARATE_FAST ||
+	       status == SEPARATE_HARD || status == SEPARATE_AT_ONCE;
+}
+
+size_t separate_wants(const struct separate *s)
+{
+	size_t next = s->tried ? s->par.learn : s->par.early;
+
+	return s->calibrated || s->par.kept ? SIZE_MAX : next - s->tape[0].n;
+}
+
 enum separate_status separate_learn(struct separate *s)
 {
 	size_t half = s->par.learn / 2;
 	int first = 1;
 
+	if (!s->tried && s->tape[0].n >= s->par.early) {
+		enum separate_status status = calibrate_now(s, s->par.early);
+
+		s->tried = 1;
+		if (status == SEPARATE_MEMORY || s->calibrated)
+			return status;
+	}
 	while (!s->calibrated && s->tape[0].n >= (s->ended && first ? 1 : s->par.learn)) {
-		enum separate_status status = calibrate_now(s);
+		enum separate_status status = calibrate_now(s, s->tape[0].n);
 
 		first = 0;
-		if (status != SEPARATE_OK && status != SEPARATE_NO_LAG &&
-			status != SEPARATE_FAST && status != SEPARATE_HARD &&
-			status != SEPARATE_AT_ONCE)
+		if (s->calibrated || !is_of_samples(status))
 			return status;
-		if (s->calibrated)
-			break;
 		s->reason = status;
-		if (look_for_bursts(s,
-			    s->tape[0].n < s->par.learn ? s->tape[0].n : s->par.learn) !=
-			SEPARATE_OK)
+		if (look_for_bursts(s, s->tape[0].n) != SEPARATE_OK)
 			return SEPARATE_MEMORY;
 		if (s->tape[0].n < s->par.learn)
 			break;

@@ -12,6 +12,7 @@ struct separate *separate_new(const struct separate_par *par)
 	s->par = *par;
 	if (s->par.learn < SEPARATE_SHORTEST)
 		s->par.learn = SEPARATE_SHORTEST;
+	s->tried = s->par.early == 0 || s->par.early >= s->par.learn;
 	if (par->kept) {
 		s->kept = *par->kept;
 		s->cal = s->kept.cal;
@@ -85,14 +86,13 @@ static int is_crowded(struct separate *s, long long from, long long to)
 
 int separate_instrument(const struct separate *s, struct instrument *view)
 {
-	if (!s->calibrated || s->holding || !s->looked)
+	if (!s->calibrated || s->holding || !s->looked ||
+		(s->done < s->told && !s->ended))
 		return 0;
 	*view = (struct instrument){ .cal = s->cal,
 		.crowded = s->crowded,
 		.level = { s->level[0], s->level[1] },
-		.level_samples = s->levels,
-		.common = {
-			s->common.correlation, s->common.left[0], s->common.left[1] } };
+		.level_samples = s->levels };
 	validation_flow(s->validation, &view->flow);
 	return 1;
 }
@@ -140,15 +140,13 @@ static enum separate_status work(struct separate *s)
 		return SEPARATE_OK;
 	if (!s->looked || s->par.quadrature > s->quadrature.measured) {
 		/* Always the same samples, whatever the sizes of the pieces passed. */
-		long long upto = s->done + (long long)s->par.learn / 2;
+		long long upto = s->done + (long long)s->learned / 2;
 
 		if (limit < upto && !s->ended)
 			return SEPARATE_OK;
 		upto = limit < upto ? limit : upto;
 		if (!s->looked)
 			s->crowded = !s->par.sources && is_crowded(s, s->done, upto);
-		if (!s->looked && separate_measure_common(s, s->done, upto) != NUM_OK)
-			return SEPARATE_MEMORY;
 		s->looked = 1;
 		if (s->par.quadrature && measure_quadrature(s, upto) != NUM_OK)
 			return SEPARATE_MEMORY;
@@ -236,18 +234,11 @@ enum separate_status separate_push(struct separate *s, const double *x, size_t n
 	return separate_push_quadrature(s, x, NULL, n);
 }
 
-enum separate_status separate_push_quadrature(
+static enum separate_status push(
 	struct separate *s, const double *x, const double *v, size_t n)
 {
 	enum separate_status status = SEPARATE_OK;
 
-	for (size_t i = 0; i < 2 * n; i++)
-		if (!isfinite(x[i])) {
-			s->bad_frame =
-				(long long)s->counters.samples + (long long)(i / 2);
-			s->bad_channel = (int)(i % 2);
-			return SEPARATE_NOT_FINITE;
-		}
 	if (tape_append(&s->tape[0], x, n) != NUM_OK ||
 		tape_append(&s->tape[1], x + 1, n) != NUM_OK)
 		return SEPARATE_MEMORY;
@@ -261,6 +252,26 @@ enum separate_status separate_push_quadrature(
 	if (status != SEPARATE_OK)
 		return status;
 	return s->calibrated ? work(s) : status;
+}
+
+/* What is learned from ends at the same samples whatever the sizes of the pieces. */
+enum separate_status separate_push_quadrature(
+	struct separate *s, const double *x, const double *v, size_t n)
+{
+	enum separate_status status = SEPARATE_OK;
+
+	for (size_t i = 0; i < 2 * n; i++)
+		if (!isfinite(x[i])) {
+			s->bad_frame =
+				(long long)s->counters.samples + (long long)(i / 2);
+			s->bad_channel = (int)(i % 2);
+			return SEPARATE_NOT_FINITE;
+		}
+	for (size_t at = 0, some; at < n && status == SEPARATE_OK; at += some) {
+		some = separate_wants(s) < n - at ? separate_wants(s) : n - at;
+		status = push(s, x + 2 * at, v ? v + 2 * at : NULL, some);
+	}
+	return status;
 }
 
 enum separate_status separate_end(struct separate *s)

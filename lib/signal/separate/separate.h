@@ -28,8 +28,8 @@
 #include "signal/separate/instrument.h"
 #include <stddef.h>
 
-/* Fewest samples from which an instrument can be learned. */
-enum { SEPARATE_SHORTEST = 64 };
+/* Fewest samples from which an instrument can be learned, and how many are sensible. */
+enum { SEPARATE_SHORTEST = 64, SEPARATE_LEARN = 65536, SEPARATE_EARLY = 8192 };
 
 enum separate_method { SEPARATE_FIT, SEPARATE_MASKS };
 
@@ -65,9 +65,10 @@ struct separate_section {
 struct separate_par {
 	enum separate_method method;
 	struct calibrate_par known;
-	size_t learn;    /* samples held back to calibrate, at least SEPARATE_SHORTEST */
-	size_t window;   /* longest section worked off at once; 0: 24 durations */
-	int sources;     /* exactly so many in each section; 0: find out */
+	size_t learn;  /* samples held back to calibrate, at least SEPARATE_SHORTEST */
+	size_t early;  /* so many suffice if they show the instrument clearly; 0: none */
+	size_t window; /* longest section worked off at once; 0: 24 durations */
+	int sources;   /* exactly so many in each section; 0: find out */
 	int most_pulses; /* limit for a window; 0: JOINT_PULSES_MAX */
 	/* Of the masks, samples; 0: 64, or as many as the pulses need, and half of it. */
 	size_t mask_window, mask_hop;
@@ -134,7 +135,7 @@ int separate_next(struct separate *s, struct transit *p);
 const struct calibration *separate_calibration(
 	const struct separate *s); /* NULL: not yet */
 /* What was learned, to keep, and what the rows so far tell of it; its arrays remain those
- * of s.  0: not yet, some rows of what is learned from are still to be judged. */
+ * of s.  0: not yet, some rows of the first learn samples are still to be judged. */
 int separate_instrument(const struct separate *s, struct instrument *view);
 /* Noise of both channels relative to that of the kept instrument, from up to par.learn
  * samples. */

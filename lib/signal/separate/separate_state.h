@@ -53,6 +53,9 @@ struct separate {
 	struct separate_par par;
 	struct calibration cal;
 	int calibrated, ended;
+	int tried;      /* 1: the first par.early samples do not tell the instrument */
+	size_t learned; /* samples that were learned from, or would have been */
+	long long told; /* rows before this sample tell whether it is the instrument */
 	struct instrument kept; /* par.kept, whose cal is moved to cal */
 	int varies[2];          /* 1: the channel has not been constant so far */
 	double first[2];        /* first samples of a record with a kept instrument */
@@ -67,8 +70,11 @@ struct separate {
 	struct joint_scene scene;
 	struct joint_scene fitted; /* of the last fit of a window */
 	struct common common;
-	double gain;   /* of sensor 2, over the noise learned, as followed */
-	double energy; /* of the pulses that tell the duration so far */
+	double gain;         /* of sensor 2, over the noise learned, as followed */
+	double energy;       /* of the pulses that tell the duration so far */
+	double duration_sum; /* of relative deviations, weighted by energy, not yet used
+			      */
+	int durations;       /* pulses that have told it */
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
 	struct quadrature quadrature;
 	struct quadrature_pulse both[JOINT_PULSES_MAX]; /* pulse, both components */
@@ -191,6 +197,8 @@ enum separate_status separate_give_pulses(struct separate *s, long long from,
 /* Learns the instrument from the oldest samples; if they contain no particle, half of
  * them are skipped and the next are tried. */
 enum separate_status separate_learn(struct separate *s);
+/* Samples that are wanted before the next attempt to learn. */
+size_t separate_wants(const struct separate *s);
 /* Uses a kept instrument for the record. */
 enum separate_status separate_start_kept(struct separate *s);
 /* SILENT if, with a kept instrument, a channel is constant for as long as one would
@@ -220,12 +228,8 @@ int separate_is_described(const struct account *a);
 /* without_common.c */
 
 void separate_clear_common(struct separate *s);
-/* Takes what common_measure() has found. */
-enum num_status separate_set_common(struct separate *s, const double found[3]);
-
-/* Measures what the noise of both channels has in common in these samples. */
-enum num_status separate_measure_common(
-	struct separate *s, long long from, long long upto);
+/* Prepares to remove what was learned of it. */
+enum num_status separate_start_common(struct separate *s);
 /* Samples on either side of a window that tell its noise; 0: none are needed. */
 long long separate_common_reach(const struct separate *s);
 /* Fits a window that a describes again, without what the noise has in common. */

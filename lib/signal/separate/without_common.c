@@ -9,7 +9,6 @@
  */
 #include "num/dot.h"
 #include "num/room.h"
-#include "signal/noise/common.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
 #include <stdlib.h>
@@ -21,41 +20,22 @@ void separate_clear_common(struct separate *s)
 	free(s->common.work);
 }
 
-enum num_status separate_set_common(struct separate *s, const double found[3])
+enum num_status separate_start_common(struct separate *s)
 {
 	const struct shape *shape = s->cal.shape;
-	struct common *c = &s->common;
+	const double *found = s->cal.common;
 
-	if (found[0] == 0)
+	if (found[0] == 0 || s->par.quadrature)
 		return NUM_OK;
-	shape_free(c->sharp);
-	c->sharp = shape_from_cubic(
+	s->common.sharp = shape_from_cubic(
 		shape_reach(shape), shape_cells(shape), shape_cubic(shape));
-	if (!c->sharp)
+	if (!s->common.sharp)
 		return NUM_MEMORY;
-	shape_scale(c->sharp, 1 / found[1]);
-	c->correlation = found[0];
-	c->left[0] = found[1];
-	c->left[1] = found[2];
+	shape_scale(s->common.sharp, 1 / found[1]);
+	s->common.correlation = found[0];
+	s->common.left[0] = found[1];
+	s->common.left[1] = found[2];
 	return NUM_OK;
-}
-
-enum num_status separate_measure_common(
-	struct separate *s, long long from, long long upto)
-{
-	const double *x[2] = { s->tape[0].x + (from - s->tape[0].begin),
-		s->tape[1].x + (from - s->tape[1].begin) };
-	size_t n = (size_t)(upto - from);
-	double *work, found[3];
-
-	if (s->par.quadrature || isinf(s->cal.transit))
-		return NUM_OK;
-	work = malloc(2 * n * sizeof *work);
-	if (!work)
-		return NUM_MEMORY;
-	common_measure(x, n, s->cal.duration, work, found);
-	free(work);
-	return separate_set_common(s, found);
 }
 
 /* Length of a pulse, samples. */
