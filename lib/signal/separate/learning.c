@@ -3,6 +3,7 @@
 #include "signal/detect/spikes.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -265,6 +266,13 @@ static enum separate_status look_for_bursts(struct separate *s, size_t n)
 			  bursts_found(s->tape[1].x, n, work);
 	free(work);
 	return SEPARATE_OK;
+}
+
+size_t separate_wants(const struct separate *s)
+{
+	size_t next = s->awaited > s->par.learn ? s->awaited : s->par.learn;
+
+	return s->calibrated || s->par.kept ? SIZE_MAX : next - s->tape[0].n;
 }
 
 enum separate_status separate_learn(struct separate *s)

@@ -247,18 +247,11 @@ enum separate_status separate_push(struct separate *s, const double *x, size_t n
 	return separate_push_quadrature(s, x, NULL, n);
 }
 
-enum separate_status separate_push_quadrature(
+static enum separate_status push(
 	struct separate *s, const double *x, const double *v, size_t n)
 {
 	enum separate_status status = SEPARATE_OK;
 
-	for (size_t i = 0; i < 2 * n; i++)
-		if (!isfinite(x[i])) {
-			s->bad_frame = (long long)(s->counters.samples * s->ratio) +
-				       (long long)(i / 2);
-			s->bad_channel = (int)(i % 2);
-			return SEPARATE_NOT_FINITE;
-		}
 	if (tape_append(&s->tape[0], x, n) != NUM_OK ||
 		tape_append(&s->tape[1], x + 1, n) != NUM_OK)
 		return SEPARATE_MEMORY;
@@ -272,6 +265,26 @@ enum separate_status separate_push_quadrature(
 	if (status != SEPARATE_OK)
 		return status;
 	return s->calibrated ? work(s) : status;
+}
+
+/* What is learned from ends at the same samples whatever the sizes of the pieces. */
+enum separate_status separate_push_quadrature(
+	struct separate *s, const double *x, const double *v, size_t n)
+{
+	enum separate_status status = SEPARATE_OK;
+
+	for (size_t i = 0; i < 2 * n; i++)
+		if (!isfinite(x[i])) {
+			s->bad_frame = (long long)(s->counters.samples * s->ratio) +
+				       (long long)(i / 2);
+			s->bad_channel = (int)(i % 2);
+			return SEPARATE_NOT_FINITE;
+		}
+	for (size_t at = 0, some; at < n && status == SEPARATE_OK; at += some) {
+		some = separate_wants(s) < n - at ? separate_wants(s) : n - at;
+		status = push(s, x + 2 * at, v ? v + 2 * at : NULL, some);
+	}
+	return status;
 }
 
 enum separate_status separate_end(struct separate *s)
