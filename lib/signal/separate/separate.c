@@ -161,6 +161,9 @@ static enum separate_status work(struct separate *s)
 		if (!s->looked && separate_measure_common(s, s->done, upto) != NUM_OK)
 			return SEPARATE_MEMORY;
 		s->looked = 1;
+		/* Too few samples to remove what is common. */
+		if (s->par.clearly && (s->crowded || s->common.correlation != 0))
+			return SEPARATE_NO_LAG;
 		if (s->par.quadrature && measure_quadrature(s, upto) != NUM_OK)
 			return SEPARATE_MEMORY;
 	}
@@ -261,7 +264,9 @@ static enum separate_status push(
 		status = separate_check_alive(s, x, n);
 	s->counters.samples += (double)n / s->ratio;
 	if (!s->calibrated && status == SEPARATE_OK)
-		status = s->par.kept ? separate_start_kept(s) : separate_learn(s);
+		status = s->par.kept      ? separate_start_kept(s)
+			 : s->par.clearly ? separate_learn_clearly(s)
+					  : separate_learn(s);
 	if (status != SEPARATE_OK)
 		return status;
 	return s->calibrated ? work(s) : status;
