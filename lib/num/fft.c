@@ -20,13 +20,12 @@ struct fft {
 double *fft_alloc(size_t count)
 {
 	unsigned char *memory = NULL, *aligned;
-	size_t to = count < PAGES_LARGE / sizeof(double) ? FFT_ALIGNMENT : PAGES_LARGE;
 
-	if (count < (SIZE_MAX - PAGES_LARGE) / sizeof(double))
-		memory = calloc(count * sizeof(double) + to, 1);
+	if (count < (SIZE_MAX - FFT_ALIGNMENT) / sizeof(double))
+		memory = calloc(count * sizeof(double) + FFT_ALIGNMENT, 1);
 	if (!memory)
 		return NULL;
-	aligned = memory + to - (uintptr_t)memory % to;
+	aligned = memory + FFT_ALIGNMENT - (uintptr_t)memory % FFT_ALIGNMENT;
 	pages_large(aligned, count * sizeof(double));
 	memcpy(aligned - sizeof memory, &memory, sizeof memory);
 	return (double *)(void *)aligned;
