@@ -2,6 +2,7 @@
 #include "signal/learn/learn.h"
 #include "signal/detect/spikes.h"
 #include "signal/learn/correct.h"
+#include "signal/learn/crowd.h"
 #include "signal/learn/examples.h"
 #include <math.h>
 #include <stdlib.h>
@@ -169,6 +170,21 @@ static enum calibrate_status try_shape(const struct calibrate_par *par,
 	return CALIBRATE_OK;
 }
 
+/* Takes shape and duration from the spectrum of a record in which few pulses stand apart:
+ * a fit of pieces, which contain parts of pulses, may go far from them. */
+static enum calibrate_status learn_crowd(const struct calibrate_par *par,
+	const double *y1, const double *y2, size_t n, struct calibration *c)
+{
+	int pulse = par->pulse;
+	double guess = c->duration;
+
+	c->duration = par->duration;
+	if (crowd_pulse(y1, y2, n, guess, &pulse, &c->duration) != NUM_OK ||
+		learn_set_shape(c, pulse) != NUM_OK)
+		return CALIBRATE_MEMORY;
+	return CALIBRATE_OK;
+}
+
 /* Finds the shape that describes some clear examples best, and its approximate duration.
  * low: lag of the lowest autocorrelation, which that of a train of pulses may hide.  A
  * wrong shape needs more pulses for the same record, so each pulse costs its threshold.
@@ -181,6 +197,9 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 	struct guess best = { c->pulse, c->duration, c->gain, INFINITY, INFINITY };
 	enum calibrate_status status = CALIBRATE_OK;
 
+	examples_pick(ex, y1, y2, n, EXAMPLES_MAX, c);
+	if (ex->pieces && !c->whitening.tap)
+		return learn_crowd(par, y1, y2, n, c);
 	if (hint)
 		status = try_shape(
 			par, ex, y1, y2, n, hint->pulse, hint->duration, 1, c, &best);
