@@ -233,16 +233,17 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
  * 18). */
 static const double FAR = 0.7;
 
-/* Range of the delays seen, widened by half on either side. */
+/* Range of the delays seen, widened by half on either side, and how many stand alone. */
 static void learn_range(
 	const struct calibrate_par *par, const struct examples *ex, struct calibration *c)
 {
 	double lo = INFINITY, hi = -INFINITY;
 
-	c->far = 0;
+	c->far = c->lone = 0;
 	for (int i = 0; i < ex->count; i++) {
 		const struct example *e = &ex->example[i];
 
+		c->lone += e->m == 1 && !e->spoiled;
 		for (int k = 0; k < e->m; k++) {
 			const struct joint_pulse *p = &e->pulse[k];
 
@@ -307,7 +308,7 @@ static int wants_correction(
 
 int learn_describes(const struct calibration *c)
 {
-	return c->chi2 < 1.2;
+	return c->chi2 < LEARN_DESCRIBES;
 }
 
 void learn_hidden(const struct calibrate_par *par, const struct calibration *c,
