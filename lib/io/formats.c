@@ -16,7 +16,7 @@ static void sum_line(struct place *at, const char *line, size_t n)
 {
 	size_t key = strlen(mark_key), digits = strlen(mark_zeros);
 
-	if (strncmp(line, mark_key, key) || n < key + digits + 1) {
+	if (strncmp(line, mark_key, key) != 0 || n < key + digits + 1) {
 		at->checksum = crc32_add(at->checksum, line, n);
 		return;
 	}

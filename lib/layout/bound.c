@@ -8,7 +8,7 @@ enum { STEPS = 4096 };
 
 void bound_energies(enum pulse_shape shape, double energy[3])
 {
-	double reach = pulse_reach(shape), h = 2 * reach / STEPS;
+	double reach = pulse_reach(shape), h = 2.0 / STEPS;
 
 	energy[0] = energy[1] = energy[2] = 0;
 	if (shape == PULSE_SINE) {
@@ -19,7 +19,6 @@ void bound_energies(enum pulse_shape shape, double energy[3])
 	}
 	/* Trapezoidal rule in u, s = reach sinh(8 u) / sinh(8), which is dense at the
 	 * lobes. */
-	h = 2.0 / STEPS;
 	for (int i = 1; i < STEPS; i++) {
 		double u = -1 + i * h, s = reach * sinh(8 * u) / sinh(8.0);
 		double weight = h * reach * 8 * cosh(8 * u) / sinh(8.0);

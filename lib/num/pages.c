@@ -1,4 +1,4 @@
-#define _DEFAULT_SOURCE /* madvise() */
+#define _DEFAULT_SOURCE /* of madvise(); NOLINT: the name is the system's */
 #include "num/pages.h"
 
 #include <stdint.h>

@@ -209,7 +209,7 @@ enum num_status wave_sum_at(struct wave_sum *s, double z, const struct stress_wa
 				    s->nx, points_for(s->nx, s->par.dx, z, s->full)),
 			    y = lattice_periodic(
 				    s->ny, points_for(s->ny, s->par.dy, z, s->full));
-	size_t columns = (size_t)x.points / 2 + 1;
+	size_t columns = (size_t)x.points / 2 + 1, rows = (size_t)y.points / 2 + 1;
 	int all = x.points == s->nx && y.points == s->ny;
 	double complex *spectrum[STRESS_NUMBERS] = { NULL };
 	struct carry carry = { s, x.points, y.points, lattice_origin(&x),
@@ -224,7 +224,7 @@ enum num_status wave_sum_at(struct wave_sum *s, double z, const struct stress_wa
 		status = spectrum[c] ? status : NUM_MEMORY;
 	}
 	if (!status)
-		pool_run(s->pool, (size_t)y.points / 2 + 1, carry_row, &carry);
+		pool_run(s->pool, rows, carry_row, &carry);
 	for (int c = 0; !status && c < want->numbers; c++) {
 		fft_inverse(fft, spectrum[c], plane);
 		field[c] = plane;
@@ -232,7 +232,7 @@ enum num_status wave_sum_at(struct wave_sum *s, double z, const struct stress_wa
 		plane = (double *)spectrum[c];
 	}
 	s->work.transforms += want->numbers;
-	s->work.kernel_cells += (double)columns * (double)((size_t)y.points / 2 + 1);
+	s->work.kernel_cells += (double)columns * (double)rows;
 	if (!status)
 		status = hand_over(s, field, &x, &y, want);
 	for (int c = 0; c < want->numbers; c++)

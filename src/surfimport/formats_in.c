@@ -326,10 +326,10 @@ static void sdf_binary(const struct content *c, const struct told *told, struct 
 	dx = number(c, 46, FLOAT64);
 	dy = number(c, 54, FLOAT64);
 	unit = settle_unit(c, told, number(c, 62, FLOAT64));
-	type = c->data[79];
+	type = (unsigned char)c->data[79];
 	if (c->data[78])
 		die(EXIT_RUN, "%s: the samples are compressed", c->name);
-	if (type < 0 || type > 7)
+	if (type > 7)
 		die(EXIT_RUN, "%s: samples of type %d, want 0 to 7", c->name, type);
 	settle_pixel(c, told, &dx, &dy);
 	new_heights(c, number(c, 42, UINT16), number(c, 44, UINT16), dx, dy, r);

@@ -1,10 +1,10 @@
 /* shapes.c - the coordinates of the bank, see bank.h and bank_state.h */
 #include "life/trend/bank_state.h"
 
-#define SATURATING(s, p, w, prior)                                           \
-	{                                                                    \
-		.family = BANK_SATURATING, .scale = s, .par = p, .power = w, \
-		.log_prior = prior                                           \
+#define SATURATING(s, p, w, prior)                                                 \
+	{                                                                          \
+		.family = BANK_SATURATING, .scale = (s), .par = (p), .power = (w), \
+		.log_prior = (prior)                                               \
 	}
 
 /* The weights and the changes of regime to come (passage.c) were chosen together, as

@@ -207,7 +207,7 @@ static enum calibrate_status attempt_white(const struct calibrate_par *par,
 	look->attempts = smooth.attempts;
 	look->work = smooth.work;
 	if (status == CALIBRATE_OK && c->measured && !c->dense && learn_describes(c)) {
-		int lacks;
+		int lacks = 0;
 
 		status = lacks_low(look, c, &lacks);
 		if (status == CALIBRATE_OK && !lacks)

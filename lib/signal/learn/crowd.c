@@ -54,7 +54,7 @@ static enum num_status pulse_spectrum(int pulse, double *power)
 	enum num_status status = NUM_MEMORY;
 
 	if (shape && p) {
-		shape_sample(shape, PADDED / 2, STEPS, 0, PADDED, p, NULL, NULL);
+		shape_sample(shape, 0.5 * PADDED, STEPS, 0, PADDED, p, NULL, NULL);
 		memset(power, 0, PADDED / 2 * sizeof *power);
 		status = add_power(p, PADDED, PADDED, 0, 1, power, PADDED / 2);
 	}

@@ -10,7 +10,7 @@ static int has_two_lobes(const struct shape *shape)
 	double reach = shape_reach(shape), T = STEPS / (2 * reach);
 	double value[STEPS], sum = 0, size = 0;
 
-	shape_sample(shape, STEPS / 2, T, 0, STEPS, value, NULL, NULL);
+	shape_sample(shape, 0.5 * STEPS, T, 0, STEPS, value, NULL, NULL);
 	for (int i = 0; i < STEPS; i++) {
 		sum += value[i];
 		size += fabs(value[i]);

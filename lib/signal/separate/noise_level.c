@@ -24,7 +24,8 @@ void separate_measure_level(struct separate *s)
 			double level = robust_noise(
 				t->x + (s->level_at - t->begin), (size_t)n, order, work);
 
-			level *= following_at(&t->noise, (double)(s->level_at + n / 2));
+			level *= following_at(
+				&t->noise, (double)s->level_at + 0.5 * (double)n);
 
 			s->level[c] += (level - s->level[c]) * (double)n /
 				       (s->levels + (double)n);
