@@ -154,20 +154,32 @@ fails "no limits of detection without a fit" 2 'detectable needs --method fit' \
 	duet --method count --detectable x weak.au
 
 # A live record: rows come before a second of it has, though its end is far away.
-awk 'BEGIN { print "time\tdiameter"; for (i = 0; i < 35; i++) printf "%g\t%g\n", 0.05 + 0.08 * i, 8e-5 + i % 7 * 6e-6 }' |
-	sensorsim --duration 3s --snr 30dB --lag 0.2ms:0.5ms >live.au
-{
-	head -c 150000 live.au # 0.93 s
-	waited=0
-	until grep -q alone live.tsv || [ $waited = 600 ]; do
-		sleep 0.1
-		waited=$((waited + 1))
-	done
-	cp live.tsv first.tsv
-	tail -c +150001 live.au
-} | duet --latency 1s >live.tsv
-at_least "live: the first rows come within a second of signal" "$(grep -c alone first.tsv)" 1
-is "live: the first rows are those of the whole record" "$(cat first.tsv)" "$(head -n "$(wc -l <first.tsv)" live.tsv)"
+awk 'BEGIN { print "time\tdiameter"; for (i = 0; i < 85; i++) printf "%g\t%g\n", 0.05 + 0.08 * i, 8e-5 + i % 7 * 6e-6 }' |
+	sensorsim --duration 7s --snr 30dB --lag 0.2ms:0.5ms --truth live-truth.tsv >live.au
+for option in --verbose --latency=1s; do
+	: >live.tsv
+	{
+		head -c 150000 live.au # 0.93 s
+		waited=0
+		until grep -q alone live.tsv || [ $waited = 600 ]; do
+			sleep 0.1
+			waited=$((waited + 1))
+		done
+		cp live.tsv first.tsv
+		tail -c +150001 live.au
+	} | duet $option >live.tsv 2>err
+	at_least "live, $option: the first rows come within a second of signal" "$(grep -c alone first.tsv)" 1
+	is "live, $option: the first rows are those of the whole record" "$(cat first.tsv)" \
+		"$(head -n "$(wc -l <first.tsv)" live.tsv)"
+	is "live, $option: all particles are found" "$(score matched live-truth.tsv live.tsv)" 85
+	is "live, $option: once" "$(grep -c alone live.tsv)" 85
+	at_most "live, $option: the delay error is near the bound" "$(score delay_ratio live-truth.tsv live.tsv)" 1.3
+done
+duet live.au | sed 1d >a
+for bytes in 777 70001; do
+	(dd bs=$bytes 2>/dev/null; :) <live.au | duet | sed 1d >b
+	same "live: blocks of $bytes bytes give the same rows" a b
+done
 
 # Work left out.
 duet --stats stats.tsv --method duet s.au >/dev/null

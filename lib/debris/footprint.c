@@ -1,5 +1,6 @@
 #include "debris/footprint.h"
 #include "num/lanes.h"
+#include "num/pages.h"
 #include "num/room.h"
 #include "stress/point_sum.h"
 
@@ -44,6 +45,7 @@ struct footprints *footprints_new(const struct stress_par *par)
 		footprints_free(f);
 		return NULL;
 	}
+	pages_large(f->value, n * sizeof *f->value);
 	return f;
 }
 
@@ -251,7 +253,7 @@ enum num_status footprints_find(struct footprints *f, struct stress *stress,
 	f->count = 0;
 	*count = 0;
 	clear_values(f);
-	f->spans = stress_reach(stress, 0, yield, f->span);
+	f->spans = stress_reach_surface(stress, yield, f->span);
 	if (stress_above(stress, yield, f->span, f->spans, f->value))
 		return NUM_MEMORY;
 	/* Row by row, and in each from left to right. */

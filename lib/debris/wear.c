@@ -1,4 +1,5 @@
 #include "debris/wear.h"
+#include "num/pages.h"
 #include "num/room.h"
 #include "num/status.h"
 
@@ -38,6 +39,7 @@ struct wear *wear_new(int nx, int ny)
 		wear_free(w);
 		return NULL;
 	}
+	pages_large(w->top, n * sizeof *w->top);
 	return w;
 }
 
@@ -230,6 +232,7 @@ static enum wear_status remove_with_memory(struct wear *w)
 
 	if (!values)
 		return WEAR_MEMORY;
+	pages_large(values, 3 * n * sizeof *values);
 	for (int k = 0; k < 3; k++)
 		w->value[k] = values + (size_t)k * n;
 	status = remove_layers(w);

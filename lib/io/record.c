@@ -1,5 +1,6 @@
 #include "io/record.h"
 #include "cli/msg.h"
+#include "num/pages.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -79,8 +80,11 @@ static double *new_data(struct record *r)
 
 	if (n != r->spare_points)
 		free_spares(r);
-	if (r->spares == 0)
-		return xcalloc(n, sizeof *data);
+	if (r->spares == 0) {
+		data = xcalloc(n, sizeof *data);
+		pages_large(data, n * sizeof *data);
+		return data;
+	}
 	data = r->spare[--r->spares];
 	memset(data, 0, n * sizeof *data);
 	return data;

@@ -1,4 +1,5 @@
 #include "num/fft.h"
+#include "num/pages.h"
 #include <fftw3.h>
 #include <limits.h>
 #include <pthread.h>
@@ -25,6 +26,7 @@ double *fft_alloc(size_t count)
 	if (!memory)
 		return NULL;
 	aligned = memory + FFT_ALIGNMENT - (uintptr_t)memory % FFT_ALIGNMENT;
+	pages_large(aligned, count * sizeof(double));
 	memcpy(aligned - sizeof memory, &memory, sizeof memory);
 	return (double *)(void *)aligned;
 }

@@ -1,4 +1,5 @@
 #include "stress/free_sum.h"
+#include "num/pages.h"
 #include "num/status.h"
 #include "stress/lattice.h"
 #include "stress/window.h"
@@ -20,6 +21,7 @@ enum {
 		2 * INNER, /* cells to the radius of the innermost, on every other cell */
 	REACH = RADIUS +
 		1,  /* radius of the part summed on the cells; the element adds one */
+	CLOSE = 4,  /* cells within which elements take many points each */
 	SMALL = 32, /* sides up to this are summed in full, which is no slower */
 	COARSEST =
 		3 * OUTER, /* points per side up to which a window does not save time */
@@ -55,6 +57,8 @@ struct free_sum {
 	struct stress_box box; /* of the loads */
 	struct sum_work work;
 	struct window_kept kept;
+	struct influence close[CLOSE][CLOSE]; /* elements at the surface, if known */
+	int close_known;
 	struct level_memory level[LEVELS];
 };
 
@@ -142,18 +146,28 @@ struct kernel {
 	struct influence *value;
 };
 
-static struct influence kernel_value(const struct kernel *k, double x, double y)
+static struct influence element_at(const struct kernel *k, int i, int j)
 {
+	const struct free_sum *s = k->sum;
+
+	return k->z == 0 && s->close_known && i < CLOSE && j < CLOSE
+		       ? s->close[j][i]
+		       : influence_element(&s->par, i * k->dx, j * k->dy, k->z);
+}
+
+static struct influence kernel_value(const struct kernel *k, int i, int j)
+{
+	double x = i * k->dx, y = j * k->dy;
 	const struct influence_par *p = &k->sum->par;
 	double z = k->z, rx = RADIUS * p->dx, ry = RADIUS * p->dy;
 	struct influence far;
 
 	switch (k->source) {
 	case ELEMENT:
-		return influence_element(p, x, y, z);
+		return element_at(k, i, j);
 	case ELEMENT_INNER:
 		far = influence_outer_element(p, x, y, z, rx, ry);
-		return influence_less(influence_element(p, x, y, z), &far);
+		return influence_less(element_at(k, i, j), &far);
 	case POINT:
 		return influence_point(p, x, y, z);
 	case POINT_OUTER:
@@ -175,8 +189,16 @@ static void kernel_row(void *context, size_t j, int worker)
 
 	(void)worker;
 	for (int i = 0; i < k->wx; i++)
-		k->value[j * (size_t)k->wx + (size_t)i] =
-			kernel_value(k, i * k->dx, (double)j * k->dy);
+		k->value[j * (size_t)k->wx + (size_t)i] = kernel_value(k, i, (int)j);
+}
+
+static void know_close(struct free_sum *s)
+{
+	for (int j = 0; j < CLOSE && !s->close_known; j++)
+		for (int i = 0; i < CLOSE; i++)
+			s->close[j][i] = influence_element(
+				&s->par, i * s->par.dx, j * s->par.dy, 0);
+	s->close_known = 1;
 }
 
 static struct influence *make_kernel(void *context, int reach_x, int reach_y)
@@ -184,6 +206,8 @@ static struct influence *make_kernel(void *context, int reach_x, int reach_y)
 	struct kernel *k = context;
 	size_t rows = (size_t)reach_y + 1;
 
+	if (k->source <= ELEMENT_INNER && k->z == 0)
+		know_close(k->sum);
 	k->wx = reach_x + 1;
 	k->value = malloc((size_t)k->wx * rows * sizeof *k->value);
 	if (k->value)
@@ -325,7 +349,9 @@ struct level {
 	struct lattice_axis x, y;
 	struct lattice *lattice; /* among the cells, or points, of the finer level */
 	double *load, *field[STRESS_NUMBERS];
-	int depth, numbers; /* depth: 0 for the finest points */
+	int depth, numbers;      /* depth: 0 for the finest points */
+	struct stress_want want; /* the points that wanted nodes are interpolated from */
+	struct stress_span *span;
 };
 
 /* Memory of n doubles for a level; NULL: none.  Half as much again is not touched until a
@@ -337,14 +363,34 @@ static double *level_values(struct level_memory *m, size_t n)
 		m->size = n + n / 2;
 		m->values = malloc(m->size * sizeof *m->values);
 		m->size = m->values ? m->size : 0;
+		pages_large(m->values, m->size * sizeof *m->values);
 	}
 	return m->values;
 }
 
-/* Points every so many cells, or finer points, with their loads.  The fields receive the
- * sums of a window on all points. */
+static void level_done(struct level *l)
+{
+	lattice_done(l->lattice);
+	free(l->span);
+}
+
+/* Adds what is interpolated from coarser points to the fields of a level. */
+static void add_span(void *context, const struct stress_span *span,
+	const double *const number[STRESS_NUMBERS])
+{
+	const struct level *l = context;
+	size_t at = (size_t)span->y * (size_t)l->x.points + (size_t)span->begin;
+
+	for (int c = 0; c < l->numbers; c++)
+		for (int x = 0; x < span->end - span->begin; x++)
+			l->field[c][at + (size_t)x] += number[c][x];
+}
+
+/* Points every so many cells, or finer points, with their loads; want: the nodes among
+ * these, from (x0, y0).  The fields receive the sums of a window on the points wanted. */
 static enum num_status level_new(struct free_sum *s, struct level *l, int mx, int my,
-	int spacing, const double *load, size_t stride, double scale, int element)
+	int spacing, const double *load, size_t stride, double scale, int element,
+	const struct stress_want *want, int x0, int y0)
 {
 	size_t points;
 
@@ -358,10 +404,16 @@ static enum num_status level_new(struct free_sum *s, struct level *l, int mx, in
 	for (int c = 0; c < l->numbers; c++)
 		l->field[c] = l->load + (size_t)(c + 1) * points;
 	memset(l->load, 0, points * sizeof *l->load);
-	if (lattice_spread(l->lattice, load, stride, scale, element, l->load)) {
-		lattice_done(l->lattice);
+	if (lattice_spread(l->lattice, load, stride, scale, element, l->load) ||
+		lattice_points(l->lattice, want->span, want->count, x0, y0, &l->span,
+			&l->want.count)) {
+		level_done(l);
 		return NUM_MEMORY;
 	}
+	l->want.span = l->span;
+	l->want.numbers = l->numbers;
+	l->want.put = add_span;
+	l->want.context = l;
 	return NUM_OK;
 }
 
@@ -382,6 +434,7 @@ static enum num_status sum_level(
 		.load_stride = (size_t)mx,
 		.scale = 1,
 		.numbers = l->numbers,
+		.want = &l->want,
 		.take = keep_part,
 		.context = &keep };
 
@@ -389,12 +442,12 @@ static enum num_status sum_level(
 		return convolve(s, outer ? POINT_OUTER : POINT, z, cells, &w);
 	w.reach_x = w.reach_y = OUTER;
 	if (convolve(s, outer ? POINT_RING : POINT_INNER, z, cells, &w) ||
-		level_new(s, &next, mx, my, 2, l->load, (size_t)mx, 1, 0))
+		level_new(s, &next, mx, my, 2, l->load, (size_t)mx, 1, 0, &l->want, 0, 0))
 		return NUM_MEMORY;
 	status = sum_level(s, z, 2 * cells, 1, &next);
-	for (int c = 0; !status && c < l->numbers; c++)
-		status = lattice_refine(next.lattice, next.field[c], l->field[c]);
-	lattice_done(next.lattice);
+	if (!status)
+		status = lattice_gather(next.lattice, next.field, 0, 0, &l->want);
+	level_done(&next);
 	return status;
 }
 
@@ -404,13 +457,13 @@ static enum num_status sum_coarse(struct free_sum *s, double z, int cells,
 	struct level l = { .numbers = want->numbers };
 	enum num_status status;
 
-	if (level_new(
-		    s, &l, b->wx, b->wy, cells, corner(s, b), (size_t)s->nx, s->scale, 1))
+	if (level_new(s, &l, b->wx, b->wy, cells, corner(s, b), (size_t)s->nx, s->scale,
+		    1, want, b->x0, b->y0))
 		return NUM_MEMORY;
 	status = sum_level(s, z, cells, 0, &l);
 	if (!status)
 		status = lattice_gather(l.lattice, l.field, b->x0, b->y0, want);
-	lattice_done(l.lattice);
+	level_done(&l);
 	s->work.coarse_layers++;
 	return status;
 }
@@ -426,7 +479,7 @@ static enum num_status sum_near(struct free_sum *s, double z,
 	const struct stress_want *want, const struct box *b, const struct level *l)
 {
 	struct lattice_gather *gather =
-		lattice_gather_new(l->lattice, l->field, b->x0, b->y0, want);
+		lattice_gather_new(l->lattice, l->field, b->x0, b->y0, want, &l->want);
 	struct window w = { .mx = b->wx,
 		.my = b->wy,
 		.reach_x = REACH,
@@ -454,12 +507,13 @@ static enum num_status sum_split(
 	struct level l = { .numbers = want->numbers };
 	enum num_status status;
 
-	if (level_new(s, &l, b->wx, b->wy, 2, corner(s, b), (size_t)s->nx, s->scale, 1))
+	if (level_new(s, &l, b->wx, b->wy, 2, corner(s, b), (size_t)s->nx, s->scale, 1,
+		    want, b->x0, b->y0))
 		return NUM_MEMORY;
 	status = sum_level(s, z, 2, 1, &l);
 	if (!status)
 		status = sum_near(s, z, want, b, &l);
-	lattice_done(l.lattice);
+	level_done(&l);
 	s->work.split_layers++;
 	return status;
 }

@@ -85,34 +85,35 @@ static const double gauss_weight[GAUSS] = { 0.11846344252809454376,
  * cell and its neighbours 8, 12, 16, 24 and 32 of them along a side are off by 3e-3,
  * 9e-4, 4e-4, 1e-4 and 4e-5 of the pressure on the surface, and by 4e-3, 2e-4, 2e-5, 3e-6
  * and 9e-7 below it. */
-enum { CROWD = 16 };
+enum { CROWD = 16, ROUGH_CROWD = 12 };
 
-static double crowd(int k, double *weight)
+static double crowd(int k, int n, double *weight)
 {
-	double t = (k + 0.5) / CROWD, u = 1 - t;
+	double t = (k + 0.5) / n, u = 1 - t;
 
-	*weight = 30 * t * t * u * u / CROWD;
+	*weight = 30 * t * t * u * u / n;
 	return t * t * t * (10 - 15 * t + 6 * t * t) - 0.5;
 }
 
-/* The pyramid is the mean of cells whose centres are spread over one cell. */
+/* The pyramid is the mean of cells whose centres are spread over one cell: crowded points
+ * to a side of it, or 0 for Gauss points. */
 static void mean_of_patches(const struct influence_par *p, double x, double y, double z,
 	int crowded, struct influence *f)
 {
-	int n = crowded ? CROWD : GAUSS;
+	int n = crowded ? crowded : GAUSS;
 
 	for (int j = 0; j < n; j++)
 		for (int i = 0; i < n; i++) {
 			double wx = gauss_weight[i % GAUSS], wy = gauss_weight[j % GAUSS];
-			double u = crowded ? crowd(i, &wx) : gauss_node[i];
-			double v = crowded ? crowd(j, &wy) : gauss_node[j];
+			double u = crowded ? crowd(i, n, &wx) : gauss_node[i];
+			double v = crowded ? crowd(j, n, &wy) : gauss_node[j];
 
 			add_patch(p, x - u * p->dx, y - v * p->dy, z, wx * wy, f);
 		}
 }
 
-struct influence influence_element(
-	const struct influence_par *p, double x, double y, double z)
+static struct influence element(
+	const struct influence_par *p, double x, double y, double z, int crowded)
 {
 	struct influence f = { { 0 }, { 0 } };
 	double side = fmax(p->dx, p->dy), r = sqrt(x * x + y * y + z * z) / side;
@@ -122,7 +123,7 @@ struct influence influence_element(
 
 	/* Three points leave about 0.06 / r^6 of the stress. */
 	if (r < 4) {
-		mean_of_patches(p, x, y, z, touches, &f);
+		mean_of_patches(p, x, y, z, touches ? crowded : 0, &f);
 		return f;
 	}
 	for (int j = 0; j < HAT; j++)
@@ -130,6 +131,18 @@ struct influence influence_element(
 			add_point(p, x - hat_node[i] * p->dx, y - hat_node[j] * p->dy, z,
 				hat_weight[i] * hat_weight[j], &f);
 	return f;
+}
+
+struct influence influence_element(
+	const struct influence_par *p, double x, double y, double z)
+{
+	return element(p, x, y, z, CROWD);
+}
+
+struct influence influence_rough_element(
+	const struct influence_par *p, double x, double y, double z)
+{
+	return element(p, x, y, z, ROUGH_CROWD);
 }
 
 /* 1 - w: 0 with seven derivatives at the centre (in r), 1 with three at the edge. */

@@ -32,6 +32,9 @@ struct influence influence_point(
 /* An element, to 1e-6 of the load. */
 struct influence influence_element(
 	const struct influence_par *par, double x, double y, double z);
+/* The same in half the time on the cell and its neighbours, where it is to 2e-4. */
+struct influence influence_rough_element(
+	const struct influence_par *par, double x, double y, double z);
 /* The same two, weighted with 1 - w over the element; w(r) decreases smoothly from 1 to 0
  * at an ellipse of radii rx, ry about the point where the stress is evaluated. */
 struct influence influence_outer_point(const struct influence_par *par, double x,

@@ -293,20 +293,21 @@ static double largest_weight(const struct line *l)
 
 /* The equivalent stress of a weighted sum is at most the sum of the weights' sizes times
  * the largest one. */
-static void find_most(struct lattice_gather *g)
+static void find_most(struct lattice_gather *g, const struct stress_want *points)
 {
 	const struct stress_want *want = g->want;
-	size_t nx = (size_t)g->l->x.axis.points, ny = (size_t)g->l->y.axis.points;
+	size_t nx = (size_t)g->l->x.axis.points;
 	double weight = largest_weight(&g->l->x) * largest_weight(&g->l->y);
 
-	for (size_t y = 0; y < ny; y++) {
-		double *most = g->most + y / SQUARE * g->squares;
+	for (size_t k = 0; k < points->count; k++) {
+		const struct stress_span *s = &points->span[k];
+		double *most = g->most + (size_t)s->y / SQUARE * g->squares;
 
-		for (size_t x = 0; x < nx; x++) {
+		for (int x = s->begin; x < s->end; x++) {
 			double number[STRESS_NUMBERS] = { 0 }, size;
 
 			for (int c = 0; c < want->numbers; c++)
-				number[c] = g->field[c][y * nx + x];
+				number[c] = g->field[c][(size_t)s->y * nx + (size_t)x];
 			size = weight * want->size(want->context, number);
 			if (size > most[x / SQUARE])
 				most[x / SQUARE] = size;
@@ -315,7 +316,7 @@ static void find_most(struct lattice_gather *g)
 }
 
 struct lattice_gather *lattice_gather_new(const struct lattice *l, double *const *field,
-	int x0, int y0, const struct stress_want *want)
+	int x0, int y0, const struct stress_want *want, const struct stress_want *points)
 {
 	size_t rows = ((size_t)l->y.axis.points + SQUARE - 1) / SQUARE;
 	struct lattice_gather *g = calloc(1, sizeof *g);
@@ -329,14 +330,14 @@ struct lattice_gather *lattice_gather_new(const struct lattice *l, double *const
 		  (size_t)want->numbers * (size_t)l->x.axis.cells;
 	g->scratch = malloc(g->room * (size_t)pool_threads(l->pool) * sizeof *g->scratch);
 	g->squares = ((size_t)l->x.axis.points + SQUARE - 1) / SQUARE;
-	if (want->may && !l->x.axis.wrap)
+	if (want->may && points)
 		g->most = calloc(g->squares * rows, sizeof *g->most);
-	if (!g->scratch || (want->may && !l->x.axis.wrap && !g->most)) {
+	if (!g->scratch || (want->may && points && !g->most)) {
 		lattice_gather_free(g);
 		return NULL;
 	}
 	if (g->most)
-		find_most(g);
+		find_most(g, points);
 	return g;
 }
 
@@ -481,7 +482,7 @@ static void gather_job(void *context, size_t job, int worker)
 enum num_status lattice_gather(const struct lattice *l, double *const *field, int x0,
 	int y0, const struct stress_want *want)
 {
-	struct lattice_gather *g = lattice_gather_new(l, field, x0, y0, want);
+	struct lattice_gather *g = lattice_gather_new(l, field, x0, y0, want, NULL);
 
 	if (!g)
 		return NUM_MEMORY;
@@ -490,20 +491,39 @@ enum num_status lattice_gather(const struct lattice *l, double *const *field, in
 	return NUM_OK;
 }
 
-enum num_status lattice_refine(const struct lattice *l, const double *field, double *cell)
+enum num_status lattice_points(const struct lattice *l, const struct stress_span *span,
+	size_t count, int x0, int y0, struct stress_span **points, size_t *number)
 {
-	int points = l->x.axis.points, cells = l->x.axis.cells;
-	double *row = malloc((size_t)(points + cells) * sizeof *row), *at;
+	size_t nx = (size_t)l->x.axis.points, ny = (size_t)l->y.axis.points, n = 0;
+	char *mark = calloc(nx, ny);
+	struct stress_span *list = malloc((nx + 1) / 2 * ny * sizeof *list);
 
-	if (!row)
+	*points = list;
+	if (!mark || !list) {
+		free(mark);
 		return NUM_MEMORY;
-	at = row + points;
-	for (int y = 0; y < l->y.axis.cells; y++) {
-		combine_rows(l, field, y, 0, points, row);
-		interpolate(&l->x, 0, cells, row, 0, at);
-		for (int x = 0; x < cells; x++)
-			*cell++ += at[x];
 	}
-	free(row);
+	for (size_t k = 0; k < count; k++) {
+		int from = l->x.start[span[k].begin - x0],
+		    to = l->x.start[span[k].end - 1 - x0] + ORDER;
+		char *row = mark + (size_t)l->y.start[span[k].y - y0] * nx + from;
+
+		for (int j = 0; j < ORDER; j++, row += nx)
+			memset(row, 1, (size_t)(to - from));
+	}
+	for (size_t y = 0; y < ny; y++) {
+		const char *row = mark + y * nx, *end = row + nx, *at = row;
+
+		while ((at = memchr(at, 1, (size_t)(end - at))) != NULL) {
+			const char *stop = memchr(at, 0, (size_t)(end - at));
+
+			stop = stop ? stop : end;
+			list[n++] = (struct stress_span){ (int)y, (int)(at - row),
+				(int)(stop - row) };
+			at = stop;
+		}
+	}
+	free(mark);
+	*number = n;
 	return NUM_OK;
 }

@@ -39,12 +39,13 @@ void lattice_done(struct lattice *l);
 enum num_status lattice_spread(const struct lattice *l, const double *cell, size_t stride,
 	double scale, int element, double *load);
 
-/* Adds the interpolated field to cell[cells of y][cells of x]. */
-enum num_status lattice_refine(
-	const struct lattice *l, const double *field, double *cell);
+/* The points from which the nodes of spans are interpolated, coordinates of both from
+ * (x0, y0); a free lattice.  *points is to be freed. */
+enum num_status lattice_points(const struct lattice *l, const struct stress_span *span,
+	size_t count, int x0, int y0, struct stress_span **points, size_t *number);
 
 /* Interpolates field[c][points of y][points of x] at the requested nodes, whose
- * coordinates are relative to (x0, y0). */
+ * coordinates are relative to (x0, y0).  Only the points of lattice_points() are read. */
 enum num_status lattice_gather(const struct lattice *l, double *const *field, int x0,
 	int y0, const struct stress_want *want);
 
@@ -52,7 +53,8 @@ enum num_status lattice_gather(const struct lattice *l, double *const *field, in
  * cells and may be taken by several threads at once. */
 struct lattice_gather;
 struct lattice_gather *lattice_gather_new(const struct lattice *l, double *const *field,
-	int x0, int y0, const struct stress_want *want); /* NULL: no memory */
+	int x0, int y0, const struct stress_want *want,
+	const struct stress_want *points); /* NULL: no memory */
 void lattice_gather_part(
 	const struct lattice_gather *g, const struct stress_part *part, int worker);
 void lattice_gather_free(struct lattice_gather *g);

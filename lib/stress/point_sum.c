@@ -284,7 +284,7 @@ static void know_elements(struct point_sum *s, int k)
 
 	for (int j = 0; j <= 1; j++)
 		for (int i = 0; i <= 1; i++) {
-			struct influence f = influence_element(
+			struct influence f = influence_rough_element(
 				&s->influence, i * s->par.dx, j * s->par.dy, z);
 
 			for (int m = 0; m < 4; m++) {

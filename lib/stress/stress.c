@@ -43,7 +43,9 @@ struct stress {
 	size_t *begin;
 	char *held; /* of the blocks: no node can fail at held_depth and below */
 	double held_depth, held_limit;
-	double point; /* largest equivalent stress times distance^2 */
+	/* Largest equivalent stress times distance^2: in all directions, in those along
+	 * the surface, and the one that bounds use. */
+	double deep_point, surface_point, point;
 	struct free_sum *free;
 	struct wave_sum *wave; /* one of the two is NULL */
 	double nodes;
@@ -70,13 +72,14 @@ static double point_stress(const struct stress *s, double x, double y, double z)
 	return s->criterion->value(v);
 }
 
-/* The largest over all directions.  Between steps of 3 and 6 degrees it is no more than
- * 1e-3 larger (both criteria, Poisson's ratios to 0.5, friction to 2); 2 % are added. */
-static double largest_point_stress(const struct stress *s)
+/* The largest over all directions down to so many degrees.  Between steps of 3 and 6
+ * degrees it is no more than 1e-3 larger (both criteria, Poisson's ratios to 0.5,
+ * friction to 2); 2 % are added. */
+static double largest_point_stress(const struct stress *s, int down)
 {
 	double most = 0;
 
-	for (int i = 0; i <= 90; i += 3)
+	for (int i = 0; i <= down; i += 3)
 		for (int j = 0; j < 360; j += 6) {
 			double up = i * 0.017453292519943295,
 			       turn = j * 0.017453292519943295;
@@ -135,7 +138,8 @@ struct stress *stress_new(const struct stress_par *par)
 	s->low_y = s->high_x + (size_t)s->bx * (size_t)s->by;
 	s->high_y = s->low_y + (size_t)s->bx * (size_t)s->by;
 	s->weight = s->high_y + (size_t)s->bx * (size_t)s->by;
-	s->point = largest_point_stress(s);
+	s->deep_point = largest_point_stress(s, 90);
+	s->surface_point = largest_point_stress(s, 0);
 	return s;
 }
 
@@ -333,16 +337,10 @@ size_t stress_spans_max(const struct stress *s)
 	return (size_t)s->bx * (size_t)s->par.ny;
 }
 
-size_t stress_reach(struct stress *s, double z, double limit, struct stress_span *span)
+static size_t reach(struct stress *s, double z, double limit, struct stress_span *span)
 {
 	size_t count = 0;
 
-	limit /= s->unit;
-	/* A bound that held at a smaller depth still holds: it falls with depth. */
-	if (!(z >= s->held_depth && limit >= s->held_limit))
-		memset(s->held, 0, (size_t)s->bx * (size_t)s->by * sizeof *s->held);
-	s->held_depth = z;
-	s->held_limit = limit;
 	if (!s->loaded || (s->wave && wave_sum_bound(s->wave, s->criterion, z) <= limit))
 		return 0;
 	for (int by = 0; by < s->by; by++) {
@@ -372,6 +370,26 @@ size_t stress_reach(struct stress *s, double z, double limit, struct stress_span
 			}
 	}
 	return count;
+}
+
+size_t stress_reach(struct stress *s, double z, double limit, struct stress_span *span)
+{
+	limit /= s->unit;
+	/* A bound that held at a smaller depth still holds: it falls with depth. */
+	if (!(z >= s->held_depth && limit >= s->held_limit))
+		memset(s->held, 0, (size_t)s->bx * (size_t)s->by * sizeof *s->held);
+	s->held_depth = z;
+	s->held_limit = limit;
+	s->point = s->deep_point;
+	return reach(s, z, limit, span);
+}
+
+size_t stress_reach_surface(struct stress *s, double limit, struct stress_span *span)
+{
+	memset(s->held, 0, (size_t)s->bx * (size_t)s->by * sizeof *s->held);
+	s->held_depth = INFINITY;
+	s->point = s->surface_point;
+	return reach(s, 0, limit / s->unit, span);
 }
 
 double stress_deep(const struct stress *s, double z)

@@ -70,6 +70,9 @@ enum num_status stress_load(struct stress *s, const double *pressure);
  * or of waves (criterion.h). */
 size_t stress_reach(struct stress *s, double z, double limit, struct stress_span *span);
 size_t stress_spans_max(const struct stress *s);
+/* The same on the surface alone, where the bound is lower: below it other nodes may
+ * exceed the limit. */
+size_t stress_reach_surface(struct stress *s, double limit, struct stress_span *span);
 
 /* Asymptotic equivalent stress below the centre of the load at depths of many grid
  * lengths: that of a point load, or of the mean load if periodic. */

@@ -15,10 +15,11 @@ enum { TILE = 128 };
  * free_sum.c makes on more than a few cells, all. */
 enum { KEPT_POINTS = 256 * 256 };
 
-/* Loads of a tile up to which they are summed one by one.  The surrogate takes the same
- * time within 3 % with 32 to 192 on 128 x 128 and 512 x 512 cells; with none it takes 9 %
- * more where 0.3 % of 512 x 512 cells are loaded. */
-enum { FEW = 64 };
+/* Loads of a tile up to which they are summed one by one; the more the fewer of its nodes
+ * are wanted.  The surrogate takes the same time within 3 % with 32 to 192 on 128 x 128
+ * and 512 x 512 cells; with none it takes 9 % more where 0.3 % of 512 x 512 cells are
+ * loaded.  A span costs as much as so many more nodes. */
+enum { FEW = 64, MOST_FEW = 16 * FEW, SPAN_NODES = 8 };
 
 /* Tiles along an axis: count of them, each of so many nodes, on so many points. */
 struct cut {
@@ -43,12 +44,25 @@ struct tiling {
 	int made;           /* kernels transformed */
 };
 
+/* Points of a plane.  Kernels and plans that are kept serve more windows if the sizes are
+ * few: 2^k and 3 2^k. */
+static size_t plane_side(int points, int kept)
+{
+	size_t need = (size_t)points, side = 16;
+
+	if (!kept)
+		return 8 * fft_good_size((need + 7) / 8);
+	while (side < need)
+		side *= 2;
+	return 3 * side / 4 >= need ? 3 * side / 4 : side;
+}
+
 /* A single tile needs zeros behind its nodes only, one of many the loads on both sides.
  */
-static struct cut cut_axis(int m, int reach)
+static struct cut cut_axis(int m, int reach, int kept)
 {
 	int nodes = TILE - 2 * reach;
-	struct cut c = { 1, m, 0, 8 * fft_good_size((size_t)(m + reach + 7) / 8) };
+	struct cut c = { 1, m, 0, plane_side(m + reach, kept) };
 
 	if (c.points <= TILE || nodes < TILE / 2)
 		return c;
@@ -127,16 +141,16 @@ static struct extent extent_of(const struct tiling *t, int x0, int y0)
 
 /* The loads of a tile, if they are few. */
 struct few {
-	int count; /* FEW + 1: there are more */
-	int x[FEW], y[FEW];
-	double load[FEW];
+	int count, most; /* most + 1: there are more */
+	int x[MOST_FEW], y[MOST_FEW];
+	double load[MOST_FEW];
 };
 
 static void add_few(struct few *f, int x, int y, double load)
 {
-	if (load == 0 || f->count > FEW)
+	if (load == 0 || f->count > f->most)
 		return;
-	if (f->count < FEW) {
+	if (f->count < f->most) {
 		f->x[f->count] = x;
 		f->y[f->count] = y;
 		f->load[f->count] = load;
@@ -149,7 +163,7 @@ static void find_few(const struct tiling *t, const struct extent *e, struct few 
 	const struct window *w = t->w;
 
 	f->count = 0;
-	for (int y = e->bottom; y < e->top && f->count <= FEW; y++) {
+	for (int y = e->bottom; y < e->top && f->count <= f->most; y++) {
 		const double *row = w->load + (size_t)y * w->load_stride;
 
 		for (int x = e->begin; x < e->stop; x += 2) {
@@ -209,37 +223,96 @@ static void add_row(double *row, const double *from, double w, int count)
 		row[i] += w * from[i];
 }
 
-/* Adds a load at (x, y), counted from the first node of a part, to one number. */
-static void add_load(const struct tiling *t, const struct stress_part *part, int x, int y,
-	double load, const double *table, double *number)
+/* The first of the wanted spans of a row of the window, or of one after it. */
+static const struct stress_span *first_span(const struct stress_want *want, int y)
 {
-	int width = 2 * t->reach_x + 1;
-	int left = larger(x - t->reach_x, 0),
-	    right = smaller(x + t->reach_x + 1, part->x1 - part->x0);
-	int low = larger(y - t->reach_y, 0),
-	    high = smaller(y + t->reach_y + 1, part->y1 - part->y0);
+	size_t low = 0, high = want->count;
 
-	for (int j = low; j < high; j++)
-		add_row(number + (size_t)j * t->stride + left,
-			table + (j - y + t->reach_y) * width + (left - x + t->reach_x),
-			load, right - left);
+	while (low < high) {
+		size_t middle = (low + high) / 2;
+
+		if (want->span[middle].y < y)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return want->span + low;
 }
 
-/* Sums load by load. */
+/* The next wanted nodes of a part, counted from its first; next: the first span that may
+ * lie in it, then that after it.  0 if there are none. */
+static int next_run(const struct tiling *t, const struct stress_part *part,
+	const struct stress_span **next, struct stress_span *run)
+{
+	const struct stress_want *want = t->w->want;
+	int x0 = t->w->x0 + part->x0, y0 = t->w->y0 + part->y0;
+	int width = part->x1 - part->x0;
+
+	for (; *next < want->span + want->count && (*next)->y < t->w->y0 + part->y1;
+		++*next) {
+		*run = (struct stress_span){ (*next)->y - y0,
+			larger((*next)->begin - x0, 0),
+			smaller((*next)->end - x0, width) };
+		if (run->begin < run->end) {
+			++*next;
+			return 1;
+		}
+	}
+	return 0;
+}
+
+/* How many loads of a part may be summed one by one. */
+static int most_few(const struct tiling *t, const struct stress_part *part)
+{
+	double all = (double)(part->x1 - part->x0) * (part->y1 - part->y0), nodes = 0;
+	const struct stress_span *next;
+	struct stress_span run;
+
+	if (!t->w->want)
+		return FEW;
+	next = first_span(t->w->want, t->w->y0 + part->y0);
+	while (next_run(t, part, &next, &run))
+		nodes += run.end - run.begin + SPAN_NODES;
+	return nodes * MOST_FEW > FEW * all ? (int)(FEW * all / nodes) : MOST_FEW;
+}
+
+/* Adds the loads to a run of nodes, by the table of one number. */
+static void add_to_run(const struct tiling *t, const struct few *few,
+	const struct stress_span *run, const double *table, double *node)
+{
+	int width = 2 * t->reach_x + 1;
+
+	memset(node + run->begin, 0, (size_t)(run->end - run->begin) * sizeof *node);
+	for (int i = 0; i < few->count; i++) {
+		int x = few->x[i] - t->x.lead, y = few->y[i] - t->y.lead;
+		int left = larger(x - t->reach_x, run->begin),
+		    right = smaller(x + t->reach_x + 1, run->end);
+
+		if (abs(run->y - y) > t->reach_y || left >= right)
+			continue;
+		add_row(node + left,
+			table + (run->y - y + t->reach_y) * width +
+				(left - x + t->reach_x),
+			few->load[i], right - left);
+	}
+}
+
+/* Sums load by load the nodes that are wanted. */
 static void add_loads(const struct tiling *t, const struct stress_part *part,
 	const struct few *few, double *plane)
 {
 	size_t size = (size_t)(2 * t->reach_x + 1) * (size_t)(2 * t->reach_y + 1);
 	size_t at = (size_t)t->y.lead * t->stride + (size_t)t->x.lead;
+	const struct stress_span *next = NULL;
+	struct stress_span run = { -1, 0, part->x1 - part->x0 };
 
-	for (int c = 0; c < t->w->numbers; c++, plane += t->room) {
-		for (int y = 0; y < part->y1 - part->y0; y++)
-			memset(plane + at + (size_t)y * t->stride, 0,
-				(size_t)(part->x1 - part->x0) * sizeof *plane);
-		for (int i = 0; i < few->count; i++)
-			add_load(t, part, few->x[i] - t->x.lead, few->y[i] - t->y.lead,
-				few->load[i], t->table + (size_t)c * size, plane + at);
-	}
+	if (t->w->want)
+		next = first_span(t->w->want, t->w->y0 + part->y0);
+	while (next ? next_run(t, part, &next, &run) : ++run.y < part->y1 - part->y0)
+		for (int c = 0; c < t->w->numbers; c++)
+			add_to_run(t, few, &run, t->table + (size_t)c * size,
+				plane + (size_t)c * t->room + at +
+					(size_t)run.y * t->stride);
 }
 
 static void sum_tile(void *context, size_t tile, int worker)
@@ -264,6 +337,7 @@ static void sum_tile(void *context, size_t tile, int worker)
 	if (t->wanted && !t->wanted[tile])
 		return;
 	e = extent_of(t, part.x0, part.y0);
+	few.most = t->table ? most_few(t, &part) : 0;
 	find_few(t, &e, &few);
 	if (few.count > 0) {
 		part.number = number;
@@ -271,7 +345,7 @@ static void sum_tile(void *context, size_t tile, int worker)
 			number[c] = plane + (size_t)c * t->room + lead * t->stride +
 				    t->x.lead;
 	}
-	if (few.count > 0 && few.count <= FEW && t->table) {
+	if (few.count > 0 && few.count <= few.most) {
 		add_loads(t, &part, &few, plane);
 	} else if (few.count > 0) {
 		put_loads(t, &e, load);
@@ -478,7 +552,9 @@ enum num_status window_sum(
 	const struct window *w, struct window_kept *kept, double *transforms)
 {
 	struct tiling t = {
-		.w = w, .x = cut_axis(w->mx, w->reach_x), .y = cut_axis(w->my, w->reach_y)
+		.w = w,
+		.x = cut_axis(w->mx, w->reach_x, w->name != WINDOW_NAMELESS),
+		.y = cut_axis(w->my, w->reach_y, w->name != WINDOW_NAMELESS),
 	};
 	size_t tiles = (size_t)t.x.count * (size_t)t.y.count;
 	enum num_status status;

@@ -1,12 +1,13 @@
-#include "signal/separate/separate.h"
 #include "report.h"
+#include "signal/separate/early.h"
 #include "signal/separate/sizing.h"
 #include <math.h>
 #include <stdlib.h>
 #include <wearpipe/separate.h>
 
 struct wp_separate {
-	struct separate *separate;
+	struct early *early;
+	struct separate *separate; /* early_whole() */
 	struct wp_separate_par par;
 	const char *reason;
 };
@@ -49,11 +50,12 @@ struct wp_separate *wp_separate_new(
 		.spread = NAN,
 		.false_alarm = par->false_alarm > 0 ? par->false_alarm : 1e-9,
 		.tones = CALIBRATE_FIND_TONES };
-	s->separate = separate_new(&inner);
-	if (!s->separate) {
+	s->early = early_new(&inner);
+	if (!s->early) {
 		free(s);
 		return report(status, WP_NO_MEMORY);
 	}
+	s->separate = early_whole(s->early);
 	report(status, WP_OK);
 	return s;
 }
@@ -61,7 +63,7 @@ struct wp_separate *wp_separate_new(
 void wp_separate_free(struct wp_separate *s)
 {
 	if (s)
-		separate_free(s->separate);
+		early_free(s->early);
 	free(s);
 }
 
@@ -105,7 +107,7 @@ static enum wp_status outcome(struct wp_separate *s, enum separate_status status
 
 enum wp_status wp_separate_push(struct wp_separate *s, const double *x, size_t frames)
 {
-	return outcome(s, separate_push(s->separate, x, frames));
+	return outcome(s, early_push(s->early, x, NULL, frames));
 }
 
 enum wp_status wp_separate_end(struct wp_separate *s)
@@ -132,7 +134,7 @@ int wp_separate_next(struct wp_separate *s, struct wp_transit *p)
 	struct transit t;
 	struct sizing z;
 
-	if (!separate_next(s->separate, &t))
+	if (!early_next(s->early, &t))
 		return 0;
 	sizing_of(&t, s->par.rate, s->par.spacing, s->par.calibration, &z);
 	*p = (struct wp_transit){ z.time[0], z.time[1], z.diameter, z.amplitude, z.delay,

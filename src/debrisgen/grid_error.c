@@ -66,10 +66,6 @@ int grid_error_find(const struct worn_surface *c, const struct contact_par *pres
 	if (!(found->order >= LEAST && found->order <= MOST))
 		found->order = NAN;
 	found->extrapolated = volume - fine / (exp2(found->order) - 1);
-	/* Without an order the error is the largest difference between the three volumes.
-	 */
-	found->error = isnan(found->order)
-			       ? fmax(fabs(fine), fmax(fabs(coarse), fabs(fine + coarse)))
-			       : fabs(found->extrapolated - volume);
+	found->error = fabs(found->extrapolated - volume);
 	return solved;
 }

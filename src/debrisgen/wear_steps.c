@@ -142,6 +142,7 @@ struct wearing {
 	struct stress_work second_seen;
 	double *other, *pair; /* heights: the part above the grid, and the sum of both */
 	struct grid_error grid;
+	long orderless;  /* steps whose three volumes differ, but indicate no order */
 	double steepest; /* rms slope of a pair */
 	long steep_step;
 };
@@ -289,6 +290,9 @@ int wearing_warn(const struct wearing *w)
 	if (w->steepest > 0.2)
 		warn("%s: the pair reaches an rms slope of %.2g (step %ld), above 0.2, the limit of half-space theory: specify --hardness",
 			fields_name(w->in), w->steepest, w->steep_step);
+	if (w->orderless > 0)
+		warn("%s: on %ld steps the volumes of the three grids indicate no order of convergence: volume_extrapolated and volume_grid_error are nan, use a finer grid",
+			fields_name(w->in), w->orderless);
 	return !w->quick || quick_report(w->quick, fields_name(w->in));
 }
 
@@ -506,6 +510,9 @@ struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c,
 		was.h = before;
 		*solved = grid_error_find(&was, &w->pressing, &w->par, press_control(),
 			target, w->lost.volume, &w->grid);
+		w->orderless += isnan(w->grid.order) &&
+				!(w->grid.volume[0] == w->lost.volume &&
+					w->grid.volume[1] == w->lost.volume);
 		free(before);
 	}
 	stats_add("steps", 1);

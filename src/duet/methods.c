@@ -4,6 +4,7 @@
 #include "components.h"
 #include "instrument_file.h"
 #include "instrument_options.h"
+#include "signal/separate/early.h"
 #include <math.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -86,12 +87,12 @@ static void report(const struct separate *s, double rate)
 		instrument_note(known, rate / ratio);
 }
 
-static int put_ready(struct separate *s, struct found *out)
+static int put_ready(struct early *e, struct found *out)
 {
 	struct transit p;
 	int any = 0;
 
-	for (; separate_next(s, &p); any = 1)
+	for (; early_next(e, &p); any = 1)
 		found_particle(out, &p);
 	return any;
 }
@@ -195,6 +196,7 @@ int separate_record(struct signal_in *in, struct found *out,
 		.spacing = out->spacing,
 		.known = &par.known };
 	struct instrument kept, view;
+	struct early *e;
 	struct separate *s;
 	int doubtful, learned = 0;
 	enum separate_status status;
@@ -203,9 +205,10 @@ int separate_record(struct signal_in *in, struct found *out,
 
 	if (file && instrument_read(&place, &kept))
 		par.kept = &kept;
-	s = separate_new(&par);
-	if (!s)
+	e = early_new(&par);
+	if (!e)
 		die(EXIT_RUN, "no memory");
+	s = early_whole(e);
 	while ((n = signal_read_some(in, out->components ? frame : x, BLOCK)) > 0) {
 		int any;
 
@@ -213,10 +216,9 @@ int separate_record(struct signal_in *in, struct found *out,
 			check_finite(frame, n, read, signal_name(in));
 			components_split(frame, n, x, v);
 		}
-		status = out->components ? separate_push_quadrature(s, x, v, n)
-					 : separate_push(s, x, n);
+		status = early_push(e, x, out->components ? v : NULL, n);
 		read += (long long)n;
-		any = put_ready(s, out);
+		any = put_ready(e, out);
 		check_status(status, s, signal_name(in));
 		if (any)
 			table_flush(out->particles);
@@ -226,7 +228,7 @@ int separate_record(struct signal_in *in, struct found *out,
 		}
 	}
 	status = separate_end(s);
-	put_ready(s, out);
+	put_ready(e, out);
 	check_status(status, s, signal_name(in));
 	if (file && !par.kept)
 		keep(s, &place);
@@ -238,7 +240,7 @@ int separate_record(struct signal_in *in, struct found *out,
 	tell_events(s, out);
 	doubtful = is_doubtful(s, out, signal_name(in), par.kept ? file : NULL);
 	found_detectable(out, separate_calibration(s), separate_ratio(s));
-	separate_free(s);
+	early_free(e);
 	return doubtful;
 }
 

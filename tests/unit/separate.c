@@ -1,8 +1,8 @@
 /* The separation as a whole, on scenes that sensorsim does not make: a pulse of its own
  * form, pairs at given distances, a record too full at one place */
-#include "signal/separate/separate.h"
 #include "num/philox.h"
 #include "signal/pulse/sensor.h"
+#include "signal/separate/early.h"
 #include "tap.h"
 #include <stdlib.h>
 #include <string.h>
@@ -36,22 +36,20 @@ static void add(double *x, size_t n, double t, double duration, double a, double
 	}
 }
 
-/* Separates m pulses in noise sigma; returns how many are found. */
-static int separate(const struct pulse *p, int m, size_t n, double sigma, double echo)
-{
-	struct separate_par par = { .method = SEPARATE_FIT, .learn = 65536 };
-	double *x = calloc(2 * n, sizeof *x);
-	struct separate *s;
-	int count = 0;
+static const struct calibrate_par unknown = { .lag = NAN,
+	.duration = NAN,
+	.gain = NAN,
+	.pulse = CALIBRATE_ANY_PULSE,
+	.spread = NAN,
+	.false_alarm = 1e-9,
+	.tones = CALIBRATE_FIND_TONES };
 
-	par.known = (struct calibrate_par){ .lag = NAN,
-		.duration = NAN,
-		.gain = NAN,
-		.pulse = CALIBRATE_ANY_PULSE,
-		.spread = NAN,
-		.false_alarm = 1e-9,
-		.tones = CALIBRATE_FIND_TONES };
-	s = separate_new(&par);
+/* A record of m pulses in noise sigma; free() it. */
+static double *record_of(
+	const struct pulse *p, int m, size_t n, double sigma, double echo)
+{
+	double *x = calloc(2 * n, sizeof *x);
+
 	for (size_t i = 0; i < n; i++) {
 		double z[2];
 
@@ -67,6 +65,19 @@ static int separate(const struct pulse *p, int m, size_t n, double sigma, double
 		add(x + 1, n, p[i].t + TRANSIT + p[i].delay, duration, GAIN * p[i].a,
 			echo);
 	}
+	return x;
+}
+
+/* Separates m pulses in noise sigma; returns how many are found. */
+static int separate(const struct pulse *p, int m, size_t n, double sigma, double echo)
+{
+	struct separate_par par = {
+		.method = SEPARATE_FIT, .learn = SEPARATE_LEARN, .known = unknown
+	};
+	double *x = record_of(p, m, n, sigma, echo);
+	struct separate *s = separate_new(&par);
+	int count = 0;
+
 	ok(separate_push(s, x, n) == SEPARATE_OK && separate_end(s) == SEPARATE_OK,
 		"%d pulses in noise %g are found", m, sigma);
 	while (count < 2 * MOST && separate_next(s, &found[count]))
@@ -220,11 +231,75 @@ static void test_dead_filter(void)
 	free(x);
 }
 
+/* Separates n samples of x in pieces, as a live record; returns the number of rows.
+ * early[k]: rows so far after 10 000 (k + 1) samples. */
+static int separate_live(const double *x, size_t n, size_t piece, int early[6])
+{
+	struct separate_par par = { .method = SEPARATE_FIT, .known = unknown };
+	struct early *e = early_new(&par);
+	int count = 0;
+
+	for (size_t at = 0, some; at < n; at += some) {
+		some = piece < n - at ? piece : n - at;
+		if (early_push(e, x + 2 * at, NULL, some) != SEPARATE_OK)
+			break;
+		while (count < 2 * MOST && early_next(e, &found[count]))
+			count++;
+		for (size_t k = 0; k < 6; k++)
+			if (at + some <= 10000 * (k + 1))
+				early[k] = count;
+	}
+	separate_end(early_whole(e));
+	while (count < 2 * MOST && early_next(e, &found[count]))
+		count++;
+	early_free(e);
+	return count;
+}
+
+/* Pulses that stand alone, but for two at 30 000.  From 66 000 on they are twice as large
+ * as the converter measures, so that samples learned from are at its limit, too. */
+static void test_early(void)
+{
+	enum { PULSES = 200, PAIR = 75, LENGTH = 90000 };
+	static const size_t pieces[] = { 100, 777, LENGTH };
+	static struct transit first[2 * MOST];
+	struct pulse p[PULSES];
+	double *x, rms, limit = 1.2;
+	int early[6] = { 0 }, count, good;
+
+	for (int i = 0; i < PULSES; i++)
+		p[i] = pulse_at(500 + 400 * i + (i == PAIR + 1 ? -330 : 0), (uint64_t)i);
+	for (int i = 0; i < PULSES; i++)
+		p[i].a = p[i].t < 66000 ? fmin(p[i].a, 1.25) : 2.4;
+	x = record_of(p, PULSES, LENGTH, 0.03, 0);
+	for (size_t i = 0; i < 2 * LENGTH; i++)
+		x[i] = fmin(x[i], limit);
+	for (int k = 0; k < 3; k++) {
+		count = separate_live(x, LENGTH, pieces[k], early);
+		if (k == 0) {
+			memcpy(first, found, sizeof first);
+			good = matched(p, PULSES, count, 20, &rms);
+			ok(good == PULSES && count == PULSES,
+				"live: %d of %d pulses are found in %d rows", good,
+				PULSES, count);
+			ok(early[0] > 20, "rows come after 10 000 samples (%d)",
+				early[0]);
+			ok(early[1] > 45, "and as the samples do (%d)", early[1]);
+			ok(early[5] == PAIR, "up to the first two that overlap (%d)",
+				early[5]);
+		}
+		ok(memcmp(first, found, (size_t)count * sizeof *found) == 0,
+			"pieces of %zu samples give the same rows", pieces[k]);
+	}
+	free(x);
+}
+
 int main(void)
 {
 	test_dead_filter();
 	test_own_shape();
 	test_pairs();
 	test_local_doubt();
+	test_early();
 	return tap_done();
 }

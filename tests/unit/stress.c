@@ -554,6 +554,54 @@ static void test_above(
 		ok(out > n / 4, "many nodes below it need no sum");
 }
 
+/* Few loads are summed one by one where nodes may exceed the limit; the spans of the
+ * surface alone contain all nodes that do. */
+static void test_few(int axis, double mu)
+{
+	enum { SIDE = 200, CELLS = SIDE * SIDE };
+	struct stress_par par = plain(SIDE, SIDE, mu);
+	double *p = calloc(CELLS, sizeof *p), *all = malloc(CELLS * sizeof *all);
+	double *some = calloc(CELLS, sizeof *some), limit = 0, worst = 0;
+	struct stress_span span[CELLS], deep[CELLS];
+	struct stress *s, *full;
+	size_t count, wanted = 0, above = 0, missed = 0;
+
+	par.axis = axis;
+	s = stress_new(&par);
+	par.method = STRESS_FULL;
+	full = stress_new(&par);
+	for (int k = 0; k < 150; k++)
+		p[(k * 7919 + k * k * 31) % CELLS] = 0.25 + k % 4 * 0.25;
+	stress_load(full, p);
+	stress_at(full, 0, span, whole_grid(&par, span), all);
+	for (size_t i = 0; i < CELLS; i++)
+		limit = tap_max(limit, 0.3 * all[i]);
+	stress_load(s, p);
+	count = stress_reach_surface(s, limit, span);
+	for (size_t k = 0; k < count; k++)
+		wanted += (size_t)(span[k].end - span[k].begin);
+	stress_above(s, limit, span, count, some);
+	for (size_t i = 0; i < CELLS; i++) {
+		above += all[i] > limit;
+		missed += all[i] > limit && !(some[i] > 0);
+		if (some[i] > 0)
+			worst = tap_max(worst, fabs(some[i] - all[i]));
+	}
+	ok(above > 100 && missed == 0 && worst < 5e-6,
+		"axis %d, friction %g: all %zu nodes above a limit are in the spans of the surface, to %.1e",
+		axis, mu, above, worst);
+	count = stress_reach(s, 0, limit, deep);
+	for (size_t k = 0; k < count; k++)
+		missed += (size_t)(deep[k].end - deep[k].begin);
+	ok(0 < wanted && wanted < missed,
+		"the spans of the surface have %zu nodes of %zu", wanted, missed);
+	stress_free(s);
+	stress_free(full);
+	free(some);
+	free(all);
+	free(p);
+}
+
 /* On the surface the tractions are those of the load; and what is kept of one load and of
  * one part of the grid does not show in the next. */
 static void test_surface(int axis, int periodic)
@@ -730,6 +778,8 @@ int main(void)
 	test_periodic_free(0.5, 1);
 	for (int k = 0; k < 4; k++)
 		test_surface(k & 1, k >> 1);
+	test_few(0, 0.3);
+	test_few(1, 0);
 	test_points();
 	test_sequence();
 	test_refusals();

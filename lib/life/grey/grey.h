@@ -94,18 +94,10 @@ static inline struct grey_interval grey_interval(double t, double gap)
 		fmin(GREY_SERIES / half, 300 / middle) };
 }
 
-/* grey_curve() for two models at a time. */
-static inline lanes grey_curve_lanes(
+/* grey_curve() for two models at a time whose rates are at most the largest. */
+static inline lanes grey_curve_near(
 	lanes level, lanes rate, const struct grey_interval *i)
 {
-	lane_mask far = lanes_abs(rate) > i->largest_rate;
-
-	if (far[0] | far[1]) {
-		double t = i->middle + i->half, gap = 2 * i->half;
-
-		return (lanes){ grey_curve(level[0], rate[0], t, gap),
-			grey_curve(level[1], rate[1], t, gap) };
-	}
 	return level * grey_mean_exp(rate * i->half) * lanes_exp(rate * -i->middle);
 }
 

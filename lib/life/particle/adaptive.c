@@ -30,6 +30,11 @@ struct sums {
 	lanes tail, u, x, uu, ux;
 };
 
+/* The same of a block, particle by particle. */
+struct block_sums {
+	double tail[BLOCK], u[BLOCK], x[BLOCK], uu[BLOCK], ux[BLOCK];
+};
+
 struct adaptive {
 	struct adaptive_par par;
 	struct draw *draw, *draw_paths;
@@ -146,22 +151,19 @@ static inline struct sums add_stretch(struct sums s, const struct lag *newest, i
 	return s;
 }
 
-static struct sums pick_sums(const struct sums *sums, size_t a, size_t b)
+static inline struct sums sums_of(const struct block_sums *s, size_t a, size_t b)
 {
-	const struct sums *s = &sums[a / 2], *t = &sums[b / 2];
-	size_t i = a % 2, j = b % 2;
-
-	return (struct sums){ { s->tail[i], t->tail[j] }, { s->u[i], t->u[j] },
-		{ s->x[i], t->x[j] }, { s->uu[i], t->uu[j] }, { s->ux[i], t->ux[j] } };
+	return (struct sums){ { s->tail[a], s->tail[b] }, { s->u[a], s->u[b] },
+		{ s->x[a], s->x[b] }, { s->uu[a], s->uu[b] }, { s->ux[a], s->ux[b] } };
 }
 
-/* Copies the sums of the ancestors, which are in ascending order from first on, to their
- * n descendants, in place. */
-static void hand_down(struct sums *sums, const uint32_t *ancestor, size_t first, size_t n)
+static inline void keep_sums(struct block_sums *s, size_t i, struct sums two)
 {
-	for (size_t i = (n + 1) / 2; i-- > 0;)
-		sums[i] = pick_sums(sums, ancestor[2 * i] - first,
-			ancestor[2 * i + 1 < n ? 2 * i + 1 : 2 * i] - first);
+	lanes_store(s->tail + i, two.tail, 2);
+	lanes_store(s->u + i, two.u, 2);
+	lanes_store(s->x + i, two.x, 2);
+	lanes_store(s->uu + i, two.uu, 2);
+	lanes_store(s->ux + i, two.ux, 2);
 }
 
 /* A window of states to which the grey curve is fitted. */
@@ -194,12 +196,12 @@ static void forecast_block(const struct window *window, const uint32_t *index,
 	/* a copy that the compiler knows to be constant */
 	const struct window here = *window, *w = &here;
 
-	struct sums sums[BLOCK / 2];
+	struct block_sums sums;
 	lanes level[BLOCK / 2], rate[BLOCK / 2];
+	lane_mask far = { 0 };
 	struct lag *lag = w->lag;
 	const uint32_t *parent = lag[0].ancestor;
 	size_t from = first, those = n;
-	int end = w->count, to = end;
 
 	for (int k = 0; k < w->count; k++) {
 		const uint32_t *ancestor = lag[k].ancestor;
@@ -211,33 +213,43 @@ static void forecast_block(const struct window *window, const uint32_t *index,
 		lag[k].first = from;
 		lag[k].n = those;
 	}
-	for (; to > 0; end = to) {
-		for (to--; to > 0 && !lag[to].ancestor;)
+	for (int to, end = w->count; end > 0; end = to) {
+		const uint32_t *ancestor = NULL;
+
+		if (end < w->count)
+			ancestor = lag[end].ancestor + lag[end - 1].first;
+		for (to = end - 1; to > 0 && !lag[to].ancestor;)
 			to--;
-		for (size_t i = 0; i < lag[to].n; i += 2) {
-			size_t a = lag[to].first + i, b = i + 1 < lag[to].n ? a + 1 : a;
+		/* In place, from the end: the ancestors ascend from 0 in steps of 0 or 1,
+		 * so that none lies after its descendant. */
+		for (size_t i = (lag[to].n + 1) / 2 * 2; i > 0;) {
+			size_t j = i - 1 < lag[to].n ? i - 1 : i - 2;
+			size_t a = lag[to].first + (i -= 2), b = lag[to].first + j;
 			struct sums s = { 0 };
 
-			if (end < w->count)
-				s = sums[i / 2];
+			if (ancestor)
+				s = sums_of(&sums, ancestor[i] - lag[end].first,
+					ancestor[j] - lag[end].first);
 			s = add_stretch(s, lag + to, end - to, w->centre,
 				index ? index[a] : a, index ? index[b] : b);
-			if (to > 0)
-				sums[i / 2] = s;
-			else
-				fit_pair(w, s, &level[i / 2], &rate[i / 2]);
+			if (to > 0) {
+				keep_sums(&sums, i, s);
+				continue;
+			}
+			fit_pair(w, s, &level[i / 2], &rate[i / 2]);
+			far = lanes_or(
+				far, lanes_abs(rate[i / 2]) > w->ahead.largest_rate);
 		}
-		if (to > 0)
-			hand_down(sums, lag[to].ancestor + lag[to - 1].first,
-				lag[to].first, lag[to - 1].n);
 	}
 	/* in a loop of its own, so that several exponentials overlap in the processor */
 	for (size_t i = 0; i < lag[0].n; i += 2)
 		lanes_store(mean + i,
-			grey_curve_lanes(level[i / 2], rate[i / 2], &w->ahead),
+			grey_curve_near(level[i / 2], rate[i / 2], &w->ahead),
 			lag[0].n - i < 2 ? 1 : 2);
-	/* in place: the ancestors ascend from 0 in steps of 0 or 1, so that no ancestor
-	 * lies after its descendant */
+	for (size_t i = 0; (far[0] | far[1]) && i < lag[0].n; i++)
+		if (fabs(rate[i / 2][i % 2]) > w->ahead.largest_rate)
+			mean[i] = grey_curve(level[i / 2][i % 2], rate[i / 2][i % 2],
+				w->ahead.middle + w->ahead.half, 2 * w->ahead.half);
 	for (size_t i = n; parent && i-- > 0;)
 		mean[i] = mean[parent[first + i] - lag[0].first];
 }

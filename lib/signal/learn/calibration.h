@@ -60,7 +60,8 @@ struct calibration {
 	double drop, drop_near;      /* thresholds of joint.h */
 	double misfit;               /* of joint.h: error of the shape */
 	int far;     /* pulses near the limits of the range of delays that was searched */
-	int events;  /* pulses to which the shape was fitted */
+	int events;  /* pulses to which the shape was fitted, and ... */
+	int lone;    /* ... those of them that stand alone */
 	int suspect; /* 1: treated as white although the spectrum test failed */
 	int guessed; /* 1: whitened by a filter estimated from its noise */
 	double work; /* samples of pulses computed to learn it, or in vain */

@@ -2,6 +2,7 @@
 #include "signal/learn/learn.h"
 #include "signal/detect/spikes.h"
 #include "signal/learn/correct.h"
+#include "signal/learn/crowd.h"
 #include "signal/learn/examples.h"
 #include <math.h>
 #include <stdlib.h>
@@ -168,6 +169,21 @@ static enum calibrate_status try_shape(const struct calibrate_par *par,
 	return CALIBRATE_OK;
 }
 
+/* Takes shape and duration from the spectrum of a record in which few pulses stand apart:
+ * a fit of pieces, which contain parts of pulses, may go far from them. */
+static enum calibrate_status learn_crowd(const struct calibrate_par *par,
+	const double *y1, const double *y2, size_t n, struct calibration *c)
+{
+	int pulse = par->pulse;
+	double guess = c->duration;
+
+	c->duration = par->duration;
+	if (crowd_pulse(y1, y2, n, guess, &pulse, &c->duration) != NUM_OK ||
+		learn_set_shape(c, pulse) != NUM_OK)
+		return CALIBRATE_MEMORY;
+	return CALIBRATE_OK;
+}
+
 /* Finds the shape that describes some clear examples best, and its approximate duration.
  * low: lag of the lowest autocorrelation, which that of a train of pulses may hide.  A
  * wrong shape needs more pulses for the same record, so each pulse costs its threshold.
@@ -180,6 +196,9 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 	struct guess best = { c->pulse, c->duration, c->gain, INFINITY, INFINITY };
 	enum calibrate_status status = CALIBRATE_OK;
 
+	examples_pick(ex, y1, y2, n, EXAMPLES_MAX, c);
+	if (ex->pieces && !c->whitening.tap)
+		return learn_crowd(par, y1, y2, n, c);
 	if (hint)
 		status = try_shape(
 			par, ex, y1, y2, n, hint->pulse, hint->duration, 1, c, &best);
@@ -213,16 +232,17 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
  * 18). */
 static const double FAR = 0.7;
 
-/* Range of the delays seen, widened by half on either side. */
+/* Range of the delays seen, widened by half on either side, and how many stand alone. */
 static void learn_range(
 	const struct calibrate_par *par, const struct examples *ex, struct calibration *c)
 {
 	double lo = INFINITY, hi = -INFINITY;
 
-	c->far = 0;
+	c->far = c->lone = 0;
 	for (int i = 0; i < ex->count; i++) {
 		const struct example *e = &ex->example[i];
 
+		c->lone += e->m == 1 && !e->spoiled;
 		for (int k = 0; k < e->m; k++) {
 			const struct joint_pulse *p = &e->pulse[k];
 
@@ -287,7 +307,7 @@ static int wants_correction(
 
 int learn_describes(const struct calibration *c)
 {
-	return c->chi2 < 1.2;
+	return c->chi2 < LEARN_DESCRIBES;
 }
 
 void learn_hidden(const struct calibrate_par *par, const struct calibration *c,

@@ -161,6 +161,9 @@ static enum separate_status work(struct separate *s)
 		if (!s->looked && separate_measure_common(s, s->done, upto) != NUM_OK)
 			return SEPARATE_MEMORY;
 		s->looked = 1;
+		/* Too few samples to remove what is common. */
+		if (s->par.clearly && (s->crowded || s->common.correlation != 0))
+			return SEPARATE_NO_LAG;
 		if (s->par.quadrature && measure_quadrature(s, upto) != NUM_OK)
 			return SEPARATE_MEMORY;
 	}
@@ -247,6 +250,29 @@ enum separate_status separate_push(struct separate *s, const double *x, size_t n
 	return separate_push_quadrature(s, x, NULL, n);
 }
 
+static enum separate_status push(
+	struct separate *s, const double *x, const double *v, size_t n)
+{
+	enum separate_status status = SEPARATE_OK;
+
+	if (tape_append(&s->tape[0], x, n) != NUM_OK ||
+		tape_append(&s->tape[1], x + 1, n) != NUM_OK)
+		return SEPARATE_MEMORY;
+	if (v && quadrature_append(&s->quadrature, v, n) != NUM_OK)
+		return SEPARATE_MEMORY;
+	if (s->par.kept)
+		status = separate_check_alive(s, x, n);
+	s->counters.samples += (double)n / s->ratio;
+	if (!s->calibrated && status == SEPARATE_OK)
+		status = s->par.kept      ? separate_start_kept(s)
+			 : s->par.clearly ? separate_learn_clearly(s)
+					  : separate_learn(s);
+	if (status != SEPARATE_OK)
+		return status;
+	return s->calibrated ? work(s) : status;
+}
+
+/* What is learned from ends at the same samples whatever the sizes of the pieces. */
 enum separate_status separate_push_quadrature(
 	struct separate *s, const double *x, const double *v, size_t n)
 {
@@ -259,19 +285,11 @@ enum separate_status separate_push_quadrature(
 			s->bad_channel = (int)(i % 2);
 			return SEPARATE_NOT_FINITE;
 		}
-	if (tape_append(&s->tape[0], x, n) != NUM_OK ||
-		tape_append(&s->tape[1], x + 1, n) != NUM_OK)
-		return SEPARATE_MEMORY;
-	if (v && quadrature_append(&s->quadrature, v, n) != NUM_OK)
-		return SEPARATE_MEMORY;
-	if (s->par.kept)
-		status = separate_check_alive(s, x, n);
-	s->counters.samples += (double)n / s->ratio;
-	if (!s->calibrated && status == SEPARATE_OK)
-		status = s->par.kept ? separate_start_kept(s) : separate_learn(s);
-	if (status != SEPARATE_OK)
-		return status;
-	return s->calibrated ? work(s) : status;
+	for (size_t at = 0, some; at < n && status == SEPARATE_OK; at += some) {
+		some = separate_wants(s) < n - at ? separate_wants(s) : n - at;
+		status = push(s, x + 2 * at, v ? v + 2 * at : NULL, some);
+	}
+	return status;
 }
 
 enum separate_status separate_end(struct separate *s)

@@ -68,10 +68,13 @@ struct separate_section {
 struct separate_par {
 	enum separate_method method;
 	struct calibrate_par known;
-	size_t learn;    /* samples held back to calibrate, at least SEPARATE_SHORTEST;
-			    0: SEPARATE_LEARN */
-	size_t window;   /* longest section worked off at once; 0: 24 durations */
-	int sources;     /* exactly so many in each section; 0: find out */
+	size_t learn;  /* samples held back to calibrate, at least SEPARATE_SHORTEST;
+			  0: SEPARATE_LEARN */
+	int clearly;   /* 1: learn only from what shows the instrument clearly, of pulses
+			  that stand alone, doubling learn where there are too few of
+			  them; else NO_LAG from separate_push(), before any row */
+	size_t window; /* longest section worked off at once; 0: 24 durations */
+	int sources;   /* exactly so many in each section; 0: find out */
 	int most_pulses; /* limit for a window; 0: JOINT_PULSES_MAX */
 	/* Of the masks, samples; 0: 64, or as many as the pulses need, and half of it. */
 	size_t mask_window, mask_hop;

@@ -193,6 +193,10 @@ enum separate_status separate_give_pulses(struct separate *s, long long from,
 /* Learns the instrument from the oldest samples; if they contain no particle, half of
  * them are skipped and the next are tried. */
 enum separate_status separate_learn(struct separate *s);
+/* Learns it from the first samples if they show it clearly; else NO_LAG. */
+enum separate_status separate_learn_clearly(struct separate *s);
+/* Samples that are wanted before the next attempt to learn. */
+size_t separate_wants(const struct separate *s);
 /* Uses a kept instrument for the record. */
 enum separate_status separate_start_kept(struct separate *s);
 /* SILENT if, with a kept instrument, a channel is constant for as long as one would

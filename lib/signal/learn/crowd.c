@@ -1,0 +1,176 @@
+/* crowd.c - see crowd.h */
+#include "signal/learn/crowd.h"
+#include "num/fft.h"
+#include "signal/learn/calibration.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The spectrum of a pulse of STEPS samples at PADDED / 2 frequencies, each 1 / FINE of a
+ * cycle per duration after the other. */
+enum { STEPS = 256, FINE = 32, PADDED = STEPS * FINE };
+
+/* Cycles per duration up to which the periodogram is compared: pulses have little power
+ * above. */
+static const double BAND = 10;
+
+struct periodogram {
+	double *power; /* mean of both channels; 1 where there is only noise */
+	size_t bins, size;
+};
+
+/* Adds scale times the energy spectrum of x, n samples and zeros up to size, to
+ * power[0 .. bins).  Tapered by Hann's window, strong frequencies do not leak into the
+ * zeros of the spectrum of a pulse, which tell its duration. */
+static enum num_status add_power(const double *x, size_t n, size_t size, int taper,
+	double scale, double *power, size_t bins)
+{
+	struct fft *fft = fft_new(size, 1);
+	double *pad = fft_alloc(size);
+	double complex *f = fft_alloc_complex(size / 2 + 1);
+	enum num_status status = fft && pad && f ? NUM_OK : NUM_MEMORY;
+
+	if (status == NUM_OK) {
+		for (size_t i = 0; i < n; i++) {
+			double w = sin(M_PI * ((double)i + 0.5) / (double)n);
+
+			pad[i] = x[i] * (taper ? w * w : 1);
+		}
+		fft_forward(fft, pad, f);
+		for (size_t k = 0; k < bins; k++)
+			power[k] += scale * (creal(f[k]) * creal(f[k]) +
+						    cimag(f[k]) * cimag(f[k]));
+	}
+	fft_free(pad);
+	fft_free(f);
+	fft_done(fft);
+	return status;
+}
+
+static enum num_status pulse_spectrum(int pulse, double *power)
+{
+	struct shape *shape = shape_new((enum pulse_shape)pulse);
+	double *p = malloc(PADDED * sizeof *p);
+	enum num_status status = NUM_MEMORY;
+
+	if (shape && p) {
+		shape_sample(shape, PADDED / 2, STEPS, 0, PADDED, p, NULL, NULL);
+		memset(power, 0, PADDED / 2 * sizeof *power);
+		status = add_power(p, PADDED, PADDED, 0, 1, power, PADDED / 2);
+	}
+	shape_free(shape);
+	free(p);
+	return status;
+}
+
+/* Twice the negative logarithm of the likelihood of the periodogram, at the most likely
+ * power *amount of all pulses, which Fisher scoring starts from. */
+static double unlikelihood(
+	const struct periodogram *p, const double *pulse, double duration, double *amount)
+{
+	enum { ROUNDS = 30 };
+	double step = duration * FINE / (double)p->size, sum = 0, a = *amount;
+
+	for (int round = 0; round < ROUNDS; round++) {
+		double num = 0, den = 0, before = a;
+
+		sum = 0;
+		for (size_t k = 1; k < p->bins; k++) {
+			double x = step * (double)k, s, share;
+			size_t i = (size_t)x;
+
+			if (i + 1 >= PADDED / 2)
+				break;
+			share = pulse[i] + (x - (double)i) * (pulse[i + 1] - pulse[i]);
+			s = 1 + a * share;
+			share /= s;
+			sum += log(s) + p->power[k] / s;
+			num += share * (p->power[k] - 1) / s;
+			den += share * share;
+		}
+		a = den > 0 && num > 0 ? num / den : 0;
+		if (fabs(a - before) <= 1e-6 * before)
+			break;
+	}
+	*amount = a;
+	return 2 * sum;
+}
+
+/* Moves *duration to the most likely one: the best of a grid, then steps that shrink. */
+static double best_duration(
+	const struct periodogram *p, const double *pulse, double guess, double *duration)
+{
+	enum { GRID = 14 };
+	double least = INFINITY, amount = 1, step = log(2) / GRID;
+
+	for (int k = -GRID; k <= GRID; k++) {
+		double T = guess * exp(k * step);
+		double trial = unlikelihood(p, pulse, T, &amount);
+
+		if (trial < least) {
+			least = trial;
+			*duration = T;
+		}
+	}
+	while (step > 1e-4) {
+		double before = least, at = *duration;
+
+		for (int side = -1; side <= 1; side += 2) {
+			double T = at * exp(side * step);
+			double trial = unlikelihood(p, pulse, T, &amount);
+
+			if (trial < least) {
+				least = trial;
+				*duration = T;
+			}
+		}
+		if (least >= before)
+			step /= 2;
+	}
+	return least;
+}
+
+static enum num_status choose(
+	const struct periodogram *p, double guess, int *pulse, double *duration)
+{
+	double least = INFINITY, known = *duration;
+	double *spectrum = malloc(PADDED / 2 * sizeof *spectrum);
+	enum num_status status = spectrum ? NUM_OK : NUM_MEMORY;
+	int only = *pulse;
+
+	for (int k = PULSE_SINE; k <= PULSE_LORENTZ && status == NUM_OK; k++) {
+		double T = known, amount = 1, trial;
+
+		if (only != CALIBRATE_ANY_PULSE && only != k)
+			continue;
+		status = pulse_spectrum(k, spectrum);
+		if (status != NUM_OK)
+			break;
+		trial = isnan(known) ? best_duration(p, spectrum, guess, &T)
+				     : unlikelihood(p, spectrum, T, &amount);
+		if (trial < least) {
+			least = trial;
+			*pulse = k;
+			*duration = T;
+		}
+	}
+	free(spectrum);
+	return status;
+}
+
+enum num_status crowd_pulse(const double *y1, const double *y2, size_t n, double guess,
+	int *pulse, double *duration)
+{
+	size_t size = fft_good_size(n), most = size / 2 + 1;
+	double band = BAND * (double)size / guess, scale = 0.5 / (0.375 * (double)n);
+	struct periodogram p = { .size = size,
+		.bins = band < (double)most ? (size_t)band : most };
+	enum num_status status = NUM_MEMORY;
+
+	p.power = calloc(p.bins + 1, sizeof *p.power);
+	if (p.power && add_power(y1, n, size, 1, scale, p.power, p.bins) == NUM_OK &&
+		add_power(y2, n, size, 1, scale, p.power, p.bins) == NUM_OK)
+		status = choose(&p, guess, pulse, duration);
+	free(p.power);
+	return status;
+}

@@ -1,0 +1,30 @@
+/* early.h - separate.h, with rows of a live record before all of it is there that the
+ * instrument is learned from
+ *
+ * Another separation learns the instrument from the first samples alone.  If these show
+ * it clearly, its rows are given up to the first that is not a pulse that stands alone.
+ * The instrument is learned, and all samples are separated, as by separate.h; the rows of
+ * what was given before are then left out.
+ */
+#ifndef SIGNAL_EARLY_H
+#define SIGNAL_EARLY_H
+
+#include "signal/separate/separate.h"
+
+struct early;
+/* As separate_new(); no row is early if par tells how much is learned from, or more than
+ * the first samples do: a kept instrument, a filter, or a second component. */
+struct early *early_new(const struct separate_par *par); /* NULL: no memory */
+void early_free(struct early *e);
+
+/* As those of separate.h; v: the second component, or NULL. */
+enum separate_status early_push(
+	struct early *e, const double *x, const double *v, size_t n);
+int early_next(struct early *e, struct transit *p);
+
+/* What separates all samples: for separate_end(), and for what it has learned and
+ * counted.
+ */
+struct separate *early_whole(struct early *e);
+
+#endif
