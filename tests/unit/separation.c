@@ -152,6 +152,35 @@ static void test_tones(void)
 		"a train of pulses has no tones");
 }
 
+/* A line that turns by 0.1 rad from knot to knot: straight lines between coefficients,
+ * and beyond the first and the last one, leave errors of second order. */
+static void test_track(void)
+{
+	enum { HOP = 500, PIECE = 700 };
+	static double x[N], y[N];
+	struct tones_track t, pieces;
+	double omega = 2 * acos(-1) * 0.01, turn = 0.1, worst = 0;
+
+	for (int i = 0; i < N; i++)
+		x[i] = y[i] = cos((omega + turn / HOP) * i + 0.5);
+	tones_track_start(&t, 1, &omega, 0, HOP);
+	ok(tones_track_run(&t, x, 0, N, 1) == TONES_OK && t.flat == N,
+		"a line is followed to the end");
+	for (int i = 0; i < N; i++)
+		worst = tap_max(worst, fabs(x[i]));
+	near(worst, 0, 2 * turn * turn,
+		"what is left of it is of second order, at the ends as well");
+	/* The last step may be half as long. */
+	near(tones_track_change(&t), turn * turn / 2,
+		0.75 * turn * turn / 2 / (t.knots - 1), "it changes by its turn");
+	ok(tones_track_left(&t) < pow(turn, 4) && tones_track_left(&t) > 0,
+		"what is left is far less than the change");
+	tones_track_start(&pieces, 1, &omega, 0, HOP);
+	for (int end = PIECE; end < N + PIECE; end += PIECE)
+		tones_track_run(&pieces, y, 0, end < N ? end : N, end >= N);
+	ok(memcmp(x, y, sizeof x) == 0, "the pieces in which it arrives do not matter");
+}
+
 /* A tone of cosine c and sine s taken from silence, against direct evaluation.  The
  * frequency has so few digits that it can be cut in two whose products with the index are
  * exact: the error of the reference is that of cos() and sin(). */
@@ -302,6 +331,7 @@ int main(void)
 	test_stft();
 	test_masks();
 	test_tones();
+	test_track();
 	test_tone_values();
 	test_small();
 	test_sections();

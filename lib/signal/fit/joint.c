@@ -79,16 +79,14 @@ static void finish(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int m, double chi2, int full,
 	struct joint_result *result)
 {
-	double visible, taken = 0; /* the baseline had no noise to take */
+	double visible;
 
 	qsort(pulses, (size_t)m, sizeof *pulses, by_time);
 	joint_fill_covariance(j, s, pulses, m);
 	joint_project(j);
 	result->chi2 = chi2;
-	for (int b = j->slow; b < j->basis; b++)
-		taken += 2 * j->share[b];
 	visible = (double)(joint_visible(j, 0, 0, j->n) + joint_visible(j, 1, 0, j->n));
-	result->dof = (long)((1 - s->lost) * visible - taken + 0.5) - PAR * m;
+	result->dof = (long)((1 - s->lost) * visible - j->taken + 0.5) - PAR * m;
 	if (result->dof < 1)
 		result->dof = 1;
 	result->full = full;

@@ -50,8 +50,11 @@ struct joint_scene {
 	int tones;
 	double omega[JOINT_TONES_MAX]; /* rad per sample */
 	/* Prior variance of the cosine and sine of each tone about zero (small after
-	 * tones were removed from the record); INFINITY: unknown. */
-	double tone_variance;
+	 * tones were removed from the record); INFINITY: unknown, and constant.  Known
+	 * ones are independent at knots tone_hop samples apart, with linear
+	 * interpolation between; 0: constant.  tone_knot: one of the knots of either
+	 * channel. */
+	double tone_variance, tone_hop, tone_knot[2];
 	/* Of a filtered record (whiten.h): frequencies below low, in cycles per sample,
 	 * are a baseline to be projected out (up to JOINT_BASELINE_MAX in the length of
 	 * the record); lost: share of the variance of the noise that the filter removed.
@@ -131,9 +134,11 @@ double joint_work(const struct joint *joint);
 void joint_gain_error(const struct joint *joint, const struct joint_pulse *p,
 	double *share, double *se);
 
-/* The orthonormal vectors, of as many samples as the last fit had, that are projected out
- * of its record, and what share of each. */
-const double *joint_basis(const struct joint *joint, int *count, const double **share);
+/* The vectors q, of as many samples as the last fit had, of tones and baseline: the
+ * inverse of the covariance of a channel is 1 - sum q q^T.  *taken: degrees of freedom
+ * that they take of both channels, without the baseline's. */
+const double *joint_basis(
+	const struct joint *joint, int channel, int *count, double *taken);
 
 /* Residual of the last fit, channel 0 or 1, n samples, tones and offset removed. */
 const double *joint_residual(const struct joint *joint, int channel);

@@ -96,14 +96,14 @@ static enum joint_status reserve_columns(struct joint *j, size_t support)
 	return JOINT_OK;
 }
 
-/* Makes vector b of q orthonormal to those before it, by modified Gram-Schmidt, done
- * twice; NUM_DOMAIN if nothing of it is left. */
-static enum num_status orthonormalise(double *q, int b, size_t n)
+/* Makes vector b of q orthonormal to those from first on before it, by modified
+ * Gram-Schmidt, done twice; NUM_DOMAIN if nothing of it is left. */
+static enum num_status orthonormalise(double *q, int first, int b, size_t n)
 {
 	double *v = q + (size_t)b * n, norm = dot(v, v, n), left;
 
 	for (int pass = 0; pass < 2; pass++)
-		for (int k = 0; k < b; k++)
+		for (int k = first; k < b; k++)
 			add_scaled(
 				v, -dot(v, q + (size_t)k * n, n), q + (size_t)k * n, n);
 	left = dot(v, v, n);
@@ -115,65 +115,124 @@ static enum num_status orthonormalise(double *q, int b, size_t n)
 	return NUM_OK;
 }
 
-/* Adds cos or sin of w (i - n / 2) to the basis unless it depends on the vectors there,
- * as the sine at half the rate does. */
-static void add_to_basis(struct joint *j, double (*wave)(double), double w, double share)
+/* Vector b of channel c: cos or sin of w (i - n / 2), times a hat of half width hop about
+ * sample knot, or as it is if hop is 0; hidden samples are 0. */
+static void draw_wave(struct joint *j, int c, int b, double (*wave)(double), double w,
+	double knot, double hop)
 {
-	size_t n = j->n;
-	double *v = j->q[0] + (size_t)j->basis * n;
+	double *v = j->q[c] + (size_t)b * j->n, n = (double)j->n;
 
-	for (size_t i = 0; i < n; i++)
-		v[i] = wave(w * ((double)i - (double)n / 2));
-	if (orthonormalise(j->q[0], j->basis, n) == NUM_OK)
-		j->share[j->basis++] = share;
+	j->from[c][b] = hop > 0 ? (size_t)clamp(ceil(knot - hop), 0, n) : 0;
+	j->to[c][b] = hop > 0 ? (size_t)clamp(ceil(knot + hop), 0, n) : j->n;
+	memset(v, 0, j->n * sizeof *v);
+	for (size_t i = j->from[c][b]; i < j->to[c][b]; i++) {
+		double hat = hop > 0 ? 1 - fabs((double)i - knot) / hop : 1;
+
+		v[i] = hat * wave(w * ((double)i - n / 2));
+	}
+	joint_hide(j, c, 0, j->n, v);
 }
 
-/* Restricts the basis to the visible samples of a channel; a vector of which nothing is
- * left is set to zero. */
-static void hide_basis(struct joint *j, int c, double *q)
+/* Vector b of channel c becomes what, times itself, is taken from the inverse of the
+ * covariance W^-1 of the record for a term of its shape with this prior variance: W b /
+ * sqrt(1 / variance + b^T W b).  Returns the share of a degree of freedom that it takes.
+ */
+static double take_term(struct joint *j, int c, int b, double variance)
 {
-	for (int b = 0; b < j->basis; b++) {
-		double *v = q + (size_t)b * j->n;
+	double *v = j->q[c] + (size_t)b * j->n, part[BASIS_MAX], norm, left, scale;
+	size_t from = j->from[c][b], n = j->to[c][b] - from;
 
-		joint_hide(j, c, 0, j->n, v);
-		if (orthonormalise(q, b, j->n) != NUM_OK)
-			memset(v, 0, j->n * sizeof *v);
+	norm = left = dot(v + from, v + from, n);
+	for (int k = 0; k < b; k++) {
+		part[k] = joint_along_basis(j, c, k, (long)from, v + from, n);
+		left -= part[k] * part[k];
+	}
+	if (left <= 1e-8 * norm || left == 0) {
+		memset(v, 0, j->n * sizeof *v);
+		return 0;
+	}
+	for (int k = 0; k < b; k++) {
+		const double *q = j->q[c] + (size_t)k * j->n;
+
+		if (part[k] == 0)
+			continue;
+		add_scaled(v + j->from[c][k], -part[k], q + j->from[c][k],
+			j->to[c][k] - j->from[c][k]);
+		j->from[c][b] =
+			j->from[c][k] < j->from[c][b] ? j->from[c][k] : j->from[c][b];
+		j->to[c][b] = j->to[c][k] > j->to[c][b] ? j->to[c][k] : j->to[c][b];
+	}
+	scale = 1 / sqrt(1 / variance + left);
+	for (size_t i = j->from[c][b]; i < j->to[c][b]; i++)
+		v[i] *= scale;
+	return left * scale * scale;
+}
+
+/* Adds what is left of tones that were removed from channel c: errors of their
+ * coefficients at knots, with linear interpolation between.  Knots are farther apart if
+ * there is no room for all; there are as many on either channel. */
+static void add_known_tones(struct joint *j, const struct joint_scene *s, int c, int most)
+{
+	double n = (double)j->n, hop = s->tone_hop, first;
+
+	while (hop > 0 && (2 + ceil(n / hop)) * 2 * s->tones > most)
+		hop = hop < n ? 2 * hop : 0;
+	first = hop > 0 ? s->tone_knot[c] - hop * ceil(s->tone_knot[c] / hop) : 0;
+	for (double knot = first; knot < first + n + 2 * hop; knot += hop) {
+		for (int k = 0; k < 2 * s->tones; k++) {
+			draw_wave(j, c, j->basis, k % 2 ? sin : cos, s->omega[k / 2],
+				knot, hop);
+			j->taken += take_term(j, c, j->basis++, s->tone_variance);
+		}
+		if (hop == 0)
+			break;
 	}
 }
 
-/* Orthonormal basis of offset, baseline and tones over n samples.  A baseline may be
- * anything slower than low: waves of up to that frequency that are periodic in 2 n, so
- * that its ends need not meet. */
-static enum joint_status make_basis(struct joint *j, const struct joint_scene *s)
+/* The basis of channel c.  A baseline may be anything slower than low: waves of up to
+ * that frequency that are periodic in 2 n, so that its ends need not meet. */
+static void make_channel_basis(struct joint *j, const struct joint_scene *s, int c)
 {
-	double n = (double)j->n, w = 0.5 * n * s->tone_variance;
-	double share = isinf(w) ? 1 : w / (1 + w);
-	int slow = (int)fmin(ceil(2 * n * s->low), JOINT_BASELINE_MAX);
+	int slow = (int)fmin(ceil(2 * (double)j->n * s->low), JOINT_BASELINE_MAX);
+	int free_tones = isinf(s->tone_variance) ? s->tones : 0, known;
 
 	j->basis = 0;
-	j->q[0] = j->q[1] = j->basis_memory[0];
-	for (int k = 1; k <= slow; k++) {
-		add_to_basis(j, cos, M_PI * k / n, 1);
-		add_to_basis(j, sin, M_PI * k / n, 1);
-	}
-	j->slow = j->basis;
+	if (!free_tones && s->tones > 0)
+		add_known_tones(j, s, c, BASIS_MAX - 2 * slow - 1);
+	known = j->basis;
+	for (int k = 0; k < 2 * slow; k++)
+		draw_wave(j, c, j->basis++, k % 2 ? sin : cos,
+			M_PI * (k / 2 + 1) / (double)j->n, 0, 0);
 	if (s->offset)
-		add_to_basis(j, cos, 0, 1);
-	for (int k = 0; k < s->tones; k++) {
-		add_to_basis(j, cos, s->omega[k], share);
-		add_to_basis(j, sin, s->omega[k], share);
+		draw_wave(j, c, j->basis++, cos, 0, 0, 0);
+	for (int k = 0; k < 2 * free_tones; k++)
+		draw_wave(j, c, j->basis++, k % 2 ? sin : cos, s->omega[k / 2], 0, 0);
+	for (int b = known; b < j->basis; b++)
+		if (orthonormalise(j->q[c], known, b, j->n) != NUM_OK)
+			memset(j->q[c] + (size_t)b * j->n, 0, j->n * sizeof(double));
+	for (int b = known; b < j->basis; b++) {
+		double share = known ? take_term(j, c, b, INFINITY) : 1;
+
+		j->taken += b < known + 2 * slow ? 0 : share;
 	}
-	if (!j->hidden[0] && !j->hidden[1])
-		return JOINT_OK;
-	if (!j->basis_memory[1])
+}
+
+/* Basis of offset, baseline and tones over n samples. */
+static enum joint_status make_basis(struct joint *j, const struct joint_scene *s)
+{
+	int differ = j->hidden[0] || j->hidden[1] ||
+		     (s->tones > 0 && s->tone_knot[0] != s->tone_knot[1]);
+
+	if (differ && !j->basis_memory[1])
 		j->basis_memory[1] =
 			malloc(j->capacity * sizeof *j->basis_memory[1] * BASIS_MAX);
-	if (!j->basis_memory[1])
+	if (differ && !j->basis_memory[1])
 		return JOINT_MEMORY;
-	j->q[1] = j->basis_memory[1];
-	memcpy(j->q[1], j->q[0], (size_t)j->basis * j->n * sizeof(double));
-	hide_basis(j, 0, j->q[0]);
-	hide_basis(j, 1, j->q[1]);
+	j->taken = 0;
+	for (int c = 0; c < 2; c++) {
+		j->q[c] = j->basis_memory[differ ? c : 0];
+		make_channel_basis(j, s, c);
+	}
 	return JOINT_OK;
 }
 
@@ -183,19 +242,17 @@ void joint_measure(struct joint *j)
 	for (int c = 0; c < 2; c++) {
 		j->energy += dot(j->e[c], j->e[c], j->n);
 		for (int b = 0; b < j->basis; b++)
-			j->qe[c][b] = dot(j->q[c] + (size_t)b * j->n, j->e[c], j->n);
+			j->qe[c][b] = joint_along_basis(j, c, b, 0, j->e[c], j->n);
 	}
 }
 
-/* Chi-square.  With s^2 the variance of a coefficient known beforehand, the covariance of
- * the record is 1 + s^2 q q^T, its inverse 1 - share q q^T, share = s^2 / (1 + s^2). */
 double joint_chi_square(const struct joint *j)
 {
 	double chi2 = j->energy;
 
 	for (int c = 0; c < 2; c++)
 		for (int b = 0; b < j->basis; b++)
-			chi2 -= j->share[b] * j->qe[c][b] * j->qe[c][b];
+			chi2 -= j->qe[c][b] * j->qe[c][b];
 	return chi2;
 }
 
@@ -205,8 +262,9 @@ void joint_project(struct joint *j)
 	for (int c = 0; c < 2; c++) {
 		memcpy(j->r[c], j->e[c], j->n * sizeof(double));
 		for (int b = 0; b < j->basis; b++)
-			add_scaled(j->r[c], -j->share[b] * j->qe[c][b],
-				j->q[c] + (size_t)b * j->n, j->n);
+			add_scaled(j->r[c] + j->from[c][b], -j->qe[c][b],
+				j->q[c] + (size_t)b * j->n + j->from[c][b],
+				j->to[c][b] - j->from[c][b]);
 	}
 }
 
@@ -294,8 +352,8 @@ static int scene_is_sane(
 {
 	if (!s->shape || !(s->duration >= 4) || !(s->transit > 0) || !(s->gain > 0) ||
 		!(s->delta_min <= s->delta_max) || !(s->drop >= 0) ||
-		!(s->drop_near >= 0) || !(s->tone_variance >= 0) || s->tones < 0 ||
-		!(s->low >= 0) || !(s->lost >= 0) || !(s->lost < 1) ||
+		!(s->drop_near >= 0) || !(s->tone_variance >= 0) || !(s->tone_hop >= 0) ||
+		s->tones < 0 || !(s->low >= 0) || !(s->lost >= 0) || !(s->lost < 1) ||
 		s->tones > JOINT_TONES_MAX || s->max_pulses < 0 ||
 		s->max_pulses > JOINT_PULSES_MAX || m < 0 || m > s->max_pulses)
 		return 0;
@@ -343,11 +401,11 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	return status;
 }
 
-const double *joint_basis(const struct joint *j, int *count, const double **share)
+const double *joint_basis(const struct joint *j, int channel, int *count, double *taken)
 {
 	*count = j->basis;
-	*share = j->share;
-	return j->q[0];
+	*taken = j->taken;
+	return j->q[channel];
 }
 
 double joint_work(const struct joint *j)

@@ -78,9 +78,7 @@ void joint_pair_start(struct joint *j, const struct joint_scene *s,
 				knot(k) * s->duration, x, &n[a]);
 		t->along[a] = dot(x, j->r[c] + first[a], n[a]);
 		for (int b = 0; b < j->basis; b++)
-			along_basis[a][b] =
-				sqrt(j->share[b]) *
-				dot(x, j->q[c] + (size_t)b * j->n + first[a], n[a]);
+			along_basis[a][b] = joint_along_basis(j, c, b, first[a], x, n[a]);
 		for (int u = 0; u < PAR * m; u++) {
 			const struct column *col = &j->col[set[u / PAR]][c];
 

@@ -36,15 +36,17 @@ struct joint {
 	size_t n;
 	double *e[2]; /* record minus pulses, with tones */
 	double *r[2]; /* e without tones and offset */
-	int basis;    /* orthonormal vectors spanning tones and offset, ... */
-	int slow;     /* ... the first of them the baseline */
+	/* Vectors q of tones, baseline and offset: the inverse of the covariance of a
+	 * channel is 1 - sum q q^T. */
+	int basis;
+	double taken; /* degrees of freedom that they take, without the baseline's */
 	double *q[2]; /* of either channel: basis * n; the same if no sample is hidden */
+	size_t from[2][BASIS_MAX], to[2][BASIS_MAX]; /* samples that are not 0 */
 	double *basis_memory[2];
 	const unsigned char *hidden[2]; /* of the scene */
-	double share[BASIS_MAX]; /* of each vector that is projected out; 1: unknown */
-	double *memory;          /* columns of all pulses */
-	double *scratch;         /* three of support */
-	double *excess;          /* PAIR_KNOTS of support */
+	double *memory;                 /* columns of all pulses */
+	double *scratch;                /* three of support */
+	double *excess;                 /* PAIR_KNOTS of support */
 	struct pair_table pair;
 	double *filter[2]; /* matched filter on the coarse grid */
 	struct column col[JOINT_PULSES_MAX + 1][2];   /* as the pulses are */
@@ -89,6 +91,20 @@ static inline double arrival_limit(const struct joint_scene *s, int side, size_t
 					   : -0.9 * shape_reach(s->shape) * s->duration;
 
 	return side ? (double)n - inside : inside;
+}
+
+/* Inner product of vector b of a channel's basis with x[0 .. n), whose first sample is
+ * sample first. */
+static inline double joint_along_basis(
+	const struct joint *j, int c, int b, long first, const double *x, size_t n)
+{
+	long from = first > (long)j->from[c][b] ? first : (long)j->from[c][b];
+	long end =
+		first + (long)n < (long)j->to[c][b] ? first + (long)n : (long)j->to[c][b];
+
+	return end > from ? dot(x + (from - first), j->q[c] + (size_t)b * j->n + from,
+				    (size_t)(end - from))
+			  : 0;
 }
 
 /* joint_model.c: the record minus pulses, and its parts */

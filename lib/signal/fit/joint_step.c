@@ -31,6 +31,22 @@ static int add_block(const struct joint *j, int i, int k, double block[PAR][PAR]
 	return touch;
 }
 
+/* Inner products of vector b of a channel's basis with the three columns of a pulse. */
+static void along_basis(
+	const struct joint *j, int c, int b, const struct column *col, double part[PAR])
+{
+	long from = col->first > (long)j->from[c][b] ? col->first : (long)j->from[c][b];
+	long end = col->first + (long)col->n, skip = from - col->first;
+
+	end = end < (long)j->to[c][b] ? end : (long)j->to[c][b];
+	memset(part, 0, PAR * sizeof *part);
+	if (end > from)
+		dot3(j->q[c] + (size_t)b * j->n + from,
+			(const double *[]){
+				col->d[0] + skip, col->d[1] + skip, col->d[2] + skip },
+			(size_t)(end - from), part);
+}
+
 /* Normal matrix and gradient of the m pulses in set. */
 static void make_normal(struct joint *j, const int *set, int m)
 {
@@ -50,12 +66,11 @@ static void make_normal(struct joint *j, const int *set, int m)
 			for (int u = 0; u < PAR; u++)
 				g[u] += part[u];
 			for (int b = 0; b < j->basis; b++) {
-				dot3(j->q[c] + (size_t)b * j->n + col->first, d, col->n,
-					part);
+				along_basis(j, c, b, col, part);
 				for (int u = 0; u < PAR; u++) {
-					g[u] -= j->share[b] * part[u] * j->qe[c][b];
+					g[u] -= part[u] * j->qe[c][b];
 					j->bq[(PAR * x + u) * nb + c * j->basis + b] =
-						sqrt(j->share[b]) * part[u];
+						part[u];
 				}
 			}
 		}
@@ -202,7 +217,7 @@ static void count_span(struct joint *j, int c, long from, long to, double sign)
 
 	j->energy += sign * dot(e, e, n);
 	for (int b = 0; b < j->basis; b++)
-		j->qe[c][b] += sign * dot(j->q[c] + (size_t)b * j->n + from, e, n);
+		j->qe[c][b] += sign * joint_along_basis(j, c, b, from, e, n);
 }
 
 /* Moves the pulses in set along j->move, and stores their columns before the step in

@@ -54,6 +54,7 @@ void calibration_scene(const struct calibration *c, struct joint_scene *scene)
 		.misfit = c->misfit,
 		.offset = 1,
 		.tone_variance = c->tone_variance,
+		.tone_hop = (double)c->tone_hop,
 		.low = c->whitening.low,
 		.lost = calibration_lost(c) };
 	for (int k = 0; k < c->tones; k++)

@@ -43,8 +43,8 @@ struct calibration {
 	double omega[TONES_MAX];
 	size_t tone_hop;              /* samples between two fits of the tones */
 	double tone_power[TONES_MAX]; /* on channel 1, units of noise^2 */
-	double tone_variance;       /* of a coefficient from one hop to the next, units of
-				       noise^2 */
+	double tone_variance; /* of what interpolation leaves of a coefficient, units of
+				 noise^2 */
 	struct whitening whitening; /* of filtered records; else without taps */
 	double mean[2];             /* of the channels, subtracted before whitening */
 	double noise[2];            /* standard deviations, before any filter */

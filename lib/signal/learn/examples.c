@@ -32,6 +32,7 @@ static void offer_example(struct examples *ex, const double *y1, const double *y
 	loud[at] = merit;
 	ex->example[at].y1 = y1 + from;
 	ex->example[at].y2 = y2 + from;
+	ex->example[at].begin = from;
 	ex->example[at].n = (size_t)(to - from);
 	ex->example[at].m = ex->example[at].spoiled = 0;
 	ex->example[at].lone = length < 1.4 * shortest;
@@ -101,11 +102,20 @@ static int may_go_on(struct examples *ex)
 	return ex->status == CALIBRATE_OK;
 }
 
+/* The present scene for one example. */
+static const struct joint_scene *scene_of(struct examples *ex, const struct example *e)
+{
+	for (int c = 0; c < 2; c++)
+		ex->scene.tone_knot[c] = 0.5 * ex->scene.tone_hop -
+					 (double)(e->begin + (c ? ex->shift : 0));
+	return &ex->scene;
+}
+
 enum joint_status examples_refine(struct examples *ex, const struct example *e,
 	struct joint_pulse *pulse, struct joint_result *result)
 {
-	return note_memory(ex, joint_refine(ex->joint, &ex->scene, e->y1, e->y2, e->n,
-				       pulse, e->m, result));
+	return note_memory(ex, joint_refine(ex->joint, scene_of(ex, e), e->y1, e->y2,
+				       e->n, pulse, e->m, result));
 }
 
 double examples_chi2(struct examples *ex, int keep)
@@ -215,8 +225,8 @@ double examples_fit(struct examples *ex, double misfit)
 		e->m = 0;
 		if (!may_go_on(ex))
 			return INFINITY;
-		if (note_memory(ex, joint_fit(ex->joint, &ex->scene, e->y1, e->y2, e->n,
-					    e->pulse, &e->m, &result)))
+		if (note_memory(ex, joint_fit(ex->joint, scene_of(ex, e), e->y1, e->y2,
+					    e->n, e->pulse, &e->m, &result)))
 			return INFINITY;
 		energy = fmax(example_energy(ex, e), 1);
 		ex->energy += energy;

@@ -14,6 +14,7 @@ enum { EXAMPLES_MAX = 16, EXAMPLE_PULSES = 16 };
 /* A section used to learn the pulse: samples of noise 1 and the pulses found in it. */
 struct example {
 	const double *y1, *y2;
+	long long begin; /* index of the first sample */
 	size_t n;
 	struct joint_pulse pulse[EXAMPLE_PULSES];
 	int m;
@@ -27,6 +28,7 @@ struct examples {
 	struct joint_scene scene; /* present parameters of the instrument */
 	struct example example[EXAMPLES_MAX];
 	const unsigned char *hidden[2]; /* flags of samples that are not known, or NULL */
+	long shift;                     /* samples by which channel 2 was moved back */
 	int count;
 	int pieces;    /* 1: some may cut pulses through */
 	double misfit; /* of joint.h, at the end */

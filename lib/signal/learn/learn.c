@@ -79,7 +79,6 @@ static void minimise(struct examples *ex, double *parameter, double step, int ro
 static void scene_of(const struct calibration *c, struct joint_scene *scene)
 {
 	calibration_scene(c, scene);
-	scene->tones = 0; /* the examples were cleaned */
 	scene->max_pulses = EXAMPLE_PULSES;
 }
 
@@ -329,6 +328,7 @@ static enum calibrate_status learn_known(const struct calibrate_par *par,
 {
 	struct examples ex = { .joint = joint_new(),
 		.misfit = c->misfit,
+		.shift = c->shift,
 		.before = c->work,
 		.most = par->most };
 	enum calibrate_status status = ex.joint ? CALIBRATE_OK : CALIBRATE_MEMORY;

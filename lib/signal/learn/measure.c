@@ -40,60 +40,21 @@ enum { LONG_HOP = 4096 };
 struct record {
 	double *y1, *y2;
 	size_t n;
-	double *work;     /* the same length */
-	double low;       /* lag of the lowest autocorrelation */
-	double change[2]; /* of tones, see take_tones() */
-	double drift;     /* the same over LONG_HOP, channel 1 */
-	double share;     /* share of the transit time within which delays are searched */
+	double *work;   /* the same length */
+	double low;     /* lag of the lowest autocorrelation */
+	double left[2]; /* of tones, see tones.h */
+	double drift;   /* mean square change of tones over LONG_HOP, channel 1 */
+	double share;   /* share of the transit time within which delays are searched */
 };
 
-/* Subtracts tones and mean from a whole record.  *change receives the mean square change
- * of their coefficients from hop to hop, INFINITY if there is only one hop; power[k] the
- * power of tone k. */
-static enum calibrate_status take_tones(const struct calibration *c, double *x, size_t n,
-	double *change, double power[TONES_MAX])
+/* Subtracts tones and mean from a whole record. */
+static enum calibrate_status take_tones(
+	const struct calibration *c, double *x, size_t n, struct tones_track *t)
 {
-	double before[2 * TONES_MAX + 1], after[2 * TONES_MAX + 1], at = 0;
-	size_t hop = c->tone_hop < n ? c->tone_hop : n;
-	double squares = 0, count = 0, hops = 0;
-	enum tones_status status;
-
-	memset(power, 0, sizeof(double) * TONES_MAX);
-	for (size_t middle = hop / 2, done = 0; done < n; middle += hop) {
-		size_t from = middle > hop ? middle - hop : 0;
-		size_t to = middle + hop < n ? middle + hop : n, until;
-
-		if (from + hop > n) /* the last stretch keeps its length */
-			from = n - hop;
-		status = tones_fit(x + (from > done ? from : done),
-			to - (from > done ? from : done),
-			(double)(from > done ? from : done), c->tones, c->omega, after,
-			NULL, NULL);
-		if (status != TONES_OK)
-			return status == TONES_MEMORY ? CALIBRATE_MEMORY
-						      : CALIBRATE_TONES;
-		if (done == 0)
-			memcpy(before, after, sizeof before);
-		for (int k = 1; k <= 2 * c->tones; k++)
-			power[(k - 1) / 2] += after[k] * after[k] / 2;
-		hops++;
-		for (int k = 1; done > 0 && k <= 2 * c->tones; k++) {
-			squares += (after[k] - before[k]) * (after[k] - before[k]);
-			count++;
-		}
-		until = middle < n ? middle : n;
-		if (middle + hop / 2 >= n)
-			until = n;
-		tones_remove(x + done, until - done, (double)done, c->tones, c->omega, at,
-			before, (double)middle, after);
-		memcpy(before, after, sizeof before);
-		at = (double)middle;
-		done = until;
-	}
-	*change = count > 0 ? squares / count : INFINITY;
-	for (int k = 0; k < c->tones; k++)
-		power[k] /= hops;
-	return CALIBRATE_OK;
+	tones_track_start(t, c->tones, c->omega, 0, c->tone_hop < n ? c->tone_hop : n);
+	if (tones_track_run(t, x, 0, (long long)n, 1) == TONES_MEMORY)
+		return CALIBRATE_MEMORY;
+	return t->fits < t->knots ? CALIBRATE_TONES : CALIBRATE_OK;
 }
 
 static double variance(const double *x, size_t n)
@@ -207,7 +168,7 @@ static enum calibrate_status level_without_tones(
 	const struct record *rec, const struct calibration *c, double *level)
 {
 	double share = (2 * c->tones + 1) / (2.0 * (double)c->tone_hop);
-	double change, power[TONES_MAX];
+	struct tones_track track;
 
 	*level = 0;
 	for (int k = 0; k < 2; k++) {
@@ -215,7 +176,7 @@ static enum calibrate_status level_without_tones(
 		enum calibrate_status status;
 
 		memcpy(rec->work, k ? rec->y2 : rec->y1, rec->n * sizeof *rec->work);
-		status = take_tones(c, rec->work, rec->n, &change, power);
+		status = take_tones(c, rec->work, rec->n, &track);
 		if (status != CALIBRATE_OK)
 			return status;
 		for (size_t i = 0; i < rec->n; i++)
@@ -277,7 +238,7 @@ static enum calibrate_status find_tones(
 {
 	enum { ENOUGH = 16384 };
 	size_t n = rec->n, some = n < ENOUGH ? n : ENOUGH, from = (n - some) / 2;
-	double power[TONES_MAX];
+	struct tones_track track;
 	struct calibration t;
 	enum calibrate_status status = CALIBRATE_OK;
 
@@ -303,12 +264,16 @@ static enum calibrate_status find_tones(
 		memcpy(rec->work, rec->y1, n * sizeof *rec->work);
 		t = *c;
 		t.tone_hop = hop;
-		status = take_tones(&t, rec->work, n, &rec->drift, c->tone_power);
+		status = take_tones(&t, rec->work, n, &track);
+		rec->drift = tones_track_change(&track);
+		for (int k = 0; k < c->tones; k++)
+			c->tone_power[k] = track.power[k] / track.knots;
 	}
-	if (status == CALIBRATE_OK)
-		status = take_tones(c, rec->y1, n, &rec->change[0], power);
-	return status == CALIBRATE_OK ? take_tones(c, rec->y2, n, &rec->change[1], power)
-				      : status;
+	for (int k = 0; k < 2 && status == CALIBRATE_OK; k++) {
+		status = take_tones(c, k ? rec->y2 : rec->y1, n, &track);
+		rec->left[k] = tones_track_left(&track);
+	}
+	return status;
 }
 
 static enum calibrate_status find_lag(
@@ -468,7 +433,7 @@ static void normalise(struct record *rec, struct calibration *c)
 
 	for (int k = 0; k < c->tones; k++)
 		c->tone_power[k] /= v1;
-	c->tone_variance = fmax(rec->change[0] / v1, rec->change[1] / v2);
+	c->tone_variance = fmax(rec->left[0] / v1, rec->left[1] / v2);
 	for (size_t i = 0; i < rec->n; i++) {
 		rec->y1[i] /= c->noise[0];
 		rec->y2[i] /= c->noise[1];
@@ -619,11 +584,11 @@ int measure_white_above(const struct look *look, double duration)
 static enum calibrate_status set_peak(const double *raw, size_t n, double *work,
 	const struct template *found, struct calibration *c)
 {
-	double change, power[TONES_MAX];
+	struct tones_track track;
 	enum calibrate_status status;
 
 	memcpy(work, raw, n * sizeof *work);
-	status = take_tones(c, work, n, &change, power);
+	status = take_tones(c, work, n, &track);
 	if (status == CALIBRATE_OK)
 		shape_scale(c->shape, c->noise[0] / template_peak(found, work, n));
 	return status;

@@ -423,7 +423,7 @@ void tones_remove(double *x, size_t n, double start, int tones, const double *om
 
 	make_basis(&basis, tones, omega);
 	for (int k = 0; k < basis.terms; k++)
-		change[k] = to[k] - from[k];
+		change[k] = k > 0 ? to[k] - from[k] : 0;
 	for (size_t i = 0; i < n; i += RUN) {
 		size_t m = n - i < RUN ? n - i : RUN;
 		double first[RUN], more[RUN];
@@ -432,11 +432,94 @@ void tones_remove(double *x, size_t n, double start, int tones, const double *om
 		sum_terms(term, basis.terms, from, first);
 		sum_terms(term, basis.terms, change, more);
 		for (size_t k = 0; k < m; k++) {
-			double t = start + (double)(i + k),
-			       part = at_b > at_a ? (t - at_a) / (at_b - at_a) : 0;
+			double t = start + (double)(i + k);
+			double part = at_b > at_a ? (t - at_a) / (at_b - at_a) : 0;
+			double between = part < 0 ? 0 : part > 1 ? 1 : part;
 
-			part = part < 0 ? 0 : part > 1 ? 1 : part;
-			x[i + k] -= first[k] + part * more[k];
+			x[i + k] -=
+				first[k] + between * (to[0] - from[0]) + part * more[k];
 		}
 	}
+}
+
+void tones_track_start(struct tones_track *t, int tones, const double *omega,
+	long long start, size_t hop)
+{
+	*t = (struct tones_track){ .tones = tones,
+		.flat = start,
+		.hop = (long long)hop,
+		.first = start + (long long)hop / 2 };
+	memcpy(t->omega, omega, (size_t)tones * sizeof *omega);
+}
+
+/* Moves on by a knot, whose coefficients are those of x[0 .. to - from) from index from
+ * on. */
+static enum tones_status add_knot(
+	struct tones_track *t, const double *x, long long from, long long to)
+{
+	double *c = t->coefficient[0], fresh[1 + 2 * TONES_MAX];
+	enum tones_status status = tones_fit(x, (size_t)(to - from), (double)from,
+		t->tones, t->omega, fresh, NULL, NULL);
+
+	if (status == TONES_MEMORY)
+		return status;
+	t->fits += status == TONES_OK;
+	if (status == TONES_SHORT && t->knots > 0)
+		memcpy(fresh, c, sizeof fresh);
+	memmove(t->coefficient[1], c, 2 * sizeof fresh);
+	memcpy(c, fresh, sizeof fresh);
+	t->knots++;
+	for (int k = 1; k <= 2 * t->tones; k++) {
+		double step = c[k] - t->coefficient[1][k];
+		double bend = step - t->coefficient[1][k] + t->coefficient[2][k];
+
+		t->power[(k - 1) / 2] += c[k] * c[k] / 2;
+		t->step += t->knots > 1 ? step * step : 0;
+		t->bend += t->knots > 2 ? bend * bend : 0;
+	}
+	return TONES_OK;
+}
+
+enum tones_status tones_track_run(
+	struct tones_track *t, double *x, long long begin, long long end, int ended)
+{
+	while (t->flat < end) {
+		long long middle = t->first + t->knots * t->hop, to = middle + t->hop;
+		long long from = middle - t->hop, until = middle;
+
+		if (to > end && !ended)
+			return TONES_OK;
+		if (to > end) /* the last one describes the rest */
+			to = until = end;
+		from = from > t->flat ? from : t->flat;
+		if (add_knot(t, x + (from - begin), from, to) == TONES_MEMORY)
+			return TONES_MEMORY;
+		t->before = t->at;
+		t->at = t->tones ? 0.5 * (double)(from + to) : (double)middle;
+		if (t->knots == 1 && until < end)
+			continue; /* which way it changes is not known yet */
+		tones_remove(x + (t->flat - begin), (size_t)(until - t->flat),
+			(double)t->flat, t->tones, t->omega, t->before,
+			t->coefficient[t->knots > 1], t->at, t->coefficient[0]);
+		t->flat = until;
+	}
+	return TONES_OK;
+}
+
+/* Mean of a sum of squares of differences that that many knots more than one give. */
+static double mean_square(const struct tones_track *t, double sum, int more)
+{
+	return t->tones > 0 && t->knots > more
+		       ? sum / (2.0 * t->tones * (t->knots - more))
+		       : INFINITY;
+}
+
+double tones_track_change(const struct tones_track *t)
+{
+	return mean_square(t, t->step, 1);
+}
+
+double tones_track_left(const struct tones_track *t)
+{
+	return t->knots > 2 ? mean_square(t, t->bend, 2) / 2 : tones_track_change(t);
 }

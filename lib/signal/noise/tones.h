@@ -43,8 +43,45 @@ enum num_status tones_confirm(const double *y1, const double *y2, size_t n, doub
 	int *tones, double *omega);
 
 /* Subtracts tones from x[0..n): coefficients change linearly from those at index at_a
- * (from) to those at index at_b (to). */
+ * (from) to those at index at_b (to), and of tones beyond these. */
 void tones_remove(double *x, size_t n, double start, int tones, const double *omega,
 	double at_a, const double *from, double at_b, const double *to);
+
+/* Tones followed through a record: their coefficients are fitted around the middle of
+ * every hop, to a hop on either side, and change linearly from one of these knots to the
+ * next, beyond the first and the last one as well.  The offset is constant there. */
+struct tones_track {
+	int tones;
+	double omega[TONES_MAX];
+	long long flat;       /* first sample that still has tones */
+	long long hop, first; /* first: the middle of the first hop */
+	/* Indices at which the last two fits hold: with tones the middles of their
+	 * samples, of which there are fewer at the ends. */
+	double at, before;
+	int knots; /* so far; 0: nothing is known */
+	int fits;  /* of them, those whose samples resolve the tones */
+	double coefficient[3][1 + 2 * TONES_MAX]; /* at the last three knots */
+	/* Sums over the knots of the power of each tone, and of the squares of the first
+	 * and second differences of all cosines and sines. */
+	double power[TONES_MAX], step, bend;
+};
+
+void tones_track_start(struct tones_track *t, int tones, const double *omega,
+	long long start, size_t hop);
+
+/* Subtracts tones and offset from the samples that can be cleaned without those from
+ * index end on; all, if the record has ended.  x[0] is the sample of index begin.
+ * TONES_MEMORY. */
+enum tones_status tones_track_run(
+	struct tones_track *t, double *x, long long begin, long long end, int ended);
+
+/* Mean square change of a coefficient from knot to knot; INFINITY: not known. */
+double tones_track_change(const struct tones_track *t);
+
+/* Variance of what the lines between knots leave of a coefficient: half the mean square
+ * of the second differences, in which the errors of neighbours, which have half of their
+ * samples in common, have 6 - 8 / 2 times their variance.  Of two knots only the change
+ * is known.  INFINITY: not known. */
+double tones_track_left(const struct tones_track *t);
 
 #endif

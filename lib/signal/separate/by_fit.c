@@ -119,6 +119,9 @@ enum separate_status separate_fit_section(
 	s->scene.max_pulses = most_pulses(s, (size_t)(to - from));
 	s->scene.quiet[0] = (double)before;
 	s->scene.quiet[1] = (double)after;
+	for (int c = 0; c < 2; c++)
+		s->scene.tone_knot[c] = (double)(s->tape[c].tones.first - from + before -
+						 (c ? s->cal.shift : 0));
 	if (!s->par.quadrature)
 		separate_hide(s, from - before, n);
 	if (a.m > s->scene.max_pulses)

@@ -24,7 +24,8 @@ struct fit {
 	const double *x[2], *v[2]; /* sensor: the two components */
 	size_t n;
 	int m, basis;
-	const double *vector, *share; /* of the basis of offset, baseline and tones */
+	const double *vector[2]; /* of the basis of offset, baseline and tones, ... */
+	double taken;            /* ... and the degrees of freedom that it takes */
 	size_t support;
 	struct part *part;  /* 2 m */
 	double *memory;     /* of their functions and products */
@@ -237,7 +238,7 @@ static void make_part(struct fit *f, int i, int c, const struct quadrature_pulse
 	for (int k = 0; k < FUNCTIONS; k++)
 		for (int b = 0; b < f->basis; b++)
 			part->along[k][b] = dot(part->f[k],
-				f->vector + (size_t)b * f->n + first, part->n);
+				f->vector[c] + (size_t)b * f->n + first, part->n);
 }
 
 /* Subtracts the pulses from the record; returns chi-square. */
@@ -261,14 +262,13 @@ static double subtract_pulses(struct fit *f, const struct quadrature_pulse *p)
 		for (int k = 0; k < 2; k++)
 			for (int b = 0; b < f->basis; b++)
 				f->left[c][k][b] = dot(f->rest[c][k],
-					f->vector + (size_t)b * f->n, f->n);
+					f->vector[c] + (size_t)b * f->n, f->n);
 		for (int k = 0; k < 2; k++)
 			for (int l = 0; l < 2; l++) {
 				double product = dot(f->rest[c][k], f->rest[c][l], f->n);
 
 				for (int b = 0; b < f->basis; b++)
-					product -= f->share[b] * f->left[c][k][b] *
-						   f->left[c][l][b];
+					product -= f->left[c][k][b] * f->left[c][l][b];
 				chi2 += f->q->metric[c][k][l] * product;
 			}
 	}
@@ -305,7 +305,7 @@ static double product(
 		sum = dot(x->f[k] + (first - x->first), y->f[l] + (first - y->first),
 			(size_t)(end - first));
 	for (int b = 0; b < f->basis; b++)
-		sum -= f->share[b] * x->along[k][b] * y->along[l][b];
+		sum -= x->along[k][b] * y->along[l][b];
 	return sum;
 }
 
@@ -333,8 +333,7 @@ static void make_gradient(struct fit *f, const struct quadrature_pulse *p, int i
 				along[l] = dot(part->f[function],
 					f->rest[c][l] + part->first, part->n);
 				for (int b = 0; b < f->basis; b++)
-					along[l] -= f->share[b] *
-						    part->along[function][b] *
+					along[l] -= part->along[function][b] *
 						    f->left[c][l][b];
 			}
 			sum += form(f->q->metric[c], weight, along);
@@ -504,14 +503,13 @@ static void fill_covariance(struct fit *f, struct quadrature_pulse *p)
  * tenth, as in goodness.h, and by twice the excess in x, whose pulses may be smaller. */
 static int is_doubtful(const struct fit *f, double all, double chi2)
 {
-	double of_x = 0, dof = 2 * (double)f->n * (1 - f->scene->lost) - f->m, v;
+	double of_x = 0, dof = 2 * (double)f->n * (1 - f->scene->lost) - f->taken - f->m;
+	double v;
 
 	for (int c = 0; c < 2; c++) {
 		of_x += dot(f->rest[c][0], f->rest[c][0], f->n);
-		for (int b = 0; b < f->basis; b++) {
-			of_x -= f->share[b] * f->left[c][0][b] * f->left[c][0][b];
-			dof -= f->share[b];
-		}
+		for (int b = 0; b < f->basis; b++)
+			of_x -= f->left[c][0][b] * f->left[c][0][b];
 	}
 	dof = fmax(dof, 1);
 	v = (all - of_x) / dof;
@@ -533,7 +531,8 @@ enum num_status quadrature_fit(const struct quadrature *q, const struct joint *j
 	double all = NAN;
 
 	*doubt = 0;
-	f.vector = joint_basis(joint, &f.basis, &f.share);
+	for (int c = 0; c < 2; c++)
+		f.vector[c] = joint_basis(joint, c, &f.basis, &f.taken);
 	status = fit_reserve(&f);
 	if (status == NUM_OK) {
 		for (int i = 0; i < m; i++)

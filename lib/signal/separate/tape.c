@@ -128,6 +128,7 @@ enum num_status tape_start(struct tape *t, const struct calibration *c)
 	size_t taps = 2 * (size_t)w->half + 1;
 
 	t->fed = t->white = t->flat = t->clean;
+	tones_track_start(&t->tones, c->tones, c->omega, t->flat, c->tone_hop);
 	if (!w->tap)
 		return NUM_OK;
 	t->whiten = fir_new(w->tap, taps, 1, taps > 1024 ? taps : 1024);
@@ -141,52 +142,21 @@ static void scale(struct tape *t, long long from, long long to, double noise)
 		t->x[i] /= noise;
 }
 
-/* Subtracts the tones and divides by the noise.  Tones are fitted around the middle of
- * every hop, over two hops, with linear interpolation between; they depend on the record
- * alone, not on the sizes of its pieces. */
+/* Subtracts the tones and divides by the noise. */
 static enum num_status clean(
 	struct tape *t, const struct calibration *c, double noise, int ended)
 {
-	long long end = t->white, hop = (long long)c->tone_hop;
+	long long from = t->flat;
 
-	if (c->tones == 0) {
-		scale(t, t->flat, end, noise);
-		t->flat = end;
-		return NUM_OK;
-	}
-	for (;;) {
-		long long middle =
-			t->started ? (long long)t->at + hop : t->flat + hop / 2;
-		long long from = middle - hop > t->flat ? middle - hop : t->flat,
-			  until = middle;
-		double after[2 * TONES_MAX + 1];
-		enum tones_status status;
-
-		if (t->flat == end || (middle + hop > end && !ended))
-			return NUM_OK;
-		if (middle + hop > end) { /* the last hop extends to the end */
-			until = end;
-			middle = end - hop / 2 > t->flat ? end - hop / 2 : end;
-			from = t->flat;
-		}
-		status = tones_fit(t->x + (from - t->begin),
-			(size_t)((middle + hop < end ? middle + hop : end) - from),
-			(double)from, c->tones, c->omega, after, NULL, NULL);
-		if (status == TONES_MEMORY)
+	t->flat = t->white;
+	if (c->tones > 0) {
+		if (tones_track_run(&t->tones, t->x, t->begin, t->white, ended) !=
+			TONES_OK)
 			return NUM_MEMORY;
-		if (status == TONES_SHORT) /* the rest is too short to fit */
-			memcpy(after, t->coefficient, sizeof after);
-		if (!t->started)
-			memcpy(t->coefficient, after, sizeof after);
-		tones_remove(t->x + (t->flat - t->begin), (size_t)(until - t->flat),
-			(double)t->flat, c->tones, c->omega, t->at, t->coefficient,
-			(double)middle, after);
-		scale(t, t->flat, until, noise);
-		memcpy(t->coefficient, after, sizeof after);
-		t->at = (double)middle;
-		t->started = 1;
-		t->flat = until;
+		t->flat = t->tones.flat;
 	}
+	scale(t, from, t->flat, noise);
+	return NUM_OK;
 }
 
 /* Undoes the filter in whole blocks, so that the results do not depend on the sizes of

@@ -29,9 +29,7 @@ struct tape {
 	struct fir *whiten; /* NULL if there is no filter to undo; it has read ... */
 	long long fed;      /* ... the samples before this one */
 	double *piece;      /* a block of it */
-	double at;          /* index at which the coefficients hold */
-	double coefficient[2 * TONES_MAX + 1];
-	int started;
+	struct tones_track tones;
 	struct following noise;
 	size_t block;      /* samples of which the noise is measured; 0: it is constant */
 	long long learned; /* the noise was learned from the samples before this one */

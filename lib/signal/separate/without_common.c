@@ -138,6 +138,8 @@ static enum separate_status noise_beside(struct separate *s, long long from, siz
 
 		around.hidden[0] = around.hidden[1] = NULL;
 		around.quiet[0] = around.quiet[1] = 0;
+		around.tone_knot[0] += (double)(from - at);
+		around.tone_knot[1] += (double)(from - at);
 		around.max_pulses = s->par.most_pulses;
 		around.signs = 1;
 		status = joint_fit(s->joint, &around, y[0], y[1], length, pulse, &m, &r);
