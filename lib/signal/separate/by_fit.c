@@ -131,6 +131,8 @@ enum separate_status separate_fit_section(
 		(const double *const[]){
 			channel_1(s, from - before), channel_2(s, from - before) },
 		n, cut, &a);
+	if (status == SEPARATE_OK && separate_is_described(&a) && !s->par.quadrature)
+		status = separate_try_wider(s, from - before, n, cut, &a);
 	if (status == SEPARATE_OK && separate_is_described(&a))
 		status = separate_fit_without_common(s, from - before, n, cut, &a);
 	if (status == SEPARATE_OK)

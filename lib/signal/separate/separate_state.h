@@ -273,6 +273,10 @@ void separate_set_gain(struct separate *s, long long from);
 
 /* rivals.c */
 
+/* A particle outside the range of delays is described by several within it, some of which
+ * are held at a limit.  Tries fewer pulses in a wider range, where that costs less. */
+enum separate_status separate_try_wider(
+	struct separate *s, long long from, size_t n, int cut, struct account *a);
 /* Tries other explanations of a window that pulses of one sign do not describe: impulses
  * beside the pulses, a wider range of velocities, pulses of both signs, and these with
  * impulses.  One is accepted if it describes the window with no more pulses than before.
