@@ -200,9 +200,12 @@ static void make_channel_basis(struct joint *j, const struct joint_scene *s, int
 	if (!free_tones && s->tones > 0)
 		add_known_tones(j, s, c, BASIS_MAX - 2 * slow - 1);
 	known = j->basis;
-	for (int k = 0; k < 2 * slow; k++)
-		draw_wave(j, c, j->basis++, k % 2 ? sin : cos,
-			M_PI * (k / 2 + 1) / (double)j->n, 0, 0);
+	for (int k = 1; k <= slow; k++) {
+		double omega = M_PI * k / (double)j->n;
+
+		draw_wave(j, c, j->basis++, cos, omega, 0, 0);
+		draw_wave(j, c, j->basis++, sin, omega, 0, 0);
+	}
 	if (s->offset)
 		draw_wave(j, c, j->basis++, cos, 0, 0, 0);
 	for (int k = 0; k < 2 * free_tones; k++)

@@ -196,6 +196,8 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 	struct guess best = { c->pulse, c->duration, c->gain, INFINITY, INFINITY };
 	enum calibrate_status status = CALIBRATE_OK;
 
+	if (!c->shape && learn_set_shape(c, c->pulse) != NUM_OK)
+		return CALIBRATE_MEMORY;
 	examples_pick(ex, y1, y2, n, EXAMPLES_MAX, c);
 	if (ex->pieces && !c->whitening.tap)
 		return learn_crowd(par, y1, y2, n, c);
