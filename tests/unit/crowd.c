@@ -2,6 +2,7 @@
 #include "signal/learn/crowd.h"
 #include "num/philox.h"
 #include "signal/learn/calibration.h"
+#include "signal/learn/learn.h"
 #include "tap.h"
 #include <math.h>
 #include <stdlib.h>
@@ -39,6 +40,37 @@ static void make_record(enum pulse_shape pulse, double duration, double rate,
 	shape_free(shape);
 }
 
+/* A pulse that was taken from a crowd by mistake does not describe it. */
+static void test_wrong_template(const double *y1, const double *y2)
+{
+	struct calibrate_par par = { .duration = NAN,
+		.gain = NAN,
+		.spread = NAN,
+		.pulse = CALIBRATE_ANY_PULSE,
+		.false_alarm = 1e-9,
+		.most = INFINITY };
+	struct calibration c = { .shape = shape_new(PULSE_SINE),
+		.duration = 124,
+		.gain = 0.9,
+		.noise = { 1, 1 },
+		.transit = 200,
+		.delta_min = -10,
+		.delta_max = 10,
+		.drop = 40,
+		.drop_near = 23 };
+	struct template found = { .shape = shape_new(PULSE_GAUSS),
+		.duration = 140,
+		.events = TEMPLATE_LEAST,
+		.pulse = PULSE_GAUSS };
+
+	ok(learn_pulse(&par, y1, y2, N / 4, 62, &found, &c) == CALIBRATE_OK &&
+			c.pulse == PULSE_SINE && !c.measured,
+		"a pulse that does not describe the record gives way to a known one");
+	near(c.duration, 93, 2, "and its duration is near that of the crowd");
+	template_clear(&found);
+	calibration_clear(&c);
+}
+
 int main(void)
 {
 	static const char *const name[] = { "sine", "gauss", "lorentz" };
@@ -59,6 +91,8 @@ int main(void)
 				"the shape of %s pulses is found where %d overlap",
 				name[k], many ? 6 : 2);
 			near(T, 93, k == PULSE_SINE ? 0.1 : 0.5, "and their duration");
+			if (k == PULSE_SINE && !many)
+				test_wrong_template(y1, y2);
 		}
 	{
 		int pulse = PULSE_GAUSS;
