@@ -169,8 +169,8 @@ static enum calibrate_status try_shape(const struct calibrate_par *par,
 	return CALIBRATE_OK;
 }
 
-/* Takes shape and duration from the spectrum of a record in which few pulses stand apart:
- * a fit of pieces, which contain parts of pulses, may go far from them. */
+/* Takes shape and duration from the spectrum of a long record in which few pulses stand
+ * apart: a fit of pieces, which contain parts of pulses, may go far from them. */
 static enum calibrate_status learn_crowd(const struct calibrate_par *par,
 	const double *y1, const double *y2, size_t n, struct calibration *c)
 {
@@ -199,7 +199,7 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 	if (!c->shape && learn_set_shape(c, c->pulse) != NUM_OK)
 		return CALIBRATE_MEMORY;
 	examples_pick(ex, y1, y2, n, EXAMPLES_MAX, c);
-	if (ex->pieces && !c->whitening.tap)
+	if (ex->pieces && !c->whitening.tap && (double)n >= EXAMPLES_MAX * c->duration)
 		return learn_crowd(par, y1, y2, n, c);
 	if (hint)
 		status = try_shape(
