@@ -439,31 +439,15 @@ static void gather_span(const struct lattice_gather *g, const struct stress_span
 		gather_run(g, &run, part, worker);
 }
 
-/* The first span that is not before a row. */
-static size_t first_span(const struct stress_want *want, int y)
-{
-	size_t low = 0, high = want->count;
-
-	while (low < high) {
-		size_t middle = (low + high) / 2;
-
-		if (want->span[middle].y < y)
-			low = middle + 1;
-		else
-			high = middle;
-	}
-	return low;
-}
-
 void lattice_gather_part(
 	const struct lattice_gather *g, const struct stress_part *part, int worker)
 {
 	const struct stress_want *want = g->want;
 	int left = part->x0 + g->x0, right = part->x1 + g->x0, top = part->y1 + g->y0;
 
-	for (size_t i = first_span(want, part->y0 + g->y0);
-		i < want->count && want->span[i].y < top; i++) {
-		struct stress_span s = want->span[i];
+	for (const struct stress_span *next = span_first(want, part->y0 + g->y0);
+		next < want->span + want->count && next->y < top; next++) {
+		struct stress_span s = *next;
 
 		s.begin = s.begin > left ? s.begin : left;
 		s.end = s.end < right ? s.end : right;

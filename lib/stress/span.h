@@ -42,6 +42,9 @@ struct stress_want {
 	void *context;
 };
 
+/* The first span of row y or of one after it; span + count if there is none. */
+const struct stress_span *span_first(const struct stress_want *want, int y);
+
 /* Sums at a rectangle of nodes, number[c][(y - y0) * stride + x - x0]; number NULL: all
  * are zero. */
 struct stress_part {

@@ -223,22 +223,6 @@ static void add_row(double *row, const double *from, double w, int count)
 		row[i] += w * from[i];
 }
 
-/* The first of the wanted spans of a row of the window, or of one after it. */
-static const struct stress_span *first_span(const struct stress_want *want, int y)
-{
-	size_t low = 0, high = want->count;
-
-	while (low < high) {
-		size_t middle = (low + high) / 2;
-
-		if (want->span[middle].y < y)
-			low = middle + 1;
-		else
-			high = middle;
-	}
-	return want->span + low;
-}
-
 /* The next wanted nodes of a part, counted from its first; next: the first span that may
  * lie in it, then that after it.  0 if there are none. */
 static int next_run(const struct tiling *t, const struct stress_part *part,
@@ -270,7 +254,7 @@ static int most_few(const struct tiling *t, const struct stress_part *part)
 
 	if (!t->w->want)
 		return FEW;
-	next = first_span(t->w->want, t->w->y0 + part->y0);
+	next = span_first(t->w->want, t->w->y0 + part->y0);
 	while (next_run(t, part, &next, &run))
 		nodes += run.end - run.begin + SPAN_NODES;
 	return nodes * MOST_FEW > FEW * all ? (int)(FEW * all / nodes) : MOST_FEW;
@@ -307,7 +291,7 @@ static void add_loads(const struct tiling *t, const struct stress_part *part,
 	struct stress_span run = { -1, 0, part->x1 - part->x0 };
 
 	if (t->w->want)
-		next = first_span(t->w->want, t->w->y0 + part->y0);
+		next = span_first(t->w->want, t->w->y0 + part->y0);
 	while (next ? next_run(t, part, &next, &run) : ++run.y < part->y1 - part->y0)
 		for (int c = 0; c < t->w->numbers; c++)
 			add_to_run(t, few, &run, t->table + (size_t)c * size,
