@@ -10,9 +10,8 @@
  * cycle per duration after the other. */
 enum { STEPS = 256, FINE = 32, PADDED = STEPS * FINE };
 
-/* Cycles per duration up to which the periodogram is compared: pulses have little power
- * above. */
-static const double BAND = 10;
+/* Mean square of Hann's window. */
+static const double HANN = 0.375;
 
 struct periodogram {
 	double *power; /* mean of both channels; 1 where there is only noise */
@@ -162,7 +161,7 @@ enum num_status crowd_pulse(const double *y1, const double *y2, size_t n, double
 	int *pulse, double *duration)
 {
 	size_t size = fft_good_size(n), most = size / 2 + 1;
-	double band = BAND * (double)size / guess, scale = 0.5 / (0.375 * (double)n);
+	double band = SHAPE_BAND * (double)size / guess, scale = 0.5 / (HANN * (double)n);
 	struct periodogram p = { .size = size,
 		.bins = band < (double)most ? (size_t)band : most };
 	enum num_status status = NUM_MEMORY;

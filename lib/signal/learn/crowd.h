@@ -13,7 +13,8 @@
 
 /* Chooses shape and duration from y1, y2[0 .. n), aligned and in units of their white
  * noise.  *pulse: enum pulse_shape, or CALIBRATE_ANY_PULSE for each of them; *duration:
- * samples, or NAN, sought within a factor of two of guess. */
+ * samples, or NAN, sought from half to twice the guess, and on from there while it
+ * becomes more likely.  NUM_MEMORY. */
 enum num_status crowd_pulse(const double *y1, const double *y2, size_t n, double guess,
 	int *pulse, double *duration);
 

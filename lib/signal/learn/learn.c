@@ -196,11 +196,15 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 	struct guess best = { c->pulse, c->duration, c->gain, INFINITY, INFINITY };
 	enum calibrate_status status = CALIBRATE_OK;
 
-	if (!c->shape && learn_set_shape(c, c->pulse) != NUM_OK)
-		return CALIBRATE_MEMORY;
-	examples_pick(ex, y1, y2, n, EXAMPLES_MAX, c);
-	if (ex->pieces && !c->whitening.tap && (double)n >= EXAMPLES_MAX * c->duration)
-		return learn_crowd(par, y1, y2, n, c);
+	/* A drifting baseline looks like a crowd of a few long pulses: a spectrum is
+	 * taken of as many durations as there may be examples, or more. */
+	if (!c->whitening.tap && (double)n >= EXAMPLES_MAX * c->duration) {
+		if (!c->shape && learn_set_shape(c, c->pulse) != NUM_OK)
+			return CALIBRATE_MEMORY;
+		examples_pick(ex, y1, y2, n, EXAMPLES_MAX, c);
+		if (ex->pieces)
+			return learn_crowd(par, y1, y2, n, c);
+	}
 	if (hint)
 		status = try_shape(
 			par, ex, y1, y2, n, hint->pulse, hint->duration, 1, c, &best);

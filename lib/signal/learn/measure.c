@@ -571,12 +571,9 @@ static enum calibrate_status conclude(
 	return status;
 }
 
-/* Frequency, in cycles per duration of a pulse, above which pulses have little power. */
-static const double PULSE_BAND = 10;
-
 int measure_white_above(const struct look *look, double duration)
 {
-	return colour_is_white(look->power, fmin(PULSE_BAND / duration, 0.25));
+	return colour_is_white(look->power, fmin(SHAPE_BAND / duration, 0.25));
 }
 
 /* Scales a pulse taken from a whitened record so that amplitudes are those of the

@@ -15,6 +15,9 @@ struct shape;
 /* One of the pulses of sensor.h, cut where |p| stays below 1e-4.  NULL: no memory. */
 struct shape *shape_new(enum pulse_shape pulse);
 
+/* Frequency, in cycles per duration, above which pulses have little power. */
+#define SHAPE_BAND 10.0
+
 /* Any other pulse: value[0 .. 2 half] at s = -reach .. reach in equal steps, smooth
  * between them (slopes by central differences); it is scaled to max |p| = 1.  NULL
  * with errno EDOM (half < 2, reach <= 0, a value not finite, all zero) or ENOMEM. */
