@@ -296,7 +296,8 @@ enum calibrate_status calibrate(const struct calibrate_par *par, const double *x
 
 	memset(c, 0, sizeof *c);
 	status = find(par, x1, x2, n, &look, c);
-	if (status == CALIBRATE_OK && c->far >= SOME && isnan(par->spread) && !c->dense)
+	if (status == CALIBRATE_OK && c->far >= SOME && isnan(par->spread) &&
+		c->delta_max <= calibration_plug(c))
 		status = try_wide(par, x1, x2, n, &look, c);
 	c->attempts = look.attempts;
 	c->work = look.work;

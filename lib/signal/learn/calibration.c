@@ -21,6 +21,11 @@ double calibrate_drop(double rate, const struct shape *shape, double duration,
 	return hi * hi;
 }
 
+double calibration_plug(const struct calibration *c)
+{
+	return fmax(CALIBRATE_PLUG * (double)c->shift, 0.05 * c->duration);
+}
+
 void calibration_widen(double duration, double *least, double *most)
 {
 	double margin = fmax(0.5 * (*most - *least), 0.02 * duration);

@@ -30,10 +30,18 @@ struct calibrate_par {
 	double most; /* samples of pulses that may be computed to learn the rest */
 };
 
-/* Share of the transit time within which delays are searched where they reach to the
- * limits of a narrower range.  0.2, 0.3 and 0.45 find 147, 189 and 230 of 400 particles
- * in laminar flow, whose records are all doubted, and all of 1200 in turbulent flow with
- * 8 wrong rows each (scenes as for PLUG in measure.c). */
+/* Share of the transit time within which delays are searched in plug flow, whose
+ * velocities differ by a few per cent.  With 0.05, 0.1 and 0.2 the rows that look right
+ * are 793, 795 and 786 of 800 in groups in plug flow, all of 800 in turbulent flow and
+ * 156, 156 and 158 of 400 in laminar flow, none of them wrong (scenes group,
+ * group-turbulent and laminar of tests/matrix/scenes.tsv, seeds 11 to 18). */
+#define CALIBRATE_PLUG 0.1
+
+/* Share of the transit time within which the delay of a single event is measured, and to
+ * which a range is widened where no pulses within it describe a section.  0.2, 0.3 and 0.8
+ * find 1643, 1659 and 1658 of 1800 particles, and 1470, 1482 and 1482 with rows that are
+ * believed (scenes turbulent, turbulent-highpass, group-turbulent, group, reversed and
+ * laminar of tests/matrix/scenes.tsv, seeds 81001 to 81104). */
 #define CALIBRATE_WIDE 0.3
 
 struct calibration {
@@ -101,6 +109,9 @@ void calibration_scene(const struct calibration *c, struct joint_scene *scene);
  * Fields, 1981), for a threshold of u^2.  width: range of delays in samples. */
 double calibrate_drop(double rate, const struct shape *shape, double duration,
 	double gain, double width);
+
+/* Largest difference of a delay from that of the alignment in plug flow, samples. */
+double calibration_plug(const struct calibration *c);
 
 /* Widens the range of the delays seen so that it contains later ones: by half of it on
  * either side, and by at least 0.02 of a duration. */

@@ -238,7 +238,9 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
  * 18). */
 static const double FAR = 0.7;
 
-/* Range of the delays seen, widened by half on either side, and how many stand alone. */
+/* Range of the delays seen, widened by half on either side, and how many stand alone.
+ * Examples are short, which slow particles are not: outside plug flow they do not limit
+ * the delays from above. */
 static void learn_range(
 	const struct calibrate_par *par, const struct examples *ex, struct calibration *c)
 {
@@ -260,7 +262,8 @@ static void learn_range(
 	calibration_widen(c->duration, &lo, &hi);
 	if (isnan(par->spread) && c->events >= RANGE_EVENTS) {
 		c->delta_min = fmax(c->delta_min, lo);
-		c->delta_max = fmin(c->delta_max, hi);
+		if (c->delta_max <= calibration_plug(c))
+			c->delta_max = fmin(c->delta_max, hi);
 	}
 }
 

@@ -43,8 +43,8 @@ struct record {
 	double *work;   /* the same length */
 	double low;     /* lag of the lowest autocorrelation */
 	double left[2]; /* of tones, see tones.h */
+	int wide;       /* see measure.h */
 	double drift;   /* mean square change of tones over LONG_HOP, channel 1 */
-	double share;   /* share of the transit time within which delays are searched */
 };
 
 /* Subtracts tones and mean from a whole record. */
@@ -68,23 +68,30 @@ static double variance(const double *x, size_t n)
 	return sum / (double)n;
 }
 
-/* Share of the transit time within which delays are searched in plug flow, whose
- * velocities differ by a few per cent.  With 0.05, 0.1 and 0.2 the rows that look right
- * are 793, 795 and 786 of 800 in groups in plug flow, all of 800 in turbulent flow and
- * 156, 156 and 158 of 400 in laminar flow, none of them wrong (scenes group,
- * group-turbulent and laminar of tests/matrix/scenes.tsv, seeds 11 to 18). */
-static const double PLUG = 0.1;
-
-/* Range of the delays as far as it is known. */
-static void set_range(
-	const struct calibrate_par *par, double share, struct calibration *c)
+/* Range of the delays as far as it is known: that of plug flow, or a wider one if that is
+ * asked for or events that are alike do not keep within it. */
+static void set_range(const struct calibrate_par *par, const struct template *found,
+	int wide, struct calibration *c)
 {
-	double spread =
-		fmax((isnan(par->spread) ? share : par->spread) * (double)c->shift,
-			0.05 * c->duration);
+	double least = 0.05 * c->duration, shift = (double)c->shift;
+	double spread = isnan(par->spread) ? calibration_plug(c)
+					   : fmax(par->spread * shift, least);
+	double lo = 0, hi = 0;
 
 	c->delta_min = -spread;
 	c->delta_max = spread;
+	if (!isnan(par->spread))
+		return;
+	for (int i = 0; found && i < found->events; i++) {
+		lo = fmin(lo, found->t2[i] - found->t1[i]);
+		hi = fmax(hi, found->t2[i] - found->t1[i]);
+	}
+	calibration_widen(c->duration, &lo, &hi);
+	if (!wide && lo >= -spread && hi <= spread)
+		return;
+	spread = fmax(CALIBRATE_WIDE * shift, least);
+	c->delta_min = fmin(-spread, lo);
+	c->delta_max = fmax(spread, hi);
 }
 
 static void set_thresholds(const struct calibrate_par *par, struct calibration *c)
@@ -456,7 +463,7 @@ static enum calibrate_status learn(const struct calibrate_par *par,
 {
 	if (found && found->alone && !found->shape)
 		return CALIBRATE_NO_LAG;
-	set_range(par, rec->share, c);
+	set_range(par, found, rec->wide, c);
 	set_thresholds(par, c);
 	return learn_pulse(par, rec->y1, rec->y2, rec->n, rec->low, found, c);
 }
@@ -485,7 +492,7 @@ static enum calibrate_status find_template(const struct calibrate_par *par,
 
 		if (T < 8)
 			continue;
-		reach = fmax(rec->share * (double)c->shift, 0.05 * T);
+		reach = fmax(CALIBRATE_WIDE * (double)c->shift, 0.05 * T);
 		if (template_find(found, rec->y1, rec->y2, hidden, rec->n, T, c->transit,
 			    reach) != NUM_OK)
 			return CALIBRATE_MEMORY;
@@ -563,7 +570,7 @@ static enum calibrate_status conclude(
 	if (c->chi2 > BAD_FIT || (c->whitening.tap && !par->filter))
 		status = look_for_crowd(rec, c, &c->dense);
 	if (c->dense)
-		set_range(par, PLUG, c);
+		set_range(par, NULL, 0, c);
 	else if (status == CALIBRATE_OK && c->chi2 > BAD_FIT && !c->whitening.tap &&
 		 !c->suspect)
 		status = learn_filtered(par, rec, c);
@@ -599,7 +606,7 @@ enum calibrate_status measure(const struct calibrate_par *par, const double *raw
 		.y2 = y2,
 		.n = n,
 		.work = work,
-		.share = look->wide ? CALIBRATE_WIDE : PLUG };
+		.wide = look->wide };
 	enum calibrate_status status = find_tones(par, &rec, c);
 
 	if (status == CALIBRATE_OK)

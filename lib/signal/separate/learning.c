@@ -261,14 +261,16 @@ static enum separate_status calibrate_now(struct separate *s)
  * to its standard errors 8 % for six. */
 enum { LONE = 6 };
 
-/* 1 if pulses of a known shape in white noise describe what was learned from.  Chi-square
+/* 1 if pulses of a known shape and nearly one velocity, in white noise, describe what was
+ * learned from.  Chi-square
  * compares the noise in the band of the pulses with that of fourth differences: it is too
  * small or too large where noise is not white, for which there are too few samples to
  * test its spectrum. */
 static int is_clear(const struct calibration *c)
 {
 	return learn_describes(c) && c->chi2 > 1 / LEARN_DESCRIBES &&
-	       c->duration <= SEPARATE_LONG && c->far == 0 && c->tones == 0 &&
+	       c->duration <= SEPARATE_LONG && c->tones == 0 &&
+	       c->delta_max - c->delta_min <= 2 * calibration_plug(c) &&
 	       !c->dense && !c->suspect && !c->measured && !c->corrected &&
 	       !c->whitening.tap;
 }
