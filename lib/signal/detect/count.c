@@ -16,14 +16,9 @@ struct count {
 
 double count_level(const double *x, size_t n, size_t stride, double *work)
 {
-	double median;
-
 	for (size_t i = 0; i < n; i++)
 		work[i] = x[i * stride];
-	median = robust_median(work, n);
-	for (size_t i = 0; i < n; i++)
-		work[i] = fabs(work[i] - median);
-	return 5 * 1.4826 * robust_median(work, n);
+	return 5 * robust_spread(work, n);
 }
 
 struct count *count_new(double level)

@@ -79,9 +79,7 @@ enum num_status matched_noise(const struct calibration *c, const double *y, size
 
 	if (filter_points(c, y, n, work, &count) != NUM_OK)
 		return NUM_MEMORY;
-	for (size_t i = 0; i < count; i++)
-		work[i] = fabs(work[i]);
-	*noise = count ? 1.482602218505602 * robust_median(work, count) /
+	*noise = count ? robust_scale(work, count) /
 				 sqrt(c->duration * shape_energy(c->shape))
 		       : 1;
 	return NUM_OK;

@@ -1,5 +1,6 @@
 /* tones.c - see tones.h */
 #include "signal/noise/tones.h"
+#include "num/cholesky.h"
 #include "num/dot.h"
 #include "num/fft.h"
 #include "signal/noise/robust.h"
@@ -189,41 +190,6 @@ static void sum_terms(
 	memcpy(sum, part, sizeof part);
 }
 
-/* Cholesky factor of the symmetric matrix a (lower triangle, rows of TERMS_MAX) in
- * place; NUM_DOMAIN where it is not positive definite. */
-static enum num_status factorise(double *a, int n)
-{
-	for (int i = 0; i < n; i++)
-		for (int k = 0; k <= i; k++) {
-			double sum = a[i * TERMS_MAX + k];
-
-			for (int l = 0; l < k; l++)
-				sum -= a[i * TERMS_MAX + l] * a[k * TERMS_MAX + l];
-			if (k < i)
-				a[i * TERMS_MAX + k] = sum / a[k * TERMS_MAX + k];
-			else if (sum > 1e-10 * a[i * TERMS_MAX + i])
-				a[i * TERMS_MAX + i] = sqrt(sum);
-			else
-				return NUM_DOMAIN;
-		}
-	return NUM_OK;
-}
-
-/* Solves L L^T x = b in place. */
-static void substitute(const double *a, double *b, int n)
-{
-	for (int i = 0; i < n; i++) {
-		for (int l = 0; l < i; l++)
-			b[i] -= a[i * TERMS_MAX + l] * b[l];
-		b[i] /= a[i * TERMS_MAX + i];
-	}
-	for (int i = n - 1; i >= 0; i--) {
-		for (int l = i + 1; l < n; l++)
-			b[i] -= a[l * TERMS_MAX + i] * b[l];
-		b[i] /= a[i * TERMS_MAX + i];
-	}
-}
-
 /* Rotates the pair of rows of every tone by its phase at the first sample of term. */
 static void turn_rows(const struct basis *b, double term[][RUN], double from[][TERMS_MAX],
 	double to[][TERMS_MAX])
@@ -288,21 +254,22 @@ static enum num_status fit_masked(struct basis *b, double term[][RUN], const dou
 	const unsigned char *mask, size_t runs, double *coefficient, double *variance)
 {
 	struct normal s = { { 0 }, { 0 } };
+	size_t terms = (size_t)b->terms;
 
 	for (size_t r = 0; r < runs; r++, term += b->terms, x += RUN, mask += RUN)
 		if (!memchr(mask, 0, RUN))
 			add_whole(&s, b, term, x);
 		else if (memchr(mask, 1, RUN))
 			add_part(&s, b, term, x, mask);
-	if (factorise(s.a, b->terms))
+	if (cholesky_factor(s.a, terms, TERMS_MAX, 1e-10))
 		return NUM_DOMAIN;
-	substitute(s.a, s.b, b->terms);
+	cholesky_solve(s.a, terms, TERMS_MAX, s.b);
 	memcpy(coefficient, s.b, sizeof(double) * (size_t)b->terms);
 	for (int k = 0; variance && k < b->terms; k++) {
 		double unit[TERMS_MAX] = { 0 };
 
 		unit[k] = 1;
-		substitute(s.a, unit, b->terms);
+		cholesky_solve(s.a, terms, TERMS_MAX, unit);
 		variance[k] = unit[k];
 	}
 	return NUM_OK;

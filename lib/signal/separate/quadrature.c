@@ -1,5 +1,7 @@
 /* quadrature.c - see quadrature.h */
 #include "signal/separate/quadrature.h"
+#include "num/cholesky.h"
+#include "num/dot.h"
 #include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
@@ -147,15 +149,6 @@ double quadrature_noise(const struct quadrature *q)
 			most, sqrt(m[0][0] / (m[0][0] * m[1][1] - m[0][1] * m[0][1])));
 	}
 	return most;
-}
-
-static double dot(const double *x, const double *y, size_t n)
-{
-	double sum = 0;
-
-	for (size_t i = 0; i < n; i++)
-		sum += x[i] * y[i];
-	return sum;
 }
 
 static void fit_free(struct fit *f)
@@ -364,37 +357,10 @@ static void make_block(struct fit *f, const struct quadrature_pulse *p, int i, i
 		}
 }
 
-/* Cholesky factor of the normal matrix in its place; NUM_DOMAIN: it is singular. */
+/* Factor of the normal matrix in its place; NUM_DOMAIN: it is singular. */
 static enum num_status factorise(double *a, int n)
 {
-	for (int i = 0; i < n; i++) {
-		double *row = a + (size_t)i * (size_t)n, pivot;
-
-		for (int k = 0; k < i; k++) {
-			const double *other = a + (size_t)k * (size_t)n;
-
-			row[k] = (row[k] - dot(row, other, (size_t)k)) / other[k];
-		}
-		pivot = row[i] - dot(row, row, (size_t)i);
-		if (!(pivot > 1e-13 * row[i]))
-			return NUM_DOMAIN;
-		row[i] = sqrt(pivot);
-	}
-	return NUM_OK;
-}
-
-static void solve(const double *a, int n, double *x)
-{
-	for (int i = 0; i < n; i++) {
-		const double *row = a + (size_t)i * (size_t)n;
-
-		x[i] = (x[i] - dot(row, x, (size_t)i)) / row[i];
-	}
-	for (int i = n - 1; i >= 0; i--) {
-		x[i] /= a[i * n + i];
-		for (int k = 0; k < i; k++)
-			x[k] -= a[i * n + k] * x[i];
-	}
+	return cholesky_factor(a, (size_t)n, (size_t)n, 1e-13);
 }
 
 /* Normal matrix, factorised, and gradient of the parts as they are; NUM_DOMAIN:
@@ -431,7 +397,7 @@ static enum num_status guess_quadrature(struct fit *f, struct quadrature_pulse *
 		f->gradient[i] = f->gradient[PARAMETERS * i + B];
 	if (factorise(a, m) != NUM_OK)
 		return NUM_DOMAIN;
-	solve(a, m, f->gradient);
+	cholesky_solve(a, (size_t)m, (size_t)m, f->gradient);
 	for (int i = 0; i < m; i++)
 		p[i].b = f->gradient[i];
 	return NUM_OK;
@@ -459,13 +425,14 @@ static enum num_status improve(struct fit *f, struct quadrature_pulse *p, double
 {
 	enum { STEPS = 8, HALVES = 4 };
 	struct quadrature_pulse trial[JOINT_PULSES_MAX];
+	size_t all = PARAMETERS * (size_t)f->m;
 
 	for (int step = 0; step < STEPS; step++) {
 		double after = INFINITY, gain;
 
 		if (make_normal(f, p) != NUM_OK)
 			return NUM_DOMAIN;
-		solve(f->normal, PARAMETERS * f->m, f->gradient);
+		cholesky_solve(f->normal, all, all, f->gradient);
 		for (int k = 0; k < HALVES && !(after < *chi2); k++) {
 			for (int i = 0; i < f->m; i++)
 				trial[i] = moved(f, &p[i], f->gradient + PARAMETERS * i,
@@ -486,14 +453,14 @@ static enum num_status improve(struct fit *f, struct quadrature_pulse *p, double
 
 static void fill_covariance(struct fit *f, struct quadrature_pulse *p)
 {
-	int all = PARAMETERS * f->m;
+	size_t all = PARAMETERS * (size_t)f->m;
 	double *x = f->gradient;
 
 	for (int i = 0; i < f->m; i++)
 		for (int k = 0; k < PARAMETERS; k++) {
-			memset(x, 0, (size_t)all * sizeof *x);
+			memset(x, 0, all * sizeof *x);
 			x[PARAMETERS * i + k] = 1;
-			solve(f->normal, all, x);
+			cholesky_solve(f->normal, all, all, x);
 			for (int l = 0; l < PARAMETERS; l++)
 				p[i].cov[k][l] = x[PARAMETERS * i + l];
 		}

@@ -68,16 +68,13 @@ enum separate_status separate_fit_window(struct separate *s, const double *const
 static double delay_scatter(const struct separate *s, const struct account *a)
 {
 	double widest = 0.5 * (s->scene.delta_max - s->scene.delta_min) / sqrt(6);
-	double x[JOINT_PULSES_MAX], middle;
+	double x[JOINT_PULSES_MAX];
 
 	if (a->m < 8)
 		return widest;
 	for (int i = 0; i < a->m; i++)
 		x[i] = a->pulse[i].delta;
-	middle = robust_median(x, (size_t)a->m);
-	for (int i = 0; i < a->m; i++)
-		x[i] = fabs(a->pulse[i].delta - middle);
-	return fmin(widest, M_SQRT2 * 1.482602218505602 * robust_median(x, (size_t)a->m));
+	return fmin(widest, M_SQRT2 * robust_spread(x, (size_t)a->m));
 }
 
 void separate_keep_fit(struct separate *s, const struct account *a)
