@@ -128,18 +128,16 @@ static enum num_status add_trigger(struct sections *s, long long at, double z)
 	return NUM_OK;
 }
 
-enum num_status sections_scan_quadrature(struct sections *s, const double *const y[2],
-	const double *const v[2], double v_scale, long long base, size_t n,
-	long long limit)
+enum num_status sections_scan(struct sections *s, const double *const y[], int channels,
+	double scale, long long base, size_t n, long long limit)
 {
 	for (; s->next < limit; s->next += s->stride) {
 		double z = 0;
 
-		for (int c = 0; c < 2; c++) {
-			z = fmax(z, filter_at(s, y[c], n, s->next - base));
-			if (v)
-				z = fmax(z, v_scale * fabs(filter_at(s, v[c], n,
-							      s->next - base)));
+		for (int c = 0; c < channels; c++) {
+			double here = filter_at(s, y[c], n, s->next - base);
+
+			z = fmax(z, c < 2 ? here : scale * fabs(here));
 		}
 		if (z > s->threshold && add_trigger(s, s->next, z))
 			return NUM_MEMORY;
@@ -148,13 +146,6 @@ enum num_status sections_scan_quadrature(struct sections *s, const double *const
 		if (s->queue[i].end + s->aside + s->margin[OCTAVES] < s->next)
 			s->queue[i].open = 0;
 	return NUM_OK;
-}
-
-enum num_status sections_scan(struct sections *s, const double *y1, const double *y2,
-	long long base, size_t n, long long limit)
-{
-	return sections_scan_quadrature(
-		s, (const double *const[]){ y1, y2 }, NULL, 0, base, n, limit);
 }
 
 int sections_first(const struct sections *s, struct section *section)

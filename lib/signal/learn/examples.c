@@ -48,12 +48,13 @@ static void pick_sections(struct examples *ex, const double *y1, const double *y
 	long margin = (long)(1.2 * shape_reach_above(c->shape, 0.01) * T + slack);
 	struct sections *s;
 	struct section section;
+	const double *const y[] = { y1, y2 };
 
 	ex->count = 0;
 	if (!(T >= SECTIONS_SHORTEST))
 		return;
 	s = sections_new(c->shape, T, 5, slack);
-	if (!s || sections_scan(s, y1, y2, 0, n, (long long)n) != NUM_OK) {
+	if (!s || sections_scan(s, y, 2, 0, 0, n, (long long)n) != NUM_OK) {
 		ex->status = CALIBRATE_MEMORY;
 		sections_free(s);
 		return;

@@ -141,7 +141,9 @@ enum num_status colour_smooth(double power[COLOUR_BINS])
 	for (size_t k = 0; k <= half; k++) {
 		double u = 2 * (double)k / (double)last - 1;
 
-		power[k] *= (u <= 0 ? 1 : u < 1 ? 0.5 + 0.5 * cos(M_PI * u) : 0) /
+		power[k] *= (u <= 0         ? 1
+				    : u < 1 ? 0.5 + 0.5 * cos(M_PI * u)
+					    : 0) /
 			    (double)points;
 	}
 	return positive_spectrum(power, COLOUR_BINS);

@@ -39,8 +39,8 @@ void separate_hide(struct separate *s, long long from, size_t n)
 	}
 }
 
-enum separate_status separate_fit_window(struct separate *s, const double *const y[2],
-	size_t n, int cut, struct account *a)
+enum separate_status separate_fit_window(
+	struct separate *s, const double *const y[], size_t n, int cut, struct account *a)
 {
 	enum joint_status status =
 		joint_fit(s->joint, &s->scene, y[0], y[1], n, a->pulse, &a->m, &a->r);
@@ -83,7 +83,7 @@ void separate_keep_fit(struct separate *s, const struct account *a)
 
 	s->all = joint_delay_covariance(s->joint, s->delay_cov);
 	for (int i = 0; i < a->m; i++)
-		if (s->par.quadrature || isinf(s->cal.transit))
+		if (has_quadrature(s) || isinf(s->cal.transit))
 			memset(s->pair_odds[i], 0, sizeof s->pair_odds[i]);
 		else
 			joint_pair_odds(s->joint, &s->fitted, a->pulse, i, scatter,

@@ -48,7 +48,7 @@ enum num_status separate_measure_common(
 	size_t n = (size_t)(upto - from);
 	double *work, found[3];
 
-	if (s->par.quadrature || isinf(s->cal.transit))
+	if (has_quadrature(s) || isinf(s->cal.transit))
 		return NUM_OK;
 	work = malloc(2 * n * sizeof *work);
 	if (!work)
@@ -185,8 +185,7 @@ static enum separate_status fit_once(struct separate *s, long long from, size_t 
 	for (int c = 0; c < 2; c++) {
 		const double *noise;
 
-		memcpy(x[c], c ? channel_2(s, from) : channel_1(s, from),
-			n * sizeof(double));
+		memcpy(x[c], channels_at(s, from).at[c], n * sizeof(double));
 		status = noise_beside(s, from, n, c, a, y, work + 4 * length, &noise);
 		if (status != SEPARATE_OK)
 			return status;
@@ -225,9 +224,7 @@ enum separate_status separate_fit_without_common(
 	if (status == SEPARATE_OK && removed)
 		*a = better;
 	else if (status == SEPARATE_OK)
-		status = separate_fit_window(s,
-			(const double *const[]){ channel_1(s, from), channel_2(s, from) },
-			n, cut, a);
+		status = separate_fit_window(s, channels_at(s, from).at, n, cut, a);
 	s->scene = plain;
 	return status;
 }
