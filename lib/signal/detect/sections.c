@@ -48,7 +48,7 @@ struct sections *sections_new(
 	const struct shape *shape, double duration, double threshold, double slack)
 {
 	struct sections *s;
-	double energy = 0;
+	double energy;
 
 	if (!(duration >= SECTIONS_SHORTEST)) {
 		errno = EDOM;
@@ -68,8 +68,7 @@ struct sections *sections_new(
 		return NULL;
 	}
 	shape_sample(shape, 0, duration, s->first, s->len, s->filter, NULL, NULL);
-	for (size_t i = 0; i < s->len; i++)
-		energy += s->filter[i] * s->filter[i];
+	energy = dot(s->filter, s->filter, s->len);
 	for (size_t i = 0; i < s->len; i++)
 		s->filter[i] /= sqrt(energy);
 	return s;
@@ -94,18 +93,6 @@ long sections_reach(const struct sections *s)
 	long margin = s->margin[OCTAVES];
 
 	return (-s->first > margin ? -s->first : margin) + 1;
-}
-
-static double filter_at(const struct sections *s, const double *y, size_t n, long long at)
-{
-	long long from = at + s->first;
-	size_t begin = from < 0 ? (size_t)-from : 0, end = s->len;
-
-	if (from + (long long)end > (long long)n)
-		end = (long long)n > from ? (size_t)((long long)n - from) : 0;
-	return begin < end ? dot(s->filter + begin, y + (from + (long long)begin),
-				     end - begin)
-			   : 0;
 }
 
 /* Adds a trigger of z standard deviations at sample at, which is later than all before
@@ -135,7 +122,8 @@ enum num_status sections_scan(struct sections *s, const double *const y[], int c
 		double z = 0;
 
 		for (int c = 0; c < channels; c++) {
-			double here = filter_at(s, y[c], n, s->next - base);
+			double here = dot_within(
+				s->filter, s->len, y[c], n, s->next - base + s->first);
 
 			z = fmax(z, c < 2 ? here : scale * fabs(here));
 		}

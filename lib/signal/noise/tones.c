@@ -3,6 +3,7 @@
 #include "num/cholesky.h"
 #include "num/dot.h"
 #include "num/fft.h"
+#include "num/parabola.h"
 #include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
@@ -38,10 +39,8 @@ static int by_omega(const void *x, const void *y)
 static void add_periodogram(const struct fft *fft, const double *y, size_t n,
 	double *work, double complex *spectrum, double *power)
 {
-	double mean = 0, limit;
+	double mean = mean_of(y, n), limit;
 
-	for (size_t i = 0; i < n; i++)
-		mean += y[i] / (double)n;
 	for (size_t i = 0; i < n; i++)
 		work[i] = fabs(y[i] - mean);
 	limit = CLIP * robust_median(work, n);
@@ -65,7 +64,6 @@ static int pick_lines(const double *power, size_t n, int max, double *omega)
 	for (size_t k = 3; k + 3 <= n / 2; k++) {
 		size_t from = k > SIDE ? k - SIDE : 0,
 		       to = k + SIDE < n / 2 ? k + SIDE : n / 2;
-		double a, b, c, bend;
 		int m = 0;
 
 		if (power[k] <= power[k - 1] || power[k] < power[k + 1])
@@ -77,13 +75,11 @@ static int pick_lines(const double *power, size_t n, int max, double *omega)
 			continue;
 		/* The main lobe of a Hann window is nearly a parabola in the logarithm.
 		 */
-		a = log(power[k - 1]);
-		b = log(power[k]);
-		c = log(power[k + 1]);
-		bend = a - 2 * b + c;
 		line[count].power = power[k];
-		line[count++].omega = 2 * M_PI / (double)n *
-				      ((double)k + (bend < 0 ? 0.5 * (a - c) / bend : 0));
+		line[count++].omega =
+			2 * M_PI / (double)n *
+			((double)k + parabola_top(log(power[k - 1]), log(power[k]),
+					     log(power[k + 1])));
 	}
 	qsort(line, (size_t)count, sizeof *line, by_power);
 	if (count > max)
@@ -120,8 +116,7 @@ enum num_status tones_find(
 	fft_free(work);
 	fft_free(power);
 	fft_free(spectrum);
-	if (fft)
-		fft_done(fft);
+	fft_done(fft);
 	return status;
 }
 
@@ -430,6 +425,8 @@ static enum tones_status add_knot(
 
 	if (status == TONES_MEMORY)
 		return status;
+	if (t->keeps_offset)
+		fresh[0] = 0;
 	t->fits += status == TONES_OK;
 	if (status == TONES_SHORT && t->knots > 0)
 		memcpy(fresh, c, sizeof fresh);

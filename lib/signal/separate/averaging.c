@@ -1,4 +1,5 @@
 /* averaging.c - means of samples, from which pulses of many samples are separated */
+#include "num/dot.h"
 #include "signal/detect/align.h"
 #include "signal/learn/learn.h"
 #include "signal/separate/separate_state.h"
@@ -16,11 +17,6 @@ enum { MOST = 64 };
 /* Samples in whose means the pulses are looked for first. */
 enum { FEW = 8 };
 
-static size_t lesser(size_t a, size_t b)
-{
-	return a < b ? a : b;
-}
-
 int separate_ratio_of(double duration, int limit, int most)
 {
 	int ratio = 1;
@@ -32,10 +28,8 @@ int separate_ratio_of(double duration, int limit, int most)
 
 static void subtract_mean(double *x, size_t n)
 {
-	double mean = 0;
+	double mean = mean_of(x, n);
 
-	for (size_t i = 0; i < n; i++)
-		mean += x[i] / (double)n;
 	for (size_t i = 0; i < n; i++)
 		x[i] -= mean;
 }

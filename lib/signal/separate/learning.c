@@ -1,4 +1,5 @@
 /* learning.c - the instrument of a record: learned from its first samples, or kept */
+#include "num/dot.h"
 #include "signal/detect/bursts.h"
 #include "signal/detect/spikes.h"
 #include "signal/learn/learn.h"
@@ -37,16 +38,6 @@ static void follow_noise(struct separate *s, size_t n)
 			s->tape[k].begin + (long long)known);
 }
 
-/* Of the n oldest samples. */
-static double mean_of(const struct tape *t, size_t n)
-{
-	double mean = 0;
-
-	for (size_t i = 0; i < n; i++)
-		mean += t->x[i] / (double)n;
-	return mean;
-}
-
 /* Starts the separation with an instrument learned from the n oldest samples (0: kept).
  */
 static enum separate_status start(struct separate *s, size_t n)
@@ -69,7 +60,7 @@ static enum separate_status start(struct separate *s, size_t n)
 			3 * reach, JOINT_BASELINE_MAX / (2 * c->whitening.low));
 	for (int k = 0; k < s->channels; k++)
 		if (tape_start(&s->tape[k], c,
-			    k < 2 ? c->mean[k] : mean_of(&s->tape[k], n),
+			    k < 2 ? c->mean[k] : mean_of(s->tape[k].x, n),
 			    c->noise[k % 2]) != NUM_OK)
 			return SEPARATE_MEMORY;
 	follow_noise(s, n);
@@ -168,11 +159,6 @@ static enum separate_status learn_from(struct separate *s, size_t n, double shar
 		return SEPARATE_OK;
 	calibration_clear(&s->cal);
 	return SEPARATE_FAST;
-}
-
-static size_t lesser(size_t a, size_t b)
-{
-	return a < b ? a : b;
 }
 
 /* Least duration of a pulse, in means, if other components of the record are longer: the

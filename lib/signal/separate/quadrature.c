@@ -223,14 +223,8 @@ static int component_of(const struct quadrature_pulse *p, int k, double weight[2
 static double product(
 	const struct fit *f, const struct part *x, int k, const struct part *y, int l)
 {
-	long first = x->first > y->first ? x->first : y->first;
-	long xend = x->first + (long)x->n, yend = y->first + (long)y->n;
-	long end = xend < yend ? xend : yend;
-	double sum = 0;
+	double sum = dot_within(x->f[k], x->n, y->f[l], y->n, x->first - y->first);
 
-	if (end > first)
-		sum = dot(x->f[k] + (first - x->first), y->f[l] + (first - y->first),
-			(size_t)(end - first));
 	for (int b = 0; b < f->basis; b++)
 		sum -= x->along[k][b] * y->along[l][b];
 	return sum;

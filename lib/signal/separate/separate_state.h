@@ -143,6 +143,11 @@ static inline struct channels channels_at(const struct separate *s, long long at
 	return y;
 }
 
+static inline size_t lesser(size_t a, size_t b)
+{
+	return a < b ? a : b;
+}
+
 static inline int has_quadrature(const struct separate *s)
 {
 	return s->channels > 2;
@@ -282,9 +287,8 @@ void separate_set_gain(struct separate *s, long long from);
 enum separate_status separate_try_wider(
 	struct separate *s, long long from, size_t n, int cut, struct account *a);
 /* Tries other explanations of a window that pulses of one sign do not describe: impulses
- * beside the pulses, a wider range of velocities, pulses of both signs, and these with
- * impulses.  One is accepted if it describes the window with no more pulses than before.
- */
+ * beside the pulses, a wider range of velocities, and pulses of both signs.  One is
+ * accepted if it describes the window with no more pulses than before. */
 enum separate_status separate_try_rivals(
 	struct separate *s, long long from, size_t n, int cut, struct account *a);
 
@@ -292,9 +296,6 @@ enum separate_status separate_try_rivals(
 
 /* Names the event in [from, from + n), if it is one that is no particle. */
 enum num_status separate_find_foreign(
-	struct separate *s, long long from, size_t n, struct foreign *event);
-/* The largest impulse in it; only impulses are there. */
-enum num_status separate_find_impulse(
 	struct separate *s, long long from, size_t n, struct foreign *event);
 
 /* by_fit.c */

@@ -82,16 +82,9 @@ static int is_quiet(const struct separate *s, const double *x, size_t n, double 
 	long stride = (long)fmax(T / 16, 1);
 
 	shape_sample(s->cal.shape, 0, T, first, len, work, NULL, NULL);
-	for (long at = first; at + (long)len + first <= (long)n - first; at += stride) {
-		long skip = at < 0 ? -at : 0;
-		long end = at + (long)len < (long)n ? at + (long)len : (long)n;
-
-		if (end > at + skip &&
-			fabs(dot(work + skip, x + at + skip, (size_t)(end - at - skip))) *
-					norm >
-				QUIET)
+	for (long at = first; at + (long)len + first <= (long)n - first; at += stride)
+		if (fabs(dot_within(work, len, x, n, at)) * norm > QUIET)
 			return 0;
-	}
 	return 1;
 }
 
