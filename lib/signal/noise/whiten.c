@@ -8,9 +8,6 @@
 
 static const double least_power = 2.5e-5; /* (1/200)^2 */
 
-/* The same for measured power, which is limited by leakage from other frequencies. */
-static const double least_measured = 5e-3;
-
 /* Ratio of measured powers two frequencies apart, from the first on, below which the
  * slope is too steep to be known; the lower frequencies are then lost. */
 static const double steep = 0.18;
@@ -182,7 +179,7 @@ enum num_status whitening_of_noise(
 		double part = (double)(k % FINER) / FINER;
 		double least = 1e-12 * most;
 
-		if (from < first || power[from] < least_measured * most)
+		if (from < first || power[from] < least_power * most)
 			between[k] = 0;
 		else
 			between[k] = pow(power[from], 1 - part) *
@@ -221,8 +218,7 @@ enum num_status whitening_of_filter(struct whitening *w, const double *tap, size
 		status = whitening_make(w, power, n, 1, (int)(6 * taps), WHITEN_FILTERED);
 	}
 	free(power);
-	if (fft)
-		fft_done(fft);
+	fft_done(fft);
 	fft_free(spectrum);
 	fft_free(x);
 	return status;

@@ -147,11 +147,6 @@ enum separate_status separate_fit_section(
 		separate_follow(s, &a);
 	else if (status == SEPARATE_OK && !s->par.sources)
 		status = separate_try_rivals(s, from - before, n, cut, &a);
-	if (status == SEPARATE_OK && whole && a.m == 0 && a.impulses) {
-		if (separate_find_impulse(s, from - before, n, &event) != NUM_OK)
-			return SEPARATE_MEMORY;
-		return give_event(s, from - before, n, to, &event, next);
-	}
 	for (int i = 0; i < a.m; i++)
 		s->pulse[i].t -= (double)before;
 	a.boundary -= (double)before;

@@ -74,11 +74,3 @@ enum num_status separate_find_foreign(
 		       ? look_for_other_half(s, from, n, event)
 		       : NUM_OK;
 }
-
-enum num_status separate_find_impulse(
-	struct separate *s, long long from, size_t n, struct foreign *event)
-{
-	struct foreign_stretch stretch = stretch_at(s, from, from, n);
-
-	return foreign_impulse(&stretch, event);
-}

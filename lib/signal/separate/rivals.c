@@ -75,7 +75,7 @@ enum separate_status separate_try_wider(
 enum separate_status separate_try_rivals(
 	struct separate *s, long long from, size_t n, int cut, struct account *a)
 {
-	enum { IMPULSES, VELOCITIES, SIGNS, BOTH, RIVALS };
+	enum { IMPULSES, VELOCITIES, SIGNS, RIVALS };
 	const struct joint_scene plain = s->scene;
 	const struct channels y = channels_at(s, from);
 	enum separate_status status = SEPARATE_OK;
@@ -96,16 +96,15 @@ enum separate_status separate_try_rivals(
 			continue;
 		if (k == VELOCITIES)
 			separate_widen(s);
-		s->scene.signs = k >= SIGNS;
-		if ((k == IMPULSES || k == BOTH) &&
-			(s->cal.whitening.tap || !hide_spikes(s, from, n)))
+		s->scene.signs = k == SIGNS;
+		if (k == IMPULSES && (s->cal.whitening.tap || !hide_spikes(s, from, n)))
 			continue;
 		status = separate_fit_window(s, y.at, n, cut, &rival);
 		found = status == SEPARATE_OK && separate_is_described(&rival) &&
 			rival.m <= most;
 		if (found) {
 			*a = rival;
-			a->impulses = k == IMPULSES || k == BOTH;
+			a->impulses = k == IMPULSES;
 		}
 	}
 	s->scene = plain;
