@@ -240,7 +240,8 @@ static struct trend child_of(
 {
 	struct trend child = *parent;
 	double s = grown(parent, b->age);
-	int falls = chance_of_birth(b, 2 * birth + 1) < past.falls;
+	/* wear that recedes does not turn towards the threshold */
+	int falls = parent->v > 0 && chance_of_birth(b, 2 * birth + 1) < past.falls;
 	double times = falls ? 0.5 * s : s, rate = s * parent->v;
 
 	child.v *= times;
