@@ -182,6 +182,8 @@ enum separate_status separate_dense_section(
 	p = &entry->row;
 	campbell_estimate(channel_1(s, from), channel_2(s, from), (size_t)(to - from),
 		s->cal.shape, s->cal.duration, s->scene.gain, &c);
+	campbell_compare(channel_1(s, from), channel_2(s, from), (size_t)(to - from),
+		s->cal.shape, s->cal.duration, s->scene.gain, &c);
 	campbell_scale(&c, noise);
 	p->section = s->number;
 	p->sources =
@@ -197,6 +199,10 @@ enum separate_status separate_dense_section(
 	p->verdict = SEPARATE_UNRESOLVED;
 	s->counters.unresolved++;
 	s->counters.dense += length;
+	if (isfinite(c.unlike)) {
+		s->counters.compared += length;
+		s->counters.unlike += length * c.unlike * c.unlike;
+	}
 	entry->evidence.group = ++s->group;
 	entry->evidence.fits = !s->strange;
 	s->counters.covered += s->strange ? length : 0;
