@@ -193,7 +193,7 @@ static void check_finite(const double *frame, size_t n, long long first, const c
 int separate_record(struct signal_in *in, struct found *out,
 	const struct separate_par *given, const char *file)
 {
-	static double x[2 * BLOCK], v[2 * BLOCK], frame[4 * BLOCK];
+	static double frame[4 * BLOCK];
 	struct separate_par par = *given;
 	struct instrument_place place = { .path = file,
 		.angle = out->components ? components_angle() : NAN,
@@ -214,14 +214,14 @@ int separate_record(struct signal_in *in, struct found *out,
 	if (!e)
 		die(EXIT_RUN, "no memory");
 	s = early_whole(e);
-	while ((n = signal_read_some(in, out->components ? frame : x, BLOCK)) > 0) {
+	while ((n = signal_read_some(in, frame, BLOCK)) > 0) {
 		int any;
 
 		if (out->components) {
 			check_finite(frame, n, read, signal_name(in));
-			components_split(frame, n, x, v);
+			components_turn(frame, n);
 		}
-		status = early_push(e, x, out->components ? v : NULL, n);
+		status = early_push(e, frame, n);
 		read += (long long)n;
 		any = put_ready(e, out);
 		check_status(status, s, signal_name(in));

@@ -20,6 +20,22 @@ double robust_median(double *x, size_t n)
 	return robust_quantile(x, n, 0.5);
 }
 
+double robust_scale(double *x, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		x[i] = fabs(x[i]);
+	return 1.482602218505602 * robust_median(x, n);
+}
+
+double robust_spread(double *x, size_t n)
+{
+	double middle = robust_median(x, n);
+
+	for (size_t i = 0; i < n; i++)
+		x[i] -= middle;
+	return robust_scale(x, n);
+}
+
 double robust_noise(const double *x, size_t n, int order, double *work)
 {
 	double variance = 1;
@@ -32,10 +48,8 @@ double robust_noise(const double *x, size_t n, int order, double *work)
 	for (int k = 0; k < order; k++, left--)
 		for (size_t i = 0; i + 1 < left; i++)
 			work[i] = work[i + 1] - work[i];
-	for (size_t i = 0; i < left; i++)
-		work[i] = fabs(work[i]);
 	/* The difference of order p of unit white noise has variance (2p)! / p!^2. */
 	for (int k = 1; k <= order; k++)
 		variance *= (double)(order + k) / k;
-	return 1.482602218505602 * robust_median(work, left) / sqrt(variance);
+	return robust_scale(work, left) / sqrt(variance);
 }

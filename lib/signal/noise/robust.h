@@ -8,6 +8,10 @@
 double robust_median(double *x, size_t n);
 /* The value below which this share of x lies. */
 double robust_quantile(double *x, size_t n, double share);
+/* Standard deviation of normal deviates about 0, of which x becomes the moduli, and about
+ * their median. */
+double robust_scale(double *x, size_t n);
+double robust_spread(double *x, size_t n);
 
 /* Standard deviation of the white noise under slow signals: the median of the difference
  * of the given order (1 to 16), which removes slow changes; work holds

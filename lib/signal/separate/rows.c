@@ -175,15 +175,16 @@ enum separate_status separate_dense_section(
 		.verdict = SEPARATE_UNRESOLVED };
 	double length = (double)(to - from);
 	double noise = separate_noise_at(s, 0, (double)from + length / 2);
+	struct channels y = channels_at(s, from);
 	struct campbell c;
 
 	if (!entry)
 		return SEPARATE_MEMORY;
 	p = &entry->row;
-	campbell_estimate(channel_1(s, from), channel_2(s, from), (size_t)(to - from),
-		s->cal.shape, s->cal.duration, s->scene.gain, &c);
-	campbell_compare(channel_1(s, from), channel_2(s, from), (size_t)(to - from),
-		s->cal.shape, s->cal.duration, s->scene.gain, &c);
+	campbell_estimate(y.at[0], y.at[1], (size_t)(to - from), s->cal.shape,
+		s->cal.duration, s->scene.gain, &c);
+	campbell_compare(y.at[0], y.at[1], (size_t)(to - from), s->cal.shape,
+		s->cal.duration, s->scene.gain, &c);
 	campbell_scale(&c, noise);
 	p->section = s->number;
 	p->sources =
