@@ -121,12 +121,17 @@ static int is_doubtful(
 	      : doubt == SEPARATE_UNEXPLAINED
 		      ? xprintf("both channels stand out of their noise, but have nothing "
 				"in common")
+	      : doubt == SEPARATE_UNLIKE
+		      ? xprintf("what is unresolved differs from the pulse in spectrum, "
+				"by %.0f %%: number and size there are not known",
+				100 * sqrt(c->unlike / c->compared))
 	      : doubt == SEPARATE_REVERSED
 		      ? xprintf("%.0f of %.0f pulses are reversed", c->negative, c->rows)
 		      : xprintf("%.0f %% of it is unresolved, unlike the record of the "
 				"instrument",
 				100 * c->dense / c->samples);
-	if (doubt == SEPARATE_COVERED || doubt == SEPARATE_UNEXPLAINED)
+	if (doubt == SEPARATE_COVERED || doubt == SEPARATE_UNEXPLAINED ||
+		doubt == SEPARATE_UNLIKE)
 		warn("%s: %s", name, why);
 	else if (kept)
 		warn("%s: this instrument does not fit %s: %s", kept, name, why);

@@ -232,8 +232,7 @@ static void test_small(void)
 	for (int i = 0; i < N; i++)
 		x[i] = 2 * normal((uint64_t)i) + 50 * sin(0.01 * i);
 	/* N normal numbers: the median scatters by 1.2 / sqrt N. */
-	near(robust_noise(x, N, 4, work), 2, 0.15,
-		"the noise under a slow signal is right");
+	near(robust_noise(x, N, work), 2, 0.15, "the noise under a slow signal is right");
 	for (int i = 0; i < N; i++)
 		x[i] = i % 2 ? 3 + 0.1 * normal((uint64_t)i) : 1e3;
 	near(count_level(x + 1, N / 2, 2, work), 0.5, 0.05,

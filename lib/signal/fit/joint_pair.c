@@ -102,7 +102,8 @@ static int find_knot(double gap, double *part)
 	return k;
 }
 
-double joint_pair_ratio(const struct joint *j, double gap1, double gap2)
+/* Logarithm of the likelihood ratio of two equal pulses, by their gaps in durations. */
+static double pair_ratio(const struct joint *j, double gap1, double gap2)
 {
 	const struct pair_table *t = &j->pair;
 	double part[2], weight[4], sum = 0;
@@ -169,7 +170,7 @@ void joint_pair_odds(struct joint *j, const struct joint_scene *s,
 				double apart = d * step * scatter / s->duration;
 				double density = step * exp(-0.5 * pow(d * step, 2)) /
 						 sqrt(2 * M_PI);
-				double ratio = joint_pair_ratio(j, narrow * fabs(gap),
+				double ratio = pair_ratio(j, narrow * fabs(gap),
 					narrow * fabs(gap + apart));
 
 				odds[w] += density * width * exp(fmin(ratio, 50));

@@ -82,12 +82,19 @@ static void scene_of(const struct calibration *c, struct joint_scene *scene)
 	scene->max_pulses = EXAMPLE_PULSES;
 }
 
-/* Adjusts duration and gain to the least chi-square, unless they are known. */
+/* Standard errors by which a duration that fits may differ from that of the spectrum. */
+static const double APART = 5;
+
+/* Adjusts duration and gain to the least chi-square, unless they are known.  Pieces,
+ * which contain parts of pulses, are fitted well by longer pulses, too: in crowds their
+ * duration is not believed against the spectrum. */
 static void tune(
 	const struct calibrate_par *par, struct examples *ex, double step, int rounds)
 {
 	if (isnan(par->duration))
 		minimise(ex, &ex->scene.duration, step, rounds);
+	if (fabs(ex->scene.duration - ex->spectral) > ex->within && ex->within > 0)
+		ex->scene.duration = ex->spectral;
 	if (isnan(par->gain))
 		minimise(ex, &ex->scene.gain, step, rounds);
 }
@@ -170,17 +177,21 @@ static enum calibrate_status try_shape(const struct calibrate_par *par,
 }
 
 /* Takes shape and duration from the spectrum of a long record in which few pulses stand
- * apart: a fit of pieces, which contain parts of pulses, may go far from them. */
+ * apart. */
 static enum calibrate_status learn_crowd(const struct calibrate_par *par,
-	const double *y1, const double *y2, size_t n, struct calibration *c)
+	struct examples *ex, const double *y1, const double *y2, size_t n,
+	struct calibration *c)
 {
 	int pulse = par->pulse;
-	double guess = c->duration;
+	double guess = c->duration, error = 0;
 
 	c->duration = par->duration;
-	if (crowd_pulse(y1, y2, n, guess, &pulse, &c->duration) != NUM_OK ||
+	if (crowd_pulse(y1, y2, n, c->tone_hop, guess, &pulse, &c->duration, &error) !=
+			NUM_OK ||
 		learn_set_shape(c, pulse) != NUM_OK)
 		return CALIBRATE_MEMORY;
+	ex->spectral = c->duration;
+	ex->within = APART * error * c->duration;
 	return CALIBRATE_OK;
 }
 
@@ -202,7 +213,7 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 			return CALIBRATE_MEMORY;
 		examples_pick(ex, y1, y2, n, EXAMPLES_MAX, c);
 		if (ex->pieces)
-			return learn_crowd(par, y1, y2, n, c);
+			return learn_crowd(par, ex, y1, y2, n, c);
 	}
 	if (hint)
 		status = try_shape(

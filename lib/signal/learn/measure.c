@@ -118,7 +118,7 @@ static enum num_status measure_noise(
 		double least = 1e-6 * sqrt(variance(y, n));
 
 		if (!c->whitening.tap)
-			c->noise[k] = robust_noise(y, n, 4, work);
+			c->noise[k] = robust_noise(y, n, work);
 		if (!(c->noise[k] > least))
 			c->noise[k] = least;
 	}

@@ -36,20 +36,11 @@ double robust_spread(double *x, size_t n)
 	return robust_scale(x, n);
 }
 
-double robust_noise(const double *x, size_t n, int order, double *work)
+double robust_noise(const double *x, size_t n, double *work)
 {
-	double variance = 1;
-	size_t left = n;
+	size_t left = n < 20 ? 0 : n - 4;
 
-	if (order < 1 || order > 16 || n < 16 + (size_t)order)
-		return 0;
-	for (size_t i = 0; i < n; i++)
-		work[i] = x[i];
-	for (int k = 0; k < order; k++, left--)
-		for (size_t i = 0; i + 1 < left; i++)
-			work[i] = work[i + 1] - work[i];
-	/* The difference of order p of unit white noise has variance (2p)! / p!^2. */
-	for (int k = 1; k <= order; k++)
-		variance *= (double)(order + k) / k;
-	return robust_scale(work, left) / sqrt(variance);
+	for (size_t i = 0; i < left; i++)
+		work[i] = fourth_difference(x + i);
+	return robust_scale(work, left);
 }

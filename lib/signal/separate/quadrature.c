@@ -40,23 +40,21 @@ struct fit {
 enum num_status quadrature_measure(struct quadrature *q, const double *const x[2],
 	const double *const v[2], size_t n)
 {
-	enum { ORDER = 4 };
 	double *sum = malloc((n ? n : 1) * sizeof *sum),
 	       *work = malloc((n ? n : 1) * sizeof *work);
 
 	for (int c = 0; c < 2 && sum && work; c++) {
-		double one = robust_noise(x[c], n, ORDER, work),
-		       two = robust_noise(v[c], n, ORDER, work), plus, minus, r,
-		       determinant;
+		double one = robust_noise(x[c], n, work),
+		       two = robust_noise(v[c], n, work), plus, minus, r, determinant;
 
 		if (!(one > 0) || !(two > 0)) /* too short or without noise */
 			one = two = 1;
 		for (size_t i = 0; i < n; i++)
 			sum[i] = x[c][i] / one + v[c][i] / two;
-		plus = robust_noise(sum, n, ORDER, work);
+		plus = robust_noise(sum, n, work);
 		for (size_t i = 0; i < n; i++)
 			sum[i] = x[c][i] / one - v[c][i] / two;
-		minus = robust_noise(sum, n, ORDER, work);
+		minus = robust_noise(sum, n, work);
 		r = (plus * plus - minus * minus) / (plus * plus + minus * minus);
 		/* limited: the difference of equal components would have no error */
 		r = isfinite(r) ? fmax(fmin(r, 0.99), -0.99) : 0;

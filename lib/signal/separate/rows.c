@@ -183,6 +183,8 @@ enum separate_status separate_dense_section(
 	p = &entry->row;
 	campbell_estimate(y.at[0], y.at[1], (size_t)(to - from), s->cal.shape,
 		s->cal.duration, s->scene.gain, &c);
+	campbell_compare(y.at[0], y.at[1], (size_t)(to - from), s->cal.shape,
+		s->cal.duration, s->scene.gain, &c);
 	campbell_scale(&c, noise);
 	p->section = s->number;
 	p->sources =
@@ -198,6 +200,10 @@ enum separate_status separate_dense_section(
 	p->verdict = SEPARATE_UNRESOLVED;
 	s->counters.unresolved++;
 	s->counters.dense += length;
+	if (isfinite(c.unlike)) {
+		s->counters.compared += length;
+		s->counters.unlike += length * c.unlike * c.unlike;
+	}
 	entry->evidence.group = ++s->group;
 	entry->evidence.fits = !s->strange;
 	s->counters.covered += s->strange ? length : 0;

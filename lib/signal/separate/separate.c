@@ -294,6 +294,10 @@ static const double REVERSED = 0.9;
  * to hold 98 % of those that can be found. */
 static const double COVERED = 0.02;
 
+/* Relative difference of the spectra, of the record and of the pulse, from which on the
+ * sums by Campbell's theorem are not believed. */
+static const double UNLIKE = 0.2;
+
 /* If more than a tenth of the rows, and more than two, fit no particle, the pulses are
  * not those that were learned, and other rows may be wrong, too. */
 enum separate_doubt separate_doubtful(const struct separate *s)
@@ -311,5 +315,7 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 	if (c->misfits > 2 &&
 		10 * c->misfits > c->rows + c->unresolved + c->events[SEPARATE_TRANSIENT])
 		return SEPARATE_FOREIGN;
+	if (c->unlike > UNLIKE * UNLIKE * c->compared)
+		return SEPARATE_UNLIKE;
 	return c->covered > COVERED * c->samples ? SEPARATE_COVERED : SEPARATE_BELIEVED;
 }

@@ -122,6 +122,8 @@ struct separate_counters {
 	double masks, masks_skipped; /* sections demixed, and those with one source, which
 					need not be */
 	double unresolved, dense;    /* rows, and the samples these stand for */
+	double compared, unlike; /* samples of them whose spectrum was compared with that
+				    of the pulse, and the sum of its squared difference */
 	double covered; /* samples of events in which no particle would be found */
 };
 
@@ -159,6 +161,7 @@ enum separate_doubt {
 	SEPARATE_REVERSED,   /* nine tenths of the pulses are those of the kept instrument
 				with their sign changed */
 	SEPARATE_CROWD,      /* more than half is unresolved, unlike its record */
+	SEPARATE_UNLIKE,     /* what is unresolved has not the spectrum of the pulse */
 	SEPARATE_COVERED,    /* particles are lost under events that are none */
 	SEPARATE_UNEXPLAINED /* nothing could be learned, but the record is not noise */
 };
