@@ -86,11 +86,11 @@ $wear --shear y ball.nrrd >t.tsv
 near "shear along y rotates the particle" "$(column y t.tsv)" "$(column x ball.tsv)" 1e-15
 
 # The same step on coarser grids: what they give is what scenes of their own give, and the
-# extrapolation follows from the three volumes.
+# extrapolation follows from the three volumes.  Two contacts solved to 1e-8 differ by some 1e-9 in volume.
 roughgen -n 64 -L 0.5mm -q 0.4um -l 60um --crown 4um -s 5 | bemcontact -F 20N -E 210GPa >grid.nrrd
 $wear --richardson --summary summary.tsv grid.nrrd >t.tsv
 roughgen --resample 32 grid.nrrd | bemcontact -F 20N -E 210GPa | $wear --summary half.tsv >t.tsv
-near "--richardson states the volume at twice the spacing" "$(column volume half.tsv)" "$(summary volume_2h)" 1e-22
+near "--richardson states the volume at twice the spacing" "$(column volume half.tsv)" "$(summary volume_2h)" 1e-21
 is "--richardson states the particles at twice the spacing" "$(column particles half.tsv)" "$(summary particles_2h)"
 # Cells of the correlation length: the volumes of some surfaces say nothing of their error.
 roughgen -n 32 -L 0.5mm -q 0.4um -l 16um --crown 4um -s 1 -c 6 | bemcontact -F 10N -E 210GPa >coarse.nrrd

@@ -20,6 +20,16 @@ static inline double dot(const double *x, const double *y, size_t n)
 	return (a[0] + a[1]) + (b[0] + b[1]);
 }
 
+/* The inner product of p with what y[0 .. n) has from index at on; zero outside. */
+static inline double dot_within(
+	const double *p, size_t len, const double *y, size_t n, long long at)
+{
+	long long from = at < 0 ? -at : 0, end = (long long)n - at;
+
+	end = end < (long long)len ? end : (long long)len;
+	return end > from ? dot(p + from, y + (at + from), (size_t)(end - from)) : 0;
+}
+
 /* The inner products of x with three others, to the same bits, in little more than the
  * time of one: sums of several do not wait for each other. */
 static inline void dot3(
@@ -47,6 +57,15 @@ static inline void dot3(
 	out[0] = (a0[0] + a0[1]) + (b0[0] + b0[1]);
 	out[1] = (a1[0] + a1[1]) + (b1[0] + b1[1]);
 	out[2] = (a2[0] + a2[1]) + (b2[0] + b2[1]);
+}
+
+static inline double mean_of(const double *x, size_t n)
+{
+	double mean = 0;
+
+	for (size_t i = 0; i < n; i++)
+		mean += x[i] / (double)n;
+	return mean;
 }
 
 #endif

@@ -145,6 +145,26 @@ void fft_done(struct fft *fft)
 	free(fft);
 }
 
+enum num_status fft_even(double *x, size_t n)
+{
+	size_t points = 2 * (n - 1);
+	struct fft *fft = fft_new(points, 1);
+	double *y = fft_alloc(points);
+	double complex *spectrum = fft_alloc_complex(n);
+	enum num_status status = fft && y && spectrum ? NUM_OK : NUM_MEMORY;
+
+	for (size_t k = 0; status == NUM_OK && k < n; k++)
+		y[k] = y[k ? points - k : 0] = x[k];
+	if (status == NUM_OK)
+		fft_forward(fft, y, spectrum);
+	for (size_t k = 0; status == NUM_OK && k < n; k++)
+		x[k] = creal(spectrum[k]);
+	fft_done(fft);
+	fft_free(y);
+	fft_free(spectrum);
+	return status;
+}
+
 struct fft_plane {
 	size_t ny, columns;           /* columns: nx / 2 + 1 */
 	size_t points, width, height; /* strides of rows of points, of coefficients, and

@@ -7,6 +7,7 @@
 #ifndef NUM_FFT_H
 #define NUM_FFT_H
 
+#include "num/status.h"
 #include <complex.h>
 #include <stddef.h>
 
@@ -41,6 +42,10 @@ struct fft *fft_new(size_t nx, size_t ny);
 void fft_forward(const struct fft *fft, const double *x, double complex *spectrum);
 void fft_inverse(const struct fft *fft, double complex *spectrum, double *x);
 void fft_done(struct fft *fft);
+
+/* The real transform, at n frequencies, of an even sequence of 2 (n - 1) points, of which
+ * x holds the first n; in place, n > 1.  Twice: x times 2 (n - 1).  NUM_MEMORY. */
+enum num_status fft_even(double *x, size_t n);
 
 /* Real transform of ny rows of nx points, rows fft_plane_stride() apart, to and from
  * nx / 2 + 1 columns of coefficients, one after another.  Rows and columns are

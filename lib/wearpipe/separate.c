@@ -107,7 +107,7 @@ static enum wp_status outcome(struct wp_separate *s, enum separate_status status
 
 enum wp_status wp_separate_push(struct wp_separate *s, const double *x, size_t frames)
 {
-	return outcome(s, early_push(s->early, x, NULL, frames));
+	return outcome(s, early_push(s->early, x, frames));
 }
 
 enum wp_status wp_separate_end(struct wp_separate *s)

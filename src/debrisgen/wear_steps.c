@@ -288,8 +288,9 @@ static double rms_slope(const struct record *r, const double *h)
 int wearing_warn(const struct wearing *w)
 {
 	if (w->steepest > 0.2)
-		warn("%s: the pair reaches an rms slope of %.2g (step %ld), above 0.2, the limit of half-space theory: specify --hardness",
-			fields_name(w->in), w->steepest, w->steep_step);
+		warn("%s: the pair reaches an rms slope of %.2g (step %ld), above 0.2, the limit of half-space theory%s",
+			fields_name(w->in), w->steepest, w->steep_step,
+			w->pressing.hardness > 0 ? "" : ": specify --hardness");
 	if (w->orderless > 0)
 		warn("%s: on %ld steps the volumes of the three grids indicate no order of convergence: volume_extrapolated and volume_grid_error are nan, use a finer grid",
 			fields_name(w->in), w->orderless);

@@ -64,15 +64,17 @@ double components_share(void)
 	return cos(M_PI / 4);
 }
 
-void components_split(const double *frame, size_t n, double *x, double *v)
+void components_turn(double *frame, size_t n)
 {
 	double c = cos(components_angle()), s = sin(components_angle());
 
-	for (size_t i = 0; i < 2 * n; i++) {
-		double in = frame[2 * i], quadrature = frame[2 * i + 1];
+	for (double *f = frame; f < frame + 4 * n; f += 4) {
+		double i1 = f[0], q1 = f[1], i2 = f[2], q2 = f[3];
 
-		x[i] = c * in + s * quadrature;
-		v[i] = c * quadrature - s * in;
+		f[0] = c * i1 + s * q1;
+		f[1] = c * i2 + s * q2;
+		f[2] = c * q1 - s * i1;
+		f[3] = c * q2 - s * i2;
 	}
 }
 

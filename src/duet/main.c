@@ -137,7 +137,7 @@ static int separate_all(struct signal_in *in, struct found *out)
 		.mask_window = opt_given("window") ? (size_t)window : 0,
 		.mask_hop = opt_given("hop") ? (size_t)hop : 0,
 		.want_sources = separated != NULL,
-		.quadrature = out->components,
+		.channels = out->components ? 4 : 2,
 		.context = out };
 
 	par.known = instrument_par(rate, signal_format(in)->filter);

@@ -121,12 +121,17 @@ static int is_doubtful(
 	      : doubt == SEPARATE_UNEXPLAINED
 		      ? xprintf("both channels stand out of their noise, but have nothing "
 				"in common")
+	      : doubt == SEPARATE_UNLIKE
+		      ? xprintf("what is unresolved differs from the pulse in spectrum, "
+				"by %.0f %%: number and size there are not known",
+				100 * sqrt(c->unlike / c->compared))
 	      : doubt == SEPARATE_REVERSED
 		      ? xprintf("%.0f of %.0f pulses are reversed", c->negative, c->rows)
 		      : xprintf("%.0f %% of it is unresolved, unlike the record of the "
 				"instrument",
 				100 * c->dense / c->samples);
-	if (doubt == SEPARATE_COVERED || doubt == SEPARATE_UNEXPLAINED)
+	if (doubt == SEPARATE_COVERED || doubt == SEPARATE_UNEXPLAINED ||
+		doubt == SEPARATE_UNLIKE)
 		warn("%s: %s", name, why);
 	else if (kept)
 		warn("%s: this instrument does not fit %s: %s", kept, name, why);
@@ -188,7 +193,7 @@ static void check_finite(const double *frame, size_t n, long long first, const c
 int separate_record(struct signal_in *in, struct found *out,
 	const struct separate_par *given, const char *file)
 {
-	static double x[2 * BLOCK], v[2 * BLOCK], frame[4 * BLOCK];
+	static double frame[4 * BLOCK];
 	struct separate_par par = *given;
 	struct instrument_place place = { .path = file,
 		.angle = out->components ? components_angle() : NAN,
@@ -209,14 +214,14 @@ int separate_record(struct signal_in *in, struct found *out,
 	if (!e)
 		die(EXIT_RUN, "no memory");
 	s = early_whole(e);
-	while ((n = signal_read_some(in, out->components ? frame : x, BLOCK)) > 0) {
+	while ((n = signal_read_some(in, frame, BLOCK)) > 0) {
 		int any;
 
 		if (out->components) {
 			check_finite(frame, n, read, signal_name(in));
-			components_split(frame, n, x, v);
+			components_turn(frame, n);
 		}
-		status = early_push(e, x, out->components ? v : NULL, n);
+		status = early_push(e, frame, n);
 		read += (long long)n;
 		any = put_ready(e, out);
 		check_status(status, s, signal_name(in));

@@ -68,6 +68,37 @@ static void test_errors(const struct shape *shape)
 			  : "squares scatter by their standard error");
 }
 
+/* The spectrum of the record is that of its pulse, and of no other shape or duration;
+ * what follows from another one is right within the errors that allow for it. */
+static void test_other_pulse(
+	const double *y1, const double *y2, const struct shape *shape, double square)
+{
+	struct shape *other = shape_new(PULSE_GAUSS);
+	static const struct {
+		int gauss;
+		double duration;
+		const char *what;
+	} wrong[] = { { 1, 100, "another shape" }, { 0, 120, "a longer pulse" },
+		{ 0, 80, "a shorter pulse" } };
+	struct campbell c;
+
+	campbell_estimate(y1, y2, N, shape, 100, 0.9, &c);
+	campbell_compare(y1, y2, N, shape, 100, 0.9, &c);
+	/* Chance leaves some 1 / sqrt(2000 frequencies in a band). */
+	ok(c.unlike < 0.05, "the spectrum of the record is that of its pulse");
+	for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+		const struct shape *p = wrong[k].gauss ? other : shape;
+
+		campbell_estimate(y1, y2, N, p, wrong[k].duration, 0.9, &c);
+		ok(fabs(c.square - square) > 3 * c.square_se,
+			"by %s the sum of squares is wrong", wrong[k].what);
+		campbell_compare(y1, y2, N, p, wrong[k].duration, 0.9, &c);
+		ok(c.unlike > 0.2, "the spectrum shows it");
+		near(c.square, square, 2 * c.square_se, "and so does the standard error");
+	}
+	shape_free(other);
+}
+
 int main(void)
 {
 	struct shape *shape = shape_new(PULSE_SINE);
@@ -92,6 +123,7 @@ int main(void)
 	campbell_scale(&d, 2);
 	near(d.square, 4 * c.square, 1e-12 * d.square,
 		"the result does not depend on the units");
+	test_other_pulse(y1, y2, shape, sums[0]);
 	test_errors(shape);
 	free(y1);
 	free(y2);

@@ -1,5 +1,8 @@
 /* Random bits, the thread pool and Fourier transforms */
+#include "num/cholesky.h"
+#include "num/dot.h"
 #include "num/fft.h"
+#include "num/parabola.h"
 #include "num/philox.h"
 #include "num/pool.h"
 #include "num/rng.h"
@@ -7,6 +10,7 @@
 #include "num/select.h"
 #include "tap.h"
 #include <gsl/gsl_randist.h>
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -247,6 +251,35 @@ static void test_select(void)
 	gsl_rng_free(rng);
 }
 
+/* 1 + 2 cos x + 4 cos 2 x at x = 0, pi / 2 and pi; a matrix by its factor, and one that
+ * is not positive definite; a pulse over both ends of a record; a parabola. */
+static void test_small(void)
+{
+	double even[] = { 1, 1, 2 };
+	double a[] = { 4, NAN, 7, 2, 10, 7 }, x[] = { 8, 24 }, bad[] = { 1, 0, 2, 1 };
+	const double p[] = { 1, 10, 100 }, y[] = { 2, 3 };
+
+	fft_even(even, 3);
+	ok(even[0] == 5 && even[1] == -1 && even[2] == 1,
+		"the transform of an even sequence is that of its first half");
+	fft_even(even, 3);
+	ok(even[0] == 4 && even[1] == 4 && even[2] == 8,
+		"twice gives it back, times its length");
+	ok(cholesky_factor(a, 2, 3, 0) == NUM_OK && a[0] == 2 && a[3] == 1 && a[4] == 3,
+		"a matrix has its Cholesky factor");
+	cholesky_solve(a, 2, 3, x);
+	near(x[0], 8.0 / 9, 1e-14, "the first of two unknowns");
+	near(x[1], 20.0 / 9, 1e-14, "the second");
+	ok(cholesky_factor(bad, 2, 2, 0) == NUM_DOMAIN, "another has none");
+	ok(dot_within(p, 3, y, 2, -2) == 200 && dot_within(p, 3, y, 2, -1) == 320 &&
+			dot_within(p, 3, y, 2, 1) == 3 &&
+			dot_within(p, 3, y, 2, 2) == 0 && dot_within(p, 3, y, 2, -3) == 0,
+		"an inner product counts what lies within the record");
+	near(parabola_top(5 - 1.25 * 1.25, 5 - 0.0625, 5 - 0.75 * 0.75), 0.25, 1e-14,
+		"the top of a parabola");
+	ok(parabola_top(1, 0, 1) == 0, "one that opens upwards has none");
+}
+
 int main(void)
 {
 	test_room();
@@ -270,5 +303,6 @@ int main(void)
 			fft_fast_size(2049) == 2240,
 		"fast sizes are powers of two times at most two of 3, 5 and 7, 3 once");
 	test_select();
+	test_small();
 	return tap_done();
 }

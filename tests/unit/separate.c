@@ -241,7 +241,7 @@ static int separate_live(const double *x, size_t n, size_t piece, int early[6])
 
 	for (size_t at = 0, some; at < n; at += some) {
 		some = piece < n - at ? piece : n - at;
-		if (early_push(e, x + 2 * at, NULL, some) != SEPARATE_OK)
+		if (early_push(e, x + 2 * at, some) != SEPARATE_OK)
 			break;
 		while (count < 2 * MOST && early_next(e, &found[count]))
 			count++;

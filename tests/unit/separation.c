@@ -232,8 +232,7 @@ static void test_small(void)
 	for (int i = 0; i < N; i++)
 		x[i] = 2 * normal((uint64_t)i) + 50 * sin(0.01 * i);
 	/* N normal numbers: the median scatters by 1.2 / sqrt N. */
-	near(robust_noise(x, N, 4, work), 2, 0.15,
-		"the noise under a slow signal is right");
+	near(robust_noise(x, N, work), 2, 0.15, "the noise under a slow signal is right");
 	for (int i = 0; i < N; i++)
 		x[i] = i % 2 ? 3 + 0.1 * normal((uint64_t)i) : 1e3;
 	near(count_level(x + 1, N / 2, 2, work), 0.5, 0.05,
@@ -260,7 +259,7 @@ static void test_small(void)
 	near(peak.t, 975.25, 0.01, "the place of the peak is right");
 	near(peak.height, 2, 1e-4, "the height of the peak is right");
 	s = sections_new(shape, 100, 3, 0);
-	sections_scan(s, x, x, 0, N, N);
+	sections_scan(s, (const double *const[]){ x, x }, 2, 0, 0, N, N);
 	sections_end(s);
 	ok(sections_first(s, &section) && section.begin < 950 && section.end > 1050 &&
 			section.end < 1300,
@@ -306,7 +305,8 @@ static void test_sections(void)
 		sections_free(s);
 		s = sections_new(shape, 100, 5, 0);
 		for (long long upto = 0; upto < N; upto += 100)
-			sections_scan(s, x, x, 0, N, upto);
+			sections_scan(
+				s, (const double *const[]){ x, x }, 2, 0, 0, N, upto);
 		sections_end(s);
 		ok(sections_first(s, &first) && first.begin < 900 && !first.open,
 			"a section begins with the weak pulse");

@@ -35,7 +35,7 @@ int main(void)
 	int hidden = 0;
 
 	draw();
-	if (tape_append(&fine, x, N) != NUM_OK ||
+	if (tape_append(&fine, x, N, 2) != NUM_OK ||
 		tape_average(&fine, N, RATIO, &mean) != NUM_OK)
 		return 1;
 	ok(mean.n == N / RATIO && mean.begin == 0, "there is one mean of 16 samples");
@@ -59,7 +59,8 @@ int main(void)
 
 	/* Piece by piece; the run is found only after some of its means are there. */
 	for (size_t at = 0; at < N; at += 7)
-		if (tape_append(&direct, x + 2 * at, at + 7 < N ? 7 : N - at) != NUM_OK)
+		if (tape_append(&direct, x + 2 * at, at + 7 < N ? 7 : N - at, 2) !=
+			NUM_OK)
 			return 1;
 	ok(are_equal(&mean, &direct), "samples averaged as they arrive give the same");
 

@@ -34,17 +34,14 @@ static const double HALT = 3.5;
 static const double LEAST = 1e-3;  /* prior noise, share of the range to the threshold */
 static const double DIFFUSE = 1e8; /* prior variance of v over that of the noise */
 
-/* Changes of regime in the past, represented by particles.  Effect on the CRPS as above:
- * hazard +0.6 and -0.7, growth -0.1 and +0.7; jumps 0.2 and 0.7: +0.1 and +0.6, with
- * coverage below 0.8 in 9 and 13 of 90 cases (present value: 9); falls 0.5 and 0.85: -0.1
- * and +0.1. */
+/* Changes of regime in the past, represented by particles: hazard c, share of falls, and
+ * growth in units of 1 / age, which is that of the steeper part of the changes to come
+ * (passage.c), because curved coordinates stand for slow growth.  With more falls the ends
+ * of wear that has just begun to accelerate are too early; rises at once and a spread of
+ * the growth have no effect, as doc/benchmarks.md tells. */
 static const struct {
-	double hazard;            /* c */
-	double growth, growth_sd; /* median, 1 / age, and sd of its logarithm */
-	double jumps, falls;      /* share of jumps of the rate; of falls among them */
-	double rise, rise_sd;     /* of a jump, as a share of the rate before */
-	double fall, fall_sd;
-} past = { 0.36, 20, 0.35, 0.45, 0.7, 2, 0.68, 0.32, 0.67 };
+	double hazard, falls, growth;
+} past = { 0.36, 0.25, 20 };
 
 /* --- trends ------------------------------------------------------------------------- */
 
@@ -235,37 +232,26 @@ static double chance_of_birth(const struct bank *b, int k)
 	return philox_uniform(0, (uint32_t)b->rows, RNG_PREDICT, (uint64_t)k);
 }
 
-/* Multiplies the rate by times, with a standard deviation of sd times the old rate. */
-static void jump(const struct bank *b, struct trend *tr, double times, double sd)
-{
-	tr->pvv = times * times * tr->pvv +
-		  sd * sd * tr->v * tr->v * freedom_of(b, tr) / tr->sum;
-	tr->phv *= times;
-	tr->v *= times;
-}
-
-/* The particle for a change of regime of its parent at the present age, and the factor
- * of its rate. */
+/* The particle for a change of regime of its parent at the present age: its rate begins
+ * to grow, or falls to any value between 0 and the one before, which has half the rate for
+ * its mean and 1 / 12 of its square for its variance.  *factor: that of the rate. */
 static struct trend child_of(
 	const struct bank *b, const struct trend *parent, int birth, double *factor)
 {
 	struct trend child = *parent;
-	double s = grown(parent, b->age), u = chance_of_birth(b, 3 * birth + 2),
-	       times = 1;
+	double s = grown(parent, b->age);
+	/* wear that recedes does not turn towards the threshold */
+	int falls = parent->v > 0 && chance_of_birth(b, 2 * birth + 1) < past.falls;
+	double times = falls ? 0.5 * s : s, rate = s * parent->v;
 
-	child.v *= s;
-	child.phv *= s;
-	child.pvv *= s * s;
+	child.v *= times;
+	child.phv *= times;
+	child.pvv *= times * times;
 	child.onset = b->age;
-	child.growth = 0;
-	if (chance_of_birth(b, 3 * birth + 1) > past.jumps)
-		child.growth = (float)(past.growth / b->age *
-				       exp(past.growth_sd * normal_quantile(u)));
-	else if (u < past.falls)
-		jump(b, &child, times = past.fall, past.fall_sd);
-	else
-		jump(b, &child, times = past.rise, past.rise_sd);
-	*factor = s * times;
+	child.growth = falls ? 0 : (float)(past.growth / b->age);
+	if (falls)
+		child.pvv += rate * rate / 12 * freedom_of(b, parent) / parent->sum;
+	*factor = times;
 	return child;
 }
 
@@ -302,7 +288,7 @@ static void breed(struct bank *b)
 
 		reached += tr->weight;
 		while (born < BIRTHS &&
-			(born + chance_of_birth(b, 3 * born)) / BIRTHS < reached) {
+			(born + chance_of_birth(b, 2 * born)) / BIRTHS < reached) {
 			child[born] = child_of(b, tr, born, &factor[born]);
 			memcpy(tilt[born], tilts_of(b, tr), tilts);
 			child[born].weight = mass / BIRTHS;

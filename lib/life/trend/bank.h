@@ -14,8 +14,8 @@
  * Student's t as rare as three standard deviations.
  *
  * Regime changes: as the age grows, particles are drawn from the present trends by their
- * weight.  From then on their rate grows as e^{g (t - onset)}, or has changed to a higher
- * or lower one.  Each is a Kalman filter of its own: this is a Rao-Blackwellised particle
+ * weight.  From then on their rate grows as e^{g (t - onset)}, or has fallen to a lower
+ * one.  Each is a Kalman filter of its own: this is a Rao-Blackwellised particle
  * filter (Chen, Liu, J. R. Stat. Soc. B 62 (2000) 493).  New particles replace the
  * lightest.
  *

@@ -1,6 +1,8 @@
 /* align.c - see align.h */
 #include "signal/detect/align.h"
+#include "num/dot.h"
 #include "num/fft.h"
+#include "num/parabola.h"
 #include <math.h>
 #include <string.h>
 
@@ -33,21 +35,12 @@ static enum num_status correlate(
 	return status;
 }
 
-static double energy(const double *x, size_t n)
-{
-	double sum = 0;
-
-	for (size_t i = 0; i < n; i++)
-		sum += x[i] * x[i];
-	return sum;
-}
-
 /* The correlation at lags 0 .. *max_lag, which becomes less than n, in units of *scale;
  * NULL with *status where there is none. */
 static double *correlate_channels(const double *y1, const double *y2, size_t n,
 	size_t *max_lag, double *scale, enum num_status *status)
 {
-	double e1 = energy(y1, n), e2 = energy(y2, n), *r;
+	double e1 = dot(y1, y1, n), e2 = dot(y2, y2, n), *r;
 
 	if (*max_lag >= n)
 		*max_lag = n - 1;
@@ -66,7 +59,7 @@ static double *correlate_channels(const double *y1, const double *y2, size_t n,
 enum num_status align_lag(const double *y1, const double *y2, size_t n, size_t max_lag,
 	double *lag, double *peak)
 {
-	double scale, bend;
+	double scale;
 	enum num_status status;
 	double *r = correlate_channels(y1, y2, n, &max_lag, &scale, &status);
 	size_t best = 0;
@@ -78,9 +71,8 @@ enum num_status align_lag(const double *y1, const double *y2, size_t n, size_t m
 			best = k;
 	*lag = (double)best;
 	*peak = r[best] / scale;
-	bend = best > 0 && best < max_lag ? r[best - 1] - 2 * r[best] + r[best + 1] : 0;
-	if (bend < 0)
-		*lag += 0.5 * (r[best - 1] - r[best + 1]) / bend;
+	if (best > 0 && best < max_lag)
+		*lag += parabola_top(r[best - 1], r[best], r[best + 1]);
 	fft_free(r);
 	return NUM_OK;
 }

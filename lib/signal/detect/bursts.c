@@ -19,8 +19,8 @@ static int exceeds(const double *d, size_t n)
 
 	for (size_t i = 0; i < n; i++)
 		if (d[i] != 0) /* not where a converter stands still */
-			sorted[count++] = fabs(d[i]);
-	level = 1.482602218505602 * robust_median(sorted, count);
+			sorted[count++] = d[i];
+	level = robust_scale(sorted, count);
 	for (size_t i = 0; i < n; i++)
 		if (fabs(d[i]) > LIMIT * level)
 			return 1;

@@ -25,12 +25,22 @@ struct campbell {
 	double fourth, fourth_se; /* rate E[a^4] */
 	double rate, rate_se; /* equal number, per sample; NAN where k4 is not above 0 */
 	double amplitude, amplitude_se; /* equal amplitude; NAN likewise */
+	double unlike;                  /* of campbell_compare(), or 0 */
 };
 
 /* From y1, y2[0 .. n), in units of the noise of y1 (gain: of channel 2 over 1 in these
- * units).  Standard errors are those of a jackknife over stretches much longer than
- * the pulse; INFINITY if n is shorter than 32 durations. */
+ * units).  Standard errors are those of a jackknife over stretches longer than the
+ * pulse; INFINITY if n is shorter than 32 durations. */
 void campbell_estimate(const double *y1, const double *y2, size_t n,
+	const struct shape *shape, double duration, double gain, struct campbell *c);
+
+/* Compares the spectrum of these samples with that of the pulse and white noise: by
+ * Carson's theorem pulses that arrive at random have the spectrum of one of them, so that
+ * a difference shows another shape, duration or noise.  c->unlike is its root mean square
+ * over bands of half a cycle per duration, relative, weighted by the power of the pulses,
+ * without what chance leaves; INFINITY if n is shorter than 32 durations, or no memory.
+ * The standard errors grow by as much. */
+void campbell_compare(const double *y1, const double *y2, size_t n,
 	const struct shape *shape, double duration, double gain, struct campbell *c);
 
 /* The same for amplitudes in other units. */

@@ -1,5 +1,6 @@
 /* count.c - see count.h */
 #include "signal/detect/count.h"
+#include "num/parabola.h"
 #include "signal/noise/robust.h"
 #include <errno.h>
 #include <math.h>
@@ -16,14 +17,9 @@ struct count {
 
 double count_level(const double *x, size_t n, size_t stride, double *work)
 {
-	double median;
-
 	for (size_t i = 0; i < n; i++)
 		work[i] = x[i * stride];
-	median = robust_median(work, n);
-	for (size_t i = 0; i < n; i++)
-		work[i] = fabs(work[i] - median);
-	return 5 * 1.4826 * robust_median(work, n);
+	return 5 * robust_spread(work, n);
 }
 
 struct count *count_new(double level)
@@ -47,8 +43,7 @@ void count_free(struct count *c)
 
 static void give(struct count *c, struct peak *peak)
 {
-	double bend = c->top_before - 2 * c->top + c->top_after;
-	double shift = bend < 0 ? 0.5 * (c->top_before - c->top_after) / bend : 0;
+	double shift = parabola_top(c->top_before, c->top, c->top_after);
 
 	peak->t = c->top_at + shift;
 	peak->height = c->top - 0.25 * (c->top_before - c->top_after) * shift;

@@ -319,14 +319,6 @@ static enum num_status find_impulse(
 	return flags ? NUM_OK : NUM_MEMORY;
 }
 
-enum num_status foreign_impulse(const struct foreign_stretch *s, struct foreign *out)
-{
-	double rest, count;
-
-	*out = none;
-	return find_impulse(s, &rest, &count, out);
-}
-
 /* Sum of squares of both channels less that of noise. */
 static double energy_of(const struct foreign_stretch *s)
 {

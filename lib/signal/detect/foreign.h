@@ -41,8 +41,4 @@ enum num_status foreign_find(const struct foreign_stretch *s, double delta_min,
 /* The same for two channels of one time: SEPARATE_SHOCK or SEPARATE_MISFIT. */
 enum num_status foreign_at_once(const struct foreign_stretch *s, struct foreign *out);
 
-/* The same if it is known to be impulses: the largest of them.  SEPARATE_MISFIT if there
- * is none. */
-enum num_status foreign_impulse(const struct foreign_stretch *s, struct foreign *out);
-
 #endif

@@ -48,7 +48,7 @@ struct sections *sections_new(
 	const struct shape *shape, double duration, double threshold, double slack)
 {
 	struct sections *s;
-	double energy = 0;
+	double energy;
 
 	if (!(duration >= SECTIONS_SHORTEST)) {
 		errno = EDOM;
@@ -68,8 +68,7 @@ struct sections *sections_new(
 		return NULL;
 	}
 	shape_sample(shape, 0, duration, s->first, s->len, s->filter, NULL, NULL);
-	for (size_t i = 0; i < s->len; i++)
-		energy += s->filter[i] * s->filter[i];
+	energy = dot(s->filter, s->filter, s->len);
 	for (size_t i = 0; i < s->len; i++)
 		s->filter[i] /= sqrt(energy);
 	return s;
@@ -96,18 +95,6 @@ long sections_reach(const struct sections *s)
 	return (-s->first > margin ? -s->first : margin) + 1;
 }
 
-static double filter_at(const struct sections *s, const double *y, size_t n, long long at)
-{
-	long long from = at + s->first;
-	size_t begin = from < 0 ? (size_t)-from : 0, end = s->len;
-
-	if (from + (long long)end > (long long)n)
-		end = (long long)n > from ? (size_t)((long long)n - from) : 0;
-	return begin < end ? dot(s->filter + begin, y + (from + (long long)begin),
-				     end - begin)
-			   : 0;
-}
-
 /* Adds a trigger of z standard deviations at sample at, which is later than all before
  * it.  Sections within its reach are joined. */
 static enum num_status add_trigger(struct sections *s, long long at, double z)
@@ -128,18 +115,17 @@ static enum num_status add_trigger(struct sections *s, long long at, double z)
 	return NUM_OK;
 }
 
-enum num_status sections_scan_quadrature(struct sections *s, const double *const y[2],
-	const double *const v[2], double v_scale, long long base, size_t n,
-	long long limit)
+enum num_status sections_scan(struct sections *s, const double *const y[], int channels,
+	double scale, long long base, size_t n, long long limit)
 {
 	for (; s->next < limit; s->next += s->stride) {
 		double z = 0;
 
-		for (int c = 0; c < 2; c++) {
-			z = fmax(z, filter_at(s, y[c], n, s->next - base));
-			if (v)
-				z = fmax(z, v_scale * fabs(filter_at(s, v[c], n,
-							      s->next - base)));
+		for (int c = 0; c < channels; c++) {
+			double here = dot_within(
+				s->filter, s->len, y[c], n, s->next - base + s->first);
+
+			z = fmax(z, c < 2 ? here : scale * fabs(here));
 		}
 		if (z > s->threshold && add_trigger(s, s->next, z))
 			return NUM_MEMORY;
@@ -148,13 +134,6 @@ enum num_status sections_scan_quadrature(struct sections *s, const double *const
 		if (s->queue[i].end + s->aside + s->margin[OCTAVES] < s->next)
 			s->queue[i].open = 0;
 	return NUM_OK;
-}
-
-enum num_status sections_scan(struct sections *s, const double *y1, const double *y2,
-	long long base, size_t n, long long limit)
-{
-	return sections_scan_quadrature(
-		s, (const double *const[]){ y1, y2 }, NULL, 0, base, n, limit);
 }
 
 int sections_first(const struct sections *s, struct section *section)

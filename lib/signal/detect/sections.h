@@ -35,17 +35,12 @@ void sections_skip(struct sections *s, long long upto);
 /* Samples that a scan needs at either side of a point and may add to a section. */
 long sections_reach(const struct sections *s);
 
-/* Scans the record, held as y1, y2[0 .. n) from sample base on, up to sample limit (not
- * included); samples outside what is held count as zero.  Each point is scanned once.
- */
-enum num_status sections_scan(struct sections *s, const double *y1, const double *y2,
-	long long base, size_t n, long long limit);
-
-/* The same; a section is also where the filter of v[0] or v[1], times v_scale, exceeds
- * the threshold with either sign. */
-enum num_status sections_scan_quadrature(struct sections *s, const double *const y[2],
-	const double *const v[2], double v_scale, long long base, size_t n,
-	long long limit);
+/* Scans the channels of a record, held as y[channel][0 .. n) from sample base on, up to
+ * sample limit (not included); samples outside what is held count as zero.  Each point is
+ * scanned once.  Beyond the first two channels a section is where the filter, times
+ * scale, exceeds the threshold with either sign. */
+enum num_status sections_scan(struct sections *s, const double *const y[], int channels,
+	double scale, long long base, size_t n, long long limit);
 
 /* The first section: 1 and *section, or 0 where there is none.  It stays until taken. */
 int sections_first(const struct sections *s, struct section *section);

@@ -10,19 +10,9 @@ static size_t filter_residual(struct joint *j, const struct joint_scene *s, size
 
 	shape_sample(s->shape, 0, s->duration, first, len, j->scratch, NULL, NULL);
 	for (int c = 0; c < 2; c++)
-		for (size_t k = 0; k < points; k++) {
-			long from = (long)(k * stride) + first,
-			     skip = from < 0 ? -from : 0;
-			long end = from + (long)len;
-
-			if (end > (long)j->n)
-				end = (long)j->n;
-			j->filter[c][k] =
-				end > from + skip
-					? dot(j->scratch + skip, j->r[c] + from + skip,
-						  (size_t)(end - from - skip))
-					: 0;
-		}
+		for (size_t k = 0; k < points; k++)
+			j->filter[c][k] = dot_within(j->scratch, len, j->r[c], j->n,
+				(long long)(k * stride) + first);
 	return points;
 }
 

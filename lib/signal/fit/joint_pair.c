@@ -44,19 +44,6 @@ static long make_excess(const struct joint *j, const struct joint_scene *s,
 	return from;
 }
 
-/* Inner product of two stretches of one channel. */
-static double common(const double *x, long x_first, size_t nx, const double *y,
-	long y_first, size_t ny)
-{
-	long from = x_first > y_first ? x_first : y_first;
-	long x_end = x_first + (long)nx, y_end = y_first + (long)ny;
-	long end = x_end < y_end ? x_end : y_end;
-
-	return end > from ? dot(x + (from - x_first), y + (from - y_first),
-				    (size_t)(end - from))
-			  : 0;
-}
-
 void joint_pair_start(struct joint *j, const struct joint_scene *s,
 	const struct joint_pulse *pulses, int i, const int *set, int m)
 {
@@ -82,8 +69,8 @@ void joint_pair_start(struct joint *j, const struct joint_scene *s,
 		for (int u = 0; u < PAR * m; u++) {
 			const struct column *col = &j->col[set[u / PAR]][c];
 
-			seen[a][u] = common(col->d[u % PAR], col->first, col->n, x,
-					     first[a], n[a]) -
+			seen[a][u] = dot_within(col->d[u % PAR], col->n, x, n[a],
+					     col->first - first[a]) -
 				     dot(along_basis[a], j->bq + u * nb + c * j->basis,
 					     (size_t)j->basis);
 		}
@@ -92,9 +79,9 @@ void joint_pair_start(struct joint *j, const struct joint_scene *s,
 			double shared = 0;
 
 			if (b / PAIR_GAPS == c)
-				shared = common(x, first[a], n[a],
-						 j->excess + (size_t)b * j->support,
-						 first[b], n[b]) -
+				shared = dot_within(x, n[a],
+						 j->excess + (size_t)b * j->support, n[b],
+						 first[a] - first[b]) -
 					 dot(along_basis[a], along_basis[b],
 						 (size_t)j->basis);
 			shared -= dot(seen[a], seen[b], (size_t)(PAR * m));
@@ -115,7 +102,8 @@ static int find_knot(double gap, double *part)
 	return k;
 }
 
-double joint_pair_ratio(const struct joint *j, double gap1, double gap2)
+/* Logarithm of the likelihood ratio of two equal pulses, by their gaps in durations. */
+static double pair_ratio(const struct joint *j, double gap1, double gap2)
 {
 	const struct pair_table *t = &j->pair;
 	double part[2], weight[4], sum = 0;
@@ -182,7 +170,7 @@ void joint_pair_odds(struct joint *j, const struct joint_scene *s,
 				double apart = d * step * scatter / s->duration;
 				double density = step * exp(-0.5 * pow(d * step, 2)) /
 						 sqrt(2 * M_PI);
-				double ratio = joint_pair_ratio(j, narrow * fabs(gap),
+				double ratio = pair_ratio(j, narrow * fabs(gap),
 					narrow * fabs(gap + apart));
 
 				odds[w] += density * width * exp(fmin(ratio, 50));

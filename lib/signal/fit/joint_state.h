@@ -151,8 +151,6 @@ enum num_status joint_factorise(struct joint *j, const struct joint_scene *s,
 /* Makes the table of pulse i, one of the m in set, whose factor was made. */
 void joint_pair_start(struct joint *j, const struct joint_scene *s,
 	const struct joint_pulse *pulses, int i, const int *set, int m);
-/* Logarithm of the likelihood ratio of two equal pulses, by their gaps in durations. */
-double joint_pair_ratio(const struct joint *j, double gap1, double gap2);
 /* Largest of it among the gaps of the table, the same on both channels: gaps that differ
  * describe a wrong gain as well.  0: one pulse is most likely. */
 double joint_pair_best(const struct joint *j, double *gap);

@@ -1,5 +1,6 @@
 /* calibrate.c - see calibrate.h */
 #include "signal/learn/calibrate.h"
+#include "num/dot.h"
 #include "signal/learn/learn.h"
 #include "signal/learn/measure.h"
 #include <math.h>
@@ -12,15 +13,6 @@ static int is_constant(const double *x, size_t n)
 		if (x[i] != x[0])
 			return 0;
 	return 1;
-}
-
-static double mean(const double *x, size_t n)
-{
-	double sum = 0;
-
-	for (size_t i = 0; i < n; i++)
-		sum += x[i] / (double)n;
-	return sum;
 }
 
 /* One attempt, on the record whitened by w if w has taps.  c takes over w. */
@@ -43,7 +35,7 @@ static enum calibrate_status attempt(const struct calibrate_par *par, const doub
 		memcpy(y, k ? x2 : x1, n * sizeof *work);
 		if (!w->tap)
 			continue;
-		c->mean[k] = mean(y, n);
+		c->mean[k] = mean_of(y, n);
 		for (size_t i = 0; i < n; i++)
 			y[i] -= c->mean[k];
 		if (whitening_apply(w, y, n) != NUM_OK)

@@ -12,10 +12,11 @@
 #include <stddef.h>
 
 /* Chooses shape and duration from y1, y2[0 .. n), aligned and in units of their white
- * noise.  *pulse: enum pulse_shape, or CALIBRATE_ANY_PULSE for each of them; *duration:
- * samples, or NAN, sought from half to twice the guess, and on from there while it
- * becomes more likely.  NUM_MEMORY. */
-enum num_status crowd_pulse(const double *y1, const double *y2, size_t n, double guess,
-	int *pulse, double *duration);
+ * noise, whose offset was followed from hop to hop (samples) and taken off.  *pulse: enum
+ * pulse_shape, or CALIBRATE_ANY_PULSE for each of them; *duration: samples, or NAN,
+ * sought from half to twice the guess, and on from there while it becomes more likely;
+ * *error: its standard error, relative.  NUM_MEMORY. */
+enum num_status crowd_pulse(const double *y1, const double *y2, size_t n, size_t hop,
+	double guess, int *pulse, double *duration, double *error);
 
 #endif

@@ -1,5 +1,6 @@
 /* examples.c - see examples.h */
 #include "signal/learn/examples.h"
+#include "num/dot.h"
 #include "signal/detect/sections.h"
 #include "signal/noise/robust.h"
 #include <math.h>
@@ -48,12 +49,13 @@ static void pick_sections(struct examples *ex, const double *y1, const double *y
 	long margin = (long)(1.2 * shape_reach_above(c->shape, 0.01) * T + slack);
 	struct sections *s;
 	struct section section;
+	const double *const y[] = { y1, y2 };
 
 	ex->count = 0;
 	if (!(T >= SECTIONS_SHORTEST))
 		return;
 	s = sections_new(c->shape, T, 5, slack);
-	if (!s || sections_scan(s, y1, y2, 0, n, (long long)n) != NUM_OK) {
+	if (!s || sections_scan(s, y, 2, 0, 0, n, (long long)n) != NUM_OK) {
 		ex->status = CALIBRATE_MEMORY;
 		sections_free(s);
 		return;
@@ -198,15 +200,6 @@ static void learn_misfit(
 		ex->example[i].spoiled = share[i] > 4 * left + 4 * scatter[i];
 }
 
-static double square_sum(const double *x, size_t n)
-{
-	double sum = 0;
-
-	for (size_t i = 0; i < n; i++)
-		sum += x[i] * x[i];
-	return sum;
-}
-
 double examples_fit(struct examples *ex, double misfit)
 {
 	double each[EXAMPLES_MAX], rest[2][EXAMPLES_MAX], share[EXAMPLES_MAX],
@@ -234,9 +227,11 @@ double examples_fit(struct examples *ex, double misfit)
 		each[i] = result.chi2 / (double)result.dof;
 		share[i] = (result.chi2 - (double)result.dof) / energy;
 		scatter[i] = sqrt(2 * (double)result.dof) / energy;
-		for (int c = 0; c < 2; c++)
-			rest[c][i] = 2 * square_sum(joint_residual(ex->joint, c), e->n) /
-				     (double)result.dof;
+		for (int c = 0; c < 2; c++) {
+			const double *r = joint_residual(ex->joint, c);
+
+			rest[c][i] = 2 * dot(r, r, e->n) / (double)result.dof;
+		}
 		ex->price += result.chi2 + 2 * ex->scene.drop_near * e->m;
 		ex->dof += (double)result.dof;
 		ex->excess += result.chi2 - (double)result.dof;

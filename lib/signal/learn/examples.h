@@ -30,7 +30,10 @@ struct examples {
 	const unsigned char *hidden[2]; /* flags of samples that are not known, or NULL */
 	long shift;                     /* samples by which channel 2 was moved back */
 	int count;
-	int pieces;    /* 1: some may cut pulses through */
+	int pieces; /* 1: some may cut pulses through */
+	/* Duration by the spectrum of the record, and how far from it those that fit may
+	 * be (both 0: it was not used). */
+	double spectral, within;
 	double misfit; /* of joint.h, at the end */
 	double share; /* share of the energy of a pulse that the shape leaves, as found so
 			 far */

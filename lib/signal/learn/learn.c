@@ -82,12 +82,19 @@ static void scene_of(const struct calibration *c, struct joint_scene *scene)
 	scene->max_pulses = EXAMPLE_PULSES;
 }
 
-/* Adjusts duration and gain to the least chi-square, unless they are known. */
+/* Standard errors by which a duration that fits may differ from that of the spectrum. */
+static const double APART = 5;
+
+/* Adjusts duration and gain to the least chi-square, unless they are known.  Pieces,
+ * which contain parts of pulses, are fitted well by longer pulses, too: in crowds their
+ * duration is not believed against the spectrum. */
 static void tune(
 	const struct calibrate_par *par, struct examples *ex, double step, int rounds)
 {
 	if (isnan(par->duration))
 		minimise(ex, &ex->scene.duration, step, rounds);
+	if (fabs(ex->scene.duration - ex->spectral) > ex->within && ex->within > 0)
+		ex->scene.duration = ex->spectral;
 	if (isnan(par->gain))
 		minimise(ex, &ex->scene.gain, step, rounds);
 }
@@ -144,10 +151,10 @@ struct guess {
  * first guess of the duration is wrong by a fifth, and 5 in none. */
 static const double FAR_OFF = 5;
 
-/* Tries one shape from a duration on; it has to be better by the factor need. */
+/* Tries one shape from a duration on. */
 static enum calibrate_status try_shape(const struct calibrate_par *par,
 	struct examples *ex, const double *y1, const double *y2, size_t n, int pulse,
-	double duration, double need, struct calibration *c, struct guess *best)
+	double duration, struct calibration *c, struct guess *best)
 {
 	double chi2;
 
@@ -163,24 +170,28 @@ static enum calibrate_status try_shape(const struct calibrate_par *par,
 		return CALIBRATE_OK;
 	tune(par, ex, 0.1, 3);
 	chi2 = examples_fit(ex, 0.003);
-	if (ex->price < need * best->price)
+	if (ex->price < best->price)
 		*best = (struct guess){ pulse, ex->scene.duration,
 			ex->scene.gain * c->noise[1] / c->noise[0], ex->price, chi2 };
 	return CALIBRATE_OK;
 }
 
 /* Takes shape and duration from the spectrum of a long record in which few pulses stand
- * apart: a fit of pieces, which contain parts of pulses, may go far from them. */
+ * apart. */
 static enum calibrate_status learn_crowd(const struct calibrate_par *par,
-	const double *y1, const double *y2, size_t n, struct calibration *c)
+	struct examples *ex, const double *y1, const double *y2, size_t n,
+	struct calibration *c)
 {
 	int pulse = par->pulse;
-	double guess = c->duration;
+	double guess = c->duration, error = 0;
 
 	c->duration = par->duration;
-	if (crowd_pulse(y1, y2, n, guess, &pulse, &c->duration) != NUM_OK ||
+	if (crowd_pulse(y1, y2, n, c->tone_hop, guess, &pulse, &c->duration, &error) !=
+			NUM_OK ||
 		learn_set_shape(c, pulse) != NUM_OK)
 		return CALIBRATE_MEMORY;
+	ex->spectral = c->duration;
+	ex->within = APART * error * c->duration;
 	return CALIBRATE_OK;
 }
 
@@ -192,7 +203,6 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 	struct examples *ex, const double *y1, const double *y2, size_t n, double low,
 	const struct template *hint, struct calibration *c)
 {
-	static const double factor[] = { 1, 0.7, 1.4 };
 	struct guess best = { c->pulse, c->duration, c->gain, INFINITY, INFINITY };
 	enum calibrate_status status = CALIBRATE_OK;
 
@@ -203,27 +213,22 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 			return CALIBRATE_MEMORY;
 		examples_pick(ex, y1, y2, n, EXAMPLES_MAX, c);
 		if (ex->pieces)
-			return learn_crowd(par, y1, y2, n, c);
+			return learn_crowd(par, ex, y1, y2, n, c);
 	}
 	if (hint)
 		status = try_shape(
-			par, ex, y1, y2, n, hint->pulse, hint->duration, 1, c, &best);
-	for (int k = 0; k < (c->whitening.tap ? 1 : 3) && status == CALIBRATE_OK; k++)
-		for (int p = PULSE_SINE; p <= PULSE_LORENTZ; p++) {
-			double duration = par->duration;
+			par, ex, y1, y2, n, hint->pulse, hint->duration, c, &best);
+	for (int p = PULSE_SINE; p <= PULSE_LORENTZ; p++) {
+		double duration = par->duration;
 
-			if (isnan(duration)) {
-				if (learn_duration(p, low, &duration) != NUM_OK)
-					return CALIBRATE_MEMORY;
-				duration *= factor[k];
-			}
-			if (best.chi2 <= (k ? 2 : 1.1) || status != CALIBRATE_OK)
-				break;
-			if ((k == 0 || isnan(par->duration)) &&
-				(par->pulse == CALIBRATE_ANY_PULSE || p == par->pulse))
-				status = try_shape(par, ex, y1, y2, n, p, duration,
-					k ? 0.5 : 1, c, &best);
-		}
+		if (status != CALIBRATE_OK || best.chi2 <= 1.1)
+			break;
+		if (par->pulse != CALIBRATE_ANY_PULSE && p != par->pulse)
+			continue;
+		if (isnan(duration) && learn_duration(p, low, &duration) != NUM_OK)
+			return CALIBRATE_MEMORY;
+		status = try_shape(par, ex, y1, y2, n, p, duration, c, &best);
+	}
 	c->duration = best.duration;
 	c->gain = best.gain;
 	if (status == CALIBRATE_OK && learn_set_shape(c, best.pulse) != NUM_OK)

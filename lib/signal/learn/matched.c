@@ -71,18 +71,3 @@ enum num_status matched_coherence(const struct calibration *c, const double *y1,
 		*coherence = xy / sqrt(xx * yy);
 	return NUM_OK;
 }
-
-enum num_status matched_noise(const struct calibration *c, const double *y, size_t n,
-	double *work, double *noise)
-{
-	size_t count;
-
-	if (filter_points(c, y, n, work, &count) != NUM_OK)
-		return NUM_MEMORY;
-	for (size_t i = 0; i < count; i++)
-		work[i] = fabs(work[i]);
-	*noise = count ? 1.482602218505602 * robust_median(work, count) /
-				 sqrt(c->duration * shape_energy(c->shape))
-		       : 1;
-	return NUM_OK;
-}

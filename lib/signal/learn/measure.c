@@ -1,5 +1,6 @@
 /* measure.c - see measure.h */
 #include "signal/learn/measure.h"
+#include "num/dot.h"
 #include "num/select.h"
 #include "signal/detect/align.h"
 #include "signal/learn/learn.h"
@@ -8,9 +9,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Share of the energy of a pulse that its shape may leave, see joint.h: if no lag
- * determines the duration, and if the shape is that before a filter. */
-static const double UNKNOWN_MISFIT = 3e-4, FILTERED_MISFIT = 0.15;
+/* Share of the energy of a pulse that its shape may leave, see joint.h, if no lag
+ * determines the duration. */
+static const double UNKNOWN_MISFIT = 3e-4;
 
 /* Chi-square per degree of freedom above which pulses are not described.  1.5 and 3 give
  * the same rows in 26 records of 1499 particles (scenes of tests/matrix/scenes.tsv with
@@ -59,10 +60,8 @@ static enum calibrate_status take_tones(
 
 static double variance(const double *x, size_t n)
 {
-	double mean = 0, sum = 0;
+	double mean = mean_of(x, n), sum = 0;
 
-	for (size_t i = 0; i < n; i++)
-		mean += x[i] / (double)n;
 	for (size_t i = 0; i < n; i++)
 		sum += (x[i] - mean) * (x[i] - mean);
 	return sum / (double)n;
@@ -107,13 +106,9 @@ static void set_thresholds(const struct calibrate_par *par, struct calibration *
 /* Correlation coefficient of y1 with y2 lag samples later. */
 static double correlation_at(const double *y1, const double *y2, size_t n, size_t lag)
 {
-	double xy = 0, xx = 0, yy = 0;
+	double xy = dot(y1, y2 + lag, n - lag), xx = dot(y1, y1, n - lag),
+	       yy = dot(y2 + lag, y2 + lag, n - lag);
 
-	for (size_t i = 0; i + lag < n; i++) {
-		xy += y1[i] * y2[i + lag];
-		xx += y1[i] * y1[i];
-		yy += y2[i + lag] * y2[i + lag];
-	}
 	return xx > 0 && yy > 0 ? xy / sqrt(xx * yy) : 0;
 }
 
@@ -130,7 +125,7 @@ static enum num_status measure_noise(
 		double least = 1e-6 * sqrt(variance(y, n));
 
 		if (!c->whitening.tap)
-			c->noise[k] = robust_noise(y, n, 4, work);
+			c->noise[k] = robust_noise(y, n, work);
 		if (!(c->noise[k] > least))
 			c->noise[k] = least;
 	}
@@ -545,23 +540,8 @@ static enum calibrate_status look_for_crowd(
 	return CALIBRATE_OK;
 }
 
-/* Otherwise neither the shape nor white noise describes the record: it was filtered.  The
- * noise is then measured behind the matched filter. */
-static enum calibrate_status learn_filtered(
-	const struct calibrate_par *par, struct record *rec, struct calibration *c)
-{
-	double n1, n2;
-
-	if (matched_noise(c, rec->y1, rec->n, rec->work, &n1) != NUM_OK ||
-		matched_noise(c, rec->y2, rec->n, rec->work, &n2) != NUM_OK)
-		return CALIBRATE_MEMORY;
-	scale_noise(rec, c, n1, n2);
-	c->misfit = FILTERED_MISFIT;
-	return learn(par, rec, NULL, c);
-}
-
 static enum calibrate_status conclude(
-	const struct calibrate_par *par, struct record *rec, struct calibration *c)
+	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
 {
 	enum calibrate_status status = CALIBRATE_OK;
 
@@ -571,9 +551,6 @@ static enum calibrate_status conclude(
 		status = look_for_crowd(rec, c, &c->dense);
 	if (c->dense)
 		set_range(par, NULL, 0, c);
-	else if (status == CALIBRATE_OK && c->chi2 > BAD_FIT && !c->whitening.tap &&
-		 !c->suspect)
-		status = learn_filtered(par, rec, c);
 	set_thresholds(par, c);
 	return status;
 }

@@ -1,5 +1,7 @@
 /* histogram.c - peaks of a weighted histogram */
 #include "signal/mixture/histogram.h"
+#include "num/parabola.h"
+#include <math.h>
 #include <string.h>
 
 enum { CELLS = HISTOGRAM_CELLS, ALL = HISTOGRAM_ALL };
@@ -41,10 +43,7 @@ static int uphill(const struct histogram *h, int i)
 /* Vertex of the parabola through three values, within half a cell. */
 static double vertex(double before, double at, double after)
 {
-	double bend = before - 2 * at + after,
-	       x = bend < 0 ? 0.5 * (before - after) / bend : 0;
-
-	return x > 0.5 ? 0.5 : x < -0.5 ? -0.5 : x;
+	return fmax(fmin(parabola_top(before, at, after), 0.5), -0.5);
 }
 
 static struct histogram_peak locate(const struct histogram *h, int at)

@@ -60,35 +60,30 @@ static double window_autocorrelation(size_t n, size_t lag, int squared)
 	return sum / all;
 }
 
+/* The power of which r is the autocorrelation, in its place. */
+static enum num_status positive_spectrum(double *r, size_t bins)
+{
+	enum num_status status = fft_even(r, bins);
+
+	for (size_t k = 0; k < bins; k++)
+		r[k] = fmax(r[k], 0);
+	return status;
+}
+
 /* Removes the effect of the window from a mean periodogram: the autocorrelation is
  * divided by that of the window, and truncated smoothly at half its length. */
 static enum num_status sharpen(double *power, size_t bins)
 {
-	size_t points = 2 * (bins - 1), last = points / 2;
-	struct fft *fft = fft_new(points, 1);
-	double complex *spectrum = fft_alloc_complex(bins);
-	double *r = fft_alloc(points);
-	enum num_status status = fft && spectrum && r ? NUM_OK : NUM_MEMORY;
+	size_t last = bins - 1, points = 2 * last;
+	enum num_status status = fft_even(power, bins);
 
-	if (status == NUM_OK) {
-		for (size_t k = 0; k < bins; k++)
-			spectrum[k] = power[k] / (double)points;
-		fft_inverse(fft, spectrum, r);
-		for (size_t k = 0; k <= last; k++) {
-			double u = 2 * (double)k / (double)last - 1;
-			double keep = u <= 0 ? 1 : 0.5 + 0.5 * cos(M_PI * u);
+	for (size_t k = 0; k <= last; k++) {
+		double u = 2 * (double)k / (double)last - 1;
+		double keep = u <= 0 ? 1 : 0.5 + 0.5 * cos(M_PI * u);
 
-			r[k] *= keep / window_autocorrelation(points, k, 0);
-			r[k ? points - k : 0] = r[k];
-		}
-		fft_forward(fft, r, spectrum);
-		for (size_t k = 0; k < bins; k++)
-			power[k] = fmax(creal(spectrum[k]), 0);
+		power[k] *= keep / window_autocorrelation(points, k, 0) / (double)points;
 	}
-	fft_done(fft);
-	fft_free(spectrum);
-	fft_free(r);
-	return status;
+	return status == NUM_OK ? positive_spectrum(power, bins) : status;
 }
 
 enum num_status colour_power(const double *y1, const double *y2, size_t n,
@@ -139,30 +134,19 @@ static size_t last_lag(const double *r, size_t points, size_t whole)
 enum num_status colour_smooth(double power[COLOUR_BINS])
 {
 	size_t points = LONGEST, half = points / 2, last;
-	struct fft *fft = fft_new(points, 1);
-	double complex *spectrum = fft_alloc_complex(COLOUR_BINS);
-	double *r = fft_alloc(points);
-	enum num_status status = fft && spectrum && r ? NUM_OK : NUM_MEMORY;
 
-	if (status == NUM_OK) {
-		for (size_t k = 0; k < COLOUR_BINS; k++)
-			spectrum[k] = power[k] / (double)points;
-		fft_inverse(fft, spectrum, r);
-		last = last_lag(r, points, half / 2);
-		for (size_t k = 0; k <= half; k++) {
-			double u = 2 * (double)k / (double)last - 1;
+	if (fft_even(power, COLOUR_BINS) != NUM_OK)
+		return NUM_MEMORY;
+	last = last_lag(power, points, half / 2);
+	for (size_t k = 0; k <= half; k++) {
+		double u = 2 * (double)k / (double)last - 1;
 
-			r[k] *= u <= 0 ? 1 : u < 1 ? 0.5 + 0.5 * cos(M_PI * u) : 0;
-			r[k ? points - k : 0] = r[k];
-		}
-		fft_forward(fft, r, spectrum);
-		for (size_t k = 0; k < COLOUR_BINS; k++)
-			power[k] = fmax(creal(spectrum[k]), 0);
+		power[k] *= (u <= 0         ? 1
+				    : u < 1 ? 0.5 + 0.5 * cos(M_PI * u)
+					    : 0) /
+			    (double)points;
 	}
-	fft_done(fft);
-	fft_free(spectrum);
-	fft_free(r);
-	return status;
+	return positive_spectrum(power, COLOUR_BINS);
 }
 
 int colour_is_white(const double power[COLOUR_BINS], double from)

@@ -1,6 +1,7 @@
 /* following.c - see following.h */
 #include "signal/noise/following.h"
 #include "num/select.h"
+#include "signal/noise/robust.h"
 #include <math.h>
 #include <string.h>
 
@@ -8,20 +9,19 @@
  * the others; a mean, unlike a median, does not jump with the steps of a converter. */
 static const double SHARE = 0.75;
 
-/* That mean for white noise of variance 1: the differences have the variance 70, and the
- * smallest three quarters of normal deviates the mean modulus 0.51490. */
-static const double NORMAL = 8.366600265340756 * 0.51490;
+/* That mean for white noise of variance 1: the mean modulus of the smallest three
+ * quarters of normal deviates. */
+static const double NORMAL = 0.51490;
 
 double following_measure(const double *x, const unsigned char *hidden, size_t n)
 {
-	enum { ORDER = 4, FEWEST = 64 };
+	enum { FEWEST = 64 };
 	double d[FOLLOWING_BLOCK], sum = 0;
 	size_t count = 0, rank;
 
-	for (size_t i = 0; i + ORDER < n; i++)
-		if (!(hidden && memchr(hidden + i, 1, ORDER + 1)))
-			d[count++] = fabs(x[i] - 4 * x[i + 1] + 6 * x[i + 2] -
-					  4 * x[i + 3] + x[i + 4]);
+	for (size_t i = 0; i + 4 < n; i++)
+		if (!(hidden && memchr(hidden + i, 1, 5)))
+			d[count++] = fabs(fourth_difference(x + i));
 	if (count < FEWEST || count < n / 2)
 		return 0;
 	rank = (size_t)(SHARE * (double)count);

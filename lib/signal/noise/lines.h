@@ -28,7 +28,7 @@ void lines_free(struct lines *lines);
 
 /* Reads the next n frames, x[frame * channels + c]: hop of them, fewer (or none) at the
  * end of the stream and only there.  Returns the frames that are now clean and their
- * number, two hops at most, valid until the next call; NULL when out of memory.  A
+ * number, three hops at most, valid until the next call; NULL when out of memory.  A
  * stream that is too short for a fit (16 samples per line) is returned unchanged. */
 const double *lines_run(struct lines *lines, const double *x, size_t n, size_t *clean);
 

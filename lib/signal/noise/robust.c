@@ -20,22 +20,27 @@ double robust_median(double *x, size_t n)
 	return robust_quantile(x, n, 0.5);
 }
 
-double robust_noise(const double *x, size_t n, int order, double *work)
+double robust_scale(double *x, size_t n)
 {
-	double variance = 1;
-	size_t left = n;
-
-	if (order < 1 || order > 16 || n < 16 + (size_t)order)
-		return 0;
 	for (size_t i = 0; i < n; i++)
-		work[i] = x[i];
-	for (int k = 0; k < order; k++, left--)
-		for (size_t i = 0; i + 1 < left; i++)
-			work[i] = work[i + 1] - work[i];
+		x[i] = fabs(x[i]);
+	return 1.482602218505602 * robust_median(x, n);
+}
+
+double robust_spread(double *x, size_t n)
+{
+	double middle = robust_median(x, n);
+
+	for (size_t i = 0; i < n; i++)
+		x[i] -= middle;
+	return robust_scale(x, n);
+}
+
+double robust_noise(const double *x, size_t n, double *work)
+{
+	size_t left = n < 20 ? 0 : n - 4;
+
 	for (size_t i = 0; i < left; i++)
-		work[i] = fabs(work[i]);
-	/* The difference of order p of unit white noise has variance (2p)! / p!^2. */
-	for (int k = 1; k <= order; k++)
-		variance *= (double)(order + k) / k;
-	return 1.482602218505602 * robust_median(work, left) / sqrt(variance);
+		work[i] = fourth_difference(x + i);
+	return robust_scale(work, left);
 }

@@ -2,16 +2,27 @@
 #ifndef SIGNAL_ROBUST_H
 #define SIGNAL_ROBUST_H
 
+#include <math.h>
 #include <stddef.h>
 
 /* Median (upper of the two middle values); 0 for n = 0.  Reorders x. */
 double robust_median(double *x, size_t n);
 /* The value below which this share of x lies. */
 double robust_quantile(double *x, size_t n, double share);
+/* Standard deviation of normal deviates about 0, of which x becomes the moduli, and about
+ * their median. */
+double robust_scale(double *x, size_t n);
+double robust_spread(double *x, size_t n);
 
-/* Standard deviation of the white noise under slow signals: the median of the difference
- * of the given order (1 to 16), which removes slow changes; work holds
- * n values.  0 where n < 16 + order.  White noise gives the same for every order. */
-double robust_noise(const double *x, size_t n, int order, double *work);
+/* Fourth difference of x[0] to x[4], which removes slow changes: that of white noise has
+ * the same standard deviation. */
+static inline double fourth_difference(const double *x)
+{
+	return (x[0] - 4 * x[1] + 6 * x[2] - 4 * x[3] + x[4]) / sqrt(70);
+}
+
+/* Standard deviation of the white noise under slow signals: the median of the fourth
+ * differences; work holds n values.  0 for n < 20. */
+double robust_noise(const double *x, size_t n, double *work);
 
 #endif

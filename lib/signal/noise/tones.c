@@ -1,7 +1,9 @@
 /* tones.c - see tones.h */
 #include "signal/noise/tones.h"
+#include "num/cholesky.h"
 #include "num/dot.h"
 #include "num/fft.h"
+#include "num/parabola.h"
 #include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
@@ -37,10 +39,8 @@ static int by_omega(const void *x, const void *y)
 static void add_periodogram(const struct fft *fft, const double *y, size_t n,
 	double *work, double complex *spectrum, double *power)
 {
-	double mean = 0, limit;
+	double mean = mean_of(y, n), limit;
 
-	for (size_t i = 0; i < n; i++)
-		mean += y[i] / (double)n;
 	for (size_t i = 0; i < n; i++)
 		work[i] = fabs(y[i] - mean);
 	limit = CLIP * robust_median(work, n);
@@ -64,7 +64,6 @@ static int pick_lines(const double *power, size_t n, int max, double *omega)
 	for (size_t k = 3; k + 3 <= n / 2; k++) {
 		size_t from = k > SIDE ? k - SIDE : 0,
 		       to = k + SIDE < n / 2 ? k + SIDE : n / 2;
-		double a, b, c, bend;
 		int m = 0;
 
 		if (power[k] <= power[k - 1] || power[k] < power[k + 1])
@@ -76,13 +75,11 @@ static int pick_lines(const double *power, size_t n, int max, double *omega)
 			continue;
 		/* The main lobe of a Hann window is nearly a parabola in the logarithm.
 		 */
-		a = log(power[k - 1]);
-		b = log(power[k]);
-		c = log(power[k + 1]);
-		bend = a - 2 * b + c;
 		line[count].power = power[k];
-		line[count++].omega = 2 * M_PI / (double)n *
-				      ((double)k + (bend < 0 ? 0.5 * (a - c) / bend : 0));
+		line[count++].omega =
+			2 * M_PI / (double)n *
+			((double)k + parabola_top(log(power[k - 1]), log(power[k]),
+					     log(power[k + 1])));
 	}
 	qsort(line, (size_t)count, sizeof *line, by_power);
 	if (count > max)
@@ -119,8 +116,7 @@ enum num_status tones_find(
 	fft_free(work);
 	fft_free(power);
 	fft_free(spectrum);
-	if (fft)
-		fft_done(fft);
+	fft_done(fft);
 	return status;
 }
 
@@ -189,41 +185,6 @@ static void sum_terms(
 	memcpy(sum, part, sizeof part);
 }
 
-/* Cholesky factor of the symmetric matrix a (lower triangle, rows of TERMS_MAX) in
- * place; NUM_DOMAIN where it is not positive definite. */
-static enum num_status factorise(double *a, int n)
-{
-	for (int i = 0; i < n; i++)
-		for (int k = 0; k <= i; k++) {
-			double sum = a[i * TERMS_MAX + k];
-
-			for (int l = 0; l < k; l++)
-				sum -= a[i * TERMS_MAX + l] * a[k * TERMS_MAX + l];
-			if (k < i)
-				a[i * TERMS_MAX + k] = sum / a[k * TERMS_MAX + k];
-			else if (sum > 1e-10 * a[i * TERMS_MAX + i])
-				a[i * TERMS_MAX + i] = sqrt(sum);
-			else
-				return NUM_DOMAIN;
-		}
-	return NUM_OK;
-}
-
-/* Solves L L^T x = b in place. */
-static void substitute(const double *a, double *b, int n)
-{
-	for (int i = 0; i < n; i++) {
-		for (int l = 0; l < i; l++)
-			b[i] -= a[i * TERMS_MAX + l] * b[l];
-		b[i] /= a[i * TERMS_MAX + i];
-	}
-	for (int i = n - 1; i >= 0; i--) {
-		for (int l = i + 1; l < n; l++)
-			b[i] -= a[l * TERMS_MAX + i] * b[l];
-		b[i] /= a[i * TERMS_MAX + i];
-	}
-}
-
 /* Rotates the pair of rows of every tone by its phase at the first sample of term. */
 static void turn_rows(const struct basis *b, double term[][RUN], double from[][TERMS_MAX],
 	double to[][TERMS_MAX])
@@ -288,21 +249,22 @@ static enum num_status fit_masked(struct basis *b, double term[][RUN], const dou
 	const unsigned char *mask, size_t runs, double *coefficient, double *variance)
 {
 	struct normal s = { { 0 }, { 0 } };
+	size_t terms = (size_t)b->terms;
 
 	for (size_t r = 0; r < runs; r++, term += b->terms, x += RUN, mask += RUN)
 		if (!memchr(mask, 0, RUN))
 			add_whole(&s, b, term, x);
 		else if (memchr(mask, 1, RUN))
 			add_part(&s, b, term, x, mask);
-	if (factorise(s.a, b->terms))
+	if (cholesky_factor(s.a, terms, TERMS_MAX, 1e-10))
 		return NUM_DOMAIN;
-	substitute(s.a, s.b, b->terms);
+	cholesky_solve(s.a, terms, TERMS_MAX, s.b);
 	memcpy(coefficient, s.b, sizeof(double) * (size_t)b->terms);
 	for (int k = 0; variance && k < b->terms; k++) {
 		double unit[TERMS_MAX] = { 0 };
 
 		unit[k] = 1;
-		substitute(s.a, unit, b->terms);
+		cholesky_solve(s.a, terms, TERMS_MAX, unit);
 		variance[k] = unit[k];
 	}
 	return NUM_OK;
@@ -463,6 +425,8 @@ static enum tones_status add_knot(
 
 	if (status == TONES_MEMORY)
 		return status;
+	if (t->keeps_offset)
+		fresh[0] = 0;
 	t->fits += status == TONES_OK;
 	if (status == TONES_SHORT && t->knots > 0)
 		memcpy(fresh, c, sizeof fresh);

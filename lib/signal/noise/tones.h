@@ -52,6 +52,7 @@ void tones_remove(double *x, size_t n, double start, int tones, const double *om
  * next, beyond the first and the last one as well.  The offset is constant there. */
 struct tones_track {
 	int tones;
+	int keeps_offset; /* 1: the offset is not subtracted */
 	double omega[TONES_MAX];
 	long long flat;       /* first sample that still has tones */
 	long long hop, first; /* first: the middle of the first hop */
@@ -69,9 +70,9 @@ struct tones_track {
 void tones_track_start(struct tones_track *t, int tones, const double *omega,
 	long long start, size_t hop);
 
-/* Subtracts tones and offset from the samples that can be cleaned without those from
- * index end on; all, if the record has ended.  x[0] is the sample of index begin.
- * TONES_MEMORY. */
+/* Subtracts tones, and the offset unless it is kept, from the samples that can be cleaned
+ * without those from index end on; all, if the record has ended.  x[0] is the sample of
+ * index begin. TONES_MEMORY. */
 enum tones_status tones_track_run(
 	struct tones_track *t, double *x, long long begin, long long end, int ended);
 

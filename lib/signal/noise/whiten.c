@@ -8,9 +8,6 @@
 
 static const double least_power = 2.5e-5; /* (1/200)^2 */
 
-/* The same for measured power, which is limited by leakage from other frequencies. */
-static const double least_measured = 5e-3;
-
 /* Ratio of measured powers two frequencies apart, from the first on, below which the
  * slope is too steep to be known; the lower frequencies are then lost. */
 static const double steep = 0.18;
@@ -39,51 +36,24 @@ static void find_band(const double *power, size_t n, size_t *first, size_t *last
 			break;
 }
 
-/* Symmetric taps -half..half of the gain at n frequencies, tapered towards the ends. */
-static enum num_status taps_of_gain(const double *gain, size_t n, int half, double *tap)
+/* Symmetric taps -half..half of the gain at n frequencies, tapered towards the ends; gain
+ * is overwritten. */
+static enum num_status taps_of_gain(double *gain, size_t n, int half, double *tap)
 {
-	size_t points = 2 * (n - 1);
-	struct fft *fft = fft_new(points, 1);
-	double complex *spectrum = fft_alloc_complex(n);
-	double *x = fft_alloc(points);
-	enum num_status status = fft && spectrum && x ? NUM_OK : NUM_MEMORY;
+	enum num_status status = fft_even(gain, n);
 
-	if (!status) {
-		for (size_t k = 0; k < n; k++)
-			spectrum[k] = gain[k] / (double)points;
-		fft_inverse(fft, spectrum, x);
-		for (int k = -half; k <= half; k++)
-			tap[k + half] =
-				x[abs(k)] * taper(half + 1 - abs(k), 0, 0.25 * half + 1);
-	}
-	if (fft)
-		fft_done(fft);
-	fft_free(spectrum);
-	fft_free(x);
+	for (int k = -half; k <= half; k++)
+		tap[k + half] = gain[abs(k)] / (double)(2 * (n - 1)) *
+				taper(half + 1 - abs(k), 0, 0.25 * half + 1);
 	return status;
 }
 
 /* Gain at n frequencies of symmetric taps -half..half. */
 static enum num_status gain_of_taps(const double *tap, int half, size_t n, double *gain)
 {
-	size_t points = 2 * (n - 1);
-	struct fft *fft = fft_new(points, 1);
-	double complex *spectrum = fft_alloc_complex(n);
-	double *x = fft_alloc(points);
-	enum num_status status = fft && spectrum && x ? NUM_OK : NUM_MEMORY;
-
-	if (!status) {
-		for (int k = 0; k <= half; k++)
-			x[k] = x[k ? points - (size_t)k : 0] = tap[half + k];
-		fft_forward(fft, x, spectrum);
-		for (size_t k = 0; k < n; k++)
-			gain[k] = creal(spectrum[k]);
-	}
-	if (fft)
-		fft_done(fft);
-	fft_free(spectrum);
-	fft_free(x);
-	return status;
+	for (size_t k = 0; k < n; k++)
+		gain[k] = k <= (size_t)half ? tap[half + (int)k] : 0;
+	return fft_even(gain, n);
 }
 
 /* Drops negligible taps at both ends. */
@@ -209,7 +179,7 @@ enum num_status whitening_of_noise(
 		double part = (double)(k % FINER) / FINER;
 		double least = 1e-12 * most;
 
-		if (from < first || power[from] < least_measured * most)
+		if (from < first || power[from] < least_power * most)
 			between[k] = 0;
 		else
 			between[k] = pow(power[from], 1 - part) *
@@ -248,8 +218,7 @@ enum num_status whitening_of_filter(struct whitening *w, const double *tap, size
 		status = whitening_make(w, power, n, 1, (int)(6 * taps), WHITEN_FILTERED);
 	}
 	free(power);
-	if (fft)
-		fft_done(fft);
+	fft_done(fft);
 	fft_free(spectrum);
 	fft_free(x);
 	return status;

@@ -1,4 +1,5 @@
 /* averaging.c - means of samples, from which pulses of many samples are separated */
+#include "num/dot.h"
 #include "signal/detect/align.h"
 #include "signal/learn/learn.h"
 #include "signal/separate/separate_state.h"
@@ -16,11 +17,6 @@ enum { MOST = 64 };
 /* Samples in whose means the pulses are looked for first. */
 enum { FEW = 8 };
 
-static size_t lesser(size_t a, size_t b)
-{
-	return a < b ? a : b;
-}
-
 int separate_ratio_of(double duration, int limit, int most)
 {
 	int ratio = 1;
@@ -32,10 +28,8 @@ int separate_ratio_of(double duration, int limit, int most)
 
 static void subtract_mean(double *x, size_t n)
 {
-	double mean = 0;
+	double mean = mean_of(x, n);
 
-	for (size_t i = 0; i < n; i++)
-		mean += x[i] / (double)n;
 	for (size_t i = 0; i < n; i++)
 		x[i] -= mean;
 }
@@ -55,17 +49,17 @@ static enum num_status find_lowest_lag(struct tape mean[2], size_t n, double *la
 	return status;
 }
 
-void separate_clear_tapes(struct tape pair[2])
+void separate_clear_tapes(struct tape tape[CHANNELS_MAX])
 {
-	tape_clear(&pair[0]);
-	tape_clear(&pair[1]);
+	for (int c = 0; c < CHANNELS_MAX; c++)
+		tape_clear(&tape[c]);
 }
 
-enum num_status separate_average_tapes(
-	const struct tape tape[2], size_t n, int ratio, struct tape mean[2])
+enum num_status separate_average_tapes(const struct tape tape[CHANNELS_MAX], int channels,
+	size_t n, int ratio, struct tape mean[CHANNELS_MAX])
 {
-	memset(mean, 0, 2 * sizeof *mean);
-	for (int c = 0; c < 2; c++)
+	memset(mean, 0, CHANNELS_MAX * sizeof *mean);
+	for (int c = 0; c < channels; c++)
 		if (tape_average(&tape[c], n, (size_t)ratio, &mean[c]) != NUM_OK)
 			return NUM_MEMORY;
 	return NUM_OK;
@@ -73,10 +67,10 @@ enum num_status separate_average_tapes(
 
 enum num_status separate_guess_ratio(const struct separate *s, int *ratio)
 {
-	struct tape mean[2];
+	struct tape mean[CHANNELS_MAX];
 	double lag = 0;
 	enum num_status status = separate_average_tapes(
-		s->tape, lesser(s->tape[0].n, s->par.learn), FEW, mean);
+		s->tape, 2, lesser(s->tape[0].n, s->par.learn), FEW, mean);
 
 	if (status == NUM_OK && mean[0].n >= SEPARATE_SHORTEST)
 		status = find_lowest_lag(mean, mean[0].n, &lag);
@@ -102,6 +96,6 @@ void separate_convert(struct separate *s, int ratio)
 void separate_average(struct separate *s, int ratio)
 {
 	separate_convert(s, ratio);
-	for (int c = 0; ratio > 1 && c < 2; c++)
-		s->tape[c].ratio = s->quadrature.tape[c].ratio = (size_t)ratio;
+	for (int c = 0; ratio > 1 && c < s->channels; c++)
+		s->tape[c].ratio = (size_t)ratio;
 }

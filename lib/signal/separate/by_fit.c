@@ -13,25 +13,32 @@ static int most_pulses(const struct separate *s, size_t n)
 	return (int)fmin(most, s->par.most_pulses);
 }
 
+/* Subtracts a pulse from channels k of sensor 1 and k + 1 of sensor 2. */
+static void take_off(
+	struct separate *s, long long from, const struct joint_pulse *p, int k)
+{
+	struct tape *one = &s->tape[k], *two = &s->tape[k + 1];
+
+	joint_add(&s->scene, p, -1, one->x + (from - one->begin),
+		two->x + (from + s->cal.shift - two->begin), (size_t)(ready(s) - from));
+}
+
 /* Subtracts the first done of m pulses from the record and carries the others into the
  * next window; returns its first sample. */
 static long long cut_section(
 	struct separate *s, long long from, double boundary, int m, int done)
 {
-	size_t rest = (size_t)(ready(s) - from);
 	double reach = shape_reach(s->cal.shape) * s->cal.duration;
 	long long start = from + (long long)floor(boundary - reach + s->cal.delta_min);
 
 	for (int i = 0; i < done; i++)
-		joint_add(&s->scene, &s->pulse[i], -1, channel_1(s, from),
-			channel_2(s, from), rest);
+		take_off(s, from, &s->pulse[i], 0);
 	for (int i = 0; i < done && s->with_both; i++) {
 		const struct quadrature_pulse *b = &s->both[i];
-		struct joint_pulse p = { .t = b->t, .delta = b->delta, .a = b->b };
-		double *v[2];
 
-		quadrature_at(s, from, v);
-		joint_add(&s->scene, &p, -1, v[0], v[1], rest);
+		take_off(s, from,
+			&(struct joint_pulse){ .t = b->t, .delta = b->delta, .a = b->b },
+			2);
 	}
 	if (start <= from)
 		start = from + 1;
@@ -60,18 +67,12 @@ enum { PATIENCE = 3 };
 static enum separate_status fit_quadrature(
 	struct separate *s, long long from, size_t n, int m, int done, struct goodness *j)
 {
-	const double *x[2] = { channel_1(s, from), channel_2(s, from) };
-	double *v[2];
+	struct channels y = channels_at(s, from);
 	int doubt;
 	enum num_status status;
 
-	s->with_both = 0;
-	if (!s->par.quadrature)
-		return SEPARATE_OK;
-	quadrature_at(s, from, v);
-	status = quadrature_fit(&s->quadrature, s->joint, &s->scene, x,
-		(const double *const[]){ v[0], v[1] }, n, s->pulse, m, j->chi2, s->both,
-		&doubt);
+	status = quadrature_fit(&s->quadrature, s->joint, &s->scene, y.at, y.at + 2, n,
+		s->pulse, m, j->chi2, s->both, &doubt);
 	if (status == NUM_MEMORY)
 		return SEPARATE_MEMORY;
 	s->with_both = status == NUM_OK;
@@ -100,14 +101,15 @@ enum separate_status separate_fit_section(
 	struct account a = { .m = s->carried };
 	enum separate_status status;
 	struct foreign event = { .verdict = SEPARATE_MISFIT };
-	int whole = !cut && !s->continuing && !s->par.quadrature && !s->par.sources;
+	int both = has_quadrature(s);
+	int whole = !cut && !s->continuing && !both && !s->par.sources;
 	int unresolved, shorter;
 	long before = 0, after = 0;
 	size_t n;
 
 	/* The quiet samples on either side of a section show that no pulse extends there.
 	 */
-	if (!s->par.quadrature) {
+	if (!both) {
 		before = s->continuing ? 0 : sections_aside(s->sections, 0);
 		before = from - s->tape[0].begin < before
 				 ? (long)(from - s->tape[0].begin)
@@ -122,16 +124,13 @@ enum separate_status separate_fit_section(
 	for (int c = 0; c < 2; c++)
 		s->scene.tone_knot[c] = (double)(s->tape[c].tones.first - from + before -
 						 (c ? s->cal.shift : 0));
-	if (!s->par.quadrature)
+	if (!both)
 		separate_hide(s, from - before, n);
 	if (a.m > s->scene.max_pulses)
 		a.m = s->scene.max_pulses;
 	memcpy(a.pulse, s->pulse, sizeof a.pulse);
-	status = separate_fit_window(s,
-		(const double *const[]){
-			channel_1(s, from - before), channel_2(s, from - before) },
-		n, cut, &a);
-	if (status == SEPARATE_OK && separate_is_described(&a) && !s->par.quadrature)
+	status = separate_fit_window(s, channels_at(s, from - before).at, n, cut, &a);
+	if (status == SEPARATE_OK && separate_is_described(&a) && !both)
 		status = separate_try_wider(s, from - before, n, cut, &a);
 	if (status == SEPARATE_OK && separate_is_described(&a))
 		status = separate_fit_without_common(s, from - before, n, cut, &a);
@@ -142,17 +141,12 @@ enum separate_status separate_fit_section(
 		return SEPARATE_MEMORY;
 	if (status == SEPARATE_OK && verdict_is_foreign(event.verdict))
 		return give_event(s, from - before, n, to, &event, next);
-	if (status == SEPARATE_OK && s->par.quadrature)
+	if (status == SEPARATE_OK && both)
 		status = fit_quadrature(s, from, n, a.m, a.done, &a.goodness);
 	else if (status == SEPARATE_OK && separate_is_described(&a))
 		separate_follow(s, &a);
 	else if (status == SEPARATE_OK && !s->par.sources)
 		status = separate_try_rivals(s, from - before, n, cut, &a);
-	if (status == SEPARATE_OK && whole && a.m == 0 && a.impulses) {
-		if (separate_find_impulse(s, from - before, n, &event) != NUM_OK)
-			return SEPARATE_MEMORY;
-		return give_event(s, from - before, n, to, &event, next);
-	}
 	for (int i = 0; i < a.m; i++)
 		s->pulse[i].t -= (double)before;
 	a.boundary -= (double)before;

@@ -21,16 +21,16 @@ static void measure_pulse(const double *x, size_t n, double *t, double *a)
 /* Compares the pulses that masks have found in n samples with those of a joint fit.  A
  * mask divides one pulse into several if noise moves the points of its histogram; a pulse
  * farther than a quarter of a duration from every pulse of the fit is a misfit. */
-static enum separate_status confirm(struct separate *s, long long from, size_t n,
-	const double *t, int m, enum separate_verdict *verdict)
+static enum separate_status confirm(struct separate *s, const struct channels *y,
+	size_t n, const double *t, int m, enum separate_verdict *verdict)
 {
 	struct joint_result r;
 	int count = 0, taken[JOINT_PULSES_MAX] = { 0 };
 	enum joint_status status;
 
 	s->scene.max_pulses = s->par.most_pulses;
-	status = joint_fit(s->joint, &s->scene, channel_1(s, from), channel_2(s, from), n,
-		s->pulse, &count, &r);
+	status = joint_fit(
+		s->joint, &s->scene, y->at[0], y->at[1], n, s->pulse, &count, &r);
 	if (status != JOINT_OK)
 		return status == JOINT_MEMORY ? SEPARATE_MEMORY : SEPARATE_WIDE;
 	s->counters.fits++;
@@ -58,19 +58,19 @@ enum separate_status separate_mask_section(
 {
 	struct masks_source source[MASKS_SOURCES_MAX];
 	size_t n = (size_t)(to - from);
-	const double *y1 = channel_1(s, from);
+	struct channels y = channels_at(s, from);
 	double noise = separate_noise_at(s, 0, (double)from);
 	int m;
 	double t[MASKS_SOURCES_MAX], a[MASKS_SOURCES_MAX];
 	enum separate_verdict verdict[MASKS_SOURCES_MAX], all = SEPARATE_ALONE;
 	enum separate_status status;
 
-	if (masks_find(s->masks, y1, channel_2(s, from), n, source, &m) != NUM_OK ||
+	if (masks_find(s->masks, y.at[0], y.at[1], n, source, &m) != NUM_OK ||
 		separate_reserve_sources(s, (size_t)m * n) != SEPARATE_OK)
 		return SEPARATE_MEMORY;
 	/* A single source needs no demixing. */
 	if (m == 1)
-		memcpy(s->source, y1, n * sizeof *y1);
+		memcpy(s->source, y.at[0], n * sizeof *s->source);
 	for (int k = 0; k < m && m > 1; k++)
 		masks_separate(s->masks, k, s->source + (size_t)k * n);
 	s->counters.singles += m == 1;
@@ -83,7 +83,7 @@ enum separate_status separate_mask_section(
 			x[i] *= noise;
 		measure_pulse(x, n, &t[k], &a[k]);
 	}
-	status = confirm(s, from, n, t, m, verdict);
+	status = confirm(s, &y, n, t, m, verdict);
 	if (status != SEPARATE_OK)
 		return status;
 	for (int k = 0; k < m; k++) {

@@ -23,7 +23,7 @@ struct early *early_new(const struct separate_par *given)
 {
 	struct early *e = calloc(1, sizeof *e);
 	struct separate_par par = *given;
-	int any = par.learn == 0 && !par.kept && !par.known.filter && !par.quadrature &&
+	int any = par.learn == 0 && !par.kept && !par.known.filter && par.channels <= 2 &&
 		  par.method == SEPARATE_FIT;
 
 	if (!e)
@@ -52,8 +52,7 @@ void early_free(struct early *e)
 
 /* Early rows are those of the samples that are learned from, whatever the sizes of the
  * pieces. */
-enum separate_status early_push(
-	struct early *e, const double *x, const double *v, size_t n)
+enum separate_status early_push(struct early *e, const double *x, size_t n)
 {
 	if (e->first) {
 		size_t left =
@@ -62,7 +61,7 @@ enum separate_status early_push(
 		if (separate_push(e->first, x, n < left ? n : left) != SEPARATE_OK)
 			end(e);
 	}
-	return separate_push_quadrature(e->whole, x, v, n);
+	return separate_push(e->whole, x, n);
 }
 
 int early_next(struct early *e, struct transit *p)

@@ -17,9 +17,8 @@ struct early;
 struct early *early_new(const struct separate_par *par); /* NULL: no memory */
 void early_free(struct early *e);
 
-/* As those of separate.h; v: the second component, or NULL. */
-enum separate_status early_push(
-	struct early *e, const double *x, const double *v, size_t n);
+/* As those of separate.h. */
+enum separate_status early_push(struct early *e, const double *x, size_t n);
 int early_next(struct early *e, struct transit *p);
 
 /* What separates all samples: for separate_end(), and for what it has learned and

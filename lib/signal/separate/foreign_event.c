@@ -19,9 +19,10 @@ static int has_two_lobes(const struct shape *shape)
 }
 
 static struct foreign_stretch stretch_at(
-	const struct separate *s, const double *y1, const double *y2, size_t n)
+	const struct separate *s, long long at_1, long long at_2, size_t n)
 {
-	return (struct foreign_stretch){ .y = { y1, y2 },
+	return (struct foreign_stretch){ .y = { channels_at(s, at_1).at[0],
+						 channels_at(s, at_2).at[1] },
 		.hidden = { s->scene.hidden[0], s->scene.hidden[1] },
 		.n = n,
 		.shift = (size_t)s->cal.shift,
@@ -43,7 +44,7 @@ static enum num_status look_for_other_half(
 	if (shift <= 0 || end > s->tape[0].clean || end > s->tape[1].clean ||
 		begin < s->tape[1].begin)
 		return NUM_OK;
-	stretch = stretch_at(s, channel_1(s, begin), channel_2(s, begin - shift), n);
+	stretch = stretch_at(s, begin, begin - shift, n);
 	for (int c = 0; c < 2; c++)
 		if (stretch.hidden[c])
 			stretch.hidden[c] =
@@ -62,8 +63,7 @@ static enum num_status look_for_other_half(
 enum num_status separate_find_foreign(
 	struct separate *s, long long from, size_t n, struct foreign *event)
 {
-	struct foreign_stretch stretch =
-		stretch_at(s, channel_1(s, from), channel_2(s, from), n);
+	struct foreign_stretch stretch = stretch_at(s, from, from, n);
 	int lobes = has_two_lobes(s->cal.shape);
 
 	s->same_shock = 0;
@@ -73,13 +73,4 @@ enum num_status separate_find_foreign(
 	return event->verdict == SEPARATE_TRANSIENT
 		       ? look_for_other_half(s, from, n, event)
 		       : NUM_OK;
-}
-
-enum num_status separate_find_impulse(
-	struct separate *s, long long from, size_t n, struct foreign *event)
-{
-	struct foreign_stretch stretch =
-		stretch_at(s, channel_1(s, from), channel_2(s, from), n);
-
-	return foreign_impulse(&stretch, event);
 }

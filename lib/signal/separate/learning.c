@@ -1,4 +1,5 @@
 /* learning.c - the instrument of a record: learned from its first samples, or kept */
+#include "num/dot.h"
 #include "signal/detect/bursts.h"
 #include "signal/detect/spikes.h"
 #include "signal/learn/learn.h"
@@ -29,7 +30,7 @@ static void follow_noise(struct separate *s, size_t n)
 		0.5 * (double)n, (double)n - 2 * (double)c->tone_hop - c->whitening.edge);
 
 	block = block < FOLLOWING_BLOCK ? block : FOLLOWING_BLOCK;
-	if (block < SHORTEST || c->duration < FOLLOWED || s->par.quadrature ||
+	if (block < SHORTEST || c->duration < FOLLOWED || has_quadrature(s) ||
 		c->whitening.tap)
 		return;
 	for (int k = 0; k < 2; k++)
@@ -57,11 +58,12 @@ static enum separate_status start(struct separate *s, size_t n)
 	if (c->whitening.low * 2 * (double)s->par.window > JOINT_BASELINE_MAX)
 		s->par.window = (size_t)fmax(
 			3 * reach, JOINT_BASELINE_MAX / (2 * c->whitening.low));
-	if (tape_start(&s->tape[0], c) != NUM_OK || tape_start(&s->tape[1], c) != NUM_OK)
-		return SEPARATE_MEMORY;
+	for (int k = 0; k < s->channels; k++)
+		if (tape_start(&s->tape[k], c,
+			    k < 2 ? c->mean[k] : mean_of(s->tape[k].x, n),
+			    c->noise[k % 2]) != NUM_OK)
+			return SEPARATE_MEMORY;
 	follow_noise(s, n);
-	if (s->par.quadrature && quadrature_start(&s->quadrature, c, n) != NUM_OK)
-		return SEPARATE_MEMORY;
 	/* Equal pulses on both channels reach the threshold of a pair when each reaches 1
 	 * / sqrt 2 of it. */
 	s->sections = sections_new(c->shape, c->duration, 0.65 * sqrt(c->drop),
@@ -159,11 +161,6 @@ static enum separate_status learn_from(struct separate *s, size_t n, double shar
 	return SEPARATE_FAST;
 }
 
-static size_t lesser(size_t a, size_t b)
-{
-	return a < b ? a : b;
-}
-
 /* Least duration of a pulse, in means, if other components of the record are longer: the
  * more of these is learned from, the better. */
 enum { SHORT = 32 };
@@ -178,12 +175,13 @@ enum { PULSES = 3 };
 static enum separate_status learn_from_means(
 	struct separate *s, int ratio, double *duration)
 {
-	struct tape fine[2] = { s->tape[0], s->tape[1] }, mean[2];
+	struct tape fine[CHANNELS_MAX], mean[CHANNELS_MAX];
 	size_t n;
 	enum separate_status status;
 
 	*duration = 0;
-	if (separate_average_tapes(fine, fine[0].n, ratio, mean) != NUM_OK) {
+	memcpy(fine, s->tape, sizeof fine);
+	if (separate_average_tapes(fine, s->channels, fine[0].n, ratio, mean) != NUM_OK) {
 		separate_clear_tapes(mean);
 		return SEPARATE_MEMORY;
 	}
@@ -196,9 +194,6 @@ static enum separate_status learn_from_means(
 	if (*duration >= SHORT && s->cal.events >= PULSES) {
 		separate_clear_tapes(fine);
 		separate_convert(s, ratio);
-		if (s->par.quadrature &&
-			quadrature_average(&s->quadrature, (size_t)ratio) != NUM_OK)
-			return SEPARATE_MEMORY;
 		return start(s, n);
 	}
 	if (status == SEPARATE_OK)
@@ -350,10 +345,8 @@ enum separate_status separate_learn(struct separate *s)
 			return SEPARATE_MEMORY;
 		if (s->tape[0].n < s->par.learn)
 			break;
-		for (int c = 0; c < 2; c++)
+		for (int c = 0; c < s->channels; c++)
 			tape_drop(&s->tape[c], half);
-		if (s->par.quadrature)
-			quadrature_drop(&s->quadrature, half);
 		s->counters.passed_over += (double)half;
 	}
 	return SEPARATE_OK;
@@ -369,9 +362,11 @@ enum separate_status separate_check_alive(struct separate *s, const double *x, s
 	double before = s->counters.samples;
 
 	for (size_t i = 0; i < 2 * n && before < (double)s->par.learn; i++) {
+		double now = x[i / 2 * (size_t)s->channels + i % 2];
+
 		if (before == 0 && i < 2)
-			s->first[i] = x[i];
-		s->varies[i % 2] |= x[i] != s->first[i % 2];
+			s->first[i] = now;
+		s->varies[i % 2] |= now != s->first[i % 2];
 	}
 	if (before + (double)n < (double)s->par.learn && !s->ended)
 		return SEPARATE_OK;

@@ -8,7 +8,6 @@ enum { LEVEL_BLOCK = 4096 };
 
 void separate_measure_level(struct separate *s)
 {
-	static const int order = 4;
 	double work[LEVEL_BLOCK];
 	long long clean =
 		s->tape[0].clean < s->tape[1].clean ? s->tape[0].clean : s->tape[1].clean;
@@ -22,7 +21,7 @@ void separate_measure_level(struct separate *s)
 		for (int c = 0; c < 2; c++) {
 			const struct tape *t = &s->tape[c];
 			double level = robust_noise(
-				t->x + (s->level_at - t->begin), (size_t)n, order, work);
+				t->x + (s->level_at - t->begin), (size_t)n, work);
 
 			level *= following_at(
 				&t->noise, (double)s->level_at + 0.5 * (double)n);
@@ -36,7 +35,7 @@ void separate_measure_level(struct separate *s)
 	s->level_at = clean;
 }
 
-/* Relative standard error of robust_noise() of order 4 from n samples: that of a median
+/* Relative standard error of robust_noise() from n samples: that of a median
  * of independent deviates is 1.17 / sqrt(n); the correlations rho_k of fourth differences
  * (-0.8, 0.4, -0.11, 0.01) reduce n to n / (1 + 2 sum rho_k^2). */
 static double level_error(double n)

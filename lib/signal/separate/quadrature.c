@@ -1,5 +1,7 @@
 /* quadrature.c - see quadrature.h */
 #include "signal/separate/quadrature.h"
+#include "num/cholesky.h"
+#include "num/dot.h"
 #include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
@@ -34,93 +36,25 @@ struct fit {
 	double *normal, *gradient;
 };
 
-void quadrature_clear(struct quadrature *q)
-{
-	for (int c = 0; c < 2; c++)
-		tape_clear(&q->tape[c]);
-}
-
-enum num_status quadrature_append(struct quadrature *q, const double *v, size_t n)
-{
-	for (int c = 0; c < 2; c++)
-		if (tape_append(&q->tape[c], v + c, n) != NUM_OK)
-			return NUM_MEMORY;
-	return NUM_OK;
-}
-
-enum num_status quadrature_average(struct quadrature *q, size_t ratio)
-{
-	for (int c = 0; c < 2; c++) {
-		struct tape mean;
-		enum num_status status =
-			tape_average(&q->tape[c], q->tape[c].n, ratio, &mean);
-
-		if (status != NUM_OK)
-			return status;
-		tape_clear(&q->tape[c]);
-		q->tape[c] = mean;
-	}
-	return NUM_OK;
-}
-
-void quadrature_drop(struct quadrature *q, size_t n)
-{
-	for (int c = 0; c < 2; c++)
-		tape_drop(&q->tape[c], n);
-}
-
-void quadrature_forget(struct quadrature *q, long long keep)
-{
-	for (int c = 0; c < 2; c++)
-		tape_forget(&q->tape[c], keep);
-}
-
-enum num_status quadrature_start(
-	struct quadrature *q, const struct calibration *c, size_t n)
-{
-	for (int k = 0; k < 2; k++) {
-		q->mean[k] = 0;
-		for (size_t i = 0; i < n; i++)
-			q->mean[k] += q->tape[k].x[i] / (double)n;
-		if (tape_start(&q->tape[k], c) != NUM_OK)
-			return NUM_MEMORY;
-	}
-	return NUM_OK;
-}
-
-enum num_status quadrature_prepare(
-	struct quadrature *q, const struct calibration *c, int ended)
-{
-	struct calibration same = *c;
-
-	memcpy(same.mean, q->mean, sizeof same.mean);
-	for (int k = 0; k < 2; k++)
-		if (tape_prepare(&q->tape[k], &same, k, ended) != NUM_OK)
-			return NUM_MEMORY;
-	return NUM_OK;
-}
-
 /* Variances of x, v, x + v and x - v in fourth differences, where pulses are small. */
 enum num_status quadrature_measure(struct quadrature *q, const double *const x[2],
 	const double *const v[2], size_t n)
 {
-	enum { ORDER = 4 };
 	double *sum = malloc((n ? n : 1) * sizeof *sum),
 	       *work = malloc((n ? n : 1) * sizeof *work);
 
 	for (int c = 0; c < 2 && sum && work; c++) {
-		double one = robust_noise(x[c], n, ORDER, work),
-		       two = robust_noise(v[c], n, ORDER, work), plus, minus, r,
-		       determinant;
+		double one = robust_noise(x[c], n, work),
+		       two = robust_noise(v[c], n, work), plus, minus, r, determinant;
 
 		if (!(one > 0) || !(two > 0)) /* too short or without noise */
 			one = two = 1;
 		for (size_t i = 0; i < n; i++)
 			sum[i] = x[c][i] / one + v[c][i] / two;
-		plus = robust_noise(sum, n, ORDER, work);
+		plus = robust_noise(sum, n, work);
 		for (size_t i = 0; i < n; i++)
 			sum[i] = x[c][i] / one - v[c][i] / two;
-		minus = robust_noise(sum, n, ORDER, work);
+		minus = robust_noise(sum, n, work);
 		r = (plus * plus - minus * minus) / (plus * plus + minus * minus);
 		/* limited: the difference of equal components would have no error */
 		r = isfinite(r) ? fmax(fmin(r, 0.99), -0.99) : 0;
@@ -147,15 +81,6 @@ double quadrature_noise(const struct quadrature *q)
 			most, sqrt(m[0][0] / (m[0][0] * m[1][1] - m[0][1] * m[0][1])));
 	}
 	return most;
-}
-
-static double dot(const double *x, const double *y, size_t n)
-{
-	double sum = 0;
-
-	for (size_t i = 0; i < n; i++)
-		sum += x[i] * y[i];
-	return sum;
 }
 
 static void fit_free(struct fit *f)
@@ -296,14 +221,8 @@ static int component_of(const struct quadrature_pulse *p, int k, double weight[2
 static double product(
 	const struct fit *f, const struct part *x, int k, const struct part *y, int l)
 {
-	long first = x->first > y->first ? x->first : y->first;
-	long xend = x->first + (long)x->n, yend = y->first + (long)y->n;
-	long end = xend < yend ? xend : yend;
-	double sum = 0;
+	double sum = dot_within(x->f[k], x->n, y->f[l], y->n, x->first - y->first);
 
-	if (end > first)
-		sum = dot(x->f[k] + (first - x->first), y->f[l] + (first - y->first),
-			(size_t)(end - first));
 	for (int b = 0; b < f->basis; b++)
 		sum -= x->along[k][b] * y->along[l][b];
 	return sum;
@@ -364,37 +283,10 @@ static void make_block(struct fit *f, const struct quadrature_pulse *p, int i, i
 		}
 }
 
-/* Cholesky factor of the normal matrix in its place; NUM_DOMAIN: it is singular. */
+/* Factor of the normal matrix in its place; NUM_DOMAIN: it is singular. */
 static enum num_status factorise(double *a, int n)
 {
-	for (int i = 0; i < n; i++) {
-		double *row = a + (size_t)i * (size_t)n, pivot;
-
-		for (int k = 0; k < i; k++) {
-			const double *other = a + (size_t)k * (size_t)n;
-
-			row[k] = (row[k] - dot(row, other, (size_t)k)) / other[k];
-		}
-		pivot = row[i] - dot(row, row, (size_t)i);
-		if (!(pivot > 1e-13 * row[i]))
-			return NUM_DOMAIN;
-		row[i] = sqrt(pivot);
-	}
-	return NUM_OK;
-}
-
-static void solve(const double *a, int n, double *x)
-{
-	for (int i = 0; i < n; i++) {
-		const double *row = a + (size_t)i * (size_t)n;
-
-		x[i] = (x[i] - dot(row, x, (size_t)i)) / row[i];
-	}
-	for (int i = n - 1; i >= 0; i--) {
-		x[i] /= a[i * n + i];
-		for (int k = 0; k < i; k++)
-			x[k] -= a[i * n + k] * x[i];
-	}
+	return cholesky_factor(a, (size_t)n, (size_t)n, 1e-13);
 }
 
 /* Normal matrix, factorised, and gradient of the parts as they are; NUM_DOMAIN:
@@ -431,7 +323,7 @@ static enum num_status guess_quadrature(struct fit *f, struct quadrature_pulse *
 		f->gradient[i] = f->gradient[PARAMETERS * i + B];
 	if (factorise(a, m) != NUM_OK)
 		return NUM_DOMAIN;
-	solve(a, m, f->gradient);
+	cholesky_solve(a, (size_t)m, (size_t)m, f->gradient);
 	for (int i = 0; i < m; i++)
 		p[i].b = f->gradient[i];
 	return NUM_OK;
@@ -459,13 +351,14 @@ static enum num_status improve(struct fit *f, struct quadrature_pulse *p, double
 {
 	enum { STEPS = 8, HALVES = 4 };
 	struct quadrature_pulse trial[JOINT_PULSES_MAX];
+	size_t all = PARAMETERS * (size_t)f->m;
 
 	for (int step = 0; step < STEPS; step++) {
 		double after = INFINITY, gain;
 
 		if (make_normal(f, p) != NUM_OK)
 			return NUM_DOMAIN;
-		solve(f->normal, PARAMETERS * f->m, f->gradient);
+		cholesky_solve(f->normal, all, all, f->gradient);
 		for (int k = 0; k < HALVES && !(after < *chi2); k++) {
 			for (int i = 0; i < f->m; i++)
 				trial[i] = moved(f, &p[i], f->gradient + PARAMETERS * i,
@@ -486,14 +379,14 @@ static enum num_status improve(struct fit *f, struct quadrature_pulse *p, double
 
 static void fill_covariance(struct fit *f, struct quadrature_pulse *p)
 {
-	int all = PARAMETERS * f->m;
+	size_t all = PARAMETERS * (size_t)f->m;
 	double *x = f->gradient;
 
 	for (int i = 0; i < f->m; i++)
 		for (int k = 0; k < PARAMETERS; k++) {
-			memset(x, 0, (size_t)all * sizeof *x);
+			memset(x, 0, all * sizeof *x);
 			x[PARAMETERS * i + k] = 1;
-			solve(f->normal, all, x);
+			cholesky_solve(f->normal, all, all, x);
 			for (int l = 0; l < PARAMETERS; l++)
 				p[i].cov[k][l] = x[PARAMETERS * i + l];
 		}

@@ -14,13 +14,11 @@
 #ifndef SIGNAL_QUADRATURE_H
 #define SIGNAL_QUADRATURE_H
 
+#include "num/status.h"
 #include "signal/fit/joint.h"
-#include "signal/separate/tape.h"
 
-/* Zeroed: empty. */
+/* Zeroed: not measured. */
 struct quadrature {
-	struct tape tape[2];
-	double mean[2];
 	int measured;
 	/* Inverse of the covariance of the noise of (x, v), both in units of the noise of
 	 * x, for each sensor. */
@@ -33,18 +31,6 @@ struct quadrature_pulse {
 	double cov[4][4]; /* of t, t + delta, a, b */
 };
 
-void quadrature_clear(struct quadrature *q);
-/* n frames of two channels, the second component of either sensor. */
-enum num_status quadrature_append(struct quadrature *q, const double *v, size_t n);
-/* Replaces its samples by the means of each ratio of them (tape.h). */
-enum num_status quadrature_average(struct quadrature *q, size_t ratio);
-void quadrature_drop(struct quadrature *q, size_t n);
-void quadrature_forget(struct quadrature *q, long long keep);
-/* With what was learned from the first n samples (0: before) of x. */
-enum num_status quadrature_start(
-	struct quadrature *q, const struct calibration *c, size_t n);
-enum num_status quadrature_prepare(
-	struct quadrature *q, const struct calibration *c, int ended);
 /* The noise, from n prepared samples of x and v. */
 enum num_status quadrature_measure(struct quadrature *q, const double *const x[2],
 	const double *const v[2], size_t n);

@@ -11,7 +11,7 @@ static int hide_spikes(struct separate *s, long long from, size_t n)
 	size_t found = 0;
 
 	for (int c = 0; c < 2; c++) {
-		const double *y = c ? channel_2(s, from) : channel_1(s, from);
+		const double *y = channels_at(s, from).at[c];
 		const unsigned char *known = s->scene.hidden[c];
 		unsigned char *flags = s->spikes + (size_t)c * n;
 
@@ -53,7 +53,7 @@ enum separate_status separate_try_wider(
 	struct separate *s, long long from, size_t n, int cut, struct account *a)
 {
 	const struct joint_scene plain = s->scene;
-	const double *const y[2] = { channel_1(s, from), channel_2(s, from) };
+	const struct channels y = channels_at(s, from);
 	struct account wide = { .m = 0 };
 	enum separate_status status;
 
@@ -61,7 +61,7 @@ enum separate_status separate_try_wider(
 		return SEPARATE_OK;
 	separate_widen(s);
 	s->scene.max_pulses = a->m - 1;
-	status = separate_fit_window(s, y, n, cut, &wide);
+	status = separate_fit_window(s, y.at, n, cut, &wide);
 	s->scene = plain;
 	if (status != SEPARATE_OK)
 		return status;
@@ -69,15 +69,15 @@ enum separate_status separate_try_wider(
 		*a = wide;
 		return SEPARATE_OK;
 	}
-	return separate_fit_window(s, y, n, cut, a);
+	return separate_fit_window(s, y.at, n, cut, a);
 }
 
 enum separate_status separate_try_rivals(
 	struct separate *s, long long from, size_t n, int cut, struct account *a)
 {
-	enum { IMPULSES, VELOCITIES, SIGNS, BOTH, RIVALS };
+	enum { IMPULSES, VELOCITIES, SIGNS, RIVALS };
 	const struct joint_scene plain = s->scene;
-	const double *const y[2] = { channel_1(s, from), channel_2(s, from) };
+	const struct channels y = channels_at(s, from);
 	enum separate_status status = SEPARATE_OK;
 	int found = 0, most, tried;
 
@@ -96,16 +96,15 @@ enum separate_status separate_try_rivals(
 			continue;
 		if (k == VELOCITIES)
 			separate_widen(s);
-		s->scene.signs = k >= SIGNS;
-		if ((k == IMPULSES || k == BOTH) &&
-			(s->cal.whitening.tap || !hide_spikes(s, from, n)))
+		s->scene.signs = k == SIGNS;
+		if (k == IMPULSES && (s->cal.whitening.tap || !hide_spikes(s, from, n)))
 			continue;
-		status = separate_fit_window(s, y, n, cut, &rival);
+		status = separate_fit_window(s, y.at, n, cut, &rival);
 		found = status == SEPARATE_OK && separate_is_described(&rival) &&
 			rival.m <= most;
 		if (found) {
 			*a = rival;
-			a->impulses = k == IMPULSES || k == BOTH;
+			a->impulses = k == IMPULSES;
 		}
 	}
 	s->scene = plain;

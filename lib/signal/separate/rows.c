@@ -175,13 +175,16 @@ enum separate_status separate_dense_section(
 		.verdict = SEPARATE_UNRESOLVED };
 	double length = (double)(to - from);
 	double noise = separate_noise_at(s, 0, (double)from + length / 2);
+	struct channels y = channels_at(s, from);
 	struct campbell c;
 
 	if (!entry)
 		return SEPARATE_MEMORY;
 	p = &entry->row;
-	campbell_estimate(channel_1(s, from), channel_2(s, from), (size_t)(to - from),
-		s->cal.shape, s->cal.duration, s->scene.gain, &c);
+	campbell_estimate(y.at[0], y.at[1], (size_t)(to - from), s->cal.shape,
+		s->cal.duration, s->scene.gain, &c);
+	campbell_compare(y.at[0], y.at[1], (size_t)(to - from), s->cal.shape,
+		s->cal.duration, s->scene.gain, &c);
 	campbell_scale(&c, noise);
 	p->section = s->number;
 	p->sources =
@@ -197,6 +200,10 @@ enum separate_status separate_dense_section(
 	p->verdict = SEPARATE_UNRESOLVED;
 	s->counters.unresolved++;
 	s->counters.dense += length;
+	if (isfinite(c.unlike)) {
+		s->counters.compared += length;
+		s->counters.unlike += length * c.unlike * c.unlike;
+	}
 	entry->evidence.group = ++s->group;
 	entry->evidence.fits = !s->strange;
 	s->counters.covered += s->strange ? length : 0;

@@ -10,6 +10,7 @@ struct separate *separate_new(const struct separate_par *par)
 	if (!s)
 		return NULL;
 	s->par = *par;
+	s->channels = par->channels > 2 ? CHANNELS_MAX : 2;
 	s->default_learn = par->learn == 0;
 	s->par.learn = s->default_learn ? SEPARATE_LEARN : par->learn;
 	if (s->par.learn < SEPARATE_SHORTEST)
@@ -42,9 +43,7 @@ void separate_free(struct separate *s)
 	joint_free(s->joint);
 	masks_free(s->masks);
 	separate_clear_common(s);
-	for (int c = 0; c < 2; c++)
-		tape_clear(&s->tape[c]);
-	quadrature_clear(&s->quadrature);
+	separate_clear_tapes(s->tape);
 	for (size_t i = 0; i < s->reports; i++)
 		free(s->report[i].source);
 	free(s->report);
@@ -86,10 +85,11 @@ static const double CROWD = 2.5;
  * which gives a lower bound of their rate. */
 static int is_crowded(struct separate *s, long long from, long long to)
 {
+	struct channels y = channels_at(s, from);
 	struct campbell c;
 
-	campbell_estimate(channel_1(s, from), channel_2(s, from), (size_t)(to - from),
-		s->cal.shape, s->cal.duration, s->scene.gain, &c);
+	campbell_estimate(y.at[0], y.at[1], (size_t)(to - from), s->cal.shape,
+		s->cal.duration, s->scene.gain, &c);
 	return (c.rate - c.rate_se) * s->cal.duration > CROWD;
 }
 
@@ -108,28 +108,13 @@ int separate_instrument(const struct separate *s, struct instrument *view)
 	return 1;
 }
 
-static enum num_status measure_quadrature(struct separate *s, long long upto)
-{
-	const double *x[2] = { channel_1(s, s->done), channel_2(s, s->done) };
-	double *v[2];
-
-	quadrature_at(s, s->done, v);
-	return quadrature_measure(&s->quadrature, x,
-		(const double *const[]){ v[0], v[1] }, (size_t)(upto - s->done));
-}
-
 static enum num_status scan(struct separate *s, long long limit)
 {
-	const double *y[2] = { channel_1(s, s->done), channel_2(s, s->done) };
-	double *v[2] = { NULL, NULL }, scale = 0;
+	struct channels y = channels_at(s, s->done);
+	double scale = has_quadrature(s) ? 1 / quadrature_noise(&s->quadrature) : 0;
 
-	if (s->par.quadrature) {
-		quadrature_at(s, s->done, v);
-		scale = 1 / quadrature_noise(&s->quadrature);
-	}
-	return sections_scan_quadrature(s->sections, y,
-		s->par.quadrature ? (const double *const[]){ v[0], v[1] } : NULL, scale,
-		s->done, (size_t)(limit - s->done),
+	return sections_scan(s->sections, y.at, s->channels, scale, s->done,
+		(size_t)(limit - s->done),
 		s->ended ? limit : limit - sections_reach(s->sections));
 }
 
@@ -138,18 +123,16 @@ static enum separate_status work(struct separate *s)
 {
 	long long limit, longest, keep;
 	struct section section;
+	struct channels y;
 
-	for (int c = 0; c < 2; c++)
-		if (tape_prepare(&s->tape[c], &s->cal, c, s->ended) != NUM_OK)
+	for (int c = 0; c < s->channels; c++)
+		if (tape_prepare(&s->tape[c], &s->cal, s->ended) != NUM_OK)
 			return SEPARATE_MEMORY;
-	if (s->par.quadrature &&
-		quadrature_prepare(&s->quadrature, &s->cal, s->ended) != NUM_OK)
-		return SEPARATE_MEMORY;
 	separate_measure_level(s);
 	limit = ready(s);
 	if (limit <= s->done)
 		return SEPARATE_OK;
-	if (!s->looked || s->par.quadrature > s->quadrature.measured) {
+	if (!s->looked || has_quadrature(s) > s->quadrature.measured) {
 		/* Always the same samples, whatever the sizes of the pieces passed. */
 		long long upto = s->done + (long long)s->par.learn / 2;
 
@@ -164,7 +147,10 @@ static enum separate_status work(struct separate *s)
 		/* Too few samples to remove what is common. */
 		if (s->par.clearly && (s->crowded || s->common.correlation != 0))
 			return SEPARATE_NO_LAG;
-		if (s->par.quadrature && measure_quadrature(s, upto) != NUM_OK)
+		y = channels_at(s, s->done);
+		if (has_quadrature(s) &&
+			quadrature_measure(&s->quadrature, y.at, y.at + 2,
+				(size_t)(upto - s->done)) != NUM_OK)
 			return SEPARATE_MEMORY;
 	}
 	if (scan(s, limit) != NUM_OK)
@@ -235,9 +221,8 @@ static enum separate_status work(struct separate *s)
 		s->done = 0;
 	keep = (s->done < s->level_at ? s->done : s->level_at) -
 	       sections_reach(s->sections) - separate_common_reach(s);
-	for (int c = 0; c < 2; c++)
+	for (int c = 0; c < s->channels; c++)
 		tape_forget(&s->tape[c], keep);
-	quadrature_forget(&s->quadrature, s->done);
 	if (s->holding && (s->ended || s->done >= s->hold)) {
 		s->holding = 0;
 		return separate_judge_rows(s);
@@ -245,21 +230,13 @@ static enum separate_status work(struct separate *s)
 	return SEPARATE_OK;
 }
 
-enum separate_status separate_push(struct separate *s, const double *x, size_t n)
-{
-	return separate_push_quadrature(s, x, NULL, n);
-}
-
-static enum separate_status push(
-	struct separate *s, const double *x, const double *v, size_t n)
+static enum separate_status push(struct separate *s, const double *x, size_t n)
 {
 	enum separate_status status = SEPARATE_OK;
 
-	if (tape_append(&s->tape[0], x, n) != NUM_OK ||
-		tape_append(&s->tape[1], x + 1, n) != NUM_OK)
-		return SEPARATE_MEMORY;
-	if (v && quadrature_append(&s->quadrature, v, n) != NUM_OK)
-		return SEPARATE_MEMORY;
+	for (int c = 0; c < s->channels; c++)
+		if (tape_append(&s->tape[c], x + c, n, (size_t)s->channels) != NUM_OK)
+			return SEPARATE_MEMORY;
 	if (s->par.kept)
 		status = separate_check_alive(s, x, n);
 	s->counters.samples += (double)n / s->ratio;
@@ -273,21 +250,21 @@ static enum separate_status push(
 }
 
 /* What is learned from ends at the same samples whatever the sizes of the pieces. */
-enum separate_status separate_push_quadrature(
-	struct separate *s, const double *x, const double *v, size_t n)
+enum separate_status separate_push(struct separate *s, const double *x, size_t n)
 {
+	size_t channels = (size_t)s->channels;
 	enum separate_status status = SEPARATE_OK;
 
-	for (size_t i = 0; i < 2 * n; i++)
+	for (size_t i = 0; i < channels * n; i++)
 		if (!isfinite(x[i])) {
 			s->bad_frame = (long long)(s->counters.samples * s->ratio) +
-				       (long long)(i / 2);
-			s->bad_channel = (int)(i % 2);
+				       (long long)(i / channels);
+			s->bad_channel = (int)(i % channels);
 			return SEPARATE_NOT_FINITE;
 		}
 	for (size_t at = 0, some; at < n && status == SEPARATE_OK; at += some) {
 		some = separate_wants(s) < n - at ? separate_wants(s) : n - at;
-		status = push(s, x + 2 * at, v ? v + 2 * at : NULL, some);
+		status = push(s, x + channels * at, some);
 	}
 	return status;
 }
@@ -317,6 +294,10 @@ static const double REVERSED = 0.9;
  * to hold 98 % of those that can be found. */
 static const double COVERED = 0.02;
 
+/* Relative difference of the spectra, of the record and of the pulse, from which on the
+ * sums by Campbell's theorem are not believed. */
+static const double UNLIKE = 0.2;
+
 /* If more than a tenth of the rows, and more than two, fit no particle, the pulses are
  * not those that were learned, and other rows may be wrong, too. */
 enum separate_doubt separate_doubtful(const struct separate *s)
@@ -334,5 +315,7 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 	if (c->misfits > 2 &&
 		10 * c->misfits > c->rows + c->unresolved + c->events[SEPARATE_TRANSIENT])
 		return SEPARATE_FOREIGN;
+	if (c->unlike > UNLIKE * UNLIKE * c->compared)
+		return SEPARATE_UNLIKE;
 	return c->covered > COVERED * c->samples ? SEPARATE_COVERED : SEPARATE_BELIEVED;
 }

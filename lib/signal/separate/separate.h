@@ -44,8 +44,8 @@ struct transit {
 	double amplitude; /* at sensor 1, units of the record */
 	double t1_se, t2_se, delay_se, amplitude_se;
 	double correlation; /* between the errors of delay and amplitude */
-	/* Of a record of two components (separate_push_quadrature()), rad: then amplitude
-	 * is that of both.  NAN: unknown. */
+	/* Of a record of four channels, rad: then amplitude is that of both components.
+	 * NAN: unknown. */
 	double phase, phase_se;
 	double chi2; /* of the section per degree of freedom */
 	enum separate_verdict verdict;
@@ -78,7 +78,9 @@ struct separate_par {
 	int most_pulses; /* limit for a window; 0: JOINT_PULSES_MAX */
 	/* Of the masks, samples; 0: 64, or as many as the pulses need, and half of it. */
 	size_t mask_window, mask_hop;
-	int quadrature;          /* 1: the record has two components; SEPARATE_FIT only */
+	/* 2 (0: 2), or with SEPARATE_FIT 4: the second component of both (quadrature.h)
+	 * behind them. */
+	int channels;
 	struct instrument *kept; /* learned before, with known: its cal is taken over;
 				    NULL: learn */
 	int want_sources;        /* fill separate_section.source */
@@ -120,6 +122,8 @@ struct separate_counters {
 	double masks, masks_skipped; /* sections demixed, and those with one source, which
 					need not be */
 	double unresolved, dense;    /* rows, and the samples these stand for */
+	double compared, unlike; /* samples of them whose spectrum was compared with that
+				    of the pulse, and the sum of its squared difference */
 	double covered; /* samples of events in which no particle would be found */
 };
 
@@ -132,11 +136,8 @@ void separate_free(struct separate *s);
  * these. */
 int separate_ratio(const struct separate *s);
 
-/* n frames of two channels, interleaved. */
+/* n frames of all channels, interleaved. */
 enum separate_status separate_push(struct separate *s, const double *x, size_t n);
-/* The same with the second component of both (quadrature.h) in v. */
-enum separate_status separate_push_quadrature(
-	struct separate *s, const double *x, const double *v, size_t n);
 /* NO_LAG, HARD, AT_ONCE and FAST from separate_end() only: there was nothing to learn
  * from. */
 enum separate_status separate_end(struct separate *s);
@@ -160,11 +161,12 @@ enum separate_doubt {
 	SEPARATE_REVERSED,   /* nine tenths of the pulses are those of the kept instrument
 				with their sign changed */
 	SEPARATE_CROWD,      /* more than half is unresolved, unlike its record */
+	SEPARATE_UNLIKE,     /* what is unresolved has not the spectrum of the pulse */
 	SEPARATE_COVERED,    /* particles are lost under events that are none */
 	SEPARATE_UNEXPLAINED /* nothing could be learned, but the record is not noise */
 };
 enum separate_doubt separate_doubtful(const struct separate *s);
-/* Frame and channel (0, 1) that made it fail with NOT_FINITE. */
+/* Frame and channel (from 0) that made it fail with NOT_FINITE. */
 long long separate_bad_sample(const struct separate *s, int *channel);
 
 #endif

@@ -12,6 +12,9 @@
 #include "signal/separate/together.h"
 #include "signal/separate/validate.h"
 
+/* Of sensors 1 and 2; the second components of either follow (quadrature.h). */
+enum { CHANNELS_MAX = 4 };
+
 /* A row that may not have been judged yet. */
 struct entry {
 	struct transit row;
@@ -63,7 +66,8 @@ struct separate {
 	int crowded;    /* 1: long sections hold too many pulses */
 	int ratio;      /* samples of the record in one of tape */
 	size_t awaited; /* samples of tape to learn from means */
-	struct tape tape[2];
+	int channels;   /* of the record */
+	struct tape tape[CHANNELS_MAX];
 	struct sections *sections;
 	struct joint *joint;
 	struct masks *masks;
@@ -124,24 +128,29 @@ struct account {
 	struct goodness goodness;
 };
 
-static inline double *channel_1(struct separate *s, long long at)
+/* Channels from a sample of sensor 1 on, those of sensor 2 aligned. */
+struct channels {
+	const double *at[CHANNELS_MAX];
+};
+
+static inline struct channels channels_at(const struct separate *s, long long at)
 {
-	return s->tape[0].x + (at - s->tape[0].begin);
+	struct channels y = { { NULL } };
+
+	for (int c = 0; c < s->channels; c++)
+		y.at[c] = s->tape[c].x +
+			  (at + (c % 2 ? s->cal.shift : 0) - s->tape[c].begin);
+	return y;
 }
 
-static inline double *channel_2(struct separate *s, long long at)
+static inline size_t lesser(size_t a, size_t b)
 {
-	return s->tape[1].x + (at + s->cal.shift - s->tape[1].begin);
+	return a < b ? a : b;
 }
 
-/* The second components, aligned like channel_1() and channel_2(). */
-static inline void quadrature_at(struct separate *s, long long at, double *v[2])
+static inline int has_quadrature(const struct separate *s)
 {
-	for (int c = 0; c < 2; c++) {
-		const struct tape *t = &s->quadrature.tape[c];
-
-		v[c] = t->x + (at + (c ? s->cal.shift : 0) - t->begin);
-	}
+	return s->channels > 2;
 }
 
 /* Samples before this one are prepared on both channels, aligned. */
@@ -214,11 +223,11 @@ int separate_ratio_of(double duration, int limit, int most);
 enum num_status separate_guess_ratio(const struct separate *s, int *ratio);
 /* par.learn, of means. */
 size_t separate_learned_means(const struct separate *s, int ratio);
-/* The means of the n oldest samples; separate_clear_tapes() frees them, also on failure.
- */
-enum num_status separate_average_tapes(
-	const struct tape tape[2], size_t n, int ratio, struct tape mean[2]);
-void separate_clear_tapes(struct tape pair[2]);
+/* The means of the n oldest samples of so many channels; separate_clear_tapes() frees
+ * them, also on failure. */
+enum num_status separate_average_tapes(const struct tape tape[CHANNELS_MAX], int channels,
+	size_t n, int ratio, struct tape mean[CHANNELS_MAX]);
+void separate_clear_tapes(struct tape tape[CHANNELS_MAX]);
 /* Converts what is known in samples to means. */
 void separate_convert(struct separate *s, int ratio);
 /* Has the samples of a record that has not begun averaged. */
@@ -236,9 +245,9 @@ int separate_is_other_noise(const struct separate *s);
 /* Excludes the samples that the converter has not measured from the fit.  Not if the
  * record was whitened, which spreads them over others. */
 void separate_hide(struct separate *s, long long from, size_t n);
-/* Fits a window of n samples of either channel, with the first a->m pulses of a as
+/* Fits a window of n samples of channels y, with the first a->m pulses of a as
  * guesses, and judges the fit. */
-enum separate_status separate_fit_window(struct separate *s, const double *const y[2],
+enum separate_status separate_fit_window(struct separate *s, const double *const y[],
 	size_t n, int cut, struct account *a);
 /* Keeps of the last fit what the next one overwrites. */
 void separate_keep_fit(struct separate *s, const struct account *a);
@@ -278,9 +287,8 @@ void separate_set_gain(struct separate *s, long long from);
 enum separate_status separate_try_wider(
 	struct separate *s, long long from, size_t n, int cut, struct account *a);
 /* Tries other explanations of a window that pulses of one sign do not describe: impulses
- * beside the pulses, a wider range of velocities, pulses of both signs, and these with
- * impulses.  One is accepted if it describes the window with no more pulses than before.
- */
+ * beside the pulses, a wider range of velocities, and pulses of both signs.  One is
+ * accepted if it describes the window with no more pulses than before. */
 enum separate_status separate_try_rivals(
 	struct separate *s, long long from, size_t n, int cut, struct account *a);
 
@@ -288,9 +296,6 @@ enum separate_status separate_try_rivals(
 
 /* Names the event in [from, from + n), if it is one that is no particle. */
 enum num_status separate_find_foreign(
-	struct separate *s, long long from, size_t n, struct foreign *event);
-/* The largest impulse in it; only impulses are there. */
-enum num_status separate_find_impulse(
 	struct separate *s, long long from, size_t n, struct foreign *event);
 
 /* by_fit.c */

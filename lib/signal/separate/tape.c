@@ -59,18 +59,18 @@ static void put_part(struct tape *t, double x, size_t lost)
 	t->sum = t->lost = 0;
 }
 
-enum num_status tape_append(struct tape *t, const double *x, size_t n)
+enum num_status tape_append(struct tape *t, const double *x, size_t n, size_t stride)
 {
 	if (reserve(t, t->ratio ? n / t->ratio + 1 : n) != NUM_OK)
 		return NUM_MEMORY;
-	for (size_t i = 0; i < n; i++) {
-		size_t lost = converter_next(&t->converter, x[2 * i]);
+	for (; n > 0; n--, x += stride) {
+		size_t lost = converter_next(&t->converter, *x);
 
 		if (t->ratio) {
-			put_part(t, x[2 * i], lost);
+			put_part(t, *x, lost);
 			continue;
 		}
-		put(t, x[2 * i], 0);
+		put(t, *x, 0);
 		lost = lost < t->n ? lost : t->n; /* the others are no longer stored */
 		memset(t->hidden + t->n - lost, 1, lost);
 	}
@@ -122,11 +122,14 @@ void tape_forget(struct tape *t, long long keep)
 	tape_drop(t, old > t->n ? t->n : old);
 }
 
-enum num_status tape_start(struct tape *t, const struct calibration *c)
+enum num_status tape_start(
+	struct tape *t, const struct calibration *c, double mean, double scale)
 {
 	const struct whitening *w = &c->whitening;
 	size_t taps = 2 * (size_t)w->half + 1;
 
+	t->mean = mean;
+	t->scale = scale;
 	t->fed = t->white = t->flat = t->clean;
 	tones_track_start(&t->tones, c->tones, c->omega, t->flat, c->tone_hop);
 	if (!w->tap)
@@ -143,8 +146,7 @@ static void scale(struct tape *t, long long from, long long to, double noise)
 }
 
 /* Subtracts the tones and divides by the noise. */
-static enum num_status clean(
-	struct tape *t, const struct calibration *c, double noise, int ended)
+static enum num_status clean(struct tape *t, const struct calibration *c, int ended)
 {
 	long long from = t->flat;
 
@@ -155,13 +157,13 @@ static enum num_status clean(
 			return NUM_MEMORY;
 		t->flat = t->tones.flat;
 	}
-	scale(t, from, t->flat, noise);
+	scale(t, from, t->flat, t->scale);
 	return NUM_OK;
 }
 
 /* Undoes the filter in whole blocks, so that the results do not depend on the sizes of
  * the pieces; output lags behind input. */
-static void whiten(struct tape *t, const struct whitening *w, double mean, int ended)
+static void whiten(struct tape *t, const struct whitening *w, int ended)
 {
 	long long end = t->begin + (long long)t->n, last = end - w->edge, block;
 
@@ -172,8 +174,9 @@ static void whiten(struct tape *t, const struct whitening *w, double mean, int e
 	block = (long long)fir_block(t->whiten);
 	while (ended ? t->white < last : t->fed + block <= end) {
 		for (long long i = 0; i < block; i++)
-			t->piece[i] =
-				t->fed + i < end ? t->x[t->fed + i - t->begin] - mean : 0;
+			t->piece[i] = t->fed + i < end
+					      ? t->x[t->fed + i - t->begin] - t->mean
+					      : 0;
 		fir_run(t->whiten, t->piece, (size_t)block);
 		for (long long i = 0; i < block; i++) {
 			long long at = t->fed + i - w->half;
@@ -252,11 +255,10 @@ static void follow(struct tape *t, int ended)
 	t->clean = t->flat;
 }
 
-enum num_status tape_prepare(
-	struct tape *t, const struct calibration *c, int channel, int ended)
+enum num_status tape_prepare(struct tape *t, const struct calibration *c, int ended)
 {
-	whiten(t, &c->whitening, c->mean[channel], ended);
-	if (clean(t, c, c->noise[channel], ended) != NUM_OK)
+	whiten(t, &c->whitening, ended);
+	if (clean(t, c, ended) != NUM_OK)
 		return NUM_MEMORY;
 	follow(t, ended);
 	return NUM_OK;

@@ -26,6 +26,7 @@ struct tape {
 	double sum;
 	int lost; /* 1: the converter has not measured all of them */
 	long long begin, white, flat, clean;
+	double mean, scale; /* to be subtracted, and divided by */
 	struct fir *whiten; /* NULL if there is no filter to undo; it has read ... */
 	long long fed;      /* ... the samples before this one */
 	double *piece;      /* a block of it */
@@ -37,8 +38,8 @@ struct tape {
 
 void tape_clear(struct tape *t);
 
-/* Appends n samples: x[0], x[2], x[4] ...; averaged, if t is. */
-enum num_status tape_append(struct tape *t, const double *x, size_t n);
+/* Appends n samples, x[0], x[stride], x[2 stride] ...; averaged, if t is. */
+enum num_status tape_append(struct tape *t, const double *x, size_t n, size_t stride);
 /* A tape with the means of every ratio of the n oldest samples of t, the first with an
  * index divisible by ratio, and with its converter; t must be neither averaged nor
  * started.  Means of white noise are white. */
@@ -52,15 +53,16 @@ void tape_drop(struct tape *t, size_t n);
 /* Drops samples before keep once there are many. */
 void tape_forget(struct tape *t, long long keep);
 
-/* Starts the preparation, with what was learned of the record. */
-enum num_status tape_start(struct tape *t, const struct calibration *c);
+/* Starts the preparation, with what was learned of the record; mean: of the channel, only
+ * used if there is a filter to undo; scale: its noise. */
+enum num_status tape_start(
+	struct tape *t, const struct calibration *c, double mean, double scale);
 /* Follows the noise from sample begin on, in blocks.  reference: noise once clean where
  * it was learned, or 0 if that is in the samples before learned. */
 void tape_follow(struct tape *t, long long begin, size_t block, double reference,
 	long long learned);
 /* Prepares all samples that can be prepared without later ones; all samples if the record
  * has ended. */
-enum num_status tape_prepare(
-	struct tape *t, const struct calibration *c, int channel, int ended);
+enum num_status tape_prepare(struct tape *t, const struct calibration *c, int ended);
 
 #endif

@@ -1,5 +1,6 @@
 /* together.c - see together.h */
 #include "signal/separate/together.h"
+#include "num/select.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -156,13 +157,6 @@ static double shape_probability(const struct together *t, double x, size_t self)
 	return fmax(1 - random / seen, 0);
 }
 
-static int by_size(const void *x, const void *y)
-{
-	double a = *(const double *)x, b = *(const double *)y;
-
-	return (a > b) - (a < b);
-}
-
 /* The largest probability, at most a half, up to which no more than SHARE of the rows are
  * wrong. */
 static double find_limit(const struct together *t)
@@ -171,7 +165,7 @@ static double find_limit(const struct together *t)
 	size_t n = held(t->rows), k = 0;
 
 	memcpy(sorted, t->wrong, n * sizeof *sorted);
-	qsort(sorted, n, sizeof *sorted, by_size);
+	sort_numbers(sorted, n);
 	while (k < n && sorted[k] <= 0.5 && sum + sorted[k] <= SHARE * (double)(k + 1))
 		sum += sorted[k++];
 	return k == n ? 1 : k ? sorted[k - 1] : 0;

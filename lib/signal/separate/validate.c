@@ -166,9 +166,7 @@ static void learn_flow(struct validation *v)
 	}
 	memcpy(y, x, n * sizeof *x);
 	v->mean = robust_median(y, n);
-	for (size_t i = 0; i < n; i++)
-		y[i] = fabs(x[i] - v->mean);
-	scale = 1.482602218505602 * robust_median(y, n);
+	scale = robust_spread(y, n);
 	for (size_t i = 0; i < held(v->delays); i++) {
 		const struct delay *d = &v->delay[i];
 		double off = d->value - v->mean;

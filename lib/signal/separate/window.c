@@ -39,8 +39,8 @@ void separate_hide(struct separate *s, long long from, size_t n)
 	}
 }
 
-enum separate_status separate_fit_window(struct separate *s, const double *const y[2],
-	size_t n, int cut, struct account *a)
+enum separate_status separate_fit_window(
+	struct separate *s, const double *const y[], size_t n, int cut, struct account *a)
 {
 	enum joint_status status =
 		joint_fit(s->joint, &s->scene, y[0], y[1], n, a->pulse, &a->m, &a->r);
@@ -68,16 +68,13 @@ enum separate_status separate_fit_window(struct separate *s, const double *const
 static double delay_scatter(const struct separate *s, const struct account *a)
 {
 	double widest = 0.5 * (s->scene.delta_max - s->scene.delta_min) / sqrt(6);
-	double x[JOINT_PULSES_MAX], middle;
+	double x[JOINT_PULSES_MAX];
 
 	if (a->m < 8)
 		return widest;
 	for (int i = 0; i < a->m; i++)
 		x[i] = a->pulse[i].delta;
-	middle = robust_median(x, (size_t)a->m);
-	for (int i = 0; i < a->m; i++)
-		x[i] = fabs(a->pulse[i].delta - middle);
-	return fmin(widest, M_SQRT2 * 1.482602218505602 * robust_median(x, (size_t)a->m));
+	return fmin(widest, M_SQRT2 * robust_spread(x, (size_t)a->m));
 }
 
 void separate_keep_fit(struct separate *s, const struct account *a)
@@ -86,7 +83,7 @@ void separate_keep_fit(struct separate *s, const struct account *a)
 
 	s->all = joint_delay_covariance(s->joint, s->delay_cov);
 	for (int i = 0; i < a->m; i++)
-		if (s->par.quadrature || isinf(s->cal.transit))
+		if (has_quadrature(s) || isinf(s->cal.transit))
 			memset(s->pair_odds[i], 0, sizeof s->pair_odds[i]);
 		else
 			joint_pair_odds(s->joint, &s->fitted, a->pulse, i, scatter,

@@ -48,7 +48,7 @@ enum num_status separate_measure_common(
 	size_t n = (size_t)(upto - from);
 	double *work, found[3];
 
-	if (s->par.quadrature || isinf(s->cal.transit))
+	if (has_quadrature(s) || isinf(s->cal.transit))
 		return NUM_OK;
 	work = malloc(2 * n * sizeof *work);
 	if (!work)
@@ -82,16 +82,9 @@ static int is_quiet(const struct separate *s, const double *x, size_t n, double 
 	long stride = (long)fmax(T / 16, 1);
 
 	shape_sample(s->cal.shape, 0, T, first, len, work, NULL, NULL);
-	for (long at = first; at + (long)len + first <= (long)n - first; at += stride) {
-		long skip = at < 0 ? -at : 0;
-		long end = at + (long)len < (long)n ? at + (long)len : (long)n;
-
-		if (end > at + skip &&
-			fabs(dot(work + skip, x + at + skip, (size_t)(end - at - skip))) *
-					norm >
-				QUIET)
+	for (long at = first; at + (long)len + first <= (long)n - first; at += stride)
+		if (fabs(dot_within(work, len, x, n, at)) * norm > QUIET)
 			return 0;
-	}
 	return 1;
 }
 
@@ -185,8 +178,7 @@ static enum separate_status fit_once(struct separate *s, long long from, size_t 
 	for (int c = 0; c < 2; c++) {
 		const double *noise;
 
-		memcpy(x[c], c ? channel_2(s, from) : channel_1(s, from),
-			n * sizeof(double));
+		memcpy(x[c], channels_at(s, from).at[c], n * sizeof(double));
 		status = noise_beside(s, from, n, c, a, y, work + 4 * length, &noise);
 		if (status != SEPARATE_OK)
 			return status;
@@ -225,9 +217,7 @@ enum separate_status separate_fit_without_common(
 	if (status == SEPARATE_OK && removed)
 		*a = better;
 	else if (status == SEPARATE_OK)
-		status = separate_fit_window(s,
-			(const double *const[]){ channel_1(s, from), channel_2(s, from) },
-			n, cut, a);
+		status = separate_fit_window(s, channels_at(s, from).at, n, cut, a);
 	s->scene = plain;
 	return status;
 }
