@@ -36,9 +36,9 @@ static const double DIFFUSE = 1e8; /* prior variance of v over that of the noise
 
 /* Changes of regime in the past, represented by particles: hazard c, share of falls, and
  * growth in units of 1 / age, which is that of the steeper part of the changes to come
- * (passage.c), because curved coordinates stand for slow growth.  With more falls the ends
- * of wear that has just begun to accelerate are too early; rises at once and a spread of
- * the growth have no effect, as doc/benchmarks.md tells. */
+ * (passage.c), because curved coordinates stand for slow growth.  With more falls the
+ * ends of wear that has just begun to accelerate are too early; rises at once and a
+ * spread of the growth have no effect, as doc/benchmarks.md tells. */
 static const struct {
 	double hazard, falls, growth;
 } past = { 0.36, 0.25, 20 };
@@ -233,8 +233,8 @@ static double chance_of_birth(const struct bank *b, int k)
 }
 
 /* The particle for a change of regime of its parent at the present age: its rate begins
- * to grow, or falls to any value between 0 and the one before, which has half the rate for
- * its mean and 1 / 12 of its square for its variance.  *factor: that of the rate. */
+ * to grow, or falls to any value between 0 and the one before, which has half the rate
+ * for its mean and 1 / 12 of its square for its variance.  *factor: that of the rate. */
 static struct trend child_of(
 	const struct bank *b, const struct trend *parent, int birth, double *factor)
 {

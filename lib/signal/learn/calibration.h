@@ -38,10 +38,10 @@ struct calibrate_par {
 #define CALIBRATE_PLUG 0.1
 
 /* Share of the transit time within which the delay of a single event is measured, and to
- * which a range is widened where no pulses within it describe a section.  0.2, 0.3 and 0.8
- * find 1643, 1659 and 1658 of 1800 particles, and 1470, 1482 and 1482 with rows that are
- * believed (scenes turbulent, turbulent-highpass, group-turbulent, group, reversed and
- * laminar of tests/matrix/scenes.tsv, seeds 81001 to 81104). */
+ * which a range is widened where no pulses within it describe a section.  0.2, 0.3 and
+ * 0.8 find 1643, 1659 and 1658 of 1800 particles, and 1470, 1482 and 1482 with rows that
+ * are believed (scenes turbulent, turbulent-highpass, group-turbulent, group, reversed
+ * and laminar of tests/matrix/scenes.tsv, seeds 81001 to 81104). */
 #define CALIBRATE_WIDE 0.3
 
 struct calibration {

@@ -74,11 +74,17 @@ static void mean_residual(struct examples *ex, double *more, double *weight, int
  * measure.c half of it gives one more wrong row, twice of it the same rows. */
 static const double CORRECTION = 80;
 
-/* Excess chi-square of the examples, plus half the threshold for each pulse: a shape with
- * which one pulse replaces two is not better for that. */
-static double cost(const struct examples *ex)
+/* Excess chi-square of the examples that count, plus half the threshold for each pulse: a
+ * shape with which one pulse replaces two is not better for that. */
+static double cost(const struct examples *ex, const unsigned char *counts)
 {
-	return ex->excess + 0.5 * ex->scene.drop_near * examples_pulses(ex);
+	double sum = 0;
+
+	for (int i = 0; i < ex->count; i++)
+		if (counts[i])
+			sum += ex->example[i].excess +
+			       0.5 * ex->scene.drop_near * ex->example[i].m;
+	return sum;
 }
 
 int correct_doubtful(struct examples *ex, struct calibration *c)
@@ -132,16 +138,21 @@ static enum num_status improve_shape(struct examples *ex, struct calibration *c,
 
 enum num_status correct_shape(struct examples *ex, struct calibration *c)
 {
-	double before = cost(ex), share = ex->share;
+	unsigned char counts[EXAMPLES_MAX];
+	double before, share = ex->share;
 	struct shape *first = c->shape;
 	enum num_status status;
 
+	/* A shape that describes other events than particles is no better for that. */
+	for (int i = 0; i < ex->count; i++)
+		counts[i] = !ex->example[i].spoiled;
+	before = cost(ex, counts);
 	ex->corrected = 1;
 	status = improve_shape(ex, c, examples_pulses(ex));
 	c->chi2 = examples_fit(ex, ex->share);
 	/* If the noise may be the cause of the residual, the correction must remove all
 	 * of it. */
-	if (before - cost(ex) > CORRECTION && (!c->suspect || c->chi2 < 1.2)) {
+	if (before - cost(ex, counts) > CORRECTION && (!c->suspect || c->chi2 < 1.2)) {
 		c->price = ex->price;
 		if (c->shape != first)
 			shape_free(first);

@@ -234,7 +234,8 @@ double examples_fit(struct examples *ex, double misfit)
 		}
 		ex->price += result.chi2 + 2 * ex->scene.drop_near * e->m;
 		ex->dof += (double)result.dof;
-		ex->excess += result.chi2 - (double)result.dof;
+		e->excess = result.chi2 - (double)result.dof;
+		ex->excess += e->excess;
 	}
 	ex->price /= ex->dof > 0 ? ex->dof : 1;
 	for (int c = 0; c < 2; c++)

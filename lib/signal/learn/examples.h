@@ -18,7 +18,8 @@ struct example {
 	size_t n;
 	struct joint_pulse pulse[EXAMPLE_PULSES];
 	int m;
-	int lone;    /* 1: hardly longer than one pulse */
+	int lone;      /* 1: hardly longer than one pulse */
+	double excess; /* of chi-square over its degrees of freedom */
 	int spoiled; /* 1: its residual is so much larger than those of the others that it
 			contains other events */
 };

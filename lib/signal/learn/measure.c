@@ -579,11 +579,9 @@ enum calibrate_status measure(const struct calibrate_par *par, const double *raw
 	double *y1, double *y2, size_t n, double *work, struct look *look,
 	struct calibration *c)
 {
-	struct record rec = { .y1 = y1,
-		.y2 = y2,
-		.n = n,
-		.work = work,
-		.wide = look->wide };
+	struct record rec = {
+		.y1 = y1, .y2 = y2, .n = n, .work = work, .wide = look->wide
+	};
 	enum calibrate_status status = find_tones(par, &rec, c);
 
 	if (status == CALIBRATE_OK)
