@@ -46,6 +46,20 @@ for kind in bubble shock impulse; do
 	at_least "${kind}s: particles beside them are found" "$(($(verdicts found.tsv alone) + $(verdicts found.tsv overlap)))" 36
 done
 
+# Nothing can be learned from shocks alone; the particles behind them are found.
+sensorsim --uniform 80um:150um --number 0 --shocks 3 --duration 9s --noise 20mV --seed 4 >shocks.au
+sensorsim --uniform 80um:150um --number 60 --duration 20s --noise 20mV --seed 5 >behind.au
+for s in shocks behind; do sigconvert -o raw $s.au; done |
+	sigconvert --from raw --channels 2 --rate 10kHz >s.au
+duet s.au >found.tsv 2>err
+is "nothing learned at first: the record is doubtful" $? 3
+like "nothing learned at first: it is said" "$(cat err)" \
+	'^duet: s.au: nothing could be learned from its first [0-9.]* s, in which both channels'
+is "nothing learned at first: particles behind it are found" \
+	$(($(verdicts found.tsv alone) + $(verdicts found.tsv overlap))) 60
+duet behind.au >found.tsv 2>err
+is "nothing passed over: the record is believed" "$?: $(cat err)" "0: "
+
 # shellcheck disable=SC2086
 sensorsim $scene --bubbles 0.5 --shocks 0.5 --transients 0.2 --seed 5 --truth truth.tsv >s.au
 duet s.au >found.tsv 2>err

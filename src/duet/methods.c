@@ -118,6 +118,11 @@ static int is_doubtful(
 		      ? xprintf("events that are no particles cover %.2g %% of it, and "
 				"hide the particles there",
 				100 * c->covered / c->samples)
+	      : doubt == SEPARATE_UNLEARNED
+		      ? xprintf("nothing could be learned from its first %.3g s, in which "
+				"both channels stand out of their noise: particles "
+				"there, if any, are missing",
+				c->passed_over * separate_ratio(s) / (double)out->rate)
 	      : doubt == SEPARATE_UNEXPLAINED
 		      ? xprintf("both channels stand out of their noise, but have nothing "
 				"in common")
@@ -130,8 +135,8 @@ static int is_doubtful(
 		      : xprintf("%.0f %% of it is unresolved, unlike the record of the "
 				"instrument",
 				100 * c->dense / c->samples);
-	if (doubt == SEPARATE_COVERED || doubt == SEPARATE_UNEXPLAINED ||
-		doubt == SEPARATE_UNLIKE)
+	if (doubt == SEPARATE_COVERED || doubt == SEPARATE_UNLEARNED ||
+		doubt == SEPARATE_UNEXPLAINED || doubt == SEPARATE_UNLIKE)
 		warn("%s: %s", name, why);
 	else if (kept)
 		warn("%s: this instrument does not fit %s: %s", kept, name, why);
@@ -178,7 +183,8 @@ static void keep(const struct separate *s, const struct instrument_place *place)
 	enum separate_doubt doubt = separate_doubtful(s);
 
 	if (separate_instrument(s, &view) &&
-		(doubt == SEPARATE_BELIEVED || doubt == SEPARATE_COVERED))
+		(doubt == SEPARATE_BELIEVED || doubt == SEPARATE_COVERED ||
+			doubt == SEPARATE_UNLEARNED))
 		instrument_write(place, &view);
 }
 

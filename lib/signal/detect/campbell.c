@@ -71,7 +71,8 @@ static double fourth_error(const struct shape *shape, double duration, size_t n)
 
 	if (!p)
 		return INFINITY;
-	shape_sample(shape, points / 2, STEPS, 0, (size_t)points, p, NULL, NULL);
+	shape_sample(
+		shape, (double)(points / 2), STEPS, 0, (size_t)points, p, NULL, NULL);
 	for (int lag = 0; lag < points; lag++) {
 		double r = 0;
 

@@ -91,6 +91,7 @@ void separate_convert(struct separate *s, int ratio)
 	s->par.window /= (size_t)ratio;
 	s->counters.samples /= ratio;
 	s->counters.passed_over /= ratio;
+	s->counters.unlearned /= ratio;
 }
 
 void separate_average(struct separate *s, int ratio)

@@ -297,15 +297,16 @@ enum separate_status separate_learn_clearly(struct separate *s)
 	return few && s->par.learn < SEPARATE_LEARN ? SEPARATE_OK : SEPARATE_NO_LAG;
 }
 
-/* Notes whether the first n samples, of which nothing could be learned, are noise. */
-static enum separate_status look_for_bursts(struct separate *s, size_t n)
+/* *found: 1 if both channels of the first n samples are more than noise. */
+static enum separate_status look_for_bursts(
+	const struct separate *s, size_t n, int *found)
 {
 	double *work = malloc(n * sizeof *work);
 
 	if (!work)
 		return SEPARATE_MEMORY;
-	s->unexplained |= bursts_found(s->tape[0].x, n, work) &&
-			  bursts_found(s->tape[1].x, n, work);
+	*found = bursts_found(s->tape[0].x, n, work) &&
+		 bursts_found(s->tape[1].x, n, work);
 	free(work);
 	return SEPARATE_OK;
 }
@@ -320,7 +321,7 @@ size_t separate_wants(const struct separate *s)
 enum separate_status separate_learn(struct separate *s)
 {
 	size_t half = s->par.learn / 2;
-	int first = 1;
+	int first = 1, found;
 
 	while (!s->calibrated && s->tape[0].n >= (s->ended && first ? 1 : s->par.learn)) {
 		enum separate_status status;
@@ -338,12 +339,15 @@ enum separate_status separate_learn(struct separate *s)
 		if (s->calibrated)
 			break;
 		s->reason = status;
-		if (look_for_bursts(s,
-			    s->tape[0].n < s->par.learn ? s->tape[0].n : s->par.learn) !=
+		if (look_for_bursts(s, lesser(s->tape[0].n, s->par.learn), &found) !=
 			SEPARATE_OK)
 			return SEPARATE_MEMORY;
+		s->unexplained |= found;
 		if (s->tape[0].n < s->par.learn)
 			break;
+		if (found && look_for_bursts(s, half, &found) != SEPARATE_OK)
+			return SEPARATE_MEMORY;
+		s->counters.unlearned += found ? (double)half : 0;
 		for (int c = 0; c < s->channels; c++)
 			tape_drop(&s->tape[c], half);
 		s->counters.passed_over += (double)half;

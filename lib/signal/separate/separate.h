@@ -111,6 +111,7 @@ enum separate_status {
 /* Work done and avoided so far. */
 struct separate_counters {
 	double passed_over;       /* skipped before the instrument was learned */
+	double unlearned;         /* of these, where both channels are not just noise */
 	double samples, active;   /* frames in all, and in sections */
 	double sections, singles; /* sections, and those with one pulse */
 	double fits, steps, searches;
@@ -163,6 +164,7 @@ enum separate_doubt {
 	SEPARATE_CROWD,      /* more than half is unresolved, unlike its record */
 	SEPARATE_UNLIKE,     /* what is unresolved has not the spectrum of the pulse */
 	SEPARATE_COVERED,    /* particles are lost under events that are none */
+	SEPARATE_UNLEARNED,  /* ... and before the instrument was learned */
 	SEPARATE_UNEXPLAINED /* nothing could be learned, but the record is not noise */
 };
 enum separate_doubt separate_doubtful(const struct separate *s);
