@@ -66,13 +66,12 @@ static void moments(const struct sums *s, double unit2, double unit4, double gai
 static double fourth_error(const struct shape *shape, double duration, size_t n)
 {
 	enum { STEPS = 32 };
-	int points = 2 * (int)ceil(shape_reach(shape) * STEPS) + 1;
+	int half = (int)ceil(shape_reach(shape) * STEPS), points = 2 * half + 1;
 	double *p = calloc((size_t)points, sizeof *p), energy = 0, sum = 0;
 
 	if (!p)
 		return INFINITY;
-	shape_sample(
-		shape, (double)(points / 2), STEPS, 0, (size_t)points, p, NULL, NULL);
+	shape_sample(shape, half, STEPS, 0, (size_t)points, p, NULL, NULL);
 	for (int lag = 0; lag < points; lag++) {
 		double r = 0;
 
