@@ -151,10 +151,10 @@ struct guess {
  * first guess of the duration is wrong by a fifth, and 5 in none. */
 static const double FAR_OFF = 5;
 
-/* Tries one shape from a duration on. */
+/* Tries one shape from a duration on; it has to be better by the factor need. */
 static enum calibrate_status try_shape(const struct calibrate_par *par,
 	struct examples *ex, const double *y1, const double *y2, size_t n, int pulse,
-	double duration, struct calibration *c, struct guess *best)
+	double duration, double need, struct calibration *c, struct guess *best)
 {
 	double chi2;
 
@@ -170,7 +170,7 @@ static enum calibrate_status try_shape(const struct calibrate_par *par,
 		return CALIBRATE_OK;
 	tune(par, ex, 0.1, 3);
 	chi2 = examples_fit(ex, 0.003);
-	if (ex->price < best->price)
+	if (ex->price < need * best->price)
 		*best = (struct guess){ pulse, ex->scene.duration,
 			ex->scene.gain * c->noise[1] / c->noise[0], ex->price, chi2 };
 	return CALIBRATE_OK;
@@ -203,6 +203,7 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 	struct examples *ex, const double *y1, const double *y2, size_t n, double low,
 	const struct template *hint, struct calibration *c)
 {
+	static const double factor[] = { 1, 0.7, 1.4 };
 	struct guess best = { c->pulse, c->duration, c->gain, INFINITY, INFINITY };
 	enum calibrate_status status = CALIBRATE_OK;
 
@@ -217,18 +218,23 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 	}
 	if (hint)
 		status = try_shape(
-			par, ex, y1, y2, n, hint->pulse, hint->duration, c, &best);
-	for (int p = PULSE_SINE; p <= PULSE_LORENTZ; p++) {
-		double duration = par->duration;
+			par, ex, y1, y2, n, hint->pulse, hint->duration, 1, c, &best);
+	for (int k = 0; k < (c->whitening.tap ? 1 : 3) && status == CALIBRATE_OK; k++)
+		for (int p = PULSE_SINE; p <= PULSE_LORENTZ; p++) {
+			double duration = par->duration;
 
-		if (status != CALIBRATE_OK || best.chi2 <= 1.1)
-			break;
-		if (par->pulse != CALIBRATE_ANY_PULSE && p != par->pulse)
-			continue;
-		if (isnan(duration) && learn_duration(p, low, &duration) != NUM_OK)
-			return CALIBRATE_MEMORY;
-		status = try_shape(par, ex, y1, y2, n, p, duration, c, &best);
-	}
+			if (isnan(duration)) {
+				if (learn_duration(p, low, &duration) != NUM_OK)
+					return CALIBRATE_MEMORY;
+				duration *= factor[k];
+			}
+			if (best.chi2 <= (k ? 2 : 1.1) || status != CALIBRATE_OK)
+				break;
+			if ((k == 0 || isnan(par->duration)) &&
+				(par->pulse == CALIBRATE_ANY_PULSE || p == par->pulse))
+				status = try_shape(par, ex, y1, y2, n, p, duration,
+					k ? 0.5 : 1, c, &best);
+		}
 	c->duration = best.duration;
 	c->gain = best.gain;
 	if (status == CALIBRATE_OK && learn_set_shape(c, best.pulse) != NUM_OK)
