@@ -1,3 +1,4 @@
+/* blocks.c - see blocks.h */
 #include "contact/blocks.h"
 #include <math.h>
 #include <string.h>

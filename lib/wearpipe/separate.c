@@ -123,6 +123,8 @@ enum wp_status wp_separate_end(struct wp_separate *s)
 			    "common";
 	else if (doubt == SEPARATE_COVERED)
 		s->reason = "events that are no particles hide some of them";
+	else if (doubt == SEPARATE_UNLIKE)
+		s->reason = "what is unresolved differs from the pulse in spectrum";
 	else if (doubt == SEPARATE_UNLEARNED)
 		s->reason = "particles may be lost before the instrument was learned";
 	else if (doubt)

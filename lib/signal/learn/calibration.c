@@ -21,9 +21,14 @@ double calibrate_drop(double rate, const struct shape *shape, double duration,
 	return hi * hi;
 }
 
+double calibration_reach(double share, double transit, double duration)
+{
+	return fmax(share * transit, 0.05 * duration);
+}
+
 double calibration_plug(const struct calibration *c)
 {
-	return fmax(CALIBRATE_PLUG * (double)c->shift, 0.05 * c->duration);
+	return calibration_reach(CALIBRATE_PLUG, (double)c->shift, c->duration);
 }
 
 void calibration_widen(double duration, double *least, double *most)

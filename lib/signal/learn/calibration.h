@@ -38,10 +38,12 @@ struct calibrate_par {
 #define CALIBRATE_PLUG 0.1
 
 /* Share of the transit time within which the delay of a single event is measured, and to
- * which a range is widened where no pulses within it describe a section.  0.2, 0.3 and
- * 0.8 find 1643, 1659 and 1658 of 1800 particles, and 1470, 1482 and 1482 with rows that
- * are believed (scenes turbulent, turbulent-highpass, group-turbulent, group, reversed
- * and laminar of tests/matrix/scenes.tsv, seeds 81001 to 81104). */
+ * which a range is widened where no pulses within it describe a section.  For events,
+ * 0.2, 0.3 and 0.8 find 1643, 1659 and 1658 of 1800 particles, and 1470, 1482 and 1482
+ * with rows that are believed (scenes turbulent, turbulent-highpass, group-turbulent,
+ * group, reversed and laminar of tests/matrix/scenes.tsv, seeds 81001 to 81104); for
+ * sections, 0.2, 0.3 and 0.45 found 147, 189 and 230 of 400 particles in laminar flow,
+ * whose records were all doubted. */
 #define CALIBRATE_WIDE 0.3
 
 struct calibration {
@@ -110,7 +112,10 @@ void calibration_scene(const struct calibration *c, struct joint_scene *scene);
 double calibrate_drop(double rate, const struct shape *shape, double duration,
 	double gain, double width);
 
-/* Largest difference of a delay from that of the alignment in plug flow, samples. */
+/* Samples on either side of the transit time within which delays are searched: this share
+ * of it, and at least a twentieth of a duration. */
+double calibration_reach(double share, double transit, double duration);
+/* The same for plug flow. */
 double calibration_plug(const struct calibration *c);
 
 /* Widens the range of the delays seen so that it contains later ones: by half of it on

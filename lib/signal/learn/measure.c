@@ -72,9 +72,10 @@ static double variance(const double *x, size_t n)
 static void set_range(const struct calibrate_par *par, const struct template *found,
 	int wide, struct calibration *c)
 {
-	double least = 0.05 * c->duration, shift = (double)c->shift;
-	double spread = isnan(par->spread) ? calibration_plug(c)
-					   : fmax(par->spread * shift, least);
+	double shift = (double)c->shift;
+	double spread = isnan(par->spread)
+				? calibration_plug(c)
+				: calibration_reach(par->spread, shift, c->duration);
 	double lo = 0, hi = 0;
 
 	c->delta_min = -spread;
@@ -88,7 +89,7 @@ static void set_range(const struct calibrate_par *par, const struct template *fo
 	calibration_widen(c->duration, &lo, &hi);
 	if (!wide && lo >= -spread && hi <= spread)
 		return;
-	spread = fmax(CALIBRATE_WIDE * shift, least);
+	spread = calibration_reach(CALIBRATE_WIDE, shift, c->duration);
 	c->delta_min = fmin(-spread, lo);
 	c->delta_max = fmax(spread, hi);
 }
@@ -487,7 +488,7 @@ static enum calibrate_status find_template(const struct calibrate_par *par,
 
 		if (T < 8)
 			continue;
-		reach = fmax(CALIBRATE_WIDE * (double)c->shift, 0.05 * T);
+		reach = calibration_reach(CALIBRATE_WIDE, (double)c->shift, T);
 		if (template_find(found, rec->y1, rec->y2, hidden, rec->n, T, c->transit,
 			    reach) != NUM_OK)
 			return CALIBRATE_MEMORY;

@@ -15,8 +15,8 @@ int separate_is_range_free(const struct separate *s)
 void separate_widen(struct separate *s)
 {
 	double middle = 0.5 * (s->scene.delta_min + s->scene.delta_max);
-	double half =
-		fmax(CALIBRATE_WIDE * (s->cal.transit + middle), 0.05 * s->cal.duration);
+	double half = calibration_reach(
+		CALIBRATE_WIDE, s->cal.transit + middle, s->cal.duration);
 
 	s->scene.delta_min = fmax(middle - half, -LEAST * s->cal.transit);
 	s->scene.delta_max = middle + half;

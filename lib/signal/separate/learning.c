@@ -257,10 +257,9 @@ static enum separate_status calibrate_now(struct separate *s)
 enum { LONE = 6 };
 
 /* 1 if pulses of a known shape and nearly one velocity, in white noise, describe what was
- * learned from.  Chi-square
- * compares the noise in the band of the pulses with that of fourth differences: it is too
- * small or too large where noise is not white, for which there are too few samples to
- * test its spectrum. */
+ * learned from.  Chi-square compares the noise in the band of the pulses with that of
+ * fourth differences: it is too small or too large where noise is not white, for which
+ * there are too few samples to test its spectrum. */
 static int is_clear(const struct calibration *c)
 {
 	return learn_describes(c) && c->chi2 > 1 / LEARN_DESCRIBES &&
