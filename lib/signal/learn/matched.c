@@ -71,3 +71,16 @@ enum num_status matched_coherence(const struct calibration *c, const double *y1,
 		*coherence = xy / sqrt(xx * yy);
 	return NUM_OK;
 }
+
+enum num_status matched_noise(const struct calibration *c, const double *y, size_t n,
+	double *work, double *noise)
+{
+	size_t count;
+
+	if (filter_points(c, y, n, work, &count) != NUM_OK)
+		return NUM_MEMORY;
+	*noise = count ? robust_scale(work, count) /
+				 sqrt(c->duration * shape_energy(c->shape))
+		       : 1;
+	return NUM_OK;
+}

@@ -15,4 +15,9 @@
 enum num_status matched_coherence(const struct calibration *c, const double *y1,
 	const double *y2, size_t n, double *work, double *coherence, double *level);
 
+/* *noise: standard deviation of white noise that would have the same effect on the
+ * matched filter as the noise there is; for records that have been filtered before. */
+enum num_status matched_noise(const struct calibration *c, const double *y, size_t n,
+	double *work, double *noise);
+
 #endif

@@ -9,9 +9,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Share of the energy of a pulse that its shape may leave, see joint.h, if no lag
- * determines the duration. */
-static const double UNKNOWN_MISFIT = 3e-4;
+/* Share of the energy of a pulse that its shape may leave, see joint.h: if no lag
+ * determines the duration, and if the shape is that before a filter. */
+static const double UNKNOWN_MISFIT = 3e-4, FILTERED_MISFIT = 0.15;
 
 /* Chi-square per degree of freedom above which pulses are not described.  1.5 and 3 give
  * the same rows in 26 records of 1499 particles (scenes of tests/matrix/scenes.tsv with
@@ -541,8 +541,23 @@ static enum calibrate_status look_for_crowd(
 	return CALIBRATE_OK;
 }
 
+/* Otherwise neither the shape nor white noise describes the record: it was filtered.  The
+ * noise is then measured behind the matched filter. */
+static enum calibrate_status learn_filtered(
+	const struct calibrate_par *par, struct record *rec, struct calibration *c)
+{
+	double n1, n2;
+
+	if (matched_noise(c, rec->y1, rec->n, rec->work, &n1) != NUM_OK ||
+		matched_noise(c, rec->y2, rec->n, rec->work, &n2) != NUM_OK)
+		return CALIBRATE_MEMORY;
+	scale_noise(rec, c, n1, n2);
+	c->misfit = FILTERED_MISFIT;
+	return learn(par, rec, NULL, c);
+}
+
 static enum calibrate_status conclude(
-	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
+	const struct calibrate_par *par, struct record *rec, struct calibration *c)
 {
 	enum calibrate_status status = CALIBRATE_OK;
 
@@ -552,6 +567,9 @@ static enum calibrate_status conclude(
 		status = look_for_crowd(rec, c, &c->dense);
 	if (c->dense)
 		set_range(par, NULL, 0, c);
+	else if (status == CALIBRATE_OK && c->chi2 > BAD_FIT && !c->whitening.tap &&
+		 !c->suspect)
+		status = learn_filtered(par, rec, c);
 	set_thresholds(par, c);
 	return status;
 }
