@@ -43,22 +43,44 @@ static struct carried sum_block(
 	return s;
 }
 
+/* A shift that takes every active cell of the block well past its bound: at the bound,
+ * rounding would decide which cells stay in contact, and the result would differ from
+ * that of the same contact in other units. */
+static double emptying_shift(const struct contact *c, const struct block *b, double load)
+{
+	double shift = c->shift;
+
+	for (size_t y = b->y0; y < b->y1; y++)
+		for (size_t x = b->x0; x < b->x1; x++) {
+			size_t i = y * (size_t)c->par.nx + x;
+			double d = c->image[i];
+
+			if (c->active[i])
+				shift = fmin(shift, -(c->p[i] + load) / c->tau - d -
+							    fabs(d + c->shift));
+		}
+	return shift;
+}
+
 /* Newton's method on a sum that is linear in the shift until a cell meets its bound:
  * exact as soon as none does. */
 static void keep_block(struct contact *c, const struct block *b)
 {
-	double shift = c->shift, wanted;
+	double shift = c->shift;
 	struct carried s = sum_block(c, b, shift);
+	double wanted = s.wanted;
 	int last = s.cells;
 
 	if (s.free == s.cells)
 		return;
-	wanted = fmax(s.wanted, -s.load);
-	for (int k = 0; k < s.cells && s.free > 0 && s.free != last; k++) {
-		last = s.free;
-		shift += (wanted - s.bounded) / (c->tau * s.free);
-		s = sum_block(c, b, shift);
-	}
+	if (wanted <= -s.load)
+		shift = emptying_shift(c, b, s.load);
+	else
+		for (int k = 0; k < s.cells && s.free > 0 && s.free != last; k++) {
+			last = s.free;
+			shift += (wanted - s.bounded) / (c->tau * s.free);
+			s = sum_block(c, b, shift);
+		}
 	for (size_t y = b->y0; y < b->y1; y++)
 		for (size_t x = b->x0; x < b->x1; x++)
 			c->image[y * (size_t)c->par.nx + x] += shift - c->shift;
