@@ -273,7 +273,8 @@ static enum contact_status prepare(struct contact *c, const struct sweep *s)
 		return CONTACT_NUMBERS;
 	if (load_given && c->target >= c->cap)
 		return CONTACT_OVERLOAD;
-	if (!load_given && c->par.boundary == CONTACT_PERIODIC && c->target >= c->top - mean)
+	if (!load_given && c->par.boundary == CONTACT_PERIODIC &&
+		c->target >= c->top - mean)
 		return CONTACT_TOO_DEEP;
 	/* At a given approach the cells that overlap tell where pressure is needed. */
 	if (guess <= 0 && !guess_pressure(c) && load_given)
