@@ -220,7 +220,7 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 		status = try_shape(
 			par, ex, y1, y2, n, hint->pulse, hint->duration, 1, c, &best);
 	for (int k = 0; k < (c->whitening.tap ? 1 : 3) && status == CALIBRATE_OK; k++)
-		for (int p = PULSE_SINE; p <= PULSE_LORENTZ; p++) {
+		for (int p = 0; p < PULSE_SHAPES; p++) {
 			double duration = par->duration;
 
 			if (isnan(duration)) {

@@ -442,7 +442,7 @@ static enum num_status match(
 	double *work = malloc((2 * (size_t)reach + 1) * sizeof *work);
 
 	t->left = 2;
-	for (int pulse = PULSE_SINE; work && pulse <= PULSE_LORENTZ; pulse++) {
+	for (int pulse = 0; work && pulse < PULSE_SHAPES; pulse++) {
 		struct shape *shape = shape_new((enum pulse_shape)pulse);
 
 		if (!shape) {
@@ -599,7 +599,7 @@ enum num_status template_known(
 	*left = 2;
 	if (p)
 		shape_sample(t->shape, 0, t->duration, -reach, n, p, NULL, NULL);
-	for (int k = PULSE_SINE; status == NUM_OK && k <= PULSE_LORENTZ; k++) {
+	for (int k = 0; status == NUM_OK && k < PULSE_SHAPES; k++) {
 		struct shape *plain = shape_new((enum pulse_shape)k);
 
 		for (double T = 0.7 * t->duration; plain && T < 1.4 * t->duration;
