@@ -23,7 +23,8 @@ void periodogram_free(struct periodogram *p);
 /* Adds scale times the squared modulus of the transform of x to power[0 .. bins), bins up
  * to size / 2 + 1. */
 void periodogram_add(struct periodogram *p, double scale, double *power, size_t bins);
-/* The same for y[0 .. n) under Hann's window, whose mean square is 3/8, and zeros. */
+/* The same for y[0 .. n) under Hann's window, and zeros. */
+#define HANN_SQUARE 0.375 /* mean square of the window */
 void periodogram_add_hann(struct periodogram *p, const double *y, size_t n, double scale,
 	double *power, size_t bins);
 

@@ -11,9 +11,6 @@ enum { STRETCHES = 32, FEW = 8, APART = 4 };
 /* Bands of the spectrum. */
 enum { BANDS = 2 * (int)SHAPE_BAND };
 
-/* Mean square of Hann's window. */
-static const double HANN = 0.375;
-
 /* Sums of powers 1 to 4 of both channels over one stretch. */
 struct sums {
 	double n, power[2][4];
@@ -175,8 +172,8 @@ void campbell_compare(const double *y1, const double *y2, size_t n,
 		double *pulse = power + bins, *p = pulse + bins;
 
 		shape_sample(shape, 0.5 * (double)n, duration, 0, n, p, NULL, NULL);
-		periodogram_add_hann(sum, y1, n, 1 / HANN, power, bins);
-		periodogram_add_hann(sum, y2, n, 1 / HANN, power, bins);
+		periodogram_add_hann(sum, y1, n, 1 / HANN_SQUARE, power, bins);
+		periodogram_add_hann(sum, y2, n, 1 / HANN_SQUARE, power, bins);
 		/* in the middle of the window */
 		periodogram_add_hann(sum, p, n, 1, pulse, bins);
 		for (size_t k = 1; k < bins && (double)k < BANDS * width; k++) {

@@ -2,6 +2,7 @@
 #include "signal/detect/count.h"
 #include "num/parabola.h"
 #include "signal/noise/robust.h"
+#include "signal/noise/sigmas.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -19,7 +20,7 @@ double count_level(const double *x, size_t n, size_t stride, double *work)
 {
 	for (size_t i = 0; i < n; i++)
 		work[i] = x[i * stride];
-	return 5 * robust_spread(work, n);
+	return SIGMAS_NEVER * robust_spread(work, n);
 }
 
 struct count *count_new(double level)

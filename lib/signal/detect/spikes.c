@@ -1,6 +1,7 @@
 /* spikes.c - see spikes.h */
 #include "signal/detect/spikes.h"
 #include "signal/noise/robust.h"
+#include "signal/noise/sigmas.h"
 #include <math.h>
 #include <string.h>
 
@@ -8,9 +9,6 @@
  * it: an impulse is shorter.  The curvature of a sine changes that median by (2 pi /
  * 20)^2 / 8 of its height; four times this is allowed, for other pulses. */
 static const double SIDE = 0.05, CURVED = 0.05;
-
-/* Deviations that noise does not reach in a window of the fit. */
-static const double FAR = 5;
 
 /* Largest of some values within a quarter of a duration of sample i, except those next to
  * it: the height of pulses there. */
@@ -46,9 +44,9 @@ size_t spikes_find(const double *y, size_t n, double duration, unsigned char *fl
 
 		memcpy(near, y + i - reach, (2 * reach + 1) * sizeof *near);
 		middle = robust_median(near, 2 * reach + 1);
-		flags[i] =
-			fabs(y[i] - middle) > FAR &&
-			fabs(y[i] - middle) > FAR + CURVED * height_near(y, n, i, side);
+		flags[i] = fabs(y[i] - middle) > SIGMAS_NEVER &&
+			   fabs(y[i] - middle) >
+				   SIGMAS_NEVER + CURVED * height_near(y, n, i, side);
 		found += flags[i];
 	}
 	return found;

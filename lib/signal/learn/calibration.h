@@ -46,6 +46,10 @@ struct calibrate_par {
  * whose records were all doubted. */
 #define CALIBRATE_WIDE 0.3
 
+/* Chi-square per degree of freedom of clear pulses below which their shape describes
+ * them. */
+#define CALIBRATE_DESCRIBES 1.2
+
 struct calibration {
 	long shift;         /* samples by which channel 2 is moved back */
 	double correlation; /* correlation coefficient of the channels at that lag */

@@ -152,7 +152,8 @@ enum num_status correct_shape(struct examples *ex, struct calibration *c)
 	c->chi2 = examples_fit(ex, ex->share);
 	/* If the noise may be the cause of the residual, the correction must remove all
 	 * of it. */
-	if (before - cost(ex, counts) > CORRECTION && (!c->suspect || c->chi2 < 1.2)) {
+	if (before - cost(ex, counts) > CORRECTION &&
+		(!c->suspect || c->chi2 < CALIBRATE_DESCRIBES)) {
 		c->price = ex->price;
 		if (c->shape != first)
 			shape_free(first);

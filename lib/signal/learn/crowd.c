@@ -10,9 +10,6 @@
  * cycle per duration after the other. */
 enum { STEPS = 256, FINE = 32, PADDED = STEPS * FINE };
 
-/* Mean square of Hann's window. */
-static const double HANN = 0.375;
-
 struct spectrum {
 	double *power;            /* mean of both channels; 1 where there is only noise */
 	size_t first, bins, size; /* frequencies used: [first, bins) */
@@ -153,7 +150,8 @@ enum num_status crowd_pulse(const double *y1, const double *y2, size_t n, size_t
 	double guess, int *pulse, double *duration, double *error)
 {
 	size_t size = fft_good_size(n), most = size / 2 + 1;
-	double band = SHAPE_BAND * (double)size / guess, scale = 0.5 / (HANN * (double)n);
+	double band = SHAPE_BAND * (double)size / guess,
+	       scale = 0.5 / (HANN_SQUARE * (double)n);
 	struct spectrum p = { .size = size,
 		.first = 1 + (size_t)(SLOW * (double)size / (double)hop),
 		.bins = band < (double)most ? (size_t)band : most };

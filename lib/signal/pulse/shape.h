@@ -15,6 +15,9 @@ struct shape;
 /* One of the pulses of sensor.h, cut where |p| stays below 1e-4.  NULL: no memory. */
 struct shape *shape_new(enum pulse_shape pulse);
 
+/* Samples of a duration below which a pulse is not learned: they do not describe it. */
+enum { SHAPE_SHORTEST = 8 };
+
 /* Frequency, in cycles per duration, above which pulses have little power. */
 #define SHAPE_BAND 10.0
 

@@ -2,6 +2,7 @@
  */
 #include "num/room.h"
 #include "signal/separate/separate_state.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,7 +10,15 @@ struct entry *separate_queue_entry(struct separate *s)
 {
 	if (room_for(&s->queue, &s->capacity, s->count + 1, sizeof *s->queue))
 		return NULL;
-	memset(&s->queue[s->count], 0, sizeof *s->queue);
+	s->queue[s->count] = (struct entry){ .row = { .section = s->number,
+						     .t1_se = NAN,
+						     .t2_se = NAN,
+						     .delay_se = NAN,
+						     .amplitude_se = NAN,
+						     .correlation = NAN,
+						     .phase = NAN,
+						     .phase_se = NAN,
+						     .chi2 = NAN } };
 	return &s->queue[s->count++];
 }
 

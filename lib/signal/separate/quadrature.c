@@ -3,6 +3,7 @@
 #include "num/cholesky.h"
 #include "num/dot.h"
 #include "signal/noise/robust.h"
+#include "signal/noise/sigmas.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -392,8 +393,8 @@ static void fill_covariance(struct fit *f, struct quadrature_pulse *p)
 		}
 }
 
-/* 1 if chi-square of v, given x, exceeds that of noise by five standard deviations and a
- * tenth, as in goodness.h, and by twice the excess in x, whose pulses may be smaller. */
+/* 1 if chi-square of v, given x, exceeds that of noise, as in goodness.h, and by twice
+ * the excess in x, whose pulses may be smaller. */
 static int is_doubtful(const struct fit *f, double all, double chi2)
 {
 	double of_x = 0, dof = 2 * (double)f->n * (1 - f->scene->lost) - f->taken - f->m;
@@ -406,7 +407,8 @@ static int is_doubtful(const struct fit *f, double all, double chi2)
 	}
 	dof = fmax(dof, 1);
 	v = (all - of_x) / dof;
-	return v > 1.1 + 2 * fmax(chi2 - 1, 0) + 5 * sqrt(2 / dof);
+	return v >
+	       1 + CHI_SQUARE_MORE + 2 * fmax(chi2 - 1, 0) + SIGMAS_NEVER * sqrt(2 / dof);
 }
 
 enum num_status quadrature_fit(const struct quadrature *q, const struct joint *joint,

@@ -1,6 +1,7 @@
 /* validate.c - see validate.h */
 #include "signal/separate/validate.h"
 #include "signal/noise/robust.h"
+#include "signal/noise/sigmas.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,9 +20,6 @@ static const double PARTS = 2;
 /* Twice the logarithm of the likelihood ratio above which there are parts of objects at
  * all: 3.5 deviations. */
 static const double CERTAIN = 12;
-
-/* Deviations beyond which a group is not one of particles. */
-static const double BEYOND = 5;
 
 struct delay {
 	double value, var;
@@ -171,7 +169,7 @@ static void learn_flow(struct validation *v)
 		const struct delay *d = &v->delay[i];
 		double off = d->value - v->mean;
 
-		if ((!d->alone && alone >= FEW) || fabs(off) > BEYOND * scale)
+		if ((!d->alone && alone >= FEW) || fabs(off) > SIGMAS_NEVER * scale)
 			continue;
 		sum += off * off - d->var;
 		count++;
@@ -179,8 +177,7 @@ static void learn_flow(struct validation *v)
 	v->known = count;
 	v->local = local_variance(v, alone >= FEW);
 	v->var = fmax(sum / count, 0);
-	/* Three deviations of this estimate. */
-	v->margin = fmax(v->var, scale * scale) * (1 + 3 * sqrt(2 / count));
+	v->margin = fmax(v->var, scale * scale) * (1 + SIGMAS_SELDOM * sqrt(2 / count));
 }
 
 /* 1 if the velocities of a group are not those of the flow, by the cube root of
@@ -194,7 +191,7 @@ static int is_impossible(const struct validation *v, const struct evidence *e, s
 	for (size_t i = 0; i < m; i++)
 		if (e[i].var > 0)
 			sum += pow(e[i].delay - v->mean, 2) / (v->margin + 2 * e[i].var);
-	return cbrt(sum / (double)m) > 1 - spread + BEYOND * sqrt(spread);
+	return cbrt(sum / (double)m) > 1 - spread + SIGMAS_NEVER * sqrt(spread);
 }
 
 /* 1 if the delay lies in the outer tenth of the range on either side, and its error is
