@@ -110,6 +110,7 @@ fails "a code where a table is read" 2 'are for --iso' abrade --gap 1um $p --lar
 fails "a table without a surface to leave standard output to" 2 '\--surface is given' abrade --gap 1um $p --particles x four.tsv
 printf 'diameter\taspect\n1e-6\t0.5\n' >flat.tsv
 fails "an aspect below one" 1 'line 2: aspect is 0.5, want 1 or more' abrade --gap 1um $p flat.tsv
+fails "a diameter of 10 metres" 1 'line 2: diameter is 10 m, want metres' sh -c "printf 'diameter\n10\n' | abrade --gap 1um $p"
 fails "no column of diameters" 1 "no column 'diameter'" abrade --gap 1um $p st
 fails "an empty stream" 1 'empty, want table' abrade --gap 1um $p
 done_testing

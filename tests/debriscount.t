@@ -56,6 +56,16 @@ printf 'time1\tdiameter\tmaterial\n1\t60e-6\tsteel\n2\t60e-6\tbronze\n3\t80e-6\t
 debriscount --by material --duration 10s two.tsv >by.tsv
 is "ferrous and non-ferrous particles are counted separately" "$(awk -F '\t' '/^[0-9]/ { print $3, $6 }' by.tsv | tr '\n' ' ')" "steel 2 bronze 1 "
 
+# One ferrous, one unclear and a section of unknown class, 2 particles of 60 um.
+printf 'time1\tdiameter\tverdict\tsources\tclass\n1\t60e-6\talone\t1\tferrous\n2\t60e-6\talone\t1\tunclear
+3\t60e-6\tunresolved\t2\tunclear\n4\t60e-6\talone\t1\tnan\n' >unclear.tsv
+debriscount --by class --classes 60um --duration 10s unclear.tsv >by.tsv 2>err
+is "particles of unclear class count towards the upper limit of each class" \
+	"$(cell rows by.tsv) $(cell doubtful by.tsv) $(cell number by.tsv) $(cell number_low by.tsv) $(cell number_high by.tsv)" \
+	"1 2 1 0.0253178 10.7673"
+is "unclear particles have rows of their own" "$(cell class by.tsv 2) $(cell number by.tsv 2) $(cell number_high by.tsv 2)" \
+	"unclear 3 7.57164"
+
 # Missed particles: half of those of d50.
 printf 'time1\tdiameter\n1\t50e-6\n2\t50e-6\n' >half.tsv
 debriscount --duration 10s --d50 50um --detection-threshold 5 half.tsv >half.out
@@ -119,6 +129,8 @@ debriscount --duration 20s --classes 50um,100um found.tsv >b.tsv 2>err
 rising "the counts of duet equal the true counts or their intervals contain them" "$(cell number_low b.tsv)" \
 	"$(cell number a.tsv)" "$(cell number_high b.tsv)"
 
+is "a particle at the end of the record is in its last period" \
+	"$(printf 'time1\tdiameter\n3\t5e-5\n20\t5e-5\n' | debriscount --period 10s --duration 20s | column rows /dev/stdin | tr '\n' ' ')" "1 1 "
 fails "classes that do not ascend" 2 'is not above' debriscount --classes 2um,1um six.tsv
 fails "classes and a standard" 2 'exclude one another' debriscount --classes 2um --standard iso4406 six.tsv
 fails "one of two options for the probability of detection" 2 'both --d50 and --detection-threshold' debriscount --d50 2um six.tsv

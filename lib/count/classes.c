@@ -105,6 +105,25 @@ void classes_add_stretch(struct classes *c, double number, double diameter)
 	}
 }
 
+static void merge(struct weighted *to, const struct weighted *from)
+{
+	to->n += from->n;
+	to->sum += from->sum;
+	to->squares += from->squares;
+	to->largest = fmax(to->largest, from->largest);
+}
+
+void classes_add_possible(struct classes *c, const struct classes *from)
+{
+	for (int k = 0; k < c->n; k++) {
+		merge(&c->class[k].number[1], &from->class[k].number[1]);
+		merge(&c->class[k].volume[1], &from->class[k].volume[1]);
+		c->most[k] += from->most[k];
+		c->most_volume[k] += from->most_volume[k];
+	}
+	c->unknown |= from->unknown;
+}
+
 /* Adds up the classes from first to last. */
 static void count(const struct classes *c, int first, int last, struct class_count *out)
 {
@@ -117,16 +136,8 @@ static void count(const struct classes *c, int first, int last, struct class_cou
 	*out = (struct class_count){ 0 };
 	for (int k = first; k <= last; k++) {
 		for (int i = 0; i < 2; i++) {
-			struct weighted *from[2] = { &c->class[k].number[i],
-				&c->class[k].volume[i] };
-			struct weighted *to[2] = { &number[i], &volume[i] };
-
-			for (int j = 0; j < 2; j++) {
-				to[j]->n += from[j]->n;
-				to[j]->sum += from[j]->sum;
-				to[j]->squares += from[j]->squares;
-				to[j]->largest = fmax(to[j]->largest, from[j]->largest);
-			}
+			merge(&number[i], &c->class[k].number[i]);
+			merge(&volume[i], &c->class[k].volume[i]);
 		}
 		out->unresolved += c->class[k].unresolved;
 		out->volume.value += c->class[k].unresolved_volume;

@@ -46,6 +46,10 @@ void classes_add(struct classes *c, double diameter, int sure);
 /* Adds an unresolved section of equal particles; diameter NAN: unknown. */
 void classes_add_stretch(struct classes *c, double number, double diameter);
 
+/* Adds what may belong to c, too, such as particles of unknown material: it counts only
+ * for the upper limit.  Both have the same classes. */
+void classes_add_possible(struct classes *c, const struct classes *from);
+
 /* Class k, or all particles of class k and above. */
 void classes_count(const struct classes *c, int k, struct class_count *out);
 void classes_count_above(const struct classes *c, int k, struct class_count *out);

@@ -3,9 +3,9 @@
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 
-double line_t(double confidence, size_t degrees)
+double line_t(double confidence, double degrees)
 {
-	return gsl_cdf_tdist_Pinv(0.5 + 0.5 * confidence, (double)degrees);
+	return gsl_cdf_tdist_Pinv(0.5 + 0.5 * confidence, degrees);
 }
 
 enum num_status line_fit(
@@ -38,21 +38,33 @@ enum num_status line_fit(
 	l->rms = sqrt(rest / (double)(n - 2));
 	l->slope_se = l->rms / sqrt(xx);
 	l->value_se = l->rms / sqrt((double)n);
-	l->t = line_t(confidence, n - 2);
+	l->degrees = (double)(n - 2);
+	l->t = line_t(confidence, l->degrees);
 	return NUM_OK;
 }
 
-void line_allow_unequal(const double *x, const double *y, size_t n, struct line *l)
+void line_allow_unequal(
+	const double *x, const double *y, size_t n, double confidence, struct line *l)
 {
-	double xx = 0, sum = 0;
+	double xx = 0, sum = 0, squares = 0;
+	size_t end;
 
-	for (size_t i = 0; i < n; i++) {
-		double u = x[i] - l->middle, d = y[i] - l->value - l->slope * u;
+	for (size_t i = 0; i < n; i = end) {
+		double u = x[i] - l->middle, group = 0;
 
-		xx += u * u;
-		sum += u * u * d * d;
+		for (end = i; end < n && x[end] == x[i]; end++) {
+			double d = y[end] - l->value - l->slope * u;
+
+			xx += u * u;
+			group += u * u * d * d;
+		}
+		sum += group;
+		squares += group * group / fmax((double)(end - i) - 1, 1);
 	}
 	l->slope_se = fmax(l->slope_se, sqrt((double)n / (double)(n - 2) * sum) / xx);
+	if (squares > 0)
+		l->degrees = fmin(l->degrees, sum * sum / squares);
+	l->t = line_t(confidence, l->degrees);
 }
 
 double line_lack_of_fit(const double *x, const double *y, size_t n, const struct line *l)
@@ -78,9 +90,9 @@ double line_lack_of_fit(const double *x, const double *y, size_t n, const struct
 		groups - 2, (double)n - groups);
 }
 
-double line_slope_p(const struct line *l, size_t n, double want)
+double line_slope_p(const struct line *l, double want)
 {
 	if (!(l->slope_se > 0))
 		return l->slope == want ? 1 : 0;
-	return 2 * gsl_cdf_tdist_Q(fabs(l->slope - want) / l->slope_se, (double)(n - 2));
+	return 2 * gsl_cdf_tdist_Q(fabs(l->slope - want) / l->slope_se, l->degrees);
 }

@@ -14,19 +14,22 @@ struct line {
 	double slope, slope_se;
 	double middle, value, value_se; /* at the mean of x */
 	double rms;                     /* of the residuals, n - 2 degrees of freedom */
+	double degrees;                 /* of freedom of slope_se */
 	double t;                       /* Student's t of the confidence */
 };
 
 /* Student's t: half-width of the interval of this confidence in standard errors. */
-double line_t(double confidence, size_t degrees);
+double line_t(double confidence, double degrees);
 
 /* Least squares.  NUM_DOMAIN with fewer than three points or a single x. */
 enum num_status line_fit(
 	const double *x, const double *y, size_t n, double confidence, struct line *l);
 
 /* Lets the scatter vary with x: slope_se becomes at least the standard error that follows
- * from the residual of each point (White 1980), for many points. */
-void line_allow_unequal(const double *x, const double *y, size_t n, struct line *l);
+ * from the residual of each point (White 1980), and t that of the degrees of freedom of
+ * its groups of equal x (Welch 1947); points ordered by x. */
+void line_allow_unequal(
+	const double *x, const double *y, size_t n, double confidence, struct line *l);
 
 /* Lack-of-fit test: p-value of the hypothesis that the means of groups of equal x lie on
  * a line (F test); points ordered by x.  NAN with fewer than three groups or one point
@@ -34,6 +37,6 @@ void line_allow_unequal(const double *x, const double *y, size_t n, struct line 
 double line_lack_of_fit(const double *x, const double *y, size_t n, const struct line *l);
 
 /* p-value of the hypothesis that the true slope is want. */
-double line_slope_p(const struct line *l, size_t n, double want);
+double line_slope_p(const struct line *l, double want);
 
 #endif

@@ -70,6 +70,19 @@ double table_ratio(const struct table_in *t, int column, const char *to)
 		table_column_name(t, column), from, to);
 }
 
+double table_diameter(const struct table_in *t, int column)
+{
+	static const double most = 0.1;
+	double d = table_positive(t, column);
+
+	if (d > most)
+		die(EXIT_RUN,
+			"%s: line %ld: diameter is %g m, want metres or a '# units:' "
+			"line above the header that names the unit",
+			table_name(t), table_line(t), d);
+	return d;
+}
+
 int table_find_quantity(struct table_in *t, const char *column, enum unit unit)
 {
 	int found = table_find(t, column);

@@ -113,7 +113,7 @@ struct source *particles_read(const char *path)
 
 		if (room_for(&s->row, &s->room, s->rows + 1, sizeof *s->row))
 			die(EXIT_RUN, "out of memory");
-		r.diameter = table_positive(t, cd);
+		r.diameter = table_diameter(t, cd);
 		if (ca >= 0)
 			r.aspect = table_positive(t, ca);
 		if (r.aspect < 1)

@@ -142,12 +142,12 @@ static void allow_shared(const struct pulses *p, struct doubt *d)
 	for (size_t k = 0; k < tables; k++)
 		square += pow(y[k] - exponent * x[k] - mean, 2);
 	d->constant = fmax(d->constant,
-		line_t(confidence, tables - 1) *
+		line_t(confidence, (double)(tables - 1)) *
 			sqrt(square / (double)(tables - 1) / (double)tables));
 	/* Means of equal diameters differ by rounding. */
 	if (!isnan(d->slope_p) && line_fit(x, y, tables, confidence, &l) == 0) {
 		d->slope = fmax(d->slope, l.t * l.slope_se);
-		d->slope_p = fmax(d->slope_p, line_slope_p(&l, tables, exponent));
+		d->slope_p = fmax(d->slope_p, line_slope_p(&l, exponent));
 	}
 	free(x);
 }
@@ -216,13 +216,15 @@ int main(int argc, char **argv)
 	for (size_t i = 0; i < p.n; i++)
 		deviation += pow(y[i] - exponent * x[i] - ln_k, 2);
 	deviation = sqrt(deviation / (double)(p.n - 1));
-	doubt.constant = line_t(confidence, p.n - 1) * deviation / sqrt((double)p.n);
+	doubt.constant =
+		line_t(confidence, (double)(p.n - 1)) * deviation / sqrt((double)p.n);
 	fitted = line_fit(x, y, p.n, confidence, &l) == 0;
 	lack = fitted ? line_lack_of_fit(x, y, p.n, &l) : NAN;
 	if (fitted) {
-		line_allow_unequal(x, y, p.n, &l); /* small balls scatter more */
+		line_allow_unequal(
+			x, y, p.n, confidence, &l); /* small balls scatter more */
 		doubt.slope = l.t * l.slope_se;
-		doubt.slope_p = line_slope_p(&l, p.n, exponent);
+		doubt.slope_p = line_slope_p(&l, exponent);
 	}
 	if (balls.n >= 3)
 		allow_shared(&p, &doubt);

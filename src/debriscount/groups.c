@@ -49,8 +49,19 @@ struct classes *groups_at(struct groups *g, const char *name)
 	return new->classes;
 }
 
+/* Whether particles of this value may have any other. */
+static int is_unclear(const struct group *group)
+{
+	return strcmp(group->name, "unclear") == 0 || strcmp(group->name, "nan") == 0;
+}
+
 void groups_report(struct groups *g, double begin, double end, int whole)
 {
+	for (size_t i = 0; i < g->n; i++)
+		for (size_t j = 0; !is_unclear(&g->group[i]) && j < g->n; j++)
+			if (is_unclear(&g->group[j]))
+				classes_add_possible(
+					g->group[i].classes, g->group[j].classes);
 	for (size_t i = 0; i < g->n; i++) {
 		struct group *one = &g->group[i];
 

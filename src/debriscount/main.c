@@ -15,10 +15,6 @@
 
 enum { EXIT_ALARM = 4 };
 
-/* The bores of debris sensors are millimetres to a few centimetres wide (layout(1) takes
- * up to this one); a larger particle is one in another unit. */
-static const double LARGEST = 0.1;
-
 static const char *const outputs[] = { "classes", "codes", "trend", NULL };
 static const char *const standards[] = { "own", "iso4406", "as4059", NULL };
 
@@ -155,7 +151,7 @@ static double count_rows(struct table_in *t, struct groups *groups)
 			table_name(t));
 	do {
 		enum verdict v = verdict_of(t, cv);
-		double time, d;
+		double time;
 		struct classes *c;
 
 		if (v == VERDICT_FOREIGN)
@@ -176,7 +172,7 @@ static double count_rows(struct table_in *t, struct groups *groups)
 				"particle before: --period or the unit of time is wrong",
 				table_name(t), table_line(t), table_column_name(t, ct),
 				time, PERIODS_MOST);
-		while (time >= end) {
+		while (time >= end && !(end >= duration)) {
 			groups_report(groups, begin, end, 1);
 			begin = end;
 			end += period;
@@ -189,13 +185,7 @@ static double count_rows(struct table_in *t, struct groups *groups)
 				table_number(t, cd));
 			continue;
 		}
-		d = table_positive(t, cd);
-		if (d > LARGEST)
-			die(EXIT_RUN,
-				"%s: line %ld: diameter is %g m, want metres or a '# units:' "
-				"line above the header that names the unit",
-				table_name(t), table_line(t), d);
-		classes_add(c, d, v == VERDICT_SURE);
+		classes_add(c, table_diameter(t, cd), v == VERDICT_SURE);
 		stats_add("particles", 1);
 	} while (table_next(t));
 	if (late > 0) {
