@@ -58,7 +58,7 @@ struct sections *sections_new(
 	if (!s)
 		return NULL;
 	s->first = shape_support(shape, 0, duration, &s->len);
-	s->stride = duration >= 48 ? (long)(duration / 24) : 1;
+	s->stride = shape_stride(duration);
 	set_margins(s, shape, duration, slack);
 	s->threshold = threshold;
 	s->aside = (long)ceil(shape_reach_above(shape, FOOT) * duration);

@@ -55,6 +55,13 @@ double shape_slope_energy(const struct shape *shape);
 /* The whole t inside the support: returns the first, their number in *n. */
 long shape_support(const struct shape *shape, double t0, double T, size_t *n);
 
+/* Samples from point to point of a matched filter: its phase then changes by half a turn
+ * between them at no frequency that the pulse has. */
+static inline long shape_stride(double T)
+{
+	return T >= 48 ? (long)(T / 24) : 1;
+}
+
 /* p((t - t0) / T) at t = first .. first + n - 1, and where not NULL its derivatives by
  * t0 and T.  Zero outside the support. */
 void shape_sample(const struct shape *shape, double t0, double T, long first, size_t n,

@@ -335,7 +335,8 @@ static struct quadrature_pulse moved(const struct fit *f,
 	const struct quadrature_pulse *old, const double *step, double scale)
 {
 	const struct joint_scene *s = f->scene;
-	double most = 0.25 * s->duration, span = 0.1 * (s->delta_max - s->delta_min);
+	double most = JOINT_STEP * s->duration,
+	       span = JOINT_BEYOND * (s->delta_max - s->delta_min);
 	struct quadrature_pulse p = *old;
 
 	p.t += fmax(fmin(scale * step[T1], most), -most);

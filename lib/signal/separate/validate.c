@@ -194,13 +194,15 @@ static int is_impossible(const struct validation *v, const struct evidence *e, s
 	return cbrt(sum / (double)m) > 1 - spread + SIGMAS_NEVER * sqrt(spread);
 }
 
-/* 1 if the delay lies in the outer tenth of the range on either side, and its error is
- * below a tenth of the range.  The range is learned to be twice as wide as that of the
- * particles. */
+/* Share of the range of delays, half of it on either side, that is its edge. */
+static const double EDGE = 0.2;
+
+/* 1 if the delay lies at the edge, and its error is smaller than that.  The range is
+ * learned to be twice as wide as that of the particles. */
 static int is_at_edge(const struct validation *v, const struct evidence *e)
 {
-	return v->half > 0 && e->var > 0 && sqrt(e->var) < 0.2 * v->half &&
-	       fabs(e->delay - v->middle) > 0.8 * v->half;
+	return v->half > 0 && e->var > 0 && sqrt(e->var) < EDGE * v->half &&
+	       fabs(e->delay - v->middle) > (1 - EDGE) * v->half;
 }
 
 /* --- parts of one object */
