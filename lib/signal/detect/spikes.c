@@ -2,13 +2,14 @@
 #include "signal/detect/spikes.h"
 #include "signal/noise/robust.h"
 #include "signal/noise/sigmas.h"
+#include "signal/pulse/shape.h"
 #include <math.h>
 #include <string.h>
 
-/* Share of a pulse's duration on either side of a sample whose median is compared with
- * it: an impulse is shorter.  The curvature of a sine changes that median by (2 pi /
- * 20)^2 / 8 of its height; four times this is allowed, for other pulses. */
-static const double SIDE = 0.05, CURVED = 0.05;
+/* The median of SHAPE_FINEST on either side of a sample is compared with it: an impulse
+ * is shorter.  The curvature of a sine changes that median by (2 pi / 20)^2 / 8 of its
+ * height; four times this is allowed, for other pulses. */
+static const double CURVED = 0.05;
 
 /* Largest of some values within a quarter of a duration of sample i, except those next to
  * it: the height of pulses there. */
@@ -29,7 +30,7 @@ static double height_near(const double *y, size_t n, size_t i, size_t side)
 size_t spikes_find(const double *y, size_t n, double duration, unsigned char *flags)
 {
 	enum { MOST = 64 };
-	size_t side = (size_t)fmin(SIDE * duration, MOST), found = 0;
+	size_t side = (size_t)fmin(SHAPE_FINEST * duration, MOST), found = 0;
 	double near[2 * MOST + 1];
 
 	memset(flags, 0, n);

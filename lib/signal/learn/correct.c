@@ -92,7 +92,7 @@ int correct_doubtful(struct examples *ex, struct calibration *c)
 	double share = ex->share;
 	int pulses, rest;
 
-	examples_fit(ex, 0.05);
+	examples_fit(ex, EXAMPLES_ROUGH);
 	rest = ex->excess > 2 * sqrt(2 * ex->dof);
 	pulses = examples_pulses(ex);
 	ex->share = share;
@@ -119,7 +119,7 @@ static enum num_status improve_shape(struct examples *ex, struct calibration *c,
 
 		if (k > 1 && (examples_pulses(ex) > most || chi2 > 2 * before))
 			break;
-		if (k > 10 && chi2 > 4)
+		if (k > 10 && chi2 > CALIBRATE_TOLERABLE)
 			break;
 		before = chi2;
 		mean_residual(ex, more, more + points, half);

@@ -163,7 +163,7 @@ static enum calibrate_status try_shape(const struct calibrate_par *par,
 	if (ex->count == 0)
 		return CALIBRATE_OK;
 	scene_of(c, &ex->scene);
-	examples_fit(ex, 0.05);
+	examples_fit(ex, EXAMPLES_ROUGH);
 	if (ex->price > FAR_OFF * best->price)
 		return CALIBRATE_OK;
 	tune(par, ex, 0.1, 3);

@@ -18,8 +18,10 @@ struct shape *shape_new(enum pulse_shape pulse);
 /* Samples of a duration below which a pulse is not learned: they do not describe it. */
 enum { SHAPE_SHORTEST = 8 };
 
-/* Frequency, in cycles per duration, above which pulses have little power. */
+/* Frequency, in cycles per duration, above which pulses have little power, and half of
+ * its period, in durations: what changes within less is no pulse. */
 #define SHAPE_BAND 10.0
+#define SHAPE_FINEST (0.5 / SHAPE_BAND)
 
 /* Any other pulse: value[0 .. 2 half] at s = -reach .. reach in equal steps, smooth
  * between them (slopes by central differences); it is scaled to max |p| = 1.  NULL
