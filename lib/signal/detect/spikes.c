@@ -27,27 +27,31 @@ static double height_near(const double *y, size_t n, size_t i, size_t side)
 	return height;
 }
 
+/* 1 if y[i] differs by more than far from the median of as many samples on either side,
+ * so that a slope has no effect. */
+static int stands_out(const double *y, size_t n, size_t i, size_t side, double far)
+{
+	size_t room = i < n - 1 - i ? i : n - 1 - i;
+	size_t reach = room < side ? room : side;
+	const double *near = y + i - reach;
+
+	return robust_median_at_most(near, 2 * reach + 1, y[i] - far) ||
+	       !robust_median_at_most(near, 2 * reach + 1, y[i] + far);
+}
+
 size_t spikes_find(const double *y, size_t n, double duration, unsigned char *flags)
 {
 	enum { MOST = 64 };
 	size_t side = (size_t)fmin(SHAPE_FINEST * duration, MOST), found = 0;
-	double near[2 * MOST + 1];
 
 	memset(flags, 0, n);
 	if (side == 0)
 		return 0; /* impulses are not shorter than such pulses */
 
 	for (size_t i = 0; i < n; i++) {
-		/* The same number on either side, so that a slope has no effect. */
-		size_t room = i < n - 1 - i ? i : n - 1 - i;
-		size_t reach = room < side ? room : side;
-		double middle;
-
-		memcpy(near, y + i - reach, (2 * reach + 1) * sizeof *near);
-		middle = robust_median(near, 2 * reach + 1);
-		flags[i] = fabs(y[i] - middle) > SIGMAS_NEVER &&
-			   fabs(y[i] - middle) >
-				   SIGMAS_NEVER + CURVED * height_near(y, n, i, side);
+		flags[i] = stands_out(y, n, i, side, SIGMAS_NEVER) &&
+			   stands_out(y, n, i, side,
+				   SIGMAS_NEVER + CURVED * height_near(y, n, i, side));
 		found += flags[i];
 	}
 	return found;

@@ -4,12 +4,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Matched filter of y[0 .. n) at every eighth of a duration, at *points points. */
+/* Matched filter of y[0 .. n) at every eighth of a duration, or at every sample of
+ * shorter pulses, at *points points: at most n. */
 static enum num_status filter_points(const struct calibration *c, const double *y,
 	size_t n, double *out, size_t *points)
 {
 	double T = c->duration;
-	size_t len, count = 0, stride = (size_t)(T / 8);
+	size_t len, count = 0, stride = (size_t)fmax(T / 8, 1);
 	long first = shape_support(c->shape, 0, T, &len);
 	double *p = malloc(len * sizeof *p);
 
@@ -30,19 +31,12 @@ enum num_status matched_coherence(const struct calibration *c, const double *y1,
 	const double *y2, size_t n, double *r, double *coherence, double *level)
 {
 	enum { BLOCK = 16 }; /* points: two durations */
-	double *z = malloc((n + 2) * sizeof *z), xy = 0, xx = 0, yy = 0, limit, count = 0;
+	double *z = malloc(2 * n * sizeof *z), xy = 0, xx = 0, yy = 0, limit, count = 0;
 	size_t points, second, blocks;
 
 	*coherence = *level = 0;
-	if (!z || filter_points(c, y1, n, z, &points) != NUM_OK) {
-		free(z);
-		return NUM_MEMORY;
-	}
-	/* A point per eighth of a duration of at least 8 samples: two channels fit in n.
-	 */
-	if (points >= n / 2)
-		points = 0;
-	else if (filter_points(c, y2, n, z + n / 2, &second) != NUM_OK) {
+	if (!z || filter_points(c, y1, n, z, &points) != NUM_OK ||
+		filter_points(c, y2, n, z + n, &second) != NUM_OK) {
 		free(z);
 		return NUM_MEMORY;
 	}
@@ -50,16 +44,16 @@ enum num_status matched_coherence(const struct calibration *c, const double *y1,
 	for (size_t b = 0; b < blocks; b++) {
 		r[b] = 0;
 		for (size_t i = b * BLOCK; i < (b + 1) * BLOCK; i++)
-			r[b] += z[i] * z[i] + z[n / 2 + i] * z[n / 2 + i];
+			r[b] += z[i] * z[i] + z[n + i] * z[n + i];
 		r[blocks + b] = r[b];
 	}
 	limit = robust_quantile(r, blocks, 0.1);
 	for (size_t b = 0; b < blocks; b++)
 		for (size_t i = b * BLOCK; r[blocks + b] <= limit && i < (b + 1) * BLOCK;
 			i++) {
-			xy += z[i] * z[n / 2 + i];
+			xy += z[i] * z[n + i];
 			xx += z[i] * z[i];
-			yy += z[n / 2 + i] * z[n / 2 + i];
+			yy += z[n + i] * z[n + i];
 			count += 2;
 		}
 	*level =

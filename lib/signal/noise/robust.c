@@ -20,6 +20,15 @@ double robust_median(double *x, size_t n)
 	return robust_quantile(x, n, 0.5);
 }
 
+int robust_median_at_most(const double *x, size_t n, double value)
+{
+	size_t count = 0;
+
+	for (size_t i = 0; i < n; i++)
+		count += x[i] <= value;
+	return 2 * count > n;
+}
+
 double robust_scale(double *x, size_t n)
 {
 	for (size_t i = 0; i < n; i++)

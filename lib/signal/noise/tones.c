@@ -68,7 +68,8 @@ static int pick_lines(const double *power, size_t n, int max, double *omega)
 		for (size_t i = from; i < to && m < 2 * SIDE; i++)
 			if (i + 2 < k || i > k + 2)
 				around[m++] = power[i];
-		if (power[k] < 40 * robust_median(around, (size_t)m) || count == KEEP)
+		if (!robust_median_at_most(around, (size_t)m, power[k] / 40) ||
+			count == KEEP)
 			continue;
 		/* The main lobe of a Hann window is nearly a parabola in the logarithm.
 		 */

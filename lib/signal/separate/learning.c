@@ -170,10 +170,10 @@ enum { SHORT = 32 };
 enum { PULSES = 3 };
 
 /* Separates means from now on, if an instrument can be learned from them whose pulses
- * are not too short; otherwise s is as before.  *duration: of a pulse, in means; 0: not
- * learned. */
+ * are not too short; otherwise s is as before.  share: of the work that may be done.
+ * *duration: of a pulse, in means; 0: not learned. */
 static enum separate_status learn_from_means(
-	struct separate *s, int ratio, double *duration)
+	struct separate *s, int ratio, double share, double *duration)
 {
 	struct tape fine[CHANNELS_MAX], mean[CHANNELS_MAX];
 	size_t n;
@@ -188,7 +188,7 @@ static enum separate_status learn_from_means(
 	memcpy(s->tape, mean, sizeof mean);
 	s->ratio = ratio;
 	n = lesser(mean[0].n, separate_learned_means(s, ratio));
-	status = learn_from(s, n, 1);
+	status = learn_from(s, n, share);
 	if (status == SEPARATE_OK)
 		*duration = s->cal.duration;
 	if (*duration >= SHORT && s->cal.events >= PULSES) {
@@ -237,10 +237,11 @@ static enum separate_status calibrate_now(struct separate *s)
 		return SEPARATE_OK;
 	}
 	status = SEPARATE_OK;
+	/* Each ratio has its part of the work that is left for those not yet tried. */
 	while (ratio > 1 && status == SEPARATE_OK && !s->calibrated) {
-		double duration;
+		double duration, tries = 1 + log2(ratio) / 2;
 
-		status = learn_from_means(s, ratio, &duration);
+		status = learn_from_means(s, ratio, 1 / tries, &duration);
 		ratio = duration > 0 ? separate_ratio_of(
 					       duration * ratio, 2 * SHORT, ratio / 2)
 				     : ratio / 4;
