@@ -199,14 +199,16 @@ void campbell_compare(const double *y1, const double *y2, size_t n,
 	c->amplitude_se = hypot(c->amplitude_se, 0.5 * c->unlike * c->amplitude);
 }
 
-void campbell_scale(struct campbell *c, double unit)
+void campbell_scale(struct campbell *c, double unit, double rate)
 {
 	double square = unit * unit;
 
-	c->square *= square;
-	c->square_se *= square;
-	c->fourth *= square * square;
-	c->fourth_se *= square * square;
+	c->square *= square * rate;
+	c->square_se *= square * rate;
+	c->fourth *= square * square * rate;
+	c->fourth_se *= square * square * rate;
+	c->rate *= rate;
+	c->rate_se *= rate;
 	c->amplitude *= unit;
 	c->amplitude_se *= unit;
 }

@@ -1,7 +1,7 @@
 /* foreign.c - see foreign.h */
 #include "signal/detect/foreign.h"
+#include "num/sigmas.h"
 #include "signal/detect/spikes.h"
-#include "signal/noise/sigmas.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* goodness.c - see goodness.h */
 #include "signal/fit/goodness.h"
-#include "signal/noise/sigmas.h"
+#include "num/sigmas.h"
 #include <math.h>
 
 /* Chi-square of samples [from, to) of both channels, the second delta later; *count: how

@@ -1,9 +1,9 @@
 /* examples.c - see examples.h */
 #include "signal/learn/examples.h"
 #include "num/dot.h"
+#include "num/sigmas.h"
 #include "signal/detect/sections.h"
 #include "signal/noise/robust.h"
-#include "signal/noise/sigmas.h"
 #include <math.h>
 #include <string.h>
 

@@ -1,10 +1,10 @@
 /* learn.c - see learn.h */
 #include "signal/learn/learn.h"
+#include "num/sigmas.h"
 #include "signal/detect/spikes.h"
 #include "signal/learn/correct.h"
 #include "signal/learn/crowd.h"
 #include "signal/learn/examples.h"
-#include "signal/noise/sigmas.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -222,7 +222,8 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 					return CALIBRATE_MEMORY;
 				duration *= factor[k];
 			}
-			if (best.chi2 <= (k ? 2 : CALIBRATE_DESCRIBES) || status != CALIBRATE_OK)
+			if (best.chi2 <= (k ? 2 : CALIBRATE_DESCRIBES) ||
+				status != CALIBRATE_OK)
 				break;
 			if ((k == 0 || isnan(par->duration)) &&
 				(par->pulse == CALIBRATE_ANY_PULSE || p == par->pulse))
@@ -299,8 +300,7 @@ static enum calibrate_status converge(
 				return CALIBRATE_MEMORY;
 			ex->scene.shape = c->shape;
 		}
-		if (k > 1 &&
-			examples_full(ex))
+		if (k > 1 && examples_full(ex))
 			break; /* too dense, or other pulses: no use */
 		if (k > 2 && moved < 5e-4 &&
 			(learn_describes(c) || c->chi2 > 0.95 * before))

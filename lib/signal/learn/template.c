@@ -2,7 +2,7 @@
 #include "signal/learn/template.h"
 #include "num/dot.h"
 #include "num/select.h"
-#include "signal/noise/sigmas.h"
+#include "num/sigmas.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

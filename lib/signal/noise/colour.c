@@ -1,9 +1,9 @@
 /* colour.c - see colour.h */
 #include "signal/noise/colour.h"
 #include "num/fft.h"
+#include "num/sigmas.h"
 #include "signal/noise/quiet.h"
 #include "signal/noise/robust.h"
-#include "signal/noise/sigmas.h"
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,8 +1,8 @@
 /* following.c - see following.h */
 #include "signal/noise/following.h"
 #include "num/select.h"
+#include "num/sigmas.h"
 #include "signal/noise/robust.h"
-#include "signal/noise/sigmas.h"
 #include <math.h>
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* classify.c - see classify.h */
 #include "signal/pulse/classify.h"
-#include "signal/noise/sigmas.h"
+#include "num/sigmas.h"
 #include <math.h>
 
 int classify_is_ferrous(const struct material *m)

@@ -1,5 +1,5 @@
 /* following.c - flow and gain followed by pulses that stand alone */
-#include "signal/noise/sigmas.h"
+#include "num/sigmas.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
 

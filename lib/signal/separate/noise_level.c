@@ -1,6 +1,6 @@
 /* noise_level.c - the noise of a record, compared with that of a kept instrument */
+#include "num/sigmas.h"
 #include "signal/noise/robust.h"
-#include "signal/noise/sigmas.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
 

@@ -2,8 +2,8 @@
 #include "signal/separate/quadrature.h"
 #include "num/cholesky.h"
 #include "num/dot.h"
+#include "num/sigmas.h"
 #include "signal/noise/robust.h"
-#include "signal/noise/sigmas.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -167,7 +167,7 @@ enum separate_status separate_dense_section(
 		s->cal.duration, s->scene.gain, &c);
 	campbell_compare(y.at[0], y.at[1], (size_t)(to - from), s->cal.shape,
 		s->cal.duration, s->scene.gain, &c);
-	campbell_scale(&c, noise);
+	campbell_scale(&c, noise, 1);
 	p->sources =
 		isnan(c.rate) || c.rate * length > 1e9 ? 0 : (int)(c.rate * length + 0.5);
 	if (s->strange && p->sources < 1)

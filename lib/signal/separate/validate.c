@@ -1,7 +1,7 @@
 /* validate.c - see validate.h */
 #include "signal/separate/validate.h"
+#include "num/sigmas.h"
 #include "signal/noise/robust.h"
-#include "signal/noise/sigmas.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,9 +46,7 @@ struct validation {
 
 struct validation *validation_new(void)
 {
-	struct validation *v = calloc(1, sizeof *v);
-
-	return v;
+	return calloc(1, sizeof(struct validation));
 }
 
 void validation_free(struct validation *v)

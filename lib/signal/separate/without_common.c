@@ -9,8 +9,8 @@
  */
 #include "num/dot.h"
 #include "num/room.h"
+#include "num/sigmas.h"
 #include "signal/noise/common.h"
-#include "signal/noise/sigmas.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
 #include <stdlib.h>
