@@ -43,7 +43,8 @@ for a in -0.2um 0.8um; do
 	$strip --solver pk >other.nrrd
 	near "a strip at an approach of $a: --solver pk gives the same load" "$(awk "BEGIN { print $(key load other.nrrd) / $(key load strip.nrrd) - 1 }")" 0 1e-6
 done
-# 12 and 17 iterations; 59 where the mean of a step is that of the longest wave
+# 12 and 14 iterations; 59 where the mean of a step is that of the longest wave, 28 where every cell
+# starts under pressure
 strip="bemcontact --raw 1000x40 --pixel 1um --estar 100GPa"
 $strip --pressure 20MPa strip.f64 >strip.nrrd
 $strip --approach "$(key approach strip.nrrd)m" strip.f64 >other.nrrd

@@ -109,6 +109,8 @@ fails 'too few surfaces' 1 'are too few' sh -c 'contacts() { roughgen --points 3
 fails 'no yield stress' 2 'want --yield' debrisfit hidden.nrrd
 grep -v '^coefficient' surrogate.tsv | grep -v '^#' >part.tsv
 fails 'a part of a surrogate' 1 'no whole surrogate' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd
+fails 'a level beyond the scores of the fit' 1 'give intervals of level 0.9[0-9]* at most' \
+	debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --interval 0.999 hidden.nrrd
 fails 'another table' 1 "no column 'kind'\|kind" debrisgen --yield 355MPa --surrogate full.tsv hidden.nrrd
 fails 'depths of a surrogate' 2 'surrogate excludes --surface' debrisgen --yield 355MPa --surrogate surrogate.tsv --surface x hidden.nrrd
 fails 'steps of a surrogate' 2 'one step' debrisgen --yield 355MPa --young 210GPa --surrogate surrogate.tsv --steps 2 hidden.nrrd

@@ -12,14 +12,12 @@
  * or less far it should have gone, which the next direction makes up for; only a step so
  * long that the energy would rise is cut.
  *
- * What the bounds cut off is restored close by, in the blocks of blocks.h, or in the
- * squares of a strip.
+ * What the bounds cut off is restored close by, in the blocks of blocks.h.
  *
  * The inverse of the half-space restricted to the contact is not the restricted
  * inverse: that needs a residual continued beyond the contact so that its image there
  * vanishes, see extension.h. */
 #include "contact/bccg.h"
-#include "contact/balance.h"
 #include "contact/blocks.h"
 #include "contact/gradient.h"
 #include "num/fft.h"
@@ -92,8 +90,6 @@ enum num_status contact_make_preconditioner(
 	c->inverse = convolve_alloc(c->periodic);
 	c->active = malloc(c->n);
 	if (!c->inverse || !c->active)
-		return NUM_MEMORY;
-	if (balance_new(&c->par, &c->balance))
 		return NUM_MEMORY;
 	box.lx = (double)mx * c->par.dx;
 	box.ly = (double)my * c->par.dy;
@@ -257,7 +253,6 @@ struct state {
 	double bounded;   /* cells that the step takes to a bound */
 	int plain;        /* steps along the gradient to go */
 	int forced;       /* the step is to restore the load, whatever the energy */
-	int uphill;       /* a balanced step led uphill: balance no more */
 	int crowded;      /* the active cells cannot carry more, or less */
 	int exact;        /* gap and load have just been computed */
 };
@@ -320,25 +315,6 @@ static double share_step(struct contact *c, double missing, struct sweep *s)
 	return contact_share_load(c, shift_step, missing, c->tau, load_slack, s);
 }
 
-/* The same, in the squares of a strip as well. */
-static double balance_squares(
-	struct contact *c, struct state *state, double missing, struct sweep *s)
-{
-	double shift = c->shift, rest;
-
-	if (state->uphill || !balance_direction(c->balance, c, s->sum[2]))
-		return share_step(c, missing, s);
-	*s = contact_sweep(c, shift_step);
-	rest = share_step(c, missing, s);
-	if (s->sum[0] < 0)
-		return rest;
-	state->uphill = 1;
-	balance_undo(c->balance, c);
-	c->shift = shift;
-	*s = contact_sweep(c, shift_step);
-	return share_step(c, missing, s);
-}
-
 /* The same, in blocks of cells as well. */
 static double balance_blocks(
 	struct contact *c, const struct turn *t, double missing, struct sweep *s)
@@ -371,8 +347,7 @@ static double find_step(struct contact *c, struct state *state)
 	mean = load_given ? s.sum[0] / t.active : 0;
 	beta = state->curvature > 0 ? (s.sum[2] - mean * s.sum[1]) / state->curvature : 0;
 	s = turn(c, &t, beta + state->rest / c->tau);
-	rest = c->balance ? balance_squares(c, state, missing, &s)
-			  : balance_blocks(c, &t, missing, &s);
+	rest = balance_blocks(c, &t, missing, &s);
 	state->bounded = t.active - s.sum[3];
 	/* No less than the rounding of the load. */
 	limit = fmax(load_slack * s.sum[2], 1e-12 * c->target * (double)c->n);

@@ -1,5 +1,4 @@
 #include "contact/solver.h"
-#include "contact/balance.h"
 #include "contact/bccg.h"
 #include "contact/grids.h"
 #include "contact/pk.h"
@@ -174,7 +173,6 @@ void contact_free(struct contact *c)
 	contact_free(c->coarse);
 	transfer_done(&c->transfer);
 	extension_free(c->extension);
-	balance_free(c->balance);
 	convolve_free(c->periodic);
 	mlms_free(c->mlms);
 	convolve_free(c->plane);
@@ -265,26 +263,23 @@ static int guess_pressure(struct contact *c)
 
 static enum contact_status prepare(struct contact *c, const struct sweep *s)
 {
-	double mean = s->sum[0] / (double)c->n, guess = s->sum[1], first;
+	double mean = s->sum[0] / (double)c->n, guess = s->sum[1];
+	int load_given = c->control == CONTACT_PRESSURE;
 
 	if (!isfinite(s->sum[0]) || !isfinite(guess) || !isfinite(c->target) ||
 		!is_in_range(c, fmax(s->max, -s->min)))
 		return CONTACT_NUMBERS;
-	if (c->control == CONTACT_PRESSURE) {
-		if (c->target < 0)
-			return CONTACT_NUMBERS;
-		if (c->target >= c->cap)
-			return CONTACT_OVERLOAD;
-		first = c->target;
-	} else {
-		if (c->par.boundary == CONTACT_PERIODIC && c->target >= c->top - mean)
-			return CONTACT_TOO_DEEP;
-		/* The pressure that sinks the whole grid by depth. */
-		first = fmin(c->target / contact_sinking(c, 1), c->cap / 2);
-	}
-	if (guess <= 0 && !guess_pressure(c))
-		contact_fill_empty(c, first);
-	if (c->control == CONTACT_PRESSURE)
+	if (load_given && c->target < 0)
+		return CONTACT_NUMBERS;
+	if (load_given && c->target >= c->cap)
+		return CONTACT_OVERLOAD;
+	if (!load_given && c->par.boundary == CONTACT_PERIODIC &&
+		c->target >= c->top - mean)
+		return CONTACT_TOO_DEEP;
+	/* At a given approach the cells that overlap tell where pressure is needed. */
+	if (guess <= 0 && !guess_pressure(c) && load_given)
+		contact_fill_empty(c, c->target);
+	if (load_given)
 		contact_scale_load(c, 0);
 	return CONTACT_OK;
 }

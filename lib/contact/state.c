@@ -200,6 +200,15 @@ struct sweep contact_optimality_sums(struct contact *c)
 	return contact_sweep(c, sum_optimality);
 }
 
+/* Approximate displacement by a uniform pressure on the grid: pi times that of a wave as
+ * long as the grid. */
+static double sinking(const struct contact *c, double pressure)
+{
+	double length = fmax(c->par.nx * c->par.dx, c->par.ny * c->par.dy);
+
+	return pressure * M_PI * c->body.wave(c->body.context, 2 * M_PI / length);
+}
+
 double contact_optimality_gap(struct contact *c, const struct sweep *s)
 {
 	double sum = s->sum[1], work = c->work - sum * c->least, excess, rounding;
@@ -219,17 +228,10 @@ double contact_optimality_gap(struct contact *c, const struct sweep *s)
 		excess = s->sum[0] - s->sum[3] + sum * fmax(s->max, 0);
 	/* A flat surface in full periodic contact stores no energy at all. */
 	rounding = 16 * DBL_EPSILON * sum *
-		   (fabs(c->result.approach) + contact_sinking(c, sum / (double)c->n));
+		   (fabs(c->result.approach) + sinking(c, sum / (double)c->n));
 	if (excess <= 0 || (excess <= rounding && work <= rounding))
 		return 0;
 	return work > 0 ? excess / work : INFINITY;
-}
-
-double contact_sinking(const struct contact *c, double pressure)
-{
-	double length = fmax(c->par.nx * c->par.dx, c->par.ny * c->par.dy);
-
-	return pressure * M_PI * c->body.wave(c->body.context, 2 * M_PI / length);
 }
 
 double contact_cell_stiffness(const struct contact *c)

@@ -35,7 +35,6 @@ struct contact {
 	double *residual;            /* preconditioned */
 	unsigned char *active;       /* 1 for cells that contribute to the residual */
 	struct extension *extension; /* of the residual beyond the contact */
-	struct balance *balance;     /* of the loads along a strip, or NULL */
 	struct contact *coarse;      /* grid of half as many cells each way, or NULL */
 	struct transfer transfer;    /* to coarse */
 	double *coarse_height, *coarse_pressure; /* parts of residual */
@@ -97,9 +96,6 @@ double contact_optimality_gap(struct contact *c, const struct sweep *s);
 /* The energy that the solution minimises, sum p u / 2 - sum p h, less approach sum p
  * where the approach is given; from the same sums immediately after contact_gap(). */
 double contact_energy(const struct contact *c, const struct sweep *s);
-/* Approximate displacement by a uniform pressure on the grid: pi times that of a wave as
- * long as the grid. */
-double contact_sinking(const struct contact *c, double pressure);
 /* Approximate pressure on one cell that causes unit displacement there. */
 double contact_cell_stiffness(const struct contact *c);
 /* Sets cells without pressure to this pressure. */

@@ -27,6 +27,9 @@ struct footprints {
 	struct point_sum *below;
 	struct footprint *list;
 	size_t count, room;
+	/* centroids and loads of the regions, and after them one without load */
+	double *x, *y, *load;
+	size_t places;
 };
 
 struct footprints *footprints_new(const struct stress_par *par)
@@ -58,6 +61,7 @@ void footprints_free(struct footprints *f)
 	free(f->span);
 	point_sum_free(f->below);
 	free(f->list);
+	free(f->x);
 	free(f);
 }
 
@@ -138,19 +142,39 @@ static int by_size(const void *a, const void *b)
 	return f->first < g->first ? -1 : f->first > g->first;
 }
 
-/* Load of the others over squared distance, no nearer than the region is large. */
-static double pressed_by_others(const struct footprints *f, const struct footprint *r)
+/* Copies centroids and loads side by side, for lanes. */
+static enum num_status place_regions(struct footprints *f)
 {
-	double sum = 0;
+	size_t even = f->count + 2 - f->count % 2;
 
+	if (room_for(&f->x, &f->places, 3 * even, sizeof *f->x))
+		return NUM_MEMORY;
+	f->y = f->x + even;
+	f->load = f->y + even;
+	f->x[f->count] = f->y[f->count] = f->load[f->count] = 0;
 	for (size_t i = 0; i < f->count; i++) {
-		const struct footprint *o = &f->list[i];
-		double u = o->x - r->x, v = o->y - r->y, square = u * u + v * v;
-
-		if (o != r)
-			sum += o->load / (square > r->spread ? square : r->spread);
+		f->x[i] = f->list[i].x;
+		f->y[i] = f->list[i].y;
+		f->load[i] = f->list[i].load;
 	}
-	return sum;
+	return NUM_OK;
+}
+
+/* Load of the others over squared distance, no nearer than the region is large. */
+static double pressed_by_others(struct footprints *f, const struct footprint *r)
+{
+	lanes x = lanes_all(r->x), y = lanes_all(r->y), near = lanes_all(r->spread);
+	lanes sum = lanes_all(0);
+	double *own = &f->load[r - f->list];
+
+	*own = 0;
+	for (size_t i = 0; i < f->count; i += 2) {
+		lanes u = lanes_load(f->x + i, 2) - x, v = lanes_load(f->y + i, 2) - y;
+
+		sum += lanes_load(f->load + i, 2) / lanes_max(u * u + v * v, near);
+	}
+	*own = r->load;
+	return sum[0] + sum[1];
 }
 
 /* Roots of strength over stress at depth k, -1 for the surface, and the one below. */
@@ -201,7 +225,7 @@ static double unevenness(const struct footprint *r)
 	return r->load > 0 ? log(r->squares / (double)r->cells / (mean * mean)) : 0;
 }
 
-static void describe(const struct footprints *f, struct footprint *r, double yield)
+static void describe(struct footprints *f, struct footprint *r, double yield)
 {
 	double *x = r->feature;
 
@@ -272,6 +296,8 @@ enum num_status footprints_find(struct footprints *f, struct stress *stress,
 	}
 	point_sum_load(f->below, pressure);
 	qsort(f->list, f->count, sizeof *f->list, by_size);
+	if (place_regions(f))
+		return NUM_MEMORY;
 	for (size_t i = 0; i < f->count; i++)
 		describe(f, &f->list[i], yield);
 	*list = f->list;

@@ -212,6 +212,13 @@ static int bounds(const double *score, int n, double level, double *low, double 
 	return 1;
 }
 
+double surrogate_highest_level(const struct surrogate *s)
+{
+	int n = s->particles < s->totals ? s->particles : s->totals;
+
+	return 1 - 2.0 / (n + 1);
+}
+
 /* Volumes, and the deviation of their total where errors are independent. */
 static double guess_plain(const struct surrogate *s, const struct footprint *f, size_t n,
 	struct surrogate_guess *guess, double *total)

@@ -70,12 +70,15 @@ enum surrogate_status {
 enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_t n,
 	struct surrogate *s, struct surrogate_report *report);
 
+/* The highest level for which there is a score beyond either end. */
+double surrogate_highest_level(const struct surrogate *s);
+
 /* Share of the loaded cells of a contact that are at the hardness (0: none). */
 double surrogate_flow(const double *pressure, size_t cells, double hardness);
 
 /* Volumes of the particles of a surface and of all of them, with intervals of this level
- * (equal tails).  0 where a footprint lies outside the range of the fit, or the scores
- * are too few for the level: nothing is said then. */
+ * (equal tails).  0 where a footprint lies outside the range of the fit, or the level
+ * is above the highest: nothing is said then. */
 int surrogate_guess(const struct surrogate *s, const struct footprint *footprint,
 	size_t count, double flow, double level, struct surrogate_guess *guess,
 	struct surrogate_guess *total);

@@ -46,8 +46,14 @@ int quick_asked(void)
 struct quick *quick_open(void)
 {
 	struct quick *q = xcalloc(1, sizeof *q);
+	double highest;
 
 	surrogate_read(path, &q->surrogate);
+	highest = surrogate_highest_level(&q->surrogate);
+	if (level > highest + 1e-9)
+		die(EXIT_RUN,
+			"--interval %g: the surfaces behind %s give intervals of level %.3g at most",
+			level, path, floor(highest * 1000) / 1000);
 	return q;
 }
 

@@ -48,13 +48,13 @@ roughgen --points 2048 --length 3mm --hurst 0.9 --rolloff 900um --slope 0.3 -s 7
 bemcontact --estar 1Pa --boundary periodic --pressure 0.06Pa rough.nrrd >fast.nrrd
 at_most "2048x2048 rough down to the cells: the iterations are few" "$(key iterations fast.nrrd)" 18
 
-# Strips of white noise, in which each square along the strip has its own load
+# Strips of white noise, in which the bounds cut off much of a step everywhere
 perl -e 'srand(3); for (1 .. 64 * 4096) { print pack "d<", 1e-6 * sqrt(-2 * log(1 - rand)) * cos(6.283185307179586 * rand) }' >noise.f64
 for size in 64x4096 4096x64; do
 	for p in 3e9 30e9 60e9; do
 		bemcontact --raw $size --pixel 1um --estar 100GPa --boundary periodic --pressure ${p}Pa noise.f64 >strip.nrrd
 		at_most "$size of white noise, $(key area strip.nrrd | cut -c 1-4) in contact: the iterations are few" \
-			"$(key iterations strip.nrrd)" 50
+			"$(key iterations strip.nrrd)" 35
 	done
 done
 
