@@ -119,6 +119,8 @@ static enum num_status improve_shape(struct examples *ex, struct calibration *c,
 
 		if (k > 1 && (examples_pulses(ex) > most || chi2 > 2 * before))
 			break;
+		if (k > 10 && chi2 > CALIBRATE_TOLERABLE)
+			break;
 		before = chi2;
 		mean_residual(ex, more, more + points, half);
 		better = shape_correct(c->shape, more, half, 1 / c->duration);

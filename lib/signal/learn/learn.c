@@ -11,6 +11,10 @@
 
 enum { RANGE_EVENTS = 12 };
 
+/* Chi-square above which noise of a suspected colour is not white; half and twice of it
+ * give the same rows in the records of BAD_FIT in measure.c. */
+static const double HOPELESS = 100;
+
 /* First minimum of the autocorrelation after its smallest value has been passed by a
  * clear rise; lag in samples, 0 where there is none. */
 double learn_lowest_lag(const double *r, size_t max_lag)
@@ -222,8 +226,7 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 					return CALIBRATE_MEMORY;
 				duration *= factor[k];
 			}
-			if (best.chi2 <= (k ? 2 : CALIBRATE_DESCRIBES) ||
-				status != CALIBRATE_OK)
+			if (best.chi2 <= (k ? 2 : 1.1) || status != CALIBRATE_OK)
 				break;
 			if ((k == 0 || isnan(par->duration)) &&
 				(par->pulse == CALIBRATE_ANY_PULSE || p == par->pulse))
@@ -290,6 +293,8 @@ static enum calibrate_status converge(
 		before = c->chi2;
 		c->chi2 = examples_fit(ex, fmax(0.01 * pow(0.3, k), ex->share));
 		c->price = ex->price;
+		if ((k > 1 || c->whitening.tap) && c->suspect && c->chi2 > HOPELESS)
+			break;
 		tune(par, ex, step, 2);
 		moved = fabs(log(ex->scene.duration / c->duration));
 		step = fmin(fmax(3 * moved, 0.002), 0.02);
@@ -300,7 +305,8 @@ static enum calibrate_status converge(
 				return CALIBRATE_MEMORY;
 			ex->scene.shape = c->shape;
 		}
-		if (k > 1 && examples_full(ex))
+		if (k > 1 &&
+			(examples_full(ex) || (c->chi2 > 10 && c->chi2 > 0.8 * before)))
 			break; /* too dense, or other pulses: no use */
 		if (k > 2 && moved < 5e-4 &&
 			(learn_describes(c) || c->chi2 > 0.95 * before))
@@ -318,7 +324,7 @@ static int wants_correction(
 	if (examples_full(ex))
 		return 0;
 	if (c->guessed)
-		return !learn_describes(c);
+		return c->chi2 > 1.1;
 	return par->pulse == CALIBRATE_ANY_PULSE && !ex->pieces &&
 	       !(c->whitening.tap && c->suspect) && correct_doubtful(ex, c);
 }
