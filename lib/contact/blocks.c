@@ -1,5 +1,6 @@
 /* blocks.c - see blocks.h */
 #include "contact/blocks.h"
+#include "num/lesser.h"
 #include <math.h>
 #include <string.h>
 
@@ -86,11 +87,6 @@ static void keep_block(struct contact *c, const struct block *b)
 			c->image[y * (size_t)c->par.nx + x] += shift - c->shift;
 }
 
-static size_t least(size_t a, size_t b)
-{
-	return a < b ? a : b;
-}
-
 /* Where the first block from column x on with active cells begins, or nx. */
 static size_t next_active(const struct contact *c, const struct block *rows, size_t x)
 {
@@ -110,11 +106,11 @@ static void keep_rows(void *context, size_t job, int worker)
 {
 	struct contact *c = context;
 	size_t nx = (size_t)c->par.nx, ny = (size_t)c->par.ny;
-	struct block b = { .y0 = job * SIDE, .y1 = least((job + 1) * SIDE, ny) };
+	struct block b = { .y0 = job * SIDE, .y1 = lesser((job + 1) * SIDE, ny) };
 
 	(void)worker;
 	for (b.x0 = next_active(c, &b, 0); b.x0 < nx; b.x0 = next_active(c, &b, b.x1)) {
-		b.x1 = least(b.x0 + SIDE, nx);
+		b.x1 = lesser(b.x0 + SIDE, nx);
 		keep_block(c, &b);
 	}
 }

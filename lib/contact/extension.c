@@ -3,6 +3,7 @@
 #include "num/convolve.h"
 #include "num/fft.h"
 #include "num/lanes.h"
+#include "num/lesser.h"
 #include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
@@ -193,11 +194,6 @@ void extension_free(struct extension *e)
 	free(e);
 }
 
-static size_t smaller(size_t a, size_t b)
-{
-	return a < b ? a : b;
-}
-
 static inline void add_cells(double *to, double w, lanes x, int n)
 {
 	lanes_store(to, lanes_load(to, n) + w * x, n);
@@ -259,7 +255,7 @@ static void gather(void *context, size_t job, int worker)
 	double *value = e->scratch + 2 * (size_t)worker * e->row,
 	       *weight = value + e->row;
 
-	for (size_t y = job * ROWS; y < smaller((job + 1) * ROWS, l->ny); y++) {
+	for (size_t y = job * ROWS; y < lesser((job + 1) * ROWS, l->ny); y++) {
 		memset(value, 0, e->row * sizeof *value);
 		memset(weight, 0, e->row * sizeof *weight);
 		for (size_t k = 0; k < TRANSFER_TAPS; k++)
@@ -325,7 +321,7 @@ static void spread(void *context, size_t job, int worker)
 	struct extension *e = context;
 	const struct level *coarse = &e->level[e->now], *fine = coarse - 1;
 
-	for (size_t y = job * ROWS; y < smaller((job + 1) * ROWS, fine->ny); y++) {
+	for (size_t y = job * ROWS; y < lesser((job + 1) * ROWS, fine->ny); y++) {
 		struct between between = rows_between(e, coarse, y, worker);
 		double *value = fine->value + y * fine->nx;
 		const double *weight = fine->weight + y * fine->nx;

@@ -1,5 +1,6 @@
 #include "contact/mlms.h"
 #include "num/fft.h"
+#include "num/lesser.h"
 #include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
@@ -247,11 +248,6 @@ void mlms_free(struct mlms *m)
 	free(m);
 }
 
-static size_t smaller(size_t a, size_t b)
-{
-	return a < b ? a : b;
-}
-
 /* Cell i of the fine level lies on node i / 2 + order / 2 - 1 of the coarse one, or
  * between the nodes from i / 2 on. */
 static void gather_row(const struct mlms *m, const double *fine, size_t n, double *coarse)
@@ -314,7 +310,7 @@ static void gather_x(void *context, size_t job, int worker)
 	size_t n = half_length(m, l);
 
 	(void)worker;
-	for (size_t y = job * ROWS; y < smaller((job + 1) * ROWS, l->ny); y++) {
+	for (size_t y = job * ROWS; y < lesser((job + 1) * ROWS, l->ny); y++) {
 		find_sources(l, source + y * l->nx, y);
 		if (l->halve_x)
 			gather_row(m, source + y * l->nx, l->nx, l->half + y * n);
@@ -332,7 +328,7 @@ static void gather_y(void *context, size_t job, int worker)
 	size_t n = next->nx, shift = (size_t)m->order / 2 - 1;
 
 	(void)worker;
-	for (size_t y = job * ROWS; y < smaller((job + 1) * ROWS, next->ny); y++) {
+	for (size_t y = job * ROWS; y < lesser((job + 1) * ROWS, next->ny); y++) {
 		double *to = next->source + y * n;
 
 		if (!l->halve_y) {
@@ -359,7 +355,7 @@ static void add_near(
 	for (size_t x = l->begin[ys]; x < l->end[ys]; x++) {
 		size_t parity = (ys & 1) * 2 + (x & 1);
 		size_t first = x > reach ? x - reach : 0;
-		size_t last = smaller(x + reach + 1, l->nx);
+		size_t last = lesser(x + reach + 1, l->nx);
 		const double *near =
 			l->near + (parity * (2 * over + 1) + over + y - ys) * side;
 
@@ -378,7 +374,7 @@ static void spread(void *context, size_t job, int worker)
 	size_t n = next->nx, reach = (size_t)l->reach_y, shift = (size_t)m->order / 2 - 1;
 
 	(void)worker;
-	for (size_t y = job * ROWS; y < smaller((job + 1) * ROWS, l->ny); y++) {
+	for (size_t y = job * ROWS; y < lesser((job + 1) * ROWS, l->ny); y++) {
 		double *image = (m->now ? l->image : m->y) + y * l->nx;
 		double *half = l->half + y * n;
 		size_t first = y > reach ? y - reach : 0;
@@ -396,7 +392,7 @@ static void spread(void *context, size_t job, int worker)
 			spread_row(m, half, l->nx, image);
 		else
 			memcpy(image, half, n * sizeof *half);
-		for (size_t ys = first; ys < smaller(y + reach + 1, l->ny); ys++)
+		for (size_t ys = first; ys < lesser(y + reach + 1, l->ny); ys++)
 			add_near(l, source + ys * l->nx, ys, image, y);
 	}
 }
@@ -409,7 +405,7 @@ static void sum_directly(void *context, size_t job, int worker)
 	size_t nx = l->nx;
 
 	(void)worker;
-	for (size_t y = job * ROWS; y < smaller((job + 1) * ROWS, l->ny); y++) {
+	for (size_t y = job * ROWS; y < lesser((job + 1) * ROWS, l->ny); y++) {
 		double *image = (m->now ? l->image : m->y) + y * nx;
 
 		memset(image, 0, nx * sizeof *image);

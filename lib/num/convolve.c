@@ -1,6 +1,7 @@
 #include "num/convolve.h"
 #include "num/fft.h"
 #include "num/lanes.h"
+#include "num/lesser.h"
 #include "num/status.h"
 #include <complex.h>
 #include <math.h>
@@ -372,11 +373,6 @@ static inline void put(double complex *z, lanes value)
 	lanes_store((double *)z, value, 2);
 }
 
-static size_t smaller(size_t a, size_t b)
-{
-	return a < b ? a : b;
-}
-
 /* Scratch memory of a thread, and the spectra of a job's rows in it. */
 static double *buffer(const struct convolve *c, int worker)
 {
@@ -410,7 +406,7 @@ static void forward_rows(void *context, size_t job, int worker)
 	const struct convolve_passes *p = c->passes;
 	double *row = buffer(c, worker);
 	double complex *spectrum = spectra(c, worker), *work = c->work + job * ROWS;
-	size_t nx = c->fx, rows = smaller(ROWS, c->fy - job * ROWS), stride = c->stride;
+	size_t nx = c->fx, rows = lesser(ROWS, c->fy - job * ROWS), stride = c->stride;
 
 	for (size_t k = 0; k < rows; k++) {
 		const double *x = p->x ? p->x + (job * ROWS + k) * nx : row;
@@ -443,7 +439,7 @@ static void inverse_rows(void *context, size_t job, int worker)
 	double *row = buffer(c, worker);
 	double complex *spectrum = spectra(c, worker);
 	const double complex *work = c->work + job * ROWS;
-	size_t nx = c->nx, rows = smaller(ROWS, c->ny - job * ROWS), stride = c->stride;
+	size_t nx = c->nx, rows = lesser(ROWS, c->ny - job * ROWS), stride = c->stride;
 	size_t begin = job * ROWS * nx;
 	double *y;
 
@@ -503,7 +499,7 @@ static void convolve_columns(void *context, size_t job, int worker)
 	double complex *f = (double complex *)buffer(c, worker);
 	double complex *e = f + pad_stride(c->my);
 
-	for (size_t kx = job * COLUMNS; kx < smaller((job + 1) * COLUMNS, c->lx); kx++)
+	for (size_t kx = job * COLUMNS; kx < lesser((job + 1) * COLUMNS, c->lx); kx++)
 		convolve_column(c, c->kernel + kx * kernel_column(c),
 			c->work + kx * c->column, f, e);
 }

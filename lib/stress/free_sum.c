@@ -1,4 +1,5 @@
 #include "stress/free_sum.h"
+#include "num/lesser.h"
 #include "num/pages.h"
 #include "num/status.h"
 #include "stress/lattice.h"
@@ -97,11 +98,6 @@ void free_sum_load(struct free_sum *s, const double *pressure, double scale,
 	s->box = *box;
 }
 
-static int smaller(int a, int b)
-{
-	return a < b ? a : b;
-}
-
 static int larger(int a, int b)
 {
 	return a > b ? a : b;
@@ -113,9 +109,9 @@ static struct box box_of(const struct free_sum *s, const struct stress_want *wan
 	int x0 = s->box.x0, x1 = s->box.x1, y0 = s->box.y0, y1 = s->box.y1;
 
 	for (size_t i = 0; i < want->count; i++) {
-		x0 = smaller(x0, want->span[i].begin);
+		x0 = lesser_int(x0, want->span[i].begin);
 		x1 = larger(x1, want->span[i].end - 1);
-		y0 = smaller(y0, want->span[i].y);
+		y0 = lesser_int(y0, want->span[i].y);
 		y1 = larger(y1, want->span[i].y);
 	}
 	return (struct box){ x0, y0, x1 - x0 + 1, y1 - y0 + 1 };

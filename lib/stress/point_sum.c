@@ -1,5 +1,6 @@
 #include "stress/point_sum.h"
 #include "num/lanes.h"
+#include "num/lesser.h"
 #include "stress/influence.h"
 
 #include <math.h>
@@ -129,11 +130,6 @@ int point_sum_above(const struct point_sum *s, double z)
 	return k > 0 ? (int)k : 0;
 }
 
-static int smaller(int a, int b)
-{
-	return a < b ? a : b;
-}
-
 static double centre(int cell, double width)
 {
 	return ((double)cell + 0.5) * width;
@@ -180,7 +176,8 @@ static void list_cells(struct point_sum *s)
 
 	for (int square = 0; square < small->nx * small->ny; square++) {
 		int x0 = square % small->nx * BLOCK, y0 = square / small->nx * BLOCK;
-		int wx = smaller(BLOCK, g->nx - x0), wy = smaller(BLOCK, g->ny - y0);
+		int wx = lesser_int(BLOCK, g->nx - x0),
+		    wy = lesser_int(BLOCK, g->ny - y0);
 
 		s->begin[square] = n;
 		for (int y = 0; y < wy; y++)

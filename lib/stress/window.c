@@ -1,6 +1,7 @@
 #include "stress/window.h"
 #include "num/fft.h"
 #include "num/lanes.h"
+#include "num/lesser.h"
 #include "num/status.h"
 
 #include <stdlib.h>
@@ -113,11 +114,6 @@ static void put_kernel(struct tiling *t, const struct influence *kernel,
 		}
 }
 
-static int smaller(int a, int b)
-{
-	return a < b ? a : b;
-}
-
 static int larger(int a, int b)
 {
 	return a > b ? a : b;
@@ -135,8 +131,8 @@ static struct extent extent_of(const struct tiling *t, int x0, int y0)
 	int left = x0 - t->x.lead, low = y0 - t->y.lead;
 
 	return (struct extent){ left, low, larger(left, 0),
-		smaller(left + (int)t->x.points, w->mx), larger(low, 0),
-		smaller(low + (int)t->y.points, w->my) };
+		lesser_int(left + (int)t->x.points, w->mx), larger(low, 0),
+		lesser_int(low + (int)t->y.points, w->my) };
 }
 
 /* The loads of a tile, if they are few. */
@@ -236,7 +232,7 @@ static int next_run(const struct tiling *t, const struct stress_part *part,
 		++*next) {
 		*run = (struct stress_span){ (*next)->y - y0,
 			larger((*next)->begin - x0, 0),
-			smaller((*next)->end - x0, width) };
+			lesser_int((*next)->end - x0, width) };
 		if (run->begin < run->end) {
 			++*next;
 			return 1;
@@ -270,7 +266,7 @@ static void add_to_run(const struct tiling *t, const struct few *few,
 	for (int i = 0; i < few->count; i++) {
 		int x = few->x[i] - t->x.lead, y = few->y[i] - t->y.lead;
 		int left = larger(x - t->reach_x, run->begin),
-		    right = smaller(x + t->reach_x + 1, run->end);
+		    right = lesser_int(x + t->reach_x + 1, run->end);
 
 		if (abs(run->y - y) > t->reach_y || left >= right)
 			continue;
@@ -316,8 +312,8 @@ static void sum_tile(void *context, size_t tile, int worker)
 	struct extent e;
 	struct few few;
 
-	part.x1 = smaller(part.x0 + t->x.nodes, w->mx);
-	part.y1 = smaller(part.y0 + t->y.nodes, w->my);
+	part.x1 = lesser_int(part.x0 + t->x.nodes, w->mx);
+	part.y1 = lesser_int(part.y0 + t->y.nodes, w->my);
 	if (t->wanted && !t->wanted[tile])
 		return;
 	e = extent_of(t, part.x0, part.y0);

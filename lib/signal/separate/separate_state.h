@@ -3,6 +3,7 @@
 #ifndef SIGNAL_SEPARATE_STATE_H
 #define SIGNAL_SEPARATE_STATE_H
 
+#include "num/lesser.h"
 #include "signal/detect/foreign.h"
 #include "signal/detect/sections.h"
 #include "signal/fit/goodness.h"
@@ -148,11 +149,6 @@ static inline struct channels channels_at(const struct separate *s, long long at
 		y.at[c] = s->tape[c].x +
 			  (at + (c % 2 ? s->cal.shift : 0) - s->tape[c].begin);
 	return y;
-}
-
-static inline size_t lesser(size_t a, size_t b)
-{
-	return a < b ? a : b;
 }
 
 static inline int has_quadrature(const struct separate *s)

@@ -1,0 +1,17 @@
+/* lesser.h - the lesser of two whole numbers */
+#ifndef NUM_LESSER_H
+#define NUM_LESSER_H
+
+#include <stddef.h>
+
+static inline size_t lesser(size_t a, size_t b)
+{
+	return a < b ? a : b;
+}
+
+static inline int lesser_int(int a, int b)
+{
+	return a < b ? a : b;
+}
+
+#endif
