@@ -62,6 +62,20 @@ is "oil without other particles has no overlaps" "$(column p_alone none.tsv) $(c
 layout --coils 0 --snr 40dB --per-ml 0.1 --flow 60L/min >some.tsv
 near "concentration times flow is the rate of arrivals" "$(column arrivals some.tsv)" 100 1e-9
 
+# Three layouts with 200 particles each, as duet finds them: 5 % of one standard error.
+for d in 10 25 50; do
+	sensorsim --uniform 100um:100um --number 200 --burst 1 --span 1ms --period 100ms --spacing ${d}cm --snr 30dB \
+		--seed 6 --truth truth.tsv | duet --pulse sine --gain 1 --spacing ${d}cm >found.tsv
+	layout --coils 0,${d}cm --snr 30dB --arrivals 1 >bound.tsv
+	for q in time1:se_time velocity:se_velocity; do
+		near "the ${q%:*} of duet with coils $d cm apart is as exact as the bound" "$({
+			column "${q%:*}" truth.tsv >a
+			column "${q%:*}" found.tsv | paste a - | awk -v se="$(column "${q#*:}" bound.tsv)" '
+				{ s += ($1 - $2) ^ 2 } END { printf "%.4f", sqrt(s / NR) / se }'
+		})" 1 0.15
+	done
+done
+
 fails "neither coils nor a search" 2 'specify either --coils X,X,... or --best N' layout --snr 40dB --arrivals 1
 fails "a search without room" 2 'requires --extent' layout --best 2 --snr 40dB --arrivals 1
 fails "no signal to noise ratio" 2 '\--snr is missing' layout --coils 0 --arrivals 1
