@@ -34,6 +34,10 @@ static const double HALT = 3.5;
 static const double LEAST = 1e-3;  /* prior noise, share of the range to the threshold */
 static const double DIFFUSE = 1e8; /* prior variance of v over that of the noise */
 
+/* Log weight of a Wiener process in a curved coordinate, over that of one in a straight
+ * line: its wander looks like a bend for a while. */
+static const double BENT = -0.4;
+
 /* Changes of regime in the past, represented by particles: hazard c, share of falls, and
  * growth in units of 1 / age, which is that of the steeper part of the changes to come
  * (passage.c), because curved coordinates stand for slow growth.  With more falls the
@@ -108,8 +112,7 @@ void project(const struct bank *b, struct trend *tr, const struct place *p, doub
 	tr->phh /= keep;
 	tr->phv /= keep;
 	tr->pvv /= keep;
-	if (wanders(tr))
-		tr->phh += step / b->gap * squared_slope(*p);
+	tr->phh += kinds[tr->kind].wander * step / b->gap * squared_slope(*p);
 }
 
 /* An observation in the coordinate of a trend: the slope is taken where the trend will
@@ -134,8 +137,7 @@ static double log_density(const struct bank *b, const struct trend *tr,
 {
 	double freedom = freedom_of(b, tr), variance = tr->sum / freedom;
 
-	return b->log_constant[tr->kind % MEMORIES] + p->log_slope -
-	       0.5 * log(variance * f) -
+	return b->log_constant[tr->kind] + p->log_slope - 0.5 * log(variance * f) -
 	       0.5 * (freedom + 1) * log1p(z * z / (freedom * variance));
 }
 
@@ -153,7 +155,7 @@ static double square_at(double deviate, double freedom)
 static void follow(
 	const struct bank *b, struct trend *tr, const struct place *seen, double step)
 {
-	double keep = b->keep[tr->kind % MEMORIES], f, e, z, limit;
+	double keep = b->keep[tr->kind], f, e, z, limit;
 	struct place p = seen_from(b, tr, seen, step);
 
 	if (b->par.n_loads > 0)
@@ -200,6 +202,12 @@ static double log_kinship(const struct bank *b, const struct trend *tr)
 		       (PACE * PACE + usual.pvv * tr->sum / freedom_of(b, tr));
 }
 
+/* 1: a curved coordinate of the table. */
+static int is_bent(const struct bank_shape *s)
+{
+	return s->n == 0 && s->family != BANK_LINEAR;
+}
+
 /* Updates the weights: n rows count as sqrt(SCORED n), because they are not independent
  * given a wrong model.  A trend that has overflowed has weight 0. */
 static void weigh(struct bank *b)
@@ -210,8 +218,11 @@ static void weigh(struct bank *b)
 	for (int i = 0; i < b->trends; i++) {
 		struct trend *tr = &b->trend[i];
 
-		tr->weight = shape_of(b, tr->shape)->log_prior + tr->offset +
-			     share * tr->score + log_kinship(b, tr);
+		tr->weight = shape_of(b, tr->shape)->log_prior +
+			     kinds[tr->kind].log_prior + tr->offset + share * tr->score +
+			     log_kinship(b, tr);
+		if (wanders(tr) && is_bent(shape_of(b, tr->shape)))
+			tr->weight += BENT;
 		if (isfinite(tr->weight))
 			top = fmax(top, tr->weight);
 	}
@@ -320,8 +331,8 @@ static void take(struct bank *b, const struct row *r)
 
 	face_loads(b, r);
 	b->cut = square_at(CUT, b->freedom[0]);
-	for (int j = 0; j < MEMORIES; j++) {
-		b->keep[j] = b->rows >= BANK_START - 1 ? k / (k + memories[j]) : 1;
+	for (int j = 0; j < KINDS; j++) {
+		b->keep[j] = b->rows >= BANK_START - 1 ? k / (k + kinds[j].memory) : 1;
 		b->log_constant[j] = student_log_constant(b->freedom[j]);
 	}
 	for (int i = 0; i < b->trends; i++) {
@@ -332,7 +343,7 @@ static void take(struct bank *b, const struct row *r)
 		tr->score *= fade;
 		follow(b, tr, &place, step);
 	}
-	for (int j = 0; j < MEMORIES && b->rows > 1; j++)
+	for (int j = 0; j < KINDS && b->rows > 1; j++)
 		b->freedom[j] = b->keep[j] * b->freedom[j] + 1;
 	if (b->rows >= BANK_START - 1)
 		b->scored = b->scored * fade + 1;
@@ -379,7 +390,7 @@ static void start(struct bank *b)
 					.shape = (unsigned char)i,
 					.kind = (unsigned char)k };
 	b->fixed = b->trends;
-	for (int k = 0; k < MEMORIES; k++)
+	for (int k = 0; k < KINDS; k++)
 		b->freedom[k] = 1;
 	b->rows = 1;
 	for (int k = 0; k < b->par.n_loads; k++) {

@@ -5,10 +5,10 @@
  * h(D) = int_0^D dD' / g(D') it is a straight line, h = h_0 + v t, whose level and rate a
  * Kalman filter follows over gaps of any length.  Each row of a table defines a
  * coordinate (struct bank_shape), and so does the path of an earlier unit (fleet.h).
- * Each coordinate has trends with two kinds of noise: on the observation alone, or also,
- * with the same variance per mean gap, on the damage (a Wiener process); and with three
- * memories: a discount gives observation j of k the weight (j / k)^0, (j / k)^1 or
- * (j / k)^3.  The variance of the noise is unknown, so that predictions are Student-t.
+ * Each coordinate has trends with noise on the observation alone and three memories, a
+ * discount that gives observation j of k the weight (j / k)^0, (j / k)^1 or (j / k)^3;
+ * and trends whose damage is a Wiener process as well, with little or much wander.  The
+ * variance of the noise is unknown, so that predictions are Student-t.
  * The slope of h is taken at the predicted observation and not at the observed one;
  * otherwise noise alone would favour curved coordinates.  Innovations are limited to a
  * Student's t as rare as three standard deviations.

@@ -8,12 +8,19 @@
 #include <math.h>
 
 enum {
-	MEMORIES = 3,
-	KINDS = 2 * MEMORIES, /* memories times noises */
-	HELD = 8              /* rows held back at most */
+	WITHOUT = 3, /* kinds of trends without a Wiener process, the first */
+	KINDS = 6,
+	HELD = 8 /* rows held back at most */
 };
 
-static const double memories[MEMORIES] = { 0, 1, 3 }; /* exponents of (j / k) */
+/* Kinds of trends: the weight of observation j of k is (j / k)^memory, and the damage is
+ * a Wiener process whose variance over a mean gap is wander times that of an observation.
+ * The first and the last of either sort differ in memory alone, see drift().
+ * The wanders and weights, and BENT in bank.c, were swept as doc/benchmarks.md tells. */
+static const struct kind {
+	double memory, wander, log_prior;
+} kinds[KINDS] = { { 0, 0, 0 }, { 1, 0, 0 }, { 3, 0, 0 }, { 0, 3, 0 }, { 0, 0.3, 0 },
+	{ 3, 3, -1 } };
 
 /* A local trend h + v t, where v is the rate at the present load.  Covariances are in
  * units of the noise variance. */
@@ -68,7 +75,7 @@ struct bank {
 	double quantum;       /* least difference of successive values of y but 0 */
 	int repeats;          /* 1: successive values have been equal */
 	double bred;          /* age at which particles were last drawn */
-	double freedom[MEMORIES], keep[MEMORIES], log_constant[MEMORIES];
+	double freedom[KINDS], keep[KINDS], log_constant[KINDS];
 	double cut; /* square of the largest standardised innovation */
 	double scored;
 	struct row held[HELD];
@@ -137,13 +144,13 @@ static inline double damage_of(const struct bank *b, double y)
 
 static inline double freedom_of(const struct bank *b, const struct trend *tr)
 {
-	return b->freedom[tr->kind % MEMORIES];
+	return b->freedom[tr->kind];
 }
 
 /* 1: the damage is a Wiener process. */
 static inline int wanders(const struct trend *tr)
 {
-	return tr->kind >= MEMORIES;
+	return kinds[tr->kind].wander > 0;
 }
 
 /* Factor by which the rate has grown from the onset to an age. */

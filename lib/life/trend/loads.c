@@ -144,7 +144,7 @@ static double largest_effect(const struct bank *b, int k)
 /* The prior of the tilts of a trend follows its mean rate and the largest effects. */
 static void heed_load_prior(const struct bank *b, struct trend *tr)
 {
-	double noise = tr->sum / b->freedom[tr->kind % MEMORIES],
+	double noise = tr->sum / b->freedom[tr->kind],
 	       rate = (tr->h * tr->h + noise) / (b->age * b->age);
 	struct tilt *tilt = tilts_of(b, tr);
 

@@ -14,17 +14,18 @@ enum { CHANCES = 8 }; /* uniform numbers of one draw */
 static const double NOTHING = 3e3;
 
 /* Future changes of regime, where the rate falls, is constant or rises in a coordinate,
- * and on the paths of other units, for all of them together: hazard c, share of falls,
- * and median growth in units of 1 / age.  These and the three constants below were chosen
- * with the weights of the coordinates, see shapes.c; hazard and growth where the rate is
- * constant or rises, falls where it is constant, WANDERING and five of the weights were
+ * and on the paths of other units, for all of them together: hazard c, age of the regime
+ * as a share of that of the unit, share of falls, and median growth in units of 1 / age.
+ * A constant rate is that after the run-in.  These and the three constants below were
+ * chosen with the weights of the coordinates, see shapes.c; all where the rate is
+ * constant, hazard and growth where it rises, WANDERING and five of the weights were
  * swept again, as doc/benchmarks.md tells.  With one other unit, hazards of 0.1, 0.3, 0.5
  * and 1 cover .79, .83, .86 and 1.00 at 80 % of the life of 29 measured series, with a
  * CRPS over all ages of 4.5, 4.5, 4.6 and 4.9. */
 static const struct future {
-	double hazard, falls, growth;
-} future[] = { { 2.5, 0.24, 3.5 }, { 1.2, 0.2, 3 }, { 0.55, 0.033, 1.5 },
-	{ 0.5, 0.18, 3 } };
+	double hazard, age, falls, growth;
+} future[] = { { 2.5, 1, 0.24, 3.5 }, { 0.58, 1.0 / 3, 0.2, 3 }, { 0.5, 1, 0.033, 1.3 },
+	{ 0.5, 1, 0.18, 3 } };
 
 /* Share of falls where the damage is a Wiener process, relative to other wear: its rate
  * seems to fall for a while without any change of regime. */
@@ -41,7 +42,7 @@ static const double FALL = 1.4, FALL_SD = 0.45;
  * LEAN less: most wear bends more than its coordinate, because straight coordinates have
  * more weight.  Both were chosen with the future of a rising rate, as doc/benchmarks.md
  * tells. */
-static const double STRAY = 0.2, LEAN = 0.04;
+static const double STRAY = 0.2, LEAN = 0.07;
 
 struct bank_chances {
 	int n;
@@ -140,7 +141,7 @@ static void heed_prior(double mean, double sd, struct crossing *p)
  * has its rate at the share (m + 2) / (m + 4) of the age. */
 static double share_of_age(const struct trend *tr)
 {
-	double m = memories[tr->kind % MEMORIES];
+	double m = kinds[tr->kind].memory;
 
 	return (m + 2) / (m + 4);
 }
@@ -154,7 +155,8 @@ static double share_of_age(const struct trend *tr)
  * to twice the mean.  Particles have no trend of another memory beside them. */
 static double drift(const struct bank *b, const struct trend *tr, double time)
 {
-	int memory = tr->kind % MEMORIES;
+	const struct trend *first = tr - tr->kind + (wanders(tr) ? WITHOUT : 0),
+			   *last = first + (wanders(tr) ? KINDS - WITHOUT : WITHOUT) - 1;
 	double mean[BANK_LOADS], change, noise, away;
 	struct trend usual, all, late;
 
@@ -162,8 +164,8 @@ static double drift(const struct bank *b, const struct trend *tr, double time)
 		return 0;
 	mean_loads(b, mean);
 	usual = at_loads(b, tr, mean);
-	all = at_loads(b, tr - memory, mean);
-	late = at_loads(b, tr - memory + MEMORIES - 1, mean);
+	all = at_loads(b, first, mean);
+	late = at_loads(b, last, mean);
 	if (!(usual.v > 0))
 		return 0;
 	change = late.v - all.v;
@@ -247,8 +249,8 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 	p.freedom = freedom_of(b, tr);
 	p.variance = tr->sum / p.freedom;
 	/* The noise is constant in D: its slope is taken half way to the level. */
-	if (wanders(tr))
-		p.wiener = p.variance * here.slope * there.slope / b->gap;
+	p.wiener =
+		kinds[tr->kind].wander * p.variance * here.slope * there.slope / b->gap;
 	p.variance *= (1 + correlation) / (1 - correlation);
 	if (p.v > 0)
 		p.pvv += drift(b, tr, fmax(0, (p.limit - p.h) / p.v)) * p.v * p.v /
@@ -283,7 +285,7 @@ static double normal_above(double m, const struct chance *c)
 static double change(
 	const struct crossing *p, double time, double age, const struct chance *c)
 {
-	double j = age * expm1(c->late / p->hazard), rest = time - j, g;
+	double j = p->future->age * age * expm1(c->late / p->hazard), rest = time - j, g;
 
 	if (!(rest > 0))
 		return time;

@@ -7,10 +7,10 @@
  * less certain the longer the way is.  Beyond the damage that has been reached, the wear
  * may stray from a curved coordinate, unless the trends disagree as much already.
  *
- * The regime may change once more: after a time J with P(J > x) = (a / (a + x))^c at age
- * a (an old regime lasts long), the rate begins to grow as e^{g (t - J)}, or drops and
- * stays at the lower value.  Hazard, growth and share of drops depend on whether the rate
- * at present falls, is constant or rises in the coordinate.
+ * The regime may change once more: after a time J with P(J > x) = (a / (a + x))^c, where
+ * a is its age (an old one lasts long), the rate begins to grow as e^{g (t - J)}, or
+ *drops and stays at the lower value.  Hazard, growth and share of drops depend on whether
+ *the rate at present falls, is constant or rises in the coordinate.
  *
  *	struct bank_chances *chances = bank_chances_new(500, seed);
  *	bank_draw(b, chances, now, level, life);

@@ -59,11 +59,19 @@ static void moments(const struct sums *s, double unit2, double unit4, double gai
 	}
 }
 
-/* Standard error of the fourth cumulant of n samples of Gaussian noise with the variance
- * 1 and the autocorrelation of the pulse: sqrt(24 / n sum r^4).  Crowds are nearly that.
- * The jackknife does not see it where it saw few large pulses: an estimate that is too
- * small would have too small an error. */
-static double fourth_error(const struct shape *shape, double duration, size_t n)
+/* Standard error of the fourth cumulant, over the square of the second, of n samples of
+ * shot noise with share pulses of one height per duration to the power of -1 (0: Gaussian
+ * noise).  With k(a, b) the joint cumulant of a and b times two samples,
+ *
+ *	sum of k(4, 4) + 16 k(3, 3) k(1, 1) + 18 k(2, 2)^2 + 16 k(1, 3) k(3, 1)
+ *		+ 72 k(2, 2) k(1, 1)^2 + 24 k(1, 1)^4
+ *
+ * over all lags, and over n, is its variance (Fisher, Proc. London Math. Soc. 30, 1929,
+ * for independent samples; terms of odd order vanish or compensate).  The jackknife does
+ * not see it where it saw few large pulses: an estimate that is too small would have too
+ * small an error. */
+static double fourth_error(
+	const struct shape *shape, double duration, size_t n, double share)
 {
 	enum { STEPS = 32 };
 	int half = (int)ceil(shape_reach(shape) * STEPS), points = 2 * half + 1;
@@ -72,16 +80,44 @@ static double fourth_error(const struct shape *shape, double duration, size_t n)
 	if (!p)
 		return INFINITY;
 	shape_sample(shape, half, STEPS, 0, (size_t)points, p, NULL, NULL);
+	for (int i = 0; i < points; i++)
+		energy += p[i] * p[i] / STEPS;
 	for (int lag = 0; lag < points; lag++) {
-		double r = 0;
+		double k11 = 0, k22 = 0, k33 = 0, k44 = 0, k13 = 0, k31 = 0;
 
-		for (int i = lag; i < points; i++)
-			r += p[i] * p[i - lag];
-		energy = lag ? energy : r;
-		sum += (lag ? 2 : 1) * pow(r / energy, 4) / STEPS;
+		for (int i = lag; i < points; i++) {
+			double x = p[i] / sqrt(energy), y = p[i - lag] / sqrt(energy);
+
+			k11 += x * y / STEPS;
+			k22 += x * x * y * y * share / STEPS;
+			k13 += x * y * y * y * share / STEPS;
+			k31 += x * x * x * y * share / STEPS;
+			k33 += pow(x * y, 3) * share * share / STEPS;
+			k44 += pow(x * y, 4) * pow(share, 3) / STEPS;
+		}
+		sum += (lag ? 2 : 1) *
+		       (k44 + 16 * k33 * k11 + 18 * k22 * k22 + 16 * k13 * k31 +
+			       72 * k22 * k11 * k11 + 24 * pow(k11, 4)) /
+		       STEPS;
 	}
 	free(p);
-	return sqrt(24 * sum * duration / (double)n);
+	return sqrt(sum * duration / (double)n);
+}
+
+/* The same of this estimate, in its units.  It is that at the estimate and its own error:
+ * the fewer large pulses happened to be seen, the smaller is the estimate. */
+static double least_error(const struct shape *shape, double duration, size_t n,
+	double unit2, double unit4, const struct campbell *c)
+{
+	double square = fmax(c->square, 0), scale = pow(square * unit2, 2) / unit4, e = 0;
+
+	for (int step = 0; step < 2 && square > 0; step++) {
+		double fourth = fmax(c->fourth, 0) + e;
+
+		e = scale * fourth_error(shape, duration, n,
+				    fourth / (square * square * duration));
+	}
+	return e;
 }
 
 void campbell_estimate(const double *y1, const double *y2, size_t n,
@@ -117,7 +153,7 @@ void campbell_estimate(const double *y1, const double *y2, size_t n,
 	factor = (double)n < FEW * APART * duration ? INFINITY
 						    : sqrt((parts - 1.0) / parts);
 	c->square_se = factor * sqrt(var[0]);
-	least = fourth_error(shape, duration, n) * pow(c->square * unit2, 2) / unit4;
+	least = least_error(shape, duration, n, unit2, unit4, c);
 	c->fourth_se = fmax(factor * sqrt(var[1]), least);
 	least /= c->fourth;
 	c->rate_se = fmax(factor * sqrt(var[2]), least * c->rate);

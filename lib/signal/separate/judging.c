@@ -2,6 +2,7 @@
  */
 #include "num/room.h"
 #include "signal/separate/separate_state.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -73,13 +74,23 @@ static enum separate_status judge_pairs(struct separate *s, size_t n)
 {
 	struct entry *q = s->queue + s->judged;
 	struct arrival *a = malloc((n ? n : 1) * sizeof *a);
+	double half = validation_half(s->validation);
+	int plug =
+		s->scene.delta_max - s->scene.delta_min <= 2 * calibration_plug(&s->cal);
+	struct flow flow;
 	size_t m = 0;
 
 	if (!a)
 		return SEPARATE_MEMORY;
+	validation_flow(s->validation, &flow);
 	for (size_t i = 0; i < n; i++)
 		if (q[i].arrival.group) {
 			a[m] = q[i].arrival;
+			if (q[i].row.sources > 1 && half > 0 && plug) {
+				a[m].off = (q[i].evidence.delay - flow.mean) / half;
+				a[m].off_var = q[i].evidence.var / (half * half);
+				a[m].flow_var = flow.margin / (half * half);
+			}
 			a[m++].doubted = q[i].row.verdict >= SEPARATE_MISFIT;
 		}
 	together_judge(s->together, a, m);
@@ -88,7 +99,7 @@ static enum separate_status judge_pairs(struct separate *s, size_t n)
 		if (q[i].arrival.group && a[m++].doubted &&
 			q[i].row.verdict < SEPARATE_MISFIT) {
 			q[i].row.verdict = SEPARATE_MISFIT;
-			if (a[m - 1].shape > a[m - 1].pair)
+			if (fmax(a[m - 1].shape, a[m - 1].astray) > a[m - 1].pair)
 				s->counters.misfits++;
 			else
 				s->counters.together++;

@@ -206,6 +206,11 @@ static int is_at_edge(const struct validation *v, const struct evidence *e)
 	       fabs(e->delay - v->middle) > 0.8 * v->half;
 }
 
+double validation_half(const struct validation *v)
+{
+	return isfinite(v->var) ? v->half : 0;
+}
+
 /* --- parts of one object */
 
 static void take_pairs(struct validation *v, const struct evidence *e, size_t m)
