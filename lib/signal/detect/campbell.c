@@ -1,6 +1,6 @@
 /* campbell.c - see campbell.h */
 #include "signal/detect/campbell.h"
-#include "num/fft.h"
+#include "num/periodogram.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -161,29 +161,6 @@ void campbell_estimate(const double *y1, const double *y2, size_t n,
 	c->unlike = 0;
 }
 
-/* Adds to power[0 .. size / 2] the energy spectrum of x, n samples and zeros up to size;
- * tapered by Hann's window of mean square 1. */
-static int add_power(
-	const struct fft *fft, const double *x, size_t n, size_t size, double *power)
-{
-	double *pad = fft_alloc(size);
-	double complex *f = fft_alloc_complex(size / 2 + 1);
-	int done = pad && f;
-
-	for (size_t i = 0; i < n && done; i++) {
-		double w = sin(M_PI * ((double)i + 0.5) / (double)n);
-
-		pad[i] = x[i] * w * w / sqrt(0.375);
-	}
-	if (done)
-		fft_forward(fft, pad, f);
-	for (size_t k = 0; k <= size / 2 && done; k++)
-		power[k] += creal(f[k]) * creal(f[k]) + cimag(f[k]) * cimag(f[k]);
-	fft_free(pad);
-	fft_free(f);
-	return done;
-}
-
 /* Power of a band, of the record beyond its noise and of one pulse, and the variance of
  * the former. */
 struct band {
@@ -220,37 +197,37 @@ void campbell_compare(const double *y1, const double *y2, size_t n,
 	const struct shape *shape, double duration, double gain, struct campbell *c)
 {
 	size_t size = fft_good_size(n), bins = size / 2 + 1;
-	struct fft *fft = (double)n < FEW * APART * duration ? NULL : fft_new(size, 1);
-	double *power = fft_alloc(bins), *pulse = fft_alloc(bins), *p = fft_alloc(n);
+	struct periodogram *sum =
+		(double)n < FEW * APART * duration ? NULL : periodogram_new(size);
+	double *power = calloc(2 * bins + n, sizeof *power);
 	struct band band[BANDS] = { 0 };
 	double both = 0.5 * (1 + gain * gain), width = 0.5 * (double)size / duration;
 
 	c->unlike = INFINITY;
-	if (fft && power && pulse && p) {
-		shape_sample(shape, 0.5 * (double)n, duration, 0, n, p, NULL, NULL);
-		if (add_power(fft, y1, n, size, power) &&
-			add_power(fft, y2, n, size, power) &&
-			add_power(fft, p, n, size, pulse)) {
-			for (size_t k = 1; k < bins && (double)k < BANDS * width; k++) {
-				struct band *b = &band[(size_t)((double)k / width)];
-				double mean = 0.5 * power[k] / (double)n;
+	if (sum && power) {
+		double *pulse = power + bins, *p = pulse + bins;
 
-				b->record += mean - 1;
-				b->pulse += both * 0.375 *
-					    pulse[k]; /* in the middle of the window */
-				/* of one periodogram, which both channels share, */
-				b->var += mean * mean;
-			}
-			/* whose neighbours the window makes dependent */
-			for (int k = 0; k < BANDS; k++)
-				band[k].var *= 0.5 * 35. / 18;
-			c->unlike = difference(band, common_rate(band));
+		shape_sample(shape, 0.5 * (double)n, duration, 0, n, p, NULL, NULL);
+		periodogram_add_hann(sum, y1, n, 1 / HANN_SQUARE, power, bins);
+		periodogram_add_hann(sum, y2, n, 1 / HANN_SQUARE, power, bins);
+		/* in the middle of the window */
+		periodogram_add_hann(sum, p, n, 1, pulse, bins);
+		for (size_t k = 1; k < bins && (double)k < BANDS * width; k++) {
+			struct band *b = &band[(size_t)((double)k / width)];
+			double mean = 0.5 * power[k] / (double)n;
+
+			b->record += mean - 1;
+			b->pulse += both * pulse[k];
+			/* of one periodogram, which both channels share, */
+			b->var += mean * mean;
 		}
+		/* whose neighbours the window makes dependent */
+		for (int k = 0; k < BANDS; k++)
+			band[k].var *= 0.5 * 35. / 18;
+		c->unlike = difference(band, common_rate(band));
 	}
-	fft_free(p);
-	fft_free(pulse);
-	fft_free(power);
-	fft_done(fft);
+	periodogram_free(sum);
+	free(power);
 	/* An amplitude has half of the relative error of its square. */
 	c->square_se = hypot(c->square_se, c->unlike * c->square);
 	c->fourth_se = hypot(c->fourth_se, 2 * c->unlike * c->fourth);
@@ -258,14 +235,16 @@ void campbell_compare(const double *y1, const double *y2, size_t n,
 	c->amplitude_se = hypot(c->amplitude_se, 0.5 * c->unlike * c->amplitude);
 }
 
-void campbell_scale(struct campbell *c, double unit)
+void campbell_scale(struct campbell *c, double unit, double rate)
 {
 	double square = unit * unit;
 
-	c->square *= square;
-	c->square_se *= square;
-	c->fourth *= square * square;
-	c->fourth_se *= square * square;
+	c->square *= square * rate;
+	c->square_se *= square * rate;
+	c->fourth *= square * square * rate;
+	c->fourth_se *= square * square * rate;
+	c->rate *= rate;
+	c->rate_se *= rate;
 	c->amplitude *= unit;
 	c->amplitude_se *= unit;
 }

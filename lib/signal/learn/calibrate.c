@@ -113,7 +113,7 @@ static enum calibrate_status look_again(const struct calibrate_par *par, const d
 static int is_white(const struct calibration *c, const struct look *look)
 {
 	return learn_describes(c) ||
-	       (c->chi2 < 4 && measure_white_above(look, c->duration));
+	       (c->chi2 < CALIBRATE_TOLERABLE && measure_white_above(look, c->duration));
 }
 
 /* Power of a tone, in units of noise^2, below which it may be due to the tails of pulses;

@@ -10,7 +10,15 @@ struct entry *separate_queue_entry(struct separate *s)
 {
 	if (room_for(&s->queue, &s->capacity, s->count + 1, sizeof *s->queue))
 		return NULL;
-	memset(&s->queue[s->count], 0, sizeof *s->queue);
+	s->queue[s->count] = (struct entry){ .row = { .section = s->number,
+						     .t1_se = NAN,
+						     .t2_se = NAN,
+						     .delay_se = NAN,
+						     .amplitude_se = NAN,
+						     .correlation = NAN,
+						     .phase = NAN,
+						     .phase_se = NAN,
+						     .chi2 = NAN } };
 	return &s->queue[s->count++];
 }
 
@@ -35,20 +43,6 @@ enum separate_status separate_queue_report(
 	return SEPARATE_OK;
 }
 
-/* From means to samples of the record. */
-static void spread_out(
-	struct separate_section *section, struct campbell *dense, int ratio)
-{
-	section->begin *= ratio;
-	section->end *= ratio;
-	dense->square /= ratio;
-	dense->square_se /= ratio;
-	dense->fourth /= ratio;
-	dense->fourth_se /= ratio;
-	dense->rate /= ratio;
-	dense->rate_se /= ratio;
-}
-
 static void give_reports(struct separate *s)
 {
 	for (size_t i = 0; i < s->reports; i++) {
@@ -57,7 +51,10 @@ static void give_reports(struct separate *s)
 		if (r->section.dense)
 			r->section.dense = &r->dense;
 		r->section.source = r->source;
-		spread_out(&r->section, &r->dense, s->ratio);
+		/* from means to samples of the record */
+		r->section.begin *= s->ratio;
+		r->section.end *= s->ratio;
+		campbell_scale(&r->dense, 1, 1. / s->ratio);
 		for (size_t k = r->first; k < r->first + r->rows; k++)
 			if (s->queue[k].evidence.doubted &&
 				r->section.verdict < SEPARATE_UNRESOLVED)

@@ -39,9 +39,7 @@ struct together {
 
 struct together *together_new(void)
 {
-	struct together *t = calloc(1, sizeof *t);
-
-	return t;
+	return calloc(1, sizeof(struct together));
 }
 
 void together_free(struct together *t)
