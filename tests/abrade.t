@@ -42,6 +42,8 @@ abrade --gap 9um --hardness 2GPa,6GPa --abrasive-hardness 2GPa --friction 0.1 fo
 is "particles softer than both bodies are marked by status 3 and have no volume" \
 	"$? $(column mode soft.tsv | sort -u | tr '\n' ' ')$(cell load soft.tsv) $(grep -c 'yield' err)" \
 	"3 free yields nan 1"
+head -n 1 four.tsv >none.tsv
+fails "a load on no particles" 3 'no particle carries the load' abrade --load 1N --hardness 2GPa --friction 0 none.tsv
 fails "a load on particles that yield" 1 'the particles yield' \
 	abrade --load 1N --hardness 2GPa,6GPa --abrasive-hardness 2GPa --friction 0.1 four.tsv
 abrade --gap 1um --hardness 2GPa --friction 0.1 --motion groove four.tsv >deep.tsv 2>err

@@ -310,6 +310,13 @@ fails "the contact of a coated body" 1 "record 1 is the contact of a coated body
 roughgen -n 32 -L 0.5mm -q 8um -l 50um --crown 32um | bemcontact -F 5N -E 210GPa --max-iterations 1 >poor.nrrd 2>err
 fails "a contact that did not converge" 3 "record 1: its contact did not converge" \
 	sh -c 'debrisgen -Y 1GPa poor.nrrd >poor.tsv'
+# The first step uses the contact that it reads, whatever load the options say
+for row in "-F 50N|^-" "-E 210GPa|^-" "-F 500N|a mean pressure of 5e+07 Pa, not 5e+08 Pa" \
+	"-E 70GPa|a contact modulus of 1.15385e+11 Pa, not 3.84615e+10 Pa" "--approach 1mm|an approach of"; do
+	# shellcheck disable=SC2086 # two words
+	$wear --depth-step 50um ${row%%|*} ball.nrrd 2>&1 >t.tsv | grep -o 'solved with .*' >err
+	like "a contact that is read, and ${row%%|*}: a warning if they differ" "$(cat err)-" "${row#*|}"
+done
 fails "two loads" 2 "only one of" debrisgen -Y 1GPa -F 1N --pressure 1MPa
 fails "an unknown stress field" 2 "principal|tensor" debrisgen -Y 1GPa --fields foo
 fails "no pressure" 1 "pressure" debrisgen -Y 1GPa rough.nrrd

@@ -232,7 +232,7 @@ int main(int argc, char **argv)
 	struct particles_in in = { 0 };
 	struct abrasion_par par;
 	struct source *source;
-	long realisation;
+	long realisation, realisations = 0;
 	const char *upstream;
 	char *cmd, *side;
 
@@ -259,8 +259,14 @@ int main(int argc, char **argv)
 			"rolls grooves embeds yields buried volume1 volume2 "
 			"depth_rate1 depth_rate2 mean_pressure "
 			"mean_depth_rate1 mean_depth_rate2");
-	while (particles_next(source, &in, &realisation))
+	while (particles_next(source, &in, &realisation)) {
 		run_realisation(&in, realisation);
+		realisations++;
+	}
+	if (!isnan(load) && realisations == 0) {
+		warn("no particle carries the load of %g N: the surfaces touch", load);
+		doubtful = 1;
+	}
 	if (surface_path)
 		scratches_cut(surface_path, slide, cutting, (uint64_t)seed,
 			particles_apart(source), cmd);

@@ -103,10 +103,21 @@ struct contact_par press_par(const struct record *r, struct pool *pool)
 		.pool = pool };
 }
 
+void press_differs(const char *name, long number, const char *what, const char *unit,
+	double asked, double solved)
+{
+	/* Loads are sums, and moduli are computed anew from those of the bodies. */
+	if (fabs(asked - solved) > 1e-6 * fabs(solved))
+		warn("%s: record %ld: its contact was solved with %s of %g %s, not %g %s as the options say",
+			name, number, what, solved, unit, asked, unit);
+}
+
 int press_given(const struct record *r, const char *name, long number)
 {
 	const char *converged = record_get(r, "converged");
 
+	press_differs(name, number, "a contact modulus", "Pa", press.estar,
+		record_get_number(r, "estar"));
 	if (record_get(r, "coating"))
 		die(EXIT_RUN,
 			"%s: record %ld is the contact of a coated body: want bodies of one material",

@@ -80,6 +80,21 @@ static double choose_target(const struct run *run, const struct scene *c)
 			    : given;
 }
 
+/* Of a first step, which uses the pressure of the input. */
+static void compare_target(const struct run *run, const struct scene *c)
+{
+	const struct record *r = c->now.r;
+	const char *name = fields_name(run->in);
+	long number = fields_count(run->in);
+
+	if (!isnan(press.approach))
+		press_differs(name, number, "an approach", "m", press.approach,
+			record_get_number(r, "approach"));
+	else if (!isnan(press_target(r)))
+		press_differs(name, number, "a mean pressure", "Pa", press_target(r),
+			contact_load(run, c) / (r->nx * r->dx * r->ny * r->dy));
+}
+
 static void open_scene(struct run *run, struct record *r, struct scene *c)
 {
 	double before = record_get_number(r, "step"), crown, sq;
@@ -106,6 +121,8 @@ static void open_scene(struct run *run, struct record *r, struct scene *c)
 	}
 	wearing_prepare(run->wearing, r);
 	c->target = choose_target(run, c);
+	if (steps == 1 && !wearing_solves(run->wearing, 1))
+		compare_target(run, c);
 	if (c->target == 0 && wearing_solves(run->wearing, 1) && isnan(press.approach) &&
 		contact_load(run, c) == 0)
 		die(EXIT_USAGE,

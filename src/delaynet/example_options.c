@@ -21,7 +21,6 @@ struct lessons lessons = { .lambda = 1,
 
 static const char *const sections[] = { "length", "period", "range", NULL };
 static const char *const orders[] = { "drawn", "arrival", "sorted", NULL };
-static const char *const shapes[] = { "sine", "gauss", "lorentz", NULL };
 
 struct opt lessons_rows[] = {
 	OPT_HEADING("Examples"),
@@ -58,8 +57,8 @@ struct opt lessons_rows[] = {
 	{ 0, "reach", OPT_LIST, UNIT_NONE, &lessons.reach, CNN_REACH_MIN, CNN_REACH_MAX,
 		"A:B", "pulses: range of the largest delay, in pulse durations", NULL,
 		0 },
-	{ 0, "pulse", OPT_WORD, UNIT_NONE, &lessons.shape, 0, 0, "sine|gauss|lorentz",
-		"pulses: pulse shape", shapes, 0 },
+	{ 0, "pulse", OPT_WORD, UNIT_NONE, &lessons.shape, 0, 0, PULSE_WORDS,
+		"pulses: pulse shape", pulse_names + 1, 0 },
 	OPT_END,
 };
 

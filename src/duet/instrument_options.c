@@ -8,13 +8,12 @@
 
 struct instrument_given instrument = { .false_alarm = 1e-9 };
 
-static const char *const pulses[] = { "auto", "sine", "gauss", "lorentz", NULL };
 static const char *const automatic[] = { "auto", NULL };
 
 struct opt instrument_rows[] = {
 	OPT_HEADING("Instrument, where it is known"),
-	{ 0, "pulse", OPT_WORD, UNIT_NONE, &instrument.pulse, 0, 0,
-		"auto|sine|gauss|lorentz", "shape of a pulse", pulses, 0 },
+	{ 0, "pulse", OPT_WORD, UNIT_NONE, &instrument.pulse, 0, 0, "auto|" PULSE_WORDS,
+		"shape of a pulse", pulse_names, 0 },
 	{ 0, "pulse-duration", OPT_CHOICE, UNIT_TIME, &instrument.duration, 1e-12, 1e9,
 		"auto|T", "duration of a pulse of the mean particle", automatic, 0 },
 	{ 0, "gain", OPT_CHOICE, UNIT_NONE, &instrument.gain, 1e-6, 1e6, "auto|G",
@@ -155,7 +154,7 @@ void instrument_note(const struct calibration *c, double rate)
 {
 	note("align %g s, pulse %s%s of %g s%s%s, gain %g, noise %g and %g V, %d lines, learned from "
 	     "%d pulses",
-		(double)c->shift / rate, pulses[c->pulse + 1],
+		(double)c->shift / rate, pulse_names[c->pulse + 1],
 		c->reversed ? ", reversed," : "", c->duration / rate,
 		c->measured ? ", taken from the record" : "",
 		c->corrected ? ", corrected" : "", c->gain, c->noise[0], c->noise[1],

@@ -18,7 +18,6 @@ static const double found =
 
 enum method { AUTO, CLOSED, SUM };
 static const char *const methods[] = { "auto", "closed", "sum", NULL };
-static const char *const shapes[] = { "sine", "gauss", "lorentz", NULL };
 static const char *const profiles[] = { "plug", "laminar", "turbulent", NULL };
 
 static struct opt_texts coils;
@@ -72,8 +71,8 @@ static const struct opt opts[] = {
 	{ 0, "zone", OPT_NUM, UNIT_LENGTH, &zone, 1e-9, 1e3, "L",
 		"length of the sensing zone; duration of a pulse is L over the velocity",
 		NULL, 0 },
-	{ 0, "pulse", OPT_WORD, UNIT_NONE, &shape, 0, 0, "sine|gauss|lorentz",
-		"pulse shape", shapes, 0 },
+	{ 0, "pulse", OPT_WORD, UNIT_NONE, &shape, 0, 0, PULSE_WORDS, "pulse shape",
+		pulse_names + 1, 0 },
 	OPT_END,
 };
 

@@ -13,7 +13,6 @@ static int quadrature;
 static int profile = PIPE_PLUG, shape;
 static struct opt_list lag, mains, pump, coil;
 static const char *const profiles[] = { "plug", "laminar", "turbulent", NULL };
-static const char *const shapes[] = { "sine", "gauss", "lorentz", NULL };
 
 struct opt sensors_rows[] = {
 	OPT_HEADING("Pipe and sensors"),
@@ -31,8 +30,8 @@ struct opt sensors_rows[] = {
 		"distance between the two sensors", 0, 0 },
 	{ 0, "lag", OPT_LIST, UNIT_TIME, &lag, 0, 1e6, "A:B",
 		"transit time exceeds that of the oil by A to B", 0, 0 },
-	{ 0, "pulse", OPT_WORD, UNIT_NONE, &shape, 0, 0, "sine|gauss|lorentz",
-		"pulse shape", shapes, 0 },
+	{ 0, "pulse", OPT_WORD, UNIT_NONE, &shape, 0, 0, PULSE_WORDS, "pulse shape",
+		pulse_names + 1, 0 },
 	{ 0, "zone", OPT_NUM, UNIT_LENGTH, &zone, 1e-9, 1e3, "L",
 		"length of the sensing zone; duration of a pulse is L over the velocity",
 		0, 0 },

@@ -120,7 +120,7 @@ int main(void)
 	campbell_estimate(y1, y2, 3000, shape, 100, 0.9, &d);
 	ok(isinf(d.rate_se), "a short section gives no estimate");
 	d = c;
-	campbell_scale(&d, 2);
+	campbell_scale(&d, 2, 1);
 	near(d.square, 4 * c.square, 1e-12 * d.square,
 		"the result does not depend on the units");
 	test_other_pulse(y1, y2, shape, sums[0]);

@@ -137,11 +137,43 @@ static void test_weak(void)
 		"where small ones arrive at random none is doubted");
 }
 
+/* Delays of the flow scatter; if by little, those of one row in sixteen are anywhere. */
+static void test_astray(double scatter)
+{
+	int wrong = 0, right = 0;
+
+	make_rows(0.3, 0.5, 1e-4);
+	for (int i = 0; i < ROWS; i++) {
+		double z[2];
+
+		philox_normal2(2, 0, RNG_PARTICLE, (uint64_t)i, z);
+		row[i].off = scatter * z[0];
+		if (scatter < 0.1 && i % 16 == 1)
+			row[i].off = i % 32 == 1 ? 0.9 : -0.8;
+		row[i].off_var = 1e-4;
+		row[i].flow_var = 0.0025;
+	}
+	judged();
+	for (int i = 0; i < ROWS; i++) {
+		wrong += row[i].doubted && i % 16 == 1;
+		right += row[i].doubted && i % 16 != 1;
+	}
+	if (scatter < 0.1) {
+		near(wrong, ROWS / 16, 0, "delays that are not of the flow are doubted");
+		near(right, 0, 0.02 * ROWS,
+			"of the flow only those beyond 2.3 deviations are");
+	} else {
+		near(wrong + right, 0, 0, "none is where the flow has them all");
+	}
+}
+
 int main(void)
 {
 	test_how_often();
 	test_fewest();
 	test_sizes();
 	test_weak();
+	test_astray(0.05);
+	test_astray(0.25);
 	return tap_done();
 }

@@ -1,6 +1,6 @@
 /* campbell.c - see campbell.h */
 #include "signal/detect/campbell.h"
-#include "num/fft.h"
+#include "num/periodogram.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -59,11 +59,19 @@ static void moments(const struct sums *s, double unit2, double unit4, double gai
 	}
 }
 
-/* Standard error of the fourth cumulant of n samples of Gaussian noise with the variance
- * 1 and the autocorrelation of the pulse: sqrt(24 / n sum r^4).  Crowds are nearly that.
- * The jackknife does not see it where it saw few large pulses: an estimate that is too
- * small would have too small an error. */
-static double fourth_error(const struct shape *shape, double duration, size_t n)
+/* Standard error of the fourth cumulant, over the square of the second, of n samples of
+ * shot noise with share pulses of one height per duration to the power of -1 (0: Gaussian
+ * noise).  With k(a, b) the joint cumulant of a and b times two samples,
+ *
+ *	sum of k(4, 4) + 16 k(3, 3) k(1, 1) + 18 k(2, 2)^2 + 16 k(1, 3) k(3, 1)
+ *		+ 72 k(2, 2) k(1, 1)^2 + 24 k(1, 1)^4
+ *
+ * over all lags, and over n, is its variance (Fisher, Proc. London Math. Soc. 30, 1929,
+ * for independent samples; terms of odd order vanish or compensate).  The jackknife does
+ * not see it where it saw few large pulses: an estimate that is too small would have too
+ * small an error. */
+static double fourth_error(
+	const struct shape *shape, double duration, size_t n, double share)
 {
 	enum { STEPS = 32 };
 	int half = (int)ceil(shape_reach(shape) * STEPS), points = 2 * half + 1;
@@ -72,16 +80,44 @@ static double fourth_error(const struct shape *shape, double duration, size_t n)
 	if (!p)
 		return INFINITY;
 	shape_sample(shape, half, STEPS, 0, (size_t)points, p, NULL, NULL);
+	for (int i = 0; i < points; i++)
+		energy += p[i] * p[i] / STEPS;
 	for (int lag = 0; lag < points; lag++) {
-		double r = 0;
+		double k11 = 0, k22 = 0, k33 = 0, k44 = 0, k13 = 0, k31 = 0;
 
-		for (int i = lag; i < points; i++)
-			r += p[i] * p[i - lag];
-		energy = lag ? energy : r;
-		sum += (lag ? 2 : 1) * pow(r / energy, 4) / STEPS;
+		for (int i = lag; i < points; i++) {
+			double x = p[i] / sqrt(energy), y = p[i - lag] / sqrt(energy);
+
+			k11 += x * y / STEPS;
+			k22 += x * x * y * y * share / STEPS;
+			k13 += x * y * y * y * share / STEPS;
+			k31 += x * x * x * y * share / STEPS;
+			k33 += pow(x * y, 3) * share * share / STEPS;
+			k44 += pow(x * y, 4) * pow(share, 3) / STEPS;
+		}
+		sum += (lag ? 2 : 1) *
+		       (k44 + 16 * k33 * k11 + 18 * k22 * k22 + 16 * k13 * k31 +
+			       72 * k22 * k11 * k11 + 24 * pow(k11, 4)) /
+		       STEPS;
 	}
 	free(p);
-	return sqrt(24 * sum * duration / (double)n);
+	return sqrt(sum * duration / (double)n);
+}
+
+/* The same of this estimate, in its units.  It is that at the estimate and its own error:
+ * the fewer large pulses happened to be seen, the smaller is the estimate. */
+static double least_error(const struct shape *shape, double duration, size_t n,
+	double unit2, double unit4, const struct campbell *c)
+{
+	double square = fmax(c->square, 0), scale = pow(square * unit2, 2) / unit4, e = 0;
+
+	for (int step = 0; step < 2 && square > 0; step++) {
+		double fourth = fmax(c->fourth, 0) + e;
+
+		e = scale * fourth_error(shape, duration, n,
+				    fourth / (square * square * duration));
+	}
+	return e;
 }
 
 void campbell_estimate(const double *y1, const double *y2, size_t n,
@@ -117,35 +153,12 @@ void campbell_estimate(const double *y1, const double *y2, size_t n,
 	factor = (double)n < FEW * APART * duration ? INFINITY
 						    : sqrt((parts - 1.0) / parts);
 	c->square_se = factor * sqrt(var[0]);
-	least = fourth_error(shape, duration, n) * pow(c->square * unit2, 2) / unit4;
+	least = least_error(shape, duration, n, unit2, unit4, c);
 	c->fourth_se = fmax(factor * sqrt(var[1]), least);
 	least /= c->fourth;
 	c->rate_se = fmax(factor * sqrt(var[2]), least * c->rate);
 	c->amplitude_se = fmax(factor * sqrt(var[3]), 0.5 * least * c->amplitude);
 	c->unlike = 0;
-}
-
-/* Adds to power[0 .. size / 2] the energy spectrum of x, n samples and zeros up to size;
- * tapered by Hann's window of mean square 1. */
-static int add_power(
-	const struct fft *fft, const double *x, size_t n, size_t size, double *power)
-{
-	double *pad = fft_alloc(size);
-	double complex *f = fft_alloc_complex(size / 2 + 1);
-	int done = pad && f;
-
-	for (size_t i = 0; i < n && done; i++) {
-		double w = sin(M_PI * ((double)i + 0.5) / (double)n);
-
-		pad[i] = x[i] * w * w / sqrt(0.375);
-	}
-	if (done)
-		fft_forward(fft, pad, f);
-	for (size_t k = 0; k <= size / 2 && done; k++)
-		power[k] += creal(f[k]) * creal(f[k]) + cimag(f[k]) * cimag(f[k]);
-	fft_free(pad);
-	fft_free(f);
-	return done;
 }
 
 /* Power of a band, of the record beyond its noise and of one pulse, and the variance of
@@ -184,37 +197,37 @@ void campbell_compare(const double *y1, const double *y2, size_t n,
 	const struct shape *shape, double duration, double gain, struct campbell *c)
 {
 	size_t size = fft_good_size(n), bins = size / 2 + 1;
-	struct fft *fft = (double)n < FEW * APART * duration ? NULL : fft_new(size, 1);
-	double *power = fft_alloc(bins), *pulse = fft_alloc(bins), *p = fft_alloc(n);
+	struct periodogram *sum =
+		(double)n < FEW * APART * duration ? NULL : periodogram_new(size);
+	double *power = calloc(2 * bins + n, sizeof *power);
 	struct band band[BANDS] = { 0 };
 	double both = 0.5 * (1 + gain * gain), width = 0.5 * (double)size / duration;
 
 	c->unlike = INFINITY;
-	if (fft && power && pulse && p) {
-		shape_sample(shape, 0.5 * (double)n, duration, 0, n, p, NULL, NULL);
-		if (add_power(fft, y1, n, size, power) &&
-			add_power(fft, y2, n, size, power) &&
-			add_power(fft, p, n, size, pulse)) {
-			for (size_t k = 1; k < bins && (double)k < BANDS * width; k++) {
-				struct band *b = &band[(size_t)((double)k / width)];
-				double mean = 0.5 * power[k] / (double)n;
+	if (sum && power) {
+		double *pulse = power + bins, *p = pulse + bins;
 
-				b->record += mean - 1;
-				b->pulse += both * 0.375 *
-					    pulse[k]; /* in the middle of the window */
-				/* of one periodogram, which both channels share, */
-				b->var += mean * mean;
-			}
-			/* whose neighbours the window makes dependent */
-			for (int k = 0; k < BANDS; k++)
-				band[k].var *= 0.5 * 35. / 18;
-			c->unlike = difference(band, common_rate(band));
+		shape_sample(shape, 0.5 * (double)n, duration, 0, n, p, NULL, NULL);
+		periodogram_add_hann(sum, y1, n, 1 / HANN_SQUARE, power, bins);
+		periodogram_add_hann(sum, y2, n, 1 / HANN_SQUARE, power, bins);
+		/* in the middle of the window */
+		periodogram_add_hann(sum, p, n, 1, pulse, bins);
+		for (size_t k = 1; k < bins && (double)k < BANDS * width; k++) {
+			struct band *b = &band[(size_t)((double)k / width)];
+			double mean = 0.5 * power[k] / (double)n;
+
+			b->record += mean - 1;
+			b->pulse += both * pulse[k];
+			/* of one periodogram, which both channels share, */
+			b->var += mean * mean;
 		}
+		/* whose neighbours the window makes dependent */
+		for (int k = 0; k < BANDS; k++)
+			band[k].var *= 0.5 * 35. / 18;
+		c->unlike = difference(band, common_rate(band));
 	}
-	fft_free(p);
-	fft_free(pulse);
-	fft_free(power);
-	fft_done(fft);
+	periodogram_free(sum);
+	free(power);
 	/* An amplitude has half of the relative error of its square. */
 	c->square_se = hypot(c->square_se, c->unlike * c->square);
 	c->fourth_se = hypot(c->fourth_se, 2 * c->unlike * c->fourth);
@@ -222,14 +235,16 @@ void campbell_compare(const double *y1, const double *y2, size_t n,
 	c->amplitude_se = hypot(c->amplitude_se, 0.5 * c->unlike * c->amplitude);
 }
 
-void campbell_scale(struct campbell *c, double unit)
+void campbell_scale(struct campbell *c, double unit, double rate)
 {
 	double square = unit * unit;
 
-	c->square *= square;
-	c->square_se *= square;
-	c->fourth *= square * square;
-	c->fourth_se *= square * square;
+	c->square *= square * rate;
+	c->square_se *= square * rate;
+	c->fourth *= square * square * rate;
+	c->fourth_se *= square * square * rate;
+	c->rate *= rate;
+	c->rate_se *= rate;
 	c->amplitude *= unit;
 	c->amplitude_se *= unit;
 }

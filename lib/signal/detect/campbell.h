@@ -43,7 +43,7 @@ void campbell_estimate(const double *y1, const double *y2, size_t n,
 void campbell_compare(const double *y1, const double *y2, size_t n,
 	const struct shape *shape, double duration, double gain, struct campbell *c);
 
-/* The same for amplitudes in other units. */
-void campbell_scale(struct campbell *c, double unit);
+/* The same for amplitudes and rates in other units. */
+void campbell_scale(struct campbell *c, double unit, double rate);
 
 #endif

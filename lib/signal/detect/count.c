@@ -1,6 +1,7 @@
 /* count.c - see count.h */
 #include "signal/detect/count.h"
 #include "num/parabola.h"
+#include "num/sigmas.h"
 #include "signal/noise/robust.h"
 #include <errno.h>
 #include <math.h>
@@ -19,7 +20,7 @@ double count_level(const double *x, size_t n, size_t stride, double *work)
 {
 	for (size_t i = 0; i < n; i++)
 		work[i] = x[i * stride];
-	return 5 * robust_spread(work, n);
+	return SIGMAS_NEVER * robust_spread(work, n);
 }
 
 struct count *count_new(double level)
@@ -57,14 +58,8 @@ int count_sample(struct count *c, double x, struct peak *peak)
 
 	if (c->armed && c->top_at == c->n - 1)
 		c->top_after = x;
-	if (c->armed && x > c->top) {
-		c->top = x;
-		c->top_at = c->n;
-		c->top_before = c->last;
-		c->top_after = x;
-	} else if (!c->armed && x >= c->level && x >= 2 * c->valley) {
-		/* A new rise: it has doubled since the lowest point after the last peak.
-		 */
+	/* A new rise has doubled since the lowest point after the last peak. */
+	if (c->armed ? x > c->top : x >= c->level && x >= 2 * c->valley) {
 		c->armed = 1;
 		c->top = x;
 		c->top_at = c->n;

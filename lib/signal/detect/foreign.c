@@ -1,5 +1,6 @@
 /* foreign.c - see foreign.h */
 #include "signal/detect/foreign.h"
+#include "num/sigmas.h"
 #include "signal/detect/spikes.h"
 #include <math.h>
 #include <stdlib.h>
@@ -14,10 +15,10 @@ static const double WRONG = 0.1;
  * amplifiers are built alike. */
 static const double WEAKER = 0.1;
 
-/* What chi-square may exceed its mean by: five standard deviations, and a tenth. */
+/* What chi-square may exceed its mean by. */
 static double slack_of(double dof)
 {
-	return 0.1 * dof + 5 * sqrt(2 * dof);
+	return CHI_SQUARE_MORE * dof + SIGMAS_NEVER * sqrt(2 * dof);
 }
 
 /* 1 if rest is no more than noise of so many degrees of freedom, and by that only a small

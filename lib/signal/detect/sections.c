@@ -11,8 +11,9 @@
  * the largest. */
 enum { OCTAVES = 24 };
 
-/* Standard deviations of the noise below which the rest of a pulse is neglected. */
-static const double hidden = 0.2;
+/* Standard deviations of the noise below which the rest of a pulse is neglected, and the
+ * share of its peak above which it is not; by how much farther a section reaches. */
+static const double hidden = 0.2, FOOT = 0.01, FARTHER = 1.2;
 
 struct sections {
 	double *filter; /* the pulse, scaled to unit energy */
@@ -30,17 +31,16 @@ struct sections {
 };
 
 /* A pulse whose trigger is z has the amplitude z / sqrt(its energy at amplitude 1).  A
- * weak trigger may be the flank of a strong pulse: the part of a pulse above a hundredth
- * of its peak is always included. */
+ * weak trigger may be the flank of a strong pulse. */
 static void set_margins(
 	struct sections *s, const struct shape *shape, double duration, double slack)
 {
 	double least = hidden * sqrt(duration * shape_energy(shape));
 
 	for (int k = 0; k <= OCTAVES; k++) {
-		double reach = shape_reach_above(shape, fmin(ldexp(least, -k), 0.01));
+		double reach = shape_reach_above(shape, fmin(ldexp(least, -k), FOOT));
 
-		s->margin[k] = (long)(1.2 * reach * duration + slack);
+		s->margin[k] = (long)(FARTHER * reach * duration + slack);
 	}
 }
 
@@ -58,10 +58,10 @@ struct sections *sections_new(
 	if (!s)
 		return NULL;
 	s->first = shape_support(shape, 0, duration, &s->len);
-	s->stride = duration >= 48 ? (long)(duration / 24) : 1;
+	s->stride = shape_stride(duration);
 	set_margins(s, shape, duration, slack);
 	s->threshold = threshold;
-	s->aside = (long)ceil(shape_reach_above(shape, 0.01) * duration);
+	s->aside = (long)ceil(shape_reach_above(shape, FOOT) * duration);
 	s->filter = malloc(s->len * sizeof *s->filter);
 	if (!s->filter) {
 		sections_free(s);
@@ -134,6 +134,11 @@ enum num_status sections_scan(struct sections *s, const double *const y[], int c
 		if (s->queue[i].end + s->aside + s->margin[OCTAVES] < s->next)
 			s->queue[i].open = 0;
 	return NUM_OK;
+}
+
+long sections_margin(const struct sections *s)
+{
+	return s->margin[0];
 }
 
 int sections_first(const struct sections *s, struct section *section)

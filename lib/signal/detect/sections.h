@@ -35,6 +35,9 @@ void sections_skip(struct sections *s, long long upto);
 /* Samples that a scan needs at either side of a point and may add to a section. */
 long sections_reach(const struct sections *s);
 
+/* Samples on either side of a weak pulse, at least, that a section contains. */
+long sections_margin(const struct sections *s);
+
 /* Scans the channels of a record, held as y[channel][0 .. n) from sample base on, up to
  * sample limit (not included); samples outside what is held count as zero.  Each point is
  * scanned once.  Beyond the first two channels a section is where the filter, times

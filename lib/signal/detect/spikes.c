@@ -1,16 +1,15 @@
 /* spikes.c - see spikes.h */
 #include "signal/detect/spikes.h"
+#include "num/sigmas.h"
 #include "signal/noise/robust.h"
+#include "signal/pulse/shape.h"
 #include <math.h>
 #include <string.h>
 
-/* Share of a pulse's duration on either side of a sample whose median is compared with
- * it: an impulse is shorter.  The curvature of a sine changes that median by (2 pi /
- * 20)^2 / 8 of its height; four times this is allowed, for other pulses. */
-static const double SIDE = 0.05, CURVED = 0.05;
-
-/* Deviations that noise does not reach in a window of the fit. */
-static const double FAR = 5;
+/* The median of SHAPE_FINEST on either side of a sample is compared with it: an impulse
+ * is shorter.  The curvature of a sine changes that median by (2 pi / 20)^2 / 8 of its
+ * height; four times this is allowed, for other pulses. */
+static const double CURVED = 0.05;
 
 /* Largest of some values within a quarter of a duration of sample i, except those next to
  * it: the height of pulses there. */
@@ -43,16 +42,16 @@ static int stands_out(const double *y, size_t n, size_t i, size_t side, double f
 size_t spikes_find(const double *y, size_t n, double duration, unsigned char *flags)
 {
 	enum { MOST = 64 };
-	size_t side = (size_t)fmin(SIDE * duration, MOST), found = 0;
+	size_t side = (size_t)fmin(SHAPE_FINEST * duration, MOST), found = 0;
 
 	memset(flags, 0, n);
 	if (side == 0)
 		return 0; /* impulses are not shorter than such pulses */
 
 	for (size_t i = 0; i < n; i++) {
-		flags[i] = stands_out(y, n, i, side, FAR) &&
+		flags[i] = stands_out(y, n, i, side, SIGMAS_NEVER) &&
 			   stands_out(y, n, i, side,
-				   FAR + CURVED * height_near(y, n, i, side));
+				   SIGMAS_NEVER + CURVED * height_near(y, n, i, side));
 		found += flags[i];
 	}
 	return found;

@@ -221,8 +221,7 @@ void fir_free(struct fir *fir)
 {
 	if (!fir)
 		return;
-	if (fir->fft)
-		fft_done(fir->fft);
+	fft_done(fir->fft);
 	fft_free(fir->response);
 	fft_free(fir->spectrum);
 	fft_free(fir->reversed);

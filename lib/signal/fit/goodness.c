@@ -1,5 +1,6 @@
 /* goodness.c - see goodness.h */
 #include "signal/fit/goodness.h"
+#include "num/sigmas.h"
 #include <math.h>
 
 /* Chi-square of samples [from, to) of both channels, the second delta later; *count: how
@@ -23,10 +24,10 @@ static double residual_square(const struct joint *joint, double from, double to,
 	return sum;
 }
 
-/* 1 if chi-square exceeds that of noise by so many standard deviations and by a tenth. */
+/* 1 if chi-square exceeds that of noise by more than so many standard deviations. */
 static int too_much(double chi2, double dof, double deviations)
 {
-	return chi2 / dof > 1.1 + deviations * sqrt(2 / dof);
+	return chi2 / dof > 1 + CHI_SQUARE_MORE + deviations * sqrt(2 / dof);
 }
 
 /* 1 if the residual under pulse i exceeds the noise by three deviations; used where that
@@ -43,7 +44,7 @@ static int is_misfit(const struct joint *joint, const struct joint_scene *s, siz
 	dof = (1 - s->lost) * count;
 	for (int k = 0; k < m; k++)
 		dof -= 3 * fmax(1 - fabs(pulses[k].t - pulses[i].t) / (2 * half), 0);
-	return too_much(sum, fmax(dof, 1), 3);
+	return too_much(sum, fmax(dof, 1), SIGMAS_SELDOM);
 }
 
 /* 1 if a pulse is too small to be found alone.  The threshold is lower beside others,
@@ -83,7 +84,7 @@ void goodness_of_fit(const struct joint *joint, const struct joint_scene *s, siz
 	out->stretch = m > 1 ? SEPARATE_OVERLAP : SEPARATE_ALONE;
 	for (int i = 0; i < done; i++)
 		out->pulse[i] = is_faint(s, &pulses[i]) ? SEPARATE_MISFIT : out->stretch;
-	if (too_much(chi2, dof, 5)) {
+	if (too_much(chi2, dof, SIGMAS_NEVER)) {
 		for (int i = 0; i < done; i++)
 			if (!model_holds || m == 1 ||
 				is_misfit(joint, s, n, pulses, m, i))

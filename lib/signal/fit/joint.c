@@ -20,7 +20,7 @@ static size_t filter_residual(struct joint *j, const struct joint_scene *s, size
 static struct candidate search(struct joint *j, const struct joint_scene *s,
 	const struct candidate *tried, int ntried)
 {
-	size_t stride = s->duration >= 48 ? (size_t)(s->duration / 24) : 1;
+	size_t stride = (size_t)shape_stride(s->duration);
 	size_t points;
 	double z = 0, g = s->gain, norm = 1 / sqrt(joint_energy(s));
 	long lo = (long)floor(s->delta_min / (double)stride);

@@ -32,6 +32,11 @@
 
 enum { JOINT_TONES_MAX = 32, JOINT_BASELINE_MAX = 32, JOINT_PULSES_MAX = 64 };
 
+/* Share of its range by which a delay may exceed it during a fit, and largest change of
+ * an arrival in one step, in durations. */
+#define JOINT_BEYOND 0.1
+#define JOINT_STEP 0.25
+
 struct joint_scene {
 	const struct shape *shape;
 	double duration; /* T of a particle with delta = 0 */

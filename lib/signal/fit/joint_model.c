@@ -361,7 +361,7 @@ static int scene_is_sane(
 		s->max_pulses > JOINT_PULSES_MAX || m < 0 || m > s->max_pulses)
 		return 0;
 	/* The tolerance of moved() must keep T positive. */
-	if (s->delta_min - 0.1 * (s->delta_max - s->delta_min) <= -s->transit)
+	if (s->delta_min - JOINT_BEYOND * (s->delta_max - s->delta_min) <= -s->transit)
 		return 0;
 	for (int i = 0; i < m; i++)
 		if (!isfinite(pulses[i].t) || !isfinite(pulses[i].delta) ||
@@ -380,7 +380,7 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 
 	if (!scene_is_sane(s, pulses, m) || n == 0)
 		return JOINT_DOMAIN;
-	longest = s->delta_max + 0.1 * (s->delta_max - s->delta_min);
+	longest = s->delta_max + JOINT_BEYOND * (s->delta_max - s->delta_min);
 	support =
 		(size_t)(2 * shape_reach(s->shape) * pulse_duration(s, fmax(longest, 0)) +
 			 0.4 * s->duration) +

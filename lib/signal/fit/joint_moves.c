@@ -61,15 +61,22 @@ static int worth(const struct joint_scene *s, const struct joint_pulse *pulses, 
 	return before - after > need;
 }
 
+/* Fits the pulses near pulse i of m, without the last one if it is only listed. */
+static double fit_near(struct joint *j, const struct joint_scene *s,
+	struct joint_pulse *pulses, int m, int i, int listed)
+{
+	int set[JOINT_PULSES_MAX], count = neighbours(s, pulses, m, i, 0.8, set);
+
+	return joint_fit_set(j, s, pulses, set, count - listed, 30, 0.1);
+}
+
 /* Fits the pulse just added with those near it; 1 if it was worth it, otherwise
  * everything is restored from before. */
 static int accept_more(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int *m, int i, const struct joint_pulse *before,
 	double *chi2)
 {
-	int set[JOINT_PULSES_MAX];
-	int count = neighbours(s, pulses, *m, i, 0.8, set);
-	double after = joint_fit_set(j, s, pulses, set, count, 30, 0.1);
+	double after = fit_near(j, s, pulses, *m, i, 0);
 
 	if (worth(s, pulses, *m, *m - 1, *chi2, after)) {
 		*chi2 = after;
@@ -151,14 +158,13 @@ static int accept_fewer(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int *m, int k, const struct joint_pulse *before,
 	double *chi2)
 {
-	int set[JOINT_PULSES_MAX], count, last = --*m;
+	int last = --*m;
 	double after;
 
 	for (int i = k; i < last; i++)
 		pulses[i] = pulses[i + 1];
 	pulses[last] = before[k]; /* for neighbours() and worth() only */
-	count = neighbours(s, pulses, last + 1, last, 0.8, set) - 1;
-	after = joint_fit_set(j, s, pulses, set, count, 30, 0.1);
+	after = fit_near(j, s, pulses, last + 1, last, 1);
 	if (worth(s, pulses, last + 1, last, after, *chi2)) {
 		restore(j, s, pulses, m, before, last + 1);
 		return 0;
@@ -211,7 +217,6 @@ void joint_swap_pulses(struct joint *j, const struct joint_scene *s,
 {
 	struct joint_pulse before[JOINT_PULSES_MAX];
 	double delta[2], after;
-	int set[JOINT_PULSES_MAX];
 
 	for (int i = 0; i < m; i++)
 		for (int k = i + 1; k < m; k++) {
@@ -224,8 +229,7 @@ void joint_swap_pulses(struct joint *j, const struct joint_scene *s,
 			pulses[k].delta = delta[1];
 			joint_subtract(j, s, &pulses[i], 1);
 			joint_subtract(j, s, &pulses[k], 1);
-			after = joint_fit_set(j, s, pulses, set,
-				neighbours(s, pulses, m, i, 0.8, set), 30, 0.1);
+			after = fit_near(j, s, pulses, m, i, 0);
 			if (after < *chi2)
 				*chi2 = after;
 			else

@@ -160,12 +160,13 @@ static struct joint_pulse moved(const struct joint_scene *s,
 	const struct joint_pulse *old, const double *move, size_t n)
 {
 	struct joint_pulse p = *old;
-	double step = 0.25 * s->duration, span = s->delta_max - s->delta_min;
+	double step = JOINT_STEP * s->duration;
+	double beyond = JOINT_BEYOND * (s->delta_max - s->delta_min);
 	double t2 = old->t + old->delta + clamp(move[1], -step, step);
 
 	p.t = clamp(old->t + clamp(move[0], -step, step), arrival_limit(s, 0, n),
 		arrival_limit(s, 1, n));
-	p.delta = clamp(t2 - p.t, s->delta_min - 0.1 * span, s->delta_max + 0.1 * span);
+	p.delta = clamp(t2 - p.t, s->delta_min - beyond, s->delta_max + beyond);
 	p.a = old->a + move[2];
 	p.a = old->a > 0 ? clamp(p.a, 0.1 * old->a, 10 * old->a)
 			 : clamp(p.a, 10 * old->a, 0.1 * old->a);

@@ -23,7 +23,7 @@ double calibrate_drop(double rate, const struct shape *shape, double duration,
 
 double calibration_reach(double share, double transit, double duration)
 {
-	return fmax(share * transit, 0.05 * duration);
+	return fmax(share * transit, SHAPE_FINEST * duration);
 }
 
 double calibration_plug(const struct calibration *c)

@@ -46,6 +46,12 @@ struct calibrate_par {
  * whose records were all doubted. */
 #define CALIBRATE_WIDE 0.3
 
+/* Chi-square per degree of freedom of clear pulses below which their shape describes
+ * them. */
+#define CALIBRATE_DESCRIBES 1.2
+/* The same below which it may, once the cause of the rest is found. */
+#define CALIBRATE_TOLERABLE 4.0
+
 struct calibration {
 	long shift;         /* samples by which channel 2 is moved back */
 	double correlation; /* correlation coefficient of the channels at that lag */
@@ -113,7 +119,7 @@ double calibrate_drop(double rate, const struct shape *shape, double duration,
 	double gain, double width);
 
 /* Samples on either side of the transit time within which delays are searched: this share
- * of it, and at least a twentieth of a duration. */
+ * of it, and at least SHAPE_FINEST. */
 double calibration_reach(double share, double transit, double duration);
 /* The same for plug flow. */
 double calibration_plug(const struct calibration *c);

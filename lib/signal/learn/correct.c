@@ -92,7 +92,7 @@ int correct_doubtful(struct examples *ex, struct calibration *c)
 	double share = ex->share;
 	int pulses, rest;
 
-	examples_fit(ex, 0.05);
+	examples_fit(ex, EXAMPLES_ROUGH);
 	rest = ex->excess > 2 * sqrt(2 * ex->dof);
 	pulses = examples_pulses(ex);
 	ex->share = share;
@@ -119,7 +119,7 @@ static enum num_status improve_shape(struct examples *ex, struct calibration *c,
 
 		if (k > 1 && (examples_pulses(ex) > most || chi2 > 2 * before))
 			break;
-		if (k > 10 && chi2 > 4)
+		if (k > 10 && chi2 > CALIBRATE_TOLERABLE)
 			break;
 		before = chi2;
 		mean_residual(ex, more, more + points, half);
@@ -152,7 +152,8 @@ enum num_status correct_shape(struct examples *ex, struct calibration *c)
 	c->chi2 = examples_fit(ex, ex->share);
 	/* If the noise may be the cause of the residual, the correction must remove all
 	 * of it. */
-	if (before - cost(ex, counts) > CORRECTION && (!c->suspect || c->chi2 < 1.2)) {
+	if (before - cost(ex, counts) > CORRECTION &&
+		(!c->suspect || c->chi2 < CALIBRATE_DESCRIBES)) {
 		c->price = ex->price;
 		if (c->shape != first)
 			shape_free(first);

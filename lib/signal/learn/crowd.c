@@ -1,6 +1,6 @@
 /* crowd.c - see crowd.h */
 #include "signal/learn/crowd.h"
-#include "num/fft.h"
+#include "num/periodogram.h"
 #include "signal/learn/calibration.h"
 #include <math.h>
 #include <stdlib.h>
@@ -10,10 +10,7 @@
  * cycle per duration after the other. */
 enum { STEPS = 256, FINE = 32, PADDED = STEPS * FINE };
 
-/* Mean square of Hann's window. */
-static const double HANN = 0.375;
-
-struct periodogram {
+struct spectrum {
 	double *power;            /* mean of both channels; 1 where there is only noise */
 	size_t first, bins, size; /* frequencies used: [first, bins) */
 };
@@ -23,54 +20,25 @@ struct periodogram {
  * power beyond one cycle, and 0.03 % beyond four. */
 static const double SLOW = 4;
 
-/* Adds scale times the energy spectrum of x, n samples and zeros up to size, to
- * power[0 .. bins).  Tapered by Hann's window, strong frequencies do not leak into the
- * zeros of the spectrum of a pulse, which tell its duration. */
-static enum num_status add_power(const double *x, size_t n, size_t size, int taper,
-	double scale, double *power, size_t bins)
-{
-	struct fft *fft = fft_new(size, 1);
-	double *pad = fft_alloc(size);
-	double complex *f = fft_alloc_complex(size / 2 + 1);
-	enum num_status status = fft && pad && f ? NUM_OK : NUM_MEMORY;
-
-	if (status == NUM_OK) {
-		for (size_t i = 0; i < n; i++) {
-			double w = sin(M_PI * ((double)i + 0.5) / (double)n);
-
-			pad[i] = x[i] * (taper ? w * w : 1);
-		}
-		fft_forward(fft, pad, f);
-		for (size_t k = 0; k < bins; k++)
-			power[k] += scale * (creal(f[k]) * creal(f[k]) +
-						    cimag(f[k]) * cimag(f[k]));
-	}
-	fft_free(pad);
-	fft_free(f);
-	fft_done(fft);
-	return status;
-}
-
 static enum num_status pulse_spectrum(int pulse, double *power)
 {
 	struct shape *shape = shape_new((enum pulse_shape)pulse);
-	double *p = malloc(PADDED * sizeof *p);
-	enum num_status status = NUM_MEMORY;
+	struct periodogram *p = periodogram_new(PADDED);
 
 	if (shape && p) {
-		shape_sample(shape, 0.5 * PADDED, STEPS, 0, PADDED, p, NULL, NULL);
+		shape_sample(shape, 0.5 * PADDED, STEPS, 0, PADDED, p->x, NULL, NULL);
 		memset(power, 0, PADDED / 2 * sizeof *power);
-		status = add_power(p, PADDED, PADDED, 0, 1, power, PADDED / 2);
+		periodogram_add(p, 1, power, PADDED / 2);
 	}
 	shape_free(shape);
-	free(p);
-	return status;
+	periodogram_free(p);
+	return shape && p ? NUM_OK : NUM_MEMORY;
 }
 
 /* Twice the negative logarithm of the likelihood of the periodogram, at the most likely
  * power *amount of all pulses, which Fisher scoring starts from. */
 static double unlikelihood(
-	const struct periodogram *p, const double *pulse, double duration, double *amount)
+	const struct spectrum *p, const double *pulse, double duration, double *amount)
 {
 	enum { ROUNDS = 30 };
 	double step = duration * FINE / (double)p->size, sum = 0, a = *amount;
@@ -102,7 +70,7 @@ static double unlikelihood(
 
 /* Moves *duration to the most likely one: the best of a grid, then steps that shrink. */
 static double best_duration(
-	const struct periodogram *p, const double *pulse, double guess, double *duration)
+	const struct spectrum *p, const double *pulse, double guess, double *duration)
 {
 	enum { GRID = 14 };
 	double least = INFINITY, amount = 1, step = log(2) / GRID;
@@ -136,7 +104,7 @@ static double best_duration(
 
 /* Standard error of the most likely duration, relative: the curvature there. */
 static double duration_error(
-	const struct periodogram *p, const double *pulse, double duration)
+	const struct spectrum *p, const double *pulse, double duration)
 {
 	const double h = 0.01;
 	double amount = 1, bend = 0;
@@ -147,7 +115,7 @@ static double duration_error(
 	return bend > 0 ? h * sqrt(2 / bend) : INFINITY;
 }
 
-static enum num_status choose(const struct periodogram *p, double guess, int *pulse,
+static enum num_status choose(const struct spectrum *p, double guess, int *pulse,
 	double *duration, double *error)
 {
 	double least = INFINITY, known = *duration;
@@ -155,7 +123,7 @@ static enum num_status choose(const struct periodogram *p, double guess, int *pu
 	enum num_status status = spectrum ? NUM_OK : NUM_MEMORY;
 	int only = *pulse;
 
-	for (int k = PULSE_SINE; k <= PULSE_LORENTZ && status == NUM_OK; k++) {
+	for (int k = 0; k < PULSE_SHAPES && status == NUM_OK; k++) {
 		double T = known, amount = 1, trial;
 
 		if (only != CALIBRATE_ANY_PULSE && only != k)
@@ -176,20 +144,27 @@ static enum num_status choose(const struct periodogram *p, double guess, int *pu
 	return status;
 }
 
+/* Tapered, strong frequencies do not leak into the zeros of the spectrum of a pulse,
+ * which tell its duration. */
 enum num_status crowd_pulse(const double *y1, const double *y2, size_t n, size_t hop,
 	double guess, int *pulse, double *duration, double *error)
 {
 	size_t size = fft_good_size(n), most = size / 2 + 1;
-	double band = SHAPE_BAND * (double)size / guess, scale = 0.5 / (HANN * (double)n);
-	struct periodogram p = { .size = size,
+	double band = SHAPE_BAND * (double)size / guess,
+	       scale = 0.5 / (HANN_SQUARE * (double)n);
+	struct spectrum p = { .size = size,
 		.first = 1 + (size_t)(SLOW * (double)size / (double)hop),
 		.bins = band < (double)most ? (size_t)band : most };
+	struct periodogram *sum = periodogram_new(size);
 	enum num_status status = NUM_MEMORY;
 
 	p.power = calloc(p.bins + 1, sizeof *p.power);
-	if (p.power && add_power(y1, n, size, 1, scale, p.power, p.bins) == NUM_OK &&
-		add_power(y2, n, size, 1, scale, p.power, p.bins) == NUM_OK)
+	if (p.power && sum) {
+		periodogram_add_hann(sum, y1, n, scale, p.power, p.bins);
+		periodogram_add_hann(sum, y2, n, scale, p.power, p.bins);
 		status = choose(&p, guess, pulse, duration, error);
+	}
+	periodogram_free(sum);
 	free(p.power);
 	return status;
 }

@@ -1,6 +1,7 @@
 /* examples.c - see examples.h */
 #include "signal/learn/examples.h"
 #include "num/dot.h"
+#include "num/sigmas.h"
 #include "signal/detect/sections.h"
 #include "signal/noise/robust.h"
 #include <math.h>
@@ -46,7 +47,7 @@ static void pick_sections(struct examples *ex, const double *y1, const double *y
 {
 	double T = c->duration, loud[EXAMPLES_MAX] = { 0 };
 	double slack = fmax(c->delta_max, -c->delta_min);
-	long margin = (long)(1.2 * shape_reach_above(c->shape, 0.01) * T + slack);
+	long margin;
 	struct sections *s;
 	struct section section;
 	const double *const y[] = { y1, y2 };
@@ -54,13 +55,14 @@ static void pick_sections(struct examples *ex, const double *y1, const double *y
 	ex->count = 0;
 	if (!(T >= SECTIONS_SHORTEST))
 		return;
-	s = sections_new(c->shape, T, 5, slack);
+	s = sections_new(c->shape, T, SIGMAS_NEVER, slack);
 	if (!s || sections_scan(s, y, 2, 0, 0, n, (long long)n) != NUM_OK) {
 		ex->status = CALIBRATE_MEMORY;
 		sections_free(s);
 		return;
 	}
 	sections_end(s);
+	margin = sections_margin(s);
 	while (sections_first(s, &section)) {
 		long long begin = section.begin > 0 ? section.begin : 0;
 		long long end = section.end < (long long)n ? section.end : (long long)n;
@@ -162,9 +164,9 @@ int examples_full(const struct examples *ex)
  * hidden pulses. */
 static const double LEAST_SHARE = 1e-5, MOST_LONE = 3e-4, MOST_CROWDED = 1e-4;
 
-/* Chi-square (three deviations) that the error of one parameter of the shape leaves in a
- * pulse with the energy of all examples together. */
-static const double ERROR = 9;
+/* Chi-square that the error of one parameter of the shape leaves in a pulse with the
+ * energy of all examples together. */
+#define ERROR (SIGMAS_SELDOM * SIGMAS_SELDOM)
 
 /* Energy of the pulses of an example, in units of chi-square. */
 static double example_energy(const struct examples *ex, const struct example *e)

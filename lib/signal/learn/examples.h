@@ -11,6 +11,9 @@
 
 enum { EXAMPLES_MAX = 16, EXAMPLE_PULSES = 16 };
 
+/* Share of its energy in which the shape of a pulse may be wrong at first. */
+#define EXAMPLES_ROUGH 0.05
+
 /* A section used to learn the pulse: samples of noise 1 and the pulses found in it. */
 struct example {
 	const double *y1, *y2;

@@ -1,5 +1,6 @@
 /* learn.c - see learn.h */
 #include "signal/learn/learn.h"
+#include "num/sigmas.h"
 #include "signal/detect/spikes.h"
 #include "signal/learn/correct.h"
 #include "signal/learn/crowd.h"
@@ -82,9 +83,6 @@ static void scene_of(const struct calibration *c, struct joint_scene *scene)
 	scene->max_pulses = EXAMPLE_PULSES;
 }
 
-/* Standard errors by which a duration that fits may differ from that of the spectrum. */
-static const double APART = 5;
-
 /* Adjusts duration and gain to the least chi-square, unless they are known.  Pieces,
  * which contain parts of pulses, are fitted well by longer pulses, too: in crowds their
  * duration is not believed against the spectrum. */
@@ -109,8 +107,8 @@ enum num_status learn_set_shape(struct calibration *c, int pulse)
 	c->measured = c->reversed = 0;
 	c->shape = plain;
 	if (plain && c->whitening.tap) {
-		c->shape = shape_filter(plain, fmax(c->duration, 8), c->whitening.seen,
-			c->whitening.seen_half);
+		c->shape = shape_filter(plain, fmax(c->duration, SHAPE_SHORTEST),
+			c->whitening.seen, c->whitening.seen_half);
 		shape_free(plain);
 	}
 	return c->shape ? NUM_OK : NUM_MEMORY;
@@ -165,7 +163,7 @@ static enum calibrate_status try_shape(const struct calibrate_par *par,
 	if (ex->count == 0)
 		return CALIBRATE_OK;
 	scene_of(c, &ex->scene);
-	examples_fit(ex, 0.05);
+	examples_fit(ex, EXAMPLES_ROUGH);
 	if (ex->price > FAR_OFF * best->price)
 		return CALIBRATE_OK;
 	tune(par, ex, 0.1, 3);
@@ -191,7 +189,7 @@ static enum calibrate_status learn_crowd(const struct calibrate_par *par,
 		learn_set_shape(c, pulse) != NUM_OK)
 		return CALIBRATE_MEMORY;
 	ex->spectral = c->duration;
-	ex->within = APART * error * c->duration;
+	ex->within = SIGMAS_NEVER * error * c->duration;
 	return CALIBRATE_OK;
 }
 
@@ -220,7 +218,7 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 		status = try_shape(
 			par, ex, y1, y2, n, hint->pulse, hint->duration, 1, c, &best);
 	for (int k = 0; k < (c->whitening.tap ? 1 : 3) && status == CALIBRATE_OK; k++)
-		for (int p = PULSE_SINE; p <= PULSE_LORENTZ; p++) {
+		for (int p = 0; p < PULSE_SHAPES; p++) {
 			double duration = par->duration;
 
 			if (isnan(duration)) {
@@ -278,6 +276,11 @@ static void learn_range(
 	}
 }
 
+int learn_describes(const struct calibration *c)
+{
+	return c->chi2 < CALIBRATE_DESCRIBES;
+}
+
 /* Adjusts duration and gain alternately with the pulses of the examples: the closer they
  * are, the smaller a pulse may be without being a misfit of its neighbour. */
 static enum calibrate_status converge(
@@ -305,7 +308,8 @@ static enum calibrate_status converge(
 		if (k > 1 &&
 			(examples_full(ex) || (c->chi2 > 10 && c->chi2 > 0.8 * before)))
 			break; /* too dense, or other pulses: no use */
-		if (k > 2 && moved < 5e-4 && (c->chi2 < 1.2 || c->chi2 > 0.95 * before))
+		if (k > 2 && moved < 5e-4 &&
+			(learn_describes(c) || c->chi2 > 0.95 * before))
 			break;
 	}
 	return CALIBRATE_OK;
@@ -323,11 +327,6 @@ static int wants_correction(
 		return c->chi2 > 1.1;
 	return par->pulse == CALIBRATE_ANY_PULSE && !ex->pieces &&
 	       !(c->whitening.tap && c->suspect) && correct_doubtful(ex, c);
-}
-
-int learn_describes(const struct calibration *c)
-{
-	return c->chi2 < LEARN_DESCRIBES;
 }
 
 void learn_hidden(const struct calibrate_par *par, const struct calibration *c,

@@ -21,9 +21,7 @@ enum num_status learn_duration(int pulse, double low, double *duration);
 /* Sets the shape of c to this pulse, as filtered by the whitening, at the present
  * duration. */
 enum num_status learn_set_shape(struct calibration *c, int pulse);
-/* 1 if the pulse describes its record: chi-square per degree of freedom of clear pulses
- * is less than this. */
-#define LEARN_DESCRIBES 1.2
+/* 1 if the pulse describes its record, by CALIBRATE_DESCRIBES. */
 int learn_describes(const struct calibration *c);
 /* Flags of the samples, aligned, that are not known; NULL if the record was whitened,
  * which spreads them. */

@@ -413,7 +413,7 @@ static enum calibrate_status find_duration(const struct calibrate_par *par,
 		    learn_duration(c->pulse, rec->low, &c->duration) != NUM_OK) ||
 		learn_set_shape(c, c->pulse) != NUM_OK)
 		return CALIBRATE_MEMORY;
-	if (!(c->duration >= 8))
+	if (!(c->duration >= SHAPE_SHORTEST))
 		return CALIBRATE_FAST;
 	if (isnan(par->lag) && (double)c->shift < APART * c->duration)
 		return CALIBRATE_AT_ONCE;
@@ -486,7 +486,7 @@ static enum calibrate_status find_template(const struct calibrate_par *par,
 	for (size_t k = 0; k < sizeof factor / sizeof *factor; k++) {
 		double T = factor[k] * c->duration;
 
-		if (T < 8)
+		if (T < SHAPE_SHORTEST)
 			continue;
 		reach = calibration_reach(CALIBRATE_WIDE, (double)c->shift, T);
 		if (template_find(found, rec->y1, rec->y2, hidden, rec->n, T, c->transit,

@@ -2,15 +2,13 @@
 #include "signal/learn/template.h"
 #include "num/dot.h"
 #include "num/select.h"
+#include "num/sigmas.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Points of a duration on the coarse grid where events are compared. */
 enum { COARSE = 32, ROUNDS = 4 };
-
-/* Duration in samples below which samples do not describe a pulse. */
-static const double SHORTEST = 8;
 
 /* Durations on either side of an event that are examined. */
 static const double SIDE = 2;
@@ -311,8 +309,9 @@ static int refine(struct search *s, int best)
 				s, e, 1, round ? e->t[1] : e->t[0], round ? 0 : s->reach);
 			/* A first template has the noise of one event. */
 			e->like = e->a[0] * e->a[1] > 0 &&
-				  left_over(s, e) < (round ? 1 : 1 + e->a[0] * e->a[0]) +
-							    5 / sqrt(2 * s->half + 1);
+				  left_over(s, e) <
+					  (round ? 1 : 1 + e->a[0] * e->a[0]) +
+						  SIGMAS_NEVER / sqrt(2 * s->half + 1);
 			count += e->like;
 		}
 		if (count < TEMPLATE_LEAST || 2 * count < s->count)
@@ -341,10 +340,6 @@ static void orthogonalise(double *base, int rows, double *d, size_t n)
 			x[j] /= sqrt(square);
 	}
 }
-
-/* Standard deviations of chi-square above which the widths are not those of one kind of
- * pulse. */
-static const double WIDTHS = 5;
 
 /* *one: 1 if the events have one width within noise.  Pairs of nearly coincident pulses
  * do not: their distances differ.  The residual of each event is projected on the change
@@ -388,7 +383,7 @@ static enum num_status check_widths(const struct search *s, int *one)
 		sum += z * z / a2;
 		count++;
 	}
-	*one = sum < count + WIDTHS * sqrt(2.0 * count);
+	*one = sum < count + SIGMAS_NEVER * sqrt(2.0 * count);
 	free(work);
 	return NUM_OK;
 }
@@ -405,7 +400,8 @@ static int template_reach(const struct search *s)
 			left += s->p[s->half - reach + k];
 			right += s->p[s->half + reach - k];
 		}
-		if (fmax(fabs(left), fabs(right)) > 4 * s->scatter * sqrt(width))
+		if (fmax(fabs(left), fabs(right)) >
+			SIGMAS_RARELY * s->scatter * sqrt(width))
 			break;
 	}
 	return reach;
@@ -442,7 +438,7 @@ static enum num_status match(
 	double *work = malloc((2 * (size_t)reach + 1) * sizeof *work);
 
 	t->left = 2;
-	for (int pulse = PULSE_SINE; work && pulse <= PULSE_LORENTZ; pulse++) {
+	for (int pulse = 0; work && pulse < PULSE_SHAPES; pulse++) {
 		struct shape *shape = shape_new((enum pulse_shape)pulse);
 
 		if (!shape) {
@@ -540,7 +536,7 @@ static enum num_status search_template(struct search *s, struct template *t)
 		make_shape(s, reach, shift, t) != NUM_OK)
 		return NUM_MEMORY;
 	take_events(s, shift, t);
-	if (t->duration < SHORTEST) {
+	if (t->duration < SHAPE_SHORTEST) {
 		template_clear(t);
 		t->events = 0;
 	}
@@ -599,7 +595,7 @@ enum num_status template_known(
 	*left = 2;
 	if (p)
 		shape_sample(t->shape, 0, t->duration, -reach, n, p, NULL, NULL);
-	for (int k = PULSE_SINE; status == NUM_OK && k <= PULSE_LORENTZ; k++) {
+	for (int k = 0; status == NUM_OK && k < PULSE_SHAPES; k++) {
 		struct shape *plain = shape_new((enum pulse_shape)k);
 
 		for (double T = 0.7 * t->duration; plain && T < 1.4 * t->duration;

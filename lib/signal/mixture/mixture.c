@@ -1,6 +1,7 @@
 /* mixture.c - sources of a whole record, told apart by attenuation and delay */
 #include "signal/mixture/mixture.h"
 #include "num/fft.h"
+#include "num/room.h"
 #include <complex.h>
 #include <errno.h>
 #include <math.h>
@@ -67,8 +68,7 @@ void mixture_free(struct mixture *m)
 {
 	if (!m)
 		return;
-	if (m->fft)
-		fft_done(m->fft);
+	fft_done(m->fft);
 	free(m->x);
 	free(m->path);
 	fft_free(m->shape);
@@ -81,15 +81,8 @@ void mixture_free(struct mixture *m)
 
 enum num_status mixture_push(struct mixture *m, const double *x, size_t n)
 {
-	if (m->n + n > m->room) {
-		size_t room = 2 * (m->n + n);
-		double *more = realloc(m->x, 2 * room * sizeof *more);
-
-		if (!more)
-			return NUM_MEMORY;
-		m->x = more;
-		m->room = room;
-	}
+	if (room_for(&m->x, &m->room, 2 * (m->n + n), sizeof *m->x))
+		return NUM_MEMORY;
 	memcpy(m->x + 2 * m->n, x, 2 * n * sizeof *x);
 	m->n += n;
 	return NUM_OK;

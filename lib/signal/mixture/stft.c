@@ -47,8 +47,7 @@ void stft_free(struct stft *s)
 	fft_free(s->shape);
 	fft_free(s->frame);
 	fft_free(s->spectrum);
-	if (s->fft)
-		fft_done(s->fft);
+	fft_done(s->fft);
 	free(s);
 }
 

@@ -1,6 +1,7 @@
 /* colour.c - see colour.h */
 #include "signal/noise/colour.h"
 #include "num/fft.h"
+#include "num/sigmas.h"
 #include "signal/noise/quiet.h"
 #include "signal/noise/robust.h"
 #include <math.h>
@@ -104,9 +105,6 @@ enum num_status colour_power(const double *y1, const double *y2, size_t n,
 	return quiets >= QUIETS ? sharpen(power, COLOUR_BINS) : NUM_DOMAIN;
 }
 
-/* Standard deviations that the scatter of some hundred lags rarely exceeds. */
-static const double SCATTER = 4;
-
 /* Twice the last of the first whole lags at which an autocorrelation exceeds its scatter,
  * which is estimated from the later half of them: its variance is proportional to the
  * overlap of the squared window over the square of that of the window. */
@@ -124,8 +122,8 @@ static size_t last_lag(const double *r, size_t points, size_t whole)
 	for (; k > 8; k--) {
 		double v = r[k] * window_autocorrelation(points, k, 0);
 
-		if (v * v >
-			SCATTER * SCATTER * square * window_autocorrelation(points, k, 1))
+		if (v * v > SIGMAS_RARELY * SIGMAS_RARELY * square *
+				    window_autocorrelation(points, k, 1))
 			break;
 	}
 	return 2 * k;

@@ -1,6 +1,7 @@
 /* common.c - see common.h */
 #include "signal/noise/common.h"
 #include "signal/noise/robust.h"
+#include "signal/pulse/shape.h"
 #include <math.h>
 #include <string.h>
 
@@ -34,7 +35,7 @@ void common_measure(const double *const x[2], size_t n, double duration, double 
 {
 	/* Samples of a block.  Its fourth differences extend down to the highest
 	 * frequencies of a pulse, and a pulse of 30 deviations disappears in them. */
-	size_t block = (size_t)fmax(duration / 20, 1);
+	size_t block = (size_t)fmax(duration / (2 * SHAPE_BAND), 1);
 	/* By how much the shares left in the two bands may differ.  Their ratio is 1.0 to
 	 * 1.1 for white noise, 1.8 for a difference of successive values and where 200
 	 * pulses a second hide the noise. */

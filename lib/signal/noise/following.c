@@ -1,6 +1,7 @@
 /* following.c - see following.h */
 #include "signal/noise/following.h"
 #include "num/select.h"
+#include "num/sigmas.h"
 #include "signal/noise/robust.h"
 #include <math.h>
 #include <string.h>
@@ -40,12 +41,12 @@ static double believe(struct following *f, double now, double first, double seco
 		return now;
 	/* Differences of successive blocks, so that slow changes do not count, nor,
 	 * beyond three deviations, sudden ones. */
-	change = fmin(fabs(change), 3 * M_SQRT2 * f->error);
+	change = fmin(fabs(change), SIGMAS_SELDOM * M_SQRT2 * f->error);
 	f->error = sqrt((f->known * f->error * f->error + 0.5 * change * change) /
 			(f->known + 1));
 	f->known++;
 	variance = 0.5 * f->error * f->error;
-	if (fabs(log(mean / now)) < 4 * sqrt(variance + f->variance))
+	if (fabs(log(mean / now)) < SIGMAS_RARELY * sqrt(variance + f->variance))
 		return now;
 	f->variance = variance;
 	return mean;

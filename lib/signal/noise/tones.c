@@ -2,8 +2,8 @@
 #include "signal/noise/tones.h"
 #include "num/cholesky.h"
 #include "num/dot.h"
-#include "num/fft.h"
 #include "num/parabola.h"
+#include "num/periodogram.h"
 #include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
@@ -36,10 +36,9 @@ static int by_omega(const void *x, const void *y)
 
 /* Pulses are clipped to a few times the usual sample, which includes the lines:
  * unclipped, the spectrum of rare strong pulses would hide lines. */
-static void add_periodogram(const struct fft *fft, const double *y, size_t n,
-	double *work, double complex *spectrum, double *power)
+static void add_clipped(struct periodogram *p, const double *y, size_t n, double *power)
 {
-	double mean = mean_of(y, n), limit;
+	double mean = mean_of(y, n), limit, *work = p->x;
 
 	for (size_t i = 0; i < n; i++)
 		work[i] = fabs(y[i] - mean);
@@ -49,9 +48,7 @@ static void add_periodogram(const struct fft *fft, const double *y, size_t n,
 	for (size_t i = 0; i < n; i++)
 		work[i] = fmax(fmin(y[i] - mean, limit), -limit) *
 			  (0.5 - 0.5 * cos(2 * M_PI * (double)i / (double)n));
-	fft_forward(fft, work, spectrum);
-	for (size_t k = 0; k <= n / 2; k++)
-		power[k] += creal(spectrum[k] * conj(spectrum[k]));
+	periodogram_add(p, 1, power, n / 2 + 1);
 }
 
 static int pick_lines(const double *power, size_t n, int max, double *omega)
@@ -94,30 +91,25 @@ static int pick_lines(const double *power, size_t n, int max, double *omega)
 enum num_status tones_find(
 	const double *y1, const double *y2, size_t n, int max, double *omega, int *tones)
 {
-	struct fft *fft;
-	double *work, *power;
-	double complex *spectrum;
-	enum num_status status = NUM_MEMORY;
+	struct periodogram *p;
+	double *power;
+	enum num_status status;
 
 	*tones = 0;
 	if (n < 1024)
 		return NUM_OK;
 	while (fft_good_size(n) != n || n % 2)
 		n--;
-	fft = fft_new(n, 1);
-	work = fft_alloc(n);
-	power = fft_alloc(n / 2 + 1);
-	spectrum = fft_alloc_complex(n / 2 + 1);
-	if (fft && work && power && spectrum) {
-		add_periodogram(fft, y1, n, work, spectrum, power);
-		add_periodogram(fft, y2, n, work, spectrum, power);
+	p = periodogram_new(n);
+	power = calloc(n / 2 + 1, sizeof *power);
+	status = p && power ? NUM_OK : NUM_MEMORY;
+	if (status == NUM_OK) {
+		add_clipped(p, y1, n, power);
+		add_clipped(p, y2, n, power);
 		*tones = pick_lines(power, n, max > TONES_MAX ? TONES_MAX : max, omega);
-		status = NUM_OK;
 	}
-	fft_free(work);
-	fft_free(power);
-	fft_free(spectrum);
-	fft_done(fft);
+	periodogram_free(p);
+	free(power);
 	return status;
 }
 

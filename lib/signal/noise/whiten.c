@@ -1,6 +1,6 @@
 /* whiten.c - see whiten.h */
 #include "signal/noise/whiten.h"
-#include "num/fft.h"
+#include "num/periodogram.h"
 #include "signal/filter/fir.h"
 #include <math.h>
 #include <stdlib.h>
@@ -130,7 +130,10 @@ static int edge_of_taps(const double *tap, int half)
 	return edge;
 }
 
-enum num_status whitening_make(struct whitening *w, const double *power, size_t n,
+/* power[k] of the noise at frequency k / (2 (n - 1)), k < n; unit: that of the white
+ * noise to be made of it; half < n: length of the taps.  NUM_DOMAIN unless unit > 0 and
+ * there is power at some frequency. */
+static enum num_status whitening_make(struct whitening *w, const double *power, size_t n,
 	double unit, int half, enum whiten_kind kind)
 {
 	double *gain = malloc(2 * n * sizeof *gain), most = 0;
@@ -196,31 +199,22 @@ enum num_status whitening_of_filter(struct whitening *w, const double *tap, size
 	 */
 	size_t points = fft_good_size(24 * taps + 64), n;
 	double *power;
-	struct fft *fft;
-	double complex *spectrum;
-	double *x;
+	struct periodogram *p;
 	enum num_status status;
 
 	points += points % 2;
 	n = points / 2 + 1;
-	power = malloc(n * sizeof *power);
-	fft = fft_new(points, 1);
-	spectrum = fft_alloc_complex(n);
-	x = fft_alloc(points);
-	status = power && fft && spectrum && x ? NUM_OK : NUM_MEMORY;
+	power = calloc(n, sizeof *power);
+	p = periodogram_new(points);
+	status = power && p ? NUM_OK : NUM_MEMORY;
 	memset(w, 0, sizeof *w);
 	if (status == NUM_OK) {
-		memcpy(x, tap, taps * sizeof *tap);
-		fft_forward(fft, x, spectrum);
-		for (size_t k = 0; k < n; k++)
-			power[k] = creal(spectrum[k]) * creal(spectrum[k]) +
-				   cimag(spectrum[k]) * cimag(spectrum[k]);
+		memcpy(p->x, tap, taps * sizeof *tap);
+		periodogram_add(p, 1, power, n);
 		status = whitening_make(w, power, n, 1, (int)(6 * taps), WHITEN_FILTERED);
 	}
 	free(power);
-	fft_done(fft);
-	fft_free(spectrum);
-	fft_free(x);
+	periodogram_free(p);
 	return status;
 }
 

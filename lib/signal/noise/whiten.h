@@ -34,13 +34,8 @@ struct whitening {
 	double band;      /* variance of the noise made white, 1 at all frequencies */
 };
 
-/* power[k] of the noise at frequency k / (2 (n - 1)), k < n; unit: that of the white
- * noise to be made of it; half < n: length of the taps.  NUM_DOMAIN unless unit > 0 and
- * there is power at some frequency. */
-enum num_status whitening_make(struct whitening *w, const double *power, size_t n,
-	double unit, int half, enum whiten_kind kind);
-/* The same for noise whose power is known at n frequencies only, smooth between them;
- * unit is its largest. */
+/* From the power of the noise at n frequencies k / (2 (n - 1)), smooth between them; the
+ * white noise has that of the strongest.  NUM_DOMAIN if there is none at any. */
 enum num_status whitening_of_noise(
 	struct whitening *w, const double *power, size_t n, enum whiten_kind kind);
 /* The inverse of a symmetric filter of n taps. */

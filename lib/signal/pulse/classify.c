@@ -1,9 +1,7 @@
 /* classify.c - see classify.h */
 #include "signal/pulse/classify.h"
+#include "num/sigmas.h"
 #include <math.h>
-
-/* Standard errors beyond which a phase is of no material: 6e-5 of all. */
-static const double FAR = 4;
 
 int classify_is_ferrous(const struct material *m)
 {
@@ -55,5 +53,5 @@ double classify_ferrous(const struct material *const *material, const double *sh
 			nearest = fmin(nearest, fabs(off));
 		sum[classify_is_ferrous(m)] += share[i] * exp(-0.5 * off * off);
 	}
-	return nearest < FAR ? sum[1] / (sum[0] + sum[1]) : NAN;
+	return nearest < SIGMAS_RARELY ? sum[1] / (sum[0] + sum[1]) : NAN;
 }

@@ -7,19 +7,15 @@ static const double vacuum_permeability = 1.25663706212e-6; /* V s/(A m), CODATA
 /* Samples between fresh starts of a recurrence, so that rounding does not build up. */
 enum { RESTART = 8 };
 
-double pulse_reach(enum pulse_shape shape)
+const char *const pulse_names[PULSE_SHAPES + 2] = { "auto", "sine", "gauss", "lorentz" };
+
+/* Value and slope of the pulses at xi = 2 pi s; slope by xi. */
+static double sine_at(double xi, double *slope)
 {
-	switch (shape) {
-	case PULSE_SINE:
-		return 0.5;
-	case PULSE_GAUSS:
-		return 1.5;
-	default:
-		return 25;
-	}
+	*slope = -cos(xi);
+	return -sin(xi);
 }
 
-/* Value and slope of the gauss and lorentz pulses at xi = 2 pi s; slope by xi. */
 static double gauss_at(double xi, double *slope)
 {
 	double e = exp(0.5 - 0.5 * xi * xi);
@@ -37,24 +33,28 @@ static double lorentz_at(double xi, double *slope)
 	return -peak * xi * q2;
 }
 
+static const struct {
+	double reach;
+	double (*at)(double xi, double *slope);
+} forms[PULSE_SHAPES] = {
+	[PULSE_SINE] = { 0.5, sine_at },
+	[PULSE_GAUSS] = { 1.5, gauss_at },
+	[PULSE_LORENTZ] = { 25, lorentz_at },
+};
+
+double pulse_reach(enum pulse_shape shape)
+{
+	return forms[shape].reach;
+}
+
 static double pulse_at(enum pulse_shape shape, double s, double *slope)
 {
-	double xi = 2 * M_PI * s, p;
+	double p;
 
 	*slope = 0;
 	if (!(fabs(s) < pulse_reach(shape)))
 		return 0;
-	switch (shape) {
-	case PULSE_SINE:
-		*slope = -cos(xi);
-		p = -sin(xi);
-		break;
-	case PULSE_GAUSS:
-		p = gauss_at(xi, slope);
-		break;
-	default:
-		p = lorentz_at(xi, slope);
-	}
+	p = forms[shape].at(2 * M_PI * s, slope);
 	*slope *= 2 * M_PI;
 	return p;
 }
@@ -116,7 +116,7 @@ static void fill_run(enum pulse_shape shape, double s, double ds, size_t n, doub
 		}
 	} else {
 		for (size_t i = 0; i < n; i++) {
-			value[i] = lorentz_at(xi + (double)i * dxi, &slope[i]);
+			value[i] = forms[shape].at(xi + (double)i * dxi, &slope[i]);
 			slope[i] *= 2 * M_PI;
 		}
 	}

@@ -30,7 +30,12 @@
 
 #include <stddef.h>
 
-enum pulse_shape { PULSE_SINE, PULSE_GAUSS, PULSE_LORENTZ };
+enum pulse_shape { PULSE_SINE, PULSE_GAUSS, PULSE_LORENTZ, PULSE_SHAPES };
+
+/* Their names, for options: pulse_names[0] is "auto", that of a shape one behind it, the
+ * last NULL. */
+#define PULSE_WORDS "sine|gauss|lorentz"
+extern const char *const pulse_names[PULSE_SHAPES + 2];
 
 /* Half the support in durations: p(s) = 0 for |s| >= reach.  1/2 is exact for sine; the
  * others are cut where |p| has fallen below 1e-17 (gauss) and 8e-7 (lorentz). */

@@ -15,8 +15,13 @@ struct shape;
 /* One of the pulses of sensor.h, cut where |p| stays below 1e-4.  NULL: no memory. */
 struct shape *shape_new(enum pulse_shape pulse);
 
-/* Frequency, in cycles per duration, above which pulses have little power. */
+/* Samples of a duration below which a pulse is not learned: they do not describe it. */
+enum { SHAPE_SHORTEST = 8 };
+
+/* Frequency, in cycles per duration, above which pulses have little power, and half of
+ * its period, in durations: what changes within less is no pulse. */
 #define SHAPE_BAND 10.0
+#define SHAPE_FINEST (0.5 / SHAPE_BAND)
 
 /* Any other pulse: value[0 .. 2 half] at s = -reach .. reach in equal steps, smooth
  * between them (slopes by central differences); it is scaled to max |p| = 1.  NULL
@@ -51,6 +56,13 @@ double shape_slope_energy(const struct shape *shape);
 
 /* The whole t inside the support: returns the first, their number in *n. */
 long shape_support(const struct shape *shape, double t0, double T, size_t *n);
+
+/* Samples from point to point of a matched filter: its phase then changes by half a turn
+ * between them at no frequency that the pulse has. */
+static inline long shape_stride(double T)
+{
+	return T >= 48 ? (long)(T / 24) : 1;
+}
 
 /* p((t - t0) / T) at t = first .. first + n - 1, and where not NULL its derivatives by
  * t0 and T.  Zero outside the support. */

@@ -102,7 +102,7 @@ enum separate_status separate_fit_section(
 	enum separate_status status;
 	struct foreign event = { .verdict = SEPARATE_MISFIT };
 	int both = has_quadrature(s);
-	int whole = !cut && !s->continuing && !both && !s->par.sources;
+	int whole = !cut && s->window == SEEK && !both && !s->par.sources;
 	int unresolved, shorter;
 	long before = 0, after = 0;
 	size_t n;
@@ -110,7 +110,7 @@ enum separate_status separate_fit_section(
 	/* The quiet samples on either side of a section show that no pulse extends there.
 	 */
 	if (!both) {
-		before = s->continuing ? 0 : sections_aside(s->sections, 0);
+		before = s->window == SEEK ? sections_aside(s->sections, 0) : 0;
 		before = from - s->tape[0].begin < before
 				 ? (long)(from - s->tape[0].begin)
 				 : before;
@@ -155,14 +155,14 @@ enum separate_status separate_fit_section(
 	unresolved = a.goodness.stretch == SEPARATE_UNRESOLVED && !s->par.sources;
 	shorter = unresolved && (cut || a.r.full) &&
 		  (double)(to - from) > 2 * shortest_window(s);
-	if (shorter)
-		s->span = (to - from) / 2;
-	else
+	if (!shorter)
 		s->failures = unresolved ? s->failures + 1 : 0;
-	s->dense = unresolved && !shorter && (!cut || s->failures == PATIENCE);
-	/* A short section is not unresolved because of the number of its pulses. */
-	s->strange = s->dense && !cut && !s->continuing && !a.r.full;
-	if (shorter || s->dense) {
+	if (shorter || (unresolved && (!cut || s->failures == PATIENCE))) {
+		/* A short section is not unresolved because of the number of its pulses.
+		 */
+		s->strange = !shorter && !cut && s->window == SEEK && !a.r.full;
+		s->window = shorter ? SHORTER : DENSE;
+		s->span = (size_t)(to - from) / 2;
 		s->carried = 0;
 		*next = from;
 		return SEPARATE_OK;
@@ -175,7 +175,7 @@ enum separate_status separate_fit_section(
 		   SEPARATE_OK) {
 		return SEPARATE_MEMORY;
 	}
-	s->counters.singles += !cut && a.m == 1 && !s->continuing;
+	s->counters.singles += !cut && a.m == 1 && s->window == SEEK;
 	*next = to;
 	if (cut)
 		*next = cut_section(s, from, a.boundary, a.m, a.done);

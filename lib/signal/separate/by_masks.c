@@ -95,17 +95,23 @@ enum separate_status separate_mask_section(
 		p = &entry->row;
 		entry->evidence.fits = verdict[k] != SEPARATE_MISFIT;
 		entry->evidence.group = ++s->group;
-		p->section = s->number;
 		p->sources = m;
 		p->t1 = (double)from + t[k];
 		p->t2 = p->t1 + (double)s->cal.shift + source[k].delta;
 		p->amplitude = a[k];
-		p->t1_se = p->t2_se = p->delay_se = p->amplitude_se = p->chi2 = NAN;
-		p->correlation = p->phase = p->phase_se = NAN;
 		p->verdict = verdict[k];
 		all = verdict[k] > all ? verdict[k] : all;
 		s->counters.rows++;
 	}
-	separate_report_section(s, from, to, m, NAN, all, s->source);
+	if (s->par.on_section)
+		s->par.on_section(
+			s->par.context, &(struct separate_section){ .number = s->number,
+						.begin = from,
+						.end = to,
+						.sources = m,
+						.chi2 = NAN,
+						.verdict = all,
+						.source = s->source,
+						.masks = s->masks });
 	return SEPARATE_OK;
 }

@@ -1,4 +1,5 @@
 /* following.c - flow and gain followed by pulses that stand alone */
+#include "num/sigmas.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
 
@@ -60,7 +61,7 @@ static void follow_gain(struct separate *s, const struct joint_pulse *p)
 		return;
 	for (int i = 0; i < GAINS; i++)
 		sum += s->gain_off[i];
-	if (fabs(sum) > 3 * sqrt(GAINS))
+	if (fabs(sum) > SIGMAS_SELDOM * sqrt(GAINS))
 		s->gain *= 1 + s->gain_sum / s->gain_weight;
 	s->gain_sum = s->gain_weight = 0;
 }

@@ -205,9 +205,9 @@ static const char *out_of_range(const struct instrument *in)
 
 	return in->ratio < 1                           ? "ratio"
 	       : c->tone_hop < SHORTEST_HOP            ? "tone_hop"
-	       : c->pulse > PULSE_LORENTZ              ? "pulse"
+	       : c->pulse >= PULSE_SHAPES              ? "pulse"
 	       : !(c->noise[0] > 0 && c->noise[1] > 0) ? "noise"
-	       : !(c->duration >= 8)                   ? "duration"
+	       : !(c->duration >= SHAPE_SHORTEST)      ? "duration"
 	       : !(c->gain > 0)                        ? "gain"
 	       : !(c->transit > 0)                     ? "transit"
 	       : !(c->delta_min < c->delta_max)        ? "delta_max"

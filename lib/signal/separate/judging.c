@@ -2,6 +2,7 @@
  */
 #include "num/room.h"
 #include "signal/separate/separate_state.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,7 +10,15 @@ struct entry *separate_queue_entry(struct separate *s)
 {
 	if (room_for(&s->queue, &s->capacity, s->count + 1, sizeof *s->queue))
 		return NULL;
-	memset(&s->queue[s->count], 0, sizeof *s->queue);
+	s->queue[s->count] = (struct entry){ .row = { .section = s->number,
+						     .t1_se = NAN,
+						     .t2_se = NAN,
+						     .delay_se = NAN,
+						     .amplitude_se = NAN,
+						     .correlation = NAN,
+						     .phase = NAN,
+						     .phase_se = NAN,
+						     .chi2 = NAN } };
 	return &s->queue[s->count++];
 }
 
@@ -34,20 +43,6 @@ enum separate_status separate_queue_report(
 	return SEPARATE_OK;
 }
 
-/* From means to samples of the record. */
-static void spread_out(
-	struct separate_section *section, struct campbell *dense, int ratio)
-{
-	section->begin *= ratio;
-	section->end *= ratio;
-	dense->square /= ratio;
-	dense->square_se /= ratio;
-	dense->fourth /= ratio;
-	dense->fourth_se /= ratio;
-	dense->rate /= ratio;
-	dense->rate_se /= ratio;
-}
-
 static void give_reports(struct separate *s)
 {
 	for (size_t i = 0; i < s->reports; i++) {
@@ -56,7 +51,10 @@ static void give_reports(struct separate *s)
 		if (r->section.dense)
 			r->section.dense = &r->dense;
 		r->section.source = r->source;
-		spread_out(&r->section, &r->dense, s->ratio);
+		/* from means to samples of the record */
+		r->section.begin *= s->ratio;
+		r->section.end *= s->ratio;
+		campbell_scale(&r->dense, 1, 1. / s->ratio);
 		for (size_t k = r->first; k < r->first + r->rows; k++)
 			if (s->queue[k].evidence.doubted &&
 				r->section.verdict < SEPARATE_UNRESOLVED)
@@ -73,13 +71,23 @@ static enum separate_status judge_pairs(struct separate *s, size_t n)
 {
 	struct entry *q = s->queue + s->judged;
 	struct arrival *a = malloc((n ? n : 1) * sizeof *a);
+	double half = validation_half(s->validation);
+	int plug =
+		s->scene.delta_max - s->scene.delta_min <= 2 * calibration_plug(&s->cal);
+	struct flow flow;
 	size_t m = 0;
 
 	if (!a)
 		return SEPARATE_MEMORY;
+	validation_flow(s->validation, &flow);
 	for (size_t i = 0; i < n; i++)
 		if (q[i].arrival.group) {
 			a[m] = q[i].arrival;
+			if (q[i].row.sources > 1 && half > 0 && plug) {
+				a[m].off = (q[i].evidence.delay - flow.mean) / half;
+				a[m].off_var = q[i].evidence.var / (half * half);
+				a[m].flow_var = flow.margin / (half * half);
+			}
 			a[m++].doubted = q[i].row.verdict >= SEPARATE_MISFIT;
 		}
 	together_judge(s->together, a, m);
@@ -88,7 +96,7 @@ static enum separate_status judge_pairs(struct separate *s, size_t n)
 		if (q[i].arrival.group && a[m++].doubted &&
 			q[i].row.verdict < SEPARATE_MISFIT) {
 			q[i].row.verdict = SEPARATE_MISFIT;
-			if (a[m - 1].shape > a[m - 1].pair)
+			if (fmax(a[m - 1].shape, a[m - 1].astray) > a[m - 1].pair)
 				s->counters.misfits++;
 			else
 				s->counters.together++;

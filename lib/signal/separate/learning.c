@@ -263,7 +263,7 @@ enum { LONE = 6 };
  * there are too few samples to test its spectrum. */
 static int is_clear(const struct calibration *c)
 {
-	return learn_describes(c) && c->chi2 > 1 / LEARN_DESCRIBES &&
+	return learn_describes(c) && c->chi2 > 1 / CALIBRATE_DESCRIBES &&
 	       c->duration <= SEPARATE_LONG && c->tones == 0 &&
 	       c->delta_max - c->delta_min <= 2 * calibration_plug(c) && !c->dense &&
 	       !c->suspect && !c->measured && !c->corrected && !c->whitening.tap;

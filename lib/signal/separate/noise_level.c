@@ -1,4 +1,5 @@
 /* noise_level.c - the noise of a record, compared with that of a kept instrument */
+#include "num/sigmas.h"
 #include "signal/noise/robust.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
@@ -59,7 +60,8 @@ int separate_is_other_noise(const struct separate *s)
 
 	if (!(s->levels > 0))
 		return 0;
-	margin = 5 * hypot(level_error(s->levels), level_error(s->kept.level_samples));
+	margin = SIGMAS_NEVER *
+		 hypot(level_error(s->levels), level_error(s->kept.level_samples));
 	separate_noise(s, share);
 	return !(fmax(fabs(log(share[0])), fabs(log(share[1]))) < tolerance + margin);
 }

@@ -2,6 +2,7 @@
 #include "signal/separate/quadrature.h"
 #include "num/cholesky.h"
 #include "num/dot.h"
+#include "num/sigmas.h"
 #include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
@@ -334,7 +335,8 @@ static struct quadrature_pulse moved(const struct fit *f,
 	const struct quadrature_pulse *old, const double *step, double scale)
 {
 	const struct joint_scene *s = f->scene;
-	double most = 0.25 * s->duration, span = 0.1 * (s->delta_max - s->delta_min);
+	double most = JOINT_STEP * s->duration,
+	       span = JOINT_BEYOND * (s->delta_max - s->delta_min);
 	struct quadrature_pulse p = *old;
 
 	p.t += fmax(fmin(scale * step[T1], most), -most);
@@ -392,8 +394,8 @@ static void fill_covariance(struct fit *f, struct quadrature_pulse *p)
 		}
 }
 
-/* 1 if chi-square of v, given x, exceeds that of noise by five standard deviations and a
- * tenth, as in goodness.h, and by twice the excess in x, whose pulses may be smaller. */
+/* 1 if chi-square of v, given x, exceeds that of noise, as in goodness.h, and by twice
+ * the excess in x, whose pulses may be smaller. */
 static int is_doubtful(const struct fit *f, double all, double chi2)
 {
 	double of_x = 0, dof = 2 * (double)f->n * (1 - f->scene->lost) - f->taken - f->m;
@@ -406,7 +408,8 @@ static int is_doubtful(const struct fit *f, double all, double chi2)
 	}
 	dof = fmax(dof, 1);
 	v = (all - of_x) / dof;
-	return v > 1.1 + 2 * fmax(chi2 - 1, 0) + 5 * sqrt(2 / dof);
+	return v >
+	       1 + CHI_SQUARE_MORE + 2 * fmax(chi2 - 1, 0) + SIGMAS_NEVER * sqrt(2 / dof);
 }
 
 enum num_status quadrature_fit(const struct quadrature *q, const struct joint *joint,

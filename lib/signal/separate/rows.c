@@ -43,7 +43,6 @@ static enum separate_status emit_pulse(struct separate *s, const struct joint_pu
 	if (!entry)
 		return SEPARATE_MEMORY;
 	out = &entry->row;
-	out->section = s->number;
 	out->sources = sources;
 	out->t1 = (double)from + p->t;
 	out->t2 = out->t1 + (double)s->cal.shift + p->delta;
@@ -53,7 +52,6 @@ static enum separate_status emit_pulse(struct separate *s, const struct joint_pu
 	out->delay_se = sqrt(delay_var);
 	out->amplitude_se = sqrt(p->cov[5]) * noise;
 	out->correlation = (p->cov[4] - p->cov[3]) / sqrt(delay_var * p->cov[5]);
-	out->phase = out->phase_se = NAN;
 	if (s->with_both)
 		tell_phase(s, (int)(p - s->pulse), from, out);
 	out->chi2 = chi2;
@@ -123,22 +121,6 @@ static enum num_status compare_pulses(struct separate *s, int m)
 	return NUM_OK;
 }
 
-void separate_report_section(struct separate *s, long long from, long long to,
-	int sources, double chi2, enum separate_verdict verdict, const double *source)
-{
-	struct separate_section out = { .number = s->number,
-		.begin = from,
-		.end = to,
-		.sources = sources,
-		.chi2 = chi2,
-		.verdict = verdict,
-		.source = source,
-		.masks = s->masks };
-
-	if (s->par.on_section)
-		s->par.on_section(s->par.context, &out);
-}
-
 enum separate_status separate_reserve_sources(struct separate *s, size_t count)
 {
 	free(s->source);
@@ -185,8 +167,7 @@ enum separate_status separate_dense_section(
 		s->cal.duration, s->scene.gain, &c);
 	campbell_compare(y.at[0], y.at[1], (size_t)(to - from), s->cal.shape,
 		s->cal.duration, s->scene.gain, &c);
-	campbell_scale(&c, noise);
-	p->section = s->number;
+	campbell_scale(&c, noise, 1);
 	p->sources =
 		isnan(c.rate) || c.rate * length > 1e9 ? 0 : (int)(c.rate * length + 0.5);
 	if (s->strange && p->sources < 1)
@@ -196,7 +177,6 @@ enum separate_status separate_dense_section(
 	p->amplitude = c.amplitude;
 	p->amplitude_se = c.amplitude_se;
 	p->t1_se = p->t2_se = length / sqrt(12);
-	p->delay_se = p->correlation = p->chi2 = p->phase = p->phase_se = NAN;
 	p->verdict = SEPARATE_UNRESOLVED;
 	s->counters.unresolved++;
 	s->counters.dense += length;
@@ -223,14 +203,10 @@ enum separate_status separate_give_event(
 	if (!entry)
 		return SEPARATE_MEMORY;
 	p = &entry->row;
-	p->section = s->number;
-	p->sources = 0;
 	p->t1 = (double)from + event->t[0];
 	p->t2 = (double)(from + s->cal.shift) + event->t[1];
 	p->amplitude = event->amplitude * separate_noise_at(s, isnan(event->t[0]),
 						  isnan(event->t[0]) ? p->t2 : p->t1);
-	p->t1_se = p->t2_se = p->delay_se = p->amplitude_se = NAN;
-	p->correlation = p->phase = p->phase_se = NAN;
 	p->chi2 = out.chi2 = event->chi2;
 	p->verdict = out.verdict = event->verdict;
 	entry->evidence.group = ++s->group;

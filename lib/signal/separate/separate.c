@@ -118,12 +118,99 @@ static enum num_status scan(struct separate *s, long long limit)
 		s->ended ? limit : limit - sections_reach(s->sections));
 }
 
+/* Looks at the first samples before any is separated: always the same ones, whatever the
+ * sizes of the pieces passed.  *enough: 0 if there are too few yet. */
+static enum separate_status look(struct separate *s, long long limit, int *enough)
+{
+	long long upto = s->done + (long long)s->par.learn / 2;
+	struct channels y;
+
+	*enough = limit >= upto || s->ended;
+	if (!*enough)
+		return SEPARATE_OK;
+	upto = limit < upto ? limit : upto;
+	if (!s->looked)
+		s->crowded = !s->par.sources && is_crowded(s, s->done, upto);
+	if (!s->looked && separate_measure_common(s, s->done, upto) != NUM_OK)
+		return SEPARATE_MEMORY;
+	s->looked = 1;
+	/* Too few samples to remove what is common. */
+	if (s->par.clearly && (s->crowded || s->common.correlation != 0))
+		return SEPARATE_NO_LAG;
+	y = channels_at(s, s->done);
+	return has_quadrature(s) && quadrature_measure(&s->quadrature, y.at, y.at + 2,
+					    (size_t)(upto - s->done)) != NUM_OK
+		       ? SEPARATE_MEMORY
+		       : SEPARATE_OK;
+}
+
+/* Judges what was held back until so much was done. */
+static enum separate_status release(struct separate *s, long long done)
+{
+	if (!s->holding || done < s->hold)
+		return SEPARATE_OK;
+	s->holding = 0;
+	return separate_judge_rows(s);
+}
+
+/* Separates a window of the first section, which goes on behind it if it is cut. */
+static enum separate_status take_window(
+	struct separate *s, long long from, long long to, int cut, long long end)
+{
+	long long next = to;
+	enum separate_status status = SEPARATE_OK;
+
+	if (s->window == SEEK) {
+		s->number++;
+		s->counters.sections++;
+	}
+	if (release(s, from) != SEPARATE_OK)
+		return SEPARATE_MEMORY;
+	separate_set_gain(s, from);
+	if (cut && s->crowded && s->par.method == SEPARATE_FIT)
+		s->window = DENSE;
+	if (s->window == DENSE)
+		status = separate_dense_section(s, from, to);
+	else if (s->par.method == SEPARATE_MASKS)
+		status = separate_mask_section(s, from, to);
+	else
+		status = separate_fit_section(s, from, to, cut, &next);
+	if (status == SEPARATE_OK && !s->holding)
+		status = separate_judge_rows(s);
+	s->counters.active += (double)(next - from);
+	if (status != SEPARATE_OK || next == from)
+		return status;
+	if (s->window == SEEK || !cut)
+		s->window = cut ? FIT : SEEK;
+	if (!cut)
+		s->failures = 0;
+	sections_take(s->sections, cut ? next : end);
+	return status;
+}
+
+/* Drops the samples that are no longer needed. */
+static void forget(struct separate *s)
+{
+	long reach = sections_reach(s->sections);
+	struct section section;
+	long long keep;
+
+	s->done = sections_scanned(s->sections) - reach;
+	if (sections_first(s->sections, &section) && section.begin < s->done)
+		s->done = section.begin;
+	if (s->done < 0)
+		s->done = 0;
+	keep = s->done < s->level_at ? s->done : s->level_at;
+	for (int c = 0; c < s->channels; c++)
+		tape_forget(&s->tape[c], keep - reach - separate_common_reach(s));
+}
+
 /* Separates all sections that are complete. */
 static enum separate_status work(struct separate *s)
 {
-	long long limit, longest, keep;
+	long long limit;
 	struct section section;
-	struct channels y;
+	enum separate_status status = SEPARATE_OK;
 
 	for (int c = 0; c < s->channels; c++)
 		if (tape_prepare(&s->tape[c], &s->cal, s->ended) != NUM_OK)
@@ -133,40 +220,23 @@ static enum separate_status work(struct separate *s)
 	if (limit <= s->done)
 		return SEPARATE_OK;
 	if (!s->looked || has_quadrature(s) > s->quadrature.measured) {
-		/* Always the same samples, whatever the sizes of the pieces passed. */
-		long long upto = s->done + (long long)s->par.learn / 2;
+		int enough;
 
-		if (limit < upto && !s->ended)
-			return SEPARATE_OK;
-		upto = limit < upto ? limit : upto;
-		if (!s->looked)
-			s->crowded = !s->par.sources && is_crowded(s, s->done, upto);
-		if (!s->looked && separate_measure_common(s, s->done, upto) != NUM_OK)
-			return SEPARATE_MEMORY;
-		s->looked = 1;
-		/* Too few samples to remove what is common. */
-		if (s->par.clearly && (s->crowded || s->common.correlation != 0))
-			return SEPARATE_NO_LAG;
-		y = channels_at(s, s->done);
-		if (has_quadrature(s) &&
-			quadrature_measure(&s->quadrature, y.at, y.at + 2,
-				(size_t)(upto - s->done)) != NUM_OK)
-			return SEPARATE_MEMORY;
+		status = look(s, limit, &enough);
+		if (status != SEPARATE_OK || !enough)
+			return status;
 	}
 	if (scan(s, limit) != NUM_OK)
 		return SEPARATE_MEMORY;
 	if (s->ended)
 		sections_end(s->sections);
-	while (sections_first(s->sections, &section)) {
-		long long from = section.begin > 0 ? section.begin : 0, to = section.end,
-			  next;
-		int cut;
-		enum separate_status status;
+	while (status == SEPARATE_OK && sections_first(s->sections, &section)) {
+		long long from = section.begin > 0 ? section.begin : 0, to = section.end;
+		long long longest = (long long)(s->window == DENSE     ? s->par.learn
+						: s->window == SHORTER ? s->span
+								       : s->par.window);
+		int cut = to - from > longest;
 
-		longest = s->dense  ? (long long)s->par.learn
-			  : s->span ? s->span
-				    : (long long)s->par.window;
-		cut = to - from > longest;
 		if (cut)
 			to = from + longest;
 		if (!s->ended && (to + separate_common_reach(s) > limit ||
@@ -176,58 +246,15 @@ static enum separate_status work(struct separate *s)
 			break;
 		if (to > limit)
 			to = limit;
-		if (to - from < 2) {
+		if (to - from < 2)
 			sections_take(s->sections, section.end);
-			continue;
-		}
-		if (!s->continuing) {
-			s->number++;
-			s->counters.sections++;
-		}
-		if (s->holding && from >= s->hold) {
-			s->holding = 0;
-			if (separate_judge_rows(s) != SEPARATE_OK)
-				return SEPARATE_MEMORY;
-		}
-		next = to;
-		separate_set_gain(s, from);
-		s->dense |= cut && s->crowded && s->par.method == SEPARATE_FIT;
-		if (s->dense)
-			status = separate_dense_section(s, from, to);
-		else if (s->par.method == SEPARATE_MASKS)
-			status = separate_mask_section(s, from, to);
 		else
-			status = separate_fit_section(s, from, to, cut, &next);
-		if (status == SEPARATE_OK && !s->holding)
-			status = separate_judge_rows(s);
-		if (status != SEPARATE_OK)
-			return status;
-		s->counters.active += (double)(next - from);
-		if (next == from) { /* the same samples again, as a shorter window or as
-				       unresolved */
-			s->continuing = 1;
-			continue;
-		}
-		s->continuing = cut;
-		s->dense = s->dense && cut;
-		if (!cut)
-			s->span = s->failures = 0;
-		sections_take(s->sections, cut ? next : section.end);
+			status = take_window(s, from, to, cut, section.end);
 	}
-	s->done = sections_scanned(s->sections) - sections_reach(s->sections);
-	if (sections_first(s->sections, &section) && section.begin < s->done)
-		s->done = section.begin;
-	if (s->done < 0)
-		s->done = 0;
-	keep = (s->done < s->level_at ? s->done : s->level_at) -
-	       sections_reach(s->sections) - separate_common_reach(s);
-	for (int c = 0; c < s->channels; c++)
-		tape_forget(&s->tape[c], keep);
-	if (s->holding && (s->ended || s->done >= s->hold)) {
-		s->holding = 0;
-		return separate_judge_rows(s);
-	}
-	return SEPARATE_OK;
+	if (status != SEPARATE_OK)
+		return status;
+	forget(s);
+	return release(s, s->ended ? s->hold : s->done);
 }
 
 static enum separate_status push(struct separate *s, const double *x, size_t n)

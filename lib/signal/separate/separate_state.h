@@ -44,6 +44,14 @@ struct report {
  * bound. */
 enum { TRACKED = 64, ENOUGH = 12, GAINS = 8 };
 
+/* The next window of samples to separate. */
+enum window {
+	SEEK,    /* begins a section */
+	FIT,     /* goes on with the last one */
+	SHORTER, /* the same, but shorter: the last one had too many pulses */
+	DENSE    /* the rest of the section is one unresolved row */
+};
+
 /* What both channels have in common (common.h). */
 struct common {
 	double correlation;  /* 0: it is not removed */
@@ -79,12 +87,12 @@ struct separate {
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
 	struct quadrature quadrature;
 	struct quadrature_pulse both[JOINT_PULSES_MAX]; /* pulse, both components */
-	int with_both;  /* 1: both is of the present window */
-	int carried;    /* pulses of the last window that are first guesses of the next */
-	long long span; /* longest window in this section; 0: as given */
-	int failures;   /* consecutive windows that were not resolved */
-	int dense;      /* the rest of this section is one unresolved row */
-	int strange;    /* ... although the section is short */
+	int with_both; /* 1: both is of the present window */
+	int carried;   /* pulses of the last window that are first guesses of the next */
+	enum window window;
+	size_t span;           /* longest window if SHORTER */
+	int failures;          /* consecutive windows that were not resolved */
+	int strange;           /* DENSE although the section is short */
 	long long shock_end;   /* of the last one that began in two sections */
 	int same_shock;        /* the event found is that one */
 	unsigned char *spikes; /* flags of impulses */
@@ -99,7 +107,6 @@ struct separate {
 				   standard errors */
 	double gain_sum, gain_weight;
 	int gains;
-	int continuing; /* the next window belongs to the same section */
 	long number;
 	long long done; /* samples before this one are done */
 	struct entry *queue;
@@ -165,7 +172,7 @@ static inline double separate_noise_at(const struct separate *s, int c, double a
 
 /* judging.c */
 
-/* A new row of the queue, zeroed; NULL: no memory. */
+/* A new row of the queue, of the present section; NULL: no memory. */
 struct entry *separate_queue_entry(struct separate *s);
 /* Queues the report of a section with its rows, which are the last of the queue, and the
  * sources in s->source. */
@@ -182,9 +189,6 @@ enum separate_status separate_give_event(
 	struct separate *s, long long from, long long to, const struct foreign *event);
 /* Allocates count samples of s->source, all 0. */
 enum separate_status separate_reserve_sources(struct separate *s, size_t count);
-/* Reports a section at once. */
-void separate_report_section(struct separate *s, long long from, long long to,
-	int sources, double chi2, enum separate_verdict verdict, const double *source);
 /* Queues one row for [from, to), whose pulses are not resolved: rate and amplitude by
  * Campbell's theorem. */
 enum separate_status separate_dense_section(

@@ -9,8 +9,11 @@
  * Weak pulses beside larger ones may be errors of the shape of these.  They are if there
  * are more of them than particles as small come to lie beside larger ones at random.
  *
- * Rows are doubted, the most likely ones first, until at most seven in a thousand of
- * the others is expected to be none, or a pair whose diameter is out by more than a
+ * A pulse fitted to what others leave has any delay in the range searched.  How many such
+ * there are follows from the delays of all pulses fitted with others.
+ *
+ * Rows are doubted, the most likely ones first, until at most five in a thousand of the
+ * others are expected to be wrong: none, or a pair whose diameter is out by more than a
  * tenth.
  */
 #ifndef SIGNAL_TOGETHER_H
@@ -24,9 +27,13 @@ struct arrival {
 	double time; /* in durations, ascending within a group */
 	double amplitude;
 	double odds[JOINT_SHARES]; /* for one other arrival per duration */
-	/* Probabilities of being a pair, and an error of the shape of a larger pulse; set
-	 * by together_judge(). */
-	double pair, shape;
+	/* Of a pulse fitted with others: its delay less that of the flow, over half of
+	 * the range searched, and the variance of this; 0: not known.  flow_var: least
+	 * variance of such delays in the flow. */
+	double off, off_var, flow_var;
+	/* Probabilities of being a pair, an error of the shape of a larger pulse, and not
+	 * of the flow; set by together_judge(). */
+	double pair, shape, astray;
 	int weak;    /* beside a larger one; set by together_judge() */
 	int doubted; /* already, and then its size does not count; or by together_judge()
 		      */

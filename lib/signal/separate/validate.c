@@ -1,5 +1,6 @@
 /* validate.c - see validate.h */
 #include "signal/separate/validate.h"
+#include "num/sigmas.h"
 #include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
@@ -19,9 +20,6 @@ static const double PARTS = 2;
 /* Twice the logarithm of the likelihood ratio above which there are parts of objects at
  * all: 3.5 deviations. */
 static const double CERTAIN = 12;
-
-/* Deviations beyond which a group is not one of particles. */
-static const double BEYOND = 5;
 
 struct delay {
 	double value, var;
@@ -48,9 +46,7 @@ struct validation {
 
 struct validation *validation_new(void)
 {
-	struct validation *v = calloc(1, sizeof *v);
-
-	return v;
+	return calloc(1, sizeof(struct validation));
 }
 
 void validation_free(struct validation *v)
@@ -171,7 +167,7 @@ static void learn_flow(struct validation *v)
 		const struct delay *d = &v->delay[i];
 		double off = d->value - v->mean;
 
-		if ((!d->alone && alone >= FEW) || fabs(off) > BEYOND * scale)
+		if ((!d->alone && alone >= FEW) || fabs(off) > SIGMAS_NEVER * scale)
 			continue;
 		sum += off * off - d->var;
 		count++;
@@ -179,8 +175,7 @@ static void learn_flow(struct validation *v)
 	v->known = count;
 	v->local = local_variance(v, alone >= FEW);
 	v->var = fmax(sum / count, 0);
-	/* Three deviations of this estimate. */
-	v->margin = fmax(v->var, scale * scale) * (1 + 3 * sqrt(2 / count));
+	v->margin = fmax(v->var, scale * scale) * (1 + SIGMAS_SELDOM * sqrt(2 / count));
 }
 
 /* 1 if the velocities of a group are not those of the flow, by the cube root of
@@ -194,16 +189,23 @@ static int is_impossible(const struct validation *v, const struct evidence *e, s
 	for (size_t i = 0; i < m; i++)
 		if (e[i].var > 0)
 			sum += pow(e[i].delay - v->mean, 2) / (v->margin + 2 * e[i].var);
-	return cbrt(sum / (double)m) > 1 - spread + BEYOND * sqrt(spread);
+	return cbrt(sum / (double)m) > 1 - spread + SIGMAS_NEVER * sqrt(spread);
 }
 
-/* 1 if the delay lies in the outer tenth of the range on either side, and its error is
- * below a tenth of the range.  The range is learned to be twice as wide as that of the
- * particles. */
+/* Share of the range of delays, half of it on either side, that is its edge. */
+static const double EDGE = 0.2;
+
+/* 1 if the delay lies at the edge, and its error is smaller than that.  The range is
+ * learned to be twice as wide as that of the particles. */
 static int is_at_edge(const struct validation *v, const struct evidence *e)
 {
-	return v->half > 0 && e->var > 0 && sqrt(e->var) < 0.2 * v->half &&
-	       fabs(e->delay - v->middle) > 0.8 * v->half;
+	return v->half > 0 && e->var > 0 && sqrt(e->var) < EDGE * v->half &&
+	       fabs(e->delay - v->middle) > (1 - EDGE) * v->half;
+}
+
+double validation_half(const struct validation *v)
+{
+	return isfinite(v->var) ? v->half : 0;
 }
 
 /* --- parts of one object */

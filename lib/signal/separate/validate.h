@@ -60,6 +60,9 @@ void validation_flow(const struct validation *v, struct flow *flow);
 /* Range of the delays that are searched, learned to be wider than that of particles. */
 void validation_range(struct validation *v, double least, double most);
 
+/* Half of this range; 0: it, or the flow, is not known. */
+double validation_half(const struct validation *v);
+
 /* Adds n rows, in order and with undivided groups, and judges them. */
 void validation_judge(struct validation *v, struct evidence *e, size_t n);
 

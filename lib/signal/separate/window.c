@@ -57,7 +57,7 @@ enum separate_status separate_fit_window(
 	while (a->done < a->m && a->pulse[a->done].t < a->boundary)
 		a->done++;
 	goodness_of_fit(s->joint, &s->scene, n, a->pulse, a->m, a->done, a->boundary,
-		s->cal.chi2 < 4 || s->cal.dense, &a->r, &a->goodness);
+		s->cal.chi2 < CALIBRATE_TOLERABLE || s->cal.dense, &a->r, &a->goodness);
 	return SEPARATE_OK;
 }
 

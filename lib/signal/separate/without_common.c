@@ -9,6 +9,7 @@
  */
 #include "num/dot.h"
 #include "num/room.h"
+#include "num/sigmas.h"
 #include "signal/noise/common.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
@@ -70,9 +71,6 @@ long long separate_common_reach(const struct separate *s)
 	return s->common.correlation == 0 ? 0 : s->cal.shift + 2 * pulse_length(s);
 }
 
-/* Standard deviations of the matched filter that noise alone does not exceed. */
-static const double QUIET = 4;
-
 /* 1 if the matched filter of the samples tells of no pulse; work holds one of them. */
 static int is_quiet(const struct separate *s, const double *x, size_t n, double *work)
 {
@@ -83,7 +81,7 @@ static int is_quiet(const struct separate *s, const double *x, size_t n, double 
 
 	shape_sample(s->cal.shape, 0, T, first, len, work, NULL, NULL);
 	for (long at = first; at + (long)len + first <= (long)n - first; at += stride)
-		if (fabs(dot_within(work, len, x, n, at)) * norm > QUIET)
+		if (fabs(dot_within(work, len, x, n, at)) * norm > SIGMAS_RARELY)
 			return 0;
 	return 1;
 }
