@@ -86,6 +86,10 @@ like 'surfaces outside the range of the fit are reported' "$(cat said)" '6 surfa
 bemcontact --pressure 50MPa --young 210GPa --hardness 1GPa few.nrrd >flowed.nrrd
 debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0 --stats stats flowed.nrrd >far.tsv 2>said
 is 'contacts that flow are not estimated after a fit to elastic ones' "$(column surfaces_estimated stats) $(column surfaces_outside stats)" '0 6'
+roughgen --points 32 --length 0.25mm --sq 1um --corr 10umx30um --crown auto --seed 5 --count 20 |
+	bemcontact --pressure 50MPa --young 210GPa >lay.nrrd
+debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0 --stats stats lay.nrrd >far.tsv 2>said
+is 'few contacts with a lay are estimated after a fit to isotropic ones' "$(($(column surfaces_estimated stats) <= 4))" 1
 bemcontact --pressure 50MPa --young 210GPa --hardness 1TPa few.nrrd >elastic.nrrd
 for h in few elastic; do
 	debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0 --stats stats $h.nrrd >/dev/null 2>said

@@ -11,6 +11,8 @@
  * 90 %, which are calibrated for any choice made here.  A hundred surfaces leave 40
  * scores, the fewest for which intervals of 95 % have a score beyond either end. */
 enum { FEATURES = FOOTPRINT_FEATURES, TERMS = SURROGATE_TERMS, PASSES = 3, LEAST = 100 };
+const char *const surrogate_property_names[] = { "flow", "lay", "oblique" };
+
 enum part { FIT, CALIBRATE, CHECK };
 static const double SURE = 0.9; /* confidence level of the report */
 
@@ -148,13 +150,15 @@ static void find_deviations(const struct surrogate_sample *sample, const char *p
 static void find_range(const struct surrogate_sample *sample, const char *part, size_t n,
 	struct surrogate *s)
 {
-	s->flow[0] = INFINITY;
-	s->flow[1] = -INFINITY;
-	for (size_t i = 0; i < n; i++) {
-		if (part[i] != FIT)
-			continue;
-		s->flow[0] = fmin(s->flow[0], sample[i].flow);
-		s->flow[1] = fmax(s->flow[1], sample[i].flow);
+	for (int k = 0; k < SURROGATE_PROPERTIES; k++) {
+		s->least[k] = INFINITY;
+		s->most[k] = -INFINITY;
+		for (size_t i = 0; i < n; i++) {
+			if (part[i] != FIT)
+				continue;
+			s->least[k] = fmin(s->least[k], sample[i].contact[k]);
+			s->most[k] = fmax(s->most[k], sample[i].contact[k]);
+		}
 	}
 	for (int k = 0; k < FEATURES; k++) {
 		double count = 0, mean = 0, square = 0;
@@ -245,7 +249,7 @@ static double total_deviation(const struct surrogate *s, double independent, dou
 	return hypot(independent / total, s->shared);
 }
 
-double surrogate_flow(const double *pressure, size_t cells, double hardness)
+static double flow_of(const double *pressure, size_t cells, double hardness)
 {
 	double loaded = 0, flows = 0;
 
@@ -256,6 +260,28 @@ double surrogate_flow(const double *pressure, size_t cells, double hardness)
 	return loaded > 0 ? flows / loaded : 0;
 }
 
+void surrogate_contact(const struct stress_par *par, const double *pressure,
+	double hardness, double property[SURROGATE_PROPERTIES])
+{
+	size_t nx = (size_t)par->nx, ny = (size_t)par->ny;
+	double xx = 0, xy = 0, yy = 0, sum;
+
+	for (size_t y = 0; y + 1 < ny; y++)
+		for (size_t i = y * nx; i + 1 < (y + 1) * nx; i++) {
+			const double *p = pressure + i, *q = p + nx;
+			double gx = (p[1] + q[1] - p[0] - q[0]) / par->dx;
+			double gy = (q[0] + q[1] - p[0] - p[1]) / par->dy;
+
+			xx += gx * gx;
+			xy += gx * gy;
+			yy += gy * gy;
+		}
+	sum = xx + yy > 0 ? xx + yy : 1;
+	property[SURROGATE_FLOW] = flow_of(pressure, nx * ny, hardness);
+	property[SURROGATE_LAY] = (par->axis ? yy - xx : xx - yy) / sum;
+	property[SURROGATE_OBLIQUE] = 2 * fabs(xy) / sum;
+}
+
 static int is_between(double x, double low, double high)
 {
 	double rounding = 1e-9 * (1 + fabs(x));
@@ -264,14 +290,15 @@ static int is_between(double x, double low, double high)
 }
 
 int surrogate_guess(const struct surrogate *s, const struct footprint *footprint,
-	size_t count, double flow, double level, struct surrogate_guess *guess,
-	struct surrogate_guess *total)
+	size_t count, const double contact[SURROGATE_PROPERTIES], double level,
+	struct surrogate_guess *guess, struct surrogate_guess *total)
 {
 	double low, high, total_low, total_high, deviation;
 
 	*total = (struct surrogate_guess){ 0 };
-	if (count > 0 && !is_between(flow, s->flow[0], s->flow[1]))
-		return 0;
+	for (int k = 0; k < SURROGATE_PROPERTIES && count > 0; k++)
+		if (!is_between(contact[k], s->least[k], s->most[k]))
+			return 0;
 	for (size_t i = 0; i < count; i++)
 		for (int k = 0; k < FEATURES; k++)
 			if (!is_between(footprint[i].feature[k], s->low[k], s->high[k]))

@@ -5,12 +5,14 @@
  * (footprint.h), fitted by least squares.  Intervals are conformal: the stated shares of
  * particles and surfaces not used in the fit lie within them for any distribution of the
  * errors, provided that scenes are drawn like those of the fit.  There is no estimate
- * outside the range of the features of the fit, and of the share of a contact that flows:
- * a limited pressure is more even than its mean and its maximum tell.
+ * outside the range of the features of the fit, nor outside that of the whole contact's
+ * flow, since a limited pressure is more even than its mean and its maximum tell, and
+ *lay, since material fails less deep below narrow contacts.
  *
  *	struct surrogate s;
  *	if (surrogate_fit(sample, n, &s, &report) == SURROGATE_OK)
- *		inside = surrogate_guess(&s, footprint, count, flow, 0.9, guess, &total);
+ *		inside = surrogate_guess(&s, footprint, count, contact, 0.9, guess,
+ *&total);
  */
 #ifndef DEBRIS_SURROGATE_H
 #define DEBRIS_SURROGATE_H
@@ -24,13 +26,24 @@ enum {
 	SURROGATE_SCORES = 512 /* at most of each kind; of more, as many quantiles */
 };
 
+/* Properties of a contact: the share of its loaded cells that are at the hardness, and
+ * the traceless part of its mean product of pressure gradients over their mean square:
+ * along (1) or across (-1) the direction of sliding, and at 45 degrees to it (1). */
+enum surrogate_property {
+	SURROGATE_FLOW,
+	SURROGATE_LAY,
+	SURROGATE_OBLIQUE,
+	SURROGATE_PROPERTIES
+};
+extern const char *const surrogate_property_names[SURROGATE_PROPERTIES];
+
 struct surrogate {
 	double low[FOOTPRINT_FEATURES], high[FOOTPRINT_FEATURES]; /* range of the fit */
 	double mean[FOOTPRINT_FEATURES], scale[FOOTPRINT_FEATURES];
 	double coefficient[SURROGATE_TERMS];
 	double deviation[SURROGATE_CLASSES]; /* of the logarithm */
 	double factor[SURROGATE_CLASSES];    /* mean over median of a volume */
-	double flow[2];                      /* range of the fit */
+	double least[SURROGATE_PROPERTIES], most[SURROGATE_PROPERTIES]; /* of the fit */
 	double shared; /* deviation that all particles of a surface have in common */
 	/* Ascending: ln(true / estimated volume) / deviation, of the particles and
 	 * surfaces held back for it. */
@@ -42,8 +55,8 @@ struct surrogate {
 struct surrogate_sample {
 	long surface; /* number; those of one stand together */
 	struct footprint footprint;
-	double volume; /* m3 */
-	double flow;   /* of the surface */
+	double volume;                        /* m3 */
+	double contact[SURROGATE_PROPERTIES]; /* of the surface */
 };
 
 /* Of the surfaces that neither the fit nor its intervals have seen. */
@@ -73,14 +86,15 @@ enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_
 /* The highest level for which there is a score beyond either end. */
 double surrogate_highest_level(const struct surrogate *s);
 
-/* Share of the loaded cells of a contact that are at the hardness (0: none). */
-double surrogate_flow(const double *pressure, size_t cells, double hardness);
+/* Properties of a contact; hardness 0: none. */
+void surrogate_contact(const struct stress_par *par, const double *pressure,
+	double hardness, double property[SURROGATE_PROPERTIES]);
 
 /* Volumes of the particles of a surface and of all of them, with intervals of this level
  * (equal tails).  0 where a footprint lies outside the range of the fit, or the level
  * is above the highest: nothing is said then. */
 int surrogate_guess(const struct surrogate *s, const struct footprint *footprint,
-	size_t count, double flow, double level, struct surrogate_guess *guess,
-	struct surrogate_guess *total);
+	size_t count, const double contact[SURROGATE_PROPERTIES], double level,
+	struct surrogate_guess *guess, struct surrogate_guess *total);
 
 #endif

@@ -77,7 +77,10 @@ void surrogate_write(
 	}
 	put_numbered(t, "deviation", s->deviation, SURROGATE_CLASSES);
 	put_numbered(t, "factor", s->factor, SURROGATE_CLASSES);
-	put_numbered(t, "flow", s->flow, 2);
+	for (int k = 0; k < SURROGATE_PROPERTIES; k++) {
+		put(t, "least", surrogate_property_names[k], "1", s->least[k]);
+		put(t, "most", surrogate_property_names[k], "1", s->most[k]);
+	}
 	put_numbered(t, "shared", &s->shared, 1);
 	put_numbered(t, "particle", s->particle, s->particles);
 	put_numbered(t, "total", s->total, s->totals);
@@ -123,8 +126,10 @@ static double *place_of(const struct table_in *t, struct surrogate *s, const cha
 		return s->deviation + number - 1;
 	if (!strcmp(kind, "factor") && number >= 1 && number <= SURROGATE_CLASSES)
 		return s->factor + number - 1;
-	if (!strcmp(kind, "flow") && number >= 1 && number <= 2)
-		return s->flow + number - 1;
+	for (int k = 0; k < SURROGATE_PROPERTIES; k++)
+		if (!strcmp(first, surrogate_property_names[k]) &&
+			(!strcmp(kind, "least") || !strcmp(kind, "most")))
+			return (kind[0] == 'l' ? s->least : s->most) + k;
 	if (!strcmp(kind, "shared") && number == 1)
 		return &s->shared;
 	if (!strcmp(kind, "particle") && s->particles < SURROGATE_SCORES)
@@ -165,8 +170,8 @@ void surrogate_read(const char *path, struct surrogate *s)
 		free(b);
 		rows++;
 	}
-	if (rows != 4L * FEATURES + SURROGATE_TERMS + 2L * SURROGATE_CLASSES + 3 +
-			    s->particles + s->totals)
+	if (rows != 4L * FEATURES + SURROGATE_TERMS + 2L * SURROGATE_CLASSES +
+			    2L * SURROGATE_PROPERTIES + 1 + s->particles + s->totals)
 		die(EXIT_RUN, "%s: %ld rows: no whole surrogate of debrisfit",
 			table_name(t), rows);
 	check_scores(table_name(t), "particles", s->particle, s->particles);

@@ -61,7 +61,7 @@ static struct debris_par par_of(const struct record *r, long record)
 
 static void add_samples(const struct fields_in *in, long surface, int nx,
 	const struct debris_step *step, const struct footprint *list, size_t n,
-	double flow)
+	const double contact[SURROGATE_PROPERTIES])
 {
 	if (n != step->count)
 		die(EXIT_RUN, "%s: record %ld: %zu footprints of %zu particles",
@@ -73,9 +73,12 @@ static void add_samples(const struct fields_in *in, long surface, int nx,
 			const struct particle *p = &step->particle[k];
 
 			if ((size_t)p->first[1] * (size_t)nx + (size_t)p->first[0] ==
-				list[i].first)
-				sample[count++] = (struct surrogate_sample){ surface,
-					list[i], p->volume, flow };
+				list[i].first) {
+				sample[count] = (struct surrogate_sample){ surface,
+					list[i], p->volume, { 0 } };
+				memcpy(sample[count++].contact, contact,
+					SURROGATE_PROPERTIES * sizeof *contact);
+			}
 		}
 }
 
@@ -89,6 +92,7 @@ static void take_record(const struct fields_in *in, const struct record *r, long
 	const struct footprint *list;
 	struct debris_step step;
 	enum debris_status status;
+	double contact[SURROGATE_PROPERTIES];
 	size_t n;
 
 	if (!f)
@@ -104,9 +108,9 @@ static void take_record(const struct fields_in *in, const struct record *r, long
 	if (footprints_find(f, debris_stress(d), pressure, par.yield, &list, &n) !=
 		NUM_OK)
 		die(EXIT_RUN, "out of memory");
-	add_samples(in, surface, r->nx, &step, list, n,
-		surrogate_flow(pressure, (size_t)r->nx * (size_t)r->ny,
-			record_get_number(r, "hardness")));
+	surrogate_contact(
+		&par.stress, pressure, record_get_number(r, "hardness"), contact);
+	add_samples(in, surface, r->nx, &step, list, n, contact);
 	footprints_free(f);
 	debris_free(d);
 	free(height);

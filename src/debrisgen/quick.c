@@ -29,7 +29,7 @@ static const double UNLIKELY = 0.01;
 struct quick {
 	struct surrogate surrogate;
 	struct footprints *footprints;
-	size_t cells;
+	struct stress_par par;
 	struct surrogate_guess *guess;
 	struct particle *particle;
 	size_t room;
@@ -71,7 +71,7 @@ void quick_prepare(struct quick *q, const struct stress_par *par)
 {
 	footprints_free(q->footprints);
 	q->footprints = footprints_new(par);
-	q->cells = (size_t)par->nx * (size_t)par->ny;
+	q->par = *par;
 	if (!q->footprints)
 		die(EXIT_RUN, "out of memory");
 }
@@ -117,6 +117,7 @@ int quick_step(struct quick *q, struct stress *stress, const double *pressure,
 	double yield, double hardness, long realisation, struct debris_step *step)
 {
 	const struct footprint *list;
+	double contact[SURROGATE_PROPERTIES];
 	size_t n;
 
 	if (footprints_find(q->footprints, stress, pressure, yield, &list, &n) != NUM_OK)
@@ -128,8 +129,8 @@ int quick_step(struct quick *q, struct stress *stress, const double *pressure,
 	}
 	q->volumes = (struct quick_volumes){ .exact = n == 0, .particle = q->guess };
 	q->audited = 0;
-	if (!surrogate_guess(&q->surrogate, list, n,
-		    surrogate_flow(pressure, q->cells, hardness), level, q->guess,
+	surrogate_contact(&q->par, pressure, hardness, contact);
+	if (!surrogate_guess(&q->surrogate, list, n, contact, level, q->guess,
 		    &q->volumes.total)) {
 		q->outside++;
 		return 0;

@@ -54,6 +54,7 @@ static double coverage(const struct surrogate *s, double own, double shared)
 	struct surrogate_sample *sample = malloc(MANY * sizeof *sample);
 	struct footprint *list = malloc(MANY * sizeof *list);
 	struct surrogate_guess *guess = malloc(MANY * sizeof *guess), total;
+	const double contact[SURROGATE_PROPERTIES] = { 0 };
 	double held = 0, tried = 0;
 
 	for (long k = 0; k < 200; k++) {
@@ -66,7 +67,7 @@ static double coverage(const struct surrogate *s, double own, double shared)
 				list[i].feature[j] = 0.02 + 0.96 * list[i].feature[j];
 			volume += sample[i].volume;
 		}
-		if (!surrogate_guess(s, list, MANY, 0, 0.9, guess, &total))
+		if (!surrogate_guess(s, list, MANY, contact, 0.9, guess, &total))
 			continue;
 		tried++;
 		held += total.low <= volume && volume <= total.high;
@@ -100,8 +101,35 @@ static void test_errors(double own, double shared)
 	free(sample);
 }
 
+/* Pressures that rise linearly by (x, y) a cell from 1 on. */
+static void test_contact(int axis, double x, double y, double lay, double oblique)
+{
+	enum { NX = 7, NY = 5 };
+	struct stress_par par = { .nx = NX, .ny = NY, .dx = 2, .dy = 3, .axis = axis };
+	double p[NX * NY], property[SURROGATE_PROPERTIES];
+
+	for (int i = 0; i < NX * NY; i++)
+		p[i] = 1 + par.dx * x * (i % NX) + par.dy * y * (i / NX);
+	p[0] = 0;
+	surrogate_contact(&par, p, 1e-3, property);
+	ok(property[SURROGATE_FLOW] == 1, "all loaded cells are at the hardness");
+	p[0] = 1;
+	surrogate_contact(&par, p, 0, property);
+	ok(property[SURROGATE_FLOW] == 0, "without a hardness none is");
+	ok(fabs(property[SURROGATE_LAY] - lay) < 1e-12 &&
+			fabs(property[SURROGATE_OBLIQUE] - oblique) < 1e-12,
+		"a slope of %g, %g has the lay %g (%g), at 45 degrees %g (%g), where sliding is along %c",
+		x, y, lay, property[SURROGATE_LAY], oblique, property[SURROGATE_OBLIQUE],
+		"xy"[axis]);
+}
+
 int main(void)
 {
+	test_contact(0, 1, 0, 1, 0);
+	test_contact(1, 1, 0, -1, 0);
+	test_contact(0, 0, 2, -1, 0);
+	test_contact(0, 1, -1, 0, 1);
+	test_contact(1, 1, 2, 0.6, 0.8);
 	test_errors(0.2, 0.1);
 	test_errors(0.3, 0.2);
 	return tap_done();
