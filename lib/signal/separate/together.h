@@ -12,7 +12,7 @@
  * A pulse fitted to what others leave has any delay in the range searched.  How many such
  * there are follows from the delays of all pulses fitted with others.
  *
- * Rows are doubted, the most likely ones first, until at most five in a thousand of the
+ * Rows are doubted, the most likely ones first, until at most six in a thousand of the
  * others are expected to be wrong: none, or a pair whose diameter is out by more than a
  * tenth.
  */
