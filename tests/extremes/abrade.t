@@ -28,7 +28,7 @@ scene "hardness 1000 TPa against 1 Pa" "only the soft body carries the load" 1 1
 	"$(one load '10e-6	1' --gap 9um --hardness 1e15Pa,1Pa --friction 0)" "$(awk -v p=$pi 'BEGIN { printf "%.12g", p * 9e-12 }')")"
 scene "a gap of 1e-7 diameters" "at most section times hardness: pi d^2 / 4 H" 1 1e-6 "$(ratio \
 	"$(one load '10e-6	1' --gap 1pm --hardness 2GPa,6GPa --friction 0)" "$(awk -v p=$pi 'BEGIN { printf "%.12g", p * 25e-12 * 2e9 }')")"
-scene "a particle of 1 m in a gap of 1 pm" "marked as buried" 3 0 "$(one mode '1	9' --gap 1pm --hardness 2GPa --friction 0 >mode
+scene "a particle of 0.1 m in a gap of 1 pm" "marked as buried" 3 0 "$(one mode '0.1	9' --gap 1pm --hardness 2GPa --friction 0 >mode
 	abrade --gap 1pm --hardness 2GPa --friction 0 one.tsv >out 2>err; echo $?)"
 is "a gap larger than all particles | nothing touches | free 0 | none" \
 	"$(one mode '10e-6	1' --gap 1m --hardness 2GPa --friction 0) $(one load '10e-6	1' --gap 1m --hardness 2GPa --friction 0)" "free 0"
@@ -61,6 +61,8 @@ scene "a groove 1000 times around a surface" "volume kept" 1 1e-9 "$(
 refused "no hardness at all" 2 'want at least 1Pa' abrade --gap 1um --hardness 0 --friction 0 p.tsv
 printf 'diameter\nnan\n' >nan.tsv
 refused "a diameter that is missing" 1 'diameter is nan' abrade --gap 1um --hardness 2GPa --friction 0 nan.tsv
+printf 'diameter\n10\n' >large.tsv
+refused "a diameter of 10 m: a number without its unit" 1 'want metres' abrade --gap 1um --hardness 2GPa --friction 0 large.tsv
 printf 'diameter\n-1e-6\n' >minus.tsv
 refused "a negative diameter" 1 'want a positive number' abrade --gap 1um --hardness 2GPa --friction 0 minus.tsv
 done_testing
