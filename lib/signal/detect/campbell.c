@@ -1,8 +1,11 @@
 /* campbell.c - see campbell.h */
 #include "signal/detect/campbell.h"
+#include "num/dot.h"
 #include "num/periodogram.h"
+#include "num/status.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Stretches of the jackknife, at most and at least, and the durations that each lasts
  * where there are more than the least: dependent ones would make the errors too small. */
@@ -59,63 +62,69 @@ static void moments(const struct sums *s, double unit2, double unit4, double gai
 	}
 }
 
-/* Standard error of the fourth cumulant, over the square of the second, of n samples of
- * shot noise with share pulses of one height per duration to the power of -1 (0: Gaussian
- * noise).  With k(a, b) the joint cumulant of a and b times two samples,
+/* Variance of the fourth cumulant, over the fourth power of the second, of a duration of
+ * shot noise with 1 / x pulses of one height per duration (x = 0: Gaussian noise): that
+ *of n samples is n / duration times smaller.  Fills the coefficients of this polynomial
+ *of x. With k(a, b) the joint cumulant of a and b times two samples, it is
  *
  *	sum of k(4, 4) + 16 k(3, 3) k(1, 1) + 18 k(2, 2)^2 + 16 k(1, 3) k(3, 1)
  *		+ 72 k(2, 2) k(1, 1)^2 + 24 k(1, 1)^4
  *
- * over all lags, and over n, is its variance (Fisher, Proc. London Math. Soc. 30, 1929,
- * for independent samples; terms of odd order vanish or compensate).  The jackknife does
- * not see it where it saw few large pulses: an estimate that is too small would have too
- * small an error. */
-static double fourth_error(
-	const struct shape *shape, double duration, size_t n, double share)
+ * over all lags (Fisher, Proc. London Math. Soc. 30, 1929, for independent samples; terms
+ * of odd order vanish or compensate). */
+static enum num_status fourth_variance(const struct shape *shape, double coefficient[4])
 {
 	enum { STEPS = 32 };
 	int half = (int)ceil(shape_reach(shape) * STEPS), points = 2 * half + 1;
-	double *p = calloc((size_t)points, sizeof *p), energy = 0, sum = 0;
+	double *p = calloc((size_t)points, sizeof *p), scale;
 
+	memset(coefficient, 0, 4 * sizeof *coefficient);
 	if (!p)
-		return INFINITY;
+		return NUM_MEMORY;
 	shape_sample(shape, half, STEPS, 0, (size_t)points, p, NULL, NULL);
+	scale = 1 / sqrt(dot(p, p, (size_t)points) / STEPS);
 	for (int i = 0; i < points; i++)
-		energy += p[i] * p[i] / STEPS;
+		p[i] *= scale;
 	for (int lag = 0; lag < points; lag++) {
 		double k11 = 0, k22 = 0, k33 = 0, k44 = 0, k13 = 0, k31 = 0;
+		double weight = (lag ? 2. : 1.) / STEPS;
 
 		for (int i = lag; i < points; i++) {
-			double x = p[i] / sqrt(energy), y = p[i - lag] / sqrt(energy);
+			double x = p[i], y = p[i - lag], xy = x * y / STEPS;
 
-			k11 += x * y / STEPS;
-			k22 += x * x * y * y * share / STEPS;
-			k13 += x * y * y * y * share / STEPS;
-			k31 += x * x * x * y * share / STEPS;
-			k33 += pow(x * y, 3) * share * share / STEPS;
-			k44 += pow(x * y, 4) * pow(share, 3) / STEPS;
+			k11 += xy;
+			k22 += xy * x * y;
+			k13 += xy * y * y;
+			k31 += xy * x * x;
+			k33 += xy * x * y * x * y;
+			k44 += xy * x * y * x * y * x * y;
 		}
-		sum += (lag ? 2 : 1) *
-		       (k44 + 16 * k33 * k11 + 18 * k22 * k22 + 16 * k13 * k31 +
-			       72 * k22 * k11 * k11 + 24 * pow(k11, 4)) /
-		       STEPS;
+		coefficient[0] += weight * 24 * k11 * k11 * k11 * k11;
+		coefficient[1] += weight * 72 * k22 * k11 * k11;
+		coefficient[2] +=
+			weight * (16 * k33 * k11 + 18 * k22 * k22 + 16 * k13 * k31);
+		coefficient[3] += weight * k44;
 	}
 	free(p);
-	return sqrt(sum * duration / (double)n);
+	return NUM_OK;
 }
 
-/* The same of this estimate, in its units.  It is that at the estimate and its own error:
- * the fewer large pulses happened to be seen, the smaller is the estimate. */
+/* Least standard error of the fourth cumulant of this estimate, in its units: what shot
+ * noise gives it at the estimate and this error, since the fewer large pulses happened to
+ * be seen, the smaller is the estimate.  The jackknife does not see that. */
 static double least_error(const struct shape *shape, double duration, size_t n,
 	double unit2, double unit4, const struct campbell *c)
 {
 	double square = fmax(c->square, 0), scale = pow(square * unit2, 2) / unit4, e = 0;
+	double k[4];
 
+	if (fourth_variance(shape, k) != NUM_OK)
+		return INFINITY;
 	for (int step = 0; step < 2 && square > 0; step++) {
-		double fourth = fmax(c->fourth, 0) + e;
+		double x = (fmax(c->fourth, 0) + e) / (square * square * duration);
+		double var = k[0] + x * (k[1] + x * (k[2] + x * k[3]));
 
-		e = scale * fourth_error(shape, duration, n,
-				    fourth / (square * square * duration));
+		e = scale * sqrt(var * duration / (double)n);
 	}
 	return e;
 }

@@ -237,7 +237,7 @@ static enum separate_status calibrate_now(struct separate *s)
 		return SEPARATE_OK;
 	}
 	status = SEPARATE_OK;
-	/* Each ratio has its part of the work that is left for those not yet tried. */
+	/* The ratios are quartered down to 1; each has an equal part of the work left. */
 	while (ratio > 1 && status == SEPARATE_OK && !s->calibrated) {
 		double duration, tries = 1 + log2(ratio) / 2;
 

@@ -1,6 +1,7 @@
 /* together.c - see together.h */
 #include "signal/separate/together.h"
 #include "num/select.h"
+#include "num/sigmas.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -185,10 +186,6 @@ static double astray_probability(const struct together *t, double off, double of
 	return odds / (1 + odds);
 }
 
-/* Twice the logarithm of the likelihood ratio above which there are delays that are not
- * of the flow at all: 3.5 deviations. */
-static const double CERTAIN = 12;
-
 /* The most likely share of delays that are not of the flow, among those of pulses fitted
  * with others, and the variance of the others, by expectation and maximisation. */
 static void learn_astray(struct together *t)
@@ -220,7 +217,7 @@ static void learn_astray(struct together *t)
 			gain += 2 * log(1 - t->astray +
 					    t->astray * astray_odds(t, t->off[i],
 								t->off_var[i]));
-	if (gain < CERTAIN)
+	if (gain < LIKELIHOOD_CERTAIN)
 		t->astray = 0;
 }
 

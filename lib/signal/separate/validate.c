@@ -17,10 +17,6 @@ enum {
  * them. */
 static const double PARTS = 2;
 
-/* Twice the logarithm of the likelihood ratio above which there are parts of objects at
- * all: 3.5 deviations. */
-static const double CERTAIN = 12;
-
 struct delay {
 	double value, var;
 	int alone;
@@ -249,7 +245,7 @@ static void learn_parts(struct validation *v)
 	}
 	for (size_t i = 0; i < n; i++)
 		gain += 2 * log(1 - share + share * odds[i]);
-	if (gain > CERTAIN)
+	if (gain > LIKELIHOOD_CERTAIN)
 		v->parts = share;
 }
 
