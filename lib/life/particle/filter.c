@@ -19,7 +19,7 @@ struct step {
 	size_t count;       /* states that still have descendants */
 	uint32_t *ancestor; /* of each state of the next step, if that was resampled */
 	int resampled;
-	size_t room, ancestors; /* lengths of the two */
+	size_t room; /* length of x */
 };
 
 struct filter {
@@ -29,8 +29,7 @@ struct filter {
 	int newest, filled;
 	double *weight, *next; /* next: those after */
 	uint32_t *kept;
-	void *spare[2]; /* arrays of a step, see moved() */
-	double sum;     /* of weight */
+	double sum; /* of weight */
 	double mean, variance, ess;
 	unsigned long resamplings;
 };
@@ -67,8 +66,6 @@ void filter_free(struct filter *f)
 	free(f->weight);
 	free(f->next);
 	free(f->kept);
-	free(f->spare[0]);
-	free(f->spare[1]);
 	free(f);
 }
 
@@ -77,47 +74,18 @@ static struct step *step_at(const struct filter *f, int lag)
 	return &f->ring[(f->newest - lag + f->par.depth) % f->par.depth];
 }
 
-/* Copies an array to one of another length; NULL: no memory.  Only the newest step has
- * arrays of the full length n: the spare one is for the next step. */
-static void *moved(
-	void *array, size_t width, size_t count, size_t before, size_t n, void **spare)
+/* Resizes the arrays of a step to count states and after ancestors; one more, since 0
+ * bytes may be NULL. */
+static enum num_status fit_step(struct step *s, size_t count, size_t after)
 {
-	int whole = count == n && *spare;
-	void *new;
+	double *x = realloc(s->x, (count + 1) * sizeof *x);
+	uint32_t *ancestor = realloc(s->ancestor, (after + 1) * sizeof *ancestor);
 
-	if (array && count == before)
-		return array;
-	new = whole ? *spare : malloc(count > 0 ? count * width : 1);
-	if (!new)
-		return NULL;
-	if (whole)
-		*spare = NULL;
-	if (array)
-		memcpy(new, array, (count < before ? count : before) * width);
-	if (before == n && !*spare)
-		*spare = array;
-	else
-		free(array);
-	return new;
-}
-
-/* Resizes the arrays of a step to count states and after ancestors. */
-static enum num_status fit_step(
-	struct filter *f, struct step *s, size_t count, size_t after)
-{
-	size_t n = f->par.particles;
-	double *x = moved(s->x, sizeof *x, count, s->room, n, &f->spare[0]);
-	uint32_t *ancestor = moved(
-		s->ancestor, sizeof *ancestor, after, s->ancestors, n, &f->spare[1]);
-
-	if (x) {
+	if (x)
 		s->x = x;
-		s->room = count;
-	}
-	if (ancestor) {
+	if (ancestor)
 		s->ancestor = ancestor;
-		s->ancestors = after;
-	}
+	s->room = count;
 	return x && ancestor ? NUM_OK : NUM_MEMORY;
 }
 
@@ -142,7 +110,7 @@ void filter_pass(struct filter *f, struct state *s)
 		state_move(s, &step->resampled, sizeof step->resampled);
 		state_move(s, &step->count, sizeof step->count);
 		ancestors = lag < f->filled && step->resampled ? after : 0;
-		if (s->load && fit_step(f, step, step->count, ancestors) != NUM_OK)
+		if (s->load && fit_step(step, step->count, ancestors) != NUM_OK)
 			s->failed = 1;
 		if (s->failed)
 			return;
@@ -168,10 +136,10 @@ static struct step *push_step(struct filter *f)
 	struct step *before = step_at(f, 0), *s = step_at(f, -1);
 	size_t n = f->par.particles;
 
-	if (fit_step(f, s, n, n) != NUM_OK)
+	if (fit_step(s, n, n) != NUM_OK)
 		return NULL;
 	if (f->filled > 0 && !before->resampled && before != s)
-		fit_step(f, before, before->count, 0);
+		fit_step(before, before->count, 0);
 	f->newest = (f->newest + 1) % f->par.depth;
 	if (f->filled < f->par.depth)
 		f->filled++;
@@ -392,8 +360,8 @@ static void prune(struct filter *f)
 		for (size_t i = 0; i < n; i++)
 			s->x[i] = s->x[f->kept[i]];
 		s->count = n;
-		if (n < s->room / 2 || after < s->ancestors / 2)
-			fit_step(f, s, n, s->resampled ? after : 0);
+		if (n < s->room / 2)
+			fit_step(s, n, s->resampled ? after : 0);
 	}
 }
 
