@@ -12,15 +12,19 @@ enum { TREND = 10 };
 struct order {
 	struct order_par par;
 	int chosen;
-	long rows;        /* observations so far */
-	double first;     /* the first of them */
-	int next;         /* place in the rings of the next observation */
-	int ring;         /* its size */
-	double *y, *gap;  /* last observations; gap[k] is that before y[k] */
-	struct grey *fit; /* [largest + 1] of the window that ends at the newest */
-	long *since;   /* row since which an order has been scored without interruption */
+	long rows;    /* observations so far */
+	double first; /* the first of them */
+	int next;     /* place in the ring of the next observation */
+	int ring;     /* its size */
+	struct observation {
+		double y, gap; /* since the one before */
+	} * last;
+	struct candidate {
+		struct grey fit; /* of the window that ends at the newest */
+		long since;      /* row since which it has been scored on end */
+		double total;    /* of squared errors since then */
+	} * of;                  /* [largest + 1] */
 	double *error; /* [window][largest + 1] squared errors of the last rows */
-	double *total; /* [largest + 1] sums over all rows */
 	struct order_counts counts;
 };
 
@@ -33,18 +37,15 @@ struct order *order_new(const struct order_par *par)
 		return NULL;
 	o->par = *par;
 	o->ring = par->largest > 2 * TREND ? par->largest : 2 * TREND;
-	o->y = calloc((size_t)o->ring, sizeof *o->y);
-	o->gap = calloc((size_t)o->ring, sizeof *o->gap);
-	o->fit = calloc(orders, sizeof *o->fit);
-	o->since = calloc(orders, sizeof *o->since);
+	o->last = calloc((size_t)o->ring, sizeof *o->last);
+	o->of = calloc(orders, sizeof *o->of);
 	o->error = calloc(orders * (size_t)par->window, sizeof *o->error);
-	o->total = calloc(orders, sizeof *o->total);
-	if (!o->y || !o->gap || !o->fit || !o->since || !o->error || !o->total) {
+	if (!o->last || !o->of || !o->error) {
 		order_free(o);
 		return NULL;
 	}
 	for (size_t p = 0; p < orders; p++)
-		o->since[p] = LONG_MAX;
+		o->of[p].since = LONG_MAX;
 	return o;
 }
 
@@ -52,12 +53,9 @@ void order_free(struct order *o)
 {
 	if (!o)
 		return;
-	free(o->y);
-	free(o->gap);
-	free(o->fit);
-	free(o->since);
+	free(o->last);
+	free(o->of);
 	free(o->error);
-	free(o->total);
 	free(o);
 }
 
@@ -69,18 +67,15 @@ void order_pass(struct order *o, struct state *s)
 	state_move(s, &o->rows, sizeof o->rows);
 	state_move(s, &o->first, sizeof o->first);
 	state_move(s, &o->next, sizeof o->next);
-	state_move(s, o->y, (size_t)o->ring * sizeof *o->y);
-	state_move(s, o->gap, (size_t)o->ring * sizeof *o->gap);
-	state_move(s, o->fit, orders * sizeof *o->fit);
-	state_move(s, o->since, orders * sizeof *o->since);
+	state_move(s, o->last, (size_t)o->ring * sizeof *o->last);
+	state_move(s, o->of, orders * sizeof *o->of);
 	state_move(s, o->error, orders * (size_t)o->par.window * sizeof *o->error);
-	state_move(s, o->total, orders * sizeof *o->total);
 	state_move(s, &o->counts, sizeof o->counts);
 }
 
-static int lag_place(const struct order *o, int lag)
+static const struct observation *observed(const struct order *o, int lag)
 {
-	return (o->next - 1 - lag + 2 * o->ring) % o->ring;
+	return &o->last[(o->next - 1 - lag + 2 * o->ring) % o->ring];
 }
 
 static int orders_now(const struct order *o)
@@ -95,18 +90,19 @@ static void score(struct order *o, double y, double gap)
 		      (size_t)(o->rows % o->par.window) * ((size_t)o->par.largest + 1);
 
 	for (int p = GREY_ORDER_MIN; p <= orders_now(o); p++) {
+		struct candidate *c = &o->of[p];
 		double e;
 
-		if (o->fit[p].n != p) { /* not fitted: outside the searched range */
-			o->since[p] = o->rows + 1;
-			o->total[p] = 0;
+		if (c->fit.n != p) { /* not fitted: outside the searched range */
+			c->since = o->rows + 1;
+			c->total = 0;
 			continue;
 		}
 		if (o->rows <= p)
-			o->since[p] = o->rows;
-		e = y - grey_forecast(&o->fit[p], gap, gap);
+			c->since = o->rows;
+		e = y - grey_forecast(&c->fit, gap, gap);
 		row[p] = e * e;
-		o->total[p] += row[p];
+		c->total += row[p];
 	}
 }
 
@@ -119,8 +115,8 @@ static int goes_on(const struct order *o)
 	if (o->rows < 2 * TREND)
 		return 0;
 	for (int lag = 0; lag < TREND; lag++) {
-		recent += o->y[lag_place(o, lag)];
-		before += o->y[lag_place(o, lag + TREND)];
+		recent += observed(o, lag)->y;
+		before += observed(o, lag + TREND)->y;
 	}
 	return (recent - before) * (recent - TREND * o->first) > 0;
 }
@@ -131,16 +127,16 @@ static void fit_orders(struct order *o, int low, int high)
 	double gap = 0;
 
 	for (int lag = 0; lag < high; lag++) {
-		grey_add(&g, o->y[lag_place(o, lag)], gap);
-		gap = o->gap[lag_place(o, lag)];
+		grey_add(&g, observed(o, lag)->y, gap);
+		gap = observed(o, lag)->gap;
 		if (g.n < GREY_ORDER_MIN)
 			continue;
-		o->fit[g.n] = g;
+		o->of[g.n].fit = g;
 		if (g.n < low)
-			o->fit[g.n].n = 0;
+			o->of[g.n].fit.n = 0;
 	}
 	for (int p = high + 1; p <= orders_now(o); p++)
-		o->fit[p].n = 0;
+		o->of[p].fit.n = 0;
 }
 
 /* Mean squared error of order p over the last rows. */
@@ -166,14 +162,14 @@ static int rows_compared(const struct order *o)
 
 static double criterion(const struct order *o, int p, int rows)
 {
-	const struct grey *g = &o->fit[p];
+	const struct candidate *c = &o->of[p];
 
 	if (o->par.rule == ORDER_INSAMPLE)
-		return grey_residual(g);
-	if (o->since[p] > o->rows - rows)
+		return grey_residual(&c->fit);
+	if (c->since > o->rows - rows)
 		return INFINITY; /* not scored over all of these rows */
-	if (o->par.rule == ORDER_ALL && o->since[p] <= o->par.largest)
-		return o->total[p] / (double)(o->rows - o->since[p]);
+	if (o->par.rule == ORDER_ALL && c->since <= o->par.largest)
+		return c->total / (double)(o->rows - c->since);
 	return recent_error(o, p, rows);
 }
 
@@ -213,8 +209,7 @@ void order_add(struct order *o, double y, double gap)
 		score(o, y, gap);
 	if (o->rows == 0)
 		o->first = y;
-	o->y[o->next] = y;
-	o->gap[o->next] = gap;
+	o->last[o->next] = (struct observation){ y, gap };
 	o->next = (o->next + 1) % o->ring;
 	o->rows++;
 	high = orders_now(o);
@@ -243,8 +238,8 @@ int order_chosen(const struct order *o)
 double order_forecast(const struct order *o, double h)
 {
 	if (o->chosen)
-		return grey_forecast(&o->fit[o->chosen], h, h);
-	return o->rows > 0 ? o->y[lag_place(o, 0)] : NAN;
+		return grey_forecast(&o->of[o->chosen].fit, h, h);
+	return o->rows > 0 ? observed(o, 0)->y : NAN;
 }
 
 struct order_counts order_counts(const struct order *o)
