@@ -487,6 +487,58 @@ static void test_drift(void)
 	ok(inside >= 16, "of wear that slows down %d, in %.1f", inside, bent);
 }
 
+/* The mean width of the 90 % intervals of Wiener processes of rate 1 / 120 a row, with
+ * this wander in a root of a row and read with noise 0.005, at half of their mean life,
+ * over 3.29 standard deviations of the life if wander and noise were known: after n rows,
+ * n before the end, wander / rate * sqrt(n + n). */
+static double width_of_wander(double wander)
+{
+	enum { PATHS = 40, HALF = 60 };
+	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
+	struct bank_par par = { .threshold = 1,
+		.direction = 1,
+		.families = BANK_LINEAR,
+		.steady = 1 };
+	double life[DRAWS], sum = 0;
+
+	for (uint64_t seed = 1; seed <= PATHS; seed++) {
+		struct draw *d = draw_new(seed, 0, RNG_NOISE);
+		struct bank *b = bank_new(&par);
+		double end = HALF / 120.0, away[HALF + 1] = { 0 };
+
+		/* all paths end where the mean does, so that their widths compare */
+		for (int k = 1; k <= HALF; k++)
+			away[k] = away[k - 1] + wander * draw_normal(d);
+		for (int k = 0; k <= HALF; k++)
+			bank_add(b, k,
+				away[k] + (end - away[HALF]) * k / HALF +
+					0.005 * draw_normal(d));
+		bank_draw(b, chances, HALF, 1, life);
+		median(life, DRAWS); /* sorts */
+		sum += metric_quantile(life, DRAWS, 0.95) -
+		       metric_quantile(life, DRAWS, 0.05);
+		bank_free(b);
+		draw_free(d);
+	}
+	bank_chances_free(chances);
+	return sum / PATHS / (3.29 * wander * 120 * sqrt(2 * HALF));
+}
+
+/* Intervals are wider than right by the drift of the rate that a wander looks like; with
+ * one wander of 3 times the noise, those of the least are 1.97 times as wide. */
+static void test_wander(void)
+{
+	static const double most[] = { 1.6, 1.8, 2, 2 };
+
+	for (int k = 0; k < 4; k++) {
+		double wander = ldexp(0.0025, k), ratio = width_of_wander(wander);
+
+		ok(ratio > 1 && ratio < most[k],
+			"a wander of %g is learnt: widths are %.2f of the right ones",
+			wander, ratio);
+	}
+}
+
 int main(void)
 {
 	test_noise();
@@ -497,6 +549,7 @@ int main(void)
 	test_disturbances();
 	test_noise_favours_no_bend();
 	test_drift();
+	test_wander();
 	test_fleet();
 	test_bursts();
 	test_adaptive();

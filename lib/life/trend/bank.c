@@ -31,7 +31,11 @@ static const double SURPRISE = 5;
  * without a halt and after one and two of 0.02 to 0.5 lives: 2.5: 7.2, 9.5, 12.0; 3.5:
  * 7.0, 9.5, 12.0; 5: 6.9, 9.7, 12.2. */
 static const double HALT = 3.5;
-static const double LEAST = 1e-3;  /* prior noise, share of the range to the threshold */
+static const double LEAST = 1e-3; /* prior noise, share of the range to the threshold */
+/* Noise, in the same unit, below which no coordinate describes the wear: else readings
+ * without noise, or all equal, would be foretold with certainty, see doc/benchmarks.md.
+ */
+static const double FINEST = 3e-4;
 static const double DIFFUSE = 1e8; /* prior variance of v over that of the noise */
 
 /* Log weight of a Wiener process in a curved coordinate, over that of one in a straight
@@ -180,7 +184,7 @@ static void follow(
 	tr->phh *= squared_slope(p) / f;
 	if (b->rows < 2) /* two rows determine the trend and leave no innovation */
 		return;
-	tr->sum = tr->sum * keep + z * z + 1e-9 * LEAST * LEAST;
+	tr->sum = tr->sum * keep + z * z + FINEST * FINEST;
 	tr->lagged = (float)(tr->lagged * keep + z * tr->before);
 	tr->before = (float)z;
 }

@@ -42,7 +42,7 @@ static const double FALL = 1.4, FALL_SD = 0.45;
  * LEAN less: most wear bends more than its coordinate, because straight coordinates have
  * more weight.  Both were chosen with the future of a rising rate, as doc/benchmarks.md
  * tells. */
-static const double STRAY = 0.2, LEAN = 0.07;
+static const double STRAY = 0.17, LEAN = 0.07;
 
 struct bank_chances {
 	int n;
@@ -186,22 +186,21 @@ static const struct future *future_of(const struct bank_shape *s)
 	return &future[s->n > 0 ? 3 : s->par <= 0 ? 1 : 2];
 }
 
-/* Variance of the logarithm of the time to the passage between the trends. */
+/* Variance of the logarithm of the time to the passage between the trends, without those
+ * whose regime has changed: such a change is no curve near the coordinate. */
 static double spread_of(const struct bank *b, double target)
 {
 	struct running logs = { 0 };
 	double limit = 0;
 	int shape = -1;
 
-	for (int i = 0; i < b->trends; i++) {
+	for (int i = 0; i < b->fixed; i++) {
 		const struct trend *tr = &b->trend[i];
 		double time;
 
 		if (tr->shape != shape)
 			limit = place_of(b, shape = tr->shape, target).h;
-		time = (limit - tr->h) / (grown(tr, b->age) * tr->v);
-		if (tr->growth > 0)
-			time = log1p(tr->growth * time) / tr->growth;
+		time = (limit - tr->h) / tr->v;
 		if (time > 0 && isfinite(time))
 			running_repeat(&logs, log(time), tr->weight);
 	}
