@@ -31,6 +31,7 @@ for how in '' '--lives-only --mission 20 --cost-ratio 5 --weights'; do
 	run --threads 3 three.tsv >side
 	same "threads do not change the output (${how:-with the filter})" side whole
 done
+fails "a state on standard output" 2 'save -: an output requires a file name' aopf --save - three.tsv
 fails "a state of other options" 1 "state: saved with other options" \
 	aopf --unit unit --threshold 1 --direction up --resume state three.tsv
 # doubtful NAME WANT COMMAND...: the command writes its result, warns once and returns 3

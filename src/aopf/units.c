@@ -351,6 +351,8 @@ void units_keep(struct units *units, const char *path, const char *options)
 	struct head h = head_of(units, options);
 	char *fresh = xprintf("%s.new", path);
 
+	if (strcmp(path, "-") == 0)
+		die(EXIT_USAGE, "--save -: an output requires a file name");
 	make_room(units, (size_t)h.size);
 	units->path = path;
 	/* Written beside the state to resume from, which is replaced once this one is

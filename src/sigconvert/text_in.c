@@ -107,7 +107,7 @@ static int number(const struct text_in *t, char *s, double *v)
 		return 1;
 	if (t->commas && strchr(s, ',') && !strchr(s, '.'))
 		*strchr(s, ',') = '.';
-	*v = strtod(s, &end);
+	*v = decimal_parse(s, &end);
 	return end != s && !*end;
 }
 
