@@ -1,5 +1,6 @@
 /* abrade - what hard particles in a gap do to the surfaces that slide on them */
 #include "abrasion/particle.h"
+#include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
@@ -248,6 +249,9 @@ int main(int argc, char **argv)
 	cmd = surface_path ? opt_cmd_side(upstream, "particles")
 			   : opt_cmd(upstream, NULL);
 	side = opt_cmd_side(upstream, "summary");
+	/* read last: what wears the particles off may write it */
+	if (surface_path)
+		file_claim_input(surface_path);
 	if (!surface_path || particles_path)
 		table = table_create(particles_path, cmd, "1 1 m N m m 1 m3 m3", columns);
 	free(cmd);
