@@ -205,4 +205,11 @@ printf 'time [2s],u [0mV]\n0,1\n1,3\n' >digit.csv
 fails "a unit of time that begins with a digit" 1 "times in '2s', want s, min, h or d" sigconvert digit.csv
 fails "headings alone" 1 'no row below the headings' sigconvert --output table empty.csv
 fails "a rate for a table" 2 'table converts text: no --rate' sigconvert --output table --rate 1Hz pump.csv
+for twice in 0 1; do
+	awk -v twice=$twice 'BEGIN { print "time u"; for (i = 0; i < 600; i++) {
+		if (i != 400 || twice) printf "%.3f %d\n", i / 1000, i
+		if (i == 400 && twice) printf "%.3f %d\n", i / 1000, i } }' >whole.txt
+	fails "one sample too $(test $twice = 0 && echo few || echo many) among times of one digit a sample" 1 \
+		'line 40[23]: time 0.40*1* s, want 0.40*1* s' sigconvert whole.txt
+done
 done_testing
