@@ -134,6 +134,12 @@ if sigconvert --output wav a.au >a.wav 2>err; then
 	fails "WAV of a fractional rate" 1 '44.1.* Hz: WAV and FLAC want a whole number' sigconvert --output wav f.au
 	head -c 20 a.wav >cut.wav
 	fails "a WAV that is cut off" 1 'cut.wav' sigconvert cut.wav
+	sigconvert --output wav a.tsv >whole.wav
+	head -c "$(($(wc -c <whole.wav) - 100))" whole.wav >cut.wav
+	fails "a WAV without its last samples" 1 'cut.wav: want [0-9]* bytes of samples, got [0-9]*' sigconvert cut.wav
+	sensorsim --uniform 50um:150um --number 5 --duration 3s --noise 1mV | sigconvert --output flac 2>err >whole.flac
+	head -c "$(($(wc -c <whole.flac) / 2))" whole.flac >cut.flac
+	fails "a FLAC file that is cut off" 1 'cut.flac: ' sigconvert --output raw cut.flac
 	fails "noise that is no sound" 1 'tsv: ' sigconvert --from sound a.tsv
 else
 	skip "WAV and FLAC can be tested" "built without libsndfile"
