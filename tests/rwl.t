@@ -171,6 +171,9 @@ near "the sliding speed determines the step time" "$(cell speed.out 1 q50)" \
 fails "a state for a new pair" 2 'new reads no state, not even steps.tsv' rwl $new --wear steps.tsv --step-time 1h steps.tsv
 fails "two states" 2 'state even.tsv: the state is also the operand steps.tsv' \
 	rwl --wear steps.tsv --state even.tsv steps.tsv
+cat particles.tsv particles.tsv >doubled.tsv
+fails "two ensembles of the same numbers" 1 'the numbers of joined ensembles must differ' \
+	rwl $new --wear doubled.tsv --step-time 1h
 # 1.5 L/min without its unit
 printf 't\tleakage\n0\t1.5\n10\t1.6\n' >bare.state
 rwl --wear steps.tsv --step-time 1h --area 1mm2 bare.state 2>&1 >bare.life | grep 'unit' >err
