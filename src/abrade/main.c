@@ -71,6 +71,7 @@ static const struct prog prog = { "abrade",
 static struct table_out *table, *summary;
 static const struct population *population; /* of --iso */
 static int doubtful;
+static double yielding, buried; /* particles */
 
 static struct abrasion_par parameters(void)
 {
@@ -217,12 +218,8 @@ static void run_realisation(const struct particles_in *in, long realisation)
 	for (int m = 0; m < ABRASION_MODES; m++)
 		if (t.number[m] > 0)
 			stats_add(mode_names[m], t.number[m]);
-	if (t.number[ABRASION_YIELDS] + t.number[ABRASION_BURIED] > 0) {
-		warn("realisation %ld: %.0f particles yield and %.0f are buried deeper than their radius: the volumes do not include their wear",
-			realisation, t.number[ABRASION_YIELDS],
-			t.number[ABRASION_BURIED]);
-		doubtful = 1;
-	}
+	yielding += t.number[ABRASION_YIELDS];
+	buried += t.number[ABRASION_BURIED];
 }
 
 int main(int argc, char **argv)
@@ -274,6 +271,11 @@ int main(int argc, char **argv)
 	if (surface_path)
 		scratches_cut(surface_path, slide, cutting, (uint64_t)seed,
 			particles_apart(source), cmd);
+	if (yielding + buried > 0) {
+		warn("%.0f particles yield and %.0f are buried deeper than their radius: the volumes do not include their wear",
+			yielding, buried);
+		doubtful = 1;
+	}
 	particles_close(source);
 	if (table)
 		table_done(table);
