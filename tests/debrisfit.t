@@ -99,11 +99,11 @@ same 'a hardness that is nowhere reached changes nothing' few.count elastic.coun
 debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 0 --stats stats few.nrrd >/dev/null 2>said
 is 'no interval is narrow enough for a width of 0' "$(column surfaces_estimated stats)" 0
 
-# Audits: sound, and of a surrogate whose factor is wrong by half.
+# Audits: sound, and of a surrogate whose intervals are a hundred times too narrow.
 debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --width 10 --audit 0.3 --stats stats hidden.nrrd >/dev/null 2>said
 is 'an audit of a sound surrogate passes' $? 0
 near 'the requested share of surfaces is audited' "$(column surfaces_audited stats)" 8 5
-awk -F '\t' -v OFS='\t' '/^#/ { next } $1 == "factor" { $4 *= 1.5 } { print }' surrogate.tsv >wrong.tsv
+awk -F '\t' -v OFS='\t' '/^#/ { next } $1 == "total" { $3 /= 100 } { print }' surrogate.tsv >wrong.tsv
 debrisgen --yield 355MPa --friction 0.3 --surrogate wrong.tsv --width 10 --audit 0.3 hidden.nrrd >/dev/null 2>said
 is 'an audit of a wrong surrogate fails with status 3' $? 3
 like 'a failed audit is reported' "$(cat said)" 'audited volumes lie within their intervals'
@@ -111,7 +111,7 @@ like 'a failed audit is reported' "$(cat said)" 'audited volumes lie within thei
 fails 'too few surfaces' 1 'are too few' sh -c 'contacts() { roughgen --points 32 --length 0.25mm --sq 1um --corr 30um --count 5 |
 	bemcontact --pressure 50MPa --young 210GPa; }; contacts | debrisfit --yield 355MPa'
 fails 'no yield stress' 2 'want --yield' debrisfit hidden.nrrd
-grep -v '^coefficient' surrogate.tsv | grep -v '^#' >part.tsv
+grep -v '^deviation' surrogate.tsv | grep -v '^#' >part.tsv
 fails 'a part of a surrogate' 1 'no whole surrogate' debrisgen --yield 355MPa --surrogate part.tsv hidden.nrrd
 fails 'a level beyond the scores of the fit' 1 'give intervals of level 0.9[0-9]* at most' \
 	debrisgen --yield 355MPa --friction 0.3 --surrogate surrogate.tsv --interval 0.999 hidden.nrrd

@@ -17,6 +17,11 @@ struct debris {
 	struct wear *wear;
 };
 
+double debris_deepest(const struct stress_par *s)
+{
+	return DEEPEST * fmax(s->nx * s->dx, s->ny * s->dy);
+}
+
 struct debris *debris_new(const struct debris_par *par)
 {
 	const struct stress_par *s = &par->stress;
@@ -116,7 +121,7 @@ enum debris_status debris_step(struct debris *d, double *height, const double *p
 		.spacing = fmin(s->dx, s->dy),
 		.cell = d->par.cell,
 		.offset = d->par.offset,
-		.deepest = DEEPEST * fmax(s->nx * s->dx, s->ny * s->dy) };
+		.deepest = debris_deepest(s) };
 	enum debris_status valid = debris_load(d, pressure);
 	enum wear_status status;
 

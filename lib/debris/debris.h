@@ -67,6 +67,9 @@ enum debris_status debris_load(struct debris *d, const double *pressure);
 enum debris_status debris_step(struct debris *d, double *height, const double *pressure,
 	struct debris_step *step);
 
+/* Depth below which nothing may fail, m. */
+double debris_deepest(const struct stress_par *par);
+
 /* Stress under the pressure of the last step, or of debris_load(). */
 struct stress *debris_stress(struct debris *d);
 
