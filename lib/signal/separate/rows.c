@@ -188,6 +188,7 @@ enum separate_status separate_dense_section(
 	s->counters.dense += length;
 	if (isfinite(c.unlike)) {
 		s->counters.compared += length;
+		s->counters.countless += c.rate_se < c.rate ? 0 : length;
 		s->counters.unlike += length * c.unlike * c.unlike;
 	}
 	entry->evidence.group = ++s->group;

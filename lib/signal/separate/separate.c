@@ -344,6 +344,8 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 		return SEPARATE_FOREIGN;
 	if (c->unlike > UNLIKE * UNLIKE * c->compared)
 		return SEPARATE_UNLIKE;
+	if (c->countless > COVERED * c->samples)
+		return SEPARATE_COUNTLESS;
 	if (c->unlearned > COVERED * c->samples)
 		return SEPARATE_UNLEARNED;
 	return c->covered > COVERED * c->samples ? SEPARATE_COVERED : SEPARATE_BELIEVED;

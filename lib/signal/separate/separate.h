@@ -123,6 +123,7 @@ struct separate_counters {
 	double masks, masks_skipped; /* sections demixed, and those with one source, which
 					need not be */
 	double unresolved, dense;    /* rows, and the samples these stand for */
+	double countless;            /* samples of them with particles of any number */
 	double compared, unlike; /* samples of them whose spectrum was compared with that
 				    of the pulse, and the sum of its squared difference */
 	double covered; /* samples of events in which no particle would be found */
@@ -162,6 +163,7 @@ enum separate_doubt {
 	SEPARATE_REVERSED,   /* nine tenths of the pulses are those of the kept instrument
 				with their sign changed */
 	SEPARATE_CROWD,      /* more than half is unresolved, unlike its record */
+	SEPARATE_COUNTLESS,  /* what is unresolved may be any number of particles */
 	SEPARATE_UNLIKE,     /* what is unresolved has not the spectrum of the pulse */
 	SEPARATE_COVERED,    /* particles are lost under events that are none */
 	SEPARATE_UNLEARNED,  /* ... and before the instrument was learned */
