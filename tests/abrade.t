@@ -109,6 +109,13 @@ near "a code of equal numbers at 4 and 6 um has none between" \
 	"$(awk '!/^[#r]/ { n++; small += $3 < 5.999e-6 } END { print small ? 0 : n }' equal.tsv)" \
 	"$(awk 'BEGIN { k = log(5000 / 80) / log(14 / 6); print 2 * 5000 * (1 - (50 / 6) ^ -k) }')" 400
 fails "a code where a table is read" 2 'are for --iso' abrade --gap 1um $p --largest 70um four.tsv
+cp h.nrrd kept.nrrd
+printf 'realisation\tdiameter\n1\t1e-5\n2\t1e-5\n2\t9e-6\n' >three.tsv
+fails "buried particles of two realisations" 3 ' 0 particles yield and 3 are buried' \
+	abrade --gap 1um $p --motion groove three.tsv
+fails "a surface that is overwritten" 2 'the same file is read and written' \
+	abrade --gap 9um $p --surface kept.nrrd --particles kept.nrrd four.tsv
+same "it is kept" h.nrrd kept.nrrd
 fails "a table without a surface to leave standard output to" 2 '\--surface is given' abrade --gap 1um $p --particles x four.tsv
 printf 'diameter\taspect\n1e-6\t0.5\n' >flat.tsv
 fails "an aspect below one" 1 'line 2: aspect is 0.5, want 1 or more' abrade --gap 1um $p flat.tsv

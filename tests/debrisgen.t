@@ -312,7 +312,9 @@ fails "a contact that did not converge" 3 "record 1: its contact did not converg
 	sh -c 'debrisgen -Y 1GPa poor.nrrd >poor.tsv'
 # The first step uses the contact that it reads, whatever load the options say
 for row in "-F 50N|^-" "-E 210GPa|^-" "-F 500N|a mean pressure of 5e+07 Pa, not 5e+08 Pa" \
-	"-E 70GPa|a contact modulus of 1.15385e+11 Pa, not 3.84615e+10 Pa" "--approach 1mm|an approach of"; do
+	"-E 70GPa|a contact modulus of 1.15385e+11 Pa, not 3.84615e+10 Pa" "--approach 1mm|an approach of" \
+	"--hardness 0|^-" "--hardness 1GPa|a hardness of 0 Pa, not 1e+09 Pa" \
+	"--boundary free|^-" "--boundary periodic|a free boundary, not a periodic one"; do
 	# shellcheck disable=SC2086 # two words
 	$wear --depth-step 50um ${row%%|*} ball.nrrd 2>&1 >t.tsv | grep -o 'solved with .*' >err
 	like "a contact that is read, and ${row%%|*}: a warning if they differ" "$(cat err)-" "${row#*|}"

@@ -31,6 +31,10 @@ for how in '' '--lives-only --mission 20 --cost-ratio 5 --weights'; do
 	run --threads 3 three.tsv >side
 	same "threads do not change the output (${how:-with the filter})" side whole
 done
+fails "a state on standard output" 2 '-: an output requires a file name' aopf --save - three.tsv
+cp three.tsv kept.tsv
+fails "a state in the file that is read" 2 'the same file is read and written' aopf --save kept.tsv kept.tsv
+same "the file is kept" three.tsv kept.tsv
 fails "a state of other options" 1 "state: saved with other options" \
 	aopf --unit unit --threshold 1 --direction up --resume state three.tsv
 # doubtful NAME WANT COMMAND...: the command writes its result, warns once and returns 3

@@ -168,6 +168,17 @@ same "the area of a fragment is read from the table" steps.tsv.life told.life
 rwl $new --wear steps.tsv --speed 10mm/s >speed.out 2>err
 near "the sliding speed determines the step time" "$(cell speed.out 1 q50)" \
 	"$(sed 1d steps.tsv.life | cut -f 4 | awk '{ printf "%.15g", $1 / 3600 * 2.5e-3 }')" 1e-6
+fails "a state for a new pair" 2 'new reads no state, not even steps.tsv' rwl $new --wear steps.tsv --step-time 1h steps.tsv
+fails "two states" 2 'state even.tsv: the state is also the operand steps.tsv' \
+	rwl --wear steps.tsv --state even.tsv steps.tsv
+cat particles.tsv particles.tsv >doubled.tsv
+fails "two ensembles of the same numbers" 1 'the numbers of joined ensembles must differ' \
+	rwl $new --wear doubled.tsv --step-time 1h
+# 1.5 L/min without its unit
+printf 't\tleakage\n0\t1.5\n10\t1.6\n' >bare.state
+rwl --wear steps.tsv --step-time 1h --area 1mm2 bare.state 2>&1 >bare.life | grep 'unit' >err
+is "a leakage beyond that of any pump is doubted once" "$(cat err)" \
+	"rwl: bare.state: line 2: a leakage of 1.5 m3/s: is another unit meant? --state-unit names it"
 fails "a pressure that contradicts the table" 2 'steps.tsv:21Pa: the nominal pressure of the fragments is 2.1e+07 Pa' \
 	rwl $new --wear steps.tsv:21Pa --step-time 1h
 fails "an area that contradicts the table" 2 'fragments of 6.25e-10 m2, not of 1e-08 m2' \

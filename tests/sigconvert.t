@@ -134,6 +134,12 @@ if sigconvert --output wav a.au >a.wav 2>err; then
 	fails "WAV of a fractional rate" 1 '44.1.* Hz: WAV and FLAC want a whole number' sigconvert --output wav f.au
 	head -c 20 a.wav >cut.wav
 	fails "a WAV that is cut off" 1 'cut.wav' sigconvert cut.wav
+	sigconvert --output wav a.tsv >whole.wav
+	head -c "$(($(wc -c <whole.wav) - 100))" whole.wav >cut.wav
+	fails "a WAV without its last samples" 1 'cut.wav: want [0-9]* bytes of samples, got [0-9]*' sigconvert cut.wav
+	sensorsim --uniform 50um:150um --number 5 --duration 3s --noise 1mV | sigconvert --output flac 2>err >whole.flac
+	head -c "$(($(wc -c <whole.flac) / 2))" whole.flac >cut.flac
+	fails "a FLAC file that is cut off" 1 'cut.flac: ' sigconvert --output raw cut.flac
 	fails "noise that is no sound" 1 'tsv: ' sigconvert --from sound a.tsv
 else
 	skip "WAV and FLAC can be tested" "built without libsndfile"
@@ -205,4 +211,11 @@ printf 'time [2s],u [0mV]\n0,1\n1,3\n' >digit.csv
 fails "a unit of time that begins with a digit" 1 "times in '2s', want s, min, h or d" sigconvert digit.csv
 fails "headings alone" 1 'no row below the headings' sigconvert --output table empty.csv
 fails "a rate for a table" 2 'table converts text: no --rate' sigconvert --output table --rate 1Hz pump.csv
+for twice in 0 1; do
+	awk -v twice=$twice 'BEGIN { print "time u"; for (i = 0; i < 600; i++) {
+		if (i != 400 || twice) printf "%.3f %d\n", i / 1000, i
+		if (i == 400 && twice) printf "%.3f %d\n", i / 1000, i } }' >whole.txt
+	fails "one sample too $(test $twice = 0 && echo few || echo many) among times of one digit a sample" 1 \
+		'line 40[23]: time 0.40*1* s, want 0.40*1* s' sigconvert whole.txt
+done
 done_testing

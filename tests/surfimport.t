@@ -206,6 +206,13 @@ printf '1 2\n3\n' >short.txt
 fails "a short row" 1 'line 2: want 2 heights, got 1' surfimport --pixel 1um --height-unit 1m short.txt
 printf '1 2\n3 x\n' >word.txt
 fails "a word among heights" 1 'line 2: not a row of numbers: 3 x' surfimport --pixel 1um --height-unit 1m word.txt
+printf '1 0x10\n' >hexadecimal.txt
+fails "a hexadecimal number" 1 'no row of numbers' surfimport --pixel 1um --height-unit 1m hexadecimal.txt
+printf '1.234,5;2;3\n4;5;6\n' >thousands.csv
+fails "thousands separators in the first row" 1 'line 1: not a row of numbers: 1.234,5' \
+	surfimport --pixel 1um --height-unit 1m thousands.csv
+printf 'n = 3\n1 2 3\n' | surfimport --pixel 1um --height-unit 1m >b.nrrd
+is "a heading with a number is a heading" "$(heights b.nrrd)" "1 2 3"
 fails "empty text" 1 'no row of numbers' surfimport --pixel 1um --height-unit 1m
 printf 'nan nan\n' >gone.txt
 fails "every height missing" 1 'every height is missing' surfimport --pixel 1um --height-unit 1m gone.txt
@@ -253,6 +260,12 @@ fails "positions and heights for a matrix" 1 'positions and heights, are no matr
 	surfimport --pixel 1um --height-unit 1um places.txt
 awk 'BEGIN { for (i = 0; i < 4; i++) for (j = 0; j < 4; j++) print i, j, i * j }' >points.txt
 fails "points for a matrix" 1 'three columns look like points x, y, z' surfimport --pixel 1um --height-unit 1um points.txt
+awk 'BEGIN { for (i = -1; i < 4; i++) for (j = -1; j < 4; j++)
+	printf "%s%s", i < 0 ? j : j < 0 ? i / 2 : i * j, j < 3 ? " " : "\n" }' >frame.txt
+fails "positions above and beside the heights" 1 'first row and column are equally spaced' \
+	surfimport --pixel 1um --height-unit 1um frame.txt
+awk 'BEGIN { for (i = 0; i < 5; i++) print i, i + 1, i + 2, i + 3, i + 4 }' >plane.txt
+ok "a tilted plane has no positions" surfimport --pixel 1um --height-unit 1um plane.txt
 sort -r -n places.txt >back.txt
 surfimport --profile --height-unit 1um places.txt >b.nrrd
 surfimport --profile --height-unit 1um back.txt >c.nrrd

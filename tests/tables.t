@@ -35,6 +35,7 @@ refuse() {
 refuse 'a missing column' "bad: no column 'y'" 't\tx\n0\t1\n'
 refuse 'a column twice' "bad: two columns 'y'" 't\ty\ty\n0\t1\t2\n'
 refuse 'a cell that is no number' "bad: line 3: y: 'two' is not a number" 't\ty\n0\t1\n1\ttwo\n'
+refuse 'a hexadecimal number' "bad: line 3: y: '0x10' is not a number" 't\ty\n0\t1\n1\t0x10\n'
 refuse 'a number with a unit' "bad: line 3: y: '2um' is not a number" 't\ty\n0\t1\n1\t2um\n'
 refuse 'too few cells' 'bad: line 3: want 2 cells, got 1' 't\ty\n0\t1\n1\n'
 refuse 'too many cells' 'bad: line 3: want 2 cells, got 3' 't\ty\n0\t1\n1\t2\t3\n'

@@ -18,14 +18,12 @@ static struct {
 } used[FILES_MAX];
 static int nused, claimed_output;
 
-static void claim(FILE *f, const char *name, int written)
+static void claim_state(const struct stat *s, const char *name, int written)
 {
-	struct stat s;
-
-	if (fstat(fileno(f), &s) || !S_ISREG(s.st_mode))
+	if (!S_ISREG(s->st_mode))
 		return;
 	for (int i = 0; i < nused; i++) {
-		if (used[i].device != s.st_dev || used[i].number != s.st_ino)
+		if (used[i].device != s->st_dev || used[i].number != s->st_ino)
 			continue;
 		if (!written && !used[i].written)
 			return;
@@ -35,9 +33,17 @@ static void claim(FILE *f, const char *name, int written)
 	}
 	if (nused == FILES_MAX)
 		die(EXIT_RUN, "more than %d files", FILES_MAX);
-	used[nused].device = s.st_dev;
-	used[nused].number = s.st_ino;
+	used[nused].device = s->st_dev;
+	used[nused].number = s->st_ino;
 	used[nused++].written = written;
+}
+
+static void claim(FILE *f, const char *name, int written)
+{
+	struct stat s;
+
+	if (fstat(fileno(f), &s) == 0)
+		claim_state(&s, name, written);
 }
 
 static int follow;
@@ -71,6 +77,14 @@ void file_claim_output(void)
 {
 	if (!claimed_output++)
 		claim(stdout, "standard output", 1);
+}
+
+void file_claim_input(const char *path)
+{
+	struct stat s;
+
+	if (stat(path, &s) == 0)
+		claim_state(&s, text_file_name(path), 0);
 }
 
 FILE *file_open(const char *path, const char **name)

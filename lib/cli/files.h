@@ -19,6 +19,8 @@
 void files_start(void);
 /* Marks standard output as used. */
 void file_claim_output(void);
+/* Marks a file that is opened later, but must not be an output, as read. */
+void file_claim_input(const char *path);
 /* --follow: inputs without an end mark are still being written. */
 void file_follow(void);
 int file_followed(void);

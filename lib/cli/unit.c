@@ -150,6 +150,17 @@ const char *quantity_text(double value, enum unit unit, char text[NUMBER_TEXT])
 	return text;
 }
 
+double decimal_parse(const char *text, char **end)
+{
+	const char *digits = text + strspn(text, " \t+-");
+
+	if (digits[0] == '0' && tolower((unsigned char)digits[1]) == 'x') {
+		*end = (char *)text;
+		return NAN;
+	}
+	return strtod(text, end);
+}
+
 const char *unit_parse(const char *text, enum unit unit, const char *stop, double *value,
 	const char **end)
 {
@@ -157,14 +168,10 @@ const char *unit_parse(const char *text, enum unit unit, const char *stop, doubl
 	size_t length;
 	double scale = 1;
 
-	/* strtod also accepts blanks, nan, inf and hexadecimal numbers; options do not.
-	 */
-	if (!isdigit((unsigned char)text[strspn(text, "+-.")]) ||
-		strspn(text, "+-") > 1 ||
-		strncmp(text + strspn(text, "+-"), "0x", 2) == 0 ||
-		strncmp(text + strspn(text, "+-"), "0X", 2) == 0)
+	/* strtod also accepts blanks, nan and inf; options do not. */
+	*value = decimal_parse(text, &rest);
+	if (rest == text || !isdigit((unsigned char)text[strspn(text, "+-.")]))
 		return "is not a number";
-	*value = strtod(text, &rest);
 	length = strcspn(rest, stop);
 	if (length > 0) {
 		scale = suffix_scale(rest, length, unit);

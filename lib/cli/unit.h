@@ -40,6 +40,9 @@ const char *unit_name(enum unit unit);
 const char *unit_parse(const char *text, enum unit unit, const char *stop, double *value,
 	const char **end);
 
+/* strtod, but not for hexadecimal numbers: of those it reads nothing. */
+double decimal_parse(const char *text, char **end);
+
 /* What one of the unit is in SI: 1e-3 for "mm"; 0 if text is not a unit of this kind. */
 double unit_scale(const char *text, enum unit unit);
 

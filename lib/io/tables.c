@@ -244,7 +244,7 @@ static int to_number(const char *s, double *v)
 		*v = NAN;
 		return 1;
 	}
-	*v = strtod(s, &end);
+	*v = decimal_parse(s, &end);
 	return end != s && !*end && !isnan(*v);
 }
 

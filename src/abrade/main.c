@@ -1,5 +1,6 @@
 /* abrade - what hard particles in a gap do to the surfaces that slide on them */
 #include "abrasion/particle.h"
+#include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
@@ -70,6 +71,7 @@ static const struct prog prog = { "abrade",
 static struct table_out *table, *summary;
 static const struct population *population; /* of --iso */
 static int doubtful;
+static double yielding, buried; /* particles */
 
 static struct abrasion_par parameters(void)
 {
@@ -216,12 +218,8 @@ static void run_realisation(const struct particles_in *in, long realisation)
 	for (int m = 0; m < ABRASION_MODES; m++)
 		if (t.number[m] > 0)
 			stats_add(mode_names[m], t.number[m]);
-	if (t.number[ABRASION_YIELDS] + t.number[ABRASION_BURIED] > 0) {
-		warn("realisation %ld: %.0f particles yield and %.0f are buried deeper than their radius: the volumes do not include their wear",
-			realisation, t.number[ABRASION_YIELDS],
-			t.number[ABRASION_BURIED]);
-		doubtful = 1;
-	}
+	yielding += t.number[ABRASION_YIELDS];
+	buried += t.number[ABRASION_BURIED];
 }
 
 int main(int argc, char **argv)
@@ -248,6 +246,9 @@ int main(int argc, char **argv)
 	cmd = surface_path ? opt_cmd_side(upstream, "particles")
 			   : opt_cmd(upstream, NULL);
 	side = opt_cmd_side(upstream, "summary");
+	/* read last: what wears the particles off may write it */
+	if (surface_path)
+		file_claim_input(surface_path);
 	if (!surface_path || particles_path)
 		table = table_create(particles_path, cmd, "1 1 m N m m 1 m3 m3", columns);
 	free(cmd);
@@ -270,6 +271,11 @@ int main(int argc, char **argv)
 	if (surface_path)
 		scratches_cut(surface_path, slide, cutting, (uint64_t)seed,
 			particles_apart(source), cmd);
+	if (yielding + buried > 0) {
+		warn("%.0f particles yield and %.0f are buried deeper than their radius: the volumes do not include their wear",
+			yielding, buried);
+		doubtful = 1;
+	}
 	particles_close(source);
 	if (table)
 		table_done(table);

@@ -1,4 +1,5 @@
 #include "units.h"
+#include "cli/files.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
 #include "filter_options.h"
@@ -350,7 +351,9 @@ void units_keep(struct units *units, const char *path, const char *options)
 {
 	struct head h = head_of(units, options);
 	char *fresh = xprintf("%s.new", path);
+	const char *name;
 
+	fclose(file_reserve(path, &name)); /* no file that is read */
 	make_room(units, (size_t)h.size);
 	units->path = path;
 	/* Written beside the state to resume from, which is replaced once this one is

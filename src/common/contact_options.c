@@ -114,10 +114,20 @@ void press_differs(const char *name, long number, const char *what, const char *
 
 int press_given(const struct record *r, const char *name, long number)
 {
-	const char *converged = record_get(r, "converged");
+	const char *converged = record_get(r, "converged"),
+		   *around = record_get(r, "boundary");
+	double hardness = record_get_number(r, "hardness");
 
 	press_differs(name, number, "a contact modulus", "Pa", press.estar,
 		record_get_number(r, "estar"));
+	/* A record with a boundary and no hardness was solved without one. */
+	if (around && opt_given("hardness"))
+		press_differs(name, number, "a hardness", "Pa", press.hardness,
+			isnan(hardness) ? 0 : hardness);
+	if (around && opt_given("boundary") &&
+		strcmp(around, boundaries[press.boundary]) != 0)
+		warn("%s: record %ld: its contact was solved with a %s boundary, not a %s one as the options say",
+			name, number, around, boundaries[press.boundary]);
 	if (record_get(r, "coating"))
 		die(EXIT_RUN,
 			"%s: record %ld is the contact of a coated body: want bodies of one material",

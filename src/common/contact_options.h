@@ -29,7 +29,8 @@ struct contact_par press_par(const struct record *r, struct pool *pool);
 void press_differs(const char *name, long number, const char *what, const char *unit,
 	double asked, double solved);
 /* A contact solved before, of which the stress is wanted: dies if a body is coated; warns
- * if it is of another modulus; warns and returns 0 if it did not converge. */
+ * if it is of another modulus, hardness or boundary; warns and returns 0 if it did not
+ * converge. */
 int press_given(const struct record *r, const char *name, long number);
 /* Writes the keys of material and boundary. */
 void press_record(struct record *r, const struct contact_par *par);

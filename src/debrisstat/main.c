@@ -92,7 +92,7 @@ static void check(struct ensemble *e, enum ensemble_status status)
 	case ENSEMBLE_CLASH:
 		die(EXIT_RUN,
 			"realisation %ld stands in two parts of the table; "
-			"ensembles to be joined want numbers of their own",
+			"the numbers of joined ensembles must differ",
 			ensemble_culprit(e));
 	case ENSEMBLE_MORE:
 		die(EXIT_RUN, "--realisations %ld, but the table has %zu", realisations,

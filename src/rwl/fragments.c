@@ -167,6 +167,7 @@ static void read_wear(
 		if (table_part(w.table) != part)
 			check_part(w.table, &told);
 		part = table_part(w.table);
+		partition_part(p, w.class, part);
 		read_row(p, &w, row);
 	}
 	if (table_upstream(w.table))
@@ -214,7 +215,8 @@ int fragments_close(struct partition *p, const struct opt_texts *files)
 		die(EXIT_RUN, "%s: no fragment in the steps from --first-step on",
 			files->v[partition_culprit(p)]);
 	case PARTITION_TWICE:
-		die(EXIT_RUN, "%s: realisation %ld has a step twice",
+		die(EXIT_RUN,
+			"%s: realisation %ld has a step twice: the numbers of joined ensembles must differ",
 			files->v[partition_culprit(p)], partition_realisation(p));
 	case PARTITION_APART:
 		apart(p, files->v[partition_culprit(p)]);

@@ -90,8 +90,8 @@ static void settle(void)
 		"speed", "step-time", "parts", "first-step", "fragment-area",
 		"transition", NULL };
 	static const char *const of_sizes[] = { "critical-probability", "sizes", NULL };
-	static const char *const of_state[] = { "state", "quantity", "state-unit",
-		"state-error", "skip", "grey", NULL };
+	static const char *const of_state[] = { "quantity", "state-unit", "state-error",
+		"skip", "grey", NULL };
 
 	pump_check();
 	covariates_check();
@@ -101,6 +101,8 @@ static void settle(void)
 		exclude(of_fragments, "requires --wear");
 	if (isnan(pump.critical_size))
 		exclude(of_sizes, "requires --critical-size");
+	if (state_file && new)
+		die(EXIT_USAGE, "--new reads no state, not even %s", state_file);
 	if (calibrations.n == 0 && new)
 		exclude(of_state, "requires a state: --new reads none");
 	for (int i = 1; i < levels.n; i++)
@@ -303,6 +305,9 @@ int main(int argc, char **argv)
 
 	pump_init();
 	i = opt_parse(&prog, argc, argv);
+	if (argv[i] && state_file)
+		die(EXIT_USAGE, "--state %s: the state is also the operand %s",
+			state_file, argv[i]);
 	if (argv[i])
 		state_file = argv[i];
 	settle();

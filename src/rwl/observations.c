@@ -11,6 +11,11 @@
 
 static const char *const quantities[] = { "auto", "leakage", "gap", "volume", "debris",
 	NULL };
+static const enum unit units[] = { UNIT_ANY, UNIT_FLOW, UNIT_LENGTH, UNIT_VOLUME,
+	UNIT_LENGTH };
+/* Beyond these a number is in another unit; those of flow and gap are the limits of the
+ * thresholds. */
+static const double most[] = { INFINITY, 0.1, 1e-2, 1e-2, 0.1 };
 static const double sphere = 0.52359877559829887; /* pi / 6 */
 
 struct state_options state_options;
@@ -27,8 +32,6 @@ struct opt state_rows[] = { { 0, "quantity", OPT_WORD, UNIT_NONE, &state_options
 /* Units of time and value: the table's own, or those of the options, or SI. */
 static void settle_units(struct observations *s)
 {
-	static const enum unit units[] = { UNIT_ANY, UNIT_FLOW, UNIT_LENGTH, UNIT_VOLUME,
-		UNIT_LENGTH };
 	enum unit unit = units[s->quantity];
 	double told = table_scale(s->table, s->value_column, unit), asked = NAN;
 	double time = table_scale(s->table, s->time_column, UNIT_TIME);
@@ -130,6 +133,10 @@ int state_next(struct observations *s)
 	if (value < 0 || isinf(value))
 		die(EXIT_RUN, "%s: line %ld: %g is not a %s", table_name(t),
 			table_line(t), value, quantities[s->quantity]);
+	if (value > most[s->quantity] && !s->beyond++)
+		warn("%s: line %ld: a %s of %g %s: is another unit meant? --state-unit names it",
+			table_name(t), table_line(t), quantities[s->quantity], value,
+			unit_name(units[s->quantity]));
 	if (s->rows == 1)
 		s->first_t = time;
 	s->t = time;

@@ -37,6 +37,7 @@ struct observations {
 	double debris;                      /* volume of the particles so far */
 	long rows;
 	long passed;          /* particles without a diameter */
+	long beyond;          /* values that suggest another unit */
 	double first_t;       /* of the first row */
 	double t, gap, value; /* latest row, SI; gap and value NAN if missing */
 	double gap_error;     /* standard error of the gap */

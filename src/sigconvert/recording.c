@@ -23,6 +23,7 @@ struct recording {
 	struct table_in *table;
 	long long row; /* of the table */
 	SNDFILE *sound;
+	double left; /* frames of the sound that are announced and not read */
 	const char *name;
 	struct signal_format format;
 };
@@ -58,6 +59,22 @@ static FILE *put_aside(struct input *in)
 	return copy;
 }
 
+/* Of a WAV file that was cut off libsndfile reads what is there, and notes in its log
+ * "data : 20000 (should be 11956)".  Recorders that stream announce 2 GiB or more. */
+static void check_whole(const struct recording *r)
+{
+	char log[1 << 14] = "";
+	const char *data;
+	double told, there;
+
+	sf_command(r->sound, SFC_GET_LOG_INFO, log, sizeof log);
+	data = strstr(log, "data : ");
+	if (data && sscanf(data, "data : %lf (should be %lf)", &told, &there) == 2 &&
+		there < told && told < 0x7ffff000)
+		die(EXIT_RUN, "%s: want %.0f bytes of samples, got %.0f", r->name, told,
+			there);
+}
+
 static void sound_open(struct recording *r, struct input *in)
 {
 	SF_INFO info = { 0 };
@@ -66,6 +83,10 @@ static void sound_open(struct recording *r, struct input *in)
 	r->sound = sf_open_fd(fileno(put_aside(in)), SFM_READ, &info, SF_FALSE);
 	if (!r->sound)
 		die(EXIT_RUN, "%s: %s", r->name, sf_strerror(NULL));
+	check_whole(r);
+	if (info.frames == 0)
+		die(EXIT_RUN, "%s: the header announces no frames", r->name);
+	r->left = (double)info.frames;
 	r->format.rate = info.samplerate;
 	r->format.channels = info.channels;
 	input_close(in);
@@ -77,6 +98,10 @@ static size_t sound_read(struct recording *r, double *x, size_t frames)
 
 	if (sf_error(r->sound))
 		die(EXIT_RUN, "%s: %s", r->name, sf_strerror(r->sound));
+	r->left -= (double)n;
+	if (n < (sf_count_t)frames && r->left > 0 && r->left < 1e15)
+		die(EXIT_RUN, "%s: the recording ends %.0f frames before its end",
+			r->name, r->left);
 	return (size_t)n;
 }
 
@@ -214,8 +239,8 @@ static void sound_done(struct recording_out *o)
 
 static enum recording_from recognise(struct input *in)
 {
-	static const char *const sounds[] = { "RIFF", "fLaC", "FORM", "RF64", "caff",
-		"OggS" };
+	static const char *const sounds[] = { "RIFF", "RIFX", "fLaC", "FORM", "RF64",
+		"caff", "OggS" };
 
 	for (size_t i = 0; i < sizeof sounds / sizeof *sounds; i++)
 		if (input_begins(in, sounds[i]))

@@ -34,6 +34,7 @@ struct text_in {
 	int rate; /* the same */
 	double time_scale, step, first;
 	double resolution; /* of the times as they are written, s */
+	double rounding;   /* largest effect of it on the times, s */
 	int absolute;      /* they are dates, counted from the first */
 	struct moment start;
 	double *ahead; /* rows read to learn the rate: times and channels */
@@ -107,7 +108,7 @@ static int number(const struct text_in *t, char *s, double *v)
 		return 1;
 	if (t->commas && strchr(s, ',') && !strchr(s, '.'))
 		*strchr(s, ',') = '.';
-	*v = strtod(s, &end);
+	*v = decimal_parse(s, &end);
 	return end != s && !*end;
 }
 
@@ -341,7 +342,7 @@ static void check_time(struct text_in *t, double time)
 {
 	double want = t->first + (double)t->rows * t->step;
 
-	if (t->time >= 0 && fabs(time - want) > 0.5 * t->step + t->resolution)
+	if (t->time >= 0 && fabs(time - want) > 0.5 * t->step + t->rounding)
 		die(EXIT_RUN,
 			"%s: line %ld: time %.9g s, want %.9g s: samples are missing or "
 			"the rate is not %.9g Hz: --rate tells it",
@@ -439,6 +440,10 @@ static void learn_rate(struct text_in *t, const struct recording_par *par)
 			RATE_LEAST, RATE_MOST);
 	t->format.rate = rate;
 	t->step = 1 / rate;
+	/* Times of whole steps are not rounded, however few digits they have. */
+	t->rounding = t->resolution;
+	if (t->nahead > 1 && deviation(t, rate) < 0.5 * t->step)
+		t->rounding = fmin(t->rounding, deviation(t, rate));
 	if (t->absolute) {
 		char text[MOMENT_TEXT];
 

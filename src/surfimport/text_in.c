@@ -1,4 +1,5 @@
 #include "cli/msg.h"
+#include "cli/unit.h"
 #include "formats_in.h"
 #include <ctype.h>
 #include <math.h>
@@ -42,6 +43,7 @@ struct text {
 	int columns;
 	long rows, line;
 	char *header; /* the last line that is not a row of numbers */
+	long header_line;
 };
 
 /* The separator of cells: a semicolon or TAB, if there is one; a comma unless blanks
@@ -101,7 +103,7 @@ static int cell(const struct text *t, char *s, double *v)
 	}
 	if (t->comma && strchr(s, ','))
 		*strchr(s, ',') = '.';
-	*v = strtod(s, &end);
+	*v = decimal_parse(s, &end);
 	return end != s && !*end;
 }
 
@@ -148,6 +150,29 @@ static int read_row(struct text *t, char *line)
 	return n;
 }
 
+static _Noreturn void no_row(const struct text *t, long line, const char *content)
+{
+	die(EXIT_RUN, "%s: line %ld: not a row of numbers: %.40s", t->c->name, line,
+		content);
+}
+
+/* A line that has as many cells as the first row, most of which begin like numbers, is no
+ * heading. */
+static int is_torn_row(const struct text *t, const char *line)
+{
+	const char by[2] = { t->separator, '\0' };
+	int n = 0, numbers = 0;
+
+	for (const char *s = line; *s; s += strcspn(s, by), s += *s != '\0') {
+		s += strspn(s, " \"");
+		if (!*s)
+			break;
+		n++;
+		numbers += isdigit((unsigned char)s[strspn(s, "+-.")]) != 0;
+	}
+	return n == t->columns && 2 * numbers > n;
+}
+
 static void read_rows(struct text *t, char *text)
 {
 	char *rest = text;
@@ -167,11 +192,11 @@ static void read_rows(struct text *t, char *text)
 		copy = xstrdup(line);
 		n = read_row(t, line);
 		if (n < 0 && t->rows)
-			die(EXIT_RUN, "%s: line %ld: not a row of numbers: %.40s",
-				t->c->name, t->line, copy);
+			no_row(t, t->line, copy);
 		if (n < 0) {
 			free(t->header);
 			t->header = copy;
+			t->header_line = t->line;
 			continue;
 		}
 		free(copy);
@@ -179,7 +204,8 @@ static void read_rows(struct text *t, char *text)
 			die(EXIT_RUN, "%s: line %ld: want %d heights, got %d", t->c->name,
 				t->line, t->columns, n);
 		t->columns = n;
-		t->rows++;
+		if (t->rows++ == 0 && t->header && is_torn_row(t, t->header))
+			no_row(t, t->header_line, t->header);
 	}
 }
 
@@ -288,6 +314,31 @@ static void refuse_points(const struct text *t)
 			t->c->name);
 }
 
+/* 1 if n > 3 numbers are equally spaced, as positions are, and not all the same. */
+static int is_ramp(const double *x, long n, long stride)
+{
+	double step = (x[(n - 1) * stride] - x[0]) / (double)(n - 1);
+
+	for (long i = 0; i < n; i++)
+		if (!(fabs(x[i * stride] - x[0] - (double)i * step) <= 0.02 * fabs(step)))
+			return 0;
+	return n > 3 && step != 0;
+}
+
+/* Positions above and beside the heights, unless these form a plane. */
+static void refuse_frame(const struct text *t)
+{
+	const double *z = t->value;
+
+	if (t->rows > 4 && t->columns > 4 && is_ramp(z + 1, t->columns - 1, 1) &&
+		is_ramp(z + t->columns, t->rows - 1, t->columns) &&
+		!is_ramp(z + t->columns + 1, t->columns - 1, 1))
+		die(EXIT_RUN,
+			"%s: the first row and column are equally spaced: want heights "
+			"alone, without positions",
+			t->c->name);
+}
+
 void text_read(const struct content *c, const struct told *told, struct record *r)
 {
 	struct text t = { .c = c, .separator = ' ' };
@@ -301,6 +352,7 @@ void text_read(const struct content *c, const struct told *told, struct record *
 		profile_read(&t, told, r);
 	} else {
 		refuse_points(&t);
+		refuse_frame(&t);
 		settle_pixel(c, told, &dx, &dy);
 		unit = settle_unit(c, told, NAN);
 		z = new_heights(c, t.columns, (double)t.rows, dx, dy, r);

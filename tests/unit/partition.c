@@ -360,6 +360,18 @@ static void check_refusals(void)
 			partition_culprit(p) == 0,
 		"a step twice in rows apart is refused");
 	partition_free(p);
+	for (long step = 1; step <= 2; step++) {
+		p = partition_new(1e-6, 1, 0);
+		partition_class(p, 1, 1e6, -1, &c);
+		partition_fragment(p, c, 0, 1, 1, 0, 0);
+		partition_part(p, c, 1);
+		partition_fragment(p, c, 0, step, 1, 0, 0);
+		ok(partition_close(p, fragment, 0.1) ==
+				(step == 1 ? PARTITION_TWICE : PARTITION_OK),
+			step == 1 ? "the particles of a step in two parts are refused"
+				  : "steps in two parts are accepted");
+		partition_free(p);
+	}
 	p = two_classes(-1, -1, 3);
 	ok(partition_close(p, fragment, 0.1) == PARTITION_EMPTY,
 		"fragments without a step after running-in are refused");

@@ -29,7 +29,8 @@ struct moments {
 struct class
 {
 	const struct partition *owner;
-	int sparse;
+	int sparse, twice;     /* twice: a realisation has a step twice */
+	long part;             /* of the table */
 	double pressure, area; /* own area after partition_close() */
 	struct realisations *reader;
 	long last_realisation, last_step; /* of the row before; -1: none */
@@ -138,9 +139,12 @@ static enum num_status take_history(
 	for (size_t i = 0, end; i < n; i = end) {
 		double here = 0;
 
-		for (end = i; end < n && cell[end].step == cell[i].step; end++)
+		for (end = i; end < n && cell[end].step == cell[i].step; end++) {
 			here += cell[end].volume;
-		if (!c->sparse && end > i + 1)
+			c->twice |= cell[end].part != cell[i].part;
+		}
+		c->twice |= !c->sparse && end > i + 1;
+		if (c->twice)
 			return NUM_DOMAIN;
 		if (cell[i].step < c->owner->first_step)
 			continue;
@@ -192,17 +196,23 @@ static enum partition_status reading(
 	case REALISATIONS_AGAIN:
 		return PARTITION_APART;
 	case REALISATIONS_STOP:
-		return c->sparse ? PARTITION_MEMORY : PARTITION_TWICE;
+		return c->twice ? PARTITION_TWICE : PARTITION_MEMORY;
 	default:
 		return PARTITION_MEMORY;
 	}
+}
+
+void partition_part(struct partition *p, int class, long part)
+{
+	p->class[class].part = part;
 }
 
 enum partition_status partition_fragment(struct partition *p, int class, long realisation,
 	long step, double volume, double count, double large)
 {
 	struct class *c = &p->class[class];
-	struct realisation_cell cell = { realisation, step, 0, volume, count, large };
+	struct realisation_cell cell = { realisation, step, c->part, volume, count,
+		large };
 
 	p->culprit = class;
 	p->culprit_realisation = realisation;

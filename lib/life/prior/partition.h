@@ -82,6 +82,10 @@ void partition_free(struct partition *p);
 enum partition_status partition_class(
 	struct partition *p, int sparse, double pressure, double area, int *index);
 
+/* The fragments of a class that follow are of this part of its table.  A step of a
+ * realisation is in one part; else the ensembles of two studies have the same numbers. */
+void partition_part(struct partition *p, int class, long part);
+
 /* Adds the wear of one realisation in one step (from 1): volume worn (m3), number of
  * particles, and number of those of at least the critical size.  Consecutive calls for
  * the same realisation and step add up (particle tables); others return PARTITION_TWICE.
