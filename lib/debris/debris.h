@@ -47,6 +47,7 @@ enum debris_status {
 	DEBRIS_NUMBERS, /* a pressure that is not finite: nothing done */
 	DEBRIS_DEEP,    /* material fails deeper than ten times the length of the grid;
 			 * height is unchanged */
+	DEBRIS_FINE,    /* more than 2000 cells deep: height is unchanged */
 	DEBRIS_MEMORY
 };
 
@@ -66,6 +67,9 @@ enum debris_status debris_load(struct debris *d, const double *pressure);
  * other body) by the loss of each column. */
 enum debris_status debris_step(struct debris *d, double *height, const double *pressure,
 	struct debris_step *step);
+
+/* Depth below which nothing may fail, m. */
+double debris_deepest(const struct stress_par *par);
 
 /* Stress under the pressure of the last step, or of debris_load(). */
 struct stress *debris_stress(struct debris *d);

@@ -1,4 +1,6 @@
 #include "debris/footprint.h"
+#include "debris/debris.h"
+#include "debris/reserve.h"
 #include "num/lanes.h"
 #include "num/pages.h"
 #include "num/room.h"
@@ -8,28 +10,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const footprint_names[FOOTPRINT_FEATURES] = { "cells", "mean_stress",
-	"largest_stress", "load", "pressure", "contact", "unevenness", "spread",
-	"neighbours", "friction", "poisson", "depth" };
-
-/* First guess of the depth over the root of area times mean stress over strength.
- * Contacts of 30 N to the square millimetre on 128, 512 and 1024 cells a side, and of an
- * eighth of it, take 1.42, 1.37 and 1.51 sums a region at 0.55, 0.6 and 0.65, and 1.6
- * with 0.75 of the root of the area. */
-static const double FIRST = 0.6;
-
+/* Cells of a region below which the depth is found: LEAST, DENSE times the root of their
+ * number, or of the surface SHARE times the part of it that the region is, whichever is
+ * most.  Of 48 surfaces that lose 620 columns the volumes have rms errors of 7.3, 4.3 and
+ * 3.4 % without SHARE and DENSE of 1, 1.25 and 1.5, and of 2 % with SHARE; of four that
+ * lose 9900 columns 2.2, 1.2 and 1.0 %. */
+enum { LEAST = 4, SHARE = 250 };
+static const double DENSE = 1;
 struct footprints {
 	struct stress_par par;
-	double *value; /* equivalent stress in the spans, else 0 */
-	size_t *queue; /* cells of a region */
+	double *value; /* equivalent stress in the spans, negative in regions; else 0 */
+	size_t *cell;  /* those of the regions, one region after another */
+	size_t cells;
 	struct stress_span *span;
 	size_t spans;
+	double yield;
 	struct point_sum *below;
+	int deepest; /* depths that are allowed */
 	struct footprint *list;
 	size_t count, room;
-	/* centroids and loads of the regions, and after them one without load */
-	double *x, *y, *load;
-	size_t places;
 };
 
 struct footprints *footprints_new(const struct stress_par *par)
@@ -41,14 +40,15 @@ struct footprints *footprints_new(const struct stress_par *par)
 		return NULL;
 	f->par = *par;
 	f->value = calloc(n, sizeof *f->value);
-	f->queue = malloc(n * sizeof *f->queue);
+	f->cell = malloc(n * sizeof *f->cell);
 	f->span = malloc((size_t)par->ny * (((size_t)par->nx + 1) / 2) * sizeof *f->span);
 	f->below = point_sum_new(par);
-	if (!f->value || !f->queue || !f->span || !f->below) {
+	if (!f->value || !f->cell || !f->span || !f->below) {
 		footprints_free(f);
 		return NULL;
 	}
 	pages_large(f->value, n * sizeof *f->value);
+	f->deepest = point_sum_above(f->below, debris_deepest(par));
 	return f;
 }
 
@@ -57,80 +57,58 @@ void footprints_free(struct footprints *f)
 	if (!f)
 		return;
 	free(f->value);
-	free(f->queue);
+	free(f->cell);
 	free(f->span);
 	point_sum_free(f->below);
 	free(f->list);
-	free(f->x);
 	free(f);
 }
 
 /* Takes a cell into the region and marks it as taken. */
-static void take_cell(
-	struct footprints *f, struct footprint *r, size_t at, const double *pressure)
+static void take_cell(struct footprints *f, struct footprint *r, size_t at)
 {
 	const struct stress_par *s = &f->par;
-	size_t nx = (size_t)s->nx;
-	size_t row = at / nx;
+	size_t nx = (size_t)s->nx, row = at / nx;
 	double x = (double)(at % nx) * s->dx, y = (double)row * s->dy;
-	double v = f->value[at], p = pressure[at];
 
-	f->queue[r->cells++] = at;
-	f->value[at] = 0;
+	f->cell[f->cells++] = at;
+	r->cells++;
+	r->stress = fmax(r->stress, f->value[at]);
+	f->value[at] = -f->value[at];
 	r->x += x + 0.5 * s->dx;
 	r->y += y + 0.5 * s->dy;
 	r->low[0] = fmin(r->low[0], x);
 	r->low[1] = fmin(r->low[1], y);
 	r->high[0] = fmax(r->high[0], x + s->dx);
 	r->high[1] = fmax(r->high[1], y + s->dy);
-	r->load += p;
-	r->squares += p * p;
-	r->peak = fmax(r->peak, p);
-	r->contact += p > 0;
-	r->stress_sum += v;
-	if (v > r->stress_most) {
-		r->stress_most = v;
-		r->most_at = at;
-	}
 }
 
 /* The region that a cell belongs to, by flooding. */
-static void flood(struct footprints *f, struct footprint *r, size_t first,
-	const double *pressure, double yield)
+static struct footprint flood(struct footprints *f, size_t first)
 {
 	const struct stress_par *s = &f->par;
-	size_t nx = (size_t)s->nx, ny = (size_t)s->ny;
-
-	*r = (struct footprint){ .first = first,
+	size_t nx = (size_t)s->nx, ny = (size_t)s->ny, done = f->cells;
+	struct footprint r = { .first = first,
 		.low = { INFINITY, INFINITY },
 		.high = { -INFINITY, -INFINITY } };
-	take_cell(f, r, first, pressure);
-	for (size_t done = 0; done < r->cells; done++) {
-		size_t at = f->queue[done], x = at % nx, y = at / nx;
 
-		if (x > 0 && f->value[at - 1] > yield)
-			take_cell(f, r, at - 1, pressure);
-		if (x + 1 < nx && f->value[at + 1] > yield)
-			take_cell(f, r, at + 1, pressure);
-		if (y > 0 && f->value[at - nx] > yield)
-			take_cell(f, r, at - nx, pressure);
-		if (y + 1 < ny && f->value[at + nx] > yield)
-			take_cell(f, r, at + nx, pressure);
-	}
-	r->area = (double)r->cells * s->dx * s->dy;
-	r->load *= s->dx * s->dy;
-	r->x /= (double)r->cells;
-	r->y /= (double)r->cells;
-	/* the spread of a single cell */
-	for (size_t i = 0; i < r->cells; i++) {
-		size_t row = f->queue[i] / nx;
-		double u = ((double)(f->queue[i] % nx) + 0.5) * s->dx - r->x,
-		       v = ((double)row + 0.5) * s->dy - r->y;
+	take_cell(f, &r, first);
+	for (; done < f->cells; done++) {
+		size_t at = f->cell[done], x = at % nx, y = at / nx;
 
-		r->spread += u * u + v * v;
+		if (x > 0 && f->value[at - 1] > f->yield)
+			take_cell(f, &r, at - 1);
+		if (x + 1 < nx && f->value[at + 1] > f->yield)
+			take_cell(f, &r, at + 1);
+		if (y > 0 && f->value[at - nx] > f->yield)
+			take_cell(f, &r, at - nx);
+		if (y + 1 < ny && f->value[at + nx] > f->yield)
+			take_cell(f, &r, at + nx);
 	}
-	r->spread /= (double)r->cells;
-	r->spread += (s->dx * s->dx + s->dy * s->dy) / 12;
+	r.area = (double)r.cells * s->dx * s->dy;
+	r.x /= (double)r.cells;
+	r.y /= (double)r.cells;
+	return r;
 }
 
 static int by_size(const void *a, const void *b)
@@ -142,118 +120,93 @@ static int by_size(const void *a, const void *b)
 	return f->first < g->first ? -1 : f->first > g->first;
 }
 
-/* Copies centroids and loads side by side, for lanes. */
-static enum num_status place_regions(struct footprints *f)
+static int ascending(const void *a, const void *b)
 {
-	size_t even = f->count + 2 - f->count % 2;
+	size_t i = *(const size_t *)a, j = *(const size_t *)b;
 
-	if (room_for(&f->x, &f->places, 3 * even, sizeof *f->x))
-		return NUM_MEMORY;
-	f->y = f->x + even;
-	f->load = f->y + even;
-	f->x[f->count] = f->y[f->count] = f->load[f->count] = 0;
-	for (size_t i = 0; i < f->count; i++) {
-		f->x[i] = f->list[i].x;
-		f->y[i] = f->list[i].y;
-		f->load[i] = f->list[i].load;
-	}
-	return NUM_OK;
+	return (i > j) - (i < j);
 }
 
-/* Load of the others over squared distance, no nearer than the region is large. */
-static double pressed_by_others(struct footprints *f, const struct footprint *r)
+/* By rows, every other one from right to left, so that neighbours follow each other. */
+static void sort_cells(size_t *cell, size_t n, size_t nx)
 {
-	lanes x = lanes_all(r->x), y = lanes_all(r->y), near = lanes_all(r->spread);
-	lanes sum = lanes_all(0);
-	double *own = &f->load[r - f->list];
+	qsort(cell, n, sizeof *cell, ascending);
+	for (size_t i = 0, end; i < n; i = end) {
+		size_t row = cell[i] / nx;
 
-	*own = 0;
-	for (size_t i = 0; i < f->count; i += 2) {
-		lanes u = lanes_load(f->x + i, 2) - x, v = lanes_load(f->y + i, 2) - y;
+		for (end = i; end < n && cell[end] / nx == row; end++)
+			;
+		for (size_t a = i, z = end; row % 2 && a + 1 < z; a++) {
+			size_t swap = cell[a];
 
-		sum += lanes_load(f->load + i, 2) / lanes_max(u * u + v * v, near);
+			cell[a] = cell[--z];
+			cell[z] = swap;
+		}
 	}
-	*own = r->load;
-	return sum[0] + sum[1];
 }
 
-/* Roots of strength over stress at depth k, -1 for the surface, and the one below. */
-static void roots_at(const struct footprints *f, const struct footprint *r, double yield,
-	int k, double root[2])
+/* The first depth at which the stress below a cell is the yield stress.  From the surface
+ * down: below a film that fails there may be material that holds, above more that fails.
+ * nan: deeper than allowed. */
+static double depth_below(const struct footprints *f, size_t cell)
 {
+	struct reserve r = { 1, { 0 }, { reserve(f->yield, -f->value[cell]) } };
 	double stress[2];
 
-	point_sum_at(f->below, r->most_at, k < 0 ? 0 : k, stress);
-	if (k < 0) {
-		stress[1] = stress[0];
-		stress[0] = r->stress_most;
+	for (int k = 0; k < f->deepest; k++) {
+		double dip;
+
+		if (k % 2 == 0)
+			point_sum_at(f->below, cell, k, stress);
+		r = (struct reserve){ r.depths < 3 ? r.depths + 1 : 3,
+			{ point_sum_depth(f->below, k), r.z[0], r.z[1] },
+			{ reserve(f->yield, stress[k % 2]), r.g[0], r.g[1] } };
+		if (r.g[0] > 1)
+			return reserve_crossing(&r);
+		dip = reserve_dip(&r);
+		if (dip >= 0)
+			return dip;
 	}
-	for (int d = 0; d < 2; d++)
-		root[d] = sqrt(yield / stress[d]);
+	return NAN;
 }
 
-/* Root of strength over stress grows nearly in proportion to the depth: interpolated
- * between the two depths where it passes 1, nearest to the first guess.  On the surface
- * it is below 1. */
-static double depth_below(
-	const struct footprints *f, const struct footprint *r, double yield)
+static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 {
-	double mean = r->stress_sum / (double)r->cells;
-	int k = point_sum_above(f->below, FIRST * sqrt(r->area * mean / yield));
-	double root[2], above, share = 1;
+	double n = (double)r->cells, sum = 0, squares = 0, depth[3] = { 0 };
+	double part = fmax(DENSE * sqrt(n), SHARE * n / (double)f->cells);
+	size_t m = (size_t)fmin(n, ceil(fmax(LEAST, part)));
 
-	roots_at(f, r, yield, k, root);
-	if (root[0] > 1) {
-		while (root[0] > 1)
-			roots_at(f, r, yield, --k, root);
-	} else {
-		while (root[1] <= 1)
-			roots_at(f, r, yield, ++k, root);
+	sort_cells(cell, r->cells, (size_t)f->par.nx);
+	for (size_t i = 0; i < m; i++) {
+		double bend;
+
+		depth[2] = depth[1];
+		depth[1] = depth[0];
+		depth[0] =
+			depth_below(f, cell[(size_t)(((double)i + 0.5) * n / (double)m)]);
+		bend = depth[0] - 2 * depth[1] + depth[2];
+		sum += depth[0];
+		squares += i > 1 ? bend * bend : 0;
 	}
-	above = point_sum_depth(f->below, k);
-	/* The sum at a depth varies a little with the other depth: neither root need lie
-	 * on its side of 1. */
-	if (root[1] > 1)
-		share = fmax(0, (1 - root[0]) / (root[1] - root[0]));
-	return above + share * (point_sum_depth(f->below, k + 1) - above);
-}
-
-static double unevenness(const struct footprint *r)
-{
-	double mean = r->load / r->area;
-
-	return r->load > 0 ? log(r->squares / (double)r->cells / (mean * mean)) : 0;
-}
-
-static void describe(struct footprints *f, struct footprint *r, double yield)
-{
-	double *x = r->feature;
-
-	r->depth = depth_below(f, r, yield);
-	x[FOOTPRINT_CELLS] = log((double)r->cells);
-	x[FOOTPRINT_MEAN] = log(r->stress_sum / (double)r->cells / yield);
-	x[FOOTPRINT_MOST] = log(r->stress_most / yield);
-	x[FOOTPRINT_LOAD] = log1p(r->load / r->area / yield);
-	x[FOOTPRINT_PRESSURE] = log1p(r->peak / yield);
-	x[FOOTPRINT_CONTACT] = r->contact / (double)r->cells;
-	x[FOOTPRINT_UNEVEN] = unevenness(r);
-	x[FOOTPRINT_SPREAD] = log(r->spread / r->area);
-	x[FOOTPRINT_NEIGHBOUR] = log1p(pressed_by_others(f, r) / yield);
-	x[FOOTPRINT_FRICTION] = fabs(f->par.mu);
-	x[FOOTPRINT_POISSON] = f->par.nu;
-	x[FOOTPRINT_DEPTH] = log(r->depth / sqrt(r->area));
+	r->volume = r->area * sum / (double)m;
+	/* A mean at even distances is off by what varies from one to the next, not by a
+	 * trend: independent depths have second differences of six times their
+	 * variance. */
+	if (m < r->cells)
+		r->error = r->area * sqrt((1 - (double)m / n) * squares /
+					     (6 * (double)(m - 2) * (double)m));
 }
 
 /* The first cell above the yield stress from i on; end if there is none. */
-static size_t next_failing(const struct footprints *f, size_t i, size_t end, double yield)
+static size_t next_failing(const struct footprints *f, size_t i, size_t end)
 {
 	for (; i + 2 <= end; i += 2) {
-		lane_mask fails = lanes_load(f->value + i, 2) > yield;
+		lane_mask fails = lanes_load(f->value + i, 2) > f->yield;
 
 		if (fails[0] | fails[1])
 			break;
 	}
-	while (i < end && !(f->value[i] > yield))
+	while (i < end && !(f->value[i] > f->yield))
 		i++;
 	return i;
 }
@@ -274,8 +227,11 @@ enum num_status footprints_find(struct footprints *f, struct stress *stress,
 	const double *pressure, double yield, const struct footprint **list,
 	size_t *count)
 {
-	f->count = 0;
+	size_t at = 0;
+
+	f->count = f->cells = 0;
 	*count = 0;
+	f->yield = yield;
 	clear_values(f);
 	f->spans = stress_reach_surface(stress, yield, f->span);
 	if (stress_above(stress, yield, f->span, f->spans, f->value))
@@ -283,23 +239,19 @@ enum num_status footprints_find(struct footprints *f, struct stress *stress,
 	/* Row by row, and in each from left to right. */
 	for (size_t k = 0; k < f->spans; k++) {
 		size_t row = (size_t)f->span[k].y * (size_t)f->par.nx;
-
 		size_t end = row + (size_t)f->span[k].end;
 
-		for (size_t i = next_failing(
-			     f, row + (size_t)f->span[k].begin, end, yield);
-			i < end; i = next_failing(f, i + 1, end, yield)) {
+		for (size_t i = next_failing(f, row + (size_t)f->span[k].begin, end);
+			i < end; i = next_failing(f, i + 1, end)) {
 			if (room_for(&f->list, &f->room, f->count + 1, sizeof *f->list))
 				return NUM_MEMORY;
-			flood(f, &f->list[f->count++], i, pressure, yield);
+			f->list[f->count++] = flood(f, i);
 		}
 	}
 	point_sum_load(f->below, pressure);
+	for (size_t i = 0; i < f->count; at += f->list[i++].cells)
+		measure(f, &f->list[i], f->cell + at);
 	qsort(f->list, f->count, sizeof *f->list, by_size);
-	if (place_regions(f))
-		return NUM_MEMORY;
-	for (size_t i = 0; i < f->count; i++)
-		describe(f, &f->list[i], yield);
 	*list = f->list;
 	*count = f->count;
 	return NUM_OK;

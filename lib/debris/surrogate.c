@@ -4,80 +4,33 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Fitted to 240 of 300 rough contacts of 32 x 32 cells, the totals of the other 60 have
- * rms errors of 9.9, 8.3 and 8.1 % with 1, 3 and 6 passes, 8.5 and 8.3 % where a class
- * has a deviation of its own from 4 and from 10 particles on, and 8.3, 8.3, 8.0 and 16 %
- * with ridges of 1e-6, 1e-3, 1 and 1e3; 54 to 56 of the 60 lie within their intervals of
- * 90 %, which are calibrated for any choice made here.  A hundred surfaces leave 40
- * scores, the fewest for which intervals of 95 % have a score beyond either end. */
-enum { FEATURES = FOOTPRINT_FEATURES, TERMS = SURROGATE_TERMS, PASSES = 3, LEAST = 100 };
-const char *const surrogate_property_names[] = { "flow", "lay", "oblique" };
+/* A hundred surfaces leave 40 scores, the fewest for which intervals of 95 % have a score
+ * beyond either end. */
+enum { LEAST = 100 };
+const char *const surrogate_property_names[] = { "flow", "lay", "oblique", "friction",
+	"poisson" };
 
 enum part { FIT, CALIBRATE, CHECK };
 static const double SURE = 0.9; /* confidence level of the report */
+
+/* Of the logarithm of a volume: that of direct sums that are right to 1 % (point_sum.h).
+ */
+static const double SMALLEST = 0.01;
 
 static int class_of(size_t cells)
 {
 	return cells == 1 ? 0 : cells < 4 ? 1 : cells < 16 ? 2 : cells < 64 ? 3 : 4;
 }
 
-static double plain_volume(const struct footprint *f)
+/* Of the logarithm of a volume. */
+static double deviation_of(const struct surrogate *s, const struct footprint *f)
 {
-	return f->area * f->depth;
+	return hypot(s->deviation[class_of(f->cells)], f->error / f->volume);
 }
 
-static void terms_of(const struct surrogate *s, const double *feature, double *term)
+static double residual(const struct surrogate_sample *x)
 {
-	double x[FEATURES];
-	int n = 0;
-
-	term[n++] = 1;
-	for (int i = 0; i < FEATURES; i++)
-		term[n++] = x[i] = (feature[i] - s->mean[i]) / s->scale[i];
-	for (int i = 0; i < FEATURES; i++)
-		for (int j = i; j < FEATURES; j++)
-			term[n++] = x[i] * x[j];
-}
-
-/* ln of the volume over the plain one: its median. */
-static double predict(const struct surrogate *s, const struct footprint *f)
-{
-	double term[TERMS], sum = 0;
-
-	terms_of(s, f->feature, term);
-	for (int i = 0; i < TERMS; i++)
-		sum += s->coefficient[i] * term[i];
-	return sum;
-}
-
-static double residual(const struct surrogate *s, const struct surrogate_sample *x)
-{
-	return log(x->volume / plain_volume(&x->footprint)) - predict(s, &x->footprint);
-}
-
-/* ---- least squares ---- */
-
-/* Solves a x = b of a symmetric positive definite matrix, which is replaced by its
- * Cholesky factor. */
-static void solve(double a[TERMS][TERMS], double *b)
-{
-	for (int i = 0; i < TERMS; i++) {
-		for (int j = 0; j <= i; j++) {
-			double sum = a[i][j];
-
-			for (int k = 0; k < j; k++)
-				sum -= a[i][k] * a[j][k];
-			a[i][j] = i == j ? sqrt(sum) : sum / a[j][j];
-		}
-		for (int k = 0; k < i; k++)
-			b[i] -= a[i][k] * b[k];
-		b[i] /= a[i][i];
-	}
-	for (int i = TERMS - 1; i >= 0; i--) {
-		for (int k = i + 1; k < TERMS; k++)
-			b[i] -= a[k][i] * b[k];
-		b[i] /= a[i][i];
-	}
+	return log(x->volume / x->footprint.volume);
 }
 
 static enum part part_of(long place)
@@ -85,65 +38,30 @@ static enum part part_of(long place)
 	return place % 5 < 2 ? FIT : place % 5 < 4 ? CALIBRATE : CHECK;
 }
 
-/* Features that hardly vary in the samples keep a scale of 1, which makes them small. The
- * ridge sets coefficients that the samples do not determine to zero. */
-static enum num_status fit_coefficients(const struct surrogate_sample *sample,
-	const char *part, size_t n, struct surrogate *s)
-{
-	static const double RIDGE = 1e-3;
-	double(*a)[TERMS] = calloc(TERMS, sizeof *a), *b = s->coefficient;
-	double term[TERMS];
-
-	if (!a)
-		return NUM_MEMORY;
-	memset(b, 0, sizeof s->coefficient);
-	for (size_t i = 0; i < n; i++) {
-		const struct footprint *f = &sample[i].footprint;
-		double sd = s->deviation[class_of(f->cells)];
-		double weight = 1 / (sd * sd);
-		double y = log(sample[i].volume / plain_volume(f));
-
-		if (part[i] != FIT)
-			continue;
-		terms_of(s, f->feature, term);
-		for (int j = 0; j < TERMS; j++) {
-			b[j] += weight * y * term[j];
-			for (int k = 0; k <= j; k++)
-				a[j][k] += weight * term[j] * term[k];
-		}
-	}
-	for (int j = 0; j < TERMS; j++)
-		a[j][j] += RIDGE * a[0][0] / 1000;
-	solve(a, b);
-	free(a);
-	return NUM_OK;
-}
-
+/* Of the regions of which every cell was measured. */
 static void find_deviations(const struct surrogate_sample *sample, const char *part,
 	size_t n, struct surrogate *s)
 {
 	double count[SURROGATE_CLASSES] = { 0 }, squares[SURROGATE_CLASSES] = { 0 },
-	       sum[SURROGATE_CLASSES] = { 0 }, all = 0, all_squares = 0;
+	       all = 0, all_squares = 0;
 
 	for (size_t i = 0; i < n; i++) {
+		double r = residual(&sample[i]);
 		int c = class_of(sample[i].footprint.cells);
-		double r = residual(s, &sample[i]);
 
-		if (part[i] != FIT)
+		if (part[i] != FIT || sample[i].footprint.error > 0)
 			continue;
 		count[c]++;
 		squares[c] += r * r;
-		/* A volume 20 times the plain one is an outlier of the fit. */
-		sum[c] += exp(fmin(r, 3));
 		all++;
 		all_squares += r * r;
 	}
 	for (int c = 0; c < SURROGATE_CLASSES; c++) {
-		int enough = count[c] >= 10;
+		double variance = count[c] > 0 ? squares[c] / count[c]
+				  : all > 0    ? all_squares / all
+					       : 0;
 
-		s->deviation[c] =
-			sqrt(enough ? squares[c] / count[c] : all_squares / all);
-		s->factor[c] = enough ? sum[c] / count[c] : 1;
+		s->deviation[c] = fmax(SMALLEST, sqrt(variance));
 	}
 }
 
@@ -151,35 +69,16 @@ static void find_range(const struct surrogate_sample *sample, const char *part, 
 	struct surrogate *s)
 {
 	for (int k = 0; k < SURROGATE_PROPERTIES; k++) {
-		s->least[k] = INFINITY;
-		s->most[k] = -INFINITY;
+		double *least = &s->least.property[k], *most = &s->most.property[k];
+
+		*least = INFINITY;
+		*most = -INFINITY;
 		for (size_t i = 0; i < n; i++) {
 			if (part[i] != FIT)
 				continue;
-			s->least[k] = fmin(s->least[k], sample[i].contact[k]);
-			s->most[k] = fmax(s->most[k], sample[i].contact[k]);
+			*least = fmin(*least, sample[i].contact.property[k]);
+			*most = fmax(*most, sample[i].contact.property[k]);
 		}
-	}
-	for (int k = 0; k < FEATURES; k++) {
-		double count = 0, mean = 0, square = 0;
-
-		s->low[k] = INFINITY;
-		s->high[k] = -INFINITY;
-		for (size_t i = 0; i < n; i++) {
-			double x = sample[i].footprint.feature[k], d;
-
-			if (part[i] != FIT)
-				continue;
-			s->low[k] = fmin(s->low[k], x);
-			s->high[k] = fmax(s->high[k], x);
-			d = x - mean;
-			mean += d / ++count;
-			square += d * (x - mean);
-		}
-		s->mean[k] = mean;
-		s->scale[k] = sqrt(square / count);
-		if (!(s->scale[k] > 1e-9 * (1 + fabs(mean))))
-			s->scale[k] = 1;
 	}
 }
 
@@ -223,23 +122,20 @@ double surrogate_highest_level(const struct surrogate *s)
 	return 1 - 2.0 / (n + 1);
 }
 
-/* Volumes, and the deviation of their total where errors are independent. */
-static double guess_plain(const struct surrogate *s, const struct footprint *f, size_t n,
-	struct surrogate_guess *guess, double *total)
+/* Sum of the volumes, and its deviation where errors are independent. */
+static double sum_volumes(
+	const struct surrogate *s, const struct footprint *f, size_t n, double *deviation)
 {
-	double square = 0;
+	double total = 0, square = 0;
 
-	*total = 0;
 	for (size_t i = 0; i < n; i++) {
-		int c = class_of(f[i].cells);
-		double v = plain_volume(&f[i]) * exp(predict(s, &f[i])) * s->factor[c];
+		double d = f[i].volume * deviation_of(s, &f[i]);
 
-		if (guess)
-			guess[i].volume = v;
-		*total += v;
-		square += v * v * s->deviation[c] * s->deviation[c];
+		total += f[i].volume;
+		square += d * d;
 	}
-	return sqrt(square);
+	*deviation = sqrt(square);
+	return total;
 }
 
 /* Of the ln of a total.  What a kind of surfaces has in common does not average out over
@@ -260,8 +156,8 @@ static double flow_of(const double *pressure, size_t cells, double hardness)
 	return loaded > 0 ? flows / loaded : 0;
 }
 
-void surrogate_contact(const struct stress_par *par, const double *pressure,
-	double hardness, double property[SURROGATE_PROPERTIES])
+struct surrogate_contact surrogate_contact(
+	const struct stress_par *par, const double *pressure, double hardness)
 {
 	size_t nx = (size_t)par->nx, ny = (size_t)par->ny;
 	double xx = 0, xy = 0, yy = 0, sum;
@@ -277,9 +173,13 @@ void surrogate_contact(const struct stress_par *par, const double *pressure,
 			yy += gy * gy;
 		}
 	sum = xx + yy > 0 ? xx + yy : 1;
-	property[SURROGATE_FLOW] = flow_of(pressure, nx * ny, hardness);
-	property[SURROGATE_LAY] = (par->axis ? yy - xx : xx - yy) / sum;
-	property[SURROGATE_OBLIQUE] = 2 * fabs(xy) / sum;
+	return (struct surrogate_contact){ {
+		[SURROGATE_FLOW] = flow_of(pressure, nx * ny, hardness),
+		[SURROGATE_LAY] = (par->axis ? yy - xx : xx - yy) / sum,
+		[SURROGATE_OBLIQUE] = 2 * fabs(xy) / sum,
+		[SURROGATE_FRICTION] = fabs(par->mu),
+		[SURROGATE_POISSON] = par->nu,
+	} };
 }
 
 static int is_between(double x, double low, double high)
@@ -290,33 +190,31 @@ static int is_between(double x, double low, double high)
 }
 
 int surrogate_guess(const struct surrogate *s, const struct footprint *footprint,
-	size_t count, const double contact[SURROGATE_PROPERTIES], double level,
+	size_t count, const struct surrogate_contact *contact, double level,
 	struct surrogate_guess *guess, struct surrogate_guess *total)
 {
 	double low, high, total_low, total_high, deviation;
 
 	*total = (struct surrogate_guess){ 0 };
 	for (int k = 0; k < SURROGATE_PROPERTIES && count > 0; k++)
-		if (!is_between(contact[k], s->least[k], s->most[k]))
+		if (!is_between(contact->property[k], s->least.property[k],
+			    s->most.property[k]))
 			return 0;
-	for (size_t i = 0; i < count; i++)
-		for (int k = 0; k < FEATURES; k++)
-			if (!is_between(footprint[i].feature[k], s->low[k], s->high[k]))
-				return 0;
 	if (!bounds(s->particle, s->particles, level, &low, &high) ||
 		!bounds(s->total, s->totals, level, &total_low, &total_high))
 		return 0;
 	if (count == 0)
 		return 1;
-	deviation = guess_plain(s, footprint, count, guess, &total->volume);
-	deviation = total_deviation(s, deviation, total->volume);
+	total->volume = sum_volumes(s, footprint, count, &deviation);
+	if (!isfinite(total->volume))
+		return 0;
 	for (size_t i = 0; i < count; i++) {
-		int c = class_of(footprint[i].cells);
-		double median = guess[i].volume / s->factor[c];
+		double v = footprint[i].volume, d = deviation_of(s, &footprint[i]);
 
-		guess[i].low = median * exp(low * s->deviation[c]);
-		guess[i].high = median * exp(high * s->deviation[c]);
+		guess[i] = (struct surrogate_guess){ v, v * exp(low * d),
+			v * exp(high * d) };
 	}
+	deviation = total_deviation(s, deviation, total->volume);
 	total->low = total->volume * exp(total_low * deviation);
 	total->high = total->volume * exp(total_high * deviation);
 	return 1;
@@ -340,7 +238,7 @@ static double total_error(const struct surrogate *s, const struct surrogate_samp
 	double truth = 0, total = 0, square = 0;
 
 	for (size_t i = 0; i < n; i++) {
-		double one, sd = guess_plain(s, &x[i].footprint, 1, NULL, &one);
+		double sd, one = sum_volumes(s, &x[i].footprint, 1, &sd);
 
 		truth += x[i].volume;
 		total += one;
@@ -378,9 +276,8 @@ static void calibrate(const struct surrogate_sample *sample, const char *part, s
 
 	for (size_t i = 0; i < n; i++)
 		if (part[i] == CALIBRATE)
-			score[count++] =
-				residual(s, &sample[i]) /
-				s->deviation[class_of(sample[i].footprint.cells)];
+			score[count++] = residual(&sample[i]) /
+					 deviation_of(s, &sample[i].footprint);
 	s->particles = keep_scores(score, count, s->particle);
 	count = 0;
 	for (size_t i = 0; i < n; i = end) {
@@ -423,9 +320,8 @@ enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_
 {
 	char *part = malloc(n + 1);
 	double *score = malloc((n + 1) * sizeof *score);
-	size_t fitted = 0, end;
+	size_t end;
 	long place = 0;
-	enum num_status memory = NUM_OK;
 
 	memset(s, 0, sizeof *s);
 	memset(report, 0, sizeof *report);
@@ -439,26 +335,18 @@ enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_
 
 		end = surface_end(sample, n, i);
 		memset(part + i, (int)p, end - i);
-		fitted += p == FIT ? end - i : 0;
 		report->fitted += p == FIT;
 		report->calibrated += p == CALIBRATE;
 		report->checked += p == CHECK;
 	}
-	if (place >= LEAST && fitted >= 3 * TERMS) {
+	if (place >= LEAST) {
 		find_range(sample, part, n, s);
-		for (int c = 0; c < SURROGATE_CLASSES; c++)
-			s->deviation[c] = 1;
-		for (int pass = 0; pass < PASSES && memory == NUM_OK; pass++) {
-			memory = fit_coefficients(sample, part, n, s);
-			find_deviations(sample, part, n, s);
-		}
+		find_deviations(sample, part, n, s);
 		find_shared(sample, part, n, s);
 		calibrate(sample, part, n, s, score);
 		check(sample, part, n, s, report);
 	}
 	free(part);
 	free(score);
-	if (memory != NUM_OK)
-		return SURROGATE_MEMORY;
-	return place >= LEAST && fitted >= 3 * TERMS ? SURROGATE_OK : SURROGATE_FEW;
+	return place >= LEAST ? SURROGATE_OK : SURROGATE_FEW;
 }

@@ -1,17 +1,15 @@
-/* surrogate.h - volumes of wear particles from their footprints, with intervals that hold
+/* surrogate.h - intervals that hold for volumes estimated from some columns
  *
- * The volume is the depth below one cell of a footprint times its area times a factor,
- * whose logarithm is a quadratic function of the features of the footprint
- * (footprint.h), fitted by least squares.  Intervals are conformal: the stated shares of
- * particles and surfaces not used in the fit lie within them for any distribution of the
- * errors, provided that scenes are drawn like those of the fit.  There is no estimate
- * outside the range of the features of the fit, nor outside that of the whole contact's
- * flow, since a limited pressure is more even than its mean and its maximum tell, and
- *lay, since material fails less deep below narrow contacts.
+ * The volumes and their standard errors are those of footprint.h.  What they are off by
+ * besides, and the quantiles of the errors in terms of both, come from surfaces of the
+ * full model.  Intervals are conformal: the stated shares of particles and surfaces not
+ * used in the fit lie within them for any distribution of the errors, provided that
+ * scenes are drawn like those of the fit.  There is no estimate where a property of the
+ * contact is outside the range of the fit.
  *
  *	struct surrogate s;
  *	if (surrogate_fit(sample, n, &s, &report) == SURROGATE_OK)
- *		inside = surrogate_guess(&s, footprint, count, contact, 0.9, guess,
+ *		inside = surrogate_guess(&s, footprint, count, &contact, 0.9, guess,
  *&total);
  */
 #ifndef DEBRIS_SURROGATE_H
@@ -20,30 +18,32 @@
 #include "debris/footprint.h"
 
 enum {
-	SURROGATE_TERMS = 1 + FOOTPRINT_FEATURES +
-			  FOOTPRINT_FEATURES * (FOOTPRINT_FEATURES + 1) / 2,
 	SURROGATE_CLASSES = 5, /* of footprints, by cells: 1, 2-3, 4-15, 16-63, more */
 	SURROGATE_SCORES = 512 /* at most of each kind; of more, as many quantiles */
 };
 
-/* Properties of a contact: the share of its loaded cells that are at the hardness, and
- * the traceless part of its mean product of pressure gradients over their mean square:
- * along (1) or across (-1) the direction of sliding, and at 45 degrees to it (1). */
+/* Properties of a contact: the share of its loaded cells that are at the hardness; the
+ * traceless part of its mean product of pressure gradients over their mean square, along
+ * (1) or across (-1) the direction of sliding, and at 45 degrees to it (1); friction
+ * and Poisson's ratio. */
 enum surrogate_property {
 	SURROGATE_FLOW,
 	SURROGATE_LAY,
 	SURROGATE_OBLIQUE,
+	SURROGATE_FRICTION,
+	SURROGATE_POISSON,
 	SURROGATE_PROPERTIES
 };
 extern const char *const surrogate_property_names[SURROGATE_PROPERTIES];
 
+struct surrogate_contact {
+	double property[SURROGATE_PROPERTIES];
+};
+
 struct surrogate {
-	double low[FOOTPRINT_FEATURES], high[FOOTPRINT_FEATURES]; /* range of the fit */
-	double mean[FOOTPRINT_FEATURES], scale[FOOTPRINT_FEATURES];
-	double coefficient[SURROGATE_TERMS];
-	double deviation[SURROGATE_CLASSES]; /* of the logarithm */
-	double factor[SURROGATE_CLASSES];    /* mean over median of a volume */
-	double least[SURROGATE_PROPERTIES], most[SURROGATE_PROPERTIES]; /* of the fit */
+	struct surrogate_contact least, most; /* of the fit */
+	/* Of the logarithm of a volume, beyond the standard error. */
+	double deviation[SURROGATE_CLASSES];
 	double shared; /* deviation that all particles of a surface have in common */
 	/* Ascending: ln(true / estimated volume) / deviation, of the particles and
 	 * surfaces held back for it. */
@@ -55,8 +55,8 @@ struct surrogate {
 struct surrogate_sample {
 	long surface; /* number; those of one stand together */
 	struct footprint footprint;
-	double volume;                        /* m3 */
-	double contact[SURROGATE_PROPERTIES]; /* of the surface */
+	double volume;                    /* m3 */
+	struct surrogate_contact contact; /* of the surface */
 };
 
 /* Of the surfaces that neither the fit nor its intervals have seen. */
@@ -73,8 +73,7 @@ struct surrogate_guess {
 
 enum surrogate_status {
 	SURROGATE_OK,
-	SURROGATE_FEW, /* samples: fewer than three for each coefficient, or surfaces:
-			* fewer than 100 */
+	SURROGATE_FEW, /* fewer than 100 surfaces */
 	SURROGATE_MEMORY
 };
 
@@ -86,15 +85,15 @@ enum surrogate_status surrogate_fit(const struct surrogate_sample *sample, size_
 /* The highest level for which there is a score beyond either end. */
 double surrogate_highest_level(const struct surrogate *s);
 
-/* Properties of a contact; hardness 0: none. */
-void surrogate_contact(const struct stress_par *par, const double *pressure,
-	double hardness, double property[SURROGATE_PROPERTIES]);
+/* Hardness 0: none. */
+struct surrogate_contact surrogate_contact(
+	const struct stress_par *par, const double *pressure, double hardness);
 
 /* Volumes of the particles of a surface and of all of them, with intervals of this level
- * (equal tails).  0 where a footprint lies outside the range of the fit, or the level
- * is above the highest: nothing is said then. */
+ * (equal tails).  0 where the contact lies outside the range of the fit, a volume is not
+ * known, or the level is above the highest: nothing is said then. */
 int surrogate_guess(const struct surrogate *s, const struct footprint *footprint,
-	size_t count, const double contact[SURROGATE_PROPERTIES], double level,
+	size_t count, const struct surrogate_contact *contact, double level,
 	struct surrogate_guess *guess, struct surrogate_guess *total);
 
 #endif

@@ -1,4 +1,5 @@
 #include "debris/wear.h"
+#include "debris/reserve.h"
 #include "num/pages.h"
 #include "num/room.h"
 #include "num/status.h"
@@ -60,55 +61,16 @@ static double depth_of(const struct wear_par *p, long layer)
 	return layer ? p->spacing * FIRST * exp2(0.5 * (double)(layer - 1)) : 0;
 }
 
-/* Square root of strength over stress.  It grows in proportion to the depth below a
- * distant load, which makes it nearly linear for the interpolation.  Bounded, far above
- * the 1 of failure, where there is no stress. */
-static double reserve(const struct wear *w, int ago, size_t at)
+/* The last depths, and at them the reserve of a node. */
+static struct reserve reserve_at(const struct wear *w, size_t at, long layer)
 {
-	return sqrt(w->par->yield / fmax(w->value[ago][at], 1e-6 * w->par->yield));
-}
+	struct reserve r = { .depths = layer < 2 ? (int)layer + 1 : 3 };
 
-/* Where the stress crosses the yield stress between the last two depths: on the parabola
- * through the last three, or the line through two. */
-static double crossing(const struct wear *w, size_t at, long layer)
-{
-	double z1 = depth_of(w->par, layer - 1), z2 = depth_of(w->par, layer);
-	double g1 = reserve(w, 1, at), g2 = reserve(w, 0, at), step = z2 - z1;
-	double slope = (g2 - g1) / step, bend = 0, b, c = g1 - 1, q, s;
-
-	if (layer > 1) {
-		double z0 = depth_of(w->par, layer - 2), g0 = reserve(w, 2, at);
-
-		bend = (slope - (g1 - g0) / (z1 - z0)) / (z2 - z0);
+	for (int ago = 0; ago < r.depths; ago++) {
+		r.z[ago] = depth_of(w->par, layer - ago);
+		r.g[ago] = reserve(w->par->yield, w->value[ago][at]);
 	}
-	/* bend s^2 + b s + c = 0 has one root in [0, step]. */
-	b = slope - bend * step;
-	q = -0.5 * (b + copysign(sqrt(fmax(0, b * b - 4 * bend * c)), b));
-	s = c / q;
-	if (!(s >= 0 && s <= step))
-		s = q / bend;
-	return z1 + fmin(fmax(s, 0), step);
-}
-
-/* Where the parabola through the last three depths, at which the node fails, first holds;
- * < 0: nowhere. */
-static double dip(const struct wear *w, size_t at, long layer)
-{
-	double z0, z1, z2, g0, slope, bend, b, c, most;
-
-	if (layer < 2)
-		return -1;
-	z0 = depth_of(w->par, layer - 2), z1 = depth_of(w->par, layer - 1);
-	z2 = depth_of(w->par, layer), g0 = reserve(w, 2, at);
-	slope = (reserve(w, 1, at) - g0) / (z1 - z0);
-	bend = ((reserve(w, 0, at) - reserve(w, 1, at)) / (z2 - z1) - slope) / (z2 - z0);
-	/* g0 + b s + bend s^2 - 1 */
-	b = slope - bend * (z1 - z0);
-	c = g0 - 1;
-	most = -b / (2 * bend);
-	if (!(bend < 0 && most > 0 && most < z2 - z0 && b * b > 4 * bend * c))
-		return -1;
-	return z0 + 2 * c / (-b - sqrt(b * b - 4 * bend * c));
+	return r;
 }
 
 static enum num_status close_stretch(struct wear *w, size_t at, double bottom)
@@ -130,15 +92,18 @@ static enum num_status take_node(struct wear *w, size_t at, long layer)
 {
 	double cell = w->par->cell, f = w->value[0][at], z;
 	int open = w->top[at] >= 0, fails = f > w->par->yield;
+	struct reserve r;
 
 	w->result->stress = fmax(w->result->stress, f);
 	if (open && fails && cell == 0 && w->par->rule == WEAR_COLUMN) {
-		z = dip(w, at, layer);
+		r = reserve_at(w, at, layer);
+		z = reserve_dip(&r);
 		return z >= 0 ? close_stretch(w, at, z) : NUM_OK;
 	}
 	if (open == fails)
 		return NUM_OK;
-	z = cell > 0 ? (double)layer * cell : layer > 0 ? crossing(w, at, layer) : 0;
+	r = reserve_at(w, at, layer);
+	z = cell > 0 ? (double)layer * cell : layer > 0 ? reserve_crossing(&r) : 0;
 	if (open)
 		return close_stretch(w, at, z);
 	if (layer == 0 || w->par->rule == WEAR_POTENTIAL)

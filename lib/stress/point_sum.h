@@ -2,10 +2,10 @@
  *
  * For a few points a direct sum over the loaded cells is cheaper than a layer
  * (free_sum.h).  Cells nearby are summed as elements, others as point loads, and squares
- * of 8 x 8, 16 x 16, ... cells that are farther away than three of their sides as one
- * load at its centroid.  Below contacts of one to five cells radius this is within 6 % of
- * the largest pressure and from a depth of 8 cells on within 2.5 % of the stress.  The
- * depths form a geometric sequence, so that each element is computed once for all points.
+ * of 4 x 4, 8 x 8, ... cells that are farther away than some of their sides as one load
+ * at its centroid.  Below contacts of one to five cells radius this is within 2 % of the
+ * largest pressure.  The depths form a geometric sequence, so that each element is
+ * computed once for all points.
  */
 #ifndef STRESS_POINT_SUM_H
 #define STRESS_POINT_SUM_H

@@ -1,9 +1,8 @@
 /* surrogate_table.h - a surrogate of the debris model as a table: debrisfit, debrisgen
  *
- * Columns kind, first, second and value: low, high, mean and scale of a feature; the
- * coefficient of a product of two features, 1 standing for none; deviation and factor of
- * a class of footprints; the shared deviation; the scores of particles and totals,
- * ascending.
+ * Columns kind, name and value: least and most of a property of the contacts of the fit;
+ * deviation of a class of footprints; the shared deviation; the scores of particles and
+ * totals, ascending.
  */
 #ifndef SURROGATE_TABLE_H
 #define SURROGATE_TABLE_H

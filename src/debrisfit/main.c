@@ -61,7 +61,7 @@ static struct debris_par par_of(const struct record *r, long record)
 
 static void add_samples(const struct fields_in *in, long surface, int nx,
 	const struct debris_step *step, const struct footprint *list, size_t n,
-	const double contact[SURROGATE_PROPERTIES])
+	const struct surrogate_contact *contact)
 {
 	if (n != step->count)
 		die(EXIT_RUN, "%s: record %ld: %zu footprints of %zu particles",
@@ -73,12 +73,9 @@ static void add_samples(const struct fields_in *in, long surface, int nx,
 			const struct particle *p = &step->particle[k];
 
 			if ((size_t)p->first[1] * (size_t)nx + (size_t)p->first[0] ==
-				list[i].first) {
-				sample[count] = (struct surrogate_sample){ surface,
-					list[i], p->volume, { 0 } };
-				memcpy(sample[count++].contact, contact,
-					SURROGATE_PROPERTIES * sizeof *contact);
-			}
+				list[i].first)
+				sample[count++] = (struct surrogate_sample){ surface,
+					list[i], p->volume, *contact };
 		}
 }
 
@@ -92,7 +89,7 @@ static void take_record(const struct fields_in *in, const struct record *r, long
 	const struct footprint *list;
 	struct debris_step step;
 	enum debris_status status;
-	double contact[SURROGATE_PROPERTIES];
+	struct surrogate_contact contact;
 	size_t n;
 
 	if (!f)
@@ -108,9 +105,9 @@ static void take_record(const struct fields_in *in, const struct record *r, long
 	if (footprints_find(f, debris_stress(d), pressure, par.yield, &list, &n) !=
 		NUM_OK)
 		die(EXIT_RUN, "out of memory");
-	surrogate_contact(
-		&par.stress, pressure, record_get_number(r, "hardness"), contact);
-	add_samples(in, surface, r->nx, &step, list, n, contact);
+	contact = surrogate_contact(
+		&par.stress, pressure, record_get_number(r, "hardness"));
+	add_samples(in, surface, r->nx, &step, list, n, &contact);
 	footprints_free(f);
 	debris_free(d);
 	free(height);
@@ -149,9 +146,8 @@ int main(int argc, char **argv)
 	status = surrogate_fit(sample, count, &s, &report);
 	if (status == SURROGATE_FEW)
 		die(EXIT_RUN,
-			"%s: %ld surfaces with %zu particles are too few: want 100 that lose some, "
-			"and some %d particles",
-			fields_name(in), surfaces, count, 8 * SURROGATE_TERMS);
+			"%s: %ld surfaces with %zu particles are too few: want 100 that lose some",
+			fields_name(in), surfaces, count);
 	if (status == SURROGATE_MEMORY)
 		die(EXIT_RUN, "out of memory");
 	surrogate_write(&s, &report, cmd);

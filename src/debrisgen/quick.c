@@ -117,7 +117,7 @@ int quick_step(struct quick *q, struct stress *stress, const double *pressure,
 	double yield, double hardness, long realisation, struct debris_step *step)
 {
 	const struct footprint *list;
-	double contact[SURROGATE_PROPERTIES];
+	struct surrogate_contact contact;
 	size_t n;
 
 	if (footprints_find(q->footprints, stress, pressure, yield, &list, &n) != NUM_OK)
@@ -129,8 +129,8 @@ int quick_step(struct quick *q, struct stress *stress, const double *pressure,
 	}
 	q->volumes = (struct quick_volumes){ .exact = n == 0, .particle = q->guess };
 	q->audited = 0;
-	surrogate_contact(&q->par, pressure, hardness, contact);
-	if (!surrogate_guess(&q->surrogate, list, n, contact, level, q->guess,
+	contact = surrogate_contact(&q->par, pressure, hardness);
+	if (!surrogate_guess(&q->surrogate, list, n, &contact, level, q->guess,
 		    &q->volumes.total)) {
 		q->outside++;
 		return 0;
@@ -151,7 +151,7 @@ int quick_step(struct quick *q, struct stress *stress, const double *pressure,
 	step->particle = q->particle;
 	for (size_t i = 0; i < n; i++) {
 		q->particle[i] = particle_of(&list[i], &q->guess[i]);
-		step->wear.stress = fmax(step->wear.stress, list[i].stress_most);
+		step->wear.stress = fmax(step->wear.stress, list[i].stress);
 		step->wear.columns += (long)list[i].cells;
 	}
 	return 1;

@@ -8,6 +8,7 @@
 #include <string.h>
 
 enum { FEW = 10, MANY = 1000 };
+static const double ERROR = 0.3; /* relative standard error of large particles at most */
 
 static double uniform(uint64_t i)
 {
@@ -38,12 +39,10 @@ static void make_surface(
 		s[i].surface = number;
 		f->cells = 1 + (size_t)(100 * uniform(at++));
 		f->area = (double)f->cells;
-		f->depth = 0.5 + uniform(at++);
-		for (int k = 0; k < FOOTPRINT_FEATURES; k++)
-			f->feature[k] = uniform(at++);
-		s[i].volume = f->area * f->depth *
-			      exp(0.3 * f->feature[0] - 0.2 * f->feature[3] + error +
-				      own * normal(at));
+		f->volume = f->area * (0.5 + uniform(at++));
+		f->error = f->cells > 20 ? ERROR * uniform(at++) * f->volume : 0;
+		s[i].volume = f->volume *
+			      exp(error + hypot(own, f->error / f->volume) * normal(at));
 		at++;
 	}
 }
@@ -54,7 +53,7 @@ static double coverage(const struct surrogate *s, double own, double shared)
 	struct surrogate_sample *sample = malloc(MANY * sizeof *sample);
 	struct footprint *list = malloc(MANY * sizeof *list);
 	struct surrogate_guess *guess = malloc(MANY * sizeof *guess), total;
-	const double contact[SURROGATE_PROPERTIES] = { 0 };
+	const struct surrogate_contact contact = { { 0 } };
 	double held = 0, tried = 0;
 
 	for (long k = 0; k < 200; k++) {
@@ -63,11 +62,9 @@ static double coverage(const struct surrogate *s, double own, double shared)
 		make_surface(sample, MANY, 10000 + k, own, shared);
 		for (size_t i = 0; i < MANY; i++) {
 			list[i] = sample[i].footprint;
-			for (int j = 0; j < FOOTPRINT_FEATURES; j++)
-				list[i].feature[j] = 0.02 + 0.96 * list[i].feature[j];
 			volume += sample[i].volume;
 		}
-		if (!surrogate_guess(s, list, MANY, contact, 0.9, guess, &total))
+		if (!surrogate_guess(s, list, MANY, &contact, 0.9, guess, &total))
 			continue;
 		tried++;
 		held += total.low <= volume && volume <= total.high;
@@ -106,21 +103,22 @@ static void test_contact(int axis, double x, double y, double lay, double obliqu
 {
 	enum { NX = 7, NY = 5 };
 	struct stress_par par = { .nx = NX, .ny = NY, .dx = 2, .dy = 3, .axis = axis };
-	double p[NX * NY], property[SURROGATE_PROPERTIES];
+	double p[NX * NY];
+	struct surrogate_contact c;
 
 	for (int i = 0; i < NX * NY; i++)
 		p[i] = 1 + par.dx * x * (i % NX) + par.dy * y * (i / NX);
 	p[0] = 0;
-	surrogate_contact(&par, p, 1e-3, property);
-	ok(property[SURROGATE_FLOW] == 1, "all loaded cells are at the hardness");
+	c = surrogate_contact(&par, p, 1e-3);
+	ok(c.property[SURROGATE_FLOW] == 1, "all loaded cells are at the hardness");
 	p[0] = 1;
-	surrogate_contact(&par, p, 0, property);
-	ok(property[SURROGATE_FLOW] == 0, "without a hardness none is");
-	ok(fabs(property[SURROGATE_LAY] - lay) < 1e-12 &&
-			fabs(property[SURROGATE_OBLIQUE] - oblique) < 1e-12,
+	c = surrogate_contact(&par, p, 0);
+	ok(c.property[SURROGATE_FLOW] == 0, "without a hardness none is");
+	ok(fabs(c.property[SURROGATE_LAY] - lay) < 1e-12 &&
+			fabs(c.property[SURROGATE_OBLIQUE] - oblique) < 1e-12,
 		"a slope of %g, %g has the lay %g (%g), at 45 degrees %g (%g), where sliding is along %c",
-		x, y, lay, property[SURROGATE_LAY], oblique, property[SURROGATE_OBLIQUE],
-		"xy"[axis]);
+		x, y, lay, c.property[SURROGATE_LAY], oblique,
+		c.property[SURROGATE_OBLIQUE], "xy"[axis]);
 }
 
 int main(void)

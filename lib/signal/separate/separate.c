@@ -339,8 +339,7 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 		return SEPARATE_REVERSED;
 	if (s->par.kept && !s->kept.crowded && 2 * c->dense > c->samples)
 		return SEPARATE_CROWD;
-	if (c->misfits > 2 &&
-		10 * c->misfits > c->rows + c->unresolved + c->events[SEPARATE_TRANSIENT])
+	if (c->misfits > 2 && 10 * c->misfits > separate_judged(c))
 		return SEPARATE_FOREIGN;
 	if (c->unlike > UNLIKE * UNLIKE * c->compared)
 		return SEPARATE_UNLIKE;

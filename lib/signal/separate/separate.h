@@ -128,6 +128,12 @@ struct separate_counters {
 	double covered; /* samples of events in which no particle would be found */
 };
 
+/* Rows that may fit no particle: pulses, what is unresolved, and events of no name. */
+static inline double separate_judged(const struct separate_counters *c)
+{
+	return c->rows + c->unresolved + c->events[SEPARATE_TRANSIENT];
+}
+
 struct separate;
 struct separate *separate_new(const struct separate_par *par); /* NULL: no memory */
 void separate_free(struct separate *s);
