@@ -160,4 +160,5 @@ fails "a duration without end of periods after the last particle" 2 'more than 1
 printf '# units: 0mm\ndiameter\n50\n' >zero.tsv
 fails "a unit that begins with a digit" 1 "column 'diameter' is in '0mm', want m" debriscount zero.tsv
 fails "a record after a record" 1 'another record begins' sh -c 'cat six.tsv six.tsv | debriscount --period 100s'
+fails "a flow in litres without its unit" 2 'flow 60: want' debriscount --flow 60 /dev/null
 done_testing

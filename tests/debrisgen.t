@@ -299,6 +299,18 @@ done
 replay s.nrrd cmd:= >a
 same "the command of a stress field reproduces it" a s.nrrd
 
+fails "cells of next to no height" 1 "deeper than 2000 cells of --depth-step" $wear --depth-step 1e-3nm small.nrrd
+# Whole cells: the error is of first order in their height, and goes to zero.
+roughgen -n 64 -L 0.5mm --sq 0.8um --corr 50um --seed 3 --crown auto | bemcontact -F 20N -E 210GPa >peaks.nrrd
+debrisgen -Y 355MPa -u 0.3 --summary exact.tsv peaks.nrrd >t.tsv
+for h in 4um 2um 1um 0.5um; do
+	debrisgen -Y 355MPa -u 0.3 --depth-step $h --summary cells.tsv peaks.nrrd >t.tsv
+	column volume cells.tsv
+done >volumes
+near "whole cells are of first order in their height" \
+	"$(awk '{ v[NR] = $1 } END { print log((v[1] - v[3]) / (v[2] - v[4])) / log(2) }' volumes)" 1 0.2
+near "without height they remove what the default does" "$(
+	awk -v exact="$(column volume exact.tsv)" '{ v[NR] = $1 } END { print (2 * v[4] - v[3]) / exact }' volumes)" 1 0.01
 fails "no yield stress" 2 "--yield is missing" debrisgen
 LC_ALL=C sed -e 's/^estar:=/other:=/' -e '/^stream:=/d' ball.nrrd >stripped.nrrd
 fails "steps without a modulus" 2 "specify --young or --estar" debrisgen -Y 1GPa --steps 2 stripped.nrrd

@@ -80,6 +80,12 @@ is "rwl leaves them out" "$(rwl --observe debris found.tsv 2>err | grep -v '^#')
 	"$(rwl --observe debris bare.tsv 2>err | grep -v '^#')"
 
 # shellcheck disable=SC2086
+sensorsim $scene --transients 1 --seed 5 >s.au
+duet s.au >found.tsv 2>err
+like "a transient is one of the rows that may fit no particle" "$(cat err)" \
+	"^duet: s.au: [0-9]* of $(column verdict found.tsv | wc -l) rows fit no particle"
+
+# shellcheck disable=SC2086
 sensorsim $scene --seed 4 >s.au
 duet s.au >found.tsv
 is "no event is named in a record of particles" \

@@ -174,6 +174,9 @@ fails "two states" 2 'state even.tsv: the state is also the operand steps.tsv' \
 cat particles.tsv particles.tsv >doubled.tsv
 fails "two ensembles of the same numbers" 1 'the numbers of joined ensembles must differ' \
 	rwl $new --wear doubled.tsv --step-time 1h
+rwl $new --threshold-volume 0.2 --area 2346 --wear even.tsv --step-time 1h 2>&1 >out | sed 's/^rwl: //' >err
+is "a volume and an area without their units are doubted" "$(grep meant err | tr '\n' ' ')" \
+	"--threshold-volume 0.2 m3: is 0.2mm3 meant? --area 2346 m2: is 2346mm2 meant? "
 # 1.5 L/min without its unit
 printf 't\tleakage\n0\t1.5\n10\t1.6\n' >bare.state
 rwl --wear steps.tsv --step-time 1h --area 1mm2 bare.state 2>&1 >bare.life | grep 'unit' >err

@@ -9,6 +9,9 @@
 /* Sides of the grid.  There the load of a free grid is a point load: its stress, at most
  * 3 / (2 pi 100), is a two-hundredth of the mean pressure. */
 static const double DEEPEST = 10;
+/* Whole cells below one another.  A cell of a hundredth of the spacing is tried in
+ * continuous depths first, which takes some 16 layers. */
+static const double CELLS = 2000, THIN = 0.01;
 
 struct debris {
 	struct debris_par par;
@@ -112,6 +115,27 @@ enum debris_status debris_load(struct debris *d, const double *pressure)
 	return pulls[0] || pulls[1] ? DEBRIS_PULL : DEBRIS_OK;
 }
 
+static enum debris_status status_of(enum wear_status status)
+{
+	return status == WEAR_OK     ? DEBRIS_OK
+	       : status == WEAR_DEEP ? DEBRIS_DEEP
+				     : DEBRIS_MEMORY;
+}
+
+/* Whether the loss is more than so many cells deep. */
+static enum debris_status count_cells(struct debris *d, struct wear_par wear)
+{
+	double cell = wear.cell;
+	struct wear_result r;
+	enum debris_status status;
+
+	if (cell == 0 || cell > THIN * wear.spacing)
+		return DEBRIS_OK;
+	wear.cell = 0;
+	status = status_of(wear_remove(d->wear, d->stress, &wear, &r));
+	return status == DEBRIS_OK && r.depth > CELLS * cell ? DEBRIS_FINE : status;
+}
+
 enum debris_status debris_step(struct debris *d, double *height, const double *pressure,
 	struct debris_step *step)
 {
@@ -123,14 +147,16 @@ enum debris_status debris_step(struct debris *d, double *height, const double *p
 		.offset = d->par.offset,
 		.deepest = debris_deepest(s) };
 	enum debris_status valid = debris_load(d, pressure);
-	enum wear_status status;
+	enum debris_status status;
 
 	debris_contact(d, pressure, step);
 	if (valid != DEBRIS_OK)
 		return valid;
-	status = wear_remove(d->wear, d->stress, &wear, &step->wear);
-	if (status != WEAR_OK)
-		return status == WEAR_DEEP ? DEBRIS_DEEP : DEBRIS_MEMORY;
+	status = count_cells(d, wear);
+	if (status == DEBRIS_OK)
+		status = status_of(wear_remove(d->wear, d->stress, &wear, &step->wear));
+	if (status != DEBRIS_OK)
+		return status;
 	if (particles_find(d->particles, step->wear.stretch, step->wear.count,
 		    &step->particle, &step->count))
 		return DEBRIS_MEMORY;

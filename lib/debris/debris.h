@@ -47,6 +47,7 @@ enum debris_status {
 	DEBRIS_NUMBERS, /* a pressure that is not finite: nothing done */
 	DEBRIS_DEEP,    /* material fails deeper than ten times the length of the grid;
 			 * height is unchanged */
+	DEBRIS_FINE,    /* more than 2000 cells deep: height is unchanged */
 	DEBRIS_MEMORY
 };
 

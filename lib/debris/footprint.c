@@ -151,9 +151,11 @@ static void sort_cells(size_t *cell, size_t n, size_t nx)
 static double depth_below(const struct footprints *f, size_t cell)
 {
 	struct reserve r = { 1, { 0 }, { reserve(f->yield, -f->value[cell]) } };
-	double stress[2], dip;
+	double stress[2];
 
 	for (int k = 0; k < f->deepest; k++) {
+		double dip;
+
 		if (k % 2 == 0)
 			point_sum_at(f->below, cell, k, stress);
 		r = (struct reserve){ r.depths < 3 ? r.depths + 1 : 3,

@@ -63,6 +63,7 @@ static enum wp_status translated(enum debris_status status)
 	case DEBRIS_NUMBERS:
 		return WP_NUMBERS;
 	case DEBRIS_DEEP:
+	case DEBRIS_FINE:
 		return WP_IMPOSSIBLE;
 	case DEBRIS_MEMORY:
 		break;

@@ -125,6 +125,8 @@ enum wp_status wp_separate_end(struct wp_separate *s)
 		s->reason = "events that are no particles hide some of them";
 	else if (doubt == SEPARATE_UNLIKE)
 		s->reason = "what is unresolved differs from the pulse in spectrum";
+	else if (doubt == SEPARATE_COUNTLESS)
+		s->reason = "number and size of what is unresolved are not known";
 	else if (doubt == SEPARATE_UNLEARNED)
 		s->reason = "particles may be lost before the instrument was learned";
 	else if (doubt)

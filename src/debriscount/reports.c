@@ -18,7 +18,7 @@ static double flow = NAN, volume = NAN;
 static long window;
 
 struct opt oil_rows[] = {
-	{ 0, "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-15, 1e3, "Q",
+	{ 0, "flow", OPT_NUM, UNIT_FLOW, &flow, 1e-15, 1, "Q",
 		"flow of oil through the sensor, for numbers per volume", NULL, 0 },
 	{ 0, "volume", OPT_NUM, UNIT_VOLUME, &volume, 1e-15, 1e6, "V",
 		"total volume of oil, in place of --flow", NULL, 0 },

@@ -369,6 +369,8 @@ static void refuse(const struct wearing *w, enum debris_status status, long step
 		: status == DEBRIS_NUMBERS ? "pressure beyond double precision"
 		: status == DEBRIS_DEEP
 			? "material fails deeper than ten times the length of the grid"
+		: status == DEBRIS_FINE
+			? "material fails deeper than 2000 cells of --depth-step"
 			: "out of memory");
 }
 

@@ -79,6 +79,9 @@ static int is_mixture(void)
 
 static void check_options(void)
 {
+	if (spacing > 10)
+		warn("--spacing %g m: numbers without a unit are metres: is %gmm meant?",
+			spacing, spacing);
 	if (method != METHOD_DUET &&
 		(opt_given("window") || opt_given("hop") || histogram))
 		die(EXIT_USAGE, "--window, --hop and --histogram need --method duet");

@@ -110,7 +110,7 @@ static int is_doubtful(
 		return 0;
 	separate_noise(s, share);
 	why = doubt == SEPARATE_FOREIGN ? xprintf("%.0f of %.0f rows fit no particle",
-						  c->misfits, c->rows + c->unresolved)
+						  c->misfits, separate_judged(c))
 	      : doubt == SEPARATE_NOISE
 		      ? xprintf("the noise is %.3g and %.3g times that of the instrument",
 				share[0], share[1])
@@ -130,13 +130,19 @@ static int is_doubtful(
 		      ? xprintf("what is unresolved differs from the pulse in spectrum, "
 				"by %.0f %%: number and size there are not known",
 				100 * sqrt(c->unlike / c->compared))
+	      : doubt == SEPARATE_COUNTLESS
+		      ? xprintf("number and size of the particles in %.0f %% of it are not "
+				"known: its pulses are not told from noise of their "
+				"spectrum",
+				100 * c->countless / c->samples)
 	      : doubt == SEPARATE_REVERSED
 		      ? xprintf("%.0f of %.0f pulses are reversed", c->negative, c->rows)
 		      : xprintf("%.0f %% of it is unresolved, unlike the record of the "
 				"instrument",
 				100 * c->dense / c->samples);
 	if (doubt == SEPARATE_COVERED || doubt == SEPARATE_UNLEARNED ||
-		doubt == SEPARATE_UNEXPLAINED || doubt == SEPARATE_UNLIKE)
+		doubt == SEPARATE_UNEXPLAINED || doubt == SEPARATE_UNLIKE ||
+		doubt == SEPARATE_COUNTLESS)
 		warn("%s: %s", name, why);
 	else if (kept)
 		warn("%s: this instrument does not fit %s: %s", kept, name, why);

@@ -83,6 +83,11 @@ void pump_check(void)
 	if (p->threshold_gap >= 1e-2)
 		warn("--threshold-gap %g m: is %gum meant?", p->threshold_gap,
 			p->threshold_gap);
+	if (p->threshold_volume > 1e-2)
+		warn("--threshold-volume %g m3: is %gmm3 meant?", p->threshold_volume,
+			p->threshold_volume);
+	if (p->area > 10)
+		warn("--area %g m2: is %gmm2 meant?", p->area, p->area);
 	if (isnan(p->threshold_gap) && isnan(p->threshold_leakage) &&
 		isnan(p->threshold_volume) && isnan(pump.critical_size))
 		p->threshold_leakage = 2.8e-3 / 60;

@@ -130,6 +130,9 @@ void sensors_check(void)
 	if (noise >= 1 && !coil.n && !opt_given("gain"))
 		warn("--noise %g V: numbers without a unit are volts: is %gmV meant?",
 			noise, noise);
+	if (spacing > 10)
+		warn("--spacing %g m: numbers without a unit are metres: is %gmm meant?",
+			spacing, spacing);
 	check_lines("mains", &mains, mains_frequency, 2);
 	check_lines("pump", &pump, pump_frequency, 1);
 }

@@ -64,7 +64,7 @@ ballcal --balls small.tsv:1um --balls large.tsv:100um >cal.tsv 2>err
 scene "amplitudes of 1e-300 V" "exponent 3" 3 1e-9 "$(awk '$1 == "exponent" { printf "%.12g", $2 }' cal.tsv)"
 balls 1 1 1 >same.tsv
 balls 8 8 8 >eight.tsv
-ballcal --balls same.tsv:1m --balls eight.tsv:2m >cal.tsv 2>err
+ballcal --balls same.tsv:1mm --balls eight.tsv:2mm >cal.tsv 2>err
 scene "no scatter at all" "exponent 3" 3 1e-12 "$(awk '$1 == "exponent" { printf "%.15g", $2 }' cal.tsv)"
 balls 1 0 1 >dead.tsv
 refused "a pulse without amplitude" 1 'amplitude is 0' ballcal --balls dead.tsv:1mm

@@ -45,4 +45,10 @@ for seed in 1 2 3 4 5; do
 done >noise
 is "$scene | the noise learned is that of the sensors within 5 % | $(tr '\n' ' ' <noise)| 0" \
 	"$(awk '$1 > 0.030 && $1 < 0.0333 { n++ } END { print n + 0 }' noise)" 5
+
+# Four thousand a second have the sums of Gaussian noise: that is no number.
+sensorsim --uniform 80um:120um --number 8000 --duration 2s --snr 30dB --seed 5 \
+	--lag 0.2ms:0.5ms --gain 0.909 >s.au
+fails "a crowd whose number is not known is doubtful" 3 \
+	'number and size of the particles in .* % of it are not known' duet s.au
 done_testing

@@ -326,6 +326,60 @@ static void test_pairs(struct joint *j, const struct joint_scene *plain, int ton
 	ok(of_pairs / two > of_lone / one + 0.1, "a pair is more probable than a pulse");
 }
 
+/* Of two pulses nearly as high, as near as half their delays vary, that whose arrivals
+ * at sensor 2 were taken for those of the other are as many as their probabilities add
+ * up to. */
+static void test_exchange(struct joint *j, const struct joint_scene *plain)
+{
+	enum { PAIRS = 400 };
+	static double y[2][N];
+	const double scatter = 10;
+	struct joint_scene s = *plain;
+	struct joint_pulse truth[2], found[20];
+	struct joint_result r;
+	double sum = 0, var = 0;
+	int fitted = 0, exchanged = 0, silent = 0;
+
+	s.transit = INFINITY; /* all of one duration */
+	s.delta_min = -40;
+	s.delta_max = 40;
+	for (unsigned k = 0; k < PAIRS; k++) {
+		double z[2], u[2], odds, p;
+		int m = 0;
+
+		for (unsigned i = 0; i < 2; i++)
+			u[i] = philox_uniform(4, k, RNG_PARTICLE, i);
+		philox_normal2(4, k, RNG_PARTICLE, 9, z);
+		memset(y, 0, sizeof y);
+		for (int i = 0; i < 2; i++) {
+			truth[i] = (struct joint_pulse){ .t = 300 + i * (8 + 20 * u[0]),
+				.delta = scatter * z[i],
+				.a = 30 + 4 * i * u[1] };
+			joint_add(&s, &truth[i], 1, y[0], y[1], N);
+		}
+		for (unsigned c = 0; c < 2; c++)
+			add_noise(y[c], 7000 + k, c);
+		if (joint_fit(j, &s, y[0], y[1], N, found, &m, &r) != JOINT_OK || m != 2)
+			continue;
+		odds = found[0].exchange *
+		       exp(-0.5 * found[0].more_square / (scatter * scatter));
+		p = odds / (1 + odds);
+		fitted++;
+		sum += p;
+		var += p * (1 - p);
+		if (fabs(found[0].delta - truth[0].delta) <
+			fabs(found[0].delta + found[0].t - truth[1].t - truth[1].delta))
+			continue;
+		exchanged++;
+		silent += p < 0.01;
+	}
+	ok(fitted > PAIRS / 2 && exchanged > PAIRS / 50,
+		"of %d pairs %d exchange their arrivals", fitted, exchanged);
+	near(sum, exchanged, 3.5 * sqrt(var),
+		"their probabilities add up to their number");
+	ok(silent <= exchanged / 10, "%d of them are thought improbable", silent);
+}
+
 int main(void)
 {
 	struct shape *shape = shape_new(PULSE_SINE);
@@ -343,6 +397,7 @@ int main(void)
 	test_quiet(j, &s);
 	test_pairs(j, &s, 0);
 	test_pairs(j, &s, 12);
+	test_exchange(j, &s);
 	test_misuse(j, &s);
 	joint_free(j);
 	shape_free(shape);

@@ -169,12 +169,23 @@ static void test_astray(double scatter, double flow_var)
 	}
 }
 
+/* Odds of having the arrival of another pulse. */
+static void test_exchange(void)
+{
+	make_rows(2, 0.5, 0);
+	for (int i = 0; i < ROWS; i++)
+		row[i].exchange = i % 16 ? 1e-4 : 10;
+	near(judged(), ROWS / 16, 0,
+		"pulses that may have exchanged arrivals are doubted");
+}
+
 int main(void)
 {
 	test_how_often();
 	test_fewest();
 	test_sizes();
 	test_weak();
+	test_exchange();
 	test_astray(0.05, 0.0025);
 	test_astray(0.25, 0.0025);
 	test_astray(0.25, 0.8); /* the flow is as wide as the range searched */

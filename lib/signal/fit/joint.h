@@ -80,6 +80,10 @@ struct joint_pulse {
 	double t, delta, a;
 	/* Inverse Fisher matrix of (t, t + delta, a), lower triangle by rows. */
 	double cov[6];
+	/* By joint_fit(), if this pulse and another one exchange their arrivals at sensor
+	 * 2: its delay then, by how much the squares of both delays exceed those of this
+	 * fit, and the likelihood ratio of that fit and this one (0: not possible). */
+	double other_delta, more_square, exchange;
 };
 
 static inline double joint_delay_variance(const struct joint_pulse *p)

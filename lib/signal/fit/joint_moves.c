@@ -212,12 +212,30 @@ static int can_swap(const struct joint_scene *s, const struct joint_pulse *p,
 	       fmax(delta[0], delta[1]) <= s->delta_max;
 }
 
+/* Keeps the fit with exchanged arrivals p, q as another one of i, k if it is the most
+ * likely one.  In what is i again, with either name, nothing has been exchanged. */
+static void keep_exchange(struct joint_pulse *i, const struct joint_pulse *k,
+	const struct joint_pulse *p, const struct joint_pulse *q, double ratio)
+{
+	const struct joint_pulse *same = (i->t < k->t) == (p->t < q->t) ? p : q;
+	double apart = fabs(k->t + k->delta - i->t - i->delta);
+
+	if (ratio <= i->exchange || fabs(same->delta - i->delta) < 0.5 * apart)
+		return;
+	i->exchange = ratio;
+	i->other_delta = same->delta;
+	i->more_square = p->delta * p->delta + q->delta * q->delta - i->delta * i->delta -
+			 k->delta * k->delta;
+}
+
 void joint_swap_pulses(struct joint *j, const struct joint_scene *s,
 	struct joint_pulse *pulses, int m, double *chi2)
 {
-	struct joint_pulse before[JOINT_PULSES_MAX];
-	double delta[2], after;
+	struct joint_pulse before[JOINT_PULSES_MAX], other[2];
+	double delta[2], after, ratio;
 
+	for (int i = 0; i < m; i++)
+		pulses[i].exchange = 0;
 	for (int i = 0; i < m; i++)
 		for (int k = i + 1; k < m; k++) {
 			if (!can_swap(s, &pulses[i], &pulses[k], delta))
@@ -230,10 +248,17 @@ void joint_swap_pulses(struct joint *j, const struct joint_scene *s,
 			joint_subtract(j, s, &pulses[i], 1);
 			joint_subtract(j, s, &pulses[k], 1);
 			after = fit_near(j, s, pulses, m, i, 0);
+			ratio = exp(-0.5 * fabs(after - *chi2));
+			other[0] = after < *chi2 ? before[i] : pulses[i];
+			other[1] = after < *chi2 ? before[k] : pulses[k];
 			if (after < *chi2)
 				*chi2 = after;
 			else
 				restore(j, s, pulses, &m, before, m);
+			keep_exchange(
+				&pulses[i], &pulses[k], &other[0], &other[1], ratio);
+			keep_exchange(
+				&pulses[k], &pulses[i], &other[1], &other[0], ratio);
 		}
 }
 

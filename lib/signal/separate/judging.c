@@ -65,8 +65,8 @@ static void give_reports(struct separate *s)
 	s->reports = 0;
 }
 
-/* Doubts those of the n rows not yet judged that may be two particles, or none.  Rows
- * doubted already tell how often one pulse follows another as well. */
+/* Doubts those of the n rows not yet judged that may be two particles, parts of two, or
+ * none.  Rows doubted already tell how often one pulse follows another as well. */
 static enum separate_status judge_pairs(struct separate *s, size_t n)
 {
 	struct entry *q = s->queue + s->judged;
@@ -83,6 +83,12 @@ static enum separate_status judge_pairs(struct separate *s, size_t n)
 	for (size_t i = 0; i < n; i++)
 		if (q[i].arrival.group) {
 			a[m] = q[i].arrival;
+			/* Delays nearer to those of the flow are more likely. */
+			if (half > 0 && q[i].evidence.var > 0)
+				a[m].exchange *= exp(fmin(
+					-0.5 * q[i].more_square /
+						(flow.var + 2 * q[i].evidence.var),
+					300));
 			if (q[i].row.sources > 1 && half > 0 && plug) {
 				a[m].off = (q[i].evidence.delay - flow.mean) / half;
 				a[m].off_var = q[i].evidence.var / (half * half);

@@ -1,4 +1,5 @@
 /* rows.c - rows and reports of sections that were separated, or are unresolved */
+#include "num/sigmas.h"
 #include "signal/separate/contrasts.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
@@ -64,6 +65,11 @@ static enum separate_status emit_pulse(struct separate *s, const struct joint_pu
 	entry->arrival = (struct arrival){ .group = s->group,
 		.time = ((double)from + p->t) / s->cal.duration,
 		.amplitude = p->a };
+	/* Within its standard error a delay is right either way. */
+	if (entry->evidence.var > 0 &&
+		fabs(p->other_delta - p->delta) > SIGMAS_SELDOM * sqrt(delay_var))
+		entry->arrival.exchange = p->exchange;
+	entry->more_square = p->more_square;
 	memcpy(entry->arrival.odds, s->pair_odds[p - s->pulse],
 		sizeof entry->arrival.odds);
 	s->counters.rows++;
@@ -182,6 +188,7 @@ enum separate_status separate_dense_section(
 	s->counters.dense += length;
 	if (isfinite(c.unlike)) {
 		s->counters.compared += length;
+		s->counters.countless += c.rate_se < c.rate ? 0 : length;
 		s->counters.unlike += length * c.unlike * c.unlike;
 	}
 	entry->evidence.group = ++s->group;

@@ -339,11 +339,12 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 		return SEPARATE_REVERSED;
 	if (s->par.kept && !s->kept.crowded && 2 * c->dense > c->samples)
 		return SEPARATE_CROWD;
-	if (c->misfits > 2 &&
-		10 * c->misfits > c->rows + c->unresolved + c->events[SEPARATE_TRANSIENT])
+	if (c->misfits > 2 && 10 * c->misfits > separate_judged(c))
 		return SEPARATE_FOREIGN;
 	if (c->unlike > UNLIKE * UNLIKE * c->compared)
 		return SEPARATE_UNLIKE;
+	if (c->countless > COVERED * c->samples)
+		return SEPARATE_COUNTLESS;
 	if (c->unlearned > COVERED * c->samples)
 		return SEPARATE_UNLEARNED;
 	return c->covered > COVERED * c->samples ? SEPARATE_COVERED : SEPARATE_BELIEVED;

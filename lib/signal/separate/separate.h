@@ -123,10 +123,17 @@ struct separate_counters {
 	double masks, masks_skipped; /* sections demixed, and those with one source, which
 					need not be */
 	double unresolved, dense;    /* rows, and the samples these stand for */
+	double countless;            /* samples of them with particles of any number */
 	double compared, unlike; /* samples of them whose spectrum was compared with that
 				    of the pulse, and the sum of its squared difference */
 	double covered; /* samples of events in which no particle would be found */
 };
+
+/* Rows that may fit no particle: pulses, what is unresolved, and events of no name. */
+static inline double separate_judged(const struct separate_counters *c)
+{
+	return c->rows + c->unresolved + c->events[SEPARATE_TRANSIENT];
+}
 
 struct separate;
 struct separate *separate_new(const struct separate_par *par); /* NULL: no memory */
@@ -162,6 +169,7 @@ enum separate_doubt {
 	SEPARATE_REVERSED,   /* nine tenths of the pulses are those of the kept instrument
 				with their sign changed */
 	SEPARATE_CROWD,      /* more than half is unresolved, unlike its record */
+	SEPARATE_COUNTLESS,  /* what is unresolved may be any number of particles */
 	SEPARATE_UNLIKE,     /* what is unresolved has not the spectrum of the pulse */
 	SEPARATE_COVERED,    /* particles are lost under events that are none */
 	SEPARATE_UNLEARNED,  /* ... and before the instrument was learned */

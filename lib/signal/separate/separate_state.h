@@ -21,6 +21,7 @@ struct entry {
 	struct transit row;
 	struct evidence evidence;
 	struct arrival arrival; /* its group 0: none */
+	double more_square;     /* as that of joint_pulse */
 };
 
 /* A section to be reported once its rows are judged. */

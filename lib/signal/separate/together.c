@@ -52,7 +52,7 @@ void together_free(struct together *t)
 
 static double wrong(const struct arrival *a)
 {
-	return 1 - (1 - a->pair) * (1 - a->shape) * (1 - a->astray);
+	return 1 - (1 - a->pair) * (1 - a->shape) * (1 - a->astray) / (1 + a->exchange);
 }
 
 static size_t held(size_t count)

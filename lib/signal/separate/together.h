@@ -1,4 +1,4 @@
-/* together.h - rows that may be two particles, or none, by how often particles meet
+/* together.h - rows that may be two particles, parts of two, or none
  *
  * Two pulses that arrive within a few hundredths of a duration are fitted as one: a row
  * of the sum of their amplitudes that no residual betrays.  How likely that is follows
@@ -11,6 +11,8 @@
  *
  * A pulse fitted to what others leave has any delay in the range searched.  How many such
  * there are follows from the delays of all pulses fitted with others.
+ *
+ * Two pulses may have exchanged their arrivals at sensor 2, with odds that the fit tells.
  *
  * Rows are doubted, the most likely ones first, until at most six in a thousand of the
  * others are expected to be wrong: none, or a pair whose diameter is out by more than a
@@ -31,6 +33,7 @@ struct arrival {
 	 * the range searched, and the variance of this; 0: not known.  flow_var: least
 	 * variance of such delays in the flow. */
 	double off, off_var, flow_var;
+	double exchange; /* odds of having the arrival of another pulse at sensor 2 */
 	/* Probabilities of being a pair, an error of the shape of a larger pulse, and not
 	 * of the flow; set by together_judge(). */
 	double pair, shape, astray;
