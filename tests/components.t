@@ -94,6 +94,12 @@ is 'none of them is given a class' "$(awk -F '\t' '/^#/ { next } !n { for (i = 1
 particles 40 steel:55 copper:110 >table
 record --phase 130deg | duet --excitation 500kHz >wrong.tsv 2>said
 is 'the record is doubtful with the wrong phase' $? 3
+particles 40 steel:55 copper:110 >table
+record >right.au
+duet --excitation 500kHz --phase 20deg right.au >wrong.tsv 2>said
+is 'the record is doubtful where most phases are of no material' $? 3
+ok 'the phases are named' grep -q 'of 40 phases are of no material' said
+ok 'the table says so' grep -q '^# doubtful.*phases are of no material' wrong.tsv
 
 # 300 particles a second
 crowd() { sensorsim --uniform 60um:100um --number 3000 --duration 10s --noise 5mV --lag 0:0.5ms --seed 7 "$@"; }

@@ -153,6 +153,20 @@ static int is_doubtful(
 	return 1;
 }
 
+/* Says so where most phases are of no material: the classes of the others are doubtful,
+ * too. */
+static int is_out_of_phase(struct found *out, const char *name)
+{
+	if (2 * out->strange <= out->phases)
+		return 0;
+	warn("%s: %ld of %ld phases are of no material: is --phase, --excitation or "
+	     "--material wrong?",
+		name, out->strange, out->phases);
+	table_comment(out->particles, "doubtful", "%ld of %ld phases are of no material",
+		out->strange, out->phases);
+	return 1;
+}
+
 /* Says how many rows may be two particles each. */
 static void tell_together(const struct separate *s, struct found *out, const char *name)
 {
@@ -255,7 +269,8 @@ int separate_record(struct signal_in *in, struct found *out,
 	report(s, (double)out->rate);
 	tell_together(s, out, signal_name(in));
 	tell_events(s, out);
-	doubtful = is_doubtful(s, out, signal_name(in), par.kept ? file : NULL);
+	doubtful = is_doubtful(s, out, signal_name(in), par.kept ? file : NULL) ||
+		   is_out_of_phase(out, signal_name(in));
 	found_detectable(out, separate_calibration(s), separate_ratio(s));
 	early_free(e);
 	return doubtful;

@@ -68,11 +68,16 @@ static void put_row(struct table_out *t, const double *row, int n, const char *w
 	table_put_text(t, word);
 }
 
-static void put_class(struct table_out *t, const struct transit *p, double diameter)
+static void put_class(struct found *out, const struct transit *p, double diameter)
 {
+	struct table_out *t = out->particles;
 	struct component_class class =
 		components_classify(diameter, p->phase, p->phase_se);
 
+	if (!isnan(p->phase) && p->verdict <= SEPARATE_OVERLAP) {
+		out->phases++;
+		out->strange += isnan(class.ferrous) != 0;
+	}
 	table_put(t, class.phase);
 	table_put(t, p->phase_se);
 	table_put(t, class.ferrous);
@@ -104,7 +109,7 @@ void found_particle(struct found *out, const struct transit *found)
 
 	put_row(out->particles, row, 16, verdicts[p->verdict]);
 	if (out->components)
-		put_class(out->particles, p, s.diameter);
+		put_class(out, p, s.diameter);
 	table_end_row(out->particles);
 	if (p->verdict == SEPARATE_ALONE || p->verdict == SEPARATE_OVERLAP)
 		out->largest = fmax(out->largest, fabs(p->amplitude));

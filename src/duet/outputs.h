@@ -12,9 +12,11 @@ struct found {
 	const char *separated, *histogram, *sections, *detectable;
 	double spacing, kappa; /* m, V s/m4 */
 	double rate;
-	int components; /* 1: the record has two of either sensor (components.h) */
-	long count;     /* particles so far */
-	double largest; /* amplitude of one that was resolved, V */
+	int components;       /* 1: the record has two of either sensor (components.h) */
+	long count;           /* particles so far */
+	double largest;       /* amplitude of one that was resolved, V */
+	long phases, strange; /* resolved ones with a phase, and with one of no material
+			       */
 	struct table_out *particles, *section_rows, *weights, *limits;
 	struct signal_out *sources;
 	long long drawn; /* frames of separated signals written */
