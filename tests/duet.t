@@ -331,6 +331,14 @@ is "noise has no particle" "$(grep -vc '^#' none.tsv)" 1
 duet noise.au >none.tsv 2>warning
 is "noise: nothing to learn from, no particle" "$(column particle none.tsv | wc -l)" 0
 ok "a record without common pulses is reported" grep -q 'nothing in common' warning
+# The sensor of channel 2 is dead but for its noise.
+columns() { # COLUMNS of a record of N particles
+	sensorsim --uniform 60um:180um --number "$2" --duration 10s --noise 3mV --seed 5 |
+		sigconvert -o text | grep -v '^#' | cut -f "$1"
+}
+columns 1,2 30 >first.txt
+columns 3 0 | paste first.txt - | sigconvert --from text >dead.au
+fails "pulses on one channel alone" 3 'a channel stands out of its noise' duet dead.au
 head -c 32000 s.au >cut.au
 fails "a record cut inside a frame" 1 'cut' duet "$work/cut.au"
 fails "empty input" 1 . duet /dev/null

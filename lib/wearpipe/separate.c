@@ -119,7 +119,7 @@ enum wp_status wp_separate_end(struct wp_separate *s)
 	if (status != WP_OK && status != WP_NOT_CONVERGED)
 		return status;
 	if (doubt == SEPARATE_UNEXPLAINED)
-		s->reason = "both channels stand out of their noise, but have nothing in "
+		s->reason = "a channel stands out of its noise, but they have nothing in "
 			    "common";
 	else if (doubt == SEPARATE_COVERED)
 		s->reason = "events that are no particles hide some of them";

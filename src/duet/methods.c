@@ -120,11 +120,11 @@ static int is_doubtful(
 				100 * c->covered / c->samples)
 	      : doubt == SEPARATE_UNLEARNED
 		      ? xprintf("nothing could be learned from its first %.3g s, in which "
-				"both channels stand out of their noise: particles "
+				"a channel stands out of its noise: particles "
 				"there, if any, are missing",
 				c->passed_over * separate_ratio(s) / (double)out->rate)
 	      : doubt == SEPARATE_UNEXPLAINED
-		      ? xprintf("both channels stand out of their noise, but have nothing "
+		      ? xprintf("a channel stands out of its noise, but they have nothing "
 				"in common")
 	      : doubt == SEPARATE_UNLIKE
 		      ? xprintf("what is unresolved differs from the pulse in spectrum, "

@@ -297,7 +297,7 @@ enum separate_status separate_learn_clearly(struct separate *s)
 	return few && s->par.learn < SEPARATE_LEARN ? SEPARATE_OK : SEPARATE_NO_LAG;
 }
 
-/* *found: 1 if both channels of the first n samples are more than noise. */
+/* *found: 1 if a channel of the first n samples is more than noise. */
 static enum separate_status look_for_bursts(
 	const struct separate *s, size_t n, int *found)
 {
@@ -305,7 +305,7 @@ static enum separate_status look_for_bursts(
 
 	if (!work)
 		return SEPARATE_MEMORY;
-	*found = bursts_found(s->tape[0].x, n, work) &&
+	*found = bursts_found(s->tape[0].x, n, work) ||
 		 bursts_found(s->tape[1].x, n, work);
 	free(work);
 	return SEPARATE_OK;
