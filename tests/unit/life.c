@@ -495,10 +495,9 @@ static double width_of_wander(double wander)
 {
 	enum { PATHS = 40, HALF = 60 };
 	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
-	struct bank_par par = { .threshold = 1,
-		.direction = 1,
-		.families = BANK_LINEAR,
-		.steady = 1 };
+	struct bank_par par = {
+		.threshold = 1, .direction = 1, .families = BANK_LINEAR, .steady = 1
+	};
 	double life[DRAWS], sum = 0;
 
 	for (uint64_t seed = 1; seed <= PATHS; seed++) {

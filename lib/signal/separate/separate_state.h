@@ -121,8 +121,8 @@ struct separate {
 	double *source;
 	struct separate_counters counters;
 	enum separate_status reason; /* why nothing could be learned */
-	int unexplained; /* 1: although a channel stands out of its noise */
-	double effort;   /* samples of pulses computed to learn */
+	int unexplained;             /* 1: although a channel stands out of its noise */
+	double effort;               /* samples of pulses computed to learn */
 	long long bad_frame;
 	int bad_channel;
 };
