@@ -167,8 +167,12 @@ static enum separate_status take_window(
 	if (release(s, from) != SEPARATE_OK)
 		return SEPARATE_MEMORY;
 	separate_set_gain(s, from);
-	if (cut && s->crowded && s->par.method == SEPARATE_FIT)
+	if (s->par.method == SEPARATE_FIT && !s->par.sources &&
+		((cut && s->crowded) ||
+			joint_work(s->joint) > separate_effort((double)from))) {
 		s->window = DENSE;
+		s->carried = 0;
+	}
 	if (s->window == DENSE)
 		status = separate_dense_section(s, from, to);
 	else if (s->par.method == SEPARATE_MASKS)

@@ -200,6 +200,10 @@ enum separate_status separate_give_pulses(struct separate *s, long long from,
 
 /* learning.c */
 
+/* Samples of pulses that may be computed for the first samples of a record, to learn from
+ * them, and as many to separate them. */
+double separate_effort(double samples);
+
 /* Learns the instrument from the oldest samples; if they contain no particle, half of
  * them are skipped and the next are tried. */
 enum separate_status separate_learn(struct separate *s);
