@@ -1,6 +1,6 @@
 /* chords.h - length and width of a convex hull: its largest Feret diameter, and its
  * longest chord perpendicular to that; if several diameters are largest, the longest
- *chord perpendicular to any of them
+ * chord perpendicular to any of them
  *
  *	struct chords *c = chords_new();
  *	if (chords_measure(c, hull, step, &length, &width) == 0)

@@ -9,8 +9,10 @@
 /* Sides of the grid.  There the load of a free grid is a point load: its stress, at most
  * 3 / (2 pi 100), is a two-hundredth of the mean pressure. */
 static const double DEEPEST = 10;
-/* Whole cells below one another.  A cell of a hundredth of the spacing is tried in
- * continuous depths first, which takes some 16 layers. */
+/* Whole cells below one another: a depth of more is known to a two-thousandth, while
+ * continuous depths give volumes within 0.1 to 0.9 % (debrisgen(1)).  A cell of a
+ * hundredth of the spacing is tried in continuous depths first, which takes some 16
+ * layers. */
 static const double CELLS = 2000, THIN = 0.01;
 
 struct debris {

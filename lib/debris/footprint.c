@@ -10,13 +10,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Cells of a region below which the depth is found: LEAST, DENSE times the root of their
- * number, or of the surface SHARE times the part of it that the region is, whichever is
- * most.  Of 48 surfaces that lose 620 columns the volumes have rms errors of 7.3, 4.3 and
- * 3.4 % without SHARE and DENSE of 1, 1.25 and 1.5, and of 2 % with SHARE; of four that
- * lose 9900 columns 2.2, 1.2 and 1.0 %. */
+/* Cells of a region below which the depth is found: LEAST, the root of their number, or
+ * of the surface SHARE times the part of it that the region is, whichever is most.  Of 48
+ * surfaces that lose 620 columns the volumes have rms errors of 7.3, 4.3 and 3.4 %
+ * without SHARE and with 1, 1.25 and 1.5 times the root, and of 2 % with SHARE; of four
+ * that lose 9900 columns 2.2, 1.2 and 1.0 %. */
 enum { LEAST = 4, SHARE = 250 };
-static const double DENSE = 1;
+
 struct footprints {
 	struct stress_par par;
 	double *value; /* equivalent stress in the spans, negative in regions; else 0 */
@@ -173,7 +173,7 @@ static double depth_below(const struct footprints *f, size_t cell)
 static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 {
 	double n = (double)r->cells, sum = 0, squares = 0, depth[3] = { 0 };
-	double part = fmax(DENSE * sqrt(n), SHARE * n / (double)f->cells);
+	double part = fmax(sqrt(n), SHARE * n / (double)f->cells);
 	size_t m = (size_t)fmin(n, ceil(fmax(LEAST, part)));
 
 	sort_cells(cell, r->cells, (size_t)f->par.nx);

@@ -9,8 +9,8 @@
  *
  *	struct surrogate s;
  *	if (surrogate_fit(sample, n, &s, &report) == SURROGATE_OK)
- *		inside = surrogate_guess(&s, footprint, count, &contact, 0.9, guess,
- *&total);
+ *		inside = surrogate_guess(&s, footprint, count, &contact, 0.9,
+ *			guess, &total);
  */
 #ifndef DEBRIS_SURROGATE_H
 #define DEBRIS_SURROGATE_H

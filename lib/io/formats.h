@@ -35,9 +35,9 @@ struct samples {
  *
  *	parts_begin(&p, points, width);
  *	while ((n = parts_next(&p)) > 0) {
- *		... n jobs: part_points(&p, k) points at part_bytes(&p, k), the first of
- *them point p.first + k * PART_POINTS of the record; p.checksum[k] checksum =
- *parts_sum(&p, checksum);
+ *		... n jobs: part_points(&p, k) points at part_bytes(&p, k), the first
+ *		of them point p.first + k * PART_POINTS of the record; p.checksum[k]
+ *		checksum = parts_sum(&p, checksum);
  *	}
  *	parts_end(&p);
  *

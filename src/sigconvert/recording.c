@@ -23,7 +23,9 @@ struct recording {
 	struct table_in *table;
 	long long row; /* of the table */
 	SNDFILE *sound;
-	double left; /* frames of the sound that are announced and not read */
+	/* Frames of the sound that are announced and not read; SF_COUNT_MAX, some 1e19,
+	 * less those read: none are announced. */
+	double left;
 	const char *name;
 	struct signal_format format;
 };

@@ -38,7 +38,7 @@
  * successive values are equal, readings are taken to be rounded to the smallest other
  * step between two of them, and the noise to be at least that of rounding.  After a gap
  * of more than 3.5 usual ones, as seen from a random time, the machine may have been
- *idle; the next observation decides, if it does not show a repair.
+ * idle; the next observation decides, if it does not show a repair.
  *
  *	struct bank *b = bank_new(&par);
  *	for each row

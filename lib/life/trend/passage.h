@@ -9,8 +9,8 @@
  *
  * The regime may change once more: after a time J with P(J > x) = (a / (a + x))^c, where
  * a is its age (an old one lasts long), the rate begins to grow as e^{g (t - J)}, or
- *drops and stays at the lower value.  Hazard, growth and share of drops depend on whether
- *the rate at present falls, is constant or rises in the coordinate.
+ * drops and stays at the lower value.  Hazard, growth and share of drops depend on
+ * whether the rate at present falls, is constant or rises in the coordinate.
  *
  *	struct bank_chances *chances = bank_chances_new(500, seed);
  *	bank_draw(b, chances, now, level, life);

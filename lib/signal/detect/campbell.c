@@ -63,9 +63,10 @@ static void moments(const struct sums *s, double unit2, double unit4, double gai
 }
 
 /* Variance of the fourth cumulant, over the fourth power of the second, of a duration of
- * shot noise with 1 / x pulses of one height per duration (x = 0: Gaussian noise): that
- *of n samples is n / duration times smaller.  Fills the coefficients of this polynomial
- *of x. With k(a, b) the joint cumulant of a and b times two samples, it is
+ * shot noise with 1 / x pulses of one height per duration (x = 0: Gaussian noise).  That
+ * of n samples is n / duration times smaller.  It is a polynomial of x, of which the
+ * coefficients are filled.  With k(a, b) the joint cumulant of a and b times two samples,
+ * it is
  *
  *	sum of k(4, 4) + 16 k(3, 3) k(1, 1) + 18 k(2, 2)^2 + 16 k(1, 3) k(3, 1)
  *		+ 72 k(2, 2) k(1, 1)^2 + 24 k(1, 1)^4

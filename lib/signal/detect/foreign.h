@@ -2,8 +2,9 @@
  *
  *	impulse    a few samples, see spikes.h
  *	shock      the same waveform at both sensors at once
- *	bubble     one lobe of either sign that passes both sensors with the oil; a
- *particle has two lobes transient  a waveform at one sensor only
+ *	bubble     one lobe of either sign that passes both sensors with the oil;
+ *	           a particle has two lobes
+ *	transient  a waveform at one sensor only
  *
  * The waveform is free otherwise, the level at either sensor too.  An event is named if
  * it leaves no more than noise, and if this is certain: a group of particles would leave

@@ -213,7 +213,8 @@ static int can_swap(const struct joint_scene *s, const struct joint_pulse *p,
 }
 
 /* Keeps the fit with exchanged arrivals p, q as another one of i, k if it is the most
- * likely one.  In what is i again, with either name, nothing has been exchanged. */
+ * likely one.  Where the delay of i is nearer to its own than to the exchanged one, under
+ * either name, nothing has been exchanged. */
 static void keep_exchange(struct joint_pulse *i, const struct joint_pulse *k,
 	const struct joint_pulse *p, const struct joint_pulse *q, double ratio)
 {
