@@ -248,6 +248,6 @@ fails "a full disk" 1 'o space' sh -c 'sensorsim --uniform 1um:1um --number 1 --
 printf 'time\tdiameter\n1e300\t1e-4\n' >never.tsv
 fails "a particle after the end of days" 1 'line 2: time 1e+300 s, want times in order, up to 1e9 s' \
 	sensorsim never.tsv
-sensorsim --uniform 50um:60um --number 1 --duration 60s --spacing 250 2>err | duet --spacing 250 >out 2>>err
-is "a spacing in millimetres without its unit is doubted" "$(grep -c 'is 250mm meant' err)" 2
+sensorsim --uniform 50um:60um --number 1 --duration 60s --spacing 250 2>sent | duet --spacing 250 >out 2>err
+is "a spacing in millimetres without its unit is doubted" "$(cat sent err | grep -c 'is 250mm meant')" 2
 done_testing
