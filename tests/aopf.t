@@ -311,6 +311,29 @@ ok 'values that overflow are accepted' aopf -y 5 --lives-only enormous.tsv
 awk '$1 == 28' out >last
 awk 'NR == 1 || $2 < 0' enormous.tsv | aopf -y 5 --lives-only | awk '$1 == 28' >want
 ok 'values that overflow are outliers: the others alone give the same life' cmp last want
+# A sensor at its ceiling says nothing: the wear goes on.
+awk 'BEGIN { srand(7); print "t\ty"
+	for (t = 0; t < 80; t++) { y = t / 100 + 0.01 * (rand() - 0.5); print t "\t" (y > 0.6 ? 0.6 : y) } }' >ceiling.tsv
+aopf -y 1 --lives-only ceiling.tsv >out
+near "the life goes on below the ceiling of a sensor" "$(column rul_q50 out | tail -1)" 20 8
+awk '{ print (NR == 1 || $1 < 60 ? $0 : $1 "\t" 0.6 + 0.01 * (rand() - 0.5)) }' ceiling.tsv | aopf -y 1 --lives-only >out
+ok "but not where readings that vary show no more wear" awk '!/^#/ && $1 == 79 { exit !($4 > 60) }' out
+# Rounded readings repeat too, and count.
+awk 'BEGIN { print "t\ty"; for (t = 0; t < 80; t++) print t "\t" int(t / 16) / 6 }' | aopf -y 1 --lives-only >out
+ok "coarse readings of an end at 96 hold it" awk '!/^#/ && $1 == 79 { exit !(3 < $3 && $3 < 17 && 17 < $5) }' out
+
+# rescale FACTOR: a series whose unit changes at row 60
+rescale() {
+	awk -v f="$1" 'BEGIN { srand(9); print "t\ty"
+		for (t = 0; t < 100; t++) print t "\t" (1 + t / 100 + 0.02 * (rand() - 0.5)) * (t < 60 ? 1 : f) }'
+}
+rescale 0.0393701 >inch.tsv
+fails "a change of unit" 3 "at time 67 are 0.04.* times those before, and so are their steps" aopf -y 3 --lives-only inch.tsv
+is "lives end eight rows after a change of unit" "$(aopf -y 3 --lives-only inch.tsv 2>err | awk '$3 == "nan" { print $1 }' | sed -n '4p')" 67
+rescale 1000 | aopf -y 3 --lives-only >out 2>err
+is "a jump of the unit is no failure" "$(column rul_q50 out | tail -1)" nan
+rescale 1 | awk 'NR > 60 { $2 -= 1.4 } { print $1 "\t" $2 }' | aopf -y 3 --lives-only >out 2>err
+is "a repair changes no unit" "$(column rul_q50 out | tail -1 | grep -c nan; cat err)" 0
 # A series that starts at a known moment.
 {
 	printf '# start: 2026-01-02T03:04:05Z\nt\ty\n'

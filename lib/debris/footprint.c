@@ -151,16 +151,17 @@ static void sort_cells(size_t *cell, size_t n, size_t nx)
 static double depth_below(const struct footprints *f, size_t cell)
 {
 	struct reserve r = { 1, { 0 }, { reserve(f->yield, -f->value[cell]) } };
-	double stress[2];
+	double stress[POINT_SUM_DEPTHS];
 
 	for (int k = 0; k < f->deepest; k++) {
 		double dip;
 
-		if (k % 2 == 0)
+		if (k % POINT_SUM_DEPTHS == 0)
 			point_sum_at(f->below, cell, k, stress);
 		r = (struct reserve){ r.depths < 3 ? r.depths + 1 : 3,
 			{ point_sum_depth(f->below, k), r.z[0], r.z[1] },
-			{ reserve(f->yield, stress[k % 2]), r.g[0], r.g[1] } };
+			{ reserve(f->yield, stress[k % POINT_SUM_DEPTHS]), r.g[0],
+				r.g[1] } };
 		if (r.g[0] > 1)
 			return reserve_crossing(&r);
 		dip = reserve_dip(&r);

@@ -12,7 +12,8 @@ enum {
 	LIST = 64, /* points whose stress is summed together */
 	SIZES = 20,
 	AROUND = 5, /* elements are at most so many cells away along either axis */
-	DEPTHS = 7  /* the one below the last that is less than NEAR cells deep */
+	FOURS = 2   /* sets of four depths of which the first is less than NEAR cells deep
+		     */
 };
 /* Sides of a square: ones farther away, over the surface or in half the depth, act as
  * points.  Right below it a square must be farther than beside it, since the spread of
@@ -21,8 +22,15 @@ enum {
 static const double FAR = 1.5;
 /* Cells: farther elements act as points. */
 static const double NEAR = 6;
-/* First depth, cells, and ratio of each to the one before. */
-static const double SHALLOWEST = 0.125, RATIO = 2;
+/* First depth, cells; each is twice the one before. */
+static const double SHALLOWEST = 0.125;
+
+/* What belongs to four depths.  Single precision is enough beside the error of squares
+ * and points, and takes a bit more than half the time of doubles.  Lengths are in cells,
+ * so that powers of them stay within its range. */
+typedef float four __attribute__((vector_size(16)));
+typedef int32_t four_bits __attribute__((vector_size(16)));
+_Static_assert(sizeof(four) == POINT_SUM_DEPTHS * sizeof(float), "a depth for each lane");
 
 struct square {
 	double load, x, y; /* sum of pressures and their centroid, m */
@@ -48,20 +56,23 @@ struct point_sum {
 	int sizes;
 	struct square *squares; /* of all sizes */
 	/* Stress by a cell at each depth, next to it or on it. */
-	double element[DEPTHS][2 * AROUND + 1][2 * AROUND + 1][STRESS_NUMBERS];
-	int known[DEPTHS];
+	four element[FOURS][2 * AROUND + 1][2 * AROUND + 1][STRESS_NUMBERS];
+	int known[FOURS];
 };
 
-/* Two depths, one below the other, at which the stress is wanted, what has been summed of
- * it, and points still to be summed: their offsets along and across the shear, and loads.
- */
+/* Four depths, one below the other, at which the stress is wanted, what has been summed
+ * of it, and points still to be summed: their offsets along and across the shear, and
+ * loads. */
 struct point {
 	int ix, iy, k;
-	double x, y;
-	lanes z;
-	double number[2][STRESS_NUMBERS];
+	double x, y, top; /* top: the first depth, m */
+	double total;     /* all pressures, by which others are divided */
+	double per_cell,
+		share; /* 1/m; load of a unit pressure in square cells over 2 pi */
+	four z;
+	four number[STRESS_NUMBERS];
 	int count;
-	double along[LIST], across[LIST], load[LIST];
+	float along[LIST], across[LIST], load[LIST];
 };
 
 static int halves(int n)
@@ -120,12 +131,12 @@ void point_sum_free(struct point_sum *s)
 
 double point_sum_depth(const struct point_sum *s, int k)
 {
-	return k < 0 ? 0 : SHALLOWEST * s->cell * pow(RATIO, k);
+	return k < 0 ? 0 : ldexp(SHALLOWEST * s->cell, k);
 }
 
 int point_sum_above(const struct point_sum *s, double z)
 {
-	double k = log(z / point_sum_depth(s, 0)) / log(RATIO);
+	double k = log2(z / point_sum_depth(s, 0));
 
 	return k > 0 ? (int)k : 0;
 }
@@ -217,23 +228,37 @@ void point_sum_load(struct point_sum *s, const double *pressure)
 	}
 }
 
-/* Stress of points on the list at both depths: the sum of pressure and friction as
+/* Stress of points on the list at all four depths: the sum of pressure and friction as
  * stress_point() gives it. */
 struct sums {
-	lanes xx, yy, xy, xz, yz; /* x along the shear; xx and yy less zz */
+	four xx, yy, xy, xz, yz; /* x along the shear; xx and yy less zz */
 };
 
-static inline void sum_one(
-	const struct point_sum *s, const struct point *at, int i, struct sums *t)
+static inline four all_four(float x)
 {
-	double k = 1 - 2 * s->par.nu, mu = s->par.mu;
-	double x = at->along[i], y = at->across[i], p = at->load[i], xy2 = x * x + y * y;
-	lanes z = at->z, r2 = xy2 + z * z;
-	lanes r = { sqrt(r2[0]), sqrt(r2[1]) }, ir = 1 / r, id = 1 / (r + z);
-	lanes ir3 = ir * ir * ir, h = k * ir * id * id, f = 3 * ir3 * ir * ir;
-	lanes m = h * ir * ir * (2 * r + z) - f * z, l = k * (z * ir3 - ir * id);
-	lanes sm = h * ir * ir * id * (3 * r + z) - f, sk = k * ir3 - h;
-	lanes zz = f * (z + mu * x) * z;
+	return (four){ x, x, x, x };
+}
+
+/* 1 / sqrt(x) to 5e-6: a line through the logarithm, which the bits of a float are
+ * nearly, and two steps of Newton's method. */
+static inline four inverse_root(four x)
+{
+	four y = (four)(0x5f375a86 - ((four_bits)x >> 1));
+
+	y *= 1.5f - 0.5f * x * y * y;
+	return y * (1.5f - 0.5f * x * y * y);
+}
+
+static inline void sum_one(
+	const struct point *at, int i, float k, float mu, struct sums *t)
+{
+	float x = at->along[i], y = at->across[i], p = at->load[i];
+	four z = at->z, r2 = x * x + y * y + z * z, ir = inverse_root(r2), r = r2 * ir;
+	four id = 1 / (r + z), ir3 = ir * ir * ir, h = k * ir * id * id;
+	four f = 3 * ir3 * ir * ir;
+	four m = h * ir * ir * (2 * r + z) - f * z, l = k * (z * ir3 - ir * id);
+	four sm = h * ir * ir * id * (3 * r + z) - f, sk = k * ir3 - h;
+	four zz = f * (z + mu * x) * z;
 
 	t->xx += p * (m * x * x + l + mu * x * (sm * x * x + sk - 2 * h) + zz * z);
 	t->yy += p * (m * y * y + l + mu * x * (sm * y * y + sk) + zz * z);
@@ -244,75 +269,76 @@ static inline void sum_one(
 
 static void sum_list(const struct point_sum *s, struct point *at)
 {
-	double scale = s->par.dx * s->par.dy / (2 * M_PI);
+	float k = (float)(1 - 2 * s->par.nu), mu = (float)s->par.mu;
 	int swap = s->par.axis;
-	struct sums t = { .xx = lanes_all(0) };
+	struct sums t = { .xx = all_four(0) };
 
 	for (int i = 0; i < at->count; i++)
-		sum_one(s, at, i, &t);
-	for (int d = 0; d < 2; d++) {
-		double *to = at->number[d];
-
-		to[swap ? DEV_Y : DEV_X] += scale * t.xx[d];
-		to[swap ? DEV_X : DEV_Y] += scale * t.yy[d];
-		to[DEV_XY] += scale * t.xy[d];
-		to[swap ? DEV_YZ : DEV_XZ] += scale * t.xz[d];
-		to[swap ? DEV_XZ : DEV_YZ] += scale * t.yz[d];
-	}
+		sum_one(at, i, k, mu, &t);
+	at->number[swap ? DEV_Y : DEV_X] += t.xx;
+	at->number[swap ? DEV_X : DEV_Y] += t.yy;
+	at->number[DEV_XY] += t.xy;
+	at->number[swap ? DEV_YZ : DEV_XZ] += t.xz;
+	at->number[swap ? DEV_XZ : DEV_YZ] += t.yz;
 	at->count = 0;
 }
 
 static void add_point(
 	const struct point_sum *s, struct point *at, double load, double x, double y)
 {
-	double u = at->x - x, v = at->y - y;
+	float u = (float)((at->x - x) * at->per_cell),
+	      v = (float)((at->y - y) * at->per_cell);
 
 	if (at->count == LIST)
 		sum_list(s, at);
 	at->along[at->count] = s->par.axis ? v : u;
 	at->across[at->count] = s->par.axis ? u : v;
-	at->load[at->count++] = load;
+	at->load[at->count++] = (float)(at->share * (load / at->total));
 }
 
-/* The nine cells on and around the point, from one quarter of them. */
-static void know_elements(struct point_sum *s, int k)
+/* Of all cells at i, j or mirrored, at one of the depths. */
+static void know_element(struct point_sum *s, int i, int j, int set, int depth)
 {
-	double z = point_sum_depth(s, k);
+	struct influence f = influence_rough_element(&s->influence, i * s->par.dx,
+		j * s->par.dy, point_sum_depth(s, set * POINT_SUM_DEPTHS + depth));
 
+	for (int m = 0; m < 4; m++) {
+		int mx = m & 1, my = m >> 1;
+		four *to =
+			s->element[set][AROUND + (mx ? -i : i)][AROUND + (my ? -j : j)];
+
+		for (int c = 0; c < STRESS_NUMBERS; c++)
+			to[c][depth] = (float)influence_image(&s->influence, &f,
+				(enum stress_number)c, mx && i, my && j);
+	}
+}
+
+static void know_elements(struct point_sum *s, int set)
+{
 	for (int j = 0; j <= AROUND; j++)
-		for (int i = 0; i <= AROUND; i++) {
-			struct influence f = influence_rough_element(
-				&s->influence, i * s->par.dx, j * s->par.dy, z);
-
-			for (int m = 0; m < 4; m++) {
-				int mx = m & 1, my = m >> 1;
-				double *to = s->element[k][AROUND + (mx ? -i : i)]
-						       [AROUND + (my ? -j : j)];
-
-				for (int c = 0; c < STRESS_NUMBERS; c++)
-					to[c] = influence_image(&s->influence, &f,
-						(enum stress_number)c, mx && i, my && j);
-			}
-		}
-	s->known[k] = 1;
+		for (int i = 0; i <= AROUND; i++)
+			for (int depth = 0; depth < POINT_SUM_DEPTHS; depth++)
+				know_element(s, i, j, set, depth);
+	s->known[set] = 1;
 }
 
 /* A cell that is i, j cells before the point. */
 static void add_element(struct point_sum *s, struct point *at, double load, int i, int j)
 {
-	for (int d = 0; d < 2; d++) {
-		if (!s->known[at->k + d])
-			know_elements(s, at->k + d);
-		for (int c = 0; c < STRESS_NUMBERS; c++)
-			at->number[d][c] +=
-				load * s->element[at->k + d][AROUND + i][AROUND + j][c];
-	}
+	int set = at->k / POINT_SUM_DEPTHS;
+	const four *element;
+
+	if (!s->known[set])
+		know_elements(s, set);
+	element = s->element[set][AROUND + i][AROUND + j];
+	for (int c = 0; c < STRESS_NUMBERS; c++)
+		at->number[c] += (float)(load / at->total) * element[c];
 }
 
 /* Cell by cell of a smallest square. */
 static void add_cells(struct point_sum *s, struct point *at, int x, int y)
 {
-	double depth = at->z[0] / s->cell;
+	double depth = at->top / s->cell;
 	int square = y * s->size->nx + x;
 
 	for (size_t n = s->begin[square]; n < s->begin[square + 1]; n++) {
@@ -337,7 +363,7 @@ static void add_square(struct point_sum *s, struct point *at, int l, int x, int 
 
 	if (!(q->load > 0))
 		return;
-	if (u * u + v * v + 0.25 * at->z[0] * at->z[0] >=
+	if (u * u + v * v + 0.25 * at->top * at->top >=
 		FAR * FAR * size->side * size->side) {
 		add_point(s, at, q->load, q->x, q->y);
 		return;
@@ -351,7 +377,8 @@ static void add_square(struct point_sum *s, struct point *at, int l, int x, int 
 			add_square(s, at, l - 1, i, j);
 }
 
-void point_sum_at(struct point_sum *s, size_t cell, int k, double stress[2])
+void point_sum_at(
+	struct point_sum *s, size_t cell, int k, double stress[POINT_SUM_DEPTHS])
 {
 	const struct stress_par *g = &s->par;
 	const struct stress_criterion *criterion =
@@ -359,12 +386,22 @@ void point_sum_at(struct point_sum *s, size_t cell, int k, double stress[2])
 	struct point at = { .ix = (int)(cell % (size_t)g->nx),
 		.iy = (int)(cell / (size_t)g->nx),
 		.k = k,
-		.z = { point_sum_depth(s, k), point_sum_depth(s, k + 1) } };
+		.top = point_sum_depth(s, k),
+		.per_cell = 1 / s->cell,
+		.total = s->size[s->sizes - 1].square->load,
+		.share = g->dx * g->dy / (2 * M_PI * s->cell * s->cell) };
 
 	at.x = centre(at.ix, g->dx);
 	at.y = centre(at.iy, g->dy);
+	for (int d = 0; d < POINT_SUM_DEPTHS; d++)
+		at.z[d] = (float)(point_sum_depth(s, k + d) / s->cell);
 	add_square(s, &at, s->sizes - 1, 0, 0);
 	sum_list(s, &at);
-	for (int d = 0; d < 2; d++)
-		stress[d] = criterion->value(at.number[d]);
+	for (int d = 0; d < POINT_SUM_DEPTHS; d++) {
+		double number[STRESS_NUMBERS];
+
+		for (int c = 0; c < STRESS_NUMBERS; c++)
+			number[c] = at.total * at.number[c][d];
+		stress[d] = criterion->value(number);
+	}
 }

@@ -3,7 +3,7 @@
  * For a few points a direct sum over the loaded cells is cheaper than a layer
  * (free_sum.h).  Cells nearby are summed as elements, others as point loads, and squares
  * of 4 x 4, 8 x 8, ... cells that are farther away than some of their sides as one load
- * at its centroid.  Below contacts of one to five cells radius this is within 2 % of the
+ * at its centroid.  Below contacts of one to five cells radius this is within 1 % of the
  * largest pressure.  The depths form a geometric sequence, so that each element is
  * computed once for all points.
  */
@@ -14,6 +14,8 @@
 
 struct point_sum;
 
+enum { POINT_SUM_DEPTHS = 4 }; /* summed together */
+
 struct point_sum *point_sum_new(const struct stress_par *par); /* NULL: no memory */
 void point_sum_free(struct point_sum *s);
 /* Takes a pressure, borrowed until the next one. */
@@ -22,7 +24,9 @@ void point_sum_load(struct point_sum *s, const double *pressure);
 double point_sum_depth(const struct point_sum *s, int k);
 /* The last depth that is not below z; 0 where none is. */
 int point_sum_above(const struct point_sum *s, double z);
-/* Below the centre of a cell (y * nx + x), at the depths k >= 0 and k + 1. */
-void point_sum_at(struct point_sum *s, size_t cell, int k, double stress[2]);
+/* Below the centre of a cell (y * nx + x), at the depths k, k + 1, ...; k: a multiple of
+ * POINT_SUM_DEPTHS. */
+void point_sum_at(
+	struct point_sum *s, size_t cell, int k, double stress[POINT_SUM_DEPTHS]);
 
 #endif

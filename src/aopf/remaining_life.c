@@ -11,6 +11,7 @@
 #include "life/score/metrics.h"
 #include "life/trend/passage.h"
 #include "life/trend/predict.h"
+#include "life/trend/rescaled.h"
 #include "life/trend/runin.h"
 #include "num/checksum.h"
 #include <float.h>
@@ -126,6 +127,8 @@ struct outlook {
 	struct outlook_state {
 		int started, direction;
 		struct runin runin;
+		struct rescaled scale;
+		double factor, rescaled; /* of the values from about this time on; 0: 1 */
 		double first, last, clock; /* times */
 		double heeded;             /* events up to this time are done */
 		double early;              /* the last of those without an effect */
@@ -518,9 +521,14 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 				? now->beyond + 1
 				: 0;
 	now->failed |= now->started && now->beyond >= persist;
+	if (now->factor == 0 && !isnan(in->y)) {
+		now->factor = rescaled_add(&now->scale, in->y);
+		now->rescaled = in->t;
+	}
+	wanted &= now->factor == 0;
 	for (int i = 0; i < life_cells(); i++)
 		cell[i] = NAN;
-	if (now->failed)
+	if (now->failed && now->factor == 0)
 		put_failure(o, cell);
 	else if (now->started && wanted)
 		foresee(o, cell);
@@ -531,9 +539,17 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 		put_weights(o, cell + life_cells() + covariates_count());
 }
 
-int outlook_settle_events(const struct outlook *o, const char *unit)
+int outlook_settle(const struct outlook *o, const char *unit)
 {
 	unsigned long due = 0;
+	int rescaled = o->now.factor != 0;
+
+	if (rescaled)
+		warn("%s%sthe last %d values at time %g are %.3g times those before, and so "
+		     "are their steps: no life is predicted since, because their unit or the "
+		     "gain seems to have changed",
+			unit, *unit ? ": " : "", RESCALED_HALF, o->now.rescaled,
+			o->now.factor);
 
 	for (int i = 0; i < n_events; i++) {
 		struct event *e = &events[i];
@@ -546,7 +562,7 @@ int outlook_settle_events(const struct outlook *o, const char *unit)
 		due += e->t <= o->now.heeded;
 	}
 	if (due <= o->now.events)
-		return 0;
+		return rescaled;
 	warn("%s: %lu events%s%s are not after the last row of the saved state and have "
 	     "no effect",
 		events_file, due - o->now.events, *unit ? " of unit " : "", unit);

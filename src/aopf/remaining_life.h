@@ -61,8 +61,9 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 	const struct adaptive_row *filtered, double *cell);
 int outlook_cells(void);
 /* After the last row: tells which events the unit with this name has used.  Warns and
- * returns 1 if there are events before the saved state that it did not know. */
-int outlook_settle_events(const struct outlook *o, const char *unit);
+ * returns 1 if there are events before the saved state that it did not know, or if its
+ * values have changed their scale. */
+int outlook_settle(const struct outlook *o, const char *unit);
 /* After all units: warns and returns 1 if an event had no effect on any of them. */
 int outlook_report_events(void);
 int outlook_alarm(const struct outlook *o); /* the active alarm level, 0: none */

@@ -125,7 +125,7 @@ int units_report(const struct units *units)
 
 		resumed += u->resumed;
 		if (u->outlook)
-			doubtful |= outlook_settle_events(u->outlook, u->name);
+			doubtful |= outlook_settle(u->outlook, u->name);
 	}
 	for (int i = 0; i < units->n_input && resumed > 0; i++)
 		if (units->unit[units->of_input[i]]->resumed)

@@ -155,11 +155,27 @@ static double square_at(double deviate, double freedom)
 	return freedom * expm1(fmin(600, wide * wide / freedom));
 }
 
-/* Updates one trend by a row. */
-static void follow(
-	const struct bank *b, struct trend *tr, const struct place *seen, double step)
+/* Scores a reading that is equal to one before, and returns the probability that it is
+ * new: a new one has fallen into the same cell of rounding, a frozen one, of a sensor
+ * that sticks or has reached its ceiling, is always equal.  The share of frozen readings
+ * has Jeffreys' prior; of the last value and the farthest, each is as likely. */
+static double news_of(const struct bank *b, struct trend *tr, const struct place *p,
+	double f, double e, int equal)
 {
-	double keep = b->keep[tr->kind], f, e, z, limit;
+	double half = 0.5 * b->quantum / fabs(b->range) * p->slope,
+	       sd = sqrt(2 * f * tr->sum / freedom_of(b, tr)),
+	       frozen = 0.5 * equal * (b->frozen + 0.5) / ((double)b->rows + 1),
+	       new = 0.5 * (1 - frozen) * (erf((e + half) / sd) - erf((e - half) / sd));
+
+	tr->score += log(new + frozen);
+	return fmax(new / (new + frozen), 1e-9);
+}
+
+/* Updates one trend by a row; returns the probability that it is frozen. */
+static double follow(const struct bank *b, struct trend *tr, const struct place *seen,
+	double step, int equal)
+{
+	double keep = b->keep[tr->kind], f, e, z, limit, noise, news = 1;
 	struct place p = seen_from(b, tr, seen, step);
 
 	if (b->par.n_loads > 0)
@@ -173,20 +189,27 @@ static void follow(
 		z = copysign(limit, z);
 		e = z * sqrt(f);
 	}
-	if (b->rows >= BANK_START - 1)
+	if (b->rows >= BANK_START - 1 && equal)
+		news = news_of(b, tr, &p, f, e, equal);
+	else if (b->rows >= BANK_START - 1)
 		tr->score += log_density(b, tr, &p, f, z);
+	f /= news; /* as if it were so much less accurate */
+	noise = f - tr->phh;
 	if (b->par.n_loads > 0)
-		correct_tilts(b, tr, f, e, squared_slope(p));
+		correct_tilts(b, tr, f, e, noise);
 	tr->h += tr->phh / f * e;
 	tr->v += tr->phv / f * e;
 	tr->pvv -= tr->phv / f * tr->phv;
-	tr->phv *= squared_slope(p) / f;
-	tr->phh *= squared_slope(p) / f;
+	tr->phv *= noise / f;
+	tr->phh *= noise / f;
 	if (b->rows < 2) /* two rows determine the trend and leave no innovation */
-		return;
-	tr->sum = tr->sum * keep + z * z + FINEST * FINEST;
-	tr->lagged = (float)(tr->lagged * keep + z * tr->before);
-	tr->before = (float)z;
+		return 0;
+	tr->lagged = (float)(tr->lagged * (keep + (1 - news) / freedom_of(b, tr)) +
+			     news * z * tr->before);
+	tr->sum = tr->sum * (keep + (1 - news) / freedom_of(b, tr)) + news * z * z +
+		  FINEST * FINEST;
+	tr->before += (float)(news * (z - tr->before));
+	return 1 - news;
 }
 
 /* A path shares its prior with the others, and has less weight the farther the speed of
@@ -326,10 +349,18 @@ static void breed(struct bank *b)
 
 /* --- rows --------------------------------------------------------------------------- */
 
+/* To how many of the last value and the farthest a value is equal. */
+static int equals(const struct bank *b, double y)
+{
+	return (y == b->before) + (y == b->farthest);
+}
+
 static void take(struct bank *b, const struct row *r)
 {
 	double k = (double)b->rows, fade = k / (k + 1), step = (r->t - b->last) / b->unit,
 	       damage = damage_of(b, r->y);
+	double frozen = 0, one;
+	int equal = equals(b, r->y);
 	struct place place;
 	int shape = -1;
 
@@ -345,8 +376,14 @@ static void take(struct bank *b, const struct row *r)
 		if (tr->shape != shape)
 			place = place_of(b, shape = tr->shape, damage);
 		tr->score *= fade;
-		follow(b, tr, &place, step);
+		one = follow(b, tr, &place, step, equal);
+		if (tr->weight > 0 && one > 0) /* not NAN */
+			frozen += tr->weight * one;
 	}
+	b->frozen += frozen;
+	if (b->par.direction * (r->y - b->farthest) > 0)
+		b->farthest = r->y;
+	b->before = r->y;
 	for (int j = 0; j < KINDS && b->rows > 1; j++)
 		b->freedom[j] = b->keep[j] * b->freedom[j] + 1;
 	if (b->rows >= BANK_START - 1)
@@ -381,6 +418,8 @@ static void start(struct bank *b)
 	b->unit = 0.5 * (r[2].t - r[0].t); /* one of the two gaps may be tiny */
 	b->first = b->last = r[0].t;
 	b->level = damage_of(b, r[0].y);
+	b->before = b->farthest = r[0].y;
+	b->frozen = 0;
 	b->idle = b->age = b->squares = b->longest = b->bred = b->scored = 0;
 	b->gap = 1;
 	b->trends = 0;
@@ -579,8 +618,16 @@ static void leave_idle_time(struct bank *b, struct row *r)
 	b->counts.halts++;
 }
 
-/* Where values repeat they have been rounded, and the noise is at least that of rounding
- * to the least step seen: a quantum over sqrt(12).  Without it a step after equal values
+/* Greatest common divisor of two numbers that are known to a twentieth of it. */
+static double common_divisor(double a, double b)
+{
+	double rest = fabs(remainder(a, b));
+
+	return rest > 0.05 * b ? common_divisor(b, rest) : b;
+}
+
+/* Where values repeat they have been rounded, and the noise is at least that of rounding:
+ * a quantum over sqrt(12).  Without it a step after equal values
  * would count as a shift, and the wear as none. */
 static void heed_rounding(struct bank *b, double y)
 {
@@ -592,9 +639,8 @@ static void heed_rounding(struct bank *b, double y)
 	} else if (step == 0) {
 		b->repeats = 1;
 	} else {
-		b->quantum = fmin(b->quantum, step);
+		b->quantum = isinf(b->quantum) ? step : common_divisor(step, b->quantum);
 	}
-	b->before = y;
 	if (b->rows == 0 || !b->repeats || isinf(b->quantum))
 		return;
 	step = b->quantum / b->range;
@@ -617,6 +663,7 @@ void bank_add(struct bank *b, double t, double y)
 	for (int k = 0; k < b->par.n_loads; k++)
 		r.sum[k] = b->load[k].sum;
 	if (b->rows == 0) {
+		b->before = y;
 		b->held[b->n_held++] = r;
 		if (b->n_held == FIRST)
 			drop_outlier(b);
@@ -627,7 +674,8 @@ void bank_add(struct bank *b, double t, double y)
 	r.t -= b->idle;
 	face_loads(b, &r);
 	leave_idle_time(b, &r);
-	if (expect(b, damage_of(b, y), (r.t - b->last) / b->unit, is_surprised) < 0.9) {
+	if (equals(b, y) || expect(b, damage_of(b, y), (r.t - b->last) / b->unit,
+				    is_surprised) < 0.9) {
 		b->counts.outliers += (unsigned long)b->n_held;
 		b->n_held = 0;
 		take(b, &r);

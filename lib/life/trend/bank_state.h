@@ -71,9 +71,11 @@ struct bank {
 	double squares;       /* sum of the squares of all gaps, with halts, units^2 */
 	double longest;       /* of these gaps */
 	double level;         /* D of the last row */
-	double before;        /* y of the last row, taken or held back */
-	double quantum;       /* least difference of successive values of y but 0 */
+	double before;        /* y of the last row */
+	double farthest;      /* y of the row nearest to the threshold, or beyond */
+	double quantum;       /* common divisor of the steps of y */
 	int repeats;          /* 1: successive values have been equal */
+	double frozen;        /* rows that did so by a frozen sensor, expected */
 	double bred;          /* age at which particles were last drawn */
 	double freedom[KINDS], keep[KINDS], log_constant[KINDS];
 	double cut; /* square of the largest standardised innovation */
