@@ -385,6 +385,9 @@ refuses "of other sensors" 'sensors 0.25 m apart' rig.tsv '--spacing 20cm'
 refuses "learned with other options" 'other options' rig.tsv '--gain 1'
 fails "a table of something else is no instrument" 1 "no key 'instrument'" \
 	duet --instrument "$work/truth.tsv" rig.au
+head -c 50000 rig.au >torn.au
+fails "an instrument that cannot be written, before the record is found torn" 1 '^duet: missing/rig.tsv: No such file' \
+	duet --instrument missing/rig.tsv torn.au
 sensorsim --uniform 80um:120um --number 9 --duration 2s --rate 5kHz --noise 30mV >slow.au
 fails "an instrument of another rate is refused" 1 'learned at 10000 Hz, the record has 5000 Hz' \
 	duet --instrument rig.tsv slow.au

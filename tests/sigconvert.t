@@ -148,6 +148,8 @@ fi
 fails "no rate and no times" 1 'specify --rate' sigconvert --skip-lines 1 plain.csv
 fails "a missing column" 1 "no column 'x'" sigconvert --columns x daq.csv
 fails "no headings" 1 'want a line of headings' sigconvert --skip-lines 2 plain.csv
+printf '0.12;x0.3\n0.2;0.3\n' >torn.csv
+fails "a torn first row is no heading" 1 "line 1: want a line of headings, got '0.12;x0.3'" sigconvert --rate 1Hz torn.csv
 printf 't\tu\n0\t1\n1\t2\n2\t3\n5\t4\n' >gap.tsv
 fails "samples that are missing" 1 'line 5: time 5 s, want 3 s' sigconvert --rate 1Hz gap.tsv
 printf 't\tu\n0\t1\n1\tx\n' >word.tsv
@@ -205,6 +207,8 @@ printf 'time [s];T [K];u\n0;1;2\n1;3;4\n' >twice.csv
 fails "a second column 't' beside the times" 1 "column 'T' would be called 't' as the times are" sigconvert --output table twice.csv
 sigconvert --output table --columns 'kelvin=T;u' twice.csv >renamed.tsv
 is "a column renamed no longer collides with the times" "$(body renamed.tsv)" '# units: s K 1|t kelvin u|0 1 2|1 3 4|'
+printf 'time [s];1;2\n0;1;2\n1;3;4\n2;5;6\n' >numbered.csv
+is "columns may be called by numbers" "$(sigconvert --rate 1Hz numbered.csv | records --check | grep -c 'frames 3, whole')" 1
 printf 'time;A;a\n0;1;2\n' >same.csv
 fails "two columns that differ by capitals" 1 "two columns are called 'a'" sigconvert --output table same.csv
 printf 'time [2s],u [0mV]\n0,1\n1,3\n' >digit.csv

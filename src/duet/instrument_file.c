@@ -148,6 +148,18 @@ static size_t read_rows(struct table_in *t, struct instrument_value **v, char **
 	return n;
 }
 
+/* A file that cannot be written is named before hours of the record are read. */
+static void check_directory(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	char *directory =
+		slash ? xprintf("%.*s", (int)(slash - path + 1), path) : xstrdup(".");
+
+	if (access(directory, W_OK))
+		die(EXIT_RUN, "%s:", path);
+	free(directory);
+}
+
 int instrument_read(const struct instrument_place *place, struct instrument *in)
 {
 	struct instrument_value *v;
@@ -157,8 +169,11 @@ int instrument_read(const struct instrument_place *place, struct instrument *in)
 	char **names;
 	size_t n;
 
-	if (access(place->path, F_OK) != 0)
+	if (access(place->path, F_OK) != 0) {
+		if (!getenv(FILE_REPLAY))
+			check_directory(place->path);
 		return 0;
+	}
 	t = table_open(place->path);
 	check_keys(t, place);
 	n = read_rows(t, &v, &names);

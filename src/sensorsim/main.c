@@ -200,14 +200,17 @@ int main(int argc, char **argv)
 		pass_traffic(&f, INFINITY, 1, table);
 	} else {
 		struct signal_out *out;
+		char *number, *cmd;
 
 		format.channels = sensors_channels();
 		format.units = format.channels == 4 ? "V V V V" : "V V";
-		format.seed = xprintf("%ld", seed);
-		format.cmd = opt_cmd(source_cmd(f.source), NULL);
+		format.seed = number = xprintf("%ld", seed);
+		format.cmd = cmd = opt_cmd(source_cmd(f.source), NULL);
 		out = signal_create(NULL, &format);
 		run(&f, table, out);
 		signal_done(out);
+		free(number);
+		free(cmd);
 	}
 	if (table)
 		table_done(table);

@@ -451,12 +451,18 @@ static void learn_rate(struct text_in *t, const struct recording_par *par)
 	}
 }
 
+/* A column may be called by its number, as in "time;1;2". */
+static int is_ordinal(double v)
+{
+	return v == floor(v) && v >= 0 && v < 1000;
+}
+
 struct text_in *text_open(struct input *in, const struct recording_par *par)
 {
 	struct text_in *t = xcalloc(1, sizeof *t);
 	char *copy;
 	double v;
-	int numbers = 1;
+	int numbers = 1, values = 0;
 
 	t->in = in;
 	t->name = input_name(in);
@@ -485,13 +491,15 @@ struct text_in *text_open(struct input *in, const struct recording_par *par)
 	t->scale = xcalloc((size_t)t->cells + 1, sizeof *t->scale);
 	for (int i = 0; i < t->cells; i++) {
 		char *cell = xstrdup(t->heading[i]);
+		int is_number = number(t, cell, &v);
 
-		numbers &= number(t, cell, &v);
+		numbers &= is_number;
+		values |= is_number && !is_ordinal(v);
 		free(cell);
 	}
-	if (numbers)
-		die(EXIT_RUN, "%s: line %ld: want a line of headings", t->name,
-			t->number);
+	if (numbers || values)
+		die(EXIT_RUN, "%s: line %ld: want a line of headings, got '%.40s'",
+			t->name, t->number, t->line);
 	for (int i = 0; i < t->cells; i++)
 		t->unit[i] = unit_of(t->heading[i]);
 	choose(t, par);
