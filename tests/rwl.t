@@ -130,6 +130,17 @@ printf 'realisation\tstep\tvolume\n0\t1\t1e-15\n0\t2\t2e-15\n' >single.tsv
 fails "one realisation is doubtful" 3 'single.tsv: a single realisation' \
 	rwl --new --wear single.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um \
 	--area 2346.3mm2 --fragment-area 1e-8m2
+awk 'BEGIN { srand(4); print "t\tgap"; for (t = 0; t < 40; t++) print t * 3600 "\t" (10 + t / 10 + 0.02 * rand()) * 1e-6 }' >steady.tsv
+for wear in '' '--wear single.tsv --step-time 1h'; do
+	# shellcheck disable=SC2086 # options
+	rwl --threshold-gap 15um --wear-rate filter $wear steady.tsv 2>err | grep -v '^#' >"filter$(echo "$wear" | wc -w | tr -d ' ')"
+done
+same "filters take no rate from one realisation" filter0 filter4
+awk 'NR > 20 { $2 /= 25.4 } { print $1 "\t" $2 }' steady.tsv >inch.tsv
+fails "a change of unit" 1 'inch.tsv: line 28: the last 8 values are 0.04.* times those before, and so are their steps' \
+	rwl --threshold-gap 15um inch.tsv
+rwl --threshold-gap 15um steady.tsv 2>err >out
+is "a rate without uncertainty is named" "$(grep -c 'the rate is taken as exact' err)" 1
 printf 'volume\n0\n0\n0\n' >nothing.tsv
 fails "a table without wear gives a doubtful life" 3 'nothing.tsv: none of 3 realisations wore' \
 	rwl --new --wear nothing.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um \

@@ -179,7 +179,8 @@ static void write_rates(const struct paths *e, const char *cmd)
 	table_done(out);
 }
 
-static struct forecast *new_forecast(struct paths *e, enum pair_quantity quantity)
+static struct forecast *new_forecast(
+	struct paths *e, enum pair_quantity quantity, int doubtful)
 {
 	struct forecast_par par = { .pair = pump.pair,
 		.quantity = quantity,
@@ -188,7 +189,8 @@ static struct forecast *new_forecast(struct paths *e, enum pair_quantity quantit
 		.count = count,
 		.seed = (uint64_t)seed,
 		.first = (uint32_t)first_path,
-		.scaled = wear_files.n && (calibrations.n || !isnan(step_time)),
+		.scaled = wear_files.n && !doubtful &&
+			  (calibrations.n || !isnan(step_time)),
 		.skip = skip,
 		.horizon = horizon,
 		.grey = grey,
@@ -327,7 +329,7 @@ int main(int argc, char **argv)
 	if (rates_file)
 		write_rates(e, cmd);
 	out = open_table(&s, cmd, made_by, assumed);
-	f = new_forecast(e, s.quantity);
+	f = new_forecast(e, s.quantity, status != 0);
 	if (new) {
 		forecast_foresee(f);
 		lifetable_put(out, 0, forecast_at(f, 0));
@@ -339,6 +341,9 @@ int main(int argc, char **argv)
 	covariates_close();
 	if (assumed)
 		warn("assumed: %s", assumed);
+	if (!p && rule != RATE_FILTER && !(state_options.error > 0))
+		warn("the rate is taken as exact, and all quantiles are equal: "
+		     "--wear-rate filter gives an interval");
 	forecast_free(f);
 	partition_free(p);
 	paths_free(e);

@@ -101,7 +101,7 @@ static double add_debris(struct observations *s, enum verdict verdict, double di
 int state_next(struct observations *s)
 {
 	struct table_in *t = s->table;
-	double time, value, error = state_options.error * s->scale;
+	double time, value, factor, error = state_options.error * s->scale;
 	enum verdict verdict = VERDICT_SURE;
 	int more;
 
@@ -137,6 +137,12 @@ int state_next(struct observations *s)
 		warn("%s: line %ld: a %s of %g %s: is another unit meant? --state-unit names it",
 			table_name(t), table_line(t), quantities[s->quantity], value,
 			unit_name(units[s->quantity]));
+	if (s->quantity != PAIR_DEBRIS && !isnan(value) &&
+		(factor = rescaled_add(&s->seen, value)) != 0)
+		die(EXIT_RUN,
+			"%s: line %ld: the last %d values are %.3g times those before, and so are "
+			"their steps: their unit or the gain seems to have changed",
+			table_name(t), table_line(t), RESCALED_HALF, factor);
 	if (s->rows == 1)
 		s->first_t = time;
 	s->t = time;

@@ -16,6 +16,7 @@
 #include "cli/opt.h"
 #include "io/tables.h"
 #include "life/pair/pair.h"
+#include "life/trend/rescaled.h"
 
 /* Values of the options. */
 extern struct state_options {
@@ -38,6 +39,7 @@ struct observations {
 	long rows;
 	long passed;          /* particles without a diameter */
 	long beyond;          /* values that suggest another unit */
+	struct rescaled seen; /* values, to find out whether their unit changes */
 	double first_t;       /* of the first row */
 	double t, gap, value; /* latest row, SI; gap and value NAN if missing */
 	double gap_error;     /* standard error of the gap */

@@ -38,7 +38,8 @@ static enum num_status open_bank(struct forecast *f)
 		.direction = 1, .load = par->load, .n_loads = par->n_loads
 	};
 
-	paths_rate(f->paths, &bank.rate_mean, &bank.rate_sd);
+	if (par->scaled)
+		paths_rate(f->paths, &bank.rate_mean, &bank.rate_sd);
 	f->by_gap = bank.rate_sd > 0 || par->quantity == PAIR_GAP;
 	bank.threshold = f->by_gap ? limit : pair_value(&par->pair, par->quantity, limit);
 	if (f->by_gap || par->quantity == PAIR_LEAKAGE) {

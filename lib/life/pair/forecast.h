@@ -27,7 +27,7 @@ struct forecast_par {
 	long count;
 	uint64_t seed;
 	uint32_t first;
-	int scaled;     /* 1: the paths know how long a step takes */
+	int scaled;     /* 1: the paths know how long a step takes, and their rate */
 	double skip;    /* run-in from the first row on, which the rates leave out, s */
 	double horizon; /* lives beyond this count as no failure; NAN: none, or ten times
 			 * the age for filters without paths */
