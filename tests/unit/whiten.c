@@ -141,7 +141,6 @@ static void test_baseline(const struct whitening *w, const double *h, size_t tap
 		.gain = 0.9,
 		.delta_max = 7,
 		.max_pulses = 1,
-		.offset = 1,
 		.tone_variance = INFINITY };
 	struct joint *j = joint_new();
 	struct joint_result r;

@@ -51,7 +51,6 @@ struct joint_scene {
 	 * and pulses may arrive beyond. */
 	double quiet[2];
 	int max_pulses; /* at most JOINT_PULSES_MAX */
-	int offset;     /* 1: a constant is fitted too */
 	int tones;
 	double omega[JOINT_TONES_MAX]; /* rad per sample */
 	/* Prior variance of the cosine and sine of each tone about zero (small after

@@ -206,8 +206,7 @@ static void make_channel_basis(struct joint *j, const struct joint_scene *s, int
 		draw_wave(j, c, j->basis++, cos, omega, 0, 0);
 		draw_wave(j, c, j->basis++, sin, omega, 0, 0);
 	}
-	if (s->offset)
-		draw_wave(j, c, j->basis++, cos, 0, 0, 0);
+	draw_wave(j, c, j->basis++, cos, 0, 0, 0);
 	for (int k = 0; k < 2 * free_tones; k++)
 		draw_wave(j, c, j->basis++, k % 2 ? sin : cos, s->omega[k / 2], 0, 0);
 	for (int b = known; b < j->basis; b++)

@@ -62,7 +62,6 @@ void calibration_scene(const struct calibration *c, struct joint_scene *scene)
 		.drop = c->drop,
 		.drop_near = c->drop_near,
 		.misfit = c->misfit,
-		.offset = 1,
 		.tone_variance = c->tone_variance,
 		.tone_hop = (double)c->tone_hop,
 		.low = c->whitening.low,
