@@ -80,7 +80,7 @@ static void test_wrong_template(const double *y1, const double *y2)
 		.events = TEMPLATE_LEAST,
 		.pulse = PULSE_GAUSS };
 
-	ok(learn_pulse(&par, y1, y2, N / 4, 62, &found, &c) == CALIBRATE_OK &&
+	ok(learn_pulse(&par, y1, y2, N / 4, 62, &found, &c) == SEPARATE_OK &&
 			c.pulse == PULSE_SINE && !c.measured,
 		"a pulse that does not describe the record gives way to a known one");
 	near(c.duration, 93, 2, "and its duration is near that of the crowd");

@@ -16,12 +16,12 @@ static int is_constant(const double *x, size_t n)
 }
 
 /* One attempt, on the record whitened by w if w has taps.  c takes over w. */
-static enum calibrate_status attempt(const struct calibrate_par *par, const double *x1,
+static enum separate_status attempt(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, const struct whitening *w, struct calibration *c,
 	struct look *look)
 {
 	double *work = malloc(3 * n * sizeof *work);
-	enum calibrate_status status = work ? CALIBRATE_OK : CALIBRATE_MEMORY;
+	enum separate_status status = work ? SEPARATE_OK : SEPARATE_MEMORY;
 	size_t edge = n > 8 * (size_t)w->edge ? (size_t)w->edge : 0;
 
 	memset(c, 0, sizeof *c);
@@ -39,36 +39,36 @@ static enum calibrate_status attempt(const struct calibrate_par *par, const doub
 		for (size_t i = 0; i < n; i++)
 			y[i] -= c->mean[k];
 		if (whitening_apply(w, y, n) != NUM_OK)
-			status = CALIBRATE_MEMORY;
+			status = SEPARATE_MEMORY;
 	}
-	if (status == CALIBRATE_OK)
+	if (status == SEPARATE_OK)
 		status = measure(par, x1 + edge, work + edge, work + n + edge,
 			n - 2 * edge, work + 2 * n, look, c);
 	free(work);
 	look->work = c->work;
-	if (status != CALIBRATE_OK)
+	if (status != SEPARATE_OK)
 		calibration_clear(c);
 	return status;
 }
 
 /* Noise or a filter without power at any frequency leaves no band. */
-static enum calibrate_status of_whitening(enum num_status status)
+static enum separate_status of_whitening(enum num_status status)
 {
-	return status == NUM_OK       ? CALIBRATE_OK
-	       : status == NUM_MEMORY ? CALIBRATE_MEMORY
-				      : CALIBRATE_NARROW;
+	return status == NUM_OK       ? SEPARATE_OK
+	       : status == NUM_MEMORY ? SEPARATE_MEMORY
+				      : SEPARATE_NARROW;
 }
 
-static enum calibrate_status attempt_kind(const struct calibrate_par *par,
+static enum separate_status attempt_kind(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, enum whiten_kind kind,
 	struct look *look, struct calibration *c)
 {
 	struct whitening w;
-	enum calibrate_status status =
+	enum separate_status status =
 		of_whitening(whitening_of_noise(&w, look->power, COLOUR_BINS, kind));
 
 	look->kind = kind;
-	if (status != CALIBRATE_OK)
+	if (status != SEPARATE_OK)
 		return status;
 	return attempt(par, x1, x2, n, &w, c, look);
 }
@@ -76,7 +76,7 @@ static enum calibrate_status attempt_kind(const struct calibrate_par *par,
 /* Tries both explanations of noise that is not white: it was filtered with the pulses, or
  * coloured before they were added.  The better one is used once more, with its pulse
  * corrected. */
-static enum calibrate_status look_again(const struct calibrate_par *par, const double *x1,
+static enum separate_status look_again(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct look *look, struct calibration *c)
 {
 	static const enum whiten_kind kinds[] = { WHITEN_FILTERED, WHITEN_COLOURED };
@@ -86,12 +86,12 @@ static enum calibrate_status look_again(const struct calibrate_par *par, const d
 
 	for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
 		struct calibration other;
-		enum calibrate_status status =
+		enum separate_status status =
 			attempt_kind(par, x1, x2, n, kinds[k], look, &other);
 
-		if (status == CALIBRATE_MEMORY)
+		if (status == SEPARATE_MEMORY)
 			return status;
-		if (status != CALIBRATE_OK)
+		if (status != SEPARATE_OK)
 			continue;
 		if (other.price < best && !other.dense) {
 			best = other.price;
@@ -101,7 +101,7 @@ static enum calibrate_status look_again(const struct calibrate_par *par, const d
 		calibration_clear(&other);
 	}
 	if (!better)
-		return CALIBRATE_OK;
+		return SEPARATE_OK;
 	look->settled = 1;
 	calibration_clear(c);
 	return attempt_kind(par, x1, x2, n, found, look, c);
@@ -129,7 +129,7 @@ static const double LINES_WORK = 7;
  * their tails, or lines that last only as long as the train.  Uses fewer lines if with
  * them the pulses describe the record, and better; two attempts of which neither does say
  * nothing of the lines. */
-static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
+static enum separate_status try_fewer_tones(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct look *look,
 	struct calibration *c)
 {
@@ -141,20 +141,20 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 		.wide = look->wide,
 		.events = look->found.events };
 	struct calibration other;
-	enum calibrate_status status;
+	enum separate_status status;
 
 	fewer.tones = 0;
 	for (int k = 0; k < c->tones; k++)
 		if (c->tone_power[k] > fmax(TAILS, look->drift / STEADY))
 			fewer.omega[fewer.tones++] = c->omega[k];
 	if (fewer.tones == c->tones)
-		return CALIBRATE_OK;
+		return SEPARATE_OK;
 	fewer.most = fmin(par->most, (1 + LINES_WORK) * look->work);
 	status = attempt(&fewer, x1, x2, n, &w, &other, &other_look);
 	look->attempts = other_look.attempts;
 	look->work = other_look.work;
-	if (status != CALIBRATE_OK)
-		return status == CALIBRATE_MEMORY ? status : CALIBRATE_OK;
+	if (status != SEPARATE_OK)
+		return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
 	if (other.price < c->price && learn_describes(&other)) {
 		calibration_clear(c);
 		*c = other;
@@ -162,7 +162,7 @@ static enum calibrate_status try_fewer_tones(const struct calibrate_par *par,
 	} else {
 		calibration_clear(&other);
 	}
-	return CALIBRATE_OK;
+	return SEPARATE_OK;
 }
 
 /* Share of its energy in which a whitened pulse may differ from a known one; half and
@@ -171,7 +171,7 @@ static const double KNOWN = 0.01;
 
 /* *lacks: 1 if whitening has made the pulse a known one but the low frequencies are lost;
  * a pulse taken from the record then lacks them. */
-static enum calibrate_status lacks_low(
+static enum separate_status lacks_low(
 	const struct look *look, const struct calibration *c, int *lacks)
 {
 	struct template white = { .shape = c->shape, .duration = c->duration };
@@ -185,69 +185,69 @@ static enum calibrate_status lacks_low(
 	status = template_known(&white, w.seen, w.seen_half, &left);
 	*lacks = left <= KNOWN && w.low > 0;
 	whitening_clear(&w);
-	return status == NUM_OK ? CALIBRATE_OK : CALIBRATE_MEMORY;
+	return status == NUM_OK ? SEPARATE_OK : SEPARATE_MEMORY;
 }
 
 /* Whitens the noise and takes the pulse from that record; COLOURED if the pulse does not
  * describe it. */
-static enum calibrate_status attempt_white(const struct calibrate_par *par,
+static enum separate_status attempt_white(const struct calibrate_par *par,
 	const double *x1, const double *x2, size_t n, struct look *look,
 	struct calibration *c)
 {
 	struct look smooth = *look;
-	enum calibrate_status status;
+	enum separate_status status;
 
 	if (colour_smooth(smooth.power) != NUM_OK)
-		return CALIBRATE_MEMORY;
+		return SEPARATE_MEMORY;
 	status = attempt_kind(par, x1, x2, n, WHITEN_COLOURED, &smooth, c);
-	if (status == CALIBRATE_MEMORY)
+	if (status == SEPARATE_MEMORY)
 		return status;
 	look->attempts = smooth.attempts;
 	look->work = smooth.work;
-	if (status == CALIBRATE_OK && c->measured && !c->dense && learn_describes(c)) {
+	if (status == SEPARATE_OK && c->measured && !c->dense && learn_describes(c)) {
 		int lacks = 0;
 
 		status = lacks_low(look, c, &lacks);
-		if (status == CALIBRATE_OK && !lacks)
+		if (status == SEPARATE_OK && !lacks)
 			return status;
-		if (status == CALIBRATE_MEMORY) {
+		if (status == SEPARATE_MEMORY) {
 			calibration_clear(c);
 			return status;
 		}
 	}
 	calibration_clear(c);
-	return CALIBRATE_COLOURED;
+	return SEPARATE_COLOURED;
 }
 
-static enum calibrate_status find(const struct calibrate_par *par, const double *x1,
+static enum separate_status find(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct look *look, struct calibration *c)
 {
-	enum calibrate_status status = CALIBRATE_OK;
+	enum separate_status status = SEPARATE_OK;
 	struct whitening w = { .tap = NULL };
 
 	if (is_constant(x1, n))
-		return CALIBRATE_SILENT_1;
+		return SEPARATE_SILENT_1;
 	if (is_constant(x2, n))
-		return CALIBRATE_SILENT_2;
+		return SEPARATE_SILENT_2;
 	if (par->filter)
 		status = of_whitening(
 			whitening_of_filter(&w, par->filter, par->filter_taps));
-	if (status != CALIBRATE_OK)
+	if (status != SEPARATE_OK)
 		return status;
 	look->first =
 		!par->filter && par->pulse == CALIBRATE_ANY_PULSE && isnan(par->duration);
 	status = attempt(par, x1, x2, n, &w, c, look);
-	if (status == CALIBRATE_COLOURED) {
+	if (status == SEPARATE_COLOURED) {
 		status = attempt_white(par, x1, x2, n, look, c);
-		if (status != CALIBRATE_COLOURED)
+		if (status != SEPARATE_COLOURED)
 			return status;
 		look->first = 0;
 		status = attempt(par, x1, x2, n, &w, c, look);
 	}
 	look->first = 0;
-	if (status == CALIBRATE_OK && par->tones == CALIBRATE_FIND_TONES && !w.tap)
+	if (status == SEPARATE_OK && par->tones == CALIBRATE_FIND_TONES && !w.tap)
 		status = try_fewer_tones(par, x1, x2, n, look, c);
-	if (status == CALIBRATE_OK && look->coloured && !c->dense && !is_white(c, look))
+	if (status == SEPARATE_OK && look->coloured && !c->dense && !is_white(c, look))
 		status = look_again(par, x1, x2, n, look, c);
 	return status;
 }
@@ -264,37 +264,37 @@ static const double MORE_WORK = 2;
 /* Learns the instrument again with a wider range of delays, which is kept if the pulses
  * describe the record, and better: a pulse beyond a range that is too narrow takes two
  * within it. */
-static enum calibrate_status try_wide(const struct calibrate_par *par, const double *x1,
+static enum separate_status try_wide(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct look *look, struct calibration *c)
 {
 	struct look wide = { .attempts = look->attempts, .work = look->work, .wide = 1 };
 	struct calibrate_par limited = *par;
 	struct calibration other = { 0 };
-	enum calibrate_status status;
+	enum separate_status status;
 
 	limited.most = fmin(par->most, (1 + MORE_WORK) * look->work);
 	status = find(&limited, x1, x2, n, &wide, &other);
 	look->attempts = wide.attempts;
 	look->work = wide.work;
-	if (status == CALIBRATE_OK && other.price < c->price && learn_describes(&other) &&
+	if (status == SEPARATE_OK && other.price < c->price && learn_describes(&other) &&
 		!other.dense) {
 		calibration_clear(c);
 		*c = other;
-		return CALIBRATE_OK;
+		return SEPARATE_OK;
 	}
 	calibration_clear(&other);
-	return status == CALIBRATE_MEMORY ? status : CALIBRATE_OK;
+	return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
 }
 
-enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
+enum separate_status calibrate(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct calibration *c)
 {
 	struct look look = { 0 };
-	enum calibrate_status status;
+	enum separate_status status;
 
 	memset(c, 0, sizeof *c);
 	status = find(par, x1, x2, n, &look, c);
-	if (status == CALIBRATE_OK && c->far >= SOME && isnan(par->spread) &&
+	if (status == SEPARATE_OK && c->far >= SOME && isnan(par->spread) &&
 		c->delta_max <= calibration_plug(c))
 		status = try_wide(par, x1, x2, n, &look, c);
 	c->attempts = look.attempts;

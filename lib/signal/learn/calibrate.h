@@ -15,9 +15,9 @@
 
 #include "signal/learn/calibration.h"
 
-/* x1, x2: n >= 64 finite samples.  On CALIBRATE_OK *c is filled; free it with
+/* x1, x2: n >= 64 finite samples.  On SEPARATE_OK *c is filled; free it with
  * calibration_clear().  Otherwise only its work and its attempts are. */
-enum calibrate_status calibrate(const struct calibrate_par *par, const double *x1,
+enum separate_status calibrate(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct calibration *c);
 
 #endif

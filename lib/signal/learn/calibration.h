@@ -88,21 +88,25 @@ struct calibration {
 			 is best */
 };
 
-enum calibrate_status {
-	CALIBRATE_OK,
-	CALIBRATE_MEMORY,
-	CALIBRATE_COLOURED, /* of one attempt: the noise must be whitened first */
-	CALIBRATE_SILENT_1, /* channel 1 is constant */
-	CALIBRATE_SILENT_2,
-	CALIBRATE_HARD,    /* describing the record by pulses takes too much time */
-	CALIBRATE_NO_LAG,  /* the channels have nothing in common */
-	CALIBRATE_AT_ONCE, /* the channels correlate at lag 0 only */
-	CALIBRATE_SWAPPED, /* particles pass sensor 2 first */
-	CALIBRATE_FAR,     /* the lag given is as long as the record */
-	CALIBRATE_NARROW,  /* the filter has left a band narrower than half the pulse's */
-	CALIBRATE_FAST,    /* pulses of fewer than 8 samples */
-	CALIBRATE_SLOW,    /* pulses longer than half the record */
-	CALIBRATE_TONES /* too many lines, or lines too near each other, for the record */
+enum separate_status {
+	SEPARATE_OK,
+	SEPARATE_MEMORY,
+	SEPARATE_SHORT,      /* fewer samples than SEPARATE_SHORTEST */
+	SEPARATE_NOT_FINITE, /* see separate_bad_sample() */
+	SEPARATE_SILENT_1,   /* channel 1 is constant */
+	SEPARATE_SILENT_2,
+	SEPARATE_COLOURED, /* of one attempt: the noise must be whitened first */
+	SEPARATE_NO_LAG,   /* the channels have nothing in common */
+	SEPARATE_HARD,     /* what is learned from is described only by too many pulses */
+	SEPARATE_AT_ONCE,  /* both channels have the same at once: no particles */
+	SEPARATE_SWAPPED,  /* particles pass sensor 2 first */
+	SEPARATE_FAR,      /* the lag given is as long as what is learned from */
+	SEPARATE_NARROW,   /* a filter has left a band narrower than half the pulse's */
+	SEPARATE_FAST,     /* pulses of fewer than 8 samples */
+	SEPARATE_SLOW,     /* pulses longer than half of what is learned from */
+	SEPARATE_TONES,    /* too many lines, or too near each other, for the record */
+	SEPARATE_WINDOW,   /* that of the masks is shorter than half a pulse */
+	SEPARATE_WIDE      /* pulses may last too long, or no time, within the spread */
 };
 
 void calibration_clear(struct calibration *c);

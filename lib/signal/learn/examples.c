@@ -57,7 +57,7 @@ static void pick_sections(struct examples *ex, const double *y1, const double *y
 		return;
 	s = sections_new(c->shape, T, SIGMAS_NEVER, slack);
 	if (!s || sections_scan(s, y, 2, 0, 0, n, (long long)n) != NUM_OK) {
-		ex->status = CALIBRATE_MEMORY;
+		ex->status = SEPARATE_MEMORY;
 		sections_free(s);
 		return;
 	}
@@ -94,16 +94,16 @@ void examples_pick(struct examples *ex, const double *y1, const double *y2, size
 static enum joint_status note_memory(struct examples *ex, enum joint_status status)
 {
 	if (status == JOINT_MEMORY)
-		ex->status = CALIBRATE_MEMORY;
+		ex->status = SEPARATE_MEMORY;
 	return status;
 }
 
-/* 1 if more work may be done; stores CALIBRATE_HARD if not. */
+/* 1 if more work may be done; stores SEPARATE_HARD if not. */
 static int may_go_on(struct examples *ex)
 {
 	if (ex->before + joint_work(ex->joint) > ex->most)
-		ex->status = CALIBRATE_HARD;
-	return ex->status == CALIBRATE_OK;
+		ex->status = SEPARATE_HARD;
+	return ex->status == SEPARATE_OK;
 }
 
 /* The present scene for one example. */

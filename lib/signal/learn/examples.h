@@ -49,9 +49,9 @@ struct examples {
 			   degree */
 	double rest[2]; /* power of either channel's residual, that of its noise 1 */
 	double before, most; /* work done before, and its limit */
-	/* CALIBRATE_MEMORY after a function was out of memory, CALIBRATE_HARD after the
+	/* SEPARATE_MEMORY after a function was out of memory, SEPARATE_HARD after the
 	 * limit of work was exceeded; the results are invalid then. */
-	enum calibrate_status status;
+	enum separate_status status;
 };
 
 /* Selects the clearest short sections of y1, y2[0 .. n), aligned, at most most of them;

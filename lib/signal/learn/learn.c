@@ -150,7 +150,7 @@ struct guess {
 static const double FAR_OFF = 5;
 
 /* Tries one shape from a duration on; it has to be better by the factor need. */
-static enum calibrate_status try_shape(const struct calibrate_par *par,
+static enum separate_status try_shape(const struct calibrate_par *par,
 	struct examples *ex, const double *y1, const double *y2, size_t n, int pulse,
 	double duration, double need, struct calibration *c, struct guess *best)
 {
@@ -158,25 +158,25 @@ static enum calibrate_status try_shape(const struct calibrate_par *par,
 
 	c->duration = duration;
 	if (learn_set_shape(c, pulse) != NUM_OK)
-		return CALIBRATE_MEMORY;
+		return SEPARATE_MEMORY;
 	examples_pick(ex, y1, y2, n, EXAMPLES_MAX / 2, c);
 	if (ex->count == 0)
-		return CALIBRATE_OK;
+		return SEPARATE_OK;
 	scene_of(c, &ex->scene);
 	examples_fit(ex, EXAMPLES_ROUGH);
 	if (ex->price > FAR_OFF * best->price)
-		return CALIBRATE_OK;
+		return SEPARATE_OK;
 	tune(par, ex, 0.1, 3);
 	chi2 = examples_fit(ex, 0.003);
 	if (ex->price < need * best->price)
 		*best = (struct guess){ pulse, ex->scene.duration,
 			ex->scene.gain * c->noise[1] / c->noise[0], ex->price, chi2 };
-	return CALIBRATE_OK;
+	return SEPARATE_OK;
 }
 
 /* Takes shape and duration from the spectrum of a long record in which few pulses stand
  * apart. */
-static enum calibrate_status learn_crowd(const struct calibrate_par *par,
+static enum separate_status learn_crowd(const struct calibrate_par *par,
 	struct examples *ex, const double *y1, const double *y2, size_t n,
 	struct calibration *c)
 {
@@ -187,29 +187,29 @@ static enum calibrate_status learn_crowd(const struct calibrate_par *par,
 	if (crowd_pulse(y1, y2, n, c->tone_hop, guess, &pulse, &c->duration, &error) !=
 			NUM_OK ||
 		learn_set_shape(c, pulse) != NUM_OK)
-		return CALIBRATE_MEMORY;
+		return SEPARATE_MEMORY;
 	ex->spectral = c->duration;
 	ex->within = SIGMAS_NEVER * error * c->duration;
-	return CALIBRATE_OK;
+	return SEPARATE_OK;
 }
 
 /* Finds the shape that describes some clear examples best, and its approximate duration.
  * low: lag of the lowest autocorrelation, which that of a train of pulses may hide.  A
  * wrong shape needs more pulses for the same record, so each pulse costs its threshold.
  */
-static enum calibrate_status learn_shape(const struct calibrate_par *par,
+static enum separate_status learn_shape(const struct calibrate_par *par,
 	struct examples *ex, const double *y1, const double *y2, size_t n, double low,
 	const struct template *hint, struct calibration *c)
 {
 	static const double factor[] = { 1, 0.7, 1.4 };
 	struct guess best = { c->pulse, c->duration, c->gain, INFINITY, INFINITY };
-	enum calibrate_status status = CALIBRATE_OK;
+	enum separate_status status = SEPARATE_OK;
 
 	/* A drifting baseline looks like a crowd of a few long pulses: a spectrum is
 	 * taken of as many durations as there may be examples, or more. */
 	if (!c->whitening.tap && (double)n >= EXAMPLES_MAX * c->duration) {
 		if (!c->shape && learn_set_shape(c, c->pulse) != NUM_OK)
-			return CALIBRATE_MEMORY;
+			return SEPARATE_MEMORY;
 		examples_pick(ex, y1, y2, n, EXAMPLES_MAX, c);
 		if (ex->pieces)
 			return learn_crowd(par, ex, y1, y2, n, c);
@@ -217,16 +217,16 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 	if (hint)
 		status = try_shape(
 			par, ex, y1, y2, n, hint->pulse, hint->duration, 1, c, &best);
-	for (int k = 0; k < (c->whitening.tap ? 1 : 3) && status == CALIBRATE_OK; k++)
+	for (int k = 0; k < (c->whitening.tap ? 1 : 3) && status == SEPARATE_OK; k++)
 		for (int p = 0; p < PULSE_SHAPES; p++) {
 			double duration = par->duration;
 
 			if (isnan(duration)) {
 				if (learn_duration(p, low, &duration) != NUM_OK)
-					return CALIBRATE_MEMORY;
+					return SEPARATE_MEMORY;
 				duration *= factor[k];
 			}
-			if (best.chi2 <= (k ? 2 : 1.1) || status != CALIBRATE_OK)
+			if (best.chi2 <= (k ? 2 : 1.1) || status != SEPARATE_OK)
 				break;
 			if ((k == 0 || isnan(par->duration)) &&
 				(par->pulse == CALIBRATE_ANY_PULSE || p == par->pulse))
@@ -235,8 +235,8 @@ static enum calibrate_status learn_shape(const struct calibrate_par *par,
 		}
 	c->duration = best.duration;
 	c->gain = best.gain;
-	if (status == CALIBRATE_OK && learn_set_shape(c, best.pulse) != NUM_OK)
-		status = CALIBRATE_MEMORY;
+	if (status == SEPARATE_OK && learn_set_shape(c, best.pulse) != NUM_OK)
+		status = SEPARATE_MEMORY;
 	return status;
 }
 
@@ -283,7 +283,7 @@ int learn_describes(const struct calibration *c)
 
 /* Adjusts duration and gain alternately with the pulses of the examples: the closer they
  * are, the smaller a pulse may be without being a misfit of its neighbour. */
-static enum calibrate_status converge(
+static enum separate_status converge(
 	const struct calibrate_par *par, struct examples *ex, struct calibration *c)
 {
 	enum { ROUNDS = 16 };
@@ -302,7 +302,7 @@ static enum calibrate_status converge(
 		c->gain = ex->scene.gain * c->noise[1] / c->noise[0];
 		if (c->whitening.tap && moved > 1e-3 && !c->measured) {
 			if (learn_set_shape(c, c->pulse) != NUM_OK)
-				return CALIBRATE_MEMORY;
+				return SEPARATE_MEMORY;
 			ex->scene.shape = c->shape;
 		}
 		if (k > 1 &&
@@ -312,7 +312,7 @@ static enum calibrate_status converge(
 			(learn_describes(c) || c->chi2 > 0.95 * before))
 			break;
 	}
-	return CALIBRATE_OK;
+	return SEPARATE_OK;
 }
 
 /* 1 if the shape is to be corrected.  A shape given by the caller is kept, except for the
@@ -340,8 +340,8 @@ void learn_hidden(const struct calibrate_par *par, const struct calibration *c,
 
 /* Learns by the pulse taken from the record, or else by those of sensor.h, excluding the
  * samples that are not known. */
-static enum calibrate_status learn_known(const struct calibrate_par *par,
-	const double *y1, const double *y2, size_t n, double low, struct template *found,
+static enum separate_status learn_known(const struct calibrate_par *par, const double *y1,
+	const double *y2, size_t n, double low, struct template *found,
 	const struct template *hint, const unsigned char *const hidden[2],
 	struct calibration *c)
 {
@@ -350,23 +350,23 @@ static enum calibrate_status learn_known(const struct calibrate_par *par,
 		.shift = c->shift,
 		.before = c->work,
 		.most = par->most };
-	enum calibrate_status status = ex.joint ? CALIBRATE_OK : CALIBRATE_MEMORY;
+	enum separate_status status = ex.joint ? SEPARATE_OK : SEPARATE_MEMORY;
 
 	memcpy(ex.hidden, hidden, sizeof ex.hidden);
 	if (found)
 		take_template(c, found);
 	else if (ex.joint)
 		status = learn_shape(par, &ex, y1, y2, n, low, hint, c);
-	if (status == CALIBRATE_OK) {
+	if (status == SEPARATE_OK) {
 		examples_pick(&ex, y1, y2, n, EXAMPLES_MAX, c);
 		scene_of(c, &ex.scene);
 		if (ex.count)
 			status = converge(par, &ex, c);
 	}
-	if (status == CALIBRATE_OK && ex.count && wants_correction(par, &ex, c) &&
+	if (status == SEPARATE_OK && ex.count && wants_correction(par, &ex, c) &&
 		correct_shape(&ex, c) != NUM_OK)
-		status = CALIBRATE_MEMORY;
-	if (status == CALIBRATE_OK)
+		status = SEPARATE_MEMORY;
+	if (status == SEPARATE_OK)
 		status = ex.status;
 	if (ex.joint)
 		c->work += joint_work(ex.joint);
@@ -381,20 +381,20 @@ static enum calibrate_status learn_known(const struct calibrate_par *par,
 
 /* The same, excluding impulses, unless the pulses are so short that they are classified
  * as impulses. */
-static enum calibrate_status learn_by(const struct calibrate_par *par, const double *y1,
+static enum separate_status learn_by(const struct calibrate_par *par, const double *y1,
 	const double *y2, size_t n, double low, struct template *found,
 	const struct template *hint, struct calibration *c)
 {
 	const unsigned char *known[2];
 	unsigned char *flags = NULL;
 	size_t spikes = 0;
-	enum calibrate_status status = CALIBRATE_OK;
+	enum separate_status status = SEPARATE_OK;
 
 	learn_hidden(par, c, known);
 	if (!c->whitening.tap) {
 		flags = malloc(2 * n);
 		if (!flags)
-			return CALIBRATE_MEMORY;
+			return SEPARATE_MEMORY;
 		spikes = spikes_find(y1, n, c->duration, flags) +
 			 spikes_find(y2, n, c->duration, flags + n);
 	}
@@ -413,12 +413,12 @@ static enum calibrate_status learn_by(const struct calibrate_par *par, const dou
 /* Shape, duration, gain and range of delays by joint fits.  A pulse taken from groups of
  * nearly equal composition does not describe their pulses; the known shapes are tried
  * then. */
-enum calibrate_status learn_pulse(const struct calibrate_par *par, const double *y1,
+enum separate_status learn_pulse(const struct calibrate_par *par, const double *y1,
 	const double *y2, size_t n, double low, struct template *found,
 	struct calibration *c)
 {
 	struct calibration known = *c;
-	enum calibrate_status status;
+	enum separate_status status;
 
 	if (!found || !found->shape)
 		return learn_by(par, y1, y2, n, low, NULL,
@@ -426,10 +426,10 @@ enum calibrate_status learn_pulse(const struct calibrate_par *par, const double 
 	known.shape = NULL;
 	status = learn_by(par, y1, y2, n, low, found, NULL, c);
 	known.work = c->work;
-	if (status != CALIBRATE_OK || learn_describes(c) || found->alone)
+	if (status != SEPARATE_OK || learn_describes(c) || found->alone)
 		return status;
 	status = learn_by(par, y1, y2, n, low, NULL, NULL, &known);
-	if (status == CALIBRATE_OK && known.price < c->price) {
+	if (status == SEPARATE_OK && known.price < c->price) {
 		shape_free(c->shape);
 		*c = known;
 	} else {

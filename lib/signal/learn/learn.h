@@ -31,7 +31,7 @@ void learn_hidden(const struct calibrate_par *par, const struct calibration *c,
  * y1, y2[0 .. n), aligned and in units of the noise; low: lag as above, of these; found:
  * the pulse taken from these, which is tried first, its shape NULL where there is none.
  */
-enum calibrate_status learn_pulse(const struct calibrate_par *par, const double *y1,
+enum separate_status learn_pulse(const struct calibrate_par *par, const double *y1,
 	const double *y2, size_t n, double low, struct template *found,
 	struct calibration *c);
 

@@ -49,13 +49,13 @@ struct record {
 };
 
 /* Subtracts tones and mean from a whole record. */
-static enum calibrate_status take_tones(
+static enum separate_status take_tones(
 	const struct calibration *c, double *x, size_t n, struct tones_track *t)
 {
 	tones_track_start(t, c->tones, c->omega, 0, c->tone_hop < n ? c->tone_hop : n);
 	if (tones_track_run(t, x, 0, (long long)n, 1) == TONES_MEMORY)
-		return CALIBRATE_MEMORY;
-	return t->fits < t->knots ? CALIBRATE_TONES : CALIBRATE_OK;
+		return SEPARATE_MEMORY;
+	return t->fits < t->knots ? SEPARATE_TONES : SEPARATE_OK;
 }
 
 static double variance(const double *x, size_t n)
@@ -133,13 +133,13 @@ static enum num_status measure_noise(
 	return NUM_OK;
 }
 
-static enum calibrate_status look_for_colour(const struct record *rec, struct look *look)
+static enum separate_status look_for_colour(const struct record *rec, struct look *look)
 {
 	static const double one[2] = { 1, 1 };
 	enum num_status status = colour_power(rec->y1, rec->y2, rec->n, one, look->power);
 
 	look->coloured = status == NUM_OK && !colour_is_white(look->power, 0);
-	return status == NUM_MEMORY ? CALIBRATE_MEMORY : CALIBRATE_OK;
+	return status == NUM_MEMORY ? SEPARATE_MEMORY : SEPARATE_OK;
 }
 
 /* Share of its frequency by which a line may wander: ten times what mains do. */
@@ -167,7 +167,7 @@ static int merge_tones(int tones, const double *omega, double gap, double *merge
 /* Level of the record without these tones, which are followed from hop to hop: the
  * median, which pulses change little, corrected for the coefficients fitted to two hops.
  */
-static enum calibrate_status level_without_tones(
+static enum separate_status level_without_tones(
 	const struct record *rec, const struct calibration *c, double *level)
 {
 	double share = (2 * c->tones + 1) / (2.0 * (double)c->tone_hop);
@@ -176,18 +176,18 @@ static enum calibrate_status level_without_tones(
 	*level = 0;
 	for (int k = 0; k < 2; k++) {
 		double median;
-		enum calibrate_status status;
+		enum separate_status status;
 
 		memcpy(rec->work, k ? rec->y2 : rec->y1, rec->n * sizeof *rec->work);
 		status = take_tones(c, rec->work, rec->n, &track);
-		if (status != CALIBRATE_OK)
+		if (status != SEPARATE_OK)
 			return status;
 		for (size_t i = 0; i < rec->n; i++)
 			rec->work[i] = fabs(rec->work[i]);
 		median = robust_median(rec->work, rec->n);
 		*level += median * median * (1 + share) / (1 - share);
 	}
-	return CALIBRATE_OK;
+	return SEPARATE_OK;
 }
 
 /* Share of the noise that lines may add: of the hops that add no more, the longest is
@@ -203,7 +203,7 @@ static const double PERIODS = 16;
 /* Chooses the hop by how fast the lines change.  Their frequencies wander, mains by 0.1
  * Hz and more, and a coefficient is that of two hops.  Short hops do not resolve close
  * lines, such as the parts into which a long record splits a wandering one. */
-static enum calibrate_status choose_hop(
+static enum separate_status choose_hop(
 	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
 {
 	enum { SHORTEST = 256, HOPS = 16 };
@@ -221,8 +221,8 @@ static enum calibrate_status choose_hop(
 		if ((double)t->tone_hop > longest || t->tones == 0 ||
 			par->tones > t->tones)
 			continue;
-		if (level_without_tones(rec, t, &level[k]) == CALIBRATE_MEMORY)
-			return CALIBRATE_MEMORY;
+		if (level_without_tones(rec, t, &level[k]) == SEPARATE_MEMORY)
+			return SEPARATE_MEMORY;
 		least = fmin(least, level[k]);
 	}
 	for (int k = HOPS - 1; k >= 0 && isfinite(least); k--) {
@@ -233,17 +233,17 @@ static enum calibrate_status choose_hop(
 			c->tones, c->omega, 2 * M_PI / (double)c->tone_hop, c->omega);
 		break;
 	}
-	return CALIBRATE_OK;
+	return SEPARATE_OK;
 }
 
-static enum calibrate_status find_tones(
+static enum separate_status find_tones(
 	const struct calibrate_par *par, struct record *rec, struct calibration *c)
 {
 	enum { ENOUGH = 16384 };
 	size_t n = rec->n, some = n < ENOUGH ? n : ENOUGH, from = (n - some) / 2;
 	struct tones_track track;
 	struct calibration t;
-	enum calibrate_status status = CALIBRATE_OK;
+	enum separate_status status = SEPARATE_OK;
 
 	if (par->tones != CALIBRATE_FIND_TONES) {
 		c->tones = par->tones;
@@ -254,7 +254,7 @@ static enum calibrate_status find_tones(
 				NUM_OK ||
 			tones_confirm(rec->y1 + from, rec->y2 + from, some,
 				1 - calibration_lost(c), &c->tones, c->omega) != NUM_OK)
-			return CALIBRATE_MEMORY;
+			return SEPARATE_MEMORY;
 	}
 	c->tone_hop = n < 2 * LONG_HOP ? n : LONG_HOP;
 	rec->drift = 0;
@@ -262,7 +262,7 @@ static enum calibrate_status find_tones(
 		size_t hop = c->tone_hop;
 
 		status = choose_hop(par, rec, c);
-		if (status != CALIBRATE_OK)
+		if (status != SEPARATE_OK)
 			return status;
 		memcpy(rec->work, rec->y1, n * sizeof *rec->work);
 		t = *c;
@@ -272,14 +272,14 @@ static enum calibrate_status find_tones(
 		for (int k = 0; k < c->tones; k++)
 			c->tone_power[k] = track.power[k] / track.knots;
 	}
-	for (int k = 0; k < 2 && status == CALIBRATE_OK; k++) {
+	for (int k = 0; k < 2 && status == SEPARATE_OK; k++) {
 		status = take_tones(c, k ? rec->y2 : rec->y1, n, &track);
 		rec->left[k] = tones_track_left(&track);
 	}
 	return status;
 }
 
-static enum calibrate_status find_lag(
+static enum separate_status find_lag(
 	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
 {
 	double lag = par->lag, last = (double)rec->n - 16;
@@ -289,37 +289,37 @@ static enum calibrate_status find_lag(
 		status = align_lag(
 			rec->y1, rec->y2, rec->n, rec->n / 2, &lag, &c->correlation);
 		if (status != NUM_OK)
-			return status == NUM_MEMORY ? CALIBRATE_MEMORY : CALIBRATE_NO_LAG;
+			return status == NUM_MEMORY ? SEPARATE_MEMORY : SEPARATE_NO_LAG;
 	} else if (lag < last) {
 		c->correlation =
 			correlation_at(rec->y1, rec->y2, rec->n, (size_t)(lag + 0.5));
 	}
 	if (lag < 0)
-		return CALIBRATE_NO_LAG;
+		return SEPARATE_NO_LAG;
 	if (!(lag < last))
-		return isnan(par->lag) ? CALIBRATE_NO_LAG : CALIBRATE_FAR;
+		return isnan(par->lag) ? SEPARATE_NO_LAG : SEPARATE_FAR;
 	c->shift = (long)floor(lag + 0.5);
 	c->transit = c->shift > 0 ? (double)c->shift : INFINITY;
-	return CALIBRATE_OK;
+	return SEPARATE_OK;
 }
 
 /* NARROW if a filter has left too little of the pulses, which are about twice as long as
  * the lag of their lowest autocorrelation. */
-static enum calibrate_status check_band(const struct calibrate_par *par,
+static enum separate_status check_band(const struct calibrate_par *par,
 	const struct record *rec, const struct calibration *c)
 {
 	double duration = par->duration;
 
 	if (!c->whitening.tap)
-		return CALIBRATE_OK;
+		return SEPARATE_OK;
 	if (align_autocorrelation(rec->y1, rec->y2, rec->n, rec->n / 4, rec->work) !=
 		NUM_OK)
-		return CALIBRATE_MEMORY;
+		return SEPARATE_MEMORY;
 	if (isnan(duration))
 		duration = 2 * learn_lowest_lag(rec->work, rec->n / 4);
 	return (c->whitening.high - c->whitening.low) * duration < NARROW
-		       ? CALIBRATE_NARROW
-		       : CALIBRATE_OK;
+		       ? SEPARATE_NARROW
+		       : SEPARATE_OK;
 }
 
 /* By how much the correlation at the transit time exceeds that at other lags.  In 150
@@ -339,7 +339,7 @@ static const double VARIES = 0.3;
  * spectrum: in units of 1 / sqrt(n), and compared with other lags.  Regular trains of
  * pulses, which repeat their correlation farther away, have at least half of their power
  * in common, as has noise at few lags only if it has lines. */
-static enum calibrate_status check_lag(const struct record *rec, const double *y1,
+static enum separate_status check_lag(const struct record *rec, const double *y1,
 	const double *y2, const struct calibration *c)
 {
 	size_t n = rec->n;
@@ -347,43 +347,43 @@ static enum calibrate_status check_lag(const struct record *rec, const double *y
 	struct align_range range[2];
 
 	if (n > 4096 && c->correlation < 6 / sqrt((double)n))
-		return CALIBRATE_NO_LAG;
+		return SEPARATE_NO_LAG;
 	if (align_autocorrelation(y1, y2, n, n / 4, rec->work) != NUM_OK)
-		return CALIBRATE_MEMORY;
+		return SEPARATE_MEMORY;
 	low = learn_lowest_lag(rec->work, n / 4);
 	range[0] = (struct align_range){ NEAREST * low, FARTHEST * low };
 	range[1] = (struct align_range){ fmax(NEAREST * low, VARIES * lag), INFINITY };
 	if (align_elsewhere(y1, y2, n, n / 2, lag, c->correlation < 0.5 ? 2 : 1, range,
 		    peak) != NUM_OK)
-		return CALIBRATE_MEMORY;
+		return SEPARATE_MEMORY;
 	if (c->correlation < 0.5)
 		peak[0] = fmax(peak[0], peak[1]);
-	return c->correlation < ALONE * peak[0] ? CALIBRATE_NO_LAG : CALIBRATE_OK;
+	return c->correlation < ALONE * peak[0] ? SEPARATE_NO_LAG : SEPARATE_OK;
 }
 
 /* SWAPPED if particles pass sensor 2 first.  Tested only if the lag found explains less
  * than half of the power of the channels. */
-static enum calibrate_status find_reverse(
+static enum separate_status find_reverse(
 	const struct calibrate_par *par, const struct record *rec, struct calibration *c)
 {
 	struct calibration back = *c;
 	double lag;
 
 	if (!isnan(par->lag) || c->correlation > 0.5)
-		return CALIBRATE_OK;
+		return SEPARATE_OK;
 	if (align_lag(rec->y2, rec->y1, rec->n, rec->n / 2, &lag, &back.correlation) !=
 		NUM_OK)
-		return CALIBRATE_MEMORY; /* neither channel is zero throughout */
+		return SEPARATE_MEMORY; /* neither channel is zero throughout */
 	if (lag < 1 || back.correlation <= c->correlation)
-		return CALIBRATE_OK;
+		return SEPARATE_OK;
 	back.shift = (long)floor(lag + 0.5);
 	switch (check_lag(rec, rec->y2, rec->y1, &back)) {
-	case CALIBRATE_OK:
-		return CALIBRATE_SWAPPED;
-	case CALIBRATE_MEMORY:
-		return CALIBRATE_MEMORY;
+	case SEPARATE_OK:
+		return SEPARATE_SWAPPED;
+	case SEPARATE_MEMORY:
+		return SEPARATE_MEMORY;
 	default:
-		return CALIBRATE_OK;
+		return SEPARATE_OK;
 	}
 }
 
@@ -394,14 +394,14 @@ static void align(struct record *rec, const struct calibration *c)
 	rec->n -= (size_t)c->shift;
 }
 
-static enum calibrate_status find_duration(const struct calibrate_par *par,
+static enum separate_status find_duration(const struct calibrate_par *par,
 	struct record *rec, struct calibration *c, struct look *look)
 {
 	double length = (double)rec->n + (double)c->shift;
 
 	if (align_autocorrelation(rec->y1, rec->y2, rec->n, rec->n / 4, rec->work) !=
 		NUM_OK)
-		return CALIBRATE_MEMORY;
+		return SEPARATE_MEMORY;
 	rec->low = learn_lowest_lag(rec->work, rec->n / 4);
 	if (!c->whitening.tap)
 		look->low = rec->low;
@@ -412,12 +412,12 @@ static enum calibrate_status find_duration(const struct calibrate_par *par,
 	if ((isnan(c->duration) &&
 		    learn_duration(c->pulse, rec->low, &c->duration) != NUM_OK) ||
 		learn_set_shape(c, c->pulse) != NUM_OK)
-		return CALIBRATE_MEMORY;
+		return SEPARATE_MEMORY;
 	if (!(c->duration >= SHAPE_SHORTEST))
-		return CALIBRATE_FAST;
+		return SEPARATE_FAST;
 	if (isnan(par->lag) && (double)c->shift < APART * c->duration)
-		return CALIBRATE_AT_ONCE;
-	return c->duration > 0.5 * length ? CALIBRATE_SLOW : CALIBRATE_OK;
+		return SEPARATE_AT_ONCE;
+	return c->duration > 0.5 * length ? SEPARATE_SLOW : SEPARATE_OK;
 }
 
 /* First guess of the gain, from the power of each channel without its noise. */
@@ -454,11 +454,11 @@ static void scale_noise(struct record *rec, struct calibration *c, double s1, do
 	}
 }
 
-static enum calibrate_status learn(const struct calibrate_par *par,
+static enum separate_status learn(const struct calibrate_par *par,
 	const struct record *rec, struct template *found, struct calibration *c)
 {
 	if (found && found->alone && !found->shape)
-		return CALIBRATE_NO_LAG;
+		return SEPARATE_NO_LAG;
 	set_range(par, found, rec->wide, c);
 	set_thresholds(par, c);
 	return learn_pulse(par, rec->y1, rec->y2, rec->n, rec->low, found, c);
@@ -472,7 +472,7 @@ static int is_known(const struct template *found)
 /* Takes the pulse from the record if it is not given; a pulse of sensor.h that fits as
  * well has fewer parameters and is preferred.  If foreign events have misled the guess of
  * the duration, the pulse is found at another one. */
-static enum calibrate_status find_template(const struct calibrate_par *par,
+static enum separate_status find_template(const struct calibrate_par *par,
 	const struct record *rec, struct template *found, struct calibration *c)
 {
 	static const double factor[] = { 1, 0.5, 0.25, 0.125 };
@@ -482,7 +482,7 @@ static enum calibrate_status find_template(const struct calibrate_par *par,
 	learn_hidden(par, c, hidden);
 	template_clear(found);
 	if (par->pulse != CALIBRATE_ANY_PULSE || !isnan(par->duration))
-		return CALIBRATE_OK;
+		return SEPARATE_OK;
 	for (size_t k = 0; k < sizeof factor / sizeof *factor; k++) {
 		double T = factor[k] * c->duration;
 
@@ -491,7 +491,7 @@ static enum calibrate_status find_template(const struct calibrate_par *par,
 		reach = calibration_reach(CALIBRATE_WIDE, (double)c->shift, T);
 		if (template_find(found, rec->y1, rec->y2, hidden, rec->n, T, c->transit,
 			    reach) != NUM_OK)
-			return CALIBRATE_MEMORY;
+			return SEPARATE_MEMORY;
 		found->elsewhere = k > 0;
 		if (found->events > 0 && (k == 0 || is_known(found)))
 			break;
@@ -502,25 +502,25 @@ static enum calibrate_status find_template(const struct calibrate_par *par,
 		c->duration = found->duration;
 	if (is_known(found) && !c->whitening.tap)
 		template_clear(found);
-	return CALIBRATE_OK;
+	return SEPARATE_OK;
 }
 
 /* Learns the pulse.  If the noise was measured in a band, a residual of the pulses below
  * it shows that the noise was overestimated. */
-static enum calibrate_status learn_with_noise(const struct calibrate_par *par,
+static enum separate_status learn_with_noise(const struct calibrate_par *par,
 	struct record *rec, struct template *found, struct calibration *c)
 {
 	enum { ROUNDS = 4 };
-	enum calibrate_status status = learn(par, rec, found, c);
+	enum separate_status status = learn(par, rec, found, c);
 
 	for (int k = 0; c->whitening.tap && k < ROUNDS; k++) {
-		if (status != CALIBRATE_OK || c->events == 0 ||
+		if (status != SEPARATE_OK || c->events == 0 ||
 			fmin(c->rest[0], c->rest[1]) >= 0.75)
 			break;
 		scale_noise(rec, c, sqrt(c->rest[0]), sqrt(c->rest[1]));
 		if (found->events)
 			status = find_template(par, rec, found, c);
-		if (status == CALIBRATE_OK)
+		if (status == SEPARATE_OK)
 			status = learn(par, rec, found, c);
 	}
 	return status;
@@ -529,45 +529,45 @@ static enum calibrate_status learn_with_noise(const struct calibrate_par *par,
 /* Finds out why the pulses do not fit, or whether pulses were taken for coloured noise.
  * There are too many of them if even in the quietest part both sensors record the same,
  * or the noise there has the expected level. */
-static enum calibrate_status look_for_crowd(
+static enum separate_status look_for_crowd(
 	const struct record *rec, const struct calibration *c, int *dense)
 {
 	double level, coherence;
 
 	if (matched_coherence(
 		    c, rec->y1, rec->y2, rec->n, rec->work, &coherence, &level) != NUM_OK)
-		return CALIBRATE_MEMORY;
+		return SEPARATE_MEMORY;
 	*dense = coherence > 0.6 || (level < 1.5 && !c->whitening.tap);
-	return CALIBRATE_OK;
+	return SEPARATE_OK;
 }
 
 /* Otherwise neither the shape nor white noise describes the record: it was filtered.  The
  * noise is then measured behind the matched filter. */
-static enum calibrate_status learn_filtered(
+static enum separate_status learn_filtered(
 	const struct calibrate_par *par, struct record *rec, struct calibration *c)
 {
 	double n1, n2;
 
 	if (matched_noise(c, rec->y1, rec->n, rec->work, &n1) != NUM_OK ||
 		matched_noise(c, rec->y2, rec->n, rec->work, &n2) != NUM_OK)
-		return CALIBRATE_MEMORY;
+		return SEPARATE_MEMORY;
 	scale_noise(rec, c, n1, n2);
 	c->misfit = FILTERED_MISFIT;
 	return learn(par, rec, NULL, c);
 }
 
-static enum calibrate_status conclude(
+static enum separate_status conclude(
 	const struct calibrate_par *par, struct record *rec, struct calibration *c)
 {
-	enum calibrate_status status = CALIBRATE_OK;
+	enum separate_status status = SEPARATE_OK;
 
 	if (c->events == 0 && isnan(par->duration))
-		return CALIBRATE_NO_LAG;
+		return SEPARATE_NO_LAG;
 	if (c->chi2 > BAD_FIT || (c->whitening.tap && !par->filter))
 		status = look_for_crowd(rec, c, &c->dense);
 	if (c->dense)
 		set_range(par, NULL, 0, c);
-	else if (status == CALIBRATE_OK && c->chi2 > BAD_FIT && !c->whitening.tap &&
+	else if (status == SEPARATE_OK && c->chi2 > BAD_FIT && !c->whitening.tap &&
 		 !c->suspect)
 		status = learn_filtered(par, rec, c);
 	set_thresholds(par, c);
@@ -581,44 +581,44 @@ int measure_white_above(const struct look *look, double duration)
 
 /* Scales a pulse taken from a whitened record so that amplitudes are those of the
  * original record. */
-static enum calibrate_status set_peak(const double *raw, size_t n, double *work,
+static enum separate_status set_peak(const double *raw, size_t n, double *work,
 	const struct template *found, struct calibration *c)
 {
 	struct tones_track track;
-	enum calibrate_status status;
+	enum separate_status status;
 
 	memcpy(work, raw, n * sizeof *work);
 	status = take_tones(c, work, n, &track);
-	if (status == CALIBRATE_OK)
+	if (status == SEPARATE_OK)
 		shape_scale(c->shape, c->noise[0] / template_peak(found, work, n));
 	return status;
 }
 
-enum calibrate_status measure(const struct calibrate_par *par, const double *raw,
+enum separate_status measure(const struct calibrate_par *par, const double *raw,
 	double *y1, double *y2, size_t n, double *work, struct look *look,
 	struct calibration *c)
 {
 	struct record rec = {
 		.y1 = y1, .y2 = y2, .n = n, .work = work, .wide = look->wide
 	};
-	enum calibrate_status status = find_tones(par, &rec, c);
+	enum separate_status status = find_tones(par, &rec, c);
 
-	if (status == CALIBRATE_OK)
+	if (status == SEPARATE_OK)
 		status = find_lag(par, &rec, c);
-	if (status == CALIBRATE_OK && measure_noise(c, y1, y2, n, work) != NUM_OK)
-		status = CALIBRATE_MEMORY;
-	if (status == CALIBRATE_OK)
+	if (status == SEPARATE_OK && measure_noise(c, y1, y2, n, work) != NUM_OK)
+		status = SEPARATE_MEMORY;
+	if (status == SEPARATE_OK)
 		status = check_band(par, &rec, c);
-	if (status == CALIBRATE_OK)
+	if (status == SEPARATE_OK)
 		status = find_reverse(par, &rec, c);
-	if (status == CALIBRATE_OK && !look->seen &&
+	if (status == SEPARATE_OK && !look->seen &&
 		(isnan(par->duration) || isnan(par->lag)))
 		status = check_lag(&rec, y1, y2, c);
-	if (status != CALIBRATE_OK)
+	if (status != SEPARATE_OK)
 		return status;
 	align(&rec, c);
 	status = find_duration(par, &rec, c, look);
-	if (status != CALIBRATE_OK)
+	if (status != SEPARATE_OK)
 		return status;
 	c->gain = isnan(par->gain) ? first_gain(&rec, c) : par->gain;
 	c->misfit = isinf(c->transit) ? UNKNOWN_MISFIT : 0;
@@ -629,18 +629,18 @@ enum calibrate_status measure(const struct calibrate_par *par, const double *raw
 		c->suspect = look->coloured;
 	}
 	look->found.alone = look->first && c->whitening.tap;
-	if (status == CALIBRATE_OK && (look->first || !c->whitening.tap))
+	if (status == SEPARATE_OK && (look->first || !c->whitening.tap))
 		status = find_template(par, &rec, &look->found, c);
-	if (status == CALIBRATE_OK && look->first && look->coloured &&
+	if (status == SEPARATE_OK && look->first && look->coloured &&
 		look->found.events == 0 && !measure_white_above(look, c->duration))
-		return CALIBRATE_COLOURED;
-	if (status == CALIBRATE_OK && look->found.events < look->events)
-		status = CALIBRATE_NO_LAG;
-	look->attempts += status == CALIBRATE_OK;
-	if (status == CALIBRATE_OK)
+		return SEPARATE_COLOURED;
+	if (status == SEPARATE_OK && look->found.events < look->events)
+		status = SEPARATE_NO_LAG;
+	look->attempts += status == SEPARATE_OK;
+	if (status == SEPARATE_OK)
 		status = learn_with_noise(par, &rec, &look->found, c);
-	if (status == CALIBRATE_OK && c->measured && c->whitening.tap)
+	if (status == SEPARATE_OK && c->measured && c->whitening.tap)
 		status = set_peak(raw, n, work, &look->found, c);
 	template_clear(&look->found);
-	return status == CALIBRATE_OK ? conclude(par, &rec, c) : status;
+	return status == SEPARATE_OK ? conclude(par, &rec, c) : status;
 }

@@ -34,7 +34,7 @@ int measure_white_above(const struct look *look, double duration);
 
 /* Fills the rest of c, whose whitening, mean, guessed and suspect are given, from y1,
  * y2[0 .. n), which are overwritten.  raw[0 .. n): y1 before whitening; work holds n. */
-enum calibrate_status measure(const struct calibrate_par *par, const double *raw,
+enum separate_status measure(const struct calibrate_par *par, const double *raw,
 	double *y1, double *y2, size_t n, double *work, struct look *look,
 	struct calibration *c);
 

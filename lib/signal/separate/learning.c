@@ -132,23 +132,7 @@ static struct calibrate_par known_of(const struct separate *s)
 /* Fills s->cal from the n oldest samples, with a share of the work that may be done. */
 static enum separate_status learn_from(struct separate *s, size_t n, double share)
 {
-	static const enum separate_status of[] = {
-		[CALIBRATE_OK] = SEPARATE_OK,
-		[CALIBRATE_MEMORY] = SEPARATE_MEMORY,
-		[CALIBRATE_COLOURED] = SEPARATE_NO_LAG,
-		[CALIBRATE_SILENT_1] = SEPARATE_SILENT_1,
-		[CALIBRATE_SILENT_2] = SEPARATE_SILENT_2,
-		[CALIBRATE_HARD] = SEPARATE_HARD,
-		[CALIBRATE_NO_LAG] = SEPARATE_NO_LAG,
-		[CALIBRATE_AT_ONCE] = SEPARATE_AT_ONCE,
-		[CALIBRATE_SWAPPED] = SEPARATE_SWAPPED,
-		[CALIBRATE_FAR] = SEPARATE_FAR,
-		[CALIBRATE_NARROW] = SEPARATE_NARROW,
-		[CALIBRATE_FAST] = SEPARATE_FAST,
-		[CALIBRATE_SLOW] = SEPARATE_SLOW,
-		[CALIBRATE_TONES] = SEPARATE_TONES,
-	};
-	enum calibrate_status status;
+	enum separate_status status;
 	struct calibrate_par known;
 
 	if (n < SEPARATE_SHORTEST)
@@ -160,8 +144,8 @@ static enum separate_status learn_from(struct separate *s, size_t n, double shar
 				     s->effort);
 	status = calibrate(&known, s->tape[0].x, s->tape[1].x, n, &s->cal);
 	s->effort += s->cal.work;
-	if (status != CALIBRATE_OK)
-		return of[status];
+	if (status != SEPARATE_OK)
+		return status;
 	if (s->cal.duration >= SECTIONS_SHORTEST)
 		return SEPARATE_OK;
 	calibration_clear(&s->cal);

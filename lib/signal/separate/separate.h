@@ -88,26 +88,6 @@ struct separate_par {
 	void *context;
 };
 
-enum separate_status {
-	SEPARATE_OK,
-	SEPARATE_MEMORY,
-	SEPARATE_SHORT,      /* fewer samples than that */
-	SEPARATE_NOT_FINITE, /* see separate_bad_sample() */
-	SEPARATE_SILENT_1,
-	SEPARATE_SILENT_2,
-	SEPARATE_NO_LAG,
-	SEPARATE_HARD,    /* what is learned from is described only by too many pulses */
-	SEPARATE_AT_ONCE, /* both channels have the same at once: no particles */
-	SEPARATE_SWAPPED, /* particles pass sensor 2 first */
-	SEPARATE_FAR,     /* the lag given is as long as what is learned from */
-	SEPARATE_NARROW,  /* a filter has left too little of the pulses */
-	SEPARATE_FAST,
-	SEPARATE_SLOW,
-	SEPARATE_TONES,  /* the lines given cannot be distinguished */
-	SEPARATE_WINDOW, /* that of the masks is shorter than half a pulse */
-	SEPARATE_WIDE    /* pulses may last too long, or no time, within the spread */
-};
-
 /* Work done and avoided so far. */
 struct separate_counters {
 	double passed_over;       /* skipped before the instrument was learned */
