@@ -37,11 +37,11 @@ enum num_status instrument_values(
 enum instrument_status {
 	INSTRUMENT_OK,
 	INSTRUMENT_MEMORY,
-	INSTRUMENT_MISSING, /* *which names a number that is not there or out of range */
+	INSTRUMENT_MISSING, /* *which is not there, not in its place, or out of range */
 	INSTRUMENT_UNKNOWN  /* some numbers are no part of an instrument */
 };
 
-/* Those values in any order, each once, into *in, whose cal calibration_clear() frees. */
+/* Those values, in their order, into *in, whose cal calibration_clear() frees. */
 enum instrument_status instrument_restore(struct instrument *in,
 	const struct instrument_value *value, size_t n, const char **which);
 
