@@ -49,7 +49,8 @@ static struct option {
 	{ "gain", 0.909 },  /* of sensor 2 */
 	{ "snr", 30 },      /* dB: volts over the noise of a sample */
 	{ "negative", 0 },  /* share of particles with reversed pulses */
-	{ "highpass", 0 },  /* corner of a one-pole high-pass, Hz; 0: none */
+	{ "highpass", 0 },  /* corner of a high-pass, Hz; 0: none */
+	{ "orders", 1 },    /* poles of the high-pass */
 	{ "lowpass", 0 },   /* corner of a low-pass, Hz */
 	{ "poles", 1 },     /* of the low-pass */
 	{ "through", 1 },   /* 1: the noise passes both filters, too */
@@ -448,7 +449,8 @@ static void colour_noise(double *y, size_t n)
 		for (size_t i = 0; i < n; i++)
 			y[i] = out = k * out + (1 - k) * y[i];
 	}
-	if (get("highpass") > 0 && get("through") > 0) {
+	for (int p = 0; p < get("orders") && get("highpass") > 0 && get("through") > 0;
+		p++) {
 		double x = 0;
 
 		k = pole(get("highpass"));
@@ -466,7 +468,8 @@ static void whiten(double *y, size_t n)
 {
 	double k, last;
 
-	if (get("highpass") > 0 && get("through") > 0) {
+	for (int p = 0; p < get("orders") && get("highpass") > 0 && get("through") > 0;
+		p++) {
 		double sum = 0;
 
 		k = pole(get("highpass"));
@@ -507,7 +510,7 @@ static void extent(const struct event *e, int c, long *first, size_t *n)
 	double rate = get("rate"), tail = 0, t = e->time[c], T = e->duration, last;
 
 	if (get("highpass") > 0)
-		tail = 6 / (2 * M_PI * get("highpass"));
+		tail = (5 + get("orders")) / (2 * M_PI * get("highpass"));
 	if (get("lowpass") > 0)
 		tail += 12 / (2 * M_PI * get("lowpass"));
 	*first = (long)floor((t + e->shape->from * T) * rate) - 2;
@@ -531,7 +534,7 @@ static void render(
 	}
 	for (int p = 0; p < get("poles") && get("lowpass") > 0; p++)
 		low_pass(x, n * fine, h, get("lowpass"));
-	if (get("highpass") > 0)
+	for (int p = 0; p < get("orders") && get("highpass") > 0; p++)
 		high_pass(x, n * fine, h, get("highpass"));
 	for (size_t i = 0; i < n; i++)
 		y[i] = x[i * fine];
