@@ -418,9 +418,10 @@ cp before.tsv rig.tsv
 sensorsim --uniform 80um:120um --number 0 --duration 7s --noise 31.6mV --mains 0.2 >quiet.au
 ok "a record without particles is not another instrument" duet --instrument rig.tsv quiet.au
 is "a record without particles has no rows" "$(grep -vc '^#' out)" 1
-rm -f dense.tsv
-duet --instrument dense.tsv long.au >found.tsv 2>err
-is "a doubtful instrument is not kept" "$(ls dense.tsv 2>/dev/null) $(grep -c 'not written' err)" " 1"
+sensorsim --uniform 80um:120um --number 60 --duration 7s --shocks 3Hz --snr 30dB --lag 0.2ms:0.5ms >shocks.au
+rm -f shocks.tsv
+duet --instrument shocks.tsv shocks.au >found.tsv 2>err
+is "a doubtful instrument is not kept" "$(ls shocks.tsv 2>/dev/null) $(grep -c 'not written' err)" " 1"
 
 # Pulses of thousands of samples are found in means of samples: the same errors, the same rows whatever
 # the pipe, a kept instrument, and the phases of four channels.

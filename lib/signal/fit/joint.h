@@ -116,10 +116,6 @@ enum joint_status joint_refine(struct joint *joint, const struct joint_scene *sc
 	const double *y1, const double *y2, size_t n, struct joint_pulse *pulses, int m,
 	struct joint_result *result);
 
-/* Covariances of the delays of the m pulses of the last fit, with all else that was
- * fitted free, in cov[m * m].  Returns m; 0 if the normal matrix is singular. */
-int joint_delay_covariance(const struct joint *joint, double *cov);
-
 /* Is pulse i of the last fit two that arrive nearly together?  Odds by the share of the
  * smaller one, for one other arrival per duration; scatter is the standard deviation of
  * the difference of two delays.  All 0 if the normal matrix is singular.  Shares are the

@@ -366,22 +366,6 @@ void joint_reduce(const struct joint *j, int np, double *x)
 	}
 }
 
-int joint_delay_covariance(const struct joint *j, double *cov)
-{
-	double x[NPAR];
-	int m = j->inverted;
-
-	for (int i = 0; i < m; i++) {
-		memset(x, 0, sizeof(double) * (size_t)(PAR * m));
-		x[PAR * i] = -1;
-		x[PAR * i + 1] = 1;
-		solve(j, PAR * m, PAR * i, x);
-		for (int k = 0; k < m; k++)
-			cov[i * m + k] = x[PAR * k + 1] - x[PAR * k];
-	}
-	return m;
-}
-
 void joint_gain_error(
 	const struct joint *j, const struct joint_pulse *p, double *share, double *se)
 {

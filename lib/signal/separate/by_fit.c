@@ -130,8 +130,6 @@ enum separate_status separate_fit_section(
 		a.m = s->scene.max_pulses;
 	memcpy(a.pulse, s->pulse, sizeof a.pulse);
 	status = separate_fit_window(s, channels_at(s, from - before).at, n, cut, &a);
-	if (status == SEPARATE_OK && separate_is_described(&a) && !both)
-		status = separate_try_wider(s, from - before, n, cut, &a);
 	if (status == SEPARATE_OK && separate_is_described(&a))
 		status = separate_fit_without_common(s, from - before, n, cut, &a);
 	if (status == SEPARATE_OK)

@@ -32,46 +32,6 @@ static int hide_spikes(struct separate *s, long long from, size_t n)
  * and 12), none of them wrong; 1.5 and 2 take 12 and 24 % more time. */
 static const double MOST = 1;
 
-/* Pulses outside the range of delays. */
-static int count_outside(const struct separate *s, const struct account *a)
-{
-	int count = 0;
-
-	for (int i = 0; i < a->m; i++)
-		count += a->pulse[i].delta <= s->scene.delta_min ||
-			 a->pulse[i].delta >= s->scene.delta_max;
-	return count;
-}
-
-/* Chi-square, and what each pulse costs. */
-static double price(const struct separate *s, const struct account *a)
-{
-	return a->r.chi2 + s->scene.drop_near * a->m;
-}
-
-enum separate_status separate_try_wider(
-	struct separate *s, long long from, size_t n, int cut, struct account *a)
-{
-	const struct joint_scene plain = s->scene;
-	const struct channels y = channels_at(s, from);
-	struct account wide = { .m = 0 };
-	enum separate_status status;
-
-	if (a->m < 2 || count_outside(s, a) == 0 || !separate_is_range_free(s))
-		return SEPARATE_OK;
-	separate_widen(s);
-	s->scene.max_pulses = a->m - 1;
-	status = separate_fit_window(s, y.at, n, cut, &wide);
-	s->scene = plain;
-	if (status != SEPARATE_OK)
-		return status;
-	if (separate_is_described(&wide) && price(s, &wide) < price(s, a)) {
-		*a = wide;
-		return SEPARATE_OK;
-	}
-	return separate_fit_window(s, y.at, n, cut, a);
-}
-
 enum separate_status separate_try_rivals(
 	struct separate *s, long long from, size_t n, int cut, struct account *a)
 {

@@ -1,6 +1,5 @@
 /* rows.c - rows and reports of sections that were separated, or are unresolved */
 #include "num/sigmas.h"
-#include "signal/separate/contrasts.h"
 #include "signal/separate/separate_state.h"
 #include <math.h>
 #include <stdlib.h>
@@ -61,10 +60,11 @@ static enum separate_status emit_pulse(struct separate *s, const struct joint_pu
 		.fits = verdict != SEPARATE_MISFIT,
 		.delay = p->delta,
 		.var = isinf(s->cal.transit) || !isfinite(delay_var) ? 0 : delay_var,
-		.amplitude = p->a };
-	entry->arrival = (struct arrival){ .group = s->group,
-		.time = ((double)from + p->t) / s->cal.duration,
-		.amplitude = p->a };
+		.amplitude = p->a,
+		.time = ((double)from + p->t) / s->cal.duration };
+	entry->arrival = (struct arrival){
+		.group = s->group, .time = entry->evidence.time, .amplitude = p->a
+	};
 	/* Within its standard error a delay is right either way. */
 	if (entry->evidence.var > 0 &&
 		fabs(p->other_delta - p->delta) > SIGMAS_SELDOM * sqrt(delay_var))
@@ -75,56 +75,6 @@ static enum separate_status emit_pulse(struct separate *s, const struct joint_pu
 	s->counters.rows++;
 	s->counters.negative += p->a < 0;
 	return SEPARATE_OK;
-}
-
-/* The larger pulse nearest to pulse i in the same fit, or -1. */
-static int larger_neighbour(const struct separate *s, int m, int i)
-{
-	const struct joint_pulse *p = s->pulse;
-	double nearest = INFINITY;
-	int found = -1;
-
-	for (int k = 0; k < m; k++)
-		if (fabs(p[k].a) > fabs(p[i].a) && fabs(p[k].t - p[i].t) < nearest) {
-			nearest = fabs(p[k].t - p[i].t);
-			found = k;
-		}
-	return found;
-}
-
-/* Compares the delays of the last m rows, which are of one fit. */
-static enum num_status compare_pulses(struct separate *s, int m)
-{
-	double delay[JOINT_PULSES_MAX], square[JOINT_PULSES_MAX], var[JOINT_PULSES_MAX];
-	const double *cov = s->delay_cov;
-	struct entry *entry = s->queue + s->count - m;
-	const struct joint_pulse *p = s->pulse;
-	int all = s->all;
-
-	for (int i = 0; i < m && all >= m && !isinf(s->cal.transit); i++) {
-		struct evidence *e = &entry[i].evidence;
-		int k = larger_neighbour(s, m, i);
-
-		if (k < 0)
-			continue;
-		e->larger = k - i;
-		e->apart = p[i].delta - p[k].delta;
-		e->apart_var = cov[i * all + i] + cov[k * all + k] - 2 * cov[i * all + k];
-		e->place = (p[i].t - p[k].t) / s->cal.duration;
-		e->height = fabs(p[i].a / p[k].a);
-		e->partner = fabs(e->place) < 2 ? k - i : 0;
-	}
-	if (m < 2 || all < m || isinf(s->cal.transit))
-		return NUM_OK;
-	for (int i = 0; i < m; i++)
-		delay[i] = p[i].delta;
-	if (contrasts_of(m, delay, cov, all, square, var) != NUM_OK)
-		return NUM_MEMORY;
-	for (int i = 0; i + 1 < m; i++) {
-		entry[i].evidence.contrast2 = square[i];
-		entry[i].evidence.contrast_var = var[i];
-	}
-	return NUM_OK;
 }
 
 enum separate_status separate_reserve_sources(struct separate *s, size_t count)
@@ -239,8 +189,6 @@ enum separate_status separate_give_pulses(struct separate *s, long long from,
 		if (emit_pulse(s, &s->pulse[i], from, m, j->chi2, j->pulse[i]) !=
 			SEPARATE_OK)
 			return SEPARATE_MEMORY;
-	if (compare_pulses(s, done) != NUM_OK)
-		return SEPARATE_MEMORY;
 	if (s->par.want_sources &&
 		draw_pulses(s, from, done, (size_t)(to - from)) != SEPARATE_OK)
 		return SEPARATE_MEMORY;

@@ -98,10 +98,7 @@ struct separate {
 	int same_shock;        /* the event found is that one */
 	unsigned char *spikes; /* flags of impulses */
 	size_t spike_room;
-	/* Covariances of the delays of all (so many) pulses; 0: not known. */
-	double delay_cov[JOINT_PULSES_MAX * JOINT_PULSES_MAX];
-	int all;
-	double pair_odds[JOINT_PULSES_MAX][JOINT_SHARES]; /* of each of them */
+	double pair_odds[JOINT_PULSES_MAX][JOINT_SHARES]; /* of each pulse */
 	double delay[TRACKED]; /* of the last pulses that stood alone */
 	size_t delays;
 	double gain_off[GAINS]; /* relative deviations of the gain of such pulses, in
@@ -287,10 +284,6 @@ void separate_set_gain(struct separate *s, long long from);
 
 /* rivals.c */
 
-/* A particle outside the range of delays is described by several within it, some of which
- * are held at a limit.  Tries fewer pulses in a wider range, where that costs less. */
-enum separate_status separate_try_wider(
-	struct separate *s, long long from, size_t n, int cut, struct account *a);
 /* Tries other explanations of a window that pulses of one sign do not describe: impulses
  * beside the pulses, a wider range of velocities, and pulses of both signs.  One is
  * accepted if it describes the window with no more pulses than before. */

@@ -13,30 +13,19 @@ enum {
 	PLACES = 16 * REACH /* classes of place within them */
 };
 
-/* Variance of z for parts of one object; it would be 1 if the model of the shape held for
- * them. */
-static const double PARTS = 2;
-
 struct delay {
 	double value, var;
 	int alone;
 };
 
-struct pair {
-	double z2, ratio; /* of the variances, 2 s^2 / var, over s^2 */
-};
-
 struct validation {
 	struct delay delay[LATELY];
-	struct pair pair[LATELY];
 	unsigned char doubted[LATELY], at_edge[LATELY];
-	size_t delays, pairs, rows; /* taken in so far */
-	double middle, half;        /* of the range of delays; half 0: not known */
-	double mean, var, margin;   /* of the delays; margin: an upper bound of var */
-	double known;               /* number of delays they are estimated from */
-	double local; /* variance of a delay by its difference from the next */
+	size_t delays, rows;      /* taken in so far */
+	double middle, half;      /* of the range of delays; half 0: not known */
+	double mean, var, margin; /* of the delays; margin: an upper bound of var */
+	double known;             /* number of delays they are estimated from */
 	struct flow told;
-	double parts; /* share of parts among pairs; 0: not significant */
 	double recurring[PLACES], groups;
 };
 
@@ -48,11 +37,6 @@ struct validation *validation_new(void)
 void validation_free(struct validation *v)
 {
 	free(v);
-}
-
-double validation_parts(const struct validation *v)
-{
-	return v->parts;
 }
 
 void validation_range(struct validation *v, double least, double most)
@@ -111,28 +95,6 @@ static void take_delay(struct validation *v, const struct evidence *e, size_t m)
 		(struct delay){ e[largest].delay, e[largest].var, m == 1 };
 }
 
-/* Half the mean square of differences of successive delays, without their errors (von
- * Neumann).  It is estimated by the median, which for normal deviates is 0.4549 of the
- * mean. */
-static double local_variance(const struct validation *v, int alone)
-{
-	double square[LATELY];
-	const struct delay *before = NULL;
-	size_t n = 0, count = held(v->delays);
-
-	for (size_t i = 0; i < count; i++) {
-		const struct delay *d = &v->delay[(v->delays - count + i) % LATELY];
-
-		if (alone && !d->alone)
-			continue;
-		if (before)
-			square[n++] = 0.5 * (pow(d->value - before->value, 2) - d->var -
-						    before->var);
-		before = d;
-	}
-	return fmax(robust_median(square, n) / 0.4549, 0);
-}
-
 /* Mean and variance of the delays of particles, by those that stand alone if there are
  * any. */
 static void learn_flow(struct validation *v)
@@ -145,14 +107,13 @@ static void learn_flow(struct validation *v)
 	for (size_t i = 0; i < held(v->delays); i++)
 		if (v->delay[i].alone || alone < FEW)
 			x[n++] = v->delay[i].value;
-	v->var = v->local = INFINITY;
+	v->var = INFINITY;
 	v->known = 0;
 	if (n < FEW) {
 		if (v->told.count > 0) {
 			v->mean = v->told.mean;
 			v->var = v->told.var;
 			v->margin = v->told.margin;
-			v->local = v->var;
 		}
 		return;
 	}
@@ -169,7 +130,6 @@ static void learn_flow(struct validation *v)
 		count++;
 	}
 	v->known = count;
-	v->local = local_variance(v, alone >= FEW);
 	v->var = fmax(sum / count, 0);
 	v->margin = fmax(v->var, scale * scale) * (1 + SIGMAS_SELDOM * sqrt(2 / count));
 }
@@ -204,103 +164,43 @@ double validation_half(const struct validation *v)
 	return isfinite(v->var) ? v->half : 0;
 }
 
-/* --- parts of one object */
-
-static void take_pairs(struct validation *v, const struct evidence *e, size_t m)
-{
-	for (size_t i = 0; i < m; i++)
-		if (e[i].partner && e[i].apart_var > 0)
-			v->pair[v->pairs++ % LATELY] =
-				(struct pair){ e[i].apart * e[i].apart / e[i].apart_var,
-					2 / e[i].apart_var };
-}
-
-/* Likelihood ratio of a pair being one object and being two, without their frequencies.
- */
-static double likelihood_ratio(const struct validation *v, double z2, double ratio)
-{
-	double two = 1 + ratio * v->var;
-
-	return sqrt(two / PARTS) * exp(fmin(0.5 * z2 * (1 / two - 1 / PARTS), 300));
-}
-
-/* Maximum-likelihood estimate of the share of parts, by expectation and maximisation. */
-static void learn_parts(struct validation *v)
-{
-	enum { STEPS = 30 };
-	double odds[LATELY], share = 0.3, gain = 0;
-	size_t n = held(v->pairs);
-
-	v->parts = 0;
-	if (isinf(v->var) || n == 0)
-		return;
-	for (size_t i = 0; i < n; i++)
-		odds[i] = likelihood_ratio(v, v->pair[i].z2, v->pair[i].ratio);
-	for (int step = 0; step < STEPS; step++) {
-		double sum = 0;
-
-		for (size_t i = 0; i < n; i++)
-			sum += share * odds[i] / (share * odds[i] + 1 - share);
-		share = fmin(sum / (double)n, 0.99);
-	}
-	for (size_t i = 0; i < n; i++)
-		gain += 2 * log(1 - share + share * odds[i]);
-	if (gain > LIKELIHOOD_CERTAIN)
-		v->parts = share;
-}
-
-static int is_part(const struct validation *v, const struct evidence *e)
-{
-	double odds;
-
-	if (!e->partner || !(e->apart_var > 0) || v->parts == 0)
-		return 0;
-	odds = likelihood_ratio(v, e->apart * e->apart / e->apart_var, 2 / e->apart_var);
-	return v->parts * odds > 1 - v->parts;
-}
-
-/* Likelihood ratio above which a group is one object: at most one correct group in a
- * thousand exceeds it. */
-static const double ONE = 1000;
-
-/* 1 if a group is one object, by all its delays.  Changes of the flow between groups do
- * not count: local is the scatter from one particle to the next. */
-static int is_one(const struct validation *v, const struct evidence *e, size_t m)
-{
-	double sum = 0, scatter = fmin(v->local, v->var);
-
-	if (!isfinite(scatter))
-		return 0;
-	for (size_t i = 0; i < m; i++)
-		if (e[i].contrast_var > 0) {
-			double one = PARTS * e[i].contrast_var,
-			       many = e[i].contrast_var + scatter;
-
-			sum += 0.5 *
-			       (log(many / one) + e[i].contrast2 * (1 / many - 1 / one));
-		}
-	return sum > log(ONE);
-}
-
 /* --- weak pulses that recur */
+
+/* The row of a group of m with a larger pulse that is nearest to row i; i: none. */
+static size_t nearest_larger(const struct evidence *e, size_t m, size_t i)
+{
+	double nearest = INFINITY;
+	size_t found = i;
+
+	for (size_t k = 0; k < m; k++)
+		if (fabs(e[k].amplitude) > fabs(e[i].amplitude) &&
+			fabs(e[k].time - e[i].time) < nearest) {
+			nearest = fabs(e[k].time - e[i].time);
+			found = k;
+		}
+	return found;
+}
 
 /* Place of a pulse that is less than half as high as the nearest larger one and has the
  * same velocity within the error, or -1. */
-static int weak_place(const struct evidence *e)
+static int weak_place(const struct evidence *e, size_t m, size_t i)
 {
-	int place = (int)floor((e->place + REACH) * PLACES / (2 * REACH));
+	const struct evidence *l = &e[nearest_larger(e, m, i)];
+	double place = floor((e[i].time - l->time + REACH) * PLACES / (2 * REACH));
 
-	return e->larger && e->height < 0.5 && place >= 0 && place < PLACES &&
-			       e->apart * e->apart <= 10 * e->apart_var
-		       ? place
+	return fabs(e[i].amplitude) < 0.5 * fabs(l->amplitude) && place >= 0 &&
+			       place < PLACES && e[i].var > 0 &&
+			       pow(e[i].delay - l->delay, 2) <= 10 * (e[i].var + l->var)
+		       ? (int)place
 		       : -1;
 }
 
 /* 1 if the place occurs in more than four groups and in a tenth of all.  Chance, with so
  * many places and different velocities, does not reach that. */
-static int recurs(const struct validation *v, const struct evidence *e)
+static int recurs(
+	const struct validation *v, const struct evidence *e, size_t m, size_t i)
 {
-	int place = weak_place(e);
+	int place = weak_place(e, m, i);
 
 	return place >= 0 && v->recurring[place] > 4 + 0.1 * v->groups;
 }
@@ -313,17 +213,11 @@ static void take_in(struct validation *v, const struct evidence *e, size_t n)
 		m = group_size(e, i, n);
 		take_delay(v, e + i, m);
 		v->groups++;
-		for (size_t k = i; k < i + m; k++)
-			if (weak_place(&e[k]) >= 0)
-				v->recurring[weak_place(&e[k])]++;
+		for (size_t k = 0; k < m; k++)
+			if (weak_place(e + i, m, k) >= 0)
+				v->recurring[weak_place(e + i, m, k)]++;
 	}
 	learn_flow(v);
-	for (size_t i = 0, m; i < n; i += m) {
-		m = group_size(e, i, n);
-		if (!is_impossible(v, e + i, m))
-			take_pairs(v, e + i, m);
-	}
-	learn_parts(v);
 }
 
 /* Probability that noise alone moves as many delays of a group to the limits: at most one
@@ -359,16 +253,13 @@ static int too_many_at_limit(
 
 static void judge_group(const struct validation *v, struct evidence *e, size_t m)
 {
-	int impossible =
-		is_impossible(v, e, m) || too_many_at_limit(v, e, m) || is_one(v, e, m);
+	int impossible = is_impossible(v, e, m) || too_many_at_limit(v, e, m);
 
 	for (size_t i = 0; i < m; i++)
 		e[i].doubted = impossible || !e[i].fits || is_at_edge(v, &e[i]);
 	for (size_t i = 0; i < m; i++)
-		if (is_part(v, &e[i]) || recurs(v, &e[i])) {
-			e[i].doubted = 1;
-			e[(long)i + e[i].larger].doubted = 1;
-		}
+		if (recurs(v, e, m, i))
+			e[i].doubted = e[nearest_larger(e, m, i)].doubted = 1;
 }
 
 /* 1 if more than half of the latest rows are doubted, or more than a tenth lie at the

@@ -3,20 +3,13 @@
  * Pulses are fitted until they describe the record, so that chi-square does not reveal
  * events that are not particles: several pulses are fitted to them.  The velocities
  * reveal them, because the fit does not restrict these.  Each particle has a velocity of
- * the flow:
+ * the flow, pulses fitted to what is no particle have any: a group is doubted if the sum
+ * of squares of its deviations exceeds chi-square by five deviations, and a pulse if its
+ * delay is at the edge of the range searched.  The variance of the flow is that of pulses
+ * that stand alone.
  *
- *	- parts of one object, of another form than the pulse learned, share its velocity.
- *	  The difference of two delays over its standard error, z, is normal with variance
- *	  2 for parts and 1 + 2 s^2 / var for particles, where s^2 is the variance of
- *	  the delays of the flow; the share of parts among all pairs is that of greatest
- *	  likelihood, and a pair is doubted if it is more likely one object than two;
- *	- pulses fitted to what is no particle have any velocity: a group is doubted
- *	  if the sum of squares of its deviations exceeds chi-square by five deviations,
- *	  and a pulse if its delay is at the edge of the range searched;
- *	- a weak pulse that recurs at one distance from a strong one is an error of the
- *	  shape of the strong one.
- *
- * s^2 is that of pulses that stand alone, which no group is part of.
+ * A weak pulse that recurs at one distance from a strong one of the same velocity is an
+ * error of the shape of the strong one.
  *
  * Where more than half of the rows are doubted, or more than a tenth have delays at the
  * edge of the range, the record is not like the learned one, and no row is believed.
@@ -35,12 +28,8 @@ struct evidence {
 	int fits;          /* 0: doubted already by chi-square */
 	double delay, var; /* in samples; var 0: unknown */
 	double amplitude;  /* over the noise */
-	int larger;        /* distance in rows to the nearest larger pulse; 0: none */
-	int partner;       /* the same if they overlap */
-	double apart, apart_var; /* delay less that of the larger pulse */
-	double place, height;    /* of arrival, in durations, and amplitude: the same */
-	double contrast2, contrast_var; /* of contrasts.h; variance 0: none */
-	int doubted;                    /* set by validation_judge() */
+	double time;       /* of arrival, durations */
+	int doubted;       /* set by validation_judge() */
 };
 
 struct validation;
@@ -65,8 +54,5 @@ double validation_half(const struct validation *v);
 
 /* Adds n rows, in order and with undivided groups, and judges them. */
 void validation_judge(struct validation *v, struct evidence *e, size_t n);
-
-/* Share of parts of one object among the last overlapping pulses. */
-double validation_parts(const struct validation *v);
 
 #endif

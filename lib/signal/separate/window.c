@@ -81,7 +81,6 @@ void separate_keep_fit(struct separate *s, const struct account *a)
 {
 	double scatter = delay_scatter(s, a);
 
-	s->all = joint_delay_covariance(s->joint, s->delay_cov);
 	for (int i = 0; i < a->m; i++)
 		if (has_quadrature(s) || isinf(s->cal.transit))
 			memset(s->pair_odds[i], 0, sizeof s->pair_odds[i]);
