@@ -35,7 +35,7 @@ static void subtract_mean(double *x, size_t n)
 }
 
 /* *lag: the lag at which the autocorrelation of both channels is lowest. */
-static enum num_status find_lowest_lag(struct tape mean[2], size_t n, double *lag)
+static enum num_status find_lowest_lag(struct buffer mean[2], size_t n, double *lag)
 {
 	double *r = malloc((n / 4 + 1) * sizeof *r);
 	enum num_status status = NUM_MEMORY;
@@ -49,32 +49,32 @@ static enum num_status find_lowest_lag(struct tape mean[2], size_t n, double *la
 	return status;
 }
 
-void separate_clear_tapes(struct tape tape[CHANNELS_MAX])
+void separate_clear_buffers(struct buffer buffer[CHANNELS_MAX])
 {
 	for (int c = 0; c < CHANNELS_MAX; c++)
-		tape_clear(&tape[c]);
+		buffer_clear(&buffer[c]);
 }
 
-enum num_status separate_average_tapes(const struct tape tape[CHANNELS_MAX], int channels,
-	size_t n, int ratio, struct tape mean[CHANNELS_MAX])
+enum num_status separate_average_buffers(const struct buffer buffer[CHANNELS_MAX],
+	int channels, size_t n, int ratio, struct buffer mean[CHANNELS_MAX])
 {
 	memset(mean, 0, CHANNELS_MAX * sizeof *mean);
 	for (int c = 0; c < channels; c++)
-		if (tape_average(&tape[c], n, (size_t)ratio, &mean[c]) != NUM_OK)
+		if (buffer_average(&buffer[c], n, (size_t)ratio, &mean[c]) != NUM_OK)
 			return NUM_MEMORY;
 	return NUM_OK;
 }
 
 enum num_status separate_guess_ratio(const struct separate *s, int *ratio)
 {
-	struct tape mean[CHANNELS_MAX];
+	struct buffer mean[CHANNELS_MAX];
 	double lag = 0;
-	enum num_status status = separate_average_tapes(
-		s->tape, 2, lesser(s->tape[0].n, s->par.learn), FEW, mean);
+	enum num_status status = separate_average_buffers(
+		s->buffer, 2, lesser(s->buffer[0].n, s->par.learn), FEW, mean);
 
 	if (status == NUM_OK && mean[0].n >= SEPARATE_SHORTEST)
 		status = find_lowest_lag(mean, mean[0].n, &lag);
-	separate_clear_tapes(mean);
+	separate_clear_buffers(mean);
 	*ratio = separate_ratio_of(2 * FEW * lag, SEPARATE_LONG, MOST);
 	return status;
 }
@@ -98,5 +98,5 @@ void separate_average(struct separate *s, int ratio)
 {
 	separate_convert(s, ratio);
 	for (int c = 0; ratio > 1 && c < s->channels; c++)
-		s->tape[c].ratio = (size_t)ratio;
+		s->buffer[c].ratio = (size_t)ratio;
 }

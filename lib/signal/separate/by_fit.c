@@ -17,7 +17,7 @@ static int most_pulses(const struct separate *s, size_t n)
 static void take_off(
 	struct separate *s, long long from, const struct joint_pulse *p, int k)
 {
-	struct tape *one = &s->tape[k], *two = &s->tape[k + 1];
+	struct buffer *one = &s->buffer[k], *two = &s->buffer[k + 1];
 
 	joint_add(&s->scene, p, -1, one->x + (from - one->begin),
 		two->x + (from + s->cal.shift - two->begin), (size_t)(ready(s) - from));
@@ -111,8 +111,8 @@ enum separate_status separate_fit_section(
 	 */
 	if (!both) {
 		before = s->window == SEEK ? sections_aside(s->sections, 0) : 0;
-		before = from - s->tape[0].begin < before
-				 ? (long)(from - s->tape[0].begin)
+		before = from - s->buffer[0].begin < before
+				 ? (long)(from - s->buffer[0].begin)
 				 : before;
 		after = cut ? 0 : sections_aside(s->sections, 1);
 		after = ready(s) - to < after ? (long)(ready(s) - to) : after;
@@ -122,8 +122,8 @@ enum separate_status separate_fit_section(
 	s->scene.quiet[0] = (double)before;
 	s->scene.quiet[1] = (double)after;
 	for (int c = 0; c < 2; c++)
-		s->scene.tone_knot[c] = (double)(s->tape[c].tones.first - from + before -
-						 (c ? s->cal.shift : 0));
+		s->scene.tone_knot[c] = (double)(s->buffer[c].tones.first - from +
+						 before - (c ? s->cal.shift : 0));
 	if (!both)
 		separate_hide(s, from - before, n);
 	if (a.m > s->scene.max_pulses)

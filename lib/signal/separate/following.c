@@ -68,8 +68,8 @@ static void follow_gain(struct separate *s, const struct joint_pulse *p)
 
 void separate_set_gain(struct separate *s, long long from)
 {
-	double first = following_at(&s->tape[0].noise, (double)from);
-	double second = following_at(&s->tape[1].noise, (double)(from + s->cal.shift));
+	double first = following_at(&s->buffer[0].noise, (double)from);
+	double second = following_at(&s->buffer[1].noise, (double)(from + s->cal.shift));
 
 	s->scene.gain = s->gain * first / second;
 }

@@ -41,14 +41,14 @@ static enum num_status look_for_other_half(
 	struct foreign shock;
 	struct foreign_stretch stretch;
 
-	if (shift <= 0 || end > s->tape[0].clean || end > s->tape[1].clean ||
-		begin < s->tape[1].begin)
+	if (shift <= 0 || end > s->buffer[0].clean || end > s->buffer[1].clean ||
+		begin < s->buffer[1].begin)
 		return NUM_OK;
 	stretch = stretch_at(s, begin, begin - shift, n);
 	for (int c = 0; c < 2; c++)
 		if (stretch.hidden[c])
 			stretch.hidden[c] =
-				s->tape[c].hidden + (begin - s->tape[c].begin);
+				s->buffer[c].hidden + (begin - s->buffer[c].begin);
 	if (foreign_at_once(&stretch, &shock) != NUM_OK)
 		return NUM_MEMORY;
 	if (shock.verdict != SEPARATE_SHOCK)

@@ -42,8 +42,8 @@ static void follow_noise(struct separate *s, size_t n)
 		c->whitening.tap)
 		return;
 	for (int k = 0; k < 2; k++)
-		tape_follow(&s->tape[k], s->done, block, n ? 0 : s->kept.level[k],
-			s->tape[k].begin + (long long)known);
+		buffer_follow(&s->buffer[k], s->done, block, n ? 0 : s->kept.level[k],
+			s->buffer[k].begin + (long long)known);
 }
 
 /* Starts the separation with an instrument learned from the n oldest samples (0: kept).
@@ -54,7 +54,7 @@ static enum separate_status start(struct separate *s, size_t n)
 	double reach;
 
 	s->calibrated = 1;
-	s->done = s->level_at = s->tape[0].begin + c->whitening.edge;
+	s->done = s->level_at = s->buffer[0].begin + c->whitening.edge;
 	calibration_scene(c, &s->scene);
 	s->gain = s->scene.gain;
 	s->scene.max_pulses = JOINT_PULSES_MAX;
@@ -67,8 +67,8 @@ static enum separate_status start(struct separate *s, size_t n)
 		s->par.window = (size_t)fmax(
 			3 * reach, JOINT_BASELINE_MAX / (2 * c->whitening.low));
 	for (int k = 0; k < s->channels; k++)
-		if (tape_start(&s->tape[k], c,
-			    k < 2 ? c->mean[k] : mean_of(s->tape[k].x, n),
+		if (buffer_start(&s->buffer[k], c,
+			    k < 2 ? c->mean[k] : mean_of(s->buffer[k].x, n),
 			    c->noise[k % 2]) != NUM_OK)
 			return SEPARATE_MEMORY;
 	follow_noise(s, n);
@@ -78,7 +78,7 @@ static enum separate_status start(struct separate *s, size_t n)
 		fmax(c->delta_max, -c->delta_min));
 	if (s->sections)
 		sections_skip(s->sections, s->done);
-	s->hold = s->tape[0].begin + (long long)n;
+	s->hold = s->buffer[0].begin + (long long)n;
 	if (isnan(s->par.known.spread) && !isinf(c->transit))
 		validation_range(s->validation, c->delta_min, c->delta_max);
 	s->holding = s->par.method == SEPARATE_FIT && n > 0;
@@ -114,7 +114,7 @@ static enum separate_status start(struct separate *s, size_t n)
 	return s->sections && s->joint ? SEPARATE_OK : SEPARATE_MEMORY;
 }
 
-/* What is known of the instrument, in samples of the tapes. */
+/* What is known of the instrument, in samples of the buffers. */
 static struct calibrate_par known_of(const struct separate *s)
 {
 	struct calibrate_par known = s->par.known;
@@ -125,7 +125,7 @@ static struct calibrate_par known_of(const struct separate *s)
 	for (int k = 0; k < known.tones; k++)
 		known.omega[k] *= s->ratio;
 	for (int c = 0; c < 2; c++)
-		known.hidden[c] = s->tape[c].hidden;
+		known.hidden[c] = s->buffer[c].hidden;
 	return known;
 }
 
@@ -138,11 +138,12 @@ static enum separate_status learn_from(struct separate *s, size_t n, double shar
 	if (n < SEPARATE_SHORTEST)
 		return SEPARATE_NO_LAG;
 	for (int c = 0; c < 2; c++)
-		tape_review(&s->tape[c]);
+		buffer_review(&s->buffer[c]);
 	known = known_of(s);
-	known.most = share * (separate_effort((double)(s->tape[0].begin + (long long)n)) -
-				     s->effort);
-	status = calibrate(&known, s->tape[0].x, s->tape[1].x, n, &s->cal);
+	known.most =
+		share * (separate_effort((double)(s->buffer[0].begin + (long long)n)) -
+				s->effort);
+	status = calibrate(&known, s->buffer[0].x, s->buffer[1].x, n, &s->cal);
 	s->effort += s->cal.work;
 	if (status != SEPARATE_OK)
 		return status;
@@ -166,31 +167,32 @@ enum { PULSES = 3 };
 static enum separate_status learn_from_means(
 	struct separate *s, int ratio, double share, double *duration)
 {
-	struct tape fine[CHANNELS_MAX], mean[CHANNELS_MAX];
+	struct buffer fine[CHANNELS_MAX], mean[CHANNELS_MAX];
 	size_t n;
 	enum separate_status status;
 
 	*duration = 0;
-	memcpy(fine, s->tape, sizeof fine);
-	if (separate_average_tapes(fine, s->channels, fine[0].n, ratio, mean) != NUM_OK) {
-		separate_clear_tapes(mean);
+	memcpy(fine, s->buffer, sizeof fine);
+	if (separate_average_buffers(fine, s->channels, fine[0].n, ratio, mean) !=
+		NUM_OK) {
+		separate_clear_buffers(mean);
 		return SEPARATE_MEMORY;
 	}
-	memcpy(s->tape, mean, sizeof mean);
+	memcpy(s->buffer, mean, sizeof mean);
 	s->ratio = ratio;
 	n = lesser(mean[0].n, separate_learned_means(s, ratio));
 	status = learn_from(s, n, share);
 	if (status == SEPARATE_OK)
 		*duration = s->cal.duration;
 	if (*duration >= SHORT && s->cal.events >= PULSES) {
-		separate_clear_tapes(fine);
+		separate_clear_buffers(fine);
 		separate_convert(s, ratio);
 		return start(s, n);
 	}
 	if (status == SEPARATE_OK)
 		calibration_clear(&s->cal);
-	separate_clear_tapes(mean);
-	memcpy(s->tape, fine, sizeof fine);
+	separate_clear_buffers(mean);
+	memcpy(s->buffer, fine, sizeof fine);
 	s->ratio = 1;
 	return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
 }
@@ -205,7 +207,7 @@ static const double FIRST = 0.25;
  * pulses seem long, and are not described as short ones, awaits as many means. */
 static enum separate_status calibrate_now(struct separate *s)
 {
-	size_t n = lesser(s->tape[0].n, s->par.learn), means;
+	size_t n = lesser(s->buffer[0].n, s->par.learn), means;
 	int ratio = 1, again = s->awaited > 0;
 	enum separate_status status = SEPARATE_OK;
 
@@ -223,7 +225,7 @@ static enum separate_status calibrate_now(struct separate *s)
 			return status;
 	}
 	means = (size_t)ratio * separate_learned_means(s, ratio);
-	if (ratio > 1 && !s->ended && s->tape[0].n < means) {
+	if (ratio > 1 && !s->ended && s->buffer[0].n < means) {
 		s->awaited = means;
 		return SEPARATE_OK;
 	}
@@ -268,7 +270,7 @@ static const double CLEARLY = 600;
 /* Where there are too few pulses, twice as many samples are awaited. */
 enum separate_status separate_learn_clearly(struct separate *s)
 {
-	size_t n = s->tape[0].n;
+	size_t n = s->buffer[0].n;
 	int few;
 	enum separate_status status;
 
@@ -296,8 +298,8 @@ static enum separate_status look_for_bursts(
 
 	if (!work)
 		return SEPARATE_MEMORY;
-	*found = bursts_found(s->tape[0].x, n, work) ||
-		 bursts_found(s->tape[1].x, n, work);
+	*found = bursts_found(s->buffer[0].x, n, work) ||
+		 bursts_found(s->buffer[1].x, n, work);
 	free(work);
 	return SEPARATE_OK;
 }
@@ -306,7 +308,7 @@ size_t separate_wants(const struct separate *s)
 {
 	size_t next = s->awaited > s->par.learn ? s->awaited : s->par.learn;
 
-	return s->calibrated || s->par.kept ? SIZE_MAX : next - s->tape[0].n;
+	return s->calibrated || s->par.kept ? SIZE_MAX : next - s->buffer[0].n;
 }
 
 enum separate_status separate_learn(struct separate *s)
@@ -314,10 +316,11 @@ enum separate_status separate_learn(struct separate *s)
 	size_t half = s->par.learn / 2;
 	int first = 1, found;
 
-	while (!s->calibrated && s->tape[0].n >= (s->ended && first ? 1 : s->par.learn)) {
+	while (!s->calibrated &&
+		s->buffer[0].n >= (s->ended && first ? 1 : s->par.learn)) {
 		enum separate_status status;
 
-		if (s->tape[0].n < s->awaited && !s->ended)
+		if (s->buffer[0].n < s->awaited && !s->ended)
 			return SEPARATE_OK;
 		status = calibrate_now(s);
 		if (s->awaited)
@@ -330,17 +333,17 @@ enum separate_status separate_learn(struct separate *s)
 		if (s->calibrated)
 			break;
 		s->reason = status;
-		if (look_for_bursts(s, lesser(s->tape[0].n, s->par.learn), &found) !=
+		if (look_for_bursts(s, lesser(s->buffer[0].n, s->par.learn), &found) !=
 			SEPARATE_OK)
 			return SEPARATE_MEMORY;
 		s->unexplained |= found;
-		if (s->tape[0].n < s->par.learn)
+		if (s->buffer[0].n < s->par.learn)
 			break;
 		if (found && look_for_bursts(s, half, &found) != SEPARATE_OK)
 			return SEPARATE_MEMORY;
 		s->counters.unlearned += found ? (double)half : 0;
 		for (int c = 0; c < s->channels; c++)
-			tape_drop(&s->tape[c], half);
+			buffer_discard(&s->buffer[c], half);
 		s->counters.passed_over += (double)half;
 	}
 	return SEPARATE_OK;

@@ -10,8 +10,8 @@ enum { LEVEL_BLOCK = 4096 };
 void separate_measure_level(struct separate *s)
 {
 	double work[LEVEL_BLOCK];
-	long long clean =
-		s->tape[0].clean < s->tape[1].clean ? s->tape[0].clean : s->tape[1].clean;
+	long long clean = s->buffer[0].clean < s->buffer[1].clean ? s->buffer[0].clean
+								  : s->buffer[1].clean;
 
 	while (s->levels < (double)s->par.learn) {
 		long long n = clean - s->level_at;
@@ -20,7 +20,7 @@ void separate_measure_level(struct separate *s)
 			return;
 		n = n < LEVEL_BLOCK ? n : LEVEL_BLOCK;
 		for (int c = 0; c < 2; c++) {
-			const struct tape *t = &s->tape[c];
+			const struct buffer *t = &s->buffer[c];
 			double level = robust_noise(
 				t->x + (s->level_at - t->begin), (size_t)n, work);
 

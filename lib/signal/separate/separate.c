@@ -43,7 +43,7 @@ void separate_free(struct separate *s)
 	joint_free(s->joint);
 	masks_free(s->masks);
 	separate_clear_common(s);
-	separate_clear_tapes(s->tape);
+	separate_clear_buffers(s->buffer);
 	for (size_t i = 0; i < s->reports; i++)
 		free(s->report[i].source);
 	free(s->report);
@@ -206,7 +206,7 @@ static void forget(struct separate *s)
 		s->done = 0;
 	keep = s->done < s->level_at ? s->done : s->level_at;
 	for (int c = 0; c < s->channels; c++)
-		tape_forget(&s->tape[c], keep - reach - separate_common_reach(s));
+		buffer_forget(&s->buffer[c], keep - reach - separate_common_reach(s));
 }
 
 /* Separates all sections that are complete. */
@@ -217,7 +217,7 @@ static enum separate_status work(struct separate *s)
 	enum separate_status status = SEPARATE_OK;
 
 	for (int c = 0; c < s->channels; c++)
-		if (tape_prepare(&s->tape[c], &s->cal, s->ended) != NUM_OK)
+		if (buffer_prepare(&s->buffer[c], &s->cal, s->ended) != NUM_OK)
 			return SEPARATE_MEMORY;
 	separate_measure_level(s);
 	limit = ready(s);
@@ -266,7 +266,7 @@ static enum separate_status push(struct separate *s, const double *x, size_t n)
 	enum separate_status status = SEPARATE_OK;
 
 	for (int c = 0; c < s->channels; c++)
-		if (tape_append(&s->tape[c], x + c, n, (size_t)s->channels) != NUM_OK)
+		if (buffer_append(&s->buffer[c], x + c, n, (size_t)s->channels) != NUM_OK)
 			return SEPARATE_MEMORY;
 	if (s->par.kept)
 		status = separate_check_alive(s, x, n);

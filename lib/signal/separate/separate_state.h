@@ -7,9 +7,9 @@
 #include "signal/detect/foreign.h"
 #include "signal/detect/sections.h"
 #include "signal/fit/goodness.h"
+#include "signal/separate/buffer.h"
 #include "signal/separate/quadrature.h"
 #include "signal/separate/separate.h"
-#include "signal/separate/tape.h"
 #include "signal/separate/together.h"
 #include "signal/separate/validate.h"
 
@@ -74,10 +74,10 @@ struct separate {
 	long long level_at;
 	int looked;     /* 1: the first samples have been examined */
 	int crowded;    /* 1: long sections hold too many pulses */
-	int ratio;      /* samples of the record in one of tape */
-	size_t awaited; /* samples of tape to learn from means */
+	int ratio;      /* samples of the record in one of buffer */
+	size_t awaited; /* samples of buffer to learn from means */
 	int channels;   /* of the record */
-	struct tape tape[CHANNELS_MAX];
+	struct buffer buffer[CHANNELS_MAX];
 	struct sections *sections;
 	struct joint *joint;
 	struct masks *masks;
@@ -144,8 +144,8 @@ static inline struct channels channels_at(const struct separate *s, long long at
 	struct channels y = { { NULL } };
 
 	for (int c = 0; c < s->channels; c++)
-		y.at[c] = s->tape[c].x +
-			  (at + (c % 2 ? s->cal.shift : 0) - s->tape[c].begin);
+		y.at[c] = s->buffer[c].x +
+			  (at + (c % 2 ? s->cal.shift : 0) - s->buffer[c].begin);
 	return y;
 }
 
@@ -157,15 +157,15 @@ static inline int has_quadrature(const struct separate *s)
 /* Samples before this one are prepared on both channels, aligned. */
 static inline long long ready(const struct separate *s)
 {
-	long long second = s->tape[1].clean - s->cal.shift;
+	long long second = s->buffer[1].clean - s->cal.shift;
 
-	return s->tape[0].clean < second ? s->tape[0].clean : second;
+	return s->buffer[0].clean < second ? s->buffer[0].clean : second;
 }
 
 /* Noise of a channel at a sample of it, in units of the record. */
 static inline double separate_noise_at(const struct separate *s, int c, double at)
 {
-	return s->cal.noise[c] * following_at(&s->tape[c].noise, at);
+	return s->cal.noise[c] * following_at(&s->buffer[c].noise, at);
 }
 
 /* judging.c */
@@ -225,11 +225,11 @@ int separate_ratio_of(double duration, int limit, int most);
 enum num_status separate_guess_ratio(const struct separate *s, int *ratio);
 /* par.learn, of means. */
 size_t separate_learned_means(const struct separate *s, int ratio);
-/* The means of the n oldest samples of so many channels; separate_clear_tapes() frees
+/* The means of the n oldest samples of so many channels; separate_clear_buffers() frees
  * them, also on failure. */
-enum num_status separate_average_tapes(const struct tape tape[CHANNELS_MAX], int channels,
-	size_t n, int ratio, struct tape mean[CHANNELS_MAX]);
-void separate_clear_tapes(struct tape tape[CHANNELS_MAX]);
+enum num_status separate_average_buffers(const struct buffer buffer[CHANNELS_MAX],
+	int channels, size_t n, int ratio, struct buffer mean[CHANNELS_MAX]);
+void separate_clear_buffers(struct buffer buffer[CHANNELS_MAX]);
 /* Converts what is known in samples to means. */
 void separate_convert(struct separate *s, int ratio);
 /* Has the samples of a record that has not begun averaged. */

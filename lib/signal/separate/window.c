@@ -30,7 +30,7 @@ static double choose_cut(const struct separate *s, int m, size_t n)
 void separate_hide(struct separate *s, long long from, size_t n)
 {
 	for (int c = 0; c < 2; c++) {
-		const struct tape *t = &s->tape[c];
+		const struct buffer *t = &s->buffer[c];
 		const unsigned char *flags =
 			t->hidden + (from + (c ? s->cal.shift : 0) - t->begin);
 

@@ -44,8 +44,8 @@ enum num_status separate_set_common(struct separate *s, const double found[3])
 enum num_status separate_measure_common(
 	struct separate *s, long long from, long long upto)
 {
-	const double *x[2] = { s->tape[0].x + (from - s->tape[0].begin),
-		s->tape[1].x + (from - s->tape[1].begin) };
+	const double *x[2] = { s->buffer[0].x + (from - s->buffer[0].begin),
+		s->buffer[1].x + (from - s->buffer[1].begin) };
 	size_t n = (size_t)(upto - from);
 	double *work, found[3];
 
@@ -111,7 +111,7 @@ static enum separate_status noise_beside(struct separate *s, long long from, siz
 
 	*noise = NULL;
 	for (int k = 0; k < 2; k++) {
-		const struct tape *t = &s->tape[k];
+		const struct buffer *t = &s->buffer[k];
 		long long begin = at + (k ? s->cal.shift : 0);
 
 		if (begin < t->begin || begin + (long long)length > t->clean ||

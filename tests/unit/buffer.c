@@ -1,6 +1,6 @@
 /* Means of the samples of a channel: values, indices, and samples that were not measured
  */
-#include "signal/separate/tape.h"
+#include "signal/separate/buffer.h"
 #include "num/philox.h"
 #include "tap.h"
 #include <math.h>
@@ -20,7 +20,7 @@ static void draw(void)
 	}
 }
 
-static int are_equal(const struct tape *a, const struct tape *b)
+static int are_equal(const struct buffer *a, const struct buffer *b)
 {
 	for (size_t i = 0; i < a->n && i < b->n; i++)
 		if (a->x[i] != b->x[i] || a->hidden[i] != b->hidden[i])
@@ -30,13 +30,13 @@ static int are_equal(const struct tape *a, const struct tape *b)
 
 int main(void)
 {
-	struct tape fine = { NULL }, mean = { NULL }, direct = { .ratio = RATIO };
+	struct buffer fine = { NULL }, mean = { NULL }, direct = { .ratio = RATIO };
 	double largest = 0, sum = 0;
 	int hidden = 0;
 
 	draw();
-	if (tape_append(&fine, x, N, 2) != NUM_OK ||
-		tape_average(&fine, N, RATIO, &mean) != NUM_OK)
+	if (buffer_append(&fine, x, N, 2) != NUM_OK ||
+		buffer_average(&fine, N, RATIO, &mean) != NUM_OK)
 		return 1;
 	ok(mean.n == N / RATIO && mean.begin == 0, "there is one mean of 16 samples");
 	for (size_t k = 0; k < mean.n; k++) {
@@ -59,19 +59,19 @@ int main(void)
 
 	/* Piece by piece; the run is found only after some of its means are there. */
 	for (size_t at = 0; at < N; at += 7)
-		if (tape_append(&direct, x + 2 * at, at + 7 < N ? 7 : N - at, 2) !=
+		if (buffer_append(&direct, x + 2 * at, at + 7 < N ? 7 : N - at, 2) !=
 			NUM_OK)
 			return 1;
 	ok(are_equal(&mean, &direct), "samples averaged as they arrive give the same");
 
-	tape_drop(&fine, DROPPED);
-	tape_clear(&mean);
-	if (tape_average(&fine, fine.n, RATIO, &mean) != NUM_OK)
+	buffer_discard(&fine, DROPPED);
+	buffer_clear(&mean);
+	if (buffer_average(&fine, fine.n, RATIO, &mean) != NUM_OK)
 		return 1;
 	ok(mean.begin == DROPPED / RATIO + 1, "the first mean has a whole index");
 	ok(mean.x[0] == direct.x[mean.begin], "it is that of the same samples");
-	tape_clear(&fine);
-	tape_clear(&mean);
-	tape_clear(&direct);
+	buffer_clear(&fine);
+	buffer_clear(&mean);
+	buffer_clear(&direct);
 	return tap_done();
 }

@@ -1,11 +1,11 @@
-/* tape.h - preparation of one channel of a record as it arrives: its filter is undone,
+/* buffer.h - preparation of one channel of a record as it arrives: its filter is undone,
  * tones are removed, and it is scaled to units of its noise
  *
- * A zeroed tape is empty.  The result does not depend on the sizes of the pieces in which
- * the record arrives.
+ * A zeroed buffer is empty.  The result does not depend on the sizes of the pieces in
+ * which the record arrives.
  */
-#ifndef SIGNAL_TAPE_H
-#define SIGNAL_TAPE_H
+#ifndef SIGNAL_BUFFER_H
+#define SIGNAL_BUFFER_H
 
 #include "num/status.h"
 #include "signal/learn/calibration.h"
@@ -16,7 +16,7 @@
 /* Samples from index begin on: the filter is undone in those before white; those before
  * flat are also free of tones and in units of the noise learned; those before clean in
  * units of the noise at their time. */
-struct tape {
+struct buffer {
 	double *x;
 	unsigned char *hidden; /* 1: the converter has not measured this sample */
 	struct converter converter;
@@ -36,33 +36,33 @@ struct tape {
 	long long learned; /* the noise was learned from the samples before this one */
 };
 
-void tape_clear(struct tape *t);
+void buffer_clear(struct buffer *b);
 
 /* Appends n samples, x[0], x[stride], x[2 stride] ...; averaged, if t is. */
-enum num_status tape_append(struct tape *t, const double *x, size_t n, size_t stride);
-/* A tape with the means of every ratio of the n oldest samples of t, the first with an
+enum num_status buffer_append(struct buffer *b, const double *x, size_t n, size_t stride);
+/* A buffer with the means of every ratio of the n oldest samples of b, the first with an
  * index divisible by ratio, and with its converter; t must be neither averaged nor
  * started.  Means of white noise are white. */
-enum num_status tape_average(
-	const struct tape *t, size_t n, size_t ratio, struct tape *mean);
+enum num_status buffer_average(
+	const struct buffer *b, size_t n, size_t ratio, struct buffer *mean);
 /* Hides the samples at the limits of the converter that only later samples have revealed.
  */
-void tape_review(struct tape *t);
+void buffer_review(struct buffer *b);
 /* Drops the n oldest samples. */
-void tape_drop(struct tape *t, size_t n);
+void buffer_discard(struct buffer *b, size_t n);
 /* Drops samples before keep once there are many. */
-void tape_forget(struct tape *t, long long keep);
+void buffer_forget(struct buffer *b, long long keep);
 
 /* Starts the preparation, with what was learned of the record; mean: of the channel, only
  * used if there is a filter to undo; scale: its noise. */
-enum num_status tape_start(
-	struct tape *t, const struct calibration *c, double mean, double scale);
+enum num_status buffer_start(
+	struct buffer *b, const struct calibration *c, double mean, double scale);
 /* Follows the noise from sample begin on, in blocks.  reference: noise once clean where
  * it was learned, or 0 if that is in the samples before learned. */
-void tape_follow(struct tape *t, long long begin, size_t block, double reference,
+void buffer_follow(struct buffer *b, long long begin, size_t block, double reference,
 	long long learned);
 /* Prepares all samples that can be prepared without later ones; all samples if the record
  * has ended. */
-enum num_status tape_prepare(struct tape *t, const struct calibration *c, int ended);
+enum num_status buffer_prepare(struct buffer *b, const struct calibration *c, int ended);
 
 #endif
