@@ -127,7 +127,7 @@ static void compare_with_formula(void)
 	}
 }
 
-/* The probability of a lone pulse in laminar flow, by a sum over radii. */
+/* The probability of an isolated pulse in laminar flow, by a sum over radii. */
 static double alone_in_laminar(const struct traffic *t, double zone)
 {
 	enum { RADII = 100000 };

@@ -145,7 +145,7 @@ int joint_split_pulses(struct joint *j, const struct joint_scene *s,
 }
 
 /* Squared amplitude of a pulse in units of its variance; if the matrix is singular, as it
- * is with too many pulses, in units of that of a lone pulse. */
+ * is with too many pulses, in units of that of an isolated pulse. */
 static double significance(const struct joint_scene *s, const struct joint_pulse *p)
 {
 	return isfinite(p->cov[5]) ? p->a * p->a / p->cov[5]

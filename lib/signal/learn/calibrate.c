@@ -27,8 +27,8 @@ static enum separate_status attempt(const struct calibrate_par *par, const doubl
 	memset(c, 0, sizeof *c);
 	c->whitening = *w;
 	c->work = look->work;
-	c->guessed = look->settled;
-	c->suspect = look->coloured && !look->settled;
+	c->estimated = look->settled;
+	c->presumed_white = look->coloured && !look->settled;
 	for (int k = 0; work && k < 2; k++) {
 		double *y = work + (size_t)k * n;
 
@@ -81,7 +81,7 @@ static enum separate_status look_again(const struct calibrate_par *par, const do
 {
 	static const enum whiten_kind kinds[] = { WHITEN_FILTERED, WHITEN_COLOURED };
 	enum whiten_kind found = WHITEN_FILTERED;
-	double best = c->price;
+	double best = c->penalised;
 	int better = 0;
 
 	for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
@@ -93,8 +93,8 @@ static enum separate_status look_again(const struct calibrate_par *par, const do
 			return status;
 		if (status != SEPARATE_OK)
 			continue;
-		if (other.price < best && !other.dense) {
-			best = other.price;
+		if (other.penalised < best && !other.dense) {
+			best = other.penalised;
 			found = kinds[k];
 			better = 1;
 		}
@@ -155,7 +155,7 @@ static enum separate_status try_fewer_tones(const struct calibrate_par *par,
 	look->work = other_look.work;
 	if (status != SEPARATE_OK)
 		return status == SEPARATE_MEMORY ? status : SEPARATE_OK;
-	if (other.price < c->price && learn_describes(&other)) {
+	if (other.penalised < c->penalised && learn_describes(&other)) {
 		calibration_clear(c);
 		*c = other;
 		*look = other_look;
@@ -276,8 +276,8 @@ static enum separate_status try_wide(const struct calibrate_par *par, const doub
 	status = find(&limited, x1, x2, n, &wide, &other);
 	look->attempts = wide.attempts;
 	look->work = wide.work;
-	if (status == SEPARATE_OK && other.price < c->price && learn_describes(&other) &&
-		!other.dense) {
+	if (status == SEPARATE_OK && other.penalised < c->penalised &&
+		learn_describes(&other) && !other.dense) {
 		calibration_clear(c);
 		*c = other;
 		return SEPARATE_OK;

@@ -75,17 +75,17 @@ struct calibration {
 	double delta_min, delta_max; /* samples around shift */
 	double drop, drop_near;      /* thresholds of joint.h */
 	double misfit;               /* of joint.h: error of the shape */
-	int far;     /* pulses near the limits of the range of delays that was searched */
-	int events;  /* pulses to which the shape was fitted, and ... */
-	int lone;    /* ... those of them that stand alone */
-	int suspect; /* 1: treated as white although the spectrum test failed */
-	int guessed; /* 1: whitened by a filter estimated from its noise */
-	double work; /* samples of pulses computed to learn it, or in vain */
-	int attempts; /* number of calibrations tried */
-	int dense;    /* 1: pulses overlap throughout the record */
-	double chi2;  /* of the fitted pulses, per degree of freedom */
-	double price; /* (chi-square + 2 drop_near per pulse) per degree of freedom; least
-			 is best */
+	int far;    /* pulses near the limits of the range of delays that was searched */
+	int events; /* pulses to which the shape was fitted, and ... */
+	int isolated;       /* ... those of them that stand alone */
+	int presumed_white; /* 1: treated as white although the spectrum test failed */
+	int estimated;      /* 1: whitened by a filter estimated from its noise */
+	double work;        /* samples of pulses computed to learn it, or in vain */
+	int attempts;       /* number of calibrations tried */
+	int dense;          /* 1: pulses overlap throughout the record */
+	double chi2;        /* of the fitted pulses, per degree of freedom */
+	double penalised;   /* (chi-square + 2 drop_near per pulse) per degree of freedom;
+			   least   is best */
 };
 
 enum separate_status {
@@ -115,10 +115,10 @@ void calibration_clear(struct calibration *c);
  * where the pulse has no power are left out. */
 void calibration_scene(const struct calibration *c, struct joint_scene *scene);
 
-/* Least reduction of chi-square by a lone pulse, so that noise gives at most rate false
- * ones per sample: the expected number of maxima above u of the matched-filter field over
- * arrival and delay (Rice's formula in two dimensions; Adler, The Geometry of Random
- * Fields, 1981), for a threshold of u^2.  width: range of delays in samples. */
+/* Least reduction of chi-square by an isolated pulse, so that noise gives at most rate
+ * false ones per sample: the expected number of maxima above u of the matched-filter
+ * field over arrival and delay (Rice's formula in two dimensions; Adler, The Geometry of
+ * Random Fields, 1981), for a threshold of u^2.  width: range of delays in samples. */
 double calibrate_drop(double rate, const struct shape *shape, double duration,
 	double gain, double width);
 

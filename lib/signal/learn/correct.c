@@ -97,7 +97,7 @@ int correct_doubtful(struct examples *ex, struct calibration *c)
 	pulses = examples_pulses(ex);
 	ex->share = share;
 	c->chi2 = examples_fit(ex, share);
-	c->price = ex->price;
+	c->penalised = ex->penalised;
 	return rest || examples_pulses(ex) > pulses;
 }
 
@@ -110,7 +110,7 @@ static enum num_status improve_shape(struct examples *ex, struct calibration *c,
 	int half = (int)((shape_reach(c->shape) + 0.75) * c->duration);
 	size_t points = 2 * (size_t)half + 1;
 	double *more = malloc(2 * points * sizeof *more);
-	double largest = c->guessed ? 0.3 : 0.03, before = INFINITY;
+	double largest = c->estimated ? 0.3 : 0.03, before = INFINITY;
 	const struct shape *first = c->shape;
 
 	for (int k = 0; more && k < ROUNDS; k++) {
@@ -145,7 +145,7 @@ enum num_status correct_shape(struct examples *ex, struct calibration *c)
 
 	/* A shape that describes other events than particles is no better for that. */
 	for (int i = 0; i < ex->count; i++)
-		counts[i] = !ex->example[i].spoiled;
+		counts[i] = !ex->example[i].outlier;
 	before = cost(ex, counts);
 	ex->corrected = 1;
 	status = improve_shape(ex, c, examples_pulses(ex));
@@ -153,8 +153,8 @@ enum num_status correct_shape(struct examples *ex, struct calibration *c)
 	/* If the noise may be the cause of the residual, the correction must remove all
 	 * of it. */
 	if (before - cost(ex, counts) > CORRECTION &&
-		(!c->suspect || c->chi2 < CALIBRATE_DESCRIBES)) {
-		c->price = ex->price;
+		(!c->presumed_white || c->chi2 < CALIBRATE_DESCRIBES)) {
+		c->penalised = ex->penalised;
 		if (c->shape != first)
 			shape_free(first);
 		return status;

@@ -36,8 +36,8 @@ static void offer_example(struct examples *ex, const double *y1, const double *y
 	ex->example[at].y2 = y2 + from;
 	ex->example[at].begin = from;
 	ex->example[at].n = (size_t)(to - from);
-	ex->example[at].m = ex->example[at].spoiled = 0;
-	ex->example[at].lone = length < 1.4 * shortest;
+	ex->example[at].m = ex->example[at].outlier = 0;
+	ex->example[at].isolated = length < 1.4 * shortest;
 	ex->count += ex->count < most;
 }
 
@@ -131,7 +131,7 @@ double examples_chi2(struct examples *ex, int keep)
 		struct joint_pulse pulse[EXAMPLE_PULSES];
 		struct joint_result result;
 
-		if (e->spoiled)
+		if (e->outlier)
 			continue;
 		if (!may_go_on(ex))
 			return INFINITY;
@@ -160,9 +160,9 @@ int examples_full(const struct examples *ex)
 }
 
 /* Bounds of the estimated misfit of a shape: nothing is known of pulses louder than the
- * examples; the residual of lone pulses is misfit, that of crowded ones is mostly due to
- * hidden pulses. */
-static const double LEAST_SHARE = 1e-5, MOST_LONE = 3e-4, MOST_CROWDED = 1e-4;
+ * examples; the residual of isolated pulses is misfit, that of crowded ones is mostly due
+ * to hidden pulses. */
+static const double LEAST_SHARE = 1e-5, MOST_ISOLATED = 3e-4, MOST_CROWDED = 1e-4;
 
 /* Chi-square that the error of one parameter of the shape leaves in a pulse with the
  * energy of all examples together. */
@@ -179,11 +179,11 @@ static double example_energy(const struct examples *ex, const struct example *e)
 }
 
 /* Estimates the misfit of the shape from the share of energy that each example leaves,
- * and its scatter.  For lone pulses it is mainly the misfit, but they may have different
- * forms; most crowded examples contain hidden pulses, and only the best ones count.  A
- * further pulse cannot reduce this residual. */
+ * and its scatter.  For isolated pulses it is mainly the misfit, but they may have
+ * different forms; most crowded examples contain hidden pulses, and only the best ones
+ * count.  A further pulse cannot reduce this residual. */
 static void learn_misfit(
-	struct examples *ex, const double *share, const double *scatter, int lone)
+	struct examples *ex, const double *share, const double *scatter, int isolated)
 {
 	double work[EXAMPLES_MAX], left, noise;
 	size_t n = (size_t)ex->count;
@@ -191,24 +191,24 @@ static void learn_misfit(
 	memcpy(work, scatter, n * sizeof *work);
 	noise = robust_median(work, n);
 	memcpy(work, share, n * sizeof *work);
-	left = robust_quantile(work, n, lone ? 0.5 : 0.25) -
+	left = robust_quantile(work, n, isolated ? 0.5 : 0.25) -
 	       1.25 * noise / sqrt((double)n);
 	left = fmax(left, 0);
-	ex->share = fmin(2 * left, lone ? MOST_LONE : MOST_CROWDED);
+	ex->share = fmin(2 * left, isolated ? MOST_ISOLATED : MOST_CROWDED);
 	ex->share = fmax(ex->share, LEAST_SHARE);
 	ex->share =
 		fmax(ex->share, ERROR * (ex->corrected ? 20 : 2) / fmax(ex->energy, 1));
 	for (size_t i = 0; i < n; i++)
-		ex->example[i].spoiled = share[i] > 4 * left + 4 * scatter[i];
+		ex->example[i].outlier = share[i] > 4 * left + 4 * scatter[i];
 }
 
 double examples_fit(struct examples *ex, double misfit)
 {
 	double each[EXAMPLES_MAX], rest[2][EXAMPLES_MAX], share[EXAMPLES_MAX],
 		scatter[EXAMPLES_MAX];
-	int lone = 0;
+	int isolated = 0;
 
-	ex->price = ex->dof = ex->excess = ex->energy = 0;
+	ex->penalised = ex->dof = ex->excess = ex->energy = 0;
 	if (ex->count == 0)
 		return INFINITY;
 	ex->scene.misfit = misfit > ex->misfit ? misfit : ex->misfit;
@@ -225,7 +225,7 @@ double examples_fit(struct examples *ex, double misfit)
 			return INFINITY;
 		energy = fmax(example_energy(ex, e), 1);
 		ex->energy += energy;
-		lone += e->lone;
+		isolated += e->isolated;
 		each[i] = result.chi2 / (double)result.dof;
 		share[i] = (result.chi2 - (double)result.dof) / energy;
 		scatter[i] = sqrt(2 * (double)result.dof) / energy;
@@ -234,14 +234,14 @@ double examples_fit(struct examples *ex, double misfit)
 
 			rest[c][i] = 2 * dot(r, r, e->n) / (double)result.dof;
 		}
-		ex->price += result.chi2 + 2 * ex->scene.drop_near * e->m;
+		ex->penalised += result.chi2 + 2 * ex->scene.drop_near * e->m;
 		ex->dof += (double)result.dof;
 		e->excess = result.chi2 - (double)result.dof;
 		ex->excess += e->excess;
 	}
-	ex->price /= ex->dof > 0 ? ex->dof : 1;
+	ex->penalised /= ex->dof > 0 ? ex->dof : 1;
 	for (int c = 0; c < 2; c++)
 		ex->rest[c] = robust_median(rest[c], (size_t)ex->count);
-	learn_misfit(ex, share, scatter, 2 * lone > ex->count);
+	learn_misfit(ex, share, scatter, 2 * isolated > ex->count);
 	return robust_median(each, (size_t)ex->count);
 }

@@ -21,9 +21,9 @@ struct example {
 	size_t n;
 	struct joint_pulse pulse[EXAMPLE_PULSES];
 	int m;
-	int lone;      /* 1: hardly longer than one pulse */
+	int isolated;  /* 1: hardly longer than one pulse */
 	double excess; /* of chi-square over its degrees of freedom */
-	int spoiled; /* 1: its residual is so much larger than those of the others that it
+	int outlier; /* 1: its residual is so much larger than those of the others that it
 			contains other events */
 };
 
@@ -42,12 +42,12 @@ struct examples {
 	double share; /* share of the energy of a pulse that the shape leaves, as found so
 			 far */
 	double dof;   /* of all examples, ... */
-	double excess;  /* ... their chi-square beyond it, and ... */
-	double energy;  /* ... that of their pulses */
-	int corrected;  /* 1: the shape is one of twenty parameters, else of two */
-	double price;   /* their chi-square and twice the threshold for each pulse, per
-			   degree */
-	double rest[2]; /* power of either channel's residual, that of its noise 1 */
+	double excess;    /* ... their chi-square beyond it, and ... */
+	double energy;    /* ... that of their pulses */
+	int corrected;    /* 1: the shape is one of twenty parameters, else of two */
+	double penalised; /* their chi-square and twice the threshold for each pulse, per
+			 degree */
+	double rest[2];   /* power of either channel's residual, that of its noise 1 */
 	double before, most; /* work done before, and its limit */
 	/* SEPARATE_MEMORY after a function was out of memory, SEPARATE_HARD after the
 	 * limit of work was exceeded; the results are invalid then. */
@@ -65,7 +65,7 @@ void examples_pick(struct examples *ex, const double *y1, const double *y2, size
  * cannot be fitted. */
 double examples_fit(struct examples *ex, double misfit);
 
-/* Chi-square of all examples that are not spoiled, with their pulses refined under the
+/* Chi-square of all examples that are no outliers, with their pulses refined under the
  * present scene; the refined pulses are stored only if keep is 1. */
 double examples_chi2(struct examples *ex, int keep);
 

@@ -141,7 +141,7 @@ static void take_template(struct calibration *c, struct template *found)
 /* The best description of some clear examples so far. */
 struct guess {
 	int pulse;
-	double duration, gain, price, chi2;
+	double duration, gain, penalised, chi2;
 };
 
 /* Price, over the best so far, above which a guess is not worth tuning.  Of pairs within
@@ -164,13 +164,13 @@ static enum separate_status try_shape(const struct calibrate_par *par,
 		return SEPARATE_OK;
 	scene_of(c, &ex->scene);
 	examples_fit(ex, EXAMPLES_ROUGH);
-	if (ex->price > FAR_OFF * best->price)
+	if (ex->penalised > FAR_OFF * best->penalised)
 		return SEPARATE_OK;
 	tune(par, ex, 0.1, 3);
 	chi2 = examples_fit(ex, 0.003);
-	if (ex->price < need * best->price)
+	if (ex->penalised < need * best->penalised)
 		*best = (struct guess){ pulse, ex->scene.duration,
-			ex->scene.gain * c->noise[1] / c->noise[0], ex->price, chi2 };
+			ex->scene.gain * c->noise[1] / c->noise[0], ex->penalised, chi2 };
 	return SEPARATE_OK;
 }
 
@@ -255,15 +255,15 @@ static void learn_range(
 {
 	double lo = INFINITY, hi = -INFINITY;
 
-	c->far = c->lone = 0;
+	c->far = c->isolated = 0;
 	for (int i = 0; i < ex->count; i++) {
 		const struct example *e = &ex->example[i];
 
-		c->lone += e->m == 1 && !e->spoiled;
+		c->isolated += e->m == 1 && !e->outlier;
 		for (int k = 0; k < e->m; k++) {
 			const struct joint_pulse *p = &e->pulse[k];
 
-			c->far += !e->spoiled && fabs(p->delta) > FAR * c->delta_max;
+			c->far += !e->outlier && fabs(p->delta) > FAR * c->delta_max;
 			lo = fmin(lo, p->delta);
 			hi = fmax(hi, p->delta);
 		}
@@ -292,8 +292,9 @@ static enum separate_status converge(
 	for (int k = 0; k < ROUNDS; k++) {
 		before = c->chi2;
 		c->chi2 = examples_fit(ex, fmax(0.01 * pow(0.3, k), ex->share));
-		c->price = ex->price;
-		if ((k > 1 || c->whitening.tap) && c->suspect && c->chi2 > HOPELESS)
+		c->penalised = ex->penalised;
+		if ((k > 1 || c->whitening.tap) && c->presumed_white &&
+			c->chi2 > HOPELESS)
 			break;
 		tune(par, ex, step, 2);
 		moved = fabs(log(ex->scene.duration / c->duration));
@@ -316,17 +317,17 @@ static enum separate_status converge(
 }
 
 /* 1 if the shape is to be corrected.  A shape given by the caller is kept, except for the
- * effect of a guessed filter; explanations of a colour are compared by how well
+ * effect of a estimated filter; explanations of a colour are compared by how well
  * uncorrected pulses fit. */
 static int wants_correction(
 	const struct calibrate_par *par, struct examples *ex, struct calibration *c)
 {
 	if (examples_full(ex))
 		return 0;
-	if (c->guessed)
+	if (c->estimated)
 		return c->chi2 > 1.1;
 	return par->pulse == CALIBRATE_ANY_PULSE && !ex->pieces &&
-	       !(c->whitening.tap && c->suspect) && correct_doubtful(ex, c);
+	       !(c->whitening.tap && c->presumed_white) && correct_doubtful(ex, c);
 }
 
 void learn_hidden(const struct calibrate_par *par, const struct calibration *c,
@@ -429,7 +430,7 @@ enum separate_status learn_pulse(const struct calibrate_par *par, const double *
 	if (status != SEPARATE_OK || learn_describes(c) || found->alone)
 		return status;
 	status = learn_by(par, y1, y2, n, low, NULL, NULL, &known);
-	if (status == SEPARATE_OK && known.price < c->price) {
+	if (status == SEPARATE_OK && known.penalised < c->penalised) {
 		shape_free(c->shape);
 		*c = known;
 	} else {

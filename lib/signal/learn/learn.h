@@ -27,9 +27,10 @@ int learn_describes(const struct calibration *c);
  * which spreads them. */
 void learn_hidden(const struct calibrate_par *par, const struct calibration *c,
 	const unsigned char *hidden[2]);
-/* Fills shape, duration, gain, range of delays, chi2, price, rest and events of c from
- * y1, y2[0 .. n), aligned and in units of the noise; low: lag as above, of these; found:
- * the pulse taken from these, which is tried first, its shape NULL where there is none.
+/* Fills shape, duration, gain, range of delays, chi2, penalised, rest and events of c
+ * from y1, y2[0 .. n), aligned and in units of the noise; low: lag as above, of these;
+ * found: the pulse taken from these, which is tried first, its shape NULL where there is
+ * none.
  */
 enum separate_status learn_pulse(const struct calibrate_par *par, const double *y1,
 	const double *y2, size_t n, double low, struct template *found,

@@ -568,7 +568,7 @@ static enum separate_status conclude(
 	if (c->dense)
 		set_range(par, NULL, 0, c);
 	else if (status == SEPARATE_OK && c->chi2 > BAD_FIT && !c->whitening.tap &&
-		 !c->suspect)
+		 !c->presumed_white)
 		status = learn_filtered(par, rec, c);
 	set_thresholds(par, c);
 	return status;
@@ -626,7 +626,7 @@ enum separate_status measure(const struct calibrate_par *par, const double *raw,
 	look->drift = rec.drift / (c->noise[0] * c->noise[0]);
 	if (!c->whitening.tap) {
 		status = look_for_colour(&rec, look);
-		c->suspect = look->coloured;
+		c->presumed_white = look->coloured;
 	}
 	look->found.alone = look->first && c->whitening.tap;
 	if (status == SEPARATE_OK && (look->first || !c->whitening.tap))

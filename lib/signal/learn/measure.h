@@ -32,8 +32,9 @@ struct look {
 /* 1 if the noise is white above the band of a pulse of this duration. */
 int measure_white_above(const struct look *look, double duration);
 
-/* Fills the rest of c, whose whitening, mean, guessed and suspect are given, from y1,
- * y2[0 .. n), which are overwritten.  raw[0 .. n): y1 before whitening; work holds n. */
+/* Fills the rest of c, whose whitening, mean, estimated and presumed_white are given,
+ * from y1, y2[0 .. n), which are overwritten.  raw[0 .. n): y1 before whitening; work
+ * holds n. */
 enum separate_status measure(const struct calibrate_par *par, const double *raw,
 	double *y1, double *y2, size_t n, double *work, struct look *look,
 	struct calibration *c);

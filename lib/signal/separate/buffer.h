@@ -38,10 +38,10 @@ struct buffer {
 
 void buffer_clear(struct buffer *b);
 
-/* Appends n samples, x[0], x[stride], x[2 stride] ...; averaged, if t is. */
+/* Appends n samples, x[0], x[stride], x[2 stride] ...; averaged, if b is. */
 enum num_status buffer_append(struct buffer *b, const double *x, size_t n, size_t stride);
 /* A buffer with the means of every ratio of the n oldest samples of b, the first with an
- * index divisible by ratio, and with its converter; t must be neither averaged nor
+ * index divisible by ratio, and with its converter; b must be neither averaged nor
  * started.  Means of white noise are white. */
 enum num_status buffer_average(
 	const struct buffer *b, size_t n, size_t ratio, struct buffer *mean);

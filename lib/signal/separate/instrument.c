@@ -123,7 +123,6 @@ static void walk_all(struct walk *w, struct instrument *in)
 	reals(w, "omega", 0, c->omega, c->tones);
 	c->tone_hop =
 		(size_t)whole(w, "tone_hop", SHORTEST_HOP, INT_MAX, (double)c->tone_hop);
-	reals(w, "tone_power", 0, c->tone_power, c->tones);
 	reals(w, "tone_variance", 0, &c->tone_variance, 1);
 	reals(w, "mean", -INFINITY, c->mean, 2);
 	reals(w, "noise", DBL_MIN, c->noise, 2);
@@ -140,8 +139,6 @@ static void walk_all(struct walk *w, struct instrument *in)
 	reals(w, "drop_near", DBL_MIN, &c->drop_near, 1);
 	reals(w, "misfit", 0, &c->misfit, 1);
 	c->events = (int)whole(w, "events", 0, INT_MAX, c->events);
-	c->suspect = flag(w, "suspect", c->suspect);
-	c->guessed = flag(w, "guessed", c->guessed);
 	c->dense = flag(w, "dense", c->dense);
 	reals(w, "chi2", 0, &c->chi2, 1);
 	in->ratio = (int)whole(w, "ratio", 1, INT_MAX, in->ratio);

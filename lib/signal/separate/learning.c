@@ -14,7 +14,7 @@
 static const double FOLLOWED = 20;
 
 /* Samples of pulses that may be computed to learn from the beginning of a record: groups
- * of six Lorentz pulses at 30 dB take 7.4e8, of three pulses behind a guessed low-pass
+ * of six Lorentz pulses at 30 dB take 7.4e8, of three pulses behind a estimated low-pass
  * 7.7e8; a record that pulses do not describe would take more.  And per sample of a long
  * record, some second of processor time per second of 10 kHz, for what is tried later.
  * Separating takes as much at most: of the scenes of tests/matrix/scenes.tsv none that
@@ -248,7 +248,7 @@ static enum separate_status calibrate_now(struct separate *s)
 /* Fewest pulses that stand alone.  Each parameter of the instrument adds to the variance
  * of a row at most the mth part of what the row itself tells of it if m pulses tell it:
  * to its standard errors 8 % for six. */
-enum { LONE = 6 };
+enum { ISOLATED = 6 };
 
 /* 1 if pulses of a known shape and nearly one velocity, in white noise, describe what was
  * learned from.  Chi-square compares the noise in the band of the pulses with that of
@@ -259,7 +259,7 @@ static int is_clear(const struct calibration *c)
 	return learn_describes(c) && c->chi2 > 1 / CALIBRATE_DESCRIBES &&
 	       c->duration <= SEPARATE_LONG && c->tones == 0 &&
 	       c->delta_max - c->delta_min <= 2 * calibration_plug(c) && !c->dense &&
-	       !c->suspect && !c->measured && !c->corrected && !c->whitening.tap;
+	       !c->presumed_white && !c->measured && !c->corrected && !c->whitening.tap;
 }
 
 /* Samples of pulses that may be computed for this per sample.  In 44 records of as many
@@ -279,9 +279,9 @@ enum separate_status separate_learn_clearly(struct separate *s)
 	status = learn_from(s, n, CLEARLY * (double)n / EFFORT);
 	few = status == SEPARATE_NO_LAG && s->cal.attempts == 0;
 	if (status == SEPARATE_OK) {
-		if (is_clear(&s->cal) && s->cal.lone >= LONE)
+		if (is_clear(&s->cal) && s->cal.isolated >= ISOLATED)
 			return start(s, n);
-		few = is_clear(&s->cal) && s->cal.events < LONE;
+		few = is_clear(&s->cal) && s->cal.events < ISOLATED;
 		calibration_clear(&s->cal);
 	}
 	if (status == SEPARATE_MEMORY)
