@@ -87,8 +87,8 @@ static void work_section(struct network *net, struct joint *joint,
 		.gain = s->section.gain,
 		.delta_min = -s->section.reach,
 		.delta_max = s->section.reach,
-		.drop = 33,
-		.drop_near = 25,
+		.threshold = 33,
+		.threshold_near = 25,
 		.max_pulses = s->sources };
 	struct joint_pulse pulse[JOINT_PULSES_MAX];
 	struct joint_result r = { 0 };

@@ -110,8 +110,8 @@ int main(void)
 		.gain = 0.909,
 		.delta_min = 0,
 		.delta_max = 7,
-		.drop = 33,
-		.drop_near = 23,
+		.threshold = 33,
+		.threshold_near = 23,
 		.max_pulses = 8,
 		.tone_variance = INFINITY };
 	struct masks_par par = { .window = 64,

@@ -73,8 +73,8 @@ static void test_wrong_template(const double *y1, const double *y2)
 		.transit = 200,
 		.delta_min = -10,
 		.delta_max = 10,
-		.drop = 40,
-		.drop_near = 23 };
+		.threshold = 40,
+		.threshold_near = 23 };
 	struct template found = { .shape = shape_new(PULSE_GAUSS),
 		.duration = 140,
 		.events = TEMPLATE_LEAST,

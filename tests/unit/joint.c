@@ -15,8 +15,8 @@ static struct joint_scene make_scene(const struct shape *shape)
 		.gain = 0.909,
 		.delta_min = 0,
 		.delta_max = 7,
-		.drop = 33,
-		.drop_near = 25,
+		.threshold = 33,
+		.threshold_near = 25,
 		.max_pulses = 20,
 		.tone_variance = INFINITY };
 }

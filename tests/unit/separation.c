@@ -268,10 +268,10 @@ static void test_small(void)
 	ok(!sections_first(s, &section), "there is no other section");
 	/* Gaussian field: at 1e-9 per sample the threshold is near 33, and falls with
 	 * rate. */
-	near(calibrate_drop(1e-9, shape, 100, 1, 20), 33, 3,
+	near(calibrate_threshold(1e-9, shape, 100, 1, 20), 33, 3,
 		"the threshold of a false alarm rate is right");
-	ok(calibrate_drop(1e-6, shape, 100, 1, 20) <
-			calibrate_drop(1e-9, shape, 100, 1, 20),
+	ok(calibrate_threshold(1e-6, shape, 100, 1, 20) <
+			calibrate_threshold(1e-9, shape, 100, 1, 20),
 		"more false alarms give a lower threshold");
 	sections_free(s);
 	count_free(count);

@@ -19,7 +19,7 @@ static double exceeds(double m, double r)
 
 double detectable_alone(const struct joint_scene *s, double a)
 {
-	return exceeds(a * sqrt(joint_energy(s)), sqrt(s->drop));
+	return exceeds(a * sqrt(joint_energy(s)), sqrt(s->threshold));
 }
 
 /* Share of the energy of a pulse that remains beside another, this share of a duration
@@ -54,7 +54,7 @@ double detectable_beside(const struct joint_scene *s, double a, double large,
 	const double share[DETECTABLE_PLACES])
 {
 	double energy = joint_energy(s), sum = 0;
-	double need = fmax(s->drop, s->misfit * large * large * energy);
+	double need = fmax(s->threshold, s->misfit * large * large * energy);
 
 	for (int k = 0; k < DETECTABLE_PLACES; k++)
 		sum += exceeds(a * sqrt(energy * share[k]), sqrt(need));

@@ -51,7 +51,7 @@ static int is_misfit(const struct joint *joint, const struct joint_scene *s, siz
  * where the error of their shape can make such a pulse. */
 static int is_faint(const struct joint_scene *s, const struct joint_pulse *p)
 {
-	return p->a * p->a * joint_energy(s) < s->drop;
+	return p->a * p->a * joint_energy(s) < s->threshold;
 }
 
 /* Pulses fitted to an event that is not a particle overlap by more than half.  In a whole

@@ -101,7 +101,7 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 		while (failed < 3 + *m / 8 && *m < s->max_pulses) {
 			struct candidate c = search(j, s, tried, failed);
 
-			if (c.z2 < 0.3 * s->drop_near)
+			if (c.z2 < 0.3 * s->threshold_near)
 				break;
 			if (joint_try_pulse(j, s, pulses, m, &c, &chi2))
 				failed = 0;
@@ -115,7 +115,7 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 	joint_prune(j, s, pulses, m, &chi2);
 	chi2 = joint_fit_all(j, s, pulses, *m);
 	finish(j, s, pulses, *m, chi2,
-		*m == s->max_pulses && search(j, s, NULL, 0).z2 > s->drop, result);
+		*m == s->max_pulses && search(j, s, NULL, 0).z2 > s->threshold, result);
 	return JOINT_OK;
 }
 

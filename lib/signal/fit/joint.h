@@ -43,10 +43,10 @@ struct joint_scene {
 	double transit;  /* from sensor to sensor at delta = 0; INFINITY: one T */
 	double gain;     /* g > 0 */
 	double delta_min, delta_max; /* range of delta */
-	double drop;                 /* by how much a pulse must reduce chi-square ... */
-	double drop_near; /* ... where it overlaps others: the search is narrower */
-	double misfit;    /* and by this share of the energy it overlaps */
-	int signs;        /* 1: amplitudes may be negative too */
+	double threshold;            /* by how much a pulse must reduce chi-square ... */
+	double threshold_near; /* ... where it overlaps others: the search is narrower */
+	double misfit;         /* and by this share of the energy it overlaps */
+	int signs;             /* 1: amplitudes may be negative too */
 	/* Samples at either end in which no pulse arrives; 0: the record goes on there,
 	 * and pulses may arrive beyond. */
 	double quiet[2];

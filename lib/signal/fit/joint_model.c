@@ -353,11 +353,12 @@ static int scene_is_sane(
 	const struct joint_scene *s, const struct joint_pulse *pulses, int m)
 {
 	if (!s->shape || !(s->duration >= 4) || !(s->transit > 0) || !(s->gain > 0) ||
-		!(s->delta_min <= s->delta_max) || !(s->drop >= 0) ||
-		!(s->drop_near >= 0) || !(s->tone_variance >= 0) || !(s->tone_hop >= 0) ||
-		s->tones < 0 || !(s->low >= 0) || !(s->lost >= 0) || !(s->lost < 1) ||
-		s->tones > JOINT_TONES_MAX || s->max_pulses < 0 ||
-		s->max_pulses > JOINT_PULSES_MAX || m < 0 || m > s->max_pulses)
+		!(s->delta_min <= s->delta_max) || !(s->threshold >= 0) ||
+		!(s->threshold_near >= 0) || !(s->tone_variance >= 0) ||
+		!(s->tone_hop >= 0) || s->tones < 0 || !(s->low >= 0) ||
+		!(s->lost >= 0) || !(s->lost < 1) || s->tones > JOINT_TONES_MAX ||
+		s->max_pulses < 0 || s->max_pulses > JOINT_PULSES_MAX || m < 0 ||
+		m > s->max_pulses)
 		return 0;
 	/* The tolerance of moved() must keep T positive. */
 	if (s->delta_min - JOINT_BEYOND * (s->delta_max - s->delta_min) <= -s->transit)

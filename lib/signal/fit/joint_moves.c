@@ -45,9 +45,9 @@ static void restore(struct joint *j, const struct joint_scene *s,
 }
 
 /* Decrease of chi-square that a pulse next to others of some energy must bring. */
-static double drop_beside(const struct joint_scene *s, double energy)
+static double threshold_beside(const struct joint_scene *s, double energy)
 {
-	return fmax(s->drop_near, s->misfit * energy);
+	return fmax(s->threshold_near, s->misfit * energy);
 }
 
 /* 1 if pulse i, the last one added, is worth a decrease of chi-square from before to
@@ -56,7 +56,7 @@ static int worth(const struct joint_scene *s, const struct joint_pulse *pulses, 
 	int i, double before, double after)
 {
 	double energy = energy_near(s, pulses, m, i);
-	double need = energy > 0 ? drop_beside(s, energy) : s->drop;
+	double need = energy > 0 ? threshold_beside(s, energy) : s->threshold;
 
 	return before - after > need;
 }
@@ -128,7 +128,7 @@ int joint_split_pulses(struct joint *j, const struct joint_scene *s,
 	joint_project(j);
 	for (int i = 0; i < *m && *m < s->max_pulses; i++) {
 		double gap, half = 0.5 * pulses[i].a;
-		double need = drop_beside(
+		double need = threshold_beside(
 			s, energy_near(s, pulses, *m, i) + half * half * joint_energy(s));
 
 		if (joint_factorise(j, s, pulses, &i, 1) != NUM_OK)
@@ -283,7 +283,7 @@ void joint_prune(struct joint *j, const struct joint_scene *s, struct joint_puls
 	int needed[TRIES], tries = 0;
 
 	while (*m > 1 && tries < TRIES) {
-		double least = 6 * s->drop;
+		double least = 6 * s->threshold;
 		int worst = -1;
 
 		joint_fill_covariance(j, s, pulses, *m);

@@ -2,7 +2,7 @@
 #include "signal/learn/calibration.h"
 #include <math.h>
 
-double calibrate_drop(double rate, const struct shape *shape, double duration,
+double calibrate_threshold(double rate, const struct shape *shape, double duration,
 	double gain, double width)
 {
 	double lambda =
@@ -59,8 +59,8 @@ void calibration_scene(const struct calibration *c, struct joint_scene *scene)
 		.gain = c->gain * c->noise[0] / c->noise[1],
 		.delta_min = c->delta_min,
 		.delta_max = c->delta_max,
-		.drop = c->drop,
-		.drop_near = c->drop_near,
+		.threshold = c->threshold,
+		.threshold_near = c->threshold_near,
 		.misfit = c->misfit,
 		.tone_variance = c->tone_variance,
 		.tone_hop = (double)c->tone_hop,

@@ -72,9 +72,9 @@ struct calibration {
 	int corrected; /* 1: shape corrected by the residual common to all pulses */
 	double duration, gain; /* as above */
 	double transit;        /* samples between the sensors; INFINITY if unknown */
-	double delta_min, delta_max; /* samples around shift */
-	double drop, drop_near;      /* thresholds of joint.h */
-	double misfit;               /* of joint.h: error of the shape */
+	double delta_min, delta_max;      /* samples around shift */
+	double threshold, threshold_near; /* thresholds of joint.h */
+	double misfit;                    /* of joint.h: error of the shape */
 	int far;    /* pulses near the limits of the range of delays that was searched */
 	int events; /* pulses to which the shape was fitted, and ... */
 	int isolated;       /* ... those of them that stand alone */
@@ -84,8 +84,8 @@ struct calibration {
 	int attempts;       /* number of calibrations tried */
 	int dense;          /* 1: pulses overlap throughout the record */
 	double chi2;        /* of the fitted pulses, per degree of freedom */
-	double penalised;   /* (chi-square + 2 drop_near per pulse) per degree of freedom;
-			   least   is best */
+	double penalised;   /* (chi-square + 2 threshold_near per pulse) per degree of
+			   freedom;   least   is best */
 };
 
 enum separate_status {
@@ -119,7 +119,7 @@ void calibration_scene(const struct calibration *c, struct joint_scene *scene);
  * false ones per sample: the expected number of maxima above u of the matched-filter
  * field over arrival and delay (Rice's formula in two dimensions; Adler, The Geometry of
  * Random Fields, 1981), for a threshold of u^2.  width: range of delays in samples. */
-double calibrate_drop(double rate, const struct shape *shape, double duration,
+double calibrate_threshold(double rate, const struct shape *shape, double duration,
 	double gain, double width);
 
 /* Samples on either side of the transit time within which delays are searched: this share

@@ -83,7 +83,7 @@ static double cost(const struct examples *ex, const unsigned char *counts)
 	for (int i = 0; i < ex->count; i++)
 		if (counts[i])
 			sum += ex->example[i].excess +
-			       0.5 * ex->scene.drop_near * ex->example[i].m;
+			       0.5 * ex->scene.threshold_near * ex->example[i].m;
 	return sum;
 }
 

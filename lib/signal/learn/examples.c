@@ -234,7 +234,7 @@ double examples_fit(struct examples *ex, double misfit)
 
 			rest[c][i] = 2 * dot(r, r, e->n) / (double)result.dof;
 		}
-		ex->penalised += result.chi2 + 2 * ex->scene.drop_near * e->m;
+		ex->penalised += result.chi2 + 2 * ex->scene.threshold_near * e->m;
 		ex->dof += (double)result.dof;
 		e->excess = result.chi2 - (double)result.dof;
 		ex->excess += e->excess;

@@ -98,10 +98,10 @@ static void set_thresholds(const struct calibrate_par *par, struct calibration *
 {
 	double gain = c->gain * c->noise[0] / c->noise[1];
 
-	c->drop = calibrate_drop(par->false_alarm, c->shape, c->duration, gain,
+	c->threshold = calibrate_threshold(par->false_alarm, c->shape, c->duration, gain,
 		c->delta_max - c->delta_min);
 	/* Next to a pulse the search covers some 40 cells: 23 gives 2e-3 false pulses. */
-	c->drop_near = c->drop < 23 ? c->drop : 23;
+	c->threshold_near = c->threshold < 23 ? c->threshold : 23;
 }
 
 /* Correlation coefficient of y1 with y2 lag samples later. */

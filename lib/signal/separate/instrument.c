@@ -135,8 +135,8 @@ static void walk_all(struct walk *w, struct instrument *in)
 	reals(w, "transit", DBL_MIN, &c->transit, 1);
 	reals(w, "delta_min", -INFINITY, &c->delta_min, 1);
 	reals(w, "delta_max", -INFINITY, &c->delta_max, 1);
-	reals(w, "drop", DBL_MIN, &c->drop, 1);
-	reals(w, "drop_near", DBL_MIN, &c->drop_near, 1);
+	reals(w, "threshold", DBL_MIN, &c->threshold, 1);
+	reals(w, "threshold_near", DBL_MIN, &c->threshold_near, 1);
 	reals(w, "misfit", 0, &c->misfit, 1);
 	c->events = (int)whole(w, "events", 0, INT_MAX, c->events);
 	c->dense = flag(w, "dense", c->dense);

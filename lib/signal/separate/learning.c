@@ -74,7 +74,7 @@ static enum separate_status start(struct separate *s, size_t n)
 	follow_noise(s, n);
 	/* Equal pulses on both channels reach the threshold of a pair when each reaches 1
 	 * / sqrt 2 of it. */
-	s->sections = sections_new(c->shape, c->duration, 0.65 * sqrt(c->drop),
+	s->sections = sections_new(c->shape, c->duration, 0.65 * sqrt(c->threshold),
 		fmax(c->delta_max, -c->delta_min));
 	if (s->sections)
 		sections_skip(s->sections, s->done);
