@@ -26,14 +26,14 @@ static void make_rows(double apart, double spread, double odds)
 	}
 }
 
-static int judged(void)
+static int tested(void)
 {
 	struct together *t = together_new();
 	int count = 0;
 
 	if (!t)
 		return -1;
-	together_judge(t, row, ROWS);
+	together_test(t, row, ROWS);
 	for (int i = 0; i < ROWS; i++)
 		count += row[i].doubted;
 	together_free(t);
@@ -45,13 +45,13 @@ static int judged(void)
 static void test_how_often(void)
 {
 	make_rows(2, 0.5, 1e6);
-	near(judged(), 0, 0, "where no pulse follows another closely none is doubted");
+	near(tested(), 0, 0, "where no pulse follows another closely none is doubted");
 	make_rows(0.3, 0.5, 1e6);
 	/* But perhaps the smallest ones, which are no sums of others. */
-	near(judged(), 0.98 * ROWS, 0.021 * ROWS,
+	near(tested(), 0.98 * ROWS, 0.021 * ROWS,
 		"where pulses do and all are like pairs, nearly all are doubted");
 	make_rows(0.3, 0.5, 1e-4);
-	near(judged(), 0, 0, "where none is like a pair none is doubted");
+	near(tested(), 0, 0, "where none is like a pair none is doubted");
 }
 
 /* One in eight looks like a pair, with odds from 1 to 1000: these are doubted, from the
@@ -66,14 +66,14 @@ static void test_fewest(void)
 		for (int k = 0; k < JOINT_SHARES; k++)
 			row[i].odds[k] = pow(10, 3.0 * i / ROWS);
 	/* All sizes are the same, and a half of one does not occur. */
-	near(judged(), 0, 0, "pulses of one size are no sums of two");
+	near(tested(), 0, 0, "pulses of one size are no sums of two");
 	make_rows(0.3, 1.5, 1e-3);
 	for (int i = 0; i < ROWS; i++) {
 		row[i].amplitude = i % 2 ? 20 : 10;
 		for (int k = 0; k < JOINT_SHARES && i % 8 == 1; k++)
 			row[i].odds[k] = pow(10, 6.0 * i / ROWS - 3);
 	}
-	doubted = judged();
+	doubted = tested();
 	for (int i = 0; i < ROWS; i++) {
 		if (row[i].doubted)
 			least = fmin(least, row[i].odds[0]);
@@ -96,7 +96,7 @@ static void test_sizes(void)
 		for (int k = 0; k < JOINT_SHARES; k++)
 			row[i].odds[k] = 0.5 + 0.001 * i;
 	}
-	judged();
+	tested();
 	for (int i = 0; i < ROWS; i++) {
 		rare += i % 16 == 0 && row[i].doubted;
 		usual += i % 16 && row[i].doubted;
@@ -119,7 +119,7 @@ static void test_weak(void)
 		row[i].time = beside ? row[i - 1].time + 1.2 : 10 * i;
 		row[i].amplitude *= beside ? 0.02 : 1;
 	}
-	near(judged(), ROWS / 8, 0, "weak rows that only occur beside larger ones are");
+	near(tested(), ROWS / 8, 0, "weak rows that only occur beside larger ones are");
 	for (int i = 7; i < ROWS; i += 8)
 		weak += row[i].doubted && row[i].shape > 0.9;
 	near(weak, ROWS / 8, 0, "doubted as errors of the shape of these");
@@ -133,7 +133,7 @@ static void test_weak(void)
 		if (philox_uniform(3, 0, RNG_PARTICLE, (uint64_t)i) < 0.25)
 			row[i].amplitude *= 0.02;
 	}
-	near(judged(), 0, 0.01 * ROWS,
+	near(tested(), 0, 0.01 * ROWS,
 		"where small ones arrive at random none is doubted");
 }
 
@@ -150,7 +150,7 @@ static void test_small(int small)
 		if (i % 16 == 1 && i / 16 < small)
 			row[i].amplitude = 3;
 	}
-	judged();
+	tested();
 	for (int i = 0; i < ROWS; i++)
 		if (row[i].amplitude == 3)
 			found += row[i].doubted;
@@ -178,7 +178,7 @@ static void test_astray(double scatter, double flow_var)
 		row[i].off_var = 1e-4;
 		row[i].flow_var = flow_var;
 	}
-	judged();
+	tested();
 	for (int i = 0; i < ROWS; i++) {
 		wrong += row[i].doubted && i % 16 == 1;
 		right += row[i].doubted && i % 16 != 1;
@@ -200,7 +200,7 @@ static void test_exchange(void)
 	make_rows(2, 0.5, 0);
 	for (int i = 0; i < ROWS; i++)
 		row[i].exchange = i % 16 ? 1e-4 : 10;
-	near(judged(), ROWS / 16, 0,
+	near(tested(), ROWS / 16, 0,
 		"pulses that may have exchanged arrivals are doubted");
 }
 

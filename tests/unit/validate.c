@@ -1,4 +1,4 @@
-/* Rows judged by their velocities: particles and other events */
+/* Rows tested by their velocities: particles and other events */
 #include "signal/separate/validate.h"
 #include "num/philox.h"
 #include "tap.h"
@@ -57,7 +57,7 @@ static void test_flow(double error, uint64_t seed)
 	struct validation *v = validation_new();
 
 	draw(e, 0, error, seed);
-	validation_judge(v, e, ROWS);
+	validation_test(v, e, ROWS);
 	ok(doubted(e, 0, ROWS) == 0, "no row is doubted at an error of %g", error);
 	validation_free(v);
 }
@@ -75,7 +75,7 @@ static void test_other_velocities(void)
 			.delay = SPREAD * normal(100000 + (uint64_t)i),
 			.var = 0.01,
 			.amplitude = 20 };
-	validation_judge(v, e, ROWS);
+	validation_test(v, e, ROWS);
 	ok(doubted(e, ALONE, few) == 1 && doubted(e, 0, ALONE) == 0 &&
 			doubted(e, few, ROWS) == 0,
 		"groups with velocities that the flow has not are doubted, others not");
@@ -95,7 +95,7 @@ static void test_recurring(void)
 		e[i].amplitude = 1;
 		e[i].time = i % 3 ? 0.3 + 0.015 * (i - ALONE) / 2 : -0.7;
 	}
-	validation_judge(v, e, ROWS);
+	validation_test(v, e, ROWS);
 	for (int i = ALONE + 1; i < ROWS; i += 2)
 		missed += i % 3 == 0 && !(e[i].doubted && e[i - 1].doubted);
 	ok(missed == 0,
@@ -112,7 +112,7 @@ static void test_edge(void)
 
 	validation_range(v, -6, 6);
 	draw(e, 0, 0.1, 140000);
-	validation_judge(v, e, ROWS);
+	validation_test(v, e, ROWS);
 	ok(doubted(e, 0, ROWS) < 0.02,
 		"no row is doubted if velocities do not fill the range");
 	validation_free(v);
@@ -126,7 +126,7 @@ static void test_edge(void)
 				12 * philox_uniform(17, 0, RNG_PARTICLE, (uint64_t)i) - 6,
 			.var = 0.01,
 			.amplitude = 20 };
-	validation_judge(v, e, ROWS);
+	validation_test(v, e, ROWS);
 	ok(doubted(e, 0, ROWS) == 1, "no row is believed if velocities fill the range");
 	validation_free(v);
 }

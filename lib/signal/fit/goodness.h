@@ -1,7 +1,7 @@
 /* goodness.h - goodness of fit of the pulses found by a joint fit
  *
  * A fit whose chi-square per degree of freedom is that of noise is accepted for all its
- * pulses.  If it is larger, each pulse is judged by the residual under it: a missed
+ * pulses.  If it is larger, each pulse is tested by the residual under it: a missed
  * neighbour of one pulse does not make those a duration away doubtful.  If too many are
  * doubted, or there were more pulses than are searched for, the stretch is unresolved.
  */

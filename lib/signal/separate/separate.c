@@ -150,7 +150,7 @@ static enum separate_status release(struct separate *s, long long done)
 	if (!s->holding || done < s->hold)
 		return SEPARATE_OK;
 	s->holding = 0;
-	return separate_judge_rows(s);
+	return separate_test_rows(s);
 }
 
 /* Separates a window of the first section, which goes on behind it if it is cut. */
@@ -180,7 +180,7 @@ static enum separate_status take_window(
 	else
 		status = separate_fit_section(s, from, to, cut, &next);
 	if (status == SEPARATE_OK && !s->holding)
-		status = separate_judge_rows(s);
+		status = separate_test_rows(s);
 	s->counters.active += (double)(next - from);
 	if (status != SEPARATE_OK || next == from)
 		return status;
@@ -343,7 +343,7 @@ enum separate_doubt separate_doubtful(const struct separate *s)
 		return SEPARATE_REVERSED;
 	if (s->par.kept && !s->kept.crowded && 2 * c->dense > c->samples)
 		return SEPARATE_CROWD;
-	if (c->misfits > 2 && 10 * c->misfits > separate_judged(c))
+	if (c->misfits > 2 && 10 * c->misfits > separate_tested(c))
 		return SEPARATE_FOREIGN;
 	if (c->unlike > UNLIKE * UNLIKE * c->compared)
 		return SEPARATE_UNLIKE;

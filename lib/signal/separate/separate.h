@@ -110,7 +110,7 @@ struct separate_counters {
 };
 
 /* Rows that may fit no particle: pulses, what is unresolved, and events of no name. */
-static inline double separate_judged(const struct separate_counters *c)
+static inline double separate_tested(const struct separate_counters *c)
 {
 	return c->rows + c->unresolved + c->events[SEPARATE_TRANSIENT];
 }
@@ -135,7 +135,7 @@ int separate_next(struct separate *s, struct transit *p);
 const struct calibration *separate_calibration(
 	const struct separate *s); /* NULL: not yet */
 /* What was learned, to keep, and what the rows so far tell of it; its arrays remain those
- * of s.  0: not yet, some rows of what is learned from are still to be judged. */
+ * of s.  0: not yet, some rows of what is learned from are still to be tested. */
 int separate_instrument(const struct separate *s, struct instrument *view);
 /* Noise of both channels relative to that of the kept instrument, from up to par.learn
  * samples. */

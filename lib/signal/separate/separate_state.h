@@ -16,7 +16,7 @@
 /* Of sensors 1 and 2; the second components of either follow (quadrature.h). */
 enum { CHANNELS_MAX = 4 };
 
-/* A row that may not have been judged yet. */
+/* A row that may not have been tested yet. */
 struct entry {
 	struct transit row;
 	struct evidence evidence;
@@ -24,7 +24,7 @@ struct entry {
 	double more_square;     /* as that of joint_pulse */
 };
 
-/* A section to be reported once its rows are judged. */
+/* A section to be reported once its rows are tested. */
 struct report {
 	struct separate_section section;
 	struct campbell dense;
@@ -108,12 +108,12 @@ struct separate {
 	long number;
 	long long done; /* samples before this one are done */
 	struct entry *queue;
-	size_t count, judged, given, capacity;
+	size_t count, tested, given, capacity;
 	struct report *report;
 	size_t reports, report_capacity;
 	struct validation *validation;
 	struct together *together;
-	long long hold; /* rows before this sample are judged together */
+	long long hold; /* rows before this sample are tested together */
 	int holding, group;
 	double *source;
 	struct separate_counters counters;
@@ -168,7 +168,7 @@ static inline double separate_noise_at(const struct separate *s, int c, double a
 	return s->cal.noise[c] * following_at(&s->buffer[c].noise, at);
 }
 
-/* judging.c */
+/* queue.c */
 
 /* A new row of the queue, of the present section; NULL: no memory. */
 struct entry *separate_queue_entry(struct separate *s);
@@ -177,7 +177,7 @@ struct entry *separate_queue_entry(struct separate *s);
 enum separate_status separate_queue_report(
 	struct separate *s, const struct separate_section *section, size_t rows);
 /* Judges the rows held back; separate_next() may then return them. */
-enum separate_status separate_judge_rows(struct separate *s);
+enum separate_status separate_test_rows(struct separate *s);
 
 /* rows.c */
 
@@ -248,7 +248,7 @@ int separate_is_other_noise(const struct separate *s);
  * record was whitened, which spreads them over others. */
 void separate_hide(struct separate *s, long long from, size_t n);
 /* Fits a window of n samples of channels y, with the first a->m pulses of a as
- * guesses, and judges the fit. */
+ * guesses, and tests the fit. */
 enum separate_status separate_fit_window(struct separate *s, const double *const y[],
 	size_t n, int cut, struct account *a);
 /* Keeps of the last fit what the next one overwrites. */

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows that the present is judged by: they know a share of 0.7 % to 0.5 %. */
+/* Rows by which the present one is tested: they know a share of 0.7 % to 0.5 %. */
 enum { LATELY = 256 };
 
 /* Expected share of wrong rows among those that are not doubted.  0.01, 0.007, 0.005 and
@@ -264,7 +264,7 @@ static double find_limit(const struct together *t)
 	return k == n ? 1 : k ? sorted[k - 1] : 0;
 }
 
-/* Passes over rows that are judged together, whose probabilities depend on one another.
+/* Passes over rows that are tested together, whose probabilities depend on one another.
  */
 enum { PASSES = 4 };
 
@@ -291,7 +291,7 @@ static void tell(
 }
 
 /* Judges rows [begin, end) of n, as many as are held or fewer. */
-static void judge_some(
+static void test_some(
 	struct together *t, struct arrival *a, size_t n, size_t begin, size_t end)
 {
 	size_t first = t->rows;
@@ -325,7 +325,7 @@ static void judge_some(
 		a[i].doubted |= wrong(&a[i]) > t->limit;
 }
 
-void together_judge(struct together *t, struct arrival *a, size_t n)
+void together_test(struct together *t, struct arrival *a, size_t n)
 {
 	for (size_t i = 0; i < n; i++) {
 		a[i].weak = is_weak_beside(a, i, n, 1) || is_weak_beside(a, i, n, -1);
@@ -333,5 +333,5 @@ void together_judge(struct together *t, struct arrival *a, size_t n)
 			     (i + 1 == n || a[i + 1].group != a[i].group);
 	}
 	for (size_t i = 0; i < n; i += LATELY)
-		judge_some(t, a, n, i, n - i < LATELY ? n : i + LATELY);
+		test_some(t, a, n, i, n - i < LATELY ? n : i + LATELY);
 }

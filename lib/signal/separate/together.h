@@ -38,10 +38,10 @@ struct arrival {
 	double off, off_var, flow_var;
 	double exchange; /* odds of having the arrival of another pulse at sensor 2 */
 	/* Probabilities of being a pair, an error of the shape of a larger pulse, and not
-	 * of the flow; set by together_judge(). */
+	 * of the flow; set by together_test(). */
 	double pair, shape, astray;
-	int weak, alone; /* beside a larger one, and by itself; set by together_judge() */
-	int doubted; /* already, and then its size does not count; or by together_judge()
+	int weak, alone; /* beside a larger one, and by itself; set by together_test() */
+	int doubted; /* already, and then its size does not count; or by together_test()
 		      */
 };
 
@@ -49,7 +49,7 @@ struct together;
 struct together *together_new(void); /* NULL: no memory */
 void together_free(struct together *t);
 
-/* Takes in n arrivals, groups undivided and in order, and judges them. */
-void together_judge(struct together *t, struct arrival *a, size_t n);
+/* Takes in n arrivals, groups undivided and in order, and tests them. */
+void together_test(struct together *t, struct arrival *a, size_t n);
 
 #endif

@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum {
-	LATELY = 256,       /* latest rows, and pairs, that are used to judge */
+	LATELY = 256,       /* latest rows, by which others are tested */
 	FEW = 8,            /* fewest delays for an estimate of the variance */
 	REACH = 6,          /* durations on either side of a strong pulse */
 	PLACES = 16 * REACH /* classes of place within them */
@@ -205,7 +205,7 @@ static int recurs(
 	return place >= 0 && v->recurring[place] > 4 + 0.1 * v->groups;
 }
 
-/* --- judgement */
+/* --- the test */
 
 static void take_in(struct validation *v, const struct evidence *e, size_t n)
 {
@@ -251,7 +251,7 @@ static int too_many_at_limit(
 	return tail < RARELY;
 }
 
-static void judge_group(const struct validation *v, struct evidence *e, size_t m)
+static void test_group(const struct validation *v, struct evidence *e, size_t m)
 {
 	int impossible = is_impossible(v, e, m) || too_many_at_limit(v, e, m);
 
@@ -280,12 +280,12 @@ static int fails(struct validation *v, const struct evidence *e, size_t n)
 	return rows >= FEW && (2 * sum > rows || (edge > 2 && 10 * edge > rows));
 }
 
-void validation_judge(struct validation *v, struct evidence *e, size_t n)
+void validation_test(struct validation *v, struct evidence *e, size_t n)
 {
 	take_in(v, e, n);
 	for (size_t i = 0, m; i < n; i += m) {
 		m = group_size(e, i, n);
-		judge_group(v, e + i, m);
+		test_group(v, e + i, m);
 	}
 	if (fails(v, e, n))
 		for (size_t i = 0; i < n; i++)

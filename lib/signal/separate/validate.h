@@ -14,8 +14,8 @@
  * Where more than half of the rows are doubted, or more than a tenth have delays at the
  * edge of the range, the record is not like the learned one, and no row is believed.
  *
- * Rows that are judged together, such as those of the stretch used for calibration, are
- * all stored first; later rows are judged with the last ones before them.
+ * Rows that are tested together, such as those of the stretch used for calibration, are
+ * all stored first; later rows are tested with the last ones before them.
  */
 #ifndef SIGNAL_VALIDATE_H
 #define SIGNAL_VALIDATE_H
@@ -29,7 +29,7 @@ struct evidence {
 	double delay, var; /* in samples; var 0: unknown */
 	double amplitude;  /* over the noise */
 	double time;       /* of arrival, durations */
-	int doubted;       /* set by validation_judge() */
+	int doubted;       /* set by validation_test() */
 };
 
 struct validation;
@@ -52,7 +52,7 @@ void validation_range(struct validation *v, double least, double most);
 /* Half of this range; 0: it, or the flow, is not known. */
 double validation_half(const struct validation *v);
 
-/* Adds n rows, in order and with undivided groups, and judges them. */
-void validation_judge(struct validation *v, struct evidence *e, size_t n);
+/* Adds n rows, in order and with undivided groups, and tests them. */
+void validation_test(struct validation *v, struct evidence *e, size_t n);
 
 #endif

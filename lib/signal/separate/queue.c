@@ -1,4 +1,4 @@
-/* judging.c - the queue of rows, and of sections to report, which are held until judged
+/* queue.c - the queue of rows, and of sections to report, which are held until tested
  */
 #include "num/room.h"
 #include "signal/separate/separate_state.h"
@@ -65,11 +65,11 @@ static void give_reports(struct separate *s)
 	s->reports = 0;
 }
 
-/* Doubts those of the n rows not yet judged that may be two particles, parts of two, or
+/* Doubts those of the n rows not yet tested that may be two particles, parts of two, or
  * none.  Rows doubted already tell how often one pulse follows another as well. */
-static enum separate_status judge_pairs(struct separate *s, size_t n)
+static enum separate_status test_pairs(struct separate *s, size_t n)
 {
-	struct entry *q = s->queue + s->judged;
+	struct entry *q = s->queue + s->tested;
 	struct arrival *a = malloc((n ? n : 1) * sizeof *a);
 	double half = validation_half(s->validation);
 	int plug =
@@ -96,7 +96,7 @@ static enum separate_status judge_pairs(struct separate *s, size_t n)
 			}
 			a[m++].doubted = q[i].row.verdict >= SEPARATE_MISFIT;
 		}
-	together_judge(s->together, a, m);
+	together_test(s->together, a, m);
 	m = 0;
 	for (size_t i = 0; i < n; i++)
 		if (q[i].arrival.group && a[m++].doubted &&
@@ -111,18 +111,18 @@ static enum separate_status judge_pairs(struct separate *s, size_t n)
 	return SEPARATE_OK;
 }
 
-enum separate_status separate_judge_rows(struct separate *s)
+enum separate_status separate_test_rows(struct separate *s)
 {
-	size_t n = s->count - s->judged;
+	size_t n = s->count - s->tested;
 	struct evidence *e = malloc((n ? n : 1) * sizeof *e);
 
 	if (!e)
 		return SEPARATE_MEMORY;
 	for (size_t i = 0; i < n; i++)
-		e[i] = s->queue[s->judged + i].evidence;
-	validation_judge(s->validation, e, n);
+		e[i] = s->queue[s->tested + i].evidence;
+	validation_test(s->validation, e, n);
 	for (size_t i = 0; i < n; i++) {
-		struct entry *q = &s->queue[s->judged + i];
+		struct entry *q = &s->queue[s->tested + i];
 
 		q->evidence.doubted = e[i].doubted;
 		s->counters.misfits += e[i].doubted;
@@ -132,18 +132,18 @@ enum separate_status separate_judge_rows(struct separate *s)
 		q->row.verdict = SEPARATE_MISFIT;
 	}
 	free(e);
-	if (judge_pairs(s, n) != SEPARATE_OK)
+	if (test_pairs(s, n) != SEPARATE_OK)
 		return SEPARATE_MEMORY;
-	s->judged = s->count;
+	s->tested = s->count;
 	give_reports(s);
 	return SEPARATE_OK;
 }
 
 int separate_next(struct separate *s, struct transit *p)
 {
-	if (s->given == s->judged) {
+	if (s->given == s->tested) {
 		if (s->given == s->count)
-			s->given = s->judged = s->count = 0;
+			s->given = s->tested = s->count = 0;
 		return 0;
 	}
 	*p = s->queue[s->given++].row;
