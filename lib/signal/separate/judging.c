@@ -83,12 +83,12 @@ static enum separate_status judge_pairs(struct separate *s, size_t n)
 	for (size_t i = 0; i < n; i++)
 		if (q[i].arrival.group) {
 			a[m] = q[i].arrival;
-			/* Delays nearer to those of the flow are more likely. */
+			/* A delay found is that of the flow and its error. */
 			if (half > 0 && q[i].evidence.var > 0)
-				a[m].exchange *= exp(fmin(
-					-0.5 * q[i].more_square /
-						(flow.var + 2 * q[i].evidence.var),
-					300));
+				a[m].exchange *=
+					exp(fmin(-0.5 * q[i].more_square /
+							 (flow.var + q[i].evidence.var),
+						300));
 			if (q[i].row.sources > 1 && half > 0 && plug) {
 				a[m].off = (q[i].evidence.delay - flow.mean) / half;
 				a[m].off_var = q[i].evidence.var / (half * half);

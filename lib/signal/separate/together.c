@@ -27,8 +27,14 @@ static const double NEAR = 0.1, FAR = 0.6;
  * smaller, and decay with the pulse. */
 static const double WEAK = 0.1, BESIDE = 2;
 
+/* Probability that rows in company are doubted in a sound record because too many of them
+ * are smaller than any that stands alone. */
+static const double UNLIKELY = 0.01;
+
 struct together {
-	double size[LATELY];   /* logarithms of amplitudes */
+	double any[LATELY];    /* logarithms of amplitudes, of doubted rows too */
+	int alone[LATELY];     /* all of these rows */
+	double size[LATELY];   /* logarithms of amplitudes of rows not doubted */
 	int weak[LATELY];      /* beside larger pulses */
 	int followers[LATELY]; /* pulses between NEAR and FAR behind each, not weak */
 	double wrong[LATELY];  /* probabilities */
@@ -37,6 +43,7 @@ struct together {
 	double density, width;      /* followers per duration; of the kernel of sizes */
 	double astray;              /* share of delays that are not of the flow */
 	double flow_var, least_var; /* variance of the others, and a bound of it */
+	double least;               /* rows in company that are smaller are none */
 	double limit;               /* probability beyond which rows are doubted */
 };
 
@@ -166,6 +173,28 @@ static double shape_probability(const struct together *t, double x, size_t self)
 	return fmax(1 - random / seen, 0);
 }
 
+/* The size of the smallest row that stands alone, if too many in company are smaller;
+ * else -INFINITY.  In a sound record any row is as likely as any other to be the smallest
+ * one, any of those left to be the next one, and so on. */
+static double least_alone(const struct together *t)
+{
+	double least = INFINITY, alone = 0, company = 0, chance = 1;
+
+	for (size_t i = 0; i < held(t->all); i++)
+		if (t->alone[i]) {
+			least = fmin(least, t->any[i]);
+			alone++;
+		} else {
+			company++;
+		}
+	for (size_t i = 0; i < held(t->all); i++)
+		if (!t->alone[i] && t->any[i] < least) {
+			chance *= company / (alone + company);
+			company--;
+		}
+	return chance < UNLIKELY ? least : -INFINITY;
+}
+
 /* Likelihood ratio of a delay that is anywhere in the range and one of the flow, normally
  * distributed within the range: a flow as wide as the range is not told from it. */
 static double astray_odds(const struct together *t, double off, double off_var)
@@ -248,7 +277,8 @@ static void tell(
 			size_t self = first++ % LATELY;
 
 			a[i].pair = pair_probability(t, &a[i], self);
-			a[i].shape = t->weak[self]
+			a[i].shape = !a[i].alone && t->size[self] < t->least ? 1
+				     : t->weak[self]
 					     ? shape_probability(t, t->size[self], self)
 					     : 0;
 			/* Not if the delay is more like those of the flow. */
@@ -267,7 +297,9 @@ static void judge_some(
 	size_t first = t->rows;
 
 	for (size_t i = begin; i < end; i++) {
-		t->followers[t->all++ % LATELY] = count_followers(a, i, n);
+		t->followers[t->all % LATELY] = count_followers(a, i, n);
+		t->alone[t->all % LATELY] = a[i].alone;
+		t->any[t->all++ % LATELY] = log(fabs(a[i].amplitude));
 		if (!a[i].doubted) {
 			size_t at = t->rows++ % LATELY;
 
@@ -282,6 +314,7 @@ static void judge_some(
 	}
 	if (t->rows == first)
 		return;
+	t->least = least_alone(t);
 	learn_astray(t);
 	for (int pass = 0; pass < PASSES; pass++) {
 		learn(t);
@@ -294,8 +327,11 @@ static void judge_some(
 
 void together_judge(struct together *t, struct arrival *a, size_t n)
 {
-	for (size_t i = 0; i < n; i++)
+	for (size_t i = 0; i < n; i++) {
 		a[i].weak = is_weak_beside(a, i, n, 1) || is_weak_beside(a, i, n, -1);
+		a[i].alone = (i == 0 || a[i - 1].group != a[i].group) &&
+			     (i + 1 == n || a[i + 1].group != a[i].group);
+	}
 	for (size_t i = 0; i < n; i += LATELY)
 		judge_some(t, a, n, i, n - i < LATELY ? n : i + LATELY);
 }

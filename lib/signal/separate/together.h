@@ -9,6 +9,9 @@
  * Weak pulses beside larger ones may be errors of the shape of these.  They are if there
  * are more of them than particles as small come to lie beside larger ones at random.
  *
+ * Particles arrive independently, so that those in company are as large as those alone.
+ * Several smaller ones describe something else, such as a baseline.
+ *
  * A pulse fitted to what others leave has any delay in the range searched.  How many such
  * there are follows from the delays of all pulses fitted with others.
  *
@@ -37,7 +40,7 @@ struct arrival {
 	/* Probabilities of being a pair, an error of the shape of a larger pulse, and not
 	 * of the flow; set by together_judge(). */
 	double pair, shape, astray;
-	int weak;    /* beside a larger one; set by together_judge() */
+	int weak, alone; /* beside a larger one, and by itself; set by together_judge() */
 	int doubted; /* already, and then its size does not count; or by together_judge()
 		      */
 };
