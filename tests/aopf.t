@@ -318,6 +318,12 @@ aopf -y 1 --lives-only ceiling.tsv >out
 near "the life goes on below the ceiling of a sensor" "$(column rul_q50 out | tail -1)" 20 8
 awk '{ print (NR == 1 || $1 < 60 ? $0 : $1 "\t" 0.6 + 0.01 * (rand() - 0.5)) }' ceiling.tsv | aopf -y 1 --lives-only >out
 ok "but not where readings that vary show no more wear" awk '!/^#/ && $1 == 79 { exit !($4 > 60) }' out
+# A rate that trebles in quiet data is followed, and not taken for outliers or jumps.
+awk 'BEGIN { srand(5); print "t\ty"
+	for (t = 0; t < 97; t++) print t "\t" (t < 76 ? t / 200 : 0.38 + (t - 76) / 40) + 0.002 * (rand() - 0.5) }' |
+	aopf -y 1 --lives-only >out
+ok "a knee in quiet data is followed" awk '!/^#/ && $1 == 96 { exit !($4 < 20) }' out
+ok "while rows are held back the end may be near" awk '!/^#/ && $1 == 82 { exit !($3 < 20) }' out
 # Rounded readings repeat too, and count.
 awk 'BEGIN { print "t\ty"; for (t = 0; t < 80; t++) print t "\t" int(t / 16) / 6 }' | aopf -y 1 --lives-only >out
 ok "coarse readings of an end at 96 hold it" awk '!/^#/ && $1 == 79 { exit !(3 < $3 && $3 < 17 && 17 < $5) }' out

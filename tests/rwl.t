@@ -136,6 +136,12 @@ for wear in '' '--wear single.tsv --step-time 1h'; do
 	rwl --threshold-gap 15um --wear-rate filter $wear steady.tsv 2>err | grep -v '^#' >"filter$(echo "$wear" | wc -w | tr -d ' ')"
 done
 same "filters take no rate from one realisation" filter0 filter4
+awk 'BEGIN { srand(8); print "t\tgap"
+	for (t = 0; t < 60; t++) print t * 3600 "\t" (10 + t / 10 + 0.4 * (rand() - 0.5) + (t == 30 ? 3 : 0)) * 1e-6 }' >noisy.tsv
+ok "a noisy gap is filtered" rwl --threshold-gap 15um --wear-rate filter noisy.tsv
+cp out noisy.out
+is "one reading beyond the threshold is no failure" "$(calc "($(cell noisy.out 31 q50) > 36000)")" 1
+is "but a gap that stays beyond it is" "$(cell noisy.out 60 q95)" 0
 awk 'NR > 20 { $2 /= 25.4 } { print $1 "\t" $2 }' steady.tsv >inch.tsv
 fails "a change of unit" 1 'inch.tsv: line 28: the last 8 values are 0.04.* times those before, and so are their steps' \
 	rwl --threshold-gap 15um inch.tsv

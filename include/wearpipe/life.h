@@ -40,7 +40,8 @@ WP_API enum wp_status wp_life_observe(struct wp_life *l, double t, double y);
 
 /* Quantiles of the remaining life from the last observation, at n levels from 0 to 1;
  * INFINITY if the threshold is not reached at that level. never (may be NULL):
- * probability that it is never reached. WP_IMPOSSIBLE below four observations. */
+ * probability that it is never reached. WP_IMPOSSIBLE below four observations, or
+ * WP_NO_MEMORY. */
 WP_API enum wp_status wp_life_quantiles(
 	struct wp_life *l, const double *level, double *quantile, int n, double *never);
 

@@ -70,7 +70,8 @@ enum wp_status wp_life_quantiles(
 
 	if (!bank_ready(l->bank))
 		return WP_IMPOSSIBLE;
-	bank_draw(l->bank, l->chances, l->last, l->par.threshold, l->life);
+	if (bank_draw(l->bank, l->chances, l->last, l->par.threshold, l->life))
+		return WP_NO_MEMORY;
 	qsort(l->life, (size_t)draws, sizeof *l->life, ascending);
 	while (finite < draws && isfinite(l->life[finite]))
 		finite++;

@@ -106,26 +106,28 @@ static void follow(struct forecast *f, double t, double y, double threshold)
 	bank_add(f->bank, t, y);
 }
 
-/* Samples of the time to the limit in f->later, NULL below four rows. */
-static const double *passages(
-	struct forecast *f, double t, double y, int run_in, int later)
+/* Samples of the time to the limit in f->later, if there are any: from four rows on. */
+static enum num_status passages(struct forecast *f, double t, double y, int run_in,
+	int later, const double **passage)
 {
 	double limit = pair_limit(&f->par.pair), threshold;
 
+	*passage = NULL;
 	if (f->par.rule != RATE_FILTER)
-		return NULL;
+		return NUM_OK;
 	if (!f->bank) {
 		for (long i = 0; i < f->par.count; i++)
 			f->later[i] = INFINITY;
-		return f->later;
+		*passage = f->later;
+		return NUM_OK;
 	}
 	threshold = f->by_gap ? limit : pair_value(&f->par.pair, f->par.quantity, limit);
 	if (!run_in && later)
 		follow(f, t, y, threshold);
 	if (!bank_ready(f->bank))
-		return NULL;
-	bank_draw(f->bank, f->chances, t, threshold, f->later);
-	return f->later;
+		return NUM_OK;
+	*passage = f->later;
+	return bank_draw(f->bank, f->chances, t, threshold, f->later);
 }
 
 void forecast_load(struct forecast *f, const double load[BANK_LOADS])
@@ -162,7 +164,8 @@ enum num_status forecast_add(
 		open_bank(f))
 		return NUM_MEMORY;
 	load_bank(f, t);
-	passage = passages(f, t, f->by_gap ? gap : value, run_in, later);
+	if (passages(f, t, f->by_gap ? gap : value, run_in, later, &passage))
+		return NUM_MEMORY;
 	if (run_in || (f->par.skip > 0 && f->observed.n == 0))
 		observed_begin(&f->observed, t, gap);
 	if (!run_in)

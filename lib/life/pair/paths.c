@@ -132,7 +132,7 @@ long paths_predict(struct paths *e, const struct observed *o, const double *pass
 	int filtered = e->par.rule == RATE_FILTER;
 	double scaled = INFINITY; /* step time by which the mean wears as observed */
 
-	if (left <= 0 && !(gap_error > 0)) {
+	if (left <= 0 && !(gap_error > 0) && !passage) {
 		life[0] = 0;
 		return 1;
 	}

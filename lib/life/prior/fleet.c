@@ -153,9 +153,10 @@ static enum num_status carry_on(const struct fleet *f, struct unit *p)
 	for (int k = 1; status == NUM_OK && k <= AHEAD && bank_ready(p->bank); k++) {
 		double level = from + (end - from) * k / AHEAD;
 
-		bank_draw(p->bank, chances, p->last, f->direction * level, life);
-		select_ranks(life, DRAWS, &middle, 1);
-		if (isfinite(life[middle]))
+		status = bank_draw(p->bank, chances, p->last, f->direction * level, life);
+		if (status == NUM_OK)
+			select_ranks(life, DRAWS, &middle, 1);
+		if (status == NUM_OK && isfinite(life[middle]))
 			status = rise(p, p->last - p->first + life[middle], level);
 	}
 	bank_chances_free(chances);

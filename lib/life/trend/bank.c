@@ -505,58 +505,22 @@ static double is_surprised(const struct bank *b, const struct trend *tr,
 	       square_at(SURPRISE, freedom_of(b, tr)) * tr->sum / freedom_of(b, tr);
 }
 
-/* Standard deviation of the damage of one observation. */
-static double noise_of(const struct bank *b)
-{
-	double sum = 0;
-
-	for (int i = 0; i < b->trends; i++)
-		sum += b->trend[i].weight * b->trend[i].sum / freedom_of(b, &b->trend[i]);
-	return sqrt(sum);
-}
-
-/* The level has jumped to y: widens the covariance of the level by the jump, and keeps
- * the rates. */
-static void shift(struct bank *b, double y)
+/* The level has jumped to y: widens the covariance of the level by the jump.  A repair
+ * keeps the rates; otherwise the jump may be the beginning of a new rate. */
+static void shift(struct bank *b, double y, int repaired)
 {
 	double damage = damage_of(b, y), away = damage - b->level;
 
 	for (int i = 0; i < b->trends; i++) {
 		struct trend *tr = &b->trend[i];
+		double scale = freedom_of(b, tr) / tr->sum;
 
 		tr->phh += away * away * squared_slope(place_of(b, tr->shape, damage)) *
-			   freedom_of(b, tr) / tr->sum;
+			   scale;
+		if (!repaired)
+			tr->pvv += tr->v * tr->v * scale;
 	}
 	b->counts.shifts++;
-}
-
-/* Weighted mean of dD/dt at the last row. */
-static double rate_of(const struct bank *b)
-{
-	double sum = 0;
-
-	for (int i = 0; i < b->trends; i++) {
-		const struct trend *tr = &b->trend[i];
-
-		sum += tr->weight * grown(tr, b->age) * tr->v /
-		       place_of(b, tr->shape, b->level).slope / b->unit;
-	}
-	return sum;
-}
-
-/* 1 if the last step of the damage is well beyond what noise and rate explain. */
-static int is_steep(const struct bank *b, const struct row *r)
-{
-	return (r[0].y - r[-1].y) / b->range - rate_of(b) * (r[0].t - r[-1].t) >
-	       2 * noise_of(b);
-}
-
-/* 1 if the rows held back move away step by step. */
-static int runs_away(const struct bank *b)
-{
-	const struct row *last = b->held + b->n_held - 1;
-
-	return b->n_held >= 3 && is_steep(b, last) && is_steep(b, last - 1);
 }
 
 /* 1 if the last HELD_GOOD rows are all healthier than the row before them. */
@@ -575,6 +539,19 @@ static void release(struct bank *b)
 	b->n_held = 0;
 	for (int i = 0; i < n; i++)
 		take(b, &b->held[i]);
+}
+
+struct bank *bank_accepting(const struct bank *b)
+{
+	size_t size = sizeof *b + (size_t)b->capacity * size_of_trend(&b->par);
+	struct bank *copy = malloc(size);
+
+	if (!copy)
+		return NULL;
+	memcpy(copy, b, size);
+	shift(copy, copy->held[0].y, 0);
+	release(copy);
+	return copy;
 }
 
 /* 1 if the machine was idle in a long gap of step: running does not explain the
@@ -682,10 +659,8 @@ void bank_add(struct bank *b, double t, double y)
 		return;
 	}
 	b->held[b->n_held++] = r;
-	if (runs_away(b)) {
-		release(b);
-	} else if (b->n_held == HELD || is_repaired(b)) {
-		shift(b, b->held[0].y);
+	if (b->n_held == HELD || is_repaired(b)) {
+		shift(b, b->held[0].y, b->n_held < HELD);
 		release(b);
 	}
 }

@@ -32,9 +32,9 @@
  *
  * Outliers, repairs and idle times: a row that no trend predicts is held back, beyond a
  * Student's t as rare as five standard deviations.  If a later row agrees with them,
- * it is dropped as an outlier.  If three rows running lie on the healthy side (a repair)
- * or eight have been held, the level is estimated again and the rates are kept.  If the
- * held rows move away step by step, faster than the rate, they are accepted.  After a gap
+ * it is dropped as an outlier.  If three rows running lie on the healthy side (a
+ * repair), the level is estimated again and the rates are kept.  If eight have been held,
+ * the rates are estimated again as well.  After a gap
  * of more than 3.5 usual ones, as seen from a random time, the machine may have been
  * idle; the next observation decides, if it does not show a repair.
  *
@@ -42,8 +42,8 @@
  * the common divisor of the steps between them, and the noise to be at least that of
  * rounding.  A reading equal to the last one or to the farthest so far is either a new
  * one that is rounded to the same value, or frozen: the sensor sticks or has reached its
- * ceiling, and says nothing.  Every trend weighs the two by what it expects, and the share
- * of frozen readings is learned.
+ * ceiling, and says nothing.  Every trend weighs the two by what it expects, and the
+ *share of frozen readings is learned.
  *
  *	struct bank *b = bank_new(&par);
  *	for each row

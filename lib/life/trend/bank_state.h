@@ -110,6 +110,10 @@ const struct bank_shape *shape_of(const struct bank *b, int i);
  * flat shape would make outliers look exact. */
 struct place place_of(const struct bank *b, int shape, double damage);
 
+/* A copy that takes the rows held back for the beginning of a new regime, free it by
+ * bank_free(); NULL: no memory. */
+struct bank *bank_accepting(const struct bank *b);
+
 /* Advances a trend by a step, and discounts its covariance. */
 void project(const struct bank *b, struct trend *tr, const struct place *p, double step,
 	double keep);

@@ -321,8 +321,15 @@ static double draw_life(const struct bank *b, const struct crossing *p, double a
 	return change(p, time, age, c);
 }
 
-void bank_draw(struct bank *b, const struct bank_chances *c, double now, double level,
-	double *life)
+/* 1 for this share of the draws, evenly spaced. */
+static int belongs(int draw, double share)
+{
+	return floor((draw + 1) * share) > floor(draw * share);
+}
+
+/* Fills a share of life[]. */
+static void draw_share(const struct bank *b, const struct bank_chances *c, double now,
+	double level, double share, double *life)
 {
 	double ahead = (now - b->idle - b->last) / b->unit, reached = 0;
 	double target = damage_of(b, level), spread = spread_of(b, target);
@@ -336,10 +343,28 @@ void bank_draw(struct bank *b, const struct bank_chances *c, double now, double 
 			continue;
 		p = prepare(b, &b->trend[i], ahead, target, spread);
 		for (; drawn < c->n && reached * c->n > drawn + 0.5; drawn++)
-			life[drawn] = b->unit *
-				      draw_life(b, &p, b->age + ahead, &c->draw[drawn]);
+			if (belongs(drawn, share))
+				life[drawn] = b->unit * draw_life(b, &p, b->age + ahead,
+								&c->draw[drawn]);
 	}
 	/* If the data overflow, no trend has a weight. */
 	for (; drawn < c->n; drawn++)
-		life[drawn] = drawn ? life[drawn - 1] : INFINITY;
+		if (belongs(drawn, share))
+			life[drawn] = drawn ? life[drawn - 1] : INFINITY;
+}
+
+enum num_status bank_draw(const struct bank *b, const struct bank_chances *c, double now,
+	double level, double *life)
+{
+	struct bank *other;
+
+	draw_share(b, c, now, level, 1, life);
+	if (b->n_held == 0)
+		return NUM_OK;
+	other = bank_accepting(b);
+	if (!other)
+		return NUM_MEMORY;
+	draw_share(other, c, now, level, (double)b->n_held / HELD, life);
+	bank_free(other);
+	return NUM_OK;
 }

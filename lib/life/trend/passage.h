@@ -12,6 +12,10 @@
  * drops and stays at the lower value.  Hazard, growth and share of drops depend on
  * whether the rate at present falls, is constant or rises in the coordinate.
  *
+ * Rows held back as outliers may be the beginning of a new regime, and are the more
+ * probably so the more there are: this share of the draws, an eighth for each row, is of
+ *a copy of the bank that has accepted them.
+ *
  *	struct bank_chances *chances = bank_chances_new(500, seed);
  *	bank_draw(b, chances, now, level, life);
  */
@@ -19,6 +23,7 @@
 #define LIFE_PASSAGE_H
 
 #include "life/trend/bank.h"
+#include "num/status.h"
 
 struct bank_chances; /* random numbers, shared by all units of a run */
 
@@ -31,7 +36,7 @@ double bank_chance_normal(const struct bank_chances *chances, int draw, int k);
 /* Draws bank_chances_count() times from now (>= the last t) to the first passage of the
  * level, unsorted; INFINITY: never.  With the same chances at every row the results
  * change smoothly from row to row. */
-void bank_draw(struct bank *b, const struct bank_chances *chances, double now,
-	double level, double *life);
+enum num_status bank_draw(const struct bank *b, const struct bank_chances *chances,
+	double now, double level, double *life);
 
 #endif

@@ -136,8 +136,7 @@ static enum num_status draw_lives(struct predict *p, double *life)
 			p->par.direction, LITERAL_STEPS, life);
 	if (!bank_ready(p->bank))
 		return NUM_DOMAIN;
-	bank_draw(p->bank, p->par.chances, p->now.last, p->par.threshold, life);
-	return NUM_OK;
+	return bank_draw(p->bank, p->par.chances, p->now.last, p->par.threshold, life);
 }
 
 enum num_status predict_life(struct predict *p, double *life)
