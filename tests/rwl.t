@@ -147,6 +147,13 @@ fails "a change of unit" 1 'inch.tsv: line 28: the last 8 values are 0.04.* time
 	rwl --threshold-gap 15um inch.tsv
 rwl --threshold-gap 15um steady.tsv 2>err >out
 is "a rate without uncertainty is named" "$(grep -c 'the rate is taken as exact' err)" 1
+seq 0 60 | awk 'BEGIN { print "t\tgap" } { printf "%d\t%.8g\n", $1, 1e-5 + 5e-7 * sqrt($1) }' >falls.tsv
+rwl --threshold-gap 15um falls.tsv 2>err >out
+is "a falling rate that (4-29) takes as constant is named" "$(grep -c 'the rate of the gap falls' err)" 1
+rwl --threshold-gap 15um --wear-rate filter falls.tsv 2>err >out
+is "filters follow it" "$(grep -c 'the rate of the gap' err)" 0
+rwl --threshold-gap 15um steady.tsv 2>err >out
+is "a steady rate is not doubted" "$(grep -c 'the rate of the gap' err)" 0
 printf 'volume\n0\n0\n0\n' >nothing.tsv
 fails "a table without wear gives a doubtful life" 3 'nothing.tsv: none of 3 realisations wore' \
 	rwl --new --wear nothing.tsv --step-time 1h --threshold-gap 15um --initial-gap 10um \
@@ -233,12 +240,13 @@ same "the output records all tables of fragments" steps.tsv.rows again.tsv.rows
 
 # Comparators and scores on an exponential leakage, which a grey model foretells.
 awk 'BEGIN { print "t\tleakage"; for (t = 0; t <= 600; t += 50) printf "%d\t%.12g\n", t, 1.5 * exp(t / 1186 * log(2.8 / 1.5)) }' >exp.tsv
-ok "the grey model and the scores are added" rwl --wear even.tsv --state-unit L/min --time-unit h --grey --eol 1186h exp.tsv
+rwl --wear even.tsv --state-unit L/min --time-unit h --grey --eol 1186h exp.tsv >out 2>err || echo "status $?" >>err
+is "the rate of the gap of an exponential leakage grows" "$(grep -c 'status 3\|the rate of the gap grows' err)" 2
 # the model's a of an exponential of ratio q per step is -2 (q - 1) / (q + 1): 1e-4 here
 near "the grey model predicts the life of an exponential" "$(cell out 13 grey | awk '{ print $1 / 3600 }')" 586 0.2
 near "the truth is the true remaining life" "$(cell out 13 truth)" 2109600 0
 is "the summary of the scores is written" "$(sed -n 's/^# \([a-z_]*\):.*/\1/p' out | tr '\n' ' ')" \
-	"stream cmd units assumed predictions infinite_medians bias mean_absolute_error root_mean_square_error relative_accuracy alpha_lambda prognostic_horizon coverage crps end "
+	"stream cmd units assumed doubtful predictions infinite_medians bias mean_absolute_error root_mean_square_error relative_accuracy alpha_lambda prognostic_horizon coverage crps end "
 near "the error is median minus truth" "$(cell out 5 error)" \
 	"$(calc "$(cell out 5 q50) - $(cell out 5 truth)")" 1e-6
 

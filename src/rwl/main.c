@@ -295,6 +295,25 @@ static struct partition *read_fragments(char **made_by)
 	return p;
 }
 
+/* By chance in one series of a thousand. */
+static const double TREND = 3.3;
+
+/* Says so if the rate that is taken as constant is not; its status. */
+static int check_trend(const struct forecast *f, struct lifetable *out)
+{
+	double trend = forecast_rate_trend(f);
+	const char *way = trend > 0 ? "grows" : "falls";
+
+	if (rule == RATE_FILTER || !(fabs(trend) > TREND))
+		return 0;
+	table_comment(lifetable_out(out), "doubtful", "the rate of the gap %s", way);
+	warn("the rate of the gap %s in the course of the series (%.1f standard deviations "
+	     "of chance), and --wear-rate %s takes it as constant: --wear-rate filter "
+	     "follows it",
+		way, fabs(trend), rules[rule]);
+	return EXIT_NOCONV;
+}
+
 int main(int argc, char **argv)
 {
 	char *made_by[OPT_TEXTS_MAX] = { NULL }, *cmd, *assumed;
@@ -337,6 +356,7 @@ int main(int argc, char **argv)
 	} else {
 		follow(&s, out, f);
 	}
+	status |= check_trend(f, out);
 	lifetable_close(out);
 	covariates_close();
 	if (assumed)

@@ -31,6 +31,39 @@ static void check_rates(void)
 	near(observed_rate(mean), 0.5, 0, "the rates can be restarted");
 }
 
+/* Of a gap in so many rows. */
+static double trend_of(int rows, double (*gap)(double part))
+{
+	struct observed by_mean = { .rule = RATE_MEAN };
+
+	for (int i = 0; i < rows; i++)
+		observed_add(&by_mean, 10 * i, 1, gap((double)i / rows));
+	return observed_rate_trend(&by_mean);
+}
+
+static double linear(double part)
+{
+	return 3 + part;
+}
+
+static double square(double part)
+{
+	return part * part;
+}
+
+/* S = n (n - 1) / 2 for rates that only grow, of variance n (n - 1) (2 n + 5) / 18. */
+static void check_trend(void)
+{
+	ok(trend_of(2, square) == 0, "one rate has no trend");
+	near(trend_of(9, square), 28 / sqrt(8 * 7 * 21 / 18.), 1e-12,
+		"eight rates that only grow");
+	near(trend_of(17, sqrt), -120 / sqrt(16 * 15 * 37 / 18.), 1e-12,
+		"sixteen rates that only fall");
+	ok(trend_of(1000, square) > 3.4 && trend_of(1000, square) < 5.2,
+		"of a thousand rates between eight and sixteen are compared");
+	ok(fabs(trend_of(1000, linear)) == 0, "a constant rate has no trend");
+}
+
 /* Backward sums of all values at each check, as grey.h makes them. */
 static void check_grey(const char *what, double level, double unit)
 {
@@ -67,6 +100,7 @@ int main(void)
 	struct observed by_mean = { .rule = RATE_MEAN }, *o = &by_mean;
 
 	check_rates();
+	check_trend();
 	check_grey("values of 2, hours", 2, 1);
 	check_grey("values of 1e-200, 1e-9", 1e-200, 1e-9);
 	check_grey("values of 1e200, 1e9", 1e200, 1e9);

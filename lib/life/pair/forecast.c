@@ -205,3 +205,8 @@ struct forecast_row forecast_at(struct forecast *f, double t)
 				    : INFINITY;
 	return row;
 }
+
+double forecast_rate_trend(const struct forecast *f)
+{
+	return observed_rate_trend(&f->observed);
+}

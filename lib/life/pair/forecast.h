@@ -59,6 +59,9 @@ enum num_status forecast_add(
 /* Makes the forecast for a new pair without observations. */
 void forecast_foresee(struct forecast *f);
 
+/* Trend of the rate of the gap (observed_rate_trend()). */
+double forecast_rate_trend(const struct forecast *f);
+
 /* The forecast at the latest known gap minus the time since then. */
 struct forecast_row forecast_at(struct forecast *f, double t);
 

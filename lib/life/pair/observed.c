@@ -2,10 +2,32 @@
 #include "life/pair/observed.h"
 #include <math.h>
 
+/* Rates that differ by less, relative, are equal. */
+static const double ROUNDED = 1e-6;
+
 void observed_begin(struct observed *o, double t, double gap)
 {
 	o->first = o->before = o->last = (struct moment){ t, gap };
+	o->n_kept = 0;
+	o->passed = 0;
+	o->every = 1;
 	o->begun = 1;
+}
+
+/* Every second one of those kept goes when there is no more room. */
+static void keep(struct observed *o, struct moment m)
+{
+	if (o->passed++ % o->every)
+		return;
+	if (o->n_kept == OBSERVED_KEPT) {
+		for (int i = 0; 2 * i < OBSERVED_KEPT; i++)
+			o->kept[i] = o->kept[2 * i];
+		o->n_kept = (OBSERVED_KEPT + 1) / 2;
+		o->every *= 2;
+		if ((o->passed - 1) % o->every)
+			return;
+	}
+	o->kept[o->n_kept++] = m;
 }
 
 static void add_sums(struct observed *o, double dt, double value)
@@ -24,6 +46,8 @@ void observed_add(struct observed *o, double t, double value, double gap)
 	if (!o->begun)
 		observed_begin(o, t, gap);
 	dt = t - o->last.t;
+	if (dt > 0 || o->n_kept == 0)
+		keep(o, (struct moment){ t, gap });
 	if (dt > 0)
 		o->before = o->last;
 	o->last = (struct moment){ t, gap };
@@ -44,6 +68,26 @@ double observed_rate(const struct observed *o)
 	if (!(o->last.t > from->t))
 		return NAN;
 	return (o->last.gap - from->gap) / (o->last.t - from->t);
+}
+
+static double rate_between(const struct moment *m)
+{
+	return (m[1].gap - m[0].gap) / (m[1].t - m[0].t);
+}
+
+double observed_rate_trend(const struct observed *o)
+{
+	double n = o->n_kept - 1, grows = 0;
+
+	for (int i = 0; i + 1 < o->n_kept; i++)
+		for (int j = i + 1; j + 1 < o->n_kept; j++) {
+			double a = rate_between(&o->kept[i]),
+			       b = rate_between(&o->kept[j]);
+
+			if (fabs(b - a) > ROUNDED * (fabs(a) + fabs(b)))
+				grows += b > a ? 1 : -1;
+		}
+	return grows == 0 ? 0 : grows / sqrt(n * (n - 1) * (2 * n + 5) / 18);
 }
 
 double observed_grey(const struct observed *o, double threshold)

@@ -23,12 +23,18 @@ struct moment {
 	double t, gap;
 };
 
+enum { OBSERVED_KEPT = 17 };
+
 struct observed {
 	enum rate_rule rule; /* all else 0 at first */
 	int begun;
 	long n; /* observations */
 	struct moment first, before,
-		last;       /* of the rates; different times but at first */
+		last; /* of the rates; different times but at first */
+	/* Observations since the start of the rates, one of every so many. */
+	struct moment kept[OBSERVED_KEPT];
+	long every, passed;
+	int n_kept;
 	double scale, unit; /* of values and times: the first value, the first interval */
 	struct grey_series grey; /* of the observations at times of their own */
 };
@@ -45,6 +51,12 @@ double observed_gap(const struct observed *o); /* latest; NAN without observatio
 /* Rate of the gap by the rule (RATE_FILTER: as RATE_MEAN); NAN while all
  * observations have the same time. */
 double observed_rate(const struct observed *o);
+
+/* Whether the rate grows (> 0) or falls with time: Mann's test of trend (Econometrica 13,
+ * 1945) on the rates in up to 16 intervals, in standard deviations.  Normal where the gap
+ * is a process of independent increments at a constant rate, and narrower where readings
+ * are noisy.  Sixteen rates have at most 5.4, eight 3.5. */
+double observed_rate_trend(const struct observed *o);
 
 /* Time from the latest observation until the grey model GM(1,1) of all values since the
  * beginning reaches the threshold; INFINITY: never; NAN below four values.  The sums of
