@@ -264,8 +264,11 @@ static void test_disturbances(void)
 		"the first row after an overhaul in a halt is no failure");
 	near(median_life(60, overhaul, 300, 40), 71, 10,
 		"an overhaul in a halt lengthens the life by what it sets back");
-	near(median_life(56, burst, 0, 0), plain + 4, 2,
-		"outliers at the very end do not change the life");
+	/* Of the draws an eighth for each row held back takes these for a jump, here by
+	 * 0.2 with 24 rows left. */
+	near(median_life(51, burst, 0, 0), plain + 9, 2,
+		"an outlier at the very end hardly changes the life");
+	near(median_life(56, burst, 0, 0), 24, 4, "six in a row may be a jump");
 	/* back by 0.4 at row 50: at the rate of 0.01 a row 40 rows more are left; the
 	 * regime may change in them, hence less */
 	ok(median_life(60, repair, 0, 0) > plain + 15 &&

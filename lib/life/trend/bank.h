@@ -43,7 +43,7 @@
  * rounding.  A reading equal to the last one or to the farthest so far is either a new
  * one that is rounded to the same value, or frozen: the sensor sticks or has reached its
  * ceiling, and says nothing.  Every trend weighs the two by what it expects, and the
- *share of frozen readings is learned.
+ * share of frozen readings is learned.
  *
  *	struct bank *b = bank_new(&par);
  *	for each row

@@ -14,7 +14,7 @@
  *
  * Rows held back as outliers may be the beginning of a new regime, and are the more
  * probably so the more there are: this share of the draws, an eighth for each row, is of
- *a copy of the bank that has accepted them.
+ * a copy of the bank that has accepted them.
  *
  *	struct bank_chances *chances = bank_chances_new(500, seed);
  *	bank_draw(b, chances, now, level, life);
