@@ -162,7 +162,8 @@ static double square_at(double deviate, double freedom)
 static double news_of(const struct bank *b, struct trend *tr, const struct place *p,
 	double f, double e, int equal)
 {
-	double half = 0.5 * b->quantum / fabs(b->range) * p->slope,
+	/* Cells as wide as the range would not tell new from worn out. */
+	double half = 0.5 * fmin(b->quantum / fabs(b->range), 1) * p->slope,
 	       sd = sqrt(2 * f * tr->sum / freedom_of(b, tr)),
 	       frozen = 0.5 * equal * (b->frozen + 0.5) / ((double)b->rows + 1),
 	       new = 0.5 * (1 - frozen) * (erf((e + half) / sd) - erf((e - half) / sd));
