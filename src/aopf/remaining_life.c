@@ -382,6 +382,7 @@ static void heed_events(struct outlook *o, const struct outlook_row *in)
 			continue;
 		if (!bank_event(predict_bank(o->predict), e->what))
 			o->now.early = fmax(o->now.early, e->t);
+		o->now.scale = (struct rescaled){ 0 }; /* the event explains it */
 		o->now.events++;
 	}
 	o->now.heeded = in->t;
