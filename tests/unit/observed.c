@@ -51,6 +51,18 @@ static double square(double part)
 	return part * part;
 }
 
+/* The same gaps, each after one at its time that it replaces. */
+static double trend_of_replaced(void)
+{
+	struct observed by_mean = { .rule = RATE_MEAN };
+
+	for (int i = 0; i < 9; i++) {
+		observed_add(&by_mean, 10 * i, 1, -square(i / 9.));
+		observed_add(&by_mean, 10 * i, 1, square(i / 9.));
+	}
+	return observed_rate_trend(&by_mean);
+}
+
 /* S = n (n - 1) / 2 for rates that only grow, of variance n (n - 1) (2 n + 5) / 18. */
 static void check_trend(void)
 {
@@ -61,6 +73,7 @@ static void check_trend(void)
 		"sixteen rates that only fall");
 	ok(trend_of(1000, square) > 3.4 && trend_of(1000, square) < 5.2,
 		"of a thousand rates between eight and sixteen are compared");
+	near(trend_of_replaced(), trend_of(9, square), 0, "gaps replaced do not count");
 	ok(fabs(trend_of(1000, linear)) == 0, "a constant rate has no trend");
 }
 

@@ -48,6 +48,8 @@ void observed_add(struct observed *o, double t, double value, double gap)
 	dt = t - o->last.t;
 	if (dt > 0 || o->n_kept == 0)
 		keep(o, (struct moment){ t, gap });
+	else if (o->kept[o->n_kept - 1].t == t)
+		o->kept[o->n_kept - 1].gap = gap;
 	if (dt > 0)
 		o->before = o->last;
 	o->last = (struct moment){ t, gap };

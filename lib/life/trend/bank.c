@@ -59,11 +59,16 @@ static size_t size_of_trend(const struct bank_par *par)
 	return sizeof(struct trend) + (size_t)par->n_loads * sizeof(struct tilt);
 }
 
+static size_t size_of_bank(const struct bank_par *par, int capacity)
+{
+	return sizeof(struct bank) + (size_t)capacity * size_of_trend(par);
+}
+
 struct bank *bank_new(const struct bank_par *par)
 {
 	int shapes = shapes_in_table() + par->n_more,
 	    capacity = shapes * KINDS + PARTICLES;
-	struct bank *b = calloc(1, sizeof *b + (size_t)capacity * size_of_trend(par));
+	struct bank *b = calloc(1, size_of_bank(par, capacity));
 
 	if (!b)
 		return NULL;
@@ -544,7 +549,7 @@ static void release(struct bank *b)
 
 struct bank *bank_accepting(const struct bank *b)
 {
-	size_t size = sizeof *b + (size_t)b->capacity * size_of_trend(&b->par);
+	size_t size = size_of_bank(&b->par, b->capacity);
 	struct bank *copy = malloc(size);
 
 	if (!copy)
@@ -605,8 +610,8 @@ static double common_divisor(double a, double b)
 }
 
 /* Where values repeat they have been rounded, and the noise is at least that of rounding:
- * a quantum over sqrt(12).  Without it a step after equal values
- * would count as a shift, and the wear as none. */
+ * a quantum over sqrt(12).  Without it a step after equal values would count as a shift,
+ * and the wear as none. */
 static void heed_rounding(struct bank *b, double y)
 {
 	double step = fabs(y - b->before);
@@ -703,6 +708,6 @@ void bank_pass(struct bank *b, struct state *s)
 {
 	size_t from = offsetof(struct bank, rows);
 
-	state_move(s, (unsigned char *)b + from,
-		sizeof *b + (size_t)b->capacity * size_of_trend(&b->par) - from);
+	state_move(
+		s, (unsigned char *)b + from, size_of_bank(&b->par, b->capacity) - from);
 }

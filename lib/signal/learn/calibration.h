@@ -84,8 +84,9 @@ struct calibration {
 	int attempts;       /* number of calibrations tried */
 	int dense;          /* 1: pulses overlap throughout the record */
 	double chi2;        /* of the fitted pulses, per degree of freedom */
-	double penalised;   /* (chi-square + 2 threshold_near per pulse) per degree of
-			   freedom;   least   is best */
+	/* (chi-square + 2 threshold_near per pulse) per degree of freedom; least is best
+	 */
+	double penalised;
 };
 
 enum separate_status {

@@ -317,7 +317,7 @@ static enum separate_status converge(
 }
 
 /* 1 if the shape is to be corrected.  A shape given by the caller is kept, except for the
- * effect of a estimated filter; explanations of a colour are compared by how well
+ * effect of an estimated filter; explanations of a colour are compared by how well
  * uncorrected pulses fit. */
 static int wants_correction(
 	const struct calibrate_par *par, struct examples *ex, struct calibration *c)

@@ -14,7 +14,7 @@
 static const double FOLLOWED = 20;
 
 /* Samples of pulses that may be computed to learn from the beginning of a record: groups
- * of six Lorentz pulses at 30 dB take 7.4e8, of three pulses behind a estimated low-pass
+ * of six Lorentz pulses at 30 dB take 7.4e8, of three pulses behind an estimated low-pass
  * 7.7e8; a record that pulses do not describe would take more.  And per sample of a long
  * record, some second of processor time per second of 10 kHz, for what is tried later.
  * Separating takes as much at most: of the scenes of tests/matrix/scenes.tsv none that
