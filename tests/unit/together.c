@@ -33,7 +33,7 @@ static int tested(void)
 
 	if (!t)
 		return -1;
-	together_test(t, row, ROWS);
+	together_test(t, 2, row, ROWS);
 	for (int i = 0; i < ROWS; i++)
 		count += row[i].doubted;
 	together_free(t);

@@ -22,10 +22,9 @@ static const double SHARE = 0.006;
  * ones may have been fitted as one. */
 static const double NEAR = 0.1, FAR = 0.6;
 
-/* Height over that of the nearest larger pulse, and distance from it in durations, below
- * which a pulse may be an error of the shape of the larger one: residuals of a shape are
- * smaller, and decay with the pulse. */
-static const double WEAK = 0.1, BESIDE = 2;
+/* Height over that of the nearest larger pulse below which a pulse near it may be an
+ * error of the shape of the larger one: residuals of a shape are smaller. */
+static const double WEAK = 0.1;
 
 /* Probability that rows in company are doubted in a sound record because too many of them
  * are smaller than any that stands alone. */
@@ -42,6 +41,7 @@ struct together {
 	size_t rows, all;                    /* taken in so far: not doubted, and all */
 	double density;                      /* followers per duration */
 	double mean, sd, width;              /* of sizes, and of their kernel */
+	double beside;                       /* pulses nearer than this overlap */
 	double astray;              /* share of delays that are not of the flow */
 	double flow_var, least_var; /* variance of the others, and a bound of it */
 	double least;               /* rows in company that are smaller are none */
@@ -83,10 +83,11 @@ static int count_followers(const struct arrival *a, size_t i, size_t n)
 }
 
 /* 1 if pulse i is weak beside one of those on one side of it, step 1 or -1. */
-static int is_weak_beside(const struct arrival *a, size_t i, size_t n, int step)
+static int is_weak_beside(
+	const struct arrival *a, size_t i, size_t n, double beside, int step)
 {
 	for (size_t k = i + (size_t)step;
-		k < n && a[k].group == a[i].group && fabs(a[k].time - a[i].time) < BESIDE;
+		k < n && a[k].group == a[i].group && fabs(a[k].time - a[i].time) < beside;
 		k += (size_t)step)
 		if (fabs(a[i].amplitude) < WEAK * fabs(a[k].amplitude))
 			return 1;
@@ -223,7 +224,7 @@ static double shape_probability(const struct together *t, double x, size_t self)
 		larger += (t->size[i] + log(WEAK) > x) * (1 - t->wrong[i]);
 		seen += t->weak[i] ? kernel(x - t->size[i], t->width) : 0;
 	}
-	random = larger * t->density * 2 * BESIDE * size_density(t, x, self, 0);
+	random = larger * t->density * 2 * t->beside * size_density(t, x, self, 0);
 	random += 2 * sqrt(random * kernel(0, t->width));
 	return fmax(1 - random / seen, 0);
 }
@@ -381,10 +382,12 @@ static void test_some(
 		a[i].doubted |= wrong(&a[i]) > t->limit;
 }
 
-void together_test(struct together *t, struct arrival *a, size_t n)
+void together_test(struct together *t, double beside, struct arrival *a, size_t n)
 {
+	t->beside = beside;
 	for (size_t i = 0; i < n; i++) {
-		a[i].weak = is_weak_beside(a, i, n, 1) || is_weak_beside(a, i, n, -1);
+		a[i].weak = is_weak_beside(a, i, n, beside, 1) ||
+			    is_weak_beside(a, i, n, beside, -1);
 		a[i].alone = (i == 0 || a[i - 1].group != a[i].group) &&
 			     (i + 1 == n || a[i + 1].group != a[i].group);
 	}
