@@ -135,8 +135,7 @@ static enum num_status measure_noise(
 
 static enum separate_status look_for_colour(const struct record *rec, struct look *look)
 {
-	static const double one[2] = { 1, 1 };
-	enum num_status status = colour_power(rec->y1, rec->y2, rec->n, one, look->power);
+	enum num_status status = colour_power(rec->y1, rec->y2, rec->n, look->power);
 
 	look->coloured = status == NUM_OK && !colour_is_white(look->power, 0);
 	return status == NUM_MEMORY ? SEPARATE_MEMORY : SEPARATE_OK;
