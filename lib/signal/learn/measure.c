@@ -593,10 +593,10 @@ static enum separate_status set_peak(const double *raw, size_t n, double *work,
 	return status;
 }
 
-enum separate_status measure(const struct calibrate_par *par, const double *raw,
-	double *y1, double *y2, size_t n, double *work, struct look *look,
-	struct calibration *c)
+enum separate_status measure(struct look *look, const double *raw, double *y1, double *y2,
+	size_t n, double *work, struct calibration *c)
 {
+	const struct calibrate_par *par = look->par;
 	struct record rec = {
 		.y1 = y1, .y2 = y2, .n = n, .work = work, .wide = look->wide
 	};
