@@ -335,6 +335,19 @@ fails "two loads" 2 "only one of" debrisgen -Y 1GPa -F 1N --pressure 1MPa
 fails "an unknown stress field" 2 "principal|tensor" debrisgen -Y 1GPa --fields foo
 fails "no pressure" 1 "pressure" debrisgen -Y 1GPa rough.nrrd
 fails "a stress field as input" 1 "plane fields" debrisgen -Y 1GPa stress.nrrd
+# Heights that no output takes are checked all the same
+{
+	printf 'NRRD0004\ntype: double\ndimension: 3\nsizes: 2 3 2\nkinds: list domain domain\n'
+	printf 'spacings: nan 1e-6 1e-6\nendian: little\nencoding: raw\nfields:=height m, pressure Pa\n\n'
+	for height in '\0\0' '\0\0' '\0\0' '\0\0' '\370\177' '\0\0'; do
+		# shellcheck disable=SC2059 # octal digits
+		printf "\0\0\0\0\0\0$height\0\0\0\0\0\0\0\0"
+	done
+} >missing.nrrd
+for option in --steps=1 --summary=t2.tsv; do
+	fails "a missing height, $option" 1 "record 1: height is nan at x 1, y 1; want finite samples" \
+		debrisgen -Y 1GPa "$option" missing.nrrd
+done
 head -c 20000 start.nrrd >cut.nrrd
 fails "a truncated record" 1 "cut.nrrd: record 1: want" debrisgen -Y 1GPa cut.nrrd
 fails "material without strength" 1 "step 1: material fails deeper" debrisgen --yield 200kPa start.nrrd

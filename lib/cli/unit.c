@@ -2,6 +2,7 @@
 #include <ctype.h>
 #include <math.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -235,89 +236,118 @@ const char *unit_meant(const char *text, enum unit unit)
 	return least < 1000 ? meant : NULL;
 }
 
-enum { KEPT = 21, SHORTEST = 15, LONGEST = 17 }; /* decimal digits */
+enum { KEPT = 19, SHORTEST = 15, LONGEST = 17 }; /* decimal digits */
 
-/* A decimal number of that many digits without its sign; the first one stands for
- * 10^exponent. */
+/* Digits that denote a number, the first of which stands for 10^exponent. */
 struct decimal {
-	char digit[KEPT];
-	int exponent;
+	uint64_t digits;
+	int count, exponent;
 };
 
-static struct decimal decimal_of(double value)
-{
-	struct decimal d;
-	char text[KEPT + 16];
+/* A number and what was rounded off. */
+struct sum {
+	double value, rest;
+};
 
-	snprintf(text, sizeof text, "%.*e", KEPT - 1, fabs(value));
-	d.digit[0] = text[0];
-	memcpy(d.digit + 1, text + 2, KEPT - 1);
-	d.exponent = atoi(text + KEPT + 2);
+static struct sum sum_of(double value, double rest)
+{
+	double sum = value + rest;
+
+	return (struct sum){ sum, rest - (sum - value) };
+}
+
+/* value 10^power, to 2^-95: powers of up to 22 are exact. */
+static struct sum scale_ten(double value, int power)
+{
+	static const double ten[] = { 1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9,
+		1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21,
+		1e22 };
+	enum { MOST = sizeof ten / sizeof *ten - 1 };
+	struct sum s = { value, 0 };
+
+	while (power != 0) {
+		int step = abs(power) < MOST ? abs(power) : MOST;
+		double t = ten[step], all = power > 0 ? s.value * t : s.value / t;
+
+		s = power > 0 ? sum_of(all, fma(s.value, t, -all) + s.rest * t)
+			      : sum_of(all, (fma(-all, t, s.value) + s.rest) / t);
+		power += power > 0 ? -step : step;
+	}
+	return s;
+}
+
+static uint64_t ten_to(int power)
+{
+	uint64_t t = 1;
+
+	while (power-- > 0)
+		t *= 10;
+	return t;
+}
+
+/* As few digits as denote a positive value, 15 to 17; a count of 0 where those that are
+ * kept do not decide.  A number denotes the value if it is nearer than half the distance
+ * of doubles. */
+static struct decimal shortest(double value)
+{
+	int binary, edge = frexp(value, &binary) == 0.5;
+	/* The power of ten below, or the one before. */
+	struct decimal d = { .exponent = (int)floor((binary - 1) * M_LN2 / M_LN10) };
+	struct sum s = scale_ten(value, KEPT - 1 - d.exponent);
+	uint64_t kept, unit = ten_to(KEPT - SHORTEST);
+	double half; /* in units of the last digit kept, which is off by up to a half */
+
+	if (s.value > 1e19 || (s.value == 1e19 && s.rest >= 0))
+		s = scale_ten(value, KEPT - 1 - ++d.exponent);
+	half = s.value / value * ldexp(1, binary - 54);
+	kept = (uint64_t)s.value + (uint64_t)llrint(s.rest);
+	/* Below a power of two the distance is another one. */
+	for (int n = SHORTEST; n <= LONGEST && !edge; n++, unit /= 10) {
+		double tail = (double)(kept % unit), middle = 0.5 * (double)unit;
+		int up = tail > middle;
+		double off = up ? (double)unit - tail : tail;
+
+		if (fabs(tail - middle) <= 1 || fabs(off - half) <= 1 + 1e-6 * half)
+			break;
+		if (off > half && n < LONGEST)
+			continue;
+		d.digits = kept / unit + (uint64_t)up;
+		d.count = n;
+		if (d.digits == ten_to(n)) {
+			d.digits /= 10;
+			d.exponent++;
+		}
+		break;
+	}
 	return d;
 }
 
-/* The digits behind the first n, as a number. */
-static double tail_of(const struct decimal *d, int n)
+static void write_exponent(int exponent, char *to)
 {
-	double tail = 0;
+	int size = abs(exponent);
 
-	for (int i = n; i < KEPT; i++)
-		tail = 10 * tail + (d->digit[i] - '0');
-	return tail;
+	*to++ = 'e';
+	*to++ = exponent < 0 ? '-' : '+';
+	if (size > 99)
+		*to++ = (char)('0' + size / 100);
+	*to++ = (char)('0' + size / 10 % 10);
+	*to++ = (char)('0' + size % 10);
+	*to = '\0';
 }
 
-/* Keeps n digits, the last one larger by up. */
-static void round_decimal(struct decimal *d, int n, int up)
+/* As printf() does for %g with as many digits. */
+static void write_decimal(const struct decimal *d, int negative, char *to)
 {
-	int i = n - 1;
+	char digit[LONGEST] = { 0 };
+	int used = 0, n = d->count;
+	int plain = d->exponent >= -4 && d->exponent < n;
+	uint64_t rest = d->digits;
 
-	if (!up)
-		return;
-	for (; i >= 0 && d->digit[i] == '9'; i--)
-		d->digit[i] = '0';
-	if (i >= 0) {
-		d->digit[i]++;
-		return;
+	for (int i = n; i-- > 0; rest /= 10) {
+		digit[i] = (char)('0' + rest % 10);
+		if (used == 0 && digit[i] != '0')
+			used = i + 1;
 	}
-	d->digit[0] = '1';
-	d->exponent++;
-}
-
-/* Rounds to as few digits as denote the value, 15 to 17, and returns how many; 0 where
- * those kept do not decide.  A number denotes the value if it is nearer than half the
- * distance of doubles. */
-static int shorten(struct decimal *d, double value)
-{
-	/* All in units of the last digit, which is off by up to a half. */
-	double half, unit = 1e6; /* 10^(KEPT - SHORTEST) */
-	int binary;
-
-	/* Below a power of two the distance is another one. */
-	if (frexp(fabs(value), &binary) == 0.5)
-		return 0;
-	half = ldexp(1, binary - 54) / pow(10, d->exponent - KEPT + 1);
-	for (int n = SHORTEST; n <= LONGEST; n++, unit /= 10) {
-		double tail = tail_of(d, n), off;
-		int up = tail > unit / 2;
-
-		off = up ? unit - tail : tail;
-		if (fabs(tail - unit / 2) <= 1 || fabs(off - half) <= 1 + 1e-6 * half)
-			return 0;
-		if (off < half || n == LONGEST) {
-			round_decimal(d, n, up);
-			return n;
-		}
-	}
-	return 0;
-}
-
-/* As printf() does for %g with n digits. */
-static void write_decimal(const struct decimal *d, int negative, int n, char *to)
-{
-	int plain = d->exponent >= -4 && d->exponent < n, used = n;
-
-	while (used > 1 && d->digit[used - 1] == '0')
-		used--;
 	if (negative)
 		*to++ = '-';
 	if (plain && d->exponent < 0) {
@@ -329,12 +359,12 @@ static void write_decimal(const struct decimal *d, int negative, int n, char *to
 	for (int i = 0; i < used || (plain && i <= d->exponent); i++) {
 		if (i > 0 && i == (plain ? d->exponent + 1 : 1))
 			*to++ = '.';
-		*to++ = i < used ? d->digit[i] : '0';
+		*to++ = i < used ? digit[i] : '0';
 	}
 	if (plain)
 		*to = '\0';
 	else
-		sprintf(to, "e%c%02d", d->exponent < 0 ? '-' : '+', abs(d->exponent));
+		write_exponent(d->exponent, to);
 }
 
 /* A whole number of less than 15 digits. */
@@ -371,14 +401,13 @@ const char *number_text(double value, char text[NUMBER_TEXT])
 
 	if (isnan(value))
 		return strcpy(text, "nan");
-	if (size < 1e14 && size >= 1 && value == floor(value)) {
+	if (size < 1e14 && value == floor(value) && !(size == 0 && signbit(value))) {
 		write_whole((long long)value, text);
 	} else if (size > 1e-280 && size < 1e280) { /* powers of ten stay normal */
-		struct decimal d = decimal_of(value);
-		int n = shorten(&d, value);
+		struct decimal d = shortest(size);
 
-		if (n > 0)
-			write_decimal(&d, value < 0, n, text);
+		if (d.count > 0)
+			write_decimal(&d, value < 0, text);
 		else
 			write_slowly(value, text);
 	} else {

@@ -167,7 +167,8 @@ enum debris_status debris_step(struct debris *d, double *height, const double *p
 		const struct stretch *lost = &step->wear.stretch[i];
 
 		step->depth = fmax(step->depth, lost->bottom);
-		height[lost->column] -= lost->bottom - lost->top;
+		if (height)
+			height[lost->column] -= lost->bottom - lost->top;
 	}
 	return DEBRIS_OK;
 }

@@ -64,7 +64,7 @@ void debris_contact(
 enum debris_status debris_load(struct debris *d, const double *pressure);
 
 /* Wears the surface under a pressure (Pa, >= 0): lowers height (m, positive towards the
- * other body) by the loss of each column. */
+ * other body; or NULL) by the loss of each column. */
 enum debris_status debris_step(struct debris *d, double *height, const double *pressure,
 	struct debris_step *step);
 

@@ -1,8 +1,6 @@
 #include "debris/footprint.h"
 #include "debris/debris.h"
 #include "debris/reserve.h"
-#include "num/lanes.h"
-#include "num/pages.h"
 #include "num/room.h"
 #include "stress/point_sum.h"
 
@@ -19,35 +17,38 @@ enum { LEAST = 4, SHARE = 250 };
 
 struct footprints {
 	struct stress_par par;
-	double *value; /* equivalent stress in the spans, negative in regions; else 0 */
-	size_t *cell;  /* those of the regions, one region after another */
-	size_t cells;
+	struct stress_node *found, *node; /* failing cells as found, and row by row */
+	size_t *region; /* of each node: one before it that it touches, then its region */
+	size_t *cell;   /* nodes of the regions, one region after another */
+	size_t nodes;
+	/* Of each row and each region, where its next node goes. */
+	size_t *row_next, *next;
 	struct stress_span *span;
-	size_t spans;
 	double yield;
 	struct point_sum *below;
 	int deepest; /* depths that are allowed */
 	struct footprint *list;
-	size_t count, room;
+	size_t count;
+	size_t node_room, region_room, cell_room, next_room, list_room;
 };
 
 struct footprints *footprints_new(const struct stress_par *par)
 {
 	struct footprints *f = calloc(1, sizeof *f);
-	size_t n = (size_t)par->nx * (size_t)par->ny;
+	size_t nx = (size_t)par->nx, ny = (size_t)par->ny;
 
 	if (!f)
 		return NULL;
 	f->par = *par;
-	f->value = calloc(n, sizeof *f->value);
-	f->cell = malloc(n * sizeof *f->cell);
-	f->span = malloc((size_t)par->ny * (((size_t)par->nx + 1) / 2) * sizeof *f->span);
+	/* Few cells of a large grid fail: most of this is never touched. */
+	f->found = malloc(nx * ny * sizeof *f->found);
+	f->row_next = malloc(ny * sizeof *f->row_next);
+	f->span = malloc(ny * ((nx + 1) / 2) * sizeof *f->span);
 	f->below = point_sum_new(par);
-	if (!f->value || !f->cell || !f->span || !f->below) {
+	if (!f->found || !f->row_next || !f->span || !f->below) {
 		footprints_free(f);
 		return NULL;
 	}
-	pages_large(f->value, n * sizeof *f->value);
 	f->deepest = point_sum_above(f->below, debris_deepest(par));
 	return f;
 }
@@ -56,7 +57,11 @@ void footprints_free(struct footprints *f)
 {
 	if (!f)
 		return;
-	free(f->value);
+	free(f->found);
+	free(f->node);
+	free(f->row_next);
+	free(f->next);
+	free(f->region);
 	free(f->cell);
 	free(f->span);
 	point_sum_free(f->below);
@@ -64,17 +69,80 @@ void footprints_free(struct footprints *f)
 	free(f);
 }
 
-/* Takes a cell into the region and marks it as taken. */
-static void take_cell(struct footprints *f, struct footprint *r, size_t at)
+/* Numbers of nodes to where the first of each number goes. */
+static void find_places(size_t *count, size_t n)
+{
+	size_t sum = 0;
+
+	for (size_t i = 0; i < n; i++) {
+		sum += count[i];
+		count[i] = sum - count[i];
+	}
+}
+
+/* The cells found, row by row and in each from left to right. */
+static void sort_nodes(struct footprints *f)
+{
+	size_t nx = (size_t)f->par.nx, ny = (size_t)f->par.ny;
+
+	memset(f->row_next, 0, ny * sizeof *f->row_next);
+	for (size_t i = 0; i < f->nodes; i++)
+		f->row_next[f->found[i].at / nx]++;
+	find_places(f->row_next, ny);
+	for (size_t i = 0; i < f->nodes; i++)
+		f->node[f->row_next[f->found[i].at / nx]++] = f->found[i];
+	/* In order already, unless threads found the parts of a row. */
+	for (size_t i = 1; i < f->nodes; i++) {
+		struct stress_node n = f->node[i];
+		size_t to = i;
+
+		for (; to > 0 && f->node[to - 1].at > n.at; to--)
+			f->node[to] = f->node[to - 1];
+		f->node[to] = n;
+	}
+}
+
+/* The first node of a region, as far as known. */
+static size_t first_of(size_t *before, size_t node)
+{
+	while (before[node] != node)
+		node = before[node] = before[before[node]];
+	return node;
+}
+
+static void join(size_t *before, size_t a, size_t b)
+{
+	a = first_of(before, a);
+	b = first_of(before, b);
+	before[a > b ? a : b] = a < b ? a : b;
+}
+
+/* Joins each node with those on its left and above it. */
+static void join_nodes(struct footprints *f)
+{
+	size_t nx = (size_t)f->par.nx, above = 0;
+
+	for (size_t i = 0; i < f->nodes; i++) {
+		size_t at = f->node[i].at;
+
+		f->region[i] = i;
+		if (i > 0 && f->node[i - 1].at + 1 == at && at % nx > 0)
+			join(f->region, i - 1, i);
+		while (f->node[above].at + nx < at)
+			above++;
+		if (f->node[above].at + nx == at)
+			join(f->region, above, i);
+	}
+}
+
+static void take_node(struct footprints *f, struct footprint *r, struct stress_node n)
 {
 	const struct stress_par *s = &f->par;
-	size_t nx = (size_t)s->nx, row = at / nx;
-	double x = (double)(at % nx) * s->dx, y = (double)row * s->dy;
+	size_t nx = (size_t)s->nx, row = n.at / nx;
+	double x = (double)(n.at % nx) * s->dx, y = (double)row * s->dy;
 
-	f->cell[f->cells++] = at;
 	r->cells++;
-	r->stress = fmax(r->stress, f->value[at]);
-	f->value[at] = -f->value[at];
+	r->stress = fmax(r->stress, n.value);
 	r->x += x + 0.5 * s->dx;
 	r->y += y + 0.5 * s->dy;
 	r->low[0] = fmin(r->low[0], x);
@@ -83,32 +151,57 @@ static void take_cell(struct footprints *f, struct footprint *r, size_t at)
 	r->high[1] = fmax(r->high[1], y + s->dy);
 }
 
-/* The region that a cell belongs to, by flooding. */
-static struct footprint flood(struct footprints *f, size_t first)
+/* The regions in the order of their first nodes. */
+static enum num_status list_regions(struct footprints *f)
 {
-	const struct stress_par *s = &f->par;
-	size_t nx = (size_t)s->nx, ny = (size_t)s->ny, done = f->cells;
-	struct footprint r = { .first = first,
-		.low = { INFINITY, INFINITY },
-		.high = { -INFINITY, -INFINITY } };
-
-	take_cell(f, &r, first);
-	for (; done < f->cells; done++) {
-		size_t at = f->cell[done], x = at % nx, y = at / nx;
-
-		if (x > 0 && f->value[at - 1] > f->yield)
-			take_cell(f, &r, at - 1);
-		if (x + 1 < nx && f->value[at + 1] > f->yield)
-			take_cell(f, &r, at + 1);
-		if (y > 0 && f->value[at - nx] > f->yield)
-			take_cell(f, &r, at - nx);
-		if (y + 1 < ny && f->value[at + nx] > f->yield)
-			take_cell(f, &r, at + nx);
+	f->count = 0;
+	for (size_t i = 0; i < f->nodes; i++) {
+		if (f->region[i] < i) {
+			f->region[i] = f->region[f->region[i]];
+		} else {
+			if (room_for(&f->list, &f->list_room, f->count + 1,
+				    sizeof *f->list))
+				return NUM_MEMORY;
+			f->list[f->count] = (struct footprint){ .first = f->node[i].at,
+				.low = { INFINITY, INFINITY },
+				.high = { -INFINITY, -INFINITY } };
+			f->region[i] = f->count++;
+		}
+		take_node(f, &f->list[f->region[i]], f->node[i]);
 	}
-	r.area = (double)r.cells * s->dx * s->dy;
-	r.x /= (double)r.cells;
-	r.y /= (double)r.cells;
-	return r;
+	return NUM_OK;
+}
+
+/* The nodes of each region, which stay in order. */
+static enum num_status list_cells(struct footprints *f)
+{
+	if (room_for(&f->next, &f->next_room, f->count + 1, sizeof *f->next))
+		return NUM_MEMORY;
+	for (size_t k = 0; k < f->count; k++) {
+		struct footprint *r = &f->list[k];
+
+		f->next[k] = r->cells;
+		r->area = (double)r->cells * f->par.dx * f->par.dy;
+		r->x /= (double)r->cells;
+		r->y /= (double)r->cells;
+	}
+	find_places(f->next, f->count);
+	for (size_t i = 0; i < f->nodes; i++)
+		f->cell[f->next[f->region[i]]++] = i;
+	return NUM_OK;
+}
+
+static enum num_status find_regions(struct footprints *f)
+{
+	size_t n = f->nodes + 1;
+
+	if (room_for(&f->node, &f->node_room, n, sizeof *f->node) ||
+		room_for(&f->region, &f->region_room, n, sizeof *f->region) ||
+		room_for(&f->cell, &f->cell_room, n, sizeof *f->cell))
+		return NUM_MEMORY;
+	sort_nodes(f);
+	join_nodes(f);
+	return list_regions(f) ? NUM_MEMORY : list_cells(f);
 }
 
 static int by_size(const void *a, const void *b)
@@ -120,21 +213,15 @@ static int by_size(const void *a, const void *b)
 	return f->first < g->first ? -1 : f->first > g->first;
 }
 
-static int ascending(const void *a, const void *b)
+/* Every other row from right to left, so that neighbours follow each other. */
+static void turn_rows(const struct footprints *f, size_t *cell, size_t n)
 {
-	size_t i = *(const size_t *)a, j = *(const size_t *)b;
+	size_t nx = (size_t)f->par.nx;
 
-	return (i > j) - (i < j);
-}
-
-/* By rows, every other one from right to left, so that neighbours follow each other. */
-static void sort_cells(size_t *cell, size_t n, size_t nx)
-{
-	qsort(cell, n, sizeof *cell, ascending);
 	for (size_t i = 0, end; i < n; i = end) {
-		size_t row = cell[i] / nx;
+		size_t row = f->node[cell[i]].at / nx;
 
-		for (end = i; end < n && cell[end] / nx == row; end++)
+		for (end = i; end < n && f->node[cell[end]].at / nx == row; end++)
 			;
 		for (size_t a = i, z = end; row % 2 && a + 1 < z; a++) {
 			size_t swap = cell[a];
@@ -148,16 +235,16 @@ static void sort_cells(size_t *cell, size_t n, size_t nx)
 /* The first depth at which the stress below a cell is the yield stress.  From the surface
  * down: below a film that fails there may be material that holds, above more that fails.
  * nan: deeper than allowed. */
-static double depth_below(const struct footprints *f, size_t cell)
+static double depth_below(const struct footprints *f, struct stress_node n)
 {
-	struct reserve r = { 1, { 0 }, { reserve(f->yield, -f->value[cell]) } };
+	struct reserve r = { 1, { 0 }, { reserve(f->yield, n.value) } };
 	double stress[POINT_SUM_DEPTHS];
 
 	for (int k = 0; k < f->deepest; k++) {
 		double dip;
 
 		if (k % POINT_SUM_DEPTHS == 0)
-			point_sum_at(f->below, cell, k, stress);
+			point_sum_at(f->below, n.at, k, stress);
 		r = (struct reserve){ r.depths < 3 ? r.depths + 1 : 3,
 			{ point_sum_depth(f->below, k), r.z[0], r.z[1] },
 			{ reserve(f->yield, stress[k % POINT_SUM_DEPTHS]), r.g[0],
@@ -174,17 +261,17 @@ static double depth_below(const struct footprints *f, size_t cell)
 static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 {
 	double n = (double)r->cells, sum = 0, squares = 0, depth[3] = { 0 };
-	double part = fmax(sqrt(n), SHARE * n / (double)f->cells);
+	double part = fmax(sqrt(n), SHARE * n / (double)f->nodes);
 	size_t m = (size_t)fmin(n, ceil(fmax(LEAST, part)));
 
-	sort_cells(cell, r->cells, (size_t)f->par.nx);
+	turn_rows(f, cell, r->cells);
 	for (size_t i = 0; i < m; i++) {
 		double bend;
 
 		depth[2] = depth[1];
 		depth[1] = depth[0];
-		depth[0] =
-			depth_below(f, cell[(size_t)(((double)i + 0.5) * n / (double)m)]);
+		depth[0] = depth_below(
+			f, f->node[cell[(size_t)(((double)i + 0.5) * n / (double)m)]]);
 		bend = depth[0] - 2 * depth[1] + depth[2];
 		sum += depth[0];
 		squares += i > 1 ? bend * bend : 0;
@@ -198,57 +285,17 @@ static void measure(struct footprints *f, struct footprint *r, size_t *cell)
 					     (6 * (double)(m - 2) * (double)m));
 }
 
-/* The first cell above the yield stress from i on; end if there is none. */
-static size_t next_failing(const struct footprints *f, size_t i, size_t end)
-{
-	for (; i + 2 <= end; i += 2) {
-		lane_mask fails = lanes_load(f->value + i, 2) > f->yield;
-
-		if (fails[0] | fails[1])
-			break;
-	}
-	while (i < end && !(f->value[i] > f->yield))
-		i++;
-	return i;
-}
-
-/* The values of the last surface: few cells of a large grid. */
-static void clear_values(struct footprints *f)
-{
-	for (size_t k = 0; k < f->spans; k++) {
-		const struct stress_span *s = &f->span[k];
-
-		memset(f->value + (size_t)s->y * (size_t)f->par.nx + (size_t)s->begin, 0,
-			(size_t)(s->end - s->begin) * sizeof *f->value);
-	}
-	f->spans = 0;
-}
-
 enum num_status footprints_find(struct footprints *f, struct stress *stress,
 	const double *pressure, double yield, const struct footprint **list,
 	size_t *count)
 {
-	size_t at = 0;
+	size_t spans = stress_reach_surface(stress, yield, f->span), at = 0;
 
-	f->count = f->cells = 0;
 	*count = 0;
 	f->yield = yield;
-	clear_values(f);
-	f->spans = stress_reach_surface(stress, yield, f->span);
-	if (stress_above(stress, yield, f->span, f->spans, f->value))
+	if (stress_above(stress, yield, f->span, spans, f->found, &f->nodes) ||
+		find_regions(f))
 		return NUM_MEMORY;
-	/* Row by row, and in each from left to right. */
-	for (size_t k = 0; k < f->spans; k++) {
-		size_t row = (size_t)f->span[k].y * (size_t)f->par.nx;
-		size_t end = row + (size_t)f->span[k].end;
-
-		for (size_t i = next_failing(f, row + (size_t)f->span[k].begin, end);
-			i < end; i = next_failing(f, i + 1, end)) {
-			if (room_for(&f->list, &f->room, f->count + 1, sizeof *f->list))
-				return NUM_MEMORY;
-			f->list[f->count++] = flood(f, i);
-		}
-	}
 	point_sum_load(f->below, pressure);
 	for (size_t i = 0; i < f->count; at += f->list[i++].cells)
 		measure(f, &f->list[i], f->cell + at);

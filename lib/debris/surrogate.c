@@ -162,16 +162,27 @@ struct surrogate_contact surrogate_contact(
 	size_t nx = (size_t)par->nx, ny = (size_t)par->ny;
 	double xx = 0, xy = 0, yy = 0, sum;
 
-	for (size_t y = 0; y + 1 < ny; y++)
-		for (size_t i = y * nx; i + 1 < (y + 1) * nx; i++) {
-			const double *p = pressure + i, *q = p + nx;
-			double gx = (p[1] + q[1] - p[0] - q[0]) / par->dx;
-			double gy = (q[0] + q[1] - p[0] - p[1]) / par->dy;
+	for (size_t y = 0; y + 1 < ny; y++) {
+		const double *p = pressure + y * nx, *q = p + nx;
+		double both = p[0] + q[0], rise = q[0] - p[0];
 
+		for (size_t x = 1; x < nx; x++) {
+			double last = both, gx, gy = rise;
+
+			both = p[x] + q[x];
+			rise = q[x] - p[x];
+			if (last == 0 && both == 0)
+				continue;
+			gx = both - last;
+			gy += rise;
 			xx += gx * gx;
 			xy += gx * gy;
 			yy += gy * gy;
 		}
+	}
+	xx /= par->dx * par->dx;
+	xy /= par->dx * par->dy;
+	yy /= par->dy * par->dy;
 	sum = xx + yy > 0 ? xx + yy : 1;
 	return (struct surrogate_contact){ {
 		[SURROGATE_FLOW] = flow_of(pressure, nx * ny, hardness),

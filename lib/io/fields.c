@@ -7,9 +7,6 @@
 #include "io/gsf.h"
 #include "io/kinds.h"
 #include "io/nrrd.h"
-#include "num/lanes.h"
-#include <float.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -29,37 +26,16 @@ struct fields_out {
 	int open;     /* another record was announced */
 };
 
-/* The first sample that is not a number or infinite, or n. */
-static size_t first_infinite(const double *x, size_t n)
-{
-	lane_mask bad = lanes_all(0) < 0;
-	size_t i = 0;
-
-	for (; i < n; i += 2)
-		bad = lanes_or(bad,
-			~(lanes_abs(lanes_load(x + i, i + 1 < n ? 2 : 1)) <= DBL_MAX));
-	if (!bad[0] && !bad[1])
-		return n;
-	for (i = 0; isfinite(x[i]);)
-		i++;
-	return i;
-}
-
 double *record_need(
 	const struct record *r, const char *name, int finite, const struct fields_in *in)
 {
 	int k = record_find(r, name);
-	size_t n = record_points(r), i;
 
 	if (k < 0)
 		die(EXIT_RUN, "%s: record %ld: no field '%s', want %s", in->at.name,
 			in->at.record, name, opt_reads());
-	i = finite ? first_infinite(r->data[k], n) : n;
-	if (i < n)
-		die(EXIT_RUN,
-			"%s: record %ld: %s is %g at x %zu, y %zu; want finite samples",
-			in->at.name, in->at.record, name, r->data[k][i],
-			i % (size_t)r->nx, i / (size_t)r->nx % (size_t)r->ny);
+	if (finite && r->data[k])
+		check_finite(&in->at, r, name, r->data[k], record_points(r), 0);
 	return r->data[k];
 }
 
@@ -195,6 +171,11 @@ int fields_read(struct fields_in *in, struct record *r)
 int fields_marked(const struct fields_in *in)
 {
 	return in->unmarked == 0;
+}
+
+void fields_only_check(struct fields_in *in, const char *name)
+{
+	in->at.unkept = name;
 }
 
 void fields_read_with(struct fields_in *in, struct pool *pool)

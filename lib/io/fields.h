@@ -39,6 +39,8 @@ struct fields_in *fields_open(const char *path, const struct raw_layout *raw);
 struct fields_in *fields_from(struct input *in); /* takes ownership of an open input */
 /* Threads to convert and sum samples with; without it the caller does. */
 void fields_read_with(struct fields_in *in, struct pool *pool);
+/* Does not keep a field, but dies where it is not finite: record_need() gives NULL. */
+void fields_only_check(struct fields_in *in, const char *name);
 /* 1 if all records read so far stated whether another one follows. */
 int fields_marked(const struct fields_in *in);
 /* 1 if a record follows, or is promised. */

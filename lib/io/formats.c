@@ -3,6 +3,8 @@
 #include "io/bytes.h"
 #include "io/crc32.h"
 #include "io/kinds.h"
+#include "num/lanes.h"
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -150,8 +152,37 @@ void parts_end(struct parts *p)
 	free(p->bytes);
 }
 
+/* The first sample that is not a number or infinite, or n. */
+static size_t first_infinite(const double *x, size_t n)
+{
+	lane_mask bad = lanes_all(0) < 0;
+	size_t i = 0;
+
+	for (; i < n; i += 2)
+		bad = lanes_or(bad,
+			~(lanes_abs(lanes_load(x + i, i + 1 < n ? 2 : 1)) <= DBL_MAX));
+	if (!bad[0] && !bad[1])
+		return n;
+	for (i = 0; isfinite(x[i]);)
+		i++;
+	return i;
+}
+
+void check_finite(const struct place *at, const struct record *r, const char *name,
+	const double *sample, size_t n, size_t first)
+{
+	size_t i = first_infinite(sample, n), nx = (size_t)r->nx;
+
+	if (i < n)
+		die(EXIT_RUN,
+			"%s: record %ld: %s is %g at x %zu, y %zu; want finite samples",
+			at->name, at->record, name, sample[i], (first + i) % nx,
+			(first + i) / nx % (size_t)r->ny);
+}
+
 struct reading {
 	struct parts parts;
+	double *unkept; /* these parts of a field that is only checked */
 	struct record *r;
 	struct samples layout;
 };
@@ -165,9 +196,12 @@ static void take_part(void *context, size_t k, int worker)
 
 	(void)worker;
 	t->parts.checksum[k] = crc32_add(0, bytes, n * width);
-	for (size_t field = 0; field < (size_t)t->r->nfields; field++)
+	for (size_t field = 0; field < (size_t)t->r->nfields; field++) {
+		double *kept = t->r->data[field];
+
 		take_samples(bytes + field * step, width, n, t->layout,
-			t->r->data[field] + t->parts.first + k * PART_POINTS);
+			(kept ? kept + t->parts.first : t->unkept) + k * PART_POINTS);
+	}
 }
 
 void samples_read(struct place *at, struct record *r, struct samples layout)
@@ -179,6 +213,8 @@ void samples_read(struct place *at, struct record *r, struct samples layout)
 
 	check_length(at, (uint64_t)width * points);
 	parts_begin(p, points, width);
+	if (at->unkept)
+		t.unkept = xcalloc((size_t)PARTS * PART_POINTS, sizeof *t.unkept);
 	while ((parts = parts_next(p)) > 0) {
 		size_t got = input_read(at->in, p->bytes, p->points * width);
 
@@ -187,6 +223,9 @@ void samples_read(struct place *at, struct record *r, struct samples layout)
 				at->record, points * width, p->first * width + got);
 		pool_run(at->pool, parts, take_part, &t);
 		at->checksum = parts_sum(p, at->checksum);
+		if (at->unkept && record_find(r, at->unkept) >= 0)
+			check_finite(at, r, at->unkept, t.unkept, p->points, p->first);
 	}
 	parts_end(p);
+	free(t.unkept);
 }

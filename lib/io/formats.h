@@ -18,10 +18,11 @@ struct mark {
 /* Where a reader is, for its messages. */
 struct place {
 	struct input *in;
-	struct pool *pool; /* that shares the work on samples, or NULL */
-	const char *name;  /* of the stream */
-	long record;       /* from 1 */
-	uint32_t checksum; /* of the bytes of this record so far */
+	struct pool *pool;  /* that shares the work on samples, or NULL */
+	const char *unkept; /* a field that is only checked, or NULL */
+	const char *name;   /* of the stream */
+	long record;        /* from 1 */
+	uint32_t checksum;  /* of the bytes of this record so far */
 	struct mark mark;
 };
 
@@ -57,6 +58,10 @@ size_t part_points(const struct parts *p, size_t k);
 unsigned char *part_bytes(const struct parts *p, size_t k);
 uint32_t parts_sum(const struct parts *p, uint32_t checksum);
 void parts_end(struct parts *p);
+
+/* Dies where one of n samples from point first on is not finite. */
+void check_finite(const struct place *at, const struct record *r, const char *name,
+	const double *sample, size_t n, size_t first);
 
 /* Fills all fields of r, whose sizes and names are set; dies where the stream ends
  * before "want N bytes". */

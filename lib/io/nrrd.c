@@ -289,7 +289,9 @@ void name_fields(const struct place *at, const char *fields, struct record *r, i
 			die(EXIT_RUN,
 				"%s: record %ld: want the names of %d fields, got '%s'",
 				at->name, at->record, n, fields);
-		record_new_field(r, *s ? s : numbered, blank ? blank + 1 : "");
+		(at->unkept && strcmp(s, at->unkept) == 0 ? record_name_field
+							  : record_new_field)(
+			r, *s ? s : numbered, blank ? blank + 1 : "");
 		s = comma ? comma + 1 : s + strlen(s);
 	}
 	if (*s && fields)

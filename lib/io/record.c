@@ -34,7 +34,8 @@ void record_clear(struct record *r)
 	for (int i = 0; i < r->nfields; i++) {
 		free(r->name[i]);
 		free(r->unit[i]);
-		release(r, r->data[i]);
+		if (r->data[i])
+			release(r, r->data[i]);
 	}
 	keys_free(&r->keys);
 	free(r->cmd);
@@ -90,14 +91,19 @@ static double *new_data(struct record *r)
 	return data;
 }
 
-void record_new_field(struct record *r, const char *name, const char *unit)
+void record_name_field(struct record *r, const char *name, const char *unit)
 {
 	if (r->nfields == RECORD_FIELDS_MAX)
 		die(EXIT_RUN, "more than %d fields in a record", RECORD_FIELDS_MAX);
 	r->name[r->nfields] = xstrdup(name);
 	r->unit[r->nfields] = xstrdup(unit);
-	r->data[r->nfields] = new_data(r);
-	r->nfields++;
+	r->data[r->nfields++] = NULL;
+}
+
+void record_new_field(struct record *r, const char *name, const char *unit)
+{
+	record_name_field(r, name, unit);
+	r->data[r->nfields - 1] = new_data(r);
 }
 
 double *record_add(struct record *r, const char *name, const char *unit)

@@ -11,9 +11,10 @@ struct record {
 	int nx, ny, nz;    /* points; nz = 1 for plane fields */
 	double dx, dy, dz; /* spacing, m */
 	int nfields;
-	char *name[RECORD_FIELDS_MAX];   /* "height" */
-	char *unit[RECORD_FIELDS_MAX];   /* "m" */
-	double *data[RECORD_FIELDS_MAX]; /* planar: data[k][(iz * ny + iy) * nx + ix] */
+	char *name[RECORD_FIELDS_MAX]; /* "height" */
+	char *unit[RECORD_FIELDS_MAX]; /* "m" */
+	/* Planar: data[k][(iz * ny + iy) * nx + ix]; NULL: not kept (fields.h). */
+	double *data[RECORD_FIELDS_MAX];
 	long realisation; /* from the key, else the place in the stream from 0 */
 	char *cmd;        /* pipeline that rebuilds this record; NULL if unknown */
 	struct keys keys; /* other key:=value pairs, carried through */
@@ -37,6 +38,8 @@ int record_find(const struct record *r, const char *name);
 double *record_add(struct record *r, const char *name, const char *unit);
 /* A zeroed field of that name, which must not exist yet. */
 void record_new_field(struct record *r, const char *name, const char *unit);
+/* The same without samples. */
+void record_name_field(struct record *r, const char *name, const char *unit);
 /* Drops a field. */
 void record_drop(struct record *r, const char *name);
 /* Keys; record_get returns NULL if absent. */

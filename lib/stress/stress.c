@@ -10,6 +10,7 @@
 #include <errno.h>
 #include <float.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -416,7 +417,10 @@ struct take {
 	const struct stress *s;
 	double *out;
 	int on_surface;
-	double limit; /* of stress_above() */
+	/* Of stress_above(): */
+	double limit;
+	struct stress_node *node;
+	atomic_size_t found;
 };
 
 /* The numbers of a node of a span. */
@@ -449,6 +453,23 @@ static void take_equivalent(void *context, const struct stress_span *span,
 
 		node_numbers(t, span, x, number, STRESS_DEVIATOR, v);
 		out[x] = t->s->unit * t->s->criterion->value(v);
+	}
+}
+
+static void take_above(void *context, const struct stress_span *span,
+	const double *const number[STRESS_NUMBERS])
+{
+	struct take *t = context;
+	size_t row = (size_t)span->y * (size_t)t->s->par.nx;
+
+	for (int x = span->begin; x < span->end; x++) {
+		double v[STRESS_NUMBERS], value;
+
+		node_numbers(t, span, x, number, SURFACE_NUMBERS, v);
+		value = t->s->unit * t->s->criterion->value(v);
+		if (value > t->limit)
+			t->node[atomic_fetch_add(&t->found, 1)] =
+				(struct stress_node){ row + (size_t)x, value };
 	}
 }
 
@@ -517,17 +538,20 @@ static int may_exceed(void *context, const struct stress_span *span,
 }
 
 enum num_status stress_above(struct stress *s, double limit,
-	const struct stress_span *span, size_t count, double *value)
+	const struct stress_span *span, size_t count, struct stress_node *node,
+	size_t *found)
 {
-	struct take t = { s, value, 1, limit };
+	struct take t = { .s = s, .on_surface = 1, .limit = limit, .node = node };
 	struct stress_want want = { .span = span,
 		.count = count,
-		.put = take_equivalent,
+		.put = take_above,
 		.may = may_exceed,
 		.size = equivalent,
 		.context = &t };
+	enum num_status status = count > 0 && s->loaded ? sum(s, 0, &want) : NUM_OK;
 
-	return count > 0 && s->loaded ? sum(s, 0, &want) : NUM_OK;
+	*found = t.found;
+	return status;
 }
 
 enum num_status stress_at(struct stress *s, double z, const struct stress_span *span,

@@ -82,10 +82,15 @@ double stress_deep(const struct stress *s, double z);
 enum num_status stress_at(struct stress *s, double z, const struct stress_span *span,
 	size_t count, double *value);
 
-/* The same on the surface, where it may exceed limit; other nodes, which bounds exclude,
- * are left as they are. */
+/* The nodes of the spans where it exceeds limit on the surface, in any order; node has
+ * room for all that the spans hold. */
+struct stress_node {
+	size_t at; /* iy * nx + ix */
+	double value;
+};
 enum num_status stress_above(struct stress *s, double limit,
-	const struct stress_span *span, size_t count, double *value);
+	const struct stress_span *span, size_t count, struct stress_node *node,
+	size_t *found);
 
 /* The whole tensor on the whole grid: six fields xx yy zz xy xz yz of nx * ny each, one
  * after another. */

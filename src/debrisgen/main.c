@@ -115,7 +115,7 @@ static void open_scene(struct run *run, struct record *r, struct scene *c)
 		.crown = isnan(crown) ? 0 : crown,
 		.sq = sq };
 	c->done = isnan(before) ? 0 : (long)before;
-	if (isnan(sq) || sq <= 0) {
+	if (c->now.h && !(sq > 0)) {
 		c->now.sq = worn_roughness(&c->now);
 		record_set(r, "sq", "%.17g", c->now.sq);
 	}
@@ -247,6 +247,8 @@ int main(int argc, char **argv)
 	wearing_check();
 	run.in = fields_open(argv[first], NULL);
 	run.wearing = wearing_open(run.in, steps);
+	if (!wearing_takes_heights(run.wearing) && !worn_takes_heights())
+		fields_only_check(run.in, "height");
 	while (fields_read(run.in, &r)) {
 		if (!run.out)
 			run.out = worn_open(r.cmd, wearing_richardson(), quick_asked());

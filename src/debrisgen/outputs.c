@@ -172,6 +172,11 @@ static void tell(struct table_out *t, const struct worn_conditions *c)
 	table_comment(t, "step_distance", "%.12g m", c->distance);
 }
 
+int worn_takes_heights(void)
+{
+	return summary_path || surface_path || counter_path || stress_path;
+}
+
 void worn_begin(
 	struct worn *w, const struct record *r, const struct worn_conditions *conditions)
 {

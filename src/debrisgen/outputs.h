@@ -12,7 +12,7 @@ extern struct opt worn_rows[]; /* for OPT_TABLE: the files besides the particles
 /* A surface and what is kept of it from step to step. */
 struct worn_surface {
 	struct record *r; /* holds h and p */
-	double *h, *p;    /* height, m, and pressure, Pa */
+	double *h, *p;    /* height, m, NULL if not kept, and pressure, Pa */
 	double crown;     /* its drop, part of h, m */
 	double sq;        /* rms height when new, the crown taken off, m */
 };
@@ -55,6 +55,8 @@ struct worn_conditions {
 	double distance; /* slid in a step, m */
 };
 
+/* Whether any output but the particles is asked for: those take heights. */
+int worn_takes_heights(void);
 /* What follows is of this record. */
 void worn_begin(
 	struct worn *w, const struct record *r, const struct worn_conditions *conditions);

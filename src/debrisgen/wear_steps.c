@@ -172,6 +172,11 @@ static int solves(const struct wearing *w, long step)
 	return step > 1 || w->counterface || law == ARCHARD;
 }
 
+int wearing_takes_heights(const struct wearing *w)
+{
+	return solves(w, w->steps) || richardson;
+}
+
 int wearing_richardson(void)
 {
 	return richardson;

@@ -38,6 +38,8 @@ struct worn_step wearing_step(struct wearing *w, const struct worn_surface *c,
 int wearing_warn(const struct wearing *w);
 
 double wearing_friction(void);
+/* Whether steps take the heights of the input, or only its pressure. */
+int wearing_takes_heights(const struct wearing *w);
 int wearing_richardson(void); /* whether steps are repeated on coarser grids */
 /* Distance the bodies slide in a step that is not amplified: that of a counterface, or
  * the length of the grid along the shear. */
