@@ -335,11 +335,16 @@ rescale() {
 }
 rescale 0.0393701 >inch.tsv
 fails "a change of unit" 3 "at time 67 are 0.04.* times those before, and so are their steps" aopf -y 3 --lives-only inch.tsv
-is "lives end eight rows after a change of unit" "$(aopf -y 3 --lives-only inch.tsv 2>err | awk '$3 == "nan" { print $1 }' | sed -n '4p')" 67
+is "lives end three rows after a change of unit" "$(aopf -y 3 --lives-only inch.tsv 2>err | awk '$3 == "nan" { print $1 }' | sed -n '4p')" 62
 printf 't\tevent\n60\trepair\n' >changed.tsv
 ok "a repair at that time explains it" aopf -y 3 --lives-only --events changed.tsv inch.tsv
 rescale 1000 | aopf -y 3 --lives-only >out 2>err
 is "a jump of the unit is no failure" "$(column rul_q50 out | tail -1)" nan
+is "not even while it is uncertain" "$(column rul_q95 out | grep -c '^0$')" 0
+rescale 1000 | head -64 >begun.tsv
+fails "a series that ends then" 3 "their unit or the gain may have changed" aopf -y 3 --lives-only begun.tsv
+rescale 1 | awk 'NR > 60 { $2 += $1 < 60 ? 0 : 3 } { print $1 "\t" $2 }' | aopf -y 3 --lives-only >out 2>err
+is "a jump beyond the threshold is a failure" "$(column rul_q95 out | grep -c '^0$'; cat err)" 38
 rescale 1 | awk 'NR > 60 { $2 -= 1.4 } { print $1 "\t" $2 }' | aopf -y 3 --lives-only >out 2>err
 is "a repair changes no unit" "$(column rul_q50 out | tail -1 | grep -c nan; cat err)" 0
 # A series that starts at a known moment.

@@ -500,7 +500,7 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 	const struct adaptive_row *filtered, double *cell)
 {
 	struct outlook_state *now = &o->now;
-	int wanted = in->t >= after / timeunit();
+	int wanted = in->t >= after / timeunit(), believed;
 
 	if (now->rows == 0)
 		now->first = in->clock;
@@ -526,10 +526,11 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 		now->factor = rescaled_add(&now->scale, in->y);
 		now->rescaled = in->t;
 	}
-	wanted &= now->factor == 0;
+	believed = now->factor == 0 && !rescaled_doubtful(&now->scale);
+	wanted &= believed;
 	for (int i = 0; i < life_cells(); i++)
 		cell[i] = NAN;
-	if (now->failed && now->factor == 0)
+	if (now->failed && believed)
 		put_failure(o, cell);
 	else if (now->started && wanted)
 		foresee(o, cell);
@@ -543,8 +544,13 @@ void outlook_step(struct outlook *o, const struct outlook_row *in,
 int outlook_settle(const struct outlook *o, const char *unit)
 {
 	unsigned long due = 0;
-	int rescaled = o->now.factor != 0;
+	int rescaled = o->now.factor != 0,
+	    doubtful = !rescaled && rescaled_doubtful(&o->now.scale);
 
+	if (doubtful)
+		warn("%s%sno life is predicted after the last rows: their unit or the gain "
+		     "may have changed",
+			unit, *unit ? ": " : "");
 	if (rescaled)
 		warn("%s%sthe last %d values at time %g are %.3g times those before, and so "
 		     "are their steps: no life is predicted since, because their unit or the "
@@ -563,7 +569,7 @@ int outlook_settle(const struct outlook *o, const char *unit)
 		due += e->t <= o->now.heeded;
 	}
 	if (due <= o->now.events)
-		return rescaled;
+		return rescaled || doubtful;
 	warn("%s: %lu events%s%s are not after the last row of the saved state and have "
 	     "no effect",
 		events_file, due - o->now.events, *unit ? " of unit " : "", unit);

@@ -8,14 +8,12 @@
 #include <math.h>
 
 enum {
-	WITHOUT = 3, /* kinds of trends without a Wiener process, the first */
 	KINDS = 6,
 	HELD = 8 /* rows held back at most */
 };
 
 /* Kinds of trends: the weight of observation j of k is (j / k)^memory, and the damage is
  * a Wiener process whose variance over a mean gap is wander times that of an observation.
- * The first and the last of either sort differ in memory alone, see drift().
  * The wanders and weights, and BENT in bank.c, were swept as doc/benchmarks.md tells. */
 static const struct kind {
 	double memory, wander, log_prior;

@@ -42,7 +42,7 @@ static const double FALL = 1.4, FALL_SD = 0.45;
  * LEAN less: most wear bends more than its coordinate, because straight coordinates have
  * more weight.  Both were chosen with the future of a rising rate, as doc/benchmarks.md
  * tells. */
-static const double STRAY = 0.17, LEAN = 0.07;
+static const double STRAY = 0.24, LEAN = 0.08;
 
 struct bank_chances {
 	int n;
@@ -137,46 +137,6 @@ static void heed_prior(double mean, double sd, struct crossing *p)
 	p->pvv -= p->pvv / f * p->pvv;
 }
 
-/* A straight line that is fitted to a parabola by observations with the weights (j / k)^m
- * has its rate at the share (m + 2) / (m + 4) of the age. */
-static double share_of_age(const struct trend *tr)
-{
-	double m = kinds[tr->kind].memory;
-
-	return (m + 2) / (m + 4);
-}
-
-/* Relative variance of the mean rate over the time to the passage about that of the
- * trend: where the coordinate is not quite right, the rate drifts.  The trends of least
- * and most memory then have the rates of different ages.  That of most memory is the
- * efficient estimate, so that the noise of their difference is the difference of their
- * variances; the drift is what Stein's positive part leaves (James, Stein, Proc. 4th
- * Berkeley Symp. 1 (1961) 361).  It stays below 1 / 3, that of a rate anywhere from 0
- * to twice the mean.  Particles have no trend of another memory beside them. */
-static double drift(const struct bank *b, const struct trend *tr, double time)
-{
-	const struct trend *first = tr - tr->kind + (wanders(tr) ? WITHOUT : 0),
-			   *last = first + (wanders(tr) ? KINDS - WITHOUT : WITHOUT) - 1;
-	double mean[BANK_LOADS], change, noise, away;
-	struct trend usual, all, late;
-
-	if (tr >= b->trend + b->fixed)
-		return 0;
-	mean_loads(b, mean);
-	usual = at_loads(b, tr, mean);
-	all = at_loads(b, first, mean);
-	late = at_loads(b, last, mean);
-	if (!(usual.v > 0))
-		return 0;
-	change = late.v - all.v;
-	noise = tr->sum / freedom_of(b, tr) * fmax(0, late.pvv - all.pvv);
-	change *= fmax(0, 1 - noise / (change * change)) / usual.v;
-	away = (1 - share_of_age(tr) + 0.5 * fmin(NOTHING, time / b->age)) /
-	       (share_of_age(&late) - share_of_age(&all));
-	change *= away;
-	return change * change / (1 + 3 * change * change);
-}
-
 /* A power below 0, wear that goes as the root of time, counts as constant: it slows down
  * by a law of its own and not because a regime ends, as of S-shaped curves. */
 static const struct future *future_of(const struct bank_shape *s)
@@ -251,9 +211,6 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 	p.wiener =
 		kinds[tr->kind].wander * p.variance * here.slope * there.slope / b->gap;
 	p.variance *= (1 + correlation) / (1 - correlation);
-	if (p.v > 0)
-		p.pvv += drift(b, tr, fmax(0, (p.limit - p.h) / p.v)) * p.v * p.v /
-			 p.variance;
 	scale = b->unit / b->range * here.slope;
 	heed_prior(b->par.rate_mean * scale, b->par.rate_sd * fabs(scale), &p);
 	if (shape_of(b, tr->shape)->n > 0)
@@ -327,12 +284,13 @@ static int belongs(int draw, double share)
 	return floor((draw + 1) * share) > floor(draw * share);
 }
 
-/* Fills a share of life[]. */
+/* Fills this share of life[], or with rest = 1 all else. */
 static void draw_share(const struct bank *b, const struct bank_chances *c, double now,
-	double level, double share, double *life)
+	double level, double share, int rest, double *life)
 {
 	double ahead = (now - b->idle - b->last) / b->unit, reached = 0;
 	double target = damage_of(b, level), spread = spread_of(b, target);
+	double last = INFINITY; /* if the data overflow, no trend has a weight */
 	int drawn = 0;
 
 	for (int i = 0; i < b->trends; i++) {
@@ -343,28 +301,29 @@ static void draw_share(const struct bank *b, const struct bank_chances *c, doubl
 			continue;
 		p = prepare(b, &b->trend[i], ahead, target, spread);
 		for (; drawn < c->n && reached * c->n > drawn + 0.5; drawn++)
-			if (belongs(drawn, share))
-				life[drawn] = b->unit * draw_life(b, &p, b->age + ahead,
-								&c->draw[drawn]);
+			if (belongs(drawn, share) != rest)
+				life[drawn] = last =
+					b->unit *
+					draw_life(b, &p, b->age + ahead, &c->draw[drawn]);
 	}
-	/* If the data overflow, no trend has a weight. */
 	for (; drawn < c->n; drawn++)
-		if (belongs(drawn, share))
-			life[drawn] = drawn ? life[drawn - 1] : INFINITY;
+		if (belongs(drawn, share) != rest)
+			life[drawn] = last;
 }
 
 enum num_status bank_draw(const struct bank *b, const struct bank_chances *c, double now,
 	double level, double *life)
 {
+	double share = (double)b->n_held / HELD;
 	struct bank *other;
 
-	draw_share(b, c, now, level, 1, life);
+	draw_share(b, c, now, level, share, 1, life);
 	if (b->n_held == 0)
 		return NUM_OK;
 	other = bank_accepting(b);
 	if (!other)
 		return NUM_MEMORY;
-	draw_share(other, c, now, level, (double)b->n_held / HELD, life);
+	draw_share(other, c, now, level, share, 0, life);
 	bank_free(other);
 	return NUM_OK;
 }

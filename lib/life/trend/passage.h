@@ -3,9 +3,8 @@
  * Each draw selects a trend or particle by its weight, draws level, rate and noise from
  * their Student-t distribution, and computes the first passage of the level: exact for a
  * straight line, an inverse Gaussian time if the damage is a Wiener process.
- * A rate that drifts in its coordinate, as the trends of different memories show, is the
- * less certain the longer the way is.  Beyond the damage that has been reached, the wear
- * may stray from a curved coordinate, unless the trends disagree as much already.
+ * Beyond the damage that has been reached, the wear may stray from a curved coordinate,
+ * unless the trends disagree as much already.
  *
  * The regime may change once more: after a time J with P(J > x) = (a / (a + x))^c, where
  * a is its age (an old one lasts long), the rate begins to grow as e^{g (t - J)}, or
@@ -13,8 +12,8 @@
  * whether the rate at present falls, is constant or rises in the coordinate.
  *
  * Rows held back as outliers may be the beginning of a new regime, and are the more
- * probably so the more there are: this share of the draws, an eighth for each row, is of
- * a copy of the bank that has accepted them.
+ * probably so the more there are: this share of the draws, an eighth for each row (as
+ * doc/benchmarks.md tells), is of a copy of the bank that has accepted them.
  *
  *	struct bank_chances *chances = bank_chances_new(500, seed);
  *	bank_draw(b, chances, now, level, life);

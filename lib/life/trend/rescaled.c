@@ -8,45 +8,65 @@
  * of 100 whose steps are not. */
 static const double OTHER = 25, SAME = 8;
 
-struct half {
-	double sum, squares; /* of the values, of the steps between them */
-	double least, most;
+struct part {
+	double mean, squares; /* of the values, of the steps between them */
+	double spread;
 };
 
-static struct half half_of(const double *y)
+static struct part part_of(const double *y, int n)
 {
-	struct half h = { 0, 0, INFINITY, -INFINITY };
+	struct part p = { 0 };
+	double least = y[0], most = y[0];
 
-	for (int i = 0; i < RESCALED_HALF; i++) {
-		h.sum += y[i];
-		h.least = fmin(h.least, y[i]);
-		h.most = fmax(h.most, y[i]);
+	for (int i = 0; i < n; i++) {
+		p.mean += y[i] / n;
+		least = fmin(least, y[i]);
+		most = fmax(most, y[i]);
 		if (i > 0)
-			h.squares += (y[i] - y[i - 1]) * (y[i] - y[i - 1]);
+			p.squares += (y[i] - y[i - 1]) * (y[i] - y[i - 1]) / (n - 1);
 	}
-	return h;
+	p.spread = most - least;
+	return p;
+}
+
+/* The factor by which the n values from y on may differ from those before them, else 0:
+ * the level changes in one step, of which the spread on either side is a small part, and
+ * the other steps by about as much.  *steps: the logarithm of that of their squares. */
+static double factor_at(const double *y, int n, double *steps)
+{
+	struct part old = part_of(y - RESCALED_HALF, RESCALED_HALF), new = part_of(y, n);
+	double ratio = new.mean / old.mean;
+
+	*steps = log(new.squares / old.squares);
+	if (!(ratio > 0) || y[0] == y[-1] ||
+		fmax(old.spread, new.spread) > 0.25 * fabs(y[0] - y[-1]))
+		return 0;
+	return ratio;
 }
 
 double rescaled_add(struct rescaled *r, double y)
 {
-	const int n = RESCALED_HALF;
-	struct half old, new;
-	double ratio, between, steps;
+	double *middle = r->y + RESCALED_HALF, steps, factor;
 
 	memmove(r->y, r->y + 1, sizeof r->y - sizeof *r->y);
-	r->y[2 * n - 1] = y;
-	if (++r->rows < 2 * n || r->y[n] == r->y[n - 1])
+	r->y[2 * RESCALED_HALF - 1] = y;
+	if (++r->rows < 2 * RESCALED_HALF)
 		return 0;
-	old = half_of(r->y);
-	new = half_of(r->y + n);
-	ratio = new.sum / old.sum;
-	between = r->y[n] - r->y[n - 1];
-	/* one step, of which the spread of either half is a small part */
-	if (!(ratio > 0) ||
-		fmax(old.most - old.least, new.most - new.least) > 0.25 * fabs(between))
-		return 0;
-	steps = log(new.squares / old.squares);
-	if (fabs(steps) > log(OTHER) && fabs(steps - 2 * log(ratio)) < log(SAME))
-		return ratio;
+	factor = factor_at(middle, RESCALED_HALF, &steps);
+	if (fabs(steps) > log(OTHER) && fabs(steps - 2 * log(factor)) < log(SAME))
+		return factor;
+	return 0;
+}
+
+int rescaled_doubtful(const struct rescaled *r)
+{
+	double steps, factor;
+
+	for (int n = 3; n < RESCALED_HALF && r->rows >= RESCALED_HALF + n; n++) {
+		factor = factor_at(r->y + 2 * RESCALED_HALF - n, n, &steps);
+		if (fabs(steps) > log(SAME) &&
+			fabs(steps - 2 * log(factor)) < fabs(steps))
+			return 1;
+	}
 	return 0;
 }

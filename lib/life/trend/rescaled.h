@@ -18,5 +18,8 @@ struct rescaled {
 /* Adds a value.  The factor if the values before the last RESCALED_HALF rows were in
  * another unit, else 0. */
 double rescaled_add(struct rescaled *r, double y);
+/* 1 while fewer rows than that, but three or more, may be in another unit: their steps
+ * differ from those before rather by the factor of the level than not at all. */
+int rescaled_doubtful(const struct rescaled *r);
 
 #endif
