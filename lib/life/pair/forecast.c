@@ -2,7 +2,6 @@
 #include "life/pair/remaining.h"
 #include "life/trend/bank.h"
 #include "life/trend/passage.h"
-#include "num/select.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,8 +15,6 @@ struct forecast {
 	struct bank_shape other; /* coordinate of the bank */
 	int by_gap;              /* the bank follows the gap, not the value */
 	double load[BANK_LOADS];
-	double start[3]; /* its first values, which begin the coordinate */
-	int starts;
 	double *life, *later; /* remaining times at the latest observation, and now */
 	long rows, n;
 	double first_t, grey;
@@ -45,6 +42,7 @@ static enum num_status open_bank(struct forecast *f)
 	if (f->by_gap || par->quantity == PAIR_LEAKAGE) {
 		f->other = (struct bank_shape){ .family = BANK_OTHER,
 			.par = f->by_gap ? -2 : 2. / 3,
+			.of_value = 1,
 			.log_prior = 3.3 };
 		bank.more = &f->other;
 		bank.n_more = 1;
@@ -88,24 +86,6 @@ void forecast_free(struct forecast *f)
 	free(f);
 }
 
-/* Gives a row to the bank, whose coordinates begin at the median of the first three
- * values on the good side of the limit. */
-static void follow(struct forecast *f, double t, double y, double threshold)
-{
-	double base;
-
-	if (f->starts < 3 && y < threshold) {
-		f->start[f->starts++] = y;
-		base = median_of_three(f->start[0], f->start[1], f->start[2]);
-		if (f->starts == 3 && base > 0)
-			f->other.scale = base / (threshold - base);
-		else if (f->starts == 3)
-			f->other.par = 0; /* without a gap the law is unknown: a second
-					     straight line */
-	}
-	bank_add(f->bank, t, y);
-}
-
 /* Samples of the time to the limit in f->later, if there are any: from four rows on. */
 static enum num_status passages(struct forecast *f, double t, double y, int run_in,
 	int later, const double **passage)
@@ -123,7 +103,7 @@ static enum num_status passages(struct forecast *f, double t, double y, int run_
 	}
 	threshold = f->by_gap ? limit : pair_value(&f->par.pair, f->par.quantity, limit);
 	if (!run_in && later)
-		follow(f, t, y, threshold);
+		bank_add(f->bank, t, y);
 	if (!bank_ready(f->bank))
 		return NUM_OK;
 	*passage = f->later;

@@ -1,6 +1,7 @@
 /* fleet.c - see fleet.h */
 #include "life/prior/fleet.h"
 #include "life/trend/passage.h"
+#include "num/room.h"
 #include "num/select.h"
 #include <math.h>
 #include <stdlib.h>
@@ -23,8 +24,10 @@ struct unit {
 	double t[3], y[3]; /* last rows, newest first; y times the direction */
 	double first, last;
 	struct bank *bank;
-	double *age, *level; /* rising */
-	int n, room;
+	struct point {
+		double age, level;
+	} * point; /* rising */
+	size_t n, room;
 	int shape; /* from 1; 0: none */
 };
 
@@ -32,6 +35,7 @@ struct fleet {
 	double threshold;
 	int direction;
 	struct unit *path;
+	size_t room;
 	int units;
 	struct bank_shape *shape;
 	double *grid; /* memory of the ages and levels of the shapes */
@@ -54,8 +58,7 @@ void fleet_free(struct fleet *f)
 	if (!f)
 		return;
 	for (int i = 0; i < f->units; i++) {
-		free(f->path[i].age);
-		free(f->path[i].level);
+		free(f->path[i].point);
 		bank_free(f->path[i].bank);
 	}
 	free(f->path);
@@ -75,31 +78,15 @@ int fleet_shape_of(const struct fleet *f, int unit)
 	return unit < f->units ? f->path[unit].shape : 0;
 }
 
-static enum num_status grow(struct unit *p)
-{
-	int room = p->n < 32 ? 64 : 2 * p->n;
-	double *age = realloc(p->age, (size_t)room * sizeof *age), *level;
-
-	if (age)
-		p->age = age;
-	level = age ? realloc(p->level, (size_t)room * sizeof *level) : NULL;
-	if (level)
-		p->level = level;
-	if (!level)
-		return NUM_MEMORY;
-	p->room = room;
-	return NUM_OK;
-}
-
 /* Adds a point to the path if both age and level exceed those of the last one. */
 static enum num_status rise(struct unit *p, double age, double level)
 {
-	if (p->n > 0 && (level <= p->level[p->n - 1] || age <= p->age[p->n - 1]))
+	if (p->n > 0 &&
+		(level <= p->point[p->n - 1].level || age <= p->point[p->n - 1].age))
 		return NUM_OK;
-	if (p->n == p->room && grow(p))
+	if (room_for(&p->point, &p->room, p->n + 1, sizeof *p->point))
 		return NUM_MEMORY;
-	p->age[p->n] = age;
-	p->level[p->n++] = level;
+	p->point[p->n++] = (struct point){ age, level };
 	return NUM_OK;
 }
 
@@ -107,15 +94,10 @@ static struct unit *path_of(struct fleet *f, int unit)
 {
 	struct bank_par par = { .threshold = f->threshold, .direction = f->direction };
 
-	if (unit >= f->units) {
-		struct unit *p = realloc(f->path, ((size_t)unit + 1) * sizeof *p);
-
-		if (!p)
-			return NULL;
-		f->path = p;
-		while (f->units <= unit)
-			f->path[f->units++] = (struct unit){ .bank = bank_new(&par) };
-	}
+	if (room_for(&f->path, &f->room, (size_t)unit + 1, sizeof *f->path))
+		return NULL;
+	while (f->units <= unit)
+		f->path[f->units++] = (struct unit){ .bank = bank_new(&par) };
 	return f->path[unit].bank ? &f->path[unit] : NULL;
 }
 
@@ -146,7 +128,8 @@ enum num_status fleet_add(struct fleet *f, int unit, double t, double y)
 static enum num_status carry_on(const struct fleet *f, struct unit *p)
 {
 	struct bank_chances *chances = bank_chances_new(DRAWS, 0);
-	double end = f->direction * f->threshold, from = p->level[p->n - 1], life[DRAWS];
+	double end = f->direction * f->threshold, from = p->point[p->n - 1].level,
+	       life[DRAWS];
 	size_t middle = DRAWS / 2;
 	enum num_status status = chances ? NUM_OK : NUM_MEMORY;
 
@@ -166,18 +149,19 @@ static enum num_status carry_on(const struct fleet *f, struct unit *p)
 /* Age at a level between the ends of a path. */
 static double age_at(const struct unit *p, double level)
 {
-	int k = 1;
+	const struct point *to = p->point + 1, *from;
 
-	while (k < p->n - 1 && p->level[k] < level)
-		k++;
-	return p->age[k - 1] + (p->age[k] - p->age[k - 1]) * (level - p->level[k - 1]) /
-				       (p->level[k] - p->level[k - 1]);
+	while (to < p->point + p->n - 1 && to->level < level)
+		to++;
+	from = to - 1;
+	return from->age +
+	       (to->age - from->age) * (level - from->level) / (to->level - from->level);
 }
 
 /* The path at evenly spaced levels up to the threshold; 0 if it has no length. */
 static int lay_out(const struct unit *p, double end, double *age, double *level)
 {
-	double from = p->level[0], to = fmin(end, p->level[p->n - 1]);
+	double from = p->point[0].level, to = fmin(end, p->point[p->n - 1].level);
 
 	for (int k = 0; k < LEVELS; k++) {
 		level[k] = from + (to - from) * k / (LEVELS - 1);
@@ -209,7 +193,7 @@ enum num_status fleet_build(struct fleet *f, int *failed, int *carried_on)
 			return NUM_MEMORY;
 		if (p->n < 2)
 			continue; /* no wear: no path */
-		reached = p->level[p->n - 1] >= end;
+		reached = p->point[p->n - 1].level >= end;
 		if (!reached && carry_on(f, p))
 			return NUM_MEMORY;
 		if (!lay_out(p, end, age, level))

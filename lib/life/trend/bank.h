@@ -74,6 +74,8 @@ enum bank_family {
 struct bank_shape {
 	unsigned family;
 	double scale, par, power;
+	int of_value;              /* 1: scale is instead the value at D = 0 over the way
+				    * to the threshold; without one above 0 g is 1 */
 	double log_prior;          /* of a path: of all paths together */
 	const double *age, *level; /* [n] of a path, rising; level is direction times y */
 	int n;                     /* 0: no path, else 2 or more */

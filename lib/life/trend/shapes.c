@@ -87,23 +87,28 @@ static void place_on_path(
 struct place place_of(const struct bank *b, int shape, double damage)
 {
 	const struct bank_shape *s = shape_of(b, shape);
-	double inside = fmax(0, fmin(1, damage));
+	double inside = fmax(0, fmin(1, damage)), scale = s->scale, par = s->par;
 	struct place p = { 0 };
+
+	if (s->of_value)
+		scale = b->base / b->range;
+	if (s->of_value && !(scale > 0))
+		par = 0;
 
 	if (s->n > 0) {
 		place_on_path(b, s, damage, &p);
 	} else if (s->family == BANK_SATURATING) {
 		p = place_where_it_saturates(s, inside);
-	} else if (s->scale > 0) {
-		double u = log1p(inside / s->scale), k = 1 - s->par;
+	} else if (scale > 0) {
+		double u = log1p(inside / scale), k = 1 - par;
 
-		p.log_slope = -s->par * u;
-		p.bend = -s->par / (s->scale + inside);
-		p.h = k == 0 ? s->scale * u : s->scale * expm1(k * u) / k;
+		p.log_slope = -par * u;
+		p.bend = -par / (scale + inside);
+		p.h = k == 0 ? scale * u : scale * expm1(k * u) / k;
 	} else {
-		p.log_slope = -s->par * inside;
-		p.bend = -s->par;
-		p.h = s->par == 0 ? inside : -expm1(-s->par * inside) / s->par;
+		p.log_slope = -par * inside;
+		p.bend = -par;
+		p.h = par == 0 ? inside : -expm1(-par * inside) / par;
 	}
 	if (s->n == 0)
 		p.h += (damage - inside) * exp(p.log_slope);
