@@ -33,7 +33,7 @@ static int tested(void)
 
 	if (!t)
 		return -1;
-	together_test(t, row, ROWS);
+	together_test(t, 2, row, ROWS);
 	for (int i = 0; i < ROWS; i++)
 		count += row[i].doubted;
 	together_free(t);
@@ -69,7 +69,7 @@ static void test_fewest(void)
 	near(tested(), 0, 0, "pulses of one size are no sums of two");
 	make_rows(0.3, 1.5, 1e-3);
 	for (int i = 0; i < ROWS; i++) {
-		row[i].amplitude = i % 2 ? 20 : 10;
+		row[i].amplitude = i % 2 ? 20 : i % 4 ? 12.5 : 7.5;
 		for (int k = 0; k < JOINT_SHARES && i % 8 == 1; k++)
 			row[i].odds[k] = pow(10, 6.0 * i / ROWS - 3);
 	}
@@ -103,6 +103,21 @@ static void test_sizes(void)
 	}
 	ok(rare > 10, "pulses of twice the usual size may be pairs: %d of 16", rare);
 	near(usual, 0, 0, "pulses of the usual size are not");
+}
+
+/* Sizes have an edge.  What lies beyond is more likely two usual particles than one
+ * unlike all others. */
+static void test_edge(void)
+{
+	int beyond = 0;
+
+	make_rows(0.3, 0, 0.03);
+	for (int i = 0; i < ROWS; i++)
+		row[i].amplitude = i % 64 ? 10 + 7 * fmod(0.618 * i, 1) : 21 + i / 32.0;
+	near(tested(), 4, 0, "pulses larger than all others are doubted");
+	for (int i = 0; i < ROWS; i += 64)
+		beyond += row[i].doubted;
+	near(beyond, 4, 0, "and no others");
 }
 
 static void test_weak(void)
@@ -209,6 +224,7 @@ int main(void)
 	test_how_often();
 	test_fewest();
 	test_sizes();
+	test_edge();
 	test_weak();
 	test_small(2);
 	test_small(6);

@@ -4,7 +4,6 @@
 #include "signal/filter/fir.h"
 #include "signal/fit/joint.h"
 #include "signal/noise/colour.h"
-#include "signal/noise/quiet.h"
 #include "tap.h"
 #include <stdlib.h>
 #include <string.h>
@@ -71,14 +70,15 @@ static void test_noise(const struct whitening *w, const double *h, size_t taps)
 	enum { BINS = SEGMENT / 2 + 1 };
 	double power[2][BINS], sum = 0, squares = 0, noise[2], error;
 	size_t skip = taps + (size_t)w->half, n = N - 2 * skip;
-	int quiets, bins = 0;
+	int segments, bins = 0;
 
 	for (unsigned c = 0; c < 2; c++) {
 		make_noise(y[c], N, 1, c);
 		pass_filter(h, taps, y[c], N);
 		whitening_apply(w, y[c], N);
 	}
-	quiet_spectrum(y[0] + skip, y[1] + skip, n, SEGMENT, power[0], power[1], &quiets);
+	colour_spectrum(
+		y[0] + skip, y[1] + skip, n, SEGMENT, power[0], power[1], &segments);
 	for (int k = 0; k < BINS; k++)
 		/* A Hann window leaks two bins far. */
 		if (k >= w->low * SEGMENT + 2 && k <= w->high * SEGMENT - 2) {
@@ -87,7 +87,7 @@ static void test_noise(const struct whitening *w, const double *h, size_t taps)
 		}
 	/* Half-overlapping Hann windows: 1.056 for the neighbouring segments, 1.94 for
 	 * the neighbouring bins. */
-	error = sqrt(1.056 * 1.94 / ((double)quiets * bins));
+	error = sqrt(1.056 * 1.94 / ((double)segments * bins));
 	near(sum / bins, 1, 4 * error, "whitened noise is white and of variance 1");
 	colour_level(y[0] + skip, y[1] + skip, n, w, noise);
 	/* A median of half the bins each, and those at the edges are less. */
@@ -195,11 +195,11 @@ static void test_filter(const struct fir_band *band, const char *name)
 
 /* White noise, with pulses of 50 standard deviations in burst of every spacing samples.
  */
-static void test_quiet(int spacing, int burst, const char *what)
+static void test_pulses(int spacing, int burst, const char *what)
 {
 	enum { SHORT = 256, BINS = SHORT / 2 + 1 };
 	double power[2][BINS], sum[2] = { 0 }, error;
-	int quiets;
+	int segments;
 
 	make_noise(y[0], N, 0.3, 2);
 	make_noise(y[1], N, 2, 3);
@@ -208,11 +208,11 @@ static void test_quiet(int spacing, int burst, const char *what)
 			for (int c = 0; c < 2; c++)
 				y[c][i] += (c ? 100 : 15) *
 					   sin(2 * acos(-1) * (i % 100) / 100.0);
-	quiet_spectrum(y[0], y[1], N, SHORT, power[0], power[1], &quiets);
+	colour_spectrum(y[0], y[1], N, SHORT, power[0], power[1], &segments);
 	for (int k = 1; k < BINS; k++)
 		for (int c = 0; c < 2; c++)
 			sum[c] += power[c][k] / (BINS - 1);
-	error = sqrt(1.056 * 1.94 / ((double)quiets * (BINS - 1)));
+	error = sqrt(1.056 * 1.94 / ((double)segments * (BINS - 1)));
 	near(sum[0] / 0.09, 1, 4 * error, what);
 	near(sum[1] / 4, 1, 4 * error, "the power of the other channel is right too");
 	ok(power[0][0] == power[0][1],
@@ -231,7 +231,7 @@ static void colour(double *x, size_t n, double a)
 static void test_colour(void)
 {
 	enum { LITTLE = 20480, TIMES = 100 };
-	double power[COLOUR_BINS], noise[2] = { 1, 2 }, a = 0.7, worst = 0, squares = 0;
+	double power[COLOUR_BINS], a = 0.7, worst = 0, squares = 0;
 	double mean = 0, most = 0, scatter;
 	size_t skip;
 	struct whitening w;
@@ -241,18 +241,17 @@ static void test_colour(void)
 	 * is nine times that from end to end. */
 	for (unsigned k = 0; k < TIMES; k++) {
 		make_noise(y[0], LITTLE, 1, 2 * k);
-		make_noise(y[1], LITTLE, 2, 2 * k + 1);
-		white += colour_power(y[0], y[1], LITTLE, noise, power) == NUM_OK &&
+		make_noise(y[1], LITTLE, 1, 2 * k + 1);
+		white += colour_power(y[0], y[1], LITTLE, power) == NUM_OK &&
 			 colour_is_white(power, 0);
 	}
 	ok(white == TIMES, "the whiteness test accepts white noise: %d of %d", white,
 		TIMES);
 	for (unsigned c = 0; c < 2; c++) {
-		make_noise(y[c], N, noise[c], c);
+		make_noise(y[c], N, 1, c);
 		colour(y[c], N, a);
 	}
-	ok(colour_power(y[0], y[1], N, noise, power) == NUM_OK &&
-			!colour_is_white(power, 0),
+	ok(colour_power(y[0], y[1], N, power) == NUM_OK && !colour_is_white(power, 0),
 		"the whiteness test rejects low-passed noise");
 	for (int k = 0; k < COLOUR_BINS; k++) {
 		double want = (1 - a * a) / (1 - 2 * a * cos(acos(-1) * k / 512) + a * a);
@@ -278,18 +277,16 @@ static void test_colour(void)
 	ok(w.low == 0 && w.high == 0.5, "no frequency is lost");
 	near(w.band, 1, 1e-3, "the band is the whole spectrum");
 	skip = (size_t)w.half;
-	for (unsigned c = 0; c < 2; c++) {
-		noise[c] *= sqrt(most);
+	for (unsigned c = 0; c < 2; c++)
 		whitening_apply(&w, y[c], N);
-	}
-	ok(colour_power(y[0] + skip, y[1] + skip, N - 2 * skip, noise, power) == NUM_OK &&
+	ok(colour_power(y[0] + skip, y[1] + skip, N - 2 * skip, power) == NUM_OK &&
 			colour_is_white(power, 0),
 		"the inverse makes the noise white");
 	mean = 0;
 	for (int k = 0; k < COLOUR_BINS; k++)
 		mean += power[k] / COLOUR_BINS;
 	/* The inverse was learned from this very noise: its scatter is gone. */
-	near(mean, 1, 4 / sqrt(N),
+	near(mean / most, 1, 4 / sqrt(N),
 		"the whitened noise has the mean power of the largest line");
 	test_pulse(&w, &(double){ 1 }, 1);
 	whitening_clear(&w);
@@ -299,7 +296,7 @@ int main(void)
 {
 	static const double silence[9];
 	struct whitening w;
-	int quiets;
+	int segments;
 
 	test_filter(&(struct fir_band){ 200, 0.007, 0.013, FIR_HAMMING, 0, 1 },
 		"70-130 Hz of 10 kHz, 201 taps");
@@ -309,14 +306,14 @@ int main(void)
 		"20-1500 Hz, 2001 taps");
 	test_filter(&(struct fir_band){ 200, 0, 0.05, FIR_HANN, 0, 1 },
 		"below 500 Hz, 201 taps");
-	test_quiet(0, 0, "the power of white noise is its variance at all frequencies");
-	test_quiet(10000, 3000,
+	test_pulses(0, 0, "the power of white noise is its variance at all frequencies");
+	test_pulses(10000, 3000,
 		"the power of the noise is right with bursts of pulses in 30 % of the record");
-	test_quiet(1000, 300,
+	test_pulses(1000, 300,
 		"the power of the noise is right with pulses spread over 30 % of the record");
-	ok(quiet_spectrum(y[0], y[1], 255, 256, y[0] + 1000, y[1] + 1000, &quiets) ==
+	ok(colour_spectrum(y[0], y[1], 255, 256, y[0] + 1000, y[1] + 1000, &segments) ==
 				NUM_OK &&
-			quiets == 0,
+			segments == 0,
 		"a record shorter than a segment gives no spectrum");
 	test_colour();
 	ok(whitening_of_noise(&w, silence, 9, WHITEN_COLOURED) == NUM_DOMAIN,

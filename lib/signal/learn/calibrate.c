@@ -16,13 +16,12 @@ static int is_constant(const double *x, size_t n)
 }
 
 /* One attempt, on the record whitened by w if w has taps.  c takes over w. */
-static enum separate_status attempt(const struct calibrate_par *par, const double *x1,
-	const double *x2, size_t n, const struct whitening *w, struct calibration *c,
-	struct look *look)
+static enum separate_status attempt(
+	struct look *look, const struct whitening *w, struct calibration *c)
 {
-	double *work = malloc(3 * n * sizeof *work);
+	size_t n = look->n, edge = n > 8 * (size_t)w->edge ? (size_t)w->edge : 0;
+	double *work = malloc((3 * n + 1) * sizeof *work);
 	enum separate_status status = work ? SEPARATE_OK : SEPARATE_MEMORY;
-	size_t edge = n > 8 * (size_t)w->edge ? (size_t)w->edge : 0;
 
 	memset(c, 0, sizeof *c);
 	c->whitening = *w;
@@ -32,7 +31,7 @@ static enum separate_status attempt(const struct calibrate_par *par, const doubl
 	for (int k = 0; work && k < 2; k++) {
 		double *y = work + (size_t)k * n;
 
-		memcpy(y, k ? x2 : x1, n * sizeof *work);
+		memcpy(y, look->x[k], n * sizeof *work);
 		if (!w->tap)
 			continue;
 		c->mean[k] = mean_of(y, n);
@@ -42,8 +41,8 @@ static enum separate_status attempt(const struct calibrate_par *par, const doubl
 			status = SEPARATE_MEMORY;
 	}
 	if (status == SEPARATE_OK)
-		status = measure(par, x1 + edge, work + edge, work + n + edge,
-			n - 2 * edge, work + 2 * n, look, c);
+		status = measure(look, look->x[0] + edge, work + edge, work + n + edge,
+			n - 2 * edge, work + 2 * n, c);
 	free(work);
 	look->work = c->work;
 	if (status != SEPARATE_OK)
@@ -59,9 +58,8 @@ static enum separate_status of_whitening(enum num_status status)
 				      : SEPARATE_NARROW;
 }
 
-static enum separate_status attempt_kind(const struct calibrate_par *par,
-	const double *x1, const double *x2, size_t n, enum whiten_kind kind,
-	struct look *look, struct calibration *c)
+static enum separate_status attempt_kind(
+	struct look *look, enum whiten_kind kind, struct calibration *c)
 {
 	struct whitening w;
 	enum separate_status status =
@@ -70,14 +68,13 @@ static enum separate_status attempt_kind(const struct calibrate_par *par,
 	look->kind = kind;
 	if (status != SEPARATE_OK)
 		return status;
-	return attempt(par, x1, x2, n, &w, c, look);
+	return attempt(look, &w, c);
 }
 
 /* Tries both explanations of noise that is not white: it was filtered with the pulses, or
  * coloured before they were added.  The better one is used once more, with its pulse
  * corrected. */
-static enum separate_status look_again(const struct calibrate_par *par, const double *x1,
-	const double *x2, size_t n, struct look *look, struct calibration *c)
+static enum separate_status look_again(struct look *look, struct calibration *c)
 {
 	static const enum whiten_kind kinds[] = { WHITEN_FILTERED, WHITEN_COLOURED };
 	enum whiten_kind found = WHITEN_FILTERED;
@@ -86,8 +83,7 @@ static enum separate_status look_again(const struct calibrate_par *par, const do
 
 	for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
 		struct calibration other;
-		enum separate_status status =
-			attempt_kind(par, x1, x2, n, kinds[k], look, &other);
+		enum separate_status status = attempt_kind(look, kinds[k], &other);
 
 		if (status == SEPARATE_MEMORY)
 			return status;
@@ -104,7 +100,7 @@ static enum separate_status look_again(const struct calibrate_par *par, const do
 		return SEPARATE_OK;
 	look->settled = 1;
 	calibration_clear(c);
-	return attempt_kind(par, x1, x2, n, found, look, c);
+	return attempt_kind(look, found, c);
 }
 
 /* 1 if the noise is white after all.  If little of the record is quiet, the pulses make
@@ -129,13 +125,15 @@ static const double LINES_WORK = 7;
  * their tails, or lines that last only as long as the train.  Uses fewer lines if with
  * them the pulses describe the record, and better; two attempts of which neither does say
  * nothing of the lines. */
-static enum separate_status try_fewer_tones(const struct calibrate_par *par,
-	const double *x1, const double *x2, size_t n, struct look *look,
-	struct calibration *c)
+static enum separate_status try_fewer_tones(struct look *look, struct calibration *c)
 {
+	const struct calibrate_par *par = look->par;
 	struct calibrate_par fewer = *par;
 	struct whitening w = { .tap = NULL };
-	struct look other_look = { .attempts = look->attempts,
+	struct look other_look = { .par = &fewer,
+		.x = { look->x[0], look->x[1] },
+		.n = look->n,
+		.attempts = look->attempts,
 		.work = look->work,
 		.seen = 1,
 		.wide = look->wide,
@@ -150,7 +148,8 @@ static enum separate_status try_fewer_tones(const struct calibrate_par *par,
 	if (fewer.tones == c->tones)
 		return SEPARATE_OK;
 	fewer.most = fmin(par->most, (1 + LINES_WORK) * look->work);
-	status = attempt(&fewer, x1, x2, n, &w, &other, &other_look);
+	status = attempt(&other_look, &w, &other);
+	other_look.par = par;
 	look->attempts = other_look.attempts;
 	look->work = other_look.work;
 	if (status != SEPARATE_OK)
@@ -190,16 +189,14 @@ static enum separate_status lacks_low(
 
 /* Whitens the noise and takes the pulse from that record; COLOURED if the pulse does not
  * describe it. */
-static enum separate_status attempt_white(const struct calibrate_par *par,
-	const double *x1, const double *x2, size_t n, struct look *look,
-	struct calibration *c)
+static enum separate_status attempt_white(struct look *look, struct calibration *c)
 {
 	struct look smooth = *look;
 	enum separate_status status;
 
 	if (colour_smooth(smooth.power) != NUM_OK)
 		return SEPARATE_MEMORY;
-	status = attempt_kind(par, x1, x2, n, WHITEN_COLOURED, &smooth, c);
+	status = attempt_kind(&smooth, WHITEN_COLOURED, c);
 	if (status == SEPARATE_MEMORY)
 		return status;
 	look->attempts = smooth.attempts;
@@ -219,15 +216,15 @@ static enum separate_status attempt_white(const struct calibrate_par *par,
 	return SEPARATE_COLOURED;
 }
 
-static enum separate_status find(const struct calibrate_par *par, const double *x1,
-	const double *x2, size_t n, struct look *look, struct calibration *c)
+static enum separate_status find(struct look *look, struct calibration *c)
 {
+	const struct calibrate_par *par = look->par;
 	enum separate_status status = SEPARATE_OK;
 	struct whitening w = { .tap = NULL };
 
-	if (is_constant(x1, n))
+	if (is_constant(look->x[0], look->n))
 		return SEPARATE_SILENT_1;
-	if (is_constant(x2, n))
+	if (is_constant(look->x[1], look->n))
 		return SEPARATE_SILENT_2;
 	if (par->filter)
 		status = of_whitening(
@@ -236,19 +233,19 @@ static enum separate_status find(const struct calibrate_par *par, const double *
 		return status;
 	look->first =
 		!par->filter && par->pulse == CALIBRATE_ANY_PULSE && isnan(par->duration);
-	status = attempt(par, x1, x2, n, &w, c, look);
+	status = attempt(look, &w, c);
 	if (status == SEPARATE_COLOURED) {
-		status = attempt_white(par, x1, x2, n, look, c);
+		status = attempt_white(look, c);
 		if (status != SEPARATE_COLOURED)
 			return status;
 		look->first = 0;
-		status = attempt(par, x1, x2, n, &w, c, look);
+		status = attempt(look, &w, c);
 	}
 	look->first = 0;
 	if (status == SEPARATE_OK && par->tones == CALIBRATE_FIND_TONES && !w.tap)
-		status = try_fewer_tones(par, x1, x2, n, look, c);
+		status = try_fewer_tones(look, c);
 	if (status == SEPARATE_OK && look->coloured && !c->dense && !is_white(c, look))
-		status = look_again(par, x1, x2, n, look, c);
+		status = look_again(look, c);
 	return status;
 }
 
@@ -264,16 +261,20 @@ static const double MORE_WORK = 2;
 /* Learns the instrument again with a wider range of delays, which is kept if the pulses
  * describe the record, and better: a pulse beyond a range that is too narrow takes two
  * within it. */
-static enum separate_status try_wide(const struct calibrate_par *par, const double *x1,
-	const double *x2, size_t n, struct look *look, struct calibration *c)
+static enum separate_status try_wide(struct look *look, struct calibration *c)
 {
-	struct look wide = { .attempts = look->attempts, .work = look->work, .wide = 1 };
-	struct calibrate_par limited = *par;
+	struct calibrate_par limited = *look->par;
+	struct look wide = { .par = &limited,
+		.x = { look->x[0], look->x[1] },
+		.n = look->n,
+		.attempts = look->attempts,
+		.work = look->work,
+		.wide = 1 };
 	struct calibration other = { 0 };
 	enum separate_status status;
 
-	limited.most = fmin(par->most, (1 + MORE_WORK) * look->work);
-	status = find(&limited, x1, x2, n, &wide, &other);
+	limited.most = fmin(limited.most, (1 + MORE_WORK) * look->work);
+	status = find(&wide, &other);
 	look->attempts = wide.attempts;
 	look->work = wide.work;
 	if (status == SEPARATE_OK && other.penalised < c->penalised &&
@@ -289,14 +290,14 @@ static enum separate_status try_wide(const struct calibrate_par *par, const doub
 enum separate_status calibrate(const struct calibrate_par *par, const double *x1,
 	const double *x2, size_t n, struct calibration *c)
 {
-	struct look look = { 0 };
+	struct look look = { .par = par, .x = { x1, x2 }, .n = n };
 	enum separate_status status;
 
 	memset(c, 0, sizeof *c);
-	status = find(par, x1, x2, n, &look, c);
+	status = find(&look, c);
 	if (status == SEPARATE_OK && c->far >= SOME && isnan(par->spread) &&
 		c->delta_max <= calibration_plug(c))
-		status = try_wide(par, x1, x2, n, &look, c);
+		status = try_wide(&look, c);
 	c->attempts = look.attempts;
 	c->work = look.work;
 	return status;

@@ -214,7 +214,7 @@ static enum separate_status learn_shape(const struct calibrate_par *par,
 		if (ex->pieces)
 			return learn_crowd(par, ex, y1, y2, n, c);
 	}
-	if (hint)
+	if (hint && hint->events && hint->elsewhere)
 		status = try_shape(
 			par, ex, y1, y2, n, hint->pulse, hint->duration, 1, c, &best);
 	for (int k = 0; k < (c->whitening.tap ? 1 : 3) && status == SEPARATE_OK; k++)
@@ -339,11 +339,24 @@ void learn_hidden(const struct calibrate_par *par, const struct calibration *c,
 	hidden[1] = use ? par->hidden[1] + c->shift : NULL;
 }
 
-/* Learns by the pulse taken from the record, or else by those of sensor.h, excluding the
- * samples that are not known. */
-static enum separate_status learn_known(const struct calibrate_par *par, const double *y1,
+/* Excludes impulses from the examples as well, by flags of 2 n samples, unless the pulses
+ * are so short that they are classified as impulses. */
+static void hide_spikes(struct examples *ex, const double *y1, const double *y2, size_t n,
+	double duration, unsigned char *flags)
+{
+	size_t spikes = spikes_find(y1, n, duration, flags) +
+			spikes_find(y2, n, duration, flags + n);
+
+	for (size_t c = 0; spikes > 0 && 10 * spikes < n && c < 2; c++) {
+		for (size_t i = 0; ex->hidden[c] && i < n; i++)
+			flags[c * n + i] |= ex->hidden[c][i];
+		ex->hidden[c] = flags + c * n;
+	}
+}
+
+/* Learns by the pulse taken from the record, or else by those of sensor.h. */
+static enum separate_status learn_by(const struct calibrate_par *par, const double *y1,
 	const double *y2, size_t n, double low, struct template *found,
-	const struct template *hint, const unsigned char *const hidden[2],
 	struct calibration *c)
 {
 	struct examples ex = { .joint = joint_new(),
@@ -351,13 +364,17 @@ static enum separate_status learn_known(const struct calibrate_par *par, const d
 		.shift = c->shift,
 		.before = c->work,
 		.most = par->most };
-	enum separate_status status = ex.joint ? SEPARATE_OK : SEPARATE_MEMORY;
+	unsigned char *flags = c->whitening.tap ? NULL : malloc(2 * n + 1);
+	enum separate_status status =
+		ex.joint && (flags || c->whitening.tap) ? SEPARATE_OK : SEPARATE_MEMORY;
 
-	memcpy(ex.hidden, hidden, sizeof ex.hidden);
-	if (found)
+	learn_hidden(par, c, ex.hidden);
+	if (flags)
+		hide_spikes(&ex, y1, y2, n, c->duration, flags);
+	if (found && found->shape)
 		take_template(c, found);
-	else if (ex.joint)
-		status = learn_shape(par, &ex, y1, y2, n, low, hint, c);
+	else if (status == SEPARATE_OK)
+		status = learn_shape(par, &ex, y1, y2, n, low, found, c);
 	if (status == SEPARATE_OK) {
 		examples_pick(&ex, y1, y2, n, EXAMPLES_MAX, c);
 		scene_of(c, &ex.scene);
@@ -377,36 +394,6 @@ static enum separate_status learn_known(const struct calibrate_par *par, const d
 	c->corrected = ex.corrected;
 	learn_range(par, &ex, c);
 	joint_free(ex.joint);
-	return status;
-}
-
-/* The same, excluding impulses, unless the pulses are so short that they are classified
- * as impulses. */
-static enum separate_status learn_by(const struct calibrate_par *par, const double *y1,
-	const double *y2, size_t n, double low, struct template *found,
-	const struct template *hint, struct calibration *c)
-{
-	const unsigned char *known[2];
-	unsigned char *flags = NULL;
-	size_t spikes = 0;
-	enum separate_status status = SEPARATE_OK;
-
-	learn_hidden(par, c, known);
-	if (!c->whitening.tap) {
-		flags = malloc(2 * n);
-		if (!flags)
-			return SEPARATE_MEMORY;
-		spikes = spikes_find(y1, n, c->duration, flags) +
-			 spikes_find(y2, n, c->duration, flags + n);
-	}
-	if (spikes > 0 && 10 * spikes < n) {
-		for (int k = 0; k < 2; k++)
-			for (size_t i = 0; known[k] && i < n; i++)
-				flags[(size_t)k * n + i] |= known[k][i];
-		known[0] = flags;
-		known[1] = flags + n;
-	}
-	status = learn_known(par, y1, y2, n, low, found, hint, known, c);
 	free(flags);
 	return status;
 }
@@ -419,17 +406,14 @@ enum separate_status learn_pulse(const struct calibrate_par *par, const double *
 	struct calibration *c)
 {
 	struct calibration known = *c;
-	enum separate_status status;
+	int taken = found && found->shape;
+	enum separate_status status = learn_by(par, y1, y2, n, low, found, c);
 
-	if (!found || !found->shape)
-		return learn_by(par, y1, y2, n, low, NULL,
-			found && found->events && found->elsewhere ? found : NULL, c);
-	known.shape = NULL;
-	status = learn_by(par, y1, y2, n, low, found, NULL, c);
-	known.work = c->work;
-	if (status != SEPARATE_OK || learn_describes(c) || found->alone)
+	if (!taken || status != SEPARATE_OK || learn_describes(c) || found->alone)
 		return status;
-	status = learn_by(par, y1, y2, n, low, NULL, NULL, &known);
+	known.shape = NULL;
+	known.work = c->work;
+	status = learn_by(par, y1, y2, n, low, NULL, &known);
 	if (status == SEPARATE_OK && known.penalised < c->penalised) {
 		shape_free(c->shape);
 		*c = known;

@@ -135,8 +135,7 @@ static enum num_status measure_noise(
 
 static enum separate_status look_for_colour(const struct record *rec, struct look *look)
 {
-	static const double one[2] = { 1, 1 };
-	enum num_status status = colour_power(rec->y1, rec->y2, rec->n, one, look->power);
+	enum num_status status = colour_power(rec->y1, rec->y2, rec->n, look->power);
 
 	look->coloured = status == NUM_OK && !colour_is_white(look->power, 0);
 	return status == NUM_MEMORY ? SEPARATE_MEMORY : SEPARATE_OK;
@@ -594,10 +593,10 @@ static enum separate_status set_peak(const double *raw, size_t n, double *work,
 	return status;
 }
 
-enum separate_status measure(const struct calibrate_par *par, const double *raw,
-	double *y1, double *y2, size_t n, double *work, struct look *look,
-	struct calibration *c)
+enum separate_status measure(struct look *look, const double *raw, double *y1, double *y2,
+	size_t n, double *work, struct calibration *c)
 {
+	const struct calibrate_par *par = look->par;
 	struct record rec = {
 		.y1 = y1, .y2 = y2, .n = n, .work = work, .wide = look->wide
 	};

@@ -10,8 +10,11 @@
 #include "signal/noise/colour.h"
 #include <stddef.h>
 
-/* Results of the first examination of the noise of the record. */
+/* What is known, the record, and results of the first examination of its noise. */
 struct look {
+	const struct calibrate_par *par;
+	const double *x[2]; /* n samples of either channel */
+	size_t n;
 	int attempts;
 	double work; /* samples of pulses computed so far */
 	int coloured;
@@ -35,8 +38,7 @@ int measure_white_above(const struct look *look, double duration);
 /* Fills the rest of c, whose whitening, mean, estimated and presumed_white are given,
  * from y1, y2[0 .. n), which are overwritten.  raw[0 .. n): y1 before whitening; work
  * holds n. */
-enum separate_status measure(const struct calibrate_par *par, const double *raw,
-	double *y1, double *y2, size_t n, double *work, struct look *look,
-	struct calibration *c);
+enum separate_status measure(struct look *look, const double *raw, double *y1, double *y2,
+	size_t n, double *work, struct calibration *c);
 
 #endif

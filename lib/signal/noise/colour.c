@@ -1,13 +1,114 @@
 /* colour.c - see colour.h */
 #include "signal/noise/colour.h"
-#include "num/fft.h"
+#include "num/periodogram.h"
 #include "num/sigmas.h"
-#include "signal/noise/quiet.h"
 #include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-enum { LONGEST = 2 * (COLOUR_BINS - 1), QUIETS = 16 };
+/* Samples of a segment, and fewest of them whose mean spectrum is used. */
+enum { LONGEST = 2 * (COLOUR_BINS - 1), FEWEST = 16 };
+
+/* Power of eight neighbouring bins of both channels, relative to that of the noise, which
+ * noise exceeds about once in 1e6. */
+static const double loud = 2.8;
+
+/* Periodograms of count half-overlapping segments, each of bins + 1 values. */
+static enum num_status transform(
+	const double *y, size_t segment, size_t count, double *power)
+{
+	size_t bins = segment / 2;
+	struct periodogram *p = periodogram_new(segment);
+
+	for (size_t i = 0; p && i < count; i++, power += bins + 1) {
+		for (size_t k = 0; k < segment; k++) {
+			double angle = 2 * M_PI * ((double)k + 0.5) / (double)segment;
+
+			p->x[k] = y[i * bins + k] * (0.5 - 0.5 * cos(angle));
+		}
+		periodogram_add(p, 8 / (3 * (double)segment), power, bins + 1);
+	}
+	periodogram_free(p);
+	return p ? NUM_OK : NUM_MEMORY;
+}
+
+/* Lower quartile of each bin, scaled to the mean of the exponential distribution. */
+static void quartile_spectrum(
+	const double *power, size_t bins, size_t count, double *work, double *spectrum)
+{
+	for (size_t k = 1; k <= bins; k++) {
+		for (size_t i = 0; i < count; i++)
+			work[i] = power[i * (bins + 1) + k];
+		spectrum[k] = robust_quantile(work, count, 0.25) / log(4.0 / 3);
+	}
+}
+
+static void mean_spectrum(const double *power, size_t bins, size_t count,
+	const char *noise, int segments, double *spectrum)
+{
+	memset(spectrum, 0, (bins + 1) * sizeof *spectrum);
+	for (size_t i = 0; i < count; i++, power += bins + 1)
+		for (size_t k = 1; noise[i] && k <= bins; k++)
+			spectrum[k] += power[k] / segments;
+}
+
+/* 1 if no group of bins of this segment, whose channels are apart, exceeds the spectra
+ * significantly. */
+static int is_noise(
+	const double *power, size_t apart, double *const spectrum[2], size_t bins)
+{
+	enum { GROUP = 8 };
+	double sum = 0;
+
+	for (size_t k = 1; k <= bins; k++) {
+		for (int c = 0; c < 2; c++)
+			if (spectrum[c][k] > 0)
+				sum += power[(size_t)c * apart + k] / spectrum[c][k];
+		if (k % GROUP)
+			continue;
+		if (sum > loud * 2 * GROUP)
+			return 0;
+		sum = 0;
+	}
+	return 1;
+}
+
+enum num_status colour_spectrum(const double *y1, const double *y2, size_t n,
+	size_t segment, double *power1, double *power2, int *found)
+{
+	enum { PASSES = 4 };
+	size_t bins = segment / 2, count = n / bins > 1 ? n / bins - 1 : 0;
+	size_t all = count * (bins + 1);
+	double *power = calloc(2 * all + count + 1, sizeof *power);
+	double *const spectrum[2] = { power1, power2 };
+	char *noise = malloc(count + 1);
+	enum num_status status =
+		power && noise ? transform(y1, segment, count, power) : NUM_MEMORY;
+
+	*found = 0;
+	if (status == NUM_OK)
+		status = transform(y2, segment, count, power + all);
+	for (int c = 0; c < 2 && status == NUM_OK; c++)
+		quartile_spectrum(power + (size_t)c * all, bins, count, power + 2 * all,
+			spectrum[c]);
+	for (int pass = 0; pass < PASSES && status == NUM_OK; pass++) {
+		*found = 0;
+		for (size_t i = 0; i < count; i++) {
+			noise[i] = (char)is_noise(
+				power + i * (bins + 1), all, spectrum, bins);
+			*found += noise[i];
+		}
+		for (int c = 0; c < 2 && *found > 0; c++)
+			mean_spectrum(power + (size_t)c * all, bins, count, noise, *found,
+				spectrum[c]);
+		for (int c = 0; c < 2; c++)
+			spectrum[c][0] = spectrum[c][1];
+	}
+	free(power);
+	free(noise);
+	return status;
+}
 
 /* Power of the whitened noise relative to white noise. */
 static double level(const struct whitening *w, double *power, size_t segment)
@@ -26,15 +127,15 @@ enum num_status colour_level(const double *y1, const double *y2, size_t n,
 	double least = 4 / (w->high - w->low);
 	double *power = malloc((LONGEST + 2) * sizeof *power);
 	enum num_status status = power ? NUM_OK : NUM_MEMORY;
-	int quiets = 0;
+	int segments = 0;
 
-	for (size_t segment = LONGEST; status == NUM_OK && quiets < QUIETS;
+	for (size_t segment = LONGEST; status == NUM_OK && segments < FEWEST;
 		segment /= 2) {
 		double *other = power + segment / 2 + 1;
 
 		if (segment < 64 || (segment < LONGEST && (double)segment < least))
 			break;
-		status = quiet_spectrum(y1, y2, n, segment, power, other, &quiets);
+		status = colour_spectrum(y1, y2, n, segment, power, other, &segments);
 		if (status != NUM_OK)
 			break;
 		noise[0] = sqrt(level(w, power, segment));
@@ -87,22 +188,19 @@ static enum num_status sharpen(double *power, size_t bins)
 	return status == NUM_OK ? positive_spectrum(power, bins) : status;
 }
 
-enum num_status colour_power(const double *y1, const double *y2, size_t n,
-	const double noise[2], double power[COLOUR_BINS])
+enum num_status colour_power(
+	const double *y1, const double *y2, size_t n, double power[COLOUR_BINS])
 {
-	double *part = malloc(2 * COLOUR_BINS * sizeof *part);
-	int quiets = 0;
-	enum num_status status = part ? quiet_spectrum(y1, y2, n, LONGEST, part,
-						part + COLOUR_BINS, &quiets)
-				      : NUM_MEMORY;
+	double other[COLOUR_BINS];
+	int segments;
+	enum num_status status =
+		colour_spectrum(y1, y2, n, LONGEST, power, other, &segments);
 
-	for (int k = 0; quiets > 0 && k < COLOUR_BINS; k++)
-		power[k] = 0.5 * (part[k] / (noise[0] * noise[0]) +
-					 part[COLOUR_BINS + k] / (noise[1] * noise[1]));
-	free(part);
 	if (status != NUM_OK)
 		return status;
-	return quiets >= QUIETS ? sharpen(power, COLOUR_BINS) : NUM_DOMAIN;
+	for (int k = 0; k < COLOUR_BINS; k++)
+		power[k] = 0.5 * (power[k] + other[k]);
+	return segments >= FEWEST ? sharpen(power, COLOUR_BINS) : NUM_DOMAIN;
 }
 
 /* Twice the last of the first whole lags at which an autocorrelation exceeds its scatter,

@@ -11,15 +11,25 @@
 enum { COLOUR_BINS = 513 };
 
 /* Standard deviations that the noise of y1, y2[0 .. n), whitened by w, would have if its
- * band were the whole spectrum; too large if hardly any stretch is quiet. */
+ * band were the whole spectrum; too large if hardly any stretch is without pulses. */
 enum num_status colour_level(const double *y1, const double *y2, size_t n,
 	const struct whitening *w, double noise[2]);
 
+/* power1, power2[k], 0 < k <= segment / 2: of the noise of y1, y2[0 .. n) at frequency k
+ * / segment, v for white noise of variance v; those at 0 are those at 1.  segment: even.
+ *
+ * The record is cut into half-overlapping segments under a Hann window.  A first spectrum
+ * is the lower quartile of each frequency over all segments, which pulses in up to half
+ * of them change little; then, repeated a few times, the mean of the segments whose power
+ * nowhere exceeds the last spectrum significantly.  *found: number of these; 0: the
+ * spectra are unknown. */
+enum num_status colour_spectrum(const double *y1, const double *y2, size_t n,
+	size_t segment, double *power1, double *power2, int *found);
+
 /* Spectrum of the noise at COLOUR_BINS frequencies from 0 to half the rate, the mean of
- * both channels in units of noise^2, smoothed.  NUM_DOMAIN if fewer than
- * 16 segments are quiet. */
-enum num_status colour_power(const double *y1, const double *y2, size_t n,
-	const double noise[2], double power[COLOUR_BINS]);
+ * both channels, smoothed.  NUM_DOMAIN if fewer than 16 segments hold only noise. */
+enum num_status colour_power(
+	const double *y1, const double *y2, size_t n, double power[COLOUR_BINS]);
 /* Removes from such a spectrum the contribution of lags at which the noise is not
  * correlated.  It would roughen the spectrum, and a filter made from it would ring. */
 enum num_status colour_smooth(double power[COLOUR_BINS]);

@@ -4,6 +4,7 @@
 #include "num/dot.h"
 #include "num/parabola.h"
 #include "num/periodogram.h"
+#include "num/select.h"
 #include "signal/noise/robust.h"
 #include <math.h>
 #include <stdlib.h>
@@ -25,13 +26,6 @@ static int by_power(const void *x, const void *y)
 	const struct line *p = x, *q = y;
 
 	return p->power > q->power ? -1 : p->power < q->power;
-}
-
-static int by_omega(const void *x, const void *y)
-{
-	const struct line *p = x, *q = y;
-
-	return p->omega < q->omega ? -1 : p->omega > q->omega;
 }
 
 /* Pulses are clipped to a few times the usual sample, which includes the lines:
@@ -82,9 +76,9 @@ static int pick_lines(const double *power, size_t n, int max, double *omega)
 	qsort(line, (size_t)count, sizeof *line, by_power);
 	if (count > max)
 		count = max;
-	qsort(line, (size_t)count, sizeof *line, by_omega);
 	for (int i = 0; i < count; i++)
 		omega[i] = line[i].omega;
+	sort_numbers(omega, (size_t)count);
 	return count;
 }
 
@@ -264,9 +258,9 @@ static enum num_status fit_masked(struct basis *b, double term[][RUN], const dou
 }
 
 /* Marks the samples at which the mean square of rest over some neighbours is at most
- * twice its median, that is, the quiet ones.  Returns that median; work and sorted hold
- * n. */
-static double mark_quiet(
+ * twice its median, that is, those without pulses.  Returns that median; work and sorted
+ * hold n. */
+static double mark_pulse_free(
 	const double *rest, size_t n, double *work, double *sorted, unsigned char *mask)
 {
 	size_t half = n / 1024 > 8 ? n / 1024 : 8, count = 0;
@@ -315,7 +309,7 @@ enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
 		coefficient[0] = robust_median(rest, n);
 		memcpy(y, x, n * sizeof *x);
 	}
-	/* At first the rest is the record itself: it is quiet everywhere if tones
+	/* At first the rest is the record itself: it is even everywhere if tones
 	 * dominate, otherwise between the pulses. */
 	for (int pass = 0; !status && pass < PASSES; pass++) {
 		for (size_t r = 0; r < runs; r++)
@@ -323,7 +317,7 @@ enum tones_status tones_fit(const double *x, size_t n, double start, int tones,
 				rest + r * RUN);
 		for (size_t i = 0; i < n; i++)
 			rest[i] = x[i] - rest[i];
-		level = mark_quiet(rest, n, rest + room, rest + 2 * room, mask);
+		level = mark_pulse_free(rest, n, rest + room, rest + 2 * room, mask);
 		if (fit_masked(&basis, term, y, mask, runs, coefficient, variance)) {
 			memset(mask, 1, n);
 			if (fit_masked(

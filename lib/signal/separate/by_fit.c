@@ -107,8 +107,7 @@ enum separate_status separate_fit_section(
 	long before = 0, after = 0;
 	size_t n;
 
-	/* The quiet samples on either side of a section show that no pulse extends there.
-	 */
+	/* The noise on either side of a section shows that no pulse extends there. */
 	if (!both) {
 		before = s->window == SEEK ? sections_aside(s->sections, 0) : 0;
 		before = from - s->buffer[0].begin < before

@@ -157,10 +157,6 @@ static enum separate_status learn_from(struct separate *s, size_t n, double shar
  * more of these is learned from, the better. */
 enum { SHORT = 32 };
 
-/* Fewest pulses that are believed to be long: a transit time, a duration and a gain are
- * learned from them, and a baseline that drifts looks like one or two. */
-enum { PULSES = 3 };
-
 /* Separates means from now on, if an instrument can be learned from them whose pulses
  * are not too short; otherwise s is as before.  share: of the work that may be done.
  * *duration: of a pulse, in means; 0: not learned. */
@@ -184,7 +180,7 @@ static enum separate_status learn_from_means(
 	status = learn_from(s, n, share);
 	if (status == SEPARATE_OK)
 		*duration = s->cal.duration;
-	if (*duration >= SHORT && s->cal.events >= PULSES) {
+	if (*duration >= SHORT) {
 		separate_clear_buffers(fine);
 		separate_convert(s, ratio);
 		return start(s, n);

@@ -167,8 +167,9 @@ static void make_part(struct fit *f, int i, int c, const struct quadrature_pulse
 				f->vector[c] + (size_t)b * f->n + first, part->n);
 }
 
-/* Subtracts the pulses from the record; returns chi-square. */
-static double subtract_pulses(struct fit *f, const struct quadrature_pulse *p)
+/* Makes the parts of these pulses and subtracts them from the record; returns
+ * chi-square. */
+static double chi_square(struct fit *f, const struct quadrature_pulse *p)
 {
 	double chi2 = 0;
 
@@ -178,6 +179,7 @@ static double subtract_pulses(struct fit *f, const struct quadrature_pulse *p)
 		for (int i = 0; i < f->m; i++) {
 			const struct part *part = &f->part[2 * i + c];
 
+			make_part(f, i, c, &p[i]);
 			for (size_t k = 0; k < part->n; k++) {
 				double value = part->f[PULSE][k];
 
@@ -199,14 +201,6 @@ static double subtract_pulses(struct fit *f, const struct quadrature_pulse *p)
 			}
 	}
 	return chi2;
-}
-
-static double chi_square(struct fit *f, const struct quadrature_pulse *p)
-{
-	for (int i = 0; i < f->m; i++)
-		for (int c = 0; c < 2; c++)
-			make_part(f, i, c, &p[i]);
-	return subtract_pulses(f, p);
 }
 
 /* Effect of parameter k of a pulse on its two components: the function of time that is
@@ -284,50 +278,18 @@ static void make_block(struct fit *f, const struct quadrature_pulse *p, int i, i
 		}
 }
 
-/* Factor of the normal matrix in its place; NUM_DOMAIN: it is singular. */
-static enum num_status factorise(double *a, int n)
-{
-	return cholesky_factor(a, (size_t)n, (size_t)n, 1e-13);
-}
-
 /* Normal matrix, factorised, and gradient of the parts as they are; NUM_DOMAIN:
  * singular. */
 static enum num_status make_normal(struct fit *f, const struct quadrature_pulse *p)
 {
+	size_t all = PARAMETERS * (size_t)f->m;
+
 	for (int i = 0; i < f->m; i++) {
 		make_gradient(f, p, i);
 		for (int j = 0; j <= i; j++)
 			make_block(f, p, i, j);
 	}
-	return factorise(f->normal, PARAMETERS * f->m);
-}
-
-/* The best b for the arrivals found in x. */
-static enum num_status guess_quadrature(struct fit *f, struct quadrature_pulse *p)
-{
-	int m = f->m;
-	double *a = f->normal;
-
-	for (int i = 0; i < m; i++) {
-		for (int j = 0; j <= i; j++) {
-			double sum = 0;
-
-			for (int c = 0; c < 2; c++)
-				sum += f->q->metric[c][1][1] *
-				       product(f, &f->part[2 * i + c], PULSE,
-					       &f->part[2 * j + c], PULSE);
-			a[i * m + j] = sum;
-		}
-		make_gradient(f, p, i);
-	}
-	for (int i = 0; i < m; i++)
-		f->gradient[i] = f->gradient[PARAMETERS * i + B];
-	if (factorise(a, m) != NUM_OK)
-		return NUM_DOMAIN;
-	cholesky_solve(a, (size_t)m, (size_t)m, f->gradient);
-	for (int i = 0; i < m; i++)
-		p[i].b = f->gradient[i];
-	return NUM_OK;
+	return cholesky_factor(f->normal, all, all, 1e-13);
 }
 
 /* A step, limited as in the joint fit (joint_step.c). */
@@ -347,8 +309,8 @@ static struct quadrature_pulse moved(const struct fit *f,
 	return p;
 }
 
-/* Gauss-Newton steps, halved while chi-square does not decrease; after a fit of x two or
- * three are enough. */
+/* Gauss-Newton steps, halved while chi-square does not decrease; after a fit of x, from
+ * b = 0, three or four are enough. */
 static enum num_status improve(struct fit *f, struct quadrature_pulse *p, double *chi2)
 {
 	enum { STEPS = 8, HALVES = 4 };
@@ -437,12 +399,8 @@ enum num_status quadrature_fit(const struct quadrature *q, const struct joint *j
 			};
 		all = chi_square(&f, out);
 	}
-	if (status == NUM_OK && m > 0) {
-		status = guess_quadrature(&f, out);
-		all = subtract_pulses(&f, out);
-		if (status == NUM_OK)
-			status = improve(&f, out, &all);
-	}
+	if (status == NUM_OK && m > 0)
+		status = improve(&f, out, &all);
 	if (status == NUM_OK) {
 		fill_covariance(&f, out);
 		*doubt = is_doubtful(&f, all, chi2);

@@ -96,7 +96,9 @@ static enum separate_status test_pairs(struct separate *s, size_t n)
 			}
 			a[m++].doubted = q[i].row.verdict >= SEPARATE_MISFIT;
 		}
-	together_test(s->together, a, m);
+	/* Errors of a shape decay in two durations, but it may be known as far as it
+	 * reaches only, and then pulses are fitted to what lies beyond. */
+	together_test(s->together, fmax(2, 2 * shape_reach(s->cal.shape)), a, m);
 	m = 0;
 	for (size_t i = 0; i < n; i++)
 		if (q[i].arrival.group && a[m++].doubted &&

@@ -22,10 +22,9 @@ static const double SHARE = 0.006;
  * ones may have been fitted as one. */
 static const double NEAR = 0.1, FAR = 0.6;
 
-/* Height over that of the nearest larger pulse, and distance from it in durations, below
- * which a pulse may be an error of the shape of the larger one: residuals of a shape are
- * smaller, and decay with the pulse. */
-static const double WEAK = 0.1, BESIDE = 2;
+/* Height over that of the nearest larger pulse below which a pulse near it may be an
+ * error of the shape of the larger one: residuals of a shape are smaller. */
+static const double WEAK = 0.1;
 
 /* Probability that rows in company are doubted in a sound record because too many of them
  * are smaller than any that stands alone. */
@@ -36,11 +35,13 @@ struct together {
 	int alone[LATELY];     /* all of these rows */
 	double size[LATELY];   /* logarithms of amplitudes of rows not doubted */
 	int weak[LATELY];      /* beside larger pulses */
-	int followers[LATELY]; /* pulses between NEAR and FAR behind each, not weak */
-	double wrong[LATELY];  /* probabilities */
+	int followers[LATELY]; /* NEAR to FAR behind each; -1: it is weak */
+	double wrong[LATELY], pair[LATELY];  /* probabilities */
 	double off[LATELY], off_var[LATELY]; /* of arrivals */
 	size_t rows, all;                    /* taken in so far: not doubted, and all */
-	double density, width;      /* followers per duration; of the kernel of sizes */
+	double density;                      /* followers per duration */
+	double mean, sd, width;              /* of sizes, and of their kernel */
+	double beside;                       /* pulses nearer than this overlap */
 	double astray;              /* share of delays that are not of the flow */
 	double flow_var, least_var; /* variance of the others, and a bound of it */
 	double least;               /* rows in company that are smaller are none */
@@ -69,9 +70,9 @@ static size_t held(size_t count)
 
 static int count_followers(const struct arrival *a, size_t i, size_t n)
 {
-	int count = 0;
+	int count = a[i].weak ? -1 : 0;
 
-	for (size_t k = i + 1; k < n && a[k].group == a[i].group; k++) {
+	for (size_t k = i + 1; count >= 0 && k < n && a[k].group == a[i].group; k++) {
 		double apart = a[k].time - a[i].time;
 
 		if (apart > FAR)
@@ -82,57 +83,111 @@ static int count_followers(const struct arrival *a, size_t i, size_t n)
 }
 
 /* 1 if pulse i is weak beside one of those on one side of it, step 1 or -1. */
-static int is_weak_beside(const struct arrival *a, size_t i, size_t n, int step)
+static int is_weak_beside(
+	const struct arrival *a, size_t i, size_t n, double beside, int step)
 {
 	for (size_t k = i + (size_t)step;
-		k < n && a[k].group == a[i].group && fabs(a[k].time - a[i].time) < BESIDE;
+		k < n && a[k].group == a[i].group && fabs(a[k].time - a[i].time) < beside;
 		k += (size_t)step)
 		if (fabs(a[i].amplitude) < WEAK * fabs(a[k].amplitude))
 			return 1;
 	return 0;
 }
 
-/* How often pulses follow, and the width of a Gaussian kernel for their sizes (Silverman,
- * Density Estimation, 1986, eq. 3.28).  Rows count as far as they are believed. */
+static double kernel(double x, double width)
+{
+	double z = x / width;
+
+	return exp(-0.5 * z * z) / (sqrt(2 * M_PI) * width);
+}
+
+/* Density of the sizes of particles unlike any other. */
+static double unlike(const struct together *t, double x)
+{
+	double off = x - t->mean;
+
+	return t->sd / (M_PI * (t->sd * t->sd + off * off));
+}
+
+/* Probability density of the logarithm of the amplitude of row self, were it one
+ * particle, with standard error blur: that of the others, as far as they are believed,
+ * and, as one among them, of a particle unlike any other (a Dirichlet process, Ferguson,
+ * Ann. Stat. 1, 1973). */
+static double size_density(const struct together *t, double x, size_t self, double blur)
+{
+	double sum = unlike(t, x), all = 1, width = hypot(t->width, blur);
+
+	for (size_t i = 0; i < held(t->rows); i++)
+		if (i != self) {
+			sum += (1 - t->wrong[i]) * kernel(x - t->size[i], width);
+			all += 1 - t->wrong[i];
+		}
+	return sum / all;
+}
+
+/* The width of the kernel, of the widest, its half, and so on, that foretells each size
+ * best from the others.  The widest is right for a normal distribution (Silverman,
+ * Density Estimation, 1986, eq. 3.28), narrower ones for steep edges, beyond which there
+ * are only pairs. */
+static double best_width(const struct together *t, double widest)
+{
+	enum { WIDTHS = 4 };
+	double others[LATELY][WIDTHS] = { { 0 } }, most = -INFINITY, best = widest;
+
+	for (size_t i = 0; i < held(t->rows); i++)
+		for (size_t k = 0; k < i; k++) {
+			double z = (t->size[i] - t->size[k]) / widest;
+			double one = exp(-0.5 * z * z);
+
+			/* Of half the width it is the fourth power. */
+			for (int w = 0; w < WIDTHS; w++, one *= one * one * one) {
+				others[i][w] += (1 - t->wrong[k]) * one;
+				others[k][w] += (1 - t->wrong[i]) * one;
+			}
+		}
+	for (int w = 0; w < WIDTHS; w++) {
+		double width = ldexp(widest, -w), sum = 0;
+
+		for (size_t i = 0; i < held(t->rows); i++)
+			sum += (1 - t->wrong[i]) *
+			       log(unlike(t, t->size[i]) +
+				       others[i][w] / (sqrt(2 * M_PI) * width));
+		if (sum > most) {
+			most = sum;
+			best = width;
+		}
+	}
+	return best;
+}
+
+/* How often pulses follow, and how large they are.  Rows count as far as they are
+ * believed; a pulse that follows may hide another one. */
 static void learn(struct together *t)
 {
-	double n = 0, strong = 0, sum = 0, mean = 0, square = 0;
+	double n = 0, strong = 0, pairs = 0, mean = 0, square = 0, sum = 0, followed = 0;
 
 	for (size_t i = 0; i < held(t->all); i++)
-		sum += t->followers[i];
+		if (t->followers[i] >= 0) {
+			sum += t->followers[i];
+			followed++;
+		}
 	for (size_t i = 0; i < held(t->rows); i++) {
 		n += 1 - t->wrong[i];
 		strong += t->weak[i] ? 0 : 1 - t->wrong[i];
+		pairs += t->pair[i];
 		mean += (1 - t->wrong[i]) * t->size[i];
 	}
 	n = fmax(n, 1);
 	mean /= n;
 	for (size_t i = 0; i < held(t->rows); i++)
 		square += (1 - t->wrong[i]) * pow(t->size[i] - mean, 2);
-	t->density = n / fmax(strong, 1) * sum / (double)held(t->all) / (FAR - NEAR);
-	t->width = fmax(1.06 * sqrt(square / n) * pow(n, -0.2), 0.01);
-}
-
-static double kernel(const struct together *t, double x)
-{
-	double z = x / t->width;
-
-	return exp(-0.5 * z * z) / (sqrt(2 * M_PI) * t->width);
-}
-
-/* Probability density of the logarithm of the amplitude of one particle: rows count as
- * far as they are believed, but for the one that is asked for, which counts as own. */
-static double size_density(const struct together *t, double x, size_t self, double own)
-{
-	double sum = 0, all = 0;
-
-	for (size_t i = 0; i < held(t->rows); i++) {
-		double one = i == self ? own : 1 - t->wrong[i];
-
-		sum += one * kernel(t, x - t->size[i]);
-		all += one;
-	}
-	return all > 0 ? sum / all : 0;
+	t->density = n / fmax(strong, 1) * (1 + pairs / (double)held(t->rows)) * sum /
+		     fmax(followed, 1) / (FAR - NEAR);
+	t->mean = mean;
+	t->sd = fmax(sqrt(square / n), 0.01);
+	t->width = 1.06 * t->sd * pow(n, -0.2);
+	if (t->density > 0)
+		t->width = best_width(t, t->width);
 }
 
 /* Probability that a row is a pair.  With f the density of amplitudes, pairs of sum A and
@@ -145,13 +200,14 @@ static double pair_probability(
 
 	if (t->density == 0)
 		return 0;
-	one = size_density(t, x, self, 1);
+	one = size_density(t, x, self, 0);
 	for (int k = 0; k < JOINT_SHARES; k++) {
-		double w = joint_share(k);
+		double w = joint_share(k), step = JOINT_SHARE_STEP / sqrt(12);
 
 		odds += a->odds[k] * JOINT_SHARE_STEP *
-			size_density(t, x + log(w), self, 1) *
-			size_density(t, x + log(1 - w), self, 1) / (w * (1 - w) * one);
+			size_density(t, x + log(w), self, step / w) *
+			size_density(t, x + log(1 - w), self, step / (1 - w)) /
+			(w * (1 - w) * one);
 	}
 	odds *= t->density;
 	return odds / (1 + odds);
@@ -166,10 +222,10 @@ static double shape_probability(const struct together *t, double x, size_t self)
 
 	for (size_t i = 0; i < held(t->rows); i++) {
 		larger += (t->size[i] + log(WEAK) > x) * (1 - t->wrong[i]);
-		seen += t->weak[i] ? kernel(t, x - t->size[i]) : 0;
+		seen += t->weak[i] ? kernel(x - t->size[i], t->width) : 0;
 	}
-	random = larger * t->density * 2 * BESIDE * size_density(t, x, self, 0);
-	random += 2 * sqrt(random * kernel(t, 0));
+	random = larger * t->density * 2 * t->beside * size_density(t, x, self, 0);
+	random += 2 * sqrt(random * kernel(0, t->width));
 	return fmax(1 - random / seen, 0);
 }
 
@@ -287,6 +343,7 @@ static void tell(
 					? astray_probability(t, a[i].off, a[i].off_var)
 					: 0;
 			t->wrong[self] = wrong(&a[i]);
+			t->pair[self] = a[i].pair;
 		}
 }
 
@@ -303,7 +360,7 @@ static void test_some(
 		if (!a[i].doubted) {
 			size_t at = t->rows++ % LATELY;
 
-			t->wrong[at] = 0;
+			t->wrong[at] = t->pair[at] = 0;
 			t->off[at] = a[i].off;
 			if (a[i].off_var > 0)
 				t->least_var = a[i].flow_var;
@@ -325,10 +382,12 @@ static void test_some(
 		a[i].doubted |= wrong(&a[i]) > t->limit;
 }
 
-void together_test(struct together *t, struct arrival *a, size_t n)
+void together_test(struct together *t, double beside, struct arrival *a, size_t n)
 {
+	t->beside = beside;
 	for (size_t i = 0; i < n; i++) {
-		a[i].weak = is_weak_beside(a, i, n, 1) || is_weak_beside(a, i, n, -1);
+		a[i].weak = is_weak_beside(a, i, n, beside, 1) ||
+			    is_weak_beside(a, i, n, beside, -1);
 		a[i].alone = (i == 0 || a[i - 1].group != a[i].group) &&
 			     (i + 1 == n || a[i + 1].group != a[i].group);
 	}

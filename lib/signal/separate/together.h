@@ -49,7 +49,8 @@ struct together;
 struct together *together_new(void); /* NULL: no memory */
 void together_free(struct together *t);
 
-/* Takes in n arrivals, groups undivided and in order, and tests them. */
-void together_test(struct together *t, struct arrival *a, size_t n);
+/* Takes in n arrivals, groups undivided and in order, and tests them.  Pulses nearer than
+ * beside, in durations, overlap. */
+void together_test(struct together *t, double beside, struct arrival *a, size_t n);
 
 #endif

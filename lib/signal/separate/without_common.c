@@ -67,12 +67,12 @@ static long long pulse_length(const struct separate *s)
 
 long long separate_common_reach(const struct separate *s)
 {
-	/* Of the quiet samples beside the section, and of pulses that reach into them. */
+	/* Of the noise beside the section, and of pulses that reach into it. */
 	return s->common.correlation == 0 ? 0 : s->cal.shift + 2 * pulse_length(s);
 }
 
 /* 1 if the matched filter of the samples tells of no pulse; work holds one of them. */
-static int is_quiet(const struct separate *s, const double *x, size_t n, double *work)
+static int is_noise(const struct separate *s, const double *x, size_t n, double *work)
 {
 	double T = s->cal.duration, norm = 1 / sqrt(T * shape_energy(s->cal.shape));
 	size_t len;
@@ -120,7 +120,7 @@ static enum separate_status noise_beside(struct separate *s, long long from, siz
 		memcpy(y[k], t->x + (begin - t->begin), length * sizeof(double));
 	}
 	subtract(s, a->pulse, a->m, (double)(from - at), y, length);
-	if (!is_quiet(s, y[other] + pad, n, work)) {
+	if (!is_noise(s, y[other] + pad, n, work)) {
 		struct joint_scene around = s->scene;
 		struct joint_pulse pulse[JOINT_PULSES_MAX];
 		struct joint_result r;
@@ -138,7 +138,7 @@ static enum separate_status noise_beside(struct separate *s, long long from, siz
 			return status == JOINT_MEMORY ? SEPARATE_MEMORY : SEPARATE_WIDE;
 		subtract(s, pulse, m, 0, y, length);
 	}
-	if (is_quiet(s, y[other] + pad, n, work))
+	if (is_noise(s, y[other] + pad, n, work))
 		*noise = y[other] + pad;
 	return SEPARATE_OK;
 }
