@@ -69,7 +69,7 @@ void footprints_free(struct footprints *f)
 	free(f);
 }
 
-/* Numbers of nodes to where the first of each number goes. */
+/* Turns the number of nodes of each row, or region, into the place of its first node. */
 static void find_places(size_t *count, size_t n)
 {
 	size_t sum = 0;
@@ -91,7 +91,7 @@ static void sort_nodes(struct footprints *f)
 	find_places(f->row_next, ny);
 	for (size_t i = 0; i < f->nodes; i++)
 		f->node[f->row_next[f->found[i].at / nx]++] = f->found[i];
-	/* In order already, unless threads found the parts of a row. */
+	/* Each row is in order already, unless several threads found its parts. */
 	for (size_t i = 1; i < f->nodes; i++) {
 		struct stress_node n = f->node[i];
 		size_t to = i;

@@ -29,7 +29,9 @@ static const double FAR = 1.5;
 static const double TILE_FAR = 1.25;
 /* Cells: farther elements act as points. */
 static const double NEAR = 6;
-/* Depths: loads at more times the deepest of four act in proportion to the depth. */
+/* Loads at more than so many times the deepest of four depths act in proportion to the
+ * depth.  The volume of 512 x 512 cells of Sq 0.8 um differs by .22, .06 and .001 % with
+ * 6, 8 and 12 from that with 20, which is what add_loads() allows at most. */
 static const double FLAT = 12;
 /* First depth, cells; each is twice the one before. */
 static const double SHALLOWEST = 0.125;
@@ -582,6 +584,8 @@ static void add_loads(struct point_sum *s, struct point *at)
 		u = v;
 		v = swap;
 	}
+	/* The far ones are TILE_FAR TILE_SIDE = 20 times as far as the first four depths
+	 * are deep, or more. */
 	if (at->k == 0)
 		sum_flat(s, &t->far, u, v, at);
 	else
