@@ -182,7 +182,9 @@ $(B)/matrix/%: tests/matrix/%.c
 	$(Q)$(CC) $(STD) $(WARN) $(CFLAGS) -o $@ $< -lm
 MATRIX = $(B)/matrix/simulate
 
-TESTS = tests/*.t tests/extremes/*.t $(UNITS)
+# The longest first, so that the short ones fill all cores at the end.
+TESTS = tests/matrix.t tests/duet.t $(filter-out tests/matrix.t tests/duet.t, \
+	$(wildcard tests/*.t)) tests/extremes/*.t $(UNITS)
 LONG_TESTS = tests/long/*.t $(LONG_UNITS)
 
 check: all $(UNITS) $(MATRIX)

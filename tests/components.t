@@ -102,7 +102,7 @@ ok 'the phases are named' grep -q 'of 40 phases are of no material' said
 ok 'the table says so' grep -q '^# doubtful.*phases are of no material' wrong.tsv
 
 # 300 particles a second
-crowd() { sensorsim --uniform 60um:100um --number 3000 --duration 10s --noise 5mV --lag 0:0.5ms --seed 7 "$@"; }
+crowd() { sensorsim --uniform 60um:100um --number 900 --duration 3s --noise 5mV --lag 0:0.5ms --seed 7 "$@"; }
 crowd --quadrature | duet --sections four.sections >/dev/null 2>&1
 crowd | duet --sections two.sections >/dev/null 2>&1
 near 'pulses of unresolved sections have the power that two channels tell' "$(paste four.sections two.sections | awk -F '\t' '/^#/ { next }

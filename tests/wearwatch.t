@@ -31,7 +31,7 @@ head -c $n hours.au >before.au
 { head -c "$skip" hours.au && tail -c +$((n + 1)) hours.au; } >after.au
 started() {
 	for _ in $(seq 400); do
-		[ "$(grep -c '^[0-9]' cut/chunks.tsv)" -ge "$1" ] && [ "$(cat cut/spool/* | wc -c)" -ge $((n - skip)) ] && return
+		[ "$(grep -c '^[0-9]' cut/chunks.tsv)" -ge "$1" ] && [ "$(wc -c <cut/spool/3)" -ge 16000 ] && return
 		sleep 0.05
 	done 2>/dev/null
 }
