@@ -340,7 +340,7 @@ printf 't\tevent\n60\trepair\n' >changed.tsv
 ok "a repair at that time explains it" aopf -y 3 --lives-only --events changed.tsv inch.tsv
 rescale 1000 | aopf -y 3 --lives-only >out 2>err
 is "a jump of the unit is no failure" "$(column rul_q50 out | tail -1)" nan
-is "not even while it is uncertain" "$(column rul_q95 out | grep -c '^0$')" 0
+is "not even while it is uncertain, not in one life of twenty" "$(column rul_q05 out | grep -c '^0$')" 0
 rescale 1000 | head -64 >begun.tsv
 fails "a series that ends then" 3 "their unit or the gain may have changed" aopf -y 3 --lives-only begun.tsv
 rescale 1 | awk 'NR > 60 { $2 += $1 < 60 ? 0 : 3 } { print $1 "\t" $2 }' | aopf -y 3 --lives-only >out 2>err

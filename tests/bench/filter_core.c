@@ -50,10 +50,10 @@ int main(int argc, char **argv)
 		filter_predict(f, mean, PROCESS);
 		filter_update(f, y, NOISE);
 		spent += seconds() - start;
-		sum += pow(filter_mean(f) - x, 2);
+		sum += pow(filter_now(f).mean - x, 2);
 		k_sum += pow(k_x - x, 2);
 		if (k >= SETTLE)
-			apart += pow(filter_mean(f) - k_x, 2) / k_p;
+			apart += pow(filter_now(f).mean - k_x, 2) / k_p;
 	}
 	printf("%zu\t%d\t%.6f\t%.4g\t%.6f\t%.3e\n", n, steps, spent,
 		(double)n * steps / spent, sqrt(sum / k_sum),

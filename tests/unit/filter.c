@@ -66,7 +66,7 @@ static double particles(const struct walk *w, const struct filter_par *par,
 		filter_predict(f, mean, PROCESS);
 		if (!(missing > 0) || fmod(k * missing, 1) >= missing)
 			*evidence += filter_update(f, w->y[k], NOISE);
-		sum += (filter_mean(f) - w->x[k]) * (filter_mean(f) - w->x[k]);
+		sum += (filter_now(f).mean - w->x[k]) * (filter_now(f).mean - w->x[k]);
 	}
 	free(mean);
 	filter_free(f);
@@ -148,15 +148,16 @@ static void test_weights(void)
 	double *mean = calloc(500, sizeof *mean), past = 0, evidence;
 
 	filter_start(f, &past, 1, 1);
-	near(filter_ess(f), 500, 1e-9, "the weights are equal at the start");
+	near(filter_now(f).ess, 500, 1e-9, "the weights are equal at the start");
 	filter_predict(f, mean, 1);
 	/* 1e6 standard deviations away: exp() of every weight is 0 */
 	evidence = filter_update(f, 1e3, 1e-3);
-	ok(isfinite(evidence) && isfinite(filter_mean(f)),
+	ok(isfinite(evidence) && isfinite(filter_now(f).mean),
 		"weights that underflow stay finite");
-	ok(filter_ess(f) >= 1 && filter_mean(f) > 1.5, "the nearest particle survives");
+	ok(filter_now(f).ess >= 1 && filter_now(f).mean > 1.5,
+		"the nearest particle survives");
 	filter_predict(f, mean, 1);
-	near(filter_ess(f), 500, 1e-9,
+	near(filter_now(f).ess, 500, 1e-9,
 		"the filter resamples after the collapse of the weights");
 	filter_free(f);
 	free(mean);

@@ -38,8 +38,7 @@ struct adaptive {
 	struct lag *lag;    /* [depth] */
 	double *mean;       /* [N] prior means */
 	struct sums *sums;  /* [N] */
-	double *past, *gap; /* rings of the last rows: values and gaps before */
-	double *line_up;    /* past in order */
+	double *past, *gap; /* the last rows, oldest first: values and gaps before */
 	double scale;       /* from here on the state, see adaptive_pass(): power of two
 			     * that values are divided by, of the first but 0 */
 	int scaled;
@@ -48,7 +47,7 @@ struct adaptive {
 	double time;
 	double observed, observed_time, observed_gap; /* the last observation */
 	double mean_gap;
-	int newest, filled;
+	int filled;
 	double missed[RECENT]; /* last squared errors of the grey model, a ring */
 	long misses;
 	double process;             /* sigma_u */
@@ -76,14 +75,13 @@ struct adaptive *adaptive_new(const struct adaptive_par *par)
 	a->lag = calloc(depth, sizeof *a->lag);
 	a->mean = calloc(par->filter.particles, sizeof *a->mean);
 	a->sums = calloc(par->filter.particles, sizeof *a->sums);
-	a->past = calloc(depth, sizeof *a->past);
-	a->gap = calloc(depth, sizeof *a->gap);
-	a->line_up = calloc(depth, sizeof *a->line_up);
+	a->past = calloc(2 * depth, sizeof *a->past);
 	if (!a->draw_paths || !a->filter || !a->order || !a->lag || !a->mean ||
-		!a->sums || !a->past || !a->gap || !a->line_up) {
+		!a->sums || !a->past) {
 		adaptive_free(a);
 		return NULL;
 	}
+	a->gap = a->past + depth;
 	return a;
 }
 
@@ -99,8 +97,6 @@ void adaptive_free(struct adaptive *a)
 	free(a->mean);
 	free(a->sums);
 	free(a->past);
-	free(a->gap);
-	free(a->line_up);
 	free(a);
 }
 
@@ -113,14 +109,13 @@ void adaptive_pass(struct adaptive *a, struct state *s)
 	draw_pass(a->draw_paths, s);
 	filter_pass(a->filter, s);
 	order_pass(a->order, s);
-	state_move(s, a->past, depth * sizeof *a->past);
-	state_move(s, a->gap, depth * sizeof *a->gap);
+	state_move(s, a->past, 2 * depth * sizeof *a->past);
 	state_move(s, (unsigned char *)a + from, sizeof *a - from);
 }
 
 struct adaptive_counts adaptive_counts(const struct adaptive *a)
 {
-	return (struct adaptive_counts){ filter_resamplings(a->filter), a->outliers,
+	return (struct adaptive_counts){ filter_now(a->filter).resamplings, a->outliers,
 		a->restarts, order_counts(a->order) };
 }
 
@@ -216,11 +211,9 @@ static void forecast(struct adaptive *a, int count, double h, double noise)
  * state of the window only starts the first interval (see grey.h). */
 static void forecast_particles(struct adaptive *a, int p, double h, double noise)
 {
-	int depth = a->par.filter.depth;
-
 	for (int k = 0; k < p - 1; k++)
 		a->lag[k] = (struct lag){ filter_step(a->filter, k),
-			a->gap[(a->newest - k + depth) % depth] };
+			a->gap[a->filled - 1 - k] };
 	forecast(a, p - 1, h, noise);
 }
 
@@ -235,28 +228,26 @@ static void hold_particles(struct adaptive *a)
 /* Stores a value, and the gap before it, for a restart. */
 static void push_past(struct adaptive *a, double y, double gap)
 {
-	int depth = a->par.filter.depth;
+	if (a->filled == a->par.filter.depth) {
+		size_t older = (size_t)--a->filled * sizeof *a->past;
 
-	a->newest = (a->newest + 1) % depth;
-	a->filled += a->filled < depth;
-	a->past[a->newest] = y;
-	a->gap[a->newest] = gap;
+		memmove(a->past, a->past + 1, older);
+		memmove(a->gap, a->gap + 1, older);
+	}
+	a->past[a->filled] = y;
+	a->gap[a->filled++] = gap;
 }
 
 static void start_particles(struct adaptive *a, double noise)
 {
-	int depth = a->par.filter.depth;
-
-	for (int k = 0; k < a->filled; k++)
-		a->line_up[k] = a->past[(a->newest - a->filled + 1 + k + depth) % depth];
 	a->nz = 0;
-	filter_start(a->filter, a->line_up, a->filled, sqrt(3) * noise);
+	filter_start(a->filter, a->past, a->filled, sqrt(3) * noise);
 }
 
 /* sigma_v in scaled units; never 0, since a weight divides by it. */
 static double observation_noise(const struct adaptive *a)
 {
-	double least = 1e-9 * (1 + fabs(a->past[a->newest]));
+	double least = 1e-9 * (1 + fabs(a->past[a->filled > 0 ? a->filled - 1 : 0]));
 	double s = isnan(a->par.noise) ? a->noise.scale : a->par.noise / a->scale;
 
 	return s > least ? s : least;
@@ -347,16 +338,23 @@ static int monitor(struct adaptive *a, double e, double variance)
 	return sum > MONITOR * MONITOR_LIMIT;
 }
 
+static void put_state(const struct adaptive *a, struct adaptive_row *row)
+{
+	struct filter_now now = filter_now(a->filter);
+
+	row->state = now.mean;
+	row->ess = now.ess;
+}
+
 static void observe(struct adaptive *a, double y, double gap, double process,
 	struct adaptive_row *row)
 {
-	double noise = observation_noise(a), variance = filter_variance(a->filter);
+	double noise = observation_noise(a), variance = filter_now(a->filter).variance;
 	double e = y - row->prediction, own;
 	int lost;
 
 	filter_update(a->filter, y, noise);
-	row->state = filter_mean(a->filter);
-	row->ess = filter_ess(a->filter);
+	put_state(a, row);
 	push_past(a, y, gap);
 	if (row->order == 0) { /* too few points for a model: restart from all of them */
 		lost = 1;
@@ -370,7 +368,7 @@ static void observe(struct adaptive *a, double y, double gap, double process,
 	}
 	if (lost) {
 		start_particles(a, noise);
-		row->state = filter_mean(a->filter);
+		row->state = filter_now(a->filter).mean;
 	}
 }
 
@@ -395,8 +393,7 @@ static void begin(struct adaptive *a, double t, double y, struct adaptive_row *r
 	push_past(a, y, 0);
 	a->observed_time = t;
 	start_particles(a, observation_noise(a));
-	row->state = filter_mean(a->filter);
-	row->ess = filter_ess(a->filter);
+	put_state(a, row);
 }
 
 /* Order of the model of the particles; 0: none yet. */
@@ -421,8 +418,8 @@ static void advance(struct adaptive *a, double t, double y, struct adaptive_row 
 	else
 		hold_particles(a);
 	filter_predict(a->filter, a->mean, process);
-	row->prediction = row->state = filter_mean(a->filter);
-	row->ess = filter_ess(a->filter);
+	put_state(a, row);
+	row->prediction = row->state;
 	a->mean_gap += (gap - a->mean_gap) / fmin((double)a->rows, 50);
 	y /= a->scale;
 	if (isnan(y) || is_outlier(a, y, t - a->observed_time, row->grey, noise)) {

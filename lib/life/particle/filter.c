@@ -20,12 +20,9 @@ struct filter {
 	size_t *count;         /* [depth]: states that still have descendants */
 	double *weight, *next; /* next: those after */
 	uint32_t *kept;
-	struct filter_state {
-		int newest, filled;
-		double sum; /* of weight */
-		double mean, variance, ess;
-		unsigned long resamplings;
-	} now;
+	int newest, filled;
+	double sum; /* of weight */
+	struct filter_now now;
 };
 
 struct filter *filter_new(const struct filter_par *par, struct draw *draw)
@@ -71,17 +68,20 @@ void filter_pass(struct filter *f, struct state *s)
 	state_move(s, f->ancestor, all * sizeof *f->ancestor);
 	state_move(s, f->count, (size_t)f->par.depth * sizeof *f->count);
 	state_move(s, f->weight, n * sizeof *f->weight);
+	state_move(s, &f->newest, sizeof f->newest);
+	state_move(s, &f->filled, sizeof f->filled);
+	state_move(s, &f->sum, sizeof f->sum);
 	state_move(s, &f->now, sizeof f->now);
 }
 
 int filter_depth(const struct filter *f)
 {
-	return f->now.filled;
+	return f->filled;
 }
 
 static size_t place_of(const struct filter *f, int lag)
 {
-	return (size_t)((f->now.newest - lag + f->par.depth) % f->par.depth);
+	return (size_t)((f->newest - lag + f->par.depth) % f->par.depth);
 }
 
 static double *states_of(const struct filter *f, int lag)
@@ -105,10 +105,10 @@ static double *push_step(struct filter *f)
 {
 	uint32_t *own;
 
-	f->now.newest = (f->now.newest + 1) % f->par.depth;
-	if (f->now.filled < f->par.depth)
-		f->now.filled++;
-	f->count[f->now.newest] = f->par.particles;
+	f->newest = (f->newest + 1) % f->par.depth;
+	if (f->filled < f->par.depth)
+		f->filled++;
+	f->count[f->newest] = f->par.particles;
 	own = ancestors_of(f, 0);
 	for (size_t i = 0; i < f->par.particles; i++)
 		own[i] = (uint32_t)i;
@@ -119,7 +119,7 @@ static void weigh_equally(struct filter *f)
 {
 	for (size_t i = 0; i < f->par.particles; i++)
 		f->weight[i] = 1;
-	f->now.sum = (double)f->par.particles;
+	f->sum = (double)f->par.particles;
 }
 
 /* Mean and variance of the states, squares about one of the states, and the effective
@@ -140,15 +140,15 @@ static void find_moments(struct filter *f)
 		lanes_add(&sums[1], part * d, width);
 		lanes_add(&sums[2], w * w, width);
 	}
-	off = (sums[0][0] + sums[0][1]) / f->now.sum;
+	off = (sums[0][0] + sums[0][1]) / f->sum;
 	f->now.mean = x[0] + off;
-	f->now.variance = fmax(0, (sums[1][0] + sums[1][1]) / f->now.sum - off * off);
-	f->now.ess = f->now.sum * f->now.sum / (sums[2][0] + sums[2][1]);
+	f->now.variance = fmax(0, (sums[1][0] + sums[1][1]) / f->sum - off * off);
+	f->now.ess = f->sum * f->sum / (sums[2][0] + sums[2][1]);
 }
 
 void filter_start(struct filter *f, const double *past, int count, double spread)
 {
-	f->now.filled = 0;
+	f->filled = 0;
 	for (int k = 0; k < count; k++) {
 		double *x = push_step(f);
 
@@ -174,24 +174,9 @@ void filter_predict(struct filter *f, const double *mean, double sigma)
 	find_moments(f);
 }
 
-double filter_mean(const struct filter *f)
+struct filter_now filter_now(const struct filter *f)
 {
-	return f->now.mean;
-}
-
-double filter_variance(const struct filter *f)
-{
-	return f->now.variance;
-}
-
-double filter_ess(const struct filter *f)
-{
-	return f->now.ess;
-}
-
-unsigned long filter_resamplings(const struct filter *f)
-{
-	return f->now.resamplings;
+	return f->now;
 }
 
 /* Of two states, without its constant. */
@@ -246,8 +231,8 @@ static double weigh(struct filter *f, double y, double noise, double top)
 		lanes_add(&sums[1], w * w, width);
 		lanes_add(&sums[2], w * at, width);
 	}
-	f->now.sum = sums[0][0] + sums[0][1];
-	f->now.mean = (sums[2][0] + sums[2][1]) / f->now.sum;
+	f->sum = sums[0][0] + sums[0][1];
+	f->now.mean = (sums[2][0] + sums[2][1]) / f->sum;
 	return sums[1][0] + sums[1][1];
 }
 
@@ -282,7 +267,7 @@ static void prune(struct filter *f)
 {
 	size_t n = 0;
 
-	for (int lag = 0; lag < f->now.filled; lag++) {
+	for (int lag = 0; lag < f->filled; lag++) {
 		size_t *count = &f->count[place_of(f, lag)];
 		double *x = states_of(f, lag);
 		uint32_t *ancestor = ancestors_of(f, lag);
@@ -300,14 +285,14 @@ static void prune(struct filter *f)
 
 double filter_update(struct filter *f, double y, double noise)
 {
-	double before = f->now.sum, top = 0, squares = weigh(f, y, noise, 0), *spent, sum;
+	double before = f->sum, top = 0, squares = weigh(f, y, noise, 0), *spent, sum;
 	size_t n = f->par.particles;
 
-	if (!(f->now.sum > FADED)) {
+	if (!(f->sum > FADED)) {
 		top = best(f, y, noise);
 		squares = weigh(f, y, noise, top);
 	}
-	sum = f->now.sum;
+	sum = f->sum;
 	spent = f->weight;
 	f->weight = f->next;
 	f->next = spent;

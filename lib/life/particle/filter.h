@@ -15,7 +15,7 @@
  *			mean[i] = now.x[now.ancestor[i]] + drift;
  *		filter_predict(f, mean, sigma);
  *		filter_update(f, y, noise);    (not for a missing one)
- *		state = filter_mean(f);
+ *		state = filter_now(f).mean;
  *	}
  */
 #ifndef LIFE_FILTER_H
@@ -57,15 +57,16 @@ struct filter_step filter_step(const struct filter *f, int lag);
 
 /* Moves to the next step: states mean[N] plus normal noise. */
 void filter_predict(struct filter *f, const double *mean, double sigma);
-/* Weighted mean and variance of the states of the present step. */
-double filter_mean(const struct filter *f);
-double filter_variance(const struct filter *f);
 /* Weights particles by y with observation noise of scale noise > 0, then resamples if
- * necessary.
- * filter_mean() and filter_ess() afterwards are those before resampling.  Returns the
- * log of the evidence, log mean(p(y|x)). */
+ * necessary.  Returns the log of the evidence, log mean(p(y|x)). */
 double filter_update(struct filter *f, double y, double noise);
-double filter_ess(const struct filter *f);
-unsigned long filter_resamplings(const struct filter *f);
+
+/* Weighted mean and variance of the states of the present step, as predicted; after an
+ * update the mean is that before resampling, as is the effective sample size. */
+struct filter_now {
+	double mean, variance, ess;
+	unsigned long resamplings; /* so far */
+};
+struct filter_now filter_now(const struct filter *f);
 
 #endif
