@@ -10,11 +10,10 @@
 enum {
 	BLOCK = 4, /* cells to the side of the smallest square */
 	SIZES = 20,
-	/* Cells to the side of a tile: a smallest square, or one of the next size.  With
-	 * TILE_FAR 1 the surrogate executes 4.01e9, 3.99e9 and 4.00e9 instructions with
-	 * 4, 8 and 16 on 2048 x 2048 cells, and 3.23e9, 3.23e9 and 3.32e9 where it finds
-	 * 19005 particles. */
-	TILE_SIDE = 8,
+	/* Cells to the side of a tile.  The surrogate takes the same time within 3 % with
+	 * 8 and 16 (least of 15 runs, 128 x 128 to 1536 x 1536 cells), and volumes of 88
+	 * surfaces have rms errors of 1.75 and 1.73 %. */
+	TILE_SIDE = 4 * BLOCK,
 	AROUND = 5, /* elements are at most so many cells away along either axis */
 	FOURS = 2   /* sets of four depths of which the first is less than NEAR cells
 		     * deep */
@@ -24,18 +23,20 @@ enum {
  * its load then only lowers the stress.  Volumes of 441 surfaces have rms errors of 2.3
  * and 1.9 % with 1 and 1.5; with 2 a sum takes a third longer. */
 static const double FAR = 1.5;
-/* From the nearest edge of a tile, whose cells are on average half its side farther away.
- * Of 88 surfaces the volumes have rms errors of 1.9, 1.8, 1.7 and 1.7 % with 0.75,
- * 1, 1.25 and 1.5, and stresses 8 cells deep and more ones of 2.6, 1.8 and 1.4 % with the
- * last three; the surrogate executes 3.1e9, 3.2e9, 3.4e9 and 3.6e9 instructions where it
- * finds 19005 particles. */
-static const double TILE_FAR = 1.25;
+/* From the nearest edge of a tile, whose cells are on average half its side farther away;
+ * DEEP_FAR: at points deeper than NEAR.  On tiles of 8 cells volumes of 88 surfaces have
+ * rms errors of 1.9, 1.8, 1.7 and 1.7 % with 0.75, 1, 1.25 and 1.5; the surrogate
+ * executes 3.1e9, 3.2e9, 3.4e9 and 3.6e9 instructions where it finds 19005 particles.
+ * From 8 cells on stresses have rms errors of 2.6, 1.9, 1.7 and 1.3 % with DEEP_FAR
+ * 1, 1.25, 1.5 and 2.
+ */
+static const double TILE_FAR = 1, DEEP_FAR = 2;
 /* Cells: farther elements act as points. */
 static const double NEAR = 6;
 /* Loads at more than so many times the deepest of four depths act in proportion to the
  * depth.  The volume of 512 x 512 cells of Sq 0.8 um differs by .22, .06 and .001 % with
  * 6, 8 and 12 from that with 20. */
-static const double FLAT = 12;
+static const double FLAT = 8;
 /* First depth; each is twice the one before, and the fourth is one cell. */
 static const double SHALLOWEST = 0.125;
 
@@ -75,6 +76,7 @@ struct block {
  * far[i]: so far that they act in proportion to the depths of i sets, not of more. */
 struct tile {
 	int row;                    /* of tiles; -1: none */
+	float apart;                /* sides of a square that is far */
 	float x, y, half_x, half_y; /* its centre, half its sides */
 	struct list far[FOURS + 1];
 	int near;
@@ -131,11 +133,11 @@ static double depth_of(int k)
 	return SHALLOWEST * (double)(1L << k);
 }
 
-/* Squares of one size along an axis that may not be far from a tile, which lies within
- * one of them: that one, and those on either side whose nearest edge is not. */
+/* Squares of a size but the smallest along an axis that may not be far from a tile: those
+ * that it lies on, and those on either side whose nearest edge is not. */
 static size_t most_near(double width)
 {
-	return 2 * (size_t)ceil(TILE_FAR / width) + 1;
+	return TILE_SIDE / (2 * BLOCK) + 2 * (size_t)ceil(DEEP_FAR / width);
 }
 
 /* Memory for the lists of tiles, which hold parts of squares that are not far. */
@@ -513,7 +515,7 @@ static void list_squares(const struct point_sum *s, struct tile *t, int l, int x
 {
 	const struct size *size = &s->size[l];
 	const struct loads *q = &size->square[y * size->nx + x];
-	const float far = (float)TILE_FAR * size->side;
+	const float far = t->apart * size->side;
 	four away_x = t->x - q->x, away_y = t->y - q->y;
 	four u = beyond(away_x, t->half_x), v = beyond(away_y, t->half_y);
 	four square = u * u + v * v;
@@ -533,13 +535,15 @@ static void list_squares(const struct point_sum *s, struct tile *t, int l, int x
 	}
 }
 
-static const struct tile *tile_of(struct point_sum *s, int ix, int iy)
+static const struct tile *tile_of(struct point_sum *s, const struct point *at)
 {
-	int column = ix / TILE_SIDE, row = iy / TILE_SIDE;
+	int column = at->ix / TILE_SIDE, row = at->iy / TILE_SIDE;
+	float apart = (float)(at->set < FOURS ? TILE_FAR : DEEP_FAR);
 	struct tile *t = &s->tile[column];
 
-	if (t->row != row) {
+	if (t->row != row || t->apart != apart) {
 		t->row = row;
+		t->apart = apart;
 		t->half_x = 0.5f * TILE_SIDE * s->dx;
 		t->half_y = 0.5f * TILE_SIDE * s->dy;
 		t->x = centre(column, TILE_SIDE * s->dx);
@@ -554,7 +558,7 @@ static const struct tile *tile_of(struct point_sum *s, int ix, int iy)
 
 static void add_loads(struct point_sum *s, struct point *at)
 {
-	const struct tile *t = tile_of(s, at->ix, at->iy);
+	const struct tile *t = tile_of(s, at);
 	float u = at->x - t->x, v = at->y - t->y;
 
 	for (int i = 0; i <= FOURS; i++)

@@ -5,8 +5,8 @@
  * of 4 x 4, 8 x 8, ... cells that are farther away than some of their sides as one load
  * at its centroid.  Below contacts of one to five cells radius this is within 1 % of the
  * largest pressure.  The depths form a geometric sequence, so that each element is
- * computed once for all points.  Points of one tile of 8 x 8 cells share the list of what
- * is far from it; calls in the order of rows make each list about once.
+ * computed once for all points.  Points of one tile of 16 x 16 cells share the list of
+ * what is far from it; calls in the order of rows make each list about once.
  */
 #ifndef STRESS_POINT_SUM_H
 #define STRESS_POINT_SUM_H
