@@ -340,7 +340,7 @@ printf 't\tevent\n60\trepair\n' >changed.tsv
 ok "a repair at that time explains it" aopf -y 3 --lives-only --events changed.tsv inch.tsv
 rescale 1000 | aopf -y 3 --lives-only >out 2>err
 is "a jump of the unit is no failure" "$(column rul_q50 out | tail -1)" nan
-is "not even while it is uncertain" "$(column rul_q95 out | grep -c '^0$')" 0
+is "not even while it is uncertain, not in one life of twenty" "$(column rul_q05 out | grep -c '^0$')" 0
 rescale 1000 | head -64 >begun.tsv
 fails "a series that ends then" 3 "their unit or the gain may have changed" aopf -y 3 --lives-only begun.tsv
 rescale 1 | awk 'NR > 60 { $2 += $1 < 60 ? 0 : 3 } { print $1 "\t" $2 }' | aopf -y 3 --lives-only >out 2>err
@@ -357,4 +357,23 @@ is "a repair changes no unit" "$(column rul_q50 out | tail -1 | grep -c nan; cat
 	done
 } >started.tsv
 is "the start of a series is carried to the lives" "$(aopf --threshold 0.3 started.tsv 2>err | grep '^# start')" "# start: 2026-01-02T03:04:05Z"
+
+# Scores of series: one that the program fails on is named, and the status tells.
+mkdir series failing
+for name in a_1 a_2; do
+	{
+		printf '# failure threshold: 2.8 up\n# eol_interpolated: 1186\n'
+		rise 1000 "${name#a_}" | awk 'NR == 1 || NR % 20 == 0'
+	} >series/$name.tsv
+done
+# shellcheck disable=SC2016 # of the program that is made
+printf '#!/bin/sh\ncase $* in *a_2.tsv*) kill -9 $$ ;; esac\nexec "%s" "$@"\n' "$(command -v aopf)" >failing/aopf
+chmod +x failing/aopf
+BIN=$(dirname "$(command -v aopf)") "$top/scripts/validate-life" series >out
+is "every series is scored" "$? $(awk '$2 == "all" { print $4 }' out | tr '\n' ' ')" "0 2 2 2 6 "
+fails "a program that is killed" 1 "series/a_2.tsv: average: left out: aopf failed with status 137" \
+	env BIN="$PWD/failing" "$top/scripts/validate-life" series
+awk 'NR < 4 || $1 > 600' series/a_2.tsv >series/a_1.tsv
+fails "a series without rows at 40 % of its life" 1 "series/a_1.tsv: average: left out: no prediction at 40, 60 or 80 %" \
+	env BIN="$(dirname "$(command -v aopf)")" "$top/scripts/validate-life" series
 done_testing

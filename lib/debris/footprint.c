@@ -17,19 +17,19 @@ enum { LEAST = 4, SHARE = 250 };
 
 struct footprints {
 	struct stress_par par;
-	struct stress_node *found, *node; /* failing cells as found, and row by row */
+	struct stress_node *node, *spare; /* failing cells, row by row */
 	size_t *region; /* of each node: one before it that it touches, then its region */
 	size_t *cell;   /* nodes of the regions, one region after another */
 	size_t nodes;
-	/* Of each row and each region, where its next node goes. */
-	size_t *row_next, *next;
+	/* Of each column or row, and each region, where its next node goes. */
+	size_t *place, *next;
 	struct stress_span *span;
 	double yield;
 	struct point_sum *below;
 	int deepest; /* depths that are allowed */
 	struct footprint *list;
 	size_t count;
-	size_t node_room, region_room, cell_room, next_room, list_room;
+	size_t spare_room, region_room, cell_room, next_room, list_room;
 };
 
 struct footprints *footprints_new(const struct stress_par *par)
@@ -41,11 +41,11 @@ struct footprints *footprints_new(const struct stress_par *par)
 		return NULL;
 	f->par = *par;
 	/* Few cells of a large grid fail: most of this is never touched. */
-	f->found = malloc(nx * ny * sizeof *f->found);
-	f->row_next = malloc(ny * sizeof *f->row_next);
+	f->node = malloc(nx * ny * sizeof *f->node);
+	f->place = malloc((nx > ny ? nx : ny) * sizeof *f->place);
 	f->span = malloc(ny * ((nx + 1) / 2) * sizeof *f->span);
 	f->below = point_sum_new(par);
-	if (!f->found || !f->row_next || !f->span || !f->below) {
+	if (!f->node || !f->place || !f->span || !f->below) {
 		footprints_free(f);
 		return NULL;
 	}
@@ -57,9 +57,9 @@ void footprints_free(struct footprints *f)
 {
 	if (!f)
 		return;
-	free(f->found);
 	free(f->node);
-	free(f->row_next);
+	free(f->spare);
+	free(f->place);
 	free(f->next);
 	free(f->region);
 	free(f->cell);
@@ -80,26 +80,17 @@ static void find_places(size_t *count, size_t n)
 	}
 }
 
-/* The cells found, row by row and in each from left to right. */
-static void sort_nodes(struct footprints *f)
+/* Puts nodes in the order of their columns, or rows, and otherwise leaves them as they
+ * are: those of one lie step apart, and there are n. */
+static void sort_nodes(struct footprints *f, const struct stress_node *from,
+	struct stress_node *to, size_t step, size_t n)
 {
-	size_t nx = (size_t)f->par.nx, ny = (size_t)f->par.ny;
-
-	memset(f->row_next, 0, ny * sizeof *f->row_next);
+	memset(f->place, 0, n * sizeof *f->place);
 	for (size_t i = 0; i < f->nodes; i++)
-		f->row_next[f->found[i].at / nx]++;
-	find_places(f->row_next, ny);
+		f->place[from[i].at / step % n]++;
+	find_places(f->place, n);
 	for (size_t i = 0; i < f->nodes; i++)
-		f->node[f->row_next[f->found[i].at / nx]++] = f->found[i];
-	/* Each row is in order already, unless several threads found its parts. */
-	for (size_t i = 1; i < f->nodes; i++) {
-		struct stress_node n = f->node[i];
-		size_t to = i;
-
-		for (; to > 0 && f->node[to - 1].at > n.at; to--)
-			f->node[to] = f->node[to - 1];
-		f->node[to] = n;
-	}
+		to[f->place[from[i].at / step % n]++] = from[i];
 }
 
 /* The first node of a region, as far as known. */
@@ -193,13 +184,14 @@ static enum num_status list_cells(struct footprints *f)
 
 static enum num_status find_regions(struct footprints *f)
 {
-	size_t n = f->nodes + 1;
+	size_t n = f->nodes + 1, nx = (size_t)f->par.nx;
 
-	if (room_for(&f->node, &f->node_room, n, sizeof *f->node) ||
+	if (room_for(&f->spare, &f->spare_room, n, sizeof *f->spare) ||
 		room_for(&f->region, &f->region_room, n, sizeof *f->region) ||
 		room_for(&f->cell, &f->cell_room, n, sizeof *f->cell))
 		return NUM_MEMORY;
-	sort_nodes(f);
+	sort_nodes(f, f->node, f->spare, 1, nx);
+	sort_nodes(f, f->spare, f->node, nx, (size_t)f->par.ny);
 	join_nodes(f);
 	return list_regions(f) ? NUM_MEMORY : list_cells(f);
 }
@@ -293,7 +285,7 @@ enum num_status footprints_find(struct footprints *f, struct stress *stress,
 
 	*count = 0;
 	f->yield = yield;
-	if (stress_above(stress, yield, f->span, spans, f->found, &f->nodes) ||
+	if (stress_above(stress, yield, f->span, spans, f->node, &f->nodes) ||
 		find_regions(f))
 		return NUM_MEMORY;
 	point_sum_load(f->below, pressure);

@@ -169,6 +169,10 @@ struct surrogate_contact surrogate_contact(
 		for (size_t x = 1; x < nx; x++) {
 			double last = both, gx, gy = rise;
 
+			/* Most of the surface is free. */
+			while (last == 0 && x + 2 < nx &&
+				p[x] + p[x + 1] + q[x] + q[x + 1] == 0)
+				x += 2;
 			both = p[x] + q[x];
 			rise = q[x] - p[x];
 			if (last == 0 && both == 0)

@@ -8,99 +8,119 @@
 #include <string.h>
 
 enum {
-	BLOCK = 4,  /* cells to the side of the smallest square */
-	LIST = 256, /* points whose stress is summed together; a multiple of four */
+	BLOCK = 4, /* cells to the side of the smallest square */
 	SIZES = 20,
-	TILE = 2, /* size of the squares that are tiles */
-	TILE_SIDE = BLOCK << TILE,
-	NEAR_LIST = 64,
+	/* Cells to the side of a tile.  The surrogate takes the same time within 3 % with
+	 * 8 and 16 (least of 15 runs, 128 x 128 to 1536 x 1536 cells), and volumes of 88
+	 * surfaces have rms errors of 1.75 and 1.73 %. */
+	TILE_SIDE = 4 * BLOCK,
 	AROUND = 5, /* elements are at most so many cells away along either axis */
-	FOURS = 2   /* sets of four depths of which the first is less than NEAR cells deep
-		     */
+	FOURS = 2   /* sets of four depths of which the first is less than NEAR cells
+		     * deep */
 };
 /* Sides of a square: ones farther away, over the surface or in half the depth, act as
  * points.  Right below it a square must be farther than beside it, since the spread of
  * its load then only lowers the stress.  Volumes of 441 surfaces have rms errors of 2.3
  * and 1.9 % with 1 and 1.5; with 2 a sum takes a third longer. */
 static const double FAR = 1.5;
-/* From the nearest edge of a tile, whose cells are on average half its side farther away.
- * Of 88 surfaces the volumes have an rms error of 1.8 % with 1, 1.25 and 1.5; that of
- * 19005 particles of 1536 x 1536 cells changes by 0.1 % from 1.25 to 1. */
-static const double TILE_FAR = 1.25;
+/* From the nearest edge of a tile, whose cells are on average half its side farther away;
+ * DEEP_FAR: at points deeper than NEAR.  On tiles of 8 cells volumes of 88 surfaces have
+ * rms errors of 1.9, 1.8, 1.7 and 1.7 % with 0.75, 1, 1.25 and 1.5; the surrogate
+ * executes 3.1e9, 3.2e9, 3.4e9 and 3.6e9 instructions where it finds 19005 particles.
+ * From 8 cells on stresses have rms errors of 2.6, 1.9, 1.7 and 1.3 % with DEEP_FAR
+ * 1, 1.25, 1.5 and 2.
+ */
+static const double TILE_FAR = 1, DEEP_FAR = 2;
 /* Cells: farther elements act as points. */
 static const double NEAR = 6;
 /* Loads at more than so many times the deepest of four depths act in proportion to the
  * depth.  The volume of 512 x 512 cells of Sq 0.8 um differs by .22, .06 and .001 % with
- * 6, 8 and 12 from that with 20, which is what add_loads() allows at most. */
-static const double FLAT = 12;
-/* First depth, cells; each is twice the one before. */
+ * 6, 8 and 12 from that with 20. */
+static const double FLAT = 8;
+/* First depth; each is twice the one before, and the fourth is one cell. */
 static const double SHALLOWEST = 0.125;
 
-/* What belongs to four depths.  Single precision is enough beside the error of squares
- * and points, and the surrogate takes four fifths of the time with it.  Lengths are in
- * cells, so that powers of them stay within its range. */
+/* What belongs to four depths or points.  Single precision is enough beside the error of
+ * squares and points, and the surrogate takes four fifths of the time with it.  Lengths
+ * are in cells, so that powers of them stay within its range. */
 typedef float four __attribute__((vector_size(16)));
 typedef int32_t four_bits __attribute__((vector_size(16)));
 _Static_assert(sizeof(four) == POINT_SUM_DEPTHS * sizeof(float), "a depth for each lane");
 
-struct square {
-	double load, x, y; /* sum of pressures and their centroid, m */
+/* Four loads and where they are: the centroids of two by two squares of one size, or,
+ * from the centre of a tile, of squares that are far from it, along and across the
+ * shear. */
+struct loads {
+	four x, y, load;
 };
 
 /* Squares of BLOCK cells, twice as many, ...: one for the whole grid at last. */
 struct size {
-	int nx, ny;
-	double side; /* m */
-	struct square *square;
+	int nx, ny; /* fours of squares */
+	float side;
+	struct loads *square;
 };
 
-/* Points: their offsets along and across the shear, in cells, and loads. */
-struct points {
+struct list {
 	int count;
-	float along[LIST], across[LIST], load[LIST];
+	struct loads *loads;
 };
 
-/* Squares that are far from all cells of a tile, as points from its centre, and those of
- * its own size that are not.  flat: so far that they act in proportion to depths of up to
- * TILE_SIDE cells. */
+/* A smallest square. */
+struct block {
+	float x, y, load;
+	int ix, iy; /* its first cell */
+};
+
+/* Squares that are far from all cells of a tile, and the smallest ones that are not.
+ * far[i]: so far that they act in proportion to the depths of i sets, not of more. */
 struct tile {
-	int row;  /* of tiles; -1: none */
-	int full; /* a list is: use none of them */
-	struct points far, flat;
-	int near, x[NEAR_LIST], y[NEAR_LIST];
+	int row;                    /* of tiles; -1: none */
+	float apart;                /* sides of a square that is far */
+	float x, y, half_x, half_y; /* its centre, half its sides */
+	struct list far[FOURS + 1];
+	int near;
+	struct block *block;
 };
 
 struct point_sum {
 	struct stress_par par;
 	struct influence_par influence;
-	double cell, per_cell; /* the longer side, and its inverse */
-	/* All pressures, by which others are divided, and the load of one of them in
-	 * square cells over that and 2 pi. */
+	double cell;  /* the longer side, m, by which lengths are divided */
+	float dx, dy; /* sides of a cell over that */
+	/* All pressures, and what turns a pressure into its load: in these, over 2 pi. */
 	double total, share;
 	const double *pressure;
 	/* Places of the loaded cells in their smallest square, those of square i from
 	 * begin[i] to begin[i + 1]. */
 	unsigned char *place;
 	size_t *begin;
+	int nx, ny; /* smallest squares */
 	struct size size[SIZES];
 	int sizes;
-	struct square *squares; /* of all sizes */
-	struct tile *tile;      /* one for each column of tiles: the last that was used */
+	struct loads *squares; /* of all sizes */
+	struct tile *tile;     /* one for each column of tiles: the last that was used */
 	int tiles;
-	struct points list, flat; /* still to be summed; flat: as of a tile */
+	struct loads *loads; /* of the lists of all tiles */
+	struct block *block; /* of all tiles */
 	/* Stress by a cell at each depth, next to it or on it. */
-	four element[FOURS][2 * AROUND + 1][2 * AROUND + 1][STRESS_NUMBERS];
+	four element[FOURS][2 * AROUND + 1][2 * AROUND + 1][STRESS_DEVIATOR];
 	int known[FOURS];
 };
 
+/* Stress at all four depths; x along the shear; xx and yy less zz. */
+struct sums {
+	four xx, yy, xy, xz, yz;
+};
+
 /* Four depths, one below the other, at which the stress is wanted, and what has been
- * summed of it. */
+ * summed of it: of points, and of elements. */
 struct point {
-	int ix, iy, k;
-	double x, y, top; /* top: the first depth, m */
+	int ix, iy, set;
+	float x, y;
 	four z;
-	four number[STRESS_NUMBERS];
-	float flat_from; /* square of the least distance of flat points */
+	struct sums sums;
+	four number[STRESS_DEVIATOR];
 };
 
 static int halves(int n)
@@ -108,12 +128,43 @@ static int halves(int n)
 	return (n + 1) / 2;
 }
 
+static double depth_of(int k)
+{
+	return SHALLOWEST * (double)(1L << k);
+}
+
+/* Squares of a size but the smallest along an axis that may not be far from a tile: those
+ * that it lies on, and those on either side whose nearest edge is not. */
+static size_t most_near(double width)
+{
+	return TILE_SIDE / (2 * BLOCK) + 2 * (size_t)ceil(DEEP_FAR / width);
+}
+
+/* Memory for the lists of tiles, which hold parts of squares that are not far. */
+static int new_tiles(struct point_sum *s)
+{
+	size_t tiles = (size_t)(s->par.nx + TILE_SIDE - 1) / TILE_SIDE;
+	size_t fours = most_near(s->dx) * most_near(s->dy);
+	size_t loads = fours * (size_t)s->sizes;
+
+	s->tiles = (int)tiles;
+	s->tile = calloc(tiles, sizeof *s->tile);
+	s->block = malloc(4 * fours * tiles * sizeof *s->block);
+	s->loads = malloc((FOURS + 1) * loads * tiles * sizeof *s->loads);
+	for (size_t i = 0; s->tile && s->block && s->loads && i < tiles; i++) {
+		s->tile[i].block = s->block + 4 * fours * i;
+		for (size_t k = 0; k <= FOURS; k++)
+			s->tile[i].far[k].loads =
+				s->loads + ((FOURS + 1) * i + k) * loads;
+	}
+	return s->tile && s->block && s->loads;
+}
+
 struct point_sum *point_sum_new(const struct stress_par *par)
 {
 	struct point_sum *s = calloc(1, sizeof *s);
-	int nx = (par->nx + BLOCK - 1) / BLOCK, ny = (par->ny + BLOCK - 1) / BLOCK;
-	size_t count = 0;
-	struct square *next;
+	size_t count = 0, blocks;
+	struct loads *next;
 
 	if (!s)
 		return NULL;
@@ -124,22 +175,24 @@ struct point_sum *point_sum_new(const struct stress_par *par)
 		.mu = par->mu,
 		.axis = par->axis };
 	s->cell = fmax(par->dx, par->dy);
-	s->per_cell = 1 / s->cell;
-	for (double side = BLOCK * s->cell;; side *= 2) {
-		s->size[s->sizes++] = (struct size){ .nx = nx, .ny = ny, .side = side };
-		count += (size_t)nx * (size_t)ny;
-		if (nx == 1 && ny == 1)
-			break;
+	s->dx = (float)(par->dx / s->cell);
+	s->dy = (float)(par->dy / s->cell);
+	s->nx = (par->nx + BLOCK - 1) / BLOCK;
+	s->ny = (par->ny + BLOCK - 1) / BLOCK;
+	for (int nx = s->nx, ny = s->ny, last = 0; !last; s->sizes++) {
+		last = nx == 1 && ny == 1;
 		nx = halves(nx);
 		ny = halves(ny);
+		s->size[s->sizes] = (struct size){
+			.nx = nx, .ny = ny, .side = (float)(BLOCK << s->sizes)
+		};
+		count += (size_t)nx * (size_t)ny;
 	}
+	blocks = (size_t)s->nx * (size_t)s->ny;
 	s->squares = next = calloc(count, sizeof *s->squares);
-	s->begin =
-		calloc((size_t)s->size->nx * (size_t)s->size->ny + 1, sizeof *s->begin);
+	s->begin = calloc(blocks + 1, sizeof *s->begin);
 	s->place = calloc((size_t)par->nx * (size_t)par->ny, 1);
-	s->tiles = (par->nx + TILE_SIDE - 1) / TILE_SIDE;
-	s->tile = malloc((size_t)s->tiles * sizeof *s->tile);
-	if (!next || !s->begin || !s->place || !s->tile) {
+	if (!next || !s->begin || !s->place || !new_tiles(s)) {
 		point_sum_free(s);
 		return NULL;
 	}
@@ -158,12 +211,14 @@ void point_sum_free(struct point_sum *s)
 	free(s->begin);
 	free(s->place);
 	free(s->tile);
+	free(s->loads);
+	free(s->block);
 	free(s);
 }
 
 double point_sum_depth(const struct point_sum *s, int k)
 {
-	return k < 0 ? 0 : ldexp(SHALLOWEST * s->cell, k);
+	return k < 0 ? 0 : s->cell * depth_of(k);
 }
 
 int point_sum_above(const struct point_sum *s, double z)
@@ -173,9 +228,19 @@ int point_sum_above(const struct point_sum *s, double z)
 	return k > 0 ? (int)k : 0;
 }
 
-static double centre(int cell, double width)
+static float centre(int cell, float width)
 {
-	return ((double)cell + 0.5) * width;
+	return ((float)cell + 0.5f) * width;
+}
+
+static inline four all_four(float x)
+{
+	return (four){ x, x, x, x };
+}
+
+static inline float sum_four(four x)
+{
+	return (x[0] + x[1]) + (x[2] + x[3]);
 }
 
 static double pressure_at(const struct point_sum *s, int x, int y)
@@ -183,20 +248,15 @@ static double pressure_at(const struct point_sum *s, int x, int y)
 	return s->pressure[(size_t)y * (size_t)s->par.nx + (size_t)x];
 }
 
-static void add_load(struct square *to, double load, double x, double y)
+static void put_square(
+	const struct size *size, int x, int y, float load, float sum_x, float sum_y)
 {
-	to->load += load;
-	to->x += load * x;
-	to->y += load * y;
-}
+	struct loads *to = &size->square[y / 2 * size->nx + x / 2];
+	int i = y % 2 * 2 + x % 2;
 
-static void find_centroids(struct size *size)
-{
-	for (int i = 0; i < size->nx * size->ny; i++)
-		if (size->square[i].load > 0) {
-			size->square[i].x /= size->square[i].load;
-			size->square[i].y /= size->square[i].load;
-		}
+	to->load[i] = load;
+	to->x[i] = sum_x / load;
+	to->y[i] = sum_y / load;
 }
 
 /* 1 if n cells of a row carry no load. */
@@ -210,137 +270,118 @@ static int is_free(const struct point_sum *s, int x, int y, int n)
 	return !(most[0] > 0) && !(most[1] > 0);
 }
 
-/* Lists the loaded cells, and adds them to the squares, which are empty. */
-static void list_cells(struct point_sum *s)
+/* Lists the loaded cells of a smallest square and adds them up; returns how many cells
+ * are listed now. */
+static size_t list_cells(struct point_sum *s, int block_x, int block_y, size_t n)
 {
-	const struct stress_par *g = &s->par;
-	const struct size *small = s->size;
-	size_t n = 0;
+	int x0 = block_x * BLOCK, y0 = block_y * BLOCK;
+	int x1 = lesser_int(x0 + BLOCK, s->par.nx),
+	    y1 = lesser_int(y0 + BLOCK, s->par.ny);
+	double load = 0, sum_x = 0, sum_y = 0;
 
-	for (int square = 0; square < small->nx * small->ny; square++) {
-		int x0 = square % small->nx * BLOCK, y0 = square / small->nx * BLOCK;
-		int wx = lesser_int(BLOCK, g->nx - x0),
-		    wy = lesser_int(BLOCK, g->ny - y0);
+	for (int y = y0; y < y1; y++)
+		for (int x = is_free(s, x0, y, x1 - x0) ? x1 : x0; x < x1; x++) {
+			double p = pressure_at(s, x, y);
 
-		s->begin[square] = n;
-		for (int y = 0; y < wy; y++)
-			for (int x = is_free(s, x0, y0 + y, wx) ? wx : 0; x < wx; x++) {
-				double p = pressure_at(s, x0 + x, y0 + y);
+			if (!(p > 0))
+				continue;
+			s->place[n++] = (unsigned char)((y - y0) * BLOCK + x - x0);
+			load += p;
+			sum_x += p * centre(x, s->dx);
+			sum_y += p * centre(y, s->dy);
+		}
+	if (load > 0)
+		put_square(s->size, block_x, block_y, (float)(load * s->share),
+			(float)(sum_x * s->share), (float)(sum_y * s->share));
+	return n;
+}
 
-				if (!(p > 0))
-					continue;
-				s->place[n++] = (unsigned char)(y * BLOCK + x);
-				add_load(&small->square[square], p, centre(x0 + x, g->dx),
-					centre(y0 + y, g->dy));
-			}
-	}
-	s->begin[small->nx * small->ny] = n;
+static double total_of(const double *x, size_t n)
+{
+	lanes sum = lanes_all(0);
+
+	for (size_t i = 0; i < n; i += 2)
+		lanes_add(&sum, lanes_load(x + i, i + 1 < n ? 2 : 1), i + 1 < n ? 2 : 1);
+	return sum[0] + sum[1];
 }
 
 void point_sum_load(struct point_sum *s, const double *pressure)
 {
-	struct size *small = s->size, *large;
+	size_t n = 0, block = 0, count = 0;
 
+	s->pressure = pressure;
+	s->total = total_of(pressure, (size_t)s->par.nx * (size_t)s->par.ny);
+	s->share = (double)s->dx * s->dy / (2 * M_PI * s->total);
 	for (int l = 0; l < s->sizes; l++)
-		memset(s->size[l].square, 0,
-			(size_t)s->size[l].nx * (size_t)s->size[l].ny *
-				sizeof *s->size[l].square);
+		count += (size_t)s->size[l].nx * (size_t)s->size[l].ny;
+	memset(s->squares, 0, count * sizeof *s->squares);
 	for (int i = 0; i < s->tiles; i++)
 		s->tile[i].row = -1;
-	s->pressure = pressure;
-	list_cells(s);
-	find_centroids(small);
-	for (; small + 1 < s->size + s->sizes; small = large) {
-		large = small + 1;
-		for (int i = 0; i < small->nx * small->ny; i++) {
-			const struct square *q = &small->square[i];
-			int x = i % small->nx / 2, y = i / small->nx / 2;
-
-			add_load(&large->square[y * large->nx + x], q->load, q->x, q->y);
+	for (int y = 0; y < s->ny; y++)
+		for (int x = 0; x < s->nx; x++) {
+			s->begin[block++] = n;
+			n = list_cells(s, x, y, n);
 		}
-		find_centroids(large);
-	}
-	s->total = small->square->load;
-	s->share =
-		s->par.dx * s->par.dy * s->per_cell * s->per_cell / (2 * M_PI * s->total);
-}
+	s->begin[block] = n;
+	for (struct size *size = s->size; size + 1 < s->size + s->sizes; size++)
+		for (int i = 0; i < size->nx * size->ny; i++) {
+			const struct loads *q = &size->square[i];
+			float load = sum_four(q->load);
 
-/* Stress of points on the list at all four depths: the sum of pressure and friction as
- * stress_point() gives it. */
-struct sums {
-	four xx, yy, xy, xz, yz; /* x along the shear; xx and yy less zz */
-};
-
-static inline four all_four(float x)
-{
-	return (four){ x, x, x, x };
+			if (load > 0)
+				put_square(size + 1, i % size->nx, i / size->nx, load,
+					sum_four(q->load * q->x),
+					sum_four(q->load * q->y));
+		}
 }
 
 /* 1 / sqrt(x) to 5e-6: a line through the logarithm, which the bits of a float are
  * nearly, and two steps of Newton's method. */
 static inline four inverse_root(four x)
 {
-	four y = (four)(0x5f375a86 - ((four_bits)x >> 1));
+	four y = (four)(0x5f375a86 - ((four_bits)x >> 1)), half = 0.5f * x;
 
-	y *= 1.5f - 0.5f * x * y * y;
-	return y * (1.5f - 0.5f * x * y * y);
+	y *= 1.5f - half * y * y;
+	return y * (1.5f - half * y * y);
 }
 
+/* Pressure and friction of a point as stress_point() gives them. */
 static inline void sum_one(
 	float x, float y, float p, four z, float k, float mu, struct sums *t)
 {
-	four r2 = x * x + y * y + z * z, ir = inverse_root(r2), r = r2 * ir;
-	four id = 1 / (r + z), ir3 = ir * ir * ir, h = k * ir * id * id;
-	four f = 3 * ir3 * ir * ir;
-	four m = h * ir * ir * (2 * r + z) - f * z, l = k * (z * ir3 - ir * id);
-	four sm = h * ir * ir * id * (3 * r + z) - f, sk = k * ir3 - h;
-	four zz = f * (z + mu * x) * z;
+	four r2 = (x * x + y * y) + z * z, ir = inverse_root(r2), r = r2 * ir;
+	four id = 1 / (r + z), ir2 = ir * ir, ir3 = ir2 * ir, h = k * ir * id * id;
+	four f = 3 * ir3 * ir2, g = h * ir2, zz = f * (z + mu * x) * z;
+	four m = g * (2 * r + z) - f * z + mu * x * (g * id * (3 * r + z) - f);
+	four l = k * (z * ir3 - ir * id) + mu * x * (k * ir3 - h) + zz * z;
 
-	t->xx += p * (m * x * x + l + mu * x * (sm * x * x + sk - 2 * h) + zz * z);
-	t->yy += p * (m * y * y + l + mu * x * (sm * y * y + sk) + zz * z);
-	t->xy += p * y * (m * x + mu * (sm * x * x - h));
-	t->xz -= p * zz * x;
-	t->yz -= p * zz * y;
+	h *= mu;
+	t->xx += p * (x * (m * x - 2 * h) + l);
+	t->yy += p * (y * y * m + l);
+	t->xy += p * y * (m * x - h);
+	zz *= p;
+	t->xz -= zz * x;
+	t->yz -= zz * y;
 }
 
-static void take_sums(const struct point_sum *s, const struct sums *t, struct point *at)
-{
-	int swap = s->par.axis;
-
-	at->number[swap ? DEV_Y : DEV_X] += t->xx;
-	at->number[swap ? DEV_X : DEV_Y] += t->yy;
-	at->number[DEV_XY] += t->xy;
-	at->number[swap ? DEV_YZ : DEV_XZ] += t->xz;
-	at->number[swap ? DEV_XZ : DEV_YZ] += t->yz;
-}
-
-/* Of points that are u and v farther away. */
-static void sum_list(const struct point_sum *s, const struct points *l, float u, float v,
+/* Those of a list, u and v farther away. */
+static void add_list(const struct point_sum *s, const struct list *l, float u, float v,
 	struct point *at)
 {
 	float k = (float)(1 - 2 * s->par.nu), mu = (float)s->par.mu;
-	struct sums t = { .xx = all_four(0) };
+	struct sums t = at->sums;
 
-	for (int i = 0; i < l->count; i++)
-		sum_one(l->along[i] + u, l->across[i] + v, l->load[i], at->z, k, mu, &t);
-	take_sums(s, &t, at);
-}
+	for (int i = 0; i < l->count; i++) {
+		const struct loads *p = &l->loads[i / 4];
 
-static inline four load_four(const float *x)
-{
-	four v;
-
-	memcpy(&v, x, sizeof v);
-	return v;
-}
-
-static inline float sum_four(four x)
-{
-	return (x[0] + x[1]) + (x[2] + x[3]);
+		sum_one(p->x[i % 4] + u, p->y[i % 4] + v, p->load[i % 4], at->z, k, mu,
+			&t);
+	}
+	at->sums = t;
 }
 
 /* The same as far as it is linear in the depth, four points at a time. */
-static void sum_flat(const struct point_sum *s, const struct points *l, float u, float v,
+static void add_flat(const struct point_sum *s, const struct list *l, float u, float v,
 	struct point *at)
 {
 	float k = (float)(1 - 2 * s->par.nu), mu = (float)s->par.mu;
@@ -348,64 +389,37 @@ static void sum_flat(const struct point_sum *s, const struct points *l, float u,
 							  */
 
 	for (int i = 0; i < l->count; i += 4) {
-		four x = load_four(l->along + i) + u, y = load_four(l->across + i) + v;
-		four p = load_four(l->load + i), ir = inverse_root(x * x + y * y);
-		four ir2 = ir * ir, h = k * ir2 * ir, g = h * ir, f = 3 * ir2 * ir2 * ir;
-		four m = -3 * h * ir2 - f, sm = 3 * h * ir2 - f, sn = -8 * g * ir2;
+		four x = l->loads[i / 4].x + u, y = l->loads[i / 4].y + v;
+		four p = l->loads[i / 4].load, ir = inverse_root(x * x + y * y);
+		four ir2 = ir * ir, kir2 = k * ir2, h = kir2 * ir, g = 2 * h * ir;
+		four f = 3 * ir2 * ir2 * ir, mx = mu * x, q = p * f * mx;
+		four m = g + mx * (3 * h * ir2 - f),
+		     n = -3 * h * ir2 - f - 4 * mx * g * ir2;
+		four px = p * x, py = p * y;
 
-		t.xx += p * (2 * g * x * x - k * ir2 + mu * x * (sm * x * x - 2 * h));
-		t.yy += p * (2 * g * y * y - k * ir2 + mu * x * sm * y * y);
-		t.xy += p * y * (2 * g * x + mu * (sm * x * x - h));
-		rise.xx += p * (m * x * x + 2 * h + mu * x * (sn * x * x + 6 * g));
-		rise.yy += p * (m * y * y + 2 * h + mu * x * (sn * y * y + 2 * g));
-		rise.xy += p * y * (m * x + mu * (sn * x * x + 2 * g));
-		rise.xz -= p * f * mu * x * x;
-		rise.yz -= p * f * mu * x * y;
+		t.xx += px * (m * x - 2 * mu * h) - p * kir2;
+		t.yy += py * m * y - p * kir2;
+		t.xy += py * (m * x - mu * h);
+		rise.xx += px * n * x + p * (2 * h + 3 * mx * g);
+		rise.yy += py * n * y + p * (2 * h + mx * g);
+		rise.xy += py * (n * x + mu * g);
+		rise.xz -= q * x;
+		rise.yz -= q * y;
 	}
-	t = (struct sums){ .xx = sum_four(t.xx) + at->z * sum_four(rise.xx),
-		.yy = sum_four(t.yy) + at->z * sum_four(rise.yy),
-		.xy = sum_four(t.xy) + at->z * sum_four(rise.xy),
-		.xz = at->z * sum_four(rise.xz),
-		.yz = at->z * sum_four(rise.yz) };
-	take_sums(s, &t, at);
-}
-
-/* 0 if there are too many. */
-static int list_point(struct points *l, float along, float across, float load)
-{
-	if (l->count == LIST)
-		return 0;
-	l->along[l->count] = along;
-	l->across[l->count] = across;
-	l->load[l->count++] = load;
-	return 1;
-}
-
-/* Fills up the last four with loads of nothing, outside the tile. */
-static void fill_four(struct points *l)
-{
-	while (l->count % 4)
-		list_point(l, 2 * TILE_SIDE, 0, 0);
-}
-
-static void sum_lists(struct point_sum *s, struct point *at)
-{
-	fill_four(&s->flat);
-	sum_list(s, &s->list, 0, 0, at);
-	sum_flat(s, &s->flat, 0, 0, at);
-	s->list.count = s->flat.count = 0;
+	at->sums.xx += sum_four(t.xx) + at->z * sum_four(rise.xx);
+	at->sums.yy += sum_four(t.yy) + at->z * sum_four(rise.yy);
+	at->sums.xy += sum_four(t.xy) + at->z * sum_four(rise.xy);
+	at->sums.xz += at->z * sum_four(rise.xz);
+	at->sums.yz += at->z * sum_four(rise.yz);
 }
 
 static void add_point(
-	struct point_sum *s, struct point *at, double load, double x, double y)
+	const struct point_sum *s, struct point *at, float load, float x, float y)
 {
-	float u = (float)((at->x - x) * s->per_cell),
-	      v = (float)((at->y - y) * s->per_cell);
-	struct points *l = u * u + v * v >= at->flat_from ? &s->flat : &s->list;
+	float u = at->x - x, v = at->y - y;
 
-	if (l->count == LIST)
-		sum_lists(s, at);
-	list_point(l, s->par.axis ? v : u, s->par.axis ? u : v, (float)(load * s->share));
+	sum_one(s->par.axis ? v : u, s->par.axis ? u : v, load, at->z,
+		(float)(1 - 2 * s->par.nu), (float)s->par.mu, &at->sums);
 }
 
 /* Of all cells at i, j or mirrored, at one of the depths. */
@@ -419,7 +433,7 @@ static void know_element(struct point_sum *s, int i, int j, int set, int depth)
 		four *to =
 			s->element[set][AROUND + (mx ? -i : i)][AROUND + (my ? -j : j)];
 
-		for (int c = 0; c < STRESS_NUMBERS; c++)
+		for (int c = 0; c < STRESS_DEVIATOR; c++)
 			to[c][depth] = (float)influence_image(&s->influence, &f,
 				(enum stress_number)c, mx && i, my && j);
 	}
@@ -435,164 +449,123 @@ static void know_elements(struct point_sum *s, int set)
 }
 
 /* A cell that is i, j cells before the point. */
-static void add_element(struct point_sum *s, struct point *at, double load, int i, int j)
+static void add_element(struct point_sum *s, struct point *at, float load, int i, int j)
 {
-	int set = at->k / POINT_SUM_DEPTHS;
-	float share = (float)(load / s->total);
 	const four *element;
 
-	if (!s->known[set])
-		know_elements(s, set);
-	element = s->element[set][AROUND + i][AROUND + j];
-	for (int c = 0; c < STRESS_NUMBERS; c++)
-		at->number[c] += share * element[c];
+	if (!s->known[at->set])
+		know_elements(s, at->set);
+	element = s->element[at->set][AROUND + i][AROUND + j];
+	for (int c = 0; c < STRESS_DEVIATOR; c++)
+		at->number[c] += load * element[c];
 }
 
-/* Cell by cell of a smallest square. */
-static void add_cells(struct point_sum *s, struct point *at, int x, int y)
+/* A smallest square, or its cells one by one. */
+static void add_block(struct point_sum *s, struct point *at, const struct block *b)
 {
-	double depth = at->top * s->per_cell;
-	int square = y * s->size->nx + x;
+	const float far = (float)FAR * BLOCK, near = (float)NEAR;
+	float u = at->x - b->x, v = at->y - b->y, z2 = at->z[0] * at->z[0];
+	int block = b->iy / BLOCK * s->nx + b->ix / BLOCK;
 
-	for (size_t n = s->begin[square]; n < s->begin[square + 1]; n++) {
-		int ix = x * BLOCK + s->place[n] % BLOCK,
-		    iy = y * BLOCK + s->place[n] / BLOCK;
+	if (u * u + v * v + 0.25f * z2 >= far * far) {
+		add_point(s, at, b->load, b->x, b->y);
+		return;
+	}
+	for (size_t n = s->begin[block]; n < s->begin[block + 1]; n++) {
+		int ix = b->ix + s->place[n] % BLOCK, iy = b->iy + s->place[n] / BLOCK;
 		int i = at->ix - ix, j = at->iy - iy;
-		double p = pressure_at(s, ix, iy);
+		float load = (float)(s->share * pressure_at(s, ix, iy));
 
-		if (i * i + j * j + depth * depth < NEAR * NEAR)
-			add_element(s, at, p, i, j);
+		if ((float)(i * i + j * j) + z2 < near * near)
+			add_element(s, at, load, i, j);
 		else
-			add_point(s, at, p, centre(ix, s->par.dx), centre(iy, s->par.dy));
+			add_point(s, at, load, centre(ix, s->dx), centre(iy, s->dy));
 	}
-}
-
-/* A square of size l, or the smaller ones that it consists of. */
-static void add_square(struct point_sum *s, struct point *at, int l, int x, int y)
-{
-	const struct size *size = &s->size[l];
-	const struct square *q = &size->square[y * size->nx + x];
-	double u = at->x - q->x, v = at->y - q->y;
-
-	if (!(q->load > 0))
-		return;
-	if (u * u + v * v + 0.25 * at->top * at->top >=
-		FAR * FAR * size->side * size->side) {
-		add_point(s, at, q->load, q->x, q->y);
-		return;
-	}
-	if (l == 0) {
-		add_cells(s, at, x, y);
-		return;
-	}
-	for (int j = 2 * y; j < 2 * y + 2 && j < s->size[l - 1].ny; j++)
-		for (int i = 2 * x; i < 2 * x + 2 && i < s->size[l - 1].nx; i++)
-			add_square(s, at, l - 1, i, j);
 }
 
 /* Tiles */
 
-/* From a point to a row of cells along an axis. */
-static double beyond(double x, int first, double width)
+/* From points to the nearest edge of a tile along an axis. */
+static inline four beyond(four away, float half)
 {
-	double low = first * width - x, high = x - (first + TILE_SIDE) * width;
+	four x = (four)((four_bits)away & 0x7fffffff) - half;
 
-	return low > 0 ? low : high > 0 ? high : 0;
+	return (four)((four_bits)x & (x > 0));
 }
 
-static void list_far(const struct point_sum *s, struct tile *t, int column,
-	const struct square *q, double distance)
+static void list_far(const struct point_sum *s, struct tile *t, float load, float x,
+	float y, float square)
 {
-	float u = (float)(((column + 0.5) * TILE_SIDE * s->par.dx - q->x) * s->per_cell),
-	      v = (float)(((t->row + 0.5) * TILE_SIDE * s->par.dy - q->y) * s->per_cell);
+	struct list *l = t->far;
+	struct loads *to;
 
-	t->full |= !list_point(
-		distance >= FLAT * TILE_SIDE * s->cell ? &t->flat : &t->far,
-		s->par.axis ? v : u, s->par.axis ? u : v, (float)(q->load * s->share));
+	for (float z = (float)FLAT; l < t->far + FOURS && square >= z * z;
+		z *= 1 << POINT_SUM_DEPTHS)
+		l++;
+	to = &l->loads[l->count / 4];
+	if (l->count % 4 == 0)
+		*to = (struct loads){ .x = all_four((float)FLAT) };
+	to->x[l->count % 4] = s->par.axis ? y : x;
+	to->y[l->count % 4] = s->par.axis ? x : y;
+	to->load[l->count++ % 4] = load;
 }
 
-static void list_near(struct tile *t, int x, int y)
-{
-	t->full |= t->near == NEAR_LIST;
-	if (t->full)
-		return;
-	t->x[t->near] = x;
-	t->y[t->near++] = y;
-}
-
-/* A square of size l, or those that it consists of. */
-static void list_square(
-	const struct point_sum *s, struct tile *t, int column, int l, int x, int y)
+/* Two by two squares of size l, or those that they consist of. */
+static void list_squares(const struct point_sum *s, struct tile *t, int l, int x, int y)
 {
 	const struct size *size = &s->size[l];
-	const struct square *q = &size->square[y * size->nx + x];
-	double u = beyond(q->x, column * TILE_SIDE, s->par.dx),
-	       v = beyond(q->y, t->row * TILE_SIDE, s->par.dy);
+	const struct loads *q = &size->square[y * size->nx + x];
+	const float far = t->apart * size->side;
+	four away_x = t->x - q->x, away_y = t->y - q->y;
+	four u = beyond(away_x, t->half_x), v = beyond(away_y, t->half_y);
+	four square = u * u + v * v;
 
-	if (!(q->load > 0))
-		return;
-	if (u * u + v * v >= TILE_FAR * TILE_FAR * size->side * size->side) {
-		list_far(s, t, column, q, sqrt(u * u + v * v));
-		return;
+	for (int i = 0; i < 4; i++) {
+		int ix = 2 * x + i % 2, iy = 2 * y + i / 2;
+
+		if (!(q->load[i] > 0))
+			continue;
+		if (square[i] >= far * far)
+			list_far(s, t, q->load[i], away_x[i], away_y[i], square[i]);
+		else if (l > 0)
+			list_squares(s, t, l - 1, ix, iy);
+		else
+			t->block[t->near++] = (struct block){ q->x[i], q->y[i],
+				q->load[i], ix * BLOCK, iy * BLOCK };
 	}
-	if (l == TILE) {
-		list_near(t, x, y);
-		return;
-	}
-	for (int j = 2 * y; j < 2 * y + 2 && j < s->size[l - 1].ny; j++)
-		for (int i = 2 * x; i < 2 * x + 2 && i < s->size[l - 1].nx; i++)
-			list_square(s, t, column, l - 1, i, j);
 }
 
-/* The tile of a cell; NULL if it has too many squares, or the grid too few. */
-static const struct tile *tile_of(struct point_sum *s, int ix, int iy)
+static const struct tile *tile_of(struct point_sum *s, const struct point *at)
 {
-	int column = ix / TILE_SIDE, row = iy / TILE_SIDE;
+	int column = at->ix / TILE_SIDE, row = at->iy / TILE_SIDE;
+	float apart = (float)(at->set < FOURS ? TILE_FAR : DEEP_FAR);
 	struct tile *t = &s->tile[column];
 
-	if (s->sizes <= TILE)
-		return NULL;
-	if (t->row != row) {
+	if (t->row != row || t->apart != apart) {
 		t->row = row;
-		t->far.count = t->flat.count = t->near = t->full = 0;
-		list_square(s, t, column, s->sizes - 1, 0, 0);
-		fill_four(&t->far);
-		fill_four(&t->flat);
+		t->apart = apart;
+		t->half_x = 0.5f * TILE_SIDE * s->dx;
+		t->half_y = 0.5f * TILE_SIDE * s->dy;
+		t->x = centre(column, TILE_SIDE * s->dx);
+		t->y = centre(row, TILE_SIDE * s->dy);
+		t->near = 0;
+		for (int i = 0; i <= FOURS; i++)
+			t->far[i].count = 0;
+		list_squares(s, t, s->sizes - 1, 0, 0);
 	}
-	return t->full ? NULL : t;
+	return t;
 }
 
-/* All loads: those far from the tile by its list.  A depth of more than the tile's side
- * needs fewer. */
 static void add_loads(struct point_sum *s, struct point *at)
 {
-	const struct tile *t =
-		at->k < 2 * POINT_SUM_DEPTHS ? tile_of(s, at->ix, at->iy) : NULL;
-	float u, v;
+	const struct tile *t = tile_of(s, at);
+	float u = at->x - t->x, v = at->y - t->y;
 
-	if (!t) {
-		add_square(s, at, s->sizes - 1, 0, 0);
-		return;
-	}
-	u = (float)((at->ix % TILE_SIDE - 0.5 * (TILE_SIDE - 1)) * s->par.dx *
-		    s->per_cell);
-	v = (float)((at->iy % TILE_SIDE - 0.5 * (TILE_SIDE - 1)) * s->par.dy *
-		    s->per_cell);
-	if (s->par.axis) {
-		float swap = u;
-
-		u = v;
-		v = swap;
-	}
-	/* The far ones are TILE_FAR TILE_SIDE = 20 times as far as the first four depths
-	 * are deep, or more. */
-	if (at->k == 0)
-		sum_flat(s, &t->far, u, v, at);
-	else
-		sum_list(s, &t->far, u, v, at);
-	sum_flat(s, &t->flat, u, v, at);
+	for (int i = 0; i <= FOURS; i++)
+		(i > at->set ? add_flat : add_list)(
+			s, &t->far[i], s->par.axis ? v : u, s->par.axis ? u : v, at);
 	for (int i = 0; i < t->near; i++)
-		add_square(s, at, TILE, t->x[i], t->y[i]);
+		add_block(s, at, &t->block[i]);
 }
 
 void point_sum_at(
@@ -603,22 +576,26 @@ void point_sum_at(
 		g->criterion ? g->criterion : &stress_von_mises_criterion;
 	struct point at = { .ix = (int)(cell % (size_t)g->nx),
 		.iy = (int)(cell / (size_t)g->nx),
-		.k = k,
-		.top = point_sum_depth(s, k) };
-	double deepest;
+		.set = k / POINT_SUM_DEPTHS };
+	const struct sums *t = &at.sums;
+	float of_element = 2 * (float)M_PI / (s->dx * s->dy);
 
-	at.x = centre(at.ix, g->dx);
-	at.y = centre(at.iy, g->dy);
+	at.x = centre(at.ix, s->dx);
+	at.y = centre(at.iy, s->dy);
 	for (int d = 0; d < POINT_SUM_DEPTHS; d++)
-		at.z[d] = (float)(point_sum_depth(s, k + d) / s->cell);
-	deepest = FLAT * at.z[POINT_SUM_DEPTHS - 1];
-	at.flat_from = (float)(deepest * deepest);
+		at.z[d] = (float)depth_of(k + d);
 	add_loads(s, &at);
-	sum_lists(s, &at);
+	for (int c = 0; c < STRESS_DEVIATOR; c++)
+		at.number[c] *= of_element;
+	at.number[DEV_X] += g->axis ? t->yy : t->xx;
+	at.number[DEV_Y] += g->axis ? t->xx : t->yy;
+	at.number[DEV_XY] += t->xy;
+	at.number[DEV_XZ] += g->axis ? t->yz : t->xz;
+	at.number[DEV_YZ] += g->axis ? t->xz : t->yz;
 	for (int d = 0; d < POINT_SUM_DEPTHS; d++) {
-		double number[STRESS_NUMBERS];
+		double number[STRESS_DEVIATOR];
 
-		for (int c = 0; c < STRESS_NUMBERS; c++)
+		for (int c = 0; c < STRESS_DEVIATOR; c++)
 			number[c] = s->total * at.number[c][d];
 		stress[d] = criterion->value(number);
 	}

@@ -329,22 +329,22 @@ static void start(struct outlook *o)
 {
 	struct predict_par par = {
 		.model = (enum predict_model)model,
-		.threshold = outlook_options.threshold,
-		.direction = o->now.direction,
+		.bank = { .threshold = outlook_options.threshold,
+			.direction = o->now.direction,
+			.load = covariates_future(),
+			.n_loads = covariates_count() },
 		.zero = outlook_options.zero,
 		.horizon = horizon / timeunit(),
 		.adaptive = o->filter,
 		.draws = (int)filtering.particles,
 		.chances = chances,
-		.load = covariates_future(),
-		.n_loads = covariates_count(),
 	};
 
 	if (fleet)
-		par.paths = fleet_shapes(fleet, &par.n_paths);
+		par.bank.more = fleet_shapes(fleet, &par.bank.n_more);
 	for (int i = 0; i < n_fleet_units; i++)
 		if (strcmp(fleet_unit[i], o->unit) == 0)
-			par.own = fleet_shape_of(fleet, i);
+			par.bank.own = fleet_shape_of(fleet, i);
 	o->predict = predict_new(&par);
 	if (!o->predict)
 		die(EXIT_RUN, "no memory for the prediction");

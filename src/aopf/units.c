@@ -200,8 +200,7 @@ void unit_step(struct machine *u, const struct outlook_row *in, double *cell)
 	u->last = in->t;
 	u->value = in->y;
 	if (u->filter) {
-		if (adaptive_step(u->filter, in->t, in->y - zero, &row) != NUM_OK)
-			die(EXIT_RUN, "no memory for the particles");
+		adaptive_step(u->filter, in->t, in->y - zero, &row);
 		*cell++ = row.grey + zero;
 		*cell++ = row.prediction + zero;
 		*cell++ = row.state + zero;

@@ -27,15 +27,14 @@ int main(int argc, char **argv)
 		argc > 4 ? atof(argv[4]) : 0.5, 0 };
 	struct draw *source = draw_new(7, 0, RNG_NOISE), *d = draw_new(1, 0, RNG_FILTER);
 	struct filter *f = filter_new(&par, d);
-	uint32_t *index = malloc(n * sizeof *index);
 	double *mean = malloc(n * sizeof *mean), x = 0, k_x = 0, k_p = NOISE * NOISE;
 	double sum = 0, k_sum = 0, apart = 0, spent = 0, past = 0;
 
-	if (!source || !d || !f || !index || !mean)
+	if (!source || !d || !f || !mean)
 		return 1;
 	filter_start(f, &past, 1, sqrt(3) * NOISE);
 	for (int k = 0; k < steps; k++) {
-		const double *states;
+		struct filter_step now;
 		double y, start, gain;
 
 		x += DRIFT + PROCESS * draw_normal(source);
@@ -45,16 +44,16 @@ int main(int argc, char **argv)
 		k_x += DRIFT + gain * (y - k_x - DRIFT);
 		k_p *= 1 - gain;
 		start = seconds();
-		states = filter_lag(f, 0, index);
+		now = filter_step(f, 0);
 		for (size_t i = 0; i < n; i++)
-			mean[i] = states[index[i]] + DRIFT;
+			mean[i] = now.x[now.ancestor[i]] + DRIFT;
 		filter_predict(f, mean, PROCESS);
 		filter_update(f, y, NOISE);
 		spent += seconds() - start;
-		sum += pow(filter_mean(f) - x, 2);
+		sum += pow(filter_now(f).mean - x, 2);
 		k_sum += pow(k_x - x, 2);
 		if (k >= SETTLE)
-			apart += pow(filter_mean(f) - k_x, 2) / k_p;
+			apart += pow(filter_now(f).mean - k_x, 2) / k_p;
 	}
 	printf("%zu\t%d\t%.6f\t%.4g\t%.6f\t%.3e\n", n, steps, spent,
 		(double)n * steps / spent, sqrt(sum / k_sum),
@@ -62,7 +61,6 @@ int main(int argc, char **argv)
 	filter_free(f);
 	draw_free(d);
 	draw_free(source);
-	free(index);
 	free(mean);
 	return 0;
 }

@@ -54,22 +54,20 @@ static double particles(const struct walk *w, const struct filter_par *par,
 {
 	struct draw *d = draw_new(5, 0, RNG_FILTER);
 	struct filter *f = filter_new(par, d);
-	uint32_t *index = malloc(par->particles * sizeof *index);
 	double *mean = malloc(par->particles * sizeof *mean), past = 0, sum = 0;
 
 	*evidence = 0;
 	filter_start(f, &past, 1, sqrt(3) * NOISE);
 	for (int k = 0; k < STEPS; k++) {
-		const double *x = filter_lag(f, 0, index);
+		struct filter_step now = filter_step(f, 0);
 
 		for (size_t i = 0; i < par->particles; i++)
-			mean[i] = x[index[i]] + DRIFT;
+			mean[i] = now.x[now.ancestor[i]] + DRIFT;
 		filter_predict(f, mean, PROCESS);
 		if (!(missing > 0) || fmod(k * missing, 1) >= missing)
 			*evidence += filter_update(f, w->y[k], NOISE);
-		sum += (filter_mean(f) - w->x[k]) * (filter_mean(f) - w->x[k]);
+		sum += (filter_now(f).mean - w->x[k]) * (filter_now(f).mean - w->x[k]);
 	}
-	free(index);
 	free(mean);
 	filter_free(f);
 	draw_free(d);
@@ -150,15 +148,16 @@ static void test_weights(void)
 	double *mean = calloc(500, sizeof *mean), past = 0, evidence;
 
 	filter_start(f, &past, 1, 1);
-	near(filter_ess(f), 500, 1e-9, "the weights are equal at the start");
+	near(filter_now(f).ess, 500, 1e-9, "the weights are equal at the start");
 	filter_predict(f, mean, 1);
 	/* 1e6 standard deviations away: exp() of every weight is 0 */
 	evidence = filter_update(f, 1e3, 1e-3);
-	ok(isfinite(evidence) && isfinite(filter_mean(f)),
+	ok(isfinite(evidence) && isfinite(filter_now(f).mean),
 		"weights that underflow stay finite");
-	ok(filter_ess(f) >= 1 && filter_mean(f) > 1.5, "the nearest particle survives");
+	ok(filter_now(f).ess >= 1 && filter_now(f).mean > 1.5,
+		"the nearest particle survives");
 	filter_predict(f, mean, 1);
-	near(filter_ess(f), 500, 1e-9,
+	near(filter_now(f).ess, 500, 1e-9,
 		"the filter resamples after the collapse of the weights");
 	filter_free(f);
 	free(mean);
@@ -172,24 +171,22 @@ static void test_genealogy(void)
 	struct filter_par par = { 64, 4, RESAMPLE_SYSTEMATIC, 1, 0 };
 	struct draw *d = draw_new(2, 0, RNG_FILTER);
 	struct filter *f = filter_new(&par, d);
-	uint32_t index[64];
-	double mean[64], past = 0, carried[64];
-	const double *x;
+	struct filter_step now, before;
+	double mean[64], past = 0;
 	int good = 1;
 
 	filter_start(f, &past, 1, 1);
 	for (int k = 0; k < 6; k++) {
-		x = filter_lag(f, 0, index);
+		now = filter_step(f, 0);
 		for (int i = 0; i < 64; i++)
-			mean[i] = carried[i] = x[index[i]];
+			mean[i] = now.x[now.ancestor[i]];
 		filter_predict(f, mean, 0);
 		filter_update(f, 0.3, 0.2);
-		x = filter_lag(f, 0, index);
+		now = filter_step(f, 0);
+		before = filter_step(f, 1);
 		for (int i = 0; i < 64; i++)
-			mean[i] = x[index[i]];
-		x = filter_lag(f, 1, index);
-		for (int i = 0; i < 64; i++)
-			good &= x[index[i]] == mean[i];
+			good &= before.x[before.ancestor[now.ancestor[i]]] ==
+				now.x[now.ancestor[i]];
 	}
 	ok(good, "without process noise every particle equals its ancestor");
 	filter_free(f);

@@ -83,6 +83,13 @@ double grey_curve(double level, double rate, double t, double gap)
 	return level * mean * lanes_exp(lanes_all(clamp(-rate * i.middle, 300)))[0];
 }
 
+double grey_passage(double now, double rate, double limit)
+{
+	double time = -log(limit / now) / rate;
+
+	return time >= 0 ? time : INFINITY;
+}
+
 double grey_forecast(const struct grey *g, double h, double gap)
 {
 	return grey_curve(grey_level(g), grey_rate(g), g->span + h, gap);

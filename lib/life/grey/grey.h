@@ -68,6 +68,10 @@ double grey_forecast(const struct grey *g, double h, double gap);
  * of the fitted level and rate at t = span + h. */
 double grey_curve(double level, double rate, double t, double gap);
 
+/* The time in which that curve, now at a value, reaches a limit on the side to which it
+ * goes; INFINITY: never, also where it would have to change its sign. */
+double grey_passage(double now, double rate, double limit);
+
 /* sinh(x) / x for |x| <= GREY_SERIES by its series, 1 + x^2 / 3! + ..., whose first
  * omitted term is x^10 / 11!. */
 static const double GREY_SERIES = 0.1;

@@ -11,11 +11,13 @@ enum { TREND = 10 };
 
 struct order {
 	struct order_par par;
-	int chosen;
-	long rows;    /* observations so far */
-	double first; /* the first of them */
-	int next;     /* place in the ring of the next observation */
-	int ring;     /* its size */
+	int ring; /* size of that of the last observations */
+	struct order_state {
+		int chosen, next; /* next: place in the ring of the next observation */
+		long rows;        /* observations so far */
+		double first;     /* the first of them */
+		struct order_counts counts;
+	} now;
 	struct observation {
 		double y, gap; /* since the one before */
 	} * last;
@@ -25,7 +27,6 @@ struct order {
 		double total;    /* of squared errors since then */
 	} * of;                  /* [largest + 1] */
 	double *error; /* [window][largest + 1] squared errors of the last rows */
-	struct order_counts counts;
 };
 
 struct order *order_new(const struct order_par *par)
@@ -63,43 +64,39 @@ void order_pass(struct order *o, struct state *s)
 {
 	size_t orders = (size_t)o->par.largest + 1;
 
-	state_move(s, &o->chosen, sizeof o->chosen);
-	state_move(s, &o->rows, sizeof o->rows);
-	state_move(s, &o->first, sizeof o->first);
-	state_move(s, &o->next, sizeof o->next);
+	state_move(s, &o->now, sizeof o->now);
 	state_move(s, o->last, (size_t)o->ring * sizeof *o->last);
 	state_move(s, o->of, orders * sizeof *o->of);
 	state_move(s, o->error, orders * (size_t)o->par.window * sizeof *o->error);
-	state_move(s, &o->counts, sizeof o->counts);
 }
 
 static const struct observation *observed(const struct order *o, int lag)
 {
-	return &o->last[(o->next - 1 - lag + 2 * o->ring) % o->ring];
+	return &o->last[(o->now.next - 1 - lag + 2 * o->ring) % o->ring];
 }
 
 static int orders_now(const struct order *o)
 {
-	return o->rows < o->par.largest ? (int)o->rows : o->par.largest;
+	return o->now.rows < o->par.largest ? (int)o->now.rows : o->par.largest;
 }
 
 /* Errors of the forecasts made for the row just taken, from the fits before it. */
 static void score(struct order *o, double y, double gap)
 {
-	double *row = o->error +
-		      (size_t)(o->rows % o->par.window) * ((size_t)o->par.largest + 1);
+	double *row = o->error + (size_t)(o->now.rows % o->par.window) *
+					 ((size_t)o->par.largest + 1);
 
 	for (int p = GREY_ORDER_MIN; p <= orders_now(o); p++) {
 		struct candidate *c = &o->of[p];
 		double e;
 
 		if (c->fit.n != p) { /* not fitted: outside the searched range */
-			c->since = o->rows + 1;
+			c->since = o->now.rows + 1;
 			c->total = 0;
 			continue;
 		}
-		if (o->rows <= p)
-			c->since = o->rows;
+		if (o->now.rows <= p)
+			c->since = o->now.rows;
 		e = y - grey_forecast(&c->fit, gap, gap);
 		row[p] = e * e;
 		c->total += row[p];
@@ -112,13 +109,13 @@ static int goes_on(const struct order *o)
 {
 	double recent = 0, before = 0;
 
-	if (o->rows < 2 * TREND)
+	if (o->now.rows < 2 * TREND)
 		return 0;
 	for (int lag = 0; lag < TREND; lag++) {
 		recent += observed(o, lag)->y;
 		before += observed(o, lag + TREND)->y;
 	}
-	return (recent - before) * (recent - TREND * o->first) > 0;
+	return (recent - before) * (recent - TREND * o->now.first) > 0;
 }
 
 static void fit_orders(struct order *o, int low, int high)
@@ -145,7 +142,7 @@ static double recent_error(const struct order *o, int p, int rows)
 	double sum = 0;
 
 	for (int k = 0; k < rows; k++)
-		sum += o->error[(size_t)((o->rows - 1 - k) % o->par.window) *
+		sum += o->error[(size_t)((o->now.rows - 1 - k) % o->par.window) *
 					((size_t)o->par.largest + 1) +
 				(size_t)p];
 	return sum / rows;
@@ -155,7 +152,7 @@ static double recent_error(const struct order *o, int p, int rows)
  * forecast, at most the window. */
 static int rows_compared(const struct order *o)
 {
-	long half = (o->rows - GREY_ORDER_MIN + 1) / 2;
+	long half = (o->now.rows - GREY_ORDER_MIN + 1) / 2;
 
 	return half < o->par.window ? (int)half : o->par.window;
 }
@@ -166,10 +163,10 @@ static double criterion(const struct order *o, int p, int rows)
 
 	if (o->par.rule == ORDER_INSAMPLE)
 		return grey_residual(&c->fit);
-	if (c->since > o->rows - rows)
+	if (c->since > o->now.rows - rows)
 		return INFINITY; /* not scored over all of these rows */
 	if (o->par.rule == ORDER_ALL && c->since <= o->par.largest)
-		return c->total / (double)(o->rows - c->since);
+		return c->total / (double)(o->now.rows - c->since);
 	return recent_error(o, p, rows);
 }
 
@@ -179,7 +176,7 @@ static void choose(struct order *o, int low, int high)
 	double least = INFINITY, held;
 
 	if (o->par.rule == ORDER_FIXED || (rows < 1 && o->par.rule != ORDER_INSAMPLE)) {
-		o->chosen = high;
+		o->now.chosen = high;
 		return;
 	}
 	for (int p = low; p <= high; p++) {
@@ -190,14 +187,15 @@ static void choose(struct order *o, int low, int high)
 			best = p;
 		}
 	}
-	if (best == o->chosen)
+	if (best == o->now.chosen)
 		return;
-	held = o->chosen >= low && o->chosen <= high ? criterion(o, o->chosen, rows)
-						     : INFINITY;
+	held = o->now.chosen >= low && o->now.chosen <= high
+		       ? criterion(o, o->now.chosen, rows)
+		       : INFINITY;
 	if (o->par.rule != ORDER_WINDOW || least < (1 - o->par.hysteresis) * held ||
 		!(held < INFINITY)) {
-		o->counts.changes += o->chosen > 0;
-		o->chosen = best;
+		o->now.counts.changes += o->now.chosen > 0;
+		o->now.chosen = best;
 	}
 }
 
@@ -207,11 +205,11 @@ void order_add(struct order *o, double y, double gap)
 
 	if (o->par.rule == ORDER_WINDOW || o->par.rule == ORDER_ALL)
 		score(o, y, gap);
-	if (o->rows == 0)
-		o->first = y;
-	o->last[o->next] = (struct observation){ y, gap };
-	o->next = (o->next + 1) % o->ring;
-	o->rows++;
+	if (o->now.rows == 0)
+		o->now.first = y;
+	o->last[o->now.next] = (struct observation){ y, gap };
+	o->now.next = (o->now.next + 1) % o->ring;
+	o->now.rows++;
 	high = orders_now(o);
 	if (high < GREY_ORDER_MIN)
 		return;
@@ -223,26 +221,26 @@ void order_add(struct order *o, double y, double gap)
 		low = o->par.range_low > low ? o->par.range_low : low;
 		high = o->par.range_high < high ? o->par.range_high : high;
 		low = low < high ? low : high;
-		o->counts.skipped += (unsigned long)(all - (high - low + 1));
+		o->now.counts.skipped += (unsigned long)(all - (high - low + 1));
 	}
 	fit_orders(o, low, high);
-	o->counts.tried += (unsigned long)(high - low + 1);
+	o->now.counts.tried += (unsigned long)(high - low + 1);
 	choose(o, low, high);
 }
 
 int order_chosen(const struct order *o)
 {
-	return o->chosen;
+	return o->now.chosen;
 }
 
 double order_forecast(const struct order *o, double h)
 {
-	if (o->chosen)
-		return grey_forecast(&o->of[o->chosen].fit, h, h);
-	return o->rows > 0 ? observed(o, 0)->y : NAN;
+	if (o->now.chosen)
+		return grey_forecast(&o->of[o->now.chosen].fit, h, h);
+	return o->now.rows > 0 ? observed(o, 0)->y : NAN;
 }
 
 struct order_counts order_counts(const struct order *o)
 {
-	return o->counts;
+	return o->now.counts;
 }

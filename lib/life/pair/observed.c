@@ -95,15 +95,10 @@ double observed_rate_trend(const struct observed *o)
 double observed_grey(const struct observed *o, double threshold)
 {
 	struct grey g = grey_of(&o->grey);
-	double now, rate;
+	double now, limit = threshold / o->scale;
 
 	if (g.n < GREY_ORDER_MIN)
 		return NAN;
 	now = grey_forecast(&g, 0, g.span / (g.n - 1));
-	rate = -grey_rate(&g);
-	if (now >= threshold / o->scale)
-		return 0;
-	if (!(now > 0 && rate > 0))
-		return INFINITY;
-	return log(threshold / o->scale / now) / rate * o->unit;
+	return now >= limit ? 0 : grey_passage(now, grey_rate(&g), limit) * o->unit;
 }

@@ -2,37 +2,32 @@
 #include "life/particle/adaptive.h"
 #include "life/grey/grey.h"
 #include "life/grey/noise.h"
-#include "num/lanes.h"
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { RECENT = 4, SETTLED = 8 };
-enum { BLOCK = 256 };                  /* particles at a time */
 enum { MONITOR = 20 };                 /* rows of the innovation monitor and of means */
 static const double MONITOR_LIMIT = 4; /* of the mean squared innovation */
 static const double MONITOR_CLIP = 16; /* limit of one squared innovation, so that a
 					  single outlier does not look like a drift */
 
-/* A past row of all particles: their states and the gap after them. */
+/* A past row of all particles, and the gap before it. */
 struct lag {
-	const double *x;
-	const uint32_t *ancestor; /* index of the ancestor of each state of the next row;
-				     NULL: the same index */
+	struct filter_step step;
 	double gap;
-	size_t first, n; /* of x: the ancestors of the present block */
 };
 
-/* The sums of the grey fits of two particles, x about a centre, u the integral of the
- * states from the oldest on. */
+/* The sums of a grey fit: x about a centre, u the integral of the states from the oldest
+ * on. */
 struct sums {
-	lanes tail, u, x, uu, ux;
+	double tail, u, x, uu, ux;
 };
 
-/* The same of a block, particle by particle. */
-struct block_sums {
-	double tail[BLOCK], u[BLOCK], x[BLOCK], uu[BLOCK], ux[BLOCK];
+/* Those of two states side by side. */
+struct pair {
+	lanes tail, u, x, uu, ux;
 };
 
 struct adaptive {
@@ -41,10 +36,9 @@ struct adaptive {
 	struct filter *filter;
 	struct order *order;
 	struct lag *lag;    /* [depth] */
-	uint32_t *index;    /* [N] */
 	double *mean;       /* [N] prior means */
-	double *past, *gap; /* rings of the last rows: values and gaps before */
-	double *line_up;    /* past in order */
+	struct sums *sums;  /* [N] */
+	double *past, *gap; /* the last rows, oldest first: values and gaps before */
 	double scale;       /* from here on the state, see adaptive_pass(): power of two
 			     * that values are divided by, of the first but 0 */
 	int scaled;
@@ -53,7 +47,7 @@ struct adaptive {
 	double time;
 	double observed, observed_time, observed_gap; /* the last observation */
 	double mean_gap;
-	int newest, filled;
+	int filled;
 	double missed[RECENT]; /* last squared errors of the grey model, a ring */
 	long misses;
 	double process;             /* sigma_u */
@@ -79,16 +73,15 @@ struct adaptive *adaptive_new(const struct adaptive_par *par)
 	a->filter = a->draw ? filter_new(&a->par.filter, a->draw) : NULL;
 	a->order = order_new(&par->order);
 	a->lag = calloc(depth, sizeof *a->lag);
-	a->index = calloc(par->filter.particles, sizeof *a->index);
 	a->mean = calloc(par->filter.particles, sizeof *a->mean);
-	a->past = calloc(depth, sizeof *a->past);
-	a->gap = calloc(depth, sizeof *a->gap);
-	a->line_up = calloc(depth, sizeof *a->line_up);
-	if (!a->draw_paths || !a->filter || !a->order || !a->lag || !a->index ||
-		!a->mean || !a->past || !a->gap || !a->line_up) {
+	a->sums = calloc(par->filter.particles, sizeof *a->sums);
+	a->past = calloc(2 * depth, sizeof *a->past);
+	if (!a->draw_paths || !a->filter || !a->order || !a->lag || !a->mean ||
+		!a->sums || !a->past) {
 		adaptive_free(a);
 		return NULL;
 	}
+	a->gap = a->past + depth;
 	return a;
 }
 
@@ -101,11 +94,9 @@ void adaptive_free(struct adaptive *a)
 	filter_free(a->filter);
 	order_free(a->order);
 	free(a->lag);
-	free(a->index);
 	free(a->mean);
+	free(a->sums);
 	free(a->past);
-	free(a->gap);
-	free(a->line_up);
 	free(a);
 }
 
@@ -118,210 +109,145 @@ void adaptive_pass(struct adaptive *a, struct state *s)
 	draw_pass(a->draw_paths, s);
 	filter_pass(a->filter, s);
 	order_pass(a->order, s);
-	state_move(s, a->past, depth * sizeof *a->past);
-	state_move(s, a->gap, depth * sizeof *a->gap);
+	state_move(s, a->past, 2 * depth * sizeof *a->past);
 	state_move(s, (unsigned char *)a + from, sizeof *a - from);
 }
 
 struct adaptive_counts adaptive_counts(const struct adaptive *a)
 {
-	return (struct adaptive_counts){ filter_resamplings(a->filter), a->outliers,
+	return (struct adaptive_counts){ filter_now(a->filter).resamplings, a->outliers,
 		a->restarts, order_counts(a->order) };
 }
 
-/* Adds a state to the sums, at a gap after the state before it. */
-static inline void add_state(struct sums *s, lanes x, double gap, double centre)
+/* The sums of states i and j of count rows whose states are those of the newest one's
+ * ancestors in the same order; begun by those of older rows, if there are any. */
+static inline struct pair add_states(const struct sums *older, const struct lag *newest,
+	int count, size_t i, size_t j, double centre)
 {
-	lanes part = x * gap, u = s->tail + 0.5 * part, off = x - centre;
+	struct pair s = { 0 };
 
-	s->u += u;
-	s->x += off;
-	s->uu += u * u;
-	s->ux += u * off;
-	s->tail += part;
-}
+	if (older) {
+		const struct sums *a = &older[newest[count].step.ancestor[i]],
+				  *b = &older[newest[count].step.ancestor[j]];
 
-/* Adds to the sums of two particles their states of several rows, oldest row first. */
-static inline struct sums add_stretch(struct sums s, const struct lag *newest, int count,
-	double centre, size_t a, size_t b)
-{
-	for (int k = count; k-- > 0;)
-		add_state(&s, (lanes){ newest[k].x[a], newest[k].x[b] }, newest[k].gap,
-			centre);
+		s = (struct pair){ { a->tail, b->tail }, { a->u, b->u }, { a->x, b->x },
+			{ a->uu, b->uu }, { a->ux, b->ux } };
+	}
+	for (int k = count; k-- > 0;) {
+		lanes x = { newest[k].step.x[i], newest[k].step.x[j] },
+		      part = x * newest[k].gap, u = s.tail + 0.5 * part, off = x - centre;
+
+		s = (struct pair){ s.tail + part, s.u + u, s.x + off, s.uu + u * u,
+			s.ux + u * off };
+	}
 	return s;
 }
 
-static inline struct sums sums_of(const struct block_sums *s, size_t a, size_t b)
+/* The sums over the older rows for the states of the newest ones, *newer rows with equal
+ * states; NULL: there are no older ones.  In place, from the end: ancestors ascend from 0
+ * in steps of 0 or 1, so that none lies after its descendant. */
+static const struct sums *add_older(
+	struct adaptive *a, int count, double centre, int *newer)
 {
-	return (struct sums){ { s->tail[a], s->tail[b] }, { s->u[a], s->u[b] },
-		{ s->x[a], s->x[b] }, { s->uu[a], s->uu[b] }, { s->ux[a], s->ux[b] } };
-}
+	const struct sums *older = NULL;
 
-static inline void keep_sums(struct block_sums *s, size_t i, struct sums two)
-{
-	lanes_store(s->tail + i, two.tail, 2);
-	lanes_store(s->u + i, two.u, 2);
-	lanes_store(s->x + i, two.x, 2);
-	lanes_store(s->uu + i, two.uu, 2);
-	lanes_store(s->ux + i, two.ux, 2);
-}
+	for (int from, end = count;; end = from) {
+		size_t n = a->lag[end - 1].step.n;
 
-/* A window of states to which the grey curve is fitted. */
-struct window {
-	struct lag *lag;
-	int count;
-	double share, centre;
-	struct grey_interval ahead; /* to be forecast, in time from the oldest state on */
-	double least;               /* smallest mean that differs significantly from 0 */
-};
+		for (from = end - 1; from > 0 && a->lag[from - 1].step.n == n;)
+			from--;
+		*newer = end;
+		if (from == 0)
+			return older;
+		for (size_t i = (n + 1) / 2 * 2; i > 0;) {
+			size_t j = i - 1 < n ? i - 1 : i - 2;
+			struct pair s = add_states(
+				older, &a->lag[from], end - from, i -= 2, j, centre);
 
-/* Level and rate of the grey curves of two particles, from their sums.  An exponential
- * through states that cannot be distinguished from 0 is meaningless: such states keep
- * their mean. */
-static inline void fit_pair(
-	const struct window *w, struct sums s, lanes *level, lanes *rate)
-{
-	lanes u = s.u * w->share, x = s.x * w->share, uu = s.uu - s.u * u,
-	      ux = s.ux - s.u * x, middle = w->centre + x;
-
-	*rate = lanes_if(lanes_and(uu > 0, lanes_abs(middle) > w->least), -ux / uu);
-	*level = middle + *rate * u;
-}
-
-/* The means of n <= BLOCK particles from first on.  Particles with the same ancestor have
- * the same history and the same mean. */
-static void forecast_block(const struct window *window, const uint32_t *index,
-	size_t first, size_t n, double *mean)
-{
-	/* a copy that the compiler knows to be constant */
-	const struct window here = *window, *w = &here;
-
-	struct block_sums sums;
-	lanes level[BLOCK / 2], rate[BLOCK / 2];
-	lane_mask far = { 0 };
-	struct lag *lag = w->lag;
-	const uint32_t *parent = lag[0].ancestor;
-	size_t from = first, those = n;
-
-	for (int k = 0; k < w->count; k++) {
-		const uint32_t *ancestor = lag[k].ancestor;
-
-		if (ancestor) {
-			those = ancestor[from + those - 1] - ancestor[from] + 1;
-			from = ancestor[from];
+			a->sums[j] = (struct sums){ s.tail[1], s.u[1], s.x[1], s.uu[1],
+				s.ux[1] };
+			a->sums[i] = (struct sums){ s.tail[0], s.u[0], s.x[0], s.uu[0],
+				s.ux[0] };
 		}
-		lag[k].first = from;
-		lag[k].n = those;
+		older = a->sums;
 	}
-	for (int to, end = w->count; end > 0; end = to) {
-		const uint32_t *ancestor = NULL;
-
-		if (end < w->count)
-			ancestor = lag[end].ancestor + lag[end - 1].first;
-		for (to = end - 1; to > 0 && !lag[to].ancestor;)
-			to--;
-		/* In place, from the end: the ancestors ascend from 0 in steps of 0 or 1,
-		 * so that none lies after its descendant. */
-		for (size_t i = (lag[to].n + 1) / 2 * 2; i > 0;) {
-			size_t j = i - 1 < lag[to].n ? i - 1 : i - 2;
-			size_t a = lag[to].first + (i -= 2), b = lag[to].first + j;
-			struct sums s = { 0 };
-
-			if (ancestor)
-				s = sums_of(&sums, ancestor[i] - lag[end].first,
-					ancestor[j] - lag[end].first);
-			s = add_stretch(s, lag + to, end - to, w->centre,
-				index ? index[a] : a, index ? index[b] : b);
-			if (to > 0) {
-				keep_sums(&sums, i, s);
-				continue;
-			}
-			fit_pair(w, s, &level[i / 2], &rate[i / 2]);
-			far = lanes_or(
-				far, lanes_abs(rate[i / 2]) > w->ahead.largest_rate);
-		}
-	}
-	/* in a loop of its own, so that several exponentials overlap in the processor */
-	for (size_t i = 0; i < lag[0].n; i += 2)
-		lanes_store(mean + i,
-			grey_curve_near(level[i / 2], rate[i / 2], &w->ahead),
-			lag[0].n - i < 2 ? 1 : 2);
-	for (size_t i = 0; (far[0] | far[1]) && i < lag[0].n; i++)
-		if (fabs(rate[i / 2][i % 2]) > w->ahead.largest_rate)
-			mean[i] = grey_curve(level[i / 2][i % 2], rate[i / 2][i % 2],
-				w->ahead.middle + w->ahead.half, 2 * w->ahead.half);
-	for (size_t i = n; parent && i-- > 0;)
-		mean[i] = mean[parent[first + i] - lag[0].first];
 }
 
-/* The same for n particles, or for those in index if it is given.  Histories with a
- * common ancestor share its sums.  Works in blocks whose sums fit in the cache: the
- * ancestors of successive particles are successive states. */
-static void forecast(struct adaptive *a, int count, double h, double noise,
-	const uint32_t *index, size_t n, double *mean)
+/* The grey forecast, h after the newest of count rows, of every particle.  Particles with
+ * a common ancestor share its sums.  An exponential through states that cannot be
+ * distinguished from 0 is meaningless: such states keep their mean. */
+static void forecast(struct adaptive *a, int count, double h, double noise)
 {
-	struct window w = { .lag = a->lag,
-		.count = count,
-		.share = 1.0 / count,
-		.centre = a->lag[0].x[0],
-		.least = 3 * noise };
-	double end = h;
+	const struct filter_step *newest = &a->lag[0].step;
+	double centre = newest->x[0], share = 1.0 / count, end = h, *mean = a->mean;
+	int newer;
+	const struct sums *older = add_older(a, count, centre, &newer);
+	struct grey_interval ahead;
 
 	for (int k = 0; k < count; k++)
 		end += a->lag[k].gap;
-	w.ahead = grey_interval(end, h);
-	for (size_t i = 0; i < n; i += BLOCK)
-		forecast_block(&w, index, i, n - i < BLOCK ? n - i : BLOCK, mean + i);
+	ahead = grey_interval(end, h);
+	for (size_t i = 0; i < newest->n; i += 2) {
+		size_t width = newest->n - i < 2 ? 1 : 2;
+		struct pair s =
+			add_states(older, a->lag, newer, i, i + width - 1, centre);
+		lanes u = s.u * share, x = s.x * share, uu = s.uu - s.u * u,
+		      ux = s.ux - s.u * x, middle = centre + x,
+		      rate = lanes_if(
+			      lanes_and(uu > 0, lanes_abs(middle) > 3 * noise), -ux / uu),
+		      level = middle + rate * u;
+		lane_mask far;
+
+		lanes_store(mean + i, grey_curve_near(level, rate, &ahead), (int)width);
+		far = lanes_abs(rate) > ahead.largest_rate;
+		for (size_t j = 0; (far[0] | far[1]) && j < width; j++)
+			mean[i + j] = grey_curve(level[j], rate[j], end, h);
+	}
+	for (size_t i = a->par.filter.particles; i-- > 0;)
+		mean[i] = mean[newest->ancestor[i]];
 }
 
 /* Prior mean of every particle: the grey forecast from its own last p states.  The oldest
  * state of the window only starts the first interval (see grey.h). */
 static void forecast_particles(struct adaptive *a, int p, double h, double noise)
 {
-	int depth = a->par.filter.depth;
-
-	for (int k = 0; k < p - 1; k++) {
-		struct lag *lag = &a->lag[k];
-
-		lag->x = filter_states(a->filter, k, &lag->ancestor);
-		lag->gap = a->gap[(a->newest - k + depth) % depth];
-	}
-	forecast(a, p - 1, h, noise, NULL, a->par.filter.particles, a->mean);
+	for (int k = 0; k < p - 1; k++)
+		a->lag[k] = (struct lag){ filter_step(a->filter, k),
+			a->gap[a->filled - 1 - k] };
+	forecast(a, p - 1, h, noise);
 }
 
 static void hold_particles(struct adaptive *a)
 {
-	const double *x = filter_lag(a->filter, 0, a->index);
+	struct filter_step now = filter_step(a->filter, 0);
 
 	for (size_t i = 0; i < a->par.filter.particles; i++)
-		a->mean[i] = x[a->index[i]];
+		a->mean[i] = now.x[now.ancestor[i]];
 }
 
 /* Stores a value, and the gap before it, for a restart. */
 static void push_past(struct adaptive *a, double y, double gap)
 {
-	int depth = a->par.filter.depth;
+	if (a->filled == a->par.filter.depth) {
+		size_t older = (size_t)--a->filled * sizeof *a->past;
 
-	a->newest = (a->newest + 1) % depth;
-	a->filled += a->filled < depth;
-	a->past[a->newest] = y;
-	a->gap[a->newest] = gap;
+		memmove(a->past, a->past + 1, older);
+		memmove(a->gap, a->gap + 1, older);
+	}
+	a->past[a->filled] = y;
+	a->gap[a->filled++] = gap;
 }
 
-static enum num_status start_particles(struct adaptive *a, double noise)
+static void start_particles(struct adaptive *a, double noise)
 {
-	int depth = a->par.filter.depth;
-
-	for (int k = 0; k < a->filled; k++)
-		a->line_up[k] = a->past[(a->newest - a->filled + 1 + k + depth) % depth];
 	a->nz = 0;
-	return filter_start(a->filter, a->line_up, a->filled, sqrt(3) * noise);
+	filter_start(a->filter, a->past, a->filled, sqrt(3) * noise);
 }
 
 /* sigma_v in scaled units; never 0, since a weight divides by it. */
 static double observation_noise(const struct adaptive *a)
 {
-	double least = 1e-9 * (1 + fabs(a->past[a->newest]));
+	double least = 1e-9 * (1 + fabs(a->past[a->filled > 0 ? a->filled - 1 : 0]));
 	double s = isnan(a->par.noise) ? a->noise.scale : a->par.noise / a->scale;
 
 	return s > least ? s : least;
@@ -412,16 +338,23 @@ static int monitor(struct adaptive *a, double e, double variance)
 	return sum > MONITOR * MONITOR_LIMIT;
 }
 
-static enum num_status observe(struct adaptive *a, double y, double gap, double process,
+static void put_state(const struct adaptive *a, struct adaptive_row *row)
+{
+	struct filter_now now = filter_now(a->filter);
+
+	row->state = now.mean;
+	row->ess = now.ess;
+}
+
+static void observe(struct adaptive *a, double y, double gap, double process,
 	struct adaptive_row *row)
 {
-	double noise = observation_noise(a), variance = filter_variance(a->filter);
+	double noise = observation_noise(a), variance = filter_now(a->filter).variance;
 	double e = y - row->prediction, own;
 	int lost;
 
 	filter_update(a->filter, y, noise);
-	row->state = filter_mean(a->filter);
-	row->ess = filter_ess(a->filter);
+	put_state(a, row);
 	push_past(a, y, gap);
 	if (row->order == 0) { /* too few points for a model: restart from all of them */
 		lost = 1;
@@ -433,10 +366,10 @@ static enum num_status observe(struct adaptive *a, double y, double gap, double 
 		lost = monitor(a, e, noise * noise + fmin(variance, 4 * own));
 		a->restarts += (unsigned long)lost;
 	}
-	if (lost && start_particles(a, noise) != NUM_OK)
-		return NUM_MEMORY;
-	row->state = lost ? filter_mean(a->filter) : row->state;
-	return NUM_OK;
+	if (lost) {
+		start_particles(a, noise);
+		row->state = filter_now(a->filter).mean;
+	}
 }
 
 /* Zeros are the same in any scale, so the scale may be set after them. */
@@ -452,31 +385,31 @@ static void learn_scale(struct adaptive *a, double y)
 }
 
 /* The first row with a value. */
-static enum num_status begin(
-	struct adaptive *a, double t, double y, struct adaptive_row *row)
+static void begin(struct adaptive *a, double t, double y, struct adaptive_row *row)
 {
 	y /= a->scale;
 	order_add(a->order, y, 0);
 	noise_add(&a->noise, y, 0);
 	push_past(a, y, 0);
 	a->observed_time = t;
-	if (start_particles(a, observation_noise(a)) != NUM_OK)
-		return NUM_MEMORY;
-	row->state = filter_mean(a->filter);
-	row->ess = filter_ess(a->filter);
-	return NUM_OK;
+	start_particles(a, observation_noise(a));
+	put_state(a, row);
 }
 
-static enum num_status advance(
-	struct adaptive *a, double t, double y, struct adaptive_row *row)
+/* Order of the model of the particles; 0: none yet. */
+static int order_in_use(const struct adaptive *a)
+{
+	int chosen = order_chosen(a->order), depth = filter_depth(a->filter),
+	    order = chosen < depth ? chosen : depth;
+
+	return order < GREY_ORDER_MIN ? 0 : order;
+}
+
+static void advance(struct adaptive *a, double t, double y, struct adaptive_row *row)
 {
 	double gap = t - a->time, noise = observation_noise(a), process;
-	int order = order_chosen(a->order);
+	int order = order_in_use(a);
 
-	if (order > filter_depth(a->filter))
-		order = filter_depth(a->filter);
-	if (order < GREY_ORDER_MIN)
-		order = 0;
 	row->order = order;
 	row->grey = order_forecast(a->order, t - a->observed_time);
 	process = process_noise(a, order, noise, gap);
@@ -484,19 +417,14 @@ static enum num_status advance(
 		forecast_particles(a, order, gap, noise);
 	else
 		hold_particles(a);
-	if (filter_predict(a->filter, a->mean, process) != NUM_OK)
-		return NUM_MEMORY;
-	row->prediction = row->state = filter_mean(a->filter);
-	row->ess = filter_ess(a->filter);
+	filter_predict(a->filter, a->mean, process);
+	put_state(a, row);
+	row->prediction = row->state;
 	a->mean_gap += (gap - a->mean_gap) / fmin((double)a->rows, 50);
-	if (isnan(y)) {
-		push_past(a, row->prediction, gap);
-		return NUM_OK;
-	}
 	y /= a->scale;
-	if (is_outlier(a, y, t - a->observed_time, row->grey, noise)) {
+	if (isnan(y) || is_outlier(a, y, t - a->observed_time, row->grey, noise)) {
 		push_past(a, row->prediction, gap);
-		return NUM_OK;
+		return;
 	}
 	a->missed[a->misses++ % RECENT] = (y - row->grey) * (y - row->grey);
 	order_add(a->order, y, t - a->observed_time);
@@ -504,38 +432,35 @@ static enum num_status advance(
 	a->observed_gap = t - a->observed_time;
 	a->observed_time = t;
 	a->observed = y;
-	return observe(a, y, gap, process, row);
+	observe(a, y, gap, process, row);
 }
 
-enum num_status adaptive_step(
-	struct adaptive *a, double t, double y, struct adaptive_row *row)
+void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *row)
 {
-	enum num_status status;
-
 	*row = (struct adaptive_row){ NAN, NAN, NAN, NAN, NAN, 0 };
 	learn_scale(a, y);
 	if (a->rows > 0)
-		status = advance(a, t, y, row);
+		advance(a, t, y, row);
 	else if (!isnan(y))
-		status = begin(a, t, y, row);
+		begin(a, t, y, row);
 	else
-		return NUM_OK;
+		return;
 	a->time = t;
 	a->rows++;
 	row->noise = observation_noise(a) * a->scale;
 	row->grey *= a->scale;
 	row->prediction *= a->scale;
 	row->state *= a->scale;
-	return status;
 }
 
-/* The histories of the particles as arrays side by side, the newest state at place 0 of
+/* The histories of the live paths as arrays side by side, the newest state at place 0 of
  * the ring. */
 struct tracks {
 	int p, newest;
-	double noise;
-	double *x;       /* [p][N] */
-	uint32_t *index; /* of the particles that have not crossed */
+	size_t live;
+	double noise, process;
+	double *x;     /* [p][N] */
+	uint32_t *own; /* [N]: the ancestor of each is itself */
 };
 
 static double *track_lag(const struct tracks *s, size_t n, int lag)
@@ -548,71 +473,87 @@ static enum num_status start_tracks(struct adaptive *a, struct tracks *s)
 	size_t n = a->par.filter.particles;
 
 	s->x = malloc((size_t)s->p * n * sizeof *s->x);
-	s->index = malloc(n * sizeof *s->index);
-	if (!s->x || !s->index)
+	s->own = malloc(n * sizeof *s->own);
+	if (!s->x || !s->own)
 		return NUM_MEMORY;
 	s->newest = s->p - 1;
+	for (size_t i = 0; i < n; i++)
+		s->own[i] = (uint32_t)i;
 	for (int lag = 0; lag < s->p; lag++) {
-		const double *x = filter_lag(a->filter, lag, a->index);
+		struct filter_step step = filter_step(a->filter, lag);
 
-		for (size_t i = 0; i < n; i++)
-			track_lag(s, n, lag)[i] = x[a->index[i]];
+		for (size_t i = 0; i < n; i++) {
+			s->own[i] = step.ancestor[s->own[i]];
+			track_lag(s, n, lag)[i] = step.x[s->own[i]];
+		}
 	}
+	for (size_t i = 0; i < n; i++)
+		s->own[i] = (uint32_t)i;
+	s->live = n;
 	return NUM_OK;
 }
 
-/* One step of the first live paths of index; paths that cross are removed.  Returns how
- * many remain. */
-static size_t step_paths(struct adaptive *a, struct tracks *s, size_t live,
-	double process, double limit, int direction, double time, double *life)
+/* Removes the paths that are beyond the limit, and stores their times on the line from
+ * the states before. */
+static double *end_tracks(struct tracks *s, size_t n, double limit, int direction,
+	double time, double gap, double *life)
 {
-	size_t n = a->par.filter.particles, left = 0;
-	double gap = a->mean_gap, *old = track_lag(s, n, 0), *now;
+	const double *now = track_lag(s, n, 0), *old = track_lag(s, n, 1);
+	size_t left = 0;
+
+	for (size_t k = 0; k < s->live; k++) {
+		if (direction * (now[k] - limit) >= 0) {
+			*life++ =
+				time + gap * fmin(1, fmax(0, (limit - old[k]) /
+								     (now[k] - old[k])));
+			continue;
+		}
+		for (int lag = 0; left < k && lag < s->p; lag++)
+			track_lag(s, n, lag)[left] = track_lag(s, n, lag)[k];
+		left++;
+	}
+	s->live = left;
+	return life;
+}
+
+/* One step of the live paths. */
+static void step_tracks(struct adaptive *a, struct tracks *s)
+{
+	size_t n = a->par.filter.particles;
+	double *now;
 
 	for (int k = 0; k < s->p - 1; k++)
-		a->lag[k] = (struct lag){ .x = track_lag(s, n, k), .gap = gap };
-	forecast(a, s->p - 1, gap, s->noise, s->index, live, a->mean);
+		a->lag[k] = (struct lag){ { track_lag(s, n, k), s->own, s->live },
+			a->mean_gap };
+	forecast(a, s->p - 1, a->mean_gap, s->noise);
 	s->newest = (s->newest + 1) % s->p;
 	now = track_lag(s, n, 0);
-	for (size_t k = 0; k < live; k++) {
-		uint32_t i = s->index[k];
-
-		now[i] = a->mean[k] + process * draw_normal(a->draw_paths);
-		if (direction * (now[i] - limit) >= 0)
-			life[i] = time +
-				  gap * fmax(0, (limit - old[i]) / (now[i] - old[i]));
-		else
-			s->index[left++] = i;
-	}
-	return left;
+	for (size_t k = 0; k < s->live; k++)
+		now[k] = a->mean[k] + s->process * draw_normal(a->draw_paths);
 }
 
 enum num_status adaptive_lives(
 	struct adaptive *a, double threshold, int direction, int steps, double *life)
 {
-	struct tracks s = { .p = order_chosen(a->order) };
-	double noise = observation_noise(a), process, limit = threshold / a->scale;
-	size_t n = a->par.filter.particles, left = 0;
+	struct tracks s = { .p = order_in_use(a), .noise = observation_noise(a) };
+	double limit = threshold / a->scale, *end = life;
+	size_t n = a->par.filter.particles;
 	enum num_status status;
 
-	if (s.p > filter_depth(a->filter))
-		s.p = filter_depth(a->filter);
-	if (s.p < GREY_ORDER_MIN)
+	if (s.p == 0)
 		return NUM_DOMAIN;
-	s.noise = noise;
-	process = process_noise(a, s.p, noise, a->mean_gap);
+	s.process = process_noise(a, s.p, s.noise, a->mean_gap);
 	status = start_tracks(a, &s);
-	for (size_t i = 0; status == NUM_OK && i < n; i++) {
-		int crossed = direction * (track_lag(&s, n, 0)[i] - limit) >= 0;
-
-		life[i] = crossed ? 0 : INFINITY;
-		if (!crossed)
-			s.index[left++] = (uint32_t)i;
+	if (status == NUM_OK)
+		end = end_tracks(&s, n, limit, direction, 0, 0, end);
+	for (int k = 0; status == NUM_OK && k < steps && s.live > 0; k++) {
+		step_tracks(a, &s);
+		end = end_tracks(
+			&s, n, limit, direction, k * a->mean_gap, a->mean_gap, end);
 	}
-	for (int k = 0; status == NUM_OK && k < steps && left > 0; k++)
-		left = step_paths(
-			a, &s, left, process, limit, direction, k * a->mean_gap, life);
+	while (status == NUM_OK && end < life + n)
+		*end++ = INFINITY;
 	free(s.x);
-	free(s.index);
+	free(s.own);
 	return status;
 }

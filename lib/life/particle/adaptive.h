@@ -47,10 +47,8 @@ struct adaptive;
 struct adaptive *adaptive_new(const struct adaptive_par *par); /* NULL: no memory */
 void adaptive_free(struct adaptive *a);
 void adaptive_pass(struct adaptive *a, struct state *s);
-/* Takes the next row; t must rise.  y is finite or NAN.  After NUM_MEMORY the filter must
- * not be used. */
-enum num_status adaptive_step(
-	struct adaptive *a, double t, double y, struct adaptive_row *row);
+/* Takes the next row; t must rise.  y is finite or NAN. */
+void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *row);
 /* The literal recursion (4-21): every particle continues step by step by its own model,
  * refitted to its last states, with process noise, at the mean gap of the rows.  Fills
  * life[N] with the time from the last row to its first passage of the threshold (linear

@@ -7,9 +7,10 @@
 enum { WORDS = 4 * PHILOX_ROW };
 
 struct draw {
-	uint32_t counter[4], key[2];
+	uint32_t counter[4];
 	uint32_t word[4][PHILOX_ROW]; /* of one counter after another */
 	unsigned used;                /* words used, of 4 PHILOX_ROW */
+	uint32_t key[2];              /* from here on no state */
 	struct ziggurat layers;
 };
 
@@ -35,9 +36,7 @@ void draw_free(struct draw *draw)
 
 void draw_pass(struct draw *d, struct state *s)
 {
-	state_move(s, d->counter, sizeof d->counter);
-	state_move(s, d->word, sizeof d->word);
-	state_move(s, &d->used, sizeof d->used);
+	state_move(s, d, offsetof(struct draw, key));
 }
 
 static inline uint32_t word_at(const struct draw *d, unsigned k)

@@ -4,7 +4,6 @@
 #include "num/student.h"
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Largest distance of a log-likelihood from 0 at which exp() is finite and not 0; a
  * particle farther below has weight 0. */
@@ -13,41 +12,35 @@ static const double FAR = 700;
  * underflowed by then has less than 1e-200 of the sum. */
 static const double FADED = 1e-100;
 
-/* One stored step; its arrays are only as long as required. */
-struct step {
-	double *x;
-	size_t count;       /* states that still have descendants */
-	uint32_t *ancestor; /* of each state of the next step, if that was resampled */
-	int resampled;
-	size_t room; /* length of x */
-};
-
 struct filter {
 	struct filter_par par;
 	struct draw *draw;
-	struct step *ring;
-	int newest, filled;
+	double *x;             /* [depth][N], a ring */
+	uint32_t *ancestor;    /* [depth][N]: of each state of the next step */
+	size_t *count;         /* [depth]: states that still have descendants */
 	double *weight, *next; /* next: those after */
 	uint32_t *kept;
+	int newest, filled;
 	double sum; /* of weight */
-	double mean, variance, ess;
-	unsigned long resamplings;
+	struct filter_now now;
 };
 
 struct filter *filter_new(const struct filter_par *par, struct draw *draw)
 {
 	struct filter *f = calloc(1, sizeof *f);
-	size_t n = par->particles;
+	size_t n = par->particles, all = (size_t)par->depth * n;
 
 	if (!f)
 		return NULL;
 	f->par = *par;
 	f->draw = draw;
-	f->ring = calloc((size_t)par->depth, sizeof *f->ring);
+	f->x = calloc(all, sizeof *f->x);
+	f->ancestor = calloc(all, sizeof *f->ancestor);
+	f->count = calloc((size_t)par->depth, sizeof *f->count);
 	f->weight = calloc(n, sizeof *f->weight);
 	f->next = calloc(n, sizeof *f->next);
 	f->kept = calloc(n, sizeof *f->kept);
-	if (!f->ring || !f->weight || !f->next || !f->kept) {
+	if (!f->x || !f->ancestor || !f->count || !f->weight || !f->next || !f->kept) {
 		filter_free(f);
 		return NULL;
 	}
@@ -58,71 +51,27 @@ void filter_free(struct filter *f)
 {
 	if (!f)
 		return;
-	for (int k = 0; f->ring && k < f->par.depth; k++) {
-		free(f->ring[k].x);
-		free(f->ring[k].ancestor);
-	}
-	free(f->ring);
+	free(f->x);
+	free(f->ancestor);
+	free(f->count);
 	free(f->weight);
 	free(f->next);
 	free(f->kept);
 	free(f);
 }
 
-static struct step *step_at(const struct filter *f, int lag)
-{
-	return &f->ring[(f->newest - lag + f->par.depth) % f->par.depth];
-}
-
-/* Resizes the arrays of a step to count states and after ancestors; one more, since 0
- * bytes may be NULL. */
-static enum num_status fit_step(struct step *s, size_t count, size_t after)
-{
-	double *x = realloc(s->x, (count + 1) * sizeof *x);
-	uint32_t *ancestor = realloc(s->ancestor, (after + 1) * sizeof *ancestor);
-
-	if (x)
-		s->x = x;
-	if (ancestor)
-		s->ancestor = ancestor;
-	s->room = count;
-	return x && ancestor ? NUM_OK : NUM_MEMORY;
-}
-
-/* Saves an array in the space of n elements whatever its length, so that all saved states
- * have one size. */
-static void pass_array(struct state *s, void *array, size_t width, size_t count, size_t n)
-{
-	state_move(s, array, count * width);
-	state_skip(s, (n - count) * width);
-}
-
 void filter_pass(struct filter *f, struct state *s)
 {
-	size_t n = f->par.particles;
+	size_t n = f->par.particles, all = (size_t)f->par.depth * n;
 
+	state_move(s, f->x, all * sizeof *f->x);
+	state_move(s, f->ancestor, all * sizeof *f->ancestor);
+	state_move(s, f->count, (size_t)f->par.depth * sizeof *f->count);
+	state_move(s, f->weight, n * sizeof *f->weight);
 	state_move(s, &f->newest, sizeof f->newest);
 	state_move(s, &f->filled, sizeof f->filled);
-	for (int lag = 0; lag < f->par.depth; lag++) {
-		struct step *step = step_at(f, lag);
-		size_t after = lag > 0 ? step_at(f, lag - 1)->count : n, ancestors;
-
-		state_move(s, &step->resampled, sizeof step->resampled);
-		state_move(s, &step->count, sizeof step->count);
-		ancestors = lag < f->filled && step->resampled ? after : 0;
-		if (s->load && fit_step(step, step->count, ancestors) != NUM_OK)
-			s->failed = 1;
-		if (s->failed)
-			return;
-		pass_array(s, step->x, sizeof *step->x, step->count, n);
-		pass_array(s, step->ancestor, sizeof *step->ancestor, ancestors, n);
-	}
-	state_move(s, f->weight, n * sizeof *f->weight);
 	state_move(s, &f->sum, sizeof f->sum);
-	state_move(s, &f->mean, sizeof f->mean);
-	state_move(s, &f->variance, sizeof f->variance);
-	state_move(s, &f->ess, sizeof f->ess);
-	state_move(s, &f->resamplings, sizeof f->resamplings);
+	state_move(s, &f->now, sizeof f->now);
 }
 
 int filter_depth(const struct filter *f)
@@ -130,132 +79,104 @@ int filter_depth(const struct filter *f)
 	return f->filled;
 }
 
-/* NULL: no memory. */
-static struct step *push_step(struct filter *f)
+static size_t place_of(const struct filter *f, int lag)
 {
-	struct step *before = step_at(f, 0), *s = step_at(f, -1);
-	size_t n = f->par.particles;
+	return (size_t)((f->newest - lag + f->par.depth) % f->par.depth);
+}
 
-	if (fit_step(s, n, n) != NUM_OK)
-		return NULL;
-	if (f->filled > 0 && !before->resampled && before != s)
-		fit_step(before, before->count, 0);
+static double *states_of(const struct filter *f, int lag)
+{
+	return f->x + place_of(f, lag) * f->par.particles;
+}
+
+static uint32_t *ancestors_of(const struct filter *f, int lag)
+{
+	return f->ancestor + place_of(f, lag) * f->par.particles;
+}
+
+struct filter_step filter_step(const struct filter *f, int lag)
+{
+	return (struct filter_step){ states_of(f, lag), ancestors_of(f, lag),
+		f->count[place_of(f, lag)] };
+}
+
+/* The states of the next step, to be filled. */
+static double *push_step(struct filter *f)
+{
+	uint32_t *own;
+
 	f->newest = (f->newest + 1) % f->par.depth;
 	if (f->filled < f->par.depth)
 		f->filled++;
-	s->resampled = 0;
-	s->count = n;
-	return s;
+	f->count[f->newest] = f->par.particles;
+	own = ancestors_of(f, 0);
+	for (size_t i = 0; i < f->par.particles; i++)
+		own[i] = (uint32_t)i;
+	return states_of(f, 0);
 }
 
 static void weigh_equally(struct filter *f)
 {
 	for (size_t i = 0; i < f->par.particles; i++)
 		f->weight[i] = 1;
-	f->sum = f->ess = (double)f->par.particles;
+	f->sum = (double)f->par.particles;
 }
 
-/* Mean and variance of the states; squares are taken about one of the states. */
+/* Mean and variance of the states, squares about one of the states, and the effective
+ * sample size. */
 static void find_moments(struct filter *f)
 {
-	const double *x = f->ring[f->newest].x;
+	const double *x = states_of(f, 0);
 	size_t n = f->par.particles;
-	lanes sums[2] = { { 0 } };
+	lanes sums[3] = { { 0 } };
 	double off;
 
 	for (size_t i = 0; i < n; i += 2) {
 		int width = n - i < 2 ? 1 : 2;
 		lanes d = lanes_load(x + i, width) - x[0],
-		      part = lanes_load(f->weight + i, width) * d;
+		      w = lanes_load(f->weight + i, width), part = w * d;
 
 		lanes_add(&sums[0], part, width);
 		lanes_add(&sums[1], part * d, width);
+		lanes_add(&sums[2], w * w, width);
 	}
 	off = (sums[0][0] + sums[0][1]) / f->sum;
-	f->mean = x[0] + off;
-	f->variance = fmax(0, (sums[1][0] + sums[1][1]) / f->sum - off * off);
+	f->now.mean = x[0] + off;
+	f->now.variance = fmax(0, (sums[1][0] + sums[1][1]) / f->sum - off * off);
+	f->now.ess = f->sum * f->sum / (sums[2][0] + sums[2][1]);
 }
 
-enum num_status filter_start(
-	struct filter *f, const double *past, int count, double spread)
+void filter_start(struct filter *f, const double *past, int count, double spread)
 {
 	f->filled = 0;
 	for (int k = 0; k < count; k++) {
-		struct step *s = push_step(f);
+		double *x = push_step(f);
 
-		if (!s)
-			return NUM_MEMORY;
 		for (size_t i = 0; i < f->par.particles; i++)
-			s->x[i] = past[k] + spread * (2 * draw_uniform(f->draw) - 1);
+			x[i] = past[k] + spread * (2 * draw_uniform(f->draw) - 1);
 	}
 	weigh_equally(f);
 	find_moments(f);
-	return NUM_OK;
 }
 
-const double *filter_lag(const struct filter *f, int lag, uint32_t *index)
+void filter_predict(struct filter *f, const double *mean, double sigma)
 {
-	const struct step *s = step_at(f, lag);
-	size_t n = f->par.particles;
+	double *x = push_step(f);
 
-	if (s->resampled && lag == 0)
-		memcpy(index, s->ancestor, n * sizeof *index);
-	else if (s->resampled)
-		for (size_t i = 0; i < n; i++)
-			index[i] = s->ancestor[index[i]];
-	else if (lag == 0)
-		for (size_t i = 0; i < n; i++)
-			index[i] = (uint32_t)i;
-	return s->x;
-}
-
-const double *filter_states(const struct filter *f, int lag, const uint32_t **ancestor)
-{
-	const struct step *s = step_at(f, lag);
-
-	*ancestor = s->resampled ? s->ancestor : NULL;
-	return s->x;
-}
-
-enum num_status filter_predict(struct filter *f, const double *mean, double sigma)
-{
-	int resampled = f->ring[f->newest].resampled;
-	struct step *s = push_step(f);
-
-	if (!s)
-		return NUM_MEMORY;
-	if (resampled)
-		weigh_equally(f);
-	draw_normals(f->draw, s->x, f->par.particles);
+	draw_normals(f->draw, x, f->par.particles);
 	for (size_t i = 0; i < f->par.particles; i += 2) {
 		int width = f->par.particles - i < 2 ? 1 : 2;
 
-		lanes_store(s->x + i,
-			lanes_load(mean + i, width) + sigma * lanes_load(s->x + i, width),
+		lanes_store(x + i,
+			lanes_load(mean + i, width) + sigma * lanes_load(x + i, width),
 			width);
 	}
 	find_moments(f);
-	return NUM_OK;
 }
 
-double filter_mean(const struct filter *f)
+struct filter_now filter_now(const struct filter *f)
 {
-	return f->mean;
-}
-
-double filter_variance(const struct filter *f)
-{
-	return f->variance;
-}
-
-double filter_ess(const struct filter *f)
-{
-	return f->ess;
-}
-
-unsigned long filter_resamplings(const struct filter *f)
-{
-	return f->resamplings;
+	return f->now;
 }
 
 /* Of two states, without its constant. */
@@ -271,7 +192,7 @@ static inline lanes log_likelihood(lanes z, double nu)
  * from y it could otherwise differ from all of them by more than FAR. */
 static double best(const struct filter *f, double y, double noise)
 {
-	const double *x = f->ring[f->newest].x;
+	const double *x = states_of(f, 0);
 	double top = -INFINITY, nu = f->par.freedom, scale = 1 / noise;
 
 	for (size_t i = 0; i < f->par.particles; i++) {
@@ -287,7 +208,7 @@ static double best(const struct filter *f, double y, double noise)
 /* Weights after y divided by e^top, into next; returns the sum of their squares. */
 static double weigh(struct filter *f, double y, double noise, double top)
 {
-	const double *x = f->ring[f->newest].x;
+	const double *x = states_of(f, 0);
 	double nu = f->par.freedom, scale = 1 / noise;
 	size_t n = f->par.particles;
 	lanes sums[3] = { { 0 } };
@@ -311,7 +232,7 @@ static double weigh(struct filter *f, double y, double noise, double top)
 		lanes_add(&sums[2], w * at, width);
 	}
 	f->sum = sums[0][0] + sums[0][1];
-	f->mean = (sums[2][0] + sums[2][1]) / f->sum;
+	f->now.mean = (sums[2][0] + sums[2][1]) / f->sum;
 	return sums[1][0] + sums[1][1];
 }
 
@@ -347,43 +268,40 @@ static void prune(struct filter *f)
 	size_t n = 0;
 
 	for (int lag = 0; lag < f->filled; lag++) {
-		struct step *s = step_at(f, lag);
-		size_t after = lag ? n : s->count;
+		size_t *count = &f->count[place_of(f, lag)];
+		double *x = states_of(f, lag);
+		uint32_t *ancestor = ancestors_of(f, lag);
 
-		if (s->resampled) {
-			for (size_t i = 0; i < n; i++)
-				s->ancestor[i] = s->ancestor[f->kept[i]];
-			n = renumber(s->ancestor, after, f->kept);
-		}
-		if (n == s->count)
+		for (size_t i = 0; i < n; i++)
+			ancestor[i] = ancestor[f->kept[i]];
+		n = renumber(ancestor, lag ? n : *count, f->kept);
+		if (n == *count)
 			return;
 		for (size_t i = 0; i < n; i++)
-			s->x[i] = s->x[f->kept[i]];
-		s->count = n;
-		if (n < s->room / 2)
-			fit_step(s, n, s->resampled ? after : 0);
+			x[i] = x[f->kept[i]];
+		*count = n;
 	}
 }
 
 double filter_update(struct filter *f, double y, double noise)
 {
-	struct step *s = &f->ring[f->newest];
-	double before = f->sum, top = 0, squares = weigh(f, y, noise, 0), *spent;
+	double before = f->sum, top = 0, squares = weigh(f, y, noise, 0), *spent, sum;
 	size_t n = f->par.particles;
 
 	if (!(f->sum > FADED)) {
 		top = best(f, y, noise);
 		squares = weigh(f, y, noise, top);
 	}
+	sum = f->sum;
 	spent = f->weight;
 	f->weight = f->next;
 	f->next = spent;
-	f->ess = f->sum * f->sum / squares;
-	if (f->par.share >= 1 || f->ess < f->par.share * (double)n) {
-		resample(f->par.scheme, f->draw, f->weight, f->sum, n, s->ancestor);
-		s->resampled = 1;
-		f->resamplings++;
+	f->now.ess = sum * sum / squares;
+	if (f->par.share >= 1 || f->now.ess < f->par.share * (double)n) {
+		resample(f->par.scheme, f->draw, f->weight, sum, n, ancestors_of(f, 0));
+		weigh_equally(f);
 		prune(f);
+		f->now.resamplings++;
 	}
-	return log_constant(f, noise) + top + log(f->sum / before);
+	return log_constant(f, noise) + top + log(sum / before);
 }

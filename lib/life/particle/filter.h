@@ -5,24 +5,23 @@
  * particles; the filter adds the noise, computes weights as logarithms, and resamples
  * when the effective sample size falls below a share of N (Gordon, Salmond, Smith 1993;
  * Li's thesis, eq. 4-9 to 4-19).  Histories are genealogies: each step keeps those of its
- * states that have descendants and, after resampling, their indices.
+ * states that have descendants.
  *
  *	struct filter *f = filter_new(&par, draw);
  *	filter_start(f, first, 4, spread);
  *	for each observation {
- *		const double *x = filter_lag(f, 0, index);
+ *		struct filter_step now = filter_step(f, 0);
  *		for (i = 0; i < n; i++)
- *			mean[i] = x[index[i]] + drift;
+ *			mean[i] = now.x[now.ancestor[i]] + drift;
  *		filter_predict(f, mean, sigma);
  *		filter_update(f, y, noise);    (not for a missing one)
- *		state = filter_mean(f);
+ *		state = filter_now(f).mean;
  *	}
  */
 #ifndef LIFE_FILTER_H
 #define LIFE_FILTER_H
 
 #include "life/particle/resample.h"
-#include "num/status.h"
 
 struct filter_par {
 	size_t particles; /* N >= 1 */
@@ -40,35 +39,34 @@ void filter_free(struct filter *f);
 void filter_pass(struct filter *f, struct state *s);
 
 /* (Re)starts with count <= depth past values, oldest first, each particle's uniform
- * within +- spread of them, and equal weights.  Without memory, this and filter_predict()
- * leave the filter unchanged or, if there are several values, with only some of them. */
-enum num_status filter_start(
-	struct filter *f, const double *past, int count, double spread);
+ * within +- spread of them, and equal weights. */
+void filter_start(struct filter *f, const double *past, int count, double spread);
 
 /* States remembered so far, <= depth. */
 int filter_depth(const struct filter *f);
 
-/* The states of step k - lag and, in index[N], which of them belongs to each present
- * particle.  Call with lag 0 first (index is filled), then with each next lag in turn
- * (index is updated). */
-const double *filter_lag(const struct filter *f, int lag, uint32_t *index);
-
-/* The states of step k - lag that have descendants; *ancestor: the index among them of
- * the ancestor of each state of the next step, ascending without gaps from 0; NULL: the
- * same index. */
-const double *filter_states(const struct filter *f, int lag, const uint32_t **ancestor);
+/* The states x[n] of step k - lag that have descendants, and the index among them of the
+ * ancestor of each state of the next step (lag 0: of each particle), which ascend without
+ * gaps from 0. */
+struct filter_step {
+	const double *x;
+	const uint32_t *ancestor;
+	size_t n;
+};
+struct filter_step filter_step(const struct filter *f, int lag);
 
 /* Moves to the next step: states mean[N] plus normal noise. */
-enum num_status filter_predict(struct filter *f, const double *mean, double sigma);
-/* Weighted mean and variance of the states of the present step. */
-double filter_mean(const struct filter *f);
-double filter_variance(const struct filter *f);
+void filter_predict(struct filter *f, const double *mean, double sigma);
 /* Weights particles by y with observation noise of scale noise > 0, then resamples if
- * necessary.
- * filter_mean() and filter_ess() afterwards are those before resampling.  Returns the
- * log of the evidence, log mean(p(y|x)). */
+ * necessary.  Returns the log of the evidence, log mean(p(y|x)). */
 double filter_update(struct filter *f, double y, double noise);
-double filter_ess(const struct filter *f);
-unsigned long filter_resamplings(const struct filter *f);
+
+/* Weighted mean and variance of the states of the present step, as predicted; after an
+ * update the mean is that before resampling, as is the effective sample size. */
+struct filter_now {
+	double mean, variance, ess;
+	unsigned long resamplings; /* so far */
+};
+struct filter_now filter_now(const struct filter *f);
 
 #endif

@@ -161,9 +161,8 @@ static double square_at(double deviate, double freedom)
 }
 
 /* Scores a reading that is equal to one before, and returns the probability that it is
- * new: a new one has fallen into the same cell of rounding, a frozen one, of a sensor
- * that sticks or has reached its ceiling, is always equal.  The share of frozen readings
- * has Jeffreys' prior; of the last value and the farthest, each is as likely. */
+ * new and not frozen.  The share of frozen readings has Jeffreys' prior; of the last
+ * value and the farthest, each is as likely. */
 static double news_of(const struct bank *b, struct trend *tr, const struct place *p,
 	double f, double e, int equal)
 {
@@ -241,8 +240,7 @@ static int is_bent(const struct bank_shape *s)
 	return s->n == 0 && s->family != BANK_LINEAR;
 }
 
-/* Updates the weights: n rows count as sqrt(SCORED n), because they are not independent
- * given a wrong model.  A trend that has overflowed has weight 0. */
+/* Updates the weights.  A trend that has overflowed has weight 0. */
 static void weigh(struct bank *b)
 {
 	double share = fmin(1, sqrt(SCORED / fmax(b->scored, 1))), top = -INFINITY,

@@ -314,7 +314,8 @@ static void draw_share(const struct bank *b, const struct bank_chances *c, doubl
 enum num_status bank_draw(const struct bank *b, const struct bank_chances *c, double now,
 	double level, double *life)
 {
-	double share = (double)b->n_held / HELD;
+	double jump = damage_of(b, b->held[0].y) - b->level,
+	       share = b->n_held / (HELD * (1 + jump * jump));
 	struct bank *other;
 
 	draw_share(b, c, now, level, share, 1, life);

@@ -25,23 +25,17 @@ struct predict *predict_new(const struct predict_par *par)
 	static const unsigned families[] = { BANK_ALL, BANK_LINEAR, BANK_EXPONENTIAL,
 		BANK_POWER, BANK_RATE, BANK_SATURATING, 0, 0 };
 	struct predict *p = calloc(1, sizeof *p);
-	struct bank_par bank = { .threshold = par->threshold,
-		.direction = par->direction,
-		.families = families[par->model] | (par->n_paths > 0 ? BANK_OTHER : 0),
-		.steady = par->model != PREDICT_AVERAGE,
-		.more = par->paths,
-		.n_more = par->n_paths,
-		.own = par->own,
-		.load = par->load,
-		.n_loads = par->n_loads };
 	int exponent = 0;
 
 	if (!p)
 		return NULL;
-	frexp(par->threshold - par->zero, &exponent);
+	frexp(par->bank.threshold - par->zero, &exponent);
 	p->scale = ldexp(1, exponent);
 	p->par = *par;
-	if (par->model >= PREDICT_GREY || (p->bank = bank_new(&bank)))
+	p->par.bank.families =
+		families[par->model] | (par->bank.n_more > 0 ? BANK_OTHER : 0);
+	p->par.bank.steady = par->model != PREDICT_AVERAGE;
+	if (par->model >= PREDICT_GREY || (p->bank = bank_new(&p->par.bank)))
 		return p;
 	free(p);
 	return NULL;
@@ -70,7 +64,7 @@ void predict_add(struct predict *p, double t, double y, double state, const doub
 	if (p->now.rows++ == 0)
 		p->now.first = t;
 	p->now.last = t;
-	if (p->bank && p->par.n_loads > 0)
+	if (p->bank && p->par.bank.n_loads > 0)
 		bank_load(p->bank, t, load);
 	if (p->bank)
 		bank_add(p->bank, t, y);
@@ -94,23 +88,10 @@ struct bank *predict_bank(struct predict *p)
 	return p->bank;
 }
 
-/* Time after span at which the curve of means over a gap reaches the threshold. */
-static double grey_crossing(
-	const struct predict *p, double level, double rate, double span, double gap)
-{
-	double now = grey_curve(level, rate, span, gap),
-	       limit = (p->par.threshold - p->par.zero) / p->scale;
-	double time;
-
-	if (p->par.direction * (now - limit) >= 0)
-		return 0;
-	time = -log(limit / now) / rate;
-	return time >= 0 ? time : INFINITY; /* also for NAN: the sign never changes */
-}
-
 static enum num_status draw_grey(struct predict *p, double *life)
 {
 	struct grey g = grey_of(&p->now.grey);
+	double limit = (p->par.bank.threshold - p->par.zero) / p->scale;
 
 	if (g.n < GREY_ORDER_MIN)
 		return NUM_DOMAIN;
@@ -120,8 +101,11 @@ static enum num_status draw_grey(struct predict *p, double *life)
 		double rate = grey_rate(&g) + grey_rate_error(&g) * rate_z;
 		double level = g.fit.mean_y + grey_level_error(&g) * level_z +
 			       rate * (g.tail - g.fit.mean_x);
+		double now = grey_curve(level, rate, g.span, g.span / (g.n - 1));
 
-		life[i] = grey_crossing(p, level, rate, g.span, g.span / (g.n - 1));
+		life[i] = p->par.bank.direction * (now - limit) >= 0
+				  ? 0
+				  : grey_passage(now, rate, limit);
 	}
 	return NUM_OK;
 }
@@ -132,11 +116,13 @@ static enum num_status draw_lives(struct predict *p, double *life)
 	if (p->par.model == PREDICT_GREY)
 		return draw_grey(p, life);
 	if (!p->bank)
-		return adaptive_lives(p->par.adaptive, p->par.threshold - p->par.zero,
-			p->par.direction, LITERAL_STEPS, life);
+		return adaptive_lives(p->par.adaptive,
+			p->par.bank.threshold - p->par.zero, p->par.bank.direction,
+			LITERAL_STEPS, life);
 	if (!bank_ready(p->bank))
 		return NUM_DOMAIN;
-	return bank_draw(p->bank, p->par.chances, p->now.last, p->par.threshold, life);
+	return bank_draw(
+		p->bank, p->par.chances, p->now.last, p->par.bank.threshold, life);
 }
 
 enum num_status predict_life(struct predict *p, double *life)
@@ -148,8 +134,8 @@ enum num_status predict_life(struct predict *p, double *life)
 	if (status != NUM_OK)
 		return status;
 	if (!(horizon > 0))
-		horizon =
-			p->par.n_paths > 0 ? INFINITY : 10 * (p->now.last - p->now.first);
+		horizon = p->par.bank.n_more > 0 ? INFINITY
+						 : 10 * (p->now.last - p->now.first);
 	for (int i = 0; i < n; i++)
 		if (!(life[i] <= horizon))
 			life[i] = INFINITY;

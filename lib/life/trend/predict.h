@@ -29,14 +29,9 @@ enum predict_model {
 
 struct predict_par {
 	enum predict_model model;
-	double threshold;
-	int direction;  /* +1: failed at or above the threshold, -1: at or below */
-	double zero;    /* of the grey model */
-	double horizon; /* longest time ahead; 0: ten times the time elapsed */
-	const struct bank_shape *paths; /* of earlier units, the caller's */
-	int n_paths, own;               /* see struct bank_par */
-	const struct bank_covariate *load;
-	int n_loads;
+	struct bank_par bank;      /* families and steady are those of the model */
+	double zero;               /* of the grey model */
+	double horizon;            /* longest time ahead; 0: ten times the time elapsed */
 	struct adaptive *adaptive; /* the filter of the literal model, the caller's */
 	int draws;                 /* of the literal model: its particles */
 	const struct bank_chances *chances; /* of the others, the caller's */
