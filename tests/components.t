@@ -91,6 +91,19 @@ duet --excitation 1MHz negative.au >negative.tsv 2>said
 is 'pulses that are negative in the first component make the record doubtful' $? 3
 is 'none of them is given a class' "$(awk -F '\t' '/^#/ { next } !n { for (i = 1; i <= NF; i++) c[$i] = i; n = 1; next }
 	$c["verdict"] != "misfit" && $c["verdict"] != "unresolved" && $c["amplitude"] > 20 { bad++ } END { print bad + 0 }' negative.tsv)" 0
+# Negative pulses, small and large, are described by positive ones beside them as well.
+particles 60 steel:60 copper:150 steel:100 copper:130 copper:320 steel:80 >table
+for components in one both; do
+	set --
+	[ $components = one ] || set -- --quadrature
+	sensorsim --excitation 1MHz --noise 20mV --lag 0.2ms:0.5ms --seed 6 --truth truth.tsv "$@" table >signs.au
+	[ $components = one ] || set -- --excitation 1MHz
+	duet "$@" signs.au >signs.tsv
+	is "pulses of both signs, $components of the components: the record is believed" $? 0
+	is "pulses of both signs, $components of the components: all are found, nothing else" \
+		"$("$top/scripts/score" truth.tsv signs.tsv | awk -F '\t' '{ print $1, $3, $5 }' | tail -n 1)" '60 60 0'
+done
+
 particles 40 steel:55 copper:110 >table
 record --phase 130deg | duet --excitation 500kHz >wrong.tsv 2>said
 is 'the record is doubtful with the wrong phase' $? 3

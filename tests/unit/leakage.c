@@ -1,5 +1,5 @@
 /* leakage - eq 4-30, its inverse, and the figures of the thesis' pump */
-#include "life/pair/leakage.h"
+#include "life/pair/pair.h"
 #include "tap.h"
 
 int main(void)

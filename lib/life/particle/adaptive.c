@@ -179,6 +179,7 @@ static const struct sums *add_older(
 static void forecast(struct adaptive *a, int count, double h, double noise)
 {
 	const struct filter_step *newest = &a->lag[0].step;
+	size_t n = a->par.filter.particles;
 	double centre = newest->x[0], share = 1.0 / count, end = h, *mean = a->mean;
 	int newer;
 	const struct sums *older = add_older(a, count, centre, &newer);
@@ -187,23 +188,32 @@ static void forecast(struct adaptive *a, int count, double h, double noise)
 	for (int k = 0; k < count; k++)
 		end += a->lag[k].gap;
 	ahead = grey_interval(end, h);
-	for (size_t i = 0; i < newest->n; i += 2) {
-		size_t width = newest->n - i < 2 ? 1 : 2;
-		struct pair s =
-			add_states(older, a->lag, newer, i, i + width - 1, centre);
+	for (size_t i = (newest->n + 1) / 2 * 2; i > 0;) {
+		size_t last = i - 1 < newest->n ? i - 1 : i - 2;
+		struct pair s = add_states(older, a->lag, newer, i -= 2, last, centre);
 		lanes u = s.u * share, x = s.x * share, uu = s.uu - s.u * u,
 		      ux = s.ux - s.u * x, middle = centre + x,
 		      rate = lanes_if(
 			      lanes_and(uu > 0, lanes_abs(middle) > 3 * noise), -ux / uu),
 		      level = middle + rate * u;
-		lane_mask far;
 
-		lanes_store(mean + i, grey_curve_near(level, rate, &ahead), (int)width);
-		far = lanes_abs(rate) > ahead.largest_rate;
-		for (size_t j = 0; (far[0] | far[1]) && j < width; j++)
-			mean[i + j] = grey_curve(level[j], rate[j], end, h);
+		mean[last] = level[1];
+		mean[i] = level[0];
+		a->sums[last].u = rate[1];
+		a->sums[i].u = rate[0];
 	}
-	for (size_t i = a->par.filter.particles; i-- > 0;)
+	/* in a loop of its own, so that several exponentials overlap in the processor */
+	for (size_t i = 0; i < newest->n; i += 2) {
+		int width = newest->n - i < 2 ? 1 : 2;
+		lanes level = lanes_load(mean + i, width),
+		      rate = { a->sums[i].u, a->sums[i + (size_t)width - 1].u };
+		lane_mask far = lanes_abs(rate) > ahead.largest_rate;
+
+		lanes_store(mean + i, grey_curve_near(level, rate, &ahead), width);
+		for (int k = 0; (far[0] | far[1]) && k < width; k++)
+			mean[i + (size_t)k] = grey_curve(level[k], rate[k], end, h);
+	}
+	for (size_t i = newest->n < n ? n : 0; i-- > 0;)
 		mean[i] = mean[newest->ancestor[i]];
 }
 

@@ -22,7 +22,7 @@ static struct candidate search(struct joint *j, const struct joint_scene *s,
 {
 	size_t stride = (size_t)shape_stride(s->duration);
 	size_t points;
-	double z = 0, g = s->gain, norm = 1 / sqrt(joint_energy(s));
+	double z = 0, least = 0, g = s->gain, norm = 1 / sqrt(joint_energy(s));
 	long lo = (long)floor(s->delta_min / (double)stride);
 	long hi = (long)ceil(s->delta_max / (double)stride), from, to;
 	struct candidate best = { 0 };
@@ -38,6 +38,7 @@ static struct candidate search(struct joint *j, const struct joint_scene *s,
 			double here = (j->filter[0][k] + g * j->filter[1][k + l]) * norm;
 			int old = 0;
 
+			least = fmin(least, here);
 			if ((s->signs ? fabs(here) : here) <= fabs(z))
 				continue;
 			for (int i = 0; i < ntried && !old; i++)
@@ -54,6 +55,7 @@ static struct candidate search(struct joint *j, const struct joint_scene *s,
 		}
 	}
 	best.z2 = z * z;
+	j->negative |= !s->signs && -least > z && least * least > s->threshold_near;
 	best.a = z * norm;
 	return best;
 }
@@ -80,6 +82,7 @@ static void finish(struct joint *j, const struct joint_scene *s,
 	if (result->dof < 1)
 		result->dof = 1;
 	result->full = full;
+	result->negative = j->negative;
 	result->steps = j->steps;
 	result->searches = j->searches;
 }

@@ -92,8 +92,11 @@ static inline double joint_delay_variance(const struct joint_pulse *p)
 
 struct joint_result {
 	double chi2;
-	long dof;      /* samples less parameters, at least 1 */
-	int full;      /* 1: there were more than max_pulses */
+	long dof; /* samples less parameters, at least 1 */
+	int full; /* 1: there were more than max_pulses */
+	/* 1: signs was 0, and a negative pulse would at some time have reduced chi-square
+	 * by threshold_near, and more than any positive one. */
+	int negative;
 	long steps;    /* Levenberg-Marquardt steps tried */
 	long searches; /* matched-filter searches */
 };

@@ -391,7 +391,7 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 	if (status != JOINT_OK)
 		return status;
 	j->n = n;
-	j->steps = j->searches = 0;
+	j->steps = j->searches = j->negative = 0;
 	memcpy(j->e[0], y1, n * sizeof(double));
 	memcpy(j->e[1], y2, n * sizeof(double));
 	for (int c = 0; c < 2; c++) {

@@ -59,6 +59,7 @@ struct joint {
 	double *bq;              /* NPAR * basis: Q^T J */
 	double gradient[NPAR], diagonal[NPAR], move[NPAR];
 	long steps, searches;
+	int negative; /* as that of joint_result */
 	double work;  /* samples of columns computed, since it is new */
 	int inverted; /* pulses whose normal matrix is in factor; 0: it was singular */
 };

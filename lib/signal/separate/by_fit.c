@@ -138,12 +138,12 @@ enum separate_status separate_fit_section(
 		return SEPARATE_MEMORY;
 	if (status == SEPARATE_OK && verdict_is_foreign(event.verdict))
 		return give_event(s, from - before, n, to, &event, next);
-	if (status == SEPARATE_OK && both)
-		status = fit_quadrature(s, from, n, a.m, a.done, &a.goodness);
-	else if (status == SEPARATE_OK && separate_is_described(&a))
+	if (status == SEPARATE_OK && separate_is_described(&a) && !a.r.negative)
 		separate_follow(s, &a);
 	else if (status == SEPARATE_OK && !s->par.sources)
 		status = separate_try_rivals(s, from - before, n, cut, &a);
+	if (status == SEPARATE_OK && both)
+		status = fit_quadrature(s, from, n, a.m, a.done, &a.goodness);
 	for (int i = 0; i < a.m; i++)
 		s->pulse[i].t -= (double)before;
 	a.boundary -= (double)before;

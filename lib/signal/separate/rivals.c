@@ -1,4 +1,4 @@
-/* rivals.c - other explanations of a window that pulses of one sign do not describe */
+/* rivals.c - other explanations of a window than pulses of one sign */
 #include "num/room.h"
 #include "signal/detect/spikes.h"
 #include "signal/separate/separate_state.h"
@@ -32,22 +32,32 @@ static int hide_spikes(struct separate *s, long long from, size_t n)
  * and 12), none of them wrong; 1.5 and 2 take 12 and 24 % more time. */
 static const double MOST = 1;
 
+/* Chi-square and, for each pulse, the threshold at which it is accepted: the least is the
+ * likeliest of explanations that leave no more than noise.  Two or more positive pulses
+ * beside a negative one describe it as well as it does. */
+static double penalised(const struct joint_scene *s, const struct account *a)
+{
+	return a->r.chi2 + s->threshold_near * a->m;
+}
+
 enum separate_status separate_try_rivals(
 	struct separate *s, long long from, size_t n, int cut, struct account *a)
 {
 	enum { IMPULSES, VELOCITIES, SIGNS, RIVALS };
+	const int described = separate_is_described(a);
 	const struct joint_scene plain = s->scene;
 	const struct channels y = channels_at(s, from);
 	enum separate_status status = SEPARATE_OK;
 	int found = 0, most, tried;
 
-	most = (int)fmin(a->m, fmax(MOST * (double)n / s->cal.duration, 1));
+	most = (int)fmax(fmin(a->m, MOST * (double)n / s->cal.duration), 1);
 	if (cut && a->m > 2 * most)
 		return SEPARATE_OK; /* too many pulses for the time */
 	tried = 2 * most < plain.max_pulses ? 2 * most : plain.max_pulses;
 	if (room_for(&s->spikes, &s->spike_room, 2 * n, sizeof *s->spikes))
 		return SEPARATE_MEMORY;
-	for (int k = 0; k < RIVALS && status == SEPARATE_OK && !found; k++) {
+	for (int k = described ? SIGNS : 0; k < RIVALS && status == SEPARATE_OK && !found;
+		k++) {
 		struct account rival = { .m = 0 };
 
 		s->scene = plain;
@@ -57,11 +67,13 @@ enum separate_status separate_try_rivals(
 		if (k == VELOCITIES)
 			separate_widen(s);
 		s->scene.signs = k == SIGNS;
-		if (k == IMPULSES && (s->cal.whitening.tap || !hide_spikes(s, from, n)))
+		if (k == IMPULSES && (s->cal.whitening.tap || has_quadrature(s) ||
+					     !hide_spikes(s, from, n)))
 			continue;
 		status = separate_fit_window(s, y.at, n, cut, &rival);
 		found = status == SEPARATE_OK && separate_is_described(&rival) &&
-			rival.m <= most;
+			rival.m <= most &&
+			(!described || penalised(&plain, &rival) < penalised(&plain, a));
 		if (found) {
 			*a = rival;
 			a->impulses = k == IMPULSES;
