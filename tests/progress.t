@@ -5,11 +5,7 @@
 
 if ! command -v script >/dev/null; then
 	skip 'progress' 'no script(1) to make a terminal'
-	wait
-for n in $(seq $shares); do
-	like "$(cat "name.$n")" "$(lines ".$n")" "^$(cat "program.$n"): [0-9]* %, [0-9]* s left$"
-done
-done_testing
+	done_testing
 fi
 sensorsim --uniform 80um:150um --number 40 --duration 4s >signal
 # Slow input, no work: a second passes in waiting.
