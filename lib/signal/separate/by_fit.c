@@ -138,10 +138,11 @@ enum separate_status separate_fit_section(
 		return SEPARATE_MEMORY;
 	if (status == SEPARATE_OK && verdict_is_foreign(event.verdict))
 		return give_event(s, from - before, n, to, &event, next);
-	if (status == SEPARATE_OK && separate_is_described(&a) && !a.r.negative)
-		separate_follow(s, &a);
-	else if (status == SEPARATE_OK && !s->par.sources)
+	if (status == SEPARATE_OK && !s->par.sources &&
+		(a.r.negative || !separate_is_described(&a)))
 		status = separate_try_rivals(s, from - before, n, cut, &a);
+	else if (status == SEPARATE_OK && separate_is_described(&a))
+		separate_follow(s, &a);
 	if (status == SEPARATE_OK && both)
 		status = fit_quadrature(s, from, n, a.m, a.done, &a.goodness);
 	for (int i = 0; i < a.m; i++)

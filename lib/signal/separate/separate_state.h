@@ -286,8 +286,8 @@ void separate_set_gain(struct separate *s, long long from);
 
 /* Tries other explanations of a window that positive pulses do not describe: impulses
  * beside the pulses, a wider range of velocities, and pulses of both signs.  One is
- * accepted if it describes the window with no more pulses than before.  Of a window that
- * they describe only the last is tried, which has to be likelier. */
+ * accepted if it describes the window with no more pulses than before, or with one.  Of a
+ * window that they describe only the last is tried, which has to be likelier. */
 enum separate_status separate_try_rivals(
 	struct separate *s, long long from, size_t n, int cut, struct account *a);
 
