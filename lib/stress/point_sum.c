@@ -503,8 +503,8 @@ static void list_far(const struct point_sum *s, struct tile *t, float load, floa
 		z *= 1 << POINT_SUM_DEPTHS)
 		l++;
 	to = &l->loads[l->count / 4];
-	if (l->count % 4 == 0)
-		*to = (struct loads){ .x = all_four((float)FLAT) };
+	if (l->count % 4 == 0) /* the last four may remain loads of 0, outside the tile */
+		*to = (struct loads){ .x = all_four(2 * TILE_SIDE) };
 	to->x[l->count % 4] = s->par.axis ? y : x;
 	to->y[l->count % 4] = s->par.axis ? x : y;
 	to->load[l->count++ % 4] = load;

@@ -240,7 +240,8 @@ static int is_bent(const struct bank_shape *s)
 	return s->n == 0 && s->family != BANK_LINEAR;
 }
 
-/* Updates the weights.  A trend that has overflowed has weight 0. */
+/* Updates the weights: n rows count as sqrt(SCORED n), because they are not independent
+ * given a wrong model.  A trend that has overflowed has weight 0. */
 static void weigh(struct bank *b)
 {
 	double share = fmin(1, sqrt(SCORED / fmax(b->scored, 1))), top = -INFINITY,
