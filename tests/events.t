@@ -46,6 +46,21 @@ for kind in bubble shock impulse; do
 	at_least "${kind}s: particles beside them are found" "$(($(verdicts found.tsv alone) + $(verdicts found.tsv overlap)))" 36
 done
 
+# Samples at the limit of the converter, and those of a sensor that stands still, the first of
+# which is measured.
+sensorsim --uniform 90um:120um --number 40 --duration 10s --snr 30dB --seed 6 >s.au
+sigconvert -o text s.au | grep -v '^#' | awk -F '\t' -v OFS='\t' '
+	/^[0-9]/ { if ($2 > 1) { $2 = 1; high++ } if ($1 > 6) { $3 = last; still++ } last = $3 }
+	{ print } END { print high, still >"counted" }' | sigconvert --from text >missing.au
+duet missing.au >found.tsv 2>err
+is "a limit and a sensor that stands still: the record is believed" $? 0
+is "a limit and a sensor that stands still: nearly all particles are found" \
+	"$(($(verdicts found.tsv alone) + $(verdicts found.tsv overlap) > 37))" 1
+like "a limit and a sensor that stands still: the samples are counted and reported" "$(cat err)" \
+	"^duet: missing.au: $(awk '{ print $1 " samples of sensor 1 and " $2 + 1 }' counted) of sensor 2 were not measured"
+is "a limit and a sensor that stands still: the table says the same" \
+	"$(sed -n 's/^# missing: //p' found.tsv)" "$(sed 's/^duet: missing.au: //' err)"
+
 # Nothing can be learned from shocks alone; the particles behind them are found.
 sensorsim --uniform 80um:150um --number 0 --shocks 3 --duration 9s --noise 20mV --seed 4 >shocks.au
 sensorsim --uniform 80um:150um --number 60 --duration 20s --noise 20mV --seed 5 >behind.au

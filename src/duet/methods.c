@@ -64,6 +64,7 @@ static void report(const struct separate *s, double rate)
 	const struct calibration *known = separate_calibration(s);
 
 	stats_set("samples", ratio * c->samples);
+	stats_set("samples_missing", ratio * (c->missing[0] + c->missing[1]));
 	stats_set("samples_passed_over", ratio * c->passed_over);
 	stats_set("samples_active", ratio * c->active);
 	stats_set("sections", c->sections);
@@ -181,6 +182,23 @@ static void tell_together(const struct separate *s, struct found *out, const cha
 		c->together, c->rows);
 }
 
+/* Says how many samples the converter has not measured. */
+static void tell_missing(const struct separate *s, struct found *out, const char *name)
+{
+	static const char text[] =
+		"%.0f samples of sensor 1 and %.0f of sensor 2 were not measured: they "
+		"are at a limit of the converter, or constant";
+	const double *missing = separate_counters(s)->missing, ratio = separate_ratio(s);
+	char *what;
+
+	if (missing[0] + missing[1] == 0)
+		return;
+	what = xprintf(text, ratio * missing[0], ratio * missing[1]);
+	warn("%s: %s", name, what);
+	table_comment(out->particles, "missing", "%s", what);
+	free(what);
+}
+
 /* Says how many rows are events that are no particles. */
 static void tell_events(const struct separate *s, struct found *out)
 {
@@ -267,6 +285,7 @@ int separate_record(struct signal_in *in, struct found *out,
 		warn("%s: not written: what was learned is doubtful, or nothing was",
 			file);
 	report(s, (double)out->rate);
+	tell_missing(s, out, signal_name(in));
 	tell_together(s, out, signal_name(in));
 	tell_events(s, out);
 	doubtful = is_doubtful(s, out, signal_name(in), par.kept ? file : NULL) ||

@@ -68,6 +68,7 @@ static struct option {
 	{ "impulses", 0 },  /* ... */
 	{ "dropouts", 0 },  /* ... */
 	{ "step", 0 },      /* of the converter, V; 0: none */
+	{ "still", 1 },     /* sensor 2 is constant behind this share of the record */
 };
 
 static const char *shape_name = "sine", *profile = "plug", *arrange = "single";
@@ -651,6 +652,10 @@ static void spoil(double *x, long N, unsigned char *masked)
 		}
 		if (step > 0)
 			x[k] = step * round(x[k] / step);
+		if (k % 2 == 1 && (double)k / 2 > get("still") * (double)N) {
+			x[k] = x[k - 2];
+			masked[k] = 1;
+		}
 	}
 }
 

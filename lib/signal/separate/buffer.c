@@ -34,10 +34,24 @@ static enum num_status reserve(struct buffer *b, size_t n)
 	return NUM_OK;
 }
 
-static void put(struct buffer *b, double x, int hidden)
+static void hide(struct buffer *b, size_t i)
+{
+	b->missing += !b->hidden[i];
+	b->hidden[i] = 1;
+}
+
+/* Hides the last samples, as far as they are still stored. */
+static void hide_last(struct buffer *b, size_t lost)
+{
+	for (size_t i = lost < b->n ? b->n - lost : 0; i < b->n; i++)
+		hide(b, i);
+}
+
+static void put(struct buffer *b, double x, size_t lost)
 {
 	b->x[b->n] = x;
-	b->hidden[b->n++] = (unsigned char)hidden;
+	b->hidden[b->n++] = 0;
+	hide_last(b, lost);
 }
 
 /* Adds a sample to the mean; lost: so many of the last ones are not measured. */
@@ -46,15 +60,11 @@ static void put_part(struct buffer *b, double x, size_t lost)
 	b->sum += x;
 	b->lost |= lost > 0;
 	b->parts++;
-	if (lost > b->parts) { /* in means before this one */
-		size_t means = (lost - b->parts - 1) / b->ratio + 1;
-
-		means = means < b->n ? means : b->n;
-		memset(b->hidden + b->n - means, 1, means);
-	}
+	if (lost > b->parts) /* in means before this one */
+		hide_last(b, (lost - b->parts - 1) / b->ratio + 1);
 	if (b->parts < b->ratio)
 		return;
-	put(b, b->sum / (double)b->ratio, b->lost);
+	put(b, b->sum / (double)b->ratio, (size_t)b->lost);
 	b->parts = 0;
 	b->sum = b->lost = 0;
 }
@@ -66,13 +76,10 @@ enum num_status buffer_append(struct buffer *b, const double *x, size_t n, size_
 	for (; n > 0; n--, x += stride) {
 		size_t lost = converter_next(&b->converter, *x);
 
-		if (b->ratio) {
+		if (b->ratio)
 			put_part(b, *x, lost);
-			continue;
-		}
-		put(b, *x, 0);
-		lost = lost < b->n ? lost : b->n; /* the others are no longer stored */
-		memset(b->hidden + b->n - lost, 1, lost);
+		else
+			put(b, *x, lost);
 	}
 	return NUM_OK;
 }
@@ -97,8 +104,8 @@ enum num_status buffer_average(
 void buffer_review(struct buffer *b)
 {
 	for (size_t i = 0; i < b->n; i++)
-		b->hidden[i] |=
-			(unsigned char)converter_saturates(&b->converter, b->x[i]);
+		if (converter_saturates(&b->converter, b->x[i]))
+			hide(b, i);
 }
 
 void buffer_discard(struct buffer *b, size_t n)

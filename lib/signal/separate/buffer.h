@@ -21,8 +21,9 @@ struct buffer {
 	unsigned char *hidden; /* 1: the converter has not measured this sample */
 	struct converter converter;
 	size_t n, capacity;
-	size_t ratio; /* samples of the record averaged into one; 0: not averaged */
-	size_t parts; /* of the next one, so far: */
+	double missing; /* samples hidden so far */
+	size_t ratio;   /* samples of the record averaged into one; 0: not averaged */
+	size_t parts;   /* of the next one, so far: */
 	double sum;
 	int lost; /* 1: the converter has not measured all of them */
 	long long begin, white, flat, clean;

@@ -46,8 +46,13 @@ size_t converter_next(struct converter *c, double x)
 	c->samples++;
 	see(&c->limit[0], x);
 	see(&c->limit[1], -x);
-	if ((double)(c->run - 1) * log(share) < log(RARELY))
-		return c->run;
-	c->repeats += c->run > 1;
-	return converter_saturates(c, x) ? 1 : 0;
+	if ((double)(c->run - 1) * log(share) >= log(RARELY)) {
+		c->repeats += c->run > 1;
+		c->stands = 0;
+		return converter_saturates(c, x) ? 1 : 0;
+	}
+	if (c->stands)
+		return 1;
+	c->stands = 1;
+	return c->run;
 }

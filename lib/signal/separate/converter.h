@@ -18,10 +18,11 @@ struct converter {
 	struct converter_limit limit[2]; /* largest; least, its sign changed */
 	double last, samples, repeats;
 	size_t run; /* samples up to the last one that are equal */
+	int stands; /* 1: too many to have been measured */
 };
 
-/* Takes the next sample; returns how many of the last samples, including this one, were
- * not measured. */
+/* Takes the next sample; returns how many of the last samples, including this one, turn
+ * out not to have been measured; those returned before do not count again. */
 size_t converter_next(struct converter *c, double x);
 /* 1 if x is a limit, by all samples so far. */
 int converter_saturates(const struct converter *c, double x);

@@ -28,9 +28,11 @@ double separate_effort(double samples)
 }
 
 /* The noise is followed in blocks of a sixteenth of what is learned from. */
+enum { BLOCKS = 16 };
+
 static void follow_noise(struct separate *s, size_t n)
 {
-	enum { BLOCKS = 16, SHORTEST = 256 };
+	enum { SHORTEST = 256 };
 	const struct calibration *c = &s->cal;
 	size_t block = (n ? n : s->par.learn) / BLOCKS;
 	/* Of these, no more is clean before samples beyond them are known. */
@@ -44,6 +46,32 @@ static void follow_noise(struct separate *s, size_t n)
 	for (int k = 0; k < 2; k++)
 		buffer_follow(&s->buffer[k], s->done, block, n ? 0 : s->kept.level[k],
 			s->buffer[k].begin + (long long)known);
+}
+
+/* The longest stretch of the n oldest samples in which neither channel stands still, or
+ * clips, for as long as a block: its first sample and its length. */
+static size_t measured(const struct separate *s, size_t n, size_t *from)
+{
+	size_t run[2] = { 0, 0 }, begin = 0, best = 0;
+
+	*from = 0;
+	for (size_t i = 0; i <= n; i++) {
+		size_t longest = 0, end;
+
+		for (int c = 0; c < 2 && i < n; c++) {
+			run[c] = s->buffer[c].hidden[i] ? run[c] + 1 : 0;
+			longest = run[c] > longest ? run[c] : longest;
+		}
+		if (i < n && longest <= n / BLOCKS)
+			continue;
+		end = i < n ? i + 1 - longest : n;
+		if (end > begin + best) {
+			best = end - begin;
+			*from = begin;
+		}
+		begin = i + 1;
+	}
+	return best;
 }
 
 /* Starts the separation with an instrument learned from the n oldest samples (0: kept).
@@ -164,7 +192,7 @@ static enum separate_status learn_from_means(
 	struct separate *s, int ratio, double share, double *duration)
 {
 	struct buffer fine[CHANNELS_MAX], mean[CHANNELS_MAX];
-	size_t n;
+	size_t n, from;
 	enum separate_status status;
 
 	*duration = 0;
@@ -176,8 +204,8 @@ static enum separate_status learn_from_means(
 	}
 	memcpy(s->buffer, mean, sizeof mean);
 	s->ratio = ratio;
-	n = lesser(mean[0].n, separate_learned_means(s, ratio));
-	status = learn_from(s, n, share);
+	n = measured(s, lesser(mean[0].n, separate_learned_means(s, ratio)), &from);
+	status = learn_from(s, from ? 0 : n, share);
 	if (status == SEPARATE_OK)
 		*duration = s->cal.duration;
 	if (*duration >= SHORT) {
@@ -199,11 +227,11 @@ static enum separate_status learn_from_means(
  * hides long pulses (rate-100k-hum of tests/matrix/scenes.tsv). */
 static const double FIRST = 0.25;
 
-/* Learns from no more than par.learn samples, even if more have arrived at once.  If the
- * pulses seem long, and are not described as short ones, awaits as many means. */
-static enum separate_status calibrate_now(struct separate *s)
+/* Learns from the n oldest samples, even if more have arrived at once.  If the pulses
+ * seem long, and are not described as short ones, awaits as many means. */
+static enum separate_status calibrate_now(struct separate *s, size_t n)
 {
-	size_t n = lesser(s->buffer[0].n, s->par.learn), means;
+	size_t means;
 	int ratio = 1, again = s->awaited > 0;
 	enum separate_status status = SEPARATE_OK;
 
@@ -290,13 +318,27 @@ enum separate_status separate_learn_clearly(struct separate *s)
 static enum separate_status look_for_bursts(
 	const struct separate *s, size_t n, int *found)
 {
-	double *work = malloc(n * sizeof *work);
+	double *work = malloc((n + 1) * sizeof *work);
 
 	if (!work)
 		return SEPARATE_MEMORY;
 	*found = bursts_found(s->buffer[0].x, n, work) ||
 		 bursts_found(s->buffer[1].x, n, work);
 	free(work);
+	return SEPARATE_OK;
+}
+
+/* Drops the n oldest samples, from which nothing was learned. */
+static enum separate_status pass_over(struct separate *s, size_t n)
+{
+	int found;
+
+	if (look_for_bursts(s, n, &found) != SEPARATE_OK)
+		return SEPARATE_MEMORY;
+	s->counters.unlearned += found ? (double)n : 0;
+	s->counters.passed_over += (double)n;
+	for (int c = 0; c < s->channels; c++)
+		buffer_discard(&s->buffer[c], n);
 	return SEPARATE_OK;
 }
 
@@ -311,6 +353,7 @@ enum separate_status separate_learn(struct separate *s)
 {
 	size_t half = s->par.learn / 2;
 	int first = 1, found;
+	size_t n, from;
 
 	while (!s->calibrated &&
 		s->buffer[0].n >= (s->ended && first ? 1 : s->par.learn)) {
@@ -318,7 +361,13 @@ enum separate_status separate_learn(struct separate *s)
 
 		if (s->buffer[0].n < s->awaited && !s->ended)
 			return SEPARATE_OK;
-		status = calibrate_now(s);
+		n = measured(s, lesser(s->buffer[0].n, s->par.learn), &from);
+		if (from > 0) {
+			if (pass_over(s, from) != SEPARATE_OK)
+				return SEPARATE_MEMORY;
+			continue;
+		}
+		status = calibrate_now(s, n);
 		if (s->awaited)
 			return status;
 		first = 0;
@@ -335,12 +384,8 @@ enum separate_status separate_learn(struct separate *s)
 		s->unexplained |= found;
 		if (s->buffer[0].n < s->par.learn)
 			break;
-		if (found && look_for_bursts(s, half, &found) != SEPARATE_OK)
+		if (pass_over(s, half) != SEPARATE_OK)
 			return SEPARATE_MEMORY;
-		s->counters.unlearned += found ? (double)half : 0;
-		for (int c = 0; c < s->channels; c++)
-			buffer_discard(&s->buffer[c], half);
-		s->counters.passed_over += (double)half;
 	}
 	return SEPARATE_OK;
 }

@@ -271,6 +271,8 @@ static enum separate_status push(struct separate *s, const double *x, size_t n)
 	if (s->par.kept)
 		status = separate_check_alive(s, x, n);
 	s->counters.samples += (double)n / s->ratio;
+	for (int c = 0; c < 2; c++)
+		s->counters.missing[c] = s->buffer[c].missing;
 	if (!s->calibrated && status == SEPARATE_OK)
 		status = s->par.kept      ? separate_start_kept(s)
 			 : s->par.clearly ? separate_learn_clearly(s)

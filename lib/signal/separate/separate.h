@@ -106,7 +106,9 @@ struct separate_counters {
 	double countless;            /* samples of them with particles of any number */
 	double compared, unlike; /* samples of them whose spectrum was compared with that
 				    of the pulse, and the sum of its squared difference */
-	double covered; /* samples of events in which no particle would be found */
+	double covered;    /* samples of events in which no particle would be found */
+	double missing[2]; /* samples of either sensor that were not measured, converter.h
+			    */
 };
 
 /* Rows that may fit no particle: pulses, what is unresolved, and events of no name. */
