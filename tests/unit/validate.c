@@ -104,6 +104,74 @@ static void test_recurring(void)
 	validation_free(v);
 }
 
+/* Heights within a tenth, either pulse first; of one pair in three the distance is 0.33
+ * durations, of the others anything up to 1. */
+static void test_favourite(void)
+{
+	static struct evidence e[ROWS];
+	struct validation *v = validation_new();
+	int missed = 0, others = 0;
+
+	draw(e, 0, 0.1, 160000);
+	for (int i = ALONE; i < ROWS; i += 2) {
+		double *z = (double[2]){ normal(170000 + (uint64_t)i),
+			philox_uniform(18, 0, RNG_PARTICLE, (uint64_t)i) };
+
+		e[i].amplitude = 20 * (1 + 0.1 * z[0]);
+		e[i + 1].amplitude = 20;
+		e[i + 1].delay = e[i].delay;
+		e[i + 1].time = i % 3 ? 0.1 + 0.9 * z[1] : 0.33 + 0.01 * z[0];
+	}
+	validation_test(v, e, ROWS);
+	for (int i = ALONE; i < ROWS; i += 2) {
+		missed += i % 3 == 0 && !(e[i].doubted && e[i + 1].doubted);
+		others += i % 3 != 0 && e[i].doubted;
+	}
+	ok(missed == 0, "pulses of one height at a favourite distance are doubted");
+	ok(others < PAIRS / 3 && doubted(e, 0, ALONE) == 0,
+		"of other pairs only those at this distance (%d), none alone", others);
+	validation_free(v);
+}
+
+/* A crowd: up to ten thousand groups of pulses at random, of any height. */
+static void test_crowd(double density, int groups, uint64_t seed)
+{
+	enum { MOST = 40 };
+	static struct evidence e[MOST];
+	struct validation *v = validation_new();
+	double rows = 0, wrong = 0;
+
+	for (int g = 1; g <= groups; g++) {
+		int m = 0;
+		double t = 0;
+
+		memset(e, 0, sizeof e);
+		do {
+			double u[2];
+
+			for (uint64_t k = 0; k < 2; k++)
+				u[k] = philox_uniform(seed, (uint32_t)g, RNG_PARTICLE,
+					2 * (uint64_t)m + k);
+			e[m++] = (struct evidence){ .group = g,
+				.fits = 1,
+				.delay = SPREAD *
+					 normal(seed + 977 * (uint64_t)g + (uint64_t)m),
+				.var = 0.01,
+				.amplitude = 20 * exp(u[0]),
+				.time = t };
+			t += 0.1 - log(u[1]) / density;
+		} while (m < MOST && t < 12);
+		validation_test(v, e, (size_t)m);
+		rows += m;
+		for (int i = 0; i < m; i++)
+			wrong += e[i].doubted;
+	}
+	ok(wrong < 5e-3 * rows, /* before the flow is known */
+		"%.0f of %.0f pulses at random, %g per duration, are doubted", wrong,
+		rows, density);
+	validation_free(v);
+}
+
 /* Delays anywhere in the range that is searched: one in five is at its edge. */
 static void test_edge(void)
 {
@@ -140,6 +208,10 @@ int main(void)
 	}
 	test_other_velocities();
 	test_recurring();
+	test_favourite();
+	test_crowd(0.3, 10000, 21);
+	test_crowd(3, 10000, 22);
+	test_crowd(3, 40, 23);
 	test_edge();
 	return tap_done();
 }

@@ -7,10 +7,11 @@
 #include <string.h>
 
 enum {
-	LATELY = 256,       /* latest rows, by which others are tested */
-	FEW = 8,            /* fewest delays for an estimate of the variance */
-	REACH = 6,          /* durations on either side of a strong pulse */
-	PLACES = 16 * REACH /* classes of place within them */
+	LATELY = 256, /* latest rows, by which others are tested */
+	FEW = 8,      /* fewest delays for an estimate of the variance */
+	REACH = 6,    /* durations on either side of a strong pulse */
+	CLASSES = 8,  /* of distance in a duration */
+	PLACES = 2 * REACH * CLASSES
 };
 
 struct delay {
@@ -26,7 +27,7 @@ struct validation {
 	double mean, var, margin; /* of the delays; margin: an upper bound of var */
 	double known;             /* number of delays they are estimated from */
 	struct flow told;
-	double recurring[PLACES], groups;
+	double recurring[PLACES], distant[CLASSES], groups;
 };
 
 struct validation *validation_new(void)
@@ -181,18 +182,37 @@ static size_t nearest_larger(const struct evidence *e, size_t m, size_t i)
 	return found;
 }
 
-/* Place of a pulse that is less than half as high as the nearest larger one and has the
- * same velocity within the error, or -1. */
-static int weak_place(const struct evidence *e, size_t m, size_t i)
+/* Class of the place of a pulse beside the nearest larger one, if both have the same
+ * velocity within the error, or -1. */
+static int place_of(const struct evidence *e, size_t m, size_t i)
 {
-	const struct evidence *l = &e[nearest_larger(e, m, i)];
-	double place = floor((e[i].time - l->time + REACH) * PLACES / (2 * REACH));
+	size_t larger = nearest_larger(e, m, i);
+	const struct evidence *l = &e[larger];
+	double place = floor((e[i].time - l->time + REACH) * CLASSES);
 
-	return fabs(e[i].amplitude) < 0.5 * fabs(l->amplitude) && place >= 0 &&
-			       place < PLACES && e[i].var > 0 &&
+	return larger != i && place >= 0 && place < PLACES && e[i].var > 0 &&
 			       pow(e[i].delay - l->delay, 2) <= 10 * (e[i].var + l->var)
 		       ? (int)place
 		       : -1;
+}
+
+/* The same of a pulse that is less than half as high as the larger one. */
+static int weak_place(const struct evidence *e, size_t m, size_t i)
+{
+	return fabs(e[i].amplitude) < 0.5 * fabs(e[nearest_larger(e, m, i)].amplitude)
+		       ? place_of(e, m, i)
+		       : -1;
+}
+
+/* Class of the distance, whichever of both is first, in a group that is no longer than
+ * one pulse; else -1. */
+static int distance_of(const struct evidence *e, size_t m, size_t i)
+{
+	int place = place_of(e, m, i), after = place - PLACES / 2;
+
+	if (place < 0 || e[m - 1].time - e[0].time >= 1)
+		return -1;
+	return after < 0 ? -1 - after : after;
 }
 
 /* 1 if the place occurs in more than four groups and in a tenth of all.  Chance, with so
@@ -205,6 +225,21 @@ static int recurs(
 	return place >= 0 && v->recurring[place] > 4 + 0.1 * v->groups;
 }
 
+/* 1 if the distance is more frequent than a smaller one, by four standard deviations and
+ * in a tenth of all groups.  Of particles, which arrive independently, none is, beyond
+ * the first class, in which two may be fitted as one; of pulses fitted to a pulse of
+ * another shape it is.  The class before may hold the same distances. */
+static int is_favourite(
+	const struct validation *v, const struct evidence *e, size_t m, size_t i)
+{
+	int k = distance_of(e, m, i);
+	double here = k < 0 ? 0 : v->distant[k], least = here;
+
+	for (int j = 1; j < k - (k > 2); j++)
+		least = fmin(least, v->distant[j]);
+	return here - least > fmax(0.1 * v->groups, SIGMAS_RARELY * sqrt(here + least));
+}
+
 /* --- the test */
 
 static void take_in(struct validation *v, const struct evidence *e, size_t n)
@@ -213,9 +248,12 @@ static void take_in(struct validation *v, const struct evidence *e, size_t n)
 		m = group_size(e, i, n);
 		take_delay(v, e + i, m);
 		v->groups++;
-		for (size_t k = 0; k < m; k++)
+		for (size_t k = 0; k < m; k++) {
 			if (weak_place(e + i, m, k) >= 0)
 				v->recurring[weak_place(e + i, m, k)]++;
+			if (distance_of(e + i, m, k) >= 0)
+				v->distant[distance_of(e + i, m, k)]++;
+		}
 	}
 	learn_flow(v);
 }
@@ -258,7 +296,7 @@ static void test_group(const struct validation *v, struct evidence *e, size_t m)
 	for (size_t i = 0; i < m; i++)
 		e[i].doubted = impossible || !e[i].fits || is_at_edge(v, &e[i]);
 	for (size_t i = 0; i < m; i++)
-		if (recurs(v, e, m, i))
+		if (recurs(v, e, m, i) || is_favourite(v, e, m, i))
 			e[i].doubted = e[nearest_larger(e, m, i)].doubted = 1;
 }
 
