@@ -152,7 +152,7 @@ static void test_crowd(double density, int groups, uint64_t seed)
 			for (uint64_t k = 0; k < 2; k++)
 				u[k] = philox_uniform(seed, (uint32_t)g, RNG_PARTICLE,
 					2 * (uint64_t)m + k);
-			e[m++] = (struct evidence){ .group = g,
+			e[m] = (struct evidence){ .group = g,
 				.fits = 1,
 				.delay = SPREAD *
 					 normal(seed + 977 * (uint64_t)g + (uint64_t)m),
@@ -160,6 +160,7 @@ static void test_crowd(double density, int groups, uint64_t seed)
 				.amplitude = 20 * exp(u[0]),
 				.time = t };
 			t += 0.1 - log(u[1]) / density;
+			m++;
 		} while (m < MOST && t < 12);
 		validation_test(v, e, (size_t)m);
 		rows += m;
