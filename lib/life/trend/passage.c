@@ -151,7 +151,7 @@ static const struct future *future_of(const struct bank_shape *s)
 static double spread_of(const struct bank *b, double target)
 {
 	struct running logs = { 0 };
-	double limit = 0;
+	double limit = 0, line[LINE];
 	int shape = -1;
 
 	for (int i = 0; i < b->fixed; i++) {
@@ -160,7 +160,8 @@ static double spread_of(const struct bank *b, double target)
 
 		if (tr->shape != shape)
 			limit = place_of(b, shape = tr->shape, target).h;
-		time = (limit - tr->h) / tr->v;
+		line_at(b, tr, b->at, line);
+		time = (limit - line[LINE_H]) / line[LINE_V];
 		if (time > 0 && isfinite(time))
 			running_repeat(&logs, log(time), tr->weight);
 	}
@@ -186,9 +187,8 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 {
 	struct place here = place_of(b, tr->shape, b->level),
 		     there = place_of(b, tr->shape, target);
-	double correlation = fmin(0.95, fmax(0, tr->lagged / tr->sum)), s, scale;
-	double load[BANK_LOADS];
-	struct trend now;
+	double correlation = fmin(0.95, fmax(0, tr->lagged / tr->sum)), scale;
+	double load[RATES], line[LINE];
 	struct crossing p = { .limit = there.h,
 		.straight = (target - b->level) * here.slope,
 		.growth = tr->growth,
@@ -196,15 +196,14 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 
 	p.hazard = p.future->hazard / (shape_of(b, tr->shape)->n > 0 ? kin_of(b) : 1);
 	future_loads(b, load);
-	now = at_loads(b, tr, load);
-	now.kind = 0;
-	project(b, &now, &here, ahead, 1);
-	s = grown(tr, b->age + ahead);
-	p.h = now.h;
-	p.v = s * now.v;
-	p.phh = now.phh;
-	p.phv = s * now.phv;
-	p.pvv = s * s * now.pvv;
+	line_at(b, tr, load, line);
+	advance_state(2, line, b->at, advance_of(b, tr, ahead), 1);
+	scale_rates(2, line, grown(tr, b->age + ahead));
+	p.h = line[LINE_H];
+	p.v = line[LINE_V];
+	p.phh = line[LINE_HH];
+	p.phv = line[LINE_HV];
+	p.pvv = line[LINE_VV];
 	p.freedom = freedom_of(b, tr);
 	p.variance = tr->sum / p.freedom;
 	/* The noise is constant in D: its slope is taken half way to the level. */
