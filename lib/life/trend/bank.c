@@ -31,10 +31,9 @@ static const double SURPRISE = 5;
  * without a halt and after one and two of 0.02 to 0.5 lives: 2.5: 7.2, 9.5, 12.0; 3.5:
  * 7.0, 9.5, 12.0; 5: 6.9, 9.7, 12.2. */
 static const double HALT = 3.5;
-static const double LEAST = 1e-3; /* prior noise, share of the range to the threshold */
-/* Noise, in the same unit, below which no coordinate describes the wear: else readings
- * without noise, or all equal, would be foretold with certainty, see doc/benchmarks.md.
- */
+/* Noise, as a share of the range to the threshold, below which no coordinate describes
+ * the wear: else readings without noise, or all equal, would be foretold with certainty,
+ * see doc/benchmarks.md. */
 static const double FINEST = 3e-4;
 static const double DIFFUSE = 1e8; /* prior variance of v over that of the noise */
 
@@ -408,7 +407,7 @@ static void start(struct bank *b)
 			struct place here = place_of(b, i, b->level);
 			double *x = state_of(b, tr);
 
-			*tr = (struct trend){ .sum = LEAST * LEAST,
+			*tr = (struct trend){ .sum = FINEST * FINEST,
 				.shape = (unsigned char)i,
 				.kind = (unsigned char)k };
 			x[0] = here.h;

@@ -13,6 +13,10 @@ enum { CHANCES = 8 }; /* uniform numbers of one draw */
  * growth of a rate of 0 too. */
 static const double NOTHING = 3e3;
 
+/* The chance of a rate above 0 below which the damage does not grow.  .02, 1e-3 and 1e-6
+ * give a CRPS of 24.0, 23.9 and 23.7 % of life with bursts (45 kinds, 10 paths). */
+static const double UNLIKELY = 1e-3;
+
 /* Future changes of regime, where the rate falls, is constant or rises in a coordinate,
  * and on the paths of other units, for all of them together: hazard c, age of the regime
  * as a share of that of the unit, share of falls, and median growth in units of 1 / age.
@@ -219,21 +223,15 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 	return p;
 }
 
-/* Normal deviate under the condition that it is above -m, by rejection; NAN if 32 trials
- * would all fail. */
+/* Normal deviate under the condition that it is above -m; NAN if that is very unlikely.
+ */
 static double normal_above(double m, const struct chance *c)
 {
-	double u = c->u[1], above, none;
+	double above = 0.5 * erfc(-m / sqrt(2));
 
-	if (m > 8) /* no trial fails */
+	if (m > 8) /* it always is */
 		return -c->z[1];
-	above = 0.5 * erfc(-m / sqrt(2));
-	none = pow(1 - above, 32);
-
-	if (u < none)
-		return NAN;
-	u = fmax(1e-12, (u - none) / (1 - none));
-	return -normal_quantile(u * above);
+	return above < UNLIKELY ? NAN : -normal_quantile(c->u[1] * above);
 }
 
 /* Time to the passage if the regime changes once more. */
