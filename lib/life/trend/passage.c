@@ -115,9 +115,9 @@ double bank_chance_normal(const struct bank_chances *c, int draw, int k)
 
 /* Values common to all draws of one trend. */
 struct crossing {
-	double h, v, phh, phv, pvv; /* now; covariances in units of the noise */
-	double limit;               /* h of the level to be reached */
-	double straight; /* the distance if the rate of the damage stayed constant */
+	double line[LINE]; /* now */
+	double limit;      /* h of the level to be reached */
+	double straight;   /* the distance if the rate of the damage stayed constant */
 	double variance, freedom; /* of the noise, with autocorrelation; of chi^2 */
 	double wiener;            /* variance of h per unit of time */
 	double growth;            /* of the rate at present */
@@ -129,16 +129,11 @@ struct crossing {
 /* Includes the prior of the rate, as an observation of v. */
 static void heed_prior(double mean, double sd, struct crossing *p)
 {
-	double f, e = mean - p->v;
+	double noise = sd * sd / p->variance;
 
-	if (!(sd > 0))
-		return;
-	f = p->pvv + sd * sd / p->variance;
-	p->h += p->phv / f * e;
-	p->v += p->pvv / f * e;
-	p->phh -= p->phv / f * p->phv;
-	p->phv -= p->pvv / f * p->phv;
-	p->pvv -= p->pvv / f * p->pvv;
+	if (sd > 0)
+		observe_state(2, p->line, 1, p->line[LINE_VV] + noise,
+			mean - p->line[LINE_V], noise);
 }
 
 /* A power below 0, wear that goes as the root of time, counts as constant: it slows down
@@ -177,8 +172,8 @@ static double spread_of(const struct bank *b, double target)
  * and their rates leave uncertain is a part of it. */
 static void let_stray(struct crossing *p, double h, double spread)
 {
-	double bend = log(p->straight / (p->limit - h)),
-	       known = spread + p->pvv * p->variance / (p->v * p->v);
+	double bend = log(p->straight / (p->limit - h)), v = p->line[LINE_V],
+	       known = spread + p->line[LINE_VV] * p->variance / (v * v);
 
 	if (!isfinite(bend))
 		return;
@@ -192,7 +187,7 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 	struct place here = place_of(b, tr->shape, b->level),
 		     there = place_of(b, tr->shape, target);
 	double correlation = fmin(0.95, fmax(0, tr->lagged / tr->sum)), scale;
-	double load[RATES], line[LINE];
+	double load[RATES];
 	struct crossing p = { .limit = there.h,
 		.straight = (target - b->level) * here.slope,
 		.growth = tr->growth,
@@ -200,14 +195,9 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 
 	p.hazard = p.future->hazard / (shape_of(b, tr->shape)->n > 0 ? kin_of(b) : 1);
 	future_loads(b, load);
-	line_at(b, tr, load, line);
-	advance_state(2, line, b->at, advance_of(b, tr, ahead), 1);
-	scale_rates(2, line, grown(tr, b->age + ahead));
-	p.h = line[LINE_H];
-	p.v = line[LINE_V];
-	p.phh = line[LINE_HH];
-	p.phv = line[LINE_HV];
-	p.pvv = line[LINE_VV];
+	line_at(b, tr, load, p.line);
+	advance_state(2, p.line, b->at, advance_of(b, tr, ahead), 1);
+	scale_rates(2, p.line, grown(tr, b->age + ahead));
 	p.freedom = freedom_of(b, tr);
 	p.variance = tr->sum / p.freedom;
 	/* The noise is constant in D: its slope is taken half way to the level. */
@@ -251,14 +241,16 @@ static double change(
 static double draw_life(const struct bank *b, const struct crossing *p, double age,
 	const struct chance *c)
 {
-	double sd = sqrt(p->variance * p->freedom / chi_square(p->freedom, c->z[0]));
-	double z = normal_above(p->v / (sd * sqrt(p->pvv)), c), v, h, time;
+	const double *x = p->line;
+	double sd = sqrt(p->variance * p->freedom / chi_square(p->freedom, c->z[0])),
+	       root = sqrt(x[LINE_VV]), z = normal_above(x[LINE_V] / (sd * root), c),
+	       v = x[LINE_V] + sd * root * z, h, time;
 
-	v = p->v + sd * sqrt(p->pvv) * z;
 	if (!(v > 0)) /* damage does not heal */
 		return INFINITY;
-	h = p->h + sd * p->phv / sqrt(p->pvv) * z +
-	    sd * sqrt(fmax(0, p->phh - p->phv * p->phv / p->pvv)) * c->z[2];
+	h = x[LINE_H] + sd * x[LINE_HV] / root * z +
+	    sd * sqrt(fmax(0, x[LINE_HH] - x[LINE_HV] * x[LINE_HV] / x[LINE_VV])) *
+		    c->z[2];
 	time = (p->limit - h) / v;
 	if (time <= 0)
 		return 0;
