@@ -304,7 +304,7 @@ enum num_status bank_draw(const struct bank *b, const struct bank_chances *c, do
 	double level, double *life)
 {
 	double jump = damage_of(b, b->held[0].y) - b->level,
-	       share = b->n_held / (HELD * (1 + jump * jump));
+	       share = b->n_held / (HELD * pow(1 + jump * jump, 2));
 	struct bank *other;
 
 	draw_share(b, c, now, level, share, 1, life);
