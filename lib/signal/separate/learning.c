@@ -49,7 +49,8 @@ static void follow_noise(struct separate *s, size_t n)
 }
 
 /* The longest stretch of the n oldest samples in which neither channel stands still, or
- * clips, for as long as a block: its first sample and its length. */
+ * clips, for as long as a block: its first sample and its length.  All of them if it is
+ * too short to be learned from, as that of a dead sensor is. */
 static size_t measured(const struct separate *s, size_t n, size_t *from)
 {
 	size_t run[2] = { 0, 0 }, begin = 0, best = 0;
@@ -71,7 +72,8 @@ static size_t measured(const struct separate *s, size_t n, size_t *from)
 		}
 		begin = i + 1;
 	}
-	return best;
+	*from = best < SEPARATE_SHORTEST ? 0 : *from;
+	return best < SEPARATE_SHORTEST ? n : best;
 }
 
 /* Starts the separation with an instrument learned from the n oldest samples (0: kept).
