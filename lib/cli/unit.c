@@ -276,15 +276,6 @@ static struct sum scale_ten(double value, int power)
 	return s;
 }
 
-static uint64_t ten_to(int power)
-{
-	uint64_t t = 1;
-
-	while (power-- > 0)
-		t *= 10;
-	return t;
-}
-
 /* As few digits as denote a positive value, 15 to 17; a count of 0 where those that are
  * kept do not decide.  A number denotes the value if it is nearer than half the distance
  * of doubles. */
@@ -294,7 +285,7 @@ static struct decimal shortest(double value)
 	/* The power of ten below, or the one before. */
 	struct decimal d = { .exponent = (int)floor((binary - 1) * M_LN2 / M_LN10) };
 	struct sum s = scale_ten(value, KEPT - 1 - d.exponent);
-	uint64_t kept, unit = ten_to(KEPT - SHORTEST);
+	uint64_t kept, unit = 10000; /* of KEPT digits, that of SHORTEST */
 	double half; /* in units of the last digit kept, which is off by up to a half */
 
 	if (s.value > 1e19 || (s.value == 1e19 && s.rest >= 0))
@@ -313,7 +304,7 @@ static struct decimal shortest(double value)
 			continue;
 		d.digits = kept / unit + (uint64_t)up;
 		d.count = n;
-		if (d.digits == ten_to(n)) {
+		if (d.digits * unit == 10000000000000000000u) { /* KEPT zeros */
 			d.digits /= 10;
 			d.exponent++;
 		}
@@ -335,32 +326,41 @@ static void write_exponent(int exponent, char *to)
 	*to = '\0';
 }
 
+static void write_digits(uint64_t value, int count, char *to)
+{
+	for (; count-- > 0; value /= 10)
+		to[count] = (char)('0' + value % 10);
+}
+
 /* As printf() does for %g with as many digits. */
 static void write_decimal(const struct decimal *d, int negative, char *to)
 {
-	char digit[LONGEST] = { 0 };
-	int used = 0, n = d->count;
-	int plain = d->exponent >= -4 && d->exponent < n;
-	uint64_t rest = d->digits;
+	enum { HALF = 8, HALF_UNIT = 100000000 }; /* two short chains of divisions */
+	char digit[LONGEST];
+	int used = d->count, plain = d->exponent >= -4 && d->exponent < used;
+	int before = plain ? d->exponent + 1 : 1, whole; /* digits before the point */
 
-	for (int i = n; i-- > 0; rest /= 10) {
-		digit[i] = (char)('0' + rest % 10);
-		if (used == 0 && digit[i] != '0')
-			used = i + 1;
-	}
+	write_digits(d->digits / HALF_UNIT, used - HALF, digit);
+	write_digits(d->digits % HALF_UNIT, HALF, digit + used - HALF);
+	while (used > 1 && digit[used - 1] == '0')
+		used--;
 	if (negative)
 		*to++ = '-';
-	if (plain && d->exponent < 0) {
+	whole = before < 0 ? 0 : before < used ? before : used;
+	if (before <= 0) {
 		*to++ = '0';
 		*to++ = '.';
-		for (int i = d->exponent + 1; i < 0; i++)
-			*to++ = '0';
 	}
-	for (int i = 0; i < used || (plain && i <= d->exponent); i++) {
-		if (i > 0 && i == (plain ? d->exponent + 1 : 1))
-			*to++ = '.';
-		*to++ = i < used ? digit[i] : '0';
-	}
+	for (int i = before; i < 0; i++)
+		*to++ = '0';
+	memcpy(to, digit, (size_t)whole);
+	to += whole;
+	for (int i = whole; i < before; i++)
+		*to++ = '0';
+	if (before > 0 && used > before)
+		*to++ = '.';
+	memcpy(to, digit + whole, (size_t)(used - whole));
+	to += used - whole;
 	if (plain)
 		*to = '\0';
 	else

@@ -230,16 +230,13 @@ static void turn_rows(const struct footprints *f, size_t *cell, size_t n)
 static double depth_below(const struct footprints *f, struct stress_node n)
 {
 	struct reserve r = { 1, { 0 }, { reserve(f->yield, n.value) } };
-	double stress[POINT_SUM_DEPTHS];
 
 	for (int k = 0; k < f->deepest; k++) {
 		double dip;
 
-		if (k % POINT_SUM_DEPTHS == 0)
-			point_sum_at(f->below, n.at, k, stress);
 		r = (struct reserve){ r.depths < 3 ? r.depths + 1 : 3,
 			{ point_sum_depth(f->below, k), r.z[0], r.z[1] },
-			{ reserve(f->yield, stress[k % POINT_SUM_DEPTHS]), r.g[0],
+			{ reserve(f->yield, point_sum_at(f->below, n.at, k)), r.g[0],
 				r.g[1] } };
 		if (r.g[0] > 1)
 			return reserve_crossing(&r);

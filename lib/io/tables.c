@@ -602,14 +602,19 @@ void table_cmd(struct table_out *t, const char *cmd)
 		table_comment(t, "cmd", "%s", cmd);
 }
 
+static void need_room(struct table_out *t, size_t n)
+{
+	if (t->length + n > t->room) {
+		t->room = 2 * (t->length + n);
+		t->row = xrealloc(t->row, t->room, 1);
+	}
+}
+
 static void append(struct table_out *t, const char *text)
 {
 	size_t n = strlen(text);
 
-	if (t->length + n + 1 > t->room) {
-		t->room = 2 * (t->length + n + 1);
-		t->row = xrealloc(t->row, t->room, 1);
-	}
+	need_room(t, n + 1);
 	memcpy(t->row + t->length, text, n + 1);
 	t->length += n;
 }
@@ -631,9 +636,10 @@ void table_put_text(struct table_out *t, const char *text)
 
 void table_put(struct table_out *t, double value)
 {
-	char text[NUMBER_TEXT];
-
-	put_cell(t, number_text(value, text));
+	need_room(t, 1 + NUMBER_TEXT);
+	if (t->ncells++)
+		t->row[t->length++] = '\t';
+	t->length += strlen(number_text(value, t->row + t->length));
 }
 
 void table_end_row(struct table_out *t)

@@ -15,8 +15,9 @@ enum {
 	 * surfaces have rms errors of 1.75 and 1.73 %. */
 	TILE_SIDE = 4 * BLOCK,
 	AROUND = 5, /* elements are at most so many cells away along either axis */
-	FOURS = 2   /* sets of four depths of which the first is less than NEAR cells
-		     * deep */
+	OFFSETS = (2 * AROUND + 1) * (2 * AROUND + 1),
+	SHALLOW = 8 /* depths at which cells nearby act as elements, and loads far away in
+		     * proportion to the depth */
 };
 /* Sides of a square: ones farther away, over the surface or in half the depth, act as
  * points.  Right below it a square must be farther than beside it, since the spread of
@@ -24,8 +25,8 @@ enum {
  * and 1.9 % with 1 and 1.5; with 2 a sum takes a third longer. */
 static const double FAR = 1.5;
 /* From the nearest edge of a tile, whose cells are on average half its side farther away;
- * DEEP_FAR: at points deeper than NEAR.  On tiles of 8 cells volumes of 88 surfaces have
- * rms errors of 1.9, 1.8, 1.7 and 1.7 % with 0.75, 1, 1.25 and 1.5; the surrogate
+ * DEEP_FAR: at depths that are not SHALLOW.  On tiles of 8 cells volumes of 88 surfaces
+ * have rms errors of 1.9, 1.8, 1.7 and 1.7 % with 0.75, 1, 1.25 and 1.5; the surrogate
  * executes 3.1e9, 3.2e9, 3.4e9 and 3.6e9 instructions where it finds 19005 particles.
  * From 8 cells on stresses have rms errors of 2.6, 1.9, 1.7 and 1.3 % with DEEP_FAR
  * 1, 1.25, 1.5 and 2.
@@ -33,19 +34,18 @@ static const double FAR = 1.5;
 static const double TILE_FAR = 1, DEEP_FAR = 2;
 /* Cells: farther elements act as points. */
 static const double NEAR = 6;
-/* Loads at more than so many times the deepest of four depths act in proportion to the
- * depth.  The volume of 512 x 512 cells of Sq 0.8 um differs by .22, .06 and .001 % with
- * 6, 8 and 12 from that with 20. */
+/* Loads at more than so many times a depth act in proportion to it.  The volume of 19005
+ * particles of 1536 x 1536 cells differs by .06, .025 and .014 % with 6, 8 and 12 from
+ * that with 20. */
 static const double FLAT = 8;
-/* First depth; each is twice the one before, and the fourth is one cell. */
+/* First depth, in cells; each is twice the one before. */
 static const double SHALLOWEST = 0.125;
 
-/* What belongs to four depths or points.  Single precision is enough beside the error of
- * squares and points, and the surrogate takes four fifths of the time with it.  Lengths
- * are in cells, so that powers of them stay within its range. */
+/* What belongs to four loads.  Single precision is enough beside the error of squares and
+ * points, and the surrogate takes four fifths of the time with it.  Lengths are in cells,
+ * so that powers of them stay within its range. */
 typedef float four __attribute__((vector_size(16)));
 typedef int32_t four_bits __attribute__((vector_size(16)));
-_Static_assert(sizeof(four) == POINT_SUM_DEPTHS * sizeof(float), "a depth for each lane");
 
 /* Four loads and where they are: the centroids of two by two squares of one size, or,
  * from the centre of a tile, of squares that are far from it, along and across the
@@ -66,6 +66,26 @@ struct list {
 	struct loads *loads;
 };
 
+/* What loads add to the stress; x along the shear; xx and yy less zz. */
+struct sums {
+	four xx, yy, xy, xz, yz;
+};
+
+/* That as far as it is linear in the depth: on the surface, and per cell. */
+struct flat {
+	struct sums on, rise;
+};
+
+/* A cell near a point, at one of the offsets, and the numbers of the stress by it. */
+struct element {
+	int offset;
+	float load;
+};
+enum { FOURS = (STRESS_DEVIATOR + 3) / 4 };
+struct effect {
+	four number[FOURS];
+};
+
 /* A smallest square. */
 struct block {
 	float x, y, load;
@@ -73,14 +93,30 @@ struct block {
 };
 
 /* Squares that are far from all cells of a tile, and the smallest ones that are not.
- * far[i]: so far that they act in proportion to the depths of i sets, not of more. */
+ * far[i]: so far that they act in proportion to i depths, not to more. */
 struct tile {
 	int row;                    /* of tiles; -1: none */
 	float apart;                /* sides of a square that is far */
 	float x, y, half_x, half_y; /* its centre, half its sides */
-	struct list far[FOURS + 1];
+	struct list far[SHALLOW + 1];
 	int near;
 	struct block *block;
+};
+
+/* A cell below which the stress is wanted, and what acts there. */
+struct point {
+	size_t cell; /* no cell of the grid: none */
+	int deep;    /* by the lists of depths that are not shallow */
+	const struct tile *tile;
+	int ix, iy;
+	float x, y;
+	float u, v;                      /* from the tile's, along and across the shear */
+	struct list points;              /* near it, from there */
+	float nearest;                   /* of them: distance squared */
+	int flat_points;                 /* depths to which all act in proportion */
+	struct element element[OFFSETS]; /* nearest */
+	int elements;
+	struct flat flat[SHALLOW]; /* all that acts in proportion to the depth */
 };
 
 struct point_sum {
@@ -104,23 +140,9 @@ struct point_sum {
 	struct loads *loads; /* of the lists of all tiles */
 	struct block *block; /* of all tiles */
 	/* Stress by a cell at each depth, next to it or on it. */
-	four element[FOURS][2 * AROUND + 1][2 * AROUND + 1][STRESS_DEVIATOR];
-	int known[FOURS];
-};
-
-/* Stress at all four depths; x along the shear; xx and yy less zz. */
-struct sums {
-	four xx, yy, xy, xz, yz;
-};
-
-/* Four depths, one below the other, at which the stress is wanted, and what has been
- * summed of it: of points, and of elements. */
-struct point {
-	int ix, iy, set;
-	float x, y;
-	four z;
-	struct sums sums;
-	four number[STRESS_DEVIATOR];
+	struct effect effect[SHALLOW][OFFSETS];
+	int known[SHALLOW];
+	struct point point;
 };
 
 static int halves(int n)
@@ -150,14 +172,17 @@ static int new_tiles(struct point_sum *s)
 	s->tiles = (int)tiles;
 	s->tile = calloc(tiles, sizeof *s->tile);
 	s->block = malloc(4 * fours * tiles * sizeof *s->block);
-	s->loads = malloc((FOURS + 1) * loads * tiles * sizeof *s->loads);
-	for (size_t i = 0; s->tile && s->block && s->loads && i < tiles; i++) {
+	s->point.points.loads = malloc(fours * BLOCK * BLOCK * sizeof *s->loads);
+	s->loads = malloc((SHALLOW + 1) * loads * tiles * sizeof *s->loads);
+	if (!s->tile || !s->block || !s->loads || !s->point.points.loads)
+		return 0;
+	for (size_t i = 0; i < tiles; i++) {
 		s->tile[i].block = s->block + 4 * fours * i;
-		for (size_t k = 0; k <= FOURS; k++)
+		for (size_t k = 0; k <= SHALLOW; k++)
 			s->tile[i].far[k].loads =
-				s->loads + ((FOURS + 1) * i + k) * loads;
+				s->loads + ((SHALLOW + 1) * i + k) * loads;
 	}
-	return s->tile && s->block && s->loads;
+	return 1;
 }
 
 struct point_sum *point_sum_new(const struct stress_par *par)
@@ -212,6 +237,7 @@ void point_sum_free(struct point_sum *s)
 	free(s->place);
 	free(s->tile);
 	free(s->loads);
+	free(s->point.points.loads);
 	free(s->block);
 	free(s);
 }
@@ -310,6 +336,7 @@ void point_sum_load(struct point_sum *s, const double *pressure)
 	size_t n = 0, block = 0, count = 0;
 
 	s->pressure = pressure;
+	s->point.cell = SIZE_MAX;
 	s->total = total_of(pressure, (size_t)s->par.nx * (size_t)s->par.ny);
 	s->share = (double)s->dx * s->dy / (2 * M_PI * s->total);
 	for (int l = 0; l < s->sizes; l++)
@@ -345,48 +372,39 @@ static inline four inverse_root(four x)
 	return y * (1.5f - half * y * y);
 }
 
-/* Pressure and friction of a point as stress_point() gives them. */
-static inline void sum_one(
-	float x, float y, float p, four z, float k, float mu, struct sums *t)
-{
-	four r2 = (x * x + y * y) + z * z, ir = inverse_root(r2), r = r2 * ir;
-	four id = 1 / (r + z), ir2 = ir * ir, ir3 = ir2 * ir, h = k * ir * id * id;
-	four f = 3 * ir3 * ir2, g = h * ir2, zz = f * (z + mu * x) * z;
-	four m = g * (2 * r + z) - f * z + mu * x * (g * id * (3 * r + z) - f);
-	four l = k * (z * ir3 - ir * id) + mu * x * (k * ir3 - h) + zz * z;
-
-	h *= mu;
-	t->xx += p * (x * (m * x - 2 * h) + l);
-	t->yy += p * (y * y * m + l);
-	t->xy += p * y * (m * x - h);
-	zz *= p;
-	t->xz -= zz * x;
-	t->yz -= zz * y;
-}
-
-/* Those of a list, u and v farther away. */
+/* Pressure and friction of points, u and v farther away, as stress_point() gives them. */
 static void add_list(const struct point_sum *s, const struct list *l, float u, float v,
-	struct point *at)
+	float z, struct sums *sums)
 {
-	float k = (float)(1 - 2 * s->par.nu), mu = (float)s->par.mu;
-	struct sums t = at->sums;
+	const float k = (float)(1 - 2 * s->par.nu), mu = (float)s->par.mu;
+	struct sums t = *sums;
 
-	for (int i = 0; i < l->count; i++) {
-		const struct loads *p = &l->loads[i / 4];
+	for (int i = 0; i < l->count; i += 4) {
+		four x = l->loads[i / 4].x + u, y = l->loads[i / 4].y + v;
+		four p = l->loads[i / 4].load, r2 = (x * x + y * y) + z * z;
+		four ir = inverse_root(r2), r = r2 * ir, id = 1 / (r + z), mx = mu * x;
+		four ir2 = ir * ir, ir3 = ir2 * ir, h = k * ir * id * id;
+		four f = 3 * ir3 * ir2, g = h * ir2, zz = f * (z + mx) * z;
+		four m = g * (2 * r + z) - f * z + mx * (g * id * (3 * r + z) - f);
+		four e = k * (z * ir3 - ir * id) + mx * (k * ir3 - h) + zz * z;
 
-		sum_one(p->x[i % 4] + u, p->y[i % 4] + v, p->load[i % 4], at->z, k, mu,
-			&t);
+		h *= mu;
+		t.xx += p * (x * (m * x - 2 * h) + e);
+		t.yy += p * (y * y * m + e);
+		t.xy += p * y * (m * x - h);
+		zz *= p;
+		t.xz -= zz * x;
+		t.yz -= zz * y;
 	}
-	at->sums = t;
+	*sums = t;
 }
 
-/* The same as far as it is linear in the depth, four points at a time. */
+/* The same as far as it is linear in the depth. */
 static void add_flat(const struct point_sum *s, const struct list *l, float u, float v,
-	struct point *at)
+	struct flat *flat)
 {
-	float k = (float)(1 - 2 * s->par.nu), mu = (float)s->par.mu;
-	struct sums t = { .xx = all_four(0) }, rise = t; /* on the surface, and per cell
-							  */
+	const float k = (float)(1 - 2 * s->par.nu), mu = (float)s->par.mu;
+	struct sums t = flat->on, rise = flat->rise;
 
 	for (int i = 0; i < l->count; i += 4) {
 		four x = l->loads[i / 4].x + u, y = l->loads[i / 4].y + v;
@@ -406,69 +424,74 @@ static void add_flat(const struct point_sum *s, const struct list *l, float u, f
 		rise.xz -= q * x;
 		rise.yz -= q * y;
 	}
-	at->sums.xx += sum_four(t.xx) + at->z * sum_four(rise.xx);
-	at->sums.yy += sum_four(t.yy) + at->z * sum_four(rise.yy);
-	at->sums.xy += sum_four(t.xy) + at->z * sum_four(rise.xy);
-	at->sums.xz += at->z * sum_four(rise.xz);
-	at->sums.yz += at->z * sum_four(rise.yz);
+	*flat = (struct flat){ t, rise };
 }
 
-static void add_point(
-	const struct point_sum *s, struct point *at, float load, float x, float y)
+static void list_load(
+	const struct point_sum *s, struct list *l, float load, float x, float y)
 {
-	float u = at->x - x, v = at->y - y;
+	struct loads *to = &l->loads[l->count / 4];
+	int i = l->count++ % 4;
 
-	sum_one(s->par.axis ? v : u, s->par.axis ? u : v, load, at->z,
-		(float)(1 - 2 * s->par.nu), (float)s->par.mu, &at->sums);
+	if (i == 0) /* the last four may remain loads of 0, away from all points */
+		*to = (struct loads){ .x = all_four(2 * TILE_SIDE) };
+	to->x[i] = s->par.axis ? y : x;
+	to->y[i] = s->par.axis ? x : y;
+	to->load[i] = load;
 }
 
-/* Of all cells at i, j or mirrored, at one of the depths. */
-static void know_element(struct point_sum *s, int i, int j, int set, int depth)
+static int offset(int i, int j)
 {
-	struct influence f = influence_rough_element(&s->influence, i * s->par.dx,
-		j * s->par.dy, point_sum_depth(s, set * POINT_SUM_DEPTHS + depth));
+	return (AROUND + j) * (2 * AROUND + 1) + AROUND + i;
+}
+
+/* Of all cells at i, j or mirrored, at a depth. */
+static void know_effect(struct point_sum *s, int i, int j, int depth)
+{
+	struct influence f = influence_rough_element(
+		&s->influence, i * s->par.dx, j * s->par.dy, point_sum_depth(s, depth));
+	/* As loads are in units of 2 pi times their pressure. */
+	double unit = 2 * M_PI / (s->dx * s->dy);
 
 	for (int m = 0; m < 4; m++) {
 		int mx = m & 1, my = m >> 1;
-		four *to =
-			s->element[set][AROUND + (mx ? -i : i)][AROUND + (my ? -j : j)];
+		four *to = s->effect[depth][offset(mx ? -i : i, my ? -j : j)].number;
 
 		for (int c = 0; c < STRESS_DEVIATOR; c++)
-			to[c][depth] = (float)influence_image(&s->influence, &f,
-				(enum stress_number)c, mx && i, my && j);
+			to[c / 4][c % 4] =
+				(float)(unit * influence_image(&s->influence, &f,
+						       (enum stress_number)c, mx && i,
+						       my && j));
 	}
 }
 
-static void know_elements(struct point_sum *s, int set)
+static const struct effect *effects_at(struct point_sum *s, int depth)
 {
-	for (int j = 0; j <= AROUND; j++)
+	for (int j = 0; j <= AROUND && !s->known[depth]; j++)
 		for (int i = 0; i <= AROUND; i++)
-			for (int depth = 0; depth < POINT_SUM_DEPTHS; depth++)
-				know_element(s, i, j, set, depth);
-	s->known[set] = 1;
+			know_effect(s, i, j, depth);
+	s->known[depth] = 1;
+	return s->effect[depth];
 }
 
-/* A cell that is i, j cells before the point. */
-static void add_element(struct point_sum *s, struct point *at, float load, int i, int j)
+static void list_near(
+	const struct point_sum *s, struct point *at, float load, float x, float y)
 {
-	const four *element;
+	float u = at->x - x, v = at->y - y, square = u * u + v * v;
 
-	if (!s->known[at->set])
-		know_elements(s, at->set);
-	element = s->element[at->set][AROUND + i][AROUND + j];
-	for (int c = 0; c < STRESS_DEVIATOR; c++)
-		at->number[c] += load * element[c];
+	list_load(s, &at->points, load, u, v);
+	at->nearest = square < at->nearest ? square : at->nearest;
 }
 
 /* A smallest square, or its cells one by one. */
-static void add_block(struct point_sum *s, struct point *at, const struct block *b)
+static void list_block(const struct point_sum *s, struct point *at, const struct block *b)
 {
 	const float far = (float)FAR * BLOCK, near = (float)NEAR;
-	float u = at->x - b->x, v = at->y - b->y, z2 = at->z[0] * at->z[0];
+	float u = at->x - b->x, v = at->y - b->y;
 	int block = b->iy / BLOCK * s->nx + b->ix / BLOCK;
 
-	if (u * u + v * v + 0.25f * z2 >= far * far) {
-		add_point(s, at, b->load, b->x, b->y);
+	if (u * u + v * v >= far * far) {
+		list_near(s, at, b->load, b->x, b->y);
 		return;
 	}
 	for (size_t n = s->begin[block]; n < s->begin[block + 1]; n++) {
@@ -476,10 +499,11 @@ static void add_block(struct point_sum *s, struct point *at, const struct block 
 		int i = at->ix - ix, j = at->iy - iy;
 		float load = (float)(s->share * pressure_at(s, ix, iy));
 
-		if ((float)(i * i + j * j) + z2 < near * near)
-			add_element(s, at, load, i, j);
+		if (!at->deep && (float)(i * i + j * j) < near * near)
+			at->element[at->elements++] =
+				(struct element){ offset(i, j), load };
 		else
-			add_point(s, at, load, centre(ix, s->dx), centre(iy, s->dy));
+			list_near(s, at, load, centre(ix, s->dx), centre(iy, s->dy));
 	}
 }
 
@@ -493,21 +517,14 @@ static inline four beyond(four away, float half)
 	return (four)((four_bits)x & (x > 0));
 }
 
-static void list_far(const struct point_sum *s, struct tile *t, float load, float x,
-	float y, float square)
+/* At how many depths a load at a distance acts in proportion to them. */
+static int flat_depths(float square)
 {
-	struct list *l = t->far;
-	struct loads *to;
+	int k = 0;
 
-	for (float z = (float)FLAT; l < t->far + FOURS && square >= z * z;
-		z *= 1 << POINT_SUM_DEPTHS)
-		l++;
-	to = &l->loads[l->count / 4];
-	if (l->count % 4 == 0) /* the last four may remain loads of 0, outside the tile */
-		*to = (struct loads){ .x = all_four(2 * TILE_SIDE) };
-	to->x[l->count % 4] = s->par.axis ? y : x;
-	to->y[l->count % 4] = s->par.axis ? x : y;
-	to->load[l->count++ % 4] = load;
+	for (float z = (float)(FLAT * SHALLOWEST); k < SHALLOW && square >= z * z; z *= 2)
+		k++;
+	return k;
 }
 
 /* Two by two squares of size l, or those that they consist of. */
@@ -526,7 +543,8 @@ static void list_squares(const struct point_sum *s, struct tile *t, int l, int x
 		if (!(q->load[i] > 0))
 			continue;
 		if (square[i] >= far * far)
-			list_far(s, t, q->load[i], away_x[i], away_y[i], square[i]);
+			list_load(s, &t->far[flat_depths(square[i])], q->load[i],
+				away_x[i], away_y[i]);
 		else if (l > 0)
 			list_squares(s, t, l - 1, ix, iy);
 		else
@@ -535,10 +553,9 @@ static void list_squares(const struct point_sum *s, struct tile *t, int l, int x
 	}
 }
 
-static const struct tile *tile_of(struct point_sum *s, const struct point *at)
+static const struct tile *tile_of(struct point_sum *s, int ix, int iy, float apart)
 {
-	int column = at->ix / TILE_SIDE, row = at->iy / TILE_SIDE;
-	float apart = (float)(at->set < FOURS ? TILE_FAR : DEEP_FAR);
+	int column = ix / TILE_SIDE, row = iy / TILE_SIDE;
 	struct tile *t = &s->tile[column];
 
 	if (t->row != row || t->apart != apart) {
@@ -549,54 +566,90 @@ static const struct tile *tile_of(struct point_sum *s, const struct point *at)
 		t->x = centre(column, TILE_SIDE * s->dx);
 		t->y = centre(row, TILE_SIDE * s->dy);
 		t->near = 0;
-		for (int i = 0; i <= FOURS; i++)
+		for (int i = 0; i <= SHALLOW; i++)
 			t->far[i].count = 0;
 		list_squares(s, t, s->sizes - 1, 0, 0);
 	}
 	return t;
 }
 
-static void add_loads(struct point_sum *s, struct point *at)
+static void find_point(struct point_sum *s, size_t cell, int deep)
 {
-	const struct tile *t = tile_of(s, at);
-	float u = at->x - t->x, v = at->y - t->y;
+	struct point *at = &s->point;
+	struct flat flat = { .on = { .xx = all_four(0) } };
+	float x, y;
 
-	for (int i = 0; i <= FOURS; i++)
-		(i > at->set ? add_flat : add_list)(
-			s, &t->far[i], s->par.axis ? v : u, s->par.axis ? u : v, at);
-	for (int i = 0; i < t->near; i++)
-		add_block(s, at, &t->block[i]);
+	at->cell = cell;
+	at->deep = deep;
+	at->ix = (int)(cell % (size_t)s->par.nx);
+	at->iy = (int)(cell / (size_t)s->par.nx);
+	at->x = centre(at->ix, s->dx);
+	at->y = centre(at->iy, s->dy);
+	at->tile = tile_of(s, at->ix, at->iy, (float)(deep ? DEEP_FAR : TILE_FAR));
+	at->elements = at->points.count = 0;
+	at->nearest = INFINITY;
+	for (int i = 0; i < at->tile->near; i++)
+		list_block(s, at, &at->tile->block[i]);
+	x = at->x - at->tile->x;
+	y = at->y - at->tile->y;
+	at->u = s->par.axis ? y : x;
+	at->v = s->par.axis ? x : y;
+	at->flat_points = flat_depths(at->nearest);
+	for (int i = deep ? 0 : SHALLOW; i > 0; i--) {
+		add_flat(s, &at->tile->far[i], at->u, at->v, &flat);
+		if (i == at->flat_points)
+			add_flat(s, &at->points, 0, 0, &flat);
+		at->flat[i - 1] = flat;
+	}
 }
 
-void point_sum_at(
-	struct point_sum *s, size_t cell, int k, double stress[POINT_SUM_DEPTHS])
+/* The numbers at a depth: loads and elements near the point, and what is flat there. */
+static void sum_point(struct point_sum *s, int k, float number[4 * FOURS])
 {
-	const struct stress_par *g = &s->par;
-	const struct stress_criterion *criterion =
-		g->criterion ? g->criterion : &stress_von_mises_criterion;
-	struct point at = { .ix = (int)(cell % (size_t)g->nx),
-		.iy = (int)(cell / (size_t)g->nx),
-		.set = k / POINT_SUM_DEPTHS };
-	const struct sums *t = &at.sums;
-	float of_element = 2 * (float)M_PI / (s->dx * s->dy);
+	const struct point *at = &s->point;
+	struct sums t = { .xx = all_four(0) };
+	struct effect e = { .number = { all_four(0) } };
+	float z = (float)depth_of(k);
 
-	at.x = centre(at.ix, s->dx);
-	at.y = centre(at.iy, s->dy);
-	for (int d = 0; d < POINT_SUM_DEPTHS; d++)
-		at.z[d] = (float)depth_of(k + d);
-	add_loads(s, &at);
-	for (int c = 0; c < STRESS_DEVIATOR; c++)
-		at.number[c] *= of_element;
-	at.number[DEV_X] += g->axis ? t->yy : t->xx;
-	at.number[DEV_Y] += g->axis ? t->xx : t->yy;
-	at.number[DEV_XY] += t->xy;
-	at.number[DEV_XZ] += g->axis ? t->yz : t->xz;
-	at.number[DEV_YZ] += g->axis ? t->xz : t->yz;
-	for (int d = 0; d < POINT_SUM_DEPTHS; d++) {
-		double number[STRESS_DEVIATOR];
+	for (int i = 0; i <= k && i <= SHALLOW; i++)
+		add_list(s, &at->tile->far[i], at->u, at->v, z, &t);
+	if (at->deep || k >= at->flat_points)
+		add_list(s, &at->points, 0, 0, z, &t);
+	if (!at->deep) {
+		const struct effect *effect = effects_at(s, k);
+		const struct sums *on = &at->flat[k].on, *rise = &at->flat[k].rise;
 
-		for (int c = 0; c < STRESS_DEVIATOR; c++)
-			number[c] = s->total * at.number[c][d];
-		stress[d] = criterion->value(number);
+		t.xx += on->xx + z * rise->xx;
+		t.yy += on->yy + z * rise->yy;
+		t.xy += on->xy + z * rise->xy;
+		t.xz += z * rise->xz;
+		t.yz += z * rise->yz;
+		for (int i = 0; i < at->elements; i++) {
+			const struct element *c = &at->element[i];
+
+			for (int n = 0; n < FOURS; n++)
+				e.number[n] += c->load * effect[c->offset].number[n];
+		}
 	}
+	memcpy(number, &e, sizeof e);
+	number[DEV_X] += sum_four(s->par.axis ? t.yy : t.xx);
+	number[DEV_Y] += sum_four(s->par.axis ? t.xx : t.yy);
+	number[DEV_XY] += sum_four(t.xy);
+	number[DEV_XZ] += sum_four(s->par.axis ? t.yz : t.xz);
+	number[DEV_YZ] += sum_four(s->par.axis ? t.xz : t.yz);
+}
+
+double point_sum_at(struct point_sum *s, size_t cell, int k)
+{
+	const struct stress_criterion *criterion =
+		s->par.criterion ? s->par.criterion : &stress_von_mises_criterion;
+	double number[STRESS_DEVIATOR];
+	float sum[4 * FOURS];
+
+	if (s->point.cell != cell || s->point.deep != (k >= SHALLOW))
+		find_point(s, cell, k >= SHALLOW);
+	sum_point(s, k, sum);
+	for (int c = 0; c < STRESS_DEVIATOR; c++)
+		number[c] = s->total * sum[c];
+	return criterion->value(number);
 }

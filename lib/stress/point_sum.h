@@ -15,8 +15,6 @@
 
 struct point_sum;
 
-enum { POINT_SUM_DEPTHS = 4 }; /* summed together */
-
 struct point_sum *point_sum_new(const struct stress_par *par); /* NULL: no memory */
 void point_sum_free(struct point_sum *s);
 /* Takes a pressure, borrowed until the next one. */
@@ -25,9 +23,8 @@ void point_sum_load(struct point_sum *s, const double *pressure);
 double point_sum_depth(const struct point_sum *s, int k);
 /* The last depth that is not below z; 0 where none is. */
 int point_sum_above(const struct point_sum *s, double z);
-/* Below the centre of a cell (y * nx + x), at the depths k, k + 1, ...; k: a multiple of
- * POINT_SUM_DEPTHS. */
-void point_sum_at(
-	struct point_sum *s, size_t cell, int k, double stress[POINT_SUM_DEPTHS]);
+/* Below the centre of a cell (y * nx + x), at the depth k >= 0.  What depths have in
+ * common is found once for calls that follow each other. */
+double point_sum_at(struct point_sum *s, size_t cell, int k);
 
 #endif
