@@ -230,10 +230,9 @@ uint64_t outlook_fleet(void)
 	int n = 0;
 
 	path = fleet ? fleet_shapes(fleet, &n) : NULL;
-	for (int i = 0; i < n; i++) {
-		sum = checksum(path[i].age, (size_t)path[i].n * sizeof(double), sum);
-		sum = checksum(path[i].level, (size_t)path[i].n * sizeof(double), sum);
-	}
+	for (int i = 0; i < n; i++)
+		sum = checksum(
+			path[i].path, (size_t)path[i].n * sizeof *path[i].path, sum);
 	return sum;
 }
 

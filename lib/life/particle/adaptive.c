@@ -218,12 +218,14 @@ static void forecast(struct adaptive *a, int count, double h, double noise)
 }
 
 /* Prior mean of every particle: the grey forecast from its own last p states.  The oldest
- * state of the window only starts the first interval (see grey.h). */
-static void forecast_particles(struct adaptive *a, int p, double h, double noise)
+ * state of the window only starts the first interval (see grey.h).  newest_gap: of those
+ * between the states, NULL: all are h. */
+static void forecast_particles(struct adaptive *a, const struct filter *f,
+	const double *newest_gap, int p, double h, double noise)
 {
 	for (int k = 0; k < p - 1; k++)
-		a->lag[k] = (struct lag){ filter_step(a->filter, k),
-			a->gap[a->filled - 1 - k] };
+		a->lag[k] = (struct lag){ filter_step(f, k),
+			newest_gap ? newest_gap[-k] : h };
 	forecast(a, p - 1, h, noise);
 }
 
@@ -424,7 +426,8 @@ static void advance(struct adaptive *a, double t, double y, struct adaptive_row 
 	row->grey = order_forecast(a->order, t - a->observed_time);
 	process = process_noise(a, order, noise, gap);
 	if (order > 0)
-		forecast_particles(a, order, gap, noise);
+		forecast_particles(
+			a, a->filter, &a->gap[a->filled - 1], order, gap, noise);
 	else
 		hold_particles(a);
 	filter_predict(a->filter, a->mean, process);
@@ -463,107 +466,54 @@ void adaptive_step(struct adaptive *a, double t, double y, struct adaptive_row *
 	row->state *= a->scale;
 }
 
-/* The histories of the live paths as arrays side by side, the newest state at place 0 of
- * the ring. */
-struct tracks {
-	int p, newest;
-	size_t live;
-	double noise, process;
-	double *x;     /* [p][N] */
-	uint32_t *own; /* [N]: the ancestor of each is itself */
-};
-
-static double *track_lag(const struct tracks *s, size_t n, int lag)
-{
-	return s->x + (size_t)((s->newest - lag + s->p) % s->p) * n;
-}
-
-static enum num_status start_tracks(struct adaptive *a, struct tracks *s)
-{
-	size_t n = a->par.filter.particles;
-
-	s->x = malloc((size_t)s->p * n * sizeof *s->x);
-	s->own = malloc(n * sizeof *s->own);
-	if (!s->x || !s->own)
-		return NUM_MEMORY;
-	s->newest = s->p - 1;
-	for (size_t i = 0; i < n; i++)
-		s->own[i] = (uint32_t)i;
-	for (int lag = 0; lag < s->p; lag++) {
-		struct filter_step step = filter_step(a->filter, lag);
-
-		for (size_t i = 0; i < n; i++) {
-			s->own[i] = step.ancestor[s->own[i]];
-			track_lag(s, n, lag)[i] = step.x[s->own[i]];
-		}
-	}
-	for (size_t i = 0; i < n; i++)
-		s->own[i] = (uint32_t)i;
-	s->live = n;
-	return NUM_OK;
-}
-
-/* Removes the paths that are beyond the limit, and stores their times on the line from
- * the states before. */
-static double *end_tracks(struct tracks *s, size_t n, double limit, int direction,
+/* Stores the time, on the line from the state before, of each path that is beyond the
+ * limit for the first time; returns how many are not yet. */
+static size_t end_paths(const struct filter *f, size_t n, double limit, int direction,
 	double time, double gap, double *life)
 {
-	const double *now = track_lag(s, n, 0), *old = track_lag(s, n, 1);
+	struct filter_step now = filter_step(f, 0), before = filter_step(f, 1);
 	size_t left = 0;
 
-	for (size_t k = 0; k < s->live; k++) {
-		if (direction * (now[k] - limit) >= 0) {
-			*life++ =
-				time + gap * fmin(1, fmax(0, (limit - old[k]) /
-								     (now[k] - old[k])));
+	for (size_t i = 0; i < n; i++) {
+		double x = now.x[now.ancestor[i]], old;
+
+		if (life[i] < INFINITY)
+			continue;
+		if (direction * (x - limit) < 0) {
+			left++;
 			continue;
 		}
-		for (int lag = 0; left < k && lag < s->p; lag++)
-			track_lag(s, n, lag)[left] = track_lag(s, n, lag)[k];
-		left++;
+		old = before.x[before.ancestor[now.ancestor[i]]];
+		life[i] = time + gap * fmin(1, fmax(0, (limit - old) / (x - old)));
 	}
-	s->live = left;
-	return life;
-}
-
-/* One step of the live paths. */
-static void step_tracks(struct adaptive *a, struct tracks *s)
-{
-	size_t n = a->par.filter.particles;
-	double *now;
-
-	for (int k = 0; k < s->p - 1; k++)
-		a->lag[k] = (struct lag){ { track_lag(s, n, k), s->own, s->live },
-			a->mean_gap };
-	forecast(a, s->p - 1, a->mean_gap, s->noise);
-	s->newest = (s->newest + 1) % s->p;
-	now = track_lag(s, n, 0);
-	for (size_t k = 0; k < s->live; k++)
-		now[k] = a->mean[k] + s->process * draw_normal(a->draw_paths);
+	return left;
 }
 
 enum num_status adaptive_lives(
 	struct adaptive *a, double threshold, int direction, int steps, double *life)
 {
-	struct tracks s = { .p = order_in_use(a), .noise = observation_noise(a) };
-	double limit = threshold / a->scale, *end = life;
-	size_t n = a->par.filter.particles;
-	enum num_status status;
+	int order = order_in_use(a);
+	double limit = threshold / a->scale, noise = observation_noise(a),
+	       gap = a->mean_gap, process = process_noise(a, order, noise, gap);
+	size_t n = a->par.filter.particles, left;
+	struct filter *f;
 
-	if (s.p == 0)
+	if (order == 0)
 		return NUM_DOMAIN;
-	s.process = process_noise(a, s.p, s.noise, a->mean_gap);
-	status = start_tracks(a, &s);
-	if (status == NUM_OK)
-		end = end_tracks(&s, n, limit, direction, 0, 0, end);
-	for (int k = 0; status == NUM_OK && k < steps && s.live > 0; k++) {
-		step_tracks(a, &s);
-		end = end_tracks(
-			&s, n, limit, direction, k * a->mean_gap, a->mean_gap, end);
+	f = filter_copy(a->filter, a->draw_paths);
+	if (!f)
+		return NUM_MEMORY;
+	for (size_t i = 0; i < n; i++)
+		life[i] = INFINITY;
+	left = end_paths(f, n, limit, direction, 0, 0, life);
+	for (int k = 0; k < steps && left > 0; k++) {
+		forecast_particles(a, f, NULL, order, gap, noise);
+		for (size_t i = 0; i < n; i++)
+			if (life[i] < INFINITY) /* else it might overflow */
+				a->mean[i] = limit;
+		filter_predict(f, a->mean, process);
+		left = end_paths(f, n, limit, direction, k * gap, gap, life);
 	}
-	while (status == NUM_OK && end < life + n)
-		*end++ = INFINITY;
-	free(s.x);
-	free(s.own);
-	return status;
+	filter_free(f);
+	return NUM_OK;
 }

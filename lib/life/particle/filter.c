@@ -4,6 +4,7 @@
 #include "num/student.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Largest distance of a log-likelihood from 0 at which exp() is finite and not 0; a
  * particle farther below has weight 0. */
@@ -45,6 +46,23 @@ struct filter *filter_new(const struct filter_par *par, struct draw *draw)
 		return NULL;
 	}
 	return f;
+}
+
+struct filter *filter_copy(const struct filter *f, struct draw *draw)
+{
+	struct filter *copy = filter_new(&f->par, draw);
+	size_t n = f->par.particles, all = (size_t)f->par.depth * n;
+
+	if (!copy)
+		return NULL;
+	memcpy(copy->x, f->x, all * sizeof *f->x);
+	memcpy(copy->ancestor, f->ancestor, all * sizeof *f->ancestor);
+	memcpy(copy->count, f->count, (size_t)f->par.depth * sizeof *f->count);
+	memcpy(copy->weight, f->weight, n * sizeof *f->weight);
+	copy->newest = f->newest;
+	copy->filled = f->filled;
+	copy->sum = f->sum;
+	return copy;
 }
 
 void filter_free(struct filter *f)

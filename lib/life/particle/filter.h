@@ -35,6 +35,8 @@ struct filter;
 
 /* draw is borrowed.  NULL when out of memory. */
 struct filter *filter_new(const struct filter_par *par, struct draw *draw);
+/* One that goes on from the same state with other random numbers; NULL: no memory. */
+struct filter *filter_copy(const struct filter *f, struct draw *draw);
 void filter_free(struct filter *f);
 void filter_pass(struct filter *f, struct state *s);
 

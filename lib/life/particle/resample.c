@@ -3,129 +3,51 @@
 #include <math.h>
 #include <string.h>
 
-/* Equally spaced points (teeth of a comb) in [0, sum) are compared with the running sum
- * of the weights, without the copies that were kept before: weight - kept * unit. */
-struct comb {
-	const double *weight;
-	double unit; /* weight of one kept copy; 0 keeps none */
-	double sum;
-};
-
-static inline double rest(const struct comb *c, size_t i)
+/* Point k of n in (0, 1), ascending: one in each of n equal intervals, or independent
+ * ones in sorted order, of which above is the distance of the last one from 1. */
+static double point_of(
+	enum resampling scheme, struct draw *draw, size_t k, size_t n, double *above)
 {
-	return c->unit > 0 ? c->weight[i] - c->unit * floor(c->weight[i] / c->unit)
-			   : c->weight[i];
+	double u = draw_uniform(draw);
+
+	if (scheme == RESAMPLE_STRATIFIED)
+		return ((double)k + u) / (double)n;
+	*above *= exp(log(u) / (double)(n - k));
+	return 1 - *above;
 }
 
-static void comb_stratified(
-	const struct comb *c, size_t n, uint32_t *ancestor, struct draw *draw)
+/* Compares points in [0, sum) with the running sum of the weights, without those of the
+ * copies that are kept before.  The ancestor of a particle is the number of those whose
+ * last copy lies before it; these are counted and summed without a branch, which would be
+ * mispredicted. */
+void resample(enum resampling scheme, struct draw *draw, const double *weight, double sum,
+	size_t n, uint32_t *ancestor)
 {
-	double step = c->sum / (double)n, reached = c->weight[0];
-	size_t i = 0;
-
-	for (size_t k = 0; k < n; k++) {
-		double tooth = step * ((double)k + draw_uniform(draw));
-
-		while (reached <= tooth && i + 1 < n)
-			reached += c->weight[++i];
-		ancestor[k] = (uint32_t)i;
-	}
-}
-
-/* One offset for all teeth: particle i ends before tooth number reached / step - offset,
- * rounded up.  The ancestor of a tooth is the number of particles that end before it;
- * these are counted and summed without a branch, which would be mispredicted. */
-static void comb_systematic(
-	const struct comb *c, size_t n, uint32_t *ancestor, double offset)
-{
-	double scale = (double)n / c->sum, reached = 0;
+	int comb = scheme == RESAMPLE_SYSTEMATIC; /* point k is k + offset */
+	double unit = sum / (double)n, scale = 1 / unit, reached = 0, above = 1,
+	       offset = comb ? draw_uniform(draw) : 0, point;
+	size_t kept = 0, drawn = 0, points = n, copies = 0;
 	uint32_t ended = 0;
 
+	for (size_t i = 0; i < n && scheme == RESAMPLE_RESIDUAL; i++) {
+		points -= copies = (size_t)(weight[i] * scale);
+		sum -= (double)copies * unit;
+	}
+	point = comb || points == 0 ? 0 : point_of(scheme, draw, 0, points, &above);
 	memset(ancestor, 0, n * sizeof *ancestor);
 	for (size_t i = 0; i + 1 < n; i++) {
 		size_t end;
 
-		reached += c->weight[i];
-		end = (size_t)(reached * scale + (1 - offset));
+		copies = scheme == RESAMPLE_RESIDUAL ? (size_t)(weight[i] * scale) : 0;
+		kept += copies;
+		reached += weight[i] - (double)copies * unit;
+		while (!comb && drawn < points && point * sum < reached)
+			if (++drawn < points)
+				point = point_of(scheme, draw, drawn, points, &above);
+		end = comb ? (size_t)(reached * scale + (1 - offset)) : kept + drawn;
 		if (end < n)
 			ancestor[end]++;
 	}
 	for (size_t k = 0; k < n; k++)
 		ancestor[k] = ended += ancestor[k];
-}
-
-/* Ancestors first .. n - 1 by independent uniforms in sorted order: from the top down,
- * U_(k) = U_(k+1) V^(1/k). */
-static void comb_multinomial(const struct comb *c, size_t n, size_t first,
-	uint32_t *ancestor, struct draw *draw)
-{
-	double top = 1, reached = c->sum;
-	size_t i = n - 1;
-
-	for (size_t k = n - first; k > 0; k--) {
-		top *= exp(log(draw_uniform(draw)) / (double)k);
-		while (reached - rest(c, i) > top * c->sum && i > 0)
-			reached -= rest(c, i--);
-		ancestor[first + k - 1] = (uint32_t)i;
-	}
-}
-
-/* Merges the ascending list of kept copies, counted anew, with the ascending list of
- * drawn ones in ancestor[kept .. n - 1], from the front: the position read is always
- * ahead of the position written. */
-static void merge_kept(const struct comb *c, size_t n, size_t kept, uint32_t *ancestor)
-{
-	size_t put = 0, drawn = kept;
-
-	for (size_t i = 0; i < n; i++) {
-		size_t copies = (size_t)floor(c->weight[i] / c->unit);
-
-		while (drawn < n && ancestor[drawn] == i) {
-			copies++;
-			drawn++;
-		}
-		while (copies-- > 0 && put < n)
-			ancestor[put++] = (uint32_t)i;
-	}
-}
-
-static void resample_residual(
-	struct draw *draw, struct comb *c, size_t n, uint32_t *ancestor)
-{
-	size_t kept = 0;
-	double left = 0;
-
-	c->unit = c->sum / (double)n;
-	for (size_t i = 0; i < n; i++) {
-		kept += (size_t)floor(c->weight[i] / c->unit);
-		left += rest(c, i);
-	}
-	if (kept < n) {
-		c->sum = left;
-		comb_multinomial(c, n, kept, ancestor, draw);
-	} else {
-		kept = n;
-	}
-	merge_kept(c, n, kept, ancestor);
-}
-
-void resample(enum resampling scheme, struct draw *draw, const double *weight, double sum,
-	size_t n, uint32_t *ancestor)
-{
-	struct comb c = { weight, 0, sum };
-
-	switch (scheme) {
-	case RESAMPLE_SYSTEMATIC:
-		comb_systematic(&c, n, ancestor, draw_uniform(draw));
-		break;
-	case RESAMPLE_STRATIFIED:
-		comb_stratified(&c, n, ancestor, draw);
-		break;
-	case RESAMPLE_RESIDUAL:
-		resample_residual(draw, &c, n, ancestor);
-		break;
-	case RESAMPLE_MULTINOMIAL:
-		comb_multinomial(&c, n, 0, ancestor, draw);
-		break;
-	}
 }

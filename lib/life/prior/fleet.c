@@ -24,9 +24,7 @@ struct unit {
 	double t[3], y[3]; /* last rows, newest first; y times the direction */
 	double first, last;
 	struct bank *bank;
-	struct point {
-		double age, level;
-	} * point; /* rising */
+	struct bank_point *point; /* rising */
 	size_t n, room;
 	int shape; /* from 1; 0: none */
 };
@@ -38,7 +36,7 @@ struct fleet {
 	size_t room;
 	int units;
 	struct bank_shape *shape;
-	double *grid; /* memory of the ages and levels of the shapes */
+	struct bank_point *grid; /* memory of the paths of the shapes */
 	int shapes;
 };
 
@@ -86,7 +84,7 @@ static enum num_status rise(struct unit *p, double age, double level)
 		return NUM_OK;
 	if (room_for(&p->point, &p->room, p->n + 1, sizeof *p->point))
 		return NUM_MEMORY;
-	p->point[p->n++] = (struct point){ age, level };
+	p->point[p->n++] = (struct bank_point){ age, level };
 	return NUM_OK;
 }
 
@@ -146,28 +144,16 @@ static enum num_status carry_on(const struct fleet *f, struct unit *p)
 	return status;
 }
 
-/* Age at a level between the ends of a path. */
-static double age_at(const struct unit *p, double level)
-{
-	const struct point *to = p->point + 1, *from;
-
-	while (to < p->point + p->n - 1 && to->level < level)
-		to++;
-	from = to - 1;
-	return from->age +
-	       (to->age - from->age) * (level - from->level) / (to->level - from->level);
-}
-
 /* The path at evenly spaced levels up to the threshold; 0 if it has no length. */
-static int lay_out(const struct unit *p, double end, double *age, double *level)
+static int lay_out(const struct unit *p, double end, struct bank_point *path)
 {
-	double from = p->point[0].level, to = fmin(end, p->point[p->n - 1].level);
+	double from = p->point[0].level, to = fmin(end, p->point[p->n - 1].level), slope;
 
 	for (int k = 0; k < LEVELS; k++) {
-		level[k] = from + (to - from) * k / (LEVELS - 1);
-		age[k] = age_at(p, level[k]);
+		path[k].level = from + (to - from) * k / (LEVELS - 1);
+		path[k].age = bank_path_age(p->point, p->n, path[k].level, &slope);
 	}
-	return to > from && age[LEVELS - 1] > 0;
+	return to > from && path[LEVELS - 1].age > 0;
 }
 
 enum num_status fleet_build(struct fleet *f, int *failed, int *carried_on)
@@ -177,13 +163,12 @@ enum num_status fleet_build(struct fleet *f, int *failed, int *carried_on)
 
 	*failed = *carried_on = 0;
 	f->shape = calloc(units + 1, sizeof *f->shape);
-	f->grid = calloc(units + 1, 2 * LEVELS * sizeof *f->grid);
+	f->grid = calloc(units + 1, LEVELS * sizeof *f->grid);
 	if (!f->shape || !f->grid)
 		return NUM_MEMORY;
 	for (int i = 0; i < f->units; i++) {
 		struct unit *p = &f->path[i];
-		double *age = f->grid + (size_t)f->shapes * 2 * LEVELS,
-		       *level = age + LEVELS;
+		struct bank_point *path = f->grid + (size_t)f->shapes * LEVELS;
 		int reached;
 
 		if (p->rows == 0)
@@ -196,12 +181,11 @@ enum num_status fleet_build(struct fleet *f, int *failed, int *carried_on)
 		reached = p->point[p->n - 1].level >= end;
 		if (!reached && carry_on(f, p))
 			return NUM_MEMORY;
-		if (!lay_out(p, end, age, level))
+		if (!lay_out(p, end, path))
 			continue;
 		f->shape[f->shapes++] = (struct bank_shape){ .family = BANK_OTHER,
 			.log_prior = KINSHIP,
-			.age = age,
-			.level = level,
+			.path = path,
 			.n = LEVELS };
 		p->shape = f->shapes;
 		*failed += reached;

@@ -31,10 +31,9 @@ static const double SURPRISE = 5;
  * without a halt and after one and two of 0.02 to 0.5 lives: 2.5: 7.2, 9.5, 12.0; 3.5:
  * 7.0, 9.5, 12.0; 5: 6.9, 9.7, 12.2. */
 static const double HALT = 3.5;
-static const double LEAST = 1e-3; /* prior noise, share of the range to the threshold */
-/* Noise, in the same unit, below which no coordinate describes the wear: else readings
- * without noise, or all equal, would be foretold with certainty, see doc/benchmarks.md.
- */
+/* Noise, as a share of the range to the threshold, below which no coordinate describes
+ * the wear: else readings without noise, or all equal, would be foretold with certainty,
+ * see doc/benchmarks.md. */
 static const double FINEST = 3e-4;
 static const double DIFFUSE = 1e8; /* prior variance of v over that of the noise */
 
@@ -53,15 +52,10 @@ static const struct {
 
 /* --- trends ------------------------------------------------------------------------- */
 
-/* With its tilts. */
-static size_t size_of_trend(const struct bank_par *par)
-{
-	return sizeof(struct trend) + (size_t)par->n_loads * sizeof(struct tilt);
-}
-
 static size_t size_of_bank(const struct bank_par *par, int capacity)
 {
-	return sizeof(struct bank) + (size_t)capacity * size_of_trend(par);
+	return sizeof(struct bank) +
+	       (size_t)capacity * (sizeof(struct trend) + size_of_state(par));
 }
 
 struct bank *bank_new(const struct bank_par *par)
@@ -102,7 +96,7 @@ struct bank_counts bank_counts(const struct bank *b)
 	return b->counts;
 }
 
-static double advance(const struct bank *b, const struct trend *tr, double step)
+double advance_of(const struct bank *b, const struct trend *tr, double step)
 {
 	if (tr->growth > 0)
 		return grown(tr, b->age) * expm1(fmin(tr->growth * step, 100)) /
@@ -110,28 +104,18 @@ static double advance(const struct bank *b, const struct trend *tr, double step)
 	return step;
 }
 
-void project(const struct bank *b, struct trend *tr, const struct place *p, double step,
-	double keep)
-{
-	double along = advance(b, tr, step);
-
-	tr->h += along * tr->v;
-	tr->phh += along * (2 * tr->phv + along * tr->pvv);
-	tr->phv += along * tr->pvv;
-	tr->phh /= keep;
-	tr->phv /= keep;
-	tr->pvv /= keep;
-	tr->phh += kinds[tr->kind].wander * step / b->gap * squared_slope(*p);
-}
-
-/* An observation in the coordinate of a trend: the slope is taken where the trend will
- * be, so that the noise has no influence on its own variance, and h lies on the tangent
- * there.  Accurate to second order. */
-static struct place seen_from(
+double wander_of(
 	const struct bank *b, const struct trend *tr, const struct place *p, double step)
 {
-	double h = tr->h + advance(b, tr, step) * tr->v, off = (p->h - h) / p->slope,
-	       turn = fmin(1, fmax(-1, p->bend * off));
+	return kinds[tr->kind].wander * step / b->gap * squared_slope(*p);
+}
+
+/* An observation in a coordinate in which a trend will be at h: the slope is taken there,
+ * so that the noise has no influence on its own variance, and the observation lies on
+ * the tangent there.  Accurate to second order. */
+static struct place seen_from(double h, const struct place *p)
+{
+	double off = (p->h - h) / p->slope, turn = fmin(1, fmax(-1, p->bend * off));
 	struct place q = *p;
 
 	off *= 1 + 0.5 * turn;
@@ -180,14 +164,17 @@ static double news_of(const struct bank *b, struct trend *tr, const struct place
 static double follow(const struct bank *b, struct trend *tr, const struct place *seen,
 	double step, int equal)
 {
-	double keep = b->keep[tr->kind], f, e, z, limit, noise, news = 1;
-	struct place p = seen_from(b, tr, seen, step);
+	int n = 2 + b->par.n_loads;
+	double keep = b->keep[tr->kind], *x = state_of(b, tr), f, e, z, limit, news = 1;
+	struct place p;
 
-	if (b->par.n_loads > 0)
-		project_tilts(b, tr, advance(b, tr, step), keep);
-	project(b, tr, &p, step, keep);
-	f = tr->phh + squared_slope(p);
-	e = p.h - tr->h;
+	advance_state(n, x, b->at, advance_of(b, tr, step), keep);
+	for (int k = 0; k < b->par.n_loads; k++)
+		priors_of(b, tr)[k] *= keep;
+	p = seen_from(x[0], seen);
+	x[n] += wander_of(b, tr, &p, step);
+	f = x[n] + squared_slope(p);
+	e = p.h - x[0];
 	z = e / sqrt(f);
 	limit = sqrt(b->cut * tr->sum / freedom_of(b, tr));
 	if (b->rows >= FIRST && fabs(z) > limit) {
@@ -199,14 +186,7 @@ static double follow(const struct bank *b, struct trend *tr, const struct place 
 	else if (b->rows >= BANK_START - 1)
 		tr->score += log_density(b, tr, &p, f, z);
 	f /= news; /* as if it were so much less accurate */
-	noise = f - tr->phh;
-	if (b->par.n_loads > 0)
-		correct_tilts(b, tr, f, e, noise);
-	tr->h += tr->phh / f * e;
-	tr->v += tr->phv / f * e;
-	tr->pvv -= tr->phv / f * tr->phv;
-	tr->phv *= noise / f;
-	tr->phh *= noise / f;
+	observe_state(n, x, 0, f, e, f - x[n]);
 	if (b->rows < 2) /* two rows determine the trend and leave no innovation */
 		return 0;
 	tr->lagged = (float)(tr->lagged * (keep + (1 - news) / freedom_of(b, tr)) +
@@ -221,17 +201,16 @@ static double follow(const struct bank *b, struct trend *tr, const struct place 
  * the unit along it is from 1. */
 static double log_kinship(const struct bank *b, const struct trend *tr)
 {
-	double mean[BANK_LOADS], away;
-	struct trend usual;
+	double mean[RATES], usual[LINE], away;
 
 	if (shape_of(b, tr->shape)->n == 0)
 		return 0;
 	mean_loads(b, mean);
-	usual = at_loads(b, tr, mean);
-	away = usual.v - 1;
+	line_at(b, tr, mean, usual);
+	away = usual[LINE_V] - 1;
 	return -log(kin_of(b)) -
 	       0.5 * away * away /
-		       (PACE * PACE + usual.pvv * tr->sum / freedom_of(b, tr));
+		       (PACE * PACE + usual[LINE_VV] * tr->sum / freedom_of(b, tr));
 }
 
 /* 1: a curved coordinate of the table. */
@@ -275,27 +254,31 @@ static double chance_of_birth(const struct bank *b, int k)
 	return philox_uniform(0, (uint32_t)b->rows, RNG_PREDICT, (uint64_t)k);
 }
 
-/* The particle for a change of regime of its parent at the present age: its rate begins
- * to grow, or falls to any value between 0 and the one before, which has half the rate
- * for its mean and 1 / 12 of its square for its variance.  *factor: that of the rate. */
-static struct trend child_of(
-	const struct bank *b, const struct trend *parent, int birth, double *factor)
+/* Makes a particle for a change of regime of its parent at the present age: its rate
+ * begins to grow, or falls to any value between 0 and the one before, which has half the
+ * rate for its mean and 1 / 12 of its square for its variance. */
+static void beget(
+	const struct bank *b, const struct trend *parent, int birth, struct trend *child)
 {
-	struct trend child = *parent;
-	double s = grown(parent, b->age);
-	/* wear that recedes does not turn towards the threshold */
-	int falls = parent->v > 0 && chance_of_birth(b, 2 * birth + 1) < past.falls;
-	double times = falls ? 0.5 * s : s, rate = s * parent->v;
+	int n = 2 + b->par.n_loads;
+	double s = grown(parent, b->age), *x = state_of(b, child), line[LINE], rate,
+	       times;
+	int falls;
 
-	child.v *= times;
-	child.phv *= times;
-	child.pvv *= times * times;
-	child.onset = b->age;
-	child.growth = falls ? 0 : (float)(past.growth / b->age);
+	line_at(b, parent, b->at, line);
+	rate = s * line[LINE_V];
+	/* wear that recedes does not turn towards the threshold */
+	falls = rate > 0 && chance_of_birth(b, 2 * birth + 1) < past.falls;
+	*child = *parent;
+	memcpy(x, state_of(b, parent), size_of_state(&b->par));
+	times = falls ? 0.5 * s : s;
+	scale_rates(n, x, times);
+	for (int k = 0; k < b->par.n_loads; k++)
+		priors_of(b, child)[k] /= times * times;
+	child->onset = b->age;
+	child->growth = falls ? 0 : (float)(past.growth / b->age);
 	if (falls)
-		child.pvv += rate * rate / 12 * freedom_of(b, parent) / parent->sum;
-	*factor = times;
-	return child;
+		x[n + n + 1] += rate * rate / 12 * freedom_of(b, parent) / parent->sum;
 }
 
 /* An unused place or, if there is none, that of the particle of least weight. */
@@ -316,37 +299,25 @@ static struct trend *room(struct bank *b)
 static void breed(struct bank *b)
 {
 	double mass, reached = 0;
-	struct trend child[BIRTHS];
-	struct tilt tilt[BIRTHS][BANK_LOADS];
-	double factor[BIRTHS];
-	size_t tilts = (size_t)b->par.n_loads * sizeof(struct tilt);
-	int born = 0;
+	int parent[BIRTHS], born = 0;
 
 	if (b->par.steady || b->rows < BREEDING || b->age < 1.02 * b->bred)
 		return;
 	mass = 1 - pow(b->bred > 0 ? b->bred / b->age : 1 / 1.02, past.hazard);
 	b->bred = b->age;
 	for (int i = 0; i < b->trends && born < BIRTHS; i++) {
-		const struct trend *tr = &b->trend[i];
-
-		reached += tr->weight;
+		reached += b->trend[i].weight;
 		while (born < BIRTHS &&
-			(born + chance_of_birth(b, 2 * born)) / BIRTHS < reached) {
-			child[born] = child_of(b, tr, born, &factor[born]);
-			memcpy(tilt[born], tilts_of(b, tr), tilts);
-			child[born].weight = mass / BIRTHS;
-			/* the sum of the trends' weights, times the mass */
-			child[born].offset =
-				(float)(tr->offset + log(mass / BIRTHS / tr->weight));
-			born++;
-		}
+			(born + chance_of_birth(b, 2 * born)) / BIRTHS < reached)
+			parent[born++] = i;
 	}
 	for (int i = 0; i < born; i++) {
-		struct trend *tr = room(b);
+		struct trend *tr = &b->trend[parent[i]], *child = room(b);
 
-		*tr = child[i];
-		memcpy(tilts_of(b, tr), tilt[i], tilts);
-		scale_tilts(b, tr, factor[i]);
+		beget(b, tr, i, child);
+		child->weight = mass / BIRTHS;
+		/* the sum of the trends' weights, times the mass */
+		child->offset = (float)(tr->offset + log(mass / BIRTHS / tr->weight));
 	}
 	b->counts.births += (unsigned long)born;
 	weigh(b);
@@ -417,6 +388,7 @@ static int is_used(const struct bank *b, int shape)
 static void start(struct bank *b)
 {
 	const struct row *r = b->held;
+	int n = 2 + b->par.n_loads;
 
 	b->base = median_of_three(r[0].y, r[1].y, r[2].y);
 	b->range = b->par.threshold - b->base;
@@ -428,25 +400,29 @@ static void start(struct bank *b)
 	b->idle = b->age = b->squares = b->longest = b->bred = b->scored = 0;
 	b->gap = 1;
 	b->trends = 0;
+	memset(state_of(b, b->trend), 0, (size_t)b->capacity * size_of_state(&b->par));
 	for (int i = 0; i < b->shapes; i++)
-		for (int k = 0; k < KINDS && is_used(b, i); k++)
-			b->trend[b->trends++] =
-				(struct trend){ .h = place_of(b, i, b->level).h,
-					.phh = squared_slope(place_of(b, i, b->level)),
-					.pvv = DIFFUSE,
-					.sum = LEAST * LEAST,
-					.shape = (unsigned char)i,
-					.kind = (unsigned char)k };
+		for (int k = 0; k < KINDS && is_used(b, i); k++) {
+			struct trend *tr = &b->trend[b->trends++];
+			struct place here = place_of(b, i, b->level);
+			double *x = state_of(b, tr);
+
+			*tr = (struct trend){ .sum = FINEST * FINEST,
+				.shape = (unsigned char)i,
+				.kind = (unsigned char)k };
+			x[0] = here.h;
+			x[n] = squared_slope(here);
+			x[n + n + 1] = DIFFUSE;
+		}
 	b->fixed = b->trends;
 	for (int k = 0; k < KINDS; k++)
 		b->freedom[k] = 1;
 	b->rows = 1;
+	b->at[0] = 1;
 	for (int k = 0; k < b->par.n_loads; k++) {
 		b->load[k].taken = r[0].sum[k];
-		b->load[k].at = 0;
+		b->at[1 + k] = 0;
 	}
-	memset(tilts_of(b, b->trend), 0,
-		(size_t)(b->capacity * b->par.n_loads) * sizeof(struct tilt));
 	for (int k = 1; k < FIRST; k++)
 		take(b, &r[k]);
 	b->n_held = 0;
@@ -479,18 +455,20 @@ static double expect(const struct bank *b, double damage, double step,
 	int shape = -1;
 
 	for (int i = 0; i < b->trends; i++) {
-		struct trend tr = b->trend[i];
+		const struct trend *tr = &b->trend[i];
 		struct place seen;
-		double f;
+		double f, line[LINE];
 
-		if (tr.weight < 1e-6)
+		if (tr->weight < 1e-6)
 			continue;
-		if (tr.shape != shape)
-			place = place_of(b, shape = tr.shape, damage);
-		seen = seen_from(b, &tr, &place, step);
-		project(b, &tr, &seen, step, 1);
-		f = tr.phh + squared_slope(seen);
-		sum += tr.weight * of(b, &tr, &seen, f, (seen.h - tr.h) / sqrt(f));
+		if (tr->shape != shape)
+			place = place_of(b, shape = tr->shape, damage);
+		line_at(b, tr, b->at, line);
+		advance_state(2, line, b->at, advance_of(b, tr, step), 1);
+		seen = seen_from(line[LINE_H], &place);
+		f = line[LINE_HH] + wander_of(b, tr, &seen, step) + squared_slope(seen);
+		sum += tr->weight *
+		       of(b, tr, &seen, f, (seen.h - line[LINE_H]) / sqrt(f));
 	}
 	return sum;
 }
@@ -510,21 +488,32 @@ static double is_surprised(const struct bank *b, const struct trend *tr,
 	       square_at(SURPRISE, freedom_of(b, tr)) * tr->sum / freedom_of(b, tr);
 }
 
-/* The level has jumped to y: widens the covariance of the level by the jump.  A repair
- * keeps the rates; otherwise the jump may be the beginning of a new rate. */
-static void shift(struct bank *b, double y, int repaired)
+/* Widens the variance of the level by a jump of the damage by this much and, if wanted,
+ * that of the rate by its square. */
+static void unsettle(struct bank *b, double damage, double jump, int rate)
 {
-	double damage = damage_of(b, y), away = damage - b->level;
+	int n = 2 + b->par.n_loads;
 
 	for (int i = 0; i < b->trends; i++) {
 		struct trend *tr = &b->trend[i];
-		double scale = freedom_of(b, tr) / tr->sum;
+		double scale = freedom_of(b, tr) / tr->sum, *x = state_of(b, tr),
+		       line[LINE];
 
-		tr->phh += away * away * squared_slope(place_of(b, tr->shape, damage)) *
-			   scale;
-		if (!repaired)
-			tr->pvv += tr->v * tr->v * scale;
+		line_at(b, tr, b->at, line);
+		x[n] += jump * jump * squared_slope(place_of(b, tr->shape, damage)) *
+			scale;
+		if (rate)
+			x[n + n + 1] += line[LINE_V] * line[LINE_V] * scale;
 	}
+}
+
+/* The level has jumped to y.  A repair keeps the rates; otherwise the jump may be the
+ * beginning of a new rate. */
+static void shift(struct bank *b, double y, int repaired)
+{
+	double damage = damage_of(b, y);
+
+	unsettle(b, damage, damage - b->level, !repaired);
 	b->counts.shifts++;
 }
 
@@ -594,8 +583,8 @@ static void leave_idle_time(struct bank *b, struct row *r)
 	b->longest = fmax(b->longest, step);
 	r->t -= idle;
 	for (int k = 0; k < b->par.n_loads; k++) {
-		b->load[k].sum -= idle * b->load[k].at;
-		r->sum[k] -= idle * b->load[k].at;
+		b->load[k].sum -= idle * b->at[1 + k];
+		r->sum[k] -= idle * b->at[1 + k];
 	}
 	b->counts.halts++;
 }
@@ -674,16 +663,7 @@ int bank_event(struct bank *b, enum bank_event event)
 {
 	if (b->rows == 0)
 		return 0;
-	for (int i = 0; i < b->trends; i++) {
-		struct trend *tr = &b->trend[i];
-		double scale = freedom_of(b, tr) / tr->sum;
-
-		if (event == BANK_REPAIR)
-			tr->phh +=
-				squared_slope(place_of(b, tr->shape, b->level)) * scale;
-		else
-			tr->pvv += tr->v * tr->v * scale;
-	}
+	unsettle(b, b->level, event == BANK_REPAIR, event == BANK_LOAD);
 	return 1;
 }
 

@@ -68,17 +68,26 @@ enum bank_family {
 	BANK_ALL = 63
 };
 
+struct bank_point {
+	double age, level; /* direction times y */
+};
+
+/* The age at a level of a path, on straight lines, also beyond its ends; *slope: of the
+ * age over the level there. */
+double bank_path_age(
+	const struct bank_point *path, size_t n, double level, double *slope);
+
 /* g(D) = e^{par D} where scale is 0, else (1 + D / scale)^par; of BANK_SATURATING
  * (1 + scale D)^power (1 - par D), par < 1, power 1 or 1/2; or, where there is a path, dD
  * over the age at which another unit had D. */
 struct bank_shape {
 	unsigned family;
 	double scale, par, power;
-	int of_value;              /* 1: scale is instead the value at D = 0 over the way
-				    * to the threshold; without one above 0 g is 1 */
-	double log_prior;          /* of a path: of all paths together */
-	const double *age, *level; /* [n] of a path, rising; level is direction times y */
-	int n;                     /* 0: no path, else 2 or more */
+	int of_value;     /* 1: scale is instead the value at D = 0 over the way
+			   * to the threshold; without one above 0 g is 1 */
+	double log_prior; /* of a path: of all paths together */
+	const struct bank_point *path; /* [n], both of them rising */
+	int n;                         /* 0: no path, else 2 or more */
 };
 
 /* The value of a covariate in the future: its mean so far, its last value, or value. */

@@ -9,7 +9,8 @@
 
 enum {
 	KINDS = 6,
-	HELD = 8 /* rows held back at most */
+	HELD = 8, /* rows held back at most */
+	RATES = 1 + BANK_LOADS
 };
 
 /* Kinds of trends: the weight of observation j of k is (j / k)^memory, and the damage is
@@ -20,10 +21,9 @@ static const struct kind {
 } kinds[KINDS] = { { 0, 0, 0 }, { 1, 0, 0 }, { 3, 0, 0 }, { 0, 3, 0 }, { 0, 0.3, 0 },
 	{ 3, 3, -1 } };
 
-/* A local trend h + v t, where v is the rate at the present load.  Covariances are in
- * units of the noise variance. */
+/* A local trend.  Its state (state_of()) is h, v and, for each covariate f, w; the rate
+ * is v + sum w f. */
 struct trend {
-	double h, v, phh, phv, pvv;
 	double sum; /* discounted sum of squared standardised innovations */
 	double score;
 	double weight; /* the weights of all trends sum to 1 */
@@ -35,11 +35,8 @@ struct trend {
 	unsigned char shape, kind;
 };
 
-/* What a trend knows of a covariate: the change w of v with f, its covariances, and the
- * precision that its prior has at present. */
-struct tilt {
-	double w, phw, pvw, pww[BANK_LOADS], prior;
-};
+/* h and the rate at some load, as a state of its own. */
+enum { LINE_H, LINE_V, LINE_HH, LINE_HV, LINE_VH, LINE_VV, LINE };
 
 /* A covariate, as f(x). */
 struct load {
@@ -49,7 +46,6 @@ struct load {
 	double last;         /* f at the last row */
 	double sum;          /* of f times the time, without the idle time */
 	double taken;        /* sum at the last row that was taken */
-	double at;           /* f that the rates of the trends are for */
 };
 
 struct row {
@@ -80,12 +76,13 @@ struct bank {
 	double scored;
 	struct row held[HELD];
 	struct load load[BANK_LOADS];
+	double at[RATES];              /* 1, and each f since the row before */
 	int loaded;                    /* 1: the loads have begun */
 	double loaded_from, loaded_to; /* times */
 	int n_held, event;
 	int trends, fixed; /* trends in use; those of them that are not particles */
 	struct bank_counts counts;
-	struct trend trend[]; /* [capacity], then struct tilt [capacity][n_loads] */
+	struct trend trend[]; /* [capacity], then their states */
 };
 
 /* An observation in a coordinate: h, dh/dD, ln(dh/dD) and its derivative. */
@@ -112,28 +109,47 @@ struct place place_of(const struct bank *b, int shape, double damage);
  * bank_free(); NULL: no memory. */
 struct bank *bank_accepting(const struct bank *b);
 
-/* Advances a trend by a step, and discounts its covariance. */
-void project(const struct bank *b, struct trend *tr, const struct place *p, double step,
-	double keep);
+/* --- states, loads.c ---
+ * x[n] and its covariance [n][n] in units of the noise variance; x[0] is h, and the
+ * others are the rates. */
+
+/* The state of a trend, n = 2 + n_loads; behind it priors_of(). */
+double *state_of(const struct bank *b, const struct trend *tr);
+size_t size_of_state(const struct bank_par *par);
+/* h and the rate of a trend at some loads; here and below, f[n - 1] begins with 1. */
+void line_at(const struct bank *b, const struct trend *tr, const double *f, double *line);
+/* Advances by the length of the way along the rates at these loads, and discounts the
+ * covariance. */
+void advance_state(int n, double *x, const double *f, double along, double keep);
+/* An observation of x[k] that is e above it and has the variance f with x[k]'s own and
+ * noise without. */
+void observe_state(int n, double *x, int k, double f, double e, double noise);
+/* Multiplies the rates. */
+void scale_rates(int n, double *x, double times);
 
 /* --- covariates, loads.c --- */
 
-/* The tilts [n_loads] of a trend of the bank. */
-struct tilt *tilts_of(const struct bank *b, const struct trend *tr);
-/* A trend with its rate at other loads f[n_loads]. */
-struct trend at_loads(const struct bank *b, const struct trend *tr, const double *f);
-/* The mean loads so far, and those assumed for the future. */
-void mean_loads(const struct bank *b, double f[BANK_LOADS]);
-void future_loads(const struct bank *b, double f[BANK_LOADS]);
-/* Turns all trends to the mean loads between the last row taken and this one. */
+/* 1, and the mean loads so far or those assumed for the future. */
+void mean_loads(const struct bank *b, double f[RATES]);
+void future_loads(const struct bank *b, double f[RATES]);
+/* Sets the loads to their means between the last row taken and this one, and the priors
+ * to what is known by then. */
 void face_loads(struct bank *b, const struct row *r);
-/* Advances, corrects by an observation (gain is of the level, over f), scales. */
-void project_tilts(const struct bank *b, struct trend *tr, double along, double keep);
-void correct_tilts(
-	const struct bank *b, struct trend *tr, double f, double e, double noise);
-void scale_tilts(const struct bank *b, struct trend *tr, double times);
 /* Sets the bends to the effects learnt so far. */
 void bend_loads(struct bank *b);
+/* The precisions [n_loads] that the priors of the w of a trend have at present. */
+static inline double *priors_of(const struct bank *b, const struct trend *tr)
+{
+	int n = 2 + b->par.n_loads;
+
+	return state_of(b, tr) + n + n * n;
+}
+
+/* The way along the present rate in a step, which is longer where the rate grows. */
+double advance_of(const struct bank *b, const struct trend *tr, double step);
+/* The variance that wander adds to h. */
+double wander_of(
+	const struct bank *b, const struct trend *tr, const struct place *p, double step);
 
 /* Number of paths of other units. */
 static inline int kin_of(const struct bank *b)

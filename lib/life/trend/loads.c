@@ -1,8 +1,6 @@
 /* loads.c - covariates that scale the rates of a bank, see bank.h and bank_state.h
  *
- * The rate v of a trend is always that at the present loads.  Other loads turn the state
- * (h, v, w): v changes by w times the change of f, and its covariances with it.  Thus all
- * else in the bank needs only h and v.
+ * They are states of the trends beside h and v.
  */
 #include "life/trend/bank_state.h"
 #include <string.h>
@@ -18,9 +16,81 @@ static const double EFFECT = 1;
  * and 23.1 instead of 8.2, 12.2 and 19.4 if it is its last value. */
 static const double BEND = 3;
 
-struct tilt *tilts_of(const struct bank *b, const struct trend *tr)
+size_t size_of_state(const struct bank_par *par)
 {
-	return (struct tilt *)(b->trend + b->capacity) + (tr - b->trend) * b->par.n_loads;
+	size_t n = 2 + (size_t)par->n_loads;
+
+	return (n + n * n + (size_t)par->n_loads) * sizeof(double);
+}
+
+double *state_of(const struct bank *b, const struct trend *tr)
+{
+	return (double *)(b->trend + b->capacity) +
+	       (size_t)(tr - b->trend) * (size_of_state(&b->par) / sizeof(double));
+}
+
+void line_at(const struct bank *b, const struct trend *tr, const double *f, double *line)
+{
+	int n = 2 + b->par.n_loads;
+	const double *x = state_of(b, tr), *p = x + n;
+
+	line[LINE_H] = x[0];
+	line[LINE_HH] = p[0];
+	line[LINE_V] = line[LINE_HV] = line[LINE_VV] = 0;
+	for (int i = 1; i < n; i++) {
+		line[LINE_V] += f[i - 1] * x[i];
+		line[LINE_HV] += f[i - 1] * p[i];
+		for (int j = 1; j < n; j++)
+			line[LINE_VV] += f[i - 1] * f[j - 1] * p[n * i + j];
+	}
+	/* v and w may nearly cancel */
+	line[LINE_VV] = fmax(line[LINE_VV], 1e-9 * p[n + 1]);
+	line[LINE_VH] = line[LINE_HV];
+}
+
+void advance_state(int n, double *x, const double *f, double along, double keep)
+{
+	double *p = x + n;
+
+	for (int k = 1; k < n; k++) {
+		x[0] += along * f[k - 1] * x[k];
+		for (int j = 0; j < n; j++)
+			p[j] += along * f[k - 1] * p[n * k + j];
+	}
+	for (int k = 1; k < n; k++)
+		p[0] += along * f[k - 1] * p[k];
+	for (int k = 1; k < n; k++)
+		p[n * k] = p[k];
+	for (int i = 0; keep != 1 && i < n * n; i++)
+		p[i] /= keep;
+}
+
+void observe_state(int n, double *x, int k, double f, double e, double noise)
+{
+	double *p = x + n, column[1 + RATES];
+
+	for (int i = 0; i < n; i++)
+		column[i] = p[n * i + k];
+	for (int i = 0; i < n; i++) {
+		x[i] += column[i] / f * e;
+		for (int j = 0; j < n; j++)
+			p[n * i + j] -= column[i] / f * column[j];
+	}
+	for (int i = 0; i < n; i++) /* without cancellation */
+		p[n * i + k] = p[n * k + i] = column[i] * (noise / f);
+}
+
+void scale_rates(int n, double *x, double times)
+{
+	double *p = x + n;
+
+	for (int i = 1; i < n; i++) {
+		x[i] *= times;
+		for (int j = 0; j < n; j++) {
+			p[n * i + j] *= times;
+			p[n * j + i] *= times;
+		}
+	}
 }
 
 static double effect(const struct load *l, double x)
@@ -60,72 +130,24 @@ void bank_load(struct bank *b, double t, const double *x)
 	b->loaded_to = t;
 }
 
-void mean_loads(const struct bank *b, double f[BANK_LOADS])
+void mean_loads(const struct bank *b, double f[RATES])
 {
 	double span = b->loaded_to - b->loaded_from - b->idle;
 
+	f[0] = 1;
 	for (int k = 0; k < b->par.n_loads; k++)
-		f[k] = span > 0 ? b->load[k].sum / span : 0;
+		f[1 + k] = span > 0 ? b->load[k].sum / span : 0;
 }
 
-void future_loads(const struct bank *b, double f[BANK_LOADS])
+void future_loads(const struct bank *b, double f[RATES])
 {
 	mean_loads(b, f);
 	for (int k = 0; k < b->par.n_loads; k++) {
 		const struct bank_covariate *c = &b->par.load[k];
 
 		if (c->future != BANK_MEAN)
-			f[k] = c->future == BANK_LAST ? b->load[k].last
-						      : effect(&b->load[k], c->value);
-	}
-}
-
-/* Turns a trend by a change of one load. */
-static void turn(
-	const struct bank *b, struct trend *tr, struct tilt *tilt, int k, double change)
-{
-	double before = tr->pvv, own = tilt[k].pww[k];
-
-	tr->v += change * tilt[k].w;
-	tr->phv += change * tilt[k].phw;
-	tr->pvv += change * (2 * tilt[k].pvw + change * own);
-	tr->pvv = fmax(tr->pvv, 1e-9 * (before + change * change * own));
-	for (int j = 0; j < b->par.n_loads; j++)
-		tilt[j].pvw += change * tilt[j].pww[k];
-}
-
-struct trend at_loads(const struct bank *b, const struct trend *tr, const double *f)
-{
-	struct trend turned = *tr;
-	struct tilt tilt[BANK_LOADS];
-
-	for (int k = 0; k < b->par.n_loads; k++)
-		tilt[k] = tilts_of(b, tr)[k];
-	for (int k = 0; k < b->par.n_loads; k++)
-		turn(b, &turned, tilt, k, f[k] - b->load[k].at);
-	return turned;
-}
-
-/* An observation of w_k = 0, with this variance. */
-static void hold_back(
-	const struct bank *b, struct trend *tr, struct tilt *tilt, int k, double variance)
-{
-	double f = tilt[k].pww[k] + variance, e = -tilt[k].w, column[BANK_LOADS] = { 0 };
-	double h = tilt[k].phw, v = tilt[k].pvw;
-
-	for (int j = 0; j < b->par.n_loads; j++)
-		column[j] = tilt[j].pww[k];
-	tr->h += h / f * e;
-	tr->v += v / f * e;
-	tr->phh -= h / f * h;
-	tr->phv -= h / f * v;
-	tr->pvv -= v / f * v;
-	for (int j = 0; j < b->par.n_loads; j++) {
-		tilt[j].w += column[j] / f * e;
-		tilt[j].phw -= h / f * column[j];
-		tilt[j].pvw -= v / f * column[j];
-		for (int i = 0; i < b->par.n_loads; i++)
-			tilt[j].pww[i] -= column[i] / f * column[j];
+			f[1 + k] = c->future == BANK_LAST ? b->load[k].last
+							  : effect(&b->load[k], c->value);
 	}
 }
 
@@ -141,26 +163,28 @@ static double largest_effect(const struct bank *b, int k)
 	return fmax(fabs(effect(l, l->origin + far)), fabs(effect(l, l->origin - far)));
 }
 
-/* The prior of the tilts of a trend follows its mean rate and the largest effects. */
-static void heed_load_prior(const struct bank *b, struct trend *tr)
+/* The priors of a trend follow its mean rate and the largest effects: an observation of
+ * w = 0 makes up for what is missing. */
+static void heed_load_prior(const struct bank *b, const struct trend *tr)
 {
-	double noise = tr->sum / b->freedom[tr->kind],
-	       rate = (tr->h * tr->h + noise) / (b->age * b->age);
-	struct tilt *tilt = tilts_of(b, tr);
+	int n = 2 + b->par.n_loads;
+	double *x = state_of(b, tr), *prior = priors_of(b, tr),
+	       noise = tr->sum / b->freedom[tr->kind],
+	       rate = (x[0] * x[0] + noise) / (b->age * b->age);
 
 	for (int k = 0; k < b->par.n_loads; k++) {
 		double most = largest_effect(b, k),
 		       precision = most * most * noise / (EFFECT * EFFECT * rate),
-		       more = precision - tilt[k].prior;
+		       more = precision - prior[k], *own = &x[n + (n + 1) * (2 + k)];
 
 		if (fabs(more) <= 0.01 * precision)
 			continue;
-		if (tilt[k].prior == 0)
-			tilt[k].pww[k] = 1 / precision;
+		if (prior[k] == 0)
+			*own = 1 / precision;
 		else
-			hold_back(b, tr, tilt, k, 1 / more);
+			observe_state(n, x, 2 + k, *own + 1 / more, -x[2 + k], 1 / more);
 		if (b->load[k].most > 0) /* else nothing is known of it yet */
-			tilt[k].prior = precision;
+			prior[k] = precision;
 	}
 }
 
@@ -168,78 +192,27 @@ void face_loads(struct bank *b, const struct row *r)
 {
 	for (int i = 0; i < b->trends && b->par.n_loads > 0 && b->age > 0; i++)
 		heed_load_prior(b, &b->trend[i]);
-	for (int k = 0; k < b->par.n_loads; k++) {
-		struct load *l = &b->load[k];
-		double f = (r->sum[k] - l->taken) / (r->t - b->last);
-
-		for (int i = 0; i < b->trends && f != l->at; i++)
-			turn(b, &b->trend[i], tilts_of(b, &b->trend[i]), k, f - l->at);
-		l->at = f;
-	}
-}
-
-void project_tilts(const struct bank *b, struct trend *tr, double along, double keep)
-{
-	struct tilt *tilt = tilts_of(b, tr);
-
-	for (int k = 0; k < b->par.n_loads; k++) {
-		tilt[k].phw = (tilt[k].phw + along * tilt[k].pvw) / keep;
-		tilt[k].pvw /= keep;
-		tilt[k].prior *= keep;
-		for (int j = 0; j < b->par.n_loads; j++)
-			tilt[k].pww[j] /= keep;
-	}
-}
-
-void correct_tilts(
-	const struct bank *b, struct trend *tr, double f, double e, double noise)
-{
-	struct tilt *tilt = tilts_of(b, tr);
-
-	for (int k = 0; k < b->par.n_loads; k++) {
-		tilt[k].w += tilt[k].phw / f * e;
-		tilt[k].pvw -= tr->phv / f * tilt[k].phw;
-		for (int j = 0; j < b->par.n_loads; j++)
-			tilt[k].pww[j] -= tilt[k].phw / f * tilt[j].phw;
-	}
 	for (int k = 0; k < b->par.n_loads; k++)
-		tilt[k].phw *= noise / f;
-}
-
-void scale_tilts(const struct bank *b, struct trend *tr, double times)
-{
-	struct tilt *tilt = tilts_of(b, tr);
-
-	for (int k = 0; k < b->par.n_loads; k++) {
-		tilt[k].w *= times;
-		tilt[k].phw *= times;
-		tilt[k].pvw *= times;
-		tilt[k].prior /= times * times;
-		for (int j = 0; j < b->par.n_loads; j++)
-			tilt[k].pww[j] *= times * times;
-	}
+		b->at[1 + k] = (r->sum[k] - b->load[k].taken) / (r->t - b->last);
 }
 
 /* Weighted means of dD/dt at the mean loads, and of its change with each f. */
-static double mean_rate(
-	const struct bank *b, double mean[BANK_LOADS], double change[BANK_LOADS])
+static double mean_rate(const struct bank *b, double mean[RATES], double change[RATES])
 {
-	double rate = 0;
+	double rate = 0, line[LINE];
 
 	mean_loads(b, mean);
-	memset(change, 0, BANK_LOADS * sizeof *change);
+	memset(change, 0, RATES * sizeof *change);
 	for (int i = 0; i < b->trends; i++) {
 		const struct trend *tr = &b->trend[i];
-		const struct tilt *tilt = tilts_of(b, tr);
 		double scale = tr->weight * grown(tr, b->age) /
 			       place_of(b, tr->shape, b->level).slope;
 
-		rate += scale * tr->v;
+		line_at(b, tr, mean, line);
+		rate += scale * line[LINE_V];
 		for (int k = 0; k < b->par.n_loads; k++)
-			change[k] += scale * tilt[k].w;
+			change[1 + k] += scale * state_of(b, tr)[2 + k];
 	}
-	for (int k = 0; k < b->par.n_loads; k++)
-		rate += change[k] * (mean[k] - b->load[k].at);
 	return rate;
 }
 
@@ -247,20 +220,21 @@ static double mean_rate(
  */
 void bend_loads(struct bank *b)
 {
-	double change[BANK_LOADS], mean[BANK_LOADS], rate;
+	double change[RATES], mean[RATES], rate;
 
 	if (b->par.n_loads == 0)
 		return;
 	rate = mean_rate(b, mean, change);
 	for (int k = 0; k < b->par.n_loads && rate > 0; k++)
-		bend(&b->load[k], change[k] * (1 + b->load[k].bend * mean[k]) / rate);
+		bend(&b->load[k],
+			change[1 + k] * (1 + b->load[k].bend * mean[1 + k]) / rate);
 }
 
 double bank_factor(const struct bank *b, int k)
 {
-	double change[BANK_LOADS], mean[BANK_LOADS],
+	double change[RATES], mean[RATES],
 		rate = mean_rate(b, mean, change),
-		last = rate + change[k] * (b->load[k].last - mean[k]);
+		last = rate + change[1 + k] * (b->load[k].last - mean[1 + k]);
 
 	return rate > 0 && last > 0 ? last / rate : NAN;
 }

@@ -13,6 +13,10 @@ enum { CHANCES = 8 }; /* uniform numbers of one draw */
  * growth of a rate of 0 too. */
 static const double NOTHING = 3e3;
 
+/* The chance of a rate above 0 below which the damage does not grow.  .02, 1e-3 and 1e-6
+ * give a CRPS of 24.0, 23.9 and 23.7 % of life with bursts (45 kinds, 10 paths). */
+static const double UNLIKELY = 1e-3;
+
 /* Future changes of regime, where the rate falls, is constant or rises in a coordinate,
  * and on the paths of other units, for all of them together: hazard c, age of the regime
  * as a share of that of the unit, share of falls, and median growth in units of 1 / age.
@@ -111,9 +115,9 @@ double bank_chance_normal(const struct bank_chances *c, int draw, int k)
 
 /* Values common to all draws of one trend. */
 struct crossing {
-	double h, v, phh, phv, pvv; /* now; covariances in units of the noise */
-	double limit;               /* h of the level to be reached */
-	double straight; /* the distance if the rate of the damage stayed constant */
+	double line[LINE]; /* now */
+	double limit;      /* h of the level to be reached */
+	double straight;   /* the distance if the rate of the damage stayed constant */
 	double variance, freedom; /* of the noise, with autocorrelation; of chi^2 */
 	double wiener;            /* variance of h per unit of time */
 	double growth;            /* of the rate at present */
@@ -125,16 +129,11 @@ struct crossing {
 /* Includes the prior of the rate, as an observation of v. */
 static void heed_prior(double mean, double sd, struct crossing *p)
 {
-	double f, e = mean - p->v;
+	double noise = sd * sd / p->variance;
 
-	if (!(sd > 0))
-		return;
-	f = p->pvv + sd * sd / p->variance;
-	p->h += p->phv / f * e;
-	p->v += p->pvv / f * e;
-	p->phh -= p->phv / f * p->phv;
-	p->phv -= p->pvv / f * p->phv;
-	p->pvv -= p->pvv / f * p->pvv;
+	if (sd > 0)
+		observe_state(2, p->line, 1, p->line[LINE_VV] + noise,
+			mean - p->line[LINE_V], noise);
 }
 
 /* A power below 0, wear that goes as the root of time, counts as constant: it slows down
@@ -151,7 +150,7 @@ static const struct future *future_of(const struct bank_shape *s)
 static double spread_of(const struct bank *b, double target)
 {
 	struct running logs = { 0 };
-	double limit = 0;
+	double limit = 0, line[LINE];
 	int shape = -1;
 
 	for (int i = 0; i < b->fixed; i++) {
@@ -160,7 +159,8 @@ static double spread_of(const struct bank *b, double target)
 
 		if (tr->shape != shape)
 			limit = place_of(b, shape = tr->shape, target).h;
-		time = (limit - tr->h) / tr->v;
+		line_at(b, tr, b->at, line);
+		time = (limit - line[LINE_H]) / line[LINE_V];
 		if (time > 0 && isfinite(time))
 			running_repeat(&logs, log(time), tr->weight);
 	}
@@ -172,8 +172,8 @@ static double spread_of(const struct bank *b, double target)
  * and their rates leave uncertain is a part of it. */
 static void let_stray(struct crossing *p, double h, double spread)
 {
-	double bend = log(p->straight / (p->limit - h)),
-	       known = spread + p->pvv * p->variance / (p->v * p->v);
+	double bend = log(p->straight / (p->limit - h)), v = p->line[LINE_V],
+	       known = spread + p->line[LINE_VV] * p->variance / (v * v);
 
 	if (!isfinite(bend))
 		return;
@@ -186,9 +186,8 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 {
 	struct place here = place_of(b, tr->shape, b->level),
 		     there = place_of(b, tr->shape, target);
-	double correlation = fmin(0.95, fmax(0, tr->lagged / tr->sum)), s, scale;
-	double load[BANK_LOADS];
-	struct trend now;
+	double correlation = fmin(0.95, fmax(0, tr->lagged / tr->sum)), scale;
+	double load[RATES];
 	struct crossing p = { .limit = there.h,
 		.straight = (target - b->level) * here.slope,
 		.growth = tr->growth,
@@ -196,15 +195,9 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 
 	p.hazard = p.future->hazard / (shape_of(b, tr->shape)->n > 0 ? kin_of(b) : 1);
 	future_loads(b, load);
-	now = at_loads(b, tr, load);
-	now.kind = 0;
-	project(b, &now, &here, ahead, 1);
-	s = grown(tr, b->age + ahead);
-	p.h = now.h;
-	p.v = s * now.v;
-	p.phh = now.phh;
-	p.phv = s * now.phv;
-	p.pvv = s * s * now.pvv;
+	line_at(b, tr, load, p.line);
+	advance_state(2, p.line, b->at, advance_of(b, tr, ahead), 1);
+	scale_rates(2, p.line, grown(tr, b->age + ahead));
 	p.freedom = freedom_of(b, tr);
 	p.variance = tr->sum / p.freedom;
 	/* The noise is constant in D: its slope is taken half way to the level. */
@@ -220,21 +213,15 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 	return p;
 }
 
-/* Normal deviate under the condition that it is above -m, by rejection; NAN if 32 trials
- * would all fail. */
+/* Normal deviate under the condition that it is above -m; NAN if that is very unlikely.
+ */
 static double normal_above(double m, const struct chance *c)
 {
-	double u = c->u[1], above, none;
+	double above = 0.5 * erfc(-m / sqrt(2));
 
-	if (m > 8) /* no trial fails */
+	if (m > 8) /* it always is */
 		return -c->z[1];
-	above = 0.5 * erfc(-m / sqrt(2));
-	none = pow(1 - above, 32);
-
-	if (u < none)
-		return NAN;
-	u = fmax(1e-12, (u - none) / (1 - none));
-	return -normal_quantile(u * above);
+	return above < UNLIKELY ? NAN : -normal_quantile(c->u[1] * above);
 }
 
 /* Time to the passage if the regime changes once more. */
@@ -254,14 +241,16 @@ static double change(
 static double draw_life(const struct bank *b, const struct crossing *p, double age,
 	const struct chance *c)
 {
-	double sd = sqrt(p->variance * p->freedom / chi_square(p->freedom, c->z[0]));
-	double z = normal_above(p->v / (sd * sqrt(p->pvv)), c), v, h, time;
+	const double *x = p->line;
+	double sd = sqrt(p->variance * p->freedom / chi_square(p->freedom, c->z[0])),
+	       root = sqrt(x[LINE_VV]), z = normal_above(x[LINE_V] / (sd * root), c),
+	       v = x[LINE_V] + sd * root * z, h, time;
 
-	v = p->v + sd * sqrt(p->pvv) * z;
 	if (!(v > 0)) /* damage does not heal */
 		return INFINITY;
-	h = p->h + sd * p->phv / sqrt(p->pvv) * z +
-	    sd * sqrt(fmax(0, p->phh - p->phv * p->phv / p->pvv)) * c->z[2];
+	h = x[LINE_H] + sd * x[LINE_HV] / root * z +
+	    sd * sqrt(fmax(0, x[LINE_HH] - x[LINE_HV] * x[LINE_HV] / x[LINE_VV])) *
+		    c->z[2];
 	time = (p->limit - h) / v;
 	if (time <= 0)
 		return 0;
@@ -315,7 +304,7 @@ enum num_status bank_draw(const struct bank *b, const struct bank_chances *c, do
 	double level, double *life)
 {
 	double jump = damage_of(b, b->held[0].y) - b->level,
-	       share = b->n_held / (HELD * (1 + jump * jump));
+	       share = b->n_held / (HELD * pow(1 + jump * jump, 2));
 	struct bank *other;
 
 	draw_share(b, c, now, level, share, 1, life);

@@ -14,8 +14,8 @@
  * Rows held back as outliers may be the beginning of a new regime, and are the more
  * probably so the more there are: this share of the draws, an eighth for each row (as
  * doc/benchmarks.md tells), is of a copy of the bank that has accepted them.  It falls
- * with the jump to them as a Cauchy density whose scale is the distance from D = 0 to the
- * threshold.
+ * with the jump j to them, in units of the distance from D = 0 to the threshold, as
+ * 1 / (1 + j^2)^2.
  *
  *	struct bank_chances *chances = bank_chances_new(500, seed);
  *	bank_draw(b, chances, now, level, life);

@@ -64,24 +64,20 @@ static struct place place_where_it_saturates(const struct bank_shape *s, double 
 	return p;
 }
 
-/* Along a path, with straight lines beyond its ends. */
-static void place_on_path(
-	const struct bank *b, const struct bank_shape *s, double damage, struct place *p)
+double bank_path_age(const struct bank_point *path, size_t n, double level, double *slope)
 {
-	double y = b->par.direction * (b->base + b->range * damage), slope;
-	int low = 0, high = s->n - 1;
+	size_t low = 0, high = n - 1;
 
 	while (high - low > 1) {
-		int middle = (low + high) / 2;
+		size_t middle = (low + high) / 2;
 
-		if (s->level[middle] < y)
+		if (path[middle].level < level)
 			low = middle;
 		else
 			high = middle;
 	}
-	slope = (s->age[high] - s->age[low]) / (s->level[high] - s->level[low]);
-	p->h = (s->age[low] + slope * (y - s->level[low])) / b->unit;
-	p->log_slope = log(slope * fabs(b->range) / b->unit);
+	*slope = (path[high].age - path[low].age) / (path[high].level - path[low].level);
+	return path[low].age + *slope * (level - path[low].level);
 }
 
 struct place place_of(const struct bank *b, int shape, double damage)
@@ -96,7 +92,10 @@ struct place place_of(const struct bank *b, int shape, double damage)
 		par = 0;
 
 	if (s->n > 0) {
-		place_on_path(b, s, damage, &p);
+		double y = b->par.direction * (b->base + b->range * damage), slope;
+
+		p.h = bank_path_age(s->path, (size_t)s->n, y, &slope) / b->unit;
+		p.log_slope = log(slope * fabs(b->range) / b->unit);
 	} else if (s->family == BANK_SATURATING) {
 		p = place_where_it_saturates(s, inside);
 	} else if (scale > 0) {
