@@ -10,7 +10,7 @@
 enum {
 	KINDS = 6,
 	HELD = 8, /* rows held back at most */
-	RATES = 1 + BANK_LOADS
+	RATES = BANK_LOADS + 1
 };
 
 /* Kinds of trends: the weight of observation j of k is (j / k)^memory, and the damage is
