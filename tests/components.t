@@ -92,7 +92,7 @@ is 'pulses that are negative in the first component make the record doubtful' $?
 is 'none of them is given a class' "$(awk -F '\t' '/^#/ { next } !n { for (i = 1; i <= NF; i++) c[$i] = i; n = 1; next }
 	$c["verdict"] != "misfit" && $c["verdict"] != "unresolved" && $c["amplitude"] > 20 { bad++ } END { print bad + 0 }' negative.tsv)" 0
 # Negative pulses, small and large, are described by positive ones beside them as well.
-particles 60 steel:60 copper:150 steel:100 copper:130 copper:320 steel:80 >table
+particles 30 steel:60 copper:150 steel:100 copper:130 copper:320 steel:80 >table
 for components in one both; do
 	set --
 	[ $components = one ] || set -- --quadrature
@@ -101,7 +101,7 @@ for components in one both; do
 	duet "$@" signs.au >signs.tsv
 	is "pulses of both signs, $components of the components: the record is believed" $? 0
 	is "pulses of both signs, $components of the components: all are found, nothing else" \
-		"$("$top/scripts/score" truth.tsv signs.tsv | awk -F '\t' '{ print $1, $3, $5 }' | tail -n 1)" '60 60 0'
+		"$("$top/scripts/score" truth.tsv signs.tsv | awk -F '\t' '{ print $1, $3, $5 }' | tail -n 1)" '30 30 0'
 done
 
 particles 40 steel:55 copper:110 >table
@@ -115,7 +115,7 @@ ok 'the phases are named' grep -q 'of 40 phases are of no material' said
 ok 'the table says so' grep -q '^# doubtful.*phases are of no material' wrong.tsv
 
 # 300 particles a second
-crowd() { sensorsim --uniform 60um:100um --number 900 --duration 3s --noise 5mV --lag 0:0.5ms --seed 7 "$@"; }
+crowd() { sensorsim --uniform 60um:100um --number 450 --duration 1.5s --noise 5mV --lag 0:0.5ms --seed 7 "$@"; }
 crowd --quadrature | duet --sections four.sections >/dev/null 2>&1
 crowd | duet --sections two.sections >/dev/null 2>&1
 near 'pulses of unresolved sections have the power that two channels tell' "$(paste four.sections two.sections | awk -F '\t' '/^#/ { next }

@@ -6,6 +6,7 @@ at_least() {
 	ok "$1 ($2)" test "$2" -ge "$3"
 }
 scene="--uniform 80um:120um --number 40 --duration 20s --snr 30dB --lag 0:0.3ms"
+half="--uniform 80um:120um --number 20 --duration 10s --snr 30dB --lag 0:0.3ms"
 # verdicts TABLE WORD: how many rows have it
 verdicts() { column verdict "$1" | grep -c "^$2$"; }
 # at_event TABLE WORD: rows with this verdict less than 40 ms behind the beginning of such an event
@@ -76,7 +77,7 @@ duet behind.au >found.tsv 2>err
 is "nothing passed over: the record is believed" "$?: $(cat err)" "0: "
 
 # shellcheck disable=SC2086
-sensorsim $scene --bubbles 0.5 --shocks 0.5 --transients 0.2 --seed 5 --truth truth.tsv >s.au
+sensorsim $half --bubbles 0.5 --shocks 0.5 --transients 0.2 --seed 5 --truth truth.tsv >s.au
 duet s.au >found.tsv 2>err
 for kind in bubble shock transient; do
 	at_least "$kind among others: named" "$(verdicts found.tsv $kind)" 1
@@ -88,14 +89,14 @@ for way in '' --doubtful; do
 	is "wear-volume $way leaves them out" "$(wear-volume $way found.tsv 2>err | tail -n +4 | grep -v '^#')" \
 		"$(wear-volume $way bare.tsv 2>err | tail -n +4 | grep -v '^#')"
 	# shellcheck disable=SC2086
-	is "debriscount $way leaves them out" "$(debriscount $way --duration 20s found.tsv 2>err | grep -v '^#')" \
-		"$(debriscount $way --duration 20s bare.tsv 2>err | grep -v '^#')"
+	is "debriscount $way leaves them out" "$(debriscount $way --duration 10s found.tsv 2>err | grep -v '^#')" \
+		"$(debriscount $way --duration 10s bare.tsv 2>err | grep -v '^#')"
 done
 is "rwl leaves them out" "$(rwl --observe debris found.tsv 2>err | grep -v '^#')" \
 	"$(rwl --observe debris bare.tsv 2>err | grep -v '^#')"
 
 # shellcheck disable=SC2086
-sensorsim $scene --transients 1 --seed 5 >s.au
+sensorsim $half --transients 1 --seed 5 >s.au
 duet s.au >found.tsv 2>err
 like "a transient is one of the rows that may fit no particle" "$(cat err)" \
 	"^duet: s.au: [0-9]* of $(column verdict found.tsv | wc -l) rows fit no particle"

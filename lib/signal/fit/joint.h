@@ -69,6 +69,12 @@ struct joint_scene {
 	const unsigned char *hidden[2];
 };
 
+/* T of a particle with this delta. */
+static inline double joint_duration(const struct joint_scene *s, double delta)
+{
+	return s->duration * (1 + delta / s->transit);
+}
+
 /* Energy of a pulse of amplitude 1 on both channels, in units of the noise. */
 static inline double joint_energy(const struct joint_scene *s)
 {

@@ -13,6 +13,8 @@ struct joint *joint_new(void)
 	j->h = malloc(sizeof *j->h * NPAR * NPAR);
 	j->factor = malloc(sizeof *j->factor * NPAR * NPAR);
 	j->bq = malloc(sizeof *j->bq * NPAR * 2 * BASIS_MAX);
+	for (int i = 0; i < JOINT_PULSES_MAX; i++)
+		j->all[i] = i;
 	if (!j->h || !j->factor || !j->bq) {
 		joint_free(j);
 		return NULL;
@@ -26,11 +28,8 @@ static void free_samples(struct joint *j)
 		free(j->e[c]);
 		free(j->r[c]);
 		free(j->filter[c]);
-		j->e[c] = j->r[c] = j->filter[c] = NULL;
-	}
-	for (int c = 0; c < 2; c++) {
 		free(j->basis_memory[c]);
-		j->basis_memory[c] = j->q[c] = NULL;
+		j->e[c] = j->r[c] = j->filter[c] = j->basis_memory[c] = j->q[c] = NULL;
 	}
 	j->capacity = 0;
 }
@@ -292,7 +291,7 @@ size_t joint_visible(const struct joint *j, int channel, size_t from, size_t to)
 static long pulse_window(const struct joint_scene *s, const struct joint_pulse *p, int c,
 	size_t n, size_t *len)
 {
-	double T = pulse_duration(s, p->delta);
+	double T = joint_duration(s, p->delta);
 	long first = shape_support(s->shape, p->t + (c ? p->delta : 0), T, len);
 	long last = first + (long)*len;
 
@@ -312,7 +311,7 @@ void joint_subtract(struct joint *j, const struct joint_scene *s,
 		long first = pulse_window(s, p, c, j->n, &len);
 
 		shape_sample(s->shape, p->t + (c ? p->delta : 0),
-			pulse_duration(s, p->delta), first, len, j->scratch, NULL, NULL);
+			joint_duration(s, p->delta), first, len, j->scratch, NULL, NULL);
 		joint_hide(j, c, first, len, j->scratch);
 		if (len)
 			add_scaled(j->e[c] + first, -sign * p->a * (c ? s->gain : 1),
@@ -323,7 +322,7 @@ void joint_subtract(struct joint *j, const struct joint_scene *s,
 void joint_make_columns(
 	struct joint *j, const struct joint_scene *s, int i, const struct joint_pulse *p)
 {
-	double T = pulse_duration(s, p->delta), stretch = s->duration / s->transit;
+	double T = joint_duration(s, p->delta), stretch = s->duration / s->transit;
 
 	for (int c = 0; c < 2; c++) {
 		struct column *col = &j->col[i][c];
@@ -382,7 +381,7 @@ enum joint_status joint_start(struct joint *j, const struct joint_scene *s,
 		return JOINT_DOMAIN;
 	longest = s->delta_max + JOINT_BEYOND * (s->delta_max - s->delta_min);
 	support =
-		(size_t)(2 * shape_reach(s->shape) * pulse_duration(s, fmax(longest, 0)) +
+		(size_t)(2 * shape_reach(s->shape) * joint_duration(s, fmax(longest, 0)) +
 			 0.4 * s->duration) +
 		4;
 	status = reserve_samples(j, n);
@@ -424,7 +423,7 @@ const double *joint_residual(const struct joint *j, int channel)
 void joint_add(const struct joint_scene *s, const struct joint_pulse *p, double sign,
 	double *y1, double *y2, size_t n)
 {
-	double T = pulse_duration(s, p->delta), part[64];
+	double T = joint_duration(s, p->delta), part[64];
 
 	for (int c = 0; c < 2; c++) {
 		double *y = c ? y2 : y1, t0 = p->t + (c ? p->delta : 0);

@@ -24,7 +24,7 @@ static long make_excess(const struct joint *j, const struct joint_scene *s,
 	const struct joint_pulse *p, const struct column *one, int c, double gap,
 	double *x, size_t *n)
 {
-	double T = pulse_duration(s, p->delta), t0 = p->t + (c ? p->delta : 0);
+	double T = joint_duration(s, p->delta), t0 = p->t + (c ? p->delta : 0);
 	double half = 0.5 * p->a * (c ? s->gain : 1), *part = j->scratch;
 	long from = shape_support(s->shape, t0 - gap / 2, T, n), to;
 
@@ -74,7 +74,7 @@ void joint_pair_start(struct joint *j, const struct joint_scene *s,
 				     dot(along_basis[a], j->bq + u * nb + c * j->basis,
 					     (size_t)j->basis);
 		}
-		joint_reduce(j, PAR * m, seen[a]);
+		joint_reduce(j, PAR * m, 0, seen[a]);
 		for (int b = 0; b <= a; b++) {
 			double shared = 0;
 
@@ -149,15 +149,11 @@ void joint_pair_odds(struct joint *j, const struct joint_scene *s,
 	/* Steps of the difference of two delays, in standard deviations. */
 	static const double step = 0.6;
 	enum { STEPS = 4 };
-	int set[JOINT_PULSES_MAX], m = j->inverted;
-
 	for (int w = 0; w < JOINT_SHARES; w++)
 		odds[w] = 0;
-	if (i >= m)
+	if (i >= j->inverted)
 		return;
-	for (int k = 0; k < m; k++)
-		set[k] = k;
-	joint_pair_start(j, s, pulses, i, set, m);
+	joint_pair_start(j, s, pulses, i, j->all, j->inverted);
 	for (int w = 0; w < JOINT_SHARES; w++) {
 		double share = joint_share(w), narrow = 2 * sqrt(share * (1 - share));
 

@@ -51,11 +51,12 @@ struct joint {
 	double *filter[2]; /* matched filter on the coarse grid */
 	struct column col[JOINT_PULSES_MAX + 1][2];   /* as the pulses are */
 	struct column trial[JOINT_PULSES_MAX + 1][2]; /* as they were before a step */
-	double *h; /* NPAR * NPAR: normal matrix or its Cholesky factor */
+	int all[JOINT_PULSES_MAX]; /* 0, 1, 2, ...: the set of all pulses */
+	double *h;                 /* NPAR * NPAR: normal matrix or its Cholesky factor */
 	double *factor;
 	int begin[NPAR];         /* first nonzero of each row */
 	double energy;           /* e^T e of both channels, ... */
-	double qe[2][BASIS_MAX]; /* ... and Q^T e: kept up to date by add_column() */
+	double qe[2][BASIS_MAX]; /* ... and Q^T e: kept up to date by the steps */
 	double *bq;              /* NPAR * basis: Q^T J */
 	double gradient[NPAR], diagonal[NPAR], move[NPAR];
 	long steps, searches;
@@ -78,11 +79,6 @@ static inline void add_scaled(double *y, double factor, const double *x, size_t 
 static inline double clamp(double x, double lo, double hi)
 {
 	return x < lo ? lo : x > hi ? hi : x;
-}
-
-static inline double pulse_duration(const struct joint_scene *s, double delta)
-{
-	return s->duration * (1 + delta / s->transit);
 }
 
 /* Earliest (side 0) and latest (1) arrival in n samples. */
@@ -140,8 +136,8 @@ double joint_fit_all(
 void joint_fill_covariance(
 	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m);
 
-/* x becomes L^-1 x, by the factor of the last covariance. */
-void joint_reduce(const struct joint *j, int np, double *x);
+/* x becomes L^-1 x by the last factor, from row start on (x is zero above). */
+void joint_reduce(const struct joint *j, int np, int start, double *x);
 
 /* Factor of the normal matrix of the pulses in set, with their columns. */
 enum num_status joint_factorise(struct joint *j, const struct joint_scene *s,

@@ -137,8 +137,7 @@ static enum num_status factorise(struct joint *j, int np, double lambda)
 	return NUM_OK;
 }
 
-/* Solves L L^T x = x in place, from row start on (the rows above are zero). */
-static void solve(const struct joint *j, int np, int start, double *x)
+void joint_reduce(const struct joint *j, int np, int start, double *x)
 {
 	for (int i = start; i < np; i++) {
 		const double *row = j->factor + (size_t)i * (size_t)np;
@@ -146,6 +145,12 @@ static void solve(const struct joint *j, int np, int start, double *x)
 
 		x[i] = (x[i] - dot(row + from, x + from, (size_t)(i - from))) / row[i];
 	}
+}
+
+/* Solves L L^T x = x in place, from row start on. */
+static void solve(const struct joint *j, int np, int start, double *x)
+{
+	joint_reduce(j, np, start, x);
 	for (int i = np - 1; i >= 0; i--) {
 		const double *row = j->factor + (size_t)i * (size_t)np;
 
@@ -306,9 +311,7 @@ double joint_fit_set(struct joint *j, const struct joint_scene *s,
 			continue;
 		}
 		step_back(j, pulses, set, m, &old);
-		after -= chi2;
-		chi2 = joint_chi_square(j);
-		if (after < tolerance || lambda > 1e6)
+		if (after - chi2 < tolerance || lambda > 1e6)
 			break;
 		lambda = lambda * 10;
 	}
@@ -318,11 +321,7 @@ double joint_fit_set(struct joint *j, const struct joint_scene *s,
 double joint_fit_all(
 	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m)
 {
-	int set[JOINT_PULSES_MAX];
-
-	for (int i = 0; i < m; i++)
-		set[i] = i;
-	return joint_fit_set(j, s, pulses, set, m, 50, 1e-4);
+	return joint_fit_set(j, s, pulses, j->all, m, 50, 1e-4);
 }
 
 enum num_status joint_factorise(struct joint *j, const struct joint_scene *s,
@@ -337,12 +336,9 @@ enum num_status joint_factorise(struct joint *j, const struct joint_scene *s,
 void joint_fill_covariance(
 	struct joint *j, const struct joint_scene *s, struct joint_pulse *pulses, int m)
 {
-	int set[JOINT_PULSES_MAX] = { 0 }, good, np = PAR * m;
+	int good = joint_factorise(j, s, pulses, j->all, m) == NUM_OK, np = PAR * m;
 	double x[NPAR];
 
-	for (int i = 0; i < m; i++)
-		set[i] = i;
-	good = joint_factorise(j, s, pulses, set, m) == NUM_OK;
 	j->inverted = good ? m : 0;
 	for (int i = 0; i < m; i++)
 		for (int u = 0, k = 0; u < PAR; u++) {
@@ -354,16 +350,6 @@ void joint_fill_covariance(
 			for (int v = 0; v <= u; v++)
 				pulses[i].cov[k++] = good ? x[PAR * i + v] : INFINITY;
 		}
-}
-
-void joint_reduce(const struct joint *j, int np, double *x)
-{
-	for (int i = 0; i < np; i++) {
-		const double *row = j->factor + (size_t)i * (size_t)np;
-		int from = j->begin[i];
-
-		x[i] = (x[i] - dot(row + from, x + from, (size_t)(i - from))) / row[i];
-	}
 }
 
 void joint_gain_error(

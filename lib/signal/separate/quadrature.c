@@ -97,11 +97,6 @@ static void fit_free(struct fit *f)
 	free(f->gradient);
 }
 
-static double duration_of(const struct joint_scene *s, double delta)
-{
-	return s->duration * (1 + delta / s->transit);
-}
-
 static enum num_status fit_reserve(struct fit *f)
 {
 	const struct joint_scene *s = f->scene;
@@ -110,7 +105,7 @@ static enum num_status fit_reserve(struct fit *f)
 	       basis = (size_t)f->basis + 1;
 	double *at;
 
-	f->support = (size_t)(2 * reach * duration_of(s, fmax(longest, 0))) + 4;
+	f->support = (size_t)(2 * reach * joint_duration(s, fmax(longest, 0))) + 4;
 	each = FUNCTIONS * (f->support + basis);
 	f->part = malloc(2 * m * sizeof *f->part);
 	f->memory = malloc(2 * m * each * sizeof *f->memory);
@@ -140,7 +135,7 @@ static void make_part(struct fit *f, int i, int c, const struct quadrature_pulse
 {
 	const struct joint_scene *s = f->scene;
 	struct part *part = &f->part[2 * i + c];
-	double t0 = p->t + (c ? p->delta : 0), T = duration_of(s, p->delta);
+	double t0 = p->t + (c ? p->delta : 0), T = joint_duration(s, p->delta);
 	double stretch = s->duration / s->transit, gain = c ? s->gain : 1;
 	long first, last;
 
