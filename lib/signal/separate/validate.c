@@ -209,10 +209,9 @@ static int weak_place(const struct evidence *e, size_t m, size_t i)
 static int distance_of(const struct evidence *e, size_t m, size_t i)
 {
 	int place = place_of(e, m, i), after = place - PLACES / 2;
+	int k = after < 0 ? -1 - after : after;
 
-	if (place < 0 || e[m - 1].time - e[0].time >= 1)
-		return -1;
-	return after < 0 ? -1 - after : after;
+	return place < 0 || k >= CLASSES || e[m - 1].time - e[0].time >= 1 ? -1 : k;
 }
 
 /* 1 if the place occurs in more than four groups and in a tenth of all.  Chance, with so

@@ -29,7 +29,7 @@ struct evidence {
 	int fits;          /* 0: doubted already by chi-square */
 	double delay, var; /* in samples; var 0: unknown */
 	double amplitude;  /* over the noise */
-	double time;       /* of arrival, durations */
+	double time;       /* of arrival, durations; ascending within a group */
 	int doubted;       /* set by validation_test() */
 };
 
