@@ -48,24 +48,40 @@ static void follow_noise(struct separate *s, size_t n)
 			s->buffer[k].begin + (long long)known);
 }
 
-/* The longest stretch of the n oldest samples in which neither channel stands still, or
- * clips, for as long as a block: its first sample and its length.  All of them if it is
- * too short to be learned from, as that of a dead sensor is. */
+/* 1 if a channel stands still, or clips, for longer than limit in its n oldest samples.
+ */
+static int stands(const struct buffer *b, size_t n, size_t limit)
+{
+	size_t run = 0;
+
+	for (size_t i = 0; i < n && run <= limit; i++)
+		run = b->hidden[i] ? run + 1 : 0;
+	return run > limit;
+}
+
+/* The longest stretch of the n oldest samples in which a channel does not stand still, or
+ * clip, for as long as a block: its first sample and its length.  All of them if neither
+ * channel does so, or both, as in a record without noise, or if it is too short to be
+ * learned from, as that of a dead sensor is. */
 static size_t measured(const struct separate *s, size_t n, size_t *from)
 {
-	size_t run[2] = { 0, 0 }, begin = 0, best = 0;
+	const size_t limit = n / BLOCKS;
+	const struct buffer *b = s->buffer;
+	size_t run = 0, begin = 0, best = 0;
 
 	*from = 0;
+	if (stands(&b[0], n, limit) == stands(&b[1], n, limit))
+		return n;
+	b += stands(&b[1], n, limit);
 	for (size_t i = 0; i <= n; i++) {
-		size_t longest = 0, end;
+		size_t end = n;
 
-		for (int c = 0; c < 2 && i < n; c++) {
-			run[c] = s->buffer[c].hidden[i] ? run[c] + 1 : 0;
-			longest = run[c] > longest ? run[c] : longest;
+		if (i < n) {
+			run = b->hidden[i] ? run + 1 : 0;
+			if (run <= limit)
+				continue;
+			end = i + 1 - run;
 		}
-		if (i < n && longest <= n / BLOCKS)
-			continue;
-		end = i < n ? i + 1 - longest : n;
 		if (end > begin + best) {
 			best = end - begin;
 			*from = begin;
