@@ -102,7 +102,7 @@ done >memory
 if [ -n "${ASAN_OPTIONS:-}" ]; then
 	skip "each further unit takes some kilobytes" 'the sanitizer has an allocator of its own'
 else
-	near "each further unit takes some kilobytes" "$(awk 'NR == 1 { a = $1 } END { print ($1 - a) / 3600 }' memory)" 18 2
+	near "each further unit takes some kilobytes" "$(awk 'NR == 1 { a = $1 } END { print ($1 - a) / 3600 }' memory)" 20 2
 fi
 
 # Probability and costs, of draws that the quantiles tell: the lowest quantile at 0, others
