@@ -66,13 +66,13 @@ static int stands(const struct buffer *b, size_t n, size_t limit)
 static size_t measured(const struct separate *s, size_t n, size_t *from)
 {
 	const size_t limit = n / BLOCKS;
-	const struct buffer *b = s->buffer;
+	const int second = stands(&s->buffer[1], n, limit);
+	const struct buffer *b = &s->buffer[second];
 	size_t run = 0, begin = 0, best = 0;
 
 	*from = 0;
-	if (stands(&b[0], n, limit) == stands(&b[1], n, limit))
+	if (stands(&s->buffer[0], n, limit) == second)
 		return n;
-	b += stands(&b[1], n, limit);
 	for (size_t i = 0; i <= n; i++) {
 		size_t end = n;
 
@@ -346,12 +346,11 @@ static enum separate_status look_for_bursts(
 	return SEPARATE_OK;
 }
 
-/* Drops the n oldest samples, from which nothing was learned. */
-static enum separate_status pass_over(struct separate *s, size_t n)
+/* Drops the n oldest samples, from which nothing was learned.  found: 0 if they are known
+ * to be noise. */
+static enum separate_status pass_over(struct separate *s, size_t n, int found)
 {
-	int found;
-
-	if (look_for_bursts(s, n, &found) != SEPARATE_OK)
+	if (found && look_for_bursts(s, n, &found) != SEPARATE_OK)
 		return SEPARATE_MEMORY;
 	s->counters.unlearned += found ? (double)n : 0;
 	s->counters.passed_over += (double)n;
@@ -381,7 +380,7 @@ enum separate_status separate_learn(struct separate *s)
 			return SEPARATE_OK;
 		n = measured(s, lesser(s->buffer[0].n, s->par.learn), &from);
 		if (from > 0) {
-			if (pass_over(s, from) != SEPARATE_OK)
+			if (pass_over(s, from, 1) != SEPARATE_OK)
 				return SEPARATE_MEMORY;
 			continue;
 		}
@@ -402,7 +401,7 @@ enum separate_status separate_learn(struct separate *s)
 		s->unexplained |= found;
 		if (s->buffer[0].n < s->par.learn)
 			break;
-		if (pass_over(s, half) != SEPARATE_OK)
+		if (pass_over(s, half, found) != SEPARATE_OK)
 			return SEPARATE_MEMORY;
 	}
 	return SEPARATE_OK;

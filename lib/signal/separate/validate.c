@@ -248,10 +248,13 @@ static void take_in(struct validation *v, const struct evidence *e, size_t n)
 		take_delay(v, e + i, m);
 		v->groups++;
 		for (size_t k = 0; k < m; k++) {
-			if (weak_place(e + i, m, k) >= 0)
-				v->recurring[weak_place(e + i, m, k)]++;
-			if (distance_of(e + i, m, k) >= 0)
-				v->distant[distance_of(e + i, m, k)]++;
+			int place = weak_place(e + i, m, k),
+			    distance = distance_of(e + i, m, k);
+
+			if (place >= 0)
+				v->recurring[place]++;
+			if (distance >= 0)
+				v->distant[distance]++;
 		}
 	}
 	learn_flow(v);
