@@ -143,10 +143,22 @@ static int find(const struct text_in *t, const char *name)
 {
 	char *end;
 	long n = strtol(name, &end, 10);
+	int found = -1;
 
-	for (int i = 0; i < t->cells; i++)
-		if (same(t->heading[i], name))
-			return i;
+	/* t may be a time beside a temperature T */
+	for (int fold = 0; fold < 2 && found < 0; fold++)
+		for (int i = 0; i < t->cells; i++) {
+			if (fold ? !same(t->heading[i], name)
+				 : strcmp(t->heading[i], name) != 0)
+				continue;
+			if (found >= 0)
+				die(EXIT_RUN,
+					"%s: columns %d and %d are called '%.40s': choose one by its number",
+					t->name, found + 1, i + 1, name);
+			found = i;
+		}
+	if (found >= 0)
+		return found;
 	if (end != name && !*end && n >= 1 && n <= t->cells)
 		return (int)n - 1;
 	return -1;
@@ -370,11 +382,12 @@ static double rounded(double value, int digits)
 	return strtod(text, NULL);
 }
 
-/* The rate, or step, of the fewest digits that the times allow: they are rounded to their
- * last digit, and may besides jitter by a quarter of a step. */
+/* The rate, or the step in the unit of the times, of the fewest digits that they allow:
+ * they are rounded to their last digit, and may besides jitter by a quarter of a step. */
 static double simplest_rate(const struct text_in *t, double rate)
 {
 	double jitter = deviation(t, rate), most = t->resolution;
+	double unit = fmax(t->time_scale, 1); /* of min, h and d */
 
 	if (jitter > most + 0.25 / rate)
 		die(EXIT_RUN,
@@ -384,7 +397,8 @@ static double simplest_rate(const struct text_in *t, double rate)
 	if (jitter > most)
 		most += jitter;
 	for (int digits = 1; digits < 17; digits++) {
-		double a = rounded(rate, digits), b = 1 / rounded(1 / rate, digits);
+		double a = rounded(rate, digits);
+		double b = 1 / (unit * rounded(1 / (unit * rate), digits));
 		double off_a = deviation(t, a), off_b = deviation(t, b);
 
 		if (fmin(off_a, off_b) <= most)
