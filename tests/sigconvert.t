@@ -61,6 +61,10 @@ awk 'BEGIN { print "t\tu"; srand(3); for (i = 0; i < 1000; i++) print i / 100 + 
 is "times that jitter by a tenth of a step give the rate" "$(sigconvert --output text jitter.tsv | sed -n 's/^# rate: //p')" 100
 printf 'T [C];t;u\n20;0;1\n21;1;2\n22;2;3\n' >warm.csv
 is "a column t is the time beside a temperature T" "$(sigconvert --output channels warm.csv | column high /dev/stdin | tr '\n' ' ')" "22 3 "
+printf 't;u\n0;1\n1;2' >torn.csv
+sigconvert torn.csv >out 2>err
+is "a last line without newline is reported" "$(cat err)" \
+	"sigconvert: torn.csv: line 3: no newline at the end: the last row may be truncated"
 printf 't;u;u\n0;1;5\n1;2;6\n' >twice.csv
 fails "a heading of two columns" 1 "columns 2 and 3 are called 'u': choose one by its number" sigconvert --columns u twice.csv
 printf 'Rate [Hz];u [V]\n12,5;1\n12,5;2\n' >rated.csv

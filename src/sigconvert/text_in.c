@@ -50,6 +50,9 @@ static int any_line(struct text_in *t)
 
 	if (n == 0)
 		return 0;
+	if (t->line[n - 1] != '\n')
+		warn("%s: line %ld: no newline at the end: the last row may be truncated",
+			t->name, t->number);
 	while (n > 0 && strchr("\r\n", t->line[n - 1]))
 		t->line[--n] = '\0';
 	if (n != strlen(t->line))
