@@ -60,6 +60,12 @@ static struct candidate search(struct joint *j, const struct joint_scene *s,
 	return best;
 }
 
+/* 1 if there are more than the m pulses, and no room for them. */
+static int are_more(struct joint *j, const struct joint_scene *s, int m)
+{
+	return m == s->max_pulses && search(j, s, NULL, 0).z2 > s->threshold;
+}
+
 static int by_time(const void *x, const void *y)
 {
 	const struct joint_pulse *p = x, *q = y;
@@ -94,7 +100,7 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 	enum { TRIES = 3 + JOINT_PULSES_MAX / 8 };
 	enum joint_status status = joint_start(j, s, y1, y2, n, pulses, *m);
 	struct candidate tried[TRIES];
-	int failed = 0;
+	int failed = 0, full;
 	double chi2;
 
 	if (status != JOINT_OK)
@@ -113,12 +119,15 @@ enum joint_status joint_fit(struct joint *j, const struct joint_scene *s,
 		}
 		chi2 = joint_fit_all(j, s, pulses, *m);
 	} while (joint_split_pulses(j, s, pulses, m, &chi2));
-	joint_swap_pulses(j, s, pulses, *m, &chi2);
-	joint_merge_pulses(j, s, pulses, m, &chi2);
-	joint_prune(j, s, pulses, m, &chi2);
-	chi2 = joint_fit_all(j, s, pulses, *m);
-	finish(j, s, pulses, *m, chi2,
-		*m == s->max_pulses && search(j, s, NULL, 0).z2 > s->threshold, result);
+	full = s->give_up && are_more(j, s, *m);
+	if (!full) {
+		joint_swap_pulses(j, s, pulses, *m, &chi2);
+		joint_merge_pulses(j, s, pulses, m, &chi2);
+		joint_prune(j, s, pulses, m, &chi2);
+		chi2 = joint_fit_all(j, s, pulses, *m);
+		full = are_more(j, s, *m);
+	}
+	finish(j, s, pulses, *m, chi2, full, result);
 	return JOINT_OK;
 }
 

@@ -51,6 +51,7 @@ struct joint_scene {
 	 * and pulses may arrive beyond. */
 	double quiet[2];
 	int max_pulses; /* at most JOINT_PULSES_MAX */
+	int give_up;    /* 1: if there are more, the fit need not be the best */
 	int tones;
 	double omega[JOINT_TONES_MAX]; /* rad per sample */
 	/* Prior variance of the cosine and sine of each tone about zero (small after

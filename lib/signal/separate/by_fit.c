@@ -3,10 +3,12 @@
 #include <math.h>
 #include <string.h>
 
-/* Largest number of pulses that are searched for in n samples. */
+/* Largest number of pulses that are searched for in n samples: three numbers of each may
+ * be half of the 4 SHAPE_BAND per duration that two channels have in the band of pulses.
+ */
 static int most_pulses(const struct separate *s, size_t n)
 {
-	double most = 4 + 3 * (double)n / s->cal.duration;
+	double most = 4 + 2 * SHAPE_BAND / 3 * (double)n / s->cal.duration;
 
 	if (s->par.sources)
 		most = s->par.sources;
@@ -128,10 +130,13 @@ enum separate_status separate_fit_section(
 	if (a.m > s->scene.max_pulses)
 		a.m = s->scene.max_pulses;
 	memcpy(a.pulse, s->pulse, sizeof a.pulse);
+	s->scene.give_up = !s->par.sources;
 	status = separate_fit_window(s, channels_at(s, from - before).at, n, cut, &a);
+	s->scene.give_up = 0;
 	if (status == SEPARATE_OK && separate_is_described(&a))
 		status = separate_fit_without_common(s, from - before, n, cut, &a);
-	if (status == SEPARATE_OK)
+	if (status == SEPARATE_OK &&
+		(s->par.sources || a.goodness.stretch != SEPARATE_UNRESOLVED))
 		separate_keep_fit(s, &a);
 	if (status == SEPARATE_OK && whole && (a.m > 1 || !separate_is_described(&a)) &&
 		separate_find_foreign(s, from - before, n, &event) != NUM_OK)
