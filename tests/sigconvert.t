@@ -61,6 +61,8 @@ awk 'BEGIN { print "t\tu"; srand(3); for (i = 0; i < 1000; i++) print i / 100 + 
 is "times that jitter by a tenth of a step give the rate" "$(sigconvert --output text jitter.tsv | sed -n 's/^# rate: //p')" 100
 printf 'T [C];t;u\n20;0;1\n21;1;2\n22;2;3\n' >warm.csv
 is "a column t is the time beside a temperature T" "$(sigconvert --output channels warm.csv | column high /dev/stdin | tr '\n' ' ')" "22 3 "
+printf 't;u\n0;1\n' >single.csv
+fails "one row" 1 'the time of one row tells no rate' sigconvert single.csv
 printf 't;u\n0;1\n1;2' >torn.csv
 sigconvert torn.csv >out 2>err
 is "a last line without newline is reported" "$(cat err)" \

@@ -449,9 +449,10 @@ static void learn_rate(struct text_in *t, const struct recording_par *par)
 	if (isnan(rate))
 		rate = told_rate(t);
 	if (isnan(rate))
-		die(EXIT_RUN,
-			"%s: no column 'time' or 't': specify --rate, or --time NAME",
-			t->name);
+		die(EXIT_RUN, "%s: %s", t->name,
+			t->time < 0
+				? "no column 'time' or 't': specify --rate, or --time NAME"
+				: "the time of one row tells no rate: specify --rate");
 	if (!(rate >= RATE_LEAST && rate <= RATE_MOST))
 		die(EXIT_RUN, "%s: %g samples per second, want %g to %g", t->name, rate,
 			RATE_LEAST, RATE_MOST);
