@@ -75,7 +75,7 @@ is "the first of three realisations equals a single realisation" \
 roughgen --points 64 --length 100um --sq 0.5um --corr 10um --count 2 >h.nrrd
 printf 'realisation\tdiameter\taspect\n0\t10e-6\t3\n1\t12e-6\t3\n1\t14e-6\t3\n' >p.tsv
 abrade --gap 9.5um --hardness 6GPa,2GPa --friction 0.1 --slide 250um --cutting 40% --surface h.nrrd \
-	--particles worn.tsv --stats st p.tsv >worn.nrrd
+	--particles worn.tsv --stats st p.tsv >worn.nrrd 2>err
 mean() {
 	records -o list "$1" | awk -F '\t' '/^[0-9]/ { printf "%.17g\n", $11 }' | sed -n "$2p"
 }
@@ -89,9 +89,18 @@ abrade --gap 9.5um --hardness 6GPa,2GPa --friction 0.1 --surface h.nrrd --body 2
 is "the body without grooves is unchanged" "$(mean same.nrrd 1)" "$(mean h.nrrd 1)"
 roughgen --points 64 --length 0.25mm --sq 4um --corr 30um --crown 16um | bemcontact --load 5N --young 210GPa |
 	debrisgen --yield 355MPa --friction 0.3 --surface w.nrrd 2>err |
-	abrade --load 5N --hardness 4GPa --friction 0.1 --slide 1mm --surface w.nrrd 2>err | roughgen --measure - >measured.tsv
+	abrade --load 5N --hardness 4GPa --friction 0.1 --slide 0.25mm --surface w.nrrd 2>err | roughgen --measure - >measured.tsv
 rising "a surface scratched by its own debris is rougher" \
 	"$(roughgen --measure w.nrrd | column sdq /dev/stdin)" "$(column sdq measured.tsv)"
+printf 'diameter\trealisation\n1e-5\t7\n' >seventh.tsv
+fails "grooves of a realisation that has no surface" 3 '1 grooves are left out: h.nrrd has no record' \
+	abrade --gap 9.5um --hardness 2GPa --friction 0.1 --motion groove --slide 1um --surface h.nrrd seventh.tsv
+abrade --gap 9.5um --hardness 2GPa --friction 0.1 --motion groove --surface h.nrrd p.tsv >worn.nrrd 2>err
+is "grooves that are longer than the surface are reported" "$(grep -c 'in the same track' err)" 1
+# drawn into gaps of (25 um - 2 0.1^2 1 mm) / 1.01 = 4.95 um and more
+printf 'diameter\n2.5e-5\n' >wide.tsv
+abrade --load 1mN --hardness 2GPa --friction 0.1 --inlet 1mm wide.tsv >wide.out
+near "a particle that a narrow gap rejects carries the load in a wide one" "$(cell load wide.out)" 1e-3 1e-9
 
 p="--hardness 2GPa --friction 0.1"
 fails "neither gap nor load" 2 'specify either --gap H or --load F' abrade $p four.tsv
@@ -103,7 +112,8 @@ fails "a code without a largest particle" 2 'requires --largest or --inlet' abra
 fails "a code that grows" 2 'must not increase with size' abrade --gap 1um $p --iso 13:16:18 --area 1mm2 --largest 70um
 fails "a code that does not tell the sizes above 14 um" 2 'want a lower third number' \
 	abrade --gap 1um $p --iso 18:16:16 --area 1mm2 --largest 70um
-abrade --gap 2um $p --iso 19:19:13 --area 1m2 --largest 50um >equal.tsv
+abrade --gap 2um $p --iso 19:19:13 --area 1m2 --largest 50um >equal.tsv 2>err
+is "particles between the gap and 4 um, which a code does not count, are reported" "$(grep -c 'are missing' err)" 1
 # 5000 - 5000 (50/6)^(-log(5000/80)/log(14/6)) a millilitre in 2 ml, none of them between 4 and 6 um
 near "a code of equal numbers at 4 and 6 um has none between" \
 	"$(awk '!/^[#r]/ { n++; small += $3 < 5.999e-6 } END { print small ? 0 : n }' equal.tsv)" \

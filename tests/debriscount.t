@@ -160,5 +160,12 @@ fails "a duration without end of periods after the last particle" 2 'more than 1
 printf '# units: 0mm\ndiameter\n50\n' >zero.tsv
 fails "a unit that begins with a digit" 1 "column 'diameter' is in '0mm', want m" debriscount zero.tsv
 fails "a record after a record" 1 'another record begins' sh -c 'cat six.tsv six.tsv | debriscount --period 100s'
+fails "a record after a record of unknown length" 1 'another record begins' sh -c 'cat six.tsv six.tsv | debriscount'
+fails "codes of a record of unknown length" 1 'volume of oil is unknown' debriscount --output codes --flow 1L/min bottle.tsv
+printf 'diameter\tverdict\tsources\n10\tunresolved\t4\n' >far.tsv
+fails "a section of balls of 10 metres" 1 'line 2: diameter is 10 m, want metres' debriscount far.tsv
+printf '# units: um\ndiameter\n37.9\n38\n70\n' >edge.tsv
+is "a diameter in another unit is in the class that begins with it" \
+	"$(debriscount --standard as4059 edge.tsv | column rows /dev/stdin | tr '\n' ' ')" "0 0 0 1 1 1 "
 fails "a flow in litres without its unit" 2 'flow 60: want' debriscount --flow 60 /dev/null
 done_testing

@@ -50,10 +50,25 @@ is "exact times give 10007 Hz" "$(told 9.993004896572399e-05 15 300)" 10007
 is "times in whole milliseconds give 10 kHz" "$(told 1e-4 3 3000)" 10000
 is "a step of a minute gives the rate" "$(told 60 0 10)" 0.016666666666666666
 is "regular times cause no warning" "$(cat err)" ''
+for unit in min h d; do
+	seq 0 24 | awk -v u=$unit 'BEGIN { print "Time [" u "];y" } { print $1 ";1" }' |
+		sigconvert --output channels 2>err | column rate /dev/stdin | awk '{ printf "%.9g ", 1 / $1 }'
+done >steps
+is "steps of a minute, an hour and a day are found" "$(cat steps)" "60 3600 86400 "
 told 2.2675736961451248e-05 3 200 >out
 like "times of few digits give a warning" "$(cat err)" 'determine the rate of 40000 Hz only to a relative 0.2: set it by --rate'
 awk 'BEGIN { print "t\tu"; srand(3); for (i = 0; i < 1000; i++) print i / 100 + 0.001 * rand() "\t" i }' >jitter.tsv
 is "times that jitter by a tenth of a step give the rate" "$(sigconvert --output text jitter.tsv | sed -n 's/^# rate: //p')" 100
+printf 'T [C];t;u\n20;0;1\n21;1;2\n22;2;3\n' >warm.csv
+is "a column t is the time beside a temperature T" "$(sigconvert --output channels warm.csv | column high /dev/stdin | tr '\n' ' ')" "22 3 "
+printf 't;u\n0;1\n' >single.csv
+fails "one row" 1 'the time of one row tells no rate' sigconvert single.csv
+printf 't;u\n0;1\n1;2' >torn.csv
+sigconvert torn.csv >out 2>err
+is "a last line without newline is reported" "$(cat err)" \
+	"sigconvert: torn.csv: line 3: no newline at the end: the last row may be truncated"
+printf 't;u;u\n0;1;5\n1;2;6\n' >twice.csv
+fails "a heading of two columns" 1 "columns 2 and 3 are called 'u': choose one by its number" sigconvert --columns u twice.csv
 printf 'Rate [Hz];u [V]\n12,5;1\n12,5;2\n' >rated.csv
 is "a column tells the rate" "$(sigconvert --output text rated.csv | sed -n 's/^# rate: //p')" 12.5
 printf 'Rate;u\n12,5;1\n12;2\n' >rated.csv

@@ -114,6 +114,11 @@ refuse 'an unknown byte order' "endian: 'pdp' is not understood" 'endian: pdp'
 refuse 'a detached header' "NRRD field 'data file' is not supported" 'data file: x.raw'
 refuse 'too few sizes' 'want 2 sizes and spacings, got 1 and 2' 'sizes: 4'
 refuse 'five dimensions' 'dimension 5: want 2, 3 or 4' 'dimension: 5'
+{ header 'sample units: um'; ramp; } >um.nrrd
+{ header 'fields:=height um'; ramp; } >named.nrrd
+is "heights in micrometres are converted" "$(records um.nrrd | column max /dev/stdin) $(records named.nrrd | column unit /dev/stdin)" \
+	"$(records plain.nrrd | column max /dev/stdin | awk '{ print $1 * 1e-6 }') m"
+refuse 'heights that are no lengths' "height is in 'V', want m" 'fields:=height V'
 refuse 'a unit that is no length' "unit 's' of axis 0 is not a length" 'units: "s" "s"'
 refuse 'more names than fields' 'want the names of 1 fields' 'fields:=height m, pressure Pa'
 { cat plain.nrrd; header 'fields:=gap m'; ramp; } >gap.nrrd

@@ -24,6 +24,13 @@ is "a matrix of text has the given spacing" "$(list dx a.nrrd) $(list dy a.nrrd)
 printf '1,5;2;3\r\n4;;6\r\n' >comma.csv
 surfimport --pixel 1um --height-unit 1m comma.csv >b.nrrd
 is "semicolons and decimal commas are read" "$(heights b.nrrd)" "1.5 2 3 4 nan 6"
+printf ';;\n1;2;3\n;;\n4;5;' >empty.csv
+surfimport --pixel 1um --height-unit 1m empty.csv >b.nrrd 2>err
+is "rows of empty cells are rows of missing samples" "$(heights b.nrrd)" "nan nan nan 1 2 3 nan nan nan 4 5 nan"
+is "a last line without newline is reported" "$(grep -c 'line 4: no newline at the end' err)" 1
+printf 'Height;;\n;;\n1;2;3\n' >titled.csv
+is "a row of empty cells below a heading is none" \
+	"$(surfimport --pixel 1um --height-unit 1m titled.csv | heights /dev/stdin)" "1 2 3"
 printf '1,5,2\n4,BAD,6\n' >plain.csv
 surfimport --pixel 1um --height-unit 1m plain.csv >b.nrrd
 is "commas are read as separators" "$(heights b.nrrd)" "1 5 2 4 nan 6"

@@ -140,53 +140,74 @@ void abrasion_particle(
 		a->section[0] = a->section[1] = NAN;
 }
 
-/* Load that all carry; that of particles that yield is not known and left out. */
-static double carry(struct abrasion_par *par, double gap, const double *diameter,
-	const double *aspect, long n, double *evaluations)
+double abrasion_widest(double (*carry)(void *, double), void *all, double largest,
+	double load, double *carried)
 {
-	double sum = 0;
+	const double step = 0.98;
+	double low, high = largest, here = 0;
 
-	par->gap = gap;
-	for (long i = 0; i < n; i++) {
-		struct abrasion a;
-
-		if (!(diameter[i] > gap))
-			continue;
-		abrasion_particle(par, diameter[i], aspect ? aspect[i] : 1, &a);
-		(*evaluations)++;
-		if (a.load > 0)
-			sum += a.load;
+	*carried = 0;
+	for (low = high * step; low > 1e-12 * largest; high = low, low *= step) {
+		here = carry(all, low);
+		*carried = fmax(*carried, here);
+		if (here >= load)
+			break;
 	}
-	return sum;
-}
-
-double abrasion_gap(const struct abrasion_par *given, const double *diameter,
-	const double *aspect, long n, double load, double *carried, double *evaluations)
-{
-	struct abrasion_par par = *given;
-	double low = 0, high = 0;
-
-	for (long i = 0; i < n; i++)
-		high = fmax(high, diameter[i]);
-	/* Gap 0, to 1e-12 of the indentations. */
-	low = high * 1e-12;
-	*carried = carry(&par, low, diameter, aspect, n, evaluations);
-	if (!(*carried >= load))
+	if (*carried < load)
 		return NAN;
-	/* Bisection to rounding takes log2(1e15) = 50 steps, and 40 more at the narrowest
-	 * gap. */
-	for (int step = 0; step < 90 && high - low > 1e-15 * high; step++) {
+	*carried = here;
+	/* Each step halves an interval of 2 % of the gap: to rounding. */
+	for (int k = 0; k < 48 && *carried != load; k++) {
 		double middle = 0.5 * (low + high);
-		double here = carry(&par, middle, diameter, aspect, n, evaluations);
 
+		here = carry(all, middle);
 		if (here >= load) {
 			low = middle;
 			*carried = here;
 		} else {
 			high = middle;
 		}
-		if (here == load)
-			break;
 	}
 	return low;
+}
+
+struct sample {
+	struct abrasion_par par;
+	const double *diameter, *aspect;
+	long n;
+	double evaluations;
+};
+
+/* Load that all carry; that of particles that yield is not known and left out. */
+static double carry(void *all, double gap)
+{
+	struct sample *s = all;
+	double sum = 0;
+
+	s->par.gap = gap;
+	for (long i = 0; i < s->n; i++) {
+		struct abrasion a;
+
+		if (!(s->diameter[i] > gap))
+			continue;
+		abrasion_particle(
+			&s->par, s->diameter[i], s->aspect ? s->aspect[i] : 1, &a);
+		s->evaluations++;
+		if (a.load > 0)
+			sum += a.load;
+	}
+	return sum;
+}
+
+double abrasion_gap(const struct abrasion_par *par, const double *diameter,
+	const double *aspect, long n, double load, double *carried, double *evaluations)
+{
+	struct sample s = { *par, diameter, aspect, n, 0 };
+	double largest = 0, gap;
+
+	for (long i = 0; i < n; i++)
+		largest = fmax(largest, diameter[i]);
+	gap = abrasion_widest(carry, &s, largest, load, carried);
+	*evaluations += s.evaluations;
+	return gap;
 }

@@ -83,36 +83,26 @@ void population_mean(const struct population *p, const struct abrasion_par *par,
 	}
 }
 
-/* A narrow gap holds fewer particles, so the load has a maximum over the gap: the widest
- * gap that carries the load is bracketed from above in steps and then bisected.  For 27
- * random oils and pairs, steps of 0.9 to 0.99 lead to the gap of steps of 0.998.
- * A millionth of the largest particle is below a nanometre, the size of molecules. */
-double population_gap(const struct population *p, const struct abrasion_par *par,
-	double pressure, size_t n, double *most)
-{
-	const double step = 0.98;
-	struct abrasion_par at = *par;
-	struct population_mean m;
-	double low, high = p->largest;
+struct oil {
+	const struct population *population;
+	struct abrasion_par par;
+	size_t classes;
+};
 
-	*most = 0;
-	for (low = high * step; low > 1e-6 * p->largest; high = low, low *= step) {
-		at.gap = low;
-		population_mean(p, &at, n, &m);
-		*most = fmax(*most, m.pressure);
-		if (m.pressure >= pressure)
-			break;
-	}
-	if (*most < pressure)
-		return NAN;
-	/* Each step halves an interval of 2 % of the gap: to rounding. */
-	for (int k = 0; k < 48; k++) {
-		at.gap = 0.5 * (low + high);
-		population_mean(p, &at, n, &m);
-		if (m.pressure >= pressure)
-			low = at.gap;
-		else
-			high = at.gap;
-	}
-	return low;
+static double pressure_at(void *all, double gap)
+{
+	struct oil *oil = all;
+	struct population_mean m;
+
+	oil->par.gap = gap;
+	population_mean(oil->population, &oil->par, oil->classes, &m);
+	return m.pressure;
+}
+
+double population_gap(const struct population *p, const struct abrasion_par *par,
+	double pressure, size_t n, double *carried)
+{
+	struct oil oil = { p, *par, n };
+
+	return abrasion_widest(pressure_at, &oil, p->largest, pressure, carried);
 }

@@ -43,9 +43,9 @@ struct population_mean {
 void population_mean(const struct population *p, const struct abrasion_par *par, size_t n,
 	struct population_mean *m);
 
-/* The widest gap at which they carry a pressure; NAN if there is none. *most is the
- * largest pressure they carry.  The gap of par is not used. */
+/* The widest gap at which they carry a pressure, as abrasion_widest() finds it.  The gap
+ * of par is not used. */
 double population_gap(const struct population *p, const struct abrasion_par *par,
-	double pressure, size_t n, double *most);
+	double pressure, size_t n, double *carried);
 
 #endif

@@ -64,12 +64,13 @@ void classes_clear(struct classes *c)
 	c->unknown = 0;
 }
 
-/* -1 below the first class. */
+/* -1 below the first class.  A limit and a diameter that were converted from other units
+ * may differ by rounding. */
 static int class_of(const struct classes *c, double d)
 {
 	int k = c->n - 1;
 
-	while (k >= 0 && d < c->edge[k])
+	while (k >= 0 && d * (1 + 1e-12) < c->edge[k])
 		k--;
 	return k;
 }

@@ -11,11 +11,19 @@ void weighted_add(struct weighted *s, double w)
 }
 
 /* Quantile of the gamma distribution of this mean and variance, by bisection: GSL's own
- * inverse fails for some shapes beyond 1e4. */
+ * inverse fails for some shapes beyond 1e4, and its distribution function for some beyond
+ * 1e6.  The expansion of Cornish and Fisher is exact to 1e-10 from 1e5 on. */
 static double quantile(double p, double mean, double variance)
 {
 	double shape = mean * mean / variance, low = 0, high = shape;
 
+	if (shape > 1e5) {
+		double z = gsl_cdf_ugaussian_Pinv(p), root = sqrt(shape);
+
+		return (shape + z * root + (z * z - 1) / 3 +
+			       (z * z - 7) * z / (36 * root)) *
+		       (variance / mean);
+	}
 	while (gsl_cdf_gamma_P(high, shape, 1) < p) {
 		low = high;
 		high *= 2;

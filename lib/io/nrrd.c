@@ -97,8 +97,8 @@ static void read_field(
 	static const char *const ignored[] = { "content", "labels", "min", "max",
 		"old min", "old max", "oldmin", "oldmax", "centers", "centerings",
 		"thicknesses", "axis mins", "axismins", "axis maxs", "axismaxs",
-		"block size", "blocksize", "sample units", "sampleunits", "number",
-		"space units", "measurement frame", NULL };
+		"block size", "blocksize", "number", "space units", "measurement frame",
+		NULL };
 	char words[AXES][16];
 	double number[AXES];
 
@@ -132,6 +132,10 @@ static void read_field(
 		if (!h->raw)
 			die(EXIT_RUN, "%s: record %ld: encoding %.30s: want raw",
 				at->name, at->record, v);
+	} else if (strcasecmp(key, "sample units") == 0 ||
+		   strcasecmp(key, "sampleunits") == 0) {
+		if (!h->fields)
+			h->fields = xprintf("height %s", v);
 	} else if (!word_in(key, ignored)) {
 		die(EXIT_RUN, "%s: record %ld: NRRD field '%.30s' is not supported",
 			at->name, at->record, key);
@@ -300,6 +304,27 @@ void name_fields(const struct place *at, const char *fields, struct record *r, i
 	free(text);
 }
 
+/* Converts lengths and pressures to SI. */
+static void convert_units(const struct place *at, struct record *r)
+{
+	for (int k = 0; k < r->nfields; k++) {
+		int height = !strcmp(r->name[k], "height");
+		enum unit unit = height ? UNIT_LENGTH : UNIT_PRESSURE;
+		double scale = unit_scale(r->unit[k], unit);
+
+		if (scale <= 0 && *r->unit[k] &&
+			(height || !strcmp(r->name[k], "pressure")))
+			die(EXIT_RUN, "%s: record %ld: %s is in '%s', want %s", at->name,
+				at->record, r->name[k], r->unit[k], unit_name(unit));
+		if (scale <= 0 || scale == 1)
+			continue;
+		for (size_t i = 0; r->data[k] && i < record_points(r); i++)
+			r->data[k][i] *= scale;
+		free(r->unit[k]);
+		r->unit[k] = xstrdup(unit_name(unit));
+	}
+}
+
 int nrrd_is(const char *magic)
 {
 	return strncmp(magic, "NRRD000", 7) == 0 && strlen(magic) == 8;
@@ -325,6 +350,7 @@ void nrrd_read(struct place *at, struct record *r)
 	name_fields(at, h.fields, r, list ? (int)h.sizes[0] : 1);
 	free(h.fields);
 	samples_read(at, r, (struct samples){ h.type == 4, h.endian == 2 });
+	convert_units(at, r);
 }
 
 /* Value of a key: escaped, and without ": ", which ParaView's reader cannot parse. */

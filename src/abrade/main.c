@@ -240,6 +240,9 @@ int main(int argc, char **argv)
 		abrasion_largest(friction, par.inlet, isnan(gap) ? 0 : gap));
 	if (population && isnan(gap))
 		gap = mean_gap(&par);
+	if (population && gap < population->diameter[0])
+		warn("particles between the gap of %g m and %g m are missing: the code does not count them",
+			gap, population->diameter[0]);
 	source = population ? particles_drawn(population, area, gap, (uint64_t)seed)
 			    : particles_read(argv[operand]);
 	upstream = particles_upstream(source);
@@ -268,9 +271,16 @@ int main(int argc, char **argv)
 		warn("no particle carries the load of %g N: the surfaces touch", load);
 		doubtful = 1;
 	}
-	if (surface_path)
-		scratches_cut(surface_path, slide, cutting, (uint64_t)seed,
+	if (surface_path) {
+		size_t left = scratches_cut(surface_path, slide, cutting, (uint64_t)seed,
 			particles_apart(source), cmd);
+
+		if (left > 0) {
+			warn("%zu grooves are left out: %s has no record of their realisation",
+				left, surface_path);
+			doubtful = 1;
+		}
+	}
 	if (yielding + buried > 0) {
 		warn("%.0f particles yield and %.0f are buried deeper than their radius: the volumes do not include their wear",
 			yielding, buried);

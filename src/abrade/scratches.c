@@ -13,6 +13,7 @@
 struct scratch {
 	long realisation;
 	double diameter, depth, section;
+	int cut;
 };
 
 static struct scratch *list;
@@ -22,7 +23,7 @@ void scratches_add(long realisation, double diameter, double depth, double secti
 {
 	if (room_for(&list, &room, n + 1, sizeof *list))
 		die(EXIT_RUN, "out of memory");
-	list[n++] = (struct scratch){ realisation, diameter, depth, section };
+	list[n++] = (struct scratch){ realisation, diameter, depth, section, 0 };
 }
 
 /* If both bodies are equally hard, a groove extends over half the distance on each. */
@@ -33,12 +34,14 @@ static double way(const struct scratch *s, double length)
 	return whole > 0 ? length * s->section / whole : 0;
 }
 
-void scratches_cut(const char *path, double length, double cut, uint64_t seed, int apart,
-	const char *cmd)
+size_t scratches_cut(const char *path, double length, double cut, uint64_t seed,
+	int apart, const char *cmd)
 {
+	size_t left = 0;
 	struct fields_in *in = fields_open(path, NULL);
 	struct fields_out *out = NULL;
 	struct record r = { 0 };
+	double laps = 0; /* the most */
 
 	while (fields_read(in, &r)) {
 		double *z = record_need(&r, "height", 1, in), lx = r.nx * r.dx,
@@ -62,6 +65,8 @@ void scratches_cut(const char *path, double length, double cut, uint64_t seed, i
 			stats_add("heights_changed",
 				groove_cut(r.nx, r.ny, r.dx, r.dy, z, &g));
 			stats_add("grooves_cut", 1);
+			list[i].cut = 1;
+			laps = fmax(laps, g.length / lx);
 		}
 		for (int k = r.nfields - 1; k >= 0; k--)
 			if (z != r.data[k])
@@ -74,8 +79,15 @@ void scratches_cut(const char *path, double length, double cut, uint64_t seed, i
 		stats_add("records", 1);
 	}
 	record_free(&r);
-	fields_close(in);
 	if (out)
 		fields_done(out);
+	for (size_t i = 0; i < n; i++)
+		left += !list[i].cut;
+	if (laps > 1)
+		warn("%s: grooves pass over the surface up to %.3g times in the same track: "
+		     "--slide is longer than its side",
+			fields_name(in), laps);
+	fields_close(in);
 	free(list);
+	return left;
 }

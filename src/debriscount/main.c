@@ -137,6 +137,13 @@ static double time_of(const struct table_in *t, int column)
 	return v;
 }
 
+/* What is unknown of an unresolved section is nan. */
+static double or_nan(const struct table_in *t, int column,
+	double (*valid)(const struct table_in *, int))
+{
+	return isnan(table_number(t, column)) ? NAN : valid(t, column);
+}
+
 /* Reads all rows; returns the end of the record. */
 static double count_rows(struct table_in *t, struct groups *groups)
 {
@@ -157,7 +164,8 @@ static double count_rows(struct table_in *t, struct groups *groups)
 		if (v == VERDICT_FOREIGN)
 			continue;
 		time = ct >= 0 ? time_of(t, ct) : NAN;
-		if (table_part(t) != part && !isnan(period))
+		if (table_part(t) != part && ct >= 0 &&
+			(isnan(duration) || !isnan(period)))
 			die(EXIT_RUN,
 				"%s: line %ld: another record begins: count each record separately",
 				table_name(t), table_line(t));
@@ -181,8 +189,8 @@ static double count_rows(struct table_in *t, struct groups *groups)
 		last = fmax(last, time);
 		c = groups_at(groups, cb >= 0 ? table_text(t, cb) : "");
 		if (v == VERDICT_UNRESOLVED) {
-			classes_add_stretch(c, cs >= 0 ? table_number(t, cs) : NAN,
-				table_number(t, cd));
+			classes_add_stretch(c, or_nan(t, cs, table_positive),
+				or_nan(t, cd, table_diameter));
 			continue;
 		}
 		classes_add(c, table_diameter(t, cd), v == VERDICT_SURE);

@@ -96,7 +96,9 @@ static void put_counted(struct table_out *t, struct counted c, double scale)
 /* Volume of oil in a period, m3; nan if it is not known. */
 static double oil(double begin, double end)
 {
-	return isnan(volume) ? flow * (end - begin) : volume;
+	if (!isnan(volume))
+		return volume;
+	return end > begin ? flow * (end - begin) : NAN;
 }
 
 static void put_classes(struct report *r, const struct classes *c, const char *group,
@@ -162,6 +164,9 @@ static void put_code_row(struct report *r, const struct classes *c, const char *
 	struct class_count n[AS4059_SIZES];
 	double v = oil(begin, end);
 
+	if (isnan(v))
+		die(EXIT_RUN,
+			"the volume of oil is unknown: specify --duration or --volume");
 	for (int k = 0; k < AS4059_SIZES; k++)
 		classes_count_above(c, k, &n[k]);
 	begin_row(r, group, begin, end);

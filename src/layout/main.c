@@ -181,6 +181,9 @@ static void put_layout(
 	} else {
 		stats_add("samples_left_out", floor(samples) * n * PHASES);
 	}
+	if (isinf(evaluated.bound.velocity) && !doubtful++)
+		warn("the %.3g samples of a pulse do not determine its velocity",
+			samples);
 	for (int k = 0; k < n; k++) {
 		char number[NUMBER_TEXT];
 		char *longer = xprintf(

@@ -50,6 +50,9 @@ static int any_line(struct text_in *t)
 
 	if (n == 0)
 		return 0;
+	if (t->line[n - 1] != '\n')
+		warn("%s: line %ld: no newline at the end: the last row may be truncated",
+			t->name, t->number);
 	while (n > 0 && strchr("\r\n", t->line[n - 1]))
 		t->line[--n] = '\0';
 	if (n != strlen(t->line))
@@ -143,10 +146,22 @@ static int find(const struct text_in *t, const char *name)
 {
 	char *end;
 	long n = strtol(name, &end, 10);
+	int found = -1;
 
-	for (int i = 0; i < t->cells; i++)
-		if (same(t->heading[i], name))
-			return i;
+	/* t may be a time beside a temperature T */
+	for (int fold = 0; fold < 2 && found < 0; fold++)
+		for (int i = 0; i < t->cells; i++) {
+			if (fold ? !same(t->heading[i], name)
+				 : strcmp(t->heading[i], name) != 0)
+				continue;
+			if (found >= 0)
+				die(EXIT_RUN,
+					"%s: columns %d and %d are called '%.40s': choose one by its number",
+					t->name, found + 1, i + 1, name);
+			found = i;
+		}
+	if (found >= 0)
+		return found;
 	if (end != name && !*end && n >= 1 && n <= t->cells)
 		return (int)n - 1;
 	return -1;
@@ -370,11 +385,12 @@ static double rounded(double value, int digits)
 	return strtod(text, NULL);
 }
 
-/* The rate, or step, of the fewest digits that the times allow: they are rounded to their
- * last digit, and may besides jitter by a quarter of a step. */
+/* The rate, or the step in the unit of the times, of the fewest digits that they allow:
+ * they are rounded to their last digit, and may besides jitter by a quarter of a step. */
 static double simplest_rate(const struct text_in *t, double rate)
 {
 	double jitter = deviation(t, rate), most = t->resolution;
+	double unit = fmax(t->time_scale, 1); /* of min, h and d */
 
 	if (jitter > most + 0.25 / rate)
 		die(EXIT_RUN,
@@ -384,7 +400,8 @@ static double simplest_rate(const struct text_in *t, double rate)
 	if (jitter > most)
 		most += jitter;
 	for (int digits = 1; digits < 17; digits++) {
-		double a = rounded(rate, digits), b = 1 / rounded(1 / rate, digits);
+		double a = rounded(rate, digits);
+		double b = 1 / (unit * rounded(1 / (unit * rate), digits));
 		double off_a = deviation(t, a), off_b = deviation(t, b);
 
 		if (fmin(off_a, off_b) <= most)
@@ -432,9 +449,10 @@ static void learn_rate(struct text_in *t, const struct recording_par *par)
 	if (isnan(rate))
 		rate = told_rate(t);
 	if (isnan(rate))
-		die(EXIT_RUN,
-			"%s: no column 'time' or 't': specify --rate, or --time NAME",
-			t->name);
+		die(EXIT_RUN, "%s: %s", t->name,
+			t->time < 0
+				? "no column 'time' or 't': specify --rate, or --time NAME"
+				: "the time of one row tells no rate: specify --rate");
 	if (!(rate >= RATE_LEAST && rate <= RATE_MOST))
 		die(EXIT_RUN, "%s: %g samples per second, want %g to %g", t->name, rate,
 			RATE_LEAST, RATE_MOST);

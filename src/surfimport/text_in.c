@@ -136,8 +136,8 @@ static int read_row(struct text *t, char *line)
 		}
 		if (next)
 			*next++ = '\0';
-		/* a separator at the end of the line separates nothing */
-		if (!next && !*s && n > 0)
+		/* a separator at the end of a whole row separates nothing */
+		if (!next && !*s && n > 0 && (!t->rows || n == t->columns))
 			break;
 		if (!cell(t, s, &v)) {
 			t->n = before;
@@ -176,6 +176,7 @@ static int is_torn_row(const struct text *t, const char *line)
 static void read_rows(struct text *t, char *text)
 {
 	char *rest = text;
+	long missing = 0; /* rows before the first number */
 
 	while (rest && *rest) {
 		char *line = rest, *end = strpbrk(line, "\r\n"), *copy;
@@ -185,8 +186,17 @@ static void read_rows(struct text *t, char *text)
 		if (end)
 			*end = '\0';
 		t->line++;
-		if (!line[strspn(line, " \t;,")] || *line == '#')
+		if (!end)
+			warn("%s: line %ld: no newline at the end: the last row may be truncated",
+				t->c->name, t->line);
+		/* Empty cells alone are a row of missing samples, below a heading none.
+		 */
+		if (*line == '#' || (!line[strspn(line, " \t;,")] &&
+					    (!t->rows || t->separator == ' ' ||
+						    !strchr(line, t->separator)))) {
+			missing += !t->rows && !t->header && strpbrk(line, ";,\t");
 			continue;
+		}
 		if (!t->rows)
 			find_separator(t, line);
 		copy = xstrdup(line);
@@ -204,6 +214,11 @@ static void read_rows(struct text *t, char *text)
 			die(EXIT_RUN, "%s: line %ld: want %d heights, got %d", t->c->name,
 				t->line, t->columns, n);
 		t->columns = n;
+		for (; missing > 0; missing--, t->rows++)
+			for (int i = 0; i < n; i++) {
+				keep(t, t->value[t->n - (size_t)n]);
+				t->value[t->n - 1 - (size_t)n] = NAN;
+			}
 		if (t->rows++ == 0 && t->header && is_torn_row(t, t->header))
 			no_row(t, t->header_line, t->header);
 	}

@@ -21,8 +21,9 @@ scene "no particles" "every pulse stands alone" 1 0 "$(cell p_alone --coils 0 --
 # the first order in the rate: 2 arrivals T = 2e-12 * 0.01 s, lost beside 1
 scene "one particle in 30000 years" "every pulse stands alone" 1 0 \
 	"$(cell p_alone --coils 0 --snr 40dB --arrivals 1e-12Hz)"
-is "one sample a pulse on one coil | undetermined | inf | none" \
-	"$(cell se_velocity --coils 0 --arrivals 1 --snr 40dB --rate 100Hz)" inf
+is "one sample a pulse on one coil | undetermined, status 3 | inf 3 | none" \
+	"$(cell se_velocity --coils 0 --arrivals 1 --snr 40dB --rate 100Hz) $(
+		layout --coils 0 --arrivals 1 --snr 40dB --rate 100Hz >out 2>err; echo $?)" "inf 3"
 scene "2e16 samples a pulse" "sqrt(1e9) times better than 2e7" 1 1e-3 "$(
 	a=$(cell se_velocity $two --snr 40dB --rate 2e9Hz --flow 1e-12m3/s --method closed)
 	b=$(cell se_velocity $two --snr 40dB --rate 2Hz --flow 1e-12m3/s --method closed)

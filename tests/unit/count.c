@@ -39,6 +39,12 @@ static void check_poisson(void)
 	near(high, 11.66833208, 1e-7, "five events have the upper limit of Garwood");
 	weighted_interval(&s, INFINITY, 0.95, &low, &high);
 	ok(isinf(high), "unbounded weights have no upper limit");
+	s = (struct weighted){ 1e6, 1e6, 1e6, 1 };
+	weighted_interval(&s, 1, 0.95, &low, &high);
+	near(low, 998040.98334029, 1e-4,
+		"a million events have the lower limit of Garwood");
+	near(high, 1001961.9119454, 1e-4,
+		"a million events have the upper limit of Garwood");
 }
 
 /* Sums of weights w^3, w uniform, whose mean is known. */

@@ -152,6 +152,27 @@ static double significance(const struct joint_scene *s, const struct joint_pulse
 				   : p->a * p->a * joint_energy(s);
 }
 
+/* Forgets, of the last pulses that are left without pulse k of those before, exchanges
+ * with it: it is the one that arrives at sensor 2 where they would. */
+static void forget_exchanges(
+	struct joint_pulse *pulses, int last, int k, const struct joint_pulse *before)
+{
+	for (int i = 0; i < last; i++) {
+		const struct joint_pulse *was = &before[i + (i >= k)];
+		double at = was->t + was->other_delta, gone, other = INFINITY;
+
+		if (!(was->exchange > 0))
+			continue;
+		gone = fabs(before[k].t + before[k].delta - at);
+		for (int x = 0; x <= last; x++)
+			if (x != k && &before[x] != was)
+				other = fmin(
+					other, fabs(before[x].t + before[x].delta - at));
+		if (gone < other)
+			pulses[i].exchange = 0;
+	}
+}
+
 /* Removes pulse k, which is no longer subtracted, from the list and fits those near it; 1
  * if it is not needed, otherwise everything is restored from before. */
 static int accept_fewer(struct joint *j, const struct joint_scene *s,
@@ -169,6 +190,7 @@ static int accept_fewer(struct joint *j, const struct joint_scene *s,
 		restore(j, s, pulses, m, before, last + 1);
 		return 0;
 	}
+	forget_exchanges(pulses, last, k, before);
 	*chi2 = after;
 	return 1;
 }

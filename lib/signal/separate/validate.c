@@ -264,8 +264,9 @@ static void take_in(struct validation *v, const struct evidence *e, size_t n)
  * correct group in ten thousand is doubted for it. */
 static const double RARELY = 1e-4;
 
-/* 1 if more delays lie at a limit of the range than noise explains.  Their number is
- * treated as Poisson distributed, which has the longer tail. */
+/* 1 if more delays lie at a limit of the range than noise explains, without those of
+ * pulses that do not fit, which are doubted already.  Their number is treated as Poisson
+ * distributed, which has the longer tail. */
 static int too_many_at_limit(
 	const struct validation *v, const struct evidence *e, size_t m)
 {
@@ -277,7 +278,7 @@ static int too_many_at_limit(
 	for (size_t i = 0; i < m; i++) {
 		double sd = sqrt(v->var + e[i].var), off = v->mean - v->middle;
 
-		if (!(e[i].var > 0))
+		if (!(e[i].var > 0) || !e[i].fits)
 			continue;
 		mean += 0.5 * (erfc((v->half - off) / (M_SQRT2 * sd)) +
 				      erfc((v->half + off) / (M_SQRT2 * sd)));
