@@ -385,7 +385,7 @@ static double rounded(double value, int digits)
 	return strtod(text, NULL);
 }
 
-/* The rate, or the step in the unit of the times, of the fewest digits that they allow:
+/* The rate or step, in the unit of the times, of the fewest digits that they allow:
  * they are rounded to their last digit, and may besides jitter by a quarter of a step. */
 static double simplest_rate(const struct text_in *t, double rate)
 {
@@ -400,7 +400,7 @@ static double simplest_rate(const struct text_in *t, double rate)
 	if (jitter > most)
 		most += jitter;
 	for (int digits = 1; digits < 17; digits++) {
-		double a = rounded(rate, digits);
+		double a = rounded(unit * rate, digits) / unit;
 		double b = 1 / (unit * rounded(1 / (unit * rate), digits));
 		double off_a = deviation(t, a), off_b = deviation(t, b);
 
