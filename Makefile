@@ -71,6 +71,8 @@ ifeq ($(shell $(PKG_CONFIG) --exists sndfile 2>/dev/null && echo yes),yes)
 sndfile_LINK = $(shell $(PKG_CONFIG) --libs sndfile)
 SNDFILE_FLAG = -DWITH_SNDFILE $(shell $(PKG_CONFIG) --cflags sndfile)
 endif
+# Asked once, not for every object.
+$(foreach v,FFTW_CFLAGS FFTW_LIBS GSL_CFLAGS GSL_LIBS CBLAS_LIBS sndfile_LINK SNDFILE_FLAG,$(eval $(v) := $($(v))))
 cblas_LINK = $(CBLAS_LIBS)
 fftw_LINK = $(FFTW_LIBS)
 gsl_LINK = $(GSL_LIBS)

@@ -92,6 +92,12 @@ roughgen --points 64 --length 0.25mm --sq 4um --corr 30um --crown 16um | bemcont
 	abrade --load 5N --hardness 4GPa --friction 0.1 --slide 0.25mm --surface w.nrrd 2>err | roughgen --measure - >measured.tsv
 rising "a surface scratched by its own debris is rougher" \
 	"$(roughgen --measure w.nrrd | column sdq /dev/stdin)" "$(column sdq measured.tsv)"
+printf 'diameter\tverdict\n1e-5\talone\n1e-5\tunresolved\nnan\tbubble\n1.2e-5\tmisfit\n' >duet.tsv
+abrade --gap 9um --hardness 2GPa --friction 0.1 duet.tsv >out 2>err
+is "what is no single particle by its verdict is left out and reported" \
+	"$(column particle out | wc -l) $(grep -c 'left out\|not resolved' err)" "1 2"
+is "doubtful particles are taken in" \
+	"$(abrade --gap 9um --hardness 2GPa --friction 0.1 --doubtful duet.tsv 2>err | column diameter /dev/stdin | tr '\n' ' ')" "1e-05 1.2e-05 "
 printf 'diameter\trealisation\n1e-5\t7\n' >seventh.tsv
 fails "grooves of a realisation that has no surface" 3 '1 grooves are left out: h.nrrd has no record' \
 	abrade --gap 9.5um --hardness 2GPa --friction 0.1 --motion groove --slide 1um --surface h.nrrd seventh.tsv

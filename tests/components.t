@@ -114,6 +114,24 @@ is 'the record is doubtful where most phases are of no material' $? 3
 ok 'the phases are named' grep -q 'of 40 phases are of no material' said
 ok 'the table says so' grep -q '^# doubtful.*phases are of no material' wrong.tsv
 
+# Clipped components, and events of any phase that are no particles
+particles 40 steel:55 copper:110 steel:70 >table
+record --saturation 0.2 --phase 20deg >clipped.au
+duet --excitation 500kHz --phase 20deg clipped.au >clipped.tsv 2>said
+is 'a record with clipped components is believed' $? 0
+ok 'clipped samples are counted' grep -q 'samples of sensor 1 and .* were not measured' said
+judged clipped.tsv 0.3490658503988659 >got
+is 'all pulses with clipped components are found, with their class' "$(value got 1) $(value got 5)" '40 0'
+is 'nothing else is found' "$(column verdict clipped.tsv | wc -l)" 40
+record --duration 60s --impulses 0.2 --bubbles 0.2 --shocks 0.2 --transients 0.2 --event-level 1 >events.au
+duet --excitation 500kHz events.au >events.tsv 2>/dev/null
+"$top/scripts/score" truth.tsv events.tsv >score.tsv
+is 'no event is a particle' "$(awk -F '\t' 'END { print $5, ($3 > 30) }' score.tsv)" '0 1'
+kinds() { awk -F '\t' -v c="$2" -v k="$3" '/^#/ { next } !n { for (i = 1; i <= NF; i++) if ($i == c) n = i; next } $n == k' "$1" | wc -l; }
+for kind in impulse bubble shock transient; do
+	near "most of what stands alone is named: $kind" "$(kinds events.tsv verdict $kind)" "$(kinds truth.tsv kind $kind)" 5
+done
+
 # 300 particles a second
 crowd() { sensorsim --uniform 60um:100um --number 450 --duration 1.5s --noise 5mV --lag 0:0.5ms --seed 7 "$@"; }
 crowd --quadrature | duet --sections four.sections >/dev/null 2>&1

@@ -55,12 +55,16 @@ for unit in min h d; do
 		sigconvert --output channels 2>err | column rate /dev/stdin | awk '{ printf "%.9g ", 1 / $1 }'
 done >steps
 is "steps of a minute, an hour and a day are found" "$(cat steps)" "60 3600 86400 "
+is "thirds of an hour are found" "$(printf 'Time [h];y\n0.00;1\n0.33;2\n0.67;2\n1.00;2\n1.33;3\n' |
+	sigconvert --output channels 2>err | column rate /dev/stdin | awk '{ printf "%.9g", 1 / $1 }')" 1200
 told 2.2675736961451248e-05 3 200 >out
 like "times of few digits give a warning" "$(cat err)" 'determine the rate of 40000 Hz only to a relative 0.2: set it by --rate'
 awk 'BEGIN { print "t\tu"; srand(3); for (i = 0; i < 1000; i++) print i / 100 + 0.001 * rand() "\t" i }' >jitter.tsv
 is "times that jitter by a tenth of a step give the rate" "$(sigconvert --output text jitter.tsv | sed -n 's/^# rate: //p')" 100
 printf 'T [C];t;u\n20;0;1\n21;1;2\n22;2;3\n' >warm.csv
 is "a column t is the time beside a temperature T" "$(sigconvert --output channels warm.csv | column high /dev/stdin | tr '\n' ' ')" "22 3 "
+printf 't;u\n0;1\n' >single.csv
+fails "one row" 1 'the time of one row tells no rate' sigconvert single.csv
 printf 't;u\n0;1\n1;2' >torn.csv
 sigconvert torn.csv >out 2>err
 is "a last line without newline is reported" "$(cat err)" \

@@ -82,6 +82,10 @@ is "npy in Fortran order is read" "$(heights b.nrrd) $(list dy b.nrrd)" "1e-06 3
 surfimport b.sdf >b.nrrd
 is "binary SDF with a missing sample is read" "$(heights b.nrrd) $(list dx b.nrrd) $(list dy b.nrrd)" \
 	"1e-08 2e-08 3e-08 4e-08 nan 6e-08 1e-06 2e-06"
+# 1, -9999.9 as float32
+printf '\000\000\200\077\232\077\034\306' >single.f32
+surfimport --format raw --size 2x1 --type float32 --pixel 1um --height-unit 1m --missing -9999.9 single.f32 >b.nrrd
+is "a missing sample is rounded as the samples are" "$(heights b.nrrd)" "1 nan"
 cat >a.sdf <<-'END'
 	aISO-1.0
 	ManufacID = x

@@ -4,6 +4,7 @@
 #include "cli/msg.h"
 #include "cli/opt.h"
 #include "cli/stats.h"
+#include "common/verdicts.h"
 #include "io/tables.h"
 #include "particles_in.h"
 #include "scratches.h"
@@ -49,6 +50,7 @@ static const struct opt opts[] = {
 	{ 0, "area", OPT_NUM, UNIT_AREA, &area, 1e-18, 1e6, "A",
 		"area of the contact: for rates, and for --iso", NULL, 0 },
 	OPT_TABLE(particles_rows),
+	OPT_TABLE(verdict_rows),
 	OPT_HEADING("Output"),
 	{ 0, "surface", OPT_TEXT, UNIT_NONE, &surface_path, 0, 0, "FILE",
 		"cut the grooves into these heights and write them out", NULL, 0 },
@@ -286,6 +288,7 @@ int main(int argc, char **argv)
 			yielding, buried);
 		doubtful = 1;
 	}
+	verdict_report();
 	particles_close(source);
 	if (table)
 		table_done(table);

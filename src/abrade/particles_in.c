@@ -1,6 +1,7 @@
 #include "particles_in.h"
 #include "cli/msg.h"
 #include "cli/stats.h"
+#include "common/verdicts.h"
 #include "count/codes.h"
 #include "io/quantities.h"
 #include "io/tables.h"
@@ -103,14 +104,17 @@ struct source *particles_read(const char *path)
 {
 	struct source *s = xcalloc(1, sizeof *s);
 	struct table_in *t = table_open(path);
-	int more = table_next(t), cd, ca, cr;
+	int more = table_next(t), cd, ca, cr, cv;
 
 	cd = table_need_quantity(t, "diameter", UNIT_LENGTH);
 	ca = table_find(t, "aspect");
 	cr = table_find(t, "realisation");
+	cv = table_find(t, "verdict");
 	for (; more; more = table_next(t)) {
 		struct row r = { .number = s->rows, .aspect = 1 };
 
+		if (verdict_of(t, cv) != VERDICT_SURE)
+			continue;
 		if (room_for(&s->row, &s->room, s->rows + 1, sizeof *s->row))
 			die(EXIT_RUN, "out of memory");
 		r.diameter = table_diameter(t, cd);

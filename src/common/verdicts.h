@@ -1,5 +1,5 @@
-/* verdicts.h - which rows of duet's table are to be counted: an option of debriscount,
- * ballcal and wear-volume */
+/* verdicts.h - which rows of duet's table are to be counted: an option of abrade,
+ * ballcal, debriscount, rwl and wear-volume */
 #ifndef VERDICTS_H
 #define VERDICTS_H
 

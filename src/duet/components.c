@@ -64,20 +64,6 @@ double components_share(void)
 	return cos(M_PI / 4);
 }
 
-void components_turn(double *frame, size_t n)
-{
-	double c = cos(components_angle()), s = sin(components_angle());
-
-	for (double *f = frame; f < frame + 4 * n; f += 4) {
-		double i1 = f[0], q1 = f[1], i2 = f[2], q2 = f[3];
-
-		f[0] = c * i1 + s * q1;
-		f[1] = c * i2 + s * q2;
-		f[2] = c * q1 - s * i1;
-		f[3] = c * q2 - s * i2;
-	}
-}
-
 struct component_class components_classify(double size, double of_both, double phase_se)
 {
 	struct component_class class = {

@@ -17,9 +17,6 @@ extern struct opt component_rows[]; /* for OPT_TABLE */
 void components_check(int channels);
 /* Phase of the first component: what an instrument has been learned with. */
 double components_angle(void);
-/* Turns n frames of four channels, I1 Q1 I2 Q2, into the first components of both sensors
- * and the second ones. */
-void components_turn(double *frame, size_t n);
 /* Height of the pulse of a particle halfway over that in the first component. */
 double components_share(void);
 

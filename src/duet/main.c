@@ -141,6 +141,7 @@ static int separate_all(struct signal_in *in, struct found *out)
 		.mask_hop = opt_given("hop") ? (size_t)hop : 0,
 		.want_sources = separated != NULL,
 		.channels = out->components ? 4 : 2,
+		.angle = out->components ? components_angle() : 0,
 		.context = out };
 
 	par.known = instrument_par(rate, signal_format(in)->filter);

@@ -226,14 +226,6 @@ static void keep(const struct separate *s, const struct instrument_place *place)
 		instrument_write(place, &view);
 }
 
-static void check_finite(const double *frame, size_t n, long long first, const char *name)
-{
-	for (size_t i = 0; i < 4 * n; i++)
-		if (!isfinite(frame[i]))
-			die(EXIT_RUN, "%s: channel %zu, frame %lld: not a finite number",
-				name, i % 4 + 1, first + (long long)(i / 4));
-}
-
 int separate_record(struct signal_in *in, struct found *out,
 	const struct separate_par *given, const char *file)
 {
@@ -249,7 +241,6 @@ int separate_record(struct signal_in *in, struct found *out,
 	struct separate *s;
 	int doubtful, learned = 0;
 	enum separate_status status;
-	long long read = 0;
 	size_t n;
 
 	if (file && instrument_read(&place, &kept))
@@ -261,12 +252,7 @@ int separate_record(struct signal_in *in, struct found *out,
 	while ((n = signal_read_some(in, frame, BLOCK)) > 0) {
 		int any;
 
-		if (out->components) {
-			check_finite(frame, n, read, signal_name(in));
-			components_turn(frame, n);
-		}
 		status = early_push(e, frame, n);
-		read += (long long)n;
 		any = put_ready(e, out);
 		check_status(status, s, signal_name(in));
 		if (any)

@@ -385,7 +385,7 @@ static double rounded(double value, int digits)
 	return strtod(text, NULL);
 }
 
-/* The rate, or the step in the unit of the times, of the fewest digits that they allow:
+/* The rate or step, in the unit of the times, of the fewest digits that they allow:
  * they are rounded to their last digit, and may besides jitter by a quarter of a step. */
 static double simplest_rate(const struct text_in *t, double rate)
 {
@@ -400,7 +400,7 @@ static double simplest_rate(const struct text_in *t, double rate)
 	if (jitter > most)
 		most += jitter;
 	for (int digits = 1; digits < 17; digits++) {
-		double a = rounded(rate, digits);
+		double a = rounded(unit * rate, digits) / unit;
 		double b = 1 / (unit * rounded(1 / (unit * rate), digits));
 		double off_a = deviation(t, a), off_b = deviation(t, b);
 
@@ -449,9 +449,10 @@ static void learn_rate(struct text_in *t, const struct recording_par *par)
 	if (isnan(rate))
 		rate = told_rate(t);
 	if (isnan(rate))
-		die(EXIT_RUN,
-			"%s: no column 'time' or 't': specify --rate, or --time NAME",
-			t->name);
+		die(EXIT_RUN, "%s: %s", t->name,
+			t->time < 0
+				? "no column 'time' or 't': specify --rate, or --time NAME"
+				: "the time of one row tells no rate: specify --rate");
 	if (!(rate >= RATE_LEAST && rate <= RATE_MOST))
 		die(EXIT_RUN, "%s: %g samples per second, want %g to %g", t->name, rate,
 			RATE_LEAST, RATE_MOST);

@@ -56,14 +56,16 @@ static double number(const struct content *c, size_t at, enum sample_type type)
 	return sample_at(c->data + at, type, 0);
 }
 
-/* Rows of nx samples, stride bytes apart, from at on; missing is a sample, nan for none.
- */
+/* Rows of nx samples, stride bytes apart, from at on; missing is a sample, rounded as the
+ * samples are, nan for none. */
 static void take(const struct content *c, size_t at, size_t stride, enum sample_type type,
 	int big_endian, double scale, double missing, struct record *r)
 {
 	double *z = r->data[0];
 	size_t nx = (size_t)r->nx, ny = (size_t)r->ny;
 
+	if (type == FLOAT32)
+		missing = (double)(float)missing;
 	if (stride < nx * width_of[type])
 		stride = nx * width_of[type];
 	need(c, at + stride * (ny - 1) + nx * width_of[type], "samples");
@@ -437,7 +439,7 @@ static void al3d_read(const struct content *c, const struct told *told, struct r
 	/* rows begin at multiples of 8 bytes */
 	row = ((size_t)r->nx * 4 + 7) / 8 * 8;
 	take(c, (size_t)at, row, FLOAT32, 0, settle_unit(c, told, 1),
-		isnan(told->missing) ? (double)(float)missing : told->missing, r);
+		isnan(told->missing) ? missing : told->missing, r);
 }
 
 /* ---- raw ---- */

@@ -2,21 +2,25 @@
  */
 #include "signal/separate/buffer.h"
 #include "num/philox.h"
+#include "signal/separate/converter.h"
 #include "tap.h"
 #include <math.h>
 
 enum { N = 4000, RATIO = 16, DROPPED = 37, STILL = 1000, STANDS = 70 };
 
-static double x[2 * N]; /* of one of two channels */
+static double x[N];
+static size_t lost[N];
 
 /* Noise, which stands still for STANDS samples from STILL on. */
 static void draw(void)
 {
+	struct converter converter = { .samples = 0 };
 	double z[2];
 
 	for (uint64_t i = 0; i < N; i++) {
 		philox_normal2(3, 0, RNG_NOISE, i, z);
-		x[2 * i] = 5 + (i < STILL || i >= STILL + STANDS ? z[0] : 0);
+		x[i] = 5 + (i < STILL || i >= STILL + STANDS ? z[0] : 0);
+		lost[i] = converter_next(&converter, x[i]);
 	}
 }
 
@@ -30,12 +34,12 @@ static int are_equal(const struct buffer *a, const struct buffer *b)
 
 int main(void)
 {
-	struct buffer fine = { NULL }, mean = { NULL }, direct = { .ratio = RATIO };
+	struct buffer fine = { .n = 0 }, mean = { .n = 0 }, direct = { .ratio = RATIO };
 	double largest = 0, sum = 0;
 	int hidden = 0;
 
 	draw();
-	if (buffer_append(&fine, x, N, 2) != NUM_OK ||
+	if (buffer_append(&fine, x, lost, N) != NUM_OK ||
 		buffer_average(&fine, N, RATIO, &mean) != NUM_OK)
 		return 1;
 	ok(mean.n == N / RATIO && mean.begin == 0, "there is one mean of 16 samples");
@@ -43,7 +47,7 @@ int main(void)
 		double m = 0;
 
 		for (size_t i = 0; i < RATIO; i++)
-			m += x[2 * (RATIO * k + i)] / RATIO;
+			m += x[RATIO * k + i] / RATIO;
 		largest = fmax(largest, fabs(mean.x[k] - m));
 		if (!mean.hidden[k])
 			sum += (mean.x[k] - 5) * (mean.x[k] - 5) * RATIO;
@@ -59,7 +63,7 @@ int main(void)
 
 	/* Piece by piece; the run is found only after some of its means are there. */
 	for (size_t at = 0; at < N; at += 7)
-		if (buffer_append(&direct, x + 2 * at, at + 7 < N ? 7 : N - at, 2) !=
+		if (buffer_append(&direct, x + at, lost + at, at + 7 < N ? 7 : N - at) !=
 			NUM_OK)
 			return 1;
 	ok(are_equal(&mean, &direct), "samples averaged as they arrive give the same");

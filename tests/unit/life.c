@@ -439,13 +439,28 @@ static void test_adaptive(void)
 	draw_free(d);
 }
 
-/* Of 20 quiet series y = x + bend x^2, x = k / 100, at k = 60 on the way to y = 1 + bend:
- * how many ends are within the 90 % interval of these coordinates, without changes of the
- * rate if they are straight lines, and its mean width. */
-static int ends_inside(double bend, unsigned families, double *width)
+static double bend; /* of bent() */
+
+static double bent(double x)
+{
+	return x + bend * x * x;
+}
+
+/* Steady up to 0.8, from then on with a part that grows by the power 1.5. */
+static double turned(double x)
+{
+	return 0.3 * x + 0.7 * pow(fmax(0, x - 0.8) / 0.2, 1.5);
+}
+
+/* Of 20 quiet series of a curve, its rows even from 0 to 1, where the threshold is, after
+ * the first read of them: how many ends are within the 90 % interval of these
+ * coordinates, without changes of the rate if they are straight lines, and its mean width
+ * in rows. */
+static int ends_inside(double (*curve)(double), int rows, int read, double noise,
+	unsigned families, double *width)
 {
 	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
-	struct bank_par par = { .threshold = 1 + bend,
+	struct bank_par par = { .threshold = curve(1),
 		.direction = 1,
 		.families = families,
 		.steady = families == BANK_LINEAR };
@@ -458,16 +473,13 @@ static int ends_inside(double bend, unsigned families, double *width)
 		struct bank *b = bank_new(&par);
 		double early, late;
 
-		for (int k = 0; k <= 60; k++) {
-			double x = k / 100.0;
-
-			bank_add(b, k, x + bend * x * x + 0.001 * draw_normal(d));
-		}
-		bank_draw(b, chances, 60, par.threshold, life);
+		for (int k = 0; k <= read; k++)
+			bank_add(b, k, curve((double)k / rows) + noise * draw_normal(d));
+		bank_draw(b, chances, read, par.threshold, life);
 		median(life, DRAWS); /* sorts */
 		early = metric_quantile(life, DRAWS, 0.05);
 		late = metric_quantile(life, DRAWS, 0.95);
-		inside += early <= 40 && 40 <= late;
+		inside += early <= rows - read && rows - read <= late;
 		*width += (late - early) / 20;
 		bank_free(b);
 		draw_free(d);
@@ -479,16 +491,24 @@ static int ends_inside(double bend, unsigned families, double *width)
 static void test_bent_wear(void)
 {
 	double width;
-	int inside = ends_inside(0, BANK_LINEAR, &width);
+	int inside;
+
+	bend = 0;
+	inside = ends_inside(bent, 100, 60, 0.001, BANK_LINEAR, &width);
 
 	ok(inside >= 16 && width < 1,
 		"straight lines hold %d of 20 ends of straight wear, in %.2f", inside,
 		width);
-	inside = ends_inside(0.3, BANK_ALL, &width);
+	bend = 0.3;
+	inside = ends_inside(bent, 100, 60, 0.001, BANK_ALL, &width);
 	ok(inside >= 16, "all coordinates %d of wear that accelerates, in %.1f", inside,
 		width);
-	inside = ends_inside(-0.3, BANK_ALL, &width);
+	bend = -0.3;
+	inside = ends_inside(bent, 100, 60, 0.001, BANK_ALL, &width);
 	ok(inside >= 16, "and %d of wear that slows down, in %.1f", inside, width);
+	/* one particle has nearly all the weight here */
+	inside = ends_inside(turned, 400, 336, 0.0005, BANK_ALL, &width);
+	ok(inside >= 16, "and %d of wear that has turned, in %.1f", inside, width);
 }
 
 /* The mean width of the 90 % intervals of Wiener processes of rate 1 / 120 a row, with

@@ -18,10 +18,11 @@ static const double NOTHING = 3e3;
 static const double UNLIKELY = 1e-3;
 
 /* Future changes of regime, where the rate falls, is constant or rises in a coordinate,
- * and on the paths of other units, for all of them together: hazard c, age of the regime
- * as a share of that of the unit, share of falls, and median growth in units of 1 / age.
- * A constant rate is that after the run-in.  These and the three constants below were
- * chosen with the weights of the coordinates, see shapes.c; all where the rate is
+ * and on the paths of other units, for all of them together: hazard c, greatest age of
+ * the regime as a share of that of the unit, share of falls, and median growth in units
+ * of 1 / age.  A constant rate is that after the run-in.  The regime of a particle is no
+ * older than it, and one that grows may still fall.  These and the three constants below
+ * were chosen with the weights of the coordinates, see shapes.c; all where the rate is
  * constant, hazard and growth where it rises, WANDERING and five of the weights were
  * swept again, as doc/benchmarks.md tells.  With one other unit, hazards of 0.1, 0.3, 0.5
  * and 1 cover .79, .83, .86 and 1.00 at 80 % of the life of 29 measured series, with a
@@ -46,7 +47,7 @@ static const double FALL = 1.4, FALL_SD = 0.45;
  * LEAN less: most wear bends more than its coordinate, because straight coordinates have
  * more weight.  Both were chosen with the future of a rising rate, as doc/benchmarks.md
  * tells. */
-static const double STRAY = 0.24, LEAN = 0.08;
+static const double STRAY = 0.24, LEAN = 0.077;
 
 struct bank_chances {
 	int n;
@@ -121,6 +122,7 @@ struct crossing {
 	double variance, freedom; /* of the noise, with autocorrelation; of chi^2 */
 	double wiener;            /* variance of h per unit of time */
 	double growth;            /* of the rate at present */
+	double regime;            /* its age */
 	double stray, lean;       /* see STRAY */
 	const struct future *future;
 	double hazard;
@@ -146,7 +148,8 @@ static const struct future *future_of(const struct bank_shape *s)
 }
 
 /* Variance of the logarithm of the time to the passage between the trends, without those
- * whose regime has changed: such a change is no curve near the coordinate. */
+ * whose regime has changed: such a change is no curve near the coordinate, and how these
+ * differ says nothing about a growth. */
 static double spread_of(const struct bank *b, double target)
 {
 	struct running logs = { 0 };
@@ -167,12 +170,19 @@ static double spread_of(const struct bank *b, double target)
 	return logs.n > 0 ? logs.square / logs.n : 0;
 }
 
+/* The time it takes if the rate grows, which would be this with the present one. */
+static double hasten(double time, double growth)
+{
+	return growth > 0 ? log1p(growth * time) / growth : time;
+}
+
 /* How the time to a level strays because the curve of the damage on the way there is not
- * known; h: of the present damage.  A straight line does not stray, and what the trends
- * and their rates leave uncertain is a part of it. */
+ * known, of which a growth is a part; h: of the present damage.  A straight line does not
+ * stray, and what the trends and their rates leave uncertain is a part of it. */
 static void let_stray(struct crossing *p, double h, double spread)
 {
-	double bend = log(p->straight / (p->limit - h)), v = p->line[LINE_V],
+	double v = p->line[LINE_V], time = (p->limit - h) / v,
+	       bend = log(p->straight / v / hasten(time, p->growth)),
 	       known = spread + p->line[LINE_VV] * p->variance / (v * v);
 
 	if (!isfinite(bend))
@@ -193,6 +203,7 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 		.growth = tr->growth,
 		.future = future_of(shape_of(b, tr->shape)) };
 
+	p.regime = fmin(p.future->age * (b->age + ahead), b->age + ahead - tr->onset);
 	p.hazard = p.future->hazard / (shape_of(b, tr->shape)->n > 0 ? kin_of(b) : 1);
 	future_loads(b, load);
 	line_at(b, tr, load, p.line);
@@ -209,7 +220,7 @@ static struct crossing prepare(const struct bank *b, const struct trend *tr, dou
 	if (shape_of(b, tr->shape)->n > 0)
 		heed_prior(1, PACE, &p);
 	else /* the path of another unit is known to its end */
-		let_stray(&p, here.h, spread);
+		let_stray(&p, here.h, tr->growth > 0 ? 0 : spread);
 	return p;
 }
 
@@ -228,14 +239,16 @@ static double normal_above(double m, const struct chance *c)
 static double change(
 	const struct crossing *p, double time, double age, const struct chance *c)
 {
-	double j = p->future->age * age * expm1(c->late / p->hazard), rest = time - j, g;
+	double j = p->regime * expm1(c->late / p->hazard), rest = time - j, g;
 
 	if (!(rest > 0))
 		return time;
 	if (c->u[6] < p->future->falls * (p->wiener > 0 ? WANDERING : 1))
 		return j + rest * c->fall;
+	if (p->growth > 0)
+		return time;
 	g = p->future->growth * c->growth / age;
-	return j + log1p(g * rest) / g;
+	return j + hasten(rest, g);
 }
 
 static double draw_life(const struct bank *b, const struct crossing *p, double age,
@@ -259,11 +272,9 @@ static double draw_life(const struct bank *b, const struct crossing *p, double a
 			time, p->wiener * time / (v * v), c->z[3], c->u[4]);
 	if (!isfinite(time) || b->par.steady)
 		return time;
-	time *= exp(p->stray * c->stray - p->lean);
+	time = hasten(time, p->growth) * exp(p->stray * c->stray - p->lean);
 	if (p->straight > v * NOTHING * age)
 		return INFINITY;
-	if (p->growth > 0)
-		return log1p(p->growth * time) / p->growth;
 	return change(p, time, age, c);
 }
 

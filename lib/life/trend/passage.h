@@ -3,13 +3,14 @@
  * Each draw selects a trend or particle by its weight, draws level, rate and noise from
  * their Student-t distribution, and computes the first passage of the level: exact for a
  * straight line, an inverse Gaussian time if the damage is a Wiener process.
- * Beyond the damage that has been reached, the wear may stray from a curved coordinate,
- * unless the trends disagree as much already.
+ * Beyond the damage that has been reached, the wear may stray from a curved coordinate
+ * or a growth of the rate, unless the trends disagree as much already.
  *
  * The regime may change once more: after a time J with P(J > x) = (a / (a + x))^c, where
  * a is its age (an old one lasts long), the rate begins to grow as e^{g (t - J)}, or
- * drops and stays at the lower value.  Hazard, growth and share of drops depend on
- * whether the rate at present falls, is constant or rises in the coordinate.
+ * drops and stays at the lower value; one that grows can only drop.  Hazard, growth and
+ * share of drops depend on whether the rate at present falls, is constant or rises in the
+ * coordinate.
  *
  * Rows held back as outliers may be the beginning of a new regime, and are the more
  * probably so the more there are: this share of the draws, an eighth for each row (as

@@ -160,6 +160,9 @@ const double *joint_residual(const struct joint *joint, int channel);
 /* Samples of the last fit in [from, to) of a channel that are not hidden. */
 size_t joint_visible(const struct joint *joint, int channel, size_t from, size_t to);
 
+/* Sets those that are, of n samples of the channel from sample first on, to zero in x. */
+void joint_hide(const struct joint *joint, int channel, long first, size_t n, double *x);
+
 /* Adds sign times one pulse to y1[0..n) and y2[0..n) (either may be NULL). */
 void joint_add(const struct joint_scene *scene, const struct joint_pulse *pulse,
 	double sign, double *y1, double *y2, size_t n);

@@ -118,8 +118,6 @@ void joint_project(struct joint *j);
 /* e less sign times the pulse. */
 void joint_subtract(struct joint *j, const struct joint_scene *s,
 	const struct joint_pulse *p, double sign);
-/* Sets the hidden ones of n samples of a channel, from sample first on, to zero. */
-void joint_hide(const struct joint *j, int channel, long first, size_t n, double *x);
 /* Columns of pulse i as p is. */
 void joint_make_columns(
 	struct joint *j, const struct joint_scene *s, int i, const struct joint_pulse *p);

@@ -34,7 +34,7 @@ static enum num_status reserve(struct buffer *b, size_t n)
 	return NUM_OK;
 }
 
-static void hide(struct buffer *b, size_t i)
+void buffer_hide(struct buffer *b, size_t i)
 {
 	b->missing += !b->hidden[i];
 	b->hidden[i] = 1;
@@ -44,7 +44,7 @@ static void hide(struct buffer *b, size_t i)
 static void hide_last(struct buffer *b, size_t lost)
 {
 	for (size_t i = lost < b->n ? b->n - lost : 0; i < b->n; i++)
-		hide(b, i);
+		buffer_hide(b, i);
 }
 
 static void put(struct buffer *b, double x, size_t lost)
@@ -69,18 +69,16 @@ static void put_part(struct buffer *b, double x, size_t lost)
 	b->sum = b->lost = 0;
 }
 
-enum num_status buffer_append(struct buffer *b, const double *x, size_t n, size_t stride)
+enum num_status buffer_append(
+	struct buffer *b, const double *x, const size_t *lost, size_t n)
 {
 	if (reserve(b, b->ratio ? n / b->ratio + 1 : n) != NUM_OK)
 		return NUM_MEMORY;
-	for (; n > 0; n--, x += stride) {
-		size_t lost = converter_next(&b->converter, *x);
-
+	for (size_t i = 0; i < n; i++)
 		if (b->ratio)
-			put_part(b, *x, lost);
+			put_part(b, x[i], lost[i]);
 		else
-			put(b, *x, lost);
-	}
+			put(b, x[i], lost[i]);
 	return NUM_OK;
 }
 
@@ -91,7 +89,6 @@ enum num_status buffer_average(
 
 	memset(mean, 0, sizeof *mean);
 	mean->ratio = ratio;
-	mean->converter = b->converter;
 	mean->begin = (b->begin + (long long)skip) / (long long)ratio;
 	mean->flat = mean->clean = mean->begin;
 	if (reserve(mean, n / ratio + 1) != NUM_OK)
@@ -99,13 +96,6 @@ enum num_status buffer_average(
 	for (size_t i = skip; i < n; i++)
 		put_part(mean, b->x[i], b->hidden[i]);
 	return NUM_OK;
-}
-
-void buffer_review(struct buffer *b)
-{
-	for (size_t i = 0; i < b->n; i++)
-		if (converter_saturates(&b->converter, b->x[i]))
-			hide(b, i);
 }
 
 void buffer_discard(struct buffer *b, size_t n)

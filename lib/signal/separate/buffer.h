@@ -10,7 +10,6 @@
 #include "num/status.h"
 #include "signal/learn/calibration.h"
 #include "signal/noise/following.h"
-#include "signal/separate/converter.h"
 #include <stddef.h>
 
 /* Samples from index begin on: the filter is undone in those before white; those before
@@ -19,7 +18,6 @@
 struct buffer {
 	double *x;
 	unsigned char *hidden; /* 1: the converter has not measured this sample */
-	struct converter converter;
 	size_t n, capacity;
 	double missing; /* samples hidden so far */
 	size_t ratio;   /* samples of the record averaged into one; 0: not averaged */
@@ -39,16 +37,17 @@ struct buffer {
 
 void buffer_clear(struct buffer *b);
 
-/* Appends n samples, x[0], x[stride], x[2 stride] ...; averaged, if b is. */
-enum num_status buffer_append(struct buffer *b, const double *x, size_t n, size_t stride);
+/* Appends n samples; averaged, if b is.  lost: after each, how many of the last samples
+ * turn out not to have been measured (converter_next()). */
+enum num_status buffer_append(
+	struct buffer *b, const double *x, const size_t *lost, size_t n);
+/* Hides sample i of those stored. */
+void buffer_hide(struct buffer *b, size_t i);
 /* A buffer with the means of every ratio of the n oldest samples of b, the first with an
- * index divisible by ratio, and with its converter; b must be neither averaged nor
- * started.  Means of white noise are white. */
+ * index divisible by ratio; b must be neither averaged nor started.  Means of white noise
+ * are white. */
 enum num_status buffer_average(
 	const struct buffer *b, size_t n, size_t ratio, struct buffer *mean);
-/* Hides the samples at the limits of the converter that only later samples have revealed.
- */
-void buffer_review(struct buffer *b);
 /* Drops the n oldest samples. */
 void buffer_discard(struct buffer *b, size_t n);
 /* Drops samples before keep once there are many. */

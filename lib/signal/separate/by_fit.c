@@ -64,27 +64,45 @@ static double shortest_window(const struct separate *s)
  * 5100, 5327 and 5383; of the rows 5.7, 5.8, 6.8 and 6.9 % are wrong. */
 enum { PATIENCE = 3 };
 
-/* Fits the m pulses of a window to both components; they are doubted if the residual of
- * the second exceeds the noise. */
-static enum separate_status fit_quadrature(
-	struct separate *s, long long from, size_t n, int m, int done, struct goodness *j)
+/* Fits the pulses of a window to both components.  If the residual of the second exceeds
+ * the noise, it is an event that the first does not show, or else they are doubted. */
+static enum separate_status fit_quadrature(struct separate *s, long long from, size_t n,
+	int whole, struct account *a, struct foreign *event)
 {
 	struct channels y = channels_at(s, from);
+	struct goodness *j = &a->goodness;
 	int doubt;
 	enum num_status status;
 
 	status = quadrature_fit(&s->quadrature, s->joint, &s->scene, y.at, y.at + 2, n,
-		s->pulse, m, j->chi2, s->both, &doubt);
+		s->pulse, a->m, j->chi2, s->both, &doubt);
 	if (status == NUM_MEMORY)
 		return SEPARATE_MEMORY;
 	s->with_both = status == NUM_OK;
 	if (!doubt || j->stretch == SEPARATE_UNRESOLVED)
 		return SEPARATE_OK;
+	if (whole && separate_find_foreign(s, from, n, 1, event) != NUM_OK)
+		return SEPARATE_MEMORY;
 	/* Without a pulse there is no row that could be marked as a misfit. */
-	j->stretch = m > 0 ? SEPARATE_MISFIT : SEPARATE_UNRESOLVED;
-	for (int i = 0; i < done; i++)
+	j->stretch = a->m > 0 ? SEPARATE_MISFIT : SEPARATE_UNRESOLVED;
+	for (int i = 0; i < a->done; i++)
 		j->pulse[i] = SEPARATE_MISFIT;
 	return SEPARATE_OK;
+}
+
+/* Explains a window of n samples that is no event of another kind. */
+static enum separate_status explain(struct separate *s, long long from, size_t n, int cut,
+	int whole, struct account *a, struct foreign *event)
+{
+	enum separate_status status = SEPARATE_OK;
+
+	if (!s->par.sources && (a->r.negative || !separate_is_described(a)))
+		status = separate_try_rivals(s, from, n, cut, a);
+	else if (separate_is_described(a))
+		separate_follow(s, a);
+	return status == SEPARATE_OK && has_quadrature(s)
+		       ? fit_quadrature(s, from, n, whole, a, event)
+		       : status;
 }
 
 /* Ends a section with the row of an event found in the n samples that begin at from. */
@@ -103,21 +121,17 @@ enum separate_status separate_fit_section(
 	struct account a = { .m = s->carried };
 	enum separate_status status;
 	struct foreign event = { .verdict = SEPARATE_MISFIT };
-	int both = has_quadrature(s);
-	int whole = !cut && s->window == SEEK && !both && !s->par.sources;
+	int whole = !cut && s->window == SEEK && !s->par.sources;
 	int unresolved, shorter;
-	long before = 0, after = 0;
+	long before, after;
 	size_t n;
 
 	/* The noise on either side of a section shows that no pulse extends there. */
-	if (!both) {
-		before = s->window == SEEK ? sections_aside(s->sections, 0) : 0;
-		before = from - s->buffer[0].begin < before
-				 ? (long)(from - s->buffer[0].begin)
-				 : before;
-		after = cut ? 0 : sections_aside(s->sections, 1);
-		after = ready(s) - to < after ? (long)(ready(s) - to) : after;
-	}
+	before = s->window == SEEK ? sections_aside(s->sections, 0) : 0;
+	before = from - s->buffer[0].begin < before ? (long)(from - s->buffer[0].begin)
+						    : before;
+	after = cut ? 0 : sections_aside(s->sections, 1);
+	after = ready(s) - to < after ? (long)(ready(s) - to) : after;
 	n = (size_t)(to - from + before + after);
 	s->scene.max_pulses = most_pulses(s, (size_t)(to - from));
 	s->scene.quiet[0] = (double)before;
@@ -125,8 +139,7 @@ enum separate_status separate_fit_section(
 	for (int c = 0; c < 2; c++)
 		s->scene.tone_knot[c] = (double)(s->buffer[c].tones.first - from +
 						 before - (c ? s->cal.shift : 0));
-	if (!both)
-		separate_hide(s, from - before, n);
+	separate_hide(s, from - before, n);
 	if (a.m > s->scene.max_pulses)
 		a.m = s->scene.max_pulses;
 	memcpy(a.pulse, s->pulse, sizeof a.pulse);
@@ -139,19 +152,16 @@ enum separate_status separate_fit_section(
 		(s->par.sources || a.goodness.stretch != SEPARATE_UNRESOLVED))
 		separate_keep_fit(s, &a);
 	if (status == SEPARATE_OK && whole && (a.m > 1 || !separate_is_described(&a)) &&
-		separate_find_foreign(s, from - before, n, &event) != NUM_OK)
+		separate_find_foreign(s, from - before, n, 0, &event) != NUM_OK)
 		return SEPARATE_MEMORY;
+	if (status == SEPARATE_OK && !verdict_is_foreign(event.verdict))
+		status = explain(s, from - before, n, cut, whole, &a, &event);
 	if (status == SEPARATE_OK && verdict_is_foreign(event.verdict))
 		return give_event(s, from - before, n, to, &event, next);
-	if (status == SEPARATE_OK && !s->par.sources &&
-		(a.r.negative || !separate_is_described(&a)))
-		status = separate_try_rivals(s, from - before, n, cut, &a);
-	else if (status == SEPARATE_OK && separate_is_described(&a))
-		separate_follow(s, &a);
-	if (status == SEPARATE_OK && both)
-		status = fit_quadrature(s, from, n, a.m, a.done, &a.goodness);
-	for (int i = 0; i < a.m; i++)
+	for (int i = 0; i < a.m; i++) {
 		s->pulse[i].t -= (double)before;
+		s->both[i].t -= (double)before;
+	}
 	a.boundary -= (double)before;
 	if (status != SEPARATE_OK)
 		return status;

@@ -27,9 +27,13 @@ static void see(struct converter_limit *l, double x)
 	}
 }
 
+/* Components are turned back with an error of a few units in the last place. */
+static const double ROUNDING = 1e-14;
+
 static int is_at(const struct converter_limit *l, double x)
 {
-	return x == l->value && l->times >= OFTEN && l->times > TIMES * l->next_times;
+	return fabs(x - l->value) <= ROUNDING * fabs(l->value) && l->times >= OFTEN &&
+	       l->times > TIMES * l->next_times;
 }
 
 int converter_saturates(const struct converter *c, double x)

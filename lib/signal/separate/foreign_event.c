@@ -19,21 +19,23 @@ static int has_two_lobes(const struct shape *shape)
 }
 
 static struct foreign_stretch stretch_at(
-	const struct separate *s, long long at_1, long long at_2, size_t n)
+	const struct separate *s, long long at_1, long long at_2, size_t n, int component)
 {
-	return (struct foreign_stretch){ .y = { channels_at(s, at_1).at[0],
-						 channels_at(s, at_2).at[1] },
+	return (struct foreign_stretch){
+		.y = { channels_at(s, at_1).at[2 * component],
+			channels_at(s, at_2).at[2 * component + 1] },
 		.hidden = { s->scene.hidden[0], s->scene.hidden[1] },
 		.n = n,
 		.shift = (size_t)s->cal.shift,
 		.lost = s->scene.lost,
-		.duration = s->cal.duration };
+		.duration = s->cal.duration
+	};
 }
 
 /* An event at one sensor, in [from, from + n), is part of a shock if the other sensor has
  * the same at the same time, which is a transit time away in the aligned channels. */
-static enum num_status look_for_other_half(
-	struct separate *s, long long from, size_t n, struct foreign *event)
+static enum num_status look_for_other_half(struct separate *s, long long from, size_t n,
+	int component, struct foreign *event)
 {
 	int at_2 = isnan(event->t[0]);
 	long shift = s->cal.shift;
@@ -44,7 +46,7 @@ static enum num_status look_for_other_half(
 	if (shift <= 0 || end > s->buffer[0].clean || end > s->buffer[1].clean ||
 		begin < s->buffer[1].begin)
 		return NUM_OK;
-	stretch = stretch_at(s, begin, begin - shift, n);
+	stretch = stretch_at(s, begin, begin - shift, n, component);
 	for (int c = 0; c < 2; c++)
 		if (stretch.hidden[c])
 			stretch.hidden[c] =
@@ -60,10 +62,10 @@ static enum num_status look_for_other_half(
 	return NUM_OK;
 }
 
-enum num_status separate_find_foreign(
-	struct separate *s, long long from, size_t n, struct foreign *event)
+enum num_status separate_find_foreign(struct separate *s, long long from, size_t n,
+	int component, struct foreign *event)
 {
-	struct foreign_stretch stretch = stretch_at(s, from, from, n);
+	struct foreign_stretch stretch = stretch_at(s, from, from, n, component);
 	int lobes = has_two_lobes(s->cal.shape);
 
 	s->same_shock = 0;
@@ -71,6 +73,6 @@ enum num_status separate_find_foreign(
 		    s->scene.delta_max, event) != NUM_OK)
 		return NUM_MEMORY;
 	return event->verdict == SEPARATE_TRANSIENT
-		       ? look_for_other_half(s, from, n, event)
+		       ? look_for_other_half(s, from, n, component, event)
 		       : NUM_OK;
 }

@@ -183,8 +183,7 @@ static enum separate_status learn_from(struct separate *s, size_t n, double shar
 
 	if (n < SEPARATE_SHORTEST)
 		return SEPARATE_NO_LAG;
-	for (int c = 0; c < 2; c++)
-		buffer_review(&s->buffer[c]);
+	separate_review(s);
 	known = known_of(s);
 	known.most =
 		share * (separate_effort((double)(s->buffer[0].begin + (long long)n)) -
@@ -415,13 +414,14 @@ enum separate_status separate_start_kept(struct separate *s)
 enum separate_status separate_check_alive(struct separate *s, const double *x, size_t n)
 {
 	double before = s->counters.samples;
+	size_t channels = (size_t)s->channels;
 
-	for (size_t i = 0; i < 2 * n && before < (double)s->par.learn; i++) {
-		double now = x[i / 2 * (size_t)s->channels + i % 2];
+	for (size_t i = 0; i < channels * n && before < (double)s->par.learn; i++) {
+		size_t channel = i % channels;
 
-		if (before == 0 && i < 2)
-			s->first[i] = now;
-		s->varies[i % 2] |= now != s->first[i % 2];
+		if (before == 0 && i < channels)
+			s->first[i] = x[i];
+		s->varies[2 * channel / channels] |= x[i] != s->first[channel];
 	}
 	if (before + (double)n < (double)s->par.learn && !s->ended)
 		return SEPARATE_OK;

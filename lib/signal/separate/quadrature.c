@@ -23,6 +23,7 @@ struct part {
 
 struct fit {
 	const struct quadrature *q;
+	const struct joint *joint;
 	const struct joint_scene *scene;
 	const double *x[2], *v[2]; /* sensor: the two components */
 	size_t n;
@@ -156,10 +157,12 @@ static void make_part(struct fit *f, int i, int c, const struct quadrature_pulse
 		part->f[BY_T2][k] = gain * (c ? by_t0 + by_T : by_T);
 		part->f[PULSE][k] *= gain;
 	}
-	for (int k = 0; k < FUNCTIONS; k++)
+	for (int k = 0; k < FUNCTIONS; k++) {
+		joint_hide(f->joint, c, first, part->n, part->f[k]);
 		for (int b = 0; b < f->basis; b++)
 			part->along[k][b] = dot(part->f[k],
 				f->vector[c] + (size_t)b * f->n + first, part->n);
+	}
 }
 
 /* Makes the parts of these pulses and subtracts them from the record; returns
@@ -182,10 +185,12 @@ static double chi_square(struct fit *f, const struct quadrature_pulse *p)
 				f->rest[c][1][(size_t)part->first + k] -= p[i].b * value;
 			}
 		}
-		for (int k = 0; k < 2; k++)
+		for (int k = 0; k < 2; k++) {
+			joint_hide(f->joint, c, 0, f->n, f->rest[c][k]);
 			for (int b = 0; b < f->basis; b++)
 				f->left[c][k][b] = dot(f->rest[c][k],
 					f->vector[c] + (size_t)b * f->n, f->n);
+		}
 		for (int k = 0; k < 2; k++)
 			for (int l = 0; l < 2; l++) {
 				double product = dot(f->rest[c][k], f->rest[c][l], f->n);
@@ -355,10 +360,10 @@ static void fill_covariance(struct fit *f, struct quadrature_pulse *p)
  * the excess in x, whose pulses may be smaller. */
 static int is_doubtful(const struct fit *f, double all, double chi2)
 {
-	double of_x = 0, dof = 2 * (double)f->n * (1 - f->scene->lost) - f->taken - f->m;
-	double v;
+	double of_x = 0, dof = -f->taken - f->m, v;
 
 	for (int c = 0; c < 2; c++) {
+		dof += (double)joint_visible(f->joint, c, 0, f->n) * (1 - f->scene->lost);
 		of_x += dot(f->rest[c][0], f->rest[c][0], f->n);
 		for (int b = 0; b < f->basis; b++)
 			of_x -= f->left[c][0][b] * f->left[c][0][b];
@@ -375,6 +380,7 @@ enum num_status quadrature_fit(const struct quadrature *q, const struct joint *j
 	double chi2, struct quadrature_pulse *out, int *doubt)
 {
 	struct fit f = { .q = q,
+		.joint = joint,
 		.scene = scene,
 		.x = { x[0], x[1] },
 		.v = { v[0], v[1] },

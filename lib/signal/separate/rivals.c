@@ -67,8 +67,7 @@ enum separate_status separate_try_rivals(
 		if (k == VELOCITIES)
 			separate_widen(s);
 		s->scene.signs = k == SIGNS;
-		if (k == IMPULSES && (s->cal.whitening.tap || has_quadrature(s) ||
-					     !hide_spikes(s, from, n)))
+		if (k == IMPULSES && (s->cal.whitening.tap || !hide_spikes(s, from, n)))
 			continue;
 		status = separate_fit_window(s, y.at, n, cut, &rival);
 		found = status == SEPARATE_OK && separate_is_described(&rival) &&

@@ -265,9 +265,8 @@ static enum separate_status push(struct separate *s, const double *x, size_t n)
 {
 	enum separate_status status = SEPARATE_OK;
 
-	for (int c = 0; c < s->channels; c++)
-		if (buffer_append(&s->buffer[c], x + c, n, (size_t)s->channels) != NUM_OK)
-			return SEPARATE_MEMORY;
+	if (separate_append(s, x, n) != NUM_OK)
+		return SEPARATE_MEMORY;
 	if (s->par.kept)
 		status = separate_check_alive(s, x, n);
 	s->counters.samples += (double)n / s->ratio;

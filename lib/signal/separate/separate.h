@@ -78,9 +78,10 @@ struct separate_par {
 	int most_pulses; /* limit for a window; 0: JOINT_PULSES_MAX */
 	/* Of the masks, samples; 0: 64, or as many as the pulses need, and half of it. */
 	size_t mask_window, mask_hop;
-	/* 2 (0: 2), or with SEPARATE_FIT 4: the second component of both (quadrature.h)
-	 * behind them. */
+	/* 2 (0: 2), or with SEPARATE_FIT 4: two components of each sensor, I1 Q1 I2 Q2;
+	 * that at this phase, rad, is positive in all pulses (quadrature.h). */
 	int channels;
+	double angle;
 	struct instrument *kept; /* learned before, with known: its cal is taken over;
 				    NULL: learn */
 	int want_sources;        /* fill separate_section.source */

@@ -8,6 +8,7 @@
 #include "signal/detect/sections.h"
 #include "signal/fit/goodness.h"
 #include "signal/separate/buffer.h"
+#include "signal/separate/converter.h"
 #include "signal/separate/quadrature.h"
 #include "signal/separate/separate.h"
 #include "signal/separate/together.h"
@@ -67,9 +68,9 @@ struct separate {
 	struct calibration cal;
 	int default_learn; /* 1: par.learn is SEPARATE_LEARN */
 	int calibrated, ended;
-	struct instrument kept; /* par.kept, whose cal is moved to cal */
-	int varies[2];          /* 1: the channel has not been constant so far */
-	double first[2];        /* first samples of a record with a kept instrument */
+	struct instrument kept;     /* par.kept, whose cal is moved to cal */
+	int varies[2];              /* 1: the sensor has not been constant so far */
+	double first[CHANNELS_MAX]; /* frame of a record with a kept instrument */
 	double level[2], levels;
 	long long level_at;
 	int looked;     /* 1: the first samples have been examined */
@@ -77,6 +78,7 @@ struct separate {
 	int ratio;      /* samples of the record in one of buffer */
 	size_t awaited; /* samples of buffer to learn from means */
 	int channels;   /* of the record */
+	struct converter converter[CHANNELS_MAX]; /* of each channel, in their order */
 	struct buffer buffer[CHANNELS_MAX];
 	struct sections *sections;
 	struct joint *joint;
@@ -167,6 +169,13 @@ static inline double separate_noise_at(const struct separate *s, int c, double a
 {
 	return s->cal.noise[c] * following_at(&s->buffer[c].noise, at);
 }
+
+/* frames.c */
+
+/* Appends n frames to the buffers. */
+enum num_status separate_append(struct separate *s, const double *x, size_t n);
+/* Hides the samples at a limit of the converter that only later samples have revealed. */
+void separate_review(struct separate *s);
 
 /* queue.c */
 
@@ -293,9 +302,9 @@ enum separate_status separate_try_rivals(
 
 /* foreign_event.c */
 
-/* Names the event in [from, from + n), if it is one that is no particle. */
-enum num_status separate_find_foreign(
-	struct separate *s, long long from, size_t n, struct foreign *event);
+/* Names the event in [from, from + n) of a component, 0 or 1, if it is no particle. */
+enum num_status separate_find_foreign(struct separate *s, long long from, size_t n,
+	int component, struct foreign *event);
 
 /* by_fit.c */
 

@@ -1,0 +1,71 @@
+/* frames.c - frames of a record: which samples the converter has measured, and the
+ * components of both sensors that are separated */
+#include "signal/separate/separate_state.h"
+#include <math.h>
+
+/* Components of a sensor in the record. */
+static int components(const struct separate *s)
+{
+	return s->channels / 2;
+}
+
+static struct converter *converter_of(struct separate *s, int sensor, int component)
+{
+	return &s->converter[components(s) * sensor + component];
+}
+
+/* Samples are tested as the converter gives them, before they are turned.  A sample of a
+ * sensor is hidden where one component of it was not measured. */
+enum num_status separate_append(struct separate *s, const double *x, size_t n)
+{
+	enum { BLOCK = 256 };
+	double turned[2][BLOCK];
+	double along = cos(s->par.angle), across = sin(s->par.angle);
+	size_t lost[BLOCK], some;
+
+	for (; n > 0; n -= some, x += some * (size_t)s->channels) {
+		some = n < BLOCK ? n : BLOCK;
+		for (int sensor = 0; sensor < 2; sensor++) {
+			const double *in = x + components(s) * sensor;
+
+			for (size_t i = 0; i < some; i++, in += s->channels) {
+				lost[i] =
+					converter_next(converter_of(s, sensor, 0), in[0]);
+				turned[0][i] = in[0];
+				if (!has_quadrature(s))
+					continue;
+				size_t other =
+					converter_next(converter_of(s, sensor, 1), in[1]);
+				lost[i] = other > lost[i] ? other : lost[i];
+				turned[0][i] = along * in[0] + across * in[1];
+				turned[1][i] = along * in[1] - across * in[0];
+			}
+			for (int k = 0; k < components(s); k++)
+				if (buffer_append(&s->buffer[sensor + 2 * k], turned[k],
+					    lost, some) != NUM_OK)
+					return NUM_MEMORY;
+		}
+	}
+	return NUM_OK;
+}
+
+/* 1 if a component of a sample in the buffers is at its limit. */
+static int saturates(struct separate *s, int sensor, size_t i)
+{
+	double along = cos(s->par.angle), across = sin(s->par.angle);
+	double x = s->buffer[sensor].x[i], v;
+
+	if (!has_quadrature(s))
+		return converter_saturates(converter_of(s, sensor, 0), x);
+	v = s->buffer[sensor + 2].x[i];
+	return converter_saturates(converter_of(s, sensor, 0), along * x - across * v) ||
+	       converter_saturates(converter_of(s, sensor, 1), along * v + across * x);
+}
+
+void separate_review(struct separate *s)
+{
+	for (int sensor = 0; sensor < 2; sensor++)
+		for (size_t i = 0; i < s->buffer[sensor].n; i++)
+			if (saturates(s, sensor, i))
+				buffer_hide(&s->buffer[sensor], i);
+}
