@@ -143,7 +143,7 @@ enum separate_status separate_fit_section(
 	if (a.m > s->scene.max_pulses)
 		a.m = s->scene.max_pulses;
 	memcpy(a.pulse, s->pulse, sizeof a.pulse);
-	s->scene.give_up = !s->par.sources;
+	s->scene.give_up = cut && !s->par.sources;
 	status = separate_fit_window(s, channels_at(s, from - before).at, n, cut, &a);
 	s->scene.give_up = 0;
 	if (status == SEPARATE_OK && separate_is_described(&a))
