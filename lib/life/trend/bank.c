@@ -48,7 +48,7 @@ static const double BENT = -0.4;
  * spread of the growth have no effect, as doc/benchmarks.md tells. */
 static const struct {
 	double hazard, falls, growth;
-} past = { 0.36, 0.25, 20 };
+} past = { 0.36, 0.25, 16 };
 
 /* --- trends ------------------------------------------------------------------------- */
 
