@@ -77,7 +77,8 @@ struct calibration {
 	double misfit;                    /* of joint.h: error of the shape */
 	int far;    /* pulses near the limits of the range of delays that was searched */
 	int events; /* pulses to which the shape was fitted, and ... */
-	int isolated;       /* ... those of them that stand alone */
+	int isolated;       /* ... those of them that stand alone, ... */
+	int negative;       /* ... and those that are negative */
 	int presumed_white; /* 1: treated as white although the spectrum test failed */
 	int estimated;      /* 1: whitened by a filter estimated from its noise */
 	double work;        /* samples of pulses computed to learn it, or in vain */

@@ -202,6 +202,23 @@ static void learn_misfit(
 		ex->example[i].outlier = share[i] > 4 * left + 4 * scatter[i];
 }
 
+/* Finds the pulses of an example: a single negative one, or positive ones. */
+static enum joint_status fit_example(
+	struct examples *ex, struct example *e, struct joint_result *result)
+{
+	struct joint_scene one = *scene_of(ex, e);
+	enum joint_status status;
+
+	one.signs = one.max_pulses = 1;
+	e->m = 0;
+	status = joint_fit(ex->joint, &one, e->y1, e->y2, e->n, e->pulse, &e->m, result);
+	if (status != JOINT_OK || (e->m == 1 && !result->full && e->pulse[0].a < 0))
+		return status;
+	e->m = 0;
+	return joint_fit(
+		ex->joint, &ex->scene, e->y1, e->y2, e->n, e->pulse, &e->m, result);
+}
+
 double examples_fit(struct examples *ex, double misfit)
 {
 	double each[EXAMPLES_MAX], rest[2][EXAMPLES_MAX], share[EXAMPLES_MAX],
@@ -217,11 +234,9 @@ double examples_fit(struct examples *ex, double misfit)
 		struct joint_result result;
 		double energy;
 
-		e->m = 0;
 		if (!may_go_on(ex))
 			return INFINITY;
-		if (note_memory(ex, joint_fit(ex->joint, scene_of(ex, e), e->y1, e->y2,
-					    e->n, e->pulse, &e->m, &result)))
+		if (note_memory(ex, fit_example(ex, e, &result)))
 			return INFINITY;
 		energy = fmax(example_energy(ex, e), 1);
 		ex->energy += energy;

@@ -255,7 +255,7 @@ static void learn_range(
 {
 	double lo = INFINITY, hi = -INFINITY;
 
-	c->far = c->isolated = 0;
+	c->far = c->isolated = c->negative = 0;
 	for (int i = 0; i < ex->count; i++) {
 		const struct example *e = &ex->example[i];
 
@@ -264,6 +264,7 @@ static void learn_range(
 			const struct joint_pulse *p = &e->pulse[k];
 
 			c->far += !e->outlier && fabs(p->delta) > FAR * c->delta_max;
+			c->negative += p->a < 0;
 			lo = fmin(lo, p->delta);
 			hi = fmax(hi, p->delta);
 		}

@@ -23,7 +23,7 @@ struct early *early_new(const struct separate_par *given)
 {
 	struct early *e = calloc(1, sizeof *e);
 	struct separate_par par = *given;
-	int any = par.learn == 0 && !par.kept && !par.known.filter && par.channels <= 2 &&
+	int any = par.learn == 0 && !par.kept && !par.known.filter &&
 		  par.method == SEPARATE_FIT;
 
 	if (!e)

@@ -13,7 +13,7 @@
 
 struct early;
 /* As separate_new(); no row is early if par tells how much is learned from, or more than
- * the first samples do: a kept instrument, a filter, or a second component. */
+ * the first samples do: a kept instrument or a filter. */
 struct early *early_new(const struct separate_par *par); /* NULL: no memory */
 void early_free(struct early *e);
 

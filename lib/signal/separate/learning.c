@@ -300,7 +300,8 @@ static int is_clear(const struct calibration *c)
 	return learn_describes(c) && c->chi2 > 1 / CALIBRATE_DESCRIBES &&
 	       c->duration <= SEPARATE_LONG && c->tones == 0 &&
 	       c->delta_max - c->delta_min <= 2 * calibration_plug(c) && !c->dense &&
-	       !c->presumed_white && !c->measured && !c->corrected && !c->whitening.tap;
+	       !c->presumed_white && !c->measured && !c->corrected && !c->whitening.tap &&
+	       c->negative == 0;
 }
 
 /* Samples of pulses that may be computed for this per sample.  In 44 records of as many

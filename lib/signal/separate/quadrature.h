@@ -2,8 +2,8 @@
  * pulses
  *
  * A demodulator with two outputs gives each sensor a complex signal; its two components,
- * after a rotation by the caller, are those of the record, x, and v, in quadrature with
- * it.  In x all pulses are positive, and the joint fit (joint.h) finds them there; in v
+ * turned by a phase, are x, and v, in quadrature with it.  In x nearly all pulses are
+ * positive, and the joint fit (joint.h) finds them there; in v
  * pulse k has any amplitude b_k, the same arrivals and the same length.  From the result
  * of the joint fit Gauss-Newton steps on all four channels lead to the least-squares
  * estimates of arrivals, a_k and b_k together, with their inverse Fisher matrix.
