@@ -17,8 +17,8 @@ static void check_status(
 	static const char *const why[] = {
 		[SEPARATE_MEMORY] = "no memory",
 		[SEPARATE_SHORT] = "want at least 64 frames to learn from",
-		[SEPARATE_SILENT_1] = "channel 1 is constant: a dead sensor",
-		[SEPARATE_SILENT_2] = "channel 2 is constant: a dead sensor",
+		[SEPARATE_SILENT_1] = "sensor 1 is constant: a dead sensor",
+		[SEPARATE_SILENT_2] = "sensor 2 is constant: a dead sensor",
 		[SEPARATE_AT_ONCE] =
 			"both channels have the same at once: shocks or crosstalk, no "
 			"particles; give --align 0 if they are aligned",

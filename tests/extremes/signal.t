@@ -23,7 +23,7 @@ constant() { # VALUE1 VALUE2
 
 # --- dead and broken records
 constant 0 0 >silence.au
-refused "silence" 1 'channel 1 is constant: a dead sensor' duet silence.au
+refused "silence" 1 'sensor 1 is constant: a dead sensor' duet silence.au
 constant 2.5 -1 >dc.au
 refused "DC" 1 'channel 1 is constant' duet dc.au
 particles
