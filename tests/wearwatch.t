@@ -35,6 +35,13 @@ started() {
 		sleep 0.05
 	done 2>/dev/null
 }
+# Those killed are still there for a moment.
+ended() {
+	for _ in $(seq 400); do
+		ps -A -o pgid= -o args= | awk -v g="$1" '$1 == g && !/<defunct>/ { n++ } END { exit !n }' || return
+		sleep 0.05
+	done
+}
 if command -v setsid >/dev/null; then
 	mkfifo live
 	# shellcheck disable=SC2016 # of the other shell
@@ -46,6 +53,7 @@ if command -v setsid >/dev/null; then
 	kill -KILL "-$(cat group)"
 	exec 3>&-
 	wait $p 2>/dev/null
+	ended "$(cat group)"
 	# A torn row, and rows of a chunk that has no row
 	printf '3\t10800' >>cut/chunks.tsv
 	printf '1\t2\t3\n' >>cut/particles.tsv
