@@ -89,7 +89,7 @@ is 'the von Mises stress is that of debrisgen --stress, and that of the tensor' 
 is 'the response to an impulse is the taps' "$(got filter | awk '{ print ($1 < 1e-15) }')" 1
 is 'the particles in a record are those of duet to the last bit' "$(got separation)" 'True True True'
 is 'a record without particles gives none and a warning' "$(got quiet)" "0 ['channels with nothing in common: no pa']"
-is 'a dead sensor is named' "$(got dead)" 'sensor 1 is constant: a dead sensor'
+is 'a dead sensor is named' "$(got dead)" 'channel 1 is constant: a dead sensor'
 is 'the remaining life of a straight line is right' "$(got life)" 'True True'
 is 'an impossible input raises an exception' "$(grep -c refused got)" 4
 done_testing

@@ -25,11 +25,11 @@ constant() { # VALUE1 VALUE2
 constant 0 0 >silence.au
 refused "silence" 1 'sensor 1 is constant: a dead sensor' duet silence.au
 constant 2.5 -1 >dc.au
-refused "DC" 1 'channel 1 is constant' duet dc.au
+refused "DC" 1 'sensor 1 is constant' duet dc.au
 particles
 frames s.au 2 >frames.txt
 awk '{ print $1, 0 }' frames.txt | au 10000 2 >dead.au
-refused "sensor 2 dead" 1 'channel 2 is constant' duet dead.au
+refused "sensor 2 dead" 1 'sensor 2 is constant' duet dead.au
 awk 'NR == 777 { $2 = "nan" } { print $1, $2 }' frames.txt | au 10000 2 >nan.au
 refused "a sample is not a number" 1 'channel 2, frame 776: not a finite' duet nan.au
 awk 'NR == 99 { $1 = "inf" } { print $1, $2 }' frames.txt | au 10000 2 >inf.au
