@@ -189,8 +189,9 @@ TESTS = tests/matrix.t tests/duet.t $(filter-out tests/matrix.t tests/duet.t, \
 	$(wildcard tests/*.t)) tests/extremes/*.t $(UNITS)
 LONG_TESTS = tests/long/*.t $(LONG_UNITS)
 
+# One more than there are cores, since some tests wait.
 check: all $(UNITS) $(MATRIX)
-	@BIN="$(abspath $(BIN))" tests/run $(TESTS)
+	@BIN="$(abspath $(BIN))" tests/run -j $$(($$(getconf _NPROCESSORS_ONLN) + 1)) $(TESTS)
 
 check-long: all $(UNITS) $(LONG_UNITS) $(BENCH_BINS) $(MATRIX)
 	@BIN="$(abspath $(BIN))" tests/run $(LONG_TESTS)
