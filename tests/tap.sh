@@ -151,6 +151,19 @@ column() {
 	END { if (!seen) print "no table" }' "$2"
 }
 
+# live BYTES FILE: a record that stands still after so many bytes until live.tsv, which is
+# made of it, has a row; first.tsv: what it has then
+live() {
+	head -c "$1" "$2"
+	waited=0
+	until grep -q alone live.tsv || [ $waited = 600 ]; do
+		sleep 0.1
+		waited=$((waited + 1))
+	done
+	cp live.tsv first.tsv
+	tail -c +$(($1 + 1)) "$2"
+}
+
 done_testing() {
 	echo "1..$tests"
 	[ "$bad" = 0 ]

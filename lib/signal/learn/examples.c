@@ -206,7 +206,8 @@ static void learn_misfit(
 static enum joint_status fit_example(
 	struct examples *ex, struct example *e, struct joint_result *result)
 {
-	struct joint_scene one = *scene_of(ex, e);
+	const struct joint_scene *scene = scene_of(ex, e);
+	struct joint_scene one = *scene;
 	enum joint_status status;
 
 	one.signs = one.max_pulses = 1;
@@ -215,8 +216,7 @@ static enum joint_status fit_example(
 	if (status != JOINT_OK || (e->m == 1 && !result->full && e->pulse[0].a < 0))
 		return status;
 	e->m = 0;
-	return joint_fit(
-		ex->joint, &ex->scene, e->y1, e->y2, e->n, e->pulse, &e->m, result);
+	return joint_fit(ex->joint, scene, e->y1, e->y2, e->n, e->pulse, &e->m, result);
 }
 
 double examples_fit(struct examples *ex, double misfit)

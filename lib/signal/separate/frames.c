@@ -49,10 +49,11 @@ enum num_status separate_append(struct separate *s, const double *x, size_t n)
 	return NUM_OK;
 }
 
-/* 1 if a component of a sample in the buffers is at its limit. */
-static int saturates(struct separate *s, int sensor, size_t i)
+/* 1 if a component of a sample in the buffers, turned by this cosine and sine, is at its
+ * limit. */
+static int saturates(
+	struct separate *s, int sensor, size_t i, double along, double across)
 {
-	double along = cos(s->par.angle), across = sin(s->par.angle);
 	double x = s->buffer[sensor].x[i], v;
 
 	if (!has_quadrature(s))
@@ -64,8 +65,10 @@ static int saturates(struct separate *s, int sensor, size_t i)
 
 void separate_review(struct separate *s)
 {
+	double along = cos(s->par.angle), across = sin(s->par.angle);
+
 	for (int sensor = 0; sensor < 2; sensor++)
 		for (size_t i = 0; i < s->buffer[sensor].n; i++)
-			if (saturates(s, sensor, i))
+			if (saturates(s, sensor, i, along, across))
 				buffer_hide(&s->buffer[sensor], i);
 }
