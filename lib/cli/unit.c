@@ -313,7 +313,7 @@ static struct decimal shortest(double value)
 	return d;
 }
 
-static void write_exponent(int exponent, char *to)
+static char *write_exponent(int exponent, char *to)
 {
 	int size = abs(exponent);
 
@@ -323,7 +323,7 @@ static void write_exponent(int exponent, char *to)
 		*to++ = (char)('0' + size / 100);
 	*to++ = (char)('0' + size / 10 % 10);
 	*to++ = (char)('0' + size % 10);
-	*to = '\0';
+	return to;
 }
 
 static void write_digits(uint64_t value, int count, char *to)
@@ -332,8 +332,8 @@ static void write_digits(uint64_t value, int count, char *to)
 		to[count] = (char)('0' + value % 10);
 }
 
-/* As printf() does for %g with as many digits. */
-static void write_decimal(const struct decimal *d, int negative, char *to)
+/* As printf() does for %g with as many digits; returns the end. */
+static char *write_decimal(const struct decimal *d, int negative, char *to)
 {
 	enum { HALF = 8, HALF_UNIT = 100000000 }; /* two short chains of divisions */
 	char digit[LONGEST];
@@ -361,14 +361,11 @@ static void write_decimal(const struct decimal *d, int negative, char *to)
 		*to++ = '.';
 	memcpy(to, digit + whole, (size_t)(used - whole));
 	to += used - whole;
-	if (plain)
-		*to = '\0';
-	else
-		write_exponent(d->exponent, to);
+	return plain ? to : write_exponent(d->exponent, to);
 }
 
 /* A whole number of less than 15 digits. */
-static void write_whole(long long value, char *to)
+static char *write_whole(long long value, char *to)
 {
 	char digits[24];
 	int n = 0;
@@ -382,36 +379,43 @@ static void write_whole(long long value, char *to)
 	while ((value /= 10) > 0);
 	while (n > 0)
 		*to++ = digits[--n];
-	*to = '\0';
+	return to;
 }
 
 /* The same, digit by digit. */
-static void write_slowly(double value, char text[NUMBER_TEXT])
+static char *write_slowly(double value, char text[NUMBER_TEXT])
 {
 	for (int digits = SHORTEST; digits <= LONGEST; digits++) {
 		snprintf(text, NUMBER_TEXT, "%.*g", digits, value);
 		if (strtod(text, NULL) == value)
 			break;
 	}
+	return text + strlen(text);
+}
+
+size_t number_write(double value, char text[NUMBER_TEXT])
+{
+	double size = fabs(value);
+	struct decimal d = { .count = 0 };
+	char *end;
+
+	/* Powers of ten stay normal. */
+	if (size > 1e-280 && size < 1e280 && !(size < 1e14 && value == floor(value)))
+		d = shortest(size);
+	if (isnan(value))
+		end = (char *)memcpy(text, "nan", 3) + 3;
+	else if (size < 1e14 && value == floor(value) && !(size == 0 && signbit(value)))
+		end = write_whole((long long)value, text);
+	else if (d.count > 0)
+		end = write_decimal(&d, value < 0, text);
+	else
+		end = write_slowly(value, text);
+	*end = '\0';
+	return (size_t)(end - text);
 }
 
 const char *number_text(double value, char text[NUMBER_TEXT])
 {
-	double size = fabs(value);
-
-	if (isnan(value))
-		return strcpy(text, "nan");
-	if (size < 1e14 && value == floor(value) && !(size == 0 && signbit(value))) {
-		write_whole((long long)value, text);
-	} else if (size > 1e-280 && size < 1e280) { /* powers of ten stay normal */
-		struct decimal d = shortest(size);
-
-		if (d.count > 0)
-			write_decimal(&d, value < 0, text);
-		else
-			write_slowly(value, text);
-	} else {
-		write_slowly(value, text);
-	}
+	number_write(value, text);
 	return text;
 }

@@ -302,6 +302,24 @@ static double bound_row(const struct stress *s, int bx, int by, int j, double z)
 	return sum[0] + sum[1];
 }
 
+/* Whether loads of the blocks around one may act at its nodes without a distance. */
+static int block_is_touched(const struct stress *s, int bx, int by)
+{
+	int x0 = bx * s->side - 1, x1 = x0 + s->side + 1, y0 = by * s->side - 1,
+	    y1 = y0 + s->side + 1;
+
+	for (int j = by > 0 ? by - 1 : 0; j <= by + 1 && j < s->by; j++)
+		for (int i = bx > 0 ? bx - 1 : 0; i <= bx + 1 && i < s->bx; i++) {
+			const struct block *b =
+				&s->blocks[(size_t)j * (size_t)s->bx + (size_t)i];
+
+			if (b->load > 0 && b->x1 >= x0 && b->x0 <= x1 && b->y1 >= y0 &&
+				b->y0 <= y1)
+				return 1;
+		}
+	return 0;
+}
+
 /* Adds row by row from the block, until the sum exceeds the limit, or cannot reach it
  * even if the remaining load were all in the next rows.  The block's own load, at no
  * distance, is often enough. */
@@ -311,6 +329,8 @@ static int block_may_fail(const struct stress *s, int bx, int by, double z, doub
 	double sum = 0, rest = s->load;
 
 	if (own > 0 && own * s->point > limit * (z * z))
+		return 1;
+	if (z == 0 && block_is_touched(s, bx, by))
 		return 1;
 	for (int d = 0; d < s->by; d++) {
 		double away = d * s->side * s->par.dy;
