@@ -68,7 +68,7 @@ struct free_sum {
 	/* Of the part summed on the cells, at the surface: the kernel, or NULL, and the
 	 * equivalent stress by a unit load, in rows of 2 REACH + 1. */
 	struct influence *inner;
-	double *size;
+	float *size;
 	struct level_memory level[LEVELS];
 };
 
@@ -516,7 +516,8 @@ static enum num_status know_sizes(struct free_sum *s, const struct stress_want *
 		return NUM_MEMORY;
 	for (int j = -REACH; j <= REACH; j++)
 		for (int i = -REACH; i <= REACH; i++)
-			s->size[(j + REACH) * WIDTH + i + REACH] = size_of(s, want, i, j);
+			s->size[(j + REACH) * WIDTH + i + REACH] =
+				(float)size_of(s, want, i, j);
 	return NUM_OK;
 }
 

@@ -286,28 +286,56 @@ static double largest_weight(const struct line *l)
 	return most;
 }
 
+/* The largest equivalent stress of numbers up to these: a norm is largest in a corner. */
+static double largest_size(const struct stress_want *want, const double *most)
+{
+	double size = 0;
+
+	for (int signs = 0; signs < 1 << (want->numbers - 1); signs++) {
+		double number[STRESS_NUMBERS] = { 0 };
+
+		for (int c = 0; c < want->numbers; c++)
+			number[c] = signs >> c & 1 ? -most[c] : most[c];
+		size = fmax(size, want->size(want->context, number));
+	}
+	return size;
+}
+
+/* The largest size of one number of the points [begin, end) in each square of a row;
+ * step: between squares. */
+static void take_most(const double *row, int begin, int end, double *most, size_t step)
+{
+	for (int x = begin; x < end; x++) {
+		double size = fabs(row[x]), *to = &most[(size_t)(x / SQUARE) * step];
+
+		*to = size > *to ? size : *to;
+	}
+}
+
 /* The equivalent stress of a weighted sum is at most the sum of the weights' sizes times
  * the largest one. */
-static void find_most(struct lattice_gather *g, const struct stress_want *points)
+static enum num_status find_most(
+	struct lattice_gather *g, const struct stress_want *points, size_t squares)
 {
 	const struct stress_want *want = g->want;
-	size_t nx = (size_t)g->l->x.axis.points;
+	size_t nx = (size_t)g->l->x.axis.points, numbers = (size_t)want->numbers;
 	double weight = largest_weight(&g->l->x) * largest_weight(&g->l->y);
+	double *most = calloc(squares * numbers, sizeof *most);
 
+	if (!most)
+		return NUM_MEMORY;
 	for (size_t k = 0; k < points->count; k++) {
 		const struct stress_span *s = &points->span[k];
-		double *most = g->most + (size_t)s->y / SQUARE * g->squares;
+		size_t first = (size_t)s->y / SQUARE * g->squares;
 
-		for (int x = s->begin; x < s->end; x++) {
-			double number[STRESS_NUMBERS] = { 0 }, size;
-
-			for (int c = 0; c < want->numbers; c++)
-				number[c] = g->field[c][(size_t)s->y * nx + (size_t)x];
-			size = weight * want->size(want->context, number);
-			if (size > most[x / SQUARE])
-				most[x / SQUARE] = size;
-		}
+		for (size_t c = 0; c < numbers; c++)
+			take_most(g->field[c] + (size_t)s->y * nx, s->begin, s->end,
+				most + first * numbers + c, numbers);
 	}
+	for (size_t i = 0; i < squares; i++)
+		g->most[i] = weight * largest_size(want, most + i * numbers);
+	free(most);
+	return NUM_OK;
 }
 
 struct lattice_gather *lattice_gather_new(const struct lattice *l, double *const *field,
@@ -326,13 +354,13 @@ struct lattice_gather *lattice_gather_new(const struct lattice *l, double *const
 	g->scratch = malloc(g->room * (size_t)pool_threads(l->pool) * sizeof *g->scratch);
 	g->squares = ((size_t)l->x.axis.points + SQUARE - 1) / SQUARE;
 	if (want->size && points)
-		g->most = calloc(g->squares * rows, sizeof *g->most);
-	if (!g->scratch || (want->size && points && !g->most)) {
+		g->most = malloc(g->squares * rows * sizeof *g->most);
+	if (!g->scratch ||
+		(want->size && points &&
+			(!g->most || find_most(g, points, g->squares * rows)))) {
 		lattice_gather_free(g);
 		return NULL;
 	}
-	if (g->most)
-		find_most(g, points);
 	return g;
 }
 

@@ -14,6 +14,9 @@
  * the same time within 2 %. */
 enum { SQUARE = 8, CLOSE = 10, GAP = 4 };
 
+/* Of sums of up to a thousand loads in single precision. */
+static const double ROUNDING = 1e-4;
+
 struct load {
 	int x;
 	double value;
@@ -25,7 +28,7 @@ struct narrowing {
 	size_t *row;       /* the first load of each row, and the end */
 	int nx, ny, apart; /* squares; between those in reach of each other */
 	double *ring;      /* of each square: the bound for loads that are not close */
-	double *close; /* of the nodes of a row of squares: the sum for those that are */
+	float *close; /* of the nodes of a row of squares: the sum for those that are */
 	struct stress_span *span;
 	size_t load_room, span_room, count;
 };
@@ -103,15 +106,22 @@ static enum num_status bound_rings(struct narrowing *w)
 	return most && sum ? NUM_OK : NUM_MEMORY;
 }
 
+typedef float four __attribute__((vector_size(16)));
+
 /* to += w from */
-static void add_row(double *to, const double *from, double w, int count)
+static void add_row(float *to, const float *from, float w, int count)
 {
 	int i = 0;
 
-	for (; i + 1 < count; i += 2)
-		lanes_store(
-			to + i, lanes_load(to + i, 2) + w * lanes_load(from + i, 2), 2);
-	if (i < count)
+	for (; i + 3 < count; i += 4) {
+		four a, b;
+
+		memcpy(&a, to + i, sizeof a);
+		memcpy(&b, from + i, sizeof b);
+		a += w * b;
+		memcpy(to + i, &a, sizeof a);
+	}
+	for (; i < count; i++)
 		to[i] += w * from[i];
 }
 
@@ -132,7 +142,7 @@ static void add_close(struct narrowing *w, int y0, int y1)
 						left,
 					n->size + (v - y + n->reach) * width + left - x +
 						n->reach,
-					w->load[k].value, right - left);
+					(float)w->load[k].value, right - left);
 		}
 }
 
@@ -156,7 +166,7 @@ static enum num_status narrow_piece(
 	struct narrowing *w, int y, int begin, int end, double rest)
 {
 	const struct narrow *n = w->n;
-	const double *close = w->close + (size_t)(y % SQUARE) * (size_t)n->wx;
+	const float *close = w->close + (size_t)(y % SQUARE) * (size_t)n->wx;
 
 	for (int x = begin; x < end; x++) {
 		int first = x;
@@ -197,7 +207,7 @@ static enum num_status narrow_rows(
 			continue;
 		add_close(w, y0, y1);
 		for (int i = 0; i < w->nx; i++)
-			rest[i] = n->limit * (1 - 1e-9) - rest[i] -
+			rest[i] = n->limit * (1 - ROUNDING) - rest[i] -
 				  lattice_most(n->far, i * SQUARE,
 					  lesser_int((i + 1) * SQUARE, n->wx), y0, y1);
 		for (; at < count && from[at].y - n->y0 < y1; at++)

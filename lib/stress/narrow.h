@@ -16,8 +16,8 @@ struct narrow {
 	const double *load; /* scale times, in rows of stride */
 	size_t stride;
 	double scale;
-	int reach;          /* cells, along either axis */
-	const double *size; /* equivalent stress by a unit load, in rows of 2 reach + 1 */
+	int reach;         /* cells, along either axis */
+	const float *size; /* equivalent stress by a unit load, in rows of 2 reach + 1 */
 	const struct lattice_gather *far;
 	double limit;
 };
