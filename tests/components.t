@@ -132,6 +132,23 @@ for kind in impulse bubble shock transient; do
 	near "most of what stands alone is named: $kind" "$(kinds events.tsv verdict $kind)" "$(kinds truth.tsv kind $kind)" 5
 done
 
+# Noise three times as large from the middle on, at all components
+particles 200 steel:70 copper:130 >table # 40 s
+record --seed 3 --noise 15mV >louder.au
+record --seed 3 >quiet.au
+samples() { tail -c "+$(od -An -tu1 -j4 -N4 "$1" | awk '{ print ($3 * 256 + $4) + 1 }')" "$1"; }
+half=$((20 * 10000 * 4 * 8))
+{
+	printf '.snd\0\0\0\030\377\377\377\377\0\0\0\007\0\0\047\020\0\0\0\004'
+	samples quiet.au | head -c $half
+	samples louder.au | tail -c "+$((half + 1))" | head -c $half
+} >changed.au
+duet --excitation 500kHz changed.au >changed.tsv
+is 'a record of four channels whose noise changes is believed' $? 0
+judged changed.tsv >got
+near 'all of its particles are found' "$(value got 1)" 200 4
+near 'two of three phases lie within one standard error, whatever the noise' "$(value got 2)" 0.683 0.1
+
 # A live record
 awk 'BEGIN { print "time\tdiameter"; for (i = 0; i < 35; i++) printf "%g\t%g\n", 0.05 + 0.08 * i, 8e-5 + i % 7 * 6e-6 }' |
 	sensorsim --duration 3s --snr 30dB --lag 0.2ms:0.5ms --quadrature --truth truth.tsv >live.au

@@ -259,7 +259,7 @@ static void test_small(void)
 	near(peak.t, 975.25, 0.01, "the place of the peak is right");
 	near(peak.height, 2, 1e-4, "the height of the peak is right");
 	s = sections_new(shape, 100, 3, 0);
-	sections_scan(s, (const double *const[]){ x, x }, 2, 0, 0, N, N);
+	sections_scan(s, (const double *const[]){ x, x }, 2, 0, N, N);
 	sections_end(s);
 	ok(sections_first(s, &section) && section.begin < 950 && section.end > 1050 &&
 			section.end < 1300,
@@ -305,8 +305,7 @@ static void test_sections(void)
 		sections_free(s);
 		s = sections_new(shape, 100, 5, 0);
 		for (long long upto = 0; upto < N; upto += 100)
-			sections_scan(
-				s, (const double *const[]){ x, x }, 2, 0, 0, N, upto);
+			sections_scan(s, (const double *const[]){ x, x }, 2, 0, N, upto);
 		sections_end(s);
 		ok(sections_first(s, &first) && first.begin < 900 && !first.open,
 			"a section begins with the weak pulse");

@@ -116,7 +116,7 @@ static enum num_status add_trigger(struct sections *s, long long at, double z)
 }
 
 enum num_status sections_scan(struct sections *s, const double *const y[], int channels,
-	double scale, long long base, size_t n, long long limit)
+	long long base, size_t n, long long limit)
 {
 	for (; s->next < limit; s->next += s->stride) {
 		double z = 0;
@@ -125,7 +125,7 @@ enum num_status sections_scan(struct sections *s, const double *const y[], int c
 			double here = dot_within(
 				s->filter, s->len, y[c], n, s->next - base + s->first);
 
-			z = fmax(z, c < 2 ? here : scale * fabs(here));
+			z = fmax(z, c < 2 ? here : fabs(here));
 		}
 		if (z > s->threshold && add_trigger(s, s->next, z))
 			return NUM_MEMORY;

@@ -40,10 +40,10 @@ long sections_margin(const struct sections *s);
 
 /* Scans the channels of a record, held as y[channel][0 .. n) from sample base on, up to
  * sample limit (not included); samples outside what is held count as zero.  Each point is
- * scanned once.  Beyond the first two channels a section is where the filter, times
- * scale, exceeds the threshold with either sign. */
+ * scanned once.  Beyond the first two channels a section is where the filter exceeds the
+ * threshold with either sign. */
 enum num_status sections_scan(struct sections *s, const double *const y[], int channels,
-	double scale, long long base, size_t n, long long limit);
+	long long base, size_t n, long long limit);
 
 /* The first section: 1 and *section, or 0 where there is none.  It stays until taken. */
 int sections_first(const struct sections *s, struct section *section);

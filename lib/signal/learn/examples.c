@@ -56,7 +56,7 @@ static void pick_sections(struct examples *ex, const double *y1, const double *y
 	if (!(T >= SECTIONS_SHORTEST))
 		return;
 	s = sections_new(c->shape, T, SIGMAS_NEVER, slack);
-	if (!s || sections_scan(s, y, 2, 0, 0, n, (long long)n) != NUM_OK) {
+	if (!s || sections_scan(s, y, 2, 0, n, (long long)n) != NUM_OK) {
 		ex->status = SEPARATE_MEMORY;
 		sections_free(s);
 		return;

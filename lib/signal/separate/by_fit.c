@@ -15,14 +15,17 @@ static int most_pulses(const struct separate *s, size_t n)
 	return (int)fmin(most, s->par.most_pulses);
 }
 
-/* Subtracts a pulse from channels k of sensor 1 and k + 1 of sensor 2. */
-static void take_off(
-	struct separate *s, long long from, const struct joint_pulse *p, int k)
+/* Subtracts a pulse from channels k of sensor 1 and k + 1 of sensor 2, whose noise is
+ * that of the first components times noise. */
+static void take_off(struct separate *s, long long from, const struct joint_pulse *p,
+	int k, const double noise[2])
 {
 	struct buffer *one = &s->buffer[k], *two = &s->buffer[k + 1];
+	size_t n = (size_t)(ready(s) - from);
 
-	joint_add(&s->scene, p, -1, one->x + (from - one->begin),
-		two->x + (from + s->cal.shift - two->begin), (size_t)(ready(s) - from));
+	joint_add(&s->scene, p, -1 / noise[0], one->x + (from - one->begin), NULL, n);
+	joint_add(&s->scene, p, -1 / noise[1], NULL,
+		two->x + (from + s->cal.shift - two->begin), n);
 }
 
 /* Subtracts the first done of m pulses from the record and carries the others into the
@@ -34,13 +37,13 @@ static long long cut_section(
 	long long start = from + (long long)floor(boundary - reach + s->cal.delta_min);
 
 	for (int i = 0; i < done; i++)
-		take_off(s, from, &s->pulse[i], 0);
+		take_off(s, from, &s->pulse[i], 0, (const double[]){ 1, 1 });
 	for (int i = 0; i < done && s->with_both; i++) {
 		const struct quadrature_pulse *b = &s->both[i];
 
 		take_off(s, from,
 			&(struct joint_pulse){ .t = b->t, .delta = b->delta, .a = b->b },
-			2);
+			2, s->quadrature.noise);
 	}
 	if (start <= from)
 		start = from + 1;

@@ -68,10 +68,13 @@ static void follow_gain(struct separate *s, const struct joint_pulse *p)
 
 void separate_set_gain(struct separate *s, long long from)
 {
-	double first = following_at(&s->buffer[0].noise, (double)from);
-	double second = following_at(&s->buffer[1].noise, (double)(from + s->cal.shift));
+	const double at[2] = { (double)from, (double)(from + s->cal.shift) };
 
-	s->scene.gain = s->gain * first / second;
+	s->scene.gain = s->gain * following_at(&s->buffer[0].noise, at[0]) /
+			following_at(&s->buffer[1].noise, at[1]);
+	for (int c = 0; c < 2 && has_quadrature(s); c++)
+		s->quadrature.noise[c] = separate_noise_at(s, c + 2, at[c]) /
+					 separate_noise_at(s, c, at[c]);
 }
 
 void separate_follow(struct separate *s, const struct account *a)

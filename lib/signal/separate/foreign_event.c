@@ -72,6 +72,8 @@ enum num_status separate_find_foreign(struct separate *s, long long from, size_t
 	if (foreign_find(&stretch, lobes ? s->scene.delta_min : INFINITY,
 		    s->scene.delta_max, event) != NUM_OK)
 		return NUM_MEMORY;
+	if (component > 0) /* in units of the noise of the first */
+		event->amplitude *= s->quadrature.noise[isnan(event->t[0])];
 	return event->verdict == SEPARATE_TRANSIENT
 		       ? look_for_other_half(s, from, n, component, event)
 		       : NUM_OK;

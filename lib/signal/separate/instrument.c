@@ -147,9 +147,11 @@ static void walk_all(struct walk *w, struct instrument *in)
 	reals(w, "flow_variance", 0, &in->flow.var, 1);
 	reals(w, "flow_margin", 0, &in->flow.margin, 1);
 	reals(w, "flow_count", 0, &in->flow.count, 1);
-	reals(w, "level", 0, in->level, 2);
+	reals(w, "level", 0, in->level, 4);
 	reals(w, "level_samples", 0, &in->level_samples, 1);
 	reals(w, "common", -1, in->common, 3);
+	reals(w, "second_noise", DBL_MIN, in->second.noise, 2);
+	reals(w, "second_correlation", -1, in->second.correlation, 2);
 	walk_whitening(w, &c->whitening);
 	walk_shape(w, &c->shape);
 }

@@ -9,6 +9,7 @@
 
 #include "num/status.h"
 #include "signal/learn/calibration.h"
+#include "signal/separate/quadrature.h"
 #include "signal/separate/validate.h"
 #include <stddef.h>
 
@@ -17,11 +18,12 @@ struct instrument {
 	int ratio;            /* of separate_ratio(), whose samples these are */
 	int crowded;          /* long sections hold too many pulses */
 	struct flow flow;     /* delays of particles, samples around cal.shift */
-	double level[2];      /* noise of both channels once clean, near 1 */
+	double level[4];      /* noise of all channels once clean, near 1 */
 	double level_samples; /* these are known from so many samples */
 	/* Correlation of the noise of both channels, 0 if it is not removed, and what
 	 * removing it leaves of the noise of either. */
 	double common[3];
+	struct quadrature second; /* of four channels */
 };
 
 struct instrument_value {

@@ -40,10 +40,9 @@ static void follow_noise(struct separate *s, size_t n)
 		0.5 * (double)n, (double)n - 2 * (double)c->tone_hop - c->whitening.edge);
 
 	block = block < FOLLOWING_BLOCK ? block : FOLLOWING_BLOCK;
-	if (block < SHORTEST || c->duration < FOLLOWED || has_quadrature(s) ||
-		c->whitening.tap)
+	if (block < SHORTEST || c->duration < FOLLOWED || c->whitening.tap)
 		return;
-	for (int k = 0; k < 2; k++)
+	for (int k = 0; k < s->channels; k++)
 		buffer_follow(&s->buffer[k], s->done, block, n ? 0 : s->kept.level[k],
 			s->buffer[k].begin + (long long)known);
 }
@@ -92,6 +91,16 @@ static size_t measured(const struct separate *s, size_t n, size_t *from)
 	return best < SEPARATE_SHORTEST ? n : best;
 }
 
+/* The noise of the second components, from the n oldest samples. */
+static enum num_status measure_quadrature(struct separate *s, size_t n)
+{
+	const double *x[CHANNELS_MAX];
+
+	for (int c = 0; c < CHANNELS_MAX; c++)
+		x[c] = s->buffer[c % s->channels].x;
+	return quadrature_measure(&s->quadrature, x, x + 2, n);
+}
+
 /* Starts the separation with an instrument learned from the n oldest samples (0: kept).
  */
 static enum separate_status start(struct separate *s, size_t n)
@@ -112,10 +121,15 @@ static enum separate_status start(struct separate *s, size_t n)
 	if (c->whitening.low * 2 * (double)s->par.window > JOINT_BASELINE_MAX)
 		s->par.window = (size_t)fmax(
 			3 * reach, JOINT_BASELINE_MAX / (2 * c->whitening.low));
+	s->quadrature = s->kept.second;
+	if (n > 0 && measure_quadrature(s, n) != NUM_OK)
+		return SEPARATE_MEMORY;
 	for (int k = 0; k < s->channels; k++)
 		if (buffer_start(&s->buffer[k], c,
 			    k < 2 ? c->mean[k] : mean_of(s->buffer[k].x, n),
-			    c->noise[k % 2]) != NUM_OK)
+			    k < 2 ? c->noise[k]
+				  : c->noise[k - 2] * s->quadrature.noise[k - 2]) !=
+			NUM_OK)
 			return SEPARATE_MEMORY;
 	follow_noise(s, n);
 	/* Equal pulses on both channels reach the threshold of a pair when each reaches 1

@@ -10,8 +10,10 @@ enum { LEVEL_BLOCK = 4096 };
 void separate_measure_level(struct separate *s)
 {
 	double work[LEVEL_BLOCK];
-	long long clean = s->buffer[0].clean < s->buffer[1].clean ? s->buffer[0].clean
-								  : s->buffer[1].clean;
+	long long clean = s->buffer[0].clean;
+
+	for (int c = 1; c < s->channels; c++)
+		clean = s->buffer[c].clean < clean ? s->buffer[c].clean : clean;
 
 	while (s->levels < (double)s->par.learn) {
 		long long n = clean - s->level_at;
@@ -19,7 +21,7 @@ void separate_measure_level(struct separate *s)
 		if (n < (s->ended ? SEPARATE_SHORTEST : LEVEL_BLOCK))
 			return;
 		n = n < LEVEL_BLOCK ? n : LEVEL_BLOCK;
-		for (int c = 0; c < 2; c++) {
+		for (int c = 0; c < s->channels; c++) {
 			const struct buffer *t = &s->buffer[c];
 			double level = robust_noise(
 				t->x + (s->level_at - t->begin), (size_t)n, work);
@@ -46,8 +48,13 @@ static double level_error(double n)
 
 void separate_noise(const struct separate *s, double share[2])
 {
-	for (int c = 0; c < 2; c++)
-		share[c] = s->kept.level[c] > 0 ? s->level[c] / s->kept.level[c] : 1;
+	share[0] = share[1] = 1;
+	for (int c = 0; c < s->channels; c++) {
+		double now = s->level[c] / s->kept.level[c];
+
+		if (s->kept.level[c] > 0 && fabs(log(now)) > fabs(log(share[c % 2])))
+			share[c % 2] = now;
+	}
 }
 
 int separate_is_other_noise(const struct separate *s)

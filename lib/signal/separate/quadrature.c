@@ -23,6 +23,9 @@ struct part {
 
 struct fit {
 	const struct quadrature *q;
+	/* Inverse covariance of the noise of x and v, in units of that of x, of each
+	 * sensor: of x x, x v and v v. */
+	double metric[2][3];
 	const struct joint *joint;
 	const struct joint_scene *scene;
 	const double *x[2], *v[2]; /* sensor: the two components */
@@ -44,10 +47,11 @@ enum num_status quadrature_measure(struct quadrature *q, const double *const x[2
 {
 	double *sum = malloc((n ? n : 1) * sizeof *sum),
 	       *work = malloc((n ? n : 1) * sizeof *work);
+	int enough;
 
 	for (int c = 0; c < 2 && sum && work; c++) {
 		double one = robust_noise(x[c], n, work),
-		       two = robust_noise(v[c], n, work), plus, minus, r, determinant;
+		       two = robust_noise(v[c], n, work), plus, minus, r;
 
 		if (!(one > 0) || !(two > 0)) /* too short or without noise */
 			one = two = 1;
@@ -59,30 +63,23 @@ enum num_status quadrature_measure(struct quadrature *q, const double *const x[2
 		minus = robust_noise(sum, n, work);
 		r = (plus * plus - minus * minus) / (plus * plus + minus * minus);
 		/* limited: the difference of equal components would have no error */
-		r = isfinite(r) ? fmax(fmin(r, 0.99), -0.99) : 0;
-		two /= one;
-		determinant = two * two * (1 - r * r);
-		q->metric[c][0][0] = two * two / determinant;
-		q->metric[c][0][1] = q->metric[c][1][0] = -r * two / determinant;
-		q->metric[c][1][1] = 1 / determinant;
+		q->correlation[c] = isfinite(r) ? fmax(fmin(r, 0.99), -0.99) : 0;
+		q->noise[c] = two / one;
 	}
-	q->measured = sum && work;
+	enough = sum && work;
 	free(sum);
 	free(work);
-	return q->measured ? NUM_OK : NUM_MEMORY;
+	return enough ? NUM_OK : NUM_MEMORY;
 }
 
-double quadrature_noise(const struct quadrature *q)
+static void make_metric(struct fit *f)
 {
-	double most = 0;
-
 	for (int c = 0; c < 2; c++) {
-		const double(*m)[2] = q->metric[c];
-
-		most = fmax(
-			most, sqrt(m[0][0] / (m[0][0] * m[1][1] - m[0][1] * m[0][1])));
+		double r = f->q->correlation[c], noise = f->q->noise[c];
+		f->metric[c][0] = 1 / (1 - r * r);
+		f->metric[c][1] = -r * f->metric[c][0] / noise;
+		f->metric[c][2] = f->metric[c][0] / (noise * noise);
 	}
-	return most;
 }
 
 static void fit_free(struct fit *f)
@@ -173,7 +170,8 @@ static double chi_square(struct fit *f, const struct quadrature_pulse *p)
 
 	for (int c = 0; c < 2; c++) {
 		memcpy(f->rest[c][0], f->x[c], f->n * sizeof(double));
-		memcpy(f->rest[c][1], f->v[c], f->n * sizeof(double));
+		for (size_t i = 0; i < f->n; i++)
+			f->rest[c][1][i] = f->q->noise[c] * f->v[c][i];
 		for (int i = 0; i < f->m; i++) {
 			const struct part *part = &f->part[2 * i + c];
 
@@ -197,7 +195,7 @@ static double chi_square(struct fit *f, const struct quadrature_pulse *p)
 
 				for (int b = 0; b < f->basis; b++)
 					product -= f->left[c][k][b] * f->left[c][l][b];
-				chi2 += f->q->metric[c][k][l] * product;
+				chi2 += f->metric[c][k + l] * product;
 			}
 	}
 	return chi2;
@@ -223,14 +221,10 @@ static double product(
 	return sum;
 }
 
-static double form(const double metric[2][2], const double u[2], const double w[2])
+static double form(const double metric[3], const double u[2], const double w[2])
 {
-	double sum = 0;
-
-	for (int k = 0; k < 2; k++)
-		for (int l = 0; l < 2; l++)
-			sum += u[k] * metric[k][l] * w[l];
-	return sum;
+	return u[0] * metric[0] * w[0] + (u[0] * w[1] + u[1] * w[0]) * metric[1] +
+	       u[1] * metric[2] * w[1];
 }
 
 static void make_gradient(struct fit *f, const struct quadrature_pulse *p, int i)
@@ -250,7 +244,7 @@ static void make_gradient(struct fit *f, const struct quadrature_pulse *p, int i
 					along[l] -= part->along[function][b] *
 						    f->left[c][l][b];
 			}
-			sum += form(f->q->metric[c], weight, along);
+			sum += form(f->metric[c], weight, along);
 		}
 		f->gradient[PARAMETERS * i + k] = sum;
 	}
@@ -273,7 +267,7 @@ static void make_block(struct fit *f, const struct quadrature_pulse *p, int i, i
 			    fw = component_of(&p[j], l, w);
 
 			for (int c = 0; c < 2; c++)
-				sum += form(f->q->metric[c], u, w) * of[c][fu][fw];
+				sum += form(f->metric[c], u, w) * of[c][fu][fw];
 			f->normal[(PARAMETERS * i + k) * all + PARAMETERS * j + l] = sum;
 		}
 }
@@ -390,6 +384,7 @@ enum num_status quadrature_fit(const struct quadrature *q, const struct joint *j
 	double all = NAN;
 
 	*doubt = 0;
+	make_metric(&f);
 	for (int c = 0; c < 2; c++)
 		f.vector[c] = joint_basis(joint, c, &f.basis, &f.taken);
 	status = fit_reserve(&f);

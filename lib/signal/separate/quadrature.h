@@ -8,8 +8,7 @@
  * of the joint fit Gauss-Newton steps on all four channels lead to the least-squares
  * estimates of arrivals, a_k and b_k together, with their inverse Fisher matrix.
  *
- * The noise of x and v of a sensor may differ in size and may be correlated; both are
- * measured.
+ * The noise of x and v of a sensor may differ in size and may be correlated.
  */
 #ifndef SIGNAL_QUADRATURE_H
 #define SIGNAL_QUADRATURE_H
@@ -17,12 +16,9 @@
 #include "num/status.h"
 #include "signal/fit/joint.h"
 
-/* Zeroed: not measured. */
+/* Of each sensor: noise of v over that of x, and their correlation. */
 struct quadrature {
-	int measured;
-	/* Inverse of the covariance of the noise of (x, v), both in units of the noise of
-	 * x, for each sensor. */
-	double metric[2][2][2];
+	double noise[2], correlation[2];
 };
 
 /* One pulse: its complex amplitude is a + i b, in units of the noise of x. */
@@ -31,16 +27,14 @@ struct quadrature_pulse {
 	double cov[4][4]; /* of t, t + delta, a, b */
 };
 
-/* The noise, from n prepared samples of x and v. */
+/* From n samples of x and v. */
 enum num_status quadrature_measure(struct quadrature *q, const double *const x[2],
 	const double *const v[2], size_t n);
 
-/* Noise of v relative to that of x, of the sensor where it is larger. */
-double quadrature_noise(const struct quadrature *q);
-
 /* After a joint fit of the m pulses to n samples of x, with chi2 per degree of freedom:
- * fits them to x and v.  *doubt: 1 if the residual of v exceeds that of x and of noise.
- * NUM_DOMAIN: the pulses cannot be separated; out is undefined then. */
+ * fits them to x and v, either in units of its noise.  *doubt: 1 if the residual of v
+ * exceeds that of x and of noise. NUM_DOMAIN: the pulses cannot be separated; out is
+ * undefined then. */
 enum num_status quadrature_fit(const struct quadrature *q, const struct joint *joint,
 	const struct joint_scene *scene, const double *const x[2],
 	const double *const v[2], size_t n, const struct joint_pulse *pulse, int m,

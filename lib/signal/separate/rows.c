@@ -10,7 +10,8 @@ static void tell_phase(
 	const struct separate *s, int i, long long from, struct transit *out)
 {
 	const struct quadrature_pulse *p = &s->both[i];
-	double noise = s->cal.noise[0], size = hypot(p->a, p->b);
+	double noise = separate_noise_at(s, 0, (double)from + p->t);
+	double size = hypot(p->a, p->b);
 	double ca = p->a / size, cb = p->b / size, along[4];
 	double delay_var = p->cov[0][0] - 2 * p->cov[0][1] + p->cov[1][1];
 

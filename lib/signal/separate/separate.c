@@ -2,6 +2,7 @@
 #include "signal/separate/separate_state.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct separate *separate_new(const struct separate_par *par)
 {
@@ -100,10 +101,10 @@ int separate_instrument(const struct separate *s, struct instrument *view)
 	*view = (struct instrument){ .cal = s->cal,
 		.ratio = s->ratio,
 		.crowded = s->crowded,
-		.level = { s->level[0], s->level[1] },
 		.level_samples = s->levels,
-		.common = {
-			s->common.correlation, s->common.left[0], s->common.left[1] } };
+		.common = { s->common.correlation, s->common.left[0], s->common.left[1] },
+		.second = s->quadrature };
+	memcpy(view->level, s->level, sizeof view->level);
 	validation_flow(s->validation, &view->flow);
 	return 1;
 }
@@ -111,9 +112,8 @@ int separate_instrument(const struct separate *s, struct instrument *view)
 static enum num_status scan(struct separate *s, long long limit)
 {
 	struct channels y = channels_at(s, s->done);
-	double scale = has_quadrature(s) ? 1 / quadrature_noise(&s->quadrature) : 0;
 
-	return sections_scan(s->sections, y.at, s->channels, scale, s->done,
+	return sections_scan(s->sections, y.at, s->channels, s->done,
 		(size_t)(limit - s->done),
 		s->ended ? limit : limit - sections_reach(s->sections));
 }
@@ -123,25 +123,19 @@ static enum num_status scan(struct separate *s, long long limit)
 static enum separate_status look(struct separate *s, long long limit, int *enough)
 {
 	long long upto = s->done + (long long)s->par.learn / 2;
-	struct channels y;
 
 	*enough = limit >= upto || s->ended;
 	if (!*enough)
 		return SEPARATE_OK;
 	upto = limit < upto ? limit : upto;
-	if (!s->looked)
-		s->crowded = !s->par.sources && is_crowded(s, s->done, upto);
-	if (!s->looked && separate_measure_common(s, s->done, upto) != NUM_OK)
+	s->crowded = !s->par.sources && is_crowded(s, s->done, upto);
+	if (separate_measure_common(s, s->done, upto) != NUM_OK)
 		return SEPARATE_MEMORY;
 	s->looked = 1;
 	/* Too few samples to remove what is common. */
 	if (s->par.clearly && (s->crowded || s->common.correlation != 0))
 		return SEPARATE_NO_LAG;
-	y = channels_at(s, s->done);
-	return has_quadrature(s) && quadrature_measure(&s->quadrature, y.at, y.at + 2,
-					    (size_t)(upto - s->done)) != NUM_OK
-		       ? SEPARATE_MEMORY
-		       : SEPARATE_OK;
+	return SEPARATE_OK;
 }
 
 /* Judges what was held back until so much was done. */
@@ -223,7 +217,7 @@ static enum separate_status work(struct separate *s)
 	limit = ready(s);
 	if (limit <= s->done)
 		return SEPARATE_OK;
-	if (!s->looked || has_quadrature(s) > s->quadrature.measured) {
+	if (!s->looked) {
 		int enough;
 
 		status = look(s, limit, &enough);

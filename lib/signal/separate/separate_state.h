@@ -71,7 +71,7 @@ struct separate {
 	struct instrument kept;     /* par.kept, whose cal is moved to cal */
 	int varies[2];              /* 1: the sensor has not been constant so far */
 	double first[CHANNELS_MAX]; /* frame of a record with a kept instrument */
-	double level[2], levels;
+	double level[CHANNELS_MAX], levels;
 	long long level_at;
 	int looked;     /* 1: the first samples have been examined */
 	int crowded;    /* 1: long sections hold too many pulses */
@@ -156,18 +156,23 @@ static inline int has_quadrature(const struct separate *s)
 	return s->channels > 2;
 }
 
-/* Samples before this one are prepared on both channels, aligned. */
+/* Samples before this one are prepared on all channels, aligned. */
 static inline long long ready(const struct separate *s)
 {
-	long long second = s->buffer[1].clean - s->cal.shift;
+	long long least = s->buffer[0].clean;
 
-	return s->buffer[0].clean < second ? s->buffer[0].clean : second;
+	for (int c = 1; c < s->channels; c++) {
+		long long clean = s->buffer[c].clean - (c % 2 ? s->cal.shift : 0);
+
+		least = clean < least ? clean : least;
+	}
+	return least;
 }
 
 /* Noise of a channel at a sample of it, in units of the record. */
 static inline double separate_noise_at(const struct separate *s, int c, double at)
 {
-	return s->cal.noise[c] * following_at(&s->buffer[c].noise, at);
+	return s->buffer[c].scale * following_at(&s->buffer[c].noise, at);
 }
 
 /* frames.c */
@@ -287,8 +292,8 @@ int separate_is_range_free(const struct separate *s);
 void separate_widen(struct separate *s);
 /* Updates the range of delays and the gain by a pulse that stands alone. */
 void separate_follow(struct separate *s, const struct account *a);
-/* Sets the gain for a section that begins at sample from: pulses are in units of the
- * noise, which changes at either sensor. */
+/* Sets the gain, and the noise of the second components, for a section that begins at
+ * sample from: pulses are in units of the noise, which changes in every channel. */
 void separate_set_gain(struct separate *s, long long from);
 
 /* rivals.c */
