@@ -7,6 +7,7 @@
 #include "life/trend/bank.h"
 #include "life/trend/passage.h"
 #include "life/trend/runin.h"
+#include "num/select.h"
 #include "tap.h"
 #include <stdlib.h>
 
@@ -171,8 +172,10 @@ static void test_straight_wear(void)
 	draw_free(d);
 }
 
-/* Median life of a straight series of n rows, y = t / 100 with noise, as changed by f. */
-static double median_life(int n, double (*f)(int k, double y), double gap, int at)
+/* A quantile of the life of a straight series of n rows, y = t / 100 with noise, as
+ * changed by f. */
+static double life_of(
+	int n, double (*f)(int k, double y), double gap, int at, double level)
 {
 	struct draw *d = draw_new(3, 0, RNG_NOISE);
 	struct bank_chances *chances = bank_chances_new(DRAWS, 1);
@@ -188,7 +191,13 @@ static double median_life(int n, double (*f)(int k, double y), double gap, int a
 	bank_free(b);
 	bank_chances_free(chances);
 	draw_free(d);
-	return median(life, DRAWS);
+	sort_numbers(life, DRAWS);
+	return metric_quantile(life, DRAWS, level);
+}
+
+static double median_life(int n, double (*f)(int k, double y), double gap, int at)
+{
+	return life_of(n, f, gap, at, 0.5);
 }
 
 static double as_it_is(int k, double y)
@@ -239,6 +248,36 @@ static double quiet_repair(int k, double y)
 	return repair(k, k / 100.0 + (y - k / 100.0) / 20);
 }
 
+/* Wear that becomes thirty times as fast at row 60, under the same noise. */
+static double accelerated(int k, double y)
+{
+	return k * 1e-3 + fmax(0, k - 60) * 0.029 + (y - k / 100.0) / 20;
+}
+
+static double constant(int k, double y)
+{
+	(void)k;
+	(void)y;
+	return 0;
+}
+
+static double rounded_noise(int k, double y)
+{
+	return round(36 * (y - k / 100.0)) / 30;
+}
+
+/* By the law of future changes a twentieth of such units fails within a quarter of their
+ * age or so; what readings do not say must not make it more. */
+static void test_no_wear(void)
+{
+	for (int n = 70; n <= 280; n *= 2) {
+		ok(life_of(n, constant, 0, 0, 0.05) > 0.25 * n,
+			"%d equal readings are no wear", n);
+		ok(life_of(n, rounded_noise, 0, 0, 0.05) > 0.15 * n,
+			"nor is noise rounded to a few levels");
+	}
+}
+
 static void test_disturbances(void)
 {
 	double plain = median_life(60, as_it_is, 0, 0);
@@ -274,6 +313,9 @@ static void test_disturbances(void)
 	ok(median_life(60, repair, 0, 0) > plain + 15 &&
 			median_life(60, repair, 0, 0) < 85,
 		"a repair that sets the wear back by 0.4 lengthens the life");
+	/* 0.33 at row 69, nine rows after the turn: 22 of 0.03 are left */
+	near(median_life(70, accelerated, 0, 0), 22, 3,
+		"a new rate that is thirty times as high is learnt in nine rows");
 	near(median_life(60, quiet_repair, 0, 0), plain + 40, 6,
 		"a repair in quiet data lengthens the life by what it sets back");
 }
@@ -571,6 +613,7 @@ int main(void)
 	test_runin();
 	test_straight_wear();
 	test_disturbances();
+	test_no_wear();
 	test_noise_favours_no_bend();
 	test_bent_wear();
 	test_wander();

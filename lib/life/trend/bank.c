@@ -144,17 +144,16 @@ static double square_at(double deviate, double freedom)
 	return freedom * expm1(fmin(600, wide * wide / freedom));
 }
 
-/* Scores a reading that is equal to one before, and returns the probability that it is
- * new and not frozen.  The share of frozen readings has Jeffreys' prior; of the last
- * value and the farthest, each is as likely. */
-static double news_of(const struct bank *b, struct trend *tr, const struct place *p,
-	double f, double e, int equal)
+/* Scores a reading that is equal to one before and rounded from within the cell, ends in
+ * h, and returns the probability that it is new and not frozen.  The share of frozen
+ * readings has Jeffreys' prior; of the last value and the farthest, each is as likely. */
+static double news_of(const struct bank *b, struct trend *tr, const double cell[2],
+	double f, double h, int equal)
 {
-	/* Cells as wide as the range would not tell new from worn out. */
-	double half = 0.5 * fmin(b->quantum / fabs(b->range), 1) * p->slope,
-	       sd = sqrt(2 * f * tr->sum / freedom_of(b, tr)),
+	double sd = sqrt(2 * f * tr->sum / freedom_of(b, tr)),
 	       frozen = 0.5 * equal * (b->frozen + 0.5) / ((double)b->rows + 1),
-	       new = 0.5 * (1 - frozen) * (erf((e + half) / sd) - erf((e - half) / sd));
+	       new = 0.5 * (1 - frozen) *
+		     (erf((cell[1] - h) / sd) - erf((cell[0] - h) / sd));
 
 	tr->score += log(new + frozen);
 	return fmax(new / (new + frozen), 1e-9);
@@ -162,7 +161,7 @@ static double news_of(const struct bank *b, struct trend *tr, const struct place
 
 /* Updates one trend by a row; returns the probability that it is frozen. */
 static double follow(const struct bank *b, struct trend *tr, const struct place *seen,
-	double step, int equal)
+	const double cell[2], double step, int equal)
 {
 	int n = 2 + b->par.n_loads;
 	double keep = b->keep[tr->kind], *x = state_of(b, tr), f, e, z, limit, news = 1;
@@ -182,7 +181,7 @@ static double follow(const struct bank *b, struct trend *tr, const struct place 
 		e = z * sqrt(f);
 	}
 	if (b->rows >= BANK_START - 1 && equal)
-		news = news_of(b, tr, &p, f, e, equal);
+		news = news_of(b, tr, cell, f, x[0], equal);
 	else if (b->rows >= BANK_START - 1)
 		tr->score += log_density(b, tr, &p, f, z);
 	f /= news; /* as if it were so much less accurate */
@@ -254,6 +253,14 @@ static double chance_of_birth(const struct bank *b, int k)
 	return philox_uniform(0, (uint32_t)b->rows, RNG_PREDICT, (uint64_t)k);
 }
 
+/* Multiplies the rates of a trend. */
+static void scale_trend(const struct bank *b, struct trend *tr, double times)
+{
+	scale_rates(2 + b->par.n_loads, state_of(b, tr), times);
+	for (int k = 0; k < b->par.n_loads; k++)
+		priors_of(b, tr)[k] /= times * times;
+}
+
 /* Makes a particle for a change of regime of its parent at the present age: its rate
  * begins to grow, or falls to any value between 0 and the one before, which has half the
  * rate for its mean and 1 / 12 of its square for its variance. */
@@ -261,8 +268,7 @@ static void beget(
 	const struct bank *b, const struct trend *parent, int birth, struct trend *child)
 {
 	int n = 2 + b->par.n_loads;
-	double s = grown(parent, b->age), *x = state_of(b, child), line[LINE], rate,
-	       times;
+	double s = grown(parent, b->age), *x = state_of(b, child), line[LINE], rate;
 	int falls;
 
 	line_at(b, parent, b->at, line);
@@ -271,10 +277,7 @@ static void beget(
 	falls = rate > 0 && chance_of_birth(b, 2 * birth + 1) < past.falls;
 	*child = *parent;
 	memcpy(x, state_of(b, parent), size_of_state(&b->par));
-	times = falls ? 0.5 * s : s;
-	scale_rates(n, x, times);
-	for (int k = 0; k < b->par.n_loads; k++)
-		priors_of(b, child)[k] /= times * times;
+	scale_trend(b, child, falls ? 0.5 * s : s);
 	child->onset = b->age;
 	child->growth = falls ? 0 : (float)(past.growth / b->age);
 	if (falls)
@@ -337,6 +340,10 @@ static void take(struct bank *b, const struct row *r)
 	       damage = damage_of(b, r->y);
 	double frozen = 0, one;
 	int equal = equals(b, r->y);
+	/* Without any step so far, rounding is no coarser than the finest noise. */
+	double half = isinf(b->quantum) ? sqrt(3) * FINEST
+					: 0.5 * b->quantum / fabs(b->range),
+	       cell[2] = { 0 };
 	struct place place;
 	int shape = -1;
 
@@ -349,10 +356,13 @@ static void take(struct bank *b, const struct row *r)
 	for (int i = 0; i < b->trends; i++) {
 		struct trend *tr = &b->trend[i];
 
-		if (tr->shape != shape)
+		if (tr->shape != shape) {
 			place = place_of(b, shape = tr->shape, damage);
+			cell[0] = place_of(b, shape, damage - half).h;
+			cell[1] = place_of(b, shape, damage + half).h;
+		}
 		tr->score *= fade;
-		one = follow(b, tr, &place, step, equal);
+		one = follow(b, tr, &place, cell, step, equal);
 		if (tr->weight > 0 && one > 0) /* not NAN */
 			frozen += tr->weight * one;
 	}
@@ -488,32 +498,49 @@ static double is_surprised(const struct bank *b, const struct trend *tr,
 	       square_at(SURPRISE, freedom_of(b, tr)) * tr->sum / freedom_of(b, tr);
 }
 
-/* Widens the variance of the level by a jump of the damage by this much and, if wanted,
- * that of the rate by its square. */
-static void unsettle(struct bank *b, double damage, double jump, int rate)
+/* Widens the variance of the level by a jump of the damage to this value. */
+static void unsettle(struct bank *b, double damage, double jump)
 {
 	int n = 2 + b->par.n_loads;
 
 	for (int i = 0; i < b->trends; i++) {
 		struct trend *tr = &b->trend[i];
-		double scale = freedom_of(b, tr) / tr->sum, *x = state_of(b, tr),
-		       line[LINE];
 
-		line_at(b, tr, b->at, line);
-		x[n] += jump * jump * squared_slope(place_of(b, tr->shape, damage)) *
-			scale;
-		if (rate)
-			x[n + n + 1] += line[LINE_V] * line[LINE_V] * scale;
+		state_of(b, tr)[n] += jump * jump *
+				      squared_slope(place_of(b, tr->shape, damage)) *
+				      freedom_of(b, tr) / tr->sum;
 	}
 }
 
-/* The level has jumped to y.  A repair keeps the rates; otherwise the jump may be the
- * beginning of a new rate. */
-static void shift(struct bank *b, double y, int repaired)
+/* A regime begins: the rate may differ from the one before by as much as that, and by
+ * this rate of the damage. */
+static void renew(struct bank *b, double damage, double rate)
 {
-	double damage = damage_of(b, y);
+	int n = 2 + b->par.n_loads;
 
-	unsettle(b, damage, damage - b->level, !repaired);
+	for (int i = 0; i < b->trends; i++) {
+		struct trend *tr = &b->trend[i];
+		double line[LINE], square = squared_slope(place_of(b, tr->shape, damage));
+
+		scale_trend(b, tr, grown(tr, b->age));
+		tr->growth = 0;
+		tr->onset = b->age;
+		line_at(b, tr, b->at, line);
+		state_of(b, tr)[n + n + 1] +=
+			(line[LINE_V] * line[LINE_V] + rate * rate * square) *
+			freedom_of(b, tr) / tr->sum;
+	}
+}
+
+/* The level has jumped before a row.  A repair keeps the rates; otherwise the jump may be
+ * the beginning of a new rate, which makes all of it in the time since the row before. */
+static void shift(struct bank *b, const struct row *r, int repaired)
+{
+	double damage = damage_of(b, r->y), jump = damage - b->level;
+
+	unsettle(b, damage, jump);
+	if (!repaired)
+		renew(b, damage, jump * b->unit / (r->t - b->last));
 	b->counts.shifts++;
 }
 
@@ -543,7 +570,7 @@ struct bank *bank_accepting(const struct bank *b)
 	if (!copy)
 		return NULL;
 	memcpy(copy, b, size);
-	shift(copy, copy->held[0].y, 0);
+	shift(copy, &copy->held[0], 0);
 	release(copy);
 	return copy;
 }
@@ -654,7 +681,7 @@ void bank_add(struct bank *b, double t, double y)
 	}
 	b->held[b->n_held++] = r;
 	if (b->n_held == HELD || is_repaired(b)) {
-		shift(b, b->held[0].y, b->n_held < HELD);
+		shift(b, &b->held[0], b->n_held < HELD);
 		release(b);
 	}
 }
@@ -663,7 +690,10 @@ int bank_event(struct bank *b, enum bank_event event)
 {
 	if (b->rows == 0)
 		return 0;
-	unsettle(b, b->level, event == BANK_REPAIR, event == BANK_LOAD);
+	if (event == BANK_REPAIR)
+		unsettle(b, b->level, 1);
+	else
+		renew(b, b->level, 0);
 	return 1;
 }
 
